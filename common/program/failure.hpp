@@ -1,0 +1,31 @@
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace drogue {
+
+/// Process exit codes; part of the public interface of every program.
+enum class ExitCode : int {
+  ok = 0,
+  usage = 2,
+  invalid_scene = 3,
+  numerical_failure = 4,
+  verification_failed = 5,
+  io_error = 6,
+  no_backend = 77,
+  interrupted = 130,
+};
+
+/// A failure the user is told about in one sentence; ends the program with `code()`.
+class Failure : public std::runtime_error {
+ public:
+  Failure(ExitCode code, const std::string& sentence) : std::runtime_error(sentence), _code(code) {}
+
+  [[nodiscard]] ExitCode code() const noexcept { return _code; }
+
+ private:
+  ExitCode _code;
+};
+
+}  // namespace drogue
