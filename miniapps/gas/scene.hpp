@@ -1,0 +1,116 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "kernels/gas/parameters.hpp"
+
+/// The scene of `drogue-gas`: what a TOML file says, checked and with every default filled in.
+namespace drogue::gas_app {
+
+/// State of the gas at a point: density in kg/m^3, velocity in m/s, pressure in Pa.
+struct Primitive {
+  double rho = 1.0;
+  double u = 0.0;
+  double p = 1.0;
+};
+
+/// Two constant states that meet at `x0` (m).
+struct Riemann {
+  double x0 = 0.0;
+  Primitive left;
+  Primitive right;
+};
+
+/// A constant state up to `until` (m); the last region has none and reaches the end of the domain.
+struct Region {
+  std::optional<double> until;
+  Primitive state;
+};
+
+/// muParser expressions of x (cell centre, m) and dx (cell width, m).
+struct ExpressionState {
+  std::string rho;
+  std::string u = "0";
+  std::string p;
+};
+
+/// Exactly one of the three is set.
+struct Initial {
+  std::optional<Riemann> riemann;
+  std::vector<Region> regions;
+  std::optional<ExpressionState> expression;
+};
+
+struct Output {
+  std::vector<std::string> fields;  ///< subset of rho, u, p; empty: no fields.h5
+  std::vector<double> times;        ///< s, increasing, within the run; empty exactly if `fields` is
+  int history_every = 10;           ///< steps between rows of history.csv; 0: none
+  int restart_every = 0;            ///< steps between restart files; 0: none
+};
+
+enum class Exact { riemann, advection, reference };
+
+struct Verify {
+  std::optional<Exact> exact;
+  std::optional<gas::Parameters> reference;  ///< the finer own run; set exactly if `exact` is reference
+  std::map<std::string, double> bars;        ///< by name: l1_density ... linf_pressure
+  std::optional<double> conservation;        ///< bar of the relative change of mass, momentum, energy
+};
+
+struct GasScene {
+  std::filesystem::path file;
+  std::string name;  ///< the file's name without folder and extension
+  std::string description;
+  gas::Parameters parameters;
+  Initial initial;
+  double end_time = 0.0;  ///< s
+  Output output;
+  Verify verify;
+};
+
+/// How `--seed-mode` reads a scene: with the dissertation's scheme in place of the scene's.
+enum class SchemeSource { scene, dissertation };
+
+/// Reads and checks `file`, then the `--set` assignments `key.path=value` in their order. The initial state has
+/// been evaluated at every cell when this returns.
+/// Throws Failure: usage for a missing file, invalid_scene (`FILE:LINE: ...`) for all that is wrong in it.
+GasScene read_gas_scene(const std::filesystem::path& file, const std::vector<std::string>& sets = {},
+                        SchemeSource source = SchemeSource::scene);
+
+/// The resolved scene as TOML: every default that applies, no key that does not. Resolves to itself.
+std::string print_gas_scene(const GasScene& scene);
+
+/// All keys with type, range, unit, default and meaning, as the Markdown page docs/scenes-gas.md.
+std::string document_gas_scene();
+
+/// The initial state at a point. One copy a thread: a call uses the object's own scratch.
+class InitialState {
+ public:
+  explicit InitialState(const GasScene& scene);
+  InitialState(const InitialState& other);
+  InitialState(InitialState&& other) noexcept;
+  InitialState& operator=(const InitialState& other);
+  InitialState& operator=(InitialState&& other) noexcept;
+  ~InitialState();
+
+  /// `x` is a cell centre (m).
+  Primitive operator()(double x) const;
+
+ private:
+  struct Evaluator;
+  std::unique_ptr<Evaluator> _evaluator;
+};
+
+/// Centre of cell `i` (m): x_min + (i + 1/2) dx.
+inline double cell_centre(const gas::Parameters& parameters, std::int64_t i) {
+  const double dx = (parameters.x_max - parameters.x_min) / static_cast<double>(parameters.cells);
+  return parameters.x_min + (static_cast<double>(i) + 0.5) * dx;
+}
+
+}  // namespace drogue::gas_app
