@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "common/program/failure.hpp"
+
+namespace drogue::run {
+
+/// One verified quantity: passed if |value| <= bar.
+struct Check {
+  std::string name;
+  double value = 0.0;
+  double bar = 0.0;
+  bool passed = false;
+};
+
+/// result.json, schema `drogue.result/1`. A number that is not finite is written as null.
+struct ResultDocument {
+  std::string program, version, git, scene, backend, device;
+  std::string precision = "double";
+  int ranks = 1;
+  int threads = 1;
+  ExitCode exit_code = ExitCode::ok;
+  std::string message;
+  std::int64_t steps = 0;
+  double time = 0.0;                                            ///< simulated, s
+  double dt_min = 0.0, dt_max = 0.0;                            ///< s
+  std::map<std::string, double> errors;
+  std::vector<Check> checks;
+  struct Limiter {
+    std::int64_t touches = 0;                                   ///< faces limited, summed over all stages
+    std::int64_t cells = 0;                                     ///< cells that had such a face at least once
+    std::int64_t redone_steps = 0;
+  } limiter;
+  struct Timing {
+    double wall_s = 0, setup_s = 0, compute_s = 0, h2d_s = 0, d2h_s = 0, io_s = 0;
+  } timing;
+  struct Ledger {
+    std::int64_t kernel_launches = 0, fences = 0, device_allocations_after_warmup = 0, h2d_bytes = 0, d2h_bytes = 0;
+  } ledger;
+  struct PeakBytes {
+    std::int64_t host = 0, device = 0;
+  } peak_bytes;
+  struct Provenance {
+    std::string compiler, flags, kokkos, cpu, gpu, driver, date;
+  } provenance;
+
+  /// Adds a check and says whether it passed; a value that is not a number fails.
+  bool add_check(const std::string& name, double value, double bar);
+
+  /// First check that failed, as the Failure to throw (verification_failed) says it; empty if all passed.
+  [[nodiscard]] std::string failed_check() const;
+};
+
+/// A document that knows the build, the processor and the date, before anything ran.
+ResultDocument new_result(const std::string& program, const std::string& scene);
+
+/// `ok`, `invalid`, `numerical-failure`, ... as the schema names them.
+std::string status_name(ExitCode code);
+
+std::string to_json(const ResultDocument& result);
+
+/// Writes `file` atomically, the peak of host memory filled in. Throws Failure(io_error).
+void write_result(const std::filesystem::path& file, ResultDocument result);
+
+}  // namespace drogue::run
