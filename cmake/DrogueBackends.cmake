@@ -1,0 +1,36 @@
+# The compiled-in backends, and the files that are written once for each of them.
+
+set(DROGUE_BACKENDS serial)
+set(DROGUE_EXECUTION_SPACE_serial Kokkos::Serial)
+if(Kokkos_ENABLE_OPENMP)
+  list(APPEND DROGUE_BACKENDS openmp)
+  set(DROGUE_EXECUTION_SPACE_openmp Kokkos::OpenMP)
+endif()
+if(DROGUE_CUDA)
+  list(APPEND DROGUE_BACKENDS cuda)
+  set(DROGUE_EXECUTION_SPACE_cuda Kokkos::Cuda)
+endif()
+
+# Writes NAME_<backend>.cpp from NAME.cpp.in for each backend and appends the names to `sources`.
+# The template may use @DROGUE_BACKEND@ (serial), @DROGUE_BACKEND_ENUM@ (the same word, as an enumerator) and
+# @DROGUE_EXECUTION_SPACE@ (Kokkos::Serial).
+function(drogue_instantiate sources template)
+  cmake_path(RELATIVE_PATH template BASE_DIRECTORY "${PROJECT_SOURCE_DIR}" OUTPUT_VARIABLE _relative)
+  string(REGEX REPLACE "\\.cpp\\.in$" "" _stem "${_relative}")
+  set(_generated ${${sources}})
+  foreach(DROGUE_BACKEND IN LISTS DROGUE_BACKENDS)
+    set(DROGUE_BACKEND_ENUM ${DROGUE_BACKEND})
+    set(DROGUE_EXECUTION_SPACE ${DROGUE_EXECUTION_SPACE_${DROGUE_BACKEND}})
+    set(_file "${PROJECT_BINARY_DIR}/generated/${_stem}_${DROGUE_BACKEND}.cpp")
+    configure_file("${template}" "${_file}" @ONLY)
+    list(APPEND _generated "${_file}")
+  endforeach()
+  set(${sources} ${_generated} PARENT_SCOPE)
+endfunction()
+
+# Sources that include Kokkos go through nvcc in a CUDA build.
+function(drogue_use_device_language)
+  if(DROGUE_CUDA)
+    set_source_files_properties(${ARGN} PROPERTIES LANGUAGE CUDA)
+  endif()
+endfunction()

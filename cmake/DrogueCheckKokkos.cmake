@@ -1,0 +1,34 @@
+# Refuses a Kokkos that is known to be miscompiled or that does not fit the build asked for.
+
+if(DROGUE_CUDA AND NOT Kokkos_ENABLE_CUDA)
+  message(FATAL_ERROR "DROGUE_CUDA=ON, but the Kokkos in ${Kokkos_DIR} has no CUDA: run scripts/setup.sh where nvcc is "
+                      "installed, or point Kokkos_ROOT at a CUDA build.")
+endif()
+if(Kokkos_ENABLE_CUDA AND NOT DROGUE_CUDA)
+  message(FATAL_ERROR "The Kokkos in ${Kokkos_DIR} is a CUDA build: configure with -DDROGUE_CUDA=ON (preset cuda).")
+endif()
+if(NOT Kokkos_ENABLE_SERIAL)
+  message(FATAL_ERROR "The Kokkos in ${Kokkos_DIR} lacks the Serial backend, which the tests compare against: "
+                      "build it with Kokkos_ENABLE_SERIAL=ON.")
+endif()
+if(NOT Kokkos_ENABLE_OPENMP)
+  message(STATUS "Kokkos has no OpenMP: --backend openmp will not be compiled in")
+endif()
+
+if(DROGUE_CUDA)
+  # The mdspan-based View of Kokkos 4.7.0, compiled by nvcc 13.0 as C++20, computes wild addresses in a plain
+  # deep_copy. The old View implementation of the same release is right.
+  if(Kokkos_VERSION VERSION_EQUAL "4.7.0" AND NOT Kokkos_ENABLE_IMPL_VIEW_LEGACY)
+    message(FATAL_ERROR "Kokkos 4.7.0 with nvcc and C++20 is miscompiled (its mdspan View computes wrong addresses in a "
+                        "deep_copy): use Kokkos 4.5.1, or rebuild it with -DKokkos_ENABLE_IMPL_VIEW_LEGACY=ON.")
+  endif()
+  if(NOT DROGUE_CUDA_ARCH_RESOLVED IN_LIST Kokkos_CUDA_ARCHITECTURES)
+    message(FATAL_ERROR "The Kokkos in ${Kokkos_DIR} was built for architecture ${Kokkos_CUDA_ARCHITECTURES}, not "
+                        "${DROGUE_CUDA_ARCH_RESOLVED}: run DROGUE_CUDA_ARCH=${DROGUE_CUDA_ARCH_RESOLVED} scripts/setup.sh.")
+  endif()
+  # Sources that use Kokkos are compiled in the CUDA language, not by a wrapper that poses as the C++ compiler.
+  if(NOT Kokkos_ENABLE_COMPILE_AS_CMAKE_LANGUAGE)
+    message(FATAL_ERROR "The Kokkos in ${Kokkos_DIR} was built for nvcc_wrapper: rebuild it with "
+                        "-DKokkos_ENABLE_COMPILE_AS_CMAKE_LANGUAGE=ON.")
+  endif()
+endif()

@@ -1,0 +1,23 @@
+# Choices that must be made before project(): build type, compiler cache, GPU architecture.
+
+if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "Release, RelWithDebInfo or Debug" FORCE)
+endif()
+
+option(DROGUE_CUDA "Build the CUDA backend; needs nvcc and a Kokkos with CUDA" OFF)
+set(DROGUE_CUDA_ARCH 90 CACHE STRING "GPU architecture: 80, 86, 89, 90, 100 or native")
+set_property(CACHE DROGUE_CUDA_ARCH PROPERTY STRINGS 80 86 89 90 100 native)
+
+find_program(DROGUE_CCACHE ccache)
+mark_as_advanced(DROGUE_CCACHE)
+if(DROGUE_CCACHE)
+  foreach(_language C CXX CUDA)
+    if(NOT DEFINED CMAKE_${_language}_COMPILER_LAUNCHER)
+      set(CMAKE_${_language}_COMPILER_LAUNCHER "${DROGUE_CCACHE}")
+    endif()
+  endforeach()
+endif()
+
+if(DROGUE_CUDA)
+  include(DrogueCuda)
+endif()

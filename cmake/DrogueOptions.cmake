@@ -1,0 +1,66 @@
+# Compiler settings of our own targets, as two interface targets:
+#   drogue_arithmetic  what decides rounding; exported, so that users of the kernels compile alike
+#   drogue_private     warnings, include root, sanitizers; never exported
+
+option(DROGUE_EXACT "No fused multiply-add: all backends agree bit for bit" OFF)
+option(DROGUE_WARNINGS_AS_ERRORS "Stop at a warning in our own code" OFF)
+option(DROGUE_SANITIZE "Address and undefined-behaviour sanitizers" OFF)
+option(DROGUE_SYSTEM "Ignore build/deps: take every library from the system" OFF)
+
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_CUDA_STANDARD 20)
+set(CMAKE_CUDA_STANDARD_REQUIRED ON)
+set(CMAKE_CUDA_EXTENSIONS OFF)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/bin")
+
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 12)
+  message(FATAL_ERROR "g++ ${CMAKE_CXX_COMPILER_VERSION} is too old for C++20 as used here: install g++-12 or newer "
+                      "and pass -DCMAKE_CXX_COMPILER=g++-12.")
+endif()
+
+# Gives `target` a host-compiler option in both languages: nvcc hands it on with -Xcompiler.
+function(drogue_host_option target scope)
+  foreach(_option IN LISTS ARGN)
+    target_compile_options(${target} ${scope}
+      "$<$<COMPILE_LANGUAGE:CXX>:${_option}>" "$<$<COMPILE_LANGUAGE:CUDA>:-Xcompiler=${_option}>")
+  endforeach()
+endfunction()
+
+add_library(drogue_arithmetic INTERFACE)
+# Neither flag changes a rounding: they only say that nobody reads errno or traps, which lets loops vectorise.
+drogue_host_option(drogue_arithmetic INTERFACE -fno-math-errno -fno-trapping-math)
+if(DROGUE_EXACT)
+  drogue_host_option(drogue_arithmetic INTERFACE -ffp-contract=off)
+  target_compile_options(drogue_arithmetic INTERFACE $<$<COMPILE_LANGUAGE:CUDA>:--fmad=false>)
+  target_compile_definitions(drogue_arithmetic INTERFACE DROGUE_EXACT=1)
+endif()
+
+add_library(drogue_private INTERFACE)
+target_link_libraries(drogue_private INTERFACE drogue_arithmetic)
+target_include_directories(drogue_private INTERFACE "$<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>")
+drogue_host_option(drogue_private INTERFACE -Wall -Wextra -Wshadow -Wconversion)
+# nvcc writes line directives that -Wpedantic rejects, so it is for the host compiler alone.
+target_compile_options(drogue_private INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Wpedantic>)
+# gcc 12 invents overlapping copies in inlined std::string code (its bug 105651).
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  drogue_host_option(drogue_private INTERFACE -Wno-restrict)
+endif()
+if(DROGUE_WARNINGS_AS_ERRORS)
+  drogue_host_option(drogue_private INTERFACE -Werror)
+  target_compile_options(drogue_private INTERFACE "$<$<COMPILE_LANGUAGE:CUDA>:--Werror=cross-execution-space-call>")
+endif()
+if(DROGUE_SANITIZE)
+  drogue_host_option(drogue_private INTERFACE
+    -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  target_link_options(drogue_private INTERFACE -fsanitize=address,undefined)
+endif()
+if(DROGUE_CUDA)
+  # See the header: Kokkos 4.5 calls three functions by signatures that CUDA 13 dropped.
+  target_compile_options(drogue_arithmetic INTERFACE
+    "$<BUILD_INTERFACE:$<$<COMPILE_LANGUAGE:CUDA>:SHELL:-include ${PROJECT_SOURCE_DIR}/cmake/cuda13_kokkos45.hpp>>")
+  target_compile_options(drogue_arithmetic INTERFACE $<$<COMPILE_LANGUAGE:CUDA>:--extended-lambda>)
+endif()

@@ -1,0 +1,54 @@
+# How tests are made: one executable per source, for kernels one per source and backend.
+
+include(GoogleTest)
+
+# drogue_add_test(NAME <name> SOURCES <files> LABEL <label> [LIBRARIES <targets>] [BACKEND <backend>])
+# One GoogleTest executable; each of its cases becomes a ctest test `<label>.<Suite>.<Case>`.
+# With BACKEND the sources see DROGUE_TEST_SPACE (Kokkos::OpenMP) and DROGUE_TEST_BACKEND (openmp), go through nvcc
+# in a CUDA build, and a test of the cuda backend has the label gpu. A name that ends in _long has the label long.
+function(drogue_add_test)
+  cmake_parse_arguments(_test "" "NAME;LABEL;BACKEND" "SOURCES;LIBRARIES" ${ARGN})
+  add_executable(${_test_NAME} ${_test_SOURCES})
+  set_target_properties(${_test_NAME} PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/tests")
+  target_link_libraries(${_test_NAME} PRIVATE ${_test_LIBRARIES} drogue_private GTest::gtest)
+  target_compile_definitions(${_test_NAME} PRIVATE
+    DROGUE_SOURCE_DIR="${PROJECT_SOURCE_DIR}" DROGUE_BIN_DIR="${CMAKE_RUNTIME_OUTPUT_DIRECTORY}")
+  set(_prefix "${_test_LABEL}.")
+  set(_label ${_test_LABEL})
+  set(_cores 1)
+  if(_test_BACKEND)
+    drogue_use_device_language(${_test_SOURCES})
+    target_compile_definitions(${_test_NAME} PRIVATE
+      DROGUE_TEST_BACKEND=${_test_BACKEND} DROGUE_TEST_SPACE=${DROGUE_EXECUTION_SPACE_${_test_BACKEND}})
+    string(APPEND _prefix "${_test_BACKEND}.")
+    if(_test_BACKEND STREQUAL "cuda")
+      set(_label gpu)
+    elseif(_test_BACKEND STREQUAL "openmp")
+      set(_cores 2)
+    endif()
+  endif()
+  if(_test_NAME MATCHES "_long(_[a-z]+)?$" AND NOT _label STREQUAL "gpu")
+    set(_label long)
+  endif()
+  # Listing the cases before a test run, not while building, lets a machine without a GPU build the CUDA tests.
+  gtest_discover_tests(${_test_NAME} TEST_PREFIX "${_prefix}" DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60
+    PROPERTIES LABELS "${_label}" TIMEOUT 600 PROCESSORS ${_cores} ENVIRONMENT "OMP_NUM_THREADS=${_cores}")
+endfunction()
+
+# drogue_add_python_test(<file> <label>): a unittest module, run with the standard library's runner.
+# Its environment names the programs (DROGUE_BIN), the sources (DROGUE_SOURCE) and the build folder (DROGUE_BUILD).
+function(drogue_add_python_test file label)
+  cmake_path(GET file PARENT_PATH _folder)
+  cmake_path(GET file FILENAME _filename)
+  cmake_path(GET file STEM _stem)
+  if(_stem MATCHES "_long$")
+    set(_labels long)
+  else()
+    set(_labels "${label}")
+  endif()
+  set(_name "${label}.${_stem}")
+  add_test(NAME "${_name}"
+    COMMAND "${Python3_EXECUTABLE}" -B -m unittest discover -v -s "${_folder}" -t "${_folder}" -p "${_filename}")
+  set_tests_properties("${_name}" PROPERTIES LABELS "${_labels}" TIMEOUT 900 ENVIRONMENT
+    "DROGUE_BIN=${CMAKE_RUNTIME_OUTPUT_DIRECTORY};DROGUE_SOURCE=${PROJECT_SOURCE_DIR};DROGUE_BUILD=${PROJECT_BINARY_DIR};OMP_NUM_THREADS=2")
+endfunction()
