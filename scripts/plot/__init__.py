@@ -1,0 +1,1 @@
+"""Pictures of a Drogue run directory and the page of the demo."""

@@ -1,0 +1,34 @@
+"""Entry of `python -m plot`: moves to the interpreter that has the packages of the pictures, then runs."""
+
+import importlib.util
+import os
+import sys
+from pathlib import Path
+
+_NEEDED = ("numpy", "matplotlib", "h5py", "PIL")
+
+
+def _run_with_packages() -> int:
+    if all(importlib.util.find_spec(name) for name in _NEEDED):
+        from .cli import main
+
+        return main()
+    source = Path(__file__).resolve().parents[2]
+    venv = Path(os.environ.get("DROGUE_VENV") or source / "build" / "venv")
+    python = venv / "bin" / "python3"
+    # The mark stops an environment that lacks the packages from starting itself for ever.
+    if python.is_file() and "DROGUE_PLOT_MOVED" not in os.environ:
+        os.environ["DROGUE_PLOT_MOVED"] = "1"
+        os.environ["PYTHONPATH"] = os.pathsep.join(
+            filter(None, [str(source / "scripts"), os.environ.get("PYTHONPATH")])
+        )
+        os.execv(python, [str(python), "-m", "plot", *sys.argv[1:]])
+    print(
+        f"drogue-plot: Python packages are missing ({', '.join(_NEEDED)}): run scripts/setup.sh, or set DROGUE_VENV "
+        "to an environment made from scripts/requirements.txt.",
+        file=sys.stderr,
+    )
+    return 2
+
+
+sys.exit(_run_with_packages())

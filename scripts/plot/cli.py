@@ -1,0 +1,140 @@
+"""drogue-plot: pictures of a run directory."""
+
+import argparse
+import difflib
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+from .failure import OK, USAGE, Failure
+
+SPACE_TIME_SNAPSHOTS = 8
+
+
+def _version() -> str:
+    folder = Path(__file__).resolve().parent
+    git = subprocess.run(
+        ["git", "-C", str(folder), "rev-parse", "--short", "HEAD"],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    import h5py
+    import matplotlib
+
+    project = (folder.parents[1] / "CMakeLists.txt").read_text()
+    number = re.search(r"project\(\s*\w+\s+VERSION\s+([\d.]+)", project)
+    revision = git.stdout.strip() or "unknown"
+    return (
+        f"drogue-plot {number.group(1) if number else 'unknown'} (git {revision})\n"
+        f"matplotlib {matplotlib.__version__}, h5py {h5py.__version__}, HDF5 {h5py.version.hdf5_version}"
+    )
+
+
+class _Parser(argparse.ArgumentParser):
+    def error(self, message):
+        raise Failure(USAGE, f"{message}; drogue-plot --help lists the options.")
+
+
+def _arguments(words: list[str]) -> argparse.Namespace:
+    parser = _Parser(prog="drogue-plot", description="Draws the pictures of a run directory.")
+    parser.add_argument(
+        "directory", metavar="DIR", nargs="?", type=Path, help="run directory, or one with study.csv"
+    )
+    parser.add_argument("--out", type=Path, help="folder of the pictures (default: DIR)")
+    parser.add_argument("--field", default="", help="fields to draw, by commas (default: all)")
+    parser.add_argument(
+        "--time", type=float, help="draw the snapshot nearest to this time in s (default: the last)"
+    )
+    parser.add_argument(
+        "--format", choices=("png", "pdf", "svg"), default="png", help="kind of the still pictures"
+    )
+    parser.add_argument(
+        "--movie", choices=("gif", "mp4", "none"), default="gif", help="kind of the moving picture"
+    )
+    parser.add_argument("--dpi", type=int, default=160, help="pixels an inch of a PNG (default: 160)")
+    parser.add_argument("--norm", default="l1_density", help="error column of a study (default: l1_density)")
+    parser.add_argument("--quiet", action="store_true", help="do not print the names of the pictures")
+    parser.add_argument("--version", action="store_true", help="print the versions and stop")
+    arguments = parser.parse_args(words)
+    if not arguments.version and arguments.directory is None:
+        parser.error("the run directory is missing")
+    if not 20 <= arguments.dpi <= 1200:
+        parser.error(f"--dpi {arguments.dpi} is outside 20 to 1200")
+    return arguments
+
+
+def _chosen_fields(run, wanted: str) -> list[str]:
+    import numpy as np
+
+    size = np.size(run.mesh["x"].values)
+    present = [name for name, item in run.snapshots[-1].fields.items() if item.values.shape == (size,)]
+    usual = [name for name in ("rho", "u", "p") if name in present]
+    ordered = usual + [name for name in present if name not in usual]
+    if not wanted:
+        return ordered
+    names = [name.strip() for name in wanted.split(",") if name.strip()]
+    for name in names:
+        if name not in ordered:
+            near = difflib.get_close_matches(name, ordered, 1)
+            hint = f"nearest is {near[0]}" if near else f"it has {', '.join(ordered)}"
+            raise Failure(USAGE, f"The run has no field '{name}'; {hint}.")
+    return names
+
+
+def _gas_pictures(run, arguments, save):
+    from . import gas_figures, movie
+    from .exact import exact_solution
+
+    view = gas_figures.View(run, _chosen_fields(run, arguments.field), exact_solution(run))
+    if not view.fields:
+        return
+    snapshot = run.snapshots[-1]
+    if arguments.time is not None:
+        snapshot = min(run.snapshots, key=lambda candidate: abs(candidate.time - arguments.time))
+    yield save(gas_figures.fields_figure(view, snapshot), "fields")
+    if len(run.snapshots) >= SPACE_TIME_SNAPSHOTS:
+        mapped = arguments.field and view.fields or [view.fields[0]]
+        for name in mapped:
+            yield save(gas_figures.space_time_figure(view, name), f"space_time_{name}")
+    if len(run.snapshots) >= 2 and arguments.movie != "none":
+        figure, draw, count = gas_figures.moving_picture(view, movie.MAX_FRAMES)
+        yield movie.write(arguments.out / f"fields.{arguments.movie}", figure, draw, count)
+
+
+def draw(arguments: argparse.Namespace):
+    """Yields the name of each picture once it is written."""
+    from . import style
+    from .history_figure import history_figure
+    from .run_directory import read
+    from .study_figure import study_figure
+
+    run = read(arguments.directory)
+    arguments.out = arguments.out or arguments.directory
+
+    def save(figure, name):
+        return style.save(figure, arguments.out / f"{name}.{arguments.format}", arguments.dpi)
+
+    if run.snapshots and "x" in run.mesh:
+        yield from _gas_pictures(run, arguments, save)
+    if (figure := history_figure(run)) is not None:
+        yield save(figure, "history")
+    if run.study:
+        yield save(study_figure(run.name, run.study, arguments.norm), "study")
+
+
+def main(words: list[str] | None = None) -> int:
+    """Runs the program; returns its exit code (0 done, 2 usage, 6 unreadable or unwritable file)."""
+    try:
+        arguments = _arguments(sys.argv[1:] if words is None else words)
+        if arguments.version:
+            print(_version())
+            return OK
+        for file in draw(arguments):
+            if not arguments.quiet:
+                print(file)
+    except Failure as failure:
+        print(f"drogue-plot: {failure}", file=sys.stderr)
+        return failure.code
+    return OK

@@ -1,0 +1,95 @@
+"""Exact or reference solution of a gas run, at a time."""
+
+import numpy as np
+
+from .expression import evaluate
+from .riemann import State, sample
+from .run_directory import Run, Snapshot
+
+GAS_FIELDS = ("rho", "u", "p")
+
+
+class ExactSolution:
+    """Solution to compare a gas run with; `name` says what it is."""
+
+    def __init__(self, name: str, at, drawn_x=None):
+        self.name = name
+        self._at = at
+        self._drawn_x = drawn_x
+
+    def at(self, time: float, x: np.ndarray) -> dict[str, np.ndarray]:
+        """Values at the points x by field name; empty where nothing is known at that time."""
+        return self._at(time, x)
+
+    def curve(self, time: float, x: np.ndarray) -> tuple[np.ndarray, dict[str, np.ndarray]]:
+        """Points fine enough to draw the solution's corners, and the values there."""
+        points = np.linspace(x[0], x[-1], 4001) if self._drawn_x is None else self._drawn_x
+        return points, self.at(time, points)
+
+
+def _riemann(run: Run) -> ExactSolution:
+    problem = run.scene["initial"]["riemann"]
+    gamma = run.scene.get("gas", {}).get("gamma", 1.4)
+    left, right = (State(*(float(problem[side][name]) for name in GAS_FIELDS)) for side in ("left", "right"))
+    x0 = problem.get("x0", 0.0)
+
+    def at(time, x):
+        # At t = 0 the similarity variable is infinite but for its sign.
+        xi = (x - x0) / time if time > 0 else np.where(x < x0, -np.inf, np.inf)
+        return dict(
+            zip(GAS_FIELDS, sample(np.nan_to_num(xi, posinf=1e300, neginf=-1e300), left, right, gamma))
+        )
+
+    return ExactSolution("exact", at)
+
+
+def _advection(run: Run) -> ExactSolution:
+    expressions = run.scene["initial"]["expression"]
+    start, end = run.scene.get("mesh", {}).get("domain", [-1.0, 1.0])
+    speed = float(evaluate(expressions["u"], x=np.array(start), t=0.0))
+
+    def at(time, x):
+        origin = start + np.mod(x - speed * time - start, end - start)
+        return {name: evaluate(expressions[name], x=origin, t=0.0) for name in GAS_FIELDS}
+
+    return ExactSolution("exact", at)
+
+
+def _reference(run: Run) -> ExactSolution:
+    reference = run.reference
+    final = run.snapshots[-1].time
+
+    def at(time, x):
+        if time != final:
+            return {}
+        return {name: np.interp(x, reference.x, item.values) for name, item in reference.fields.items()}
+
+    scheme = f"{reference.scheme}, " if reference.scheme else ""
+    return ExactSolution(f"reference: {scheme}{reference.cells} cells", at, reference.x)
+
+
+def exact_solution(run: Run) -> ExactSolution | None:
+    """What the scene compares with, or None where nothing is known."""
+    wanted = run.scene.get("verify", {}).get("exact", "")
+    initial = run.scene.get("initial", {})
+    if run.reference and run.snapshots and wanted in ("", "reference"):
+        return _reference(run)
+    if wanted == "advection" and "expression" in initial:
+        return _advection(run)
+    boundary = run.scene.get("boundary", {})
+    outflow = all(boundary.get(side, "outflow") == "outflow" for side in ("left", "right"))
+    if "riemann" in initial and wanted in ("", "riemann") and outflow:
+        return _riemann(run)
+    return None
+
+
+def errors(run: Run, snapshot: Snapshot, exact: ExactSolution | None) -> dict[str, np.ndarray]:
+    """Signed error at every cell centre, by field; only fields whose exact value is known."""
+    if exact is None:
+        return {}
+    values = exact.at(snapshot.time, run.mesh["x"].values)
+    return {
+        name: item.values - values[name]
+        for name, item in snapshot.fields.items()
+        if name in values and item.values.shape == values[name].shape
+    }

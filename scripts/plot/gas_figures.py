@@ -1,0 +1,209 @@
+"""Pictures of a gas run: fields against the exact solution with their error, space-time map, moving picture."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.colors import LogNorm, Normalize
+
+from . import style
+from .exact import ExactSolution, errors
+from .run_directory import Run, Snapshot
+from .style import plt
+
+WENO_NAMES = {"js": "WENO-JS", "z": "WENO-Z", "m": "WENO-M", "teno5": "TENO5"}
+_NORMS = {"rho": "density", "u": "velocity", "p": "pressure"}
+# Above this the circles of neighbouring cells touch and say less than a line.
+_MAX_MARKERS = 250
+
+
+@dataclass(frozen=True)
+class View:
+    """A run, the fields to draw, what to compare with."""
+
+    run: Run
+    fields: list[str]
+    exact: ExactSolution | None
+
+    @property
+    def x(self) -> np.ndarray:
+        return self.run.mesh["x"].values
+
+    @property
+    def domain(self) -> tuple[float, float]:
+        """Ends of the mesh, half a cell beyond the outermost centres."""
+        half = 0.5 * (self.x[-1] - self.x[0]) / (len(self.x) - 1)
+        return self.x[0] - half, self.x[-1] + half
+
+    @property
+    def x_label(self) -> str:
+        return style.axis_label("x", self.run.mesh["x"].units or "m")
+
+
+def scheme_name(scene: dict) -> str:
+    scheme = scene.get("scheme", {})
+    name = WENO_NAMES.get(scheme.get("weno", "z"), scheme.get("weno", "z"))
+    return f"{name} (p = 2)" if name == "WENO-Z" and scheme.get("weno_power", 1) == 2 else name
+
+
+def _details(view: View, time: float) -> str:
+    return f"{scheme_name(view.run.scene)}, {len(view.x)} cells, t = {style.number(time)} s"
+
+
+def _key(view: View, markers: bool, shows_exact: bool):
+    key = [("\u25cb" if markers else "\u2014", scheme_name(view.run.scene), style.RUN_COLOUR)]
+    if shows_exact:
+        key.append(("\u2014", view.exact.name, style.INK))
+    return key
+
+
+def _draw_field(axes, view: View, snapshot: Snapshot, name: str) -> None:
+    """The exact curve, where one is known, behind the run's values."""
+    item = snapshot.fields[name]
+    if view.exact:
+        x, values = view.exact.curve(snapshot.time, view.x)
+        if name in values:
+            axes.plot(*style.thin(x, values[name]), color=style.INK, linewidth=0.9, zorder=2)
+    if len(view.x) <= _MAX_MARKERS:
+        axes.plot(
+            view.x, item.values, "o", color=style.RUN_COLOUR, markersize=2.8, markerfacecolor="white",
+            markeredgewidth=0.8, zorder=3, clip_on=False,
+        )  # fmt: skip
+    else:
+        axes.plot(*style.thin(view.x, item.values), color=style.RUN_COLOUR, linewidth=1.1, zorder=3)
+    axes.set_title(style.axis_label(name, item.units), color=style.INK, pad=5)
+    axes.set_xlim(*view.domain)
+    _set_range(axes, [item.values])
+
+
+def _wants_logarithm(low: float, high: float) -> bool:
+    """True where a linear axis would hide all but the largest values."""
+    return low > 0 and high >= 999 * low
+
+
+def _set_range(axes, arrays) -> None:
+    """Vertical axis that holds all of the run's values; logarithmic where they span three decades."""
+    low = min(float(np.nanmin(values)) for values in arrays)
+    high = max(float(np.nanmax(values)) for values in arrays)
+    if _wants_logarithm(low, high):
+        axes.set_yscale("log")
+        margin = (high / low) ** 0.06
+        axes.set_ylim(low / margin, high * margin)
+        return
+    margin = 0.06 * (high - low)
+    if high - low <= 1e-9 * max(abs(high), abs(low)):
+        # A field that does not vary must not look as if it did.
+        margin = 0.1 * max(abs(high), 1e-30)
+    axes.set_ylim(low - margin, high + margin)
+
+
+def _error_title(run: Run, name: str) -> str:
+    norm = f"l1_{_NORMS.get(name, name)}"
+    value = run.result.get("errors", {}).get(norm)
+    if value is None:
+        return "|error|"
+    bars = [check["bar"] for check in run.result.get("checks", []) if check["name"] == norm]
+    bar = f" (bar {style.number(bars[0])})" if bars else ""
+    return rf"|error|,  $L_1$ = {style.number(value)}{bar}"
+
+
+def _draw_error(axes, view: View, name: str, error: np.ndarray, title: str) -> None:
+    axes.set_title(title, fontsize=8, pad=4)
+    size = np.abs(error)
+    if not np.any(size > 0):
+        axes.set_yticks([])
+        axes.text(
+            0.5, 0.5, "exactly 0", transform=axes.transAxes, ha="center", va="center", color=style.MUTED
+        )
+        return
+    top = np.nanmax(size)
+    floor = max(np.min(size[size > 0]), 1e-8 * top)
+    shown = np.where(size > 0, np.maximum(size, floor), np.nan)
+    axes.plot(*style.thin(view.x, shown), color=style.ERROR_COLOUR, linewidth=0.9)
+    axes.set_yscale("log")
+    axes.set_ylim(floor / 2, top * 3)
+
+
+def fields_figure(view: View, snapshot: Snapshot):
+    """One column a field: its values above, its pointwise error below where the exact value is known."""
+    error = errors(view.run, snapshot, view.exact)
+    shows_exact = any(name in error for name in view.fields)
+    rows, heights = (2, [2.1, 1]) if shows_exact else (1, [1])
+    columns = len(view.fields)
+    height = 4.1 if shows_exact else 2.9
+    width = max(3.5, 2.55 * columns + 0.4)
+    figure, axes = plt.subplots(
+        rows, columns, figsize=(width, height), sharex=True, squeeze=False, height_ratios=heights
+    )
+    final = snapshot is view.run.snapshots[-1]
+    for column, name in enumerate(view.fields):
+        _draw_field(axes[0][column], view, snapshot, name)
+        if name in error:
+            title = _error_title(view.run, name) if final else "|error|"
+            _draw_error(axes[1][column], view, name, error[name], title)
+        elif shows_exact:
+            axes[1][column].set_axis_off()
+        axes[-1][column].set_xlabel(view.x_label)
+    figure.tight_layout(rect=(0, 0, 1, 1 - 0.48 / height), h_pad=0.6, w_pad=1.4)
+    key = _key(view, len(view.x) <= _MAX_MARKERS, shows_exact)
+    style.heading(figure, view.run.name, _details(view, snapshot.time), key)
+    return figure
+
+
+def _edges(centres: np.ndarray) -> np.ndarray:
+    middle = 0.5 * (centres[1:] + centres[:-1])
+    return np.concatenate([[2 * centres[0] - middle[0]], middle, [2 * centres[-1] - middle[-1]]])
+
+
+def space_time_figure(view: View, name: str):
+    """Map of a field over x and t; wants enough snapshots to look continuous."""
+    snapshots = view.run.snapshots
+    times = np.array([snapshot.time for snapshot in snapshots])
+    values = np.array([snapshot.fields[name].values for snapshot in snapshots])
+    stride = max(1, len(view.x) // 1600)
+    x, values = view.x[::stride], values[:, ::stride]
+    figure, axes = plt.subplots(figsize=(4.6, 3.6))
+    edges = _edges(times)
+    edges[0], edges[-1] = times[0], times[-1]
+    low, high = float(np.nanmin(values)), float(np.nanmax(values))
+    norm = LogNorm(low, high) if _wants_logarithm(low, high) else Normalize(low, high)
+    image = axes.pcolormesh(_edges(x), edges, values, cmap="viridis", norm=norm, rasterized=True)
+    axes.grid(False)
+    item = snapshots[-1].fields[name]
+    bar = figure.colorbar(image, ax=axes, pad=0.03, aspect=28)
+    bar.outline.set_visible(False)
+    bar.ax.set_title(style.axis_label(name, item.units), fontsize=8.5, pad=6, loc="center")
+    axes.set_xlabel(view.x_label)
+    axes.set_ylabel("time (s)")
+    figure.tight_layout(rect=(0, 0, 1, 1 - 0.48 / 3.6))
+    style.heading(figure, view.run.name, f"{scheme_name(view.run.scene)}, {len(view.x)} cells")
+    return figure
+
+
+def moving_picture(view: View, frames: int):
+    """Figure and a function that draws frame k of `frames` in it, all on the axes of the whole run."""
+    snapshots = view.run.snapshots
+    columns = len(view.fields)
+    figure, axes = plt.subplots(1, columns, figsize=(max(3.5, 2.55 * columns + 0.4), 2.9), squeeze=False)
+    chosen = np.unique(np.linspace(0, len(snapshots) - 1, frames).round().astype(int))
+    shows_exact = view.exact is not None and bool(errors(view.run, snapshots[-1], view.exact))
+
+    def draw(k: int) -> None:
+        snapshot = snapshots[chosen[k]]
+        for text in list(figure.texts):
+            text.remove()
+        for column, name in enumerate(view.fields):
+            panel = axes[0][column]
+            panel.clear()
+            _draw_field(panel, view, snapshot, name)
+            _set_range(panel, [shot.fields[name].values for shot in snapshots])
+            panel.set_xlabel(view.x_label)
+        style.heading(
+            figure,
+            view.run.name,
+            _details(view, snapshot.time),
+            _key(view, len(view.x) <= _MAX_MARKERS, shows_exact),
+        )
+
+    draw(0)
+    figure.tight_layout(rect=(0, 0, 1, 1 - 0.48 / 2.9), w_pad=1.4)
+    return figure, draw, len(chosen)

@@ -1,0 +1,85 @@
+"""Writes moving pictures: GIF through Pillow, MP4 through the ffmpeg that the Python environment carries."""
+
+import subprocess
+from collections import Counter
+from pathlib import Path
+
+import numpy as np
+from PIL import Image
+
+from . import style
+from .failure import IO_ERROR, Failure
+
+MAX_FRAMES = 100
+_DPI = 100
+
+
+def _frames(figure, draw, count: int):
+    figure.set_dpi(_DPI)
+    for k in range(count):
+        draw(k)
+        figure.canvas.draw()
+        pixels = np.asarray(figure.canvas.buffer_rgba())[..., :3]
+        # Most MP4 players want even sizes.
+        yield pixels[: pixels.shape[0] // 2 * 2, : pixels.shape[1] // 2 * 2]
+
+
+def _packed(pixels: np.ndarray) -> np.ndarray:
+    """One integer a pixel, 0xRRGGBB."""
+    return pixels.astype(np.int64) @ np.array([1 << 16, 1 << 8, 1])
+
+
+def _unpacked(colours: np.ndarray) -> np.ndarray:
+    return np.stack([colours >> 16, colours >> 8 & 255, colours & 255], axis=-1)
+
+
+def _common_colours(frames) -> np.ndarray:
+    """The 64 commonest colours of all frames: one palette keeps them from flickering, and white stays white."""
+    counts = Counter()
+    for pixels in frames:
+        counts.update(dict(zip(*(part.tolist() for part in np.unique(_packed(pixels), return_counts=True)))))
+    return np.array([colour for colour, _ in counts.most_common(64)])
+
+
+def _in_palette(pixels: np.ndarray, palette: np.ndarray) -> Image.Image:
+    """The frame with each colour replaced by the nearest of the palette (Pillow's own search is approximate)."""
+    colours, index = np.unique(_packed(pixels), return_inverse=True)
+    distance = ((_unpacked(colours)[:, None, :] - _unpacked(palette)[None, :, :]) ** 2).sum(-1)
+    nearest = distance.argmin(1).astype(np.uint8)[index].reshape(pixels.shape[:2])
+    image = Image.fromarray(nearest, "P")
+    image.putpalette(_unpacked(palette).astype(np.uint8).tobytes())
+    return image
+
+
+def _write_gif(file: Path, frames, count: int) -> None:
+    frames = [pixels.copy() for pixels in frames]
+    palette = _common_colours(frames)
+    images = [_in_palette(pixels, palette) for pixels in frames]
+    frame_ms = int(np.clip(4000 / count, 50, 700))
+    durations = [frame_ms] * (count - 1) + [1500]
+    images[0].save(file, save_all=True, append_images=images[1:], duration=durations, loop=0, optimize=False)
+
+
+def _write_mp4(file: Path, frames, count: int) -> None:
+    import imageio_ffmpeg
+
+    first = next(frames)
+    rate = max(2.0, count / 4)
+    command = [
+        imageio_ffmpeg.get_ffmpeg_exe(), "-y", "-loglevel", "error", "-f", "rawvideo", "-pix_fmt", "rgb24",
+        "-s", f"{first.shape[1]}x{first.shape[0]}", "-r", str(rate), "-i", "-", "-pix_fmt", "yuv420p", str(file),
+    ]  # fmt: skip
+    stream = first.tobytes() + b"".join(pixels.tobytes() for pixels in frames)
+    done = subprocess.run(command, input=stream, capture_output=True, check=False)
+    if done.returncode != 0:
+        raise Failure(
+            IO_ERROR, f"ffmpeg could not write {file}: {done.stderr.decode().strip().splitlines()[-1]}."
+        )
+
+
+def write(file: Path, figure, draw, count: int) -> Path:
+    """Draws `count` frames into a file whose suffix, .gif or .mp4, says the kind."""
+    writer = _write_gif if file.suffix == ".gif" else _write_mp4
+    style.replace_file(file, lambda temporary: writer(temporary, _frames(figure, draw, count), count))
+    style.plt.close(figure)
+    return file

@@ -1,0 +1,141 @@
+"""Reads a run directory: fields.h5, scene.toml, result.json, history.csv, study.csv."""
+
+import csv
+import json
+import tomllib
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+from .failure import IO_ERROR, USAGE, Failure
+
+READABLE = ("fields.h5", "history.csv", "study.csv")
+
+
+@dataclass(frozen=True)
+class Field:
+    """Values of one dataset with the words that describe it."""
+
+    name: str
+    values: np.ndarray
+    units: str = ""
+    description: str = ""
+
+
+@dataclass(frozen=True)
+class Snapshot:
+    time: float
+    fields: dict[str, Field]
+
+
+@dataclass(frozen=True)
+class Reference:
+    """A finer run that stands for the solution at the final time."""
+
+    x: np.ndarray
+    fields: dict[str, Field]
+    scheme: str
+    cells: int
+
+
+@dataclass
+class Run:
+    """What a run directory holds; what is absent is empty."""
+
+    path: Path
+    scene: dict = field(default_factory=dict)
+    result: dict = field(default_factory=dict)
+    mesh: dict[str, Field] = field(default_factory=dict)
+    snapshots: list[Snapshot] = field(default_factory=list)
+    reference: Reference | None = None
+    history: dict[str, Field] = field(default_factory=dict)
+    study: list[dict[str, str]] = field(default_factory=list)
+
+    @property
+    def app(self) -> str:
+        return self.scene.get("app", "")
+
+    @property
+    def name(self) -> str:
+        return self.path.resolve().name
+
+
+def _text(value) -> str:
+    return value.decode() if isinstance(value, bytes) else str(value)
+
+
+def _datasets(group) -> dict[str, Field]:
+    return {
+        name: Field(
+            name, item[()], _text(item.attrs.get("units", "")), _text(item.attrs.get("description", ""))
+        )
+        for name, item in group.items()
+        if isinstance(item, h5py.Dataset)
+    }
+
+
+def _read_fields(run: Run, file: Path) -> None:
+    try:
+        with h5py.File(file, "r") as h5:
+            run.mesh = _datasets(h5["mesh"])
+            for name in sorted(h5["steps"]):
+                group = h5["steps"][name]
+                run.snapshots.append(Snapshot(float(np.ravel(group.attrs["time"])[0]), _datasets(group)))
+            if "reference" in h5:
+                group = h5["reference"]
+                fields = _datasets(group)
+                x = fields.pop("x").values
+                cells = int(np.ravel(group.attrs.get("cells", len(x)))[0])
+                run.reference = Reference(x, fields, _text(group.attrs.get("scheme", "")), cells)
+    except (OSError, KeyError, RuntimeError, ValueError) as error:
+        reason = str(error).strip("'\"").splitlines()[0]
+        raise Failure(IO_ERROR, f"{file} cannot be read as a Drogue field file: {reason}.") from None
+
+
+def _read_history(file: Path) -> dict[str, Field]:
+    with file.open(newline="") as stream:
+        rows = [row for row in csv.reader(stream) if row]
+    if not rows:
+        return {}
+    columns = {}
+    for index, header in enumerate(rows[0]):
+        name, _, units = header.partition("[")
+        name = name.strip()
+        values = [float(row[index]) for row in rows[1:]]
+        columns[name] = Field(name, np.array(values), units.strip().rstrip("]"))
+    return columns
+
+
+def _parse(file: Path, parse):
+    try:
+        return parse(file)
+    except (OSError, ValueError, IndexError) as error:
+        raise Failure(IO_ERROR, f"{file} cannot be read: {str(error).splitlines()[0]}.") from None
+
+
+def read_study(file: Path) -> list[dict[str, str]]:
+    """Rows of a study as text, keyed by the header."""
+    with file.open(newline="") as stream:
+        return list(csv.DictReader(stream))
+
+
+def read(path: Path) -> Run:
+    """Everything drawable in a run directory; exit code 2 where there is none, 6 where a file is damaged."""
+    if not path.is_dir():
+        raise Failure(USAGE, f"{path} is not a run directory: no such folder.")
+    run = Run(path)
+    if not any((path / name).is_file() for name in READABLE):
+        raise Failure(USAGE, f"{path} holds nothing to draw: none of {', '.join(READABLE)} is there.")
+    readers = {
+        "scene.toml": lambda file: setattr(run, "scene", tomllib.loads(file.read_text())),
+        "result.json": lambda file: setattr(run, "result", json.loads(file.read_text())),
+        "history.csv": lambda file: setattr(run, "history", _read_history(file)),
+        "study.csv": lambda file: setattr(run, "study", read_study(file)),
+        "fields.h5": lambda file: _read_fields(run, file),
+    }
+    for name, reader in readers.items():
+        if (path / name).is_file():
+            _parse(path / name, reader)
+    return run

@@ -1,0 +1,83 @@
+"""Picture of a study: error against time and against mesh, one curve a scheme."""
+
+import numpy as np
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+from . import style
+from .failure import IO_ERROR, Failure
+from .style import plt
+
+_TITLES = {
+    "l1_density": "L1 error of density", "l1_velocity": "L1 error of velocity", "l1_pressure": "L1 error of pressure"
+}  # fmt: skip
+
+
+def _curves(rows: list[dict[str, str]], norm: str) -> tuple[dict[str, np.ndarray], int]:
+    """Per label an array of (cells, seconds, error) by rising mesh, and how many rows cannot be drawn."""
+    curves: dict[str, list[tuple[float, float, float]]] = {}
+    left_out = 0
+    for row in rows:
+        try:
+            point = (float(row["cells"]), float(row["compute_s"]), float(row[norm]))
+        except (KeyError, TypeError, ValueError):
+            point = (np.nan,) * 3
+        if row.get("status") == "ok" and all(np.isfinite(point)) and min(point) > 0:
+            curves.setdefault(row["label"], []).append(point)
+        else:
+            left_out += 1
+    return {label: np.array(sorted(points)) for label, points in curves.items()}, left_out
+
+
+def _order(points: np.ndarray) -> str:
+    """Least-squares slope of error against mesh, in words; needs three meshes."""
+    if len(points) < 3:
+        return ""
+    slope = np.polyfit(np.log(points[:, 0]), np.log(points[:, 2]), 1)[0]
+    return f"  order {-slope:.2f}"
+
+
+def _draw(axes, curves, column: int, words) -> None:
+    ends = []
+    for index, (label, points) in enumerate(curves.items()):
+        colour = style.PALETTE[index % len(style.PALETTE)]
+        marker = "osD^vP*X"[index % 8]
+        axes.plot(
+            points[:, column], points[:, 2], "-" + marker, color=colour, markersize=4, markerfacecolor="white",
+            markeredgewidth=1.1, linewidth=1.2,
+        )  # fmt: skip
+        ends.append(((points[-1, column], points[-1, 2]), words(label, points), colour))
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    low, high = axes.get_ylim()
+    if high < 100 * low:
+        # Under two decades powers of ten alone leave the axis without a scale.
+        axes.yaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+        axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: style.number(value)))
+        axes.yaxis.set_minor_formatter(NullFormatter())
+    style.label_ends(axes, [end for end in ends if end[1]])
+
+
+def study_figure(name: str, rows: list[dict[str, str]], norm: str = "l1_density"):
+    """Error against time at the left, error against mesh with the observed order at the right."""
+    curves, left_out = _curves(rows, norm)
+    if not curves:
+        raise Failure(
+            IO_ERROR, f"The study of {name} has no row with status ok and a positive {norm} to draw."
+        )
+    figure, (by_time, by_mesh) = plt.subplots(1, 2, figsize=(8.2, 3.6), sharey=True)
+    figure.subplots_adjust(left=0.1, right=0.79, top=0.8, bottom=0.14, wspace=0.1)
+    _draw(by_time, curves, 1, lambda label, points: "")
+    _draw(by_mesh, curves, 0, lambda label, points: label + _order(points))
+    by_time.set_ylabel(_TITLES.get(norm, norm.replace("_", " ")))
+    by_time.set_xlabel("time to solution (s)")
+    by_mesh.set_xlabel("cells")
+    meshes = np.unique(np.concatenate([points[:, 0] for points in curves.values()]))
+    if len(meshes) <= 8:
+        by_mesh.set_xticks(meshes, [f"{int(cells)}" for cells in meshes])
+        by_mesh.minorticks_off()
+    backends = sorted({row.get("backend", "") for row in rows} - {""})
+    details = "error against time and mesh" + (f", {', '.join(backends)}" if backends else "")
+    if left_out:
+        details += f"; {left_out} of {len(rows)} runs failed and are not drawn"
+    style.heading(figure, name, details)
+    return figure

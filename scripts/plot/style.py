@@ -1,0 +1,139 @@
+"""Look of every picture: light, legible at one column of a paper, safe for colour-blind readers."""
+
+import contextlib
+import os
+import re
+from pathlib import Path
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402
+import numpy as np  # noqa: E402
+from PIL import Image  # noqa: E402
+
+from .failure import IO_ERROR, Failure  # noqa: E402
+
+# Okabe and Ito (2008), ordered so that neighbours differ in lightness too.
+PALETTE = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#5B4A9C", "#7A7A7A")
+INK = "#222222"
+MUTED = "#6B6B6B"
+GRID = "#E4E4E4"
+RUN_COLOUR = PALETTE[0]
+ERROR_COLOUR = PALETTE[1]
+
+matplotlib.rcParams.update(
+    {
+        "font.family": "sans-serif", "font.sans-serif": ["DejaVu Sans"], "mathtext.fontset": "dejavusans",
+        "font.size": 8.5, "axes.labelsize": 8.5, "xtick.labelsize": 8, "ytick.labelsize": 8, "axes.titlesize": 9,
+        "text.color": INK, "axes.labelcolor": INK, "xtick.color": MUTED, "ytick.color": MUTED,
+        "xtick.labelcolor": INK, "ytick.labelcolor": INK, "axes.edgecolor": "#9A9A9A", "axes.linewidth": 0.7,
+        "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True, "grid.color": GRID,
+        "grid.linewidth": 0.6, "axes.axisbelow": True, "axes.titlelocation": "left", "lines.linewidth": 1.3,
+        "xtick.direction": "out", "ytick.direction": "out", "xtick.major.size": 3, "ytick.major.size": 3,
+        "figure.facecolor": "white", "savefig.facecolor": "white", "pdf.fonttype": 42, "svg.fonttype": "none",
+        "axes.formatter.useoffset": False, "axes.formatter.limits": (-4, 5), "axes.formatter.use_mathtext": True,
+    }
+)  # fmt: skip
+
+_SYMBOLS = {
+    "rho": "density", "u": "velocity", "p": "pressure", "energy": "total energy", "mass": "mass",
+    "momentum": "momentum", "dt": "time step", "x": "x",
+}  # fmt: skip
+
+
+def units_text(units: str) -> str:
+    """`kg/m^3` as a person writes it; empty for a pure number."""
+    if units in ("", "1", "-"):
+        return ""
+    return re.sub(r"\^(-?\d+)", r"$^{\1}$", units.replace("*", " "))
+
+
+def axis_label(name: str, units: str) -> str:
+    text = _SYMBOLS.get(name, name.replace("_", " "))
+    return f"{text} ({units_text(units)})" if units_text(units) else text
+
+
+def number(value: float) -> str:
+    """Three digits, powers of ten as a paper prints them."""
+    if value == 0 or not np.isfinite(value):
+        return f"{value:g}"
+    if 1e-2 <= abs(value) < 1e5:
+        return f"{value:.3g}"
+    mantissa, exponent = f"{value:.2e}".split("e")
+    mantissa = mantissa.rstrip("0").rstrip(".")
+    return rf"{mantissa}$\times$10$^{{{int(exponent)}}}$"
+
+
+def heading(figure, name: str, details: str, key: list[tuple[str, str, str]] = ()) -> None:
+    """Title at the left, what it shows under it; `key` (marker, words, colour) names the curves in their own colours."""
+    width, height = figure.get_size_inches()
+    line = 1 / height
+    figure.text(0.1 / width, 1 - 0.08 * line, name, fontsize=10.5, fontweight="bold", va="top")
+    figure.text(0.1 / width, 1 - 0.28 * line, details, fontsize=8.5, color=MUTED, va="top")
+    right = 1 - 0.1 / width
+    for marker, words, colour in reversed(key):
+        text = figure.text(
+            right, 1 - 0.28 * line, f"{marker} {words}", color=colour, fontsize=8.5, ha="right", va="top"
+        )
+        extent = text.get_window_extent(figure.canvas.get_renderer())
+        right -= (extent.width / figure.dpi + 0.16) / width
+
+
+def label_ends(axes, ends) -> None:
+    """Names curves beside their right ends in their own colours, no two on each other; ends: ((x, y), words, colour)."""
+    axes.figure.canvas.draw()
+    box = axes.get_window_extent()
+    step = 11.5 * axes.figure.dpi / 72
+    levels = sorted(
+        (axes.transData.transform(point)[1] - box.y0, words, colour) for point, words, colour in ends
+    )
+    placed = -np.inf
+    for pixel, words, colour in levels:
+        placed = max(pixel, placed + step)
+        axes.annotate(
+            words, (1.03, placed / box.height), xycoords="axes fraction", color=colour, va="center", fontsize=8,
+            annotation_clip=False,
+        )  # fmt: skip
+
+
+def thin(x: np.ndarray, y: np.ndarray, buckets: int = 2000) -> tuple[np.ndarray, np.ndarray]:
+    """Lowest and highest point of each of `buckets` pieces of a long curve: looks the same, in a small file."""
+    if len(x) <= 4 * buckets:
+        return x, y
+    size = len(x) // buckets
+    used = size * buckets
+    pieces = np.where(np.isfinite(y[:used]), y[:used], 0.0).reshape(buckets, size)
+    start = np.arange(buckets) * size
+    keep = np.concatenate([start + pieces.argmin(1), start + pieces.argmax(1), [len(x) - 1]])
+    keep = np.unique(keep)
+    return x[keep], y[keep]
+
+
+def replace_file(file: Path, write) -> Path:
+    """Calls write(temporary name) and renames: a reader never sees half a picture."""
+    temporary = file.with_name(f".{file.stem}.{os.getpid()}{file.suffix}")
+    try:
+        file.parent.mkdir(parents=True, exist_ok=True)
+        write(temporary)
+        temporary.replace(file)
+    except OSError as error:
+        with contextlib.suppress(OSError):
+            temporary.unlink()
+        raise Failure(IO_ERROR, f"{file} cannot be written: {error.strerror or error}.") from None
+    return file
+
+
+def save(figure, file: Path, dpi: int) -> Path:
+    """Writes and closes a figure; PNG in 256 colours, a third of the size with no visible change."""
+
+    def write(temporary: Path) -> None:
+        figure.savefig(temporary, dpi=dpi)
+        if file.suffix == ".png":
+            with Image.open(temporary) as image:
+                small = image.convert("RGB").quantize(256, dither=Image.Dither.NONE)
+            small.save(temporary, optimize=True)
+
+    replace_file(file, write)
+    plt.close(figure)
+    return file

@@ -1,0 +1,125 @@
+"""Run directories made of exact solutions plus a known disturbance, for the tests of the pictures."""
+
+import csv
+import json
+
+import h5py
+import numpy as np
+
+from plot.riemann import State, sample
+
+UNITS = {"rho": "kg/m^3", "u": "m/s", "p": "Pa"}
+SOD = (State(1.0, 0.0, 1.0), State(0.125, 0.0, 0.1))
+SOD_SCENE = """app = "gas"
+[gas]
+gamma = 1.4
+[mesh]
+cells = {cells}
+domain = [-1.0, 1.0]
+[initial]
+riemann = {{ x0 = 0.0, left = {{ rho = 1.0, u = 0.0, p = 1.0 }}, right = {{ rho = 0.125, u = 0.0, p = 0.1 }} }}
+[boundary]
+left = "outflow"
+right = "outflow"
+[scheme]
+weno = "z"
+[run]
+end_time = 0.4
+[verify]
+exact = "riemann"
+l1_density = 6.5e-3
+"""
+
+
+def sod(time, x):
+    """Exact density, velocity and pressure of Sod's problem."""
+    return sample(x / max(time, 1e-12), *SOD, 1.4)
+
+
+def write_fields(file, x, times, values_at, reference=None):
+    """`fields.h5` of a gas run; values_at(time, x) gives density, velocity, pressure."""
+    with h5py.File(file, "w") as h5:
+        dataset = h5.create_dataset("mesh/x", data=x)
+        dataset.attrs.update(units="m", centering="cell", description="cell centres")
+        for index, time in enumerate(times):
+            group = h5.create_group(f"steps/{index:06d}")
+            group.attrs["time"] = time
+            for (name, units), values in zip(UNITS.items(), values_at(time, x)):
+                dataset = group.create_dataset(name, data=values)
+                dataset.attrs.update(units=units, centering="cell", description=name)
+        if reference:
+            group = h5.create_group("reference")
+            group.attrs.update(scheme=reference["scheme"], cells=reference["cells"])
+            group.create_dataset("x", data=reference["x"])
+            for name in UNITS:
+                group.create_dataset(name, data=reference[name])
+
+
+def smeared_sod(time, x):
+    """Sod's solution as a scheme would give it: jumps smeared over the cells, seeded noise of 1e-6."""
+    rng = np.random.default_rng(4)
+    dx = x[1] - x[0]
+    offsets = np.linspace(-1.0, 1.0, 9) * 1.5 * dx
+    smeared = [np.mean(values, axis=0) for values in zip(*(sod(time, x + offset) for offset in offsets))]
+    return [values * (1 + 1e-6 * rng.standard_normal(len(x))) for values in smeared]
+
+
+def write_history(file, rows=120):
+    with file.open("w", newline="") as stream:
+        writer = csv.writer(stream)
+        writer.writerow(
+            ["time [s]", "step", "dt [s]", "mass [kg/m^2]", "momentum [kg/(m s)]", "energy [J/m^2]"]
+        )
+        for row in range(rows):
+            time = 0.4 * row / (rows - 1)
+            drift = 1e-15 * np.sin(7 * row)
+            writer.writerow(
+                [
+                    time,
+                    row,
+                    0.0025 * min(1, 0.1 + 0.045 * row),
+                    1.125 + drift,
+                    0.9 * time,
+                    2.75 * (1 + 3 * drift),
+                ]
+            )
+
+
+def write_sod(directory, cells=200, snapshots=20):
+    """A complete run directory of Sod's problem; returns its path."""
+    directory.mkdir(parents=True)
+    x = -1 + (np.arange(cells) + 0.5) * 2 / cells
+    write_fields(directory / "fields.h5", x, np.linspace(0, 0.4, snapshots + 1)[1:], smeared_sod)
+    (directory / "scene.toml").write_text(SOD_SCENE.format(cells=cells))
+    checks = [{"name": "l1_density", "value": 4.93e-3, "bar": 6.5e-3, "passed": True}]
+    errors = {"l1_density": 4.93e-3, "l1_velocity": 8.2e-3, "l1_pressure": 3.6e-3}
+    (directory / "result.json").write_text(json.dumps({"status": "ok", "checks": checks, "errors": errors}))
+    write_history(directory / "history.csv")
+    return directory
+
+
+def write_study(file, meshes=(100, 200, 400, 800), failed=0):
+    """study.csv of three schemes that converge with order 0.9, their last `failed` rows failures."""
+    header = (
+        "label,weno,weno_power,splitting,time_scheme,precision,backend,cells,steps,compute_s,l1_density,l1_velocity,"
+        "l1_pressure,conservation,status"
+    )
+    rows = []
+    for label, weno, error, cost in (
+        ("JS", "js", 1.23e-2, 1.0),
+        ("Z", "z", 1.01e-2, 1.1),
+        ("TENO5", "teno5", 9.6e-3, 1.3),
+    ):
+        for cells in meshes:
+            value = error * (100 / cells) ** 0.9
+            seconds = cost * 2e-3 * (cells / 100) ** 2
+            rows.append(
+                [label, weno, 1, "lf-stencil", "ssprk3", "double", "serial", cells, 2 * cells, seconds, value, 2 * value,
+                 value, 1e-15, "ok"]
+            )  # fmt: skip
+    for row in rows[len(rows) - failed :]:
+        row[-1] = "numerical-failure"
+    with file.open("w", newline="") as stream:
+        stream.write(header + "\n")
+        csv.writer(stream).writerows(rows)
+    return file

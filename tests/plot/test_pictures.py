@@ -1,0 +1,182 @@
+"""drogue-plot on synthetic run directories: which files, what they hold, which exit codes."""
+
+import contextlib
+import io
+import shutil
+import tempfile
+import unittest
+from pathlib import Path
+
+import packages  # noqa: F401, before all that needs the packages  isort: skip
+import numpy as np
+import synthetic
+from PIL import Image
+from plot import cli
+from plot.exact import errors, exact_solution
+from plot.run_directory import read
+from plot.study_figure import study_figure
+
+_COLOURS = {"run": (0, 0x72, 0xB2), "error": (0xD5, 0x5E, 0)}
+
+
+def _plot(*words):
+    """Exit code, names of the pictures, standard error."""
+    out, err = io.StringIO(), io.StringIO()
+    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+        code = cli.main([str(word) for word in words])
+    return code, sorted(Path(line).name for line in out.getvalue().split("\n") if line), err.getvalue()
+
+
+def _pixels_of(file, colour):
+    """How many pixels of a picture are near a colour."""
+    with Image.open(file) as image:
+        pixels = np.asarray(image.convert("RGB")).astype(int)
+    return int((np.abs(pixels - colour).max(-1) < 40).sum())
+
+
+class Pictures(unittest.TestCase):
+    def setUp(self):
+        self.folder = Path(tempfile.mkdtemp())
+        self.addCleanup(shutil.rmtree, self.folder)
+
+    def test_run_with_many_snapshots_gives_all_pictures(self):
+        run = synthetic.write_sod(self.folder / "sod", cells=100, snapshots=8)
+        code, files, _ = _plot(run)
+        self.assertEqual(code, 0)
+        self.assertEqual(files, ["fields.gif", "fields.png", "history.png", "space_time_rho.png"])
+        for file in files:
+            self.assertLess((run / file).stat().st_size, 200_000, file)
+        with Image.open(run / "fields.gif") as movie:
+            self.assertEqual(movie.n_frames, 8)
+            self.assertEqual(movie.convert("RGB").getpixel((2, movie.height - 2)), (255, 255, 255))
+        for colour in _COLOURS.values():
+            self.assertGreater(_pixels_of(run / "fields.png", colour), 300)
+
+    def test_one_snapshot_gives_no_movie_and_no_map(self):
+        run = synthetic.write_sod(self.folder / "sod", cells=50, snapshots=1)
+        self.assertEqual(_plot(run)[:2], (0, ["fields.png", "history.png"]))
+
+    def test_format_field_and_out_are_obeyed(self):
+        run = synthetic.write_sod(self.folder / "sod", cells=50, snapshots=2)
+        before = sorted(run.iterdir())
+        code, files, _ = _plot(
+            run, "--out", self.folder / "deep" / "er", "--field", "p", "--format", "pdf", "--movie", "mp4"
+        )
+        self.assertEqual((code, files), (0, ["fields.mp4", "fields.pdf", "history.pdf"]))
+        self.assertEqual((self.folder / "deep/er/fields.pdf").read_bytes()[:4], b"%PDF")
+        self.assertEqual(sorted(run.iterdir()), before)
+
+    def test_exact_values_have_zero_error_and_disturbed_ones_theirs(self):
+        run = self.folder / "run"
+        run.mkdir()
+        x = np.linspace(-0.99, 0.99, 100)
+        (run / "scene.toml").write_text(synthetic.SOD_SCENE.format(cells=100))
+        synthetic.write_fields(run / "fields.h5", x, [0.2, 0.4], synthetic.sod)
+        loaded = read(run)
+        for error in errors(loaded, loaded.snapshots[0], exact_solution(loaded)).values():
+            np.testing.assert_array_equal(error, 0)
+        self.assertEqual(_plot(run, "--movie", "none")[0], 0)
+        self.assertEqual(_pixels_of(run / "fields.png", _COLOURS["error"]), 0)
+        loaded.snapshots[1].fields["p"].values[7] += 0.25
+        error = errors(loaded, loaded.snapshots[1], exact_solution(loaded))["p"]
+        self.assertEqual(error[7], 0.25)
+
+    def test_advected_wave_is_compared_with_its_shift(self):
+        run = self.folder / "wave"
+        run.mkdir()
+        x = -1 + (np.arange(40) + 0.5) / 20
+        (run / "scene.toml").write_text(
+            '[mesh]\ndomain = [-1.0, 1.0]\n[initial]\nexpression = { rho = "1+0.2*sin(pi*x)", u = "1", p = "1" }\n'
+            '[boundary]\nleft = "periodic"\nright = "periodic"\n[verify]\nexact = "advection"\n'
+        )
+        one = np.ones_like(x)
+        synthetic.write_fields(
+            run / "fields.h5", x, [1.3], lambda t, x: (1 + 0.2 * np.sin(np.pi * (x - t)), one, one)
+        )
+        loaded = read(run)
+        error = errors(loaded, loaded.snapshots[0], exact_solution(loaded))
+        self.assertLess(np.abs(error["rho"]).max(), 1e-14)
+        self.assertEqual(_plot(run)[0], 0)
+
+    def test_reference_run_stands_for_the_solution_at_the_end_only(self):
+        run = self.folder / "blast"
+        run.mkdir()
+        (run / "scene.toml").write_text('[verify]\nexact = "reference"\n')
+        fine = np.linspace(-1, 1, 2001)
+        reference = dict(
+            zip(("rho", "u", "p"), (1 + fine**2, fine, fine + 2)), x=fine, scheme="z", cells=2001
+        )
+        x = np.linspace(-0.9, 0.9, 40)
+        synthetic.write_fields(
+            run / "fields.h5", x, [0.1, 0.2], lambda t, x: (1 + x**2, x, x + 2 + t), reference
+        )
+        loaded = read(run)
+        exact = exact_solution(loaded)
+        self.assertIn("2001 cells", exact.name)
+        self.assertEqual(errors(loaded, loaded.snapshots[0], exact), {})
+        np.testing.assert_allclose(errors(loaded, loaded.snapshots[1], exact)["p"], 0.2)
+        self.assertEqual(_plot(run)[:2], (0, ["fields.gif", "fields.png"]))
+
+    def test_study_gives_error_against_time_and_mesh(self):
+        synthetic.write_study(self.folder / "study.csv", failed=1)
+        self.assertEqual(_plot(self.folder)[:2], (0, ["study.png"]))
+        figure = study_figure("sod", read(self.folder).study)
+        words = [text.get_text() for text in figure.texts + figure.axes[1].texts]
+        self.assertIn("JS  order 0.90", words)
+        self.assertTrue(any("1 of 12 runs failed" in text for text in words), words)
+
+
+class Refusals(unittest.TestCase):
+    def setUp(self):
+        self.folder = Path(tempfile.mkdtemp())
+        self.addCleanup(shutil.rmtree, self.folder)
+
+    def _refused(self, code, words, *arguments):
+        got, files, sentence = _plot(*arguments)
+        self.assertEqual((got, files), (code, []), sentence)
+        self.assertEqual(sentence.count("\n"), 1, sentence)
+        for word in words:
+            self.assertIn(word, sentence)
+
+    def test_usage(self):
+        self._refused(2, ["no such folder"], self.folder / "absent")
+        self._refused(2, ["nothing to draw"], self.folder)
+        self._refused(2, ["run directory is missing"])
+        self._refused(2, ["--colour"], self.folder, "--colour")
+        self._refused(2, ["jpeg"], self.folder, "--format", "jpeg")
+        self._refused(2, ["20 to 1200"], self.folder, "--dpi", "5")
+
+    def test_unknown_field_names_the_nearest(self):
+        run = synthetic.write_sod(self.folder / "sod", cells=20, snapshots=1)
+        self._refused(2, ["'rhoo'", "nearest is rho"], run, "--field", "rhoo")
+
+    def test_damaged_files(self):
+        cases = {
+            "fields.h5": b"\x89HDF\r\n\x1a\nnot really",
+            "scene.toml": b"[mesh\n",
+            "result.json": b"{",
+            "history.csv": b"time,dt [s]\n0.1,none\n",
+            "study.csv": b"label,cells\nz,100\n",
+        }
+        for name, content in cases.items():
+            with self.subTest(name):
+                run = synthetic.write_sod(self.folder / name, cells=20, snapshots=1)
+                (run / name).write_bytes(content)
+                code, _, sentence = _plot(run)
+                self.assertEqual(code, 6, sentence)
+                self.assertEqual(sentence.count("\n"), 1, sentence)
+
+    def test_truncated_fields(self):
+        run = synthetic.write_sod(self.folder / "sod", cells=200, snapshots=4)
+        content = (run / "fields.h5").read_bytes()
+        (run / "fields.h5").write_bytes(content[: len(content) // 2])
+        self._refused(6, ["fields.h5"], run)
+
+    def test_folder_that_cannot_be_written(self):
+        run = synthetic.write_sod(self.folder / "sod", cells=20, snapshots=1)
+        (self.folder / "file").write_text("")
+        self._refused(6, ["cannot be written"], run, "--out", self.folder / "file" / "pictures")
+
+
+if __name__ == "__main__":
+    unittest.main()
