@@ -1,0 +1,59 @@
+#include "common/program/command_line.hpp"
+
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <algorithm>
+#include <string_view>
+
+#include "common/program/failure.hpp"
+#include "common/scene/nearest.hpp"
+
+namespace drogue {
+namespace {
+
+std::vector<std::string> option_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : app.get_options()) {
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  }
+  return names;
+}
+
+Failure unwanted_word(const CLI::App& app, const std::string& word) {
+  if (word.rfind('-', 0) != 0) return {ExitCode::usage, "unexpected argument '" + word + "'"};
+  const std::string name = word.substr(0, word.find('='));
+  return {ExitCode::usage, "unknown option '" + name + "'; " + scene::suggestion(name, option_names(app))};
+}
+
+}  // namespace
+
+Arguments split_arguments(int argc, const char* const* argv) {
+  Arguments arguments;
+  for (int i = 1; i < argc; ++i) {
+    const std::string_view word = argv[i];
+    (word.starts_with("--kokkos-") ? arguments.kokkos : arguments.program).emplace_back(word);
+  }
+  return arguments;
+}
+
+std::string parse_command_line(CLI::App& app, const std::vector<std::string>& words) {
+  app.allow_extras();
+  try {
+    // CLI11 takes its words from the back.
+    app.parse(std::vector<std::string>(words.rbegin(), words.rend()));
+  } catch (const CLI::CallForHelp&) {
+    return app.help();
+  } catch (const CLI::ParseError& error) {
+    throw Failure(ExitCode::usage, error.what());
+  }
+  const std::vector<std::string> extras = app.remaining();
+  if (!extras.empty()) {
+    // An unknown option leaves its value behind, too: the option is the fault to name.
+    const auto option =
+        std::find_if(extras.begin(), extras.end(), [](const std::string& word) { return word.starts_with("-"); });
+    throw unwanted_word(app, option == extras.end() ? extras.front() : *option);
+  }
+  return {};
+}
+
+}  // namespace drogue

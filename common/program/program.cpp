@@ -1,0 +1,59 @@
+#include "common/program/program.hpp"
+
+#include <CLI/Error.hpp>
+#include <cstdio>
+#include <exception>
+#include <new>
+#include <string>
+
+#include "common/program/mpi_guard.hpp"
+
+namespace drogue {
+namespace {
+
+/// Libraries append stack traces and further lines to what(); the first line names the fault.
+std::string first_line(const std::string& text) {
+  const std::size_t begin = text.find_first_not_of(" \t\n");
+  if (begin == std::string::npos) return "no description";
+  return text.substr(begin, text.find('\n', begin) - begin);
+}
+
+}  // namespace
+
+Failure current_failure() {
+  try {
+    throw;
+  } catch (const Failure& failure) {
+    return failure;
+  } catch (const CLI::Error& error) {
+    return {ExitCode::usage, first_line(error.what())};
+  } catch (const std::bad_alloc&) {
+    return {ExitCode::io_error, "out of memory: ask for fewer cells, or run where there is more memory"};
+  } catch (const std::exception& error) {
+    return {ExitCode::io_error, "unexpected error: " + first_line(error.what())};
+  } catch (...) {
+    return {ExitCode::io_error, "unexpected error of unknown kind"};
+  }
+}
+
+int run_program(const std::string& program, const std::function<ExitCode()>& body) {
+  ExitCode code = ExitCode::ok;
+  try {
+    code = body();
+  } catch (...) {
+    const Failure failure = current_failure();
+    code = failure.code();
+    if (launched_rank().rank == 0) {
+      const bool located = code == ExitCode::invalid_scene;
+      std::fprintf(stderr, "%s%s%s\n", located ? "" : program.c_str(), located ? "" : ": ", failure.what());
+    }
+  }
+  // Output that never arrived, say of --print-scene into a full disk, must not look like success.
+  if (std::fflush(stdout) != 0 && code == ExitCode::ok) {
+    std::fprintf(stderr, "%s: cannot write to standard output\n", program.c_str());
+    code = ExitCode::io_error;
+  }
+  return static_cast<int>(code);
+}
+
+}  // namespace drogue

@@ -1,0 +1,98 @@
+#include "common/run/restart_file.hpp"
+
+#include <map>
+#include <utility>
+
+#include "common/run/atomic_file.hpp"
+#include "common/run/checksum.hpp"
+#include "common/run/hdf5.hpp"
+#include "common/run/restart_seal.hpp"
+
+#include <unistd.h>
+
+namespace drogue::run {
+
+std::string fingerprint(std::string_view text) {
+  Checksum checksum;
+  checksum.add({text.data(), text.size()});
+  return hexadecimal(checksum.value());
+}
+
+struct RestartWriter::State {
+  std::filesystem::path target;
+  std::filesystem::path temporary;
+  std::string scene;
+  h5::Handle file;
+  std::map<std::string, h5::Handle> arrays;
+};
+
+RestartWriter::RestartWriter(std::filesystem::path file, const std::string& scene)
+    : _state(std::make_unique<State>()) {
+  _state->target = std::move(file);
+  _state->temporary = temporary_name(_state->target);
+  _state->scene = scene;
+  _state->file = h5::create_file(_state->temporary, seal_bytes);
+}
+
+RestartWriter::~RestartWriter() {
+  if (!_state) return;
+  _state->arrays.clear();
+  _state->file.reset();
+  unlink(_state->temporary.c_str());
+}
+
+void RestartWriter::number(const std::string& name, double value) {
+  h5::write_attribute(_state->file, name, value);
+}
+
+void RestartWriter::integer(const std::string& name, std::int64_t value) {
+  h5::write_attribute(_state->file, name, value);
+}
+
+void RestartWriter::text(const std::string& name, const std::string& value) {
+  h5::write_attribute(_state->file, name, value);
+}
+
+void RestartWriter::array(const std::string& name, std::uint64_t size) {
+  _state->arrays[name] = h5::create_dataset(_state->file, name, H5T_NATIVE_DOUBLE, {size});
+}
+
+void RestartWriter::write(const std::string& name, std::uint64_t first, std::span<const double> values) {
+  h5::write(_state->arrays.at(name), first, values);
+}
+
+void RestartWriter::commit() {
+  _state->arrays.clear();
+  _state->file.close_file();
+  write_seal(_state->temporary, _state->scene);
+  replace_file(_state->temporary, _state->target);
+  _state.reset();
+}
+
+struct RestartReader::State {
+  h5::Handle file;
+};
+
+RestartReader::RestartReader(std::filesystem::path file, const std::string& scene)
+    : _state(std::make_unique<State>()) {
+  check_seal(file, scene);
+  _state->file = h5::open_file(file, false);
+}
+
+RestartReader::~RestartReader() = default;
+
+double RestartReader::number(const std::string& name) const { return h5::read_number(_state->file, name); }
+
+std::int64_t RestartReader::integer(const std::string& name) const { return h5::read_integer(_state->file, name); }
+
+std::string RestartReader::text(const std::string& name) const { return h5::read_text(_state->file, name); }
+
+std::uint64_t RestartReader::size(const std::string& name) const {
+  return h5::shape(h5::open_dataset(_state->file, name)).at(0);
+}
+
+void RestartReader::read(const std::string& name, std::uint64_t first, std::span<double> values) const {
+  h5::read(h5::open_dataset(_state->file, name), first, values);
+}
+
+}  // namespace drogue::run

@@ -1,0 +1,137 @@
+#include "common/run/result_document.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "common/program/provenance.hpp"
+#include "common/run/atomic_file.hpp"
+#include "common/version.hpp"
+
+namespace drogue::run {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// JSON has no NaN and no infinity.
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json errors_json(const std::map<std::string, double>& errors) {
+  Json json = Json::object();
+  for (const auto& [name, value] : errors) json[name] = number(value);
+  return json;
+}
+
+Json checks_json(const std::vector<Check>& checks) {
+  Json json = Json::array();
+  for (const Check& check : checks) {
+    json.push_back(
+        {{"name", check.name}, {"value", number(check.value)}, {"bar", number(check.bar)}, {"passed", check.passed}});
+  }
+  return json;
+}
+
+Json timing_json(const ResultDocument::Timing& timing) {
+  return {{"wall_s", number(timing.wall_s)}, {"setup_s", number(timing.setup_s)},
+          {"compute_s", number(timing.compute_s)}, {"h2d_s", number(timing.h2d_s)},
+          {"d2h_s", number(timing.d2h_s)},   {"io_s", number(timing.io_s)}};
+}
+
+Json ledger_json(const ResultDocument::Ledger& ledger) {
+  return {{"kernel_launches", ledger.kernel_launches},
+          {"fences", ledger.fences},
+          {"device_allocations_after_warmup", ledger.device_allocations_after_warmup},
+          {"h2d_bytes", ledger.h2d_bytes},
+          {"d2h_bytes", ledger.d2h_bytes}};
+}
+
+Json provenance_json(const ResultDocument::Provenance& provenance) {
+  return {{"compiler", provenance.compiler}, {"flags", provenance.flags}, {"kokkos", provenance.kokkos},
+          {"cpu", provenance.cpu},           {"gpu", provenance.gpu},     {"driver", provenance.driver},
+          {"date", provenance.date}};
+}
+
+}  // namespace
+
+std::string status_name(ExitCode code) {
+  switch (code) {
+    case ExitCode::ok: return "ok";
+    case ExitCode::usage:
+    case ExitCode::invalid_scene: return "invalid";
+    case ExitCode::numerical_failure: return "numerical-failure";
+    case ExitCode::verification_failed: return "verification-failed";
+    case ExitCode::io_error: return "io-error";
+    case ExitCode::no_backend: return "no-backend";
+    case ExitCode::interrupted: return "interrupted";
+  }
+  return "io-error";
+}
+
+bool ResultDocument::add_check(const std::string& name, double value, double bar) {
+  const bool passed = std::abs(value) <= bar;  // false for NaN
+  checks.push_back({name, value, bar, passed});
+  return passed;
+}
+
+std::string ResultDocument::failed_check() const {
+  const auto failed = std::find_if(checks.begin(), checks.end(), [](const Check& check) { return !check.passed; });
+  if (failed == checks.end()) return {};
+  char text[256];
+  std::snprintf(text, sizeof text, "%s is %.6g, above its bar %.6g", failed->name.c_str(), failed->value, failed->bar);
+  return text;
+}
+
+ResultDocument new_result(const std::string& program, const std::string& scene) {
+  const BuildInfo& build = build_info();
+  ResultDocument result;
+  result.program = program;
+  result.scene = scene;
+  result.version = build.version;
+  result.git = build.git;
+  result.provenance.compiler = build.compiler;
+  result.provenance.flags = build.flags;
+  result.provenance.kokkos = build.kokkos;
+  result.provenance.cpu = cpu_model();
+  result.provenance.date = utc_date();
+  return result;
+}
+
+std::string to_json(const ResultDocument& result) {
+  Json json;
+  json["schema"] = "drogue.result/1";
+  json["program"] = result.program;
+  json["version"] = result.version;
+  json["git"] = result.git;
+  json["scene"] = result.scene;
+  json["backend"] = result.backend;
+  json["device"] = result.device;
+  json["precision"] = result.precision;
+  json["ranks"] = result.ranks;
+  json["threads"] = result.threads;
+  json["status"] = status_name(result.exit_code);
+  json["exit_code"] = static_cast<int>(result.exit_code);
+  json["message"] = result.message;
+  json["steps"] = result.steps;
+  json["time"] = number(result.time);
+  json["dt_min"] = number(result.dt_min);
+  json["dt_max"] = number(result.dt_max);
+  json["errors"] = errors_json(result.errors);
+  json["checks"] = checks_json(result.checks);
+  json["limiter"] = {{"touches", result.limiter.touches},
+                     {"cells", result.limiter.cells},
+                     {"redone_steps", result.limiter.redone_steps}};
+  json["timing"] = timing_json(result.timing);
+  json["ledger"] = ledger_json(result.ledger);
+  json["peak_bytes"] = {{"host", result.peak_bytes.host}, {"device", result.peak_bytes.device}};
+  json["provenance"] = provenance_json(result.provenance);
+  // File names and messages may hold bytes that are no UTF-8; the document must be written all the same.
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+void write_result(const std::filesystem::path& file, ResultDocument result) {
+  result.peak_bytes.host = host_peak_bytes();
+  write_file_atomically(file, to_json(result));
+}
+
+}  // namespace drogue::run

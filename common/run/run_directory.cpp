@@ -1,0 +1,114 @@
+#include "common/run/run_directory.hpp"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <system_error>
+#include <utility>
+
+#include "common/run/atomic_file.hpp"
+#include "common/run/io_error.hpp"
+
+namespace drogue::run {
+namespace {
+
+constexpr const char* lock_name = ".lock";
+
+/// True if the file that `descriptor` locks is still the one under `path`: a run that just ended may have removed it.
+bool still_there(int descriptor, const std::filesystem::path& path) {
+  struct stat locked = {}, present = {};
+  return fstat(descriptor, &locked) == 0 && stat(path.c_str(), &present) == 0 && locked.st_ino == present.st_ino;
+}
+
+/// True for `.result.json.1234.tmp`, left by a run that was killed while it wrote result.json.
+bool is_leftover(const std::string& name) {
+  if (!name.starts_with('.') || !name.ends_with(".tmp")) return false;
+  const auto& names = run_file_names();
+  return std::any_of(names.begin(), names.end(),
+                     [&name](const std::string& file) { return name.starts_with("." + file + "."); });
+}
+
+}  // namespace
+
+const std::vector<std::string>& run_file_names() {
+  static const std::vector<std::string> names = {"scene.toml",  "result.json", "history.csv", "fields.h5",
+                                                 "fields.xdmf", "restart.h5",  "study.csv",   "study.json"};
+  return names;
+}
+
+bool holds_run(const std::filesystem::path& directory) {
+  const auto& names = run_file_names();
+  return std::any_of(names.begin(), names.end(), [&directory](const std::string& name) {
+    std::error_code ignored;
+    return std::filesystem::exists(directory / name, ignored);
+  });
+}
+
+RunDirectory::RunDirectory(std::filesystem::path path, ExistingRun existing) : _path(std::move(path)) {
+  std::error_code error;
+  std::filesystem::create_directories(_path, error);
+  if (error) throw io_failure("create the run directory", _path, error.value());
+  lock();
+  try {
+    if (existing == ExistingRun::refuse && holds_run(_path)) {
+      throw Failure(ExitCode::usage, "'" + _path.string() +
+                                         "' already holds a run; choose another --out, or give --overwrite to replace it "
+                                         "or --restart to continue it");
+    }
+    if (existing == ExistingRun::overwrite) remove_former_run();
+  } catch (...) {
+    unlock();
+    throw;
+  }
+}
+
+RunDirectory::~RunDirectory() { unlock(); }
+
+void RunDirectory::lock() {
+  const std::filesystem::path file = _path / lock_name;
+  while (true) {
+    _lock = open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    if (_lock < 0) throw io_failure("write to the run directory", _path, errno);
+    if (flock(_lock, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+      close(_lock);
+      throw Failure(ExitCode::io_error, "the run directory '" + _path.string() + "' is in use by another process");
+    }
+    // Where the file system knows no locks (some Lustre mounts) a run goes on without one.
+    if (still_there(_lock, file)) return;
+    close(_lock);
+  }
+}
+
+void RunDirectory::unlock() noexcept {
+  // Removed while still locked: whoever opened the file meanwhile finds in lock() that it is gone.
+  unlink((_path / lock_name).c_str());
+  close(_lock);
+}
+
+void RunDirectory::remove_former_run() const {
+  const auto remove = [](const std::filesystem::path& file) {
+    if (unlink(file.c_str()) != 0 && errno != ENOENT) throw io_failure("remove", file, errno);
+  };
+  for (const std::string& name : run_file_names()) remove(_path / name);
+  std::vector<std::filesystem::path> leftovers;
+  for (const auto& entry : std::filesystem::directory_iterator(_path)) {
+    if (is_leftover(entry.path().filename().string())) leftovers.push_back(entry.path());
+  }
+  for (const auto& file : leftovers) remove(file);
+}
+
+void RunDirectory::write_scene(std::string_view toml) const { write_file_atomically(file("scene.toml"), toml); }
+
+std::filesystem::path restart_source(const std::string& option, const std::filesystem::path& directory) {
+  const std::filesystem::path file = option == "auto" ? directory / "restart.h5" : std::filesystem::path(option);
+  std::error_code ignored;
+  if (std::filesystem::exists(file, ignored)) return file;
+  if (option == "auto") return {};
+  throw Failure(ExitCode::usage, "the restart file '" + option + "' does not exist");
+}
+
+}  // namespace drogue::run
