@@ -1,0 +1,110 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <map>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "common/scene/nearest.hpp"
+#include "common/scene/node.hpp"
+
+namespace drogue::scene {
+
+/// The numbers a key allows.
+struct Limits {
+  double low = -std::numeric_limits<double>::infinity();
+  double high = std::numeric_limits<double>::infinity();
+  bool low_excluded = false;
+  bool high_excluded = false;
+
+  [[nodiscard]] bool allow(double value) const;
+  [[nodiscard]] std::string text() const;  ///< `> 0 and <= 2`, `8 .. 268435456`; empty where all is allowed
+};
+
+/// How a value of one type is read from a node into the place it is bound to, and printed from there.
+struct Codec {
+  std::string type;  ///< for the docs and for errors
+  /// Returns what is wrong as the rest of a sentence that starts with the key, or nothing.
+  std::function<std::string(const Node&, const Limits&)> read;
+  std::function<std::optional<std::string>()> print;  ///< as TOML; nothing where no value is set
+};
+
+/// Text of a number a `--print-scene` reads back exactly.
+std::string toml_text(double value);
+std::string toml_text(std::int64_t value);
+
+/// Each returns a complaint or nothing, and stores in `value` only what is right.
+std::string read_real(const Node& node, const Limits& limits, double& value);
+std::string read_integer(const Node& node, const Limits& limits, std::int64_t& value);
+std::string read_name(const Node& node, const std::vector<std::string>& valid, std::string& value);
+std::string read_expression(const Node& node, const std::vector<std::string>& variables, std::string& value);
+
+Codec real_codec(double& value);
+Codec real_codec(std::optional<double>& value);
+/// A real kept under `name` in a map; not set: not there.
+Codec real_codec(std::map<std::string, double>& values, const std::string& name);
+Codec boolean_codec(bool& value);
+Codec text_codec(std::string& value);
+/// A string that can only be `value`: which app a scene is for.
+Codec fixed_codec(std::string value);
+Codec expression_codec(std::string& value, std::vector<std::string> variables);
+/// A number or an expression of `variables`; kept as the text of the expression.
+Codec real_or_expression_codec(std::string& value, std::vector<std::string> variables);
+/// Two reals, the first the smaller.
+Codec interval_codec(double& low, double& high);
+/// Reals in increasing order where `increasing`; of `size` elements where that is not 0.
+Codec reals_codec(std::vector<double>& values, std::size_t size, bool increasing);
+/// Names out of `valid`, none twice.
+Codec names_codec(std::vector<std::string>& values, std::vector<std::string> valid);
+
+/// An integer that fits T whatever the declared limits are.
+template <class T>
+Codec integer_codec(T& value) {
+  return {"integer",
+          [&value](const Node& node, Limits limits) {
+            limits.low = std::max(limits.low, static_cast<double>(std::numeric_limits<T>::min()));
+            limits.high = std::min(limits.high, static_cast<double>(std::numeric_limits<T>::max()));
+            std::int64_t number = 0;
+            std::string complaint = read_integer(node, limits, number);
+            if (complaint.empty()) value = static_cast<T>(number);
+            return complaint;
+          },
+          [&value] { return std::optional(toml_text(static_cast<std::int64_t>(value))); }};
+}
+
+template <class T>
+using Choices = std::vector<std::pair<std::string, T>>;
+
+/// One of some names, each standing for a value. `Place` is T or std::optional<T>.
+template <class T, class Place>
+Codec choice_codec(Place& value, const Choices<T>& choices) {
+  std::vector<std::string> names;
+  std::string type;
+  for (const auto& [name, meaning] : choices) {
+    names.push_back(name);
+    type += (type.empty() ? "" : " | ") + toml_string(name);
+  }
+  return {type,
+          [&value, choices, names](const Node& node, const Limits&) {
+            std::string chosen;
+            std::string complaint = read_name(node, names, chosen);
+            for (const auto& [name, meaning] : choices) {
+              if (complaint.empty() && name == chosen) value = meaning;
+            }
+            return complaint;
+          },
+          [&value, choices]() -> std::optional<std::string> {
+            for (const auto& [name, meaning] : choices) {
+              if (value == meaning) return toml_string(name);
+            }
+            return std::nullopt;
+          }};
+}
+
+}  // namespace drogue::scene

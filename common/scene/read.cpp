@@ -1,0 +1,144 @@
+#include "common/scene/read.hpp"
+
+#include <algorithm>
+
+#include "common/program/failure.hpp"
+#include "common/scene/document.hpp"
+#include "common/scene/nearest.hpp"
+
+namespace drogue::scene {
+namespace {
+
+/// In the order in which errors matter.
+enum class Rank { decisive, unknown, value, missing, contradiction };
+
+struct Problem {
+  Rank rank;
+  std::string text;
+};
+
+}  // namespace
+
+class Reader {
+ public:
+  explicit Reader(Table& root) : _root(root) {}
+
+  void run(const Node& document) {
+    take(_root, document);
+    check(_root);
+    const auto worst = std::min_element(_problems.begin(), _problems.end(),
+                                        [](const Problem& a, const Problem& b) { return a.rank < b.rank; });
+    if (worst != _problems.end()) throw Failure(ExitCode::invalid_scene, worst->text);
+  }
+
+ private:
+  void report(Rank rank, const std::string& origin, const std::string& sentence) {
+    _problems.push_back({rank, origin + ": " + sentence});
+  }
+
+  void take(Table& table, const Node& node) {
+    table._origin = node.origin;
+    for (const Member& member : *node.as<Node::Table>()) {
+      const auto found = std::find_if(table._keys.begin(), table._keys.end(),
+                                      [&](const auto& key) { return key->_name == member.name; });
+      if (found == table._keys.end()) {
+        report(Rank::unknown, member.origin, unknown(table, member.name));
+      } else {
+        take(**found, member, table.path_of(member.name));
+      }
+    }
+  }
+
+  void take(Key& key, const Member& member, const std::string& path) {
+    key._origin = member.origin;
+    if (key._kind == Key::Kind::value) {
+      const std::string complaint = key._codec.read(member.node, key._limits);
+      const std::string gap = complaint.starts_with('[') ? "" : " ";
+      const Rank rank = key._decisive ? Rank::decisive : Rank::value;
+      if (!complaint.empty()) report(rank, member.origin, path + gap + complaint);
+    } else if (key._kind == Key::Kind::tables) {
+      take_tables(key, member, path);
+    } else if (member.node.as<Node::Table>() == nullptr) {
+      report(Rank::value, member.origin, path + " must be a table, not " + describe(member.node));
+    } else {
+      if (key._kind == Key::Kind::optional_table) key._resize(1);
+      take(*key._tables.front(), member.node);
+    }
+  }
+
+  void take_tables(Key& key, const Member& member, const std::string& path) {
+    const auto* array = member.node.as<Node::Array>();
+    const bool all_tables = array != nullptr && std::all_of(array->begin(), array->end(), [](const Node& element) {
+                              return element.as<Node::Table>() != nullptr;
+                            });
+    if (!all_tables || array->empty()) {
+      const bool empty = array != nullptr && array->empty();
+      const std::string what = empty ? "an empty array" : array != nullptr ? "an array of other things"
+                                                                           : describe(member.node);
+      return report(Rank::value, member.origin, path + " must be an array of tables, not " + what);
+    }
+    key._resize(array->size());
+    for (std::size_t i = 0; i < array->size(); ++i) take(*key._tables[i], (*array)[i]);
+  }
+
+  std::string unknown(const Table& table, const std::string& name) const {
+    std::string text = "unknown key " + toml_string(table.path_of(name)) + "; ";
+    for (const std::string& path : all_paths(_root)) {
+      if (path.ends_with("." + name)) return text + "did you mean \"" + path + "\"?";
+    }
+    std::vector<std::string> valid;
+    for (const auto& key : table._keys) valid.push_back(key->_name);
+    return text + suggestion(name, valid);
+  }
+
+  /// What can only be seen once every value is read.
+  void check(const Table& table) {
+    for (const auto& key : table._keys) {
+      const bool applies = key->_applies();
+      const std::string path = table.path_of(key->_name);
+      if (key->given() && !applies) {
+        report(Rank::contradiction, key->_origin, path + " applies only " + key->_condition);
+      }
+      if (key->_required && applies && !key->given()) {
+        const std::string condition = key->_condition.empty() ? "" : " (needed " + key->_condition + ")";
+        report(Rank::missing, table._origin.empty() ? _root._origin : table._origin,
+               "missing " + std::string(key->_kind == Key::Kind::value ? "key " : "table ") + toml_string(path) + condition +
+                   ": " + key->_help);
+      }
+      for (const auto& child : key->_tables) {
+        // a fixed table that is missing is one error, not one for each of its keys
+        if (key->given() || !key->_required) check(*child);
+      }
+    }
+    check_alternatives(table);
+  }
+
+  void check_alternatives(const Table& table) {
+    const Key* first = nullptr;
+    std::string all;
+    for (const std::string& name : table._alternatives) {
+      all += (all.empty() ? "" : ", ") + name;
+      const Key* key = table.find(name);
+      if (!key->given()) continue;
+      if (first != nullptr) {
+        report(Rank::contradiction, key->_origin, table.path_of(name) + " contradicts " + table.path_of(first->_name) +
+                                                      ": a scene has only one of them");
+      }
+      first = key;
+    }
+    if (first == nullptr && !all.empty() && !table._origin.empty()) {
+      report(Rank::missing, table._origin, "[" + table._path + "] needs exactly one of " + all);
+    }
+  }
+
+  Table& _root;
+  std::vector<Problem> _problems;
+};
+
+void read(Table& root, const Node& document) { Reader(root).run(document); }
+
+void contradict(const Table& root, const std::string& path, const std::string& sentence) {
+  throw Failure(ExitCode::invalid_scene, root.origin(path) + ": " + sentence);
+}
+
+}  // namespace drogue::scene

@@ -1,0 +1,56 @@
+#include "miniapps/gas/scene.hpp"
+
+#include "common/scene/document.hpp"
+#include "common/scene/parse.hpp"
+#include "common/scene/print.hpp"
+#include "common/scene/read.hpp"
+#include "miniapps/gas/scene_check.hpp"
+#include "miniapps/gas/scene_keys.hpp"
+
+namespace drogue::gas_app {
+namespace {
+
+/// One alpha per field over the mesh, Jiang and Shu's weights, eigenvectors at the mean of U, three stages.
+void take_dissertation_scheme(gas::Parameters& parameters) {
+  parameters.weno = gas::Weno::js;
+  parameters.splitting = gas::Splitting::lf_global;
+  parameters.time_scheme = gas::TimeScheme::ssprk3;
+  parameters.mean = gas::Mean::conserved;
+  parameters.positivity = gas::Positivity::off;
+  parameters.precision = gas::Precision::full;
+}
+
+}  // namespace
+
+GasScene read_gas_scene(const std::filesystem::path& file, const std::vector<std::string>& sets, SchemeSource source) {
+  scene::Node document = scene::parse_file(file);
+  for (const std::string& assignment : sets) scene::apply_set(document, assignment);
+  GasScene result;
+  result.file = file;
+  result.name = file.stem().string();
+  scene::Table root;
+  declare_gas_scene(root, result);
+  scene::read(root, document);
+  if (source == SchemeSource::dissertation) take_dissertation_scheme(result.parameters);
+  complete_and_check(root, result);
+  return result;
+}
+
+std::string print_gas_scene(const GasScene& scene) {
+  GasScene copy = scene;
+  scene::Table root;
+  declare_gas_scene(root, copy);
+  return scene::print(root);
+}
+
+std::string document_gas_scene() {
+  GasScene defaults;
+  scene::Table root;
+  declare_gas_scene(root, defaults);
+  return "# Gas scenes: all keys\n\n"
+         "Written by `drogue-gas --document-scene`, from the declarations that also check a scene; do not edit.\n"
+         "A scene is a TOML file. Unknown keys are refused. Numbers are in SI units; an integer is accepted for a real.\n\n" +
+         scene::document(root);
+}
+
+}  // namespace drogue::gas_app

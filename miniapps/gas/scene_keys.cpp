@@ -1,0 +1,195 @@
+#include "miniapps/gas/scene_keys.hpp"
+
+#include "common/scene/codec.hpp"
+
+namespace drogue::gas_app {
+namespace {
+
+using scene::Choices;
+using scene::Codec;
+using scene::Table;
+
+constexpr double smallest_mesh = 8;
+constexpr double largest_mesh = 268435456;  // 2^28
+
+const Choices<gas::Weno> weno_choices = {
+    {"js", gas::Weno::js}, {"z", gas::Weno::z}, {"m", gas::Weno::m}, {"teno5", gas::Weno::teno5}};
+const Choices<gas::Splitting> splitting_choices = {{"lf-global", gas::Splitting::lf_global},
+                                                   {"lf-single", gas::Splitting::lf_single},
+                                                   {"lf-stencil", gas::Splitting::lf_stencil}};
+const Choices<gas::TimeScheme> time_choices = {{"ssprk3", gas::TimeScheme::ssprk3},
+                                               {"ssprk43", gas::TimeScheme::ssprk43}};
+const Choices<gas::Mean> mean_choices = {
+    {"arithmetic", gas::Mean::arithmetic}, {"conserved", gas::Mean::conserved}, {"roe", gas::Mean::roe}};
+const Choices<gas::Positivity> positivity_choices = {
+    {"off", gas::Positivity::off}, {"on", gas::Positivity::on}, {"auto", gas::Positivity::automatic}};
+const Choices<gas::Precision> precision_choices = {{"double", gas::Precision::full}, {"split", gas::Precision::split}};
+const Choices<gas::Boundary> boundary_choices = {{"outflow", gas::Boundary::outflow},
+                                                 {"reflecting", gas::Boundary::reflecting},
+                                                 {"periodic", gas::Boundary::periodic}};
+const Choices<Exact> exact_choices = {
+    {"riemann", Exact::riemann}, {"advection", Exact::advection}, {"reference", Exact::reference}};
+
+/// A number whose 0 stands for "not given".
+template <class T>
+Codec zero_is_unset(Codec codec, const T& value) {
+  codec.print = [print = codec.print, &value] { return value > 0 ? print() : std::nullopt; };
+  return codec;
+}
+
+/// What a run and the finer run it is compared with have in common.
+void declare_weights(Table& table, gas::Parameters& scheme) {
+  table.value("weno", scene::choice_codec(scheme.weno, weno_choices), "Nonlinear weights of the reconstruction");
+  table.value("weno_power", scene::integer_codec(scheme.weno_power), "Power of the ratio in the weights")
+      .range(1, 2)
+      .when([&scheme] { return scheme.weno == gas::Weno::z; }, "with weno = \"z\"");
+  table.value("splitting", scene::choice_codec(scheme.splitting, splitting_choices),
+              "Alpha of the Lax-Friedrichs splitting: the largest speed of each field, of all, or of each field's stencil");
+  table.value("time", scene::choice_codec(scheme.time_scheme, time_choices), "Runge-Kutta scheme, of 3 or 4 stages");
+  table.value("mean", scene::choice_codec(scheme.mean, mean_choices),
+              "State at a face whose eigenvectors are used: mean of u and H, mean of U, or Roe's");
+}
+
+void declare_step(Table& table, gas::Parameters& scheme) {
+  const auto free_step = [&scheme] { return scheme.fixed_dt <= 0.0; };
+  table.value("cfl", scene::real_codec(scheme.cfl), "Courant number")
+      .above(0.0)
+      .at_most(2.0)
+      .when(free_step, "without fixed_dt");
+  table.value("ramp_steps", scene::integer_codec(scheme.ramp_steps), "Steps over which the Courant number grows from a tenth")
+      .range(0, 1'000'000)
+      .when(free_step, "without fixed_dt");
+  table.value("positivity", scene::choice_codec(scheme.positivity, positivity_choices),
+              "Flux limiter that keeps density and pressure positive: never, always, or where a step fails without it");
+}
+
+void declare_scheme(Table& table, gas::Parameters& scheme) {
+  declare_weights(table, scheme);
+  table.value("fixed_dt", zero_is_unset(scene::real_codec(scheme.fixed_dt), scheme.fixed_dt),
+              "Step that replaces the one of cfl")
+      .unit("s")
+      .above(0.0);
+  declare_step(table, scheme);
+  table.value("precision", scene::choice_codec(scheme.precision, precision_choices),
+              "All in FP64, or the nonlinear part in FP32");
+}
+
+void declare_state(Table& table, Primitive& state) {
+  table.value("rho", scene::real_codec(state.rho), "Density").unit("kg/m^3").above(0.0).required();
+  table.value("u", scene::real_codec(state.u), "Velocity").unit("m/s");
+  table.value("p", scene::real_codec(state.p), "Pressure").unit("Pa").above(0.0).required();
+}
+
+void declare_initial(Table& table, Initial& initial) {
+  table.exactly_one_of({"riemann", "regions", "expression"});
+  table.optional_table(
+      "riemann", initial.riemann,
+      [](Table& riemann, Riemann& value) {
+        riemann.value("x0", scene::real_codec(value.x0), "Where the two states meet").unit("m");
+        riemann.table("left", [&](Table& state) { declare_state(state, value.left); }, "State left of x0").required();
+        riemann.table("right", [&](Table& state) { declare_state(state, value.right); }, "State right of x0").required();
+      },
+      "Two constant states");
+  table.tables(
+      "regions", initial.regions,
+      [](Table& region, Region& value) {
+        region.value("until", scene::real_codec(value.until), "Right end; the last region has none").unit("m");
+        declare_state(region, value.state);
+      },
+      "Constant states from left to right");
+  table.optional_table(
+      "expression", initial.expression,
+      [](Table& expression, ExpressionState& value) {
+        const std::vector<std::string> variables = {"x", "dx"};
+        expression.value("rho", scene::real_or_expression_codec(value.rho, variables), "Density").unit("kg/m^3").required();
+        expression.value("u", scene::real_or_expression_codec(value.u, variables), "Velocity").unit("m/s");
+        expression.value("p", scene::real_or_expression_codec(value.p, variables), "Pressure").unit("Pa").required();
+      },
+      "A state that varies with the cell centre x and may use the cell width dx");
+}
+
+void declare_output(Table& table, Output& output) {
+  table.value("fields", scene::names_codec(output.fields, {"rho", "u", "p"}), "Fields written to fields.h5")
+      .default_text("all three where times are given, else none");
+  table.value("times", scene::reals_codec(output.times, 0, true), "Times at which fields are written")
+      .unit("s")
+      .at_least(0.0)
+      .default_text("the end time where fields are given")
+      .when([&output] { return !output.fields.empty(); }, "with fields");
+  table.value("history_every", scene::integer_codec(output.history_every), "Steps between rows of history.csv; 0: none")
+      .range(0, 1e9);
+  table.value("restart_every", scene::integer_codec(output.restart_every), "Steps between restart files; 0: none")
+      .range(0, 1e9);
+}
+
+void declare_verify(Table& table, Verify& verify) {
+  table.value("exact", scene::choice_codec(verify.exact, exact_choices),
+              "What the result is compared with: the exact Riemann solution, the initial state moved with u, a finer run");
+  table
+      .optional_table(
+          "reference", verify.reference,
+          [](Table& reference, gas::Parameters& scheme) {
+            reference.value("cells", scene::integer_codec(scheme.cells), "Cells of the finer run")
+                .range(smallest_mesh, largest_mesh)
+                .required();
+            declare_weights(reference, scheme);
+            declare_step(reference, scheme);
+          },
+          "The finer run")
+      .when([&verify] { return verify.exact == Exact::reference; }, "with exact = \"reference\"")
+      .required();
+  for (const std::string norm : {"l1", "l2", "linf"}) {
+    for (const std::string quantity : {"density", "velocity", "pressure"}) {
+      const std::string unit = quantity == "density" ? "kg/m^3" : quantity == "velocity" ? "m/s" : "Pa";
+      const std::string measure = norm == "l1" ? unit + " m" : norm == "l2" ? unit + " m^(1/2)" : unit;
+      const std::string name = norm + "_" + quantity;
+      table.value(name, scene::real_codec(verify.bars, name), "Largest error that passes")
+          .unit(measure)
+          .at_least(0.0)
+          .when([&verify] { return verify.exact.has_value(); }, "with exact, which names what to compare with");
+    }
+  }
+  table.value("conservation", scene::real_codec(verify.conservation),
+              "Largest relative change of mass, momentum and energy, less what crossed the ends, that passes")
+      .at_least(0.0);
+}
+
+}  // namespace
+
+void declare_gas_scene(Table& root, GasScene& scene) {
+  gas::Parameters& parameters = scene.parameters;
+  root.value("app", scene::fixed_codec("gas"), "The program the scene is for").required().decisive();
+  root.value("description", scene::text_codec(scene.description), "A sentence for --list-scenes");
+  root.table("gas", [&](Table& table) {
+        table.value("gamma", scene::real_codec(parameters.gamma), "Ratio of specific heats").above(1.0).at_most(100.0);
+      }, "The gas")
+      .required();
+  root.table("mesh", [&](Table& table) {
+        table.value("cells", scene::integer_codec(parameters.cells), "Number of cells").range(smallest_mesh, largest_mesh);
+        table.value("domain", scene::interval_codec(parameters.x_min, parameters.x_max), "Ends of the domain").unit("m");
+      }, "The mesh")
+      .required();
+  root.table("initial", [&](Table& table) { declare_initial(table, scene.initial); }, "The state at the start").required();
+  root.table("boundary", [&](Table& table) {
+    table.value("left", scene::choice_codec(parameters.left, boundary_choices), "Left end");
+    table.value("right", scene::choice_codec(parameters.right, boundary_choices), "Right end");
+  }, "The ends of the domain");
+  root.table("scheme", [&](Table& table) { declare_scheme(table, parameters); }, "The numerical scheme");
+  root.table("run", [&](Table& table) {
+        table.value("end_time", scene::real_codec(scene.end_time), "Where the run ends").unit("s").above(0.0).required();
+        table.value("max_steps", scene::integer_codec(parameters.max_steps), "Steps after which the run is given up")
+            .range(1, 1e12);
+      }, "The length of the run")
+      .required();
+  root.table("output", [&](Table& table) { declare_output(table, scene.output); }, "Files of the run directory");
+  root.table("verify", [&](Table& table) { declare_verify(table, scene.verify); }, "What is checked at the end");
+  root.table("tuning", [&](Table& table) {
+    table.table("stage", [&](Table& stage) {
+      stage.value("block", zero_is_unset(scene::integer_codec(parameters.block), parameters.block), "Cells a tile")
+          .range(32, 1024)
+          .default_text("the backend's own");
+    }, "The fused stage kernel");
+  }, "Block sizes of kernels; they change speed, not results");
+}
+
+}  // namespace drogue::gas_app
