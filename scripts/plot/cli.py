@@ -84,7 +84,7 @@ def _chosen_fields(run, wanted: str) -> list[str]:
 
 
 def _gas_pictures(run, arguments, save):
-    from . import gas_figures, movie
+    from . import gas_figures, gas_movie, movie
     from .exact import exact_solution
 
     view = gas_figures.View(run, _chosen_fields(run, arguments.field), exact_solution(run))
@@ -99,8 +99,7 @@ def _gas_pictures(run, arguments, save):
         for name in mapped:
             yield save(gas_figures.space_time_figure(view, name), f"space_time_{name}")
     if len(run.snapshots) >= 2 and arguments.movie != "none":
-        figure, draw, count = gas_figures.moving_picture(view, movie.MAX_FRAMES)
-        yield movie.write(arguments.out / f"fields.{arguments.movie}", figure, draw, count)
+        yield movie.write(arguments.out / f"fields.{arguments.movie}", gas_movie.frames(view))
 
 
 def draw(arguments: argparse.Namespace):

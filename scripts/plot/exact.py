@@ -6,6 +6,7 @@ from .expression import evaluate
 from .riemann import State, sample
 from .run_directory import Run, Snapshot
 
+WENO_NAMES = {"js": "WENO-JS", "z": "WENO-Z", "m": "WENO-M", "teno5": "TENO5"}
 GAS_FIELDS = ("rho", "u", "p")
 
 
@@ -64,7 +65,7 @@ def _reference(run: Run) -> ExactSolution:
             return {}
         return {name: np.interp(x, reference.x, item.values) for name, item in reference.fields.items()}
 
-    scheme = f"{reference.scheme}, " if reference.scheme else ""
+    scheme = f"{WENO_NAMES.get(reference.scheme, reference.scheme)}, " if reference.scheme else ""
     return ExactSolution(f"reference: {scheme}{reference.cells} cells", at, reference.x)
 
 

@@ -1,16 +1,16 @@
-"""Pictures of a gas run: fields against the exact solution with their error, space-time map, moving picture."""
+"""Pictures of a gas run: fields against the exact solution with their error, space-time map."""
 
 from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.colors import LogNorm, Normalize
+from matplotlib.ticker import MaxNLocator
 
 from . import style
-from .exact import ExactSolution, errors
+from .exact import WENO_NAMES, ExactSolution, errors
 from .run_directory import Run, Snapshot
 from .style import plt
 
-WENO_NAMES = {"js": "WENO-JS", "z": "WENO-Z", "m": "WENO-M", "teno5": "TENO5"}
 _NORMS = {"rho": "density", "u": "velocity", "p": "pressure"}
 # Above this the circles of neighbouring cells touch and say less than a line.
 _MAX_MARKERS = 250
@@ -35,44 +35,60 @@ class View:
         return self.x[0] - half, self.x[-1] + half
 
     @property
+    def has_markers(self) -> bool:
+        return len(self.x) <= _MAX_MARKERS
+
+    @property
     def x_label(self) -> str:
         return style.axis_label("x", self.run.mesh["x"].units or "m")
 
 
 def scheme_name(scene: dict) -> str:
     scheme = scene.get("scheme", {})
-    name = WENO_NAMES.get(scheme.get("weno", "z"), scheme.get("weno", "z"))
+    name = scheme.get("weno", "z")
+    name = WENO_NAMES.get(name, name)
     return f"{name} (p = 2)" if name == "WENO-Z" and scheme.get("weno_power", 1) == 2 else name
 
 
-def _details(view: View, time: float) -> str:
+def details(view: View, time: float) -> str:
     return f"{scheme_name(view.run.scene)}, {len(view.x)} cells, t = {style.number(time)} s"
 
 
-def _key(view: View, markers: bool, shows_exact: bool):
-    key = [("\u25cb" if markers else "\u2014", scheme_name(view.run.scene), style.RUN_COLOUR)]
+def key(view: View, shows_exact: bool) -> list[tuple[str, str, str]]:
+    """Marker, words and colour of each curve."""
+    words = [("\u25cb" if view.has_markers else "\u2014", scheme_name(view.run.scene), style.RUN_COLOUR)]
     if shows_exact:
-        key.append(("\u2014", view.exact.name, style.INK))
-    return key
+        words.append(("\u2014", view.exact.name, style.INK))
+    return words
 
 
-def _draw_field(axes, view: View, snapshot: Snapshot, name: str) -> None:
-    """The exact curve, where one is known, behind the run's values."""
-    item = snapshot.fields[name]
-    if view.exact:
-        x, values = view.exact.curve(snapshot.time, view.x)
-        if name in values:
-            axes.plot(*style.thin(x, values[name]), color=style.INK, linewidth=0.9, zorder=2)
-    if len(view.x) <= _MAX_MARKERS:
-        axes.plot(
-            view.x, item.values, "o", color=style.RUN_COLOUR, markersize=2.8, markerfacecolor="white",
-            markeredgewidth=0.8, zorder=3, clip_on=False,
-        )  # fmt: skip
-    else:
-        axes.plot(*style.thin(view.x, item.values), color=style.RUN_COLOUR, linewidth=1.1, zorder=3)
-    axes.set_title(style.axis_label(name, item.units), color=style.INK, pad=5)
-    axes.set_xlim(*view.domain)
-    _set_range(axes, [item.values])
+class FieldPanel:
+    """Axes of one field: the exact curve, where one is known, behind the run's values."""
+
+    def __init__(self, axes, view: View, name: str):
+        self._view, self._name = view, name
+        (self._exact,) = axes.plot([], [], color=style.INK, linewidth=0.9, zorder=2)
+        if view.has_markers:
+            (self._run,) = axes.plot(
+                [], [], "o", color=style.RUN_COLOUR, markersize=2.8, markerfacecolor="white", markeredgewidth=0.8,
+                zorder=3, clip_on=False,
+            )  # fmt: skip
+        else:
+            (self._run,) = axes.plot([], [], color=style.RUN_COLOUR, linewidth=1.1, zorder=3)
+        axes.set_title(style.axis_label(name, view.run.snapshots[-1].fields[name].units), pad=5)
+        axes.set_xlim(*view.domain)
+        axes.xaxis.set_major_locator(MaxNLocator(5, steps=[1, 2, 2.5, 5, 10]))
+
+    @property
+    def artists(self):
+        return [self._exact, self._run]
+
+    def show(self, snapshot: Snapshot) -> None:
+        view, name = self._view, self._name
+        self._run.set_data(*style.thin(view.x, snapshot.fields[name].values))
+        if view.exact:
+            x, values = view.exact.curve(snapshot.time, view.x)
+            self._exact.set_data(*style.thin(x, values[name]) if name in values else ([], []))
 
 
 def _wants_logarithm(low: float, high: float) -> bool:
@@ -80,7 +96,7 @@ def _wants_logarithm(low: float, high: float) -> bool:
     return low > 0 and high >= 999 * low
 
 
-def _set_range(axes, arrays) -> None:
+def set_range(axes, arrays) -> None:
     """Vertical axis that holds all of the run's values; logarithmic where they span three decades."""
     low = min(float(np.nanmin(values)) for values in arrays)
     high = max(float(np.nanmax(values)) for values in arrays)
@@ -136,7 +152,8 @@ def fields_figure(view: View, snapshot: Snapshot):
     )
     final = snapshot is view.run.snapshots[-1]
     for column, name in enumerate(view.fields):
-        _draw_field(axes[0][column], view, snapshot, name)
+        FieldPanel(axes[0][column], view, name).show(snapshot)
+        set_range(axes[0][column], [snapshot.fields[name].values])
         if name in error:
             title = _error_title(view.run, name) if final else "|error|"
             _draw_error(axes[1][column], view, name, error[name], title)
@@ -144,8 +161,7 @@ def fields_figure(view: View, snapshot: Snapshot):
             axes[1][column].set_axis_off()
         axes[-1][column].set_xlabel(view.x_label)
     figure.tight_layout(rect=(0, 0, 1, 1 - 0.48 / height), h_pad=0.6, w_pad=1.4)
-    key = _key(view, len(view.x) <= _MAX_MARKERS, shows_exact)
-    style.heading(figure, view.run.name, _details(view, snapshot.time), key)
+    style.heading(figure, view.run.name, details(view, snapshot.time), key(view, shows_exact))
     return figure
 
 
@@ -177,33 +193,3 @@ def space_time_figure(view: View, name: str):
     figure.tight_layout(rect=(0, 0, 1, 1 - 0.48 / 3.6))
     style.heading(figure, view.run.name, f"{scheme_name(view.run.scene)}, {len(view.x)} cells")
     return figure
-
-
-def moving_picture(view: View, frames: int):
-    """Figure and a function that draws frame k of `frames` in it, all on the axes of the whole run."""
-    snapshots = view.run.snapshots
-    columns = len(view.fields)
-    figure, axes = plt.subplots(1, columns, figsize=(max(3.5, 2.55 * columns + 0.4), 2.9), squeeze=False)
-    chosen = np.unique(np.linspace(0, len(snapshots) - 1, frames).round().astype(int))
-    shows_exact = view.exact is not None and bool(errors(view.run, snapshots[-1], view.exact))
-
-    def draw(k: int) -> None:
-        snapshot = snapshots[chosen[k]]
-        for text in list(figure.texts):
-            text.remove()
-        for column, name in enumerate(view.fields):
-            panel = axes[0][column]
-            panel.clear()
-            _draw_field(panel, view, snapshot, name)
-            _set_range(panel, [shot.fields[name].values for shot in snapshots])
-            panel.set_xlabel(view.x_label)
-        style.heading(
-            figure,
-            view.run.name,
-            _details(view, snapshot.time),
-            _key(view, len(view.x) <= _MAX_MARKERS, shows_exact),
-        )
-
-    draw(0)
-    figure.tight_layout(rect=(0, 0, 1, 1 - 0.48 / 2.9), w_pad=1.4)
-    return figure, draw, len(chosen)

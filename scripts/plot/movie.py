@@ -10,19 +10,6 @@ from PIL import Image
 from . import style
 from .failure import IO_ERROR, Failure
 
-MAX_FRAMES = 100
-_DPI = 100
-
-
-def _frames(figure, draw, count: int):
-    figure.set_dpi(_DPI)
-    for k in range(count):
-        draw(k)
-        figure.canvas.draw()
-        pixels = np.asarray(figure.canvas.buffer_rgba())[..., :3]
-        # Most MP4 players want even sizes.
-        yield pixels[: pixels.shape[0] // 2 * 2, : pixels.shape[1] // 2 * 2]
-
 
 def _packed(pixels: np.ndarray) -> np.ndarray:
     """One integer a pixel, 0xRRGGBB."""
@@ -51,25 +38,24 @@ def _in_palette(pixels: np.ndarray, palette: np.ndarray) -> Image.Image:
     return image
 
 
-def _write_gif(file: Path, frames, count: int) -> None:
-    frames = [pixels.copy() for pixels in frames]
+def _write_gif(file: Path, frames: list[np.ndarray]) -> None:
     palette = _common_colours(frames)
     images = [_in_palette(pixels, palette) for pixels in frames]
-    frame_ms = int(np.clip(4000 / count, 50, 700))
-    durations = [frame_ms] * (count - 1) + [1500]
+    frame_ms = int(np.clip(4000 / len(images), 50, 700))
+    durations = [frame_ms] * (len(images) - 1) + [1500]
     images[0].save(file, save_all=True, append_images=images[1:], duration=durations, loop=0, optimize=False)
 
 
-def _write_mp4(file: Path, frames, count: int) -> None:
+def _write_mp4(file: Path, frames: list[np.ndarray]) -> None:
     import imageio_ffmpeg
 
-    first = next(frames)
-    rate = max(2.0, count / 4)
+    height, width = frames[0].shape[:2]
+    rate = max(2.0, len(frames) / 4)
     command = [
         imageio_ffmpeg.get_ffmpeg_exe(), "-y", "-loglevel", "error", "-f", "rawvideo", "-pix_fmt", "rgb24",
-        "-s", f"{first.shape[1]}x{first.shape[0]}", "-r", str(rate), "-i", "-", "-pix_fmt", "yuv420p", str(file),
+        "-s", f"{width}x{height}", "-r", str(rate), "-i", "-", "-pix_fmt", "yuv420p", str(file),
     ]  # fmt: skip
-    stream = first.tobytes() + b"".join(pixels.tobytes() for pixels in frames)
+    stream = b"".join(pixels.tobytes() for pixels in frames)
     done = subprocess.run(command, input=stream, capture_output=True, check=False)
     if done.returncode != 0:
         raise Failure(
@@ -77,9 +63,8 @@ def _write_mp4(file: Path, frames, count: int) -> None:
         )
 
 
-def write(file: Path, figure, draw, count: int) -> Path:
-    """Draws `count` frames into a file whose suffix, .gif or .mp4, says the kind."""
+def write(file: Path, frames) -> Path:
+    """Writes pictures of one size, (height, width, 3) bytes; the suffix of the file, .gif or .mp4, says the kind."""
+    frames = list(frames)
     writer = _write_gif if file.suffix == ".gif" else _write_mp4
-    style.replace_file(file, lambda temporary: writer(temporary, _frames(figure, draw, count), count))
-    style.plt.close(figure)
-    return file
+    return style.replace_file(file, lambda temporary: writer(temporary, frames))

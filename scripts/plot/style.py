@@ -65,19 +65,21 @@ def number(value: float) -> str:
     return rf"{mantissa}$\times$10$^{{{int(exponent)}}}$"
 
 
-def heading(figure, name: str, details: str, key: list[tuple[str, str, str]] = ()) -> None:
-    """Title at the left, what it shows under it; `key` (marker, words, colour) names the curves in their own colours."""
+def heading(figure, name: str, details: str, key: list[tuple[str, str, str]] = ()):
+    """Title at the left and what it shows under it, which is returned; `key` (marker, words, colour) names the curves."""
     width, height = figure.get_size_inches()
-    line = 1 / height
-    figure.text(0.1 / width, 1 - 0.08 * line, name, fontsize=10.5, fontweight="bold", va="top")
-    figure.text(0.1 / width, 1 - 0.28 * line, details, fontsize=8.5, color=MUTED, va="top")
-    right = 1 - 0.1 / width
+    left, second_line = 0.1 / width, 1 - 0.28 / height
+    figure.text(left, 1 - 0.08 / height, name, fontsize=10.5, fontweight="bold", va="top")
+    caption = figure.text(left, second_line, details, fontsize=8.5, color=MUTED, va="top")
+    # Beside the title, whose words are few: the second line may be long.
+    right = 1 - left
     for marker, words, colour in reversed(key):
         text = figure.text(
-            right, 1 - 0.28 * line, f"{marker} {words}", color=colour, fontsize=8.5, ha="right", va="top"
+            right, 1 - 0.1 / height, f"{marker} {words}", color=colour, fontsize=8.5, ha="right", va="top"
         )
         extent = text.get_window_extent(figure.canvas.get_renderer())
         right -= (extent.width / figure.dpi + 0.16) / width
+    return caption
 
 
 def label_ends(axes, ends) -> None:
