@@ -49,8 +49,8 @@ std::string parse_command_line(CLI::App& app, const std::vector<std::string>& wo
   const std::vector<std::string> extras = app.remaining();
   if (!extras.empty()) {
     // An unknown option leaves its value behind, too: the option is the fault to name.
-    const auto option =
-        std::find_if(extras.begin(), extras.end(), [](const std::string& word) { return word.starts_with("-"); });
+    const auto option = std::find_if(extras.begin(), extras.end(),
+                                     [](const std::string& word) { return word.starts_with("-"); });
     throw unwanted_word(app, option == extras.end() ? extras.front() : *option);
   }
   return {};

@@ -19,17 +19,21 @@ void declare(CLI::App& app, MiniAppOptions& options) {
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
   app.add_option("--out", options.out, "run directory (default: out/<scene name>)")->type_name("DIR");
-  auto* restart = app.add_option("--restart", options.restart,
-                                 "continue from a restart file; auto: from that of the run directory, if any");
+  auto* restart =
+      app.add_option("--restart", options.restart,
+                     "continue from a restart file; auto: from that of the run directory, if any");
   restart->type_name("FILE|auto");
-  app.add_flag("--overwrite", options.overwrite, "replace the run that is in the run directory")->excludes(restart);
+  app.add_flag("--overwrite", options.overwrite, "replace the run that is in the run directory")
+      ->excludes(restart);
   auto* check = app.add_flag("--check", options.check, "validate the scene and end");
-  app.add_flag("--print-scene", options.print_scene, "print the scene with every default that applies, and end")
+  app.add_flag("--print-scene", options.print_scene,
+               "print the scene with every default that applies, and end")
       ->excludes(check);
   app.add_flag("--list-scenes", options.list_scenes, "list the shipped scenes, and end");
   app.add_flag("--quiet", options.quiet, "show no progress and no summary");
   app.add_flag("--seed-mode", options.seed_mode, "run the dissertation's own algorithm and data movement");
-  app.add_option("--study", options.study, "run the scene over meshes and schemes, say meshes=100:800,schemes=js:z")
+  app.add_option("--study", options.study,
+                 "run the scene over meshes and schemes, say meshes=100:800,schemes=js:z")
       ->type_name("LISTS")
       ->excludes(restart);
   app.add_flag("--version", options.version, "print version, backends and libraries, and end");
@@ -43,7 +47,8 @@ void check_words(const MiniAppOptions& options) {
     }
   }
   if (options.scene.empty() && !options.list_scenes && !options.version) {
-    throw Failure(ExitCode::usage, "no SCENE given; --list-scenes shows the shipped ones, --help the options");
+    throw Failure(ExitCode::usage,
+                  "no SCENE given; --list-scenes shows the shipped ones, --help the options");
   }
 }
 

@@ -40,8 +40,9 @@ LaunchedRank launched_rank() {
 void require_one_rank(const std::string& program) {
   const int ranks = launched_rank().ranks;
   if (ranks == 1) return;
-  throw Failure(ExitCode::usage, program + " has no parallel solver: start it without mpirun or with one rank, not " +
-                                     std::to_string(ranks));
+  throw Failure(ExitCode::usage,
+                program + " has no parallel solver: start it without mpirun or with one rank, not " +
+                    std::to_string(ranks));
 }
 
 }  // namespace drogue

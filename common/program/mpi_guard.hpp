@@ -10,11 +10,12 @@ struct LaunchedRank {
   int ranks = 1;
 };
 
-/// Read from what mpirun (Open MPI), MPICH, Intel MPI and srun with PMI or PMIx leave in the environment. The task
-/// count of a Slurm job alone says nothing: a job script sees it too.
+/// Read from what mpirun (Open MPI), MPICH, Intel MPI and srun with PMI or PMIx leave in the environment. The
+/// task count of a Slurm job alone says nothing: a job script sees it too.
 LaunchedRank launched_rank();
 
-/// Throws Failure(usage) if the launcher started more than one rank; for a `program` without a parallel solver.
+/// Throws Failure(usage) if the launcher started more than one rank; for a `program` without a parallel
+/// solver.
 void require_one_rank(const std::string& program);
 
 }  // namespace drogue

@@ -7,13 +7,13 @@
 
 namespace drogue {
 
-/// The text of the line: `step 1200  t 0.131/0.4 (33 %)  5210 steps/s  ETA 0:12`. `elapsed` in seconds of wall
-/// clock since the start at time `begin`; the ETA supposes that simulated time goes on at its mean rate.
+/// The text of the line: `step 1200  t 0.131/0.4 (33 %)  5210 steps/s  ETA 0:12`. `elapsed` in seconds of
+/// wall clock since the start at time `begin`; the ETA supposes that simulated time goes on at its mean rate.
 std::string progress_text(std::int64_t step, std::int64_t steps_done, double time, double begin, double end,
                           double elapsed);
 
-/// One line on a terminal, rewritten ten times a second at most; silent if `stream` is not a terminal, if quiet,
-/// or on any rank but 0.
+/// One line on a terminal, rewritten ten times a second at most; silent if `stream` is not a terminal, if
+/// quiet, or on any rank but 0.
 class ProgressLine {
  public:
   explicit ProgressLine(bool quiet, std::FILE* stream = stderr);

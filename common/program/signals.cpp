@@ -16,7 +16,8 @@ extern "C" void request_interrupt(int) { interrupt_requested.store(true, std::me
 void install_signal_handlers() {
   struct sigaction once = {};
   once.sa_handler = request_interrupt;
-  // SA_RESETHAND: a second signal meets the default action, which ends a program that does not come to its next step.
+  // SA_RESETHAND: a second signal meets the default action, which ends a program that does not come to its
+  // next step.
   once.sa_flags = static_cast<int>(static_cast<unsigned>(SA_RESETHAND) | static_cast<unsigned>(SA_RESTART));
   sigemptyset(&once.sa_mask);
   sigaction(SIGINT, &once, nullptr);

@@ -5,17 +5,19 @@
 
 namespace drogue::run {
 
-/// Name under which a file is written before it replaces `target`: same directory, hidden, own to this process.
+/// Name under which a file is written before it replaces `target`: same directory, hidden, own to this
+/// process.
 std::filesystem::path temporary_name(const std::filesystem::path& target);
 
 /// Forces a file, or the entries of a directory, to disk. Throws Failure(io_error).
 void sync_path(const std::filesystem::path& path);
 
-/// Syncs `temporary`, renames it to `target`, syncs the directory. Throws Failure(io_error), `temporary` removed,
-/// a former `target` untouched.
+/// Syncs `temporary`, renames it to `target`, syncs the directory. Throws Failure(io_error), `temporary`
+/// removed, a former `target` untouched.
 void replace_file(const std::filesystem::path& temporary, const std::filesystem::path& target);
 
-/// A file that appears under its name complete and on disk, or not at all: until commit() a former file stays.
+/// A file that appears under its name complete and on disk, or not at all: until commit() a former file
+/// stays.
 class AtomicFile {
  public:
   explicit AtomicFile(std::filesystem::path target);

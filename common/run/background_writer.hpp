@@ -21,8 +21,8 @@ class BackgroundWriter {
   BackgroundWriter(const BackgroundWriter&) = delete;
   BackgroundWriter& operator=(const BackgroundWriter&) = delete;
 
-  /// Queues `task`, waiting if `depth` are under way. Throws what an earlier task threw; after that the tasks which
-  /// were waiting behind it are dropped and the writer is usable again.
+  /// Queues `task`, waiting if `depth` are under way. Throws what an earlier task threw; after that the tasks
+  /// which were waiting behind it are dropped and the writer is usable again.
   void submit(std::function<void()> task);
 
   /// Waits until all is written. Throws what a task threw.

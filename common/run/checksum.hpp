@@ -6,8 +6,9 @@
 
 namespace drogue::run {
 
-/// Running 64-bit checksum of a stream of bytes. Each step is a bijection of its state, so any change confined to
-/// one aligned 8-byte word is detected for certain, others up to 2^-64. No protection against intent.
+/// Running 64-bit checksum of a stream of bytes. Each step is a bijection of its state, so any change
+/// confined to one aligned 8-byte word is detected for certain, others up to 2^-64. No protection against
+/// intent.
 class Checksum {
  public:
   /// Every piece but the last must be a multiple of 8 bytes long.

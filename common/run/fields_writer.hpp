@@ -3,22 +3,16 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
-namespace drogue::run {
+#include "common/run/dataset_spec.hpp"
 
-/// A dataset as readers see it.
-struct DatasetSpec {
-  std::string name;
-  std::vector<std::uint64_t> shape;
-  std::string units;      ///< `kg/m^3`; `1` for a pure number
-  std::string centering;  ///< cell | vertex | face | edge
-  std::string description;
-};
+namespace drogue::run {
 
 /// Fills `values` with the entries [first, first + values.size()) of a dataset, row-major.
 using Source = std::function<void(std::uint64_t first, std::span<double> values)>;
@@ -26,25 +20,31 @@ using IntegerSource = std::function<void(std::uint64_t first, std::span<std::int
 
 /// fields.h5 and fields.xdmf of a run: `/mesh/<name>` and `/steps/000000/<field>`.
 ///
-/// Between steps the file is closed and on disk, and within a step nothing of the former content is changed before
-/// end_step(): a killed run or a full disk loses no finished step, and ParaView may read along. All calls throw
-/// Failure(io_error). They may come from another thread than the constructor, one at a time.
+/// Between steps the file is closed and on disk, and within a step nothing of the former content is changed
+/// before end_step(): a killed run or a full disk loses no finished step, and ParaView may read along. All
+/// calls throw Failure(io_error). They may come from another thread than the constructor, one at a time.
 class FieldsWriter {
  public:
-  /// Begins new files in `directory`; with `resume_time` continues existing ones, steps after that time removed.
-  /// `title` names the grid in ParaView.
+  /// Begins new files in `directory`; with `resume_time` continues existing ones, steps after that time
+  /// removed. `title` names the grid in ParaView.
   FieldsWriter(const std::filesystem::path& directory, std::string title, std::vector<DatasetSpec> fields,
                std::optional<double> resume_time = std::nullopt);
 
-  /// Adds `/mesh/<name>`, written in pieces that `source` fills, so that the host need not hold all of it. A dataset
-  /// that a resumed file already has stays.
+  ~FieldsWriter();
+  FieldsWriter(const FieldsWriter&) = delete;
+  FieldsWriter& operator=(const FieldsWriter&) = delete;
+
+  /// Adds `/mesh/<name>`, written in pieces that `source` fills, so that the host need not hold all of it. A
+  /// dataset that a resumed file already has stays.
   void add_mesh(const DatasetSpec& spec, const Source& source);
   void add_mesh(const DatasetSpec& spec, const IntegerSource& source);
 
-  /// Starts the group of an output at simulated `time` (s), reached after `step` steps.
+  /// Starts the group of an output at simulated `time` (s), reached after `step` steps. The disk space of all
+  /// fields is reserved here, so that a full disk is met before anything is written.
   void begin_step(double time, std::int64_t step);
 
-  /// Writes entries [first, first + values.size()) of a field, row-major; pieces in any order.
+  /// Writes entries [first, first + values.size()) of a field, row-major, whole rows of its first dimension;
+  /// pieces in any order.
   void write(std::string_view field, std::uint64_t first, std::span<const double> values);
 
   /// Completes the output: on disk, and listed in fields.xdmf.
@@ -54,18 +54,8 @@ class FieldsWriter {
   [[nodiscard]] std::size_t steps() const noexcept;
 
  private:
-  struct Output {
-    std::string group;
-    double time;
-  };
-  [[nodiscard]] std::string xdmf() const;
-
-  std::filesystem::path _file;
-  std::filesystem::path _xdmf;
-  std::string _title;
-  std::vector<DatasetSpec> _fields;
-  std::vector<DatasetSpec> _mesh;
-  std::vector<Output> _outputs;
+  struct State;
+  std::unique_ptr<State> _state;
 };
 
 }  // namespace drogue::run

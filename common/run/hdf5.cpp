@@ -14,14 +14,17 @@ Handle checked(hid_t id, herr_t (*close)(hid_t), const char* action, hid_t paren
   return {id, close};
 }
 
-/// How files are opened: no file locks (the run directory has one, and a viewer must not stop a run), and metadata
-/// kept in memory until the file is closed, so that a kill within a step leaves the former content as it was.
+/// How files are opened: no file locks (the run directory has one, and a viewer must not stop a run), and
+/// metadata kept in memory until the file is closed, so that a kill within a step leaves the former content
+/// as it was.
 Handle file_access(const std::filesystem::path& path) {
   Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   if (!access) fail("prepare to open", path);
 #if H5_VERSION_GE(1, 10, 7) && !(H5_VERS_MINOR == 12 && H5_VERS_RELEASE == 0)
   H5Pset_file_locking(access.id(), false, true);
 #endif
+  // Closing a file closes what is open in it, so that it is complete then.
+  H5Pset_fclose_degree(access.id(), H5F_CLOSE_STRONG);
   H5AC_cache_config_t cache = {};
   cache.version = H5AC__CURR_CACHE_CONFIG_VERSION;
   herr_t status = H5Pget_mdc_config(access.id(), &cache);
@@ -59,12 +62,14 @@ Handle memory_space(const Handle& dataset, std::size_t count) {
   return checked(H5Screate_simple(1, &size, nullptr), H5Sclose, "access", dataset.id());
 }
 
-void write_values(const Handle& dataset, hid_t type, std::uint64_t first, const void* values, std::size_t count) {
+void write_values(const Handle& dataset, hid_t type, std::uint64_t first, const void* values,
+                  std::size_t count) {
   const Lock lock;
   if (count == 0) return;
   const Handle selection = select_rows(dataset, first, count);
   const Handle memory = memory_space(dataset, count);
-  if (H5Dwrite(dataset.id(), type, memory.id(), selection.id(), H5P_DEFAULT, values) < 0) fail("write", dataset.id());
+  if (H5Dwrite(dataset.id(), type, memory.id(), selection.id(), H5P_DEFAULT, values) < 0)
+    fail("write", dataset.id());
 }
 
 }  // namespace
@@ -114,8 +119,8 @@ Handle open_file(const std::filesystem::path& path, bool writable) {
 
 Handle create_group(const Handle& parent, const std::string& name) {
   const Lock lock;
-  return checked(H5Gcreate2(parent.id(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose, "write",
-                 parent.id());
+  return checked(H5Gcreate2(parent.id(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose,
+                 "write", parent.id());
 }
 
 Handle open_group(const Handle& parent, const std::string& name) {
@@ -140,7 +145,8 @@ std::vector<std::string> children(const Handle& group) {
     static_cast<std::vector<std::string>*>(data)->emplace_back(name);
     return 0;
   };
-  if (H5Literate(group.id(), H5_INDEX_NAME, H5_ITER_INC, nullptr, visit, &names) < 0) fail("read", group.id());
+  if (H5Literate(group.id(), H5_INDEX_NAME, H5_ITER_INC, nullptr, visit, &names) < 0)
+    fail("read", group.id());
   return names;
 }
 
@@ -148,13 +154,14 @@ Handle create_dataset(const Handle& parent, const std::string& name, hid_t type,
                       const std::vector<std::uint64_t>& shape) {
   const Lock lock;
   const std::vector<hsize_t> extent(shape.begin(), shape.end());
-  const Handle space = checked(H5Screate_simple(static_cast<int>(extent.size()), extent.data(), nullptr), H5Sclose,
-                               "write", parent.id());
+  const Handle space = checked(H5Screate_simple(static_cast<int>(extent.size()), extent.data(), nullptr),
+                               H5Sclose, "write", parent.id());
   const Handle creation = checked(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, "write", parent.id());
   H5Pset_alloc_time(creation.id(), H5D_ALLOC_TIME_EARLY);
   H5Pset_fill_time(creation.id(), H5D_FILL_TIME_NEVER);
-  return checked(H5Dcreate2(parent.id(), name.c_str(), type, space.id(), H5P_DEFAULT, creation.id(), H5P_DEFAULT),
-                 H5Dclose, "write", parent.id());
+  return checked(
+      H5Dcreate2(parent.id(), name.c_str(), type, space.id(), H5P_DEFAULT, creation.id(), H5P_DEFAULT),
+      H5Dclose, "write", parent.id());
 }
 
 Handle open_dataset(const Handle& parent, const std::string& name) {

@@ -11,8 +11,9 @@
 
 namespace drogue::run::h5 {
 
-/// The little of HDF5 that run directories need. Every call may be made from any thread (the library itself is
-/// usually built without threads, so a lock serialises them), prints nothing, and throws Failure(io_error).
+/// The little of HDF5 that run directories need. Every call may be made from any thread (the library itself
+/// is usually built without threads, so a lock serialises them), prints nothing, and throws
+/// Failure(io_error).
 
 /// An open file, group or dataset.
 class Handle {

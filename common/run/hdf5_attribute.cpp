@@ -7,7 +7,8 @@ namespace {
 void write_scalar(const Handle& object, const std::string& name, hid_t type, const void* value) {
   const Lock lock;
   const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
-  const Handle attribute(H5Acreate2(object.id(), name.c_str(), type, space.id(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+  const Handle attribute(H5Acreate2(object.id(), name.c_str(), type, space.id(), H5P_DEFAULT, H5P_DEFAULT),
+                         H5Aclose);
   if (!attribute || H5Awrite(attribute.id(), type, value) < 0) fail("write", object.id());
 }
 

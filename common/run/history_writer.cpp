@@ -32,12 +32,14 @@ void append_number(std::string& text, double value) {
 }
 
 /// Bytes of the header and of all whole rows up to `time`; 0 if there is no header yet.
-std::uintmax_t bytes_until(const std::filesystem::path& file, const std::string& expected_header, double time) {
+std::uintmax_t bytes_until(const std::filesystem::path& file, const std::string& expected_header,
+                           double time) {
   std::ifstream stream(file, std::ios::binary);
   std::string line;
   if (!std::getline(stream, line) || stream.eof()) return 0;
   if (line + "\n" != expected_header) {
-    throw Failure(ExitCode::io_error, "cannot continue '" + file.string() + "': it has other columns than this run");
+    throw Failure(ExitCode::io_error,
+                  "cannot continue '" + file.string() + "': it has other columns than this run");
   }
   std::uintmax_t bytes = expected_header.size();
   while (std::getline(stream, line) && !stream.eof()) {  // a row cut short by a kill has no line end
@@ -84,7 +86,8 @@ void HistoryWriter::append(double time, std::span<const double> values) {
     append_number(_pending, value);
   }
   _pending += '\n';
-  if (_pending.size() > flush_bytes || std::chrono::steady_clock::now() - _last_flush > flush_interval) flush();
+  if (_pending.size() > flush_bytes || std::chrono::steady_clock::now() - _last_flush > flush_interval)
+    flush();
 }
 
 void HistoryWriter::flush() {
@@ -108,7 +111,8 @@ void HistoryWriter::finish() {
   flush();
   const int sync_error = fsync(_descriptor) == 0 ? 0 : errno;
   const int close_error = close(std::exchange(_descriptor, -1)) == 0 ? 0 : errno;
-  if (sync_error != 0 || close_error != 0) throw io_failure("write", _file, sync_error != 0 ? sync_error : close_error);
+  if (sync_error != 0 || close_error != 0)
+    throw io_failure("write", _file, sync_error != 0 ? sync_error : close_error);
 }
 
 }  // namespace drogue::run

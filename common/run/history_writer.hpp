@@ -16,12 +16,12 @@ struct Column {
   std::string unit;
 };
 
-/// history.csv: first column `time [s]`, one row per reported step, numbers in the shortest form that reads back
-/// equal. Rows reach the system once a second, at flush() and at the end, also when a failure unwinds.
+/// history.csv: first column `time [s]`, one row per reported step, numbers in the shortest form that reads
+/// back equal. Rows reach the system once a second, at flush() and at the end, also when a failure unwinds.
 class HistoryWriter {
  public:
-  /// With `resume_time` rows of an existing file after that time are cut off and the rest is continued; without, a
-  /// new file is begun. Throws Failure(io_error), also if the existing header is another one.
+  /// With `resume_time` rows of an existing file after that time are cut off and the rest is continued;
+  /// without, a new file is begun. Throws Failure(io_error), also if the existing header is another one.
   HistoryWriter(std::filesystem::path file, const std::vector<Column>& columns,
                 std::optional<double> resume_time = std::nullopt);
   ~HistoryWriter();

@@ -1,5 +1,7 @@
 #include "common/run/restart_file.hpp"
 
+#include <unistd.h>
+
 #include <map>
 #include <utility>
 
@@ -7,8 +9,6 @@
 #include "common/run/checksum.hpp"
 #include "common/run/hdf5.hpp"
 #include "common/run/restart_seal.hpp"
-
-#include <unistd.h>
 
 namespace drogue::run {
 
@@ -83,7 +83,9 @@ RestartReader::~RestartReader() = default;
 
 double RestartReader::number(const std::string& name) const { return h5::read_number(_state->file, name); }
 
-std::int64_t RestartReader::integer(const std::string& name) const { return h5::read_integer(_state->file, name); }
+std::int64_t RestartReader::integer(const std::string& name) const {
+  return h5::read_integer(_state->file, name);
+}
 
 std::string RestartReader::text(const std::string& name) const { return h5::read_text(_state->file, name); }
 

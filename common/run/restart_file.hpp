@@ -12,10 +12,11 @@ namespace drogue::run {
 /// 16 hexadecimal digits that stand for a text; equal texts, equal digits on every machine.
 std::string fingerprint(std::string_view text);
 
-/// Writes a restart file: named numbers, texts and arrays of doubles. Until commit() a former file stays whole.
+/// Writes a restart file: named numbers, texts and arrays of doubles. Until commit() a former file stays
+/// whole.
 ///
-/// `scene` is the fingerprint of all that must agree between the run that writes and the run that reads. All calls
-/// throw Failure(io_error). They may come from another thread than the constructor, one at a time.
+/// `scene` is the fingerprint of all that must agree between the run that writes and the run that reads. All
+/// calls throw Failure(io_error). They may come from another thread than the constructor, one at a time.
 class RestartWriter {
  public:
   RestartWriter(std::filesystem::path file, const std::string& scene);
@@ -39,8 +40,9 @@ class RestartWriter {
   std::unique_ptr<State> _state;
 };
 
-/// Reads a restart file. The constructor checks every byte of it before anything is used: a file that is truncated,
-/// damaged, of another format version or of another scene is Failure(io_error), with what is wrong.
+/// Reads a restart file. The constructor checks every byte of it before anything is used: a file that is
+/// truncated, damaged, of another format version or of another scene is Failure(io_error), with what is
+/// wrong.
 class RestartReader {
  public:
   RestartReader(std::filesystem::path file, const std::string& scene);

@@ -51,7 +51,9 @@ void write_seal(const std::filesystem::path& file, const std::string& scene) {
   std::ifstream stream(file, std::ios::binary);
   if (!stream) throw io_failure("read", file, errno);
   std::ostringstream words;
-  words << format << '\n' << std::filesystem::file_size(file) << '\n' << checksum_after_seal(stream, file) << '\n'
+  words << format << '\n'
+        << std::filesystem::file_size(file) << '\n'
+        << checksum_after_seal(stream, file) << '\n'
         << scene << '\n';
   std::fstream seal(file, std::ios::binary | std::ios::in | std::ios::out);
   seal << words.str();
@@ -64,10 +66,12 @@ void check_seal(const std::filesystem::path& file, const std::string& scene) {
   if (!stream) throw io_failure("open restart file", file, errno);
   const Seal seal = read_seal(stream);
   if (!seal.format.starts_with(format_name)) unreadable(file, "it is not a restart file of Drogue");
-  if (seal.format != format) unreadable(file, "its format is " + seal.format + ", this program reads " + format);
+  if (seal.format != format)
+    unreadable(file, "its format is " + seal.format + ", this program reads " + format);
   std::error_code ignored;
   if (std::filesystem::file_size(file, ignored) != seal.bytes) unreadable(file, "it is truncated");
-  if (checksum_after_seal(stream, file) != seal.checksum) unreadable(file, "it is damaged, its checksum is wrong");
+  if (checksum_after_seal(stream, file) != seal.checksum)
+    unreadable(file, "it is damaged, its checksum is wrong");
   if (seal.scene != scene) unreadable(file, "it belongs to another scene");
 }
 

@@ -6,8 +6,9 @@
 
 namespace drogue::run {
 
-/// Bytes at the begin of a restart file that HDF5 leaves to us (its user block): format, length of the file, checksum
-/// of all that follows, scene. HDF5 is not made for damaged files; it sees one only after the seal was found whole.
+/// Bytes at the begin of a restart file that HDF5 leaves to us (its user block): format, length of the file,
+/// checksum of all that follows, scene. HDF5 is not made for damaged files; it sees one only after the seal
+/// was found whole.
 constexpr std::uint64_t seal_bytes = 512;
 
 /// Seals a closed file. Throws Failure(io_error).

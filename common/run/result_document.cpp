@@ -26,16 +26,18 @@ Json errors_json(const std::map<std::string, double>& errors) {
 Json checks_json(const std::vector<Check>& checks) {
   Json json = Json::array();
   for (const Check& check : checks) {
-    json.push_back(
-        {{"name", check.name}, {"value", number(check.value)}, {"bar", number(check.bar)}, {"passed", check.passed}});
+    json.push_back({{"name", check.name},
+                    {"value", number(check.value)},
+                    {"bar", number(check.bar)},
+                    {"passed", check.passed}});
   }
   return json;
 }
 
 Json timing_json(const ResultDocument::Timing& timing) {
-  return {{"wall_s", number(timing.wall_s)}, {"setup_s", number(timing.setup_s)},
+  return {{"wall_s", number(timing.wall_s)},       {"setup_s", number(timing.setup_s)},
           {"compute_s", number(timing.compute_s)}, {"h2d_s", number(timing.h2d_s)},
-          {"d2h_s", number(timing.d2h_s)},   {"io_s", number(timing.io_s)}};
+          {"d2h_s", number(timing.d2h_s)},         {"io_s", number(timing.io_s)}};
 }
 
 Json ledger_json(const ResultDocument::Ledger& ledger) {
@@ -56,14 +58,21 @@ Json provenance_json(const ResultDocument::Provenance& provenance) {
 
 std::string status_name(ExitCode code) {
   switch (code) {
-    case ExitCode::ok: return "ok";
+    case ExitCode::ok:
+      return "ok";
     case ExitCode::usage:
-    case ExitCode::invalid_scene: return "invalid";
-    case ExitCode::numerical_failure: return "numerical-failure";
-    case ExitCode::verification_failed: return "verification-failed";
-    case ExitCode::io_error: return "io-error";
-    case ExitCode::no_backend: return "no-backend";
-    case ExitCode::interrupted: return "interrupted";
+    case ExitCode::invalid_scene:
+      return "invalid";
+    case ExitCode::numerical_failure:
+      return "numerical-failure";
+    case ExitCode::verification_failed:
+      return "verification-failed";
+    case ExitCode::io_error:
+      return "io-error";
+    case ExitCode::no_backend:
+      return "no-backend";
+    case ExitCode::interrupted:
+      return "interrupted";
   }
   return "io-error";
 }
@@ -75,10 +84,12 @@ bool ResultDocument::add_check(const std::string& name, double value, double bar
 }
 
 std::string ResultDocument::failed_check() const {
-  const auto failed = std::find_if(checks.begin(), checks.end(), [](const Check& check) { return !check.passed; });
+  const auto failed =
+      std::find_if(checks.begin(), checks.end(), [](const Check& check) { return !check.passed; });
   if (failed == checks.end()) return {};
   char text[256];
-  std::snprintf(text, sizeof text, "%s is %.6g, above its bar %.6g", failed->name.c_str(), failed->value, failed->bar);
+  std::snprintf(text, sizeof text, "%s is %.6g, above its bar %.6g", failed->name.c_str(), failed->value,
+                failed->bar);
   return text;
 }
 

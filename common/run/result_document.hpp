@@ -27,20 +27,21 @@ struct ResultDocument {
   ExitCode exit_code = ExitCode::ok;
   std::string message;
   std::int64_t steps = 0;
-  double time = 0.0;                                            ///< simulated, s
-  double dt_min = 0.0, dt_max = 0.0;                            ///< s
+  double time = 0.0;                  ///< simulated, s
+  double dt_min = 0.0, dt_max = 0.0;  ///< s
   std::map<std::string, double> errors;
   std::vector<Check> checks;
   struct Limiter {
-    std::int64_t touches = 0;                                   ///< faces limited, summed over all stages
-    std::int64_t cells = 0;                                     ///< cells that had such a face at least once
+    std::int64_t touches = 0;  ///< faces limited, summed over all stages
+    std::int64_t cells = 0;    ///< cells that had such a face at least once
     std::int64_t redone_steps = 0;
   } limiter;
   struct Timing {
     double wall_s = 0, setup_s = 0, compute_s = 0, h2d_s = 0, d2h_s = 0, io_s = 0;
   } timing;
   struct Ledger {
-    std::int64_t kernel_launches = 0, fences = 0, device_allocations_after_warmup = 0, h2d_bytes = 0, d2h_bytes = 0;
+    std::int64_t kernel_launches = 0, fences = 0, device_allocations_after_warmup = 0, h2d_bytes = 0,
+                 d2h_bytes = 0;
   } ledger;
   struct PeakBytes {
     std::int64_t host = 0, device = 0;

@@ -18,10 +18,12 @@ namespace {
 
 constexpr const char* lock_name = ".lock";
 
-/// True if the file that `descriptor` locks is still the one under `path`: a run that just ended may have removed it.
+/// True if the file that `descriptor` locks is still the one under `path`: a run that just ended may have
+/// removed it.
 bool still_there(int descriptor, const std::filesystem::path& path) {
   struct stat locked = {}, present = {};
-  return fstat(descriptor, &locked) == 0 && stat(path.c_str(), &present) == 0 && locked.st_ino == present.st_ino;
+  return fstat(descriptor, &locked) == 0 && stat(path.c_str(), &present) == 0 &&
+         locked.st_ino == present.st_ino;
 }
 
 /// True for `.result.json.1234.tmp`, left by a run that was killed while it wrote result.json.
@@ -55,9 +57,10 @@ RunDirectory::RunDirectory(std::filesystem::path path, ExistingRun existing) : _
   lock();
   try {
     if (existing == ExistingRun::refuse && holds_run(_path)) {
-      throw Failure(ExitCode::usage, "'" + _path.string() +
-                                         "' already holds a run; choose another --out, or give --overwrite to replace it "
-                                         "or --restart to continue it");
+      throw Failure(ExitCode::usage,
+                    "'" + _path.string() +
+                        "' already holds a run; choose another --out, or give --overwrite to replace it "
+                        "or --restart to continue it");
     }
     if (existing == ExistingRun::overwrite) remove_former_run();
   } catch (...) {
@@ -75,7 +78,8 @@ void RunDirectory::lock() {
     if (_lock < 0) throw io_failure("write to the run directory", _path, errno);
     if (flock(_lock, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
       close(_lock);
-      throw Failure(ExitCode::io_error, "the run directory '" + _path.string() + "' is in use by another process");
+      throw Failure(ExitCode::io_error,
+                    "the run directory '" + _path.string() + "' is in use by another process");
     }
     // Where the file system knows no locks (some Lustre mounts) a run goes on without one.
     if (still_there(_lock, file)) return;
@@ -101,10 +105,13 @@ void RunDirectory::remove_former_run() const {
   for (const auto& file : leftovers) remove(file);
 }
 
-void RunDirectory::write_scene(std::string_view toml) const { write_file_atomically(file("scene.toml"), toml); }
+void RunDirectory::write_scene(std::string_view toml) const {
+  write_file_atomically(file("scene.toml"), toml);
+}
 
 std::filesystem::path restart_source(const std::string& option, const std::filesystem::path& directory) {
-  const std::filesystem::path file = option == "auto" ? directory / "restart.h5" : std::filesystem::path(option);
+  const std::filesystem::path file =
+      option == "auto" ? directory / "restart.h5" : std::filesystem::path(option);
   std::error_code ignored;
   if (std::filesystem::exists(file, ignored)) return file;
   if (option == "auto") return {};

@@ -17,8 +17,9 @@ enum class ExistingRun {
 /// The directory of one run, locked as long as this object lives. Two runs never share one.
 class RunDirectory {
  public:
-  /// Creates `path` and its parents where missing. Throws Failure(io_error) if that fails, if the directory cannot
-  /// be written or if another process runs in it, Failure(usage) if it holds a run and `existing` is refuse.
+  /// Creates `path` and its parents where missing. Throws Failure(io_error) if that fails, if the directory
+  /// cannot be written or if another process runs in it, Failure(usage) if it holds a run and `existing` is
+  /// refuse.
   RunDirectory(std::filesystem::path path, ExistingRun existing);
   ~RunDirectory();
   RunDirectory(const RunDirectory&) = delete;
@@ -47,9 +48,9 @@ const std::vector<std::string>& run_file_names();
 /// True if `directory` holds a file of a run.
 bool holds_run(const std::filesystem::path& directory);
 
-/// The file that `--restart option` means: for `auto` the restart.h5 of `directory`, or an empty path (start anew)
-/// if there is none, so that one job script serves the first and every later submission. Throws Failure(usage) if a
-/// named file does not exist.
+/// The file that `--restart option` means: for `auto` the restart.h5 of `directory`, or an empty path (start
+/// anew) if there is none, so that one job script serves the first and every later submission. Throws
+/// Failure(usage) if a named file does not exist.
 std::filesystem::path restart_source(const std::string& option, const std::filesystem::path& directory);
 
 }  // namespace drogue::run

@@ -22,7 +22,8 @@ std::vector<double> sorted_copy(std::vector<double> samples) {
 /// Probability of exactly k heads in n throws of a fair coin.
 double binomial_half(std::size_t n, std::size_t k) {
   const auto real = [](std::size_t i) { return static_cast<double>(i); };
-  const double choose = std::lgamma(real(n) + 1.0) - std::lgamma(real(k) + 1.0) - std::lgamma(real(n - k) + 1.0);
+  const double choose =
+      std::lgamma(real(n) + 1.0) - std::lgamma(real(k) + 1.0) - std::lgamma(real(n - k) + 1.0);
   return std::exp(choose - real(n) * std::log(2.0));
 }
 

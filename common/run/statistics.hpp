@@ -16,8 +16,8 @@ struct MedianInterval {
 /// Middle value, or the mean of the two middle ones. Throws std::invalid_argument if there are no samples.
 double median(std::vector<double> samples);
 
-/// Order-statistic interval (binomial, p = 1/2): the narrowest symmetric pair of samples that reaches `coverage`, the
-/// extremes if none does. Throws std::invalid_argument if there are no samples.
+/// Order-statistic interval (binomial, p = 1/2): the narrowest symmetric pair of samples that reaches
+/// `coverage`, the extremes if none does. Throws std::invalid_argument if there are no samples.
 MedianInterval median_interval(std::vector<double> samples, double coverage = 0.95);
 
 }  // namespace drogue::run

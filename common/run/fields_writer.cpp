@@ -1,0 +1,201 @@
+#include "common/run/fields_writer.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <map>
+#include <utility>
+
+#include "common/run/atomic_file.hpp"
+#include "common/run/hdf5.hpp"
+#include "common/run/io_error.hpp"
+#include "common/run/xdmf.hpp"
+
+namespace drogue::run {
+namespace {
+
+constexpr std::uint64_t piece_entries = 1U << 18U;
+constexpr std::uint64_t metadata_bytes =
+    1U << 14U;  ///< upper bound of what a group or a dataset adds to its data
+
+/// Takes the space after the end of the file from the disk without making the file longer.
+void reserve(const std::filesystem::path& file, std::uint64_t bytes) {
+  const int descriptor = open(file.c_str(), O_RDWR | O_CLOEXEC);
+  if (descriptor < 0) throw io_failure("write", file, errno);
+  const off_t end = lseek(descriptor, 0, SEEK_END);
+  const int status = fallocate(descriptor, FALLOC_FL_KEEP_SIZE, end, static_cast<off_t>(bytes));
+  const int error = status == 0 ? 0 : errno;
+  close(descriptor);
+  // Elsewhere (say NFS) a full disk shows while writing; then end_step() is not reached.
+  if (error == ENOSPC || error == EDQUOT || error == EFBIG) throw io_failure("write", file, error);
+}
+
+h5::Handle create_described(const h5::Handle& parent, const DatasetSpec& spec, hid_t type) {
+  h5::Handle dataset = h5::create_dataset(parent, spec.name, type, spec.shape);
+  h5::write_attribute(dataset, "units", spec.units);
+  h5::write_attribute(dataset, "centering", spec.centering);
+  h5::write_attribute(dataset, "description", spec.description);
+  return dataset;
+}
+
+}  // namespace
+
+struct FieldsWriter::State {
+  std::filesystem::path file;
+  std::filesystem::path xdmf;
+  std::string title;
+  std::vector<DatasetSpec> fields;
+  std::vector<DatasetSpec> mesh;
+  std::vector<OutputStep> outputs;
+  OutputStep current;
+  h5::Handle open;                                          // between begin_step() and end_step() only
+  std::map<std::string, h5::Handle, std::less<>> datasets;  // of the current step
+
+  void create() const;
+  void resume(double time);
+  void write_xdmf() const;
+  void abandon_step() noexcept;
+
+  template <typename Number>
+  void add_mesh(const DatasetSpec& spec, hid_t type,
+                const std::function<void(std::uint64_t, std::span<Number>)>& source);
+};
+
+void FieldsWriter::State::create() const {
+  const std::filesystem::path temporary = temporary_name(file);
+  try {
+    h5::Handle handle = h5::create_file(temporary);
+    h5::create_group(handle, "mesh");
+    h5::create_group(handle, "steps");
+    handle.close_file();
+  } catch (...) {
+    unlink(temporary.c_str());
+    throw;
+  }
+  replace_file(temporary, file);
+}
+
+void FieldsWriter::State::resume(double time) {
+  h5::Handle handle = h5::open_file(file, true);
+  const h5::Handle steps = h5::open_group(handle, "steps");
+  for (const std::string& name : h5::children(steps)) {
+    const double output_time = h5::read_number(h5::open_group(steps, name), "time");
+    if (output_time <= time) {
+      outputs.push_back({name, output_time});
+    } else {
+      h5::remove(steps, name);
+    }
+  }
+  handle.close_file();
+}
+
+void FieldsWriter::State::write_xdmf() const {
+  const auto line = std::find_if(mesh.begin(), mesh.end(), [](const DatasetSpec& spec) {
+    return spec.name == "x" && spec.shape.size() == 1;
+  });
+  if (line != mesh.end()) write_file_atomically(xdmf, xdmf_document(title, *line, fields, outputs));
+}
+
+/// After an error: the unfinished group leaves the file again, as far as the disk allows.
+void FieldsWriter::State::abandon_step() noexcept {
+  datasets.clear();
+  if (!open) return;
+  try {
+    h5::remove(h5::open_group(open, "steps"), current.group);
+  } catch (const Failure&) {
+    // The group was not linked yet.
+  }
+  open.reset();
+}
+
+template <typename Number>
+void FieldsWriter::State::add_mesh(const DatasetSpec& spec, hid_t type,
+                                   const std::function<void(std::uint64_t, std::span<Number>)>& source) {
+  reserve(file, entries(spec) * sizeof(Number) + metadata_bytes);
+  h5::Handle handle = h5::open_file(file, true);
+  const h5::Handle group = h5::open_group(handle, "mesh");
+  mesh.push_back(spec);
+  if (h5::exists(group, spec.name)) return;
+  h5::Handle dataset = create_described(group, spec, type);
+  const std::uint64_t total = entries(spec);
+  const std::uint64_t row = std::max<std::uint64_t>(1, total / std::max<std::uint64_t>(1, spec.shape.at(0)));
+  const std::uint64_t piece = std::max<std::uint64_t>(1, piece_entries / row) * row;
+  std::vector<Number> values(std::min(piece, total));
+  for (std::uint64_t first = 0; first < total; first += piece) {
+    const std::span<Number> part(values.data(), std::min(piece, total - first));
+    source(first, part);
+    h5::write(dataset, first, std::span<const Number>(part));
+  }
+  dataset.reset();
+  handle.close_file();
+}
+
+FieldsWriter::FieldsWriter(const std::filesystem::path& directory, std::string title,
+                           std::vector<DatasetSpec> fields, std::optional<double> resume_time)
+    : _state(std::make_unique<State>()) {
+  _state->file = directory / "fields.h5";
+  _state->xdmf = directory / "fields.xdmf";
+  _state->title = std::move(title);
+  _state->fields = std::move(fields);
+  if (resume_time && std::filesystem::exists(_state->file)) {
+    _state->resume(*resume_time);
+  } else {
+    _state->create();
+  }
+}
+
+FieldsWriter::~FieldsWriter() { _state->abandon_step(); }
+
+void FieldsWriter::add_mesh(const DatasetSpec& spec, const Source& source) {
+  _state->add_mesh<double>(spec, H5T_NATIVE_DOUBLE, source);
+  _state->write_xdmf();
+}
+
+void FieldsWriter::add_mesh(const DatasetSpec& spec, const IntegerSource& source) {
+  _state->add_mesh<std::int64_t>(spec, H5T_NATIVE_INT64, source);
+}
+
+void FieldsWriter::begin_step(double time, std::int64_t step) {
+  std::uint64_t bytes = metadata_bytes;
+  for (const DatasetSpec& field : _state->fields) bytes += entries(field) * sizeof(double) + metadata_bytes;
+  reserve(_state->file, bytes);
+  char name[32];
+  std::snprintf(name, sizeof name, "%06zu", _state->outputs.size());
+  _state->current = {name, time};
+  _state->open = h5::open_file(_state->file, true);
+  try {
+    const h5::Handle group = h5::create_group(h5::open_group(_state->open, "steps"), name);
+    h5::write_attribute(group, "time", time);
+    h5::write_attribute(group, "step", step);
+    for (const DatasetSpec& field : _state->fields) {
+      _state->datasets[field.name] = create_described(group, field, H5T_NATIVE_DOUBLE);
+    }
+  } catch (...) {
+    _state->abandon_step();
+    throw;
+  }
+}
+
+void FieldsWriter::write(std::string_view field, std::uint64_t first, std::span<const double> values) {
+  try {
+    h5::write(_state->datasets.find(field)->second, first, values);
+  } catch (...) {
+    _state->abandon_step();
+    throw;
+  }
+}
+
+void FieldsWriter::end_step() {
+  _state->datasets.clear();
+  _state->open.close_file();
+  sync_path(_state->file);
+  _state->outputs.push_back(_state->current);
+  _state->write_xdmf();
+}
+
+std::size_t FieldsWriter::steps() const noexcept { return _state->outputs.size(); }
+
+}  // namespace drogue::run
