@@ -15,8 +15,6 @@ const Node* Node::find(std::string_view name) const {
   return nullptr;
 }
 
-Node* Node::find(std::string_view name) { return const_cast<Node*>(std::as_const(*this).find(name)); }
-
 std::string toml_string(std::string_view text) {
   static constexpr std::string_view hex = "0123456789ABCDEF";
   std::string result = "\"";

@@ -33,7 +33,6 @@ struct Node {
 
   /// The member of a table; null if it has none of that name or is no table.
   [[nodiscard]] const Node* find(std::string_view name) const;
-  [[nodiscard]] Node* find(std::string_view name);
 };
 
 struct Member {

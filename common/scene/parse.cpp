@@ -113,8 +113,9 @@ Node* element_of(Node::Array& array, const std::string& index) {
   return position < array.size() ? &array[position] : nullptr;
 }
 
-/// The node a path part leads to, made an empty table where there is none.
-Node& step_into(Node& node, const std::string& part, const std::string& place, const std::string& walked) {
+/// The node a path part leads to, made an empty table where there is none. `origin` becomes that of its key.
+Node& step_into(Node& node, const std::string& part, const std::string& place, const std::string& walked,
+                std::string*& origin) {
   if (auto* array = node.as<Node::Array>()) {
     if (Node* element = element_of(*array, part)) return *element;
     throw Failure(ExitCode::invalid_scene, place + ": " + walked + " has " + std::to_string(array->size()) +
@@ -124,8 +125,13 @@ Node& step_into(Node& node, const std::string& part, const std::string& place, c
   if (table == nullptr) {
     throw Failure(ExitCode::invalid_scene, place + ": " + walked + " is " + describe(node) + ", not a table");
   }
-  if (Node* member = node.find(part)) return *member;
+  for (Member& member : *table) {
+    if (member.name != part) continue;
+    origin = &member.origin;
+    return member.node;
+  }
   table->push_back({part, place, Node{Node::Table{}, place}});
+  origin = &table->back().origin;
   return table->back().node;
 }
 
@@ -161,11 +167,13 @@ void apply_set(Node& document, const std::string& assignment) {
   Node value = parse_value(assignment.substr(equals + 1), place);
   Node* node = &document;
   std::string walked = "the scene";
-  for (const std::string& part : parts) {
-    node = &step_into(*node, part, place.at({}), walked);
-    walked = walked == "the scene" ? part : walked + "." + part;
+  std::string* origin = nullptr;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    node = &step_into(*node, parts[i], place.at({}), walked, origin);
+    walked = i == 0 ? parts[i] : walked + "." + parts[i];
   }
   *node = std::move(value);
+  *origin = place.at({});  // what is wrong with the key is now the assignment's fault
 }
 
 }  // namespace drogue::scene

@@ -161,7 +161,7 @@ void declare_gas_scene(Table& root, GasScene& scene) {
   root.value("app", scene::fixed_codec("gas"), "The program the scene is for").required().decisive();
   root.value("description", scene::text_codec(scene.description), "A sentence for --list-scenes");
   root.table("gas", [&](Table& table) {
-        table.value("gamma", scene::real_codec(parameters.gamma), "Ratio of specific heats").above(1.0).at_most(100.0);
+        table.value("gamma", scene::real_codec(parameters.gamma), "Ratio of specific heats").above(1.0);
       }, "The gas")
       .required();
   root.table("mesh", [&](Table& table) {
