@@ -18,14 +18,17 @@ double js_value(double a, double b, double c, double d, double e) {
   const double w0 = 0.1 / square(1e-6 + b0);
   const double w1 = 0.6 / square(1e-6 + b1);
   const double w2 = 0.3 / square(1e-6 + b2);
-  return (w0 * (2.0 * a - 7.0 * b + 11.0 * c) + w1 * (-b + 5.0 * c + 2.0 * d) + w2 * (2.0 * c + 5.0 * d - e)) /
+  return (w0 * (2.0 * a - 7.0 * b + 11.0 * c) + w1 * (-b + 5.0 * c + 2.0 * d) +
+          w2 * (2.0 * c + 5.0 * d - e)) /
          (6.0 * (w0 + w1 + w2));
 }
 
 /// Flux at the face between U[2] and U[3] of a six-cell stencil with fluxes F and wave speeds `speed`.
-Conserved dense_flux(const Conserved* U, const Conserved* F, const std::array<double, 3>* speed, double gamma) {
+Conserved dense_flux(const Conserved* U, const Conserved* F, const std::array<double, 3>* speed,
+                     double gamma) {
   const double u = 0.5 * (U[2][1] / U[2][0] + U[3][1] / U[3][0]);
-  const double H = 0.5 * ((U[2][2] + pressure(U[2], gamma)) / U[2][0] + (U[3][2] + pressure(U[3], gamma)) / U[3][0]);
+  const double H =
+      0.5 * ((U[2][2] + pressure(U[2], gamma)) / U[2][0] + (U[3][2] + pressure(U[3], gamma)) / U[3][0]);
   const double c = std::sqrt((gamma - 1.0) * (H - 0.5 * u * u));
   const double b2 = (gamma - 1.0) / (c * c);
   const double b1 = 0.5 * b2 * u * u;
@@ -65,8 +68,8 @@ void dense_stage(std::vector<Conserved>& state, DenseWorkspace& w, double gamma,
     w.flux[face] = dense_flux(&w.padded[face], &w.physical[face], &w.speeds[face], gamma);
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t s = 0; s < 3; ++s)
-      state[i][s] = keep * w.start[i][s] +
-                    (1.0 - keep) * (state[i][s] - lambda * (w.flux[i + 1][s] - w.flux[i][s]));
+      state[i][s] =
+          keep * w.start[i][s] + (1.0 - keep) * (state[i][s] - lambda * (w.flux[i + 1][s] - w.flux[i][s]));
 }
 
 }  // namespace

@@ -30,9 +30,8 @@ Eigensystem eigensystem(const FaceState& face, double gamma) {
   const double b2 = (gamma - 1.0) / (c * c);
   const double b1 = 0.5 * b2 * u * u;
   Eigensystem e;
-  e.right = {{{1.0, 1.0, 1.0},
-              {u - c, u, u + c},
-              {face.enthalpy - u * c, 0.5 * u * u, face.enthalpy + u * c}}};
+  e.right = {
+      {{1.0, 1.0, 1.0}, {u - c, u, u + c}, {face.enthalpy - u * c, 0.5 * u * u, face.enthalpy + u * c}}};
   e.left = {{{0.5 * (b1 + u / c), -0.5 * (b2 * u + 1.0 / c), 0.5 * b2},
              {1.0 - b1, b2 * u, -b2},
              {0.5 * (b1 - u / c), -0.5 * (b2 * u - 1.0 / c), 0.5 * b2}}};

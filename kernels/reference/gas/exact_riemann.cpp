@@ -48,8 +48,8 @@ double two_rarefaction_pressure(const Primitive& l, const Primitive& r, double g
   return scale * std::pow(numerator / denominator, 1.0 / z);
 }
 
-/// Root of the increasing concave function wave(left) + wave(right) + difference of velocities: Newton's method
-/// inside a bracket, bisected where Newton leaves it.
+/// Root of the increasing concave function wave(left) + wave(right) + difference of velocities: Newton's
+/// method inside a bracket, bisected where Newton leaves it.
 double solve_pressure(const Primitive& l, const Primitive& r, double gamma) {
   double low = 0.0;
   double high = two_rarefaction_pressure(l, r, gamma);
@@ -124,8 +124,8 @@ Primitive ExactRiemann::sample(double speed) const {
 Primitive ExactRiemann::sample_side(const Primitive& side, double speed) const {
   const double c = sound_speed(side, _gamma);
   if (!_vacuum && _p > side.p) {
-    const double shock =
-        side.u - c * std::sqrt((_gamma + 1.0) / (2.0 * _gamma) * (_p / side.p) + (_gamma - 1.0) / (2.0 * _gamma));
+    const double shock = side.u - c * std::sqrt((_gamma + 1.0) / (2.0 * _gamma) * (_p / side.p) +
+                                                (_gamma - 1.0) / (2.0 * _gamma));
     if (speed <= shock) return side;
     return {star_density(side, _p, _gamma), side.u - wave(side, _p, _gamma).value, _p};
   }

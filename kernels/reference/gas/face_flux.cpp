@@ -20,9 +20,12 @@ SpeedBounds speed_bounds(std::span<const Conserved> cells, double gamma) {
 std::array<double, 3> splitting_alpha(gas::Splitting splitting, const SpeedBounds& mesh,
                                       std::span<const Conserved, 6> stencil, double gamma) {
   switch (splitting) {
-    case gas::Splitting::lf_single: return {mesh.largest, mesh.largest, mesh.largest};
-    case gas::Splitting::lf_global: return mesh.field;
-    case gas::Splitting::lf_stencil: break;
+    case gas::Splitting::lf_single:
+      return {mesh.largest, mesh.largest, mesh.largest};
+    case gas::Splitting::lf_global:
+      return mesh.field;
+    case gas::Splitting::lf_stencil:
+      break;
   }
   return speed_bounds(stencil, gamma).field;
 }

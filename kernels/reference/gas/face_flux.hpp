@@ -20,12 +20,14 @@ struct SpeedBounds {
 [[nodiscard]] std::array<double, 3> splitting_alpha(gas::Splitting splitting, const SpeedBounds& mesh,
                                                     std::span<const Conserved, 6> stencil, double gamma);
 
-/// Characteristic WENO flux at i+1/2 from the cells i-2 .. i+3, in dense form: every state and every flux of the
-/// stencil is projected with full matrices, split as F+- = (F +- alpha U)/2, reconstructed and projected back.
+/// Characteristic WENO flux at i+1/2 from the cells i-2 .. i+3, in dense form: every state and every flux of
+/// the stencil is projected with full matrices, split as F+- = (F +- alpha U)/2, reconstructed and projected
+/// back.
 [[nodiscard]] Conserved face_flux(std::span<const Conserved, 6> stencil, const std::array<double, 3>& alpha,
                                   const gas::Parameters& parameters);
 
 /// First-order Lax-Friedrichs flux with one alpha.
-[[nodiscard]] Conserved lax_friedrichs_flux(const Conserved& a, const Conserved& b, double alpha, double gamma);
+[[nodiscard]] Conserved lax_friedrichs_flux(const Conserved& a, const Conserved& b, double alpha,
+                                            double gamma);
 
 }  // namespace drogue::reference

@@ -34,8 +34,8 @@ LimitedFlux limit_flux(const Conserved& high, const Conserved& low, const Conser
   const Conserved low_a = share(a, low, -lambda);
   const Conserved low_b = share(b, low, lambda);
 
-  const double theta_rho = std::min(weight(low_a[0], share(a, high, -lambda)[0]),
-                                    weight(low_b[0], share(b, high, lambda)[0]));
+  const double theta_rho =
+      std::min(weight(low_a[0], share(a, high, -lambda)[0]), weight(low_b[0], share(b, high, lambda)[0]));
   if (theta_rho < 1.0) result = {blend(low, high, theta_rho), true};
 
   const double p_a = pressure(share(a, result.flux, -lambda), gamma);

@@ -12,9 +12,10 @@ struct LimitedFlux {
   bool touched = false;
 };
 
-/// Positivity-preserving flux limiter of Hu, Adams and Shu (2013): blends the high-order flux between cells `a` and
-/// `b` with the first-order one, first for the density, then for the pressure, so that a - 2 lambda flux and
-/// b + 2 lambda flux stay above the floor. `lambda` is the stage's dt/dx; it needs lambda * max(|u|+c) <= 1/2.
+/// Positivity-preserving flux limiter of Hu, Adams and Shu (2013): blends the high-order flux between cells
+/// `a` and `b` with the first-order one, first for the density, then for the pressure, so that a - 2 lambda
+/// flux and b + 2 lambda flux stay above the floor. `lambda` is the stage's dt/dx; it needs lambda *
+/// max(|u|+c) <= 1/2.
 [[nodiscard]] LimitedFlux limit_flux(const Conserved& high, const Conserved& low, const Conserved& a,
                                      const Conserved& b, double lambda, double gamma);
 

@@ -95,8 +95,8 @@ void advance(GasRun& run, const gas::Parameters& p, double end_time) {
   }
 }
 
-GasRun reference_run(const gas::Parameters& p, const std::function<Primitive(double)>& initial, double end_time,
-                     std::span<const double> output_times) {
+GasRun reference_run(const gas::Parameters& p, const std::function<Primitive(double)>& initial,
+                     double end_time, std::span<const double> output_times) {
   GasRun run = start_run(p, initial);
   for (const double time : output_times) advance(run, p, std::min(time, end_time));
   advance(run, p, end_time);
@@ -105,7 +105,8 @@ GasRun reference_run(const gas::Parameters& p, const std::function<Primitive(dou
 
 double l1_density(const GasRun& run, const gas::Parameters& p, const std::function<double(double)>& exact) {
   double sum = 0.0;
-  for (std::size_t i = 0; i < run.state.size(); ++i) sum += std::abs(run.state[i][0] - exact(cell_centre(p, i)));
+  for (std::size_t i = 0; i < run.state.size(); ++i)
+    sum += std::abs(run.state[i][0] - exact(cell_centre(p, i)));
   return sum * spacing(p);
 }
 

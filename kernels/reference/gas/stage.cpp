@@ -18,14 +18,26 @@ std::vector<Conserved> with_ghosts(const std::vector<Conserved>& cells, const ga
     Conserved& left = padded[ghost_cells - 1 - g];
     Conserved& right = padded[ghost_cells + n + g];
     switch (parameters.left) {
-      case gas::Boundary::outflow: left = cells[0]; break;
-      case gas::Boundary::reflecting: left = mirrored(cells[g]); break;
-      case gas::Boundary::periodic: left = cells[n - 1 - g]; break;
+      case gas::Boundary::outflow:
+        left = cells[0];
+        break;
+      case gas::Boundary::reflecting:
+        left = mirrored(cells[g]);
+        break;
+      case gas::Boundary::periodic:
+        left = cells[n - 1 - g];
+        break;
     }
     switch (parameters.right) {
-      case gas::Boundary::outflow: right = cells[n - 1]; break;
-      case gas::Boundary::reflecting: right = mirrored(cells[n - 1 - g]); break;
-      case gas::Boundary::periodic: right = cells[g]; break;
+      case gas::Boundary::outflow:
+        right = cells[n - 1];
+        break;
+      case gas::Boundary::reflecting:
+        right = mirrored(cells[n - 1 - g]);
+        break;
+      case gas::Boundary::periodic:
+        right = cells[g];
+        break;
     }
   }
   return padded;

@@ -12,8 +12,8 @@ namespace drogue::reference {
 /// Cells on each side of the mesh that the stencil of the outermost faces needs.
 inline constexpr std::size_t ghost_cells = 3;
 
-/// The n cells with three ghost cells on each side: copies of the last cell (outflow), mirror images (reflecting),
-/// or the cells of the other end (periodic).
+/// The n cells with three ghost cells on each side: copies of the last cell (outflow), mirror images
+/// (reflecting), or the cells of the other end (periodic).
 [[nodiscard]] std::vector<Conserved> with_ghosts(const std::vector<Conserved>& cells,
                                                  const gas::Parameters& parameters);
 
@@ -29,7 +29,8 @@ struct StageFluxes {
 /// Shu-Osher form of one stage: keep * start + (1 - keep) * (cells - lambda * difference of fluxes).
 [[nodiscard]] std::vector<Conserved> stage_update(const std::vector<Conserved>& start,
                                                   const std::vector<Conserved>& cells,
-                                                  const std::vector<Conserved>& flux, double keep, double lambda);
+                                                  const std::vector<Conserved>& flux, double keep,
+                                                  double lambda);
 
 /// True if density and pressure are positive and all is finite.
 [[nodiscard]] bool is_physical(const std::vector<Conserved>& cells, double gamma);

@@ -71,10 +71,14 @@ std::array<double, 3> smoothness(const std::array<double, 5>& f) {
 std::array<double, 3> weno_weights(const std::array<double, 5>& f, gas::Weno scheme, int power) {
   const Weights beta = smoothness(f);
   switch (scheme) {
-    case gas::Weno::js: return js_weights(beta);
-    case gas::Weno::m: return mapped_weights(beta);
-    case gas::Weno::teno5: return teno_weights(beta);
-    case gas::Weno::z: break;
+    case gas::Weno::js:
+      return js_weights(beta);
+    case gas::Weno::m:
+      return mapped_weights(beta);
+    case gas::Weno::teno5:
+      return teno_weights(beta);
+    case gas::Weno::z:
+      break;
   }
   return z_weights(beta, power);
 }

@@ -27,7 +27,8 @@ double order(const std::vector<double>& errors) {
   return (n * sxy - sx * sy) / (n * sxx - sx * sx);
 }
 
-void expect_within(const std::vector<double>& errors, const std::vector<double>& published, double tolerance) {
+void expect_within(const std::vector<double>& errors, const std::vector<double>& published,
+                   double tolerance) {
   ASSERT_EQ(errors.size(), published.size());
   for (std::size_t k = 0; k < errors.size(); ++k)
     EXPECT_NEAR(errors[k], published[k], tolerance * published[k]) << "mesh " << k;
@@ -44,20 +45,27 @@ double entropy_wave_error(std::int64_t cells, gas::Weno weno, int power) {
   const double largest_speed = 1.0 + std::sqrt(1.4 / 0.8);
   p.fixed_dt = 0.5 * std::pow(2.0 / static_cast<double>(cells), 5.0 / 3.0) / largest_speed;
   const auto rho = [](double x) { return 1.0 + 0.2 * std::sin(pi * x); };
-  const GasRun run = reference_run(p, [&](double x) { return Primitive{rho(x), 1.0, 1.0}; }, 2.0);
+  const GasRun run = reference_run(
+      p,
+      [&](double x) {
+        return Primitive{rho(x), 1.0, 1.0};
+      },
+      2.0);
   return l1_density(run, p, rho) / 2.0;
 }
 
 TEST(Convergence, EntropyWaveJs) {
   std::vector<double> errors;
-  for (const std::int64_t cells : {20, 40, 80, 160}) errors.push_back(entropy_wave_error(cells, gas::Weno::js, 1));
+  for (const std::int64_t cells : {20, 40, 80, 160})
+    errors.push_back(entropy_wave_error(cells, gas::Weno::js, 1));
   expect_within(errors, {2.871e-4, 8.949e-6, 2.783e-7, 8.603e-9}, 0.05);
   EXPECT_GE(order(errors), 4.8);
 }
 
 TEST(Convergence, EntropyWaveZ2) {
   std::vector<double> errors;
-  for (const std::int64_t cells : {20, 40, 80, 160}) errors.push_back(entropy_wave_error(cells, gas::Weno::z, 2));
+  for (const std::int64_t cells : {20, 40, 80, 160})
+    errors.push_back(entropy_wave_error(cells, gas::Weno::z, 2));
   expect_within(errors, {4.023e-5, 1.272e-6, 3.990e-8, 1.248e-9}, 0.05);
   EXPECT_GE(order(errors), 4.8);
 }

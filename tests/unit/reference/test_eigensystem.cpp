@@ -82,7 +82,8 @@ TEST(RoeMean, LinearisesTheJumpOfTheFlux) {
 TEST(SplittingAlpha, IsWhatItsNameSays) {
   const double gamma = 1.4;
   std::array<Conserved, 6> stencil{};
-  for (std::size_t k = 0; k < 6; ++k) stencil[k] = to_conserved({1.4, 0.1 * static_cast<double>(k), 1.0}, gamma);
+  for (std::size_t k = 0; k < 6; ++k)
+    stencil[k] = to_conserved({1.4, 0.1 * static_cast<double>(k), 1.0}, gamma);
   const SpeedBounds mesh{{7.0, 8.0, 9.0}, 9.0};
   const auto alpha = [&](gas::Splitting s) { return splitting_alpha(s, mesh, stencil, gamma); };
   EXPECT_EQ(alpha(gas::Splitting::lf_single), (std::array<double, 3>{9.0, 9.0, 9.0}));

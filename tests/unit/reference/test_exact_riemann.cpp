@@ -66,14 +66,17 @@ TEST(ExactRiemann, MeetsEveryPrintedDigitOfTheStarTable) {
 }
 
 TEST(ExactRiemann, JumpsOfASampledSolutionSatisfyTheIntegralBalance) {
-  // Over [-1, 1] and unit time the mean state differs from the initial one by the difference of the end fluxes.
+  // Over [-1, 1] and unit time the mean state differs from the initial one by the difference of the end
+  // fluxes.
   std::mt19937 random(1);
   std::uniform_real_distribution<double> exponent(-1.0, 1.0);
   std::uniform_real_distribution<double> velocity(-0.5, 0.5);
   for (int trial = 0; trial < 50; ++trial) {
     const double gamma = trial % 2 == 0 ? 1.4 : 5.0 / 3.0;
-    const Primitive left = {std::pow(10.0, exponent(random)), velocity(random), std::pow(10.0, exponent(random))};
-    const Primitive right = {std::pow(10.0, exponent(random)), velocity(random), std::pow(10.0, exponent(random))};
+    const Primitive left = {std::pow(10.0, exponent(random)), velocity(random),
+                            std::pow(10.0, exponent(random))};
+    const Primitive right = {std::pow(10.0, exponent(random)), velocity(random),
+                             std::pow(10.0, exponent(random))};
     const ExactRiemann solution(left, right, gamma);
     const double reach = 20.0;
     const int cells = 40000;
@@ -89,7 +92,8 @@ TEST(ExactRiemann, JumpsOfASampledSolutionSatisfyTheIntegralBalance) {
     const Conserved FR = physical_flux(UR, gamma);
     for (std::size_t s = 0; s < 3; ++s) {
       const double expected = reach * (UL[s] + UR[s]) - (FR[s] - FL[s]);
-      EXPECT_NEAR(sum[s], expected, 4e-3 * (UL[2] + UR[2] + UL[0] + UR[0])) << "trial " << trial << " of " << s;
+      EXPECT_NEAR(sum[s], expected, 4e-3 * (UL[2] + UR[2] + UL[0] + UR[0]))
+          << "trial " << trial << " of " << s;
     }
   }
 }
@@ -97,7 +101,8 @@ TEST(ExactRiemann, JumpsOfASampledSolutionSatisfyTheIntegralBalance) {
 TEST(ExactRiemann, IsTheMirrorImageOfTheMirroredProblem) {
   for (const StarCase& c : star_cases()) {
     const ExactRiemann solution(c.left, c.right, c.gamma);
-    const ExactRiemann image({c.right.rho, -c.right.u, c.right.p}, {c.left.rho, -c.left.u, c.left.p}, c.gamma);
+    const ExactRiemann image({c.right.rho, -c.right.u, c.right.p}, {c.left.rho, -c.left.u, c.left.p},
+                             c.gamma);
     for (double speed = -30.3; speed < 30.0; speed += 0.7) {
       const Primitive a = solution.sample(speed);
       const Primitive b = image.sample(-speed);

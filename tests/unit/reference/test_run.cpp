@@ -29,17 +29,21 @@ TEST(ReferenceRun, KeepsAUniformFlowExactly) {
     p.time_scheme = time;
     p.positivity = gas::Positivity::on;
     const Primitive w = {1.0, 0.5, 2.0};
-    const GasRun run = reference_run(p, [&](double) { return w; }, 0.2);
+    const GasRun run = reference_run(
+        p, [&](double) { return w; }, 0.2);
     const Conserved start = to_conserved(w, 1.4);
     for (const Conserved& U : run.state)
-      for (std::size_t s = 0; s < 3; ++s) EXPECT_NEAR(U[s], start[s], 4e-16 * start[s] * static_cast<double>(run.steps));
+      for (std::size_t s = 0; s < 3; ++s)
+        EXPECT_NEAR(U[s], start[s], 4e-16 * start[s] * static_cast<double>(run.steps));
     EXPECT_EQ(run.limiter_touches, 0);
   }
 }
 
 TEST(ReferenceRun, RampsTheFirstTwentySteps) {
   gas::Parameters p = sod_parameters();
-  GasRun run = start_run(p, [](double) { return Primitive{1.4, 0.0, 1.0}; });  // speed 1 for ever, dt = ramp * 0.012
+  GasRun run = start_run(p, [](double) {
+    return Primitive{1.4, 0.0, 1.0};
+  });  // speed 1 for ever, dt = ramp * 0.012
   double expected = 0.0;
   for (int k = 0; k < 25; ++k) expected += 0.012 * (k < 20 ? 0.1 + 0.045 * k : 1.0);
   advance(run, p, expected);

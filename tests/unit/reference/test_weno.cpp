@@ -37,7 +37,8 @@ TEST_P(Weno, WeightsSumToOneAndAreNotNegative) {
 }
 
 TEST_P(Weno, WeightsAreIdealOnALine) {
-  const std::array<double, 3> w = weno_weights({1.0, 1.25, 1.5, 1.75, 2.0}, GetParam().weno, GetParam().power);
+  const std::array<double, 3> w =
+      weno_weights({1.0, 1.25, 1.5, 1.75, 2.0}, GetParam().weno, GetParam().power);
   EXPECT_NEAR(w[0], 0.1, 1e-14);
   EXPECT_NEAR(w[1], 0.6, 1e-14);
   EXPECT_NEAR(w[2], 0.3, 1e-14);
@@ -53,7 +54,8 @@ TEST_P(Weno, IgnoresTheSideBeyondAJump) {
 
 TEST_P(Weno, ConstantDataIsKeptAndFinite) {
   for (const double value : {0.0, 1.0, -3.0, 1e-30, 1e12}) {
-    const double face = weno_face_value({value, value, value, value, value}, GetParam().weno, GetParam().power);
+    const double face =
+        weno_face_value({value, value, value, value, value}, GetParam().weno, GetParam().power);
     EXPECT_NEAR(face, value, 1e-15 * std::abs(value));
   }
 }
