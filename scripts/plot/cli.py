@@ -37,7 +37,8 @@ class _Parser(argparse.ArgumentParser):
         raise Failure(USAGE, f"{message}; drogue-plot --help lists the options.")
 
 
-def _arguments(words: list[str]) -> argparse.Namespace:
+def arguments(words: list[str]) -> argparse.Namespace:
+    """The options of drogue-plot, checked."""
     parser = _Parser(prog="drogue-plot", description="Draws the pictures of a run directory.")
     parser.add_argument(
         "directory", metavar="DIR", nargs="?", type=Path, help="run directory, or one with study.csv"
@@ -57,12 +58,12 @@ def _arguments(words: list[str]) -> argparse.Namespace:
     parser.add_argument("--norm", default="l1_density", help="error column of a study (default: l1_density)")
     parser.add_argument("--quiet", action="store_true", help="do not print the names of the pictures")
     parser.add_argument("--version", action="store_true", help="print the versions and stop")
-    arguments = parser.parse_args(words)
-    if not arguments.version and arguments.directory is None:
+    options = parser.parse_args(words)
+    if not options.version and options.directory is None:
         parser.error("the run directory is missing")
-    if not 20 <= arguments.dpi <= 1200:
-        parser.error(f"--dpi {arguments.dpi} is outside 20 to 1200")
-    return arguments
+    if not 20 <= options.dpi <= 1200:
+        parser.error(f"--dpi {options.dpi} is outside 20 to 1200")
+    return options
 
 
 def _chosen_fields(run, wanted: str) -> list[str]:
@@ -83,55 +84,55 @@ def _chosen_fields(run, wanted: str) -> list[str]:
     return names
 
 
-def _gas_pictures(run, arguments, save):
+def _gas_pictures(run, options, out, save):
     from . import gas_figures, gas_movie, movie
     from .exact import exact_solution
 
-    view = gas_figures.View(run, _chosen_fields(run, arguments.field), exact_solution(run))
+    view = gas_figures.View(run, _chosen_fields(run, options.field), exact_solution(run))
     if not view.fields:
         return
     snapshot = run.snapshots[-1]
-    if arguments.time is not None:
-        snapshot = min(run.snapshots, key=lambda candidate: abs(candidate.time - arguments.time))
+    if options.time is not None:
+        snapshot = min(run.snapshots, key=lambda candidate: abs(candidate.time - options.time))
     yield save(gas_figures.fields_figure(view, snapshot), "fields")
     if len(run.snapshots) >= SPACE_TIME_SNAPSHOTS:
-        mapped = arguments.field and view.fields or [view.fields[0]]
+        mapped = options.field and view.fields or [view.fields[0]]
         for name in mapped:
             yield save(gas_figures.space_time_figure(view, name), f"space_time_{name}")
-    if len(run.snapshots) >= 2 and arguments.movie != "none":
-        yield movie.write(arguments.out / f"fields.{arguments.movie}", gas_movie.frames(view))
+    if len(run.snapshots) >= 2 and options.movie != "none":
+        yield movie.write(out / f"fields.{options.movie}", gas_movie.frames(view))
 
 
-def draw(arguments: argparse.Namespace):
+def draw(options: argparse.Namespace):
     """Yields the name of each picture once it is written."""
     from . import style
     from .history_figure import history_figure
     from .run_directory import read
     from .study_figure import study_figure
 
-    run = read(arguments.directory)
-    arguments.out = arguments.out or arguments.directory
+    run = read(options.directory)
+    out = options.out or options.directory
 
     def save(figure, name):
-        return style.save(figure, arguments.out / f"{name}.{arguments.format}", arguments.dpi)
+        return style.save(figure, out / f"{name}.{options.format}", options.dpi)
 
     if run.snapshots and "x" in run.mesh:
-        yield from _gas_pictures(run, arguments, save)
+        yield from _gas_pictures(run, options, out, save)
     if (figure := history_figure(run)) is not None:
         yield save(figure, "history")
     if run.study:
-        yield save(study_figure(run.name, run.study, arguments.norm), "study")
+        yield save(study_figure(run.name, run.study, options.norm), "study")
 
 
 def main(words: list[str] | None = None) -> int:
     """Runs the program; returns its exit code (0 done, 2 usage, 6 unreadable or unwritable file)."""
     try:
-        arguments = _arguments(sys.argv[1:] if words is None else words)
-        if arguments.version:
+        options = arguments(sys.argv[1:] if words is None else words)
+        if options.version:
             print(_version())
             return OK
-        for file in draw(arguments):
-            if not arguments.quiet:
+        for file in draw(options):
+            if not options.quiet:
                 print(file)
     except Failure as failure:
         print(f"drogue-plot: {failure}", file=sys.stderr)

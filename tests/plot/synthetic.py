@@ -87,7 +87,7 @@ def write_history(file, rows=120):
 
 def write_sod(directory, cells=200, snapshots=20):
     """A complete run directory of Sod's problem; returns its path."""
-    directory.mkdir(parents=True)
+    directory.mkdir(parents=True, exist_ok=True)
     x = -1 + (np.arange(cells) + 0.5) * 2 / cells
     write_fields(directory / "fields.h5", x, np.linspace(0, 0.4, snapshots + 1)[1:], smeared_sod)
     (directory / "scene.toml").write_text(SOD_SCENE.format(cells=cells))

@@ -1,0 +1,175 @@
+"""Runs the shipped scenes of every mini-app that exists and makes one page of their results and pictures."""
+
+import argparse
+import json
+import os
+import subprocess
+import sys
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from . import demo_pictures
+from .demo_page import write_page
+from .failure import IO_ERROR, OK, USAGE, Failure
+
+
+@dataclass(frozen=True)
+class App:
+    """A mini-app whose scenes verify themselves."""
+
+    program: str
+    title: str
+
+
+APPS = (App("drogue-gas", "Gas dynamics"),)
+INTERRUPTED = 130
+
+
+@dataclass
+class SceneRun:
+    """One row of the table and one figure of the page."""
+
+    app: App
+    name: str
+    sentence: str
+    directory: Path
+    command: str = ""
+    exit_code: int = OK
+    message: str = ""
+    result: dict = field(default_factory=dict)
+    pictures: list[Path] = field(default_factory=list)
+
+    @property
+    def main_check(self) -> dict:
+        """The check that the table shows: the first that is not the conservation."""
+        checks = self.result.get("checks", [])
+        return next(
+            (check for check in checks if check["name"] != "conservation"), checks[0] if checks else {}
+        )
+
+    @property
+    def passed(self) -> bool:
+        return self.exit_code == OK
+
+
+def _run(*command) -> subprocess.CompletedProcess:
+    return subprocess.run([str(word) for word in command], capture_output=True, text=True, check=False)
+
+
+def shipped_scenes(program: Path) -> list[tuple[str, str]]:
+    """Names and sentences of the scenes of a program, less those that want a GPU's time."""
+    done = _run(program, "--list-scenes")
+    if done.returncode != OK:
+        raise Failure(IO_ERROR, f"{program} --list-scenes failed: {done.stderr.strip() or done.returncode}.")
+    lines = [line.strip() for line in done.stdout.splitlines() if line.strip()]
+    return [tuple((line.split(None, 1) + [""])[:2]) for line in lines if not line.endswith("[gpu]")]
+
+
+def run_scene(program: Path, run: SceneRun) -> None:
+    """Runs a scene as it is shipped; what it printed goes to a log beside its directory."""
+    run.command = f"{run.app.program} {run.name}"
+    done = _run(program, run.name, "--out", run.directory, "--overwrite", "--quiet")
+    run.directory.with_suffix(".log").write_text(done.stdout + done.stderr)
+    run.exit_code = done.returncode
+    file = run.directory / "result.json"
+    if file.is_file():
+        run.result = json.loads(file.read_text())
+    if not run.passed:
+        last = (done.stderr.strip() or f"it ended with exit code {done.returncode}").splitlines()[-1]
+        run.message = run.result.get("message") or last
+    elif not run.result:
+        raise Failure(IO_ERROR, f"{run.command} wrote no result.json into {run.directory}.")
+
+
+_ROW = "{:<28} {:<8} {:>8}  {:<24} {:>10} {:>9}  {}"
+
+
+def seconds(value: float | None) -> str:
+    if value is None:
+        return "-"
+    return f"{value * 1e3:.3g} ms" if value < 1 else f"{value:.3g} s"
+
+
+def table_row(run: SceneRun) -> str:
+    """One line of the table that the demo prints."""
+    check, result = run.main_check, run.result
+    name = check.get("name", "").replace("_", " ")
+    error = f"{name} {check['value']:.3g}" if check.get("value") is not None else "-"
+    bar = f"{check['bar']:.3g}" if check else "-"
+    time = seconds(result.get("timing", {}).get("compute_s"))
+    end = "" if run.passed else "FAILED"
+    return _ROW.format(
+        run.name, result.get("backend", "-"), result.get("steps", "-"), error, bar, time, end
+    ).rstrip()
+
+
+def _arguments(words):
+    parser = argparse.ArgumentParser(prog="demo", description=__doc__)
+    parser.add_argument("--bin", type=Path, required=True, help="folder of the programs")
+    parser.add_argument("--out", type=Path, required=True, help="folder of the page")
+    parser.add_argument("scenes", nargs="*", help="scenes to run (default: all that are shipped)")
+    return parser.parse_args(words)
+
+
+def _chosen(arguments) -> list[SceneRun]:
+    runs = []
+    for app in APPS:
+        program = arguments.bin / app.program
+        if program.is_file():
+            for name, sentence in shipped_scenes(program):
+                directory = arguments.out / app.program.removeprefix("drogue-") / name
+                runs.append(SceneRun(app, name, sentence, directory))
+    unknown = set(arguments.scenes) - {run.name for run in runs}
+    if unknown:
+        raise Failure(
+            USAGE, f"There is no scene {sorted(unknown)[0]}: the list is {', '.join(r.name for r in runs)}."
+        )
+    if not runs:
+        raise Failure(USAGE, f"{arguments.bin} holds no mini-app with scenes: build first.")
+    return [run for run in runs if run.name in arguments.scenes or not arguments.scenes]
+
+
+def demo(words=None) -> int:
+    """Exit code 0 if all scenes passed and were drawn, else that of the first that did not."""
+    arguments = _arguments(words)
+    runs = _chosen(arguments)
+    print(_ROW.format("scene", "backend", "steps", "error", "bar", "time", "").rstrip())
+    for run in runs:
+        run.directory.parent.mkdir(parents=True, exist_ok=True)
+        program = arguments.bin / run.app.program
+        run_scene(program, run)
+        print(table_row(run), flush=True)
+    # After all runs: pictures beside them would disturb their times.
+    with ProcessPoolExecutor(max_workers=os.cpu_count()) as pool:
+        jobs = [pool.submit(demo_pictures.draw, run.directory) for run in runs]
+        for run, job in zip(runs, jobs):
+            run.pictures, problem = job.result()
+            if problem and run.passed:
+                run.exit_code, run.message = problem
+    page = write_page(arguments.out / "index.html", runs)
+    print(f"\npage:     {page}\npictures: {arguments.out}/*/*/*.png")
+    failed = [run for run in runs if not run.passed]
+    if failed:
+        more = f" ({len(failed)} of {len(runs)} scenes failed)" if len(failed) > 1 else ""
+        print(f"demo: {failed[0].command} failed: {failed[0].message.rstrip('.')}{more}.", file=sys.stderr)
+        return failed[0].exit_code
+    return OK
+
+
+def main() -> int:
+    try:
+        return demo()
+    except Failure as failure:
+        print(f"demo: {failure}", file=sys.stderr)
+        return failure.code
+    except OSError as error:
+        print(f"demo: {error.filename}: {error.strerror}.", file=sys.stderr)
+        return IO_ERROR
+    except KeyboardInterrupt:
+        print("demo: interrupted.", file=sys.stderr)
+        return INTERRUPTED
+
+
+if __name__ == "__main__":
+    sys.exit(main())

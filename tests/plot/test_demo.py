@@ -1,0 +1,73 @@
+"""The demo with a program that stands for a mini-app: table, page, exit code."""
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+import packages  # isort: skip
+
+
+class Demo(unittest.TestCase):
+    def setUp(self):
+        self.folder = Path(tempfile.mkdtemp())
+        self.addCleanup(shutil.rmtree, self.folder)
+        fake = Path(__file__).with_name("fake_app.py")
+        program = self.folder / "bin" / "drogue-gas"
+        program.parent.mkdir()
+        program.write_text(f'#!/bin/sh\nexec "{sys.executable}" "{fake}" "$@"\n')
+        program.chmod(0o755)
+
+    def _demo(self, *words, failure=""):
+        environment = os.environ | {"PYTHONPATH": str(packages.SOURCE / "scripts"), "FAKE_FAILURE": failure}
+        command = [
+            sys.executable,
+            "-m",
+            "plot.demo",
+            "--bin",
+            self.folder / "bin",
+            "--out",
+            self.folder / "out",
+            *words,
+        ]
+        return subprocess.run(command, capture_output=True, text=True, env=environment, check=False)
+
+    def test_all_scenes_pass(self):
+        done = self._demo()
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        rows = [re.split(r"\s{2,}", line) for line in done.stdout.splitlines()[:3]]
+        self.assertEqual(rows[0], ["scene", "backend", "steps", "error", "bar", "time"])
+        self.assertEqual(rows[1], ["sod", "openmp", "1234", "l1 density 0.0052", "0.0065", "12.3 ms"])
+        self.assertEqual(rows[2][0], "lax")
+        page = (self.folder / "out/index.html").read_text()
+        self.assertIn("2 of 2 scenes verified", page)
+        self.assertEqual(page.count("data:image/png"), 4)
+        self.assertEqual(page.count("data:image/gif"), 2)
+        self.assertNotIn("sod-full", page)
+        self.assertEqual(
+            re.findall(r"(?:src|href)=\"(?!data:|#)[^\"]*", page), [], "the page needs no other file"
+        )
+
+    def test_failed_scene_is_told_and_shown(self):
+        done = self._demo("lax", failure="lax")
+        self.assertEqual(done.returncode, 5)
+        self.assertEqual(
+            done.stderr, "demo: drogue-gas lax failed: l1_density is 0.013, above its bar 0.0065.\n"
+        )
+        self.assertRegex(done.stdout, r"lax .*FAILED")
+        page = (self.folder / "out/index.html").read_text()
+        self.assertIn("0 of 1 scenes verified", page)
+        self.assertIn("above its bar 0.0065", page)
+
+    def test_unknown_scene(self):
+        done = self._demo("sood")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("sod, lax", done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
