@@ -47,11 +47,12 @@ def _riemann(run: Run) -> ExactSolution:
 def _advection(run: Run) -> ExactSolution:
     expressions = run.scene["initial"]["expression"]
     start, end = run.scene.get("mesh", {}).get("domain", [-1.0, 1.0])
-    speed = float(evaluate(expressions["u"], x=np.array(start), t=0.0))
+    constants = {"t": 0.0, "dx": (end - start) / np.size(run.mesh["x"].values)}
+    speed = float(evaluate(expressions["u"], x=np.array(start), **constants))
 
     def at(time, x):
         origin = start + np.mod(x - speed * time - start, end - start)
-        return {name: evaluate(expressions[name], x=origin, t=0.0) for name in GAS_FIELDS}
+        return {name: evaluate(expressions[name], x=origin, **constants) for name in GAS_FIELDS}
 
     return ExactSolution("exact", at)
 
