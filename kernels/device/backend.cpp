@@ -1,0 +1,75 @@
+#include "kernels/device/backend.hpp"
+
+#include <Kokkos_Core.hpp>
+
+namespace drogue::device {
+
+std::string_view name(Backend backend) {
+  switch (backend) {
+    case Backend::serial: return "serial";
+    case Backend::openmp: return "openmp";
+    case Backend::cuda: return "cuda";
+  }
+  return "";
+}
+
+std::optional<Backend> backend_from_name(std::string_view text) {
+  for (const Backend backend : {Backend::serial, Backend::openmp, Backend::cuda})
+    if (text == name(backend)) return backend;
+  return std::nullopt;
+}
+
+std::vector<Backend> compiled_backends() {
+  return {
+      Backend::serial,
+#if defined(KOKKOS_ENABLE_OPENMP)
+      Backend::openmp,
+#endif
+#if defined(KOKKOS_ENABLE_CUDA)
+      Backend::cuda,
+#endif
+  };
+}
+
+namespace {
+
+bool is_compiled(Backend backend) {
+  for (const Backend compiled : compiled_backends())
+    if (compiled == backend) return true;
+  return false;
+}
+
+}  // namespace
+
+bool is_present(Backend backend) {
+  if (!is_compiled(backend)) return false;
+#if defined(KOKKOS_ENABLE_CUDA)
+  if (backend == Backend::cuda) {
+    int devices = 0;
+    return cudaGetDeviceCount(&devices) == cudaSuccess && devices > 0;
+  }
+#endif
+  return true;
+}
+
+Backend fastest_backend() {
+  Backend fastest = Backend::serial;
+  for (const Backend backend : compiled_backends())
+    if (is_present(backend)) fastest = backend;
+  return fastest;
+}
+
+std::optional<std::string> why_unavailable(Backend backend) {
+  const std::string text(name(backend));
+  if (!is_compiled(backend))
+    return "the backend '" + text + "' is not compiled in; build the preset '" +
+           (backend == Backend::cuda ? "cuda" : "host") + "' to have it";
+  if (!is_present(backend))
+    return "the backend '" + text + "' finds no device; run on a machine with one, or build the preset 'host'";
+  // Kokkos initialises every backend it was built with, and fails without a device.
+  if (is_compiled(Backend::cuda) && !is_present(Backend::cuda))
+    return "this build holds the backend 'cuda' and does not start without a device; build the preset 'host'";
+  return std::nullopt;
+}
+
+}  // namespace drogue::device

@@ -1,0 +1,88 @@
+#include "kernels/device/ledger.hpp"
+
+#include <Kokkos_Core.hpp>
+#include <algorithm>
+#include <atomic>
+#include <cstring>
+
+namespace drogue::device {
+
+namespace {
+
+struct Counters {
+  std::atomic<std::int64_t> launches{0}, fences{0}, allocations{0}, h2d{0}, d2h{0}, copies{0};
+  std::atomic<std::int64_t> bytes{0}, peak{0}, warm_allocations{0};
+  std::atomic<bool> warm{false};
+};
+
+Counters counters;                      // NOLINT: callbacks are plain functions
+Kokkos::Tools::Experimental::EventSet tool;  // NOLINT: what a loaded tool had installed
+
+bool is_host(const char* space) { return std::strncmp(space, "Host", 4) == 0 || std::strstr(space, "HostPinned") != nullptr; }
+
+template <auto next>
+void count_kernel(const char* label, const std::uint32_t device, std::uint64_t* id) {
+  ++counters.launches;
+  if (tool.*next != nullptr) (tool.*next)(label, device, id);
+}
+
+void count_fence(const char* label, const std::uint32_t device, std::uint64_t* id) {
+  ++counters.fences;
+  if (tool.begin_fence != nullptr) tool.begin_fence(label, device, id);
+}
+
+void count_allocation(Kokkos_Profiling_SpaceHandle space, const char* label, const void* pointer,
+                      const std::uint64_t size) {
+  ++counters.allocations;
+  if (counters.warm) ++counters.warm_allocations;
+  if (!is_host(space.name) || std::strstr(space.name, "Pinned") == nullptr) {
+    const std::int64_t now = counters.bytes += static_cast<std::int64_t>(size);
+    std::int64_t peak = counters.peak;
+    while (now > peak && !counters.peak.compare_exchange_weak(peak, now)) {
+    }
+  }
+  if (tool.allocate_data != nullptr) tool.allocate_data(space, label, pointer, size);
+}
+
+void count_deallocation(Kokkos_Profiling_SpaceHandle space, const char* label, const void* pointer,
+                        const std::uint64_t size) {
+  if (!is_host(space.name) || std::strstr(space.name, "Pinned") == nullptr)
+    counters.bytes -= static_cast<std::int64_t>(size);
+  if (tool.deallocate_data != nullptr) tool.deallocate_data(space, label, pointer, size);
+}
+
+void count_copy(Kokkos_Profiling_SpaceHandle to, const char* to_label, const void* to_pointer,
+                Kokkos_Profiling_SpaceHandle from, const char* from_label, const void* from_pointer,
+                std::uint64_t size) {
+  ++counters.copies;
+  if (is_host(from.name) && !is_host(to.name)) counters.h2d += static_cast<std::int64_t>(size);
+  if (!is_host(from.name) && is_host(to.name)) counters.d2h += static_cast<std::int64_t>(size);
+  if (tool.begin_deep_copy != nullptr)
+    tool.begin_deep_copy(to, to_label, to_pointer, from, from_label, from_pointer, size);
+}
+
+}  // namespace
+
+void start_ledger() {
+  using Kokkos::Tools::Experimental::EventSet;
+  namespace tools = Kokkos::Tools::Experimental;
+  tool = tools::get_callbacks();
+  tools::set_begin_parallel_for_callback(count_kernel<&EventSet::begin_parallel_for>);
+  tools::set_begin_parallel_reduce_callback(count_kernel<&EventSet::begin_parallel_reduce>);
+  tools::set_begin_parallel_scan_callback(count_kernel<&EventSet::begin_parallel_scan>);
+  tools::set_begin_fence_callback(count_fence);
+  tools::set_allocate_data_callback(count_allocation);
+  tools::set_deallocate_data_callback(count_deallocation);
+  tools::set_begin_deep_copy_callback(count_copy);
+}
+
+void end_warmup() { counters.warm = true; }
+
+void count_graph_launch() { ++counters.launches; }
+
+Ledger ledger() {
+  return {counters.launches, counters.fences, counters.allocations, counters.h2d,  counters.d2h,
+          counters.copies,   counters.bytes,  counters.peak,        counters.warm_allocations};
+}
+
+}  // namespace drogue::device

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstdint>
+
+namespace drogue::device {
+
+/// What a run asked of the device, counted through Kokkos Tools callbacks from `start_ledger` on.
+struct Ledger {
+  std::int64_t kernel_launches = 0;  ///< a replayed graph counts as one
+  std::int64_t fences = 0;
+  std::int64_t allocations = 0;
+  std::int64_t h2d_bytes = 0;  ///< host to device; zero on host backends, where nothing moves
+  std::int64_t d2h_bytes = 0;
+  std::int64_t copies = 0;     ///< deep copies of any kind
+  std::int64_t device_bytes = 0;       ///< allocated now, labelled Views of any space
+  std::int64_t peak_device_bytes = 0;
+  std::int64_t allocations_after_warmup = 0;
+};
+
+/// Installs the callbacks; tools loaded by Kokkos keep theirs and are called first. Once, after `Runtime`.
+void start_ledger();
+
+/// From here on allocations count as `allocations_after_warmup`.
+void end_warmup();
+
+[[nodiscard]] Ledger ledger();
+
+/// Launches that no callback sees: a graph replayed.
+void count_graph_launch();
+
+}  // namespace drogue::device

@@ -1,0 +1,184 @@
+#pragma once
+
+#include <Kokkos_Core.hpp>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <type_traits>
+
+// Kokkos::Experimental::simd picks its width from KOKKOS_ARCH_AVX2/AVX512XEON, which Kokkos_ARCH_NATIVE does not
+// define, and it cannot convert double <-> float packs. GCC and Clang vector types do both, but nvcc's front end
+// rejects them, so CUDA builds run their host backends with one lane.
+#if defined(__GNUC__) && !defined(__CUDACC__)
+#define DROGUE_HOST_VECTORS 1
+#else
+#define DROGUE_HOST_VECTORS 0
+#endif
+
+namespace drogue::device {
+
+// ---- the scalar side: the same names as for packs, so that a point function is one text for both ----
+
+template <class T>
+KOKKOS_INLINE_FUNCTION T maximum(T a, T b) {
+  return a > b ? a : b;
+}
+template <class T>
+KOKKOS_INLINE_FUNCTION T minimum(T a, T b) {
+  return a < b ? a : b;
+}
+KOKKOS_INLINE_FUNCTION double absolute(double a) { return Kokkos::fabs(a); }
+KOKKOS_INLINE_FUNCTION float absolute(float a) { return Kokkos::fabs(a); }
+KOKKOS_INLINE_FUNCTION double square_root(double a) { return Kokkos::sqrt(a); }
+KOKKOS_INLINE_FUNCTION float square_root(float a) { return Kokkos::sqrt(a); }
+template <class T>
+KOKKOS_INLINE_FUNCTION T select(bool condition, T yes, T no) {
+  return condition ? yes : no;
+}
+
+/// 1/x. On CUDA the hardware's approximation and one cubic Newton step (within 1 ulp for normal x; a third of the
+/// instructions of an IEEE division); the exact build divides.
+KOKKOS_INLINE_FUNCTION double reciprocal(double x) {
+#if defined(__CUDA_ARCH__) && !defined(DROGUE_EXACT)
+  double y;
+  asm("rcp.approx.ftz.f64 %0, %1;" : "=d"(y) : "d"(x));
+  const double e = fma(-x, y, 1.0);
+  return fma(y, fma(e, e, e), y);
+#else
+  return 1.0 / x;
+#endif
+}
+KOKKOS_INLINE_FUNCTION float reciprocal(float x) { return 1.0F / x; }
+
+template <class To>
+struct Convert {
+  template <class From>
+  KOKKOS_INLINE_FUNCTION static To from(From value) {
+    return static_cast<To>(value);
+  }
+};
+
+/// Reads one value, or `Pack::lanes` consecutive ones, from `pointer`.
+template <class R>
+struct Access {
+  using Element = R;
+  static constexpr int lanes = 1;
+  KOKKOS_INLINE_FUNCTION static R load(const Element* pointer) { return *pointer; }
+  KOKKOS_INLINE_FUNCTION static void store(Element* pointer, R value) { *pointer = value; }
+  KOKKOS_INLINE_FUNCTION static Element lane(R value, int) { return value; }
+};
+
+#if DROGUE_HOST_VECTORS
+
+/// `Lanes` values that host arithmetic treats at once; element-wise IEEE semantics, so each lane has the bits that
+/// scalar code would have.
+template <class T, int Lanes>
+struct Pack {
+  using Element = T;
+  typedef T Vector __attribute__((vector_size(Lanes * sizeof(T))));  // NOLINT: an alias would lose the attribute
+  static constexpr int lanes = Lanes;
+
+  Vector v;
+
+  Pack() = default;
+  Pack(T scalar) : v(scalar - Vector{}) {}  // NOLINT: numbers mix with packs as they do with numbers
+
+  /// Not a constructor: inside a template GCC takes its parameter for a T.
+  static Pack of(Vector vector) {
+    Pack pack;
+    pack.v = vector;
+    return pack;
+  }
+
+  friend Pack operator+(Pack a, Pack b) { return of(a.v + b.v); }
+  friend Pack operator-(Pack a, Pack b) { return of(a.v - b.v); }
+  friend Pack operator*(Pack a, Pack b) { return of(a.v * b.v); }
+  friend Pack operator/(Pack a, Pack b) { return of(a.v / b.v); }
+  friend Pack operator-(Pack a) { return of(-a.v); }
+  Pack& operator+=(Pack b) {
+    v += b.v;
+    return *this;
+  }
+  Pack& operator*=(Pack b) {
+    v *= b.v;
+    return *this;
+  }
+  friend auto operator>(Pack a, Pack b) { return a.v > b.v; }
+  friend auto operator<(Pack a, Pack b) { return a.v < b.v; }
+  friend auto operator>=(Pack a, Pack b) { return a.v >= b.v; }
+  friend auto operator<=(Pack a, Pack b) { return a.v <= b.v; }
+};
+
+template <class T, int L>
+Pack<T, L> maximum(Pack<T, L> a, Pack<T, L> b) {
+  return Pack<T, L>::of(a.v > b.v ? a.v : b.v);
+}
+template <class T, int L>
+Pack<T, L> minimum(Pack<T, L> a, Pack<T, L> b) {
+  return Pack<T, L>::of(a.v < b.v ? a.v : b.v);
+}
+template <class T, int L>
+Pack<T, L> absolute(Pack<T, L> a) {
+  // Clears the sign bit; a comparison with zero would keep the sign of -0.
+  using Bits = std::conditional_t<sizeof(T) == 8, std::int64_t, std::int32_t>;
+  typedef Bits BitVector __attribute__((vector_size(L * sizeof(T))));  // NOLINT
+  const BitVector magnitude = std::numeric_limits<Bits>::max() - BitVector{};
+  return Pack<T, L>::of((typename Pack<T, L>::Vector)((BitVector)a.v & magnitude));
+}
+template <class T, int L>
+Pack<T, L> square_root(Pack<T, L> a) {
+  Pack<T, L> root;
+  for (int k = 0; k < L; ++k) root.v[k] = std::sqrt(a.v[k]);
+  return root;
+}
+template <class Mask, class T, int L>
+Pack<T, L> select(Mask condition, Pack<T, L> yes, Pack<T, L> no) {
+  return Pack<T, L>::of(condition ? yes.v : no.v);
+}
+template <class T, int L>
+Pack<T, L> reciprocal(Pack<T, L> x) {
+  return Pack<T, L>(T(1)) / x;
+}
+
+template <class T, int L>
+struct Convert<Pack<T, L>> {
+  template <class From>
+  static Pack<T, L> from(Pack<From, L> value) {
+    return Pack<T, L>::of(__builtin_convertvector(value.v, typename Pack<T, L>::Vector));
+  }
+};
+
+template <class T, int L>
+struct Access<Pack<T, L>> {
+  using Element = T;
+  static constexpr int lanes = L;
+  static Pack<T, L> load(const T* pointer) {
+    Pack<T, L> value;
+    __builtin_memcpy(&value.v, pointer, sizeof(value.v));
+    return value;
+  }
+  static void store(T* pointer, Pack<T, L> value) { __builtin_memcpy(pointer, &value.v, sizeof(value.v)); }
+  static T lane(Pack<T, L> value, int k) { return value.v[k]; }
+};
+
+/// Doubles in the widest vector register of the target.
+#if defined(__AVX512F__)
+inline constexpr int host_lanes = 8;
+#elif defined(__AVX__)
+inline constexpr int host_lanes = 4;
+#else
+inline constexpr int host_lanes = 2;
+#endif
+
+template <class T>
+using HostPack = Pack<T, host_lanes>;
+
+#else
+
+inline constexpr int host_lanes = 1;
+template <class T>
+using HostPack = T;
+
+#endif
+
+}  // namespace drogue::device

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <functional>
+
+#include "kernels/device/instance.hpp"
+#include "kernels/device/ledger.hpp"
+
+namespace drogue::device {
+
+/// A sequence of kernels that is recorded once and replayed. On the host it is called again.
+template <class ExecutionSpace>
+class Replay {
+ public:
+  using Enqueue = std::function<void(const ExecutionSpace&)>;
+
+  Replay(const Instance<ExecutionSpace>& instance, Enqueue enqueue)
+      : _instance(&instance), _enqueue(std::move(enqueue)) {}
+
+  void launch() const { _enqueue(_instance->space()); }
+
+  static constexpr const char* driver = "plain";
+
+ private:
+  const Instance<ExecutionSpace>* _instance;
+  Enqueue _enqueue;
+};
+
+#if defined(KOKKOS_ENABLE_CUDA)
+/// On CUDA the kernels are captured from the instance's stream, and a replay is one graph launch. What is enqueued must
+/// neither fence nor allocate.
+template <>
+class Replay<Kokkos::Cuda> {
+ public:
+  using Enqueue = std::function<void(const Kokkos::Cuda&)>;
+
+  Replay(const Instance<Kokkos::Cuda>& instance, const Enqueue& enqueue) : _stream(instance.stream()) {
+    cudaGraph_t graph = nullptr;
+    KOKKOS_IMPL_CUDA_SAFE_CALL(cudaStreamBeginCapture(_stream, cudaStreamCaptureModeThreadLocal));
+    enqueue(instance.space());
+    KOKKOS_IMPL_CUDA_SAFE_CALL(cudaStreamEndCapture(_stream, &graph));
+    KOKKOS_IMPL_CUDA_SAFE_CALL(cudaGraphInstantiate(&_graph, graph, 0));
+    cudaGraphDestroy(graph);
+  }
+  ~Replay() { cudaGraphExecDestroy(_graph); }
+  Replay(const Replay&) = delete;
+  Replay& operator=(const Replay&) = delete;
+
+  void launch() const {
+    count_graph_launch();
+    KOKKOS_IMPL_CUDA_SAFE_CALL(cudaGraphLaunch(_graph, _stream));
+  }
+
+  static constexpr const char* driver = "graph";
+
+ private:
+  cudaStream_t _stream;
+  cudaGraphExec_t _graph = nullptr;
+};
+#endif
+
+}  // namespace drogue::device

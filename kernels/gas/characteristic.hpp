@@ -1,0 +1,69 @@
+#pragma once
+
+#include "kernels/gas/euler.hpp"
+#include "kernels/gas/parameters.hpp"
+
+namespace drogue::gas {
+
+/// Eigenvectors of dF/dU at a face: right ones R = (1, u-c, H-uc), (1, u, u^2/2), (1, u+c, H+uc); left ones scaled by
+/// two, which leaves eight operations for a projection.
+template <class R>
+struct Eigensystem {
+  R u, c, enthalpy, kinetic;  ///< kinetic = u^2/2
+  R inverse_c, b1, b2;        ///< b1 = (gamma-1)/c^2, b2 = b1 u^2/2
+};
+
+template <class R>
+struct Characteristic {
+  R slow, entropy, fast;
+};
+
+/// The means and c^2 = (gamma-1)(H - u^2/2) are formed in R (at Mach 2000 the difference has no digit left in single
+/// precision); what follows is of type N.
+template <class N, class R, class S>
+KOKKOS_INLINE_FUNCTION Eigensystem<N> eigensystem(S gamma, R u, R enthalpy) {
+  using F = typename device::Access<N>::Element;
+  using To = device::Convert<N>;
+  const R kinetic = S(0.5) * (u * u);
+  const N c = device::square_root(To::from((gamma - S(1)) * (enthalpy - kinetic)));
+  const N inverse_c = device::reciprocal(c);
+  const N b1 = F(gamma - S(1)) * (inverse_c * inverse_c);
+  const N n_kinetic = To::from(kinetic);
+  return {To::from(u), c, To::from(enthalpy), n_kinetic, inverse_c, b1, b1 * n_kinetic};
+}
+
+/// A cell beside a face, as the means need it.
+template <class R>
+struct FaceCell {
+  R rho, m, energy, u, enthalpy;
+};
+
+/// Eigensystem of the mean state of the two cells beside a face.
+template <class N, class R, class S>
+KOKKOS_INLINE_FUNCTION Eigensystem<N> face_eigensystem(Mean mean, S gamma, const FaceCell<R>& left,
+                                                       const FaceCell<R>& right) {
+  if (mean == Mean::arithmetic)
+    return eigensystem<N, R>(gamma, S(0.5) * (left.u + right.u), S(0.5) * (left.enthalpy + right.enthalpy));
+  if (mean == Mean::conserved) {
+    const R inverse = R(S(1)) / (left.rho + right.rho);  // the halves of the three means cancel
+    const R m = left.m + right.m, energy = left.energy + right.energy;
+    const R u = m * inverse;
+    return eigensystem<N, R>(gamma, u, (energy + pressure(gamma, m, energy, u)) * inverse);
+  }
+  // Roe 1981
+  const R wl = device::square_root(left.rho), wr = device::square_root(right.rho);
+  const R inverse = R(S(1)) / (wl + wr);
+  return eigensystem<N, R>(gamma, (wl * left.u + wr * right.u) * inverse,
+                           (wl * left.enthalpy + wr * right.enthalpy) * inverse);
+}
+
+/// 2 L d for a difference d = (drho, dm, dE) of U or F.
+template <class R>
+KOKKOS_INLINE_FUNCTION Characteristic<R> project(const Eigensystem<R>& e, R d_rho, R d_m, R d_energy) {
+  using S = typename device::Access<R>::Element;
+  const R s = e.b2 * d_rho - e.b1 * (e.u * d_m) + e.b1 * d_energy;
+  const R t = (e.u * d_rho - d_m) * e.inverse_c;
+  return {s + t, S(2) * (d_rho - s), s - t};
+}
+
+}  // namespace drogue::gas

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <cstdint>
+
+#include <Kokkos_Core.hpp>
+
+#include "kernels/gas/status.hpp"
+
+namespace drogue::gas {
+
+inline constexpr int max_stages = 4;
+inline constexpr int limited_steps = 100;  ///< accepted steps for which `automatic` keeps the limiter on
+inline constexpr int max_halvings = 40;
+inline constexpr std::uint64_t no_cell = ~std::uint64_t{0};
+
+/// One Euler sub-step of a Runge-Kutta method: out = a_n U^n + a_in (U_in + dt_factor dt L(U_in)).
+struct StageWeights {
+  double a_n, a_in, dt_factor;
+  double boundary;  ///< weight of this stage's flux in U^{n+1} - U^n, in units of dt
+  int in, out;      ///< buffers, counted from the one that holds U^n
+};
+
+struct StageTable {
+  int stages;
+  StageWeights stage[max_stages];
+};
+
+/// Shu and Osher 1988 (SSP-RK3); Spiteri and Ruuth 2002 (SSPRK(4,3)). U^n is never written: a rejected step costs
+/// nothing but its time.
+inline StageTable stage_table(TimeScheme scheme) {
+  if (scheme == TimeScheme::ssprk3)
+    return {3,
+            {{0.0, 1.0, 1.0, 1.0 / 6.0, 0, 1},
+             {0.75, 0.25, 1.0, 1.0 / 6.0, 1, 2},
+             {1.0 / 3.0, 2.0 / 3.0, 1.0, 2.0 / 3.0, 2, 1}}};
+  return {4,
+          {{0.0, 1.0, 0.5, 1.0 / 6.0, 0, 1},
+           {0.0, 1.0, 0.5, 1.0 / 6.0, 1, 2},
+           {2.0 / 3.0, 1.0 / 3.0, 0.5, 1.0 / 6.0, 2, 1},
+           {0.0, 1.0, 0.5, 0.5, 1, 2}}};
+}
+
+/// What a step needs beside the fields. It lives on the device, is written by kernels alone, and makes every decision
+/// that would otherwise need the host: the next dt, whether a step stands, when to stop.
+struct Control {
+  Resume resume;                 ///< all that a restart must bring back
+  double dt;                     ///< of the attempt under way
+  double target;                 ///< s, the next time to stop at
+  std::int64_t pause_step;       ///< the next step to stop at for the host
+  std::int64_t row_step;         ///< the next step to stop at for a row of the history
+  int reaches_target;            ///< the attempt ends at `target`
+  Stop stop;
+  std::uint64_t stage_speed[max_stages + 1][3];  ///< bits of max |u-c|, |u|, |u+c| after each stage
+  double boundary_flux[max_stages][2][3];
+  std::uint64_t bad;             ///< least (cell << 2 | Quantity) that left a stage inadmissible
+  std::int64_t touches;          ///< faces limited in this attempt
+  Failed failed;
+  std::int64_t rows;             ///< history rows written
+};
+
+/// Constants of a run that the step's kernels read.
+struct StepConstants {
+  double gamma, dx, cfl, limited_cfl, fixed_dt;
+  std::int64_t cells, max_steps;
+  int ramp_steps;
+  int stages;
+  int positivity;  ///< Positivity as an integer
+};
+
+KOKKOS_INLINE_FUNCTION double max_speed(const std::uint64_t (&bits)[3]) {
+  const double slow = Kokkos::bit_cast<double>(bits[0]), fast = Kokkos::bit_cast<double>(bits[2]);
+  return slow > fast ? slow : fast;
+}
+
+}  // namespace drogue::gas

@@ -1,0 +1,39 @@
+#pragma once
+
+#include "kernels/device/pack.hpp"
+
+namespace drogue::gas {
+
+/// What the flux needs of one cell, from the conserved state (rho, m = rho u, E).
+template <class R>
+struct CellState {
+  R rho, m, energy;
+  R u, p, enthalpy, c;  ///< velocity, pressure, total specific enthalpy H, sound speed
+};
+
+/// p = (gamma - 1) (E - m u / 2). Every place that asks whether a state is admissible uses this grouping.
+template <class R, class S>
+KOKKOS_INLINE_FUNCTION R pressure(S gamma, R m, R energy, R u) {
+  return (gamma - S(1)) * (energy - S(0.5) * (m * u));
+}
+
+template <class R, class S>
+KOKKOS_INLINE_FUNCTION CellState<R> cell_state(S gamma, R rho, R m, R energy) {
+  const R inverse = R(S(1)) / rho;
+  const R u = m * inverse;
+  const R p = pressure(gamma, m, energy, u);
+  return {rho, m, energy, u, p, (energy + p) * inverse, device::square_root(gamma * (p * inverse))};
+}
+
+/// Fastest signal of each characteristic field: |u - c|, |u|, |u + c|.
+template <class R>
+struct Speeds {
+  R slow, entropy, fast;
+};
+
+template <class R>
+KOKKOS_INLINE_FUNCTION Speeds<R> signal_speeds(R u, R c) {
+  return {device::absolute(u - c), device::absolute(u), device::absolute(u + c)};
+}
+
+}  // namespace drogue::gas

@@ -1,0 +1,168 @@
+#pragma once
+
+// Definitions of SolverOn: stepping.
+
+#include <algorithm>
+#include <chrono>
+#include <thread>
+
+#include "kernels/gas/solver_on.hpp"
+
+namespace drogue::gas {
+
+/// How much work may be in flight, so that progress, interrupts and faults are seen in time.
+inline constexpr double seconds_in_flight = 0.1;
+inline constexpr std::int64_t most_in_flight = 512;  ///< also keeps the ring of history rows from overflowing
+
+template <class ExecutionSpace>
+Status SolverOn<ExecutionSpace>::status() const {
+  // The device writes it behind the compiler's back.
+  const volatile Status& s = _status();
+  Status seen;
+  seen.launches = s.launches;
+  seen.step = s.step;
+  seen.time = s.time;
+  seen.dt = s.dt;
+  seen.limited = s.limited;
+  seen.stop = s.stop;
+  seen.rows = s.rows;
+  return seen;
+}
+
+template <class ExecutionSpace>
+void SolverOn<ExecutionSpace>::enqueue_step(const ExecutionSpace& space, bool limited) const {
+  for (int stage = 0; stage < _setup.table.stages; ++stage) {
+    const Precision precision = _parameters.precision;
+    switch (_parameters.weno) {
+      case Weno::js: launch_stage<Reconstruction::js>(space, _setup, precision, limited, stage); break;
+      case Weno::z:
+        if (_parameters.weno_power == 1) launch_stage<Reconstruction::z1>(space, _setup, precision, limited, stage);
+        else launch_stage<Reconstruction::z2>(space, _setup, precision, limited, stage);
+        break;
+      case Weno::m: launch_stage<Reconstruction::m>(space, _setup, precision, limited, stage); break;
+      case Weno::teno5: launch_stage<Reconstruction::teno5>(space, _setup, precision, limited, stage); break;
+    }
+  }
+  Kokkos::parallel_for("drogue::gas::finish_step", Kokkos::RangePolicy<ExecutionSpace>(space, 0, 1),
+                       FinishFunctor<ExecutionSpace>{_setup.control, _status, _constants, _setup.table, limited});
+}
+
+template <class ExecutionSpace>
+void SolverOn<ExecutionSpace>::enqueue_sums(const ExecutionSpace& space, int row_every, bool always) const {
+  std::int64_t n = _parameters.cells;
+  int level = 0;
+  for (; level == 0 || n > sum_radix; ++level) {
+    const auto out = static_cast<std::int64_t>(_partial[level].extent(0));
+    Kokkos::parallel_for(
+        "drogue::gas::sum_level", Kokkos::RangePolicy<ExecutionSpace>(space, 0, out),
+        SumLevelFunctor<ExecutionSpace>{{_setup.buffer[0], _setup.buffer[1], _setup.buffer[2]},
+                                        _setup.control,
+                                        _partial[level == 0 ? 0 : level - 1],
+                                        _partial[level],
+                                        n,
+                                        out,
+                                        level == 0,
+                                        always});
+    n = out;
+  }
+  Kokkos::parallel_for("drogue::gas::history_row", Kokkos::RangePolicy<ExecutionSpace>(space, 0, 1),
+                       RowFunctor<ExecutionSpace>{_setup.control, _status, _ring, _partial[level - 1], n, _constants,
+                                                  row_every, always});
+}
+
+template <class ExecutionSpace>
+void SolverOn<ExecutionSpace>::ensure_recorded(bool limited) {
+  auto& step = _step[limited ? 1 : 0];
+  if (step) return;
+  step = std::make_unique<device::Replay<ExecutionSpace>>(
+      _instance, [this, limited](const ExecutionSpace& space) { enqueue_step(space, limited); });
+}
+
+template <class ExecutionSpace>
+void SolverOn<ExecutionSpace>::drain_rows(const RowSink& rows) {
+  for (const std::int64_t written = status().rows; _rows_read < written; ++_rows_read) {
+    _last_row = _ring(static_cast<std::size_t>(_rows_read % row_capacity));
+    if (rows) rows(*_last_row);
+  }
+}
+
+template <class ExecutionSpace>
+HistoryRow SolverOn<ExecutionSpace>::totals() {
+  enqueue_sums(_instance.space(), 0, true);
+  ++_launched;
+  _instance.space().fence("drogue::gas::totals");
+  drain_rows({});
+  return *_last_row;
+}
+
+template <class ExecutionSpace>
+Stop SolverOn<ExecutionSpace>::advance(double target, std::int64_t pause_step, int row_every, const RowSink& rows,
+                                       const Poll& poll) {
+  using Clock = std::chrono::steady_clock;
+  const auto seconds = [](auto span) { return std::chrono::duration<double>(span).count(); };
+  const ExecutionSpace& space = _instance.space();
+  ensure_recorded(_parameters.positivity == Positivity::on);
+  if (row_every > 0 && row_every != _row_every) {
+    _row = std::make_unique<device::Replay<ExecutionSpace>>(
+        _instance, [this, row_every](const ExecutionSpace& on) { enqueue_sums(on, row_every, false); });
+    _row_every = row_every;
+  }
+  const std::int64_t first_step = status().step;
+  const std::int64_t row_step = row_every > 0 ? (first_step / row_every + 1) * row_every : -1;
+  Kokkos::parallel_for(
+      "drogue::gas::resume", Kokkos::RangePolicy<ExecutionSpace>(space, 0, 1),
+      ResumeFunctor<ExecutionSpace>{_setup.control, _status, _constants, target, pause_step, row_step});
+  ++_launched;
+  space.fence("drogue::gas::advance: resumed");
+
+  std::int64_t since_row = row_every > 0 ? first_step % row_every : 0;
+  std::int64_t window = on_host ? 1 : 8;
+  const auto begin = Clock::now();
+  auto last_poll = begin;
+  bool interrupted = false;
+  while (true) {
+    const Status now = status();
+    drain_rows(rows);
+    const bool row_due = now.stop == Stop::pause && row_every > 0 && now.step % row_every == 0 &&
+                         (!_last_row || _last_row->step != now.step);
+    if (now.stop != Stop::running && !row_due) {
+      if (now.stop != Stop::pause || now.step == pause_step) break;
+    }
+    const auto clock = Clock::now();
+    if (seconds(clock - last_poll) > 0.02 || on_host) {
+      last_poll = clock;
+      if (poll && !poll(now)) {
+        interrupted = true;
+        break;
+      }
+      const double rate = static_cast<double>(now.step - first_step) / seconds(clock - begin);
+      if (!on_host) window = std::clamp<std::int64_t>(static_cast<std::int64_t>(seconds_in_flight * rate), 8, most_in_flight);
+    }
+    const std::int64_t in_flight = _launched - now.launches;
+    if (in_flight >= window) {
+      std::this_thread::yield();
+      continue;
+    }
+    if (row_every > 0 && (since_row >= row_every || (in_flight == 0 && row_due))) {
+      _row->launch();
+      since_row = 0;
+    } else {
+      ensure_recorded(now.limited != 0);
+      _step[now.limited != 0 ? 1 : 0]->launch();
+      ++since_row;
+    }
+    ++_launched;
+  }
+  space.fence("drogue::gas::advance: stopped");
+  const Status last = status();
+  if (row_every > 0 && last.step % row_every == 0 && last.step > first_step &&
+      (drain_rows(rows), !_last_row || _last_row->step != last.step)) {
+    const HistoryRow row = totals();
+    if (rows) rows(row);
+  }
+  drain_rows(rows);
+  const bool between_stops = last.stop == Stop::running || (last.stop == Stop::pause && last.step != pause_step);
+  return interrupted && between_stops ? Stop::interrupted : last.stop;
+}
+
+}  // namespace drogue::gas

@@ -1,0 +1,180 @@
+#pragma once
+
+// Definitions of SolverOn: construction and everything that moves state.
+
+#include "kernels/gas/solver_on.hpp"
+
+namespace drogue::gas {
+
+/// Cells a tile updates. A device team has one face a thread; on the host a tile's scratch stays in the L1 cache.
+template <class ExecutionSpace>
+TileShape tile_shape(int block) {
+  if constexpr (device::is_host<ExecutionSpace>) {
+    const int cells = block > 0 ? block : 256;
+    return {cells, (cells + 2 * ghost_cells + 2 * device::host_lanes + 7) / 8 * 8};
+  } else {
+    const int threads = block > 0 ? block : 128;
+    return {threads - 1, threads + 2 * ghost_cells};
+  }
+}
+
+template <class ExecutionSpace>
+SolverOn<ExecutionSpace>::SolverOn(const Parameters& p) : _parameters(p) {
+  const double dx = (p.x_max - p.x_min) / static_cast<double>(p.cells);
+  _setup.table = stage_table(p.time_scheme);
+  const double limited_cap = p.time_scheme == TimeScheme::ssprk3 ? 0.4 : 0.8;
+  _constants = {p.gamma,     dx,           p.cfl, p.cfl < limited_cap ? p.cfl : limited_cap, p.fixed_dt, p.cells,
+                p.max_steps, p.ramp_steps, _setup.table.stages, static_cast<int>(p.positivity)};
+  const auto n = static_cast<std::size_t>(p.cells);
+  const ExecutionSpace& space = _instance.space();
+  const auto uninitialised = [&](const std::string& label) {
+    return Kokkos::view_alloc(space, Kokkos::WithoutInitializing, label);
+  };
+  for (int k = 0; k < 3; ++k) _setup.buffer[k] = Fields(uninitialised("drogue::gas::fields"), n);
+  _setup.control = decltype(_setup.control)("drogue::gas::control");
+  if (p.positivity != Positivity::off) _setup.touched = decltype(_setup.touched)("drogue::gas::touched", n);
+  _setup.ends = {p.cells, p.left, p.right};
+  _setup.shape = tile_shape<ExecutionSpace>(p.block);
+  _setup.team_size = on_host ? 1 : _setup.shape.cells + 1;
+  _setup.gamma = p.gamma;
+  _setup.dx = dx;
+  _setup.splitting = p.splitting;
+  _setup.mean = p.mean;
+  _status = decltype(_status)("drogue::gas::status");
+  _ring = decltype(_ring)("drogue::gas::history", row_capacity);
+  std::int64_t values = p.cells;
+  for (auto& level : _partial) {
+    values = (values + sum_radix - 1) / sum_radix;
+    level = Fields(uninitialised("drogue::gas::partial_sums"), static_cast<std::size_t>(values));
+    if (values <= sum_radix) break;
+  }
+  space.fence("drogue::gas::solver: allocated");
+}
+
+template <class ExecutionSpace>
+Control SolverOn<ExecutionSpace>::read_control() const {
+  auto mirror = Kokkos::create_mirror_view(_setup.control);
+  Kokkos::deep_copy(_instance.space(), mirror, _setup.control);
+  _instance.space().fence("drogue::gas::solver: read control");
+  return mirror();
+}
+
+template <class ExecutionSpace>
+void SolverOn<ExecutionSpace>::write_control(const Control& control) {
+  auto mirror = Kokkos::create_mirror_view(_setup.control);
+  mirror() = control;
+  Kokkos::deep_copy(_instance.space(), _setup.control, mirror);
+  _instance.space().fence("drogue::gas::solver: write control");
+}
+
+template <class ExecutionSpace>
+void SolverOn<ExecutionSpace>::upload(std::int64_t first, const ConstConserved& fields) {
+  const std::span<const double> part[3] = {fields.rho, fields.momentum, fields.energy};
+  for (int k = 0; k < 3; ++k) copy_range(_instance.space(), field(_setup.buffer[0], k), first, part[k], true);
+}
+
+template <class ExecutionSpace>
+void SolverOn<ExecutionSpace>::download(std::int64_t first, const Conserved& fields) {
+  const Fields& now = _setup.buffer[read_control().resume.current];
+  const std::span<double> part[3] = {fields.rho, fields.momentum, fields.energy};
+  for (int k = 0; k < 3; ++k) copy_range(_instance.space(), field(now, k), first, part[k], false);
+}
+
+/// Fastest signals of an uploaded state.
+template <class ExecutionSpace>
+struct InitialSpeedFunctor {
+  FieldsView<ExecutionSpace> fields;
+  Kokkos::View<Control, typename ExecutionSpace::memory_space> control;
+  double gamma;
+
+  KOKKOS_FUNCTION void operator()(std::int64_t i) const {
+    const CellState<double> s = cell_state<double>(gamma, fields(i, 0), fields(i, 1), fields(i, 2));
+    const Speeds<double> speed = signal_speeds(s.u, s.c);
+    const double values[3] = {speed.slow, speed.entropy, speed.fast};
+    for (int k = 0; k < 3; ++k) {
+      const auto bits = Kokkos::bit_cast<std::uint64_t>(values[k]);
+      std::uint64_t& slot = control().resume.speed[k];
+      if (bits > Kokkos::atomic_load(&slot)) Kokkos::atomic_max(&slot, bits);
+    }
+  }
+};
+
+template <class ExecutionSpace>
+void SolverOn<ExecutionSpace>::start() {
+  Control c{};
+  c.resume.limited = _parameters.positivity == Positivity::on;
+  c.stop = Stop::pause;
+  c.bad = no_cell;
+  write_control(c);
+  const ExecutionSpace& space = _instance.space();
+  Kokkos::parallel_for("drogue::gas::initial_speed", Kokkos::RangePolicy<ExecutionSpace>(space, 0, _parameters.cells),
+                       InitialSpeedFunctor<ExecutionSpace>{_setup.buffer[0], _setup.control, _parameters.gamma});
+  space.fence("drogue::gas::solver: started");
+}
+
+template <class ExecutionSpace>
+void SolverOn<ExecutionSpace>::restore(const Resume& state) {
+  Control c{};
+  c.resume = state;
+  c.resume.current = 0;  // where `upload` writes
+  c.stop = Stop::pause;
+  c.bad = no_cell;
+  write_control(c);
+}
+
+template <class ExecutionSpace>
+struct CountTouchedFunctor {
+  Kokkos::View<std::uint8_t*, typename ExecutionSpace::memory_space> touched;
+  KOKKOS_FUNCTION void operator()(std::int64_t i, std::int64_t& sum) const { sum += touched(i); }
+};
+
+template <class ExecutionSpace>
+std::int64_t SolverOn<ExecutionSpace>::touched_cells() {
+  std::int64_t sum = 0;
+  Kokkos::parallel_reduce(
+      "drogue::gas::count_touched",
+      Kokkos::RangePolicy<ExecutionSpace>(_instance.space(), 0, static_cast<std::int64_t>(_setup.touched.extent(0))),
+      CountTouchedFunctor<ExecutionSpace>{_setup.touched}, sum);
+  return sum;
+}
+
+template <class ExecutionSpace>
+void SolverOn<ExecutionSpace>::download_touched(std::int64_t first, std::span<std::uint8_t> cells) {
+  copy_range(_instance.space(), _setup.touched, first, cells, false);
+}
+
+template <class ExecutionSpace>
+void SolverOn<ExecutionSpace>::upload_touched(std::int64_t first, std::span<const std::uint8_t> cells) {
+  copy_range(_instance.space(), _setup.touched, first, cells, true);
+}
+
+template <class ExecutionSpace>
+void SolverOn<ExecutionSpace>::begin_snapshot() {
+  const ExecutionSpace& space = _instance.space();
+  const int current = read_control().resume.current;
+  const auto n = static_cast<std::size_t>(_parameters.cells);
+  if (_host_snapshot.extent(0) != n) {
+    const auto label = [](const std::string& text) { return Kokkos::view_alloc(Kokkos::WithoutInitializing, text); };
+    _host_snapshot = HostFields(label("drogue::gas::snapshot_host"), n);
+    if constexpr (!on_host) _snapshot = Fields(label("drogue::gas::snapshot"), n);
+  }
+  if constexpr (on_host) {
+    Kokkos::deep_copy(space, _host_snapshot, _setup.buffer[current]);
+    space.fence("drogue::gas::snapshot");
+  } else {
+    Kokkos::deep_copy(space, _snapshot, _setup.buffer[current]);
+    space.fence("drogue::gas::snapshot");
+    // From here the copy has a stream of its own and the steps go on.
+    Kokkos::deep_copy(_copy_instance.space(), _host_snapshot, _snapshot);
+  }
+}
+
+template <class ExecutionSpace>
+ConstConserved SolverOn<ExecutionSpace>::finish_snapshot() {
+  _copy_instance.space().fence("drogue::gas::snapshot: copied");
+  const auto n = static_cast<std::size_t>(_parameters.cells);
+  const double* data = _host_snapshot.data();
+  return {{data, n}, {data + n, n}, {data + 2 * n, n}};
+}
+
+}  // namespace drogue::gas

@@ -1,0 +1,125 @@
+#pragma once
+
+#include <Kokkos_Core.hpp>
+
+#include "kernels/gas/face_flux.hpp"
+
+namespace drogue::gas {
+
+inline constexpr int ghost_cells = 3;
+
+/// Conserved fields of one state: (cells, 3), each field contiguous.
+template <class ExecutionSpace>
+using FieldsView = Kokkos::View<double* [3], Kokkos::LayoutLeft, typename ExecutionSpace::memory_space>;
+
+/// What lies beyond the two ends of the mesh.
+struct Ends {
+  std::int64_t cells;
+  Boundary left, right;
+};
+
+/// Cells a tile updates and the distance between its scratch rows.
+struct TileShape {
+  int cells;
+  int row;
+};
+
+struct Source {
+  std::int64_t cell;
+  double sign;  ///< of the momentum
+};
+
+/// The cell that stands for `index`, -ghost_cells <= index; what lies further right than the ghosts repeats the last one,
+/// so that padding holds an admissible state.
+KOKKOS_INLINE_FUNCTION Source source_cell(const Ends& ends, std::int64_t index) {
+  const std::int64_t n = ends.cells;
+  if (index >= 0 && index < n) return {index, 1.0};
+  const std::int64_t last = n - 1 + ghost_cells;
+  if (index > last) index = last;
+  const bool left = index < 0;
+  const Boundary kind = left ? ends.left : ends.right;
+  if (kind == Boundary::periodic) return {left ? index + n : index - n, 1.0};
+  if (kind == Boundary::reflecting) return {left ? -1 - index : 2 * n - 1 - index, -1.0};
+  return {left ? 0 : n - 1, 1.0};
+}
+
+/// The states of `lanes` cells from `index` on, ghosts included. `in` holds three rows of `ends.cells`.
+template <class R>
+KOKKOS_INLINE_FUNCTION Triple<R> load_state(const double* in, const Ends& ends, std::int64_t index) {
+  using Lanes = device::Access<R>;
+  const std::int64_t n = ends.cells;
+  if (index >= 0 && index + Lanes::lanes <= n)
+    return {Lanes::load(in + index), Lanes::load(in + n + index), Lanes::load(in + 2 * n + index)};
+  double rho[Lanes::lanes], m[Lanes::lanes], energy[Lanes::lanes];
+  for (int lane = 0; lane < Lanes::lanes; ++lane) {
+    const Source from = source_cell(ends, index + lane);
+    rho[lane] = in[from.cell];
+    m[lane] = from.sign * in[n + from.cell];
+    energy[lane] = in[2 * n + from.cell];
+  }
+  return {Lanes::load(rho), Lanes::load(m), Lanes::load(energy)};
+}
+
+enum class TileField : int { rho, m, energy, flux_m, flux_energy, u, enthalpy, slow, fast, count };
+
+/// A tile's scratch memory: rows of cell values (`TileField`), then three rows of face fluxes.
+template <class ExecutionSpace>
+class Tile {
+ public:
+  using Member = typename Kokkos::TeamPolicy<ExecutionSpace>::member_type;
+  static constexpr int rows = static_cast<int>(TileField::count) + 3;
+
+  std::int64_t first;  ///< its first cell
+  int cells;           ///< that it updates
+  bool last;
+
+  KOKKOS_FUNCTION Tile(const Member& member, const TileShape& shape, std::int64_t mesh_cells)
+      : first(static_cast<std::int64_t>(member.league_rank()) * shape.cells),
+        cells(static_cast<int>(device::minimum<std::int64_t>(shape.cells, mesh_cells - first))),
+        last(first + cells == mesh_cells),
+        _row(shape.row),
+        _data(static_cast<double*>(
+            member.team_scratch(0).get_shmem_aligned(scratch_bytes(shape), alignof(double)))) {}
+
+  static KOKKOS_FUNCTION std::size_t scratch_bytes(const TileShape& shape) {
+    return sizeof(double) * static_cast<std::size_t>(rows) * static_cast<std::size_t>(shape.row);
+  }
+
+  template <class P>
+  KOKKOS_FUNCTION P load(TileField field, int i) const {
+    return device::Access<P>::load(_data + static_cast<int>(field) * _row + i);
+  }
+  template <class P>
+  KOKKOS_FUNCTION void store(TileField field, int i, P value) const {
+    device::Access<P>::store(_data + static_cast<int>(field) * _row + i, value);
+  }
+  template <class P>
+  KOKKOS_FUNCTION Triple<P> state(int i) const {
+    return {load<P>(TileField::rho, i), load<P>(TileField::m, i), load<P>(TileField::energy, i)};
+  }
+  template <class P>
+  KOKKOS_FUNCTION FaceCell<P> face_cell(int i) const {
+    return {load<P>(TileField::rho, i), load<P>(TileField::m, i), load<P>(TileField::energy, i),
+            load<P>(TileField::u, i), load<P>(TileField::enthalpy, i)};
+  }
+  template <class P>
+  KOKKOS_FUNCTION Triple<P> flux(int face) const {
+    using Lanes = device::Access<P>;
+    const double* f = _data + static_cast<int>(TileField::count) * _row + face;
+    return {Lanes::load(f), Lanes::load(f + _row), Lanes::load(f + 2 * _row)};
+  }
+  template <class P>
+  KOKKOS_FUNCTION void store_flux(int face, const Triple<P>& value) const {
+    using Lanes = device::Access<P>;
+    double* f = _data + static_cast<int>(TileField::count) * _row + face;
+    Lanes::store(f, value.rho);
+    Lanes::store(f + _row, value.m);
+    Lanes::store(f + 2 * _row, value.energy);
+  }
+
+ private:
+  int _row;
+  double* _data;
+};
+
+}  // namespace drogue::gas
