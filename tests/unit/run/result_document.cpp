@@ -1,0 +1,122 @@
+#include "common/run/result_document.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "common/version.hpp"
+#include "tests/unit/run/temporary_directory.hpp"
+
+namespace drogue::run {
+namespace {
+
+using Json = nlohmann::json;
+
+std::vector<std::string> keys(const Json& json) {
+  std::vector<std::string> names;
+  for (const auto& [name, value] : json.items()) names.push_back(name);
+  return names;
+}
+
+std::vector<std::string> sorted(std::vector<std::string> names) {
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+TEST(ResultDocument, HoldsEveryFieldOfTheSchema) {
+  ResultDocument result;
+  result.add_check("l1_density", 1e-3, 2e-3);
+  const Json json = Json::parse(to_json(result));
+  EXPECT_EQ(json["schema"], "drogue.result/1");
+  EXPECT_EQ(keys(json), sorted({"schema",  "program",   "version", "git",     "scene",      "backend",
+                                "device",  "precision", "ranks",   "threads", "status",     "exit_code",
+                                "message", "steps",     "time",    "dt_min",  "dt_max",     "errors",
+                                "checks",  "limiter",   "timing",  "ledger",  "peak_bytes", "provenance"}));
+  EXPECT_EQ(keys(json["checks"][0]), sorted({"name", "value", "bar", "passed"}));
+  EXPECT_EQ(keys(json["limiter"]), sorted({"touches", "cells", "redone_steps"}));
+  EXPECT_EQ(keys(json["timing"]), sorted({"wall_s", "setup_s", "compute_s", "h2d_s", "d2h_s", "io_s"}));
+  EXPECT_EQ(keys(json["ledger"]), sorted({"kernel_launches", "fences", "device_allocations_after_warmup",
+                                          "h2d_bytes", "d2h_bytes"}));
+  EXPECT_EQ(keys(json["peak_bytes"]), sorted({"host", "device"}));
+  EXPECT_EQ(keys(json["provenance"]),
+            sorted({"compiler", "flags", "kokkos", "cpu", "gpu", "driver", "date"}));
+  EXPECT_TRUE(json["errors"].is_object());
+}
+
+TEST(ResultDocument, KeepsValuesExactly) {
+  ResultDocument result;
+  result.scene = "sod";
+  result.steps = 1'234'567'890'123;
+  result.time = 0.1;
+  result.dt_min = 1e-17;
+  result.errors["l1_density"] = 1.0 / 3.0;
+  result.ledger.h2d_bytes = 7;
+  const Json json = Json::parse(to_json(result));
+  EXPECT_EQ(json["scene"], "sod");
+  EXPECT_EQ(json["steps"], 1'234'567'890'123);
+  EXPECT_EQ(json["time"].get<double>(), 0.1);
+  EXPECT_EQ(json["dt_min"].get<double>(), 1e-17);
+  EXPECT_EQ(json["errors"]["l1_density"].get<double>(), 1.0 / 3.0);
+  EXPECT_EQ(json["ledger"]["h2d_bytes"], 7);
+}
+
+TEST(ResultDocument, WritesWhatIsNotFiniteAsNull) {
+  ResultDocument result;
+  result.dt_max = std::numeric_limits<double>::infinity();
+  result.errors["l1_density"] = std::nan("");
+  const Json json = Json::parse(to_json(result));
+  EXPECT_TRUE(json["dt_max"].is_null());
+  EXPECT_TRUE(json["errors"]["l1_density"].is_null());
+}
+
+TEST(ResultDocument, SurvivesBytesThatAreNoText) {
+  ResultDocument result;
+  result.message = "file '\xff\xfe\"' is not there";
+  EXPECT_NE(Json::parse(to_json(result))["message"].get<std::string>().find("is not there"),
+            std::string::npos);
+}
+
+TEST(ResultDocument, NamesTheStatusOfEveryExitCode) {
+  const std::vector<std::pair<ExitCode, std::string>> names = {
+      {ExitCode::ok, "ok"},
+      {ExitCode::usage, "invalid"},
+      {ExitCode::invalid_scene, "invalid"},
+      {ExitCode::numerical_failure, "numerical-failure"},
+      {ExitCode::verification_failed, "verification-failed"},
+      {ExitCode::io_error, "io-error"},
+      {ExitCode::interrupted, "interrupted"},
+      {ExitCode::no_backend, "no-backend"},
+  };
+  for (const auto& [code, name] : names) {
+    ResultDocument result;
+    result.exit_code = code;
+    const Json json = Json::parse(to_json(result));
+    EXPECT_EQ(json["status"], name);
+    EXPECT_EQ(json["exit_code"], static_cast<int>(code));
+  }
+}
+
+TEST(ResultDocument, ChecksPassUpToTheirBar) {
+  ResultDocument result;
+  EXPECT_TRUE(result.add_check("at the bar", -2.0, 2.0));
+  EXPECT_EQ(result.failed_check(), "");
+  EXPECT_FALSE(result.add_check("above", 2.5, 2.0));
+  EXPECT_FALSE(result.add_check("not a number", std::nan(""), 2.0));
+  EXPECT_EQ(result.failed_check(), "above is 2.5, above its bar 2");
+}
+
+TEST(ResultDocument, KnowsItsBuildAndIsWrittenWithTheMemoryPeak) {
+  const test::TemporaryDirectory directory;
+  write_result(directory / "result.json", new_result("drogue-gas", "sod"));
+  const Json json = Json::parse(test::content(directory / "result.json"));
+  EXPECT_EQ(json["program"], "drogue-gas");
+  EXPECT_EQ(json["version"], build_info().version);
+  EXPECT_FALSE(json["provenance"]["cpu"].get<std::string>().empty());
+  EXPECT_EQ(json["provenance"]["date"].get<std::string>().size(), 20U);
+  EXPECT_GT(json["peak_bytes"]["host"].get<std::int64_t>(), 1'000'000);
+}
+
+}  // namespace
+}  // namespace drogue::run

@@ -1,0 +1,109 @@
+#include "common/run/run_directory.hpp"
+
+#include <gtest/gtest.h>
+
+#include "common/run/atomic_file.hpp"
+#include "tests/unit/run/temporary_directory.hpp"
+
+namespace drogue::run {
+namespace {
+
+using test::content;
+using test::failure_of;
+using test::TemporaryDirectory;
+
+TEST(RunDirectory, IsCreatedWithItsParents) {
+  const TemporaryDirectory parent;
+  const RunDirectory run(parent / "out/sod", ExistingRun::refuse);
+  run.write_scene("app = \"gas\"\n");
+  EXPECT_EQ(content(parent / "out/sod/scene.toml"), "app = \"gas\"\n");
+}
+
+TEST(RunDirectory, ForeignFilesAreNoRun) {
+  const TemporaryDirectory parent;
+  write_file_atomically(parent / "notes.txt", "mine");
+  EXPECT_NO_THROW(RunDirectory(parent.path(), ExistingRun::refuse));
+  EXPECT_EQ(parent.entries(), 1U) << "the lock was left behind";
+}
+
+TEST(RunDirectory, RefusesAFormerRunWithUsage) {
+  const TemporaryDirectory parent;
+  write_file_atomically(parent / "history.csv", "time [s]\n");
+  const std::string sentence =
+      failure_of(ExitCode::usage, [&parent] { const RunDirectory run(parent.path(), ExistingRun::refuse); });
+  EXPECT_NE(sentence.find("--overwrite"), std::string::npos) << sentence;
+  EXPECT_NE(sentence.find(parent.path().string()), std::string::npos) << sentence;
+  EXPECT_EQ(content(parent / "history.csv"), "time [s]\n");
+}
+
+TEST(RunDirectory, OverwriteRemovesKnownNamesOnly) {
+  const TemporaryDirectory parent;
+  for (const std::string& name : run_file_names()) write_file_atomically(parent / name, "former");
+  write_file_atomically(parent / ".result.json.77.tmp", "left by a kill");
+  write_file_atomically(parent / "notes.txt", "mine");
+  write_file_atomically(parent / ".mine.tmp", "mine");
+  const RunDirectory run(parent.path(), ExistingRun::overwrite);
+  EXPECT_FALSE(holds_run(parent.path()));
+  EXPECT_FALSE(std::filesystem::exists(parent / ".result.json.77.tmp"));
+  EXPECT_TRUE(std::filesystem::exists(parent / "notes.txt"));
+  EXPECT_TRUE(std::filesystem::exists(parent / ".mine.tmp"));
+}
+
+TEST(RunDirectory, ResumeKeepsTheFormerRun) {
+  const TemporaryDirectory parent;
+  write_file_atomically(parent / "restart.h5", "state");
+  const RunDirectory run(parent.path(), ExistingRun::resume);
+  EXPECT_EQ(content(parent / "restart.h5"), "state");
+}
+
+TEST(RunDirectory, IsNotSharedByTwoRuns) {
+  const TemporaryDirectory parent;
+  const auto second = [&parent] { const RunDirectory run(parent.path(), ExistingRun::overwrite); };
+  {
+    const RunDirectory first(parent.path(), ExistingRun::refuse);
+    first.write_scene("first");
+    const std::string sentence = failure_of(ExitCode::io_error, second);
+    EXPECT_NE(sentence.find("in use by another process"), std::string::npos) << sentence;
+    EXPECT_EQ(content(parent / "scene.toml"), "first");
+  }
+  EXPECT_NO_THROW(second()) << "the lock outlived its run";
+}
+
+TEST(RunDirectory, IsFreeAfterAKill) {
+  const TemporaryDirectory parent;
+  const int status = test::in_child([&parent] {
+    const RunDirectory run(parent.path(), ExistingRun::refuse);
+    return raise(SIGKILL);
+  });
+  ASSERT_TRUE(WIFSIGNALED(status));
+  EXPECT_TRUE(std::filesystem::exists(parent / ".lock")) << "the child had no lock";
+  EXPECT_NO_THROW(RunDirectory(parent.path(), ExistingRun::refuse));
+}
+
+TEST(RunDirectory, UnwritablePlaceIsAnIoError) {
+  const TemporaryDirectory parent;
+  write_file_atomically(parent / "file", "");
+  const std::string below_a_file = failure_of(
+      ExitCode::io_error, [&parent] { const RunDirectory run(parent / "file/out", ExistingRun::refuse); });
+  EXPECT_NE(below_a_file.find("file/out': Not a directory"), std::string::npos) << below_a_file;
+  // The kernel's own directories take no file even from root.
+  const std::string read_only =
+      failure_of(ExitCode::io_error, [] { const RunDirectory run("/proc/drogue", ExistingRun::refuse); });
+  EXPECT_NE(read_only.find("cannot create the run directory '/proc/drogue'"), std::string::npos) << read_only;
+  const std::string existing =
+      failure_of(ExitCode::io_error, [] { const RunDirectory run("/proc/self", ExistingRun::refuse); });
+  EXPECT_NE(existing.find("cannot write to the run directory '/proc/self'"), std::string::npos) << existing;
+}
+
+TEST(RunDirectory, RestartSourceIsTheNamedOrTheOwnFile) {
+  const TemporaryDirectory parent;
+  EXPECT_EQ(restart_source("auto", parent.path()), "");
+  write_file_atomically(parent / "restart.h5", "state");
+  EXPECT_EQ(restart_source("auto", parent.path()), parent / "restart.h5");
+  EXPECT_EQ(restart_source((parent / "restart.h5").string(), "elsewhere"), parent / "restart.h5");
+  const std::string sentence = failure_of(ExitCode::usage, [] { restart_source("none.h5", "."); });
+  EXPECT_NE(sentence.find("'none.h5' does not exist"), std::string::npos) << sentence;
+}
+
+}  // namespace
+}  // namespace drogue::run

@@ -1,0 +1,90 @@
+#pragma once
+
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+
+#include "common/program/failure.hpp"
+
+namespace drogue::test {
+
+/// A directory of its own for one test, removed with it.
+class TemporaryDirectory {
+ public:
+  TemporaryDirectory() {
+    std::string name = (std::filesystem::temp_directory_path() / "drogue-test-XXXXXX").string();
+    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("cannot create " + name);
+    _path = name;
+  }
+  ~TemporaryDirectory() {
+    std::error_code ignored;
+    std::filesystem::remove_all(_path, ignored);
+  }
+  TemporaryDirectory(const TemporaryDirectory&) = delete;
+  TemporaryDirectory& operator=(const TemporaryDirectory&) = delete;
+
+  [[nodiscard]] const std::filesystem::path& path() const { return _path; }
+  [[nodiscard]] std::filesystem::path operator/(const std::string& name) const { return _path / name; }
+  [[nodiscard]] std::size_t entries() const {
+    std::size_t count = 0;
+    for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(_path)) ++count;
+    return count;
+  }
+
+ private:
+  std::filesystem::path _path;
+};
+
+inline std::string content(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
+
+/// The sentence of the Failure that `action` throws with `code`; another outcome is told in its place.
+inline std::string failure_of(ExitCode code, const std::function<void()>& action) {
+  try {
+    action();
+  } catch (const Failure& failure) {
+    if (failure.code() == code) return failure.what();
+    return "exit code " + std::to_string(static_cast<int>(failure.code())) + ": " + failure.what();
+  }
+  return "no failure";
+}
+
+/// Runs `action` in a child process; returns its wait status. What `action` throws ends the child with
+/// status 99.
+inline int in_child(const std::function<int()>& action) {
+  const pid_t child = fork();
+  if (child == 0) {
+    int status = 99;
+    try {
+      status = action();
+    } catch (...) {
+      status = 99;
+    }
+    _exit(status);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  return status;
+}
+
+/// No file of this process may grow beyond `bytes`: writing fails as on a full disk, with EFBIG.
+inline void limit_file_size(rlim_t bytes) {
+  std::signal(SIGXFSZ, SIG_IGN);
+  const rlimit limit = {bytes, bytes};
+  setrlimit(RLIMIT_FSIZE, &limit);
+}
+
+}  // namespace drogue::test
