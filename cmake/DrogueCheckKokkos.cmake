@@ -22,7 +22,12 @@ if(DROGUE_CUDA)
     message(FATAL_ERROR "Kokkos 4.7.0 with nvcc and C++20 is miscompiled (its mdspan View computes wrong addresses in a "
                         "deep_copy): use Kokkos 4.5.1, or rebuild it with -DKokkos_ENABLE_IMPL_VIEW_LEGACY=ON.")
   endif()
-  if(NOT DROGUE_CUDA_ARCH_RESOLVED IN_LIST Kokkos_CUDA_ARCHITECTURES)
+  # Kokkos 4.5 has no name for Blackwell: scripts/setup.sh builds it as Hopper with machine code for both.
+  set(_accepted "${Kokkos_CUDA_ARCHITECTURES}")
+  if(Kokkos_VERSION VERSION_LESS "4.6" AND "90" IN_LIST Kokkos_CUDA_ARCHITECTURES)
+    list(APPEND _accepted 100)
+  endif()
+  if(NOT DROGUE_CUDA_ARCH_RESOLVED IN_LIST _accepted)
     message(FATAL_ERROR "The Kokkos in ${Kokkos_DIR} was built for architecture ${Kokkos_CUDA_ARCHITECTURES}, not "
                         "${DROGUE_CUDA_ARCH_RESOLVED}: run DROGUE_CUDA_ARCH=${DROGUE_CUDA_ARCH_RESOLVED} scripts/setup.sh.")
   endif()

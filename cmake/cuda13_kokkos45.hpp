@@ -1,7 +1,7 @@
 #pragma once
 
-// Kokkos 4.5 calls three CUDA runtime functions by signatures that CUDA 13 dropped. These overloads bring them back;
-// the header is force-included into every CUDA source, because the calls are in headers of Kokkos.
+// Kokkos 4.5 calls three CUDA runtime functions by signatures that CUDA 13 dropped. These overloads bring
+// them back; the header is force-included into every CUDA source, because the calls are in headers of Kokkos.
 // With CUDA 12 or older, or in a source of another language, it is empty.
 
 #if defined(__CUDACC__)
@@ -21,7 +21,8 @@ inline cudaMemLocation location(int device) {
 
 }  // namespace drogue_cuda13
 
-inline cudaError_t cudaMemPrefetchAsync(const void* pointer, size_t bytes, int device, cudaStream_t stream = nullptr) {
+inline cudaError_t cudaMemPrefetchAsync(const void* pointer, size_t bytes, int device,
+                                        cudaStream_t stream = nullptr) {
   return cudaMemPrefetchAsync(pointer, bytes, drogue_cuda13::location(device), 0U, stream);
 }
 
@@ -35,8 +36,8 @@ inline cudaError_t cudaMemAdvise_v2(const void* pointer, size_t bytes, cudaMemor
   return cudaMemAdvise(pointer, bytes, advice, place);
 }
 
-inline cudaError_t cudaGraphAddDependencies(cudaGraph_t graph, const cudaGraphNode_t* from, const cudaGraphNode_t* to,
-                                            size_t count) {
+inline cudaError_t cudaGraphAddDependencies(cudaGraph_t graph, const cudaGraphNode_t* from,
+                                            const cudaGraphNode_t* to, size_t count) {
   return cudaGraphAddDependencies(graph, from, to, nullptr, count);
 }
 

@@ -6,18 +6,18 @@ namespace drogue {
 
 /// Facts about this build; every text is fixed when it is compiled.
 struct BuildInfo {
-  std::string_view version;     ///< of the project, "0.1.0"
-  std::string_view git;         ///< 12 digits, "-dirty" after them if files were changed; "unknown" without git
-  std::string_view compiler;    ///< "GNU 12.2.0", in a CUDA build with nvcc and the architecture
-  std::string_view flags;       ///< of the host compiler
+  std::string_view version;   ///< of the project, "0.1.0"
+  std::string_view git;       ///< 12 digits, "-dirty" after them if files were changed; "unknown" without git
+  std::string_view compiler;  ///< "GNU 12.2.0", in a CUDA build with nvcc and the architecture
+  std::string_view flags;     ///< of the host compiler
   std::string_view build_type;  ///< "Release"
   std::string_view kokkos;
   std::string_view kokkos_kernels;
   std::string_view mpi;
-  std::string_view hdf5;        ///< version and "serial" or "parallel"
+  std::string_view hdf5;  ///< version and "serial" or "parallel"
   std::string_view hypre;
-  std::string_view backends;    ///< compiled in, separated by blanks: "serial openmp"
-  bool exact;                   ///< no fused multiply-add: backends agree bit for bit
+  std::string_view backends;  ///< compiled in, separated by blanks: "serial openmp"
+  bool exact;                 ///< no fused multiply-add: backends agree bit for bit
 };
 
 [[nodiscard]] const BuildInfo& build_info() noexcept;

@@ -1,0 +1,35 @@
+#!/usr/bin/env bash
+# Configures and builds one preset into build/PRESET.
+#
+#   scripts/build.sh [PRESET] [--system] [-DNAME=VALUE ...] [--target NAME ...]      PRESET: host (default), cuda, exact, cuda-exact, asan, debug
+. "$(dirname "${BASH_SOURCE[0]}")/lib/common.sh"
+
+preset=host options=() targets=()
+while [ $# -gt 0 ]; do
+  case "$1" in
+    --system) options+=(-DDROGUE_SYSTEM=ON) ;;
+    -D*) options+=("$1") ;;
+    --target) targets+=(--target "${2:?--target needs a name}") && shift ;;
+    -*) fail "unknown argument $1: see the head of scripts/build.sh." ;;
+    *) preset="$1" ;;
+  esac
+  shift
+done
+
+cd "$root"
+nvcc="$(find_nvcc)"
+case "$preset" in
+  cuda*)
+    [ -n "$nvcc" ] || fail "preset $preset needs nvcc: install the CUDA toolkit, or build preset host."
+    options+=("-DDROGUE_CUDA_ARCH=${DROGUE_CUDA_ARCH:-90}")
+    ;;
+esac
+# The log is short when all is well; on failure the part that matters is shown.
+run_logged "configure-$preset" cmake --preset "$preset" ${options[@]+"${options[@]}"}
+say "building preset $preset in build/$preset"
+log="$deps/log/build-$preset.log"
+if ! cmake --build "build/$preset" --parallel "$jobs" ${targets[@]+"${targets[@]}"} >"$log" 2>&1; then
+  grep -E -A 12 'error|FAILED' "$log" | head -n 60 >&2 || tail -n 40 "$log" >&2
+  explain_failure "build of $preset" "$log"
+fi
+grep -A 6 'warning:' "$log" >&2 || true
