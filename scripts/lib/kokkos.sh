@@ -1,0 +1,125 @@
+# Fetches, checks and builds Kokkos and Kokkos Kernels; read by setup.sh after common.sh.
+
+# python_environment: makes $deps/venv with the pinned packages for fetching and, unless told not to, for pictures.
+python_environment() {
+  local wanted python="$deps/venv/bin/python"
+  wanted="$(cat "$root/scripts/requirements.txt" <(printf '%s\n' "$FETCH_REQUIREMENTS") <(python3 --version) | sha256sum)"
+  if [ "$(cat "$deps/venv/.stamp" 2>/dev/null)" = "$wanted" ] && [ -x "$python" ]; then return 0; fi
+  say "making the Python environment"
+  rm -rf "$deps/venv"
+  run_logged venv python3 -m venv "$deps/venv"
+  # shellcheck disable=SC2086  # one word a requirement
+  run_logged pip-tools "$python" -m pip install --quiet --disable-pip-version-check $FETCH_REQUIREMENTS
+  run_logged pip-pictures "$python" -m pip install --quiet --disable-pip-version-check -r "$root/scripts/requirements.txt"
+  printf '%s\n' "$wanted" >"$deps/venv/.stamp"
+}
+
+# check_archive FILE: stops unless FILE is the pinned archive.
+check_archive() {
+  local got
+  got="$(sha256sum "$1" | cut -d ' ' -f 1)"
+  [ "$got" = "$KOKKOS_SHA256" ] || fail "$1 has SHA-256 $got, but scripts/dependencies.env pins $KOKKOS_SHA256: delete the file and fetch it from a source you trust."
+}
+
+# fetch_kokkos: leaves the checked archive in $deps/$KOKKOS_ARCHIVE. DROGUE_KOKKOS_ARCHIVE names a copy to take instead.
+fetch_kokkos() {
+  local archive="$deps/$KOKKOS_ARCHIVE"
+  if [ -n "${DROGUE_KOKKOS_ARCHIVE:-}" ] && [ ! -e "$archive" ]; then
+    [ -r "$DROGUE_KOKKOS_ARCHIVE" ] || fail "DROGUE_KOKKOS_ARCHIVE names $DROGUE_KOKKOS_ARCHIVE, which cannot be read."
+    check_archive "$DROGUE_KOKKOS_ARCHIVE"
+    cp "$DROGUE_KOKKOS_ARCHIVE" "$archive"
+  fi
+  if [ ! -e "$archive" ]; then
+    say "fetching Kokkos $KOKKOS_VERSION"
+    # A requirement with its hash: pip refuses another file before anything of it runs.
+    printf '%s==%s --hash=sha256:%s\n' "$KOKKOS_PACKAGE" "$KOKKOS_PACKAGE_VERSION" "$KOKKOS_SHA256" >"$deps/kokkos-requirement.txt"
+    run_logged kokkos-fetch "$deps/venv/bin/python" -m pip download --disable-pip-version-check --no-deps \
+      --no-build-isolation --no-binary "$KOKKOS_PACKAGE" --dest "$deps" --require-hashes -r "$deps/kokkos-requirement.txt"
+  fi
+  check_archive "$archive"
+}
+
+unpack_kokkos() {
+  local source="$deps/source"
+  [ -d "$source/kokkos-kernels" ] && [ "$(cat "$source/.stamp" 2>/dev/null)" = "$KOKKOS_SHA256" ] && return 0
+  fetch_kokkos
+  rm -rf "$source"
+  mkdir -p "$source"
+  local top="${KOKKOS_ARCHIVE%.tar.gz}"
+  run_logged unpack tar -xzf "$deps/$KOKKOS_ARCHIVE" -C "$source" --strip-components=1 "$top/kokkos" "$top/kokkos-kernels"
+  printf '%s\n' "$KOKKOS_SHA256" >"$source/.stamp"
+}
+
+# kokkos_architecture NUMBER: the name by which Kokkos knows it. Kokkos 4.5 has none for 100: see kokkos_cuda_flags.
+kokkos_architecture() {
+  case "$1" in
+    80 | 86) echo "AMPERE$1" ;;
+    89) echo ADA89 ;;
+    90 | 100) echo HOPPER90 ;;
+    *) fail "DROGUE_CUDA_ARCH=$1 is not one of 80, 86, 89, 90, 100, native." ;;
+  esac
+}
+
+# kokkos_cuda_flags NUMBER: CMake 3.25 does not know how to ask nvcc for C++20. For 100 Kokkos is told Hopper and the machine code for Blackwell is made beside it.
+kokkos_cuda_flags() {
+  printf -- '-std=c++20 -include %s/cmake/cuda13_kokkos45.hpp' "$root"
+  [ "$1" != 100 ] || printf -- ' --generate-code=arch=compute_100,code=[compute_100,sm_100]'
+}
+
+# variant_stamp VARIANT ARCH: what the installation depends on. Native code of another processor is built anew.
+variant_stamp() {
+  {
+    printf '%s\n' "$1" "$2" "$KOKKOS_SHA256"
+    cat "$root/scripts/lib/kokkos.sh" "$root/cmake/cuda13_kokkos45.hpp"
+    "${CXX:-c++}" -dumpfullversion -dumpmachine
+    [ "$1" = bundle ] || grep -m 1 '^flags' /proc/cpuinfo
+    case "$1" in *cuda*) "$nvcc" --version ;; esac
+  } 2>/dev/null | sha256sum
+}
+
+# build_kokkos VARIANT [ARCH]: installs host, cuda, bundle or bundle-cuda into $deps/VARIANT.
+build_kokkos() {
+  local variant="$1" arch="${2:-}" stamp
+  stamp="$(variant_stamp "$variant" "$arch")"
+  [ "$(cat "$deps/$variant/.stamp" 2>/dev/null)" = "$stamp" ] && return 0
+  local free
+  free="$(df -Pk "$deps" | awk 'NR == 2 { print int($4 / 1024) }')"
+  [ "$free" -ge 1000 ] || fail "the disk of $deps has ${free} MB free and Kokkos needs 1000 MB: free some space, or set DROGUE_DEPS to a larger disk."
+  unpack_kokkos
+  say "building Kokkos and Kokkos Kernels $KOKKOS_VERSION ($variant${arch:+, architecture $arch})"
+  local common=(-G Ninja -Wno-dev -DCMAKE_BUILD_TYPE=Release "-DCMAKE_INSTALL_PREFIX=$deps/$variant"
+    -DCMAKE_CXX_STANDARD=20 -DCMAKE_CXX_EXTENSIONS=OFF -DCMAKE_POSITION_INDEPENDENT_CODE=ON -DBUILD_SHARED_LIBS=OFF)
+  local kokkos=(-DKokkos_ENABLE_SERIAL=ON -DKokkos_ENABLE_OPENMP=ON)
+  local kernels=(-DKokkosKernels_ENABLE_ALL_COMPONENTS=OFF -DKokkosKernels_ENABLE_COMPONENT_BATCHED=ON
+    -DKokkosKernels_ENABLE_COMPONENT_BLAS=ON -DKokkosKernels_ADD_DEFAULT_ETI=OFF -DKokkosKernels_INST_DOUBLE=OFF
+    -DKokkosKernels_INST_LAYOUTLEFT=OFF "-DKokkos_ROOT=$deps/$variant")
+  # The bundle runs on other machines: x86-64-v3 rather than this processor.
+  case "$variant" in bundle*) kokkos+=(-DKokkos_ARCH_AVX2=ON) ;; *) kokkos+=(-DKokkos_ARCH_NATIVE=ON) ;; esac
+  case "$variant" in
+    *cuda*)
+      common+=("-DCMAKE_CUDA_COMPILER=$nvcc"
+        "-DCMAKE_CUDA_ARCHITECTURES=$arch" "-DCMAKE_CUDA_FLAGS=$(kokkos_cuda_flags "$arch")")
+      kokkos+=(-DKokkos_ENABLE_CUDA=ON -DKokkos_ENABLE_COMPILE_AS_CMAKE_LANGUAGE=ON
+        "-DKokkos_ARCH_$(kokkos_architecture "$arch")=ON")
+      kernels+=(-DKokkosKernels_ENABLE_TPL_CUBLAS=OFF -DKokkosKernels_ENABLE_TPL_CUSPARSE=OFF
+        -DKokkosKernels_ENABLE_TPL_CUSOLVER=OFF)
+      ;;
+  esac
+  if command -v ccache >/dev/null; then
+    common+=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache -DCMAKE_CUDA_COMPILER_LAUNCHER=ccache)
+  fi
+  rm -rf "${deps:?}/$variant" "$deps/work-$variant"
+  build_one "$variant" kokkos "${common[@]}" "${kokkos[@]}"
+  build_one "$variant" kokkos-kernels "${common[@]}" "${kernels[@]}"
+  rm -rf "$deps/work-$variant"
+  printf '%s\n' "$stamp" >"$deps/$variant/.stamp"
+}
+
+# build_one VARIANT FOLDER OPTIONS...: configure, compile, install.
+build_one() {
+  local variant="$1" folder="$2" work="$deps/work-$1/$2"
+  shift 2
+  run_logged "$folder-$variant-configure" cmake -S "$deps/source/$folder" -B "$work" "$@"
+  run_logged "$folder-$variant-build" cmake --build "$work" --parallel "$jobs"
+  run_logged "$folder-$variant-install" cmake --install "$work"
+}
