@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.colors import LogNorm, Normalize
-from matplotlib.ticker import MaxNLocator
+from matplotlib.ticker import MaxNLocator, NullFormatter
 
 from . import style
 from .exact import WENO_NAMES, ExactSolution, errors
@@ -108,7 +108,7 @@ def set_range(axes, arrays) -> None:
     margin = 0.06 * (high - low)
     if high - low <= 1e-9 * max(abs(high), abs(low)):
         # A field that does not vary must not look as if it did.
-        margin = 0.1 * max(abs(high), 1e-30)
+        margin = 0.1 * abs(high) or 1.0
     axes.set_ylim(low - margin, high + margin)
 
 
@@ -122,20 +122,21 @@ def _error_title(run: Run, name: str) -> str:
     return rf"|error|,  $L_1$ = {style.number(value)}{bar}"
 
 
-def _draw_error(axes, view: View, name: str, error: np.ndarray, title: str) -> None:
+def _draw_error(axes, view: View, snapshot: Snapshot, name: str, error: np.ndarray, title: str) -> None:
     axes.set_title(title, fontsize=8, pad=4)
     size = np.abs(error)
-    if not np.any(size > 0):
-        axes.set_yticks([])
-        axes.text(
-            0.5, 0.5, "exactly 0", transform=axes.transAxes, ha="center", va="center", color=style.MUTED
-        )
-        return
     top = np.nanmax(size)
-    floor = max(np.min(size[size > 0]), 1e-8 * top)
+    if not top > 1e-14 * np.nanmax(np.abs(snapshot.fields[name].values)):
+        words = f"round-off, {style.number(top)}" if top > 0 else "exactly 0"
+        axes.set_yticks([])
+        axes.text(0.5, 0.5, words, transform=axes.transAxes, ha="center", va="center", color=style.MUTED)
+        return
+    # Eight decades hold what matters; fewer than two would leave the axis without a scale.
+    floor = np.clip(np.min(size[size > 0]), 1e-8 * top, 1e-2 * top)
     shown = np.where(size > 0, np.maximum(size, floor), np.nan)
     axes.plot(*style.thin(view.x, shown), color=style.ERROR_COLOUR, linewidth=0.9)
     axes.set_yscale("log")
+    axes.yaxis.set_minor_formatter(NullFormatter())
     axes.set_ylim(floor / 2, top * 3)
 
 
@@ -156,7 +157,7 @@ def fields_figure(view: View, snapshot: Snapshot):
         set_range(axes[0][column], [snapshot.fields[name].values])
         if name in error:
             title = _error_title(view.run, name) if final else "|error|"
-            _draw_error(axes[1][column], view, name, error[name], title)
+            _draw_error(axes[1][column], view, snapshot, name, error[name], title)
         elif shows_exact:
             axes[1][column].set_axis_off()
         axes[-1][column].set_xlabel(view.x_label)

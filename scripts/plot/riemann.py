@@ -71,7 +71,8 @@ def _fan(xi: np.ndarray, side: State, gamma: float) -> tuple[np.ndarray, np.ndar
     """State inside the rarefaction that leaves `side` to the left of the contact (Toro 4.56)."""
     c = side.sound_speed(gamma)
     factor = 2 / (gamma + 1) + (gamma - 1) / ((gamma + 1) * c) * (side.u - xi)
-    factor = np.maximum(factor, 0.0)
+    # Between its head, 1, and vacuum, 0; speeds outside the fan are asked for too and not used.
+    factor = np.clip(factor, 0.0, 1.0)
     rho = side.rho * factor ** (2 / (gamma - 1))
     u = 2 / (gamma + 1) * (c + 0.5 * (gamma - 1) * side.u + xi)
     return rho, u, side.p * factor ** (2 * gamma / (gamma - 1))
