@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Sets up, builds for this machine, runs every shipped scene, verifies it, draws it and makes one page of all.
+# Sets up, builds for this machine, runs every shipped scene, verifies it, draws it, and makes one page of all.
 #
 #   scripts/demo.sh [--system] [SCENE...]
 #     --system   install nothing, use the libraries and the Python packages that are there
@@ -8,38 +8,33 @@
 # Environment: DROGUE_DEMO_OUT (folder of the page, default out/demo), and that of scripts/setup.sh.
 . "$(dirname "${BASH_SOURCE[0]}")/lib/common.sh"
 
-setup_arguments=() scenes=()
+options=() scenes=()
 for argument in "$@"; do
   case "$argument" in
-    --system) setup_arguments+=(--system) ;;
+    --system) options+=(--system) ;;
     -h | --help) sed -n '2,/^[^#]/s/^# \{0,1\}//p' "$0" && exit 0 ;;
     -*) fail "unknown argument $argument: see scripts/demo.sh --help." ;;
     *) scenes+=("$argument") ;;
   esac
 done
-out="${DROGUE_DEMO_OUT:-$root/out/demo}"
 
-say "set-up"
-"$root/scripts/setup.sh" "${setup_arguments[@]}"
+"$root/scripts/setup.sh" ${options[@]+"${options[@]}"}
 
 preset=host
-nvcc="$(find_nvcc)"
-if [ -n "$nvcc" ] && nvidia-smi -L >/dev/null 2>&1; then
+if [ -n "$(find_nvcc)" ] && nvidia-smi -L >/dev/null 2>&1; then
   preset=cuda
-  export CUDACXX="$nvcc"
 fi
+# The mini-apps alone: the tests take longer to build than all scenes to run.
+targets=()
+for main in "$root"/miniapps/*/main.cpp; do
+  targets+=(--target "drogue-$(basename "$(dirname "$main")")")
+done
+"$root/scripts/build.sh" "$preset" ${options[@]+"${options[@]}"} "${targets[@]}"
 
-say "build ($preset)"
-mkdir -p "$root/build"
-log="$root/build/demo-build.log"
-cd "$root"
-{ cmake --preset "$preset" && cmake --build --preset "$preset" --parallel "$jobs"; } >"$log" 2>&1 || {
-  tail -n 25 "$log" >&2
-  fail "the build failed: the first error is in $log."
-}
-
-say "scenes"
+say "running the scenes"
 python="$root/build/venv/bin/python3"
 [ -x "$python" ] || python=python3
-PYTHONPATH="$root/scripts${PYTHONPATH:+:$PYTHONPATH}" \
-  exec "$python" -m plot.demo --bin "$root/build/$preset/bin" --out "$out" "${scenes[@]}"
+"$python" -c 'import h5py, jinja2, matplotlib, PIL' 2>/dev/null ||
+  fail "$python lacks the packages of the pictures: install those of scripts/requirements.txt, or start without --system."
+PYTHONPATH="$root/scripts${PYTHONPATH:+:$PYTHONPATH}" exec "$python" -m plot.demo \
+  --bin "$root/build/$preset/bin" --out "${DROGUE_DEMO_OUT:-$root/out/demo}" ${scenes[@]+"${scenes[@]}"}
