@@ -17,10 +17,10 @@ struct Function {
 };
 
 constexpr std::array<Function, 28> functions = {
-    {{"sin", 1},   {"cos", 1},   {"tan", 1},   {"asin", 1},  {"acos", 1},  {"atan", 1}, {"atan2", 2},
-     {"sinh", 1},  {"cosh", 1},  {"tanh", 1},  {"asinh", 1}, {"acosh", 1}, {"atanh", 1}, {"exp", 1},
-     {"log", 1},   {"ln", 1},    {"log2", 1},  {"log10", 1}, {"sqrt", 1},  {"abs", 1},  {"sign", 1},
-     {"rint", 1},  {"min", 0},   {"max", 0},   {"sum", 0},   {"avg", 0},   {"besselj", 2}, {"floor", 1}}};
+    {{"sin", 1},  {"cos", 1},  {"tan", 1},  {"asin", 1},  {"acos", 1},  {"atan", 1},    {"atan2", 2},
+     {"sinh", 1}, {"cosh", 1}, {"tanh", 1}, {"asinh", 1}, {"acosh", 1}, {"atanh", 1},   {"exp", 1},
+     {"log", 1},  {"ln", 1},   {"log2", 1}, {"log10", 1}, {"sqrt", 1},  {"abs", 1},     {"sign", 1},
+     {"rint", 1}, {"min", 0},  {"max", 0},  {"sum", 0},   {"avg", 0},   {"besselj", 2}, {"floor", 1}}};
 
 /// Operators by binding strength, weakest first; all of them group from the left.
 const std::vector<std::vector<std::string_view>> levels = {
@@ -52,9 +52,12 @@ class Compiler {
     if (!take(symbol)) fail("expected \"" + symbol + "\", not " + shown(now()));
   }
   static std::string shown(const Token& token) {
-    return token.kind == Token::Kind::end ? "the end of the expression" : "\"" + token.text.substr(0, 40) + "\"";
+    return token.kind == Token::Kind::end ? "the end of the expression"
+                                          : "\"" + token.text.substr(0, 40) + "\"";
   }
-  [[noreturn]] void fail(const std::string& sentence) const { throw ExpressionError(now().position, sentence); }
+  [[noreturn]] void fail(const std::string& sentence) const {
+    throw ExpressionError(now().position, sentence);
+  }
   void emit(std::string_view name, double value = 0.0) { _program.push_back({std::string(name), value}); }
 
   void ternary() {
@@ -114,7 +117,8 @@ class Compiler {
     ++_next;
     if (at("(")) return call(token);
     if (token.text == "pi") return emit("constant", std::numbers::pi);
-    if (std::find(_variables.begin(), _variables.end(), token.text) != _variables.end()) return emit(token.text);
+    if (std::find(_variables.begin(), _variables.end(), token.text) != _variables.end())
+      return emit(token.text);
     --_next;
     std::string known = "pi";
     for (const std::string& variable : _variables) known += ", " + variable;
@@ -122,8 +126,9 @@ class Compiler {
   }
 
   void call(const Token& name) {
-    const auto* function = std::find_if(functions.begin(), functions.end(),
-                                        [&](const Function& candidate) { return candidate.name == name.text; });
+    const auto* function = std::find_if(functions.begin(), functions.end(), [&](const Function& candidate) {
+      return candidate.name == name.text;
+    });
     if (function == functions.end()) {
       --_next;
       std::string known;
@@ -139,7 +144,8 @@ class Compiler {
       if (folds && arguments > 1) emit(name.text == "avg" || name.text == "sum" ? "+" : name.text);
     } while (take(","));
     if (!folds && arguments != function->arguments) {
-      fail(name.text + " takes " + std::to_string(function->arguments) + " argument(s), not " + std::to_string(arguments));
+      fail(name.text + " takes " + std::to_string(function->arguments) + " argument(s), not " +
+           std::to_string(arguments));
     }
     need(")");
     if (!folds) return emit(name.text);
@@ -163,12 +169,11 @@ std::vector<Instruction> compile(const std::string& text, const std::vector<std:
 }
 
 const std::vector<std::string>& function_names() {
-  static const std::vector<std::string> names(
-      [] {
-        std::vector<std::string> result;
-        for (const Function& function : functions) result.emplace_back(function.name);
-        return result;
-      }());
+  static const std::vector<std::string> names([] {
+    std::vector<std::string> result;
+    for (const Function& function : functions) result.emplace_back(function.name);
+    return result;
+  }());
   return names;
 }
 

@@ -7,7 +7,8 @@
 
 namespace drogue::expression {
 
-/// An expression in muParser syntax, evaluated on the host. One copy a thread: a call uses the object's own scratch.
+/// An expression in muParser syntax, evaluated on the host. One copy a thread: a call uses the object's own
+/// scratch.
 class Expression {
  public:
   /// Checks `text` against the grammar of compile.hpp; throws ExpressionError.

@@ -51,7 +51,8 @@ std::vector<Token> tokenize(const std::string& text) {
   std::size_t at = 0;
   const std::string_view whole = text;
   while (true) {
-    while (at < text.size() && (text[at] == ' ' || text[at] == '\t' || text[at] == '\n' || text[at] == '\r')) ++at;
+    while (at < text.size() && (text[at] == ' ' || text[at] == '\t' || text[at] == '\n' || text[at] == '\r'))
+      ++at;
     const int position = static_cast<int>(at) + 1;
     if (at == text.size()) {
       tokens.push_back({Token::Kind::end, "", 0.0, position});

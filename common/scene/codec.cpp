@@ -43,7 +43,8 @@ std::string read_reals(const Node& node, const Limits& limits, bool increasing, 
     double number = 0.0;
     std::string wrong = read_real(element, limits, number);
     if (wrong.empty() && increasing && !numbers.empty() && number <= numbers.back()) {
-      wrong = "= " + real_text(number) + " is not greater than the element before it, " + real_text(numbers.back());
+      wrong = "= " + real_text(number) + " is not greater than the element before it, " +
+              real_text(numbers.back());
     }
     numbers.push_back(number);
     return wrong;
@@ -63,7 +64,8 @@ bool Limits::allow(double value) const {
 std::string Limits::text() const {
   const bool has_low = std::isfinite(low);
   const bool has_high = std::isfinite(high);
-  if (has_low && has_high && !low_excluded && !high_excluded) return short_text(low) + " .. " + short_text(high);
+  if (has_low && has_high && !low_excluded && !high_excluded)
+    return short_text(low) + " .. " + short_text(high);
   std::string text;
   if (has_low) text += (low_excluded ? "> " : ">= ") + short_text(low);
   if (has_low && has_high) text += " and ";
@@ -120,7 +122,8 @@ std::string read_expression(const Node& node, const std::vector<std::string>& va
   try {
     expression::compile(*text, variables);
   } catch (const expression::ExpressionError& error) {
-    return "= " + toml_string(*text) + ", at character " + std::to_string(error.position()) + ": " + error.what();
+    return "= " + toml_string(*text) + ", at character " + std::to_string(error.position()) + ": " +
+           error.what();
   }
   value = *text;
   return {};
@@ -128,7 +131,7 @@ std::string read_expression(const Node& node, const std::vector<std::string>& va
 
 Codec real_codec(double& value) {
   return {"real", [&value](const Node& node, const Limits& limits) { return read_real(node, limits, value); },
-          [&value] { return std::optional(toml_text(value)); }};
+          [&value] { return std::optional(toml_text(value)); }, back_to_default(value)};
 }
 
 Codec real_codec(std::optional<double>& value) {
@@ -139,7 +142,8 @@ Codec real_codec(std::optional<double>& value) {
             if (complaint.empty()) value = number;
             return complaint;
           },
-          [&value] { return value ? std::optional(toml_text(*value)) : std::nullopt; }};
+          [&value] { return value ? std::optional(toml_text(*value)) : std::nullopt; },
+          back_to_default(value)};
 }
 
 Codec real_codec(std::map<std::string, double>& values, const std::string& name) {
@@ -153,7 +157,8 @@ Codec real_codec(std::map<std::string, double>& values, const std::string& name)
           [&values, name] {
             const auto found = values.find(name);
             return found != values.end() ? std::optional(toml_text(found->second)) : std::nullopt;
-          }};
+          },
+          [&values, name] { values.erase(name); }};
 }
 
 Codec boolean_codec(bool& value) {
@@ -164,7 +169,7 @@ Codec boolean_codec(bool& value) {
             value = *boolean;
             return {};
           },
-          [&value] { return std::optional<std::string>(value ? "true" : "false"); }};
+          [&value] { return std::optional<std::string>(value ? "true" : "false"); }, back_to_default(value)};
 }
 
 Codec text_codec(std::string& value) {
@@ -175,7 +180,8 @@ Codec text_codec(std::string& value) {
             value = *text;
             return {};
           },
-          [&value] { return value.empty() ? std::nullopt : std::optional(toml_string(value)); }};
+          [&value] { return value.empty() ? std::nullopt : std::optional(toml_string(value)); },
+          back_to_default(value)};
 }
 
 Codec fixed_codec(std::string value) {
@@ -184,15 +190,18 @@ Codec fixed_codec(std::string value) {
             std::string same;
             return read_name(node, {value}, same);
           },
-          [value] { return std::optional(toml_string(value)); }};
+          [value] { return std::optional(toml_string(value)); }, [] {}};
 }
 
 Codec expression_codec(std::string& value, std::vector<std::string> variables) {
   std::string names;
   for (const std::string& variable : variables) names += (names.empty() ? "" : ", ") + variable;
   return {"expression of " + names,
-          [&value, variables](const Node& node, const Limits&) { return read_expression(node, variables, value); },
-          [&value] { return value.empty() ? std::nullopt : std::optional(toml_string(value)); }};
+          [&value, variables](const Node& node, const Limits&) {
+            return read_expression(node, variables, value);
+          },
+          [&value] { return value.empty() ? std::nullopt : std::optional(toml_string(value)); },
+          back_to_default(value)};
 }
 
 Codec real_or_expression_codec(std::string& value, std::vector<std::string> variables) {
@@ -219,7 +228,13 @@ Codec interval_codec(double& low, double& high) {
             high = ends[1];
             return {};
           },
-          [&low, &high] { return std::optional(array_text({toml_text(low), toml_text(high)})); }};
+          [&low, &high] {
+            return std::optional(array_text({toml_text(low), toml_text(high)}));
+          },
+          [reset_low = back_to_default(low), reset_high = back_to_default(high)] {
+            reset_low();
+            reset_high();
+          }};
 }
 
 Codec reals_codec(std::vector<double>& values, std::size_t size, bool increasing) {
@@ -238,7 +253,8 @@ Codec reals_codec(std::vector<double>& values, std::size_t size, bool increasing
             std::vector<std::string> texts;
             for (const double value : values) texts.push_back(toml_text(value));
             return std::optional(array_text(texts));
-          }};
+          },
+          back_to_default(values)};
 }
 
 Codec names_codec(std::vector<std::string>& values, std::vector<std::string> valid) {
@@ -263,7 +279,8 @@ Codec names_codec(std::vector<std::string>& values, std::vector<std::string> val
             std::vector<std::string> texts;
             for (const std::string& value : values) texts.push_back(toml_string(value));
             return std::optional(array_text(texts));
-          }};
+          },
+          back_to_default(values)};
 }
 
 }  // namespace drogue::scene

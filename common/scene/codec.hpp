@@ -33,7 +33,14 @@ struct Codec {
   /// Returns what is wrong as the rest of a sentence that starts with the key, or nothing.
   std::function<std::string(const Node&, const Limits&)> read;
   std::function<std::optional<std::string>()> print;  ///< as TOML; nothing where no value is set
+  std::function<void()> reset;                        ///< back to what was there at the declaration
 };
+
+/// The `reset` of a codec bound to `value`.
+template <class T>
+std::function<void()> back_to_default(T& value) {
+  return [&value, standard = value] { value = standard; };
+}
 
 /// Text of a number a `--print-scene` reads back exactly.
 std::string toml_text(double value);
@@ -75,7 +82,8 @@ Codec integer_codec(T& value) {
             if (complaint.empty()) value = static_cast<T>(number);
             return complaint;
           },
-          [&value] { return std::optional(toml_text(static_cast<std::int64_t>(value))); }};
+          [&value] { return std::optional(toml_text(static_cast<std::int64_t>(value))); },
+          back_to_default(value)};
 }
 
 template <class T>
@@ -104,7 +112,8 @@ Codec choice_codec(Place& value, const Choices<T>& choices) {
               if (value == meaning) return toml_string(name);
             }
             return std::nullopt;
-          }};
+          },
+          back_to_default(value)};
 }
 
 }  // namespace drogue::scene

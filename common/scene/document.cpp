@@ -24,7 +24,8 @@ class Documenter {
     for (const auto& key : table._keys) {
       if (key->_kind == Key::Kind::value) rows += row(*key);
     }
-    if (!rows.empty()) text += "| key | type | unit | default | range | meaning |\n|---|---|---|---|---|---|\n" + rows + "\n";
+    if (!rows.empty())
+      text += "| key | type | unit | default | range | meaning |\n|---|---|---|---|---|---|\n" + rows + "\n";
     each_child(table, [&text](const Table& child, const Key& key) { sections(child, &key, text); });
   }
 

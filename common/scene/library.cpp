@@ -54,9 +54,11 @@ std::filesystem::path find_scene(const std::string& argument, const std::filesys
     if (scene.name == argument) return scene.file;
     names.push_back(scene.name);
   }
-  if (std::filesystem::exists(argument, unreadable)) return argument;  // a folder or a pipe: reading it says what is wrong
+  if (std::filesystem::exists(argument, unreadable))
+    return argument;  // a folder or a pipe: reading it says what is wrong
   const std::string hint = names.empty() ? "" : "; " + suggestion(argument, names);
-  throw Failure(ExitCode::usage, "there is no scene file " + argument + " and no shipped scene of that name" + hint);
+  throw Failure(ExitCode::usage,
+                "there is no scene file " + argument + " and no shipped scene of that name" + hint);
 }
 
 }  // namespace drogue::scene

@@ -12,7 +12,8 @@ struct ShippedScene {
   std::filesystem::path file;
 };
 
-/// The scenes in a folder, by name; none where the folder is missing. A file that is not TOML has no description.
+/// The scenes in a folder, by name; none where the folder is missing. A file that is not TOML has no
+/// description.
 std::vector<ShippedScene> list_scenes(const std::filesystem::path& folder);
 
 /// One line a scene: its name, then its description.

@@ -59,7 +59,8 @@ std::string describe(const Node& node) {
       constexpr std::size_t longest = 60;
       if (value.size() <= longest) return "the string " + toml_string(value);
       std::size_t cut = longest;
-      while (cut > 0 && (static_cast<unsigned char>(value[cut]) & 0xC0U) == 0x80U) --cut;  // whole UTF-8 characters
+      while (cut > 0 && (static_cast<unsigned char>(value[cut]) & 0xC0U) == 0x80U)
+        --cut;  // whole UTF-8 characters
       return "the string " + toml_string(value.substr(0, cut)) + "...";
     }
     std::string operator()(Date) const { return "a date or time"; }

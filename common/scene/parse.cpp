@@ -41,7 +41,8 @@ Node::Table convert_table(const toml::table& source, const Place& place) {
   // toml++ sorts by name; the user reads from top to bottom
   std::vector<std::pair<toml::source_position, std::size_t>> order;
   for (const auto& [key, value] : source) order.emplace_back(key.source().begin, order.size());
-  std::stable_sort(order.begin(), order.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::stable_sort(order.begin(), order.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
   Node::Table sorted;
   for (const auto& [position, index] : order) sorted.push_back(std::move(table[index]));
   return sorted;
@@ -85,7 +86,8 @@ std::vector<std::string> split_path(const std::string& path, const std::string& 
   std::vector<std::string> parts;
   std::istringstream stream(path);
   for (std::string part; std::getline(stream, part, '.');) parts.push_back(part);
-  const bool empty_part = std::any_of(parts.begin(), parts.end(), [](const auto& part) { return part.empty(); });
+  const bool empty_part =
+      std::any_of(parts.begin(), parts.end(), [](const auto& part) { return part.empty(); });
   if (parts.empty() || empty_part || path.back() == '.') {
     throw Failure(ExitCode::invalid_scene, place + ": the key is not of the form table.key");
   }

@@ -6,7 +6,8 @@
 
 namespace drogue::scene {
 
-/// The scene that `root` is bound to, as TOML: every value that is set and applies, in the order of declaration.
+/// The scene that `root` is bound to, as TOML: every value that is set and applies, in the order of
+/// declaration.
 std::string print(const Table& root);
 
 }  // namespace drogue::scene

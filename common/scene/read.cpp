@@ -25,6 +25,7 @@ class Reader {
 
   void run(const Node& document) {
     take(_root, document);
+    drop_overridden(_root);
     check(_root);
     const auto worst = std::min_element(_problems.begin(), _problems.end(),
                                         [](const Problem& a, const Problem& b) { return a.rank < b.rank; });
@@ -68,13 +69,15 @@ class Reader {
 
   void take_tables(Key& key, const Member& member, const std::string& path) {
     const auto* array = member.node.as<Node::Array>();
-    const bool all_tables = array != nullptr && std::all_of(array->begin(), array->end(), [](const Node& element) {
-                              return element.as<Node::Table>() != nullptr;
-                            });
+    const bool all_tables =
+        array != nullptr && std::all_of(array->begin(), array->end(), [](const Node& element) {
+          return element.as<Node::Table>() != nullptr;
+        });
     if (!all_tables || array->empty()) {
       const bool empty = array != nullptr && array->empty();
-      const std::string what = empty ? "an empty array" : array != nullptr ? "an array of other things"
-                                                                           : describe(member.node);
+      const std::string what = empty              ? "an empty array"
+                               : array != nullptr ? "an array of other things"
+                                                  : describe(member.node);
       return report(Rank::value, member.origin, path + " must be an array of tables, not " + what);
     }
     key._resize(array->size());
@@ -91,6 +94,30 @@ class Reader {
     return text + suggestion(name, valid);
   }
 
+  static bool is_set(const Key* key) { return key != nullptr && key->_origin.starts_with("--set "); }
+
+  static void drop(Key& key) {
+    key._origin.clear();
+    if (key._codec.reset) key._codec.reset();
+    if (key._resize) key._resize(0);
+  }
+
+  /// A `--set` has the last word: what the file gives and the assignment makes meaningless is forgotten.
+  static void drop_overridden(Table& table) {
+    const auto set_alternative =
+        std::find_if(table._alternatives.begin(), table._alternatives.end(),
+                     [&](const std::string& name) { return is_set(table.find(name)); });
+    for (const auto& key : table._keys) {
+      const bool from_file = key->given() && !is_set(key.get());
+      const bool replaced = set_alternative != table._alternatives.end() &&
+                            std::find(table._alternatives.begin(), table._alternatives.end(), key->_name) !=
+                                table._alternatives.end();
+      const bool meaningless = is_set(table.find(key->_decided_by)) && !key->_applies();
+      if (from_file && (replaced || meaningless)) drop(*key);
+      for (const auto& child : key->_tables) drop_overridden(*child);
+    }
+  }
+
   /// What can only be seen once every value is read.
   void check(const Table& table) {
     for (const auto& key : table._keys) {
@@ -102,8 +129,8 @@ class Reader {
       if (key->_required && applies && !key->given()) {
         const std::string condition = key->_condition.empty() ? "" : " (needed " + key->_condition + ")";
         report(Rank::missing, table._origin.empty() ? _root._origin : table._origin,
-               "missing " + std::string(key->_kind == Key::Kind::value ? "key " : "table ") + toml_string(path) + condition +
-                   ": " + key->_help);
+               "missing " + std::string(key->_kind == Key::Kind::value ? "key " : "table ") +
+                   toml_string(path) + condition + ": " + key->_help);
       }
       for (const auto& child : key->_tables) {
         // a fixed table that is missing is one error, not one for each of its keys
@@ -121,8 +148,9 @@ class Reader {
       const Key* key = table.find(name);
       if (!key->given()) continue;
       if (first != nullptr) {
-        report(Rank::contradiction, key->_origin, table.path_of(name) + " contradicts " + table.path_of(first->_name) +
-                                                      ": a scene has only one of them");
+        report(Rank::contradiction, key->_origin,
+               table.path_of(name) + " contradicts " + table.path_of(first->_name) +
+                   ": a scene has only one of them");
       }
       first = key;
     }

@@ -15,9 +15,10 @@ Key& Key::required() {
   return *this;
 }
 
-Key& Key::when(std::function<bool()> applies, std::string condition) {
+Key& Key::when(std::function<bool()> applies, std::string condition, std::string decided_by) {
   _applies = std::move(applies);
   _condition = std::move(condition);
+  _decided_by = std::move(decided_by);
   return *this;
 }
 

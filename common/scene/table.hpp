@@ -10,8 +10,9 @@
 #include "common/scene/codec.hpp"
 #include "common/scene/node.hpp"
 
-/// Declarations of a scene's keys, each bound to the place in a struct that holds its value. One declaration gives
-/// reading, checking, printing, documentation and the texts of errors; a default is what the struct holds.
+/// Declarations of a scene's keys, each bound to the place in a struct that holds its value. One declaration
+/// gives reading, checking, printing, documentation and the texts of errors; a default is what the struct
+/// holds.
 namespace drogue::scene {
 
 class Table;
@@ -21,12 +22,14 @@ class Key {
  public:
   enum class Kind { value, table, optional_table, tables };
 
-  Key(Kind kind, std::string name, std::string help) : _kind(kind), _name(std::move(name)), _help(std::move(help)) {}
+  Key(Kind kind, std::string name, std::string help)
+      : _kind(kind), _name(std::move(name)), _help(std::move(help)) {}
 
   Key& unit(std::string unit);
   Key& required();
-  /// The key may stand in the scene only where this holds; `condition` says so: `with weno = "z"`.
-  Key& when(std::function<bool()> applies, std::string condition);
+  /// The key may stand in the scene only where this holds; `condition` says so: `with weno = "z"`. A `--set`
+  /// of the sibling key `decided_by` drops this key from the file where it no longer applies.
+  Key& when(std::function<bool()> applies, std::string condition, std::string decided_by);
   Key& above(double low);
   Key& at_least(double low);
   Key& at_most(double high);
@@ -55,9 +58,11 @@ class Key {
   Codec _codec;
   std::function<bool()> _applies = [] { return true; };
   std::string _condition;
+  std::string _decided_by;
   std::string _origin;                          ///< where the scene gives it
   std::vector<std::unique_ptr<Table>> _tables;  ///< one, or one an element
-  std::function<void(std::size_t)> _resize;     ///< makes the optional value or the elements and their tables
+  std::function<void(std::size_t)>
+      _resize;  ///< makes the optional value or the elements and their tables, or none
   std::function<std::unique_ptr<Table>()> _prototype;  ///< a table bound to a default value, for the docs
 };
 
@@ -90,7 +95,9 @@ class Table {
   friend class Documenter;
 
   Key& add(Key::Kind kind, const std::string& name, std::string help);
-  [[nodiscard]] std::string path_of(const std::string& name) const { return _path.empty() ? name : _path + "." + name; }
+  [[nodiscard]] std::string path_of(const std::string& name) const {
+    return _path.empty() ? name : _path + "." + name;
+  }
   [[nodiscard]] const Key* find(const std::string& name) const;
   [[nodiscard]] const Key* locate(const std::string& path, std::string& origin) const;
 
@@ -102,7 +109,8 @@ class Table {
 };
 
 template <class T, class Describe>
-Key& Table::optional_table(const std::string& name, std::optional<T>& place, Describe describe, std::string help) {
+Key& Table::optional_table(const std::string& name, std::optional<T>& place, Describe describe,
+                           std::string help) {
   Key& key = add(Key::Kind::optional_table, name, std::move(help));
   const std::string path = path_of(name);
   const auto attach = [&key, &place, describe, path] {
@@ -110,7 +118,10 @@ Key& Table::optional_table(const std::string& name, std::optional<T>& place, Des
     key._tables.push_back(std::make_unique<Table>(path));
     describe(*key._tables.back(), *place);
   };
-  key._resize = [&place, attach](std::size_t) {
+  key._resize = [&key, &place, attach](std::size_t size) {
+    key._tables.clear();
+    place.reset();
+    if (size == 0) return;
     place.emplace();
     attach();
   };

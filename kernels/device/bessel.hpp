@@ -4,8 +4,8 @@
 
 namespace drogue::device::portable {
 
-/// J_0 (order 0) or J_1 for x >= 30: Hankel's asymptotic expansion (Abramowitz and Stegun 9.2.5), cut where its
-/// terms are below 1e-18.
+/// J_0 (order 0) or J_1 for x >= 30: Hankel's asymptotic expansion (Abramowitz and Stegun 9.2.5), cut where
+/// its terms are below 1e-18.
 KOKKOS_INLINE_FUNCTION double bessel_far(int order, double x) {
   const double mu = 4.0 * order * order;
   double p = 1.0;

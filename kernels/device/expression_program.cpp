@@ -73,14 +73,14 @@ const Step& find_step(std::string_view name) {
 void ExpressionBuilder::push(std::string_view name, double value) {
   const Step& step = find_step(name);
   if (_program.length == ExpressionProgram::max_length) {
-    throw std::invalid_argument("the expression is longer than " + std::to_string(ExpressionProgram::max_length) +
-                                " operations");
+    throw std::invalid_argument("the expression is longer than " +
+                                std::to_string(ExpressionProgram::max_length) + " operations");
   }
   if (_depth < step.operands) throw std::invalid_argument("\"" + std::string(name) + "\" lacks an operand");
   _depth += 1 - step.operands;
   if (_depth > ExpressionProgram::max_depth) {
-    throw std::invalid_argument("the expression is nested deeper than " + std::to_string(ExpressionProgram::max_depth) +
-                                " operands");
+    throw std::invalid_argument("the expression is nested deeper than " +
+                                std::to_string(ExpressionProgram::max_depth) + " operands");
   }
   if (step.operation == Operation::constant) {
     if (_constants == ExpressionProgram::max_constants) {

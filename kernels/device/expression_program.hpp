@@ -7,11 +7,51 @@ namespace drogue::device {
 
 /// What one step of an expression program does to its stack of reals.
 enum class Operation : std::uint8_t {
-  constant, x, y, z, t,
-  logical_or, logical_and, equal, unequal, less, greater, less_equal, greater_equal,
-  add, subtract, multiply, divide, power, negate, select,
-  sin, cos, tan, asin, acos, atan, atan2, sinh, cosh, tanh, asinh, acosh, atanh,
-  exp, log, log2, log10, sqrt, abs, sign, rint, floor, min, max, besselj,
+  constant,
+  x,
+  y,
+  z,
+  t,
+  logical_or,
+  logical_and,
+  equal,
+  unequal,
+  less,
+  greater,
+  less_equal,
+  greater_equal,
+  add,
+  subtract,
+  multiply,
+  divide,
+  power,
+  negate,
+  select,
+  sin,
+  cos,
+  tan,
+  asin,
+  acos,
+  atan,
+  atan2,
+  sinh,
+  cosh,
+  tanh,
+  asinh,
+  acosh,
+  atanh,
+  exp,
+  log,
+  log2,
+  log10,
+  sqrt,
+  abs,
+  sign,
+  rint,
+  floor,
+  min,
+  max,
+  besselj,
 };
 
 /// An expression of x, y, z and t as a postfix program: no pointers, copied into kernels as it is.
@@ -26,8 +66,8 @@ struct ExpressionProgram {
 };
 
 /// Puts a program together from the names of its steps: "constant", a variable, an operator as it is written
-/// (`+`, `<=`), "negate", "select" or a function. Each call throws std::invalid_argument (one sentence) for an
-/// unknown name, a stack that does not fit, or a program that is too long.
+/// (`+`, `<=`), "negate", "select" or a function. Each call throws std::invalid_argument (one sentence) for
+/// an unknown name, a stack that does not fit, or a program that is too long.
 class ExpressionBuilder {
  public:
   void push(std::string_view name, double value = 0.0);

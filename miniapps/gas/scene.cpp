@@ -22,7 +22,8 @@ void take_dissertation_scheme(gas::Parameters& parameters) {
 
 }  // namespace
 
-GasScene read_gas_scene(const std::filesystem::path& file, const std::vector<std::string>& sets, SchemeSource source) {
+GasScene read_gas_scene(const std::filesystem::path& file, const std::vector<std::string>& sets,
+                        SchemeSource source) {
   scene::Node document = scene::parse_file(file);
   for (const std::string& assignment : sets) scene::apply_set(document, assignment);
   GasScene result;
@@ -48,8 +49,10 @@ std::string document_gas_scene() {
   scene::Table root;
   declare_gas_scene(root, defaults);
   return "# Gas scenes: all keys\n\n"
-         "Written by `drogue-gas --document-scene`, from the declarations that also check a scene; do not edit.\n"
-         "A scene is a TOML file. Unknown keys are refused. Numbers are in SI units; an integer is accepted for a real.\n\n" +
+         "Written by `drogue-gas --document-scene`, from the declarations that also check a scene; do not "
+         "edit.\n"
+         "A scene is a TOML file. Unknown keys are refused. Numbers are in SI units; an integer is accepted "
+         "for a real.\n\n" +
          scene::document(root);
 }
 

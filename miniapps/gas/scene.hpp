@@ -56,10 +56,17 @@ struct Output {
 
 enum class Exact { riemann, advection, reference };
 
+/// A quantity with a known value, met within a relative tolerance.
+struct Target {
+  double value = 0.0;
+  double tolerance = 0.0;
+};
+
 struct Verify {
   std::optional<Exact> exact;
   std::optional<gas::Parameters> reference;  ///< the finer own run; set exactly if `exact` is reference
   std::map<std::string, double> bars;        ///< by name: l1_density ... linf_pressure
+  std::optional<Target> max_density;         ///< of all cells at the end, kg/m^3
   std::optional<double> conservation;        ///< bar of the relative change of mass, momentum, energy
 };
 
@@ -77,9 +84,9 @@ struct GasScene {
 /// How `--seed-mode` reads a scene: with the dissertation's scheme in place of the scene's.
 enum class SchemeSource { scene, dissertation };
 
-/// Reads and checks `file`, then the `--set` assignments `key.path=value` in their order. The initial state has
-/// been evaluated at every cell when this returns.
-/// Throws Failure: usage for a missing file, invalid_scene (`FILE:LINE: ...`) for all that is wrong in it.
+/// Reads and checks `file`, then the `--set` assignments `key.path=value` in their order. The initial state
+/// has been evaluated at every cell when this returns. Throws Failure: usage for a missing file,
+/// invalid_scene (`FILE:LINE: ...`) for all that is wrong in it.
 GasScene read_gas_scene(const std::filesystem::path& file, const std::vector<std::string>& sets = {},
                         SchemeSource source = SchemeSource::scene);
 

@@ -21,7 +21,9 @@ std::string domain_text(const gas::Parameters& parameters) {
   return "the domain [" + real_text(parameters.x_min) + ", " + real_text(parameters.x_max) + "]";
 }
 
-bool inside(const gas::Parameters& parameters, double x) { return x > parameters.x_min && x < parameters.x_max; }
+bool inside(const gas::Parameters& parameters, double x) {
+  return x > parameters.x_min && x < parameters.x_max;
+}
 
 void check_mesh(const Table& root, const GasScene& scene) {
   const gas::Parameters& parameters = scene.parameters;
@@ -29,8 +31,9 @@ void check_mesh(const Table& root, const GasScene& scene) {
   const double largest = std::max(std::abs(parameters.x_min), std::abs(parameters.x_max));
   const double spacing = std::numeric_limits<double>::epsilon() * largest;
   if (!std::isfinite(length) || length / static_cast<double>(parameters.cells) < 16.0 * spacing) {
-    contradict(root, "mesh.domain", domain_text(parameters) + " cannot be divided into " +
-                                        std::to_string(parameters.cells) + " cells whose centres differ in FP64");
+    contradict(root, "mesh.domain",
+               domain_text(parameters) + " cannot be divided into " + std::to_string(parameters.cells) +
+                   " cells whose centres differ in FP64");
   }
 }
 
@@ -46,8 +49,8 @@ void check_boundary(const Table& root, const gas::Parameters& parameters) {
 void check_riemann(const Table& root, const GasScene& scene) {
   const double x0 = scene.initial.riemann->x0;
   if (!inside(scene.parameters, x0)) {
-    contradict(root, "initial.riemann.x0", "initial.riemann.x0 = " + real_text(x0) + " is not inside " +
-                                               domain_text(scene.parameters));
+    contradict(root, "initial.riemann.x0",
+               "initial.riemann.x0 = " + real_text(x0) + " is not inside " + domain_text(scene.parameters));
   }
 }
 
@@ -56,16 +59,20 @@ void check_regions(const Table& root, const GasScene& scene) {
   for (std::size_t i = 0; i < regions.size(); ++i) {
     const std::string path = "initial.regions[" + std::to_string(i) + "]";
     const bool last = i + 1 == regions.size();
-    if (!regions[i].until && !last) contradict(root, path + ".rho", path + " needs \"until\": only the last region has none");
+    if (!regions[i].until && !last)
+      contradict(root, path + ".rho", path + " needs \"until\": only the last region has none");
     if (!regions[i].until) continue;
     const double until = *regions[i].until;
     const std::string shown = path + ".until = " + real_text(until);
-    if (last) contradict(root, path + ".until", shown + ": the last region reaches the end of the domain and has none");
+    if (last)
+      contradict(root, path + ".until",
+                 shown + ": the last region reaches the end of the domain and has none");
     if (!inside(scene.parameters, until)) {
       contradict(root, path + ".until", shown + " is not inside " + domain_text(scene.parameters));
     }
     if (i > 0 && until <= *regions[i - 1].until) {
-      contradict(root, path + ".until", shown + " is not greater than the one before it, " + real_text(*regions[i - 1].until));
+      contradict(root, path + ".until",
+                 shown + " is not greater than the one before it, " + real_text(*regions[i - 1].until));
     }
   }
 }
@@ -78,8 +85,9 @@ void complete_output(const Table& root, GasScene& scene) {
     contradict(root, "output.times", "output.times is empty, yet output.fields asks for fields");
   }
   if (!output.times.empty() && output.times.back() > scene.end_time) {
-    contradict(root, "output.times", "output.times: " + real_text(output.times.back()) + " is later than run.end_time = " +
-                                         real_text(scene.end_time));
+    contradict(root, "output.times",
+               "output.times: " + real_text(output.times.back()) +
+                   " is later than run.end_time = " + real_text(scene.end_time));
   }
 }
 
@@ -90,14 +98,15 @@ void complete_verify(const Table& root, GasScene& scene) {
   }
   if (verify.exact == Exact::advection &&
       (!scene.initial.expression || scene.parameters.left != gas::Boundary::periodic)) {
-    contradict(root, "verify.exact", "verify.exact = \"advection\" needs initial.expression and periodic boundaries");
+    contradict(root, "verify.exact",
+               "verify.exact = \"advection\" needs initial.expression and periodic boundaries");
   }
   if (!verify.reference) return;
   gas::Parameters& reference = *verify.reference;
   if (reference.cells <= scene.parameters.cells) {
     contradict(root, "verify.reference.cells",
-               "verify.reference.cells = " + std::to_string(reference.cells) + " is not finer than mesh.cells = " +
-                   std::to_string(scene.parameters.cells));
+               "verify.reference.cells = " + std::to_string(reference.cells) +
+                   " is not finer than mesh.cells = " + std::to_string(scene.parameters.cells));
   }
   reference.gamma = scene.parameters.gamma;
   reference.x_min = scene.parameters.x_min;
@@ -114,27 +123,32 @@ struct Survey {
   bool uniform_flow = true;  ///< u and p the same in every cell
 };
 
-[[noreturn]] void refuse_value(const Table& root, const std::string& path, double value, double x, std::int64_t cell,
-                               const std::string& must) {
-  contradict(root, path, path + " gives " + real_text(value) + " at x = " + real_text(x) + " (cell " +
-                             std::to_string(cell) + "); it must be " + must);
+[[noreturn]] void refuse_value(const Table& root, const std::string& path, double value, double x,
+                               std::int64_t cell, const std::string& must) {
+  contradict(root, path,
+             path + " gives " + real_text(value) + " at x = " + real_text(x) + " (cell " +
+                 std::to_string(cell) + "); it must be " + must);
 }
 
 Survey survey(const Table& root, const GasScene& scene) {
   const InitialState state(scene);
   const gas::Parameters& parameters = scene.parameters;
-  const std::string path = scene.initial.riemann ? "initial.riemann"
+  const std::string path = scene.initial.riemann      ? "initial.riemann"
                            : scene.initial.expression ? "initial.expression"
                                                       : "initial.regions";
-  const auto key = [&](const std::string& name) { return scene.initial.expression ? path + "." + name : path; };
+  const auto key = [&](const std::string& name) {
+    return scene.initial.expression ? path + "." + name : path;
+  };
   const Primitive first = state(cell_centre(parameters, 0));
   Survey seen;
   for (std::int64_t i = 0; i < parameters.cells; ++i) {
     const double x = cell_centre(parameters, i);
     const Primitive cell = state(x);
-    if (!(cell.rho > 0.0) || !std::isfinite(cell.rho)) refuse_value(root, key("rho"), cell.rho, x, i, "> 0 and finite");
+    if (!(cell.rho > 0.0) || !std::isfinite(cell.rho))
+      refuse_value(root, key("rho"), cell.rho, x, i, "> 0 and finite");
     if (!std::isfinite(cell.u)) refuse_value(root, key("u"), cell.u, x, i, "finite");
-    if (!(cell.p > 0.0) || !std::isfinite(cell.p)) refuse_value(root, key("p"), cell.p, x, i, "> 0 and finite");
+    if (!(cell.p > 0.0) || !std::isfinite(cell.p))
+      refuse_value(root, key("p"), cell.p, x, i, "> 0 and finite");
     const double energy = cell.p / (parameters.gamma - 1.0) + 0.5 * cell.rho * cell.u * cell.u;
     if (!std::isfinite(energy) || !std::isfinite(parameters.gamma * cell.p / cell.rho)) {
       refuse_value(root, path, energy, x, i, "an energy (J/m^3) and a speed of sound that FP64 holds");
@@ -154,7 +168,8 @@ void check_initial(const Table& root, const GasScene& scene) {
   const double ratio = seen.p_max / seen.p_min;
   if (scene.parameters.precision == gas::Precision::split && ratio > split_pressure_ratio) {
     contradict(root, "scheme.precision",
-               "scheme.precision = \"split\" does its nonlinear part in FP32, which does not carry the ratio of initial pressures " +
+               "scheme.precision = \"split\" does its nonlinear part in FP32, which does not carry the ratio "
+               "of initial pressures " +
                    real_text(ratio) + " of this scene; at most 1e11 is allowed");
   }
   if (scene.verify.exact == Exact::advection && !seen.uniform_flow) {

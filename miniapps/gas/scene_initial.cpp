@@ -58,8 +58,10 @@ struct InitialState::Evaluator {
   Value value;
 };
 
-InitialState::InitialState(const GasScene& scene) : _evaluator(std::make_unique<Evaluator>(Evaluator{value_of(scene)})) {}
-InitialState::InitialState(const InitialState& other) : _evaluator(std::make_unique<Evaluator>(*other._evaluator)) {}
+InitialState::InitialState(const GasScene& scene)
+    : _evaluator(std::make_unique<Evaluator>(Evaluator{value_of(scene)})) {}
+InitialState::InitialState(const InitialState& other)
+    : _evaluator(std::make_unique<Evaluator>(*other._evaluator)) {}
 InitialState::InitialState(InitialState&& other) noexcept = default;
 InitialState& InitialState::operator=(const InitialState& other) { return *this = InitialState(other); }
 InitialState& InitialState::operator=(InitialState&& other) noexcept = default;

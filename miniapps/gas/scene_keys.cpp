@@ -23,7 +23,8 @@ const Choices<gas::Mean> mean_choices = {
     {"arithmetic", gas::Mean::arithmetic}, {"conserved", gas::Mean::conserved}, {"roe", gas::Mean::roe}};
 const Choices<gas::Positivity> positivity_choices = {
     {"off", gas::Positivity::off}, {"on", gas::Positivity::on}, {"auto", gas::Positivity::automatic}};
-const Choices<gas::Precision> precision_choices = {{"double", gas::Precision::full}, {"split", gas::Precision::split}};
+const Choices<gas::Precision> precision_choices = {{"double", gas::Precision::full},
+                                                   {"split", gas::Precision::split}};
 const Choices<gas::Boundary> boundary_choices = {{"outflow", gas::Boundary::outflow},
                                                  {"reflecting", gas::Boundary::reflecting},
                                                  {"periodic", gas::Boundary::periodic}};
@@ -39,13 +40,16 @@ Codec zero_is_unset(Codec codec, const T& value) {
 
 /// What a run and the finer run it is compared with have in common.
 void declare_weights(Table& table, gas::Parameters& scheme) {
-  table.value("weno", scene::choice_codec(scheme.weno, weno_choices), "Nonlinear weights of the reconstruction");
+  table.value("weno", scene::choice_codec(scheme.weno, weno_choices),
+              "Nonlinear weights of the reconstruction");
   table.value("weno_power", scene::integer_codec(scheme.weno_power), "Power of the ratio in the weights")
       .range(1, 2)
-      .when([&scheme] { return scheme.weno == gas::Weno::z; }, "with weno = \"z\"");
+      .when([&scheme] { return scheme.weno == gas::Weno::z; }, "with weno = \"z\"", "weno");
   table.value("splitting", scene::choice_codec(scheme.splitting, splitting_choices),
-              "Alpha of the Lax-Friedrichs splitting: the largest speed of each field, of all, or of each field's stencil");
-  table.value("time", scene::choice_codec(scheme.time_scheme, time_choices), "Runge-Kutta scheme, of 3 or 4 stages");
+              "Alpha of the Lax-Friedrichs splitting: the largest speed of each field, of all, or of each "
+              "field's stencil");
+  table.value("time", scene::choice_codec(scheme.time_scheme, time_choices),
+              "Runge-Kutta scheme, of 3 or 4 stages");
   table.value("mean", scene::choice_codec(scheme.mean, mean_choices),
               "State at a face whose eigenvectors are used: mean of u and H, mean of U, or Roe's");
 }
@@ -55,18 +59,22 @@ void declare_step(Table& table, gas::Parameters& scheme) {
   table.value("cfl", scene::real_codec(scheme.cfl), "Courant number")
       .above(0.0)
       .at_most(2.0)
-      .when(free_step, "without fixed_dt");
-  table.value("ramp_steps", scene::integer_codec(scheme.ramp_steps), "Steps over which the Courant number grows from a tenth")
+      .when(free_step, "without fixed_dt", "fixed_dt");
+  table
+      .value("ramp_steps", scene::integer_codec(scheme.ramp_steps),
+             "Steps over which the Courant number grows from a tenth")
       .range(0, 1'000'000)
-      .when(free_step, "without fixed_dt");
+      .when(free_step, "without fixed_dt", "fixed_dt");
   table.value("positivity", scene::choice_codec(scheme.positivity, positivity_choices),
-              "Flux limiter that keeps density and pressure positive: never, always, or where a step fails without it");
+              "Flux limiter that keeps density and pressure positive: never, always, or where a step fails "
+              "without it");
 }
 
 void declare_scheme(Table& table, gas::Parameters& scheme) {
   declare_weights(table, scheme);
-  table.value("fixed_dt", zero_is_unset(scene::real_codec(scheme.fixed_dt), scheme.fixed_dt),
-              "Step that replaces the one of cfl")
+  table
+      .value("fixed_dt", zero_is_unset(scene::real_codec(scheme.fixed_dt), scheme.fixed_dt),
+             "Step that replaces the one of cfl")
       .unit("s")
       .above(0.0);
   declare_step(table, scheme);
@@ -86,14 +94,21 @@ void declare_initial(Table& table, Initial& initial) {
       "riemann", initial.riemann,
       [](Table& riemann, Riemann& value) {
         riemann.value("x0", scene::real_codec(value.x0), "Where the two states meet").unit("m");
-        riemann.table("left", [&](Table& state) { declare_state(state, value.left); }, "State left of x0").required();
-        riemann.table("right", [&](Table& state) { declare_state(state, value.right); }, "State right of x0").required();
+        riemann
+            .table(
+                "left", [&](Table& state) { declare_state(state, value.left); }, "State left of x0")
+            .required();
+        riemann
+            .table(
+                "right", [&](Table& state) { declare_state(state, value.right); }, "State right of x0")
+            .required();
       },
       "Two constant states");
   table.tables(
       "regions", initial.regions,
       [](Table& region, Region& value) {
-        region.value("until", scene::real_codec(value.until), "Right end; the last region has none").unit("m");
+        region.value("until", scene::real_codec(value.until), "Right end; the last region has none")
+            .unit("m");
         declare_state(region, value.state);
       },
       "Constant states from left to right");
@@ -101,9 +116,13 @@ void declare_initial(Table& table, Initial& initial) {
       "expression", initial.expression,
       [](Table& expression, ExpressionState& value) {
         const std::vector<std::string> variables = {"x", "dx"};
-        expression.value("rho", scene::real_or_expression_codec(value.rho, variables), "Density").unit("kg/m^3").required();
+        expression.value("rho", scene::real_or_expression_codec(value.rho, variables), "Density")
+            .unit("kg/m^3")
+            .required();
         expression.value("u", scene::real_or_expression_codec(value.u, variables), "Velocity").unit("m/s");
-        expression.value("p", scene::real_or_expression_codec(value.p, variables), "Pressure").unit("Pa").required();
+        expression.value("p", scene::real_or_expression_codec(value.p, variables), "Pressure")
+            .unit("Pa")
+            .required();
       },
       "A state that varies with the cell centre x and may use the cell width dx");
 }
@@ -115,16 +134,21 @@ void declare_output(Table& table, Output& output) {
       .unit("s")
       .at_least(0.0)
       .default_text("the end time where fields are given")
-      .when([&output] { return !output.fields.empty(); }, "with fields");
-  table.value("history_every", scene::integer_codec(output.history_every), "Steps between rows of history.csv; 0: none")
+      .when([&output] { return !output.fields.empty(); }, "with fields", "fields");
+  table
+      .value("history_every", scene::integer_codec(output.history_every),
+             "Steps between rows of history.csv; 0: none")
       .range(0, 1e9);
-  table.value("restart_every", scene::integer_codec(output.restart_every), "Steps between restart files; 0: none")
+  table
+      .value("restart_every", scene::integer_codec(output.restart_every),
+             "Steps between restart files; 0: none")
       .range(0, 1e9);
 }
 
 void declare_verify(Table& table, Verify& verify) {
   table.value("exact", scene::choice_codec(verify.exact, exact_choices),
-              "What the result is compared with: the exact Riemann solution, the initial state moved with u, a finer run");
+              "What the result is compared with: the exact Riemann solution, the initial state moved with u, "
+              "a finer run");
   table
       .optional_table(
           "reference", verify.reference,
@@ -136,7 +160,7 @@ void declare_verify(Table& table, Verify& verify) {
             declare_step(reference, scheme);
           },
           "The finer run")
-      .when([&verify] { return verify.exact == Exact::reference; }, "with exact = \"reference\"")
+      .when([&verify] { return verify.exact == Exact::reference; }, "with exact = \"reference\"", "exact")
       .required();
   for (const std::string norm : {"l1", "l2", "linf"}) {
     for (const std::string quantity : {"density", "velocity", "pressure"}) {
@@ -146,11 +170,26 @@ void declare_verify(Table& table, Verify& verify) {
       table.value(name, scene::real_codec(verify.bars, name), "Largest error that passes")
           .unit(measure)
           .at_least(0.0)
-          .when([&verify] { return verify.exact.has_value(); }, "with exact, which names what to compare with");
+          .when([&verify] { return verify.exact.has_value(); },
+                "with exact, which names what to compare with", "exact");
     }
   }
-  table.value("conservation", scene::real_codec(verify.conservation),
-              "Largest relative change of mass, momentum and energy, less what crossed the ends, that passes")
+  table.optional_table(
+      "max_density", verify.max_density,
+      [](Table& target, Target& value) {
+        target.value("value", scene::real_codec(value.value), "What it should be")
+            .unit("kg/m^3")
+            .above(0.0)
+            .required();
+        target
+            .value("tolerance", scene::real_codec(value.tolerance), "Largest relative deviation that passes")
+            .at_least(0.0)
+            .required();
+      },
+      "The largest density at the end");
+  table
+      .value("conservation", scene::real_codec(verify.conservation),
+             "Largest relative change of mass, momentum and energy, less what crossed the ends, that passes")
       .at_least(0.0);
 }
 
@@ -160,36 +199,70 @@ void declare_gas_scene(Table& root, GasScene& scene) {
   gas::Parameters& parameters = scene.parameters;
   root.value("app", scene::fixed_codec("gas"), "The program the scene is for").required().decisive();
   root.value("description", scene::text_codec(scene.description), "A sentence for --list-scenes");
-  root.table("gas", [&](Table& table) {
-        table.value("gamma", scene::real_codec(parameters.gamma), "Ratio of specific heats").above(1.0);
-      }, "The gas")
+  root.table(
+          "gas",
+          [&](Table& table) {
+            table.value("gamma", scene::real_codec(parameters.gamma), "Ratio of specific heats").above(1.0);
+          },
+          "The gas")
       .required();
-  root.table("mesh", [&](Table& table) {
-        table.value("cells", scene::integer_codec(parameters.cells), "Number of cells").range(smallest_mesh, largest_mesh);
-        table.value("domain", scene::interval_codec(parameters.x_min, parameters.x_max), "Ends of the domain").unit("m");
-      }, "The mesh")
+  root.table(
+          "mesh",
+          [&](Table& table) {
+            table.value("cells", scene::integer_codec(parameters.cells), "Number of cells")
+                .range(smallest_mesh, largest_mesh);
+            table
+                .value("domain", scene::interval_codec(parameters.x_min, parameters.x_max),
+                       "Ends of the domain")
+                .unit("m");
+          },
+          "The mesh")
       .required();
-  root.table("initial", [&](Table& table) { declare_initial(table, scene.initial); }, "The state at the start").required();
-  root.table("boundary", [&](Table& table) {
-    table.value("left", scene::choice_codec(parameters.left, boundary_choices), "Left end");
-    table.value("right", scene::choice_codec(parameters.right, boundary_choices), "Right end");
-  }, "The ends of the domain");
-  root.table("scheme", [&](Table& table) { declare_scheme(table, parameters); }, "The numerical scheme");
-  root.table("run", [&](Table& table) {
-        table.value("end_time", scene::real_codec(scene.end_time), "Where the run ends").unit("s").above(0.0).required();
-        table.value("max_steps", scene::integer_codec(parameters.max_steps), "Steps after which the run is given up")
-            .range(1, 1e12);
-      }, "The length of the run")
+  root.table(
+          "initial", [&](Table& table) { declare_initial(table, scene.initial); }, "The state at the start")
       .required();
-  root.table("output", [&](Table& table) { declare_output(table, scene.output); }, "Files of the run directory");
-  root.table("verify", [&](Table& table) { declare_verify(table, scene.verify); }, "What is checked at the end");
-  root.table("tuning", [&](Table& table) {
-    table.table("stage", [&](Table& stage) {
-      stage.value("block", zero_is_unset(scene::integer_codec(parameters.block), parameters.block), "Cells a tile")
-          .range(32, 1024)
-          .default_text("the backend's own");
-    }, "The fused stage kernel");
-  }, "Block sizes of kernels; they change speed, not results");
+  root.table(
+      "boundary",
+      [&](Table& table) {
+        table.value("left", scene::choice_codec(parameters.left, boundary_choices), "Left end");
+        table.value("right", scene::choice_codec(parameters.right, boundary_choices), "Right end");
+      },
+      "The ends of the domain");
+  root.table(
+      "scheme", [&](Table& table) { declare_scheme(table, parameters); }, "The numerical scheme");
+  root.table(
+          "run",
+          [&](Table& table) {
+            table.value("end_time", scene::real_codec(scene.end_time), "Where the run ends")
+                .unit("s")
+                .above(0.0)
+                .required();
+            table
+                .value("max_steps", scene::integer_codec(parameters.max_steps),
+                       "Steps after which the run is given up")
+                .range(1, 1e12);
+          },
+          "The length of the run")
+      .required();
+  root.table(
+      "output", [&](Table& table) { declare_output(table, scene.output); }, "Files of the run directory");
+  root.table(
+      "verify", [&](Table& table) { declare_verify(table, scene.verify); }, "What is checked at the end");
+  root.table(
+      "tuning",
+      [&](Table& table) {
+        table.table(
+            "stage",
+            [&](Table& stage) {
+              stage
+                  .value("block", zero_is_unset(scene::integer_codec(parameters.block), parameters.block),
+                         "Cells a tile")
+                  .range(32, 1024)
+                  .default_text("the backend's own");
+            },
+            "The fused stage kernel");
+      },
+      "Block sizes of kernels; they change speed, not results");
 }
 
 }  // namespace drogue::gas_app

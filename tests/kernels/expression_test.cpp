@@ -32,9 +32,8 @@ ExpressionProgram program_of(const std::vector<Step>& steps) {
 /// The value at every point, from a kernel.
 void evaluate_at(const ExpressionProgram& program, const Points& at, const Values& values) {
   Kokkos::parallel_for(
-      "expression_test", Kokkos::RangePolicy<Space>(0, points), KOKKOS_LAMBDA(const int i) {
-        values(i) = evaluate(program, at(i, 0), at(i, 1), at(i, 2), at(i, 3));
-      });
+      "expression_test", Kokkos::RangePolicy<Space>(0, points),
+      KOKKOS_LAMBDA(const int i) { values(i) = evaluate(program, at(i, 0), at(i, 1), at(i, 2), at(i, 3)); });
 }
 
 /// Points (x, y, z, t) in [low, high]^4 and the values of a program there, on the host.
@@ -84,12 +83,12 @@ TEST(PortableMath, IsGoodToThirteenDigits) {
     const char* name;
     double low, high;
   };
-  const Range ranges[] = {{"sin", -10, 10},    {"sin", -1e6, 1e6}, {"cos", -10, 10},   {"cos", -1e6, 1e6},
-                          {"tan", -1.5, 1.5},  {"asin", -1, 1},    {"acos", -1, 1},    {"atan", -20, 20},
-                          {"exp", -5, 5},      {"exp", -740, 700}, {"log", 1e-6, 4},   {"log", 1, 1e300},
-                          {"log2", 1e-3, 1e6}, {"log10", 1, 1e6},  {"sinh", -30, 30},  {"sinh", -1, 1},
-                          {"cosh", -30, 30},   {"tanh", -3, 3},    {"asinh", -5, 5},   {"acosh", 1, 50},
-                          {"atanh", -0.9, 0.9}, {"sqrt", 0, 100},  {"floor", -9, 9},   {"rint", -9, 9}};
+  const Range ranges[] = {{"sin", -10, 10},     {"sin", -1e6, 1e6}, {"cos", -10, 10},  {"cos", -1e6, 1e6},
+                          {"tan", -1.5, 1.5},   {"asin", -1, 1},    {"acos", -1, 1},   {"atan", -20, 20},
+                          {"exp", -5, 5},       {"exp", -740, 700}, {"log", 1e-6, 4},  {"log", 1, 1e300},
+                          {"log2", 1e-3, 1e6},  {"log10", 1, 1e6},  {"sinh", -30, 30}, {"sinh", -1, 1},
+                          {"cosh", -30, 30},    {"tanh", -3, 3},    {"asinh", -5, 5},  {"acosh", 1, 50},
+                          {"atanh", -0.9, 0.9}, {"sqrt", 0, 100},   {"floor", -9, 9},  {"rint", -9, 9}};
   for (const Range& range : ranges) {
     EXPECT_LT(function_error(range.name, range.low, range.high), 1e-13) << range.name << " to " << range.high;
   }
@@ -101,7 +100,8 @@ TEST(PortableMath, KeepsSmallValuesRelativelyRight) {
     const auto values = sample({{"x"}, {name}});
     for (int i = 0; i < points; ++i) {
       const double x = sample.host(i, 0);
-      EXPECT_NEAR(values(i) / testing::reference_value<double>({{"x"}, {name}}, x, 0, 0, 0), 1.0, 1e-14) << name;
+      EXPECT_NEAR(values(i) / testing::reference_value<double>({{"x"}, {name}}, x, 0, 0, 0), 1.0, 1e-14)
+          << name;
     }
   }
 }
@@ -169,7 +169,8 @@ TEST(ExpressionProgram, AgreesWithItsOracleOnRandomExpressions) {
       const double x = sample.host(i, 0), y = sample.host(i, 1), z = sample.host(i, 2), t = sample.host(i, 3);
       if (!testing::well_conditioned(random.steps(), x, y, z, t, 1e-10)) continue;
       const double exact = testing::reference_value<double>(random.steps(), x, y, z, t);
-      ASSERT_NEAR(values(i), exact, 1e-9 * std::max(1.0, std::abs(exact))) << random.text() << " at " << x << ", " << y << ", " << z << ", " << t;
+      ASSERT_NEAR(values(i), exact, 1e-9 * std::max(1.0, std::abs(exact)))
+          << random.text() << " at " << x << ", " << y << ", " << z << ", " << t;
       ++compared;
     }
   }

@@ -39,23 +39,23 @@ Real reference_value(const std::vector<Step>& steps, Real x, Real y, Real z, Rea
                name == "besselj") {
       const Real b = pop();
       const Real a = pop();
-      stack.push_back(name == "+"         ? a + b
-                      : name == "-"       ? a - b
-                      : name == "*"       ? a * b
-                      : name == "/"       ? a / b
-                      : name == "^"       ? std::pow(a, b)
-                      : name == "<"       ? truth(a < b)
-                      : name == ">"       ? truth(a > b)
-                      : name == "<="      ? truth(a <= b)
-                      : name == ">="      ? truth(a >= b)
-                      : name == "=="      ? truth(a == b)
-                      : name == "!="      ? truth(a != b)
-                      : name == "&&"      ? truth(a != 0 && b != 0)
-                      : name == "||"      ? truth(a != 0 || b != 0)
-                      : name == "min"     ? std::min(a, b)
-                      : name == "max"     ? std::max(a, b)
-                      : name == "atan2"   ? std::atan2(a, b)
-                                          : static_cast<Real>(::jnl(static_cast<int>(a), b)));
+      stack.push_back(name == "+"       ? a + b
+                      : name == "-"     ? a - b
+                      : name == "*"     ? a * b
+                      : name == "/"     ? a / b
+                      : name == "^"     ? std::pow(a, b)
+                      : name == "<"     ? truth(a < b)
+                      : name == ">"     ? truth(a > b)
+                      : name == "<="    ? truth(a <= b)
+                      : name == ">="    ? truth(a >= b)
+                      : name == "=="    ? truth(a == b)
+                      : name == "!="    ? truth(a != b)
+                      : name == "&&"    ? truth(a != 0 && b != 0)
+                      : name == "||"    ? truth(a != 0 || b != 0)
+                      : name == "min"   ? std::min(a, b)
+                      : name == "max"   ? std::max(a, b)
+                      : name == "atan2" ? std::atan2(a, b)
+                                        : static_cast<Real>(::jnl(static_cast<int>(a), b)));
     } else {
       const Real a = pop();
       stack.push_back(name == "negate"  ? -a
@@ -139,7 +139,8 @@ class RandomExpression {
   }
 
   Part join(const std::string& symbol, int strength, const Part& left, const Part& right) {
-    Part part{inside(left, strength) + " " + symbol + " " + inside(right, strength + 1), strength, left.steps};
+    Part part{inside(left, strength) + " " + symbol + " " + inside(right, strength + 1), strength,
+              left.steps};
     append(part.steps, right.steps);
     part.steps.push_back({symbol, 0.0});
     return part;
@@ -192,7 +193,8 @@ class RandomExpression {
     }
     if (kind == 3) {
       const int order = pick(5);
-      Part part{"besselj(" + std::to_string(order) + ", " + argument.text + ")", 8, {{"constant", double(order)}}};
+      Part part{
+          "besselj(" + std::to_string(order) + ", " + argument.text + ")", 8, {{"constant", double(order)}}};
       append(part.steps, argument.steps);
       part.steps.push_back({"besselj", 0.0});
       return part;
@@ -209,13 +211,19 @@ class RandomExpression {
   Part make(int depth) {
     if (depth == 0) return leaf();
     switch (pick(8)) {
-      case 0: return leaf();
-      case 1: return negate(make(depth - 1));
-      case 2: return choice(depth);
-      case 3: return power(depth);
+      case 0:
+        return leaf();
+      case 1:
+        return negate(make(depth - 1));
+      case 2:
+        return choice(depth);
+      case 3:
+        return power(depth);
       case 4:
-      case 5: return function(depth);
-      default: return binary(depth);
+      case 5:
+        return function(depth);
+      default:
+        return binary(depth);
     }
   }
 
@@ -225,11 +233,13 @@ class RandomExpression {
 
 /// Whether rounding of the arguments moves the value by less than `tolerance`: false next to poles and jumps,
 /// where two right evaluations may differ.
-inline bool well_conditioned(const std::vector<Step>& steps, double x, double y, double z, double t, double tolerance) {
+inline bool well_conditioned(const std::vector<Step>& steps, double x, double y, double z, double t,
+                             double tolerance) {
   const long double exact = reference_value<long double>(steps, x, y, z, t);
   if (!std::isfinite(static_cast<double>(exact)) || std::abs(exact) > 1e6L) return false;
   for (const long double nudge : {1e-13L, -1e-13L}) {
-    const long double moved = reference_value<long double>(steps, x * (1 + nudge), y * (1 - nudge), z * (1 + nudge), t * (1 - nudge));
+    const long double moved = reference_value<long double>(steps, x * (1 + nudge), y * (1 - nudge),
+                                                           z * (1 + nudge), t * (1 - nudge));
     if (!(std::abs(moved - exact) <= tolerance * std::max(1.0L, std::abs(exact)))) return false;
   }
   return true;

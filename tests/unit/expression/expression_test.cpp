@@ -21,7 +21,8 @@ double value(const std::string& text, double x = 0.3, double y = -0.7, double z 
 
 std::vector<testing::Step> steps_of(const std::string& text) {
   std::vector<testing::Step> steps;
-  for (const Instruction& instruction : compile(text, xyzt)) steps.push_back({instruction.name, instruction.value});
+  for (const Instruction& instruction : compile(text, xyzt))
+    steps.push_back({instruction.name, instruction.value});
   return steps;
 }
 
@@ -65,7 +66,8 @@ TEST(Expression, CopiesEvaluateApart) {
 }
 
 TEST(Expression, ErrorsNameThePlace) {
-  EXPECT_EQ(error_of("1 +"), std::pair(4, std::string("expected a number, a name or \"(\", not the end of the expression")));
+  EXPECT_EQ(error_of("1 +"),
+            std::pair(4, std::string("expected a number, a name or \"(\", not the end of the expression")));
   EXPECT_EQ(error_of("sin(x").first, 6);
   EXPECT_EQ(error_of("x + w").first, 5);
   EXPECT_NE(error_of("x + w").second.find("known here are pi, x, y, z, t"), std::string::npos);
@@ -79,11 +81,14 @@ TEST(Expression, ErrorsNameThePlace) {
   EXPECT_EQ(error_of("\"a\"").first, 1);
   EXPECT_EQ(error_of("").first, 1);
   EXPECT_GT(error_of(std::string(5000, '(')).first, 0);
-  EXPECT_GT(error_of("2" + std::string(0, ' ') + [] {
-              std::string tower;
-              for (int i = 0; i < 5000; ++i) tower += "^2";
-              return tower;
-            }()).first, 0);
+  EXPECT_GT(error_of("2" + std::string(0, ' ') +
+                     [] {
+                       std::string tower;
+                       for (int i = 0; i < 5000; ++i) tower += "^2";
+                       return tower;
+                     }())
+                .first,
+            0);
 }
 
 TEST(Compile, GivesThePostfixThatTheTextMeans) {
@@ -100,7 +105,8 @@ TEST(Compile, AgreesWithMuParser) {
     const double x = 0.3, y = -0.7, z = 1.9, t = 0.45;
     if (!testing::well_conditioned(random.steps(), x, y, z, t, 1e-10)) continue;
     const double expected = testing::reference_value<double>(steps_of(random.text()), x, y, z, t);
-    EXPECT_NEAR(value(random.text(), x, y, z, t), expected, 1e-9 * std::max(1.0, std::abs(expected))) << random.text();
+    EXPECT_NEAR(value(random.text(), x, y, z, t), expected, 1e-9 * std::max(1.0, std::abs(expected)))
+        << random.text();
     ++compared;
   }
   EXPECT_GT(compared, 1500);

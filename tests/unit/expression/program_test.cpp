@@ -25,7 +25,8 @@ TEST(DeviceProgram, TakesEveryFunctionOfTheGrammar) {
 }
 
 TEST(DeviceProgram, TakesEveryOperatorOfTheGrammar) {
-  const auto program = device_program("x+y-z*t/2^3 < 1 || x > y && x <= y || x >= y && x == y || -x != y ? 1 : pi");
+  const auto program =
+      device_program("x+y-z*t/2^3 < 1 || x > y && x <= y || x >= y && x == y || -x != y ? 1 : pi");
   EXPECT_EQ(program.operations[program.length - 1], device::Operation::select);
 }
 
