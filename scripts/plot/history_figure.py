@@ -1,4 +1,4 @@
-"""Picture of history.csv: one panel a quantity, conserved ones as their relative change."""
+"""Picture of history.csv: how well mass, momentum and energy are conserved, then one panel a quantity."""
 
 import numpy as np
 
@@ -7,44 +7,63 @@ from .run_directory import Run
 from .style import plt
 
 _CONSERVED = ("mass", "momentum", "energy")
-_NOT_DRAWN = ("time", "step")
+# Counts that say something only where they are not zero.
+_RARE = ("limiter_touches", "redone_steps")
 
 
-def _draw_conserved(axes, run: Run, names: list[str]) -> None:
-    time = run.history["time"].values
+def conservation(run: Run) -> dict[str, np.ndarray]:
+    """Relative change of each conserved quantity that what left through the ends does not explain.
+
+    Momentum is measured against sqrt(2 mass energy), which bounds it, because its own total may be zero.
+    """
+    present = [name for name in _CONSERVED if name in run.history]
+    total = {name: run.history[name].values for name in present}
+    scale = {name: abs(total[name][0]) or 1.0 for name in present}
+    if "momentum" in present and {"mass", "energy"} <= set(present):
+        scale["momentum"] = np.sqrt(2 * scale["mass"] * scale["energy"])
+    change = {}
+    for name in present:
+        outflow = run.history.get(f"{name}_outflow")
+        left = outflow.values - outflow.values[0] if outflow else 0.0
+        change[name] = (total[name] - total[name][0] + left) / scale[name]
+    return change
+
+
+def _draw_conservation(axes, time: np.ndarray, change: dict[str, np.ndarray]) -> None:
     ends = []
-    for index, name in enumerate(names):
-        values = run.history[name].values
-        # A momentum that starts at zero has no relative change; the largest value seen is the scale then.
-        scale = abs(values[0]) or np.max(np.abs(values)) or 1.0
-        change = (values - values[0]) / scale
-        axes.plot(*style.thin(time, change), color=style.PALETTE[index])
-        ends.append(((time[-1], change[-1]), style.axis_label(name, ""), style.PALETTE[index]))
-    axes.set_title("relative change of the conserved quantities")
+    for colour, (name, values) in zip(style.PALETTE, change.items()):
+        axes.plot(*style.thin(time, values), color=colour)
+        ends.append(((time[-1], values[-1]), style.axis_label(name, ""), colour))
+    axes.set_title("relative change less what left through the ends")
     style.label_ends(axes, ends)
 
 
+def _single_panels(run: Run) -> list[str]:
+    drawn = set(_CONSERVED) | {f"{name}_outflow" for name in _CONSERVED} | {"time", "step"}
+    return [
+        name
+        for name, item in run.history.items()
+        if name not in drawn and (name not in _RARE or np.any(item.values != 0))
+    ]
+
+
 def history_figure(run: Run):
-    """Figure, or None where the history has fewer than two rows."""
+    """Figure, or None where the history has fewer than two rows or nothing but the time."""
     time = run.history.get("time")
     if time is None or len(time.values) < 2:
         return None
-    names = [name for name in run.history if name not in _NOT_DRAWN]
-    conserved = [name for name in names if name in _CONSERVED]
-    single = [name for name in names if name not in conserved]
-    panels = ([conserved] if conserved else []) + [[name] for name in single]
-    if not panels:
+    change, single = conservation(run), _single_panels(run)
+    count = bool(change) + len(single)
+    if count == 0:
         return None
-    height = 0.55 + 1.45 * len(panels)
-    figure, axes = plt.subplots(len(panels), 1, figsize=(5.2, height + 0.35), sharex=True, squeeze=False)
-    figure.subplots_adjust(
-        left=0.14, right=0.8, top=1 - 0.78 / (height + 0.35), bottom=0.45 / (height + 0.35), hspace=0.5
-    )
-    for panel, group in zip(axes[:, 0], panels):
-        if group == conserved:
-            _draw_conserved(panel, run, group)
-            continue
-        item = run.history[group[0]]
+    height = 1.0 + 1.45 * count
+    figure, axes = plt.subplots(count, 1, figsize=(5.2, height), sharex=True, squeeze=False)
+    figure.subplots_adjust(left=0.14, right=0.8, top=1 - 0.9 / height, bottom=0.45 / height, hspace=0.5)
+    panels = list(axes[:, 0])
+    if change:
+        _draw_conservation(panels.pop(0), time.values, change)
+    for panel, name in zip(panels, single):
+        item = run.history[name]
         panel.plot(*style.thin(time.values, item.values), color=style.RUN_COLOUR)
         panel.set_title(style.axis_label(item.name, item.units))
     axes[-1, 0].set_xlabel("time (s)")

@@ -13,6 +13,7 @@ import synthetic
 from PIL import Image
 from plot import cli
 from plot.exact import errors, exact_solution
+from plot.history_figure import conservation
 from plot.run_directory import read
 from plot.study_figure import study_figure
 
@@ -116,6 +117,19 @@ class Pictures(unittest.TestCase):
         self.assertEqual(errors(loaded, loaded.snapshots[0], exact), {})
         np.testing.assert_allclose(errors(loaded, loaded.snapshots[1], exact)["p"], 0.2)
         self.assertEqual(_plot(run)[:2], (0, ["fields.gif", "fields.png"]))
+
+    def test_history_tells_conservation_from_what_left_through_the_ends(self):
+        synthetic.write_history(self.folder / "history.csv")
+        change = conservation(read(self.folder))
+        self.assertEqual(list(change), ["mass", "momentum", "energy"])
+        for name, values in change.items():
+            self.assertLess(np.abs(values).max(), 1e-14, name)
+        lost = (self.folder / "history.csv").read_text().splitlines()
+        cells = lost[-1].split(",")
+        cells[3] = str(float(cells[3]) * 0.99)
+        (self.folder / "history.csv").write_text("\n".join(lost[:-1] + [",".join(cells)]))
+        self.assertAlmostEqual(conservation(read(self.folder))["mass"][-1], -0.01, delta=1e-12)
+        self.assertEqual(_plot(self.folder)[:2], (0, ["history.png"]))
 
     def test_study_gives_error_against_time_and_mesh(self):
         synthetic.write_study(self.folder / "study.csv", failed=1)
