@@ -20,9 +20,10 @@ using IntegerSource = std::function<void(std::uint64_t first, std::span<std::int
 
 /// fields.h5 and fields.xdmf of a run: `/mesh/<name>` and `/steps/000000/<field>`.
 ///
-/// Between steps the file is closed and on disk, and within a step nothing of the former content is changed
-/// before end_step(): a killed run or a full disk loses no finished step, and ParaView may read along. All
-/// calls throw Failure(io_error). They may come from another thread than the constructor, one at a time.
+/// Between steps the file is closed and on disk. Within a step nothing of its former content is changed
+/// before end_step(), which hands over some kilobytes of metadata at once: only a kill in those microseconds
+/// can damage it, and a full disk is met before. ParaView may read along. All calls throw Failure(io_error).
+/// They may come from another thread than the constructor, one at a time.
 class FieldsWriter {
  public:
   /// Begins new files in `directory`; with `resume_time` continues existing ones, steps after that time

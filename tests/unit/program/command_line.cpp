@@ -1,0 +1,100 @@
+#include "common/program/command_line.hpp"
+
+#include <gtest/gtest.h>
+
+#include "common/program/failure.hpp"
+#include "common/program/mini_app_options.hpp"
+
+namespace drogue {
+namespace {
+
+MiniAppOptions parse(std::vector<const char*> words) {
+  words.insert(words.begin(), "drogue-gas");
+  return parse_mini_app_options("drogue-gas", "Shock tubes.", static_cast<int>(words.size()), words.data());
+}
+
+/// The sentence of the usage failure that these words lead to.
+std::string usage_failure(const std::vector<const char*>& words) {
+  try {
+    parse(words);
+  } catch (const Failure& failure) {
+    return failure.code() == ExitCode::usage ? failure.what() : "another exit code";
+  }
+  return "no failure";
+}
+
+TEST(MiniAppOptions, DefaultsAreThoseOfTheInterface) {
+  const MiniAppOptions options = parse({"sod"});
+  EXPECT_EQ(options.scene, "sod");
+  EXPECT_EQ(options.backend, "auto");
+  EXPECT_TRUE(options.set.empty() && options.out.empty() && options.restart.empty() && options.study.empty());
+  EXPECT_FALSE(options.check || options.print_scene || options.list_scenes || options.overwrite);
+  EXPECT_FALSE(options.quiet || options.seed_mode || options.version);
+  EXPECT_TRUE(options.help.empty() && options.kokkos.empty());
+}
+
+TEST(MiniAppOptions, ReadsEveryOption) {
+  const MiniAppOptions options =
+      parse({"--backend", "openmp", "--set", "mesh.cells=100", "sod.toml", "--set", "output.times=[0.1, 0.2]",
+             "--out=here", "--overwrite", "--quiet", "--seed-mode", "--study", "meshes=100:800"});
+  EXPECT_EQ(options.scene, "sod.toml");
+  EXPECT_EQ(options.backend, "openmp");
+  EXPECT_EQ(options.set, (std::vector<std::string>{"mesh.cells=100", "output.times=[0.1, 0.2]"}));
+  EXPECT_EQ(options.out, "here");
+  EXPECT_EQ(options.study, "meshes=100:800");
+  EXPECT_TRUE(options.overwrite && options.quiet && options.seed_mode);
+  EXPECT_EQ(parse({"sod", "--restart", "auto"}).restart, "auto");
+  EXPECT_TRUE(parse({"sod", "--check"}).check);
+  EXPECT_TRUE(parse({"sod", "--print-scene"}).print_scene);
+}
+
+TEST(MiniAppOptions, ValuesMayHoldEqualsBlanksAndQuotes) {
+  const std::vector<std::string> expected = {R"(initial.expression.rho="1 + 0.2*sin(pi*x) = y")",
+                                             "a.b=[[1,2],[3]]"};
+  EXPECT_EQ(parse({"sod", "--set", expected[0].c_str(), "--set", expected[1].c_str()}).set, expected);
+}
+
+TEST(MiniAppOptions, ListsAndVersionNeedNoScene) {
+  EXPECT_TRUE(parse({"--list-scenes"}).list_scenes);
+  EXPECT_TRUE(parse({"--version"}).version);
+  const std::string help = parse({"--help"}).help;
+  for (const char* word :
+       {"SCENE", "--backend", "--set", "--out", "--restart", "--check", "--print-scene", "--list-scenes",
+        "--overwrite", "--quiet", "--seed-mode", "--study", "--version", "Shock tubes."}) {
+    EXPECT_NE(help.find(word), std::string::npos) << word;
+  }
+}
+
+TEST(MiniAppOptions, KokkosOptionsAreNotOurs) {
+  const MiniAppOptions options = parse({"--kokkos-num-threads=2", "sod", "--kokkos-tools-libs=a.so"});
+  EXPECT_EQ(options.scene, "sod");
+  EXPECT_EQ(options.kokkos, (std::vector<std::string>{"--kokkos-num-threads=2", "--kokkos-tools-libs=a.so"}));
+}
+
+TEST(MiniAppOptions, FaultsAreNamed) {
+  EXPECT_NE(usage_failure({}).find("no SCENE"), std::string::npos);
+  EXPECT_NE(usage_failure({"sod", "--bakend", "serial"}).find("'--bakend'; did you mean \"--backend\"?"),
+            std::string::npos);
+  EXPECT_NE(usage_failure({"sod", "--overwrit=1"}).find("'--overwrit'; did you mean \"--overwrite\"?"),
+            std::string::npos);
+  EXPECT_NE(usage_failure({"sod", "lax"}).find("unexpected argument 'lax'"), std::string::npos);
+  EXPECT_NE(usage_failure({"sod", "--backend", "gpu"}).find("gpu"), std::string::npos);
+  EXPECT_NE(usage_failure({"sod", "--out"}).find("--out"), std::string::npos);
+  EXPECT_NE(usage_failure({"sod", "--set", "mesh.cells"}).find("'mesh.cells'"), std::string::npos);
+  EXPECT_NE(usage_failure({"sod", "--overwrite", "--restart", "auto"}).find("--restart"), std::string::npos);
+  EXPECT_NE(usage_failure({"sod", "--check", "--print-scene"}).find("--check"), std::string::npos);
+}
+
+TEST(MiniAppOptions, FaultsAreOneSentence) {
+  for (const auto& words : std::vector<std::vector<const char*>>{{},
+                                                                 {"sod", "--bakend"},
+                                                                 {"sod", "--backend", "gpu"},
+                                                                 {"sod", "--out"},
+                                                                 {"--set"},
+                                                                 {"sod", "--set", "x"}}) {
+    EXPECT_EQ(usage_failure(words).find('\n'), std::string::npos) << usage_failure(words);
+  }
+}
+
+}  // namespace
+}  // namespace drogue

@@ -1,0 +1,111 @@
+#include "common/program/program.hpp"
+
+#include <gtest/gtest.h>
+
+#include <CLI/Error.hpp>
+#include <cstdlib>
+#include <new>
+#include <stdexcept>
+
+#include "common/program/provenance.hpp"
+#include "common/version.hpp"
+
+namespace drogue {
+namespace {
+
+struct Outcome {
+  int code;
+  std::string error;
+};
+
+Outcome run(const std::function<ExitCode()>& body) {
+  testing::internal::CaptureStderr();
+  const int code = run_program("drogue-gas", body);
+  return {code, testing::internal::GetCapturedStderr()};
+}
+
+TEST(RunProgram, SuccessIsSilent) {
+  const Outcome outcome = run([] { return ExitCode::ok; });
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_EQ(outcome.error, "");
+  EXPECT_EQ(run([] { return ExitCode::interrupted; }).code, 130);
+}
+
+TEST(RunProgram, FailuresAreOneSentenceWithTheirCode) {
+  for (const ExitCode code : {ExitCode::usage, ExitCode::numerical_failure, ExitCode::verification_failed,
+                              ExitCode::io_error, ExitCode::no_backend}) {
+    const Outcome outcome = run([code]() -> ExitCode { throw Failure(code, "it went wrong"); });
+    EXPECT_EQ(outcome.code, static_cast<int>(code));
+    EXPECT_EQ(outcome.error, "drogue-gas: it went wrong\n");
+  }
+}
+
+TEST(RunProgram, SceneFailuresStartWithTheirPlace) {
+  const Outcome outcome =
+      run([]() -> ExitCode { throw Failure(ExitCode::invalid_scene, "sod.toml:7: unknown key"); });
+  EXPECT_EQ(outcome.code, 3);
+  EXPECT_EQ(outcome.error, "sod.toml:7: unknown key\n");
+}
+
+TEST(RunProgram, CommandLineErrorsAreUsage) {
+  const Outcome outcome = run([]() -> ExitCode { throw CLI::ExtrasError({"--x"}); });
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_EQ(outcome.error.rfind("drogue-gas: ", 0), 0U) << outcome.error;
+}
+
+TEST(RunProgram, WhatIsUnforeseenHasAListedCodeAndNoTrace) {
+  const Outcome memory = run([]() -> ExitCode { throw std::bad_alloc(); });
+  EXPECT_EQ(memory.code, 6);
+  EXPECT_NE(memory.error.find("out of memory"), std::string::npos) << memory.error;
+  const Outcome traced =
+      run([]() -> ExitCode { throw std::runtime_error("\nbad index\n#0 main()\n#1 start"); });
+  EXPECT_EQ(traced.code, 6);
+  EXPECT_EQ(traced.error, "drogue-gas: unexpected error: bad index\n");
+  EXPECT_EQ(run([]() -> ExitCode { throw 7; }).code, 6);
+}
+
+TEST(RunProgram, OnlyRankZeroSpeaks) {
+  setenv("OMPI_COMM_WORLD_RANK", "1", 1);
+  setenv("OMPI_COMM_WORLD_SIZE", "2", 1);
+  const Outcome outcome = run([]() -> ExitCode { throw Failure(ExitCode::usage, "too many ranks"); });
+  unsetenv("OMPI_COMM_WORLD_RANK");
+  unsetenv("OMPI_COMM_WORLD_SIZE");
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_EQ(outcome.error, "");
+}
+
+TEST(CurrentFailure, KeepsCodeAndWords) {
+  try {
+    throw Failure(ExitCode::numerical_failure, "negative density");
+  } catch (...) {
+    EXPECT_EQ(current_failure().code(), ExitCode::numerical_failure);
+    EXPECT_STREQ(current_failure().what(), "negative density");
+  }
+}
+
+TEST(Provenance, VersionTextNamesEveryPart) {
+  const std::string text = version_text("drogue-gas");
+  EXPECT_EQ(text.rfind("drogue-gas " + std::string(build_info().version) + "\n", 0), 0U) << text;
+  for (const char* name : {"git: ", "Kokkos: ", "backends: ", "MPI: ", "HDF5: ", "hypre: ", "compiler: "}) {
+    EXPECT_NE(text.find(name), std::string::npos) << name;
+  }
+}
+
+TEST(Provenance, DateIsIso8601) {
+  const std::string date = utc_date();
+  ASSERT_EQ(date.size(), 20U);
+  EXPECT_EQ(date[4], '-');
+  EXPECT_EQ(date[10], 'T');
+  EXPECT_EQ(date.back(), 'Z');
+  EXPECT_GT(date, "2024");
+}
+
+TEST(Provenance, MemoryPeakGrowsWithWhatIsUsed) {
+  const std::int64_t before = host_peak_bytes();
+  std::vector<char> used(std::size_t{64} << 20U);
+  for (std::size_t i = 0; i < used.size(); i += 4096) static_cast<volatile char&>(used[i]) = 'x';
+  EXPECT_GE(host_peak_bytes(), before + (std::int64_t{60} << 20));
+}
+
+}  // namespace
+}  // namespace drogue
