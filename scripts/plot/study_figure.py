@@ -12,19 +12,30 @@ _TITLES = {
 }  # fmt: skip
 
 
-def _curves(rows: list[dict[str, str]], norm: str) -> tuple[dict[str, np.ndarray], int]:
-    """Per label an array of (cells, seconds, error) by rising mesh, and how many rows cannot be drawn."""
+_SCHEMES = {"js": "WENO-JS", "z": "WENO-Z", "z2": "WENO-Z (p = 2)", "m": "WENO-M", "teno5": "TENO5"}
+
+
+def _words(label: str) -> str:
+    """`z2 lf-global` as the rest of the pictures writes it."""
+    scheme, blank, settings = label.partition(" ")
+    return _SCHEMES.get(scheme, scheme) + blank + settings
+
+
+def _curves(rows: list[dict[str, str]], norm: str) -> tuple[dict[str, np.ndarray], list[str]]:
+    """Per label an array of (cells, seconds, error) by rising mesh, and what is left out in words."""
     curves: dict[str, list[tuple[float, float, float]]] = {}
-    left_out = 0
+    failed = exact = 0
     for row in rows:
-        try:
-            point = (float(row["cells"]), float(row["compute_s"]), float(row[norm]))
-        except (KeyError, TypeError, ValueError):
-            point = (np.nan,) * 3
-        if row.get("status") == "ok" and all(np.isfinite(point)) and min(point) > 0:
-            curves.setdefault(row["label"], []).append(point)
+        if row.get("status") != "ok":
+            failed += 1
+            continue
+        point = tuple(float(row[column]) for column in ("cells", "compute_s", norm))
+        if point[2] > 0:
+            curves.setdefault(_words(row["label"]), []).append(point)
         else:
-            left_out += 1
+            exact += 1
+    left_out = [f"{failed} of {len(rows)} runs failed"] if failed else []
+    left_out += [f"{exact} of {len(rows)} have error 0"] if exact else []
     return {label: np.array(sorted(points)) for label, points in curves.items()}, left_out
 
 
@@ -78,6 +89,6 @@ def study_figure(name: str, rows: list[dict[str, str]], norm: str = "l1_density"
     backends = sorted({row.get("backend", "") for row in rows} - {""})
     details = "error against time and mesh" + (f", {', '.join(backends)}" if backends else "")
     if left_out:
-        details += f"; {left_out} of {len(rows)} runs failed and are not drawn"
+        details += f"; not drawn: {', '.join(left_out)}"
     style.heading(figure, name, details)
     return figure

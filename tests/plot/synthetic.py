@@ -103,9 +103,9 @@ def write_study(file, meshes=(100, 200, 400, 800), failed=0):
     )
     rows = []
     for label, weno, error, cost in (
-        ("JS", "js", 1.23e-2, 1.0),
-        ("Z", "z", 1.01e-2, 1.1),
-        ("TENO5", "teno5", 9.6e-3, 1.3),
+        ("js", "js", 1.23e-2, 1.0),
+        ("z", "z", 1.01e-2, 1.1),
+        ("teno5", "teno5", 9.6e-3, 1.3),
     ):
         for cells in meshes:
             value = error * (100 / cells) ** 0.9

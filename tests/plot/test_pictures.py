@@ -136,7 +136,7 @@ class Pictures(unittest.TestCase):
         self.assertEqual(_plot(self.folder)[:2], (0, ["study.png"]))
         figure = study_figure("sod", read(self.folder).study)
         words = [text.get_text() for text in figure.texts + figure.axes[1].texts]
-        self.assertIn("JS  order 0.90", words)
+        self.assertIn("WENO-JS  order 0.90", words)
         self.assertTrue(any("1 of 12 runs failed" in text for text in words), words)
 
 
