@@ -56,7 +56,8 @@ std::filesystem::path find_scene(const std::string& argument, const std::filesys
   }
   if (std::filesystem::exists(argument, unreadable))
     return argument;  // a folder or a pipe: reading it says what is wrong
-  const std::string hint = names.empty() ? "" : "; " + suggestion(argument, names);
+  const std::string hint =
+      names.empty() ? "" : "; " + suggestion(std::filesystem::path(argument).stem().string(), names);
   throw Failure(ExitCode::usage,
                 "there is no scene file " + argument + " and no shipped scene of that name" + hint);
 }

@@ -48,12 +48,14 @@ std::string document_gas_scene() {
   GasScene defaults;
   scene::Table root;
   declare_gas_scene(root, defaults);
-  return "# Gas scenes: all keys\n\n"
-         "Written by `drogue-gas --document-scene`, from the declarations that also check a scene; do not "
-         "edit.\n"
-         "A scene is a TOML file. Unknown keys are refused. Numbers are in SI units; an integer is accepted "
-         "for a real.\n\n" +
-         scene::document(root);
+  return R"(# Gas scenes: all keys
+
+Written from the declarations that also read, check and print a scene; do not edit. After a change of them:
+`DROGUE_UPDATE_DOCS=1 ctest --test-dir build/host -R GasSceneDocument`.
+
+A scene is a TOML file. Unknown keys are refused. Numbers are in SI units; an integer is accepted for a real.
+
+)" + scene::document(root);
 }
 
 }  // namespace drogue::gas_app

@@ -7,6 +7,7 @@ namespace {
 
 using scene::Choices;
 using scene::Codec;
+using scene::Key;
 using scene::Table;
 
 constexpr double smallest_mesh = 8;
@@ -128,13 +129,17 @@ void declare_initial(Table& table, Initial& initial) {
 }
 
 void declare_output(Table& table, Output& output) {
-  table.value("fields", scene::names_codec(output.fields, {"rho", "u", "p"}), "Fields written to fields.h5")
-      .default_text("all three where times are given, else none");
+  const Key& fields = table
+                          .value("fields", scene::names_codec(output.fields, {"rho", "u", "p"}),
+                                 "Fields written to fields.h5")
+                          .default_text("all three where times are given, else none");
   table.value("times", scene::reals_codec(output.times, 0, true), "Times at which fields are written")
       .unit("s")
       .at_least(0.0)
       .default_text("the end time where fields are given")
-      .when([&output] { return !output.fields.empty(); }, "with fields", "fields");
+      .when(
+          [&output, &fields] { return !output.fields.empty() || (!fields.given() && !output.times.empty()); },
+          "with fields", "fields");
   table
       .value("history_every", scene::integer_codec(output.history_every),
              "Steps between rows of history.csv; 0: none")

@@ -1,0 +1,262 @@
+#include <gtest/gtest.h>
+
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+
+#include "common/program/failure.hpp"
+#include "common/scene/library.hpp"
+#include "miniapps/gas/scene.hpp"
+
+namespace drogue::gas_app {
+namespace {
+
+const std::filesystem::path source = DROGUE_SOURCE_DIR;
+const std::filesystem::path shipped = source / "miniapps/gas/scenes";
+
+/// A file of this content, gone at the end of the test.
+class TemporaryScene {
+ public:
+  explicit TemporaryScene(const std::string& text) {
+    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
+    _path = std::filesystem::temp_directory_path() /
+            (std::string("drogue-") + test->name() + "-" + std::to_string(::getpid()) + ".toml");
+    std::ofstream(_path, std::ios::binary) << text;
+  }
+  ~TemporaryScene() { std::filesystem::remove(_path); }
+  TemporaryScene(const TemporaryScene&) = delete;
+  TemporaryScene& operator=(const TemporaryScene&) = delete;
+
+  [[nodiscard]] const std::filesystem::path& path() const { return _path; }
+
+ private:
+  std::filesystem::path _path;
+};
+
+const std::string least =
+    "app = \"gas\"\n[gas]\n[mesh]\n[initial]\n"
+    "riemann = { left = { rho = 1, p = 1 }, right = { rho = 0.125, p = 0.1 } }\n[run]\nend_time = 0.4\n";
+
+GasScene read_text(const std::string& text, const std::vector<std::string>& sets = {},
+                   SchemeSource scheme = SchemeSource::scene) {
+  const TemporaryScene file(text);
+  return read_gas_scene(file.path(), sets, scheme);
+}
+
+/// The message without the folder of the file.
+std::string error_of(const std::vector<std::string>& sets, const std::string& text = least) {
+  try {
+    read_text(text, sets);
+  } catch (const Failure& failure) {
+    EXPECT_EQ(failure.code(), ExitCode::invalid_scene);
+    return failure.what();
+  }
+  return "";
+}
+
+bool holds(const std::string& text, const std::string& words) {
+  return text.find(words) != std::string::npos;
+}
+
+TEST(GasScene, TheLeastSceneHasTheDocumentedDefaults) {
+  const GasScene scene = read_text(least);
+  const gas::Parameters& parameters = scene.parameters;
+  EXPECT_EQ(parameters.gamma, 1.4);
+  EXPECT_EQ(parameters.cells, 200);
+  EXPECT_EQ(parameters.x_min, -1.0);
+  EXPECT_EQ(parameters.x_max, 1.0);
+  EXPECT_EQ(parameters.weno, gas::Weno::z);
+  EXPECT_EQ(parameters.weno_power, 1);
+  EXPECT_EQ(parameters.splitting, gas::Splitting::lf_stencil);
+  EXPECT_EQ(parameters.time_scheme, gas::TimeScheme::ssprk3);
+  EXPECT_EQ(parameters.mean, gas::Mean::arithmetic);
+  EXPECT_EQ(parameters.positivity, gas::Positivity::automatic);
+  EXPECT_EQ(parameters.precision, gas::Precision::full);
+  EXPECT_EQ(parameters.cfl, 0.6);
+  EXPECT_EQ(parameters.ramp_steps, 20);
+  EXPECT_EQ(parameters.fixed_dt, 0.0);
+  EXPECT_EQ(parameters.max_steps, 1'000'000);
+  EXPECT_EQ(parameters.block, 0);
+  EXPECT_TRUE(scene.output.fields.empty());
+  EXPECT_TRUE(scene.output.times.empty());
+  EXPECT_EQ(scene.output.history_every, 10);
+  EXPECT_FALSE(scene.verify.exact.has_value());
+}
+
+TEST(GasScene, EveryShippedSceneResolvesToItself) {
+  const auto scenes = scene::list_scenes(shipped);
+  ASSERT_GE(scenes.size(), 18U);
+  for (const auto& entry : scenes) {
+    EXPECT_FALSE(entry.description.empty()) << entry.name;
+    for (const std::vector<std::string>& sets :
+         {std::vector<std::string>{}, {"scheme.weno=js"}, {"scheme.fixed_dt=1e-4"}, {"output.fields=[]"}}) {
+      const std::string printed = print_gas_scene(read_gas_scene(entry.file, sets));
+      EXPECT_EQ(print_gas_scene(read_text(printed)), printed) << entry.name;
+    }
+  }
+}
+
+TEST(GasScene, PrintsNoKeyThatDoesNotApply) {
+  EXPECT_TRUE(holds(print_gas_scene(read_text(least)), "weno_power = 1"));
+  const std::string js = print_gas_scene(read_text(least, {"scheme.weno=js"}));
+  EXPECT_FALSE(holds(js, "weno_power"));
+  EXPECT_TRUE(holds(js, "cfl = 0.6\nramp_steps = 20\n"));
+  EXPECT_FALSE(holds(js, "fixed_dt"));
+  EXPECT_FALSE(holds(js, "times"));
+  EXPECT_FALSE(holds(js, "[verify]"));
+  EXPECT_FALSE(holds(js, "[tuning]"));
+  const std::string fixed = print_gas_scene(read_text(least, {"scheme.fixed_dt=0.1"}));
+  EXPECT_TRUE(holds(fixed, "fixed_dt = 0.1"));
+  EXPECT_FALSE(holds(fixed, "cfl"));
+  EXPECT_FALSE(holds(fixed, "ramp_steps"));
+}
+
+TEST(GasScene, NumbersSurvivePrinting) {
+  const std::string third = "0.3333333333333333148";
+  const GasScene scene = read_text(least, {"run.end_time=" + third, "mesh.domain=[-1e-7,123456789.125]"});
+  const GasScene again = read_text(print_gas_scene(scene));
+  EXPECT_EQ(again.end_time, 1.0 / 3.0);
+  EXPECT_EQ(again.parameters.x_min, -1e-7);
+  EXPECT_EQ(again.parameters.x_max, 123456789.125);
+}
+
+TEST(GasScene, TimesAndFieldsCompleteEachOther) {
+  EXPECT_EQ(read_text(least, {"output.fields=[\"p\"]"}).output.times, std::vector<double>{0.4});
+  EXPECT_EQ(read_text(least, {"output.times=[0, 0.2]"}).output.fields,
+            (std::vector<std::string>{"rho", "u", "p"}));
+  EXPECT_TRUE(holds(error_of({"output.times=[0.1, 0.5]"}), "later than run.end_time = 0.4"));
+  EXPECT_TRUE(holds(error_of({"output.times=[]", "output.fields=[\"u\"]"}), "output.times is empty"));
+  EXPECT_TRUE(holds(error_of({"output.fields=[]", "output.times=[0.1]"}), "output.times"));
+  EXPECT_TRUE(holds(error_of({"output.fields=[\"u\",\"u\"]"}), "twice"));
+}
+
+TEST(GasScene, SeedModeTakesTheSchemeOfTheDissertation) {
+  const GasScene scene = read_text(least, {"scheme.weno_power=2"}, SchemeSource::dissertation);
+  EXPECT_EQ(scene.parameters.weno, gas::Weno::js);
+  EXPECT_EQ(scene.parameters.splitting, gas::Splitting::lf_global);
+  EXPECT_EQ(scene.parameters.mean, gas::Mean::conserved);
+  EXPECT_EQ(scene.parameters.positivity, gas::Positivity::off);
+  const std::string printed = print_gas_scene(scene);
+  EXPECT_EQ(print_gas_scene(read_text(printed)), printed);
+}
+
+TEST(GasScene, TheReferenceRunTakesGasAndMeshFromTheScene) {
+  const GasScene scene =
+      read_text(least, {"verify.exact=reference", "verify.reference.cells=6400", "gas.gamma=1.5",
+                        "boundary.left=reflecting", "scheme.weno=js", "verify.l1_density=0.1"});
+  ASSERT_TRUE(scene.verify.reference.has_value());
+  EXPECT_EQ(scene.verify.reference->cells, 6400);
+  EXPECT_EQ(scene.verify.reference->gamma, 1.5);
+  EXPECT_EQ(scene.verify.reference->left, gas::Boundary::reflecting);
+  EXPECT_EQ(scene.verify.reference->weno, gas::Weno::z);
+  EXPECT_EQ(scene.verify.bars.at("l1_density"), 0.1);
+  EXPECT_TRUE(holds(error_of({"verify.exact=reference"}), "missing table \"verify.reference\""));
+  EXPECT_TRUE(holds(error_of({"verify.exact=reference", "verify.reference.cells=200"}),
+                    "not finer than mesh.cells = 200"));
+  EXPECT_TRUE(holds(error_of({"verify.reference.cells=6400"}), "with exact = \"reference\""));
+}
+
+TEST(GasScene, ContradictionsAreRefused) {
+  EXPECT_TRUE(holds(error_of({"scheme.weno=js", "scheme.weno_power=2"}), "with weno = \"z\""));
+  EXPECT_TRUE(holds(error_of({"scheme.cfl=0.5", "scheme.fixed_dt=1e-3"}), "without fixed_dt"));
+  EXPECT_TRUE(holds(error_of({"boundary.left=periodic"}), "needs boundary.right = \"periodic\""));
+  EXPECT_TRUE(holds(error_of({"boundary.right=periodic"}), "needs boundary.left = \"periodic\""));
+  EXPECT_TRUE(holds(error_of({"initial.riemann.x0=1"}), "not inside the domain [-1.0, 1.0]"));
+  EXPECT_TRUE(holds(error_of({"verify.l1_density=1"}), "applies only with exact"));
+  EXPECT_TRUE(holds(error_of({"verify.exact=advection"}), "needs initial.expression and periodic"));
+  EXPECT_TRUE(holds(error_of({"initial.expression={rho=\"1\",p=\"1\"}", "verify.exact=riemann"}),
+                    "needs initial.riemann"));
+  EXPECT_TRUE(holds(error_of({"mesh.domain=[1, 1.0000000000001]"}), "cannot be divided"));
+  EXPECT_TRUE(holds(error_of({"mesh.domain=[-1e308, 1e308]"}), "cannot be divided"));
+}
+
+TEST(GasScene, SplitPrecisionRefusesExtremePressures) {
+  EXPECT_NO_THROW(read_text(least, {"scheme.precision=split", "initial.riemann.right.p=1.1e-11"}));
+  const std::string message = error_of({"scheme.precision=split", "initial.riemann.right.p=0.9e-11"});
+  EXPECT_TRUE(holds(message, "FP32"));
+  EXPECT_TRUE(holds(message, "1e11"));
+}
+
+TEST(GasScene, RegionsCoverTheDomainInOrder) {
+  const auto regions = [](const std::string& list) {
+    return std::vector<std::string>{"initial.regions=[" + list + "]"};
+  };
+  const std::string state = "rho=1,p=1}";
+  const GasScene scene =
+      read_text(least, regions("{until=-0.5,rho=2,p=1},{until=0.5,rho=3,p=1},{rho=4,u=7,p=1}"));
+  const InitialState initial(scene);
+  EXPECT_EQ(initial(-0.75).rho, 2.0);
+  EXPECT_EQ(initial(-0.5).rho, 3.0);
+  EXPECT_EQ(initial(0.75).rho, 4.0);
+  EXPECT_EQ(initial(0.75).u, 7.0);
+  EXPECT_TRUE(
+      holds(error_of(regions("{until=0.5," + state + ",{until=0.5," + state + ",{" + state)), "not greater"));
+  EXPECT_TRUE(holds(error_of(regions("{" + state + ",{" + state)), "regions[0] needs \"until\""));
+  EXPECT_TRUE(holds(error_of(regions("{until=0.5," + state)), "regions[0].until"));
+  EXPECT_TRUE(holds(error_of(regions("{until=1.5," + state + ",{" + state)), "not inside the domain"));
+}
+
+TEST(GasScene, ExpressionsAreCheckedInEveryCell) {
+  const auto state = [](const std::string& rho, const std::string& p) {
+    return std::vector<std::string>{"initial.expression={rho=\"" + rho + "\",p=\"" + p + "\"}"};
+  };
+  const InitialState initial(read_text(least, state("1 + 0.2*sin(pi*x)", "2*dx")));
+  EXPECT_DOUBLE_EQ(initial(0.25).rho, 1.0 + 0.2 * std::sin(0.25 * M_PI));
+  EXPECT_DOUBLE_EQ(initial(0.25).p, 0.02);
+  EXPECT_EQ(initial(0.25).u, 0.0);
+  const InitialState copy = initial;
+  EXPECT_EQ(copy(0.1).rho, initial(0.1).rho);
+  const std::string negative = error_of(state("x - 0.9", "1"));
+  EXPECT_TRUE(holds(negative, "initial.expression.rho gives ")) << negative;
+  EXPECT_TRUE(holds(negative, "at x = -0.995 (cell 0)")) << negative;
+  EXPECT_TRUE(holds(error_of(state("1", "x > 0.992 ? -1 : 1")), "(cell 199)"));
+  EXPECT_TRUE(holds(error_of(state("1", "1/(x - x)")), "gives inf"));
+  EXPECT_TRUE(holds(error_of(state("sqrt(x)", "1")), "nan"));
+  EXPECT_TRUE(holds(error_of(state("1 + t", "1")), "at character 5: unknown name \"t\""));
+  EXPECT_TRUE(holds(error_of(state("1", "1.7e308")), "must be"));
+}
+
+TEST(GasScene, AdvectionNeedsUniformFlow) {
+  const std::vector<std::string> sets = {"boundary={left=\"periodic\",right=\"periodic\"}",
+                                         "verify.exact=advection",
+                                         "initial.expression={rho=\"2+x\",u=\"1\",p=\"1\"}"};
+  EXPECT_NO_THROW(read_text(least, sets));
+  EXPECT_TRUE(
+      holds(error_of({sets[0], sets[1], "initial.expression={rho=\"1\",u=\"x\",p=\"1\"}"}), "do not vary"));
+}
+
+TEST(GasScene, MeshBoundsAreSharp) {
+  EXPECT_EQ(read_text(least, {"mesh.cells=8"}).parameters.cells, 8);
+  EXPECT_TRUE(holds(error_of({"mesh.cells=7"}), "8 .. 268435456"));
+  EXPECT_TRUE(holds(error_of({"mesh.cells=268435457"}), "8 .. 268435456"));
+  EXPECT_TRUE(holds(error_of({"gas.gamma=1"}), "> 1"));
+}
+
+TEST(GasSceneDocument, IsWhatTheDeclarationsGive) {
+  const std::filesystem::path page = source / "docs/scenes-gas.md";
+  if (std::getenv("DROGUE_UPDATE_DOCS") != nullptr) std::ofstream(page) << document_gas_scene();
+  std::ostringstream written;
+  written << std::ifstream(page).rdbuf();
+  EXPECT_EQ(written.str(), document_gas_scene())
+      << "after a change of the keys: DROGUE_UPDATE_DOCS=1 ctest -R GasSceneDocument";
+}
+
+TEST(ShippedScenes, AreFoundByName) {
+  EXPECT_EQ(scene::find_scene("sod", shipped), shipped / "sod.toml");
+  EXPECT_EQ(scene::find_scene((shipped / "sod.toml").string(), "nowhere"), shipped / "sod.toml");
+  try {
+    scene::find_scene("sedow", shipped);
+    FAIL() << "a scene of that name does not exist";
+  } catch (const Failure& failure) {
+    EXPECT_EQ(failure.code(), ExitCode::usage);
+    EXPECT_TRUE(holds(failure.what(), "did you mean \"sedov\"?"));
+  }
+  EXPECT_TRUE(scene::list_scenes("no such folder").empty());
+  EXPECT_TRUE(holds(scene::list_text(scene::list_scenes(shipped)), "\nsod "));
+}
+
+}  // namespace
+}  // namespace drogue::gas_app
