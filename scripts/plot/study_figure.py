@@ -4,14 +4,12 @@ import numpy as np
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from . import style
-from .failure import IO_ERROR, Failure
+from .failure import IO_ERROR, USAGE, Failure
 from .style import plt
 
 _TITLES = {
     "l1_density": "L1 error of density", "l1_velocity": "L1 error of velocity", "l1_pressure": "L1 error of pressure"
 }  # fmt: skip
-
-
 _SCHEMES = {"js": "WENO-JS", "z": "WENO-Z", "z2": "WENO-Z (p = 2)", "m": "WENO-M", "teno5": "TENO5"}
 
 
@@ -70,11 +68,14 @@ def _draw(axes, curves, column: int, words) -> None:
 
 def study_figure(name: str, rows: list[dict[str, str]], norm: str = "l1_density"):
     """Error against time at the left, error against mesh with the observed order at the right."""
-    curves, left_out = _curves(rows, norm)
+    if rows and norm not in rows[0]:
+        raise Failure(USAGE, f"The study of {name} has no column '{norm}'; it has {', '.join(rows[0])}.")
+    try:
+        curves, left_out = _curves(rows, norm)
+    except (KeyError, TypeError, ValueError) as error:
+        raise Failure(IO_ERROR, f"The study of {name} has a row that cannot be read: {error}.") from None
     if not curves:
-        raise Failure(
-            IO_ERROR, f"The study of {name} has no row with status ok and a positive {norm} to draw."
-        )
+        raise Failure(IO_ERROR, f"The study of {name} has nothing to draw: {' and '.join(left_out) or 'it is empty'}.")
     figure, (by_time, by_mesh) = plt.subplots(1, 2, figsize=(8.2, 3.6), sharey=True)
     figure.subplots_adjust(left=0.1, right=0.79, top=0.8, bottom=0.14, wspace=0.1)
     _draw(by_time, curves, 1, lambda label, points: "")

@@ -164,13 +164,17 @@ class Refusals(unittest.TestCase):
         run = synthetic.write_sod(self.folder / "sod", cells=20, snapshots=1)
         self._refused(2, ["'rhoo'", "nearest is rho"], run, "--field", "rhoo")
 
+    def test_unknown_norm_names_the_columns(self):
+        synthetic.write_study(self.folder / "study.csv")
+        self._refused(2, ["'l3_density'", "l1_density"], self.folder, "--norm", "l3_density")
+
     def test_damaged_files(self):
         cases = {
             "fields.h5": b"\x89HDF\r\n\x1a\nnot really",
             "scene.toml": b"[mesh\n",
             "result.json": b"{",
             "history.csv": b"time,dt [s]\n0.1,none\n",
-            "study.csv": b"label,cells\nz,100\n",
+            "study.csv": b"label,cells,compute_s,l1_density,status\nz,100,,,ok\n",
         }
         for name, content in cases.items():
             with self.subTest(name):
