@@ -7,11 +7,11 @@
 namespace drogue::scene {
 namespace {
 
-/// A whole number without its `.0`: limits read `>= 8`, not `>= 8.0`.
+/// A whole number without point or exponent: limits read `>= 8`, not `>= 8.0`.
 std::string short_text(double value) {
-  std::string text = real_text(value);
-  if (text.ends_with(".0")) text.resize(text.size() - 2);
-  return text;
+  if (value == std::rint(value) && std::abs(value) < 1e10)
+    return std::to_string(static_cast<std::int64_t>(value));
+  return real_text(value);
 }
 
 std::string must_be(const std::string& what, const Limits& limits, const Node& node) {

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "common/scene/node.hpp"
 #include "common/scene/read.hpp"
+#include "miniapps/gas/scene_survey.hpp"
 
 namespace drogue::gas_app {
 namespace {
@@ -116,55 +118,14 @@ void complete_verify(const Table& root, GasScene& scene) {
   reference.block = scene.parameters.block;
 }
 
-/// What is seen of the initial state when every cell has been looked at.
-struct Survey {
-  double p_min = std::numeric_limits<double>::infinity();
-  double p_max = 0.0;
-  bool uniform_flow = true;  ///< u and p the same in every cell
-};
-
-[[noreturn]] void refuse_value(const Table& root, const std::string& path, double value, double x,
-                               std::int64_t cell, const std::string& must) {
-  contradict(root, path,
-             path + " gives " + real_text(value) + " at x = " + real_text(x) + " (cell " +
-                 std::to_string(cell) + "); it must be " + must);
-}
-
-Survey survey(const Table& root, const GasScene& scene) {
-  const InitialState state(scene);
-  const gas::Parameters& parameters = scene.parameters;
-  const std::string path = scene.initial.riemann      ? "initial.riemann"
-                           : scene.initial.expression ? "initial.expression"
-                                                      : "initial.regions";
-  const auto key = [&](const std::string& name) {
-    return scene.initial.expression ? path + "." + name : path;
-  };
-  const Primitive first = state(cell_centre(parameters, 0));
-  Survey seen;
-  for (std::int64_t i = 0; i < parameters.cells; ++i) {
-    const double x = cell_centre(parameters, i);
-    const Primitive cell = state(x);
-    if (!(cell.rho > 0.0) || !std::isfinite(cell.rho))
-      refuse_value(root, key("rho"), cell.rho, x, i, "> 0 and finite");
-    if (!std::isfinite(cell.u)) refuse_value(root, key("u"), cell.u, x, i, "finite");
-    if (!(cell.p > 0.0) || !std::isfinite(cell.p))
-      refuse_value(root, key("p"), cell.p, x, i, "> 0 and finite");
-    const double energy = cell.p / (parameters.gamma - 1.0) + 0.5 * cell.rho * cell.u * cell.u;
-    if (!std::isfinite(energy) || !std::isfinite(parameters.gamma * cell.p / cell.rho)) {
-      refuse_value(root, path, energy, x, i, "an energy (J/m^3) and a speed of sound that FP64 holds");
-    }
-    seen.p_min = std::min(seen.p_min, cell.p);
-    seen.p_max = std::max(seen.p_max, cell.p);
-    const bool same_u = std::abs(cell.u - first.u) <= 1e-12 * std::abs(first.u);
-    seen.uniform_flow = seen.uniform_flow && same_u && std::abs(cell.p - first.p) <= 1e-12 * first.p;
-  }
-  return seen;
-}
-
 void check_initial(const Table& root, const GasScene& scene) {
   if (scene.initial.riemann) check_riemann(root, scene);
   check_regions(root, scene);
-  const Survey seen = survey(root, scene);
+  const Survey seen = survey_initial_state(scene);
+  if (seen.first_bad < scene.parameters.cells) {
+    const BadCell bad = describe_bad_cell(scene, seen.first_bad);
+    contradict(root, bad.path, bad.sentence);
+  }
   const double ratio = seen.p_max / seen.p_min;
   if (scene.parameters.precision == gas::Precision::split && ratio > split_pressure_ratio) {
     contradict(root, "scheme.precision",
@@ -172,7 +133,7 @@ void check_initial(const Table& root, const GasScene& scene) {
                "of initial pressures " +
                    real_text(ratio) + " of this scene; at most 1e11 is allowed");
   }
-  if (scene.verify.exact == Exact::advection && !seen.uniform_flow) {
+  if (scene.verify.exact == Exact::advection && !seen.uniform_flow()) {
     contradict(root, "verify.exact", "verify.exact = \"advection\" needs initial u and p that do not vary");
   }
 }
