@@ -52,3 +52,22 @@ function(drogue_add_python_test file label)
   set_tests_properties("${_name}" PROPERTIES LABELS "${_labels}" TIMEOUT 900 ENVIRONMENT
     "DROGUE_BIN=${CMAKE_RUNTIME_OUTPUT_DIRECTORY};DROGUE_SOURCE=${PROJECT_SOURCE_DIR};DROGUE_BUILD=${PROJECT_BINARY_DIR};OMP_NUM_THREADS=2")
 endfunction()
+
+# drogue_add_header_test(<headers>): compiles every header alone, twice in one source, as part of the build.
+# Headers of the kernels go through nvcc in a CUDA build.
+function(drogue_add_header_test)
+  set(_sources)
+  foreach(_header IN LISTS ARGN)
+    cmake_path(RELATIVE_PATH _header BASE_DIRECTORY "${PROJECT_SOURCE_DIR}" OUTPUT_VARIABLE _name)
+    set(_source "${PROJECT_BINARY_DIR}/generated/headers/${_name}.cpp")
+    file(CONFIGURE OUTPUT "${_source}" CONTENT "#include \"${_name}\"\n#include \"${_name}\"\n")
+    if(_name MATCHES "^kernels/" AND NOT _name MATCHES "^kernels/reference/")
+      drogue_use_device_language("${_source}")
+    endif()
+    list(APPEND _sources "${_source}")
+  endforeach()
+  add_library(drogue_header_test OBJECT ${_sources})
+  target_link_libraries(drogue_header_test PRIVATE drogue_gas_app drogue_private drogue_toml muparser::muparser)
+  # Nothing runs: only whether it compiles is asked.
+  target_compile_options(drogue_header_test PRIVATE -O0)
+endfunction()

@@ -1,0 +1,85 @@
+"""The includes respect the layers, and each rule is shown to catch a breach."""
+
+import os
+import unittest
+
+import layers
+
+ROOT = layers.repository(os.environ)
+TEXTS = dict(layers.source_files(ROOT))
+LIMIT = 500
+MEDIAN = 150
+
+
+class Repository(unittest.TestCase):
+    def test_sources_are_found(self):
+        for place in ("common/", "kernels/gas/", "kernels/reference/", "miniapps/gas/", "tests/"):
+            self.assertTrue(any(path.startswith(place) for path in TEXTS), place)
+
+    def test_includes_respect_the_layers(self):
+        self.assertEqual([], [line for path, text in TEXTS.items() for line in layers.violations(path, text)])
+
+    def test_apps_reach_no_kokkos(self):
+        """In a CUDA build Kokkos refuses a source that is not compiled by nvcc; the apps are not."""
+        for path in TEXTS:
+            if path.startswith(("miniapps/", "common/")):
+                self.assertEqual([], layers.reaches_kokkos(path, TEXTS))
+
+    def test_own_includes_exist(self):
+        missing = [
+            f"{path}: {name}"
+            for path, text in TEXTS.items()
+            for own, name in layers.includes(text)
+            if own and name not in TEXTS and not (ROOT / path).parent.joinpath(name).exists()
+        ]
+        self.assertEqual([], missing)
+
+    def test_headers_are_guarded(self):
+        self.assertEqual([], [p for p, t in TEXTS.items() if p.endswith(".hpp") and "#pragma once" not in t])
+
+    def test_files_stay_short(self):
+        lengths = {path: text.count("\n") for path, text in TEXTS.items()}
+        self.assertEqual({}, {path: n for path, n in lengths.items() if n > LIMIT})
+        self.assertLess(sorted(lengths.values())[len(lengths) // 2], MEDIAN)
+
+
+class EachRuleCatchesItsBreach(unittest.TestCase):
+    def assert_caught(self, path, include, word):
+        found = layers.violations(path, f"#pragma once\n#include {include}\n")
+        self.assertEqual(1, len(found), found)
+        self.assertIn(word, found[0])
+
+    def test_common(self):
+        self.assert_caught("common/run/x.hpp", "<Kokkos_Core.hpp>", "does without")
+        self.assert_caught("common/run/x.hpp", '"kernels/gas/parameters.hpp"', "may only use")
+
+    def test_reference(self):
+        self.assert_caught("kernels/reference/gas/x.hpp", "<Kokkos_Core.hpp>", "does without")
+        self.assert_caught("kernels/reference/gas/x.hpp", '"kernels/gas/weno.hpp"', "may only use")
+
+    def test_kernels(self):
+        for library in ("<toml++/toml.h>", "<CLI/App.hpp>", "<fstream>", "<hdf5.h>", "<mpi.h>"):
+            self.assert_caught("kernels/gas/x.hpp", library, "does without")
+        self.assert_caught("kernels/gas/x.hpp", '"common/program/failure.hpp"', "may only use")
+        self.assert_caught("kernels/gas/x.hpp", '"kernels/reference/gas/weno.hpp"', "independent")
+
+    def test_only_halo_and_linear_use_mpi(self):
+        for path in ("kernels/flow/halo_exchange.hpp", "kernels/linear/poisson.hpp"):
+            self.assertEqual([], layers.violations(path, "#include <mpi.h>\n"))
+
+    def test_miniapps(self):
+        self.assert_caught("miniapps/gas/x.cpp", '"miniapps/springs/scene.hpp"', "may only use")
+        self.assert_caught("miniapps/gas/x.cpp", "<Kokkos_Core.hpp>", "does without")
+
+    def test_chain_to_kokkos(self):
+        texts = {
+            "miniapps/gas/a.cpp": '#include "kernels/b.hpp"\n',
+            "kernels/b.hpp": '#include "kernels/c.hpp"\n',
+            "kernels/c.hpp": "#include <Kokkos_Core.hpp>\n",
+        }
+        chain = layers.reaches_kokkos("miniapps/gas/a.cpp", texts)
+        self.assertEqual(["miniapps/gas/a.cpp", "kernels/b.hpp", "kernels/c.hpp", "<Kokkos_Core.hpp>"], chain)
+
+
+if __name__ == "__main__":
+    unittest.main()
