@@ -70,10 +70,10 @@ kokkos_cuda_flags() {
 variant_stamp() {
   {
     printf '%s\n' "$1" "$2" "$KOKKOS_SHA256"
-    cat "$root/scripts/lib/kokkos.sh" "$root/cmake/cuda13_kokkos45.hpp"
+    declare -f build_kokkos build_one kokkos_architecture kokkos_cuda_flags
     "${CXX:-c++}" -dumpfullversion -dumpmachine
     [ "$1" = bundle ] || grep -m 1 '^flags' /proc/cpuinfo
-    case "$1" in *cuda*) "$nvcc" --version ;; esac
+    case "$1" in *cuda*) cat "$root/cmake/cuda13_kokkos45.hpp" && "$nvcc" --version ;; esac
   } 2>/dev/null | sha256sum
 }
 
@@ -108,7 +108,7 @@ build_kokkos() {
   if command -v ccache >/dev/null; then
     common+=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache -DCMAKE_CUDA_COMPILER_LAUNCHER=ccache)
   fi
-  rm -rf "${deps:?}/$variant" "$deps/work-$variant"
+  rm -rf "$deps/work-$variant"
   build_one "$variant" kokkos "${common[@]}" "${kokkos[@]}"
   build_one "$variant" kokkos-kernels "${common[@]}" "${kernels[@]}"
   rm -rf "$deps/work-$variant"
@@ -121,5 +121,7 @@ build_one() {
   shift 2
   run_logged "$folder-$variant-configure" cmake -S "$deps/source/$folder" -B "$work" "$@"
   run_logged "$folder-$variant-build" cmake --build "$work" --parallel "$jobs"
+  # An older installation serves until its successor is compiled.
+  if [ "$folder" = kokkos ]; then rm -rf "${deps:?}/$variant"; fi
   run_logged "$folder-$variant-install" cmake --install "$work"
 }

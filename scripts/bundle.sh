@@ -1,0 +1,94 @@
+#!/usr/bin/env bash
+# Makes build/bundle/drogue: a folder that runs on another Linux (x86-64-v3, glibc >= 2.36) without installing anything.
+# It holds the programs, host and (where nvcc is) CUDA, the shared libraries they need, and the scenes.
+#
+#   scripts/bundle.sh [--tests] [--exact] [--no-cuda]
+#     --tests    the test programs of every backend too, and run_tests.sh to run them
+#     --exact    without fused multiply-add, into build/bundle/drogue-exact
+#     --no-cuda  host programs alone
+. "$(dirname "${BASH_SOURCE[0]}")/lib/common.sh"
+
+tests=no exact=OFF cuda=yes name=drogue setup=(--bundle)
+for argument in "$@"; do
+  case "$argument" in
+    --tests) tests=yes ;;
+    --exact) exact=ON name=drogue-exact ;;
+    --no-cuda) cuda=no setup+=(--no-cuda) ;;
+    -h | --help) sed -n '2,/^[^#]/s/^# \{0,1\}//p' "$0" && exit 0 ;;
+    *) fail "unknown argument $argument: see scripts/bundle.sh --help." ;;
+  esac
+done
+[ -n "$(find_nvcc)" ] || cuda=no
+cd "$root"
+scripts/setup.sh "${setup[@]}"
+
+out="$root/build/bundle/$name"
+rm -rf "$out"
+mkdir -p "$out/bin" "$out/lib"
+
+# build KIND OPTIONS...: programs and tests that look for their libraries in ../lib, the old way: DT_RPATH also holds
+# for the libraries of libraries.
+build() {
+  local kind="$1" folder="build/bundle/work-$1-$exact"
+  shift
+  run_logged "bundle-$kind-configure" cmake -S . -B "$folder" -G Ninja -DCMAKE_BUILD_TYPE=Release "-DDROGUE_EXACT=$exact" \
+    "-DBUILD_TESTING=$([ "$tests" = yes ] && echo ON || echo OFF)" -DDROGUE_HEADER_TEST=OFF \
+    '-DCMAKE_INSTALL_RPATH=$ORIGIN/../lib' -DCMAKE_BUILD_WITH_INSTALL_RPATH=ON \
+    -DCMAKE_EXE_LINKER_FLAGS=-Wl,--disable-new-dtags "$@"
+  say "building the $kind programs"
+  run_logged "bundle-$kind-build" cmake --build "$folder" --parallel "$jobs"
+  local program
+  for program in "$folder"/bin/drogue-*; do
+    case "$program" in *drogue-plot) continue ;; esac
+    install -s "$program" "$out/bin/$(basename "$program").$kind"
+  done
+  [ "$tests" = no ] && return 0
+  mkdir -p "$out/tests"
+  for program in "$folder"/tests/*; do
+    [ -f "$program" ] && [ -x "$program" ] || continue
+    # In the CUDA folder every kernel test; the rest is the same program as on the host.
+    case "$kind:$program" in
+      cuda:*_cuda) install -s "$program" "$out/tests/$(basename "$program")" ;;
+      host:*_serial | host:*_openmp) install -s "$program" "$out/tests/$(basename "$program")" ;;
+    esac
+  done
+}
+
+build host -DDROGUE_DEPS_VARIANT=bundle
+[ "$cuda" = no ] || build cuda -DDROGUE_DEPS_VARIANT=bundle-cuda -DDROGUE_CUDA=ON "-DDROGUE_CUDA_ARCH=${DROGUE_CUDA_ARCH:-90}"
+
+# Everything that the programs load but the C library and the driver, which belong to the machine.
+machine='^(ld-linux|libc|libm|libdl|librt|libpthread|libresolv|libutil|libanl|libcuda|libnvidia)[.-]'
+find "$out" -type f -perm -u+x -exec ldd {} + | awk '/=> \// { print $3 }' | sort -u | while read -r library; do
+  if ! basename "$library" | grep -qE "$machine"; then
+    install -m 644 "$library" "$out/lib/"
+  fi
+done
+
+for program in "$out"/bin/*.host; do
+  launcher="${program%.host}"
+  cat >"$launcher" <<'LAUNCHER'
+#!/bin/sh
+# Takes the CUDA program where a GPU is, else the one for the processor. DROGUE_BUILD=host or cuda decides instead.
+program="$(readlink -f "$0")"
+build="${DROGUE_BUILD:-}"
+if [ -z "$build" ]; then
+  build=host
+  if [ -x "$program.cuda" ] && [ -e /dev/nvidiactl ]; then build=cuda; fi
+fi
+exec "$program.$build" "$@"
+LAUNCHER
+  chmod 755 "$launcher"
+done
+mkdir -p "$out/share/drogue/scenes"
+for app in miniapps/*/scenes; do
+  cp -r "$app" "$out/share/drogue/scenes/$(basename "$(dirname "$app")")"
+done
+cp -r scripts/plot "$out/share/drogue/plot"
+find "$out" -name __pycache__ -prune -exec rm -rf {} +
+install -m 755 build/bundle/work-host-"$exact"/bin/drogue-plot "$out/bin/drogue-plot"
+[ "$tests" = no ] || install -m 755 scripts/lib/run_tests.sh "$out/run_tests.sh"
+
+megabytes="$(du -sm "$out" | cut -f 1)"
+say "build/bundle/$name: $megabytes MB"
+[ "$tests" = yes ] || [ "$megabytes" -lt 60 ] || fail "the bundle is larger than the 60 MB it may have."

@@ -1,0 +1,53 @@
+"""Spack recipe: `spack repo add scripts/spack`, then `spack dev-build drogue@main` in a clone."""
+
+from spack.package import *
+
+
+class Drogue(CMakePackage, CudaPackage):
+    """Verified GPU and CPU mini-apps on Kokkos: gas dynamics and more, each with an independent oracle."""
+
+    license("BSD-3-Clause")
+
+    version("main")
+
+    variant("exact", default=False, description="No fused multiply-add: all backends agree bit for bit")
+    variant("openmp", default=True, description="OpenMP backend")
+
+    depends_on("c", type="build")
+    depends_on("cxx", type="build")
+    depends_on("cmake@3.25:", type="build")
+    depends_on("kokkos@4.5: +serial cxxstd=20")
+    depends_on("kokkos+openmp", when="+openmp")
+    depends_on("kokkos-kernels@4.5:")
+    depends_on("mpi")
+    depends_on("hdf5@1.10: +mpi")
+    depends_on("hypre@2.26: +mpi")
+    depends_on("tomlplusplus@3.3:")
+    depends_on("cli11@2:")
+    depends_on("nlohmann-json@3.11:")
+    depends_on("muparser@2.3:")
+    depends_on("boost@1.74:")
+    depends_on("googletest@1.12:", type="build")
+    depends_on("python@3.11:", type=("build", "run"))
+    depends_on("py-matplotlib", type="run")
+    depends_on("py-h5py", type="run")
+
+    # The mdspan View of this release is miscompiled by nvcc as C++20.
+    conflicts("^kokkos@4.7.0", when="+cuda")
+    conflicts("%gcc@:11")
+    for _arch in ("80", "86", "89", "90", "100"):
+        depends_on(
+            f"kokkos+cuda~wrapper cmake_lang=cuda cuda_arch={_arch}", when=f"+cuda cuda_arch={_arch}"
+        )
+    conflicts("cuda_arch=none", when="+cuda", msg="name one GPU architecture, for example cuda_arch=90")
+
+    def cmake_args(self):
+        arguments = [
+            self.define("DROGUE_SYSTEM", True),
+            self.define("BUILD_TESTING", self.run_tests),
+            self.define_from_variant("DROGUE_EXACT", "exact"),
+            self.define_from_variant("DROGUE_CUDA", "cuda"),
+        ]
+        if self.spec.satisfies("+cuda"):
+            arguments.append(self.define("DROGUE_CUDA_ARCH", self.spec.variants["cuda_arch"].value[0]))
+        return arguments
