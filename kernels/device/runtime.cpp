@@ -18,6 +18,10 @@ Runtime::Runtime(const std::vector<std::string>& arguments) {
   copies.insert(copies.end(), arguments.begin(), arguments.end());
   std::vector<char*> pointers;
   for (std::string& text : copies) pointers.push_back(text.data());
+  // A hint about thread binding before every run would drown the one line that matters; --kokkos-* options come later
+  // and may bring it back.
+  char quiet[] = "--kokkos-disable-warnings";
+  pointers.insert(pointers.begin() + 1, quiet);
   auto count = static_cast<int>(pointers.size());
   pointers.push_back(nullptr);
   Kokkos::initialize(count, pointers.data());

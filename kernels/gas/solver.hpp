@@ -36,7 +36,7 @@ class Solver {
  public:
   virtual ~Solver() = default;
 
-  /// Sets cells first .. first + fields.rho.size() - 1.
+  /// Sets cells first .. first + fields.rho.size() - 1 of the state that `download` reads.
   virtual void upload(std::int64_t first, const ConstConserved& fields) = 0;
 
   /// Reads cells of the last accepted state.

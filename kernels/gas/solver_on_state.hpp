@@ -69,8 +69,9 @@ void SolverOn<ExecutionSpace>::write_control(const Control& control) {
 
 template <class ExecutionSpace>
 void SolverOn<ExecutionSpace>::upload(std::int64_t first, const ConstConserved& fields) {
+  const Fields& now = _setup.buffer[read_control().resume.current];
   const std::span<const double> part[3] = {fields.rho, fields.momentum, fields.energy};
-  for (int k = 0; k < 3; ++k) copy_range(_instance.space(), field(_setup.buffer[0], k), first, part[k], true);
+  for (int k = 0; k < 3; ++k) copy_range(_instance.space(), field(now, k), first, part[k], true);
 }
 
 template <class ExecutionSpace>
@@ -116,7 +117,7 @@ template <class ExecutionSpace>
 void SolverOn<ExecutionSpace>::restore(const Resume& state) {
   Control c{};
   c.resume = state;
-  c.resume.current = 0;  // where `upload` writes
+  c.resume.current = read_control().resume.current;  // where `upload` has written
   c.stop = Stop::pause;
   c.bad = no_cell;
   write_control(c);

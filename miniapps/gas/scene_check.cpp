@@ -34,8 +34,8 @@ void check_mesh(const Table& root, const GasScene& scene) {
   const double spacing = std::numeric_limits<double>::epsilon() * largest;
   if (!std::isfinite(length) || length / static_cast<double>(parameters.cells) < 16.0 * spacing) {
     contradict(root, "mesh.domain",
-               domain_text(parameters) + " cannot be divided into " + std::to_string(parameters.cells) +
-                   " cells whose centres differ in FP64");
+               "mesh.domain: " + domain_text(parameters) + " cannot be divided into " +
+                   std::to_string(parameters.cells) + " cells whose centres differ in FP64");
   }
 }
 
@@ -119,8 +119,6 @@ void complete_verify(const Table& root, GasScene& scene) {
 }
 
 void check_initial(const Table& root, const GasScene& scene) {
-  if (scene.initial.riemann) check_riemann(root, scene);
-  check_regions(root, scene);
   const Survey seen = survey_initial_state(scene);
   if (seen.first_bad < scene.parameters.cells) {
     const BadCell bad = describe_bad_cell(scene, seen.first_bad);
@@ -143,6 +141,8 @@ void check_initial(const Table& root, const GasScene& scene) {
 void complete_and_check(const Table& root, GasScene& scene) {
   check_mesh(root, scene);
   check_boundary(root, scene.parameters);
+  if (scene.initial.riemann) check_riemann(root, scene);
+  check_regions(root, scene);
   complete_output(root, scene);
   complete_verify(root, scene);
   check_initial(root, scene);

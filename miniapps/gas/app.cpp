@@ -1,0 +1,124 @@
+#include "miniapps/gas/app.hpp"
+
+#include <chrono>
+#include <cstdio>
+#include <iostream>
+
+#include "common/program/mpi_guard.hpp"
+#include "common/program/program.hpp"
+#include "common/program/provenance.hpp"
+#include "common/program/signals.hpp"
+#include "common/scene/library.hpp"
+#include "kernels/device/ledger.hpp"
+#include "kernels/device/runtime.hpp"
+#include "miniapps/gas/scene_folder.hpp"
+#include "miniapps/gas/simulation.hpp"
+#include "miniapps/gas/study.hpp"
+
+namespace drogue::gas_app {
+
+device::Backend choose_backend(const std::string& wanted) {
+  const device::Backend backend =
+      wanted == "auto" ? device::fastest_backend() : device::backend_from_name(wanted).value();
+  if (const auto reason = device::why_unavailable(backend)) throw Failure(ExitCode::no_backend, *reason);
+  return backend;
+}
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// A directory whose only run never began: it may be used as if it were empty.
+bool holds_only_a_refusal(const std::filesystem::path& directory) {
+  for (const std::string& name : run::run_file_names())
+    if (name != "result.json" && std::filesystem::exists(directory / name)) return false;
+  return true;
+}
+
+run::ExistingRun existing_run(const MiniAppOptions& options, const std::filesystem::path& directory,
+                              const std::filesystem::path& restart) {
+  if (options.overwrite) return run::ExistingRun::overwrite;
+  if (!restart.empty() || options.restart == "auto") return run::ExistingRun::resume;
+  return holds_only_a_refusal(directory) ? run::ExistingRun::overwrite : run::ExistingRun::refuse;
+}
+
+void print_summary(const run::ResultDocument& result, const std::filesystem::path& directory) {
+  std::printf("%s on %s: %lld steps to t = %g s in %.3g s, limiter touches %lld, redone steps %lld\n",
+              result.scene.c_str(), result.backend.c_str(), static_cast<long long>(result.steps), result.time,
+              result.timing.wall_s, static_cast<long long>(result.limiter.touches),
+              static_cast<long long>(result.limiter.redone_steps));
+  for (const run::Check& check : result.checks)
+    std::printf("  %-16s %.4g  (bar %.4g)  %s\n", check.name.c_str(), check.value, check.bar,
+                check.passed ? "passed" : "FAILED");
+  std::printf("files in %s\n", directory.string().c_str());
+}
+
+/// One run of a scene, whose result.json tells how it ended, whatever happened.
+ExitCode run_scene(const MiniAppOptions& options, const std::filesystem::path& file) {
+  const auto begin = Clock::now();
+  const std::string name = file.stem().string();
+  const std::filesystem::path out = options.out.empty() ? std::filesystem::path("out") / name : options.out;
+  const std::filesystem::path restart =
+      options.restart.empty() ? std::filesystem::path() : run::restart_source(options.restart, out);
+  const run::RunDirectory directory(out, existing_run(options, out, restart));
+  run::ResultDocument result = run::new_result("drogue-gas", name);
+  try {
+    const GasScene scene =
+        read_gas_scene(file, options.set, options.seed_mode ? SchemeSource::dissertation : SchemeSource::scene);
+    const device::Backend backend = choose_backend(options.backend);
+    directory.write_scene(print_gas_scene(scene));
+    const device::Runtime runtime(options.kokkos);
+    device::start_ledger();
+    describe_device(result, scene.parameters, backend);
+    Simulation simulation(scene, {backend, options.seed_mode, options.quiet, restart});
+    result.exit_code = simulation.run(&directory, result);
+    if (result.exit_code == ExitCode::ok) {
+      simulation.verify(result);
+      if (const std::string failed = result.failed_check(); !failed.empty())
+        throw Failure(ExitCode::verification_failed, failed);
+    }
+    if (result.exit_code == ExitCode::interrupted) result.message = "interrupted by a signal; restart.h5 is written";
+  } catch (...) {
+    const Failure failure = current_failure();
+    result.exit_code = failure.code();
+    result.message = failure.what();
+    result.timing.wall_s = std::chrono::duration<double>(Clock::now() - begin).count();
+    run::write_result(directory.file("result.json"), result);
+    if (failure.code() == ExitCode::verification_failed && !options.quiet) print_summary(result, out);
+    throw failure;
+  }
+  result.timing.wall_s = std::chrono::duration<double>(Clock::now() - begin).count();
+  run::write_result(directory.file("result.json"), result);
+  if (!options.quiet) print_summary(result, out);
+  return result.exit_code;
+}
+
+}  // namespace
+
+ExitCode run_app(const MiniAppOptions& options) {
+  if (!options.help.empty()) {
+    std::cout << options.help;
+    return ExitCode::ok;
+  }
+  if (options.version) {
+    std::cout << version_text("drogue-gas");
+    return ExitCode::ok;
+  }
+  if (options.list_scenes) {
+    std::cout << scene::list_text(scene::list_scenes(scene_folder()));
+    return ExitCode::ok;
+  }
+  require_one_rank("drogue-gas");
+  const std::filesystem::path file = scene::find_scene(options.scene, scene_folder());
+  if (options.check || options.print_scene) {
+    const GasScene scene =
+        read_gas_scene(file, options.set, options.seed_mode ? SchemeSource::dissertation : SchemeSource::scene);
+    if (options.print_scene) std::cout << print_gas_scene(scene);
+    return ExitCode::ok;
+  }
+  install_signal_handlers();
+  if (!options.study.empty()) return run_study(options, file);
+  return run_scene(options, file);
+}
+
+}  // namespace drogue::gas_app

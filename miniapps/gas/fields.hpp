@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "kernels/gas/solver.hpp"
+#include "miniapps/gas/scene.hpp"
+
+namespace drogue::gas_app {
+
+/// Cells moved at a time, so that host memory does not grow with the mesh.
+inline constexpr std::int64_t chunk_cells = std::int64_t{1} << 18;
+
+/// Calls `visit(first, count)` for consecutive chunks of the mesh.
+void for_chunks(std::int64_t cells, const std::function<void(std::int64_t first, std::size_t count)>& visit);
+
+/// Evaluates the scene's initial state and uploads it.
+void upload_initial_state(gas::Solver& solver, const GasScene& scene);
+
+/// Density, velocity and pressure of one cell of a conserved state.
+inline Primitive primitive(const gas::ConstConserved& u, std::size_t i, double gamma) {
+  const double velocity = u.momentum[i] / u.rho[i];
+  return {u.rho[i], velocity, (gamma - 1.0) * (u.energy[i] - 0.5 * u.momentum[i] * velocity)};
+}
+
+/// Visits every cell of the solver's state in order.
+void for_cells(gas::Solver& solver, const gas::Parameters& parameters,
+               const std::function<void(std::int64_t cell, const Primitive& state)>& visit);
+
+}  // namespace drogue::gas_app

@@ -1,0 +1,105 @@
+#include "miniapps/gas/restart.hpp"
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "common/run/restart_file.hpp"
+#include "miniapps/gas/fields.hpp"
+
+namespace drogue::gas_app {
+
+namespace {
+
+constexpr std::array<const char*, 3> field_names = {"rho", "momentum", "energy"};
+
+/// Output, end time and checks may change between a run and its continuation; mesh, gas and scheme may not.
+std::string scene_fingerprint(GasScene scene) {
+  scene.description.clear();
+  scene.output = {};
+  scene.verify = {};
+  scene.end_time = 1.0;
+  scene.parameters.max_steps = 1;
+  scene.parameters.block = 0;
+  return run::fingerprint(print_gas_scene(scene));
+}
+
+/// The one list of what a restart file holds beside the fields: `number` and `integer` write or read one entry.
+template <class State, class Number, class Integer>
+void visit(State& state, const Number& number, const Integer& integer) {
+  auto& r = state.resume;
+  auto& i = state.initial;
+  number("time", r.time);
+  integer("step", r.step);
+  integer("limited", r.limited);
+  integer("limited_left", r.limited_left);
+  integer("halvings", r.halvings);
+  number("dt_scale", r.dt_scale);
+  integer("redone", r.redone);
+  integer("touches", r.touches);
+  number("last_dt", r.last_dt);
+  number("dt_min", r.dt_min);
+  number("dt_max", r.dt_max);
+  for (int k = 0; k < 3; ++k) integer("speed_bits_" + std::to_string(k), r.speed[k]);
+  for (int side = 0; side < 2; ++side)
+    for (int k = 0; k < 3; ++k) {
+      const std::string end = std::to_string(side) + "_" + field_names[static_cast<std::size_t>(k)];
+      number("boundary_" + end, r.boundary[side][k]);
+      number("compensation_" + end, r.compensation[side][k]);
+    }
+  number("initial_mass", i.mass);
+  number("initial_momentum", i.momentum);
+  number("initial_energy", i.energy);
+}
+
+}  // namespace
+
+void write_restart(const std::filesystem::path& file, const GasScene& scene, gas::Solver& solver,
+                   const gas::ConstConserved& u, const RestartState& state) {
+  run::RestartWriter writer(file, scene_fingerprint(scene));
+  visit(
+      state, [&](const std::string& name, double value) { writer.number(name, value); },
+      [&](const std::string& name, auto value) { writer.integer(name, static_cast<std::int64_t>(value)); });
+  const std::array<std::span<const double>, 3> fields = {u.rho, u.momentum, u.energy};
+  for (std::size_t k = 0; k < 3; ++k) {
+    writer.array(field_names[k], fields[k].size());
+    writer.write(field_names[k], 0, fields[k]);
+  }
+  if (state.resume.touches > 0) {
+    writer.array("touched", u.rho.size());
+    std::vector<std::uint8_t> flags;
+    std::vector<double> values;
+    for_chunks(scene.parameters.cells, [&](std::int64_t first, std::size_t count) {
+      flags.resize(count);
+      solver.download_touched(first, flags);
+      values.assign(flags.begin(), flags.end());
+      writer.write("touched", static_cast<std::uint64_t>(first), values);
+    });
+  }
+  writer.commit();
+}
+
+RestartState read_restart(const std::filesystem::path& file, const GasScene& scene, gas::Solver& solver) {
+  const run::RestartReader reader(file, scene_fingerprint(scene));
+  RestartState state;
+  visit(
+      state, [&](const std::string& name, double& value) { value = reader.number(name); },
+      [&](const std::string& name, auto& value) {
+        value = static_cast<std::remove_reference_t<decltype(value)>>(reader.integer(name));
+      });
+  std::array<std::vector<double>, 3> fields;
+  for_chunks(scene.parameters.cells, [&](std::int64_t first, std::size_t count) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      fields[k].resize(count);
+      reader.read(field_names[k], static_cast<std::uint64_t>(first), fields[k]);
+    }
+    solver.upload(first, {fields[0], fields[1], fields[2]});
+    if (state.resume.touches == 0) return;
+    reader.read("touched", static_cast<std::uint64_t>(first), fields[0]);
+    std::vector<std::uint8_t> flags(fields[0].begin(), fields[0].end());
+    solver.upload_touched(first, flags);
+  });
+  return state;
+}
+
+}  // namespace drogue::gas_app

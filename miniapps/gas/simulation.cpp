@@ -1,0 +1,130 @@
+#include "miniapps/gas/simulation.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "common/program/signals.hpp"
+#include "kernels/device/ledger.hpp"
+#include "kernels/device/runtime.hpp"
+#include "miniapps/gas/failure_text.hpp"
+#include "miniapps/gas/fields.hpp"
+
+namespace drogue::gas_app {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
+
+}  // namespace
+
+void describe_device(run::ResultDocument& result, const gas::Parameters& parameters, device::Backend backend) {
+  const device::DeviceFacts facts = device::device_facts();
+  result.backend = std::string(device::name(backend));
+  result.precision = parameters.precision == gas::Precision::split ? "split" : "double";
+  result.threads = backend == device::Backend::openmp ? facts.threads : 1;
+  result.device = backend == device::Backend::cuda ? facts.gpu : result.provenance.cpu;
+  result.provenance.kokkos = facts.kokkos_version;
+  result.provenance.gpu = facts.gpu;
+  result.provenance.driver = facts.driver;
+}
+
+Simulation::Simulation(const GasScene& scene, const RunSettings& settings) : _scene(scene), _settings(settings) {
+  const auto begin = Clock::now();
+  _solver = settings.seed_mode ? gas::create_seed_solver(settings.backend, scene.parameters)
+                               : gas::create_solver(settings.backend, scene.parameters);
+  const auto upload = Clock::now();
+  if (settings.restart.empty()) {
+    upload_initial_state(*_solver, scene);
+    _solver->start();
+    _initial = _solver->totals();
+  } else {
+    const RestartState state = read_restart(settings.restart, scene, *_solver);
+    _solver->restore(state.resume);
+    _initial = state.initial;
+  }
+  _h2d_s = seconds_since(upload);
+  _setup_s = seconds_since(begin);
+  device::end_warmup();
+}
+
+double Simulation::next_stop(double time) const {
+  for (const double output : _scene.output.times)
+    if (output > time) return std::min(output, _scene.end_time);
+  return _scene.end_time;
+}
+
+bool Simulation::is_output_time(double time) const {
+  return std::find(_scene.output.times.begin(), _scene.output.times.end(), time) != _scene.output.times.end();
+}
+
+ExitCode Simulation::run(const run::RunDirectory* directory, run::ResultDocument& result) {
+  const bool resumed = !_settings.restart.empty();
+  gas::Resume now = _solver->resume_state();
+  std::optional<RunOutput> output;
+  if (directory != nullptr)
+    output.emplace(_scene, *_solver, *directory, resumed ? std::optional<double>(now.time) : std::nullopt);
+  if (output && !resumed) {
+    output->write_row(_initial);
+    if (is_output_time(0.0)) output->write_fields(0.0, 0);
+  }
+  ProgressLine progress(_settings.quiet);
+  const auto poll = [&](const gas::Status& status) {
+    progress.update(status.step, status.time, _scene.end_time);
+    return !interrupted();
+  };
+  const gas::RowSink rows = [&](const gas::HistoryRow& row) { output->write_row(row); };
+  const int row_every = output ? _scene.output.history_every : 0;
+  const std::int64_t restart_every = output ? _scene.output.restart_every : 0;
+
+  gas::Stop stop = gas::Stop::target;
+  const auto restart_state = [&] { return RestartState{_solver->resume_state(), _initial}; };
+  while (now.time < _scene.end_time) {
+    const double target = next_stop(now.time);
+    const std::int64_t pause = restart_every > 0 ? (now.step / restart_every + 1) * restart_every : -1;
+    const auto begin = Clock::now();
+    stop = _solver->advance(target, pause, row_every, rows, poll);
+    _compute_s += seconds_since(begin);
+    now = _solver->resume_state();
+    if (output && now.time == target && is_output_time(target)) output->write_fields(target, now.step);
+    if (output && restart_every > 0 && now.step % restart_every == 0 && stop != gas::Stop::failed)
+      output->write_restart(restart_state());
+    if (stop != gas::Stop::target && stop != gas::Stop::pause) break;
+  }
+  progress.finish();
+  if (output) {
+    output->write_row(_solver->totals());
+    if (stop == gas::Stop::failed || stop == gas::Stop::max_steps || stop == gas::Stop::interrupted)
+      output->write_restart(restart_state());
+    output->finish();
+    _io_s = output->waited();
+  }
+  describe(result);
+  if (stop == gas::Stop::interrupted) return ExitCode::interrupted;
+  if (stop == gas::Stop::failed || stop == gas::Stop::max_steps)
+    throw Failure(ExitCode::numerical_failure, failure_text(*_solver, _scene.parameters, stop));
+  return ExitCode::ok;
+}
+
+void Simulation::describe(run::ResultDocument& result) {
+  const gas::Resume now = _solver->resume_state();
+  const gas::Phases phases = _solver->phases();
+  const device::Ledger ledger = device::ledger();
+  result.steps = now.step;
+  result.time = now.time;
+  result.dt_min = now.dt_min;
+  result.dt_max = now.dt_max;
+  result.limiter = {now.touches, _solver->touched_cells(), now.redone};
+  result.timing.setup_s = _setup_s;
+  result.timing.compute_s = _settings.seed_mode ? phases.compute : _compute_s;
+  result.timing.h2d_s = _settings.seed_mode ? phases.h2d : _h2d_s;
+  result.timing.d2h_s = _settings.seed_mode ? phases.d2h : _d2h_s;
+  result.timing.io_s = _io_s;
+  result.ledger = {ledger.kernel_launches, ledger.fences, ledger.allocations_after_warmup, ledger.h2d_bytes,
+                   ledger.d2h_bytes};
+  result.peak_bytes.device = ledger.peak_device_bytes;
+}
+
+}  // namespace drogue::gas_app

@@ -1,0 +1,200 @@
+#include "miniapps/gas/study.hpp"
+
+#include <spawn.h>
+#include <sys/wait.h>
+
+#include <cmath>
+#include <cstdio>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "common/program/program.hpp"
+#include "common/run/atomic_file.hpp"
+#include "common/run/run_directory.hpp"
+#include "common/run/statistics.hpp"
+#include "kernels/device/ledger.hpp"
+#include "kernels/device/runtime.hpp"
+#include "miniapps/gas/exact.hpp"
+#include "miniapps/gas/simulation.hpp"
+
+namespace drogue::gas_app {
+
+namespace {
+
+struct Row {
+  std::string label, weno;
+  int power = 1;
+  std::string splitting, time, precision;
+  std::int64_t cells = 0, steps = 0;
+  std::vector<double> samples;  ///< compute time of each repeat, s
+  std::map<std::string, double> errors;
+  double conservation = NAN;
+  ExitCode code = ExitCode::ok;
+  std::string message;
+};
+
+std::string setting(const char* key, const std::string& value) { return std::string(key) + "=\"" + value + '"'; }
+
+/// The `--set` assignments that make the scene one point of the study.
+std::vector<std::string> assignments(const MiniAppOptions& options, const Row& row) {
+  std::vector<std::string> sets = options.set;
+  if (row.cells > 0) sets.push_back("mesh.cells=" + std::to_string(row.cells));
+  if (!row.weno.empty()) sets.push_back(setting("scheme.weno", row.weno));
+  if (row.weno == "z") sets.push_back("scheme.weno_power=" + std::to_string(row.power));
+  if (!row.splitting.empty()) sets.push_back(setting("scheme.splitting", row.splitting));
+  if (!row.time.empty()) sets.push_back(setting("scheme.time", row.time));
+  if (!row.precision.empty()) sets.push_back(setting("scheme.precision", row.precision));
+  return sets;
+}
+
+/// One entry of each axis that the study leaves alone: an empty text, which sets nothing.
+std::vector<std::string> or_scene(const std::vector<std::string>& values) {
+  return values.empty() ? std::vector<std::string>{""} : values;
+}
+
+std::vector<Row> points(const StudyAxes& axes) {
+  const auto meshes = axes.meshes.empty() ? std::vector<std::int64_t>{0} : axes.meshes;
+  const auto schemes = axes.schemes.empty() ? std::vector<StudyScheme>{{"", gas::Weno::z, 1}} : axes.schemes;
+  std::vector<Row> rows;
+  for (const StudyScheme& scheme : schemes)
+    for (const std::string& splitting : or_scene(axes.splittings))
+      for (const std::string& time : or_scene(axes.times))
+        for (const std::string& precision : or_scene(axes.precisions))
+          for (const std::int64_t cells : meshes) {
+            Row row;
+            row.weno = scheme.name == "z2" ? "z" : scheme.name;
+            row.power = scheme.power;
+            row.splitting = splitting, row.time = time, row.precision = precision, row.cells = cells;
+            rows.push_back(row);
+          }
+  return rows;
+}
+
+void describe(Row& row, const gas::Parameters& p) {
+  const char* const wenos[] = {"js", "z", "m", "teno5"};
+  const char* const splittings[] = {"lf-global", "lf-single", "lf-stencil"};
+  row.weno = wenos[static_cast<int>(p.weno)];
+  row.power = p.weno_power;
+  row.splitting = splittings[static_cast<int>(p.splitting)];
+  row.time = p.time_scheme == gas::TimeScheme::ssprk3 ? "ssprk3" : "ssprk43";
+  row.precision = p.precision == gas::Precision::split ? "split" : "double";
+  row.cells = p.cells;
+  row.label = row.weno + (p.weno == gas::Weno::z && p.weno_power == 2 ? "2" : "");
+  if (row.splitting != "lf-stencil") row.label += " " + row.splitting;
+  if (row.time != "ssprk3") row.label += " " + row.time;
+  if (row.precision != "double") row.label += " " + row.precision;
+}
+
+void run_point(Row& row, const GasScene& scene, device::Backend backend, const ExactSolution& exact) {
+  // Short runs are repeated: one sample of a few milliseconds says little.
+  for (int repeat = 0; repeat < 5 && (repeat == 0 || row.samples.front() < 0.2); ++repeat) {
+    Simulation simulation(scene, {backend, false, true, {}});
+    run::ResultDocument result;
+    try {
+      simulation.run(nullptr, result);
+    } catch (const Failure& failure) {
+      row.code = failure.code();
+      row.message = failure.what();
+      return;
+    }
+    row.samples.push_back(result.timing.compute_s);
+    if (repeat > 0) continue;
+    row.steps = result.steps;
+    row.errors = error_norms(simulation.solver(), scene.parameters, exact);
+    row.conservation = simulation.conservation();
+  }
+}
+
+double time_of(const Row& row) { return row.samples.empty() ? NAN : run::median(row.samples); }
+
+std::string csv(const std::vector<Row>& rows, const std::string& backend) {
+  std::ostringstream text;
+  text.precision(9);
+  text << "label,weno,weno_power,splitting,time_scheme,precision,backend,cells,steps,compute_s,l1_density,l1_velocity,"
+          "l1_pressure,conservation,status\n";
+  for (const Row& row : rows) {
+    text << row.label << ',' << row.weno << ',' << row.power << ',' << row.splitting << ',' << row.time << ','
+         << row.precision << ',' << backend << ',' << row.cells << ',' << row.steps << ',';
+    const bool ok = row.code == ExitCode::ok;
+    if (ok) text << time_of(row);
+    for (const char* name : {"l1_density", "l1_velocity", "l1_pressure"}) {
+      text << ',';
+      if (ok) text << row.errors.at(name);
+    }
+    text << ',';
+    if (ok) text << row.conservation;
+    text << ',' << run::status_name(row.code) << '\n';
+  }
+  return text.str();
+}
+
+nlohmann::json json(const std::vector<Row>& rows, const run::ResultDocument& facts) {
+  nlohmann::json document = {{"schema", "drogue.study/1"},  {"program", facts.program},
+                             {"version", facts.version},    {"git", facts.git},
+                             {"scene", facts.scene},        {"backend", facts.backend},
+                             {"device", facts.device},      {"threads", facts.threads},
+                             {"compiler", facts.provenance.compiler}, {"date", facts.provenance.date}};
+  for (const Row& row : rows) {
+    nlohmann::json entry = {{"label", row.label},         {"weno", row.weno},           {"weno_power", row.power},
+                            {"splitting", row.splitting}, {"time_scheme", row.time},    {"precision", row.precision},
+                            {"cells", row.cells},         {"steps", row.steps},         {"samples", row.samples},
+                            {"errors", row.errors},       {"message", row.message},
+                            {"status", run::status_name(row.code)}};
+    if (row.code == ExitCode::ok) entry["compute_s"] = time_of(row), entry["conservation"] = row.conservation;
+    document["rows"].push_back(entry);
+  }
+  return document;
+}
+
+/// Lets `drogue-plot`, which lies beside this program, draw the study.
+void draw(const std::filesystem::path& directory) {
+  std::error_code error;
+  const std::filesystem::path plot =
+      std::filesystem::read_symlink("/proc/self/exe", error).parent_path() / "drogue-plot";
+  std::string program = plot.string(), folder = directory.string();
+  char* arguments[] = {program.data(), folder.data(), nullptr};
+  pid_t child = 0;
+  int status = 1;
+  if (std::filesystem::exists(plot, error) && posix_spawn(&child, program.c_str(), nullptr, nullptr, arguments, environ) == 0)
+    waitpid(child, &status, 0);
+  if (status != 0) std::cerr << "drogue-gas: no picture was made; run drogue-plot " << folder << '\n';
+}
+
+}  // namespace
+
+ExitCode run_study(const MiniAppOptions& options, const std::filesystem::path& file) {
+  const StudyAxes axes = parse_study(options.study);
+  const GasScene base = read_gas_scene(file, options.set);
+  if (!base.verify.exact)
+    throw Failure(ExitCode::usage, "--study needs a scene with [verify] exact, to measure errors against");
+  const device::Backend backend = choose_backend(options.backend);
+  const std::filesystem::path out =
+      options.out.empty() ? std::filesystem::path("out") / (base.name + "-study") : options.out;
+  const run::RunDirectory directory(out, options.overwrite ? run::ExistingRun::overwrite : run::ExistingRun::refuse);
+  directory.write_scene(print_gas_scene(base));
+  const device::Runtime runtime(options.kokkos);
+  device::start_ledger();
+  run::ResultDocument facts = run::new_result("drogue-gas", base.name);
+  describe_device(facts, base.parameters, backend);
+
+  Reference reference;
+  if (*base.verify.exact == Exact::reference) reference = run_reference(base, backend);
+  const ExactSolution exact = exact_solution(base, base.end_time, reference);
+  std::vector<Row> rows = points(axes);
+  for (Row& row : rows) {
+    const GasScene scene = read_gas_scene(file, assignments(options, row));
+    describe(row, scene.parameters);
+    run_point(row, scene, backend, exact);
+    if (!options.quiet)
+      std::printf("%-24s %8lld cells %8lld steps %10.3g s  L1 density %s\n", row.label.c_str(),
+                  static_cast<long long>(row.cells), static_cast<long long>(row.steps), time_of(row),
+                  row.code == ExitCode::ok ? std::to_string(row.errors.at("l1_density")).c_str() : row.message.c_str());
+  }
+  run::write_file_atomically(directory.file("study.csv"), csv(rows, facts.backend));
+  run::write_file_atomically(directory.file("study.json"), json(rows, facts).dump(2) + "\n");
+  draw(out);
+  return ExitCode::ok;
+}
+
+}  // namespace drogue::gas_app
