@@ -1,5 +1,7 @@
 #include "common/program/provenance.hpp"
 
+#include <sys/resource.h>
+
 #include <cstdlib>
 #include <ctime>
 #include <fstream>
@@ -29,12 +31,14 @@ std::string utc_date() {
 }
 
 std::int64_t host_peak_bytes() {
-  // Not getrusage(): its peak includes that of the process which started this one.
+  // Not getrusage() first: its peak includes that of the process which started this one.
   std::ifstream file("/proc/self/status");
   for (std::string line; std::getline(file, line);) {
     if (line.starts_with("VmHWM:")) return std::int64_t{1024} * std::atoll(line.c_str() + 6);
   }
-  return 0;
+  rusage usage = {};
+  getrusage(RUSAGE_SELF, &usage);
+  return std::int64_t{1024} * usage.ru_maxrss;
 }
 
 std::string version_text(const std::string& program) {

@@ -34,6 +34,15 @@ bool is_leftover(const std::string& name) {
                      [&name](const std::string& file) { return name.starts_with("." + file + "."); });
 }
 
+/// True for a picture that drogue-plot made of a run; left, it would show the former one.
+bool is_picture(const std::filesystem::path& file) {
+  const std::string stem = file.stem().string();
+  const std::string kind = file.extension().string();
+  const bool named =
+      stem == "fields" || stem == "history" || stem == "study" || stem.starts_with("space_time_");
+  return named && (kind == ".png" || kind == ".pdf" || kind == ".svg" || kind == ".gif" || kind == ".mp4");
+}
+
 }  // namespace
 
 const std::vector<std::string>& run_file_names() {
@@ -100,7 +109,8 @@ void RunDirectory::remove_former_run() const {
   for (const std::string& name : run_file_names()) remove(_path / name);
   std::vector<std::filesystem::path> leftovers;
   for (const auto& entry : std::filesystem::directory_iterator(_path)) {
-    if (is_leftover(entry.path().filename().string())) leftovers.push_back(entry.path());
+    const std::filesystem::path& file = entry.path();
+    if (is_leftover(file.filename().string()) || is_picture(file)) leftovers.push_back(file);
   }
   for (const auto& file : leftovers) remove(file);
 }

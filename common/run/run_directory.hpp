@@ -42,7 +42,8 @@ class RunDirectory {
   int _lock = -1;
 };
 
-/// Names of all files that a run may leave; only these are ever removed.
+/// Names of all files that a run may leave. Only these, their temporary forms and the pictures that
+/// drogue-plot makes of them are ever removed.
 const std::vector<std::string>& run_file_names();
 
 /// True if `directory` holds a file of a run.

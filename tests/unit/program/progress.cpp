@@ -59,7 +59,7 @@ TEST(Progress, TellsStepTimeRateAndEta) {
 
 TEST(Progress, ATerminalShowsOneLineAFewTimesASecond) {
   const Terminal terminal;
-  ASSERT_NE(terminal.stream, nullptr);
+  if (terminal.stream == nullptr) GTEST_SKIP() << "needs pseudo terminals";
   std::string text;
   {
     ProgressLine line(false, terminal.stream);
@@ -77,7 +77,7 @@ TEST(Progress, ATerminalShowsOneLineAFewTimesASecond) {
 
 TEST(Progress, QuietShowsNothing) {
   const Terminal terminal;
-  ASSERT_NE(terminal.stream, nullptr);
+  if (terminal.stream == nullptr) GTEST_SKIP() << "needs pseudo terminals";
   ProgressLine(true, terminal.stream).update(1, 0.1, 1.0);
   EXPECT_EQ(terminal.text(), "");
 }
