@@ -12,6 +12,11 @@ set(CMAKE_CXX_STANDARD_REQUIRED ON)
 set(CMAKE_CXX_EXTENSIONS OFF)
 set(CMAKE_CUDA_STANDARD 20)
 set(CMAKE_CUDA_EXTENSIONS OFF)
+# CMake 3.25 does not know nvcc's option for C++20.
+if(DROGUE_CUDA AND NOT CMAKE_CUDA20_STANDARD_COMPILE_OPTION)
+  set(CMAKE_CUDA20_STANDARD_COMPILE_OPTION "-std=c++20")
+  set(CMAKE_CUDA20_EXTENSION_COMPILE_OPTION "-std=c++20")
+endif()
 set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 set(CMAKE_POSITION_INDEPENDENT_CODE ON)
 set(CMAKE_RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/bin")
@@ -62,8 +67,6 @@ if(DROGUE_CUDA)
   target_compile_options(drogue_arithmetic INTERFACE
     "$<BUILD_INTERFACE:$<$<COMPILE_LANGUAGE:CUDA>:SHELL:-include ${PROJECT_SOURCE_DIR}/cmake/cuda13_kokkos45.hpp>>")
   target_compile_options(drogue_arithmetic INTERFACE $<$<COMPILE_LANGUAGE:CUDA>:--extended-lambda>)
-  # CMake 3.25 leaves out the standard when it does not know the compiler's option for it.
-  if(NOT CMAKE_CUDA20_STANDARD_COMPILE_OPTION)
-    target_compile_options(drogue_arithmetic INTERFACE $<$<COMPILE_LANGUAGE:CUDA>:-std=c++20>)
-  endif()
+  # Users of the kernels need the standard too, whatever their CMake knows of nvcc.
+  target_compile_options(drogue_arithmetic INTERFACE "$<INSTALL_INTERFACE:$<$<COMPILE_LANGUAGE:CUDA>:-std=c++20>>")
 endif()
