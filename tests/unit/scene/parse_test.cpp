@@ -44,6 +44,9 @@ TEST(Parse, SyntaxErrorsKeepTheirLine) {
   EXPECT_EQ(syntax_error("[t]\nx = 1\n[t]\nx = 2\n").substr(0, 10), "f.toml:3: ");
   EXPECT_EQ(syntax_error("a = 1\nb = \"\xff\xfe\"\n").substr(0, 10), "f.toml:2: ");
   EXPECT_EQ(syntax_error("a = 99999999999999999999\n").substr(0, 10), "f.toml:1: ");
+  EXPECT_EQ(syntax_error("a = { b = 1 }\n\n[a.c]\nx = 1\n").substr(0, 10), "f.toml:3: ");
+  EXPECT_EQ(syntax_error("a = [\n1]\n[.b]\nx = 1\n").substr(0, 10), "f.toml:3: ")
+      << "toml++ 3.3 asserts here";
 }
 
 TEST(Parse, FilesThatCannotBeReadAreUsageErrors) {
