@@ -62,7 +62,7 @@ std::string read_text(const Handle& object, const std::string& name) {
   const Lock lock;
   char* text = nullptr;
   read_scalar(object, name, text_type().id(), static_cast<void*>(&text));
-  const std::string value = text == nullptr ? "" : text;
+  std::string value = text == nullptr ? "" : text;
   H5free_memory(text);
   return value;
 }

@@ -73,7 +73,7 @@ struct RestartReader::State {
   h5::Handle file;
 };
 
-RestartReader::RestartReader(std::filesystem::path file, const std::string& scene)
+RestartReader::RestartReader(const std::filesystem::path& file, const std::string& scene)
     : _state(std::make_unique<State>()) {
   check_seal(file, scene);
   _state->file = h5::open_file(file, false);

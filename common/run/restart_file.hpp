@@ -45,7 +45,7 @@ class RestartWriter {
 /// wrong.
 class RestartReader {
  public:
-  RestartReader(std::filesystem::path file, const std::string& scene);
+  RestartReader(const std::filesystem::path& file, const std::string& scene);
   ~RestartReader();
   RestartReader(const RestartReader&) = delete;
   RestartReader& operator=(const RestartReader&) = delete;
