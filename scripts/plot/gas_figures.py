@@ -51,7 +51,7 @@ def scheme_name(scene: dict) -> str:
 
 
 def details(view: View, time: float) -> str:
-    return f"{scheme_name(view.run.scene)}, {len(view.x)} cells, t = {style.number(time)} s"
+    return f"{scheme_name(view.run.scene)}, {len(view.x)} cells, t = {time:.4g} s"
 
 
 def key(view: View, shows_exact: bool) -> list[tuple[str, str, str]]:
@@ -91,16 +91,16 @@ class FieldPanel:
             self._exact.set_data(*style.thin(x, values[name]) if name in values else ([], []))
 
 
-def _wants_logarithm(low: float, high: float) -> bool:
-    """True where a linear axis would hide all but the largest values."""
-    return low > 0 and high >= 999 * low
+def _wants_logarithm(name: str, low: float, high: float) -> bool:
+    """True where a linear axis would hide all but the largest values; a velocity has a sign even where it is not seen."""
+    return name != "u" and low > 0 and high >= 999 * low
 
 
-def set_range(axes, arrays) -> None:
+def set_range(axes, name: str, arrays) -> None:
     """Vertical axis that holds all of the run's values; logarithmic where they span three decades."""
     low = min(float(np.nanmin(values)) for values in arrays)
     high = max(float(np.nanmax(values)) for values in arrays)
-    if _wants_logarithm(low, high):
+    if _wants_logarithm(name, low, high):
         axes.set_yscale("log")
         margin = (high / low) ** 0.06
         axes.set_ylim(low / margin, high * margin)
@@ -110,6 +110,15 @@ def set_range(axes, arrays) -> None:
         # A field that does not vary must not look as if it did.
         margin = 0.1 * abs(high) or 1.0
     axes.set_ylim(low - margin, high + margin)
+
+
+def _checks_in_words(run: Run) -> str:
+    """What was verified, for a picture without an error panel."""
+    return "".join(
+        f";  {check['name'].replace('_', ' ')} {style.number(check['value'])} (bar {style.number(check['bar'])})"
+        for check in run.result.get("checks", [])
+        if check["name"] != "conservation" and check["value"] is not None
+    )
 
 
 def _error_title(run: Run, name: str) -> str:
@@ -126,7 +135,7 @@ def _draw_error(axes, view: View, snapshot: Snapshot, name: str, error: np.ndarr
     axes.set_title(title, fontsize=8, pad=4)
     size = np.abs(error)
     top = np.nanmax(size)
-    if not top > 1e-14 * np.nanmax(np.abs(snapshot.fields[name].values)):
+    if not top > 1e-12 * np.nanmax(np.abs(snapshot.fields[name].values)):
         words = f"round-off, {style.number(top)}" if top > 0 else "exactly 0"
         axes.set_yticks([])
         axes.text(0.5, 0.5, words, transform=axes.transAxes, ha="center", va="center", color=style.MUTED)
@@ -154,7 +163,7 @@ def fields_figure(view: View, snapshot: Snapshot):
     final = snapshot is view.run.snapshots[-1]
     for column, name in enumerate(view.fields):
         FieldPanel(axes[0][column], view, name).show(snapshot)
-        set_range(axes[0][column], [snapshot.fields[name].values])
+        set_range(axes[0][column], name, [snapshot.fields[name].values])
         if name in error:
             title = _error_title(view.run, name) if final else "|error|"
             _draw_error(axes[1][column], view, snapshot, name, error[name], title)
@@ -162,7 +171,10 @@ def fields_figure(view: View, snapshot: Snapshot):
             axes[1][column].set_axis_off()
         axes[-1][column].set_xlabel(view.x_label)
     figure.tight_layout(rect=(0, 0, 1, 1 - 0.48 / height), h_pad=0.6, w_pad=1.4)
-    style.heading(figure, view.run.name, details(view, snapshot.time), key(view, shows_exact))
+    words = details(view, snapshot.time)
+    if final and not shows_exact:
+        words += _checks_in_words(view.run)
+    style.heading(figure, view.run.name, words, key(view, shows_exact))
     return figure
 
 
@@ -182,7 +194,7 @@ def space_time_figure(view: View, name: str):
     edges = _edges(times)
     edges[0], edges[-1] = times[0], times[-1]
     low, high = float(np.nanmin(values)), float(np.nanmax(values))
-    norm = LogNorm(low, high) if _wants_logarithm(low, high) else Normalize(low, high)
+    norm = LogNorm(low, high) if _wants_logarithm(name, low, high) else Normalize(low, high)
     image = axes.pcolormesh(_edges(x), edges, values, cmap="viridis", norm=norm, rasterized=True)
     axes.grid(False)
     item = snapshots[-1].fields[name]

@@ -24,7 +24,7 @@ def frames(view: View):
     for name, panel in zip(view.fields, axes[0]):
         panels.append(FieldPanel(panel, view, name))
         panels[-1].show(chosen[-1])
-        set_range(panel, [snapshot.fields[name].values for snapshot in snapshots])
+        set_range(panel, name, [snapshot.fields[name].values for snapshot in snapshots])
         panel.set_xlabel(view.x_label)
     figure.tight_layout(rect=(0, 0, 1, 1 - 0.48 / _HEIGHT), w_pad=1.4)
     shows_exact = bool(errors(view.run, snapshots[-1], view.exact))

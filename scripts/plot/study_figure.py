@@ -75,7 +75,9 @@ def study_figure(name: str, rows: list[dict[str, str]], norm: str = "l1_density"
     except (KeyError, TypeError, ValueError) as error:
         raise Failure(IO_ERROR, f"The study of {name} has a row that cannot be read: {error}.") from None
     if not curves:
-        raise Failure(IO_ERROR, f"The study of {name} has nothing to draw: {' and '.join(left_out) or 'it is empty'}.")
+        raise Failure(
+            IO_ERROR, f"The study of {name} has nothing to draw: {' and '.join(left_out) or 'it is empty'}."
+        )
     figure, (by_time, by_mesh) = plt.subplots(1, 2, figsize=(8.2, 3.6), sharey=True)
     figure.subplots_adjust(left=0.1, right=0.79, top=0.8, bottom=0.14, wspace=0.1)
     _draw(by_time, curves, 1, lambda label, points: "")
