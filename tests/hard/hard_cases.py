@@ -1,0 +1,48 @@
+"""The rows of bars.csv and failures.csv, and the assignments that make a shipped scene one of them."""
+
+import csv
+import pathlib
+
+import gas_program
+
+FOLDER = pathlib.Path(__file__).parent
+
+
+def rows(name):
+    with (FOLDER / name).open(encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def scheme_sets(scheme):
+    """js, z1, z2, teno5 -> assignments; power belongs to Z alone."""
+    if scheme.startswith("z"):
+        return ['scheme.weno="z"', f"scheme.weno_power={scheme[1:]}"]
+    return [f'scheme.weno="{scheme}"']
+
+
+def row_sets(row):
+    """The scheme and mesh of a row; verification is left to the test."""
+    sets = scheme_sets(row["scheme"]) + [f"mesh.cells={row['N']}", f"scheme.cfl={row['cfl']}"]
+    if "limiter" in row:
+        sets += [f'scheme.positivity="{row["limiter"]}"', f'scheme.splitting="{row["splitting"]}"']
+    return sets
+
+
+def label(row):
+    return " ".join(row.get(key, "") for key in ("case", "scheme", "N", "splitting", "reference")).strip()
+
+
+def bar_sets(row):
+    """`row_sets` and the bar itself: 5 % above the error, or 2 % around the largest density."""
+    bar = float(row["bar"])
+    if row["quantity"] == "max_density":
+        return row_sets(row) + [f"verify.max_density.value={bar}", "verify.max_density.tolerance=0.02"]
+    return row_sets(row) + [f"verify.{row['quantity']}={1.05 * bar!r}"]
+
+
+def unverified(test, case):
+    """The shipped scene without its [verify], whose reference would be run each time, and with one output at most."""
+    text = (gas_program.SOURCE / f"miniapps/gas/scenes/{case}.toml").read_text(encoding="utf-8")
+    scene = test.folder / f"{case}.toml"
+    scene.write_text(text[:text.index("[output]")] + "[verify]\nconservation = 1e-12\n", encoding="utf-8")
+    return scene

@@ -1,0 +1,39 @@
+"""The finest rows of bars.csv: 800 cells and more, and the published references of 12800 cells."""
+
+import os
+import sys
+import unittest
+
+sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
+
+import gas_program
+import hard_cases
+import reference_bars
+
+ROWS = [row for row in hard_cases.rows("bars.csv") if row["reference"] in ("exact", "none") and int(row["N"]) >= 800]
+
+
+class FineBars(gas_program.GasTest):
+    def test_exact(self):
+        self.assertGreaterEqual(len(ROWS), 40)
+        for row in ROWS:
+            with self.subTest(hard_cases.label(row)):
+                sets = hard_cases.bar_sets(row) + [gas_program.NO_FIELDS, "output.history_every=0"]
+                run = self.start(row["case"], "--quiet", "--overwrite", "--out", "run", "--backend", "serial", sets=sets)
+                self.assertEqual(0, run.returncode, run.stderr)
+
+
+class FineReferenceBars(reference_bars.ReferenceTest):
+    def test_800_cells(self):
+        rows = reference_bars.rows(lambda row: row["reference"] == "z1:3200" and row["N"] == "800")
+        self.assertEqual(8, len(rows))
+        self.assert_all_met(rows, "serial")
+
+    def test_published(self):
+        rows = reference_bars.rows(lambda row: row["source"] == "published")
+        self.assertEqual(21, len(rows))
+        self.assert_all_met(rows, "serial")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,84 @@
+"""What a scheme cannot do without the limiter ends in a clear failure, and "auto" saves it."""
+
+import math
+import os
+import re
+import sys
+import unittest
+
+sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
+
+import gas_program
+import hard_cases
+
+ROWS = [row for row in hard_cases.rows("failures.csv") if int(row["N"]) <= 401]
+MESSAGE = re.compile(r"(density|pressure|the state) is not (positive|finite) in cell (?P<cell>\d+) "
+                     r"\(x = (?P<x>\S+) m\) at step (?P<step>\d+), t = (?P<time>\S+) s")
+
+
+class Failures(gas_program.GasTest):
+    def fail(self, row, backend, *words):
+        # Verification would run a reference of its own; it is not reached by a run that fails.
+        sets = hard_cases.row_sets(row) + ['scheme.positivity="off"', gas_program.NO_FIELDS]
+        return self.expect(4, row["case"], "--quiet", "--out", "run", "--backend", backend, *words, sets=sets).stderr
+
+    def assert_clear_failure(self, row, message, x_min, x_max):
+        found = MESSAGE.search(message)
+        self.assertTrue(found, message)
+        self.assertIn('scheme.positivity = "auto"', message)
+        told = self.result("run")
+        self.assertEqual(("numerical-failure", 4), (told["status"], told["exit_code"]))
+        self.assertIn(told["message"], message)
+        self.assertEqual(told["steps"] + 1, int(found["step"]))
+        self.assertAlmostEqual(told["time"], float(found["time"]), delta=1e-8 * told["time"])
+        cells, cell = int(row["N"]), int(found["cell"])
+        self.assertLess(cell, cells)
+        self.assertAlmostEqual(x_min + (cell + 0.5) * (x_max - x_min) / cells, float(found["x"]), places=7)
+        self.assert_good_state(cells, told)
+
+    def assert_good_state(self, cells, told):
+        """restart.h5 holds the state of the time that result.json names, and that state is a gas."""
+        file = gas_program.fields(self.folder / "run", "restart.h5")
+        rho, momentum, energy = (file.values(f"/{name}") for name in ("rho", "momentum", "energy"))
+        self.assertEqual(cells, len(rho))
+        self.assertEqual((told["steps"], told["time"]), (file.attributes["/"]["step"], file.attributes["/"]["time"]))
+        for density, flow, total in zip(rho, momentum, energy):
+            self.assertGreater(density, 0.0)
+            self.assertGreater(total - 0.5 * flow * flow / density, 0.0)
+            self.assertTrue(math.isfinite(total))
+
+    def domain(self, case):
+        text = (gas_program.SOURCE / f"miniapps/gas/scenes/{case}.toml").read_text(encoding="utf-8")
+        return map(float, re.search(r"^domain = \[(.*), (.*)\]", text, re.MULTILINE).groups())
+
+    def test_table(self):
+        self.assertGreaterEqual(len(ROWS), 28)
+
+    def test_off_fails_clearly(self):
+        for index, row in enumerate(ROWS):
+            with self.subTest(hard_cases.label(row)):
+                words = ["--overwrite"] if index else []
+                message = self.fail(row, "openmp" if row["N"] == "200" else "serial", *words)
+                self.assert_clear_failure(row, message, *self.domain(row["case"]))
+
+    def test_the_last_good_state_leads_to_the_same_failure(self):
+        row = ROWS[0]
+        message = self.fail(row, "serial")
+        self.assertEqual(message, self.fail(row, "serial", "--restart", "auto"))
+
+    def test_auto_saves(self):
+        for row in ROWS:
+            with self.subTest(hard_cases.label(row)):
+                sets = hard_cases.row_sets(row) + ['scheme.positivity="auto"', gas_program.NO_FIELDS]
+                words = ["--quiet", "--overwrite", "--out", "run", "--backend", "serial"]
+                run = self.start(hard_cases.unverified(self, row["case"]), *words, sets=sets)
+                self.assertEqual(0, run.returncode, run.stderr)
+                told = self.result("run")
+                self.assertGreater(told["limiter"]["redone_steps"], 0)
+                self.assertGreater(told["limiter"]["touches"], 0)
+                self.assertGreater(told["limiter"]["cells"], 0)
+                self.assertEqual(["conservation"], [check["name"] for check in told["checks"]])
+
+
+if __name__ == "__main__":
+    unittest.main()

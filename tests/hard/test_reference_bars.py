@@ -1,0 +1,27 @@
+"""Shu-Osher and the blast against own runs of 3200 cells, with every scheme, up to 400 cells."""
+
+import os
+import sys
+import unittest
+
+sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
+
+import gas_program
+import reference_bars
+
+
+class ReferenceBars(reference_bars.ReferenceTest):
+    ROWS = reference_bars.rows(lambda row: row["reference"] == "z1:3200" and int(row["N"]) <= 400)
+
+    def test_table(self):
+        self.assertEqual(16, len(self.ROWS))
+
+    def test_serial(self):
+        self.assert_all_met(self.ROWS, "serial")
+
+    def test_openmp(self):
+        self.assert_all_met([row for row in self.ROWS if (row["scheme"], row["N"]) == ("z1", "200")], "openmp")
+
+
+if __name__ == "__main__":
+    unittest.main()

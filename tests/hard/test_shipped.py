@@ -1,0 +1,34 @@
+"""Every shipped scene meets its own bar, as it is shipped."""
+
+import os
+import sys
+import unittest
+
+sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
+
+import gas_program
+
+
+class Shipped(gas_program.GasTest):
+    def assert_all_pass(self, backend):
+        self.assertGreaterEqual(len(gas_program.SCENES), 18)
+        for scene in gas_program.SCENES:
+            with self.subTest(scene):
+                self.expect(0, scene, "--backend", backend)
+                told = self.result(f"out/{scene}")
+                self.assertEqual(("ok", backend, scene), (told["status"], told["backend"], told["scene"]))
+                self.assertIn("conservation", [check["name"] for check in told["checks"]])
+                self.assertGreaterEqual(len(told["checks"]), 2)
+                self.assertTrue(all(check["passed"] and check["value"] <= check["bar"] for check in told["checks"]))
+                outputs = gas_program.fields(self.folder / "out" / scene).children("/steps")
+                self.assertGreaterEqual(len(outputs), 2)
+
+    def test_serial(self):
+        self.assert_all_pass("serial")
+
+    def test_openmp(self):
+        self.assert_all_pass("openmp")
+
+
+if __name__ == "__main__":
+    unittest.main()

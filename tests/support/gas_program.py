@@ -1,0 +1,70 @@
+"""Runs drogue-gas for tests of its interface; found by them below tests/support."""
+
+import json
+import os
+import pathlib
+import subprocess
+import tempfile
+import unittest
+
+from hdf5_file import Hdf5File
+
+BIN = pathlib.Path(os.environ["DROGUE_BIN"])
+SOURCE = pathlib.Path(os.environ["DROGUE_SOURCE"])
+PROGRAM = BIN / "drogue-gas"
+SCENES = sorted(path.stem for path in (SOURCE / "miniapps/gas/scenes").glob("*.toml"))
+
+# Threads that wait without turning: tests share their cores with other tests.
+ENVIRONMENT = {**os.environ, "OMP_WAIT_POLICY": "passive", "OMP_NUM_THREADS": os.environ.get("OMP_NUM_THREADS", "2")}
+
+NO_FIELDS = "output.fields=[]"
+
+
+def arguments(scene, *words, sets=()):
+    """The command line of a run; a word of `sets` becomes a --set of its own."""
+    line = [str(PROGRAM), str(scene), *map(str, words)]
+    for assignment in sets:
+        line += ["--set", assignment]
+    return line
+
+
+def run(scene, *words, sets=(), cwd=None, timeout=600, environment=None):
+    """Runs to the end; stdout and stderr are text."""
+    return subprocess.run(arguments(scene, *words, sets=sets), cwd=cwd, capture_output=True, text=True, errors="replace",
+                          timeout=timeout, check=False, env={**ENVIRONMENT, **(environment or {})})
+
+
+def result(directory):
+    return json.loads((pathlib.Path(directory) / "result.json").read_text(encoding="utf-8"))
+
+
+def fields(directory, name="fields.h5"):
+    return Hdf5File(PROGRAM, pathlib.Path(directory) / name)
+
+
+def final_values(directory, field="rho"):
+    """Cell centres and one field of the last output."""
+    file = fields(directory)
+    return file.values("/mesh/x"), file.values(f"/steps/{file.children('/steps')[-1]}/{field}")
+
+
+class GasTest(unittest.TestCase):
+    """A test with an empty folder, in which its programs run."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def start(self, scene, *words, sets=(), **settings):
+        return run(scene, *words, sets=sets, cwd=self.folder, **settings)
+
+    def expect(self, code, scene, *words, sets=(), **settings):
+        """Runs in the folder, asserts the exit code and that a failure is one sentence; returns what the run said."""
+        process = self.start(scene, *words, sets=sets, **settings)
+        self.assertEqual(code, process.returncode, f"{process.args}\n{process.stderr}")
+        self.assertEqual(0 if code in (0, 130) else 1, len(process.stderr.splitlines()), process.stderr)
+        return process
+
+    def result(self, directory):
+        return result(self.folder / directory)
