@@ -1,0 +1,35 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace drogue::perf {
+
+/// One thing that can be timed.
+struct Case {
+  std::string name;  ///< work/variant/size, as `drogue-perf list` prints it
+  std::string unit_of_work;  ///< what a sample's seconds are divided by: "step"
+  std::string bound;         ///< what limits it, in words
+  /// Prepares it and returns the function that does one sample's work and says how many units it did.
+  std::function<std::function<long()>()> prepare;
+  /// Error of the state it ends in, against the oracle or an exact solution; called after the last sample.
+  std::function<double()> error;
+  double bar;  ///< largest error with which the timing counts
+};
+
+/// All cases that this build and machine can run.
+std::vector<Case> gas_cases(bool quick);
+
+struct Record {
+  std::string name, unit_of_work, bound;
+  std::vector<double> samples;  ///< seconds per unit of work
+  double error = 0.0;
+  double bar = 0.0;
+};
+
+/// Times `cases` in turns, one sample each a round, so that a disturbance meets all of them; the first rounds are not
+/// kept.
+std::vector<Record> measure(const std::vector<Case>& cases, int warm_up, int rounds);
+
+}  // namespace drogue::perf
