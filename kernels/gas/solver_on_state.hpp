@@ -100,16 +100,29 @@ struct InitialSpeedFunctor {
   }
 };
 
+/// Makes `c`, of which `resume` is set, the state to step from. Rows are numbered over the life of the solver, and
+/// `advance` must know the step before a kernel has told it.
+template <class ExecutionSpace>
+void SolverOn<ExecutionSpace>::begin_at(Control& c) {
+  c.stop = Stop::pause;
+  c.bad = no_cell;
+  c.rows = _rows_read;
+  write_control(c);
+  _status().step = c.resume.step;
+  _status().rows = c.rows;
+  _last_row.reset();
+}
+
 template <class ExecutionSpace>
 void SolverOn<ExecutionSpace>::start() {
   Control c{};
+  c.resume.current = read_control().resume.current;  // where `upload` has written
   c.resume.limited = _parameters.positivity == Positivity::on;
-  c.stop = Stop::pause;
-  c.bad = no_cell;
-  write_control(c);
+  begin_at(c);
   const ExecutionSpace& space = _instance.space();
-  Kokkos::parallel_for("drogue::gas::initial_speed", Kokkos::RangePolicy<ExecutionSpace>(space, 0, _parameters.cells),
-                       InitialSpeedFunctor<ExecutionSpace>{_setup.buffer[0], _setup.control, _parameters.gamma});
+  Kokkos::parallel_for(
+      "drogue::gas::initial_speed", Kokkos::RangePolicy<ExecutionSpace>(space, 0, _parameters.cells),
+      InitialSpeedFunctor<ExecutionSpace>{_setup.buffer[c.resume.current], _setup.control, _parameters.gamma});
   space.fence("drogue::gas::solver: started");
 }
 
@@ -118,9 +131,7 @@ void SolverOn<ExecutionSpace>::restore(const Resume& state) {
   Control c{};
   c.resume = state;
   c.resume.current = read_control().resume.current;  // where `upload` has written
-  c.stop = Stop::pause;
-  c.bad = no_cell;
-  write_control(c);
+  begin_at(c);
 }
 
 template <class ExecutionSpace>

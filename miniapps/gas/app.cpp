@@ -83,7 +83,11 @@ ExitCode run_scene(const MiniAppOptions& options, const std::filesystem::path& f
     result.exit_code = failure.code();
     result.message = failure.what();
     result.timing.wall_s = std::chrono::duration<double>(Clock::now() - begin).count();
-    run::write_result(directory.file("result.json"), result);
+    try {
+      run::write_result(directory.file("result.json"), result);
+    } catch (const Failure& second) {
+      throw Failure(failure.code(), std::string(failure.what()) + "; and " + second.what());
+    }
     if (failure.code() == ExitCode::verification_failed && !options.quiet) print_summary(result, out);
     throw failure;
   }

@@ -43,7 +43,10 @@ double value_of(const Primitive& state, const std::string& field) {
 
 RunOutput::RunOutput(const GasScene& scene, gas::Solver& solver, const run::RunDirectory& directory,
                      std::optional<double> resume_time)
-    : _scene(scene), _solver(solver), _restart_file(directory.file("restart.h5")) {
+    : _scene(scene),
+      _solver(solver),
+      _restart_file(directory.file("restart.h5")),
+      _last_row_time(resume_time.value_or(-1.0)) {
   if (scene.output.history_every > 0)
     _history.emplace(directory.file("history.csv"), history_columns, resume_time);
   if (scene.output.fields.empty()) return;

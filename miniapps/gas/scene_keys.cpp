@@ -262,7 +262,7 @@ void declare_gas_scene(Table& root, GasScene& scene) {
               stage
                   .value("block", zero_is_unset(scene::integer_codec(parameters.block), parameters.block),
                          "Cells a tile")
-                  .range(32, 1024)
+                  .range(32, 512)
                   .default_text("the backend's own");
             },
             "The fused stage kernel");

@@ -79,6 +79,12 @@ ExitCode Simulation::run(const run::RunDirectory* directory, run::ResultDocument
   const int row_every = output ? _scene.output.history_every : 0;
   const std::int64_t restart_every = output ? _scene.output.restart_every : 0;
 
+  // However this ends, the result says how far it came.
+  const struct Describe {
+    Simulation& simulation;
+    run::ResultDocument& result;
+    ~Describe() { simulation.describe(result); }
+  } describe_at_end{*this, result};
   gas::Stop stop = gas::Stop::target;
   const auto restart_state = [&] { return RestartState{_solver->resume_state(), _initial}; };
   while (now.time < _scene.end_time) {
@@ -95,13 +101,13 @@ ExitCode Simulation::run(const run::RunDirectory* directory, run::ResultDocument
   }
   progress.finish();
   if (output) {
-    output->write_row(_solver->totals());
+    // An interrupted run goes on later and must then have the rows of one that was not.
+    if (stop != gas::Stop::interrupted) output->write_row(_solver->totals());
     if (stop == gas::Stop::failed || stop == gas::Stop::max_steps || stop == gas::Stop::interrupted)
       output->write_restart(restart_state());
     output->finish();
     _io_s = output->waited();
   }
-  describe(result);
   if (stop == gas::Stop::interrupted) return ExitCode::interrupted;
   if (stop == gas::Stop::failed || stop == gas::Stop::max_steps)
     throw Failure(ExitCode::numerical_failure, failure_text(*_solver, _scene.parameters, stop));

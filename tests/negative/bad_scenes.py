@@ -101,7 +101,7 @@ BAD_LINES = [
     (28, "times = [0.05, 0.2]", 28, ["output.times", "0.2", "run.end_time = 0.1"]),
     (28, "times = [-0.1]", 28, ["output.times[0]", ">= 0"]),
     (33, "l1_density = -1", 33, ["verify.l1_density", ">= 0"]),
-    (36, "stage = { block = 7 }", 36, ["tuning.stage.block", "32 .. 1024"]),
+    (36, "stage = { block = 7 }", 36, ["tuning.stage.block", "32 .. 512"]),
     # missing keys and tables
     (24, "", 23, ['missing key "run.end_time"']),
     (9, "", 8, ["initial", "exactly one of riemann, regions, expression"]),
