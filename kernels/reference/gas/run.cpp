@@ -70,6 +70,8 @@ GasRun start_run(const gas::Parameters& p, const std::function<Primitive(double)
 
 void advance(GasRun& run, const gas::Parameters& p, double end_time) {
   while (run.time < end_time && !run.failed) {
+    run.failed = run.steps == p.max_steps;
+    if (run.failed) return;
     bool limited = p.positivity == gas::Positivity::on || run.limited_steps_left > 0;
     const double remaining = end_time - run.time;
     double dt = std::min(proposed_dt(run, p, limited), remaining);
@@ -87,7 +89,7 @@ void advance(GasRun& run, const gas::Parameters& p, double end_time) {
       ++run.redone_steps;
       outcome = attempt(run, p, dt, limited);
     }
-    run.failed = outcome != Outcome::done || run.steps == p.max_steps;
+    run.failed = outcome != Outcome::done;
     if (run.failed) return;
     run.time = dt == remaining ? end_time : run.time + dt;
     ++run.steps;

@@ -11,7 +11,7 @@ using Weights = std::array<double, 3>;
 
 constexpr Weights ideal = {0.1, 0.6, 0.3};
 constexpr double js_epsilon = 1e-6;
-constexpr double z_epsilon = 1e-40;
+constexpr double small_epsilon = 1e-40;
 constexpr double teno_cut = 1e-5;
 
 double square(double x) { return x * x; }
@@ -21,14 +21,14 @@ Weights normalised(const Weights& raw) {
   return {raw[0] / sum, raw[1] / sum, raw[2] / sum};
 }
 
-Weights js_weights(const Weights& beta) {
+Weights js_weights(const Weights& beta, double epsilon) {
   Weights raw{};
-  for (std::size_t k = 0; k < 3; ++k) raw[k] = ideal[k] / square(js_epsilon + beta[k]);
+  for (std::size_t k = 0; k < 3; ++k) raw[k] = ideal[k] / square(epsilon + beta[k]);
   return normalised(raw);
 }
 
 Weights mapped_weights(const Weights& beta) {
-  const Weights w = js_weights(beta);
+  const Weights w = js_weights(beta, small_epsilon);
   Weights raw{};
   for (std::size_t k = 0; k < 3; ++k) {
     const double d = ideal[k];
@@ -41,7 +41,7 @@ Weights z_weights(const Weights& beta, int power) {
   const double tau = std::abs(beta[0] - beta[2]);
   Weights raw{};
   for (std::size_t k = 0; k < 3; ++k) {
-    const double ratio = tau / (beta[k] + z_epsilon);
+    const double ratio = tau / (beta[k] + small_epsilon);
     raw[k] = ideal[k] * (1.0 + (power == 2 ? square(ratio) : ratio));
   }
   return normalised(raw);
@@ -50,7 +50,7 @@ Weights z_weights(const Weights& beta, int power) {
 Weights teno_weights(const Weights& beta) {
   const double tau = std::abs(beta[0] - beta[2]);
   Weights scale{};
-  for (std::size_t k = 0; k < 3; ++k) scale[k] = 1.0 + tau / (beta[k] + z_epsilon);
+  for (std::size_t k = 0; k < 3; ++k) scale[k] = 1.0 + tau / (beta[k] + small_epsilon);
   // The sixth power overflows where one indicator vanishes, and 0/0 follows: divide by the largest first.
   const double largest = *std::max_element(scale.begin(), scale.end());
   for (double& s : scale) s = square(square(s / largest) * (s / largest));
@@ -72,7 +72,7 @@ std::array<double, 3> weno_weights(const std::array<double, 5>& f, gas::Weno sch
   const Weights beta = smoothness(f);
   switch (scheme) {
     case gas::Weno::js:
-      return js_weights(beta);
+      return js_weights(beta, js_epsilon);
     case gas::Weno::m:
       return mapped_weights(beta);
     case gas::Weno::teno5:
