@@ -44,6 +44,7 @@ class SolverOn final : public Solver {
 
   [[nodiscard]] Control read_control() const;
   void write_control(const Control& control);
+  void begin_at(Control& control);
   [[nodiscard]] Status status() const;
   void enqueue_step(const ExecutionSpace& space, bool limited) const;
   void enqueue_sums(const ExecutionSpace& space, int row_every, bool always) const;
