@@ -1,11 +1,15 @@
 #include <gtest/gtest.h>
 
-#include <Kokkos_Core.hpp>
+#include <string>
+#include <vector>
 
-/// Main of the tests that use Kokkos. Listing the cases starts no backend, so it works without a device.
+#include "kernels/device/runtime.hpp"
+
+/// Main of the tests that use Kokkos, which starts as the programs do. Listing the cases starts no backend,
+/// so it works without a device.
 int main(int argc, char** argv) {
   testing::InitGoogleTest(&argc, argv);
   if (testing::FLAGS_gtest_list_tests) return RUN_ALL_TESTS();
-  const Kokkos::ScopeGuard kokkos(argc, argv);
+  const drogue::device::Runtime runtime(std::vector<std::string>(argv + 1, argv + argc));
   return RUN_ALL_TESTS();
 }
