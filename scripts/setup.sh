@@ -55,6 +55,7 @@ if [ "$system" = yes ]; then
   exit 0
 fi
 
+[ -z "${DROGUE_KOKKOS_ARCHIVE:-}" ] || check_archive "$DROGUE_KOKKOS_ARCHIVE"
 packages="$APT_PACKAGES"
 [ "$developer" = no ] || packages="$packages $APT_DEVELOPER_PACKAGES"
 mkdir -p "$deps" 2>/dev/null && [ -w "$deps" ] || fail "cannot write to $deps: choose another folder with DROGUE_DEPS."

@@ -17,6 +17,7 @@ python_environment() {
 # check_archive FILE: stops unless FILE is the pinned archive.
 check_archive() {
   local got
+  [ -r "$1" ] || fail "the archive $1 cannot be read: name another with DROGUE_KOKKOS_ARCHIVE."
   got="$(sha256sum "$1" | cut -d ' ' -f 1)"
   [ "$got" = "$KOKKOS_SHA256" ] || fail "$1 has SHA-256 $got, but scripts/dependencies.env pins $KOKKOS_SHA256: delete the file and fetch it from a source you trust."
 }
@@ -25,8 +26,6 @@ check_archive() {
 fetch_kokkos() {
   local archive="$deps/$KOKKOS_ARCHIVE"
   if [ -n "${DROGUE_KOKKOS_ARCHIVE:-}" ] && [ ! -e "$archive" ]; then
-    [ -r "$DROGUE_KOKKOS_ARCHIVE" ] || fail "DROGUE_KOKKOS_ARCHIVE names $DROGUE_KOKKOS_ARCHIVE, which cannot be read."
-    check_archive "$DROGUE_KOKKOS_ARCHIVE"
     cp "$DROGUE_KOKKOS_ARCHIVE" "$archive"
   fi
   if [ ! -e "$archive" ]; then

@@ -1,0 +1,107 @@
+"""Every failure of scripts/setup.sh is one sentence that says what to do. The system around it is played by fakes."""
+
+import os
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+SOURCE = Path(os.environ.get("DROGUE_SOURCE", Path(__file__).resolve().parents[2]))
+ALL_PACKAGES_THERE = 'shift 3; for name in "$@"; do echo "ii $name"; done'
+
+
+class Setup(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.fakes = Path(folder.name) / "fakes"
+        self.fakes.mkdir()
+        self.deps = Path(folder.name) / "deps"
+        self.fake("dpkg-query", ALL_PACKAGES_THERE)
+        self.fake("apt-get", "exit 0")
+
+    def fake(self, name, script):
+        path = self.fakes / name
+        path.write_text(f"#!/bin/bash\n{script}\n", encoding="utf-8")
+        path.chmod(0o755)
+        return path
+
+    def refused(self, *arguments, **environment):
+        """The last line of standard error of a set-up that must fail."""
+        settings = {
+            **os.environ,
+            "PATH": f"{self.fakes}:{os.environ['PATH']}",
+            "DROGUE_DEPS": str(self.deps),
+            **{name: str(value) for name, value in environment.items()},
+        }
+        result = subprocess.run(
+            [SOURCE / "scripts/setup.sh", *arguments], env=settings, capture_output=True, text=True, timeout=60
+        )
+        self.assertEqual(1, result.returncode, result.stderr)
+        last = result.stderr.strip().splitlines()[-1]
+        self.assertTrue(last.startswith("setup.sh: "), last)
+        self.assertTrue(last.endswith("."), last)
+        return last
+
+    def test_unknown_argument(self):
+        self.assertIn("--cude", self.refused("--cude"))
+
+    def test_wrong_hash(self):
+        archive = self.fakes / "kokkos.tar.gz"
+        archive.write_bytes(b"something else")
+        message = self.refused(DROGUE_KOKKOS_ARCHIVE=archive)
+        self.assertIn("has SHA-256", message)
+        self.assertIn("delete the file", message)
+
+    def test_missing_archive(self):
+        self.assertIn("cannot be read", self.refused(DROGUE_KOKKOS_ARCHIVE=self.fakes / "none"))
+
+    def test_folder_that_cannot_be_written(self):
+        self.assertIn("choose another folder with DROGUE_DEPS", self.refused(DROGUE_DEPS="/dev/null/deps"))
+
+    def test_compiler_too_old(self):
+        compiler = self.fake("g++-9", 'case "$1" in --version) echo "g++ (GCC) 9.4.0" ;; *) echo 9.4.0 ;; esac')
+        self.assertIn("version 9.4.0 and C++20 needs 12", self.refused(CXX=compiler))
+
+    def test_compiler_missing_with_system(self):
+        self.assertIn("no C++ compiler", self.refused("--system", CXX="no-such-compiler"))
+
+    def test_cmake_too_old(self):
+        self.fake("cmake", "echo cmake version 3.22.1")
+        self.assertIn("cmake is version 3.22.1: install 3.25", self.refused())
+
+    def test_no_permission_to_install(self):
+        self.fake("dpkg-query", "exit 1")
+        self.fake("id", "echo 1000")
+        self.fake("sudo", "exit 1")
+        self.assertRegex(self.refused(), r"run `sudo apt-get install -y --no-install-recommends g\+\+ .*libboost-math-dev`")
+
+    def test_no_network(self):
+        self.fake("dpkg-query", "exit 1")
+        self.fake("id", "echo 0")
+        self.fake("apt-get", "echo \"E: Temporary failure resolving 'deb.debian.org'\"; exit 100")
+        self.assertIn("check the connection", self.refused())
+
+    def test_disk_full_before_packages(self):
+        self.fake("dpkg-query", "exit 1")
+        self.fake("id", "echo 0")
+        self.fake("df", "printf 'Filesystem 1024-blocks Used Available\\n/dev/x 100000 99000 1000 99%% /\\n'")
+        self.assertIn("free some space", self.refused())
+
+    def test_disk_full_while_installing(self):
+        self.fake("dpkg-query", "exit 1")
+        self.fake("id", "echo 0")
+        self.fake("apt-get", 'if [[ "$*" == *install* ]]; then echo "No space left on device"; exit 100; fi')
+        self.assertIn("the disk is full", self.refused())
+
+    def test_other_systems(self):
+        self.fake("dpkg-query", "exit 1")
+        for tool in ("bash", "dirname", "basename", "nproc", "mkdir", "sed", "tr", "id"):
+            real = subprocess.run(["which", tool], capture_output=True, text=True, check=True).stdout.strip()
+            self.fake(tool, f'exec {real} "$@"')
+        (self.fakes / "apt-get").unlink()
+        self.assertIn("use --system", self.refused(PATH=self.fakes))
+
+
+if __name__ == "__main__":
+    unittest.main()
