@@ -1,0 +1,130 @@
+#!/usr/bin/env python3
+"""Writes docs/evidence/gas-<machine>.json: what drogue-gas does on this machine, from its own result files.
+
+    scripts/record_gas.py MACHINE --bin build/cuda/bin [--exact build/cuda-exact/bin] [--backends serial,openmp,cuda]
+                          [--largest] [--work FOLDER]
+
+Every shipped scene on every backend (error, bar, steps, time, limiter), seed mode over the meshes of the dissertation's
+Table 5.5, with --exact the datasets of all scenes compared bit for bit between backends (needs h5py), and with --largest
+a run of 2^28 cells. The summary is printed; the exit code is 1 if any run failed.
+"""
+
+import argparse
+import json
+import pathlib
+import subprocess
+import sys
+
+SEED_MESHES = (1024, 2048, 3072, 4096, 5120, 6144, 7168, 8192)
+
+
+def run(program, scene, backend, folder, *more):
+    """Result of one run, with its exit code."""
+    command = [program, scene, "--backend", backend, "--overwrite", "--quiet", "--out", folder, *more]
+    done = subprocess.run([str(word) for word in command], capture_output=True, text=True, check=False)
+    file = pathlib.Path(folder) / "result.json"
+    result = json.loads(file.read_text()) if file.exists() else {}
+    return result | {"exit_code": done.returncode, "message": done.stderr.strip() or result.get("message", "")}
+
+
+def scenes(program):
+    listed = subprocess.run([program, "--list-scenes"], capture_output=True, text=True, check=True).stdout
+    return [line.split()[0] for line in listed.splitlines() if line.strip()]
+
+
+def summary(result):
+    keep = ("scene", "backend", "device", "threads", "steps", "exit_code", "message", "checks", "limiter", "ledger")
+    short = {key: result.get(key) for key in keep}
+    timing = result.get("timing", {})
+    return short | {"compute_s": timing.get("compute_s"), "wall_s": timing.get("wall_s")}
+
+
+def seed_rows(program, backend, work):
+    """Microseconds a step of the three phases; 200 steps each."""
+    rows = []
+    for cells in SEED_MESHES:
+        end_time = 200 * 0.6 * 2.0 / cells / 2.2
+        result = run(program, "sod", backend, work / f"seed-{cells}", "--seed-mode", "--set", f"mesh.cells={cells}",
+                     "--set", f"run.end_time={end_time}", "--set", f"output.times=[{end_time}]", "--set",
+                     "verify.l1_density=1.0", "--set", "output.history_every=0")
+        steps, timing = result.get("steps", 0), result.get("timing", {})
+        if result["exit_code"] != 0 or steps == 0:
+            rows.append({"cells": cells, "exit_code": result["exit_code"], "message": result["message"]})
+            continue
+        phases = {name: 1e6 * timing[f"{name}_s"] / steps for name in ("h2d", "compute", "d2h")}
+        rows.append({"cells": cells, "steps": steps, "exit_code": 0} | {f"{k}_us": v for k, v in phases.items()})
+    return rows
+
+
+def identical(first, second):
+    """Datasets of two fields.h5 that differ in a bit."""
+    import h5py
+
+    different = []
+    with h5py.File(first) as a, h5py.File(second) as b:
+        names = []
+        a["steps"].visititems(lambda name, item: names.append(name) if isinstance(item, h5py.Dataset) else None)
+        for name in names:
+            if a["steps"][name][...].tobytes() != b["steps"][name][...].tobytes():
+                different.append(name)
+        if not names:
+            different.append("no dataset")
+    return different
+
+
+def exact_rows(program, backends, work):
+    rows = []
+    for scene in scenes(program):
+        folders = {backend: work / f"exact-{scene}-{backend}" for backend in backends}
+        codes = [run(program, scene, backend, folder)["exit_code"] for backend, folder in folders.items()]
+        first = folders[backends[0]] / "fields.h5"
+        different = {}
+        if not any(codes):
+            different = {b: identical(first, folders[b] / "fields.h5") for b in backends[1:]}
+        rows.append({"scene": scene, "exit_codes": codes, "identical": not any(codes) and not any(different.values()),
+                     "different": {b: len(names) for b, names in different.items()}})
+    return rows
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("machine")
+    parser.add_argument("--bin", type=pathlib.Path, required=True)
+    parser.add_argument("--exact", type=pathlib.Path)
+    parser.add_argument("--backends", default="serial,openmp")
+    parser.add_argument("--largest", action="store_true")
+    parser.add_argument("--work", type=pathlib.Path, default=pathlib.Path("out/record"))
+    parser.add_argument("--to", type=pathlib.Path, default=pathlib.Path(__file__).parent.parent / "docs/evidence")
+    arguments = parser.parse_args()
+    program = arguments.bin / "drogue-gas"
+    backends = arguments.backends.split(",")
+    work = arguments.work
+
+    record = {"schema": "drogue.record/1", "machine": arguments.machine}
+    runs = [run(program, scene, backend, work / f"{scene}-{backend}") for scene in scenes(program) for backend in backends]
+    record["provenance"] = runs[0].get("provenance")
+    record["git"] = runs[0].get("git")
+    record["runs"] = [summary(result) for result in runs]
+    record["seed_mode"] = seed_rows(program, backends[-1], work)
+    failed = [r for r in record["runs"] + record["seed_mode"] if r["exit_code"] != 0]
+    if arguments.exact:
+        record["exact"] = exact_rows(arguments.exact / "drogue-gas", backends, work)
+        failed += [row for row in record["exact"] if not row["identical"]]
+    if arguments.largest:
+        result = run(program, "sod", backends[-1], work / "largest", "--set", f"mesh.cells={2**28}", "--set",
+                     "run.end_time=1e-9", "--set", "output.times=[1e-9]", "--set", "output.fields=[\"rho\"]")
+        bytes_a_cell = result.get("peak_bytes", {}).get("device", 0) / 2**28
+        record["largest"] = summary(result) | {"device_bytes_a_cell": bytes_a_cell}
+        failed += [record["largest"]] if result["exit_code"] != 0 else []
+    arguments.to.mkdir(parents=True, exist_ok=True)
+    (arguments.to / f"gas-{arguments.machine}.json").write_text(json.dumps(record, indent=1) + "\n")
+    print(f"{len(record['runs'])} runs, {len(failed)} failed")
+    for row in failed:
+        print("failed:", json.dumps(row)[:300])
+    for key in ("seed_mode", "exact", "largest"):
+        print(key, json.dumps(record.get(key))[:1500])
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
