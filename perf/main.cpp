@@ -17,7 +17,8 @@ namespace {
 
 using namespace drogue;
 
-nlohmann::json to_json(const perf::Record& record, const run::ResultDocument& facts, const device::DeviceFacts& device) {
+nlohmann::json to_json(const perf::Record& record, const run::ResultDocument& facts,
+                       const device::DeviceFacts& device) {
   const run::MedianInterval time = run::median_interval(record.samples);
   return {{"schema", "drogue.perf/1"},
           {"case", record.name},
@@ -41,8 +42,8 @@ nlohmann::json to_json(const perf::Record& record, const run::ResultDocument& fa
             {"date", facts.provenance.date}}}};
 }
 
-ExitCode run_cases(const std::vector<perf::Case>& all, const std::string& filter, bool quick, const std::string& out,
-                   const device::DeviceFacts& device) {
+ExitCode run_cases(const std::vector<perf::Case>& all, const std::string& filter, bool quick,
+                   const std::string& out, const device::DeviceFacts& device) {
   std::vector<perf::Case> cases;
   for (const perf::Case& c : all)
     if (std::regex_search(c.name, std::regex(filter))) cases.push_back(c);
@@ -55,8 +56,8 @@ ExitCode run_cases(const std::vector<perf::Case>& all, const std::string& filter
     lines += json.dump() + "\n";
     passed = passed && record.error <= record.bar;
     const run::MedianInterval time = run::median_interval(record.samples);
-    std::printf("%-32s %12.3f us a %s  [%.3f .. %.3f]  L1 error %.3g  %s\n", record.name.c_str(), 1e6 * time.median,
-                record.unit_of_work.c_str(), 1e6 * time.low, 1e6 * time.high, record.error,
+    std::printf("%-32s %12.3f us a %s  [%.3f .. %.3f]  L1 error %.3g  %s\n", record.name.c_str(),
+                1e6 * time.median, record.unit_of_work.c_str(), 1e6 * time.low, 1e6 * time.high, record.error,
                 record.error <= record.bar ? "passed" : "FAILED");
   }
   if (!out.empty()) run::write_file_atomically(out, lines);
@@ -66,7 +67,8 @@ ExitCode run_cases(const std::vector<perf::Case>& all, const std::string& filter
 ExitCode run_program_body(int argc, char** argv) {
   std::string filter, out;
   bool quick = false, version = false;
-  CLI::App app("Measures the kernels: median of the samples with its 95 % interval, beside the error.", "drogue-perf");
+  CLI::App app("Measures the kernels: median of the samples with its 95 % interval, beside the error.",
+               "drogue-perf");
   app.add_flag("--version", version, "Print the version and what it was built with");
   CLI::App* list = app.add_subcommand("list", "Print the cases that this build and machine can run");
   CLI::App* run = app.add_subcommand("run", "Measure, in interleaved rounds after a warm-up");

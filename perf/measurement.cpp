@@ -6,15 +6,16 @@ namespace drogue::perf {
 
 std::vector<Record> measure(const std::vector<Case>& cases, int warm_up, int rounds) {
   std::vector<Record> records;
-  std::vector<std::function<long()>> work;
+  std::vector<Sample> samples;
   for (const Case& c : cases) {
     records.push_back({c.name, c.unit_of_work, c.bound, {}, 0.0, c.bar});
-    work.push_back(c.prepare());
+    samples.push_back(c.prepare());
   }
   for (int round = -warm_up; round < rounds; ++round)
     for (std::size_t i = 0; i < cases.size(); ++i) {
+      samples[i].reset();
       const auto begin = std::chrono::steady_clock::now();
-      const long units = work[i]();
+      const long units = samples[i].work();
       const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
       if (round >= 0) records[i].samples.push_back(seconds / static_cast<double>(units));
     }

@@ -6,13 +6,18 @@
 
 namespace drogue::perf {
 
+/// The two halves of a sample.
+struct Sample {
+  std::function<void()> reset;  ///< brings back the initial state; not timed
+  std::function<long()> work;   ///< returns the units of work done
+};
+
 /// One thing that can be timed.
 struct Case {
-  std::string name;  ///< work/variant/size, as `drogue-perf list` prints it
+  std::string name;          ///< work/variant/size, as `drogue-perf list` prints it
   std::string unit_of_work;  ///< what a sample's seconds are divided by: "step"
   std::string bound;         ///< what limits it, in words
-  /// Prepares it and returns the function that does one sample's work and says how many units it did.
-  std::function<std::function<long()>()> prepare;
+  std::function<Sample()> prepare;
   /// Error of the state it ends in, against the oracle or an exact solution; called after the last sample.
   std::function<double()> error;
   double bar;  ///< largest error with which the timing counts
@@ -28,8 +33,8 @@ struct Record {
   double bar = 0.0;
 };
 
-/// Times `cases` in turns, one sample each a round, so that a disturbance meets all of them; the first rounds are not
-/// kept.
+/// Times `cases` in turns, one sample each a round, so that a disturbance meets all of them; the first rounds
+/// are not kept.
 std::vector<Record> measure(const std::vector<Case>& cases, int warm_up, int rounds);
 
 }  // namespace drogue::perf

@@ -6,9 +6,12 @@ namespace drogue::device {
 
 std::string_view name(Backend backend) {
   switch (backend) {
-    case Backend::serial: return "serial";
-    case Backend::openmp: return "openmp";
-    case Backend::cuda: return "cuda";
+    case Backend::serial:
+      return "serial";
+    case Backend::openmp:
+      return "openmp";
+    case Backend::cuda:
+      return "cuda";
   }
   return "";
 }
@@ -21,12 +24,12 @@ std::optional<Backend> backend_from_name(std::string_view text) {
 
 std::vector<Backend> compiled_backends() {
   return {
-      Backend::serial,
+    Backend::serial,
 #if defined(KOKKOS_ENABLE_OPENMP)
-      Backend::openmp,
+        Backend::openmp,
 #endif
 #if defined(KOKKOS_ENABLE_CUDA)
-      Backend::cuda,
+        Backend::cuda,
 #endif
   };
 }
@@ -65,7 +68,8 @@ std::optional<std::string> why_unavailable(Backend backend) {
     return "the backend '" + text + "' is not compiled in; build the preset '" +
            (backend == Backend::cuda ? "cuda" : "host") + "' to have it";
   if (!is_present(backend))
-    return "the backend '" + text + "' finds no device; run on a machine with one, or build the preset 'host'";
+    return "the backend '" + text +
+           "' finds no device; run on a machine with one, or build the preset 'host'";
   // Kokkos initialises every backend it was built with, and fails without a device.
   if (is_compiled(Backend::cuda) && !is_present(Backend::cuda))
     return "this build holds the backend 'cuda' and does not start without a device; build the preset 'host'";

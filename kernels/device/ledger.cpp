@@ -15,10 +15,12 @@ struct Counters {
   std::atomic<bool> warm{false};
 };
 
-Counters counters;                      // NOLINT: callbacks are plain functions
+Counters counters;                           // NOLINT: callbacks are plain functions
 Kokkos::Tools::Experimental::EventSet tool;  // NOLINT: what a loaded tool had installed
 
-bool is_host(const char* space) { return std::strncmp(space, "Host", 4) == 0 || std::strstr(space, "HostPinned") != nullptr; }
+bool is_host(const char* space) {
+  return std::strncmp(space, "Host", 4) == 0 || std::strstr(space, "HostPinned") != nullptr;
+}
 
 template <auto next>
 void count_kernel(const char* label, const std::uint32_t device, std::uint64_t* id) {
@@ -81,8 +83,9 @@ void end_warmup() { counters.warm = true; }
 void count_graph_launch() { ++counters.launches; }
 
 Ledger ledger() {
-  return {counters.launches, counters.fences, counters.allocations, counters.h2d,  counters.d2h,
-          counters.copies,   counters.bytes,  counters.peak,        counters.warm_allocations};
+  return {counters.launches, counters.fences, counters.allocations,
+          counters.h2d,      counters.d2h,    counters.copies,
+          counters.bytes,    counters.peak,   counters.warm_allocations};
 }
 
 }  // namespace drogue::device

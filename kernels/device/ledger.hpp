@@ -11,8 +11,8 @@ struct Ledger {
   std::int64_t allocations = 0;
   std::int64_t h2d_bytes = 0;  ///< host to device; zero on host backends, where nothing moves
   std::int64_t d2h_bytes = 0;
-  std::int64_t copies = 0;     ///< deep copies of any kind
-  std::int64_t device_bytes = 0;       ///< allocated now, labelled Views of any space
+  std::int64_t copies = 0;        ///< deep copies of any kind
+  std::int64_t device_bytes = 0;  ///< allocated now, labelled Views of any space
   std::int64_t peak_device_bytes = 0;
   std::int64_t allocations_after_warmup = 0;
 };

@@ -6,9 +6,9 @@
 #include <limits>
 #include <type_traits>
 
-// Kokkos::Experimental::simd picks its width from KOKKOS_ARCH_AVX2/AVX512XEON, which Kokkos_ARCH_NATIVE does not
-// define, and it cannot convert double <-> float packs. GCC and Clang vector types do both, but nvcc's front end
-// rejects them, so CUDA builds run their host backends with one lane.
+// Kokkos::Experimental::simd picks its width from KOKKOS_ARCH_AVX2/AVX512XEON, which Kokkos_ARCH_NATIVE does
+// not define, and it cannot convert double <-> float packs. GCC and Clang vector types do both, but nvcc's
+// front end rejects them, so CUDA builds run their host backends with one lane.
 #if defined(__GNUC__) && !defined(__CUDACC__)
 #define DROGUE_HOST_VECTORS 1
 #else
@@ -36,8 +36,8 @@ KOKKOS_INLINE_FUNCTION T select(bool condition, T yes, T no) {
   return condition ? yes : no;
 }
 
-/// 1/x. On CUDA the hardware's approximation and one cubic Newton step (within 1 ulp for normal x; a third of the
-/// instructions of an IEEE division); the exact build divides.
+/// 1/x. On CUDA the hardware's approximation and one cubic Newton step (within 1 ulp for normal x; a third of
+/// the instructions of an IEEE division); the exact build divides.
 KOKKOS_INLINE_FUNCTION double reciprocal(double x) {
 #if defined(__CUDA_ARCH__) && !defined(DROGUE_EXACT)
   double y;
@@ -70,12 +70,13 @@ struct Access {
 
 #if DROGUE_HOST_VECTORS
 
-/// `Lanes` values that host arithmetic treats at once; element-wise IEEE semantics, so each lane has the bits that
-/// scalar code would have.
+/// `Lanes` values that host arithmetic treats at once; element-wise IEEE semantics, so each lane has the bits
+/// that scalar code would have.
 template <class T, int Lanes>
 struct Pack {
   using Element = T;
-  typedef T Vector __attribute__((vector_size(Lanes * sizeof(T))));  // NOLINT: an alias would lose the attribute
+  typedef T Vector
+      __attribute__((vector_size(Lanes * sizeof(T))));  // NOLINT: an alias would lose the attribute
   static constexpr int lanes = Lanes;
 
   Vector v;

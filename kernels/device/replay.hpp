@@ -26,8 +26,8 @@ class Replay {
 };
 
 #if defined(KOKKOS_ENABLE_CUDA)
-/// On CUDA the kernels are captured from the instance's stream, and a replay is one graph launch. What is enqueued must
-/// neither fence nor allocate.
+/// On CUDA the kernels are captured from the instance's stream, and a replay is one graph launch. What is
+/// enqueued must neither fence nor allocate.
 template <>
 class Replay<Kokkos::Cuda> {
  public:

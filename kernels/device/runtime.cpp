@@ -18,8 +18,8 @@ Runtime::Runtime(const std::vector<std::string>& arguments) {
   copies.insert(copies.end(), arguments.begin(), arguments.end());
   std::vector<char*> pointers;
   for (std::string& text : copies) pointers.push_back(text.data());
-  // A hint about thread binding before every run would drown the one line that matters; --kokkos-* options come later
-  // and may bring it back.
+  // A hint about thread binding before every run would drown the one line that matters; --kokkos-* options
+  // come later and may bring it back.
   char quiet[] = "--kokkos-disable-warnings";
   pointers.insert(pointers.begin() + 1, quiet);
   auto count = static_cast<int>(pointers.size());
@@ -44,7 +44,8 @@ DeviceFacts device_facts() {
 #if defined(KOKKOS_ENABLE_CUDA)
   cudaDeviceProp properties;
   int driver = 0;
-  if (cudaGetDeviceProperties(&properties, Kokkos::Cuda().cuda_device()) == cudaSuccess) facts.gpu = properties.name;
+  if (cudaGetDeviceProperties(&properties, Kokkos::Cuda().cuda_device()) == cudaSuccess)
+    facts.gpu = properties.name;
   if (cudaDriverGetVersion(&driver) == cudaSuccess)
     facts.driver = std::to_string(driver / 1000) + "." + std::to_string(driver % 1000 / 10);
 #endif

@@ -5,8 +5,9 @@
 
 namespace drogue::device {
 
-/// Initialises Kokkos for the life of the object. `arguments` are `--kokkos-*` options. Global fences around callbacks
-/// are switched off, so that tools and the ledger neither slow a step nor break the capture of a graph.
+/// Initialises Kokkos for the life of the object. `arguments` are `--kokkos-*` options. Global fences around
+/// callbacks are switched off, so that tools and the ledger neither slow a step nor break the capture of a
+/// graph.
 class Runtime {
  public:
   explicit Runtime(const std::vector<std::string>& arguments);

@@ -5,8 +5,8 @@
 
 namespace drogue::gas {
 
-/// Eigenvectors of dF/dU at a face: right ones R = (1, u-c, H-uc), (1, u, u^2/2), (1, u+c, H+uc); left ones scaled by
-/// two, which leaves eight operations for a projection.
+/// Eigenvectors of dF/dU at a face: right ones R = (1, u-c, H-uc), (1, u, u^2/2), (1, u+c, H+uc); left ones
+/// scaled by two, which leaves eight operations for a projection.
 template <class R>
 struct Eigensystem {
   R u, c, enthalpy, kinetic;  ///< kinetic = u^2/2
@@ -18,8 +18,8 @@ struct Characteristic {
   R slow, entropy, fast;
 };
 
-/// The means and c^2 = (gamma-1)(H - u^2/2) are formed in R (at Mach 2000 the difference has no digit left in single
-/// precision); what follows is of type N.
+/// The means and c^2 = (gamma-1)(H - u^2/2) are formed in R (at Mach 2000 the difference has no digit left in
+/// single precision); what follows is of type N.
 template <class N, class R, class S>
 KOKKOS_INLINE_FUNCTION Eigensystem<N> eigensystem(S gamma, R u, R enthalpy) {
   using F = typename device::Access<N>::Element;

@@ -13,6 +13,16 @@ inline constexpr int limited_steps = 100;  ///< accepted steps for which `automa
 inline constexpr int max_halvings = 40;
 inline constexpr std::uint64_t no_cell = ~std::uint64_t{0};
 
+/// A cell that a stage left inadmissible, as a number that is least for the first stage and its leftmost
+/// cell: what later stages find is a consequence.
+KOKKOS_INLINE_FUNCTION std::uint64_t inadmissible(int stage, std::int64_t cell, Quantity what) {
+  return static_cast<std::uint64_t>(stage) << 60U | static_cast<std::uint64_t>(cell) << 2U |
+         static_cast<std::uint64_t>(what);
+}
+KOKKOS_INLINE_FUNCTION std::int64_t inadmissible_cell(std::uint64_t bad) {
+  return bad == no_cell ? -1 : static_cast<std::int64_t>(bad << 4U >> 6U);
+}
+
 /// One Euler sub-step of a Runge-Kutta method: out = a_n U^n + a_in (U_in + dt_factor dt L(U_in)).
 struct StageWeights {
   double a_n, a_in, dt_factor;
@@ -25,8 +35,8 @@ struct StageTable {
   StageWeights stage[max_stages];
 };
 
-/// Shu and Osher 1988 (SSP-RK3); Spiteri and Ruuth 2002 (SSPRK(4,3)). U^n is never written: a rejected step costs
-/// nothing but its time.
+/// Shu and Osher 1988 (SSP-RK3); Spiteri and Ruuth 2002 (SSPRK(4,3)). U^n is never written: a rejected step
+/// costs nothing but its time.
 inline StageTable stage_table(TimeScheme scheme) {
   if (scheme == TimeScheme::ssprk3)
     return {3,
@@ -40,22 +50,22 @@ inline StageTable stage_table(TimeScheme scheme) {
            {0.0, 1.0, 0.5, 0.5, 1, 2}}};
 }
 
-/// What a step needs beside the fields. It lives on the device, is written by kernels alone, and makes every decision
-/// that would otherwise need the host: the next dt, whether a step stands, when to stop.
+/// What a step needs beside the fields. It lives on the device, is written by kernels alone, and makes every
+/// decision that would otherwise need the host: the next dt, whether a step stands, when to stop.
 struct Control {
-  Resume resume;                 ///< all that a restart must bring back
-  double dt;                     ///< of the attempt under way
-  double target;                 ///< s, the next time to stop at
-  std::int64_t pause_step;       ///< the next step to stop at for the host
-  std::int64_t row_step;         ///< the next step to stop at for a row of the history
-  int reaches_target;            ///< the attempt ends at `target`
+  Resume resume;            ///< all that a restart must bring back
+  double dt;                ///< of the attempt under way
+  double target;            ///< s, the next time to stop at
+  std::int64_t pause_step;  ///< the next step to stop at for the host
+  std::int64_t row_step;    ///< the next step to stop at for a row of the history
+  int reaches_target;       ///< the attempt ends at `target`
   Stop stop;
   std::uint64_t stage_speed[max_stages + 1][3];  ///< bits of max |u-c|, |u|, |u+c| after each stage
   double boundary_flux[max_stages][2][3];
-  std::uint64_t bad;             ///< least (cell << 2 | Quantity) that left a stage inadmissible
-  std::int64_t touches;          ///< faces limited in this attempt
+  std::uint64_t bad;     ///< least `inadmissible` of this attempt
+  std::int64_t touches;  ///< faces limited in this attempt
   Failed failed;
-  std::int64_t rows;             ///< history rows written
+  std::int64_t rows;  ///< history rows written
 };
 
 /// Constants of a run that the step's kernels read.

@@ -19,7 +19,7 @@ KOKKOS_INLINE_FUNCTION R pressure(S gamma, R m, R energy, R u) {
 
 template <class R, class S>
 KOKKOS_INLINE_FUNCTION CellState<R> cell_state(S gamma, R rho, R m, R energy) {
-  const R inverse = R(S(1)) / rho;
+  const R inverse = device::reciprocal(rho);
   const R u = m * inverse;
   const R p = pressure(gamma, m, energy, u);
   return {rho, m, energy, u, p, (energy + p) * inverse, device::square_root(gamma * (p * inverse))};

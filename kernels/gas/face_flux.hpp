@@ -25,8 +25,8 @@ KOKKOS_INLINE_FUNCTION R central_flux(R f_1, R f0, R f1, R f2) {
   return S(7.0 / 12.0) * (f0 + f1) - S(1.0 / 12.0) * (f_1 + f2);
 }
 
-/// One field's correction from both sides: the right-going part sees the first four of the five differences, the
-/// left-going part the last four in reverse.
+/// One field's correction from both sides: the right-going part sees the first four of the five differences,
+/// the left-going part the last four in reverse.
 template <Reconstruction scheme, class R>
 KOKKOS_INLINE_FUNCTION R field_correction(const R (&df)[5], const R (&du)[5], R alpha) {
   return correction<scheme, R>(df[0] + alpha * du[0], df[1] + alpha * du[1], df[2] + alpha * du[2],
@@ -35,12 +35,13 @@ KOKKOS_INLINE_FUNCTION R field_correction(const R (&df)[5], const R (&du)[5], R 
                                df[1] - alpha * du[1]);
 }
 
-/// Characteristic finite-difference WENO5 flux at a face in difference form (gas.md section 2; Jiang and Shu 1996,
-/// section 2): the central flux minus the projected nonlinear corrections.
+/// Characteristic finite-difference WENO5 flux at a face in difference form (gas.md section 2; Jiang and Shu
+/// 1996, section 2): the central flux minus the projected nonlinear corrections.
 ///
 /// `N` is the type of all that is nonlinear: R itself, or its single-precision twin for split precision.
 template <Reconstruction scheme, class N, class R>
-KOKKOS_INLINE_FUNCTION Triple<R> weno5_face(const Stencil<R>& s, const Eigensystem<N>& e, const Speeds<N>& alpha) {
+KOKKOS_INLINE_FUNCTION Triple<R> weno5_face(const Stencil<R>& s, const Eigensystem<N>& e,
+                                            const Speeds<N>& alpha) {
   using S = typename device::Access<N>::Element;
   using To = device::Convert<N>;
   N slow_u[5], slow_f[5], entropy_u[5], entropy_f[5], fast_u[5], fast_f[5];

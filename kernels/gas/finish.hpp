@@ -5,14 +5,15 @@
 
 namespace drogue::gas {
 
-/// Sets dt of the next attempt from the fastest signal of U^n: the CFL condition with its start-up ramp (or the fixed
-/// step), less what failed attempts have taken off, cut to meet the target time.
+/// Sets dt of the next attempt from the fastest signal of U^n: the CFL condition with its start-up ramp (or
+/// the fixed step), less what failed attempts have taken off, cut to meet the target time.
 KOKKOS_INLINE_FUNCTION void choose_dt(Control& c, const StepConstants& k) {
   const Resume& r = c.resume;
   double dt = k.fixed_dt;
   if (!(dt > 0.0)) {
-    const double ramp =
-        r.step < k.ramp_steps ? 0.1 + 0.9 * static_cast<double>(r.step) / static_cast<double>(k.ramp_steps) : 1.0;
+    const double ramp = r.step < k.ramp_steps
+                            ? 0.1 + 0.9 * static_cast<double>(r.step) / static_cast<double>(k.ramp_steps)
+                            : 1.0;
     dt = ramp * (r.limited ? k.limited_cfl : k.cfl) * k.dx / max_speed(r.speed);
   }
   dt *= r.dt_scale;
@@ -43,8 +44,8 @@ KOKKOS_INLINE_FUNCTION void prepare_attempt(Control& c, const StepConstants& k) 
   if (!(c.resume.time + c.dt > c.resume.time)) fail(c, Quantity::time_step, -1);
 }
 
-/// Tells the host where the device is. The host reads the fields one by one while they change and needs no more than
-/// that each of them was true at some moment.
+/// Tells the host where the device is. The host reads the fields one by one while they change and needs no
+/// more than that each of them was true at some moment.
 KOKKOS_INLINE_FUNCTION void report(const Control& c, Status& s) {
   s.step = c.resume.step;
   s.time = c.resume.time;
@@ -55,7 +56,8 @@ KOKKOS_INLINE_FUNCTION void report(const Control& c, Status& s) {
   s.launches = s.launches + 1;
 }
 
-/// Kahan's compensated addition: 10^6 steps of boundary fluxes must not cost the conservation check its digits.
+/// Kahan's compensated addition: 10^6 steps of boundary fluxes must not cost the conservation check its
+/// digits.
 KOKKOS_INLINE_FUNCTION void add_compensated(double& sum, double& compensation, double value) {
   const double corrected = value - compensation;
   const double next = sum + corrected;
@@ -75,17 +77,21 @@ struct FinishFunctor {
   KOKKOS_FUNCTION void operator()(int) const {
     Control& c = control();
     if (c.stop == Stop::running && (c.resume.limited != 0) == limited) {
-      if (c.bad != no_cell || outgrown(c)) reject(c);
-      else accept(c);
+      if (c.bad != no_cell || outgrown(c))
+        reject(c);
+      else
+        accept(c);
     }
     report(c, status());
   }
 
-  /// The limiter's guarantee needs lambda alpha <= 1/2 with every stage's own alpha, which may exceed the one dt is from.
+  /// The limiter's guarantee needs lambda alpha <= 1/2 with every stage's own alpha, which may exceed the one
+  /// dt is from.
   KOKKOS_FUNCTION bool outgrown(const Control& c) const {
     if (!limited) return false;
     for (int stage = 0; stage < constants.stages; ++stage)
-      if (table.stage[stage].dt_factor * c.dt * max_speed(c.stage_speed[stage]) > 0.5 * constants.dx) return true;
+      if (table.stage[stage].dt_factor * c.dt * max_speed(c.stage_speed[stage]) > 0.5 * constants.dx)
+        return true;
     return false;
   }
 
@@ -99,7 +105,7 @@ struct FinishFunctor {
       ++r.halvings;
       r.dt_scale *= 0.5;
     } else {
-      fail(c, static_cast<Quantity>(c.bad & 3U), c.bad == no_cell ? -1 : static_cast<std::int64_t>(c.bad >> 2U));
+      fail(c, static_cast<Quantity>(c.bad & 3U), inadmissible_cell(c.bad));
       return;
     }
     ++r.redone;
@@ -127,10 +133,14 @@ struct FinishFunctor {
     for (int field = 0; field < 3; ++field) r.speed[field] = c.stage_speed[constants.stages][field];
     if (limited && constants.positivity == static_cast<int>(Positivity::automatic) && --r.limited_left <= 0)
       r.limited = 0;
-    if (c.reaches_target) c.stop = Stop::target;
-    else if (r.step >= constants.max_steps) c.stop = Stop::max_steps;
-    else if (r.step == c.pause_step || r.step == c.row_step) c.stop = Stop::pause;
-    else prepare_attempt(c, constants);
+    if (c.reaches_target)
+      c.stop = Stop::target;
+    else if (r.step >= constants.max_steps)
+      c.stop = Stop::max_steps;
+    else if (r.step == c.pause_step || r.step == c.row_step)
+      c.stop = Stop::pause;
+    else
+      prepare_attempt(c, constants);
   }
 };
 
@@ -150,9 +160,12 @@ struct ResumeFunctor {
       c.pause_step = pause_step;
       c.row_step = row_step;
       c.stop = Stop::running;
-      if (c.resume.time >= target) c.stop = Stop::target;
-      else if (c.resume.step >= constants.max_steps) c.stop = Stop::max_steps;
-      else prepare_attempt(c, constants);
+      if (c.resume.time >= target)
+        c.stop = Stop::target;
+      else if (c.resume.step >= constants.max_steps)
+        c.stop = Stop::max_steps;
+      else
+        prepare_attempt(c, constants);
     }
     report(c, status());
   }

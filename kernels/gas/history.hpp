@@ -8,14 +8,14 @@ namespace drogue::gas {
 inline constexpr int sum_radix = 64;       ///< values one thread adds
 inline constexpr int row_capacity = 1024;  ///< rows the ring holds until the host has read them
 
-/// One level of the sums over all cells: thread j adds values j, j + n_out, j + 2 n_out, ... in this order, so that the
-/// result has the same bits on every backend and with any number of threads.
+/// One level of the sums over all cells: thread j adds values j, j + n_out, j + 2 n_out, ... in this order,
+/// so that the result has the same bits on every backend and with any number of threads.
 template <class ExecutionSpace>
 struct SumLevelFunctor {
   using Memory = typename ExecutionSpace::memory_space;
-  FieldsView<ExecutionSpace> buffer[3];              ///< the first level reads the current state
+  FieldsView<ExecutionSpace> buffer[3];  ///< the first level reads the current state
   Kokkos::View<Control, Memory> control;
-  Kokkos::View<double* [3], Kokkos::LayoutLeft, Memory> in, out;
+  Kokkos::View<double*[3], Kokkos::LayoutLeft, Memory> in, out;
   std::int64_t n_in, n_out;
   bool first;
   bool always;  ///< or only when the step under way has stopped for a row
@@ -42,7 +42,7 @@ struct RowFunctor {
   Kokkos::View<double* [3], Kokkos::LayoutLeft, Memory> partial;
   std::int64_t n;
   StepConstants constants;
-  int every;    ///< steps between rows; 0: a row that the host asked for
+  int every;  ///< steps between rows; 0: a row that the host asked for
   bool always;
 
   KOKKOS_FUNCTION void operator()(int) const {

@@ -9,8 +9,8 @@ inline constexpr double positivity_floor = 1e-13;
 
 /// First-order Lax-Friedrichs flux with one alpha.
 template <class R, class S>
-KOKKOS_INLINE_FUNCTION Triple<R> lax_friedrichs(const Triple<R>& ul, R ml, R el, const Triple<R>& ur, R mr, R er,
-                                                S alpha) {
+KOKKOS_INLINE_FUNCTION Triple<R> lax_friedrichs(const Triple<R>& ul, R ml, R el, const Triple<R>& ur, R mr,
+                                                R er, S alpha) {
   return {S(0.5) * (ul.m + ur.m + alpha * (ul.rho - ur.rho)), S(0.5) * (ml + mr + alpha * (ul.m - ur.m)),
           S(0.5) * (el + er + alpha * (ul.energy - ur.energy))};
 }
@@ -29,9 +29,9 @@ struct LimitedFlux {
   R theta;  ///< < 1 where the limiter acted
 };
 
-/// Positivity-preserving flux of Hu, Adams and Shu 2013 (arXiv 1203.1540, section 2.2): the part of the high-order
-/// flux over `low` that leaves density, then pressure, of U_i - 2 lambda F and U_{i+1} + 2 lambda F positive.
-/// `two_lambda` is 2 dt/dx of the stage's Euler step; the guarantee needs lambda alpha <= 1/2.
+/// Positivity-preserving flux of Hu, Adams and Shu 2013 (arXiv 1203.1540, section 2.2): the part of the
+/// high-order flux over `low` that leaves density, then pressure, of U_i - 2 lambda F and U_{i+1} + 2 lambda
+/// F positive. `two_lambda` is 2 dt/dx of the stage's Euler step; the guarantee needs lambda alpha <= 1/2.
 template <class R, class S>
 KOKKOS_INLINE_FUNCTION LimitedFlux<R> limit(const Triple<R>& ul, const Triple<R>& ur, const Triple<R>& high,
                                             const Triple<R>& low, S two_lambda, S gamma) {

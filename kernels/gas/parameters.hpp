@@ -37,24 +37,24 @@ enum class Boundary { outflow, reflecting, periodic };
 
 /// Everything a gas solver needs to know but the initial state.
 struct Parameters {
-  double gamma = 1.4;          ///< ratio of specific heats, > 1
-  std::int64_t cells = 200;    ///< 8 .. 2^28
-  double x_min = -1.0;         ///< left end of the domain, m
-  double x_max = 1.0;          ///< right end of the domain, m
+  double gamma = 1.4;        ///< ratio of specific heats, > 1
+  std::int64_t cells = 200;  ///< 8 .. 2^28
+  double x_min = -1.0;       ///< left end of the domain, m
+  double x_max = 1.0;        ///< right end of the domain, m
   Boundary left = Boundary::outflow;
   Boundary right = Boundary::outflow;
   Weno weno = Weno::z;
-  int weno_power = 1;          ///< Z only: 1 or 2
+  int weno_power = 1;  ///< Z only: 1 or 2
   Splitting splitting = Splitting::lf_stencil;
   TimeScheme time_scheme = TimeScheme::ssprk3;
   Mean mean = Mean::arithmetic;
   Positivity positivity = Positivity::automatic;
   Precision precision = Precision::full;
-  double cfl = 0.6;            ///< dt = cfl dx / max(|u|+c)
-  int ramp_steps = 20;         ///< step k < ramp_steps takes 0.1 + 0.9 k / ramp_steps of it
-  double fixed_dt = 0.0;       ///< s; > 0 replaces the CFL condition
+  double cfl = 0.6;       ///< dt = cfl dx / max(|u|+c)
+  int ramp_steps = 20;    ///< step k < ramp_steps takes 0.1 + 0.9 k / ramp_steps of it
+  double fixed_dt = 0.0;  ///< s; > 0 replaces the CFL condition
   std::int64_t max_steps = 1'000'000;
-  int block = 0;               ///< cells a tile; 0: the backend's default
+  int block = 0;  ///< cells a tile; 0: the backend's default
 };
 
 }  // namespace drogue::gas

@@ -12,7 +12,8 @@
 
 namespace drogue::gas {
 
-/// The dissertation's flux kernel: a block stages its cells in shared memory and writes the fluxes of its faces.
+/// The dissertation's flux kernel: a block stages its cells in shared memory and writes the fluxes of its
+/// faces.
 template <class ExecutionSpace>
 struct SeedFluxFunctor {
   using Stage = StageFunctor<ExecutionSpace, Reconstruction::js, Precision::full, false>;
@@ -40,11 +41,14 @@ template <class ExecutionSpace>
 class SeedSolver final : public Solver {
  public:
   explicit SeedSolver(const Parameters& p)
-      : _p(p), _cells(static_cast<std::size_t>(p.cells)), _dx((p.x_max - p.x_min) / static_cast<double>(p.cells)) {
+      : _p(p),
+        _cells(static_cast<std::size_t>(p.cells)),
+        _dx((p.x_max - p.x_min) / static_cast<double>(p.cells)) {
     for (auto& state : _state)
       for (auto& values : state) values.resize(_cells);
     for (auto& values : _flux) values.resize(_cells + 1);
-    for (int k = 0; k < 3; ++k) _stage.buffer[k] = FieldsView<ExecutionSpace>("drogue::gas::seed_state", k == 0 ? _cells : 0);
+    for (int k = 0; k < 3; ++k)
+      _stage.buffer[k] = FieldsView<ExecutionSpace>("drogue::gas::seed_state", k == 0 ? _cells : 0);
     _stage.control = decltype(_stage.control)("drogue::gas::seed_control");
     _stage.weights = stage_table(TimeScheme::ssprk3).stage[0];
     _stage.shape = tile_shape<ExecutionSpace>(p.block);
@@ -60,22 +64,26 @@ class SeedSolver final : public Solver {
 
   void upload(std::int64_t first, const ConstConserved& f) override {
     const std::span<const double> part[3] = {f.rho, f.momentum, f.energy};
-    for (std::size_t k = 0; k < 3; ++k) std::copy(part[k].begin(), part[k].end(), _state[0][k].begin() + first);
+    for (std::size_t k = 0; k < 3; ++k)
+      std::copy(part[k].begin(), part[k].end(), _state[0][k].begin() + first);
   }
   void download(std::int64_t first, const Conserved& f) override {
     const std::span<double> part[3] = {f.rho, f.momentum, f.energy};
-    for (std::size_t k = 0; k < 3; ++k) std::copy_n(_state[0][k].begin() + first, part[k].size(), part[k].begin());
+    for (std::size_t k = 0; k < 3; ++k)
+      std::copy_n(_state[0][k].begin() + first, part[k].size(), part[k].begin());
   }
   void start() override { _resume = {}; }
   void restore(const Resume& state) override { _resume = state; }
 
-  Stop advance(double target, std::int64_t pause_step, int row_every, const RowSink& rows, const Poll& poll) override {
+  Stop advance(double target, std::int64_t pause_step, int row_every, const RowSink& rows,
+               const Poll& poll) override {
     while (_resume.time < target) {
       if (_resume.step >= _p.max_steps) return Stop::max_steps;
       if (!step(target)) return Stop::failed;
       if (rows && row_every > 0 && _resume.step % row_every == 0) rows(totals());
       if (_resume.step == pause_step) return Stop::pause;
-      if (poll && !poll({0, _resume.step, _resume.time, _resume.last_dt, 0, Stop::running, 0})) return Stop::interrupted;
+      if (poll && !poll({0, _resume.step, _resume.time, _resume.last_dt, 0, Stop::running, 0}))
+        return Stop::interrupted;
     }
     return Stop::target;
   }
@@ -130,29 +138,35 @@ class SeedSolver final : public Solver {
     const ExecutionSpace& space = _instance.space();
     timed(_phases.h2d, [&] {
       auto control = Kokkos::create_mirror_view(_stage.control);
-      for (int k = 0; k < 3; ++k) control().stage_speed[0][k] = Kokkos::bit_cast<std::uint64_t>(most[static_cast<std::size_t>(k)]);
+      for (int k = 0; k < 3; ++k)
+        control().stage_speed[0][k] = Kokkos::bit_cast<std::uint64_t>(most[static_cast<std::size_t>(k)]);
       Kokkos::deep_copy(space, _stage.control, control);
       for (int k = 0; k < 3; ++k)
-        copy_range(space, field(_stage.buffer[0], k), 0, std::span<const double>(_state[0][static_cast<std::size_t>(k)]), true);
+        copy_range(space, field(_stage.buffer[0], k), 0,
+                   std::span<const double>(_state[0][static_cast<std::size_t>(k)]), true);
     });
     timed(_phases.compute, [&] {
       const auto tiles = static_cast<int>((_p.cells + _stage.shape.cells - 1) / _stage.shape.cells);
-      Kokkos::TeamPolicy<ExecutionSpace> policy(space, tiles, device::is_host<ExecutionSpace> ? 1 : _stage.shape.cells + 1);
-      policy.set_scratch_size(0, Kokkos::PerTeam(static_cast<int>(Tile<ExecutionSpace>::scratch_bytes(_stage.shape) + 64)));
-      Kokkos::parallel_for("drogue::gas::seed_flux", policy, SeedFluxFunctor<ExecutionSpace>{_stage, _device_flux});
+      Kokkos::TeamPolicy<ExecutionSpace> policy(
+          space, tiles, device::is_host<ExecutionSpace> ? 1 : _stage.shape.cells + 2 * ghost_cells);
+      policy.set_scratch_size(
+          0, Kokkos::PerTeam(static_cast<int>(Tile<ExecutionSpace>::scratch_bytes(_stage.shape) + 64)));
+      Kokkos::parallel_for("drogue::gas::seed_flux", policy,
+                           SeedFluxFunctor<ExecutionSpace>{_stage, _device_flux});
       space.fence("drogue::gas::seed_flux");
     });
     timed(_phases.d2h, [&] {
       for (int k = 0; k < 3; ++k)
-        copy_range(space, field(_device_flux, k), 0, std::span<double>(_flux[static_cast<std::size_t>(k)]), false);
+        copy_range(space, field(_device_flux, k), 0, std::span<double>(_flux[static_cast<std::size_t>(k)]),
+                   false);
     });
   }
 
   /// One step; false and `_failed` if it leaves an inadmissible state, with the state before it kept.
   bool step(double target) {
-    const double ramp = _resume.step < _p.ramp_steps
-                            ? 0.1 + 0.9 * static_cast<double>(_resume.step) / static_cast<double>(_p.ramp_steps)
-                            : 1.0;
+    const double ramp = _resume.step < _p.ramp_steps ? 0.1 + 0.9 * static_cast<double>(_resume.step) /
+                                                                 static_cast<double>(_p.ramp_steps)
+                                                     : 1.0;
     double dt = _p.fixed_dt > 0.0 ? _p.fixed_dt : ramp * _p.cfl * _dx / fastest()[3];
     const bool reaches = dt >= (target - _resume.time) * (1.0 - 1e-12);
     if (reaches) dt = target - _resume.time;
@@ -194,7 +208,9 @@ class SeedSolver final : public Solver {
       const double rho = _state[0][0][i], m = _state[0][1][i];
       const double p = pressure(_p.gamma, m, _state[0][2][i], m / rho);
       if (rho > 0.0 && p > 0.0 && std::isfinite(p)) continue;
-      const Quantity what = rho <= 0.0 ? Quantity::density : p <= 0.0 ? Quantity::pressure : Quantity::not_finite;
+      const Quantity what = rho <= 0.0 ? Quantity::density
+                            : p <= 0.0 ? Quantity::pressure
+                                       : Quantity::not_finite;
       _failed = {what, static_cast<std::int64_t>(i), _resume.step + 1, _resume.time, dt};
       return false;
     }

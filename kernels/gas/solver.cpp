@@ -6,7 +6,7 @@
 
 namespace drogue::gas {
 
-#define DROGUE_DECLARE(backend)                                                \
+#define DROGUE_DECLARE(backend)                                                  \
   std::unique_ptr<Solver> create_solver_##backend(const Parameters& parameters); \
   std::unique_ptr<Solver> create_seed_solver_##backend(const Parameters& parameters);
 DROGUE_DECLARE(serial)
@@ -23,7 +23,8 @@ void check(const Parameters& p) {
   require(p.cells >= 8 && p.cells <= (std::int64_t{1} << 28), "cells must lie between 8 and 2^28");
   require(p.gamma > 1.0, "gamma must exceed 1");
   require(p.x_max > p.x_min, "the domain must not be empty");
-  require((p.left == Boundary::periodic) == (p.right == Boundary::periodic), "both ends must be periodic, or none");
+  require((p.left == Boundary::periodic) == (p.right == Boundary::periodic),
+          "both ends must be periodic, or none");
   require(p.weno_power == 1 || p.weno_power == 2, "weno_power must be 1 or 2");
   require(p.fixed_dt > 0.0 || p.cfl > 0.0, "cfl must be positive");
   require(p.block == 0 || (p.block >= 32 && p.block <= 512 && p.block % 32 == 0),
@@ -35,28 +36,36 @@ void check(const Parameters& p) {
 std::unique_ptr<Solver> create_solver(device::Backend backend, const Parameters& parameters) {
   check(parameters);
   switch (backend) {
-    case device::Backend::serial: return create_solver_serial(parameters);
+    case device::Backend::serial:
+      return create_solver_serial(parameters);
 #if defined(KOKKOS_ENABLE_OPENMP)
-    case device::Backend::openmp: return create_solver_openmp(parameters);
+    case device::Backend::openmp:
+      return create_solver_openmp(parameters);
 #endif
 #if defined(KOKKOS_ENABLE_CUDA)
-    case device::Backend::cuda: return create_solver_cuda(parameters);
+    case device::Backend::cuda:
+      return create_solver_cuda(parameters);
 #endif
-    default: throw std::invalid_argument("gas solver: this build lacks the backend");
+    default:
+      throw std::invalid_argument("gas solver: this build lacks the backend");
   }
 }
 
 std::unique_ptr<Solver> create_seed_solver(device::Backend backend, const Parameters& parameters) {
   check(parameters);
   switch (backend) {
-    case device::Backend::serial: return create_seed_solver_serial(parameters);
+    case device::Backend::serial:
+      return create_seed_solver_serial(parameters);
 #if defined(KOKKOS_ENABLE_OPENMP)
-    case device::Backend::openmp: return create_seed_solver_openmp(parameters);
+    case device::Backend::openmp:
+      return create_seed_solver_openmp(parameters);
 #endif
 #if defined(KOKKOS_ENABLE_CUDA)
-    case device::Backend::cuda: return create_seed_solver_cuda(parameters);
+    case device::Backend::cuda:
+      return create_seed_solver_cuda(parameters);
 #endif
-    default: throw std::invalid_argument("gas solver: this build lacks the backend");
+    default:
+      throw std::invalid_argument("gas solver: this build lacks the backend");
   }
 }
 

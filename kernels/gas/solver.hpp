@@ -48,8 +48,8 @@ class Solver {
   /// The uploaded state is one that `resume_state` and `download` gave.
   virtual void restore(const Resume& state) = 0;
 
-  /// Steps until `target` (s), until `pause_step` steps are done, or until something stops it. A row goes to `rows`
-  /// whenever the number of steps is a multiple of `row_every` (0: never).
+  /// Steps until `target` (s), until `pause_step` steps are done, or until something stops it. A row goes to
+  /// `rows` whenever the number of steps is a multiple of `row_every` (0: never).
   virtual Stop advance(double target, std::int64_t pause_step, int row_every, const RowSink& rows,
                        const Poll& poll) = 0;
 
@@ -79,8 +79,9 @@ class Solver {
 /// Throws std::invalid_argument for parameters out of range; the backend must be available.
 [[nodiscard]] std::unique_ptr<Solver> create_solver(device::Backend backend, const Parameters& parameters);
 
-/// The dissertation's algorithm and data movement (section 4.4.2): at every stage the state goes to the device and the
-/// flux comes back, the host updates. JS weights, mean of U, one alpha per field, SSP-RK3.
-[[nodiscard]] std::unique_ptr<Solver> create_seed_solver(device::Backend backend, const Parameters& parameters);
+/// The dissertation's algorithm and data movement (section 4.4.2): at every stage the state goes to the
+/// device and the flux comes back, the host updates. JS weights, mean of U, one alpha per field, SSP-RK3.
+[[nodiscard]] std::unique_ptr<Solver> create_seed_solver(device::Backend backend,
+                                                         const Parameters& parameters);
 
 }  // namespace drogue::gas

@@ -11,8 +11,8 @@
 
 namespace drogue::gas {
 
-/// The solver on one execution space: three field buffers, a control block, and two recorded steps (with and without
-/// the flux limiter) of which the device runs the one that its control block asks for.
+/// The solver on one execution space: three field buffers, a control block, and two recorded steps (with and
+/// without the flux limiter) of which the device runs the one that its control block asks for.
 template <class ExecutionSpace>
 class SolverOn final : public Solver {
  public:

@@ -34,17 +34,26 @@ void SolverOn<ExecutionSpace>::enqueue_step(const ExecutionSpace& space, bool li
   for (int stage = 0; stage < _setup.table.stages; ++stage) {
     const Precision precision = _parameters.precision;
     switch (_parameters.weno) {
-      case Weno::js: launch_stage<Reconstruction::js>(space, _setup, precision, limited, stage); break;
-      case Weno::z:
-        if (_parameters.weno_power == 1) launch_stage<Reconstruction::z1>(space, _setup, precision, limited, stage);
-        else launch_stage<Reconstruction::z2>(space, _setup, precision, limited, stage);
+      case Weno::js:
+        launch_stage<Reconstruction::js>(space, _setup, precision, limited, stage);
         break;
-      case Weno::m: launch_stage<Reconstruction::m>(space, _setup, precision, limited, stage); break;
-      case Weno::teno5: launch_stage<Reconstruction::teno5>(space, _setup, precision, limited, stage); break;
+      case Weno::z:
+        if (_parameters.weno_power == 1)
+          launch_stage<Reconstruction::z1>(space, _setup, precision, limited, stage);
+        else
+          launch_stage<Reconstruction::z2>(space, _setup, precision, limited, stage);
+        break;
+      case Weno::m:
+        launch_stage<Reconstruction::m>(space, _setup, precision, limited, stage);
+        break;
+      case Weno::teno5:
+        launch_stage<Reconstruction::teno5>(space, _setup, precision, limited, stage);
+        break;
     }
   }
-  Kokkos::parallel_for("drogue::gas::finish_step", Kokkos::RangePolicy<ExecutionSpace>(space, 0, 1),
-                       FinishFunctor<ExecutionSpace>{_setup.control, _status, _constants, _setup.table, limited});
+  Kokkos::parallel_for(
+      "drogue::gas::finish_step", Kokkos::RangePolicy<ExecutionSpace>(space, 0, 1),
+      FinishFunctor<ExecutionSpace>{_setup.control, _status, _constants, _setup.table, limited});
 }
 
 template <class ExecutionSpace>
@@ -66,8 +75,8 @@ void SolverOn<ExecutionSpace>::enqueue_sums(const ExecutionSpace& space, int row
     n = out;
   }
   Kokkos::parallel_for("drogue::gas::history_row", Kokkos::RangePolicy<ExecutionSpace>(space, 0, 1),
-                       RowFunctor<ExecutionSpace>{_setup.control, _status, _ring, _partial[level - 1], n, _constants,
-                                                  row_every, always});
+                       RowFunctor<ExecutionSpace>{_setup.control, _status, _ring, _partial[level - 1], n,
+                                                  _constants, row_every, always});
 }
 
 template <class ExecutionSpace>
@@ -96,8 +105,8 @@ HistoryRow SolverOn<ExecutionSpace>::totals() {
 }
 
 template <class ExecutionSpace>
-Stop SolverOn<ExecutionSpace>::advance(double target, std::int64_t pause_step, int row_every, const RowSink& rows,
-                                       const Poll& poll) {
+Stop SolverOn<ExecutionSpace>::advance(double target, std::int64_t pause_step, int row_every,
+                                       const RowSink& rows, const Poll& poll) {
   using Clock = std::chrono::steady_clock;
   const auto seconds = [](auto span) { return std::chrono::duration<double>(span).count(); };
   const ExecutionSpace& space = _instance.space();
@@ -136,7 +145,9 @@ Stop SolverOn<ExecutionSpace>::advance(double target, std::int64_t pause_step, i
         break;
       }
       const double rate = static_cast<double>(now.step - first_step) / seconds(clock - begin);
-      if (!on_host) window = std::clamp<std::int64_t>(static_cast<std::int64_t>(seconds_in_flight * rate), 8, most_in_flight);
+      if (!on_host)
+        window =
+            std::clamp<std::int64_t>(static_cast<std::int64_t>(seconds_in_flight * rate), 8, most_in_flight);
     }
     const std::int64_t in_flight = _launched - now.launches;
     if (in_flight >= window) {
@@ -161,7 +172,8 @@ Stop SolverOn<ExecutionSpace>::advance(double target, std::int64_t pause_step, i
     if (rows) rows(row);
   }
   drain_rows(rows);
-  const bool between_stops = last.stop == Stop::running || (last.stop == Stop::pause && last.step != pause_step);
+  const bool between_stops =
+      last.stop == Stop::running || (last.stop == Stop::pause && last.step != pause_step);
   return interrupted && between_stops ? Stop::interrupted : last.stop;
 }
 

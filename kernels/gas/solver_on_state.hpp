@@ -6,7 +6,8 @@
 
 namespace drogue::gas {
 
-/// Cells a tile updates. A device team has one face a thread; on the host a tile's scratch stays in the L1 cache.
+/// Cells a tile updates. A device team loads a cell with each thread, halo included, in one round; on the
+/// host a tile's scratch stays in the L1 cache.
 template <class ExecutionSpace>
 TileShape tile_shape(int block) {
   if constexpr (device::is_host<ExecutionSpace>) {
@@ -14,7 +15,7 @@ TileShape tile_shape(int block) {
     return {cells, (cells + 2 * ghost_cells + 2 * device::host_lanes + 7) / 8 * 8};
   } else {
     const int threads = block > 0 ? block : 128;
-    return {threads - 1, threads + 2 * ghost_cells};
+    return {threads - 2 * ghost_cells, threads};
   }
 }
 
@@ -23,8 +24,16 @@ SolverOn<ExecutionSpace>::SolverOn(const Parameters& p) : _parameters(p) {
   const double dx = (p.x_max - p.x_min) / static_cast<double>(p.cells);
   _setup.table = stage_table(p.time_scheme);
   const double limited_cap = p.time_scheme == TimeScheme::ssprk3 ? 0.4 : 0.8;
-  _constants = {p.gamma,     dx,           p.cfl, p.cfl < limited_cap ? p.cfl : limited_cap, p.fixed_dt, p.cells,
-                p.max_steps, p.ramp_steps, _setup.table.stages, static_cast<int>(p.positivity)};
+  _constants = {p.gamma,
+                dx,
+                p.cfl,
+                p.cfl < limited_cap ? p.cfl : limited_cap,
+                p.fixed_dt,
+                p.cells,
+                p.max_steps,
+                p.ramp_steps,
+                _setup.table.stages,
+                static_cast<int>(p.positivity)};
   const auto n = static_cast<std::size_t>(p.cells);
   const ExecutionSpace& space = _instance.space();
   const auto uninitialised = [&](const std::string& label) {
@@ -35,7 +44,7 @@ SolverOn<ExecutionSpace>::SolverOn(const Parameters& p) : _parameters(p) {
   if (p.positivity != Positivity::off) _setup.touched = decltype(_setup.touched)("drogue::gas::touched", n);
   _setup.ends = {p.cells, p.left, p.right};
   _setup.shape = tile_shape<ExecutionSpace>(p.block);
-  _setup.team_size = on_host ? 1 : _setup.shape.cells + 1;
+  _setup.team_size = on_host ? 1 : _setup.shape.cells + 2 * ghost_cells;
   _setup.gamma = p.gamma;
   _setup.dx = dx;
   _setup.splitting = p.splitting;
@@ -100,8 +109,8 @@ struct InitialSpeedFunctor {
   }
 };
 
-/// Makes `c`, of which `resume` is set, the state to step from. Rows are numbered over the life of the solver, and
-/// `advance` must know the step before a kernel has told it.
+/// Makes `c`, of which `resume` is set, the state to step from. Rows are numbered over the life of the
+/// solver, and `advance` must know the step before a kernel has told it.
 template <class ExecutionSpace>
 void SolverOn<ExecutionSpace>::begin_at(Control& c) {
   c.stop = Stop::pause;
@@ -120,9 +129,10 @@ void SolverOn<ExecutionSpace>::start() {
   c.resume.limited = _parameters.positivity == Positivity::on;
   begin_at(c);
   const ExecutionSpace& space = _instance.space();
-  Kokkos::parallel_for(
-      "drogue::gas::initial_speed", Kokkos::RangePolicy<ExecutionSpace>(space, 0, _parameters.cells),
-      InitialSpeedFunctor<ExecutionSpace>{_setup.buffer[c.resume.current], _setup.control, _parameters.gamma});
+  Kokkos::parallel_for("drogue::gas::initial_speed",
+                       Kokkos::RangePolicy<ExecutionSpace>(space, 0, _parameters.cells),
+                       InitialSpeedFunctor<ExecutionSpace>{_setup.buffer[c.resume.current], _setup.control,
+                                                           _parameters.gamma});
   space.fence("drogue::gas::solver: started");
 }
 
@@ -143,10 +153,10 @@ struct CountTouchedFunctor {
 template <class ExecutionSpace>
 std::int64_t SolverOn<ExecutionSpace>::touched_cells() {
   std::int64_t sum = 0;
-  Kokkos::parallel_reduce(
-      "drogue::gas::count_touched",
-      Kokkos::RangePolicy<ExecutionSpace>(_instance.space(), 0, static_cast<std::int64_t>(_setup.touched.extent(0))),
-      CountTouchedFunctor<ExecutionSpace>{_setup.touched}, sum);
+  Kokkos::parallel_reduce("drogue::gas::count_touched",
+                          Kokkos::RangePolicy<ExecutionSpace>(
+                              _instance.space(), 0, static_cast<std::int64_t>(_setup.touched.extent(0))),
+                          CountTouchedFunctor<ExecutionSpace>{_setup.touched}, sum);
   return sum;
 }
 
@@ -166,7 +176,9 @@ void SolverOn<ExecutionSpace>::begin_snapshot() {
   const int current = read_control().resume.current;
   const auto n = static_cast<std::size_t>(_parameters.cells);
   if (_host_snapshot.extent(0) != n) {
-    const auto label = [](const std::string& text) { return Kokkos::view_alloc(Kokkos::WithoutInitializing, text); };
+    const auto label = [](const std::string& text) {
+      return Kokkos::view_alloc(Kokkos::WithoutInitializing, text);
+    };
     _host_snapshot = HostFields(label("drogue::gas::snapshot_host"), n);
     if constexpr (!on_host) _snapshot = Fields(label("drogue::gas::snapshot"), n);
   }

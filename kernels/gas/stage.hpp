@@ -9,11 +9,11 @@
 
 namespace drogue::gas {
 
-/// One fused Runge-Kutta stage: loads a tile of cells with its halo, computes the fluxes of its faces once, updates its
-/// cells, and reduces what the next decision needs (fastest signals, inadmissible cells).
+/// One fused Runge-Kutta stage: loads a tile of cells with its halo, computes the fluxes of its faces once,
+/// updates its cells, and reduces what the next decision needs (fastest signals, inadmissible cells).
 ///
-/// A league member is a tile; scratch holds nine values a cell and three a face. On the host a member is one thread that
-/// works on packs of cells, on a device a team with one face a thread: the same text.
+/// A league member is a tile; scratch holds nine values a cell and three a face. On the host a member is one
+/// thread that works on packs of cells, on a device a team with one face a thread: the same text.
 template <class ExecutionSpace, Reconstruction scheme, Precision precision, bool limited>
 struct StageFunctor {
   static constexpr bool on_host = device::is_host<ExecutionSpace>;
@@ -25,7 +25,8 @@ struct StageFunctor {
 
   Fields buffer[3];
   Kokkos::View<Control, typename ExecutionSpace::memory_space> control;
-  Kokkos::View<std::uint8_t*, typename ExecutionSpace::memory_space> touched;  ///< cells beside a limited face
+  Kokkos::View<std::uint8_t*, typename ExecutionSpace::memory_space>
+      touched;  ///< cells beside a limited face
   StageWeights weights;
   TileShape shape;
   Ends ends;
@@ -52,10 +53,12 @@ struct StageFunctor {
     return buffer[(now.resume.current + role) % 3].data();
   }
 
-  KOKKOS_FUNCTION void load_cells(const Member& member, const Tile<ExecutionSpace>& tile, const double* in) const {
+  KOKKOS_FUNCTION void load_cells(const Member& member, const Tile<ExecutionSpace>& tile,
+                                  const double* in) const {
     using Lanes = device::Access<R>;
     const int stride = member.team_size() * Lanes::lanes;
-    for (int i = member.team_rank() * Lanes::lanes; i < tile.cells + 2 * ghost_cells + Lanes::lanes - 1; i += stride) {
+    for (int i = member.team_rank() * Lanes::lanes; i < tile.cells + 2 * ghost_cells + Lanes::lanes - 1;
+         i += stride) {
       const Triple<R> u = load_state<R>(in, ends, tile.first - ghost_cells + i);
       const CellState<R> s = cell_state<R>(gamma, u.rho, u.m, u.energy);
       const Speeds<R> speed = signal_speeds(s.u, s.c);
@@ -71,10 +74,12 @@ struct StageFunctor {
     }
   }
 
-  KOKKOS_FUNCTION Speeds<N> splitting_speeds(const Tile<ExecutionSpace>& tile, int face, const Control& now) const {
+  KOKKOS_FUNCTION Speeds<N> splitting_speeds(const Tile<ExecutionSpace>& tile, int face,
+                                             const Control& now) const {
     using To = device::Convert<N>;
     if (splitting == Splitting::lf_stencil) {
-      R slow = tile.template load<R>(TileField::slow, face), fast = tile.template load<R>(TileField::fast, face);
+      R slow = tile.template load<R>(TileField::slow, face),
+        fast = tile.template load<R>(TileField::fast, face);
       R entropy = device::absolute(tile.template load<R>(TileField::u, face));
       for (int k = 1; k < 6; ++k) {
         slow = device::maximum(slow, tile.template load<R>(TileField::slow, face + k));
@@ -103,8 +108,8 @@ struct StageFunctor {
         s.flux_m[k] = tile.template load<R>(TileField::flux_m, face + k);
         s.flux_energy[k] = tile.template load<R>(TileField::flux_energy, face + k);
       }
-      const Eigensystem<N> e =
-          face_eigensystem<N, R>(mean, gamma, tile.template face_cell<R>(face + 2), tile.template face_cell<R>(face + 3));
+      const Eigensystem<N> e = face_eigensystem<N, R>(mean, gamma, tile.template face_cell<R>(face + 2),
+                                                      tile.template face_cell<R>(face + 3));
       Triple<R> flux = weno5_face<scheme, N>(s, e, splitting_speeds(tile, face, now));
       if constexpr (limited) flux = limit_flux(tile, face, s, flux, now);
       tile.store_flux(face, flux);
@@ -147,8 +152,8 @@ struct StageFunctor {
   };
 
   template <class P>
-  KOKKOS_FUNCTION void update_cell(const Tile<ExecutionSpace>& tile, int i, double dt_over_dx, const double* u_n,
-                                   double* out, Reduced<P>& reduced) const {
+  KOKKOS_FUNCTION void update_cell(const Tile<ExecutionSpace>& tile, int i, double dt_over_dx,
+                                   const double* u_n, double* out, Reduced<P>& reduced) const {
     using Lanes = device::Access<P>;
     const Triple<P> in = tile.template state<P>(i + ghost_cells);
     const Triple<P> left = tile.template flux<P>(i), right = tile.template flux<P>(i + 1);
@@ -164,7 +169,7 @@ struct StageFunctor {
     Lanes::store(out + cell, u.rho);
     Lanes::store(out + n + cell, u.m);
     Lanes::store(out + 2 * n + cell, u.energy);
-    const P inverse = P(1.0) / u.rho;
+    const P inverse = device::reciprocal(u.rho);
     const P velocity = u.m * inverse;
     const P p = pressure(gamma, u.m, u.energy, velocity);
     const P zero(0.0);
@@ -179,7 +184,8 @@ struct StageFunctor {
     reduced.fast = device::maximum(reduced.fast, speed.fast);
   }
 
-  KOKKOS_FUNCTION void update_cells(const Member& member, const Tile<ExecutionSpace>& tile, const Control& now) const {
+  KOKKOS_FUNCTION void update_cells(const Member& member, const Tile<ExecutionSpace>& tile,
+                                    const Control& now) const {
     const double dt_over_dx = weights.dt_factor * now.dt * inverse_dx;
     const double* u_n = field_data(now, 0);
     double* out = buffer[(now.resume.current + weights.out) % 3].data();
@@ -216,8 +222,8 @@ struct StageFunctor {
     }
   }
 
-  /// Raises `slot` to the team's maximum: positive doubles compare as their bits do, so the result does not depend on
-  /// the order of the teams.
+  /// Raises `slot` to the team's maximum: positive doubles compare as their bits do, so the result does not
+  /// depend on the order of the teams.
   KOKKOS_FUNCTION void raise(const Member& member, std::uint64_t& slot, double mine) const {
     double largest = mine;
     member.team_reduce(Kokkos::Max<double>(largest));
@@ -230,15 +236,17 @@ struct StageFunctor {
   KOKKOS_FUNCTION void report_inadmissible(const Member& member, const Tile<ExecutionSpace>& tile,
                                            const double* out) const {
     constexpr int lanes = device::Access<R>::lanes;
-    for (int i = lanes > 1 ? 0 : member.team_rank(); i < tile.cells; i += lanes > 1 ? 1 : member.team_size()) {
+    for (int i = lanes > 1 ? 0 : member.team_rank(); i<tile.cells; i += lanes> 1 ? 1 : member.team_size()) {
       const std::int64_t cell = tile.first + i, n = ends.cells;
       const double rho = out[cell], m = out[n + cell], energy = out[2 * n + cell];
-      const double p = pressure(gamma, m, energy, m / rho);
+      const double p = pressure(gamma, m, energy, m * device::reciprocal(rho));  // as `update_cell` has it
       if (rho > 0.0 && p > 0.0 && p <= 1.7e308) continue;
       Quantity what = Quantity::not_finite;
-      if (rho <= 0.0) what = Quantity::density;
-      else if (p <= 0.0) what = Quantity::pressure;
-      Kokkos::atomic_min(&control().bad, static_cast<std::uint64_t>(cell) << 2U | static_cast<std::uint64_t>(what));
+      if (rho <= 0.0)
+        what = Quantity::density;
+      else if (p <= 0.0)
+        what = Quantity::pressure;
+      Kokkos::atomic_min(&control().bad, inadmissible(stage, cell, what));
     }
   }
 };

@@ -29,8 +29,8 @@ struct Source {
   double sign;  ///< of the momentum
 };
 
-/// The cell that stands for `index`, -ghost_cells <= index; what lies further right than the ghosts repeats the last one,
-/// so that padding holds an admissible state.
+/// The cell that stands for `index`, -ghost_cells <= index; what lies further right than the ghosts repeats
+/// the last one, so that padding holds an admissible state.
 KOKKOS_INLINE_FUNCTION Source source_cell(const Ends& ends, std::int64_t index) {
   const std::int64_t n = ends.cells;
   if (index >= 0 && index < n) return {index, 1.0};

@@ -15,10 +15,12 @@ void copy_range(const ExecutionSpace& space, const Device& device, std::int64_t 
   const auto range = std::make_pair(first, first + static_cast<std::int64_t>(host.size()));
   auto part = Kokkos::subview(device, range);
   const Kokkos::View<Value*, Kokkos::HostSpace, Kokkos::MemoryTraits<Kokkos::Unmanaged>> mine(host.data(),
-                                                                                             host.size());
+                                                                                              host.size());
   if constexpr (std::is_same_v<Element, Value>) {
-    if (to_device) Kokkos::deep_copy(space, part, mine);
-    else Kokkos::deep_copy(space, mine, part);
+    if (to_device)
+      Kokkos::deep_copy(space, part, mine);
+    else
+      Kokkos::deep_copy(space, mine, part);
   } else {
     Kokkos::deep_copy(space, part, mine);
   }

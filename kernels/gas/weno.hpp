@@ -26,9 +26,7 @@ struct Indicators {
 template <class R>
 KOKKOS_INLINE_FUNCTION Indicators<R> smoothness(R a, R b, R c, R d) {
   using S = typename device::Access<R>::Element;
-  const auto quadratic = [](R second, R first) {
-    return S(13) * (second * second) + S(3) * (first * first);
-  };
+  const auto quadratic = [](R second, R first) { return S(13) * (second * second) + S(3) * (first * first); };
   return {quadratic(a - b, a - S(3) * b), quadratic(b - c, b + c), quadratic(c - d, S(3) * c - d)};
 }
 
@@ -50,8 +48,8 @@ KOKKOS_INLINE_FUNCTION Indicators<R> weight_numerators(Indicators<R> is, R epsil
     return {(b0 * b0 + tau2) * (b12 * b12), S(6) * ((b1 * b1 + tau2) * (b02 * b02)),
             S(3) * ((b2 * b2 + tau2) * (b01 * b01))};
   } else {
-    // Fu, Hu and Adams 2016, eq. (14)-(17). The sixth power of the ratio overflows for smooth data (eps is tiny), so
-    // the ratios are divided by the largest of them first; the cut-off compares g_k with their sum.
+    // Fu, Hu and Adams 2016, eq. (14)-(17). The sixth power of the ratio overflows for smooth data (eps is
+    // tiny), so the ratios are divided by the largest of them first; the cut-off compares g_k with their sum.
     const R tau = device::absolute(is.b0 - is.b2);
     const R q0 = (b0 + tau) * b12, q1 = (b1 + tau) * b02, q2 = (b2 + tau) * b01;
     const R inverse = device::reciprocal(device::maximum(q0, device::maximum(q1, q2)));
@@ -80,17 +78,19 @@ template <Reconstruction scheme, class R>
 KOKKOS_INLINE_FUNCTION R correction(R a, R b, R c, R d) {
   using S = typename device::Access<R>::Element;
   constexpr bool single = std::is_same_v<S, float>;
-  // In single precision the smallest product of powers of eps (Z, p = 2: its sixth) must stay a normal number.
+  // In single precision the smallest product of powers of eps (Z, p = 2: its sixth) must stay a normal
+  // number.
   constexpr double scale_free = !single ? 1e-40 : scheme == Reconstruction::z2 ? 1e-8 : 1e-9;
   R epsilon(S((scheme == Reconstruction::js ? 1e-6 : scale_free) * indicator_scale));
   R ka = a, kb = b, kc = c, kd = d;
   if constexpr (single) {
-    // The indicators' products leave the range of a float: bring the largest difference to one first. The floor
-    // keeps an empty stencil finite; 1e-6 for JS, whose eps is absolute and far larger than such a stencil.
+    // The indicators' products leave the range of a float: bring the largest difference to one first. The
+    // floor keeps an empty stencil finite; 1e-6 for JS, whose eps is absolute and far larger than such a
+    // stencil.
     const R largest = device::maximum(device::maximum(device::absolute(a), device::absolute(b)),
                                       device::maximum(device::absolute(c), device::absolute(d)));
-    const R inverse = device::reciprocal(
-        device::maximum(largest, R(scheme == Reconstruction::js ? 1e-6F : 1e-30F)));
+    const R inverse =
+        device::reciprocal(device::maximum(largest, R(scheme == Reconstruction::js ? 1e-6F : 1e-30F)));
     ka = a * inverse, kb = b * inverse, kc = c * inverse, kd = d * inverse;
     if constexpr (scheme == Reconstruction::js) epsilon = epsilon * inverse * inverse + S(1e-9);
   }

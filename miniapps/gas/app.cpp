@@ -63,8 +63,8 @@ ExitCode run_scene(const MiniAppOptions& options, const std::filesystem::path& f
   const run::RunDirectory directory(out, existing_run(options, out, restart));
   run::ResultDocument result = run::new_result("drogue-gas", name);
   try {
-    const GasScene scene =
-        read_gas_scene(file, options.set, options.seed_mode ? SchemeSource::dissertation : SchemeSource::scene);
+    const GasScene scene = read_gas_scene(
+        file, options.set, options.seed_mode ? SchemeSource::dissertation : SchemeSource::scene);
     const device::Backend backend = choose_backend(options.backend);
     directory.write_scene(print_gas_scene(scene));
     const device::Runtime runtime(options.kokkos);
@@ -77,7 +77,8 @@ ExitCode run_scene(const MiniAppOptions& options, const std::filesystem::path& f
       if (const std::string failed = result.failed_check(); !failed.empty())
         throw Failure(ExitCode::verification_failed, failed);
     }
-    if (result.exit_code == ExitCode::interrupted) result.message = "interrupted by a signal; restart.h5 is written";
+    if (result.exit_code == ExitCode::interrupted)
+      result.message = "interrupted by a signal; restart.h5 is written";
   } catch (...) {
     const Failure failure = current_failure();
     result.exit_code = failure.code();
@@ -115,8 +116,8 @@ ExitCode run_app(const MiniAppOptions& options) {
   require_one_rank("drogue-gas");
   const std::filesystem::path file = scene::find_scene(options.scene, scene_folder());
   if (options.check || options.print_scene) {
-    const GasScene scene =
-        read_gas_scene(file, options.set, options.seed_mode ? SchemeSource::dissertation : SchemeSource::scene);
+    const GasScene scene = read_gas_scene(
+        file, options.set, options.seed_mode ? SchemeSource::dissertation : SchemeSource::scene);
     if (options.print_scene) std::cout << print_gas_scene(scene);
     return ExitCode::ok;
   }

@@ -22,7 +22,8 @@ ExactSolution riemann_solution(const GasScene& scene, double time) {
   };
 }
 
-/// The initial state carried along with its velocity, which is the same everywhere, once around the periodic domain.
+/// The initial state carried along with its velocity, which is the same everywhere, once around the periodic
+/// domain.
 ExactSolution advected_solution(const GasScene& scene, double time) {
   const gas::Parameters& p = scene.parameters;
   return [initial = InitialState(scene), p, time](double x) {
@@ -55,8 +56,9 @@ Reference run_reference(const GasScene& scene, device::Backend backend) {
   solver->start();
   const gas::Stop stop = solver->advance(scene.end_time, -1, 0, {}, {});
   if (stop != gas::Stop::target)
-    throw Failure(ExitCode::numerical_failure, "the reference run of " + std::to_string(finer.parameters.cells) +
-                                                   " cells failed: " + failure_text(*solver, finer.parameters, stop));
+    throw Failure(ExitCode::numerical_failure,
+                  "the reference run of " + std::to_string(finer.parameters.cells) +
+                      " cells failed: " + failure_text(*solver, finer.parameters, stop));
   Reference reference;
   for_cells(*solver, finer.parameters, [&](std::int64_t cell, const Primitive& w) {
     reference.x.push_back(cell_centre(finer.parameters, cell));
@@ -69,9 +71,12 @@ Reference run_reference(const GasScene& scene, device::Backend backend) {
 
 ExactSolution exact_solution(const GasScene& scene, double time, const Reference& reference) {
   switch (scene.verify.exact.value()) {
-    case Exact::riemann: return riemann_solution(scene, time);
-    case Exact::advection: return advected_solution(scene, time);
-    case Exact::reference: return interpolated_solution(reference);
+    case Exact::riemann:
+      return riemann_solution(scene, time);
+    case Exact::advection:
+      return advected_solution(scene, time);
+    case Exact::reference:
+      return interpolated_solution(reference);
   }
   return {};
 }
@@ -86,7 +91,7 @@ std::map<std::string, double> error_norms(gas::Solver& solver, const gas::Parame
     for (std::size_t k = 0; k < 3; ++k) {
       l1[k] += error[k] * dx;
       l2[k] += error[k] * error[k] * dx;
-      linf[k] = std::max(linf[k], error[k]);
+      linf[k] = larger(linf[k], error[k]);
     }
   });
   std::map<std::string, double> norms;

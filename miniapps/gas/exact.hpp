@@ -25,8 +25,8 @@ Reference run_reference(const GasScene& scene, device::Backend backend);
 /// What `scene.verify.exact` names; `reference` must be filled for `Exact::reference`.
 ExactSolution exact_solution(const GasScene& scene, double time, const Reference& reference);
 
-/// L1 (sum |e| dx), L2 (sqrt(sum e^2 dx)) and L-infinity norms of the error at the cell centres, for density, velocity
-/// and pressure, by the names of the scene's bars.
+/// L1 (sum |e| dx), L2 (sqrt(sum e^2 dx)) and L-infinity norms of the error at the cell centres, for density,
+/// velocity and pressure, by the names of the scene's bars.
 std::map<std::string, double> error_norms(gas::Solver& solver, const gas::Parameters& parameters,
                                           const ExactSolution& exact);
 

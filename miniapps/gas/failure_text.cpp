@@ -11,15 +11,24 @@ std::string failure_text(gas::Solver& solver, const gas::Parameters& parameters,
   text.precision(9);
   if (stop == gas::Stop::max_steps) {
     const gas::Resume now = solver.resume_state();
-    text << "max_steps = " << parameters.max_steps << " reached at t = " << now.time << " s, before the end time";
+    text << "max_steps = " << parameters.max_steps << " reached at t = " << now.time
+         << " s, before the end time";
     return text.str();
   }
   const gas::Failed failed = solver.failure();
   switch (failed.quantity) {
-    case gas::Quantity::density: text << "density is not positive"; break;
-    case gas::Quantity::pressure: text << "pressure is not positive"; break;
-    case gas::Quantity::not_finite: text << "the state is not finite"; break;
-    case gas::Quantity::time_step: text << "the time step collapsed to " << failed.dt << " s (CFL)"; break;
+    case gas::Quantity::density:
+      text << "density is not positive";
+      break;
+    case gas::Quantity::pressure:
+      text << "pressure is not positive";
+      break;
+    case gas::Quantity::not_finite:
+      text << "the state is not finite";
+      break;
+    case gas::Quantity::time_step:
+      text << "the time step collapsed to " << failed.dt << " s (CFL)";
+      break;
   }
   if (failed.cell >= 0)
     text << " in cell " << failed.cell << " (x = " << cell_centre(parameters, failed.cell) << " m)";

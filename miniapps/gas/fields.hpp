@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <span>
@@ -24,6 +25,9 @@ inline Primitive primitive(const gas::ConstConserved& u, std::size_t i, double g
   const double velocity = u.momentum[i] / u.rho[i];
   return {u.rho[i], velocity, (gamma - 1.0) * (u.energy[i] - 0.5 * u.momentum[i] * velocity)};
 }
+
+/// The larger of two numbers; not a number if either is not, so that no check passes on a spoilt state.
+inline double larger(double a, double b) { return a > b || std::isnan(a) ? a : b; }
 
 /// Visits every cell of the solver's state in order.
 void for_cells(gas::Solver& solver, const gas::Parameters& parameters,

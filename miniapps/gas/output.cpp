@@ -19,7 +19,8 @@ run::DatasetSpec field_spec(const std::string& name, std::int64_t cells) {
 
 std::vector<run::DatasetSpec> field_specs(const GasScene& scene) {
   std::vector<run::DatasetSpec> specs;
-  for (const std::string& name : scene.output.fields) specs.push_back(field_spec(name, scene.parameters.cells));
+  for (const std::string& name : scene.output.fields)
+    specs.push_back(field_spec(name, scene.parameters.cells));
   return specs;
 }
 
@@ -89,7 +90,8 @@ void RunOutput::write_fields(double time, std::int64_t step) {
       for_chunks(_scene.parameters.cells, [&](std::int64_t first, std::size_t count) {
         values.resize(count);
         for (std::size_t i = 0; i < count; ++i)
-          values[i] = value_of(primitive(u, static_cast<std::size_t>(first) + i, _scene.parameters.gamma), name);
+          values[i] =
+              value_of(primitive(u, static_cast<std::size_t>(first) + i, _scene.parameters.gamma), name);
         _fields->write(name, static_cast<std::uint64_t>(first), values);
       });
     _fields->end_step();

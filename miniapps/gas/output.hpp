@@ -11,8 +11,9 @@
 
 namespace drogue::gas_app {
 
-/// The files of a run that grow while it steps: history.csv, fields.h5, restart.h5. Only what the scene asks for exists.
-/// Fields and restarts are written by one thread behind the steps, in the order they were asked for.
+/// The files of a run that grow while it steps: history.csv, fields.h5, restart.h5. Only what the scene asks
+/// for exists. Fields and restarts are written by one thread behind the steps, in the order they were asked
+/// for.
 class RunOutput {
  public:
   /// With `resume_time` existing files are continued after that time.

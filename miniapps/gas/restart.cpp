@@ -24,7 +24,8 @@ std::string scene_fingerprint(GasScene scene) {
   return run::fingerprint(print_gas_scene(scene));
 }
 
-/// The one list of what a restart file holds beside the fields: `number` and `integer` write or read one entry.
+/// The one list of what a restart file holds beside the fields: `number` and `integer` write or read one
+/// entry.
 template <class State, class Number, class Integer>
 void visit(State& state, const Number& number, const Integer& integer) {
   auto& r = state.resume;

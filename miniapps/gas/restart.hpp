@@ -13,12 +13,14 @@ struct RestartState {
   gas::HistoryRow initial;  ///< totals at the start, for the conservation check
 };
 
-/// Writes the conserved fields `u` and `state` atomically. `touched` is read from the solver if the limiter has acted.
+/// Writes the conserved fields `u` and `state` atomically. `touched` is read from the solver if the limiter
+/// has acted.
 void write_restart(const std::filesystem::path& file, const GasScene& scene, gas::Solver& solver,
                    const gas::ConstConserved& u, const RestartState& state);
 
-/// Uploads what `write_restart` wrote and returns its state; the solver still has to be told (`Solver::restore`).
-/// Throws Failure(io_error) for a file that is damaged or of another mesh, gas or scheme.
+/// Uploads what `write_restart` wrote and returns its state; the solver still has to be told
+/// (`Solver::restore`). Throws Failure(io_error) for a file that is damaged or of another mesh, gas or
+/// scheme.
 RestartState read_restart(const std::filesystem::path& file, const GasScene& scene, gas::Solver& solver);
 
 }  // namespace drogue::gas_app

@@ -4,7 +4,8 @@
 
 namespace drogue::gas_app {
 
-/// Where the shipped scenes are: beside the installed or bundled program, else in the source tree it was built from.
+/// Where the shipped scenes are: beside the installed or bundled program, else in the source tree it was
+/// built from.
 std::filesystem::path scene_folder();
 
 }  // namespace drogue::gas_app

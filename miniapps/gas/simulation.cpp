@@ -16,11 +16,14 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
+double seconds_since(Clock::time_point begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
 
 }  // namespace
 
-void describe_device(run::ResultDocument& result, const gas::Parameters& parameters, device::Backend backend) {
+void describe_device(run::ResultDocument& result, const gas::Parameters& parameters,
+                     device::Backend backend) {
   const device::DeviceFacts facts = device::device_facts();
   result.backend = std::string(device::name(backend));
   result.precision = parameters.precision == gas::Precision::split ? "split" : "double";
@@ -31,7 +34,8 @@ void describe_device(run::ResultDocument& result, const gas::Parameters& paramet
   result.provenance.driver = facts.driver;
 }
 
-Simulation::Simulation(const GasScene& scene, const RunSettings& settings) : _scene(scene), _settings(settings) {
+Simulation::Simulation(const GasScene& scene, const RunSettings& settings)
+    : _scene(scene), _settings(settings) {
   const auto begin = Clock::now();
   _solver = settings.seed_mode ? gas::create_seed_solver(settings.backend, scene.parameters)
                                : gas::create_solver(settings.backend, scene.parameters);

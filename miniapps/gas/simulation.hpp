@@ -22,8 +22,8 @@ void describe_device(run::ResultDocument& result, const gas::Parameters& paramet
 
 /// Runs a scene from its state to its end, writes its files and fills `result`.
 ///
-/// Throws Failure: numerical_failure (after the last good state is on disk), io_error. Returns `interrupted` after a
-/// signal, the restart file written; otherwise `ok`. Verification is left to the caller.
+/// Throws Failure: numerical_failure (after the last good state is on disk), io_error. Returns `interrupted`
+/// after a signal, the restart file written; otherwise `ok`. Verification is left to the caller.
 class Simulation {
  public:
   Simulation(const GasScene& scene, const RunSettings& settings);

@@ -34,7 +34,9 @@ struct Row {
   std::string message;
 };
 
-std::string setting(const char* key, const std::string& value) { return std::string(key) + "=\"" + value + '"'; }
+std::string setting(const char* key, const std::string& value) {
+  return std::string(key) + "=\"" + value + '"';
+}
 
 /// The `--set` assignments that make the scene one point of the study.
 std::vector<std::string> assignments(const MiniAppOptions& options, const Row& row) {
@@ -111,7 +113,8 @@ double time_of(const Row& row) { return row.samples.empty() ? NAN : run::median(
 std::string csv(const std::vector<Row>& rows, const std::string& backend) {
   std::ostringstream text;
   text.precision(9);
-  text << "label,weno,weno_power,splitting,time_scheme,precision,backend,cells,steps,compute_s,l1_density,l1_velocity,"
+  text << "label,weno,weno_power,splitting,time_scheme,precision,backend,cells,steps,compute_s,l1_density,l1_"
+          "velocity,"
           "l1_pressure,conservation,status\n";
   for (const Row& row : rows) {
     text << row.label << ',' << row.weno << ',' << row.power << ',' << row.splitting << ',' << row.time << ','
@@ -130,17 +133,22 @@ std::string csv(const std::vector<Row>& rows, const std::string& backend) {
 }
 
 nlohmann::json json(const std::vector<Row>& rows, const run::ResultDocument& facts) {
-  nlohmann::json document = {{"schema", "drogue.study/1"},  {"program", facts.program},
-                             {"version", facts.version},    {"git", facts.git},
-                             {"scene", facts.scene},        {"backend", facts.backend},
-                             {"device", facts.device},      {"threads", facts.threads},
-                             {"compiler", facts.provenance.compiler}, {"date", facts.provenance.date}};
+  nlohmann::json document = {{"schema", "drogue.study/1"},
+                             {"program", facts.program},
+                             {"version", facts.version},
+                             {"git", facts.git},
+                             {"scene", facts.scene},
+                             {"backend", facts.backend},
+                             {"device", facts.device},
+                             {"threads", facts.threads},
+                             {"compiler", facts.provenance.compiler},
+                             {"date", facts.provenance.date}};
   for (const Row& row : rows) {
-    nlohmann::json entry = {{"label", row.label},         {"weno", row.weno},           {"weno_power", row.power},
-                            {"splitting", row.splitting}, {"time_scheme", row.time},    {"precision", row.precision},
-                            {"cells", row.cells},         {"steps", row.steps},         {"samples", row.samples},
-                            {"errors", row.errors},       {"message", row.message},
-                            {"status", run::status_name(row.code)}};
+    nlohmann::json entry = {
+        {"label", row.label},         {"weno", row.weno},        {"weno_power", row.power},
+        {"splitting", row.splitting}, {"time_scheme", row.time}, {"precision", row.precision},
+        {"cells", row.cells},         {"steps", row.steps},      {"samples", row.samples},
+        {"errors", row.errors},       {"message", row.message},  {"status", run::status_name(row.code)}};
     if (row.code == ExitCode::ok) entry["compute_s"] = time_of(row), entry["conservation"] = row.conservation;
     document["rows"].push_back(entry);
   }
@@ -156,7 +164,8 @@ void draw(const std::filesystem::path& directory) {
   char* arguments[] = {program.data(), folder.data(), nullptr};
   pid_t child = 0;
   int status = 1;
-  if (std::filesystem::exists(plot, error) && posix_spawn(&child, program.c_str(), nullptr, nullptr, arguments, environ) == 0)
+  if (std::filesystem::exists(plot, error) &&
+      posix_spawn(&child, program.c_str(), nullptr, nullptr, arguments, environ) == 0)
     waitpid(child, &status, 0);
   if (status != 0) std::cerr << "drogue-gas: no picture was made; run drogue-plot " << folder << '\n';
 }
@@ -171,7 +180,8 @@ ExitCode run_study(const MiniAppOptions& options, const std::filesystem::path& f
   const device::Backend backend = choose_backend(options.backend);
   const std::filesystem::path out =
       options.out.empty() ? std::filesystem::path("out") / (base.name + "-study") : options.out;
-  const run::RunDirectory directory(out, options.overwrite ? run::ExistingRun::overwrite : run::ExistingRun::refuse);
+  const run::RunDirectory directory(
+      out, options.overwrite ? run::ExistingRun::overwrite : run::ExistingRun::refuse);
   directory.write_scene(print_gas_scene(base));
   const device::Runtime runtime(options.kokkos);
   device::start_ledger();
@@ -189,7 +199,8 @@ ExitCode run_study(const MiniAppOptions& options, const std::filesystem::path& f
     if (!options.quiet)
       std::printf("%-24s %8lld cells %8lld steps %10.3g s  L1 density %s\n", row.label.c_str(),
                   static_cast<long long>(row.cells), static_cast<long long>(row.steps), time_of(row),
-                  row.code == ExitCode::ok ? std::to_string(row.errors.at("l1_density")).c_str() : row.message.c_str());
+                  row.code == ExitCode::ok ? std::to_string(row.errors.at("l1_density")).c_str()
+                                           : row.message.c_str());
   }
   run::write_file_atomically(directory.file("study.csv"), csv(rows, facts.backend));
   run::write_file_atomically(directory.file("study.json"), json(rows, facts).dump(2) + "\n");

@@ -29,8 +29,8 @@ struct StudyAxes {
   std::vector<std::string> splittings, times, precisions;
 };
 
-/// Reads `meshes=100:800,schemes=js:z,splittings=...,times=...,precisions=...`. Two meshes are the ends of a doubling
-/// sequence; three or more are taken as they stand. Throws Failure(usage).
+/// Reads `meshes=100:800,schemes=js:z,splittings=...,times=...,precisions=...`. Two meshes are the ends of a
+/// doubling sequence; three or more are taken as they stand. Throws Failure(usage).
 StudyAxes parse_study(const std::string& text);
 
 /// Runs the scene over the product of the axes and writes study.csv, study.json and the pictures of both.

@@ -60,13 +60,19 @@ StudyAxes parse_study(const std::string& text) {
     const auto equals = axis.find('=');
     const std::string key = axis.substr(0, equals);
     require_one_of(key, {"meshes", "schemes", "splittings", "times", "precisions"});
-    if (equals == std::string::npos || equals + 1 == axis.size()) refuse("'" + key + "' needs values: " + key + "=...");
+    if (equals == std::string::npos || equals + 1 == axis.size())
+      refuse("'" + key + "' needs values: " + key + "=...");
     const std::vector<std::string> values = split(axis.substr(equals + 1), ':');
-    if (key == "meshes") axes.meshes = meshes(values);
-    else if (key == "schemes") for (const auto& value : values) axes.schemes.push_back(scheme(value));
-    else if (key == "splittings") axes.splittings = values;
-    else if (key == "times") axes.times = values;
-    else axes.precisions = values;
+    if (key == "meshes")
+      axes.meshes = meshes(values);
+    else if (key == "schemes")
+      for (const auto& value : values) axes.schemes.push_back(scheme(value));
+    else if (key == "splittings")
+      axes.splittings = values;
+    else if (key == "times")
+      axes.times = values;
+    else
+      axes.precisions = values;
   }
   for (const auto& value : axes.splittings) require_one_of(value, {"lf-global", "lf-single", "lf-stencil"});
   for (const auto& value : axes.times) require_one_of(value, {"ssprk3", "ssprk43"});

@@ -8,8 +8,9 @@ namespace drogue::gas_app {
 
 namespace {
 
-/// Largest relative change of mass, momentum and energy that the fluxes through the ends do not explain. Momentum is
-/// measured against sqrt(2 M E), which bounds it (Cauchy-Schwarz), because its own total may be zero.
+/// Largest relative change of mass, momentum and energy that the fluxes through the ends do not explain.
+/// Momentum is measured against sqrt(2 M E), which bounds it (Cauchy-Schwarz), because its own total may be
+/// zero.
 double conservation_error(const gas::HistoryRow& first, const gas::HistoryRow& last) {
   const double mass = last.mass - first.mass + last.boundary[0];
   const double momentum = last.momentum - first.momentum + last.boundary[1];
@@ -18,7 +19,7 @@ double conservation_error(const gas::HistoryRow& first, const gas::HistoryRow& l
                               std::abs(momentum) / std::sqrt(2.0 * first.mass * first.energy),
                               std::abs(energy) / first.energy};
   double largest = 0.0;
-  for (const double value : relative) largest = value <= largest ? largest : value;  // keeps a NaN
+  for (const double value : relative) largest = larger(largest, value);
   return largest;
 }
 
@@ -35,11 +36,11 @@ void Simulation::verify(run::ResultDocument& result) {
   if (wanted.max_density) {
     double largest = 0.0;
     for_cells(*_solver, _scene.parameters,
-              [&](std::int64_t, const Primitive& w) { largest = w.rho > largest ? w.rho : largest; });
-    result.add_check("max_density", std::abs(largest / wanted.max_density->value - 1.0), wanted.max_density->tolerance);
+              [&](std::int64_t, const Primitive& w) { largest = larger(largest, w.rho); });
+    result.add_check("max_density", std::abs(largest / wanted.max_density->value - 1.0),
+                     wanted.max_density->tolerance);
   }
-  if (wanted.conservation)
-    result.add_check("conservation", conservation(), *wanted.conservation);
+  if (wanted.conservation) result.add_check("conservation", conservation(), *wanted.conservation);
 }
 
 double Simulation::conservation() { return conservation_error(_initial, _solver->totals()); }
