@@ -1,0 +1,69 @@
+"""What tests of restarts share: a run, its twin without interruption, and their comparison."""
+
+import random
+import shutil
+import subprocess
+import time
+
+import gas_program
+
+# Outputs, rows and restarts at steps that have nothing to do with each other.
+CASES = {
+    "sod": ["mesh.cells=800", "output.restart_every=25", "output.history_every=7"],
+    # Redone steps and limited ones: their counters and the marks of touched cells are state too.
+    "blast": ["mesh.cells=400", "output.restart_every=30", "output.history_every=11", 'scheme.positivity="auto"',
+              "scheme.cfl=0.6", "verify.reference.cells=401", "verify.l1_density=1.0"],
+    "entropy-wave": ["mesh.cells=160", "output.restart_every=40", "output.history_every=13"],
+}
+
+
+class RestartTest(gas_program.GasTest):
+    def setUp(self):
+        super().setUp()
+        self.random = random.Random(self.id())
+
+    def whole(self, scene, backend, *words, sets=None):
+        """The run without interruption."""
+        self.expect(0, scene, "--quiet", "--backend", backend, "--out", "whole", *words, sets=sets or CASES[scene])
+
+    def begin(self, scene, backend, *words, sets=None):
+        """Starts a run in the folder `part`; returns once it listens to signals and there is a restart file."""
+        line = gas_program.arguments(scene, "--quiet", "--backend", backend, "--out", "part", *words,
+                                     sets=sets or CASES[scene])
+        process = subprocess.Popen(line, cwd=self.folder, env=gas_program.ENVIRONMENT, stderr=subprocess.PIPE)
+        self.addCleanup(process.stderr.close)
+        awaited = [self.folder / "part/.lock", self.folder / "part/restart.h5"]
+        while process.poll() is None and not all(file.exists() for file in awaited):
+            time.sleep(0.001)
+        return process
+
+    def kill_and_continue(self, scene, backend, kills, *words, sets=None):
+        """Kills a run at random times and continues it, until it was killed `kills` times; then lets it end."""
+        killed, patience = 0, 0.08
+        while killed < kills:
+            process = self.begin(scene, backend, *words, *(["--restart", "auto"] if killed else []), sets=sets)
+            time.sleep(self.random.uniform(0.0, patience))
+            process.kill()
+            if process.wait() == -9:
+                killed += 1
+                (self.folder / "part/.lock").unlink(missing_ok=True)  # else the next one seems to listen already
+            else:  # it was faster: once more from the start
+                shutil.rmtree(self.folder / "part")
+                killed, patience = 0, patience / 2
+                self.assertGreater(patience, 1e-4, "the run cannot be killed in time")
+        self.assertFalse((self.folder / "part/result.json").exists())
+        self.expect(0, scene, "--quiet", "--backend", backend, "--out", "part", "--restart", "auto", *words,
+                    sets=sets or CASES[scene])
+
+    def assert_same_runs(self):
+        whole, part = self.folder / "whole", self.folder / "part"
+        one, other = gas_program.fields(whole), gas_program.fields(part)
+        self.assertGreaterEqual(len(one.children("/steps")), 3)
+        self.assertEqual(one.attributes, other.attributes)
+        self.assertEqual(one.datasets.keys(), other.datasets.keys())
+        self.assertEqual([], [path for path in one.datasets if one.datasets[path] != other.datasets[path]])
+        for name in ("history.csv", "fields.xdmf", "scene.toml"):
+            self.assertEqual((whole / name).read_text(), (part / name).read_text())
+        known, told = gas_program.result(whole), gas_program.result(part)
+        for key in ("steps", "time", "dt_min", "dt_max", "errors", "checks", "limiter", "status"):
+            self.assertEqual(known[key], told[key], key)

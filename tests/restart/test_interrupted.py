@@ -1,0 +1,55 @@
+"""Ctrl-C and SIGTERM end a run after a whole step; continued, it gives the bits of one that was not interrupted."""
+
+import os
+import signal
+import sys
+import time
+import unittest
+
+sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
+
+import restarting
+
+
+class Interrupted(restarting.RestartTest):
+    def interrupt(self, number, *words, scene="sod", backend="serial", sets=None):
+        process = self.begin(scene, backend, *words, sets=sets)
+        time.sleep(self.random.uniform(0.0, 0.05))
+        process.send_signal(number)
+        code = process.wait(timeout=30)
+        self.assertEqual(130, code, process.stderr.read())
+        self.assertEqual(b"", process.stderr.read())
+        told = self.result("part")
+        self.assertEqual(("interrupted", 130), (told["status"], told["exit_code"]))
+        self.assertIn("restart.h5", told["message"])
+        self.assertTrue((self.folder / "part/restart.h5").exists())
+        return told
+
+    def assert_continues(self, number, scene="sod", backend="serial"):
+        self.whole(scene, backend)
+        told = self.interrupt(number, scene=scene, backend=backend)
+        self.assertGreater(told["steps"], 0)
+        self.assertLess(told["time"], self.result("whole")["time"])
+        again = self.interrupt(number, "--restart", "auto", scene=scene, backend=backend)
+        self.assertGreaterEqual(again["steps"], told["steps"])
+        self.expect(0, scene, "--quiet", "--backend", backend, "--out", "part", "--restart", "auto",
+                    sets=restarting.CASES[scene])
+        self.assert_same_runs()
+
+    def test_ctrl_c(self):
+        self.assert_continues(signal.SIGINT)
+
+    def test_sigterm(self):
+        self.assert_continues(signal.SIGTERM, scene="entropy-wave", backend="openmp")
+
+    def test_finished_run_is_not_begun_again(self):
+        """A job script that is submitted once too often changes nothing."""
+        self.whole("sod", "serial")
+        before = (self.folder / "whole/history.csv").read_text()
+        self.expect(0, "sod", "--quiet", "--backend", "serial", "--out", "whole", "--restart", "auto",
+                    sets=restarting.CASES["sod"])
+        self.assertEqual(before, (self.folder / "whole/history.csv").read_text())
+
+
+if __name__ == "__main__":
+    unittest.main()

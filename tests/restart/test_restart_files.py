@@ -1,0 +1,108 @@
+"""Which restart files are refused, and how; what may change between a run and its continuation."""
+
+import os
+import sys
+import unittest
+
+sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
+
+import gas_program
+
+SETS = ["mesh.cells=200", "output.restart_every=25", "output.times=[0.1, 0.2]", "run.end_time=0.2",
+        "verify.l1_density=1.0"]
+
+
+class RestartFiles(gas_program.GasTest):
+    def setUp(self):
+        super().setUp()
+        self.expect(0, "sod", "--quiet", "--backend", "serial", "--out", "run", sets=SETS)
+        self.file = self.folder / "run/restart.h5"
+        self.bytes = self.file.read_bytes()
+
+    def resume(self, code, *words, scene="sod", sets=SETS):
+        words = words or ("--restart", "auto")
+        return self.expect(code, scene, "--quiet", "--backend", "serial", "--out", "run", *words, sets=sets).stderr
+
+    def assert_refused(self, word, scene="sod", sets=SETS):
+        kept = {name: (self.folder / "run" / name).read_bytes() for name in ("history.csv", "fields.h5", "restart.h5")}
+        message = self.resume(6, scene=scene, sets=sets)
+        self.assertIn("restart.h5", message)
+        self.assertIn(word, message)
+        told = self.result("run")
+        self.assertEqual(("io-error", 6), (told["status"], told["exit_code"]))
+        self.assertIn(told["message"], message)
+        for name, content in kept.items():
+            self.assertEqual(content, (self.folder / "run" / name).read_bytes(), f"{name} was touched")
+
+    def test_truncated(self):
+        for length in (len(self.bytes) - 1, len(self.bytes) // 2, 600, 512):
+            with self.subTest(length):
+                self.file.write_bytes(self.bytes[:length])
+                self.assert_refused("truncated")
+
+    def test_no_restart_file(self):
+        for content in (b"", b"x", b"time [s]\n0\n" * 100, bytes(range(256)) * 64, self.bytes[:100],
+                        (self.folder / "run/fields.h5").read_bytes()):
+            with self.subTest(length=len(content)):
+                self.file.write_bytes(content)
+                self.assert_refused("restart file")
+
+    def test_damaged(self):
+        for place in (513, 2048, len(self.bytes) - 1):
+            with self.subTest(place):
+                damaged = bytearray(self.bytes)
+                damaged[place] ^= 0x10
+                self.file.write_bytes(damaged)
+                self.assert_refused("damaged")
+
+    def test_later_format(self):
+        self.file.write_bytes(self.bytes.replace(b"drogue.restart/1", b"drogue.restart/2", 1))
+        self.assert_refused("drogue.restart/2")
+
+    def test_another_scene(self):
+        self.assert_refused("another scene", scene="toro-1",
+                            sets=["run.end_time=0.1", "output.times=[0.1]", "verify.l1_density=1.0"])
+
+    def test_another_scheme_or_mesh(self):
+        for change in ("mesh.cells=100", 'scheme.weno="js"', "scheme.cfl=0.5", "gas.gamma=1.3",
+                       'boundary.left="reflecting"'):
+            with self.subTest(change):
+                self.assert_refused("another scene", sets=[*SETS, change])
+
+    def test_missing(self):
+        self.assertIn("no/such.h5", self.resume(2, "--restart", "no/such.h5"))
+
+    def test_folder_instead_of_a_file(self):
+        self.assertIn("'run'", self.resume(6, "--restart", "run"))
+
+    def test_named_file_into_a_new_directory(self):
+        self.expect(0, "sod", "--quiet", "--backend", "serial", "--out", "new", "--restart", str(self.file), sets=SETS)
+        old, new = self.folder / "run", self.folder / "new"
+        last = gas_program.fields(old), gas_program.fields(new)
+        for field in ("rho", "u", "p"):
+            one, other = (file.datasets[f"/steps/{file.children('/steps')[-1]}/{field}"] for file in last)
+            self.assertEqual(one, other)
+
+    def test_later_end_time(self):
+        longer = [*SETS, "run.end_time=0.4", "output.times=[0.1, 0.2, 0.4]", "run.max_steps=5000"]
+        self.resume(0, sets=longer)
+        self.expect(0, "sod", "--quiet", "--backend", "serial", "--out", "whole", sets=longer)
+        whole, part = self.folder / "whole", self.folder / "run"
+        self.assertEqual(gas_program.fields(whole).datasets, gas_program.fields(part).datasets)
+        self.assertEqual((whole / "history.csv").read_text(), (part / "history.csv").read_text())
+        self.assertEqual(0.4, self.result("run")["time"])
+
+    def test_other_backend(self):
+        self.expect(0, "sod", "--quiet", "--backend", "openmp", "--out", "run", "--restart", "auto", sets=SETS)
+
+    def test_a_stale_result_does_not_outlive_the_restart(self):
+        """result.json appears when the continued run ends, so a job that is killed again has none."""
+        self.resume(0)
+        self.assertEqual("ok", self.result("run")["status"])
+
+    def test_restart_and_overwrite_exclude_each_other(self):
+        self.resume(2, "--restart", "auto", "--overwrite")
+
+
+if __name__ == "__main__":
+    unittest.main()
