@@ -2,6 +2,9 @@
 
 include(GoogleTest)
 
+# All tests that run on a backend; scripts/bundle.sh carries them to other machines.
+add_custom_target(drogue_kernel_tests)
+
 # drogue_add_test(NAME <name> SOURCES <files> LABEL <label> [LIBRARIES <targets>] [BACKEND <backend>])
 # One GoogleTest executable; each of its cases becomes a ctest test `<label>.<Suite>.<Case>`.
 # With BACKEND the sources see DROGUE_TEST_SPACE (Kokkos::OpenMP) and DROGUE_TEST_BACKEND (openmp), go through nvcc
@@ -20,6 +23,7 @@ function(drogue_add_test)
     drogue_use_device_language(${_test_SOURCES})
     target_compile_definitions(${_test_NAME} PRIVATE
       DROGUE_TEST_BACKEND=${_test_BACKEND} DROGUE_TEST_SPACE=${DROGUE_EXECUTION_SPACE_${_test_BACKEND}})
+    add_dependencies(drogue_kernel_tests ${_test_NAME})
     string(APPEND _prefix "${_test_BACKEND}.")
     if(_test_BACKEND STREQUAL "cuda")
       set(_label gpu)

@@ -34,9 +34,12 @@ build() {
   run_logged "bundle-$kind-configure" cmake -S . -B "$folder" -G Ninja -DCMAKE_BUILD_TYPE=Release "-DDROGUE_EXACT=$exact" \
     "-DBUILD_TESTING=$([ "$tests" = yes ] && echo ON || echo OFF)" -DDROGUE_HEADER_TEST=OFF \
     '-DCMAKE_INSTALL_RPATH=$ORIGIN/../lib' -DCMAKE_BUILD_WITH_INSTALL_RPATH=ON \
+    -DCMAKE_CXX_FLAGS=-march=x86-64-v3 -DCMAKE_CUDA_FLAGS=-Xcompiler=-march=x86-64-v3 \
     -DCMAKE_EXE_LINKER_FLAGS=-Wl,--disable-new-dtags "$@"
   say "building the $kind programs"
-  run_logged "bundle-$kind-build" cmake --build "$folder" --parallel "$jobs"
+  local targets=(drogue-gas drogue-perf)
+  [ "$tests" = no ] || targets+=(drogue_kernel_tests)
+  run_logged "bundle-$kind-build" cmake --build "$folder" --parallel "$jobs" --target "${targets[@]}"
   local program
   for program in "$folder"/bin/drogue-*; do
     case "$program" in *drogue-plot) continue ;; esac

@@ -92,12 +92,20 @@ build_kokkos() {
   local kernels=(-DKokkosKernels_ENABLE_ALL_COMPONENTS=OFF -DKokkosKernels_ENABLE_COMPONENT_BATCHED=ON
     -DKokkosKernels_ENABLE_COMPONENT_BLAS=ON -DKokkosKernels_ADD_DEFAULT_ETI=OFF -DKokkosKernels_INST_DOUBLE=OFF
     -DKokkosKernels_INST_LAYOUTLEFT=OFF "-DKokkos_ROOT=$deps/$variant")
+  local device_flags
+  device_flags="$(kokkos_cuda_flags "$arch")"
   # The bundle runs on other machines: x86-64-v3 rather than this processor.
-  case "$variant" in bundle*) kokkos+=(-DKokkos_ARCH_AVX2=ON) ;; *) kokkos+=(-DKokkos_ARCH_NATIVE=ON) ;; esac
+  case "$variant" in
+    bundle*)
+      common+=(-DCMAKE_CXX_FLAGS=-march=x86-64-v3)
+      device_flags+=" -Xcompiler=-march=x86-64-v3"
+      ;;
+    *) kokkos+=(-DKokkos_ARCH_NATIVE=ON) ;;
+  esac
   case "$variant" in
     *cuda*)
       common+=("-DCMAKE_CUDA_COMPILER=$nvcc"
-        "-DCMAKE_CUDA_ARCHITECTURES=$arch" "-DCMAKE_CUDA_FLAGS=$(kokkos_cuda_flags "$arch")")
+        "-DCMAKE_CUDA_ARCHITECTURES=$arch" "-DCMAKE_CUDA_FLAGS=$device_flags")
       kokkos+=(-DKokkos_ENABLE_CUDA=ON -DKokkos_ENABLE_COMPILE_AS_CMAKE_LANGUAGE=ON
         "-DKokkos_ARCH_$(kokkos_architecture "$arch")=ON")
       kernels+=(-DKokkosKernels_ENABLE_TPL_CUBLAS=OFF -DKokkosKernels_ENABLE_TPL_CUSPARSE=OFF
