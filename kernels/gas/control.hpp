@@ -65,7 +65,8 @@ struct Control {
   std::uint64_t bad;     ///< least `inadmissible` of this attempt
   std::int64_t touches;  ///< faces limited in this attempt
   Failed failed;
-  std::int64_t rows;  ///< history rows written
+  std::int64_t rows;      ///< history rows written
+  std::int64_t launches;  ///< kernels that have reported to the host
 };
 
 /// Constants of a run that the step's kernels read.

@@ -46,14 +46,15 @@ KOKKOS_INLINE_FUNCTION void prepare_attempt(Control& c, const StepConstants& k) 
 
 /// Tells the host where the device is. The host reads the fields one by one while they change and needs no
 /// more than that each of them was true at some moment.
-KOKKOS_INLINE_FUNCTION void report(const Control& c, Status& s) {
+KOKKOS_INLINE_FUNCTION void report(Control& c, Status& s) {
   s.step = c.resume.step;
   s.time = c.resume.time;
   s.dt = c.dt;
   s.limited = c.resume.limited;
   s.stop = c.stop;
   s.rows = c.rows;
-  s.launches = s.launches + 1;
+  // Counted here: the device would wait microseconds to read it from the host's memory.
+  s.launches = ++c.launches;
 }
 
 /// Kahan's compensated addition: 10^6 steps of boundary fluxes must not cost the conservation check its
@@ -75,7 +76,9 @@ struct FinishFunctor {
   bool limited;  ///< the step this kernel ends was computed with the limiter
 
   KOKKOS_FUNCTION void operator()(int) const {
-    Control& c = control();
+    // A copy: its loads are in flight together, where a chain of decisions in global memory would wait for
+    // each.
+    Control c = control();
     if (c.stop == Stop::running && (c.resume.limited != 0) == limited) {
       if (c.bad != no_cell || outgrown(c))
         reject(c);
@@ -83,6 +86,7 @@ struct FinishFunctor {
         accept(c);
     }
     report(c, status());
+    control() = c;
   }
 
   /// The limiter's guarantee needs lambda alpha <= 1/2 with every stage's own alpha, which may exceed the one
