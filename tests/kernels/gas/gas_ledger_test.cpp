@@ -1,0 +1,336 @@
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <string>
+
+#include "kernels/device/ledger.hpp"
+#include "tests/support/gas_state.hpp"
+
+// What stepping asks of the device and of the host, and how it ends.
+
+namespace drogue::gas {
+namespace {
+
+using namespace drogue::testing;  // NOLINT: helpers of these tests
+using device::Ledger;
+
+constexpr auto backend = device::Backend::DROGUE_TEST_BACKEND;
+constexpr bool on_device = backend == device::Backend::cuda;
+constexpr auto never = std::numeric_limits<double>::max();
+
+/// The ledger, started by the first who asks.
+Ledger counted() {
+  static const bool once = (device::start_ledger(), true);
+  static_cast<void>(once);
+  return device::ledger();
+}
+
+Ledger operator-(const Ledger& after, const Ledger& before) {
+  Ledger d;
+  d.kernel_launches = after.kernel_launches - before.kernel_launches;
+  d.fences = after.fences - before.fences;
+  d.allocations = after.allocations - before.allocations;
+  d.h2d_bytes = after.h2d_bytes - before.h2d_bytes;
+  d.d2h_bytes = after.d2h_bytes - before.d2h_bytes;
+  d.copies = after.copies - before.copies;
+  d.device_bytes = after.device_bytes - before.device_bytes;
+  return d;
+}
+
+/// What `advance` by `steps` steps asks for, rows every `row_every` included; the solver is warm.
+Ledger cost(Solver& solver, std::int64_t steps, int row_every = 0) {
+  const std::int64_t now = solver.resume_state().step;
+  const Ledger before = counted();
+  EXPECT_EQ(solver.advance(never, now + steps, row_every, {}, {}), Stop::pause);
+  return counted() - before;
+}
+
+Parameters sod(Positivity positivity = Positivity::automatic) {
+  Parameters p;
+  p.positivity = positivity;
+  p.left = p.right = Boundary::reflecting;  // goes on for ever
+  return p;
+}
+GasState sod_state(const Parameters& p) { return riemann_state(p, 0.0, {1, 0, 1}, {0.125, 0, 0.1}); }
+
+std::unique_ptr<Solver> warm(const Parameters& p) {
+  auto solver = started(backend, p, sod_state(p));
+  EXPECT_EQ(solver->advance(never, 1, 0, {}, {}), Stop::pause);
+  return solver;
+}
+
+TEST(GasLedger, StepsWithoutOutputFenceAllocateAndCopyNothing) {
+  for (const TimeScheme time : {TimeScheme::ssprk3, TimeScheme::ssprk43})
+    for (const Positivity positivity : {Positivity::off, Positivity::on, Positivity::automatic}) {
+      Parameters p = sod(positivity);
+      p.time_scheme = time;
+      const auto solver = warm(p);
+      const Ledger few = cost(*solver, 50), many = cost(*solver, 500);
+      EXPECT_EQ(many.fences, few.fences);
+      EXPECT_LE(many.fences, 4);
+      EXPECT_EQ(many.allocations, 0);
+      EXPECT_EQ(many.copies, 0);
+      EXPECT_EQ(many.h2d_bytes + many.d2h_bytes, 0);
+      // A stage is a kernel, and one more ends the step; a recorded step is one launch, with a few too many
+      // in flight when the last step is done.
+      const std::int64_t a_step = on_device ? 1 : time == TimeScheme::ssprk3 ? 4 : 5;
+      EXPECT_GE(many.kernel_launches, 500 * a_step + 1);
+      EXPECT_LE(many.kernel_launches, 500 * a_step + 1 + (on_device ? 512 : 0));
+    }
+}
+
+TEST(GasLedger, AutomaticPositivityThatIsNeverNeededCostsNoLaunch) {
+  const Ledger off = cost(*warm(sod(Positivity::off)), 300);
+  const auto automatic = warm(sod(Positivity::automatic));
+  const Ledger idle = cost(*automatic, 300);
+  EXPECT_EQ(automatic->resume_state().redone, 0);
+  EXPECT_EQ(idle.fences, off.fences);
+  if (!on_device) {
+    EXPECT_EQ(idle.kernel_launches, off.kernel_launches);
+  }
+  const auto state = download(*automatic, sod());
+  const auto plain = warm(sod(Positivity::off));
+  cost(*plain, 300);
+  EXPECT_TRUE(same_bits(state, download(*plain, sod())));
+}
+
+TEST(GasLedger, RowsCostLaunchesButNeitherFencesNorBits) {
+  const auto plain = warm(sod());
+  cost(*plain, 500);
+  for (const int every : {1, 7, 100}) {
+    const auto solver = warm(sod());
+    const Ledger rows = cost(*solver, 500, every);
+    EXPECT_LE(rows.fences, 5);
+    EXPECT_EQ(rows.allocations, 0);
+    EXPECT_EQ(rows.copies, 0);
+    EXPECT_TRUE(same_bits(download(*solver, sod()), download(*plain, sod())));
+    if (!on_device) {
+      // 200 cells: one level of sums and the row itself.
+      const std::int64_t expected = 501 / every * 2 + 500 * 4 + 1;
+      EXPECT_NEAR(static_cast<double>(rows.kernel_launches), static_cast<double>(expected), 2.0);
+    }
+  }
+}
+
+TEST(GasLedger, MemoryStaysWithinEightyBytesACell) {
+  constexpr std::int64_t cells = 1 << 20;
+  const Ledger before = counted();
+  Parameters p = sod();
+  p.cells = cells;
+  const GasState state = sod_state(p);
+  const auto solver = started(backend, p, state);
+  EXPECT_EQ(solver->advance(never, 3, 1, {}, {}), Stop::pause);
+  const std::int64_t stepping = (counted() - before).device_bytes;
+  EXPECT_GE(stepping, 72 * cells);
+  EXPECT_LE(stepping, 80 * cells + (std::int64_t{1} << 20));
+  solver->begin_snapshot();
+  solver->finish_snapshot();
+  EXPECT_LE((counted() - before).device_bytes, 104 * cells + (std::int64_t{1} << 20));
+  EXPECT_GE(counted().peak_device_bytes, 96 * cells);
+}
+
+TEST(GasLedger, MemoryComesBack) {
+  const Ledger before = counted();
+  warm(sod());
+  EXPECT_LE((counted() - before).device_bytes, 1 << 20);  // scratch of the backend's own
+}
+
+// ---- rows, pauses, ends ----
+
+TEST(GasStops, RowsComeAtMultiples) {
+  for (const int every : {1, 3, 10}) {
+    const auto solver = warm(sod());
+    std::vector<HistoryRow> rows;
+    const RowSink keep = [&](const HistoryRow& row) { rows.push_back(row); };
+    EXPECT_EQ(solver->advance(never, 20, every, keep, {}), Stop::pause);
+    EXPECT_EQ(solver->advance(never, 31, every, keep, {}), Stop::pause);
+    ASSERT_EQ(rows.size(), static_cast<std::size_t>(31 / every - 1 / every));
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+      EXPECT_EQ(rows[k].step, every * static_cast<std::int64_t>(k + 1 + (every == 1 ? 1 : 0)));
+      // The end walls keep mass and energy.
+      EXPECT_NEAR(rows[k].mass, 1.125, 1e-13);
+      EXPECT_NEAR(rows[k].energy, 2.75, 1e-13);
+      EXPECT_GT(rows[k].dt, 0.0);
+      if (k > 0) {
+        EXPECT_GT(rows[k].time, rows[k - 1].time);
+      }
+    }
+  }
+}
+
+TEST(GasStops, MoreRowsThanTheRingHoldsArriveAll) {
+  Parameters p = sod();
+  p.cells = 16;
+  const auto solver = started(backend, p, sod_state(p));
+  std::int64_t next = 1;
+  const RowSink in_order = [&](const HistoryRow& row) { EXPECT_EQ(row.step, next++); };
+  EXPECT_EQ(solver->advance(never, 5000, 1, in_order, {}), Stop::pause);
+  EXPECT_EQ(next, 5001);
+}
+
+TEST(GasStops, TargetsAndPausesAreMetExactly) {
+  const auto solver = warm(sod());
+  for (const double target : {0.01, 0.0137, 0.1}) {
+    EXPECT_EQ(solver->advance(target, -1, 3, {}, {}), Stop::target);
+    EXPECT_EQ(solver->resume_state().time, target);
+    EXPECT_EQ(solver->totals().time, target);
+  }
+  const std::int64_t step = solver->resume_state().step;
+  EXPECT_EQ(solver->advance(0.1, -1, 0, {}, {}), Stop::target) << "nothing is left to do";
+  EXPECT_EQ(solver->resume_state().step, step);
+  EXPECT_EQ(solver->advance(0.2, step + 3, 0, {}, {}), Stop::pause);
+  EXPECT_EQ(solver->resume_state().step, step + 3);
+}
+
+TEST(GasStops, LastStepBeforeATargetIsNoSplinter) {
+  // A step that would leave less than rounding of itself ends the run instead.
+  Parameters p = sod();
+  p.fixed_dt = 0.001;
+  const auto solver = started(backend, p, sod_state(p));
+  EXPECT_EQ(solver->advance(0.1, -1, 0, {}, {}), Stop::target);
+  EXPECT_EQ(solver->resume_state().step, 100);
+  EXPECT_NEAR(solver->resume_state().dt_min, 0.001, 1e-15);
+}
+
+TEST(GasStops, MaxSteps) {
+  Parameters p = sod();
+  p.max_steps = 17;
+  const auto solver = started(backend, p, sod_state(p));
+  EXPECT_EQ(solver->advance(never, -1, 0, {}, {}), Stop::max_steps);
+  EXPECT_EQ(solver->resume_state().step, 17);
+  EXPECT_EQ(solver->advance(never, -1, 0, {}, {}), Stop::max_steps);
+  EXPECT_EQ(solver->resume_state().step, 17);
+}
+
+TEST(GasStops, PollInterruptsBetweenSteps) {
+  const auto solver = warm(sod());
+  const Poll stop_at_30 = [](const Status& status) { return status.step < 30; };
+  EXPECT_EQ(solver->advance(never, -1, 0, {}, stop_at_30), Stop::interrupted);
+  const std::int64_t step = solver->resume_state().step;
+  EXPECT_GE(step, 30);
+  EXPECT_LE(step, on_device ? 30'000'000 : 30);
+  // What follows has the bits of a run that was left alone.
+  EXPECT_EQ(solver->advance(never, step + 20, 0, {}, {}), Stop::pause);
+  const auto whole = started(backend, sod(), sod_state(sod()));
+  EXPECT_EQ(whole->advance(never, step + 20, 0, {}, {}), Stop::pause);
+  EXPECT_TRUE(same_bits(download(*solver, sod()), download(*whole, sod())));
+}
+
+TEST(GasStops, FailureNamesQuantityCellAndStep) {
+  Parameters p = sod(Positivity::off);
+  p.cells = 100;
+  p.cfl = 20.0;
+  p.ramp_steps = 0;
+  const auto solver = started(backend, p, sod_state(p));
+  EXPECT_EQ(solver->advance(never, -1, 10, {}, {}), Stop::failed);
+  const Failed failed = solver->failure();
+  const Resume last = solver->resume_state();
+  EXPECT_EQ(failed.step, last.step + 1);
+  EXPECT_EQ(failed.time, last.time);
+  EXPECT_GT(failed.dt, 0.0);
+  ASSERT_GE(failed.cell, 0);
+  ASSERT_LT(failed.cell, 100);
+  EXPECT_TRUE(failed.quantity == Quantity::density || failed.quantity == Quantity::pressure);
+  // The oracle fails at the same step, and the state kept is its last good one.
+  reference::GasRun run = reference_from(sod_state(p));
+  reference::advance(run, p, 1e9);
+  EXPECT_TRUE(run.failed);
+  EXPECT_EQ(run.steps, last.step);
+  EXPECT_LT(distance(download(*solver, p), state_of(run)), 1e-10);
+  EXPECT_EQ(solver->advance(never, -1, 0, {}, {}), Stop::failed) << "a failed run stays where it is";
+  EXPECT_EQ(solver->resume_state().step, last.step);
+}
+
+TEST(GasStops, FailureFindsTheCell) {
+  for (const std::int64_t cell : {3, 37, 126, 127, 128, 197}) {
+    Parameters p;
+    p.positivity = Positivity::off;
+    p.cfl = 5.0;
+    p.ramp_steps = 0;
+    // Torn apart at one face, uniform elsewhere: a step that is too long empties the cells beside it.
+    const GasState state = make_state(p, [&](std::int64_t i) {
+      return reference::Primitive{1.0, i < cell ? -5.0 : 5.0, 1.0};
+    });
+    const auto solver = started(backend, p, state);
+    EXPECT_EQ(solver->advance(never, -1, 0, {}, {}), Stop::failed);
+    EXPECT_LE(std::abs(static_cast<double>(solver->failure().cell - cell) + 0.5), 3.0) << cell;
+    EXPECT_EQ(solver->failure().step, 1);
+    EXPECT_EQ(solver->resume_state().step, 0);
+    EXPECT_TRUE(same_bits(download(*solver, p), state));
+  }
+}
+
+TEST(GasStops, NotANumberNeverPasses) {
+  for (const Positivity positivity : {Positivity::off, Positivity::on, Positivity::automatic})
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Parameters p = sod(positivity);
+      GasState state = sod_state(p);
+      state[k][100] = std::nan("");
+      const auto solver = started(backend, p, state);
+      EXPECT_EQ(solver->advance(never, 10, 0, {}, {}), Stop::failed);
+      EXPECT_EQ(solver->resume_state().step, 0);
+    }
+}
+
+// ---- positivity on demand ----
+
+TEST(GasPositivity, AutomaticSavesWhatFailsWithout) {
+  Parameters p;
+  p.cells = 100;
+  p.x_min = 0.0;
+  p.x_max = 9.0;
+  p.gamma = 5.0 / 3.0;
+  p.weno = Weno::teno5;
+  const GasState leblanc = riemann_state(p, 3.0, {1, 0, 2.0 / 30}, {1e-3, 0, 2.0 / 3e10});
+  p.positivity = Positivity::off;
+  EXPECT_EQ(started(backend, p, leblanc)->advance(6.0, -1, 0, {}, {}), Stop::failed);
+
+  p.positivity = Positivity::automatic;
+  const auto solver = started(backend, p, leblanc);
+  const Ledger before = counted();
+  EXPECT_EQ(solver->advance(6.0, -1, 0, {}, {}), Stop::target);
+  const Resume end = solver->resume_state();
+  EXPECT_GT(end.redone, 0);
+  EXPECT_LT(end.redone, end.step / 10);
+  EXPECT_GT(end.touches, 0);
+  EXPECT_GT(solver->touched_cells(), 0);
+  EXPECT_LE(solver->touched_cells(), 100);
+  if (!on_device) {
+    EXPECT_LT((counted() - before).kernel_launches, (end.step + end.redone) * 4 + 10);
+  }
+
+  reference::GasRun run = reference_from(leblanc);
+  reference::advance(run, p, 6.0);
+  EXPECT_FALSE(run.failed);
+  EXPECT_EQ(end.redone, run.redone_steps);
+  EXPECT_EQ(end.step, run.steps);
+  EXPECT_LT(distance(download(*solver, p), state_of(run)), 1e-6);
+}
+
+TEST(GasPositivity, LimiterIsTurnedOffAgain) {
+  // A near vacuum that the waves fill within some steps: after the last fault 100 limited steps, then none.
+  Parameters p;
+  p.cells = 100;
+  p.weno = Weno::teno5;
+  p.left = p.right = Boundary::periodic;
+  const GasState state = random_state(p, 3, extreme);
+  const auto solver = started(backend, p, state);
+  EXPECT_EQ(solver->advance(never, 2000, 0, {}, {}), Stop::pause);
+  const Resume later = solver->resume_state();
+  EXPECT_GT(later.redone, 0);
+  EXPECT_EQ(later.limited, 0);
+  EXPECT_EQ(later.limited_left, 0);
+}
+
+TEST(GasPositivity, EightCellsRun) {
+  Parameters p = sod(Positivity::on);
+  p.cells = 8;
+  const auto solver = started(backend, p, sod_state(p));
+  EXPECT_EQ(solver->advance(1.0, -1, 1, {}, {}), Stop::target);
+  const HistoryRow row = solver->totals();
+  EXPECT_NEAR(row.mass, 1.125, 1e-13);
+  EXPECT_NEAR(row.energy, 2.75, 1e-13);
+}
+
+}  // namespace
+}  // namespace drogue::gas
