@@ -4,21 +4,37 @@
 
 namespace drogue::device {
 
-/// An execution-space instance of its own: on CUDA a stream, elsewhere the default instance.
+/// An execution-space instance of its own: on CUDA a stream, with OpenMP a pool of threads, elsewhere the
+/// default instance. `most_threads` is what the work can use; a host thread more would only be waited for.
 template <class ExecutionSpace>
 class Instance {
  public:
+  explicit Instance(int /*most_threads*/) {}
   [[nodiscard]] const ExecutionSpace& space() const { return _space; }
 
  private:
   ExecutionSpace _space;
 };
 
+#if defined(KOKKOS_ENABLE_OPENMP)
+template <>
+class Instance<Kokkos::OpenMP> {
+ public:
+  explicit Instance(int most_threads)
+      : _space(most_threads < Kokkos::OpenMP().concurrency() ? Kokkos::OpenMP(most_threads)
+                                                             : Kokkos::OpenMP()) {}
+  [[nodiscard]] const Kokkos::OpenMP& space() const { return _space; }
+
+ private:
+  Kokkos::OpenMP _space;
+};
+#endif
+
 #if defined(KOKKOS_ENABLE_CUDA)
 template <>
 class Instance<Kokkos::Cuda> {
  public:
-  Instance() : _stream(create()), _space(_stream) {}
+  explicit Instance(int /*most_threads*/) : _stream(create()), _space(_stream) {}
   ~Instance() {
     _space.fence("drogue::device::instance: last use");
     _space = Kokkos::Cuda();

@@ -41,7 +41,8 @@ template <class ExecutionSpace>
 class SeedSolver final : public Solver {
  public:
   explicit SeedSolver(const Parameters& p)
-      : _p(p),
+      : _instance(useful_threads(p.cells)),
+        _p(p),
         _cells(static_cast<std::size_t>(p.cells)),
         _dx((p.x_max - p.x_min) / static_cast<double>(p.cells)) {
     for (auto& state : _state)

@@ -2,6 +2,8 @@
 
 // Definitions of SolverOn: construction and everything that moves state.
 
+#include <algorithm>
+
 #include "kernels/gas/solver_on.hpp"
 
 namespace drogue::gas {
@@ -19,8 +21,14 @@ TileShape tile_shape(int block) {
   }
 }
 
+/// Host threads that a mesh keeps busy: fewer than four tiles each are not worth a thread.
+inline int useful_threads(std::int64_t cells) {
+  return static_cast<int>(1 + std::min<std::int64_t>(cells / 1024, 4096));
+}
+
 template <class ExecutionSpace>
-SolverOn<ExecutionSpace>::SolverOn(const Parameters& p) : _parameters(p) {
+SolverOn<ExecutionSpace>::SolverOn(const Parameters& p)
+    : _instance(useful_threads(p.cells)), _copy_instance(1), _parameters(p) {
   const double dx = (p.x_max - p.x_min) / static_cast<double>(p.cells);
   _setup.table = stage_table(p.time_scheme);
   const double limited_cap = p.time_scheme == TimeScheme::ssprk3 ? 0.4 : 0.8;
@@ -72,6 +80,7 @@ template <class ExecutionSpace>
 void SolverOn<ExecutionSpace>::write_control(const Control& control) {
   auto mirror = Kokkos::create_mirror_view(_setup.control);
   mirror() = control;
+  mirror().launches = _launched;
   Kokkos::deep_copy(_instance.space(), _setup.control, mirror);
   _instance.space().fence("drogue::gas::solver: write control");
 }

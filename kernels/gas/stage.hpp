@@ -38,10 +38,11 @@ struct StageFunctor {
 
   KOKKOS_FUNCTION void operator()(const Member& member) const {
     const Control& now = control();
-    if (now.stop != Stop::running || (now.resume.limited != 0) != limited) return;
     const Tile<ExecutionSpace> tile(member, shape, ends.cells);
-    const double* in = field_data(now, weights.in);
-    load_cells(member, tile, in);
+    // Loading first and asking afterwards whether there is a step to do lets both reads be in flight
+    // together.
+    load_cells(member, tile, field_data(now, weights.in));
+    if (now.stop != Stop::running || (now.resume.limited != 0) != limited) return;
     member.team_barrier();
     compute_fluxes(member, tile, now);
     member.team_barrier();
