@@ -1,6 +1,7 @@
 #include "common/run/fields_writer.hpp"
 
 #include <fcntl.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -27,7 +28,11 @@ void reserve(const std::filesystem::path& file, std::uint64_t bytes) {
   if (descriptor < 0) throw io_failure("write", file, errno);
   const off_t end = lseek(descriptor, 0, SEEK_END);
   const int status = fallocate(descriptor, FALLOC_FL_KEEP_SIZE, end, static_cast<off_t>(bytes));
-  const int error = status == 0 ? 0 : errno;
+  int error = status == 0 ? 0 : errno;
+  // A limit on the length of files (ulimit -f) is not asked about before the file is longer.
+  struct rlimit limit = {};
+  if (getrlimit(RLIMIT_FSIZE, &limit) == 0 && static_cast<rlim_t>(end) + bytes > limit.rlim_cur)
+    error = EFBIG;
   close(descriptor);
   // Elsewhere (say NFS) a full disk shows while writing; then end_step() is not reached.
   if (error == ENOSPC || error == EDQUOT || error == EFBIG) throw io_failure("write", file, error);
@@ -56,6 +61,7 @@ struct FieldsWriter::State {
 
   void create() const;
   void resume(double time);
+  void require_same_fields(const h5::Handle& step) const;
   void write_xdmf() const;
   void abandon_step() noexcept;
 
@@ -82,14 +88,27 @@ void FieldsWriter::State::resume(double time) {
   h5::Handle handle = h5::open_file(file, true);
   const h5::Handle steps = h5::open_group(handle, "steps");
   for (const std::string& name : h5::children(steps)) {
-    const double output_time = h5::read_number(h5::open_group(steps, name), "time");
+    const h5::Handle step = h5::open_group(steps, name);
+    const double output_time = h5::read_number(step, "time");
     if (output_time <= time) {
+      require_same_fields(step);
       outputs.push_back({name, output_time});
     } else {
       h5::remove(steps, name);
     }
   }
   handle.close_file();
+}
+
+/// fields.xdmf names the same fields for every step.
+void FieldsWriter::State::require_same_fields(const h5::Handle& step) const {
+  std::vector<std::string> wanted;
+  for (const DatasetSpec& field : fields) wanted.push_back(field.name);
+  std::sort(wanted.begin(), wanted.end());
+  if (h5::children(step) != wanted) {
+    throw Failure(ExitCode::io_error,
+                  "cannot continue '" + file.string() + "': it has other fields than this run");
+  }
 }
 
 void FieldsWriter::State::write_xdmf() const {

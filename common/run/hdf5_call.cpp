@@ -32,7 +32,13 @@ herr_t look_at(unsigned, const H5E_error2_t* error, void* data) {
 
 }  // namespace
 
-Lock::Lock() : _lock(library_mutex()) { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
+Lock::Lock() : _lock(library_mutex()) {
+  // A file that could not be closed, say on a full disk, lets the library crash when it tidies up at exit;
+  // there is nothing to tidy up, since every handle is closed by its owner.
+  static const herr_t without_exit_handler = H5dont_atexit();
+  static_cast<void>(without_exit_handler);
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+}
 
 void fail(const std::string& action, const std::filesystem::path& path) {
   Cause cause;
