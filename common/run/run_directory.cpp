@@ -43,6 +43,11 @@ bool is_picture(const std::filesystem::path& file) {
   return named && (kind == ".png" || kind == ".pdf" || kind == ".svg" || kind == ".gif" || kind == ".mp4");
 }
 
+/// Succeeds if there is no such file.
+void remove_file(const std::filesystem::path& file) {
+  if (unlink(file.c_str()) != 0 && errno != ENOENT) throw io_failure("remove", file, errno);
+}
+
 }  // namespace
 
 const std::vector<std::string>& run_file_names() {
@@ -72,6 +77,7 @@ RunDirectory::RunDirectory(std::filesystem::path path, ExistingRun existing) : _
                         "or --restart to continue it");
     }
     if (existing == ExistingRun::overwrite) remove_former_run();
+    if (existing == ExistingRun::resume) remove_file(_path / "result.json");
   } catch (...) {
     unlock();
     throw;
@@ -103,16 +109,13 @@ void RunDirectory::unlock() noexcept {
 }
 
 void RunDirectory::remove_former_run() const {
-  const auto remove = [](const std::filesystem::path& file) {
-    if (unlink(file.c_str()) != 0 && errno != ENOENT) throw io_failure("remove", file, errno);
-  };
-  for (const std::string& name : run_file_names()) remove(_path / name);
+  for (const std::string& name : run_file_names()) remove_file(_path / name);
   std::vector<std::filesystem::path> leftovers;
   for (const auto& entry : std::filesystem::directory_iterator(_path)) {
     const std::filesystem::path& file = entry.path();
     if (is_leftover(file.filename().string()) || is_picture(file)) leftovers.push_back(file);
   }
-  for (const auto& file : leftovers) remove(file);
+  for (const auto& file : leftovers) remove_file(file);
 }
 
 void RunDirectory::write_scene(std::string_view toml) const {

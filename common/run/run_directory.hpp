@@ -11,7 +11,7 @@ namespace drogue::run {
 enum class ExistingRun {
   refuse,     ///< exit 2
   overwrite,  ///< its files are removed first
-  resume,     ///< they stay and are continued
+  resume,     ///< they stay and are continued; result.json goes, which tells of an end
 };
 
 /// The directory of one run, locked as long as this object lives. Two runs never share one.

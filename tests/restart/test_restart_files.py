@@ -95,10 +95,14 @@ class RestartFiles(gas_program.GasTest):
     def test_other_backend(self):
         self.expect(0, "sod", "--quiet", "--backend", "openmp", "--out", "run", "--restart", "auto", sets=SETS)
 
-    def test_a_stale_result_does_not_outlive_the_restart(self):
-        """result.json appears when the continued run ends, so a job that is killed again has none."""
-        self.resume(0)
-        self.assertEqual("ok", self.result("run")["status"])
+    def test_other_fields(self):
+        """fields.xdmf could not name what some outputs have and others have not."""
+        for fields in ('["rho"]', '["rho", "u"]'):
+            with self.subTest(fields):
+                message = self.resume(6, sets=[*SETS, f"output.fields={fields}"])
+                self.assertIn("fields.h5", message)
+                self.assertIn("other fields", message)
+        self.resume(0, sets=[*SETS, 'output.fields=["p", "u", "rho"]'])
 
     def test_restart_and_overwrite_exclude_each_other(self):
         self.resume(2, "--restart", "auto", "--overwrite")

@@ -54,8 +54,10 @@ TEST(RunDirectory, OverwriteRemovesKnownNamesOnly) {
 TEST(RunDirectory, ResumeKeepsTheFormerRun) {
   const TemporaryDirectory parent;
   write_file_atomically(parent / "restart.h5", "state");
+  write_file_atomically(parent / "result.json", "of the former end");
   const RunDirectory run(parent.path(), ExistingRun::resume);
   EXPECT_EQ(content(parent / "restart.h5"), "state");
+  EXPECT_FALSE(std::filesystem::exists(parent / "result.json"));
 }
 
 TEST(RunDirectory, IsNotSharedByTwoRuns) {
