@@ -31,20 +31,35 @@ void declare(CLI::App& app, MiniAppOptions& options) {
       ->excludes(check);
   app.add_flag("--list-scenes", options.list_scenes, "list the shipped scenes, and end");
   app.add_flag("--quiet", options.quiet, "show no progress and no summary");
-  app.add_flag("--seed-mode", options.seed_mode, "run the dissertation's own algorithm and data movement");
+  auto* seed_mode = app.add_flag("--seed-mode", options.seed_mode,
+                                 "run the dissertation's own algorithm and data movement");
   app.add_option("--study", options.study,
                  "run the scene over meshes and schemes, say meshes=100:800,schemes=js:z")
       ->type_name("LISTS")
-      ->excludes(restart);
+      ->excludes(restart)
+      ->excludes(seed_mode);
   app.add_flag("--version", options.version, "print version, backends and libraries, and end");
 }
 
-void check_words(const MiniAppOptions& options) {
+/// An option given as "", say by a variable of a script that is not set: it must not pass for one not given.
+const CLI::Option* empty_value(const CLI::App& app) {
+  for (const CLI::Option* option : app.get_options()) {
+    for (const std::string& value : option->results()) {
+      if (value.empty()) return option;
+    }
+  }
+  return nullptr;
+}
+
+void check_words(const CLI::App& app, const MiniAppOptions& options) {
   for (const std::string& assignment : options.set) {
     const std::size_t equals = assignment.find('=');
     if (equals == std::string::npos || equals == 0) {
       throw Failure(ExitCode::usage, "--set needs key.path=value, not '" + assignment + "'");
     }
+  }
+  if (const CLI::Option* option = empty_value(app)) {
+    throw Failure(ExitCode::usage, option->get_name() + " is empty");
   }
   if (options.scene.empty() && !options.list_scenes && !options.version) {
     throw Failure(ExitCode::usage,
@@ -63,7 +78,7 @@ MiniAppOptions parse_mini_app_options(const std::string& program, const std::str
   Arguments arguments = split_arguments(argc, argv);
   options.help = parse_command_line(app, arguments.program);
   options.kokkos = std::move(arguments.kokkos);
-  if (options.help.empty()) check_words(options);
+  if (options.help.empty()) check_words(app, options);
   return options;
 }
 

@@ -20,11 +20,11 @@ std::optional<int> environment_number(const char* name) {
   return value;
 }
 
+/// Of a launcher whose number of ranks is found in nothing but what it started.
 std::optional<LaunchedRank> from_environment(const char* rank_name, const char* ranks_name) {
-  const std::optional<int> rank = environment_number(rank_name);
   const std::optional<int> ranks = environment_number(ranks_name);
-  if (!rank || !ranks || *ranks < 1) return std::nullopt;
-  return LaunchedRank{*rank, *ranks};
+  if (!ranks || *ranks < 1) return std::nullopt;
+  return LaunchedRank{environment_number(rank_name).value_or(0), *ranks};
 }
 
 }  // namespace
@@ -33,7 +33,8 @@ LaunchedRank launched_rank() {
   if (const auto place = from_environment("OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE")) return *place;
   if (const auto place = from_environment("PMI_RANK", "PMI_SIZE")) return *place;
   // srun with PMIx: only a task has PMIX_RANK, while the job script has SLURM_NTASKS as well.
-  if (const auto place = from_environment("PMIX_RANK", "SLURM_NTASKS")) return *place;
+  if (environment_number("PMIX_RANK"))
+    return from_environment("PMIX_RANK", "SLURM_NTASKS").value_or(LaunchedRank{});
   return {};
 }
 

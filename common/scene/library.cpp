@@ -54,8 +54,9 @@ std::filesystem::path find_scene(const std::string& argument, const std::filesys
     if (scene.name == argument) return scene.file;
     names.push_back(scene.name);
   }
-  if (std::filesystem::exists(argument, unreadable))
-    return argument;  // a folder or a pipe: reading it says what is wrong
+  if (std::filesystem::is_directory(argument, unreadable))
+    throw Failure(ExitCode::usage, argument + " is a folder, not a scene file");
+  if (std::filesystem::exists(argument, unreadable)) return argument;  // say a pipe
   const std::string hint =
       names.empty() ? "" : "; " + suggestion(std::filesystem::path(argument).stem().string(), names);
   throw Failure(ExitCode::usage,

@@ -67,6 +67,12 @@ TEST(MpiGuard, AJobScriptOfManyTasksIsNoLauncher) {
   EXPECT_EQ(launched_rank().ranks, 1);
 }
 
+TEST(MpiGuard, TheNumberOfRanksIsEnough) {
+  const Launcher launcher({{"OMPI_COMM_WORLD_SIZE", "2"}});
+  EXPECT_EQ(launched_rank().rank, 0);
+  EXPECT_EQ(launched_rank().ranks, 2);
+}
+
 TEST(MpiGuard, NonsenseIsIgnored) {
   const Launcher nonsense({{"OMPI_COMM_WORLD_RANK", "0"}, {"OMPI_COMM_WORLD_SIZE", "many"}});
   EXPECT_EQ(launched_rank().ranks, 1);
