@@ -1,6 +1,12 @@
 #include "kernels/device/runtime.hpp"
 
 #include <Kokkos_Core.hpp>
+#include <charconv>
+#include <cstdlib>
+#include <stdexcept>
+#if defined(KOKKOS_ENABLE_OPENMP)
+#include <omp.h>
+#endif
 
 namespace drogue::device {
 
@@ -10,11 +16,51 @@ void without_global_fences(const std::uint32_t, Kokkos_Tools_ToolSettings* setti
   settings->requires_global_fencing = false;
 }
 
+/// Kokkos keeps its OpenMP threads in a table of this length and does not look whether they fit.
+constexpr int most_threads = 512;
+
+void require_number(const std::string& name, std::string_view text, int least, int most) {
+  int value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error == std::errc{} && end == text.data() + text.size() && value >= least && value <= most) return;
+  throw std::invalid_argument(name + " = " + std::string(text) + " is no whole number between " +
+                              std::to_string(least) + " and " + std::to_string(most));
+}
+
+/// True if the option `--kokkos-NAME=` or the variable `variable` is given; its value is then a number in
+/// range.
+bool checked_number(const std::vector<std::string>& arguments, const std::string& option,
+                    const char* variable, int least, int most) {
+  bool given = false;
+  for (const std::string& argument : arguments) {
+    if (!argument.starts_with(option + "=")) continue;
+    require_number(option, std::string_view(argument).substr(option.size() + 1), least, most);
+    given = true;
+  }
+  if (const char* text = std::getenv(variable)) {
+    require_number(variable, text, least, most);
+    given = true;
+  }
+  return given;
+}
+
+int threads_by_default() {
+#if defined(KOKKOS_ENABLE_OPENMP)
+  return omp_get_max_threads();
+#else
+  return 1;
+#endif
+}
+
 }  // namespace
 
 Runtime::Runtime(const std::vector<std::string>& arguments) {
   Kokkos::Tools::Experimental::set_request_tool_settings_callback(without_global_fences);
+  checked_number(arguments, "--kokkos-device-id", "KOKKOS_DEVICE_ID", 0, 1023);
   std::vector<std::string> copies = {"drogue"};
+  if (!checked_number(arguments, "--kokkos-num-threads", "KOKKOS_NUM_THREADS", 1, most_threads) &&
+      threads_by_default() > most_threads)
+    copies.push_back("--kokkos-num-threads=" + std::to_string(most_threads));
   copies.insert(copies.end(), arguments.begin(), arguments.end());
   std::vector<char*> pointers;
   for (std::string& text : copies) pointers.push_back(text.data());

@@ -7,7 +7,8 @@ namespace drogue::device {
 
 /// Initialises Kokkos for the life of the object. `arguments` are `--kokkos-*` options. Global fences around
 /// callbacks are switched off, so that tools and the ledger neither slow a step nor break the capture of a
-/// graph.
+/// graph. Throws std::invalid_argument for a number of threads or a device, given as an option or as a
+/// KOKKOS_* variable, at which Kokkos would abort or crash.
 class Runtime {
  public:
   explicit Runtime(const std::vector<std::string>& arguments);
