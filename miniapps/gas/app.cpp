@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstdio>
 #include <iostream>
+#include <stdexcept>
 
 #include "common/program/mpi_guard.hpp"
 #include "common/program/program.hpp"
@@ -22,6 +23,14 @@ device::Backend choose_backend(const std::string& wanted) {
       wanted == "auto" ? device::fastest_backend() : device::backend_from_name(wanted).value();
   if (const auto reason = device::why_unavailable(backend)) throw Failure(ExitCode::no_backend, *reason);
   return backend;
+}
+
+std::unique_ptr<device::Runtime> start_kokkos(const std::vector<std::string>& arguments) {
+  try {
+    return std::make_unique<device::Runtime>(arguments);
+  } catch (const std::invalid_argument& refused) {
+    throw Failure(ExitCode::usage, refused.what());
+  }
 }
 
 namespace {
@@ -67,13 +76,14 @@ ExitCode run_scene(const MiniAppOptions& options, const std::filesystem::path& f
         file, options.set, options.seed_mode ? SchemeSource::dissertation : SchemeSource::scene);
     const device::Backend backend = choose_backend(options.backend);
     directory.write_scene(print_gas_scene(scene));
-    const device::Runtime runtime(options.kokkos);
+    const auto runtime = start_kokkos(options.kokkos);
     device::start_ledger();
     describe_device(result, scene.parameters, backend);
     Simulation simulation(scene, {backend, options.seed_mode, options.quiet, restart});
     result.exit_code = simulation.run(&directory, result);
     if (result.exit_code == ExitCode::ok) {
-      simulation.verify(result);
+      result.exit_code = simulation.verify(result);
+      if (result.exit_code == ExitCode::interrupted) simulation.write_restart(directory);
       if (const std::string failed = result.failed_check(); !failed.empty())
         throw Failure(ExitCode::verification_failed, failed);
     }

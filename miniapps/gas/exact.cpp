@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "common/program/failure.hpp"
+#include "common/program/progress.hpp"
+#include "common/program/signals.hpp"
 #include "kernels/reference/gas/exact_riemann.hpp"
 #include "miniapps/gas/failure_text.hpp"
 #include "miniapps/gas/fields.hpp"
@@ -48,13 +50,19 @@ ExactSolution interpolated_solution(const Reference& reference) {
 
 }  // namespace
 
-Reference run_reference(const GasScene& scene, device::Backend backend) {
+std::optional<Reference> run_reference(const GasScene& scene, device::Backend backend, bool quiet) {
   GasScene finer = scene;
   finer.parameters = *scene.verify.reference;
   const auto solver = gas::create_solver(backend, finer.parameters);
   upload_initial_state(*solver, finer);
   solver->start();
-  const gas::Stop stop = solver->advance(scene.end_time, -1, 0, {}, {});
+  ProgressLine progress(quiet);
+  const gas::Stop stop = solver->advance(scene.end_time, -1, 0, {}, [&](const gas::Status& status) {
+    progress.update(status.step, status.time, scene.end_time);
+    return !interrupted();
+  });
+  progress.finish();
+  if (stop == gas::Stop::interrupted) return std::nullopt;
   if (stop != gas::Stop::target)
     throw Failure(ExitCode::numerical_failure,
                   "the reference run of " + std::to_string(finer.parameters.cells) +

@@ -3,6 +3,7 @@
 #include <array>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,8 +20,9 @@ struct Reference {
   std::vector<double> x, rho, u, p;
 };
 
-/// Runs the scene with `scene.verify.reference` on `backend`. Throws Failure if that run fails.
-Reference run_reference(const GasScene& scene, device::Backend backend);
+/// Runs the scene with `scene.verify.reference` on `backend`, its progress shown unless `quiet`; nothing if a
+/// signal ended it. Throws Failure if that run fails.
+std::optional<Reference> run_reference(const GasScene& scene, device::Backend backend, bool quiet);
 
 /// What `scene.verify.exact` names; `reference` must be filled for `Exact::reference`.
 ExactSolution exact_solution(const GasScene& scene, double time, const Reference& reference);

@@ -50,8 +50,12 @@ Simulation::Simulation(const GasScene& scene, const RunSettings& settings)
     _initial = state.initial;
   }
   _h2d_s = seconds_since(upload);
+  if (!scene.output.fields.empty() || scene.output.restart_every > 0) {
+    // The first snapshot allocates what all of them use.
+    _solver->begin_snapshot();
+    _solver->finish_snapshot();
+  }
   _setup_s = seconds_since(begin);
-  device::end_warmup();
 }
 
 double Simulation::next_stop(double time) const {
@@ -89,14 +93,18 @@ ExitCode Simulation::run(const run::RunDirectory* directory, run::ResultDocument
     run::ResultDocument& result;
     ~Describe() { simulation.describe(result); }
   } describe_at_end{*this, result};
+  bool warm = false;  // the first step allocates what all of them use
   gas::Stop stop = gas::Stop::target;
   const auto restart_state = [&] { return RestartState{_solver->resume_state(), _initial}; };
   while (now.time < _scene.end_time) {
     const double target = next_stop(now.time);
-    const std::int64_t pause = restart_every > 0 ? (now.step / restart_every + 1) * restart_every : -1;
+    std::int64_t pause = restart_every > 0 ? (now.step / restart_every + 1) * restart_every : -1;
+    if (!warm) pause = now.step + 1;
     const auto begin = Clock::now();
     stop = _solver->advance(target, pause, row_every, rows, poll);
     _compute_s += seconds_since(begin);
+    if (!warm) device::end_warmup();
+    warm = true;
     now = _solver->resume_state();
     if (output && now.time == target && is_output_time(target)) output->write_fields(target, now.step);
     if (output && restart_every > 0 && now.step % restart_every == 0 && stop != gas::Stop::failed)
@@ -116,6 +124,12 @@ ExitCode Simulation::run(const run::RunDirectory* directory, run::ResultDocument
   if (stop == gas::Stop::failed || stop == gas::Stop::max_steps)
     throw Failure(ExitCode::numerical_failure, failure_text(*_solver, _scene.parameters, stop));
   return ExitCode::ok;
+}
+
+void Simulation::write_restart(const run::RunDirectory& directory) {
+  _solver->begin_snapshot();
+  gas_app::write_restart(directory.file("restart.h5"), _scene, *_solver, _solver->finish_snapshot(),
+                         {_solver->resume_state(), _initial});
 }
 
 void Simulation::describe(run::ResultDocument& result) {

@@ -31,8 +31,12 @@ class Simulation {
   /// Steps to the end time. Without `directory` nothing is written.
   ExitCode run(const run::RunDirectory* directory, run::ResultDocument& result);
 
-  /// Errors, checks and reference, as the scene's [verify] asks.
-  void verify(run::ResultDocument& result);
+  /// Errors, checks and reference, as the scene's [verify] asks. Returns `interrupted` if a signal ended the
+  /// reference run, otherwise `ok`, whatever the checks say.
+  ExitCode verify(run::ResultDocument& result);
+
+  /// Writes restart.h5 of the state now.
+  void write_restart(const run::RunDirectory& directory);
 
   /// Largest relative change of mass, momentum and energy that the boundary fluxes do not explain.
   [[nodiscard]] double conservation();

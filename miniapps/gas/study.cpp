@@ -88,17 +88,18 @@ void describe(Row& row, const gas::Parameters& p) {
   if (row.precision != "double") row.label += " " + row.precision;
 }
 
-void run_point(Row& row, const GasScene& scene, device::Backend backend, const ExactSolution& exact) {
+/// Returns `interrupted`, and leaves the row without a result, after a signal.
+ExitCode run_point(Row& row, const GasScene& scene, device::Backend backend, const ExactSolution& exact) {
   // Short runs are repeated: one sample of a few milliseconds says little.
   for (int repeat = 0; repeat < 5 && (repeat == 0 || row.samples.front() < 0.2); ++repeat) {
     Simulation simulation(scene, {backend, false, true, {}});
     run::ResultDocument result;
     try {
-      simulation.run(nullptr, result);
+      if (simulation.run(nullptr, result) == ExitCode::interrupted) return ExitCode::interrupted;
     } catch (const Failure& failure) {
       row.code = failure.code();
       row.message = failure.what();
-      return;
+      return ExitCode::ok;
     }
     row.samples.push_back(result.timing.compute_s);
     if (repeat > 0) continue;
@@ -106,9 +107,21 @@ void run_point(Row& row, const GasScene& scene, device::Backend backend, const E
     row.errors = error_norms(simulation.solver(), scene.parameters, exact);
     row.conservation = simulation.conservation();
   }
+  return ExitCode::ok;
 }
 
 double time_of(const Row& row) { return row.samples.empty() ? NAN : run::median(row.samples); }
+
+std::string line_of(const Row& row) {
+  char text[160];
+  std::snprintf(text, sizeof text, "%-24s %8lld cells  ", row.label.c_str(),
+                static_cast<long long>(row.cells));
+  if (row.code != ExitCode::ok) return text + row.message + '\n';
+  std::string line = text;
+  std::snprintf(text, sizeof text, "%8lld steps %10.3g s  L1 density %.4g\n",
+                static_cast<long long>(row.steps), time_of(row), row.errors.at("l1_density"));
+  return line + text;
+}
 
 std::string csv(const std::vector<Row>& rows, const std::string& backend) {
   std::ostringstream text;
@@ -177,35 +190,44 @@ ExitCode run_study(const MiniAppOptions& options, const std::filesystem::path& f
   const GasScene base = read_gas_scene(file, options.set);
   if (!base.verify.exact)
     throw Failure(ExitCode::usage, "--study needs a scene with [verify] exact, to measure errors against");
+  std::vector<Row> rows = points(axes);
+  std::vector<GasScene> scenes;  // all of them, so that none is found wrong after others have run
+  for (Row& row : rows) {
+    scenes.push_back(read_gas_scene(file, assignments(options, row)));
+    scenes.back().output = {};  // a step shortened to meet an output that is not written would only cost time
+    describe(row, scenes.back().parameters);
+  }
   const device::Backend backend = choose_backend(options.backend);
   const std::filesystem::path out =
       options.out.empty() ? std::filesystem::path("out") / (base.name + "-study") : options.out;
   const run::RunDirectory directory(
       out, options.overwrite ? run::ExistingRun::overwrite : run::ExistingRun::refuse);
   directory.write_scene(print_gas_scene(base));
-  const device::Runtime runtime(options.kokkos);
+  const auto runtime = start_kokkos(options.kokkos);
   device::start_ledger();
   run::ResultDocument facts = run::new_result("drogue-gas", base.name);
   describe_device(facts, base.parameters, backend);
 
-  Reference reference;
-  if (*base.verify.exact == Exact::reference) reference = run_reference(base, backend);
-  const ExactSolution exact = exact_solution(base, base.end_time, reference);
-  std::vector<Row> rows = points(axes);
-  for (Row& row : rows) {
-    const GasScene scene = read_gas_scene(file, assignments(options, row));
-    describe(row, scene.parameters);
-    run_point(row, scene, backend, exact);
-    if (!options.quiet)
-      std::printf("%-24s %8lld cells %8lld steps %10.3g s  L1 density %s\n", row.label.c_str(),
-                  static_cast<long long>(row.cells), static_cast<long long>(row.steps), time_of(row),
-                  row.code == ExitCode::ok ? std::to_string(row.errors.at("l1_density")).c_str()
-                                           : row.message.c_str());
+  std::optional<Reference> reference = Reference{};
+  if (*base.verify.exact == Exact::reference) reference = run_reference(base, backend, options.quiet);
+  if (!reference) return ExitCode::interrupted;
+  const ExactSolution exact = exact_solution(base, base.end_time, *reference);
+  ExitCode code = ExitCode::ok;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    Row& row = rows[i];
+    code = run_point(row, scenes[i], backend, exact);
+    if (code == ExitCode::interrupted) {
+      rows.resize(i);
+      break;
+    }
+    if (!options.quiet) std::cout << line_of(row) << std::flush;
   }
   run::write_file_atomically(directory.file("study.csv"), csv(rows, facts.backend));
-  run::write_file_atomically(directory.file("study.json"), json(rows, facts).dump(2) + "\n");
-  draw(out);
-  return ExitCode::ok;
+  run::write_file_atomically(
+      directory.file("study.json"),
+      json(rows, facts).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+  if (code == ExitCode::ok) draw(out);
+  return code;
 }
 
 }  // namespace drogue::gas_app

@@ -25,12 +25,14 @@ double conservation_error(const gas::HistoryRow& first, const gas::HistoryRow& l
 
 }  // namespace
 
-void Simulation::verify(run::ResultDocument& result) {
+ExitCode Simulation::verify(run::ResultDocument& result) {
   const Verify& wanted = _scene.verify;
   if (wanted.exact) {
-    const Reference reference =
-        *wanted.exact == Exact::reference ? run_reference(_scene, _settings.backend) : Reference{};
-    result.errors = error_norms(*_solver, _scene.parameters, exact_solution(_scene, result.time, reference));
+    std::optional<Reference> reference = Reference{};
+    if (*wanted.exact == Exact::reference)
+      reference = run_reference(_scene, _settings.backend, _settings.quiet);
+    if (!reference) return ExitCode::interrupted;
+    result.errors = error_norms(*_solver, _scene.parameters, exact_solution(_scene, result.time, *reference));
     for (const auto& [name, bar] : wanted.bars) result.add_check(name, result.errors.at(name), bar);
   }
   if (wanted.max_density) {
@@ -41,6 +43,7 @@ void Simulation::verify(run::ResultDocument& result) {
                      wanted.max_density->tolerance);
   }
   if (wanted.conservation) result.add_check("conservation", conservation(), *wanted.conservation);
+  return ExitCode::ok;
 }
 
 double Simulation::conservation() { return conservation_error(_initial, _solver->totals()); }
