@@ -1,0 +1,185 @@
+"""result.json, history.csv, fields.h5 and fields.xdmf hold what they promise, whatever became of the run."""
+
+import math
+import os
+import sys
+import unittest
+import xml.etree.ElementTree
+
+sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
+
+import gas_program
+
+COARSE = ["mesh.cells=50", "verify.l1_density=1.0"]
+KEYS = ["schema", "program", "version", "git", "scene", "backend", "device", "precision", "ranks", "threads", "status",
+        "exit_code", "message", "steps", "time", "dt_min", "dt_max", "errors", "checks", "limiter", "timing", "ledger",
+        "peak_bytes", "provenance"]
+PARTS = {
+    "limiter": ["touches", "cells"],
+    "timing": ["wall_s", "setup_s", "compute_s", "h2d_s", "d2h_s", "io_s"],
+    "ledger": ["kernel_launches", "fences", "device_allocations_after_warmup", "h2d_bytes", "d2h_bytes"],
+    "peak_bytes": ["host", "device"],
+    "provenance": ["compiler", "flags", "kokkos", "cpu", "gpu", "driver", "date"],
+}
+NORMS = {f"{norm}_{quantity}" for norm in ("l1", "l2", "linf") for quantity in ("density", "velocity", "pressure")}
+HISTORY = ["time [s]", "step", "dt [s]", "mass [kg/m^2]", "momentum [kg/(m s)]", "energy [J/m^2]",
+           "mass_outflow [kg/m^2]", "momentum_outflow [kg/(m s)]", "energy_outflow [J/m^2]", "max_speed [m/s]",
+           "limiter_touches", "redone_steps"]
+
+
+class Result(gas_program.GasTest):
+    def ended(self, code, status, *words, sets=COARSE, directory="out/sod", **settings):
+        """Runs sod and returns result.json, which has every field and tells the code and its name."""
+        run = self.expect(code, "sod", "--backend", "serial", *words, sets=sets, **settings)
+        told = self.result(directory)
+        self.assertLessEqual(set(KEYS), set(told))
+        for part, keys in PARTS.items():
+            self.assertLessEqual(set(keys), set(told[part]), part)
+        self.assertEqual(("drogue.result/1", "drogue-gas", "sod", status, code),
+                         tuple(told[key] for key in ("schema", "program", "scene", "status", "exit_code")))
+        self.assertIn(told["message"], run.stderr)
+        self.assertEqual(code == 0, told["message"] == "")
+        self.assertRegex(told["provenance"]["date"], r"^\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ$")
+        self.assertGreater(told["peak_bytes"]["host"], 1 << 20)
+        self.assertEqual(1, told["ranks"])
+        return told
+
+    def test_ok(self):
+        told = self.ended(0, "ok")
+        self.assertEqual(("serial", "double", 1, 0.4), tuple(told[key] for key in
+                                                             ("backend", "precision", "threads", "time")))
+        self.assertEqual(NORMS, set(told["errors"]))
+        self.assertEqual({"l1_density", "conservation"}, {check["name"] for check in told["checks"]})
+        for check in told["checks"]:
+            self.assertEqual({"name", "value", "bar", "passed"}, set(check))
+        self.assertTrue(0.0 < told["dt_min"] <= told["dt_max"] < 0.4)
+        self.assertEqual({"touches": 0, "cells": 0, "redone_steps": 0}, told["limiter"])
+        self.assertTrue(0.0 < told["timing"]["compute_s"] < told["timing"]["wall_s"])
+        # Three stages and what ends a step.
+        self.assertGreaterEqual(told["ledger"]["kernel_launches"], 4 * told["steps"])
+        self.assertEqual(0, told["ledger"]["device_allocations_after_warmup"])
+        for key in ("compiler", "kokkos", "cpu"):
+            self.assertTrue(told["provenance"][key], key)
+        # 50 cells of at most 80 bytes, and 64 MB.
+        self.assertTrue(50 * 24 < told["peak_bytes"]["device"] < 64 << 20, told["peak_bytes"])
+
+    def test_without_verify_nothing_is_verified(self):
+        scene = self.folder / "sod.toml"
+        text = (gas_program.SOURCE / "miniapps/gas/scenes/sod.toml").read_text(encoding="utf-8")
+        scene.write_text(text[:text.index("[verify]")], encoding="utf-8")
+        self.expect(0, scene, "--backend", "serial")
+        told = self.result("out/sod")
+        self.assertEqual(([], {}), (told["checks"], told["errors"]))
+
+    def test_failures(self):
+        self.ended(3, "invalid", sets=["mesh.cells=7"])
+        told = self.ended(4, "numerical-failure", "--overwrite", sets=[*COARSE, "run.max_steps=5"])
+        self.assertEqual(5, told["steps"])
+        self.assertIn("max_steps = 5", told["message"])
+        told = self.ended(5, "verification-failed", "--overwrite", sets=["mesh.cells=50", "verify.l1_density=1e-9"])
+        self.assertEqual([False, True], [check["passed"] for check in told["checks"]])
+        (self.folder / "out/sod/restart.h5").write_bytes(b"no restart file")
+        self.ended(6, "io-error", "--restart", "auto")
+
+    def test_split_precision(self):
+        self.assertEqual("split", self.ended(0, "ok", sets=[*COARSE, 'scheme.precision="split"'])["precision"])
+
+    def test_openmp_counts_its_threads(self):
+        self.expect(0, "sod", "--backend", "openmp", sets=COARSE, environment={"OMP_NUM_THREADS": "2"})
+        told = self.result("out/sod")
+        self.assertEqual(("openmp", 2), (told["backend"], told["threads"]))
+
+    def test_a_step_costs_no_fence_and_no_copy(self):
+        """The ledger of a run of twice the steps shows more launches and nothing else."""
+        told = [self.ended(0, "ok", "--overwrite", sets=[f"mesh.cells={cells}", "verify.l1_density=1.0",
+                                                         gas_program.NO_FIELDS, "output.history_every=0"])["ledger"]
+                for cells in (50, 100)]
+        self.assertGreater(told[1]["kernel_launches"], 1.5 * told[0]["kernel_launches"])
+        self.assertEqual(told[0]["fences"], told[1]["fences"])
+
+    def test_seed_mode_times_its_copies(self):
+        told = self.ended(0, "ok", "--seed-mode")
+        for key in ("h2d_s", "compute_s", "d2h_s"):
+            self.assertGreater(told["timing"][key], 0.0, key)
+
+
+class Files(gas_program.GasTest):
+    def rows(self, directory="out/sod"):
+        lines = (self.folder / directory / "history.csv").read_text().splitlines()
+        self.assertEqual(HISTORY, lines[0].split(","))
+        return [[float(word) for word in line.split(",")] for line in lines[1:]]
+
+    def test_history(self):
+        self.expect(0, "sod", "--backend", "serial", sets=[*COARSE, "output.history_every=1"])
+        rows = self.rows()
+        told = self.result("out/sod")
+        self.assertEqual([float(step) for step in range(told["steps"] + 1)], [row[1] for row in rows])
+        self.assertEqual((0.0, 0.4), (rows[0][0], rows[-1][0]))
+        for before, row in zip(rows, rows[1:]):
+            self.assertAlmostEqual(before[0] + row[2], row[0], places=14)
+        self.assertEqual(told["dt_max"], max(row[2] for row in rows))
+        for row in rows:
+            for total, start, left in zip(row[3:6], rows[0][3:6], row[6:9]):
+                self.assertAlmostEqual(start, total + left, places=13)
+            self.assertTrue(0.0 < row[9] < 10.0)
+
+    def test_history_is_sparse_unless_asked(self):
+        self.expect(0, "sod", "--backend", "serial", sets=[*COARSE, "output.history_every=10"])
+        steps = [row[1] for row in self.rows()]
+        self.assertEqual([0.0, 10.0, 20.0], steps[:3])
+        self.assertEqual(self.result("out/sod")["steps"], steps[-1])
+
+    def test_fields(self):
+        times = [0.0, 0.1, 0.25, 0.4]
+        self.expect(0, "sod", "--backend", "serial", sets=[*COARSE, f"output.times={times}"])
+        file = gas_program.fields(self.folder / "out/sod")
+        groups = file.children("/steps")
+        self.assertEqual(["000000", "000001", "000002", "000003"], groups)
+        self.assertEqual(times, [file.attributes[f"/steps/{group}"]["time"] for group in groups])
+        units = {"rho": "kg/m^3", "u": "m/s", "p": "Pa"}
+        for path in ["/mesh/x", *(f"/steps/{group}/{field}" for group in groups for field in units)]:
+            told = file.attributes[path]
+            self.assertEqual({"units", "centering", "description"}, set(told), path)
+            self.assertEqual(units.get(path.split("/")[-1], "m"), told["units"])
+            self.assertEqual("cell", told["centering"])
+            self.assertEqual(50, len(file.values(path)))
+        centres = file.values("/mesh/x")
+        for i, x in enumerate(centres):
+            self.assertAlmostEqual(-1.0 + (i + 0.5) * 0.04, x, places=14)
+        self.assertEqual([1.0] * 25 + [0.125] * 25, list(file.values("/steps/000000/rho")))
+        self.assertTrue(all(math.isfinite(value) for path in file.datasets for value in file.values(path)))
+
+    def test_only_the_fields_that_are_asked_for(self):
+        self.expect(0, "sod", "--backend", "serial", sets=[*COARSE, 'output.fields=["p"]', "output.times=[0.4]"])
+        file = gas_program.fields(self.folder / "out/sod")
+        self.assertEqual({"/mesh/x", "/steps/000000/p"}, set(file.datasets))
+
+    def test_xdmf(self):
+        self.expect(0, "sod", "--backend", "serial", sets=[*COARSE, "output.times=[0.0, 0.1, 0.4]"])
+        folder = self.folder / "out/sod"
+        root = xml.etree.ElementTree.parse(folder / "fields.xdmf").getroot()
+        self.assertEqual("Xdmf", root.tag)
+        self.assertEqual([0.0, 0.1, 0.4], [float(time.get("Value")) for time in root.iter("Time")])
+        datasets = gas_program.fields(folder).datasets
+        named = set()
+        for item in root.iter("DataItem"):
+            if item.get("Format") == "HDF":
+                file, path = item.text.strip().split(":")
+                self.assertEqual("fields.h5", file)
+                self.assertEqual(8 * math.prod(map(int, item.get("Dimensions").split())), len(datasets[path]))
+                self.assertEqual(("Float", "8"), (item.get("NumberType") or item.get("DataType"), item.get("Precision")))
+                named.add(path)
+        self.assertEqual(set(datasets), named)
+
+    def test_block_size_changes_rounding_at_most(self):
+        finals = []
+        for block in ("32", "64", "256", "512"):
+            self.expect(0, "sod", "--backend", "openmp", "--overwrite", sets=["output.times=[0.4]",
+                                                                             f"tuning.stage.block={block}"])
+            finals.append(gas_program.final_values(self.folder / "out/sod")[1])
+        for values in finals[1:]:
+            self.assertLess(max(abs(a - b) for a, b in zip(finals[0], values)), 1e-13)
+
+
+if __name__ == "__main__":
+    unittest.main()

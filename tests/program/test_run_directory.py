@@ -1,0 +1,168 @@
+"""Where a run writes, what it says meanwhile, and what it does to files that are there."""
+
+import os
+import pty
+import subprocess
+import sys
+import time
+import unittest
+
+sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
+
+import gas_program
+
+COARSE = ["mesh.cells=50", "verify.l1_density=1.0", "output.times=[0.4]"]
+FILES = ["fields.h5", "fields.xdmf", "history.csv", "result.json", "scene.toml"]
+SHIPPED = gas_program.SOURCE / "miniapps/gas/scenes"
+
+
+class Directory(gas_program.GasTest):
+    def coarse(self, *words, code=0, scene="sod", sets=(), **settings):
+        return self.expect(code, scene, "--backend", "serial", *words, sets=[*COARSE, *sets], **settings)
+
+    def names(self, directory="out/sod"):
+        return sorted(path.name for path in (self.folder / directory).iterdir())
+
+    def test_default(self):
+        self.coarse()
+        self.assertEqual(FILES, self.names())
+        self.assertEqual(["out"], [path.name for path in self.folder.iterdir()])
+
+    def test_no_fields_no_history(self):
+        self.expect(0, "sod", "--backend", "serial", sets=[gas_program.NO_FIELDS, "output.history_every=0"])
+        self.assertEqual(["result.json", "scene.toml"], self.names())
+
+    def test_restart_file_if_asked_for(self):
+        self.coarse(sets=["output.restart_every=20"])
+        self.assertEqual(sorted([*FILES, "restart.h5"]), self.names())
+
+    def test_scene_toml_is_what_ran(self):
+        self.coarse()
+        again = self.expect(0, self.folder / "out/sod/scene.toml", "--print-scene").stdout
+        self.assertEqual((self.folder / "out/sod/scene.toml").read_text(), again)
+        self.coarse("--out", "again", scene=self.folder / "out/sod/scene.toml")
+        self.assertEqual(gas_program.fields(self.folder / "out/sod").datasets,
+                         gas_program.fields(self.folder / "again").datasets)
+
+    def test_existing_run_is_refused(self):
+        self.coarse()
+        before = {name: (self.folder / "out/sod" / name).read_bytes() for name in FILES}
+        self.assertIn("--overwrite", self.coarse(code=2).stderr)
+        self.assertEqual(before, {name: (self.folder / "out/sod" / name).read_bytes() for name in FILES})
+
+    def test_overwrite_takes_the_former_run_away_and_nothing_else(self):
+        self.coarse(sets=["output.restart_every=20"])
+        (self.folder / "out/sod/notes.txt").write_text("mine")
+        self.expect(0, "sod", "--backend", "serial", "--overwrite", sets=[gas_program.NO_FIELDS])
+        self.assertEqual(["history.csv", "notes.txt", "result.json", "scene.toml"], self.names())
+
+    def test_directory_with_other_files(self):
+        (self.folder / "there").mkdir()
+        (self.folder / "there/notes.txt").write_text("mine")
+        self.coarse("--out", "there")
+        self.assertEqual(sorted([*FILES, "notes.txt"]), self.names("there"))
+
+    def test_invalid_scene_leaves_its_result_and_is_no_obstacle(self):
+        self.coarse(code=3, sets=["mesh.cells=7"])
+        self.assertEqual(["result.json"], self.names())
+        self.assertEqual(("invalid", 3), (self.result("out/sod")["status"], self.result("out/sod")["exit_code"]))
+        self.coarse()
+
+    def test_paths(self):
+        (self.folder / "real").mkdir()
+        (self.folder / "link").symlink_to(self.folder / "real", target_is_directory=True)
+        spaces = self.folder / "my scenes (1)"
+        spaces.mkdir()
+        scene = spaces / "shock tube é.toml"
+        scene.write_bytes((SHIPPED / "sod.toml").read_bytes())
+        self.coarse("--out", "link/run")
+        self.assertEqual(FILES, self.names("real/run"))
+        self.coarse("--out", "a/b/../c/./d")
+        self.assertEqual(FILES, self.names("a/c/d"))
+        self.coarse("--out", "with space/ü", scene="my scenes (1)/shock tube é.toml")
+        self.assertEqual("shock tube é", self.result("with space/ü")["scene"])
+        self.coarse(scene=scene)
+        self.assertEqual(FILES, self.names("out/shock tube é"))
+
+    def test_from_another_folder(self):
+        elsewhere = self.folder / "elsewhere"
+        elsewhere.mkdir()
+        run = gas_program.run("sod", "--backend", "serial", "--out", ".", sets=COARSE, cwd=elsewhere)
+        self.assertEqual(0, run.returncode, run.stderr)
+        self.assertEqual(FILES, self.names("elsewhere"))
+
+    def test_fields_xdmf_moves_with_its_folder(self):
+        self.coarse()
+        self.assertNotIn(str(self.folder), (self.folder / "out/sod/fields.xdmf").read_text())
+
+    def test_out_that_is_a_file(self):
+        (self.folder / "file").write_text("")
+        self.assertIn("file", self.coarse("--out", "file", code=6).stderr)
+        self.assertIn("file", self.coarse("--out", "file/below", code=6).stderr)
+
+    def test_two_runs_at_once(self):
+        slow = ["mesh.cells=6400", gas_program.NO_FIELDS]
+        line = gas_program.arguments("sod", "--backend", "serial", "--quiet", "--out", "run", sets=slow)
+        first = subprocess.Popen(line, cwd=self.folder, env=gas_program.ENVIRONMENT)
+        while first.poll() is None and not (self.folder / "run/history.csv").exists():
+            time.sleep(0.002)
+        second = self.coarse("--out", "run", "--overwrite", code=6)
+        self.assertIsNone(first.poll(), "the first run ended before the second began")
+        first.terminate()
+        self.assertEqual(130, first.wait())
+        self.assertIn("in use", second.stderr)
+        self.assertEqual("interrupted", self.result("run")["status"])
+
+
+class Words(gas_program.GasTest):
+    def test_summary(self):
+        text = self.expect(0, "sod", "--backend", "serial", sets=COARSE).stdout
+        for word in ("sod on serial", "steps", "l1_density", "bar 1", "passed", "conservation", "out/sod"):
+            self.assertIn(word, text)
+
+    def test_quiet(self):
+        run = self.expect(0, "sod", "--quiet", sets=COARSE)
+        self.assertEqual(("", ""), (run.stdout, run.stderr))
+
+    def test_failure_is_said_even_if_quiet(self):
+        self.expect(3, "sod", "--quiet", sets=["mesh.cells=7"])
+
+    def test_pipe_shows_no_progress(self):
+        run = self.expect(0, "sod", "--backend", "serial", sets=["mesh.cells=800", gas_program.NO_FIELDS])
+        self.assertNotIn("\r", run.stdout + run.stderr)
+        self.assertNotIn("ETA", run.stdout + run.stderr)
+
+    def terminal(self, *words):
+        """What a terminal shows of a run of some tenths of a second."""
+        master, slave = pty.openpty()
+        line = gas_program.arguments("sod", "--backend", "serial", "--out", "run", "--overwrite", *words,
+                                     sets=["mesh.cells=1600", gas_program.NO_FIELDS])
+        process = subprocess.Popen(line, cwd=self.folder, env=gas_program.ENVIRONMENT, stdout=slave, stderr=slave)
+        os.close(slave)
+        shown = b""
+        while True:
+            try:
+                part = os.read(master, 4096)
+            except OSError:  # how Linux says that nobody writes any more
+                break
+            if not part:
+                break
+            shown += part
+        os.close(master)
+        self.assertEqual(0, process.wait(), shown)
+        return shown.decode()
+
+    def test_terminal_shows_one_line(self):
+        shown = self.terminal()
+        self.assertIn("ETA", shown)
+        self.assertIn("steps/s", shown)
+        progress = [line for line in shown.split("\n") if "ETA" in line]
+        self.assertEqual(1, len(progress), "progress stays on one line")
+        self.assertIn("\r", progress[0])
+
+    def test_quiet_terminal(self):
+        self.assertEqual("", self.terminal("--quiet"))
+
+
+if __name__ == "__main__":
+    unittest.main()
