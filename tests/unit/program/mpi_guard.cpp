@@ -68,7 +68,8 @@ TEST(MpiGuard, AJobScriptOfManyTasksIsNoLauncher) {
 }
 
 TEST(MpiGuard, TheNumberOfRanksIsEnough) {
-  const Launcher launcher({{"OMPI_COMM_WORLD_SIZE", "2"}});
+  const std::vector<std::pair<const char*, const char*>> variables = {{"OMPI_COMM_WORLD_SIZE", "2"}};
+  const Launcher launcher(variables);
   EXPECT_EQ(launched_rank().rank, 0);
   EXPECT_EQ(launched_rank().ranks, 2);
 }
