@@ -1,0 +1,166 @@
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <functional>
+#include <string>
+
+#include "kernels/device/runtime.hpp"
+#include "tests/support/gas_state.hpp"
+
+// Every backend and every number of threads gives the same bits, on meshes that keep four threads busy.
+// Kokkos starts once a process, so each run is a child of its own that leaves its bytes in a file.
+
+namespace drogue {
+namespace {
+
+using testing::GasState;
+
+struct Runner {
+  device::Backend backend;
+  int threads;
+};
+
+std::vector<Runner> runners() {
+  std::vector<Runner> all = {{device::Backend::serial, 1}};
+  for (const device::Backend backend : device::compiled_backends()) {
+    if (backend == device::Backend::openmp)
+      for (const int threads : {1, 2, 4}) all.push_back({backend, threads});
+    if (backend == device::Backend::cuda && device::is_present(backend)) all.push_back({backend, 1});
+  }
+  return all;
+}
+
+template <class T>
+void append(std::string& bytes, const T* values, std::size_t count) {
+  bytes.append(reinterpret_cast<const char*>(values),
+               count * sizeof(T));  // NOLINT: bits are what is compared
+}
+
+enum class Count : std::size_t { stop, step, redone, touches, cell };
+
+/// Everything a run leaves: counts, rows, totals, state, what a restart would carry, the limiter's marks.
+std::string run_bytes(const Runner& runner, const gas::Parameters& p, const GasState& state,
+                      std::int64_t steps) {
+  const device::Runtime runtime({"--kokkos-num-threads=" + std::to_string(runner.threads)});
+  const auto solver = testing::started(runner.backend, p, state);
+  std::string rows;
+  const auto keep = [&](const gas::HistoryRow& row) {
+    for (const double value : {row.time, row.dt, row.mass, row.momentum, row.energy, row.max_speed})
+      append(rows, &value, 1);
+    append(rows, row.boundary, 3);
+  };
+  const gas::Stop stop = solver->advance(1e9, steps, 10, keep, {});
+  keep(solver->totals());
+  const gas::Resume r = solver->resume_state();
+  std::string bytes;
+  for (const std::int64_t count : {static_cast<std::int64_t>(stop), r.step, r.redone, r.touches,
+                                   solver->failure().cell, static_cast<std::int64_t>(r.limited_left)})
+    append(bytes, &count, 1);
+  bytes += rows;
+  for (const auto& values : testing::download(*solver, p)) append(bytes, values.data(), values.size());
+  append(bytes, r.speed, 3);
+  append(bytes, r.boundary[0], 6);
+  append(bytes, r.compensation[0], 6);
+  std::vector<std::uint8_t> touched(p.positivity == gas::Positivity::off ? 0
+                                                                         : static_cast<std::size_t>(p.cells));
+  solver->download_touched(0, touched);
+  append(bytes, touched.data(), touched.size());
+  return bytes;
+}
+
+/// The result of `work` in a child process.
+std::string in_child(const std::function<std::string()>& work) {
+  std::string file = ::testing::TempDir() + "drogue_exact_XXXXXX";
+  const int descriptor = mkstemp(file.data());
+  EXPECT_GE(descriptor, 0);
+  close(descriptor);
+  const pid_t child = fork();
+  if (child == 0) {
+    const std::string bytes = work();
+    std::ofstream out(file, std::ios::binary);
+    out << bytes;
+    out.close();
+    _exit(out ? 0 : 1);
+  }
+  int status = 1;
+  EXPECT_EQ(waitpid(child, &status, 0), child);
+  EXPECT_EQ(status, 0);
+  std::ifstream in(file, std::ios::binary);
+  std::string bytes{std::istreambuf_iterator<char>(in), {}};
+  unlink(file.c_str());
+  return bytes;
+}
+
+std::int64_t count(const std::string& bytes, Count which) {
+  std::int64_t value = -1;
+  bytes.copy(reinterpret_cast<char*>(&value), sizeof(value), static_cast<std::size_t>(which) * sizeof(value));
+  return value;
+}
+
+/// Runs on everything there is; returns what the serial backend left.
+std::string expect_same_bits(const gas::Parameters& p, const GasState& state, std::int64_t steps) {
+  std::string serial;
+  for (const Runner& runner : runners()) {
+    const std::string bytes = in_child([&] { return run_bytes(runner, p, state, steps); });
+    EXPECT_GT(bytes.size(), static_cast<std::size_t>(3 * 8 * p.cells));
+    if (serial.empty()) serial = bytes;
+    EXPECT_TRUE(bytes == serial) << device::name(runner.backend) << " with " << runner.threads << " threads";
+  }
+  return serial;
+}
+
+gas::Parameters parameters(std::int64_t cells, gas::Weno weno, gas::Splitting splitting,
+                           gas::Positivity positivity) {
+  gas::Parameters p;
+  p.cells = cells;
+  p.weno = weno;
+  p.splitting = splitting;
+  p.positivity = positivity;
+  return p;
+}
+
+TEST(GasExact, ShockTube) {
+  const auto p = parameters(10000, gas::Weno::z, gas::Splitting::lf_stencil, gas::Positivity::automatic);
+  const std::string serial =
+      expect_same_bits(p, testing::riemann_state(p, 0.0, {1, 0, 1}, {0.125, 0, 0.1}), 60);
+  EXPECT_EQ(count(serial, Count::step), 60);
+}
+
+TEST(GasExact, GlobalSpeedsAndLimiter) {
+  auto p = parameters(8199, gas::Weno::js, gas::Splitting::lf_global, gas::Positivity::on);
+  p.mean = gas::Mean::roe;
+  p.time_scheme = gas::TimeScheme::ssprk43;
+  const std::string serial = expect_same_bits(p, testing::random_state(p, 1, testing::extreme), 20);
+  EXPECT_GT(count(serial, Count::touches), 0);
+}
+
+TEST(GasExact, LimiterOnDemandAndRedoneSteps) {
+  auto p = parameters(6000, gas::Weno::teno5, gas::Splitting::lf_single, gas::Positivity::automatic);
+  p.left = p.right = gas::Boundary::periodic;
+  p.mean = gas::Mean::conserved;
+  const std::string serial = expect_same_bits(p, testing::random_state(p, 2, testing::extreme), 40);
+  EXPECT_GT(count(serial, Count::redone), 0);
+  EXPECT_GT(count(serial, Count::touches), 0);
+}
+
+TEST(GasExact, SplitPrecision) {
+  auto p = parameters(5001, gas::Weno::m, gas::Splitting::lf_global, gas::Positivity::automatic);
+  p.precision = gas::Precision::split;
+  p.left = gas::Boundary::reflecting;
+  const std::string serial = expect_same_bits(p, testing::random_state(p, 3, testing::rough), 40);
+  EXPECT_EQ(count(serial, Count::step), 40);
+}
+
+TEST(GasExact, FailedRunFailsInTheSameCell) {
+  auto p = parameters(7000, gas::Weno::z, gas::Splitting::lf_stencil, gas::Positivity::off);
+  p.weno_power = 2;
+  p.cfl = 3.0;
+  const std::string serial = expect_same_bits(p, testing::random_state(p, 4, testing::extreme), 1000);
+  EXPECT_EQ(count(serial, Count::stop), static_cast<std::int64_t>(gas::Stop::failed));
+  EXPECT_GE(count(serial, Count::cell), 0);
+}
+
+}  // namespace
+}  // namespace drogue
