@@ -10,8 +10,8 @@ namespace drogue::reference {
 [[nodiscard]] std::array<double, 3> smoothness(const std::array<double, 5>& f);
 
 /// Nonlinear weights for the left-biased value at i+1/2; they sum to 1 and tend to (1, 6, 3)/10 in smooth
-/// flow. js: eps 1e-6; m: the same formula with eps 1e-40, mapped (Henrick, Aslam and Powers 2005); z: power 1
-/// or 2, eps 1e-40 (Borges et al. 2008); teno5: cut-off 1e-5, eps 1e-40 (Fu, Hu and Adams 2016).
+/// flow. js: eps 1e-6; m: the same formula with eps 1e-40, mapped (Henrick, Aslam and Powers 2005); z: power
+/// 1 or 2, eps 1e-40 (Borges et al. 2008); teno5: cut-off 1e-5, eps 1e-40 (Fu, Hu and Adams 2016).
 [[nodiscard]] std::array<double, 3> weno_weights(const std::array<double, 5>& f, gas::Weno scheme, int power);
 
 /// Left-biased value at i+1/2 from f[i-2..i+2].
