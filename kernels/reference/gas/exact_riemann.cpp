@@ -112,7 +112,7 @@ Primitive ExactRiemann::sample(double speed) const {
     const bool beyond_right = _right.rho == 0.0 || speed <= right_front;
     if (beyond_left && beyond_right) return {0.0, speed, 0.0};
     if (!beyond_left) return sample_side(_left, speed);
-  } else if (speed <= _u) {
+  } else if (speed < _u) {  // at the contact itself the right state, which the initial state has at x0
     return sample_side(_left, speed);
   }
   // The right side is the left side of the mirror image.
