@@ -160,4 +160,5 @@ BAD_SETS = [
     (["initial.riemann.left.rho=-1"], ["> 0"]),
     (["initial.expression={rho=\"x\",p=\"1\"}", "verify={}"], ["rho = -0.99", "cell 0"]),
     (["tuning.kernel.block=128"], ["tuning.kernel"]),
+    (["tuning.stage.block=100"], ["tuning.stage.block = 100", "multiple of 32"]),
 ]
