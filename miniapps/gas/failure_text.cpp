@@ -1,6 +1,7 @@
 #include "miniapps/gas/failure_text.hpp"
 
 #include <sstream>
+#include <string_view>
 
 #include "miniapps/gas/scene.hpp"
 
@@ -33,7 +34,9 @@ std::string failure_text(gas::Solver& solver, const gas::Parameters& parameters,
   if (failed.cell >= 0)
     text << " in cell " << failed.cell << " (x = " << cell_centre(parameters, failed.cell) << " m)";
   text << " at step " << failed.step << ", t = " << failed.time << " s";
-  if (parameters.positivity == gas::Positivity::off && failed.quantity != gas::Quantity::time_step)
+  const bool has_limiter = std::string_view(solver.driver()) != "seed";
+  if (has_limiter && parameters.positivity == gas::Positivity::off &&
+      failed.quantity != gas::Quantity::time_step)
     text << "; scheme.positivity = \"auto\" may save the run";
   return text.str();
 }

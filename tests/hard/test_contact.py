@@ -31,6 +31,10 @@ class StationaryContact(gas_program.GasTest):
                 with self.subTest(scheme=scheme, limiter=limiter, backend=backend):
                     self.assert_kept(backend, f'scheme.positivity="{limiter}"', *hard_cases.scheme_sets(scheme))
 
+    def test_contact_at_a_cell_centre(self):
+        """An odd mesh: initial state and exact solution agree on which side x0 belongs to."""
+        self.assert_kept("serial", "mesh.cells=101")
+
     def test_other_choices(self):
         choices = [('scheme.weno="m"',), ('scheme.time="ssprk43"', "scheme.cfl=1.2")]
         choices.append(('scheme.splitting="lf-global"',))  # lf-single smears it: alpha of the contact's field is c

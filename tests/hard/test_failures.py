@@ -66,6 +66,10 @@ class Failures(gas_program.GasTest):
         message = self.fail(row, "serial")
         self.assertEqual(message, self.fail(row, "serial", "--restart", "auto"))
 
+    def test_seed_mode_promises_no_limiter(self):
+        message = self.expect(4, "sedov", "--seed-mode", "--backend", "serial", "--quiet").stderr
+        self.assertRegex(message, "density is not positive in cell 99 .* at step 1, t = 0 s$")
+
     def test_auto_saves(self):
         for row in ROWS:
             with self.subTest(hard_cases.label(row)):
