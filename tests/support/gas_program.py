@@ -28,7 +28,7 @@ def arguments(scene, *words, sets=()):
     return line
 
 
-def run(scene, *words, sets=(), cwd=None, timeout=600, environment=None):
+def run(scene, *words, sets=(), cwd=None, timeout=3600, environment=None):
     """Runs to the end; stdout and stderr are text."""
     return subprocess.run(arguments(scene, *words, sets=sets), cwd=cwd, capture_output=True, text=True, errors="replace",
                           timeout=timeout, check=False, env={**ENVIRONMENT, **(environment or {})})

@@ -1,0 +1,140 @@
+"""Settings nobody thought of: a run ends well or in a clear failure, and what it keeps is conserved and finite."""
+
+import math
+import os
+import random
+import sys
+import unittest
+
+sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
+
+import gas_program
+
+LENIENT = {scene: ["verify.l1_density=1e9"] for scene in gas_program.SCENES}
+LENIENT["sedov"] = ["verify.max_density.tolerance=1e9"]
+for with_reference in ("blast", "shu-osher"):
+    LENIENT[with_reference] = ["verify.l1_density=1e9", "verify.reference.cells=301"]
+
+
+def riemann(left, right):
+    states = [f"{{ rho = {rho!r}, u = {u!r}, p = {p!r} }}" for rho, u, p in (left, right)]
+    return f"initial.riemann={{ x0 = 0.0, left = {states[0]}, right = {states[1]} }}"
+
+
+class Hostile(gas_program.GasTest):
+    def try_run(self, codes, scene, *sets, backend="serial"):
+        """Runs without fields; returns the exit code and what result.json tells."""
+        run = self.start(scene, "--quiet", "--overwrite", "--out", "run", "--backend", backend,
+                         sets=[gas_program.NO_FIELDS, *LENIENT[scene], *sets])
+        self.assertIn(run.returncode, codes, f"{run.args}\n{run.stderr}")
+        self.assertEqual(0 if run.returncode == 0 else 1, len(run.stderr.splitlines()))
+        told = self.result("run")
+        if run.returncode == 0:
+            for value in [*told["errors"].values(), *(check["value"] for check in told["checks"])]:
+                self.assertTrue(value is not None and math.isfinite(value), f"{run.args}\n{told}")
+            conservation = next(check for check in told["checks"] if check["name"] == "conservation")
+            self.assertLess(conservation["value"], 1e-11)
+        return run.returncode, told
+
+    def test_smallest_meshes(self):
+        for scene in gas_program.SCENES:
+            for cells in (8, 9):
+                with self.subTest(scene=scene, cells=cells):
+                    self.try_run({0}, scene, f"mesh.cells={cells}")
+
+    def test_random_settings(self):
+        choose = random.Random(4).choice
+        for number in range(60):
+            scene = choose([name for name in gas_program.SCENES if name != "sedov"])
+            limiter = choose(("off", "on", "auto"))
+            sets = [f"mesh.cells={choose((8, 11, 31, 32, 33, 64, 127, 128, 255, 256, 257, 300))}",
+                    f'scheme.weno="{choose(("js", "z", "m", "teno5"))}"',
+                    f'scheme.splitting="{choose(("lf-global", "lf-single", "lf-stencil"))}"',
+                    f'scheme.time="{choose(("ssprk3", "ssprk43"))}"',
+                    f'scheme.mean="{choose(("arithmetic", "conserved", "roe"))}"', f'scheme.positivity="{limiter}"',
+                    f'scheme.precision="{choose(("double", "split"))}"', f"output.history_every={choose((0, 1, 7))}",
+                    f"tuning.stage.block={choose((32, 64, 96, 512))}"]
+            if scene != "entropy-wave":
+                sets += [f"scheme.cfl={choose((0.1, 0.4, 0.6, 1.2, 2.0))}", f"scheme.ramp_steps={choose((0, 1, 20))}",
+                         f'boundary.left="{choose(("outflow", "reflecting"))}"',
+                         f'boundary.right="{choose(("outflow", "reflecting"))}"']
+            with self.subTest(number=number, scene=scene, sets=sets):
+                self.try_run({0, 4} if limiter == "off" else {0}, scene, *sets, backend=choose(("serial", "openmp")))
+
+    def test_gammas(self):
+        for gamma in (1.000001, 1.0001, 1.01, 3, 100):
+            with self.subTest(gamma):
+                self.try_run({0}, "lax", f"gas.gamma={gamma}")
+
+    def test_units(self):
+        """Air, thin and dense, slow and fast."""
+        air, vacuum = (1.2, 0.0, 1013250.0), (1.2e-3, 0.0, 101.325)
+        for left, right, end in ((air, (1.2, 0.0, 101325.0), 1e-3), (air, vacuum, 1e-4), (vacuum, air, 1e-4),
+                                 ((1e-10, 0.0, 1e-10), (1e-11, 0.0, 1e-11), 0.4),
+                                 ((1e10, 0.0, 1e15), (1e9, 0.0, 1e14), 1e-4),
+                                 ((1.0, 1e6, 1.0), (1.0, 1e6, 1.0), 1e-7), ((1.0, -1e3, 1.0), (1.0, 1e3, 1.0), 1e-4),
+                                 ((1.0, 1e3, 1.0), (1.0, -1e3, 1.0), 1e-4)):
+            with self.subTest(left=left, right=right):
+                self.try_run({0}, "sod", riemann(left, right), f"run.end_time={end!r}")
+
+    def test_domains(self):
+        for length in (1e-8, 1e8):
+            self.try_run({0}, "sod", f"mesh.domain=[{-length!r}, {length!r}]", f"run.end_time={0.4 * length!r}")
+
+    def test_beyond_what_numbers_hold(self):
+        """A clear failure in the first step, not a wrong answer."""
+        for left, right in (((1.0, 0.0, 1e300), (1.0, 0.0, 1e299)), ((1.0, 0.0, 1e200), (1.0, 0.0, 1e-200)),
+                            ((1.0, 1e150, 1.0), (1.0, -1e150, 1.0))):
+            with self.subTest(left=left, right=right):
+                told = self.try_run({4}, "sod", riemann(left, right))[1]
+                self.assertIn("not finite in cell", told["message"])
+                self.assertEqual(0, told["steps"])
+
+    def test_shortest_and_longest_runs(self):
+        for end in ("5e-324", "1e-300", "1e-17"):
+            self.assertEqual((1, float(end)), tuple(self.try_run({0}, "sod", f"run.end_time={end}")[1][key]
+                                                    for key in ("steps", "time")))
+        told = self.try_run({4}, "sod", "run.end_time=1e300", "run.max_steps=50")[1]
+        self.assertIn("max_steps = 50 reached", told["message"])
+
+    def test_exactly_enough_steps(self):
+        steps = self.try_run({0}, "sod")[1]["steps"]
+        self.try_run({0}, "sod", f"run.max_steps={steps}")
+        self.try_run({4}, "sod", f"run.max_steps={steps - 1}")
+
+    def test_a_step_too_long(self):
+        for step in ("0.01", "0.1", "1e10"):
+            with self.subTest(step):
+                told = self.try_run({4}, "sod", f"scheme.fixed_dt={step}", 'scheme.positivity="off"')[1]
+                self.assertRegex(told["message"], r"(pressure|density) is not positive in cell \d+ \(x = .* m\) at step ")
+        self.try_run({0}, "sod", "scheme.fixed_dt=0.1", 'scheme.positivity="auto"')
+
+    def test_long_reflections(self):
+        for left, right in (("reflecting", "outflow"), ("outflow", "reflecting"), ("reflecting", "reflecting"),
+                            ("periodic", "periodic")):
+            with self.subTest(left=left, right=right):
+                self.try_run({0}, "toro-4", f'boundary.left="{left}"', f'boundary.right="{right}"', "run.end_time=0.3",
+                             "mesh.cells=100")
+
+
+class DenseOutput(gas_program.GasTest):
+    def test_every_step_everything(self):
+        times = [0.4 * i / 100 for i in range(101)]
+        self.expect(0, "sod", "--backend", "serial", "--quiet", "--out", "run", sets=[
+            "mesh.cells=20", "verify.l1_density=1.0", "output.history_every=1", "output.restart_every=1",
+            f"output.times={times}"])
+        file = gas_program.fields(self.folder / "run")
+        groups = file.children("/steps")
+        self.assertEqual(times, [file.attributes[f"/steps/{group}"]["time"] for group in groups])
+        self.assertGreaterEqual(self.result("run")["steps"], 100)
+
+    def test_outputs_a_rounding_apart(self):
+        times = [0.0, 0.2, math.nextafter(0.2, 1.0), math.nextafter(0.4, 0.0), 0.4]
+        self.expect(0, "sod", "--backend", "serial", "--quiet", "--out", "run", sets=[
+            "mesh.cells=50", "verify.l1_density=1.0", f"output.times={times}"])
+        file = gas_program.fields(self.folder / "run")
+        self.assertEqual(times, [file.attributes[f"/steps/{group}"]["time"] for group in file.children("/steps")])
+
+
+if __name__ == "__main__":
+    unittest.main()
