@@ -5,7 +5,7 @@ namespace drogue::gas_app {
 std::filesystem::path scene_folder() {
   std::error_code error;
   const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", error);
-  const std::filesystem::path installed = program.parent_path().parent_path() / "share/drogue/scenes/gas";
+  std::filesystem::path installed = program.parent_path().parent_path() / "share/drogue/scenes/gas";
   if (!error && std::filesystem::is_directory(installed, error)) return installed;
   return DROGUE_GAS_SCENES;
 }

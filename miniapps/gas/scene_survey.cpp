@@ -55,7 +55,7 @@ Survey survey_initial_state(const GasScene& scene) {
   const InitialState state(scene);
   std::vector<Survey> seen(static_cast<std::size_t>(parts));
   std::vector<std::thread> threads;
-  const auto work = [&](InitialState own, std::int64_t part) {
+  const auto work = [&](const InitialState& own, std::int64_t part) {
     const std::int64_t end = (part + 1) * cells / parts;
     seen[static_cast<std::size_t>(part)] = survey_cells(own, scene.parameters, part * cells / parts, end);
   };

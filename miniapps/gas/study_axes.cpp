@@ -61,7 +61,7 @@ StudyAxes parse_study(const std::string& text) {
     const std::string key = axis.substr(0, equals);
     require_one_of(key, {"meshes", "schemes", "splittings", "times", "precisions"});
     if (equals == std::string::npos || equals + 1 == axis.size())
-      refuse("'" + key + "' needs values: " + key + "=...");
+      refuse("an axis needs values: " + key + "=...");
     const std::vector<std::string> values = split(axis.substr(equals + 1), ':');
     if (key == "meshes")
       axes.meshes = meshes(values);
