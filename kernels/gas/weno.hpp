@@ -43,10 +43,18 @@ KOKKOS_INLINE_FUNCTION Indicators<R> weight_numerators(Indicators<R> is, R epsil
     const R tau = device::absolute(is.b0 - is.b2);
     return {(b0 + tau) * b12, S(6) * ((b1 + tau) * b02), S(3) * ((b2 + tau) * b01)};
   } else if constexpr (scheme == Reconstruction::z2) {
+    // d_k (1 + (tau / (b_k + eps))^2). Six indicators leave the range of a double where a cold gas meets a
+    // hot one (Sedov: differences of 1e25), so the squares are taken of what is at most one; in single
+    // precision `correction` has seen to that.
     const R tau = device::absolute(is.b0 - is.b2);
-    const R tau2 = tau * tau;
-    return {(b0 * b0 + tau2) * (b12 * b12), S(6) * ((b1 * b1 + tau2) * (b02 * b02)),
-            S(3) * ((b2 * b2 + tau2) * (b01 * b01))};
+    R all = b0 * b12, q0 = tau * b12, q1 = tau * b02, q2 = tau * b01;
+    if constexpr (!std::is_same_v<S, float>) {
+      const R inverse =
+          device::reciprocal(device::maximum(device::maximum(all, q0), device::maximum(q1, q2)));
+      all = all * inverse, q0 = q0 * inverse, q1 = q1 * inverse, q2 = q2 * inverse;
+    }
+    const R all2 = all * all;
+    return {all2 + q0 * q0, S(6) * (all2 + q1 * q1), S(3) * (all2 + q2 * q2)};
   } else {
     // Fu, Hu and Adams 2016, eq. (14)-(17). The sixth power of the ratio overflows for smooth data (eps is
     // tiny), so the ratios are divided by the largest of them first; the cut-off compares g_k with their sum.
