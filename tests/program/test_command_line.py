@@ -2,6 +2,8 @@
 
 import os
 import re
+import shutil
+import subprocess
 import sys
 import unittest
 
@@ -10,6 +12,18 @@ sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 import gas_program
 
 COARSE = ["mesh.cells=50", "verify.l1_density=1.0", gas_program.NO_FIELDS]
+
+# A Kokkos tool that counts.
+TOOL = """
+#include <stdint.h>
+#include <stdio.h>
+static long count = 0;
+static void begin(uint64_t* id) { *id = (uint64_t)++count; }
+void kokkosp_begin_parallel_for(const char* name, uint32_t device, uint64_t* id) { begin(id); }
+void kokkosp_begin_parallel_reduce(const char* name, uint32_t device, uint64_t* id) { begin(id); }
+void kokkosp_begin_parallel_scan(const char* name, uint32_t device, uint64_t* id) { begin(id); }
+void kokkosp_finalize_library(void) { printf("tool saw %ld kernels\\n", count); }
+"""
 
 
 class Information(gas_program.GasTest):
@@ -142,6 +156,19 @@ class Kokkos(gas_program.GasTest):
             with self.subTest(number):
                 self.assertIn(number, self.coarse(2, f"--kokkos-num-threads={number}").stderr)
                 self.assertIn(number, self.coarse(2, environment={"KOKKOS_NUM_THREADS": number}).stderr)
+
+    def test_tools_see_every_kernel(self):
+        """The ledger's own callbacks leave a tool its own."""
+        compiler = shutil.which("cc") or shutil.which("gcc")
+        if compiler is None:
+            self.skipTest("no C compiler to make a tool with")
+        (self.folder / "tool.c").write_text(TOOL)
+        subprocess.run([compiler, "-shared", "-fPIC", "-o", "tool.so", "tool.c"], cwd=self.folder, check=True)
+        text = self.coarse(0, "--backend", "serial", environment={"KOKKOS_TOOLS_LIBS": str(self.folder / "tool.so")}).stdout
+        seen = int(re.fullmatch(r"tool saw (\d+) kernels\n", text)[1])
+        told = self.result("run")
+        self.assertGreaterEqual(seen, 4 * told["steps"])
+        self.assertGreaterEqual(seen, told["ledger"]["kernel_launches"])
 
     def test_a_tool_that_is_missing_is_harmless(self):
         run = self.start("sod", "--quiet", "--out", "run", sets=COARSE, environment={"KOKKOS_TOOLS_LIBS": "/no/tool.so"})

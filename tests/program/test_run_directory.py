@@ -77,7 +77,7 @@ class Directory(gas_program.GasTest):
         scene.write_bytes((SHIPPED / "sod.toml").read_bytes())
         self.coarse("--out", "link/run")
         self.assertEqual(FILES, self.names("real/run"))
-        self.coarse("--out", "a/b/../c/./d")
+        self.coarse("--out", "a/b/../c/./d/")
         self.assertEqual(FILES, self.names("a/c/d"))
         self.coarse("--out", "with space/ü", scene="my scenes (1)/shock tube é.toml")
         self.assertEqual("shock tube é", self.result("with space/ü")["scene"])
