@@ -6,7 +6,6 @@ import unittest
 
 sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
-import gas_program
 import reference_bars
 
 
