@@ -6,11 +6,11 @@
 namespace drogue::gas {
 
 /// Eigenvectors of dF/dU at a face: right ones R = (1, u-c, H-uc), (1, u, u^2/2), (1, u+c, H+uc); left ones
-/// scaled by two, which leaves eight operations for a projection.
+/// scaled so that a projection is eight operations.
 template <class R>
 struct Eigensystem {
-  R u, c, enthalpy, kinetic;  ///< kinetic = u^2/2
-  R inverse_c, b1, b2;        ///< b1 = (gamma-1)/c^2, b2 = b1 u^2/2
+  R u, c, enthalpy, kinetic;        ///< kinetic = u^2/2
+  R inverse_c, mach, b1, b1_u, b2;  ///< mach = u/c, b1 = (gamma-1)/c^2, b1_u = b1 u, b2 = b1 u^2/2
 };
 
 template <class R>
@@ -29,7 +29,8 @@ KOKKOS_INLINE_FUNCTION Eigensystem<N> eigensystem(S gamma, R u, R enthalpy) {
   const N inverse_c = device::reciprocal(c);
   const N b1 = F(gamma - S(1)) * (inverse_c * inverse_c);
   const N n_kinetic = To::from(kinetic);
-  return {To::from(u), c, To::from(enthalpy), n_kinetic, inverse_c, b1, b1 * n_kinetic};
+  const N n_u = To::from(u);
+  return {n_u, c, To::from(enthalpy), n_kinetic, inverse_c, n_u * inverse_c, b1, b1 * n_u, b1 * n_kinetic};
 }
 
 /// A cell beside a face, as the means need it.
@@ -57,13 +58,12 @@ KOKKOS_INLINE_FUNCTION Eigensystem<N> face_eigensystem(Mean mean, S gamma, const
                            (wl * left.enthalpy + wr * right.enthalpy) * inverse);
 }
 
-/// 2 L d for a difference d = (drho, dm, dE) of U or F.
+/// L d for a difference d = (drho, dm, dE) of U or F: twice the acoustic components and once the entropy one.
 template <class R>
 KOKKOS_INLINE_FUNCTION Characteristic<R> project(const Eigensystem<R>& e, R d_rho, R d_m, R d_energy) {
-  using S = typename device::Access<R>::Element;
-  const R s = e.b2 * d_rho - e.b1 * (e.u * d_m) + e.b1 * d_energy;
-  const R t = (e.u * d_rho - d_m) * e.inverse_c;
-  return {s + t, S(2) * (d_rho - s), s - t};
+  const R s = e.b2 * d_rho - e.b1_u * d_m + e.b1 * d_energy;
+  const R t = e.mach * d_rho - e.inverse_c * d_m;
+  return {s + t, d_rho - s, s - t};
 }
 
 }  // namespace drogue::gas

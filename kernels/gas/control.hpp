@@ -50,23 +50,28 @@ inline StageTable stage_table(TimeScheme scheme) {
            {0.0, 1.0, 0.5, 0.5, 1, 2}}};
 }
 
-/// What a step needs beside the fields. It lives on the device, is written by kernels alone, and makes every
-/// decision that would otherwise need the host: the next dt, whether a step stands, when to stop.
-struct Control {
-  Resume resume;            ///< all that a restart must bring back
-  double dt;                ///< of the attempt under way
+/// The step under way, and where the stepping is to stop.
+struct Attempt {
+  double dt;                ///< s
   double target;            ///< s, the next time to stop at
   std::int64_t pause_step;  ///< the next step to stop at for the host
   std::int64_t row_step;    ///< the next step to stop at for a row of the history
-  int reaches_target;       ///< the attempt ends at `target`
+  int reaches_target;       ///< this attempt ends at `target`
   Stop stop;
+  std::int64_t rows;      ///< history rows written
+  std::int64_t launches;  ///< kernels that have reported to the host
+};
+
+/// What a step needs beside the fields. It lives on the device, is written by kernels alone, and makes every
+/// decision that would otherwise need the host: the next dt, whether a step stands, when to stop.
+struct Control {
+  Resume resume;  ///< all that a restart must bring back
+  Attempt attempt;
   std::uint64_t stage_speed[max_stages + 1][3];  ///< bits of max |u-c|, |u|, |u+c| after each stage
   double boundary_flux[max_stages][2][3];
   std::uint64_t bad;     ///< least `inadmissible` of this attempt
   std::int64_t touches;  ///< faces limited in this attempt
   Failed failed;
-  std::int64_t rows;      ///< history rows written
-  std::int64_t launches;  ///< kernels that have reported to the host
 };
 
 /// Constants of a run that the step's kernels read.

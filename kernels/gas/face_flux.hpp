@@ -27,12 +27,14 @@ KOKKOS_INLINE_FUNCTION R central_flux(R f_1, R f0, R f1, R f2) {
 
 /// One field's correction from both sides: the right-going part sees the first four of the five differences,
 /// the left-going part the last four in reverse.
-template <Reconstruction scheme, class R>
+template <Reconstruction scheme, int scale, class R>
 KOKKOS_INLINE_FUNCTION R field_correction(const R (&df)[5], const R (&du)[5], R alpha) {
-  return correction<scheme, R>(df[0] + alpha * du[0], df[1] + alpha * du[1], df[2] + alpha * du[2],
-                               df[3] + alpha * du[3]) -
-         correction<scheme, R>(df[4] - alpha * du[4], df[3] - alpha * du[3], df[2] - alpha * du[2],
-                               df[1] - alpha * du[1]);
+  constexpr auto unscale = static_cast<typename device::Access<R>::Element>(1.0 / scale);
+  const R right_going = correction<scheme, scale, R>(df[0] + alpha * du[0], df[1] + alpha * du[1],
+                                                     df[2] + alpha * du[2], df[3] + alpha * du[3]);
+  const R left_going = correction<scheme, scale, R>(df[4] - alpha * du[4], df[3] - alpha * du[3],
+                                                    df[2] - alpha * du[2], df[1] - alpha * du[1]);
+  return unscale * (right_going - left_going);
 }
 
 /// Characteristic finite-difference WENO5 flux at a face in difference form (gas.md section 2; Jiang and Shu
@@ -42,7 +44,6 @@ KOKKOS_INLINE_FUNCTION R field_correction(const R (&df)[5], const R (&du)[5], R 
 template <Reconstruction scheme, class N, class R>
 KOKKOS_INLINE_FUNCTION Triple<R> weno5_face(const Stencil<R>& s, const Eigensystem<N>& e,
                                             const Speeds<N>& alpha) {
-  using S = typename device::Access<N>::Element;
   using To = device::Convert<N>;
   N slow_u[5], slow_f[5], entropy_u[5], entropy_f[5], fast_u[5], fast_f[5];
   for (int k = 0; k < 5; ++k) {
@@ -55,10 +56,9 @@ KOKKOS_INLINE_FUNCTION Triple<R> weno5_face(const Stencil<R>& s, const Eigensyst
     slow_u[k] = u.slow, entropy_u[k] = u.entropy, fast_u[k] = u.fast;
     slow_f[k] = f.slow, entropy_f[k] = f.entropy, fast_f[k] = f.fast;
   }
-  constexpr S unscale = S(1.0 / difference_scale);
-  const N k1 = unscale * field_correction<scheme>(slow_f, slow_u, alpha.slow);
-  const N k2 = unscale * field_correction<scheme>(entropy_f, entropy_u, alpha.entropy);
-  const N k3 = unscale * field_correction<scheme>(fast_f, fast_u, alpha.fast);
+  const N k1 = field_correction<scheme, acoustic_scale>(slow_f, slow_u, alpha.slow);
+  const N k2 = field_correction<scheme, entropy_scale>(entropy_f, entropy_u, alpha.entropy);
+  const N k3 = field_correction<scheme, acoustic_scale>(fast_f, fast_u, alpha.fast);
   const N sum = k1 + k3, difference = e.c * (k3 - k1);
   using Back = device::Convert<R>;
   const Triple<R>* u = s.state;

@@ -5,56 +5,55 @@
 
 namespace drogue::gas {
 
+// These functions take copies of what they decide from: loads of a copy are in flight together, where a chain
+// of decisions in global memory would wait for each.
+
 /// Sets dt of the next attempt from the fastest signal of U^n: the CFL condition with its start-up ramp (or
 /// the fixed step), less what failed attempts have taken off, cut to meet the target time.
-KOKKOS_INLINE_FUNCTION void choose_dt(Control& c, const StepConstants& k) {
-  const Resume& r = c.resume;
+KOKKOS_INLINE_FUNCTION void choose_dt(const Progress& now, Attempt& next, const StepConstants& k) {
   double dt = k.fixed_dt;
   if (!(dt > 0.0)) {
-    const double ramp = r.step < k.ramp_steps
-                            ? 0.1 + 0.9 * static_cast<double>(r.step) / static_cast<double>(k.ramp_steps)
+    const double ramp = now.step < k.ramp_steps
+                            ? 0.1 + 0.9 * static_cast<double>(now.step) / static_cast<double>(k.ramp_steps)
                             : 1.0;
-    dt = ramp * (r.limited ? k.limited_cfl : k.cfl) * k.dx / max_speed(r.speed);
+    dt = ramp * (now.limited ? k.limited_cfl : k.cfl) * k.dx / max_speed(now.speed);
   }
-  dt *= r.dt_scale;
-  const double left = c.target - r.time;
-  c.reaches_target = dt >= left * (1.0 - 1e-12);
-  c.dt = c.reaches_target ? left : dt;
+  dt *= now.dt_scale;
+  const double left = next.target - now.time;
+  next.reaches_target = dt >= left * (1.0 - 1e-12);
+  next.dt = next.reaches_target ? left : dt;
 }
 
-/// Empties what the stages of the next attempt will add to.
-KOKKOS_INLINE_FUNCTION void clear_attempt(Control& c) {
-  for (int field = 0; field < 3; ++field) c.stage_speed[0][field] = c.resume.speed[field];
+KOKKOS_INLINE_FUNCTION void fail(const Progress& now, Attempt& attempt, Control& c, Quantity quantity,
+                                 std::int64_t cell) {
+  attempt.stop = Stop::failed;
+  c.failed = {quantity, cell, now.step + 1, now.time, attempt.dt};
+}
+
+/// Makes the next attempt ready, or says why there is none: empties in `c` what its stages will add to.
+KOKKOS_INLINE_FUNCTION void prepare_attempt(const Progress& now, Attempt& next, Control& c,
+                                            const StepConstants& k) {
+  for (int field = 0; field < 3; ++field) c.stage_speed[0][field] = now.speed[field];
   for (int stage = 1; stage <= max_stages; ++stage)
     for (int field = 0; field < 3; ++field) c.stage_speed[stage][field] = 0;
   c.bad = no_cell;
   c.touches = 0;
-}
-
-KOKKOS_INLINE_FUNCTION void fail(Control& c, Quantity quantity, std::int64_t cell) {
-  c.stop = Stop::failed;
-  c.failed = {quantity, cell, c.resume.step + 1, c.resume.time, c.dt};
-}
-
-/// Makes the next attempt ready, or says why there is none.
-KOKKOS_INLINE_FUNCTION void prepare_attempt(Control& c, const StepConstants& k) {
-  clear_attempt(c);
-  choose_dt(c, k);
+  choose_dt(now, next, k);
   // Also true for a NaN.
-  if (!(c.resume.time + c.dt > c.resume.time)) fail(c, Quantity::time_step, -1);
+  if (!(now.time + next.dt > now.time)) fail(now, next, c, Quantity::time_step, -1);
 }
 
 /// Tells the host where the device is. The host reads the fields one by one while they change and needs no
 /// more than that each of them was true at some moment.
-KOKKOS_INLINE_FUNCTION void report(Control& c, Status& s) {
-  s.step = c.resume.step;
-  s.time = c.resume.time;
-  s.dt = c.dt;
-  s.limited = c.resume.limited;
-  s.stop = c.stop;
-  s.rows = c.rows;
+KOKKOS_INLINE_FUNCTION void report(const Progress& now, Attempt& attempt, Status& s) {
+  s.step = now.step;
+  s.time = now.time;
+  s.dt = attempt.dt;
+  s.limited = now.limited;
+  s.stop = attempt.stop;
+  s.rows = attempt.rows;
   // Counted here: the device would wait microseconds to read it from the host's memory.
-  s.launches = ++c.launches;
+  s.launches = ++attempt.launches;
 }
 
 /// Kahan's compensated addition: 10^6 steps of boundary fluxes must not cost the conservation check its
@@ -66,85 +65,105 @@ KOKKOS_INLINE_FUNCTION void add_compensated(double& sum, double& compensation, d
   sum = next;
 }
 
-/// The last kernel of a step: one thread that accepts or rejects the attempt.
+/// Threads that end a step on a device: one for each boundary flux, and not more than wait for one another
+/// anyway.
+inline constexpr int finish_team = 32;
+
+/// What the stages of an attempt have left for the decision.
+struct Outcome {
+  std::uint64_t bad;
+  std::int64_t touches;
+  std::uint64_t speed[3];
+};
+
+/// The last kernel of a step: one team that accepts or rejects the attempt.
 template <class ExecutionSpace>
 struct FinishFunctor {
+  using Member = typename Kokkos::TeamPolicy<ExecutionSpace>::member_type;
+
   Kokkos::View<Control, typename ExecutionSpace::memory_space> control;
   Kokkos::View<Status, device::ReportSpace<ExecutionSpace>> status;
   StepConstants constants;
   StageTable table;
   bool limited;  ///< the step this kernel ends was computed with the limiter
 
-  KOKKOS_FUNCTION void operator()(int) const {
-    // A copy: its loads are in flight together, where a chain of decisions in global memory would wait for
-    // each.
-    Control c = control();
-    if (c.stop == Stop::running && (c.resume.limited != 0) == limited) {
-      if (c.bad != no_cell || outgrown(c))
-        reject(c);
-      else
-        accept(c);
-    }
-    report(c, status());
-    control() = c;
+  KOKKOS_FUNCTION void operator()(const Member& member) const {
+    Control& c = control();
+    Progress now = c.resume;
+    Attempt attempt = c.attempt;
+    const std::uint64_t(&speed)[3] = c.stage_speed[constants.stages];
+    const Outcome outcome = {c.bad, c.touches, {speed[0], speed[1], speed[2]}};
+    const bool ends = attempt.stop == Stop::running && (now.limited != 0) == limited;
+    const bool stands = ends && outcome.bad == no_cell && !outgrown(c, attempt.dt);
+    if (stands)
+      for (int k = member.team_rank(); k < 6; k += member.team_size())
+        add_boundary_flux(c, k / 3, k % 3, attempt.dt);
+    member.team_barrier();  // all have read what one now changes
+    if (member.team_rank() != 0) return;
+    if (stands)
+      accept(now, attempt, c, outcome);
+    else if (ends)
+      reject(now, attempt, c, outcome.bad);
+    report(now, attempt, status());
+    static_cast<Progress&>(c.resume) = now;
+    c.attempt = attempt;
   }
 
   /// The limiter's guarantee needs lambda alpha <= 1/2 with every stage's own alpha, which may exceed the one
   /// dt is from.
-  KOKKOS_FUNCTION bool outgrown(const Control& c) const {
+  KOKKOS_FUNCTION bool outgrown(const Control& c, double dt) const {
     if (!limited) return false;
     for (int stage = 0; stage < constants.stages; ++stage)
-      if (table.stage[stage].dt_factor * c.dt * max_speed(c.stage_speed[stage]) > 0.5 * constants.dx)
+      if (table.stage[stage].dt_factor * dt * max_speed(c.stage_speed[stage]) > 0.5 * constants.dx)
         return true;
     return false;
   }
 
-  KOKKOS_FUNCTION void reject(Control& c) const {
-    Resume& r = c.resume;
-    const bool can_limit = constants.positivity == static_cast<int>(Positivity::automatic);
-    if (!limited && can_limit) {
-      r.limited = 1;
-      r.limited_left = limited_steps;
-    } else if (limited && r.halvings < max_halvings) {
-      ++r.halvings;
-      r.dt_scale *= 0.5;
-    } else {
-      fail(c, static_cast<Quantity>(c.bad & 3U), inadmissible_cell(c.bad));
-      return;
-    }
-    ++r.redone;
-    prepare_attempt(c, constants);
+  KOKKOS_FUNCTION void add_boundary_flux(Control& c, int side, int field, double dt) const {
+    double flux = 0.0;
+    for (int stage = 0; stage < constants.stages; ++stage)
+      flux += table.stage[stage].boundary * c.boundary_flux[stage][side][field];
+    add_compensated(c.resume.boundary[side][field], c.resume.compensation[side][field], dt * flux);
   }
 
-  KOKKOS_FUNCTION void accept(Control& c) const {
-    Resume& r = c.resume;
-    for (int side = 0; side < 2; ++side)
-      for (int field = 0; field < 3; ++field) {
-        double flux = 0.0;
-        for (int stage = 0; stage < constants.stages; ++stage)
-          flux += table.stage[stage].boundary * c.boundary_flux[stage][side][field];
-        add_compensated(r.boundary[side][field], r.compensation[side][field], c.dt * flux);
-      }
-    r.last_dt = c.dt;
-    r.dt_min = r.step == 0 || c.dt < r.dt_min ? c.dt : r.dt_min;
-    r.dt_max = c.dt > r.dt_max ? c.dt : r.dt_max;
-    r.time = c.reaches_target ? c.target : r.time + c.dt;
-    ++r.step;
-    r.current = (r.current + table.stage[constants.stages - 1].out) % 3;
-    r.touches += c.touches;
-    r.halvings = 0;
-    r.dt_scale = 1.0;
-    for (int field = 0; field < 3; ++field) r.speed[field] = c.stage_speed[constants.stages][field];
-    if (limited && constants.positivity == static_cast<int>(Positivity::automatic) && --r.limited_left <= 0)
-      r.limited = 0;
-    if (c.reaches_target)
-      c.stop = Stop::target;
-    else if (r.step >= constants.max_steps)
-      c.stop = Stop::max_steps;
-    else if (r.step == c.pause_step || r.step == c.row_step)
-      c.stop = Stop::pause;
+  KOKKOS_FUNCTION void reject(Progress& now, Attempt& attempt, Control& c, std::uint64_t bad) const {
+    const bool can_limit = constants.positivity == static_cast<int>(Positivity::automatic);
+    if (!limited && can_limit) {
+      now.limited = 1;
+      now.limited_left = limited_steps;
+    } else if (limited && now.halvings < max_halvings) {
+      ++now.halvings;
+      now.dt_scale *= 0.5;
+    } else {
+      fail(now, attempt, c, static_cast<Quantity>(bad & 3U), inadmissible_cell(bad));
+      return;
+    }
+    ++now.redone;
+    prepare_attempt(now, attempt, c, constants);
+  }
+
+  KOKKOS_FUNCTION void accept(Progress& now, Attempt& attempt, Control& c, const Outcome& outcome) const {
+    const double dt = attempt.dt;
+    now.last_dt = dt;
+    now.dt_min = now.step == 0 || dt < now.dt_min ? dt : now.dt_min;
+    now.dt_max = dt > now.dt_max ? dt : now.dt_max;
+    now.time = attempt.reaches_target ? attempt.target : now.time + dt;
+    ++now.step;
+    now.current = (now.current + table.stage[constants.stages - 1].out) % 3;
+    now.touches += outcome.touches;
+    now.halvings = 0;
+    now.dt_scale = 1.0;
+    for (int field = 0; field < 3; ++field) now.speed[field] = outcome.speed[field];
+    if (limited && constants.positivity == static_cast<int>(Positivity::automatic) && --now.limited_left <= 0)
+      now.limited = 0;
+    if (attempt.reaches_target)
+      attempt.stop = Stop::target;
+    else if (now.step >= constants.max_steps)
+      attempt.stop = Stop::max_steps;
+    else if (now.step == attempt.pause_step || now.step == attempt.row_step)
+      attempt.stop = Stop::pause;
     else
-      prepare_attempt(c, constants);
+      prepare_attempt(now, attempt, c, constants);
   }
 };
 
@@ -159,19 +178,22 @@ struct ResumeFunctor {
 
   KOKKOS_FUNCTION void operator()(int) const {
     Control& c = control();
-    if (c.stop != Stop::failed) {
-      c.target = target;
-      c.pause_step = pause_step;
-      c.row_step = row_step;
-      c.stop = Stop::running;
-      if (c.resume.time >= target)
-        c.stop = Stop::target;
-      else if (c.resume.step >= constants.max_steps)
-        c.stop = Stop::max_steps;
+    const Progress now = c.resume;
+    Attempt attempt = c.attempt;
+    if (attempt.stop != Stop::failed) {
+      attempt.target = target;
+      attempt.pause_step = pause_step;
+      attempt.row_step = row_step;
+      attempt.stop = Stop::running;
+      if (now.time >= target)
+        attempt.stop = Stop::target;
+      else if (now.step >= constants.max_steps)
+        attempt.stop = Stop::max_steps;
       else
-        prepare_attempt(c, constants);
+        prepare_attempt(now, attempt, c, constants);
     }
-    report(c, status());
+    report(now, attempt, status());
+    c.attempt = attempt;
   }
 };
 

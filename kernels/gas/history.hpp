@@ -22,7 +22,7 @@ struct SumLevelFunctor {
 
   KOKKOS_FUNCTION void operator()(std::int64_t j) const {
     const Control& c = control();
-    if (!always && (c.stop != Stop::pause || c.resume.step != c.row_step)) return;
+    if (!always && (c.attempt.stop != Stop::pause || c.resume.step != c.attempt.row_step)) return;
     const double* source = first ? buffer[c.resume.current].data() : in.data();
     const std::int64_t row = first ? n_in : static_cast<std::int64_t>(in.extent(0));
     double sum[3] = {};
@@ -47,25 +47,26 @@ struct RowFunctor {
 
   KOKKOS_FUNCTION void operator()(int) const {
     Control& c = control();
-    if (always || (c.stop == Stop::pause && c.resume.step == c.row_step)) {
-      write_row(c);
+    Attempt attempt = c.attempt;
+    if (always || (attempt.stop == Stop::pause && c.resume.step == attempt.row_step)) {
+      write_row(c.resume, attempt);
       if (!always) {
-        c.row_step += every;
-        if (c.resume.step != c.pause_step) {
-          c.stop = Stop::running;
-          prepare_attempt(c, constants);
+        attempt.row_step += every;
+        if (c.resume.step != attempt.pause_step) {
+          attempt.stop = Stop::running;
+          prepare_attempt(c.resume, attempt, c, constants);
         }
       }
     }
-    report(c, status());
+    report(c.resume, attempt, status());
+    c.attempt = attempt;
   }
 
-  KOKKOS_FUNCTION void write_row(Control& c) const {
+  KOKKOS_FUNCTION void write_row(const Resume& r, Attempt& attempt) const {
     double sum[3] = {};
     for (std::int64_t i = 0; i < n; ++i)
       for (int field = 0; field < 3; ++field) sum[field] += partial(i, field);
-    const Resume& r = c.resume;
-    HistoryRow& row = ring(c.rows % row_capacity);
+    HistoryRow& row = ring(attempt.rows % row_capacity);
     row.time = r.time;
     row.step = r.step;
     row.dt = r.last_dt;
@@ -76,7 +77,7 @@ struct RowFunctor {
     row.max_speed = max_speed(r.speed);
     row.touches = r.touches;
     row.redone = r.redone;
-    ++c.rows;
+    ++attempt.rows;
   }
 };
 

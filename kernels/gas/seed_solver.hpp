@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "kernels/device/instance.hpp"
-#include "kernels/gas/launch.hpp"
 #include "kernels/gas/solver.hpp"
 #include "kernels/gas/solver_on.hpp"
+#include "kernels/gas/stage.hpp"
 
 namespace drogue::gas {
 
@@ -22,9 +22,9 @@ struct SeedFluxFunctor {
 
   KOKKOS_FUNCTION void operator()(const typename Stage::Member& member) const {
     const Tile<ExecutionSpace> tile(member, stage.shape, stage.ends.cells);
-    stage.load_cells(member, tile, stage.buffer[0].data());
+    load_cells<typename Stage::R>(member, tile, stage.ends, stage.gamma, stage.buffer[0].data());
     member.team_barrier();
-    stage.compute_fluxes(member, tile, stage.control());
+    stage.compute_fluxes(member, tile, 0.0);  // dt is the limiter's alone
     member.team_barrier();
     for (int face = member.team_rank(); face <= tile.cells; face += member.team_size()) {
       if (face == tile.cells && !tile.last) continue;
@@ -52,7 +52,7 @@ class SeedSolver final : public Solver {
       _stage.buffer[k] = FieldsView<ExecutionSpace>("drogue::gas::seed_state", k == 0 ? _cells : 0);
     _stage.control = decltype(_stage.control)("drogue::gas::seed_control");
     _stage.weights = stage_table(TimeScheme::ssprk3).stage[0];
-    _stage.shape = tile_shape<ExecutionSpace>(p.block);
+    _stage.shape = tile_shape<ExecutionSpace>(p.block, p.cells, ghost_cells);
     _stage.ends = {p.cells, p.left, p.right};
     _stage.gamma = p.gamma;
     _stage.inverse_dx = 1.0 / _dx;
@@ -149,7 +149,7 @@ class SeedSolver final : public Solver {
     timed(_phases.compute, [&] {
       const auto tiles = static_cast<int>((_p.cells + _stage.shape.cells - 1) / _stage.shape.cells);
       Kokkos::TeamPolicy<ExecutionSpace> policy(
-          space, tiles, device::is_host<ExecutionSpace> ? 1 : _stage.shape.cells + 2 * ghost_cells);
+          space, tiles, device::is_host<ExecutionSpace> ? 1 : device_team(_p.block, _p.cells));
       policy.set_scratch_size(
           0, Kokkos::PerTeam(static_cast<int>(Tile<ExecutionSpace>::scratch_bytes(_stage.shape) + 64)));
       Kokkos::parallel_for("drogue::gas::seed_flux", policy,

@@ -29,30 +29,35 @@ Status SolverOn<ExecutionSpace>::status() const {
   return seen;
 }
 
+/// Calls `launch` with the scheme as a constant.
+template <class Launch>
+void with_reconstruction(const Parameters& p, const Launch& launch) {
+  switch (p.weno) {
+    case Weno::js:
+      return launch(std::integral_constant<Reconstruction, Reconstruction::js>{});
+    case Weno::m:
+      return launch(std::integral_constant<Reconstruction, Reconstruction::m>{});
+    case Weno::teno5:
+      return launch(std::integral_constant<Reconstruction, Reconstruction::teno5>{});
+    case Weno::z:
+      break;
+  }
+  if (p.weno_power == 1) return launch(std::integral_constant<Reconstruction, Reconstruction::z1>{});
+  return launch(std::integral_constant<Reconstruction, Reconstruction::z2>{});
+}
+
 template <class ExecutionSpace>
 void SolverOn<ExecutionSpace>::enqueue_step(const ExecutionSpace& space, bool limited) const {
-  for (int stage = 0; stage < _setup.table.stages; ++stage) {
-    const Precision precision = _parameters.precision;
-    switch (_parameters.weno) {
-      case Weno::js:
-        launch_stage<Reconstruction::js>(space, _setup, precision, limited, stage);
-        break;
-      case Weno::z:
-        if (_parameters.weno_power == 1)
-          launch_stage<Reconstruction::z1>(space, _setup, precision, limited, stage);
-        else
-          launch_stage<Reconstruction::z2>(space, _setup, precision, limited, stage);
-        break;
-      case Weno::m:
-        launch_stage<Reconstruction::m>(space, _setup, precision, limited, stage);
-        break;
-      case Weno::teno5:
-        launch_stage<Reconstruction::teno5>(space, _setup, precision, limited, stage);
-        break;
-    }
-  }
+  with_reconstruction(_parameters, [&](auto scheme) {
+    if (!limited && _setup.splitting == Splitting::lf_stencil)
+      return launch_step<scheme.value>(space, _setup, _parameters.precision);
+    for (int stage = 0; stage < _setup.table.stages; ++stage)
+      launch_stage<scheme.value>(space, _setup, _parameters.precision, limited, stage);
+  });
   Kokkos::parallel_for(
-      "drogue::gas::finish_step", Kokkos::RangePolicy<ExecutionSpace>(space, 0, 1),
+      "drogue::gas::finish_step",
+      Kokkos::Experimental::require(Kokkos::TeamPolicy<ExecutionSpace>(space, 1, on_host ? 1 : finish_team),
+                                    Kokkos::Experimental::WorkItemProperty::HintLightWeight),
       FinishFunctor<ExecutionSpace>{_setup.control, _status, _constants, _setup.table, limited});
 }
 

@@ -8,16 +8,22 @@
 
 namespace drogue::gas {
 
-/// Cells a tile updates. A device team loads a cell with each thread, halo included, in one round; on the
-/// host a tile's scratch stays in the L1 cache.
+/// Threads of a device team: small meshes have more of smaller ones, so that more multiprocessors work.
+inline int device_team(int block, std::int64_t cells) {
+  if (block > 0) return block;
+  return cells < 32'768 ? 96 : 128;
+}
+
+/// A device team loads a cell with each thread, halo included, in one round; on the host a tile's scratch
+/// stays in the L1 cache.
 template <class ExecutionSpace>
-TileShape tile_shape(int block) {
+TileShape tile_shape(int block, std::int64_t mesh_cells, int halo) {
   if constexpr (device::is_host<ExecutionSpace>) {
     const int cells = block > 0 ? block : 256;
-    return {cells, (cells + 2 * ghost_cells + 2 * device::host_lanes + 7) / 8 * 8};
+    return {cells, halo, (cells + 2 * halo + 2 * device::host_lanes + 7) / 8 * 8};
   } else {
-    const int threads = block > 0 ? block : 128;
-    return {threads - 2 * ghost_cells, threads};
+    const int team = device_team(block, mesh_cells);
+    return {team - 2 * halo, halo, team};
   }
 }
 
@@ -51,8 +57,9 @@ SolverOn<ExecutionSpace>::SolverOn(const Parameters& p)
   _setup.control = decltype(_setup.control)("drogue::gas::control");
   if (p.positivity != Positivity::off) _setup.touched = decltype(_setup.touched)("drogue::gas::touched", n);
   _setup.ends = {p.cells, p.left, p.right};
-  _setup.shape = tile_shape<ExecutionSpace>(p.block);
-  _setup.team_size = on_host ? 1 : _setup.shape.cells + 2 * ghost_cells;
+  _setup.stage_shape = tile_shape<ExecutionSpace>(p.block, p.cells, ghost_cells);
+  _setup.step_shape = tile_shape<ExecutionSpace>(p.block, p.cells, ghost_cells * _setup.table.stages);
+  _setup.team_size = on_host ? 1 : device_team(p.block, p.cells);
   _setup.gamma = p.gamma;
   _setup.dx = dx;
   _setup.splitting = p.splitting;
@@ -80,7 +87,7 @@ template <class ExecutionSpace>
 void SolverOn<ExecutionSpace>::write_control(const Control& control) {
   auto mirror = Kokkos::create_mirror_view(_setup.control);
   mirror() = control;
-  mirror().launches = _launched;
+  mirror().attempt.launches = _launched;
   Kokkos::deep_copy(_instance.space(), _setup.control, mirror);
   _instance.space().fence("drogue::gas::solver: write control");
 }
@@ -122,12 +129,12 @@ struct InitialSpeedFunctor {
 /// solver, and `advance` must know the step before a kernel has told it.
 template <class ExecutionSpace>
 void SolverOn<ExecutionSpace>::begin_at(Control& c) {
-  c.stop = Stop::pause;
+  c.attempt.stop = Stop::pause;
   c.bad = no_cell;
-  c.rows = _rows_read;
+  c.attempt.rows = _rows_read;
   write_control(c);
   _status().step = c.resume.step;
-  _status().rows = c.rows;
+  _status().rows = c.attempt.rows;
   _last_row.reset();
 }
 

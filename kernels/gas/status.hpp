@@ -20,8 +20,8 @@ struct Failed {
   double dt = 0.0;         ///< s
 };
 
-/// The part of the device's control block that a restart file carries beside the fields.
-struct Resume {
+/// How far a run has come.
+struct Progress {
   double time = 0.0;
   std::int64_t step = 0;
   int current = 0;              ///< buffer that holds U^n
@@ -30,11 +30,15 @@ struct Resume {
   int halvings = 0;             ///< of dt since the last accepted step
   double dt_scale = 1.0;        ///< 2^-halvings
   std::uint64_t speed[3] = {};  ///< bits of max |u-c|, |u|, |u+c| of U^n
-  double boundary[2][3] = {};   ///< time-integrated fluxes of mass, momentum, energy through the two ends
-  double compensation[2][3] = {};
-  std::int64_t redone = 0;   ///< rejected attempts
-  std::int64_t touches = 0;  ///< faces limited in accepted steps, all stages
+  std::int64_t redone = 0;      ///< rejected attempts
+  std::int64_t touches = 0;     ///< faces limited in accepted steps, all stages
   double last_dt = 0.0, dt_min = 0.0, dt_max = 0.0;
+};
+
+/// The part of the device's control block that a restart file carries beside the fields.
+struct Resume : Progress {
+  double boundary[2][3] = {};  ///< time-integrated fluxes of mass, momentum, energy through the two ends
+  double compensation[2][3] = {};
 };
 
 /// What the host sees of a running device, without a copy.

@@ -18,9 +18,11 @@ struct Ends {
   Boundary left, right;
 };
 
-/// Cells a tile updates and the distance between its scratch rows.
+/// Cells a tile updates, cells it loads beyond them on either side, and the distance between its scratch
+/// rows.
 struct TileShape {
   int cells;
+  int halo;
   int row;
 };
 
@@ -29,18 +31,23 @@ struct Source {
   double sign;  ///< of the momentum
 };
 
-/// The cell that stands for `index`, -ghost_cells <= index; what lies further right than the ghosts repeats
-/// the last one, so that padding holds an admissible state.
+/// The cell that stands for `index`. Beyond the ghosts of a wall or an outflow nothing is asked for but an
+/// admissible state.
 KOKKOS_INLINE_FUNCTION Source source_cell(const Ends& ends, std::int64_t index) {
   const std::int64_t n = ends.cells;
   if (index >= 0 && index < n) return {index, 1.0};
-  const std::int64_t last = n - 1 + ghost_cells;
-  if (index > last) index = last;
   const bool left = index < 0;
   const Boundary kind = left ? ends.left : ends.right;
-  if (kind == Boundary::periodic) return {left ? index + n : index - n, 1.0};
-  if (kind == Boundary::reflecting) return {left ? -1 - index : 2 * n - 1 - index, -1.0};
-  return {left ? 0 : n - 1, 1.0};
+  if (kind == Boundary::periodic) {
+    // A halo goes round the smallest meshes more than once. No remainder: its division is a long routine on a
+    // GPU.
+    while (index < 0) index += n;
+    while (index >= n) index -= n;
+    return {index, 1.0};
+  }
+  const std::int64_t beyond = left ? -1 - index : index - n;
+  if (kind == Boundary::outflow || beyond >= ghost_cells) return {left ? 0 : n - 1, 1.0};
+  return {left ? beyond : n - 1 - beyond, -1.0};
 }
 
 /// The states of `lanes` cells from `index` on, ghosts included. `in` holds three rows of `ends.cells`.
@@ -62,7 +69,9 @@ KOKKOS_INLINE_FUNCTION Triple<R> load_state(const double* in, const Ends& ends, 
 
 enum class TileField : int { rho, m, energy, flux_m, flux_energy, u, enthalpy, slow, fast, count };
 
-/// A tile's scratch memory: rows of cell values (`TileField`), then three rows of face fluxes.
+/// A tile's scratch memory: rows of cell values (`TileField`), then three rows of face fluxes. Slot i of a
+/// row of cells belongs to cell `first - halo + i`; face f lies left of slot f + 3 and needs slots f .. f
+/// + 5.
 template <class ExecutionSpace>
 class Tile {
  public:
@@ -71,11 +80,15 @@ class Tile {
 
   std::int64_t first;  ///< its first cell
   int cells;           ///< that it updates
+  int halo;
+  int slots;  ///< with the halo
   bool last;
 
   KOKKOS_FUNCTION Tile(const Member& member, const TileShape& shape, std::int64_t mesh_cells)
       : first(static_cast<std::int64_t>(member.league_rank()) * shape.cells),
         cells(static_cast<int>(device::minimum<std::int64_t>(shape.cells, mesh_cells - first))),
+        halo(shape.halo),
+        slots(cells + 2 * halo),
         last(first + cells == mesh_cells),
         _row(shape.row),
         _data(static_cast<double*>(

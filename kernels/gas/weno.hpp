@@ -10,43 +10,44 @@ namespace drogue::gas {
 /// Nonlinear weights of Z with power 2 are a scheme of their own for the compiler.
 enum class Reconstruction { js, z1, z2, m, teno5 };
 
-/// A characteristic difference reaches the reconstruction four times as large as l.d(F +- alpha U)/2 with the
-/// normalised left eigenvector l: the eigenvectors carry a factor 2 and the splitting drops its 1/2.
-inline constexpr double difference_scale = 4.0;
-
-/// Indicators here are 12 b_k of Jiang and Shu, of differences that are `difference_scale` times too large.
-inline constexpr double indicator_scale = 12.0 * difference_scale * difference_scale;
+/// How many times larger than l.d(F +- alpha U)/2, with the normalised left eigenvector l, a characteristic
+/// difference reaches the reconstruction: the splitting drops its 1/2, acoustic eigenvectors carry a
+/// factor 2.
+inline constexpr int acoustic_scale = 4, entropy_scale = 2;
 
 template <class R>
 struct Indicators {
   R b0, b1, b2;
 };
 
-/// Jiang and Shu 1996, eq. (3.2)-(3.4), times 12, from the four differences of the five stencil values.
+/// b_k + epsilon with b_k of Jiang and Shu 1996, eq. (3.2)-(3.4), times 3/4, from the four differences of the
+/// five stencil values. Completing the squares, 13 (a - b)^2 + 3 (a - 3 b)^2 = 16 ((a - 11/8 b)^2 + 39/64
+/// b^2) and so on, takes ten operations where the printed form takes eighteen.
 template <class R>
-KOKKOS_INLINE_FUNCTION Indicators<R> smoothness(R a, R b, R c, R d) {
+KOKKOS_INLINE_FUNCTION Indicators<R> smoothness(R a, R b, R c, R d, R epsilon) {
   using S = typename device::Access<R>::Element;
-  const auto quadratic = [](R second, R first) { return S(13) * (second * second) + S(3) * (first * first); };
-  return {quadratic(a - b, a - S(3) * b), quadratic(b - c, b + c), quadratic(c - d, S(3) * c - d)};
+  const R left = a - S(1.375) * b, middle = b - S(0.625) * c, right = d - S(1.375) * c;
+  const R b_part = S(0.609375) * (b * b) + epsilon, c_part = S(0.609375) * (c * c) + epsilon;
+  return {left * left + b_part, middle * middle + c_part, right * right + c_part};
 }
 
 /// Numerators a_k of the weights w_k = a_k / (a_0 + a_1 + a_2), multiplied through so that none divides.
 template <Reconstruction scheme, class R>
-KOKKOS_INLINE_FUNCTION Indicators<R> weight_numerators(Indicators<R> is, R epsilon) {
+KOKKOS_INLINE_FUNCTION Indicators<R> weight_numerators(Indicators<R> indicators) {
   using S = typename device::Access<R>::Element;
-  const R b0 = is.b0 + epsilon, b1 = is.b1 + epsilon, b2 = is.b2 + epsilon;
+  const auto [b0, b1, b2] = indicators;
   const R b12 = b1 * b2, b02 = b0 * b2, b01 = b0 * b1;
   if constexpr (scheme == Reconstruction::js || scheme == Reconstruction::m) {
     return {b12 * b12, S(6) * (b02 * b02), S(3) * (b01 * b01)};  // d_k / (eps + b_k)^2
   } else if constexpr (scheme == Reconstruction::z1) {
     // Borges et al. 2008, eq. (28): d_k (1 + tau / (b_k + eps))
-    const R tau = device::absolute(is.b0 - is.b2);
+    const R tau = device::absolute(b0 - b2);
     return {(b0 + tau) * b12, S(6) * ((b1 + tau) * b02), S(3) * ((b2 + tau) * b01)};
   } else if constexpr (scheme == Reconstruction::z2) {
     // d_k (1 + (tau / (b_k + eps))^2). Six indicators leave the range of a double where a cold gas meets a
     // hot one (Sedov: differences of 1e25), so the squares are taken of what is at most one; in single
     // precision `correction` has seen to that.
-    const R tau = device::absolute(is.b0 - is.b2);
+    const R tau = device::absolute(b0 - b2);
     R all = b0 * b12, q0 = tau * b12, q1 = tau * b02, q2 = tau * b01;
     if constexpr (!std::is_same_v<S, float>) {
       const R inverse =
@@ -58,7 +59,7 @@ KOKKOS_INLINE_FUNCTION Indicators<R> weight_numerators(Indicators<R> is, R epsil
   } else {
     // Fu, Hu and Adams 2016, eq. (14)-(17). The sixth power of the ratio overflows for smooth data (eps is
     // tiny), so the ratios are divided by the largest of them first; the cut-off compares g_k with their sum.
-    const R tau = device::absolute(is.b0 - is.b2);
+    const R tau = device::absolute(b0 - b2);
     const R q0 = (b0 + tau) * b12, q1 = (b1 + tau) * b02, q2 = (b2 + tau) * b01;
     const R inverse = device::reciprocal(device::maximum(q0, device::maximum(q1, q2)));
     const auto sixth = [](R ratio) {
@@ -80,29 +81,30 @@ KOKKOS_INLINE_FUNCTION R mapped(R w, S d) {
 }
 
 /// Fifth-order correction to the fourth-order central flux from one side: phi of the difference form,
-/// w_0/3 (a - 2b + c) + (w_2 - 1/2)/6 (b - 2c + d), from `difference_scale` times the four characteristic
-/// differences. Jiang and Shu 1996, eq. (2.17) rewritten.
-template <Reconstruction scheme, class R>
+/// w_0/3 (a - 2b + c) + (w_2 - 1/2)/6 (b - 2c + d), from `scale` times the four characteristic differences
+/// and as many times too large. Jiang and Shu 1996, eq. (2.17) rewritten.
+template <Reconstruction scheme, int scale, class R>
 KOKKOS_INLINE_FUNCTION R correction(R a, R b, R c, R d) {
   using S = typename device::Access<R>::Element;
   constexpr bool single = std::is_same_v<S, float>;
-  // In single precision the smallest product of powers of eps (Z, p = 2: its sixth) must stay a normal
-  // number.
-  constexpr double scale_free = !single ? 1e-40 : scheme == Reconstruction::z2 ? 1e-8 : 1e-9;
-  R epsilon(S((scheme == Reconstruction::js ? 1e-6 : scale_free) * indicator_scale));
+  constexpr double indicator_scale = 0.75 * scale * scale;  // see `smoothness`
+  R epsilon(S((scheme == Reconstruction::js ? 1e-6 : 1e-40) * indicator_scale));
   R ka = a, kb = b, kc = c, kd = d;
   if constexpr (single) {
-    // The indicators' products leave the range of a float: bring the largest difference to one first. The
+    // The indicators' products leave the range of a float: bring the largest difference to four first. The
     // floor keeps an empty stencil finite; 1e-6 for JS, whose eps is absolute and far larger than such a
-    // stencil.
+    // stencil. The smallest product of powers of eps (Z, p = 2: its sixth) must stay a normal number.
     const R largest = device::maximum(device::maximum(device::absolute(a), device::absolute(b)),
                                       device::maximum(device::absolute(c), device::absolute(d)));
     const R inverse =
-        device::reciprocal(device::maximum(largest, R(scheme == Reconstruction::js ? 1e-6F : 1e-30F)));
+        S(4) * device::reciprocal(device::maximum(largest, R(scheme == Reconstruction::js ? 1e-6F : 1e-30F)));
     ka = a * inverse, kb = b * inverse, kc = c * inverse, kd = d * inverse;
-    if constexpr (scheme == Reconstruction::js) epsilon = epsilon * inverse * inverse + S(1e-9);
+    if constexpr (scheme == Reconstruction::js)
+      epsilon = epsilon * inverse * inverse + S(1e-9);
+    else
+      epsilon = R(scheme == Reconstruction::z2 ? 2e-6F : 2e-7F);
   }
-  Indicators<R> w = weight_numerators<scheme>(smoothness(ka, kb, kc, kd), epsilon);
+  Indicators<R> w = weight_numerators<scheme>(smoothness(ka, kb, kc, kd, epsilon));
   const R inverse_sum = device::reciprocal(w.b0 + w.b1 + w.b2);
   if constexpr (scheme == Reconstruction::m) {
     const R g0 = mapped(w.b0 * inverse_sum, S(0.1)), g1 = mapped(w.b1 * inverse_sum, S(0.6)),

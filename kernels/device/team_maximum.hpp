@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+
+#include <Kokkos_Core.hpp>
+
+namespace drogue::device {
+
+/// Raises `slot` to the largest `mine` of the team's threads, all of which call this. Non-negative doubles
+/// compare as their bits do, so the result does not depend on the order in which teams arrive.
+///
+/// On CUDA each warp reduces with its integer unit, high words first, and raises the slot itself: a team's
+/// reduction through shared memory costs a small kernel two microseconds.
+template <class Member>
+KOKKOS_INLINE_FUNCTION void raise_to_team_maximum(const Member& member, std::uint64_t& slot, double mine) {
+#if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 800
+  const auto own = static_cast<unsigned long long>(__double_as_longlong(mine));
+  const unsigned lanes = __activemask();
+  const auto own_high = static_cast<unsigned>(own >> 32U);
+  const unsigned high = __reduce_max_sync(lanes, own_high);
+  const unsigned low = __reduce_max_sync(lanes, own_high == high ? static_cast<unsigned>(own) : 0U);
+  if (member.team_rank() % 32 != 0) return;
+  const std::uint64_t bits = static_cast<std::uint64_t>(high) << 32U | low;
+#else
+  double largest = mine;
+  member.team_reduce(Kokkos::Max<double>(largest));
+  if (member.team_rank() != 0) return;
+  const auto bits = Kokkos::bit_cast<std::uint64_t>(largest);
+#endif
+  // Many teams ask first, a few would only wait for the answer.
+  if (member.league_size() < 1024 || bits > Kokkos::atomic_load(&slot)) Kokkos::atomic_max(&slot, bits);
+}
+
+}  // namespace drogue::device

@@ -1,0 +1,175 @@
+#pragma once
+
+#include "kernels/gas/control.hpp"
+#include "kernels/gas/tile.hpp"
+
+namespace drogue::gas {
+
+// What the two forms of a step share: `StageFunctor` (a stage a launch) and `StepFunctor` (all stages in
+// one).
+
+/// Copies of what a kernel reads from the control block: their loads are in flight together, and no store
+/// makes the compiler load them again.
+struct StepInput {
+  Stop stop;
+  bool limited;
+  int current;  ///< buffer that holds U^n
+  double dt;    ///< s
+};
+
+KOKKOS_INLINE_FUNCTION StepInput read_step_input(const Control& c) {
+  return {c.attempt.stop, c.resume.limited != 0, c.resume.current, c.attempt.dt};
+}
+
+/// Writes what faces need of a cell into slot `i`.
+template <class Tile, class R>
+KOKKOS_INLINE_FUNCTION void store_cell(const Tile& tile, int i, const CellState<R>& s) {
+  const Speeds<R> speed = signal_speeds(s.u, s.c);
+  tile.store(TileField::rho, i, s.rho);
+  tile.store(TileField::m, i, s.m);
+  tile.store(TileField::energy, i, s.energy);
+  tile.store(TileField::flux_m, i, s.m * s.u + s.p);
+  tile.store(TileField::flux_energy, i, (s.energy + s.p) * s.u);
+  tile.store(TileField::u, i, s.u);
+  tile.store(TileField::enthalpy, i, s.enthalpy);
+  tile.store(TileField::slow, i, speed.slow);
+  tile.store(TileField::fast, i, speed.fast);
+}
+
+/// Fills all slots from the state `in`.
+template <class R, class Member, class Tile>
+KOKKOS_INLINE_FUNCTION void load_cells(const Member& member, const Tile& tile, const Ends& ends, double gamma,
+                                       const double* in) {
+  constexpr int lanes = device::Access<R>::lanes;
+  for (int i = member.team_rank() * lanes; i < tile.slots + lanes - 1; i += member.team_size() * lanes) {
+    const Triple<R> u = load_state<R>(in, ends, tile.first - tile.halo + i);
+    store_cell(tile, i, cell_state<R>(gamma, u.rho, u.m, u.energy));
+  }
+}
+
+template <class R, class Tile>
+KOKKOS_INLINE_FUNCTION Stencil<R> load_stencil(const Tile& tile, int face) {
+  Stencil<R> s;
+  for (int k = 0; k < 6; ++k) {
+    s.state[k] = tile.template state<R>(face + k);
+    s.flux_m[k] = tile.template load<R>(TileField::flux_m, face + k);
+    s.flux_energy[k] = tile.template load<R>(TileField::flux_energy, face + k);
+  }
+  return s;
+}
+
+/// The fastest signal of each field over the six cells of the stencil.
+template <class N, class R, class Tile>
+KOKKOS_INLINE_FUNCTION Speeds<N> stencil_speeds(const Tile& tile, int face) {
+  using To = device::Convert<N>;
+  R slow = tile.template load<R>(TileField::slow, face), fast = tile.template load<R>(TileField::fast, face);
+  R entropy = device::absolute(tile.template load<R>(TileField::u, face));
+  for (int k = 1; k < 6; ++k) {
+    slow = device::maximum(slow, tile.template load<R>(TileField::slow, face + k));
+    fast = device::maximum(fast, tile.template load<R>(TileField::fast, face + k));
+    entropy = device::maximum(entropy, device::absolute(tile.template load<R>(TileField::u, face + k)));
+  }
+  return {To::from(slow), To::from(entropy), To::from(fast)};
+}
+
+template <Reconstruction scheme, class N, class R, class Tile>
+KOKKOS_INLINE_FUNCTION Triple<R> face_flux(const Tile& tile, int face, const Stencil<R>& s, Mean mean,
+                                           double gamma, const Speeds<N>& alpha) {
+  const Eigensystem<N> e = face_eigensystem<N, R>(mean, gamma, tile.template face_cell<R>(face + 2),
+                                                  tile.template face_cell<R>(face + 3));
+  return weno5_face<scheme, N>(s, e, alpha);
+}
+
+/// a_in (U + dt L(U)) of slot `i`: an Euler step of the state in it.
+template <class P, class Tile>
+KOKKOS_INLINE_FUNCTION Triple<P> euler_step(const Tile& tile, int i, double a_in, double dt_over_dx) {
+  const Triple<P> in = tile.template state<P>(i);
+  const Triple<P> left = tile.template flux<P>(i - ghost_cells),
+                  right = tile.template flux<P>(i - ghost_cells + 1);
+  return {a_in * (in.rho + dt_over_dx * (left.rho - right.rho)),
+          a_in * (in.m + dt_over_dx * (left.m - right.m)),
+          a_in * (in.energy + dt_over_dx * (left.energy - right.energy))};
+}
+
+/// a_n U^n + u
+template <class P>
+KOKKOS_INLINE_FUNCTION Triple<P> combined(double a_n, const Triple<P>& u_n, const Triple<P>& u) {
+  return {a_n * u_n.rho + u.rho, a_n * u_n.m + u.m, a_n * u_n.energy + u.energy};
+}
+
+/// The state of `cell`, which lies in the mesh.
+template <class P>
+KOKKOS_INLINE_FUNCTION Triple<P> state_of(const double* in, std::int64_t cells, std::int64_t cell) {
+  using Lanes = device::Access<P>;
+  return {Lanes::load(in + cell), Lanes::load(in + cells + cell), Lanes::load(in + 2 * cells + cell)};
+}
+
+/// Stores the state of slot `i`, whose cell is one of the tile's own.
+template <class P, class Tile>
+KOKKOS_INLINE_FUNCTION void store_state(const Tile& tile, int i, const Triple<P>& u, std::int64_t cells,
+                                        double* out) {
+  using Lanes = device::Access<P>;
+  const std::int64_t cell = tile.first - tile.halo + i;
+  Lanes::store(out + cell, u.rho);
+  Lanes::store(out + cells + cell, u.m);
+  Lanes::store(out + 2 * cells + cell, u.energy);
+}
+
+/// The fastest signals and the admissibility of the cells that one thread updated.
+template <class P>
+struct Reduced {
+  P slow{0.0}, entropy{0.0}, fast{0.0}, admissible{1.0};
+
+  KOKKOS_FUNCTION void judge(P rho, P p) {
+    const P zero(0.0);
+    // Every comparison is false for a NaN.
+    admissible = device::select(p > zero, admissible, zero);
+    admissible = device::select(p <= P(1.7e308), admissible, zero);
+    admissible = device::select(rho > zero, admissible, zero);
+  }
+  KOKKOS_FUNCTION void raise(const Speeds<P>& speed) {
+    slow = device::maximum(slow, speed.slow);
+    entropy = device::maximum(entropy, speed.entropy);
+    fast = device::maximum(fast, speed.fast);
+  }
+};
+
+/// Adds what the lanes of `packs` have found.
+template <class R>
+KOKKOS_INLINE_FUNCTION void merge_lanes(const Reduced<R>& packs, Reduced<double>& all) {
+  using Lanes = device::Access<R>;
+  for (int lane = 0; lane < Lanes::lanes; ++lane) {
+    all.raise(
+        {Lanes::lane(packs.slow, lane), Lanes::lane(packs.entropy, lane), Lanes::lane(packs.fast, lane)});
+    all.admissible = device::minimum(all.admissible, Lanes::lane(packs.admissible, lane));
+  }
+}
+
+/// Slow path: notes a state that is not admissible, judged as `Reduced` does.
+KOKKOS_INLINE_FUNCTION void report_inadmissible(Control& control, double gamma, int stage, std::int64_t cell,
+                                                const Triple<double>& u) {
+  const double p = pressure(gamma, u.m, u.energy, u.m * device::reciprocal(u.rho));
+  if (u.rho > 0.0 && p > 0.0 && p <= 1.7e308) return;
+  Quantity what = Quantity::not_finite;
+  if (u.rho <= 0.0)
+    what = Quantity::density;
+  else if (p <= 0.0)
+    what = Quantity::pressure;
+  Kokkos::atomic_min(&control.bad, inadmissible(stage, cell, what));
+}
+
+/// One thread of a tile at an end of the mesh keeps the flux there, for the conservation check. `left` and
+/// `right` are the tile's outermost faces.
+template <class Member, class Tile>
+KOKKOS_INLINE_FUNCTION void store_boundary_fluxes(const Member& member, const Tile& tile, Control& control,
+                                                  int stage, int left, int right) {
+  if (member.team_rank() != 0) return;
+  for (int side = 0; side < 2; ++side) {
+    if (side == 0 ? tile.first != 0 : !tile.last) continue;
+    const Triple<double> f = tile.template flux<double>(side == 0 ? left : right);
+    double(&out)[3] = control.boundary_flux[stage][side];
+    out[0] = f.rho, out[1] = f.m, out[2] = f.energy;
+  }
+}
+
+}  // namespace drogue::gas
