@@ -170,9 +170,9 @@ TEST(GasExact, AKernelAStepGivesTheBitsOfAKernelAStage) {
   for (const gas::Weno weno : {gas::Weno::js, gas::Weno::z, gas::Weno::m, gas::Weno::teno5})
     for (const std::int64_t cells : {8, 23, 300, 1001})
       for (const auto time : {gas::TimeScheme::ssprk3, gas::TimeScheme::ssprk43})
-        for (const auto [left, right] : {std::pair{Boundary::periodic, Boundary::periodic},
-                                         std::pair{Boundary::outflow, Boundary::reflecting},
-                                         std::pair{Boundary::reflecting, Boundary::outflow}}) {
+        for (const auto& [left, right] : {std::pair{Boundary::periodic, Boundary::periodic},
+                                          std::pair{Boundary::outflow, Boundary::reflecting},
+                                          std::pair{Boundary::reflecting, Boundary::outflow}}) {
           auto p = parameters(cells, weno, gas::Splitting::lf_stencil, gas::Positivity::off);
           p.time_scheme = time;
           p.left = left, p.right = right;
@@ -186,9 +186,11 @@ TEST(GasExact, AKernelAStepGivesTheBitsOfAKernelAStage) {
               auto q = p;
               q.positivity = positivity;
               const auto solver = testing::started(runner.backend, q, state);
-              EXPECT_EQ(solver->advance(1e9, 9, 0, {}, {}), gas::Stop::pause);
-              EXPECT_EQ(solver->resume_state().touches, 0);
               std::string all;
+              // Seen by nobody in a child but through the bytes: a cause to differ from the other form.
+              if (solver->advance(1e9, 9, 0, {}, {}) != gas::Stop::pause ||
+                  solver->resume_state().touches > 0)
+                all = "failed with positivity " + std::to_string(static_cast<int>(positivity));
               for (const auto& values : testing::download(*solver, q))
                 append(all, values.data(), values.size());
               return all;

@@ -125,13 +125,29 @@ Parameters variant(int n) {
   return p;
 }
 
-/// Bit for bit where no product is fused into a sum, which is not symmetric; else to what rounding may have
-/// become.
-void expect_equal(const GasState& a, const GasState& b, const Parameters& p, int n) {
+/// How far rounding moves the state at `end_time`: the farthest of four runs whose initial values are a few
+/// units in the last place off. Between 1e-14 of a calm flow and 1e-6 where a cell is near vacuum, its
+/// pressure the last digits of its energy.
+double rounding_response(const Parameters& p, const GasState& state, double end_time) {
+  const double ulps = p.precision == Precision::split ? 1e-7 : 1e-15;
+  const GasState last = run_to(p, state, end_time);
+  double farthest = 0.0;
+  for (unsigned seed = 1; seed <= 4; ++seed) {
+    RandomGas random(seed);
+    GasState other = state;
+    for (auto& values : other)
+      for (double& value : values) value *= 1.0 + random.uniform(-ulps, ulps);
+    farthest = std::max(farthest, distance(run_to(p, other, end_time), last));
+  }
+  return farthest;
+}
+
+/// Bit for bit where no product is fused into a sum, which is not symmetric; else to what rounding becomes.
+void expect_equal(const GasState& a, const GasState& b, const Parameters& p, double response, int n) {
   if (exact_arithmetic)
     EXPECT_TRUE(same_bits(a, b)) << "variant " << n;
   else
-    EXPECT_LT(distance(a, b), p.precision == Precision::split ? 1e-3 : 1e-7) << "variant " << n;
+    EXPECT_LE(distance(a, b), 10 * response) << "variant " << n;
 }
 
 GasState mirrored(GasState state) {
@@ -146,9 +162,10 @@ TEST(GasSymmetry, MirroredFlowStaysMirrored) {
     p.left = n % 2 == 0 ? Boundary::outflow : Boundary::reflecting;
     GasState state = random_state(p, static_cast<unsigned>(n), n % 2 == 0 ? extreme : rough);
     const double end_time = time_of(p, state, 10);
+    const double response = rounding_response(p, state, end_time);
     const GasState image = mirrored(run_to(p, state, end_time));
     std::swap(p.left, p.right);
-    expect_equal(run_to(p, mirrored(state), end_time), image, p, n);
+    expect_equal(run_to(p, mirrored(state), end_time), image, p, response, n);
   }
 }
 
@@ -165,8 +182,10 @@ TEST(GasSymmetry, PeriodicFlowHasNoFirstCell) {
     p.block = 64;
     const GasState state = random_state(p, static_cast<unsigned>(n), n % 2 == 0 ? extreme : rough);
     const double end_time = time_of(p, state, 10);
+    const double response = rounding_response(p, state, end_time);
+    const GasState last = run_to(p, state, end_time);
     for (const std::ptrdiff_t by : {1, 64, 150})
-      expect_equal(run_to(p, shifted(state, by), end_time), shifted(run_to(p, state, end_time), by), p, n);
+      expect_equal(run_to(p, shifted(state, by), end_time), shifted(last, by), p, response, n);
   }
 }
 
