@@ -21,8 +21,8 @@ struct StageSetup {
   Mean mean;
 };
 
-/// Enqueues stage `stage` of a step. Defined in launch_tiles.hpp, instantiated in stage_*.cpp.in and
-/// step_*.cpp.in.
+/// Enqueues stage `stage` of a step. Defined in launch_tiles.hpp, instantiated in stage.cpp.in and
+/// step.cpp.in.
 template <Reconstruction scheme, class ExecutionSpace>
 void launch_stage(const ExecutionSpace& space, const StageSetup<ExecutionSpace>& setup, Precision precision,
                   bool limited, int stage);
