@@ -62,6 +62,11 @@ struct StepFunctor {
     return {open_left ? static_cast<int>(left) : 0, open_right ? static_cast<int>(right) : tile.slots - 1};
   }
 
+  KOKKOS_FUNCTION bool at_an_end(const TileType& tile) const {
+    const Range mesh = mesh_slots(tile);
+    return mesh.first > 0 || mesh.last < tile.slots - 1;
+  }
+
   /// Faces whose stencils hold what stage `stage` begins with; each stage loses three slots a side.
   KOKKOS_FUNCTION Range faces_of(const TileType& tile, int stage) const {
     const Range mesh = mesh_slots(tile);
@@ -79,9 +84,9 @@ struct StepFunctor {
   }
 
   template <bool final_stage, class P>
-  KOKKOS_FUNCTION void update_slot(const TileType& tile, int i, const StageWeights& weights,
-                                   double dt_over_dx, const double* u_n, double* out,
-                                   Reduced<P>& reduced) const {
+  KOKKOS_FUNCTION CellState<P> update_slot(const TileType& tile, int i, const StageWeights& weights,
+                                           double dt_over_dx, const double* u_n, double* out,
+                                           Reduced<P>& reduced) const {
     Triple<P> u = euler_step<P>(tile, i, weights.a_in, dt_over_dx);
     if (weights.a_n != 0.0)
       u = combined(weights.a_n, load_state<P>(u_n, ends, tile.first - tile.halo + i), u);
@@ -93,6 +98,7 @@ struct StepFunctor {
     } else {
       store_cell(tile, i, s);
     }
+    return s;
   }
 
   template <bool final_stage>
@@ -107,17 +113,19 @@ struct StepFunctor {
     const int whole = begin + (end - begin) / lanes * lanes;
     Reduced<R> packs;
     for (int i = begin + member.team_rank() * lanes; i < whole; i += member.team_size() * lanes) {
-      update_slot<final_stage, R>(tile, i, weights, dt_over_dx, u_n, out, packs);
-      if constexpr (!final_stage && lanes == 1) fill_ghosts(tile, i);
+      const CellState<R> s = update_slot<final_stage, R>(tile, i, weights, dt_over_dx, u_n, out, packs);
+      if constexpr (!final_stage && lanes == 1) fill_ghosts(tile, i, s);
     }
     Reduced<double> all;
     merge_lanes(packs, all);
     if constexpr (lanes > 1) {
       for (int i = whole; i < end; ++i)
         update_slot<final_stage, double>(tile, i, weights, dt_over_dx, u_n, out, all);
-      const Range mesh = mesh_slots(tile);
-      if (!final_stage && (mesh.first > 0 || mesh.last < tile.slots - 1))
-        for (int i = begin; i < end; ++i) fill_ghosts(tile, i);
+      if (!final_stage && at_an_end(tile))
+        for (int i = begin; i < end; ++i) {
+          const Triple<double> u = tile.template state<double>(i);
+          fill_ghosts(tile, i, cell_state<double>(gamma, u.rho, u.m, u.energy));
+        }
     }
     if (all.admissible < 1.0) find_inadmissible<final_stage>(member, tile, begin, end, stage, out);
     if constexpr (final_stage)
@@ -125,24 +133,27 @@ struct StepFunctor {
                                     device::maximum(all.slow, all.fast));
   }
 
-  /// A cell beside an end of the mesh renews the ghosts that are its images.
-  KOKKOS_FUNCTION void fill_ghosts(const TileType& tile, int i) const {
-    const Range mesh = mesh_slots(tile);
+  /// The ghosts are images of the three cells beside an end of the mesh; who computes such a cell, in slot
+  /// `i`, renews them.
+  KOKKOS_FUNCTION void fill_ghosts(const TileType& tile, int i, const CellState<double>& s) const {
     const std::int64_t cell = tile.first - tile.halo + i;
-    if (ends.left != Boundary::periodic && cell < ghost_cells)
-      fill_side(tile, i, mesh.first, -1, ends.left == Boundary::reflecting);
-    if (ends.right != Boundary::periodic && cell >= ends.cells - ghost_cells)
-      fill_side(tile, i, mesh.last, 1, ends.right == Boundary::reflecting);
+    const Range mesh = mesh_slots(tile);
+    if (cell < ghost_cells) fill_side(tile, i, s, mesh.first, -1, ends.left);
+    if (cell >= ends.cells - ghost_cells) fill_side(tile, i, s, mesh.last, 1, ends.right);
   }
 
   /// `end` is the slot of the last cell on this side, `out` the direction out of the mesh.
-  KOKKOS_FUNCTION void fill_side(const TileType& tile, int i, int end, int out, bool reflecting) const {
-    const Triple<double> u = tile.template state<double>(i);
-    for (int k = 0; k < ghost_cells; ++k) {
-      const int ghost = end + out * (1 + k), image = reflecting ? end - out * k : end;
-      if (image != i || ghost < 0 || ghost >= tile.slots) continue;
-      store_cell(tile, ghost, cell_state<double>(gamma, u.rho, reflecting ? -u.m : u.m, u.energy));
+  KOKKOS_FUNCTION void fill_side(const TileType& tile, int i, const CellState<double>& s, int end, int out,
+                                 Boundary kind) const {
+    if (kind == Boundary::reflecting) {
+      store_ghost(tile, end + (end - i) + out, {s.rho, -s.m, s.energy, -s.u, s.p, s.enthalpy, s.c});
+    } else if (kind == Boundary::outflow && i == end) {
+      for (int k = 1; k <= ghost_cells; ++k) store_ghost(tile, end + out * k, s);
     }
+  }
+
+  KOKKOS_FUNCTION void store_ghost(const TileType& tile, int i, const CellState<double>& s) const {
+    if (i >= 0 && i < tile.slots) store_cell(tile, i, s);
   }
 
   template <bool final_stage>
