@@ -22,6 +22,10 @@ constexpr std::uint64_t piece_entries = 1U << 18U;
 constexpr std::uint64_t metadata_bytes =
     1U << 14U;  ///< upper bound of what a group or a dataset adds to its data
 
+// Names that an index block holds: of /mesh, of /steps as it begins (a page), and of /steps of a long run.
+constexpr unsigned mesh_links = 16, page_links = 190, many_links = 3000;
+constexpr unsigned mesh_name_length = 16, step_name_length = 6;
+
 /// Takes the space after the end of the file from the disk without making the file longer.
 void reserve(const std::filesystem::path& file, std::uint64_t bytes) {
   const int descriptor = open(file.c_str(), O_RDWR | O_CLOEXEC);
@@ -38,8 +42,9 @@ void reserve(const std::filesystem::path& file, std::uint64_t bytes) {
   if (error == ENOSPC || error == EDQUOT || error == EFBIG) throw io_failure("write", file, error);
 }
 
-h5::Handle create_described(const h5::Handle& parent, const DatasetSpec& spec, hid_t type) {
-  h5::Handle dataset = h5::create_dataset(parent, spec.name, type, spec.shape);
+h5::Handle create_described(const h5::Handle& parent, const std::string& name, const DatasetSpec& spec,
+                            hid_t type) {
+  h5::Handle dataset = h5::create_dataset(parent, name, type, spec.shape);
   h5::write_attribute(dataset, "units", spec.units);
   h5::write_attribute(dataset, "centering", spec.centering);
   h5::write_attribute(dataset, "description", spec.description);
@@ -56,14 +61,19 @@ struct FieldsWriter::State {
   std::vector<DatasetSpec> mesh;
   std::vector<OutputStep> outputs;
   OutputStep current;
-  h5::Handle open;                                          // between begin_step() and end_step() only
-  std::map<std::string, h5::Handle, std::less<>> datasets;  // of the current step
+  // Between begin_step() and end_step() only:
+  h5::Handle open;
+  h5::Handle step;  // has no name yet
+  std::map<std::string, h5::Handle, std::less<>> datasets;
 
   void create() const;
   void resume(double time);
-  void require_same_fields(const h5::Handle& step) const;
+  void require_same_fields(const h5::Handle& output) const;
   void write_xdmf() const;
   void abandon_step() noexcept;
+  void publish(h5::Handle file, const std::string& group, const std::string& name,
+               const h5::Handle& object) const;
+  void enlarge_index() const;
 
   template <typename Number>
   void add_mesh(const DatasetSpec& spec, hid_t type,
@@ -74,8 +84,8 @@ void FieldsWriter::State::create() const {
   const std::filesystem::path temporary = temporary_name(file);
   try {
     h5::Handle handle = h5::create_file(temporary);
-    h5::create_group(handle, "mesh");
-    h5::create_group(handle, "steps");
+    h5::create_group(handle, "mesh", mesh_links, mesh_name_length);
+    h5::create_group(handle, "steps", page_links, step_name_length);
     handle.close_file();
   } catch (...) {
     unlink(temporary.c_str());
@@ -86,26 +96,29 @@ void FieldsWriter::State::create() const {
 
 void FieldsWriter::State::resume(double time) {
   h5::Handle handle = h5::open_file(file, true);
-  const h5::Handle steps = h5::open_group(handle, "steps");
-  for (const std::string& name : h5::children(steps)) {
-    const h5::Handle step = h5::open_group(steps, name);
-    const double output_time = h5::read_number(step, "time");
+  const h5::Handle index = h5::open_group(handle, "steps");
+  bool dropped = false;
+  for (const std::string& name : h5::children(index)) {
+    const h5::Handle output = h5::open_group(index, name);
+    const double output_time = h5::read_number(output, "time");
     if (output_time <= time) {
-      require_same_fields(step);
+      require_same_fields(output);
       outputs.push_back({name, output_time});
     } else {
-      h5::remove(steps, name);
+      h5::remove(index, name);
+      dropped = true;
     }
   }
+  if (dropped) h5::keep_length(handle);
   handle.close_file();
 }
 
 /// fields.xdmf names the same fields for every step.
-void FieldsWriter::State::require_same_fields(const h5::Handle& step) const {
+void FieldsWriter::State::require_same_fields(const h5::Handle& output) const {
   std::vector<std::string> wanted;
   for (const DatasetSpec& field : fields) wanted.push_back(field.name);
   std::sort(wanted.begin(), wanted.end());
-  if (h5::children(step) != wanted) {
+  if (h5::children(output) != wanted) {
     throw Failure(ExitCode::io_error,
                   "cannot continue '" + file.string() + "': it has other fields than this run");
   }
@@ -118,16 +131,42 @@ void FieldsWriter::State::write_xdmf() const {
   if (line != mesh.end()) write_file_atomically(xdmf, xdmf_document(title, *line, fields, outputs));
 }
 
-/// After an error: the unfinished group leaves the file again, as far as the disk allows.
+/// The group that has no name yet leaves the file.
 void FieldsWriter::State::abandon_step() noexcept {
   datasets.clear();
-  if (!open) return;
-  try {
-    h5::remove(h5::open_group(open, "steps"), current.group);
-  } catch (const Failure&) {
-    // The group was not linked yet.
-  }
+  step.reset();
   open.reset();
+}
+
+/// Gives `object`, of which all else is written, its name and closes the file. Until all of the object is on
+/// disk nothing leads to it, and the name is one write: whenever the process is killed, the file is whole.
+void FieldsWriter::State::publish(h5::Handle handle, const std::string& group, const std::string& name,
+                                  const h5::Handle& object) const {
+  h5::flush(handle);
+  sync_path(file);
+  h5::link(h5::open_group(handle, group), name, object);
+  handle.close_file();
+  sync_path(file);
+}
+
+/// A group with room for more names takes the place of /steps. It is complete on disk before one write of the
+/// root group, which is not written in between, leads to it.
+void FieldsWriter::State::enlarge_index() const {
+  reserve(file, 32ULL * many_links);
+  h5::Handle handle = h5::open_file(file, true);
+  h5::Handle roomy = h5::create_group(handle, "", many_links, step_name_length);
+  h5::flush(handle);
+  h5::link(handle, "roomy", roomy);
+  roomy = h5::open_group(handle, "roomy");  // HDF5 moves nothing to what has no name
+  h5::Handle index = h5::open_group(handle, "steps");
+  for (const OutputStep& output : outputs) h5::move(index, output.group, roomy, output.group);
+  h5::flush_object(roomy);
+  sync_path(file);
+  index.reset();
+  h5::remove(handle, "steps");
+  h5::move(handle, "roomy", handle, "steps");
+  handle.close_file();
+  sync_path(file);
 }
 
 template <typename Number>
@@ -135,10 +174,9 @@ void FieldsWriter::State::add_mesh(const DatasetSpec& spec, hid_t type,
                                    const std::function<void(std::uint64_t, std::span<Number>)>& source) {
   reserve(file, entries(spec) * sizeof(Number) + metadata_bytes);
   h5::Handle handle = h5::open_file(file, true);
-  const h5::Handle group = h5::open_group(handle, "mesh");
   mesh.push_back(spec);
-  if (h5::exists(group, spec.name)) return;
-  h5::Handle dataset = create_described(group, spec, type);
+  if (h5::exists(h5::open_group(handle, "mesh"), spec.name)) return;
+  const h5::Handle dataset = create_described(handle, "", spec, type);
   const std::uint64_t total = entries(spec);
   const std::uint64_t row = std::max<std::uint64_t>(1, total / std::max<std::uint64_t>(1, spec.shape.at(0)));
   const std::uint64_t piece = std::max<std::uint64_t>(1, piece_entries / row) * row;
@@ -148,8 +186,7 @@ void FieldsWriter::State::add_mesh(const DatasetSpec& spec, hid_t type,
     source(first, part);
     h5::write(dataset, first, std::span<const Number>(part));
   }
-  dataset.reset();
-  handle.close_file();
+  publish(std::move(handle), "mesh", spec.name, dataset);
 }
 
 FieldsWriter::FieldsWriter(const std::filesystem::path& directory, std::string title,
@@ -178,6 +215,7 @@ void FieldsWriter::add_mesh(const DatasetSpec& spec, const IntegerSource& source
 }
 
 void FieldsWriter::begin_step(double time, std::int64_t step) {
+  if (_state->outputs.size() == page_links) _state->enlarge_index();
   std::uint64_t bytes = metadata_bytes;
   for (const DatasetSpec& field : _state->fields) bytes += entries(field) * sizeof(double) + metadata_bytes;
   reserve(_state->file, bytes);
@@ -186,12 +224,11 @@ void FieldsWriter::begin_step(double time, std::int64_t step) {
   _state->current = {name, time};
   _state->open = h5::open_file(_state->file, true);
   try {
-    const h5::Handle group = h5::create_group(h5::open_group(_state->open, "steps"), name);
-    h5::write_attribute(group, "time", time);
-    h5::write_attribute(group, "step", step);
-    for (const DatasetSpec& field : _state->fields) {
-      _state->datasets[field.name] = create_described(group, field, H5T_NATIVE_DOUBLE);
-    }
+    _state->step = h5::create_group(_state->open, "");
+    h5::write_attribute(_state->step, "time", time);
+    h5::write_attribute(_state->step, "step", step);
+    for (const DatasetSpec& field : _state->fields)
+      _state->datasets[field.name] = create_described(_state->step, field.name, field, H5T_NATIVE_DOUBLE);
   } catch (...) {
     _state->abandon_step();
     throw;
@@ -209,8 +246,8 @@ void FieldsWriter::write(std::string_view field, std::uint64_t first, std::span<
 
 void FieldsWriter::end_step() {
   _state->datasets.clear();
-  _state->open.close_file();
-  sync_path(_state->file);
+  _state->publish(std::move(_state->open), "steps", _state->current.group, _state->step);
+  _state->step.reset();
   _state->outputs.push_back(_state->current);
   _state->write_xdmf();
 }

@@ -20,9 +20,11 @@ using IntegerSource = std::function<void(std::uint64_t first, std::span<std::int
 
 /// fields.h5 and fields.xdmf of a run: `/mesh/<name>` and `/steps/000000/<field>`.
 ///
-/// Between steps the file is closed and on disk. Within a step nothing of its former content is changed
-/// before end_step(), which hands over some kilobytes of metadata at once: only a kill in those microseconds
-/// can damage it, and a full disk is met before. ParaView may read along. All calls throw Failure(io_error).
+/// Between steps the file is closed and on disk. A step is written where nothing leads to it and appears by
+/// one write of one page in end_step(), so a kill at any moment leaves a file with whole steps; a full disk
+/// is met before. Only beyond 190 steps, whose names fill that page, is it a longer write, which the system
+/// may stop at the end of a page: a kill within those microseconds can make the file unreadable. The space of
+/// steps that a restart drops stays in the file. ParaView may read along. All calls throw Failure(io_error).
 /// They may come from another thread than the constructor, one at a time.
 class FieldsWriter {
  public:

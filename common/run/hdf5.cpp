@@ -25,6 +25,8 @@ Handle file_access(const std::filesystem::path& path) {
 #endif
   // Closing a file closes what is open in it, so that it is complete then.
   H5Pset_fclose_degree(access.id(), H5F_CLOSE_STRONG);
+  // The format of HDF5 1.8 has groups that one write changes; later ones mark a file that a kill left open.
+  if (H5Pset_libver_bounds(access.id(), H5F_LIBVER_V18, H5F_LIBVER_V18) < 0) fail("prepare to open", path);
   H5AC_cache_config_t cache = {};
   cache.version = H5AC__CURR_CACHE_CONFIG_VERSION;
   herr_t status = H5Pget_mdc_config(access.id(), &cache);
@@ -93,8 +95,7 @@ void Handle::reset() noexcept {
 
 void Handle::close_file() {
   const Lock lock;
-  // The flush reports a full disk while the file still has its name; H5Fclose would lose it.
-  if (H5Fflush(_id, H5F_SCOPE_GLOBAL) < 0) fail("write", _id);
+  flush(*this);  // reports a full disk while the file still has its name; H5Fclose would lose it
   const hid_t id = std::exchange(_id, -1);
   if (H5Fclose(id) < 0) throw Failure(ExitCode::io_error, "cannot close an HDF5 file");
 }
@@ -104,6 +105,9 @@ Handle create_file(const std::filesystem::path& path, std::uint64_t user_block) 
   const Handle access = file_access(path);
   const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
   if (!creation || H5Pset_userblock(creation.id(), user_block) < 0) fail("create", path);
+  // The system writes a page whole, even when the process is killed. HDF5 has this without a user block only.
+  if (user_block == 0 && H5Pset_alignment(access.id(), index_page - 256, index_page) < 0)
+    fail("create", path);
   const hid_t id = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation.id(), access.id());
   if (id < 0) fail("create", path);
   return {id, H5Fclose};
@@ -117,10 +121,38 @@ Handle open_file(const std::filesystem::path& path, bool writable) {
   return {id, H5Fclose};
 }
 
-Handle create_group(const Handle& parent, const std::string& name) {
+Handle create_group(const Handle& parent, const std::string& name, unsigned links, unsigned name_length) {
   const Lock lock;
-  return checked(H5Gcreate2(parent.id(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose,
-                 "write", parent.id());
+  const Handle creation = checked(H5Pcreate(H5P_GROUP_CREATE), H5Pclose, "write", parent.id());
+  H5Pset_obj_track_times(creation.id(), false);
+  if (links > 0 && (H5Pset_est_link_info(creation.id(), links, name_length) < 0 ||
+                    H5Pset_link_phase_change(creation.id(), 65535, 65534) < 0))
+    fail("write", parent.id());
+  const hid_t id = name.empty()
+                       ? H5Gcreate_anon(parent.id(), creation.id(), H5P_DEFAULT)
+                       : H5Gcreate2(parent.id(), name.c_str(), H5P_DEFAULT, creation.id(), H5P_DEFAULT);
+  return checked(id, H5Gclose, "write", parent.id());
+}
+
+void link(const Handle& parent, const std::string& name, const Handle& object) {
+  const Lock lock;
+  if (H5Olink(object.id(), parent.id(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT) < 0)
+    fail("write", parent.id());
+}
+
+void flush(const Handle& file) {
+  const Lock lock;
+  if (H5Fflush(file.id(), H5F_SCOPE_GLOBAL) < 0) fail("write", file.id());
+}
+
+void flush_object(const Handle& object) {
+  const Lock lock;
+  if (H5Oflush(object.id()) < 0) fail("write", object.id());
+}
+
+void keep_length(const Handle& file) {
+  const Lock lock;
+  if (H5Fincrement_filesize(file.id(), 0) < 0) fail("write", file.id());
 }
 
 Handle open_group(const Handle& parent, const std::string& name) {
@@ -136,6 +168,12 @@ bool exists(const Handle& parent, const std::string& name) {
 void remove(const Handle& parent, const std::string& name) {
   const Lock lock;
   if (H5Ldelete(parent.id(), name.c_str(), H5P_DEFAULT) < 0) fail("change", parent.id());
+}
+
+void move(const Handle& from, const std::string& name, const Handle& to, const std::string& new_name) {
+  const Lock lock;
+  if (H5Lmove(from.id(), name.c_str(), to.id(), new_name.c_str(), H5P_DEFAULT, H5P_DEFAULT) < 0)
+    fail("change", from.id());
 }
 
 std::vector<std::string> children(const Handle& group) {
@@ -157,11 +195,13 @@ Handle create_dataset(const Handle& parent, const std::string& name, hid_t type,
   const Handle space = checked(H5Screate_simple(static_cast<int>(extent.size()), extent.data(), nullptr),
                                H5Sclose, "write", parent.id());
   const Handle creation = checked(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, "write", parent.id());
+  H5Pset_obj_track_times(creation.id(), false);
   H5Pset_alloc_time(creation.id(), H5D_ALLOC_TIME_EARLY);
   H5Pset_fill_time(creation.id(), H5D_FILL_TIME_NEVER);
-  return checked(
-      H5Dcreate2(parent.id(), name.c_str(), type, space.id(), H5P_DEFAULT, creation.id(), H5P_DEFAULT),
-      H5Dclose, "write", parent.id());
+  const hid_t id = name.empty() ? H5Dcreate_anon(parent.id(), type, space.id(), creation.id(), H5P_DEFAULT)
+                                : H5Dcreate2(parent.id(), name.c_str(), type, space.id(), H5P_DEFAULT,
+                                             creation.id(), H5P_DEFAULT);
+  return checked(id, H5Dclose, "write", parent.id());
 }
 
 Handle open_dataset(const Handle& parent, const std::string& name) {

@@ -217,6 +217,26 @@ TEST(FieldsWriter, RestartDropsLaterStepsAndGoesOn) {
   EXPECT_EQ(content(directory / "fields.xdmf").find("Time Value=\"2\""), std::string::npos);
 }
 
+TEST(FieldsWriter, KeepsManySteps) {
+  const TemporaryDirectory directory;
+  constexpr std::uint64_t few = 2;
+  const auto wanted = [](std::size_t i) { return field_values(static_cast<double>(i), 1.0, few); };
+  FieldsWriter fields(directory.path(), "sod", gas_fields(few));
+  for (int i = 0; i < 600; ++i) write_step(fields, i, few);
+  FieldsWriter resumed(directory.path(), "sod", gas_fields(few), 549.0);
+  EXPECT_EQ(resumed.steps(), 550U);
+  for (int i = 550; i < 560; ++i) write_step(resumed, i, few);
+  const h5::Handle handle = h5::open_file(directory / "fields.h5", false);
+  const h5::Handle steps = h5::open_group(handle, "steps");
+  const std::vector<std::string> names = h5::children(steps);
+  ASSERT_EQ(names.size(), 560U);
+  std::vector<double> values(few);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    h5::read(h5::open_dataset(h5::open_group(steps, names[i]), "u"), 0, values);
+    EXPECT_EQ(values, wanted(i));
+  }
+}
+
 TEST(FieldsWriter, AReaderDoesNotStopTheRun) {
   const TemporaryDirectory directory;
   FieldsWriter fields(directory.path(), "sod", gas_fields());
