@@ -144,7 +144,9 @@ void FieldsWriter::State::publish(h5::Handle handle, const std::string& group, c
                                   const h5::Handle& object) const {
   h5::flush(handle);
   sync_path(file);
-  h5::link(h5::open_group(handle, group), name, object);
+  const h5::Handle parent = h5::open_group(handle, group);
+  if (h5::exists(parent, name)) h5::remove(parent, name);
+  h5::link(parent, name, object);
   handle.close_file();
   sync_path(file);
 }
@@ -250,6 +252,19 @@ void FieldsWriter::end_step() {
   _state->step.reset();
   _state->outputs.push_back(_state->current);
   _state->write_xdmf();
+}
+
+void FieldsWriter::add_reference(const ReferenceSolution& solution) {
+  std::uint64_t bytes = metadata_bytes;
+  for (const auto& [spec, values] : solution.datasets) bytes += values.size_bytes() + metadata_bytes;
+  reserve(_state->file, bytes);
+  h5::Handle handle = h5::open_file(_state->file, true);
+  const h5::Handle group = h5::create_group(handle, "");
+  h5::write_attribute(group, "scheme", solution.scheme);
+  h5::write_attribute(group, "cells", static_cast<std::int64_t>(entries(solution.datasets.at(0).first)));
+  for (const auto& [spec, values] : solution.datasets)
+    h5::write(create_described(group, spec.name, spec, H5T_NATIVE_DOUBLE), 0, values);
+  _state->publish(std::move(handle), "/", "reference", group);
 }
 
 std::size_t FieldsWriter::steps() const noexcept { return _state->outputs.size(); }

@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "common/run/dataset_spec.hpp"
@@ -18,7 +19,14 @@ namespace drogue::run {
 using Source = std::function<void(std::uint64_t first, std::span<double> values)>;
 using IntegerSource = std::function<void(std::uint64_t first, std::span<std::int64_t> values)>;
 
-/// fields.h5 and fields.xdmf of a run: `/mesh/<name>` and `/steps/000000/<field>`.
+/// A solution that a run is compared with at its end time, on a line of its own.
+struct ReferenceSolution {
+  std::string scheme;  ///< how it was computed, as a scene names it
+  std::vector<std::pair<DatasetSpec, std::span<const double>>> datasets;  ///< `x` and fields
+};
+
+/// fields.h5 and fields.xdmf of a run: `/mesh/<name>` and `/steps/000000/<field>`, sometimes
+/// `/reference/<field>`.
 ///
 /// Between steps the file is closed and on disk. A step is written where nothing leads to it and appears by
 /// one write of one page in end_step(), so a kill at any moment leaves a file with whole steps; a full disk
@@ -52,6 +60,9 @@ class FieldsWriter {
 
   /// Completes the output: on disk, and listed in fields.xdmf.
   void end_step();
+
+  /// Adds `/reference`, with the attributes `scheme` and `cells`, or replaces it.
+  void add_reference(const ReferenceSolution& solution);
 
   /// Outputs complete so far, those of a resumed file included.
   [[nodiscard]] std::size_t steps() const noexcept;

@@ -82,7 +82,7 @@ ExitCode run_scene(const MiniAppOptions& options, const std::filesystem::path& f
     Simulation simulation(scene, {backend, options.seed_mode, options.quiet, restart});
     result.exit_code = simulation.run(&directory, result);
     if (result.exit_code == ExitCode::ok) {
-      result.exit_code = simulation.verify(result);
+      result.exit_code = simulation.verify(&directory, result);
       if (result.exit_code == ExitCode::interrupted) simulation.write_restart(directory);
       if (const std::string failed = result.failed_check(); !failed.empty())
         throw Failure(ExitCode::verification_failed, failed);

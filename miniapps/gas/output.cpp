@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <limits>
 
 #include "miniapps/gas/fields.hpp"
 
@@ -15,6 +16,10 @@ run::DatasetSpec field_spec(const std::string& name, std::int64_t cells) {
   if (name == "rho") return {name, shape, "kg/m^3", "cell", "density"};
   if (name == "u") return {name, shape, "m/s", "cell", "velocity"};
   return {name, shape, "Pa", "cell", "pressure"};
+}
+
+run::DatasetSpec line_spec(std::int64_t cells) {
+  return {"x", {static_cast<std::uint64_t>(cells)}, "m", "cell", "cell centres"};
 }
 
 std::vector<run::DatasetSpec> field_specs(const GasScene& scene) {
@@ -52,11 +57,10 @@ RunOutput::RunOutput(const GasScene& scene, gas::Solver& solver, const run::RunD
     _history.emplace(directory.file("history.csv"), history_columns, resume_time);
   if (scene.output.fields.empty()) return;
   _fields.emplace(directory.path(), scene.name, field_specs(scene), resume_time);
-  _fields->add_mesh({"x", {static_cast<std::uint64_t>(scene.parameters.cells)}, "m", "cell", "cell centres"},
-                    [&](std::uint64_t first, std::span<double> x) {
-                      for (std::size_t i = 0; i < x.size(); ++i)
-                        x[i] = cell_centre(scene.parameters, static_cast<std::int64_t>(first + i));
-                    });
+  _fields->add_mesh(line_spec(scene.parameters.cells), [&](std::uint64_t first, std::span<double> x) {
+    for (std::size_t i = 0; i < x.size(); ++i)
+      x[i] = cell_centre(scene.parameters, static_cast<std::int64_t>(first + i));
+  });
 }
 
 void RunOutput::write_row(const gas::HistoryRow& row) {
@@ -113,6 +117,19 @@ void RunOutput::finish() {
   _writer.finish();
   if (_history) _history->finish();
   _waited += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+void write_reference(const GasScene& scene, const run::RunDirectory& directory, const Reference& reference) {
+  const auto cells = static_cast<std::int64_t>(reference.x.size());
+  run::ReferenceSolution solution;
+  solution.scheme = weno_name(scene.verify.reference->weno);
+  solution.datasets = {{line_spec(cells), reference.x}};
+  for (const std::string& name : scene.output.fields)
+    solution.datasets.emplace_back(field_spec(name, cells), name == "rho" ? reference.rho
+                                                            : name == "u" ? reference.u
+                                                                          : reference.p);
+  constexpr double every_step = std::numeric_limits<double>::infinity();
+  run::FieldsWriter(directory.path(), scene.name, field_specs(scene), every_step).add_reference(solution);
 }
 
 }  // namespace drogue::gas_app

@@ -7,6 +7,7 @@
 #include "common/run/fields_writer.hpp"
 #include "common/run/history_writer.hpp"
 #include "common/run/run_directory.hpp"
+#include "miniapps/gas/exact.hpp"
 #include "miniapps/gas/restart.hpp"
 
 namespace drogue::gas_app {
@@ -40,5 +41,8 @@ class RunOutput {
   double _waited = 0.0;
   run::BackgroundWriter _writer{1};  // last: its thread uses the others until it is gone
 };
+
+/// Keeps the finer run that a scene was compared with beside its fields, for pictures.
+void write_reference(const GasScene& scene, const run::RunDirectory& directory, const Reference& reference);
 
 }  // namespace drogue::gas_app

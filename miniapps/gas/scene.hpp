@@ -93,6 +93,9 @@ GasScene read_gas_scene(const std::filesystem::path& file, const std::vector<std
 /// The resolved scene as TOML: every default that applies, no key that does not. Resolves to itself.
 std::string print_gas_scene(const GasScene& scene);
 
+/// The scheme as scenes spell it: js, z, m, teno5.
+std::string weno_name(gas::Weno weno);
+
 /// All keys with type, range, unit, default and meaning, as the Markdown page docs/scenes-gas.md.
 std::string document_gas_scene();
 

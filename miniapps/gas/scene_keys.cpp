@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "miniapps/gas/scene_keys.hpp"
 
 #include "common/scene/codec.hpp"
@@ -268,6 +270,10 @@ void declare_gas_scene(Table& root, GasScene& scene) {
             "The fused stage kernel");
       },
       "Block sizes of kernels; they change speed, not results");
+}
+
+std::string weno_name(gas::Weno weno) {
+  return std::ranges::find(weno_choices, weno, &Choices<gas::Weno>::value_type::second)->first;
 }
 
 }  // namespace drogue::gas_app

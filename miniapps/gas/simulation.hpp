@@ -32,8 +32,9 @@ class Simulation {
   ExitCode run(const run::RunDirectory* directory, run::ResultDocument& result);
 
   /// Errors, checks and reference, as the scene's [verify] asks. Returns `interrupted` if a signal ended the
-  /// reference run, otherwise `ok`, whatever the checks say.
-  ExitCode verify(run::ResultDocument& result);
+  /// reference run, otherwise `ok`, whatever the checks say. A reference run joins the fields in `directory`,
+  /// if there is one.
+  ExitCode verify(const run::RunDirectory* directory, run::ResultDocument& result);
 
   /// Writes restart.h5 of the state now.
   void write_restart(const run::RunDirectory& directory);

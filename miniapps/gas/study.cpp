@@ -74,9 +74,8 @@ std::vector<Row> points(const StudyAxes& axes) {
 }
 
 void describe(Row& row, const gas::Parameters& p) {
-  const char* const wenos[] = {"js", "z", "m", "teno5"};
   const char* const splittings[] = {"lf-global", "lf-single", "lf-stencil"};
-  row.weno = wenos[static_cast<int>(p.weno)];
+  row.weno = weno_name(p.weno);
   row.power = p.weno_power;
   row.splitting = splittings[static_cast<int>(p.splitting)];
   row.time = p.time_scheme == gas::TimeScheme::ssprk3 ? "ssprk3" : "ssprk43";

@@ -25,13 +25,15 @@ double conservation_error(const gas::HistoryRow& first, const gas::HistoryRow& l
 
 }  // namespace
 
-ExitCode Simulation::verify(run::ResultDocument& result) {
+ExitCode Simulation::verify(const run::RunDirectory* directory, run::ResultDocument& result) {
   const Verify& wanted = _scene.verify;
   if (wanted.exact) {
     std::optional<Reference> reference = Reference{};
     if (*wanted.exact == Exact::reference)
       reference = run_reference(_scene, _settings.backend, _settings.quiet);
     if (!reference) return ExitCode::interrupted;
+    if (directory != nullptr && !reference->x.empty() && !_scene.output.fields.empty())
+      write_reference(_scene, *directory, *reference);
     result.errors = error_norms(*_solver, _scene.parameters, exact_solution(_scene, result.time, *reference));
     for (const auto& [name, bar] : wanted.bars) result.add_check(name, result.errors.at(name), bar);
   }

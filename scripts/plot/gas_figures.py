@@ -97,7 +97,7 @@ def _wants_logarithm(name: str, low: float, high: float) -> bool:
 
 
 def set_range(axes, name: str, arrays) -> None:
-    """Vertical axis that holds all of the run's values; logarithmic where they span three decades."""
+    """Vertical axis that holds all of the values; logarithmic where they span three decades."""
     low = min(float(np.nanmin(values)) for values in arrays)
     high = max(float(np.nanmax(values)) for values in arrays)
     if _wants_logarithm(name, low, high):
@@ -163,7 +163,8 @@ def fields_figure(view: View, snapshot: Snapshot):
     final = snapshot is view.run.snapshots[-1]
     for column, name in enumerate(view.fields):
         FieldPanel(axes[0][column], view, name).show(snapshot)
-        set_range(axes[0][column], name, [snapshot.fields[name].values])
+        curve = view.exact.curve(snapshot.time, view.x)[1] if view.exact else {}
+        set_range(axes[0][column], name, [snapshot.fields[name].values, *([curve[name]] if name in curve else [])])
         if name in error:
             title = _error_title(view.run, name) if final else "|error|"
             _draw_error(axes[1][column], view, snapshot, name, error[name], title)

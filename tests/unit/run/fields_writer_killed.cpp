@@ -130,7 +130,13 @@ void expect_dataset(const h5::Handle& parent, const std::string& name, const std
 /// Times of the steps in the file, all of which must be complete.
 Times whole_steps(const std::filesystem::path& file) {
   const h5::Handle handle = h5::open_file(file, false);
-  EXPECT_EQ(h5::children(handle), (std::vector<std::string>{"mesh", "steps"}));
+  std::vector<std::string> groups = h5::children(handle);
+  if (std::erase(groups, "reference") > 0) {
+    const h5::Handle reference = h5::open_group(handle, "reference");
+    EXPECT_EQ(h5::children(reference), (std::vector<std::string>{"rho", "x"}));
+    expect_dataset(reference, "rho", values_of(2.0, "rho"), "kg/m^3");
+  }
+  EXPECT_EQ(groups, (std::vector<std::string>{"mesh", "steps"}));
   const h5::Handle mesh = h5::open_group(handle, "mesh");
   for (const std::string& name : h5::children(mesh)) {
     if (name == "x") expect_dataset(mesh, name, values_of(0.0, "x"), "m");
@@ -225,6 +231,20 @@ TEST(FieldsWriterKilled, AfterAFailedStep) {
     run.step(2.0);
   };
   EXPECT_GT(kill_everywhere(nothing, work, {{}, {0.0}, {0.0, 2.0}}), 50);
+}
+
+TEST(FieldsWriterKilled, WhileAReferenceJoinsOrIsReplaced) {
+  const auto work = [](const std::filesystem::path& directory) {
+    SodRun run(directory);
+    run.step(0.0);
+    const std::vector<double> x = values_of(0.0, "x"), rho = values_of(2.0, "rho");
+    for (int i = 0; i < 2; ++i)
+      run.fields.add_reference({"z",
+                                {{{"x", {cells}, "m", "cell", "cell centres"}, x},
+                                 {{"rho", {cells}, "kg/m^3", "cell", "density"}, rho}}});
+    run.step(1.0);
+  };
+  EXPECT_GT(kill_everywhere(nothing, work, {{}, {0.0}, {0.0, 1.0}}), 60);
 }
 
 // The 191st output moves the index into a larger block, which is more than a page.
