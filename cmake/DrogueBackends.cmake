@@ -1,8 +1,10 @@
 # The compiled-in backends, and the files that are written once for each of them.
 
+option(DROGUE_OPENMP "The OpenMP backend, where Kokkos has it" ON)
+
 set(DROGUE_BACKENDS serial)
 set(DROGUE_EXECUTION_SPACE_serial Kokkos::Serial)
-if(Kokkos_ENABLE_OPENMP)
+if(DROGUE_OPENMP AND Kokkos_ENABLE_OPENMP)
   list(APPEND DROGUE_BACKENDS openmp)
   set(DROGUE_EXECUTION_SPACE_openmp Kokkos::OpenMP)
 endif()

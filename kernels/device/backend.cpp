@@ -25,7 +25,7 @@ std::optional<Backend> backend_from_name(std::string_view text) {
 std::vector<Backend> compiled_backends() {
   return {
     Backend::serial,
-#if defined(KOKKOS_ENABLE_OPENMP)
+#if defined(DROGUE_HAVE_OPENMP)
         Backend::openmp,
 #endif
 #if defined(KOKKOS_ENABLE_CUDA)

@@ -38,7 +38,7 @@ std::unique_ptr<Solver> create_solver(device::Backend backend, const Parameters&
   switch (backend) {
     case device::Backend::serial:
       return create_solver_serial(parameters);
-#if defined(KOKKOS_ENABLE_OPENMP)
+#if defined(DROGUE_HAVE_OPENMP)
     case device::Backend::openmp:
       return create_solver_openmp(parameters);
 #endif
@@ -56,7 +56,7 @@ std::unique_ptr<Solver> create_seed_solver(device::Backend backend, const Parame
   switch (backend) {
     case device::Backend::serial:
       return create_seed_solver_serial(parameters);
-#if defined(KOKKOS_ENABLE_OPENMP)
+#if defined(DROGUE_HAVE_OPENMP)
     case device::Backend::openmp:
       return create_seed_solver_openmp(parameters);
 #endif

@@ -30,6 +30,7 @@ class Bars(gas_program.GasTest):
             with self.subTest(hard_cases.label(row)):
                 self.assert_meets(row, "serial")
 
+    @gas_program.needs_openmp
     def test_openmp(self):
         """Each case once: that the backends agree elsewhere is the business of the exact tests."""
         once = {row["case"]: row for row in ROWS if row["N"] in ("200", "201")}

@@ -27,7 +27,7 @@ class StationaryContact(gas_program.GasTest):
 
     def test_schemes(self):
         for scheme, limiter in itertools.product(("js", "z1", "z2", "teno5"), ("off", "on", "auto")):
-            for backend in ("serial", "openmp"):
+            for backend in {"serial", gas_program.threaded()}:
                 with self.subTest(scheme=scheme, limiter=limiter, backend=backend):
                     self.assert_kept(backend, f'scheme.positivity="{limiter}"', *hard_cases.scheme_sets(scheme))
 

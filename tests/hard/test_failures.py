@@ -58,7 +58,7 @@ class Failures(gas_program.GasTest):
         for index, row in enumerate(ROWS):
             with self.subTest(hard_cases.label(row)):
                 words = ["--overwrite"] if index else []
-                message = self.fail(row, "openmp" if row["N"] == "200" else "serial", *words)
+                message = self.fail(row, gas_program.threaded() if row["N"] == "200" else "serial", *words)
                 self.assert_clear_failure(row, message, *self.domain(row["case"]))
 
     def test_the_last_good_state_leads_to_the_same_failure(self):

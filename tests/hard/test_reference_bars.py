@@ -6,6 +6,7 @@ import unittest
 
 sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
+import gas_program
 import reference_bars
 
 
@@ -18,6 +19,7 @@ class ReferenceBars(reference_bars.ReferenceTest):
     def test_serial(self):
         self.assert_all_met(self.ROWS, "serial")
 
+    @gas_program.needs_openmp
     def test_openmp(self):
         self.assert_all_met([row for row in self.ROWS if (row["scheme"], row["N"]) == ("z1", "200")], "openmp")
 

@@ -26,6 +26,7 @@ class Shipped(gas_program.GasTest):
     def test_serial(self):
         self.assert_all_pass("serial")
 
+    @gas_program.needs_openmp
     def test_openmp(self):
         self.assert_all_pass("openmp")
 

@@ -84,6 +84,7 @@ class Result(gas_program.GasTest):
     def test_split_precision(self):
         self.assertEqual("split", self.ended(0, "ok", sets=[*COARSE, 'scheme.precision="split"'])["precision"])
 
+    @gas_program.needs_openmp
     def test_openmp_counts_its_threads(self):
         self.expect(0, "sod", "--backend", "openmp", sets=COARSE, environment={"OMP_NUM_THREADS": "2"})
         told = self.result("out/sod")
@@ -174,8 +175,8 @@ class Files(gas_program.GasTest):
     def test_block_size_changes_rounding_at_most(self):
         finals = []
         for block in ("32", "64", "256", "512"):
-            self.expect(0, "sod", "--backend", "openmp", "--overwrite", sets=["output.times=[0.4]",
-                                                                             f"tuning.stage.block={block}"])
+            self.expect(0, "sod", "--backend", gas_program.threaded(), "--overwrite",
+                        sets=["output.times=[0.4]", f"tuning.stage.block={block}"])
             finals.append(gas_program.final_values(self.folder / "out/sod")[1])
         for values in finals[1:]:
             self.assertLess(max(abs(a - b) for a, b in zip(finals[0], values)), 1e-13)

@@ -8,6 +8,7 @@ import unittest
 
 sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
+import gas_program
 import restarting
 
 
@@ -40,7 +41,7 @@ class Interrupted(restarting.RestartTest):
         self.assert_continues(signal.SIGINT)
 
     def test_sigterm(self):
-        self.assert_continues(signal.SIGTERM, scene="entropy-wave", backend="openmp")
+        self.assert_continues(signal.SIGTERM, scene="entropy-wave", backend=gas_program.threaded())
 
     def test_finished_run_is_not_begun_again(self):
         """A job script that is submitted once too often changes nothing."""

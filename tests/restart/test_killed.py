@@ -6,12 +6,13 @@ import unittest
 
 sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
+import gas_program
 import restarting
 
 
 class Killed(restarting.RestartTest):
     def test_same_bits(self):
-        for scene, backend in (("sod", "serial"), ("blast", "openmp"), ("entropy-wave", "serial")):
+        for scene, backend in (("sod", "serial"), ("blast", gas_program.threaded()), ("entropy-wave", "serial")):
             with self.subTest(scene):
                 self.folder = self.fresh_folder(scene)
                 self.whole(scene, backend)

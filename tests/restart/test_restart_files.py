@@ -93,7 +93,7 @@ class RestartFiles(gas_program.GasTest):
         self.assertEqual(0.4, self.result("run")["time"])
 
     def test_other_backend(self):
-        self.expect(0, "sod", "--quiet", "--backend", "openmp", "--out", "run", "--restart", "auto", sets=SETS)
+        self.expect(0, "sod", "--quiet", "--backend", gas_program.threaded(), "--out", "run", "--restart", "auto", sets=SETS)
 
     def test_other_fields(self):
         """fields.xdmf could not name what some outputs have and others have not."""

@@ -1,8 +1,10 @@
 """Runs drogue-gas for tests of its interface; found by them below tests/support."""
 
+import functools
 import json
 import os
 import pathlib
+import re
 import subprocess
 import tempfile
 import unittest
@@ -16,6 +18,20 @@ SCENES = sorted(path.stem for path in (SOURCE / "miniapps/gas/scenes").glob("*.t
 
 # Threads that wait without turning: tests share their cores with other tests.
 ENVIRONMENT = {**os.environ, "OMP_WAIT_POLICY": "passive", "OMP_NUM_THREADS": os.environ.get("OMP_NUM_THREADS", "2")}
+
+@functools.cache
+def backends():
+    """What is compiled in."""
+    text = subprocess.run([PROGRAM, "--version"], capture_output=True, text=True, check=True).stdout
+    return re.search("^backends: (.*)$", text, re.MULTILINE)[1].split()
+
+
+def threaded():
+    """The backend of the host with threads, else (the sanitizer preset) the one without."""
+    return "openmp" if "openmp" in backends() else "serial"
+
+
+needs_openmp = unittest.skipIf(threaded() == "serial", "this build has no OpenMP")
 
 NO_FIELDS = "output.fields=[]"
 
