@@ -65,7 +65,7 @@ check_tools
 
 # One set-up at a time: several clones may share DROGUE_DEPS.
 exec 9>"$deps/.lock"
-flock 9
+flock -n 9 || { say "waiting for another set-up in $deps to end" && flock 9; }
 python_environment
 [ "$deps/venv" -ef "$root/build/venv" ] || { mkdir -p "$root/build" && ln -sfn "$deps/venv" "$root/build/venv"; }
 build_kokkos host
