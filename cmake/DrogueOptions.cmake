@@ -66,6 +66,13 @@ if(DROGUE_SANITIZE)
     drogue_host_option(drogue_private INTERFACE -Wno-maybe-uninitialized)
   endif()
 endif()
+
+# What computes is optimised under sanitizers too: compiling the rest so costs more than its tests gain.
+function(drogue_optimise_sanitized target)
+  if(DROGUE_SANITIZE)
+    target_compile_options(${target} PRIVATE -O1)
+  endif()
+endfunction()
 if(DROGUE_CUDA)
   # See the header: Kokkos 4.5 calls three functions by signatures that CUDA 13 dropped.
   target_compile_options(drogue_arithmetic INTERFACE

@@ -15,7 +15,9 @@ template <class Member>
 KOKKOS_INLINE_FUNCTION void raise_to_team_maximum(const Member& member, std::uint64_t& slot, double mine) {
 #if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 800
   const auto own = static_cast<unsigned long long>(__double_as_longlong(mine));
-  const unsigned lanes = __activemask();
+  // Named, not asked for: a warp that has parted on its way here need not have come together again.
+  const int after = member.team_size() - member.team_rank() / 32 * 32;
+  const unsigned lanes = after >= 32 ? ~0U : (1U << static_cast<unsigned>(after)) - 1U;
   const auto own_high = static_cast<unsigned>(own >> 32U);
   const unsigned high = __reduce_max_sync(lanes, own_high);
   const unsigned low = __reduce_max_sync(lanes, own_high == high ? static_cast<unsigned>(own) : 0U);
