@@ -22,7 +22,9 @@ void install_signal_handlers() {
   sigemptyset(&once.sa_mask);
   sigaction(SIGINT, &once, nullptr);
   sigaction(SIGTERM, &once, nullptr);
+  // A full disk and a reader that has gone are met where they are written to.
   std::signal(SIGXFSZ, SIG_IGN);
+  std::signal(SIGPIPE, SIG_IGN);
 }
 
 bool interrupted() noexcept { return interrupt_requested.load(std::memory_order_relaxed); }

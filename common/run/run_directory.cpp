@@ -64,24 +64,27 @@ bool holds_run(const std::filesystem::path& directory) {
   });
 }
 
-RunDirectory::RunDirectory(std::filesystem::path path, ExistingRun existing) : _path(std::move(path)) {
+RunDirectory::RunDirectory(std::filesystem::path path, ExistingRun existing)
+    : _path(std::move(path)), _existing(existing) {
   std::error_code error;
   std::filesystem::create_directories(_path, error);
   if (error) throw io_failure("create the run directory", _path, error.value());
   lock();
-  try {
-    if (existing == ExistingRun::refuse && holds_run(_path)) {
-      throw Failure(ExitCode::usage,
-                    "'" + _path.string() +
-                        "' already holds a run; choose another --out, or give --overwrite to replace it "
-                        "or --restart to continue it");
-    }
-    if (existing == ExistingRun::overwrite) remove_former_run();
-    if (existing == ExistingRun::resume) remove_file(_path / "result.json");
-  } catch (...) {
+  if (existing == ExistingRun::refuse && holds_run(_path)) {
     unlock();
-    throw;
+    throw Failure(ExitCode::usage, "'" + _path.string() +
+                                       "' already holds a run; choose another --out, or give --overwrite to "
+                                       "replace it or --restart to continue it");
   }
+}
+
+void RunDirectory::begin() {
+  if (_existing == ExistingRun::overwrite) remove_former_run();
+  if (_existing == ExistingRun::resume) {
+    remove_file(_path / "result.json");
+    remove_leftovers();
+  }
+  _begun = true;
 }
 
 RunDirectory::~RunDirectory() { unlock(); }
@@ -110,6 +113,10 @@ void RunDirectory::unlock() noexcept {
 
 void RunDirectory::remove_former_run() const {
   for (const std::string& name : run_file_names()) remove_file(_path / name);
+  remove_leftovers();
+}
+
+void RunDirectory::remove_leftovers() const {
   std::vector<std::filesystem::path> leftovers;
   for (const auto& entry : std::filesystem::directory_iterator(_path)) {
     const std::filesystem::path& file = entry.path();

@@ -10,17 +10,24 @@ namespace drogue::run {
 /// What becomes of a run that is already in the directory.
 enum class ExistingRun {
   refuse,     ///< exit 2
-  overwrite,  ///< its files are removed first
-  resume,     ///< they stay and are continued; result.json goes, which tells of an end
+  overwrite,  ///< its files are removed by `begin`
+  resume,     ///< they stay and are continued; `begin` removes result.json and the pictures, which tell of an
+              ///< end
 };
 
-/// The directory of one run, locked as long as this object lives. Two runs never share one.
+/// The directory of one run, locked as long as this object lives. Two runs never share one. A former run
+/// stays as it is until `begin`, so that a scene with a slip in it costs nobody a result.
 class RunDirectory {
  public:
   /// Creates `path` and its parents where missing. Throws Failure(io_error) if that fails, if the directory
   /// cannot be written or if another process runs in it, Failure(usage) if it holds a run and `existing` is
   /// refuse.
   RunDirectory(std::filesystem::path path, ExistingRun existing);
+
+  /// Makes room for the new run, which from here on will not be refused.
+  void begin();
+
+  [[nodiscard]] bool begun() const noexcept { return _begun; }
   ~RunDirectory();
   RunDirectory(const RunDirectory&) = delete;
   RunDirectory& operator=(const RunDirectory&) = delete;
@@ -37,8 +44,11 @@ class RunDirectory {
   void lock();
   void unlock() noexcept;
   void remove_former_run() const;
+  void remove_leftovers() const;
 
   std::filesystem::path _path;
+  ExistingRun _existing;
+  bool _begun = false;
   int _lock = -1;
 };
 

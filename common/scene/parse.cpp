@@ -138,9 +138,16 @@ Node parse(std::string_view text, const Place& place) {
   }
 }
 
+/// `a.0.b` of `a[0].b`, which is how errors write it.
+std::string with_dots(std::string path) {
+  for (std::size_t at = path.find('['); at != std::string::npos; at = path.find('[', at)) path[at] = '.';
+  std::erase(path, ']');
+  return path;
+}
+
 std::vector<std::string> split_path(const std::string& path, const std::string& place) {
   std::vector<std::string> parts;
-  std::istringstream stream(path);
+  std::istringstream stream(with_dots(path));
   for (std::string part; std::getline(stream, part, '.');) parts.push_back(part);
   const bool empty_part =
       std::any_of(parts.begin(), parts.end(), [](const auto& part) { return part.empty(); });
@@ -204,13 +211,18 @@ Node parse_file(const std::filesystem::path& file) {
   }
   errno = 0;
   std::ifstream stream(file, std::ios::binary);
-  std::ostringstream text;
-  if (stream) text << stream.rdbuf();
-  if (!stream) {
+  // A scene is some kilobytes; a device file would be read until memory ends.
+  constexpr std::streamsize most = 1 << 20;
+  std::string bytes(static_cast<std::size_t>(most) + 1, '\0');
+  stream.read(bytes.data(), most + 1);
+  if (stream.gcount() > most)
+    throw Failure(ExitCode::usage, file.string() + " is larger than 1 MiB: it is no scene file");
+  if (!stream.eof()) {
     const std::string reason = errno != 0 ? std::strerror(errno) : "unknown error";
     throw Failure(ExitCode::usage, "cannot read the scene file " + file.string() + ": " + reason);
   }
-  return parse_text(text.str(), file.string());
+  bytes.resize(static_cast<std::size_t>(stream.gcount()));
+  return parse_text(bytes, file.string());
 }
 
 void apply_set(Node& document, const std::string& assignment) {

@@ -21,11 +21,9 @@ out="out/$(basename "$scene" .toml)"
 build="${DROGUE_BUILD_DIR:-build/cuda}"
 export OMP_NUM_THREADS="${SLURM_CPUS_PER_TASK:-1}" OMP_PROC_BIND=spread OMP_PLACES=cores
 
-start=()
-[ ! -e "$out/restart.h5" ] || start=(--restart auto)
-
-# In the background, so that this shell can hand the signal on.
-"$build/bin/drogue-gas" "$scene" --backend auto --out "$out" "${start[@]}" "$@" &
+# With --restart auto a first start begins, and every later one goes on or, killed before its first restart file, begins
+# again. In the background, so that this shell can hand the signal on.
+"$build/bin/drogue-gas" "$scene" --backend auto --out "$out" --restart auto "$@" &
 program=$!
 signalled=no
 trap 'signalled=yes; kill -TERM "$program"' TERM

@@ -82,9 +82,9 @@ class SeedSolver final : public Solver {
       if (_resume.step >= _p.max_steps) return Stop::max_steps;
       if (!step(target)) return Stop::failed;
       if (rows && row_every > 0 && _resume.step % row_every == 0) rows(totals());
-      if (_resume.step == pause_step) return Stop::pause;
       if (poll && !poll({0, _resume.step, _resume.time, _resume.last_dt, 0, Stop::running, 0}))
         return Stop::interrupted;
+      if (_resume.step == pause_step) return Stop::pause;
     }
     return Stop::target;
   }

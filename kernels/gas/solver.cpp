@@ -1,8 +1,10 @@
 #include "kernels/gas/solver.hpp"
 
 #include <Kokkos_Macros.hpp>
+#include <new>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 
 namespace drogue::gas {
 
@@ -31,10 +33,7 @@ void check(const Parameters& p) {
           "block must be a multiple of 32 between 32 and 512");
 }
 
-}  // namespace
-
-std::unique_ptr<Solver> create_solver(device::Backend backend, const Parameters& parameters) {
-  check(parameters);
+std::unique_ptr<Solver> make_solver(device::Backend backend, const Parameters& parameters) {
   switch (backend) {
     case device::Backend::serial:
       return create_solver_serial(parameters);
@@ -51,8 +50,7 @@ std::unique_ptr<Solver> create_solver(device::Backend backend, const Parameters&
   }
 }
 
-std::unique_ptr<Solver> create_seed_solver(device::Backend backend, const Parameters& parameters) {
-  check(parameters);
+std::unique_ptr<Solver> make_seed_solver(device::Backend backend, const Parameters& parameters) {
   switch (backend) {
     case device::Backend::serial:
       return create_seed_solver_serial(parameters);
@@ -67,6 +65,30 @@ std::unique_ptr<Solver> create_seed_solver(device::Backend backend, const Parame
     default:
       throw std::invalid_argument("gas solver: this build lacks the backend");
   }
+}
+
+/// Kokkos tells that memory ran out by an error of the general kind.
+template <class Make>
+std::unique_ptr<Solver> allocate(const Make& make) {
+  try {
+    return make();
+  } catch (const std::runtime_error& error) {
+    if (std::string_view(error.what()).find("failed to allocate") != std::string_view::npos)
+      throw std::bad_alloc();
+    throw;
+  }
+}
+
+}  // namespace
+
+std::unique_ptr<Solver> create_solver(device::Backend backend, const Parameters& parameters) {
+  check(parameters);
+  return allocate([&] { return make_solver(backend, parameters); });
+}
+
+std::unique_ptr<Solver> create_seed_solver(device::Backend backend, const Parameters& parameters) {
+  check(parameters);
+  return allocate([&] { return make_seed_solver(backend, parameters); });
 }
 
 }  // namespace drogue::gas

@@ -76,7 +76,8 @@ class Solver {
   [[nodiscard]] virtual const char* driver() const = 0;
 };
 
-/// Throws std::invalid_argument for parameters out of range; the backend must be available.
+/// Throws std::invalid_argument for parameters out of range and std::bad_alloc; the backend must be
+/// available.
 [[nodiscard]] std::unique_ptr<Solver> create_solver(device::Backend backend, const Parameters& parameters);
 
 /// The dissertation's algorithm and data movement (section 4.4.2): at every stage the state goes to the

@@ -115,6 +115,8 @@ Stop SolverOn<ExecutionSpace>::advance(double target, std::int64_t pause_step, i
   using Clock = std::chrono::steady_clock;
   const auto seconds = [](auto span) { return std::chrono::duration<double>(span).count(); };
   const ExecutionSpace& space = _instance.space();
+  // Also before a stretch that ends sooner than the next look at the clock.
+  if (poll && !poll(status())) return Stop::interrupted;
   ensure_recorded(_parameters.positivity == Positivity::on);
   if (row_every > 0 && row_every != _row_every) {
     _row = std::make_unique<device::Replay<ExecutionSpace>>(

@@ -126,6 +126,7 @@ struct Reduced {
     admissible = device::select(p > zero, admissible, zero);
     admissible = device::select(p <= P(1.7e308), admissible, zero);
     admissible = device::select(rho > zero, admissible, zero);
+    admissible = device::select(rho <= P(1.7e308), admissible, zero);
   }
   KOKKOS_FUNCTION void raise(const Speeds<P>& speed) {
     slow = device::maximum(slow, speed.slow);
@@ -149,7 +150,7 @@ KOKKOS_INLINE_FUNCTION void merge_lanes(const Reduced<R>& packs, Reduced<double>
 KOKKOS_INLINE_FUNCTION void report_inadmissible(Control& control, double gamma, int stage, std::int64_t cell,
                                                 const Triple<double>& u) {
   const double p = pressure(gamma, u.m, u.energy, u.m * device::reciprocal(u.rho));
-  if (u.rho > 0.0 && p > 0.0 && p <= 1.7e308) return;
+  if (u.rho > 0.0 && u.rho <= 1.7e308 && p > 0.0 && p <= 1.7e308) return;
   Quantity what = Quantity::not_finite;
   if (u.rho <= 0.0)
     what = Quantity::density;

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <iostream>
 #include <stdexcept>
+#include <system_error>
 
 #include "common/program/mpi_guard.hpp"
 #include "common/program/program.hpp"
@@ -12,6 +13,7 @@
 #include "common/scene/library.hpp"
 #include "kernels/device/ledger.hpp"
 #include "kernels/device/runtime.hpp"
+#include "miniapps/gas/restart.hpp"
 #include "miniapps/gas/scene_folder.hpp"
 #include "miniapps/gas/simulation.hpp"
 #include "miniapps/gas/study.hpp"
@@ -37,18 +39,35 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// A directory whose only run never began: it may be used as if it were empty.
-bool holds_only_a_refusal(const std::filesystem::path& directory) {
+/// False for an empty directory and for one whose only run never began.
+bool holds_results(const std::filesystem::path& directory) {
   for (const std::string& name : run::run_file_names())
-    if (name != "result.json" && std::filesystem::exists(directory / name)) return false;
-  return true;
+    if (std::error_code ignored; name != "result.json" && std::filesystem::exists(directory / name, ignored))
+      return true;
+  return false;
+}
+
+/// `--restart auto` without a restart file begins anew, but only what was begun before.
+void require_same_scene(const GasScene& scene, const std::filesystem::path& directory) {
+  const std::filesystem::path former = directory / "scene.toml";
+  bool same = !holds_results(directory);
+  try {
+    same = same || scene_fingerprint(read_gas_scene(former)) == scene_fingerprint(scene);
+  } catch (const Failure&) {
+    // No scene, or none of this program.
+  }
+  if (!same)
+    throw Failure(ExitCode::usage, "'" + directory.string() +
+                                       "' holds a run of another scene and no restart file; choose another "
+                                       "--out, or give --overwrite to replace it");
 }
 
 run::ExistingRun existing_run(const MiniAppOptions& options, const std::filesystem::path& directory,
                               const std::filesystem::path& restart) {
   if (options.overwrite) return run::ExistingRun::overwrite;
-  if (!restart.empty() || options.restart == "auto") return run::ExistingRun::resume;
-  return holds_only_a_refusal(directory) ? run::ExistingRun::overwrite : run::ExistingRun::refuse;
+  if (!restart.empty()) return run::ExistingRun::resume;
+  if (options.restart == "auto") return run::ExistingRun::overwrite;
+  return holds_results(directory) ? run::ExistingRun::refuse : run::ExistingRun::overwrite;
 }
 
 void print_summary(const run::ResultDocument& result, const std::filesystem::path& directory) {
@@ -69,17 +88,20 @@ ExitCode run_scene(const MiniAppOptions& options, const std::filesystem::path& f
   const std::filesystem::path out = options.out.empty() ? std::filesystem::path("out") / name : options.out;
   const std::filesystem::path restart =
       options.restart.empty() ? std::filesystem::path() : run::restart_source(options.restart, out);
-  const run::RunDirectory directory(out, existing_run(options, out, restart));
+  const bool is_empty = !holds_results(out);
+  run::RunDirectory directory(out, existing_run(options, out, restart));
   run::ResultDocument result = run::new_result("drogue-gas", name);
   try {
     const GasScene scene = read_gas_scene(
         file, options.set, options.seed_mode ? SchemeSource::dissertation : SchemeSource::scene);
     const device::Backend backend = choose_backend(options.backend);
-    directory.write_scene(print_gas_scene(scene));
+    if (options.restart == "auto" && restart.empty() && !options.overwrite) require_same_scene(scene, out);
     const auto runtime = start_kokkos(options.kokkos);
     device::start_ledger();
     describe_device(result, scene.parameters, backend);
     Simulation simulation(scene, {backend, options.seed_mode, options.quiet, restart});
+    directory.begin();
+    directory.write_scene(print_gas_scene(scene));
     result.exit_code = simulation.run(&directory, result);
     if (result.exit_code == ExitCode::ok) {
       result.exit_code = simulation.verify(&directory, result);
@@ -95,7 +117,11 @@ ExitCode run_scene(const MiniAppOptions& options, const std::filesystem::path& f
     result.message = failure.what();
     result.timing.wall_s = std::chrono::duration<double>(Clock::now() - begin).count();
     try {
-      run::write_result(directory.file("result.json"), result);
+      // A slip in the scene or the command line does not touch what a former run has left; that it could not
+      // be continued is told.
+      const bool refused_restart = !restart.empty() && failure.code() == ExitCode::io_error;
+      if (is_empty || directory.begun() || refused_restart)
+        run::write_result(directory.file("result.json"), result);
     } catch (const Failure& second) {
       throw Failure(failure.code(), std::string(failure.what()) + "; and " + second.what());
     }

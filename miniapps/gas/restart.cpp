@@ -13,17 +13,6 @@ namespace {
 
 constexpr std::array<const char*, 3> field_names = {"rho", "momentum", "energy"};
 
-/// Output, end time and checks may change between a run and its continuation; mesh, gas and scheme may not.
-std::string scene_fingerprint(GasScene scene) {
-  scene.description.clear();
-  scene.output = {};
-  scene.verify = {};
-  scene.end_time = 1.0;
-  scene.parameters.max_steps = 1;
-  scene.parameters.block = 0;
-  return run::fingerprint(print_gas_scene(scene));
-}
-
 /// The one list of what a restart file holds beside the fields: `number` and `integer` write or read one
 /// entry.
 template <class State, class Number, class Integer>
@@ -53,7 +42,20 @@ void visit(State& state, const Number& number, const Integer& integer) {
   number("initial_energy", i.energy);
 }
 
+/// A redone step has marked cells before it was rejected.
+bool has_marks(const gas::Resume& resume) { return resume.touches > 0 || resume.redone > 0; }
+
 }  // namespace
+
+std::string scene_fingerprint(GasScene scene) {
+  scene.description.clear();
+  scene.output = {};
+  scene.verify = {};
+  scene.end_time = 1.0;
+  scene.parameters.max_steps = 1;
+  scene.parameters.block = 0;
+  return run::fingerprint(print_gas_scene(scene));
+}
 
 void write_restart(const std::filesystem::path& file, const GasScene& scene, gas::Solver& solver,
                    const gas::ConstConserved& u, const RestartState& state) {
@@ -66,7 +68,7 @@ void write_restart(const std::filesystem::path& file, const GasScene& scene, gas
     writer.array(field_names[k], fields[k].size());
     writer.write(field_names[k], 0, fields[k]);
   }
-  if (state.resume.touches > 0) {
+  if (has_marks(state.resume)) {
     writer.array("touched", u.rho.size());
     std::vector<std::uint8_t> flags;
     std::vector<double> values;
@@ -95,7 +97,7 @@ RestartState read_restart(const std::filesystem::path& file, const GasScene& sce
       reader.read(field_names[k], static_cast<std::uint64_t>(first), fields[k]);
     }
     solver.upload(first, {fields[0], fields[1], fields[2]});
-    if (state.resume.touches == 0) return;
+    if (!has_marks(state.resume)) return;
     reader.read("touched", static_cast<std::uint64_t>(first), fields[0]);
     std::vector<std::uint8_t> flags(fields[0].begin(), fields[0].end());
     solver.upload_touched(first, flags);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "kernels/gas/solver.hpp"
 #include "miniapps/gas/scene.hpp"
@@ -13,8 +14,12 @@ struct RestartState {
   gas::HistoryRow initial;  ///< totals at the start, for the conservation check
 };
 
+/// Names the mesh, gas and scheme of a scene; output, end time and checks may change between a run and its
+/// continuation.
+std::string scene_fingerprint(GasScene scene);
+
 /// Writes the conserved fields `u` and `state` atomically. `touched` is read from the solver if the limiter
-/// has acted.
+/// may have acted.
 void write_restart(const std::filesystem::path& file, const GasScene& scene, gas::Solver& solver,
                    const gas::ConstConserved& u, const RestartState& state);
 

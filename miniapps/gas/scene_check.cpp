@@ -124,11 +124,22 @@ void complete_verify(const Table& root, GasScene& scene) {
   reference.block = scene.parameters.block;
 }
 
-void check_initial(const Table& root, const GasScene& scene) {
+/// The initial state at every cell centre of `scene`, or its first error.
+Survey require_gas(const Table& root, const GasScene& scene) {
   const Survey seen = survey_initial_state(scene);
   if (seen.first_bad < scene.parameters.cells) {
     const BadCell bad = describe_bad_cell(scene, seen.first_bad);
     contradict(root, bad.path, bad.sentence);
+  }
+  return seen;
+}
+
+void check_initial(const Table& root, const GasScene& scene) {
+  const Survey seen = require_gas(root, scene);
+  if (scene.verify.reference) {
+    GasScene finer = scene;
+    finer.parameters = *scene.verify.reference;
+    require_gas(root, finer);
   }
   const double ratio = seen.p_max / seen.p_min;
   if (scene.parameters.precision == gas::Precision::split && ratio > split_pressure_ratio) {

@@ -263,11 +263,11 @@ void declare_gas_scene(Table& root, GasScene& scene) {
             [&](Table& stage) {
               stage
                   .value("block", zero_is_unset(scene::integer_codec(parameters.block), parameters.block),
-                         "Cells a tile")
+                         "Threads of a team on a device, cells of a tile on the host")
                   .range(32, 512)
                   .default_text("the backend's own");
             },
-            "The fused stage kernel");
+            "The kernels of a step");
       },
       "Block sizes of kernels; they change speed, not results");
 }

@@ -3,6 +3,7 @@
 #include <spawn.h>
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <iostream>
@@ -199,8 +200,9 @@ ExitCode run_study(const MiniAppOptions& options, const std::filesystem::path& f
   const device::Backend backend = choose_backend(options.backend);
   const std::filesystem::path out =
       options.out.empty() ? std::filesystem::path("out") / (base.name + "-study") : options.out;
-  const run::RunDirectory directory(
-      out, options.overwrite ? run::ExistingRun::overwrite : run::ExistingRun::refuse);
+  run::RunDirectory directory(out,
+                              options.overwrite ? run::ExistingRun::overwrite : run::ExistingRun::refuse);
+  directory.begin();
   directory.write_scene(print_gas_scene(base));
   const auto runtime = start_kokkos(options.kokkos);
   device::start_ledger();
@@ -212,21 +214,24 @@ ExitCode run_study(const MiniAppOptions& options, const std::filesystem::path& f
   if (!reference) return ExitCode::interrupted;
   const ExactSolution exact = exact_solution(base, base.end_time, *reference);
   ExitCode code = ExitCode::ok;
+  std::vector<Row> done;
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    Row& row = rows[i];
-    code = run_point(row, scenes[i], backend, exact);
-    if (code == ExitCode::interrupted) {
-      rows.resize(i);
-      break;
-    }
-    if (!options.quiet) std::cout << line_of(row) << std::flush;
+    code = run_point(rows[i], scenes[i], backend, exact);
+    if (code == ExitCode::interrupted) break;
+    done.push_back(rows[i]);
+    // After every point: whatever ends a long study leaves what it has found.
+    run::write_file_atomically(directory.file("study.csv"), csv(done, facts.backend));
+    run::write_file_atomically(
+        directory.file("study.json"),
+        json(done, facts).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+    if (!options.quiet) std::cout << line_of(rows[i]) << std::flush;
   }
-  run::write_file_atomically(directory.file("study.csv"), csv(rows, facts.backend));
-  run::write_file_atomically(
-      directory.file("study.json"),
-      json(rows, facts).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
-  if (code == ExitCode::ok) draw(out);
-  return code;
+  if (code == ExitCode::interrupted) return code;
+  if (std::ranges::none_of(done, [](const Row& row) { return row.code == ExitCode::ok; }))
+    throw Failure(ExitCode::numerical_failure,
+                  "every run of the study failed; '" + out.string() + "/study.json' says how");
+  draw(out);
+  return ExitCode::ok;
 }
 
 }  // namespace drogue::gas_app

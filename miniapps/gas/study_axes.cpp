@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <charconv>
+#include <set>
 #include <sstream>
 
 #include "miniapps/gas/study.hpp"
@@ -56,12 +57,14 @@ StudyScheme scheme(const std::string& name) {
 
 StudyAxes parse_study(const std::string& text) {
   StudyAxes axes;
+  std::set<std::string> named;
   for (const std::string& axis : split(text, ',')) {
     const auto equals = axis.find('=');
     const std::string key = axis.substr(0, equals);
     require_one_of(key, {"meshes", "schemes", "splittings", "times", "precisions"});
     if (equals == std::string::npos || equals + 1 == axis.size())
       refuse("an axis needs values: " + key + "=...");
+    if (!named.insert(key).second) refuse("the axis " + key + " is named twice");
     const std::vector<std::string> values = split(axis.substr(equals + 1), ':');
     if (key == "meshes")
       axes.meshes = meshes(values);

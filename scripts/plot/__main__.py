@@ -1,5 +1,6 @@
 """Entry of `python -m plot`: moves to the interpreter that has the packages of the pictures, then runs."""
 
+import contextlib
 import importlib.util
 import os
 import sys
@@ -17,12 +18,14 @@ def _run_with_packages() -> int:
     venv = Path(os.environ.get("DROGUE_VENV") or source / "build" / "venv")
     python = venv / "bin" / "python3"
     # The mark stops an environment that lacks the packages from starting itself for ever.
-    if python.is_file() and "DROGUE_PLOT_MOVED" not in os.environ:
-        os.environ["DROGUE_PLOT_MOVED"] = "1"
-        os.environ["PYTHONPATH"] = os.pathsep.join(
-            filter(None, [str(source / "scripts"), os.environ.get("PYTHONPATH")])
-        )
-        os.execv(python, [str(python), "-m", "plot", *sys.argv[1:]])
+    # An environment of another user may not be readable: then it is as good as absent.
+    with contextlib.suppress(OSError):
+        if python.is_file() and "DROGUE_PLOT_MOVED" not in os.environ:
+            os.environ["DROGUE_PLOT_MOVED"] = "1"
+            os.environ["PYTHONPATH"] = os.pathsep.join(
+                filter(None, [str(source / "scripts"), os.environ.get("PYTHONPATH")])
+            )
+            os.execv(python, [str(python), "-m", "plot", *sys.argv[1:]])
     print(
         f"drogue-plot: Python packages are missing ({', '.join(_NEEDED)}): run scripts/setup.sh, or set DROGUE_VENV "
         "to an environment made from scripts/requirements.txt.",

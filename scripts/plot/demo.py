@@ -12,6 +12,7 @@ from pathlib import Path
 from . import demo_pictures
 from .demo_page import write_page
 from .failure import IO_ERROR, OK, USAGE, Failure
+from .style import check_label
 
 
 @dataclass(frozen=True)
@@ -94,7 +95,7 @@ def seconds(value: float | None) -> str:
 def table_row(run: SceneRun) -> str:
     """One line of the table that the demo prints."""
     check, result = run.main_check, run.result
-    name = check.get("name", "").replace("_", " ")
+    name = check_label(check.get("name", ""))
     error = f"{name} {check['value']:.3g}" if check.get("value") is not None else "-"
     bar = f"{check['bar']:.3g}" if check else "-"
     time = seconds(result.get("timing", {}).get("compute_s"))

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import jinja2
 
-from .style import replace_file
+from .style import check_label, replace_file
 
 _KINDS = {".png": "image/png", ".gif": "image/gif"}
 
@@ -58,7 +58,8 @@ def write_page(file: Path, runs) -> Path:
         lstrip_blocks=True,
     )
     environment.filters.update(
-        embedded=_embedded, seconds=_seconds, number=_number, grouped=_grouped, pictures=_by_role
+        embedded=_embedded, seconds=_seconds, number=_number, grouped=_grouped, pictures=_by_role,
+        check_label=check_label
     )
     first = next((run.result for run in runs if run.result), {})
     text = environment.get_template("demo_page.html.j2").render(

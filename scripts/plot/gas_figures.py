@@ -115,7 +115,7 @@ def set_range(axes, name: str, arrays) -> None:
 def _checks_in_words(run: Run) -> str:
     """What was verified, for a picture without an error panel."""
     return "".join(
-        f";  {check['name'].replace('_', ' ')} {style.number(check['value'])} (bar {style.number(check['bar'])})"
+        f";  {style.check_label(check['name'])} {style.number(check['value'])} (bar {style.number(check['bar'])})"
         for check in run.result.get("checks", [])
         if check["name"] != "conservation" and check["value"] is not None
     )
@@ -171,10 +171,12 @@ def fields_figure(view: View, snapshot: Snapshot):
         elif shows_exact:
             axes[1][column].set_axis_off()
         axes[-1][column].set_xlabel(view.x_label)
-    figure.tight_layout(rect=(0, 0, 1, 1 - 0.48 / height), h_pad=0.6, w_pad=1.4)
     words = details(view, snapshot.time)
     if final and not shows_exact:
         words += _checks_in_words(view.run)
+    # A single column may be narrower than the words above it.
+    figure.set_figwidth(max(width, 0.2 + style.text_width(figure, words, 8.5)))
+    figure.tight_layout(rect=(0, 0, 1, 1 - 0.48 / height), h_pad=0.6, w_pad=1.4)
     style.heading(figure, view.run.name, words, key(view, shows_exact))
     return figure
 

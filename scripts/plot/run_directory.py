@@ -1,4 +1,4 @@
-"""Reads a run directory: fields.h5, scene.toml, result.json, history.csv, study.csv."""
+"""Reads a run directory: fields.h5, scene.toml, result.json, history.csv, study.csv, study.json."""
 
 import csv
 import json
@@ -52,6 +52,7 @@ class Run:
     reference: Reference | None = None
     history: dict[str, Field] = field(default_factory=dict)
     study: list[dict[str, str]] = field(default_factory=list)
+    study_facts: dict = field(default_factory=dict)
 
     @property
     def app(self) -> str:
@@ -60,6 +61,11 @@ class Run:
     @property
     def name(self) -> str:
         return self.path.resolve().name
+
+    @property
+    def scene_name(self) -> str:
+        """Of a study; the folder's name where there is no study.json."""
+        return str(self.study_facts.get("scene") or self.name)
 
 
 def _text(value) -> str:
@@ -115,6 +121,13 @@ def _parse(file: Path, parse):
         raise Failure(IO_ERROR, f"{file} cannot be read: {str(error).splitlines()[0]}.") from None
 
 
+def _read_object(file: Path) -> dict:
+    document = json.loads(file.read_text())
+    if not isinstance(document, dict):
+        raise ValueError("it holds no JSON object")
+    return document
+
+
 def read_study(file: Path) -> list[dict[str, str]]:
     """Rows of a study as text, keyed by the header."""
     with file.open(newline="") as stream:
@@ -130,9 +143,10 @@ def read(path: Path) -> Run:
         raise Failure(USAGE, f"{path} holds nothing to draw: none of {', '.join(READABLE)} is there.")
     readers = {
         "scene.toml": lambda file: setattr(run, "scene", tomllib.loads(file.read_text())),
-        "result.json": lambda file: setattr(run, "result", json.loads(file.read_text())),
+        "result.json": lambda file: setattr(run, "result", _read_object(file)),
         "history.csv": lambda file: setattr(run, "history", _read_history(file)),
         "study.csv": lambda file: setattr(run, "study", read_study(file)),
+        "study.json": lambda file: setattr(run, "study_facts", _read_object(file)),
         "fields.h5": lambda file: _read_fields(run, file),
     }
     for name, reader in readers.items():

@@ -1,14 +1,20 @@
 """Picture of a study: error against time and against mesh, one curve a scheme."""
 
+import difflib
+
 import numpy as np
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from . import style
 from .failure import IO_ERROR, USAGE, Failure
+from .run_directory import Run
 from .style import plt
 
+DEFAULT_NORM = "l1_density"
+# Sums of |error| dx, so of the field's unit times metres.
 _TITLES = {
-    "l1_density": "L1 error of density", "l1_velocity": "L1 error of velocity", "l1_pressure": "L1 error of pressure"
+    "l1_density": "L1 error of density (kg/m$^2$)", "l1_velocity": "L1 error of velocity (m$^2$/s)",
+    "l1_pressure": "L1 error of pressure (Pa m)",
 }  # fmt: skip
 _SCHEMES = {"js": "WENO-JS", "z": "WENO-Z", "z2": "WENO-Z (p = 2)", "m": "WENO-M", "teno5": "TENO5"}
 
@@ -37,6 +43,17 @@ def _curves(rows: list[dict[str, str]], norm: str) -> tuple[dict[str, np.ndarray
     return {label: np.array(sorted(points)) for label, points in curves.items()}, left_out
 
 
+def check_norm(run: Run, norm: str) -> None:
+    """Refuses a norm that the study of a folder, if it has one, does not give."""
+    if not run.study:
+        raise Failure(USAGE, f"{run.path} holds no study, which --norm is for.")
+    norms = [column for column in run.study[0] if column.startswith(("l1_", "l2_", "linf_"))]
+    if norm not in norms:
+        near = difflib.get_close_matches(norm, norms, 1)
+        hint = f"nearest is {near[0]}" if near else f"it has {', '.join(norms)}"
+        raise Failure(USAGE, f"The study of {run.scene_name} has no norm '{norm}'; {hint}.")
+
+
 def _order(points: np.ndarray) -> str:
     """Least-squares slope of error against mesh, in words; needs three meshes."""
     if len(points) < 3:
@@ -45,7 +62,7 @@ def _order(points: np.ndarray) -> str:
     return f"  order {-slope:.2f}"
 
 
-def _draw(axes, curves, column: int, words) -> None:
+def _draw(axes, curves, column: int, labels: dict[str, str]) -> None:
     ends = []
     for index, (label, points) in enumerate(curves.items()):
         colour = style.PALETTE[index % len(style.PALETTE)]
@@ -54,7 +71,8 @@ def _draw(axes, curves, column: int, words) -> None:
             points[:, column], points[:, 2], "-" + marker, color=colour, markersize=4, markerfacecolor="white",
             markeredgewidth=1.1, linewidth=1.2,
         )  # fmt: skip
-        ends.append(((points[-1, column], points[-1, 2]), words(label, points), colour))
+        if label in labels:
+            ends.append(((points[-1, column], points[-1, 2]), labels[label], colour))
     axes.set_xscale("log")
     axes.set_yscale("log")
     low, high = axes.get_ylim()
@@ -63,7 +81,19 @@ def _draw(axes, curves, column: int, words) -> None:
         axes.yaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
         axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: style.number(value)))
         axes.yaxis.set_minor_formatter(NullFormatter())
-    style.label_ends(axes, [end for end in ends if end[1]])
+    style.label_ends(axes, ends)
+
+
+def _make_room(figure, labels: list[str]) -> None:
+    """Gives a figure of two axes the size that its labels need at the right of them."""
+    left, axes_width, bottom, top = 0.82, 5.66, 0.5, 0.72
+    width = left + axes_width + 0.2 + max(style.text_width(figure, words, style.LABEL_SIZE) for words in labels)
+    axes_height = max(2.38, style.LABEL_STEP * len(labels))
+    height = bottom + axes_height + top
+    figure.set_size_inches(width, height)
+    figure.subplots_adjust(
+        left=left / width, right=(left + axes_width) / width, bottom=bottom / height, top=1 - top / height, wspace=0.1
+    )
 
 
 def study_figure(name: str, rows: list[dict[str, str]], norm: str = "l1_density"):
@@ -78,10 +108,11 @@ def study_figure(name: str, rows: list[dict[str, str]], norm: str = "l1_density"
         raise Failure(
             IO_ERROR, f"The study of {name} has nothing to draw: {' and '.join(left_out) or 'it is empty'}."
         )
-    figure, (by_time, by_mesh) = plt.subplots(1, 2, figsize=(8.2, 3.6), sharey=True)
-    figure.subplots_adjust(left=0.1, right=0.79, top=0.8, bottom=0.14, wspace=0.1)
-    _draw(by_time, curves, 1, lambda label, points: "")
-    _draw(by_mesh, curves, 0, lambda label, points: label + _order(points))
+    figure, (by_time, by_mesh) = plt.subplots(1, 2, sharey=True)
+    labels = {label: label + _order(points) for label, points in curves.items()}
+    _make_room(figure, list(labels.values()))
+    _draw(by_time, curves, 1, {})
+    _draw(by_mesh, curves, 0, labels)
     by_time.set_ylabel(_TITLES.get(norm, norm.replace("_", " ")))
     by_time.set_xlabel("time to solution (s)")
     by_mesh.set_xlabel("cells")

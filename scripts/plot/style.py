@@ -54,6 +54,12 @@ def axis_label(name: str, units: str) -> str:
     return f"{text} ({units_text(units)})" if units_text(units) else text
 
 
+def check_label(name: str) -> str:
+    """What the value of a check of result.json is, in words."""
+    # Not the density itself: its relative deviation from the published one.
+    return "max density off by" if name == "max_density" else name.replace("_", " ")
+
+
 def number(value: float) -> str:
     """Three digits, powers of ten as a paper prints them."""
     if value == 0 or not np.isfinite(value):
@@ -82,20 +88,35 @@ def heading(figure, name: str, details: str, key: list[tuple[str, str, str]] = (
     return caption
 
 
+def text_width(figure, words: str, size: float) -> float:
+    """Inches that a line of text takes."""
+    text = figure.text(0, 0, words, fontsize=size)
+    width = text.get_window_extent(figure.canvas.get_renderer()).width / figure.dpi
+    text.remove()
+    return width
+
+
+LABEL_SIZE = 8
+# Inches from one label to the next.
+LABEL_STEP = 11.5 / 72
+
+
 def label_ends(axes, ends) -> None:
     """Names curves beside their right ends in their own colours, no two on each other; ends: ((x, y), words, colour)."""
     axes.figure.canvas.draw()
     box = axes.get_window_extent()
-    step = 11.5 * axes.figure.dpi / 72
+    step = LABEL_STEP * axes.figure.dpi
     levels = sorted(
         (axes.transData.transform(point)[1] - box.y0, words, colour) for point, words, colour in ends
     )
     placed = -np.inf
-    for pixel, words, colour in levels:
-        placed = max(pixel, placed + step)
+    for index, (pixel, words, colour) in enumerate(levels):
+        # Low enough for those above it to end at the top of the axes.
+        highest = box.height - (len(levels) - 1 - index) * step
+        placed = max(min(pixel, highest), placed + step)
         axes.annotate(
-            words, (1.03, placed / box.height), xycoords="axes fraction", color=colour, va="center", fontsize=8,
-            annotation_clip=False,
+            words, (1.03, placed / box.height), xycoords="axes fraction", color=colour, va="center",
+            fontsize=LABEL_SIZE, annotation_clip=False,
         )  # fmt: skip
 
 

@@ -2,17 +2,23 @@
 
 import contextlib
 import io
+import itertools
+import json
+import os
 import shutil
+import subprocess
+import sys
 import tempfile
 import unittest
 from pathlib import Path
 
-import packages  # noqa: F401, before all that needs the packages  isort: skip
+import packages  # before all that needs the packages  isort: skip
 import numpy as np
 import synthetic
 from PIL import Image
 from plot import cli
 from plot.exact import errors, exact_solution
+from plot.gas_figures import View, fields_figure
 from plot.history_figure import conservation
 from plot.run_directory import read
 from plot.study_figure import study_figure
@@ -140,6 +146,34 @@ class Pictures(unittest.TestCase):
         self.assertTrue(any("1 of 12 runs failed" in text for text in words), words)
 
 
+    def test_labels_of_a_study_fit_however_long_and_many(self):
+        axes = ("", " lf-global", " lf-single"), ("", " ssprk43"), ("", " split")
+        settings = ["".join(words) for words in itertools.product(*axes)]
+        synthetic.write_study(self.folder / "study.csv", settings=settings)
+        (self.folder / "study.json").write_text('{"scene": "lax"}')
+        run = read(self.folder)
+        figure = study_figure(run.scene_name, run.study)
+        renderer = figure.canvas.get_renderer()
+        self.assertIn("lax", [text.get_text() for text in figure.texts])
+        self.assertEqual(figure.axes[0].get_ylabel(), "L1 error of density (kg/m$^2$)")
+        boxes = [text.get_window_extent(renderer) for text in figure.axes[1].texts]
+        self.assertEqual(len(boxes), 36)
+        for box in boxes:
+            self.assertLessEqual(box.x1, figure.bbox.width)
+            self.assertLessEqual(box.y1, figure.axes[1].get_window_extent().y1 + box.height)
+        self.assertEqual(_plot(self.folder, "--norm", "l1_pressure")[:2], (0, ["study.png"]))
+
+    def test_largest_density_is_told_as_a_deviation(self):
+        run = synthetic.write_sod(self.folder / "sedov", cells=20, snapshots=1)
+        check = {"name": "max_density", "value": 1.2e-3, "bar": 0.02, "passed": True}
+        (run / "result.json").write_text(json.dumps({"checks": [check]}))
+        (run / "scene.toml").write_text("")
+        loaded = read(run)
+        figure = fields_figure(View(loaded, ["rho"], exact_solution(loaded)), loaded.snapshots[-1])
+        captions = "".join(text.get_text() for text in figure.texts)
+        self.assertRegex(captions, r"max density off by 1\.2.* \(bar 0\.02\)")
+
+
 class Refusals(unittest.TestCase):
     def setUp(self):
         self.folder = Path(tempfile.mkdtemp())
@@ -167,6 +201,25 @@ class Refusals(unittest.TestCase):
     def test_unknown_norm_names_the_columns(self):
         synthetic.write_study(self.folder / "study.csv")
         self._refused(2, ["'l3_density'", "l1_density"], self.folder, "--norm", "l3_density")
+        self._refused(2, ["no norm 'label'"], self.folder, "--norm", "label")
+
+    def test_norm_without_a_study(self):
+        run = synthetic.write_sod(self.folder / "sod", cells=20, snapshots=1)
+        self._refused(2, ["no study"], run, "--norm", "l1_density")
+
+    def test_environment_that_cannot_be_read(self):
+        # A name too long and a file that is no program fail for every user, root too.
+        (self.folder / "bin").mkdir()
+        (self.folder / "bin" / "python3").write_text("")
+        for venv in ("x" * 300, str(self.folder)):
+            environment = os.environ | {"DROGUE_VENV": venv, "PYTHONPATH": str(packages.SOURCE / "scripts")}
+            environment.pop("DROGUE_PLOT_MOVED", None)
+            # -S: without the packages of this interpreter.
+            done = subprocess.run(
+                [sys.executable, "-S", "-m", "plot", "."], capture_output=True, text=True, env=environment, check=False
+            )
+            self.assertEqual((done.returncode, done.stderr.count("\n")), (2, 1), done.stderr)
+            self.assertIn("packages are missing", done.stderr)
 
     def test_damaged_files(self):
         cases = {

@@ -50,6 +50,24 @@ class Directory(gas_program.GasTest):
         self.assertIn("--overwrite", self.coarse(code=2).stderr)
         self.assertEqual(before, {name: (self.folder / "out/sod" / name).read_bytes() for name in FILES})
 
+    def test_a_slip_costs_no_former_run(self):
+        self.coarse()
+        before = {name: (self.folder / "out/sod" / name).read_bytes() for name in FILES}
+        for words, code, sets in ((["--overwrite"], 3, ["mesh.cell=3"]), (["--restart", "auto"], 3, ["run.endtime=3"]),
+                                  (["--overwrite", "--backend", "cuda"], 77, [])):
+            with self.subTest(words):
+                if code == 77 and "cuda" in self.expect(0, "--version").stdout.split("backends: ")[1].split("\n")[0]:
+                    continue
+                self.expect(code, "sod", *words, sets=[*COARSE, *sets])
+                self.assertEqual(before, {name: (self.folder / "out/sod" / name).read_bytes() for name in FILES})
+
+    def test_restart_auto_goes_on_with_no_other_scene(self):
+        self.coarse()
+        before = {name: (self.folder / "out/sod" / name).read_bytes() for name in FILES}
+        text = self.expect(2, "lax", "--backend", "serial", "--restart", "auto", "--out", "out/sod").stderr
+        self.assertIn("another scene", text)
+        self.assertEqual(before, {name: (self.folder / "out/sod" / name).read_bytes() for name in FILES})
+
     def test_overwrite_takes_the_former_run_away_and_nothing_else(self):
         self.coarse(sets=["output.restart_every=20"])
         (self.folder / "out/sod/notes.txt").write_text("mine")

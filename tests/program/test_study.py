@@ -107,6 +107,15 @@ class Study(gas_program.GasTest):
 
         self.assert_interrupted("blast", "meshes=50", [], begun)
 
+    def test_nothing_succeeds(self):
+        text = self.study(4, "blast", "meshes=100,schemes=z:teno5",
+                          sets=['scheme.positivity="off"', "verify.reference.cells=200"]).stderr
+        self.assertIn("every run of the study failed", text)
+        self.assertEqual(2, len(self.tables("out/blast-study")[0]))
+
+    def test_an_axis_named_twice(self):
+        self.assertIn("twice", self.study(2, "sod", "meshes=50,meshes=100").stderr)
+
 
 class ReferenceOfARun(gas_program.GasTest):
     def test_ctrl_c(self):

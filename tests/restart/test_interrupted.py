@@ -43,6 +43,13 @@ class Interrupted(restarting.RestartTest):
     def test_sigterm(self):
         self.assert_continues(signal.SIGTERM, scene="entropy-wave", backend=gas_program.threaded())
 
+    def test_stretches_shorter_than_a_look_at_the_clock(self):
+        sets = ["mesh.cells=3000", "output.restart_every=1", "output.times=[0.4]"]
+        for words in ((), ("--seed-mode",)):
+            with self.subTest(words):
+                self.interrupt(signal.SIGINT, "--overwrite", *words, sets=sets)
+                (self.folder / "part/restart.h5").unlink()
+
     def test_finished_run_is_not_begun_again(self):
         """A job script that is submitted once too often changes nothing."""
         self.whole("sod", "serial")

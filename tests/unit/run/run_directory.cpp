@@ -44,7 +44,8 @@ TEST(RunDirectory, OverwriteRemovesKnownNamesOnly) {
   for (const std::string& name : pictures) write_file_atomically(parent / name, "former");
   const std::vector<std::string> foreign = {"notes.txt", ".mine.tmp", "photo.png", "fields.png.bak"};
   for (const std::string& name : foreign) write_file_atomically(parent / name, "mine");
-  const RunDirectory run(parent.path(), ExistingRun::overwrite);
+  RunDirectory run(parent.path(), ExistingRun::overwrite);
+  run.begin();
   EXPECT_FALSE(holds_run(parent.path()));
   EXPECT_FALSE(std::filesystem::exists(parent / ".result.json.77.tmp"));
   for (const std::string& name : pictures) EXPECT_FALSE(std::filesystem::exists(parent / name)) << name;
@@ -55,7 +56,8 @@ TEST(RunDirectory, ResumeKeepsTheFormerRun) {
   const TemporaryDirectory parent;
   write_file_atomically(parent / "restart.h5", "state");
   write_file_atomically(parent / "result.json", "of the former end");
-  const RunDirectory run(parent.path(), ExistingRun::resume);
+  RunDirectory run(parent.path(), ExistingRun::resume);
+  run.begin();
   EXPECT_EQ(content(parent / "restart.h5"), "state");
   EXPECT_FALSE(std::filesystem::exists(parent / "result.json"));
 }
