@@ -68,7 +68,9 @@ class Failures(gas_program.GasTest):
 
     def test_seed_mode_promises_no_limiter(self):
         message = self.expect(4, "sedov", "--seed-mode", "--backend", "serial", "--quiet").stderr
-        self.assertRegex(message, "density is not positive in cell 99 .* at step 1, t = 0 s$")
+        # Beside cold gas the eigenvectors see the hot cell's energy as 1e25 in density; split by the mesh's largest
+        # alpha, two terms of 1e37 cancel, and what rounding leaves decides which neighbour of cell 100 goes first.
+        self.assertRegex(message, "density is not positive in cell 9[89] .* at step 1, t = 0 s$")
 
     def test_auto_saves(self):
         for row in ROWS:
