@@ -101,8 +101,7 @@ struct StageFunctor {
   KOKKOS_FUNCTION void update_cell(const Tile<ExecutionSpace>& tile, int i, double dt_over_dx,
                                    const double* u_n, double* out, Reduced<P>& reduced) const {
     Triple<P> u = euler_step<P>(tile, i, weights.a_in, dt_over_dx);
-    if (weights.a_n != 0.0)
-      u = combined(weights.a_n, state_of<P>(u_n, ends.cells, tile.first - tile.halo + i), u);
+    if (weights.a_n != 0.0) u = combined(weights.a_n, state_of<P>(u_n, ends.cells, tile.cell(i)), u);
     store_state(tile, i, u, ends.cells, out);
     const P inverse = device::reciprocal(u.rho);
     const P velocity = u.m * inverse;
@@ -126,7 +125,7 @@ struct StageFunctor {
     for (int i = whole; i < end; ++i) update_cell<double>(tile, i, dt_over_dx, u_n, out, all);
     if (all.admissible < 1.0) {
       for (int i = begin + member.team_rank(); i < end; i += member.team_size()) {
-        const std::int64_t cell = tile.first + i - begin;
+        const std::int64_t cell = tile.cell(i);
         report_inadmissible(control(), gamma, stage, cell, state_of<double>(out, ends.cells, cell));
       }
     }

@@ -88,8 +88,7 @@ struct StepFunctor {
                                            double dt_over_dx, const double* u_n, double* out,
                                            Reduced<P>& reduced) const {
     Triple<P> u = euler_step<P>(tile, i, weights.a_in, dt_over_dx);
-    if (weights.a_n != 0.0)
-      u = combined(weights.a_n, load_state<P>(u_n, ends, tile.first - tile.halo + i), u);
+    if (weights.a_n != 0.0) u = combined(weights.a_n, load_state<P>(u_n, ends, tile.cell(i)), u);
     const CellState<P> s = cell_state<P>(gamma, u.rho, u.m, u.energy);
     reduced.judge(s.rho, s.p);
     if constexpr (final_stage) {
@@ -123,6 +122,7 @@ struct StepFunctor {
         update_slot<final_stage, double>(tile, i, weights, dt_over_dx, u_n, out, all);
       if (!final_stage && at_an_end(tile))
         for (int i = begin; i < end; ++i) {
+          if (!is_imaged(tile.cell(i))) continue;
           const Triple<double> u = tile.template state<double>(i);
           fill_ghosts(tile, i, cell_state<double>(gamma, u.rho, u.m, u.energy));
         }
@@ -133,10 +133,14 @@ struct StepFunctor {
                                     device::maximum(all.slow, all.fast));
   }
 
+  KOKKOS_FUNCTION bool is_imaged(std::int64_t cell) const {
+    return cell < ghost_cells || cell >= ends.cells - ghost_cells;
+  }
+
   /// The ghosts are images of the three cells beside an end of the mesh; who computes such a cell, in slot
   /// `i`, renews them.
   KOKKOS_FUNCTION void fill_ghosts(const TileType& tile, int i, const CellState<double>& s) const {
-    const std::int64_t cell = tile.first - tile.halo + i;
+    const std::int64_t cell = tile.cell(i);
     const Range mesh = mesh_slots(tile);
     if (cell < ghost_cells) fill_side(tile, i, s, mesh.first, -1, ends.left);
     if (cell >= ends.cells - ghost_cells) fill_side(tile, i, s, mesh.last, 1, ends.right);
@@ -160,7 +164,7 @@ struct StepFunctor {
   KOKKOS_FUNCTION void find_inadmissible(const Member& member, const TileType& tile, int begin, int end,
                                          int stage, const double* out) const {
     for (int i = begin + member.team_rank(); i < end; i += member.team_size()) {
-      const std::int64_t cell = source_cell(ends, tile.first - tile.halo + i).cell;
+      const std::int64_t cell = source_cell(ends, tile.cell(i)).cell;
       report_inadmissible(
           control(), gamma, stage, cell,
           final_stage ? state_of<double>(out, ends.cells, cell) : tile.template state<double>(i));

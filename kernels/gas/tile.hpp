@@ -50,13 +50,19 @@ KOKKOS_INLINE_FUNCTION Source source_cell(const Ends& ends, std::int64_t index) 
   return {left ? beyond : n - 1 - beyond, -1.0};
 }
 
+/// The states of `lanes` cells from `cell` on, all of which lie in the mesh.
+template <class P>
+KOKKOS_INLINE_FUNCTION Triple<P> state_of(const double* in, std::int64_t cells, std::int64_t cell) {
+  using Lanes = device::Access<P>;
+  return {Lanes::load(in + cell), Lanes::load(in + cells + cell), Lanes::load(in + 2 * cells + cell)};
+}
+
 /// The states of `lanes` cells from `index` on, ghosts included. `in` holds three rows of `ends.cells`.
 template <class R>
 KOKKOS_INLINE_FUNCTION Triple<R> load_state(const double* in, const Ends& ends, std::int64_t index) {
   using Lanes = device::Access<R>;
   const std::int64_t n = ends.cells;
-  if (index >= 0 && index + Lanes::lanes <= n)
-    return {Lanes::load(in + index), Lanes::load(in + n + index), Lanes::load(in + 2 * n + index)};
+  if (index >= 0 && index + Lanes::lanes <= n) return state_of<R>(in, n, index);
   double rho[Lanes::lanes], m[Lanes::lanes], energy[Lanes::lanes];
   for (int lane = 0; lane < Lanes::lanes; ++lane) {
     const Source from = source_cell(ends, index + lane);
@@ -93,6 +99,8 @@ class Tile {
         _row(shape.row),
         _data(static_cast<double*>(
             member.team_scratch(0).get_shmem_aligned(scratch_bytes(shape), alignof(double)))) {}
+
+  KOKKOS_FUNCTION std::int64_t cell(int slot) const { return first - halo + slot; }
 
   static KOKKOS_FUNCTION std::size_t scratch_bytes(const TileShape& shape) {
     return sizeof(double) * static_cast<std::size_t>(rows) * static_cast<std::size_t>(shape.row);

@@ -42,7 +42,7 @@ KOKKOS_INLINE_FUNCTION void load_cells(const Member& member, const Tile& tile, c
                                        const double* in) {
   constexpr int lanes = device::Access<R>::lanes;
   for (int i = member.team_rank() * lanes; i < tile.slots + lanes - 1; i += member.team_size() * lanes) {
-    const Triple<R> u = load_state<R>(in, ends, tile.first - tile.halo + i);
+    const Triple<R> u = load_state<R>(in, ends, tile.cell(i));
     store_cell(tile, i, cell_state<R>(gamma, u.rho, u.m, u.energy));
   }
 }
@@ -97,19 +97,12 @@ KOKKOS_INLINE_FUNCTION Triple<P> combined(double a_n, const Triple<P>& u_n, cons
   return {a_n * u_n.rho + u.rho, a_n * u_n.m + u.m, a_n * u_n.energy + u.energy};
 }
 
-/// The state of `cell`, which lies in the mesh.
-template <class P>
-KOKKOS_INLINE_FUNCTION Triple<P> state_of(const double* in, std::int64_t cells, std::int64_t cell) {
-  using Lanes = device::Access<P>;
-  return {Lanes::load(in + cell), Lanes::load(in + cells + cell), Lanes::load(in + 2 * cells + cell)};
-}
-
 /// Stores the state of slot `i`, whose cell is one of the tile's own.
 template <class P, class Tile>
 KOKKOS_INLINE_FUNCTION void store_state(const Tile& tile, int i, const Triple<P>& u, std::int64_t cells,
                                         double* out) {
   using Lanes = device::Access<P>;
-  const std::int64_t cell = tile.first - tile.halo + i;
+  const std::int64_t cell = tile.cell(i);
   Lanes::store(out + cell, u.rho);
   Lanes::store(out + cells + cell, u.m);
   Lanes::store(out + 2 * cells + cell, u.energy);

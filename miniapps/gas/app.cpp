@@ -49,10 +49,9 @@ bool holds_results(const std::filesystem::path& directory) {
 
 /// `--restart auto` without a restart file begins anew, but only what was begun before.
 void require_same_scene(const GasScene& scene, const std::filesystem::path& directory) {
-  const std::filesystem::path former = directory / "scene.toml";
-  bool same = !holds_results(directory);
+  bool same = false;
   try {
-    same = same || scene_fingerprint(read_gas_scene(former)) == scene_fingerprint(scene);
+    same = scene_fingerprint(read_gas_scene(directory / "scene.toml")) == scene_fingerprint(scene);
   } catch (const Failure&) {
     // No scene, or none of this program.
   }
@@ -62,12 +61,12 @@ void require_same_scene(const GasScene& scene, const std::filesystem::path& dire
                                        "--out, or give --overwrite to replace it");
 }
 
-run::ExistingRun existing_run(const MiniAppOptions& options, const std::filesystem::path& directory,
+run::ExistingRun existing_run(const MiniAppOptions& options, bool is_empty,
                               const std::filesystem::path& restart) {
   if (options.overwrite) return run::ExistingRun::overwrite;
   if (!restart.empty()) return run::ExistingRun::resume;
   if (options.restart == "auto") return run::ExistingRun::overwrite;
-  return holds_results(directory) ? run::ExistingRun::refuse : run::ExistingRun::overwrite;
+  return is_empty ? run::ExistingRun::overwrite : run::ExistingRun::refuse;
 }
 
 void print_summary(const run::ResultDocument& result, const std::filesystem::path& directory) {
@@ -89,13 +88,14 @@ ExitCode run_scene(const MiniAppOptions& options, const std::filesystem::path& f
   const std::filesystem::path restart =
       options.restart.empty() ? std::filesystem::path() : run::restart_source(options.restart, out);
   const bool is_empty = !holds_results(out);
-  run::RunDirectory directory(out, existing_run(options, out, restart));
+  run::RunDirectory directory(out, existing_run(options, is_empty, restart));
   run::ResultDocument result = run::new_result("drogue-gas", name);
   try {
     const GasScene scene = read_gas_scene(
         file, options.set, options.seed_mode ? SchemeSource::dissertation : SchemeSource::scene);
     const device::Backend backend = choose_backend(options.backend);
-    if (options.restart == "auto" && restart.empty() && !options.overwrite) require_same_scene(scene, out);
+    if (!is_empty && options.restart == "auto" && restart.empty() && !options.overwrite)
+      require_same_scene(scene, out);
     const auto runtime = start_kokkos(options.kokkos);
     device::start_ledger();
     describe_device(result, scene.parameters, backend);
