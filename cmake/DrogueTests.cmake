@@ -55,7 +55,8 @@ function(drogue_add_python_test file label)
   set(_name "${label}.${_stem}")
   add_test(NAME "${_name}"
     COMMAND "${Python3_EXECUTABLE}" -B -m unittest discover -v -s "${_folder}" -t "${_folder}" -p "${_filename}")
-  set_tests_properties("${_name}" PROPERTIES LABELS "${_labels}" TIMEOUT 900 ENVIRONMENT
+  # These are the long ones: first, so that none is left alone at the end.
+  set_tests_properties("${_name}" PROPERTIES LABELS "${_labels}" COST 100 TIMEOUT 900 ENVIRONMENT
     "DROGUE_BIN=${CMAKE_RUNTIME_OUTPUT_DIRECTORY};DROGUE_SOURCE=${PROJECT_SOURCE_DIR};DROGUE_BUILD=${PROJECT_BINARY_DIR};OMP_NUM_THREADS=2")
 endfunction()
 
