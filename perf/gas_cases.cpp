@@ -76,11 +76,31 @@ Case dense_case(std::int64_t cells, long steps) {
           bar_of(p)};
 }
 
-Case solver_case(device::Backend backend, std::int64_t cells, long steps) {
-  const gas::Parameters p = parameters_of(cells);
+/// A change of the usual parameters, and what it adds to the name of the case.
+struct Variant {
+  const char* name;
+  void (*apply)(gas::Parameters&);
+};
+
+/// What a step costs beside the usual one, where nothing but arithmetic counts, and where launches count
+/// most.
+const std::vector<Variant> large_variants = {
+    {"/z", [](gas::Parameters& p) { p.weno = gas::Weno::z; }},
+    {"/teno5", [](gas::Parameters& p) { p.weno = gas::Weno::teno5; }},
+    {"/split", [](gas::Parameters& p) { p.precision = gas::Precision::split; }},
+    {"/auto", [](gas::Parameters& p) { p.positivity = gas::Positivity::automatic; }},
+    {"/on", [](gas::Parameters& p) { p.positivity = gas::Positivity::on; }}};
+const std::vector<Variant> small_variants = {
+    {"/plain", [](gas::Parameters& p) { p.driver = gas::Driver::plain; }},
+    {"/graph", [](gas::Parameters& p) { p.driver = gas::Driver::graph; }},
+    {"/split", [](gas::Parameters& p) { p.precision = gas::Precision::split; }}};
+
+Case solver_case(device::Backend backend, std::int64_t cells, long steps, const Variant& variant) {
+  gas::Parameters p = parameters_of(cells);
+  variant.apply(p);
   const auto solver = std::make_shared<std::unique_ptr<gas::Solver>>();
   const std::string name(device::name(backend));
-  return {"gas-step/" + name + "/" + std::to_string(cells),
+  return {"gas-step/" + name + "/" + std::to_string(cells) + variant.name,
           "step",
           backend == device::Backend::cuda ? "launch latency below 100k cells, FP64 issue above"
                                            : "FP64 issue of the cores",
@@ -125,7 +145,13 @@ std::vector<Case> gas_cases(bool quick) {
       const long n = static_cast<long>(cells);
       const long steps =
           gpu ? std::clamp(n / 2, 10L, std::max(10L, 2000L / (1 + n / 65536))) : std::max(4L, 200'000L / n);
-      cases.push_back(solver_case(backend, cells, steps));
+      cases.push_back(solver_case(backend, cells, steps, {"", [](gas::Parameters&) {}}));
+      if (gpu && cells == 8192)
+        for (const Variant& variant : small_variants)
+          cases.push_back(solver_case(backend, cells, steps, variant));
+      if (gpu && cells == 1 << 24)
+        for (const Variant& variant : large_variants)
+          cases.push_back(solver_case(backend, cells, steps, variant));
     }
     if (cells <= 8192) cases.push_back(dense_case(cells, std::max(2L, 50'000L / static_cast<long>(cells))));
   }

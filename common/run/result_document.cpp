@@ -118,6 +118,7 @@ std::string to_json(const ResultDocument& result) {
   json["backend"] = result.backend;
   json["device"] = result.device;
   json["precision"] = result.precision;
+  json["driver"] = result.driver;
   json["ranks"] = result.ranks;
   json["threads"] = result.threads;
   json["status"] = status_name(result.exit_code);

@@ -80,7 +80,7 @@ void start_ledger() {
 
 void end_warmup() { counters.warm = true; }
 
-void count_graph_launch() { ++counters.launches; }
+void count_launch() { ++counters.launches; }
 
 Ledger ledger() {
   return {counters.launches, counters.fences, counters.allocations,

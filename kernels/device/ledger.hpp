@@ -25,7 +25,7 @@ void end_warmup();
 
 [[nodiscard]] Ledger ledger();
 
-/// Launches that no callback sees: a graph replayed.
-void count_graph_launch();
+/// A launch that no callback sees: of a recorded graph, or of a resident grid.
+void count_launch();
 
 }  // namespace drogue::device

@@ -50,6 +50,32 @@ KOKKOS_INLINE_FUNCTION double reciprocal(double x) {
 }
 KOKKOS_INLINE_FUNCTION float reciprocal(float x) { return 1.0F / x; }
 
+/// A square root and its reciprocal.
+template <class R>
+struct Root {
+  R value, inverse;
+};
+
+/// Of a positive normal number; what else there is gives a NaN. On CUDA the hardware's approximation of
+/// 1/sqrt(x) and one cubic Newton step give both (within 2 ulp) with a third of the instructions of an IEEE
+/// root and division; the exact build computes those.
+KOKKOS_INLINE_FUNCTION Root<double> root(double x) {
+#if defined(__CUDA_ARCH__) && !defined(DROGUE_EXACT)
+  double y;
+  asm("rsqrt.approx.ftz.f64 %0, %1;" : "=d"(y) : "d"(x));
+  const double e = fma(-x, y * y, 1.0);
+  y = fma(y * e, fma(e, 0.375, 0.5), y);
+  return {x * y, y};
+#else
+  const double value = square_root(x);
+  return {value, reciprocal(value)};
+#endif
+}
+KOKKOS_INLINE_FUNCTION Root<float> root(float x) {
+  const float value = square_root(x);
+  return {value, reciprocal(value)};
+}
+
 template <class To>
 struct Convert {
   template <class From>
@@ -139,6 +165,11 @@ Pack<T, L> select(Mask condition, Pack<T, L> yes, Pack<T, L> no) {
 template <class T, int L>
 Pack<T, L> reciprocal(Pack<T, L> x) {
   return Pack<T, L>(T(1)) / x;
+}
+template <class T, int L>
+Root<Pack<T, L>> root(Pack<T, L> x) {
+  const Pack<T, L> value = square_root(x);
+  return {value, reciprocal(value)};
 }
 
 template <class T, int L>

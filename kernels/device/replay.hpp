@@ -46,7 +46,7 @@ class Replay<Kokkos::Cuda> {
   Replay& operator=(const Replay&) = delete;
 
   void launch() const {
-    count_graph_launch();
+    count_launch();
     KOKKOS_IMPL_CUDA_SAFE_CALL(cudaGraphLaunch(_graph, _stream));
   }
 

@@ -5,12 +5,14 @@
 
 namespace drogue::gas {
 
-/// Eigenvectors of dF/dU at a face: right ones R = (1, u-c, H-uc), (1, u, u^2/2), (1, u+c, H+uc); left ones
-/// scaled so that a projection is eight operations.
+/// Eigenvectors of dF/dU at a face: right ones (1, u-c, H-uc), (1, u, u^2/2), (1, u+c, H+uc); left ones
+/// scaled so that a projection is six operations: the acoustic ones by 2 c^2/(gamma-1), the entropy one not
+/// at all.
 template <class R>
 struct Eigensystem {
-  R u, c, enthalpy, kinetic;        ///< kinetic = u^2/2
-  R inverse_c, mach, b1, b1_u, b2;  ///< mach = u/c, b1 = (gamma-1)/c^2, b1_u = b1 u, b2 = b1 u^2/2
+  R u, c, enthalpy, kinetic;  ///< kinetic = u^2/2
+  R unit;                     ///< c^2/(gamma-1) = H - u^2/2
+  R inverse_unit, width;      ///< width = c/(gamma-1)
 };
 
 template <class R>
@@ -18,19 +20,18 @@ struct Characteristic {
   R slow, entropy, fast;
 };
 
-/// The means and c^2 = (gamma-1)(H - u^2/2) are formed in R (at Mach 2000 the difference has no digit left in
-/// single precision); what follows is of type N.
+/// The means and H - u^2/2 are formed in R (at Mach 2000 the difference has no digit left in single
+/// precision); what follows is of type N.
 template <class N, class R, class S>
 KOKKOS_INLINE_FUNCTION Eigensystem<N> eigensystem(S gamma, R u, R enthalpy) {
   using F = typename device::Access<N>::Element;
   using To = device::Convert<N>;
+  const auto gamma_1 = F(gamma - S(1));
   const R kinetic = S(0.5) * (u * u);
-  const N c = device::square_root(To::from((gamma - S(1)) * (enthalpy - kinetic)));
-  const N inverse_c = device::reciprocal(c);
-  const N b1 = F(gamma - S(1)) * (inverse_c * inverse_c);
-  const N n_kinetic = To::from(kinetic);
-  const N n_u = To::from(u);
-  return {n_u, c, To::from(enthalpy), n_kinetic, inverse_c, n_u * inverse_c, b1, b1 * n_u, b1 * n_kinetic};
+  const N unit = To::from(enthalpy - kinetic);
+  const auto [c, inverse_c] = device::root(gamma_1 * unit);
+  return {To::from(u),     c, To::from(enthalpy), To::from(kinetic), unit, gamma_1 * (inverse_c * inverse_c),
+          unit * inverse_c};
 }
 
 /// A cell beside a face, as the means need it.
@@ -58,12 +59,12 @@ KOKKOS_INLINE_FUNCTION Eigensystem<N> face_eigensystem(Mean mean, S gamma, const
                            (wl * left.enthalpy + wr * right.enthalpy) * inverse);
 }
 
-/// L d for a difference d = (drho, dm, dE) of U or F: twice the acoustic components and once the entropy one.
+/// L d for a difference d = (drho, dm, dE) of U or F, in the eigenvectors' scale.
 template <class R>
 KOKKOS_INLINE_FUNCTION Characteristic<R> project(const Eigensystem<R>& e, R d_rho, R d_m, R d_energy) {
-  const R s = e.b2 * d_rho - e.b1_u * d_m + e.b1 * d_energy;
-  const R t = e.mach * d_rho - e.inverse_c * d_m;
-  return {s + t, d_rho - s, s - t};
+  const R s = e.kinetic * d_rho + (d_energy - e.u * d_m);
+  const R t = e.u * d_rho - d_m;
+  return {s + e.width * t, d_rho - e.inverse_unit * s, s - e.width * t};
 }
 
 }  // namespace drogue::gas

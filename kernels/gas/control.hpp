@@ -62,16 +62,30 @@ struct Attempt {
   std::int64_t launches;  ///< kernels that have reported to the host
 };
 
+/// What the stages of an attempt gather for the decision whether it stands.
+struct Outcome {
+  std::uint64_t stage_speed[max_stages + 1][3];  ///< bits of max |u-c|, |u|, |u+c| after each stage
+  double boundary_flux[max_stages][2][3];
+  std::uint64_t bad;     ///< least `inadmissible`
+  std::int64_t touches;  ///< faces limited
+};
+
 /// What a step needs beside the fields. It lives on the device, is written by kernels alone, and makes every
 /// decision that would otherwise need the host: the next dt, whether a step stands, when to stop.
 struct Control {
   Resume resume;  ///< all that a restart must bring back
   Attempt attempt;
-  std::uint64_t stage_speed[max_stages + 1][3];  ///< bits of max |u-c|, |u|, |u+c| after each stage
-  double boundary_flux[max_stages][2][3];
-  std::uint64_t bad;     ///< least `inadmissible` of this attempt
-  std::int64_t touches;  ///< faces limited in this attempt
+  Outcome outcome;
   Failed failed;
+};
+
+/// A team's own control block, where the teams of a resident grid decide for themselves.
+struct Judgement {
+  Resume resume;
+  Attempt attempt;
+  Failed failed;
+  Outcome outcome;  ///< of its own cells
+  bool ends;        ///< the launch
 };
 
 /// Constants of a run that the step's kernels read.
@@ -79,7 +93,6 @@ struct StepConstants {
   double gamma, dx, cfl, limited_cfl, fixed_dt;
   std::int64_t cells, max_steps;
   int ramp_steps;
-  int stages;
   int positivity;  ///< Positivity as an integer
 };
 

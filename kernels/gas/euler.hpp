@@ -22,7 +22,7 @@ KOKKOS_INLINE_FUNCTION CellState<R> cell_state(S gamma, R rho, R m, R energy) {
   const R inverse = device::reciprocal(rho);
   const R u = m * inverse;
   const R p = pressure(gamma, m, energy, u);
-  return {rho, m, energy, u, p, (energy + p) * inverse, device::square_root(gamma * (p * inverse))};
+  return {rho, m, energy, u, p, (energy + p) * inverse, device::root(gamma * (p * inverse)).value};
 }
 
 /// Fastest signal of each characteristic field: |u - c|, |u|, |u + c|.

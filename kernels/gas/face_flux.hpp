@@ -25,16 +25,15 @@ KOKKOS_INLINE_FUNCTION R central_flux(R f_1, R f0, R f1, R f2) {
   return S(7.0 / 12.0) * (f0 + f1) - S(1.0 / 12.0) * (f_1 + f2);
 }
 
-/// One field's correction from both sides: the right-going part sees the first four of the five differences,
-/// the left-going part the last four in reverse.
+/// One field's correction from both sides, `correction_scale * scale * unit` times: the right-going part sees
+/// the first four of the five differences, the left-going part the last four in reverse.
 template <Reconstruction scheme, int scale, class R>
-KOKKOS_INLINE_FUNCTION R field_correction(const R (&df)[5], const R (&du)[5], R alpha) {
-  constexpr auto unscale = static_cast<typename device::Access<R>::Element>(1.0 / scale);
+KOKKOS_INLINE_FUNCTION R field_correction(const R (&df)[5], const R (&du)[5], R alpha, R unit) {
   const R right_going = correction<scheme, scale, R>(df[0] + alpha * du[0], df[1] + alpha * du[1],
-                                                     df[2] + alpha * du[2], df[3] + alpha * du[3]);
+                                                     df[2] + alpha * du[2], df[3] + alpha * du[3], unit);
   const R left_going = correction<scheme, scale, R>(df[4] - alpha * du[4], df[3] - alpha * du[3],
-                                                    df[2] - alpha * du[2], df[1] - alpha * du[1]);
-  return unscale * (right_going - left_going);
+                                                    df[2] - alpha * du[2], df[1] - alpha * du[1], unit);
+  return right_going - left_going;
 }
 
 /// Characteristic finite-difference WENO5 flux at a face in difference form (gas.md section 2; Jiang and Shu
@@ -56,10 +55,13 @@ KOKKOS_INLINE_FUNCTION Triple<R> weno5_face(const Stencil<R>& s, const Eigensyst
     slow_u[k] = u.slow, entropy_u[k] = u.entropy, fast_u[k] = u.fast;
     slow_f[k] = f.slow, entropy_f[k] = f.entropy, fast_f[k] = f.fast;
   }
-  const N k1 = field_correction<scheme, acoustic_scale>(slow_f, slow_u, alpha.slow);
-  const N k2 = field_correction<scheme, entropy_scale>(entropy_f, entropy_u, alpha.entropy);
-  const N k3 = field_correction<scheme, acoustic_scale>(fast_f, fast_u, alpha.fast);
-  const N sum = k1 + k3, difference = e.c * (k3 - k1);
+  using F = typename device::Access<N>::Element;
+  const N k1 = field_correction<scheme, acoustic_scale>(slow_f, slow_u, alpha.slow, e.unit);
+  const N k2 = F(1.0 / (correction_scale * entropy_scale)) *
+               field_correction<scheme, entropy_scale>(entropy_f, entropy_u, alpha.entropy, N(F(1)));
+  const N k3 = field_correction<scheme, acoustic_scale>(fast_f, fast_u, alpha.fast, e.unit);
+  const N acoustic = F(1.0 / (correction_scale * acoustic_scale)) * e.inverse_unit;
+  const N sum = acoustic * (k1 + k3), difference = acoustic * e.c * (k3 - k1);
   using Back = device::Convert<R>;
   const Triple<R>* u = s.state;
   return {central_flux(u[1].m, u[2].m, u[3].m, u[4].m) - Back::from(sum + k2),

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "kernels/device/memory.hpp"
+#include "kernels/device/pack.hpp"
 #include "kernels/gas/control.hpp"
 
 namespace drogue::gas {
@@ -16,7 +17,7 @@ KOKKOS_INLINE_FUNCTION void choose_dt(const Progress& now, Attempt& next, const 
     const double ramp = now.step < k.ramp_steps
                             ? 0.1 + 0.9 * static_cast<double>(now.step) / static_cast<double>(k.ramp_steps)
                             : 1.0;
-    dt = ramp * (now.limited ? k.limited_cfl : k.cfl) * k.dx / max_speed(now.speed);
+    dt = ramp * (now.limited ? k.limited_cfl : k.cfl) * k.dx * device::reciprocal(max_speed(now.speed));
   }
   dt *= now.dt_scale;
   const double left = next.target - now.time;
@@ -24,23 +25,27 @@ KOKKOS_INLINE_FUNCTION void choose_dt(const Progress& now, Attempt& next, const 
   next.dt = next.reaches_target ? left : dt;
 }
 
-KOKKOS_INLINE_FUNCTION void fail(const Progress& now, Attempt& attempt, Control& c, Quantity quantity,
+KOKKOS_INLINE_FUNCTION void fail(const Progress& now, Attempt& attempt, Failed& failed, Quantity quantity,
                                  std::int64_t cell) {
   attempt.stop = Stop::failed;
-  c.failed = {quantity, cell, now.step + 1, now.time, attempt.dt};
+  failed = {quantity, cell, now.step + 1, now.time, attempt.dt};
 }
 
-/// Makes the next attempt ready, or says why there is none: empties in `c` what its stages will add to.
-KOKKOS_INLINE_FUNCTION void prepare_attempt(const Progress& now, Attempt& next, Control& c,
+/// Makes the next attempt ready, or says why there is none.
+KOKKOS_INLINE_FUNCTION void prepare_attempt(const Progress& now, Attempt& next, Failed& failed,
                                             const StepConstants& k) {
-  for (int field = 0; field < 3; ++field) c.stage_speed[0][field] = now.speed[field];
-  for (int stage = 1; stage <= max_stages; ++stage)
-    for (int field = 0; field < 3; ++field) c.stage_speed[stage][field] = 0;
-  c.bad = no_cell;
-  c.touches = 0;
   choose_dt(now, next, k);
   // Also true for a NaN.
-  if (!(now.time + next.dt > now.time)) fail(now, next, c, Quantity::time_step, -1);
+  if (!(now.time + next.dt > now.time)) fail(now, next, failed, Quantity::time_step, -1);
+}
+
+/// Empties what the stages of the next attempt will add to.
+KOKKOS_INLINE_FUNCTION void empty(Outcome& outcome, const Progress& now) {
+  for (int field = 0; field < 3; ++field) outcome.stage_speed[0][field] = now.speed[field];
+  for (int stage = 1; stage <= max_stages; ++stage)
+    for (int field = 0; field < 3; ++field) outcome.stage_speed[stage][field] = 0;
+  outcome.bad = no_cell;
+  outcome.touches = 0;
 }
 
 /// Tells the host where the device is. The host reads the fields one by one while they change and needs no
@@ -65,16 +70,72 @@ KOKKOS_INLINE_FUNCTION void add_compensated(double& sum, double& compensation, d
   sum = next;
 }
 
-/// Threads that end a step on a device: one for each boundary flux, and not more than wait for one another
-/// anyway.
-inline constexpr int finish_team = 32;
-
-/// What the stages of an attempt have left for the decision.
-struct Outcome {
+/// The part of an outcome that decides.
+struct Findings {
   std::uint64_t bad;
   std::int64_t touches;
   std::uint64_t speed[3];
 };
+
+KOKKOS_INLINE_FUNCTION Findings findings(const Outcome& outcome, int stages) {
+  const std::uint64_t(&speed)[3] = outcome.stage_speed[stages];
+  return {outcome.bad, outcome.touches, {speed[0], speed[1], speed[2]}};
+}
+
+KOKKOS_INLINE_FUNCTION void reject(Progress& now, Attempt& attempt, Failed& failed, std::uint64_t bad,
+                                   const StepConstants& k, bool limited) {
+  const bool can_limit = k.positivity == static_cast<int>(Positivity::automatic);
+  if (!limited && can_limit) {
+    now.limited = 1;
+    now.limited_left = limited_steps;
+  } else if (limited && now.halvings < max_halvings) {
+    ++now.halvings;
+    now.dt_scale *= 0.5;
+  } else {
+    fail(now, attempt, failed, static_cast<Quantity>(bad & 3U), inadmissible_cell(bad));
+    return;
+  }
+  ++now.redone;
+  prepare_attempt(now, attempt, failed, k);
+}
+
+KOKKOS_INLINE_FUNCTION void accept(Progress& now, Attempt& attempt, Failed& failed, const Findings& found,
+                                   const StepConstants& k, int result_buffer, bool limited) {
+  const double dt = attempt.dt;
+  now.last_dt = dt;
+  now.dt_min = now.step == 0 || dt < now.dt_min ? dt : now.dt_min;
+  now.dt_max = dt > now.dt_max ? dt : now.dt_max;
+  now.time = attempt.reaches_target ? attempt.target : now.time + dt;
+  ++now.step;
+  now.current = (now.current + result_buffer) % 3;
+  now.touches += found.touches;
+  now.halvings = 0;
+  now.dt_scale = 1.0;
+  for (int field = 0; field < 3; ++field) now.speed[field] = found.speed[field];
+  if (limited && k.positivity == static_cast<int>(Positivity::automatic) && --now.limited_left <= 0)
+    now.limited = 0;
+  if (attempt.reaches_target)
+    attempt.stop = Stop::target;
+  else if (now.step >= k.max_steps)
+    attempt.stop = Stop::max_steps;
+  else if (now.step == attempt.pause_step || now.step == attempt.row_step)
+    attempt.stop = Stop::pause;
+  else
+    prepare_attempt(now, attempt, failed, k);
+}
+
+/// One of the six fluxes that the conservation check needs: what a step lets through an end, in units of dt.
+KOKKOS_INLINE_FUNCTION double boundary_flux(const Outcome& outcome, const StageTable& table, int side,
+                                            int field) {
+  double flux = 0.0;
+  for (int stage = 0; stage < table.stages; ++stage)
+    flux += table.stage[stage].boundary * outcome.boundary_flux[stage][side][field];
+  return flux;
+}
+
+/// Threads that end a step on a device: one for each boundary flux, and not more than wait for one another
+/// anyway.
+inline constexpr int finish_team = 32;
 
 /// The last kernel of a step: one team that accepts or rejects the attempt.
 template <class ExecutionSpace>
@@ -91,19 +152,20 @@ struct FinishFunctor {
     Control& c = control();
     Progress now = c.resume;
     Attempt attempt = c.attempt;
-    const std::uint64_t(&speed)[3] = c.stage_speed[constants.stages];
-    const Outcome outcome = {c.bad, c.touches, {speed[0], speed[1], speed[2]}};
+    const Findings found = findings(c.outcome, table.stages);
     const bool ends = attempt.stop == Stop::running && (now.limited != 0) == limited;
-    const bool stands = ends && outcome.bad == no_cell && !outgrown(c, attempt.dt);
+    const bool stands = ends && found.bad == no_cell && !outgrown(c.outcome, attempt.dt);
     if (stands)
       for (int k = member.team_rank(); k < 6; k += member.team_size())
-        add_boundary_flux(c, k / 3, k % 3, attempt.dt);
+        add_compensated(c.resume.boundary[k / 3][k % 3], c.resume.compensation[k / 3][k % 3],
+                        attempt.dt * boundary_flux(c.outcome, table, k / 3, k % 3));
     member.team_barrier();  // all have read what one now changes
     if (member.team_rank() != 0) return;
     if (stands)
-      accept(now, attempt, c, outcome);
+      accept(now, attempt, c.failed, found, constants, table.stage[table.stages - 1].out, limited);
     else if (ends)
-      reject(now, attempt, c, outcome.bad);
+      reject(now, attempt, c.failed, found.bad, constants, limited);
+    if (ends) empty(c.outcome, now);
     report(now, attempt, status());
     static_cast<Progress&>(c.resume) = now;
     c.attempt = attempt;
@@ -111,59 +173,12 @@ struct FinishFunctor {
 
   /// The limiter's guarantee needs lambda alpha <= 1/2 with every stage's own alpha, which may exceed the one
   /// dt is from.
-  KOKKOS_FUNCTION bool outgrown(const Control& c, double dt) const {
+  KOKKOS_FUNCTION bool outgrown(const Outcome& outcome, double dt) const {
     if (!limited) return false;
-    for (int stage = 0; stage < constants.stages; ++stage)
-      if (table.stage[stage].dt_factor * dt * max_speed(c.stage_speed[stage]) > 0.5 * constants.dx)
+    for (int stage = 0; stage < table.stages; ++stage)
+      if (table.stage[stage].dt_factor * dt * max_speed(outcome.stage_speed[stage]) > 0.5 * constants.dx)
         return true;
     return false;
-  }
-
-  KOKKOS_FUNCTION void add_boundary_flux(Control& c, int side, int field, double dt) const {
-    double flux = 0.0;
-    for (int stage = 0; stage < constants.stages; ++stage)
-      flux += table.stage[stage].boundary * c.boundary_flux[stage][side][field];
-    add_compensated(c.resume.boundary[side][field], c.resume.compensation[side][field], dt * flux);
-  }
-
-  KOKKOS_FUNCTION void reject(Progress& now, Attempt& attempt, Control& c, std::uint64_t bad) const {
-    const bool can_limit = constants.positivity == static_cast<int>(Positivity::automatic);
-    if (!limited && can_limit) {
-      now.limited = 1;
-      now.limited_left = limited_steps;
-    } else if (limited && now.halvings < max_halvings) {
-      ++now.halvings;
-      now.dt_scale *= 0.5;
-    } else {
-      fail(now, attempt, c, static_cast<Quantity>(bad & 3U), inadmissible_cell(bad));
-      return;
-    }
-    ++now.redone;
-    prepare_attempt(now, attempt, c, constants);
-  }
-
-  KOKKOS_FUNCTION void accept(Progress& now, Attempt& attempt, Control& c, const Outcome& outcome) const {
-    const double dt = attempt.dt;
-    now.last_dt = dt;
-    now.dt_min = now.step == 0 || dt < now.dt_min ? dt : now.dt_min;
-    now.dt_max = dt > now.dt_max ? dt : now.dt_max;
-    now.time = attempt.reaches_target ? attempt.target : now.time + dt;
-    ++now.step;
-    now.current = (now.current + table.stage[constants.stages - 1].out) % 3;
-    now.touches += outcome.touches;
-    now.halvings = 0;
-    now.dt_scale = 1.0;
-    for (int field = 0; field < 3; ++field) now.speed[field] = outcome.speed[field];
-    if (limited && constants.positivity == static_cast<int>(Positivity::automatic) && --now.limited_left <= 0)
-      now.limited = 0;
-    if (attempt.reaches_target)
-      attempt.stop = Stop::target;
-    else if (now.step >= constants.max_steps)
-      attempt.stop = Stop::max_steps;
-    else if (now.step == attempt.pause_step || now.step == attempt.row_step)
-      attempt.stop = Stop::pause;
-    else
-      prepare_attempt(now, attempt, c, constants);
   }
 };
 
@@ -190,7 +205,8 @@ struct ResumeFunctor {
       else if (now.step >= constants.max_steps)
         attempt.stop = Stop::max_steps;
       else
-        prepare_attempt(now, attempt, c, constants);
+        prepare_attempt(now, attempt, c.failed, constants);
+      empty(c.outcome, now);
     }
     report(now, attempt, status());
     c.attempt = attempt;

@@ -54,7 +54,8 @@ struct RowFunctor {
         attempt.row_step += every;
         if (c.resume.step != attempt.pause_step) {
           attempt.stop = Stop::running;
-          prepare_attempt(c.resume, attempt, c, constants);
+          prepare_attempt(c.resume, attempt, c.failed, constants);
+          empty(c.outcome, c.resume);
         }
       }
     }

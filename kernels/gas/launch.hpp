@@ -1,5 +1,7 @@
 #pragma once
 
+#include "kernels/device/memory.hpp"
+#include "kernels/device/resident_grid.hpp"
 #include "kernels/gas/control.hpp"
 #include "kernels/gas/tile.hpp"
 #include "kernels/gas/weno.hpp"
@@ -21,6 +23,18 @@ struct StageSetup {
   Mean mean;
 };
 
+/// Threads of a team that has a multiprocessor for itself, each with 168 registers.
+inline constexpr int largest_resident_team = 384;
+
+/// What steps that share a launch need beside it.
+template <class ExecutionSpace>
+struct ResidentSetup {
+  device::ResidentGrid<ExecutionSpace> grid;
+  TileShape shape;
+  Kokkos::View<Status, device::ReportSpace<ExecutionSpace>> status;
+  StepConstants constants;
+};
+
 /// Enqueues stage `stage` of a step. Defined in launch_tiles.hpp, instantiated in stage.cpp.in and
 /// step.cpp.in.
 template <Reconstruction scheme, class ExecutionSpace>
@@ -30,5 +44,11 @@ void launch_stage(const ExecutionSpace& space, const StageSetup<ExecutionSpace>&
 /// Enqueues all stages of a step at once: with alpha from the stencil, and without the limiter.
 template <Reconstruction scheme, class ExecutionSpace>
 void launch_step(const ExecutionSpace& space, const StageSetup<ExecutionSpace>& setup, Precision precision);
+
+/// Enqueues one launch of up to `most_steps` steps, under the same conditions.
+template <Reconstruction scheme, class ExecutionSpace>
+void launch_resident_steps(const StageSetup<ExecutionSpace>& setup,
+                           const ResidentSetup<ExecutionSpace>& resident, Precision precision,
+                           std::int64_t most_steps);
 
 }  // namespace drogue::gas

@@ -1,14 +1,15 @@
 #pragma once
 
 #include "kernels/gas/launch.hpp"
+#include "kernels/gas/resident_step.hpp"
 #include "kernels/gas/stage.hpp"
 #include "kernels/gas/step.hpp"
 
 namespace drogue::gas {
 
-/// Threads of a team for which a device thread has 168 registers: three teams a multiprocessor. With 96
-/// registers and five teams the fused step spills and a mesh of 16 M cells took 1.2 times as long.
-inline constexpr int team_of_full_registers = 128, largest_team = 512;
+/// Threads of a usual device team. Three teams a multiprocessor have 168 registers a thread. Four have 128,
+/// which the fused step spills a few of; where a thread has several slots that is the faster.
+inline constexpr int usual_team = 128, largest_team = 512;
 
 template <class Policy, class ExecutionSpace, class Functor>
 void launch_tiles(const char* label, const ExecutionSpace& space, const TileShape& shape, std::int64_t tiles,
@@ -24,16 +25,21 @@ void launch_tiles(const char* label, const ExecutionSpace& space, const TileShap
       functor);
 }
 
-template <class ExecutionSpace, class Functor>
+template <bool many_slots, class ExecutionSpace, class Functor>
 void launch(const char* label, const ExecutionSpace& space, const StageSetup<ExecutionSpace>& setup,
             const TileShape& shape, const Functor& functor) {
   const std::int64_t tiles = (setup.ends.cells + shape.cells - 1) / shape.cells;
   if constexpr (device::is_host<ExecutionSpace>) {
     launch_tiles<Kokkos::TeamPolicy<ExecutionSpace>>(label, space, shape, tiles, setup.team_size, functor);
   } else {
-    using Usual = Kokkos::TeamPolicy<ExecutionSpace, Kokkos::LaunchBounds<team_of_full_registers, 3>>;
+    using Usual = Kokkos::TeamPolicy<ExecutionSpace, Kokkos::LaunchBounds<usual_team, 3>>;
     using Large = Kokkos::TeamPolicy<ExecutionSpace, Kokkos::LaunchBounds<largest_team, 1>>;
-    if (setup.team_size <= team_of_full_registers)
+    if constexpr (many_slots) {
+      using Dense = Kokkos::TeamPolicy<ExecutionSpace, Kokkos::LaunchBounds<usual_team, 4>>;
+      if (setup.team_size <= usual_team && shape.row > setup.team_size)
+        return launch_tiles<Dense>(label, space, shape, tiles, setup.team_size, functor);
+    }
+    if (setup.team_size <= usual_team)
       launch_tiles<Usual>(label, space, shape, tiles, setup.team_size, functor);
     else
       launch_tiles<Large>(label, space, shape, tiles, setup.team_size, functor);
@@ -56,8 +62,8 @@ void launch_stage_as(const ExecutionSpace& space, const StageSetup<ExecutionSpac
       setup.splitting,
       setup.mean,
       last || limited || setup.splitting != Splitting::lf_stencil};
-  launch(limited ? "drogue::gas::stage_limited" : "drogue::gas::stage", space, setup, setup.stage_shape,
-         functor);
+  launch<false>(limited ? "drogue::gas::stage_limited" : "drogue::gas::stage", space, setup,
+                setup.stage_shape, functor);
 }
 
 template <Reconstruction scheme, class ExecutionSpace>
@@ -77,17 +83,43 @@ void launch_stage(const ExecutionSpace& space, const StageSetup<ExecutionSpace>&
 }
 
 template <Reconstruction scheme, Precision precision, class ExecutionSpace>
+StepFunctor<ExecutionSpace, scheme, precision> step_functor(const StageSetup<ExecutionSpace>& setup,
+                                                            const TileShape& shape) {
+  return {{setup.buffer[0], setup.buffer[1], setup.buffer[2]},
+          setup.control,
+          setup.table,
+          shape,
+          setup.ends,
+          setup.gamma,
+          1.0 / setup.dx,
+          setup.mean};
+}
+
+template <Reconstruction scheme, Precision precision, class ExecutionSpace>
 void launch_step_as(const ExecutionSpace& space, const StageSetup<ExecutionSpace>& setup) {
-  const StepFunctor<ExecutionSpace, scheme, precision> functor{
-      {setup.buffer[0], setup.buffer[1], setup.buffer[2]},
-      setup.control,
-      setup.table,
-      setup.step_shape,
-      setup.ends,
-      setup.gamma,
-      1.0 / setup.dx,
-      setup.mean};
-  launch("drogue::gas::step", space, setup, setup.step_shape, functor);
+  launch<true>("drogue::gas::step", space, setup, setup.step_shape,
+               step_functor<scheme, precision>(setup, setup.step_shape));
+}
+
+template <Reconstruction scheme, Precision precision, class ExecutionSpace>
+void launch_resident_steps_as(const StageSetup<ExecutionSpace>& setup,
+                              const ResidentSetup<ExecutionSpace>& resident, std::int64_t most_steps) {
+  const ResidentStepFunctor<ExecutionSpace, scheme, precision> functor{
+      step_functor<scheme, precision>(setup, resident.shape), resident.status, resident.constants,
+      most_steps};
+  resident.grid.template launch<largest_resident_team, 1>(functor);
+}
+
+template <Reconstruction scheme, class ExecutionSpace>
+void launch_resident_steps(const StageSetup<ExecutionSpace>& setup,
+                           const ResidentSetup<ExecutionSpace>& resident, Precision precision,
+                           std::int64_t most_steps) {
+  if constexpr (device::ResidentGrid<ExecutionSpace>::available) {
+    if (precision == Precision::full)
+      launch_resident_steps_as<scheme, Precision::full>(setup, resident, most_steps);
+    else
+      launch_resident_steps_as<scheme, Precision::split>(setup, resident, most_steps);
+  }
 }
 
 template <Reconstruction scheme, class ExecutionSpace>

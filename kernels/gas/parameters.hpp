@@ -33,6 +33,14 @@ enum class Positivity { off, on, automatic };
 /// `split`: differences, central flux and update in FP64, all that is nonlinear in FP32.
 enum class Precision { full, split };
 
+/// How steps reach a device. Host backends have only loops.
+enum class Driver {
+  automatic,   ///< persistent where mesh, splitting and limiter allow it, else graph
+  plain,       ///< kernels one by one
+  graph,       ///< the kernels of a step as one recorded graph
+  persistent,  ///< many steps in one launch of teams that all run at once
+};
+
 enum class Boundary { outflow, reflecting, periodic };
 
 /// Everything a gas solver needs to know but the initial state.
@@ -54,7 +62,8 @@ struct Parameters {
   int ramp_steps = 20;    ///< step k < ramp_steps takes 0.1 + 0.9 k / ramp_steps of it
   double fixed_dt = 0.0;  ///< s; > 0 replaces the CFL condition
   std::int64_t max_steps = 1'000'000;
-  int block = 0;  ///< cells a tile; 0: the backend's default
+  int block = 0;  ///< threads a team on a device, cells a tile elsewhere; 0: the backend's default
+  Driver driver = Driver::automatic;
 };
 
 }  // namespace drogue::gas

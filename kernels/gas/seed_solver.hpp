@@ -22,7 +22,7 @@ struct SeedFluxFunctor {
 
   KOKKOS_FUNCTION void operator()(const typename Stage::Member& member) const {
     const Tile<ExecutionSpace> tile(member, stage.shape, stage.ends.cells);
-    load_cells<typename Stage::R>(member, tile, stage.ends, stage.gamma, stage.buffer[0].data());
+    load_cells<typename Stage::R, false>(member, tile, stage.ends, stage.gamma, stage.buffer[0].data());
     member.team_barrier();
     stage.compute_fluxes(member, tile, 0.0);  // dt is the limiter's alone
     member.team_barrier();
@@ -52,7 +52,7 @@ class SeedSolver final : public Solver {
       _stage.buffer[k] = FieldsView<ExecutionSpace>("drogue::gas::seed_state", k == 0 ? _cells : 0);
     _stage.control = decltype(_stage.control)("drogue::gas::seed_control");
     _stage.weights = stage_table(TimeScheme::ssprk3).stage[0];
-    _stage.shape = tile_shape<ExecutionSpace>(p.block, p.cells, ghost_cells);
+    _stage.shape = tile_shape<ExecutionSpace>(p.block, ghost_cells, device_team(p.block, p.cells));
     _stage.ends = {p.cells, p.left, p.right};
     _stage.gamma = p.gamma;
     _stage.inverse_dx = 1.0 / _dx;
@@ -140,7 +140,8 @@ class SeedSolver final : public Solver {
     timed(_phases.h2d, [&] {
       auto control = Kokkos::create_mirror_view(_stage.control);
       for (int k = 0; k < 3; ++k)
-        control().stage_speed[0][k] = Kokkos::bit_cast<std::uint64_t>(most[static_cast<std::size_t>(k)]);
+        control().outcome.stage_speed[0][k] =
+            Kokkos::bit_cast<std::uint64_t>(most[static_cast<std::size_t>(k)]);
       Kokkos::deep_copy(space, _stage.control, control);
       for (int k = 0; k < 3; ++k)
         copy_range(space, field(_stage.buffer[0], k), 0,

@@ -72,7 +72,7 @@ class Solver {
 
   [[nodiscard]] virtual Phases phases() const = 0;
 
-  /// How a step reaches the device: "graph" or "plain".
+  /// How a step reaches the device: "persistent", "graph", "plain" or "seed".
   [[nodiscard]] virtual const char* driver() const = 0;
 };
 

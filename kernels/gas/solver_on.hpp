@@ -33,7 +33,7 @@ class SolverOn final : public Solver {
   void begin_snapshot() override;
   ConstConserved finish_snapshot() override;
   [[nodiscard]] Phases phases() const override { return {}; }
-  [[nodiscard]] const char* driver() const override { return device::Replay<ExecutionSpace>::driver; }
+  [[nodiscard]] const char* driver() const override;
 
  private:
   using Memory = typename ExecutionSpace::memory_space;
@@ -48,7 +48,9 @@ class SolverOn final : public Solver {
   [[nodiscard]] Status status() const;
   void enqueue_step(const ExecutionSpace& space, bool limited) const;
   void enqueue_sums(const ExecutionSpace& space, int row_every, bool always) const;
+  void make_resident();
   void ensure_recorded(bool limited);
+  void enqueue(bool limited, std::int64_t most_steps);
   void drain_rows(const RowSink& rows);
 
   device::Instance<ExecutionSpace> _instance;
@@ -61,6 +63,7 @@ class SolverOn final : public Solver {
   std::array<Fields, 4> _partial;  ///< sums after each level
   std::array<std::unique_ptr<device::Replay<ExecutionSpace>>, 2> _step;
   std::unique_ptr<device::Replay<ExecutionSpace>> _row;
+  std::optional<ResidentSetup<ExecutionSpace>> _resident;
   int _row_every = 0;
   Fields _snapshot;
   HostFields _host_snapshot;

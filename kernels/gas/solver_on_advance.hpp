@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <thread>
 
 #include "kernels/gas/solver_on.hpp"
@@ -27,6 +28,15 @@ Status SolverOn<ExecutionSpace>::status() const {
   seen.stop = s.stop;
   seen.rows = s.rows;
   return seen;
+}
+
+/// Steps that the stretch up to `target` and `pause_step` still needs, as far as the device's last word
+/// tells; at least one. Launches for more would find nothing to do.
+inline std::int64_t steps_left(const Status& now, double target, std::int64_t pause_step) {
+  double steps = std::ceil((target - now.time) / now.dt);
+  if (pause_step > now.step) steps = std::min(steps, static_cast<double>(pause_step - now.step));
+  if (!(steps < 1e12)) return 1'000'000'000'000;
+  return std::max<std::int64_t>(1, static_cast<std::int64_t>(steps));
 }
 
 /// Calls `launch` with the scheme as a constant.
@@ -92,6 +102,18 @@ void SolverOn<ExecutionSpace>::ensure_recorded(bool limited) {
       _instance, [this, limited](const ExecutionSpace& space) { enqueue_step(space, limited); });
 }
 
+/// Enqueues a step, or as many as a resident grid takes in one launch.
+template <class ExecutionSpace>
+void SolverOn<ExecutionSpace>::enqueue(bool limited, std::int64_t most_steps) {
+  if (_resident && !limited)
+    return with_reconstruction(_parameters, [&](auto scheme) {
+      launch_resident_steps<scheme.value>(_setup, *_resident, _parameters.precision, most_steps);
+    });
+  if (_parameters.driver == Driver::plain) return enqueue_step(_instance.space(), limited);
+  ensure_recorded(limited);
+  _step[limited ? 1 : 0]->launch();
+}
+
 template <class ExecutionSpace>
 void SolverOn<ExecutionSpace>::drain_rows(const RowSink& rows) {
   for (const std::int64_t written = status().rows; _rows_read < written; ++_rows_read) {
@@ -117,7 +139,6 @@ Stop SolverOn<ExecutionSpace>::advance(double target, std::int64_t pause_step, i
   const ExecutionSpace& space = _instance.space();
   // Also before a stretch that ends sooner than the next look at the clock.
   if (poll && !poll(status())) return Stop::interrupted;
-  ensure_recorded(_parameters.positivity == Positivity::on);
   if (row_every > 0 && row_every != _row_every) {
     _row = std::make_unique<device::Replay<ExecutionSpace>>(
         _instance, [this, row_every](const ExecutionSpace& on) { enqueue_sums(on, row_every, false); });
@@ -133,6 +154,7 @@ Stop SolverOn<ExecutionSpace>::advance(double target, std::int64_t pause_step, i
 
   std::int64_t since_row = row_every > 0 ? first_step % row_every : 0;
   std::int64_t window = on_host ? 1 : 8;
+  std::int64_t steps_a_launch = 1024;  // of a resident grid
   const auto begin = Clock::now();
   auto last_poll = begin;
   bool interrupted = false;
@@ -155,9 +177,17 @@ Stop SolverOn<ExecutionSpace>::advance(double target, std::int64_t pause_step, i
       if (!on_host)
         window =
             std::clamp<std::int64_t>(static_cast<std::int64_t>(seconds_in_flight * rate), 8, most_in_flight);
+      steps_a_launch = std::max<std::int64_t>(static_cast<std::int64_t>(0.5 * seconds_in_flight * rate), 64);
     }
     const std::int64_t in_flight = _launched - now.launches;
-    if (in_flight >= window) {
+    const bool resident = _resident && now.limited == 0;
+    const std::int64_t left = steps_left(now, target, pause_step);
+    // A row ends a launch that holds many steps, and then another begins.
+    const std::int64_t useful = !resident
+                                    ? std::min(window, left + (row_every > 0 ? left / row_every + 1 : 0))
+                                : row_every > 0 ? 2
+                                                : std::min<std::int64_t>(2, (left - 1) / steps_a_launch + 1);
+    if (in_flight >= useful) {
       std::this_thread::yield();
       continue;
     }
@@ -165,9 +195,8 @@ Stop SolverOn<ExecutionSpace>::advance(double target, std::int64_t pause_step, i
       _row->launch();
       since_row = 0;
     } else {
-      ensure_recorded(now.limited != 0);
-      _step[now.limited != 0 ? 1 : 0]->launch();
-      ++since_row;
+      enqueue(now.limited != 0, steps_a_launch);
+      since_row += resident ? steps_a_launch : 1;
     }
     ++_launched;
   }

@@ -14,16 +14,20 @@ inline int device_team(int block, std::int64_t cells) {
   return cells < 32'768 ? 96 : 128;
 }
 
-/// A device team loads a cell with each thread, halo included, in one round; on the host a tile's scratch
-/// stays in the L1 cache.
+/// Slots of a large mesh's tile, by measurement on an H200: three for each thread of a usual team, so that
+/// few of them are halo.
+inline constexpr int largest_tile = 384;
+inline constexpr std::int64_t large_mesh = 65'536;
+
+/// On a device the slots of a tile, halo included, are its threads or a multiple; on the host a tile's
+/// scratch stays in the L1 cache.
 template <class ExecutionSpace>
-TileShape tile_shape(int block, std::int64_t mesh_cells, int halo) {
+TileShape tile_shape(int block, int halo, int slots) {
   if constexpr (device::is_host<ExecutionSpace>) {
     const int cells = block > 0 ? block : 256;
     return {cells, halo, (cells + 2 * halo + 2 * device::host_lanes + 7) / 8 * 8};
   } else {
-    const int team = device_team(block, mesh_cells);
-    return {team - 2 * halo, halo, team};
+    return {slots - 2 * halo, halo, slots};
   }
 }
 
@@ -46,7 +50,6 @@ SolverOn<ExecutionSpace>::SolverOn(const Parameters& p)
                 p.cells,
                 p.max_steps,
                 p.ramp_steps,
-                _setup.table.stages,
                 static_cast<int>(p.positivity)};
   const auto n = static_cast<std::size_t>(p.cells);
   const ExecutionSpace& space = _instance.space();
@@ -57,9 +60,12 @@ SolverOn<ExecutionSpace>::SolverOn(const Parameters& p)
   _setup.control = decltype(_setup.control)("drogue::gas::control");
   if (p.positivity != Positivity::off) _setup.touched = decltype(_setup.touched)("drogue::gas::touched", n);
   _setup.ends = {p.cells, p.left, p.right};
-  _setup.stage_shape = tile_shape<ExecutionSpace>(p.block, p.cells, ghost_cells);
-  _setup.step_shape = tile_shape<ExecutionSpace>(p.block, p.cells, ghost_cells * _setup.table.stages);
-  _setup.team_size = on_host ? 1 : device_team(p.block, p.cells);
+  const int team = device_team(p.block, p.cells);
+  _setup.team_size = on_host ? 1 : team;
+  _setup.stage_shape = tile_shape<ExecutionSpace>(p.block, ghost_cells, team);
+  _setup.step_shape =
+      tile_shape<ExecutionSpace>(p.block, ghost_cells * _setup.table.stages,
+                                 p.cells < large_mesh ? team : std::max(team, largest_tile / team * team));
   _setup.gamma = p.gamma;
   _setup.dx = dx;
   _setup.splitting = p.splitting;
@@ -72,7 +78,40 @@ SolverOn<ExecutionSpace>::SolverOn(const Parameters& p)
     level = Fields(uninitialised("drogue::gas::partial_sums"), static_cast<std::size_t>(values));
     if (values <= sum_radix) break;
   }
+  make_resident();
   space.fence("drogue::gas::solver: allocated");
+}
+
+/// Steps of a mesh that fits the multiprocessors' scratch memory share a launch, if their alpha is local.
+template <class ExecutionSpace>
+void SolverOn<ExecutionSpace>::make_resident() {
+  if constexpr (device::ResidentGrid<ExecutionSpace>::available) {
+    using Grid = device::ResidentGrid<ExecutionSpace>;
+    const Parameters& p = _parameters;
+    const bool wanted = p.driver == Driver::persistent || p.driver == Driver::automatic;
+    if (!wanted || p.splitting != Splitting::lf_stencil || p.positivity == Positivity::on) return;
+    const int teams = Grid::most_teams(_instance);
+    if (teams == 0) return;
+    // A tile a multiprocessor, as many threads as slots while there are so many, and a warp that decides.
+    const int halo = ghost_cells * _setup.table.stages, warp = 32;
+    const auto share = [&](std::int64_t parts) { return (p.cells + parts - 1) / parts; };
+    const std::int64_t cells = std::max<std::int64_t>(share(teams), 2 * warp - 2 * halo);
+    const std::int64_t slots = cells + 2 * halo;
+    const TileShape shape = {static_cast<int>(cells), halo, static_cast<int>(slots)};
+    const std::size_t scratch =
+        sizeof(Judgement) + sizeof(double) + Tile<ExecutionSpace>::scratch_bytes(shape);
+    if (scratch > Grid::most_scratch_bytes(_instance)) return;
+    const std::int64_t threads = p.block > 0 ? p.block : (slots + warp - 1) / warp * warp + warp;
+    const int team = static_cast<int>(std::min<std::int64_t>(threads, largest_resident_team));
+    _resident.emplace(ResidentSetup<ExecutionSpace>{
+        {_instance, static_cast<int>(share(cells)), team, scratch}, shape, _status, _constants});
+  }
+}
+
+template <class ExecutionSpace>
+const char* SolverOn<ExecutionSpace>::driver() const {
+  if (_resident) return "persistent";
+  return _parameters.driver == Driver::plain ? "plain" : device::Replay<ExecutionSpace>::driver;
 }
 
 template <class ExecutionSpace>
@@ -130,7 +169,7 @@ struct InitialSpeedFunctor {
 template <class ExecutionSpace>
 void SolverOn<ExecutionSpace>::begin_at(Control& c) {
   c.attempt.stop = Stop::pause;
-  c.bad = no_cell;
+  c.outcome.bad = no_cell;
   c.attempt.rows = _rows_read;
   write_control(c);
   _status().step = c.resume.step;

@@ -42,11 +42,11 @@ struct StageFunctor {
     // its speed.
     if (now.stop != Stop::running || now.limited != limited) return;
     const Tile<ExecutionSpace> tile(member, shape, ends.cells);
-    load_cells<R>(member, tile, ends, gamma, field_data(now, weights.in));
+    load_cells<R, false>(member, tile, ends, gamma, field_data(now, weights.in));
     member.team_barrier();
     compute_fluxes(member, tile, weights.dt_factor * now.dt);
     member.team_barrier();
-    store_boundary_fluxes(member, tile, control(), stage, 0, tile.cells);
+    store_boundary_fluxes(member, tile, control().outcome, stage, 0, tile.cells);
     update_cells(member, tile, now);
   }
 
@@ -57,7 +57,7 @@ struct StageFunctor {
   KOKKOS_FUNCTION Speeds<N> splitting_speeds(const Tile<ExecutionSpace>& tile, int face) const {
     using To = device::Convert<N>;
     if (splitting == Splitting::lf_stencil) return stencil_speeds<N, R>(tile, face);
-    const auto& bits = control().stage_speed[stage];
+    const auto& bits = control().outcome.stage_speed[stage];
     if (splitting == Splitting::lf_single) {
       const N alpha = To::from(R(max_speed(bits)));
       return {alpha, alpha, alpha};
@@ -81,7 +81,7 @@ struct StageFunctor {
   KOKKOS_FUNCTION Triple<R> limit_flux(const Tile<ExecutionSpace>& tile, int face, const Stencil<R>& s,
                                        const Triple<R>& high, double dt) const {
     using Lanes = device::Access<R>;
-    const double alpha = max_speed(control().stage_speed[stage]);
+    const double alpha = max_speed(control().outcome.stage_speed[stage]);
     const Triple<R> low = lax_friedrichs(s.state[2], s.flux_m[2], s.flux_energy[2], s.state[3], s.flux_m[3],
                                          s.flux_energy[3], alpha);
     const double two_lambda = 2.0 * dt * inverse_dx;
@@ -90,7 +90,7 @@ struct StageFunctor {
       const int f = face + lane;
       if (f > tile.cells || !(Lanes::lane(result.theta, lane) < 1.0)) continue;
       // A face between two tiles is computed by both; the right one counts it.
-      if (f < tile.cells || tile.last) Kokkos::atomic_inc(&control().touches);
+      if (f < tile.cells || tile.last) Kokkos::atomic_inc(&control().outcome.touches);
       if (tile.first + f > 0) touched(tile.first + f - 1) = 1;
       if (tile.first + f < ends.cells) touched(tile.first + f) = 1;
     }
@@ -100,7 +100,7 @@ struct StageFunctor {
   template <class P>
   KOKKOS_FUNCTION void update_cell(const Tile<ExecutionSpace>& tile, int i, double dt_over_dx,
                                    const double* u_n, double* out, Reduced<P>& reduced) const {
-    Triple<P> u = euler_step<P>(tile, i, weights.a_in, dt_over_dx);
+    Triple<P> u = euler_step<P>(tile, tile.template state<P>(i), i, weights.a_in, dt_over_dx);
     if (weights.a_n != 0.0) u = combined(weights.a_n, state_of<P>(u_n, ends.cells, tile.cell(i)), u);
     store_state(tile, i, u, ends.cells, out);
     const P inverse = device::reciprocal(u.rho);
@@ -126,14 +126,14 @@ struct StageFunctor {
     if (all.admissible < 1.0) {
       for (int i = begin + member.team_rank(); i < end; i += member.team_size()) {
         const std::int64_t cell = tile.cell(i);
-        report_inadmissible(control(), gamma, stage, cell, state_of<double>(out, ends.cells, cell));
+        report_inadmissible(control().outcome, gamma, stage, cell, state_of<double>(out, ends.cells, cell));
       }
     }
     if (reduce_speed) reduce_speeds(member, all);
   }
 
   KOKKOS_FUNCTION void reduce_speeds(const Member& member, const Reduced<double>& mine) const {
-    auto& slots = control().stage_speed[stage + 1];
+    auto& slots = control().outcome.stage_speed[stage + 1];
     if (splitting == Splitting::lf_global) {
       device::raise_to_team_maximum(member, slots[0], mine.slow);
       device::raise_to_team_maximum(member, slots[1], mine.entropy);

@@ -30,28 +30,56 @@ struct StepFunctor {
   double gamma, inverse_dx;
   Mean mean;
 
+  /// What a step that has a launch of its own knows from the beginning.
+  struct Known {
+    StepInput now;
+    KOKKOS_FUNCTION void decide() const {}
+    KOKKOS_FUNCTION StepInput input() const { return now; }
+  };
+
   KOKKOS_FUNCTION void operator()(const Member& member) const {
     const StepInput now = read_step_input(control());
     if (now.stop != Stop::running || now.limited) return;
     const TileType tile(member, shape, ends.cells);
-    load_cells<R>(member, tile, ends, gamma, buffer[now.current].data());
+    run(member, tile, now.current, Known{now}, control().outcome);
+  }
+
+  /// A step from the state in buffer `current`. All threads call `decision.decide()` once the first fluxes,
+  /// which need no dt, are computed, and `input()` after a barrier; false if that tells not to step.
+  template <class AnyMember, class Decision>
+  KOKKOS_FUNCTION bool run(const AnyMember& member, const TileType& tile, int current,
+                           const Decision& decision, Outcome& outcome) const {
+    load_cells<R, TileType::keeps_start>(member, tile, ends, gamma, buffer[current].data());
+    StepInput now{};
     for (int stage = 0; stage < table.stages; ++stage) {
       const Range faces = faces_of(tile, stage);
       member.team_barrier();
       compute_fluxes(member, tile, faces);
+      if (stage == 0) decision.decide();
       member.team_barrier();
-      store_boundary_fluxes(member, tile, control(), stage, tile.halo - ghost_cells,
+      if (stage == 0) {
+        now = decision.input();
+        if (now.stop != Stop::running || now.limited) return false;
+      }
+      store_boundary_fluxes(member, tile, outcome, stage, tile.halo - ghost_cells,
                             tile.halo - ghost_cells + tile.cells);
       if (stage < table.stages - 1)
-        update_slots<false>(member, tile, faces, stage, now);
+        update_slots<false>(member, tile, faces, stage, now, outcome);
       else
-        update_slots<true>(member, tile, faces, stage, now);
+        update_slots<true>(member, tile, faces, stage, now, outcome);
     }
+    return true;
   }
 
   /// Both ends included.
   struct Range {
     int first, last;
+  };
+
+  /// What a slot stands for.
+  struct Image {
+    int of;  ///< slot of the cell
+    bool turned;
   };
 
   /// Slots of the cells of the mesh; those of a periodic one go on for ever.
@@ -62,11 +90,6 @@ struct StepFunctor {
     return {open_left ? static_cast<int>(left) : 0, open_right ? static_cast<int>(right) : tile.slots - 1};
   }
 
-  KOKKOS_FUNCTION bool at_an_end(const TileType& tile) const {
-    const Range mesh = mesh_slots(tile);
-    return mesh.first > 0 || mesh.last < tile.slots - 1;
-  }
-
   /// Faces whose stencils hold what stage `stage` begins with; each stage loses three slots a side.
   KOKKOS_FUNCTION Range faces_of(const TileType& tile, int stage) const {
     const Range mesh = mesh_slots(tile);
@@ -75,7 +98,9 @@ struct StepFunctor {
             device::minimum(tile.slots - 2 * ghost_cells - lost, mesh.last - ghost_cells + 1)};
   }
 
-  KOKKOS_FUNCTION void compute_fluxes(const Member& member, const TileType& tile, const Range& faces) const {
+  template <class AnyMember>
+  KOKKOS_FUNCTION void compute_fluxes(const AnyMember& member, const TileType& tile,
+                                      const Range& faces) const {
     constexpr int lanes = device::Access<R>::lanes;
     for (int face = faces.first + member.team_rank() * lanes; face <= faces.last;
          face += member.team_size() * lanes)
@@ -83,90 +108,103 @@ struct StepFunctor {
                                                  stencil_speeds<N, R>(tile, face)));
   }
 
+  template <class P>
+  KOKKOS_FUNCTION Triple<P> start_state(const TileType& tile, int i, const double* u_n) const {
+    if constexpr (TileType::keeps_start)
+      return tile.template start<P>(i);
+    else
+      return load_state<P>(u_n, ends, tile.cell(i));
+  }
+
   template <bool final_stage, class P>
-  KOKKOS_FUNCTION CellState<P> update_slot(const TileType& tile, int i, const StageWeights& weights,
-                                           double dt_over_dx, const double* u_n, double* out,
-                                           Reduced<P>& reduced) const {
-    Triple<P> u = euler_step<P>(tile, i, weights.a_in, dt_over_dx);
-    if (weights.a_n != 0.0) u = combined(weights.a_n, load_state<P>(u_n, ends, tile.cell(i)), u);
+  KOKKOS_FUNCTION void update_slot(const TileType& tile, int i, const Image& image,
+                                   const StageWeights& weights, double dt_over_dx, const double* u_n,
+                                   double* out, Reduced<P>& reduced) const {
+    const Triple<P> in = turned(image, tile.template state<P>(i));
+    Triple<P> u = euler_step<P>(tile, in, image.of, weights.a_in, dt_over_dx);
+    if (weights.a_n != 0.0) u = combined(weights.a_n, turned(image, start_state<P>(tile, i, u_n)), u);
     const CellState<P> s = cell_state<P>(gamma, u.rho, u.m, u.energy);
     reduced.judge(s.rho, s.p);
     if constexpr (final_stage) {
       store_state(tile, i, u, ends.cells, out);
       reduced.raise(signal_speeds(s.u, s.c));
     } else {
-      store_cell(tile, i, s);
+      store_cell(tile, i, turned(image, s));
     }
-    return s;
   }
 
-  template <bool final_stage>
-  KOKKOS_FUNCTION void update_slots(const Member& member, const TileType& tile, const Range& faces, int stage,
-                                    const StepInput& now) const {
+  template <bool final_stage, class AnyMember>
+  KOKKOS_FUNCTION void update_slots(const AnyMember& member, const TileType& tile, const Range& faces,
+                                    int stage, const StepInput& now, Outcome& outcome) const {
     constexpr int lanes = device::Access<R>::lanes;
     const StageWeights& weights = table.stage[stage];
     const double dt_over_dx = weights.dt_factor * now.dt * inverse_dx;
     const double* u_n = buffer[now.current].data();
     double* out = buffer[(now.current + weights.out) % 3].data();
-    const int begin = faces.first + ghost_cells, end = faces.last + ghost_cells;
-    const int whole = begin + (end - begin) / lanes * lanes;
-    Reduced<R> packs;
-    for (int i = begin + member.team_rank() * lanes; i < whole; i += member.team_size() * lanes) {
-      const CellState<R> s = update_slot<final_stage, R>(tile, i, weights, dt_over_dx, u_n, out, packs);
-      if constexpr (!final_stage && lanes == 1) fill_ghosts(tile, i, s);
-    }
+    int begin = faces.first + ghost_cells, end = faces.last + ghost_cells;
     Reduced<double> all;
-    merge_lanes(packs, all);
-    if constexpr (lanes > 1) {
+    if constexpr (lanes == 1) {
+      // A ghost has a thread of its own, which does what the thread of the cell does.
+      const Range mesh = mesh_slots(tile);
+      const int more = final_stage ? 0 : ghost_cells;
+      if (begin == mesh.first) begin = device::maximum(begin - more, 0);
+      if (end == mesh.last + 1) end = device::minimum(end + more, tile.slots);
+      for (int i = begin + member.team_rank(); i < end; i += member.team_size())
+        update_slot<final_stage, double>(tile, i, image_at(mesh, i), weights, dt_over_dx, u_n, out, all);
+    } else {
+      const int whole = begin + (end - begin) / lanes * lanes;
+      Reduced<R> packs;
+      for (int i = begin; i < whole; i += lanes)
+        update_slot<final_stage, R>(tile, i, {i, false}, weights, dt_over_dx, u_n, out, packs);
+      merge_lanes(packs, all);
       for (int i = whole; i < end; ++i)
-        update_slot<final_stage, double>(tile, i, weights, dt_over_dx, u_n, out, all);
-      if (!final_stage && at_an_end(tile))
-        for (int i = begin; i < end; ++i) {
-          if (!is_imaged(tile.cell(i))) continue;
-          const Triple<double> u = tile.template state<double>(i);
-          fill_ghosts(tile, i, cell_state<double>(gamma, u.rho, u.m, u.energy));
-        }
+        update_slot<final_stage, double>(tile, i, {i, false}, weights, dt_over_dx, u_n, out, all);
+      if constexpr (!final_stage) fill_ghosts(tile);
     }
-    if (all.admissible < 1.0) find_inadmissible<final_stage>(member, tile, begin, end, stage, out);
+    if (all.admissible < 1.0) find_inadmissible<final_stage>(member, tile, begin, end, stage, out, outcome);
     if constexpr (final_stage)
-      device::raise_to_team_maximum(member, control().stage_speed[table.stages][2],
+      device::raise_to_team_maximum(member, outcome.stage_speed[table.stages][2],
                                     device::maximum(all.slow, all.fast));
   }
 
-  KOKKOS_FUNCTION bool is_imaged(std::int64_t cell) const {
-    return cell < ghost_cells || cell >= ends.cells - ghost_cells;
+  /// The image in slot `i`: of itself within the mesh, and in a wall one that moves the other way.
+  KOKKOS_FUNCTION Image image_at(const Range& mesh, int i) const {
+    if (i >= mesh.first && i <= mesh.last) return {i, false};
+    const int end = i < mesh.first ? mesh.first : mesh.last;
+    if ((i < mesh.first ? ends.left : ends.right) == Boundary::outflow) return {end, false};
+    return {end + (end - i) + (i < mesh.first ? -1 : 1), true};
   }
 
-  /// The ghosts are images of the three cells beside an end of the mesh; who computes such a cell, in slot
-  /// `i`, renews them.
-  KOKKOS_FUNCTION void fill_ghosts(const TileType& tile, int i, const CellState<double>& s) const {
-    const std::int64_t cell = tile.cell(i);
+  template <class P>
+  KOKKOS_FUNCTION static Triple<P> turned(const Image& image, const Triple<P>& u) {
+    return {u.rho, image.turned ? -u.m : u.m, u.energy};
+  }
+  template <class P>
+  KOKKOS_FUNCTION static CellState<P> turned(const Image& image, const CellState<P>& s) {
+    return image.turned ? CellState<P>{s.rho, -s.m, s.energy, -s.u, s.p, s.enthalpy, s.c} : s;
+  }
+
+  /// The ghosts that lie in this tile, from the cells that they are images of.
+  KOKKOS_FUNCTION void fill_ghosts(const TileType& tile) const {
     const Range mesh = mesh_slots(tile);
-    if (cell < ghost_cells) fill_side(tile, i, s, mesh.first, -1, ends.left);
-    if (cell >= ends.cells - ghost_cells) fill_side(tile, i, s, mesh.last, 1, ends.right);
+    for (int k = 1; k <= ghost_cells; ++k)
+      for (const int i : {mesh.first - k, mesh.last + k}) {
+        if (i < 0 || i >= tile.slots) continue;
+        const Image image = image_at(mesh, i);
+        const Triple<double> u = tile.template state<double>(image.of);
+        store_cell(tile, i, turned(image, cell_state<double>(gamma, u.rho, u.m, u.energy)));
+      }
   }
 
-  /// `end` is the slot of the last cell on this side, `out` the direction out of the mesh.
-  KOKKOS_FUNCTION void fill_side(const TileType& tile, int i, const CellState<double>& s, int end, int out,
-                                 Boundary kind) const {
-    if (kind == Boundary::reflecting) {
-      store_ghost(tile, end + (end - i) + out, {s.rho, -s.m, s.energy, -s.u, s.p, s.enthalpy, s.c});
-    } else if (kind == Boundary::outflow && i == end) {
-      for (int k = 1; k <= ghost_cells; ++k) store_ghost(tile, end + out * k, s);
-    }
-  }
-
-  KOKKOS_FUNCTION void store_ghost(const TileType& tile, int i, const CellState<double>& s) const {
-    if (i >= 0 && i < tile.slots) store_cell(tile, i, s);
-  }
-
-  template <bool final_stage>
-  KOKKOS_FUNCTION void find_inadmissible(const Member& member, const TileType& tile, int begin, int end,
-                                         int stage, const double* out) const {
+  /// A thread looks at the slots that it has updated, without a barrier: the range is that of the update. A
+  /// ghost names the cell that it is an image of.
+  template <bool final_stage, class AnyMember>
+  KOKKOS_FUNCTION void find_inadmissible(const AnyMember& member, const TileType& tile, int begin, int end,
+                                         int stage, const double* out, Outcome& outcome) const {
     for (int i = begin + member.team_rank(); i < end; i += member.team_size()) {
       const std::int64_t cell = source_cell(ends, tile.cell(i)).cell;
       report_inadmissible(
-          control(), gamma, stage, cell,
+          outcome, gamma, stage, cell,
           final_stage ? state_of<double>(out, ends.cells, cell) : tile.template state<double>(i));
     }
   }

@@ -2,6 +2,7 @@
 
 #include <Kokkos_Core.hpp>
 
+#include "kernels/device/memory.hpp"
 #include "kernels/gas/face_flux.hpp"
 
 namespace drogue::gas {
@@ -62,6 +63,11 @@ template <class R>
 KOKKOS_INLINE_FUNCTION Triple<R> load_state(const double* in, const Ends& ends, std::int64_t index) {
   using Lanes = device::Access<R>;
   const std::int64_t n = ends.cells;
+  if constexpr (Lanes::lanes == 1) {
+    // Threads within and beyond the mesh load together.
+    const Source from = source_cell(ends, index);
+    return {in[from.cell], from.sign * in[n + from.cell], in[2 * n + from.cell]};
+  }
   if (index >= 0 && index + Lanes::lanes <= n) return state_of<R>(in, n, index);
   double rho[Lanes::lanes], m[Lanes::lanes], energy[Lanes::lanes];
   for (int lane = 0; lane < Lanes::lanes; ++lane) {
@@ -75,14 +81,15 @@ KOKKOS_INLINE_FUNCTION Triple<R> load_state(const double* in, const Ends& ends, 
 
 enum class TileField : int { rho, m, energy, flux_m, flux_energy, u, enthalpy, slow, fast, count };
 
-/// A tile's scratch memory: rows of cell values (`TileField`), then three rows of face fluxes. Slot i of a
-/// row of cells belongs to cell `first - halo + i`; face f lies left of slot f + 3 and needs slots f .. f
-/// + 5.
+/// A tile's scratch memory: rows of cell values (`TileField`), then three rows of face fluxes and, on a
+/// device, three of U^n. Slot i of a row of cells belongs to cell `first - halo + i`; face f lies left of
+/// slot f + 3 and needs slots f .. f + 5.
 template <class ExecutionSpace>
 class Tile {
  public:
-  using Member = typename Kokkos::TeamPolicy<ExecutionSpace>::member_type;
-  static constexpr int rows = static_cast<int>(TileField::count) + 3;
+  /// On the host the first level cache has no room for it, and the mesh is near.
+  static constexpr bool keeps_start = !device::is_host<ExecutionSpace>;
+  static constexpr int rows = static_cast<int>(TileField::count) + (keeps_start ? 6 : 3);
 
   std::int64_t first;  ///< its first cell
   int cells;           ///< that it updates
@@ -90,6 +97,7 @@ class Tile {
   int slots;  ///< with the halo
   bool last;
 
+  template <class Member>
   KOKKOS_FUNCTION Tile(const Member& member, const TileShape& shape, std::int64_t mesh_cells)
       : first(static_cast<std::int64_t>(member.league_rank()) * shape.cells),
         cells(static_cast<int>(device::minimum<std::int64_t>(shape.cells, mesh_cells - first))),
@@ -125,20 +133,37 @@ class Tile {
   }
   template <class P>
   KOKKOS_FUNCTION Triple<P> flux(int face) const {
-    using Lanes = device::Access<P>;
-    const double* f = _data + static_cast<int>(TileField::count) * _row + face;
-    return {Lanes::load(f), Lanes::load(f + _row), Lanes::load(f + 2 * _row)};
+    return load_triple<P>(static_cast<int>(TileField::count), face);
   }
   template <class P>
   KOKKOS_FUNCTION void store_flux(int face, const Triple<P>& value) const {
+    store_triple(static_cast<int>(TileField::count), face, value);
+  }
+  template <class P>
+  KOKKOS_FUNCTION Triple<P> start(int i) const {
+    return load_triple<P>(static_cast<int>(TileField::count) + 3, i);
+  }
+  template <class P>
+  KOKKOS_FUNCTION void store_start(int i, const Triple<P>& value) const {
+    store_triple(static_cast<int>(TileField::count) + 3, i, value);
+  }
+
+ private:
+  template <class P>
+  KOKKOS_FUNCTION Triple<P> load_triple(int row, int i) const {
     using Lanes = device::Access<P>;
-    double* f = _data + static_cast<int>(TileField::count) * _row + face;
+    const double* f = _data + row * _row + i;
+    return {Lanes::load(f), Lanes::load(f + _row), Lanes::load(f + 2 * _row)};
+  }
+  template <class P>
+  KOKKOS_FUNCTION void store_triple(int row, int i, const Triple<P>& value) const {
+    using Lanes = device::Access<P>;
+    double* f = _data + row * _row + i;
     Lanes::store(f, value.rho);
     Lanes::store(f + _row, value.m);
     Lanes::store(f + 2 * _row, value.energy);
   }
 
- private:
   int _row;
   double* _data;
 };

@@ -36,13 +36,14 @@ KOKKOS_INLINE_FUNCTION void store_cell(const Tile& tile, int i, const CellState<
   tile.store(TileField::fast, i, speed.fast);
 }
 
-/// Fills all slots from the state `in`.
-template <class R, class Member, class Tile>
+/// Fills all slots from the state `in`, and keeps it as U^n if asked to.
+template <class R, bool keep, class Member, class Tile>
 KOKKOS_INLINE_FUNCTION void load_cells(const Member& member, const Tile& tile, const Ends& ends, double gamma,
                                        const double* in) {
   constexpr int lanes = device::Access<R>::lanes;
   for (int i = member.team_rank() * lanes; i < tile.slots + lanes - 1; i += member.team_size() * lanes) {
     const Triple<R> u = load_state<R>(in, ends, tile.cell(i));
+    if constexpr (keep) tile.store_start(i, u);
     store_cell(tile, i, cell_state<R>(gamma, u.rho, u.m, u.energy));
   }
 }
@@ -80,10 +81,10 @@ KOKKOS_INLINE_FUNCTION Triple<R> face_flux(const Tile& tile, int face, const Ste
   return weno5_face<scheme, N>(s, e, alpha);
 }
 
-/// a_in (U + dt L(U)) of slot `i`: an Euler step of the state in it.
+/// a_in (U + dt L(U)): an Euler step of the state `in` of the cell of slot `i`.
 template <class P, class Tile>
-KOKKOS_INLINE_FUNCTION Triple<P> euler_step(const Tile& tile, int i, double a_in, double dt_over_dx) {
-  const Triple<P> in = tile.template state<P>(i);
+KOKKOS_INLINE_FUNCTION Triple<P> euler_step(const Tile& tile, const Triple<P>& in, int i, double a_in,
+                                            double dt_over_dx) {
   const Triple<P> left = tile.template flux<P>(i - ghost_cells),
                   right = tile.template flux<P>(i - ghost_cells + 1);
   return {a_in * (in.rho + dt_over_dx * (left.rho - right.rho)),
@@ -140,7 +141,7 @@ KOKKOS_INLINE_FUNCTION void merge_lanes(const Reduced<R>& packs, Reduced<double>
 }
 
 /// Slow path: notes a state that is not admissible, judged as `Reduced` does.
-KOKKOS_INLINE_FUNCTION void report_inadmissible(Control& control, double gamma, int stage, std::int64_t cell,
+KOKKOS_INLINE_FUNCTION void report_inadmissible(Outcome& outcome, double gamma, int stage, std::int64_t cell,
                                                 const Triple<double>& u) {
   const double p = pressure(gamma, u.m, u.energy, u.m * device::reciprocal(u.rho));
   if (u.rho > 0.0 && u.rho <= 1.7e308 && p > 0.0 && p <= 1.7e308) return;
@@ -149,19 +150,19 @@ KOKKOS_INLINE_FUNCTION void report_inadmissible(Control& control, double gamma, 
     what = Quantity::density;
   else if (p <= 0.0)
     what = Quantity::pressure;
-  Kokkos::atomic_min(&control.bad, inadmissible(stage, cell, what));
+  Kokkos::atomic_min(&outcome.bad, inadmissible(stage, cell, what));
 }
 
 /// One thread of a tile at an end of the mesh keeps the flux there, for the conservation check. `left` and
 /// `right` are the tile's outermost faces.
 template <class Member, class Tile>
-KOKKOS_INLINE_FUNCTION void store_boundary_fluxes(const Member& member, const Tile& tile, Control& control,
+KOKKOS_INLINE_FUNCTION void store_boundary_fluxes(const Member& member, const Tile& tile, Outcome& outcome,
                                                   int stage, int left, int right) {
-  if (member.team_rank() != 0) return;
+  if (member.team_rank() != member.team_size() - 1) return;
   for (int side = 0; side < 2; ++side) {
     if (side == 0 ? tile.first != 0 : !tile.last) continue;
     const Triple<double> f = tile.template flux<double>(side == 0 ? left : right);
-    double(&out)[3] = control.boundary_flux[stage][side];
+    double(&out)[3] = outcome.boundary_flux[stage][side];
     out[0] = f.rho, out[1] = f.m, out[2] = f.energy;
   }
 }

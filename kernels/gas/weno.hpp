@@ -11,9 +11,12 @@ namespace drogue::gas {
 enum class Reconstruction { js, z1, z2, m, teno5 };
 
 /// How many times larger than l.d(F +- alpha U)/2, with the normalised left eigenvector l, a characteristic
-/// difference reaches the reconstruction: the splitting drops its 1/2, acoustic eigenvectors carry a
-/// factor 2.
+/// difference reaches the reconstruction, beside the eigensystem's own unit: the splitting drops its 1/2,
+/// acoustic eigenvectors carry a factor 2.
 inline constexpr int acoustic_scale = 4, entropy_scale = 2;
+
+/// How many times too large `correction` is: it has no division but the one of the weights.
+inline constexpr int correction_scale = 12;
 
 template <class R>
 struct Indicators {
@@ -31,20 +34,21 @@ KOKKOS_INLINE_FUNCTION Indicators<R> smoothness(R a, R b, R c, R d, R epsilon) {
   return {left * left + b_part, middle * middle + c_part, right * right + c_part};
 }
 
-/// Numerators a_k of the weights w_k = a_k / (a_0 + a_1 + a_2), multiplied through so that none divides.
+/// q_k of the weights w_k = d_k q_k / (q_0 + 6 q_1 + 3 q_2) with the linear weights d = (1, 6, 3), multiplied
+/// through so that none divides.
 template <Reconstruction scheme, class R>
-KOKKOS_INLINE_FUNCTION Indicators<R> weight_numerators(Indicators<R> indicators) {
+KOKKOS_INLINE_FUNCTION Indicators<R> weight_ratios(Indicators<R> indicators) {
   using S = typename device::Access<R>::Element;
   const auto [b0, b1, b2] = indicators;
   const R b12 = b1 * b2, b02 = b0 * b2, b01 = b0 * b1;
   if constexpr (scheme == Reconstruction::js || scheme == Reconstruction::m) {
-    return {b12 * b12, S(6) * (b02 * b02), S(3) * (b01 * b01)};  // d_k / (eps + b_k)^2
+    return {b12 * b12, b02 * b02, b01 * b01};  // 1 / (eps + b_k)^2
   } else if constexpr (scheme == Reconstruction::z1) {
-    // Borges et al. 2008, eq. (28): d_k (1 + tau / (b_k + eps))
+    // Borges et al. 2008, eq. (28): 1 + tau / (b_k + eps)
     const R tau = device::absolute(b0 - b2);
-    return {(b0 + tau) * b12, S(6) * ((b1 + tau) * b02), S(3) * ((b2 + tau) * b01)};
+    return {(b0 + tau) * b12, (b1 + tau) * b02, (b2 + tau) * b01};
   } else if constexpr (scheme == Reconstruction::z2) {
-    // d_k (1 + (tau / (b_k + eps))^2). Six indicators leave the range of a double where a cold gas meets a
+    // 1 + (tau / (b_k + eps))^2. Six indicators leave the range of a double where a cold gas meets a
     // hot one (Sedov: differences of 1e25), so the squares are taken of what is at most one; in single
     // precision `correction` has seen to that.
     const R tau = device::absolute(b0 - b2);
@@ -55,7 +59,7 @@ KOKKOS_INLINE_FUNCTION Indicators<R> weight_numerators(Indicators<R> indicators)
       all = all * inverse, q0 = q0 * inverse, q1 = q1 * inverse, q2 = q2 * inverse;
     }
     const R all2 = all * all;
-    return {all2 + q0 * q0, S(6) * (all2 + q1 * q1), S(3) * (all2 + q2 * q2)};
+    return {all2 + q0 * q0, all2 + q1 * q1, all2 + q2 * q2};
   } else {
     // Fu, Hu and Adams 2016, eq. (14)-(17). The sixth power of the ratio overflows for smooth data (eps is
     // tiny), so the ratios are divided by the largest of them first; the cut-off compares g_k with their sum.
@@ -68,9 +72,9 @@ KOKKOS_INLINE_FUNCTION Indicators<R> weight_numerators(Indicators<R> indicators)
     };
     const R g0 = sixth(q0 * inverse), g1 = sixth(q1 * inverse), g2 = sixth(q2 * inverse);
     const R cut = S(1e-5) * (g0 + g1 + g2);
-    const R zero(S(0));
-    return {device::select(g0 < cut, zero, R(S(1))), device::select(g1 < cut, zero, R(S(6))),
-            device::select(g2 < cut, zero, R(S(3)))};
+    const R zero(S(0)), one(S(1));
+    return {device::select(g0 < cut, zero, one), device::select(g1 < cut, zero, one),
+            device::select(g2 < cut, zero, one)};
   }
 }
 
@@ -81,14 +85,19 @@ KOKKOS_INLINE_FUNCTION R mapped(R w, S d) {
 }
 
 /// Fifth-order correction to the fourth-order central flux from one side: phi of the difference form,
-/// w_0/3 (a - 2b + c) + (w_2 - 1/2)/6 (b - 2c + d), from `scale` times the four characteristic differences
-/// and as many times too large. Jiang and Shu 1996, eq. (2.17) rewritten.
+/// w_0/3 (a - 2b + c) + (w_2 - 1/2)/6 (b - 2c + d), `correction_scale` times, from the four characteristic
+/// differences in `scale` times `unit` (which epsilon follows). Jiang and Shu 1996, eq. (2.17) rewritten.
 template <Reconstruction scheme, int scale, class R>
-KOKKOS_INLINE_FUNCTION R correction(R a, R b, R c, R d) {
+KOKKOS_INLINE_FUNCTION R correction(R a, R b, R c, R d, R unit) {
   using S = typename device::Access<R>::Element;
   constexpr bool single = std::is_same_v<S, float>;
   constexpr double indicator_scale = 0.75 * scale * scale;  // see `smoothness`
-  R epsilon(S((scheme == Reconstruction::js ? 1e-6 : 1e-40) * indicator_scale));
+  // The floor keeps the fourth power of epsilon (JS, M), or its third, a normal number in the coldest gas; in
+  // single precision it is lost, and what follows does without.
+  constexpr bool fourth = scheme == Reconstruction::js || scheme == Reconstruction::m;
+  constexpr double floor_of_epsilon = single ? 0.0 : fourth ? 1e-75 : 1e-100;
+  R epsilon = S((scheme == Reconstruction::js ? 1e-6 : 1e-40) * indicator_scale) * (unit * unit) +
+              S(floor_of_epsilon);
   R ka = a, kb = b, kc = c, kd = d;
   if constexpr (single) {
     // The indicators' products leave the range of a float: bring the largest difference to four first. The
@@ -96,26 +105,27 @@ KOKKOS_INLINE_FUNCTION R correction(R a, R b, R c, R d) {
     // stencil. The smallest product of powers of eps (Z, p = 2: its sixth) must stay a normal number.
     const R largest = device::maximum(device::maximum(device::absolute(a), device::absolute(b)),
                                       device::maximum(device::absolute(c), device::absolute(d)));
-    const R inverse =
-        S(4) * device::reciprocal(device::maximum(largest, R(scheme == Reconstruction::js ? 1e-6F : 1e-30F)));
+    const R floor = scheme == Reconstruction::js ? 1e-6F * unit : R(1e-30F);
+    const R inverse = S(4) * device::reciprocal(device::maximum(largest, floor));
     ka = a * inverse, kb = b * inverse, kc = c * inverse, kd = d * inverse;
     if constexpr (scheme == Reconstruction::js)
       epsilon = epsilon * inverse * inverse + S(1e-9);
     else
       epsilon = R(scheme == Reconstruction::z2 ? 2e-6F : 2e-7F);
   }
-  Indicators<R> w = weight_numerators<scheme>(smoothness(ka, kb, kc, kd, epsilon));
-  const R inverse_sum = device::reciprocal(w.b0 + w.b1 + w.b2);
+  Indicators<R> q = weight_ratios<scheme>(smoothness(ka, kb, kc, kd, epsilon));
+  R sum = q.b0 + (S(6) * q.b1 + S(3) * q.b2);
   if constexpr (scheme == Reconstruction::m) {
-    const R g0 = mapped(w.b0 * inverse_sum, S(0.1)), g1 = mapped(w.b1 * inverse_sum, S(0.6)),
-            g2 = mapped(w.b2 * inverse_sum, S(0.3));
-    const R inverse_mapped = device::reciprocal(g0 + g1 + g2);
-    return S(1.0 / 3.0) * (g0 * inverse_mapped) * (a - S(2) * b + c) +
-           S(1.0 / 6.0) * (g2 * inverse_mapped - S(0.5)) * (b - S(2) * c + d);
-  } else {
-    return S(1.0 / 3.0) * (w.b0 * inverse_sum) * (a - S(2) * b + c) +
-           S(1.0 / 6.0) * (w.b2 * inverse_sum - S(0.5)) * (b - S(2) * c + d);
+    const R inverse = device::reciprocal(sum);
+    q = {mapped(q.b0 * inverse, S(0.1)), mapped(S(6) * q.b1 * inverse, S(0.6)),
+         mapped(S(3) * q.b2 * inverse, S(0.3))};
+    sum = q.b0 + q.b1 + q.b2;
+    q.b2 = S(1.0 / 3.0) * q.b2;
   }
+  // 4 w_0 (a - 2b + c) + (2 w_2 - 1) (b - 2c + d); weights first, since in single precision q may be as large
+  // as numbers get.
+  const R inverse4 = S(4) * device::reciprocal(sum);
+  return (q.b0 * inverse4) * (a - S(2) * b + c) + (S(1.5) * (q.b2 * inverse4) - S(1)) * (b - S(2) * c + d);
 }
 
 }  // namespace drogue::gas

@@ -54,6 +54,7 @@ std::string scene_fingerprint(GasScene scene) {
   scene.end_time = 1.0;
   scene.parameters.max_steps = 1;
   scene.parameters.block = 0;
+  scene.parameters.driver = gas::Driver::automatic;
   return run::fingerprint(print_gas_scene(scene));
 }
 

@@ -31,13 +31,17 @@ const Choices<gas::Precision> precision_choices = {{"double", gas::Precision::fu
 const Choices<gas::Boundary> boundary_choices = {{"outflow", gas::Boundary::outflow},
                                                  {"reflecting", gas::Boundary::reflecting},
                                                  {"periodic", gas::Boundary::periodic}};
+const Choices<gas::Driver> driver_choices = {{"auto", gas::Driver::automatic},
+                                             {"plain", gas::Driver::plain},
+                                             {"graph", gas::Driver::graph},
+                                             {"persistent", gas::Driver::persistent}};
 const Choices<Exact> exact_choices = {
     {"riemann", Exact::riemann}, {"advection", Exact::advection}, {"reference", Exact::reference}};
 
-/// A number whose 0 stands for "not given".
+/// A value whose 0, or first choice, stands for "not given".
 template <class T>
 Codec zero_is_unset(Codec codec, const T& value) {
-  codec.print = [print = codec.print, &value] { return value > 0 ? print() : std::nullopt; };
+  codec.print = [print = codec.print, &value] { return value != T{} ? print() : std::nullopt; };
   return codec;
 }
 
@@ -268,8 +272,19 @@ void declare_gas_scene(Table& root, GasScene& scene) {
                   .default_text("the backend's own");
             },
             "The kernels of a step");
+        table.table(
+            "step",
+            [&](Table& step) {
+              step.value("driver",
+                         zero_is_unset(scene::choice_codec(parameters.driver, driver_choices),
+                                       parameters.driver),
+                         "How steps reach a GPU: kernels one by one, a recorded graph a step, or many steps "
+                         "a launch where mesh and scheme allow that, else a graph")
+                  .default_text("`\"auto\"`");
+            },
+            "The launch of a step");
       },
-      "Block sizes of kernels; they change speed, not results");
+      "Block sizes and launches of kernels; they change speed, not results");
 }
 
 std::string weno_name(gas::Weno weno) {

@@ -137,6 +137,7 @@ void Simulation::describe(run::ResultDocument& result) {
   const gas::Phases phases = _solver->phases();
   const device::Ledger ledger = device::ledger();
   result.steps = now.step;
+  result.driver = _solver->driver();
   result.time = now.time;
   result.dt_min = now.dt_min;
   result.dt_max = now.dt_max;

@@ -11,9 +11,9 @@ sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 import gas_program
 
 COARSE = ["mesh.cells=50", "verify.l1_density=1.0"]
-KEYS = ["schema", "program", "version", "git", "scene", "backend", "device", "precision", "ranks", "threads", "status",
-        "exit_code", "message", "steps", "time", "dt_min", "dt_max", "errors", "checks", "limiter", "timing", "ledger",
-        "peak_bytes", "provenance"]
+KEYS = ["schema", "program", "version", "git", "scene", "backend", "device", "driver", "precision", "ranks", "threads",
+        "status", "exit_code", "message", "steps", "time", "dt_min", "dt_max", "errors", "checks", "limiter", "timing",
+        "ledger", "peak_bytes", "provenance"]
 PARTS = {
     "limiter": ["touches", "cells"],
     "timing": ["wall_s", "setup_s", "compute_s", "h2d_s", "d2h_s", "io_s"],
@@ -88,7 +88,7 @@ class Result(gas_program.GasTest):
     def test_openmp_counts_its_threads(self):
         self.expect(0, "sod", "--backend", "openmp", sets=COARSE, environment={"OMP_NUM_THREADS": "2"})
         told = self.result("out/sod")
-        self.assertEqual(("openmp", 2), (told["backend"], told["threads"]))
+        self.assertEqual(("openmp", 2, "plain"), (told["backend"], told["threads"], told["driver"]))
 
     def test_a_step_costs_no_fence_and_no_copy(self):
         """The ledger of a run of twice the steps shows more launches and nothing else."""

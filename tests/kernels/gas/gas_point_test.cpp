@@ -206,6 +206,40 @@ TEST(GasPoint, SplitPrecisionRoundsTheNonlinearPartAlone) {
   });
 }
 
+/// Gas at rest with waves of `amplitude`, one face after the other hotter: p/rho from `coldest` to `hottest`.
+Sample temperatures(double coldest, double hottest, double amplitude) {
+  Sample made;
+  for (int face = 0; face < faces; ++face) {
+    const double p = coldest * std::pow(hottest / coldest, face / (faces - 1.0));
+    Cells cells;
+    for (int k = 0; k < 6; ++k) {
+      const double s = amplitude * std::sin(1.0 + 0.4 * k);
+      cells[static_cast<std::size_t>(k)] = reference::to_conserved({1 + s, 0.0, p * (1 - s)}, gamma);
+    }
+    made.stencil.push_back(cells);
+    made.alpha.push_back(reference::speed_bounds(cells, gamma).field);
+  }
+  return made;
+}
+
+// Products of indicators are of the eighth power of a difference, whose unit is that of c^2.
+TEST(GasPoint, FluxesAreFiniteInTheColdestAndTheHottestGas) {
+  for_schemes([](Parameters p, const std::string& text) {
+    for (const Precision precision : {Precision::full, Precision::split}) {
+      p.precision = precision;
+      const bool single = precision == Precision::split;
+      for (const double amplitude : {0.0, 1e-6, 0.5}) {
+        const Sample in = temperatures(single ? 1e-12 : 1e-30, single ? 1e14 : 1e20, amplitude);
+        const auto got = kernel_fluxes(p, in);
+        for (std::size_t face = 0; face < faces; ++face)
+          ASSERT_TRUE(std::isfinite(got[face][0]) && std::isfinite(got[face][1]) &&
+                      std::isfinite(got[face][2]))
+              << text << (single ? ", split" : "") << ", amplitude " << amplitude << ", face " << face;
+      }
+    }
+  });
+}
+
 // ---- the limiter ----
 
 struct LimitFunctor {

@@ -30,10 +30,11 @@ TEST(ResultDocument, HoldsEveryFieldOfTheSchema) {
   result.add_check("l1_density", 1e-3, 2e-3);
   const Json json = Json::parse(to_json(result));
   EXPECT_EQ(json["schema"], "drogue.result/1");
-  EXPECT_EQ(keys(json), sorted({"schema",  "program",   "version", "git",     "scene",      "backend",
-                                "device",  "precision", "ranks",   "threads", "status",     "exit_code",
-                                "message", "steps",     "time",    "dt_min",  "dt_max",     "errors",
-                                "checks",  "limiter",   "timing",  "ledger",  "peak_bytes", "provenance"}));
+  EXPECT_EQ(keys(json),
+            sorted({"schema", "program",   "version",    "git",       "scene",  "backend",   "device",
+                    "driver", "precision", "ranks",      "threads",   "status", "exit_code", "message",
+                    "steps",  "time",      "dt_min",     "dt_max",    "errors", "checks",    "limiter",
+                    "timing", "ledger",    "peak_bytes", "provenance"}));
   EXPECT_EQ(keys(json["checks"][0]), sorted({"name", "value", "bar", "passed"}));
   EXPECT_EQ(keys(json["limiter"]), sorted({"touches", "cells", "redone_steps"}));
   EXPECT_EQ(keys(json["timing"]), sorted({"wall_s", "setup_s", "compute_s", "h2d_s", "d2h_s", "io_s"}));
