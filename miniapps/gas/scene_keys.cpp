@@ -1,6 +1,6 @@
-#include <algorithm>
-
 #include "miniapps/gas/scene_keys.hpp"
+
+#include <algorithm>
 
 #include "common/scene/codec.hpp"
 

@@ -53,6 +53,12 @@ def includes(text):
     return [(quote == '"', name) for quote, name in INCLUDE.findall(text)]
 
 
+def own_header_comes_late(path, text, files):
+    """Whether a source that has a header of its name includes something before it."""
+    header = path.removesuffix(".cpp") + ".hpp"
+    return path.endswith(".cpp") and header in files and includes(text)[:1] != [(True, header)]
+
+
 def violations(path, text):
     """Sentences, one per include of the file that its layer forbids."""
     layer = layer_of(path)

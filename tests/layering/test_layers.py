@@ -37,6 +37,12 @@ class Repository(unittest.TestCase):
     def test_headers_are_guarded(self):
         self.assertEqual([], [p for p, t in TEXTS.items() if p.endswith(".hpp") and "#pragma once" not in t])
 
+    def test_sources_show_that_their_header_compiles_alone(self):
+        """The header test leaves those headers out."""
+        places = ("common/", "kernels/", "miniapps/")
+        self.assertEqual([], [p for p, t in TEXTS.items() if p.startswith(places)
+                              and layers.own_header_comes_late(p, t, TEXTS)])
+
     def test_files_stay_short(self):
         lengths = {path: text.count("\n") for path, text in TEXTS.items()}
         self.assertEqual({}, {path: n for path, n in lengths.items() if n > LIMIT})
@@ -70,6 +76,14 @@ class EachRuleCatchesItsBreach(unittest.TestCase):
     def test_miniapps(self):
         self.assert_caught("miniapps/gas/x.cpp", '"miniapps/springs/scene.hpp"', "may only use")
         self.assert_caught("miniapps/gas/x.cpp", "<Kokkos_Core.hpp>", "does without")
+
+    def test_own_header_first(self):
+        files = {"common/a.cpp", "common/a.hpp", "common/b.cpp"}
+        own, other = '#include "common/a.hpp"\n', "#include <vector>\n"
+        self.assertFalse(layers.own_header_comes_late("common/a.cpp", own + other, files))
+        self.assertTrue(layers.own_header_comes_late("common/a.cpp", other + own, files))
+        self.assertTrue(layers.own_header_comes_late("common/a.cpp", other, files))
+        self.assertFalse(layers.own_header_comes_late("common/b.cpp", other, files))
 
     def test_chain_to_kokkos(self):
         texts = {
