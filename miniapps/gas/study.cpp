@@ -16,7 +16,8 @@
 #include "common/run/statistics.hpp"
 #include "kernels/device/ledger.hpp"
 #include "kernels/device/runtime.hpp"
-#include "miniapps/gas/exact.hpp"
+#include "miniapps/gas/repeated_run.hpp"
+#include "miniapps/gas/scheme_names.hpp"
 #include "miniapps/gas/simulation.hpp"
 
 namespace drogue::gas_app {
@@ -27,12 +28,8 @@ struct Row {
   std::string label, weno;
   int power = 1;
   std::string splitting, time, precision;
-  std::int64_t cells = 0, steps = 0;
-  std::vector<double> samples;  ///< compute time of each repeat, s
-  std::map<std::string, double> errors;
-  double conservation = NAN;
-  ExitCode code = ExitCode::ok;
-  std::string message;
+  std::int64_t cells = 0;
+  RepeatedRun run;
 };
 
 std::string setting(const char* key, const std::string& value) {
@@ -75,51 +72,23 @@ std::vector<Row> points(const StudyAxes& axes) {
 }
 
 void describe(Row& row, const gas::Parameters& p) {
-  const char* const splittings[] = {"lf-global", "lf-single", "lf-stencil"};
-  row.weno = weno_name(p.weno);
+  const SchemeNames names = scheme_names(p);
+  row.label = names.label, row.weno = names.weno, row.splitting = names.splitting;
+  row.time = names.time, row.precision = names.precision;
   row.power = p.weno_power;
-  row.splitting = splittings[static_cast<int>(p.splitting)];
-  row.time = p.time_scheme == gas::TimeScheme::ssprk3 ? "ssprk3" : "ssprk43";
-  row.precision = p.precision == gas::Precision::split ? "split" : "double";
   row.cells = p.cells;
-  row.label = row.weno + (p.weno == gas::Weno::z && p.weno_power == 2 ? "2" : "");
-  if (row.splitting != "lf-stencil") row.label += " " + row.splitting;
-  if (row.time != "ssprk3") row.label += " " + row.time;
-  if (row.precision != "double") row.label += " " + row.precision;
 }
 
-/// Returns `interrupted`, and leaves the row without a result, after a signal.
-ExitCode run_point(Row& row, const GasScene& scene, device::Backend backend, const ExactSolution& exact) {
-  // Short runs are repeated: one sample of a few milliseconds says little.
-  for (int repeat = 0; repeat < 5 && (repeat == 0 || row.samples.front() < 0.2); ++repeat) {
-    Simulation simulation(scene, {backend, false, true, {}});
-    run::ResultDocument result;
-    try {
-      if (simulation.run(nullptr, result) == ExitCode::interrupted) return ExitCode::interrupted;
-    } catch (const Failure& failure) {
-      row.code = failure.code();
-      row.message = failure.what();
-      return ExitCode::ok;
-    }
-    row.samples.push_back(result.timing.compute_s);
-    if (repeat > 0) continue;
-    row.steps = result.steps;
-    row.errors = error_norms(simulation.solver(), scene.parameters, exact);
-    row.conservation = simulation.conservation();
-  }
-  return ExitCode::ok;
-}
-
-double time_of(const Row& row) { return row.samples.empty() ? NAN : run::median(row.samples); }
+double time_of(const Row& row) { return row.run.samples.empty() ? NAN : run::median(row.run.samples); }
 
 std::string line_of(const Row& row) {
   char text[160];
   std::snprintf(text, sizeof text, "%-24s %8lld cells  ", row.label.c_str(),
                 static_cast<long long>(row.cells));
-  if (row.code != ExitCode::ok) return text + row.message + '\n';
+  if (row.run.code != ExitCode::ok) return text + row.run.message + '\n';
   std::string line = text;
   std::snprintf(text, sizeof text, "%8lld steps %10.3g s  L1 density %.4g\n",
-                static_cast<long long>(row.steps), time_of(row), row.errors.at("l1_density"));
+                static_cast<long long>(row.run.steps), time_of(row), row.run.errors.at("l1_density"));
   return line + text;
 }
 
@@ -131,16 +100,16 @@ std::string csv(const std::vector<Row>& rows, const std::string& backend) {
           "l1_pressure,conservation,status\n";
   for (const Row& row : rows) {
     text << row.label << ',' << row.weno << ',' << row.power << ',' << row.splitting << ',' << row.time << ','
-         << row.precision << ',' << backend << ',' << row.cells << ',' << row.steps << ',';
-    const bool ok = row.code == ExitCode::ok;
+         << row.precision << ',' << backend << ',' << row.cells << ',' << row.run.steps << ',';
+    const bool ok = row.run.code == ExitCode::ok;
     if (ok) text << time_of(row);
     for (const char* name : {"l1_density", "l1_velocity", "l1_pressure"}) {
       text << ',';
-      if (ok) text << row.errors.at(name);
+      if (ok) text << row.run.errors.at(name);
     }
     text << ',';
-    if (ok) text << row.conservation;
-    text << ',' << run::status_name(row.code) << '\n';
+    if (ok) text << row.run.conservation;
+    text << ',' << run::status_name(row.run.code) << '\n';
   }
   return text.str();
 }
@@ -157,12 +126,14 @@ nlohmann::json json(const std::vector<Row>& rows, const run::ResultDocument& fac
                              {"compiler", facts.provenance.compiler},
                              {"date", facts.provenance.date}};
   for (const Row& row : rows) {
-    nlohmann::json entry = {
-        {"label", row.label},         {"weno", row.weno},        {"weno_power", row.power},
-        {"splitting", row.splitting}, {"time_scheme", row.time}, {"precision", row.precision},
-        {"cells", row.cells},         {"steps", row.steps},      {"samples", row.samples},
-        {"errors", row.errors},       {"message", row.message},  {"status", run::status_name(row.code)}};
-    if (row.code == ExitCode::ok) entry["compute_s"] = time_of(row), entry["conservation"] = row.conservation;
+    nlohmann::json entry = {{"label", row.label},         {"weno", row.weno},
+                            {"weno_power", row.power},    {"splitting", row.splitting},
+                            {"time_scheme", row.time},    {"precision", row.precision},
+                            {"cells", row.cells},         {"steps", row.run.steps},
+                            {"samples", row.run.samples}, {"errors", row.run.errors},
+                            {"message", row.run.message}, {"status", run::status_name(row.run.code)}};
+    if (row.run.code == ExitCode::ok)
+      entry["compute_s"] = time_of(row), entry["conservation"] = row.run.conservation;
     document["rows"].push_back(entry);
   }
   return document;
@@ -194,7 +165,6 @@ ExitCode run_study(const MiniAppOptions& options, const std::filesystem::path& f
   std::vector<GasScene> scenes;  // all of them, so that none is found wrong after others have run
   for (Row& row : rows) {
     scenes.push_back(read_gas_scene(file, assignments(options, row)));
-    scenes.back().output = {};  // a step shortened to meet an output that is not written would only cost time
     describe(row, scenes.back().parameters);
   }
   const device::Backend backend = choose_backend(options.backend);
@@ -213,11 +183,10 @@ ExitCode run_study(const MiniAppOptions& options, const std::filesystem::path& f
   if (*base.verify.exact == Exact::reference) reference = run_reference(base, backend, options.quiet);
   if (!reference) return ExitCode::interrupted;
   const ExactSolution exact = exact_solution(base, base.end_time, *reference);
-  ExitCode code = ExitCode::ok;
   std::vector<Row> done;
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    code = run_point(rows[i], scenes[i], backend, exact);
-    if (code == ExitCode::interrupted) break;
+    rows[i].run = run_repeatedly(scenes[i], backend, exact, {});
+    if (rows[i].run.code == ExitCode::interrupted) return ExitCode::interrupted;
     done.push_back(rows[i]);
     // After every point: whatever ends a long study leaves what it has found.
     run::write_file_atomically(directory.file("study.csv"), csv(done, facts.backend));
@@ -226,8 +195,7 @@ ExitCode run_study(const MiniAppOptions& options, const std::filesystem::path& f
         json(done, facts).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
     if (!options.quiet) std::cout << line_of(rows[i]) << std::flush;
   }
-  if (code == ExitCode::interrupted) return code;
-  if (std::ranges::none_of(done, [](const Row& row) { return row.code == ExitCode::ok; }))
+  if (std::ranges::none_of(done, [](const Row& row) { return row.run.code == ExitCode::ok; }))
     throw Failure(ExitCode::numerical_failure,
                   "every run of the study failed; '" + out.string() + "/study.json' says how");
   draw(out);
