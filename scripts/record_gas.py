@@ -2,11 +2,12 @@
 """Writes docs/evidence/gas-<machine>.json: what drogue-gas does on this machine, from its own result files.
 
     scripts/record_gas.py MACHINE --bin build/cuda/bin [--exact build/cuda-exact/bin] [--backends serial,openmp,cuda]
-                          [--largest] [--work FOLDER]
+                          [--largest] [--long] [--work FOLDER]
 
 Every shipped scene on every backend (error, bar, steps, time, limiter), seed mode over the meshes of the dissertation's
-Table 5.5, with --exact the datasets of all scenes compared bit for bit between backends (needs h5py), and with --largest
-a run of 2^28 cells. The summary is printed; the exit code is 1 if any run failed.
+Table 5.5, with --exact the datasets of all scenes compared bit for bit between backends (needs h5py), with --largest
+a run of 2^28 cells, and with --long runs of many steps in a closed box, twice each: conservation, and whether both end in
+the same bits (needs h5py). The summary is printed; the exit code is 1 if any run failed.
 """
 
 import argparse
@@ -16,6 +17,7 @@ import subprocess
 import sys
 
 SEED_MESHES = (1024, 2048, 3072, 4096, 5120, 6144, 7168, 8192)
+LONG_RUNS = ((1024, 1_000_000), (2**24, 10_000))  # cells, steps
 
 
 def run(program, scene, backend, folder, *more):
@@ -72,6 +74,22 @@ def identical(first, second):
     return different
 
 
+def long_rows(program, backend, work, largest):
+    """Sod's gas between walls at about half the largest stable dt: the bars are conservation and equal bits."""
+    rows = []
+    for cells, steps in LONG_RUNS if largest else LONG_RUNS[:1]:
+        dt = 0.4 * 2.0 / cells / 2.2
+        end_time = steps * dt
+        folders = [work / f"long-{cells}-{turn}" for turn in (1, 2)]
+        results = [run(program, "sod", backend, folder, *(word for assignment in (
+            f"mesh.cells={cells}", f"scheme.fixed_dt={dt}", f"run.end_time={end_time}", "run.max_steps=2000000",
+            "boundary.left=\"reflecting\"", "boundary.right=\"reflecting\"", f"output.times=[{end_time}]",
+            "output.history_every=0", "verify.l1_density=1e3") for word in ("--set", assignment))) for folder in folders]
+        same = not any(r["exit_code"] for r in results) and not identical(*(folder / "fields.h5" for folder in folders))
+        rows.append(summary(results[0]) | {"cells": cells, "identical": same})
+    return rows
+
+
 def exact_rows(program, backends, work):
     rows = []
     for scene in scenes(program):
@@ -93,6 +111,7 @@ def main():
     parser.add_argument("--exact", type=pathlib.Path)
     parser.add_argument("--backends", default="serial,openmp")
     parser.add_argument("--largest", action="store_true")
+    parser.add_argument("--long", action="store_true")
     parser.add_argument("--work", type=pathlib.Path, default=pathlib.Path("out/record"))
     parser.add_argument("--to", type=pathlib.Path, default=pathlib.Path(__file__).parent.parent / "docs/evidence")
     arguments = parser.parse_args()
@@ -116,12 +135,15 @@ def main():
         bytes_a_cell = result.get("peak_bytes", {}).get("device", 0) / 2**28
         record["largest"] = summary(result) | {"device_bytes_a_cell": bytes_a_cell}
         failed += [record["largest"]] if result["exit_code"] != 0 else []
+    if arguments.long:
+        record["long"] = long_rows(program, backends[-1], work, arguments.largest)
+        failed += [row for row in record["long"] if not row["identical"]]
     arguments.to.mkdir(parents=True, exist_ok=True)
     (arguments.to / f"gas-{arguments.machine}.json").write_text(json.dumps(record, indent=1) + "\n")
     print(f"{len(record['runs'])} runs, {len(failed)} failed")
     for row in failed:
         print("failed:", json.dumps(row)[:300])
-    for key in ("seed_mode", "exact", "largest"):
+    for key in ("seed_mode", "exact", "largest", "long"):
         print(key, json.dumps(record.get(key))[:1500])
     return 1 if failed else 0
 
