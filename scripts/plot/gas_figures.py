@@ -175,7 +175,7 @@ def fields_figure(view: View, snapshot: Snapshot):
     if final and not shows_exact:
         words += _checks_in_words(view.run)
     # A single column may be narrower than the words above it.
-    figure.set_figwidth(max(width, 0.2 + style.text_width(figure, words, 8.5)))
+    figure.set_figwidth(max(width, style.details_width(figure, words)))
     figure.tight_layout(rect=(0, 0, 1, 1 - 0.48 / height), h_pad=0.6, w_pad=1.4)
     style.heading(figure, view.run.name, words, key(view, shows_exact))
     return figure

@@ -3,7 +3,6 @@
 import difflib
 
 import numpy as np
-from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from . import style
 from .failure import IO_ERROR, USAGE, Failure
@@ -12,17 +11,17 @@ from .style import plt
 
 DEFAULT_NORM = "l1_density"
 # Sums of |error| dx, so of the field's unit times metres.
-_TITLES = {
+TITLES = {
     "l1_density": "L1 error of density (kg/m$^2$)", "l1_velocity": "L1 error of velocity (m$^2$/s)",
     "l1_pressure": "L1 error of pressure (Pa m)",
 }  # fmt: skip
-_SCHEMES = {"js": "WENO-JS", "z": "WENO-Z", "z2": "WENO-Z (p = 2)", "m": "WENO-M", "teno5": "TENO5"}
+SCHEMES = {"js": "WENO-JS", "z": "WENO-Z", "z2": "WENO-Z (p = 2)", "m": "WENO-M", "teno5": "TENO5"}
 
 
 def _words(label: str) -> str:
     """`z2 lf-global` as the rest of the pictures writes it."""
     scheme, blank, settings = label.partition(" ")
-    return _SCHEMES.get(scheme, scheme) + blank + settings
+    return SCHEMES.get(scheme, scheme) + blank + settings
 
 
 def _curves(rows: list[dict[str, str]], norm: str) -> tuple[dict[str, np.ndarray], list[str]]:
@@ -54,12 +53,16 @@ def check_norm(run: Run, norm: str) -> None:
         raise Failure(USAGE, f"The study of {run.scene_name} has no norm '{norm}'; {hint}.")
 
 
-def _order(points: np.ndarray) -> str:
-    """Least-squares slope of error against mesh, in words; needs three meshes."""
+def observed_order(points: np.ndarray) -> float | None:
+    """Least-squares slope of error against mesh of (cells, seconds, error); needs three meshes."""
     if len(points) < 3:
-        return ""
-    slope = np.polyfit(np.log(points[:, 0]), np.log(points[:, 2]), 1)[0]
-    return f"  order {-slope:.2f}"
+        return None
+    return -np.polyfit(np.log(points[:, 0]), np.log(points[:, 2]), 1)[0]
+
+
+def _order(points: np.ndarray) -> str:
+    order = observed_order(points)
+    return "" if order is None else f"  order {order:.2f}"
 
 
 def _draw(axes, curves, column: int, labels: dict[str, str]) -> None:
@@ -75,12 +78,7 @@ def _draw(axes, curves, column: int, labels: dict[str, str]) -> None:
             ends.append(((points[-1, column], points[-1, 2]), labels[label], colour))
     axes.set_xscale("log")
     axes.set_yscale("log")
-    low, high = axes.get_ylim()
-    if high < 100 * low:
-        # Under two decades powers of ten alone leave the axis without a scale.
-        axes.yaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
-        axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: style.number(value)))
-        axes.yaxis.set_minor_formatter(NullFormatter())
+    style.mark_logarithm(axes.yaxis)
     style.label_ends(axes, ends)
 
 
@@ -113,7 +111,7 @@ def study_figure(name: str, rows: list[dict[str, str]], norm: str = "l1_density"
     _make_room(figure, list(labels.values()))
     _draw(by_time, curves, 1, {})
     _draw(by_mesh, curves, 0, labels)
-    by_time.set_ylabel(_TITLES.get(norm, norm.replace("_", " ")))
+    by_time.set_ylabel(TITLES.get(norm, norm.replace("_", " ")))
     by_time.set_xlabel("time to solution (s)")
     by_mesh.set_xlabel("cells")
     meshes = np.unique(np.concatenate([points[:, 0] for points in curves.values()]))

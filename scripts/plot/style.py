@@ -10,6 +10,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter  # noqa: E402
 from PIL import Image  # noqa: E402
 
 from .failure import IO_ERROR, Failure  # noqa: E402
@@ -61,11 +62,11 @@ def check_label(name: str) -> str:
 
 
 def number(value: float) -> str:
-    """Three digits, powers of ten as a paper prints them."""
+    """Three digits, or the whole number from 1000 on; powers of ten as a paper prints them."""
     if value == 0 or not np.isfinite(value):
         return f"{value:g}"
     if 1e-2 <= abs(value) < 1e5:
-        return f"{value:.3g}"
+        return f"{value:.0f}" if abs(value) >= 1e3 else f"{value:.3g}"
     mantissa, exponent = f"{value:.2e}".split("e")
     mantissa = mantissa.rstrip("0").rstrip(".")
     return rf"{mantissa}$\times$10$^{{{int(exponent)}}}$"
@@ -78,14 +79,21 @@ def heading(figure, name: str, details: str, key: list[tuple[str, str, str]] = (
     figure.text(left, 1 - 0.08 / height, name, fontsize=10.5, fontweight="bold", va="top")
     caption = figure.text(left, second_line, details, fontsize=8.5, color=MUTED, va="top")
     # Beside the title, whose words are few: the second line may be long.
-    right = 1 - left
-    for marker, words, colour in reversed(key):
-        text = figure.text(
-            right, 1 - 0.1 / height, f"{marker} {words}", color=colour, fontsize=8.5, ha="right", va="top"
-        )
-        extent = text.get_window_extent(figure.canvas.get_renderer())
-        right -= (extent.width / figure.dpi + 0.16) / width
+    curve_key(figure, 1 - 0.1 / height, key)
     return caption
+
+
+KEY_GAP = 0.16
+
+
+def curve_key(figure, y: float, key: list[tuple[str, str, str]]) -> None:
+    """Marker, words and colour of each curve in a line that ends at the right; y: its top as a share of the height."""
+    width = figure.get_size_inches()[0]
+    right = 1 - 0.1 / width
+    for marker, words, colour in reversed(key):
+        text = figure.text(right, y, f"{marker} {words}", color=colour, fontsize=8.5, ha="right", va="top")
+        extent = text.get_window_extent(figure.canvas.get_renderer())
+        right -= (extent.width / figure.dpi + KEY_GAP) / width
 
 
 def text_width(figure, words: str, size: float) -> float:
@@ -94,6 +102,20 @@ def text_width(figure, words: str, size: float) -> float:
     width = text.get_window_extent(figure.canvas.get_renderer()).width / figure.dpi
     text.remove()
     return width
+
+
+def mark_logarithm(axis) -> None:
+    """Ticks of a logarithmic axis: under two decades powers of ten alone leave it without a scale."""
+    low, high = axis.get_view_interval()
+    if high < 100 * low:
+        axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+        axis.set_major_formatter(FuncFormatter(lambda value, _: number(value)))
+        axis.set_minor_formatter(NullFormatter())
+
+
+def details_width(figure, details: str) -> float:
+    """Inches that a figure needs for the second line of its heading."""
+    return 0.2 + text_width(figure, details, 8.5)
 
 
 LABEL_SIZE = 8
