@@ -1,7 +1,8 @@
-"""drogue-plot: pictures of a run directory."""
+"""drogue-plot: pictures of a run directory, and the evidence page of a folder of records."""
 
 import argparse
 import difflib
+import importlib.util
 import re
 import subprocess
 import sys
@@ -39,10 +40,13 @@ class _Parser(argparse.ArgumentParser):
 
 def arguments(words: list[str]) -> argparse.Namespace:
     """The options of drogue-plot, checked."""
-    parser = _Parser(prog="drogue-plot", description="Draws the pictures of a run directory.")
-    parser.add_argument(
-        "directory", metavar="DIR", nargs="?", type=Path, help="run directory, or one with study.csv"
+    parser = _Parser(
+        prog="drogue-plot", description="Draws the pictures of a run directory, or the evidence page of records."
     )
+    parser.add_argument(
+        "directory", metavar="DIR", nargs="?", type=Path,
+        help="run directory, or one with study.csv or records (*.jsonl)",
+    )  # fmt: skip
     parser.add_argument("--out", type=Path, help="folder of the pictures (default: DIR)")
     parser.add_argument("--field", default="", help="fields to draw, by commas (default: all)")
     parser.add_argument(
@@ -103,9 +107,17 @@ def _gas_pictures(run, options, out, save):
         yield movie.write(out / f"fields.{options.movie}", gas_movie.frames(view))
 
 
+def _evidence(options, evidence, out):
+    if importlib.util.find_spec("jinja2") is None:
+        raise Failure(USAGE, "gas.html needs the Python package jinja2: run scripts/setup.sh, or install it.")
+    from . import evidence_page
+
+    yield from evidence_page.write(evidence, out, options.format, options.dpi)
+
+
 def draw(options: argparse.Namespace):
     """Yields the name of each picture once it is written."""
-    from . import style
+    from . import evidence_records, style
     from .history_figure import history_figure
     from .run_directory import read
     from .study_figure import DEFAULT_NORM, check_norm, study_figure
@@ -114,6 +126,7 @@ def draw(options: argparse.Namespace):
     # Before the first picture: a mistyped option must leave nothing behind.
     if options.norm is not None:
         check_norm(run, options.norm)
+    evidence = evidence_records.read(options.directory)
     out = options.out or options.directory
 
     def save(figure, name):
@@ -125,6 +138,8 @@ def draw(options: argparse.Namespace):
         yield save(figure, "history")
     if run.study:
         yield save(study_figure(run.scene_name, run.study, options.norm or DEFAULT_NORM), "study")
+    if evidence:
+        yield from _evidence(options, evidence, out)
 
 
 def main(words: list[str] | None = None) -> int:

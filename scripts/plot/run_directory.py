@@ -12,6 +12,7 @@ import numpy as np
 from .failure import IO_ERROR, USAGE, Failure
 
 READABLE = ("fields.h5", "history.csv", "study.csv")
+RECORDS = "*.jsonl"
 
 
 @dataclass(frozen=True)
@@ -135,12 +136,15 @@ def read_study(file: Path) -> list[dict[str, str]]:
 
 
 def read(path: Path) -> Run:
-    """Everything drawable in a run directory; exit code 2 where there is none, 6 where a file is damaged."""
+    """Everything drawable in a run directory; exit code 2 where there is none, 6 where a file is damaged.
+
+    Of a folder of records alone an empty run: evidence_records reads those.
+    """
     if not path.is_dir():
         raise Failure(USAGE, f"{path} is not a run directory: no such folder.")
     run = Run(path)
-    if not any((path / name).is_file() for name in READABLE):
-        raise Failure(USAGE, f"{path} holds nothing to draw: none of {', '.join(READABLE)} is there.")
+    if not any((path / name).is_file() for name in READABLE) and not any(path.glob(RECORDS)):
+        raise Failure(USAGE, f"{path} holds nothing to draw: none of {', '.join(READABLE)}, {RECORDS} is there.")
     readers = {
         "scene.toml": lambda file: setattr(run, "scene", tomllib.loads(file.read_text())),
         "result.json": lambda file: setattr(run, "result", _read_object(file)),

@@ -1,0 +1,155 @@
+"""Section of the steps: what each costs, and how that stands against the goals and the hand-written programs."""
+
+import re
+
+from markupsafe import Markup
+
+from . import gas_goals, page
+from .evidence_section import Cell, Section, Table, cells_text
+from .gas_goals import CELL_NS, EFFICIENCY, HIGHER_IS_BETTER, RATE, SPEED_UP, STEP_US, TIME_RATIO, Goal
+from .perf_record import BACKENDS, Record
+
+_COMMAND = "drogue-perf run --filter ^gas-step --out FILE.jsonl"
+_NAMES = BACKENDS | {"dense-loop": "dense loop, one core"}
+_Interval = tuple[float, float, float]  # median, low, high
+
+
+def _seconds(record: Record) -> _Interval:
+    return record.median, *record.interval
+
+
+def _scaled(values: _Interval, factor: float) -> _Interval:
+    return tuple(factor * value for value in values)
+
+
+def _over(numerator: _Interval, denominator: _Interval) -> _Interval:
+    """Quotient with the widest interval that those of both allow."""
+    return numerator[0] / denominator[0], numerator[1] / denominator[2], numerator[2] / denominator[1]
+
+
+def vector_bits(record: Record) -> int | None:
+    """Width of the vectors that a host build may use, from its facts or flags; None where neither tells."""
+    if isinstance(record.facts.get("vector_bits"), int):
+        return record.facts["vector_bits"]
+    flags = str(record.provenance.get("flags", ""))
+    width = re.search(r"prefer-vector-width=(\d+)", flags)
+    if width:
+        return int(width[1])
+    if re.search(r"x86-64-v4|avx512", flags):
+        return 512
+    return 256 if re.search(r"x86-64-v3|avx2", flags) else None
+
+
+def measured(goal: Goal, record: Record, beside: Record | None) -> _Interval | None:
+    """The measure of a goal with its interval; None where it wants a case that is not in the same run."""
+    seconds, cells = _seconds(record), record.facts["cells"]
+    if goal.measure == STEP_US:
+        return _scaled(seconds, 1e6)
+    if goal.measure == CELL_NS:
+        return _scaled(seconds, 1e9 / cells)
+    if goal.measure == RATE:
+        return _over((1e-9 * cells,) * 3, seconds)
+    if beside is None:
+        return None
+    if goal.measure == TIME_RATIO:
+        return _over(seconds, _seconds(beside))
+    faster = _over(_seconds(beside), seconds)
+    if goal.measure == SPEED_UP:
+        return faster
+    return _scaled(faster, 1.0 / record.threads)
+
+
+def verdict(goal: Goal, value: float) -> str:
+    """`goal met`, `stretch met` or `missed by N %`, of the median."""
+
+    def reaches(bar: float) -> bool:
+        return value >= bar if goal.measure in HIGHER_IS_BETTER else value <= bar
+
+    if goal.stretch is not None and reaches(goal.stretch):
+        return "stretch met"
+    if reaches(goal.goal):
+        return "goal met"
+    miss = 100 * abs(value / goal.goal - 1)
+    return f"missed by {miss:.0f} %" if miss >= 1 else f"missed by {miss:.1g} %"
+
+
+def _holds_for(goal: Goal, record: Record) -> bool:
+    """True where the goal is one of this machine and build: the host backends of a CUDA build are not vectorised."""
+    if goal.case != record.case or goal.gpu not in record.machine.gpu:
+        return False
+    if goal.gpu:
+        return True
+    if "nvcc" in str(record.provenance.get("compiler", "")):
+        return False
+    return goal.vector_bits in (0, vector_bits(record) or goal.vector_bits)
+
+
+def _what(goal: Goal, record: Record) -> str:
+    words = f"{_NAMES.get(record.facts['backend'], record.facts['backend'])}, {cells_text(record.facts['cells'])} cells"
+    if record.facts["variant"]:
+        words += f", {record.facts['variant']}"
+    if goal.vector_bits and vector_bits(record) is None:
+        words += f" (if its vectors have {goal.vector_bits} bits)"
+    if goal.measure == EFFICIENCY:
+        return f"{words}, against {record.threads} times one core"
+    return f"{words}, against {goal.beside.removeprefix('gas-step/')}" if goal.beside else words
+
+
+def _with_interval(values: _Interval) -> str:
+    return Markup("{} [{} .. {}]").format(*(page.number(value) for value in values))
+
+
+def _goal_row(goal: Goal, record: Record, of_run: dict[tuple, Record]) -> list[Cell | str]:
+    bars = ["" if bar is None else page.number(bar) for bar in (goal.probe, goal.goal, goal.stretch)]
+    values = measured(goal, record, of_run.get((goal.beside, *record.run)))
+    if values is None:
+        return [_what(goal, record), goal.measure, "", *bars, f"{goal.beside} is not in the same run"]
+    words = verdict(goal, values[0])
+    return [
+        _what(goal, record), goal.measure, _with_interval(values), *bars,
+        Cell(words, "bad" if words.startswith("missed") else "good"),
+    ]  # fmt: skip
+
+
+def goal_table(records: list[Record]) -> Table | None:
+    """Every goal whose case was recorded; None where there is none."""
+    of_run = {(record.case, *record.run): record for record in records}
+    rows = [
+        _goal_row(goal, record, of_run) for goal in gas_goals.GOALS for record in records if _holds_for(goal, record)
+    ]
+    columns = ["what", "measure", "measured", "probe", "goal", "stretch", "verdict"]
+    note = (
+        "Measured: median and its 95 % interval. Probe: a small hand-written CUDA program, which is no part of this "
+        "project. The verdict is that of the median."
+    )
+    numeric = {"measured", "probe", "goal", "stretch"}
+    return Table([(name, name in numeric) for name in columns], rows, "Against the goals", note) if rows else None
+
+
+def step_table(records: list[Record]) -> Table:
+    rows = []
+    for record in records:
+        seconds, cells = _seconds(record), record.facts["cells"]
+        rows.append(
+            [
+                _NAMES.get(record.facts["backend"], record.facts["backend"]), record.facts["variant"],
+                page.grouped(cells), _with_interval(_scaled(seconds, 1e6)), page.number(1e9 * seconds[0] / cells),
+                page.number(1e-9 * cells / seconds[0]),
+            ]  # fmt: skip
+        )
+    columns = [("backend", False), ("variant", False), ("cells", True)]
+    return Table(columns + [(name, True) for name in (STEP_US, CELL_NS, RATE)], rows, "What a step costs")
+
+
+def sections(records: list[Record]) -> list[Section]:
+    order = list(_NAMES)
+    ordered = sorted(
+        records,
+        key=lambda record: (
+            order.index(record.facts["backend"]) if record.facts["backend"] in order else len(order),
+            record.facts["cells"],
+            record.facts["variant"],
+        ),
+    )
+    goals = goal_table(ordered)
+    return [Section("A step", _COMMAND, ordered, tables=[step_table(ordered)] + ([goals] if goals else []))]

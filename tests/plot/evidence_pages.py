@@ -1,0 +1,75 @@
+"""Reads the evidence page that drogue-plot makes of synthetic records."""
+
+import contextlib
+import io
+import shutil
+import tempfile
+import unittest
+from html.parser import HTMLParser
+from pathlib import Path
+
+import synthetic_records as records
+from plot import cli, evidence_records
+
+
+class Page(HTMLParser):
+    """Rows of the tables of gas.html by (machine, section), and all its words."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.tables, self.words, self.sources = {}, "", []
+        self._heading, self._names, self._row, self._in_style = "", {"h2": "", "h3": ""}, None, False
+        self.feed(text)
+
+    def handle_starttag(self, tag, attributes):
+        self._in_style = tag == "style"
+        if tag in self._names:
+            self._heading, self._names[tag] = tag, ""
+        elif tag == "tr":
+            self._row = []
+        elif tag in ("td", "th"):
+            self._row.append("")
+        elif tag == "img":
+            self.sources.append(dict(attributes)["src"])
+
+    def handle_endtag(self, tag):
+        if tag == self._heading:
+            self._heading = ""
+            if tag == "h3":
+                self.tables[self._names["h2"], self._names["h3"]] = []
+        elif tag == "tr":
+            self.tables[self._names["h2"], self._names["h3"]].append([cell.strip() for cell in self._row])
+            self._row = None
+
+    def handle_data(self, data):
+        if self._heading:
+            self._names[self._heading] += data
+        if self._row:
+            self._row[-1] += data
+        if not self._in_style:
+            self.words += data
+
+
+def plot(*words):
+    """Exit code, names of the files, standard error."""
+    out, err = io.StringIO(), io.StringIO()
+    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+        code = cli.main([str(word) for word in words])
+    return code, sorted(Path(line).name for line in out.getvalue().split("\n") if line), err.getvalue()
+
+
+class Folder(unittest.TestCase):
+    def setUp(self):
+        self.folder = Path(tempfile.mkdtemp())
+        self.addCleanup(shutil.rmtree, self.folder)
+
+    def page(self, lines):
+        """The page of these records and the names of the files written."""
+        records.write(self.folder / "a.jsonl", lines)
+        code, files, sentence = plot(self.folder, "--dpi", 60)
+        self.assertEqual((code, sentence), (0, ""))
+        return Page((self.folder / "gas.html").read_text()), files
+
+    def evidence(self, lines):
+        records.write(self.folder / "a.jsonl", lines)
+        return evidence_records.read(self.folder)

@@ -1,0 +1,161 @@
+"""Records of drogue-perf that obey known laws, for the tests of the evidence page."""
+
+import itertools
+import json
+
+H200 = {"gpu": "NVIDIA H200", "cpu": "Intel(R) Xeon(R) Processor", "threads": 16}
+EPYC = {"gpu": "", "cpu": "AMD EPYC", "threads": 2}
+
+
+def record(case, seconds, machine, facts=None, **changes):
+    """One record whose interval is 2 % wide each way; `changes` replace its keys, `run` its date."""
+    provenance = {
+        "version": "0.1.0", "git": "abcdef123456", "compiler": "GNU 12.2.0", "flags": "-O3 -march=x86-64-v3",
+        "kokkos": "4.5.1", "driver": "13.0" if machine["gpu"] else "",
+        "date": changes.pop("run", "2026-11-22T05:00:00Z"),
+    }  # fmt: skip
+    document = {
+        "schema": "drogue.perf/1", "case": case, "unit": "s per step", "bound": "synthetic", "samples": [seconds] * 3,
+        "median": seconds, "interval": [0.98 * seconds, 1.02 * seconds], "error": 1e-4, "check": "passed",
+        "provenance": provenance | machine, "facts": facts or {},
+    }  # fmt: skip
+    return document | changes
+
+
+# name -> weno, power, error at 100 cells as a factor, cost of a step as a factor
+SCHEMES = {
+    "js": ("js", 1, 1.0, 1.0), "z": ("z", 1, 0.8, 1.05), "z2": ("z", 2, 0.9, 1.05), "m": ("m", 1, 0.85, 1.3),
+    "teno5": ("teno5", 1, 0.7, 1.25), "muscl-hancock": ("muscl-hancock", 1, 2.5, 0.12),
+}  # fmt: skip
+USUAL = ("lf-stencil", "ssprk3", "double")
+# problem -> error of JS at 100 cells, order of the WENO schemes, order of MUSCL-Hancock
+PROBLEMS = {
+    "entropy-wave": (3e-4, 5.0, 2.0), "shu-osher": (0.5, 1.6, 1.1), "blast": (0.3, 0.9, 0.8),
+    "leblanc": (0.05, 0.95, 0.85), "sod": (0.012, 0.9, 0.85),
+}  # fmt: skip
+# s of a step: a latency and s a cell
+SPEEDS = {"serial": (0.0, 6e-8), "openmp": (4e-6, 4.5e-9), "cuda": (5e-6, 1.2e-10)}
+SECOND_SETTINGS = {"lf-stencil": 1.0, "lf-global": 1.15, "lf-single": 1.3}
+
+
+def solution(problem, backend, scheme, settings, cells, machine, **changes):
+    """A run whose error and time are powers of the mesh (with a latency on OpenMP and CUDA)."""
+    weno, power, factor, cost = SCHEMES[scheme]
+    splitting, time_scheme, precision = settings if scheme != "muscl-hancock" else ("", "", "double")
+    error, order, other_order = PROBLEMS[problem]
+    error *= (
+        factor
+        * SECOND_SETTINGS.get(splitting, 1.0)
+        * (cells / 100) ** -(other_order if scheme == "muscl-hancock" else order)
+    )
+    error += 2e-7 if precision == "split" else 1e-13
+    latency, cell = SPEEDS[backend]
+    steps = 2 * cells
+    stages = {"ssprk3": 1.0, "ssprk43": 0.7}.get(time_scheme, 1.0)
+    seconds = steps * stages * (latency + cost * cell * cells * (0.8 if precision == "split" else 1.0))
+    facts = {
+        "problem": problem, "backend": backend, "weno": weno, "weno_power": power, "splitting": splitting,
+        "time_scheme": time_scheme, "precision": precision, "cells": cells, "steps": steps, "status": "ok",
+        "message": "",
+    }  # fmt: skip
+    label = " ".join([scheme, *(word for word, usual in zip(settings, USUAL) if word != usual)])
+    changes = {"error": error, "unit": "s per solution"} | changes
+    facts |= changes.pop("facts", {})
+    return record(f"gas-solution/{problem}/{backend}/{label}/{cells}", seconds, machine, facts, **changes)
+
+
+def solutions(machine=H200, problems=tuple(PROBLEMS), backends=tuple(SPEEDS), meshes=(100, 200, 400, 800, 1600, 3200)):
+    """All schemes with the usual settings, WENO-Z with all; MUSCL-Hancock on Serial alone; TENO5 loses LeBlanc."""
+    settings = list(itertools.product(SECOND_SETTINGS, ("ssprk3", "ssprk43"), ("double", "split")))
+    found = []
+    for problem, backend, cells in itertools.product(problems, backends, meshes):
+        for scheme in SCHEMES:
+            if scheme == "muscl-hancock" and backend != "serial":
+                continue
+            changes = {}
+            if (problem, scheme) == ("leblanc", "teno5"):
+                message = "negative pressure in cell 41 at x = 2.3, step 12, t = 0.01"
+                changes = {"facts": {"status": "numerical-failure", "message": message}, "median": None, "error": None}
+            found.append(solution(problem, backend, scheme, USUAL, cells, machine, **changes))
+        for variant in settings:
+            if variant != USUAL:
+                found.append(solution(problem, backend, "z", variant, cells, machine))
+    return found
+
+
+def step(case, seconds, machine, cells, **changes):
+    """A step with its work: 1300 FLOP and 72 bytes a cell."""
+    words = case.split("/")
+    facts = {
+        "backend": words[0],
+        "cells": cells,
+        "variant": "/".join(words[2:]),
+        "flops": 1300 * cells,
+        "bytes": 72 * cells,
+    }
+    return record(f"gas-step/{case}", seconds, machine, facts, **changes)
+
+
+def steps_of_h200():
+    """Steps as measured once: some meet their goals, some miss them."""
+    large = 1 << 24
+    times = {
+        "cuda/1024": 4.2e-6, "cuda/8192": 5.2e-6, "cuda/65536": 8.9e-6, "cuda/1048576": 138e-6,
+        f"cuda/{large}": 2019e-6,
+        f"cuda/{large}/z": 2100e-6, f"cuda/{large}/teno5": 2544e-6, f"cuda/{large}/split": 1400e-6,
+        f"cuda/{large}/auto": 2025e-6, f"cuda/{large}/on": 5815e-6, "cuda/8192/graph": 9.6e-6,
+    }  # fmt: skip
+    return [step(name, seconds, H200, int(name.split("/")[1])) for name, seconds in times.items()]
+
+
+def steps_of_core(machine=EPYC):
+    """One core at 50 ns a cell-step, eight times the dense loop; two threads at 0.9 of two cores."""
+    one = 50e-9
+    times = {
+        "dense-loop/8192": 8 * one * 8192, "serial/8192": one * 8192, "serial/1048576": one * (1 << 20),
+        "openmp/8192": 0.6 * one * 8192, "openmp/1048576": one * (1 << 20) / 1.8,
+    }  # fmt: skip
+    return [step(name, seconds, machine, int(name.split("/")[1])) for name, seconds in times.items()]
+
+
+def ceilings(backend="cuda", machine=H200, fp64=33e12, memory=4.2e12, cache=5.3e12):
+    facts = {"backend": backend, "flops": 0, "bytes": 0}
+    work = 1e9
+    return [
+        record(f"ceiling/fp64/{backend}", work / fp64, machine, facts | {"flops": work}),
+        record(f"ceiling/memory/{backend}", work / memory, machine, facts | {"bytes": work}),
+        record(f"ceiling/cache/{backend}", work / cache, machine, facts | {"bytes": work}),
+    ]
+
+
+def transfers(machine=H200):
+    """Pageable copies a third, pinned ones a twentieth of the dissertation's times (much like its Table 5.5)."""
+    found = []
+    for index, cells in enumerate(range(1024, 8193, 1024)):
+        thesis = {"h2d_us": 336 + 25 * index, "compute_us": 118 + 35 * index, "d2h_us": 272 + 15 * index}
+        thesis["total_us"] = sum(thesis.values())
+        for memory, share in (("pageable", 1 / 3), ("pinned", 1 / 20)):
+            facts = {
+                "backend": "cuda", "memory": memory, "cells": cells, "h2d_s": 1e-6 * thesis["h2d_us"] * share,
+                "compute_s": 40e-6, "d2h_s": 1e-6 * thesis["d2h_us"] * share, "thesis": thesis,
+            }  # fmt: skip
+            seconds = facts["h2d_s"] + facts["compute_s"] + facts["d2h_s"]
+            found.append(record(f"gas-transfers/cuda/{memory}/{cells}", seconds, machine, facts))
+    return found
+
+
+def blocks(machine=H200):
+    found = []
+    meshes = {"seed": range(1024, 8193, 1024), "step": [1 << power for power in range(10, 21, 2)]}
+    for form, cells_of in meshes.items():
+        for block, cells in itertools.product((32, 64, 128, 256, 512), cells_of):
+            seconds = 5e-6 + cells * 1e-9 * (1 + abs(block - 128) / 300)
+            facts = {"backend": "cuda", "form": form, "block": block, "cells": cells}
+            found.append(record(f"gas-block/cuda/{form}/{block}/{cells}", seconds, machine, facts))
+    return found
+
+
+def write(file, records):
+    file.parent.mkdir(parents=True, exist_ok=True)
+    file.write_text("".join(json.dumps(line) + "\n" for line in records))
+    return file

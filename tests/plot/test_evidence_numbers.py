@@ -1,0 +1,245 @@
+"""Numbers and pictures of the evidence page on synthetic records that obey known laws."""
+
+import unittest
+
+import packages  # noqa: F401, before all that needs the packages  isort: skip
+import numpy as np
+import synthetic_records as records
+from evidence_pages import Folder
+from plot import evidence_records, gas_goals
+from plot.evidence_blocks import blocks_figure, times
+from plot.evidence_roofline import ceilings, points, roofline_figure
+from plot.evidence_solution import Reach, asked_errors, best_scheme, curves, speed_up, time_to_error, wins_below
+from plot.evidence_solution_figure import solution_figure
+from plot.evidence_steps import measured, vector_bits, verdict
+
+
+def law(cost, power, size, order, meshes=(100, 200, 400, 800)):
+    """Points of time = cost n^power, error = size n^-order."""
+    return np.array([(n, cost * n**power, size * n**-order) for n in meshes])
+
+
+class Numbers(unittest.TestCase):
+    def test_time_to_an_error_on_a_power_law(self):
+        points_ = law(2e-9, 2.0, 3.0, 1.5)
+        for error in (2.9e-3, 1.1e-3, 2e-4):
+            reach = time_to_error(points_, error)
+            self.assertEqual(reach.bound, "")
+            self.assertAlmostEqual(reach.seconds / (2e-9 * (3.0 / error) ** (2.0 / 1.5)), 1.0, delta=1e-12)
+        self.assertEqual(time_to_error(points_, 1e-5), Reach(points_[-1, 1], ">"))
+        self.assertEqual(time_to_error(points_, 0.1), Reach(points_[0, 1], "<"))
+        self.assertEqual(time_to_error(points_, points_[0, 2]), Reach(points_[0, 1]))
+
+    def test_first_crossing_of_an_error_that_rises_again(self):
+        points_ = np.array([(1, 1.0, 1e-1), (2, 2.0, 1e-3), (4, 4.0, 1e-2), (8, 8.0, 1e-4)])
+        self.assertAlmostEqual(time_to_error(points_, 1e-2).seconds, 2**0.5, delta=1e-12)
+
+    def test_speed_up_of_bounds(self):
+        self.assertEqual(speed_up(Reach(6.0), Reach(2.0)), Reach(3.0))
+        self.assertEqual(speed_up(Reach(6.0, ">"), Reach(2.0)), Reach(3.0, ">"))
+        self.assertEqual(speed_up(Reach(6.0, ">"), Reach(2.0, "<")), Reach(3.0, ">"))
+        self.assertEqual(speed_up(Reach(6.0), Reach(2.0, ">")), Reach(3.0, "<"))
+        self.assertIsNone(speed_up(Reach(6.0, ">"), Reach(2.0, ">")))
+        self.assertIsNone(speed_up(Reach(6.0, "<"), Reach(2.0, "<")))
+
+    def test_where_a_higher_order_begins_to_win(self):
+        cheap, high = law(1e-9, 2.0, 1.0, 1.0, (100, 12800)), law(8e-9, 2.0, 100.0, 2.0, (10, 3200))
+        # t = 1e-9 / e^2 and t = 8e-7 / e meet at e = 1/800.
+        where, error = wins_below(cheap, high)
+        self.assertEqual(where, "below")
+        self.assertAlmostEqual(error / (1 / 800), 1.0, delta=0.02)
+        self.assertEqual(wins_below(law(1e-6, 2.0, 1.0, 1.0), high), ("everywhere", None))
+        self.assertEqual(wins_below(law(1e-12, 2.0, 1.0, 1.0), high), ("nowhere", None))
+        self.assertEqual(wins_below(cheap, law(1e-9, 2.0, 1e-9, 1.0)), ("", None))
+
+    def test_verdicts_are_on_the_right_side_of_each_bar(self):
+        time = gas_goals.Goal("c", gas_goals.STEP_US, 5.0, 3.0)
+        rate = gas_goals.Goal("c", gas_goals.RATE, 8.5, 10.0)
+        cases = [
+            (time, 5.0, "goal met"), (time, 3.0, "stretch met"), (time, 5.5, "missed by 10 %"),
+            (time, 5.01, "missed by 0.2 %"), (rate, 8.5, "goal met"), (rate, 11.0, "stretch met"),
+            (rate, 6.8, "missed by 20 %"),
+        ]  # fmt: skip
+        for goal, value, words in cases:
+            self.assertEqual(verdict(goal, value), words)
+
+
+class Solutions(Folder):
+    def test_table_holds_times_factors_and_orders_of_the_laws(self):
+        page, files = self.page(records.solutions(problems=("sod",), backends=("serial", "cuda")))
+        self.assertEqual(files, ["gas.html", "solution_sod_nvidia-h200.png"])
+        rows = page.tables["NVIDIA H200, Intel Xeon Processor", "Sod: error against time"]
+        heading, usual = rows[0], [row for row in rows if row[0] != "backend"]
+        self.assertEqual(heading[:4], ["backend", "scheme", "cells", "order"])
+        by_scheme = {(row[0], row[1]): row for row in usual}
+        # MUSCL-Hancock on 800 cells: 2 n steps of 0.12 x 6e-8 n s; WENO-Z: its error is 0.0096 (n / 100)^-0.9.
+        error = 2.5 * 0.012 * 8**-0.85
+        self.assertEqual(heading[4], f"to {error * 1e3:.3g}".rstrip("0") + "×10−3")
+        own = 2 * 1.05 * 6e-8 * (100 * (0.8 * 0.012 / error) ** (1 / 0.9)) ** 2
+        other = 2 * 0.12 * 6e-8 * 800**2
+        row = by_scheme["Serial", "WENO-Z"]
+        self.assertEqual(row[2:6], ["100–3200", "0.90", f"{own * 1e3:.3g} ms", f"{other / own:.3g}"])
+        self.assertEqual(by_scheme["Serial", "MUSCL-Hancock"][3:6], ["0.85", f"{other * 1e3:.3g} ms", ""])
+        self.assertEqual(by_scheme["CUDA", "WENO-Z"][5::2], ["", "", ""])
+        self.assertIn("Serial is compared with Serial", page.words)
+        self.assertIn(("Serial", "WENO-Z, lf-global, ssprk43, split"), by_scheme)
+
+    def test_failed_runs_are_listed_and_not_drawn(self):
+        lines = records.solutions(problems=("leblanc",), backends=("serial",), meshes=(100, 200))
+        page, _ = self.page(lines)
+        rows = page.tables["NVIDIA H200, Intel Xeon Processor", "LeBlanc: error against time"]
+        self.assertNotIn("TENO5", [row[1] for row in rows])
+        self.assertRegex(
+            page.words, r"TENO5, Serial, 100, 200 cells: numerical-failure \(negative pressure in cell 41 .*\)"
+        )
+        evidence = self.evidence(lines)
+        found = curves(evidence.records)
+        self.assertNotIn("teno5", {curve.scheme.weno for curve in found})
+
+    def test_problem_that_no_scheme_solves_has_a_list_alone(self):
+        lines = records.solutions(problems=("leblanc",), backends=("serial",), meshes=(100,))
+        page, files = self.page([line for line in lines if line["facts"]["weno"] == "teno5"])
+        self.assertEqual(files, ["gas.html"])
+        self.assertIn("negative pressure in cell 41", page.words)
+
+    def test_without_the_competitor_there_are_no_factors(self):
+        lines = records.solutions(problems=("sod",), backends=("openmp",), meshes=(100, 200, 400))
+        page, _ = self.page(lines)
+        heading = next(iter(page.tables.values()))[0]
+        self.assertNotIn("factor", heading)
+        self.assertEqual(sum(word.startswith("to ") for word in heading), 3)
+        self.assertNotIn("MUSCL-Hancock", page.words)
+
+    def test_best_scheme_is_the_first_to_reach_the_competitors_error(self):
+        found = curves(self.evidence(records.solutions(problems=("sod",), backends=("serial",))).records)
+        self.assertEqual(best_scheme(found), "z")
+        errors = asked_errors(found)
+        self.assertEqual(errors, sorted(errors, reverse=True))
+        self.assertAlmostEqual(errors[1], 2.5 * 0.012 * 32**-0.85, delta=1e-9)
+
+    def test_keys_and_titles_of_the_figure_do_not_collide(self):
+        found = curves(self.evidence(records.solutions(problems=("sod",), backends=("serial",))).records)
+        machine = evidence_records.read(self.folder).machines[0]
+        figure = solution_figure("Sod", machine, found, "z", "")
+        self.assertEqual([len(axes.lines) for axes in figure.axes], [6, 6, 6])
+        figure.canvas.draw()
+        renderer = figure.canvas.get_renderer()
+        boxes = [text.get_window_extent(renderer) for text in figure.texts]
+        for index, box in enumerate(boxes):
+            self.assertTrue(0 <= box.x0 and box.x1 <= figure.bbox.width)
+            for other in boxes[:index]:
+                self.assertFalse(box.overlaps(other))
+        for axes in figure.axes:
+            self.assertGreaterEqual(axes.yaxis.label.get_window_extent(renderer).x0, 0)
+
+
+class Steps(Folder):
+    def test_costs_and_verdicts_on_the_gpu(self):
+        page, _ = self.page(records.steps_of_h200())
+        rows = page.tables["NVIDIA H200, Intel Xeon Processor", "A step"]
+        self.assertIn(["CUDA", "", "8\u2009192", "5.2 [5.1 .. 5.3]", "0.635", "1.58"], rows)
+        verdicts = {(row[0], row[1]): row[2:] for row in rows if len(row) == 7}
+        self.assertEqual(
+            verdicts["CUDA, 8192 cells", "µs a step"], ["5.2 [5.1 .. 5.3]", "4.47", "5", "3", "missed by 4 %"]
+        )
+        self.assertEqual(verdicts["CUDA, 65536 cells", "µs a step"][-1], "stretch met")
+        self.assertEqual(verdicts["CUDA, 16 M cells", "G cell-steps/s"][-1], "missed by 2 %")
+        self.assertEqual(verdicts["CUDA, 16 M cells, split", "G cell-steps/s"][-1], "goal met")
+        on = verdicts["CUDA, 16 M cells, on, against cuda/16777216", "times as long"]
+        self.assertEqual(on, ["2.88 [2.77 .. 3]", "", "1.25", "1.1", "missed by 130 %"])
+
+    def test_verdicts_on_a_core_need_its_vectors_and_the_same_run(self):
+        page, _ = self.page(records.steps_of_core())
+        rows = [row for row in page.tables["AMD EPYC", "A step"] if len(row) == 7][1:]
+        self.assertEqual([row[4] for row in rows], ["68", "6", "0.85"])
+        self.assertEqual([row[2].split()[0] for row in rows], ["50", "8", "0.9"])
+        self.assertEqual({row[-1] for row in rows}, {"goal met"})
+        later = records.steps_of_core()
+        for line in later:
+            if "dense" in line["case"]:
+                line["provenance"]["date"] = "2026-11-23T05:00:00Z"
+        page, _ = self.page(later)
+        self.assertIn("gas-step/dense-loop/8192 is not in the same run", page.words)
+
+    def test_width_of_vectors_from_facts_or_flags(self):
+        lines = records.steps_of_core()[1:2]
+        for flags, facts, wanted in (
+            ("-O3 -march=x86-64-v4", {}, 512), ("-mavx512f -mprefer-vector-width=256", {}, 256), ("-O3", {}, None),
+            ("-O3", {"vector_bits": 512}, 512),
+        ):  # fmt: skip
+            lines[0]["provenance"]["flags"] = flags
+            lines[0]["facts"] = facts
+            self.assertEqual(vector_bits(self.evidence(lines).records[0]), wanted)
+        lines[0]["facts"] = {}
+        page, _ = self.page(lines)
+        self.assertIn("(if its vectors have 512 bits)", page.words)
+
+    def test_host_backends_of_a_cuda_build_have_no_goals(self):
+        lines = records.steps_of_core(records.H200)
+        for line in lines:
+            line["provenance"]["compiler"] = "GNU 12.2.0, nvcc 13.0.88 sm_90"
+        page, _ = self.page(lines)
+        self.assertNotIn("Against the goals", page.words)
+
+    def test_interval_of_a_ratio_holds_both_intervals(self):
+        lines = self.evidence(records.steps_of_core()).records
+        by_case = {line.case: line for line in lines}
+        goal = next(goal for goal in gas_goals.GOALS if goal.measure == gas_goals.SPEED_UP)
+        value, low, high = measured(goal, by_case[goal.case], by_case[goal.beside])
+        self.assertAlmostEqual(value, 8.0, delta=1e-12)
+        self.assertAlmostEqual(low, 8 * 0.98 / 1.02, delta=1e-12)
+        self.assertAlmostEqual(high, 8 * 1.02 / 0.98, delta=1e-12)
+
+    def test_records_without_facts_are_read_by_their_names(self):
+        lines = records.steps_of_h200()
+        for line in lines:
+            del line["facts"]
+        page, _ = self.page(lines)
+        self.assertIn("missed by 4 %", page.words)
+
+
+class Devices(Folder):
+    def test_ceilings_and_shares(self):
+        page, files = self.page(records.ceilings() + records.steps_of_h200())
+        self.assertEqual(files, ["gas.html", "roofline_cuda_nvidia-h200.png"])
+        rows = page.tables["NVIDIA H200, Intel Xeon Processor", "Roofline, CUDA"]
+        self.assertIn(["FP64 arithmetic", "33 TFLOP/s"], rows)
+        rate = 1300 * 8192 / 5.2e-6
+        shares = [f"{100 * rate / 33e12:.3g}", f"{100 * rate / (1300 / 72) / 4.2e12:.3g}"]
+        self.assertEqual(next(row for row in rows if row[0] == "8\u2009192")[4:6], shares)
+
+    def test_labels_of_a_roofline_fit(self):
+        evidence = self.evidence(records.ceilings() + records.steps_of_h200())
+        machine = evidence.machines[0]
+        tops, found = ceilings(evidence.of(machine, "ceiling")), points(evidence.of(machine, "gas-step"))
+        self.assertEqual([point.cells for point in found], [1024, 8192, 65536, 1 << 20, 1 << 24])
+        figure = roofline_figure("Roofline", machine, tops, found)
+        renderer = figure.canvas.get_renderer()
+        boxes = [text.get_window_extent(renderer) for text in figure.axes[0].texts if text.get_rotation() == 0]
+        for index, box in enumerate(boxes):
+            self.assertTrue(0 <= box.x0 and box.x1 <= figure.bbox.width)
+            for other in boxes[:index]:
+                self.assertFalse(box.overlaps(other))
+
+    def test_transfers_stand_beside_the_dissertation(self):
+        page, files = self.page(records.transfers())
+        self.assertEqual(files, ["gas.html", "transfers_cuda_nvidia-h200.png"])
+        rows = page.tables["NVIDIA H200, Intel Xeon Processor", "Transfers of a step, CUDA"]
+        self.assertEqual(len(rows), 1 + 3 * 8)
+        self.assertEqual(rows[1], ["1\u2009024", "dissertation", "336", "118", "272", "726", ""])
+        self.assertEqual(rows[3], ["1\u2009024", "pinned", "16.8", "40", "13.6", "70.4", "10.3"])
+
+    def test_blocks_have_a_panel_a_form_and_a_curve_a_size(self):
+        evidence = self.evidence(records.blocks())
+        forms = {
+            form: times([line for line in evidence.records if line.facts["form"] == form]) for form in ("seed", "step")
+        }
+        figure = blocks_figure("Blocks", evidence.machines[0], forms, "step")
+        self.assertEqual([len(axes.lines) for axes in figure.axes], [5, 5])
+        page, _ = self.page(records.blocks())
+        rows = page.tables["NVIDIA H200, Intel Xeon Processor", "Block size, CUDA"]
+        self.assertEqual(rows[1][:4], ["1\u2009024", "6.35", "6.24", "6.02"])
+
+
+if __name__ == "__main__":
+    unittest.main()
