@@ -6,7 +6,7 @@ from .perf_record import BACKENDS, Machine, Record
 from .style import plt
 
 _COMMAND = "drogue-perf table block-size --app gas --out FILE.jsonl"
-_FORMS = {"seed": "the dissertation's form", "step": "a kernel a step"}
+_FORMS = {"seed": "the dissertation's flux kernel", "step": "the fused step"}
 _Times = dict[int, dict[int, float]]  # seconds by block and cells
 
 

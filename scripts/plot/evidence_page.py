@@ -53,7 +53,7 @@ def notes(evidence: Evidence) -> list[str]:
         found.append(f"{count} left out, because a later one of the same case and machine exists.")
     if evidence.unknown:
         count = _counted(sum(evidence.unknown.values()), "record is", "records are")
-        found.append(f"{count} of a kind that this page does not know: {', '.join(sorted(evidence.unknown))}.")
+        found.append(f"{count} ignored, of a kind that this page does not know: {', '.join(sorted(evidence.unknown))}.")
     return found
 
 

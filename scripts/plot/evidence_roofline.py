@@ -27,7 +27,7 @@ def ceilings(records: list[Record]) -> dict[str, float]:
     found = {}
     for record in records:
         name = record.case.split("/")[1] if "/" in record.case else ""
-        work = record.facts["flops" if name == "fp64" else "bytes"]
+        work = record.facts.get("flops" if name == "fp64" else "bytes", 0)
         if name in ("fp64", *_BYTES) and work > 0:
             found[name] = work / record.median
     return found
@@ -37,7 +37,7 @@ def points(steps: list[Record]) -> list[Point]:
     """The usual steps of a backend whose work is known, by rising mesh."""
     found = []
     for record in steps:
-        flops, moved = (record.facts.get(name) or 0 for name in ("flops", "bytes"))
+        flops, moved = (record.facts.get(name, 0) for name in ("flops", "bytes"))
         if flops > 0 and moved > 0 and not record.facts["variant"]:
             found.append(Point(record.facts["cells"], flops / moved, flops / record.median))
     return sorted(found, key=lambda point: point.cells)

@@ -59,10 +59,6 @@ def _variant_key(curves: list[Curve]) -> list[tuple[str, str, str]]:
     return key
 
 
-def _key_width(figure, key) -> float:
-    return sum(style.text_width(figure, f"{marker} {words}", 8.5) + style.KEY_GAP for marker, words, _ in key)
-
-
 @dataclass(frozen=True)
 class _Row:
     """One row of panels: what stands above it at the left and at the right, what it draws, its height in inches."""
@@ -88,7 +84,7 @@ def _rows(title: str, found: list[Curve], best: str | None) -> list[_Row]:
 def _make_room(figure, rows: list[_Row], axes, details: str) -> list[float]:
     """Sizes a figure for its panels, keys and heading; returns the top of every row's axes as a share of the height."""
     columns = axes.shape[1]
-    keys = [0.5 + style.text_width(figure, row.title, 12) + _key_width(figure, row.key) for row in rows]
+    keys = [style.titled_key_width(figure, row.title, row.key) for row in rows]
     panels = _LEFT + (_PANEL_WIDTH + _GAP) * columns - _GAP + _RIGHT
     width = max(panels, style.details_width(figure, details), *keys)
     height = _HEADING + sum(row.height for row in rows) + _BETWEEN_ROWS * (len(rows) - 1) + _BOTTOM

@@ -103,7 +103,13 @@ def _goal_row(goal: Goal, record: Record, of_run: dict[tuple, Record]) -> list[C
     bars = ["" if bar is None else page.number(bar) for bar in (goal.probe, goal.goal, goal.stretch)]
     values = measured(goal, record, of_run.get((goal.beside, *record.run)))
     if values is None:
-        return [_what(goal, record), goal.measure, "", *bars, f"{goal.beside} is not in the same run"]
+        return [
+            _what(goal, record),
+            goal.measure,
+            "",
+            *bars,
+            f"{goal.beside.removeprefix('gas-step/')} is not in the same run",
+        ]
     words = verdict(goal, values[0])
     return [
         _what(goal, record), goal.measure, _with_interval(values), *bars,

@@ -14,7 +14,7 @@ BACKENDS = {"serial": "Serial", "openmp": "OpenMP", "cuda": "CUDA"}
 _FACTS = {
     "gas-solution": {"problem": str, "backend": str, "weno": str, "cells": int},
     "gas-step": {},
-    "ceiling": {"backend": str, "flops": float, "bytes": float},
+    "ceiling": {"backend": str},
     "gas-transfers": {"backend": str, "memory": str, "cells": int, "h2d_s": float, "compute_s": float, "d2h_s": float},
     "gas-block": {"backend": str, "form": str, "block": int, "cells": int},
 }  # fmt: skip
@@ -23,6 +23,7 @@ _OPTIONAL = {
         "weno_power": float, "splitting": str, "time_scheme": str, "precision": str, "status": str, "message": str,
     },
     "gas-step": {"flops": float, "bytes": float, "vector_bits": int},
+    "ceiling": {"flops": float, "bytes": float},
     "gas-transfers": {"thesis": dict},
 }  # fmt: skip
 KINDS = frozenset(_FACTS)

@@ -104,6 +104,12 @@ def text_width(figure, words: str, size: float) -> float:
     return width
 
 
+def titled_key_width(figure, title: str, key: list[tuple[str, str, str]]) -> float:
+    """Inches that a figure needs for a title in bold type and the key beside it."""
+    words = sum(text_width(figure, f"{marker} {name}", 8.5) + KEY_GAP for marker, name, _ in key)
+    return 0.5 + text_width(figure, title, 12) + words
+
+
 def mark_logarithm(axis) -> None:
     """Ticks of a logarithmic axis: under two decades powers of ten alone leave it without a scale."""
     low, high = axis.get_view_interval()

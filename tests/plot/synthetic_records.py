@@ -119,7 +119,7 @@ def steps_of_core(machine=EPYC):
 
 
 def ceilings(backend="cuda", machine=H200, fp64=33e12, memory=4.2e12, cache=5.3e12):
-    facts = {"backend": backend, "flops": 0, "bytes": 0}
+    facts = {"backend": backend}
     work = 1e9
     return [
         record(f"ceiling/fp64/{backend}", work / fp64, machine, facts | {"flops": work}),

@@ -57,7 +57,7 @@ class Contents(Folder):
 
     def test_unknown_kinds_are_named(self):
         page, _ = self.page([*records.steps_of_h200(), records.record("ladder/weno/3", 1e-6, records.H200)])
-        self.assertIn("1 record is of a kind that this page does not know: ladder.", page.words)
+        self.assertIn("1 record is ignored, of a kind that this page does not know: ladder.", page.words)
 
     def test_machines_are_kept_apart(self):
         other = records.H200 | {"cpu": "AMD EPYC"}

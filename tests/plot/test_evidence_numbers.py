@@ -159,7 +159,7 @@ class Steps(Folder):
             if "dense" in line["case"]:
                 line["provenance"]["date"] = "2026-11-23T05:00:00Z"
         page, _ = self.page(later)
-        self.assertIn("gas-step/dense-loop/8192 is not in the same run", page.words)
+        self.assertIn("dense-loop/8192 is not in the same run", page.words)
 
     def test_width_of_vectors_from_facts_or_flags(self):
         lines = records.steps_of_core()[1:2]
