@@ -117,7 +117,7 @@ def _explanation(found: list[Curve], best: str | None) -> str:
     if best:
         words.append(
             f"Of the schemes with other settings {NAMES.get(best, best)}, which is drawn, is the first to reach the "
-            f"finest error of {stick}."
+            f"finest error of {stick} or, where none does, has the least error."
         )
     return " ".join(words)
 
