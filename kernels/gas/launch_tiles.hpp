@@ -7,18 +7,14 @@
 
 namespace drogue::gas {
 
-/// Threads of a usual device team. Three teams a multiprocessor have 168 registers a thread. Four have 128,
-/// which the fused step spills a few of; where a thread has several slots that is the faster.
-inline constexpr int usual_team = 128, largest_team = 512;
-
 template <class Policy, class ExecutionSpace, class Functor>
 void launch_tiles(const char* label, const ExecutionSpace& space, const TileShape& shape, std::int64_t tiles,
                   int team_size, const Functor& functor) {
   static_assert(
       Kokkos::SpaceAccessibility<ExecutionSpace, typename Functor::Fields::memory_space>::accessible);
   Policy policy(space, static_cast<int>(tiles), team_size);
-  policy.set_scratch_size(0,
-                          Kokkos::PerTeam(static_cast<int>(Tile<ExecutionSpace>::scratch_bytes(shape) + 64)));
+  policy.set_scratch_size(
+      0, Kokkos::PerTeam(static_cast<int>(Tile<ExecutionSpace>::scratch_bytes(shape) + scratch_margin)));
   // A light functor travels as a kernel argument; the other way, through constant memory, cannot be captured.
   Kokkos::parallel_for(
       label, Kokkos::Experimental::require(policy, Kokkos::Experimental::WorkItemProperty::HintLightWeight),
@@ -32,10 +28,10 @@ void launch(const char* label, const ExecutionSpace& space, const StageSetup<Exe
   if constexpr (device::is_host<ExecutionSpace>) {
     launch_tiles<Kokkos::TeamPolicy<ExecutionSpace>>(label, space, shape, tiles, setup.team_size, functor);
   } else {
-    using Usual = Kokkos::TeamPolicy<ExecutionSpace, Kokkos::LaunchBounds<usual_team, 3>>;
-    using Large = Kokkos::TeamPolicy<ExecutionSpace, Kokkos::LaunchBounds<largest_team, 1>>;
+    using Usual = Kokkos::TeamPolicy<ExecutionSpace, Kokkos::LaunchBounds<usual_team, usual_teams>>;
+    using Large = Kokkos::TeamPolicy<ExecutionSpace, Kokkos::LaunchBounds<largest_team, largest_teams>>;
     if constexpr (many_slots) {
-      using Dense = Kokkos::TeamPolicy<ExecutionSpace, Kokkos::LaunchBounds<usual_team, 4>>;
+      using Dense = Kokkos::TeamPolicy<ExecutionSpace, Kokkos::LaunchBounds<usual_team, dense_teams>>;
       if (setup.team_size <= usual_team && shape.row > setup.team_size)
         return launch_tiles<Dense>(label, space, shape, tiles, setup.team_size, functor);
     }

@@ -8,19 +8,8 @@
 
 namespace drogue::gas {
 
-/// Threads of a device team: small meshes have more of smaller ones, so that more multiprocessors work.
-inline int device_team(int block, std::int64_t cells) {
-  if (block > 0) return block;
-  return cells < 32'768 ? 96 : 128;
-}
-
-/// Slots of a large mesh's tile, by measurement on an H200: three for each thread of a usual team, so that
-/// few of them are halo.
-inline constexpr int largest_tile = 384;
-inline constexpr std::int64_t large_mesh = 65'536;
-
-/// On a device the slots of a tile, halo included, are its threads or a multiple; on the host a tile's
-/// scratch stays in the L1 cache.
+/// On a device the slots of a tile, halo included, are its threads, a multiple, or as many as fit; on the
+/// host a tile's scratch stays in the L1 cache.
 template <class ExecutionSpace>
 TileShape tile_shape(int block, int halo, int slots) {
   if constexpr (device::is_host<ExecutionSpace>) {
@@ -62,10 +51,11 @@ SolverOn<ExecutionSpace>::SolverOn(const Parameters& p)
   _setup.ends = {p.cells, p.left, p.right};
   const int team = device_team(p.block, p.cells);
   _setup.team_size = on_host ? 1 : team;
-  _setup.stage_shape = tile_shape<ExecutionSpace>(p.block, ghost_cells, team);
-  _setup.step_shape =
-      tile_shape<ExecutionSpace>(p.block, ghost_cells * _setup.table.stages,
-                                 p.cells < large_mesh ? team : std::max(team, largest_tile / team * team));
+  const auto slots = [team](int wanted) { return fitting_slots(device_rows, wanted, team); };
+  _setup.stage_shape = tile_shape<ExecutionSpace>(p.block, ghost_cells, slots(team));
+  _setup.step_shape = tile_shape<ExecutionSpace>(
+      p.block, ghost_cells * _setup.table.stages,
+      slots(p.cells < large_mesh ? team : std::max(team, largest_tile / team * team)));
   _setup.gamma = p.gamma;
   _setup.dx = dx;
   _setup.splitting = p.splitting;

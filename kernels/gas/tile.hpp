@@ -4,6 +4,7 @@
 
 #include "kernels/device/memory.hpp"
 #include "kernels/gas/face_flux.hpp"
+#include "kernels/gas/team_shape.hpp"
 
 namespace drogue::gas {
 
@@ -80,6 +81,7 @@ KOKKOS_INLINE_FUNCTION Triple<R> load_state(const double* in, const Ends& ends, 
 }
 
 enum class TileField : int { rho, m, energy, flux_m, flux_energy, u, enthalpy, slow, fast, count };
+static_assert(static_cast<int>(TileField::count) == cell_rows);
 
 /// A tile's scratch memory: rows of cell values (`TileField`), then three rows of face fluxes and, on a
 /// device, three of U^n. Slot i of a row of cells belongs to cell `first - halo + i`; face f lies left of
@@ -89,7 +91,7 @@ class Tile {
  public:
   /// On the host the first level cache has no room for it, and the mesh is near.
   static constexpr bool keeps_start = !device::is_host<ExecutionSpace>;
-  static constexpr int rows = static_cast<int>(TileField::count) + (keeps_start ? 6 : 3);
+  static constexpr int rows = keeps_start ? device_rows : cell_rows + flux_rows;
 
   std::int64_t first;  ///< its first cell
   int cells;           ///< that it updates
@@ -97,8 +99,10 @@ class Tile {
   int slots;  ///< with the halo
   bool last;
 
+  /// With `cell_rows` alone a tile holds no fluxes.
   template <class Member>
-  KOKKOS_FUNCTION Tile(const Member& member, const TileShape& shape, std::int64_t mesh_cells)
+  KOKKOS_FUNCTION Tile(const Member& member, const TileShape& shape, std::int64_t mesh_cells,
+                       int used_rows = rows)
       : first(static_cast<std::int64_t>(member.league_rank()) * shape.cells),
         cells(static_cast<int>(device::minimum<std::int64_t>(shape.cells, mesh_cells - first))),
         halo(shape.halo),
@@ -106,12 +110,12 @@ class Tile {
         last(first + cells == mesh_cells),
         _row(shape.row),
         _data(static_cast<double*>(
-            member.team_scratch(0).get_shmem_aligned(scratch_bytes(shape), alignof(double)))) {}
+            member.team_scratch(0).get_shmem_aligned(scratch_bytes(shape, used_rows), alignof(double)))) {}
 
   KOKKOS_FUNCTION std::int64_t cell(int slot) const { return first - halo + slot; }
 
-  static KOKKOS_FUNCTION std::size_t scratch_bytes(const TileShape& shape) {
-    return sizeof(double) * static_cast<std::size_t>(rows) * static_cast<std::size_t>(shape.row);
+  static KOKKOS_FUNCTION std::size_t scratch_bytes(const TileShape& shape, int used_rows = rows) {
+    return sizeof(double) * static_cast<std::size_t>(used_rows) * static_cast<std::size_t>(shape.row);
   }
 
   template <class P>
@@ -133,19 +137,19 @@ class Tile {
   }
   template <class P>
   KOKKOS_FUNCTION Triple<P> flux(int face) const {
-    return load_triple<P>(static_cast<int>(TileField::count), face);
+    return load_triple<P>(cell_rows, face);
   }
   template <class P>
   KOKKOS_FUNCTION void store_flux(int face, const Triple<P>& value) const {
-    store_triple(static_cast<int>(TileField::count), face, value);
+    store_triple(cell_rows, face, value);
   }
   template <class P>
   KOKKOS_FUNCTION Triple<P> start(int i) const {
-    return load_triple<P>(static_cast<int>(TileField::count) + 3, i);
+    return load_triple<P>(cell_rows + flux_rows, i);
   }
   template <class P>
   KOKKOS_FUNCTION void store_start(int i, const Triple<P>& value) const {
-    store_triple(static_cast<int>(TileField::count) + 3, i, value);
+    store_triple(cell_rows + flux_rows, i, value);
   }
 
  private:

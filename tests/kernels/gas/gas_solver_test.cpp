@@ -139,15 +139,19 @@ TEST(GasSolver, SeedModeIsTheDissertationsScheme) {
 }
 
 TEST(GasSolver, TilesLeaveNoTrace) {
-  for (const Positivity positivity : {Positivity::off, Positivity::on})
+  for (const auto& [positivity, splitting] :
+       {std::pair{Positivity::off, Splitting::lf_global}, std::pair{Positivity::on, Splitting::lf_global},
+        std::pair{Positivity::off, Splitting::lf_stencil}})
     for (const std::int64_t cells : {31, 257, 1000}) {
       Parameters p;
       p.cells = cells;
       p.positivity = positivity;
-      p.splitting = Splitting::lf_global;
+      p.splitting = splitting;
+      p.driver = Driver::graph;  // whose tiles are as large as a block
       const GasState start = random_state(p, 11, positivity == Positivity::on ? extreme : rough);
       GasState first;
-      for (const int block : {32, 64, 96, 128}) {
+      // The largest of a device have more threads than slots.
+      for (const int block : {32, 64, 96, 128, 384, 512}) {
         p.block = block;
         const auto solver = started(backend, p, start);
         EXPECT_EQ(solver->advance(1.0, 20, 0, {}, {}), Stop::pause);
