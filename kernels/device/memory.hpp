@@ -9,8 +9,8 @@ template <class ExecutionSpace>
 inline constexpr bool is_host = Kokkos::SpaceAccessibility<Kokkos::DefaultHostExecutionSpace,
                                                            typename ExecutionSpace::memory_space>::accessible;
 
-/// Host memory that kernels of `ExecutionSpace` write without a copy; how a running device reports to the
-/// host.
+/// Host memory that kernels of `ExecutionSpace` write without a copy, on CUDA page-locked; how a running
+/// device reports to the host.
 #if defined(KOKKOS_ENABLE_CUDA)
 template <class ExecutionSpace>
 using ReportSpace =

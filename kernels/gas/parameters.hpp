@@ -64,6 +64,7 @@ struct Parameters {
   std::int64_t max_steps = 1'000'000;
   int block = 0;  ///< threads a team on a device, cells a tile elsewhere; 0: the backend's default
   Driver driver = Driver::automatic;
+  bool pinned = false;  ///< seed mode: what is copied lies in page-locked host memory, where a backend has it
 };
 
 }  // namespace drogue::gas

@@ -3,40 +3,55 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <memory_resource>
 #include <vector>
 
 #include "kernels/device/instance.hpp"
+#include "kernels/device/pinned_memory.hpp"
 #include "kernels/gas/solver.hpp"
 #include "kernels/gas/solver_on.hpp"
-#include "kernels/gas/stage.hpp"
+#include "kernels/gas/tile_update.hpp"
 
 namespace drogue::gas {
 
-/// The dissertation's flux kernel: a block stages its cells in shared memory and writes the fluxes of its
-/// faces.
+/// The dissertation's flux kernel (listing 4.3): a block stages its cells in shared memory and writes the
+/// fluxes of its faces.
 template <class ExecutionSpace>
 struct SeedFluxFunctor {
-  using Stage = StageFunctor<ExecutionSpace, Reconstruction::js, Precision::full, false>;
-  Stage stage;
-  FieldsView<ExecutionSpace> flux;  ///< (cells + 1, 3)
+  using Member = typename Kokkos::TeamPolicy<ExecutionSpace>::member_type;
+  using R = std::conditional_t<device::is_host<ExecutionSpace>, device::HostPack<double>, double>;
 
-  KOKKOS_FUNCTION void operator()(const typename Stage::Member& member) const {
-    const Tile<ExecutionSpace> tile(member, stage.shape, stage.ends.cells);
-    load_cells<typename Stage::R, false>(member, tile, stage.ends, stage.gamma, stage.buffer[0].data());
+  FieldsView<ExecutionSpace> state;  ///< (cells, 3)
+  FieldsView<ExecutionSpace> flux;   ///< (cells + 1, 3)
+  TileShape shape;
+  Ends ends;
+  double gamma;
+  Speeds<double> alpha;  ///< the fastest signals of the mesh
+
+  KOKKOS_FUNCTION void operator()(const Member& member) const {
+    using Lanes = device::Access<R>;
+    const Tile<ExecutionSpace> tile(member, shape, ends.cells, cell_rows);
+    load_cells<R, false>(member, tile, ends, gamma, state.data());
     member.team_barrier();
-    stage.compute_fluxes(member, tile, 0.0);  // dt is the limiter's alone
-    member.team_barrier();
-    for (int face = member.team_rank(); face <= tile.cells; face += member.team_size()) {
-      if (face == tile.cells && !tile.last) continue;
-      const Triple<double> f = tile.template flux<double>(face);
-      flux(tile.first + face, 0) = f.rho;
-      flux(tile.first + face, 1) = f.m;
-      flux(tile.first + face, 2) = f.energy;
+    const Speeds<R> speeds{R(alpha.slow), R(alpha.entropy), R(alpha.fast)};
+    // A face between two tiles is the right one's.
+    const int faces = tile.last ? tile.cells + 1 : tile.cells;
+    for (int face = member.team_rank() * Lanes::lanes; face < faces;
+         face += member.team_size() * Lanes::lanes) {
+      const Triple<R> f = face_flux<Reconstruction::js, R>(tile, face, load_stencil<R>(tile, face),
+                                                           Mean::conserved, gamma, speeds);
+      for (int lane = 0; lane < Lanes::lanes && face + lane < faces; ++lane) {
+        const std::int64_t at = tile.first + face + lane;
+        flux(at, 0) = Lanes::lane(f.rho, lane);
+        flux(at, 1) = Lanes::lane(f.m, lane);
+        flux(at, 2) = Lanes::lane(f.energy, lane);
+      }
     }
   }
 };
 
-/// Section 4.4.2 of the dissertation: state up, fluxes down, update on the host, at every stage.
+/// Section 4.4.2 of the dissertation: state up, fluxes down, update on the host, at every stage; one copy a
+/// field, as each is an array of its own there, and alpha as an argument of the kernel.
 template <class ExecutionSpace>
 class SeedSolver final : public Solver {
  public:
@@ -44,34 +59,20 @@ class SeedSolver final : public Solver {
       : _instance(useful_threads(p.cells)),
         _p(p),
         _cells(static_cast<std::size_t>(p.cells)),
-        _dx((p.x_max - p.x_min) / static_cast<double>(p.cells)) {
-    for (auto& state : _state)
-      for (auto& values : state) values.resize(_cells);
-    for (auto& values : _flux) values.resize(_cells + 1);
-    for (int k = 0; k < 3; ++k)
-      _stage.buffer[k] = FieldsView<ExecutionSpace>("drogue::gas::seed_state", k == 0 ? _cells : 0);
-    _stage.control = decltype(_stage.control)("drogue::gas::seed_control");
-    _stage.weights = stage_table(TimeScheme::ssprk3).stage[0];
-    _stage.shape = tile_shape<ExecutionSpace>(p.block, ghost_cells, device_team(p.block, p.cells));
-    _stage.ends = {p.cells, p.left, p.right};
-    _stage.gamma = p.gamma;
-    _stage.inverse_dx = 1.0 / _dx;
-    _stage.stage = 0;
-    _stage.splitting = Splitting::lf_global;
-    _stage.mean = Mean::conserved;
-    _stage.reduce_speed = false;
-    _device_flux = FieldsView<ExecutionSpace>("drogue::gas::seed_flux", _cells + 1);
-  }
+        _dx((p.x_max - p.x_min) / static_cast<double>(p.cells)),
+        _state(host_fields(_cells)),
+        _flux(host_fields(_cells + 1)),
+        _device_state("drogue::gas::seed_state", _cells),
+        _device_flux("drogue::gas::seed_flux", _cells + 1) {}
 
   void upload(std::int64_t first, const ConstConserved& f) override {
     const std::span<const double> part[3] = {f.rho, f.momentum, f.energy};
-    for (std::size_t k = 0; k < 3; ++k)
-      std::copy(part[k].begin(), part[k].end(), _state[0][k].begin() + first);
+    for (std::size_t k = 0; k < 3; ++k) std::copy(part[k].begin(), part[k].end(), _state[k].begin() + first);
   }
   void download(std::int64_t first, const Conserved& f) override {
     const std::span<double> part[3] = {f.rho, f.momentum, f.energy};
     for (std::size_t k = 0; k < 3; ++k)
-      std::copy_n(_state[0][k].begin() + first, part[k].size(), part[k].begin());
+      std::copy_n(_state[k].begin() + first, part[k].size(), part[k].begin());
   }
   void start() override { _resume = {}; }
   void restore(const Resume& state) override { _resume = state; }
@@ -97,7 +98,7 @@ class SeedSolver final : public Solver {
     double* sums[3] = {&row.mass, &row.momentum, &row.energy};
     for (std::size_t k = 0; k < 3; ++k) {
       double compensation = 0.0;
-      for (const double value : _state[0][k]) add_compensated(*sums[k], compensation, value * _dx);
+      for (const double value : _state[k]) add_compensated(*sums[k], compensation, value * _dx);
       row.boundary[k] = _resume.boundary[1][k] - _resume.boundary[0][k];
     }
     row.max_speed = fastest()[3];
@@ -109,28 +110,35 @@ class SeedSolver final : public Solver {
   std::int64_t touched_cells() override { return 0; }
   void download_touched(std::int64_t, std::span<std::uint8_t>) override {}
   void upload_touched(std::int64_t, std::span<const std::uint8_t>) override {}
-  void begin_snapshot() override { _snapshot = _state[0]; }
+  void begin_snapshot() override { _snapshot = _state; }
   ConstConserved finish_snapshot() override { return {_snapshot[0], _snapshot[1], _snapshot[2]}; }
   [[nodiscard]] Phases phases() const override { return _phases; }
   [[nodiscard]] const char* driver() const override { return "seed"; }
 
  private:
-  using State = std::array<std::vector<double>, 3>;
+  using State = std::array<std::pmr::vector<double>, 3>;
+
+  /// Three fields of `n` zeros, where the copies to and from the device find them.
+  State host_fields(std::size_t n) {
+    std::pmr::memory_resource* memory = std::pmr::new_delete_resource();
+    if (_p.pinned) memory = &_pinned;
+    const auto zeros = [&] { return std::pmr::vector<double>(n, memory); };
+    return {zeros(), zeros(), zeros()};
+  }
 
   /// max |u-c|, |u|, |u+c|, |u|+c of the host's state.
   std::array<double, 4> fastest() const {
     std::array<double, 4> most{};
     for (std::size_t i = 0; i < _cells; ++i) {
-      const auto s = cell_state<double>(_p.gamma, _state[0][0][i], _state[0][1][i], _state[0][2][i]);
+      const auto s = cell_state<double>(_p.gamma, _state[0][i], _state[1][i], _state[2][i]);
       most = {std::max(most[0], std::abs(s.u - s.c)), std::max(most[1], std::abs(s.u)),
               std::max(most[2], std::abs(s.u + s.c)), std::max(most[3], std::abs(s.u) + s.c)};
     }
     return most;
   }
 
-  /// Replaces `_flux` by the fluxes of `_state[0]`.
-  void fluxes() {
-    const auto most = fastest();
+  /// Replaces `_flux` by the fluxes of `_state`, whose fastest signals are `most`.
+  void fluxes(const std::array<double, 4>& most) {
     const auto timed = [](double& total, auto&& work) {
       const auto begin = std::chrono::steady_clock::now();
       work();
@@ -138,25 +146,11 @@ class SeedSolver final : public Solver {
     };
     const ExecutionSpace& space = _instance.space();
     timed(_phases.h2d, [&] {
-      auto control = Kokkos::create_mirror_view(_stage.control);
       for (int k = 0; k < 3; ++k)
-        control().outcome.stage_speed[0][k] =
-            Kokkos::bit_cast<std::uint64_t>(most[static_cast<std::size_t>(k)]);
-      Kokkos::deep_copy(space, _stage.control, control);
-      for (int k = 0; k < 3; ++k)
-        copy_range(space, field(_stage.buffer[0], k), 0,
-                   std::span<const double>(_state[0][static_cast<std::size_t>(k)]), true);
+        copy_range(space, field(_device_state, k), 0,
+                   std::span<const double>(_state[static_cast<std::size_t>(k)]), true);
     });
-    timed(_phases.compute, [&] {
-      const auto tiles = static_cast<int>((_p.cells + _stage.shape.cells - 1) / _stage.shape.cells);
-      Kokkos::TeamPolicy<ExecutionSpace> policy(
-          space, tiles, device::is_host<ExecutionSpace> ? 1 : device_team(_p.block, _p.cells));
-      policy.set_scratch_size(
-          0, Kokkos::PerTeam(static_cast<int>(Tile<ExecutionSpace>::scratch_bytes(_stage.shape) + 64)));
-      Kokkos::parallel_for("drogue::gas::seed_flux", policy,
-                           SeedFluxFunctor<ExecutionSpace>{_stage, _device_flux});
-      space.fence("drogue::gas::seed_flux");
-    });
+    timed(_phases.compute, [&] { launch({most[0], most[1], most[2]}); });
     timed(_phases.d2h, [&] {
       for (int k = 0; k < 3; ++k)
         copy_range(space, field(_device_flux, k), 0, std::span<double>(_flux[static_cast<std::size_t>(k)]),
@@ -164,33 +158,55 @@ class SeedSolver final : public Solver {
     });
   }
 
+  /// Computes the fluxes on the device and waits. One kernel for all sizes of a block, so that they differ in
+  /// nothing else.
+  void launch(const Speeds<double>& alpha) {
+    using Tiles = Tile<ExecutionSpace>;
+    using Policy = Kokkos::TeamPolicy<ExecutionSpace, Kokkos::LaunchBounds<largest_team, largest_teams>>;
+    const ExecutionSpace& space = _instance.space();
+    const int team = device_team(_p.block, _p.cells);
+    const TileShape shape =
+        tile_shape<ExecutionSpace>(_p.block, ghost_cells, fitting_slots(cell_rows, team, team));
+    Policy policy(space, static_cast<int>((_p.cells + shape.cells - 1) / shape.cells),
+                  device::is_host<ExecutionSpace> ? 1 : team);
+    policy.set_scratch_size(
+        0, Kokkos::PerTeam(static_cast<int>(Tiles::scratch_bytes(shape, cell_rows)) + scratch_margin));
+    Kokkos::parallel_for(
+        "drogue::gas::seed_flux", policy,
+        SeedFluxFunctor<ExecutionSpace>{
+            _device_state, _device_flux, shape, {_p.cells, _p.left, _p.right}, _p.gamma, alpha});
+    space.fence("drogue::gas::seed_flux");
+  }
+
   /// One step; false and `_failed` if it leaves an inadmissible state, with the state before it kept.
   bool step(double target) {
     const double ramp = _resume.step < _p.ramp_steps ? 0.1 + 0.9 * static_cast<double>(_resume.step) /
                                                                  static_cast<double>(_p.ramp_steps)
                                                      : 1.0;
-    double dt = _p.fixed_dt > 0.0 ? _p.fixed_dt : ramp * _p.cfl * _dx / fastest()[3];
+    std::array<double, 4> most = fastest();
+    double dt = _p.fixed_dt > 0.0 ? _p.fixed_dt : ramp * _p.cfl * _dx / most[3];
     const bool reaches = dt >= (target - _resume.time) * (1.0 - 1e-12);
     if (reaches) dt = target - _resume.time;
     if (!(_resume.time + dt > _resume.time)) {
       _failed = {Quantity::time_step, -1, _resume.step + 1, _resume.time, dt};
       return false;
     }
-    _state[1] = _state[0];
+    _start = _state;
     double boundary[2][3] = {};
     const StageTable table = stage_table(TimeScheme::ssprk3);
     for (int stage = 0; stage < table.stages; ++stage) {
       const StageWeights& w = table.stage[stage];
-      fluxes();
+      if (stage > 0) most = fastest();
+      fluxes(most);
       for (std::size_t k = 0; k < 3; ++k) {
         for (std::size_t i = 0; i < _cells; ++i)
-          _state[0][k][i] = w.a_n * _state[1][k][i] +
-                            w.a_in * (_state[0][k][i] + dt / _dx * (_flux[k][i] - _flux[k][i + 1]));
+          _state[k][i] =
+              w.a_n * _start[k][i] + w.a_in * (_state[k][i] + dt / _dx * (_flux[k][i] - _flux[k][i + 1]));
         boundary[0][k] += w.boundary * _flux[k].front();
         boundary[1][k] += w.boundary * _flux[k].back();
       }
       if (!admissible(dt)) {
-        _state[0] = _state[1];
+        _state = _start;
         return false;
       }
     }
@@ -207,8 +223,8 @@ class SeedSolver final : public Solver {
 
   bool admissible(double dt) {
     for (std::size_t i = 0; i < _cells; ++i) {
-      const double rho = _state[0][0][i], m = _state[0][1][i];
-      const double p = pressure(_p.gamma, m, _state[0][2][i], m / rho);
+      const double rho = _state[0][i], m = _state[1][i];
+      const double p = pressure(_p.gamma, m, _state[2][i], m / rho);
       if (rho > 0.0 && p > 0.0 && std::isfinite(p)) continue;
       const Quantity what = rho <= 0.0 ? Quantity::density
                             : p <= 0.0 ? Quantity::pressure
@@ -220,12 +236,13 @@ class SeedSolver final : public Solver {
   }
 
   device::Instance<ExecutionSpace> _instance;
+  device::PinnedMemory<ExecutionSpace> _pinned;
   Parameters _p;
   std::size_t _cells;
   double _dx;
-  State _state[2], _flux, _snapshot;
-  StageFunctor<ExecutionSpace, Reconstruction::js, Precision::full, false> _stage;
-  FieldsView<ExecutionSpace> _device_flux;
+  State _state, _flux;
+  State _start, _snapshot;  ///< the state before the step, and one put aside
+  FieldsView<ExecutionSpace> _device_state, _device_flux;
   Resume _resume;
   Failed _failed;
   Phases _phases;

@@ -283,6 +283,15 @@ void declare_gas_scene(Table& root, GasScene& scene) {
                   .default_text("`\"auto\"`");
             },
             "The launch of a step");
+        table.table(
+            "seed",
+            [&](Table& seed) {
+              seed.value("pinned", zero_is_unset(scene::boolean_codec(parameters.pinned), parameters.pinned),
+                         "State and fluxes lie in page-locked memory of the host, from which a GPU copies "
+                         "faster")
+                  .default_text("`false`");
+            },
+            "The copies of --seed-mode");
       },
       "Block sizes and launches of kernels; they change speed, not results");
 }

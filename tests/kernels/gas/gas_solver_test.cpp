@@ -138,6 +138,26 @@ TEST(GasSolver, SeedModeIsTheDissertationsScheme) {
   EXPECT_GT(phases.d2h, 0.0);
 }
 
+TEST(GasSolver, SeedModeIsTheSameInAnyMemoryAndBlock) {
+  Parameters p;
+  p.cells = 1000;
+  const GasState start = random_state(p, 6, rough);
+  GasState first;
+  for (const bool pinned : {false, true})
+    for (const int block : {0, 32, 512}) {
+      p.pinned = pinned;
+      p.block = block;
+      const auto solver = create_seed_solver(backend, p);
+      solver->upload(0, fields(start));
+      solver->start();
+      EXPECT_EQ(solver->advance(1.0, 20, 0, {}, {}), Stop::pause);
+      const GasState state = download(*solver, p);
+      if (first[0].empty()) first = state;
+      EXPECT_TRUE(exact_arithmetic ? same_bits(state, first) : distance(state, first) < 1e-12)
+          << "block " << block << (pinned ? ", pinned" : ", pageable");
+    }
+}
+
 TEST(GasSolver, TilesLeaveNoTrace) {
   for (const auto& [positivity, splitting] :
        {std::pair{Positivity::off, Splitting::lf_global}, std::pair{Positivity::on, Splitting::lf_global},
