@@ -25,6 +25,15 @@ Failure unwanted_word(const CLI::App& app, const std::string& word) {
   return {ExitCode::usage, "unknown option '" + name + "'; " + scene::suggestion(name, option_names(app))};
 }
 
+/// An unknown option leaves its value behind, too: the option is the fault to name.
+void refuse_extras(const CLI::App& app) {
+  const std::vector<std::string> extras = app.remaining();
+  if (extras.empty()) return;
+  const auto option = std::find_if(extras.begin(), extras.end(),
+                                   [](const std::string& word) { return word.starts_with("-"); });
+  throw unwanted_word(app, option == extras.end() ? extras.front() : *option);
+}
+
 }  // namespace
 
 Arguments split_arguments(int argc, const char* const* argv) {
@@ -38,6 +47,7 @@ Arguments split_arguments(int argc, const char* const* argv) {
 
 std::string parse_command_line(CLI::App& app, const std::vector<std::string>& words) {
   app.allow_extras();
+  for (CLI::App* subcommand : app.get_subcommands({})) subcommand->allow_extras();
   try {
     // CLI11 takes its words from the back.
     app.parse(std::vector<std::string>(words.rbegin(), words.rend()));
@@ -46,13 +56,8 @@ std::string parse_command_line(CLI::App& app, const std::vector<std::string>& wo
   } catch (const CLI::ParseError& error) {
     throw Failure(ExitCode::usage, error.what());
   }
-  const std::vector<std::string> extras = app.remaining();
-  if (!extras.empty()) {
-    // An unknown option leaves its value behind, too: the option is the fault to name.
-    const auto option = std::find_if(extras.begin(), extras.end(),
-                                     [](const std::string& word) { return word.starts_with("-"); });
-    throw unwanted_word(app, option == extras.end() ? extras.front() : *option);
-  }
+  for (const CLI::App* subcommand : app.get_subcommands()) refuse_extras(*subcommand);
+  refuse_extras(app);
   return {};
 }
 
