@@ -1,46 +1,14 @@
 #include <algorithm>
-#include <cmath>
 #include <memory>
 
 #include "kernels/gas/solver.hpp"
 #include "kernels/reference/gas/dense_step.hpp"
-#include "kernels/reference/gas/exact_riemann.hpp"
 #include "perf/measurement.hpp"
+#include "perf/sod.hpp"
 
 namespace drogue::perf {
 
 namespace {
-
-/// Sod's problem on [-1, 1] in WENO5-JS, SSP-RK3, alpha over the stencil, without a limiter: what the
-/// yardstick does.
-gas::Parameters parameters_of(std::int64_t cells) {
-  gas::Parameters p;
-  p.cells = cells;
-  p.weno = gas::Weno::js;
-  p.positivity = gas::Positivity::off;
-  p.ramp_steps = 0;
-  return p;
-}
-
-reference::Primitive initial(double x) {
-  return x < 0.0 ? reference::Primitive{1.0, 0.0, 1.0} : reference::Primitive{0.125, 0.0, 0.1};
-}
-
-double centre(const gas::Parameters& p, std::size_t i) {
-  return p.x_min + (static_cast<double>(i) + 0.5) * (p.x_max - p.x_min) / static_cast<double>(p.cells);
-}
-
-/// L1 error of the density against the exact solution at `time`, per unit length.
-double l1_error(const gas::Parameters& p, const std::vector<double>& rho, double time) {
-  const reference::ExactRiemann exact({1.0, 0.0, 1.0}, {0.125, 0.0, 0.1}, p.gamma);
-  double sum = 0.0;
-  for (std::size_t i = 0; i < rho.size(); ++i)
-    sum += std::abs(rho[i] - exact.sample(centre(p, i) / time).rho);
-  return sum / static_cast<double>(rho.size());
-}
-
-/// First-order convergence at the discontinuities, with room: a wrong step misses it by decades.
-double bar_of(const gas::Parameters& p) { return 1.0 / static_cast<double>(p.cells); }
 
 Case dense_case(std::int64_t cells, long steps) {
   struct Run {
@@ -49,31 +17,31 @@ Case dense_case(std::int64_t cells, long steps) {
     double time = 0.0;
   };
   const auto run = std::make_shared<Run>();
-  const gas::Parameters p = parameters_of(cells);
+  const gas::Parameters p = sod::parameters(cells);
   const double dx = (p.x_max - p.x_min) / static_cast<double>(cells);
   return {"gas-step/dense-loop/" + std::to_string(cells),
           "step",
           "one core; no vectorisation is asked for",
           [=] {
-            return Sample{[=] {
-                            run->time = 0.0;
-                            run->state.clear();
-                            for (std::size_t i = 0; i < static_cast<std::size_t>(cells); ++i)
-                              run->state.push_back(reference::to_conserved(initial(centre(p, i)), p.gamma));
-                          },
-                          [=] {
-                            for (long step = 0; step < steps; ++step)
-                              run->time +=
-                                  reference::dense_step(run->state, run->workspace, p.gamma, dx, p.cfl);
-                            return steps;
-                          }};
+            return Sample{
+                [=] {
+                  run->time = 0.0;
+                  run->state.clear();
+                  for (std::size_t i = 0; i < static_cast<std::size_t>(cells); ++i)
+                    run->state.push_back(reference::to_conserved(sod::initial(sod::centre(p, i)), p.gamma));
+                },
+                [=] {
+                  for (long step = 0; step < steps; ++step)
+                    run->time += reference::dense_step(run->state, run->workspace, p.gamma, dx, p.cfl);
+                  return steps;
+                }};
           },
           [=] {
             std::vector<double> rho;
             for (const auto& u : run->state) rho.push_back(u[0]);
-            return l1_error(p, rho, run->time);
+            return sod::l1_error(p, rho, run->time);
           },
-          bar_of(p)};
+          sod::bar(p)};
 }
 
 /// A change of the usual parameters, and what it adds to the name of the case.
@@ -96,7 +64,7 @@ const std::vector<Variant> small_variants = {
     {"/split", [](gas::Parameters& p) { p.precision = gas::Precision::split; }}};
 
 Case solver_case(device::Backend backend, std::int64_t cells, long steps, const Variant& variant) {
-  gas::Parameters p = parameters_of(cells);
+  gas::Parameters p = sod::parameters(cells);
   variant.apply(p);
   const auto solver = std::make_shared<std::unique_ptr<gas::Solver>>();
   const std::string name(device::name(backend));
@@ -106,14 +74,9 @@ Case solver_case(device::Backend backend, std::int64_t cells, long steps, const 
                                            : "FP64 issue of the cores",
           [=] {
             *solver = gas::create_solver(backend, p);
-            std::vector<double> rho, momentum(static_cast<std::size_t>(cells), 0.0), energy;
-            for (std::size_t i = 0; i < static_cast<std::size_t>(cells); ++i) {
-              const auto u = reference::to_conserved(initial(centre(p, i)), p.gamma);
-              rho.push_back(u[0]);
-              energy.push_back(u[2]);
-            }
+            const sod::Fields start = sod::start(p);
             return Sample{[=] {
-                            (*solver)->upload(0, {rho, momentum, energy});
+                            (*solver)->upload(0, {start[0], start[1], start[2]});
                             (*solver)->start();
                           },
                           [=] {
@@ -121,13 +84,8 @@ Case solver_case(device::Backend backend, std::int64_t cells, long steps, const 
                             return steps;
                           }};
           },
-          [=] {
-            std::vector<double> rho(static_cast<std::size_t>(cells)), momentum(rho.size()),
-                energy(rho.size());
-            (*solver)->download(0, {rho, momentum, energy});
-            return l1_error(p, rho, (*solver)->resume_state().time);
-          },
-          bar_of(p)};
+          [=] { return sod::l1_error(p, **solver); },
+          sod::bar(p)};
 }
 
 }  // namespace

@@ -8,7 +8,7 @@ std::vector<Record> measure(const std::vector<Case>& cases, int warm_up, int rou
   std::vector<Record> records;
   std::vector<Sample> samples;
   for (const Case& c : cases) {
-    records.push_back({c.name, c.unit_of_work, c.bound, {}, 0.0, c.bar});
+    records.push_back({c.name, c.unit_of_work, c.bound, {}, 0.0, c.bar, {}});
     samples.push_back(c.prepare());
   }
   for (int round = -warm_up; round < rounds; ++round)
@@ -16,8 +16,16 @@ std::vector<Record> measure(const std::vector<Case>& cases, int warm_up, int rou
       samples[i].reset();
       const auto begin = std::chrono::steady_clock::now();
       const long units = samples[i].work();
-      const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-      if (round >= 0) records[i].samples.push_back(seconds / static_cast<double>(units));
+      double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+      if (round < 0) continue;
+      if (samples[i].parts) {
+        seconds = 0.0;
+        for (const auto& [name, part] : samples[i].parts()) {
+          records[i].parts[name].push_back(part / static_cast<double>(units));
+          seconds += part;
+        }
+      }
+      records[i].samples.push_back(seconds / static_cast<double>(units));
     }
   for (std::size_t i = 0; i < cases.size(); ++i) records[i].error = cases[i].error();
   return records;

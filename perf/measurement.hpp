@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,9 @@ namespace drogue::perf {
 struct Sample {
   std::function<void()> reset;  ///< brings back the initial state; not timed
   std::function<long()> work;   ///< returns the units of work done
+  /// Seconds of the named parts of the last work. Where there are such, their sum is its time, and not the
+  /// wall's.
+  std::function<std::map<std::string, double>()> parts = {};
 };
 
 /// One thing that can be timed.
@@ -31,7 +35,14 @@ struct Record {
   std::vector<double> samples;  ///< seconds per unit of work
   double error = 0.0;
   double bar = 0.0;
+  std::map<std::string, std::vector<double>> parts;  ///< of `samples`, where a case names any
+
+  [[nodiscard]] bool passed() const { return error <= bar; }
 };
+
+/// Rounds that are not kept, and those that are.
+inline constexpr int warm_up_rounds = 3;
+constexpr int kept_rounds(bool quick) { return quick ? 7 : 25; }
 
 /// Times `cases` in turns, one sample each a round, so that a disturbance meets all of them; the first rounds
 /// are not kept.

@@ -1,0 +1,34 @@
+#pragma once
+
+/// Numbers that the dissertation prints, as it prints them, to stand beside ours.
+namespace drogue::perf::dissertation {
+
+/// Table 4.2: what limits the blocks of the flux kernel on a multiprocessor of compute capability 2.0.
+struct OccupancyRow {
+  int block, shared_bytes, by_registers, by_shared_memory, by_limit, blocks, threads, device_threads;
+  double percent;
+};
+inline constexpr OccupancyRow table_4_2[] = {
+    {32, 3344, 16, 14, 8, 8, 256, 3584, 16.7}, {64, 6160, 8, 7, 8, 7, 448, 6272, 29.2},
+    {128, 11792, 4, 4, 8, 4, 512, 7168, 33.3}, {192, 17424, 2, 2, 8, 2, 384, 5376, 25.0},
+    {256, 23056, 2, 2, 8, 2, 512, 7168, 33.3}, {384, 34320, 1, 1, 8, 1, 384, 5376, 25.0},
+    {512, 45584, 1, 1, 8, 1, 512, 7168, 33.3}, {544, 48400, 0, 1, 8, 0, 0, 0, 0.0}};
+inline constexpr int flux_registers = 63;  ///< a thread
+
+/// Shared memory of a block: its cells and two halos of three, 11 doubles each.
+constexpr int flux_shared_bytes(int block) { return (block + 2 * 3) * 11 * 8; }
+
+/// Table 5.5: microseconds a step on a Quadro 6000, blocks of 128 threads.
+struct TransferRow {
+  int cells;
+  double h2d, compute, d2h, total;
+};
+inline constexpr TransferRow table_5_5[] = {{1024, 336, 118, 272, 726},  {2048, 349, 146, 273, 768},
+                                            {3072, 365, 152, 283, 800},  {4096, 340, 183, 365, 888},
+                                            {5120, 411, 215, 321, 947},  {6144, 397, 249, 308, 954},
+                                            {7168, 525, 271, 396, 1192}, {8192, 509, 363, 365, 1237}};
+
+/// Figure 4.4: block sizes whose time is drawn against the meshes of table 5.5.
+inline constexpr int figure_4_4_blocks[] = {32, 64, 128, 192, 256, 384, 512};
+
+}  // namespace drogue::perf::dissertation

@@ -1,0 +1,63 @@
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <cstdio>
+#include <memory>
+#include <regex>
+
+#include "common/run/statistics.hpp"
+#include "perf/command.hpp"
+#include "perf/record.hpp"
+
+namespace drogue::perf {
+namespace {
+
+struct RunOptions {
+  std::string filter, out;
+  bool quick = false;
+};
+
+ExitCode run_cases(const RunOptions& options) {
+  std::vector<Case> cases;
+  for (const Case& c : gas_cases(options.quick))
+    if (std::regex_search(c.name, std::regex(options.filter))) cases.push_back(c);
+  if (cases.empty())
+    throw Failure(ExitCode::usage, "no case matches '" + options.filter + "'; see drogue-perf list");
+  const nlohmann::json here = provenance(device::device_facts());
+  std::vector<nlohmann::json> lines;
+  bool passed = true;
+  for (const Record& record : measure(cases, warm_up_rounds, kept_rounds(options.quick))) {
+    lines.push_back(to_json(record, here));
+    passed = passed && record.passed();
+    const run::MedianInterval time = run::median_interval(record.samples);
+    std::printf("%-32s %12.3f us a %s  [%.3f .. %.3f]  L1 error %.3g  %s\n", record.name.c_str(),
+                1e6 * time.median, record.unit_of_work.c_str(), 1e6 * time.low, 1e6 * time.high, record.error,
+                verdict(record));
+  }
+  write_records(options.out, lines);
+  return passed ? ExitCode::ok : ExitCode::verification_failed;
+}
+
+}  // namespace
+
+Command list_command(CLI::App& program) {
+  const CLI::App* app = program.add_subcommand("list", "Print the cases that this build and machine can run");
+  return {app, [](const std::vector<std::string>&) {
+            for (const Case& c : gas_cases(false)) std::printf("%s\n", c.name.c_str());
+            return ExitCode::ok;
+          }};
+}
+
+Command run_command(CLI::App& program) {
+  const auto options = std::make_shared<RunOptions>();
+  CLI::App* app = program.add_subcommand("run", "Measure, in interleaved rounds after a warm-up");
+  app->add_option("--filter", options->filter, "Regular expression for the names of the cases");
+  app->add_option("--out", options->out, "File for the records, one JSON line a case");
+  app->add_flag("--quick", options->quick, "Small cases and few samples");
+  return {app, [options](const std::vector<std::string>& kokkos) {
+            require(device::fastest_backend());
+            const device::Runtime runtime(kokkos);
+            return run_cases(*options);
+          }};
+}
+
+}  // namespace drogue::perf

@@ -1,0 +1,119 @@
+"""drogue-perf: its subcommands, the records they write, and what they refuse."""
+
+import os
+import re
+import statistics
+import sys
+import unittest
+
+sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
+
+import perf_program
+
+FIELDS = {"schema", "case", "unit", "bound", "samples", "median", "interval", "error", "check", "provenance"}
+PROVENANCE = {"version", "git", "compiler", "flags", "kokkos", "cpu", "gpu", "driver", "threads", "date"}
+
+
+class Record(perf_program.PerfTest):
+    def assert_timed(self, record, samples):
+        self.assertEqual("drogue.perf/1", record["schema"])
+        self.assertEqual("s per step", record["unit"])
+        self.assertEqual(PROVENANCE, set(record["provenance"]))
+        self.assertEqual(samples, len(record["samples"]))
+        self.assertEqual(statistics.median(record["samples"]), record["median"])
+        low, high = record["interval"]
+        self.assertTrue(0.0 < low <= record["median"] <= high)
+        self.assertEqual("passed", record["check"])
+        self.assertGreater(record["error"], 0.0)
+
+    def test_of_a_run(self):
+        text = self.expect(0, "run", "--quick", "--filter", "dense-loop/1024$", "--out", "run.jsonl").stdout
+        self.assertRegex(text, r"^gas-step/dense-loop/1024 +\d+\.\d+ us a step  \[.*\]  L1 error \S+  passed\n$")
+        record, = self.records("run.jsonl")
+        self.assertEqual(FIELDS, set(record))
+        self.assert_timed(record, 7)
+
+    def test_of_transfers(self):
+        text = self.expect(0, "table", "transfers", "--quick", "--backend", "serial", "--out", "rows.jsonl").stdout
+        self.assertIn("no pinned memory", text)
+        records = self.records("rows.jsonl")
+        self.assertEqual(["gas-transfers/serial/pageable/1024", "gas-transfers/serial/pageable/8192"],
+                         [record["case"] for record in records])
+        printed = {1024: (336, 118, 272, 726), 8192: (509, 363, 365, 1237)}
+        for record in records:
+            self.assert_timed(record, 7)
+            self.assertEqual(FIELDS | {"facts"}, set(record))
+            facts = record["facts"]
+            self.assertEqual(("serial", "pageable"), (facts["backend"], facts["memory"]))
+            thesis = dict(zip(("h2d_us", "compute_us", "d2h_us", "total_us"), printed[facts["cells"]]))
+            self.assertEqual(thesis, facts["thesis"])
+            parts = [facts["h2d_s"], facts["compute_s"], facts["d2h_s"]]
+            self.assertTrue(all(0.0 < part < max(record["samples"]) for part in parts), facts)
+            # A sample is the sum of its parts, but a median of sums is no sum of medians.
+            self.assertTrue(min(record["samples"]) / 2 < sum(parts) < 2 * max(record["samples"]), facts)
+
+
+class Occupancy(perf_program.PerfTest):
+    def setUp(self):
+        super().setUp()
+        self.text = self.expect(0, "table", "occupancy", "--out", "rows.jsonl").stdout
+        self.rows = {record["case"]: record for record in self.records("rows.jsonl")}
+
+    def test_text_has_every_number_twice(self):
+        lines = re.findall(r"^ *(\d+)((?: +[\d.]+ *\( *[\d.]+\))+)$", self.text, re.MULTILINE)
+        self.assertEqual(["32", "64", "128", "192", "256", "384", "512", "544"], [block for block, _ in lines])
+        for block, numbers in lines:
+            pairs = re.findall(r"([\d.]+) *\( *([\d.]+)\)", numbers)
+            self.assertEqual(8, len(pairs), block)
+            for computed, printed in pairs:
+                self.assertEqual(float(printed), float(computed), block)
+
+    def test_records_have_no_samples(self):
+        self.assertEqual(17, len(self.rows))
+        for record in self.rows.values():
+            self.assertEqual(FIELDS | {"facts"}, set(record))
+            self.assertEqual(([], None, None), (record["samples"], record["median"], record["interval"]))
+            self.assertEqual(("passed", 0.0), (record["check"], record["error"]))
+
+    def test_the_row_that_does_not_fit(self):
+        facts = self.rows["occupancy/sm_20/544"]["facts"]
+        self.assertEqual((0, 1, 0, 0.0), (facts["blocks_by_registers"], facts["blocks_by_shared_memory"],
+                                          facts["blocks"], facts["occupancy"]))
+
+    def test_launch_bounds_are_met(self):
+        for name, blocks, registers in (("128", 3, 168), ("128/large-mesh", 4, 128), ("512", 1, 128)):
+            facts = self.rows["occupancy/sm_90/" + name]["facts"]
+            self.assertEqual((blocks, registers), (facts["blocks"], facts["registers"]), name)
+            self.assertLessEqual(facts["least_blocks"], facts["blocks"])
+            self.assertLessEqual(facts["shared_bytes"], 48 * 1024)
+
+
+class Refusals(perf_program.PerfTest):
+    def test_usage(self):
+        for words, hint in ((["table"], "TABLE"), (["table", "occupancey"], 'did you mean "occupancy"?'),
+                            (["table", "occupancy", "--app", "options"], "the only valid name is gas"),
+                            (["table", "transfers", "--backend", "gpu"], "gpu"),
+                            (["table", "transfers", "--bakend", "serial"], 'did you mean "--backend"?'),
+                            (["run", "all"], "'all'"), (["run", "--filter", "no such case"], "no case matches"),
+                            (["run", "--quikc"], 'did you mean "--quick"?'), ([], "list, run, table"),
+                            (["lits"], "'lits'")):
+            with self.subTest(words):
+                self.assertIn(hint, self.expect(2, *words).stderr)
+        self.assertEqual([], list(self.folder.iterdir()))
+
+    def test_block_size_means_nothing_to_a_host(self):
+        self.assertIn("means nothing to the host backend 'serial'",
+                      self.expect(2, "table", "block-size", "--backend", "serial").stderr)
+
+    def test_backend_that_is_not_there(self):
+        if "DROGUE_CUDA:BOOL=ON" in perf_program.CACHE:
+            self.skipTest("a CUDA build has that backend")
+        for table in ("block-size", "transfers"):
+            self.assertRegex(self.expect(77, "table", table, "--backend", "cuda").stderr, "cuda.*not compiled in")
+
+    def test_records_that_cannot_be_written(self):
+        self.assertIn("no/such/folder", self.expect(6, "table", "occupancy", "--out", "no/such/folder/x").stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()

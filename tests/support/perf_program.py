@@ -1,0 +1,32 @@
+"""Runs drogue-perf for tests of its interface; found by them below tests/support."""
+
+import json
+import os
+import pathlib
+import subprocess
+import tempfile
+import unittest
+
+PROGRAM = pathlib.Path(os.environ["DROGUE_BIN"]) / "drogue-perf"
+CACHE = (pathlib.Path(os.environ["DROGUE_BUILD"]) / "CMakeCache.txt").read_text(encoding="utf-8")
+
+
+@unittest.skipIf("DROGUE_SANITIZE:BOOL=ON" in CACHE, "a build with sanitizers measures nothing")
+class PerfTest(unittest.TestCase):
+    """A test with an empty folder, in which its programs run."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def expect(self, code, *words):
+        """Runs to the end, asserts the exit code and that a failure is one sentence; returns what the run said."""
+        process = subprocess.run([PROGRAM, *words], cwd=self.folder, capture_output=True, text=True, timeout=600,
+                                 check=False, env={**os.environ, "OMP_WAIT_POLICY": "passive"})
+        self.assertEqual(code, process.returncode, f"{process.args}\n{process.stdout}{process.stderr}")
+        self.assertEqual(0 if code == 0 else 1, len(process.stderr.splitlines()), process.stderr)
+        return process
+
+    def records(self, name):
+        return [json.loads(line) for line in (self.folder / name).read_text(encoding="utf-8").splitlines()]
