@@ -4,11 +4,11 @@
 
 #include <Kokkos_Core.hpp>
 
+#include "kernels/gas/stage_table.hpp"
 #include "kernels/gas/status.hpp"
 
 namespace drogue::gas {
 
-inline constexpr int max_stages = 4;
 inline constexpr int limited_steps = 100;  ///< accepted steps for which `automatic` keeps the limiter on
 inline constexpr int max_halvings = 40;
 inline constexpr std::uint64_t no_cell = ~std::uint64_t{0};
@@ -21,33 +21,6 @@ KOKKOS_INLINE_FUNCTION std::uint64_t inadmissible(int stage, std::int64_t cell, 
 }
 KOKKOS_INLINE_FUNCTION std::int64_t inadmissible_cell(std::uint64_t bad) {
   return bad == no_cell ? -1 : static_cast<std::int64_t>(bad << 4U >> 6U);
-}
-
-/// One Euler sub-step of a Runge-Kutta method: out = a_n U^n + a_in (U_in + dt_factor dt L(U_in)).
-struct StageWeights {
-  double a_n, a_in, dt_factor;
-  double boundary;  ///< weight of this stage's flux in U^{n+1} - U^n, in units of dt
-  int in, out;      ///< buffers, counted from the one that holds U^n
-};
-
-struct StageTable {
-  int stages;
-  StageWeights stage[max_stages];
-};
-
-/// Shu and Osher 1988 (SSP-RK3); Spiteri and Ruuth 2002 (SSPRK(4,3)). U^n is never written: a rejected step
-/// costs nothing but its time.
-inline StageTable stage_table(TimeScheme scheme) {
-  if (scheme == TimeScheme::ssprk3)
-    return {3,
-            {{0.0, 1.0, 1.0, 1.0 / 6.0, 0, 1},
-             {0.75, 0.25, 1.0, 1.0 / 6.0, 1, 2},
-             {1.0 / 3.0, 2.0 / 3.0, 1.0, 2.0 / 3.0, 2, 1}}};
-  return {4,
-          {{0.0, 1.0, 0.5, 1.0 / 6.0, 0, 1},
-           {0.0, 1.0, 0.5, 1.0 / 6.0, 1, 2},
-           {2.0 / 3.0, 1.0 / 3.0, 0.5, 1.0 / 6.0, 2, 1},
-           {0.0, 1.0, 0.5, 0.5, 1, 2}}};
 }
 
 /// The step under way, and where the stepping is to stop.

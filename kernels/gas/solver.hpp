@@ -7,6 +7,7 @@
 #include "kernels/device/backend.hpp"
 #include "kernels/gas/parameters.hpp"
 #include "kernels/gas/status.hpp"
+#include "kernels/gas/work.hpp"
 
 namespace drogue::gas {
 
@@ -74,6 +75,9 @@ class Solver {
 
   /// How a step reaches the device: "persistent", "graph", "plain" or "seed".
   [[nodiscard]] virtual const char* driver() const = 0;
+
+  /// Of a step in which the limiter has nothing to do; none in seed mode.
+  [[nodiscard]] virtual Tiling tiling() const { return {}; }
 };
 
 /// Throws std::invalid_argument for parameters out of range and std::bad_alloc; the backend must be

@@ -34,6 +34,7 @@ class SolverOn final : public Solver {
   ConstConserved finish_snapshot() override;
   [[nodiscard]] Phases phases() const override { return {}; }
   [[nodiscard]] const char* driver() const override;
+  [[nodiscard]] Tiling tiling() const override;
 
  private:
   using Memory = typename ExecutionSpace::memory_space;

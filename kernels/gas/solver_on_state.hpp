@@ -105,6 +105,13 @@ const char* SolverOn<ExecutionSpace>::driver() const {
 }
 
 template <class ExecutionSpace>
+Tiling SolverOn<ExecutionSpace>::tiling() const {
+  const bool fused = _setup.splitting == Splitting::lf_stencil && _parameters.positivity != Positivity::on;
+  const TileShape& shape = !fused ? _setup.stage_shape : _resident ? _resident->shape : _setup.step_shape;
+  return {shape.cells, shape.halo, fused};
+}
+
+template <class ExecutionSpace>
 Control SolverOn<ExecutionSpace>::read_control() const {
   auto mirror = Kokkos::create_mirror_view(_setup.control);
   Kokkos::deep_copy(_instance.space(), mirror, _setup.control);

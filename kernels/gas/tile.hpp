@@ -67,7 +67,8 @@ KOKKOS_INLINE_FUNCTION Triple<R> load_state(const double* in, const Ends& ends, 
   if constexpr (Lanes::lanes == 1) {
     // Threads within and beyond the mesh load together.
     const Source from = source_cell(ends, index);
-    return {in[from.cell], from.sign * in[n + from.cell], in[2 * n + from.cell]};
+    return {Lanes::load(in + from.cell), from.sign * Lanes::load(in + n + from.cell),
+            Lanes::load(in + 2 * n + from.cell)};
   }
   if (index >= 0 && index + Lanes::lanes <= n) return state_of<R>(in, n, index);
   double rho[Lanes::lanes], m[Lanes::lanes], energy[Lanes::lanes];

@@ -1,0 +1,159 @@
+#pragma once
+
+#include <vector>
+
+#include "tests/support/counted.hpp"
+#include "tests/support/gas_state.hpp"
+
+// After what counts them.
+#include "kernels/gas/stage.hpp"
+#include "kernels/gas/step.hpp"
+
+namespace drogue::testing {
+
+/// The tiles of a small periodic mesh one after the other, by the functions that the kernels call, on numbers
+/// of type R: what they cost and which bytes of the fields they touch.
+template <class R>
+class CountedStep {
+ public:
+  static constexpr double gamma = 1.4, dt_over_dx = 0.1;
+  static constexpr int row = 64;
+  static constexpr std::int64_t cells = 44, tile_cells = 18;  ///< the last tile is smaller
+  static constexpr gas::Ends ends{cells, gas::Boundary::periodic, gas::Boundary::periodic};
+
+  using Tile = gas::Tile<Kokkos::Serial>;
+  template <gas::Reconstruction scheme>
+  using Step = gas::StepFunctor<Kokkos::Serial, scheme, gas::Precision::full>;
+  template <gas::Reconstruction scheme>
+  using Stage = gas::StageFunctor<Kokkos::Serial, scheme, gas::Precision::full, false>;
+
+  /// The only thread of a team, and its scratch memory.
+  struct Thread {
+    std::int64_t tile;
+    double* scratch;
+
+    [[nodiscard]] std::int64_t league_rank() const { return tile; }
+    [[nodiscard]] static int team_rank() { return 0; }
+    [[nodiscard]] static int team_size() { return 1; }
+    [[nodiscard]] const Thread& team_scratch(int) const { return *this; }
+    [[nodiscard]] void* get_shmem_aligned(std::size_t, std::size_t) const { return scratch; }
+  };
+
+  CountedStep(const gas::StageTable& table, unsigned seed) : _table(table) {
+    gas::Parameters p;
+    p.cells = cells;
+    for (const auto& values : random_state(p, seed, rough))
+      _fields[0].insert(_fields[0].end(), values.begin(), values.end());
+    _fields[1] = _fields[2] = _fields[0];
+  }
+
+  gas::StepWork work;               ///< of all that has run
+  std::int64_t times_combined = 0;  ///< how often `run_fused` has given U^n its share
+
+  /// U^{n+1} of `run_fused`, (cells, 3).
+  [[nodiscard]] const std::vector<double>& result() const { return _fields[1]; }
+
+  /// What `StepFunctor` does.
+  template <gas::Reconstruction scheme>
+  void run_fused() {
+    const Step<scheme> step = fused<scheme>();
+    for_tiles(step.shape, [&](const Thread& thread, const Tile& tile) {
+      load(thread, tile, 0);
+      for (int stage = 0; stage < _table.stages; ++stage) {
+        const auto faces = step.faces_of(tile, stage);
+        for (int face = faces.first; face <= faces.last; ++face) compute_face<scheme>(tile, face);
+        for (int i = faces.first + gas::ghost_cells; i < faces.last + gas::ghost_cells; ++i) {
+          times_combined += _table.stage[stage].a_n != 0.0;
+          if (stage < _table.stages - 1)
+            update<false>(step, tile, i, stage);
+          else
+            update<true>(step, tile, i, stage);
+        }
+      }
+    });
+  }
+
+  /// What `StageFunctor` does in all stages of a step.
+  template <gas::Reconstruction scheme>
+  void run_stages() {
+    const gas::TileShape shape{tile_cells, gas::ghost_cells, row};
+    for (int k = 0; k < _table.stages; ++k) {
+      const gas::StageWeights& weights = _table.stage[k];
+      const Stage<scheme> stage{{}, {},  {}, weights, shape, ends, gamma, 1.0, k, gas::Splitting::lf_stencil,
+                                {}, true};
+      for_tiles(shape, [&](const Thread& thread, const Tile& tile) {
+        load(thread, tile, weights.in);
+        for (int face = 0; face <= tile.cells; ++face) compute_face<scheme>(tile, face);
+        gas::Reduced<R> reduced;
+        for (int i = tile.halo; i < tile.halo + tile.cells; ++i)
+          stage.template update_cell<R>(tile, i, dt_over_dx, field(0), field(weights.out), reduced);
+      });
+    }
+  }
+
+  /// Calls `run(thread, tile)` for every tile.
+  template <class Run>
+  void for_tiles(const gas::TileShape& shape, const Run& run) {
+    for (std::int64_t k = 0; k * shape.cells < cells; ++k) {
+      trace.read.clear(), trace.written.clear();
+      const Thread thread{k, _scratch.data()};
+      run(thread, Tile(thread, shape, cells));
+      work.bytes += bytes_touched();
+    }
+  }
+
+  gas::Arithmetic load(const Thread& thread, const Tile& tile, int from) {
+    return add([&] { gas::load_cells<R, false>(thread, tile, ends, gamma, field(from)); });
+  }
+
+  template <gas::Reconstruction scheme>
+  gas::Arithmetic compute_face(const Tile& tile, int face) {
+    return add([&] {
+      tile.store_flux(
+          face, gas::face_flux<scheme, R>(tile, face, gas::load_stencil<R>(tile, face), gas::Mean::arithmetic,
+                                          gamma, gas::stencil_speeds<R, R>(tile, face)));
+    });
+  }
+
+  template <bool last, class Functor>
+  gas::Arithmetic update(const Functor& step, const Tile& tile, int slot, int stage) {
+    return add([&] {
+      gas::Reduced<R> reduced;
+      step.template update_slot<last, R>(tile, slot, {slot, false}, _table.stage[stage], dt_over_dx, field(0),
+                                         field(1), reduced);
+      // Of the fastest signals the fused step uses two.
+      if constexpr (!std::is_same_v<R, double>)
+        reduced.slow.keep(), reduced.fast.keep(), reduced.admissible.keep();
+    });
+  }
+
+  template <gas::Reconstruction scheme>
+  [[nodiscard]] Step<scheme> fused() const {
+    return {{}, {}, _table, {tile_cells, gas::ghost_cells * _table.stages, row}, ends, gamma, 1.0, {}};
+  }
+
+ private:
+  double* field(int buffer) { return _fields[buffer].data(); }
+
+  template <class Evaluate>
+  gas::Arithmetic add(const Evaluate& evaluate) {
+    const gas::Arithmetic cost = arithmetic_of(evaluate);
+    work.arithmetic = work.arithmetic + cost;
+    return cost;
+  }
+
+  /// Bytes of the fields that have been read and written, each value once.
+  [[nodiscard]] std::int64_t bytes_touched() const {
+    std::int64_t values = 0;
+    for (const auto& f : _fields)
+      for (const auto* addresses : {&trace.read, &trace.written})
+        for (const double* address : *addresses) values += address >= &f.front() && address <= &f.back();
+    return values * static_cast<std::int64_t>(sizeof(double));
+  }
+
+  gas::StageTable _table;
+  std::vector<double> _fields[3];  ///< as the kernels see them; the first is U^n
+  std::vector<double> _scratch = std::vector<double>(row * Tile::rows);
+};
+
+}  // namespace drogue::testing
