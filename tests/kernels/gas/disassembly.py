@@ -1,0 +1,59 @@
+"""What a compiler has made of a kernel: floating-point instructions of x86 by operation, form and register."""
+
+import collections
+import json
+import pathlib
+import re
+import shlex
+import subprocess
+
+SYMBOL = re.compile(r"^[0-9a-f]+ <(.*)>:$")
+ARITHMETIC = re.compile(r"\s+[0-9a-f]+:\s+v?(add|sub|mul|div|sqrt|fn?m(?:add|sub)\d{3})([ps])d\s+(.*)$")
+REGISTERS = ("zmm", "ymm", "xmm")
+
+
+def arithmetic(text, functor):
+    """Counter of (operation, "p" packed or "s" scalar, widest register) in the symbols that name `functor`."""
+    counts = collections.Counter()
+    inside = False
+    for line in text.splitlines():
+        symbol = SYMBOL.match(line)
+        if symbol:
+            inside = functor in symbol[1]
+            continue
+        found = ARITHMETIC.match(line) if inside else None
+        if found:
+            operation, form, operands = found.groups()
+            register = next(name for name in REGISTERS if "%" + name in operands)
+            counts[operation, form, register] += 1
+    return counts
+
+
+def disassembled(objdump, path):
+    return subprocess.run([objdump, "--disassemble", "--demangle", "--no-show-raw-insn", path], capture_output=True,
+                          text=True, check=True).stdout
+
+
+def cache(build):
+    """The variables of a build folder."""
+    text = (build / "CMakeCache.txt").read_text(encoding="utf-8")
+    return dict(re.findall(r"^(\w+):\w+=(.*)$", text, re.MULTILINE))
+
+
+def compilation(build, source):
+    """The object of a source whose path ends in `source`, and the words that compile it."""
+    for entry in json.loads((build / "compile_commands.json").read_text(encoding="utf-8")):
+        if entry["file"].endswith(source):
+            words = shlex.split(entry["command"])
+            return pathlib.Path(entry["directory"]) / words[words.index("-o") + 1], words
+    raise LookupError(source)
+
+
+def widest_register(words):
+    """Of the target that a compilation has, as kernels/device/pack.hpp asks for it."""
+    words = words[:words.index("-o")] + ["-dM", "-E", "-x", "c++", "/dev/null"]
+    macros = subprocess.run(words, capture_output=True, text=True, check=True).stdout
+    for macro, register in (("__AVX512F__", "zmm"), ("__AVX__", "ymm")):
+        if f"#define {macro} " in macros:
+            return register
+    return "xmm"

@@ -1,0 +1,88 @@
+"""On a host the step works on packs of cells: its machine code says so, on every machine alike."""
+
+import os
+import pathlib
+import platform
+import unittest
+
+import disassembly
+
+BUILD = pathlib.Path(os.environ["DROGUE_BUILD"])
+# WENO-JS in full precision, all stages in one kernel.
+FUNCTOR = "StepFunctor<Kokkos::Serial, (drogue::gas::Reconstruction)0, (drogue::gas::Precision)0>"
+FACE_DIVISIONS = 7  # `face_arithmetic` in kernels/gas/work.hpp
+
+
+def not_here():
+    """Why the machine code of this build says nothing, or nothing."""
+    cache = disassembly.cache(BUILD)
+    if cache.get("DROGUE_CUDA") == "ON":
+        return "in a CUDA build host backends have one lane"
+    if cache.get("DROGUE_SANITIZE") == "ON":
+        return "sanitizers put checks between the instructions"
+    if cache.get("CMAKE_BUILD_TYPE") == "Debug":
+        return "nothing is optimised"
+    if platform.machine() != "x86_64":
+        return "instructions are read for x86-64 alone"
+    return None
+
+
+def complaints(counts, register):
+    """What is wrong with the instructions of a step, a sentence each."""
+    def total(form, *operations):
+        return sum(n for (operation, kind, at), n in counts.items()
+                   if kind == form and (form == "s" or at == register) and (not operations or operation in operations))
+
+    found = []
+    if total("p", "div") < FACE_DIVISIONS:
+        found.append(f"{total('p', 'div')} packed divisions in {register}, a face alone has {FACE_DIVISIONS}")
+    if total("p", "sqrt") < 1:
+        found.append(f"no packed square root in {register}")
+    # Ghosts and the cells that fill no pack are scalar.
+    if total("p") < 5 * total("s"):
+        found.append(f"{total('p')} packed operations in {register} beside {total('s')} scalar ones")
+    if total("s", "div") >= FACE_DIVISIONS:
+        found.append(f"{total('s', 'div')} scalar divisions: a face is computed by one lane")
+    return found
+
+
+@unittest.skipIf(not_here(), not_here())
+class Step(unittest.TestCase):
+    def test_is_packed(self):
+        object_file, words = disassembly.compilation(BUILD, "/step_serial.cpp")
+        text = disassembly.disassembled(disassembly.cache(BUILD)["CMAKE_OBJDUMP"], object_file)
+        counts = disassembly.arithmetic(text, FUNCTOR)
+        self.assertTrue(counts, f"no arithmetic in {FUNCTOR}")
+        self.assertEqual([], complaints(counts, disassembly.widest_register(words)), counts)
+
+
+class ScalarCodeIsFound(unittest.TestCase):
+    PACKED = [f" {k:x}:\tvdivpd %ymm1,%ymm2,%ymm3" for k in range(7)] + [" 10:\tvsqrtpd %ymm1,%ymm2"]
+
+    def complaints(self, *lines, register="ymm"):
+        text = "\n".join([f"0000 <void {FUNCTOR}::operator()() const>:", *lines, "0100 <other>:",
+                          *[f" 1{k}0:\tdivsd %xmm1,%xmm0" for k in range(9)]])
+        return complaints(disassembly.arithmetic(text, FUNCTOR), register)
+
+    def test_packed_code_is_none(self):
+        self.assertEqual([], self.complaints(*self.PACKED))
+
+    def test_scalar_code(self):
+        scalar = [line.replace("pd", "sd").replace("ymm", "xmm") for line in self.PACKED]
+        self.assertEqual(4, len(self.complaints(*scalar)))
+
+    def test_scalar_code_beside_packed(self):
+        sentence, = self.complaints(*self.PACKED, " 20:\tvfmadd213sd %xmm1,%xmm2,%xmm3", " 21:\tmulsd (%rax),%xmm3")
+        self.assertIn("8 packed operations in ymm beside 2 scalar ones", sentence)
+
+    def test_narrow_packs(self):
+        self.assertEqual(2, len(self.complaints(*self.PACKED, register="zmm")))
+        self.assertEqual(2, len(self.complaints(*[line.replace("ymm", "xmm") for line in self.PACKED])))
+
+    def test_a_root_by_one_lane(self):
+        sentence, = self.complaints(*self.PACKED[:7], " 10:\tvsqrtsd %xmm1,%xmm1,%xmm2")
+        self.assertIn("no packed square root", sentence)
+
+
+if __name__ == "__main__":
+    unittest.main()
