@@ -86,6 +86,23 @@ TEST(GasLedger, StepsWithoutOutputFenceAllocateAndCopyNothing) {
     }
 }
 
+TEST(GasLedger, DriversThatAreAskedForLaunchWhatTheySay) {
+  for (const Driver driver : {Driver::plain, Driver::graph})
+    for (const Positivity positivity : {Positivity::off, Positivity::on}) {
+      Parameters p = sod(positivity);
+      p.driver = driver;
+      const auto solver = warm(p);
+      const bool graph = on_device && driver == Driver::graph;
+      EXPECT_STREQ(solver->driver(), graph ? "graph" : "plain");
+      const Ledger few = cost(*solver, 50), many = cost(*solver, 500);
+      const std::int64_t kernels = positivity == Positivity::on ? 4 : 2;
+      EXPECT_EQ(many.kernel_launches, 500 * (graph ? 1 : kernels) + 1);
+      EXPECT_EQ(many.fences, few.fences);
+      EXPECT_EQ(many.allocations, 0);
+      EXPECT_EQ(many.copies, 0);
+    }
+}
+
 TEST(GasLedger, AutomaticPositivityThatIsNeverNeededCostsNoLaunch) {
   const Ledger off = cost(*warm(sod(Positivity::off)), 300);
   const auto automatic = warm(sod(Positivity::automatic));
@@ -134,6 +151,7 @@ TEST(GasLedger, MemoryStaysWithinEightyBytesACell) {
   solver->finish_snapshot();
   EXPECT_LE((counted() - before).device_bytes, 104 * cells + (std::int64_t{1} << 20));
   EXPECT_GE(counted().peak_device_bytes, 96 * cells);
+  EXPECT_LE(counted().peak_device_bytes, before.device_bytes + 104 * cells + (std::int64_t{1} << 20));
 }
 
 TEST(GasLedger, MemoryComesBack) {
