@@ -41,10 +41,13 @@ Case dense_case(std::int64_t cells, long steps) {
             for (const auto& u : run->state) rho.push_back(u[0]);
             return sod::l1_error(p, rho, run->time);
           },
-          sod::bar(p)};
+          sod::bar(p),
+          [=] {
+            return Facts{"serial", cells, "dense-loop"};
+          }};
 }
 
-/// A change of the usual parameters, and what it adds to the name of the case.
+/// A change of the usual parameters, and what the case is called then.
 struct Variant {
   const char* name;
   void (*apply)(gas::Parameters&);
@@ -53,22 +56,22 @@ struct Variant {
 /// What a step costs beside the usual one, where nothing but arithmetic counts, and where launches count
 /// most.
 const std::vector<Variant> large_variants = {
-    {"/z", [](gas::Parameters& p) { p.weno = gas::Weno::z; }},
-    {"/teno5", [](gas::Parameters& p) { p.weno = gas::Weno::teno5; }},
-    {"/split", [](gas::Parameters& p) { p.precision = gas::Precision::split; }},
-    {"/auto", [](gas::Parameters& p) { p.positivity = gas::Positivity::automatic; }},
-    {"/on", [](gas::Parameters& p) { p.positivity = gas::Positivity::on; }}};
+    {"z", [](gas::Parameters& p) { p.weno = gas::Weno::z; }},
+    {"teno5", [](gas::Parameters& p) { p.weno = gas::Weno::teno5; }},
+    {"split", [](gas::Parameters& p) { p.precision = gas::Precision::split; }},
+    {"auto", [](gas::Parameters& p) { p.positivity = gas::Positivity::automatic; }},
+    {"on", [](gas::Parameters& p) { p.positivity = gas::Positivity::on; }}};
 const std::vector<Variant> small_variants = {
-    {"/plain", [](gas::Parameters& p) { p.driver = gas::Driver::plain; }},
-    {"/graph", [](gas::Parameters& p) { p.driver = gas::Driver::graph; }},
-    {"/split", [](gas::Parameters& p) { p.precision = gas::Precision::split; }}};
+    {"plain", [](gas::Parameters& p) { p.driver = gas::Driver::plain; }},
+    {"graph", [](gas::Parameters& p) { p.driver = gas::Driver::graph; }},
+    {"split", [](gas::Parameters& p) { p.precision = gas::Precision::split; }}};
 
 Case solver_case(device::Backend backend, std::int64_t cells, long steps, const Variant& variant) {
   gas::Parameters p = sod::parameters(cells);
   variant.apply(p);
   const auto solver = std::make_shared<std::unique_ptr<gas::Solver>>();
   const std::string name(device::name(backend));
-  return {"gas-step/" + name + "/" + std::to_string(cells) + variant.name,
+  return {"gas-step/" + name + "/" + std::to_string(cells) + (*variant.name ? "/" : "") + variant.name,
           "step",
           backend == device::Backend::cuda ? "launch latency below 100k cells, FP64 issue above"
                                            : "FP64 issue of the cores",
@@ -85,7 +88,12 @@ Case solver_case(device::Backend backend, std::int64_t cells, long steps, const 
                           }};
           },
           [=] { return sod::l1_error(p, **solver); },
-          sod::bar(p)};
+          sod::bar(p),
+          [=] {
+            const gas::StepWork work = gas::step_work(p, (*solver)->tiling());
+            return Facts{name, cells, variant.name, static_cast<double>(work.arithmetic.flops()),
+                         static_cast<double>(work.bytes)};
+          }};
 }
 
 }  // namespace

@@ -1,14 +1,21 @@
 #include "perf/measurement.hpp"
 
 #include <chrono>
+#include <utility>
 
 namespace drogue::perf {
+
+std::vector<Case> all_cases(bool quick) {
+  std::vector<Case> cases = gas_cases(quick);
+  for (Case& c : ceiling_cases()) cases.push_back(std::move(c));
+  return cases;
+}
 
 std::vector<Record> measure(const std::vector<Case>& cases, int warm_up, int rounds) {
   std::vector<Record> records;
   std::vector<Sample> samples;
   for (const Case& c : cases) {
-    records.push_back({c.name, c.unit_of_work, c.bound, {}, 0.0, c.bar, {}});
+    records.push_back({c.name, c.unit_of_work, c.bound, {}, 0.0, c.bar, {}, {}});
     samples.push_back(c.prepare());
   }
   for (int round = -warm_up; round < rounds; ++round)
@@ -27,7 +34,10 @@ std::vector<Record> measure(const std::vector<Case>& cases, int warm_up, int rou
       }
       records[i].samples.push_back(seconds / static_cast<double>(units));
     }
-  for (std::size_t i = 0; i < cases.size(); ++i) records[i].error = cases[i].error();
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    records[i].error = cases[i].error();
+    if (cases[i].facts) records[i].facts = cases[i].facts();
+  }
   return records;
 }
 

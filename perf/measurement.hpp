@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <map>
 #include <string>
@@ -16,6 +17,15 @@ struct Sample {
   std::function<std::map<std::string, double>()> parts = {};
 };
 
+/// What a roofline needs to know of a case. Zero or empty: not known, or not asked.
+struct Facts {
+  std::string backend;
+  std::int64_t cells = 0;
+  std::string variant;  ///< what differs from the usual case of this backend and size
+  double flops = 0.0;   ///< a unit of work
+  double bytes = 0.0;   ///< a unit of work, between kernels and memory
+};
+
 /// One thing that can be timed.
 struct Case {
   std::string name;          ///< work/variant/size, as `drogue-perf list` prints it
@@ -24,11 +34,14 @@ struct Case {
   std::function<Sample()> prepare;
   /// Error of the state it ends in, against the oracle or an exact solution; called after the last sample.
   std::function<double()> error;
-  double bar;  ///< largest error with which the timing counts
+  double bar;                    ///< largest error with which the timing counts
+  std::function<Facts()> facts = {};  ///< called after the last sample, where there is one
 };
 
-/// All cases that this build and machine can run.
+// Those that this build and machine can run.
 std::vector<Case> gas_cases(bool quick);
+std::vector<Case> ceiling_cases();
+std::vector<Case> all_cases(bool quick);
 
 struct Record {
   std::string name, unit_of_work, bound;
@@ -36,6 +49,7 @@ struct Record {
   double error = 0.0;
   double bar = 0.0;
   std::map<std::string, std::vector<double>> parts;  ///< of `samples`, where a case names any
+  Facts facts;
 
   [[nodiscard]] bool passed() const { return error <= bar; }
 };

@@ -16,9 +16,18 @@ struct RunOptions {
   bool quick = false;
 };
 
+/// Without what is not known.
+nlohmann::json to_json(const Facts& facts) {
+  nlohmann::json json = {{"backend", facts.backend}};
+  if (facts.cells > 0) json.update({{"cells", facts.cells}, {"variant", facts.variant}});
+  if (facts.flops > 0.0) json["flops"] = facts.flops;
+  if (facts.bytes > 0.0) json["bytes"] = facts.bytes;
+  return json;
+}
+
 ExitCode run_cases(const RunOptions& options) {
   std::vector<Case> cases;
-  for (const Case& c : gas_cases(options.quick))
+  for (const Case& c : all_cases(options.quick))
     if (std::regex_search(c.name, std::regex(options.filter))) cases.push_back(c);
   if (cases.empty())
     throw Failure(ExitCode::usage, "no case matches '" + options.filter + "'; see drogue-perf list");
@@ -26,10 +35,10 @@ ExitCode run_cases(const RunOptions& options) {
   std::vector<nlohmann::json> lines;
   bool passed = true;
   for (const Record& record : measure(cases, warm_up_rounds, kept_rounds(options.quick))) {
-    lines.push_back(to_json(record, here));
+    lines.push_back(to_json(record, here, to_json(record.facts)));
     passed = passed && record.passed();
     const run::MedianInterval time = run::median_interval(record.samples);
-    std::printf("%-32s %12.3f us a %s  [%.3f .. %.3f]  L1 error %.3g  %s\n", record.name.c_str(),
+    std::printf("%-32s %12.3f us a %s  [%.3f .. %.3f]  error %.3g  %s\n", record.name.c_str(),
                 1e6 * time.median, record.unit_of_work.c_str(), 1e6 * time.low, 1e6 * time.high, record.error,
                 verdict(record));
   }
@@ -42,7 +51,7 @@ ExitCode run_cases(const RunOptions& options) {
 Command list_command(CLI::App& program) {
   const CLI::App* app = program.add_subcommand("list", "Print the cases that this build and machine can run");
   return {app, [](const std::vector<std::string>&) {
-            for (const Case& c : gas_cases(false)) std::printf("%s\n", c.name.c_str());
+            for (const Case& c : all_cases(false)) std::printf("%s\n", c.name.c_str());
             return ExitCode::ok;
           }};
 }

@@ -28,7 +28,7 @@ class Record(perf_program.PerfTest):
 
     def test_of_a_run(self):
         text = self.expect(0, "run", "--quick", "--filter", "dense-loop/1024$", "--out", "run.jsonl").stdout
-        self.assertRegex(text, r"^gas-step/dense-loop/1024 +\d+\.\d+ us a step  \[.*\]  L1 error \S+  passed\n$")
+        self.assertRegex(text, r"^gas-step/dense-loop/1024 +\d+\.\d+ us a step  \[.*\]  error \S+  passed\n$")
         record, = self.records("run.jsonl")
         self.assertEqual(FIELDS, set(record))
         self.assert_timed(record, 7)

@@ -1,0 +1,29 @@
+#include <gtest/gtest.h>
+
+#include "kernels/device/ceilings.hpp"
+
+// The kernels that measure what a backend can do compute what they are said to.
+
+namespace drogue::device {
+namespace {
+
+class Ceilings : public testing::TestWithParam<Ceiling> {};
+
+TEST_P(Ceilings, ResultsAreThoseOfTheClosedForm) {
+  const auto kernel = create_ceiling(Backend::DROGUE_TEST_BACKEND, GetParam());
+  // The chains round at every step; the triads add small integers.
+  const double bar = GetParam() == Ceiling::fp64 ? 1e-9 : 0.0;
+  for (int round = 0; round < 2; ++round) {
+    kernel->reset();
+    EXPECT_GT(kernel->error(), 0.1) << "nothing has run yet";
+    kernel->run();
+    EXPECT_LE(kernel->error(), bar);
+  }
+  EXPECT_GT(kernel->flops(), 0.0);
+  EXPECT_GT(kernel->bytes(), 0.0);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Ceilings, testing::Values(Ceiling::fp64, Ceiling::memory, Ceiling::cache));
+
+}  // namespace
+}  // namespace drogue::device
