@@ -1,0 +1,57 @@
+"""What drogue-perf records beside its times, for a roofline."""
+
+import json
+import os
+import pathlib
+import subprocess
+import tempfile
+import unittest
+
+PROGRAM = pathlib.Path(os.environ["DROGUE_BIN"]) / "drogue-perf"
+
+
+def on_this_machine():
+    """Whether the program is built (sanitizers leave it out), and starts here."""
+    if not PROGRAM.exists():
+        return False
+    return subprocess.run([PROGRAM, "run", "--filter", "^$"], capture_output=True, check=False).returncode != 77
+
+
+@unittest.skipUnless(on_this_machine(), "drogue-perf is not built, or finds no device")
+class Facts(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cases = "^(ceiling/(fp64|cache)/serial|gas-step/(serial|dense-loop)/1024)$"
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder) / "records.jsonl"
+            subprocess.run([PROGRAM, "run", "--quick", "--filter", cases, "--out", file], capture_output=True,
+                           check=True)
+            cls.records = {record["case"]: record for record in map(json.loads, file.read_text().splitlines())}
+
+    def facts(self, case):
+        self.assertEqual("passed", self.records[case]["check"])
+        return self.records[case]["facts"]
+
+    def test_a_step(self):
+        facts = self.facts("gas-step/serial/1024")
+        self.assertEqual(("serial", 1024, ""), (facts["backend"], facts["cells"], facts["variant"]))
+        # Four tiles of 256 cells, nine more on either side read, three numbers a cell.
+        self.assertEqual(4 * (274 + 256) * 24, facts["bytes"])
+        # In three stages some 500 operations a cell, and a few per cent in the halo.
+        self.assertAlmostEqual(1500, facts["flops"] / 1024, delta=150)
+
+    def test_what_is_not_counted_is_left_out(self):
+        expected = {"backend": "serial", "cells": 1024, "variant": "dense-loop"}
+        self.assertEqual(expected, self.facts("gas-step/dense-loop/1024"))
+
+    def test_ceilings(self):
+        for case in ("ceiling/fp64/serial", "ceiling/cache/serial"):
+            facts = self.facts(case)
+            self.assertEqual({"backend", "flops", "bytes"}, set(facts))
+            self.assertEqual("serial", facts["backend"])
+        # 24 bytes and two operations a value.
+        self.assertEqual(12 * self.facts("ceiling/cache/serial")["flops"], self.facts("ceiling/cache/serial")["bytes"])
+
+
+if __name__ == "__main__":
+    unittest.main()
