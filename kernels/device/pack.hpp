@@ -50,30 +50,30 @@ KOKKOS_INLINE_FUNCTION double reciprocal(double x) {
 }
 KOKKOS_INLINE_FUNCTION float reciprocal(float x) { return 1.0F / x; }
 
-/// A square root and its reciprocal.
+/// What has a square root in it.
 template <class R>
 struct Root {
-  R value, inverse;
+  R value, inverse, reciprocal;  ///< sqrt(x), 1/sqrt(x), 1/x
 };
 
 /// Of a positive normal number; what else there is gives a NaN. On CUDA the hardware's approximation of
-/// 1/sqrt(x) and one cubic Newton step give both (within 2 ulp) with a third of the instructions of an IEEE
-/// root and division; the exact build computes those.
+/// 1/sqrt(x) and one cubic Newton step give all (the root within 2 ulp) with a third of the instructions of
+/// an IEEE root and division. Elsewhere these do not wait for one another.
 KOKKOS_INLINE_FUNCTION Root<double> root(double x) {
 #if defined(__CUDA_ARCH__) && !defined(DROGUE_EXACT)
   double y;
   asm("rsqrt.approx.ftz.f64 %0, %1;" : "=d"(y) : "d"(x));
   const double e = fma(-x, y * y, 1.0);
   y = fma(y * e, fma(e, 0.375, 0.5), y);
-  return {x * y, y};
+  return {x * y, y, y * y};
 #else
-  const double value = square_root(x);
-  return {value, reciprocal(value)};
+  const double value = square_root(x), inverse = reciprocal(x);
+  return {value, value * inverse, inverse};
 #endif
 }
 KOKKOS_INLINE_FUNCTION Root<float> root(float x) {
-  const float value = square_root(x);
-  return {value, reciprocal(value)};
+  const float value = square_root(x), inverse = reciprocal(x);
+  return {value, value * inverse, inverse};
 }
 
 template <class To>
@@ -168,8 +168,8 @@ Pack<T, L> reciprocal(Pack<T, L> x) {
 }
 template <class T, int L>
 Root<Pack<T, L>> root(Pack<T, L> x) {
-  const Pack<T, L> value = square_root(x);
-  return {value, reciprocal(value)};
+  const Pack<T, L> value = square_root(x), inverse = reciprocal(x);
+  return {value, value * inverse, inverse};
 }
 
 template <class T, int L>

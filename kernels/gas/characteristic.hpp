@@ -29,9 +29,9 @@ KOKKOS_INLINE_FUNCTION Eigensystem<N> eigensystem(S gamma, R u, R enthalpy) {
   const auto gamma_1 = F(gamma - S(1));
   const R kinetic = S(0.5) * (u * u);
   const N unit = To::from(enthalpy - kinetic);
-  const auto [c, inverse_c] = device::root(gamma_1 * unit);
-  return {To::from(u),     c, To::from(enthalpy), To::from(kinetic), unit, gamma_1 * (inverse_c * inverse_c),
-          unit * inverse_c};
+  const device::Root<N> c = device::root(gamma_1 * unit);
+  return {To::from(u),     c.value, To::from(enthalpy), To::from(kinetic), unit, gamma_1 * c.reciprocal,
+          unit * c.inverse};
 }
 
 /// A cell beside a face, as the means need it.

@@ -11,30 +11,40 @@ struct Triple {
   R rho, m, energy;
 };
 
-/// The six cells i-2 .. i+3 around face i+1/2 as the flux sees them: states and their fluxes.
+/// What the flux at face i+1/2 sees of the six cells i-2 .. i+3: the five differences of neighbours, of
+/// states and fluxes, and the sum of the two fluxes beside the face. The mass flux is the momentum.
 template <class R>
 struct Stencil {
-  Triple<R> state[6];
-  R flux_m[6], flux_energy[6];  ///< the mass flux is the momentum in `state`
+  Triple<R> d_state[5];
+  R d_flux_m[5], d_flux_energy[5];
+  Triple<R> flux_sum;
 };
 
-/// (-f[-1] + 7 f[0] + 7 f[1] - f[2]) / 12: the linear fourth-order flux.
+/// (-f[-1] + 7 f[0] + 7 f[1] - f[2]) / 12, the linear fourth-order flux, from f[0] + f[1] and the differences
+/// on either side of the two.
 template <class R>
-KOKKOS_INLINE_FUNCTION R central_flux(R f_1, R f0, R f1, R f2) {
+KOKKOS_INLINE_FUNCTION R central_flux(R sum, R before, R after) {
   using S = typename device::Access<R>::Element;
-  return S(7.0 / 12.0) * (f0 + f1) - S(1.0 / 12.0) * (f_1 + f2);
+  return S(0.5) * sum - S(1.0 / 12.0) * (after - before);
 }
 
-/// One field's correction from both sides, `correction_scale * scale * unit` times: the right-going part sees
-/// the first four of the five differences, the left-going part the last four in reverse.
-template <Reconstruction scheme, int scale, class R>
-KOKKOS_INLINE_FUNCTION R field_correction(const R (&df)[5], const R (&du)[5], R alpha, R unit) {
-  const R right_going = correction<scheme, scale, R>(df[0] + alpha * du[0], df[1] + alpha * du[1],
-                                                     df[2] + alpha * du[2], df[3] + alpha * du[3], unit);
-  const R left_going = correction<scheme, scale, R>(df[4] - alpha * du[4], df[3] - alpha * du[3],
-                                                    df[2] - alpha * du[2], df[1] - alpha * du[1], unit);
-  return right_going - left_going;
-}
+/// The split differences of one characteristic field: the right-going part sees the first four of the five,
+/// the left-going part the last four in reverse.
+template <class R>
+struct SplitDifferences {
+  R right[4], left[4];
+
+  KOKKOS_FUNCTION void set(int k, R df, R du, R alpha) {
+    if (k < 4) right[k] = df + alpha * du;
+    if (k > 0) left[4 - k] = df - alpha * du;
+  }
+  /// `correction_scale * scale * unit` times the field's correction from both sides.
+  template <Reconstruction scheme, int scale>
+  KOKKOS_FUNCTION R corrected(R unit) const {
+    return correction<scheme, scale, R>(right[0], right[1], right[2], right[3], unit) -
+           correction<scheme, scale, R>(left[0], left[1], left[2], left[3], unit);
+  }
+};
 
 /// Characteristic finite-difference WENO5 flux at a face in difference form (gas.md section 2; Jiang and Shu
 /// 1996, section 2): the central flux minus the projected nonlinear corrections.
@@ -44,31 +54,28 @@ template <Reconstruction scheme, class N, class R>
 KOKKOS_INLINE_FUNCTION Triple<R> weno5_face(const Stencil<R>& s, const Eigensystem<N>& e,
                                             const Speeds<N>& alpha) {
   using To = device::Convert<N>;
-  N slow_u[5], slow_f[5], entropy_u[5], entropy_f[5], fast_u[5], fast_f[5];
+  SplitDifferences<N> slow, entropy, fast;
   for (int k = 0; k < 5; ++k) {
-    const Triple<R>&left = s.state[k], &right = s.state[k + 1];
-    const N d_m = To::from(right.m - left.m);
-    const Characteristic<N> u =
-        project(e, To::from(right.rho - left.rho), d_m, To::from(right.energy - left.energy));
-    const Characteristic<N> f = project(e, d_m, To::from(s.flux_m[k + 1] - s.flux_m[k]),
-                                        To::from(s.flux_energy[k + 1] - s.flux_energy[k]));
-    slow_u[k] = u.slow, entropy_u[k] = u.entropy, fast_u[k] = u.fast;
-    slow_f[k] = f.slow, entropy_f[k] = f.entropy, fast_f[k] = f.fast;
+    const N d_m = To::from(s.d_state[k].m);
+    const Characteristic<N> u = project(e, To::from(s.d_state[k].rho), d_m, To::from(s.d_state[k].energy));
+    const Characteristic<N> f = project(e, d_m, To::from(s.d_flux_m[k]), To::from(s.d_flux_energy[k]));
+    slow.set(k, f.slow, u.slow, alpha.slow);
+    entropy.set(k, f.entropy, u.entropy, alpha.entropy);
+    fast.set(k, f.fast, u.fast, alpha.fast);
   }
   using F = typename device::Access<N>::Element;
-  const N k1 = field_correction<scheme, acoustic_scale>(slow_f, slow_u, alpha.slow, e.unit);
+  const N k1 = slow.template corrected<scheme, acoustic_scale>(e.unit);
   const N k2 = F(1.0 / (correction_scale * entropy_scale)) *
-               field_correction<scheme, entropy_scale>(entropy_f, entropy_u, alpha.entropy, N(F(1)));
-  const N k3 = field_correction<scheme, acoustic_scale>(fast_f, fast_u, alpha.fast, e.unit);
+               entropy.template corrected<scheme, entropy_scale>(N(F(1)));
+  const N k3 = fast.template corrected<scheme, acoustic_scale>(e.unit);
   const N acoustic = F(1.0 / (correction_scale * acoustic_scale)) * e.inverse_unit;
   const N sum = acoustic * (k1 + k3), difference = acoustic * e.c * (k3 - k1);
   using Back = device::Convert<R>;
-  const Triple<R>* u = s.state;
-  return {central_flux(u[1].m, u[2].m, u[3].m, u[4].m) - Back::from(sum + k2),
-          central_flux(s.flux_m[1], s.flux_m[2], s.flux_m[3], s.flux_m[4]) -
-              Back::from(e.u * (sum + k2) + difference),
-          central_flux(s.flux_energy[1], s.flux_energy[2], s.flux_energy[3], s.flux_energy[4]) -
-              Back::from(e.enthalpy * sum + e.kinetic * k2 + e.u * difference)};
+  return {
+      central_flux(s.flux_sum.rho, s.d_state[1].m, s.d_state[3].m) - Back::from(sum + k2),
+      central_flux(s.flux_sum.m, s.d_flux_m[1], s.d_flux_m[3]) - Back::from(e.u * (sum + k2) + difference),
+      central_flux(s.flux_sum.energy, s.d_flux_energy[1], s.d_flux_energy[3]) -
+          Back::from(e.enthalpy * sum + e.kinetic * k2 + e.u * difference)};
 }
 
 }  // namespace drogue::gas

@@ -4,8 +4,8 @@
 
 #include "kernels/device/memory.hpp"
 #include "kernels/device/team_maximum.hpp"
+#include "kernels/gas/faces.hpp"
 #include "kernels/gas/limiter.hpp"
-#include "kernels/gas/tile_update.hpp"
 
 namespace drogue::gas {
 
@@ -54,9 +54,10 @@ struct StageFunctor {
     return buffer[(now.current + role) % 3].data();
   }
 
-  KOKKOS_FUNCTION Speeds<N> splitting_speeds(const Tile<ExecutionSpace>& tile, int face) const {
+  /// Alphas of the whole mesh; none where the stencil decides.
+  KOKKOS_FUNCTION Speeds<N> mesh_speeds() const {
     using To = device::Convert<N>;
-    if (splitting == Splitting::lf_stencil) return stencil_speeds<N, R>(tile, face);
+    if (splitting == Splitting::lf_stencil) return {};
     const auto& bits = control().outcome.stage_speed[stage];
     if (splitting == Splitting::lf_single) {
       const N alpha = To::from(R(max_speed(bits)));
@@ -68,24 +69,27 @@ struct StageFunctor {
 
   KOKKOS_FUNCTION void compute_fluxes(const Member& member, const Tile<ExecutionSpace>& tile,
                                       double dt) const {
-    using Lanes = device::Access<R>;
-    const int stride = member.team_size() * Lanes::lanes;
-    for (int face = member.team_rank() * Lanes::lanes; face <= tile.cells; face += stride) {
-      const Stencil<R> s = load_stencil<R>(tile, face);
-      Triple<R> flux = face_flux<scheme, N>(tile, face, s, mean, gamma, splitting_speeds(tile, face));
-      if constexpr (limited) flux = limit_flux(tile, face, s, flux, dt);
-      tile.store_flux(face, flux);
-    }
+    for_face_fluxes<scheme, N, R>(member, tile, 0, tile.cells, mean, gamma,
+                                  splitting == Splitting::lf_stencil, mesh_speeds(),
+                                  [&](int face, const Triple<R>& flux) {
+                                    if constexpr (limited)
+                                      tile.store_flux(face, limit_flux(tile, face, flux, dt));
+                                    else
+                                      tile.store_flux(face, flux);
+                                  });
   }
 
-  KOKKOS_FUNCTION Triple<R> limit_flux(const Tile<ExecutionSpace>& tile, int face, const Stencil<R>& s,
-                                       const Triple<R>& high, double dt) const {
+  KOKKOS_FUNCTION Triple<R> limit_flux(const Tile<ExecutionSpace>& tile, int face, const Triple<R>& high,
+                                       double dt) const {
     using Lanes = device::Access<R>;
     const double alpha = max_speed(control().outcome.stage_speed[stage]);
-    const Triple<R> low = lax_friedrichs(s.state[2], s.flux_m[2], s.flux_energy[2], s.state[3], s.flux_m[3],
-                                         s.flux_energy[3], alpha);
+    const Triple<R> left = tile.template state<R>(face + 2), right = tile.template state<R>(face + 3);
+    const auto flux = [&](TileField field, int i) { return tile.template load<R>(field, face + i); };
+    const Triple<R> low =
+        lax_friedrichs(left, flux(TileField::flux_m, 2), flux(TileField::flux_energy, 2), right,
+                       flux(TileField::flux_m, 3), flux(TileField::flux_energy, 3), alpha);
     const double two_lambda = 2.0 * dt * inverse_dx;
-    const LimitedFlux<R> result = limit(s.state[2], s.state[3], high, low, two_lambda, gamma);
+    const LimitedFlux<R> result = limit(left, right, high, low, two_lambda, gamma);
     for (int lane = 0; lane < Lanes::lanes; ++lane) {
       const int f = face + lane;
       if (f > tile.cells || !(Lanes::lane(result.theta, lane) < 1.0)) continue;

@@ -4,7 +4,7 @@
 
 #include "kernels/device/memory.hpp"
 #include "kernels/device/team_maximum.hpp"
-#include "kernels/gas/tile_update.hpp"
+#include "kernels/gas/faces.hpp"
 
 namespace drogue::gas {
 
@@ -101,11 +101,8 @@ struct StepFunctor {
   template <class AnyMember>
   KOKKOS_FUNCTION void compute_fluxes(const AnyMember& member, const TileType& tile,
                                       const Range& faces) const {
-    constexpr int lanes = device::Access<R>::lanes;
-    for (int face = faces.first + member.team_rank() * lanes; face <= faces.last;
-         face += member.team_size() * lanes)
-      tile.store_flux(face, face_flux<scheme, N>(tile, face, load_stencil<R>(tile, face), mean, gamma,
-                                                 stencil_speeds<N, R>(tile, face)));
+    for_face_fluxes<scheme, N, R>(member, tile, faces.first, faces.last, mean, gamma, true, {},
+                                  [&](int face, const Triple<R>& flux) { tile.store_flux(face, flux); });
   }
 
   template <class P>

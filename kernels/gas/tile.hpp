@@ -90,8 +90,9 @@ static_assert(static_cast<int>(TileField::count) == cell_rows);
 template <class ExecutionSpace>
 class Tile {
  public:
+  static constexpr bool on_host = device::is_host<ExecutionSpace>;
   /// On the host the first level cache has no room for it, and the mesh is near.
-  static constexpr bool keeps_start = !device::is_host<ExecutionSpace>;
+  static constexpr bool keeps_start = !on_host;
   static constexpr int rows = keeps_start ? device_rows : cell_rows + flux_rows;
 
   std::int64_t first;  ///< its first cell

@@ -48,14 +48,28 @@ KOKKOS_INLINE_FUNCTION void load_cells(const Member& member, const Tile& tile, c
   }
 }
 
+/// The sum of the fluxes beside a face.
+template <class R, class Tile>
+KOKKOS_INLINE_FUNCTION Triple<R> flux_sum(const Tile& tile, int face) {
+  const auto sum = [&](TileField field) {
+    return tile.template load<R>(field, face + 2) + tile.template load<R>(field, face + 3);
+  };
+  return {sum(TileField::m), sum(TileField::flux_m), sum(TileField::flux_energy)};
+}
+
 template <class R, class Tile>
 KOKKOS_INLINE_FUNCTION Stencil<R> load_stencil(const Tile& tile, int face) {
   Stencil<R> s;
-  for (int k = 0; k < 6; ++k) {
-    s.state[k] = tile.template state<R>(face + k);
-    s.flux_m[k] = tile.template load<R>(TileField::flux_m, face + k);
-    s.flux_energy[k] = tile.template load<R>(TileField::flux_energy, face + k);
+  const auto difference = [&](TileField field, int k) {
+    return tile.template load<R>(field, face + k + 1) - tile.template load<R>(field, face + k);
+  };
+  for (int k = 0; k < 5; ++k) {
+    s.d_state[k] = {difference(TileField::rho, k), difference(TileField::m, k),
+                    difference(TileField::energy, k)};
+    s.d_flux_m[k] = difference(TileField::flux_m, k);
+    s.d_flux_energy[k] = difference(TileField::flux_energy, k);
   }
+  s.flux_sum = flux_sum<R>(tile, face);
   return s;
 }
 

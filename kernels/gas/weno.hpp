@@ -16,7 +16,7 @@ enum class Reconstruction { js, z1, z2, m, teno5 };
 inline constexpr int acoustic_scale = 4, entropy_scale = 2;
 
 /// How many times too large `correction` is: it has no division but the one of the weights.
-inline constexpr int correction_scale = 12;
+inline constexpr int correction_scale = 3;
 
 template <class R>
 struct Indicators {
@@ -122,10 +122,14 @@ KOKKOS_INLINE_FUNCTION R correction(R a, R b, R c, R d, R unit) {
     sum = q.b0 + q.b1 + q.b2;
     q.b2 = S(1.0 / 3.0) * q.b2;
   }
-  // 4 w_0 (a - 2b + c) + (2 w_2 - 1) (b - 2c + d); weights first, since in single precision q may be as large
-  // as numbers get.
-  const R inverse4 = S(4) * device::reciprocal(sum);
-  return (q.b0 * inverse4) * (a - S(2) * b + c) + (S(1.5) * (q.b2 * inverse4) - S(1)) * (b - S(2) * c + d);
+  // w_0 (a - 2b + c) + (2 w_2 - 1) / 4 (b - 2c + d). Little waits for the division; in single precision,
+  // where q may be as large as numbers get, the weights come first.
+  const R inverse = device::reciprocal(sum);
+  const R first = a - S(2) * b + c, last = b - S(2) * c + d;
+  if constexpr (single)
+    return (q.b0 * inverse) * first + (S(1.5) * (q.b2 * inverse) - S(0.25)) * last;
+  else
+    return inverse * (q.b0 * first + S(1.5) * (q.b2 * last)) - S(0.25) * last;
 }
 
 }  // namespace drogue::gas

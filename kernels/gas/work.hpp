@@ -36,15 +36,15 @@ struct Arithmetic {
 [[nodiscard]] constexpr Arithmetic face_arithmetic(Weno weno, int power) {
   switch (weno) {
     case Weno::js:
-      return {230, 241, 7, 1, 15};
+      return {230, 235, 7, 1, 15};
     case Weno::m:
-      return {296, 319, 31, 1, 15};
+      return {296, 313, 31, 1, 15};
     case Weno::teno5:
-      return {266, 319, 13, 1, 63};
+      return {266, 313, 13, 1, 63};
     case Weno::z:
       break;
   }
-  return power == 1 ? Arithmetic{254, 241, 7, 1, 15} : Arithmetic{254, 295, 13, 1, 33};
+  return power == 1 ? Arithmetic{254, 235, 7, 1, 15} : Arithmetic{254, 289, 13, 1, 33};
 }
 
 /// One cell that a tile reads: `load_cells`.

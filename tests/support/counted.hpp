@@ -184,8 +184,8 @@ inline Counted absolute(Counted a) { return Counted::of(Operation::absolute, std
 inline Counted square_root(Counted a) { return Counted::of(Operation::root, std::sqrt(a.value), a); }
 inline Counted reciprocal(Counted a) { return Counted(1.0) / a; }
 inline Root<Counted> root(Counted a) {
-  const Counted value = square_root(a);
-  return {value, reciprocal(value)};
+  const Counted value = square_root(a), inverse = reciprocal(a);
+  return {value, value * inverse, inverse};
 }
 inline Counted maximum(Counted a, Counted b) {
   return Counted::of(Operation::maximum, a.value > b.value ? a.value : b.value, a, b);

@@ -34,14 +34,22 @@ struct FluxFunctor {
   KOKKOS_FUNCTION void operator()(const int face) const {
     Stencil<double> s;
     FaceCell<double> beside[2];
+    Triple<double> state[6], physical[6];
     for (int k = 0; k < 6; ++k) {
       const CellState<double> c =
           cell_state<double>(gamma, stencil(face, k, 0), stencil(face, k, 1), stencil(face, k, 2));
-      s.state[k] = {c.rho, c.m, c.energy};
-      s.flux_m[k] = c.m * c.u + c.p;
-      s.flux_energy[k] = (c.energy + c.p) * c.u;
+      state[k] = {c.rho, c.m, c.energy};
+      physical[k] = {c.m, c.m * c.u + c.p, (c.energy + c.p) * c.u};
       if (k == 2 || k == 3) beside[k - 2] = {c.rho, c.m, c.energy, c.u, c.enthalpy};
     }
+    for (int k = 0; k < 5; ++k) {
+      s.d_state[k] = {state[k + 1].rho - state[k].rho, state[k + 1].m - state[k].m,
+                      state[k + 1].energy - state[k].energy};
+      s.d_flux_m[k] = physical[k + 1].m - physical[k].m;
+      s.d_flux_energy[k] = physical[k + 1].energy - physical[k].energy;
+    }
+    s.flux_sum = {physical[2].rho + physical[3].rho, physical[2].m + physical[3].m,
+                  physical[2].energy + physical[3].energy};
     const auto e = face_eigensystem<N, double>(mean, gamma, beside[0], beside[1]);
     const Speeds<N> speeds{static_cast<N>(alpha(face, 0)), static_cast<N>(alpha(face, 1)),
                            static_cast<N>(alpha(face, 2))};

@@ -1,0 +1,100 @@
+#pragma once
+
+#include "kernels/gas/tile_update.hpp"
+
+namespace drogue::gas {
+
+/// Some faces of a host tile. Short loops go first, over what neighbouring faces share (differences and
+/// fastest signals) and what takes long (the roots and divisions of the eigensystems), so that several of the
+/// latter are under way at once; the long loop over the corrections that follows then waits for none. One
+/// core did a step a tenth faster than with all of a face in one body.
+template <class N, class R>
+class FaceChunk {
+ public:
+  static constexpr int lanes = device::Access<R>::lanes;
+  static constexpr int faces = 32;  ///< the most
+
+  /// Faces `first` to `last` of the tile.
+  template <class Tile>
+  void load(const Tile& tile, int first, int last, Mean mean, double gamma) {
+    const auto absolute = [&](TileField field, int i) {
+      return device::absolute(tile.template load<R>(field, i));
+    };
+    for (int i = 0; first + i <= last + 4; i += lanes)
+      for (int row = 0; row < 5; ++row) {
+        const R left = tile.template load<R>(differing[row], first + i);
+        Lanes::store(_difference[row] + i, tile.template load<R>(differing[row], first + i + 1) - left);
+      }
+    for (int i = 0; first + i <= last + 3; i += lanes)
+      for (int row = 0; row < 3; ++row) {
+        const R right =
+            device::maximum(absolute(signals[row], first + i + 1), absolute(signals[row], first + i + 2));
+        Lanes::store(_fastest[row] + i, device::maximum(absolute(signals[row], first + i), right));
+      }
+    for (int i = 0; first + i <= last; i += lanes)
+      _eigensystem[i / lanes] = face_eigensystem<N, R>(mean, gamma, tile.template face_cell<R>(first + i + 2),
+                                                       tile.template face_cell<R>(first + i + 3));
+  }
+
+  /// What the flux at the faces from the `i`-th on sees, as `load_stencil` gives it.
+  template <class Tile>
+  [[nodiscard]] Stencil<R> stencil(const Tile& tile, int face, int i) const {
+    Stencil<R> s;
+    const auto difference = [&](int row, int k) { return Lanes::load(_difference[row] + i + k); };
+    for (int k = 0; k < 5; ++k) {
+      s.d_state[k] = {difference(0, k), difference(1, k), difference(2, k)};
+      s.d_flux_m[k] = difference(3, k);
+      s.d_flux_energy[k] = difference(4, k);
+    }
+    s.flux_sum = flux_sum<R>(tile, face);
+    return s;
+  }
+
+  /// As `stencil_speeds` gives them.
+  [[nodiscard]] Speeds<N> speeds(int i) const {
+    const auto fastest = [&](int row) {
+      return device::Convert<N>::from(
+          device::maximum(Lanes::load(_fastest[row] + i), Lanes::load(_fastest[row] + i + 3)));
+    };
+    return {fastest(0), fastest(1), fastest(2)};
+  }
+
+  [[nodiscard]] const Eigensystem<N>& eigensystem(int i) const { return _eigensystem[i / lanes]; }
+
+ private:
+  using Lanes = device::Access<R>;
+  static constexpr TileField differing[] = {TileField::rho, TileField::m, TileField::energy,
+                                            TileField::flux_m, TileField::flux_energy};
+  static constexpr TileField signals[] = {TileField::slow, TileField::u, TileField::fast};
+  static constexpr int slots = faces + 4 + lanes;
+
+  double _difference[5][slots];  ///< of slots first + i + 1 and first + i
+  double _fastest[3][slots];     ///< of slots first + i .. first + i + 2
+  Eigensystem<N> _eigensystem[faces / lanes];
+};
+
+/// Calls `take(face, flux)` for the faces `first` to `last` of a tile, `lanes` from `face` on at a time.
+/// Alpha is that of the stencil if `local`, else `alpha`.
+template <Reconstruction scheme, class N, class R, class Member, class Tile, class Take>
+KOKKOS_INLINE_FUNCTION void for_face_fluxes(const Member& member, const Tile& tile, int first, int last,
+                                            Mean mean, double gamma, bool local, const Speeds<N>& alpha,
+                                            const Take& take) {
+  constexpr int lanes = device::Access<R>::lanes;
+  if constexpr (Tile::on_host) {
+    using Chunk = FaceChunk<N, R>;
+    Chunk chunk;
+    for (int begin = first; begin <= last; begin += Chunk::faces) {
+      const int end = device::minimum(last, begin + Chunk::faces - 1);
+      chunk.load(tile, begin, end, mean, gamma);
+      for (int i = 0; begin + i <= end; i += lanes)
+        take(begin + i, weno5_face<scheme, N>(chunk.stencil(tile, begin + i, i), chunk.eigensystem(i),
+                                              local ? chunk.speeds(i) : alpha));
+    }
+  } else {
+    for (int face = first + member.team_rank() * lanes; face <= last; face += member.team_size() * lanes)
+      take(face, face_flux<scheme, N>(tile, face, load_stencil<R>(tile, face), mean, gamma,
+                                      local ? stencil_speeds<N, R>(tile, face) : alpha));
+  }
+}
+
+}  // namespace drogue::gas
