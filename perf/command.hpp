@@ -19,8 +19,12 @@ struct Command {
 Command list_command(CLI::App& program);
 Command run_command(CLI::App& program);
 Command table_command(CLI::App& program);
+Command work_precision_command(CLI::App& program);
 
 /// Throws Failure(no_backend) with the reason if `backend` cannot run here. Before Kokkos starts.
 void require(device::Backend backend);
+
+/// Throws Failure(usage) with the nearest of `valid` if `name` is none of them.
+void require_name(const std::string& what, const std::string& name, const std::vector<std::string>& valid);
 
 }  // namespace drogue::perf

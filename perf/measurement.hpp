@@ -34,7 +34,7 @@ struct Case {
   std::function<Sample()> prepare;
   /// Error of the state it ends in, against the oracle or an exact solution; called after the last sample.
   std::function<double()> error;
-  double bar;                    ///< largest error with which the timing counts
+  double bar;                         ///< largest error with which the timing counts
   std::function<Facts()> facts = {};  ///< called after the last sample, where there is one
 };
 

@@ -2,7 +2,6 @@
 #include <CLI/Formatter.hpp>
 #include <memory>
 
-#include "common/scene/nearest.hpp"
 #include "perf/command.hpp"
 #include "perf/record.hpp"
 #include "perf/tables/tables.hpp"
@@ -15,13 +14,6 @@ struct TableOptions {
   std::string app = "gas", backend = "auto";
   bool quick = false;
 };
-
-void require_name(const std::string& what, const std::string& name, const std::vector<std::string>& valid) {
-  for (const std::string& known : valid)
-    if (name == known) return;
-  throw Failure(ExitCode::usage,
-                "there is no " + what + " '" + name + "'; " + scene::suggestion(name, valid));
-}
 
 /// Block sizes and transfers, which need a backend and Kokkos.
 Table timed_table(const TableOptions& options, const std::vector<std::string>& kokkos) {

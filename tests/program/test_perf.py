@@ -30,7 +30,7 @@ class Record(perf_program.PerfTest):
         text = self.expect(0, "run", "--quick", "--filter", "dense-loop/1024$", "--out", "run.jsonl").stdout
         self.assertRegex(text, r"^gas-step/dense-loop/1024 +\d+\.\d+ us a step  \[.*\]  error \S+  passed\n$")
         record, = self.records("run.jsonl")
-        self.assertEqual(FIELDS, set(record))
+        self.assertEqual(FIELDS | {"facts"}, set(record))
         self.assert_timed(record, 7)
 
     def test_of_transfers(self):
@@ -86,6 +86,28 @@ class Occupancy(perf_program.PerfTest):
             self.assertEqual((blocks, registers), (facts["blocks"], facts["registers"]), name)
             self.assertLessEqual(facts["least_blocks"], facts["blocks"])
             self.assertLessEqual(facts["shared_bytes"], 48 * 1024)
+
+
+class WorkPrecision(perf_program.PerfTest):
+    def test_records(self):
+        text = self.expect(0, "work-precision", "--quick", "--backend", "serial", "--out", "runs.jsonl").stdout
+        records = self.records("runs.jsonl")
+        self.assertEqual(len(records), len(text.splitlines()))
+        errors = {}
+        for record in records:
+            facts = record["facts"]
+            self.assertEqual(("passed", "ok", "serial", "s per solution"),
+                             (record["check"], facts["status"], facts["backend"], record["unit"]))
+            self.assertEqual(f"gas-solution/{facts['problem']}/serial", record["case"].rsplit("/", 2)[0])
+            self.assertTrue(1 <= len(record["samples"]) <= 20)
+            self.assertGreater(facts["steps"], 10)
+            errors[facts["problem"], facts["weno"], facts["precision"], facts["cells"]] = record["error"]
+        self.assertEqual({"js", "z", "m", "teno5", "muscl-hancock"}, {scheme for _, scheme, *_ in errors})
+        # Smooth flow is where fifth order pays, and single precision costs nothing of it.
+        self.assertLess(30 * errors["entropy-wave", "z", "double", 40], errors["entropy-wave", "muscl-hancock", "double", 40])
+        for (problem, scheme, precision, cells), error in errors.items():
+            if precision == "split":
+                self.assertAlmostEqual(1.0, error / errors[problem, scheme, "double", cells], places=3)
 
 
 class Refusals(perf_program.PerfTest):

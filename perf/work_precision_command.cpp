@@ -1,0 +1,109 @@
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+
+#include "common/program/signals.hpp"
+#include "common/run/result_document.hpp"
+#include "common/run/statistics.hpp"
+#include "perf/command.hpp"
+#include "perf/gas_work_precision.hpp"
+#include "perf/record.hpp"
+
+namespace drogue::perf {
+namespace {
+
+struct WorkPrecisionOptions {
+  std::string out;
+  std::string app = "gas", backend = "auto";
+  bool quick = false;
+};
+
+std::vector<device::Backend> backends_of(const std::string& name) {
+  if (name != "auto") {
+    const device::Backend backend = device::backend_from_name(name).value();
+    require(backend);
+    return {backend};
+  }
+  require(device::fastest_backend());
+  std::vector<device::Backend> present;
+  for (const device::Backend backend : device::compiled_backends())
+    if (device::is_present(backend)) present.push_back(backend);
+  return present;
+}
+
+nlohmann::json to_json(const Solution& solution, const nlohmann::json& provenance) {
+  const bool ok = solution.run.code == ExitCode::ok;
+  const double error = ok ? solution.run.errors.at("l1_density") : 0.0;
+  const bool sound = ok && std::isfinite(error) && solution.run.conservation <= 1e-11;
+  const std::string backend(device::name(solution.backend));
+  Record record;
+  record.name = "gas-solution/" + solution.problem + "/" + backend + "/" + solution.scheme.label + "/" +
+                std::to_string(solution.cells);
+  record.unit_of_work = "solution";
+  record.bound = "time to the end of the run";
+  record.samples = solution.run.samples;
+  record.error = error;
+  // A scheme that loses a problem is a finding, not a measurement.
+  record.bar = sound ? error : -1.0;
+  return to_json(record, provenance,
+                 {{"problem", solution.problem},
+                  {"backend", backend},
+                  {"weno", solution.scheme.weno},
+                  {"weno_power", solution.weno_power},
+                  {"splitting", solution.scheme.splitting},
+                  {"time_scheme", solution.scheme.time},
+                  {"precision", solution.scheme.precision},
+                  {"cells", solution.cells},
+                  {"steps", solution.run.steps},
+                  {"status", run::status_name(solution.run.code)},
+                  {"message", solution.run.message}});
+}
+
+void print(const Solution& solution) {
+  std::printf("%-14s %-7s %-32s %6lld cells  ", solution.problem.c_str(),
+              std::string(device::name(solution.backend)).c_str(), solution.scheme.label.c_str(),
+              static_cast<long long>(solution.cells));
+  if (solution.run.code == ExitCode::ok)
+    std::printf("%10.4g s  L1 error %.4g\n", run::median(solution.run.samples),
+                solution.run.errors.at("l1_density"));
+  else
+    std::printf("%s\n", solution.run.message.c_str());
+  std::fflush(stdout);
+}
+
+ExitCode measure_solutions(const WorkPrecisionOptions& options, const std::vector<std::string>& kokkos) {
+  require_name("app", options.app, {"gas"});
+  const std::vector<device::Backend> backends = backends_of(options.backend);
+  const device::Runtime runtime(kokkos);
+  install_signal_handlers();
+  const nlohmann::json here = provenance(device::device_facts());
+  std::vector<nlohmann::json> lines;
+  const bool finished = gas_work_precision(backends, options.quick, [&](const Solution& solution) {
+    print(solution);
+    lines.push_back(to_json(solution, here));
+  });
+  // What a signal ended is kept as far as it came.
+  write_records(options.out, lines);
+  return finished ? ExitCode::ok : ExitCode::interrupted;
+}
+
+}  // namespace
+
+Command work_precision_command(CLI::App& program) {
+  const auto options = std::make_shared<WorkPrecisionOptions>();
+  CLI::App* app = program.add_subcommand(
+      "work-precision",
+      "Time to solution and error over meshes, schemes and backends, beside a second-order scheme");
+  app->add_option("--app", options->app, "Mini-app whose problems are run")->capture_default_str();
+  app->add_option("--backend", options->backend, "auto takes all that are present")
+      ->check(CLI::IsMember({"auto", "serial", "openmp", "cuda"}))
+      ->capture_default_str();
+  app->add_option("--out", options->out, "File for the records, one JSON line a run to solution");
+  app->add_flag("--quick", options->quick, "Two small meshes of two problems");
+  return {app,
+          [options](const std::vector<std::string>& kokkos) { return measure_solutions(*options, kokkos); }};
+}
+
+}  // namespace drogue::perf
