@@ -67,6 +67,8 @@ check_tools
 exec 9>"$deps/.lock"
 flock -n 9 || { say "waiting for another set-up in $deps to end" && flock 9; }
 python_environment
+picture_packages &
+pictures=$!
 [ "$deps/venv" -ef "$root/build/venv" ] || { mkdir -p "$root/build" && ln -sfn "$deps/venv" "$root/build/venv"; }
 build_kokkos host
 [ "$bundle" = no ] || build_kokkos bundle
@@ -78,3 +80,4 @@ if [ "$cuda" = yes ] && [ -n "$nvcc" ]; then
   build_kokkos cuda "$arch"
   [ "$bundle" = no ] || build_kokkos bundle-cuda "$arch"
 fi
+wait "$pictures"

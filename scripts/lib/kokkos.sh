@@ -1,17 +1,26 @@
 # Fetches, checks and builds Kokkos and Kokkos Kernels; read by setup.sh after common.sh.
 
-# python_environment: makes $deps/venv with the pinned packages for fetching and, unless told not to, for pictures.
+# python_environment: makes $deps/venv with the pinned packages for fetching; picture_packages has to follow.
 python_environment() {
-  local wanted python="$deps/venv/bin/python"
-  wanted="$(cat "$root/scripts/requirements.txt" <(printf '%s\n' "$FETCH_REQUIREMENTS") <(python3 --version) | sha256sum)"
-  if [ "$(cat "$deps/venv/.stamp" 2>/dev/null)" = "$wanted" ] && [ -x "$python" ]; then return 0; fi
+  environment_stamp="$(cat "$root/scripts/requirements.txt" <(printf '%s\n' "$FETCH_REQUIREMENTS") <(python3 --version) | sha256sum)"
+  if environment_is_whole; then return 0; fi
   say "making the Python environment"
   rm -rf "$deps/venv"
   run_logged venv python3 -m venv "$deps/venv"
   # shellcheck disable=SC2086  # one word a requirement
-  run_logged pip-tools "$python" -m pip install --quiet --disable-pip-version-check $FETCH_REQUIREMENTS
-  run_logged pip-pictures "$python" -m pip install --quiet --disable-pip-version-check -r "$root/scripts/requirements.txt"
-  printf '%s\n' "$wanted" >"$deps/venv/.stamp"
+  run_logged pip-tools "$deps/venv/bin/python" -m pip install --quiet --disable-pip-version-check $FETCH_REQUIREMENTS
+}
+
+environment_is_whole() {
+  [ "$(cat "$deps/venv/.stamp" 2>/dev/null)" = "$environment_stamp" ] && [ -x "$deps/venv/bin/python" ]
+}
+
+# picture_packages: adds what pictures are made with. The network and the disk are what it waits for, so it may run
+# beside a build.
+picture_packages() {
+  if environment_is_whole; then return 0; fi
+  run_logged pip-pictures "$deps/venv/bin/python" -m pip install --quiet --disable-pip-version-check -r "$root/scripts/requirements.txt"
+  printf '%s\n' "$environment_stamp" >"$deps/venv/.stamp"
 }
 
 # check_archive FILE: stops unless FILE is the pinned archive.
