@@ -23,15 +23,9 @@ std::optional<Backend> backend_from_name(std::string_view text) {
 }
 
 std::vector<Backend> compiled_backends() {
-  return {
-    Backend::serial,
-#if defined(DROGUE_HAVE_OPENMP)
-        Backend::openmp,
-#endif
-#if defined(KOKKOS_ENABLE_CUDA)
-        Backend::cuda,
-#endif
-  };
+#define DROGUE_LIST(backend) Backend::backend,
+  return {DROGUE_FOR_EACH_BACKEND(DROGUE_LIST)};
+#undef DROGUE_LIST
 }
 
 namespace {
@@ -56,7 +50,7 @@ bool is_present(Backend backend) {
 }
 
 Backend fastest_backend() {
-  Backend fastest = Backend::serial;
+  Backend fastest = compiled_backends().front();
   for (const Backend backend : compiled_backends())
     if (is_present(backend)) fastest = backend;
   return fastest;

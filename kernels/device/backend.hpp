@@ -5,6 +5,25 @@
 #include <string_view>
 #include <vector>
 
+/// DROGUE_FOR_EACH_BACKEND(X) is X(serial) X(openmp) X(cuda) for those that this build holds: for what is
+/// written once a backend and found by its name.
+#if defined(DROGUE_HAVE_SERIAL)
+#define DROGUE_ON_SERIAL(X) X(serial)
+#else
+#define DROGUE_ON_SERIAL(X)
+#endif
+#if defined(DROGUE_HAVE_OPENMP)
+#define DROGUE_ON_OPENMP(X) X(openmp)
+#else
+#define DROGUE_ON_OPENMP(X)
+#endif
+#if defined(DROGUE_HAVE_CUDA)
+#define DROGUE_ON_CUDA(X) X(cuda)
+#else
+#define DROGUE_ON_CUDA(X)
+#endif
+#define DROGUE_FOR_EACH_BACKEND(X) DROGUE_ON_SERIAL(X) DROGUE_ON_OPENMP(X) DROGUE_ON_CUDA(X)
+
 namespace drogue::device {
 
 enum class Backend { serial, openmp, cuda };

@@ -1,26 +1,20 @@
 #include "kernels/device/ceilings.hpp"
 
-#include <Kokkos_Macros.hpp>
 #include <stdexcept>
 
 namespace drogue::device {
 
-std::unique_ptr<CeilingKernel> create_ceiling_serial(Ceiling ceiling);
-std::unique_ptr<CeilingKernel> create_ceiling_openmp(Ceiling ceiling);
-std::unique_ptr<CeilingKernel> create_ceiling_cuda(Ceiling ceiling);
+#define DROGUE_DECLARE(backend) std::unique_ptr<CeilingKernel> create_ceiling_##backend(Ceiling ceiling);
+DROGUE_FOR_EACH_BACKEND(DROGUE_DECLARE)
+#undef DROGUE_DECLARE
 
 std::unique_ptr<CeilingKernel> create_ceiling(Backend backend, Ceiling ceiling) {
   switch (backend) {
-    case Backend::serial:
-      return create_ceiling_serial(ceiling);
-#if defined(DROGUE_HAVE_OPENMP)
-    case Backend::openmp:
-      return create_ceiling_openmp(ceiling);
-#endif
-#if defined(KOKKOS_ENABLE_CUDA)
-    case Backend::cuda:
-      return create_ceiling_cuda(ceiling);
-#endif
+#define DROGUE_CREATE(name) \
+  case Backend::name:       \
+    return create_ceiling_##name(ceiling);
+    DROGUE_FOR_EACH_BACKEND(DROGUE_CREATE)
+#undef DROGUE_CREATE
     default:
       throw std::invalid_argument("ceiling: this build lacks the backend");
   }

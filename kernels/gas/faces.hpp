@@ -16,20 +16,20 @@ class FaceChunk {
 
   /// Faces `first` to `last` of the tile.
   template <class Tile>
-  void load(const Tile& tile, int first, int last, Mean mean, double gamma) {
+  KOKKOS_FUNCTION void load(const Tile& tile, int first, int last, Mean mean, double gamma) {
     const auto absolute = [&](TileField field, int i) {
       return device::absolute(tile.template load<R>(field, i));
     };
     for (int i = 0; first + i <= last + 4; i += lanes)
       for (int row = 0; row < 5; ++row) {
-        const R left = tile.template load<R>(differing[row], first + i);
-        Lanes::store(_difference[row] + i, tile.template load<R>(differing[row], first + i + 1) - left);
+        const R left = tile.template load<R>(differing(row), first + i);
+        Lanes::store(_difference[row] + i, tile.template load<R>(differing(row), first + i + 1) - left);
       }
     for (int i = 0; first + i <= last + 3; i += lanes)
       for (int row = 0; row < 3; ++row) {
         const R right =
-            device::maximum(absolute(signals[row], first + i + 1), absolute(signals[row], first + i + 2));
-        Lanes::store(_fastest[row] + i, device::maximum(absolute(signals[row], first + i), right));
+            device::maximum(absolute(signal(row), first + i + 1), absolute(signal(row), first + i + 2));
+        Lanes::store(_fastest[row] + i, device::maximum(absolute(signal(row), first + i), right));
       }
     for (int i = 0; first + i <= last; i += lanes)
       _eigensystem[i / lanes] = face_eigensystem<N, R>(mean, gamma, tile.template face_cell<R>(first + i + 2),
@@ -38,7 +38,7 @@ class FaceChunk {
 
   /// What the flux at the faces from the `i`-th on sees, as `load_stencil` gives it.
   template <class Tile>
-  [[nodiscard]] Stencil<R> stencil(const Tile& tile, int face, int i) const {
+  [[nodiscard]] KOKKOS_FUNCTION Stencil<R> stencil(const Tile& tile, int face, int i) const {
     Stencil<R> s;
     const auto difference = [&](int row, int k) { return Lanes::load(_difference[row] + i + k); };
     for (int k = 0; k < 5; ++k) {
@@ -51,7 +51,7 @@ class FaceChunk {
   }
 
   /// As `stencil_speeds` gives them.
-  [[nodiscard]] Speeds<N> speeds(int i) const {
+  [[nodiscard]] KOKKOS_FUNCTION Speeds<N> speeds(int i) const {
     const auto fastest = [&](int row) {
       return device::Convert<N>::from(
           device::maximum(Lanes::load(_fastest[row] + i), Lanes::load(_fastest[row] + i + 3)));
@@ -59,13 +59,20 @@ class FaceChunk {
     return {fastest(0), fastest(1), fastest(2)};
   }
 
-  [[nodiscard]] const Eigensystem<N>& eigensystem(int i) const { return _eigensystem[i / lanes]; }
+  [[nodiscard]] KOKKOS_FUNCTION const Eigensystem<N>& eigensystem(int i) const {
+    return _eigensystem[i / lanes];
+  }
 
  private:
   using Lanes = device::Access<R>;
-  static constexpr TileField differing[] = {TileField::rho, TileField::m, TileField::energy,
-                                            TileField::flux_m, TileField::flux_energy};
-  static constexpr TileField signals[] = {TileField::slow, TileField::u, TileField::fast};
+
+  // Functions: nvcc finds no arrays of a class in code that a device might run.
+  /// Rows whose differences the flux sees, in the order of TileField.
+  KOKKOS_FUNCTION static constexpr TileField differing(int row) { return static_cast<TileField>(row); }
+  KOKKOS_FUNCTION static constexpr TileField signal(int row) {
+    return row == 0 ? TileField::slow : row == 1 ? TileField::u : TileField::fast;
+  }
+
   static constexpr int slots = faces + 4 + lanes;
 
   double _difference[5][slots];  ///< of slots first + i + 1 and first + i

@@ -1,6 +1,5 @@
 #include "kernels/gas/solver.hpp"
 
-#include <Kokkos_Macros.hpp>
 #include <new>
 #include <stdexcept>
 #include <string>
@@ -11,9 +10,7 @@ namespace drogue::gas {
 #define DROGUE_DECLARE(backend)                                                  \
   std::unique_ptr<Solver> create_solver_##backend(const Parameters& parameters); \
   std::unique_ptr<Solver> create_seed_solver_##backend(const Parameters& parameters);
-DROGUE_DECLARE(serial)
-DROGUE_DECLARE(openmp)
-DROGUE_DECLARE(cuda)
+DROGUE_FOR_EACH_BACKEND(DROGUE_DECLARE)
 #undef DROGUE_DECLARE
 
 namespace {
@@ -35,16 +32,11 @@ void check(const Parameters& p) {
 
 std::unique_ptr<Solver> make_solver(device::Backend backend, const Parameters& parameters) {
   switch (backend) {
-    case device::Backend::serial:
-      return create_solver_serial(parameters);
-#if defined(DROGUE_HAVE_OPENMP)
-    case device::Backend::openmp:
-      return create_solver_openmp(parameters);
-#endif
-#if defined(KOKKOS_ENABLE_CUDA)
-    case device::Backend::cuda:
-      return create_solver_cuda(parameters);
-#endif
+#define DROGUE_CREATE(name)   \
+  case device::Backend::name: \
+    return create_solver_##name(parameters);
+    DROGUE_FOR_EACH_BACKEND(DROGUE_CREATE)
+#undef DROGUE_CREATE
     default:
       throw std::invalid_argument("gas solver: this build lacks the backend");
   }
@@ -52,16 +44,11 @@ std::unique_ptr<Solver> make_solver(device::Backend backend, const Parameters& p
 
 std::unique_ptr<Solver> make_seed_solver(device::Backend backend, const Parameters& parameters) {
   switch (backend) {
-    case device::Backend::serial:
-      return create_seed_solver_serial(parameters);
-#if defined(DROGUE_HAVE_OPENMP)
-    case device::Backend::openmp:
-      return create_seed_solver_openmp(parameters);
-#endif
-#if defined(KOKKOS_ENABLE_CUDA)
-    case device::Backend::cuda:
-      return create_seed_solver_cuda(parameters);
-#endif
+#define DROGUE_CREATE(name)   \
+  case device::Backend::name: \
+    return create_seed_solver_##name(parameters);
+    DROGUE_FOR_EACH_BACKEND(DROGUE_CREATE)
+#undef DROGUE_CREATE
     default:
       throw std::invalid_argument("gas solver: this build lacks the backend");
   }
