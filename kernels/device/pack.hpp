@@ -92,6 +92,8 @@ struct Access {
   KOKKOS_INLINE_FUNCTION static R load(const Element* pointer) { return *pointer; }
   KOKKOS_INLINE_FUNCTION static void store(Element* pointer, R value) { *pointer = value; }
   KOKKOS_INLINE_FUNCTION static Element lane(R value, int) { return value; }
+  /// The values that `lanes` consecutive indices name.
+  KOKKOS_INLINE_FUNCTION static R gather(const Element* values, const int* index) { return values[*index]; }
 };
 
 #if DROGUE_HOST_VECTORS
@@ -191,6 +193,11 @@ struct Access<Pack<T, L>> {
   }
   static void store(T* pointer, Pack<T, L> value) { __builtin_memcpy(pointer, &value.v, sizeof(value.v)); }
   static T lane(Pack<T, L> value, int k) { return value.v[k]; }
+  static Pack<T, L> gather(const T* values, const int* index) {
+    Pack<T, L> gathered;
+    for (int k = 0; k < L; ++k) gathered.v[k] = values[index[k]];
+    return gathered;
+  }
 };
 
 /// Doubles in the widest vector register of the target.

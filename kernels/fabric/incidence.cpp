@@ -1,0 +1,115 @@
+#include "kernels/fabric/incidence.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace drogue::fabric {
+
+namespace {
+
+double squared_distance(const Vector& a, const Vector& b) {
+  const double x = b[0] - a[0], y = b[1] - a[1], z = b[2] - a[2];
+  return x * x + y * y + z * z;
+}
+
+/// 1 / area from squared edge lengths, as the difference of two products: exact for the slimmest triangles
+/// too.
+double inverse_area(const Vector& a, const Vector& b, const Vector& c) {
+  const Vector u = {b[0] - a[0], b[1] - a[1], b[2] - a[2]}, v = {c[0] - a[0], c[1] - a[1], c[2] - a[2]};
+  const double x = u[1] * v[2] - u[2] * v[1], y = u[2] * v[0] - u[0] * v[2], z = u[0] * v[1] - u[1] * v[0];
+  return 2.0 / std::sqrt(x * x + y * y + z * z);
+}
+
+/// Each edge of the triangles once.
+std::set<std::array<int, 2>> edges_of(const Mesh& mesh) {
+  std::set<std::array<int, 2>> edges;
+  for (const auto& t : mesh.triangles)
+    for (std::size_t k = 0; k < 3; ++k)
+      edges.insert({std::min(t[k], t[(k + 1) % 3]), std::max(t[k], t[(k + 1) % 3])});
+  return edges;
+}
+
+template <int neighbours, int values>
+struct Entry {
+  std::array<int, neighbours> neighbour;
+  std::array<double, values> value;
+};
+
+template <int neighbours, int values>
+Slots<neighbours, values> sliced(const std::vector<std::vector<Entry<neighbours, values>>>& of_vertex) {
+  Slots<neighbours, values> slots;
+  const std::size_t n = of_vertex.size(), slices = (n + slice - 1) / slice;
+  slots.first.push_back(0);
+  for (std::size_t s = 0; s < slices; ++s) {
+    std::size_t most = 0;
+    for (std::size_t i = s * slice; i < std::min(n, (s + 1) * slice); ++i)
+      most = std::max(most, of_vertex[i].size());
+    for (std::size_t k = 0; k < most; ++k)
+      for (std::size_t i = s * slice; i < (s + 1) * slice; ++i) {
+        const bool there = i < n && k < of_vertex[i].size();
+        for (std::size_t a = 0; a < neighbours; ++a)
+          slots.neighbour[a].push_back(there ? of_vertex[i][k].neighbour[a] : static_cast<int>(i));
+        for (std::size_t a = 0; a < values; ++a)
+          slots.value[a].push_back(there ? of_vertex[i][k].value[a] : 0.0);
+      }
+    slots.first.push_back(slots.first.back() + static_cast<int>(most));
+  }
+  return slots;
+}
+
+}  // namespace
+
+TriangleSlots triangle_slots(const Mesh& mesh, const Material& material) {
+  std::vector<std::vector<Entry<2, 4>>> of_vertex(mesh.rest.size());
+  if (material.model == Model::quadratic || material.model == Model::biquadratic)
+    for (const auto& t : mesh.triangles)
+      for (std::size_t k = 0; k < 3; ++k) {
+        const int j = t[(k + 1) % 3], l = t[(k + 2) % 3];
+        const Vector &a = mesh.rest[static_cast<std::size_t>(t[k])],
+                     &b = mesh.rest[static_cast<std::size_t>(j)], &c = mesh.rest[static_cast<std::size_t>(l)];
+        of_vertex[static_cast<std::size_t>(t[k])].push_back(
+            {{j, l},
+             {squared_distance(b, c), squared_distance(c, a), squared_distance(a, b),
+              inverse_area(a, b, c)}});
+      }
+  return sliced(of_vertex);
+}
+
+SpringSlots spring_slots(const Mesh& mesh, const Material& material) {
+  std::vector<std::vector<Entry<1, 2>>> of_vertex(mesh.rest.size());
+  const auto add = [&](int i, int j, double stiffness, double length) {
+    of_vertex[static_cast<std::size_t>(i)].push_back({{j}, {stiffness, length}});
+    of_vertex[static_cast<std::size_t>(j)].push_back({{i}, {stiffness, length}});
+  };
+  const auto rest_length = [&](int i, int j) {
+    return std::sqrt(
+        squared_distance(mesh.rest[static_cast<std::size_t>(i)], mesh.rest[static_cast<std::size_t>(j)]));
+  };
+  if (material.model == Model::edge || material.model == Model::linear_vector) {
+    const bool of_vectors = material.model == Model::linear_vector;
+    for (const auto& [i, j] : edges_of(mesh))
+      add(i, j, material.stiffness, of_vectors ? 0.0 : rest_length(i, j));
+  }
+  for (const auto& [i, j] : mesh.lines) {
+    const double length = rest_length(i, j);
+    add(i, j, material.axial_stiffness / length, length);
+  }
+  return sliced(of_vertex);
+}
+
+std::vector<Vector> rest_pull(const Mesh& mesh, const Material& material) {
+  if (material.model != Model::linear_vector) return {};
+  std::vector<Vector> pull(mesh.rest.size(), Vector{});
+  for (const auto& edge : edges_of(mesh)) {
+    const auto i = static_cast<std::size_t>(edge[0]), j = static_cast<std::size_t>(edge[1]);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double force = material.stiffness * (mesh.rest[j][axis] - mesh.rest[i][axis]);
+      pull[i][axis] -= force;
+      pull[j][axis] += force;
+    }
+  }
+  return pull;
+}
+
+}  // namespace drogue::fabric

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <vector>
+
+#include "kernels/fabric/parameters.hpp"
+
+namespace drogue::fabric {
+
+/// Vertices come in slices, and of a slice all the first neighbours lie side by side, then all the second
+/// ones (sliced ELLPACK, Monakov et al. 2010): threads of a warp, or lanes of a register, read consecutive
+/// numbers.
+inline constexpr int slice = 32;
+
+/// What each vertex is part of, as its kernel gathers it. Slot k of vertex i lies at
+/// (first[i / slice] + k) * slice + i % slice. A vertex with fewer slots than its slice has neutral ones: its
+/// own number and no stiffness.
+template <int neighbours, int values>
+struct Slots {
+  std::vector<int> first;  ///< of every slice, and the end
+  std::array<std::vector<int>, neighbours> neighbour;
+  std::array<std::vector<double>, values> value;
+};
+
+/// Triangles of every vertex: the other two vertices in the triangle's order; L^2 of the edges opposite the
+/// vertex itself and opposite those two, m^2, and the inverse area, 1/m^2.
+using TriangleSlots = Slots<2, 4>;
+
+/// Springs of every vertex: the other end; stiffness, N/m, and length at rest, m.
+using SpringSlots = Slots<1, 2>;
+
+/// Empty for the models that are made of springs.
+[[nodiscard]] TriangleSlots triangle_slots(const Mesh& mesh, const Material& material);
+
+/// Lines, and in models made of springs the edges of triangles, an edge of two triangles once. A spring of a
+/// vector is one of length zero that a dead force stretches: `rest_pull`.
+[[nodiscard]] SpringSlots spring_slots(const Mesh& mesh, const Material& material);
+
+/// -sum k (X_j - X_i) of the springs of every vertex, N; empty but for Model::linear_vector.
+[[nodiscard]] std::vector<Vector> rest_pull(const Mesh& mesh, const Material& material);
+
+}  // namespace drogue::fabric

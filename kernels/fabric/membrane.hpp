@@ -1,0 +1,65 @@
+#pragma once
+
+#include "kernels/device/pack.hpp"
+#include "kernels/fabric/parameters.hpp"
+
+namespace drogue::fabric {
+
+/// A value an edge of a triangle; edge e lies opposite vertex e.
+template <class R>
+struct Edges {
+  R of[3];
+};
+
+/// dW/dq_e + dW/dq_e of the membrane energy W = A [(lambda + 2G)/2 tr(E)^2 - 2G det(E)] with Green's strain
+/// E: its trace is sum(n_e q_e) / (16 A^2), n_e the sum of the other two L^2 less its own, and its
+/// determinant (Q^2 - 2 sum(q_e^2)) / (64 A^2), Q = sum(q_e). `q` is l^2 - L^2 of the edges, `rest` L^2, m^2;
+/// an inverse area of zero stands for no triangle. N/m. Delingette 2008, section 3, in the form of fabric.md
+/// section 1 without stored coefficients.
+template <class R>
+KOKKOS_INLINE_FUNCTION Edges<R> edge_tensions(const Moduli& m, const Edges<R>& q, const Edges<R>& rest,
+                                              R inverse_area) {
+  const R sum_rest = rest.of[0] + rest.of[1] + rest.of[2];
+  const R n0 = sum_rest - 2.0 * rest.of[0], n1 = sum_rest - 2.0 * rest.of[1],
+          n2 = sum_rest - 2.0 * rest.of[2];
+  const R w = 0.0625 * inverse_area;
+  const R volumetric =
+      (2.0 * (m.lambda + m.two_g)) * (w * (w * inverse_area)) * (n0 * q.of[0] + n1 * q.of[1] + n2 * q.of[2]);
+  const R shear = m.two_g * w;
+  const R all = q.of[0] + q.of[1] + q.of[2];
+  return {{volumetric * n0 + shear * (2.0 * q.of[0] - all), volumetric * n1 + shear * (2.0 * q.of[1] - all),
+           volumetric * n2 + shear * (2.0 * q.of[2] - all)}};
+}
+
+/// Tension of each edge, N/m: the force on a vertex is that of an edge times the vector to its other vertex.
+/// `now` and `rest` are squared lengths.
+template <Model model, class R>
+KOKKOS_INLINE_FUNCTION Edges<R> membrane_tensions(const Moduli& m, const Edges<R>& now, const Edges<R>& rest,
+                                                  R inverse_area) {
+  Edges<R> q;
+  if constexpr (model == Model::biquadratic) {
+    for (int e = 0; e < 3; ++e) q.of[e] = now.of[e] - rest.of[e];
+    return edge_tensions(m, q, rest, inverse_area);
+  } else {
+    static_assert(model == Model::quadratic, "springs along edges have no triangles");
+    // The same energy of q = 2 L (l - L): dW/dl = dW/dq 2 L, and the edge vector is l long.
+    R ratio[3];
+    for (int e = 0; e < 3; ++e) {
+      const R product = device::square_root(rest.of[e] * now.of[e]);
+      q.of[e] = 2.0 * (product - rest.of[e]);
+      ratio[e] = device::select(now.of[e] > R(0.0), product / now.of[e], R(0.0));
+    }
+    Edges<R> s = edge_tensions(m, q, rest, inverse_area);
+    for (int e = 0; e < 3; ++e) s.of[e] = ratio[e] * s.of[e];
+    return s;
+  }
+}
+
+/// Tension of a spring of stiffness `k` (N/m) and length at rest `rest` (m), N/m; `now` is its squared
+/// length. None where it has no length, or no direction.
+template <class R>
+KOKKOS_INLINE_FUNCTION R spring_tension(R k, R now, R rest) {
+  return device::select(now > R(0.0), k * (R(1.0) - rest / device::square_root(now)), R(0.0));
+}
+
+}  // namespace drogue::fabric

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace drogue::fabric {
+
+/// How cloth resists deformation.
+enum class Model {
+  linear_vector,  ///< Model I: springs of vectors; not invariant under rotation, for linear analysis alone
+  edge,           ///< Model II: springs of lengths along the edges
+  quadratic,      ///< Delingette 2008: tensile and angular springs, energy quadratic in the lengths
+  biquadratic,    ///< Delingette 2008: quadratic in the squared lengths; equals St Venant-Kirchhoff
+};
+
+enum class Integrator { rk4, verlet };
+
+/// What cloth and strings are made of. `membrane_modulus` is Young's modulus times thickness.
+struct Material {
+  Model model = Model::biquadratic;
+  double membrane_modulus = 1000.0;  ///< N/m; quadratic and biquadratic
+  double poisson = 0.3;              ///< -1 .. 1/2, quadratic and biquadratic
+  double stiffness = 1000.0;         ///< N/m an edge; linear_vector and edge
+  double axial_stiffness = 0.0;      ///< E A of strings, N
+};
+
+/// Lame's first constant and twice the shear modulus of plane stress, N/m. The dissertation's "mu" is the
+/// latter.
+struct Moduli {
+  double lambda, two_g;
+};
+
+[[nodiscard]] constexpr Moduli moduli(double membrane_modulus, double poisson) {
+  return {membrane_modulus * poisson / (1.0 - poisson * poisson), membrane_modulus / (1.0 + poisson)};
+}
+
+using Vector = std::array<double, 3>;
+
+/// Cloth and strings by the numbers of their vertices.
+struct Mesh {
+  std::vector<Vector> rest;  ///< m
+  std::vector<std::array<int, 3>> triangles;
+  std::vector<std::array<int, 2>> lines;  ///< pieces of strings; no edges of triangles
+};
+
+/// Everything a fabric solver needs to know but the initial state.
+struct Parameters {
+  Mesh mesh;
+  Material material;
+  std::vector<double> mass;  ///< of every vertex, kg, > 0
+  std::vector<std::uint8_t>
+      pinned;  ///< of every vertex: 1 keeps x, 2 keeps y, 4 keeps z at its velocity; may be empty
+  std::vector<Vector> load;  ///< dead force on every vertex, N; may be empty
+  Vector gravity{};          ///< m/s^2
+  double damping = 0.0;      ///< acceleration -damping times velocity, 1/s
+  Integrator integrator = Integrator::rk4;
+  double dt = 0.0;  ///< s, > 0
+};
+
+}  // namespace drogue::fabric

@@ -1,0 +1,83 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "kernels/device/replay.hpp"
+#include "kernels/fabric/solver.hpp"
+#include "kernels/fabric/step.hpp"
+
+namespace drogue::fabric {
+
+template <class ExecutionSpace, Model model>
+struct ForceFunctor {
+  using R = std::conditional_t<device::is_host<ExecutionSpace>, device::HostPack<double>, double>;
+  Cloth<ExecutionSpace> cloth;
+  PointsView<ExecutionSpace> x, out;
+
+  KOKKOS_FUNCTION void operator()(const int pack) const {
+    const int i = pack * device::Access<R>::lanes;
+    store_points(out, i, force<model, R>(cloth, x, i));
+  }
+};
+
+/// A solver of one model on one backend.
+template <class ExecutionSpace, Model model>
+class SolverOn final : public Solver {
+ public:
+  using Points = PointsView<ExecutionSpace>;
+
+  explicit SolverOn(const Parameters& p);
+
+  void upload(std::span<const Vector> positions, std::span<const Vector> velocities) override {
+    to_device(positions, _x);
+    to_device(velocities, _v);
+  }
+  void download(std::span<Vector> positions, std::span<Vector> velocities) override {
+    to_host(_x, positions);
+    to_host(_v, velocities);
+  }
+  void advance(std::int64_t steps) override;
+  void forces(std::span<Vector> forces) override {
+    launch("drogue::fabric::force", ForceFunctor<ExecutionSpace, model>{_cloth, _x, _next});
+    to_host(_next, forces);
+  }
+
+ private:
+  static constexpr int lanes = device::Access<
+      std::conditional_t<device::is_host<ExecutionSpace>, device::HostPack<double>, double>>::lanes;
+
+  [[nodiscard]] Points points(const std::string& label) const {
+    return Points(label, static_cast<std::size_t>(_padded));
+  }
+
+  template <class Functor>
+  void launch(const char* label, const Functor& functor) const {
+    static_assert(Kokkos::SpaceAccessibility<ExecutionSpace,
+                                             typename PointsView<ExecutionSpace>::memory_space>::accessible);
+    const Kokkos::RangePolicy<ExecutionSpace> packs(_instance.space(), 0, _padded / lanes);
+    Kokkos::parallel_for(
+        label, Kokkos::Experimental::require(packs, Kokkos::Experimental::WorkItemProperty::HintLightWeight),
+        functor);
+  }
+
+  void runge_kutta_step() const;
+  void kick_and_drift(double kick, double drift);
+  void to_device(std::span<const Vector> from, const Points& to) const;
+  void to_host(const Points& from, std::span<Vector> to) const;
+  template <class Slots, class Views>
+  void copy_slots(const Slots& from, Views& to) const;
+
+  device::Instance<ExecutionSpace> _instance;
+  int _vertices, _padded;  ///< in whole slices
+  Integrator _integrator;
+  double _dt, _damping;
+  Cloth<ExecutionSpace> _cloth;
+  Points _x, _v, _next;
+  Points _velocity, _other, _sum_x, _sum_v;  ///< of Runge and Kutta alone
+  std::optional<device::Replay<ExecutionSpace>> _step;
+};
+
+}  // namespace drogue::fabric
+
+#include "kernels/fabric/solver_on_parts.hpp"

@@ -1,0 +1,124 @@
+#pragma once
+
+// Definitions of SolverOn.
+
+#include "kernels/fabric/solver_on.hpp"
+
+namespace drogue::fabric {
+
+template <class ExecutionSpace, Model model>
+SolverOn<ExecutionSpace, model>::SolverOn(const Parameters& p)
+    : _instance(static_cast<int>(1 + p.mesh.rest.size() / 512)),
+      _vertices(static_cast<int>(p.mesh.rest.size())),
+      _padded((_vertices + slice - 1) / slice * slice),
+      _integrator(p.integrator),
+      _dt(p.dt),
+      _damping(p.damping) {
+  const auto n = static_cast<std::size_t>(_vertices);
+  copy_slots(triangle_slots(p.mesh, p.material), _cloth.triangles);
+  copy_slots(spring_slots(p.mesh, p.material), _cloth.springs);
+  _cloth.moduli = moduli(p.material.membrane_modulus, p.material.poisson);
+  _cloth.gravity = {p.gravity[0], p.gravity[1], p.gravity[2]};
+  _cloth.damping = _integrator == Integrator::rk4 ? p.damping : 0.0;
+  _cloth.inverse_mass =
+      decltype(_cloth.inverse_mass)("drogue::fabric::inverse_mass", static_cast<std::size_t>(_padded));
+  const auto inverse_mass = Kokkos::create_mirror_view(_cloth.inverse_mass);
+  std::vector<Vector> free(n, Vector{1.0, 1.0, 1.0});
+  for (std::size_t i = 0; i < n; ++i) {
+    inverse_mass(i) = 1.0 / p.mass[i];
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      if (!p.pinned.empty() && (p.pinned[i] >> axis & 1U) != 0U) free[i][axis] = 0.0;
+  }
+  Kokkos::deep_copy(_cloth.inverse_mass, inverse_mass);
+  // Vertices that fill the last slice have no mass and no freedom: they stay.
+  _cloth.free = points("drogue::fabric::free");
+  to_device(free, _cloth.free);
+  std::vector<Vector> load = rest_pull(p.mesh, p.material);
+  if (load.empty())
+    load = p.load;
+  else if (!p.load.empty())
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t axis = 0; axis < 3; ++axis) load[i][axis] += p.load[i][axis];
+  if (!load.empty()) {
+    _cloth.load = points("drogue::fabric::load");
+    to_device(load, _cloth.load);
+  }
+  _x = points("drogue::fabric::positions");
+  _v = points("drogue::fabric::velocities");
+  _next = points("drogue::fabric::next");
+  if (_integrator != Integrator::rk4) return;
+  _velocity = points("drogue::fabric::stage_velocities");
+  _other = points("drogue::fabric::stage_positions");
+  _sum_x = points("drogue::fabric::sum_x");
+  _sum_v = points("drogue::fabric::sum_v");
+  _step.emplace(_instance, [this](const ExecutionSpace&) { runge_kutta_step(); });
+}
+
+template <class ExecutionSpace, Model model>
+void SolverOn<ExecutionSpace, model>::runge_kutta_step() const {
+  const Points at[] = {_x, _next, _other, _next}, next[] = {_next, _other, _next, _x};
+  for (int stage = 0; stage < 4; ++stage)
+    launch("drogue::fabric::rk4_stage",
+           RungeKuttaFunctor<ExecutionSpace, model>{_cloth, _x, _v, at[stage], _velocity, next[stage], _sum_x,
+                                                    _sum_v, _dt, stage});
+}
+
+template <class ExecutionSpace, Model model>
+void SolverOn<ExecutionSpace, model>::kick_and_drift(double kick, double drift) {
+  launch("drogue::fabric::verlet",
+         VerletFunctor<ExecutionSpace, model>{_cloth, _x, _v, _next, _damping, kick, drift});
+  std::swap(_x, _next);
+}
+
+template <class ExecutionSpace, Model model>
+void SolverOn<ExecutionSpace, model>::advance(std::int64_t steps) {
+  if (steps <= 0) return;
+  if (_integrator == Integrator::rk4) {
+    for (std::int64_t step = 0; step < steps; ++step) _step->launch();
+    return;
+  }
+  kick_and_drift(0.5 * _dt, _dt);
+  for (std::int64_t step = 1; step < steps; ++step) kick_and_drift(_dt, _dt);
+  kick_and_drift(0.5 * _dt, 0.0);
+}
+
+template <class ExecutionSpace, Model model>
+void SolverOn<ExecutionSpace, model>::to_device(std::span<const Vector> from, const Points& to) const {
+  const auto mirror = Kokkos::create_mirror_view(to);
+  Kokkos::deep_copy(mirror, to);
+  for (std::size_t i = 0; i < from.size(); ++i)
+    for (std::size_t axis = 0; axis < 3; ++axis) mirror(i, axis) = from[i][axis];
+  Kokkos::deep_copy(_instance.space(), to, mirror);
+  _instance.space().fence("drogue::fabric::to_device");
+}
+
+template <class ExecutionSpace, Model model>
+void SolverOn<ExecutionSpace, model>::to_host(const Points& from, std::span<Vector> to) const {
+  const auto mirror = Kokkos::create_mirror_view(from);
+  Kokkos::deep_copy(_instance.space(), mirror, from);
+  _instance.space().fence("drogue::fabric::to_host");
+  for (std::size_t i = 0; i < to.size(); ++i)
+    for (std::size_t axis = 0; axis < 3; ++axis) to[i][axis] = mirror(i, axis);
+}
+
+template <class ExecutionSpace, Model model>
+template <class Slots, class Views>
+void SolverOn<ExecutionSpace, model>::copy_slots(const Slots& from, Views& to) const {
+  const std::size_t slots = from.neighbour[0].size();
+  to.first = decltype(to.first)("drogue::fabric::first", from.first.size());
+  to.neighbour = decltype(to.neighbour)("drogue::fabric::neighbour", slots);
+  to.value = decltype(to.value)("drogue::fabric::rest", slots);
+  const auto first = Kokkos::create_mirror_view(to.first);
+  const auto neighbour = Kokkos::create_mirror_view(to.neighbour);
+  const auto value = Kokkos::create_mirror_view(to.value);
+  for (std::size_t k = 0; k < from.first.size(); ++k) first(k) = from.first[k];
+  for (std::size_t slot = 0; slot < slots; ++slot) {
+    for (std::size_t a = 0; a < from.neighbour.size(); ++a) neighbour(slot, a) = from.neighbour[a][slot];
+    for (std::size_t a = 0; a < from.value.size(); ++a) value(slot, a) = from.value[a][slot];
+  }
+  Kokkos::deep_copy(to.first, first);
+  Kokkos::deep_copy(to.neighbour, neighbour);
+  Kokkos::deep_copy(to.value, value);
+}
+
+}  // namespace drogue::fabric

@@ -1,0 +1,193 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "kernels/fabric/solver.hpp"
+#include "kernels/reference/fabric/membrane.hpp"
+#include "tests/support/fabric_mesh.hpp"
+
+// How vertices move: orders of accuracy, what is kept, what is held.
+
+namespace drogue::fabric {
+namespace {
+
+using testing::random_patch;
+using testing::shaken;
+
+constexpr auto backend = device::Backend::DROGUE_TEST_BACKEND;
+
+struct State {
+  std::vector<Vector> x, v;
+};
+
+State moved(const Parameters& p, State state, std::int64_t steps) {
+  const auto solver = create_solver(backend, p);
+  solver->upload(state.x, state.v);
+  solver->advance(steps);
+  solver->download(state.x, state.v);
+  return state;
+}
+
+/// Two masses of 2 kg at the ends of a string of 1 m and 25 N: they oscillate at 5 rad/s about their middle.
+Parameters oscillator(Integrator integrator, double dt) {
+  Parameters p;
+  p.mesh.rest = {{0, 0, 0}, {1, 0, 0}};
+  p.mesh.lines = {{0, 1}};
+  p.material.axial_stiffness = 25.0;
+  p.mass = {2.0, 2.0};
+  p.integrator = integrator;
+  p.dt = dt;
+  return p;
+}
+
+/// Of the stretch 0.2 cos(5 t) at t = 4 pi / 5 + 0.1.
+double oscillator_error(Integrator integrator, int steps) {
+  const double end = 0.8 * std::numbers::pi + 0.1;
+  const State start{{{-0.1, 0, 0}, {1.1, 0, 0}}, {{0, 0, 0}, {0, 0, 0}}};
+  const State now = moved(oscillator(integrator, end / steps), start, steps);
+  return std::abs(now.x[1][0] - now.x[0][0] - 1.0 - 0.2 * std::cos(5.0 * end));
+}
+
+double order(Integrator integrator) {
+  return std::log2(oscillator_error(integrator, 100) / oscillator_error(integrator, 1600)) / 4.0;
+}
+
+TEST(FabricMotion, RungeKuttaIsOfFourthOrder) { EXPECT_NEAR(order(Integrator::rk4), 4.0, 0.1); }
+
+TEST(FabricMotion, VerletIsOfSecondOrder) { EXPECT_NEAR(order(Integrator::verlet), 2.0, 0.05); }
+
+double energy_of(const Parameters& p, const State& s) {
+  double sum = reference::energy(p.material, p.mesh, s.x);
+  for (std::size_t i = 0; i < s.v.size(); ++i)
+    for (const double v : s.v[i]) sum += 0.5 * p.mass[i] * v * v;
+  return sum;
+}
+
+TEST(FabricMotion, RungeKuttaLosesTheEnergyThatItsAmplificationSays) {
+  // |G|^2 = 1 - z^6/72 + z^8/576 with z = omega dt.
+  const State start{{{-0.1, 0, 0}, {1.1, 0, 0}}, {{0, 0, 0}, {0, 0, 0}}};
+  for (const double z : {0.2, 0.5, 1.0}) {
+    const Parameters p = oscillator(Integrator::rk4, z / 5.0);
+    const int steps = 200;
+    const double kept = energy_of(p, moved(p, start, steps)) / energy_of(p, start);
+    const double expected = std::pow(1.0 - std::pow(z, 6) / 72.0 + std::pow(z, 8) / 576.0, steps);
+    EXPECT_NEAR(kept, expected, 1e-10);
+  }
+}
+
+TEST(FabricMotion, VerletKeepsItsEnergyBounded) {
+  const State start{{{-0.1, 0, 0}, {1.1, 0, 0}}, {{0, 0, 0}, {0, 0, 0}}};
+  const Parameters p = oscillator(Integrator::verlet, 0.2 / 5.0);
+  const auto solver = create_solver(backend, p);
+  solver->upload(start.x, start.v);
+  double least = 1.0, most = 1.0;
+  for (int k = 0; k < 100; ++k) {
+    solver->advance(1000);
+    State now = start;
+    solver->download(now.x, now.v);
+    const double kept = energy_of(p, now) / energy_of(p, start);
+    least = std::min(least, kept), most = std::max(most, kept);
+  }
+  EXPECT_GT(least, 1.0 - 0.2 * 0.2 / 4.0);
+  EXPECT_LT(most, 1.0 + 0.2 * 0.2 / 4.0);
+}
+
+TEST(FabricMotion, AStepBeyondTheStabilityLimitGrows) {
+  const State start{{{-0.1, 0, 0}, {1.1, 0, 0}}, {{0, 0, 0}, {0, 0, 0}}};
+  const auto grows = [&](Integrator integrator, double z) {
+    const Parameters p = oscillator(integrator, z / 5.0);
+    return energy_of(p, moved(p, start, 400)) > 10.0 * energy_of(p, start);
+  };
+  EXPECT_FALSE(grows(Integrator::rk4, 2.82));
+  EXPECT_TRUE(grows(Integrator::rk4, 2.86));
+  EXPECT_FALSE(grows(Integrator::verlet, 1.99));
+  EXPECT_TRUE(grows(Integrator::verlet, 2.01));
+}
+
+Parameters patch(Model model, Integrator integrator) {
+  Parameters p;
+  p.mesh = random_patch(11, 8, 3);
+  p.material.model = model;
+  p.material.axial_stiffness = 500.0;
+  p.mass.assign(p.mesh.rest.size(), 0.01);
+  p.integrator = integrator;
+  p.dt = 2e-4;
+  return p;
+}
+
+/// What a free patch gains of linear and of angular momentum in 0.1 s, the largest over the axes.
+std::pair<double, double> momenta_gained(Parameters p, std::int64_t steps) {
+  p.dt = 0.1 / static_cast<double>(steps);
+  const State start{shaken(p.mesh.rest, 0.1, 1),
+                    shaken(std::vector<Vector>(p.mesh.rest.size(), Vector{}), 1.0, 2)};
+  const State end = moved(p, start, steps);
+  std::pair<double, double> gained{0.0, 0.0};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::size_t next = (axis + 1) % 3, after = (axis + 2) % 3;
+    double momentum = 0.0, angular = 0.0;
+    for (std::size_t i = 0; i < p.mass.size(); ++i) {
+      momentum += p.mass[i] * (end.v[i][axis] - start.v[i][axis]);
+      angular += p.mass[i] * (end.x[i][next] * end.v[i][after] - end.x[i][after] * end.v[i][next] -
+                              start.x[i][next] * start.v[i][after] + start.x[i][after] * start.v[i][next]);
+    }
+    gained.first = std::max(gained.first, std::abs(momentum));
+    gained.second = std::max(gained.second, std::abs(angular));
+  }
+  return gained;
+}
+
+TEST(FabricMotion, AFreePatchKeepsItsMomenta) {
+  for (const Model model : {Model::edge, Model::quadratic, Model::biquadratic}) {
+    const auto [momentum, angular] = momenta_gained(patch(model, Integrator::verlet), 500);
+    EXPECT_LT(momentum, 1e-12);
+    EXPECT_LT(angular, 1e-11);
+    // Runge and Kutta keep angular momentum to the order of their method.
+    const auto coarse = momenta_gained(patch(model, Integrator::rk4), 500);
+    const auto fine = momenta_gained(patch(model, Integrator::rk4), 1000);
+    EXPECT_LT(coarse.first, 1e-12);
+    EXPECT_GT(std::log2(coarse.second / fine.second), 3.8) << coarse.second;
+  }
+}
+
+TEST(FabricMotion, PinnedAxesKeepTheirVelocityAndOthersFall) {
+  for (const Integrator integrator : {Integrator::rk4, Integrator::verlet}) {
+    Parameters p = patch(Model::biquadratic, integrator);
+    p.gravity = {0.0, 0.0, -10.0};
+    p.damping = 3.0;
+    p.pinned.assign(p.mass.size(), 0);
+    p.pinned[5] = 7;
+    p.pinned[9] = 2;
+    State start{p.mesh.rest, std::vector<Vector>(p.mass.size(), Vector{})};
+    start.v[5] = {0.5, -0.25, 1.0};
+    const State end = moved(p, start, 100);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      EXPECT_EQ(end.v[5][axis], start.v[5][axis]);
+      // A hundred sums, each rounded.
+      EXPECT_NEAR(end.x[5][axis], start.x[5][axis] + 0.02 * start.v[5][axis], 100 * 2.2e-16 * 8.0);
+    }
+    EXPECT_EQ(end.x[9][1], start.x[9][1]);
+    EXPECT_NE(end.x[9][0], start.x[9][0]);
+    EXPECT_LT(end.x.back()[2], start.x.back()[2] - 1e-3);
+  }
+}
+
+TEST(FabricMotion, DampedFallIsThatOfTheFormula) {
+  for (const Integrator integrator : {Integrator::rk4, Integrator::verlet}) {
+    Parameters p;
+    p.mesh.rest = {{0, 0, 0}};
+    p.mass = {0.3};
+    p.gravity = {0.0, 1.0, -9.81};
+    p.damping = 2.0;
+    p.integrator = integrator;
+    p.dt = 1e-3;
+    const State end = moved(p, {{{0, 0, 0}}, {{1.0, 0, 0}}}, 1000);
+    const double decay = std::exp(-2.0), bar = integrator == Integrator::rk4 ? 1e-12 : 1e-6;
+    EXPECT_NEAR(end.v[0][0], decay, bar);
+    EXPECT_NEAR(end.v[0][2], -9.81 / 2.0 * (1.0 - decay), 5 * bar);
+    EXPECT_NEAR(end.x[0][1], 0.5 * (1.0 - 0.5 * (1.0 - decay)), 2 * bar);
+  }
+}
+
+}  // namespace
+}  // namespace drogue::fabric
