@@ -97,7 +97,9 @@ build_kokkos() {
   say "building Kokkos and Kokkos Kernels $KOKKOS_VERSION ($variant${arch:+, architecture $arch})"
   local common=(-G Ninja -Wno-dev -DCMAKE_BUILD_TYPE=Release "-DCMAKE_INSTALL_PREFIX=$deps/$variant"
     -DCMAKE_CXX_STANDARD=20 -DCMAKE_CXX_EXTENSIONS=OFF -DCMAKE_POSITION_INDEPENDENT_CODE=ON -DBUILD_SHARED_LIBS=OFF)
-  local kokkos=(-DKokkos_ENABLE_SERIAL=ON -DKokkos_ENABLE_OPENMP=ON)
+  # What nobody here uses and every source would read: views from mdspan, what is deprecated.
+  local kokkos=(-DKokkos_ENABLE_SERIAL=ON -DKokkos_ENABLE_OPENMP=ON -DKokkos_ENABLE_IMPL_MDSPAN=OFF
+    -DKokkos_ENABLE_DEPRECATED_CODE_4=OFF)
   local kernels=(-DKokkosKernels_ENABLE_ALL_COMPONENTS=OFF -DKokkosKernels_ENABLE_COMPONENT_BATCHED=ON
     -DKokkosKernels_ENABLE_COMPONENT_BLAS=ON -DKokkosKernels_ADD_DEFAULT_ETI=OFF -DKokkosKernels_INST_DOUBLE=OFF
     -DKokkosKernels_INST_LAYOUTLEFT=OFF "-DKokkos_ROOT=$deps/$variant")
