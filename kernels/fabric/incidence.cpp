@@ -13,8 +13,6 @@ double squared_distance(const Vector& a, const Vector& b) {
   return x * x + y * y + z * z;
 }
 
-/// 1 / area from squared edge lengths, as the difference of two products: exact for the slimmest triangles
-/// too.
 double inverse_area(const Vector& a, const Vector& b, const Vector& c) {
   const Vector u = {b[0] - a[0], b[1] - a[1], b[2] - a[2]}, v = {c[0] - a[0], c[1] - a[1], c[2] - a[2]};
   const double x = u[1] * v[2] - u[2] * v[1], y = u[2] * v[0] - u[0] * v[2], z = u[0] * v[1] - u[1] * v[0];

@@ -5,13 +5,23 @@
 
 namespace drogue::fabric {
 
+/// Lame's first constant and twice the shear modulus of plane stress, N/m. The dissertation's "mu" is the
+/// latter.
+struct Moduli {
+  double lambda, two_g;
+};
+
+[[nodiscard]] constexpr Moduli moduli(double membrane_modulus, double poisson) {
+  return {membrane_modulus * poisson / (1.0 - poisson * poisson), membrane_modulus / (1.0 + poisson)};
+}
+
 /// A value an edge of a triangle; edge e lies opposite vertex e.
 template <class R>
 struct Edges {
   R of[3];
 };
 
-/// dW/dq_e + dW/dq_e of the membrane energy W = A [(lambda + 2G)/2 tr(E)^2 - 2G det(E)] with Green's strain
+/// 2 dW/dq_e of the membrane energy W = A [(lambda + 2G)/2 tr(E)^2 - 2G det(E)] with Green's strain
 /// E: its trace is sum(n_e q_e) / (16 A^2), n_e the sum of the other two L^2 less its own, and its
 /// determinant (Q^2 - 2 sum(q_e^2)) / (64 A^2), Q = sum(q_e). `q` is l^2 - L^2 of the edges, `rest` L^2, m^2;
 /// an inverse area of zero stands for no triangle. N/m. Delingette 2008, section 3, in the form of fabric.md

@@ -25,23 +25,13 @@ struct Material {
   double axial_stiffness = 0.0;      ///< E A of strings, N
 };
 
-/// Lame's first constant and twice the shear modulus of plane stress, N/m. The dissertation's "mu" is the
-/// latter.
-struct Moduli {
-  double lambda, two_g;
-};
-
-[[nodiscard]] constexpr Moduli moduli(double membrane_modulus, double poisson) {
-  return {membrane_modulus * poisson / (1.0 - poisson * poisson), membrane_modulus / (1.0 + poisson)};
-}
-
 using Vector = std::array<double, 3>;
 
 /// Cloth and strings by the numbers of their vertices.
 struct Mesh {
   std::vector<Vector> rest;  ///< m
   std::vector<std::array<int, 3>> triangles;
-  std::vector<std::array<int, 2>> lines;  ///< pieces of strings; no edges of triangles
+  std::vector<std::array<int, 2>> lines;  ///< pieces of strings, or of reinforcements along edges
 };
 
 /// Everything a fabric solver needs to know but the initial state.

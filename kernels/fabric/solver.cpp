@@ -1,6 +1,7 @@
 #include "kernels/fabric/solver.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <string>
 
@@ -17,19 +18,42 @@ void check(const Parameters& p) {
     if (!holds) throw std::invalid_argument(std::string("fabric solver: ") + what);
   };
   const std::size_t n = p.mesh.rest.size();
+  const auto finite = [](const Vector& v) {
+    return std::ranges::all_of(v, [](double x) { return std::isfinite(x); });
+  };
   const auto is_vertex = [&](int i) { return i >= 0 && static_cast<std::size_t>(i) < n; };
-  require(n > 0, "there must be a vertex");
-  for (const auto& t : p.mesh.triangles)
+  const auto distance = [&](int i, int j) {
+    const Vector &a = p.mesh.rest[static_cast<std::size_t>(i)], &b = p.mesh.rest[static_cast<std::size_t>(j)];
+    return std::hypot(b[0] - a[0], b[1] - a[1], b[2] - a[2]);
+  };
+  require(n > 0 && std::ranges::all_of(p.mesh.rest, finite),
+          "there must be a vertex, and all must be somewhere");
+  for (const auto& t : p.mesh.triangles) {
     require(std::ranges::all_of(t, is_vertex), "a triangle names a vertex that is not there");
-  for (const auto& line : p.mesh.lines)
+    // Heron's formula without its cancellation (Kahan 2014); rounding of the coordinates is what is asked
+    // about.
+    double side[3] = {distance(t[0], t[1]), distance(t[1], t[2]), distance(t[2], t[0])};
+    std::ranges::sort(side);
+    require(side[0] + side[1] - side[2] > 1e-14 * side[2], "a triangle has no area");
+  }
+  for (const auto& line : p.mesh.lines) {
     require(std::ranges::all_of(line, is_vertex), "a line names a vertex that is not there");
-  require(p.mass.size() == n && std::ranges::all_of(p.mass, [](double m) { return m > 0.0; }),
-          "every vertex needs a positive mass");
+    require(distance(line[0], line[1]) > 0.0, "a line has no length");
+  }
+  const auto positive = [](double x) { return x > 0.0 && std::isfinite(x); };
+  const auto not_negative = [](double x) { return x >= 0.0 && std::isfinite(x); };
+  require(p.mass.size() == n && std::ranges::all_of(p.mass, positive), "every vertex needs a positive mass");
   require(p.pinned.empty() || p.pinned.size() == n, "pins must be given for every vertex, or for none");
-  require(p.load.empty() || p.load.size() == n, "loads must be given for every vertex, or for none");
-  require(p.dt > 0.0, "dt must be positive");
-  require(p.material.poisson > -1.0 && p.material.poisson <= 0.5,
-          "Poisson's ratio must lie between -1 and 1/2");
+  require(p.load.empty() || (p.load.size() == n && std::ranges::all_of(p.load, finite)),
+          "finite loads must be given for every vertex, or for none");
+  require(finite(p.gravity), "gravity must be finite");
+  require(positive(p.dt), "dt must be positive");
+  require(not_negative(p.damping), "damping must not be negative");
+  const Material& m = p.material;
+  require(not_negative(m.membrane_modulus) && not_negative(m.stiffness) && not_negative(m.axial_stiffness),
+          "no stiffness may be negative");
+  if (m.model == Model::quadratic || m.model == Model::biquadratic)
+    require(m.poisson > -1.0 && m.poisson <= 0.5, "Poisson's ratio must lie between -1 and 1/2");
 }
 
 }  // namespace

@@ -15,11 +15,13 @@ class Solver {
  public:
   virtual ~Solver() = default;
 
-  /// Positions, m, and velocities, m/s, of all vertices.
+  /// Positions, m, and velocities, m/s, of all vertices. Spans of another length throw std::invalid_argument,
+  /// here and below.
   virtual void upload(std::span<const Vector> positions, std::span<const Vector> velocities) = 0;
   virtual void download(std::span<Vector> positions, std::span<Vector> velocities) = 0;
 
-  /// Takes `steps` steps of `Parameters::dt`. Returns before they are done.
+  /// Takes `steps` steps of `Parameters::dt`. Returns before they are done. How steps are cut into calls
+  /// changes no bit.
   virtual void advance(std::int64_t steps) = 0;
 
   /// The elastic and dead forces where the vertices are now, N.

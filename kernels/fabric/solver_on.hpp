@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <stdexcept>
 #include <string>
 
 #include "kernels/device/replay.hpp"
@@ -28,6 +29,8 @@ class SolverOn final : public Solver {
   using Points = PointsView<ExecutionSpace>;
 
   explicit SolverOn(const Parameters& p);
+  SolverOn(const SolverOn&) = delete;  // the recorded step knows where this one lies
+  SolverOn& operator=(const SolverOn&) = delete;
 
   void upload(std::span<const Vector> positions, std::span<const Vector> velocities) override {
     to_device(positions, _x);
@@ -47,6 +50,8 @@ class SolverOn final : public Solver {
   static constexpr int lanes = device::Access<
       std::conditional_t<device::is_host<ExecutionSpace>, device::HostPack<double>, double>>::lanes;
 
+  static_assert(slice % lanes == 0, "lanes must not straddle slices");
+
   [[nodiscard]] Points points(const std::string& label) const {
     return Points(label, static_cast<std::size_t>(_padded));
   }
@@ -62,7 +67,8 @@ class SolverOn final : public Solver {
   }
 
   void runge_kutta_step() const;
-  void kick_and_drift(double kick, double drift);
+  void verlet(bool ends, bool begins);
+  void require_one_a_vertex(std::size_t count) const;
   void to_device(std::span<const Vector> from, const Points& to) const;
   void to_host(const Points& from, std::span<Vector> to) const;
   template <class Slots, class Views>

@@ -29,7 +29,8 @@ SolverOn<ExecutionSpace, model>::SolverOn(const Parameters& p)
     for (std::size_t axis = 0; axis < 3; ++axis)
       if (!p.pinned.empty() && (p.pinned[i] >> axis & 1U) != 0U) free[i][axis] = 0.0;
   }
-  Kokkos::deep_copy(_cloth.inverse_mass, inverse_mass);
+  Kokkos::deep_copy(_instance.space(), _cloth.inverse_mass, inverse_mass);
+  _instance.space().fence("drogue::fabric::inverse_mass");
   // Vertices that fill the last slice have no mass and no freedom: they stay.
   _cloth.free = points("drogue::fabric::free");
   to_device(free, _cloth.free);
@@ -64,10 +65,10 @@ void SolverOn<ExecutionSpace, model>::runge_kutta_step() const {
 }
 
 template <class ExecutionSpace, Model model>
-void SolverOn<ExecutionSpace, model>::kick_and_drift(double kick, double drift) {
+void SolverOn<ExecutionSpace, model>::verlet(bool ends, bool begins) {
   launch("drogue::fabric::verlet",
-         VerletFunctor<ExecutionSpace, model>{_cloth, _x, _v, _next, _damping, kick, drift});
-  std::swap(_x, _next);
+         VerletFunctor<ExecutionSpace, model>{_cloth, _x, _v, _next, _damping, _dt, ends, begins});
+  if (begins) std::swap(_x, _next);
 }
 
 template <class ExecutionSpace, Model model>
@@ -77,23 +78,30 @@ void SolverOn<ExecutionSpace, model>::advance(std::int64_t steps) {
     for (std::int64_t step = 0; step < steps; ++step) _step->launch();
     return;
   }
-  kick_and_drift(0.5 * _dt, _dt);
-  for (std::int64_t step = 1; step < steps; ++step) kick_and_drift(_dt, _dt);
-  kick_and_drift(0.5 * _dt, 0.0);
+  verlet(false, true);
+  for (std::int64_t step = 1; step < steps; ++step) verlet(true, true);
+  verlet(true, false);
+}
+
+template <class ExecutionSpace, Model model>
+void SolverOn<ExecutionSpace, model>::require_one_a_vertex(std::size_t count) const {
+  if (count != static_cast<std::size_t>(_vertices))
+    throw std::invalid_argument("fabric solver: there must be one vector a vertex");
 }
 
 template <class ExecutionSpace, Model model>
 void SolverOn<ExecutionSpace, model>::to_device(std::span<const Vector> from, const Points& to) const {
+  require_one_a_vertex(from.size());
   const auto mirror = Kokkos::create_mirror_view(to);
-  Kokkos::deep_copy(mirror, to);
-  for (std::size_t i = 0; i < from.size(); ++i)
-    for (std::size_t axis = 0; axis < 3; ++axis) mirror(i, axis) = from[i][axis];
+  for (std::size_t i = 0; i < mirror.extent(0); ++i)
+    for (std::size_t axis = 0; axis < 3; ++axis) mirror(i, axis) = i < from.size() ? from[i][axis] : 0.0;
   Kokkos::deep_copy(_instance.space(), to, mirror);
   _instance.space().fence("drogue::fabric::to_device");
 }
 
 template <class ExecutionSpace, Model model>
 void SolverOn<ExecutionSpace, model>::to_host(const Points& from, std::span<Vector> to) const {
+  require_one_a_vertex(to.size());
   const auto mirror = Kokkos::create_mirror_view(from);
   Kokkos::deep_copy(_instance.space(), mirror, from);
   _instance.space().fence("drogue::fabric::to_host");
@@ -116,9 +124,10 @@ void SolverOn<ExecutionSpace, model>::copy_slots(const Slots& from, Views& to) c
     for (std::size_t a = 0; a < from.neighbour.size(); ++a) neighbour(slot, a) = from.neighbour[a][slot];
     for (std::size_t a = 0; a < from.value.size(); ++a) value(slot, a) = from.value[a][slot];
   }
-  Kokkos::deep_copy(to.first, first);
-  Kokkos::deep_copy(to.neighbour, neighbour);
-  Kokkos::deep_copy(to.value, value);
+  Kokkos::deep_copy(_instance.space(), to.first, first);
+  Kokkos::deep_copy(_instance.space(), to.neighbour, neighbour);
+  Kokkos::deep_copy(_instance.space(), to.value, value);
+  _instance.space().fence("drogue::fabric::slots");
 }
 
 }  // namespace drogue::fabric

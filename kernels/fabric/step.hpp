@@ -39,9 +39,9 @@ struct RungeKuttaFunctor {
   }
 };
 
-/// Leapfrog (Verlet 1967): a kick of the velocity over `kick`, then a drift over `drift`, s. Half a kick
-/// before the first drift and after the last makes it velocity Verlet. Damping is taken at the middle of the
-/// kick.
+/// Velocity Verlet (Swope et al. 1982) with one force a step: half a kick that ends the step before, half a
+/// kick that begins the next, and its drift. Damping is taken at the middle of half a kick. However steps are
+/// cut into launches, the same operations follow one another.
 template <class ExecutionSpace, Model model>
 struct VerletFunctor {
   using R = std::conditional_t<device::is_host<ExecutionSpace>, device::HostPack<double>, double>;
@@ -50,21 +50,30 @@ struct VerletFunctor {
 
   Cloth<ExecutionSpace> cloth;  ///< its damping is zero
   Points x, v, next;            ///< `next` receives the positions
-  double damping, kick, drift;
+  double damping, dt;
+  bool ends, begins;  ///< a step
 
   KOKKOS_FUNCTION void operator()(const int pack) const {
     const int i = pack * lanes;
-    const Vector3<R> before = load_points<R>(v, i), free = load_points<R>(cloth.free, i);
-    const Vector3<R> a = acceleration<model, R>(cloth, x, before, i);
-    // A pinned axis keeps its velocity.
-    const double half = 0.5 * damping * kick, keep = (1.0 - half) / (1.0 + half), gain = kick / (1.0 + half);
-    const auto kicked = [&](R now, R along, R is_free) {
-      return device::select(is_free > R(0.0), keep * now, now) + gain * along;
+    Vector3<R> velocity = load_points<R>(v, i);
+    const Vector3<R> a = acceleration<model, R>(cloth, x, velocity, i), free = load_points<R>(cloth.free, i);
+    if (ends) velocity = kicked(velocity, a, free);
+    if (begins) {
+      velocity = kicked(velocity, a, free);
+      store_points(next, i, load_points<R>(x, i) + dt * velocity);
+    }
+    store_points(v, i, velocity);
+  }
+
+  /// Half a kick later; a pinned axis keeps its velocity.
+  KOKKOS_FUNCTION Vector3<R> kicked(const Vector3<R>& now, const Vector3<R>& a,
+                                    const Vector3<R>& free) const {
+    const double kick = 0.5 * dt, half = 0.5 * damping * kick;
+    const double keep = (1.0 - half) / (1.0 + half), gain = kick / (1.0 + half);
+    const auto along = [&](R velocity, R acceleration, R is_free) {
+      return device::select(is_free > R(0.0), keep * velocity, velocity) + gain * acceleration;
     };
-    const Vector3<R> after{kicked(before.x, a.x, free.x), kicked(before.y, a.y, free.y),
-                           kicked(before.z, a.z, free.z)};
-    store_points(v, i, after);
-    store_points(next, i, load_points<R>(x, i) + drift * after);
+    return {along(now.x, a.x, free.x), along(now.y, a.y, free.y), along(now.z, a.z, free.z)};
   }
 };
 

@@ -8,9 +8,9 @@ namespace drogue::testing {
 
 using fabric::Vector;
 
-/// A patch of nx by ny vertices, its inner ones displaced at random and its diagonals drawn by lot, so that
-/// vertices have four to eight triangles; with it a string of three pieces that hangs from its first vertex,
-/// and one between its last two.
+/// A patch of nx by ny vertices displaced at random, its diagonals drawn by lot, so that inner vertices have
+/// four to eight triangles; with it a string of three pieces that hangs from its first vertex, and one that
+/// reinforces an edge.
 inline fabric::Mesh random_patch(int nx, int ny, unsigned seed) {
   std::mt19937 engine(seed);
   const auto uniform = [&](double low, double high) {

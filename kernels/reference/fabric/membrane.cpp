@@ -27,10 +27,19 @@ T length(const Point<T>& a) {
   return sqrt(dot(a, a));
 }
 
+/// Of plane stress, N/m: lambda and twice the shear modulus G = E / (2 (1 + nu)).
+struct Moduli {
+  double lambda, two_g;
+};
+
+Moduli plane_stress(double young, double nu) {
+  const double g = young / (2.0 * (1.0 + nu));
+  return {2.0 * g * nu / (1.0 - nu), 2.0 * g};
+}
+
 /// St Venant and Kirchhoff: E = (F^T F - 1) / 2 with F = D_s D_m^-1 in the plane of the triangle at rest.
 template <class T>
-T continuum_energy(const fabric::Moduli& m, const std::array<Vector, 3>& rest,
-                   const std::array<Point<T>, 3>& now) {
+T continuum_energy(const Moduli& m, const std::array<Vector, 3>& rest, const std::array<Point<T>, 3>& now) {
   // D_m: the rest edges from vertex 0 in an orthonormal basis whose first axis is the first edge.
   const Vector e1 = difference(rest[1], rest[0]), e2 = difference(rest[2], rest[0]);
   const double x1 = length(e1), x2 = dot(e1, e2) / x1, y2 = std::sqrt(dot(e2, e2) - x2 * x2);
@@ -49,8 +58,7 @@ T continuum_energy(const fabric::Moduli& m, const std::array<Vector, 3>& rest,
 
 /// Sums of k_i dl_i^2 / 2 and gamma_i dl_j dl_k.
 template <class T>
-T delingette_energy(const fabric::Moduli& m, const std::array<Vector, 3>& rest,
-                    const std::array<Point<T>, 3>& now) {
+T delingette_energy(const Moduli& m, const std::array<Vector, 3>& rest, const std::array<Point<T>, 3>& now) {
   double rest_length[3], cotangent[3];
   T change[3];
   const double eight_areas = 8.0 * area(rest[0], rest[1], rest[2]);
@@ -90,7 +98,7 @@ double area(const Vector& a, const Vector& b, const Vector& c) {
 template <class T>
 T triangle_energy(const fabric::Material& material, const std::array<Vector, 3>& rest,
                   const std::array<Point<T>, 3>& now) {
-  const fabric::Moduli m = fabric::moduli(material.membrane_modulus, material.poisson);
+  const Moduli m = plane_stress(material.membrane_modulus, material.poisson);
   return material.model == fabric::Model::quadratic ? delingette_energy(m, rest, now)
                                                     : continuum_energy(m, rest, now);
 }

@@ -44,7 +44,7 @@ double largest(const std::vector<Vector>& vectors) {
 
 TEST(FabricForce, IsTheDerivativeOfTheEnergy) {
   for (const Model model : models)
-    for (const auto& [nx, ny] : {std::pair{2, 2}, {5, 4}, {9, 13}, {33, 7}})
+    for (const auto& [nx, ny] : {std::pair{2, 2}, {5, 4}, {9, 13}, {33, 7}, {41, 60}})
       for (const double size : {1e-6, 0.05, 0.4}) {
         const Mesh mesh = random_patch(nx, ny, 7U + static_cast<unsigned>(nx));
         const Parameters p = cloth_of(model, mesh);
@@ -120,7 +120,22 @@ TEST(FabricForce, WhatCannotBeIsRefused) {
   refused([](Parameters& p) { p.load.assign(2, Vector{}); });
   refused([](Parameters& p) { p.dt = 0.0; });
   refused([](Parameters& p) { p.material.poisson = 0.6; });
-  EXPECT_NO_THROW(static_cast<void>(create_solver(backend, good)));
+  refused([](Parameters& p) { p.mesh.triangles[0][1] = p.mesh.triangles[0][0]; });
+  refused([](Parameters& p) { p.mesh.rest[4] = {1.0, std::nan(""), 0.0}; });
+  refused([](Parameters& p) {
+    for (Vector& x : p.mesh.rest) x[1] = 0.0;
+  });
+  refused([](Parameters& p) { p.mesh.lines[0] = {3, 3}; });
+  refused([](Parameters& p) { p.damping = -1.0; });
+  refused([](Parameters& p) { p.dt = INFINITY; });
+  refused([](Parameters& p) { p.gravity[2] = NAN; });
+  refused([](Parameters& p) { p.material.membrane_modulus = -1.0; });
+  const auto solver = create_solver(backend, good);
+  std::vector<Vector> vectors(good.mass.size() + 1);
+  EXPECT_THROW(solver->upload(vectors, vectors), std::invalid_argument);
+  EXPECT_THROW(solver->download(vectors, vectors), std::invalid_argument);
+  vectors.resize(3);
+  EXPECT_THROW(solver->forces(vectors), std::invalid_argument);
 }
 
 }  // namespace
