@@ -83,6 +83,9 @@ ExitCode measure_solutions(const WorkPrecisionOptions& options, const std::vecto
   const bool finished = gas_work_precision(backends, options.quick, [&](const Solution& solution) {
     print(solution);
     lines.push_back(to_json(solution, here));
+    // Early, so that a file that cannot be written is found before hours are spent; and what ends a long run
+    // leaves most of what it has found.
+    if (lines.size() % 32 == 1) write_records(options.out, lines);
   });
   // What a signal ended is kept as far as it came.
   write_records(options.out, lines);

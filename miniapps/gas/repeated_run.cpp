@@ -20,9 +20,10 @@ RepeatedRun run_repeatedly(const GasScene& scene, device::Backend backend, const
       runs.code = simulation.run(nullptr, result);
       if (runs.code == ExitCode::interrupted) return runs;
     } catch (const Failure& failure) {
-      runs.code = failure.code();
-      runs.message = failure.what();
-      return runs;
+      RepeatedRun failed;
+      failed.code = failure.code();
+      failed.message = failure.what();
+      return failed;
     }
     runs.samples.push_back(result.timing.compute_s);
     if (runs.samples.size() > 1) continue;

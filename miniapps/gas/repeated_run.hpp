@@ -13,8 +13,8 @@ namespace drogue::gas_app {
 /// When a run that is timed has been repeated often enough: after `most` runs, or once all of them together
 /// took `seconds`.
 struct Repeats {
-  int most = 5;
-  double seconds = 0.2;
+  int most;
+  double seconds;
 };
 
 /// The runs of one scene, which writes nothing while it is timed.

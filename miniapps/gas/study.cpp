@@ -185,7 +185,7 @@ ExitCode run_study(const MiniAppOptions& options, const std::filesystem::path& f
   const ExactSolution exact = exact_solution(base, base.end_time, *reference);
   std::vector<Row> done;
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    rows[i].run = run_repeatedly(scenes[i], backend, exact, {});
+    rows[i].run = run_repeatedly(scenes[i], backend, exact, {5, 1.0});
     if (rows[i].run.code == ExitCode::interrupted) return ExitCode::interrupted;
     done.push_back(rows[i]);
     // After every point: whatever ends a long study leaves what it has found.

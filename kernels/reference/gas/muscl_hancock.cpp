@@ -145,19 +145,29 @@ void muscl_hancock(GasRun& run, const gas::Parameters& p, double end_time) {
     const Conserved& u = run.state[i];
     w.conserved.a[i + ghosts] = u[0], w.conserved.b[i + ghosts] = u[1], w.conserved.c[i + ghosts] = u[2];
   }
+  Rows before = w.conserved;
+  fill_ghosts(w.conserved, p);
+  double fastest = primitives(w, p.gamma);
+  run.failed = !std::isfinite(fastest);
   while (run.time < end_time && !run.failed) {
-    fill_ghosts(w.conserved, p);
-    const double fastest = primitives(w, p.gamma);
     const double ramp =
         run.steps < p.ramp_steps ? 0.1 + 0.9 * static_cast<double>(run.steps) / p.ramp_steps : 1.0;
     const double remaining = end_time - run.time, dt = std::min(ramp * p.cfl * dx / fastest, remaining);
     run.failed = run.steps == p.max_steps || !(run.time + dt > run.time);
     if (run.failed) break;
+    before = w.conserved;
     half_step(w, p.gamma, dt / dx);
     fluxes(w, p.gamma);
     update(w.conserved.a, w.flux.a, dt / dx);
     update(w.conserved.b, w.flux.b, dt / dx);
     update(w.conserved.c, w.flux.c, dt / dx);
+    fill_ghosts(w.conserved, p);
+    fastest = primitives(w, p.gamma);
+    if (!std::isfinite(fastest)) {
+      run.failed = true;
+      w.conserved = before;
+      break;
+    }
     run.time = dt == remaining ? end_time : run.time + dt;
     ++run.steps;
   }
