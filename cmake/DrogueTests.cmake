@@ -16,10 +16,6 @@ function(drogue_add_test)
   target_link_libraries(${_test_NAME} PRIVATE ${_test_LIBRARIES} drogue_private GTest::gtest)
   target_compile_definitions(${_test_NAME} PRIVATE
     DROGUE_SOURCE_DIR="${PROJECT_SOURCE_DIR}" DROGUE_BIN_DIR="${CMAKE_RUNTIME_OUTPUT_DIRECTORY}")
-  if(DROGUE_SANITIZE AND NOT _test_BACKEND)
-    # What is looked at are the libraries, not the test, which would take twice the time to compile.
-    target_compile_options(${_test_NAME} PRIVATE -fno-sanitize=undefined)
-  endif()
   set(_prefix "${_test_LABEL}.")
   set(_label ${_test_LABEL})
   set(_cores 1)

@@ -69,6 +69,7 @@ flock -n 9 || { say "waiting for another set-up in $deps to end" && flock 9; }
 python_environment
 picture_packages &
 pictures=$!
+trap 'pkill -P "$pictures" 2>/dev/null; kill "$pictures" 2>/dev/null || true' EXIT
 [ "$deps/venv" -ef "$root/build/venv" ] || { mkdir -p "$root/build" && ln -sfn "$deps/venv" "$root/build/venv"; }
 build_kokkos host
 [ "$bundle" = no ] || build_kokkos bundle
@@ -80,4 +81,5 @@ if [ "$cuda" = yes ] && [ -n "$nvcc" ]; then
   build_kokkos cuda "$arch"
   [ "$bundle" = no ] || build_kokkos bundle-cuda "$arch"
 fi
-wait "$pictures"
+wait "$pictures" || fail "what pictures are made with is missing: the reason is above, and in $deps/log/pip-pictures.log."
+trap - EXIT

@@ -56,9 +56,9 @@ struct Root {
   R value, inverse, reciprocal;  ///< sqrt(x), 1/sqrt(x), 1/x
 };
 
-/// Of a positive normal number; what else there is gives a NaN. On CUDA the hardware's approximation of
-/// 1/sqrt(x) and one cubic Newton step give all (the root within 2 ulp) with a third of the instructions of
-/// an IEEE root and division. Elsewhere these do not wait for one another.
+/// Of a positive normal number; of what else there is something is no finite number. On CUDA the hardware's
+/// approximation of 1/sqrt(x) and one cubic Newton step give all (the root within 2 ulp) with a third of the
+/// instructions of an IEEE root and division. Elsewhere these do not wait for one another.
 KOKKOS_INLINE_FUNCTION Root<double> root(double x) {
 #if defined(__CUDA_ARCH__) && !defined(DROGUE_EXACT)
   double y;

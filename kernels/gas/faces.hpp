@@ -6,8 +6,9 @@ namespace drogue::gas {
 
 /// Some faces of a host tile. Short loops go first, over what neighbouring faces share (differences and
 /// fastest signals) and what takes long (the roots and divisions of the eigensystems), so that several of the
-/// latter are under way at once; the long loop over the corrections that follows then waits for none. One
-/// core did a step a tenth faster than with all of a face in one body.
+/// latter are under way at once; the long loop over the corrections that follows then waits for none.
+/// Lanes beyond the last face hold what was there before; nobody reads their fluxes. A host team is one
+/// thread.
 template <class N, class R>
 class FaceChunk {
  public:

@@ -9,7 +9,7 @@
 namespace drogue::gas {
 
 /// Threads of a usual device team. Three teams a multiprocessor have 168 registers a thread. Four have 128,
-/// which the fused step spills a few of; where a thread has several slots that is the faster. One of the
+/// which the fused step just lives in; where a thread has several slots that is the faster. One of the
 /// largest has 128, too.
 inline constexpr int usual_team = 128, largest_team = 512;
 inline constexpr int usual_teams = 3, dense_teams = 4, largest_teams = 1;

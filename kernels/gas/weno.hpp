@@ -122,8 +122,9 @@ KOKKOS_INLINE_FUNCTION R correction(R a, R b, R c, R d, R unit) {
     sum = q.b0 + q.b1 + q.b2;
     q.b2 = S(1.0 / 3.0) * q.b2;
   }
-  // w_0 (a - 2b + c) + (2 w_2 - 1) / 4 (b - 2c + d). Little waits for the division; in single precision,
-  // where q may be as large as numbers get, the weights come first.
+  // w_0 (a - 2b + c) + (2 w_2 - 1) / 4 (b - 2c + d). Little waits for the division; for JS, whose products
+  // are of ninth degree, differences may reach 1e33. In single precision, where q may be as large as numbers
+  // get, the weights come first.
   const R inverse = device::reciprocal(sum);
   const R first = a - S(2) * b + c, last = b - S(2) * c + d;
   if constexpr (single)
