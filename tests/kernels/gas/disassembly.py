@@ -12,14 +12,14 @@ ARITHMETIC = re.compile(r"\s+[0-9a-f]+:\s+v?(add|sub|mul|div|sqrt|fn?m(?:add|sub
 REGISTERS = ("zmm", "ymm", "xmm")
 
 
-def arithmetic(text, functor):
-    """Counter of (operation, "p" packed or "s" scalar, widest register) in the symbols that name `functor`."""
+def arithmetic(text, names):
+    """Counter of (operation, "p" packed or "s" scalar, widest register) in the symbols that hold one of `names`."""
     counts = collections.Counter()
     inside = False
     for line in text.splitlines():
         symbol = SYMBOL.match(line)
         if symbol:
-            inside = functor in symbol[1]
+            inside = any(name in symbol[1] for name in names)
             continue
         found = ARITHMETIC.match(line) if inside else None
         if found:
