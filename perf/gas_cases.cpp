@@ -77,15 +77,7 @@ Case solver_case(device::Backend backend, std::int64_t cells, long steps, const 
                                            : "FP64 issue of the cores",
           [=] {
             *solver = gas::create_solver(backend, p);
-            const sod::Fields start = sod::start(p);
-            return Sample{[=] {
-                            (*solver)->upload(0, {start[0], start[1], start[2]});
-                            (*solver)->start();
-                          },
-                          [=] {
-                            (*solver)->advance(1.0, steps, 0, {}, {});
-                            return steps;
-                          }};
+            return sod::steps(p, **solver, steps);
           },
           [=] { return sod::l1_error(p, **solver); },
           sod::bar(p),

@@ -32,6 +32,17 @@ Fields start(const gas::Parameters& p) {
   return fields;
 }
 
+Sample steps(const gas::Parameters& p, gas::Solver& solver, long count) {
+  return {[&solver, from = start(p)] {
+            solver.upload(0, {from[0], from[1], from[2]});
+            solver.start();
+          },
+          [&solver, count] {
+            solver.advance(1.0, count, 0, {}, {});
+            return count;
+          }};
+}
+
 double l1_error(const gas::Parameters& p, const std::vector<double>& rho, double time) {
   const reference::ExactRiemann exact({1.0, 0.0, 1.0}, {0.125, 0.0, 0.1}, p.gamma);
   double sum = 0.0;

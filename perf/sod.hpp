@@ -5,6 +5,7 @@
 
 #include "kernels/gas/solver.hpp"
 #include "kernels/reference/gas/euler.hpp"
+#include "perf/measurement.hpp"
 
 /// Sod's problem on [-1, 1], the one that gas steps are timed on.
 namespace drogue::perf::sod {
@@ -18,6 +19,9 @@ gas::Parameters parameters(std::int64_t cells);
 reference::Primitive initial(double x);
 double centre(const gas::Parameters& p, std::size_t i);
 Fields start(const gas::Parameters& p);
+
+/// `count` steps from the start. `solver`, made for `p`, must outlive the sample.
+Sample steps(const gas::Parameters& p, gas::Solver& solver, long count);
 
 /// L1 error of the density against the exact solution at `time` (s), per unit length.
 double l1_error(const gas::Parameters& p, const std::vector<double>& rho, double time);

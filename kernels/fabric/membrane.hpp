@@ -24,8 +24,8 @@ struct Edges {
 /// 2 dW/dq_e of the membrane energy W = A [(lambda + 2G)/2 tr(E)^2 - 2G det(E)] with Green's strain
 /// E: its trace is sum(n_e q_e) / (16 A^2), n_e the sum of the other two L^2 less its own, and its
 /// determinant (Q^2 - 2 sum(q_e^2)) / (64 A^2), Q = sum(q_e). `q` is l^2 - L^2 of the edges, `rest` L^2, m^2;
-/// an inverse area of zero stands for no triangle. N/m. Delingette 2008, section 3, in the form of fabric.md
-/// section 1 without stored coefficients.
+/// an inverse area of zero stands for no triangle. N/m. Delingette 2008, section 3, without stored
+/// coefficients.
 template <class R>
 KOKKOS_INLINE_FUNCTION Edges<R> edge_tensions(const Moduli& m, const Edges<R>& q, const Edges<R>& rest,
                                               R inverse_area) {

@@ -21,15 +21,7 @@ Case fused_case(const std::string& name, device::Backend backend, const gas::Par
           "launch latency, and teams that wait for room",
           [=] {
             *solver = gas::create_solver(backend, p);
-            const sod::Fields start = sod::start(p);
-            return Sample{[=] {
-                            (*solver)->upload(0, {start[0], start[1], start[2]});
-                            (*solver)->start();
-                          },
-                          [=] {
-                            (*solver)->advance(1.0, fused_steps, 0, {}, {});
-                            return fused_steps;
-                          }};
+            return sod::steps(p, **solver, fused_steps);
           },
           [=] { return sod::l1_error(p, **solver); },
           sod::bar(p)};
