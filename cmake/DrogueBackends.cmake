@@ -25,6 +25,8 @@ function(drogue_instantiate sources template)
     set(DROGUE_EXECUTION_SPACE ${DROGUE_EXECUTION_SPACE_${DROGUE_BACKEND}})
     set(_file "${PROJECT_BINARY_DIR}/generated/${_stem}_${DROGUE_BACKEND}.cpp")
     configure_file("${template}" "${_file}" @ONLY)
+    # The instances of a template use the same aliases, each for its backend.
+    set_source_files_properties("${_file}" PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
     list(APPEND _generated "${_file}")
   endforeach()
   set(${sources} ${_generated} PARENT_SCOPE)

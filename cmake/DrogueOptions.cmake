@@ -52,6 +52,10 @@ target_compile_options(drogue_private INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Wpeda
 # gcc 12 invents overlapping copies in inlined std::string code (its bug 105651).
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   drogue_host_option(drogue_private INTERFACE -Wno-restrict)
+  # In a unity build every source is an included file, where gcc warns of anonymous members of its own classes.
+  if(CMAKE_UNITY_BUILD)
+    target_compile_options(drogue_private INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Wno-subobject-linkage>)
+  endif()
 endif()
 if(DROGUE_WARNINGS_AS_ERRORS)
   drogue_host_option(drogue_private INTERFACE -Werror)

@@ -1,4 +1,4 @@
-# How tests are made: one executable per source, for kernels one per source and backend.
+# How tests are made: one executable per label, for kernels one per source and backend.
 
 include(GoogleTest)
 

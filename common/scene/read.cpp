@@ -7,17 +7,6 @@
 #include "common/scene/nearest.hpp"
 
 namespace drogue::scene {
-namespace {
-
-/// In the order in which errors matter.
-enum class Rank { decisive, unknown, value, missing, contradiction };
-
-struct Problem {
-  Rank rank;
-  std::string text;
-};
-
-}  // namespace
 
 class Reader {
  public:
@@ -33,6 +22,14 @@ class Reader {
   }
 
  private:
+  /// In the order in which errors matter.
+  enum class Rank { decisive, unknown, value, missing, contradiction };
+
+  struct Problem {
+    Rank rank;
+    std::string text;
+  };
+
   void report(Rank rank, const std::string& origin, const std::string& sentence) {
     _problems.push_back({rank, origin + ": " + sentence});
   }

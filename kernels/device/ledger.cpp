@@ -18,7 +18,7 @@ struct Counters {
 Counters counters;                           // NOLINT: callbacks are plain functions
 Kokkos::Tools::Experimental::EventSet tool;  // NOLINT: what a loaded tool had installed
 
-bool is_host(const char* space) {
+bool is_host_memory(const char* space) {
   return std::strncmp(space, "Host", 4) == 0 || std::strstr(space, "HostPinned") != nullptr;
 }
 
@@ -37,7 +37,7 @@ void count_allocation(Kokkos_Profiling_SpaceHandle space, const char* label, con
                       const std::uint64_t size) {
   ++counters.allocations;
   if (counters.warm) ++counters.warm_allocations;
-  if (!is_host(space.name) || std::strstr(space.name, "Pinned") == nullptr) {
+  if (!is_host_memory(space.name) || std::strstr(space.name, "Pinned") == nullptr) {
     const std::int64_t now = counters.bytes += static_cast<std::int64_t>(size);
     std::int64_t peak = counters.peak;
     while (now > peak && !counters.peak.compare_exchange_weak(peak, now)) {
@@ -48,7 +48,7 @@ void count_allocation(Kokkos_Profiling_SpaceHandle space, const char* label, con
 
 void count_deallocation(Kokkos_Profiling_SpaceHandle space, const char* label, const void* pointer,
                         const std::uint64_t size) {
-  if (!is_host(space.name) || std::strstr(space.name, "Pinned") == nullptr)
+  if (!is_host_memory(space.name) || std::strstr(space.name, "Pinned") == nullptr)
     counters.bytes -= static_cast<std::int64_t>(size);
   if (tool.deallocate_data != nullptr) tool.deallocate_data(space, label, pointer, size);
 }
@@ -57,8 +57,8 @@ void count_copy(Kokkos_Profiling_SpaceHandle to, const char* to_label, const voi
                 Kokkos_Profiling_SpaceHandle from, const char* from_label, const void* from_pointer,
                 std::uint64_t size) {
   ++counters.copies;
-  if (is_host(from.name) && !is_host(to.name)) counters.h2d += static_cast<std::int64_t>(size);
-  if (!is_host(from.name) && is_host(to.name)) counters.d2h += static_cast<std::int64_t>(size);
+  if (is_host_memory(from.name) && !is_host_memory(to.name)) counters.h2d += static_cast<std::int64_t>(size);
+  if (!is_host_memory(from.name) && is_host_memory(to.name)) counters.d2h += static_cast<std::int64_t>(size);
   if (tool.begin_deep_copy != nullptr)
     tool.begin_deep_copy(to, to_label, to_pointer, from, from_label, from_pointer, size);
 }

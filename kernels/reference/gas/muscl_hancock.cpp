@@ -7,7 +7,7 @@ namespace drogue::reference {
 
 namespace {
 
-constexpr std::size_t ghosts = 2;
+constexpr std::size_t halo = 2;
 
 /// Three values a cell or face, a row each.
 struct Rows {
@@ -20,18 +20,18 @@ struct Rows {
 };
 
 /// Conserved cells, their primitives (rho, u, p), the primitives at the two faces of a cell half a step
-/// later, and the fluxes; cells with `ghosts` beyond either end.
+/// later, and the fluxes; cells with `halo` beyond either end.
 struct Workspace {
   Rows conserved, primitive, at_left, at_right, flux;
   std::vector<double> speed;
 
   explicit Workspace(std::size_t n)
-      : conserved(n + 2 * ghosts),
-        primitive(n + 2 * ghosts),
-        at_left(n + 2 * ghosts),
-        at_right(n + 2 * ghosts),
+      : conserved(n + 2 * halo),
+        primitive(n + 2 * halo),
+        at_left(n + 2 * halo),
+        at_right(n + 2 * halo),
         flux(n + 1),
-        speed(n + 2 * ghosts) {}
+        speed(n + 2 * halo) {}
 };
 
 double limited_slope(double below, double above) {
@@ -41,17 +41,17 @@ double limited_slope(double below, double above) {
 }
 
 void fill_ghosts(Rows& u, const gas::Parameters& p) {
-  const std::size_t n = u.a.size() - 2 * ghosts, last = n + ghosts - 1;
-  for (std::size_t k = 1; k <= ghosts; ++k) {
-    const std::size_t left = ghosts - k, right = last + k;
+  const std::size_t n = u.a.size() - 2 * halo, last = n + halo - 1;
+  for (std::size_t k = 1; k <= halo; ++k) {
+    const std::size_t left = halo - k, right = last + k;
     const auto image = [&](gas::Boundary kind, std::size_t ghost, std::size_t end, std::size_t mirrored,
                            std::size_t around) {
       if (kind == gas::Boundary::outflow) u.copy(ghost, end, 1.0);
       if (kind == gas::Boundary::reflecting) u.copy(ghost, mirrored, -1.0);
       if (kind == gas::Boundary::periodic) u.copy(ghost, around, 1.0);
     };
-    image(p.left, left, ghosts, ghosts + k - 1, last + 1 - k);
-    image(p.right, right, last, last + 1 - k, ghosts + k - 1);
+    image(p.left, left, halo, halo + k - 1, last + 1 - k);
+    image(p.right, right, last, last + 1 - k, halo + k - 1);
   }
 }
 
@@ -100,7 +100,7 @@ inline Conserved star_flux(double rho, double u, double p, double e, double star
 /// HLLC flux of all faces.
 void fluxes(Workspace& w, double gamma) {
   // Pointers of their own: the compiler cannot know that storing a flux leaves the vectors where they are.
-  const std::size_t faces = w.flux.a.size(), i = ghosts - 1, j = ghosts;
+  const std::size_t faces = w.flux.a.size(), i = halo - 1, j = halo;
   const double *rho_left = &w.at_right.a[i], *u_left = &w.at_right.b[i], *p_left = &w.at_right.c[i];
   const double *rho_right = &w.at_left.a[j], *u_right = &w.at_left.b[j], *p_right = &w.at_left.c[j];
   double *mass_flux = w.flux.a.data(), *momentum_flux = w.flux.b.data(), *energy_flux = w.flux.c.data();
@@ -132,7 +132,7 @@ void fluxes(Workspace& w, double gamma) {
 
 void update(std::vector<double>& row, const std::vector<double>& flux, double dt_over_dx) {
   const std::size_t faces = flux.size();
-  for (std::size_t i = 0; i + 1 < faces; ++i) row[i + ghosts] += dt_over_dx * (flux[i] - flux[i + 1]);
+  for (std::size_t i = 0; i + 1 < faces; ++i) row[i + halo] += dt_over_dx * (flux[i] - flux[i + 1]);
 }
 
 }  // namespace
@@ -143,7 +143,7 @@ void muscl_hancock(GasRun& run, const gas::Parameters& p, double end_time) {
   Workspace w(n);
   for (std::size_t i = 0; i < n; ++i) {
     const Conserved& u = run.state[i];
-    w.conserved.a[i + ghosts] = u[0], w.conserved.b[i + ghosts] = u[1], w.conserved.c[i + ghosts] = u[2];
+    w.conserved.a[i + halo] = u[0], w.conserved.b[i + halo] = u[1], w.conserved.c[i + halo] = u[2];
   }
   Rows before = w.conserved;
   fill_ghosts(w.conserved, p);
@@ -172,7 +172,7 @@ void muscl_hancock(GasRun& run, const gas::Parameters& p, double end_time) {
     ++run.steps;
   }
   for (std::size_t i = 0; i < n; ++i)
-    run.state[i] = {w.conserved.a[i + ghosts], w.conserved.b[i + ghosts], w.conserved.c[i + ghosts]};
+    run.state[i] = {w.conserved.a[i + halo], w.conserved.b[i + halo], w.conserved.c[i + halo]};
 }
 
 }  // namespace drogue::reference

@@ -9,7 +9,7 @@ namespace {
 
 /// What is thrown: the message, after a check of the code.
 template <class Call>
-std::string error_of(Call call, ExitCode code = ExitCode::invalid_scene) {
+std::string thrown_by(Call call, ExitCode code = ExitCode::invalid_scene) {
   try {
     call();
   } catch (const Failure& failure) {
@@ -20,7 +20,7 @@ std::string error_of(Call call, ExitCode code = ExitCode::invalid_scene) {
 }
 
 std::string syntax_error(const std::string& text) {
-  return error_of([&] { parse_text(text, "f.toml"); });
+  return thrown_by([&] { parse_text(text, "f.toml"); });
 }
 
 TEST(Parse, KeepsOrderTypesAndLines) {
@@ -50,9 +50,9 @@ TEST(Parse, SyntaxErrorsKeepTheirLine) {
 }
 
 TEST(Parse, FilesThatCannotBeReadAreUsageErrors) {
-  EXPECT_NE(error_of([] { parse_file("no-such.toml"); }, ExitCode::usage).find("no-such.toml"),
+  EXPECT_NE(thrown_by([] { parse_file("no-such.toml"); }, ExitCode::usage).find("no-such.toml"),
             std::string::npos);
-  EXPECT_NE(error_of([] { parse_file("."); }, ExitCode::usage).find("folder"), std::string::npos);
+  EXPECT_NE(thrown_by([] { parse_file("."); }, ExitCode::usage).find("folder"), std::string::npos);
 }
 
 Node with_set(const std::string& assignment) {
@@ -75,7 +75,7 @@ TEST(Set, BlamesTheAssignment) {
   for (const std::string bad : {"gas.gamma.x=1", "gas", "=1", "gas.=1", ".gas=1", "a..b=1",
                                 "gas.gamma=", "gas.gamma=[1", "gas.gamma=\"", "a.list.2=1", "a.list.x=1",
                                 "a.list.99999999999999999999=1", "gas.gamma=1\nx=2", "gas.gamma=1]"}) {
-    const std::string message = error_of([&] { with_set(bad); });
+    const std::string message = thrown_by([&] { with_set(bad); });
     EXPECT_EQ(message.substr(0, bad.size() + 8), "--set " + bad + ": ") << bad;
   }
   EXPECT_EQ(with_set("gas.gamma=2").as<Node::Table>()->front().node.as<Node::Table>()->front().origin,
