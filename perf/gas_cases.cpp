@@ -60,10 +60,12 @@ const std::vector<Variant> large_variants = {
     {"teno5", [](gas::Parameters& p) { p.weno = gas::Weno::teno5; }},
     {"split", [](gas::Parameters& p) { p.precision = gas::Precision::split; }},
     {"auto", [](gas::Parameters& p) { p.positivity = gas::Positivity::automatic; }},
-    {"on", [](gas::Parameters& p) { p.positivity = gas::Positivity::on; }}};
+    {"on", [](gas::Parameters& p) { p.positivity = gas::Positivity::on; }},
+    {"stages", [](gas::Parameters& p) { p.driver = gas::Driver::stages; }}};
 const std::vector<Variant> small_variants = {
     {"plain", [](gas::Parameters& p) { p.driver = gas::Driver::plain; }},
     {"graph", [](gas::Parameters& p) { p.driver = gas::Driver::graph; }},
+    {"stages", [](gas::Parameters& p) { p.driver = gas::Driver::stages; }},
     {"split", [](gas::Parameters& p) { p.precision = gas::Precision::split; }}};
 
 Case solver_case(device::Backend backend, std::int64_t cells, long steps, const Variant& variant) {

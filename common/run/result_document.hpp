@@ -22,7 +22,7 @@ struct Check {
 struct ResultDocument {
   std::string program, version, git, scene, backend, device;
   std::string precision = "double";
-  std::string driver;  ///< how steps reach the device: "persistent", "graph", "plain" or "seed"
+  std::string driver;  ///< how steps reach the device: "persistent", "graph", "plain", "stages" or "seed"
   int ranks = 1;
   int threads = 1;
   ExitCode exit_code = ExitCode::ok;

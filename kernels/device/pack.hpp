@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Kokkos_BitManipulation.hpp>
 #include <Kokkos_Core.hpp>
 #include <cmath>
 #include <cstdint>
@@ -22,6 +23,14 @@ namespace drogue::device {
 template <class T>
 KOKKOS_INLINE_FUNCTION T maximum(T a, T b) {
   return a > b ? a : b;
+}
+/// One instruction of a GPU, which a comparison that lets a NaN through is not.
+KOKKOS_INLINE_FUNCTION float maximum(float a, float b) {
+#if defined(__CUDA_ARCH__)
+  return fmaxf(a, b);
+#else
+  return a > b ? a : b;
+#endif
 }
 template <class T>
 KOKKOS_INLINE_FUNCTION T minimum(T a, T b) {
@@ -48,7 +57,26 @@ KOKKOS_INLINE_FUNCTION double reciprocal(double x) {
   return 1.0 / x;
 #endif
 }
-KOKKOS_INLINE_FUNCTION float reciprocal(float x) { return 1.0F / x; }
+KOKKOS_INLINE_FUNCTION float reciprocal(float x) {
+#if defined(__CUDA_ARCH__) && !defined(DROGUE_EXACT)
+  float y;
+  asm("rcp.approx.ftz.f32 %0, %1;" : "=f"(y) : "f"(x));  // within 1 ulp
+  return y;
+#else
+  return 1.0F / x;
+#endif
+}
+
+/// The power of two that brings a positive normal number into [1, 2): no product with it rounds. Of zero it
+/// is the largest there is.
+KOKKOS_INLINE_FUNCTION double binary_reciprocal(double x) {
+  const std::uint64_t exponent = Kokkos::bit_cast<std::uint64_t>(x) & 0x7FF0'0000'0000'0000U;
+  return Kokkos::bit_cast<double>(0x7FE0'0000'0000'0000U - exponent);
+}
+KOKKOS_INLINE_FUNCTION float binary_reciprocal(float x) {
+  const std::uint32_t exponent = Kokkos::bit_cast<std::uint32_t>(x) & 0x7F80'0000U;
+  return Kokkos::bit_cast<float>(0x7F00'0000U - exponent);
+}
 
 /// What has a square root in it.
 template <class R>
@@ -72,9 +100,18 @@ KOKKOS_INLINE_FUNCTION Root<double> root(double x) {
 #endif
 }
 KOKKOS_INLINE_FUNCTION Root<float> root(float x) {
+#if defined(__CUDA_ARCH__) && !defined(DROGUE_EXACT)
+  float y;
+  asm("rsqrt.approx.ftz.f32 %0, %1;" : "=f"(y) : "f"(x));
+  return {x * y, y, y * y};
+#else
   const float value = square_root(x), inverse = reciprocal(x);
   return {value, value * inverse, inverse};
+#endif
 }
+
+/// Whether all lanes of a comparison, or of several combined by &, hold.
+KOKKOS_INLINE_FUNCTION bool all(bool condition) { return condition; }
 
 template <class To>
 struct Convert {
@@ -163,6 +200,20 @@ Pack<T, L> square_root(Pack<T, L> a) {
 template <class Mask, class T, int L>
 Pack<T, L> select(Mask condition, Pack<T, L> yes, Pack<T, L> no) {
   return Pack<T, L>::of(condition ? yes.v : no.v);
+}
+template <class Mask>
+requires(!std::is_arithmetic_v<Mask>) bool all(Mask condition) {
+  bool holds = true;
+  for (std::size_t k = 0; k < sizeof(Mask) / sizeof(condition[0]); ++k) holds &= condition[k] != 0;
+  return holds;
+}
+template <class T, int L>
+Pack<T, L> binary_reciprocal(Pack<T, L> x) {
+  using Bits = std::conditional_t<sizeof(T) == 8, std::int64_t, std::int32_t>;
+  typedef Bits BitVector __attribute__((vector_size(L * sizeof(T))));  // NOLINT
+  const BitVector mask = (sizeof(T) == 8 ? Bits(0x7FF0'0000'0000'0000) : Bits(0x7F80'0000)) - BitVector{};
+  const BitVector most = (sizeof(T) == 8 ? Bits(0x7FE0'0000'0000'0000) : Bits(0x7F00'0000)) - BitVector{};
+  return Pack<T, L>::of((typename Pack<T, L>::Vector)(most - ((BitVector)x.v & mask)));
 }
 template <class T, int L>
 Pack<T, L> reciprocal(Pack<T, L> x) {

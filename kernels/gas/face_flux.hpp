@@ -11,15 +11,6 @@ struct Triple {
   R rho, m, energy;
 };
 
-/// What the flux at face i+1/2 sees of the six cells i-2 .. i+3: the five differences of neighbours, of
-/// states and fluxes, and the sum of the two fluxes beside the face. The mass flux is the momentum.
-template <class R>
-struct Stencil {
-  Triple<R> d_state[5];
-  R d_flux_m[5], d_flux_energy[5];
-  Triple<R> flux_sum;
-};
-
 /// (-f[-1] + 7 f[0] + 7 f[1] - f[2]) / 12, the linear fourth-order flux, from f[0] + f[1] and the differences
 /// on either side of the two.
 template <class R>
@@ -27,6 +18,23 @@ KOKKOS_INLINE_FUNCTION R central_flux(R sum, R before, R after) {
   using S = typename device::Access<R>::Element;
   return S(0.5) * sum - S(1.0 / 12.0) * (after - before);
 }
+
+/// What the flux at face i+1/2 sees of the six cells i-2 .. i+3: the five differences of neighbours, of
+/// states and fluxes, and the sum of the two fluxes beside the face. The mass flux is the momentum.
+template <class R>
+struct Stencil {
+  using Value = R;
+
+  Triple<R> d_state[5];
+  R d_flux_m[5], d_flux_energy[5];
+  Triple<R> flux_sum;
+
+  [[nodiscard]] KOKKOS_FUNCTION Triple<R> central() const {
+    return {central_flux(flux_sum.rho, d_state[1].m, d_state[3].m),
+            central_flux(flux_sum.m, d_flux_m[1], d_flux_m[3]),
+            central_flux(flux_sum.energy, d_flux_energy[1], d_flux_energy[3])};
+  }
+};
 
 /// The split differences of one characteristic field: the right-going part sees the first four of the five,
 /// the left-going part the last four in reverse.
@@ -50,8 +58,9 @@ struct SplitDifferences {
 /// 1996, section 2): the central flux minus the projected nonlinear corrections.
 ///
 /// `N` is the type of all that is nonlinear: R itself, or its single-precision twin for split precision.
-template <Reconstruction scheme, class N, class R>
-KOKKOS_INLINE_FUNCTION Triple<R> weno5_face(const Stencil<R>& s, const Eigensystem<N>& e,
+/// `AnyStencil` is `Stencil` or what has its differences and its central flux.
+template <Reconstruction scheme, class N, class AnyStencil, class R = typename AnyStencil::Value>
+KOKKOS_INLINE_FUNCTION Triple<R> weno5_face(const AnyStencil& s, const Eigensystem<N>& e,
                                             const Speeds<N>& alpha) {
   using To = device::Convert<N>;
   SplitDifferences<N> slow, entropy, fast;
@@ -71,11 +80,9 @@ KOKKOS_INLINE_FUNCTION Triple<R> weno5_face(const Stencil<R>& s, const Eigensyst
   const N acoustic = F(1.0 / (correction_scale * acoustic_scale)) * e.inverse_unit;
   const N sum = acoustic * (k1 + k3), difference = acoustic * e.c * (k3 - k1);
   using Back = device::Convert<R>;
-  return {
-      central_flux(s.flux_sum.rho, s.d_state[1].m, s.d_state[3].m) - Back::from(sum + k2),
-      central_flux(s.flux_sum.m, s.d_flux_m[1], s.d_flux_m[3]) - Back::from(e.u * (sum + k2) + difference),
-      central_flux(s.flux_sum.energy, s.d_flux_energy[1], s.d_flux_energy[3]) -
-          Back::from(e.enthalpy * sum + e.kinetic * k2 + e.u * difference)};
+  const Triple<R> central = s.central();
+  return {central.rho - Back::from(sum + k2), central.m - Back::from(e.u * (sum + k2) + difference),
+          central.energy - Back::from(e.enthalpy * sum + e.kinetic * k2 + e.u * difference)};
 }
 
 }  // namespace drogue::gas

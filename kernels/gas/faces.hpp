@@ -1,6 +1,6 @@
 #pragma once
 
-#include "kernels/gas/tile_update.hpp"
+#include "kernels/gas/face_window.hpp"
 
 namespace drogue::gas {
 
@@ -82,7 +82,7 @@ class FaceChunk {
 };
 
 /// Calls `take(face, flux)` for the faces `first` to `last` of a tile, `lanes` from `face` on at a time.
-/// Alpha is that of the stencil if `local`, else `alpha`.
+/// Alpha is that of the stencil if `local`, else `alpha`. Which thread has which face is not said.
 template <Reconstruction scheme, class N, class R, class Member, class Tile, class Take>
 KOKKOS_INLINE_FUNCTION void for_face_fluxes(const Member& member, const Tile& tile, int first, int last,
                                             Mean mean, double gamma, bool local, const Speeds<N>& alpha,
@@ -97,6 +97,19 @@ KOKKOS_INLINE_FUNCTION void for_face_fluxes(const Member& member, const Tile& ti
       for (int i = 0; begin + i <= end; i += lanes)
         take(begin + i, weno5_face<scheme, N>(chunk.stencil(tile, begin + i, i), chunk.eigensystem(i),
                                               local ? chunk.speeds(i) : alpha));
+    }
+  } else if constexpr (!std::is_same_v<N, R>) {
+    const int run = (last - first + member.team_size()) / member.team_size();
+    for (int begin = first + member.team_rank() * run; begin <= last; begin += member.team_size() * run) {
+      FaceWindow<N, Tile> window(tile, begin);
+      for (int face = begin; face < begin + run && face <= last; ++face) {
+        window.advance();
+        take(face,
+             weno5_face<scheme, N>(window,
+                                   face_eigensystem<N, R>(mean, gamma, tile.template face_cell<R>(face + 2),
+                                                          tile.template face_cell<R>(face + 3)),
+                                   local ? window.speeds() : alpha));
+      }
     }
   } else {
     for (int face = first + member.team_rank() * lanes; face <= last; face += member.team_size() * lanes)

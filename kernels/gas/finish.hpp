@@ -10,7 +10,8 @@ namespace drogue::gas {
 // of decisions in global memory would wait for each.
 
 /// Sets dt of the next attempt from the fastest signal of U^n: the CFL condition with its start-up ramp (or
-/// the fixed step), less what failed attempts have taken off, cut to meet the target time.
+/// the fixed step), cut to meet the target time, less what failed attempts have taken off: none is tried
+/// twice.
 KOKKOS_INLINE_FUNCTION void choose_dt(const Progress& now, Attempt& next, const StepConstants& k) {
   double dt = k.fixed_dt;
   if (!(dt > 0.0)) {
@@ -19,10 +20,10 @@ KOKKOS_INLINE_FUNCTION void choose_dt(const Progress& now, Attempt& next, const 
                             : 1.0;
     dt = ramp * (now.limited ? k.limited_cfl : k.cfl) * k.dx * device::reciprocal(max_speed(now.speed));
   }
-  dt *= now.dt_scale;
   const double left = next.target - now.time;
-  next.reaches_target = dt >= left * (1.0 - 1e-12);
-  next.dt = next.reaches_target ? left : dt;
+  const bool meets = dt >= left * (1.0 - 1e-12);
+  next.reaches_target = meets && now.dt_scale == 1.0;
+  next.dt = now.dt_scale * (meets ? left : dt);
 }
 
 KOKKOS_INLINE_FUNCTION void fail(const Progress& now, Attempt& attempt, Failed& failed, Quantity quantity,

@@ -41,11 +41,12 @@ template <Reconstruction scheme, class ExecutionSpace>
 void launch_stage(const ExecutionSpace& space, const StageSetup<ExecutionSpace>& setup, Precision precision,
                   bool limited, int stage);
 
-/// Enqueues all stages of a step at once: with alpha from the stencil, and without the limiter.
+/// Enqueues all stages of a step at once: with alpha from the stencil.
 template <Reconstruction scheme, class ExecutionSpace>
-void launch_step(const ExecutionSpace& space, const StageSetup<ExecutionSpace>& setup, Precision precision);
+void launch_step(const ExecutionSpace& space, const StageSetup<ExecutionSpace>& setup, Precision precision,
+                 bool limited);
 
-/// Enqueues one launch of up to `most_steps` steps, under the same conditions.
+/// Enqueues one launch of up to `most_steps` steps: with alpha from the stencil, and without the limiter.
 template <Reconstruction scheme, class ExecutionSpace>
 void launch_resident_steps(const StageSetup<ExecutionSpace>& setup,
                            const ResidentSetup<ExecutionSpace>& resident, Precision precision,

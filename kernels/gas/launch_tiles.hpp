@@ -78,11 +78,12 @@ void launch_stage(const ExecutionSpace& space, const StageSetup<ExecutionSpace>&
   }
 }
 
-template <Reconstruction scheme, Precision precision, class ExecutionSpace>
-StepFunctor<ExecutionSpace, scheme, precision> step_functor(const StageSetup<ExecutionSpace>& setup,
-                                                            const TileShape& shape) {
+template <Reconstruction scheme, Precision precision, bool limited, class ExecutionSpace>
+StepFunctor<ExecutionSpace, scheme, precision, limited> step_functor(const StageSetup<ExecutionSpace>& setup,
+                                                                     const TileShape& shape) {
   return {{setup.buffer[0], setup.buffer[1], setup.buffer[2]},
           setup.control,
+          setup.touched,
           setup.table,
           shape,
           setup.ends,
@@ -92,16 +93,20 @@ StepFunctor<ExecutionSpace, scheme, precision> step_functor(const StageSetup<Exe
 }
 
 template <Reconstruction scheme, Precision precision, class ExecutionSpace>
-void launch_step_as(const ExecutionSpace& space, const StageSetup<ExecutionSpace>& setup) {
-  launch<true>("drogue::gas::step", space, setup, setup.step_shape,
-               step_functor<scheme, precision>(setup, setup.step_shape));
+void launch_step_as(const ExecutionSpace& space, const StageSetup<ExecutionSpace>& setup, bool limited) {
+  if (limited)
+    launch<true>("drogue::gas::step_limited", space, setup, setup.step_shape,
+                 step_functor<scheme, precision, true>(setup, setup.step_shape));
+  else
+    launch<true>("drogue::gas::step", space, setup, setup.step_shape,
+                 step_functor<scheme, precision, false>(setup, setup.step_shape));
 }
 
 template <Reconstruction scheme, Precision precision, class ExecutionSpace>
 void launch_resident_steps_as(const StageSetup<ExecutionSpace>& setup,
                               const ResidentSetup<ExecutionSpace>& resident, std::int64_t most_steps) {
   const ResidentStepFunctor<ExecutionSpace, scheme, precision> functor{
-      step_functor<scheme, precision>(setup, resident.shape), resident.status, resident.constants,
+      step_functor<scheme, precision, false>(setup, resident.shape), resident.status, resident.constants,
       most_steps};
   resident.grid.template launch<largest_resident_team, 1>(functor);
 }
@@ -119,11 +124,12 @@ void launch_resident_steps(const StageSetup<ExecutionSpace>& setup,
 }
 
 template <Reconstruction scheme, class ExecutionSpace>
-void launch_step(const ExecutionSpace& space, const StageSetup<ExecutionSpace>& setup, Precision precision) {
+void launch_step(const ExecutionSpace& space, const StageSetup<ExecutionSpace>& setup, Precision precision,
+                 bool limited) {
   if (precision == Precision::full)
-    launch_step_as<scheme, Precision::full>(space, setup);
+    launch_step_as<scheme, Precision::full>(space, setup, limited);
   else
-    launch_step_as<scheme, Precision::split>(space, setup);
+    launch_step_as<scheme, Precision::split>(space, setup, limited);
 }
 
 }  // namespace drogue::gas

@@ -39,6 +39,7 @@ enum class Driver {
   plain,       ///< kernels one by one
   graph,       ///< the kernels of a step as one recorded graph
   persistent,  ///< many steps in one launch of teams that all run at once
+  stages,      ///< a recorded graph of a kernel a stage, which other splittings than lf_stencil always have
 };
 
 enum class Boundary { outflow, reflecting, periodic };

@@ -11,7 +11,7 @@ namespace drogue::gas {
 /// signals of all teams and decides.
 template <class ExecutionSpace, Reconstruction scheme, Precision precision>
 struct ResidentStepFunctor {
-  using Step = StepFunctor<ExecutionSpace, scheme, precision>;
+  using Step = StepFunctor<ExecutionSpace, scheme, precision, false>;
   static constexpr std::uint64_t bad_state = ~std::uint64_t{0};  ///< told instead of a speed
 
   Step step;

@@ -73,7 +73,7 @@ class Solver {
 
   [[nodiscard]] virtual Phases phases() const = 0;
 
-  /// How a step reaches the device: "persistent", "graph", "plain" or "seed".
+  /// How a step reaches the device: "persistent", "graph", "plain", "stages" or "seed".
   [[nodiscard]] virtual const char* driver() const = 0;
 
   /// Of a step in which the limiter has nothing to do; none in seed mode.

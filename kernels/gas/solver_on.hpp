@@ -47,6 +47,10 @@ class SolverOn final : public Solver {
   void write_control(const Control& control);
   void begin_at(Control& control);
   [[nodiscard]] Status status() const;
+  /// Whether all stages of a step are one kernel.
+  [[nodiscard]] bool is_fused() const {
+    return _setup.splitting == Splitting::lf_stencil && _parameters.driver != Driver::stages;
+  }
   void enqueue_step(const ExecutionSpace& space, bool limited) const;
   void enqueue_sums(const ExecutionSpace& space, int row_every, bool always) const;
   void make_resident();

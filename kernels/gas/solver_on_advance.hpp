@@ -59,8 +59,7 @@ void with_reconstruction(const Parameters& p, const Launch& launch) {
 template <class ExecutionSpace>
 void SolverOn<ExecutionSpace>::enqueue_step(const ExecutionSpace& space, bool limited) const {
   with_reconstruction(_parameters, [&](auto scheme) {
-    if (!limited && _setup.splitting == Splitting::lf_stencil)
-      return launch_step<scheme.value>(space, _setup, _parameters.precision);
+    if (is_fused()) return launch_step<scheme.value>(space, _setup, _parameters.precision, limited);
     for (int stage = 0; stage < _setup.table.stages; ++stage)
       launch_stage<scheme.value>(space, _setup, _parameters.precision, limited, stage);
   });

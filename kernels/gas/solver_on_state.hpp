@@ -101,14 +101,16 @@ void SolverOn<ExecutionSpace>::make_resident() {
 template <class ExecutionSpace>
 const char* SolverOn<ExecutionSpace>::driver() const {
   if (_resident) return "persistent";
+  if (_parameters.driver == Driver::stages) return "stages";
   return _parameters.driver == Driver::plain ? "plain" : device::Replay<ExecutionSpace>::driver;
 }
 
 template <class ExecutionSpace>
 Tiling SolverOn<ExecutionSpace>::tiling() const {
-  const bool fused = _setup.splitting == Splitting::lf_stencil && _parameters.positivity != Positivity::on;
-  const TileShape& shape = !fused ? _setup.stage_shape : _resident ? _resident->shape : _setup.step_shape;
-  return {shape.cells, shape.halo, fused};
+  const TileShape& shape = !is_fused() ? _setup.stage_shape
+                           : _resident ? _resident->shape
+                                       : _setup.step_shape;
+  return {shape.cells, shape.halo, is_fused()};
 }
 
 template <class ExecutionSpace>

@@ -5,7 +5,7 @@
 #include "kernels/device/memory.hpp"
 #include "kernels/device/team_maximum.hpp"
 #include "kernels/gas/faces.hpp"
-#include "kernels/gas/limiter.hpp"
+#include "kernels/gas/limit_faces.hpp"
 
 namespace drogue::gas {
 
@@ -71,34 +71,12 @@ struct StageFunctor {
                                       double dt) const {
     for_face_fluxes<scheme, N, R>(member, tile, 0, tile.cells, mean, gamma,
                                   splitting == Splitting::lf_stencil, mesh_speeds(),
-                                  [&](int face, const Triple<R>& flux) {
-                                    if constexpr (limited)
-                                      tile.store_flux(face, limit_flux(tile, face, flux, dt));
-                                    else
-                                      tile.store_flux(face, flux);
-                                  });
-  }
-
-  KOKKOS_FUNCTION Triple<R> limit_flux(const Tile<ExecutionSpace>& tile, int face, const Triple<R>& high,
-                                       double dt) const {
-    using Lanes = device::Access<R>;
-    const double alpha = max_speed(control().outcome.stage_speed[stage]);
-    const Triple<R> left = tile.template state<R>(face + 2), right = tile.template state<R>(face + 3);
-    const auto flux = [&](TileField field, int i) { return tile.template load<R>(field, face + i); };
-    const Triple<R> low =
-        lax_friedrichs(left, flux(TileField::flux_m, 2), flux(TileField::flux_energy, 2), right,
-                       flux(TileField::flux_m, 3), flux(TileField::flux_energy, 3), alpha);
-    const double two_lambda = 2.0 * dt * inverse_dx;
-    const LimitedFlux<R> result = limit(left, right, high, low, two_lambda, gamma);
-    for (int lane = 0; lane < Lanes::lanes; ++lane) {
-      const int f = face + lane;
-      if (f > tile.cells || !(Lanes::lane(result.theta, lane) < 1.0)) continue;
-      // A face between two tiles is computed by both; the right one counts it.
-      if (f < tile.cells || tile.last) Kokkos::atomic_inc(&control().outcome.touches);
-      if (tile.first + f > 0) touched(tile.first + f - 1) = 1;
-      if (tile.first + f < ends.cells) touched(tile.first + f) = 1;
+                                  [&](int face, const Triple<R>& flux) { tile.store_flux(face, flux); });
+    if constexpr (limited) {
+      member.team_barrier();
+      limit_fluxes<R>(member, tile, 0, tile.cells, 2.0 * dt * inverse_dx, gamma,
+                      {touched.data(), ends.cells, &control().outcome.touches});
     }
-    return result.flux;
   }
 
   template <class P>

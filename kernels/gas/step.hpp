@@ -5,14 +5,14 @@
 #include "kernels/device/memory.hpp"
 #include "kernels/device/team_maximum.hpp"
 #include "kernels/gas/faces.hpp"
+#include "kernels/gas/limit_faces.hpp"
 
 namespace drogue::gas {
 
 /// All stages of a step in one launch: a tile loads three cells a stage and side beyond its own and computes
 /// what its neighbours compute too, so that no stage waits for another tile. That needs a splitting whose
-/// alpha is local, and no limiter (whose dissipation looks at the whole mesh). Every cell gets the bits that
-/// `StageFunctor` gives it.
-template <class ExecutionSpace, Reconstruction scheme, Precision precision>
+/// alpha is local. Every cell gets the bits that `StageFunctor` gives it.
+template <class ExecutionSpace, Reconstruction scheme, Precision precision, bool limited>
 struct StepFunctor {
   static constexpr bool on_host = device::is_host<ExecutionSpace>;
   using Member = typename Kokkos::TeamPolicy<ExecutionSpace>::member_type;
@@ -24,6 +24,7 @@ struct StepFunctor {
 
   Fields buffer[3];
   Kokkos::View<Control, typename ExecutionSpace::memory_space> control;
+  Kokkos::View<std::uint8_t*, typename ExecutionSpace::memory_space> touched;  ///< by the limiter
   StageTable table;
   TileShape shape;
   Ends ends;
@@ -39,27 +40,35 @@ struct StepFunctor {
 
   KOKKOS_FUNCTION void operator()(const Member& member) const {
     const StepInput now = read_step_input(control());
-    if (now.stop != Stop::running || now.limited) return;
+    if (now.stop != Stop::running || now.limited != limited) return;
     const TileType tile(member, shape, ends.cells);
     run(member, tile, now.current, Known{now}, control().outcome);
   }
 
-  /// A step from the state in buffer `current`. All threads call `decision.decide()` once the first fluxes,
-  /// which need no dt, are computed, and `input()` after a barrier; false if that tells not to step.
+  /// A step from the state in buffer `current`. All threads call `decision.decide()` once the first fluxes
+  /// are computed, which need no dt but for the limiter, and `input()` after a barrier; false if that tells
+  /// not to step.
   template <class AnyMember, class Decision>
   KOKKOS_FUNCTION bool run(const AnyMember& member, const TileType& tile, int current,
                            const Decision& decision, Outcome& outcome) const {
     load_cells<R, TileType::keeps_start>(member, tile, ends, gamma, buffer[current].data());
     StepInput now{};
+    if constexpr (limited) now = decision.input();
     for (int stage = 0; stage < table.stages; ++stage) {
       const Range faces = faces_of(tile, stage);
       member.team_barrier();
       compute_fluxes(member, tile, faces);
+      if constexpr (limited) {
+        member.team_barrier();
+        limit_fluxes<R>(member, tile, faces.first, faces.last,
+                        2.0 * (table.stage[stage].dt_factor * now.dt) * inverse_dx, gamma,
+                        {touched.data(), ends.cells, &outcome.touches});
+      }
       if (stage == 0) decision.decide();
       member.team_barrier();
       if (stage == 0) {
         now = decision.input();
-        if (now.stop != Stop::running || now.limited) return false;
+        if (now.stop != Stop::running || now.limited != limited) return false;
       }
       store_boundary_fluxes(member, tile, outcome, stage, tile.halo - ghost_cells,
                             tile.halo - ghost_cells + tile.cells);
@@ -124,10 +133,10 @@ struct StepFunctor {
     reduced.judge(s.rho, s.p);
     if constexpr (final_stage) {
       store_state(tile, i, u, ends.cells, out);
-      reduced.raise(signal_speeds(s.u, s.c));
     } else {
       store_cell(tile, i, turned(image, s));
     }
+    if constexpr (final_stage || limited) reduced.raise(signal_speeds(s.u, s.c));
   }
 
   template <bool final_stage, class AnyMember>
@@ -159,8 +168,8 @@ struct StepFunctor {
       if constexpr (!final_stage) fill_ghosts(tile);
     }
     if (all.admissible < 1.0) find_inadmissible<final_stage>(member, tile, begin, end, stage, out, outcome);
-    if constexpr (final_stage)
-      device::raise_to_team_maximum(member, outcome.stage_speed[table.stages][2],
+    if constexpr (final_stage || limited)
+      device::raise_to_team_maximum(member, outcome.stage_speed[stage + 1][2],
                                     device::maximum(all.slow, all.fast));
   }
 

@@ -49,23 +49,22 @@ KOKKOS_INLINE_FUNCTION Indicators<R> weight_ratios(Indicators<R> indicators) {
     return {(b0 + tau) * b12, (b1 + tau) * b02, (b2 + tau) * b01};
   } else if constexpr (scheme == Reconstruction::z2) {
     // 1 + (tau / (b_k + eps))^2. Six indicators leave the range of a double where a cold gas meets a
-    // hot one (Sedov: differences of 1e25), so the squares are taken of what is at most one; in single
+    // hot one (Sedov: differences of 1e25), so the squares are taken of what is less than two; in single
     // precision `correction` has seen to that.
     const R tau = device::absolute(b0 - b2);
     R all = b0 * b12, q0 = tau * b12, q1 = tau * b02, q2 = tau * b01;
     if constexpr (!std::is_same_v<S, float>) {
-      const R inverse =
-          device::reciprocal(device::maximum(device::maximum(all, q0), device::maximum(q1, q2)));
+      const R inverse = device::binary_reciprocal((all + q0) + (q1 + q2));
       all = all * inverse, q0 = q0 * inverse, q1 = q1 * inverse, q2 = q2 * inverse;
     }
     const R all2 = all * all;
     return {all2 + q0 * q0, all2 + q1 * q1, all2 + q2 * q2};
   } else {
     // Fu, Hu and Adams 2016, eq. (14)-(17). The sixth power of the ratio overflows for smooth data (eps is
-    // tiny), so the ratios are divided by the largest of them first; the cut-off compares g_k with their sum.
+    // tiny), so the ratios are brought to less than two first; the cut-off compares g_k with their sum.
     const R tau = device::absolute(b0 - b2);
     const R q0 = (b0 + tau) * b12, q1 = (b1 + tau) * b02, q2 = (b2 + tau) * b01;
-    const R inverse = device::reciprocal(device::maximum(q0, device::maximum(q1, q2)));
+    const R inverse = device::binary_reciprocal(q0 + (q1 + q2));
     const auto sixth = [](R ratio) {
       const R cube = ratio * ratio * ratio;
       return cube * cube;
@@ -100,13 +99,13 @@ KOKKOS_INLINE_FUNCTION R correction(R a, R b, R c, R d, R unit) {
               S(floor_of_epsilon);
   R ka = a, kb = b, kc = c, kd = d;
   if constexpr (single) {
-    // The indicators' products leave the range of a float: bring the largest difference to four first. The
+    // The indicators' products leave the range of a float: bring the largest difference to [2, 4) first. The
     // floor keeps an empty stencil finite; 1e-6 for JS, whose eps is absolute and far larger than such a
     // stencil. The smallest product of powers of eps (Z, p = 2: its sixth) must stay a normal number.
     const R largest = device::maximum(device::maximum(device::absolute(a), device::absolute(b)),
                                       device::maximum(device::absolute(c), device::absolute(d)));
     const R floor = scheme == Reconstruction::js ? 1e-6F * unit : R(1e-30F);
-    const R inverse = S(4) * device::reciprocal(device::maximum(largest, floor));
+    const R inverse = S(2) * device::binary_reciprocal(device::maximum(largest, floor));
     ka = a * inverse, kb = b * inverse, kc = c * inverse, kd = d * inverse;
     if constexpr (scheme == Reconstruction::js)
       epsilon = epsilon * inverse * inverse + S(1e-9);

@@ -34,7 +34,8 @@ const Choices<gas::Boundary> boundary_choices = {{"outflow", gas::Boundary::outf
 const Choices<gas::Driver> driver_choices = {{"auto", gas::Driver::automatic},
                                              {"plain", gas::Driver::plain},
                                              {"graph", gas::Driver::graph},
-                                             {"persistent", gas::Driver::persistent}};
+                                             {"persistent", gas::Driver::persistent},
+                                             {"stages", gas::Driver::stages}};
 const Choices<Exact> exact_choices = {
     {"riemann", Exact::riemann}, {"advection", Exact::advection}, {"reference", Exact::reference}};
 

@@ -21,6 +21,7 @@ enum class Operation {
   input,
   absolute,
   negate,
+  binary_reciprocal,
   root,
   add,
   subtract,
@@ -183,6 +184,9 @@ using testing::Operation;
 inline Counted absolute(Counted a) { return Counted::of(Operation::absolute, std::abs(a.value), a); }
 inline Counted square_root(Counted a) { return Counted::of(Operation::root, std::sqrt(a.value), a); }
 inline Counted reciprocal(Counted a) { return Counted(1.0) / a; }
+inline Counted binary_reciprocal(Counted a) {
+  return Counted::of(Operation::binary_reciprocal, binary_reciprocal(a.value), a);
+}
 inline Root<Counted> root(Counted a) {
   const Counted value = square_root(a), inverse = reciprocal(a);
   return {value, value * inverse, inverse};

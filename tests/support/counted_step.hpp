@@ -23,7 +23,7 @@ class CountedStep {
 
   using Tile = gas::Tile<Kokkos::Serial>;
   template <gas::Reconstruction scheme>
-  using Step = gas::StepFunctor<Kokkos::Serial, scheme, gas::Precision::full>;
+  using Step = gas::StepFunctor<Kokkos::Serial, scheme, gas::Precision::full, false>;
   template <gas::Reconstruction scheme>
   using Stage = gas::StageFunctor<Kokkos::Serial, scheme, gas::Precision::full, false>;
 
@@ -129,7 +129,7 @@ class CountedStep {
 
   template <gas::Reconstruction scheme>
   [[nodiscard]] Step<scheme> fused() const {
-    return {{}, {}, _table, {tile_cells, gas::ghost_cells * _table.stages, row}, ends, gamma, 1.0, {}};
+    return {{}, {}, {}, _table, {tile_cells, gas::ghost_cells * _table.stages, row}, ends, gamma, 1.0, {}};
   }
 
  private:

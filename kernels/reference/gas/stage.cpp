@@ -55,7 +55,8 @@ StageFluxes stage_fluxes(const std::vector<Conserved>& cells, const gas::Paramet
     const std::array<double, 3> alpha = splitting_alpha(parameters.splitting, mesh, stencil, gamma);
     result.flux[face] = face_flux(stencil, alpha, parameters);
     if (lambda) {
-      const Conserved low = lax_friedrichs_flux(stencil[2], stencil[3], mesh.largest, gamma);
+      const double fastest = speed_bounds(stencil.subspan<2, 2>(), gamma).largest;
+      const Conserved low = lax_friedrichs_flux(stencil[2], stencil[3], fastest, gamma);
       const LimitedFlux limited = limit_flux(result.flux[face], low, stencil[2], stencil[3], *lambda, gamma);
       result.flux[face] = limited.flux;
       result.touches += limited.touched ? 1 : 0;

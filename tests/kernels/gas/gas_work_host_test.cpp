@@ -130,8 +130,8 @@ TEST(GasWork, DivisionsAreOneAWeightAndOneAFace) {
   const auto divisions = [](Weno weno, int power) { return face_arithmetic(weno, power).divisions; };
   EXPECT_EQ(divisions(Weno::js, 1), 6 + 1);
   EXPECT_EQ(divisions(Weno::z, 1), 6 + 1);
-  EXPECT_EQ(divisions(Weno::z, 2), 2 * 6 + 1) << "and the largest product";
-  EXPECT_EQ(divisions(Weno::teno5, 1), 2 * 6 + 1) << "and the largest ratio";
+  EXPECT_EQ(divisions(Weno::z, 2), 6 + 1);
+  EXPECT_EQ(divisions(Weno::teno5, 1), 6 + 1);
   EXPECT_EQ(divisions(Weno::m, 1), 5 * 6 + 1) << "and the first weights, and three maps";
   for_schemes([](auto, const Parameters& p) { EXPECT_EQ(face_arithmetic(p.weno, p.weno_power).roots, 1); });
 }
@@ -186,9 +186,9 @@ TEST(GasWork, OperationsACellAndStage) {
   };
   EXPECT_EQ(operations(Weno::js, 1), 518);
   EXPECT_EQ(operations(Weno::z, 1), 542);
-  EXPECT_EQ(operations(Weno::z, 2), 603);
+  EXPECT_EQ(operations(Weno::z, 2), 616);
   EXPECT_EQ(operations(Weno::m, 1), 689);
-  EXPECT_EQ(operations(Weno::teno5, 1), 640);
+  EXPECT_EQ(operations(Weno::teno5, 1), 646);
 }
 
 TEST(GasWork, WhatIsNotCountedIsNotSaid) {
@@ -201,6 +201,9 @@ TEST(GasWork, WhatIsNotCountedIsNotSaid) {
   p.mean = Mean::roe;
   EXPECT_EQ(step_work(p, fused).arithmetic, Arithmetic{});
   p.mean = Mean::arithmetic;
+  p.positivity = Positivity::on;
+  EXPECT_EQ(step_work(p, fused).arithmetic, Arithmetic{});
+  p.positivity = Positivity::off;
   EXPECT_EQ(step_work(p, {50, 3, false}).arithmetic, Arithmetic{});
   EXPECT_EQ(step_work(p, {}).bytes, 0);
 }
@@ -212,7 +215,7 @@ TEST(GasWork, SolversSayHowTheyDivideTheMesh) {
   EXPECT_EQ(tiling().cells, 256);
   EXPECT_EQ(tiling().halo, 9);
   EXPECT_TRUE(tiling().fused);
-  p.positivity = Positivity::on;
+  p.splitting = Splitting::lf_global;
   EXPECT_EQ(tiling().halo, 3);
   EXPECT_FALSE(tiling().fused);
 }
