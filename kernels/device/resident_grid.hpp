@@ -18,6 +18,11 @@ class ResidentGrid {
   static constexpr bool available = false;
 };
 
+/// What a place of a grid's board holds.
+struct Posted {
+  double value[3];
+};
+
 #if defined(KOKKOS_ENABLE_CUDA)
 
 /// A number that a team tells all others, with the epoch that it belongs to. Sixteen aligned bytes are read
@@ -31,6 +36,8 @@ struct alignas(16) Packet {
 struct Rendezvous {
   std::uint64_t* published;  ///< (teams): epoch that a team has ended
   Packet* packets;           ///< (2, teams): of even and of odd epochs
+  Packet* board;             ///< (2, 3, places): what neighbours read, of even and of odd epochs
+  std::size_t places;
 };
 
 /// A team's member as kernels use Kokkos' own, and what lets teams wait for one another. On the host, where
@@ -90,13 +97,35 @@ class ResidentMember {
     KOKKOS_IF_ON_HOST(((void)other; (void)epoch;))
   }
 
+  /// Leaves three numbers of `epoch` at a place of the board. No order is kept with other memory: each number
+  /// carries its epoch.
+  KOKKOS_FUNCTION void post(std::uint64_t epoch, std::size_t place, const Posted& numbers) const {
+    for (std::size_t k = 0; k < 3; ++k) store(row(epoch, k) + place, numbers.value[k], epoch);
+  }
+
+  /// The numbers at a place of the board, once those of `epoch` are there. Two boards are enough: who posts
+  /// the next epoch but one has heard from all (`await_largest`) that they have read this one.
+  [[nodiscard]] KOKKOS_FUNCTION Posted collect(std::uint64_t epoch, std::size_t place) const {
+    Posted numbers{};
+    KOKKOS_IF_ON_DEVICE((bool all = false; while (!all) {
+      all = true;
+      // Without a branch, so that the loads are in flight together.
+      for (std::size_t k = 0; k < 3; ++k) {
+        std::uint64_t value, of;
+        asm volatile("ld.relaxed.gpu.global.v2.u64 {%0, %1}, [%2];"
+                     : "=l"(value), "=l"(of)
+                     : "l"(row(epoch, k) + place));
+        all = all && of == epoch;
+        numbers.value[k] = Kokkos::bit_cast<double>(value);
+      }
+    }))
+    KOKKOS_IF_ON_HOST(((void)epoch; (void)place;))
+    return numbers;
+  }
+
   /// Tells all teams `value`; one thread calls it. No order is kept with other memory.
   KOKKOS_FUNCTION void send(std::uint64_t epoch, std::uint64_t value) const {
-    KOKKOS_IF_ON_DEVICE(
-        (asm volatile("st.relaxed.gpu.global.v2.u64 [%0], {%1, %2};" ::"l"(mailbox(epoch) + _league_rank),
-                      "l"(value), "l"(epoch)
-                      : "memory");))
-    KOKKOS_IF_ON_HOST(((void)epoch; (void)value;))
+    store(mailbox(epoch) + _league_rank, Kokkos::bit_cast<double>(value), epoch);
   }
 
   /// The largest value that teams tell for `epoch`, once all have. A whole warp calls it, all lanes get it.
@@ -122,6 +151,15 @@ class ResidentMember {
   }
 
  private:
+  KOKKOS_FUNCTION static void store(Packet* to, double value, std::uint64_t epoch) {
+    KOKKOS_IF_ON_DEVICE((asm volatile("st.relaxed.gpu.global.v2.u64 [%0], {%1, %2};" ::"l"(to),
+                                      "l"(Kokkos::bit_cast<std::uint64_t>(value)), "l"(epoch)
+                                      : "memory");))
+    KOKKOS_IF_ON_HOST(((void)to; (void)value; (void)epoch;))
+  }
+  [[nodiscard]] KOKKOS_FUNCTION Packet* row(std::uint64_t epoch, std::size_t k) const {
+    return _rendezvous.board + (epoch % 2 * 3 + k) * _rendezvous.places;
+  }
   [[nodiscard]] KOKKOS_FUNCTION Packet* mailbox(std::uint64_t epoch) const {
     return _rendezvous.packets + (epoch % 2) * static_cast<std::uint64_t>(_league_size);
   }
@@ -154,21 +192,24 @@ class ResidentGrid<Kokkos::Cuda> {
     return instance.space().cuda_device_prop().sharedMemPerBlockOptin;
   }
 
-  /// `teams` of `team_size` threads, each with `scratch_bytes` of shared memory.
-  ResidentGrid(const Instance<Kokkos::Cuda>& instance, int teams, int team_size, std::size_t scratch_bytes)
+  /// `teams` of `team_size` threads, each with `scratch_bytes` of shared memory, and a board of `places`.
+  ResidentGrid(const Instance<Kokkos::Cuda>& instance, int teams, int team_size, std::size_t scratch_bytes,
+               std::size_t places)
       : _stream(instance.stream()),
         _teams(teams),
         _team_size(team_size),
         _scratch_bytes(static_cast<int>(scratch_bytes)),
         _published("drogue::device::published", static_cast<std::size_t>(teams)),
-        _packets("drogue::device::packets", static_cast<std::size_t>(2 * teams)) {}
+        _packets("drogue::device::packets", static_cast<std::size_t>(2 * teams)),
+        _board("drogue::device::board", 2 * 3 * places),
+        _places(places) {}
 
   /// Runs `functor(member)` in every thread, without waiting for its end. Throws std::runtime_error if the
   /// teams cannot all run at once.
   template <int most_threads, int least_teams, class Functor>
   void launch(const Functor& functor) const {
     const auto kernel = resident_kernel<most_threads, least_teams, Functor>;
-    Rendezvous rendezvous{_published.data(), _packets.data()};
+    Rendezvous rendezvous{_published.data(), _packets.data(), _board.data(), _places};
     void* arguments[] = {const_cast<Functor*>(&functor), &rendezvous};
     KOKKOS_IMPL_CUDA_SAFE_CALL(
         cudaFuncSetAttribute(kernel, cudaFuncAttributeMaxDynamicSharedMemorySize, _scratch_bytes));
@@ -183,7 +224,8 @@ class ResidentGrid<Kokkos::Cuda> {
   cudaStream_t _stream;
   int _teams, _team_size, _scratch_bytes;
   Kokkos::View<std::uint64_t*, Kokkos::CudaSpace> _published;
-  Kokkos::View<Packet*, Kokkos::CudaSpace> _packets;
+  Kokkos::View<Packet*, Kokkos::CudaSpace> _packets, _board;
+  std::size_t _places;
 };
 
 #endif

@@ -6,9 +6,9 @@
 namespace drogue::gas {
 
 /// Many steps in one launch, for a mesh whose tiles all run at once: what `StepFunctor` and `FinishFunctor`
-/// do, but every team decides for itself, from the same numbers. A team that has ended its step waits for its
-/// neighbours alone and goes on with the fluxes, which need no dt; meanwhile its last warp hears the fastest
-/// signals of all teams and decides.
+/// do, but every team decides for itself, from the same numbers. A team that has ended its step reads the
+/// cells of its halo from the board of its grid, as soon as its neighbours have posted them, and goes on with
+/// the fluxes, which need no dt; meanwhile its last warp hears the fastest signals of all teams and decides.
 template <class ExecutionSpace, Reconstruction scheme, Precision precision>
 struct ResidentStepFunctor {
   using Step = StepFunctor<ExecutionSpace, scheme, precision, false>;
@@ -19,11 +19,12 @@ struct ResidentStepFunctor {
   StepConstants constants;
   std::int64_t most_steps;
 
-  /// What `StepFunctor::run` asks for: whether the step before stands, and the next dt.
+  /// What `StepFunctor::run` asks for: whether the step before stands, the next dt, and the cells of others.
   template <class Member>
   struct Decision {
     const ResidentStepFunctor& self;
     const Member& member;
+    const Tile<ExecutionSpace>& tile;
     Judgement& own;
     std::uint64_t epoch;  ///< of the step before
     std::int64_t done;    ///< steps of this launch
@@ -36,6 +37,20 @@ struct ResidentStepFunctor {
     KOKKOS_FUNCTION StepInput input() const {
       const Attempt& attempt = own.attempt;
       return {own.ends ? Stop::pause : attempt.stop, false, own.resume.current, attempt.dt};
+    }
+    /// All cells lie in memory when a launch begins, and always those that this team updates.
+    KOKKOS_FUNCTION Triple<double> load(const double* in, const Ends& ends, std::int64_t cell) const {
+      const Source from = source_cell(ends, cell);
+      const std::int64_t in_tile = from.cell - tile.first;
+      if (done == 0 || (in_tile >= 0 && in_tile < tile.cells)) return load_state<double>(in, ends, cell);
+      const device::Posted u = member.collect(epoch, static_cast<std::size_t>(from.cell));
+      return {u.value[0], from.sign * u.value[1], u.value[2]};
+    }
+    /// Cells that a neighbour's halo holds.
+    KOKKOS_FUNCTION void stored(std::int64_t cell, const Triple<double>& u) const {
+      const std::int64_t in_tile = cell - tile.first;
+      if (in_tile < tile.halo || in_tile >= tile.cells - tile.halo)
+        member.post(epoch + 1, static_cast<std::size_t>(cell), {{u.rho, u.m, u.energy}});
     }
   };
 
@@ -80,17 +95,16 @@ struct ResidentStepFunctor {
   /// The slow path: what the teams have agreed on in global memory.
   template <class Member>
   KOKKOS_FUNCTION std::uint64_t worst_cell(const Member& member, std::uint64_t epoch) const {
+    member.publish(epoch);
     for (int team = 0; team < member.league_size(); ++team) member.await(team, epoch);
     return Kokkos::atomic_load(&step.control().outcome.bad);
   }
 
-  /// Tells the others how the step has ended here. The fields are for the neighbours, the speed for all.
+  /// Tells the others how the step has ended here.
   template <class Member>
   KOKKOS_FUNCTION void end_step(const Member& member, Judgement& own, std::uint64_t epoch) const {
-    if (member.team_rank() == 0) {
-      if (own.outcome.bad != no_cell) Kokkos::atomic_min(&step.control().outcome.bad, own.outcome.bad);
-      member.publish(epoch);
-    }
+    if (member.team_rank() == 0 && own.outcome.bad != no_cell)
+      Kokkos::atomic_min(&step.control().outcome.bad, own.outcome.bad);
     if (member.team_rank() == first_of_last_warp(member)) {
       std::uint64_t& fastest = own.outcome.stage_speed[step.table.stages][2];
       member.send(epoch, own.outcome.bad != no_cell ? bad_state : fastest);
@@ -115,10 +129,9 @@ struct ResidentStepFunctor {
     member.team_barrier();
     int current = own.resume.current;
     double dt = 0.0;
-    for (std::int64_t done = 0;; ++done) {
-      const std::uint64_t epoch = begun + static_cast<std::uint64_t>(done);
-      if (done > 0) await_neighbours(member, epoch);
-      if (!step.run(member, tile, current, Decision<Member>{*this, member, own, epoch, done, dt},
+    std::uint64_t epoch = begun;
+    for (std::int64_t done = 0;; ++done, ++epoch) {
+      if (!step.run(member, tile, current, Decision<Member>{*this, member, tile, own, epoch, done, dt},
                     own.outcome))
         break;
       dt = own.attempt.dt;
@@ -126,6 +139,7 @@ struct ResidentStepFunctor {
       member.team_barrier();
       end_step(member, own, epoch + 1);
     }
+    if (member.team_rank() == 0) member.publish(epoch);
     write_back(member, own, control);
   }
 
@@ -149,19 +163,6 @@ struct ResidentStepFunctor {
   template <class Member>
   KOKKOS_FUNCTION static bool is_at_end(const Member& member, int side) {
     return member.league_rank() == (side == 0 ? 0 : member.league_size() - 1);
-  }
-
-  /// Two on each side: the last tile may have fewer cells than a halo.
-  template <class Member>
-  KOKKOS_FUNCTION void await_neighbours(const Member& member, std::uint64_t epoch) const {
-    const int k = member.team_rank(), teams = member.league_size();
-    if (k < 4) {
-      int other = member.league_rank() + (k < 2 ? k - 2 : k - 1);
-      while (other < 0) other += teams;
-      while (other >= teams) other -= teams;
-      member.await(other, epoch);
-    }
-    member.team_barrier();
   }
 };
 

@@ -31,7 +31,8 @@ struct SeedFluxFunctor {
   KOKKOS_FUNCTION void operator()(const Member& member) const {
     using Lanes = device::Access<R>;
     const Tile<ExecutionSpace> tile(member, shape, ends.cells, cell_rows);
-    load_cells<R, false>(member, tile, ends, gamma, state.data());
+    load_cells<R, false>(member, tile, gamma,
+                         [&](std::int64_t cell) { return load_state<R>(state.data(), ends, cell); });
     member.team_barrier();
     const Speeds<R> speeds{R(alpha.slow), R(alpha.entropy), R(alpha.fast)};
     // A face between two tiles is the right one's.

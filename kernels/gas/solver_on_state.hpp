@@ -94,7 +94,10 @@ void SolverOn<ExecutionSpace>::make_resident() {
     const std::int64_t threads = p.block > 0 ? p.block : (slots + warp - 1) / warp * warp + warp;
     const int team = static_cast<int>(std::min<std::int64_t>(threads, largest_resident_team));
     _resident.emplace(ResidentSetup<ExecutionSpace>{
-        {_instance, static_cast<int>(share(cells)), team, scratch}, shape, _status, _constants});
+        {_instance, static_cast<int>(share(cells)), team, scratch, static_cast<std::size_t>(p.cells)},
+        shape,
+        _status,
+        _constants});
   }
 }
 

@@ -42,7 +42,9 @@ struct StageFunctor {
     // its speed.
     if (now.stop != Stop::running || now.limited != limited) return;
     const Tile<ExecutionSpace> tile(member, shape, ends.cells);
-    load_cells<R, false>(member, tile, ends, gamma, field_data(now, weights.in));
+    const double* in = field_data(now, weights.in);
+    load_cells<R, false>(member, tile, gamma,
+                         [&](std::int64_t cell) { return load_state<R>(in, ends, cell); });
     member.team_barrier();
     compute_fluxes(member, tile, weights.dt_factor * now.dt);
     member.team_barrier();

@@ -31,11 +31,16 @@ struct StepFunctor {
   double gamma, inverse_dx;
   Mean mean;
 
-  /// What a step that has a launch of its own knows from the beginning.
+  /// What a step that has a launch of its own knows from the beginning: the state lies in memory.
   struct Known {
     StepInput now;
     KOKKOS_FUNCTION void decide() const {}
     KOKKOS_FUNCTION StepInput input() const { return now; }
+    KOKKOS_FUNCTION Triple<R> load(const double* in, const Ends& ends, std::int64_t cell) const {
+      return load_state<R>(in, ends, cell);
+    }
+    template <class P>
+    KOKKOS_FUNCTION void stored(std::int64_t, const Triple<P>&) const {}
   };
 
   KOKKOS_FUNCTION void operator()(const Member& member) const {
@@ -45,13 +50,16 @@ struct StepFunctor {
     run(member, tile, now.current, Known{now}, control().outcome);
   }
 
-  /// A step from the state in buffer `current`. All threads call `decision.decide()` once the first fluxes
+  /// A step from the state in buffer `current`, which `decision.load(start, ends, cell)` reads; it hears of
+  /// each new state by `stored(cell, state)`. All threads call `decision.decide()` once the first fluxes
   /// are computed, which need no dt but for the limiter, and `input()` after a barrier; false if that tells
   /// not to step.
   template <class AnyMember, class Decision>
   KOKKOS_FUNCTION bool run(const AnyMember& member, const TileType& tile, int current,
                            const Decision& decision, Outcome& outcome) const {
-    load_cells<R, TileType::keeps_start>(member, tile, ends, gamma, buffer[current].data());
+    const double* start = buffer[current].data();
+    load_cells<R, TileType::keeps_start>(member, tile, gamma,
+                                         [&](std::int64_t cell) { return decision.load(start, ends, cell); });
     StepInput now{};
     if constexpr (limited) now = decision.input();
     for (int stage = 0; stage < table.stages; ++stage) {
@@ -73,9 +81,9 @@ struct StepFunctor {
       store_boundary_fluxes(member, tile, outcome, stage, tile.halo - ghost_cells,
                             tile.halo - ghost_cells + tile.cells);
       if (stage < table.stages - 1)
-        update_slots<false>(member, tile, faces, stage, now, outcome);
+        update_slots<false>(member, tile, faces, stage, now, decision, outcome);
       else
-        update_slots<true>(member, tile, faces, stage, now, outcome);
+        update_slots<true>(member, tile, faces, stage, now, decision, outcome);
     }
     return true;
   }
@@ -122,10 +130,10 @@ struct StepFunctor {
       return load_state<P>(u_n, ends, tile.cell(i));
   }
 
-  template <bool final_stage, class P>
+  template <bool final_stage, class P, class Decision>
   KOKKOS_FUNCTION void update_slot(const TileType& tile, int i, const Image& image,
                                    const StageWeights& weights, double dt_over_dx, const double* u_n,
-                                   double* out, Reduced<P>& reduced) const {
+                                   double* out, const Decision& decision, Reduced<P>& reduced) const {
     const Triple<P> in = turned(image, tile.template state<P>(i));
     Triple<P> u = euler_step<P>(tile, in, image.of, weights.a_in, dt_over_dx);
     if (weights.a_n != 0.0) u = combined(weights.a_n, turned(image, start_state<P>(tile, i, u_n)), u);
@@ -133,15 +141,17 @@ struct StepFunctor {
     reduced.judge(s.rho, s.p);
     if constexpr (final_stage) {
       store_state(tile, i, u, ends.cells, out);
+      decision.stored(tile.cell(i), u);
     } else {
       store_cell(tile, i, turned(image, s));
     }
     if constexpr (final_stage || limited) reduced.raise(signal_speeds(s.u, s.c));
   }
 
-  template <bool final_stage, class AnyMember>
+  template <bool final_stage, class AnyMember, class Decision>
   KOKKOS_FUNCTION void update_slots(const AnyMember& member, const TileType& tile, const Range& faces,
-                                    int stage, const StepInput& now, Outcome& outcome) const {
+                                    int stage, const StepInput& now, const Decision& decision,
+                                    Outcome& outcome) const {
     constexpr int lanes = device::Access<R>::lanes;
     const StageWeights& weights = table.stage[stage];
     const double dt_over_dx = weights.dt_factor * now.dt * inverse_dx;
@@ -156,15 +166,16 @@ struct StepFunctor {
       if (begin == mesh.first) begin = device::maximum(begin - more, 0);
       if (end == mesh.last + 1) end = device::minimum(end + more, tile.slots);
       for (int i = begin + member.team_rank(); i < end; i += member.team_size())
-        update_slot<final_stage, double>(tile, i, image_at(mesh, i), weights, dt_over_dx, u_n, out, all);
+        update_slot<final_stage, double>(tile, i, image_at(mesh, i), weights, dt_over_dx, u_n, out, decision,
+                                         all);
     } else {
       const int whole = begin + (end - begin) / lanes * lanes;
       Reduced<R> packs;
       for (int i = begin; i < whole; i += lanes)
-        update_slot<final_stage, R>(tile, i, {i, false}, weights, dt_over_dx, u_n, out, packs);
+        update_slot<final_stage, R>(tile, i, {i, false}, weights, dt_over_dx, u_n, out, decision, packs);
       merge_lanes(packs, all);
       for (int i = whole; i < end; ++i)
-        update_slot<final_stage, double>(tile, i, {i, false}, weights, dt_over_dx, u_n, out, all);
+        update_slot<final_stage, double>(tile, i, {i, false}, weights, dt_over_dx, u_n, out, decision, all);
       if constexpr (!final_stage) fill_ghosts(tile);
     }
     if (all.admissible < 1.0) find_inadmissible<final_stage>(member, tile, begin, end, stage, out, outcome);

@@ -36,13 +36,13 @@ KOKKOS_INLINE_FUNCTION void store_cell(const Tile& tile, int i, const CellState<
   tile.store(TileField::fast, i, speed.fast);
 }
 
-/// Fills all slots from the state `in`, and keeps it as U^n if asked to.
-template <class R, bool keep, class Member, class Tile>
-KOKKOS_INLINE_FUNCTION void load_cells(const Member& member, const Tile& tile, const Ends& ends, double gamma,
-                                       const double* in) {
+/// Fills all slots with the states that `load(cell)` gives, and keeps them as U^n if asked to.
+template <class R, bool keep, class Member, class Tile, class Load>
+KOKKOS_INLINE_FUNCTION void load_cells(const Member& member, const Tile& tile, double gamma,
+                                       const Load& load) {
   constexpr int lanes = device::Access<R>::lanes;
   for (int i = member.team_rank() * lanes; i < tile.slots + lanes - 1; i += member.team_size() * lanes) {
-    const Triple<R> u = load_state<R>(in, ends, tile.cell(i));
+    const Triple<R> u = load(tile.cell(i));
     if constexpr (keep) tile.store_start(i, u);
     store_cell(tile, i, cell_state<R>(gamma, u.rho, u.m, u.energy));
   }

@@ -103,7 +103,11 @@ class CountedStep {
   }
 
   gas::Arithmetic load(const Thread& thread, const Tile& tile, int from) {
-    return add([&] { gas::load_cells<R, false>(thread, tile, ends, gamma, field(from)); });
+    return add([&] {
+      gas::load_cells<R, false>(thread, tile, gamma, [&](std::int64_t cell) {
+        return gas::load_state<R>(field(from), ends, cell);
+      });
+    });
   }
 
   template <gas::Reconstruction scheme>
@@ -120,7 +124,7 @@ class CountedStep {
     return add([&] {
       gas::Reduced<R> reduced;
       step.template update_slot<last, R>(tile, slot, {slot, false}, _table.stage[stage], dt_over_dx, field(0),
-                                         field(1), reduced);
+                                         field(1), typename Functor::Known{}, reduced);
       // Of the fastest signals the fused step uses two.
       if constexpr (!std::is_same_v<R, double>)
         reduced.slow.keep(), reduced.fast.keep(), reduced.admissible.keep();
