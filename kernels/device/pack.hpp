@@ -121,6 +121,16 @@ struct Convert {
   }
 };
 
+/// Single precision with as many lanes.
+template <class R>
+struct SingleOf {
+  using Type = R;
+};
+template <>
+struct SingleOf<double> {
+  using Type = float;
+};
+
 /// Reads one value, or `Pack::lanes` consecutive ones, from `pointer`.
 template <class R>
 struct Access {
@@ -231,6 +241,11 @@ struct Convert<Pack<T, L>> {
   static Pack<T, L> from(Pack<From, L> value) {
     return Pack<T, L>::of(__builtin_convertvector(value.v, typename Pack<T, L>::Vector));
   }
+};
+
+template <int L>
+struct SingleOf<Pack<double, L>> {
+  using Type = Pack<float, L>;
 };
 
 template <class T, int L>
