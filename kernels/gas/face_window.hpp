@@ -17,6 +17,7 @@ class FaceWindow {
 
   /// Before `face`, which the first `advance` leads to.
   KOKKOS_FUNCTION FaceWindow(const Tile& tile, int face) : _tile(tile), _face(face - 1) {
+    load(_values, face);
     load_speeds(face);
     for (int k = 1; k < 5; ++k) push(face + k);
   }
@@ -48,6 +49,13 @@ class FaceWindow {
  private:
   using To = device::Convert<N>;
 
+  KOKKOS_FUNCTION void load(double (&values)[5], int slot) const {
+    values[0] = _tile.template load<double>(TileField::rho, slot);
+    values[1] = _tile.template load<double>(TileField::m, slot);
+    values[2] = _tile.template load<double>(TileField::energy, slot);
+    values[3] = _tile.template load<double>(TileField::flux_m, slot);
+    values[4] = _tile.template load<double>(TileField::flux_energy, slot);
+  }
   /// A conversion keeps order: the largest of the converted is the largest, converted.
   KOKKOS_FUNCTION void load_speeds(int slot) {
     _slow[5] = To::from(_tile.template load<double>(TileField::slow, slot));
@@ -61,17 +69,18 @@ class FaceWindow {
     }
     for (int k = 0; k < 5; ++k)
       _slow[k] = _slow[k + 1], _entropy[k] = _entropy[k + 1], _fast[k] = _fast[k + 1];
+    double now[5];
+    load(now, slot);
     load_speeds(slot);
-    const auto difference = [&](TileField field) {
-      return To::from(_tile.template load<double>(field, slot) -
-                      _tile.template load<double>(field, slot - 1));
-    };
-    d_state[4] = {difference(TileField::rho), difference(TileField::m), difference(TileField::energy)};
-    d_flux_m[4] = difference(TileField::flux_m), d_flux_energy[4] = difference(TileField::flux_energy);
+    const auto difference = [&](int k) { return To::from(now[k] - _values[k]); };
+    d_state[4] = {difference(0), difference(1), difference(2)};
+    d_flux_m[4] = difference(3), d_flux_energy[4] = difference(4);
+    for (int k = 0; k < 5; ++k) _values[k] = now[k];
   }
 
   const Tile& _tile;
   int _face;
+  double _values[5];  ///< of the last slot, in the order of TileField
   N _slow[6], _entropy[6], _fast[6];
 };
 

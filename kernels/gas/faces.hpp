@@ -102,10 +102,6 @@ KOKKOS_INLINE_FUNCTION void for_face_fluxes(const Member& member, const Tile& ti
     const int run = (last - first + member.team_size()) / member.team_size();
     for (int begin = first + member.team_rank() * run; begin <= last; begin += member.team_size() * run) {
       FaceWindow<N, Tile> window(tile, begin);
-      // So that nothing is moved where the window moves on.
-#if defined(__CUDA_ARCH__)
-#pragma unroll 3
-#endif
       for (int face = begin; face < begin + run && face <= last; ++face) {
         window.advance();
         take(face,

@@ -201,8 +201,8 @@ class SeedSolver final : public Solver {
       fluxes(most);
       for (std::size_t k = 0; k < 3; ++k) {
         for (std::size_t i = 0; i < _cells; ++i)
-          _state[k][i] =
-              w.a_n * _start[k][i] + w.a_in * (_state[k][i] + dt / _dx * (_flux[k][i] - _flux[k][i + 1]));
+          _state[k][i] = _start[k][i] +
+                         w.share * (_state[k][i] + dt / _dx * (_flux[k][i] - _flux[k][i + 1]) - _start[k][i]);
         boundary[0][k] += w.boundary * _flux[k].front();
         boundary[1][k] += w.boundary * _flux[k].back();
       }

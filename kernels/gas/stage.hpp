@@ -84,8 +84,8 @@ struct StageFunctor {
   template <class P>
   KOKKOS_FUNCTION void update_cell(const Tile<ExecutionSpace>& tile, int i, double dt_over_dx,
                                    const double* u_n, double* out, Reduced<P>& reduced) const {
-    Triple<P> u = euler_step<P>(tile, tile.template state<P>(i), i, weights.a_in, dt_over_dx);
-    if (weights.a_n != 0.0) u = combined(weights.a_n, state_of<P>(u_n, ends.cells, tile.cell(i)), u);
+    Triple<P> u = euler_step<P>(tile, tile.template state<P>(i), i, dt_over_dx);
+    if (weights.share != 1.0) u = combined(state_of<P>(u_n, ends.cells, tile.cell(i)), weights.share, u);
     store_state(tile, i, u, ends.cells, out);
     const P inverse = device::reciprocal(u.rho);
     const P velocity = u.m * inverse;

@@ -135,8 +135,8 @@ struct StepFunctor {
                                    const StageWeights& weights, double dt_over_dx, const double* u_n,
                                    double* out, const Decision& decision, Reduced<P>& reduced) const {
     const Triple<P> in = turned(image, tile.template state<P>(i));
-    Triple<P> u = euler_step<P>(tile, in, image.of, weights.a_in, dt_over_dx);
-    if (weights.a_n != 0.0) u = combined(weights.a_n, turned(image, start_state<P>(tile, i, u_n)), u);
+    Triple<P> u = euler_step<P>(tile, in, image.of, dt_over_dx);
+    if (weights.share != 1.0) u = combined(turned(image, start_state<P>(tile, i, u_n)), weights.share, u);
     const CellState<P> s = cell_state<P>(gamma, u.rho, u.m, u.energy);
     reduced.judge(s.rho, s.p);
     if constexpr (final_stage) {

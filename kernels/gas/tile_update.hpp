@@ -95,21 +95,20 @@ KOKKOS_INLINE_FUNCTION Triple<R> face_flux(const Tile& tile, int face, const Ste
   return weno5_face<scheme, N>(s, e, alpha);
 }
 
-/// a_in (U + dt L(U)): an Euler step of the state `in` of the cell of slot `i`.
+/// U + dt L(U): an Euler step of the state `in` of the cell of slot `i`.
 template <class P, class Tile>
-KOKKOS_INLINE_FUNCTION Triple<P> euler_step(const Tile& tile, const Triple<P>& in, int i, double a_in,
-                                            double dt_over_dx) {
+KOKKOS_INLINE_FUNCTION Triple<P> euler_step(const Tile& tile, const Triple<P>& in, int i, double dt_over_dx) {
   const Triple<P> left = tile.template flux<P>(i - ghost_cells),
                   right = tile.template flux<P>(i - ghost_cells + 1);
-  return {a_in * (in.rho + dt_over_dx * (left.rho - right.rho)),
-          a_in * (in.m + dt_over_dx * (left.m - right.m)),
-          a_in * (in.energy + dt_over_dx * (left.energy - right.energy))};
+  return {in.rho + dt_over_dx * (left.rho - right.rho), in.m + dt_over_dx * (left.m - right.m),
+          in.energy + dt_over_dx * (left.energy - right.energy)};
 }
 
-/// a_n U^n + u
+/// U^n + share (u - U^n)
 template <class P>
-KOKKOS_INLINE_FUNCTION Triple<P> combined(double a_n, const Triple<P>& u_n, const Triple<P>& u) {
-  return {a_n * u_n.rho + u.rho, a_n * u_n.m + u.m, a_n * u_n.energy + u.energy};
+KOKKOS_INLINE_FUNCTION Triple<P> combined(const Triple<P>& u_n, double share, const Triple<P>& u) {
+  return {u_n.rho + share * (u.rho - u_n.rho), u_n.m + share * (u.m - u_n.m),
+          u_n.energy + share * (u.energy - u_n.energy)};
 }
 
 /// Stores the state of slot `i`, whose cell is one of the tile's own.

@@ -51,11 +51,11 @@ struct Arithmetic {
 inline constexpr Arithmetic load_arithmetic{5, 9, 1, 1, 0};
 
 /// One cell of a stage, without U^n: `StepFunctor::update_slot`, and that of the last stage.
-inline constexpr Arithmetic update_arithmetic{11, 14, 1, 1, 8};
-inline constexpr Arithmetic last_update_arithmetic{9, 12, 1, 1, 10};
+inline constexpr Arithmetic update_arithmetic{11, 11, 1, 1, 8};
+inline constexpr Arithmetic last_update_arithmetic{9, 9, 1, 1, 10};
 
 /// U^n, where a stage has a share of it: `combined`.
-inline constexpr Arithmetic combined_arithmetic{3, 3, 0, 0, 0};
+inline constexpr Arithmetic combined_arithmetic{6, 3, 0, 0, 0};
 
 /// How a step divides the mesh.
 struct Tiling {
@@ -82,7 +82,7 @@ struct StepWork {
     work.bytes = state * (slots + cells);
   }
   for (int stage = 0; stage < table.stages; ++stage) {
-    const bool shares = table.stage[stage].a_n != 0.0;
+    const bool shares = table.stage[stage].share != 1.0;
     if (!tiling.fused) {
       work.bytes += state * (slots + (shares ? cells : 0) + cells);
       continue;

@@ -63,7 +63,7 @@ class CountedStep {
         const auto faces = step.faces_of(tile, stage);
         for (int face = faces.first; face <= faces.last; ++face) compute_face<scheme>(tile, face);
         for (int i = faces.first + gas::ghost_cells; i < faces.last + gas::ghost_cells; ++i) {
-          times_combined += _table.stage[stage].a_n != 0.0;
+          times_combined += _table.stage[stage].share != 1.0;
           if (stage < _table.stages - 1)
             update<false>(step, tile, i, stage);
           else
