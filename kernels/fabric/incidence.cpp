@@ -60,7 +60,7 @@ Slots<neighbours, values> sliced(const std::vector<std::vector<Entry<neighbours,
 
 TriangleSlots triangle_slots(const Mesh& mesh, const Material& material) {
   std::vector<std::vector<Entry<2, 4>>> of_vertex(mesh.rest.size());
-  if (material.model == Model::quadratic || material.model == Model::biquadratic)
+  if (has_triangles(material.model))
     for (const auto& t : mesh.triangles)
       for (std::size_t k = 0; k < 3; ++k) {
         const int j = t[(k + 1) % 3], l = t[(k + 2) % 3];

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "kernels/device/dual.hpp"
 #include "kernels/device/pack.hpp"
 #include "kernels/fabric/parameters.hpp"
 

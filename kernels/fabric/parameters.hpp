@@ -14,6 +14,11 @@ enum class Model {
   biquadratic,    ///< Delingette 2008: quadratic in the squared lengths; equals St Venant-Kirchhoff
 };
 
+/// Whether triangles resist as a whole; of the other models their edges do.
+[[nodiscard]] constexpr bool has_triangles(Model model) {
+  return model == Model::quadratic || model == Model::biquadratic;
+}
+
 enum class Integrator { rk4, verlet };
 
 /// What cloth and strings are made of. `membrane_modulus` is Young's modulus times thickness.

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "kernels/device/replay.hpp"
+#include "kernels/fabric/frequency.hpp"
 #include "kernels/fabric/solver.hpp"
 #include "kernels/fabric/step.hpp"
 
@@ -32,19 +33,14 @@ class SolverOn final : public Solver {
   SolverOn(const SolverOn&) = delete;  // the recorded step knows where this one lies
   SolverOn& operator=(const SolverOn&) = delete;
 
-  void upload(std::span<const Vector> positions, std::span<const Vector> velocities) override {
-    to_device(positions, _x);
-    to_device(velocities, _v);
-  }
-  void download(std::span<Vector> positions, std::span<Vector> velocities) override {
-    to_host(_x, positions);
-    to_host(_v, velocities);
-  }
-  void advance(std::int64_t steps) override;
-  void forces(std::span<Vector> forces) override {
-    launch("drogue::fabric::force", ForceFunctor<ExecutionSpace, model>{_cloth, _x, _next});
-    to_host(_next, forces);
-  }
+  void upload(std::span<const Vector> positions, std::span<const Vector> velocities) override;
+  void download(std::span<Vector> positions, std::span<Vector> velocities) override;
+  bool advance(std::int64_t steps) override;
+  std::optional<Failure> failure() override;
+  [[nodiscard]] Clock clock() const override { return _clock; }
+  void set_clock(const Clock& clock) override;
+  void forces(std::span<Vector> forces) override;
+  double fastest_frequency() override;
 
  private:
   static constexpr int lanes = device::Access<
@@ -68,6 +64,11 @@ class SolverOn final : public Solver {
 
   void runge_kutta_step() const;
   void verlet(bool ends, bool begins);
+  void take(std::int64_t steps);
+  void keep();
+  void settle();
+  void set_steps();
+  [[nodiscard]] bool lost() const;
   void require_one_a_vertex(std::size_t count) const;
   void to_device(std::span<const Vector> from, const Points& to) const;
   void to_host(const Points& from, std::span<Vector> to) const;
@@ -77,9 +78,15 @@ class SolverOn final : public Solver {
   device::Instance<ExecutionSpace> _instance;
   int _vertices, _padded;  ///< in whole slices
   Integrator _integrator;
-  double _dt, _damping;
+  double _damping;
+  Clock _clock;
   Cloth<ExecutionSpace> _cloth;
+  Watch<ExecutionSpace> _watch;
+  int _hand = 0;  ///< of the watch, that tells the steps taken
+  std::optional<Failure> _failure;
   Points _x, _v, _next;
+  Points _kept_x, _kept_v;
+  Kokkos::View<std::int64_t, typename ExecutionSpace::memory_space> _kept_step;
   Points _velocity, _other, _sum_x, _sum_v;  ///< of Runge and Kutta alone
   std::optional<device::Replay<ExecutionSpace>> _step;
 };
@@ -87,3 +94,4 @@ class SolverOn final : public Solver {
 }  // namespace drogue::fabric
 
 #include "kernels/fabric/solver_on_parts.hpp"
+#include "kernels/fabric/solver_on_steps.hpp"

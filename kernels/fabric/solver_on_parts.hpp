@@ -1,6 +1,9 @@
 #pragma once
 
-// Definitions of SolverOn.
+// Definitions of SolverOn: what it holds, and how that gets there and back.
+
+#include <algorithm>
+#include <cmath>
 
 #include "kernels/fabric/solver_on.hpp"
 
@@ -12,8 +15,10 @@ SolverOn<ExecutionSpace, model>::SolverOn(const Parameters& p)
       _vertices(static_cast<int>(p.mesh.rest.size())),
       _padded((_vertices + slice - 1) / slice * slice),
       _integrator(p.integrator),
-      _dt(p.dt),
-      _damping(p.damping) {
+      _damping(p.damping),
+      _clock{0, p.dt, 0, 0.0},
+      _watch{decltype(_watch.steps)("drogue::fabric::steps"), decltype(_watch.lost)("drogue::fabric::lost"),
+             decltype(_watch.raised)("drogue::fabric::raised")} {
   const auto n = static_cast<std::size_t>(_vertices);
   copy_slots(triangle_slots(p.mesh, p.material), _cloth.triangles);
   copy_slots(spring_slots(p.mesh, p.material), _cloth.springs);
@@ -47,6 +52,10 @@ SolverOn<ExecutionSpace, model>::SolverOn(const Parameters& p)
   _x = points("drogue::fabric::positions");
   _v = points("drogue::fabric::velocities");
   _next = points("drogue::fabric::next");
+  _kept_x = points("drogue::fabric::kept_positions");
+  _kept_v = points("drogue::fabric::kept_velocities");
+  _kept_step = decltype(_kept_step)("drogue::fabric::kept_step");
+  set_steps();
   if (_integrator != Integrator::rk4) return;
   _velocity = points("drogue::fabric::stage_velocities");
   _other = points("drogue::fabric::stage_positions");
@@ -56,31 +65,42 @@ SolverOn<ExecutionSpace, model>::SolverOn(const Parameters& p)
 }
 
 template <class ExecutionSpace, Model model>
-void SolverOn<ExecutionSpace, model>::runge_kutta_step() const {
-  const Points at[] = {_x, _next, _other, _next}, next[] = {_next, _other, _next, _x};
-  for (int stage = 0; stage < 4; ++stage)
-    launch("drogue::fabric::rk4_stage",
-           RungeKuttaFunctor<ExecutionSpace, model>{_cloth, _x, _v, at[stage], _velocity, next[stage], _sum_x,
-                                                    _sum_v, _dt, stage});
+void SolverOn<ExecutionSpace, model>::upload(std::span<const Vector> positions,
+                                             std::span<const Vector> velocities) {
+  const auto within = [](const Vector& vector) {
+    return std::abs(vector[0]) + std::abs(vector[1]) + std::abs(vector[2]) < lost_beyond;
+  };
+  if (!std::ranges::all_of(positions, within) || !std::ranges::all_of(velocities, within))
+    throw std::invalid_argument("fabric solver: positions and velocities must be finite");
+  to_device(positions, _x);
+  to_device(velocities, _v);
+  _failure.reset();
+  set_steps();
+  keep();
 }
 
 template <class ExecutionSpace, Model model>
-void SolverOn<ExecutionSpace, model>::verlet(bool ends, bool begins) {
-  launch("drogue::fabric::verlet",
-         VerletFunctor<ExecutionSpace, model>{_cloth, _x, _v, _next, _damping, _dt, ends, begins});
-  if (begins) std::swap(_x, _next);
+void SolverOn<ExecutionSpace, model>::download(std::span<Vector> positions, std::span<Vector> velocities) {
+  settle();
+  to_host(_x, positions);
+  to_host(_v, velocities);
 }
 
 template <class ExecutionSpace, Model model>
-void SolverOn<ExecutionSpace, model>::advance(std::int64_t steps) {
-  if (steps <= 0) return;
-  if (_integrator == Integrator::rk4) {
-    for (std::int64_t step = 0; step < steps; ++step) _step->launch();
-    return;
-  }
-  verlet(false, true);
-  for (std::int64_t step = 1; step < steps; ++step) verlet(true, true);
-  verlet(true, false);
+void SolverOn<ExecutionSpace, model>::forces(std::span<Vector> forces) {
+  settle();
+  launch("drogue::fabric::force", ForceFunctor<ExecutionSpace, model>{_cloth, _x, _next});
+  to_host(_next, forces);
+}
+
+template <class ExecutionSpace, Model model>
+double SolverOn<ExecutionSpace, model>::fastest_frequency() {
+  settle();
+  double largest = 0.0;
+  Kokkos::parallel_reduce("drogue::fabric::frequency",
+                          Kokkos::RangePolicy<ExecutionSpace>(_instance.space(), 0, _vertices),
+                          FrequencyFunctor<ExecutionSpace, model>{_cloth, _x}, Kokkos::Max<double>(largest));
+  return std::sqrt(largest);
 }
 
 template <class ExecutionSpace, Model model>

@@ -81,10 +81,6 @@ T delingette_energy(const Moduli& m, const std::array<Vector, 3>& rest, const st
   return sum;
 }
 
-bool has_triangles(fabric::Model model) {
-  return model == fabric::Model::quadratic || model == fabric::Model::biquadratic;
-}
-
 std::array<int, 2> sorted(int a, int b) { return {std::min(a, b), std::max(a, b)}; }
 
 }  // namespace
@@ -138,7 +134,7 @@ void for_elements(const fabric::Material& material, const Mesh& mesh, const Visi
     const std::array<Vector, 2> rest = {at_rest(ends[0]), at_rest(ends[1])};
     visit(ends, [=](const auto& now) { return spring_energy(model, k, rest, now); });
   };
-  if (has_triangles(material.model)) {
+  if (fabric::has_triangles(material.model)) {
     for (const auto& t : mesh.triangles) {
       const std::array<Vector, 3> rest = {at_rest(t[0]), at_rest(t[1]), at_rest(t[2])};
       visit(t, [=, &material](const auto& now) { return triangle_energy(material, rest, now); });
