@@ -56,6 +56,13 @@ class Solver {
   /// `stability_limit` over it is a step that is stable. Stiffness grows with strain, so ask again when the
   /// cloth has stretched.
   [[nodiscard]] virtual double fastest_frequency() = 0;
+
+  /// Of every triangle where the vertices are now; lines do not count. Throws std::invalid_argument for
+  /// Model::linear_vector, whose forces are not along edges.
+  virtual void stress(StressMeasure measure, std::span<Stress> of_triangles) = 0;
+
+  /// The same of every vertex: the mean over its triangles by their areas.
+  virtual void vertex_stress(StressMeasure measure, std::span<Stress> of_vertices) = 0;
 };
 
 /// Throws std::invalid_argument for parameters out of range; the backend must be available.

@@ -8,6 +8,7 @@
 #include "kernels/fabric/frequency.hpp"
 #include "kernels/fabric/solver.hpp"
 #include "kernels/fabric/step.hpp"
+#include "kernels/fabric/stress_on.hpp"
 
 namespace drogue::fabric {
 
@@ -41,6 +42,8 @@ class SolverOn final : public Solver {
   void set_clock(const Clock& clock) override;
   void forces(std::span<Vector> forces) override;
   double fastest_frequency() override;
+  void stress(StressMeasure measure, std::span<Stress> of_triangles) override;
+  void vertex_stress(StressMeasure measure, std::span<Stress> of_vertices) override;
 
  private:
   static constexpr int lanes = device::Access<
@@ -69,6 +72,9 @@ class SolverOn final : public Solver {
   void settle();
   void set_steps();
   [[nodiscard]] bool lost() const;
+  void find_stress(StressMeasure measure, const StressView<ExecutionSpace>& to,
+                   const TensorView<ExecutionSpace>& tensor);
+  void stress_to_host(const StressView<ExecutionSpace>& from, std::span<Stress> to) const;
   void require_one_a_vertex(std::size_t count) const;
   void to_device(std::span<const Vector> from, const Points& to) const;
   void to_host(const Points& from, std::span<Vector> to) const;
@@ -76,6 +82,8 @@ class SolverOn final : public Solver {
   void copy_slots(const Slots& from, Views& to) const;
 
   device::Instance<ExecutionSpace> _instance;
+  Mesh _mesh;
+  Material _material;
   int _vertices, _padded;  ///< in whole slices
   Integrator _integrator;
   double _damping;
@@ -87,7 +95,8 @@ class SolverOn final : public Solver {
   Points _x, _v, _next;
   Points _kept_x, _kept_v;
   Kokkos::View<std::int64_t, typename ExecutionSpace::memory_space> _kept_step;
-  Points _velocity, _other, _sum_x, _sum_v;  ///< of Runge and Kutta alone
+  Points _velocity, _other, _sum_x, _sum_v;                 ///< of Runge and Kutta alone
+  std::optional<TriangleViews<ExecutionSpace>> _triangles;  ///< made when stress is asked for
   std::optional<device::Replay<ExecutionSpace>> _step;
 };
 
@@ -95,3 +104,4 @@ class SolverOn final : public Solver {
 
 #include "kernels/fabric/solver_on_parts.hpp"
 #include "kernels/fabric/solver_on_steps.hpp"
+#include "kernels/fabric/solver_on_stress.hpp"

@@ -12,6 +12,8 @@ namespace drogue::fabric {
 template <class ExecutionSpace, Model model>
 SolverOn<ExecutionSpace, model>::SolverOn(const Parameters& p)
     : _instance(static_cast<int>(1 + p.mesh.rest.size() / 512)),
+      _mesh(p.mesh),
+      _material(p.material),
       _vertices(static_cast<int>(p.mesh.rest.size())),
       _padded((_vertices + slice - 1) / slice * slice),
       _integrator(p.integrator),

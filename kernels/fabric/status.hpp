@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <cmath>
 #include <cstdint>
 
 namespace drogue::fabric {
@@ -19,6 +21,18 @@ struct Failure {
   std::int64_t vertex = -1;  ///< the first in the numbering that was lost in that step
   std::int64_t step = 0;     ///< the first step, counted from 1, whose end is not finite
   double time = 0.0;         ///< s, at its end
+};
+
+/// Per length at rest, or per length as it is now.
+enum class StressMeasure { nominal, cauchy };
+
+/// Stress of a membrane, force per length, N/m.
+struct Stress {
+  double major = 0.0, minor = 0.0;    ///< principal values
+  std::array<double, 3> direction{};  ///< of the major one: a unit vector in the plane of the cloth now
+
+  /// Of plane stress (eq. 2.19).
+  [[nodiscard]] double von_mises() const { return std::sqrt(major * major - major * minor + minor * minor); }
 };
 
 }  // namespace drogue::fabric
