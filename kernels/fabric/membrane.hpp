@@ -42,28 +42,42 @@ KOKKOS_INLINE_FUNCTION Edges<R> edge_tensions(const Moduli& m, const Edges<R>& q
            volumetric * n2 + shear * (2.0 * q.of[2] - all)}};
 }
 
+/// What the energy is quadratic in, m^2: l^2 - L^2, or for Model::quadratic 2 L (l - L). `now` and `rest` are
+/// squared lengths.
+template <Model model, class R>
+KOKKOS_INLINE_FUNCTION Edges<R> changes(const Edges<R>& now, const Edges<R>& rest) {
+  static_assert(has_triangles(model), "springs along edges have no triangles");
+  Edges<R> q;
+  for (int e = 0; e < 3; ++e)
+    if constexpr (model == Model::biquadratic)
+      q.of[e] = now.of[e] - rest.of[e];
+    else
+      q.of[e] = 2.0 * (device::square_root(rest.of[e] * now.of[e]) - rest.of[e]);
+  return q;
+}
+
 /// Tension of each edge, N/m: the force on a vertex is that of an edge times the vector to its other vertex.
 /// `now` and `rest` are squared lengths.
 template <Model model, class R>
 KOKKOS_INLINE_FUNCTION Edges<R> membrane_tensions(const Moduli& m, const Edges<R>& now, const Edges<R>& rest,
                                                   R inverse_area) {
-  Edges<R> q;
-  if constexpr (model == Model::biquadratic) {
-    for (int e = 0; e < 3; ++e) q.of[e] = now.of[e] - rest.of[e];
-    return edge_tensions(m, q, rest, inverse_area);
-  } else {
-    static_assert(model == Model::quadratic, "springs along edges have no triangles");
-    // The same energy of q = 2 L (l - L): dW/dl = dW/dq 2 L, and the edge vector is l long.
-    R ratio[3];
-    for (int e = 0; e < 3; ++e) {
-      const R product = device::square_root(rest.of[e] * now.of[e]);
-      q.of[e] = 2.0 * (product - rest.of[e]);
-      ratio[e] = device::select(now.of[e] > R(0.0), product / now.of[e], R(0.0));
-    }
-    Edges<R> s = edge_tensions(m, q, rest, inverse_area);
-    for (int e = 0; e < 3; ++e) s.of[e] = ratio[e] * s.of[e];
-    return s;
+  Edges<R> s = edge_tensions(m, changes<model>(now, rest), rest, inverse_area);
+  if constexpr (model == Model::quadratic) {
+    // dW/dl = dW/dq 2 L, and the edge vector is l long.
+    for (int e = 0; e < 3; ++e)
+      s.of[e] = device::select(now.of[e] > R(0.0), device::square_root(rest.of[e] * now.of[e]) / now.of[e],
+                               R(0.0)) *
+                s.of[e];
   }
+  return s;
+}
+
+/// Energy of a triangle, J: a quadratic form is half of what its derivative times its argument is.
+template <Model model>
+KOKKOS_INLINE_FUNCTION double membrane_energy(const Moduli& m, const Edges<double>& now,
+                                              const Edges<double>& rest, double inverse_area) {
+  const Edges<double> q = changes<model>(now, rest), s = edge_tensions(m, q, rest, inverse_area);
+  return 0.25 * (s.of[0] * q.of[0] + s.of[1] * q.of[1] + s.of[2] * q.of[2]);
 }
 
 /// Tension of a spring of stiffness `k` (N/m) and length at rest `rest` (m), N/m; `now` is its squared
@@ -71,6 +85,12 @@ KOKKOS_INLINE_FUNCTION Edges<R> membrane_tensions(const Moduli& m, const Edges<R
 template <class R>
 KOKKOS_INLINE_FUNCTION R spring_tension(R k, R now, R rest) {
   return device::select(now > R(0.0), k * (R(1.0) - rest / device::square_root(now)), R(0.0));
+}
+
+/// Energy of a spring, J; `now` is its squared length.
+KOKKOS_INLINE_FUNCTION double spring_energy(double k, double now, double rest) {
+  const double change = device::square_root(now) - rest;
+  return 0.5 * k * change * change;
 }
 
 }  // namespace drogue::fabric

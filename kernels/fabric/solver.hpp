@@ -63,6 +63,9 @@ class Solver {
 
   /// The same of every vertex: the mean over its triangles by their areas.
   virtual void vertex_stress(StressMeasure measure, std::span<Stress> of_vertices) = 0;
+
+  /// Energies and momenta where the vertices are now, summed in an order that no backend changes.
+  [[nodiscard]] virtual Totals totals() = 0;
 };
 
 /// Throws std::invalid_argument for parameters out of range; the backend must be available.

@@ -9,6 +9,7 @@
 #include "kernels/fabric/solver.hpp"
 #include "kernels/fabric/step.hpp"
 #include "kernels/fabric/stress_on.hpp"
+#include "kernels/fabric/totals.hpp"
 
 namespace drogue::fabric {
 
@@ -44,6 +45,7 @@ class SolverOn final : public Solver {
   double fastest_frequency() override;
   void stress(StressMeasure measure, std::span<Stress> of_triangles) override;
   void vertex_stress(StressMeasure measure, std::span<Stress> of_vertices) override;
+  Totals totals() override;
 
  private:
   static constexpr int lanes = device::Access<
@@ -92,6 +94,8 @@ class SolverOn final : public Solver {
   Watch<ExecutionSpace> _watch;
   int _hand = 0;  ///< of the watch, that tells the steps taken
   std::optional<Failure> _failure;
+  Points _pull;               ///< of springs of vectors
+  double _rest_energy = 0.0;  ///< J, of theirs
   Points _x, _v, _next;
   Points _kept_x, _kept_v;
   Kokkos::View<std::int64_t, typename ExecutionSpace::memory_space> _kept_step;

@@ -42,6 +42,13 @@ SolverOn<ExecutionSpace, model>::SolverOn(const Parameters& p)
   _cloth.free = points("drogue::fabric::free");
   to_device(free, _cloth.free);
   std::vector<Vector> load = rest_pull(p.mesh, p.material);
+  if (!load.empty()) {
+    _pull = points("drogue::fabric::pull");
+    to_device(load, _pull);
+    // k (X_j - X_i)^2 / 2 of every spring.
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t axis = 0; axis < 3; ++axis) _rest_energy += 0.5 * load[i][axis] * p.mesh.rest[i][axis];
+  }
   if (load.empty())
     load = p.load;
   else if (!p.load.empty())
@@ -103,6 +110,31 @@ double SolverOn<ExecutionSpace, model>::fastest_frequency() {
                           Kokkos::RangePolicy<ExecutionSpace>(_instance.space(), 0, _vertices),
                           FrequencyFunctor<ExecutionSpace, model>{_cloth, _x}, Kokkos::Max<double>(largest));
   return std::sqrt(largest);
+}
+
+template <class ExecutionSpace, Model model>
+Totals SolverOn<ExecutionSpace, model>::totals() {
+  settle();
+  const ExecutionSpace& space = _instance.space();
+  const auto fewer = [](int n) { return (n + sum_radix - 1) / sum_radix; };
+  int rows = fewer(_vertices);
+  TotalsView<ExecutionSpace> sums("drogue::fabric::totals", static_cast<std::size_t>(rows));
+  Kokkos::parallel_for("drogue::fabric::totals", Kokkos::RangePolicy<ExecutionSpace>(space, 0, rows),
+                       TotalsFunctor<ExecutionSpace, model>{_cloth, _x, _v, _pull, sums, _vertices});
+  while (rows > 1) {
+    rows = fewer(rows);
+    const TotalsView<ExecutionSpace> next("drogue::fabric::totals", static_cast<std::size_t>(rows));
+    Kokkos::parallel_for("drogue::fabric::sum", Kokkos::RangePolicy<ExecutionSpace>(space, 0, rows),
+                         SumFunctor<ExecutionSpace>{sums, next});
+    sums = next;
+  }
+  const auto mirror = Kokkos::create_mirror_view(sums);
+  Kokkos::deep_copy(space, mirror, sums);
+  space.fence("drogue::fabric::totals");
+  Totals t{mirror(0, 0), mirror(0, 1) + _rest_energy, mirror(0, 2), mirror(0, 3), {}, {}};
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    t.momentum[axis] = mirror(0, 4 + axis), t.angular_momentum[axis] = mirror(0, 7 + axis);
+  return t;
 }
 
 template <class ExecutionSpace, Model model>

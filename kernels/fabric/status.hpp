@@ -23,6 +23,19 @@ struct Failure {
   double time = 0.0;         ///< s, at its end
 };
 
+/// Sums over all vertices.
+struct Totals {
+  double kinetic = 0.0;  ///< J
+  double elastic = 0.0;  ///< J
+  double gravity = 0.0;  ///< J, -sum of m g x
+  double load = 0.0;     ///< J, minus the work of dead loads from the origin to where the vertices are
+  std::array<double, 3> momentum{};          ///< kg m/s
+  std::array<double, 3> angular_momentum{};  ///< kg m^2/s, about the origin
+
+  /// What steps without damping, moving pins and loads that change keep.
+  [[nodiscard]] double energy() const { return kinetic + elastic + gravity + load; }
+};
+
 /// Per length at rest, or per length as it is now.
 enum class StressMeasure { nominal, cauchy };
 
