@@ -1,6 +1,7 @@
 #pragma once
 
 #include "kernels/fabric/cloth.hpp"
+#include "kernels/fabric/views.hpp"
 
 namespace drogue::fabric {
 
@@ -34,9 +35,12 @@ struct FrequencyFunctor {
   using Dual = device::Dual;
   Cloth<ExecutionSpace> cloth;
   PointsView<ExecutionSpace> x;
+  ListView<ExecutionSpace, double> more;  ///< rows of other stiffness, N/m; may be empty
 
   KOKKOS_FUNCTION void operator()(const int i, double& largest) const {
-    const double row = cloth.inverse_mass(i) * row_sum(i);
+    const bool moves = cloth.free(i, 0) + cloth.free(i, 1) + cloth.free(i, 2) > 0.0;
+    const double other = more.extent(0) > 0 && moves ? more(i) : 0.0;
+    const double row = cloth.inverse_mass(i) * (row_sum(i) + other);
     // What is not a number is no bound.
     const double bound = row >= 0.0 ? row : Kokkos::Experimental::infinity_v<double>;
     if (bound > largest) largest = bound;

@@ -58,19 +58,35 @@ Slots<neighbours, values> sliced(const std::vector<std::vector<Entry<neighbours,
 
 }  // namespace
 
-TriangleSlots triangle_slots(const Mesh& mesh, const Material& material) {
+TriangleSlots surface_slots(const Mesh& mesh) {
   std::vector<std::vector<Entry<2, 4>>> of_vertex(mesh.rest.size());
-  if (has_triangles(material.model))
-    for (const auto& t : mesh.triangles)
-      for (std::size_t k = 0; k < 3; ++k) {
-        const int j = t[(k + 1) % 3], l = t[(k + 2) % 3];
-        const Vector &a = mesh.rest[static_cast<std::size_t>(t[k])],
-                     &b = mesh.rest[static_cast<std::size_t>(j)], &c = mesh.rest[static_cast<std::size_t>(l)];
-        of_vertex[static_cast<std::size_t>(t[k])].push_back(
-            {{j, l},
-             {squared_distance(b, c), squared_distance(c, a), squared_distance(a, b),
-              inverse_area(a, b, c)}});
-      }
+  for (const auto& t : mesh.triangles)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int j = t[(k + 1) % 3], l = t[(k + 2) % 3];
+      const Vector &a = mesh.rest[static_cast<std::size_t>(t[k])],
+                   &b = mesh.rest[static_cast<std::size_t>(j)], &c = mesh.rest[static_cast<std::size_t>(l)];
+      of_vertex[static_cast<std::size_t>(t[k])].push_back(
+          {{j, l},
+           {squared_distance(b, c), squared_distance(c, a), squared_distance(a, b), inverse_area(a, b, c)}});
+    }
+  return sliced(of_vertex);
+}
+
+TriangleSlots triangle_slots(const Mesh& mesh, const Material& material) {
+  if (has_triangles(material.model)) return surface_slots(mesh);
+  return sliced(std::vector<std::vector<Entry<2, 4>>>(mesh.rest.size()));
+}
+
+DashpotSlots dashpot_slots(const Mesh& mesh, const std::vector<double>& mass, double rate) {
+  std::vector<std::vector<Entry<1, 1>>> of_vertex(mesh.rest.size());
+  std::set<std::array<int, 2>> pairs = edges_of(mesh);
+  for (const auto& line : mesh.lines) pairs.insert({std::min(line[0], line[1]), std::max(line[0], line[1])});
+  for (const auto& [i, j] : pairs) {
+    const double a = mass[static_cast<std::size_t>(i)], b = mass[static_cast<std::size_t>(j)];
+    const double dashpot = rate * (a * b / (a + b));
+    of_vertex[static_cast<std::size_t>(i)].push_back({{j}, {dashpot}});
+    of_vertex[static_cast<std::size_t>(j)].push_back({{i}, {dashpot}});
+  }
   return sliced(of_vertex);
 }
 
@@ -89,9 +105,11 @@ SpringSlots spring_slots(const Mesh& mesh, const Material& material) {
     for (const auto& [i, j] : edges_of(mesh))
       add(i, j, material.stiffness, of_vectors ? 0.0 : rest_length(i, j));
   }
-  for (const auto& [i, j] : mesh.lines) {
+  for (std::size_t k = 0; k < mesh.lines.size(); ++k) {
+    const auto [i, j] = mesh.lines[k];
     const double length = rest_length(i, j);
-    add(i, j, material.axial_stiffness / length, length);
+    add(i, j, (mesh.line_stiffness.empty() ? material.axial_stiffness : mesh.line_stiffness[k]) / length,
+        length);
   }
   return sliced(of_vertex);
 }

@@ -28,12 +28,21 @@ using TriangleSlots = Slots<2, 4>;
 /// Springs of every vertex: the other end; stiffness, N/m, and length at rest, m.
 using SpringSlots = Slots<1, 2>;
 
+/// Neighbours of every vertex: the other end of an edge or line, and the dashpot between, kg/s.
+using DashpotSlots = Slots<1, 1>;
+
 /// Empty for the models that are made of springs.
 [[nodiscard]] TriangleSlots triangle_slots(const Mesh& mesh, const Material& material);
 
 /// Lines, and in models made of springs the edges of triangles, an edge of two triangles once. A spring of a
 /// vector is one of length zero that a dead force stretches: `rest_pull`.
 [[nodiscard]] SpringSlots spring_slots(const Mesh& mesh, const Material& material);
+
+/// The triangles of every vertex whatever the model.
+[[nodiscard]] TriangleSlots surface_slots(const Mesh& mesh);
+
+/// Edges of triangles and lines, each pair of vertices once: rate times the reduced mass of its two ends.
+[[nodiscard]] DashpotSlots dashpot_slots(const Mesh& mesh, const std::vector<double>& mass, double rate);
 
 /// -sum k (X_j - X_i) of the springs of every vertex, N; empty but for Model::linear_vector.
 [[nodiscard]] std::vector<Vector> rest_pull(const Mesh& mesh, const Material& material);

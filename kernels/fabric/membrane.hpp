@@ -61,13 +61,13 @@ KOKKOS_INLINE_FUNCTION Edges<R> changes(const Edges<R>& now, const Edges<R>& res
 template <Model model, class R>
 KOKKOS_INLINE_FUNCTION Edges<R> membrane_tensions(const Moduli& m, const Edges<R>& now, const Edges<R>& rest,
                                                   R inverse_area) {
-  Edges<R> s = edge_tensions(m, changes<model>(now, rest), rest, inverse_area);
+  const Edges<R> q = changes<model>(now, rest);
+  Edges<R> s = edge_tensions(m, q, rest, inverse_area);
   if constexpr (model == Model::quadratic) {
-    // dW/dl = dW/dq 2 L, and the edge vector is l long.
+    // dW/dl = dW/dq 2 L, and the edge vector is l long: times L / l = (q / 2 + L^2) / l^2.
     for (int e = 0; e < 3; ++e)
-      s.of[e] = device::select(now.of[e] > R(0.0), device::square_root(rest.of[e] * now.of[e]) / now.of[e],
-                               R(0.0)) *
-                s.of[e];
+      s.of[e] =
+          device::select(now.of[e] > R(0.0), (0.5 * q.of[e] + rest.of[e]) / now.of[e], R(0.0)) * s.of[e];
   }
   return s;
 }

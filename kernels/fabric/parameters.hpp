@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "kernels/device/expression_program.hpp"
+
 namespace drogue::fabric {
 
 /// How cloth resists deformation.
@@ -37,6 +39,28 @@ struct Mesh {
   std::vector<Vector> rest;  ///< m
   std::vector<std::array<int, 3>> triangles;
   std::vector<std::array<int, 2>> lines;  ///< pieces of strings, or of reinforcements along edges
+  std::vector<double> line_stiffness;     ///< E A of every line, N; empty: Material::axial_stiffness
+};
+
+/// A force that changes: strength times direction, N. The strength is an expression of the place at rest, m,
+/// and of time, s.
+struct TimedLoad {
+  device::ExpressionProgram strength;
+  std::vector<Vector> direction;  ///< of every vertex
+};
+
+/// A pressure across cloth where it is now: each triangle gives a third of its area, times what the vertex
+/// feels, to each of its vertices. Positive along the normals, about which triangles turn counterclockwise.
+struct FollowerPressure {
+  device::ExpressionProgram strength;  ///< Pa, of the place at rest and of time
+  std::vector<double> weight;          ///< of every vertex; empty: 1
+};
+
+/// Where an axis of some vertices is held, as a displacement from rest.
+struct Motion {
+  int axis = 0;  ///< 0 x, 1 y, 2 z
+  std::vector<int> vertices;
+  device::ExpressionProgram displacement;  ///< m, of the place at rest and of time
 };
 
 /// Everything a fabric solver needs to know but the initial state.
@@ -48,7 +72,13 @@ struct Parameters {
       pinned;  ///< of every vertex: 1 keeps x, 2 keeps y, 4 keeps z at its velocity; may be empty
   std::vector<Vector> load;  ///< dead force on every vertex, N; may be empty
   Vector gravity{};          ///< m/s^2
-  double damping = 0.0;      ///< acceleration -damping times velocity, 1/s
+  std::vector<TimedLoad> timed_loads;
+  std::vector<FollowerPressure> follower_pressures;
+  std::vector<Motion> motions;  ///< they pin what they move
+  double damping = 0.0;         ///< acceleration -damping times velocity, 1/s
+  /// Rate at which two vertices of an edge, were they alone, would lose what their velocities differ along
+  /// it, 1/s. It keeps momentum and angular momentum.
+  double relative_damping = 0.0;
   Integrator integrator = Integrator::rk4;
   double dt = 0.0;  ///< s, > 0
 };

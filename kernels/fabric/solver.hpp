@@ -16,6 +16,16 @@ namespace drogue::fabric {
   return integrator == Integrator::rk4 ? 2.8284271247461903 : 2.0;
 }
 
+/// The largest step, s, that is stable for frequencies up to `frequency`, rad/s, and decays up to `decay`,
+/// 1/s
+/// (`Solver::fastest_frequency`, `Solver::fastest_decay`); infinite for neither. Runge and Kutta's region
+/// holds the half disc |z| <= 2.61 left of the imaginary axis; Verlet's needs decay dt <= 1.
+[[nodiscard]] constexpr double stable_dt(Integrator integrator, double frequency, double decay) {
+  if (integrator == Integrator::rk4 && decay > 0.0) return 2.61 / (frequency > decay ? frequency : decay);
+  const double undamped = stability_limit(integrator) / frequency;
+  return decay * undamped > 1.0 ? 1.0 / decay : undamped;
+}
+
 /// Cloth and strings that live on a backend and move there. Needs an initialised runtime.
 ///
 /// Life: `upload`, then `advance` as often as wanted. Once a state is lost (a number that is not finite, or
@@ -49,13 +59,17 @@ class Solver {
     set_clock({now.step, dt, now.step, now.time()});
   }
 
-  /// The elastic and dead forces where the vertices are now, N.
+  /// The elastic forces and all loads where the vertices are now, N, without gravity and damping.
   virtual void forces(std::span<Vector> forces) = 0;
 
   /// An upper bound of the angular frequencies of small oscillations about where the vertices are now, rad/s;
   /// `stability_limit` over it is a step that is stable. Stiffness grows with strain, so ask again when the
   /// cloth has stretched.
   [[nodiscard]] virtual double fastest_frequency() = 0;
+
+  /// An upper bound of the rates at which damping slows, 1/s; of Verlet absolute damping does not count,
+  /// which is stable whatever it is.
+  [[nodiscard]] virtual double fastest_decay() const = 0;
 
   /// Of every triangle where the vertices are now; lines do not count. Throws std::invalid_argument for
   /// Model::linear_vector, whose forces are not along edges.

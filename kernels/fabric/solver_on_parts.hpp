@@ -18,6 +18,7 @@ SolverOn<ExecutionSpace, model>::SolverOn(const Parameters& p)
       _padded((_vertices + slice - 1) / slice * slice),
       _integrator(p.integrator),
       _damping(p.damping),
+      _decay(_integrator == Integrator::rk4 ? p.damping : 0.0),
       _clock{0, p.dt, 0, 0.0},
       _watch{decltype(_watch.steps)("drogue::fabric::steps"), decltype(_watch.lost)("drogue::fabric::lost"),
              decltype(_watch.raised)("drogue::fabric::raised")} {
@@ -36,6 +37,9 @@ SolverOn<ExecutionSpace, model>::SolverOn(const Parameters& p)
     for (std::size_t axis = 0; axis < 3; ++axis)
       if (!p.pinned.empty() && (p.pinned[i] >> axis & 1U) != 0U) free[i][axis] = 0.0;
   }
+  for (const Motion& motion : p.motions)
+    for (const int i : motion.vertices)
+      free[static_cast<std::size_t>(i)][static_cast<std::size_t>(motion.axis)] = 0.0;
   Kokkos::deep_copy(_instance.space(), _cloth.inverse_mass, inverse_mass);
   _instance.space().fence("drogue::fabric::inverse_mass");
   // Vertices that fill the last slice have no mass and no freedom: they stay.
@@ -55,9 +59,12 @@ SolverOn<ExecutionSpace, model>::SolverOn(const Parameters& p)
     for (std::size_t i = 0; i < n; ++i)
       for (std::size_t axis = 0; axis < 3; ++axis) load[i][axis] += p.load[i][axis];
   if (!load.empty()) {
-    _cloth.load = points("drogue::fabric::load");
-    to_device(load, _cloth.load);
+    _dead = points("drogue::fabric::dead_load");
+    to_device(load, _dead);
   }
+  _cloth.load = _dead;
+  prepare_external(p);
+  prepare_motions(p);
   _x = points("drogue::fabric::positions");
   _v = points("drogue::fabric::velocities");
   _next = points("drogue::fabric::next");
@@ -86,6 +93,9 @@ void SolverOn<ExecutionSpace, model>::upload(std::span<const Vector> positions,
   _failure.reset();
   set_steps();
   keep();
+  if (!_prescribed) return;
+  place(_x, _v, 0.0, true);
+  keep();
 }
 
 template <class ExecutionSpace, Model model>
@@ -98,6 +108,7 @@ void SolverOn<ExecutionSpace, model>::download(std::span<Vector> positions, std:
 template <class ExecutionSpace, Model model>
 void SolverOn<ExecutionSpace, model>::forces(std::span<Vector> forces) {
   settle();
+  if (_acts) act(_x, _v, 0.0, false);
   launch("drogue::fabric::force", ForceFunctor<ExecutionSpace, model>{_cloth, _x, _next});
   to_host(_next, forces);
 }
@@ -105,10 +116,17 @@ void SolverOn<ExecutionSpace, model>::forces(std::span<Vector> forces) {
 template <class ExecutionSpace, Model model>
 double SolverOn<ExecutionSpace, model>::fastest_frequency() {
   settle();
+  ListView<ExecutionSpace, double> more;
+  if (_external.pressure.extent(0) > 0) {
+    more = ListView<ExecutionSpace, double>("drogue::fabric::pressure_stiffness",
+                                            static_cast<std::size_t>(_vertices));
+    launch_each("drogue::fabric::pressure_stiffness", _vertices,
+                PressureStiffnessFunctor<ExecutionSpace>{loads_at(_x, _v, 0.0, false), more});
+  }
   double largest = 0.0;
-  Kokkos::parallel_reduce("drogue::fabric::frequency",
-                          Kokkos::RangePolicy<ExecutionSpace>(_instance.space(), 0, _vertices),
-                          FrequencyFunctor<ExecutionSpace, model>{_cloth, _x}, Kokkos::Max<double>(largest));
+  Kokkos::parallel_reduce(
+      "drogue::fabric::frequency", Kokkos::RangePolicy<ExecutionSpace>(_instance.space(), 0, _vertices),
+      FrequencyFunctor<ExecutionSpace, model>{_cloth, _x, more}, Kokkos::Max<double>(largest));
   return std::sqrt(largest);
 }
 
@@ -118,9 +136,11 @@ Totals SolverOn<ExecutionSpace, model>::totals() {
   const ExecutionSpace& space = _instance.space();
   const auto fewer = [](int n) { return (n + sum_radix - 1) / sum_radix; };
   int rows = fewer(_vertices);
+  Cloth<ExecutionSpace> dead_alone = _cloth;
+  dead_alone.load = _dead;
   TotalsView<ExecutionSpace> sums("drogue::fabric::totals", static_cast<std::size_t>(rows));
   Kokkos::parallel_for("drogue::fabric::totals", Kokkos::RangePolicy<ExecutionSpace>(space, 0, rows),
-                       TotalsFunctor<ExecutionSpace, model>{_cloth, _x, _v, _pull, sums, _vertices});
+                       TotalsFunctor<ExecutionSpace, model>{dead_alone, _x, _v, _pull, sums, _vertices});
   while (rows > 1) {
     rows = fewer(rows);
     const TotalsView<ExecutionSpace> next("drogue::fabric::totals", static_cast<std::size_t>(rows));

@@ -12,20 +12,33 @@ namespace drogue::fabric {
 template <class ExecutionSpace, Model model>
 void SolverOn<ExecutionSpace, model>::runge_kutta_step() const {
   const Points at[] = {_x, _next, _other, _next}, next[] = {_next, _other, _next, _x};
-  for (int stage = 0; stage < 4; ++stage)
+  // Of the step that has gone by before a stage, and after it.
+  const double before[] = {0.0, 0.5, 0.5, 1.0}, after[] = {0.5, 0.5, 1.0, 0.0};
+  for (int stage = 0; stage < 4; ++stage) {
+    if (_acts) act(at[stage], stage == 0 ? _v : _velocity, before[stage], _drags);
     launch("drogue::fabric::rk4_stage",
            RungeKuttaFunctor<ExecutionSpace, model>{_cloth, _x, _v, at[stage], _velocity, next[stage], _sum_x,
                                                     _sum_v, _watch, _clock.dt, stage});
+    // The last stage has counted the step.
+    if (_prescribed) place(next[stage], stage == 3 ? _v : _velocity, after[stage], stage == 3);
+  }
 }
 
 template <class ExecutionSpace, Model model>
 void SolverOn<ExecutionSpace, model>::verlet(bool ends, bool begins) {
+  if (_acts) act(_x, _v, 0.0, false);
   launch("drogue::fabric::verlet",
          VerletFunctor<ExecutionSpace, model>{_cloth, _x, _v, _next, _watch, _damping, _clock.dt, _hand, ends,
-                                              begins});
+                                              begins, !_drags});
   if (!begins) return;
+  if (_drags) {
+    launch_each("drogue::fabric::drag", _vertices,
+                DragFunctor<ExecutionSpace>{_cloth, _external.dashpots, _x, _v, _dragged, _next, _clock.dt});
+    std::swap(_v, _dragged);
+  }
   std::swap(_x, _next);
   _hand = 1 - _hand;
+  if (_prescribed) place(_x, _v, 0.0, true);
 }
 
 /// Takes steps without a look at what becomes of them.
@@ -110,6 +123,7 @@ void SolverOn<ExecutionSpace, model>::set_clock(const Clock& clock) {
   settle();
   _clock = clock;
   set_steps();
+  if (_prescribed && !_failure) place(_x, _v, 0.0, true);
   keep();
   if (_integrator == Integrator::rk4)
     _step.emplace(_instance, [this](const ExecutionSpace&) { runge_kutta_step(); });

@@ -61,6 +61,7 @@ struct VerletFunctor {
   double damping, dt;
   int hand;           ///< of the watch, that tells the steps taken
   bool ends, begins;  ///< a step
+  bool drifts;        ///< or another kernel does it
 
   KOKKOS_FUNCTION void operator()(const int pack) const {
     const int i = pack * lanes;
@@ -74,7 +75,7 @@ struct VerletFunctor {
     }
     if (begins) {
       velocity = kicked(velocity, a, free);
-      store_points(next, i, position + dt * velocity);
+      if (drifts) store_points(next, i, position + dt * velocity);
       if (pack == 0) watch.steps(1 - hand) = step + 1;
     }
     store_points(v, i, velocity);

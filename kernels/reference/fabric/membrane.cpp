@@ -142,9 +142,11 @@ void for_elements(const fabric::Material& material, const Mesh& mesh, const Visi
   } else {
     for (const auto& edge : triangle_edges(mesh)) spring(edge, material.model, material.stiffness);
   }
-  for (const auto& line : mesh.lines) {
+  for (std::size_t k = 0; k < mesh.lines.size(); ++k) {
+    const auto& line = mesh.lines[k];
     const double rest = length(difference(at_rest(line[1]), at_rest(line[0])));
-    spring(line, fabric::Model::edge, material.axial_stiffness / rest);
+    const double axial = mesh.line_stiffness.empty() ? material.axial_stiffness : mesh.line_stiffness[k];
+    spring(line, fabric::Model::edge, axial / rest);
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include "kernels/device/ledger.hpp"
 #include "kernels/fabric/solver.hpp"
+#include "tests/support/expression_program.hpp"
 #include "tests/support/fabric_mesh.hpp"
 
 // What stepping asks of the device and of the host: nothing but its kernels.
@@ -53,6 +54,33 @@ TEST(FabricLedger, StepsAreTheirKernelsAlone) {
   EXPECT_EQ(launches_of(patch(Integrator::rk4)), (on_device ? 1 : 4) * 1024 + 4);
   // Where a state is put aside, a half kick ends the step and another begins the next.
   EXPECT_EQ(launches_of(patch(Integrator::verlet)), 1024 + 4 + 4);
+}
+
+TEST(FabricLedger, WhatASceneAsksForIsOneKernelAStage) {
+  using testing::postfix;
+  const auto kernels = [](Integrator integrator, auto change) {
+    Parameters p = patch(integrator);
+    change(p);
+    // Of a step; copies that are put aside, and the half kicks around them, are the same.
+    return (launches_of(p) - launches_of(patch(integrator))) / 1024;
+  };
+  const auto loads = [](Parameters& p) {
+    p.timed_loads = {{postfix({"t"}), std::vector<Vector>(p.mass.size(), Vector{})}};
+  };
+  const auto pressure = [](Parameters& p) { p.follower_pressures = {{postfix({1.0}), {}}}; };
+  const auto dashpots = [](Parameters& p) { p.relative_damping = 1.0; };
+  const auto motion = [](Parameters& p) { p.motions = {{0, {3}, postfix({"t"})}}; };
+  const auto all = [&](Parameters& p) { loads(p), pressure(p), dashpots(p), motion(p); };
+  const auto of_host = [](int count) { return on_device ? 0 : count; };
+  EXPECT_EQ(kernels(Integrator::rk4, loads), of_host(4));
+  EXPECT_EQ(kernels(Integrator::rk4, pressure), of_host(4));
+  EXPECT_EQ(kernels(Integrator::rk4, dashpots), of_host(4));
+  EXPECT_EQ(kernels(Integrator::rk4, motion), of_host(4));
+  EXPECT_EQ(kernels(Integrator::rk4, all), of_host(8));
+  EXPECT_EQ(kernels(Integrator::verlet, loads), 1);
+  EXPECT_EQ(kernels(Integrator::verlet, dashpots), 1);
+  EXPECT_EQ(kernels(Integrator::verlet, motion), 1);
+  EXPECT_EQ(kernels(Integrator::verlet, all), 3);
 }
 
 }  // namespace
