@@ -27,6 +27,7 @@ struct Dual {
     return {quotient, (a.derivative - quotient * b.derivative) / b.value};
   }
   friend KOKKOS_INLINE_FUNCTION bool operator>(const Dual& a, const Dual& b) { return a.value > b.value; }
+  friend KOKKOS_INLINE_FUNCTION bool operator>=(const Dual& a, const Dual& b) { return a.value >= b.value; }
 };
 
 /// At zero its derivative is taken as zero, so that what is multiplied by it stays finite.

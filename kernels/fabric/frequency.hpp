@@ -30,7 +30,7 @@ KOKKOS_INLINE_FUNCTION double norm_bound(const double (&b)[3][3]) {
 /// Row i of the block norms of M^-1 K, 1/s^2; K is minus the derivative of the elastic forces at the
 /// positions x, geometric stiffness included, and pinned axes are struck out. By Gershgorin's theorem for
 /// blocks (Feingold and Varga 1962) no omega^2 exceeds the largest row.
-template <class ExecutionSpace, Model model>
+template <class ExecutionSpace, Law law>
 struct FrequencyFunctor {
   using Dual = device::Dual;
   Cloth<ExecutionSpace> cloth;
@@ -71,7 +71,7 @@ struct FrequencyFunctor {
       }
       sum += norm_bound(block);
     };
-    if constexpr (has_triangles(model))
+    if constexpr (has_triangles(law.model))
       cloth.triangles.each(i, [&](int slot) {
         const int j = cloth.triangles.neighbour(slot, 0), k = cloth.triangles.neighbour(slot, 1);
         const Vector3<double> to_j = to(j), to_k = to(k);
@@ -79,17 +79,17 @@ struct FrequencyFunctor {
         const Edges<Dual> rest{{at_rest.of[0], at_rest.of[1], at_rest.of[2]}};
         const Dual inverse_area = cloth.triangles.value(slot, 3);
         add(j, [&](int axis) {
-          return triangle_pull<model>(cloth.moduli, along(to_j, axis), along(to_k, -1), rest, inverse_area);
+          return triangle_pull<law>(cloth.moduli, along(to_j, axis), along(to_k, -1), rest, inverse_area);
         });
         add(k, [&](int axis) {
-          return triangle_pull<model>(cloth.moduli, along(to_j, -1), along(to_k, axis), rest, inverse_area);
+          return triangle_pull<law>(cloth.moduli, along(to_j, -1), along(to_k, axis), rest, inverse_area);
         });
       });
     cloth.springs.each(i, [&](int slot) {
       const int j = cloth.springs.neighbour(slot, 0);
       const Vector3<double> edge = to(j);
       const Dual stiffness = cloth.springs.value(slot, 0), rest = cloth.springs.value(slot, 1);
-      add(j, [&](int axis) { return spring_pull(stiffness, rest, along(edge, axis)); });
+      add(j, [&](int axis) { return spring_pull<law>(stiffness, rest, along(edge, axis)); });
     });
     return sum + norm_bound(diagonal);
   }

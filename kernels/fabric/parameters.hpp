@@ -30,6 +30,9 @@ struct Material {
   double poisson = 0.3;              ///< -1 .. 1/2, quadratic and biquadratic
   double stiffness = 1000.0;         ///< N/m an edge; linear_vector and edge
   double axial_stiffness = 0.0;      ///< E A of strings, N
+  /// Wrinkles at no cost in place of compression: the relaxed energy of triangles, and lines and edges
+  /// without compressive tension. Not for linear_vector.
+  bool tension_only = false;
 };
 
 using Vector = std::array<double, 3>;

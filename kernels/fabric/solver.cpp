@@ -78,6 +78,8 @@ void check(const Parameters& p) {
   const Material& m = p.material;
   require(not_negative(m.membrane_modulus) && not_negative(m.stiffness) && not_negative(m.axial_stiffness),
           "no stiffness may be negative");
+  require(!m.tension_only || m.model != Model::linear_vector,
+          "springs of vectors (Model I) know no compression: they cannot bear tension only");
   if (has_triangles(m.model))
     require(m.poisson > -1.0 && m.poisson <= 0.5, "Poisson's ratio must lie between -1 and 1/2");
 }

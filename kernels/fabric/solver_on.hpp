@@ -14,7 +14,7 @@
 
 namespace drogue::fabric {
 
-template <class ExecutionSpace, Model model>
+template <class ExecutionSpace, Law law>
 struct ForceFunctor {
   using R = std::conditional_t<device::is_host<ExecutionSpace>, device::HostPack<double>, double>;
   Cloth<ExecutionSpace> cloth;
@@ -22,12 +22,12 @@ struct ForceFunctor {
 
   KOKKOS_FUNCTION void operator()(const int pack) const {
     const int i = pack * device::Access<R>::lanes;
-    store_points(out, i, force<model, R>(cloth, x, i));
+    store_points(out, i, force<law, R>(cloth, x, i));
   }
 };
 
 /// A solver of one model on one backend.
-template <class ExecutionSpace, Model model>
+template <class ExecutionSpace, Law law>
 class SolverOn final : public Solver {
  public:
   using Points = PointsView<ExecutionSpace>;
@@ -88,6 +88,8 @@ class SolverOn final : public Solver {
   void verlet(bool ends, bool begins);
   void take(std::int64_t steps);
   void keep();
+  template <Law of>
+  [[nodiscard]] double largest_row(const ListView<ExecutionSpace, double>& more) const;
   void settle();
   void set_steps();
   [[nodiscard]] bool lost() const;

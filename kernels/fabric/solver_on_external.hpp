@@ -8,14 +8,14 @@
 
 namespace drogue::fabric {
 
-template <class ExecutionSpace, Model model>
-ProgramsView<ExecutionSpace> SolverOn<ExecutionSpace, model>::programs(
+template <class ExecutionSpace, Law law>
+ProgramsView<ExecutionSpace> SolverOn<ExecutionSpace, law>::programs(
     const std::vector<device::ExpressionProgram>& from) const {
   return list_view(_instance.space(), "drogue::fabric::programs", from);
 }
 
-template <class ExecutionSpace, Model model>
-void SolverOn<ExecutionSpace, model>::prepare_external(const Parameters& p) {
+template <class ExecutionSpace, Law law>
+void SolverOn<ExecutionSpace, law>::prepare_external(const Parameters& p) {
   _drags = p.relative_damping > 0.0;
   _acts =
       !p.timed_loads.empty() || !p.follower_pressures.empty() || (_drags && _integrator == Integrator::rk4);
@@ -66,8 +66,8 @@ void SolverOn<ExecutionSpace, model>::prepare_external(const Parameters& p) {
   _external.pressure = programs(strength);
 }
 
-template <class ExecutionSpace, Model model>
-void SolverOn<ExecutionSpace, model>::prepare_motions(const Parameters& p) {
+template <class ExecutionSpace, Law law>
+void SolverOn<ExecutionSpace, law>::prepare_motions(const Parameters& p) {
   if (p.motions.empty()) return;
   std::vector<device::ExpressionProgram> displacement;
   std::vector<int> vertex, axis, program;
@@ -91,20 +91,20 @@ void SolverOn<ExecutionSpace, model>::prepare_motions(const Parameters& p) {
                                            list_view(space, "drogue::fabric::moved_by", program)};
 }
 
-template <class ExecutionSpace, Model model>
-ExternalFunctor<ExecutionSpace> SolverOn<ExecutionSpace, model>::loads_at(const Points& x, const Points& v,
-                                                                          double part, bool damps) const {
+template <class ExecutionSpace, Law law>
+ExternalFunctor<ExecutionSpace> SolverOn<ExecutionSpace, law>::loads_at(const Points& x, const Points& v,
+                                                                        double part, bool damps) const {
   return {_external, _dead, x, v, _cloth.load, timing(part), damps};
 }
 
 /// Fills `_cloth.load`.
-template <class ExecutionSpace, Model model>
-void SolverOn<ExecutionSpace, model>::act(const Points& x, const Points& v, double part, bool damps) const {
+template <class ExecutionSpace, Law law>
+void SolverOn<ExecutionSpace, law>::act(const Points& x, const Points& v, double part, bool damps) const {
   launch_each("drogue::fabric::external", _vertices, loads_at(x, v, part, damps));
 }
 
-template <class ExecutionSpace, Model model>
-void SolverOn<ExecutionSpace, model>::place(const Points& x, const Points& v, double part, bool looks) const {
+template <class ExecutionSpace, Law law>
+void SolverOn<ExecutionSpace, law>::place(const Points& x, const Points& v, double part, bool looks) const {
   launch_each("drogue::fabric::place", static_cast<int>(_prescribed->vertex.extent(0)),
               PlaceFunctor<ExecutionSpace>{*_prescribed, x, v, timing(part), looks});
 }

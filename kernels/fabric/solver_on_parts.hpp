@@ -9,8 +9,8 @@
 
 namespace drogue::fabric {
 
-template <class ExecutionSpace, Model model>
-SolverOn<ExecutionSpace, model>::SolverOn(const Parameters& p)
+template <class ExecutionSpace, Law law>
+SolverOn<ExecutionSpace, law>::SolverOn(const Parameters& p)
     : _instance(static_cast<int>(1 + p.mesh.rest.size() / 512)),
       _mesh(p.mesh),
       _material(p.material),
@@ -80,9 +80,9 @@ SolverOn<ExecutionSpace, model>::SolverOn(const Parameters& p)
   _step.emplace(_instance, [this](const ExecutionSpace&) { runge_kutta_step(); });
 }
 
-template <class ExecutionSpace, Model model>
-void SolverOn<ExecutionSpace, model>::upload(std::span<const Vector> positions,
-                                             std::span<const Vector> velocities) {
+template <class ExecutionSpace, Law law>
+void SolverOn<ExecutionSpace, law>::upload(std::span<const Vector> positions,
+                                           std::span<const Vector> velocities) {
   const auto within = [](const Vector& vector) {
     return std::abs(vector[0]) + std::abs(vector[1]) + std::abs(vector[2]) < lost_beyond;
   };
@@ -98,23 +98,33 @@ void SolverOn<ExecutionSpace, model>::upload(std::span<const Vector> positions,
   keep();
 }
 
-template <class ExecutionSpace, Model model>
-void SolverOn<ExecutionSpace, model>::download(std::span<Vector> positions, std::span<Vector> velocities) {
+template <class ExecutionSpace, Law law>
+void SolverOn<ExecutionSpace, law>::download(std::span<Vector> positions, std::span<Vector> velocities) {
   settle();
   to_host(_x, positions);
   to_host(_v, velocities);
 }
 
-template <class ExecutionSpace, Model model>
-void SolverOn<ExecutionSpace, model>::forces(std::span<Vector> forces) {
+template <class ExecutionSpace, Law law>
+void SolverOn<ExecutionSpace, law>::forces(std::span<Vector> forces) {
   settle();
   if (_acts) act(_x, _v, 0.0, false);
-  launch("drogue::fabric::force", ForceFunctor<ExecutionSpace, model>{_cloth, _x, _next});
+  launch("drogue::fabric::force", ForceFunctor<ExecutionSpace, law>{_cloth, _x, _next});
   to_host(_next, forces);
 }
 
-template <class ExecutionSpace, Model model>
-double SolverOn<ExecutionSpace, model>::fastest_frequency() {
+template <class ExecutionSpace, Law law>
+template <Law of>
+double SolverOn<ExecutionSpace, law>::largest_row(const ListView<ExecutionSpace, double>& more) const {
+  double largest = 0.0;
+  Kokkos::parallel_reduce(
+      "drogue::fabric::frequency", Kokkos::RangePolicy<ExecutionSpace>(_instance.space(), 0, _vertices),
+      FrequencyFunctor<ExecutionSpace, of>{_cloth, _x, more}, Kokkos::Max<double>(largest));
+  return largest;
+}
+
+template <class ExecutionSpace, Law law>
+double SolverOn<ExecutionSpace, law>::fastest_frequency() {
   settle();
   ListView<ExecutionSpace, double> more;
   if (_external.pressure.extent(0) > 0) {
@@ -123,15 +133,14 @@ double SolverOn<ExecutionSpace, model>::fastest_frequency() {
     launch_each("drogue::fabric::pressure_stiffness", _vertices,
                 PressureStiffnessFunctor<ExecutionSpace>{loads_at(_x, _v, 0.0, false), more});
   }
-  double largest = 0.0;
-  Kokkos::parallel_reduce(
-      "drogue::fabric::frequency", Kokkos::RangePolicy<ExecutionSpace>(_instance.space(), 0, _vertices),
-      FrequencyFunctor<ExecutionSpace, model>{_cloth, _x, more}, Kokkos::Max<double>(largest));
-  return std::sqrt(largest);
+  double row = largest_row<law>(more);
+  // What is slack now may be taut before it is asked again.
+  if constexpr (law.tension_only) row = std::max(row, largest_row<Law{law.model}>(more));
+  return std::sqrt(row);
 }
 
-template <class ExecutionSpace, Model model>
-Totals SolverOn<ExecutionSpace, model>::totals() {
+template <class ExecutionSpace, Law law>
+Totals SolverOn<ExecutionSpace, law>::totals() {
   settle();
   const ExecutionSpace& space = _instance.space();
   const auto fewer = [](int n) { return (n + sum_radix - 1) / sum_radix; };
@@ -140,7 +149,7 @@ Totals SolverOn<ExecutionSpace, model>::totals() {
   dead_alone.load = _dead;
   TotalsView<ExecutionSpace> sums("drogue::fabric::totals", static_cast<std::size_t>(rows));
   Kokkos::parallel_for("drogue::fabric::totals", Kokkos::RangePolicy<ExecutionSpace>(space, 0, rows),
-                       TotalsFunctor<ExecutionSpace, model>{dead_alone, _x, _v, _pull, sums, _vertices});
+                       TotalsFunctor<ExecutionSpace, law>{dead_alone, _x, _v, _pull, sums, _vertices});
   while (rows > 1) {
     rows = fewer(rows);
     const TotalsView<ExecutionSpace> next("drogue::fabric::totals", static_cast<std::size_t>(rows));
@@ -157,14 +166,14 @@ Totals SolverOn<ExecutionSpace, model>::totals() {
   return t;
 }
 
-template <class ExecutionSpace, Model model>
-void SolverOn<ExecutionSpace, model>::require_one_a_vertex(std::size_t count) const {
+template <class ExecutionSpace, Law law>
+void SolverOn<ExecutionSpace, law>::require_one_a_vertex(std::size_t count) const {
   if (count != static_cast<std::size_t>(_vertices))
     throw std::invalid_argument("fabric solver: there must be one vector a vertex");
 }
 
-template <class ExecutionSpace, Model model>
-void SolverOn<ExecutionSpace, model>::to_device(std::span<const Vector> from, const Points& to) const {
+template <class ExecutionSpace, Law law>
+void SolverOn<ExecutionSpace, law>::to_device(std::span<const Vector> from, const Points& to) const {
   require_one_a_vertex(from.size());
   const auto mirror = Kokkos::create_mirror_view(to);
   for (std::size_t i = 0; i < mirror.extent(0); ++i)
@@ -173,8 +182,8 @@ void SolverOn<ExecutionSpace, model>::to_device(std::span<const Vector> from, co
   _instance.space().fence("drogue::fabric::to_device");
 }
 
-template <class ExecutionSpace, Model model>
-void SolverOn<ExecutionSpace, model>::to_host(const Points& from, std::span<Vector> to) const {
+template <class ExecutionSpace, Law law>
+void SolverOn<ExecutionSpace, law>::to_host(const Points& from, std::span<Vector> to) const {
   require_one_a_vertex(to.size());
   const auto mirror = Kokkos::create_mirror_view(from);
   Kokkos::deep_copy(_instance.space(), mirror, from);
@@ -183,9 +192,9 @@ void SolverOn<ExecutionSpace, model>::to_host(const Points& from, std::span<Vect
     for (std::size_t axis = 0; axis < 3; ++axis) to[i][axis] = mirror(i, axis);
 }
 
-template <class ExecutionSpace, Model model>
+template <class ExecutionSpace, Law law>
 template <class Slots, class Views>
-void SolverOn<ExecutionSpace, model>::copy_slots(const Slots& from, Views& to) const {
+void SolverOn<ExecutionSpace, law>::copy_slots(const Slots& from, Views& to) const {
   const std::size_t slots = from.neighbour[0].size();
   to.first = decltype(to.first)("drogue::fabric::first", from.first.size());
   to.neighbour = decltype(to.neighbour)("drogue::fabric::neighbour", slots);

@@ -9,27 +9,27 @@
 
 namespace drogue::fabric {
 
-template <class ExecutionSpace, Model model>
-void SolverOn<ExecutionSpace, model>::runge_kutta_step() const {
+template <class ExecutionSpace, Law law>
+void SolverOn<ExecutionSpace, law>::runge_kutta_step() const {
   const Points at[] = {_x, _next, _other, _next}, next[] = {_next, _other, _next, _x};
   // Of the step that has gone by before a stage, and after it.
   const double before[] = {0.0, 0.5, 0.5, 1.0}, after[] = {0.5, 0.5, 1.0, 0.0};
   for (int stage = 0; stage < 4; ++stage) {
     if (_acts) act(at[stage], stage == 0 ? _v : _velocity, before[stage], _drags);
     launch("drogue::fabric::rk4_stage",
-           RungeKuttaFunctor<ExecutionSpace, model>{_cloth, _x, _v, at[stage], _velocity, next[stage], _sum_x,
-                                                    _sum_v, _watch, _clock.dt, stage});
+           RungeKuttaFunctor<ExecutionSpace, law>{_cloth, _x, _v, at[stage], _velocity, next[stage], _sum_x,
+                                                  _sum_v, _watch, _clock.dt, stage});
     // The last stage has counted the step.
     if (_prescribed) place(next[stage], stage == 3 ? _v : _velocity, after[stage], stage == 3);
   }
 }
 
-template <class ExecutionSpace, Model model>
-void SolverOn<ExecutionSpace, model>::verlet(bool ends, bool begins) {
+template <class ExecutionSpace, Law law>
+void SolverOn<ExecutionSpace, law>::verlet(bool ends, bool begins) {
   if (_acts) act(_x, _v, 0.0, false);
   launch("drogue::fabric::verlet",
-         VerletFunctor<ExecutionSpace, model>{_cloth, _x, _v, _next, _watch, _damping, _clock.dt, _hand, ends,
-                                              begins, !_drags});
+         VerletFunctor<ExecutionSpace, law>{_cloth, _x, _v, _next, _watch, _damping, _clock.dt, _hand, ends,
+                                            begins, !_drags});
   if (!begins) return;
   if (_drags) {
     launch_each("drogue::fabric::drag", _vertices,
@@ -42,8 +42,8 @@ void SolverOn<ExecutionSpace, model>::verlet(bool ends, bool begins) {
 }
 
 /// Takes steps without a look at what becomes of them.
-template <class ExecutionSpace, Model model>
-void SolverOn<ExecutionSpace, model>::take(std::int64_t steps) {
+template <class ExecutionSpace, Law law>
+void SolverOn<ExecutionSpace, law>::take(std::int64_t steps) {
   if (_integrator == Integrator::rk4) {
     for (std::int64_t step = 0; step < steps; ++step) _step->launch();
   } else {
@@ -54,8 +54,8 @@ void SolverOn<ExecutionSpace, model>::take(std::int64_t steps) {
   _clock.step += steps;
 }
 
-template <class ExecutionSpace, Model model>
-bool SolverOn<ExecutionSpace, model>::advance(std::int64_t steps) {
+template <class ExecutionSpace, Law law>
+bool SolverOn<ExecutionSpace, law>::advance(std::int64_t steps) {
   // Copies fall on multiples, so that they are the same however steps are cut into calls.
   while (steps > 0 && !lost()) {
     const std::int64_t part = std::min(steps, keep_every - _clock.step % keep_every);
@@ -67,13 +67,13 @@ bool SolverOn<ExecutionSpace, model>::advance(std::int64_t steps) {
 }
 
 /// What the device has told so far, without waiting.
-template <class ExecutionSpace, Model model>
-bool SolverOn<ExecutionSpace, model>::lost() const {
+template <class ExecutionSpace, Law law>
+bool SolverOn<ExecutionSpace, law>::lost() const {
   return _failure || *static_cast<const volatile int*>(_watch.raised.data()) != 0;
 }
 
-template <class ExecutionSpace, Model model>
-void SolverOn<ExecutionSpace, model>::keep() {
+template <class ExecutionSpace, Law law>
+void SolverOn<ExecutionSpace, law>::keep() {
   Kokkos::parallel_for(
       "drogue::fabric::keep",
       Kokkos::Experimental::require(Kokkos::RangePolicy<ExecutionSpace>(_instance.space(), 0, _padded),
@@ -82,8 +82,8 @@ void SolverOn<ExecutionSpace, model>::keep() {
 }
 
 /// Waits; where a state was lost, goes back to the one kept.
-template <class ExecutionSpace, Model model>
-void SolverOn<ExecutionSpace, model>::settle() {
+template <class ExecutionSpace, Law law>
+void SolverOn<ExecutionSpace, law>::settle() {
   const ExecutionSpace& space = _instance.space();
   space.fence("drogue::fabric::settle");
   if (_failure || !lost()) return;
@@ -99,15 +99,15 @@ void SolverOn<ExecutionSpace, model>::settle() {
   _clock.step = kept;
 }
 
-template <class ExecutionSpace, Model model>
-std::optional<Failure> SolverOn<ExecutionSpace, model>::failure() {
+template <class ExecutionSpace, Law law>
+std::optional<Failure> SolverOn<ExecutionSpace, law>::failure() {
   settle();
   return _failure;
 }
 
 /// Sets the watch to the clock and to nothing lost.
-template <class ExecutionSpace, Model model>
-void SolverOn<ExecutionSpace, model>::set_steps() {
+template <class ExecutionSpace, Law law>
+void SolverOn<ExecutionSpace, law>::set_steps() {
   const ExecutionSpace& space = _instance.space();
   Kokkos::deep_copy(space, _watch.steps, _clock.step);
   Kokkos::deep_copy(space, _watch.lost, none_lost);
@@ -116,8 +116,8 @@ void SolverOn<ExecutionSpace, model>::set_steps() {
   _hand = 0;
 }
 
-template <class ExecutionSpace, Model model>
-void SolverOn<ExecutionSpace, model>::set_clock(const Clock& clock) {
+template <class ExecutionSpace, Law law>
+void SolverOn<ExecutionSpace, law>::set_clock(const Clock& clock) {
   if (!(clock.dt > 0.0 && std::isfinite(clock.dt) && std::isfinite(clock.start)))
     throw std::invalid_argument("fabric solver: dt must be positive, and time finite");
   settle();

@@ -7,9 +7,9 @@
 namespace drogue::fabric {
 
 /// Stress of all triangles, and where there is room for them the tensors.
-template <class ExecutionSpace, Model model>
-void SolverOn<ExecutionSpace, model>::find_stress(StressMeasure measure, const StressView<ExecutionSpace>& to,
-                                                  const TensorView<ExecutionSpace>& tensor) {
+template <class ExecutionSpace, Law law>
+void SolverOn<ExecutionSpace, law>::find_stress(StressMeasure measure, const StressView<ExecutionSpace>& to,
+                                                const TensorView<ExecutionSpace>& tensor) {
   if (_material.model == Model::linear_vector)
     throw std::invalid_argument("fabric solver: springs of vectors (Model I) have no stress");
   settle();
@@ -18,11 +18,11 @@ void SolverOn<ExecutionSpace, model>::find_stress(StressMeasure measure, const S
   Kokkos::parallel_for(
       "drogue::fabric::stress",
       Kokkos::RangePolicy<ExecutionSpace>(space, 0, static_cast<int>(_mesh.triangles.size())),
-      StressFunctor<ExecutionSpace, model>{*_triangles, _x, _cloth.moduli, measure, to, tensor});
+      StressFunctor<ExecutionSpace, law>{*_triangles, _x, _cloth.moduli, measure, to, tensor});
 }
 
-template <class ExecutionSpace, Model model>
-void SolverOn<ExecutionSpace, model>::stress(StressMeasure measure, std::span<Stress> of_triangles) {
+template <class ExecutionSpace, Law law>
+void SolverOn<ExecutionSpace, law>::stress(StressMeasure measure, std::span<Stress> of_triangles) {
   if (of_triangles.size() != _mesh.triangles.size())
     throw std::invalid_argument("fabric solver: there must be one stress a triangle");
   const StressView<ExecutionSpace> found("drogue::fabric::stress", of_triangles.size());
@@ -30,8 +30,8 @@ void SolverOn<ExecutionSpace, model>::stress(StressMeasure measure, std::span<St
   stress_to_host(found, of_triangles);
 }
 
-template <class ExecutionSpace, Model model>
-void SolverOn<ExecutionSpace, model>::vertex_stress(StressMeasure measure, std::span<Stress> of_vertices) {
+template <class ExecutionSpace, Law law>
+void SolverOn<ExecutionSpace, law>::vertex_stress(StressMeasure measure, std::span<Stress> of_vertices) {
   require_one_a_vertex(of_vertices.size());
   const StressView<ExecutionSpace> of_triangles("drogue::fabric::stress", _mesh.triangles.size()),
       found("drogue::fabric::vertex_stress", of_vertices.size());
@@ -43,9 +43,9 @@ void SolverOn<ExecutionSpace, model>::vertex_stress(StressMeasure measure, std::
   stress_to_host(found, of_vertices);
 }
 
-template <class ExecutionSpace, Model model>
-void SolverOn<ExecutionSpace, model>::stress_to_host(const StressView<ExecutionSpace>& from,
-                                                     std::span<Stress> to) const {
+template <class ExecutionSpace, Law law>
+void SolverOn<ExecutionSpace, law>::stress_to_host(const StressView<ExecutionSpace>& from,
+                                                   std::span<Stress> to) const {
   const auto mirror = Kokkos::create_mirror_view(from);
   Kokkos::deep_copy(_instance.space(), mirror, from);
   _instance.space().fence("drogue::fabric::stress_to_host");

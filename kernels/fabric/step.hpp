@@ -6,7 +6,7 @@ namespace drogue::fabric {
 
 /// One stage of the classical Runge-Kutta method (Kutta 1901) on x' = v, v' = a(x, v): the velocities' sum
 /// needs accelerations alone, x_{n+1} = x_n + dt v_n + dt^2/6 (a_1 + a_2 + a_3).
-template <class ExecutionSpace, Model model>
+template <class ExecutionSpace, Law law>
 struct RungeKuttaFunctor {
   using R = std::conditional_t<device::is_host<ExecutionSpace>, device::HostPack<double>, double>;
   using Points = PointsView<ExecutionSpace>;
@@ -25,7 +25,7 @@ struct RungeKuttaFunctor {
     const int i = pack * lanes;
     const Vector3<R> v_n = load_points<R>(v, i);
     const Vector3<R> v_now = stage == 0 ? v_n : load_points<R>(velocity, i);
-    const Vector3<R> a = acceleration<model, R>(cloth, at, v_now, i);
+    const Vector3<R> a = acceleration<law, R>(cloth, at, v_now, i);
     const Vector3<R> x_n = load_points<R>(x, i);
     if (stage == 3) {
       const Vector3<R> x_end = x_n + dt * v_n + (dt * dt / 6.0) * load_points<R>(sum_x, i);
@@ -49,7 +49,7 @@ struct RungeKuttaFunctor {
 /// Velocity Verlet (Swope et al. 1982) with one force a step: half a kick that ends the step before, half a
 /// kick that begins the next, and its drift. Damping is taken at the middle of half a kick. However steps are
 /// cut into launches, the same operations follow one another.
-template <class ExecutionSpace, Model model>
+template <class ExecutionSpace, Law law>
 struct VerletFunctor {
   using R = std::conditional_t<device::is_host<ExecutionSpace>, device::HostPack<double>, double>;
   using Points = PointsView<ExecutionSpace>;
@@ -66,7 +66,7 @@ struct VerletFunctor {
   KOKKOS_FUNCTION void operator()(const int pack) const {
     const int i = pack * lanes;
     Vector3<R> velocity = load_points<R>(v, i);
-    const Vector3<R> a = acceleration<model, R>(cloth, x, velocity, i), free = load_points<R>(cloth.free, i);
+    const Vector3<R> a = acceleration<law, R>(cloth, x, velocity, i), free = load_points<R>(cloth.free, i);
     const Vector3<R> position = load_points<R>(x, i);
     const std::int64_t step = watch.steps(hand);
     if (ends) {

@@ -40,7 +40,7 @@ KOKKOS_INLINE_FUNCTION void store_stress(const View& view, int i, const Principa
 }
 
 /// The stress of each triangle.
-template <class ExecutionSpace, Model model>
+template <class ExecutionSpace, Law law>
 struct StressFunctor {
   TriangleViews<ExecutionSpace> triangles;
   PointsView<ExecutionSpace> x;
@@ -61,12 +61,12 @@ struct StressFunctor {
     const Edges<double> rest{{triangles.rest(t, 0), triangles.rest(t, 1), triangles.rest(t, 2)}};
     const double inverse_area = triangles.inverse_area(t);
     Edges<double> tension;
-    if constexpr (has_triangles(model))
-      tension = membrane_tensions<model>(moduli, squared, rest, inverse_area);
+    if constexpr (has_triangles(law.model))
+      tension = membrane_tensions<law>(moduli, squared, rest, inverse_area);
     else
       for (int e = 0; e < 3; ++e)
         tension.of[e] =
-            spring_tension(triangles.stiffness(t, e), squared.of[e], device::square_root(rest.of[e]));
+            spring_tension<law>(triangles.stiffness(t, e), squared.of[e], device::square_root(rest.of[e]));
     const Flat at_rest = flat(rest, inverse_area);
     const Plane stress = measure == StressMeasure::cauchy
                              ? edge_stress(tension, now)

@@ -17,7 +17,7 @@ using TotalsView = TableView<ExecutionSpace, double, total_count>;
 /// Thread j adds the shares of vertices j, j + n_out, j + 2 n_out, ... in this order, so that sums have the
 /// same bits on every backend and with any number of threads. Corners of a triangle have a third of its
 /// energy, ends of a spring half.
-template <class ExecutionSpace, Model model>
+template <class ExecutionSpace, Law law>
 struct TotalsFunctor {
   Cloth<ExecutionSpace> cloth;
   PointsView<ExecutionSpace> x, v;
@@ -53,19 +53,19 @@ struct TotalsFunctor {
     double energy = 0.0;
     const auto squared = [](const Vector3<double>& a) { return dot(a, a); };
     const auto to = [&](int neighbour) { return load_points<double>(x, neighbour) - own; };
-    if constexpr (has_triangles(model))
+    if constexpr (has_triangles(law.model))
       cloth.triangles.each(i, [&](int slot) {
         const Vector3<double> to_j = to(cloth.triangles.neighbour(slot, 0)),
                               to_k = to(cloth.triangles.neighbour(slot, 1));
         const Edges<double> now{{squared(to_k - to_j), squared(to_k), squared(to_j)}};
-        energy += membrane_energy<model>(cloth.moduli, now, rest_edges<double>(cloth, slot),
-                                         cloth.triangles.value(slot, 3)) /
+        energy += membrane_energy<law>(cloth.moduli, now, rest_edges<double>(cloth, slot),
+                                       cloth.triangles.value(slot, 3)) /
                   3.0;
       });
     cloth.springs.each(i, [&](int slot) {
-      energy +=
-          0.5 * spring_energy(cloth.springs.value(slot, 0), squared(to(cloth.springs.neighbour(slot, 0))),
-                              cloth.springs.value(slot, 1));
+      energy += 0.5 * spring_energy<law>(cloth.springs.value(slot, 0),
+                                         squared(to(cloth.springs.neighbour(slot, 0))),
+                                         cloth.springs.value(slot, 1));
     });
     return energy;
   }
