@@ -3,7 +3,6 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
-#include <stdexcept>
 
 namespace drogue::springs_app {
 namespace {
@@ -109,8 +108,7 @@ std::vector<CatenaryPoint> catenary_points(const Catenary& c, const std::vector<
   };
   const auto excess = [&](double H) { return point(H, vertical(H), c.length).along - c.span; };
   const double least = 1e-9 * total;
-  if (!(excess(least) < 0.0 && excess(most) > 0.0))
-    throw std::runtime_error("no elastic catenary joins these ends");
+  if (!(excess(least) < 0.0 && excess(most) > 0.0)) return {};
   const double H = bisect(excess, least, most), V = vertical(H);
   std::vector<CatenaryPoint> points;
   for (const double s : arc) points.push_back(point(H, V, s));

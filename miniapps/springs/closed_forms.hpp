@@ -39,8 +39,8 @@ struct Catenary {
   double axial_stiffness;  ///< N
 };
 
-/// Horizontal and downward distance from the first end, at the given lengths at rest from it. Throws
-/// std::runtime_error where no such string hangs.
+/// Horizontal and downward distance from the first end, at the given lengths at rest from it; empty where no
+/// such string hangs, say between two ends one above the other.
 struct CatenaryPoint {
   double along, down;
 };

@@ -82,6 +82,19 @@ Vector double_area(const std::vector<Vector>& points, const std::array<int, 3>& 
   return {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
 }
 
+std::optional<std::array<int, 2>> opposed_triangles(const Mesh& mesh) {
+  // Triangles that agree run through their edge in opposite directions.
+  std::vector<std::array<int, 3>> directed;
+  for (std::size_t k = 0; k < mesh.triangles.size(); ++k)
+    for (std::size_t e = 0; e < 3; ++e)
+      directed.push_back({mesh.triangles[k][e], mesh.triangles[k][(e + 1) % 3], static_cast<int>(k)});
+  std::ranges::sort(directed);
+  for (std::size_t k = 1; k < directed.size(); ++k)
+    if (directed[k][0] == directed[k - 1][0] && directed[k][1] == directed[k - 1][1])
+      return std::array{directed[k - 1][2], directed[k][2]};
+  return std::nullopt;
+}
+
 std::vector<int> local_order(const Mesh& mesh) {
   const Adjacency adjacency = adjacency_of(mesh);
   const auto fewer = [&](int i, int j) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,6 +14,10 @@ std::vector<std::array<int, 2>> edges_of(const fabric::Mesh& mesh);
 
 /// Twice the area of a triangle times its unit normal, m^2.
 fabric::Vector double_area(const std::vector<fabric::Vector>& points, const std::array<int, 3>& triangle);
+
+/// Two triangles at an edge that turn in opposite senses, so that their normals point to different sides;
+/// none in a mesh with one side up.
+std::optional<std::array<int, 2>> opposed_triangles(const fabric::Mesh& mesh);
 
 /// The order in which neighbours lie close together: entry k is the vertex of the file that becomes vertex k
 /// (reverse Cuthill and McKee 1969).

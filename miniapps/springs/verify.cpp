@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "miniapps/springs/closed_forms.hpp"
 #include "miniapps/springs/expressions.hpp"
@@ -72,10 +73,10 @@ double catenary_error(const SpringsScene& scene, const FinalState& state) {
   std::vector<double> arc = {0.0};
   for (std::size_t i = 1; i < state.x.size(); ++i)
     arc.push_back(arc.back() + distance(scene.mesh.rest[i], scene.mesh.rest[i - 1]));
-  const auto points = catenary_points(
+  const std::vector<CatenaryPoint> points = catenary_points(
       {span, drop, arc.back(), scene.fabric.line_density * strength, scene.fabric.material.axial_stiffness},
       arc);
-  double error = 0.0;
+  double error = points.empty() ? std::numeric_limits<double>::quiet_NaN() : 0.0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     Vector expected;
     for (std::size_t a = 0; a < 3; ++a)

@@ -144,8 +144,12 @@ class Failures(springs_program.SpringsTest):
             "catenary": ["time.end_time=0.05", "output.fields=[]"],
             "free-patch": ["time.integrator=rk4"],
             "chain": ["verify.frequency.value=105.2"],
+            "hencky": ["time.end_time=0.1", "verify.hencky=3e-3"],
+            "drum-cone": ["time.safety=1.0"],
+            "stress-wave": ["verify.front_speed.value=110"],
+            "pulled-triangle": ["time.end_time=0.02"],
         }
-        small = {"drum": ["mesh.disk.vertices=61", "output.fields=[]"], "strip": ["mesh.strip.vertices=40"]}
+        small = {"hencky": ["mesh.disk.vertices=217", "output.fields=[]"], "pulled-triangle": ["output.fields=[]"], "drum": ["mesh.disk.vertices=61", "output.fields=[]"], "strip": ["mesh.strip.vertices=40"]}
         for scene, sets in faults.items():
             with self.subTest(scene):
                 process = self.expect(5, scene, "--quiet", "--backend", "serial", "--overwrite",

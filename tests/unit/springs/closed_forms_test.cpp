@@ -53,6 +53,7 @@ TEST(ClosedForms, AVerticalStretch) {
   // Almost vertical: (rho g L^2 / 2) / EA longer.
   const auto points = catenary_points({1e-6, 1.05, 1.0, 1.0, 10.0}, {1.0});
   EXPECT_NEAR(points[0].down, 1.05, 1e-9);
+  EXPECT_TRUE(catenary_points({0.0, 1.05, 1.0, 1.0, 10.0}, {1.0}).empty());
 }
 
 TEST(Sinusoid, FrequencyIsFitted) {

@@ -159,6 +159,13 @@ TEST(SpringsScene, LoadsAreOfOneKind) {
   EXPECT_TRUE(holds(error_of(loads("{force={}}")), "needs one of x, y, z"));
 }
 
+TEST(SpringsScene, PressureNeedsASide) {
+  const std::string two = triangle + "v 1 1 0\n", along = two + "f 2 4 3\n", against = two + "f 2 3 4\n";
+  EXPECT_EQ(error_of({"load=[{pressure=1}]"}, with_file, along), "");
+  EXPECT_EQ(error_of({"load=[{gravity=[0,0,1]}]"}, with_file, against), "");
+  EXPECT_TRUE(holds(error_of({"load=[{follower_pressure=1}]"}, with_file, against), "faces 1 and 2"));
+}
+
 TEST(SpringsScene, OutputIsCompletedAndChecked) {
   EXPECT_EQ(read_text(least, {"output.fields=[\"velocity\"]"}).output.times, std::vector<double>{1.0});
   EXPECT_EQ(read_text(least, {"output.times=[0.5]"}).output.fields, std::vector<std::string>{"position"});
