@@ -118,7 +118,7 @@ KOKKOS_INLINE_FUNCTION Vector3<R> force(const Cloth<ExecutionSpace>& cloth, cons
   const Vector3<R> own = load_points<R>(positions, i);
   Vector3<R> sum{R(0.0), R(0.0), R(0.0)};
   const auto to = [&](const int* neighbour) { return gather_points<R>(positions, neighbour) - own; };
-  if constexpr (has_triangles(law.model))
+  if constexpr (whole_triangles<law>)
     cloth.triangles.each(i, [&](int slot) {
       const auto& neighbour = cloth.triangles.neighbour;
       sum =

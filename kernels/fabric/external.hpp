@@ -21,7 +21,7 @@ struct External {
   ProgramsView<ExecutionSpace> pressure;
   Kokkos::View<double**, Kokkos::LayoutLeft, Memory> weight;  ///< vertex, pressure
   SlotViews<ExecutionSpace, 2, 4> surface;
-  SlotViews<ExecutionSpace, 1, 1> dashpots;
+  SlotViews<ExecutionSpace, 1, 1> dashpots, bending;
 };
 
 /// The pull of a dashpot on the end from which `edge` leads, N: along the edge alone, so that the pull on the
@@ -47,7 +47,19 @@ KOKKOS_INLINE_FUNCTION Vector3<double> dashpot_force(const SlotViews<ExecutionSp
   return sum;
 }
 
-/// The loads on every vertex, N: dead ones, those that change, pressures, and with `damps` dashpots.
+/// The resistance of vertex i to bending, N.
+template <class ExecutionSpace>
+KOKKOS_INLINE_FUNCTION Vector3<double> bending_force(const SlotViews<ExecutionSpace, 1, 1>& bending,
+                                                     const PointsView<ExecutionSpace>& x, int i) {
+  const Vector3<double> own = load_points<double>(x, i);
+  Vector3<double> sum{0.0, 0.0, 0.0};
+  bending.each(i, [&](int slot) {
+    sum = sum + bending.value(slot, 0) * (load_points<double>(x, bending.neighbour(slot, 0)) - own);
+  });
+  return sum;
+}
+
+/// The loads on every vertex, N: dead ones, those that change, pressures, bending, and with `damps` dashpots.
 template <class ExecutionSpace>
 struct ExternalFunctor {
   External<ExecutionSpace> external;
@@ -83,31 +95,49 @@ struct ExternalFunctor {
       });
       sum = sum + (pressure_on(i, place) / 6.0) * twice_area;
     }
+    if (external.bending.first.extent(0) > 0) sum = sum + bending_force(external.bending, x, i);
     if (damps) sum = sum + dashpot_force(external.dashpots, x, v, i);
     store_points(out, i, sum);
   }
 };
 
-/// What pressure adds to the rows of `FrequencyFunctor`, N/m: the derivatives of a third of the area
-/// (x_j - x_i) x (x_k - x_i) / 2 are cross products with an edge over 6. At the present time.
+/// What pressure and bending add to the rows of `FrequencyFunctor`, N/m. Derivatives of a third of the area
+/// (x_j - x_i) x (x_k - x_i) / 2 are cross products with an edge over 6, at the present pressure.
 template <class ExecutionSpace>
-struct PressureStiffnessFunctor {
+struct LoadStiffnessFunctor {
   ExternalFunctor<ExecutionSpace> loads;
   ListView<ExecutionSpace, double> out;
 
   KOKKOS_FUNCTION void operator()(const int i) const {
+    const External<ExecutionSpace>& external = loads.external;
+    double row = 0.0;
+    if (external.pressure.extent(0) > 0) {
+      const Vector3<double> place = load_points<double>(external.rest, i);
+      row = Kokkos::fabs(loads.pressure_on(i, place)) / 6.0 * edges_about(i);
+    }
+    if (external.bending.first.extent(0) > 0) {
+      double diagonal = 0.0;
+      external.bending.each(i, [&](int slot) {
+        const double weight = external.bending.value(slot, 0);
+        row += Kokkos::fabs(weight), diagonal += weight;
+      });
+      row += Kokkos::fabs(diagonal);
+    }
+    out(i) = row;
+  }
+
+  /// The edges of the triangles of vertex i, m, each as often as there are triangles.
+  KOKKOS_FUNCTION double edges_about(const int i) const {
     const auto& surface = loads.external.surface;
     const Vector3<double> own = load_points<double>(loads.x, i);
+    const auto length = [](const Vector3<double>& a) { return device::square_root(dot(a, a)); };
     double edges = 0.0;
     surface.each(i, [&](int slot) {
       const Vector3<double> to_j = load_points<double>(loads.x, surface.neighbour(slot, 0)) - own,
-                            to_k = load_points<double>(loads.x, surface.neighbour(slot, 1)) - own,
-                            opposite = to_k - to_j;
-      edges += device::square_root(dot(to_j, to_j)) + device::square_root(dot(to_k, to_k)) +
-               device::square_root(dot(opposite, opposite));
+                            to_k = load_points<double>(loads.x, surface.neighbour(slot, 1)) - own;
+      edges += length(to_j) + length(to_k) + length(to_k - to_j);
     });
-    const Vector3<double> place = load_points<double>(loads.external.rest, i);
-    out(i) = Kokkos::fabs(loads.pressure_on(i, place)) / 6.0 * edges;
+    return edges;
   }
 };
 

@@ -71,7 +71,7 @@ struct FrequencyFunctor {
       }
       sum += norm_bound(block);
     };
-    if constexpr (has_triangles(law.model))
+    if constexpr (whole_triangles<law>)
       cloth.triangles.each(i, [&](int slot) {
         const int j = cloth.triangles.neighbour(slot, 0), k = cloth.triangles.neighbour(slot, 1);
         const Vector3<double> to_j = to(j), to_k = to(k);

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
+#include <stdexcept>
 
 namespace drogue::fabric {
 
@@ -111,6 +113,48 @@ SpringSlots spring_slots(const Mesh& mesh, const Material& material) {
     add(i, j, (mesh.line_stiffness.empty() ? material.axial_stiffness : mesh.line_stiffness[k]) / length,
         length);
   }
+  return sliced(of_vertex);
+}
+
+BendingSlots bending_slots(const Mesh& mesh, double stiffness) {
+  const auto place = [&](int i) -> const Vector& { return mesh.rest[static_cast<std::size_t>(i)]; };
+  std::map<std::array<int, 2>, std::vector<int>> opposite;  // vertices across an edge
+  for (const auto& t : mesh.triangles)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int a = t[(k + 1) % 3], b = t[(k + 2) % 3];
+      opposite[{std::min(a, b), std::max(a, b)}].push_back(t[k]);
+    }
+  std::vector<std::map<int, double>> weights(mesh.rest.size());
+  const auto add_hinge = [&](const std::array<int, 2>& edge, const std::array<int, 2>& across) {
+    const std::array<int, 4> vertex = {edge[0], edge[1], across[0], across[1]};
+    const double squared = squared_distance(place(edge[0]), place(edge[1]));
+    double k[4] = {}, areas = 0.0;
+    for (std::size_t side = 0; side < 2; ++side) {
+      const Vector& top = place(across[side]);
+      const double to_0 = squared_distance(place(edge[0]), top), to_1 = squared_distance(place(edge[1]), top),
+                   four_areas = 4.0 / inverse_area(place(edge[0]), place(edge[1]), top);
+      const double at_0 = (squared + to_0 - to_1) / four_areas, at_1 = (squared + to_1 - to_0) / four_areas;
+      k[0] += at_1, k[1] += at_0, k[2 + side] -= at_0 + at_1;
+      areas += 0.25 * four_areas;
+    }
+    double bent = 0.0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      double sum = 0.0;
+      for (std::size_t a = 0; a < 4; ++a) sum += k[a] * place(vertex[a])[axis];
+      bent += sum * sum;
+    }
+    if (bent > 1e-12 * squared)
+      throw std::invalid_argument("fabric solver: cloth that resists bending must be flat at rest");
+    for (std::size_t a = 0; a < 4; ++a)
+      for (std::size_t b = 0; b < 4; ++b)
+        if (a != b)
+          weights[static_cast<std::size_t>(vertex[a])][vertex[b]] -= stiffness / areas * k[a] * k[b];
+  };
+  for (const auto& [edge, across] : opposite)
+    for (std::size_t k = 0; k + 1 < across.size(); ++k) add_hinge(edge, {across[k], across[k + 1]});
+  std::vector<std::vector<Entry<1, 1>>> of_vertex(mesh.rest.size());
+  for (std::size_t i = 0; i < weights.size(); ++i)
+    for (const auto& [j, weight] : weights[i]) of_vertex[i].push_back({{j}, {weight}});
   return sliced(of_vertex);
 }
 

@@ -44,6 +44,16 @@ using DashpotSlots = Slots<1, 1>;
 /// Edges of triangles and lines, each pair of vertices once: rate times the reduced mass of its two ends.
 [[nodiscard]] DashpotSlots dashpot_slots(const Mesh& mesh, const std::vector<double>& mass, double rate);
 
+/// Bending of every vertex: another one, and the weight of the way to it in the force, N/m, of either sign.
+using BendingSlots = Slots<1, 1>;
+
+/// Isometric bending across edges of two triangles (Bergou et al. 2006): with the cotangents K of a hinge's
+/// four vertices, which sum to zero, its energy is stiffness / (A_0 + A_1) * (sum K x)^2 / 2, whose force is
+/// linear and has no torque. Without their factor of 3 a cylinder of curvature c has stiffness c^2 / 2 per
+/// area, as on the equilateral mesh of Seung and Nelson 1988. Hinges that are not flat at rest throw
+/// std::invalid_argument.
+[[nodiscard]] BendingSlots bending_slots(const Mesh& mesh, double stiffness);
+
 /// -sum k (X_j - X_i) of the springs of every vertex, N; empty but for Model::linear_vector.
 [[nodiscard]] std::vector<Vector> rest_pull(const Mesh& mesh, const Material& material);
 

@@ -12,6 +12,10 @@ struct Law {
   bool tension_only = false;
 };
 
+/// Whether triangles resist as a whole: a constant, for in device code nvcc wants no constexpr function.
+template <Law law>
+inline constexpr bool whole_triangles = has_triangles(law.model);
+
 /// Lame's first constant and twice the shear modulus of plane stress, and Young's modulus, N/m. The
 /// dissertation's "mu" is the second.
 struct Moduli {
@@ -88,7 +92,7 @@ KOKKOS_INLINE_FUNCTION Edges<R> tensions_of_changes(const Moduli& m, const Edges
 /// squared lengths.
 template <Law law, class R>
 KOKKOS_INLINE_FUNCTION Edges<R> changes(const Edges<R>& now, const Edges<R>& rest) {
-  static_assert(has_triangles(law.model), "springs along edges have no triangles");
+  static_assert(whole_triangles<law>, "springs along edges have no triangles");
   Edges<R> q;
   for (int e = 0; e < 3; ++e)
     if constexpr (law.model == Model::biquadratic)

@@ -30,6 +30,7 @@ struct Material {
   double poisson = 0.3;              ///< -1 .. 1/2, quadratic and biquadratic
   double stiffness = 1000.0;         ///< N/m an edge; linear_vector and edge
   double axial_stiffness = 0.0;      ///< E A of strings, N
+  double bending_stiffness = 0.0;    ///< N m, across edges of two triangles; for cloth that is flat at rest
   /// Wrinkles at no cost in place of compression: the relaxed energy of triangles, and lines and edges
   /// without compressive tension. Not for linear_vector.
   bool tension_only = false;

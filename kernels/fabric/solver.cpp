@@ -76,7 +76,8 @@ void check(const Parameters& p) {
   require(positive(p.dt), "dt must be positive");
   require(not_negative(p.damping) && not_negative(p.relative_damping), "damping must not be negative");
   const Material& m = p.material;
-  require(not_negative(m.membrane_modulus) && not_negative(m.stiffness) && not_negative(m.axial_stiffness),
+  require(not_negative(m.membrane_modulus) && not_negative(m.stiffness) && not_negative(m.axial_stiffness) &&
+              not_negative(m.bending_stiffness),
           "no stiffness may be negative");
   require(!m.tension_only || m.model != Model::linear_vector,
           "springs of vectors (Model I) know no compression: they cannot bear tension only");

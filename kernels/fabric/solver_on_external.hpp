@@ -17,8 +17,10 @@ ProgramsView<ExecutionSpace> SolverOn<ExecutionSpace, law>::programs(
 template <class ExecutionSpace, Law law>
 void SolverOn<ExecutionSpace, law>::prepare_external(const Parameters& p) {
   _drags = p.relative_damping > 0.0;
-  _acts =
-      !p.timed_loads.empty() || !p.follower_pressures.empty() || (_drags && _integrator == Integrator::rk4);
+  const double bending = p.material.bending_stiffness;
+  if (bending > 0.0) copy_slots(bending_slots(p.mesh, bending), _external.bending);
+  _acts = !p.timed_loads.empty() || !p.follower_pressures.empty() || bending > 0.0 ||
+          (_drags && _integrator == Integrator::rk4);
   if (_drags) {
     const DashpotSlots dashpots = dashpot_slots(p.mesh, p.mass, p.relative_damping);
     copy_slots(dashpots, _external.dashpots);

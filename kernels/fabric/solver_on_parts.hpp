@@ -127,11 +127,11 @@ template <class ExecutionSpace, Law law>
 double SolverOn<ExecutionSpace, law>::fastest_frequency() {
   settle();
   ListView<ExecutionSpace, double> more;
-  if (_external.pressure.extent(0) > 0) {
-    more = ListView<ExecutionSpace, double>("drogue::fabric::pressure_stiffness",
+  if (_external.pressure.extent(0) > 0 || _external.bending.first.extent(0) > 0) {
+    more = ListView<ExecutionSpace, double>("drogue::fabric::load_stiffness",
                                             static_cast<std::size_t>(_vertices));
-    launch_each("drogue::fabric::pressure_stiffness", _vertices,
-                PressureStiffnessFunctor<ExecutionSpace>{loads_at(_x, _v, 0.0, false), more});
+    launch_each("drogue::fabric::load_stiffness", _vertices,
+                LoadStiffnessFunctor<ExecutionSpace>{loads_at(_x, _v, 0.0, false), more});
   }
   double row = largest_row<law>(more);
   // What is slack now may be taut before it is asked again.
@@ -148,8 +148,9 @@ Totals SolverOn<ExecutionSpace, law>::totals() {
   Cloth<ExecutionSpace> dead_alone = _cloth;
   dead_alone.load = _dead;
   TotalsView<ExecutionSpace> sums("drogue::fabric::totals", static_cast<std::size_t>(rows));
-  Kokkos::parallel_for("drogue::fabric::totals", Kokkos::RangePolicy<ExecutionSpace>(space, 0, rows),
-                       TotalsFunctor<ExecutionSpace, law>{dead_alone, _x, _v, _pull, sums, _vertices});
+  Kokkos::parallel_for(
+      "drogue::fabric::totals", Kokkos::RangePolicy<ExecutionSpace>(space, 0, rows),
+      TotalsFunctor<ExecutionSpace, law>{dead_alone, _x, _v, _pull, _external.bending, sums, _vertices});
   while (rows > 1) {
     rows = fewer(rows);
     const TotalsView<ExecutionSpace> next("drogue::fabric::totals", static_cast<std::size_t>(rows));

@@ -61,7 +61,7 @@ struct StressFunctor {
     const Edges<double> rest{{triangles.rest(t, 0), triangles.rest(t, 1), triangles.rest(t, 2)}};
     const double inverse_area = triangles.inverse_area(t);
     Edges<double> tension;
-    if constexpr (has_triangles(law.model))
+    if constexpr (whole_triangles<law>)
       tension = membrane_tensions<law>(moduli, squared, rest, inverse_area);
     else
       for (int e = 0; e < 3; ++e)

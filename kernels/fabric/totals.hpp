@@ -22,6 +22,7 @@ struct TotalsFunctor {
   Cloth<ExecutionSpace> cloth;
   PointsView<ExecutionSpace> x, v;
   PointsView<ExecutionSpace> pull;  ///< of springs of vectors, which `cloth.load` holds too; may be empty
+  SlotViews<ExecutionSpace, 1, 1> bending;  ///< may be empty
   TotalsView<ExecutionSpace> out;
   int vertices;
 
@@ -53,7 +54,7 @@ struct TotalsFunctor {
     double energy = 0.0;
     const auto squared = [](const Vector3<double>& a) { return dot(a, a); };
     const auto to = [&](int neighbour) { return load_points<double>(x, neighbour) - own; };
-    if constexpr (has_triangles(law.model))
+    if constexpr (whole_triangles<law>)
       cloth.triangles.each(i, [&](int slot) {
         const Vector3<double> to_j = to(cloth.triangles.neighbour(slot, 0)),
                               to_k = to(cloth.triangles.neighbour(slot, 1));
@@ -67,6 +68,11 @@ struct TotalsFunctor {
                                          squared(to(cloth.springs.neighbour(slot, 0))),
                                          cloth.springs.value(slot, 1));
     });
+    // Weights are minus the second derivatives, whose rows sum to zero: x Q x / 2 over pairs.
+    if (bending.first.extent(0) > 0)
+      bending.each(i, [&](int slot) {
+        energy += 0.25 * bending.value(slot, 0) * squared(to(bending.neighbour(slot, 0)));
+      });
     return energy;
   }
 };
