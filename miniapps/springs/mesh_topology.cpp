@@ -82,6 +82,22 @@ Vector double_area(const std::vector<Vector>& points, const std::array<int, 3>& 
   return {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
 }
 
+bool is_flat(const Mesh& mesh) {
+  const auto unit_normal = [&](const std::array<int, 3>& triangle) {
+    Vector normal = double_area(mesh.rest, triangle);
+    const double size = length(normal);
+    for (double& value : normal) value /= size;
+    return normal;
+  };
+  if (mesh.triangles.empty()) return true;
+  const Vector first = unit_normal(mesh.triangles.front());
+  return std::ranges::all_of(mesh.triangles, [&](const std::array<int, 3>& triangle) {
+    const Vector normal = unit_normal(triangle);
+    const double cosine = first[0] * normal[0] + first[1] * normal[1] + first[2] * normal[2];
+    return std::abs(cosine) > 1.0 - 1e-13;
+  });
+}
+
 std::optional<std::array<int, 2>> opposed_triangles(const Mesh& mesh) {
   // Triangles that agree run through their edge in opposite directions.
   std::vector<std::array<int, 3>> directed;

@@ -15,6 +15,9 @@ std::vector<std::array<int, 2>> edges_of(const fabric::Mesh& mesh);
 /// Twice the area of a triangle times its unit normal, m^2.
 fabric::Vector double_area(const std::vector<fabric::Vector>& points, const std::array<int, 3>& triangle);
 
+/// Whether all triangles have the same normal or its opposite, but for round-off.
+bool is_flat(const fabric::Mesh& mesh);
+
 /// Two triangles at an edge that turn in opposite senses, so that their normals point to different sides;
 /// none in a mesh with one side up.
 std::optional<std::array<int, 2>> opposed_triangles(const fabric::Mesh& mesh);

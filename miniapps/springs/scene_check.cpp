@@ -95,9 +95,13 @@ void complete_material(const Table& root, SpringsScene& scene) {
       contradict(root, "material." + key,
                  "material." + key + " applies only with " + needs + ", and the mesh has none");
   };
-  for (const char* key : {"membrane_modulus", "poisson", "area_density"}) needless(key, cloth, "triangles");
+  for (const char* key : {"membrane_modulus", "poisson", "area_density", "bending_stiffness"})
+    needless(key, cloth, "triangles");
   for (const char* key : {"line_density", "axial_stiffness"}) needless(key, lines, "lines");
   needless("stiffness", lines || springs, "lines or model edge");
+  if (f.material.bending_stiffness > 0.0 && !is_flat(scene.mesh))
+    contradict(root, "material.bending_stiffness",
+               "material.bending_stiffness needs cloth that is flat at rest, and this mesh is not");
   if (springs && !f.stiffness) f.stiffness = f.material.stiffness;
   if (f.stiffness) f.material.stiffness = *f.stiffness;
   f.material.axial_stiffness = lines ? f.axial_stiffness : 0.0;

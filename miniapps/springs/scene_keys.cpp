@@ -176,6 +176,12 @@ void declare_material(Table& table, SpringsScene& scene) {
       .above(0.0)
       .when([&f, lines] { return lines() && !f.stiffness; }, "with lines and without stiffness", "stiffness");
   table
+      .value("bending_stiffness", scene::real_codec(f.material.bending_stiffness),
+             "Bending stiffness of cloth that is flat at rest")
+      .unit("N m")
+      .at_least(0.0)
+      .when(cloth, "with triangles", "");
+  table
       .value("tension_only", scene::boolean_codec(f.material.tension_only),
              "Cloth wrinkles and strings go slack at no cost in place of compression")
       .when([&f] { return f.material.model != Model::linear_vector; },

@@ -63,7 +63,7 @@ BAD_LINES = [
     (3, "[mehs]", 3, ['"mehs"', 'did you mean "mesh"?']),
     (4, 'flie = "m.obj"', 4, ['"mesh.flie"', '"file"']),
     (7, "membrane_module = 1000.0", 7, ['"material.membrane_module"', "membrane_modulus"]),
-    (12, "bending_stiffness = 0.1", 12, ['"material.bending_stiffness"', "axial_stiffness"]),
+    (12, "shear_stiffness = 0.1", 12, ['"material.shear_stiffness"', "axial_stiffness"]),
     (18, 'were = "x < 0.5"', 18, ['"pin[0].were"', '"where"']),
     (37, 'prob = [{ at = [1, 1, 0] }]', 37, ['"output.prob"', '"probes"']),
     (39, "contact = 1", 39, ['"output.contact"']),
@@ -98,6 +98,7 @@ BAD_LINES = [
     (35, 'fields = ["position", "stress"]', 35, ["output.fields[1]", '"stress"']),
     (36, "times = [0.01, 0.005]", 36, ["output.times[1]", "not greater"]),
     (36, "times = [0.005, 0.02]", 36, ["output.times", "0.02", "time.end_time"]),
+    (12, "bending_stiffness = -0.1", 12, ["material.bending_stiffness", ">= 0"]),
     # missing keys
     (33, "", 29, ['missing key "time.end_time"']),
     (4, "", 3, ["mesh", "exactly one of rectangle, disk, strip, triangle, string, file"]),

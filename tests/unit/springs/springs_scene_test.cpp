@@ -92,7 +92,7 @@ TEST(SpringsScene, PrintsNoKeyThatDoesNotApply) {
   for (const char* key :
        {"model = ", "membrane_modulus", "poisson", "area_density", "safety", "dt = \"auto\""})
     EXPECT_TRUE(holds(cloth, key)) << key << cloth;
-  for (const char* key : {"stiffness", "line_density", "prestretch = 1", "times", "[verify]"})
+  for (const char* key : {"\nstiffness", "line_density", "prestretch = 1", "times", "[verify]"})
     EXPECT_FALSE(holds(cloth, key)) << key << cloth;
   const std::string edges = print_springs_scene(read_text(least, {"material.model=edge"}));
   EXPECT_TRUE(holds(edges, "\nstiffness = 1000.0"));
@@ -164,6 +164,15 @@ TEST(SpringsScene, PressureNeedsASide) {
   EXPECT_EQ(error_of({"load=[{pressure=1}]"}, with_file, along), "");
   EXPECT_EQ(error_of({"load=[{gravity=[0,0,1]}]"}, with_file, against), "");
   EXPECT_TRUE(holds(error_of({"load=[{follower_pressure=1}]"}, with_file, against), "faces 1 and 2"));
+}
+
+TEST(SpringsScene, BendingNeedsCloth) {
+  const std::vector<std::string> sets = {"material.bending_stiffness=1e-3"};
+  EXPECT_EQ(error_of(sets), "");
+  EXPECT_EQ(error_of(sets, with_file, "v 0 0 0\nv 1 0 1\nv 0 1 0\nv 1 1 1\nf 1 2 3\nf 2 3 4\n"), "")
+      << "a slope";
+  EXPECT_TRUE(holds(error_of(sets, with_file, triangle + "v 1 1 1\nf 2 4 3\n"), "flat at rest"));
+  EXPECT_TRUE(holds(error_of(sets, with_file, rope), "with triangles"));
 }
 
 TEST(SpringsScene, OutputIsCompletedAndChecked) {
