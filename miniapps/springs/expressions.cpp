@@ -9,14 +9,14 @@
 namespace drogue::springs_app {
 namespace {
 
-const std::vector<std::string> variables = {"x", "y", "z", "t"};
+const std::vector<std::string> place_and_time = {"x", "y", "z", "t"};
 
 }  // namespace
 
 std::vector<double> values_at(const std::string& expression, const fabric::Mesh& mesh, double time) {
   std::vector<double> values(mesh.rest.size(), 0.0);
   if (expression.empty()) return values;
-  const expression::Expression value(expression, variables);
+  const expression::Expression value(expression, place_and_time);
   for (std::size_t i = 0; i < values.size(); ++i) {
     const fabric::Vector& x = mesh.rest[i];
     values[i] = value(std::array{x[0], x[1], x[2], time});
@@ -46,22 +46,23 @@ std::vector<int> selected(const std::string& where, const fabric::Mesh& mesh) {
 
 bool depends_on_time(const std::string& expression) {
   if (expression.empty()) return false;
-  const auto program = expression::compile(expression, variables);
+  const auto program = expression::compile(expression, place_and_time);
   return std::ranges::any_of(program, [](const auto& step) { return step.name == "t"; });
 }
 
 device::ExpressionProgram device_program(const std::string& expression) {
   device::ExpressionBuilder builder;
-  for (const auto& step : expression::compile(expression, variables)) builder.push(step.name, step.value);
+  for (const auto& step : expression::compile(expression, place_and_time))
+    builder.push(step.name, step.value);
   return builder.program();
 }
 
 std::optional<double> constant_value(const std::string& expression) {
   if (expression.empty()) return std::nullopt;
-  const auto program = expression::compile(expression, variables);
-  const auto varies = [](const auto& step) { return std::ranges::count(variables, step.name) > 0; };
+  const auto program = expression::compile(expression, place_and_time);
+  const auto varies = [](const auto& step) { return std::ranges::count(place_and_time, step.name) > 0; };
   if (std::ranges::any_of(program, varies)) return std::nullopt;
-  return expression::Expression(expression, variables)(std::array{0.0, 0.0, 0.0, 0.0});
+  return expression::Expression(expression, place_and_time)(std::array{0.0, 0.0, 0.0, 0.0});
 }
 
 }  // namespace drogue::springs_app

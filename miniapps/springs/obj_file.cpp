@@ -17,7 +17,7 @@ namespace {
 /// Statements that cloth has no use for.
 const std::vector<std::string> skipped = {"vn", "vt", "vp", "o", "g", "s", "usemtl", "mtllib"};
 
-constexpr std::size_t most_vertices = std::size_t{1} << 26U;
+constexpr std::size_t most_file_vertices = std::size_t{1} << 26U;
 
 class ObjParser {
  public:
@@ -74,7 +74,7 @@ class ObjParser {
       refuse(which + " has " + std::to_string(words.size() - 1) + " coordinates; it must have 3");
     fabric::Vector point;
     for (std::size_t axis = 0; axis < 3; ++axis) point[axis] = coordinate(words[axis + 1], which);
-    if (_contents.mesh.rest.size() == most_vertices) refuse("the file has more than 67108864 vertices");
+    if (_contents.mesh.rest.size() == most_file_vertices) refuse("the file has more than 67108864 vertices");
     _contents.mesh.rest.push_back(point);
     _contents.vertex_line.push_back(_line);
   }

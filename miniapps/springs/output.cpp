@@ -5,6 +5,7 @@
 
 #include "miniapps/springs/history.hpp"
 #include "miniapps/springs/mesh_topology.hpp"
+#include "miniapps/springs/vectors.hpp"
 
 namespace drogue::springs_app {
 namespace {
@@ -45,10 +46,6 @@ run::IntegerSource source_of(const std::vector<std::array<int, n>>& parts) {
   return [&parts](std::uint64_t first, std::span<std::int64_t> values) {
     for (std::size_t k = 0; k < values.size(); ++k) values[k] = parts[(first + k) / n][(first + k) % n];
   };
-}
-
-std::span<const double> numbers(const std::vector<Vector>& vectors) {
-  return {vectors.data()->data(), 3 * vectors.size()};
 }
 
 }  // namespace

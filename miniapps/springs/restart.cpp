@@ -3,6 +3,7 @@
 #include <span>
 
 #include "common/run/restart_file.hpp"
+#include "miniapps/springs/vectors.hpp"
 
 namespace drogue::springs_app {
 namespace {
@@ -19,14 +20,6 @@ void visit(State& state, const Number& number, const Integer& integer) {
   number("stop_time", state.stop_time);
   number("dt_min", state.dt_min);
   number("dt_max", state.dt_max);
-}
-
-std::span<const double> numbers(const std::vector<fabric::Vector>& vectors) {
-  return {vectors.data()->data(), 3 * vectors.size()};
-}
-
-std::span<double> numbers(std::vector<fabric::Vector>& vectors) {
-  return {vectors.data()->data(), 3 * vectors.size()};
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ const Choices<fabric::Lumping> mass_choices = {{"area", fabric::Lumping::area},
 const Choices<Integrator> integrator_choices = {{"rk4", Integrator::rk4}, {"verlet", Integrator::verlet}};
 const Choices<std::string> axes_choices = {{"x", "x"},   {"y", "y"},   {"z", "z"},    {"xy", "xy"},
                                            {"xz", "xz"}, {"yz", "yz"}, {"xyz", "xyz"}};
-const std::vector<std::string> place = {"x", "y", "z"}, place_and_time = {"x", "y", "z", "t"};
+const std::vector<std::string> of_place = {"x", "y", "z"}, of_place_and_time = {"x", "y", "z", "t"};
 
 /// Three numbers; an empty vector is "not given".
 Codec vector_codec(std::vector<double>& value) {
@@ -195,21 +195,21 @@ void declare_load(Table& table, Load& load) {
       .default_text("none");
   table
       .value(
-          "pressure", scene::real_or_expression_codec(load.pressure, place_and_time),
+          "pressure", scene::real_or_expression_codec(load.pressure, of_place_and_time),
           "Force per area at rest along the normal at rest, which a counter-clockwise triangle has upwards")
       .unit("N/m^2");
   table
-      .value("follower_pressure", scene::real_or_expression_codec(load.follower_pressure, place_and_time),
+      .value("follower_pressure", scene::real_or_expression_codec(load.follower_pressure, of_place_and_time),
              "Force per area along the normal, both as they are now")
       .unit("N/m^2");
   table.optional_table(
       "force", load.force,
       [](Table& t, ExpressionVector& value) {
-        declare_vector(t, value, place_and_time, "Force on each vertex", "N");
+        declare_vector(t, value, of_place_and_time, "Force on each vertex", "N");
       },
       "A force on vertices");
   table
-      .value("where", scene::expression_codec(load.where, place),
+      .value("where", scene::expression_codec(load.where, of_place),
              "The vertices that the force acts on: those where this is not 0")
       .when([&load] { return load.force.has_value(); }, "with force", "force")
       .default_text("all");
@@ -277,11 +277,11 @@ void declare_springs_scene(Table& root, SpringsScene& scene) {
       [&](Table& table) {
         table.table(
             "displacement",
-            [&](Table& t) { declare_vector(t, scene.initial.displacement, place, "Displacement", "m"); },
+            [&](Table& t) { declare_vector(t, scene.initial.displacement, of_place, "Displacement", "m"); },
             "Displacement from rest");
         table.table(
             "velocity",
-            [&](Table& t) { declare_vector(t, scene.initial.velocity, place, "Velocity", "m/s"); },
+            [&](Table& t) { declare_vector(t, scene.initial.velocity, of_place, "Velocity", "m/s"); },
             "Velocity");
         table
             .value(
@@ -295,14 +295,16 @@ void declare_springs_scene(Table& root, SpringsScene& scene) {
       "pin", scene.pins,
       [](Table& table, Pin& pin) {
         table
-            .value("where", scene::expression_codec(pin.where, place),
+            .value("where", scene::expression_codec(pin.where, of_place),
                    "The vertices that are held: those where this is not 0")
             .required();
         table.value("axes", scene::choice_codec(pin.axes, axes_choices),
                     "The axes along which they are held");
         table.table(
             "motion",
-            [&](Table& t) { declare_vector(t, pin.motion, place_and_time, "Displacement from rest", "m"); },
+            [&](Table& t) {
+              declare_vector(t, pin.motion, of_place_and_time, "Displacement from rest", "m");
+            },
             "How they are moved; else they stay where they start");
       },
       "Vertices that are held; several pins may hold one along different axes");
@@ -311,7 +313,7 @@ void declare_springs_scene(Table& root, SpringsScene& scene) {
       "mass", scene.payloads,
       [](Table& table, Payload& payload) {
         table
-            .value("where", scene::expression_codec(payload.where, place),
+            .value("where", scene::expression_codec(payload.where, of_place),
                    "The vertices: those where this is not 0")
             .required();
         table.value("add", scene::real_codec(payload.add), "Mass added to each")

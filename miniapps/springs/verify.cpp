@@ -156,7 +156,9 @@ Response pulled_response(const fabric::Mesh& mesh, const FinalState& state) {
 void verify(const SpringsScene& scene, const FinalState& state, const std::filesystem::path& history_file,
             run::ResultDocument& result) {
   const Verify& wanted = scene.verify;
-  const History history = scene.output.history_every > 0 ? read_history(history_file) : History{};
+  const bool asks_history = wanted.frequency || wanted.front_speed || wanted.energy_drift ||
+                            wanted.momentum || wanted.angular_momentum;
+  const History history = asks_history ? read_history(history_file) : History{};
   const auto add = [&result](const std::string& name, double error, double bar) {
     result.errors[name] = error;
     result.add_check(name, error, bar);

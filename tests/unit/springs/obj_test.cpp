@@ -11,15 +11,15 @@ const std::string square =
     "# comment\nmtllib x.mtl\no sheet\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvn 0 0 1\n"
     "s off\nf 1 2 3\nf 1//1 3//1 4//1\nv 0 1 -1\nv 0 1 -2\nl 4 5 -1\n";
 
-ObjContents read_text(const std::string& text) {
+ObjContents read_mesh(const std::string& text) {
   ObjContents contents = parse_obj(text, "m.obj");
   check_obj(contents, "m.obj");
   return contents;
 }
 
-std::string error_of(const std::string& text) {
+std::string mesh_error(const std::string& text) {
   try {
-    read_text(text);
+    read_mesh(text);
   } catch (const Failure& failure) {
     EXPECT_EQ(failure.code(), ExitCode::invalid_scene);
     return failure.what();
@@ -28,7 +28,7 @@ std::string error_of(const std::string& text) {
 }
 
 TEST(ObjFile, ReadsVerticesFacesAndLines) {
-  const ObjContents contents = read_text(square);
+  const ObjContents contents = read_mesh(square);
   EXPECT_EQ(contents.mesh.rest.size(), 6U);
   EXPECT_EQ(contents.mesh.triangles, (std::vector<std::array<int, 3>>{{0, 1, 2}, {0, 2, 3}}));
   EXPECT_EQ(contents.mesh.lines, (std::vector<std::array<int, 2>>{{3, 4}, {4, 5}}));
@@ -37,7 +37,7 @@ TEST(ObjFile, ReadsVerticesFacesAndLines) {
 }
 
 TEST(ObjFile, ReadsWindowsLinesAndNumbersOfAllForms) {
-  const ObjContents contents = read_text("v +0.5 -1e-3 .25\r\nv 1 0 0\r\nv 0 2 0\r\nf -3 -2 -1");
+  const ObjContents contents = read_mesh("v +0.5 -1e-3 .25\r\nv 1 0 0\r\nv 0 2 0\r\nf -3 -2 -1");
   EXPECT_EQ(contents.mesh.rest[0], (fabric::Vector{0.5, -1e-3, 0.25}));
   EXPECT_EQ(contents.mesh.triangles[0], (std::array{0, 1, 2}));
 }
@@ -71,13 +71,13 @@ TEST(ObjFile, NamesFileLineAndPart) {
       {three + "f 1 2 3\nl 1 2\nl 2 1\n", "m.obj:6: ", "given twice, first in line 5"},
   };
   for (const auto& [text, start, words] : cases) {
-    const std::string message = error_of(text);
+    const std::string message = mesh_error(text);
     EXPECT_TRUE(message.starts_with(start)) << message;
     EXPECT_NE(message.find(words), std::string::npos) << message;
   }
 }
 
-TEST(ObjFile, AStrutAlongAnEdgeIsNoRepetition) { EXPECT_EQ(error_of(square + "l 1 2\n"), ""); }
+TEST(ObjFile, AStrutAlongAnEdgeIsNoRepetition) { EXPECT_EQ(mesh_error(square + "l 1 2\n"), ""); }
 
 }  // namespace
 }  // namespace drogue::springs_app
