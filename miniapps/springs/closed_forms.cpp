@@ -82,6 +82,10 @@ double string_frequency(double axial_stiffness, double line_density, double leng
   return phase / length * speed / (2.0 * std::numbers::pi);
 }
 
+double hanging_stretch(double axial_stiffness, double weight, double length, double payload) {
+  return (payload + 0.5 * weight * length) * length / axial_stiffness;
+}
+
 Hencky hencky(double poisson) {
   const double centre = bisect(
       [poisson](double c) {

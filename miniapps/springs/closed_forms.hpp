@@ -24,6 +24,10 @@ double drum_frequency(const fabric::Material& material, double area_density, dou
 /// fixed. Hz.
 double string_frequency(double axial_stiffness, double line_density, double length, double payload, int n);
 
+/// How much a string of length L (m) grows that hangs with a payload: (W L + w L^2 / 2) / EA, W the payload's
+/// weight (N), w that of the string per length (N/m).
+double hanging_stretch(double axial_stiffness, double weight, double length, double payload);
+
 /// w0 = C (q a / E)^(1/3) a: deflection at the centre of a clamped circular membrane under a dead load q per
 /// area (Hencky 1915). Here is C, and with it the tension at the centre over (E q^2 a^2)^(1/3).
 struct Hencky {

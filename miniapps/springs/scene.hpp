@@ -107,7 +107,7 @@ struct FrontSpeed {
 /// Bars, all relative.
 struct Verify {
   std::optional<double> energy_drift, momentum, angular_momentum, equilibrium;
-  std::optional<double> young, poisson, hencky, catenary;
+  std::optional<double> young, poisson, hencky, catenary, stretch;
   std::optional<Frequency> frequency;
   std::optional<FrontSpeed> front_speed;
 };

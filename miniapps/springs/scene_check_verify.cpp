@@ -68,9 +68,11 @@ void check_verify(const Table& root, const SpringsScene& scene) {
             source.disk && fabric::has_triangles(scene.fabric.material.model) && scene.loads.size() == 1 &&
                 constant_value(scene.loads[0].pressure),
             "verify.hencky", "mesh.disk, model quadratic or biquadratic, and one load, a constant pressure");
-  if (verify.catenary)
-    require(root, source.string && scene.loads.size() == 1 && !scene.loads[0].gravity.empty(),
-            "verify.catenary", "mesh.string and one load, gravity");
+  for (const auto& [name, bar] :
+       {std::pair{"verify.catenary", verify.catenary}, std::pair{"verify.stretch", verify.stretch}})
+    if (bar)
+      require(root, source.string && scene.loads.size() == 1 && !scene.loads[0].gravity.empty(), name,
+              "mesh.string and one load, gravity");
   if (verify.frequency) {
     require(root, has_rows, "verify.frequency", rows);
     check_frequency(root, scene);

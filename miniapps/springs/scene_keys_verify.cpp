@@ -34,6 +34,8 @@ void declare_verify(Table& table, Verify& verify) {
   bar("catenary", verify.catenary,
       "Largest distance of a vertex of a hanging string from the elastic catenary, over the span, that "
       "passes");
+  bar("stretch", verify.stretch,
+      "Largest relative error of the stretch of a string that hangs from its first end that passes");
   table.optional_table(
       "frequency", verify.frequency,
       [](Table& t, Frequency& value) {

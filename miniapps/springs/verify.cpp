@@ -86,6 +86,16 @@ double catenary_error(const SpringsScene& scene, const FinalState& state) {
   return error / span;
 }
 
+double stretch_error(const SpringsScene& scene, const FinalState& state) {
+  const std::vector<double>& g = scene.loads[0].gravity;
+  const double strength = std::hypot(g[0], g[1], g[2]);
+  const double length = distance(scene.source.string->from, scene.source.string->to);
+  const double expected =
+      hanging_stretch(scene.fabric.material.axial_stiffness, scene.fabric.line_density * strength, length,
+                      state.payload * strength);
+  return relative_error(distance(state.x.front(), state.x.back()) - length, expected);
+}
+
 double expected_frequency(const SpringsScene& scene, const FinalState& state) {
   const Frequency& wanted = *scene.verify.frequency;
   if (wanted.value) return *wanted.value;
@@ -172,6 +182,7 @@ void verify(const SpringsScene& scene, const FinalState& state, const std::files
   }
   if (wanted.hencky) add("hencky", hencky_error(scene, state), *wanted.hencky);
   if (wanted.catenary) add("catenary", catenary_error(scene, state), *wanted.catenary);
+  if (wanted.stretch) add("stretch", stretch_error(scene, state), *wanted.stretch);
   if (wanted.young || wanted.poisson) {
     const fabric::Material& m = scene.fabric.material;
     const Response response = pulled_response(scene.mesh, state);

@@ -143,6 +143,7 @@ class Failures(springs_program.SpringsTest):
             "strip": ["verify.young=1e-9", "verify.poisson=1e-9"],
             "catenary": ["time.end_time=0.05", "output.fields=[]"],
             "free-patch": ["time.integrator=rk4"],
+            "string-stretch": ["time.end_time=0.05", "output.fields=[]"],
             "chain": ["verify.frequency.value=105.2"],
             "hencky": ["time.end_time=0.1", "verify.hencky=3e-3"],
             "drum-cone": ["time.safety=1.0"],

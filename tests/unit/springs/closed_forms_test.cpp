@@ -49,6 +49,12 @@ TEST(ClosedForms, ACatenaryThatDoesNotStretch) {
   EXPECT_NEAR(steep[0].down, 0.7, 1e-9);
 }
 
+TEST(ClosedForms, AHangingString) {
+  // A payload of 3 N on 2 m: 6 / 12; the string's own 4 N hang from its middle on the average.
+  EXPECT_DOUBLE_EQ(hanging_stretch(12.0, 0.0, 2.0, 3.0), 0.5);
+  EXPECT_DOUBLE_EQ(hanging_stretch(12.0, 2.0, 2.0, 3.0), 0.5 + 4.0 * 1.0 / 12.0);
+}
+
 TEST(ClosedForms, AVerticalStretch) {
   // Almost vertical: (rho g L^2 / 2) / EA longer.
   const auto points = catenary_points({1e-6, 1.05, 1.0, 1.0, 10.0}, {1.0});
