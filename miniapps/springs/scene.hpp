@@ -69,6 +69,8 @@ struct Damping {
   double absolute = 0.0, relative = 0.0;  ///< 1/s
 };
 
+inline constexpr double most_steps = 1e15;
+
 struct Time {
   fabric::Integrator integrator = fabric::Integrator::rk4;
   std::optional<double> dt;  ///< s; none: from the fastest frequency

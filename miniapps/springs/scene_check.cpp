@@ -115,7 +115,6 @@ void complete_material(const Table& root, SpringsScene& scene) {
   f.material.axial_stiffness = scene.mesh.line_stiffness.front();
 }
 
-/// Without triangles only lines have mass: a vertex of neither is refused by the reader of files.
 void check_pins(const Table& root, const SpringsScene& scene) {
   // Which pin holds an axis of a vertex; 0: none.
   std::vector<std::array<std::size_t, 3>> holder(scene.mesh.rest.size(), {0, 0, 0});
@@ -181,9 +180,20 @@ void complete_output(const Table& root, SpringsScene& scene) {
     contradict(root, "output.times",
                "output.times: " + real_text(output.times.back()) +
                    " is later than time.end_time = " + real_text(end_time));
-  if (!scene.has_triangles() && std::ranges::count(output.fields, "von_mises") > 0)
+  const bool asks_stress = std::ranges::count(output.fields, "von_mises") > 0;
+  if (asks_stress && !scene.has_triangles())
     contradict(root, "output.fields",
                "output.fields: von_mises is a stress of triangles, and the mesh has none");
+  if (asks_stress && scene.fabric.material.model == fabric::Model::linear_vector)
+    contradict(root, "output.fields",
+               "output.fields: model \"linear-vector\" has no von_mises, its forces are not along edges");
+}
+
+void check_time(const Table& root, const Time& time) {
+  if (time.dt && time.end_time / *time.dt > most_steps)
+    contradict(root, "time.dt",
+               "time.dt = " + real_text(*time.dt) +
+                   " takes more than 1e15 steps to time.end_time = " + real_text(time.end_time));
 }
 
 void check_initial(const Table& root, const SpringsScene& scene) {
@@ -196,6 +206,7 @@ void check_initial(const Table& root, const SpringsScene& scene) {
 void complete_and_check(const Table& root, SpringsScene& scene) {
   scene.mesh = make_mesh(root, scene);
   complete_material(root, scene);
+  check_time(root, scene.time);
   check_initial(root, scene);
   check_pins(root, scene);
   check_loads(root, scene);

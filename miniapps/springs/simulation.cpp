@@ -89,6 +89,10 @@ void Simulation::plan() {
   const double longest = _scene.time.dt ? *_scene.time.dt : _scene.time.safety * stable_dt();
   // Round-off of a quotient that should be whole must not add a step.
   const double steps = std::max(1.0, std::ceil((_stop_time - begin) / longest * (1.0 - 1e-12)));
+  if (!(steps <= most_steps))
+    throw Failure(ExitCode::numerical_failure,
+                  "the fastest frequency of the mesh allows no step that ends: more than 1e15 to t = " +
+                      std::to_string(_stop_time) + " s");
   const double dt = (_stop_time - begin) / steps;
   _stop_step += static_cast<std::int64_t>(steps);
   _solver->set_clock({step, dt, step, begin});

@@ -180,6 +180,10 @@ TEST(SpringsScene, OutputIsCompletedAndChecked) {
   EXPECT_EQ(read_text(least, {"output.times=[0.5]"}).output.fields, std::vector<std::string>{"position"});
   EXPECT_TRUE(holds(error_of({"output.times=[2]"}), "later than time.end_time = 1"));
   EXPECT_TRUE(holds(error_of({"mesh.string={}", "output.fields=[\"von_mises\"]"}), "a stress of triangles"));
+  EXPECT_TRUE(
+      holds(error_of({"material.model=linear-vector", "time.end_time=0", "output.fields=[\"von_mises\"]"}),
+            "not along edges"));
+  EXPECT_TRUE(holds(error_of({"time.dt=1e-300"}), "more than 1e15 steps"));
 }
 
 TEST(SpringsScene, ChecksNeedWhatTheyCheck) {
