@@ -133,6 +133,7 @@ class SolverOn final : public Solver {
 }  // namespace drogue::fabric
 
 #include "kernels/fabric/solver_on_external.hpp"
+#include "kernels/fabric/solver_on_measures.hpp"
 #include "kernels/fabric/solver_on_parts.hpp"
 #include "kernels/fabric/solver_on_steps.hpp"
 #include "kernels/fabric/solver_on_stress.hpp"
