@@ -16,8 +16,10 @@ configure_package_config_file("${PROJECT_SOURCE_DIR}/cmake/DrogueConfig.cmake.in
 write_basic_package_version_file("${PROJECT_BINARY_DIR}/DrogueConfigVersion.cmake" COMPATIBILITY SameMinorVersion)
 install(FILES "${PROJECT_BINARY_DIR}/DrogueConfig.cmake" "${PROJECT_BINARY_DIR}/DrogueConfigVersion.cmake"
   DESTINATION "${_package}")
-install(DIRECTORY "${PROJECT_SOURCE_DIR}/miniapps/gas/scenes/" DESTINATION "${CMAKE_INSTALL_DATADIR}/drogue/scenes/gas"
-  FILES_MATCHING PATTERN "*.toml")
+foreach(_app IN ITEMS gas springs)
+  install(DIRECTORY "${PROJECT_SOURCE_DIR}/miniapps/${_app}/scenes/"
+    DESTINATION "${CMAKE_INSTALL_DATADIR}/drogue/scenes/${_app}" FILES_MATCHING PATTERN "*.toml")
+endforeach()
 if(DROGUE_CUDA)
   install(FILES "${PROJECT_SOURCE_DIR}/cmake/cuda13_kokkos45.hpp" DESTINATION "${_package}")
 endif()

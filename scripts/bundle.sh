@@ -37,7 +37,7 @@ build() {
     -DCMAKE_CXX_FLAGS=-march=x86-64-v3 -DCMAKE_CUDA_FLAGS=-Xcompiler=-march=x86-64-v3 \
     -DCMAKE_EXE_LINKER_FLAGS=-Wl,--disable-new-dtags "$@"
   say "building the $kind programs"
-  local targets=(drogue-gas drogue-perf)
+  local targets=(drogue-gas drogue-springs drogue-perf)
   [ "$tests" = no ] || targets+=(drogue_kernel_tests)
   run_logged "bundle-$kind-build" cmake --build "$folder" --parallel "$jobs" --target "${targets[@]}"
   local program

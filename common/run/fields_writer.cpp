@@ -125,10 +125,16 @@ void FieldsWriter::State::require_same_fields(const h5::Handle& output) const {
 }
 
 void FieldsWriter::State::write_xdmf() const {
+  const auto holds = [&](const char* name) {
+    return std::any_of(mesh.begin(), mesh.end(), [&](const DatasetSpec& spec) { return spec.name == name; });
+  };
   const auto line = std::find_if(mesh.begin(), mesh.end(), [](const DatasetSpec& spec) {
     return spec.name == "x" && spec.shape.size() == 1;
   });
-  if (line != mesh.end()) write_file_atomically(xdmf, xdmf_document(title, *line, fields, outputs));
+  if (line != mesh.end())
+    write_file_atomically(xdmf, xdmf_document(title, *line, fields, outputs));
+  else if (holds("vertices") && holds("edges"))
+    write_file_atomically(xdmf, xdmf_cloth_document(title, mesh, fields, outputs));
 }
 
 /// The group that has no name yet leaves the file.

@@ -35,9 +35,17 @@ std::string shortest(double value) {
   return {digits, end};
 }
 
-std::string hdf_item(const std::string& dimensions, const std::string& dataset) {
-  return R"(<DataItem Dimensions=")" + dimensions +
-         R"(" NumberType="Float" Precision="8" Format="HDF">fields.h5:)" + escaped(dataset) + "</DataItem>\n";
+std::string hdf_item(const std::string& dimensions, const std::string& dataset,
+                     const std::string& type = "Float") {
+  return R"(<DataItem Dimensions=")" + dimensions + R"(" NumberType=")" + type +
+         R"(" Precision="8" Format="HDF">fields.h5:)" + escaped(dataset) + "</DataItem>\n";
+}
+
+/// `(3, 2)` as `3 2`.
+std::string dimensions(const DatasetSpec& spec) {
+  std::string text;
+  for (const std::uint64_t n : spec.shape) text += (text.empty() ? "" : " ") + std::to_string(n);
+  return text;
 }
 
 /// A rectilinear grid of n x 1 x 1 points: the one kind of line that all versions of ParaView's reader know.
@@ -59,15 +67,67 @@ std::string grid(const std::string& title, const DatasetSpec& x, const std::vect
   return text + "      </Grid>\n";
 }
 
-}  // namespace
-
-std::string xdmf_document(const std::string& title, const DatasetSpec& x,
-                          const std::vector<DatasetSpec>& fields, const std::vector<OutputStep>& outputs) {
+std::string collection(const std::string& title, const std::string& grids) {
   std::string text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<Xdmf Version=\"3.0\">\n  <Domain>\n";
   text +=
       R"(    <Grid Name=")" + escaped(title) + "\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
-  for (const OutputStep& output : outputs) text += grid(title, x, fields, output);
-  return text + "    </Grid>\n  </Domain>\n</Xdmf>\n";
+  return text + grids + "    </Grid>\n  </Domain>\n</Xdmf>\n";
+}
+
+const DatasetSpec* find(const std::vector<DatasetSpec>& specs, std::string_view name) {
+  for (const DatasetSpec& spec : specs)
+    if (spec.name == name) return &spec;
+  return nullptr;
+}
+
+std::string topology(const std::vector<DatasetSpec>& mesh) {
+  const DatasetSpec* cells = find(mesh, "triangles");
+  std::string kind = "Triangle\"";
+  if (cells == nullptr || cells->shape.at(0) == 0) {
+    cells = find(mesh, "edges");
+    kind = "Polyline\" NodesPerElement=\"2\"";
+  }
+  return R"(        <Topology TopologyType=")" + kind + " NumberOfElements=\"" +
+         std::to_string(cells->shape.at(0)) + "\">\n          " +
+         hdf_item(dimensions(*cells), "/mesh/" + cells->name, "Int") + "        </Topology>\n";
+}
+
+std::string attribute(const DatasetSpec& field, const std::string& place) {
+  const std::string type = field.shape.size() == 2 ? "Vector" : "Scalar";
+  const std::string centre = field.centering == "vertex" ? "Node" : "Cell";
+  return R"(        <Attribute Name=")" + escaped(field.name) + R"(" AttributeType=")" + type +
+         R"(" Center=")" + centre + "\">\n          " + hdf_item(dimensions(field), place + field.name) +
+         "        </Attribute>\n";
+}
+
+}  // namespace
+
+std::string xdmf_cloth_document(const std::string& title, const std::vector<DatasetSpec>& mesh,
+                                const std::vector<DatasetSpec>& fields,
+                                const std::vector<OutputStep>& outputs) {
+  const DatasetSpec* moved = find(fields, "position");
+  const DatasetSpec* vertices = find(mesh, "vertices");
+  std::string grids;
+  for (const OutputStep& output : outputs) {
+    const std::string place = "/steps/" + output.group + "/";
+    grids += R"(      <Grid Name=")" + escaped(title) + "\" GridType=\"Uniform\">\n";
+    grids += R"(        <Time Value=")" + shortest(output.time) + "\"/>\n" + topology(mesh);
+    grids += "        <Geometry GeometryType=\"XYZ\">\n          " +
+             (moved != nullptr ? hdf_item(dimensions(*moved), place + moved->name)
+                               : hdf_item(dimensions(*vertices), "/mesh/" + vertices->name)) +
+             "        </Geometry>\n";
+    for (const DatasetSpec& field : fields)
+      if (&field != moved) grids += attribute(field, place);
+    grids += "      </Grid>\n";
+  }
+  return collection(title, grids);
+}
+
+std::string xdmf_document(const std::string& title, const DatasetSpec& x,
+                          const std::vector<DatasetSpec>& fields, const std::vector<OutputStep>& outputs) {
+  std::string grids;
+  for (const OutputStep& output : outputs) grids += grid(title, x, fields, output);
+  return collection(title, grids);
 }
 
 }  // namespace drogue::run

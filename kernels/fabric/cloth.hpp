@@ -82,44 +82,64 @@ struct Cloth {
   double damping;
 };
 
+/// The pull of a triangle on its first vertex, N; `to_j` and `to_k` lead from it to the other two, m, `rest`
+/// are the squared lengths of the edges opposite the three, m^2.
+template <Law law, class R>
+KOKKOS_INLINE_FUNCTION Vector3<R> triangle_pull(const Moduli& m, const Vector3<R>& to_j,
+                                                const Vector3<R>& to_k, const Edges<R>& rest,
+                                                R inverse_area) {
+  const Vector3<R> opposite = to_k - to_j;
+  // Edge j lies opposite vertex j: it leads to k.
+  const Edges<R> now{{dot(opposite, opposite), dot(to_k, to_k), dot(to_j, to_j)}};
+  const Edges<R> tension = membrane_tensions<law>(m, now, rest, inverse_area);
+  return tension.of[2] * to_j + tension.of[1] * to_k;
+}
+
+/// The pull of a spring on the vertex from which `edge` leads, N.
+template <Law law, class R>
+KOKKOS_INLINE_FUNCTION Vector3<R> spring_pull(R stiffness, R rest, const Vector3<R>& edge) {
+  return spring_tension<law>(stiffness, dot(edge, edge), rest) * edge;
+}
+
+/// Squared lengths at rest of the edges of the triangle in `slot`, m^2.
+template <class R, class ExecutionSpace>
+KOKKOS_INLINE_FUNCTION Edges<R> rest_edges(const Cloth<ExecutionSpace>& cloth, int slot) {
+  using Lanes = device::Access<R>;
+  const auto& value = cloth.triangles.value;
+  return {{Lanes::load(&value(slot, 0)), Lanes::load(&value(slot, 1)), Lanes::load(&value(slot, 2))}};
+}
+
 /// The elastic and dead forces on vertex i and the lanes after it, N, each vertex in the fixed order of its
 /// slots. Momentum is kept to round-off: both ends of an edge, and all corners of a triangle, compute the
 /// same tension.
-template <Model model, class R, class ExecutionSpace, class Points>
+template <Law law, class R, class ExecutionSpace, class Points>
 KOKKOS_INLINE_FUNCTION Vector3<R> force(const Cloth<ExecutionSpace>& cloth, const Points& positions, int i) {
   using Lanes = device::Access<R>;
   const Vector3<R> own = load_points<R>(positions, i);
   Vector3<R> sum{R(0.0), R(0.0), R(0.0)};
-  if constexpr (model == Model::quadratic || model == Model::biquadratic)
+  const auto to = [&](const int* neighbour) { return gather_points<R>(positions, neighbour) - own; };
+  if constexpr (whole_triangles<law>)
     cloth.triangles.each(i, [&](int slot) {
-      const auto& value = cloth.triangles.value;
-      const Vector3<R> to_j = gather_points<R>(positions, &cloth.triangles.neighbour(slot, 0)) - own;
-      const Vector3<R> to_k = gather_points<R>(positions, &cloth.triangles.neighbour(slot, 1)) - own;
-      const Vector3<R> opposite = to_k - to_j;
-      // Edge j lies opposite vertex j: it leads to k.
-      const Edges<R> now{{dot(opposite, opposite), dot(to_k, to_k), dot(to_j, to_j)}};
-      const Edges<R> rest{
-          {Lanes::load(&value(slot, 0)), Lanes::load(&value(slot, 1)), Lanes::load(&value(slot, 2))}};
-      const Edges<R> tension =
-          membrane_tensions<model>(cloth.moduli, now, rest, Lanes::load(&value(slot, 3)));
-      sum = sum + tension.of[2] * to_j + tension.of[1] * to_k;
+      const auto& neighbour = cloth.triangles.neighbour;
+      sum =
+          sum + triangle_pull<law>(cloth.moduli, to(&neighbour(slot, 0)), to(&neighbour(slot, 1)),
+                                   rest_edges<R>(cloth, slot), Lanes::load(&cloth.triangles.value(slot, 3)));
     });
   cloth.springs.each(i, [&](int slot) {
-    const Vector3<R> edge = gather_points<R>(positions, &cloth.springs.neighbour(slot, 0)) - own;
-    const R stiffness = Lanes::load(&cloth.springs.value(slot, 0)),
-            rest = Lanes::load(&cloth.springs.value(slot, 1));
-    sum = sum + spring_tension(stiffness, dot(edge, edge), rest) * edge;
+    const auto& value = cloth.springs.value;
+    sum = sum + spring_pull<law>(Lanes::load(&value(slot, 0)), Lanes::load(&value(slot, 1)),
+                                 to(&cloth.springs.neighbour(slot, 0)));
   });
   if (cloth.load.extent(0) > 0) sum = sum + load_points<R>(cloth.load, i);
   return sum;
 }
 
 /// m/s^2; zero along pinned axes.
-template <Model model, class R, class ExecutionSpace, class Points>
+template <Law law, class R, class ExecutionSpace, class Points>
 KOKKOS_INLINE_FUNCTION Vector3<R> acceleration(const Cloth<ExecutionSpace>& cloth, const Points& positions,
                                                const Vector3<R>& velocity, int i) {
   const R inverse_mass = device::Access<R>::load(&cloth.inverse_mass(i));
-  const Vector3<R> elastic = inverse_mass * force<model, R>(cloth, positions, i);
+  const Vector3<R> elastic = inverse_mass * force<law, R>(cloth, positions, i);
   const Vector3<R> g{R(cloth.gravity.x), R(cloth.gravity.y), R(cloth.gravity.z)};
   const Vector3<R> a = elastic + g - cloth.damping * velocity, free = load_points<R>(cloth.free, i);
   return {free.x * a.x, free.y * a.y, free.z * a.z};

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
+#include <stdexcept>
 
 namespace drogue::fabric {
 
@@ -58,19 +60,35 @@ Slots<neighbours, values> sliced(const std::vector<std::vector<Entry<neighbours,
 
 }  // namespace
 
-TriangleSlots triangle_slots(const Mesh& mesh, const Material& material) {
+TriangleSlots surface_slots(const Mesh& mesh) {
   std::vector<std::vector<Entry<2, 4>>> of_vertex(mesh.rest.size());
-  if (material.model == Model::quadratic || material.model == Model::biquadratic)
-    for (const auto& t : mesh.triangles)
-      for (std::size_t k = 0; k < 3; ++k) {
-        const int j = t[(k + 1) % 3], l = t[(k + 2) % 3];
-        const Vector &a = mesh.rest[static_cast<std::size_t>(t[k])],
-                     &b = mesh.rest[static_cast<std::size_t>(j)], &c = mesh.rest[static_cast<std::size_t>(l)];
-        of_vertex[static_cast<std::size_t>(t[k])].push_back(
-            {{j, l},
-             {squared_distance(b, c), squared_distance(c, a), squared_distance(a, b),
-              inverse_area(a, b, c)}});
-      }
+  for (const auto& t : mesh.triangles)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int j = t[(k + 1) % 3], l = t[(k + 2) % 3];
+      const Vector &a = mesh.rest[static_cast<std::size_t>(t[k])],
+                   &b = mesh.rest[static_cast<std::size_t>(j)], &c = mesh.rest[static_cast<std::size_t>(l)];
+      of_vertex[static_cast<std::size_t>(t[k])].push_back(
+          {{j, l},
+           {squared_distance(b, c), squared_distance(c, a), squared_distance(a, b), inverse_area(a, b, c)}});
+    }
+  return sliced(of_vertex);
+}
+
+TriangleSlots triangle_slots(const Mesh& mesh, const Material& material) {
+  if (has_triangles(material.model)) return surface_slots(mesh);
+  return sliced(std::vector<std::vector<Entry<2, 4>>>(mesh.rest.size()));
+}
+
+DashpotSlots dashpot_slots(const Mesh& mesh, const std::vector<double>& mass, double rate) {
+  std::vector<std::vector<Entry<1, 1>>> of_vertex(mesh.rest.size());
+  std::set<std::array<int, 2>> pairs = edges_of(mesh);
+  for (const auto& line : mesh.lines) pairs.insert({std::min(line[0], line[1]), std::max(line[0], line[1])});
+  for (const auto& [i, j] : pairs) {
+    const double a = mass[static_cast<std::size_t>(i)], b = mass[static_cast<std::size_t>(j)];
+    const double dashpot = rate * (a * b / (a + b));
+    of_vertex[static_cast<std::size_t>(i)].push_back({{j}, {dashpot}});
+    of_vertex[static_cast<std::size_t>(j)].push_back({{i}, {dashpot}});
+  }
   return sliced(of_vertex);
 }
 
@@ -89,10 +107,54 @@ SpringSlots spring_slots(const Mesh& mesh, const Material& material) {
     for (const auto& [i, j] : edges_of(mesh))
       add(i, j, material.stiffness, of_vectors ? 0.0 : rest_length(i, j));
   }
-  for (const auto& [i, j] : mesh.lines) {
+  for (std::size_t k = 0; k < mesh.lines.size(); ++k) {
+    const auto [i, j] = mesh.lines[k];
     const double length = rest_length(i, j);
-    add(i, j, material.axial_stiffness / length, length);
+    add(i, j, (mesh.line_stiffness.empty() ? material.axial_stiffness : mesh.line_stiffness[k]) / length,
+        length);
   }
+  return sliced(of_vertex);
+}
+
+BendingSlots bending_slots(const Mesh& mesh, double stiffness) {
+  const auto place = [&](int i) -> const Vector& { return mesh.rest[static_cast<std::size_t>(i)]; };
+  std::map<std::array<int, 2>, std::vector<int>> opposite;  // vertices across an edge
+  for (const auto& t : mesh.triangles)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int a = t[(k + 1) % 3], b = t[(k + 2) % 3];
+      opposite[{std::min(a, b), std::max(a, b)}].push_back(t[k]);
+    }
+  std::vector<std::map<int, double>> weights(mesh.rest.size());
+  const auto add_hinge = [&](const std::array<int, 2>& edge, const std::array<int, 2>& across) {
+    const std::array<int, 4> vertex = {edge[0], edge[1], across[0], across[1]};
+    const double squared = squared_distance(place(edge[0]), place(edge[1]));
+    double k[4] = {}, areas = 0.0;
+    for (std::size_t side = 0; side < 2; ++side) {
+      const Vector& top = place(across[side]);
+      const double to_0 = squared_distance(place(edge[0]), top), to_1 = squared_distance(place(edge[1]), top),
+                   four_areas = 4.0 / inverse_area(place(edge[0]), place(edge[1]), top);
+      const double at_0 = (squared + to_0 - to_1) / four_areas, at_1 = (squared + to_1 - to_0) / four_areas;
+      k[0] += at_1, k[1] += at_0, k[2 + side] -= at_0 + at_1;
+      areas += 0.25 * four_areas;
+    }
+    double bent = 0.0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      double sum = 0.0;
+      for (std::size_t a = 0; a < 4; ++a) sum += k[a] * place(vertex[a])[axis];
+      bent += sum * sum;
+    }
+    if (bent > 1e-12 * squared)
+      throw std::invalid_argument("fabric solver: cloth that resists bending must be flat at rest");
+    for (std::size_t a = 0; a < 4; ++a)
+      for (std::size_t b = 0; b < 4; ++b)
+        if (a != b)
+          weights[static_cast<std::size_t>(vertex[a])][vertex[b]] -= stiffness / areas * k[a] * k[b];
+  };
+  for (const auto& [edge, across] : opposite)
+    for (std::size_t k = 0; k + 1 < across.size(); ++k) add_hinge(edge, {across[k], across[k + 1]});
+  std::vector<std::vector<Entry<1, 1>>> of_vertex(mesh.rest.size());
+  for (std::size_t i = 0; i < weights.size(); ++i)
+    for (const auto& [j, weight] : weights[i]) of_vertex[i].push_back({{j}, {weight}});
   return sliced(of_vertex);
 }
 

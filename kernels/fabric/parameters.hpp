@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "kernels/device/expression_program.hpp"
+
 namespace drogue::fabric {
 
 /// How cloth resists deformation.
@@ -14,6 +16,11 @@ enum class Model {
   biquadratic,    ///< Delingette 2008: quadratic in the squared lengths; equals St Venant-Kirchhoff
 };
 
+/// Whether triangles resist as a whole; of the other models their edges do.
+[[nodiscard]] constexpr bool has_triangles(Model model) {
+  return model == Model::quadratic || model == Model::biquadratic;
+}
+
 enum class Integrator { rk4, verlet };
 
 /// What cloth and strings are made of. `membrane_modulus` is Young's modulus times thickness.
@@ -23,6 +30,10 @@ struct Material {
   double poisson = 0.3;              ///< -1 .. 1/2, quadratic and biquadratic
   double stiffness = 1000.0;         ///< N/m an edge; linear_vector and edge
   double axial_stiffness = 0.0;      ///< E A of strings, N
+  double bending_stiffness = 0.0;    ///< N m, across edges of two triangles; for cloth that is flat at rest
+  /// Wrinkles at no cost in place of compression: the relaxed energy of triangles, and lines and edges
+  /// without compressive tension. Not for linear_vector.
+  bool tension_only = false;
 };
 
 using Vector = std::array<double, 3>;
@@ -32,6 +43,28 @@ struct Mesh {
   std::vector<Vector> rest;  ///< m
   std::vector<std::array<int, 3>> triangles;
   std::vector<std::array<int, 2>> lines;  ///< pieces of strings, or of reinforcements along edges
+  std::vector<double> line_stiffness;     ///< E A of every line, N; empty: Material::axial_stiffness
+};
+
+/// A force that changes: strength times direction, N. The strength is an expression of the place at rest, m,
+/// and of time, s.
+struct TimedLoad {
+  device::ExpressionProgram strength;
+  std::vector<Vector> direction;  ///< of every vertex
+};
+
+/// A pressure across cloth where it is now: each triangle gives a third of its area, times what the vertex
+/// feels, to each of its vertices. Positive along the normals, about which triangles turn counterclockwise.
+struct FollowerPressure {
+  device::ExpressionProgram strength;  ///< Pa, of the place at rest and of time
+  std::vector<double> weight;          ///< of every vertex; empty: 1
+};
+
+/// Where an axis of some vertices is held, as a displacement from rest.
+struct Motion {
+  int axis = 0;  ///< 0 x, 1 y, 2 z
+  std::vector<int> vertices;
+  device::ExpressionProgram displacement;  ///< m, of the place at rest and of time
 };
 
 /// Everything a fabric solver needs to know but the initial state.
@@ -43,7 +76,13 @@ struct Parameters {
       pinned;  ///< of every vertex: 1 keeps x, 2 keeps y, 4 keeps z at its velocity; may be empty
   std::vector<Vector> load;  ///< dead force on every vertex, N; may be empty
   Vector gravity{};          ///< m/s^2
-  double damping = 0.0;      ///< acceleration -damping times velocity, 1/s
+  std::vector<TimedLoad> timed_loads;
+  std::vector<FollowerPressure> follower_pressures;
+  std::vector<Motion> motions;  ///< they pin what they move
+  double damping = 0.0;         ///< acceleration -damping times velocity, 1/s
+  /// Rate at which two vertices of an edge, were they alone, would lose what their velocities differ along
+  /// it, 1/s. It keeps momentum and angular momentum.
+  double relative_damping = 0.0;
   Integrator integrator = Integrator::rk4;
   double dt = 0.0;  ///< s, > 0
 };

@@ -46,13 +46,42 @@ void check(const Parameters& p) {
   require(p.pinned.empty() || p.pinned.size() == n, "pins must be given for every vertex, or for none");
   require(p.load.empty() || (p.load.size() == n && std::ranges::all_of(p.load, finite)),
           "finite loads must be given for every vertex, or for none");
+  const auto one_a_vertex = [&](const auto& values, const auto& good) {
+    return values.size() == n && std::ranges::all_of(values, good);
+  };
+  require(p.mesh.line_stiffness.empty() || (p.mesh.line_stiffness.size() == p.mesh.lines.size() &&
+                                            std::ranges::all_of(p.mesh.line_stiffness, not_negative)),
+          "stiffness must be given for every line, or for none, and not be negative");
+  for (const TimedLoad& load : p.timed_loads)
+    require(load.strength.length > 0 && one_a_vertex(load.direction, finite),
+            "a load that changes needs a strength, and a finite direction for every vertex");
+  for (const FollowerPressure& pressure : p.follower_pressures)
+    require(pressure.strength.length > 0 &&
+                (pressure.weight.empty() ||
+                 one_a_vertex(pressure.weight, [](double w) { return std::isfinite(w); })),
+            "a pressure needs a strength, and finite weights for every vertex, or for none");
+  std::vector<std::uint8_t> moved(n, 0);
+  for (const Motion& motion : p.motions) {
+    require(motion.displacement.length > 0 && motion.axis >= 0 && motion.axis < 3,
+            "a motion needs a displacement and an axis");
+    for (const int i : motion.vertices) {
+      require(is_vertex(i), "a motion names a vertex that is not there");
+      std::uint8_t& axes = moved[static_cast<std::size_t>(i)];
+      const auto bit = static_cast<std::uint8_t>(1U << static_cast<unsigned>(motion.axis));
+      require((axes & bit) == 0, "two motions move the same axis of a vertex");
+      axes |= bit;
+    }
+  }
   require(finite(p.gravity), "gravity must be finite");
   require(positive(p.dt), "dt must be positive");
-  require(not_negative(p.damping), "damping must not be negative");
+  require(not_negative(p.damping) && not_negative(p.relative_damping), "damping must not be negative");
   const Material& m = p.material;
-  require(not_negative(m.membrane_modulus) && not_negative(m.stiffness) && not_negative(m.axial_stiffness),
+  require(not_negative(m.membrane_modulus) && not_negative(m.stiffness) && not_negative(m.axial_stiffness) &&
+              not_negative(m.bending_stiffness),
           "no stiffness may be negative");
-  if (m.model == Model::quadratic || m.model == Model::biquadratic)
+  require(!m.tension_only || m.model != Model::linear_vector,
+          "springs of vectors (Model I) know no compression: they cannot bear tension only");
+  if (has_triangles(m.model))
     require(m.poisson > -1.0 && m.poisson <= 0.5, "Poisson's ratio must lie between -1 and 1/2");
 }
 

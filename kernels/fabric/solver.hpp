@@ -1,31 +1,85 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 
 #include "kernels/device/backend.hpp"
 #include "kernels/fabric/parameters.hpp"
+#include "kernels/fabric/status.hpp"
 
 namespace drogue::fabric {
 
+/// omega dt up to which an oscillation without damping does not grow. Of Runge and Kutta's method
+/// |G|^2 = 1 - z^6/72 + z^8/576 is 1 at z^2 = 8.
+[[nodiscard]] constexpr double stability_limit(Integrator integrator) {
+  return integrator == Integrator::rk4 ? 2.8284271247461903 : 2.0;
+}
+
+/// The largest step, s, that is stable for frequencies up to `frequency`, rad/s, and decays up to `decay`,
+/// 1/s
+/// (`Solver::fastest_frequency`, `Solver::fastest_decay`); infinite for neither. Runge and Kutta's region
+/// holds the half disc |z| <= 2.61 left of the imaginary axis; Verlet's needs decay dt <= 1.
+[[nodiscard]] constexpr double stable_dt(Integrator integrator, double frequency, double decay) {
+  if (integrator == Integrator::rk4 && decay > 0.0) return 2.61 / (frequency > decay ? frequency : decay);
+  const double undamped = stability_limit(integrator) / frequency;
+  return decay * undamped > 1.0 ? 1.0 / decay : undamped;
+}
+
 /// Cloth and strings that live on a backend and move there. Needs an initialised runtime.
 ///
-/// Life: `upload`, then `advance` as often as wanted.
+/// Life: `upload`, then `advance` as often as wanted. Once a state is lost (a number that is not finite, or
+/// beyond 1e100) the solver goes back to the last state that it had put aside, one of every 256 steps or the
+/// one uploaded: `download` and all that looks at the state finds that one, and `clock` tells its step.
 class Solver {
  public:
   virtual ~Solver() = default;
 
-  /// Positions, m, and velocities, m/s, of all vertices. Spans of another length throw std::invalid_argument,
-  /// here and below.
+  /// Positions, m, and velocities, m/s, of all vertices, at the clock's time; a failure is forgotten. What
+  /// is not finite, and spans of another length here and below, throw std::invalid_argument.
   virtual void upload(std::span<const Vector> positions, std::span<const Vector> velocities) = 0;
   virtual void download(std::span<Vector> positions, std::span<Vector> velocities) = 0;
 
-  /// Takes `steps` steps of `Parameters::dt`. Returns before they are done. How steps are cut into calls
-  /// changes no bit.
-  virtual void advance(std::int64_t steps) = 0;
+  /// Takes `steps` steps of `clock().dt`. Returns before they are done, and false once it is known that a
+  /// state was lost; then none follow until the next `upload`. How steps are cut into calls changes no bit.
+  virtual bool advance(std::int64_t steps) = 0;
 
-  /// The elastic and dead forces where the vertices are now, N.
+  /// Waits for the steps that were asked for; where and when the state was lost, if it was.
+  [[nodiscard]] virtual std::optional<Failure> failure() = 0;
+
+  /// Of the steps asked for; begins at step 0, time 0 and `Parameters::dt`.
+  [[nodiscard]] virtual Clock clock() const = 0;
+
+  /// Sets step, time, and dt, which must be positive (std::invalid_argument).
+  virtual void set_clock(const Clock& clock) = 0;
+
+  /// From here on steps take dt, s.
+  void set_dt(double dt) {
+    const Clock now = clock();
+    set_clock({now.step, dt, now.step, now.time()});
+  }
+
+  /// The elastic forces and all loads where the vertices are now, N, without gravity and damping.
   virtual void forces(std::span<Vector> forces) = 0;
+
+  /// An upper bound of the angular frequencies of small oscillations about where the vertices are now, rad/s;
+  /// `stability_limit` over it is a step that is stable. Stiffness grows with strain, so ask again when the
+  /// cloth has stretched.
+  [[nodiscard]] virtual double fastest_frequency() = 0;
+
+  /// An upper bound of the rates at which damping slows, 1/s; of Verlet absolute damping does not count,
+  /// which is stable whatever it is.
+  [[nodiscard]] virtual double fastest_decay() const = 0;
+
+  /// Of every triangle where the vertices are now; lines do not count. Throws std::invalid_argument for
+  /// Model::linear_vector, whose forces are not along edges.
+  virtual void stress(StressMeasure measure, std::span<Stress> of_triangles) = 0;
+
+  /// The same of every vertex: the mean over its triangles by their areas.
+  virtual void vertex_stress(StressMeasure measure, std::span<Stress> of_vertices) = 0;
+
+  /// Energies and momenta where the vertices are now, summed in an order that no backend changes.
+  [[nodiscard]] virtual Totals totals() = 0;
 };
 
 /// Throws std::invalid_argument for parameters out of range; the backend must be available.

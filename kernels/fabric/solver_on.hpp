@@ -5,12 +5,16 @@
 #include <string>
 
 #include "kernels/device/replay.hpp"
+#include "kernels/fabric/frequency.hpp"
+#include "kernels/fabric/prescribed.hpp"
 #include "kernels/fabric/solver.hpp"
 #include "kernels/fabric/step.hpp"
+#include "kernels/fabric/stress_on.hpp"
+#include "kernels/fabric/totals.hpp"
 
 namespace drogue::fabric {
 
-template <class ExecutionSpace, Model model>
+template <class ExecutionSpace, Law law>
 struct ForceFunctor {
   using R = std::conditional_t<device::is_host<ExecutionSpace>, device::HostPack<double>, double>;
   Cloth<ExecutionSpace> cloth;
@@ -18,12 +22,12 @@ struct ForceFunctor {
 
   KOKKOS_FUNCTION void operator()(const int pack) const {
     const int i = pack * device::Access<R>::lanes;
-    store_points(out, i, force<model, R>(cloth, x, i));
+    store_points(out, i, force<law, R>(cloth, x, i));
   }
 };
 
 /// A solver of one model on one backend.
-template <class ExecutionSpace, Model model>
+template <class ExecutionSpace, Law law>
 class SolverOn final : public Solver {
  public:
   using Points = PointsView<ExecutionSpace>;
@@ -32,19 +36,18 @@ class SolverOn final : public Solver {
   SolverOn(const SolverOn&) = delete;  // the recorded step knows where this one lies
   SolverOn& operator=(const SolverOn&) = delete;
 
-  void upload(std::span<const Vector> positions, std::span<const Vector> velocities) override {
-    to_device(positions, _x);
-    to_device(velocities, _v);
-  }
-  void download(std::span<Vector> positions, std::span<Vector> velocities) override {
-    to_host(_x, positions);
-    to_host(_v, velocities);
-  }
-  void advance(std::int64_t steps) override;
-  void forces(std::span<Vector> forces) override {
-    launch("drogue::fabric::force", ForceFunctor<ExecutionSpace, model>{_cloth, _x, _next});
-    to_host(_next, forces);
-  }
+  void upload(std::span<const Vector> positions, std::span<const Vector> velocities) override;
+  void download(std::span<Vector> positions, std::span<Vector> velocities) override;
+  bool advance(std::int64_t steps) override;
+  std::optional<Failure> failure() override;
+  [[nodiscard]] Clock clock() const override { return _clock; }
+  void set_clock(const Clock& clock) override;
+  void forces(std::span<Vector> forces) override;
+  double fastest_frequency() override;
+  double fastest_decay() const override { return _decay; }
+  void stress(StressMeasure measure, std::span<Stress> of_triangles) override;
+  void vertex_stress(StressMeasure measure, std::span<Stress> of_vertices) override;
+  Totals totals() override;
 
  private:
   static constexpr int lanes = device::Access<
@@ -56,18 +59,43 @@ class SolverOn final : public Solver {
     return Points(label, static_cast<std::size_t>(_padded));
   }
 
+  /// Of each pack of vertices.
   template <class Functor>
   void launch(const char* label, const Functor& functor) const {
+    launch_each(label, _padded / lanes, functor);
+  }
+  template <class Functor>
+  void launch_each(const char* label, int count, const Functor& functor) const {
     static_assert(Kokkos::SpaceAccessibility<ExecutionSpace,
                                              typename PointsView<ExecutionSpace>::memory_space>::accessible);
-    const Kokkos::RangePolicy<ExecutionSpace> packs(_instance.space(), 0, _padded / lanes);
+    const Kokkos::RangePolicy<ExecutionSpace> each(_instance.space(), 0, count);
+    // What is light travels with the launch; else launches would wait for one another.
     Kokkos::parallel_for(
-        label, Kokkos::Experimental::require(packs, Kokkos::Experimental::WorkItemProperty::HintLightWeight),
+        label, Kokkos::Experimental::require(each, Kokkos::Experimental::WorkItemProperty::HintLightWeight),
         functor);
   }
 
+  void prepare_external(const Parameters& p);
+  void prepare_motions(const Parameters& p);
+  [[nodiscard]] ProgramsView<ExecutionSpace> programs(
+      const std::vector<device::ExpressionProgram>& from) const;
+  [[nodiscard]] Timing<ExecutionSpace> timing(double part) const { return {_watch, _clock, _hand, part}; }
+  [[nodiscard]] ExternalFunctor<ExecutionSpace> loads_at(const Points& x, const Points& v, double part,
+                                                         bool damps) const;
+  void act(const Points& x, const Points& v, double part, bool damps) const;
+  void place(const Points& x, const Points& v, double part, bool looks) const;
   void runge_kutta_step() const;
   void verlet(bool ends, bool begins);
+  void take(std::int64_t steps);
+  void keep();
+  template <Law of>
+  [[nodiscard]] double largest_row(const ListView<ExecutionSpace, double>& more) const;
+  void settle();
+  void set_steps();
+  [[nodiscard]] bool lost() const;
+  void find_stress(StressMeasure measure, const StressView<ExecutionSpace>& to,
+                   const TensorView<ExecutionSpace>& tensor);
+  void stress_to_host(const StressView<ExecutionSpace>& from, std::span<Stress> to) const;
   void require_one_a_vertex(std::size_t count) const;
   void to_device(std::span<const Vector> from, const Points& to) const;
   void to_host(const Points& from, std::span<Vector> to) const;
@@ -75,15 +103,37 @@ class SolverOn final : public Solver {
   void copy_slots(const Slots& from, Views& to) const;
 
   device::Instance<ExecutionSpace> _instance;
+  Mesh _mesh;
+  Material _material;
   int _vertices, _padded;  ///< in whole slices
   Integrator _integrator;
-  double _dt, _damping;
+  double _damping;
+  double _decay;  ///< 1/s, that damping may have
+  Clock _clock;
   Cloth<ExecutionSpace> _cloth;
+  External<ExecutionSpace> _external;
+  bool _acts = false;   ///< a kernel of its own computes loads
+  bool _drags = false;  ///< dashpots pull
+  std::optional<Prescribed<ExecutionSpace>> _prescribed;
+  Watch<ExecutionSpace> _watch;
+  int _hand = 0;  ///< of the watch, that tells the steps taken
+  std::optional<Failure> _failure;
+  Points _pull;               ///< of springs of vectors
+  double _rest_energy = 0.0;  ///< J, of theirs
+  Points _dead;               ///< loads, N; may be empty
   Points _x, _v, _next;
-  Points _velocity, _other, _sum_x, _sum_v;  ///< of Runge and Kutta alone
+  Points _kept_x, _kept_v;
+  Kokkos::View<std::int64_t, typename ExecutionSpace::memory_space> _kept_step;
+  Points _velocity, _other, _sum_x, _sum_v;                 ///< of Runge and Kutta alone
+  Points _dragged;                                          ///< of Verlet with dashpots
+  std::optional<TriangleViews<ExecutionSpace>> _triangles;  ///< made when stress is asked for
   std::optional<device::Replay<ExecutionSpace>> _step;
 };
 
 }  // namespace drogue::fabric
 
+#include "kernels/fabric/solver_on_external.hpp"
+#include "kernels/fabric/solver_on_measures.hpp"
 #include "kernels/fabric/solver_on_parts.hpp"
+#include "kernels/fabric/solver_on_steps.hpp"
+#include "kernels/fabric/solver_on_stress.hpp"

@@ -1,19 +1,27 @@
 #pragma once
 
-// Definitions of SolverOn.
+// Definitions of SolverOn: what it holds, and how that gets there and back.
+
+#include <algorithm>
+#include <cmath>
 
 #include "kernels/fabric/solver_on.hpp"
 
 namespace drogue::fabric {
 
-template <class ExecutionSpace, Model model>
-SolverOn<ExecutionSpace, model>::SolverOn(const Parameters& p)
+template <class ExecutionSpace, Law law>
+SolverOn<ExecutionSpace, law>::SolverOn(const Parameters& p)
     : _instance(static_cast<int>(1 + p.mesh.rest.size() / 512)),
+      _mesh(p.mesh),
+      _material(p.material),
       _vertices(static_cast<int>(p.mesh.rest.size())),
       _padded((_vertices + slice - 1) / slice * slice),
       _integrator(p.integrator),
-      _dt(p.dt),
-      _damping(p.damping) {
+      _damping(p.damping),
+      _decay(_integrator == Integrator::rk4 ? p.damping : 0.0),
+      _clock{0, p.dt, 0, 0.0},
+      _watch{decltype(_watch.steps)("drogue::fabric::steps"), decltype(_watch.lost)("drogue::fabric::lost"),
+             decltype(_watch.raised)("drogue::fabric::raised")} {
   const auto n = static_cast<std::size_t>(_vertices);
   copy_slots(triangle_slots(p.mesh, p.material), _cloth.triangles);
   copy_slots(spring_slots(p.mesh, p.material), _cloth.springs);
@@ -29,24 +37,41 @@ SolverOn<ExecutionSpace, model>::SolverOn(const Parameters& p)
     for (std::size_t axis = 0; axis < 3; ++axis)
       if (!p.pinned.empty() && (p.pinned[i] >> axis & 1U) != 0U) free[i][axis] = 0.0;
   }
+  for (const Motion& motion : p.motions)
+    for (const int i : motion.vertices)
+      free[static_cast<std::size_t>(i)][static_cast<std::size_t>(motion.axis)] = 0.0;
   Kokkos::deep_copy(_instance.space(), _cloth.inverse_mass, inverse_mass);
   _instance.space().fence("drogue::fabric::inverse_mass");
   // Vertices that fill the last slice have no mass and no freedom: they stay.
   _cloth.free = points("drogue::fabric::free");
   to_device(free, _cloth.free);
   std::vector<Vector> load = rest_pull(p.mesh, p.material);
+  if (!load.empty()) {
+    _pull = points("drogue::fabric::pull");
+    to_device(load, _pull);
+    // k (X_j - X_i)^2 / 2 of every spring.
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t axis = 0; axis < 3; ++axis) _rest_energy += 0.5 * load[i][axis] * p.mesh.rest[i][axis];
+  }
   if (load.empty())
     load = p.load;
   else if (!p.load.empty())
     for (std::size_t i = 0; i < n; ++i)
       for (std::size_t axis = 0; axis < 3; ++axis) load[i][axis] += p.load[i][axis];
   if (!load.empty()) {
-    _cloth.load = points("drogue::fabric::load");
-    to_device(load, _cloth.load);
+    _dead = points("drogue::fabric::dead_load");
+    to_device(load, _dead);
   }
+  _cloth.load = _dead;
+  prepare_external(p);
+  prepare_motions(p);
   _x = points("drogue::fabric::positions");
   _v = points("drogue::fabric::velocities");
   _next = points("drogue::fabric::next");
+  _kept_x = points("drogue::fabric::kept_positions");
+  _kept_v = points("drogue::fabric::kept_velocities");
+  _kept_step = decltype(_kept_step)("drogue::fabric::kept_step");
+  set_steps();
   if (_integrator != Integrator::rk4) return;
   _velocity = points("drogue::fabric::stage_velocities");
   _other = points("drogue::fabric::stage_positions");
@@ -55,42 +80,39 @@ SolverOn<ExecutionSpace, model>::SolverOn(const Parameters& p)
   _step.emplace(_instance, [this](const ExecutionSpace&) { runge_kutta_step(); });
 }
 
-template <class ExecutionSpace, Model model>
-void SolverOn<ExecutionSpace, model>::runge_kutta_step() const {
-  const Points at[] = {_x, _next, _other, _next}, next[] = {_next, _other, _next, _x};
-  for (int stage = 0; stage < 4; ++stage)
-    launch("drogue::fabric::rk4_stage",
-           RungeKuttaFunctor<ExecutionSpace, model>{_cloth, _x, _v, at[stage], _velocity, next[stage], _sum_x,
-                                                    _sum_v, _dt, stage});
+template <class ExecutionSpace, Law law>
+void SolverOn<ExecutionSpace, law>::upload(std::span<const Vector> positions,
+                                           std::span<const Vector> velocities) {
+  const auto within = [](const Vector& vector) {
+    return std::abs(vector[0]) + std::abs(vector[1]) + std::abs(vector[2]) < lost_beyond;
+  };
+  if (!std::ranges::all_of(positions, within) || !std::ranges::all_of(velocities, within))
+    throw std::invalid_argument("fabric solver: positions and velocities must be finite");
+  to_device(positions, _x);
+  to_device(velocities, _v);
+  _failure.reset();
+  set_steps();
+  keep();
+  if (!_prescribed) return;
+  place(_x, _v, 0.0, true);
+  keep();
 }
 
-template <class ExecutionSpace, Model model>
-void SolverOn<ExecutionSpace, model>::verlet(bool ends, bool begins) {
-  launch("drogue::fabric::verlet",
-         VerletFunctor<ExecutionSpace, model>{_cloth, _x, _v, _next, _damping, _dt, ends, begins});
-  if (begins) std::swap(_x, _next);
+template <class ExecutionSpace, Law law>
+void SolverOn<ExecutionSpace, law>::download(std::span<Vector> positions, std::span<Vector> velocities) {
+  settle();
+  to_host(_x, positions);
+  to_host(_v, velocities);
 }
 
-template <class ExecutionSpace, Model model>
-void SolverOn<ExecutionSpace, model>::advance(std::int64_t steps) {
-  if (steps <= 0) return;
-  if (_integrator == Integrator::rk4) {
-    for (std::int64_t step = 0; step < steps; ++step) _step->launch();
-    return;
-  }
-  verlet(false, true);
-  for (std::int64_t step = 1; step < steps; ++step) verlet(true, true);
-  verlet(true, false);
-}
-
-template <class ExecutionSpace, Model model>
-void SolverOn<ExecutionSpace, model>::require_one_a_vertex(std::size_t count) const {
+template <class ExecutionSpace, Law law>
+void SolverOn<ExecutionSpace, law>::require_one_a_vertex(std::size_t count) const {
   if (count != static_cast<std::size_t>(_vertices))
     throw std::invalid_argument("fabric solver: there must be one vector a vertex");
 }
 
-template <class ExecutionSpace, Model model>
-void SolverOn<ExecutionSpace, model>::to_device(std::span<const Vector> from, const Points& to) const {
+template <class ExecutionSpace, Law law>
+void SolverOn<ExecutionSpace, law>::to_device(std::span<const Vector> from, const Points& to) const {
   require_one_a_vertex(from.size());
   const auto mirror = Kokkos::create_mirror_view(to);
   for (std::size_t i = 0; i < mirror.extent(0); ++i)
@@ -99,8 +121,8 @@ void SolverOn<ExecutionSpace, model>::to_device(std::span<const Vector> from, co
   _instance.space().fence("drogue::fabric::to_device");
 }
 
-template <class ExecutionSpace, Model model>
-void SolverOn<ExecutionSpace, model>::to_host(const Points& from, std::span<Vector> to) const {
+template <class ExecutionSpace, Law law>
+void SolverOn<ExecutionSpace, law>::to_host(const Points& from, std::span<Vector> to) const {
   require_one_a_vertex(to.size());
   const auto mirror = Kokkos::create_mirror_view(from);
   Kokkos::deep_copy(_instance.space(), mirror, from);
@@ -109,9 +131,9 @@ void SolverOn<ExecutionSpace, model>::to_host(const Points& from, std::span<Vect
     for (std::size_t axis = 0; axis < 3; ++axis) to[i][axis] = mirror(i, axis);
 }
 
-template <class ExecutionSpace, Model model>
+template <class ExecutionSpace, Law law>
 template <class Slots, class Views>
-void SolverOn<ExecutionSpace, model>::copy_slots(const Slots& from, Views& to) const {
+void SolverOn<ExecutionSpace, law>::copy_slots(const Slots& from, Views& to) const {
   const std::size_t slots = from.neighbour[0].size();
   to.first = decltype(to.first)("drogue::fabric::first", from.first.size());
   to.neighbour = decltype(to.neighbour)("drogue::fabric::neighbour", slots);

@@ -107,6 +107,18 @@ def _gas_pictures(run, options, out, save):
         yield movie.write(out / f"fields.{options.movie}", gas_movie.frames(view))
 
 
+def _springs_pictures(run, options, out, save):
+    from . import movie, springs_figures
+
+    view = springs_figures.View(run)
+    snapshot = run.snapshots[-1]
+    if options.time is not None:
+        snapshot = min(run.snapshots, key=lambda candidate: abs(candidate.time - options.time))
+    yield save(springs_figures.figure(view, snapshot), "fields")
+    if len(run.snapshots) >= 2 and options.movie != "none":
+        yield movie.write(out / f"fields.{options.movie}", springs_figures.frames(view))
+
+
 def _evidence(options, evidence, out):
     if importlib.util.find_spec("jinja2") is None:
         raise Failure(USAGE, "gas.html needs the Python package jinja2: run scripts/setup.sh, or install it.")
@@ -120,6 +132,7 @@ def draw(options: argparse.Namespace):
     from . import evidence_records, style
     from .history_figure import history_figure
     from .run_directory import read
+    from .springs_history import springs_history_figure
     from .study_figure import DEFAULT_NORM, check_norm, study_figure
 
     run = read(options.directory)
@@ -134,7 +147,10 @@ def draw(options: argparse.Namespace):
 
     if run.snapshots and "x" in run.mesh:
         yield from _gas_pictures(run, options, out, save)
-    if (figure := history_figure(run)) is not None:
+    if run.snapshots and "vertices" in run.mesh:
+        yield from _springs_pictures(run, options, out, save)
+    draw_history = springs_history_figure if "kinetic" in run.history else history_figure
+    if (figure := draw_history(run)) is not None:
         yield save(figure, "history")
     if run.study:
         yield save(study_figure(run.scene_name, run.study, options.norm or DEFAULT_NORM), "study")

@@ -23,7 +23,7 @@ class App:
     title: str
 
 
-APPS = (App("drogue-gas", "Gas dynamics"),)
+APPS = (App("drogue-gas", "Gas dynamics"), App("drogue-springs", "Cloth and strings"))
 INTERRUPTED = 130
 
 

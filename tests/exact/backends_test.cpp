@@ -1,15 +1,10 @@
 #include <gtest/gtest.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
-#include <cstdio>
-#include <exception>
-#include <fstream>
-#include <functional>
 #include <string>
 
 #include "kernels/device/runtime.hpp"
 #include "tests/support/gas_state.hpp"
+#include "tests/support/in_child.hpp"
 
 // Every backend and every number of threads gives the same bits, on meshes that keep four threads busy.
 // Kokkos starts once a process, so each run is a child of its own that leaves its bytes in a file.
@@ -18,6 +13,7 @@ namespace drogue {
 namespace {
 
 using testing::GasState;
+using testing::in_child;
 
 struct Runner {
   device::Backend backend;
@@ -59,33 +55,6 @@ std::string run_bytes(const Runner& runner, gas::Parameters p, const GasState& s
                                                                          : static_cast<std::size_t>(p.cells));
   solver->download_touched(0, touched);
   append(bytes, touched.data(), touched.size());
-  return bytes;
-}
-
-/// The result of `work` in a child process.
-std::string in_child(const std::function<std::string()>& work) {
-  std::string file = ::testing::TempDir() + "drogue_exact_XXXXXX";
-  const int descriptor = mkstemp(file.data());
-  EXPECT_GE(descriptor, 0);
-  close(descriptor);
-  const pid_t child = fork();
-  if (child == 0) {
-    try {
-      std::ofstream out(file, std::ios::binary);
-      out << work();
-      out.close();
-      _exit(out ? 0 : 1);
-    } catch (const std::exception& e) {
-      std::fprintf(stderr, "%s\n", e.what());
-      _exit(1);
-    }
-  }
-  int status = 1;
-  EXPECT_EQ(waitpid(child, &status, 0), child);
-  EXPECT_EQ(status, 0);
-  std::ifstream in(file, std::ios::binary);
-  std::string bytes{std::istreambuf_iterator<char>(in), {}};
-  unlink(file.c_str());
   return bytes;
 }
 

@@ -36,17 +36,17 @@ needs_openmp = unittest.skipIf(threaded() == "serial", "this build has no OpenMP
 NO_FIELDS = "output.fields=[]"
 
 
-def arguments(scene, *words, sets=()):
+def arguments(scene, *words, sets=(), program=PROGRAM):
     """The command line of a run; a word of `sets` becomes a --set of its own."""
-    line = [str(PROGRAM), str(scene), *map(str, words)]
+    line = [str(program), str(scene), *map(str, words)]
     for assignment in sets:
         line += ["--set", assignment]
     return line
 
 
-def run(scene, *words, sets=(), cwd=None, timeout=3600, environment=None):
+def run(scene, *words, sets=(), cwd=None, timeout=3600, environment=None, program=PROGRAM):
     """Runs to the end; stdout and stderr are text."""
-    return subprocess.run(arguments(scene, *words, sets=sets), cwd=cwd, capture_output=True, text=True, errors="replace",
+    return subprocess.run(arguments(scene, *words, sets=sets, program=program), cwd=cwd, capture_output=True, text=True, errors="replace",
                           timeout=timeout, check=False, env={**ENVIRONMENT, **(environment or {})})
 
 
@@ -67,13 +67,15 @@ def final_values(directory, field="rho"):
 class GasTest(unittest.TestCase):
     """A test with an empty folder, in which its programs run."""
 
+    program = PROGRAM
+
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.folder = pathlib.Path(folder.name)
 
     def start(self, scene, *words, sets=(), **settings):
-        return run(scene, *words, sets=sets, cwd=self.folder, **settings)
+        return run(scene, *words, sets=sets, cwd=self.folder, program=self.program, **settings)
 
     def expect(self, code, scene, *words, sets=(), **settings):
         """Runs in the folder, asserts the exit code and that a failure is one sentence; returns what the run said."""

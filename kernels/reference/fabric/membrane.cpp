@@ -37,23 +37,78 @@ Moduli plane_stress(double young, double nu) {
   return {2.0 * g * nu / (1.0 - nu), 2.0 * g};
 }
 
-/// St Venant and Kirchhoff: E = (F^T F - 1) / 2 with F = D_s D_m^-1 in the plane of the triangle at rest.
+double real_part(double a) { return a; }
+double real_part(const std::complex<double>& a) { return a.real(); }
+
+/// A strain in the plane of a triangle at rest.
 template <class T>
-T continuum_energy(const Moduli& m, const std::array<Vector, 3>& rest, const std::array<Point<T>, 3>& now) {
-  // D_m: the rest edges from vertex 0 in an orthonormal basis whose first axis is the first edge.
+struct Strain {
+  T e11, e22, e12;
+};
+
+/// D_m: the edges from vertex 0 at rest in an orthonormal basis whose first axis is the first edge.
+struct RestShape {
+  double x1, x2, y2;
+};
+
+RestShape rest_shape(const std::array<Vector, 3>& rest) {
   const Vector e1 = difference(rest[1], rest[0]), e2 = difference(rest[2], rest[0]);
-  const double x1 = length(e1), x2 = dot(e1, e2) / x1, y2 = std::sqrt(dot(e2, e2) - x2 * x2);
+  const double x1 = length(e1), x2 = dot(e1, e2) / x1;
+  return {x1, x2, std::sqrt(dot(e2, e2) - x2 * x2)};
+}
+
+/// Green's, E = (F^T F - 1) / 2 with F = D_s D_m^-1.
+template <class T>
+Strain<T> green_strain(const std::array<Vector, 3>& rest, const std::array<Point<T>, 3>& now) {
+  const RestShape m = rest_shape(rest);
   const Point<T> d1 = difference(now[1], now[0]), d2 = difference(now[2], now[0]);
   // Columns of F.
   Point<T> f1, f2;
   for (std::size_t k = 0; k < 3; ++k) {
-    f1[k] = d1[k] / x1;
-    f2[k] = (d2[k] - f1[k] * x2) / y2;
+    f1[k] = d1[k] / m.x1;
+    f2[k] = (d2[k] - f1[k] * m.x2) / m.y2;
   }
-  const T e11 = 0.5 * (dot(f1, f1) - 1.0), e22 = 0.5 * (dot(f2, f2) - 1.0), e12 = 0.5 * dot(f1, f2);
-  const T trace = e11 + e22;
-  return 0.5 * x1 * y2 *
-         (0.5 * m.lambda * trace * trace + 0.5 * m.two_g * (e11 * e11 + e22 * e22 + 2.0 * e12 * e12));
+  return {0.5 * (dot(f1, f1) - 1.0), 0.5 * (dot(f2, f2) - 1.0), 0.5 * dot(f1, f2)};
+}
+
+/// The strain whose squared edges change by 2 L (l - L), in place of l^2 - L^2: that of Delingette's
+/// quadratic springs. From D^T E D = L (l - L) of the three edges.
+template <class T>
+Strain<T> strain_of_lengths(const std::array<Vector, 3>& rest, const std::array<Point<T>, 3>& now) {
+  const RestShape m = rest_shape(rest);
+  const auto change = [&](std::size_t i, std::size_t j) {
+    const double at_rest = length(difference(rest[j], rest[i]));
+    return at_rest * (length(difference(now[j], now[i])) - at_rest);
+  };
+  const T first = change(0, 1), second = change(0, 2), third = change(1, 2);
+  const double across = m.x2 - m.x1;
+  const T e11 = first / (m.x1 * m.x1);
+  // The edges (x2, y2) and (x2 - x1, y2), less what e11 gives them: two equations for y2 e12 and y2^2 e22.
+  const T u = second - e11 * m.x2 * m.x2, v = third - e11 * across * across;
+  const T e12 = (u - v) / (2.0 * m.y2 * m.x1);
+  return {e11, (u - 2.0 * m.x2 * m.y2 * e12) / (m.y2 * m.y2), e12};
+}
+
+/// St Venant and Kirchhoff's energy of a strain per area at rest.
+template <class T>
+T strain_energy(const Moduli& m, const Strain<T>& e) {
+  const T trace = e.e11 + e.e22;
+  return 0.5 * m.lambda * trace * trace +
+         0.5 * m.two_g * (e.e11 * e.e11 + e.e22 * e.e22 + 2.0 * e.e12 * e.e12);
+}
+
+/// Its quasiconvex hull (Pipkin 1986) by cases of the principal strains: nothing where both shorten; the
+/// energy of uniaxial tension where the minor one is below what Poisson's ratio makes of the major one.
+template <class T>
+T relaxed_energy(const fabric::Material& material, const Strain<T>& e) {
+  using std::sqrt;
+  const double nu = material.poisson;
+  const T mean = 0.5 * (e.e11 + e.e22), half = 0.5 * (e.e11 - e.e22);
+  const T radius = sqrt(half * half + e.e12 * e.e12), major = mean + radius, minor = mean - radius;
+  if (real_part(minor) >= -nu * real_part(major) && real_part(major) > 0.0)
+    return strain_energy(plane_stress(material.membrane_modulus, nu), e);
+  if (real_part(major) > 0.0) return 0.5 * material.membrane_modulus * major * major;
+  return 0.0;
 }
 
 /// Sums of k_i dl_i^2 / 2 and gamma_i dl_j dl_k.
@@ -81,10 +136,6 @@ T delingette_energy(const Moduli& m, const std::array<Vector, 3>& rest, const st
   return sum;
 }
 
-bool has_triangles(fabric::Model model) {
-  return model == fabric::Model::quadratic || model == fabric::Model::biquadratic;
-}
-
 std::array<int, 2> sorted(int a, int b) { return {std::min(a, b), std::max(a, b)}; }
 
 }  // namespace
@@ -99,12 +150,16 @@ template <class T>
 T triangle_energy(const fabric::Material& material, const std::array<Vector, 3>& rest,
                   const std::array<Point<T>, 3>& now) {
   const Moduli m = plane_stress(material.membrane_modulus, material.poisson);
-  return material.model == fabric::Model::quadratic ? delingette_energy(m, rest, now)
-                                                    : continuum_energy(m, rest, now);
+  const bool of_lengths = material.model == fabric::Model::quadratic;
+  const double at_rest = area(rest[0], rest[1], rest[2]);
+  if (material.tension_only)
+    return at_rest *
+           relaxed_energy(material, of_lengths ? strain_of_lengths(rest, now) : green_strain(rest, now));
+  return of_lengths ? delingette_energy(m, rest, now) : at_rest * strain_energy(m, green_strain(rest, now));
 }
 
 template <class T>
-T spring_energy(fabric::Model model, double k, const std::array<Vector, 2>& rest,
+T spring_energy(fabric::Model model, bool tension_only, double k, const std::array<Vector, 2>& rest,
                 const std::array<Point<T>, 2>& now) {
   const Vector at_rest = difference(rest[1], rest[0]);
   const Point<T> edge = difference(now[1], now[0]);
@@ -113,12 +168,13 @@ T spring_energy(fabric::Model model, double k, const std::array<Vector, 2>& rest
     return 0.5 * k * dot(change, change);
   }
   const T change = length(edge) - length(at_rest);
+  if (tension_only && real_part(change) < 0.0) return 0.0;
   return 0.5 * k * change * change;
 }
 
 template double triangle_energy(const fabric::Material&, const std::array<Vector, 3>&,
                                 const std::array<Point<double>, 3>&);
-template double spring_energy(fabric::Model, double, const std::array<Vector, 2>&,
+template double spring_energy(fabric::Model, bool, double, const std::array<Vector, 2>&,
                               const std::array<Point<double>, 2>&);
 
 std::vector<std::array<int, 2>> triangle_edges(const Mesh& mesh) {
@@ -136,9 +192,11 @@ void for_elements(const fabric::Material& material, const Mesh& mesh, const Visi
   const auto at_rest = [&](int i) { return mesh.rest[static_cast<std::size_t>(i)]; };
   const auto spring = [&](const std::array<int, 2>& ends, fabric::Model model, double k) {
     const std::array<Vector, 2> rest = {at_rest(ends[0]), at_rest(ends[1])};
-    visit(ends, [=](const auto& now) { return spring_energy(model, k, rest, now); });
+    visit(ends, [=, &material](const auto& now) {
+      return spring_energy(model, material.tension_only, k, rest, now);
+    });
   };
-  if (has_triangles(material.model)) {
+  if (fabric::has_triangles(material.model)) {
     for (const auto& t : mesh.triangles) {
       const std::array<Vector, 3> rest = {at_rest(t[0]), at_rest(t[1]), at_rest(t[2])};
       visit(t, [=, &material](const auto& now) { return triangle_energy(material, rest, now); });
@@ -146,9 +204,11 @@ void for_elements(const fabric::Material& material, const Mesh& mesh, const Visi
   } else {
     for (const auto& edge : triangle_edges(mesh)) spring(edge, material.model, material.stiffness);
   }
-  for (const auto& line : mesh.lines) {
+  for (std::size_t k = 0; k < mesh.lines.size(); ++k) {
+    const auto& line = mesh.lines[k];
     const double rest = length(difference(at_rest(line[1]), at_rest(line[0])));
-    spring(line, fabric::Model::edge, material.axial_stiffness / rest);
+    const double axial = mesh.line_stiffness.empty() ? material.axial_stiffness : mesh.line_stiffness[k];
+    spring(line, fabric::Model::edge, axial / rest);
   }
 }
 

@@ -19,15 +19,16 @@ using fabric::Vector;
 
 /// Energy of one triangle, J, `rest` its vertices at rest: plane-stress St Venant-Kirchhoff from the
 /// deformation gradient for Model::biquadratic; tensile and angular springs (Delingette 2008, eq. 8) for
-/// Model::quadratic.
+/// Model::quadratic. With `tension_only` the relaxed energy of either strain (Pipkin 1986).
 template <class T>
 [[nodiscard]] T triangle_energy(const fabric::Material& material, const std::array<Vector, 3>& rest,
                                 const std::array<std::array<T, 3>, 3>& now);
 
-/// Energy of one spring of stiffness k, J: of its length, or for Model::linear_vector of its vector.
+/// Energy of one spring of stiffness k, J: of its length, or for Model::linear_vector of its vector;
+/// none of a short one with `tension_only`.
 template <class T>
-[[nodiscard]] T spring_energy(fabric::Model model, double k, const std::array<Vector, 2>& rest,
-                              const std::array<std::array<T, 3>, 2>& now);
+[[nodiscard]] T spring_energy(fabric::Model model, bool tension_only, double k,
+                              const std::array<Vector, 2>& rest, const std::array<std::array<T, 3>, 2>& now);
 
 /// Energy of everything, J. Edges of triangles are springs in the models that have such; an edge of two
 /// triangles is one.

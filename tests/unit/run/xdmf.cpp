@@ -31,5 +31,49 @@ TEST(Xdmf, ListsEveryStepOverTheLine) {
   EXPECT_EQ(xdmf_document("a<b", x, {rho}, {{"000000", 0.1}}), expected);
 }
 
+TEST(Xdmf, ClothMovesWithItsPositions) {
+  const std::vector<DatasetSpec> mesh = {{"vertices", {4, 3}, "m", "vertex", ""},
+                                         {"triangles", {2, 3}, "1", "face", ""},
+                                         {"edges", {5, 2}, "1", "edge", ""}};
+  const DatasetSpec position = {"position", {4, 3}, "m", "vertex", ""},
+                    velocity = {"velocity", {4, 3}, "m/s", "vertex", ""},
+                    stress = {"von_mises", {2}, "N/m", "face", ""};
+  const std::string expected = R"(<?xml version="1.0" encoding="UTF-8"?>
+<Xdmf Version="3.0">
+  <Domain>
+    <Grid Name="c" GridType="Collection" CollectionType="Temporal">
+      <Grid Name="c" GridType="Uniform">
+        <Time Value="0.5"/>
+        <Topology TopologyType="Triangle" NumberOfElements="2">
+          <DataItem Dimensions="2 3" NumberType="Int" Precision="8" Format="HDF">fields.h5:/mesh/triangles</DataItem>
+        </Topology>
+        <Geometry GeometryType="XYZ">
+          <DataItem Dimensions="4 3" NumberType="Float" Precision="8" Format="HDF">fields.h5:/steps/000000/position</DataItem>
+        </Geometry>
+        <Attribute Name="velocity" AttributeType="Vector" Center="Node">
+          <DataItem Dimensions="4 3" NumberType="Float" Precision="8" Format="HDF">fields.h5:/steps/000000/velocity</DataItem>
+        </Attribute>
+        <Attribute Name="von_mises" AttributeType="Scalar" Center="Cell">
+          <DataItem Dimensions="2" NumberType="Float" Precision="8" Format="HDF">fields.h5:/steps/000000/von_mises</DataItem>
+        </Attribute>
+      </Grid>
+    </Grid>
+  </Domain>
+</Xdmf>
+)";
+  EXPECT_EQ(xdmf_cloth_document("c", mesh, {velocity, position, stress}, {{"000000", 0.5}}), expected);
+}
+
+TEST(Xdmf, WithoutTrianglesStringsAreDrawnAndWithoutPositionsTheyStay) {
+  const std::vector<DatasetSpec> mesh = {{"triangles", {0, 3}, "1", "face", ""},
+                                         {"edges", {2, 2}, "1", "edge", ""},
+                                         {"vertices", {3, 3}, "m", "vertex", ""}};
+  const std::string text = xdmf_cloth_document("s", mesh, {}, {{"000000", 0.0}});
+  EXPECT_NE(text.find(R"(<Topology TopologyType="Polyline" NodesPerElement="2" NumberOfElements="2">)"),
+            std::string::npos);
+  EXPECT_NE(text.find("fields.h5:/mesh/edges"), std::string::npos);
+  EXPECT_NE(text.find("fields.h5:/mesh/vertices"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace drogue::run

@@ -1,0 +1,98 @@
+#pragma once
+
+#include "kernels/fabric/cloth.hpp"
+#include "kernels/fabric/views.hpp"
+
+namespace drogue::fabric {
+
+/// An upper bound of the largest singular value of a 3 by 3 matrix B, at most 1.8 % above it: the trace of
+/// (B^T B)^32 to the power of 1/64.
+KOKKOS_INLINE_FUNCTION double norm_bound(const double (&b)[3][3]) {
+  double s[3][3], trace[6];
+  for (int r = 0; r < 3; ++r)
+    for (int c = 0; c < 3; ++c) s[r][c] = b[0][r] * b[0][c] + b[1][r] * b[1][c] + b[2][r] * b[2][c];
+  for (int power = 0; power < 6; ++power) {
+    trace[power] = s[0][0] + s[1][1] + s[2][2];
+    if (trace[power] == 0.0) return 0.0;
+    const double scale = 1.0 / trace[power];
+    double scaled[3][3];
+    for (int r = 0; r < 3; ++r)
+      for (int c = 0; c < 3; ++c) scaled[r][c] = scale * s[r][c];
+    for (int r = 0; r < 3; ++r)
+      for (int c = 0; c < 3; ++c)
+        s[r][c] = scaled[r][0] * scaled[0][c] + scaled[r][1] * scaled[1][c] + scaled[r][2] * scaled[2][c];
+  }
+  double root = 1.0;
+  for (int power = 5; power > 0; --power) root = device::square_root(trace[power] * root);
+  return device::square_root(trace[0] * root);
+}
+
+/// Row i of the block norms of M^-1 K, 1/s^2; K is minus the derivative of the elastic forces at the
+/// positions x, geometric stiffness included, and pinned axes are struck out. By Gershgorin's theorem for
+/// blocks (Feingold and Varga 1962) no omega^2 exceeds the largest row.
+template <class ExecutionSpace, Law law>
+struct FrequencyFunctor {
+  using Dual = device::Dual;
+  Cloth<ExecutionSpace> cloth;
+  PointsView<ExecutionSpace> x;
+  ListView<ExecutionSpace, double> more;  ///< rows of other stiffness, N/m; may be empty
+
+  KOKKOS_FUNCTION void operator()(const int i, double& largest) const {
+    const bool moves = cloth.free(i, 0) + cloth.free(i, 1) + cloth.free(i, 2) > 0.0;
+    const double other = more.extent(0) > 0 && moves ? more(i) : 0.0;
+    const double row = cloth.inverse_mass(i) * (row_sum(i) + other);
+    // What is not a number is no bound.
+    const double bound = row >= 0.0 ? row : Kokkos::Experimental::infinity_v<double>;
+    if (bound > largest) largest = bound;
+  }
+
+  /// A vector that one axis of it changes; none with axis -1.
+  KOKKOS_FUNCTION static Vector3<Dual> along(const Vector3<double>& v, int axis) {
+    return {Dual(v.x, axis == 0 ? 1.0 : 0.0), Dual(v.y, axis == 1 ? 1.0 : 0.0),
+            Dual(v.z, axis == 2 ? 1.0 : 0.0)};
+  }
+
+  KOKKOS_FUNCTION double row_sum(const int i) const {
+    double diagonal[3][3] = {};
+    double sum = 0.0;
+    const Vector3<double> own = load_points<double>(x, i);
+    const auto to = [&](int neighbour) { return load_points<double>(x, neighbour) - own; };
+    // `pull(axis)` is the pull on i while vertex j moves along the axis.
+    const auto add = [&](int j, const auto& pull) {
+      double block[3][3];
+      for (int axis = 0; axis < 3; ++axis) {
+        const Vector3<Dual> p = pull(axis);
+        const double change[3] = {p.x.derivative, p.y.derivative, p.z.derivative};
+        for (int r = 0; r < 3; ++r) {
+          // A force that all vertices together do not change: the diagonal block is minus the others' sum.
+          diagonal[r][axis] += cloth.free(i, r) * change[r] * cloth.free(i, axis);
+          block[r][axis] = cloth.free(i, r) * change[r] * cloth.free(j, axis);
+        }
+      }
+      sum += norm_bound(block);
+    };
+    if constexpr (whole_triangles<law>)
+      cloth.triangles.each(i, [&](int slot) {
+        const int j = cloth.triangles.neighbour(slot, 0), k = cloth.triangles.neighbour(slot, 1);
+        const Vector3<double> to_j = to(j), to_k = to(k);
+        const Edges<double> at_rest = rest_edges<double>(cloth, slot);
+        const Edges<Dual> rest{{at_rest.of[0], at_rest.of[1], at_rest.of[2]}};
+        const Dual inverse_area = cloth.triangles.value(slot, 3);
+        add(j, [&](int axis) {
+          return triangle_pull<law>(cloth.moduli, along(to_j, axis), along(to_k, -1), rest, inverse_area);
+        });
+        add(k, [&](int axis) {
+          return triangle_pull<law>(cloth.moduli, along(to_j, -1), along(to_k, axis), rest, inverse_area);
+        });
+      });
+    cloth.springs.each(i, [&](int slot) {
+      const int j = cloth.springs.neighbour(slot, 0);
+      const Vector3<double> edge = to(j);
+      const Dual stiffness = cloth.springs.value(slot, 0), rest = cloth.springs.value(slot, 1);
+      add(j, [&](int axis) { return spring_pull<law>(stiffness, rest, along(edge, axis)); });
+    });
+    return sum + norm_bound(diagonal);
+  }
+};
+
+}  // namespace drogue::fabric

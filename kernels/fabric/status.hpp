@@ -1,0 +1,51 @@
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+namespace drogue::fabric {
+
+/// Where a solver's steps are in time. A restart that brings back all four has the same times to the bit.
+struct Clock {
+  std::int64_t step = 0;   ///< steps taken
+  double dt = 0.0;         ///< s, of the steps to come
+  std::int64_t since = 0;  ///< the step from which dt holds
+  double start = 0.0;      ///< s, the time of that step
+
+  [[nodiscard]] double time() const { return start + static_cast<double>(step - since) * dt; }
+};
+
+/// Where a state ceased to be one.
+struct Failure {
+  std::int64_t vertex = -1;  ///< the first in the numbering that was lost in that step
+  std::int64_t step = 0;     ///< the first step, counted from 1, whose end is not finite
+  double time = 0.0;         ///< s, at its end
+};
+
+/// Sums over all vertices.
+struct Totals {
+  double kinetic = 0.0;  ///< J
+  double elastic = 0.0;  ///< J
+  double gravity = 0.0;  ///< J, -sum of m g x
+  double load = 0.0;     ///< J, minus the work of dead loads from the origin to where the vertices are
+  std::array<double, 3> momentum{};          ///< kg m/s
+  std::array<double, 3> angular_momentum{};  ///< kg m^2/s, about the origin
+
+  /// What steps without damping, moving pins and loads that change keep.
+  [[nodiscard]] double energy() const { return kinetic + elastic + gravity + load; }
+};
+
+/// Per length at rest, or per length as it is now.
+enum class StressMeasure { nominal, cauchy };
+
+/// Stress of a membrane, force per length, N/m.
+struct Stress {
+  double major = 0.0, minor = 0.0;    ///< principal values
+  std::array<double, 3> direction{};  ///< of the major one: a unit vector in the plane of the cloth now
+
+  /// Of plane stress (eq. 2.19).
+  [[nodiscard]] double von_mises() const { return std::sqrt(major * major - major * minor + minor * minor); }
+};
+
+}  // namespace drogue::fabric

@@ -1,0 +1,95 @@
+#pragma once
+
+#include "kernels/fabric/cloth.hpp"
+#include "kernels/fabric/status.hpp"
+#include "kernels/fabric/views.hpp"
+
+namespace drogue::fabric {
+
+inline constexpr int sum_radix = 64;  ///< values that one thread adds
+
+/// Kinetic, elastic, of gravity, of loads; momentum; angular momentum.
+inline constexpr int total_count = 10;
+
+template <class ExecutionSpace>
+using TotalsView = TableView<ExecutionSpace, double, total_count>;
+
+/// Thread j adds the shares of vertices j, j + n_out, j + 2 n_out, ... in this order, so that sums have the
+/// same bits on every backend and with any number of threads. Corners of a triangle have a third of its
+/// energy, ends of a spring half.
+template <class ExecutionSpace, Law law>
+struct TotalsFunctor {
+  Cloth<ExecutionSpace> cloth;
+  PointsView<ExecutionSpace> x, v;
+  PointsView<ExecutionSpace> pull;  ///< of springs of vectors, which `cloth.load` holds too; may be empty
+  SlotViews<ExecutionSpace, 1, 1> bending;  ///< may be empty
+  TotalsView<ExecutionSpace> out;
+  int vertices;
+
+  KOKKOS_FUNCTION void operator()(const int j) const {
+    double sum[total_count] = {};
+    for (int i = j; i < vertices; i += static_cast<int>(out.extent(0))) add(i, sum);
+    for (int k = 0; k < total_count; ++k) out(j, k) = sum[k];
+  }
+
+  KOKKOS_FUNCTION void add(int i, double (&sum)[total_count]) const {
+    const Vector3<double> at = load_points<double>(x, i), velocity = load_points<double>(v, i);
+    const double mass = 1.0 / cloth.inverse_mass(i);
+    sum[0] += 0.5 * mass * dot(velocity, velocity);
+    sum[1] += elastic(i, at);
+    sum[2] -= mass * dot(cloth.gravity, at);
+    if (cloth.load.extent(0) > 0) sum[3] -= dot(load_points<double>(cloth.load, i), at);
+    if (pull.extent(0) > 0) {
+      const double work = dot(load_points<double>(pull, i), at);
+      sum[1] -= work, sum[3] += work;
+    }
+    const double moved[3] = {mass * velocity.x, mass * velocity.y, mass * velocity.z};
+    for (int axis = 0; axis < 3; ++axis) sum[4 + axis] += moved[axis];
+    sum[7] += at.y * moved[2] - at.z * moved[1];
+    sum[8] += at.z * moved[0] - at.x * moved[2];
+    sum[9] += at.x * moved[1] - at.y * moved[0];
+  }
+
+  KOKKOS_FUNCTION double elastic(int i, const Vector3<double>& own) const {
+    double energy = 0.0;
+    const auto squared = [](const Vector3<double>& a) { return dot(a, a); };
+    const auto to = [&](int neighbour) { return load_points<double>(x, neighbour) - own; };
+    if constexpr (whole_triangles<law>)
+      cloth.triangles.each(i, [&](int slot) {
+        const Vector3<double> to_j = to(cloth.triangles.neighbour(slot, 0)),
+                              to_k = to(cloth.triangles.neighbour(slot, 1));
+        const Edges<double> now{{squared(to_k - to_j), squared(to_k), squared(to_j)}};
+        energy += membrane_energy<law>(cloth.moduli, now, rest_edges<double>(cloth, slot),
+                                       cloth.triangles.value(slot, 3)) /
+                  3.0;
+      });
+    cloth.springs.each(i, [&](int slot) {
+      energy += 0.5 * spring_energy<law>(cloth.springs.value(slot, 0),
+                                         squared(to(cloth.springs.neighbour(slot, 0))),
+                                         cloth.springs.value(slot, 1));
+    });
+    // Weights are minus the second derivatives, whose rows sum to zero: x Q x / 2 over pairs.
+    if (bending.first.extent(0) > 0)
+      bending.each(i, [&](int slot) {
+        energy += 0.25 * bending.value(slot, 0) * squared(to(bending.neighbour(slot, 0)));
+      });
+    return energy;
+  }
+};
+
+/// Thread j adds rows j, j + n_out, ... of what threads before have added.
+template <class ExecutionSpace>
+struct SumFunctor {
+  TotalsView<ExecutionSpace> in, out;
+
+  KOKKOS_FUNCTION void operator()(const int j) const {
+    const int rows = static_cast<int>(in.extent(0)), step = static_cast<int>(out.extent(0));
+    for (int k = 0; k < total_count; ++k) {
+      double sum = 0.0;
+      for (int row = j; row < rows; row += step) sum += in(row, k);
+      out(j, k) = sum;
+    }
+  }
+};
+
+}  // namespace drogue::fabric

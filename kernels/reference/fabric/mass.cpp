@@ -1,0 +1,35 @@
+#include "kernels/reference/fabric/mass.hpp"
+
+#include <cmath>
+
+namespace drogue::reference {
+
+std::vector<double> row_sum_masses(const Mesh& mesh, double area_density, double line_density) {
+  std::vector<double> mass(mesh.rest.size(), 0.0);
+  for (const auto& t : mesh.triangles) {
+    std::array<Vector, 3> x;
+    for (std::size_t k = 0; k < 3; ++k) x[k] = mesh.rest[static_cast<std::size_t>(t[k])];
+    const double whole = area_density * area(x[0], x[1], x[2]);
+    // At the three midpoints, each of weight 1/3, N_i N_j is 1/4 where both ends are meant, and else 0.
+    for (std::size_t i = 0; i < 3; ++i)
+      for (std::size_t j = 0; j < 3; ++j)
+        for (std::size_t point = 0; point < 3; ++point) {
+          const double shape_i = i == point ? 0.0 : 0.5, shape_j = j == point ? 0.0 : 0.5;
+          mass[static_cast<std::size_t>(t[i])] += whole / 3.0 * shape_i * shape_j;
+        }
+  }
+  for (const auto& line : mesh.lines) {
+    double squared = 0.0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double d = mesh.rest[static_cast<std::size_t>(line[1])][axis] -
+                       mesh.rest[static_cast<std::size_t>(line[0])][axis];
+      squared += d * d;
+    }
+    // 1/3 on the diagonal and 1/6 beside it.
+    for (const int i : line)
+      mass[static_cast<std::size_t>(i)] += line_density * std::sqrt(squared) * (1.0 / 3.0 + 1.0 / 6.0);
+  }
+  return mass;
+}
+
+}  // namespace drogue::reference

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "common/run/history_writer.hpp"
+
+namespace drogue::springs_app {
+
+/// The columns of history.csv after the time, for so many probes.
+std::vector<run::Column> history_columns(std::size_t probes);
+
+/// history.csv by column, units left away. What is checked of a run comes from its file, so that a run that
+/// was interrupted and continued is checked as a whole. Throws Failure(io_error).
+using History = std::map<std::string, std::vector<double>>;
+History read_history(const std::filesystem::path& file);
+
+}  // namespace drogue::springs_app

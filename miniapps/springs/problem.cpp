@@ -1,0 +1,153 @@
+#include "miniapps/springs/problem.hpp"
+
+#include <numeric>
+
+#include "miniapps/springs/expressions.hpp"
+#include "miniapps/springs/mesh_topology.hpp"
+#include "miniapps/springs/probe.hpp"
+
+namespace drogue::springs_app {
+namespace {
+
+using fabric::Vector;
+
+std::vector<double> masses_of(const SpringsScene& scene, Problem& problem) {
+  const Fabric& f = scene.fabric;
+  std::vector<double> mass = fabric::lumped_masses(scene.mesh, f.area_density, f.line_density, f.mass);
+  for (const Payload& payload : scene.payloads)
+    for (const int i : selected(payload.where, scene.mesh)) {
+      mass[static_cast<std::size_t>(i)] += payload.add;
+      problem.payload += payload.add;
+    }
+  problem.mass = std::accumulate(mass.begin(), mass.end(), 0.0);
+  return mass;
+}
+
+/// What a unit of pressure does at rest: a third of the area of every triangle, along its normal, at each of
+/// its vertices, m^2.
+std::vector<Vector> area_vectors(const fabric::Mesh& mesh) {
+  std::vector<Vector> sum(mesh.rest.size(), Vector{});
+  for (const auto& triangle : mesh.triangles) {
+    const Vector twice = double_area(mesh.rest, triangle);
+    for (const int i : triangle)
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        sum[static_cast<std::size_t>(i)][axis] += twice[axis] / 6.0;
+  }
+  return sum;
+}
+
+/// A unit along an axis at the vertices where `where` holds.
+std::vector<Vector> unit_forces(const fabric::Mesh& mesh, const std::string& where, std::size_t axis) {
+  std::vector<Vector> units(mesh.rest.size(), Vector{});
+  for (const int i : selected(where, mesh)) units[static_cast<std::size_t>(i)][axis] = 1.0;
+  return units;
+}
+
+/// A force of the strength of an expression along directions: dead where it does not name the time.
+void add_force(const SpringsScene& scene, const std::string& strength, const std::vector<Vector>& direction,
+               Problem& problem) {
+  fabric::Parameters& p = problem.parameters;
+  if (depends_on_time(strength)) {
+    p.timed_loads.push_back({device_program(strength), problem.to_solver(direction)});
+    return;
+  }
+  const std::vector<double> values = values_at(strength, scene.mesh);
+  for (std::size_t k = 0; k < p.load.size(); ++k) {
+    const auto i = static_cast<std::size_t>(problem.order[k]);
+    for (std::size_t axis = 0; axis < 3; ++axis) p.load[k][axis] += values[i] * direction[i][axis];
+  }
+}
+
+void add_loads(const SpringsScene& scene, Problem& problem) {
+  fabric::Parameters& p = problem.parameters;
+  p.load.assign(scene.mesh.rest.size(), Vector{});
+  for (const Load& load : scene.loads) {
+    for (std::size_t axis = 0; axis < load.gravity.size(); ++axis) p.gravity[axis] += load.gravity[axis];
+    if (!load.pressure.empty()) add_force(scene, load.pressure, area_vectors(scene.mesh), problem);
+    if (!load.follower_pressure.empty())
+      p.follower_pressures.push_back({device_program(load.follower_pressure), {}});
+    if (!load.force) continue;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      if (const std::string& strength = load.force->of(axis); !strength.empty())
+        add_force(scene, strength, unit_forces(scene.mesh, load.where, axis), problem);
+  }
+}
+
+void add_motions(const SpringsScene& scene, Problem& problem) {
+  std::vector<int> place(problem.order.size());
+  for (std::size_t k = 0; k < place.size(); ++k)
+    place[static_cast<std::size_t>(problem.order[k])] = static_cast<int>(k);
+  for (const Pin& pin : scene.pins)
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      // A place that stays needs no motion: the vertex starts there.
+      if (!depends_on_time(pin.motion.of(axis))) continue;
+      std::vector<int> vertices = selected(pin.where, scene.mesh);
+      for (int& i : vertices) i = place[static_cast<std::size_t>(i)];
+      problem.parameters.motions.push_back(
+          {static_cast<int>(axis), vertices, device_program(pin.motion.of(axis))});
+    }
+}
+
+/// The places and velocities at the start, and which axes are held there.
+std::vector<std::uint8_t> place_vertices(const SpringsScene& scene, Problem& problem) {
+  const std::size_t n = scene.mesh.rest.size();
+  problem.x = values_at(scene.initial.displacement, scene.mesh);
+  problem.v = values_at(scene.initial.velocity, scene.mesh);
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      problem.x[i][axis] += (1.0 + scene.initial.prestretch) * scene.mesh.rest[i][axis];
+  std::vector<std::uint8_t> pinned(n, 0);
+  for (const Pin& pin : scene.pins) {
+    const std::vector<Vector> motion = values_at(pin.motion, scene.mesh);
+    for (const int vertex : selected(pin.where, scene.mesh)) {
+      const auto i = static_cast<std::size_t>(vertex);
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        if (pin.axes.find("xyz"[axis]) == std::string::npos) continue;
+        pinned[i] |= static_cast<std::uint8_t>(1U << axis);
+        problem.v[i][axis] = 0.0;
+        if (!pin.motion.of(axis).empty()) problem.x[i][axis] = scene.mesh.rest[i][axis] + motion[i][axis];
+      }
+    }
+  }
+  return pinned;
+}
+
+template <class T>
+std::vector<T> permuted(std::span<const T> values, const std::vector<int>& order) {
+  std::vector<T> result;
+  result.reserve(values.size());
+  for (const int i : order) result.push_back(values[static_cast<std::size_t>(i)]);
+  return result;
+}
+
+}  // namespace
+
+std::vector<Vector> Problem::to_solver(std::span<const Vector> values) const {
+  return permuted(values, order);
+}
+
+std::vector<Vector> Problem::to_scene(std::span<const Vector> values) const {
+  std::vector<Vector> result(values.size());
+  for (std::size_t k = 0; k < order.size(); ++k) result[static_cast<std::size_t>(order[k])] = values[k];
+  return result;
+}
+
+Problem make_problem(const SpringsScene& scene) {
+  Problem problem;
+  problem.order = local_order(scene.mesh);
+  fabric::Parameters& p = problem.parameters;
+  p.mesh = renumbered(scene.mesh, problem.order);
+  p.material = scene.fabric.material;
+  p.mass = permuted<double>(masses_of(scene, problem), problem.order);
+  p.pinned = permuted<std::uint8_t>(place_vertices(scene, problem), problem.order);
+  add_loads(scene, problem);
+  add_motions(scene, problem);
+  p.damping = scene.damping.absolute;
+  p.relative_damping = scene.damping.relative;
+  p.integrator = scene.time.integrator;
+  p.dt = scene.time.dt.value_or(1.0);
+  for (const Probe& probe : scene.output.probes) problem.probes.push_back(nearest_vertex(p.mesh, probe.at));
+  return problem;
+}
+
+}  // namespace drogue::springs_app

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "kernels/fabric/status.hpp"
+#include "miniapps/springs/scene.hpp"
+
+namespace drogue::springs_app {
+
+/// All that a restarted run needs to go on with the same bits, vertices in the scene's numbering.
+struct RestartState {
+  fabric::Clock clock;
+  std::int64_t stop_step = 0;         ///< at which the steps in progress reach `stop_time`
+  double stop_time = 0.0;             ///< s
+  double dt_min = 0.0, dt_max = 0.0;  ///< s, of the steps so far
+  std::vector<fabric::Vector> x, v;
+};
+
+/// Names the mesh, the fabric and what acts on it; output, end time and checks may change between a run and
+/// its continuation.
+std::string scene_fingerprint(SpringsScene scene);
+
+/// Writes atomically.
+void write_restart(const std::filesystem::path& file, const std::string& fingerprint,
+                   const RestartState& state);
+
+/// Throws Failure(io_error) for a file that is damaged or of another scene.
+RestartState read_restart(const std::filesystem::path& file, const SpringsScene& scene);
+
+}  // namespace drogue::springs_app

@@ -1,0 +1,55 @@
+#include "miniapps/springs/scene.hpp"
+
+#include "common/scene/document.hpp"
+#include "common/scene/parse.hpp"
+#include "common/scene/print.hpp"
+#include "common/scene/read.hpp"
+#include "miniapps/springs/scene_check.hpp"
+#include "miniapps/springs/scene_keys.hpp"
+
+namespace drogue::springs_app {
+
+bool SpringsScene::has_triangles() const {
+  return mesh.rest.empty() ? !source.string : !mesh.triangles.empty();
+}
+
+bool SpringsScene::has_lines() const {
+  return mesh.rest.empty() ? source.string || !source.file.empty() : !mesh.lines.empty();
+}
+
+SpringsScene read_springs_scene(const std::filesystem::path& file, const std::vector<std::string>& sets) {
+  scene::Node document = scene::parse_file(file);
+  for (const std::string& assignment : sets) scene::apply_set(document, assignment);
+  SpringsScene result;
+  result.file = file;
+  result.name = file.stem().string();
+  scene::Table root;
+  declare_springs_scene(root, result);
+  scene::read(root, document);
+  complete_and_check(root, result);
+  return result;
+}
+
+std::string print_springs_scene(const SpringsScene& scene) {
+  SpringsScene copy = scene;
+  scene::Table root;
+  declare_springs_scene(root, copy);
+  return scene::print(root);
+}
+
+std::string document_springs_scene() {
+  SpringsScene defaults;
+  scene::Table root;
+  declare_springs_scene(root, defaults);
+  return R"(# Springs scenes: all keys
+
+Written from the declarations that also read, check and print a scene; do not edit. After a change of them:
+`DROGUE_UPDATE_DOCS=1 ctest --test-dir build/host -R SpringsSceneDocument`.
+
+A scene is a TOML file. Unknown keys are refused. Numbers are in SI units; an integer is accepted for a real. Expressions are
+those of muParser; x, y, z are coordinates at rest, t is the time. How a scene is verified: [springs](springs.md).
+
+)" + scene::document(root);
+}
+
+}  // namespace drogue::springs_app

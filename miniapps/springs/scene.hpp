@@ -1,0 +1,150 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "kernels/fabric/mass.hpp"
+#include "kernels/fabric/parameters.hpp"
+#include "miniapps/springs/mesh_generators.hpp"
+
+/// The scene of `drogue-springs`: what a TOML file says, checked and with every default filled in.
+namespace drogue::springs_app {
+
+/// A vector whose components are expressions; an empty one is zero, or not given.
+struct ExpressionVector {
+  std::string x, y, z;
+
+  [[nodiscard]] const std::string& of(std::size_t axis) const { return axis == 0 ? x : axis == 1 ? y : z; }
+  [[nodiscard]] bool given() const { return !(x.empty() && y.empty() && z.empty()); }
+};
+
+/// Exactly one of the generators or a file is set.
+struct MeshSource {
+  std::optional<Rectangle> rectangle;
+  std::optional<Disk> disk;
+  std::optional<Strip> strip;
+  std::optional<Triangle> triangle;
+  std::optional<String> string;
+  std::string file;  ///< as the scene names it, relative to the scene
+};
+
+struct Fabric {
+  fabric::Material material;
+  double area_density = 0.756;  ///< kg/m^2
+  fabric::Lumping mass = fabric::Lumping::area;
+  double line_density = 0.001;      ///< kg/m
+  double axial_stiffness = 5000.0;  ///< of strings, N
+  std::optional<double> stiffness;  ///< N/m an edge
+};
+
+struct Initial {
+  ExpressionVector displacement, velocity;  ///< of x, y, z at rest
+  double prestretch = 0.0;                  ///< rest coordinates grow by this strain
+};
+
+struct Pin {
+  std::string where;  ///< of x, y, z at rest
+  std::string axes = "xyz";
+  ExpressionVector motion;  ///< displacement from rest, of x, y, z, t
+};
+
+/// Exactly one of the four is set.
+struct Load {
+  std::vector<double> gravity;            ///< m/s^2
+  std::string pressure;                   ///< dead, N per m^2 at rest along the normal at rest
+  std::string follower_pressure;          ///< N per m^2 along the normal now
+  std::optional<ExpressionVector> force;  ///< N on each vertex
+  std::string where;                      ///< with force; empty: all
+};
+
+struct Payload {
+  std::string where;
+  double add = 0.0;  ///< kg to each vertex
+};
+
+struct Damping {
+  double absolute = 0.0, relative = 0.0;  ///< 1/s
+};
+
+inline constexpr double most_steps = 1e15;
+
+struct Time {
+  fabric::Integrator integrator = fabric::Integrator::rk4;
+  std::optional<double> dt;  ///< s; none: from the fastest frequency
+  double safety = 0.8;
+  double end_time = 0.0;  ///< s
+};
+
+struct Probe {
+  std::vector<double> at{0.0, 0.0, 0.0};  ///< rest coordinates, m
+};
+
+struct Output {
+  std::vector<std::string> fields;  ///< subset of position, velocity, von_mises; empty: no fields.h5
+  std::vector<double> times;        ///< s, increasing, within the run; empty exactly if `fields` is
+  std::vector<Probe> probes;
+  int history_every = 100;  ///< steps between rows of history.csv; 0: none
+  int restart_every = 0;    ///< steps between restart files; 0: none
+};
+
+/// The frequency at which a probe oscillates.
+struct Frequency {
+  std::vector<double> mode;     ///< of a disk (diameters, circles) or of a string (number)
+  std::optional<double> value;  ///< Hz; none: the closed form of the mode
+  double bar = 0.0;             ///< relative
+  int probe = 0;
+  std::string axis = "z";
+};
+
+/// How fast a front runs from the first probe to the second.
+struct FrontSpeed {
+  double value = 0.0;  ///< m/s
+  double bar = 0.0;    ///< relative
+  std::string axis = "x";
+};
+
+/// Bars, all relative.
+struct Verify {
+  std::optional<double> energy_drift, momentum, angular_momentum, equilibrium;
+  std::optional<double> young, poisson, hencky, catenary, stretch;
+  std::optional<Frequency> frequency;
+  std::optional<FrontSpeed> front_speed;
+};
+
+struct SpringsScene {
+  std::filesystem::path file;
+  std::string name;  ///< the file's name without folder and extension
+  std::string description;
+  MeshSource source;
+  fabric::Mesh mesh;  ///< what the source gives, in its own numbering
+  Fabric fabric;
+  Initial initial;
+  std::vector<Pin> pins;
+  std::vector<Load> loads;
+  std::vector<Payload> payloads;
+  Damping damping;
+  Time time;
+  Output output;
+  Verify verify;
+
+  /// Whether there is cloth, or strings; both where the mesh is yet to be read from a file.
+  [[nodiscard]] bool has_triangles() const;
+  [[nodiscard]] bool has_lines() const;
+};
+
+/// Reads and checks `file`, then the `--set` assignments `key.path=value` in their order. The mesh has been
+/// made and every expression without t evaluated at every vertex when this returns. Throws Failure: usage for
+/// a missing file, invalid_scene (`FILE:LINE: ...`) for all that is wrong in it or in its mesh.
+SpringsScene read_springs_scene(const std::filesystem::path& file, const std::vector<std::string>& sets = {});
+
+/// The resolved scene as TOML: every default that applies, no key that does not. Resolves to itself where the
+/// scene itself lies.
+std::string print_springs_scene(const SpringsScene& scene);
+
+/// All keys with type, range, unit, default and meaning, as the Markdown page docs/scenes-springs.md.
+std::string document_springs_scene();
+
+}  // namespace drogue::springs_app

@@ -1,0 +1,86 @@
+#include <algorithm>
+#include <cmath>
+
+#include "common/scene/read.hpp"
+#include "miniapps/springs/expressions.hpp"
+#include "miniapps/springs/scene_check.hpp"
+
+namespace drogue::springs_app {
+namespace {
+
+using scene::contradict;
+using scene::Table;
+
+void require(const Table& root, bool holds, const std::string& path, const std::string& needs) {
+  if (!holds) contradict(root, path, path + " needs " + needs);
+}
+
+void check_frequency(const Table& root, const SpringsScene& scene) {
+  const Frequency& f = *scene.verify.frequency;
+  const std::size_t numbers = f.mode.size();
+  require(root, std::ranges::all_of(f.mode, [](double m) { return m == std::floor(m); }),
+          "verify.frequency.mode", "integers");
+  if (scene.source.disk)
+    require(root, numbers == 0 || (numbers == 2 && f.mode[1] >= 1.0), "verify.frequency.mode",
+            "two numbers for a disk: nodal diameters, and circles from 1, the rim");
+  if (scene.source.string)
+    require(root, numbers == 0 || (numbers == 1 && f.mode[0] >= 1.0), "verify.frequency.mode",
+            "one number from 1 for a string");
+  const bool has_closed_form = numbers > 0 && (scene.source.disk || scene.source.string);
+  require(root, f.value || has_closed_form, "verify.frequency",
+          "a value, or a mode of a disk or of a string, whose closed form is known");
+  if (scene.source.disk && !f.value)
+    require(root, scene.initial.prestretch > 0.0 && fabric::has_triangles(scene.fabric.material.model),
+            "verify.frequency.mode", "initial.prestretch > 0 and model quadratic or biquadratic");
+  require(root, static_cast<std::size_t>(f.probe) < scene.output.probes.size(), "verify.frequency.probe",
+          "a probe of that number in output.probes");
+}
+
+}  // namespace
+
+void check_verify(const Table& root, const SpringsScene& scene) {
+  const Verify& verify = scene.verify;
+  const MeshSource& source = scene.source;
+  const bool has_rows = scene.output.history_every > 0;
+  const std::string rows = "rows of history.csv: output.history_every > 0";
+  if (verify.energy_drift) {
+    require(root, has_rows, "verify.energy_drift", rows);
+    require(root, scene.damping.absolute == 0.0 && scene.damping.relative == 0.0, "verify.energy_drift",
+            "a scene without damping");
+    const bool steady =
+        std::ranges::none_of(scene.pins, [](const Pin& pin) { return pin.motion.given(); }) &&
+        std::ranges::all_of(scene.loads, [](const Load& load) {
+          return load.follower_pressure.empty() && !depends_on_time(load.pressure) &&
+                 (!load.force || !(depends_on_time(load.force->x) || depends_on_time(load.force->y) ||
+                                   depends_on_time(load.force->z)));
+        });
+    require(root, steady, "verify.energy_drift", "pins that stay and loads that do not change");
+  }
+  if (verify.momentum) require(root, has_rows, "verify.momentum", rows);
+  if (verify.angular_momentum) require(root, has_rows, "verify.angular_momentum", rows);
+  for (const auto& [name, bar] :
+       {std::pair{"verify.young", verify.young}, std::pair{"verify.poisson", verify.poisson}})
+    if (bar)
+      require(root, (source.strip || source.rectangle) && fabric::has_triangles(scene.fabric.material.model),
+              name, "mesh.strip or mesh.rectangle, and model quadratic or biquadratic");
+  if (verify.hencky)
+    require(root,
+            source.disk && fabric::has_triangles(scene.fabric.material.model) && scene.loads.size() == 1 &&
+                constant_value(scene.loads[0].pressure),
+            "verify.hencky", "mesh.disk, model quadratic or biquadratic, and one load, a constant pressure");
+  for (const auto& [name, bar] :
+       {std::pair{"verify.catenary", verify.catenary}, std::pair{"verify.stretch", verify.stretch}})
+    if (bar)
+      require(root, source.string && scene.loads.size() == 1 && !scene.loads[0].gravity.empty(), name,
+              "mesh.string and one load, gravity");
+  if (verify.frequency) {
+    require(root, has_rows, "verify.frequency", rows);
+    check_frequency(root, scene);
+  }
+  if (verify.front_speed) {
+    require(root, has_rows, "verify.front_speed", rows);
+    require(root, scene.output.probes.size() >= 2, "verify.front_speed", "two output.probes");
+  }
+}
+
+}  // namespace drogue::springs_app

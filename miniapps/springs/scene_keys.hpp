@@ -1,0 +1,14 @@
+#pragma once
+
+#include "common/scene/table.hpp"
+#include "miniapps/springs/scene.hpp"
+
+namespace drogue::springs_app {
+
+/// Declares every key of a springs scene, bound to `scene`, which has to outlive `root`.
+void declare_springs_scene(scene::Table& root, SpringsScene& scene);
+
+/// The tables that say how the result is checked.
+void declare_verify(scene::Table& table, Verify& verify);
+
+}  // namespace drogue::springs_app

@@ -1,0 +1,86 @@
+#include "common/scene/codec.hpp"
+#include "miniapps/springs/scene_keys.hpp"
+
+namespace drogue::springs_app {
+namespace {
+
+using scene::Table;
+
+const scene::Choices<std::string> axis_choices = {{"x", "x"}, {"y", "y"}, {"z", "z"}};
+
+}  // namespace
+
+void declare_verify(Table& table, Verify& verify) {
+  const auto bar = [&table](const std::string& name, std::optional<double>& place, const std::string& help) {
+    table.value(name, scene::real_codec(place), help).at_least(0.0);
+  };
+  bar("energy_drift", verify.energy_drift,
+      "Largest change of the energy over the largest kinetic energy that passes");
+  bar("momentum", verify.momentum,
+      "Largest change of the momentum over the largest sqrt(2 M K) that passes; M mass, K kinetic energy");
+  bar("angular_momentum", verify.angular_momentum,
+      "Largest change of the angular momentum over the largest R sqrt(2 M K) that passes; R extent of the "
+      "mesh");
+  bar("equilibrium", verify.equilibrium,
+      "Largest force along a free axis at the end over the largest one along a held axis, or of a dead load, "
+      "that passes");
+  bar("young", verify.young,
+      "Largest relative error of the apparent modulus of a rectangle or strip pulled along x that passes");
+  bar("poisson", verify.poisson,
+      "Largest difference of the apparent Poisson's ratio from the given one that passes");
+  bar("hencky", verify.hencky,
+      "Largest relative error of the deflection at the centre of a clamped disk under a dead pressure that "
+      "passes");
+  bar("catenary", verify.catenary,
+      "Largest distance of a vertex of a hanging string from the elastic catenary, over the span, that "
+      "passes");
+  bar("stretch", verify.stretch,
+      "Largest relative error of the stretch of a string that hangs from its first end that passes");
+  table.optional_table(
+      "frequency", verify.frequency,
+      [](Table& t, Frequency& value) {
+        t.value(
+             "mode",
+             [&value] {
+               scene::Codec codec = scene::reals_codec(value.mode, 0, false);
+               codec.type = "array of integers";
+               codec.print = [print = codec.print, &value] {
+                 return value.mode.empty() ? std::nullopt : print();
+               };
+               return codec;
+             }(),
+             "[nodal diameters, circles] of a disk, [number] of the longitudinal mode of a string that is "
+             "held "
+             "at its first end")
+            .range(0, 1000)
+            .default_text("none");
+        t.value("value", scene::real_codec(value.value), "What it should be")
+            .unit("Hz")
+            .above(0.0)
+            .default_text("closed form of the mode");
+        t.value("bar", scene::real_codec(value.bar), "Largest relative error that passes")
+            .at_least(0.0)
+            .required();
+        t.value("probe", scene::integer_codec(value.probe), "Number of the probe, from 0").range(0, 1e6);
+        t.value("axis", scene::choice_codec(value.axis, axis_choices), "Axis along which it oscillates");
+      },
+      "The frequency at which a probe oscillates");
+  table.optional_table(
+      "front_speed", verify.front_speed,
+      [](Table& t, FrontSpeed& value) {
+        t.value("value", scene::real_codec(value.value), "What it should be")
+            .unit("m/s")
+            .above(0.0)
+            .required();
+        t.value("bar", scene::real_codec(value.bar), "Largest relative error that passes")
+            .at_least(0.0)
+            .required();
+        t.value("axis", scene::choice_codec(value.axis, axis_choices),
+                "Axis along which the front displaces");
+      },
+      "The speed of the front that displaces the first probe, then the second: between the times at which "
+      "each has "
+      "half its largest displacement");
+}
+
+}  // namespace drogue::springs_app

@@ -1,0 +1,220 @@
+#include "miniapps/springs/simulation.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <sstream>
+
+#include "common/program/signals.hpp"
+#include "kernels/device/ledger.hpp"
+#include "kernels/device/runtime.hpp"
+
+namespace drogue::springs_app {
+namespace {
+
+using fabric::Vector;
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+/// Device time after which the host looks whether a signal came.
+constexpr double look_every_s = 0.1;
+
+/// Steps from one look at the fastest frequency to the next: stiffness grows with strain, mostly at the
+/// start.
+std::int64_t bound_every(std::int64_t step) { return step < 1024 ? 64 : 512; }
+
+}  // namespace
+
+void describe_device(run::ResultDocument& result, device::Backend backend) {
+  const device::DeviceFacts facts = device::device_facts();
+  result.backend = std::string(device::name(backend));
+  result.threads = backend == device::Backend::openmp ? facts.threads : 1;
+  result.device = backend == device::Backend::cuda ? facts.gpu : result.provenance.cpu;
+  result.provenance.kokkos = facts.kokkos_version;
+  result.provenance.gpu = facts.gpu;
+  result.provenance.driver = facts.driver;
+}
+
+Simulation::Simulation(const SpringsScene& scene, const RunSettings& settings)
+    : _scene(scene), _settings(settings), _problem(make_problem(scene)) {
+  const auto begin = Clock::now();
+  _solver = fabric::create_solver(settings.backend, _problem.parameters);
+  if (settings.restart.empty()) {
+    const auto upload = Clock::now();
+    _solver->upload(_problem.to_solver(_problem.x), _problem.to_solver(_problem.v));
+    _h2d_s = seconds_since(upload);
+    plan();
+  } else {
+    resume();
+  }
+  _setup_s = seconds_since(begin);
+}
+
+void Simulation::resume() {
+  const RestartState state = read_restart(_settings.restart, _scene);
+  _solver->set_clock(state.clock);
+  _solver->upload(_problem.to_solver(state.x), _problem.to_solver(state.v));
+  _stop_step = state.stop_step;
+  _stop_time = state.stop_time;
+  _dt_min = state.dt_min;
+  _dt_max = state.dt_max;
+  // Other outputs than before, or a later end: from here on the steps meet those.
+  if (state.clock.step >= _stop_step || _stop_time != next_stop(state.clock.time())) plan();
+}
+
+double Simulation::next_stop(double time) const {
+  for (const double output : _scene.output.times)
+    if (output > time) return std::min(output, _scene.time.end_time);
+  return _scene.time.end_time;
+}
+
+bool Simulation::is_output_time(double time) const {
+  return std::ranges::count(_scene.output.times, time) > 0;
+}
+
+double Simulation::stable_dt() {
+  return fabric::stable_dt(_scene.time.integrator, _solver->fastest_frequency(), _solver->fastest_decay());
+}
+
+/// Equal steps from now to the next stop, none longer than is stable or asked for.
+void Simulation::plan() {
+  const std::int64_t step = _solver->clock().step;
+  const double begin = time();
+  _stop_time = next_stop(begin);
+  _stop_step = step;
+  if (_stop_time <= begin) return;
+  const double longest = _scene.time.dt ? *_scene.time.dt : _scene.time.safety * stable_dt();
+  // Round-off of a quotient that should be whole must not add a step.
+  const double steps = std::max(1.0, std::ceil((_stop_time - begin) / longest * (1.0 - 1e-12)));
+  if (!(steps <= most_steps))
+    throw Failure(ExitCode::numerical_failure,
+                  "the fastest frequency of the mesh allows no step that ends: more than 1e15 to t = " +
+                      std::to_string(_stop_time) + " s");
+  const double dt = (_stop_time - begin) / steps;
+  _stop_step += static_cast<std::int64_t>(steps);
+  _solver->set_clock({step, dt, step, begin});
+  _dt_min = _dt_min > 0.0 ? std::min(_dt_min, dt) : dt;
+  _dt_max = std::max(_dt_max, dt);
+}
+
+/// The bound of the step is asked for again now and then; where it has shrunk, so do the steps.
+void Simulation::replan_if_stiffer() {
+  if (_scene.time.dt) return;
+  if (_solver->clock().dt > 1.02 * _scene.time.safety * stable_dt()) plan();
+}
+
+std::int64_t Simulation::steps_to_event() const {
+  const std::int64_t step = _solver->clock().step;
+  std::int64_t next = _stop_step;
+  for (const std::int64_t every :
+       {std::int64_t{_scene.output.history_every}, std::int64_t{_scene.output.restart_every},
+        _scene.time.dt ? 0 : bound_every(step)})
+    if (every > 0) next = std::min(next, (step / every + 1) * every);
+  return next - step;
+}
+
+void Simulation::round_trip() {
+  std::vector<Vector> x(_problem.x.size()), v(x.size());
+  const auto begin = Clock::now();
+  _solver->download(x, v);
+  const auto middle = Clock::now();
+  _solver->upload(x, v);
+  _d2h_s += std::chrono::duration<double>(middle - begin).count();
+  _h2d_s += seconds_since(middle);
+}
+
+/// False if a state was lost or a signal came before all steps were taken.
+bool Simulation::advance(std::int64_t steps, ProgressLine& progress) {
+  while (steps > 0) {
+    const std::int64_t part = std::min(steps, _settings.seed_mode || !_warm ? 1 : _piece);
+    const auto begin = Clock::now();
+    const bool goes_on = _solver->advance(part) && !_solver->failure();
+    const double seconds = seconds_since(begin);
+    _compute_s += seconds;
+    if (!goes_on) return false;
+    if (_settings.seed_mode) round_trip();
+    if (!_warm) device::end_warmup();
+    if (_warm && seconds < 0.5 * look_every_s && part == _piece) _piece *= 2;
+    if (seconds > look_every_s) _piece = std::max<std::int64_t>(1, _piece / 2);
+    _warm = true;
+    steps -= part;
+    progress.update(_solver->clock().step, time(), _scene.time.end_time);
+    if (steps > 0 && interrupted()) return false;
+  }
+  return true;
+}
+
+/// What falls on the step now.
+void Simulation::reach_event(RunOutput& output) {
+  const Output& wanted = _scene.output;
+  const std::int64_t step = _solver->clock().step;
+  const bool at_stop = step == _stop_step, at_end = at_stop && _stop_time == _scene.time.end_time;
+  if (wanted.history_every > 0 && (at_end || step % wanted.history_every == 0)) output.write_row(row());
+  if (at_stop && is_output_time(_stop_time)) output.write_fields(snapshot());
+  if (at_stop)
+    plan();
+  else if (step % bound_every(step) == 0)
+    replan_if_stiffer();
+  if (wanted.restart_every > 0 && step % wanted.restart_every == 0) output.write_restart(restart_state());
+}
+
+ExitCode Simulation::run(const run::RunDirectory& directory, run::ResultDocument& result) {
+  const bool resumed = !_settings.restart.empty();
+  RunOutput output(_scene, directory, resumed ? std::optional<double>(time()) : std::nullopt);
+  if (!resumed) {
+    output.write_row(row());
+    if (is_output_time(0.0)) output.write_fields(snapshot());
+  }
+  ProgressLine progress(_settings.quiet);
+  // However this ends, the result says how far it came.
+  const struct Describe {
+    const Simulation& simulation;
+    run::ResultDocument& result;
+    ~Describe() { simulation.describe(result); }
+  } describe_at_end{*this, result};
+  while (_solver->clock().step < _stop_step && !interrupted()) {
+    if (!advance(steps_to_event(), progress)) break;
+    reach_event(output);
+  }
+  progress.finish();
+  const auto failure = _solver->failure();
+  const bool done = !failure && _solver->clock().step == _stop_step;
+  if (!done) output.write_restart(restart_state());
+  output.finish();
+  _io_s = output.waited();
+  if (failure) throw Failure(ExitCode::numerical_failure, failure_text(*failure));
+  return done ? ExitCode::ok : ExitCode::interrupted;
+}
+
+std::string Simulation::failure_text(const fabric::Failure& failure) const {
+  std::ostringstream text;
+  text.precision(9);
+  const auto vertex = static_cast<std::size_t>(_problem.order.at(static_cast<std::size_t>(failure.vertex)));
+  const Vector& rest = _scene.mesh.rest[vertex];
+  text << "the state is not finite at vertex " << vertex << " (at rest at " << rest[0] << ", " << rest[1]
+       << ", " << rest[2] << " m) at step " << failure.step << ", t = " << failure.time
+       << " s; restart.h5 holds the last good state, of step " << _solver->clock().step;
+  if (_scene.time.dt) text << "; time.dt = \"auto\" takes a step that is stable";
+  return text.str();
+}
+
+void Simulation::describe(run::ResultDocument& result) const {
+  const device::Ledger ledger = device::ledger();
+  result.steps = _solver->clock().step;
+  result.time = time();
+  result.dt_min = _dt_min;
+  result.dt_max = _dt_max;
+  result.timing.setup_s = _setup_s;
+  result.timing.compute_s = _compute_s;
+  result.timing.h2d_s = _h2d_s;
+  result.timing.d2h_s = _d2h_s;
+  result.timing.io_s = _io_s;
+  result.ledger = {ledger.kernel_launches, ledger.fences, ledger.allocations_after_warmup, ledger.h2d_bytes,
+                   ledger.d2h_bytes};
+  result.peak_bytes.device = ledger.peak_device_bytes;
+}
+
+}  // namespace drogue::springs_app

@@ -1,0 +1,75 @@
+#include <algorithm>
+#include <cmath>
+
+#include "miniapps/springs/simulation.hpp"
+
+// What is read back of a solver, in the numbering of the scene.
+
+namespace drogue::springs_app {
+
+using fabric::Vector;
+
+double Simulation::time() const {
+  const fabric::Clock now = _solver->clock();
+  // At a stop the time is that stop to the bit.
+  return now.step == _stop_step ? _stop_time : now.time();
+}
+
+Row Simulation::row() {
+  const fabric::Totals sum = _solver->totals();
+  Row row{time(),       _solver->clock().step, sum.kinetic, sum.elastic, sum.gravity + sum.load,
+          sum.momentum, sum.angular_momentum,  {}};
+  if (_scene.output.probes.empty()) return row;
+  std::vector<Vector> x(_problem.x.size()), v(x.size());
+  _solver->download(x, v);
+  for (const int vertex : _problem.probes) row.probes.push_back(x[static_cast<std::size_t>(vertex)]);
+  return row;
+}
+
+Snapshot Simulation::snapshot() {
+  std::vector<Vector> x(_problem.x.size()), v(x.size());
+  _solver->download(x, v);
+  Snapshot snapshot;
+  snapshot.time = time();
+  snapshot.step = _solver->clock().step;
+  const auto wanted = [&](const char* field) { return std::ranges::count(_scene.output.fields, field) > 0; };
+  if (wanted("position")) snapshot.position = _problem.to_scene(x);
+  if (wanted("velocity")) snapshot.velocity = _problem.to_scene(v);
+  if (!wanted("von_mises")) return snapshot;
+  std::vector<fabric::Stress> stress(_scene.mesh.triangles.size());
+  _solver->stress(fabric::StressMeasure::cauchy, stress);
+  for (const fabric::Stress& s : stress) snapshot.von_mises.push_back(s.von_mises());
+  return snapshot;
+}
+
+RestartState Simulation::restart_state() {
+  RestartState state{_solver->clock(), _stop_step, _stop_time, _dt_min, _dt_max, {}, {}};
+  std::vector<Vector> x(_problem.x.size()), v(x.size());
+  _solver->download(x, v);
+  state.x = _problem.to_scene(x);
+  state.v = _problem.to_scene(v);
+  return state;
+}
+
+FinalState Simulation::final_state() {
+  const fabric::Parameters& p = _problem.parameters;
+  FinalState state;
+  state.mass = _problem.mass;
+  state.payload = _problem.payload;
+  std::vector<Vector> x(_problem.x.size()), v(x.size()), force(x.size());
+  _solver->download(x, v);
+  _solver->forces(force);
+  for (std::size_t i = 0; i < force.size(); ++i)
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      force[i][axis] += p.mass[i] * p.gravity[axis];
+      state.largest_load = std::max(state.largest_load, std::abs(p.load[i][axis]));
+    }
+  state.x = _problem.to_scene(x);
+  state.force = _problem.to_scene(force);
+  state.pinned.resize(p.pinned.size());
+  for (std::size_t k = 0; k < p.pinned.size(); ++k)
+    state.pinned[static_cast<std::size_t>(_problem.order[k])] = p.pinned[k];
+  return state;
+}
+
+}  // namespace drogue::springs_app

@@ -1,0 +1,165 @@
+"""Pictures of a run of drogue-springs: shaded cloth in the colours of its stress or displacement, strings as lines."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.colors import Normalize
+
+from . import style
+from .run_directory import Run, Snapshot
+from .style import plt
+
+MAX_FRAMES = 60
+_SIZE = (5.2, 4.0)
+_DPI = 100
+_AXES = "xyz"
+# Thinner than this share of its length, a body is drawn in its plane.
+_FLAT = 0.02
+# Percentile of all values at which the colours end.
+_BRIGHT = 99.5
+_AZIMUTH, _ELEVATION = np.radians(-65), np.radians(28)
+_LIGHT = np.array([-0.4, -0.5, 0.77])
+
+
+@dataclass
+class View:
+    """A run and the way in which it is looked at: along an axis, or from above and the side."""
+
+    run: Run
+    across: np.ndarray = field(init=False)  # rows: to the right, up, towards the eye
+    labels: tuple[str, str] | None = field(init=False)
+
+    def __post_init__(self):
+        every = np.concatenate([self.positions(snapshot) for snapshot in self.run.snapshots])
+        extent = np.ptp(every, axis=0)
+        thin = int(extent.argmin())
+        self.labels = None
+        if extent[thin] < _FLAT * extent.max():
+            # x or y to the right, z or y upwards.
+            shown = [axis for axis in range(3) if axis != thin]
+            self.across = np.eye(3)[[*shown, thin]]
+            self.labels = tuple(_AXES[axis] for axis in shown)
+        else:
+            right = np.array([-np.sin(_AZIMUTH), np.cos(_AZIMUTH), 0])
+            eye = np.array([np.cos(_AZIMUTH) * np.cos(_ELEVATION), np.sin(_AZIMUTH) * np.cos(_ELEVATION), np.sin(_ELEVATION)])
+            self.across = np.array([right, np.cross(eye, right), eye])
+
+    @property
+    def triangles(self) -> np.ndarray:
+        return self.run.mesh["triangles"].values
+
+    @property
+    def quantity(self) -> tuple[str, str]:
+        """Name and unit of what the colours mean."""
+        if "von_mises" in self.run.snapshots[-1].fields:
+            return "von Mises stress", "N/m"
+        return "displacement", "m"
+
+    def positions(self, snapshot: Snapshot) -> np.ndarray:
+        moved = snapshot.fields.get("position")
+        return self.run.mesh["vertices"].values if moved is None else moved.values
+
+    def values(self, snapshot: Snapshot) -> np.ndarray:
+        """What is coloured: a value a triangle, or of strings an edge."""
+        if "von_mises" in snapshot.fields:
+            return snapshot.fields["von_mises"].values
+        moved = np.linalg.norm(self.positions(snapshot) - self.run.mesh["vertices"].values, axis=1)
+        parts = self.triangles if len(self.triangles) else self.run.mesh["edges"].values
+        return moved[parts].mean(axis=1)
+
+    def seen(self, snapshot: Snapshot) -> np.ndarray:
+        """Coordinates to the right, up and towards the eye."""
+        return self.positions(snapshot) @ self.across.T
+
+
+def _shades(view: View, snapshot: Snapshot, colours: np.ndarray) -> np.ndarray:
+    """Colours darker where the cloth turns from the light; both sides look alike."""
+    if view.labels is not None:
+        return colours
+    corners = view.positions(snapshot)[view.triangles]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    lengths = np.linalg.norm(normals, axis=1)
+    facing = np.abs(normals @ _LIGHT) / np.where(lengths > 0, lengths, 1)
+    shaded = colours.copy()
+    shaded[:, :3] *= (0.55 + 0.45 * np.minimum(1, facing))[:, None]
+    return shaded
+
+
+class Picture:
+    """A figure that can show one snapshot after another on the same axes and colours."""
+
+    def __init__(self, view: View):
+        self._view = view
+        snapshots = view.run.snapshots
+        self.figure, axes = plt.subplots(figsize=_SIZE, dpi=_DPI)
+        values = np.concatenate([view.values(snapshot) for snapshot in snapshots])
+        # A few triangles at a pull would leave all others dark.
+        low, high = float(np.nanmin(values)), float(np.nanpercentile(values, _BRIGHT))
+        self._map = plt.cm.ScalarMappable(Normalize(low, high if high > low else low + 1), "viridis")
+        if len(view.triangles):
+            self._parts = PolyCollection([], linewidth=0.2)
+        else:
+            self._parts = LineCollection([], linewidth=2.2)
+        axes.add_collection(self._parts)
+        seen = np.concatenate([view.seen(snapshot)[:, :2] for snapshot in snapshots])
+        margin = 0.04 * max(np.ptp(seen[:, 0]), np.ptp(seen[:, 1]))
+        axes.set_xlim(seen[:, 0].min() - margin, seen[:, 0].max() + margin)
+        axes.set_ylim(seen[:, 1].min() - margin, seen[:, 1].max() + margin)
+        axes.set_aspect("equal")
+        if view.labels is None:
+            axes.axis("off")
+        else:
+            axes.set_xlabel(style.axis_label(view.labels[0], "m"))
+            axes.set_ylabel(style.axis_label(view.labels[1], "m"))
+        extend = "max" if np.nanmax(values) > self._map.norm.vmax else "neither"
+        bar = self.figure.colorbar(self._map, ax=axes, shrink=0.8, pad=0.03, extend=extend)
+        bar.set_label(style.axis_label(*view.quantity))
+        bar.outline.set_visible(False)
+        self.figure.subplots_adjust(left=0.14, right=0.94, top=0.86, bottom=0.12)
+        self._caption = style.heading(self.figure, view.run.name, "")
+
+    def show(self, snapshot: Snapshot) -> None:
+        view = self._view
+        seen, colours = view.seen(snapshot), self._map.to_rgba(view.values(snapshot))
+        if len(view.triangles):
+            # What is farther from the eye is painted first.
+            order = seen[view.triangles, 2].mean(axis=1).argsort(kind="stable")
+            colours = _shades(view, snapshot, colours)[order]
+            self._parts.set_verts(seen[view.triangles[order], :2])
+            self._parts.set_facecolor(colours)
+            self._parts.set_edgecolor(colours)
+        else:
+            self._parts.set_segments(seen[view.run.mesh["edges"].values, :2])
+            self._parts.set_color(colours)
+        count = len(view.run.mesh["vertices"].values)
+        self._caption.set_text(f"{count} vertices, t = {snapshot.time:.4g} s{_checks(view.run)}")
+
+
+def _checks(run: Run) -> str:
+    """The first check, as the heading shows it."""
+    checks = run.result.get("checks", [])
+    if not checks or checks[0]["value"] is None:
+        return ""
+    check = checks[0]
+    return f", {style.check_label(check['name'])} {check['value']:.2g} (bar {check['bar']:.2g})"
+
+
+def figure(view: View, snapshot: Snapshot):
+    picture = Picture(view)
+    picture.show(snapshot)
+    return picture.figure
+
+
+def frames(view: View):
+    """Yields pictures as (height, width, 3) arrays of bytes, at most MAX_FRAMES evenly chosen snapshots."""
+    snapshots = view.run.snapshots
+    count = min(len(snapshots), MAX_FRAMES)
+    picture = Picture(view)
+    for k in np.linspace(0, len(snapshots) - 1, count).round().astype(int):
+        picture.show(snapshots[k])
+        picture.figure.canvas.draw()
+        pixels = np.asarray(picture.figure.canvas.buffer_rgba())[..., :3]
+        # Most MP4 players want even sizes.
+        yield pixels[: pixels.shape[0] // 2 * 2, : pixels.shape[1] // 2 * 2].copy()
+    plt.close(picture.figure)

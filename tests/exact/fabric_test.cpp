@@ -1,0 +1,91 @@
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "kernels/device/runtime.hpp"
+#include "kernels/fabric/solver.hpp"
+#include "tests/support/expression_program.hpp"
+#include "tests/support/fabric_mesh.hpp"
+#include "tests/support/in_child.hpp"
+
+// Every backend and every number of threads moves cloth to the same bits, and measures the same.
+
+namespace drogue::fabric {
+namespace {
+
+using testing::in_child;
+using testing::postfix;
+using testing::random_patch;
+using testing::shaken;
+
+std::vector<Vector> random_vectors(std::size_t n, double size, unsigned seed) {
+  return shaken(std::vector<Vector>(n, Vector{}), size, seed);
+}
+
+Parameters cloth(Model model, bool tension_only, Integrator integrator) {
+  Parameters p;
+  p.mesh = random_patch(50, 41, 3);
+  p.mesh.rest.resize(50 * 41);
+  p.mesh.lines = {{0, 49}, {3, 4}};
+  p.mesh.line_stiffness = {300.0, 700.0};
+  p.material.model = model;
+  p.material.tension_only = tension_only;
+  p.material.bending_stiffness = 0.01;
+  for (std::size_t i = 0; i < p.mesh.rest.size(); ++i)
+    p.mass.push_back(0.01 + 0.001 * static_cast<double>(i % 7));
+  p.gravity = {0.5, -1.0, -9.81};
+  p.damping = 0.3, p.relative_damping = 4.0;
+  p.follower_pressures = {{postfix({30.0, "x", "t", "*", "sin", "+"}), {}}};
+  p.timed_loads = {{postfix({"t", "exp"}), random_vectors(p.mass.size(), 0.1, 9)}};
+  p.motions = {{2, {0, 5}, postfix({"t", 40.0, "*", "sin"})}};
+  p.integrator = integrator;
+  p.dt = 1e-4;
+  return p;
+}
+
+template <class T>
+void append(std::string& bytes, const std::vector<T>& values) {
+  bytes.append(reinterpret_cast<const char*>(values.data()),
+               values.size() * sizeof(T));  // NOLINT: bits are what is compared
+}
+
+/// Everything a solver can tell after 80 steps.
+std::string run_bytes(device::Backend backend, int threads, const Parameters& p) {
+  const device::Runtime runtime({"--kokkos-num-threads=" + std::to_string(threads)});
+  const auto solver = create_solver(backend, p);
+  const std::size_t n = p.mass.size();
+  std::vector<Vector> x = shaken(p.mesh.rest, 0.1, 1), v = random_vectors(n, 1.0, 2), f(n);
+  solver->upload(x, v);
+  if (!solver->advance(80) || solver->failure()) throw std::runtime_error("the state was lost");
+  solver->download(x, v);
+  solver->forces(f);
+  std::vector<Stress> triangles(p.mesh.triangles.size()), vertices(n);
+  solver->stress(StressMeasure::nominal, triangles);
+  solver->vertex_stress(StressMeasure::cauchy, vertices);
+  std::string bytes;
+  for (const auto& values : {x, v, f}) append(bytes, values);
+  append(bytes, triangles);
+  append(bytes, vertices);
+  append(bytes, std::vector<double>{solver->fastest_frequency(), solver->fastest_decay()});
+  append(bytes, std::vector<Totals>{solver->totals()});
+  return bytes;
+}
+
+TEST(ExactFabric, BackendsAndThreadsAgree) {
+  for (const Model model : {Model::edge, Model::quadratic, Model::biquadratic})
+    for (const bool tension_only : {false, true})
+      for (const Integrator integrator : {Integrator::rk4, Integrator::verlet}) {
+        const Parameters p = cloth(model, tension_only, integrator);
+        const std::string serial = in_child([&] { return run_bytes(device::Backend::serial, 1, p); });
+        ASSERT_GT(serial.size(), 9 * sizeof(double) * p.mass.size());
+        for (const device::Backend backend : device::compiled_backends()) {
+          if (backend == device::Backend::serial || !device::is_present(backend)) continue;
+          for (const int threads : {1, 3})
+            EXPECT_TRUE(in_child([&] { return run_bytes(backend, threads, p); }) == serial)
+                << name(backend) << ", " << threads << " threads, model " << static_cast<int>(model);
+        }
+      }
+}
+
+}  // namespace
+}  // namespace drogue::fabric

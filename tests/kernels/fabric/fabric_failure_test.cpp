@@ -1,0 +1,158 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "kernels/fabric/solver.hpp"
+#include "tests/support/fabric_mesh.hpp"
+
+// A state that is lost: what is told of it, and where the solver goes back to.
+
+namespace drogue::fabric {
+namespace {
+
+using testing::random_patch;
+using testing::shaken;
+
+constexpr auto backend = device::Backend::DROGUE_TEST_BACKEND;
+constexpr Integrator integrators[] = {Integrator::rk4, Integrator::verlet};
+
+/// A hundred vertices of which each goes its own way.
+Parameters dust(Integrator integrator) {
+  Parameters p;
+  p.mesh.rest.assign(100, Vector{});
+  p.mass.assign(100, 1.0);
+  p.integrator = integrator;
+  p.dt = 0.1;
+  return p;
+}
+
+TEST(FabricFailure, NamesTheFirstStepAndItsFirstVertex) {
+  for (const Integrator integrator : integrators) {
+    const auto solver = create_solver(backend, dust(integrator));
+    const std::vector<Vector> x(100, Vector{});
+    std::vector<Vector> v = x;
+    v[20] = {0.0, -0.5e100, 0.0};         // lost when 0.5 + 0.05 n reaches 1: at step 10
+    v[83] = v[71] = {0.6e100, 0.0, 0.0};  // 0.6 + 0.06 n: at step 7
+    solver->upload(x, v);
+    EXPECT_TRUE(solver->advance(6));
+    EXPECT_FALSE(solver->failure());
+    solver->advance(20);
+    const std::optional<Failure> failure = solver->failure();
+    ASSERT_TRUE(failure);
+    EXPECT_EQ(failure->vertex, 71);
+    EXPECT_EQ(failure->step, 7);
+    EXPECT_NEAR(failure->time, 0.7, 1e-15);
+    EXPECT_EQ(solver->clock().step, 0) << "the state uploaded is the last that was put aside";
+  }
+}
+
+/// A patch, and beside it a vertex that leaves: it is lost after about a thousand steps.
+Parameters leaving(Integrator integrator) {
+  Parameters p;
+  p.mesh = random_patch(11, 8, 3);
+  p.mesh.rest.push_back({0.0, 0.0, 5.0});
+  p.material.axial_stiffness = 500.0;
+  p.mass.assign(p.mesh.rest.size(), 0.01);
+  p.integrator = integrator;
+  p.dt = 1e-3;
+  return p;
+}
+
+struct State {
+  std::vector<Vector> x, v;
+};
+
+State state_of(Solver& solver, std::size_t n) {
+  State s{std::vector<Vector>(n), std::vector<Vector>(n)};
+  solver.download(s.x, s.v);
+  return s;
+}
+
+std::unique_ptr<Solver> started(const Parameters& p) {
+  auto solver = create_solver(backend, p);
+  std::vector<Vector> v(p.mass.size(), Vector{});
+  v.back() = {0.0, 0.0, 0.5e100};
+  solver->upload(shaken(p.mesh.rest, 0.1, 4), v);
+  return solver;
+}
+
+TEST(FabricFailure, GoesBackToAStateThatWasPutAside) {
+  for (const Integrator integrator : integrators) {
+    const Parameters p = leaving(integrator);
+    const auto solver = started(p);
+    solver->advance(700);
+    solver->advance(1700);
+    const std::optional<Failure> failure = solver->failure();
+    ASSERT_TRUE(failure);
+    const Clock clock = solver->clock();
+    EXPECT_EQ(failure->vertex, 91);
+    EXPECT_NEAR(static_cast<double>(failure->step), 1000.0, 1.0);
+    EXPECT_EQ(clock.step, 768) << "a multiple of 256";
+    const State kept = state_of(*solver, p.mass.size());
+    // The same as that of a solver that was stopped there.
+    const auto stopped = started(p);
+    EXPECT_TRUE(stopped->advance(clock.step));
+    const State there = state_of(*stopped, p.mass.size());
+    EXPECT_EQ(kept.x, there.x);
+    EXPECT_EQ(kept.v, there.v);
+    // One step before it was lost all is there yet.
+    EXPECT_TRUE(stopped->advance(failure->step - 1 - clock.step));
+    EXPECT_FALSE(stopped->failure());
+    EXPECT_FALSE(stopped->advance(1) && !stopped->failure());
+    EXPECT_EQ(stopped->failure()->vertex, failure->vertex);
+    EXPECT_EQ(stopped->failure()->step, failure->step);
+    // A solver that has failed stays where it is.
+    EXPECT_FALSE(solver->advance(10));
+    EXPECT_EQ(solver->clock().step, clock.step);
+    EXPECT_EQ(state_of(*solver, p.mass.size()).x, kept.x);
+  }
+}
+
+TEST(FabricFailure, IsForgottenWithANewState) {
+  const Parameters p = dust(Integrator::verlet);
+  const auto solver = create_solver(backend, p);
+  std::vector<Vector> x(100, Vector{}), v = x;
+  v[3] = {0.9e100, 0.0, 0.0};
+  solver->upload(x, v);
+  solver->advance(5);
+  ASSERT_TRUE(solver->failure());
+  v[3] = {1.0, 0.0, 0.0};
+  solver->upload(x, v);
+  EXPECT_FALSE(solver->failure());
+  EXPECT_TRUE(solver->advance(5));
+  solver->download(x, v);
+  EXPECT_NEAR(x[3][0], 0.5, 1e-15);
+}
+
+TEST(FabricFailure, WhatIsNoStateIsRefused) {
+  const auto solver = create_solver(backend, dust(Integrator::rk4));
+  const std::vector<Vector> good(100, Vector{});
+  for (const double wrong : {std::nan(""), static_cast<double>(INFINITY), -1e101}) {
+    std::vector<Vector> bad = good;
+    bad[99][2] = wrong;
+    EXPECT_THROW(solver->upload(bad, good), std::invalid_argument);
+    EXPECT_THROW(solver->upload(good, bad), std::invalid_argument);
+  }
+}
+
+// ---- the clock ----
+
+TEST(FabricClock, CountsStepsAndKeepsTimeWhenTheStepChanges) {
+  const auto solver = create_solver(backend, dust(Integrator::rk4));
+  std::vector<Vector> x(100, Vector{}), v(100, Vector{1.0, 0.0, 0.0});
+  solver->upload(x, v);
+  solver->advance(5);
+  EXPECT_EQ(solver->clock().step, 5);
+  EXPECT_NEAR(solver->clock().time(), 0.5, 1e-15);
+  solver->set_dt(0.25);
+  solver->advance(2);
+  EXPECT_EQ(solver->clock().step, 7);
+  EXPECT_NEAR(solver->clock().time(), 1.0, 1e-15);
+  solver->download(x, v);
+  EXPECT_NEAR(x[50][0], 1.0, 1e-15);
+  for (const double wrong : {0.0, -1.0, std::nan("")})
+    EXPECT_THROW(solver->set_dt(wrong), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace drogue::fabric

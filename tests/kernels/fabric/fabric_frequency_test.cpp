@@ -1,0 +1,161 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "kernels/fabric/mass.hpp"
+#include "kernels/fabric/solver.hpp"
+#include "kernels/reference/fabric/frequency.hpp"
+#include "tests/support/fabric_mesh.hpp"
+
+// The bound of the frequencies against the largest one of the reference, and against the steps that blow up.
+
+namespace drogue::fabric {
+namespace {
+
+using testing::random_patch;
+using testing::shaken;
+
+constexpr auto backend = device::Backend::DROGUE_TEST_BACKEND;
+
+Parameters cloth(Model model, double line_density = 0.3) {
+  Parameters p;
+  p.mesh = random_patch(8, 7, 3);
+  p.material.model = model;
+  p.material.axial_stiffness = 400.0;
+  p.mass = lumped_masses(p.mesh, 0.5, line_density, Lumping::area);
+  p.dt = 1e-4;
+  return p;
+}
+
+double bound_of(const Parameters& p, const std::vector<Vector>& now) {
+  const auto solver = create_solver(backend, p);
+  solver->upload(now, std::vector<Vector>(now.size(), Vector{}));
+  return solver->fastest_frequency();
+}
+
+double truth_of(const Parameters& p, const std::vector<Vector>& now) {
+  return reference::largest_frequency(p.material, p.mesh, p.mass, p.pinned, now);
+}
+
+std::vector<Vector> stretched(std::vector<Vector> points, double x, double y) {
+  for (Vector& p : points) p[0] *= x, p[1] *= y;
+  return points;
+}
+
+void expect_tight(const Parameters& p, const std::vector<Vector>& now, const char* what) {
+  const double truth = truth_of(p, now), bound = bound_of(p, now);
+  EXPECT_GE(bound, truth * (1.0 - 1e-6)) << what << ", model " << static_cast<int>(p.material.model);
+  EXPECT_LE(bound, 2.0 * truth) << what << ", model " << static_cast<int>(p.material.model);
+  ::testing::Test::RecordProperty(
+      std::string(what) + ", " + std::to_string(static_cast<int>(p.material.model)),
+      std::to_string(bound / truth));
+}
+
+TEST(FabricFrequency, IsBoundedFromAboveAndNotFarFrom) {
+  for (const Model model : {Model::edge, Model::quadratic, Model::biquadratic, Model::linear_vector}) {
+    Parameters p = cloth(model);
+    expect_tight(p, p.mesh.rest, "at rest");
+    expect_tight(p, shaken(p.mesh.rest, 0.2, 5), "shaken");
+    expect_tight(p, stretched(p.mesh.rest, 1.3, 1.2), "stretched");
+    p.mass[11] += 4.0, p.mass.back() += 0.5;
+    expect_tight(p, p.mesh.rest, "payloads");
+    p.pinned.assign(p.mass.size(), 0);
+    for (std::size_t i = 0; i < 8; ++i) p.pinned[i] = 7;
+    p.pinned[20] = 3;
+    expect_tight(p, shaken(p.mesh.rest, 0.1, 5), "pinned");
+    p.mass.assign(p.mass.size(), 0.4);
+    expect_tight(p, p.mesh.rest, "equal masses");
+    p.mesh.triangles.clear();
+    expect_tight(p, shaken(p.mesh.rest, 0.1, 6), "strings");
+  }
+}
+
+TEST(FabricFrequency, ALightStringCounts) {
+  Parameters p = cloth(Model::biquadratic);
+  const double before = bound_of(p, p.mesh.rest);
+  p.mass.back() = 1e-4;
+  expect_tight(p, p.mesh.rest, "light end");
+  EXPECT_GT(bound_of(p, p.mesh.rest), 5.0 * before);
+}
+
+TEST(FabricFrequency, OfAChainIsExactUpToItsEnds) {
+  Parameters p;
+  for (int i = 0; i <= 40; ++i) p.mesh.rest.push_back({0.1 * i, 0.0, 0.0});
+  for (int i = 0; i < 40; ++i) p.mesh.lines.push_back({i, i + 1});
+  p.material.axial_stiffness = 50.0;
+  p.mass.assign(41, 0.02);
+  p.dt = 1e-4;
+  // omega = 2 sqrt(k / m); the norm of a block is bounded by 1.8 % more.
+  const double exact = 2.0 * std::sqrt(500.0 / 0.02);
+  EXPECT_GE(bound_of(p, p.mesh.rest), exact * (1.0 - 1e-12));
+  EXPECT_LE(bound_of(p, p.mesh.rest), 1.01 * exact);
+}
+
+TEST(FabricFrequency, WhollyPinnedClothHasNone) {
+  Parameters p = cloth(Model::biquadratic);
+  p.pinned.assign(p.mass.size(), 7);
+  EXPECT_EQ(bound_of(p, p.mesh.rest), 0.0);
+}
+
+TEST(FabricFrequency, TensionAcrossAStringIsSeen) {
+  // Two fixed ends and a mass between them that may move across alone: omega^2 = 2 T / (l m).
+  Parameters p;
+  p.mesh.rest = {{-1, 0, 0}, {0, 0, 0}, {1, 0, 0}};
+  p.mesh.lines = {{0, 1}, {1, 2}};
+  p.material.axial_stiffness = 30.0;
+  p.mass = {1, 0.1, 1};
+  p.pinned = {7, 3, 7};
+  p.dt = 1e-4;
+  EXPECT_EQ(bound_of(p, p.mesh.rest), 0.0);
+  const double stretch = 1.25, tension = 30.0 * 0.25;
+  EXPECT_NEAR(bound_of(p, stretched(p.mesh.rest, stretch, 1.0)), std::sqrt(2.0 * tension / (stretch * 0.1)),
+              1e-9);
+}
+
+/// How much the largest displacement has grown after steps of `z` over the frequency; infinite when lost.
+double growth(Parameters p, double dt) {
+  p.dt = dt;
+  const double size = 1e-7;
+  const std::vector<Vector> start = shaken(p.mesh.rest, size, 8);
+  std::vector<Vector> x = start, v(start.size(), Vector{});
+  const auto solver = create_solver(backend, p);
+  solver->upload(x, v);
+  if (!solver->advance(4000) || solver->failure()) return INFINITY;
+  solver->download(x, v);
+  double most = 0.0;
+  for (std::size_t i = 0; i < x.size(); ++i)
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      most = std::max(most, std::abs(x[i][axis] - p.mesh.rest[i][axis]));
+  return most / size;
+}
+
+TEST(FabricFrequency, StepsOfTheBoundHoldAndThoseBeyondTheTruthBlowUp) {
+  for (const Model model : {Model::edge, Model::quadratic, Model::biquadratic})
+    for (const Integrator integrator : {Integrator::rk4, Integrator::verlet}) {
+      Parameters p = cloth(model);
+      p.integrator = integrator;
+      const double limit = stability_limit(integrator);
+      EXPECT_LT(growth(p, limit / bound_of(p, p.mesh.rest)), 10.0) << static_cast<int>(model);
+      const double truth = truth_of(p, p.mesh.rest);
+      EXPECT_LT(growth(p, 0.98 * limit / truth), 50.0) << static_cast<int>(model);
+      EXPECT_GT(growth(p, 1.02 * limit / truth), 1e4) << static_cast<int>(model);
+    }
+}
+
+TEST(FabricFrequency, GrowsWithStrain) {
+  const Parameters p = cloth(Model::biquadratic);
+  const double at_rest = bound_of(p, p.mesh.rest), drawn = bound_of(p, stretched(p.mesh.rest, 1.5, 1.5));
+  EXPECT_GT(drawn, 1.5 * at_rest);
+  Parameters from_drawn = p;
+  from_drawn.dt = 1e-3;
+  const auto solver = create_solver(backend, from_drawn);
+  const std::vector<Vector> now = stretched(p.mesh.rest, 1.5, 1.5);
+  solver->upload(now, std::vector<Vector>(now.size(), Vector{}));
+  solver->set_dt(stability_limit(Integrator::rk4) / drawn);
+  EXPECT_TRUE(solver->advance(1000));
+  EXPECT_FALSE(solver->failure());
+}
+
+}  // namespace
+}  // namespace drogue::fabric

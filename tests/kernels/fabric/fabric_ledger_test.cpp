@@ -1,0 +1,87 @@
+#include <gtest/gtest.h>
+
+#include "kernels/device/ledger.hpp"
+#include "kernels/fabric/solver.hpp"
+#include "tests/support/expression_program.hpp"
+#include "tests/support/fabric_mesh.hpp"
+
+// What stepping asks of the device and of the host: nothing but its kernels.
+
+namespace drogue::fabric {
+namespace {
+
+using device::Ledger;
+using testing::random_patch;
+using testing::shaken;
+
+constexpr auto backend = device::Backend::DROGUE_TEST_BACKEND;
+constexpr bool on_device = backend == device::Backend::cuda;
+
+/// The ledger, started by the first who asks.
+Ledger counted() {
+  static const bool once = (device::start_ledger(), true);
+  static_cast<void>(once);
+  return device::ledger();
+}
+
+Parameters patch(Integrator integrator) {
+  Parameters p;
+  p.mesh = random_patch(11, 8, 3);
+  p.material.axial_stiffness = 500.0;
+  p.mass.assign(p.mesh.rest.size(), 0.01);
+  p.integrator = integrator;
+  p.dt = 2e-4;
+  return p;
+}
+
+/// What 1024 steps ask for, the first ones excepted; copies are put aside four times. Returns launches.
+std::int64_t launches_of(const Parameters& p) {
+  const auto solver = create_solver(backend, p);
+  solver->upload(shaken(p.mesh.rest, 0.1, 1), std::vector<Vector>(p.mass.size(), Vector{}));
+  EXPECT_TRUE(solver->advance(256));
+  const Ledger before = counted();
+  EXPECT_TRUE(solver->advance(1024));
+  const Ledger after = counted();
+  EXPECT_EQ(after.fences, before.fences);
+  EXPECT_EQ(after.allocations, before.allocations);
+  EXPECT_EQ(after.copies, before.copies);
+  EXPECT_EQ(after.h2d_bytes + after.d2h_bytes, before.h2d_bytes + before.d2h_bytes);
+  EXPECT_FALSE(solver->failure());
+  return after.kernel_launches - before.kernel_launches;
+}
+
+TEST(FabricLedger, StepsAreTheirKernelsAlone) {
+  EXPECT_EQ(launches_of(patch(Integrator::rk4)), (on_device ? 1 : 4) * 1024 + 4);
+  // Where a state is put aside, a half kick ends the step and another begins the next.
+  EXPECT_EQ(launches_of(patch(Integrator::verlet)), 1024 + 4 + 4);
+}
+
+TEST(FabricLedger, WhatASceneAsksForIsOneKernelAStage) {
+  using testing::postfix;
+  const auto kernels = [](Integrator integrator, auto change) {
+    Parameters p = patch(integrator);
+    change(p);
+    // Of a step; copies that are put aside, and the half kicks around them, are the same.
+    return (launches_of(p) - launches_of(patch(integrator))) / 1024;
+  };
+  const auto loads = [](Parameters& p) {
+    p.timed_loads = {{postfix({"t"}), std::vector<Vector>(p.mass.size(), Vector{})}};
+  };
+  const auto pressure = [](Parameters& p) { p.follower_pressures = {{postfix({1.0}), {}}}; };
+  const auto dashpots = [](Parameters& p) { p.relative_damping = 1.0; };
+  const auto motion = [](Parameters& p) { p.motions = {{0, {3}, postfix({"t"})}}; };
+  const auto all = [&](Parameters& p) { loads(p), pressure(p), dashpots(p), motion(p); };
+  const auto of_host = [](int count) { return on_device ? 0 : count; };
+  EXPECT_EQ(kernels(Integrator::rk4, loads), of_host(4));
+  EXPECT_EQ(kernels(Integrator::rk4, pressure), of_host(4));
+  EXPECT_EQ(kernels(Integrator::rk4, dashpots), of_host(4));
+  EXPECT_EQ(kernels(Integrator::rk4, motion), of_host(4));
+  EXPECT_EQ(kernels(Integrator::rk4, all), of_host(8));
+  EXPECT_EQ(kernels(Integrator::verlet, loads), 1);
+  EXPECT_EQ(kernels(Integrator::verlet, dashpots), 1);
+  EXPECT_EQ(kernels(Integrator::verlet, motion), 1);
+  EXPECT_EQ(kernels(Integrator::verlet, all), 3);
+}
+
+}  // namespace
+}  // namespace drogue::fabric

@@ -1,0 +1,81 @@
+"""drogue-plot on a synthetic run of cloth and on one of a string."""
+
+import shutil
+import tempfile
+import unittest
+from pathlib import Path
+
+import packages  # before all that needs the packages  isort: skip
+import h5py
+import numpy as np
+from PIL import Image
+from plot import cli
+from plot.run_directory import read
+from plot.springs_figures import View
+
+assert packages.SOURCE
+
+
+def write_run(folder, vertices, triangles, edges, moved, stress=None):
+    """A run directory whose snapshots are the positions `moved`."""
+    folder.mkdir()
+    (folder / "scene.toml").write_text('app = "springs"\n')
+    header = "time [s],step,kinetic [J],elastic [J],potential [J],energy [J],probe_0_x [m],probe_0_y [m],probe_0_z [m]"
+    rows = [f"{0.1 * k},{k},{1.0 + k},{2.0 - k},0,3,0,0,{0.1 * k}" for k in range(3)]
+    (folder / "history.csv").write_text("\n".join([header, *rows]) + "\n")
+    with h5py.File(folder / "fields.h5", "w") as h5:
+        for name, values in (("vertices", vertices), ("triangles", triangles), ("edges", edges)):
+            h5[f"mesh/{name}"] = np.array(values).reshape(-1, 2 if name == "edges" else 3)
+        for k, positions in enumerate(moved):
+            group = h5.create_group(f"steps/{k:06d}")
+            group.attrs["time"] = 0.1 * k
+            group["position"] = positions
+            if stress is not None:
+                group["von_mises"] = stress[k]
+    return folder
+
+
+SQUARE = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], float)
+TRIANGLES = [[0, 1, 2], [0, 2, 3]]
+EDGES = [[0, 1], [1, 2], [2, 3], [0, 3], [0, 2]]
+
+
+class SpringsPictures(unittest.TestCase):
+    def setUp(self):
+        self.folder = Path(tempfile.mkdtemp())
+        self.addCleanup(shutil.rmtree, self.folder)
+
+    def assert_drawn(self, run):
+        self.assertEqual(0, cli.main([str(run), "--quiet"]))
+        self.assertEqual({"fields.png", "fields.gif", "history.png"},
+                         {file.name for file in run.iterdir() if file.suffix in (".png", ".gif")})
+
+    def test_cloth_in_space(self):
+        raised = SQUARE + [[0, 0, 0], [0, 0, 0], [0, 0, 0.5], [0, 0, 0]]
+        run = write_run(self.folder / "run", SQUARE, TRIANGLES, EDGES, [SQUARE, raised], [[0.0, 0.0], [2.0, 1.0]])
+        self.assert_drawn(run)
+        view = View(read(run))
+        self.assertIsNone(view.labels)
+        self.assertEqual(("von Mises stress", "N/m"), view.quantity)
+        np.testing.assert_allclose(np.eye(3), view.across @ view.across.T, atol=1e-15)
+        self.assertGreater(view.across[1] @ [0, 0, 1], 0.5, "up is up")
+        with Image.open(run / "fields.gif") as movie:
+            self.assertEqual(2, movie.n_frames)
+
+    def test_flat_cloth_lies_in_its_plane(self):
+        run = write_run(self.folder / "run", SQUARE, TRIANGLES, EDGES, [SQUARE, 1.5 * SQUARE])
+        self.assert_drawn(run)
+        view = View(read(run))
+        self.assertEqual(("x", "y"), view.labels)
+        np.testing.assert_allclose(view.values(view.run.snapshots[1]), (0.5 + np.sqrt(0.5)) / 3)
+
+    def test_a_string(self):
+        line = np.array([[0, 0, 0], [1, 0, 0], [2, 0, 0]], float)
+        sagging = line - [[0, 0, 0], [0, 0, 1], [0, 0, 0]]
+        run = write_run(self.folder / "run", line, [], [[0, 1], [1, 2]], [line, sagging])
+        self.assert_drawn(run)
+        self.assertEqual(("x", "z"), View(read(run)).labels)
+
+
+if __name__ == "__main__":
+    unittest.main()

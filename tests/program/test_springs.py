@@ -1,0 +1,176 @@
+"""What drogue-springs prints, writes and answers."""
+
+import json
+import math
+import os
+import sys
+import unittest
+
+sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
+
+import gas_program
+import springs_program
+from springs_program import DRUM
+
+
+class CommandLine(springs_program.SpringsTest):
+    def test_information(self):
+        self.assertRegex(self.expect(0, "--version").stdout, r"^drogue-springs \d+\.\d+\.\d+\n")
+        self.assertIn("--restart", self.expect(0, "--help").stdout)
+        lines = self.expect(0, "--list-scenes").stdout.splitlines()
+        self.assertEqual(springs_program.SCENES, [line.split()[0] for line in lines])
+        for line in lines:
+            self.assertRegex(line, r"^\S+  +\S.*\.( \[gpu\])?$")
+        self.assertEqual([], list(self.folder.iterdir()))
+
+    def test_printed_scenes_resolve_to_themselves(self):
+        for scene in springs_program.SCENES:
+            with self.subTest(scene):
+                printed = self.expect(0, scene, "--print-scene").stdout
+                again = self.write(printed, "printed.toml")
+                self.assertEqual(printed, self.expect(0, again, "--print-scene").stdout)
+
+    def test_usage(self):
+        for words in (["drumm"], ["drum", "extra"], ["drum", "--backend", "gpu"], ["drum", "--study", "meshes=1:2"], []):
+            with self.subTest(words):
+                self.expect(2, *(words or ["--quiet"]))
+        self.assertEqual([], list(self.folder.iterdir()))
+
+    def test_backend_that_is_not_there(self):
+        if "cuda" in gas_program.backends():
+            self.skipTest("a CUDA build has that backend")
+        self.assertIn("cuda", self.expect(77, self.write(DRUM), "--backend", "cuda").stderr)
+
+
+class RunDirectory(springs_program.SpringsTest):
+    def test_files(self):
+        scene = self.write(DRUM)
+        self.expect(0, scene, "--backend", "serial", "--out", "out")
+        told = self.result("out")
+        self.assertEqual(("drogue.result/1", "drogue-springs", "ok", 0, 0.3),
+                         tuple(told[key] for key in ("schema", "program", "status", "exit_code", "time")))
+        self.assertLess(told["dt_max"] / told["dt_min"], 1.1)
+        file = self.fields("out")
+        vertices, triangles = 61, 96
+        for path, count in (("/mesh/vertices", 3 * vertices), ("/mesh/triangles", 3 * triangles),
+                            ("/mesh/edges", 2 * (vertices + triangles - 1)), ("/steps/000001/position", 3 * vertices),
+                            ("/steps/000000/velocity", 3 * vertices)):
+            self.assertEqual(8 * count, len(file.datasets[path]), path)
+            self.assertEqual({"units", "centering", "description"}, set(file.attributes[path]))
+        self.assertEqual([0.1, 0.3], [file.attributes[f"/steps/{k}"]["time"] for k in file.children("/steps")])
+        xdmf = (self.folder / "out/fields.xdmf").read_text(encoding="utf-8")
+        for word in ("/mesh/triangles", "/steps/000001/position", 'AttributeType="Vector"', 'Value="0.3"'):
+            self.assertIn(word, xdmf)
+        printed = self.expect(0, scene, "--print-scene").stdout
+        self.assertEqual(printed, (self.folder / "out/scene.toml").read_text(encoding="utf-8"))
+
+    def test_history(self):
+        self.expect(0, self.write(DRUM), "--backend", "serial", "--out", "out")
+        header = (self.folder / "out/history.csv").read_text(encoding="utf-8").splitlines()[0]
+        for name in ("time [s]", "kinetic [J]", "elastic [J]", "potential [J]", "energy [J]", "momentum_x [kg m/s]",
+                     "probe_0_z [m]"):
+            self.assertIn(name, header.split(","))
+        rows = self.history("out")
+        self.assertEqual((0.0, 0.3), (rows["time"][0], rows["time"][-1]))
+        self.assertTrue(all(step % 7 == 0 for step in rows["step"][:-1]))
+        # The drum falls by gravity, swings, and keeps its energy.
+        self.assertLess(min(rows["probe_0_z"]), 0.0)
+        self.assertAlmostEqual(0.01, rows["probe_0_z"][0])
+        spread = max(rows["energy"]) - min(rows["energy"])
+        self.assertLess(spread, 1e-3 * max(rows["kinetic"]))
+
+    def test_a_run_is_not_replaced_unasked(self):
+        scene = self.write(DRUM)
+        words = ["--quiet", "--backend", "serial", "--out", "out"]
+        self.expect(0, scene, *words)
+        self.assertIn("--overwrite", self.expect(2, scene, *words).stderr)
+        self.expect(0, scene, *words, "--overwrite")
+        self.expect(3, scene, *words, "--overwrite", sets=["time.end_time=-1"])
+        self.assertEqual("ok", self.result("out")["status"])
+
+    def test_only_what_is_asked_for(self):
+        self.expect(0, self.write(DRUM), "--quiet", "--out", "out", sets=["output={history_every=0}"])
+        self.assertEqual({"scene.toml", "result.json"}, {file.name for file in (self.folder / "out").iterdir()})
+        self.assertEqual(0, self.result("out")["ledger"]["device_allocations_after_warmup"])
+
+    def test_von_mises_of_an_even_tension(self):
+        """Of equal principal stresses it is their value: E / (1 - nu) (e + e^2/2), the second stress, over 1."""
+        self.expect(0, self.write(DRUM), "--quiet", "--out", "out", sets=[
+            "initial={prestretch=0.05}", "time.end_time=1e-6", "load=[{gravity=[0,0,0]}]",
+            "output={fields=['von_mises'],times=[0]}"])
+        stress = self.fields("out").values("/steps/000000/von_mises")
+        self.assertEqual(96, len(stress))
+        for value in stress:
+            self.assertAlmostEqual(1000.0 / 0.7 * (0.05 + 0.05**2 / 2), value, delta=1e-9 * value)
+
+    def test_seed_mode_copies_the_state_and_gives_the_same_result(self):
+        scene = self.write(DRUM)
+        for words in (["--out", "a"], ["--out", "b", "--seed-mode"]):
+            self.expect(0, scene, "--quiet", "--backend", "serial", *words)
+        self.assertEqual(self.fields("a").datasets, self.fields("b").datasets)
+        self.assertGreater(self.result("b")["timing"]["d2h_s"], 0.0)
+
+    def test_outputs_are_in_the_numbering_of_the_file(self):
+        """Vertices that lie far from their neighbours in the file are where the file says."""
+        count = 12
+        order = [(5 * k) % count for k in range(count)]
+        place = {number: k for k, number in enumerate(order)}
+        self.write("".join(f"v {number} 0 0\n" for number in order)
+                   + "".join(f"l {place[k] + 1} {place[k + 1] + 1}\n" for k in range(count - 1)), "rope.obj")
+        scene = self.write('app = "springs"\n[mesh]\nfile = "rope.obj"\n[[pin]]\nwhere = "x < 0.5"\n'
+                           '[initial]\nvelocity = { y = "x" }\n[time]\nend_time = 1e-9\n[output]\n'
+                           'fields = ["position", "velocity"]\ntimes = [0]\n')
+        self.expect(0, scene, "--quiet", "--out", "out")
+        file = self.fields("out")
+        self.assertEqual(list(map(float, order)), list(file.values("/steps/000000/position"))[::3])
+        self.assertEqual(list(map(float, order)), list(file.values("/steps/000000/velocity"))[1::3])
+
+
+class Failures(springs_program.SpringsTest):
+    def test_a_step_that_is_too_long(self):
+        message = self.expect(4, self.write(DRUM), "--quiet", "--out", "out", sets=["time.dt=0.01", "time.end_time=10"]).stderr
+        self.assertRegex(message, r"not finite at vertex \d+ \(at rest at .* m\) at step \d+, t = .* s")
+        self.assertIn("restart.h5 holds the last good state", message)
+        told = self.result("out")
+        self.assertEqual(("numerical-failure", 4), (told["status"], told["exit_code"]))
+        self.assertIn(told["message"], message)
+        self.assertTrue((self.folder / "out/restart.h5").exists())
+
+    def test_verification_fails_where_it_must(self):
+        """A fault in what is computed or in what is expected is found by each check."""
+        faults = {
+            "drum": ["material.area_density=0.757", "verify.frequency.value=9.0"],
+            "strip": ["verify.young=1e-9", "verify.poisson=1e-9"],
+            "catenary": ["time.end_time=0.05", "output.fields=[]"],
+            "free-patch": ["time.integrator=rk4"],
+            "string-stretch": ["time.end_time=0.05", "output.fields=[]"],
+            "chain": ["verify.frequency.value=105.2"],
+            "hencky": ["time.end_time=0.1", "verify.hencky=3e-3"],
+            "drum-cone": ["time.safety=1.0"],
+            "stress-wave": ["verify.front_speed.value=110"],
+            "pulled-triangle": ["time.end_time=0.02"],
+        }
+        small = {"hencky": ["mesh.disk.vertices=217", "output.fields=[]"], "pulled-triangle": ["output.fields=[]"], "drum": ["mesh.disk.vertices=61", "output.fields=[]"], "strip": ["mesh.strip.vertices=40"]}
+        for scene, sets in faults.items():
+            with self.subTest(scene):
+                process = self.expect(5, scene, "--quiet", "--backend", "serial", "--overwrite",
+                                      sets=[*sets, *small.get(scene, [])])
+                self.assertIn("above its bar", process.stderr)
+                checks = json.loads((self.folder / f"out/{scene}/result.json").read_text(encoding="utf-8"))["checks"]
+                self.assertTrue(any(not check["passed"] for check in checks))
+
+    def test_errors_of_second_order(self):
+        """Frequencies of the drum, and of one with equal masses, which is of first order only."""
+        def error(vertices, mass):
+            self.expect(0, "drum", "--quiet", "--backend", "serial", "--overwrite", sets=[
+                f"mesh.disk.vertices={vertices}", f"material.mass={mass}", "verify.frequency.bar=1",
+                "verify.energy_drift=1", "output.fields=[]"])
+            return self.result("out/drum")["errors"]["frequency"]
+
+        slope = math.log2(error(61, "area") / error(217, "area"))
+        self.assertAlmostEqual(2.0, slope, delta=0.15)
+        self.assertLess(math.log2(error(61, "equal") / error(217, "equal")), 1.6)
+
+
+if __name__ == "__main__":
+    unittest.main()

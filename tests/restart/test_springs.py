@@ -1,0 +1,98 @@
+"""A run of cloth that was killed or interrupted and continued gives the bits of one that was not."""
+
+import os
+import random
+import shutil
+import signal
+import subprocess
+import sys
+import time
+import unittest
+
+sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
+
+import gas_program
+import springs_program
+
+SETS = ["mesh.disk.vertices=271", "time.end_time=2.5", "output.times=[0.6, 1.3, 2.5]", "output.restart_every=50"]
+
+
+class Restart(springs_program.SpringsTest):
+    def setUp(self):
+        super().setUp()
+        self.random = random.Random(self.id())
+        self.scene = self.write(springs_program.DRUM)
+
+    def begin(self, backend, *words):
+        """Starts a run in the folder `part`; returns once it runs and there is a restart file."""
+        line = gas_program.arguments(self.scene, "--quiet", "--backend", backend, "--out", "part", *words, sets=SETS,
+                                     program=self.program)
+        process = subprocess.Popen(line, cwd=self.folder, env=gas_program.ENVIRONMENT, stderr=subprocess.PIPE)
+        self.addCleanup(process.stderr.close)
+        awaited = [self.folder / "part/.lock", self.folder / "part/restart.h5"]
+        while process.poll() is None and not all(file.exists() for file in awaited):
+            time.sleep(0.001)
+        return process
+
+    def finish(self, backend, folder="part", *words):
+        self.expect(0, self.scene, "--quiet", "--backend", backend, "--out", folder, *words, sets=SETS)
+
+    def assert_same_runs(self):
+        whole, part = self.fields("whole"), self.fields("part")
+        self.assertEqual(whole.attributes, part.attributes)
+        self.assertEqual([], [path for path in whole.datasets if whole.datasets[path] != part.datasets[path]])
+        for name in ("history.csv", "fields.xdmf", "scene.toml"):
+            self.assertEqual((self.folder / "whole" / name).read_text(), (self.folder / "part" / name).read_text())
+        one, other = self.result("whole"), self.result("part")
+        for key in ("steps", "time", "dt_min", "dt_max", "status"):
+            self.assertEqual(one[key], other[key], key)
+
+    def test_killed(self):
+        for backend in ("serial", gas_program.threaded()):
+            with self.subTest(backend):
+                self.finish(backend, "whole", "--overwrite")
+                shutil.rmtree(self.folder / "part", ignore_errors=True)
+                for attempt in range(3):
+                    process = self.begin(backend, *(["--restart", "auto"] if attempt else []))
+                    time.sleep(self.random.uniform(0.0, 0.05))
+                    process.kill()
+                    process.wait()
+                    (self.folder / "part/.lock").unlink(missing_ok=True)
+                self.finish(backend, "part", "--restart", "auto")
+                self.assert_same_runs()
+
+    def test_interrupted(self):
+        self.finish("serial", "whole")
+        for number in (signal.SIGINT, signal.SIGTERM):
+            again = ["--restart", "auto"] if (self.folder / "part").exists() else []
+            process = self.begin("serial", *again)
+            process.send_signal(number)
+            self.assertEqual(130, process.wait(timeout=30), process.stderr.read())
+            told = self.result("part")
+            self.assertEqual(("interrupted", 130), (told["status"], told["exit_code"]))
+            self.assertLess(told["time"], 2.5)
+        self.finish("serial", "part", "--restart", "auto")
+        self.assert_same_runs()
+
+    def test_refused(self):
+        self.finish("serial", "part")
+        words = ["--quiet", "--backend", "serial", "--out", "part", "--restart", "auto"]
+        for change in ("mesh.disk.vertices=61", "material.poisson=0.2", "pin.0.axes=xy"):
+            with self.subTest(change):
+                message = self.expect(6, self.scene, *words, sets=[*SETS, change]).stderr
+                self.assertIn("another scene", message)
+        file = self.folder / "part/restart.h5"
+        file.write_bytes(file.read_bytes()[:-100])
+        self.assertIn("truncated", self.expect(6, self.scene, *words, sets=SETS).stderr)
+
+    def test_later_end(self):
+        self.finish("serial", "part")
+        longer = [*SETS, "time.end_time=3", "output.times=[0.6, 1.3, 2.5, 3]"]
+        self.expect(0, self.scene, "--quiet", "--backend", "serial", "--out", "part", "--restart", "auto", sets=longer)
+        self.expect(0, self.scene, "--quiet", "--backend", "serial", "--out", "whole", sets=longer)
+        self.assertEqual(self.fields("whole").datasets["/steps/000003/position"],
+                         self.fields("part").datasets["/steps/000003/position"])
+
+
+if __name__ == "__main__":
+    unittest.main()

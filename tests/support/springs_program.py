@@ -1,0 +1,50 @@
+"""Runs drogue-springs for tests of its interface."""
+
+import csv
+
+import gas_program
+from hdf5_file import Hdf5File
+
+PROGRAM = gas_program.BIN / "drogue-springs"
+SCENES = sorted(path.stem for path in (gas_program.SOURCE / "miniapps/springs/scenes").glob("*.toml"))
+
+# A drum of a few vertices that is over in a moment, and swings.
+DRUM = """\
+app = "springs"
+[mesh]
+disk = { radius = 0.4, vertices = 61 }
+[initial]
+prestretch = 0.05
+displacement = { z = "0.01*(1-(x^2+y^2)/0.16)" }
+[[pin]]
+where = "sqrt(x^2+y^2) > 0.4-1e-9"
+[[load]]
+gravity = [0, 0, -9.81]
+[time]
+end_time = 0.3
+[output]
+fields = ["position", "velocity"]
+times = [0.1, 0.3]
+probes = [{ at = [0, 0, 0] }]
+history_every = 7
+"""
+
+
+class SpringsTest(gas_program.GasTest):
+    """A test with an empty folder, in which drogue-springs runs."""
+
+    program = PROGRAM
+
+    def write(self, text, name="scene.toml"):
+        file = self.folder / name
+        file.write_text(text, encoding="utf-8")
+        return file
+
+    def fields(self, directory):
+        return Hdf5File(PROGRAM, self.folder / directory / "fields.h5")
+
+    def history(self, directory):
+        """The columns of history.csv, units left away."""
+        with (self.folder / directory / "history.csv").open(encoding="utf-8", newline="") as file:
+            header, *rows = csv.reader(file)
+        return {name.split(" [")[0]: [float(row[k]) for row in rows] for k, name in enumerate(header)}

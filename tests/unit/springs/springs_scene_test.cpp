@@ -1,0 +1,213 @@
+#include <gtest/gtest.h>
+
+#include <unistd.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+
+#include "common/program/failure.hpp"
+#include "common/scene/library.hpp"
+#include "miniapps/springs/scene.hpp"
+
+namespace drogue::springs_app {
+namespace {
+
+const std::filesystem::path source = DROGUE_SOURCE_DIR;
+const std::filesystem::path shipped = source / "miniapps/springs/scenes";
+
+/// A folder with a scene and a mesh, gone at the end of the test.
+class SceneFolder {
+ public:
+  explicit SceneFolder(const std::string& text, const std::string& mesh = "") {
+    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
+    _path = std::filesystem::temp_directory_path() /
+            (std::string("drogue-springs-") + test->name() + "-" + std::to_string(::getpid()));
+    std::filesystem::create_directory(_path);
+    std::ofstream(_path / "scene.toml", std::ios::binary) << text;
+    if (!mesh.empty()) std::ofstream(_path / "m.obj", std::ios::binary) << mesh;
+  }
+  ~SceneFolder() { std::filesystem::remove_all(_path); }
+  SceneFolder(const SceneFolder&) = delete;
+  SceneFolder& operator=(const SceneFolder&) = delete;
+
+  [[nodiscard]] std::filesystem::path scene() const { return _path / "scene.toml"; }
+
+ private:
+  std::filesystem::path _path;
+};
+
+const std::string least = "app = \"springs\"\n[mesh]\ndisk = {}\n[time]\nend_time = 1\n";
+const std::string with_file = "app = \"springs\"\n[mesh]\nfile = \"m.obj\"\n[time]\nend_time = 1\n";
+const std::string triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+const std::string rope = "v 0 0 0\nv 1 0 0\nv 3 0 0\nl 1 2 3\n";
+
+SpringsScene read_text(const std::string& text, const std::vector<std::string>& sets = {},
+                       const std::string& mesh = "") {
+  const SceneFolder folder(text, mesh);
+  return read_springs_scene(folder.scene(), sets);
+}
+
+std::string error_of(const std::vector<std::string>& sets, const std::string& text = least,
+                     const std::string& mesh = "") {
+  try {
+    read_text(text, sets, mesh);
+  } catch (const Failure& failure) {
+    EXPECT_EQ(failure.code(), ExitCode::invalid_scene);
+    return failure.what();
+  }
+  return "";
+}
+
+bool holds(const std::string& text, const std::string& words) {
+  return text.find(words) != std::string::npos;
+}
+
+TEST(SpringsScene, TheLeastSceneHasTheDocumentedDefaults) {
+  const SpringsScene scene = read_text(least);
+  EXPECT_EQ(scene.fabric.material.model, fabric::Model::biquadratic);
+  EXPECT_EQ(scene.fabric.material.membrane_modulus, 1000.0);
+  EXPECT_EQ(scene.fabric.material.poisson, 0.3);
+  EXPECT_EQ(scene.fabric.area_density, 0.756);
+  EXPECT_EQ(scene.fabric.mass, fabric::Lumping::area);
+  EXPECT_EQ(scene.time.integrator, fabric::Integrator::rk4);
+  EXPECT_FALSE(scene.time.dt.has_value());
+  EXPECT_EQ(scene.time.safety, 0.8);
+  EXPECT_TRUE(scene.output.fields.empty());
+  EXPECT_EQ(scene.mesh.rest.size(), 1027U);
+}
+
+TEST(SpringsScene, EveryShippedSceneResolvesToItself) {
+  const auto scenes = scene::list_scenes(shipped);
+  ASSERT_GE(scenes.size(), 4U);
+  for (const auto& entry : scenes) {
+    EXPECT_FALSE(entry.description.empty()) << entry.name;
+    const std::string printed = print_springs_scene(read_springs_scene(entry.file));
+    EXPECT_EQ(print_springs_scene(read_text(printed)), printed) << entry.name;
+  }
+}
+
+TEST(SpringsScene, PrintsNoKeyThatDoesNotApply) {
+  const std::string cloth = print_springs_scene(read_text(least));
+  for (const char* key :
+       {"model = ", "membrane_modulus", "poisson", "area_density", "safety", "dt = \"auto\""})
+    EXPECT_TRUE(holds(cloth, key)) << key << cloth;
+  for (const char* key : {"\nstiffness", "line_density", "prestretch = 1", "times", "[verify]"})
+    EXPECT_FALSE(holds(cloth, key)) << key << cloth;
+  const std::string edges = print_springs_scene(read_text(least, {"material.model=edge"}));
+  EXPECT_TRUE(holds(edges, "\nstiffness = 1000.0"));
+  EXPECT_FALSE(holds(edges, "membrane_modulus"));
+  const std::string string = print_springs_scene(read_text(least, {"mesh.string={}"}));
+  EXPECT_TRUE(holds(string, "axial_stiffness = 5000.0"));
+  for (const char* key : {"model", "area_density", "disk"}) EXPECT_FALSE(holds(string, key)) << key;
+  const std::string fixed = print_springs_scene(read_text(least, {"time.dt=1e-4"}));
+  EXPECT_TRUE(holds(fixed, "dt = 1e-04"));
+  EXPECT_FALSE(holds(fixed, "safety"));
+}
+
+TEST(SpringsScene, FilesAreRelativeToTheScene) {
+  const SceneFolder folder(with_file, triangle);
+  const SpringsScene scene = read_springs_scene(folder.scene());
+  EXPECT_EQ(scene.mesh.triangles.size(), 1U);
+  const std::string printed = print_springs_scene(scene);
+  EXPECT_EQ(print_springs_scene(read_text(printed)), printed) << "from another folder";
+}
+
+TEST(SpringsScene, AFileDecidesWhichKeysApply) {
+  EXPECT_EQ(error_of({"material.poisson=0.2"}, with_file, triangle), "");
+  EXPECT_TRUE(holds(error_of({"material.poisson=0.2"}, with_file, rope), "applies only with triangles"));
+  EXPECT_TRUE(holds(error_of({"material.line_density=0.2"}, with_file, triangle), "applies only with lines"));
+  EXPECT_FALSE(holds(print_springs_scene(read_text(with_file, {}, rope)), "poisson"));
+  EXPECT_TRUE(holds(error_of({}, with_file), "there is no file"));
+  EXPECT_TRUE(holds(error_of({}, with_file, triangle + "f 1 2 9\n"), "m.obj:5: face 2 names vertex 9"));
+}
+
+TEST(SpringsScene, StiffnessOfAStringIsThatOfItsPieces) {
+  const SpringsScene scene = read_text(least, {"mesh.string={vertices=5}", "material.stiffness=100"});
+  EXPECT_DOUBLE_EQ(scene.fabric.material.axial_stiffness, 25.0);
+  const SpringsScene uneven = read_text(with_file, {"material.stiffness=5"}, rope);
+  EXPECT_EQ(uneven.mesh.line_stiffness, (std::vector<double>{5.0, 10.0}));
+}
+
+TEST(SpringsScene, ModelOneIsRefusedWhereItMoves) {
+  EXPECT_TRUE(holds(error_of({"material.model=linear-vector"}), "rigid rotation"));
+  EXPECT_EQ(error_of({"material.model=linear-vector", "time.end_time=0"}), "");
+}
+
+TEST(SpringsScene, PinsHoldSomethingInOneWay) {
+  const auto pins = [](const std::string& list) { return std::vector<std::string>{"pin=[" + list + "]"}; };
+  EXPECT_EQ(error_of(pins("{where=\"x>0.9\"},{where=\"y>0.3\"}")), "");
+  EXPECT_EQ(error_of(pins("{where=\"x>0.9\",axes=\"x\",motion={x=\"t\"}},{where=\"x>0.9\",axes=\"yz\"}")),
+            "");
+  EXPECT_TRUE(holds(error_of(pins("{where=\"x>2\"}")), "pin[0].where = \"x>2\" holds at no vertex"));
+  EXPECT_TRUE(holds(error_of(pins("{where=\"1\"},{where=\"x>0\",axes=\"z\",motion={z=\"t\"}}")),
+                    "pin[1] and pin[0] hold the z axis in different ways at vertex"));
+  EXPECT_TRUE(holds(error_of(pins("{where=\"1\",axes=\"xy\",motion={z=\"t\"}}")), "leaves free"));
+  EXPECT_TRUE(holds(error_of(pins("{where=\"1/(x-x)\"}")), "must be finite"));
+  EXPECT_TRUE(holds(error_of(pins("{where=\"t\"}")), "unknown name \"t\""));
+}
+
+TEST(SpringsScene, LoadsAreOfOneKind) {
+  const auto loads = [](const std::string& list) { return std::vector<std::string>{"load=[" + list + "]"}; };
+  EXPECT_EQ(error_of(loads("{gravity=[0,0,-9.81]},{pressure=\"100*x\"},{force={z=\"1\"},where=\"x>0.5\"}")),
+            "");
+  EXPECT_TRUE(holds(error_of(loads("{gravity=[0,0,-9.81],pressure=1}")), "contradicts"));
+  EXPECT_TRUE(holds(error_of(loads("{where=\"x\"}")), "load[0]"));
+  EXPECT_TRUE(holds(error_of(loads("{gravity=[0,0]}")), "must be 3 numbers"));
+  EXPECT_TRUE(holds(error_of(loads("{pressure=1,where=\"x\"}")), "with force"));
+  EXPECT_TRUE(holds(error_of({"mesh.string={}", "load=[{pressure=1}]"}), "needs triangles"));
+  EXPECT_TRUE(holds(error_of(loads("{force={}}")), "needs one of x, y, z"));
+}
+
+TEST(SpringsScene, PressureNeedsASide) {
+  const std::string two = triangle + "v 1 1 0\n", along = two + "f 2 4 3\n", against = two + "f 2 3 4\n";
+  EXPECT_EQ(error_of({"load=[{pressure=1}]"}, with_file, along), "");
+  EXPECT_EQ(error_of({"load=[{gravity=[0,0,1]}]"}, with_file, against), "");
+  EXPECT_TRUE(holds(error_of({"load=[{follower_pressure=1}]"}, with_file, against), "faces 1 and 2"));
+}
+
+TEST(SpringsScene, BendingNeedsCloth) {
+  const std::vector<std::string> sets = {"material.bending_stiffness=1e-3"};
+  EXPECT_EQ(error_of(sets), "");
+  EXPECT_EQ(error_of(sets, with_file, "v 0 0 0\nv 1 0 1\nv 0 1 0\nv 1 1 1\nf 1 2 3\nf 2 3 4\n"), "")
+      << "a slope";
+  EXPECT_TRUE(holds(error_of(sets, with_file, triangle + "v 1 1 1\nf 2 4 3\n"), "flat at rest"));
+  EXPECT_TRUE(holds(error_of(sets, with_file, rope), "with triangles"));
+}
+
+TEST(SpringsScene, OutputIsCompletedAndChecked) {
+  EXPECT_EQ(read_text(least, {"output.fields=[\"velocity\"]"}).output.times, std::vector<double>{1.0});
+  EXPECT_EQ(read_text(least, {"output.times=[0.5]"}).output.fields, std::vector<std::string>{"position"});
+  EXPECT_TRUE(holds(error_of({"output.times=[2]"}), "later than time.end_time = 1"));
+  EXPECT_TRUE(holds(error_of({"mesh.string={}", "output.fields=[\"von_mises\"]"}), "a stress of triangles"));
+  EXPECT_TRUE(
+      holds(error_of({"material.model=linear-vector", "time.end_time=0", "output.fields=[\"von_mises\"]"}),
+            "not along edges"));
+  EXPECT_TRUE(holds(error_of({"time.dt=1e-300"}), "more than 1e15 steps"));
+}
+
+TEST(SpringsScene, ChecksNeedWhatTheyCheck) {
+  EXPECT_TRUE(holds(error_of({"verify.young=1e-5"}), "mesh.strip"));
+  EXPECT_TRUE(holds(error_of({"verify.hencky=1e-5"}), "a constant pressure"));
+  EXPECT_TRUE(holds(error_of({"verify.catenary=1e-5"}), "mesh.string"));
+  EXPECT_TRUE(holds(error_of({"verify.energy_drift=1", "output.history_every=0"}), "history_every"));
+  EXPECT_TRUE(holds(error_of({"verify.energy_drift=1", "damping.absolute=1"}), "without damping"));
+  const std::string probe = "output.probes=[{at=[0,0,0]}]";
+  EXPECT_TRUE(holds(error_of({"verify.frequency={mode=[0,1],bar=1}"}), "prestretch"));
+  EXPECT_TRUE(holds(error_of({"verify.frequency={value=3,bar=1}"}), "probe of that number"));
+  EXPECT_TRUE(holds(error_of({"verify.frequency={bar=1}", probe}), "needs a value"));
+  EXPECT_EQ(error_of({"verify.frequency={mode=[0,1],bar=1}", probe, "initial.prestretch=0.01"}), "");
+  EXPECT_TRUE(holds(error_of({"verify.frequency={mode=[0.5,1],bar=1}", probe}), "integers"));
+}
+
+TEST(SpringsSceneDocument, IsWhatTheDeclarationsGive) {
+  const std::filesystem::path page = source / "docs/scenes-springs.md";
+  if (std::getenv("DROGUE_UPDATE_DOCS") != nullptr) std::ofstream(page) << document_springs_scene();
+  std::ostringstream written;
+  written << std::ifstream(page).rdbuf();
+  EXPECT_EQ(written.str(), document_springs_scene())
+      << "after a change of the keys: DROGUE_UPDATE_DOCS=1 ctest -R SpringsSceneDocument";
+}
+
+}  // namespace
+}  // namespace drogue::springs_app
