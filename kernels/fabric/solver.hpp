@@ -62,9 +62,9 @@ class Solver {
   /// The elastic forces and all loads where the vertices are now, N, without gravity and damping.
   virtual void forces(std::span<Vector> forces) = 0;
 
-  /// An upper bound of the angular frequencies of small oscillations about where the vertices are now, rad/s;
-  /// `stability_limit` over it is a step that is stable. Stiffness grows with strain, so ask again when the
-  /// cloth has stretched.
+  /// An upper bound of the angular frequencies of small oscillations about where the vertices are now, rad/s,
+  /// under the pressure of now; what is slack counts as taut. `stable_dt` makes a step of it. Stiffness grows
+  /// with strain, so ask again when the cloth has stretched.
   [[nodiscard]] virtual double fastest_frequency() = 0;
 
   /// An upper bound of the rates at which damping slows, 1/s; of Verlet absolute damping does not count,
