@@ -17,9 +17,8 @@ namespace drogue::fabric {
 }
 
 /// The largest step, s, that is stable for frequencies up to `frequency`, rad/s, and decays up to `decay`,
-/// 1/s
-/// (`Solver::fastest_frequency`, `Solver::fastest_decay`); infinite for neither. Runge and Kutta's region
-/// holds the half disc |z| <= 2.61 left of the imaginary axis; Verlet's needs decay dt <= 1.
+/// 1/s (those that a solver gives); infinite for neither. Runge and Kutta's region holds the half disc |z|
+/// <= 2.61 left of the imaginary axis; Verlet's needs decay dt <= 1.
 [[nodiscard]] constexpr double stable_dt(Integrator integrator, double frequency, double decay) {
   if (integrator == Integrator::rk4 && decay > 0.0) return 2.61 / (frequency > decay ? frequency : decay);
   const double undamped = stability_limit(integrator) / frequency;
@@ -47,7 +46,8 @@ class Solver {
   /// Waits for the steps that were asked for; where and when the state was lost, if it was.
   [[nodiscard]] virtual std::optional<Failure> failure() = 0;
 
-  /// Of the steps asked for; begins at step 0, time 0 and `Parameters::dt`.
+  /// Of the steps asked for, and once a failure was told of the state gone back to; begins at step 0, time 0
+  /// and `Parameters::dt`.
   [[nodiscard]] virtual Clock clock() const = 0;
 
   /// Sets step, time, and dt, which must be positive (std::invalid_argument).
@@ -55,6 +55,7 @@ class Solver {
 
   /// From here on steps take dt, s.
   void set_dt(double dt) {
+    static_cast<void>(failure());  // which may set the clock back
     const Clock now = clock();
     set_clock({now.step, dt, now.step, now.time()});
   }
@@ -62,9 +63,9 @@ class Solver {
   /// The elastic forces and all loads where the vertices are now, N, without gravity and damping.
   virtual void forces(std::span<Vector> forces) = 0;
 
-  /// An upper bound of the angular frequencies of small oscillations about where the vertices are now, rad/s;
-  /// `stability_limit` over it is a step that is stable. Stiffness grows with strain, so ask again when the
-  /// cloth has stretched.
+  /// An upper bound of the angular frequencies of small oscillations about where the vertices are now, rad/s,
+  /// under the pressure of now; what is slack counts as taut. `stable_dt` makes a step of it. Stiffness grows
+  /// with strain, so ask again when the cloth has stretched.
   [[nodiscard]] virtual double fastest_frequency() = 0;
 
   /// An upper bound of the rates at which damping slows, 1/s; of Verlet absolute damping does not count,

@@ -124,6 +124,16 @@ TEST(FabricFailure, IsForgottenWithANewState) {
   EXPECT_NEAR(x[3][0], 0.5, 1e-15);
 }
 
+TEST(FabricFailure, TheClockStaysWithTheStateGoneBackTo) {
+  const Parameters p = leaving(Integrator::rk4);
+  const auto solver = started(p);
+  solver->advance(2400);
+  solver->set_dt(2e-3);
+  EXPECT_EQ(solver->clock().step, 768);
+  EXPECT_NEAR(solver->clock().time(), 0.768, 1e-13);
+  EXPECT_FALSE(solver->advance(1));
+}
+
 TEST(FabricFailure, WhatIsNoStateIsRefused) {
   const auto solver = create_solver(backend, dust(Integrator::rk4));
   const std::vector<Vector> good(100, Vector{});

@@ -255,23 +255,54 @@ TEST(FabricLoad, PressureStiffnessRaisesTheBound) {
   EXPECT_NEAR(bound(), without, 1e-6 * without);
 }
 
+/// With everything that changes with time.
+Parameters busy(Integrator integrator) {
+  Parameters p = cloth(Model::biquadratic);
+  p.integrator = integrator;
+  p.damping = 3.0, p.relative_damping = 20.0;
+  p.follower_pressures = {{postfix({30.0, "x", "t", "*", "+"}), {}}};
+  p.timed_loads = {{postfix({"t", "sin"}), shaken(still(p.mass.size()), 2.0, 9)}};
+  p.motions = {{2, {0, 5}, postfix({"t", 0.1, "*", "sin"})}};
+  return p;
+}
+
+State begun(const Parameters& p) {
+  return {shaken(p.mesh.rest, 0.1, 1), shaken(still(p.mass.size()), 1.0, 2)};
+}
+
 TEST(FabricLoad, StepsWithAllOfItMayBeCutIntoCallsAnyhow) {
   for (const Integrator integrator : integrators) {
-    Parameters p = cloth(Model::biquadratic);
-    p.integrator = integrator;
-    p.damping = 3.0, p.relative_damping = 20.0;
-    p.follower_pressures = {{postfix({30.0, "x", "t", "*", "+"}), {}}};
-    p.timed_loads = {{postfix({"t", "sin"}), shaken(still(p.mass.size()), 2.0, 9)}};
-    p.motions = {{2, {0, 5}, postfix({"t", 0.1, "*"})}};
-    const State start{shaken(p.mesh.rest, 0.1, 1), shaken(still(p.mass.size()), 1.0, 2)};
-    const State once = moved(p, start, 300);
+    const Parameters p = busy(integrator);
+    const State once = moved(p, begun(p), 300);
     const auto solver = create_solver(backend, p);
-    solver->upload(start.x, start.v);
+    State cut = begun(p);
+    solver->upload(cut.x, cut.v);
     for (const std::int64_t steps : {1, 0, 5, 250, 44}) solver->advance(steps);
-    State cut = start;
     solver->download(cut.x, cut.v);
     EXPECT_EQ(once.x, cut.x);
     EXPECT_EQ(once.v, cut.v);
+  }
+}
+
+TEST(FabricLoad, AStateAndItsClockAreAllThatARestartNeeds) {
+  for (const Integrator integrator : integrators) {
+    const Parameters p = busy(integrator);
+    const auto first = create_solver(backend, p), second = create_solver(backend, p);
+    State state = begun(p);
+    first->upload(state.x, state.v);
+    first->advance(70);
+    first->set_dt(0.9e-4);
+    first->advance(80);
+    first->download(state.x, state.v);
+    second->upload(state.x, state.v);
+    second->set_clock(first->clock());
+    first->advance(150), second->advance(150);
+    State there = state;
+    first->download(state.x, state.v);
+    second->download(there.x, there.v);
+    EXPECT_EQ(state.x, there.x);
+    EXPECT_EQ(state.v, there.v);
+    EXPECT_EQ(first->clock().time(), second->clock().time());
   }
 }
 
