@@ -1,4 +1,4 @@
-# How tests are made: one executable per label, for kernels one per source and backend.
+# How tests are made: one executable per label, for kernels one per area and backend.
 
 include(GoogleTest)
 
@@ -21,6 +21,11 @@ function(drogue_add_test)
   set(_cores 1)
   if(_test_BACKEND)
     drogue_use_device_language(${_test_SOURCES})
+    # Helpers of these tests have the same names in many files: a unity build shares what they include instead.
+    set_target_properties(${_test_NAME} PROPERTIES UNITY_BUILD OFF)
+    if(CMAKE_UNITY_BUILD)
+      target_precompile_headers(${_test_NAME} PRIVATE <Kokkos_Core.hpp> <gtest/gtest.h>)
+    endif()
     target_compile_definitions(${_test_NAME} PRIVATE
       DROGUE_TEST_BACKEND=${_test_BACKEND} DROGUE_TEST_SPACE=${DROGUE_EXECUTION_SPACE_${_test_BACKEND}})
     string(APPEND _prefix "${_test_BACKEND}.")
