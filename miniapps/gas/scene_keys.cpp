@@ -280,7 +280,8 @@ void declare_gas_scene(Table& root, GasScene& scene) {
                          zero_is_unset(scene::choice_codec(parameters.driver, driver_choices),
                                        parameters.driver),
                          "How steps reach a GPU: kernels one by one, a recorded graph a step, or many steps "
-                         "a launch where mesh and scheme allow that, else a graph")
+                         "a launch where mesh and scheme allow that, else a graph; `stages` is a graph of a "
+                         "kernel a stage")
                   .default_text("`\"auto\"`");
             },
             "The launch of a step");
