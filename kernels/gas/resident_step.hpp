@@ -1,5 +1,6 @@
 #pragma once
 
+#include "kernels/device/resident_grid.hpp"
 #include "kernels/gas/finish.hpp"
 #include "kernels/gas/step.hpp"
 
