@@ -58,10 +58,11 @@ struct SplitDifferences {
 /// 1996, section 2): the central flux minus the projected nonlinear corrections.
 ///
 /// `N` is the type of all that is nonlinear: R itself, or its single-precision twin for split precision.
-/// `AnyStencil` is `Stencil` or what has its differences and its central flux.
+/// `AnyStencil` is `Stencil` or what has its differences and its central flux. Inlined by force: called, its
+/// stencil would travel through memory.
 template <Reconstruction scheme, class N, class AnyStencil, class R = typename AnyStencil::Value>
-KOKKOS_INLINE_FUNCTION Triple<R> weno5_face(const AnyStencil& s, const Eigensystem<N>& e,
-                                            const Speeds<N>& alpha) {
+KOKKOS_FORCEINLINE_FUNCTION Triple<R> weno5_face(const AnyStencil& s, const Eigensystem<N>& e,
+                                                 const Speeds<N>& alpha) {
   using To = device::Convert<N>;
   SplitDifferences<N> slow, entropy, fast;
   for (int k = 0; k < 5; ++k) {
