@@ -7,6 +7,10 @@
 #include <limits>
 #include <type_traits>
 
+#if defined(__AVX512F__) && !defined(__CUDACC__)
+#include <immintrin.h>
+#endif
+
 // Kokkos::Experimental::simd picks its width from KOKKOS_ARCH_AVX2/AVX512XEON, which Kokkos_ARCH_NATIVE does
 // not define, and it cannot convert double <-> float packs. GCC and Clang vector types do both, but nvcc's
 // front end rejects them, so CUDA builds run their host backends with one lane.
@@ -234,6 +238,28 @@ Root<Pack<T, L>> root(Pack<T, L> x) {
   const Pack<T, L> value = square_root(x), inverse = reciprocal(x);
   return {value, value * inverse, inverse};
 }
+
+#if defined(__AVX512F__) && !defined(DROGUE_EXACT)
+
+// All lanes are taken; in the intrinsics without a mask GCC 12 warns of a value that it does not use.
+
+/// As on CUDA, for eight lanes: 14 bits from the hardware, and y (1 + e)(1 + e^2) with e = 1 - x y, whose
+/// error is e^4. A division of eight takes the time of sixteen such operations.
+inline Pack<double, 8> reciprocal(Pack<double, 8> x) {
+  const auto y = Pack<double, 8>::of(_mm512_mask_rcp14_pd(x.v, 0xFF, x.v));
+  const Pack<double, 8> e = 1.0 - x * y, better = y + y * e;
+  return better + better * (e * e);
+}
+
+/// With e = 1 - x y^2, 1/sqrt(x) is y (1 - e)^(-1/2), here its series to e^4.
+inline Root<Pack<double, 8>> root(Pack<double, 8> x) {
+  auto y = Pack<double, 8>::of(_mm512_mask_rsqrt14_pd(x.v, 0xFF, x.v));
+  const Pack<double, 8> e = 1.0 - (x * y) * y;
+  y += (y * e) * (0.5 + e * (0.375 + e * (0.3125 + e * 0.2734375)));
+  return {x * y, y, y * y};
+}
+
+#endif
 
 template <class T, int L>
 struct Convert<Pack<T, L>> {

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "kernels/device/runtime.hpp"
+#include "tests/support/cuda_device.hpp"
 #include "tests/support/gas_state.hpp"
 #include "tests/support/in_child.hpp"
 
@@ -13,6 +14,7 @@ namespace drogue {
 namespace {
 
 using testing::GasState;
+using testing::has_cuda_device;
 using testing::in_child;
 
 struct Runner {
@@ -56,13 +58,6 @@ std::string run_bytes(const Runner& runner, gas::Parameters p, const GasState& s
   solver->download_touched(0, touched);
   append(bytes, touched.data(), touched.size());
   return bytes;
-}
-
-/// Asked in a child: a process that has looked for a device leaves its children a CUDA that does not start.
-bool has_cuda_device() {
-  static const bool present =
-      in_child([] { return std::string(device::is_present(device::Backend::cuda) ? "yes" : "no"); }) == "yes";
-  return present;
 }
 
 std::vector<Runner> runners() {

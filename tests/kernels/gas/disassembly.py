@@ -8,7 +8,7 @@ import shlex
 import subprocess
 
 SYMBOL = re.compile(r"^[0-9a-f]+ <(.*)>:$")
-ARITHMETIC = re.compile(r"\s+[0-9a-f]+:\s+v?(add|sub|mul|div|sqrt|fn?m(?:add|sub)\d{3})([ps])d\s+(.*)$")
+ARITHMETIC = re.compile(r"\s+[0-9a-f]+:\s+v?(add|sub|mul|div|sqrt|rcp14|rsqrt14|fn?m(?:add|sub)\d{3})([ps])d\s+(.*)$")
 REGISTERS = ("zmm", "ymm", "xmm")
 
 

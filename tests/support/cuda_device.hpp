@@ -1,0 +1,15 @@
+#pragma once
+
+#include "kernels/device/backend.hpp"
+#include "tests/support/in_child.hpp"
+
+namespace drogue::testing {
+
+/// Asked in a child: a process that has looked for a device leaves its children a CUDA that does not start.
+inline bool has_cuda_device() {
+  static const bool present =
+      in_child([] { return std::string(device::is_present(device::Backend::cuda) ? "yes" : "no"); }) == "yes";
+  return present;
+}
+
+}  // namespace drogue::testing
