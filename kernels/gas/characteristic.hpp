@@ -47,14 +47,14 @@ KOKKOS_INLINE_FUNCTION Eigensystem<N> face_eigensystem(Mean mean, S gamma, const
   if (mean == Mean::arithmetic)
     return eigensystem<N, R>(gamma, S(0.5) * (left.u + right.u), S(0.5) * (left.enthalpy + right.enthalpy));
   if (mean == Mean::conserved) {
-    const R inverse = R(S(1)) / (left.rho + right.rho);  // the halves of the three means cancel
+    const R inverse = device::reciprocal(left.rho + right.rho);  // the halves of the three means cancel
     const R m = left.m + right.m, energy = left.energy + right.energy;
     const R u = m * inverse;
     return eigensystem<N, R>(gamma, u, (energy + pressure(gamma, m, energy, u)) * inverse);
   }
   // Roe 1981
   const R wl = device::square_root(left.rho), wr = device::square_root(right.rho);
-  const R inverse = R(S(1)) / (wl + wr);
+  const R inverse = device::reciprocal(wl + wr);
   return eigensystem<N, R>(gamma, (wl * left.u + wr * right.u) * inverse,
                            (wl * left.enthalpy + wr * right.enthalpy) * inverse);
 }
