@@ -18,6 +18,13 @@ using testing::shaken;
 
 constexpr int most_threads = 64;
 
+/// Without fused multiply-add all drivers have the same bits.
+#if defined(DROGUE_EXACT)
+constexpr double rounding = 0.0;
+#else
+constexpr double rounding = 1.0;
+#endif
+
 Mesh mesh_of(int nx, int ny) {
   Mesh mesh = random_patch(nx, ny, 3);
   mesh.line_stiffness.assign(mesh.lines.size(), 300.0);
@@ -199,8 +206,8 @@ void expect_the_same_steps() {
   for (const int count : {1, 3}) {
     other_x = start, other_v = still;
     run_emulated<law>(p, count, {2, 1, 4}, other_x, other_v);
-    EXPECT_LT(distance(x, other_x), 1e-13) << count << " patches";
-    EXPECT_LT(distance(v, other_v), 1e-11) << count << " patches";
+    EXPECT_LE(distance(x, other_x), rounding * 1e-13) << count << " patches";
+    EXPECT_LE(distance(v, other_v), rounding * 1e-11) << count << " patches";
   }
 }
 
