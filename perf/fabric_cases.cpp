@@ -40,22 +40,23 @@ Case scatter_case(int vertices, long steps) {
 }
 
 /// A change of the usual parameters, and what the case is called then.
-struct Variant {
+struct FabricVariant {
   const char* name;
   void (*apply)(fabric::Parameters&);
 };
 
-const Variant usual = {"", [](fabric::Parameters&) {}};
-const Variant quadratic = {"quadratic",
-                           [](fabric::Parameters& p) { p.material.model = fabric::Model::quadratic; }};
-const Variant verlet = {"verlet", [](fabric::Parameters& p) { p.integrator = fabric::Integrator::verlet; }};
-const Variant slack = {"tension-only", [](fabric::Parameters& p) { p.material.tension_only = true; }};
-const Variant graph = {"graph", [](fabric::Parameters& p) { p.driver = fabric::Driver::graph; }};
-const Variant plain = {"plain", [](fabric::Parameters& p) { p.driver = fabric::Driver::plain; }};
-const Variant patch_64 = {"patch-64", [](fabric::Parameters& p) { p.patch = 64; }};
-const Variant patch_128 = {"patch-128", [](fabric::Parameters& p) { p.patch = 128; }};
+const FabricVariant usual = {"", [](fabric::Parameters&) {}};
+const FabricVariant quadratic = {"quadratic",
+                                 [](fabric::Parameters& p) { p.material.model = fabric::Model::quadratic; }};
+const FabricVariant verlet = {"verlet",
+                              [](fabric::Parameters& p) { p.integrator = fabric::Integrator::verlet; }};
+const FabricVariant slack = {"tension-only", [](fabric::Parameters& p) { p.material.tension_only = true; }};
+const FabricVariant graph = {"graph", [](fabric::Parameters& p) { p.driver = fabric::Driver::graph; }};
+const FabricVariant plain = {"plain", [](fabric::Parameters& p) { p.driver = fabric::Driver::plain; }};
+const FabricVariant patch_64 = {"patch-64", [](fabric::Parameters& p) { p.patch = 64; }};
+const FabricVariant patch_128 = {"patch-128", [](fabric::Parameters& p) { p.patch = 128; }};
 
-Case solver_case(device::Backend backend, int vertices, long steps, const Variant& variant) {
+Case sheet_case(device::Backend backend, int vertices, long steps, const FabricVariant& variant) {
   struct Run {
     fabric::Parameters p;
     std::unique_ptr<fabric::Solver> solver;
@@ -80,7 +81,7 @@ Case solver_case(device::Backend backend, int vertices, long steps, const Varian
           }};
 }
 
-std::vector<Variant> variants_of(int vertices, bool gpu) {
+std::vector<FabricVariant> variants_of(int vertices, bool gpu) {
   if (!gpu) return vertices < 100'000 ? std::vector{usual, quadratic, verlet} : std::vector{usual};
   if (vertices < 10'000) return {usual, graph, plain, patch_64, patch_128, quadratic, verlet};
   if (vertices < 1'000'000) return {usual, graph, quadratic, verlet};
@@ -99,8 +100,8 @@ std::vector<Case> fabric_cases(bool quick) {
       // A sample: about 20 ms of work, but enough steps that its start and end do not show.
       const long steps =
           gpu ? std::clamp(80'000'000L / vertices, 80L, 4096L) : std::max(4L, 150'000L / vertices);
-      for (const Variant& variant : variants_of(vertices, gpu))
-        cases.push_back(solver_case(backend, vertices, steps, variant));
+      for (const FabricVariant& variant : variants_of(vertices, gpu))
+        cases.push_back(sheet_case(backend, vertices, steps, variant));
     }
     if (vertices < 100'000) cases.push_back(scatter_case(vertices, std::max(4L, 50'000L / vertices)));
   }

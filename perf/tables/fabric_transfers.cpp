@@ -12,13 +12,13 @@ namespace drogue::perf {
 namespace {
 
 /// A line of the table: one mesh, one number of steps between two copies.
-struct Row {
+struct FabricRow {
   dissertation::FabricTransferRow printed;
   int substeps;
 };
 
-std::vector<Row> rows_of(bool quick) {
-  std::vector<Row> rows;
+std::vector<FabricRow> fabric_rows(bool quick) {
+  std::vector<FabricRow> rows;
   for (const auto& printed : dissertation::table_5_6)
     for (const int substeps : dissertation::table_5_6_substeps)
       if (!quick || (printed.vertices == 2641 && substeps <= 10)) rows.push_back({printed, substeps});
@@ -31,7 +31,7 @@ double seconds_of(const std::function<void()>& work) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
-Case case_of(device::Backend backend, const Row& row) {
+Case case_of(device::Backend backend, const FabricRow& row) {
   struct Run {
     fabric::Parameters p;
     std::unique_ptr<fabric::Solver> solver;
@@ -67,7 +67,7 @@ Case case_of(device::Backend backend, const Row& row) {
           sheet::bar};
 }
 
-nlohmann::json facts_of(device::Backend backend, const Row& row, const Record& record) {
+nlohmann::json facts_of(device::Backend backend, const FabricRow& row, const Record& record) {
   return {{"backend", device::name(backend)},
           {"cells", row.printed.vertices},
           {"substeps", row.substeps},
@@ -85,9 +85,9 @@ nlohmann::json facts_of(device::Backend backend, const Row& row, const Record& r
 }  // namespace
 
 Table print_fabric_transfers(device::Backend backend, bool quick, const nlohmann::json& provenance) {
-  const std::vector<Row> rows = rows_of(quick);
+  const std::vector<FabricRow> rows = fabric_rows(quick);
   std::vector<Case> cases;
-  for (const Row& row : rows) cases.push_back(case_of(backend, row));
+  for (const FabricRow& row : rows) cases.push_back(case_of(backend, row));
   const std::vector<Record> records = measure(cases, warm_up_rounds, kept_rounds(quick));
   std::printf(
       "Table 5.6: a stretched sheet on %s, microseconds from host to host; in brackets the dissertation's "

@@ -8,7 +8,7 @@ using fabric::Vector;
 
 namespace {
 
-Vector difference(const Vector& a, const Vector& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
+Vector edge_between(const Vector& a, const Vector& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
 
 double squared(const Vector& a) { return a[0] * a[0] + a[1] * a[1] + a[2] * a[2]; }
 
@@ -22,8 +22,8 @@ ScatterSheet::ScatterSheet(const fabric::Parameters& p)
     Springs s{};
     for (std::size_t e = 0; e < 3; ++e) {
       s.vertex[e] = static_cast<std::size_t>(t[e]);
-      s.rest[e] = squared(difference(p.mesh.rest[static_cast<std::size_t>(t[(e + 1) % 3])],
-                                     p.mesh.rest[static_cast<std::size_t>(t[(e + 2) % 3])]));
+      s.rest[e] = squared(edge_between(p.mesh.rest[static_cast<std::size_t>(t[(e + 1) % 3])],
+                                       p.mesh.rest[static_cast<std::size_t>(t[(e + 2) % 3])]));
     }
     // Heron.
     const double all = s.rest[0] + s.rest[1] + s.rest[2];
@@ -49,7 +49,7 @@ void ScatterSheet::forces(const std::vector<Vector>& x, std::vector<Vector>& f) 
     Vector edge[3];
     double change[3];
     for (std::size_t e = 0; e < 3; ++e) {
-      edge[e] = difference(x[s.vertex[(e + 2) % 3]], x[s.vertex[(e + 1) % 3]]);
+      edge[e] = edge_between(x[s.vertex[(e + 2) % 3]], x[s.vertex[(e + 1) % 3]]);
       change[e] = squared(edge[e]) - s.rest[e];
     }
     for (std::size_t e = 0; e < 3; ++e) {

@@ -63,7 +63,7 @@ TEST(FabricPatches, HoldEveryVertexOnceAndAllThatItReads) {
     }
     EXPECT_EQ(patch_of.size(), mesh.rest.size());
     EXPECT_EQ(static_cast<int>(places.size()), patches.places);
-    if (patches.places > 0) EXPECT_EQ(*places.rbegin(), patches.places - 1);
+    for (const int used : places) EXPECT_LT(used, patches.places);
     std::set<int> read;
     std::set<std::array<int, 2>> pairs;
     for (int p = 0; p < count; ++p) {

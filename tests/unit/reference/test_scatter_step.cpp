@@ -10,7 +10,7 @@
 namespace drogue::reference {
 namespace {
 
-fabric::Parameters cloth() {
+fabric::Parameters patch_of_cloth() {
   fabric::Parameters p;
   p.mesh = testing::random_patch(5, 4, 1);
   p.mesh.rest.resize(20);
@@ -20,7 +20,7 @@ fabric::Parameters cloth() {
 }
 
 TEST(ReferenceScatter, ForcesAreThoseOfTheEnergy) {
-  const fabric::Parameters p = cloth();
+  const fabric::Parameters p = patch_of_cloth();
   const std::vector<fabric::Vector> now = testing::shaken(p.mesh.rest, 0.2, 2),
                                     expected = forces(p.material, p.mesh, now);
   std::vector<fabric::Vector> f(now.size());
@@ -30,7 +30,7 @@ TEST(ReferenceScatter, ForcesAreThoseOfTheEnergy) {
 }
 
 TEST(ReferenceScatter, StepsAreOfFourthOrder) {
-  fabric::Parameters p = cloth();
+  fabric::Parameters p = patch_of_cloth();
   p.gravity = {0.0, 0.0, -9.81}, p.damping = 0.4, p.pinned.assign(p.mass.size(), 0), p.pinned[0] = 7;
   const auto end = [&](int steps) {
     std::vector<fabric::Vector> x = testing::shaken(p.mesh.rest, 0.05, 3), v(x.size(), fabric::Vector{});
