@@ -31,4 +31,18 @@ inline constexpr TransferRow table_5_5[] = {{1024, 336, 118, 272, 726},  {2048, 
 /// Figure 4.4: block sizes whose time is drawn against the meshes of table 5.5.
 inline constexpr int figure_4_4_blocks[] = {32, 64, 128, 192, 256, 384, 512};
 
+/// Table 5.6: microseconds of a step on the CPU and on the GPU, whose steps take an unknown number of
+/// substeps between two copies.
+struct FabricTransferRow {
+  int vertices;
+  double cpu, h2d, compute, d2h, total;
+};
+inline constexpr FabricTransferRow table_5_6[] = {
+    {2641, 223565, 171, 41328, 644, 42143},  {4279, 294037, 340, 42200, 1239, 43734},
+    {6466, 376137, 376, 51180, 530, 52086},  {9064, 481941, 786, 70444, 2241, 73471},
+    {12361, 554545, 687, 85744, 727, 87158}, {15567, 601600, 1503, 96310, 1066, 98879}};
+
+/// Numbers of substeps beside which its times may stand.
+inline constexpr int table_5_6_substeps[] = {1, 10, 34, 100};
+
 }  // namespace drogue::perf::dissertation

@@ -7,6 +7,7 @@ namespace drogue::perf {
 
 std::vector<Case> all_cases(bool quick) {
   std::vector<Case> cases = gas_cases(quick);
+  for (Case& c : fabric_cases(quick)) cases.push_back(std::move(c));
   for (Case& c : ceiling_cases()) cases.push_back(std::move(c));
   return cases;
 }

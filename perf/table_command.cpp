@@ -21,7 +21,7 @@ Table timed_table(const TableOptions& options, const std::vector<std::string>& k
                                       ? device::fastest_backend()
                                       : device::backend_from_name(options.backend).value();
   require(backend);
-  const bool block_size = options.table == "block-size";
+  const bool block_size = options.table == "block-size", of_gas = options.app == "gas";
   if (block_size && backend != device::Backend::cuda)
     throw Failure(ExitCode::usage, "a block size means nothing to the host backend '" +
                                        std::string(device::name(backend)) +
@@ -29,12 +29,14 @@ Table timed_table(const TableOptions& options, const std::vector<std::string>& k
   const device::Runtime runtime(kokkos);
   const nlohmann::json here = provenance(device::device_facts());
   return block_size ? print_block_sizes(backend, options.quick, here)
-                    : print_transfers(backend, options.quick, here);
+         : of_gas   ? print_transfers(backend, options.quick, here)
+                    : print_fabric_transfers(backend, options.quick, here);
 }
 
 ExitCode print_table(const TableOptions& options, const std::vector<std::string>& kokkos) {
   require_name("table", options.table, {"occupancy", "block-size", "transfers"});
-  require_name("app", options.app, {"gas"});
+  require_name("app", options.app, {"gas", "springs"});
+  if (options.app == "springs") require_name("table of springs", options.table, {"transfers"});
   Table table;
   if (options.table == "occupancy")
     table =

@@ -145,6 +145,10 @@ struct Access {
   KOKKOS_INLINE_FUNCTION static Element lane(R value, int) { return value; }
   /// The values that `lanes` consecutive indices name.
   KOKKOS_INLINE_FUNCTION static R gather(const Element* values, const int* index) { return values[*index]; }
+  /// 0 where a bit is set, else 1.
+  KOKKOS_INLINE_FUNCTION static R unless_set(const std::uint8_t* sets, unsigned bit) {
+    return (*sets & bit) != 0U ? R(0) : R(1);
+  }
 };
 
 #if DROGUE_HOST_VECTORS
@@ -289,6 +293,11 @@ struct Access<Pack<T, L>> {
     Pack<T, L> gathered;
     for (int k = 0; k < L; ++k) gathered.v[k] = values[index[k]];
     return gathered;
+  }
+  static Pack<T, L> unless_set(const std::uint8_t* sets, unsigned bit) {
+    Pack<T, L> clear;
+    for (int k = 0; k < L; ++k) clear.v[k] = (sets[k] & bit) != 0U ? T(0) : T(1);
+    return clear;
   }
 };
 

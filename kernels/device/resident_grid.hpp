@@ -103,8 +103,9 @@ class ResidentMember {
     for (std::size_t k = 0; k < 3; ++k) store(row(epoch, k) + place, numbers.value[k], epoch);
   }
 
-  /// The numbers at a place of the board, once those of `epoch` are there. Two boards are enough: who posts
-  /// the next epoch but one has heard from all (`await_largest`) that they have read this one.
+  /// The numbers at a place of the board, once those of `epoch` are there. Two boards are enough where who
+  /// posts the next epoch but one has heard that this one is read: from all (`await_largest`), or from all
+  /// who read its places.
   [[nodiscard]] KOKKOS_FUNCTION Posted collect(std::uint64_t epoch, std::size_t place) const {
     Posted numbers{};
     KOKKOS_IF_ON_DEVICE((bool all = false; while (!all) {

@@ -3,34 +3,15 @@
 #include <Kokkos_Core.hpp>
 
 #include "kernels/device/memory.hpp"
-#include "kernels/fabric/incidence.hpp"
 #include "kernels/fabric/membrane.hpp"
+#include "kernels/fabric/slot_views.hpp"
+#include "kernels/fabric/vector3.hpp"
 
 namespace drogue::fabric {
 
 /// A vector a vertex, (vertices, 3), whole slices.
 template <class ExecutionSpace>
 using PointsView = Kokkos::View<double* [3], Kokkos::LayoutLeft, typename ExecutionSpace::memory_space>;
-
-/// One vector of `lanes` vertices.
-template <class R>
-struct Vector3 {
-  R x, y, z;
-
-  friend KOKKOS_INLINE_FUNCTION Vector3 operator+(const Vector3& a, const Vector3& b) {
-    return {a.x + b.x, a.y + b.y, a.z + b.z};
-  }
-  friend KOKKOS_INLINE_FUNCTION Vector3 operator-(const Vector3& a, const Vector3& b) {
-    return {a.x - b.x, a.y - b.y, a.z - b.z};
-  }
-  template <class S>
-  friend KOKKOS_INLINE_FUNCTION Vector3 operator*(S s, const Vector3& a) {
-    return {s * a.x, s * a.y, s * a.z};
-  }
-  friend KOKKOS_INLINE_FUNCTION R dot(const Vector3& a, const Vector3& b) {
-    return a.x * b.x + a.y * b.y + a.z * b.z;
-  }
-};
 
 template <class R, class Points>
 KOKKOS_INLINE_FUNCTION Vector3<R> load_points(const Points& points, int i) {
@@ -53,45 +34,75 @@ KOKKOS_INLINE_FUNCTION Vector3<R> gather_points(const Points& points, const int*
           Lanes::gather(&points(0, 2), index)};
 }
 
-/// `Slots` where kernels read them.
-template <class ExecutionSpace, int neighbours, int values>
-struct SlotViews {
-  using Memory = typename ExecutionSpace::memory_space;
-  Kokkos::View<int*, Memory> first;
-  Kokkos::View<int* [neighbours], Kokkos::LayoutLeft, Memory> neighbour;
-  Kokkos::View<double* [values], Kokkos::LayoutLeft, Memory> value;
-
-  /// Calls `take(slot)` for the slots of vertex i and the lanes after it.
-  template <class Take>
-  KOKKOS_INLINE_FUNCTION void each(int i, const Take& take) const {
-    for (int k = first(i / slice); k < first(i / slice + 1); ++k) take(k * slice + i % slice);
-  }
+/// A triangle at rest: squared lengths of the edges opposite its vertices, m^2, and 1/m^2.
+template <class R>
+struct RestTriangle {
+  Edges<R> edges;
+  R inverse_area;
 };
+
+/// Of slot `next` of a ring, from the values that it stores; `before` and `next` are squared lengths of the
+/// edges to the two neighbours.
+template <class R, class Values>
+KOKKOS_INLINE_FUNCTION RestTriangle<R> stored_triangle(const Values& value, R before, R next, int slot) {
+  using Lanes = device::Access<R>;
+  return {{{Lanes::load(&value(slot, 1)), next, before}}, Lanes::load(&value(slot, 2))};
+}
 
 /// What does not change while cloth moves.
 template <class ExecutionSpace>
 struct Cloth {
   using Points = PointsView<ExecutionSpace>;
-  SlotViews<ExecutionSpace, 2, 4> triangles;
-  SlotViews<ExecutionSpace, 1, 2> springs;
+  SlotViews<ExecutionSpace, 3> triangles;  ///< a device, which waits for memory, stores no values
+  SlotViews<ExecutionSpace, 2> springs;
+  Points rest;                                                                ///< m; on the host empty
   Kokkos::View<double*, typename ExecutionSpace::memory_space> inverse_mass;  ///< 1/kg
-  Points free;  ///< 0 where an axis is pinned, else 1
-  Points load;  ///< dead force, N; may be empty
+  Kokkos::View<std::uint8_t*, typename ExecutionSpace::memory_space> held;    ///< axes: 1 x, 2 y, 4 z
+  Points load;                                                                ///< dead force, N; may be empty
   Moduli moduli;
   Vector3<double> gravity;
   double damping;
+
+  /// The edge to a neighbour of vertex i at rest, as much of it as `rest_triangle` needs.
+  template <class R>
+  KOKKOS_INLINE_FUNCTION auto rest_edge(int i, int slot) const {
+    if constexpr (device::is_host<ExecutionSpace>)
+      return device::Access<R>::load(&triangles.value(slot, 0));
+    else
+      return gather_points<R>(rest, &triangles.neighbour(slot)) - load_points<R>(rest, i);
+  }
+  template <class R, class RestEdge>
+  KOKKOS_INLINE_FUNCTION RestTriangle<R> rest_triangle(const RestEdge& before, const RestEdge& next,
+                                                       int slot) const {
+    if constexpr (device::is_host<ExecutionSpace>) {
+      return stored_triangle(triangles.value, before, next, slot);
+    } else {
+      const Vector3<R> between = next - before;
+      return {{{dot(between, between), dot(next, next), dot(before, before)}},
+              fabric::inverse_area(before, next)};
+    }
+  }
 };
 
-/// The pull of a triangle on its first vertex, N; `to_j` and `to_k` lead from it to the other two, m, `rest`
-/// are the squared lengths of the edges opposite the three, m^2.
+/// 1 along free axes of a vertex and the lanes after it, 0 along those that `held` names.
+template <class R>
+KOKKOS_INLINE_FUNCTION Vector3<R> free_axes(const std::uint8_t* held) {
+  using Lanes = device::Access<R>;
+  return {Lanes::unless_set(held, 1U), Lanes::unless_set(held, 2U), Lanes::unless_set(held, 4U)};
+}
+template <class R, class ExecutionSpace>
+KOKKOS_INLINE_FUNCTION Vector3<R> free_axes(const Cloth<ExecutionSpace>& cloth, int i) {
+  return free_axes<R>(&cloth.held(i));
+}
+
+/// The pull of a triangle on its first vertex, N; `to_j` and `to_k` lead from it to the other two, m.
 template <Law law, class R>
 KOKKOS_INLINE_FUNCTION Vector3<R> triangle_pull(const Moduli& m, const Vector3<R>& to_j,
-                                                const Vector3<R>& to_k, const Edges<R>& rest,
-                                                R inverse_area) {
+                                                const Vector3<R>& to_k, const RestTriangle<R>& rest) {
   const Vector3<R> opposite = to_k - to_j;
   // Edge j lies opposite vertex j: it leads to k.
   const Edges<R> now{{dot(opposite, opposite), dot(to_k, to_k), dot(to_j, to_j)}};
-  const Edges<R> tension = membrane_tensions<law>(m, now, rest, inverse_area);
+  const Edges<R> tension = membrane_tensions<law>(m, now, rest.edges, rest.inverse_area);
   return tension.of[2] * to_j + tension.of[1] * to_k;
 }
 
@@ -101,48 +112,71 @@ KOKKOS_INLINE_FUNCTION Vector3<R> spring_pull(R stiffness, R rest, const Vector3
   return spring_tension<law>(stiffness, dot(edge, edge), rest) * edge;
 }
 
-/// Squared lengths at rest of the edges of the triangle in `slot`, m^2.
-template <class R, class ExecutionSpace>
-KOKKOS_INLINE_FUNCTION Edges<R> rest_edges(const Cloth<ExecutionSpace>& cloth, int slot) {
-  using Lanes = device::Access<R>;
-  const auto& value = cloth.triangles.value;
-  return {{Lanes::load(&value(slot, 0)), Lanes::load(&value(slot, 1)), Lanes::load(&value(slot, 2))}};
+/// Calls `take(to_j, to_k, rest, j, k)` for the triangles of vertex i and the lanes after it: the ways to the
+/// other two vertices, m, the triangle at rest, and where their numbers stand.
+template <class R, class Fabric, class Points, class Take>
+KOKKOS_INLINE_FUNCTION void each_triangle(const Fabric& cloth, const Points& positions, int i,
+                                          const Take& take) {
+  const Vector3<R> own = load_points<R>(positions, i);
+  struct Side {
+    Vector3<R> to;
+    decltype(cloth.template rest_edge<R>(0, 0)) rest;
+    const int* vertex;
+  };
+  cloth.triangles.each_pair(
+      i,
+      [&](int slot) {
+        const int* vertex = &cloth.triangles.neighbour(slot);
+        return Side{gather_points<R>(positions, vertex) - own, cloth.template rest_edge<R>(i, slot), vertex};
+      },
+      [&](const Side& j, const Side& k, int slot) {
+        take(j.to, k.to, cloth.template rest_triangle<R>(j.rest, k.rest, slot), j.vertex, k.vertex);
+      });
 }
 
-/// The elastic and dead forces on vertex i and the lanes after it, N, each vertex in the fixed order of its
-/// slots. Momentum is kept to round-off: both ends of an edge, and all corners of a triangle, compute the
-/// same tension.
-template <Law law, class R, class ExecutionSpace, class Points>
-KOKKOS_INLINE_FUNCTION Vector3<R> force(const Cloth<ExecutionSpace>& cloth, const Points& positions, int i) {
+/// The elastic forces on vertex i and the lanes after it, N, each vertex in the fixed order of its slots.
+/// Momentum is kept to round-off: both ends of an edge, and all corners of a triangle, compute the same
+/// tension. `Fabric` is a Cloth or what has its tables elsewhere.
+template <Law law, class R, class Fabric, class Points>
+KOKKOS_INLINE_FUNCTION Vector3<R> elastic_force(const Fabric& cloth, const Points& positions, int i) {
   using Lanes = device::Access<R>;
-  const Vector3<R> own = load_points<R>(positions, i);
   Vector3<R> sum{R(0.0), R(0.0), R(0.0)};
-  const auto to = [&](const int* neighbour) { return gather_points<R>(positions, neighbour) - own; };
   if constexpr (whole_triangles<law>)
-    cloth.triangles.each(i, [&](int slot) {
-      const auto& neighbour = cloth.triangles.neighbour;
-      sum =
-          sum + triangle_pull<law>(cloth.moduli, to(&neighbour(slot, 0)), to(&neighbour(slot, 1)),
-                                   rest_edges<R>(cloth, slot), Lanes::load(&cloth.triangles.value(slot, 3)));
-    });
+    each_triangle<R>(
+        cloth, positions, i,
+        [&](const Vector3<R>& to_j, const Vector3<R>& to_k, const RestTriangle<R>& rest, const int*,
+            const int*) { sum = sum + triangle_pull<law>(cloth.moduli, to_j, to_k, rest); });
   cloth.springs.each(i, [&](int slot) {
-    const auto& value = cloth.springs.value;
-    sum = sum + spring_pull<law>(Lanes::load(&value(slot, 0)), Lanes::load(&value(slot, 1)),
-                                 to(&cloth.springs.neighbour(slot, 0)));
+    const auto& springs = cloth.springs;
+    sum = sum + spring_pull<law>(
+                    Lanes::load(&springs.value(slot, 0)), Lanes::load(&springs.value(slot, 1)),
+                    gather_points<R>(positions, &springs.neighbour(slot)) - load_points<R>(positions, i));
   });
-  if (cloth.load.extent(0) > 0) sum = sum + load_points<R>(cloth.load, i);
   return sum;
 }
 
-/// m/s^2; zero along pinned axes.
+/// With dead forces.
 template <Law law, class R, class ExecutionSpace, class Points>
-KOKKOS_INLINE_FUNCTION Vector3<R> acceleration(const Cloth<ExecutionSpace>& cloth, const Points& positions,
-                                               const Vector3<R>& velocity, int i) {
-  const R inverse_mass = device::Access<R>::load(&cloth.inverse_mass(i));
-  const Vector3<R> elastic = inverse_mass * force<law, R>(cloth, positions, i);
+KOKKOS_INLINE_FUNCTION Vector3<R> force(const Cloth<ExecutionSpace>& cloth, const Points& positions, int i) {
+  const Vector3<R> elastic = elastic_force<law, R>(cloth, positions, i);
+  return cloth.load.extent(0) > 0 ? elastic + load_points<R>(cloth.load, i) : elastic;
+}
+
+/// m/s^2; zero along pinned axes. `Fabric` as above.
+template <class R, class Fabric>
+KOKKOS_INLINE_FUNCTION Vector3<R> acceleration(const Fabric& cloth, const Vector3<R>& force, R inverse_mass,
+                                               const Vector3<R>& velocity, const Vector3<R>& free) {
   const Vector3<R> g{R(cloth.gravity.x), R(cloth.gravity.y), R(cloth.gravity.z)};
-  const Vector3<R> a = elastic + g - cloth.damping * velocity, free = load_points<R>(cloth.free, i);
+  const Vector3<R> a = inverse_mass * force + g - cloth.damping * velocity;
   return {free.x * a.x, free.y * a.y, free.z * a.z};
+}
+
+/// Of vertex i and the lanes after it.
+template <class R, class ExecutionSpace>
+KOKKOS_INLINE_FUNCTION Vector3<R> acceleration(const Cloth<ExecutionSpace>& cloth, const Vector3<R>& force,
+                                               const Vector3<R>& velocity, int i) {
+  return acceleration(cloth, force, device::Access<R>::load(&cloth.inverse_mass(i)), velocity,
+                      free_axes<R>(cloth, i));
 }
 
 }  // namespace drogue::fabric

@@ -20,8 +20,8 @@ struct External {
   Kokkos::View<double** [3], Kokkos::LayoutLeft, Memory> direction;  ///< vertex, load
   ProgramsView<ExecutionSpace> pressure;
   Kokkos::View<double**, Kokkos::LayoutLeft, Memory> weight;  ///< vertex, pressure
-  SlotViews<ExecutionSpace, 2, 4> surface;
-  SlotViews<ExecutionSpace, 1, 1> dashpots, bending;
+  SlotViews<ExecutionSpace, 3> surface;                       ///< rings; nobody reads its values
+  SlotViews<ExecutionSpace, 1> dashpots, bending;
 };
 
 /// The pull of a dashpot on the end from which `edge` leads, N: along the edge alone, so that the pull on the
@@ -34,13 +34,13 @@ KOKKOS_INLINE_FUNCTION Vector3<double> dashpot_pull(double dashpot, const Vector
 
 /// The pulls of all dashpots on vertex i, N.
 template <class ExecutionSpace>
-KOKKOS_INLINE_FUNCTION Vector3<double> dashpot_force(const SlotViews<ExecutionSpace, 1, 1>& dashpots,
+KOKKOS_INLINE_FUNCTION Vector3<double> dashpot_force(const SlotViews<ExecutionSpace, 1>& dashpots,
                                                      const PointsView<ExecutionSpace>& x,
                                                      const PointsView<ExecutionSpace>& v, int i) {
   const Vector3<double> own = load_points<double>(x, i), velocity = load_points<double>(v, i);
   Vector3<double> sum{0.0, 0.0, 0.0};
   dashpots.each(i, [&](int slot) {
-    const int j = dashpots.neighbour(slot, 0);
+    const int j = dashpots.neighbour(slot);
     sum = sum + dashpot_pull(dashpots.value(slot, 0), load_points<double>(x, j) - own,
                              load_points<double>(v, j) - velocity);
   });
@@ -49,12 +49,12 @@ KOKKOS_INLINE_FUNCTION Vector3<double> dashpot_force(const SlotViews<ExecutionSp
 
 /// The resistance of vertex i to bending, N.
 template <class ExecutionSpace>
-KOKKOS_INLINE_FUNCTION Vector3<double> bending_force(const SlotViews<ExecutionSpace, 1, 1>& bending,
+KOKKOS_INLINE_FUNCTION Vector3<double> bending_force(const SlotViews<ExecutionSpace, 1>& bending,
                                                      const PointsView<ExecutionSpace>& x, int i) {
   const Vector3<double> own = load_points<double>(x, i);
   Vector3<double> sum{0.0, 0.0, 0.0};
   bending.each(i, [&](int slot) {
-    sum = sum + bending.value(slot, 0) * (load_points<double>(x, bending.neighbour(slot, 0)) - own);
+    sum = sum + bending.value(slot, 0) * (load_points<double>(x, bending.neighbour(slot)) - own);
   });
   return sum;
 }
@@ -88,11 +88,11 @@ struct ExternalFunctor {
     if (external.pressure.extent(0) > 0) {
       const Vector3<double> own = load_points<double>(x, i);
       Vector3<double> twice_area{0.0, 0.0, 0.0};
-      external.surface.each(i, [&](int slot) {
-        const auto& neighbour = external.surface.neighbour;
-        twice_area = twice_area + cross(load_points<double>(x, neighbour(slot, 0)) - own,
-                                        load_points<double>(x, neighbour(slot, 1)) - own);
-      });
+      external.surface.each_pair(
+          i, [&](int slot) { return load_points<double>(x, external.surface.neighbour(slot)) - own; },
+          [&](const Vector3<double>& to_j, const Vector3<double>& to_k, int) {
+            twice_area = twice_area + cross(to_j, to_k);
+          });
       sum = sum + (pressure_on(i, place) / 6.0) * twice_area;
     }
     if (external.bending.first.extent(0) > 0) sum = sum + bending_force(external.bending, x, i);
@@ -132,11 +132,13 @@ struct LoadStiffnessFunctor {
     const Vector3<double> own = load_points<double>(loads.x, i);
     const auto length = [](const Vector3<double>& a) { return device::square_root(dot(a, a)); };
     double edges = 0.0;
-    surface.each(i, [&](int slot) {
-      const Vector3<double> to_j = load_points<double>(loads.x, surface.neighbour(slot, 0)) - own,
-                            to_k = load_points<double>(loads.x, surface.neighbour(slot, 1)) - own;
-      edges += length(to_j) + length(to_k) + length(to_k - to_j);
-    });
+    surface.each_pair(
+        i, [&](int slot) { return load_points<double>(loads.x, surface.neighbour(slot)) - own; },
+        [&](const Vector3<double>& to_j, const Vector3<double>& to_k, int) {
+          // Not of the triangles without area that stand for none.
+          if (dot(to_j, to_j) > 0.0 && dot(to_k, to_k) > 0.0)
+            edges += length(to_j) + length(to_k) + length(to_k - to_j);
+        });
     return edges;
   }
 };
@@ -146,13 +148,13 @@ struct LoadStiffnessFunctor {
 template <class ExecutionSpace>
 struct DragFunctor {
   Cloth<ExecutionSpace> cloth;
-  SlotViews<ExecutionSpace, 1, 1> dashpots;
+  SlotViews<ExecutionSpace, 1> dashpots;
   PointsView<ExecutionSpace> x, v, dragged, next;
   double dt;
 
   KOKKOS_FUNCTION void operator()(const int i) const {
     const Vector3<double> drag = (dt * cloth.inverse_mass(i)) * dashpot_force(dashpots, x, v, i),
-                          free = load_points<double>(cloth.free, i);
+                          free = free_axes<double>(cloth, i);
     const Vector3<double> velocity =
         load_points<double>(v, i) + Vector3<double>{free.x * drag.x, free.y * drag.y, free.z * drag.z};
     store_points(dragged, i, velocity);

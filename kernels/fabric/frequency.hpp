@@ -38,7 +38,7 @@ struct FrequencyFunctor {
   ListView<ExecutionSpace, double> more;  ///< rows of other stiffness, N/m; may be empty
 
   KOKKOS_FUNCTION void operator()(const int i, double& largest) const {
-    const bool moves = cloth.free(i, 0) + cloth.free(i, 1) + cloth.free(i, 2) > 0.0;
+    const bool moves = cloth.held(i) != 7U;
     const double other = more.extent(0) > 0 && moves ? more(i) : 0.0;
     const double row = cloth.inverse_mass(i) * (row_sum(i) + other);
     // What is not a number is no bound.
@@ -52,11 +52,13 @@ struct FrequencyFunctor {
             Dual(v.z, axis == 2 ? 1.0 : 0.0)};
   }
 
+  KOKKOS_FUNCTION double is_free(int i, int axis) const {
+    return device::Access<double>::unless_set(&cloth.held(i), 1U << static_cast<unsigned>(axis));
+  }
+
   KOKKOS_FUNCTION double row_sum(const int i) const {
     double diagonal[3][3] = {};
     double sum = 0.0;
-    const Vector3<double> own = load_points<double>(x, i);
-    const auto to = [&](int neighbour) { return load_points<double>(x, neighbour) - own; };
     // `pull(axis)` is the pull on i while vertex j moves along the axis.
     const auto add = [&](int j, const auto& pull) {
       double block[3][3];
@@ -65,29 +67,29 @@ struct FrequencyFunctor {
         const double change[3] = {p.x.derivative, p.y.derivative, p.z.derivative};
         for (int r = 0; r < 3; ++r) {
           // A force that all vertices together do not change: the diagonal block is minus the others' sum.
-          diagonal[r][axis] += cloth.free(i, r) * change[r] * cloth.free(i, axis);
-          block[r][axis] = cloth.free(i, r) * change[r] * cloth.free(j, axis);
+          diagonal[r][axis] += is_free(i, r) * change[r] * is_free(i, axis);
+          block[r][axis] = is_free(i, r) * change[r] * is_free(j, axis);
         }
       }
       sum += norm_bound(block);
     };
     if constexpr (whole_triangles<law>)
-      cloth.triangles.each(i, [&](int slot) {
-        const int j = cloth.triangles.neighbour(slot, 0), k = cloth.triangles.neighbour(slot, 1);
-        const Vector3<double> to_j = to(j), to_k = to(k);
-        const Edges<double> at_rest = rest_edges<double>(cloth, slot);
-        const Edges<Dual> rest{{at_rest.of[0], at_rest.of[1], at_rest.of[2]}};
-        const Dual inverse_area = cloth.triangles.value(slot, 3);
-        add(j, [&](int axis) {
-          return triangle_pull<law>(cloth.moduli, along(to_j, axis), along(to_k, -1), rest, inverse_area);
-        });
-        add(k, [&](int axis) {
-          return triangle_pull<law>(cloth.moduli, along(to_j, -1), along(to_k, axis), rest, inverse_area);
-        });
-      });
+      each_triangle<double>(
+          cloth, x, i,
+          [&](const Vector3<double>& to_j, const Vector3<double>& to_k, const RestTriangle<double>& at_rest,
+              const int* j, const int* k) {
+            const Edges<double>& edges = at_rest.edges;
+            const RestTriangle<Dual> rest{{{edges.of[0], edges.of[1], edges.of[2]}}, at_rest.inverse_area};
+            add(*j, [&](int axis) {
+              return triangle_pull<law>(cloth.moduli, along(to_j, axis), along(to_k, -1), rest);
+            });
+            add(*k, [&](int axis) {
+              return triangle_pull<law>(cloth.moduli, along(to_j, -1), along(to_k, axis), rest);
+            });
+          });
     cloth.springs.each(i, [&](int slot) {
-      const int j = cloth.springs.neighbour(slot, 0);
-      const Vector3<double> edge = to(j);
+      const int j = cloth.springs.neighbour(slot);
+      const Vector3<double> edge = load_points<double>(x, j) - load_points<double>(x, i);
       const Dual stiffness = cloth.springs.value(slot, 0), rest = cloth.springs.value(slot, 1);
       add(j, [&](int axis) { return spring_pull<law>(stiffness, rest, along(edge, axis)); });
     });

@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <set>
 #include <stdexcept>
+
+#include "kernels/fabric/vector3.hpp"
 
 namespace drogue::fabric {
 
@@ -15,11 +18,7 @@ double squared_distance(const Vector& a, const Vector& b) {
   return x * x + y * y + z * z;
 }
 
-double inverse_area(const Vector& a, const Vector& b, const Vector& c) {
-  const Vector u = {b[0] - a[0], b[1] - a[1], b[2] - a[2]}, v = {c[0] - a[0], c[1] - a[1], c[2] - a[2]};
-  const double x = u[1] * v[2] - u[2] * v[1], y = u[2] * v[0] - u[0] * v[2], z = u[0] * v[1] - u[1] * v[0];
-  return 2.0 / std::sqrt(x * x + y * y + z * z);
-}
+Vector3<double> way(const Vector& a, const Vector& b) { return {b[0] - a[0], b[1] - a[1], b[2] - a[2]}; }
 
 /// Each edge of the triangles once.
 std::set<std::array<int, 2>> edges_of(const Mesh& mesh) {
@@ -30,73 +29,74 @@ std::set<std::array<int, 2>> edges_of(const Mesh& mesh) {
   return edges;
 }
 
-template <int neighbours, int values>
-struct Entry {
-  std::array<int, neighbours> neighbour;
-  std::array<double, values> value;
-};
-
-template <int neighbours, int values>
-Slots<neighbours, values> sliced(const std::vector<std::vector<Entry<neighbours, values>>>& of_vertex) {
-  Slots<neighbours, values> slots;
-  const std::size_t n = of_vertex.size(), slices = (n + slice - 1) / slice;
-  slots.first.push_back(0);
-  for (std::size_t s = 0; s < slices; ++s) {
-    std::size_t most = 0;
-    for (std::size_t i = s * slice; i < std::min(n, (s + 1) * slice); ++i)
-      most = std::max(most, of_vertex[i].size());
-    for (std::size_t k = 0; k < most; ++k)
-      for (std::size_t i = s * slice; i < (s + 1) * slice; ++i) {
-        const bool there = i < n && k < of_vertex[i].size();
-        for (std::size_t a = 0; a < neighbours; ++a)
-          slots.neighbour[a].push_back(there ? of_vertex[i][k].neighbour[a] : static_cast<int>(i));
-        for (std::size_t a = 0; a < values; ++a)
-          slots.value[a].push_back(there ? of_vertex[i][k].value[a] : 0.0);
-      }
-    slots.first.push_back(slots.first.back() + static_cast<int>(most));
+/// Chains the triangles of a vertex, of which each is given by its other two vertices: neighbours one after
+/// the other, the first again at the end of a closed ring. Torn rings begin where no triangle ends.
+std::vector<std::vector<int>> rings_of(std::vector<std::array<int, 2>> triangles) {
+  std::vector<std::vector<int>> rings;
+  const auto take = [&](const auto& fits) -> std::optional<std::array<int, 2>> {
+    const auto found = std::ranges::find_if(triangles, fits);
+    if (found == triangles.end()) return std::nullopt;
+    const std::array<int, 2> triangle = *found;
+    triangles.erase(found);
+    return triangle;
+  };
+  const auto begins = [&](const std::array<int, 2>& triangle) {
+    return std::ranges::none_of(triangles, [&](const auto& other) { return other[1] == triangle[0]; });
+  };
+  while (!triangles.empty()) {
+    auto triangle = take(begins);
+    if (!triangle) triangle = take([](const auto&) { return true; });
+    std::vector<int>& ring = rings.emplace_back(std::vector<int>{(*triangle)[0]});
+    for (; triangle; triangle = take([&](const auto& next) { return next[0] == ring.back(); }))
+      ring.push_back((*triangle)[1]);
   }
-  return slots;
+  return rings;
 }
 
 }  // namespace
 
-TriangleSlots surface_slots(const Mesh& mesh) {
-  std::vector<std::vector<Entry<2, 4>>> of_vertex(mesh.rest.size());
+RingSlots ring_slots(const Mesh& mesh) {
+  const std::size_t n = mesh.rest.size();
+  std::vector<std::vector<std::array<int, 2>>> around(n);  // the other two vertices of every triangle
   for (const auto& t : mesh.triangles)
-    for (std::size_t k = 0; k < 3; ++k) {
-      const int j = t[(k + 1) % 3], l = t[(k + 2) % 3];
-      const Vector &a = mesh.rest[static_cast<std::size_t>(t[k])],
-                   &b = mesh.rest[static_cast<std::size_t>(j)], &c = mesh.rest[static_cast<std::size_t>(l)];
-      of_vertex[static_cast<std::size_t>(t[k])].push_back(
-          {{j, l},
-           {squared_distance(b, c), squared_distance(c, a), squared_distance(a, b), inverse_area(a, b, c)}});
+    for (std::size_t k = 0; k < 3; ++k)
+      around[static_cast<std::size_t>(t[k])].push_back({t[(k + 1) % 3], t[(k + 2) % 3]});
+  std::vector<std::vector<Entry<3>>> of_vertex(n);
+  for (std::size_t i = 0; i < n; ++i)
+    for (const std::vector<int>& ring : rings_of(around[i])) {
+      auto& entries = of_vertex[i];
+      const auto own = static_cast<int>(i);
+      if (!entries.empty()) entries.push_back({own, {}});
+      for (std::size_t k = 0; k < ring.size(); ++k) {
+        const auto to = [&](int j) { return way(mesh.rest[i], mesh.rest[static_cast<std::size_t>(j)]); };
+        const Vector3<double> next = to(ring[k]);
+        entries.push_back({ring[k], {dot(next, next)}});
+        if (k == 0) continue;
+        const Vector3<double> before = to(ring[k - 1]), between = next - before;
+        entries.back().value = {dot(next, next), dot(between, between), inverse_area(before, next)};
+      }
     }
   return sliced(of_vertex);
 }
 
-TriangleSlots triangle_slots(const Mesh& mesh, const Material& material) {
-  if (has_triangles(material.model)) return surface_slots(mesh);
-  return sliced(std::vector<std::vector<Entry<2, 4>>>(mesh.rest.size()));
-}
-
 DashpotSlots dashpot_slots(const Mesh& mesh, const std::vector<double>& mass, double rate) {
-  std::vector<std::vector<Entry<1, 1>>> of_vertex(mesh.rest.size());
+  std::vector<std::vector<Entry<1>>> of_vertex(mesh.rest.size());
   std::set<std::array<int, 2>> pairs = edges_of(mesh);
   for (const auto& line : mesh.lines) pairs.insert({std::min(line[0], line[1]), std::max(line[0], line[1])});
   for (const auto& [i, j] : pairs) {
     const double a = mass[static_cast<std::size_t>(i)], b = mass[static_cast<std::size_t>(j)];
     const double dashpot = rate * (a * b / (a + b));
-    of_vertex[static_cast<std::size_t>(i)].push_back({{j}, {dashpot}});
-    of_vertex[static_cast<std::size_t>(j)].push_back({{i}, {dashpot}});
+    of_vertex[static_cast<std::size_t>(i)].push_back({j, {dashpot}});
+    of_vertex[static_cast<std::size_t>(j)].push_back({i, {dashpot}});
   }
   return sliced(of_vertex);
 }
 
 SpringSlots spring_slots(const Mesh& mesh, const Material& material) {
-  std::vector<std::vector<Entry<1, 2>>> of_vertex(mesh.rest.size());
+  std::vector<std::vector<Entry<2>>> of_vertex(mesh.rest.size());
   const auto add = [&](int i, int j, double stiffness, double length) {
-    of_vertex[static_cast<std::size_t>(i)].push_back({{j}, {stiffness, length}});
-    of_vertex[static_cast<std::size_t>(j)].push_back({{i}, {stiffness, length}});
+    of_vertex[static_cast<std::size_t>(i)].push_back({j, {stiffness, length}});
+    of_vertex[static_cast<std::size_t>(j)].push_back({i, {stiffness, length}});
   };
   const auto rest_length = [&](int i, int j) {
     return std::sqrt(
@@ -132,7 +132,8 @@ BendingSlots bending_slots(const Mesh& mesh, double stiffness) {
     for (std::size_t side = 0; side < 2; ++side) {
       const Vector& top = place(across[side]);
       const double to_0 = squared_distance(place(edge[0]), top), to_1 = squared_distance(place(edge[1]), top),
-                   four_areas = 4.0 / inverse_area(place(edge[0]), place(edge[1]), top);
+                   four_areas =
+                       4.0 / inverse_area(way(place(edge[0]), place(edge[1])), way(place(edge[0]), top));
       const double at_0 = (squared + to_0 - to_1) / four_areas, at_1 = (squared + to_1 - to_0) / four_areas;
       k[0] += at_1, k[1] += at_0, k[2 + side] -= at_0 + at_1;
       areas += 0.25 * four_areas;
@@ -152,9 +153,9 @@ BendingSlots bending_slots(const Mesh& mesh, double stiffness) {
   };
   for (const auto& [edge, across] : opposite)
     for (std::size_t k = 0; k + 1 < across.size(); ++k) add_hinge(edge, {across[k], across[k + 1]});
-  std::vector<std::vector<Entry<1, 1>>> of_vertex(mesh.rest.size());
+  std::vector<std::vector<Entry<1>>> of_vertex(mesh.rest.size());
   for (std::size_t i = 0; i < weights.size(); ++i)
-    for (const auto& [j, weight] : weights[i]) of_vertex[i].push_back({{j}, {weight}});
+    for (const auto& [j, weight] : weights[i]) of_vertex[i].push_back({j, {weight}});
   return sliced(of_vertex);
 }
 

@@ -23,6 +23,14 @@ enum class Model {
 
 enum class Integrator { rk4, verlet };
 
+/// How steps of Runge and Kutta's method reach a device. Host backends have only loops.
+enum class Driver {
+  automatic,   ///< persistent where mesh and loads allow it, else graph
+  plain,       ///< kernels one by one, as Verlet's always are
+  graph,       ///< the kernels of a step as one recorded graph
+  persistent,  ///< many steps in one launch; not with loads that change, dashpots, bending or motions
+};
+
 /// What cloth and strings are made of. `membrane_modulus` is Young's modulus times thickness.
 struct Material {
   Model model = Model::biquadratic;
@@ -85,6 +93,8 @@ struct Parameters {
   double relative_damping = 0.0;
   Integrator integrator = Integrator::rk4;
   double dt = 0.0;  ///< s, > 0
+  Driver driver = Driver::automatic;
+  int patch = 0;  ///< vertices a team of the persistent driver has at least; 0: as few as fill the device
 };
 
 }  // namespace drogue::fabric

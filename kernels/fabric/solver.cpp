@@ -73,6 +73,7 @@ void check(const Parameters& p) {
     }
   }
   require(finite(p.gravity), "gravity must be finite");
+  require(p.patch >= 0, "a patch cannot have fewer vertices than none");
   require(positive(p.dt), "dt must be positive");
   require(not_negative(p.damping) && not_negative(p.relative_damping), "damping must not be negative");
   const Material& m = p.material;

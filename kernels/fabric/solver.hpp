@@ -81,6 +81,9 @@ class Solver {
 
   /// Energies and momenta where the vertices are now, summed in an order that no backend changes.
   [[nodiscard]] virtual Totals totals() = 0;
+
+  /// How steps reach the device: "persistent", "graph" or "plain".
+  [[nodiscard]] virtual const char* driver() const = 0;
 };
 
 /// Throws std::invalid_argument for parameters out of range; the backend must be available.

@@ -7,6 +7,7 @@
 #include "kernels/device/replay.hpp"
 #include "kernels/fabric/frequency.hpp"
 #include "kernels/fabric/prescribed.hpp"
+#include "kernels/fabric/resident_steps.hpp"
 #include "kernels/fabric/solver.hpp"
 #include "kernels/fabric/step.hpp"
 #include "kernels/fabric/stress_on.hpp"
@@ -48,6 +49,7 @@ class SolverOn final : public Solver {
   void stress(StressMeasure measure, std::span<Stress> of_triangles) override;
   void vertex_stress(StressMeasure measure, std::span<Stress> of_vertices) override;
   Totals totals() override;
+  [[nodiscard]] const char* driver() const override;
 
  private:
   static constexpr int lanes = device::Access<
@@ -59,24 +61,28 @@ class SolverOn final : public Solver {
     return Points(label, static_cast<std::size_t>(_padded));
   }
 
-  /// Of each pack of vertices.
+  /// Of each pack of vertices; with as many blocks on a multiprocessor as hide the wait for memory.
   template <class Functor>
   void launch(const char* label, const Functor& functor) const {
-    launch_each(label, _padded / lanes, functor);
+    launch_each<Kokkos::LaunchBounds<128, 7>>(label, _padded / lanes, functor);
   }
-  template <class Functor>
+  template <class Bounds = Kokkos::LaunchBounds<>, class Functor>
   void launch_each(const char* label, int count, const Functor& functor) const {
     static_assert(Kokkos::SpaceAccessibility<ExecutionSpace,
                                              typename PointsView<ExecutionSpace>::memory_space>::accessible);
-    const Kokkos::RangePolicy<ExecutionSpace> each(_instance.space(), 0, count);
+    const Kokkos::RangePolicy<ExecutionSpace, Bounds> each(_instance.space(), 0, count);
     // What is light travels with the launch; else launches would wait for one another.
     Kokkos::parallel_for(
         label, Kokkos::Experimental::require(each, Kokkos::Experimental::WorkItemProperty::HintLightWeight),
         functor);
   }
 
+  [[nodiscard]] Points rest_places(const Parameters& p) const;
   void prepare_external(const Parameters& p);
   void prepare_motions(const Parameters& p);
+  void make_resident(const Parameters& p, const RingSlots& rings, const SpringSlots& springs);
+  void record();
+  void take_resident(std::int64_t steps);
   [[nodiscard]] ProgramsView<ExecutionSpace> programs(
       const std::vector<device::ExpressionProgram>& from) const;
   [[nodiscard]] Timing<ExecutionSpace> timing(double part) const { return {_watch, _clock, _hand, part}; }
@@ -99,14 +105,13 @@ class SolverOn final : public Solver {
   void require_one_a_vertex(std::size_t count) const;
   void to_device(std::span<const Vector> from, const Points& to) const;
   void to_host(const Points& from, std::span<Vector> to) const;
-  template <class Slots, class Views>
-  void copy_slots(const Slots& from, Views& to) const;
 
   device::Instance<ExecutionSpace> _instance;
   Mesh _mesh;
   Material _material;
   int _vertices, _padded;  ///< in whole slices
   Integrator _integrator;
+  Driver _driver;  ///< as asked for
   double _damping;
   double _decay;  ///< 1/s, that damping may have
   Clock _clock;
@@ -124,10 +129,11 @@ class SolverOn final : public Solver {
   Points _x, _v, _next;
   Points _kept_x, _kept_v;
   Kokkos::View<std::int64_t, typename ExecutionSpace::memory_space> _kept_step;
-  Points _velocity, _other, _sum_x, _sum_v;                 ///< of Runge and Kutta alone
+  Points _other, _velocity[3];                              ///< of Runge and Kutta alone
   Points _dragged;                                          ///< of Verlet with dashpots
   std::optional<TriangleViews<ExecutionSpace>> _triangles;  ///< made when stress is asked for
   std::optional<device::Replay<ExecutionSpace>> _step;
+  std::optional<Resident<ExecutionSpace>> _resident;
 };
 
 }  // namespace drogue::fabric
@@ -135,5 +141,6 @@ class SolverOn final : public Solver {
 #include "kernels/fabric/solver_on_external.hpp"
 #include "kernels/fabric/solver_on_measures.hpp"
 #include "kernels/fabric/solver_on_parts.hpp"
+#include "kernels/fabric/solver_on_resident.hpp"
 #include "kernels/fabric/solver_on_steps.hpp"
 #include "kernels/fabric/solver_on_stress.hpp"

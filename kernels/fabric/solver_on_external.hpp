@@ -14,16 +14,26 @@ ProgramsView<ExecutionSpace> SolverOn<ExecutionSpace, law>::programs(
   return list_view(_instance.space(), "drogue::fabric::programs", from);
 }
 
+/// Those that forces read, or loads, or new ones.
+template <class ExecutionSpace, Law law>
+PointsView<ExecutionSpace> SolverOn<ExecutionSpace, law>::rest_places(const Parameters& p) const {
+  if (_cloth.rest.extent(0) > 0) return _cloth.rest;
+  if (_external.rest.extent(0) > 0) return _external.rest;
+  const Points rest = points("drogue::fabric::rest_places");
+  to_device(p.mesh.rest, rest);
+  return rest;
+}
+
 template <class ExecutionSpace, Law law>
 void SolverOn<ExecutionSpace, law>::prepare_external(const Parameters& p) {
   _drags = p.relative_damping > 0.0;
   const double bending = p.material.bending_stiffness;
-  if (bending > 0.0) copy_slots(bending_slots(p.mesh, bending), _external.bending);
+  if (bending > 0.0) _external.bending = slot_views(_instance.space(), bending_slots(p.mesh, bending));
   _acts = !p.timed_loads.empty() || !p.follower_pressures.empty() || bending > 0.0 ||
           (_drags && _integrator == Integrator::rk4);
   if (_drags) {
     const DashpotSlots dashpots = dashpot_slots(p.mesh, p.mass, p.relative_damping);
-    copy_slots(dashpots, _external.dashpots);
+    _external.dashpots = slot_views(_instance.space(), dashpots);
     // Gershgorin: both ends of a dashpot, each over its mass.
     std::vector<double> row(p.mass.size(), 0.0);
     for (std::size_t slice_number = 0; slice_number + 1 < dashpots.first.size(); ++slice_number)
@@ -38,8 +48,7 @@ void SolverOn<ExecutionSpace, law>::prepare_external(const Parameters& p) {
   }
   if (!_acts) return;
   const std::size_t n = p.mass.size();
-  _external.rest = points("drogue::fabric::rest_places");
-  to_device(p.mesh.rest, _external.rest);
+  _external.rest = rest_places(p);
   _cloth.load = points("drogue::fabric::load");
   std::vector<device::ExpressionProgram> strength;
   _external.direction =
@@ -54,7 +63,10 @@ void SolverOn<ExecutionSpace, law>::prepare_external(const Parameters& p) {
   Kokkos::deep_copy(_instance.space(), _external.direction, direction);
   _external.load = programs(strength);
   if (p.follower_pressures.empty()) return;
-  copy_slots(surface_slots(p.mesh), _external.surface);
+  if constexpr (has_triangles(law.model))
+    _external.surface = _cloth.triangles;
+  else
+    _external.surface = slot_views(_instance.space(), ring_slots(p.mesh), false);
   strength.clear();
   _external.weight =
       decltype(_external.weight)("drogue::fabric::pressure_weights", n, p.follower_pressures.size());
@@ -81,11 +93,7 @@ void SolverOn<ExecutionSpace, law>::prepare_motions(const Parameters& p) {
     }
     displacement.push_back(motion.displacement);
   }
-  Points rest = _external.rest;
-  if (rest.extent(0) == 0) {
-    rest = points("drogue::fabric::rest_places");
-    to_device(p.mesh.rest, rest);
-  }
+  const Points rest = rest_places(p);
   const ExecutionSpace& space = _instance.space();
   _prescribed = Prescribed<ExecutionSpace>{rest, programs(displacement),
                                            list_view(space, "drogue::fabric::moved_vertices", vertex),

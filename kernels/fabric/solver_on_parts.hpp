@@ -17,34 +17,40 @@ SolverOn<ExecutionSpace, law>::SolverOn(const Parameters& p)
       _vertices(static_cast<int>(p.mesh.rest.size())),
       _padded((_vertices + slice - 1) / slice * slice),
       _integrator(p.integrator),
+      _driver(p.driver),
       _damping(p.damping),
       _decay(_integrator == Integrator::rk4 ? p.damping : 0.0),
       _clock{0, p.dt, 0, 0.0},
       _watch{decltype(_watch.steps)("drogue::fabric::steps"), decltype(_watch.lost)("drogue::fabric::lost"),
              decltype(_watch.raised)("drogue::fabric::raised")} {
   const auto n = static_cast<std::size_t>(_vertices);
-  copy_slots(triangle_slots(p.mesh, p.material), _cloth.triangles);
-  copy_slots(spring_slots(p.mesh, p.material), _cloth.springs);
+  const ExecutionSpace& space = _instance.space();
+  const RingSlots rings = ring_slots(has_triangles(law.model) ? p.mesh : Mesh{p.mesh.rest, {}, {}, {}});
+  const SpringSlots springs = spring_slots(p.mesh, p.material);
+  if constexpr (has_triangles(law.model)) {
+    _cloth.triangles = slot_views(space, rings, device::is_host<ExecutionSpace>);
+    if constexpr (!device::is_host<ExecutionSpace>) _cloth.rest = rest_places(p);
+  }
+  _cloth.springs = slot_views(space, springs);
   _cloth.moduli = moduli(p.material.membrane_modulus, p.material.poisson);
   _cloth.gravity = {p.gravity[0], p.gravity[1], p.gravity[2]};
   _cloth.damping = _integrator == Integrator::rk4 ? p.damping : 0.0;
   _cloth.inverse_mass =
       decltype(_cloth.inverse_mass)("drogue::fabric::inverse_mass", static_cast<std::size_t>(_padded));
   const auto inverse_mass = Kokkos::create_mirror_view(_cloth.inverse_mass);
-  std::vector<Vector> free(n, Vector{1.0, 1.0, 1.0});
-  for (std::size_t i = 0; i < n; ++i) {
-    inverse_mass(i) = 1.0 / p.mass[i];
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      if (!p.pinned.empty() && (p.pinned[i] >> axis & 1U) != 0U) free[i][axis] = 0.0;
+  // Vertices that fill the last slice have no mass and no freedom: they stay.
+  _cloth.held = decltype(_cloth.held)("drogue::fabric::held", static_cast<std::size_t>(_padded));
+  const auto held = Kokkos::create_mirror_view(_cloth.held);
+  for (std::size_t i = 0; i < held.extent(0); ++i) {
+    if (i < n) inverse_mass(i) = 1.0 / p.mass[i];
+    held(i) = i >= n ? 7 : p.pinned.empty() ? 0 : p.pinned[i];
   }
   for (const Motion& motion : p.motions)
     for (const int i : motion.vertices)
-      free[static_cast<std::size_t>(i)][static_cast<std::size_t>(motion.axis)] = 0.0;
+      held(i) |= static_cast<std::uint8_t>(1U << static_cast<unsigned>(motion.axis));
   Kokkos::deep_copy(_instance.space(), _cloth.inverse_mass, inverse_mass);
-  _instance.space().fence("drogue::fabric::inverse_mass");
-  // Vertices that fill the last slice have no mass and no freedom: they stay.
-  _cloth.free = points("drogue::fabric::free");
-  to_device(free, _cloth.free);
+  Kokkos::deep_copy(_instance.space(), _cloth.held, held);
+  _instance.space().fence("drogue::fabric::vertices");
   std::vector<Vector> load = rest_pull(p.mesh, p.material);
   if (!load.empty()) {
     _pull = points("drogue::fabric::pull");
@@ -58,7 +64,7 @@ SolverOn<ExecutionSpace, law>::SolverOn(const Parameters& p)
   else if (!p.load.empty())
     for (std::size_t i = 0; i < n; ++i)
       for (std::size_t axis = 0; axis < 3; ++axis) load[i][axis] += p.load[i][axis];
-  if (!load.empty()) {
+  if (std::ranges::any_of(load, [](const Vector& v) { return v != Vector{}; })) {
     _dead = points("drogue::fabric::dead_load");
     to_device(load, _dead);
   }
@@ -73,11 +79,10 @@ SolverOn<ExecutionSpace, law>::SolverOn(const Parameters& p)
   _kept_step = decltype(_kept_step)("drogue::fabric::kept_step");
   set_steps();
   if (_integrator != Integrator::rk4) return;
-  _velocity = points("drogue::fabric::stage_velocities");
+  for (Points& velocity : _velocity) velocity = points("drogue::fabric::stage_velocities");
   _other = points("drogue::fabric::stage_positions");
-  _sum_x = points("drogue::fabric::sum_x");
-  _sum_v = points("drogue::fabric::sum_v");
-  _step.emplace(_instance, [this](const ExecutionSpace&) { runge_kutta_step(); });
+  make_resident(p, rings, springs);
+  record();
 }
 
 template <class ExecutionSpace, Law law>
@@ -129,27 +134,6 @@ void SolverOn<ExecutionSpace, law>::to_host(const Points& from, std::span<Vector
   _instance.space().fence("drogue::fabric::to_host");
   for (std::size_t i = 0; i < to.size(); ++i)
     for (std::size_t axis = 0; axis < 3; ++axis) to[i][axis] = mirror(i, axis);
-}
-
-template <class ExecutionSpace, Law law>
-template <class Slots, class Views>
-void SolverOn<ExecutionSpace, law>::copy_slots(const Slots& from, Views& to) const {
-  const std::size_t slots = from.neighbour[0].size();
-  to.first = decltype(to.first)("drogue::fabric::first", from.first.size());
-  to.neighbour = decltype(to.neighbour)("drogue::fabric::neighbour", slots);
-  to.value = decltype(to.value)("drogue::fabric::rest", slots);
-  const auto first = Kokkos::create_mirror_view(to.first);
-  const auto neighbour = Kokkos::create_mirror_view(to.neighbour);
-  const auto value = Kokkos::create_mirror_view(to.value);
-  for (std::size_t k = 0; k < from.first.size(); ++k) first(k) = from.first[k];
-  for (std::size_t slot = 0; slot < slots; ++slot) {
-    for (std::size_t a = 0; a < from.neighbour.size(); ++a) neighbour(slot, a) = from.neighbour[a][slot];
-    for (std::size_t a = 0; a < from.value.size(); ++a) value(slot, a) = from.value[a][slot];
-  }
-  Kokkos::deep_copy(_instance.space(), to.first, first);
-  Kokkos::deep_copy(_instance.space(), to.neighbour, neighbour);
-  Kokkos::deep_copy(_instance.space(), to.value, value);
-  _instance.space().fence("drogue::fabric::slots");
 }
 
 }  // namespace drogue::fabric

@@ -15,13 +15,32 @@ void SolverOn<ExecutionSpace, law>::runge_kutta_step() const {
   // Of the step that has gone by before a stage, and after it.
   const double before[] = {0.0, 0.5, 0.5, 1.0}, after[] = {0.5, 0.5, 1.0, 0.0};
   for (int stage = 0; stage < 4; ++stage) {
-    if (_acts) act(at[stage], stage == 0 ? _v : _velocity, before[stage], _drags);
+    if (_acts) act(at[stage], stage == 0 ? _v : _velocity[stage - 1], before[stage], _drags);
     launch("drogue::fabric::rk4_stage",
-           RungeKuttaFunctor<ExecutionSpace, law>{_cloth, _x, _v, at[stage], _velocity, next[stage], _sum_x,
-                                                  _sum_v, _watch, _clock.dt, stage});
+           RungeKuttaFunctor<ExecutionSpace, law>{_cloth,
+                                                  _x,
+                                                  _v,
+                                                  at[stage],
+                                                  next[stage],
+                                                  {_velocity[0], _velocity[1], _velocity[2]},
+                                                  _watch,
+                                                  _clock.dt,
+                                                  stage});
     // The last stage has counted the step.
-    if (_prescribed) place(next[stage], stage == 3 ? _v : _velocity, after[stage], stage == 3);
+    if (_prescribed) place(next[stage], stage == 3 ? _v : _velocity[stage], after[stage], stage == 3);
   }
+}
+
+/// A step at the present dt, if it is to be replayed.
+template <class ExecutionSpace, Law law>
+void SolverOn<ExecutionSpace, law>::record() {
+  if (_integrator == Integrator::rk4 && !_resident && _driver != Driver::plain)
+    _step.emplace(_instance, [this](const ExecutionSpace&) { runge_kutta_step(); });
+}
+
+template <class ExecutionSpace, Law law>
+const char* SolverOn<ExecutionSpace, law>::driver() const {
+  return _resident ? "persistent" : _step ? _step->driver : "plain";
 }
 
 template <class ExecutionSpace, Law law>
@@ -45,7 +64,12 @@ void SolverOn<ExecutionSpace, law>::verlet(bool ends, bool begins) {
 template <class ExecutionSpace, Law law>
 void SolverOn<ExecutionSpace, law>::take(std::int64_t steps) {
   if (_integrator == Integrator::rk4) {
-    for (std::int64_t step = 0; step < steps; ++step) _step->launch();
+    if (_resident)
+      take_resident(steps);
+    else if (_step)
+      for (std::int64_t step = 0; step < steps; ++step) _step->launch();
+    else
+      for (std::int64_t step = 0; step < steps; ++step) runge_kutta_step();
   } else {
     verlet(false, true);
     for (std::int64_t step = 1; step < steps; ++step) verlet(true, true);
@@ -125,8 +149,7 @@ void SolverOn<ExecutionSpace, law>::set_clock(const Clock& clock) {
   set_steps();
   if (_prescribed && !_failure) place(_x, _v, 0.0, true);
   keep();
-  if (_integrator == Integrator::rk4)
-    _step.emplace(_instance, [this](const ExecutionSpace&) { runge_kutta_step(); });
+  record();
 }
 
 }  // namespace drogue::fabric

@@ -4,8 +4,26 @@
 
 namespace drogue::fabric {
 
-/// One stage of the classical Runge-Kutta method (Kutta 1901) on x' = v, v' = a(x, v): the velocities' sum
-/// needs accelerations alone, x_{n+1} = x_n + dt v_n + dt^2/6 (a_1 + a_2 + a_3).
+/// The share of dt that leads from the beginning of a step to the stage after this one.
+KOKKOS_INLINE_FUNCTION double share_after(int stage) { return stage == 2 ? 1.0 : 0.5; }
+
+/// The state at the end of a step of the classical Runge-Kutta method (Kutta 1901) on x' = v, v' = a(x, v),
+/// from the velocities of its stages, which lie in memory anyway, and the last acceleration: sums of
+/// accelerations would be read and written in every stage.
+template <class R>
+struct StepEnd {
+  Vector3<R> x, v;
+};
+template <class R>
+KOKKOS_INLINE_FUNCTION StepEnd<R> step_end(double dt, const Vector3<R>& x, const Vector3<R>& v,
+                                           const Vector3<R>& v2, const Vector3<R>& v3, const Vector3<R>& v4,
+                                           const Vector3<R>& a4) {
+  // Differences first: what a third lacks must not slow a vertex that nothing pulls.
+  const Vector3<R> gained = (v2 - v) + 2.0 * (v3 - v) + (v4 - v);
+  return {x + (dt / 6.0) * (v + 2.0 * (v2 + v3) + v4), v + ((1.0 / 3.0) * gained + (dt / 6.0) * a4)};
+}
+
+/// One stage of it.
 template <class ExecutionSpace, Law law>
 struct RungeKuttaFunctor {
   using R = std::conditional_t<device::is_host<ExecutionSpace>, device::HostPack<double>, double>;
@@ -13,36 +31,34 @@ struct RungeKuttaFunctor {
   static constexpr int lanes = device::Access<R>::lanes;
 
   Cloth<ExecutionSpace> cloth;
-  Points x, v;          ///< of step n; the last stage replaces them
-  Points at, velocity;  ///< of this stage
-  Points next;          ///< positions of the next stage
-  Points sum_x, sum_v;  ///< a_1 + a_2 + a_3 and a_1 + 2 a_2 + 2 a_3 + a_4
+  Points x, v;         ///< of step n; the last stage replaces them
+  Points at, next;     ///< positions of this stage and of the next one
+  Points velocity[3];  ///< of the stages after the first
   Watch<ExecutionSpace> watch;
   double dt;
   int stage;
 
   KOKKOS_FUNCTION void operator()(const int pack) const {
     const int i = pack * lanes;
-    const Vector3<R> v_n = load_points<R>(v, i);
-    const Vector3<R> v_now = stage == 0 ? v_n : load_points<R>(velocity, i);
-    const Vector3<R> a = acceleration<law, R>(cloth, at, v_now, i);
-    const Vector3<R> x_n = load_points<R>(x, i);
+    // What the sum over neighbours does not need is read behind it: its registers are what limits the
+    // threads.
+    const Vector3<R> pull = force<law, R>(cloth, at, i), v_n = load_points<R>(v, i);
+    const Vector3<R> v_now = stage == 0 ? v_n : load_points<R>(velocity[stage - 1], i);
+    const Vector3<R> a = acceleration(cloth, pull, v_now, i), x_n = load_points<R>(x, i);
     if (stage == 3) {
-      const Vector3<R> x_end = x_n + dt * v_n + (dt * dt / 6.0) * load_points<R>(sum_x, i);
-      const Vector3<R> v_end = v_n + (dt / 6.0) * (load_points<R>(sum_v, i) + a);
-      store_points(x, i, x_end);
-      store_points(v, i, v_end);
+      const StepEnd<R> end =
+          step_end(dt, x_n, v_n, load_points<R>(velocity[0], i), load_points<R>(velocity[1], i), v_now, a);
+      store_points(x, i, end.x);
+      store_points(v, i, end.v);
       const std::int64_t step = watch.steps(1) + 1;
-      watch.look(step, i, x_end, v_end);
+      watch.look(step, i, end.x, end.v);
       if (pack == 0) watch.steps(0) = step;
       return;
     }
     if (stage == 1 && pack == 0) watch.steps(1) = watch.steps(0);
-    const double part = stage == 2 ? dt : 0.5 * dt;
+    const double part = share_after(stage) * dt;
     store_points(next, i, x_n + part * v_now);
-    store_points(velocity, i, v_n + part * a);
-    store_points(sum_x, i, stage == 0 ? a : load_points<R>(sum_x, i) + a);
-    store_points(sum_v, i, stage == 0 ? a : load_points<R>(sum_v, i) + 2.0 * a);
+    store_points(velocity[stage], i, v_n + part * a);
   }
 };
 
@@ -66,7 +82,8 @@ struct VerletFunctor {
   KOKKOS_FUNCTION void operator()(const int pack) const {
     const int i = pack * lanes;
     Vector3<R> velocity = load_points<R>(v, i);
-    const Vector3<R> a = acceleration<law, R>(cloth, x, velocity, i), free = load_points<R>(cloth.free, i);
+    const Vector3<R> a = acceleration(cloth, force<law, R>(cloth, x, i), velocity, i),
+                     free = free_axes<R>(cloth, i);
     const Vector3<R> position = load_points<R>(x, i);
     const std::int64_t step = watch.steps(hand);
     if (ends) {

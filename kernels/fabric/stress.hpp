@@ -63,10 +63,6 @@ KOKKOS_INLINE_FUNCTION Principal principal(const Plane& s) {
   return {mean + radius, mean - radius, alike ? 1.0 : x / size, alike ? 0.0 : y / size};
 }
 
-KOKKOS_INLINE_FUNCTION Vector3<double> cross(const Vector3<double>& a, const Vector3<double>& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-
 /// Of length one; a vector of no length stays.
 KOKKOS_INLINE_FUNCTION Vector3<double> unit(const Vector3<double>& a) {
   const double size = device::square_root(dot(a, a));

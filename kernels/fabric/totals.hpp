@@ -22,7 +22,7 @@ struct TotalsFunctor {
   Cloth<ExecutionSpace> cloth;
   PointsView<ExecutionSpace> x, v;
   PointsView<ExecutionSpace> pull;  ///< of springs of vectors, which `cloth.load` holds too; may be empty
-  SlotViews<ExecutionSpace, 1, 1> bending;  ///< may be empty
+  SlotViews<ExecutionSpace, 1> bending;  ///< may be empty
   TotalsView<ExecutionSpace> out;
   int vertices;
 
@@ -55,23 +55,22 @@ struct TotalsFunctor {
     const auto squared = [](const Vector3<double>& a) { return dot(a, a); };
     const auto to = [&](int neighbour) { return load_points<double>(x, neighbour) - own; };
     if constexpr (whole_triangles<law>)
-      cloth.triangles.each(i, [&](int slot) {
-        const Vector3<double> to_j = to(cloth.triangles.neighbour(slot, 0)),
-                              to_k = to(cloth.triangles.neighbour(slot, 1));
-        const Edges<double> now{{squared(to_k - to_j), squared(to_k), squared(to_j)}};
-        energy += membrane_energy<law>(cloth.moduli, now, rest_edges<double>(cloth, slot),
-                                       cloth.triangles.value(slot, 3)) /
-                  3.0;
-      });
+      each_triangle<double>(
+          cloth, x, i,
+          [&](const Vector3<double>& to_j, const Vector3<double>& to_k, const RestTriangle<double>& rest,
+              const int*, const int*) {
+            const Edges<double> now{{squared(to_k - to_j), squared(to_k), squared(to_j)}};
+            energy += membrane_energy<law>(cloth.moduli, now, rest.edges, rest.inverse_area) / 3.0;
+          });
     cloth.springs.each(i, [&](int slot) {
-      energy += 0.5 * spring_energy<law>(cloth.springs.value(slot, 0),
-                                         squared(to(cloth.springs.neighbour(slot, 0))),
-                                         cloth.springs.value(slot, 1));
+      energy +=
+          0.5 * spring_energy<law>(cloth.springs.value(slot, 0), squared(to(cloth.springs.neighbour(slot))),
+                                   cloth.springs.value(slot, 1));
     });
     // Weights are minus the second derivatives, whose rows sum to zero: x Q x / 2 over pairs.
     if (bending.first.extent(0) > 0)
       bending.each(i, [&](int slot) {
-        energy += 0.25 * bending.value(slot, 0) * squared(to(bending.neighbour(slot, 0)));
+        energy += 0.25 * bending.value(slot, 0) * squared(to(bending.neighbour(slot)));
       });
     return energy;
   }

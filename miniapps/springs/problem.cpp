@@ -146,6 +146,7 @@ Problem make_problem(const SpringsScene& scene) {
   p.relative_damping = scene.damping.relative;
   p.integrator = scene.time.integrator;
   p.dt = scene.time.dt.value_or(1.0);
+  p.driver = scene.driver;
   for (const Probe& probe : scene.output.probes) problem.probes.push_back(nearest_vertex(p.mesh, probe.at));
   return problem;
 }

@@ -28,6 +28,7 @@ std::string scene_fingerprint(SpringsScene scene) {
   scene.description.clear();
   scene.output = {};
   scene.verify = {};
+  scene.driver = fabric::Driver::automatic;
   scene.time.end_time = 0.0;
   // What a file holds counts, not where it lies.
   std::string contents;

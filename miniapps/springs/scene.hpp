@@ -129,6 +129,7 @@ struct SpringsScene {
   Time time;
   Output output;
   Verify verify;
+  fabric::Driver driver = fabric::Driver::automatic;
 
   /// Whether there is cloth, or strings; both where the mesh is yet to be read from a file.
   [[nodiscard]] bool has_triangles() const;

@@ -20,6 +20,10 @@ const Choices<Model> model_choices = {{"linear-vector", Model::linear_vector},
                                       {"biquadratic", Model::biquadratic}};
 const Choices<fabric::Lumping> mass_choices = {{"area", fabric::Lumping::area},
                                                {"equal", fabric::Lumping::equal}};
+const Choices<fabric::Driver> driver_choices = {{"auto", fabric::Driver::automatic},
+                                                {"plain", fabric::Driver::plain},
+                                                {"graph", fabric::Driver::graph},
+                                                {"persistent", fabric::Driver::persistent}};
 const Choices<Integrator> integrator_choices = {{"rk4", Integrator::rk4}, {"verlet", Integrator::verlet}};
 const Choices<std::string> axes_choices = {{"x", "x"},   {"y", "y"},   {"z", "z"},    {"xy", "xy"},
                                            {"xz", "xz"}, {"yz", "yz"}, {"xyz", "xyz"}};
@@ -345,6 +349,20 @@ void declare_springs_scene(Table& root, SpringsScene& scene) {
       "output", [&](Table& table) { declare_output(table, scene.output); }, "Files of the run directory");
   root.table(
       "verify", [&](Table& table) { declare_verify(table, scene.verify); }, "What is checked at the end");
+  root.table(
+      "tuning",
+      [&](Table& table) {
+        table.table(
+            "step",
+            [&](Table& step) {
+              step.value(
+                  "driver", scene::choice_codec(scene.driver, driver_choices),
+                  "How steps of Runge and Kutta's method reach a GPU: kernels one by one, a recorded "
+                  "graph a step, or many steps a launch where mesh and loads allow that, else a graph");
+            },
+            "The launch of a step");
+      },
+      "Launches of kernels; they change speed, not results");
 }
 
 }  // namespace drogue::springs_app

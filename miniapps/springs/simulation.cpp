@@ -203,6 +203,7 @@ std::string Simulation::failure_text(const fabric::Failure& failure) const {
 
 void Simulation::describe(run::ResultDocument& result) const {
   const device::Ledger ledger = device::ledger();
+  result.driver = _settings.seed_mode ? "seed" : _solver->driver();
   result.steps = _solver->clock().step;
   result.time = time();
   result.dt_min = _dt_min;

@@ -51,6 +51,16 @@ void append(std::string& bytes, const std::vector<T>& values) {
                values.size() * sizeof(T));  // NOLINT: bits are what is compared
 }
 
+/// What a persistent driver can take, too.
+Parameters plain_cloth(Model model, bool tension_only) {
+  Parameters p = cloth(model, tension_only, Integrator::rk4);
+  p.material.bending_stiffness = p.relative_damping = 0.0;
+  p.follower_pressures.clear(), p.timed_loads.clear(), p.motions.clear();
+  p.pinned.assign(p.mass.size(), 0), p.pinned[7] = 7, p.pinned[900] = 2;
+  p.load = random_vectors(p.mass.size(), 0.1, 5);
+  return p;
+}
+
 /// Everything a solver can tell after 80 steps.
 std::string run_bytes(device::Backend backend, int threads, const Parameters& p) {
   const device::Runtime runtime({"--kokkos-num-threads=" + std::to_string(threads)});
@@ -88,6 +98,25 @@ TEST(ExactFabric, BackendsAndThreadsAgree) {
                 << name(backend) << ", " << threads << " threads, model " << static_cast<int>(model);
         }
       }
+}
+
+TEST(ExactFabric, DriversAgree) {
+  for (const Model model : {Model::edge, Model::quadratic, Model::biquadratic})
+    for (const bool tension_only : {false, true}) {
+      Parameters p = plain_cloth(model, tension_only);
+      const std::string serial = in_child([&] { return run_bytes(device::Backend::serial, 1, p); });
+      for (const device::Backend backend : device::compiled_backends()) {
+        if (backend == device::Backend::serial || !device::is_present(backend)) continue;
+        for (const Driver driver : {Driver::plain, Driver::graph, Driver::persistent})
+          for (const int patch : {0, 200}) {
+            p.driver = driver, p.patch = patch;
+            EXPECT_TRUE(in_child([&] { return run_bytes(backend, 1, p); }) == serial)
+                << name(backend) << ", driver " << static_cast<int>(driver) << ", patches of " << patch
+                << ", model " << static_cast<int>(model);
+            if (driver != Driver::persistent) break;
+          }
+      }
+    }
 }
 
 }  // namespace

@@ -55,6 +55,8 @@ history_every = 10
 restart_every = 0
 [verify]
 equilibrium = 1e9
+[tuning.step]
+driver = "graph"
 """
 
 # Replaced line, its new text, the line the error names, words the error holds.
@@ -99,6 +101,7 @@ BAD_LINES = [
     (36, "times = [0.01, 0.005]", 36, ["output.times[1]", "not greater"]),
     (36, "times = [0.005, 0.02]", 36, ["output.times", "0.02", "time.end_time"]),
     (12, "bending_stiffness = -0.1", 12, ["material.bending_stiffness", ">= 0"]),
+    (43, 'driver = "grahp"', 43, ["tuning.step.driver", '"plain", "graph"']),
     # missing keys
     (33, "", 29, ['missing key "time.end_time"']),
     (4, "", 3, ["mesh", "exactly one of rectangle, disk, strip, triangle, string, file"]),

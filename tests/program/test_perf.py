@@ -53,6 +53,26 @@ class Record(perf_program.PerfTest):
             self.assertTrue(min(record["samples"]) / 2 < sum(parts) < 2 * max(record["samples"]), facts)
 
 
+    def test_of_fabric(self):
+        self.expect(0, "run", "--quick", "--filter", "^springs-step/(serial|scatter-loop)/2640$", "--out", "run.jsonl")
+        for record in self.records("run.jsonl"):
+            self.assert_timed(record, 7)
+            self.assertAlmostEqual(2640, record["facts"]["cells"], delta=60)
+
+    def test_of_transfers_of_fabric(self):
+        text = self.expect(0, "table", "transfers", "--app", "springs", "--quick", "--backend", "serial", "--out",
+                           "rows.jsonl").stdout
+        self.assertIn("number of substeps that is not recorded", text)
+        records = self.records("rows.jsonl")
+        self.assertEqual(["springs-transfers/serial/2641/1", "springs-transfers/serial/2641/10"],
+                         [record["case"] for record in records])
+        for record in records:
+            self.assert_timed(record, 7)
+            self.assertEqual({"cpu_us": 223565, "h2d_us": 171, "compute_us": 41328, "d2h_us": 644, "total_us": 42143},
+                             record["facts"]["thesis"])
+        self.assertLess(3 * records[0]["facts"]["compute_s"], records[1]["facts"]["compute_s"])
+
+
 class Occupancy(perf_program.PerfTest):
     def setUp(self):
         super().setUp()
@@ -114,7 +134,8 @@ class WorkPrecision(perf_program.PerfTest):
 class Refusals(perf_program.PerfTest):
     def test_usage(self):
         for words, hint in ((["table"], "TABLE"), (["table", "occupancey"], 'did you mean "occupancy"?'),
-                            (["table", "occupancy", "--app", "options"], "the only valid name is gas"),
+                            (["table", "occupancy", "--app", "options"], "valid names are gas, springs"),
+                            (["table", "occupancy", "--app", "springs"], "the only valid name is transfers"),
                             (["table", "transfers", "--backend", "gpu"], "gpu"),
                             (["table", "transfers", "--bakend", "serial"], 'did you mean "--backend"?'),
                             (["run", "all"], "'all'"), (["run", "--filter", "no such case"], "no case matches"),

@@ -109,6 +109,7 @@ class RunDirectory(springs_program.SpringsTest):
             self.expect(0, scene, "--quiet", "--backend", "serial", *words)
         self.assertEqual(self.fields("a").datasets, self.fields("b").datasets)
         self.assertGreater(self.result("b")["timing"]["d2h_s"], 0.0)
+        self.assertEqual(["plain", "seed"], [self.result(run)["driver"] for run in "ab"])
 
     def test_outputs_are_in_the_numbering_of_the_file(self):
         """Vertices that lie far from their neighbours in the file are where the file says."""

@@ -51,18 +51,42 @@ std::int64_t launches_of(const Parameters& p) {
 }
 
 TEST(FabricLedger, StepsAreTheirKernelsAlone) {
-  EXPECT_EQ(launches_of(patch(Integrator::rk4)), (on_device ? 1 : 4) * 1024 + 4);
+  Parameters p = patch(Integrator::rk4);
+  // All steps between two copies are one launch.
+  EXPECT_EQ(launches_of(p), (on_device ? 4 : 4 * 1024) + 4);
+  p.driver = Driver::graph;
+  EXPECT_EQ(launches_of(p), (on_device ? 1 : 4) * 1024 + 4);
+  p.driver = Driver::plain;
+  EXPECT_EQ(launches_of(p), 4 * 1024 + 4);
   // Where a state is put aside, a half kick ends the step and another begins the next.
   EXPECT_EQ(launches_of(patch(Integrator::verlet)), 1024 + 4 + 4);
+}
+
+TEST(FabricLedger, AVertexNeedsLittleMemory) {
+  counted();
+  const auto bytes_of = [](int rows) {
+    Parameters p = patch(Integrator::rk4);
+    p.mesh = random_patch(100, rows, 3);
+    p.mass.assign(p.mesh.rest.size(), 0.01);
+    p.driver = Driver::graph;
+    const std::int64_t before = counted().device_bytes;
+    const auto solver = create_solver(backend, p);
+    return counted().device_bytes - before;
+  };
+  // A host keeps the values of triangles at rest, a device computes them.
+  EXPECT_LT(static_cast<double>(bytes_of(60) - bytes_of(20)) / 4000.0, on_device ? 400.0 : 550.0);
 }
 
 TEST(FabricLedger, WhatASceneAsksForIsOneKernelAStage) {
   using testing::postfix;
   const auto kernels = [](Integrator integrator, auto change) {
     Parameters p = patch(integrator);
+    p.driver = Driver::graph;
     change(p);
     // Of a step; copies that are put aside, and the half kicks around them, are the same.
-    return (launches_of(p) - launches_of(patch(integrator))) / 1024;
+    Parameters without = patch(integrator);
+    without.driver = Driver::graph;
+    return (launches_of(p) - launches_of(without)) / 1024;
   };
   const auto loads = [](Parameters& p) {
     p.timed_loads = {{postfix({"t"}), std::vector<Vector>(p.mass.size(), Vector{})}};

@@ -49,6 +49,31 @@ double oscillator_error(Integrator integrator, int steps) {
   return std::abs(now.x[1][0] - now.x[0][0] - 1.0 - 0.2 * std::cos(5.0 * end));
 }
 
+TEST(FabricMotion, DriversTakeTheSameSteps) {
+  if (backend != device::Backend::cuda) GTEST_SKIP() << "hosts have one driver";
+  Parameters p;
+  p.mesh = random_patch(70, 60, 3);
+  p.material.axial_stiffness = 300.0;
+  p.mass.assign(p.mesh.rest.size(), 0.01);
+  p.gravity = {0.0, 0.0, -9.81};
+  p.dt = 1e-4;
+  const State start{shaken(p.mesh.rest, 0.1, 1), std::vector<Vector>(p.mass.size(), Vector{})};
+  p.driver = Driver::plain;
+  const State expected = moved(p, start, 300);
+  const auto expect_same = [&](Driver driver, int patch_size, const std::string& name) {
+    p.driver = driver, p.patch = patch_size;
+    EXPECT_EQ(create_solver(backend, p)->driver(), name);
+    const State now = moved(p, start, 300);
+    for (std::size_t i = 0; i < now.x.size(); ++i)
+      for (std::size_t axis = 0; axis < 3; ++axis) EXPECT_NEAR(now.x[i][axis], expected.x[i][axis], 1e-9);
+  };
+  expect_same(Driver::graph, 0, "graph");
+  expect_same(Driver::automatic, 0, "persistent");
+  expect_same(Driver::persistent, 500, "persistent");
+  p.relative_damping = 1.0;
+  EXPECT_STREQ(create_solver(backend, p)->driver(), "graph");
+}
+
 double order(Integrator integrator) {
   return std::log2(oscillator_error(integrator, 100) / oscillator_error(integrator, 1600)) / 4.0;
 }

@@ -1,0 +1,158 @@
+#include "kernels/fabric/patches.hpp"
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+#include <span>
+
+namespace drogue::fabric {
+
+namespace {
+
+std::size_t index(int i) { return static_cast<std::size_t>(i); }
+
+/// The axis along which points reach farthest.
+std::size_t longest_axis(const std::vector<Vector>& rest, std::span<const int> vertices) {
+  std::size_t longest = 0;
+  double reach = -1.0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto [low, high] = std::ranges::minmax(vertices, {}, [&](int i) { return rest[index(i)][axis]; });
+    const double extent = rest[index(high)][axis] - rest[index(low)][axis];
+    if (extent > reach) reach = extent, longest = axis;
+  }
+  return longest;
+}
+
+/// Patch k of `count` has the vertices from place k n / count on, so that sizes differ by one at most.
+class Cut {
+ public:
+  Cut(const std::vector<Vector>& rest, int count)
+      : _rest(rest), _count(index(count)), _vertices(rest.size()), _patches(index(count)) {
+    std::iota(_vertices.begin(), _vertices.end(), 0);
+    halve(0, _count);
+  }
+  [[nodiscard]] const std::vector<std::vector<int>>& patches() const { return _patches; }
+
+ private:
+  [[nodiscard]] auto begin_of(std::size_t patch) {
+    return _vertices.begin() + static_cast<std::ptrdiff_t>(patch * _rest.size() / _count);
+  }
+
+  void halve(std::size_t first, std::size_t last) {
+    const auto begin = begin_of(first), end = begin_of(last);
+    if (last - first == 1) {
+      // In the order of the mesh, so that what a team reads lies together.
+      std::sort(begin, end);
+      _patches[first].assign(begin, end);
+      return;
+    }
+    const std::size_t middle = (first + last) / 2, axis = longest_axis(_rest, {begin, end});
+    const auto before = [&](int i, int j) {
+      return std::pair(_rest[index(i)][axis], i) < std::pair(_rest[index(j)][axis], j);
+    };
+    std::nth_element(begin, begin_of(middle), end, before);
+    halve(first, middle);
+    halve(middle, last);
+  }
+
+  const std::vector<Vector>& _rest;
+  std::size_t _count;
+  std::vector<int> _vertices;
+  std::vector<std::vector<int>> _patches;
+};
+
+/// What vertex i reads, without the neutral slots at the end.
+template <int values>
+std::vector<Entry<values>> entries_of(const Slots<values>& slots, int i) {
+  std::vector<Entry<values>> entries;
+  const std::size_t lane = index(i % slice);
+  for (int k = slots.first[index(i / slice)]; k < slots.first[index(i / slice + 1)]; ++k) {
+    const std::size_t slot = index(k) * slice + lane;
+    Entry<values> entry{slots.neighbour[slot], {}};
+    for (std::size_t a = 0; a < values; ++a) entry.value[a] = slots.value[a][slot];
+    entries.push_back(entry);
+  }
+  while (!entries.empty() && entries.back().neighbour == i) entries.pop_back();
+  return entries;
+}
+
+template <int values>
+void append(Slots<values>& to, const Slots<values>& more) {
+  if (to.first.empty()) to.first.push_back(0);
+  const int begin = to.first.back();
+  for (std::size_t s = 1; s < more.first.size(); ++s) to.first.push_back(begin + more.first[s]);
+  to.neighbour.insert(to.neighbour.end(), more.neighbour.begin(), more.neighbour.end());
+  for (std::size_t a = 0; a < values; ++a)
+    to.value[a].insert(to.value[a].end(), more.value[a].begin(), more.value[a].end());
+}
+
+/// The slots of a patch; `local` turns vertices of the mesh into the team's numbers.
+template <int values, class Local>
+Slots<values> slots_of_patch(const Slots<values>& slots, const std::vector<int>& vertices, int team,
+                             const Local& local) {
+  std::vector<std::vector<Entry<values>>> of_rank(index(team));
+  for (std::size_t rank = 0; rank < vertices.size(); ++rank) {
+    of_rank[rank] = entries_of(slots, vertices[rank]);
+    for (Entry<values>& entry : of_rank[rank]) entry.neighbour = local(entry.neighbour);
+  }
+  return sliced(of_rank);
+}
+
+}  // namespace
+
+Patches cut_patches(const std::vector<Vector>& rest, const RingSlots& triangles, const SpringSlots& springs,
+                    int count, int most_threads) {
+  const Cut cut(rest, count);
+  const std::vector<std::vector<int>>& own = cut.patches();
+  std::vector<int> patch_of(rest.size());
+  for (std::size_t p = 0; p < own.size(); ++p)
+    for (const int i : own[p]) patch_of[index(i)] = static_cast<int>(p);
+
+  Patches patches;
+  patches.first_halo.push_back(0);
+  std::vector<std::vector<int>> halo(own.size());
+  std::vector<int> place(rest.size(), -1);
+  std::size_t most_own = 0;
+  for (std::size_t p = 0; p < own.size(); ++p) {
+    most_own = std::max(most_own, own[p].size());
+    const auto add = [&](int j) {
+      if (patch_of[index(j)] != static_cast<int>(p)) halo[p].push_back(j), place[index(j)] = 0;
+    };
+    for (const int i : own[p]) {
+      for (const auto& entry : entries_of(triangles, i)) add(entry.neighbour);
+      for (const auto& entry : entries_of(springs, i)) add(entry.neighbour);
+    }
+    std::ranges::sort(halo[p]);
+    const auto repeated = std::ranges::unique(halo[p]);
+    halo[p].erase(repeated.begin(), repeated.end());
+    patches.first_halo.push_back(patches.first_halo.back() + static_cast<int>(halo[p].size()));
+    patches.most_halo = std::max(patches.most_halo, static_cast<int>(halo[p].size()));
+  }
+  // Places of a patch lie side by side, so that its threads write and read whole lines.
+  for (const auto& vertices : own)
+    for (const int i : vertices)
+      if (place[index(i)] == 0) place[index(i)] = patches.places++;
+
+  const int wanted = std::max(static_cast<int>(most_own), std::min(patches.most_halo, most_threads));
+  patches.team = (wanted + slice - 1) / slice * slice;
+  for (std::size_t p = 0; p < own.size(); ++p) {
+    std::map<int, int> number;
+    for (std::size_t rank = 0; rank < index(patches.team); ++rank) {
+      const bool there = rank < own[p].size();
+      patches.vertex.push_back(there ? own[p][rank] : -1);
+      patches.place.push_back(there ? place[index(own[p][rank])] : -1);
+      if (there) number[own[p][rank]] = static_cast<int>(rank);
+    }
+    for (const int j : halo[p]) {
+      number[j] = patches.team + static_cast<int>(patches.halo_vertex.size()) - patches.first_halo[p];
+      patches.halo_vertex.push_back(j);
+      patches.halo_place.push_back(place[index(j)]);
+    }
+    const auto local = [&](int i) { return number.at(i); };
+    append(patches.triangles, slots_of_patch(triangles, own[p], patches.team, local));
+    append(patches.springs, slots_of_patch(springs, own[p], patches.team, local));
+  }
+  return patches;
+}
+
+}  // namespace drogue::fabric

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <Kokkos_Core.hpp>
+
+#include "kernels/fabric/slots.hpp"
+#include "kernels/fabric/views.hpp"
+
+namespace drogue::fabric {
+
+/// Calls `take(slot)` for the slots of vertex i and the lanes after it, with `first` as in Slots.
+template <class First, class Take>
+KOKKOS_INLINE_FUNCTION void each_slot(const First& first, int i, const Take& take) {
+  const int end = first(i / slice + 1);
+  for (int k = first(i / slice); k < end; ++k) take(k * slice + i % slice);
+}
+
+/// Calls `take(before, next, slot)` for the slots but the first one: what `read(slot)` gives of the slot
+/// before, which is read once, and of the slot.
+template <class First, class Read, class Take>
+KOKKOS_INLINE_FUNCTION void each_pair_of_slots(const First& first, int i, const Read& read,
+                                               const Take& take) {
+  const int begin = first(i / slice), end = first(i / slice + 1);
+  if (begin == end) return;
+  auto before = read(begin * slice + i % slice);
+  for (int k = begin + 1; k < end; ++k) {
+    const int slot = k * slice + i % slice;
+    const auto next = read(slot);
+    take(before, next, slot);
+    before = next;
+  }
+}
+
+/// `Slots` where kernels read them.
+template <class ExecutionSpace, int values>
+struct SlotViews {
+  using Memory = typename ExecutionSpace::memory_space;
+  Kokkos::View<int*, Memory> first, neighbour;
+  Kokkos::View<double* [values], Kokkos::LayoutLeft, Memory> value;
+
+  /// Calls `take(slot)` for the slots of vertex i and the lanes after it.
+  template <class Take>
+  KOKKOS_INLINE_FUNCTION void each(int i, const Take& take) const {
+    each_slot(first, i, take);
+  }
+
+  /// Calls `take(before, next, slot)` for the slots of a ring but the first one: what `read(slot)` gives of
+  /// the slot before, which is read once, and of the slot.
+  template <class Read, class Take>
+  KOKKOS_INLINE_FUNCTION void each_pair(int i, const Read& read, const Take& take) const {
+    each_pair_of_slots(first, i, read, take);
+  }
+};
+
+/// Copies slots to where kernels read them, or of rings all but their values. Waits.
+template <class ExecutionSpace, int values>
+[[nodiscard]] SlotViews<ExecutionSpace, values> slot_views(const ExecutionSpace& space,
+                                                           const Slots<values>& from,
+                                                           bool with_values = true) {
+  SlotViews<ExecutionSpace, values> to{list_view(space, "drogue::fabric::first", from.first),
+                                       list_view(space, "drogue::fabric::neighbour", from.neighbour),
+                                       {}};
+  if (with_values) to.value = table_view(space, "drogue::fabric::slot_values", from.value);
+  return to;
+}
+
+}  // namespace drogue::fabric

@@ -1,0 +1,111 @@
+#include <algorithm>
+#include <memory>
+
+#include "kernels/reference/fabric/scatter_step.hpp"
+#include "perf/measurement.hpp"
+#include "perf/sheet.hpp"
+
+namespace drogue::perf {
+
+namespace {
+
+/// A loop that scatters, on one core, with the step that a solver would take.
+Case scatter_case(int vertices, long steps) {
+  struct Run {
+    std::unique_ptr<reference::ScatterSheet> loop;
+    fabric::Parameters p;
+    sheet::State state;
+    double dt = 0.0;
+  };
+  const auto run = std::make_shared<Run>();
+  return {"springs-step/scatter-loop/" + std::to_string(vertices),
+          "step",
+          "one core; no vectorisation is asked for",
+          [=] {
+            run->p = sheet::parameters(vertices);
+            run->loop = std::make_unique<reference::ScatterSheet>(run->p);
+            run->dt = sheet::usual_dt(run->p, *fabric::create_solver(device::Backend::serial, run->p));
+            return Sample{[=] { run->state = sheet::start(run->p); },
+                          [=] {
+                            for (long step = 0; step < steps; ++step)
+                              run->loop->step(run->dt, run->state.x, run->state.v);
+                            return steps;
+                          }};
+          },
+          [=] { return sheet::energy_drift(run->p, run->state); },
+          sheet::bar,
+          [=] {
+            return Facts{"serial", static_cast<std::int64_t>(run->p.mass.size()), "scatter-loop"};
+          }};
+}
+
+/// A change of the usual parameters, and what the case is called then.
+struct FabricVariant {
+  const char* name;
+  void (*apply)(fabric::Parameters&);
+};
+
+const FabricVariant usual = {"", [](fabric::Parameters&) {}};
+const FabricVariant quadratic = {"quadratic",
+                                 [](fabric::Parameters& p) { p.material.model = fabric::Model::quadratic; }};
+const FabricVariant verlet = {"verlet",
+                              [](fabric::Parameters& p) { p.integrator = fabric::Integrator::verlet; }};
+const FabricVariant slack = {"tension-only", [](fabric::Parameters& p) { p.material.tension_only = true; }};
+const FabricVariant graph = {"graph", [](fabric::Parameters& p) { p.driver = fabric::Driver::graph; }};
+const FabricVariant plain = {"plain", [](fabric::Parameters& p) { p.driver = fabric::Driver::plain; }};
+const FabricVariant patch_64 = {"patch-64", [](fabric::Parameters& p) { p.patch = 64; }};
+const FabricVariant patch_128 = {"patch-128", [](fabric::Parameters& p) { p.patch = 128; }};
+
+Case sheet_case(device::Backend backend, int vertices, long steps, const FabricVariant& variant) {
+  struct Run {
+    fabric::Parameters p;
+    std::unique_ptr<fabric::Solver> solver;
+  };
+  const auto run = std::make_shared<Run>();
+  const std::string name(device::name(backend));
+  return {"springs-step/" + name + "/" + std::to_string(vertices) + (*variant.name ? "/" : "") + variant.name,
+          "step",
+          backend == device::Backend::cuda
+              ? "latency between patches below 100k vertices, memory bandwidth above"
+              : "loads of neighbours by the cores",
+          [=] {
+            run->p = sheet::parameters(vertices);
+            variant.apply(run->p);
+            run->solver = fabric::create_solver(backend, run->p);
+            return sheet::steps(run->p, *run->solver, steps);
+          },
+          [=] { return sheet::energy_drift(run->p, *run->solver); },
+          sheet::bar,
+          [=] {
+            return Facts{name, static_cast<std::int64_t>(run->p.mass.size()), variant.name};
+          }};
+}
+
+std::vector<FabricVariant> variants_of(int vertices, bool gpu) {
+  if (!gpu) return vertices < 100'000 ? std::vector{usual, quadratic, verlet} : std::vector{usual};
+  if (vertices < 10'000) return {usual, graph, plain, patch_64, patch_128, quadratic, verlet};
+  if (vertices < 1'000'000) return {usual, graph, quadratic, verlet};
+  return {usual, quadratic, slack, verlet};
+}
+
+}  // namespace
+
+std::vector<Case> fabric_cases(bool quick) {
+  std::vector<Case> cases;
+  for (const int vertices : quick ? std::vector{2640} : std::vector{2640, 15'625, 100'000, 1'000'000}) {
+    for (const device::Backend backend : device::compiled_backends()) {
+      if (!device::is_present(backend)) continue;
+      const bool gpu = backend == device::Backend::cuda;
+      if (!gpu && vertices > 100'000) continue;
+      // A sample: about 20 ms of work, but enough steps that its start and end do not show.
+      const long steps =
+          gpu ? std::clamp(80'000'000L / vertices, 80L, 4096L) : std::max(4L, 150'000L / vertices);
+      for (const FabricVariant& variant : variants_of(vertices, gpu))
+        cases.push_back(sheet_case(backend, vertices, steps, variant));
+    }
+    if (vertices < 100'000) cases.push_back(scatter_case(vertices, std::max(4L, 50'000L / vertices)));
+  }
+  return cases;
+}
+
+}  // namespace drogue::perf

@@ -1,0 +1,82 @@
+#include "perf/sheet.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "kernels/fabric/mass.hpp"
+#include "kernels/reference/fabric/membrane.hpp"
+#include "kernels/reference/fabric/totals.hpp"
+#include "miniapps/springs/mesh_generators.hpp"
+#include "miniapps/springs/mesh_topology.hpp"
+
+namespace drogue::perf::sheet {
+
+using fabric::Vector;
+
+fabric::Parameters parameters(int vertices) {
+  const fabric::Mesh mesh = springs_app::generate(springs_app::Strip{1.0, 1.0, vertices});
+  fabric::Parameters p;
+  p.mesh = springs_app::renumbered(mesh, springs_app::local_order(mesh));
+  p.mass = fabric::lumped_masses(p.mesh, 0.1, 0.0, fabric::Lumping::area);
+  p.gravity = {0.0, 0.0, -9.81};
+  double length = 0.0, width = 0.0;
+  for (const Vector& at : p.mesh.rest) length = std::max(length, at[0]), width = std::max(width, at[1]);
+  for (const Vector& at : p.mesh.rest) {
+    const bool edge = at[0] == 0.0 || at[0] == length || at[1] == 0.0 || at[1] == width;
+    p.pinned.push_back(edge ? 7 : 0);
+  }
+  p.dt = 1.0;
+  return p;
+}
+
+State start(const fabric::Parameters& p) {
+  State state;
+  for (std::size_t i = 0; i < p.mesh.rest.size(); ++i) {
+    const Vector& at = p.mesh.rest[i];
+    state.x.push_back({1.02 * at[0], 1.02 * at[1], 0.0});
+    const double speed = std::sin(std::numbers::pi * at[0]) * std::sin(std::numbers::pi * at[1]);
+    state.v.push_back({0.0, 0.0, p.pinned[i] != 0 ? 0.0 : speed});
+  }
+  return state;
+}
+
+double usual_dt(const fabric::Parameters& p, fabric::Solver& solver) {
+  const State from = start(p);
+  solver.upload(from.x, from.v);
+  return 0.5 * fabric::stable_dt(p.integrator, solver.fastest_frequency(), solver.fastest_decay());
+}
+
+Sample steps(const fabric::Parameters& p, fabric::Solver& solver, long count) {
+  solver.set_dt(usual_dt(p, solver));
+  return {[&solver, from = start(p)] { solver.upload(from.x, from.v); },
+          [&solver, count] {
+            solver.advance(count);
+            static_cast<void>(solver.failure());  // waits
+            return count;
+          }};
+}
+
+namespace {
+
+double over_the_start(const fabric::Parameters& p, double energy) {
+  const State from = start(p);
+  const reference::Sums sums = reference::sums(p.mass, p.gravity, {}, from.x, from.v);
+  const double begin =
+      static_cast<double>(sums.kinetic + sums.gravity) + reference::energy(p.material, p.mesh, from.x);
+  return std::abs(energy - begin) / static_cast<double>(sums.kinetic);
+}
+
+}  // namespace
+
+double energy_drift(const fabric::Parameters& p, fabric::Solver& solver) {
+  return over_the_start(p, solver.totals().energy());
+}
+
+double energy_drift(const fabric::Parameters& p, const State& state) {
+  const reference::Sums sums = reference::sums(p.mass, p.gravity, {}, state.x, state.v);
+  return over_the_start(
+      p, static_cast<double>(sums.kinetic + sums.gravity) + reference::energy(p.material, p.mesh, state.x));
+}
+
+}  // namespace drogue::perf::sheet

@@ -1,0 +1,220 @@
+#include <gtest/gtest.h>
+
+#include <map>
+#include <set>
+
+#include "kernels/fabric/resident_steps.hpp"
+#include "kernels/fabric/solver.hpp"
+#include "tests/support/emulated_grid.hpp"
+#include "tests/support/fabric_mesh.hpp"
+
+// Patches of a mesh, and steps of them all in one launch, on threads of the host.
+
+namespace drogue::fabric {
+namespace {
+
+using testing::random_patch;
+using testing::shaken;
+
+constexpr int most_threads = 64;
+
+/// Without fused multiply-add all drivers have the same bits.
+#if defined(DROGUE_EXACT)
+constexpr double rounding = 0.0;
+#else
+constexpr double rounding = 1.0;
+#endif
+
+Mesh mesh_of(int nx, int ny) {
+  Mesh mesh = random_patch(nx, ny, 3);
+  mesh.line_stiffness.assign(mesh.lines.size(), 300.0);
+  return mesh;
+}
+
+Patches cut(const Mesh& mesh, int count) {
+  return cut_patches(mesh.rest, ring_slots(mesh), spring_slots(mesh, {}), count, most_threads);
+}
+
+/// Those who share a triangle or a line with vertex i.
+std::vector<std::set<int>> neighbours(const Mesh& mesh) {
+  std::vector<std::set<int>> of(mesh.rest.size());
+  const auto add = [&](int i, int j) { of[static_cast<std::size_t>(i)].insert(j); };
+  for (const auto& t : mesh.triangles)
+    for (std::size_t k = 0; k < 3; ++k) add(t[k], t[(k + 1) % 3]), add(t[k], t[(k + 2) % 3]);
+  for (const auto& [i, j] : mesh.lines) add(i, j), add(j, i);
+  return of;
+}
+
+TEST(FabricPatches, HoldEveryVertexOnceAndAllThatItReads) {
+  const Mesh mesh = mesh_of(13, 9);
+  const auto of = neighbours(mesh);
+  for (const int count : {1, 2, 5, 16}) {
+    const Patches patches = cut(mesh, count);
+    ASSERT_EQ(patches.count(), count);
+    EXPECT_EQ(patches.team % slice, 0);
+    std::map<int, int> patch_of, place_of;
+    std::set<int> places;
+    for (std::size_t at = 0; at < patches.vertex.size(); ++at) {
+      if (patches.vertex[at] < 0) continue;
+      EXPECT_TRUE(patch_of.emplace(patches.vertex[at], at / static_cast<std::size_t>(patches.team)).second);
+      if (patches.place[at] < 0) continue;
+      EXPECT_TRUE(places.insert(patches.place[at]).second);
+      place_of[patches.vertex[at]] = patches.place[at];
+    }
+    EXPECT_EQ(patch_of.size(), mesh.rest.size());
+    EXPECT_EQ(static_cast<int>(places.size()), patches.places);
+    for (const int used : places) EXPECT_LT(used, patches.places);
+    std::set<int> read;
+    std::set<std::array<int, 2>> pairs;
+    for (int p = 0; p < count; ++p) {
+      std::set<int> wanted, own;
+      for (const auto& [i, patch] : patch_of) {
+        if (patch != p) continue;
+        own.insert(i);
+        for (const int j : of[static_cast<std::size_t>(i)])
+          if (patch_of[j] != p) wanted.insert(j), read.insert(j), pairs.insert({p, patch_of[j]});
+      }
+      EXPECT_LT(std::abs(static_cast<double>(own.size()) - static_cast<double>(mesh.rest.size()) / count),
+                1.0);
+      const auto begin = static_cast<std::size_t>(patches.first_halo[static_cast<std::size_t>(p)]),
+                 end = static_cast<std::size_t>(patches.first_halo[static_cast<std::size_t>(p) + 1]);
+      std::set<int> halo;
+      for (std::size_t k = begin; k < end; ++k) {
+        halo.insert(patches.halo_vertex[k]);
+        EXPECT_EQ(patches.halo_place[k], place_of.at(patches.halo_vertex[k]));
+      }
+      EXPECT_EQ(halo, wanted);
+      EXPECT_EQ(halo.size(), end - begin);
+    }
+    EXPECT_EQ(read.size(), place_of.size()) << "who is posted is read";
+    for (const auto& [p, q] : pairs) EXPECT_EQ(pairs.count({q, p}), 1U) << "neighbours wait for each other";
+  }
+}
+
+TEST(FabricPatches, KeepTheOrderOfSlots) {
+  const Mesh mesh = mesh_of(13, 9);
+  const RingSlots rings = ring_slots(mesh);
+  const Patches patches = cut(mesh, 4);
+  const auto slot = [](const RingSlots& slots, std::size_t i, int k) {
+    return static_cast<std::size_t>(slots.first[i / slice] + k) * slice + i % slice;
+  };
+  for (std::size_t at = 0; at < patches.vertex.size(); ++at) {
+    if (patches.vertex[at] < 0) continue;
+    const auto i = static_cast<std::size_t>(patches.vertex[at]);
+    const std::size_t patch = at / static_cast<std::size_t>(patches.team);
+    const auto mesh_vertex = [&](int number) {
+      return number < patches.team ? patches.vertex[patch * static_cast<std::size_t>(patches.team) +
+                                                    static_cast<std::size_t>(number)]
+                                   : patches.halo_vertex[static_cast<std::size_t>(patches.first_halo[patch] +
+                                                                                  number - patches.team)];
+    };
+    const int here = patches.triangles.first[at / slice + 1] - patches.triangles.first[at / slice];
+    for (int k = 0; k < here; ++k) {
+      const std::size_t mine = slot(patches.triangles, at, k);
+      if (rings.first[i / slice] + k >= rings.first[i / slice + 1]) {
+        EXPECT_EQ(patches.triangles.value[2][mine], 0.0) << "neutral";
+        continue;
+      }
+      const std::size_t original = slot(rings, i, k);
+      EXPECT_EQ(mesh_vertex(patches.triangles.neighbour[mine]), rings.neighbour[original]);
+      for (std::size_t a = 0; a < 3; ++a)
+        EXPECT_EQ(patches.triangles.value[a][mine], rings.value[a][original]);
+    }
+  }
+}
+
+Parameters cloth_of(const Mesh& mesh) {
+  Parameters p;
+  p.mesh = mesh;
+  for (std::size_t i = 0; i < mesh.rest.size(); ++i)
+    p.mass.push_back(0.01 + 0.001 * static_cast<double>(i % 7));
+  p.pinned.assign(p.mass.size(), 0);
+  p.pinned[3] = 7, p.pinned[50] = 2;
+  p.load = shaken(std::vector<Vector>(p.mass.size(), Vector{}), 0.1, 4);
+  p.gravity = {0.5, -1.0, -9.81};
+  p.damping = 0.3;
+  p.dt = 1e-4;
+  return p;
+}
+
+/// Steps as a resident grid takes them, in launches of `cuts` steps.
+template <Law law>
+void run_emulated(const Parameters& p, int count, const std::vector<std::int64_t>& cuts,
+                  std::vector<Vector>& x, std::vector<Vector>& v) {
+  using Space = Kokkos::Serial;
+  const Space space;
+  Material material = p.material;
+  material.model = law.model;
+  const Mesh cloth_mesh = has_triangles(law.model) ? p.mesh : Mesh{p.mesh.rest, {}, {}, {}};
+  const Patches patches =
+      cut_patches(p.mesh.rest, ring_slots(cloth_mesh), spring_slots(p.mesh, material), count, most_threads);
+  const PatchViews<Space> views = patch_views(space, patches);
+  const std::size_t n = p.mass.size();
+  Cloth<Space> cloth;
+  cloth.inverse_mass = decltype(cloth.inverse_mass)("inverse mass", n);
+  cloth.held = decltype(cloth.held)("held", n);
+  cloth.load = PointsView<Space>("load", n);
+  cloth.moduli = moduli(material.membrane_modulus, material.poisson);
+  cloth.gravity = {p.gravity[0], p.gravity[1], p.gravity[2]};
+  cloth.damping = p.damping;
+  const PointsView<Space> at("x", n), velocity("v", n);
+  for (std::size_t i = 0; i < n; ++i) {
+    cloth.inverse_mass(i) = 1.0 / p.mass[i];
+    cloth.held(i) = p.pinned[i];
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      cloth.load(i, axis) = p.load[i][axis], at(i, axis) = x[i][axis], velocity(i, axis) = v[i][axis];
+  }
+  Watch<Space> watch{decltype(watch.steps)("steps"), decltype(watch.lost)("lost"),
+                     decltype(watch.raised)("raised")};
+  watch.lost() = none_lost;
+  using Functor = ResidentStepsFunctor<Space, law>;
+  testing::EmulatedGrid grid(count, patches.team, Functor::scratch_bytes(views),
+                             static_cast<std::size_t>(patches.places));
+  std::int64_t begun = 0;
+  std::uint64_t epoch = 0;
+  for (const std::int64_t steps : cuts) {
+    grid.launch(Functor{views, cloth, at, velocity, watch, p.dt, begun, steps, epoch});
+    begun += steps;
+    epoch += 4 * static_cast<std::uint64_t>(steps);
+    EXPECT_EQ(watch.steps(0), begun);
+  }
+  EXPECT_FALSE(grid.overwritten()) << "two boards are too few";
+  EXPECT_EQ(watch.lost(), none_lost);
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t axis = 0; axis < 3; ++axis) x[i][axis] = at(i, axis), v[i][axis] = velocity(i, axis);
+}
+
+double distance(const std::vector<Vector>& a, const std::vector<Vector>& b) {
+  double largest = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i)
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      largest = std::max(largest, std::abs(a[i][axis] - b[i][axis]));
+  return largest;
+}
+
+template <Law law>
+void expect_the_same_steps() {
+  Parameters p = cloth_of(mesh_of(11, 8));
+  p.material.model = law.model;
+  const std::vector<Vector> start = shaken(p.mesh.rest, 0.1, 1), still(p.mass.size(), Vector{});
+  std::vector<Vector> x = start, v = still, other_x = start, other_v = still;
+  const auto solver = create_solver(device::Backend::serial, p);
+  solver->upload(x, v);
+  ASSERT_TRUE(solver->advance(7));
+  solver->download(x, v);
+  EXPECT_GT(distance(x, start), 1e-5);
+  for (const int count : {1, 3}) {
+    other_x = start, other_v = still;
+    run_emulated<law>(p, count, {2, 1, 4}, other_x, other_v);
+    EXPECT_LE(distance(x, other_x), rounding * 1e-13) << count << " patches";
+    EXPECT_LE(distance(v, other_v), rounding * 1e-11) << count << " patches";
+  }
+}
+
+TEST(FabricPatches, TakeTheStepsOfTheOtherDrivers) {
+  expect_the_same_steps<Law{Model::biquadratic}>();
+  expect_the_same_steps<Law{Model::edge}>();
+}
+
+}  // namespace
+}  // namespace drogue::fabric
