@@ -12,4 +12,9 @@ inline bool has_cuda_device() {
   return present;
 }
 
+/// Whether a child of this process can run on a backend that is compiled in.
+inline bool runs_in_child(device::Backend backend) {
+  return backend != device::Backend::cuda || has_cuda_device();
+}
+
 }  // namespace drogue::testing
