@@ -60,7 +60,7 @@ void SolverOn<ExecutionSpace, law>::prepare_external(const Parameters& p) {
       for (std::size_t axis = 0; axis < 3; ++axis)
         direction(i, k, axis) = p.timed_loads[k].direction[i][axis];
   }
-  Kokkos::deep_copy(_instance.space(), _external.direction, direction);
+  device::copy(_instance.space(), _external.direction, direction);
   _external.load = programs(strength);
   if (p.follower_pressures.empty()) return;
   if constexpr (has_triangles(law.model))
@@ -76,7 +76,7 @@ void SolverOn<ExecutionSpace, law>::prepare_external(const Parameters& p) {
     strength.push_back(pressure.strength);
     for (std::size_t i = 0; i < n; ++i) weight(i, k) = pressure.weight.empty() ? 1.0 : pressure.weight[i];
   }
-  Kokkos::deep_copy(_instance.space(), _external.weight, weight);
+  device::copy(_instance.space(), _external.weight, weight);
   _external.pressure = programs(strength);
 }
 

@@ -63,7 +63,7 @@ Totals SolverOn<ExecutionSpace, law>::totals() {
     sums = next;
   }
   const auto mirror = Kokkos::create_mirror_view(sums);
-  Kokkos::deep_copy(space, mirror, sums);
+  device::copy(space, mirror, sums);
   space.fence("drogue::fabric::totals");
   Totals t{mirror(0, 0), mirror(0, 1) + _rest_energy, mirror(0, 2), mirror(0, 3), {}, {}};
   for (std::size_t axis = 0; axis < 3; ++axis)

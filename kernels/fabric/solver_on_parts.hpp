@@ -48,8 +48,8 @@ SolverOn<ExecutionSpace, law>::SolverOn(const Parameters& p)
   for (const Motion& motion : p.motions)
     for (const int i : motion.vertices)
       held(i) |= static_cast<std::uint8_t>(1U << static_cast<unsigned>(motion.axis));
-  Kokkos::deep_copy(_instance.space(), _cloth.inverse_mass, inverse_mass);
-  Kokkos::deep_copy(_instance.space(), _cloth.held, held);
+  device::copy(_instance.space(), _cloth.inverse_mass, inverse_mass);
+  device::copy(_instance.space(), _cloth.held, held);
   _instance.space().fence("drogue::fabric::vertices");
   std::vector<Vector> load = rest_pull(p.mesh, p.material);
   if (!load.empty()) {
@@ -122,7 +122,7 @@ void SolverOn<ExecutionSpace, law>::to_device(std::span<const Vector> from, cons
   const auto mirror = Kokkos::create_mirror_view(to);
   for (std::size_t i = 0; i < mirror.extent(0); ++i)
     for (std::size_t axis = 0; axis < 3; ++axis) mirror(i, axis) = i < from.size() ? from[i][axis] : 0.0;
-  Kokkos::deep_copy(_instance.space(), to, mirror);
+  device::copy(_instance.space(), to, mirror);
   _instance.space().fence("drogue::fabric::to_device");
 }
 
@@ -130,7 +130,7 @@ template <class ExecutionSpace, Law law>
 void SolverOn<ExecutionSpace, law>::to_host(const Points& from, std::span<Vector> to) const {
   require_one_a_vertex(to.size());
   const auto mirror = Kokkos::create_mirror_view(from);
-  Kokkos::deep_copy(_instance.space(), mirror, from);
+  device::copy(_instance.space(), mirror, from);
   _instance.space().fence("drogue::fabric::to_host");
   for (std::size_t i = 0; i < to.size(); ++i)
     for (std::size_t axis = 0; axis < 3; ++axis) to[i][axis] = mirror(i, axis);

@@ -115,8 +115,8 @@ void SolverOn<ExecutionSpace, law>::settle() {
   Kokkos::deep_copy(space, first, _watch.lost);
   std::int64_t kept = 0;
   Kokkos::deep_copy(space, kept, _kept_step);
-  Kokkos::deep_copy(space, _x, _kept_x);
-  Kokkos::deep_copy(space, _v, _kept_v);
+  device::copy(space, _x, _kept_x);
+  device::copy(space, _v, _kept_v);
   space.fence("drogue::fabric::kept");
   _clock.step = static_cast<std::int64_t>(first >> 31U);
   _failure = Failure{static_cast<std::int64_t>(first & 0x7fffffffU), _clock.step, _clock.time()};

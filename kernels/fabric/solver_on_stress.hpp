@@ -47,7 +47,7 @@ template <class ExecutionSpace, Law law>
 void SolverOn<ExecutionSpace, law>::stress_to_host(const StressView<ExecutionSpace>& from,
                                                    std::span<Stress> to) const {
   const auto mirror = Kokkos::create_mirror_view(from);
-  Kokkos::deep_copy(_instance.space(), mirror, from);
+  device::copy(_instance.space(), mirror, from);
   _instance.space().fence("drogue::fabric::stress_to_host");
   for (std::size_t i = 0; i < to.size(); ++i)
     to[i] = {mirror(i, 0), mirror(i, 1), {mirror(i, 2), mirror(i, 3), mirror(i, 4)}};

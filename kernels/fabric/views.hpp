@@ -6,6 +6,8 @@
 
 #include <Kokkos_Core.hpp>
 
+#include "kernels/device/copy.hpp"
+
 namespace drogue::fabric {
 
 template <class ExecutionSpace, class T>
@@ -21,7 +23,7 @@ template <class ExecutionSpace, class T>
   ListView<ExecutionSpace, T> to(label, from.size());
   const auto mirror = Kokkos::create_mirror_view(to);
   for (std::size_t i = 0; i < from.size(); ++i) mirror(i) = from[i];
-  Kokkos::deep_copy(space, to, mirror);
+  device::copy(space, to, mirror);
   space.fence("drogue::fabric::list_view");
   return to;
 }
@@ -34,7 +36,7 @@ template <class ExecutionSpace, class T, std::size_t columns>
   const auto mirror = Kokkos::create_mirror_view(to);
   for (std::size_t column = 0; column < columns; ++column)
     for (std::size_t i = 0; i < from[column].size(); ++i) mirror(i, column) = from[column][i];
-  Kokkos::deep_copy(space, to, mirror);
+  device::copy(space, to, mirror);
   space.fence("drogue::fabric::table_view");
   return to;
 }

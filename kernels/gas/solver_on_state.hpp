@@ -240,13 +240,13 @@ void SolverOn<ExecutionSpace>::begin_snapshot() {
     if constexpr (!on_host) _snapshot = Fields(label("drogue::gas::snapshot"), n);
   }
   if constexpr (on_host) {
-    Kokkos::deep_copy(space, _host_snapshot, _setup.buffer[current]);
+    device::copy(space, _host_snapshot, _setup.buffer[current]);
     space.fence("drogue::gas::snapshot");
   } else {
-    Kokkos::deep_copy(space, _snapshot, _setup.buffer[current]);
+    device::copy(space, _snapshot, _setup.buffer[current]);
     space.fence("drogue::gas::snapshot");
     // From here the copy has a stream of its own and the steps go on.
-    Kokkos::deep_copy(_copy_instance.space(), _host_snapshot, _snapshot);
+    device::copy(_copy_instance.space(), _host_snapshot, _snapshot);
   }
 }
 

@@ -3,6 +3,7 @@
 #include <span>
 #include <utility>
 
+#include "kernels/device/copy.hpp"
 #include "kernels/gas/tile.hpp"
 
 namespace drogue::gas {
@@ -18,11 +19,11 @@ void copy_range(const ExecutionSpace& space, const Device& device, std::int64_t 
                                                                                               host.size());
   if constexpr (std::is_same_v<Element, Value>) {
     if (to_device)
-      Kokkos::deep_copy(space, part, mine);
+      device::copy(space, part, mine);
     else
-      Kokkos::deep_copy(space, mine, part);
+      device::copy(space, mine, part);
   } else {
-    Kokkos::deep_copy(space, part, mine);
+    device::copy(space, part, mine);
   }
   space.fence("drogue::gas::transfer");
 }

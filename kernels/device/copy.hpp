@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstddef>
+#include <stdexcept>
+#include <string>
+
+#include <Kokkos_Core.hpp>
+
+#include "kernels/device/memory.hpp"
+
+namespace drogue::device {
+
+/// Where bytes go: from host memory, to it, to a report (see `ReportSpace`), or within the memory of a
+/// backend.
+enum class Copy { to_device, to_host, to_report, within };
+
+/// Kokkos::deep_copy of bytes, without waiting. Compiled once a backend: for two types of Views that it has
+/// not met before, Kokkos' copy brings some fifty kernels that serve Views of other layouts.
+template <class ExecutionSpace>
+void copy_bytes(const ExecutionSpace& space, Copy way, void* to, const void* from, std::size_t bytes);
+
+/// The way from one memory space to another.
+template <class ExecutionSpace, class To, class From>
+[[nodiscard]] constexpr Copy copy_way() {
+  using Device = typename ExecutionSpace::memory_space;
+  using Host = Kokkos::HostSpace;
+  if constexpr (std::is_same_v<To, Device>) {
+    static_assert(std::is_same_v<From, Device> || std::is_same_v<From, Host>);
+    return std::is_same_v<From, Device> ? Copy::within : Copy::to_device;
+  } else {
+    static_assert(std::is_same_v<From, Device>);
+    static_assert(std::is_same_v<To, Host> || std::is_same_v<To, ReportSpace<ExecutionSpace>>);
+    return std::is_same_v<To, Host> ? Copy::to_host : Copy::to_report;
+  }
+}
+
+/// Copies all of `from` to `to`, Views of one layout without gaps, without waiting. Throws
+/// std::invalid_argument if their sizes differ.
+template <class ExecutionSpace, class To, class From>
+void copy(const ExecutionSpace& space, const To& to, const From& from) {
+  static_assert(std::is_same_v<typename To::value_type, typename From::non_const_value_type>);
+  static_assert(To::rank() == From::rank());
+  static_assert(To::rank() < 2 || std::is_same_v<typename To::array_layout, typename From::array_layout>);
+  if (to.size() != from.size() || !to.span_is_contiguous() || !from.span_is_contiguous())
+    throw std::invalid_argument("cannot copy '" + from.label() + "' to '" + to.label() +
+                                "': their sizes differ, or they have gaps");
+  copy_bytes(space, copy_way<ExecutionSpace, typename To::memory_space, typename From::memory_space>(),
+             to.data(), from.data(), to.size() * sizeof(typename To::value_type));
+}
+
+}  // namespace drogue::device
