@@ -2,12 +2,12 @@
 """Writes springs-<machine>.json: what drogue-springs does on this machine, from its own files.
 
     scripts/record_springs.py MACHINE --bin build/cuda/bin [--exact build/cuda-exact/bin] [--backends serial,openmp,cuda]
-                              [--largest] [--work FOLDER] [--to FOLDER]
+                              [--tables serial] [--largest] [--work FOLDER] [--to FOLDER]
 
 Every shipped scene on every backend (error, bar, steps, time, ledger), with --exact the datasets of all scenes compared
-bit for bit between backends, and tables 5.1 to 5.4 of the dissertation beside its numbers, on the last backend; table 5.3
-with its finest mesh only with --largest. Needs numpy and h5py. Tables are printed as Markdown; the exit code is 1 if any
-run failed.
+bit for bit between backends, and tables 5.1 to 5.4 of the dissertation beside its numbers, on the backend of --tables,
+the last unless given; table 5.3 with its finest mesh only with --largest. Needs numpy and h5py. Tables are printed as
+Markdown; the exit code is 1 if any run failed.
 """
 
 import csv
@@ -17,8 +17,8 @@ import sys
 
 from recording import assignments, exact_rows, parser, run, scene_runs, write
 
-# Number of points, stiffness of a spring (N/m), and the Cauchy errors of length (m), kinetic and spring energy (J) to the
-# next mesh: tables 5.1 and 5.2.
+# Number of points, stiffness of a spring (N/m), and the Cauchy errors of length (m), kinetic and spring energy
+# (J) to the next mesh: tables 5.1 and 5.2.
 CHORD = ((60, 5000, (0.00374, 0.01664, 0.03464)), (123, 10000, (0.00184, 0.00821, 0.01726)),
          (248, 20000, (0.000918, 0.00406, 0.008614)), (498, 40000, None))  # fmt: skip
 # Number of points, and the errors of area (m^2), kinetic and spring energy: tables 5.1 and 5.3.
@@ -43,7 +43,8 @@ TIMES = f"output.times={[round(0.005 * k, 6) for k in range(round(END_TIME / 0.0
 def study(program, scene, backend, folder, lists, *sets):
     """Rows of a study, each with its series and the cells of its line in study.csv."""
     command = [program, scene, "--backend", backend, "--overwrite", "--quiet", "--out", folder, "--study", lists]
-    done = subprocess.run([str(word) for word in [*command, *assignments(*sets)]], capture_output=True, text=True, check=False)
+    words = [str(word) for word in [*command, *assignments(*sets)]]
+    done = subprocess.run(words, capture_output=True, text=True, check=False)
     if done.returncode != 0:
         return []
     rows = json.loads((folder / "study.json").read_text())["rows"]
@@ -51,15 +52,15 @@ def study(program, scene, backend, folder, lists, *sets):
         return [row | {"cells": cells} for row, cells in zip(rows, csv.DictReader(file), strict=True)]
 
 
-def mean_difference(time, first, second):
-    """Mean over time of |first - second| by the trapezoidal rule."""
-    apart = [abs(a - b) for a, b in zip(first, second, strict=True)]
+def mean_difference(time, first, second, power=1):
+    """Mean over time of |first - second| by the trapezoidal rule; of power 2 the root of the mean square."""
+    apart = [abs(a - b) ** power for a, b in zip(first, second, strict=True)]
     pieces = (0.5 * (apart[k - 1] + apart[k]) * (time[k] - time[k - 1]) for k in range(1, len(time)))
-    return sum(pieces) / (time[-1] - time[0])
+    return (sum(pieces) / (time[-1] - time[0])) ** (1 / power)
 
 
-def cauchy(coarse, fine, measure):
-    return [mean_difference(coarse["series"]["time"], coarse["series"][name], fine["series"][name])
+def cauchy(coarse, fine, measure, power=1):
+    return [mean_difference(coarse["series"]["time"], coarse["series"][name], fine["series"][name], power)
             for name in (measure, "kinetic", "elastic")]
 
 
@@ -79,7 +80,8 @@ def chord_table(program, backend, work):
     rows = []
     for turn, mass in enumerate(("equal", "area")):
         for k, (points, stiffness, printed) in enumerate(CHORD[:-1]):
-            found = {"stiffness": cauchy(own[k][turn], own[k + 1][turn], "length"),
+            pair = own[k][turn], own[k + 1][turn], "length"
+            found = {"stiffness": cauchy(*pair), "stiffness_rms": cauchy(*pair, power=2),
                      "axial_stiffness": cauchy(kept[4 * turn + k], kept[4 * turn + k + 1], "length")}
             rows.append(row_of(points, mass, printed, found, stiffness=stiffness, average_mass_g=0.5 / points))
     return rows
@@ -88,8 +90,8 @@ def chord_table(program, backend, work):
 def drum_table(program, backend, work, largest):
     """Table 5.3, by springs along edges as they are there and by a membrane."""
     meshes = DRUM if largest else DRUM[:-1]
-    found = study(program, "drum-cone", backend, work / "drum-cone-study",
-                  "meshes=" + ":".join(str(points) for points, _ in meshes) + ",models=edge:biquadratic,masses=equal:area",
+    lists = "meshes=" + ":".join(str(points) for points, _ in meshes) + ",models=edge:biquadratic,masses=equal:area"
+    found = study(program, "drum-cone", backend, work / "drum-cone-study", lists,
                   f"time.end_time={END_TIME}", TIMES, "time.safety=0.5", "output.history_every=2000")
     if not found:
         return None
@@ -97,8 +99,8 @@ def drum_table(program, backend, work, largest):
     for first in range(0, len(found), len(meshes)):
         for k, (points, printed) in enumerate(meshes[:-1]):
             row = found[first + k]
-            rows.append(row_of(points, row["mass"], printed, cauchy(row, found[first + k + 1], "area"), model=row["model"],
-                               vertices=row["vertices"], average_mass_g=380.0 / points))
+            rows.append(row_of(points, row["mass"], printed, cauchy(row, found[first + k + 1], "area"),
+                               model=row["model"], vertices=row["vertices"], average_mass_g=380.0 / points))
     return rows
 
 
@@ -116,7 +118,7 @@ def end_forces(file, membrane, poisson):
     strain = 0.5 * (np.swapaxes(gradient, 1, 2) @ gradient - np.eye(2))
     trace = np.trace(strain, axis1=1, axis2=2)[:, None, None] * np.eye(2)
     stress = membrane / (1 - poisson**2) * ((1 - poisson) * strain + poisson * trace)
-    area = 0.5 * np.abs(np.cross(sides[:, 0, :2], sides[:, 1, :2]))[:, None, None]
+    area = 0.5 * np.abs(np.linalg.det(sides[:, :, :2]))[:, None, None]
     pulls = -area * gradient @ stress @ np.swapaxes(inverse, 1, 2)
     force = np.zeros_like(now)
     for corner in (0, 1):
@@ -126,8 +128,8 @@ def end_forces(file, membrane, poisson):
 
 
 def response(file, membrane, poisson):
-    """Apparent modulus over the given one, of the whole reaction and without the node of a corner; contraction of the width
-    over strain, at the middle and where it is largest: of a clamped strip that is behind the grips, not at the middle."""
+    """Apparent modulus over the given one, of the whole reaction and without the node of a corner; contraction of the
+    width over strain, in the middle and where it is largest: of a clamped strip that is a width behind the grips."""
     import numpy as np
 
     rest, now, force = end_forces(file, membrane, poisson)
@@ -179,16 +181,17 @@ def print_tables(record):
         return ", ".join(f"{value:.3g}" for value in values)
 
     if record["table_5_2"]:
-        markdown("Table 5.2", ("points", "mass", "dissertation", "its stiffness", "E A kept"),
+        markdown("Table 5.2", ("points", "mass", "dissertation", "its stiffness", "the same, RMS", "E A kept"),
                  [(str(r["points"]), r["mass"], triple(r["dissertation"]), triple(r["cauchy"]["stiffness"]),
-                   triple(r["cauchy"]["axial_stiffness"])) for r in record["table_5_2"]])
+                   triple(r["cauchy"]["stiffness_rms"]), triple(r["cauchy"]["axial_stiffness"])) for r in record["table_5_2"]])
     if record["table_5_3"]:
         markdown("Table 5.3", ("points", "model", "mass", "dissertation", "here"),
                  [(str(r["vertices"]), r["model"], r["mass"], triple(r["dissertation"]), triple(r["cauchy"]))
                   for r in record["table_5_3"]])
     if record["table_5_4"]:
-        keys = (("dissertation", "modulus"), ("clamped", "modulus_without_a_corner"), ("clamped", "modulus"), ("free", "modulus"),
-                ("dissertation", "poisson"), ("clamped", "largest_poisson"), ("clamped", "poisson"), ("free", "poisson"))
+        keys = (("dissertation", "modulus"), ("clamped", "modulus_without_a_corner"), ("clamped", "modulus"),
+                ("free", "modulus"), ("dissertation", "poisson"), ("clamped", "largest_poisson"),
+                ("clamped", "poisson"), ("free", "poisson"))
         markdown("Table 5.4", ("nu", "E (GPa)", *(f"{a} {b.replace('_', ' ')}" for a, b in keys)),
                  [(f"{r['poisson']:.2f}", f"{r['modulus'] / 1e9:.1f}", *(f"{r[a][b]:.5f}" for a, b in keys))
                   for r in record["table_5_4"]])
@@ -196,18 +199,20 @@ def print_tables(record):
 
 def main():
     options = parser(__doc__)
+    options.add_argument("--tables")
     options.add_argument("--largest", action="store_true")
     arguments = options.parse_args()
     program = arguments.bin / "drogue-springs"
     backends, work = arguments.backends.split(","), arguments.work
+    of_tables = arguments.tables or backends[-1]
     record = {"schema": "drogue.record/1", "machine": arguments.machine} | scene_runs(program, backends, work)
     failed = [r for r in record["runs"] if r["exit_code"] != 0]
     if arguments.exact:
         record["exact"] = exact_rows(arguments.exact / "drogue-springs", backends, work)
         failed += [row for row in record["exact"] if not row["identical"]]
-    record["table_5_2"] = chord_table(program, backends[-1], work)
-    record["table_5_3"] = drum_table(program, backends[-1], work, arguments.largest)
-    record["table_5_4"] = strip_table(program, backends[-1], work)
+    record["table_5_2"] = chord_table(program, of_tables, work)
+    record["table_5_3"] = drum_table(program, of_tables, work, arguments.largest)
+    record["table_5_4"] = strip_table(program, of_tables, work)
     failed += [{"table": name} for name in ("table_5_2", "table_5_3", "table_5_4") if record[name] is None]
     print_tables(record)
     return write(record, arguments.to / f"springs-{arguments.machine}.json", failed, ("exact",))

@@ -49,7 +49,7 @@ def identical(first, second):
 
 
 def differing(first, second):
-    """What two run directories have that differs in a bit: datasets of fields.h5, or history.csv where there is none."""
+    """What of two run directories differs in a bit: datasets of fields.h5, or history.csv where there is none."""
     if (first / "fields.h5").exists():
         return identical(first / "fields.h5", second / "fields.h5")
     same = (first / "history.csv").read_bytes() == (second / "history.csv").read_bytes()

@@ -62,7 +62,8 @@ TEST(SpringsMesh, ADistortedRectangleKeepsItsSidesAndSenses) {
   for (std::size_t i = 0; i < mesh.rest.size(); ++i) {
     const Vector &x = mesh.rest[i], &was = even.rest[i];
     const bool side = was[0] == 0.0 || was[0] == 2.0 || was[1] == 0.0 || was[1] == 0.5;
-    for (std::size_t axis = 0; axis < 2; ++axis) EXPECT_LE(std::abs(x[axis] - was[axis]), side ? 0.0 : 0.5 * cell);
+    for (std::size_t axis = 0; axis < 2; ++axis)
+      EXPECT_LE(std::abs(x[axis] - was[axis]), side ? 0.0 : 0.5 * cell);
     if (!side) moved.insert(x[0] - was[0]);
   }
   EXPECT_GT(moved.size(), 350U);
