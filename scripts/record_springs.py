@@ -92,7 +92,7 @@ def drum_table(program, backend, work, largest):
     meshes = DRUM if largest else DRUM[:-1]
     lists = "meshes=" + ":".join(str(points) for points, _ in meshes) + ",models=edge:biquadratic,masses=equal:area"
     found = study(program, "drum-cone", backend, work / "drum-cone-study", lists,
-                  f"time.end_time={END_TIME}", TIMES, "time.safety=0.5", "output.history_every=2000")
+                  f"time.end_time={END_TIME}", TIMES, "output.history_every=2000")
     if not found:
         return None
     rows = []
@@ -100,7 +100,9 @@ def drum_table(program, backend, work, largest):
         for k, (points, printed) in enumerate(meshes[:-1]):
             row = found[first + k]
             rows.append(row_of(points, row["mass"], printed, cauchy(row, found[first + k + 1], "area"),
-                               model=row["model"], vertices=row["vertices"], average_mass_g=380.0 / points))
+                               model=row["model"], vertices=row["vertices"], average_mass_g=380.0 / points,
+                               energy_at_start=row["series"]["elastic"][0],
+                               energy_drift=row["errors"]["energy_drift"]))
     return rows
 
 
@@ -146,7 +148,8 @@ def response(file, membrane, poisson):
         sides.append(np.interp(along, rest[flank, 0], moved[flank, 1]))
     contraction = (sides[0] - sides[1]) / (width * strain)
     return {"modulus": pull.sum(), "modulus_without_a_corner": pull.sum() - pull[np.argmax(rest[end, 1])],
-            "poisson": contraction[100], "largest_poisson": contraction.max()}
+            "poisson": contraction[100], "largest_poisson": contraction.max(),
+            "widths_from_a_grip": min(x := along[contraction.argmax()], length - x) / width}
 
 
 def strip_table(program, backend, work):
@@ -185,9 +188,9 @@ def print_tables(record):
                  [(str(r["points"]), r["mass"], triple(r["dissertation"]), triple(r["cauchy"]["stiffness"]),
                    triple(r["cauchy"]["stiffness_rms"]), triple(r["cauchy"]["axial_stiffness"])) for r in record["table_5_2"]])
     if record["table_5_3"]:
-        markdown("Table 5.3", ("points", "model", "mass", "dissertation", "here"),
-                 [(str(r["vertices"]), r["model"], r["mass"], triple(r["dissertation"]), triple(r["cauchy"]))
-                  for r in record["table_5_3"]])
+        markdown("Table 5.3", ("points", "model", "mass", "dissertation", "here", "energy drift"),
+                 [(str(r["vertices"]), r["model"], r["mass"], triple(r["dissertation"]), triple(r["cauchy"]),
+                   r["energy_drift"]) for r in record["table_5_3"]])
     if record["table_5_4"]:
         keys = (("dissertation", "modulus"), ("clamped", "modulus_without_a_corner"), ("clamped", "modulus"),
                 ("free", "modulus"), ("dissertation", "poisson"), ("clamped", "largest_poisson"),
