@@ -40,8 +40,8 @@ struct Columns {
 using RunPoint = std::function<bool(std::size_t i, std::vector<Row>& rows)>;
 
 /// Runs `count` points, writes study.csv and study.json after every one, so that whatever ends a long study
-/// leaves what it has found, and lets drogue-plot draw them. Returns `interrupted` or `ok`; throws Failure:
-/// numerical_failure if every run failed.
+/// leaves what it has found, and lets drogue-plot draw them. `columns` may grow while points run. Returns
+/// `interrupted` or `ok`; throws Failure: numerical_failure if every run failed.
 ExitCode run_points(const run::RunDirectory& directory, const run::ResultDocument& facts,
                     const Columns& columns, std::size_t count, const RunPoint& run_point, bool quiet);
 

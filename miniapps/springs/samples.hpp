@@ -2,16 +2,9 @@
 
 #include <vector>
 
-#include "miniapps/springs/scene.hpp"
+#include "kernels/fabric/parameters.hpp"
 
 namespace drogue::springs_app {
-
-/// What a study samples of a run at its output times.
-struct Samples {
-  std::vector<double> time;              ///< s
-  std::vector<double> length, area;      ///< of all strings, m; of all cloth, m^2
-  std::vector<double> kinetic, elastic;  ///< J
-};
 
 /// The sum of the lengths of all lines, m, and of the areas of all triangles, m^2, their vertices at `x`.
 double total_length(const fabric::Mesh& mesh, const std::vector<fabric::Vector>& x);

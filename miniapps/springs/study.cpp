@@ -47,19 +47,19 @@ SpringsScene silent(SpringsScene scene) {
   return scene;
 }
 
-/// One run; `checks` receives the names of what was verified. Returns its code, or throws Failure.
+/// One run; the first fills the row. `checks` receives the names of what was verified. Throws Failure.
 ExitCode run_once(const SpringsScene& scene, device::Backend backend, const run::RunDirectory& directory,
                   study::Row& row, std::vector<std::string>& checks) {
   const bool first = row.samples.empty();
-  Samples samples;
   RunSettings settings{backend, false, true, {}, {}};
   if (first)
     settings.at_output = [&](const Row& now, const std::vector<fabric::Vector>& x) {
-      samples.time.push_back(now.time);
-      samples.length.push_back(total_length(scene.mesh, x));
-      samples.area.push_back(total_area(scene.mesh, x));
-      samples.kinetic.push_back(now.kinetic);
-      samples.elastic.push_back(now.elastic);
+      const auto add = [&row](const char* name, double value) { row.series[name].push_back(value); };
+      add("time", now.time);
+      add("kinetic", now.kinetic);
+      add("elastic", now.elastic);
+      if (scene.has_lines()) add("length", total_length(scene.mesh, x));
+      if (scene.has_triangles()) add("area", total_area(scene.mesh, x));
     };
   Simulation simulation(scene, settings);
   run::ResultDocument result;
@@ -71,9 +71,6 @@ ExitCode run_once(const SpringsScene& scene, device::Backend backend, const run:
   verify(scene, simulation.final_state(), directory.file("history.csv"), result);
   row.errors = result.errors;
   for (const run::Check& check : result.checks) checks.push_back(check.name);
-  row.series = {{"time", samples.time}, {"kinetic", samples.kinetic}, {"elastic", samples.elastic}};
-  if (scene.has_lines()) row.series["length"] = samples.length;
-  if (scene.has_triangles()) row.series["area"] = samples.area;
   return code;
 }
 
@@ -86,6 +83,7 @@ bool run_row(const SpringsScene& scene, device::Backend backend, const run::RunD
   } catch (const Failure& failure) {
     row.code = failure.code();
     row.message = failure.what();
+    row.series.clear();
   }
   return true;
 }
@@ -127,7 +125,7 @@ ExitCode run_study(const MiniAppOptions& options, const std::filesystem::path& f
     std::vector<std::string> checks;
     scratch.directory().begin();
     if (!run_row(silent(point.scene), backend, scratch.directory(), row, checks)) return false;
-    if (columns.errors.empty() && row.code == ExitCode::ok) {
+    if (columns.errors.empty() && row.code == ExitCode::ok) {  // what scenes verify is known once one has run
       if (!checks.empty()) columns.shown = columns.shown_title = checks.front();
       columns.errors = checks;
       for (const auto& [name, values] : row.series)

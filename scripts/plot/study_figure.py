@@ -35,11 +35,12 @@ def _norms(rows: list[dict[str, str]]) -> list[str]:
 
 
 def default_norm(rows: list[dict[str, str]]) -> str:
-    """The first error that meshes make small, else the first."""
+    """The first error that meshes make small, else the first; of those that a run has."""
     try:
         norms = _norms(rows)
     except ValueError:
         return ""
+    norms = [norm for norm in norms if any(row[norm] for row in rows)] or norms
     return next((norm for norm in norms if norm not in KEPT), norms[0] if norms else "")
 
 
