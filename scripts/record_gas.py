@@ -10,35 +10,12 @@ a run of 2^28 cells, and with --long runs of many steps in a closed box, twice e
 the same bits (needs h5py). The summary is printed; the exit code is 1 if any run failed.
 """
 
-import argparse
-import json
-import pathlib
-import subprocess
 import sys
+
+from recording import assignments, exact_rows, identical, parser, run, scene_runs, summary, write
 
 SEED_MESHES = (1024, 2048, 3072, 4096, 5120, 6144, 7168, 8192)
 LONG_RUNS = ((1024, 1_000_000), (2**24, 10_000))  # cells, steps
-
-
-def run(program, scene, backend, folder, *more):
-    """Result of one run, with its exit code."""
-    command = [program, scene, "--backend", backend, "--overwrite", "--quiet", "--out", folder, *more]
-    done = subprocess.run([str(word) for word in command], capture_output=True, text=True, check=False)
-    file = pathlib.Path(folder) / "result.json"
-    result = json.loads(file.read_text()) if file.exists() else {}
-    return result | {"exit_code": done.returncode, "message": done.stderr.strip() or result.get("message", "")}
-
-
-def scenes(program):
-    listed = subprocess.run([program, "--list-scenes"], capture_output=True, text=True, check=True).stdout
-    return [line.split()[0] for line in listed.splitlines() if line.strip()]
-
-
-def summary(result):
-    keep = ("scene", "backend", "device", "threads", "steps", "exit_code", "message", "checks", "limiter", "ledger")
-    short = {key: result.get(key) for key in keep}
-    timing = result.get("timing", {})
-    return short | {"compute_s": timing.get("compute_s"), "wall_s": timing.get("wall_s")}
 
 
 def seed_rows(program, backend, work):
@@ -58,22 +35,6 @@ def seed_rows(program, backend, work):
     return rows
 
 
-def identical(first, second):
-    """Datasets of two fields.h5 that differ in a bit."""
-    import h5py
-
-    different = []
-    with h5py.File(first) as a, h5py.File(second) as b:
-        names = []
-        a["steps"].visititems(lambda name, item: names.append(name) if isinstance(item, h5py.Dataset) else None)
-        for name in names:
-            if a["steps"][name][...].tobytes() != b["steps"][name][...].tobytes():
-                different.append(name)
-        if not names:
-            different.append("no dataset")
-    return different
-
-
 def long_rows(program, backend, work, largest):
     """Sod's gas between walls at about half the largest stable dt: the bars are conservation and equal bits."""
     rows = []
@@ -81,49 +42,25 @@ def long_rows(program, backend, work, largest):
         dt = 0.4 * 2.0 / cells / 2.2
         end_time = steps * dt
         folders = [work / f"long-{cells}-{turn}" for turn in (1, 2)]
-        results = [run(program, "sod", backend, folder, *(word for assignment in (
-            f"mesh.cells={cells}", f"scheme.fixed_dt={dt}", f"run.end_time={end_time}", "run.max_steps=2000000",
-            "boundary.left=\"reflecting\"", "boundary.right=\"reflecting\"", f"output.times=[{end_time}]",
-            "output.history_every=0", "verify.l1_density=1e3") for word in ("--set", assignment))) for folder in folders]
+        sets = assignments(f"mesh.cells={cells}", f"scheme.fixed_dt={dt}", f"run.end_time={end_time}", "run.max_steps=2000000",
+                           "boundary.left=\"reflecting\"", "boundary.right=\"reflecting\"", f"output.times=[{end_time}]",
+                           "output.history_every=0", "verify.l1_density=1e3")
+        results = [run(program, "sod", backend, folder, *sets) for folder in folders]
         same = not any(r["exit_code"] for r in results) and not identical(*(folder / "fields.h5" for folder in folders))
         rows.append(summary(results[0]) | {"cells": cells, "identical": same})
     return rows
 
 
-def exact_rows(program, backends, work):
-    rows = []
-    for scene in scenes(program):
-        folders = {backend: work / f"exact-{scene}-{backend}" for backend in backends}
-        codes = [run(program, scene, backend, folder)["exit_code"] for backend, folder in folders.items()]
-        first = folders[backends[0]] / "fields.h5"
-        different = {}
-        if not any(codes):
-            different = {b: identical(first, folders[b] / "fields.h5") for b in backends[1:]}
-        rows.append({"scene": scene, "exit_codes": codes, "identical": not any(codes) and not any(different.values()),
-                     "different": {b: len(names) for b, names in different.items()}})
-    return rows
-
-
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("machine")
-    parser.add_argument("--bin", type=pathlib.Path, required=True)
-    parser.add_argument("--exact", type=pathlib.Path)
-    parser.add_argument("--backends", default="serial,openmp")
-    parser.add_argument("--largest", action="store_true")
-    parser.add_argument("--long", action="store_true")
-    parser.add_argument("--work", type=pathlib.Path, default=pathlib.Path("out/record"))
-    parser.add_argument("--to", type=pathlib.Path, default=pathlib.Path(__file__).parent.parent / "docs/evidence")
-    arguments = parser.parse_args()
+    options = parser(__doc__)
+    options.add_argument("--largest", action="store_true")
+    options.add_argument("--long", action="store_true")
+    arguments = options.parse_args()
     program = arguments.bin / "drogue-gas"
     backends = arguments.backends.split(",")
     work = arguments.work
 
-    record = {"schema": "drogue.record/1", "machine": arguments.machine}
-    runs = [run(program, scene, backend, work / f"{scene}-{backend}") for scene in scenes(program) for backend in backends]
-    record["provenance"] = runs[0].get("provenance")
-    record["git"] = runs[0].get("git")
-    record["runs"] = [summary(result) for result in runs]
+    record = {"schema": "drogue.record/1", "machine": arguments.machine} | scene_runs(program, backends, work)
     record["seed_mode"] = seed_rows(program, backends[-1], work)
     failed = [r for r in record["runs"] + record["seed_mode"] if r["exit_code"] != 0]
     if arguments.exact:
@@ -138,14 +75,7 @@ def main():
     if arguments.long:
         record["long"] = long_rows(program, backends[-1], work, arguments.largest)
         failed += [row for row in record["long"] if not row["identical"]]
-    arguments.to.mkdir(parents=True, exist_ok=True)
-    (arguments.to / f"gas-{arguments.machine}.json").write_text(json.dumps(record, indent=1) + "\n")
-    print(f"{len(record['runs'])} runs, {len(failed)} failed")
-    for row in failed:
-        print("failed:", json.dumps(row)[:300])
-    for key in ("seed_mode", "exact", "largest", "long"):
-        print(key, json.dumps(record.get(key))[:1500])
-    return 1 if failed else 0
+    return write(record, arguments.to / f"gas-{arguments.machine}.json", failed, ("seed_mode", "exact", "largest", "long"))
 
 
 if __name__ == "__main__":

@@ -34,8 +34,7 @@ void declare(CLI::App& app, MiniAppOptions& options) {
   auto* seed_mode = app.add_flag("--seed-mode", options.seed_mode,
                                  "run the dissertation's own algorithm and data movement");
   app.add_option("--study", options.study,
-                 "run the scene over meshes and schemes, say meshes=100:800,schemes=js:z (two meshes: and "
-                 "every doubling "
+                 "run the scene over meshes and schemes, say meshes=100:800 (two meshes: and every doubling "
                  "between them)")
       ->type_name("LISTS")
       ->excludes(restart)

@@ -13,7 +13,7 @@ struct MiniAppOptions {
   std::vector<std::string> set;  ///< `key.path=value`, in the order given
   std::filesystem::path out;     ///< run directory; empty: out/<scene name>
   std::string restart;           ///< a file, `auto`, or empty: start anew
-  std::string study;             ///< `meshes=100:800,schemes=js:z`, or empty: one run
+  std::string study;             ///< `meshes=100:800,...`, or empty: one run
   bool check = false;
   bool print_scene = false;
   bool list_scenes = false;

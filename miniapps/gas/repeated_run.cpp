@@ -1,7 +1,5 @@
 #include "miniapps/gas/repeated_run.hpp"
 
-#include <numeric>
-
 #include "miniapps/gas/simulation.hpp"
 
 namespace drogue::gas_app {
@@ -11,9 +9,7 @@ RepeatedRun run_repeatedly(const GasScene& scene, device::Backend backend, const
   GasScene silent = scene;
   silent.output = {};  // a step shortened to meet an output that is not written would only cost time
   RepeatedRun runs;
-  while (static_cast<int>(runs.samples.size()) < repeats.most &&
-         (runs.samples.empty() ||
-          std::accumulate(runs.samples.begin(), runs.samples.end(), 0.0) < repeats.seconds)) {
+  while (!repeats.reached(runs.samples)) {
     Simulation simulation(silent, {backend, false, true, {}});
     run::ResultDocument result;
     try {

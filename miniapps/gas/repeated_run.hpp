@@ -6,16 +6,12 @@
 #include <vector>
 
 #include "common/program/failure.hpp"
+#include "common/study/repeats.hpp"
 #include "miniapps/gas/exact.hpp"
 
 namespace drogue::gas_app {
 
-/// When a run that is timed has been repeated often enough: after `most` runs, or once all of them together
-/// took `seconds`.
-struct Repeats {
-  int most;
-  double seconds;
-};
+using study::Repeats;
 
 /// The runs of one scene, which writes nothing while it is timed.
 struct RepeatedRun {

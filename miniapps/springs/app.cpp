@@ -12,17 +12,14 @@
 #include "common/program/signals.hpp"
 #include "common/scene/library.hpp"
 #include "kernels/device/ledger.hpp"
-#include "kernels/device/runtime.hpp"
 #include "miniapps/springs/mesh_topology.hpp"
 #include "miniapps/springs/restart.hpp"
 #include "miniapps/springs/scene_folder.hpp"
 #include "miniapps/springs/simulation.hpp"
+#include "miniapps/springs/study.hpp"
 #include "miniapps/springs/verify.hpp"
 
 namespace drogue::springs_app {
-namespace {
-
-using Clock = std::chrono::steady_clock;
 
 device::Backend choose_backend(const std::string& wanted) {
   const device::Backend backend =
@@ -38,6 +35,10 @@ std::unique_ptr<device::Runtime> start_kokkos(const std::vector<std::string>& ar
     throw Failure(ExitCode::usage, refused.what());
   }
 }
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
 
 /// False for an empty directory and for one whose only run never began.
 bool holds_results(const std::filesystem::path& directory) {
@@ -86,7 +87,7 @@ void run_in(run::RunDirectory& directory, const SpringsScene& scene, device::Bac
   const auto runtime = start_kokkos(options.kokkos);
   device::start_ledger();
   describe_device(result, backend);
-  Simulation simulation(scene, {backend, options.seed_mode, options.quiet, restart});
+  Simulation simulation(scene, {backend, options.seed_mode, options.quiet, restart, {}});
   directory.begin();
   directory.write_scene(print_springs_scene(scene));
   result.exit_code = simulation.run(directory, result);
@@ -157,10 +158,6 @@ ExitCode run_app(const MiniAppOptions& options) {
     return ExitCode::ok;
   }
   require_one_rank("drogue-springs");
-  if (!options.study.empty())
-    throw Failure(
-        ExitCode::usage,
-        "--study compares schemes of drogue-gas; run a scene of cloth over meshes with --set mesh....");
   const std::filesystem::path file = scene::find_scene(options.scene, scene_folder());
   if (options.check || options.print_scene) {
     const SpringsScene scene = read_springs_scene(file, options.set);
@@ -168,6 +165,7 @@ ExitCode run_app(const MiniAppOptions& options) {
     return ExitCode::ok;
   }
   install_signal_handlers();
+  if (!options.study.empty()) return run_study(options, file);
   return run_scene(options, file);
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 
 namespace drogue::springs_app {
@@ -32,6 +33,24 @@ int nearest(int wanted, const Function& vertices_of) {
   return n > 1 && wanted - vertices_of(n - 1) <= vertices_of(n) - wanted ? n - 1 : n;
 }
 
+/// A number of -1 .. 1 that looks random, the same on every machine (Steele et al. 2014, SplitMix).
+double scattered(std::uint64_t seed) {
+  seed = (seed + 1) * 0x9e3779b97f4a7c15U;
+  seed = (seed ^ (seed >> 30U)) * 0xbf58476d1ce4e5b9U;
+  seed = (seed ^ (seed >> 27U)) * 0x94d049bb133111ebU;
+  return std::ldexp(static_cast<double>(seed >> 11U), -52) - 1.0;
+}
+
+/// Moves the vertices within the sides of a rectangle of so many columns of cells.
+void distort(const Rectangle& wanted, const Counts& counts, Mesh& mesh) {
+  for (std::size_t n = 0; n < mesh.rest.size(); ++n) {
+    const int i = static_cast<int>(n) % (counts.columns + 1), j = static_cast<int>(n) / (counts.columns + 1);
+    if (i == 0 || i == counts.columns || j == 0 || j == counts.rows) continue;
+    mesh.rest[n][0] += wanted.distortion * wanted.width / counts.columns * scattered(2 * n);
+    mesh.rest[n][1] += wanted.distortion * wanted.height / counts.rows * scattered(2 * n + 1);
+  }
+}
+
 }  // namespace
 
 Mesh generate(const Rectangle& wanted) {
@@ -51,6 +70,7 @@ Mesh generate(const Rectangle& wanted) {
         mesh.triangles.push_back({b, d, c});
       }
     }
+  if (wanted.distortion > 0.0) distort(wanted, {columns, rows}, mesh);
   return mesh;
 }
 

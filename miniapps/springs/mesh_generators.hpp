@@ -11,6 +11,7 @@ namespace drogue::springs_app {
 struct Rectangle {
   double width = 1.0, height = 1.0;
   int vertices = 1000;
+  double distortion = 0.0;  ///< inner vertices are moved by up to this share of a cell, below 1/4
 };
 
 /// About the origin in the plane z = 0: ring k of n has 6 k vertices, 1 + 3 n (n + 1) in all.

@@ -93,6 +93,9 @@ void declare_mesh(Table& table, MeshSource& source) {
         declare_length(t, "width", value.width, "Extent along x, from 0");
         declare_length(t, "height", value.height, "Extent along y, from 0");
         declare_vertices(t, value.vertices, 4);
+        t.value("distortion", scene::real_codec(value.distortion),
+                "Share of a cell by which inner vertices are moved at most, as if at random")
+            .range(0.0, 0.2);
       },
       "Nearly square cells with alternating diagonals in the plane z = 0");
   table.optional_table(

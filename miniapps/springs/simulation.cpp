@@ -153,7 +153,7 @@ void Simulation::reach_event(RunOutput& output) {
   const std::int64_t step = _solver->clock().step;
   const bool at_stop = step == _stop_step, at_end = at_stop && _stop_time == _scene.time.end_time;
   if (wanted.history_every > 0 && (at_end || step % wanted.history_every == 0)) output.write_row(row());
-  if (at_stop && is_output_time(_stop_time)) output.write_fields(snapshot());
+  if (at_stop && is_output_time(_stop_time)) reach_output(output);
   if (at_stop)
     plan();
   else if (step % bound_every(step) == 0)
@@ -166,7 +166,7 @@ ExitCode Simulation::run(const run::RunDirectory& directory, run::ResultDocument
   RunOutput output(_scene, directory, resumed ? std::optional<double>(time()) : std::nullopt);
   if (!resumed) {
     output.write_row(row());
-    if (is_output_time(0.0)) output.write_fields(snapshot());
+    if (is_output_time(0.0)) reach_output(output);
   }
   ProgressLine progress(_settings.quiet);
   // However this ends, the result says how far it came.

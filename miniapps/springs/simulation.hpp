@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 
 #include "common/program/progress.hpp"
@@ -20,6 +21,9 @@ struct RunSettings {
   bool seed_mode = false;  ///< the state travels to the device and back at every step
   bool quiet = false;
   std::filesystem::path restart;  ///< a restart file, or empty
+  /// Told of every output time, whether or not fields are written, with the positions in the scene's
+  /// numbering, m; may be empty.
+  std::function<void(const Row& row, const std::vector<fabric::Vector>& x)> at_output;
 };
 
 /// Fills in what the machine and the backend are. Needs an initialised runtime.
@@ -47,6 +51,7 @@ class Simulation {
   [[nodiscard]] std::int64_t steps_to_event() const;
   [[nodiscard]] bool advance(std::int64_t steps, ProgressLine& progress);
   void reach_event(RunOutput& output);
+  void reach_output(RunOutput& output);
   void round_trip();
   [[nodiscard]] double time() const;
   [[nodiscard]] Row row();

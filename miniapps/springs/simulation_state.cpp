@@ -42,6 +42,14 @@ Snapshot Simulation::snapshot() {
   return snapshot;
 }
 
+void Simulation::reach_output(RunOutput& output) {
+  if (!_scene.output.fields.empty()) output.write_fields(snapshot());
+  if (!_settings.at_output) return;
+  std::vector<Vector> x(_problem.x.size()), v(x.size());
+  _solver->download(x, v);
+  _settings.at_output(row(), _problem.to_scene(x));
+}
+
 RestartState Simulation::restart_state() {
   RestartState state{_solver->clock(), _stop_step, _stop_time, _dt_min, _dt_max, {}, {}};
   std::vector<Vector> x(_problem.x.size()), v(x.size());

@@ -59,7 +59,7 @@ def arguments(words: list[str]) -> argparse.Namespace:
         "--movie", choices=("gif", "mp4", "none"), default="gif", help="kind of the moving picture"
     )
     parser.add_argument("--dpi", type=int, default=160, help="pixels an inch of a PNG (default: 160)")
-    parser.add_argument("--norm", help="error column of a study (default: l1_density)")
+    parser.add_argument("--norm", help="error column of a study (default: the first that meshes make small)")
     parser.add_argument("--quiet", action="store_true", help="do not print the names of the pictures")
     parser.add_argument("--version", action="store_true", help="print the versions and stop")
     options = parser.parse_args(words)
@@ -133,7 +133,7 @@ def draw(options: argparse.Namespace):
     from .history_figure import history_figure
     from .run_directory import read
     from .springs_history import springs_history_figure
-    from .study_figure import DEFAULT_NORM, check_norm, study_figure
+    from .study_figure import check_norm, study_figure
 
     run = read(options.directory)
     # Before the first picture: a mistyped option must leave nothing behind.
@@ -153,7 +153,7 @@ def draw(options: argparse.Namespace):
     if (figure := draw_history(run)) is not None:
         yield save(figure, "history")
     if run.study:
-        yield save(study_figure(run.scene_name, run.study, options.norm or DEFAULT_NORM), "study")
+        yield save(study_figure(run.scene_name, run.study, options.norm or ""), "study")
     if evidence:
         yield from _evidence(options, evidence, out)
 

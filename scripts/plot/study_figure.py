@@ -9,12 +9,16 @@ from .failure import IO_ERROR, USAGE, Failure
 from .run_directory import Run
 from .style import plt
 
-DEFAULT_NORM = "l1_density"
-# Sums of |error| dx, so of the field's unit times metres.
+# Sums of |error| dx, so of the field's unit times metres; differences to the next finer mesh, a mean over time.
 TITLES = {
     "l1_density": "L1 error of density (kg/m$^2$)", "l1_velocity": "L1 error of velocity (m$^2$/s)",
     "l1_pressure": "L1 error of pressure (Pa m)",
+    "cauchy_length": "difference of length to the next mesh (m)", "cauchy_area": "difference of area to the next mesh (m$^2$)",
+    "cauchy_kinetic": "difference of kinetic energy to the next mesh (J)",
+    "cauchy_elastic": "difference of elastic energy to the next mesh (J)",
 }  # fmt: skip
+# What a run keeps, or not, on any mesh: no error that a finer one makes small.
+KEPT = ("conservation", "equilibrium", "energy_drift", "momentum", "angular_momentum")
 SCHEMES = {"js": "WENO-JS", "z": "WENO-Z", "z2": "WENO-Z (p = 2)", "m": "WENO-M", "teno5": "TENO5"}
 
 
@@ -24,15 +28,42 @@ def _words(label: str) -> str:
     return SCHEMES.get(scheme, scheme) + blank + settings
 
 
+def _norms(rows: list[dict[str, str]]) -> list[str]:
+    """The error columns of a study: what stands between the time and the status."""
+    columns = list(rows[0])
+    return columns[columns.index("compute_s") + 1 : columns.index("status")]
+
+
+def default_norm(rows: list[dict[str, str]]) -> str:
+    """The first error that meshes make small, else the first; of those that a run has."""
+    try:
+        norms = _norms(rows)
+    except ValueError:
+        return ""
+    norms = [norm for norm in norms if any(row[norm] for row in rows)] or norms
+    return next((norm for norm in norms if norm not in KEPT), norms[0] if norms else "")
+
+
+def _mesh_column(rows: list[dict[str, str]]) -> str:
+    return "vertices" if "vertices" in rows[0] else "cells"
+
+
+def _dimension(rows: list[dict[str, str]]) -> int:
+    """Along how many axes a mesh is refined: the square of their edges' number is the number of vertices of cloth."""
+    return 2 if "cauchy_area" in rows[0] else 1
+
+
 def _curves(rows: list[dict[str, str]], norm: str) -> tuple[dict[str, np.ndarray], list[str]]:
-    """Per label an array of (cells, seconds, error) by rising mesh, and what is left out in words."""
+    """Per label an array of (mesh, seconds, error) by rising mesh, and what is left out in words."""
     curves: dict[str, list[tuple[float, float, float]]] = {}
     failed = exact = 0
     for row in rows:
         if row.get("status") != "ok":
             failed += 1
             continue
-        point = tuple(float(row[column]) for column in ("cells", "compute_s", norm))
+        if row[norm] == "" and row["compute_s"] != "":
+            continue  # the finest mesh has no next one
+        point = tuple(float(row[column]) for column in (_mesh_column(rows), "compute_s", norm))
         if point[2] > 0:
             curves.setdefault(_words(row["label"]), []).append(point)
         else:
@@ -46,22 +77,22 @@ def check_norm(run: Run, norm: str) -> None:
     """Refuses a norm that the study of a folder, if it has one, does not give."""
     if not run.study:
         raise Failure(USAGE, f"{run.path} holds no study, which --norm is for.")
-    norms = [column for column in run.study[0] if column.startswith(("l1_", "l2_", "linf_"))]
+    norms = _norms(run.study)
     if norm not in norms:
         near = difflib.get_close_matches(norm, norms, 1)
         hint = f"nearest is {near[0]}" if near else f"it has {', '.join(norms)}"
         raise Failure(USAGE, f"The study of {run.scene_name} has no norm '{norm}'; {hint}.")
 
 
-def observed_order(points: np.ndarray) -> float | None:
-    """Least-squares slope of error against mesh of (cells, seconds, error); needs three meshes."""
+def observed_order(points: np.ndarray, dimension: int = 1) -> float | None:
+    """Least-squares slope of error against edges of (mesh, seconds, error); needs three meshes."""
     if len(points) < 3:
         return None
-    return -np.polyfit(np.log(points[:, 0]), np.log(points[:, 2]), 1)[0]
+    return -dimension * np.polyfit(np.log(points[:, 0]), np.log(points[:, 2]), 1)[0]
 
 
-def _order(points: np.ndarray) -> str:
-    order = observed_order(points)
+def _order(points: np.ndarray, dimension: int) -> str:
+    order = observed_order(points, dimension)
     return "" if order is None else f"  order {order:.2f}"
 
 
@@ -94,8 +125,9 @@ def _make_room(figure, labels: list[str]) -> None:
     )
 
 
-def study_figure(name: str, rows: list[dict[str, str]], norm: str = "l1_density"):
+def study_figure(name: str, rows: list[dict[str, str]], norm: str = ""):
     """Error against time at the left, error against mesh with the observed order at the right."""
+    norm = norm or (default_norm(rows) if rows else "")
     if rows and norm not in rows[0]:
         raise Failure(USAGE, f"The study of {name} has no column '{norm}'; it has {', '.join(rows[0])}.")
     try:
@@ -107,16 +139,17 @@ def study_figure(name: str, rows: list[dict[str, str]], norm: str = "l1_density"
             IO_ERROR, f"The study of {name} has nothing to draw: {' and '.join(left_out) or 'it is empty'}."
         )
     figure, (by_time, by_mesh) = plt.subplots(1, 2, sharey=True)
-    labels = {label: label + _order(points) for label, points in curves.items()}
+    labels = {label: label + _order(points, _dimension(rows)) for label, points in curves.items()}
     _make_room(figure, list(labels.values()))
     _draw(by_time, curves, 1, {})
+    style.mark_logarithm(by_time.xaxis)
     _draw(by_mesh, curves, 0, labels)
-    by_time.set_ylabel(TITLES.get(norm, norm.replace("_", " ")))
+    by_time.set_ylabel(TITLES.get(norm, "error of " + norm.replace("_", " ")))
     by_time.set_xlabel("time to solution (s)")
-    by_mesh.set_xlabel("cells")
+    by_mesh.set_xlabel(_mesh_column(rows))
     meshes = np.unique(np.concatenate([points[:, 0] for points in curves.values()]))
     if len(meshes) <= 8:
-        by_mesh.set_xticks(meshes, [f"{int(cells)}" for cells in meshes])
+        by_mesh.set_xticks(meshes, [f"{int(mesh)}" for mesh in meshes])
         by_mesh.minorticks_off()
     backends = sorted({row.get("backend", "") for row in rows} - {""})
     details = "error against time and mesh" + (f", {', '.join(backends)}" if backends else "")

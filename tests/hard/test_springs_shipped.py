@@ -1,5 +1,6 @@
 """Every shipped scene of cloth and strings meets its own bars, as it is shipped."""
 
+import math
 import os
 import sys
 import unittest
@@ -11,7 +12,7 @@ import springs_program
 
 
 # Ten thousand launches of hundreds of vertices take threads seconds; both backends have the same kernels.
-MANY_SMALL_STEPS = {"catenary", "hencky", "pulled-rectangle", "strip", "swing-chord"}
+MANY_SMALL_STEPS = {"catenary", "hencky", "patch", "pulled-rectangle", "strip", "swing-chord"}
 
 
 class Shipped(springs_program.SpringsTest):
@@ -31,6 +32,22 @@ class Shipped(springs_program.SpringsTest):
     @gas_program.needs_openmp
     def test_openmp(self):
         self.assert_all_pass("openmp", [name for name in springs_program.SCENES if name not in MANY_SMALL_STEPS])
+
+    def test_patch(self):
+        """Triangles of any shape bear an even strain exactly: all vertices come to where it takes them."""
+        self.expect(0, "patch", "--backend", "serial", "--quiet")
+        file = self.fields("out/patch")
+        rest = list(file.values("/mesh/vertices"))
+        now = list(file.values(f"/steps/{file.children('/steps')[-1]}/position"))
+        # Across the pull the second Piola-Kirchhoff stress is none: Green's strains are in the ratio -nu.
+        along, across = 1.05, math.sqrt(1 - 0.3 * (1.05**2 - 1))
+        for axis, factor in enumerate((along, across, 0.0)):
+            self.assertLess(max(abs(x - factor * X) for x, X in zip(now[axis::3], rest[axis::3], strict=True)), 1e-9)
+        # That the mesh is distorted, and the sheet was shaken, is what makes it a test.
+        cells = {round(x, 6) for x in rest[0::3]}
+        self.assertGreater(len(cells), 100)
+        start = list(file.values("/steps/000000/position"))
+        self.assertGreater(max(abs(x - along * X) for x, X in zip(start[0::3], rest[0::3], strict=True)), 1e-3)
 
 
 if __name__ == "__main__":

@@ -121,3 +121,19 @@ def write_study(file, meshes=(100, 200, 400, 800), failed=0, settings=("",)):
         stream.write(header + "\n")
         csv.writer(stream).writerows(rows)
     return file
+
+
+def write_springs_study(file, order=2.0, checks=("frequency", "equilibrium")):
+    """study.csv of a disk on four meshes, of that order in the length of an edge; the finest has no next mesh."""
+    header = ["label", "model", "mass", "integrator", "backend", "vertices", "steps", "compute_s", *checks,
+              "cauchy_area", "cauchy_elastic", "cauchy_kinetic", "status"]  # fmt: skip
+    with file.open("w", newline="") as stream:
+        table = csv.writer(stream)
+        table.writerow(header)
+        for rings in (4, 8, 16, 32):
+            vertices = 1 + 3 * rings * (rings + 1)
+            error = 0.3 * vertices ** (-order / 2)
+            cauchy = ["", "", ""] if rings == 32 else [error, 2 * error, 3 * error]
+            table.writerow(["biquadratic", "biquadratic", "area", "rk4", "serial", vertices, 100 * rings, 1e-3 * rings**3,
+                            *[error, 1e-9][: len(checks)], *cauchy, "ok"])
+    return file

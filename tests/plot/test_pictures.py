@@ -145,6 +145,27 @@ class Pictures(unittest.TestCase):
         self.assertIn("WENO-JS  order 0.90", words)
         self.assertTrue(any("1 of 12 runs failed" in text for text in words), words)
 
+    def test_study_of_cloth_gives_orders_in_the_length_of_an_edge(self):
+        synthetic.write_springs_study(self.folder / "study.csv")
+        self.assertEqual(_plot(self.folder)[:2], (0, ["study.png"]))
+        rows = read(self.folder).study
+        for norm, title, count in (("", "frequency", 4), ("cauchy_area", "next mesh (m$^2$)", 3)):
+            with self.subTest(norm):
+                figure = study_figure("drum", rows, norm)
+                by_time, by_mesh = figure.axes
+                self.assertIn("biquadratic  order 2.00", [text.get_text() for text in by_mesh.texts])
+                self.assertIn(title, by_time.get_ylabel())
+                self.assertEqual("vertices", by_mesh.get_xlabel())
+                self.assertEqual(count, len(by_mesh.lines[0].get_xdata()))
+        self.assertEqual(_plot(self.folder, "--norm", "cauchy_kinetic")[:2], (0, ["study.png"]))
+
+    def test_study_of_what_is_kept_shows_how_meshes_differ(self):
+        synthetic.write_springs_study(self.folder / "study.csv", checks=("energy_drift",))
+        rows = read(self.folder).study
+        self.assertIn("area", study_figure("cone", rows).axes[0].get_ylabel())
+        # Of one mesh there is no difference.
+        self.assertIn("energy drift", study_figure("cone", rows[-1:]).axes[0].get_ylabel())
+
 
     def test_labels_of_a_study_fit_however_long_and_many(self):
         axes = ("", " lf-global", " lf-single"), ("", " ssprk43"), ("", " split")
@@ -202,6 +223,8 @@ class Refusals(unittest.TestCase):
         synthetic.write_study(self.folder / "study.csv")
         self._refused(2, ["'l3_density'", "l1_density"], self.folder, "--norm", "l3_density")
         self._refused(2, ["no norm 'label'"], self.folder, "--norm", "label")
+        synthetic.write_springs_study(self.folder / "study.csv")
+        self._refused(2, ["'cauchy_aera'", "nearest is cauchy_area"], self.folder, "--norm", "cauchy_aera")
 
     def test_norm_without_a_study(self):
         run = synthetic.write_sod(self.folder / "sod", cells=20, snapshots=1)

@@ -150,6 +150,7 @@ class Failures(springs_program.SpringsTest):
             "drum-cone": ["time.safety=1.0"],
             "stress-wave": ["verify.front_speed.value=110"],
             "pulled-triangle": ["time.end_time=0.02"],
+            "patch": ["material.model=quadratic"],
         }
         small = {"hencky": ["mesh.disk.vertices=217", "output.fields=[]"], "pulled-triangle": ["output.fields=[]"], "drum": ["mesh.disk.vertices=61", "output.fields=[]"], "strip": ["mesh.strip.vertices=40"]}
         for scene, sets in faults.items():

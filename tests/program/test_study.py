@@ -12,9 +12,10 @@ import unittest
 sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
 import gas_program
+import springs_program
 
 
-class Study(gas_program.GasTest):
+class StudyTest(gas_program.GasTest):
     def study(self, code, scene, lists, *words, sets=()):
         """Runs a study; that there is nothing here to draw pictures with is no failure."""
         run = self.start(scene, "--backend", "serial", "--study", lists, *words, sets=sets)
@@ -27,6 +28,18 @@ class Study(gas_program.GasTest):
             rows = list(csv.DictReader(file))
         return rows, json.loads((folder / "study.json").read_text(encoding="utf-8"))
 
+    def assert_interrupted(self, scene, lists, sets, begun):
+        line = gas_program.arguments(scene, "--backend", "serial", "--study", lists, "--out", "study", sets=sets,
+                                     program=self.program)
+        process = subprocess.Popen(line, cwd=self.folder, env=gas_program.ENVIRONMENT, stdout=subprocess.PIPE,
+                                   stderr=subprocess.PIPE, text=True)
+        begun(process)
+        process.send_signal(signal.SIGINT)
+        text = process.communicate(timeout=60)
+        self.assertEqual(130, process.returncode, text)
+
+
+class GasStudy(StudyTest):
     def test_tables(self):
         text = self.study(0, "sod", "meshes=50:100,schemes=js:z").stdout
         rows, document = self.tables("out/sod-study")
@@ -83,15 +96,6 @@ class Study(gas_program.GasTest):
     def test_seed_mode_has_no_study(self):
         self.study(2, "sod", "meshes=50", "--seed-mode")
 
-    def assert_interrupted(self, scene, lists, sets, begun):
-        line = gas_program.arguments(scene, "--backend", "serial", "--study", lists, "--out", "study", sets=sets)
-        process = subprocess.Popen(line, cwd=self.folder, env=gas_program.ENVIRONMENT, stdout=subprocess.PIPE,
-                                   stderr=subprocess.PIPE, text=True)
-        begun(process)
-        process.send_signal(signal.SIGINT)
-        text = process.communicate(timeout=60)
-        self.assertEqual(130, process.returncode, text)
-
     def test_ctrl_c_keeps_the_rows_that_are_done(self):
         self.assert_interrupted("sod", "meshes=50:6400", ["verify.l1_density=1.0"],
                                 lambda process: process.stdout.readline())
@@ -115,6 +119,100 @@ class Study(gas_program.GasTest):
 
     def test_an_axis_named_twice(self):
         self.assertIn("twice", self.study(2, "sod", "meshes=50,meshes=100").stderr)
+
+
+class SpringsStudy(springs_program.SpringsTest, StudyTest):
+    VERIFY = "verify={frequency={mode=[0,1],bar=1},energy_drift=1}"
+    LEVEL = "load=[{gravity=[0,0,0]}]"
+
+    def difference(self, coarse, fine, name):
+        """The mean over time that a table has as an error, from the series of two rows."""
+        time, first, second = coarse["series"]["time"], coarse["series"][name], fine["series"][name]
+        self.assertEqual(time, fine["series"]["time"])
+        apart = [abs(a - b) for a, b in zip(first, second, strict=True)]
+        return sum((apart[k - 1] + apart[k]) / 2 * (time[k] - time[k - 1]) for k in range(1, len(time))) / (time[-1] - time[0])
+
+    def test_tables(self):
+        scene = self.write(springs_program.DRUM)
+        lists = "meshes=61:244,models=quadratic,masses=area:equal,integrators=verlet"
+        text = self.study(0, scene, lists, sets=[self.VERIFY, self.LEVEL]).stdout
+        self.assertEqual(6, text.count(" vertices "))
+        rows, document = self.tables("out/scene-study")
+        self.assertEqual([(mass, count) for mass in ("area", "equal") for count in ("61", "127", "217")],
+                         [(row["mass"], row["vertices"]) for row in rows])
+        errors = {(row["mass"], row["vertices"]): float(row["frequency"]) for row in rows}
+        self.assertLess(errors["area", "217"], 0.4 * errors["area", "61"])
+        self.assertLess(errors["area", "217"], 0.2 * errors["equal", "217"])
+        for k, (row, entry) in enumerate(zip(rows, document["rows"], strict=True)):
+            self.assertEqual(("ok", "quadratic", "verlet", "serial"),
+                             tuple(row[name] for name in ("status", "model", "integrator", "backend")))
+            self.assertGreater(float(row["compute_s"]), 0.0)
+            self.assertLess(float(row["energy_drift"]), 1e-2)
+            self.assertEqual(int(row["steps"]), entry["steps"])
+            for name in ("area", "kinetic", "elastic"):
+                if k % 3 == 2:
+                    self.assertEqual("", row["cauchy_" + name])
+                    continue
+                expected = self.difference(entry, document["rows"][k + 1], name)
+                self.assertGreater(expected, 0.0)
+                self.assertAlmostEqual(1.0, float(row["cauchy_" + name]) / expected, places=8)
+        self.assertEqual(("drogue.study/1", "drogue-springs"), (document["schema"], document["program"]))
+        self.assertFalse((self.folder / "out/scene-study/point").exists())
+        self.assert_a_row_is_the_run_it_stands_for(scene, document["rows"][4])
+
+    def assert_a_row_is_the_run_it_stands_for(self, scene, row):
+        self.expect(0, scene, "--backend", "serial", "--out", "run", "--quiet", sets=[
+            self.VERIFY, self.LEVEL, "mesh.disk.vertices=127", 'material.model="quadratic"', 'material.mass="equal"',
+            'time.integrator="verlet"'])
+        told = self.result("run")
+        self.assertEqual(told["steps"], row["steps"])
+        self.assertEqual(told["errors"], {name: row["errors"][name] for name in told["errors"]})
+        self.assertEqual([0.1, 0.3], row["series"]["time"])
+        self.assertEqual(self.history("run")["kinetic"][-1], row["series"]["kinetic"][-1])
+
+    def test_without_closed_form_or_times(self):
+        self.study(0, self.write('app = "springs"\n[mesh]\nstring = { vertices = 5 }\n[initial]\nvelocity = { y = "sin(pi*x)" }\n'
+                                 '[[pin]]\nwhere = "x == 0 || x == 1"\n[time]\nend_time = 0.001\n'), "meshes=5:20", "--quiet")
+        rows, document = self.tables("out/scene-study")
+        self.assertEqual(["5", "10", "20"], [row["vertices"] for row in rows])
+        self.assertLess(float(rows[1]["cauchy_kinetic"]), float(rows[0]["cauchy_kinetic"]))
+        self.assertEqual(101, len(document["rows"][0]["series"]["length"]))
+        self.assertNotIn("cauchy_area", rows[0])
+
+    def test_a_mesh_that_fails_is_a_row(self):
+        scene = self.write(springs_program.DRUM)
+        self.study(0, scene, "meshes=61:817", "--out", "study", "--quiet", sets=["time.dt=0.0008"])
+        rows, document = self.tables("study")
+        self.assertEqual(("ok", "numerical-failure"), (rows[0]["status"], rows[-1]["status"]))
+        self.assertEqual(("", ""), (rows[-1]["cauchy_area"], rows[-2]["cauchy_area"]))
+        self.assertIn("not finite", document["rows"][-1]["message"])
+        text = self.study(4, scene, "meshes=61:127", "--out", "none", sets=["time.dt=0.01", "time.end_time=10"]).stderr
+        self.assertIn("every run of the study failed", text)
+        self.assertEqual(2, len(self.tables("none")[0]))
+
+    def test_usage(self):
+        scene = self.write(springs_program.DRUM)
+        for lists in ("meshes=1", "meshes=a", "models=weno", "cells=10", "meshes=", "masses", "integrators=rk5", "",
+                      "meshes=61,meshes=217"):
+            with self.subTest(lists):
+                self.assertIn("--study", self.study(2, scene, lists).stderr)
+        self.write("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "m.obj")
+        scene = self.write('app = "springs"\n[mesh]\nfile = "m.obj"\n[time]\nend_time = 1\n')
+        self.assertIn("m.obj", self.study(2, scene, "meshes=61:217").stderr)
+        self.assertFalse((self.folder / "out").exists())
+
+    def test_what_cannot_be_run_is_found_first(self):
+        message = self.study(3, "drum", "models=quadratic:edge").stderr
+        self.assertIn("verify.frequency.mode", message)
+        self.assertFalse((self.folder / "out").exists())
+
+    def test_ctrl_c_keeps_the_rows_that_are_done(self):
+        self.assert_interrupted(self.write(springs_program.DRUM), "meshes=61:15616", ["time.end_time=2"],
+                                lambda process: process.stdout.readline())
+        rows = self.tables("study")[0]
+        self.assertTrue(1 <= len(rows) < 9, rows)
+        self.assertTrue(all(row["status"] == "ok" for row in rows))
+        self.assertEqual({"study.csv", "study.json", "scene.toml"}, {file.name for file in (self.folder / "study").iterdir()})
 
 
 class ReferenceOfARun(gas_program.GasTest):

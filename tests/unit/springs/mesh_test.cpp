@@ -53,6 +53,23 @@ TEST(SpringsMesh, RectangleCoversItsArea) {
   }
 }
 
+TEST(SpringsMesh, ADistortedRectangleKeepsItsSidesAndSenses) {
+  const Mesh even = generate(Rectangle{2.0, 0.5, 500}), mesh = generate(Rectangle{2.0, 0.5, 500, 0.2});
+  EXPECT_EQ(mesh.triangles, even.triangles);
+  EXPECT_NEAR(flat_area(mesh), 1.0, 1e-12);
+  const double cell = 2.0 / std::round(2.0 * std::sqrt(even.rest.size()));
+  std::set<double> moved;
+  for (std::size_t i = 0; i < mesh.rest.size(); ++i) {
+    const Vector &x = mesh.rest[i], &was = even.rest[i];
+    const bool side = was[0] == 0.0 || was[0] == 2.0 || was[1] == 0.0 || was[1] == 0.5;
+    for (std::size_t axis = 0; axis < 2; ++axis)
+      EXPECT_LE(std::abs(x[axis] - was[axis]), side ? 0.0 : 0.5 * cell);
+    if (!side) moved.insert(x[0] - was[0]);
+  }
+  EXPECT_GT(moved.size(), 350U);
+  EXPECT_GT(*moved.rbegin() - *moved.begin(), 0.3 * 0.045);
+}
+
 TEST(SpringsMesh, DiskTakesTheNearestNumberOfRings) {
   for (const auto& [asked, got] :
        {std::pair{7, 7U}, {12, 7U}, {14, 19U}, {266, 271U}, {3169, 3169U}, {3790, 3781U}}) {

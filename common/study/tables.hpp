@@ -1,0 +1,16 @@
+#pragma once
+
+#include "common/study/study.hpp"
+
+namespace drogue::study {
+
+/// study.csv.
+std::string csv(const std::vector<Row>& rows, const Columns& columns, const std::string& backend);
+
+/// study.json, schema `drogue.study/1`.
+std::string json(const std::vector<Row>& rows, const Columns& columns, const run::ResultDocument& facts);
+
+/// The line that tells of a run once it is done.
+std::string line(const Row& row, const Columns& columns);
+
+}  // namespace drogue::study
