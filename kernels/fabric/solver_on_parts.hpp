@@ -72,6 +72,8 @@ SolverOn<ExecutionSpace, law>::SolverOn(const Parameters& p)
   _kept_v = points("drogue::fabric::kept_velocities");
   _kept_step = decltype(_kept_step)("drogue::fabric::kept_step");
   set_steps();
+  if (p.contact.asked_for())
+    _contact = make_contact<ExecutionSpace>(p, {_instance, _cloth.inverse_mass, _cloth.free, _watch});
   if (_integrator != Integrator::rk4) return;
   _velocity = points("drogue::fabric::stage_velocities");
   _other = points("drogue::fabric::stage_positions");
@@ -92,6 +94,7 @@ void SolverOn<ExecutionSpace, law>::upload(std::span<const Vector> positions,
   to_device(velocities, _v);
   _failure.reset();
   set_steps();
+  if (_contact) _contact->forget();
   keep();
   if (!_prescribed) return;
   place(_x, _v, 0.0, true);
