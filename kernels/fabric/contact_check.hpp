@@ -128,7 +128,7 @@ struct CheckFunctor {
       table.raise(table.steps(), Trouble::too_fast, i);
     if (length_of_way > 0.0 && !table.is_held(i))
       for (int b = 0; b < static_cast<int>(table.bodies.extent(0)); ++b) {
-        const Body& body = table.bodies(b);
+        const Obstacle& body = table.bodies(b);
         bool keeps_out = true;
         if (body.kind == BodyKind::level_set) {
           // No bound is known for how fast a level set changes: only where the way ends counts.
@@ -169,7 +169,8 @@ struct CheckFunctor {
     const int own[2] = {table.edge(e, 0), table.edge(e, 1)};
     // Faces see to their edges.
     if (e >= table.first_line)
-      bodies(own, [](const Body& body, const Point(&at)[2]) { return edge_distance(body, at[0], at[1]); });
+      bodies(own,
+             [](const Obstacle& body, const Point(&at)[2]) { return edge_distance(body, at[0], at[1]); });
     if (!table.self) return;
     for (int k = 0; k < table.near_edges(e); ++k) {
       const int f = table.near_edge(e, k);
@@ -190,9 +191,9 @@ struct CheckFunctor {
 
   KOKKOS_FUNCTION void of_face(int t) const {
     const int own[3] = {table.triangle(t, 0), table.triangle(t, 1), table.triangle(t, 2)};
-    bodies(own, [](const Body& body, const Point(&at)[3]) {
+    bodies(own, [](const Obstacle& body, const Point(&at)[3]) {
       if (body.kind == BodyKind::sphere)
-        return Kokkos::sqrt(nearest_on_triangle(point_of(body.centre), at).squared) - body.radius;
+        return Kokkos::sqrt(nearest_on_triangle(body.centre, at).squared) - body.radius;
       double least = 1e300;
       for (int side = 0; side < 2; ++side) {
         Point place;
@@ -212,7 +213,7 @@ struct CheckFunctor {
   template <int size, class Distance>
   KOKKOS_FUNCTION void bodies(const int (&vertex)[size], const Distance& distance) const {
     for (int b = 0; b < static_cast<int>(table.bodies.extent(0)); ++b) {
-      const Body& body = table.bodies(b);
+      const Obstacle& body = table.bodies(b);
       if (!between_vertices(body)) continue;
       const Ways<size> w = ways(vertex);
       double most = 0.0, extent = 0.0;

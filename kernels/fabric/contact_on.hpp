@@ -118,7 +118,7 @@ ContactOn<ExecutionSpace>::ContactOn(const Parameters& p, const ContactCloth<Exe
   const std::vector<int> owned_bits = owned_parts(p.mesh);
   for (std::size_t k = 0; k < faces; ++k) owned(k) = owned_bits[k];
   const auto edge = Kokkos::create_mirror_view(t.edge);
-  for (std::size_t k = 0; k < p.contact.bodies.size(); ++k) bodies(k) = p.contact.bodies[k];
+  for (std::size_t k = 0; k < p.contact.bodies.size(); ++k) bodies(k) = obstacle(p.contact.bodies[k]);
   for (std::size_t k = 0; k < faces; ++k)
     for (std::size_t corner = 0; corner < 3; ++corner) triangle(k, corner) = p.mesh.triangles[k][corner];
   for (std::size_t k = 0; k < sides; ++k)
@@ -134,9 +134,8 @@ ContactOn<ExecutionSpace>::ContactOn(const Parameters& p, const ContactCloth<Exe
   const std::size_t layers = t.self ? 1 : 0, buckets = std::bit_ceil(std::max<std::size_t>(sides, 64));
   lend(t.first_triangle, "first_triangle", layers * buckets),
       lend(t.first_edge, "first_edge", layers * buckets);
-  lend(t.next_triangle, "next_triangle", layers * faces), lend(t.next_edge, "next_edge", layers * sides);
-  lend(t.cell_of_triangle, "cell_of_triangle", layers * faces);
-  lend(t.cell_of_edge, "cell_of_edge", layers * sides);
+  lend(t.ball_of_triangle, "ball_of_triangle", layers * faces);
+  lend(t.ball_of_edge, "ball_of_edge", layers * sides);
   lend(t.near_triangles, "near_triangles", layers * n), lend(t.near_edges, "near_edges", layers * sides);
   lend(t.near_triangle, "near_triangle", layers * n), lend(t.near_edge, "near_edge", layers * sides);
   lend(t.touch, "touch", 1024 + 8 * n);

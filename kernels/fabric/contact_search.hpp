@@ -96,38 +96,49 @@ struct Cells {
   }
 
   /// Calls `take(part)` for what lies in the cell of p and in those about it.
-  template <class First, class Next, class Of, class Take>
-  KOKKOS_FUNCTION void about(const Point& p, const First& first, const Next& next, const Of& cell_of,
-                             const Take& take) const {
+  template <class First, class Balls, class Take>
+  KOKKOS_FUNCTION void about(const Point& p, const First& first, const Balls& balls, const Take& take) const {
     const std::int64_t x = along(p.x), y = along(p.y), z = along(p.z);
     for (int near = 0; near < 27; ++near) {
       const std::uint64_t cell = packed(x + near % 3 - 1, y + near / 3 % 3 - 1, z + near / 9 - 1);
-      for (int part = first(bucket(cell, first.extent(0))); part >= 0; part = next(part))
-        if (cell_of(part) == cell) take(part);
+      for (int part = first(bucket(cell, first.extent(0))); part >= 0; part = balls(part).next)
+        if (balls(part).cell == cell) take(part);
     }
   }
 };
 
-/// Puts every triangle into the cell of its first vertex, every edge into that of its middle.
+/// Puts every triangle and edge into the cell of its centre.
 template <class ExecutionSpace>
 struct FillFunctor {
   ContactTable<ExecutionSpace> table;
 
   KOKKOS_FUNCTION void operator()(const int k) const {
     if (table.progress(0).stale == 0) return;
+    if (k < table.triangles) {
+      Point at[3];
+      table.corners(k, table.start_x, at);
+      put(k, at, table.ball_of_triangle, table.first_triangle);
+    }
+    if (k < table.edges) {
+      Point at[2];
+      table.ends(k, table.start_x, at);
+      put(k, at, table.ball_of_edge, table.first_edge);
+    }
+  }
+
+  template <int size, class Balls, class First>
+  KOKKOS_FUNCTION void put(int k, const Point (&at)[size], const Balls& balls, const First& first) const {
+    Ball ball{{0.0, 0.0, 0.0}, 0.0, 0, -1};
+    for (const Point& p : at) ball.centre = ball.centre + (1.0 / size) * p;
+    for (const Point& p : at) {
+      const double out = length(p - ball.centre);
+      ball.radius = out > ball.radius ? out : ball.radius;
+    }
+    ball.radius *= 1.0 + 1e-12;  // round-off must not make it too small
     const Cells<ExecutionSpace> cells(table);
-    const auto put = [&](const Point& at, const auto& first, const auto& next, const auto& cell_of) {
-      const std::uint64_t cell = cells.of(at);
-      cell_of(k) = cell;
-      next(k) = Kokkos::atomic_exchange(&first(cells.bucket(cell, first.extent(0))), k);
-    };
-    if (k < table.triangles)
-      put(load_points<double>(table.start_x, table.triangle(k, 0)), table.first_triangle, table.next_triangle,
-          table.cell_of_triangle);
-    if (k >= table.edges) return;
-    Point end[2];
-    table.ends(k, table.start_x, end);
-    put(0.5 * (end[0] + end[1]), table.first_edge, table.next_edge, table.cell_of_edge);
+    ball.cell = cells.of(ball.centre);
+    ball.next = Kokkos::atomic_exchange(&first(cells.bucket(ball.cell, first.extent(0))), k);
+    balls(k) = ball;
   }
 };
 
@@ -149,7 +160,8 @@ struct ListFunctor {
     const double reach = table.reach(), squared = reach * reach;
     int count = 0;
     const Cells<ExecutionSpace> cells(table);
-    cells.about(own[0], table.first_triangle, table.next_triangle, table.cell_of_triangle, [&](int t) {
+    cells.about(own[0], table.first_triangle, table.ball_of_triangle, [&](int t) {
+      if (!table.ball_of_triangle(t).is_near(own[0], reach)) return;
       for (int corner = 0; corner < 3; ++corner)
         if (table.triangle(t, corner) == i) return;
       Point at[3];
@@ -167,13 +179,15 @@ struct ListFunctor {
   KOKKOS_FUNCTION void list_edges(int e) const {
     Point own[2], other[2];
     table.ends(e, table.start_x, own);
+    const Ball mine = table.ball_of_edge(e);
     const double reach = table.reach(), squared = reach * reach;
     int count = 0;
     const Cells<ExecutionSpace> cells(table);
     const int a = table.edge(e, 0), b = table.edge(e, 1);
-    cells.about(0.5 * (own[0] + own[1]), table.first_edge, table.next_edge, table.cell_of_edge, [&](int f) {
+    cells.about(mine.centre, table.first_edge, table.ball_of_edge, [&](int f) {
+      if (f <= e || !table.ball_of_edge(f).is_near(mine.centre, reach + mine.radius)) return;
       const int c = table.edge(f, 0), d = table.edge(f, 1);
-      if (f <= e || c == a || c == b || d == a || d == b) return;
+      if (c == a || c == b || d == a || d == b) return;
       table.ends(f, table.start_x, other);
       if (boxes_apart(own, other, reach) || nearest_of_segments(own, other).squared > squared) return;
       if (count < most_near)

@@ -65,6 +65,19 @@ template <class ExecutionSpace, class T, int columns>
 using LentTable = Kokkos::View<T* [columns], Kokkos::LayoutLeft, typename ExecutionSpace::memory_space,
                                Kokkos::MemoryTraits<Kokkos::Unmanaged>>;
 
+/// About a part of cloth, and where that is in the grid.
+struct Ball {
+  Point centre;
+  double radius;
+  std::uint64_t cell;
+  int next;  ///< in the chain of its cell; -1: none
+
+  [[nodiscard]] KOKKOS_FUNCTION bool is_near(const Point& p, double distance) const {
+    const Point r = p - centre;
+    return dot(r, r) <= (distance + radius) * (distance + radius);
+  }
+};
+
 /// How a zone moves.
 struct ZoneMotion {
   int held;              ///< 1: with its held vertices, by `shift` at `velocity`
@@ -83,7 +96,7 @@ struct ContactTable {
   int first_line;  ///< edges from it on are of no triangle
   double thickness, self_friction, least_skin, dt;
   bool self;
-  List<Body> bodies;
+  List<Obstacle> bodies;
   LentTable<ExecutionSpace, int, 3> triangle;
   List<int> owned;  ///< `owned_parts` of every triangle
   LentTable<ExecutionSpace, int, 2> edge;
@@ -94,8 +107,8 @@ struct ContactTable {
   Places listed_x;          ///< where the lists were made
   List<double> work;        ///< J, of contact on every vertex so far
   // A hashed grid of cells, each a chain.
-  List<int> first_triangle, first_edge, next_triangle, next_edge;
-  List<std::uint64_t> cell_of_triangle, cell_of_edge;
+  List<int> first_triangle, first_edge;
+  List<Ball> ball_of_triangle, ball_of_edge;
   List<int> near_triangles, near_edges;  ///< how many of each vertex, and of each edge
   LentTable<ExecutionSpace, int, most_near> near_triangle, near_edge;
   List<Touch> touch;
@@ -118,6 +131,10 @@ struct ContactTable {
   template <class Points>
   KOKKOS_FUNCTION void ends(int e, const Points& x, Point (&to)[2]) const {
     for (int k = 0; k < 2; ++k) to[k] = load_points<double>(x, edge(e, k));
+  }
+
+  [[nodiscard]] KOKKOS_FUNCTION bool in_zone(int i) const {
+    return zone_end(label(i)) != label(i) || stuck(i) != 0;
   }
 
   [[nodiscard]] KOKKOS_FUNCTION bool is_held(int i) const {

@@ -54,12 +54,12 @@ struct TouchFunctor {
   }
 
   KOKKOS_FUNCTION void keep(Touch& touch, double distance) const {
-    touch.wanted = wanted_velocity(distance, table.thickness, table.dt);
     double closing = 0.0;
     for (int slot = 0; slot < 4; ++slot)
       if (touch.share[slot] != 0.0)
         closing +=
             touch.share[slot] * dot(load_points<double>(table.start_v, touch.vertex[slot]), touch.normal);
+    touch.wanted = wanted_velocity(distance, table.thickness, table.dt);
     // Neighbours may yet drive them together.
     if (distance > table.thickness && closing > 0.5 * touch.wanted) return;
     const int number = Kokkos::atomic_fetch_add(&table.progress(0).touches, 1);
@@ -102,7 +102,7 @@ struct TouchFunctor {
   KOKKOS_FUNCTION void of_vertex(int i) const {
     const Point only[1] = {load_points<double>(table.start_x, i)}, &own = only[0];
     for (int b = 0; b < static_cast<int>(table.bodies.extent(0)); ++b) {
-      const Body& body = table.bodies(b);
+      const Obstacle& body = table.bodies(b);
       const Clearance clear = body.kind == BodyKind::level_set
                                   ? level_clearance(body, own, 0.01 * table.thickness)
                                   : clearance(body, own);
@@ -139,7 +139,7 @@ struct TouchFunctor {
     Point own[2];
     table.ends(e, table.start_x, own);
     for (int b = 0; b < static_cast<int>(table.bodies.extent(0)); ++b) {
-      const Body& body = table.bodies(b);
+      const Obstacle& body = table.bodies(b);
       if (!between_vertices(body)) continue;
       const Point middle = 0.5 * (own[0] + own[1]);
       if (clearance(body, middle).distance > table.thickness + step_reach() + 0.5 * length(own[1] - own[0]))
@@ -181,7 +181,7 @@ struct TouchFunctor {
     table.corners(t, table.start_x, at);
     const Point normal = cross(at[1] - at[0], at[2] - at[0]);
     for (int b = 0; b < static_cast<int>(table.bodies.extent(0)); ++b) {
-      const Body& body = table.bodies(b);
+      const Obstacle& body = table.bodies(b);
       if (!between_vertices(body)) continue;
       const double size = body.kind == BodyKind::sphere ? body.radius : 0.0;
       for (int side = 0; side < 2; ++side) {

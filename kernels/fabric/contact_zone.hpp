@@ -146,9 +146,8 @@ struct FollowFunctor {
   KOKKOS_FUNCTION void operator()(const int i) const {
     if (table.progress(0).crossing[round] == 0) return;
     Point place = load_points<double>(x, i), velocity = load_points<double>(v, i);
-    const int zone = table.label(i);
-    if (table.zone_end(zone) != zone || table.stuck(i) != 0) {
-      const ZoneMotion& motion = table.motion(zone);
+    if (table.in_zone(i)) {
+      const ZoneMotion& motion = table.motion(table.label(i));
       const Point from = load_points<double>(table.start_x, i);
       if (motion.held == 0) {
         const Point arm = turned(motion.turn, from - motion.from);
@@ -164,8 +163,9 @@ struct FollowFunctor {
   }
 };
 
-/// Puts the state where zones have brought it, and counts what that did: what it moved was moved against the
-/// forces of the step, of which the velocities tell the mean.
+/// Puts the state where zones have brought it, and counts what that did. A zone keeps its elastic energy, so
+/// what its vertices gained in the step counts, less the work of the forces on where they went; velocities
+/// tell their mean.
 template <class ExecutionSpace>
 struct SettleFunctor {
   using Places = LentTable<ExecutionSpace, double, 3>;
@@ -174,12 +174,13 @@ struct SettleFunctor {
   Places x, v;
 
   KOKKOS_FUNCTION void operator()(const int i) const {
-    if (table.progress(0).crossing[0] == 0) return;
+    if (table.progress(0).crossing[0] == 0 || !table.in_zone(i)) return;
     const Point place = load_points<double>(table.end_x, i), velocity = load_points<double>(table.end_v, i);
-    const Point moved = place - load_points<double>(x, i), before = load_points<double>(v, i);
-    const Point mean = (1.0 / table.dt) * (before - load_points<double>(table.start_v, i));
+    const Point start = load_points<double>(table.start_v, i);
+    const Point force = (1.0 / table.dt) * (load_points<double>(v, i) - start);  // over the mass
+    const Point moved = place - load_points<double>(table.start_x, i);
     table.work(i) +=
-        (0.5 * dot(velocity - before, velocity + before) - dot(mean, moved)) / table.inverse_mass(i);
+        (0.5 * dot(velocity - start, velocity + start) - dot(force, moved)) / table.inverse_mass(i);
     store_points(x, i, place);
     store_points(v, i, velocity);
   }

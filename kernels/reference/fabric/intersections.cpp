@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <boost/multiprecision/cpp_int.hpp>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <set>
 
@@ -37,6 +38,10 @@ std::array<std::array<Number, 3>, 3> rows_from(const Place& d, const Place& a, c
 
 /// Which way a, b, c turn in the plane of two axes.
 int turn(const Place& a, const Place& b, const Place& c, std::size_t u, std::size_t v) {
+  using Long = long double;
+  const Long bu = Long(b[u]) - a[u], bv = Long(b[v]) - a[v], cu = Long(c[u]) - a[u], cv = Long(c[v]) - a[v];
+  const Long value = bu * cv - bv * cu, size = std::abs(bu * cv) + std::abs(bv * cu);
+  if (std::abs(value) > 8.0L * std::numeric_limits<Long>::epsilon() * size) return value > 0 ? 1 : -1;
   return sign((Exact(b[u]) - Exact(a[u])) * (Exact(c[v]) - Exact(a[v])) -
               (Exact(b[v]) - Exact(a[v])) * (Exact(c[u]) - Exact(a[u])));
 }
