@@ -250,4 +250,10 @@ void ContactOn<ExecutionSpace>::set_work(std::span<const double> of_vertices) {
   keep();
 }
 
+template <class ExecutionSpace>
+std::unique_ptr<ContactSteps<ExecutionSpace>> make_contact(const Parameters& parameters,
+                                                           const ContactCloth<ExecutionSpace>& cloth) {
+  return std::make_unique<ContactOn<ExecutionSpace>>(parameters, cloth);
+}
+
 }  // namespace drogue::fabric
