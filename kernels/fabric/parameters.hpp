@@ -75,6 +75,33 @@ struct Motion {
   device::ExpressionProgram displacement;  ///< m, of the place at rest and of time
 };
 
+enum class BodyKind {
+  disk,       ///< a plate without thickness, about `centre`, across `normal`
+  sphere,     ///< about `centre`
+  plane,      ///< all that lies behind the plane through `centre` with the outward `normal`
+  level_set,  ///< where an expression of x, y, z is negative
+};
+
+/// A body at rest, which cloth cannot enter.
+struct Body {
+  BodyKind kind = BodyKind::sphere;
+  Vector centre{};                      ///< m
+  Vector normal{0.0, 0.0, 1.0};         ///< of unit length
+  double radius = 0.0;                  ///< m
+  device::ExpressionProgram level_set;  ///< m
+  double friction = 0.0;                ///< Coulomb's coefficient between cloth and body
+};
+
+/// What cloth may meet.
+struct Contact {
+  std::vector<Body> bodies;
+  bool self = false;         ///< cloth and strings meet themselves
+  double thickness = 0.002;  ///< m, the distance that contact keeps, between layers and from bodies
+  double friction = 0.0;     ///< between layers
+
+  [[nodiscard]] bool asked_for() const { return self || !bodies.empty(); }
+};
+
 /// Everything a fabric solver needs to know but the initial state.
 struct Parameters {
   Mesh mesh;
@@ -91,6 +118,7 @@ struct Parameters {
   /// Rate at which two vertices of an edge, were they alone, would lose what their velocities differ along
   /// it, 1/s. It keeps momentum and angular momentum.
   double relative_damping = 0.0;
+  Contact contact;
   Integrator integrator = Integrator::rk4;
   double dt = 0.0;  ///< s, > 0
   Driver driver = Driver::automatic;

@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "kernels/fabric/contact_parts.hpp"
+
 namespace drogue::fabric {
 
 #define DROGUE_DECLARE(backend) std::unique_ptr<Solver> create_solver_##backend(const Parameters& parameters);
@@ -12,6 +14,25 @@ DROGUE_FOR_EACH_BACKEND(DROGUE_DECLARE)
 #undef DROGUE_DECLARE
 
 namespace {
+
+template <class Require>
+void check_contact(const Parameters& p, const Require& require) {
+  const Contact& contact = p.contact;
+  if (!contact.asked_for()) return;
+  const auto not_negative = [](double x) { return x >= 0.0 && std::isfinite(x); };
+  require(contact.thickness > 0.0 && std::isfinite(contact.thickness), "contact needs a positive thickness");
+  require(!contact.self || contact.thickness < least_height(p.mesh),
+          "contact of cloth with itself needs triangles that are higher than the thickness");
+  require(not_negative(contact.friction), "friction must not be negative");
+  for (const Body& body : contact.bodies) {
+    const double size = std::hypot(body.normal[0], body.normal[1], body.normal[2]);
+    require(std::abs(size - 1.0) < 1e-9, "a body's normal must have unit length");
+    require(not_negative(body.friction), "friction must not be negative");
+    const bool round = body.kind == BodyKind::disk || body.kind == BodyKind::sphere;
+    require(!round || body.radius > 0.0, "a disk and a sphere need a radius");
+    require(body.kind != BodyKind::level_set || body.level_set.length > 0, "a level set needs an expression");
+  }
+}
 
 void check(const Parameters& p) {
   const auto require = [](bool holds, const char* what) {
@@ -74,6 +95,7 @@ void check(const Parameters& p) {
   }
   require(finite(p.gravity), "gravity must be finite");
   require(p.patch >= 0, "a patch cannot have fewer vertices than none");
+  check_contact(p, require);
   require(positive(p.dt), "dt must be positive");
   require(not_negative(p.damping) && not_negative(p.relative_damping), "damping must not be negative");
   const Material& m = p.material;

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
 
 #include "kernels/device/replay.hpp"
+#include "kernels/fabric/contact_steps.hpp"
 #include "kernels/fabric/frequency.hpp"
 #include "kernels/fabric/prescribed.hpp"
 #include "kernels/fabric/resident_steps.hpp"
@@ -50,6 +52,8 @@ class SolverOn final : public Solver {
   void vertex_stress(StressMeasure measure, std::span<Stress> of_vertices) override;
   Totals totals() override;
   [[nodiscard]] const char* driver() const override;
+  void contact_work(std::span<double> of_vertices) override;
+  void set_contact_work(std::span<const double> of_vertices) override;
 
  private:
   static constexpr int lanes = device::Access<
@@ -93,6 +97,7 @@ class SolverOn final : public Solver {
   void runge_kutta_step() const;
   void verlet(bool ends, bool begins);
   void take(std::int64_t steps);
+  void take_in_contact(std::int64_t steps);
   void keep();
   template <Law of>
   [[nodiscard]] double largest_row(const ListView<ExecutionSpace, double>& more) const;
@@ -134,6 +139,7 @@ class SolverOn final : public Solver {
   std::optional<TriangleViews<ExecutionSpace>> _triangles;  ///< made when stress is asked for
   std::optional<device::Replay<ExecutionSpace>> _step;
   std::optional<Resident<ExecutionSpace>> _resident;
+  std::unique_ptr<ContactSteps<ExecutionSpace>> _contact;  ///< none: nothing meets
 };
 
 }  // namespace drogue::fabric

@@ -78,6 +78,8 @@ SolverOn<ExecutionSpace, law>::SolverOn(const Parameters& p)
   _kept_v = points("drogue::fabric::kept_velocities");
   _kept_step = decltype(_kept_step)("drogue::fabric::kept_step");
   set_steps();
+  if (p.contact.asked_for())
+    _contact = make_contact<ExecutionSpace>(p, {_instance, _cloth.inverse_mass, _cloth.held, _watch});
   if (_integrator != Integrator::rk4) return;
   for (Points& velocity : _velocity) velocity = points("drogue::fabric::stage_velocities");
   _other = points("drogue::fabric::stage_positions");
@@ -97,6 +99,7 @@ void SolverOn<ExecutionSpace, law>::upload(std::span<const Vector> positions,
   to_device(velocities, _v);
   _failure.reset();
   set_steps();
+  if (_contact) _contact->forget();
   keep();
   if (!_prescribed) return;
   place(_x, _v, 0.0, true);

@@ -14,7 +14,7 @@ void SolverOn<ExecutionSpace, law>::make_resident(const Parameters& p, const Rin
   if constexpr (device::ResidentGrid<ExecutionSpace>::available) {
     using Grid = device::ResidentGrid<ExecutionSpace>;
     const bool wanted = p.driver == Driver::persistent || p.driver == Driver::automatic;
-    if (!wanted || _acts || _prescribed) return;
+    if (!wanted || _acts || _prescribed || _contact) return;
     const int teams = Grid::most_teams(_instance);
     if (teams == 0) return;
     const auto share = [&](int parts) { return (_vertices + parts - 1) / parts; };

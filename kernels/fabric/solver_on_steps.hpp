@@ -63,6 +63,7 @@ void SolverOn<ExecutionSpace, law>::verlet(bool ends, bool begins) {
 /// Takes steps without a look at what becomes of them.
 template <class ExecutionSpace, Law law>
 void SolverOn<ExecutionSpace, law>::take(std::int64_t steps) {
+  if (_contact) return take_in_contact(steps);
   if (_integrator == Integrator::rk4) {
     if (_resident)
       take_resident(steps);
@@ -74,6 +75,23 @@ void SolverOn<ExecutionSpace, law>::take(std::int64_t steps) {
     verlet(false, true);
     for (std::int64_t step = 1; step < steps; ++step) verlet(true, true);
     verlet(true, false);
+  }
+  _clock.step += steps;
+}
+
+template <class ExecutionSpace, Law law>
+void SolverOn<ExecutionSpace, law>::take_in_contact(std::int64_t steps) {
+  for (std::int64_t step = 0; step < steps; ++step) {
+    _contact->begin(_x, _v);
+    if (_integrator == Integrator::verlet) {
+      verlet(false, true);
+      verlet(true, false);
+    } else if (_step) {
+      _step->launch();
+    } else {
+      runge_kutta_step();
+    }
+    _contact->end(_x, _v);
   }
   _clock.step += steps;
 }
@@ -103,6 +121,7 @@ void SolverOn<ExecutionSpace, law>::keep() {
       Kokkos::Experimental::require(Kokkos::RangePolicy<ExecutionSpace>(_instance.space(), 0, _padded),
                                     Kokkos::Experimental::WorkItemProperty::HintLightWeight),
       KeepFunctor<ExecutionSpace>{_watch, _x, _v, _kept_x, _kept_v, _kept_step, _hand});
+  if (_contact) _contact->keep();
 }
 
 /// Waits; where a state was lost, goes back to the one kept.
@@ -119,7 +138,9 @@ void SolverOn<ExecutionSpace, law>::settle() {
   device::copy(space, _v, _kept_v);
   space.fence("drogue::fabric::kept");
   _clock.step = static_cast<std::int64_t>(first >> 31U);
-  _failure = Failure{static_cast<std::int64_t>(first & 0x7fffffffU), _clock.step, _clock.time()};
+  _failure = Failure{static_cast<std::int64_t>(first & 0x7fffffffU), _clock.step, _clock.time(),
+                     _contact ? _contact->trouble(_clock.step) : Trouble::not_finite};
+  if (_contact) _contact->go_back();
   _clock.step = kept;
 }
 
@@ -149,6 +170,7 @@ void SolverOn<ExecutionSpace, law>::set_clock(const Clock& clock) {
   set_steps();
   if (_prescribed && !_failure) place(_x, _v, 0.0, true);
   keep();
+  if (_contact) _contact->set_dt(_clock.dt);
   record();
 }
 

@@ -16,11 +16,20 @@ struct Clock {
   [[nodiscard]] double time() const { return start + static_cast<double>(step - since) * dt; }
 };
 
+/// Why a state cannot go on.
+enum class Trouble {
+  not_finite,
+  crossing,   ///< parts of cloth, or cloth and a body, that no zone keeps from crossing
+  too_fast,   ///< a vertex moved farther in a step than contact looks
+  too_dense,  ///< more parts near one another than there is room for
+};
+
 /// Where a state ceased to be one.
 struct Failure {
   std::int64_t vertex = -1;  ///< the first in the numbering that was lost in that step
   std::int64_t step = 0;     ///< the first step, counted from 1, whose end is not finite
   double time = 0.0;         ///< s, at its end
+  Trouble trouble = Trouble::not_finite;
 };
 
 /// Sums over all vertices.
@@ -31,6 +40,7 @@ struct Totals {
   double load = 0.0;     ///< J, minus the work of dead loads from the origin to where the vertices are
   std::array<double, 3> momentum{};          ///< kg m/s
   std::array<double, 3> angular_momentum{};  ///< kg m^2/s, about the origin
+  double contact = 0.0;                      ///< J, work that contact has done since the solver was made
 
   /// What steps without damping, moving pins and loads that change keep.
   [[nodiscard]] double energy() const { return kinetic + elastic + gravity + load; }

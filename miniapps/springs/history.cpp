@@ -20,13 +20,15 @@ std::vector<std::string> cells_of(const std::string& line) {
 
 }  // namespace
 
-std::vector<run::Column> history_columns(std::size_t probes) {
+std::vector<run::Column> history_columns(const SpringsScene& scene) {
   std::vector<run::Column> columns = {
       {"step", ""}, {"kinetic", "J"}, {"elastic", "J"}, {"potential", "J"}, {"energy", "J"}};
   for (const char* axis : {"x", "y", "z"}) columns.push_back({std::string("momentum_") + axis, "kg m/s"});
   for (const char* axis : {"x", "y", "z"})
     columns.push_back({std::string("angular_momentum_") + axis, "kg m^2/s"});
-  for (std::size_t k = 0; k < probes; ++k)
+  if (scene.contact.asked_for()) columns.push_back({"contact_work", "J"});
+  if (scene.verify.intersections) columns.push_back({"intersections", ""});
+  for (std::size_t k = 0; k < scene.output.probes.size(); ++k)
     for (const char* axis : {"x", "y", "z"})
       columns.push_back({"probe_" + std::to_string(k) + "_" + axis, "m"});
   return columns;

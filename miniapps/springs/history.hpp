@@ -6,11 +6,12 @@
 #include <vector>
 
 #include "common/run/history_writer.hpp"
+#include "miniapps/springs/scene.hpp"
 
 namespace drogue::springs_app {
 
-/// The columns of history.csv after the time, for so many probes.
-std::vector<run::Column> history_columns(std::size_t probes);
+/// The columns of history.csv after the time.
+std::vector<run::Column> history_columns(const SpringsScene& scene);
 
 /// history.csv by column, units left away. What is checked of a run comes from its file, so that a run that
 /// was interrupted and continued is checked as a whole. Throws Failure(io_error).

@@ -57,7 +57,7 @@ RunOutput::RunOutput(const SpringsScene& scene, const run::RunDirectory& directo
       _fingerprint(scene_fingerprint(scene)),
       _last_row_time(resume_time.value_or(-1.0)) {
   if (scene.output.history_every > 0)
-    _history.emplace(directory.file("history.csv"), history_columns(scene.output.probes.size()), resume_time);
+    _history.emplace(directory.file("history.csv"), history_columns(scene), resume_time);
   if (scene.output.fields.empty()) return;
   _fields.emplace(directory.path(), scene.name, field_specs(scene), resume_time);
   add_mesh();
@@ -86,6 +86,8 @@ void RunOutput::write_row(const Row& row) {
   const auto append = [&values](const Vector& v) { values.insert(values.end(), v.begin(), v.end()); };
   append(row.momentum);
   append(row.angular_momentum);
+  if (_scene.contact.asked_for()) values.push_back(row.contact_work);
+  if (_scene.verify.intersections) values.push_back(row.intersections);
   std::ranges::for_each(row.probes, append);
   _history->append(row.time, values);
 }

@@ -18,6 +18,8 @@ struct Row {
   double kinetic = 0.0, elastic = 0.0, potential = 0.0;  ///< J
   fabric::Vector momentum{}, angular_momentum{};
   std::vector<fabric::Vector> probes;  ///< positions, m
+  double contact_work = 0.0;           ///< J
+  int intersections = 0;
 };
 
 /// What is written to fields.h5, in the scene's numbering; empty where the scene does not ask for it.

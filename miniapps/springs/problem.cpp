@@ -1,5 +1,6 @@
 #include "miniapps/springs/problem.hpp"
 
+#include <cmath>
 #include <numeric>
 
 #include "miniapps/springs/expressions.hpp"
@@ -120,16 +121,47 @@ std::vector<T> permuted(std::span<const T> values, const std::vector<int>& order
   return result;
 }
 
+template <class T>
+std::vector<T> returned(std::span<const T> values, const std::vector<int>& order) {
+  std::vector<T> result(values.size());
+  for (std::size_t k = 0; k < order.size(); ++k) result[static_cast<std::size_t>(order[k])] = values[k];
+  return result;
+}
+
+void add_contact(const SpringsContact& contact, fabric::Contact& to) {
+  to.self = contact.self;
+  to.thickness = contact.thickness;
+  to.friction = contact.friction;
+  for (const ContactObject& object : contact.objects) {
+    to.bodies.push_back(object.body());
+    if (!object.expression.empty()) to.bodies.back().level_set = device_program(object.expression);
+  }
+}
+
 }  // namespace
+
+fabric::Body ContactObject::body() const {
+  fabric::Body body;
+  body.kind = kind, body.centre = centre, body.radius = radius, body.friction = friction;
+  const double size = std::hypot(normal[0], normal[1], normal[2]);
+  for (std::size_t axis = 0; axis < 3; ++axis) body.normal[axis] = normal[axis] / size;
+  return body;
+}
 
 std::vector<Vector> Problem::to_solver(std::span<const Vector> values) const {
   return permuted(values, order);
 }
 
 std::vector<Vector> Problem::to_scene(std::span<const Vector> values) const {
-  std::vector<Vector> result(values.size());
-  for (std::size_t k = 0; k < order.size(); ++k) result[static_cast<std::size_t>(order[k])] = values[k];
-  return result;
+  return returned(values, order);
+}
+
+std::vector<double> Problem::to_solver(std::span<const double> values) const {
+  return permuted(values, order);
+}
+
+std::vector<double> Problem::to_scene(std::span<const double> values) const {
+  return returned(values, order);
 }
 
 Problem make_problem(const SpringsScene& scene) {
@@ -142,6 +174,7 @@ Problem make_problem(const SpringsScene& scene) {
   p.pinned = permuted<std::uint8_t>(place_vertices(scene, problem), problem.order);
   add_loads(scene, problem);
   add_motions(scene, problem);
+  add_contact(scene.contact, p.contact);
   p.damping = scene.damping.absolute;
   p.relative_damping = scene.damping.relative;
   p.integrator = scene.time.integrator;

@@ -18,6 +18,8 @@ struct Problem {
   /// From the scene's numbering to the solver's, and back.
   [[nodiscard]] std::vector<fabric::Vector> to_solver(std::span<const fabric::Vector> values) const;
   [[nodiscard]] std::vector<fabric::Vector> to_scene(std::span<const fabric::Vector> values) const;
+  [[nodiscard]] std::vector<double> to_solver(std::span<const double> values) const;
+  [[nodiscard]] std::vector<double> to_scene(std::span<const double> values) const;
 };
 
 Problem make_problem(const SpringsScene& scene);

@@ -54,6 +54,10 @@ void write_restart(const std::filesystem::path& file, const std::string& fingerp
     writer.array(name, 3 * vectors->size());
     writer.write(name, 0, numbers(*vectors));
   }
+  if (!state.contact_work.empty()) {
+    writer.array("contact_work", state.contact_work.size());
+    writer.write("contact_work", 0, state.contact_work);
+  }
   writer.commit();
 }
 
@@ -67,6 +71,9 @@ RestartState read_restart(const std::filesystem::path& file, const SpringsScene&
   state.v.resize(scene.mesh.rest.size());
   reader.read("position", 0, numbers(state.x));
   reader.read("velocity", 0, numbers(state.v));
+  if (!scene.contact.asked_for()) return state;
+  state.contact_work.resize(scene.mesh.rest.size());
+  reader.read("contact_work", 0, state.contact_work);
   return state;
 }
 

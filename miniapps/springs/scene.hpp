@@ -69,6 +69,27 @@ struct Damping {
   double absolute = 0.0, relative = 0.0;  ///< 1/s
 };
 
+/// A body in the way; what its kind has no use for is not looked at.
+struct ContactObject {
+  fabric::BodyKind kind = fabric::BodyKind::disk;
+  fabric::Vector centre{}, normal{0.0, 0.0, 1.0};
+  double radius = 0.0;     ///< m
+  std::string expression;  ///< of x, y, z; negative within
+  double friction = 0.0;
+
+  /// For a solver, but for the program of the expression.
+  [[nodiscard]] fabric::Body body() const;
+};
+
+struct SpringsContact {
+  std::vector<ContactObject> objects;
+  bool self = false;
+  double thickness = 0.002;  ///< m
+  double friction = 0.0;     ///< between layers
+
+  [[nodiscard]] bool asked_for() const { return self || !objects.empty(); }
+};
+
 inline constexpr double most_steps = 1e15;
 
 struct Time {
@@ -108,6 +129,7 @@ struct FrontSpeed {
 
 /// Bars, all relative.
 struct Verify {
+  std::optional<double> intersections, energy_balance, penetration;
   std::optional<double> energy_drift, momentum, angular_momentum, equilibrium;
   std::optional<double> young, poisson, hencky, catenary, stretch;
   std::optional<Frequency> frequency;
@@ -126,6 +148,7 @@ struct SpringsScene {
   std::vector<Load> loads;
   std::vector<Payload> payloads;
   Damping damping;
+  SpringsContact contact;
   Time time;
   Output output;
   Verify verify;

@@ -210,6 +210,7 @@ void complete_and_check(const Table& root, SpringsScene& scene) {
   check_initial(root, scene);
   check_pins(root, scene);
   check_loads(root, scene);
+  check_contact(root, scene);
   complete_output(root, scene);
   check_verify(root, scene);
 }

@@ -9,6 +9,9 @@ namespace drogue::springs_app {
 /// make wrong, every expression at every vertex included. Throws Failure(invalid_scene) at the key to blame.
 void complete_and_check(const scene::Table& root, SpringsScene& scene);
 
+/// The same for [contact], where the run starts.
+void check_contact(const scene::Table& root, const SpringsScene& scene);
+
 /// The same for [verify] alone, after all else.
 void check_verify(const scene::Table& root, const SpringsScene& scene);
 

@@ -43,9 +43,15 @@ void check_verify(const Table& root, const SpringsScene& scene) {
   const MeshSource& source = scene.source;
   const bool has_rows = scene.output.history_every > 0;
   const std::string rows = "rows of history.csv: output.history_every > 0";
-  if (verify.energy_drift) {
-    require(root, has_rows, "verify.energy_drift", rows);
-    require(root, scene.damping.absolute == 0.0 && scene.damping.relative == 0.0, "verify.energy_drift",
+  const bool meets = scene.contact.asked_for();
+  if (verify.energy_drift)
+    require(root, !meets, "verify.energy_drift",
+            "a scene without contact, of which energy_balance counts the work");
+  for (const auto& [name, bar] : {std::pair{"verify.energy_drift", verify.energy_drift},
+                                  std::pair{"verify.energy_balance", verify.energy_balance}}) {
+    if (!bar) continue;
+    require(root, has_rows, name, rows);
+    require(root, scene.damping.absolute == 0.0 && scene.damping.relative == 0.0, name,
             "a scene without damping");
     const bool steady =
         std::ranges::none_of(scene.pins, [](const Pin& pin) { return pin.motion.given(); }) &&
@@ -54,8 +60,19 @@ void check_verify(const Table& root, const SpringsScene& scene) {
                  (!load.force || !(depends_on_time(load.force->x) || depends_on_time(load.force->y) ||
                                    depends_on_time(load.force->z)));
         });
-    require(root, steady, "verify.energy_drift", "pins that stay and loads that do not change");
+    require(root, steady, name, "pins that stay and loads that do not change");
   }
+  for (const auto& [name, bar] : {std::pair{"verify.energy_balance", verify.energy_balance},
+                                  std::pair{"verify.intersections", verify.intersections}})
+    if (bar) require(root, meets, name, "contact.self or contact.objects");
+  if (verify.intersections) require(root, has_rows, "verify.intersections", rows);
+  if (verify.penetration)
+    require(root,
+            !scene.contact.objects.empty() &&
+                std::ranges::none_of(
+                    scene.contact.objects,
+                    [](const ContactObject& object) { return object.kind == fabric::BodyKind::level_set; }),
+            "verify.penetration", "contact.objects, none of them a level-set");
   if (verify.momentum) require(root, has_rows, "verify.momentum", rows);
   if (verify.angular_momentum) require(root, has_rows, "verify.angular_momentum", rows);
   for (const auto& [name, bar] :

@@ -30,27 +30,11 @@ const Choices<std::string> axes_choices = {{"x", "x"},   {"y", "y"},   {"z", "z"
 const std::vector<std::string> of_place = {"x", "y", "z"}, of_place_and_time = {"x", "y", "z", "t"};
 
 /// Three numbers; an empty vector is "not given".
-Codec vector_codec(std::vector<double>& value) {
+Codec optional_vector_codec(std::vector<double>& value) {
   Codec codec = scene::reals_codec(value, 3, false);
   codec.type = "[real, real, real]";
   codec.print = [print = codec.print, &value] { return value.empty() ? std::nullopt : print(); };
   return codec;
-}
-
-/// The same for a place that always has a value.
-Codec vector_codec(fabric::Vector& value) {
-  return {"[real, real, real]",
-          [&value](const scene::Node& node, const scene::Limits& limits) {
-            std::vector<double> numbers;
-            std::string complaint = scene::reals_codec(numbers, 3, false).read(node, limits);
-            if (complaint.empty()) std::copy(numbers.begin(), numbers.end(), value.begin());
-            return complaint;
-          },
-          [&value] {
-            std::vector<double> numbers(value.begin(), value.end());
-            return scene::reals_codec(numbers, 3, false).print();
-          },
-          scene::back_to_default(value)};
 }
 
 /// "auto", which stands for no value, or a number.
@@ -197,7 +181,7 @@ void declare_material(Table& table, SpringsScene& scene) {
 
 void declare_load(Table& table, Load& load) {
   table.exactly_one_of({"gravity", "pressure", "follower_pressure", "force"});
-  table.value("gravity", vector_codec(load.gravity), "Acceleration of all masses")
+  table.value("gravity", optional_vector_codec(load.gravity), "Acceleration of all masses")
       .unit("m/s^2")
       .default_text("none");
   table
@@ -238,7 +222,7 @@ void declare_output(Table& table, Output& output) {
   table.tables(
       "probes", output.probes,
       [](Table& t, Probe& probe) {
-        t.value("at", vector_codec(probe.at), "Where the vertex lies at rest; the nearest is taken")
+        t.value("at", optional_vector_codec(probe.at), "Where the vertex lies at rest; the nearest is taken")
             .unit("m")
             .required();
       },
@@ -270,6 +254,21 @@ void declare_time(Table& table, Time& time) {
 }
 
 }  // namespace
+
+scene::Codec vector_codec(fabric::Vector& value) {
+  return {"[real, real, real]",
+          [&value](const scene::Node& node, const scene::Limits& limits) {
+            std::vector<double> numbers;
+            std::string complaint = scene::reals_codec(numbers, 3, false).read(node, limits);
+            if (complaint.empty()) std::copy(numbers.begin(), numbers.end(), value.begin());
+            return complaint;
+          },
+          [&value] {
+            std::vector<double> numbers(value.begin(), value.end());
+            return scene::reals_codec(numbers, 3, false).print();
+          },
+          scene::back_to_default(value)};
+}
 
 void declare_springs_scene(Table& root, SpringsScene& scene) {
   root.value("app", scene::fixed_codec("springs"), "The program the scene is for").required().decisive();
@@ -345,6 +344,9 @@ void declare_springs_scene(Table& root, SpringsScene& scene) {
             .at_least(0.0);
       },
       "Damping");
+  root.table(
+      "contact", [&](Table& table) { declare_contact(table, scene.contact); },
+      "What cloth and strings may meet");
   root.table(
           "time", [&](Table& table) { declare_time(table, scene.time); }, "Steps and the length of the run")
       .required();

@@ -16,6 +16,14 @@ void declare_verify(Table& table, Verify& verify) {
   };
   bar("energy_drift", verify.energy_drift,
       "Largest change of the energy over the largest kinetic energy that passes");
+  bar("energy_balance", verify.energy_balance,
+      "The same after the work of contact, friction included, is taken off the energy");
+  bar("intersections", verify.intersections,
+      "Largest number of parts of cloth that meet one another or a body, at rows of history.csv and at the "
+      "end, that passes: 0");
+  bar("penetration", verify.penetration,
+      "Largest part of contact.thickness that a vertex lacks of its distance from a body at the end that "
+      "passes");
   bar("momentum", verify.momentum,
       "Largest change of the momentum over the largest sqrt(2 M K) that passes; M mass, K kinetic energy");
   bar("angular_momentum", verify.angular_momentum,

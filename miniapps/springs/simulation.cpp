@@ -8,6 +8,7 @@
 #include "common/program/signals.hpp"
 #include "kernels/device/ledger.hpp"
 #include "kernels/device/runtime.hpp"
+#include "kernels/fabric/contact_parts.hpp"
 
 namespace drogue::springs_app {
 namespace {
@@ -25,6 +26,21 @@ constexpr double look_every_s = 0.1;
 /// Steps from one look at the fastest frequency to the next: stiffness grows with strain, mostly at the
 /// start.
 std::int64_t bound_every(std::int64_t step) { return step < 1024 ? 64 : 512; }
+
+const char* lost_text(fabric::Trouble trouble) {
+  switch (trouble) {
+    case fabric::Trouble::crossing:
+      return "parts of cloth, or cloth and a body, cross whatever contact does; a shorter time.dt or a finer "
+             "mesh may help,";
+    case fabric::Trouble::too_fast:
+      return "a step moves cloth farther than contact looks; take a shorter time.dt,";
+    case fabric::Trouble::too_dense:
+      return "more parts of cloth are near one another than contact has room for; take a shorter time.dt, a "
+             "smaller contact.thickness or a coarser mesh,";
+    default:
+      return "the state is not finite";
+  }
+}
 
 }  // namespace
 
@@ -57,6 +73,8 @@ void Simulation::resume() {
   const RestartState state = read_restart(_settings.restart, _scene);
   _solver->set_clock(state.clock);
   _solver->upload(_problem.to_solver(state.x), _problem.to_solver(state.v));
+  if (_scene.contact.asked_for())
+    _solver->set_contact_work(_problem.to_solver(std::span<const double>(state.contact_work)));
   _stop_step = state.stop_step;
   _stop_time = state.stop_time;
   _dt_min = state.dt_min;
@@ -76,7 +94,16 @@ bool Simulation::is_output_time(double time) const {
 }
 
 double Simulation::stable_dt() {
-  return fabric::stable_dt(_scene.time.integrator, _solver->fastest_frequency(), _solver->fastest_decay());
+  const double stable =
+      fabric::stable_dt(_scene.time.integrator, _solver->fastest_frequency(), _solver->fastest_decay());
+  if (!_scene.contact.self) return stable;
+  // Contact looks about as far as it moves: a tenth of an edge a step keeps its lists short.
+  std::vector<Vector> x(_problem.x.size()), v(x.size());
+  _solver->download(x, v);
+  double fastest = 0.0;
+  for (const Vector& velocity : v)
+    fastest = std::max(fastest, std::hypot(velocity[0], velocity[1], velocity[2]));
+  return std::min(stable, 0.1 * fabric::contact_edges(_problem.parameters.mesh).mean_length / fastest);
 }
 
 /// Equal steps from now to the next stop, none longer than is stable or asked for.
@@ -194,10 +221,11 @@ std::string Simulation::failure_text(const fabric::Failure& failure) const {
   text.precision(9);
   const auto vertex = static_cast<std::size_t>(_problem.order.at(static_cast<std::size_t>(failure.vertex)));
   const Vector& rest = _scene.mesh.rest[vertex];
-  text << "the state is not finite at vertex " << vertex << " (at rest at " << rest[0] << ", " << rest[1]
-       << ", " << rest[2] << " m) at step " << failure.step << ", t = " << failure.time
+  text << lost_text(failure.trouble) << " at vertex " << vertex << " (at rest at " << rest[0] << ", "
+       << rest[1] << ", " << rest[2] << " m) at step " << failure.step << ", t = " << failure.time
        << " s; restart.h5 holds the last good state, of step " << _solver->clock().step;
-  if (_scene.time.dt) text << "; time.dt = \"auto\" takes a step that is stable";
+  if (failure.trouble == fabric::Trouble::not_finite && _scene.time.dt)
+    text << "; time.dt = \"auto\" takes a step that is stable";
   return text.str();
 }
 

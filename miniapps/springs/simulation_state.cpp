@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "miniapps/springs/contact_state.hpp"
 #include "miniapps/springs/simulation.hpp"
 
 // What is read back of a solver, in the numbering of the scene.
@@ -18,10 +19,13 @@ double Simulation::time() const {
 Row Simulation::row() {
   const fabric::Totals sum = _solver->totals();
   Row row{time(),       _solver->clock().step, sum.kinetic, sum.elastic, sum.gravity + sum.load,
-          sum.momentum, sum.angular_momentum,  {}};
-  if (_scene.output.probes.empty()) return row;
+          sum.momentum, sum.angular_momentum,  {},          0.0,         0};
+  row.contact_work = sum.contact;
+  const bool counts = _scene.verify.intersections.has_value();
+  if (_scene.output.probes.empty() && !counts) return row;
   std::vector<Vector> x(_problem.x.size()), v(x.size());
   _solver->download(x, v);
+  if (counts) row.intersections = contact_state(_scene, _problem.to_scene(x)).intersections;
   for (const int vertex : _problem.probes) row.probes.push_back(x[static_cast<std::size_t>(vertex)]);
   return row;
 }
@@ -51,11 +55,15 @@ void Simulation::reach_output(RunOutput& output) {
 }
 
 RestartState Simulation::restart_state() {
-  RestartState state{_solver->clock(), _stop_step, _stop_time, _dt_min, _dt_max, {}, {}};
+  RestartState state{_solver->clock(), _stop_step, _stop_time, _dt_min, _dt_max, {}, {}, {}};
   std::vector<Vector> x(_problem.x.size()), v(x.size());
   _solver->download(x, v);
   state.x = _problem.to_scene(x);
   state.v = _problem.to_scene(v);
+  if (!_scene.contact.asked_for()) return state;
+  std::vector<double> work(x.size());
+  _solver->contact_work(work);
+  state.contact_work = _problem.to_scene(std::span<const double>(work));
   return state;
 }
 

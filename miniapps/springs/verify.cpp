@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "miniapps/springs/closed_forms.hpp"
+#include "miniapps/springs/contact_state.hpp"
 #include "miniapps/springs/expressions.hpp"
 #include "miniapps/springs/history.hpp"
 #include "miniapps/springs/probe.hpp"
@@ -41,6 +42,15 @@ double energy_drift(const History& history) {
   const std::vector<double>& energy = history.at("energy");
   double change = 0.0;
   for (const double value : energy) change = larger(change, std::abs(value - energy[0]));
+  return change / largest(history.at("kinetic"));
+}
+
+/// Of the energy less what contact has put in.
+double energy_imbalance(const History& history) {
+  const std::vector<double>&energy = history.at("energy"), &work = history.at("contact_work");
+  double change = 0.0;
+  for (std::size_t k = 0; k < energy.size(); ++k)
+    change = larger(change, std::abs(energy[k] - work[k] - (energy[0] - work[0])));
   return change / largest(history.at("kinetic"));
 }
 
@@ -167,7 +177,8 @@ void verify(const SpringsScene& scene, const FinalState& state, const std::files
             run::ResultDocument& result) {
   const Verify& wanted = scene.verify;
   const bool asks_history = wanted.frequency || wanted.front_speed || wanted.energy_drift ||
-                            wanted.momentum || wanted.angular_momentum;
+                            wanted.energy_balance || wanted.intersections || wanted.momentum ||
+                            wanted.angular_momentum;
   const History history = asks_history ? read_history(history_file) : History{};
   const auto add = [&result](const std::string& name, double error, double bar) {
     result.errors[name] = error;
@@ -198,6 +209,14 @@ void verify(const SpringsScene& scene, const FinalState& state, const std::files
         wanted.front_speed->bar);
   if (wanted.equilibrium) add("equilibrium", imbalance(state), *wanted.equilibrium);
   if (wanted.energy_drift) add("energy_drift", energy_drift(history), *wanted.energy_drift);
+  if (wanted.energy_balance) add("energy_balance", energy_imbalance(history), *wanted.energy_balance);
+  if (wanted.intersections || wanted.penetration) {
+    const ContactState now = contact_state(scene, state.x);
+    if (wanted.intersections)
+      add("intersections", larger(largest(history.at("intersections")), now.intersections),
+          *wanted.intersections);
+    if (wanted.penetration) add("penetration", now.penetration, *wanted.penetration);
+  }
   const double impulse =
       std::sqrt(2.0 * state.mass * (history.empty() ? 0.0 : largest(history.at("kinetic"))));
   if (wanted.momentum) add("momentum", largest_change(history, "momentum") / impulse, *wanted.momentum);

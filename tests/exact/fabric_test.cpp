@@ -7,6 +7,7 @@
 #include "tests/support/cuda_device.hpp"
 #include "tests/support/expression_program.hpp"
 #include "tests/support/fabric_mesh.hpp"
+#include "tests/support/fabric_sheets.hpp"
 #include "tests/support/in_child.hpp"
 
 // Every backend and every number of threads moves cloth to the same bits, and measures the same.
@@ -114,6 +115,42 @@ TEST(ExactFabric, DriversAgree) {
                 << ", model " << static_cast<int>(model);
             if (driver != Driver::persistent) break;
           }
+      }
+    }
+}
+
+/// State and work of sheets that meet.
+std::string contact_bytes(device::Backend backend, int threads, testing::Sheets s) {
+  const device::Runtime runtime({"--kokkos-num-threads=" + std::to_string(threads)});
+  const auto solver = create_solver(backend, s.p);
+  solver->upload(s.x, s.v);
+  if (!solver->advance(200) || solver->failure()) throw std::runtime_error("the state was lost");
+  solver->download(s.x, s.v);
+  std::vector<double> work(s.x.size());
+  solver->contact_work(work);
+  std::string bytes;
+  for (const auto& values : {s.x, s.v}) append(bytes, values);
+  append(bytes, work);
+  append(bytes, std::vector<Totals>{solver->totals()});
+  return bytes;
+}
+
+TEST(ExactFabric, BackendsAndThreadsAgreeInContact) {
+  for (testing::Sheets s : {testing::impact(3.0), testing::edge_on(8.0), testing::folded(6.0)})
+    for (const Integrator integrator : {Integrator::rk4, Integrator::verlet}) {
+      s.p.integrator = integrator;
+      Body sphere;
+      sphere.kind = BodyKind::sphere, sphere.radius = 0.05, sphere.centre = {0.05, 0.05, -0.06};
+      sphere.friction = 0.2;
+      s.p.contact.bodies = {sphere};
+      s.p.gravity = {0.0, 0.0, -9.81};
+      const std::string serial = in_child([&] { return contact_bytes(device::Backend::serial, 1, s); });
+      ASSERT_GT(serial.size(), 7 * sizeof(double) * s.p.mass.size());
+      for (const device::Backend backend : device::compiled_backends()) {
+        if (backend == device::Backend::serial || !runs_in_child(backend)) continue;
+        for (const int threads : {1, 3})
+          EXPECT_TRUE(in_child([&] { return contact_bytes(backend, threads, s); }) == serial)
+              << name(backend) << ", " << threads << " threads";
       }
     }
 }

@@ -24,9 +24,11 @@ class Restart(springs_program.SpringsTest):
         self.scene = self.write(springs_program.DRUM)
 
     def begin(self, backend, *words):
+        return self.begin_with(SETS, "--quiet", "--backend", backend, "--out", "part", *words)
+
+    def begin_with(self, sets, *words):
         """Starts a run in the folder `part`; returns once it runs and there is a restart file."""
-        line = gas_program.arguments(self.scene, "--quiet", "--backend", backend, "--out", "part", *words, sets=SETS,
-                                     program=self.program)
+        line = gas_program.arguments(self.scene, *words, sets=sets, program=self.program)
         process = subprocess.Popen(line, cwd=self.folder, env=gas_program.ENVIRONMENT, stderr=subprocess.PIPE)
         self.addCleanup(process.stderr.close)
         awaited = [self.folder / "part/.lock", self.folder / "part/restart.h5"]
@@ -84,6 +86,20 @@ class Restart(springs_program.SpringsTest):
         file = self.folder / "part/restart.h5"
         file.write_bytes(file.read_bytes()[:-100])
         self.assertIn("truncated", self.expect(6, self.scene, *words, sets=SETS).stderr)
+
+    def test_contact(self):
+        """Lists of what is near are as old as the run, the work of contact grows over all of it."""
+        self.scene = self.write(springs_program.FALLING)
+        words = ["--quiet", "--backend", "serial", "--out"]
+        self.expect(0, self.scene, *words, "whole")
+        process = self.begin_with([], *words, "part")
+        process.kill()
+        process.wait()
+        (self.folder / "part/.lock").unlink(missing_ok=True)
+        self.expect(0, self.scene, *words, "part", "--restart", "auto")
+        self.assert_same_runs()
+        work = self.history("whole")["contact_work"]
+        self.assertLess(work[-1], work[0])
 
     def test_later_end(self):
         self.finish("serial", "part")

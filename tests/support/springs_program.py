@@ -30,6 +30,34 @@ history_every = 7
 """
 
 
+# A sheet that falls on a ball and folds about it.
+FALLING = """\
+app = "springs"
+[mesh]
+rectangle = { width = 0.2, height = 0.2, vertices = 121 }
+[material]
+membrane_modulus = 200.0
+area_density = 0.2
+[[load]]
+gravity = [0, 0, -9.81]
+[contact]
+self = true
+thickness = 0.003
+friction = 0.2
+objects = [{ kind = "sphere", centre = [0.1, 0.11, -0.06], radius = 0.05, friction = 0.2 }]
+[time]
+integrator = "verlet"
+end_time = 0.15
+[output]
+fields = ["position", "velocity"]
+times = [0.05, 0.15]
+history_every = 7
+restart_every = 20
+[verify]
+intersections = 0
+"""
+
+
 class SpringsTest(gas_program.GasTest):
     """A test with an empty folder, in which drogue-springs runs."""
 

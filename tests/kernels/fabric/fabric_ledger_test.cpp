@@ -4,6 +4,7 @@
 #include "kernels/fabric/solver.hpp"
 #include "tests/support/expression_program.hpp"
 #include "tests/support/fabric_mesh.hpp"
+#include "tests/support/fabric_sheets.hpp"
 
 // What stepping asks of the device and of the host: nothing but its kernels.
 
@@ -105,6 +106,33 @@ TEST(FabricLedger, WhatASceneAsksForIsOneKernelAStage) {
   EXPECT_EQ(kernels(Integrator::verlet, dashpots), 1);
   EXPECT_EQ(kernels(Integrator::verlet, motion), 1);
   EXPECT_EQ(kernels(Integrator::verlet, all), 3);
+}
+
+TEST(FabricLedger, ContactIsKernelsAlone) {
+  testing::Sheets s = testing::folded(3.0);
+  const auto solver = create_solver(backend, s.p);
+  solver->upload(s.x, s.v);
+  EXPECT_TRUE(solver->advance(10));
+  const Ledger before = counted();
+  EXPECT_TRUE(solver->advance(100));
+  const Ledger after = counted();
+  EXPECT_EQ(after.fences, before.fences);
+  EXPECT_EQ(after.allocations, before.allocations);
+  EXPECT_EQ(after.copies, before.copies);
+  EXPECT_FALSE(solver->failure());
+}
+
+TEST(FabricLedger, ASceneWithoutContactHoldsNothingOfIt) {
+  const auto bytes = [](bool self) {
+    testing::Sheets s = testing::folded(3.0);
+    s.p.contact.self = self;
+    const Ledger before = counted();
+    const auto solver = create_solver(backend, s.p);
+    return counted().device_bytes - before.device_bytes;
+  };
+  const std::int64_t without = bytes(false);
+  EXPECT_LT(without, 144 * 1500) << "the cloth alone";
+  EXPECT_GT(bytes(true), without + 144 * 1500);
 }
 
 }  // namespace

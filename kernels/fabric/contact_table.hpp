@@ -1,0 +1,165 @@
+#pragma once
+
+#include "kernels/fabric/contact_body.hpp"
+#include "kernels/fabric/watch.hpp"
+
+namespace drogue::fabric {
+
+/// Rounds of impulses a step, and of zones that may grow where impulses did not keep parts from crossing.
+inline constexpr int impulse_rounds = 10, zone_rounds = 6;
+
+/// Parts near a vertex or edge, and touches of a vertex, that there is room for.
+inline constexpr int most_near = 64, most_touches = 64;
+
+/// Two parts that touch, or will within the step: a vertex and a triangle, two edges, or one of them and a
+/// body. The parts' relative velocity where they are nearest is the sum of share times velocity.
+struct Touch {
+  std::uint64_t key;  ///< names the parts; orders the touches of a vertex
+  int vertex[4];      ///< those without a share or lever count for nothing
+  double share[4];
+  Point normal;      ///< unit vector along which the parts are to stay apart
+  Point lever[2];    ///< of the couple that friction needs, `lever_of`
+  double wanted;     ///< least relative velocity along the normal, m/s
+  double friction;   ///< Coulomb's coefficient
+  double push;       ///< impulse so far along the normal, kg m/s
+  Point grip;        ///< and across
+  double more_push;  ///< of this round
+  Point more_grip;
+};
+
+/// The lever of a vertex of a touch: along the triangle's edges from its first corner, or along both edges.
+KOKKOS_INLINE_FUNCTION Point lever_of(const Touch& touch, bool of_edges, int slot) {
+  const Point &a = touch.lever[0], &b = touch.lever[1];
+  if (of_edges) return slot == 0 ? -1.0 * a : slot == 1 ? a : slot == 2 ? -1.0 * b : b;
+  return slot == 0 ? Point{0.0, 0.0, 0.0} : slot == 1 ? -1.0 * (a + b) : slot == 2 ? a : b;
+}
+
+enum class TouchKind : std::uint64_t { vertex_face, edge_edge, vertex_body, edge_body, face_body };
+
+/// Numbers of parts below 2^30.
+KOKKOS_INLINE_FUNCTION std::uint64_t touch_key(TouchKind kind, int first, int second) {
+  return static_cast<std::uint64_t>(kind) << 60U | static_cast<std::uint64_t>(first) << 30U |
+         static_cast<std::uint64_t>(second);
+}
+KOKKOS_INLINE_FUNCTION bool of_edges(const Touch& touch) {
+  return touch.key >> 60U == static_cast<std::uint64_t>(TouchKind::edge_edge);
+}
+
+/// What the kernels of a step tell one another.
+struct ContactProgress {
+  std::uint64_t moved;    ///< bits of the largest distance from where the lists of near parts were made, m
+  std::uint64_t fastest;  ///< bits of the largest speed, m/s
+  std::uint64_t extent;   ///< bits of the largest extent of a triangle or edge along an axis, m
+  double skin;            ///< m by which the lists see farther than contact reaches
+  double speed;           ///< the largest of this step, m/s
+  int stale;              ///< the lists are to be made again in this step
+  int touches;            ///< found in this step
+  int crossing[zone_rounds + 1];  ///< whether parts would cross before and after each round of zones
+  std::uint64_t trouble;          ///< the least of step and kind
+};
+
+/// Fixed memory, which belongs to `ContactSteps`; counting references at every launch would cost.
+template <class ExecutionSpace, class T>
+using Lent = Kokkos::View<T*, typename ExecutionSpace::memory_space, Kokkos::MemoryTraits<Kokkos::Unmanaged>>;
+template <class ExecutionSpace, class T, int columns>
+using LentTable = Kokkos::View<T* [columns], Kokkos::LayoutLeft, typename ExecutionSpace::memory_space,
+                               Kokkos::MemoryTraits<Kokkos::Unmanaged>>;
+
+/// About a part of cloth, and where that is in the grid.
+struct Ball {
+  Point centre;
+  double radius;
+  std::uint64_t cell;
+  int next;  ///< in the chain of its cell; -1: none
+
+  [[nodiscard]] KOKKOS_FUNCTION bool is_near(const Point& p, double distance) const {
+    const Point r = p - centre;
+    return dot(r, r) <= (distance + radius) * (distance + radius);
+  }
+};
+
+/// How a zone moves.
+struct ZoneMotion {
+  int held;              ///< 1: with its held vertices, by `shift` at `velocity`
+  Point from, to;        ///< its centre at the beginning and at the end of the step
+  Point turn;            ///< Cayley's vector of its rotation
+  Point velocity, spin;  ///< m/s, 1/s
+};
+
+template <class ExecutionSpace>
+struct ContactTable {
+  template <class T>
+  using List = Lent<ExecutionSpace, T>;
+  using Places = LentTable<ExecutionSpace, double, 3>;
+
+  int vertices, triangles, edges;
+  int first_line;  ///< edges from it on are of no triangle
+  double thickness, self_friction, least_skin, dt;
+  bool self;
+  List<Obstacle> bodies;
+  LentTable<ExecutionSpace, int, 3> triangle;
+  List<int> owned;  ///< `owned_parts` of every triangle
+  LentTable<ExecutionSpace, int, 2> edge;
+  List<double> inverse_mass;
+  List<std::uint8_t> held;  ///< as of Cloth
+  Places start_x, start_v;  ///< at the beginning of the step, impulses included
+  Places end_x, end_v;      ///< with zones
+  Places listed_x;          ///< where the lists were made
+  List<double> work;        ///< J, of contact on every vertex so far
+  // A hashed grid of cells, each a chain.
+  List<int> first_triangle, first_edge;
+  List<Ball> ball_of_triangle, ball_of_edge;
+  List<int> near_triangles, near_edges;  ///< how many of each vertex, and of each edge
+  LentTable<ExecutionSpace, int, most_near> near_triangle, near_edge;
+  List<Touch> touch;
+  List<int> touches;                                  ///< of every vertex
+  LentTable<ExecutionSpace, int, most_touches> mine;  ///< 4 times the touch, and the slot in it
+  List<int> zone;           ///< while zones are joined, the way to the least vertex of each
+  List<int> label;          ///< that vertex, once they are
+  List<int> zone_end;       ///< the largest vertex of the zone of the least one
+  List<int> stuck;          ///< 1: would enter a body, and stays
+  List<ZoneMotion> motion;  ///< of the zone of a least vertex
+  List<ContactProgress> progress;
+  Watch<ExecutionSpace> watch;
+
+  [[nodiscard]] KOKKOS_FUNCTION double reach() const { return thickness + progress(0).skin; }
+
+  template <class Points>
+  KOKKOS_FUNCTION void corners(int t, const Points& x, Point (&to)[3]) const {
+    for (int k = 0; k < 3; ++k) to[k] = load_points<double>(x, triangle(t, k));
+  }
+  template <class Points>
+  KOKKOS_FUNCTION void ends(int e, const Points& x, Point (&to)[2]) const {
+    for (int k = 0; k < 2; ++k) to[k] = load_points<double>(x, edge(e, k));
+  }
+
+  [[nodiscard]] KOKKOS_FUNCTION bool in_zone(int i) const {
+    return zone_end(label(i)) != label(i) || stuck(i) != 0;
+  }
+
+  [[nodiscard]] KOKKOS_FUNCTION bool is_held(int i) const {
+    return held(i) != 0;
+  }
+
+  /// Steps taken when this is called between them; both words of the watch agree on no less.
+  [[nodiscard]] KOKKOS_FUNCTION std::int64_t steps() const {
+    const std::int64_t a = watch.steps(0), b = watch.steps(1);
+    return a > b ? a : b;
+  }
+
+  KOKKOS_FUNCTION void raise(std::int64_t step, Trouble trouble, int vertex) const {
+    watch.raise(step, vertex);
+    Kokkos::atomic_min(&progress(0).trouble,
+                       static_cast<std::uint64_t>(step) << 4U | static_cast<std::uint64_t>(trouble));
+  }
+};
+
+KOKKOS_INLINE_FUNCTION double number_of(std::uint64_t bits) { return Kokkos::bit_cast<double>(bits); }
+
+/// Non-negative doubles compare as their bits do: the largest is the same in any order.
+KOKKOS_INLINE_FUNCTION void raise_to(std::uint64_t& slot, double value) {
+  const auto bits = Kokkos::bit_cast<std::uint64_t>(value);
+  if (bits > Kokkos::atomic_load(&slot)) Kokkos::atomic_max(&slot, bits);
+}
+
+}  // namespace drogue::fabric

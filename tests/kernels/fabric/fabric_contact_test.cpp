@@ -1,0 +1,270 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "kernels/fabric/solver.hpp"
+#include "kernels/reference/fabric/bodies.hpp"
+#include "kernels/reference/fabric/intersections.hpp"
+#include "tests/support/expression_program.hpp"
+#include "tests/support/fabric_sheets.hpp"
+
+// Cloth that meets bodies and itself: the hard cases, what they keep, and what they cost.
+
+namespace drogue::fabric {
+namespace {
+
+using namespace testing;
+
+constexpr auto backend = device::Backend::DROGUE_TEST_BACKEND;
+
+struct Outcome {
+  std::size_t crossings = 0;
+  double momentum = 0.0, angular_momentum = 0.0, imbalance = 0.0;  ///< largest changes
+  double start_kinetic = 0.0, work = 0.0;
+  std::optional<Failure> failure;
+};
+
+/// Takes steps and counts, after every `every` of them, what meets by the exact oracle.
+Outcome watched(Sheets& s, int steps, int every) {
+  const auto solver = create_solver(backend, s.p);
+  solver->upload(s.x, s.v);
+  const Totals start = solver->totals();
+  Outcome outcome;
+  outcome.start_kinetic = start.kinetic;
+  for (int step = 0; step < steps; step += every) {
+    solver->advance(every);
+    outcome.failure = solver->failure();
+    if (outcome.failure) break;
+    solver->download(s.x, s.v);
+    outcome.crossings += reference::intersections(s.x, s.p.mesh.triangles, s.p.mesh.lines).size();
+    const Totals now = solver->totals();
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      outcome.momentum = std::max(outcome.momentum, std::abs(now.momentum[axis] - start.momentum[axis]));
+      outcome.angular_momentum = std::max(
+          outcome.angular_momentum, std::abs(now.angular_momentum[axis] - start.angular_momentum[axis]));
+    }
+    outcome.imbalance = std::max(outcome.imbalance, std::abs(now.energy() - now.contact - start.energy()));
+    outcome.work = now.contact;
+  }
+  return outcome;
+}
+
+/// Nothing crosses, both momenta are kept to round-off, and the energy is accounted for.
+void expect_kept(const char* name, Sheets s, int steps, double energy_bar) {
+  const Outcome o = watched(s, steps, 5);
+  EXPECT_FALSE(o.failure) << name;
+  EXPECT_EQ(o.crossings, 0U) << name;
+  double impulse = 0.0;
+  for (std::size_t i = 0; i < s.v.size(); ++i) impulse += s.p.mass[i] * std::sqrt(2.0 * o.start_kinetic);
+  EXPECT_LT(o.momentum, 1e-13 * impulse) << name;
+  EXPECT_LT(o.angular_momentum, 1e-13 * impulse) << name;
+  EXPECT_LT(o.imbalance, energy_bar * o.start_kinetic) << name;
+  EXPECT_LT(o.work, -0.01 * o.start_kinetic) << name << ": contact took nothing, so nothing met";
+}
+
+TEST(FabricContact, SheetsThatMeetDoNotCrossAndKeepMomentum) {
+  expect_kept("impact", impact(3.0), 300, 5e-3);
+  expect_kept("edge on", edge_on(3.0), 300, 2e-2);
+  expect_kept("corners", corner_on(3.0), 300, 5e-2);
+  expect_kept("fold", folded(3.0), 300, 5e-2);
+}
+
+TEST(FabricContact, WithoutItTheSameSheetsCross) {
+  Sheets s = edge_on(3.0);
+  s.p.contact = {};
+  EXPECT_GT(watched(s, 100, 10).crossings, 0U);
+}
+
+TEST(FabricContact, AtAHundredMetresASecondNothingCrosses) {
+  Sheets s = impact(100.0);
+  s.p.material.membrane_modulus = 1e5;
+  s.p.dt = 5e-6;
+  const Outcome o = watched(s, 300, 3);
+  EXPECT_FALSE(o.failure);
+  EXPECT_EQ(o.crossings, 0U);
+  EXPECT_LT(o.work, -0.1 * o.start_kinetic);
+}
+
+TEST(FabricContact, AStackOfThreeComesToRest) {
+  Sheets s = stack();
+  s.p.dt = 1e-4;
+  const Outcome o = watched(s, 1500, 100);
+  EXPECT_FALSE(o.failure);
+  EXPECT_EQ(o.crossings, 0U);
+  double fastest = 0.0, lowest = 1.0;
+  for (std::size_t i = 0; i < s.v.size(); ++i) {
+    fastest = std::max(fastest, std::hypot(s.v[i][0], s.v[i][1], s.v[i][2]));
+    lowest = std::min(lowest, s.x[i][2]);
+  }
+  EXPECT_LT(fastest, 2e-2);
+  EXPECT_GT(lowest, 0.9 * s.p.contact.thickness);
+  EXPECT_LT(lowest, 1.1 * s.p.contact.thickness);
+}
+
+/// A sheet that lies on a plane leaning by an angle, released at `speed` downhill; its way and speed.
+std::array<double, 2> slid(double angle, double friction, double speed, int steps) {
+  const double c = std::cos(angle), d = std::sin(angle);
+  Sheets s;
+  s.p.contact.self = false;
+  s.add(5, 0.04,
+        [=](double a, double b) {
+          return Vector{c * a + d * 0.002, b, c * 0.002 - d * a};
+        },
+        {c * speed, 0.0, -d * speed});
+  s.p.gravity = {0.0, 0.0, -9.81};
+  Body slope;
+  slope.kind = BodyKind::plane;
+  slope.normal = {d, 0.0, c};
+  slope.friction = friction;
+  s.p.contact.bodies = {slope};
+  s.p.dt = 5e-5;
+  const auto solver = create_solver(backend, s.p);
+  const std::vector<Vector> from = s.x;
+  solver->upload(s.x, s.v);
+  EXPECT_TRUE(solver->advance(steps) && !solver->failure());
+  solver->download(s.x, s.v);
+  return {c * (s.x[12][0] - from[12][0]) - d * (s.x[12][2] - from[12][2]), c * s.v[12][0] - d * s.v[12][2]};
+}
+
+TEST(FabricContact, SlidingObeysCoulomb) {
+  const double g = 9.81, angle = 0.3, dt = 5e-5;
+  const int steps = 2000;  // 0.1 s
+  const double t = steps * dt;
+  // Faster downhill by g (sin - mu cos), whatever it began with; on the level slower by mu g.
+  for (const double friction : {0.0, 0.2}) {
+    const double a = g * (std::sin(angle) - friction * std::cos(angle));
+    EXPECT_NEAR(slid(angle, friction, 0.1, steps)[1], 0.1 + a * t, 2e-3 * g * t) << friction;
+  }
+  EXPECT_NEAR(slid(0.0, 0.2, 0.5, steps)[1], 0.5 - 0.2 * g * t, 2e-3 * g * t);
+  // It stops where mu g says, and stays; on a slope that friction holds it only creeps by round-off of dt.
+  const auto stopped = slid(0.0, 0.4, 0.2, steps);
+  EXPECT_NEAR(stopped[0], 0.2 * 0.2 / (2.0 * 0.4 * g), 1e-4);
+  EXPECT_NEAR(stopped[1], 0.0, g * dt);
+  EXPECT_NEAR(slid(angle, 0.5, 0.0, steps)[0], 0.0, g * dt * t);
+}
+
+TEST(FabricContact, BodiesStayOutside) {
+  Body disk;
+  disk.kind = BodyKind::disk, disk.radius = 0.031, disk.normal = {0.6, 0.0, 0.8};
+  Body sphere;
+  sphere.kind = BodyKind::sphere, sphere.radius = 0.025;
+  for (Body body : {disk, sphere})
+    for (const double speed : {1.0, 20.0}) {
+      Sheets s;
+      s.add(8, 0.09, level(-0.05, -0.043, 0.035), {0.0, 0.0, -speed});
+      body.friction = 0.2;
+      s.p.contact.bodies = {body};
+      s.p.dt = 2e-5;
+      const auto solver = create_solver(backend, s.p);
+      solver->upload(s.x, s.v);
+      int inside = 0;
+      double least = 1.0;
+      for (int look = 0; look < 80; ++look) {
+        EXPECT_TRUE(solver->advance(20) && !solver->failure());
+        solver->download(s.x, s.v);
+        for (const auto& t : s.p.mesh.triangles) {
+          const auto at = [&](std::size_t k) { return s.x[static_cast<std::size_t>(t[k])]; };
+          inside += reference::enters(body, {at(0), at(1), at(2)}) ? 1 : 0;
+        }
+        for (const Vector& x : s.x) least = std::min(least, reference::distance_from(body, x));
+      }
+      EXPECT_EQ(inside, 0);
+      EXPECT_GT(least, 0.0);
+      EXPECT_LT(least, 1.1 * s.p.contact.thickness) << "it never came near";
+    }
+}
+
+TEST(FabricContact, ALevelSetIsTheBodyItDescribes) {
+  Body sphere;
+  sphere.kind = BodyKind::sphere, sphere.radius = 0.025;
+  Body level_set;
+  level_set.kind = BodyKind::level_set;
+  level_set.level_set = postfix({"x", 2.0, "^", "y", 2.0, "^", "+", "z", 2.0, "^", "+", "sqrt", 0.025, "-"});
+  std::vector<Vector> ends[2];
+  for (const bool as_level_set : {false, true}) {
+    Sheets s;
+    s.p.contact.self = false;
+    s.add(8, 0.05, level(-0.025, -0.024, 0.03), {0.0, 0.0, -1.0});
+    s.p.contact.bodies = {as_level_set ? level_set : sphere};
+    const auto solver = create_solver(backend, s.p);
+    solver->upload(s.x, s.v);
+    EXPECT_TRUE(solver->advance(150) && !solver->failure());
+    solver->download(s.x, s.v);
+    ends[as_level_set ? 1 : 0] = s.x;
+  }
+  double apart = 0.0;
+  for (std::size_t i = 0; i < ends[0].size(); ++i)
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      apart = std::max(apart, std::abs(ends[0][i][axis] - ends[1][i][axis]));
+  // The sphere keeps edges and faces out too, a level set vertices alone.
+  EXPECT_LT(apart, 2e-3);
+}
+
+TEST(FabricContact, ASolverThatGoesOnFromAStateHasTheSameBits) {
+  Sheets s = folded(3.0);
+  const auto whole = create_solver(backend, s.p);
+  whole->upload(s.x, s.v);
+  ASSERT_TRUE(whole->advance(150));
+  std::vector<Vector> x = s.x, v = s.v;
+  whole->download(x, v);
+  std::vector<double> work(x.size()), end_work = work, other_work = work;
+  whole->contact_work(work);
+  const auto part = create_solver(backend, s.p);
+  part->set_clock(whole->clock());
+  part->upload(x, v);
+  part->set_contact_work(work);
+  ASSERT_TRUE(whole->advance(150) && part->advance(70) && part->advance(80));
+  whole->download(s.x, s.v), part->download(x, v);
+  whole->contact_work(end_work), part->contact_work(other_work);
+  EXPECT_EQ(x, s.x);
+  EXPECT_EQ(v, s.v);
+  EXPECT_EQ(end_work, other_work);
+  EXPECT_NE(end_work, work);
+}
+
+TEST(FabricContact, WhatCannotBeKeptApartIsTold) {
+  // Two sheets, all of whose vertices are driven through each other.
+  Sheets s;
+  s.add(4, 0.03, level(0.0, 0.0, 0.0), {0.0, 0.0, 0.0});
+  s.add(4, 0.03, level(0.003, 0.004, 0.01), {0.0, 0.0, 0.0});
+  s.p.motions = {{2, {}, postfix({0.0})}, {2, {}, postfix({-160.0, "t", -10.0, "*", "+", 0.01, "+"})}};
+  for (int i = 0; i < 16; ++i)
+    s.p.motions[0].vertices.push_back(i), s.p.motions[1].vertices.push_back(16 + i);
+  s.p.pinned.assign(32, 7);
+  const Outcome o = watched(s, 60, 1);
+  ASSERT_TRUE(o.failure);
+  EXPECT_EQ(o.failure->trouble, Trouble::crossing);
+  EXPECT_EQ(o.failure->step, 20);  // 10 mm at 10 m/s in steps of 50 us
+  EXPECT_EQ(o.crossings, 0U);
+}
+
+TEST(FabricContact, AStepThatLeapsIsTold) {
+  Sheets s = impact(2000.0);
+  const Outcome o = watched(s, 10, 1);
+  ASSERT_TRUE(o.failure);
+  EXPECT_NE(o.failure->trouble, Trouble::not_finite);
+}
+
+TEST(FabricContact, WhatIsNoContactIsRefused) {
+  const auto refused = [](auto change) {
+    Sheets s = impact(1.0);
+    change(s.p.contact);
+    EXPECT_THROW(static_cast<void>(create_solver(backend, s.p)), std::invalid_argument);
+  };
+  refused([](Contact& c) { c.thickness = 0.0; });
+  refused([](Contact& c) { c.thickness = 0.02; });  // triangles are 8 mm high
+  refused([](Contact& c) { c.friction = -1.0; });
+  refused([](Contact& c) { c.bodies.resize(1); });  // a sphere without radius
+  refused([](Contact& c) {
+    c.bodies.resize(1);
+    c.bodies[0].kind = BodyKind::plane, c.bodies[0].normal = {0.0, 0.0, 2.0};
+  });
+  refused([](Contact& c) {
+    c.bodies.resize(1);
+    c.bodies[0].kind = BodyKind::level_set;
+  });
+}
+
+}  // namespace
+}  // namespace drogue::fabric

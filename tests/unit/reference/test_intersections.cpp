@@ -1,0 +1,105 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "kernels/reference/fabric/bodies.hpp"
+#include "kernels/reference/fabric/intersections.hpp"
+
+// The oracles of contact against cases whose answer is known.
+
+namespace drogue::reference {
+namespace {
+
+using Place = std::array<double, 3>;
+
+const std::array<Place, 3> unit = {Place{0, 0, 0}, Place{1, 0, 0}, Place{0, 1, 0}};
+
+TEST(ReferenceIntersections, SidesAreThoseOfTheDeterminantAlsoWhereItRounds) {
+  EXPECT_EQ(side_of_plane(unit[0], unit[1], unit[2], {0.2, 0.2, 1.0}),
+            -side_of_plane(unit[0], unit[1], unit[2], {0.2, 0.2, -1.0}));
+  // Points of the plane x + y + z = 1 in numbers that doubles hold, then one moved by the last bit.
+  const Place a = {0.5, 0.25, 0.25}, b = {-0.125, 1.0, 0.125}, c = {3.0, -2.5, 0.5}, d = {0.75, 0.125, 0.125};
+  EXPECT_EQ(side_of_plane(a, b, c, d), 0);
+  const int above = side_of_plane(a, b, c, {0.75, 0.125, std::nextafter(0.125, 1.0)});
+  EXPECT_NE(above, 0);
+  EXPECT_EQ(side_of_plane(a, b, c, {0.75, 0.125, std::nextafter(0.125, 0.0)}), -above);
+}
+
+TEST(ReferenceIntersections, SegmentsAndTriangles) {
+  const auto pierced = [](const Place& p, const Place& q) { return meet({p, q}, unit); };
+  EXPECT_TRUE(pierced({0.2, 0.2, -1}, {0.3, 0.3, 1}));
+  EXPECT_FALSE(pierced({0.2, 0.2, 1e-300}, {0.3, 0.3, 1}));
+  EXPECT_TRUE(pierced({0.2, 0.2, 0}, {0.3, 0.3, 1})) << "touching counts";
+  EXPECT_FALSE(pierced({0.8, 0.8, -1}, {0.8, 0.8, 1}));
+  EXPECT_TRUE(pierced({0.5, 0.5, -1}, {0.5, 0.5, 1})) << "through an edge";
+  // In its plane.
+  EXPECT_TRUE(pierced({-1, 0.2, 0}, {2, 0.2, 0}));
+  EXPECT_TRUE(pierced({0.1, 0.1, 0}, {0.2, 0.1, 0}));
+  EXPECT_FALSE(pierced({0.6, 0.6, 0}, {2, 2, 0}));
+  EXPECT_FALSE(pierced({2, 0, 0}, {3, 0, 0}));
+  EXPECT_TRUE(pierced({1, 0, 0}, {3, 0, 0}));
+}
+
+TEST(ReferenceIntersections, OfAMeshLeaveOutWhatSharesAVertex) {
+  std::vector<Place> x = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0.0}, {0.3, 0.3, -1}, {0.3, 0.3, 1}};
+  const std::vector<std::array<int, 3>> triangles = {{0, 1, 2}, {1, 3, 2}};
+  EXPECT_TRUE(intersections(x, triangles, {}).empty());
+  const std::vector<std::array<int, 2>> line = {{4, 5}};
+  const auto found = intersections(x, triangles, line);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].triangle, 0U);
+  EXPECT_EQ(found[0].segment, (std::array<int, 2>{4, 5}));
+  // Two triangles with one vertex in common are told by the edges that do not have it.
+  x[3] = {0.5, 0.2, -0.5}, x[4] = {0.2, 0.5, 0.5};
+  EXPECT_EQ(intersections(x, std::vector<std::array<int, 3>>{{0, 1, 2}, {0, 3, 4}}, {}).size(), 1U);
+}
+
+/// Whether a triangle enters a body, by many of its points.
+bool sampled(const fabric::Body& body, const std::array<Place, 3>& t) {
+  constexpr int n = 60;
+  double before = 0.0;
+  for (int i = 0; i <= n; ++i)
+    for (int j = 0; i + j <= n; ++j) {
+      Place p{};
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        p[axis] = (i * t[0][axis] + j * t[1][axis] + (n - i - j) * t[2][axis]) / n;
+      if (body.kind != fabric::BodyKind::disk && distance_from(body, p) < 0.0) return true;
+      // A disk has no inside: the triangle passes from one side to the other over it.
+      const double beside = std::hypot(p[0], p[1]);
+      if (body.kind == fabric::BodyKind::disk && j > 0 && before * p[2] < 0.0 && beside < body.radius - 0.1)
+        return true;
+      before = p[2];
+    }
+  return false;
+}
+
+TEST(ReferenceBodies, TrianglesEnterWhereTheirPointsDo) {
+  std::mt19937 engine(4);
+  const auto random = [&] { return 4.0 * std::generate_canonical<double, 53>(engine) - 2.0; };
+  for (const auto kind : {fabric::BodyKind::sphere, fabric::BodyKind::disk, fabric::BodyKind::plane}) {
+    fabric::Body body;
+    body.kind = kind, body.radius = 0.7;
+    int entered = 0, missed = 0;
+    for (int k = 0; k < 300; ++k) {
+      std::array<Place, 3> t;
+      for (Place& p : t) p = {random(), random(), random()};
+      const bool in = enters(body, t);
+      EXPECT_TRUE(in || !sampled(body, t));
+      ++(in ? entered : missed);
+      // Smaller bodies are entered less.
+      fabric::Body smaller = body;
+      smaller.radius = 0.35;
+      EXPECT_TRUE(in || !enters(smaller, t));
+    }
+    EXPECT_GT(entered, 20);
+    EXPECT_GT(missed, 20);
+  }
+  fabric::Body disk;
+  disk.kind = fabric::BodyKind::disk, disk.radius = 1.0;
+  EXPECT_DOUBLE_EQ(distance_from(disk, {4.0, 0.0, 4.0}), 5.0);
+  EXPECT_DOUBLE_EQ(distance_from(disk, {0.5, 0.5, -3.0}), 3.0);
+}
+
+}  // namespace
+}  // namespace drogue::reference
