@@ -27,7 +27,7 @@ KOKKOS_INLINE_FUNCTION void each_pair_of_slots(const First& first, int i, const 
   int slot = begin * slice + i % slice;
   auto before = read(slot, index(slot));
   auto ahead = index(device::minimum(slot + slice, last));
-#if defined(__CUDACC__)
+#if defined(__CUDA_ARCH__)
 #pragma unroll 2  // else what is carried from slot to slot is moved
 #endif
   for (slot += slice; slot <= last; slot += slice) {
