@@ -143,8 +143,11 @@ struct Access {
   KOKKOS_INLINE_FUNCTION static R load(const Element* pointer) { return *pointer; }
   KOKKOS_INLINE_FUNCTION static void store(Element* pointer, R value) { *pointer = value; }
   KOKKOS_INLINE_FUNCTION static Element lane(R value, int) { return value; }
-  /// The values that `lanes` consecutive indices name.
-  KOKKOS_INLINE_FUNCTION static R gather(const Element* values, const int* index) { return values[*index]; }
+  /// What names the values of all lanes: as an index is read ahead of them, its value.
+  using Index = int;
+  KOKKOS_INLINE_FUNCTION static Index index(const int* of_lanes) { return *of_lanes; }
+  /// The values that it names.
+  KOKKOS_INLINE_FUNCTION static R gather(const Element* values, Index index) { return values[index]; }
   /// 0 where a bit is set, else 1.
   KOKKOS_INLINE_FUNCTION static R unless_set(const std::uint8_t* sets, unsigned bit) {
     return (*sets & bit) != 0U ? R(0) : R(1);
@@ -289,7 +292,9 @@ struct Access<Pack<T, L>> {
   }
   static void store(T* pointer, Pack<T, L> value) { __builtin_memcpy(pointer, &value.v, sizeof(value.v)); }
   static T lane(Pack<T, L> value, int k) { return value.v[k]; }
-  static Pack<T, L> gather(const T* values, const int* index) {
+  using Index = const int*;
+  static Index index(const int* of_lanes) { return of_lanes; }
+  static Pack<T, L> gather(const T* values, Index index) {
     Pack<T, L> gathered;
     for (int k = 0; k < L; ++k) gathered.v[k] = values[index[k]];
     return gathered;

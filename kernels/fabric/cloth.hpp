@@ -28,17 +28,26 @@ KOKKOS_INLINE_FUNCTION void store_points(const Points& points, int i, const Vect
 }
 
 template <class R, class Points>
-KOKKOS_INLINE_FUNCTION Vector3<R> gather_points(const Points& points, const int* index) {
+KOKKOS_INLINE_FUNCTION Vector3<R> gather_points(const Points& points,
+                                                typename device::Access<R>::Index index) {
   using Lanes = device::Access<R>;
   return {Lanes::gather(&points(0, 0), index), Lanes::gather(&points(0, 1), index),
           Lanes::gather(&points(0, 2), index)};
 }
 
-/// A triangle at rest: squared lengths of the edges opposite its vertices, m^2, and 1/m^2.
+/// A triangle at rest: products of the edges from its first vertex, m^2, and 1/m^2.
 template <class R>
 struct RestTriangle {
-  Edges<R> edges;
+  Products<R> products;
   R inverse_area;
+};
+
+/// The edge from a vertex to a neighbour, m, and its squared length, m^2.
+template <class R>
+struct Spoke {
+  Vector3<R> to;
+  R squared;
+  typename device::Access<R>::Index neighbour;
 };
 
 /// Of slot `next` of a ring, from the values that it stores; `before` and `next` are squared lengths of the
@@ -46,7 +55,14 @@ struct RestTriangle {
 template <class R, class Values>
 KOKKOS_INLINE_FUNCTION RestTriangle<R> stored_triangle(const Values& value, R before, R next, int slot) {
   using Lanes = device::Access<R>;
-  return {{{Lanes::load(&value(slot, 1)), next, before}}, Lanes::load(&value(slot, 2))};
+  return {{before, Lanes::load(&value(slot, 1)), next}, Lanes::load(&value(slot, 2))};
+}
+
+template <class R, class Points>
+KOKKOS_INLINE_FUNCTION Spoke<R> spoke(const Points& points, const Vector3<R>& own,
+                                      typename device::Access<R>::Index neighbour) {
+  const Vector3<R> to = gather_points<R>(points, neighbour) - own;
+  return {to, dot(to, to), neighbour};
 }
 
 /// What does not change while cloth moves.
@@ -65,11 +81,11 @@ struct Cloth {
 
   /// The edge to a neighbour of vertex i at rest, as much of it as `rest_triangle` needs.
   template <class R>
-  KOKKOS_INLINE_FUNCTION auto rest_edge(int i, int slot) const {
+  KOKKOS_INLINE_FUNCTION auto rest_edge(int i, int slot, typename device::Access<R>::Index neighbour) const {
     if constexpr (device::is_host<ExecutionSpace>)
       return device::Access<R>::load(&triangles.value(slot, 0));
     else
-      return gather_points<R>(rest, &triangles.neighbour(slot)) - load_points<R>(rest, i);
+      return spoke<R>(rest, load_points<R>(rest, i), neighbour);
   }
   template <class R, class RestEdge>
   KOKKOS_INLINE_FUNCTION RestTriangle<R> rest_triangle(const RestEdge& before, const RestEdge& next,
@@ -77,9 +93,8 @@ struct Cloth {
     if constexpr (device::is_host<ExecutionSpace>) {
       return stored_triangle(triangles.value, before, next, slot);
     } else {
-      const Vector3<R> between = next - before;
-      return {{{dot(between, between), dot(next, next), dot(before, before)}},
-              fabric::inverse_area(before, next)};
+      const Products<R> products{before.squared, dot(before.to, next.to), next.squared};
+      return {products, inverse_area(products)};
     }
   }
 };
@@ -95,15 +110,20 @@ KOKKOS_INLINE_FUNCTION Vector3<R> free_axes(const Cloth<ExecutionSpace>& cloth, 
   return free_axes<R>(&cloth.held(i));
 }
 
-/// The pull of a triangle on its first vertex, N; `to_j` and `to_k` lead from it to the other two, m.
+/// The pull of a triangle on its first vertex, N.
 template <Law law, class R>
-KOKKOS_INLINE_FUNCTION Vector3<R> triangle_pull(const Moduli& m, const Vector3<R>& to_j,
-                                                const Vector3<R>& to_k, const RestTriangle<R>& rest) {
-  const Vector3<R> opposite = to_k - to_j;
-  // Edge j lies opposite vertex j: it leads to k.
-  const Edges<R> now{{dot(opposite, opposite), dot(to_k, to_k), dot(to_j, to_j)}};
-  const Edges<R> tension = membrane_tensions<law>(m, now, rest.edges, rest.inverse_area);
-  return tension.of[2] * to_j + tension.of[1] * to_k;
+KOKKOS_INLINE_FUNCTION Vector3<R> triangle_pull(const Moduli& m, const Spoke<R>& j, const Spoke<R>& k,
+                                                const RestTriangle<R>& rest) {
+  const Products<R> now{j.squared, dot(j.to, k.to), k.squared};
+  if constexpr (law.model == Model::biquadratic && !law.tension_only) {
+    const SpokeTensions<R> tension = spoke_tensions(m, now, rest.products, rest.inverse_area);
+    return tension.j * j.to + tension.k * k.to;
+  } else {
+    // Edge j lies opposite vertex j: it leads to k.
+    const Edges<R> tension =
+        membrane_tensions<law>(m, squared_edges(now), squared_edges(rest.products), rest.inverse_area);
+    return tension.of[2] * j.to + tension.of[1] * k.to;
+  }
 }
 
 /// The pull of a spring on the vertex from which `edge` leads, N.
@@ -112,26 +132,40 @@ KOKKOS_INLINE_FUNCTION Vector3<R> spring_pull(R stiffness, R rest, const Vector3
   return spring_tension<law>(stiffness, dot(edge, edge), rest) * edge;
 }
 
-/// Calls `take(to_j, to_k, rest, j, k)` for the triangles of vertex i and the lanes after it: the ways to the
-/// other two vertices, m, the triangle at rest, and where their numbers stand.
+/// Calls `take(j, k, rest)` for the triangles of vertex i and the lanes after it: their spokes and the
+/// triangle at rest.
 template <class R, class Fabric, class Points, class Take>
 KOKKOS_INLINE_FUNCTION void each_triangle(const Fabric& cloth, const Points& positions, int i,
                                           const Take& take) {
   const Vector3<R> own = load_points<R>(positions, i);
+  using Lanes = device::Access<R>;
+  using Index = typename Lanes::Index;
   struct Side {
-    Vector3<R> to;
-    decltype(cloth.template rest_edge<R>(0, 0)) rest;
-    const int* vertex;
+    Spoke<R> now;
+    decltype(cloth.template rest_edge<R>(0, 0, Index{})) rest;
   };
   cloth.triangles.each_pair(
-      i,
-      [&](int slot) {
-        const int* vertex = &cloth.triangles.neighbour(slot);
-        return Side{gather_points<R>(positions, vertex) - own, cloth.template rest_edge<R>(i, slot), vertex};
+      i, [&](int slot) { return Lanes::index(&cloth.triangles.neighbour(slot)); },
+      [&](int slot, Index neighbour) {
+        return Side{spoke<R>(positions, own, neighbour), cloth.template rest_edge<R>(i, slot, neighbour)};
       },
       [&](const Side& j, const Side& k, int slot) {
-        take(j.to, k.to, cloth.template rest_triangle<R>(j.rest, k.rest, slot), j.vertex, k.vertex);
+        take(j.now, k.now, cloth.template rest_triangle<R>(j.rest, k.rest, slot));
       });
+}
+
+/// `sum` and the pulls of the springs of vertex i and the lanes after it, N, in the order of their slots.
+template <Law law, class R, class Fabric, class Points>
+KOKKOS_INLINE_FUNCTION Vector3<R> with_springs(const Fabric& cloth, const Points& positions, int i,
+                                               Vector3<R> sum) {
+  using Lanes = device::Access<R>;
+  const auto& springs = cloth.springs;
+  springs.each(i, [&](int slot) {
+    sum = sum + spring_pull<law>(Lanes::load(&springs.value(slot, 0)), Lanes::load(&springs.value(slot, 1)),
+                                 gather_points<R>(positions, Lanes::index(&springs.neighbour(slot))) -
+                                     load_points<R>(positions, i));
+  });
+  return sum;
 }
 
 /// The elastic forces on vertex i and the lanes after it, N, each vertex in the fixed order of its slots.
@@ -139,20 +173,13 @@ KOKKOS_INLINE_FUNCTION void each_triangle(const Fabric& cloth, const Points& pos
 /// tension. `Fabric` is a Cloth or what has its tables elsewhere.
 template <Law law, class R, class Fabric, class Points>
 KOKKOS_INLINE_FUNCTION Vector3<R> elastic_force(const Fabric& cloth, const Points& positions, int i) {
-  using Lanes = device::Access<R>;
   Vector3<R> sum{R(0.0), R(0.0), R(0.0)};
   if constexpr (whole_triangles<law>)
-    each_triangle<R>(
-        cloth, positions, i,
-        [&](const Vector3<R>& to_j, const Vector3<R>& to_k, const RestTriangle<R>& rest, const int*,
-            const int*) { sum = sum + triangle_pull<law>(cloth.moduli, to_j, to_k, rest); });
-  cloth.springs.each(i, [&](int slot) {
-    const auto& springs = cloth.springs;
-    sum = sum + spring_pull<law>(
-                    Lanes::load(&springs.value(slot, 0)), Lanes::load(&springs.value(slot, 1)),
-                    gather_points<R>(positions, &springs.neighbour(slot)) - load_points<R>(positions, i));
-  });
-  return sum;
+    each_triangle<R>(cloth, positions, i,
+                     [&](const Spoke<R>& j, const Spoke<R>& k, const RestTriangle<R>& rest) {
+                       sum = sum + triangle_pull<law>(cloth.moduli, j, k, rest);
+                     });
+  return with_springs<law>(cloth, positions, i, sum);
 }
 
 /// With dead forces.

@@ -89,7 +89,8 @@ struct ExternalFunctor {
       const Vector3<double> own = load_points<double>(x, i);
       Vector3<double> twice_area{0.0, 0.0, 0.0};
       external.surface.each_pair(
-          i, [&](int slot) { return load_points<double>(x, external.surface.neighbour(slot)) - own; },
+          i, [&](int slot) { return external.surface.neighbour(slot); },
+          [&](int, int neighbour) { return load_points<double>(x, neighbour) - own; },
           [&](const Vector3<double>& to_j, const Vector3<double>& to_k, int) {
             twice_area = twice_area + cross(to_j, to_k);
           });
@@ -133,7 +134,8 @@ struct LoadStiffnessFunctor {
     const auto length = [](const Vector3<double>& a) { return device::square_root(dot(a, a)); };
     double edges = 0.0;
     surface.each_pair(
-        i, [&](int slot) { return load_points<double>(loads.x, surface.neighbour(slot)) - own; },
+        i, [&](int slot) { return surface.neighbour(slot); },
+        [&](int, int neighbour) { return load_points<double>(loads.x, neighbour) - own; },
         [&](const Vector3<double>& to_j, const Vector3<double>& to_k, int) {
           // Not of the triangles without area that stand for none.
           if (dot(to_j, to_j) > 0.0 && dot(to_k, to_k) > 0.0)

@@ -51,6 +51,10 @@ struct FrequencyFunctor {
     return {Dual(v.x, axis == 0 ? 1.0 : 0.0), Dual(v.y, axis == 1 ? 1.0 : 0.0),
             Dual(v.z, axis == 2 ? 1.0 : 0.0)};
   }
+  KOKKOS_FUNCTION static Spoke<Dual> along(const Spoke<double>& spoke, int axis) {
+    const Vector3<Dual> to = along(spoke.to, axis);
+    return {to, dot(to, to), spoke.neighbour};
+  }
 
   KOKKOS_FUNCTION double is_free(int i, int axis) const {
     return device::Access<double>::unless_set(&cloth.held(i), 1U << static_cast<unsigned>(axis));
@@ -76,15 +80,14 @@ struct FrequencyFunctor {
     if constexpr (whole_triangles<law>)
       each_triangle<double>(
           cloth, x, i,
-          [&](const Vector3<double>& to_j, const Vector3<double>& to_k, const RestTriangle<double>& at_rest,
-              const int* j, const int* k) {
-            const Edges<double>& edges = at_rest.edges;
-            const RestTriangle<Dual> rest{{{edges.of[0], edges.of[1], edges.of[2]}}, at_rest.inverse_area};
-            add(*j, [&](int axis) {
-              return triangle_pull<law>(cloth.moduli, along(to_j, axis), along(to_k, -1), rest);
+          [&](const Spoke<double>& j, const Spoke<double>& k, const RestTriangle<double>& at_rest) {
+            const Products<double>& products = at_rest.products;
+            const RestTriangle<Dual> rest{{products.jj, products.jk, products.kk}, at_rest.inverse_area};
+            add(j.neighbour, [&](int axis) {
+              return triangle_pull<law>(cloth.moduli, along(j, axis), along(k, -1), rest);
             });
-            add(*k, [&](int axis) {
-              return triangle_pull<law>(cloth.moduli, along(to_j, -1), along(to_k, axis), rest);
+            add(k.neighbour, [&](int axis) {
+              return triangle_pull<law>(cloth.moduli, along(j, -1), along(k, axis), rest);
             });
           });
     cloth.springs.each(i, [&](int slot) {

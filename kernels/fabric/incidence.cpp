@@ -7,6 +7,7 @@
 #include <set>
 #include <stdexcept>
 
+#include "kernels/fabric/membrane.hpp"
 #include "kernels/fabric/vector3.hpp"
 
 namespace drogue::fabric {
@@ -72,8 +73,9 @@ RingSlots ring_slots(const Mesh& mesh) {
         const Vector3<double> next = to(ring[k]);
         entries.push_back({ring[k], {dot(next, next)}});
         if (k == 0) continue;
-        const Vector3<double> before = to(ring[k - 1]), between = next - before;
-        entries.back().value = {dot(next, next), dot(between, between), inverse_area(before, next)};
+        const Vector3<double> before = to(ring[k - 1]);
+        const Products<double> rest{dot(before, before), dot(before, next), dot(next, next)};
+        entries.back().value = {rest.kk, rest.jk, inverse_area(rest)};
       }
     }
   return sliced(of_vertex);

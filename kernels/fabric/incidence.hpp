@@ -6,9 +6,9 @@
 namespace drogue::fabric {
 
 /// Triangles of every vertex as rings of neighbours: each neighbour and the one in the slot before it make a
-/// triangle with the vertex, in the triangle's order. L^2 of the edge to the neighbour and of the one between
-/// the two, m^2, and the inverse area, 1/m^2. Between two rings, or parts of a torn one, stands the vertex
-/// itself: triangles with a corner twice have no area, and neutral slots make no other.
+/// triangle with the vertex, in the triangle's order. L^2 of the edge to the neighbour and its product with
+/// the edge to the one before, m^2, and the inverse area, 1/m^2. Between two rings, or parts of a torn one,
+/// stands the vertex itself: triangles with a corner twice have no area, and neutral slots make no other.
 using RingSlots = Slots<3>;
 
 /// Springs of every vertex: the other end; stiffness, N/m, and length at rest, m.

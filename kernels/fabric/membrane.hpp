@@ -33,6 +33,26 @@ struct Edges {
   R of[3];
 };
 
+/// Scalar products of the edges from vertex 0 of a triangle to vertices j = 1 and k = 2, m^2.
+template <class R>
+struct Products {
+  R jj, jk, kk;
+};
+
+/// Squared lengths of all edges, m^2; rounding makes none negative.
+template <class R>
+KOKKOS_INLINE_FUNCTION Edges<R> squared_edges(const Products<R>& of) {
+  return {{device::maximum(of.jj + of.kk - 2.0 * of.jk, R(0.0)), of.kk, of.jj}};
+}
+
+/// 1/m^2; 0 of a triangle that has no area. Written once for all who compute it, so that they find the same
+/// bits where the build promises that.
+template <class R>
+KOKKOS_INLINE_FUNCTION R inverse_area(const Products<R>& rest) {
+  const R squared = rest.jj * rest.kk - rest.jk * rest.jk;
+  return device::select(squared > R(0.0), 2.0 * device::root(squared).inverse, R(0.0));
+}
+
 /// 2 dW/dq_e of the membrane energy W = A [(lambda + 2G)/2 tr(E)^2 - 2G det(E)] with Green's strain
 /// E: its trace is sum(n_e q_e) / (16 A^2), n_e the sum of the other two L^2 less its own, and its
 /// determinant (Q^2 - 2 sum(q_e^2)) / (64 A^2), Q = sum(q_e). `q` is l^2 - L^2 of the edges, `rest` L^2, m^2;
@@ -53,10 +73,28 @@ KOKKOS_INLINE_FUNCTION Edges<R> edge_tensions(const Moduli& m, const Edges<R>& q
            volumetric * n2 + shear * (2.0 * q.of[2] - all)}};
 }
 
-/// The same of the relaxed energy (Pipkin 1986, Steigmann 1990), the least that wrinkles finer than the mesh
-/// can leave: with principal strains E1 >= E2 the sheet is taut where the minor stress is not negative, else,
-/// where E1 > 0, wrinkled and in uniaxial tension, young E1, and else slack. A stress a 1 - b cof(E) has the
-/// tensions (2 a n_e + b (2 q_e - Q)) / (16 A). The force is continuous.
+/// `edge_tensions` of the edges to j and k alone, in the products g and, at rest, G: with d = g - G the sum
+/// of the n_e q_e is 2 (G_kk d_jj + G_jj d_kk - 2 G_jk d_jk), n_k is 2 (G_jj - G_jk), and 2 q_k - Q is 2
+/// (d_jk - d_jj).
+template <class R>
+struct SpokeTensions {
+  R j, k;
+};
+template <class R>
+KOKKOS_INLINE_FUNCTION SpokeTensions<R> spoke_tensions(const Moduli& m, const Products<R>& now,
+                                                       const Products<R>& rest, R inverse_area) {
+  const R jj = now.jj - rest.jj, jk = now.jk - rest.jk, kk = now.kk - rest.kk;
+  const R volumetric = (0.03125 * (m.lambda + m.two_g)) * (inverse_area * inverse_area) *
+                       (rest.kk * jj + rest.jj * kk - (rest.jk + rest.jk) * jk);
+  const double shear = 0.125 * m.two_g;
+  return {inverse_area * (volumetric * (rest.kk - rest.jk) + shear * (jk - kk)),
+          inverse_area * (volumetric * (rest.jj - rest.jk) + shear * (jk - jj))};
+}
+
+/// `edge_tensions` of the relaxed energy (Pipkin 1986, Steigmann 1990), the least that wrinkles finer than
+/// the mesh can leave: with principal strains E1 >= E2 the sheet is taut where the minor stress is not
+/// negative, else, where E1 > 0, wrinkled and in uniaxial tension, young E1, and else slack. A stress a 1 - b
+/// cof(E) has the tensions (2 a n_e + b (2 q_e - Q)) / (16 A). The force is continuous.
 template <class R>
 KOKKOS_INLINE_FUNCTION Edges<R> relaxed_tensions(const Moduli& m, const Edges<R>& q, const Edges<R>& rest,
                                                  R inverse_area) {

@@ -11,6 +11,8 @@ namespace {
 
 std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
+int whole_slices(int vertices) { return (vertices + slice - 1) / slice * slice; }
+
 /// The axis along which points reach farthest.
 std::size_t longest_axis(const std::vector<Vector>& rest, std::span<const int> vertices) {
   std::size_t longest = 0;
@@ -98,10 +100,24 @@ Slots<values> slots_of_patch(const Slots<values>& slots, const std::vector<int>&
   return sliced(of_rank);
 }
 
+/// Lists the rows of pairs of the last patch.
+void append_rows(Patches& patches) {
+  const int slices = patches.team / slice;
+  const auto begin = patches.triangles.first.size() - 1 - index(slices);
+  for (int s = 0; s < slices; ++s) {
+    const int end = patches.triangles.first[begin + index(s) + 1];
+    for (int k = patches.triangles.first[begin + index(s)] + 1; k < end; k += 2)
+      patches.row.push_back({s * slice, k * slice, std::min(2, end - k)});
+  }
+  const int rows = static_cast<int>(patches.row.size());
+  patches.most_rows = std::max(patches.most_rows, rows - patches.first_row.back());
+  patches.first_row.push_back(rows);
+}
+
 }  // namespace
 
 Patches cut_patches(const std::vector<Vector>& rest, const RingSlots& triangles, const SpringSlots& springs,
-                    int count, int most_threads) {
+                    int count) {
   const Cut cut(rest, count);
   const std::vector<std::vector<int>>& own = cut.patches();
   std::vector<int> patch_of(rest.size());
@@ -110,6 +126,7 @@ Patches cut_patches(const std::vector<Vector>& rest, const RingSlots& triangles,
 
   Patches patches;
   patches.first_halo.push_back(0);
+  patches.first_row.push_back(0);
   std::vector<std::vector<int>> halo(own.size());
   std::vector<int> place(rest.size(), -1);
   std::size_t most_own = 0;
@@ -133,8 +150,7 @@ Patches cut_patches(const std::vector<Vector>& rest, const RingSlots& triangles,
     for (const int i : vertices)
       if (place[index(i)] == 0) place[index(i)] = patches.places++;
 
-  const int wanted = std::max(static_cast<int>(most_own), std::min(patches.most_halo, most_threads));
-  patches.team = (wanted + slice - 1) / slice * slice;
+  patches.team = whole_slices(static_cast<int>(most_own));
   for (std::size_t p = 0; p < own.size(); ++p) {
     std::map<int, int> number;
     for (std::size_t rank = 0; rank < index(patches.team); ++rank) {
@@ -151,8 +167,13 @@ Patches cut_patches(const std::vector<Vector>& rest, const RingSlots& triangles,
     const auto local = [&](int i) { return number.at(i); };
     append(patches.triangles, slots_of_patch(triangles, own[p], patches.team, local));
     append(patches.springs, slots_of_patch(springs, own[p], patches.team, local));
+    append_rows(patches);
   }
   return patches;
+}
+
+int team_threads(const Patches& patches, int rows, int most) {
+  return std::max(patches.team, std::min(whole_slices(std::max(patches.most_halo, rows * slice)), most));
 }
 
 }  // namespace drogue::fabric

@@ -7,13 +7,20 @@
 
 namespace drogue::fabric {
 
-/// A mesh in patches, one for each team of a resident grid and a vertex for each of its threads. Rank r of
-/// patch p stands at p * team + r. A team numbers what it holds: its ranks first, then its halo, the vertices
-/// of other patches that share a triangle or spring with its own. Who reads a vertex of another patch has one
-/// that is read there: neighbours wait for each other.
+/// Two triangles, or the last one, of each vertex of a slice that follow one another in the rings.
+struct PairRow {
+  int vertex;     ///< first of the slice, of its team
+  int slot;       ///< first of the slice, of the first triangles
+  int triangles;  ///< 1 or 2
+};
+
+/// A mesh in patches, one for each team of a resident grid. Rank r of patch p stands at p * team + r. A team
+/// numbers what it holds: its ranks first, then its halo, the vertices of other patches that share a triangle
+/// or spring with its own. Who reads a vertex of another patch has one that is read there: neighbours wait
+/// for each other.
 struct Patches {
-  int team = 0;             ///< threads, whole slices
-  std::vector<int> vertex;  ///< (patches * team): of the mesh; -1 for threads without
+  int team = 0;             ///< ranks, whole slices
+  std::vector<int> vertex;  ///< (patches * team): of the mesh; -1 for ranks without
   std::vector<int> place;   ///< (patches * team): of the board, where others read the vertex; -1 if none does
   std::vector<int> first_halo;               ///< of every patch, and the end
   std::vector<int> halo_vertex, halo_place;  ///< of the mesh, of the board
@@ -21,16 +28,22 @@ struct Patches {
   int most_halo = 0;
   RingSlots triangles;  ///< of (patches * team) vertices, neighbours by their teams' numbers
   SpringSlots springs;
+  std::vector<PairRow> row;    ///< of all triangles, in the order of patches and slices
+  std::vector<int> first_row;  ///< of every patch, and the end
+  int most_rows = 0;
 
   [[nodiscard]] int count() const { return static_cast<int>(first_halo.size()) - 1; }
 };
 
 /// Cuts a mesh by halves across its longest extent, again and again, into `count` patches (at most
 /// as many as there are vertices) that differ by one vertex at most. `triangles` and `springs` are the slots
-/// that forces read; a patch reads the same in the same order. Teams are as large as the largest patch, and
-/// up to `most_threads` as its halo.
+/// that forces read; a patch reads the same in the same order. Teams are as large as the largest patch.
 [[nodiscard]] Patches cut_patches(const std::vector<Vector>& rest, const RingSlots& triangles,
-                                  const SpringSlots& springs, int count, int most_threads);
+                                  const SpringSlots& springs, int count);
+
+/// Threads of a team: one a rank, at least, and up to `most` if it has as many vertices in its halo, or
+/// `rows`.
+[[nodiscard]] int team_threads(const Patches& patches, int rows, int most);
 
 /// Slots of the patch that has the most.
 template <int values>

@@ -3,6 +3,7 @@
 #include "kernels/device/resident_grid.hpp"
 #include "kernels/fabric/patches.hpp"
 #include "kernels/fabric/step.hpp"
+#include "kernels/fabric/team_slots.hpp"
 
 namespace drogue::fabric {
 
@@ -12,6 +13,8 @@ struct PatchViews {
   ListView<ExecutionSpace, int> vertex, place, first_halo, halo_vertex, halo_place;
   SlotViews<ExecutionSpace, 3> triangles;
   SlotViews<ExecutionSpace, 2> springs;
+  ListView<ExecutionSpace, PairRow> row;
+  ListView<ExecutionSpace, int> first_row;
   int team, most_halo;
   std::size_t most_triangle_slots, most_spring_slots;
 };
@@ -25,15 +28,13 @@ template <class ExecutionSpace>
           list_view(space, "drogue::fabric::halo_places", from.halo_place),
           slot_views(space, from.triangles),
           slot_views(space, from.springs),
+          list_view(space, "drogue::fabric::pair_rows", from.row),
+          list_view(space, "drogue::fabric::first_row", from.first_row),
           from.team,
           from.most_halo,
           most_slots(from, from.triangles),
           most_slots(from, from.springs)};
 }
-
-/// Threads of a team that has a multiprocessor for itself: each has 168 registers in a usual one, 80 in the
-/// largest.
-inline constexpr int usual_resident_team = 384, largest_resident_team = 768;
 
 /// What steps that share a launch need beside the cloth.
 template <class ExecutionSpace>
@@ -43,99 +44,29 @@ struct Resident {
   std::uint64_t epoch = 0;  ///< of the last stage launched
 };
 
-/// A column of numbers in a team's memory.
-template <class T>
-struct TeamList {
-  T* data;
-  KOKKOS_FUNCTION T& operator()(int i) const { return data[i]; }
-};
-
-/// Columns of them.
-struct TeamTable {
-  double* data;
-  int rows;
-  KOKKOS_FUNCTION double& operator()(int row, int column) const { return data[column * rows + row]; }
-};
-
-/// The slots of a patch in its team's memory.
-template <int values>
-struct TeamSlots {
-  TeamList<int> first, neighbour;
-  TeamTable value;
-
-  [[nodiscard]] static std::size_t bytes(int team, std::size_t slots) {
-    return (static_cast<std::size_t>(team / slice) + 1 + slots) * sizeof(int) +
-           values * slots * sizeof(double);
-  }
-
-  /// Copies those of the member's patch; the team must wait before it reads them.
-  template <class Member, class Views>
-  KOKKOS_FUNCTION TeamSlots(const Member& member, const Views& from) {
-    const int slices = member.team_size() / slice, patch = member.league_rank() * slices;
-    const int begin = from.first(patch), slots = (from.first(patch + slices) - begin) * slice;
-    value = {doubles(member, values * slots), slots};
-    first.data = integers(member, slices + 1);
-    neighbour.data = integers(member, slots);
-    for (int s = member.team_rank(); s <= slices; s += member.team_size())
-      first(s) = from.first(patch + s) - begin;
-    for (int slot = member.team_rank(); slot < slots; slot += member.team_size()) {
-      neighbour(slot) = from.neighbour(begin * slice + slot);
-      for (int a = 0; a < values; ++a) value(slot, a) = from.value(begin * slice + slot, a);
-    }
-  }
-
-  template <class Take>
-  KOKKOS_FUNCTION void each(int i, const Take& take) const {
-    each_slot(first, i, take);
-  }
-  template <class Read, class Take>
-  KOKKOS_FUNCTION void each_pair(int i, const Read& read, const Take& take) const {
-    each_pair_of_slots(first, i, read, take);
-  }
-
- private:
-  template <class Member>
-  KOKKOS_FUNCTION static double* doubles(const Member& member, int count) {
-    return static_cast<double*>(member.team_scratch(0).get_shmem_aligned(
-        static_cast<std::size_t>(count) * sizeof(double), alignof(double)));
-  }
-  template <class Member>
-  KOKKOS_FUNCTION static int* integers(const Member& member, int count) {
-    return static_cast<int*>(member.team_scratch(0).get_shmem_aligned(
-        static_cast<std::size_t>(count) * sizeof(int), alignof(int)));
-  }
-};
-
-/// What `elastic_force` asks of a Cloth, of a patch.
-struct TeamCloth {
-  TeamSlots<3> triangles;
-  TeamSlots<2> springs;
-  Moduli moduli;
-  Vector3<double> gravity;
-  double damping;
-
-  template <class R>
-  KOKKOS_FUNCTION R rest_edge(int /*i*/, int slot) const {
-    return triangles.value(slot, 0);
-  }
-  template <class R>
-  KOKKOS_FUNCTION RestTriangle<R> rest_triangle(R before, R next, int slot) const {
-    return stored_triangle(triangles.value, before, next, slot);
-  }
+/// A thread's vertex, in registers.
+struct OwnVertex {
+  int vertex, place;
+  Vector3<double> x, v, load;
+  Vector3<double> v2, v3, v_now;  ///< velocities of the stages after the first; of this one
+  double inverse_mass;
+  std::uint8_t held;
 };
 
 /// Many steps of Runge and Kutta's method in one launch: what `RungeKuttaFunctor` does in four launches a
-/// step, with a vertex a thread whose state stays in registers, and no barrier across the grid. After every
-/// stage a team posts the positions of those vertices that others read, with the number of the stage, and
-/// waits for those of its halo.
+/// step, with the state of a vertex in the registers of a thread, and no barrier across the grid. The
+/// positions of a stage follow from the velocities of the one before, and these from the forces of the one
+/// before that: at the end of stage e a team posts the positions of stage e+2, of those vertices that others
+/// read, and while it computes stage e+1 those of its halo arrive.
 ///
-/// Two boards, of even and of odd stages, are enough, though nobody hears from all: who posts stage e has
-/// passed the barrier behind stage e-1, at which its team had read what all its neighbours posted for e-1.
-/// They had posted it after their own barrier behind e-2, with all of e-2 read. So whoever reads the place
-/// of e-2 that is now written anew, and only neighbours do (`Patches`), has read it. The first stage of a
-/// launch reads memory, which the launch before has left, and nothing of an older launch is read any more.
-template <class ExecutionSpace, Law law>
-struct ResidentStepsFunctor {
+/// Two boards, of even and of odd stages, are enough, though nobody hears from all: who ends stage e has read
+/// what all its neighbours posted for e+1. They had posted it after their barrier in stage e-1, with all of
+/// stage e read. So whoever reads the place of e that is now written anew for e+2, and only neighbours do
+/// (`Patches`), has read it. The first two stages of a launch read memory, which the launch before has left,
+/// and nothing of an older launch is read any more. A team needs three tables of positions, or two if it
+/// reads none behind the barrier of a stage.
+template <class ExecutionSpace>
+struct ResidentSteps {
   using Points = PointsView<ExecutionSpace>;
   PatchViews<ExecutionSpace> patches;
   Cloth<ExecutionSpace> cloth;
@@ -146,97 +77,132 @@ struct ResidentStepsFunctor {
   std::int64_t steps;   ///< to take, at least 1
   std::uint64_t epoch;  ///< of the last stage of the launch before
 
-  [[nodiscard]] static std::size_t scratch_bytes(const PatchViews<ExecutionSpace>& patches) {
-    const auto points = static_cast<std::size_t>(patches.team + patches.most_halo);
-    return 2 * 3 * points * sizeof(double) + TeamSlots<3>::bytes(patches.team, patches.most_triangle_slots) +
-           TeamSlots<2>::bytes(patches.team, patches.most_spring_slots) + 4 * alignof(double);
+  /// Positions that a team holds, of `count` stages.
+  struct Tables {
+    double* memory;
+    int held, count;
+    KOKKOS_FUNCTION TeamTable operator()(int turn) const { return {memory + turn * 3 * held, held}; }
+  };
+  [[nodiscard]] static std::size_t tables_bytes(const PatchViews<ExecutionSpace>& patches, int count) {
+    return 3 * static_cast<std::size_t>(count * (patches.team + patches.most_halo)) * sizeof(double);
   }
 
-  /// A thread's vertex, in registers.
-  struct Own {
-    int vertex, place;
-    Vector3<double> x, v, load;
-    double inverse_mass;
-    std::uint8_t held;
+  /// What a thread collects: its first vertex of the halo and where others post it, and how many there are.
+  struct Halo {
+    int first, count, rank, place;
   };
 
   template <class Member>
-  KOKKOS_FUNCTION Own own(const Member& member) const {
-    const int at = member.league_rank() * member.team_size() + member.team_rank();
+  KOKKOS_FUNCTION Halo halo(const Member& member) const {
+    const int first = patches.first_halo(member.league_rank()),
+              count = patches.first_halo(member.league_rank() + 1) - first,
+              rank = member.team_size() - 1 - member.team_rank();  // the last threads have the least to do
+    return {first, count, rank, rank < count ? patches.halo_place(first + rank) : -1};
+  }
+
+  template <class Member>
+  KOKKOS_FUNCTION Tables tables(const Member& member, const Halo& halo, int count) const {
+    const int held = patches.team + halo.count;
+    return {static_cast<double*>(member.team_scratch(0).get_shmem_aligned(
+                3 * static_cast<std::size_t>(count * held) * sizeof(double), alignof(double))),
+            held, count};
+  }
+
+  /// The thread's vertex, if it has one, with the positions of the first two stages.
+  template <class Member>
+  KOKKOS_FUNCTION OwnVertex begin(const Member& member, const Halo& halo, const Tables& points) const {
     const Vector3<double> zero{0.0, 0.0, 0.0};
-    Own own{patches.vertex(at), patches.place(at), zero, zero, zero, 0.0, 0};
-    if (own.vertex < 0) return own;
-    own.x = load_points<double>(x, own.vertex), own.v = load_points<double>(v, own.vertex);
-    if (cloth.load.extent(0) > 0) own.load = load_points<double>(cloth.load, own.vertex);
-    own.held = cloth.held(own.vertex);
-    own.inverse_mass = cloth.inverse_mass(own.vertex);
+    OwnVertex own{-1, -1, zero, zero, zero, zero, zero, zero, 0.0, 0};
+    const auto store = [&](int number, const Vector3<double>& at, const Vector3<double>& velocity) {
+      store_points(points(0), number, at);
+      const double part = share_after(0) * dt;
+      store_points(points(1), number, at + part * velocity);
+    };
+    if (const int rank = member.team_rank(); rank < patches.team) {
+      const int at = member.league_rank() * patches.team + rank;
+      own.vertex = patches.vertex(at), own.place = patches.place(at);
+      if (own.vertex >= 0) {
+        own.x = load_points<double>(x, own.vertex), own.v_now = own.v = load_points<double>(v, own.vertex);
+        if (cloth.load.extent(0) > 0) own.load = load_points<double>(cloth.load, own.vertex);
+        own.held = cloth.held(own.vertex);
+        own.inverse_mass = cloth.inverse_mass(own.vertex);
+      } else {
+        store_points(points(points.count - 1), rank, zero);  // neutral slots of its lane read it
+      }
+      store(rank, own.x, own.v);
+    }
+    for (int k = halo.rank; k < halo.count; k += member.team_size()) {
+      const int vertex = patches.halo_vertex(halo.first + k);
+      store(patches.team + k, load_points<double>(x, vertex), load_points<double>(v, vertex));
+    }
     return own;
   }
 
+  /// Ends stage `done` of this launch under an elastic force, N: posts the position of the next stage but one
+  /// and leaves it in `points`.
   template <class Member>
-  KOKKOS_FUNCTION void operator()(const Member& member) const {
-    const int rank = member.team_rank(), team = member.team_size();
-    const int first = patches.first_halo(member.league_rank()),
-              halo = patches.first_halo(member.league_rank() + 1) - first, held = team + halo;
-    auto* const memory = static_cast<double*>(member.team_scratch(0).get_shmem_aligned(
-        2 * 3 * static_cast<std::size_t>(held) * sizeof(double), alignof(double)));
-    const auto points = [&](std::int64_t turn) { return TeamTable{memory + turn % 2 * 3 * held, held}; };
-    const TeamCloth local{TeamSlots<3>(member, patches.triangles), TeamSlots<2>(member, patches.springs),
-                          cloth.moduli, cloth.gravity, cloth.damping};
-    Own mine = own(member);
-    store_points(points(0), rank, mine.x);
-    for (int k = rank; k < halo; k += team)
-      store_points(points(0), team + k, load_points<double>(x, patches.halo_vertex(first + k)));
-    member.team_barrier();
-
-    // Of the stages after the first.
-    Vector3<double> v2 = mine.v, v3 = mine.v, v_now = mine.v;
-    const std::int64_t stages = 4 * steps;
-    for (std::int64_t done = 0; done < stages; ++done) {
-      const int stage = static_cast<int>(done % 4);
-      Vector3<double> position = mine.x;
-      if (mine.vertex >= 0) {
-        const Vector3<double> force = elastic_force<law, double>(local, points(done), rank) + mine.load;
-        const Vector3<double> a =
-            acceleration(local, force, mine.inverse_mass, v_now, free_axes<double>(&mine.held));
-        if (stage == 3) {
-          const StepEnd<double> end = step_end(dt, mine.x, mine.v, v2, v3, v_now, a);
-          mine.x = position = end.x;
-          mine.v = v_now = end.v;
-          watch.look(begun + done / 4 + 1, mine.vertex, end.x, end.v);
-        } else {
-          const double part = share_after(stage) * dt;
-          position = mine.x + part * v_now;
-          v_now = mine.v + part * a;
-          if (stage == 0) v2 = v_now;
-          if (stage == 1) v3 = v_now;
-        }
-      }
-      if (done + 1 == stages) break;
-      exchange(member, mine, position, points(done + 1), epoch + 1 + static_cast<std::uint64_t>(done), first,
-               halo);
+  KOKKOS_FUNCTION void end_stage(const Member& member, OwnVertex& own, std::int64_t done,
+                                 const Vector3<double>& elastic, const TeamTable& points) const {
+    const Vector3<double> a =
+        acceleration(cloth, elastic + own.load, own.inverse_mass, own.v_now, free_axes<double>(&own.held));
+    const int stage = static_cast<int>(done % 4);
+    Vector3<double> position;
+    if (stage == 3) {
+      own.v = own.v_now = end_velocity(dt, own.v, own.v2, own.v3, own.v_now, a);
+      watch.look(begun + done / 4 + 1, own.vertex, own.x, own.v);
+      position = own.x + (share_after(0) * dt) * own.v;
+    } else {
+      const Vector3<double> velocity = own.v + (share_after(stage) * dt) * a;
+      if (stage == 2)
+        position = own.x = end_position(dt, own.x, own.v, own.v2, own.v3, velocity);
+      else
+        position = own.x + (share_after(stage + 1) * dt) * velocity;
+      if (stage == 0) own.v2 = velocity;
+      if (stage == 1) own.v3 = velocity;
+      own.v_now = velocity;
     }
-    if (mine.vertex < 0) return;
-    store_points(x, mine.vertex, mine.x);
-    store_points(v, mine.vertex, mine.v);
-    if (mine.vertex == 0) watch.steps(0) = begun + steps;
+    // What nobody reads would replace what somebody may still have to read.
+    if (own.place >= 0 && done + 2 < 4 * steps)
+      member.post(epoch_after(done), static_cast<std::size_t>(own.place),
+                  {{position.x, position.y, position.z}});
+    store_points(points, member.team_rank(), position);
   }
 
-  /// Brings the positions of the next stage into the team's memory.
+  /// Brings what the halo posted at the end of stage `done` into `points`.
   template <class Member>
-  KOKKOS_FUNCTION void exchange(const Member& member, const Own& mine, const Vector3<double>& position,
-                                const TeamTable& next, std::uint64_t posted, int first, int halo) const {
-    const int rank = member.team_rank(), team = member.team_size();
-    if (mine.place >= 0)
-      member.post(posted, static_cast<std::size_t>(mine.place), {{position.x, position.y, position.z}});
-    store_points(next, rank, position);
-    for (int k = rank; k < halo; k += team) {
-      const device::Posted other =
-          member.collect(posted, static_cast<std::size_t>(patches.halo_place(first + k)));
-      store_points(next, team + k, Vector3<double>{other.value[0], other.value[1], other.value[2]});
+  KOKKOS_FUNCTION void collect(const Member& member, const Halo& halo, std::int64_t done,
+                               const TeamTable& points) const {
+    int place = halo.place;
+    for (int k = halo.rank; k < halo.count; k += member.team_size()) {
+      if (k > halo.rank) place = patches.halo_place(halo.first + k);
+      const device::Posted other = member.collect(epoch_after(done), static_cast<std::size_t>(place));
+      store_points(points, patches.team + k, Vector3<double>{other.value[0], other.value[1], other.value[2]});
     }
-    // The next stage writes the other table, which all have read when they are here.
-    member.team_barrier();
+  }
+  KOKKOS_FUNCTION std::uint64_t epoch_after(std::int64_t done) const {
+    return epoch + 1 + static_cast<std::uint64_t>(done);
+  }
+
+  /// Calls `force(points, done)` for each stage: what is the elastic force on the thread's vertex, N, when
+  /// `arrive` has been called in it, which waits for the team and the positions of the next stage.
+  template <class Member, class Force>
+  KOKKOS_FUNCTION void run(const Member& member, const Halo& halo, const Tables& points, OwnVertex& own,
+                           const Force& force) const {
+    const std::int64_t stages = 4 * steps;
+    int now = 0;  // of the tables
+    for (std::int64_t done = 0; done < stages; ++done) {
+      const int last = points.count - 1, next = now == last ? 0 : now + 1, then = next == last ? 0 : next + 1;
+      const Vector3<double> elastic = force(points(now), done, [&] {
+        if (done > 0 && done + 1 < stages) collect(member, halo, done - 1, points(next));
+        member.team_barrier();
+      });
+      if (own.vertex >= 0) end_stage(member, own, done, elastic, points(then));
+      now = next;
+    }
+    if (own.vertex < 0) return;
+    store_points(x, own.vertex, own.x);
+    store_points(v, own.vertex, own.v);
+    if (own.vertex == 0) watch.steps(0) = begun + steps;
   }
 };
 

@@ -2,6 +2,7 @@
 
 #include <Kokkos_Core.hpp>
 
+#include "kernels/device/pack.hpp"
 #include "kernels/fabric/slots.hpp"
 #include "kernels/fabric/views.hpp"
 
@@ -14,17 +15,24 @@ KOKKOS_INLINE_FUNCTION void each_slot(const First& first, int i, const Take& tak
   for (int k = first(i / slice); k < end; ++k) take(k * slice + i % slice);
 }
 
-/// Calls `take(before, next, slot)` for the slots but the first one: what `read(slot)` gives of the slot
-/// before, which is read once, and of the slot.
-template <class First, class Read, class Take>
-KOKKOS_INLINE_FUNCTION void each_pair_of_slots(const First& first, int i, const Read& read,
-                                               const Take& take) {
+/// Calls `take(before, next, slot)` for the slots but the first one: what `read(slot, index(slot))` gives of
+/// the slot before, which is read once, and of the slot. Indices are read a slot ahead: what they name then
+/// waits for one way to memory and not for two.
+template <class First, class Index, class Read, class Take>
+KOKKOS_INLINE_FUNCTION void each_pair_of_slots(const First& first, int i, const Index& index,
+                                               const Read& read, const Take& take) {
   const int begin = first(i / slice), end = first(i / slice + 1);
   if (begin == end) return;
-  auto before = read(begin * slice + i % slice);
-  for (int k = begin + 1; k < end; ++k) {
-    const int slot = k * slice + i % slice;
-    const auto next = read(slot);
+  const int last = (end - 1) * slice + i % slice;
+  int slot = begin * slice + i % slice;
+  auto before = read(slot, index(slot));
+  auto ahead = index(device::minimum(slot + slice, last));
+#if defined(__CUDA_ARCH__)
+#pragma unroll 2  // else what is carried from slot to slot is moved
+#endif
+  for (slot += slice; slot <= last; slot += slice) {
+    const auto next = read(slot, ahead);
+    ahead = index(device::minimum(slot + slice, last));
     take(before, next, slot);
     before = next;
   }
@@ -43,11 +51,10 @@ struct SlotViews {
     each_slot(first, i, take);
   }
 
-  /// Calls `take(before, next, slot)` for the slots of a ring but the first one: what `read(slot)` gives of
-  /// the slot before, which is read once, and of the slot.
-  template <class Read, class Take>
-  KOKKOS_INLINE_FUNCTION void each_pair(int i, const Read& read, const Take& take) const {
-    each_pair_of_slots(first, i, read, take);
+  /// Calls `take(before, next, slot)` for the slots of a ring but the first one (`each_pair_of_slots`).
+  template <class Index, class Read, class Take>
+  KOKKOS_INLINE_FUNCTION void each_pair(int i, const Index& index, const Read& read, const Take& take) const {
+    each_pair_of_slots(first, i, index, read, take);
   }
 };
 

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "kernels/fabric/resident_pairs.hpp"
+#include "kernels/fabric/resident_rings.hpp"
 #include "kernels/fabric/solver_on.hpp"
 
 namespace drogue::fabric {
@@ -19,13 +21,17 @@ void SolverOn<ExecutionSpace, law>::make_resident(const Parameters& p, const Rin
     if (teams == 0) return;
     const auto share = [&](int parts) { return (_vertices + parts - 1) / parts; };
     const int count = std::min(teams, share(p.patch > 0 ? p.patch : slice));
-    if (share(count) > largest_resident_team) return;
-    const Patches patches = cut_patches(p.mesh.rest, rings, springs, count, largest_resident_team);
+    if (share(count) > most_ring_threads) return;
+    const Patches patches = cut_patches(p.mesh.rest, rings, springs, count);
     const PatchViews<ExecutionSpace> views = patch_views(_instance.space(), patches);
-    const std::size_t scratch = ResidentStepsFunctor<ExecutionSpace, law>::scratch_bytes(views);
+    const bool pairs = patches.team <= most_pair_vertices;
+    const std::size_t scratch = pairs ? ResidentPairsFunctor<ExecutionSpace, law>::scratch_bytes(views)
+                                      : ResidentRingsFunctor<ExecutionSpace, law>::scratch_bytes(views);
     if (scratch > Grid::most_scratch_bytes(_instance)) return;
+    const int threads = pairs ? team_threads(patches, patches.most_rows, most_pair_threads)
+                              : team_threads(patches, 0, most_ring_threads);
     _resident.emplace(Resident<ExecutionSpace>{
-        {_instance, count, patches.team, scratch, static_cast<std::size_t>(patches.places)}, views});
+        {_instance, count, threads, scratch, static_cast<std::size_t>(patches.places)}, views});
   }
 }
 
@@ -34,12 +40,12 @@ void SolverOn<ExecutionSpace, law>::make_resident(const Parameters& p, const Rin
 template <class ExecutionSpace, Law law>
 void SolverOn<ExecutionSpace, law>::take_resident(std::int64_t steps) {
   if constexpr (device::ResidentGrid<ExecutionSpace>::available) {
-    const ResidentStepsFunctor<ExecutionSpace, law> functor{
+    const ResidentSteps<ExecutionSpace> of{
         _resident->patches, _cloth, _x, _v, _watch, _clock.dt, _clock.step, steps, _resident->epoch};
-    if (_resident->patches.team <= usual_resident_team)
-      _resident->grid.template launch<usual_resident_team, 1>(functor);
+    if (_resident->patches.team <= most_pair_vertices)
+      _resident->grid.template launch<most_pair_threads, 1>(ResidentPairsFunctor<ExecutionSpace, law>{of});
     else
-      _resident->grid.template launch<largest_resident_team, 1>(functor);
+      _resident->grid.template launch<most_ring_threads, 1>(ResidentRingsFunctor<ExecutionSpace, law>{of});
     _resident->epoch += 4 * static_cast<std::uint64_t>(steps);
   }
 }

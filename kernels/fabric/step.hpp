@@ -7,20 +7,24 @@ namespace drogue::fabric {
 /// The share of dt that leads from the beginning of a step to the stage after this one.
 KOKKOS_INLINE_FUNCTION double share_after(int stage) { return stage == 2 ? 1.0 : 0.5; }
 
-/// The state at the end of a step of the classical Runge-Kutta method (Kutta 1901) on x' = v, v' = a(x, v),
-/// from the velocities of its stages, which lie in memory anyway, and the last acceleration: sums of
-/// accelerations would be read and written in every stage.
+/// The position at the end of a step of the classical Runge-Kutta method (Kutta 1901) on x' = v, v' = a(x,
+/// v), from the velocities of its stages, which lie in memory anyway: sums of accelerations would be read and
+/// written in every stage.
 template <class R>
-struct StepEnd {
-  Vector3<R> x, v;
-};
+KOKKOS_INLINE_FUNCTION Vector3<R> end_position(double dt, const Vector3<R>& x, const Vector3<R>& v,
+                                               const Vector3<R>& v2, const Vector3<R>& v3,
+                                               const Vector3<R>& v4) {
+  return x + (dt / 6.0) * (v + 2.0 * (v2 + v3) + v4);
+}
+
+/// The velocity, from the last acceleration too.
 template <class R>
-KOKKOS_INLINE_FUNCTION StepEnd<R> step_end(double dt, const Vector3<R>& x, const Vector3<R>& v,
-                                           const Vector3<R>& v2, const Vector3<R>& v3, const Vector3<R>& v4,
-                                           const Vector3<R>& a4) {
+KOKKOS_INLINE_FUNCTION Vector3<R> end_velocity(double dt, const Vector3<R>& v, const Vector3<R>& v2,
+                                               const Vector3<R>& v3, const Vector3<R>& v4,
+                                               const Vector3<R>& a4) {
   // Differences first: what a third lacks must not slow a vertex that nothing pulls.
   const Vector3<R> gained = (v2 - v) + 2.0 * (v3 - v) + (v4 - v);
-  return {x + (dt / 6.0) * (v + 2.0 * (v2 + v3) + v4), v + ((1.0 / 3.0) * gained + (dt / 6.0) * a4)};
+  return v + ((1.0 / 3.0) * gained + (dt / 6.0) * a4);
 }
 
 /// One stage of it.
@@ -46,12 +50,13 @@ struct RungeKuttaFunctor {
     const Vector3<R> v_now = stage == 0 ? v_n : load_points<R>(velocity[stage - 1], i);
     const Vector3<R> a = acceleration(cloth, pull, v_now, i), x_n = load_points<R>(x, i);
     if (stage == 3) {
-      const StepEnd<R> end =
-          step_end(dt, x_n, v_n, load_points<R>(velocity[0], i), load_points<R>(velocity[1], i), v_now, a);
-      store_points(x, i, end.x);
-      store_points(v, i, end.v);
+      const Vector3<R> v2 = load_points<R>(velocity[0], i), v3 = load_points<R>(velocity[1], i),
+                       end_x = end_position(dt, x_n, v_n, v2, v3, v_now),
+                       end_v = end_velocity(dt, v_n, v2, v3, v_now, a);
+      store_points(x, i, end_x);
+      store_points(v, i, end_v);
       const std::int64_t step = watch.steps(1) + 1;
-      watch.look(step, i, end.x, end.v);
+      watch.look(step, i, end_x, end_v);
       if (pack == 0) watch.steps(0) = step;
       return;
     }

@@ -56,11 +56,11 @@ struct TotalsFunctor {
     const auto to = [&](int neighbour) { return load_points<double>(x, neighbour) - own; };
     if constexpr (whole_triangles<law>)
       each_triangle<double>(
-          cloth, x, i,
-          [&](const Vector3<double>& to_j, const Vector3<double>& to_k, const RestTriangle<double>& rest,
-              const int*, const int*) {
-            const Edges<double> now{{squared(to_k - to_j), squared(to_k), squared(to_j)}};
-            energy += membrane_energy<law>(cloth.moduli, now, rest.edges, rest.inverse_area) / 3.0;
+          cloth, x, i, [&](const Spoke<double>& j, const Spoke<double>& k, const RestTriangle<double>& rest) {
+            const Products<double> now{j.squared, dot(j.to, k.to), k.squared};
+            energy += membrane_energy<law>(cloth.moduli, squared_edges(now), squared_edges(rest.products),
+                                           rest.inverse_area) /
+                      3.0;
           });
     cloth.springs.each(i, [&](int slot) {
       energy +=

@@ -3,7 +3,8 @@
 #include <map>
 #include <set>
 
-#include "kernels/fabric/resident_steps.hpp"
+#include "kernels/fabric/resident_pairs.hpp"
+#include "kernels/fabric/resident_rings.hpp"
 #include "kernels/fabric/solver.hpp"
 #include "tests/support/emulated_grid.hpp"
 #include "tests/support/fabric_mesh.hpp"
@@ -32,7 +33,7 @@ Mesh mesh_of(int nx, int ny) {
 }
 
 Patches cut(const Mesh& mesh, int count) {
-  return cut_patches(mesh.rest, ring_slots(mesh), spring_slots(mesh, {}), count, most_threads);
+  return cut_patches(mesh.rest, ring_slots(mesh), spring_slots(mesh, {}), count);
 }
 
 /// Those who share a triangle or a line with vertex i.
@@ -138,7 +139,7 @@ Parameters cloth_of(const Mesh& mesh) {
 }
 
 /// Steps as a resident grid takes them, in launches of `cuts` steps.
-template <Law law>
+template <Law law, template <class, Law> class Functor>
 void run_emulated(const Parameters& p, int count, const std::vector<std::int64_t>& cuts,
                   std::vector<Vector>& x, std::vector<Vector>& v) {
   using Space = Kokkos::Serial;
@@ -147,7 +148,7 @@ void run_emulated(const Parameters& p, int count, const std::vector<std::int64_t
   material.model = law.model;
   const Mesh cloth_mesh = has_triangles(law.model) ? p.mesh : Mesh{p.mesh.rest, {}, {}, {}};
   const Patches patches =
-      cut_patches(p.mesh.rest, ring_slots(cloth_mesh), spring_slots(p.mesh, material), count, most_threads);
+      cut_patches(p.mesh.rest, ring_slots(cloth_mesh), spring_slots(p.mesh, material), count);
   const PatchViews<Space> views = patch_views(space, patches);
   const std::size_t n = p.mass.size();
   Cloth<Space> cloth;
@@ -167,13 +168,13 @@ void run_emulated(const Parameters& p, int count, const std::vector<std::int64_t
   Watch<Space> watch{decltype(watch.steps)("steps"), decltype(watch.lost)("lost"),
                      decltype(watch.raised)("raised")};
   watch.lost() = none_lost;
-  using Functor = ResidentStepsFunctor<Space, law>;
-  testing::EmulatedGrid grid(count, patches.team, Functor::scratch_bytes(views),
-                             static_cast<std::size_t>(patches.places));
+  using Steps = Functor<Space, law>;
+  testing::EmulatedGrid grid(count, team_threads(patches, patches.most_rows, most_threads),
+                             Steps::scratch_bytes(views), static_cast<std::size_t>(patches.places));
   std::int64_t begun = 0;
   std::uint64_t epoch = 0;
   for (const std::int64_t steps : cuts) {
-    grid.launch(Functor{views, cloth, at, velocity, watch, p.dt, begun, steps, epoch});
+    grid.launch(Steps{{views, cloth, at, velocity, watch, p.dt, begun, steps, epoch}});
     begun += steps;
     epoch += 4 * static_cast<std::uint64_t>(steps);
     EXPECT_EQ(watch.steps(0), begun);
@@ -192,7 +193,7 @@ double distance(const std::vector<Vector>& a, const std::vector<Vector>& b) {
   return largest;
 }
 
-template <Law law>
+template <Law law, template <class, Law> class Functor>
 void expect_the_same_steps() {
   Parameters p = cloth_of(mesh_of(11, 8));
   p.material.model = law.model;
@@ -205,15 +206,17 @@ void expect_the_same_steps() {
   EXPECT_GT(distance(x, start), 1e-5);
   for (const int count : {1, 3}) {
     other_x = start, other_v = still;
-    run_emulated<law>(p, count, {2, 1, 4}, other_x, other_v);
+    run_emulated<law, Functor>(p, count, {2, 1, 4}, other_x, other_v);
     EXPECT_LE(distance(x, other_x), rounding * 1e-13) << count << " patches";
     EXPECT_LE(distance(v, other_v), rounding * 1e-11) << count << " patches";
   }
 }
 
 TEST(FabricPatches, TakeTheStepsOfTheOtherDrivers) {
-  expect_the_same_steps<Law{Model::biquadratic}>();
-  expect_the_same_steps<Law{Model::edge}>();
+  expect_the_same_steps<Law{Model::biquadratic}, ResidentRingsFunctor>();
+  expect_the_same_steps<Law{Model::biquadratic}, ResidentPairsFunctor>();
+  expect_the_same_steps<Law{Model::edge}, ResidentRingsFunctor>();
+  expect_the_same_steps<Law{Model::edge}, ResidentPairsFunctor>();
 }
 
 }  // namespace

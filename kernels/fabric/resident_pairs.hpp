@@ -1,0 +1,108 @@
+#pragma once
+
+#include "kernels/fabric/resident_steps.hpp"
+
+namespace drogue::fabric {
+
+/// Vertices of a patch, at most, and threads of its team, with 128 registers each.
+inline constexpr int most_pair_vertices = 384, most_pair_threads = 512;
+
+/// `ResidentSteps` of patches of few vertices, which would leave a multiprocessor idle if a thread went round
+/// the ring of its vertex: a warp takes a row of pairs of triangles and leaves their pulls in the team's
+/// memory, where the thread of the vertex adds them in the order of the ring. Rows that read no halo are done
+/// before the halo is there. What triangles are at rest stays in registers, of a warp's first row.
+template <class ExecutionSpace, Law law>
+struct ResidentPairsFunctor {
+  ResidentSteps<ExecutionSpace> of;
+
+  [[nodiscard]] static std::size_t scratch_bytes(const PatchViews<ExecutionSpace>& patches) {
+    return ResidentSteps<ExecutionSpace>::tables_bytes(patches, 3) +
+           2 * 3 * patches.most_triangle_slots * sizeof(double) +
+           TeamSlots<2>::bytes(patches.team, patches.most_spring_slots) + 3 * alignof(double);
+  }
+
+  /// The pair of a lane.
+  struct Pair {
+    int vertex, pulls, triangles;  ///< `pulls` is the place of the first one in its table
+    int neighbour[3];
+    RestTriangle<double> rest[2];
+  };
+
+  KOKKOS_FUNCTION Pair pair(int row, int lane, int first_slot) const {
+    const auto& slots = of.patches.triangles;
+    const PairRow at = of.patches.row(row);
+    const int next = at.slot + lane, before = next - slice, last = at.triangles == 2 ? next + slice : next;
+    const double squared = slots.value(next, 0);
+    return {at.vertex + lane,
+            next - first_slot,
+            at.triangles,
+            {slots.neighbour(before), slots.neighbour(next), slots.neighbour(last)},
+            {stored_triangle(slots.value, slots.value(before, 0), squared, next),
+             stored_triangle(slots.value, squared, slots.value(last, 0), last)}};
+  }
+
+  KOKKOS_FUNCTION void pull(const Pair& pair, const TeamTable& points, const TeamTable& pulls) const {
+    if constexpr (whole_triangles<law>) {
+      const Vector3<double> own = load_points<double>(points, pair.vertex);
+      const auto to = [&](int k) { return spoke<double>(points, own, pair.neighbour[k]); };
+      const Spoke<double> middle = to(1);
+      store_points(pulls, pair.pulls, triangle_pull<law>(of.cloth.moduli, to(0), middle, pair.rest[0]));
+      if (pair.triangles == 2)
+        store_points(pulls, pair.pulls + slice,
+                     triangle_pull<law>(of.cloth.moduli, middle, to(2), pair.rest[1]));
+    }
+  }
+
+  /// The sum of the pulls from `begin` on, one a slice, in their order. Four at once, so that they do not
+  /// wait for one another's reading.
+  KOKKOS_FUNCTION static Vector3<double> sum_of(const TeamTable& pulls, int begin, int end) {
+    const Vector3<double> zero{0.0, 0.0, 0.0};
+    Vector3<double> sum = zero;
+    for (int k = begin; k < end; k += 4 * slice) {
+      Vector3<double> four[4];
+      for (int n = 0; n < 4; ++n)
+        four[n] = k + n * slice < end ? load_points<double>(pulls, k + n * slice) : zero;
+      for (const Vector3<double>& pull : four) sum = sum + pull;
+    }
+    return sum;
+  }
+
+  template <class Member>
+  KOKKOS_FUNCTION void operator()(const Member& member) const {
+    const auto halo = of.halo(member);
+    const auto points = of.tables(member, halo, 3);
+    const int rank = member.team_rank(), lane = rank % slice, team = of.patches.team, slices = team / slice,
+              slots = static_cast<int>(of.patches.most_triangle_slots);
+    auto* const memory = static_cast<double*>(member.team_scratch(0).get_shmem_aligned(
+        2 * 3 * of.patches.most_triangle_slots * sizeof(double), alignof(double)));
+    const struct { TeamSlots<2> springs; } local{TeamSlots<2>(member, slices, of.patches.springs)};
+    OwnVertex own = of.begin(member, halo, points);
+
+    const int patch = member.league_rank(), first = patch * slices,
+              first_slot = of.patches.triangles.first(first) * slice, begin = of.patches.first_row(patch),
+              end = of.patches.first_row(patch + 1), stride = member.team_size() / slice,
+              row = begin + rank / slice;
+    Pair mine{};
+    if (row < end) mine = pair(row, lane, first_slot);
+    int first_pull = 0, pulls_end = 0;
+    if (own.vertex >= 0) {
+      first_pull = (of.patches.triangles.first(first + rank / slice) + 1) * slice + lane - first_slot;
+      pulls_end = of.patches.triangles.first(first + rank / slice + 1) * slice - first_slot;
+    }
+    member.team_barrier();
+    of.run(member, halo, points, own, [&](const TeamTable& now, std::int64_t done, const auto& arrive) {
+      // Two tables, for some threads add up those of the stage before.
+      const TeamTable pulls{memory + done % 2 * 3 * slots, slots};
+      if (row < end) pull(mine, now, pulls);
+      for (int more = row + stride; more < end; more += stride)
+        pull(pair(more, lane, first_slot), now, pulls);
+      arrive();
+      Vector3<double> elastic{0.0, 0.0, 0.0};
+      if (own.vertex >= 0)
+        elastic = with_springs<law>(local, now, rank, sum_of(pulls, first_pull, pulls_end));
+      return elastic;
+    });
+  }
+};
+
+}  // namespace drogue::fabric

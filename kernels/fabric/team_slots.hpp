@@ -1,0 +1,70 @@
+#pragma once
+
+#include "kernels/fabric/slot_views.hpp"
+
+namespace drogue::fabric {
+
+/// A column of numbers in a team's memory.
+template <class T>
+struct TeamList {
+  T* data;
+  KOKKOS_FUNCTION T& operator()(int i) const { return data[i]; }
+};
+
+/// Columns of them.
+struct TeamTable {
+  double* data;
+  int rows;
+  KOKKOS_FUNCTION double& operator()(int row, int column) const { return data[column * rows + row]; }
+};
+
+/// The slots of a patch in its team's memory.
+template <int values>
+struct TeamSlots {
+  TeamList<int> first, neighbour;
+  TeamTable value;
+
+  [[nodiscard]] static std::size_t bytes(int team, std::size_t slots) {
+    return (static_cast<std::size_t>(team / slice) + 1 + slots) * sizeof(int) +
+           values * slots * sizeof(double);
+  }
+
+  /// Copies those of the member's patch of `slices`; the team must wait before it reads them.
+  template <class Member, class Views>
+  KOKKOS_FUNCTION TeamSlots(const Member& member, int slices, const Views& from) {
+    const int patch = member.league_rank() * slices;
+    const int begin = from.first(patch), slots = (from.first(patch + slices) - begin) * slice;
+    value = {doubles(member, values * slots), slots};
+    first.data = integers(member, slices + 1);
+    neighbour.data = integers(member, slots);
+    for (int s = member.team_rank(); s <= slices; s += member.team_size())
+      first(s) = from.first(patch + s) - begin;
+    for (int slot = member.team_rank(); slot < slots; slot += member.team_size()) {
+      neighbour(slot) = from.neighbour(begin * slice + slot);
+      for (int a = 0; a < values; ++a) value(slot, a) = from.value(begin * slice + slot, a);
+    }
+  }
+
+  template <class Take>
+  KOKKOS_FUNCTION void each(int i, const Take& take) const {
+    each_slot(first, i, take);
+  }
+  template <class Index, class Read, class Take>
+  KOKKOS_FUNCTION void each_pair(int i, const Index& index, const Read& read, const Take& take) const {
+    each_pair_of_slots(first, i, index, read, take);
+  }
+
+ private:
+  template <class Member>
+  KOKKOS_FUNCTION static double* doubles(const Member& member, int count) {
+    return static_cast<double*>(member.team_scratch(0).get_shmem_aligned(
+        static_cast<std::size_t>(count) * sizeof(double), alignof(double)));
+  }
+  template <class Member>
+  KOKKOS_FUNCTION static int* integers(const Member& member, int count) {
+    return static_cast<int*>(member.team_scratch(0).get_shmem_aligned(
+        static_cast<std::size_t>(count) * sizeof(int), alignof(int)));
+  }
+};
+
+}  // namespace drogue::fabric
