@@ -137,9 +137,7 @@ struct ContactTable {
     return zone_end(label(i)) != label(i) || stuck(i) != 0;
   }
 
-  [[nodiscard]] KOKKOS_FUNCTION bool is_held(int i) const {
-    return held(i) != 0;
-  }
+  [[nodiscard]] KOKKOS_FUNCTION bool is_held(int i) const { return held(i) != 0; }
 
   /// Steps taken when this is called between them; both words of the watch agree on no less.
   [[nodiscard]] KOKKOS_FUNCTION std::int64_t steps() const {
