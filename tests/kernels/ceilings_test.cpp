@@ -7,7 +7,7 @@
 namespace drogue::device {
 namespace {
 
-class Ceilings : public testing::TestWithParam<Ceiling> {};
+class Ceilings : public ::testing::TestWithParam<Ceiling> {};
 
 TEST_P(Ceilings, ResultsAreThoseOfTheClosedForm) {
   const auto kernel = create_ceiling(Backend::DROGUE_TEST_BACKEND, GetParam());
@@ -23,7 +23,7 @@ TEST_P(Ceilings, ResultsAreThoseOfTheClosedForm) {
   EXPECT_GT(kernel->bytes(), 0.0);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Ceilings, testing::Values(Ceiling::fp64, Ceiling::memory, Ceiling::cache));
+INSTANTIATE_TEST_SUITE_P(All, Ceilings, ::testing::Values(Ceiling::fp64, Ceiling::memory, Ceiling::cache));
 
 }  // namespace
 }  // namespace drogue::device

@@ -8,8 +8,8 @@
 /// Main of the tests that use Kokkos, which starts as the programs do. Listing the cases starts no backend,
 /// so it works without a device.
 int main(int argc, char** argv) {
-  testing::InitGoogleTest(&argc, argv);
-  if (testing::FLAGS_gtest_list_tests) return RUN_ALL_TESTS();
+  ::testing::InitGoogleTest(&argc, argv);
+  if (::testing::FLAGS_gtest_list_tests) return RUN_ALL_TESTS();
   const drogue::device::Runtime runtime(std::vector<std::string>(argv + 1, argv + argc));
   return RUN_ALL_TESTS();
 }

@@ -16,7 +16,7 @@ namespace {
 
 const std::string shipped = std::string(DROGUE_SOURCE_DIR) + "/miniapps/gas/scenes/";
 
-class GasVerify : public testing::Test {
+class GasVerify : public ::testing::Test {
  protected:
   static void SetUpTestSuite() { runtime = std::make_unique<device::Runtime>(std::vector<std::string>{}); }
   static void TearDownTestSuite() { runtime.reset(); }

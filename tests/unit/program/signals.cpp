@@ -9,7 +9,7 @@
 namespace drogue {
 namespace {
 
-class Signals : public testing::TestWithParam<int> {
+class Signals : public ::testing::TestWithParam<int> {
  protected:
   void SetUp() override { clear_interrupt(); }
   void TearDown() override { clear_interrupt(); }
@@ -38,7 +38,7 @@ TEST_P(Signals, TheSecondEndsItAtOnce) {
   EXPECT_EQ(WTERMSIG(status), GetParam());
 }
 
-INSTANTIATE_TEST_SUITE_P(Both, Signals, testing::Values(SIGINT, SIGTERM));
+INSTANTIATE_TEST_SUITE_P(Both, Signals, ::testing::Values(SIGINT, SIGTERM));
 
 }  // namespace
 }  // namespace drogue

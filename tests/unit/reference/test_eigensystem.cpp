@@ -9,7 +9,7 @@
 namespace drogue::reference {
 namespace {
 
-class Eigenvectors : public testing::TestWithParam<gas::Mean> {
+class Eigenvectors : public ::testing::TestWithParam<gas::Mean> {
  protected:
   Primitive random_state() {
     std::uniform_real_distribution<double> exponent(-1.0, 1.0);
@@ -21,7 +21,7 @@ class Eigenvectors : public testing::TestWithParam<gas::Mean> {
 };
 
 INSTANTIATE_TEST_SUITE_P(Means, Eigenvectors,
-                         testing::Values(gas::Mean::arithmetic, gas::Mean::conserved, gas::Mean::roe));
+                         ::testing::Values(gas::Mean::arithmetic, gas::Mean::conserved, gas::Mean::roe));
 
 TEST_P(Eigenvectors, LeftTimesRightIsOne) {
   for (int trial = 0; trial < 200; ++trial) {

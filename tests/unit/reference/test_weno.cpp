@@ -15,12 +15,12 @@ struct Scheme {
   std::string name;
 };
 
-class Weno : public testing::TestWithParam<Scheme> {};
+class Weno : public ::testing::TestWithParam<Scheme> {};
 
 INSTANTIATE_TEST_SUITE_P(Schemes, Weno,
-                         testing::Values(Scheme{gas::Weno::js, 1, "js"}, Scheme{gas::Weno::z, 1, "z1"},
-                                         Scheme{gas::Weno::z, 2, "z2"}, Scheme{gas::Weno::m, 1, "m"},
-                                         Scheme{gas::Weno::teno5, 1, "teno5"}),
+                         ::testing::Values(Scheme{gas::Weno::js, 1, "js"}, Scheme{gas::Weno::z, 1, "z1"},
+                                           Scheme{gas::Weno::z, 2, "z2"}, Scheme{gas::Weno::m, 1, "m"},
+                                           Scheme{gas::Weno::teno5, 1, "teno5"}),
                          [](const auto& instance) { return instance.param.name; });
 
 TEST_P(Weno, WeightsSumToOneAndAreNotNegative) {
