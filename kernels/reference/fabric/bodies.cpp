@@ -9,31 +9,33 @@ namespace drogue::reference {
 
 namespace {
 
-using Long = std::array<long double, 3>;
+using LongVector = std::array<long double, 3>;
 
-Long less(const std::array<double, 3>& a, const std::array<double, 3>& b) {
+LongVector less(const std::array<double, 3>& a, const std::array<double, 3>& b) {
   return {static_cast<long double>(a[0]) - b[0], static_cast<long double>(a[1]) - b[1],
           static_cast<long double>(a[2]) - b[2]};
 }
 
-long double inner(const Long& a, const Long& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+long double inner(const LongVector& a, const LongVector& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
 
 /// The least distance of the origin from a segment, by its parameter.
-long double from_segment(const Long& a, const Long& b) {
-  const Long way = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
+long double from_segment(const LongVector& a, const LongVector& b) {
+  const LongVector way = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
   const long double squared = inner(way, way);
   const long double u = squared > 0 ? std::clamp(-inner(a, way) / squared, 0.0L, 1.0L) : 0.0L;
   return std::hypot(a[0] + u * way[0], a[1] + u * way[1], a[2] + u * way[2]);
 }
 
 /// Whether the origin lies above the inside of a triangle, and how high.
-bool above(const std::array<Long, 3>& t, long double& height) {
-  const auto cross = [](const Long& a, const Long& b) {
-    return Long{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+bool above(const std::array<LongVector, 3>& t, long double& height) {
+  const auto cross = [](const LongVector& a, const LongVector& b) {
+    return LongVector{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
   };
   // Of the origin's pyramid the three flanks turn the same way as the base where its foot is inside.
-  Long normal{};
-  std::array<Long, 3> flank;
+  LongVector normal{};
+  std::array<LongVector, 3> flank;
   for (std::size_t k = 0; k < 3; ++k) {
     flank[k] = cross(t[k], t[(k + 1) % 3]);
     for (std::size_t axis = 0; axis < 3; ++axis) normal[axis] += flank[k][axis];
@@ -41,13 +43,13 @@ bool above(const std::array<Long, 3>& t, long double& height) {
   const long double area = std::sqrt(inner(normal, normal));
   if (!(area > 0)) return false;
   height = std::abs(inner(normal, t[0])) / area;
-  return std::ranges::all_of(flank, [&](const Long& f) { return inner(f, normal) >= 0; });
+  return std::ranges::all_of(flank, [&](const LongVector& f) { return inner(f, normal) >= 0; });
 }
 
 }  // namespace
 
 double distance_from(const fabric::Body& body, const std::array<double, 3>& place) {
-  const Long r = less(place, body.centre), n = {body.normal[0], body.normal[1], body.normal[2]};
+  const LongVector r = less(place, body.centre), n = {body.normal[0], body.normal[1], body.normal[2]};
   const long double height = inner(r, n), out = std::sqrt(inner(r, r));
   switch (body.kind) {
     case fabric::BodyKind::plane:
@@ -64,7 +66,7 @@ double distance_from(const fabric::Body& body, const std::array<double, 3>& plac
 }
 
 bool enters(const fabric::Body& body, const std::array<std::array<double, 3>, 3>& triangle) {
-  std::array<Long, 3> t;
+  std::array<LongVector, 3> t;
   for (std::size_t k = 0; k < 3; ++k) t[k] = less(triangle[k], body.centre);
   if (body.kind != fabric::BodyKind::disk) {
     if (std::ranges::any_of(triangle, [&](const auto& x) { return distance_from(body, x) < 0.0; }))
@@ -77,18 +79,18 @@ bool enters(const fabric::Body& body, const std::array<std::array<double, 3>, 3>
   }
   // Where the triangle passes through the plane of the disk: a piece of a line, which meets the disk if its
   // nearest point to the centre does.
-  const Long n = {body.normal[0], body.normal[1], body.normal[2]};
-  std::vector<Long> passing;
+  const LongVector n = {body.normal[0], body.normal[1], body.normal[2]};
+  std::vector<LongVector> passing;
   for (std::size_t k = 0; k < 3; ++k) {
-    const Long &a = t[k], &b = t[(k + 1) % 3];
+    const LongVector &a = t[k], &b = t[(k + 1) % 3];
     const long double from = inner(a, n), to = inner(b, n);
     if (from == 0) passing.push_back(a);
     if (from * to >= 0) continue;
     const long double u = from / (from - to);
     passing.push_back({a[0] + u * (b[0] - a[0]), a[1] + u * (b[1] - a[1]), a[2] + u * (b[2] - a[2])});
   }
-  for (const Long& a : passing)
-    for (const Long& b : passing)
+  for (const LongVector& a : passing)
+    for (const LongVector& b : passing)
       if (from_segment(a, b) <= body.radius) return true;
   return false;
 }
