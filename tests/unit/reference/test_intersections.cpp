@@ -13,11 +13,11 @@ namespace {
 
 using Place = std::array<double, 3>;
 
-const std::array<Place, 3> unit_triangle = {Place{0, 0, 0}, Place{1, 0, 0}, Place{0, 1, 0}};
+const std::array<Place, 3> half_square = {Place{0, 0, 0}, Place{1, 0, 0}, Place{0, 1, 0}};
 
 TEST(ReferenceIntersections, SidesAreThoseOfTheDeterminantAlsoWhereItRounds) {
-  EXPECT_EQ(side_of_plane(unit_triangle[0], unit_triangle[1], unit_triangle[2], {0.2, 0.2, 1.0}),
-            -side_of_plane(unit_triangle[0], unit_triangle[1], unit_triangle[2], {0.2, 0.2, -1.0}));
+  EXPECT_EQ(side_of_plane(half_square[0], half_square[1], half_square[2], {0.2, 0.2, 1.0}),
+            -side_of_plane(half_square[0], half_square[1], half_square[2], {0.2, 0.2, -1.0}));
   // Points of the plane x + y + z = 1 in numbers that doubles hold, then one moved by the last bit.
   const Place a = {0.5, 0.25, 0.25}, b = {-0.125, 1.0, 0.125}, c = {3.0, -2.5, 0.5}, d = {0.75, 0.125, 0.125};
   EXPECT_EQ(side_of_plane(a, b, c, d), 0);
@@ -27,7 +27,7 @@ TEST(ReferenceIntersections, SidesAreThoseOfTheDeterminantAlsoWhereItRounds) {
 }
 
 TEST(ReferenceIntersections, SegmentsAndTriangles) {
-  const auto pierced = [](const Place& p, const Place& q) { return meet({p, q}, unit_triangle); };
+  const auto pierced = [](const Place& p, const Place& q) { return meet({p, q}, half_square); };
   EXPECT_TRUE(pierced({0.2, 0.2, -1}, {0.3, 0.3, 1}));
   EXPECT_FALSE(pierced({0.2, 0.2, 1e-300}, {0.3, 0.3, 1}));
   EXPECT_TRUE(pierced({0.2, 0.2, 0}, {0.3, 0.3, 1})) << "touching counts";
