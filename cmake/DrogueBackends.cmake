@@ -1,9 +1,13 @@
 # The compiled-in backends, and the files that are written once for each of them.
 
+option(DROGUE_SERIAL "The Serial backend" ON)
 option(DROGUE_OPENMP "The OpenMP backend, where Kokkos has it" ON)
 
-set(DROGUE_BACKENDS serial)
-set(DROGUE_EXECUTION_SPACE_serial Kokkos::Serial)
+set(DROGUE_BACKENDS)
+if(DROGUE_SERIAL)
+  list(APPEND DROGUE_BACKENDS serial)
+  set(DROGUE_EXECUTION_SPACE_serial Kokkos::Serial)
+endif()
 if(DROGUE_OPENMP AND Kokkos_ENABLE_OPENMP)
   list(APPEND DROGUE_BACKENDS openmp)
   set(DROGUE_EXECUTION_SPACE_openmp Kokkos::OpenMP)
@@ -11,6 +15,9 @@ endif()
 if(DROGUE_CUDA)
   list(APPEND DROGUE_BACKENDS cuda)
   set(DROGUE_EXECUTION_SPACE_cuda Kokkos::Cuda)
+endif()
+if(NOT DROGUE_BACKENDS)
+  message(FATAL_ERROR "There is no backend left: turn DROGUE_SERIAL, DROGUE_OPENMP or DROGUE_CUDA on.")
 endif()
 
 # Writes NAME_<backend>.cpp from NAME.cpp.in for each backend and appends the names to `sources`.

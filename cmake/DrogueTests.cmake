@@ -5,6 +5,20 @@ include(GoogleTest)
 # All tests that run on a backend; scripts/bundle.sh carries them to other machines.
 add_custom_target(drogue_kernel_tests)
 
+# What all kernel tests include, compiled once for all of them.
+function(drogue_kernel_test_headers)
+  if(TARGET drogue_kernel_test_headers)
+    return()
+  endif()
+  set(_source "${PROJECT_BINARY_DIR}/generated/kernel_test_headers.cpp")
+  file(CONFIGURE OUTPUT "${_source}" CONTENT "int main() {}\n")
+  drogue_use_device_language("${_source}")
+  # A program as the tests are: gcc takes no headers that were compiled for a library.
+  add_executable(drogue_kernel_test_headers EXCLUDE_FROM_ALL "${_source}")
+  target_link_libraries(drogue_kernel_test_headers PRIVATE drogue_kernels drogue_private GTest::gtest)
+  target_precompile_headers(drogue_kernel_test_headers PRIVATE <Kokkos_Core.hpp> <gtest/gtest.h>)
+endfunction()
+
 # drogue_add_test(NAME <name> SOURCES <files> LABEL <label> [LIBRARIES <targets>] [BACKEND <backend>])
 # One GoogleTest executable; each of its cases becomes a ctest test `<label>.<Suite>.<Case>`.
 # With BACKEND the sources see DROGUE_TEST_SPACE (Kokkos::OpenMP) and DROGUE_TEST_BACKEND (openmp), go through nvcc
@@ -24,7 +38,8 @@ function(drogue_add_test)
     # Helpers of these tests have the same names in many files: a unity build shares what they include instead.
     set_target_properties(${_test_NAME} PROPERTIES UNITY_BUILD OFF)
     if(CMAKE_UNITY_BUILD)
-      target_precompile_headers(${_test_NAME} PRIVATE <Kokkos_Core.hpp> <gtest/gtest.h>)
+      drogue_kernel_test_headers()
+      target_precompile_headers(${_test_NAME} REUSE_FROM drogue_kernel_test_headers)
     endif()
     target_compile_definitions(${_test_NAME} PRIVATE
       DROGUE_TEST_BACKEND=${_test_BACKEND} DROGUE_TEST_SPACE=${DROGUE_EXECUTION_SPACE_${_test_BACKEND}})
@@ -65,22 +80,46 @@ function(drogue_add_python_test file label)
     "DROGUE_BIN=${CMAKE_RUNTIME_OUTPUT_DIRECTORY};DROGUE_SOURCE=${PROJECT_SOURCE_DIR};DROGUE_BUILD=${PROJECT_BINARY_DIR};OMP_NUM_THREADS=2")
 endfunction()
 
+# drogue_includes_kokkos(result <header>): whether it does, itself or by our headers that it includes.
+function(drogue_includes_kokkos result header)
+  file(STRINGS "${header}" _lines REGEX "^#include [<\"](Kokkos_|[a-z]+/).*")
+  set(${result} NO PARENT_SCOPE)
+  foreach(_line IN LISTS _lines)
+    if(_line MATCHES "<Kokkos_")
+      set(_found YES)
+    elseif(_line MATCHES "\"(.*)\"" AND EXISTS "${PROJECT_SOURCE_DIR}/${CMAKE_MATCH_1}")
+      drogue_includes_kokkos(_found "${PROJECT_SOURCE_DIR}/${CMAKE_MATCH_1}")
+    endif()
+    if(_found)
+      set(${result} YES PARENT_SCOPE)
+      return()
+    endif()
+  endforeach()
+endfunction()
+
 # drogue_add_header_test(<headers>): compiles every header alone, twice in one source, as part of the build.
-# Headers of the kernels go through nvcc in a CUDA build.
+# Those that include Kokkos find it compiled already.
 function(drogue_add_header_test)
-  set(_sources)
+  set(_plain)
+  set(_kokkos)
   foreach(_header IN LISTS ARGN)
     cmake_path(RELATIVE_PATH _header BASE_DIRECTORY "${PROJECT_SOURCE_DIR}" OUTPUT_VARIABLE _name)
     set(_source "${PROJECT_BINARY_DIR}/generated/headers/${_name}.cpp")
     file(CONFIGURE OUTPUT "${_source}" CONTENT "#include \"${_name}\"\n#include \"${_name}\"\n")
-    if(_name MATCHES "^kernels/" AND NOT _name MATCHES "^kernels/reference/")
-      drogue_use_device_language("${_source}")
+    drogue_includes_kokkos(_found "${_header}")
+    if(_found)
+      list(APPEND _kokkos "${_source}")
+    else()
+      list(APPEND _plain "${_source}")
     endif()
-    list(APPEND _sources "${_source}")
   endforeach()
-  add_library(drogue_header_test OBJECT ${_sources})
-  target_link_libraries(drogue_header_test PRIVATE drogue_gas_app drogue_springs_app drogue_private drogue_toml muparser::muparser)
-  # Each is to compile alone. Nothing runs: only whether it compiles is asked.
-  set_target_properties(drogue_header_test PROPERTIES UNITY_BUILD OFF)
-  target_compile_options(drogue_header_test PRIVATE -O0)
+  add_library(drogue_header_test OBJECT ${_plain})
+  add_library(drogue_kokkos_header_test OBJECT ${_kokkos})
+  target_precompile_headers(drogue_kokkos_header_test PRIVATE <Kokkos_Core.hpp>)
+  foreach(_test drogue_header_test drogue_kokkos_header_test)
+    target_link_libraries(${_test} PRIVATE drogue_gas_app drogue_springs_app drogue_private drogue_toml muparser::muparser)
+    # Each is to compile alone. Nothing runs: only whether it compiles is asked.
+    set_target_properties(${_test} PROPERTIES UNITY_BUILD OFF)
+    target_compile_options(${_test} PRIVATE -O0)
+  endforeach()
 endfunction()

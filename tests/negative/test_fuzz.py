@@ -76,16 +76,6 @@ class Fuzz(unittest.TestCase):
             result = self.run_program("--check")
             self.assertEqual(result.returncode, 0, result.stderr)
 
-    def test_500_damaged_scenes_are_checked(self):
-        refused = 0
-        for seed in range(500):
-            self.scene.write_bytes(mutations.mutate(SCENES[seed % 3], seed))
-            result = self.run_program("--check")
-            self.assert_ends_well(result, seed, {0, 3})
-            refused += result.returncode == 3
-        self.assertGreater(refused, 250)
-        self.assertLess(refused, 500)
-
     def test_200_damaged_scenes_are_run(self):
         codes = set()
         for seed in range(1000, 1200):
