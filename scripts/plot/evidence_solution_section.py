@@ -103,7 +103,8 @@ def _explanation(found: list[Curve], best: str | None) -> str:
     )
     words = [
         f"{asked} They are met on straight lines between the meshes, in logarithms; > : the finest mesh still misses "
-        "the error, < : the coarsest has it already. Order: least squares of error against cells, or edges along an axis."
+        "the error, < : the coarsest has it already. Order: least squares of error against cells, or edges along an "
+        "axis."
     ]
     rival = family.names.get(family.competitor, "")
     holders = list(dict.fromkeys(curve.scheme.backend for curve in found if curve.scheme.is_competitor))
@@ -119,8 +120,8 @@ def _explanation(found: list[Curve], best: str | None) -> str:
         )
     if best:
         words.append(
-            f"Of the schemes with other settings {family.names.get(best, best)}, which is drawn, is the first to reach the "
-            f"finest error of {stick} or, where none does, has the least error."
+            f"Of the schemes with other settings {family.names.get(best, best)}, which is drawn, is the first to reach "
+            f"the finest error of {stick} or, where none does, has the least error."
         )
     return " ".join(words)
 

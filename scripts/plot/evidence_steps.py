@@ -154,9 +154,8 @@ def _goal_row(goal: Goal, record: Record, of_run: dict[tuple, Record]) -> list[C
 def goal_table(records: list[Record]) -> Table | None:
     """Every goal whose case was recorded; None where there is none. Records are of one kind."""
     of_run = {(record.case, *record.run): record for record in records}
-    rows = [
-        _goal_row(goal, record, of_run) for goal in _KINDS[records[0].kind].goals for record in records if _holds_for(goal, record)
-    ]
+    goals = _KINDS[records[0].kind].goals
+    rows = [_goal_row(goal, record, of_run) for goal in goals for record in records if _holds_for(goal, record)]
     columns = ["what", "measure", "measured", "probe", "goal", "stretch", "verdict"]
     note = (
         "Measured: median and its 95 % interval. Probe: a small hand-written CUDA program, which is no part of this "

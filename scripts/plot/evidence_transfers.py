@@ -84,7 +84,7 @@ def times(records: list[Record]) -> dict[tuple[int, str], dict[str, float]]:
 
 
 def transfers_figure(title: str, machine: Machine, records: list[Record]):
-    """Stacked bars by mesh, one panel for the dissertation and each source of ours; on one scale where these compare."""
+    """Stacked bars by mesh, one panel for the dissertation and each source of ours; on one scale if these compare."""
     found, kind = times(records), _KINDS[records[0].kind]
     panels = [name for name in sources(records) if any(source == name for _, source in found)]
     meshes = sorted({cells for cells, _ in found})
