@@ -105,7 +105,7 @@ ContactOn<ExecutionSpace>::ContactOn(const Parameters& p, const ContactCloth<Exe
   t.vertices = static_cast<int>(n), t.triangles = static_cast<int>(faces), t.edges = static_cast<int>(sides);
   t.first_line = edges.first_line;
   t.thickness = p.contact.thickness, t.self_friction = p.contact.friction, t.self = p.contact.self;
-  t.least_skin = std::max(p.contact.thickness, 0.5 * edges.mean_length);
+  t.widest_skin = std::max(p.contact.thickness, 0.5 * edges.mean_length);
   t.dt = p.dt;
   t.inverse_mass = _inverse_mass, t.held = _held, t.watch = cloth.watch;
   lend(t.bodies, "bodies", p.contact.bodies.size());
