@@ -20,7 +20,8 @@ namespace {
 constexpr double inner_radius = 0.05;  // m
 constexpr double fastest = 1.0;        // m/s, of the waves
 
-/// From layer to layer, in thicknesses: what chords of the spiral lose of it is between.
+/// Distance from layer to layer, in thicknesses. Edges are chords of the spiral and come nearer by a few per
+/// cent.
 constexpr double pitch = 1.05;
 
 /// Archimedes' spiral r = a angle, in the plane across the roll's axis.

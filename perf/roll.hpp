@@ -4,8 +4,8 @@
 
 /// A square sheet of nearly equilateral triangles, 1 m long, rolled up tight: steps in contact are timed on
 /// it. Each layer lies as near to the next as contact lets it, and waves run round the roll that drive
-/// neighbouring layers against one another, so that every vertex meets cloth on either side. The same number
-/// of vertices a thickness whatever the mesh.
+/// neighbouring layers against one another, so that every vertex meets cloth on either side. The
+/// thickness is a share of an edge, and the layers lie that far apart: as much is in touch whatever the mesh.
 namespace drogue::perf::roll {
 
 /// About `vertices` of them, numbered as the mini-app does.
