@@ -55,6 +55,7 @@ const FabricVariant graph = {"graph", [](fabric::Parameters& p) { p.driver = fab
 const FabricVariant plain = {"plain", [](fabric::Parameters& p) { p.driver = fabric::Driver::plain; }};
 const FabricVariant patch_64 = {"patch-64", [](fabric::Parameters& p) { p.patch = 64; }};
 const FabricVariant patch_128 = {"patch-128", [](fabric::Parameters& p) { p.patch = 128; }};
+const FabricVariant patch_256 = {"patch-256", [](fabric::Parameters& p) { p.patch = 256; }};
 
 Case sheet_case(device::Backend backend, int vertices, long steps, const FabricVariant& variant) {
   struct Run {
@@ -84,6 +85,7 @@ Case sheet_case(device::Backend backend, int vertices, long steps, const FabricV
 std::vector<FabricVariant> variants_of(int vertices, bool gpu) {
   if (!gpu) return vertices < 100'000 ? std::vector{usual, quadratic, verlet} : std::vector{usual};
   if (vertices < 10'000) return {usual, graph, plain, patch_64, patch_128, quadratic, verlet};
+  if (vertices < 100'000) return {usual, graph, patch_128, patch_256, quadratic, verlet};
   if (vertices < 1'000'000) return {usual, graph, quadratic, verlet};
   return {usual, quadratic, slack, verlet};
 }

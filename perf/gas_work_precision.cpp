@@ -1,12 +1,13 @@
-#include "perf/gas_work_precision.hpp"
-
 #include <chrono>
 #include <cmath>
 #include <numeric>
 
 #include "common/program/signals.hpp"
 #include "kernels/reference/gas/muscl_hancock.hpp"
+#include "miniapps/gas/repeated_run.hpp"
 #include "miniapps/gas/scene_folder.hpp"
+#include "miniapps/gas/scheme_names.hpp"
+#include "perf/solution.hpp"
 
 namespace drogue::perf {
 
@@ -66,10 +67,30 @@ gas_app::RepeatedRun muscl_hancock_run(const gas_app::GasScene& scene, const gas
   return runs;
 }
 
+Solution gas_solution(const Problem& problem, device::Backend backend, const gas_app::SchemeNames& scheme,
+                      int weno_power, std::int64_t cells, gas_app::RepeatedRun run) {
+  Solution s;
+  s.problem = problem.scene;
+  s.backend = backend;
+  s.label = scheme.label;
+  s.scheme = {{"weno", scheme.weno},
+              {"weno_power", weno_power},
+              {"splitting", scheme.splitting},
+              {"time_scheme", scheme.time},
+              {"precision", scheme.precision}};
+  s.cells = cells;
+  s.samples = std::move(run.samples);
+  s.steps = run.steps;
+  s.code = run.code;
+  s.message = std::move(run.message);
+  if (s.code == ExitCode::ok) s.error = run.errors.at("l1_density");
+  s.sound = s.code == ExitCode::ok && std::isfinite(s.error) && run.conservation <= 1e-11;
+  return s;
+}
+
 }  // namespace
 
-bool gas_work_precision(const std::vector<device::Backend>& backends, bool quick,
-                        const std::function<void(const Solution&)>& sink) {
+bool gas_work_precision(const std::vector<device::Backend>& backends, bool quick, const SolutionSink& sink) {
   for (const Problem& problem : quick ? quick_problems : problems) {
     gas_app::GasScene scene =
         gas_app::read_gas_scene(gas_app::scene_folder() / (std::string(problem.scene) + ".toml"));
@@ -79,19 +100,17 @@ bool gas_work_precision(const std::vector<device::Backend>& backends, bool quick
     const gas_app::ExactSolution exact = exact_solution(scene, scene.end_time, *finer);
     for (int mesh = 0; mesh < problem.meshes; ++mesh) {
       scene.parameters.cells = problem.coarsest << mesh;
-      sink({problem.scene,
-            device::Backend::serial,
-            {"muscl-hancock", "muscl-hancock", "", "", "double"},
-            1,
-            scene.parameters.cells,
-            muscl_hancock_run(scene, exact)});
+      sink(gas_solution(problem, device::Backend::serial,
+                        {"muscl-hancock", "muscl-hancock", "", "", "double"}, 1, scene.parameters.cells,
+                        muscl_hancock_run(scene, exact)));
       for (const gas::Parameters& p : schemes(scene.parameters, quick))
         for (const device::Backend backend : backends) {
           gas_app::GasScene point = scene;
           point.parameters = p;
           gas_app::RepeatedRun run = run_repeatedly(point, backend, exact, repeats);
           if (run.code == ExitCode::interrupted || interrupted()) return false;
-          sink({problem.scene, backend, gas_app::scheme_names(p), p.weno_power, p.cells, std::move(run)});
+          sink(gas_solution(problem, backend, gas_app::scheme_names(p), p.weno_power, p.cells,
+                            std::move(run)));
         }
     }
   }

@@ -1,14 +1,15 @@
 #include "perf/measurement.hpp"
 
+#include <algorithm>
 #include <chrono>
-#include <utility>
+#include <iterator>
 
 namespace drogue::perf {
 
 std::vector<Case> all_cases(bool quick) {
   std::vector<Case> cases = gas_cases(quick);
-  for (Case& c : fabric_cases(quick)) cases.push_back(std::move(c));
-  for (Case& c : ceiling_cases()) cases.push_back(std::move(c));
+  for (std::vector<Case> more : {fabric_cases(quick), contact_cases(quick), ceiling_cases()})
+    std::ranges::move(more, std::back_inserter(cases));
   return cases;
 }
 

@@ -41,6 +41,7 @@ struct Case {
 // Those that this build and machine can run.
 std::vector<Case> gas_cases(bool quick);
 std::vector<Case> fabric_cases(bool quick);
+std::vector<Case> contact_cases(bool quick);
 std::vector<Case> ceiling_cases();
 std::vector<Case> all_cases(bool quick);
 

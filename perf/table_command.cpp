@@ -36,6 +36,10 @@ Table timed_table(const TableOptions& options, const std::vector<std::string>& k
 ExitCode print_table(const TableOptions& options, const std::vector<std::string>& kokkos) {
   require_name("table", options.table, {"occupancy", "block-size", "transfers"});
   require_name("app", options.app, {"gas", "springs"});
+  if (options.app == "springs" && options.table == "block-size")
+    throw Failure(ExitCode::usage,
+                  "kernels of springs are compiled for one block size; what can be chosen is the size of a "
+                  "patch, which drogue-perf run --filter springs-step/cuda/.*/patch times");
   if (options.app == "springs") require_name("table of springs", options.table, {"transfers"});
   Table table;
   if (options.table == "occupancy")

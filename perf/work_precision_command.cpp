@@ -1,6 +1,5 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
-#include <cmath>
 #include <cstdio>
 #include <memory>
 
@@ -8,8 +7,8 @@
 #include "common/run/result_document.hpp"
 #include "common/run/statistics.hpp"
 #include "perf/command.hpp"
-#include "perf/gas_work_precision.hpp"
 #include "perf/record.hpp"
+#include "perf/solution.hpp"
 
 namespace drogue::perf {
 namespace {
@@ -33,56 +32,49 @@ std::vector<device::Backend> backends_of(const std::string& name) {
   return present;
 }
 
-nlohmann::json to_json(const Solution& solution, const nlohmann::json& provenance) {
-  const bool ok = solution.run.code == ExitCode::ok;
-  const double error = ok ? solution.run.errors.at("l1_density") : 0.0;
-  const bool sound = ok && std::isfinite(error) && solution.run.conservation <= 1e-11;
+nlohmann::json to_json(const std::string& app, const Solution& solution, const nlohmann::json& provenance) {
   const std::string backend(device::name(solution.backend));
   Record record;
-  record.name = "gas-solution/" + solution.problem + "/" + backend + "/" + solution.scheme.label + "/" +
+  record.name = app + "-solution/" + solution.problem + "/" + backend + "/" + solution.label + "/" +
                 std::to_string(solution.cells);
   record.unit_of_work = "solution";
   record.bound = "time to the end of the run";
-  record.samples = solution.run.samples;
-  record.error = error;
+  record.samples = solution.samples;
+  record.error = solution.error;
   // A scheme that loses a problem is a finding, not a measurement.
-  record.bar = sound ? error : -1.0;
-  return to_json(record, provenance,
-                 {{"problem", solution.problem},
-                  {"backend", backend},
-                  {"weno", solution.scheme.weno},
-                  {"weno_power", solution.weno_power},
-                  {"splitting", solution.scheme.splitting},
-                  {"time_scheme", solution.scheme.time},
-                  {"precision", solution.scheme.precision},
-                  {"cells", solution.cells},
-                  {"steps", solution.run.steps},
-                  {"status", run::status_name(solution.run.code)},
-                  {"message", solution.run.message}});
+  record.bar = solution.sound ? solution.error : -1.0;
+  nlohmann::json facts = solution.scheme;
+  facts.update({{"problem", solution.problem},
+                {"backend", backend},
+                {"cells", solution.cells},
+                {"steps", solution.steps},
+                {"status", run::status_name(solution.code)},
+                {"message", solution.message}});
+  return to_json(record, provenance, facts);
 }
 
 void print(const Solution& solution) {
-  std::printf("%-14s %-7s %-32s %6lld cells  ", solution.problem.c_str(),
-              std::string(device::name(solution.backend)).c_str(), solution.scheme.label.c_str(),
+  std::printf("%-14s %-7s %-32s %6lld  ", solution.problem.c_str(),
+              std::string(device::name(solution.backend)).c_str(), solution.label.c_str(),
               static_cast<long long>(solution.cells));
-  if (solution.run.code == ExitCode::ok)
-    std::printf("%10.4g s  L1 error %.4g\n", run::median(solution.run.samples),
-                solution.run.errors.at("l1_density"));
+  if (solution.code == ExitCode::ok)
+    std::printf("%10.4g s  error %.4g\n", run::median(solution.samples), solution.error);
   else
-    std::printf("%s\n", solution.run.message.c_str());
+    std::printf("%s\n", solution.message.c_str());
   std::fflush(stdout);
 }
 
 ExitCode measure_solutions(const WorkPrecisionOptions& options, const std::vector<std::string>& kokkos) {
-  require_name("app", options.app, {"gas"});
+  require_name("app", options.app, {"gas", "springs"});
+  const auto& solve = options.app == "gas" ? gas_work_precision : springs_work_precision;
   const std::vector<device::Backend> backends = backends_of(options.backend);
   const device::Runtime runtime(kokkos);
   install_signal_handlers();
   const nlohmann::json here = provenance(device::device_facts());
   std::vector<nlohmann::json> lines;
-  const bool finished = gas_work_precision(backends, options.quick, [&](const Solution& solution) {
+  const bool finished = solve(backends, options.quick, [&](const Solution& solution) {
     print(solution);
-    lines.push_back(to_json(solution, here));
+    lines.push_back(to_json(options.app, solution, here));
     // Early, so that a file that cannot be written is found before hours are spent; and what ends a long run
     // leaves most of what it has found.
     if (lines.size() % 32 == 1) write_records(options.out, lines);
@@ -98,7 +90,7 @@ Command work_precision_command(CLI::App& program) {
   const auto options = std::make_shared<WorkPrecisionOptions>();
   CLI::App* app = program.add_subcommand(
       "work-precision",
-      "Time to solution and error over meshes, schemes and backends, beside a second-order scheme");
+      "Time to solution and error over meshes, schemes and backends; of gas beside a second-order scheme");
   app->add_option("--app", options->app, "Mini-app whose problems are run")->capture_default_str();
   app->add_option("--backend", options->backend, "auto takes all that are present")
       ->check(CLI::IsMember({"auto", "serial", "openmp", "cuda"}))

@@ -12,3 +12,5 @@ mkdir -p "$folder"
 if [ -x "$exact/tests/exact_fabric_test" ]; then "$exact/tests/exact_fabric_test"; fi
 "$build/bin/drogue-perf" run --filter '^springs-step/(cuda|serial|scatter-loop)/' --out "$folder/springs-step.jsonl"
 "$build/bin/drogue-perf" table transfers --app springs --backend cuda --out "$folder/springs-transfers.jsonl"
+"$build/bin/drogue-perf" run --filter '^springs-contact/cuda/' --out "$folder/springs-contact.jsonl"
+"$build/bin/drogue-perf" work-precision --app springs --backend cuda --out "$folder/springs-solution.jsonl"

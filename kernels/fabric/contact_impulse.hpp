@@ -57,14 +57,19 @@ struct PushFunctor {
   }
 };
 
-/// Gives every vertex what its touches have for it in this round, in their order.
+/// Gives every vertex what its touches have for it in this round, in their order, which the first round
+/// finds. After the last one the step gets the velocities, and what impulses did is counted: a kick changes
+/// the kinetic energy alone.
 template <class ExecutionSpace>
 struct GatherFunctor {
   ContactTable<ExecutionSpace> table;
+  LentTable<ExecutionSpace, double, 3> v;
+  int round;
 
   KOKKOS_FUNCTION void operator()(const int i) const {
+    if (table.touches(i) == 0) return;
+    if (round == 0) order_touches(table, i);
     const int count = table.touches(i);
-    if (count == 0) return;
     Point sum{0.0, 0.0, 0.0};
     for (int k = 0; k < count; ++k) {
       const int number = table.mine(i, k);
@@ -72,20 +77,11 @@ struct GatherFunctor {
       sum = sum + impulse_on(touch, number % 4, touch.more_push, touch.more_grip);
     }
     const Point free = free_axes<double>(&table.held(i)), dv = table.inverse_mass(i) * sum;
-    store_points(table.start_v, i,
-                 load_points<double>(table.start_v, i) + Point{free.x * dv.x, free.y * dv.y, free.z * dv.z});
-  }
-};
-
-/// Hands the velocities to the step, and counts what impulses did: a kick changes the kinetic energy alone.
-template <class ExecutionSpace>
-struct KickFunctor {
-  ContactTable<ExecutionSpace> table;
-  LentTable<ExecutionSpace, double, 3> v;
-
-  KOKKOS_FUNCTION void operator()(const int i) const {
-    if (table.touches(i) == 0) return;
-    const Point before = load_points<double>(v, i), after = load_points<double>(table.start_v, i);
+    const Point after =
+        load_points<double>(table.start_v, i) + Point{free.x * dv.x, free.y * dv.y, free.z * dv.z};
+    store_points(table.start_v, i, after);
+    if (round + 1 < impulse_rounds) return;
+    const Point before = load_points<double>(v, i);
     table.work(i) += 0.5 / table.inverse_mass(i) * dot(after - before, after + before);
     store_points(v, i, after);
   }

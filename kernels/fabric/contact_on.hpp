@@ -105,7 +105,7 @@ ContactOn<ExecutionSpace>::ContactOn(const Parameters& p, const ContactCloth<Exe
   t.vertices = static_cast<int>(n), t.triangles = static_cast<int>(faces), t.edges = static_cast<int>(sides);
   t.first_line = edges.first_line;
   t.thickness = p.contact.thickness, t.self_friction = p.contact.friction, t.self = p.contact.self;
-  t.least_skin = std::max(p.contact.thickness, 0.5 * edges.mean_length);
+  t.widest_skin = std::max(p.contact.thickness, 0.5 * edges.mean_length);
   t.dt = p.dt;
   t.inverse_mass = _inverse_mass, t.held = _held, t.watch = cloth.watch;
   lend(t.bodies, "bodies", p.contact.bodies.size());
@@ -183,14 +183,12 @@ void ContactOn<ExecutionSpace>::enqueue_begin(const Places& x, const Places& v) 
     launch("drogue::fabric::contact_list", n + _table.edges, ListFunctor<Space>{_table});
   }
   launch("drogue::fabric::contact_touch", parts(), TouchFunctor<Space>{_table});
-  launch("drogue::fabric::contact_order", n, OrderFunctor<Space>{_table});
   const int items = device::is_host<Space> ? _instance.space().concurrency()
                                            : std::min(32768, static_cast<int>(_table.touch.extent(0)));
   for (int round = 0; round < impulse_rounds; ++round) {
     launch("drogue::fabric::contact_push", items, PushFunctor<Space>{_table, items});
-    launch("drogue::fabric::contact_gather", n, GatherFunctor<Space>{_table});
+    launch("drogue::fabric::contact_gather", n, GatherFunctor<Space>{_table, v, round});
   }
-  launch("drogue::fabric::contact_kick", n, KickFunctor<Space>{_table, v});
 }
 
 template <class ExecutionSpace>

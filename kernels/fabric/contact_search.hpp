@@ -27,7 +27,8 @@ struct MeasureFunctor {
 
 /// Decides whether the lists still hold: at the end of the step no vertex may be farther than half the skin
 /// from where they were made; forces and impulses may double the largest speed, and move what rests a little.
-/// One call.
+/// A skin of 16 steps at the present speed: a wider one has more pairs to ask about, a narrower one is made
+/// again too often. One call.
 template <class ExecutionSpace>
 struct DecideFunctor {
   ContactTable<ExecutionSpace> table;
@@ -35,11 +36,13 @@ struct DecideFunctor {
   KOKKOS_FUNCTION void operator()(const int) const {
     ContactProgress& progress = table.progress(0);
     progress.speed = number_of(progress.fastest);
-    const double stride = table.dt * progress.speed;
-    const double farthest = number_of(progress.moved) + 2.0 * stride + 0.1 * table.least_skin;
+    const double stride = table.dt * progress.speed, little = 0.1 * table.widest_skin;
+    const double farthest = number_of(progress.moved) + 2.0 * stride + little;
     progress.stale = !(farthest <= 0.5 * progress.skin) ? 1 : 0;
     if (progress.stale != 0) {
-      progress.skin = table.least_skin > 8.0 * stride ? table.least_skin : 8.0 * stride;
+      const auto larger = [](double a, double b) { return a > b ? a : b; };
+      const double wanted = larger(2.0 * (little + 18.0 * stride), 4.0 * little);
+      progress.skin = larger(wanted < table.widest_skin ? wanted : table.widest_skin, 8.0 * stride);
       progress.extent = 0;
     }
     progress.moved = progress.fastest = 0;

@@ -94,7 +94,7 @@ struct ContactTable {
 
   int vertices, triangles, edges;
   int first_line;  ///< edges from it on are of no triangle
-  double thickness, self_friction, least_skin, dt;
+  double thickness, self_friction, widest_skin, dt;
   bool self;
   List<Obstacle> bodies;
   LentTable<ExecutionSpace, int, 3> triangle;

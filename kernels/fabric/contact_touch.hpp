@@ -208,23 +208,19 @@ struct TouchFunctor {
   [[nodiscard]] KOKKOS_FUNCTION double step_reach() const { return 4.0 * table.dt * table.progress(0).speed; }
 };
 
-/// Orders the touches of every vertex by the parts that they are of.
+/// Orders the touches of vertex i by the parts that they are of.
 template <class ExecutionSpace>
-struct OrderFunctor {
-  ContactTable<ExecutionSpace> table;
-
-  KOKKOS_FUNCTION void operator()(const int i) const {
-    const int count = table.touches(i) < most_touches ? table.touches(i) : most_touches;
-    if (table.touches(i) > most_touches) table.touches(i) = most_touches;
-    for (int k = 1; k < count; ++k) {
-      const int moved = table.mine(i, k);
-      const std::uint64_t key = table.touch(moved / 4).key;
-      int place = k;
-      for (; place > 0 && table.touch(table.mine(i, place - 1) / 4).key > key; --place)
-        table.mine(i, place) = table.mine(i, place - 1);
-      table.mine(i, place) = moved;
-    }
+KOKKOS_FUNCTION void order_touches(const ContactTable<ExecutionSpace>& table, int i) {
+  const int count = table.touches(i) < most_touches ? table.touches(i) : most_touches;
+  table.touches(i) = count;
+  for (int k = 1; k < count; ++k) {
+    const int moved = table.mine(i, k);
+    const std::uint64_t key = table.touch(moved / 4).key;
+    int place = k;
+    for (; place > 0 && table.touch(table.mine(i, place - 1) / 4).key > key; --place)
+      table.mine(i, place) = table.mine(i, place - 1);
+    table.mine(i, place) = moved;
   }
-};
+}
 
 }  // namespace drogue::fabric

@@ -121,7 +121,7 @@ def _springs_pictures(run, options, out, save):
 
 def _evidence(options, evidence, out):
     if importlib.util.find_spec("jinja2") is None:
-        raise Failure(USAGE, "gas.html needs the Python package jinja2: run scripts/setup.sh, or install it.")
+        raise Failure(USAGE, "a page of records needs the Python package jinja2: run scripts/setup.sh, or install it.")
     from . import evidence_page
 
     yield from evidence_page.write(evidence, out, options.format, options.dpi)

@@ -1,4 +1,4 @@
-"""The evidence page of the gas mini-app: machines, their sections, and what was left out."""
+"""The evidence page of a mini-app: machines, their sections, and what was left out."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -18,18 +18,26 @@ from .evidence_records import Evidence
 from .evidence_section import Cell, Section
 from .perf_record import Machine, Record
 
-PAGE = "gas.html"
 
-
-def _sections(evidence: Evidence, machine: Machine) -> list[Section]:
+def _gas_sections(evidence: Evidence, machine: Machine) -> list[Section]:
     """Those that records exist for: what a machine did not measure has no place."""
     solved, steps = evidence.of(machine, "gas-solution"), evidence.of(machine, "gas-step")
-    unsolved = [record for record in evidence.unsolved if record.machine == machine]
-    found = evidence_solution_section.sections(machine, solved, unsolved)
-    found += evidence_steps.sections(steps) if steps else []
+    found = evidence_solution_section.sections(machine, solved, evidence.unsolved_of(machine))
+    found += evidence_steps.sections(steps)
     found += evidence_roofline.sections(machine, evidence.of(machine, "ceiling"), steps)
     found += evidence_transfers.sections(machine, evidence.of(machine, "gas-transfers"))
     return found + evidence_blocks.sections(machine, evidence.of(machine, "gas-block"))
+
+
+def _springs_sections(evidence: Evidence, machine: Machine) -> list[Section]:
+    solved = evidence.of(machine, "springs-solution")
+    found = evidence_solution_section.sections(machine, solved, evidence.unsolved_of(machine))
+    found += evidence_steps.sections(evidence.of(machine, "springs-step"))
+    found += evidence_steps.sections(evidence.of(machine, "springs-contact"))
+    return found + evidence_transfers.sections(machine, evidence.of(machine, "springs-transfers"))
+
+
+_SECTIONS = {"gas": _gas_sections, "springs": _springs_sections}
 
 
 def _counted(count: int, words: str, plural: str) -> str:
@@ -49,7 +57,7 @@ def notes(evidence: Evidence) -> list[str]:
         count = _counted(len(evidence.unchecked), "record is", "records are")
         found.append(f"{count} left out for a failed check: {_cases(evidence.unchecked)}.")
     if evidence.superseded:
-        count = _counted(evidence.superseded, "record is", "records are")
+        count = _counted(len(evidence.superseded), "record is", "records are")
         found.append(f"{count} left out, because a later one of the same case and machine exists.")
     if evidence.unknown:
         count = _counted(sum(evidence.unknown.values()), "record is", "records are")
@@ -68,11 +76,16 @@ def _width(file: Path, dpi: int) -> int:
 
 
 def write(evidence: Evidence, out: Path, form: str, dpi: int) -> Iterator[Path]:
-    """Draws the pictures, writes the page, and yields the name of each file once it is written.
+    """Draws the pictures, writes a page for each mini-app, and yields the name of each file once it is written.
 
-    The page holds PNG; in another form the pictures are written beside them.
+    The pages hold PNG; in another form the pictures are written beside them.
     """
-    machines = [(machine, _sections(evidence, machine)) for machine in evidence.machines]
+    for app in evidence.apps or ["gas"]:
+        yield from _write_app(app, evidence.of_app(app), out, form, dpi)
+
+
+def _write_app(app: str, evidence: Evidence, out: Path, form: str, dpi: int) -> Iterator[Path]:
+    machines = [(machine, _SECTIONS[app](evidence, machine)) for machine in evidence.machines]
     files: dict[int, Path] = {}
     names: dict[str, int] = {}
     for _, found in machines:
@@ -88,6 +101,6 @@ def write(evidence: Evidence, out: Path, form: str, dpi: int) -> Iterator[Path]:
                     yield style.save(figure, out / f"{name}.{form}", dpi)
     filters = {"cell": _cell, "file_of": lambda picture: files[id(picture)], "width": lambda file: _width(file, dpi)}
     yield page.write(
-        out / PAGE, "evidence_page.html.j2", filters, machines=machines, notes=notes(evidence),
+        out / f"{app}.html", "evidence_page.html.j2", filters, app=app, machines=machines, notes=notes(evidence),
         count=len(evidence.records),
     )  # fmt: skip

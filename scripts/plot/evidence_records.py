@@ -18,11 +18,30 @@ class Evidence:
     unsolved: list[Record] = field(default_factory=list)
     unchecked: list[Record] = field(default_factory=list)
     unknown: Counter = field(default_factory=Counter)
-    superseded: int = 0
+    superseded: list[Record] = field(default_factory=list)
+
+    @property
+    def apps(self) -> list[str]:
+        """Those that records tell of."""
+        every = self.records + self.unsolved + self.unchecked
+        return sorted({record.app for record in every})
+
+    def of_app(self, app: str) -> "Evidence":
+        """What belongs on the page of a mini-app."""
+
+        def own(records: list[Record]) -> list[Record]:
+            return [record for record in records if record.app == app]
+
+        return Evidence(
+            self.folder, own(self.records), own(self.unsolved), own(self.unchecked), self.unknown, own(self.superseded)
+        )
 
     @property
     def machines(self) -> list[Machine]:
         return list(dict.fromkeys(record.machine for record in self.records + self.unsolved))
+
+    def unsolved_of(self, machine: Machine) -> list[Record]:
+        return [record for record in self.unsolved if record.machine == machine]
 
     def of(self, machine: Machine, kind: str) -> list[Record]:
         return [record for record in self.records if record.machine == machine and record.kind == kind]
@@ -60,7 +79,8 @@ def read(folder: Path) -> Evidence | None:
     if not known and not evidence.unknown:
         raise Failure(IO_ERROR, f"{folder} holds no record: its {RECORDS} are empty.")
     newest = _newest(known)
-    evidence.superseded = len(known) - len(newest)
+    kept = {id(record) for record in newest}
+    evidence.superseded = [record for record in known if id(record) not in kept]
     for record in newest:
         if not record.is_solved:
             evidence.unsolved.append(record)

@@ -1,44 +1,42 @@
-"""Work-precision of the gas mini-app: curves of error against time, and how long each takes to reach an error."""
+"""Work and precision of an app: curves of error against time, and how long each takes to reach an error."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
 from .perf_record import BACKENDS, Record
-from .study_figure import SCHEMES, observed_order
-
-PROBLEMS = {
-    "entropy-wave": "Entropy wave", "shu-osher": "Shu-Osher", "blast": "Woodward-Colella blast", "leblanc": "LeBlanc",
-    "sod": "Sod",
-}  # fmt: skip
-COMPETITOR = "muscl-hancock"
-NAMES = SCHEMES | {COMPETITOR: "MUSCL-Hancock"}
-USUAL = ("lf-stencil", "ssprk3", "double")
+from .solution_family import Family, family_of
+from .study_figure import observed_order
 
 
 @dataclass(frozen=True)
 class Scheme:
-    """Where and with what a problem was solved."""
+    """Where and with what a problem was solved; `word` is a key of the family's names."""
 
+    family: Family
     backend: str
-    weno: str  # a key of NAMES
-    splitting: str
-    time_scheme: str
-    precision: str
+    word: str
+    settings: tuple[str, ...]
+
+    @property
+    def is_competitor(self) -> bool:
+        return bool(self.family.competitor) and self.word == self.family.competitor
 
     @property
     def is_usual(self) -> bool:
-        return self.weno == COMPETITOR or self.settings == USUAL
+        return self.is_competitor or self.settings == self.family.usual
 
     @property
-    def settings(self) -> tuple[str, str, str]:
-        return self.splitting, self.time_scheme, self.precision
+    def row(self) -> str:
+        """The setting whose values have a row of panels each, where there is such."""
+        return self.settings[2] if len(self.settings) > 2 else ""
 
     @property
     def name(self) -> str:
         """Name, and the settings that are not the usual ones."""
-        changed = [word for word, usual in zip(self.settings, USUAL) if word != usual and not self.is_usual]
-        return ", ".join([NAMES.get(self.weno, self.weno), *changed])
+        usual = zip(self.settings, self.family.usual)
+        changed = [word for word, wanted in usual if word != wanted and not self.is_usual]
+        return ", ".join([self.family.names.get(self.word, self.word), *changed])
 
 
 @dataclass(frozen=True)
@@ -50,7 +48,7 @@ class Curve:
 
     @property
     def order(self) -> float | None:
-        return observed_order(self.points)
+        return observed_order(self.points, 2 if self.scheme.word in self.scheme.family.planar else 1)
 
 
 @dataclass(frozen=True)
@@ -62,23 +60,23 @@ class Reach:
 
 
 def scheme_of(record: Record) -> Scheme:
-    facts = record.facts
-    weno = "z2" if facts["weno"] == "z" and facts.get("weno_power", 1) == 2 else facts["weno"]
-    words = (facts.get(name) or "" for name in ("splitting", "time_scheme"))
-    return Scheme(facts["backend"], weno, *words, facts.get("precision") or "double")
+    family, facts = family_of(record), record.facts
+    word = "z2" if facts[family.fact] == "z" and facts.get("weno_power", 1) == 2 else facts[family.fact]
+    settings = tuple(facts.get(name) or ("double" if name == "precision" else "") for name in family.settings)
+    return Scheme(family, facts["backend"], word, settings)
 
 
 def curves(records: list[Record]) -> list[Curve]:
-    """One a scheme and backend, in the order of the backends and of NAMES; an error of 0 has no logarithm."""
+    """One a scheme and backend, in the order of the backends and of the names; an error of 0 has no logarithm."""
     points: dict[Scheme, list[tuple[float, float, float]]] = {}
     for record in records:
         if record.error > 0:
             points.setdefault(scheme_of(record), []).append((record.facts["cells"], record.median, record.error))
-    order = list(BACKENDS), list(NAMES)
 
     def place(scheme: Scheme):
+        order = list(BACKENDS), list(scheme.family.names)
         known = (
-            list_.index(word) if word in list_ else 99 for list_, word in zip(order, (scheme.backend, scheme.weno))
+            list_.index(word) if word in list_ else 99 for list_, word in zip(order, (scheme.backend, scheme.word))
         )
         return *known, not scheme.is_usual, scheme.settings
 
@@ -110,23 +108,26 @@ def speed_up(other: Reach, own: Reach) -> Reach | None:
 
 
 def competitor_of(found: list[Curve], backend: str) -> Curve | None:
-    return next((c for c in found if c.scheme.weno == COMPETITOR and c.scheme.backend == backend), None)
+    return next((c for c in found if c.scheme.is_competitor and c.scheme.backend == backend), None)
 
 
 def yardstick(found: list[Curve]) -> Curve | None:
     """The curve whose errors the others are asked for: the competitor's, else the first usual one."""
     usual = [curve for curve in found if curve.scheme.is_usual]
-    return next((c for c in usual if c.scheme.weno == COMPETITOR), usual[0] if usual else None)
+    return next((c for c in usual if c.scheme.is_competitor), usual[0] if usual else None)
 
 
 def asked_errors(found: list[Curve]) -> list[float]:
-    """Three errors, falling: of the yardstick's middle and finest mesh, and half-way in logarithms to the least of all.
+    """Three errors, falling: those that the family names, else of the yardstick's middle and finest mesh, and half-way
+    in logarithms to the least of all.
 
     Where nothing is below the yardstick its coarsest mesh is the third.
     """
     stick = yardstick(found)
     if stick is None:
         return []
+    if stick.scheme.family.errors:
+        return list(stick.scheme.family.errors)
     errors = stick.points[:, 2]
     least = min(curve.points[:, 2].min() for curve in found if curve.scheme.is_usual)
     third = np.sqrt(errors[-1] * least) if least < 0.9 * errors[-1] else errors[0]
@@ -139,18 +140,18 @@ def best_scheme(found: list[Curve]) -> str | None:
     Where none does: the one with the least error.
     """
     stick = yardstick(found)
-    varied = {curve.scheme.weno for curve in found if not curve.scheme.is_usual}
+    varied = {curve.scheme.word for curve in found if not curve.scheme.is_usual}
     rivals = [
         curve
         for curve in found
-        if curve.scheme.is_usual and curve.scheme.weno in varied and curve.scheme.backend == stick.scheme.backend
+        if curve.scheme.is_usual and curve.scheme.word in varied and curve.scheme.backend == stick.scheme.backend
     ]
 
     def place(curve: Curve):
         reach = time_to_error(curve.points, stick.points[-1, 2])
         return (1, curve.points[:, 2].min()) if reach.bound == ">" else (0, reach.seconds)
 
-    return min(rivals, key=place).scheme.weno if rivals else None
+    return min(rivals, key=place).scheme.word if rivals else None
 
 
 def wins_below(other: np.ndarray, own: np.ndarray) -> tuple[str, float | None]:

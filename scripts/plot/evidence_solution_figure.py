@@ -4,58 +4,73 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from . import style
-from .evidence_solution import COMPETITOR, NAMES, Curve
+from .evidence_solution import Curve
 from .perf_record import BACKENDS, Machine
-from .study_figure import TITLES
+from .solution_family import Family
 from .style import plt
 
-_SPLITTINGS = dict(zip(("lf-stencil", "lf-global", "lf-single"), style.PALETTE))
-# line, marker, how the key shows them, name
-_TIMES = {"ssprk3": ("-", "o", "\u2014\u25cb", "SSP-RK3"), "ssprk43": ("--", "v", "\u2013 \u2013 \u25bd", "SSPRK(4,3)")}
-_OTHER_TIME = (":", "s", "\u2026\u25a1")
+# line, marker, how the key shows them, by the place of a second setting in its family
+_LINES = (("-", "o", "\u2014\u25cb"), ("--", "v", "\u2013 \u2013 \u25bd"))
+_OTHER_LINE = (":", "s", "\u2026\u25a1")
 _PANEL_WIDTH, _SCHEMES_HEIGHT, _SETTINGS_HEIGHT = 2.75, 2.5, 2.0  # inches of an axes
 _LEFT, _BOTTOM, _HEADING, _GAP, _RIGHT, _BETWEEN_ROWS = 0.95, 0.45, 0.72, 0.2, 0.15, 0.62
 
 
-def _colour(weno: str) -> str:
-    if weno == COMPETITOR:
+def _colour(family: Family, word: str) -> str:
+    if word == family.competitor:
         return style.INK
-    names = list(NAMES)
-    return style.PALETTE[names.index(weno) % len(style.PALETTE)] if weno in NAMES else style.MUTED
+    return _place_colour(list(family.names), word)
+
+
+def _place_colour(known: list[str], word: str) -> str:
+    return style.PALETTE[known.index(word) % len(style.PALETTE)] if word in known else style.MUTED
+
+
+def _line(family: Family, second: str) -> tuple[str, str, str]:
+    known = list(family.seconds)
+    return _LINES[known.index(second)] if second in known else _OTHER_LINE
 
 
 def _draw(axes, curve: Curve, colour: str, line: str, marker: str) -> None:
     axes.plot(
         curve.points[:, 1], curve.points[:, 2], line + marker, color=colour, markersize=3.6, markerfacecolor="white",
-        markeredgewidth=0.9, linewidth=1.2, zorder=3 if curve.scheme.weno == COMPETITOR else 2,
+        markeredgewidth=0.9, linewidth=1.2, zorder=3 if curve.scheme.is_competitor else 2,
     )  # fmt: skip
 
 
 def _draw_scheme(axes, curve: Curve) -> None:
-    _draw(axes, curve, _colour(curve.scheme.weno), "--" if curve.scheme.weno == COMPETITOR else "-", "o")
+    scheme = curve.scheme
+    _draw(axes, curve, _colour(scheme.family, scheme.word), "--" if scheme.is_competitor else "-", "o")
 
 
 def _draw_variant(axes, curve: Curve) -> None:
-    splitting, time_scheme, _ = curve.scheme.settings
-    line, marker, *_ = _TIMES.get(time_scheme, _OTHER_TIME)
-    _draw(axes, curve, _SPLITTINGS.get(splitting, style.MUTED), line, marker)
+    family, (first, second, *_) = curve.scheme.family, curve.scheme.settings
+    line, marker, _ = _line(family, second)
+    _draw(axes, curve, _place_colour(list(family.firsts), first), line, marker)
 
 
 def _scheme_key(curves: list[Curve]) -> list[tuple[str, str, str]]:
-    present = {curve.scheme.weno for curve in curves}
-    ordered = [weno for weno in NAMES if weno in present] + sorted(present - set(NAMES))
+    family, present = curves[0].scheme.family, {curve.scheme.word for curve in curves}
+    ordered = [word for word in family.names if word in present] + sorted(present - set(family.names))
     return [
-        ("\u2013 \u2013" if weno == COMPETITOR else "\u2014", NAMES.get(weno, weno), _colour(weno)) for weno in ordered
+        (
+            "\u2013 \u2013" if word == family.competitor else "\u2014",
+            family.names.get(word, word),
+            _colour(family, word),
+        )
+        for word in ordered
     ]
 
 
 def _variant_key(curves: list[Curve]) -> list[tuple[str, str, str]]:
-    """Colours of the splittings, lines of the time schemes; of a setting that does not vary nothing."""
-    splittings, times = (list(dict.fromkeys(curve.scheme.settings[axis] for curve in curves)) for axis in range(2))
-    key = [("\u2014", word, _SPLITTINGS.get(word, style.MUTED)) for word in splittings if len(splittings) > 1]
-    for word in times if len(times) > 1 else ():
-        _, _, shown, name = _TIMES.get(word, (*_OTHER_TIME, word))
-        key.append((shown, name, style.INK))
+    """Colours of the first settings, lines of the second; of a setting that does not vary nothing."""
+    if not curves:
+        return []
+    family = curves[0].scheme.family
+    firsts, seconds = (list(dict.fromkeys(curve.scheme.settings[axis] for curve in curves)) for axis in range(2))
+    key = [("\u2014", word, _place_colour(list(family.firsts), word)) for word in firsts if len(firsts) > 1]
+    for word in seconds if len(seconds) > 1 else ():
+        key.append((_line(family, word)[2], family.seconds.get(word, word), style.INK))
     return key
 
 
@@ -73,10 +88,10 @@ class _Row:
 def _rows(title: str, found: list[Curve], best: str | None) -> list[_Row]:
     usual = [curve for curve in found if curve.scheme.is_usual]
     rows = [_Row(title, _scheme_key(usual), usual, _draw_scheme, _SCHEMES_HEIGHT)]
-    variants = [curve for curve in found if best and curve.scheme.weno == best]
-    for precision in dict.fromkeys(curve.scheme.precision for curve in variants):
-        drawn = [curve for curve in variants if curve.scheme.precision == precision]
-        words = f"{NAMES.get(best, best)}, {precision} precision"
+    variants = [curve for curve in found if best and curve.scheme.word == best]
+    for of_row in dict.fromkeys(curve.scheme.row for curve in variants):
+        drawn = [curve for curve in variants if curve.scheme.row == of_row]
+        words = drawn[0].scheme.family.names.get(best, best) + (f", {of_row} precision" if of_row else "")
         rows.append(_Row(words, _variant_key(variants), drawn, _draw_variant, _SETTINGS_HEIGHT))
     return rows
 
@@ -100,15 +115,17 @@ def _make_room(figure, rows: list[_Row], axes, details: str) -> list[float]:
     return tops
 
 
-def solution_figure(title: str, machine: Machine, found: list[Curve], best: str | None, threads: str):
+def solution_figure(problem: str, machine: Machine, found: list[Curve], best: str | None, threads: str):
     """All schemes with the usual settings above, below it the settings of the best scheme, a row a precision.
 
     Wants a curve with the usual settings; with `best` None there are no other rows.
     """
+    family = found[0].scheme.family
+    title = family.problems.get(problem, problem)
     rows = _rows(title, found, best)
     columns = list(dict.fromkeys(curve.scheme.backend for row in rows for curve in row.curves))
     figure, axes = plt.subplots(len(rows), len(columns), sharex=True, sharey="row", squeeze=False)
-    details = f"lf-stencil, SSP-RK3, double precision; {machine.name}"
+    details = f"{family.usual_words}; {machine.name}"
     tops = _make_room(figure, rows, axes, details)
     for row, of_row in zip(rows, axes):
         for panel_axes, backend in zip(of_row, columns):
@@ -127,7 +144,7 @@ def solution_figure(title: str, machine: Machine, found: list[Curve], best: str 
         style.mark_logarithm(panel_axes.yaxis)
         style.mark_logarithm(panel_axes.xaxis)
     for panel_axes in axes[:, 0]:
-        panel_axes.set_ylabel(TITLES["l1_density"])
+        panel_axes.set_ylabel(family.error_titles.get(problem, "error"))
     for panel_axes in axes[-1]:
         panel_axes.set_xlabel("time to solution (s)")
     figure.align_ylabels(axes[:, 0])

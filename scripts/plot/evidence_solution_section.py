@@ -5,9 +5,6 @@ from markupsafe import Markup
 from . import page
 from .evidence_section import Cell, Picture, Section, Table
 from .evidence_solution import (
-    COMPETITOR,
-    NAMES,
-    PROBLEMS,
     Curve,
     Reach,
     asked_errors,
@@ -22,8 +19,7 @@ from .evidence_solution import (
 )  # fmt: skip
 from .evidence_solution_figure import solution_figure
 from .perf_record import BACKENDS, Machine, Record
-
-_COMMAND = "drogue-perf work-precision --app gas --out FILE.jsonl"
+from .solution_family import Family, family_of
 
 
 def _bounded(reach: Reach, text: str) -> str:
@@ -61,11 +57,11 @@ def _row(curve: Curve, found: list[Curve], errors: list[float]) -> list[Cell | s
 
 
 def _table(shown: list[Curve], found: list[Curve], errors: list[float], title: str, folded: bool) -> Table:
-    columns = [("backend", False), ("scheme", False), ("cells", True), ("order", True)]
+    columns = [("backend", False), ("scheme", False), (found[0].scheme.family.mesh, True), ("order", True)]
     for error in errors:
         columns += [(Markup("to {}").format(page.number(error)), True), ("factor", True)]
     columns.append(("faster at errors", False))
-    if not any(curve.scheme.weno == COMPETITOR for curve in found):
+    if not any(curve.scheme.is_competitor for curve in found):
         columns = [column for column in columns if column[0] not in ("factor", "faster at errors")]
         rows = [_without_factors(_row(curve, found, errors)) for curve in shown]
     else:
@@ -84,10 +80,11 @@ def _failures(records: list[Record]) -> list[str]:
     for record in records:
         scheme = scheme_of(record)
         key = scheme.name, scheme.backend, record.facts["status"]
+        mesh = scheme.family.mesh
         meshes.setdefault(key, []).append(record.facts["cells"])
         messages.setdefault(key, str(record.facts.get("message") or "").rstrip("."))
     return [
-        f"{name}, {BACKENDS.get(backend, backend)}, {', '.join(map(str, sorted(meshes[key])))} cells: {status}"
+        f"{name}, {BACKENDS.get(backend, backend)}, {', '.join(map(str, sorted(meshes[key])))} {mesh}: {status}"
         + (f" ({messages[key]})" if messages[key] else "")
         for key in meshes
         for name, backend, status in [key]
@@ -97,27 +94,34 @@ def _failures(records: list[Record]) -> list[str]:
 def _explanation(found: list[Curve], best: str | None) -> str:
     """What the table says and what it compares with what."""
     stick = yardstick(found).scheme.name
+    family = found[0].scheme.family
+    asked = (
+        "The errors asked for are 1 %, 0.1 % and 0.01 %."
+        if family.errors
+        else f"The errors asked for are those of {stick} on its middle and its finest mesh, and one half-way, in "
+        "logarithms, to the least error of all schemes (where none is smaller: that of its coarsest mesh)."
+    )
     words = [
-        f"The errors asked for are those of {stick} on its middle and its finest mesh, and one half-way, in "
-        "logarithms, to the least error of all schemes (where none is smaller: that of its coarsest mesh). They are "
-        "met on straight lines between the meshes, in logarithms; > : the finest mesh still misses the error, "
-        "< : the coarsest has it already. Order: least squares of error against mesh."
+        f"{asked} They are met on straight lines between the meshes, in logarithms; > : the finest mesh still misses "
+        "the error, < : the coarsest has it already. Order: least squares of error against cells, or edges along an "
+        "axis."
     ]
-    holders = list(dict.fromkeys(curve.scheme.backend for curve in found if curve.scheme.weno == COMPETITOR))
+    rival = family.names.get(family.competitor, "")
+    holders = list(dict.fromkeys(curve.scheme.backend for curve in found if curve.scheme.is_competitor))
     if holders:
         words.append(
-            f"Factor: time of {NAMES[COMPETITOR]} over time of the scheme, both on one backend; faster at errors: "
+            f"Factor: time of {rival} over time of the scheme, both on one backend; faster at errors: "
             "those at which it is above 1."
         )
     if holders and set(holders) != {curve.scheme.backend for curve in found}:
         names = " and ".join(BACKENDS.get(name, name) for name in holders)
         words.append(
-            f"{NAMES[COMPETITOR]} runs on {names} only: {names} is compared with {names}, others have no factor."
+            f"{rival} runs on {names} only: {names} is compared with {names}, others have no factor."
         )
     if best:
         words.append(
-            f"Of the schemes with other settings {NAMES.get(best, best)}, which is drawn, is the first to reach the "
-            f"finest error of {stick} or, where none does, has the least error."
+            f"Of the schemes with other settings {family.names.get(best, best)}, which is drawn, is the first to reach "
+            f"the finest error of {stick} or, where none does, has the least error."
         )
     return " ".join(words)
 
@@ -127,8 +131,10 @@ def _threads(records: list[Record]) -> str:
     return f", {counts.pop()} threads" if len(counts) == 1 else ""
 
 
-def _section(problem: str, machine: Machine, solved: list[Record], unsolved: list[Record]) -> Section:
-    title = PROBLEMS.get(problem, problem)
+def _section(
+    family: Family, problem: str, machine: Machine, solved: list[Record], unsolved: list[Record]
+) -> Section:
+    title = family.problems.get(problem, problem)
     found = curves(solved)
     usual = [curve for curve in found if curve.scheme.is_usual]
     variants = [curve for curve in found if not curve.scheme.is_usual]
@@ -138,8 +144,8 @@ def _section(problem: str, machine: Machine, solved: list[Record], unsolved: lis
         pictures.append(
             Picture(
                 f"solution_{problem}_{machine.slug}",
-                lambda: solution_figure(title, machine, found, best, _threads(solved)),
-                f"Error of the density against time to solution of {title}, one curve a scheme, one column a backend",
+                lambda: solution_figure(problem, machine, found, best, _threads(solved)),
+                f"Error against time to solution of {title}, one curve a scheme, one column a backend",
             )
         )
         tables.append(_table(usual, found, errors, "Time to reach an error", False))
@@ -150,17 +156,22 @@ def _section(problem: str, machine: Machine, solved: list[Record], unsolved: lis
     if exact:
         notes.append(f"{exact} runs without any error are not drawn.")
     return Section(
-        f"{title}: error against time", _COMMAND, solved + unsolved, pictures, tables, notes, _failures(unsolved)
+        f"{title}: error against time", family.command, solved + unsolved, pictures, tables, notes, _failures(unsolved)
     )
 
 
 def sections(machine: Machine, records: list[Record], unsolved: list[Record]) -> list[Section]:
-    """One for each problem, in the order of PROBLEMS."""
-    problems = list(dict.fromkeys(record.facts["problem"] for record in records + unsolved))
-    order = list(PROBLEMS)
+    """One for each problem, in the order of the family."""
+    every = records + unsolved
+    if not every:
+        return []
+    family = family_of(every[0])
+    problems = list(dict.fromkeys(record.facts["problem"] for record in every))
+    order = list(family.problems)
     problems.sort(key=lambda name: order.index(name) if name in order else len(order))
     return [
         _section(
+            family,
             problem,
             machine,
             [record for record in records if record.facts["problem"] == problem],

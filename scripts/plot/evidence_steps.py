@@ -1,16 +1,44 @@
 """Section of the steps: what each costs, and how that stands against the goals and the hand-written programs."""
 
 import re
+from dataclasses import dataclass
 
 from markupsafe import Markup
 
-from . import gas_goals, page
+from . import gas_goals, page, springs_goals
 from .evidence_section import Cell, Section, Table, cells_text
-from .gas_goals import CELL_NS, EFFICIENCY, HIGHER_IS_BETTER, RATE, SPEED_UP, STEP_US, TIME_RATIO, Goal
+from .gas_goals import (
+    CELL_NS,
+    EFFICIENCY,
+    HIGHER_IS_BETTER,
+    RATE,
+    SPEED_UP,
+    STEP_US,
+    TIME_RATIO,
+    VERTEX_NS,
+    Goal,
+)
 from .perf_record import BACKENDS, Record
 
-_COMMAND = "drogue-perf run --filter ^gas-step --out FILE.jsonl"
-_NAMES = BACKENDS | {"dense-loop": "dense loop, one core"}
+_NAMES = BACKENDS | {"dense-loop": "dense loop, one core", "scatter-loop": "loop that scatters, one core"}
+
+
+@dataclass(frozen=True)
+class _Kind:
+    """How a page calls the steps of a kind of record."""
+
+    title: str
+    mesh: str
+    per_mesh: tuple[str, str]  # time and rate
+    goals: tuple[Goal, ...]
+
+
+_OF_SPRINGS = "vertices", (VERTEX_NS, "G vertex-steps/s"), springs_goals.GOALS
+_KINDS = {
+    "gas-step": _Kind("A step", "cells", (CELL_NS, RATE), gas_goals.GOALS),
+    "springs-step": _Kind("A step", *_OF_SPRINGS),
+    "springs-contact": _Kind("A step in contact", *_OF_SPRINGS),
+}
 _Interval = tuple[float, float, float]  # median, low, high
 
 
@@ -45,7 +73,7 @@ def measured(goal: Goal, record: Record, beside: Record | None) -> _Interval | N
     seconds, cells = _seconds(record), record.facts["cells"]
     if goal.measure == STEP_US:
         return _scaled(seconds, 1e6)
-    if goal.measure == CELL_NS:
+    if goal.measure in (CELL_NS, VERTEX_NS):
         return _scaled(seconds, 1e9 / cells)
     if goal.measure == RATE:
         return _over((1e-9 * cells,) * 3, seconds)
@@ -85,14 +113,20 @@ def _holds_for(goal: Goal, record: Record) -> bool:
 
 
 def _what(goal: Goal, record: Record) -> str:
-    words = f"{_NAMES.get(record.facts['backend'], record.facts['backend'])}, {cells_text(record.facts['cells'])} cells"
+    mesh = f"{cells_text(record.facts['cells'])} {_KINDS[record.kind].mesh}"
+    words = f"{_NAMES.get(record.facts['backend'], record.facts['backend'])}, {mesh}"
     if record.facts["variant"]:
         words += f", {record.facts['variant']}"
     if goal.vector_bits and vector_bits(record) is None:
         words += f" (if its vectors have {goal.vector_bits} bits)"
     if goal.measure == EFFICIENCY:
         return f"{words}, against {record.threads} times one core"
-    return f"{words}, against {goal.beside.removeprefix('gas-step/')}" if goal.beside else words
+    return f"{words}, against {_short(goal.beside)}" if goal.beside else words
+
+
+def _short(case: str) -> str:
+    """A case without its kind."""
+    return case.partition("/")[2]
 
 
 def _with_interval(values: _Interval) -> str:
@@ -108,7 +142,7 @@ def _goal_row(goal: Goal, record: Record, of_run: dict[tuple, Record]) -> list[C
             goal.measure,
             "",
             *bars,
-            f"{goal.beside.removeprefix('gas-step/')} is not in the same run",
+            f"{_short(goal.beside)} is not in the same run",
         ]
     words = verdict(goal, values[0])
     return [
@@ -118,11 +152,10 @@ def _goal_row(goal: Goal, record: Record, of_run: dict[tuple, Record]) -> list[C
 
 
 def goal_table(records: list[Record]) -> Table | None:
-    """Every goal whose case was recorded; None where there is none."""
+    """Every goal whose case was recorded; None where there is none. Records are of one kind."""
     of_run = {(record.case, *record.run): record for record in records}
-    rows = [
-        _goal_row(goal, record, of_run) for goal in gas_goals.GOALS for record in records if _holds_for(goal, record)
-    ]
+    goals = _KINDS[records[0].kind].goals
+    rows = [_goal_row(goal, record, of_run) for goal in goals for record in records if _holds_for(goal, record)]
     columns = ["what", "measure", "measured", "probe", "goal", "stretch", "verdict"]
     note = (
         "Measured: median and its 95 % interval. Probe: a small hand-written CUDA program, which is no part of this "
@@ -143,11 +176,15 @@ def step_table(records: list[Record]) -> Table:
                 page.number(1e-9 * cells / seconds[0]),
             ]  # fmt: skip
         )
-    columns = [("backend", False), ("variant", False), ("cells", True)]
-    return Table(columns + [(name, True) for name in (STEP_US, CELL_NS, RATE)], rows, "What a step costs")
+    kind = _KINDS[records[0].kind]
+    columns = [("backend", False), ("variant", False), (kind.mesh, True)]
+    return Table(columns + [(name, True) for name in (STEP_US, *kind.per_mesh)], rows, "What a step costs")
 
 
 def sections(records: list[Record]) -> list[Section]:
+    """Of the records of one kind."""
+    if not records:
+        return []
     order = list(_NAMES)
     ordered = sorted(
         records,
@@ -158,4 +195,6 @@ def sections(records: list[Record]) -> list[Section]:
         ),
     )
     goals = goal_table(ordered)
-    return [Section("A step", _COMMAND, ordered, tables=[step_table(ordered)] + ([goals] if goals else []))]
+    kind = records[0].kind
+    command = f"drogue-perf run --filter ^{kind} --out FILE.jsonl"
+    return [Section(_KINDS[kind].title, command, ordered, tables=[step_table(ordered)] + ([goals] if goals else []))]

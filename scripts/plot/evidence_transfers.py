@@ -1,5 +1,7 @@
 """Sections of the transfers: the dissertation's times of copies and computation beside those of this machine."""
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from . import page, style
@@ -7,39 +9,92 @@ from .evidence_section import Picture, Section, Table
 from .perf_record import BACKENDS, Machine, Record
 from .style import plt
 
-_COMMAND = "drogue-perf table transfers --app gas --out FILE.jsonl"
 _THESIS = "dissertation"
-_SOURCES = (_THESIS, "pageable", "pinned")
 _PARTS = {"h2d": "host to device", "compute": "compute", "d2h": "device to host"}
 _NAMES = _PARTS | {"total": "total"}
 _COLOURS = dict(zip(_PARTS, (style.PALETTE[5], style.PALETTE[0], style.PALETTE[4])))
 
 
+@dataclass(frozen=True)
+class _Kind:
+    """How a page calls the transfers of an app; `prefix` keeps the names of pictures apart."""
+
+    app: str
+    prefix: str
+    mesh: str
+    source: str
+    panels: str
+    table: str
+    note: str
+    unit: str
+    compared: bool  # whether the dissertation's steps are known to be ours
+
+
+_KINDS = {
+    "gas-transfers": _Kind(
+        app="gas",
+        prefix="transfers",
+        mesh="cells",
+        source="memory",
+        panels="the dissertation, with pageable and with pinned memory",
+        table="5.5",
+        note="",
+        unit="\u00b5s a step",
+        compared=True,
+    ),
+    "springs-transfers": _Kind(
+        app="springs",
+        prefix="springs-transfers",
+        mesh="vertices",
+        source="between two copies",
+        panels="the dissertation, and of each number of steps between two copies",
+        table="5.6",
+        note="Its steps took a number of substeps that is not recorded, so that no ratio to it means anything. Every "
+        "panel has a scale of its own.",
+        unit="\u00b5s from host to host",
+        compared=False,
+    ),
+}
+
+
+def _source(record: Record) -> str:
+    """The kind of host memory, or the steps between two copies."""
+    steps = record.facts.get("substeps")
+    return record.facts["memory"] if steps is None else f"{steps} step" + ("s" if steps > 1 else "")
+
+
+def sources(records: list[Record]) -> list[str]:
+    """The dissertation, then ours: pageable before pinned, few steps before many."""
+    ordered = sorted(records, key=lambda record: (record.facts.get("substeps", 0), record.facts.get("memory", "")))
+    return [_THESIS, *dict.fromkeys(_source(record) for record in ordered)]
+
+
 def times(records: list[Record]) -> dict[tuple[int, str], dict[str, float]]:
-    """Microseconds of a step, its parts and total, by (cells, dissertation | pageable | pinned), by rising mesh."""
+    """Microseconds of a step, its parts and total, by (mesh, source), by rising mesh."""
     found = {}
     for record in records:
         facts = record.facts
         parts = {part: 1e6 * facts[f"{part}_s"] for part in _PARTS}
-        found[facts["cells"], facts["memory"]] = parts | {"total": 1e6 * record.median}
+        found[facts["cells"], _source(record)] = parts | {"total": 1e6 * record.median}
         thesis = facts.get("thesis") or {}
         if all(isinstance(thesis.get(f"{part}_us"), int | float) for part in _NAMES):
             found[facts["cells"], _THESIS] = {part: float(thesis[f"{part}_us"]) for part in _NAMES}
-    order = {name: index for index, name in enumerate(_SOURCES)}
-    return dict(sorted(found.items(), key=lambda item: (item[0][0], order.get(item[0][1], len(order)))))
+    order = {name: index for index, name in enumerate(sources(records))}
+    return dict(sorted(found.items(), key=lambda item: (item[0][0], order[item[0][1]])))
 
 
-def transfers_figure(title: str, machine: Machine, found: dict[tuple[int, str], dict[str, float]]):
-    """Stacked bars by mesh, one panel for the dissertation and each kind of host memory, on one scale."""
-    sources = [name for name in _SOURCES if any(source == name for _, source in found)]
+def transfers_figure(title: str, machine: Machine, records: list[Record]):
+    """Stacked bars by mesh, one panel for the dissertation and each source of ours; on one scale if these compare."""
+    found, kind = times(records), _KINDS[records[0].kind]
+    panels = [name for name in sources(records) if any(source == name for _, source in found)]
     meshes = sorted({cells for cells, _ in found})
     height, details = 3.3, f"total above each bar; {machine.name}"
-    figure, axes = plt.subplots(1, len(sources), sharey=True, squeeze=False)
+    figure, axes = plt.subplots(1, len(panels), sharey=kind.compared, squeeze=False)
     key = [("\u25a0", words, _COLOURS[part]) for part, words in _PARTS.items()]
-    bars = 0.7 + (0.5 + 0.33 * len(meshes)) * len(sources)
+    bars = 0.7 + (0.5 + 0.33 * len(meshes)) * len(panels)
     width = max(bars, style.titled_key_width(figure, title, key), style.details_width(figure, details))
     figure.set_size_inches(width, height)
-    for panel, source in zip(axes[0], sources):
+    for panel, source in zip(axes[0], panels):
         place = [index for index, cells in enumerate(meshes) if (cells, source) in found]
         rows = [found[meshes[index], source] for index in place]
         base = np.zeros(len(rows))
@@ -56,37 +111,43 @@ def transfers_figure(title: str, machine: Machine, found: dict[tuple[int, str], 
         panel.set_xticks(range(len(meshes)), [str(cells) for cells in meshes], rotation=60)
         panel.set_xlim(-0.6, len(meshes) - 0.4)
         panel.grid(axis="x", visible=False)
-        panel.set_xlabel("cells")
-    axes[0, 0].set_ylabel("\u00b5s a step")
+        panel.set_xlabel(kind.mesh)
+    axes[0, 0].set_ylabel(kind.unit)
     figure.tight_layout(rect=(0, 0, 1, 1 - 0.5 / height), w_pad=1.2)
     style.heading(figure, title, details, key)
     return figure
 
 
-def transfers_table(found: dict[tuple[int, str], dict[str, float]]) -> Table:
-    columns = [("cells", True), ("memory", False)] + [(f"{words} (\u00b5s)", True) for words in _NAMES.values()]
-    columns.append(("times as fast as the dissertation", True))
+def transfers_table(records: list[Record]) -> Table:
+    found, kind = times(records), _KINDS[records[0].kind]
+    columns = [(kind.mesh, True), (kind.source, False)] + [(f"{words} (\u00b5s)", True) for words in _NAMES.values()]
+    columns += [("times as fast as the dissertation", True)] if kind.compared else []
     rows = []
     for (cells, source), parts in found.items():
+        row = [page.grouped(cells), source, *(page.number(parts[part]) for part in _NAMES)]
         thesis = found.get((cells, _THESIS))
-        factor = "" if source == _THESIS or not thesis else page.number(thesis["total"] / parts["total"])
-        rows.append([page.grouped(cells), source, *(page.number(parts[part]) for part in _NAMES), factor])
+        if kind.compared:
+            row.append("" if source == _THESIS or not thesis else page.number(thesis["total"] / parts["total"]))
+        rows.append(row)
     return Table(columns, rows)
 
 
 def sections(machine: Machine, records: list[Record]) -> list[Section]:
-    """One a backend."""
+    """One a backend, of the records of one kind."""
     found = []
     for backend in dict.fromkeys(record.facts["backend"] for record in records):
         own = [record for record in records if record.facts["backend"] == backend]
-        title, data = f"Transfers of a step, {BACKENDS.get(backend, backend)}", times(own)
+        kind = _KINDS[own[0].kind]
+        title = f"Transfers of a step, {BACKENDS.get(backend, backend)}"
         picture = Picture(
-            f"transfers_{backend}_{machine.slug}",
-            lambda title=title, data=data: transfers_figure(title, machine, data),
-            f"{title}: copies and computation of the dissertation, with pageable and with pinned memory",
+            f"{kind.prefix}_{backend}_{machine.slug}",
+            lambda title=title, own=own: transfers_figure(title, machine, own),
+            f"{title}: copies and computation of {kind.panels}",
         )
-        has_thesis = any(source == _THESIS for _, source in data)
         notes = ["Parts and total are medians of their own: they need not add up."]
-        notes += ["The dissertation's times are those of its Table 5.5, on its own machine."] if has_thesis else []
-        found.append(Section(title, _COMMAND, own, [picture], [transfers_table(data)], notes))
+        if any(source == _THESIS for _, source in times(own)):
+            words = f"The dissertation's times are those of its Table {kind.table}, on its own machine."
+            notes.append(" ".join(filter(None, [words, kind.note])))
+        command = f"drogue-perf table transfers --app {kind.app} --out FILE.jsonl"
+        found.append(Section(title, command, own, [picture], [transfers_table(own)], notes))
     return found

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 STEP_US = "\u00b5s a step"
 CELL_NS = "ns a cell-step"
+VERTEX_NS = "ns a vertex-step"
 RATE = "G cell-steps/s"
 # These compare with the case named in `beside`, of the same run.
 TIME_RATIO = "times as long"

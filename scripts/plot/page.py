@@ -19,9 +19,10 @@ def embedded(file: Path) -> str:
 def seconds(value: float | None) -> str:
     if value is None:
         return "\u2013"
-    if value < 1e-3:
+    # What three digits round to a thousand is one of the next unit.
+    if value < 0.9995e-3:
         return f"{value * 1e6:.3g} \u00b5s"
-    return f"{value * 1e3:.3g} ms" if value < 1 else f"{value:.3g} s"
+    return f"{value * 1e3:.3g} ms" if value < 0.9995 else f"{value:.3g} s"
 
 
 def number(value: float | None) -> str:

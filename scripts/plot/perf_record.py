@@ -17,7 +17,14 @@ _FACTS = {
     "ceiling": {"backend": str},
     "gas-transfers": {"backend": str, "memory": str, "cells": int, "h2d_s": float, "compute_s": float, "d2h_s": float},
     "gas-block": {"backend": str, "form": str, "block": int, "cells": int},
+    "springs-solution": {"problem": str, "backend": str, "model": str, "mass": str, "integrator": str, "cells": int},
+    "springs-step": {},
+    "springs-contact": {},
+    "springs-transfers": {
+        "backend": str, "substeps": int, "cells": int, "h2d_s": float, "compute_s": float, "d2h_s": float,
+    },
 }  # fmt: skip
+_STEPS = ("gas-step", "springs-step", "springs-contact")  # what their names say, their facts need not
 _OPTIONAL = {
     "gas-solution": {
         "weno_power": float, "splitting": str, "time_scheme": str, "precision": str, "status": str, "message": str,
@@ -25,6 +32,8 @@ _OPTIONAL = {
     "gas-step": {"flops": float, "bytes": float, "vector_bits": int},
     "ceiling": {"flops": float, "bytes": float},
     "gas-transfers": {"thesis": dict},
+    "springs-solution": {"status": str, "message": str},
+    "springs-transfers": {"thesis": dict},
 }  # fmt: skip
 KINDS = frozenset(_FACTS)
 _TYPES = {str: "text", int: "positive whole number", float: "number", dict: "JSON object"}
@@ -66,6 +75,12 @@ class Record:
         return self.case.partition("/")[0]
 
     @property
+    def app(self) -> str:
+        """The mini-app whose page shows it; ceilings are those of the gas roofline."""
+        app = self.kind.partition("-")[0]
+        return "gas" if app == "ceiling" else app
+
+    @property
     def machine(self) -> Machine:
         return Machine(str(self.provenance.get("gpu") or ""), str(self.provenance.get("cpu") or ""))
 
@@ -94,9 +109,9 @@ def _is(value, kind: type) -> bool:
 def _checked_facts(case: str, facts: dict, place: str) -> dict:
     """Facts with those that the name of a step gives too."""
     kind, *words = case.split("/")
-    if kind == "gas-step":
+    if kind in _STEPS:
         if len(words) < 2 or not words[1].isdecimal():
-            raise Failure(IO_ERROR, f"{place}: '{case}' is not gas-step/BACKEND/CELLS[/VARIANT].")
+            raise Failure(IO_ERROR, f"{place}: '{case}' is not {kind}/BACKEND/CELLS[/VARIANT].")
         facts = facts | {"backend": words[0], "cells": int(words[1]), "variant": "/".join(words[2:])}
     for name, wanted in _FACTS[kind].items():
         if not _is(facts.get(name), wanted):
@@ -142,7 +157,7 @@ def parse(line: str, place: str) -> Record:
         facts = _checked_facts(case, facts, place)
         if check == "passed" and facts.get("status", "ok") == "ok":
             median, interval = _times(document, place)
-            if case.startswith("gas-solution/") and not _is(error, float):
+            if case.partition("/")[0].endswith("-solution") and not _is(error, float):
                 raise Failure(IO_ERROR, f"{place}: the error of {case} is no number.")
     unit, error = str(document.get("unit", "")), error if _is(error, float) else None
     return Record(case, unit, check, median, interval, error, facts, provenance)

@@ -13,7 +13,7 @@ from plot import cli, evidence_records
 
 
 class Page(HTMLParser):
-    """Rows of the tables of gas.html by (machine, section), and all its words."""
+    """Rows of the tables of a page by (machine, section), and all its words."""
 
     def __init__(self, text):
         super().__init__()
@@ -63,12 +63,12 @@ class Folder(unittest.TestCase):
         self.folder = Path(tempfile.mkdtemp())
         self.addCleanup(shutil.rmtree, self.folder)
 
-    def page(self, lines):
-        """The page of these records and the names of the files written."""
+    def page(self, lines, app="gas"):
+        """A mini-app's page of these records, and the names of the files written."""
         records.write(self.folder / "a.jsonl", lines)
         code, files, sentence = plot(self.folder, "--dpi", 60)
         self.assertEqual((code, sentence), (0, ""))
-        return Page((self.folder / "gas.html").read_text()), files
+        return Page((self.folder / f"{app}.html").read_text()), files
 
     def evidence(self, lines):
         records.write(self.folder / "a.jsonl", lines)

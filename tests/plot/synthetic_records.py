@@ -155,6 +155,47 @@ def blocks(machine=H200):
     return found
 
 
+def springs_solutions(machine=EPYC):
+    """Errors 1 / n of n vertices with masses by area and 10 times their root with equal ones; of strings 1 / n^2."""
+    found = []
+    for mass, integrator, doubling in itertools.product(("area", "equal"), ("rk4", "verlet"), range(7)):
+        label = " ".join(word for word in (mass, integrator) if word not in ("area", "rk4"))
+        share = 1.0 if integrator == "rk4" else 0.4
+        for problem, model, n, order in (
+            ("drum", "biquadratic", 60 << doubling, 1.0), ("catenary", "string", 8 << doubling, 2.0),
+        ):  # fmt: skip
+            error = n**-order if mass == "area" else n ** (-0.5 * order)
+            facts = {
+                "problem": problem, "backend": "serial", "model": model, "mass": mass, "integrator": integrator,
+                "cells": n, "steps": 100, "status": "ok", "message": "",
+            }  # fmt: skip
+            case = f"springs-solution/{problem}/serial/{model} {label}/{n}".replace(" /", "/")
+            found.append(record(case, share * 1e-6 * n**1.5, machine, facts, error=error))
+    return sorted(found, key=lambda line: line["facts"]["problem"], reverse=True)
+
+
+def springs_steps(machine=H200):
+    """Steps alone, and in contact, as measured or imagined."""
+    times = {
+        "springs-step/cuda/2640": 4.07e-6, "springs-step/cuda/1000000": 350e-6,
+        "springs-step/cuda/1000000/quadratic": 434e-6, "springs-step/scatter-loop/2640": 285e-6,
+        "springs-contact/cuda/15625": 290e-6, "springs-contact/cuda/246000": 9e-3,
+    }  # fmt: skip
+    return [record(case, seconds, machine) for case, seconds in times.items()]
+
+
+def springs_transfers(machine=H200):
+    thesis = {"cpu_us": 223565, "h2d_us": 171, "compute_us": 41328, "d2h_us": 644, "total_us": 42143}
+    found = []
+    for steps in (1, 10, 100):
+        facts = {
+            "backend": "cuda", "cells": 2641, "substeps": steps, "h2d_s": 3e-5, "compute_s": 5e-6 * steps,
+            "d2h_s": 2e-5, "thesis": thesis,
+        }  # fmt: skip
+        found.append(record(f"springs-transfers/cuda/2641/{steps}", 5e-5 + 5e-6 * steps, machine, facts))
+    return found
+
+
 def write(file, records):
     file.parent.mkdir(parents=True, exist_ok=True)
     file.write_text("".join(json.dumps(line) + "\n" for line in records))

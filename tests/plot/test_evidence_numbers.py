@@ -94,7 +94,7 @@ class Solutions(Folder):
         )
         evidence = self.evidence(lines)
         found = curves(evidence.records)
-        self.assertNotIn("teno5", {curve.scheme.weno for curve in found})
+        self.assertNotIn("teno5", {curve.scheme.word for curve in found})
 
     def test_problem_that_no_scheme_solves_has_a_list_alone(self):
         lines = records.solutions(problems=("leblanc",), backends=("serial",), meshes=(100,))
@@ -120,7 +120,7 @@ class Solutions(Folder):
     def test_keys_and_titles_of_the_figure_do_not_collide(self):
         found = curves(self.evidence(records.solutions(problems=("sod",), backends=("serial",))).records)
         machine = evidence_records.read(self.folder).machines[0]
-        figure = solution_figure("Sod", machine, found, "z", "")
+        figure = solution_figure("sod", machine, found, "z", "")
         self.assertEqual([len(axes.lines) for axes in figure.axes], [6, 6, 6])
         figure.canvas.draw()
         renderer = figure.canvas.get_renderer()
@@ -239,6 +239,62 @@ class Devices(Folder):
         page, _ = self.page(records.blocks())
         rows = page.tables["NVIDIA H200, Intel Xeon Processor", "Block size, CUDA"]
         self.assertEqual(rows[1][:4], ["1\u2009024", "6.35", "6.24", "6.02"])
+
+
+class Springs(Folder):
+    def springs_page(self, lines):
+        return self.page(lines, "springs")
+
+    def test_time_to_the_errors_of_the_issue(self):
+        page, files = self.springs_page(records.springs_solutions())
+        self.assertEqual(files, [f"solution_{name}_amd-epyc.png" for name in ("catenary", "drum")] + ["springs.html"])
+        rows = page.tables["AMD EPYC", "Drum: error against time"]
+        self.assertEqual(rows[0], ["backend", "scheme", "vertices", "order", "to 0.01", "to 1×10−3", "to 1×10−4"])
+        by_scheme = {row[1]: row for row in rows}
+        # Error 1 / n of n vertices, a step of 1e-7 n s, 10 sqrt(n) steps: to 0.001 in 1e-6 n^1.5 s.
+        seconds = 1e-6 * 1000**1.5
+        row = by_scheme["biquadratic"]
+        self.assertEqual(row[2:], ["60–3840", "2.00", "1 ms", f"{1e3 * seconds:.3g} ms", "> 238 ms"])
+        self.assertEqual(by_scheme["biquadratic, equal"][3:5], ["1.00", "> 238 ms"])
+        self.assertEqual(by_scheme["biquadratic, verlet"][5], f"{400 * seconds:.3g} ms")
+        rows = page.tables["AMD EPYC", "Catenary: error against time"]
+        self.assertEqual({row[1]: row[3] for row in rows[1:]}["string"], "2.00")
+        self.assertNotIn("factor", rows[0])
+
+    def test_figure_has_models_above_and_settings_below(self):
+        found = curves(self.evidence(records.springs_solutions()).records[:28])
+        machine = evidence_records.read(self.folder).machines[0]
+        self.assertEqual(best_scheme(found), "biquadratic")
+        figure = solution_figure("drum", machine, found, "biquadratic", "")
+        self.assertEqual([len(axes.lines) for axes in figure.axes], [1, 4])
+        self.assertEqual(figure.axes[0].get_ylabel(), "relative error of the frequency")
+
+    def test_steps_and_contact_stand_against_their_goals(self):
+        page, _ = self.springs_page(records.springs_steps())
+        rows = page.tables["NVIDIA H200, Intel Xeon Processor", "A step"]
+        self.assertEqual(rows[0][2:], ["vertices", "µs a step", "ns a vertex-step", "G vertex-steps/s"])
+        verdicts = {(row[0], row[1]): row[-1] for row in rows if len(row) == 7}
+        self.assertEqual(verdicts["CUDA, 2640 vertices", "µs a step"], "missed by 2 %")
+        self.assertEqual(verdicts["CUDA, 1000000 vertices", "ns a vertex-step"], "missed by 40 %")
+        quadratic = "CUDA, 1000000 vertices, quadratic, against cuda/1000000"
+        self.assertEqual(verdicts[quadratic, "times as long"], "goal met")
+        rows = page.tables["NVIDIA H200, Intel Xeon Processor", "A step in contact"]
+        self.assertEqual([row[-1] for row in rows if len(row) == 7], ["verdict", "stretch met", "missed by 50 %"])
+
+    def test_transfers_have_a_panel_a_number_of_steps_and_no_ratio(self):
+        page, files = self.springs_page(records.springs_transfers())
+        self.assertEqual(files, ["springs-transfers_cuda_nvidia-h200.png", "springs.html"])
+        rows = page.tables["NVIDIA H200, Intel Xeon Processor", "Transfers of a step, CUDA"]
+        sources = ["between two copies", "dissertation", "1 step", "10 steps", "100 steps"]
+        self.assertEqual([row[1] for row in rows], sources)
+        self.assertNotIn("times as fast", " ".join(rows[0]))
+        self.assertIn("no ratio to it means anything", page.words)
+
+    def test_two_apps_have_a_page_each(self):
+        lines = records.springs_transfers() + records.transfers()
+        page, files = self.springs_page(lines)
+        self.assertEqual([name for name in files if name.endswith("html")], ["gas.html", "springs.html"])
+        self.assertEqual(len(page.tables), 1)
 
 
 if __name__ == "__main__":

@@ -59,6 +59,12 @@ class Record(perf_program.PerfTest):
             self.assert_timed(record, 7)
             self.assertAlmostEqual(2640, record["facts"]["cells"], delta=60)
 
+    def test_of_contact(self):
+        self.expect(0, "run", "--quick", "--filter", "^springs-contact/serial/", "--out", "run.jsonl")
+        record, = self.records("run.jsonl")
+        self.assert_timed(record, 7)
+        self.assertEqual("springs-contact/serial/640", record["case"])
+
     def test_of_transfers_of_fabric(self):
         text = self.expect(0, "table", "transfers", "--app", "springs", "--quick", "--backend", "serial", "--out",
                            "rows.jsonl").stdout
@@ -131,11 +137,39 @@ class WorkPrecision(perf_program.PerfTest):
                 self.assertAlmostEqual(1.0, error / errors[problem, scheme, "double", cells], places=3)
 
 
+class WorkPrecisionOfSprings(perf_program.PerfTest):
+    def test_records(self):
+        self.expect(0, "work-precision", "--app", "springs", "--quick", "--backend", "serial", "--out", "runs.jsonl")
+        runs = {}
+        for record in self.records("runs.jsonl"):
+            facts = record["facts"]
+            self.assertEqual(("passed", "ok", "s per solution"), (record["check"], facts["status"], record["unit"]))
+            self.assertEqual(f"springs-solution/{facts['problem']}/serial", record["case"].rsplit("/", 2)[0])
+            scheme = facts["problem"], facts["model"], facts["mass"], facts["integrator"]
+            runs.setdefault(scheme, []).append((facts["cells"], record["error"]))
+        self.assertEqual(12, len(runs))
+        self.assertEqual({"drum": {61, 127}, "catenary": {13, 26}},
+                         {problem: {cells for scheme, points in runs.items() if scheme[0] == problem
+                                    for cells, _ in points} for problem in ("drum", "catenary")})
+        for scheme, ((coarse, large), (fine, small)) in runs.items():
+            self.assertLess(coarse, fine)
+            self.assertLess(small, 0.8 * large, scheme)
+        # First order against second.
+        for model in ("quadratic", "biquadratic"):
+            equal, area = (runs["drum", model, mass, "rk4"][1][1] for mass in ("equal", "area"))
+            self.assertGreater(equal, 5 * area)
+        # At rest it does not matter how a string came there.
+        self.assertAlmostEqual(1.0, runs["catenary", "string", "area", "rk4"][1][1] /
+                               runs["catenary", "string", "area", "verlet"][1][1], places=3)
+
+
 class Refusals(perf_program.PerfTest):
     def test_usage(self):
         for words, hint in ((["table"], "TABLE"), (["table", "occupancey"], 'did you mean "occupancy"?'),
                             (["table", "occupancy", "--app", "options"], "valid names are gas, springs"),
                             (["table", "occupancy", "--app", "springs"], "the only valid name is transfers"),
+                            (["table", "block-size", "--app", "springs"], "compiled for one block size"),
+                            (["work-precision", "--app", "options"], "valid names are gas, springs"),
                             (["table", "transfers", "--backend", "gpu"], "gpu"),
                             (["table", "transfers", "--bakend", "serial"], 'did you mean "--backend"?'),
                             (["run", "all"], "'all'"), (["run", "--filter", "no such case"], "no case matches"),

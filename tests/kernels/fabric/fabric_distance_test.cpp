@@ -1,0 +1,207 @@
+#include <gtest/gtest.h>
+
+#include <Kokkos_Core.hpp>
+#include <random>
+
+#include "kernels/fabric/contact_check.hpp"
+#include "kernels/reference/fabric/distance.hpp"
+
+// What contact knows of distances, on random data where it runs, against the oracle.
+
+namespace drogue::fabric {
+namespace {
+
+using Space = DROGUE_TEST_SPACE;
+using Memory = Space::memory_space;
+using reference::first_meeting;
+using reference::hull_distance;
+using reference::Place3;
+using Four = std::array<Place3, 4>;
+using FourPlaces = Kokkos::View<double* [4][3], Memory>;
+
+KOKKOS_INLINE_FUNCTION Point place_of(const FourPlaces& at, int k, int i) {
+  return {at(k, i, 0), at(k, i, 1), at(k, i, 2)};
+}
+
+/// Shares of the nearest points, and their distance squared: of a vertex and a triangle, then of two edges.
+struct NearestFunctor {
+  FourPlaces at;
+  Kokkos::View<double* [7], Memory> out;
+
+  KOKKOS_FUNCTION void operator()(const int k) const {
+    const Point p = place_of(at, k, 0), q = place_of(at, k, 1), r = place_of(at, k, 2),
+                s = place_of(at, k, 3);
+    const Point triangle[3] = {q, r, s}, first[2] = {p, q}, second[2] = {r, s};
+    const NearestOnTriangle face = nearest_on_triangle(p, triangle);
+    const NearestOfSegments edges = nearest_of_segments(first, second);
+    for (int i = 0; i < 3; ++i) out(k, i) = face.share[i];
+    out(k, 3) = face.squared;
+    out(k, 4) = edges.first, out(k, 5) = edges.second, out(k, 6) = edges.squared;
+  }
+};
+
+/// Whether a vertex and a triangle, and two edges, stay apart on their way.
+struct ApartFunctor {
+  FourPlaces from, to;
+  double thickness;
+  Kokkos::View<int* [2], Memory> apart;
+
+  KOKKOS_FUNCTION void operator()(const int k) const {
+    Point begin[4], way[4];
+    double longest[4];
+    for (int i = 0; i < 4; ++i) {
+      begin[i] = place_of(from, k, i);
+      way[i] = place_of(to, k, i) - begin[i];
+      longest[i] = length(way[i]);
+    }
+    const auto at = [&](int i, double part) { return begin[i] + part * way[i]; };
+    const auto larger = [](double a, double b) { return a > b ? a : b; };
+    const auto of_face = [&](double part) {
+      const Point triangle[3] = {at(1, part), at(2, part), at(3, part)};
+      return Kokkos::sqrt(nearest_on_triangle(at(0, part), triangle).squared);
+    };
+    const auto of_edges = [&](double part) {
+      const Point first[2] = {at(0, part), at(1, part)}, second[2] = {at(2, part), at(3, part)};
+      return Kokkos::sqrt(nearest_of_segments(first, second).squared);
+    };
+    const double others = larger(longest[2], longest[3]);
+    apart(k, 0) = stay_apart(of_face, longest[0] + larger(longest[1], others), thickness);
+    apart(k, 1) = stay_apart(of_edges, larger(longest[0], longest[1]) + others, thickness);
+  }
+};
+
+FourPlaces to_device(const std::vector<Four>& places) {
+  const FourPlaces view("places", places.size());
+  const auto mirror = Kokkos::create_mirror_view(view);
+  for (std::size_t k = 0; k < places.size(); ++k)
+    for (std::size_t i = 0; i < 4; ++i)
+      for (std::size_t axis = 0; axis < 3; ++axis) mirror(k, i, axis) = places[k][i][axis];
+  Kokkos::deep_copy(view, mirror);
+  return view;
+}
+
+template <class View>
+auto to_host(const View& view) {
+  return Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), view);
+}
+
+/// Four places of a cube of 2 m: at random, or flattened in ways that contact sees.
+class Random {
+ public:
+  explicit Random(unsigned seed) : _generator(seed) {}
+
+  Four four(int kind) {
+    Four f;
+    for (Place3& p : f)
+      for (double& c : p) c = number();
+    if (kind == 1)  // in a plane
+      for (Place3& p : f) p[2] = 0.0;
+    if (kind == 2)  // a needle: a triangle of a height of 1e-7, edges that nearly share a line
+      for (std::size_t i = 2; i < 4; ++i)
+        for (std::size_t axis = 0; axis < 3; ++axis)
+          f[i][axis] = f[1][axis] + (i == 2 ? 1.0 : 0.4) * (f[2][axis] - f[1][axis]) + 1e-7 * number();
+    if (kind == 3)  // parallel edges
+      for (std::size_t axis = 0; axis < 3; ++axis) f[3][axis] = f[2][axis] + 0.7 * (f[1][axis] - f[0][axis]);
+    if (kind == 4) f[3] = f[2];  // an edge without length
+    return f;
+  }
+  double number() { return std::uniform_real_distribution(-1.0, 1.0)(_generator); }
+
+ private:
+  std::mt19937_64 _generator;
+};
+
+constexpr int pairs = 1000;
+
+TEST(FabricDistance, NearestPointsAreThoseOfTheOracle) {
+  Random random(1);
+  std::vector<Four> places;
+  for (int k = 0; k < pairs; ++k) places.push_back(random.four(k % 5));
+  const Kokkos::View<double* [7], Memory> out("nearest", places.size());
+  Kokkos::parallel_for("distance_test", Kokkos::RangePolicy<Space>(0, pairs),
+                       NearestFunctor{to_device(places), out});
+  const auto found = to_host(out);
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    const Four& p = places[k];
+    const std::span<const Place3> all(p);
+    EXPECT_NEAR(std::sqrt(found(k, 3)), hull_distance(all.first(1), all.subspan(1)), 1e-14) << "pair " << k;
+    EXPECT_NEAR(std::sqrt(found(k, 6)), hull_distance(all.first(2), all.subspan(2)), 1e-14) << "pair " << k;
+    EXPECT_NEAR(found(k, 0) + found(k, 1) + found(k, 2), 1.0, 1e-15);
+    double on_face = 0.0, between = 0.0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      double r = p[0][axis];
+      for (std::size_t i = 0; i < 3; ++i) {
+        EXPECT_GE(found(k, i), 0.0);
+        r -= found(k, i) * p[1 + i][axis];
+      }
+      on_face += r * r;
+      const double s = found(k, 4), u = found(k, 5);
+      const double d = (1.0 - s) * p[0][axis] + s * p[1][axis] - (1.0 - u) * p[2][axis] - u * p[3][axis];
+      between += d * d;
+    }
+    EXPECT_NEAR(std::sqrt(on_face), std::sqrt(found(k, 3)), 1e-14) << "the shares name the point";
+    EXPECT_NEAR(std::sqrt(between), std::sqrt(found(k, 6)), 1e-14);
+  }
+}
+
+/// Distances on a way, at its start and the least of those looked at; by how much the least of all may lie
+/// below it: what both sides go in half of the time between two looks.
+struct Way {
+  double start, least, grain;
+};
+Way looked_at(const Four& from, const Four& to, std::size_t split) {
+  constexpr int looks = 100;
+  Way way{0.0, 1e300, 0.0};
+  for (std::size_t i = 0; i < 4; ++i)
+    way.grain = std::max(
+        way.grain, std::hypot(to[i][0] - from[i][0], to[i][1] - from[i][1], to[i][2] - from[i][2]) / looks);
+  for (int look = 0; look <= looks; ++look) {
+    Four at;
+    for (std::size_t i = 0; i < 4; ++i)
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        at[i][axis] = from[i][axis] + look * (to[i][axis] - from[i][axis]) / looks;
+    const std::span<const Place3> all(at);
+    const double distance = hull_distance(all.first(split), all.subspan(split));
+    if (look == 0) way.start = distance;
+    way.least = std::min(way.least, distance);
+  }
+  return way;
+}
+
+TEST(FabricDistance, WhatMeetsOnItsWayIsNeverLetThrough) {
+  constexpr double thickness = 0.01;
+  Random random(2);
+  std::vector<Four> from, to;
+  for (int k = 0; k < pairs; ++k) {
+    from.push_back(random.four(0));
+    to.push_back(from.back());
+    for (Place3& p : to.back())
+      for (double& c : p) c += random.number();
+  }
+  const Kokkos::View<int* [2], Memory> apart("apart", from.size());
+  Kokkos::parallel_for("way_test", Kokkos::RangePolicy<Space>(0, pairs),
+                       ApartFunctor{to_device(from), to_device(to), thickness, apart});
+  const auto found = to_host(apart);
+  int meetings = 0, free = 0;
+  for (std::size_t k = 0; k < from.size(); ++k)
+    for (std::size_t split = 1; split <= 2; ++split) {
+      const bool stays = found(k, split - 1) != 0;
+      const Way way = looked_at(from[k], to[k], split);
+      if (first_meeting(from[k], to[k], split, 1e-12)) {
+        ++meetings;
+        EXPECT_FALSE(stays) << "pair " << k << ", " << split << " against the others";
+      }
+      if (stays) {
+        EXPECT_GT(way.least, 0.9 * least_distance(way.start, thickness)) << "pair " << k;
+      }
+      if (way.least - way.grain > 2.0 * thickness) {
+        ++free;
+        EXPECT_TRUE(stays) << "pair " << k << " has nothing to fear";
+      }
+    }
+  EXPECT_GT(meetings, pairs / 20);
+  EXPECT_GT(free, pairs);
+}
+
+}  // namespace
+}  // namespace drogue::fabric

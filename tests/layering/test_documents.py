@@ -1,0 +1,37 @@
+"""What documents say of the code: every file that they name is there, and every function stands in its header."""
+
+import os
+import re
+import unittest
+from pathlib import Path
+
+SOURCE = Path(os.environ["DROGUE_SOURCE"])
+FILE = r"`((?:common|kernels|miniapps|perf|tests)/[\w/.]+\.(?:[ch]pp|py))`"
+NAMED = re.compile(FILE + r": (`[\w:]+`(?:, `[\w:]+`)*)")
+
+
+class Documents(unittest.TestCase):
+    def documents(self):
+        for file in sorted((SOURCE / "docs").glob("*.md")):
+            yield file.name, file.read_text(encoding="utf-8")
+
+    def test_files_are_there(self):
+        for document, text in self.documents():
+            for name in re.findall(FILE, text):
+                self.assertTrue((SOURCE / name).is_file(), f"{document} names {name}")
+
+    def test_functions_stand_in_their_headers(self):
+        count = 0
+        for document, text in self.documents():
+            for name, functions in NAMED.findall(text):
+                code = (SOURCE / name).read_text(encoding="utf-8")
+                for function in re.findall(r"[\w:]+", functions):
+                    count += 1
+                    # `Solver::advance` is found by its parts.
+                    for part in function.split("::"):
+                        self.assertRegex(code, rf"\b{part}\b", f"{document} has {function} in {name}")
+        self.assertGreater(count, 80)
+
+
+if __name__ == "__main__":
+    unittest.main()
