@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "kernels/device/backend.hpp"
 #include "kernels/options/contract.hpp"
@@ -30,6 +31,12 @@ struct Timing {
   double d2h = 0.0;
 };
 
+/// A point of an early exercise boundary.
+struct BoundaryPoint {
+  double time;  ///< from now, years
+  double spot;  ///< money: at it and beyond exercise is right
+};
+
 /// Prices batches on a backend. Needs an initialised runtime.
 class Pricer {
  public:
@@ -39,6 +46,10 @@ class Pricer {
   /// `violated_condition` (std::invalid_argument for spans of different lengths). Returns when the prices
   /// are there. A contract's bits do not depend on the others of the batch.
   virtual Timing price(std::span<const Contract> contracts, std::span<Price> prices) = 0;
+
+  /// The early exercise boundary of an American contract from now on to its expiry, a point for each step of
+  /// the solve; empty where exercise is never right.
+  virtual std::vector<BoundaryPoint> boundary(const Contract& contract) = 0;
 };
 
 /// Throws std::invalid_argument for settings out of range; the backend must be available.

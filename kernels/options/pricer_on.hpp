@@ -1,0 +1,170 @@
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <stdexcept>
+#include <vector>
+
+#include "kernels/device/copy.hpp"
+#include "kernels/device/instance.hpp"
+#include "kernels/options/price_batch.hpp"
+
+namespace drogue::options {
+
+/// The pricer on `ExecutionSpace`.
+template <class ExecutionSpace>
+class PricerOn final : public Pricer {
+  using Space = typename ExecutionSpace::memory_space;
+  template <class T>
+  using View = Kokkos::View<T*, Space>;
+
+ public:
+  explicit PricerOn(const Settings& settings) : _settings(settings), _instance(1 << 20) {}
+
+  Timing price(std::span<const Contract> contracts, std::span<Price> prices) override {
+    if (contracts.size() != prices.size())
+      throw std::invalid_argument("options pricer: as many prices as contracts are needed");
+    Timing timing;
+    if (contracts.empty()) return timing;
+    const Clock setting_up;
+    reserve(contracts.size());
+    fetch_panels(contracts);
+    copy_in(_contracts, contracts.data(), contracts.size());
+    timing.h2d = setting_up.seconds();
+    const int first = _settings.mesh != 0 ? _settings.mesh : first_mesh;
+    const int last = _settings.mesh != 0 ? _settings.mesh : last_mesh;
+    std::vector<int> wanted(contracts.size(), first);  // the mesh that a row asks for next
+    for (int mesh = first; mesh <= last; mesh *= 2) {
+      if (std::find(wanted.begin(), wanted.end(), mesh) == wanted.end()) continue;
+      const Clock computing;
+      for (int model = 0; model < models; ++model) {
+        std::vector<int> rows;
+        for (std::size_t k = 0; k < contracts.size(); ++k)
+          if (wanted[k] == mesh && static_cast<int>(contracts[k].model) == model)
+            rows.push_back(static_cast<int>(k));
+        launch(rows, mesh, {nullptr, nullptr});
+      }
+      timing.compute += computing.seconds();
+      const Clock copying;
+      copy_bytes(_instance.space(), device::copy_way<ExecutionSpace, Kokkos::HostSpace, Space>(),
+                 prices.data(), _prices.data(), prices.size() * sizeof(Price));
+      _instance.space().fence("drogue::options: prices are there");
+      timing.d2h += copying.seconds();
+      for (std::size_t k = 0; k < contracts.size(); ++k)
+        if (wanted[k] == mesh)
+          wanted[k] = next_mesh(mesh, prices[k], _settings.tolerance * contracts[k].strike);
+    }
+    return timing;
+  }
+
+  std::vector<BoundaryPoint> boundary(const Contract& contract) override {
+    const std::span<const Contract> one(&contract, 1);
+    reserve(1);
+    fetch_panels(one);
+    copy_in(_contracts, &contract, 1);
+    const int mesh = _settings.mesh != 0 ? _settings.mesh : boundary_mesh;
+    const auto steps = static_cast<std::size_t>(steps_of(mesh));
+    View<double> curve("drogue::options::boundary", 2 * steps);
+    launch({0}, mesh, {curve.data(), curve.data() + steps});
+    std::vector<double> values(2 * steps);
+    copy_bytes(_instance.space(), device::copy_way<ExecutionSpace, Kokkos::HostSpace, Space>(), values.data(),
+               curve.data(), values.size() * sizeof(double));
+    _instance.space().fence("drogue::options: boundary is there");
+    std::vector<BoundaryPoint> points;
+    const double sign = contract.type == Type::call ? -1.0 : 1.0;
+    for (std::size_t k = steps; k-- > 0;)
+      if (values[steps + k] == values[steps + k])
+        points.push_back(
+            {contract.maturity - values[k], contract.strike * std::exp(sign * values[steps + k])});
+    return points;
+  }
+
+ private:
+  static constexpr int first_mesh = 64, last_mesh = 2048, boundary_mesh = 512, models = 4;
+
+  class Clock {
+   public:
+    [[nodiscard]] double seconds() const {
+      return std::chrono::duration<double>(std::chrono::steady_clock::now() - _begin).count();
+    }
+
+   private:
+    std::chrono::steady_clock::time_point _begin = std::chrono::steady_clock::now();
+  };
+
+  [[nodiscard]] int steps_of(int mesh) const { return _settings.steps != 0 ? _settings.steps : mesh / 4; }
+
+  /// The error falls by at least 4 where the mesh doubles.
+  [[nodiscard]] static int next_mesh(int mesh, const Price& price, double tolerance) {
+    if (price.outcome != Outcome::coarse) return 0;
+    int next = 2 * mesh;
+    for (double error = price.error / 16.0; error > tolerance && next < last_mesh; error /= 4.0) next *= 2;
+    return next;
+  }
+
+  void reserve(std::size_t count) {
+    if (_contracts.size() >= count) return;
+    _contracts =
+        View<Contract>(Kokkos::view_alloc("drogue::options::contracts", Kokkos::WithoutInitializing), count);
+    _prices = View<Price>(Kokkos::view_alloc("drogue::options::prices", Kokkos::WithoutInitializing), count);
+    _order = View<int>(Kokkos::view_alloc("drogue::options::order", Kokkos::WithoutInitializing), count);
+  }
+
+  template <class T>
+  void copy_in(const View<T>& to, const T* from, std::size_t count) {
+    copy_bytes(_instance.space(), device::copy_way<ExecutionSpace, Space, Kokkos::HostSpace>(), to.data(),
+               from, count * sizeof(T));
+    _instance.space().fence("drogue::options: input is copied");
+  }
+
+  /// Builds the series of those panels of orders that are new.
+  void fetch_panels(std::span<const Contract> contracts) {
+    bool found = false;
+    for (const Contract& contract : contracts) {
+      if (contract.model != Model::generalized_hyperbolic || contract.jump[3] == 0.0) continue;
+      const double order = std::fabs(contract.jump[0]);
+      if (!(order < HankelGrid::largest_order)) continue;
+      int& slot = _slots[static_cast<std::size_t>(panel_of(order))];
+      if (slot >= 0) continue;
+      slot = static_cast<int>(_series.size()) / HankelGrid::panel_size;
+      const std::vector<double> panel = hankel_panel(panel_of(order));
+      _series.insert(_series.end(), panel.begin(), panel.end());
+      found = true;
+    }
+    if (!found && _panel_slot.size() != 0) return;
+    _panels = View<double>("drogue::options::panels", _series.size());
+    _panel_slot = View<int>("drogue::options::panel slots", _slots.size());
+    copy_in(_panels, _series.data(), _series.size());
+    copy_in(_panel_slot, _slots.data(), _slots.size());
+  }
+
+  void launch(const std::vector<int>& rows, int mesh, Curve curve) {
+    if (rows.empty()) return;
+    copy_in(_order, rows.data(), rows.size());
+    PriceBatch<ExecutionSpace> batch;
+    batch.contracts = _contracts;
+    batch.prices = _prices;
+    batch.order = _order;
+    batch.panels = _panels;
+    batch.panel_slot = _panel_slot;
+    batch.curve = curve;
+    batch.count = static_cast<int>(rows.size());
+    batch.mesh = mesh;
+    batch.steps = steps_of(mesh);
+    batch.tolerance = _settings.tolerance;
+    price_batch(_instance.space(), batch);
+    _instance.space().fence("drogue::options: priced");
+  }
+
+  Settings _settings;
+  device::Instance<ExecutionSpace> _instance;
+  View<Contract> _contracts;
+  View<Price> _prices;
+  View<int> _order, _panel_slot;
+  View<double> _panels;
+  std::vector<double> _series;
+  std::vector<int> _slots = std::vector<int>(HankelGrid::panels, -1);
+};
+
+}  // namespace drogue::options
