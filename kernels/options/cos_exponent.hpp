@@ -29,6 +29,13 @@ class Exponent {
   };
   [[nodiscard]] Cumulants cumulants() const;
 
+  /// How far down and up a single jump may go whose probability, weighed with the asset's price, is not
+  /// negligible (1e-10). At short maturities it is this and no deviation that says where the law ends.
+  struct Reach {
+    double down, up;
+  };
+  [[nodiscard]] Reach reach() const;
+
  private:
   [[nodiscard]] std::complex<double> primal(std::complex<double> u) const;
   [[nodiscard]] std::complex<double> jumps(std::complex<double> u) const;

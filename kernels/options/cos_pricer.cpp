@@ -85,6 +85,10 @@ class CosPricer final : public Pricer {
     return timing;
   }
 
+  std::vector<BoundaryPoint> boundary(const Contract& /*contract*/) override {
+    throw std::invalid_argument("cos: no exercise boundary; take the method pide");
+  }
+
  private:
   static constexpr std::size_t most_together = 1024;       ///< so that their tables take some 60 MB at most
   static constexpr int fewest_dates = 4, most_dates = 32;  ///< of the coarsest level

@@ -3,6 +3,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "kernels/options/cos_pricer.hpp"
+
 namespace drogue::options {
 
 #define DROGUE_DECLARE(backend) std::unique_ptr<Pricer> create_pide_##backend(const Settings& settings);
@@ -25,6 +27,7 @@ void check(const Settings& s) {
 }  // namespace
 
 std::unique_ptr<Pricer> create_pricer(device::Backend backend, const Settings& settings) {
+  if (settings.method == Method::cos) return create_cos_pricer(backend, settings);
   check(settings);
   if (settings.method != Method::pide) throw std::invalid_argument("options pricer: the method is not there");
   switch (backend) {

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstdio>
 #include <iostream>
+#include <optional>
 #include <stdexcept>
 
 #include "common/csv/header.hpp"
@@ -57,7 +58,7 @@ void describe_device(run::ResultDocument& result, device::Backend backend) {
 /// Outputs replace what has their names: that must not be the input, another output, or a device.
 void check_outputs(const Command& command, const std::filesystem::path& input) {
   std::vector<std::filesystem::path> taken = {input};
-  for (const std::filesystem::path* path : {&command.out, &command.result}) {
+  for (const std::filesystem::path* path : {&command.out, &command.result, &command.boundary}) {
     if (path->empty()) continue;
     std::error_code error;
     if (std::filesystem::exists(*path, error) && !std::filesystem::is_regular_file(*path, error))
@@ -79,6 +80,7 @@ void print_summary(const Command& command, const run::ResultDocument& result, co
               result.scene.c_str(), result.backend.c_str(), count(tally.rows), result.timing.wall_s,
               count(ok), count(tally.coarse), count(tally.invalid), count(tally.failed));
   std::printf("prices in %s\n", command.out.string().c_str());
+  if (!command.boundary.empty()) std::printf("boundaries in %s\n", command.boundary.string().c_str());
 }
 
 /// What the exit code says of rows that did not end well.
@@ -125,7 +127,9 @@ ExitCode price_batch(const Command& command, const std::filesystem::path& input,
   describe_device(result, backend);
   const auto pricer = make_pricer(backend, command.settings);
   result.timing.setup_s = since();
-  BatchRun run(command, reader, writer, *pricer);
+  std::optional<BoundaryWriter> boundaries;
+  if (!command.boundary.empty()) boundaries.emplace(command.boundary);
+  BatchRun run(command, reader, writer, boundaries, *pricer);
   const ExitCode code = run.run(result.timing);
   result.timing.wall_s = since();
   read_ledger(result);

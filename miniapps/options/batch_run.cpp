@@ -1,6 +1,7 @@
 #include "miniapps/options/batch_run.hpp"
 
 #include <algorithm>
+#include <chrono>
 
 #include "common/program/signals.hpp"
 
@@ -14,10 +15,12 @@ constexpr double wanted_chunk_time = 0.1;  // s: an answer to Ctrl-C, and work e
 
 }  // namespace
 
-BatchRun::BatchRun(const Command& command, BatchReader& reader, PriceWriter& writer, options::Pricer& pricer)
+BatchRun::BatchRun(const Command& command, BatchReader& reader, PriceWriter& writer,
+                   std::optional<BoundaryWriter>& boundaries, options::Pricer& pricer)
     : _command(command),
       _reader(reader),
       _writer(writer),
+      _boundaries(boundaries),
       _pricer(pricer),
       _progress(command.quiet),
       _chunk(command.chunk > 0 ? command.chunk : least_chunk) {}
@@ -31,6 +34,7 @@ ExitCode BatchRun::run(run::ResultDocument::Timing& timing) {
   }
   _progress.finish();
   if (interrupted()) return ExitCode::interrupted;
+  if (_boundaries) _boundaries->commit();
   _writer.commit();
   timing.h2d_s += _timing.h2d;
   timing.compute_s += _timing.compute;
@@ -60,28 +64,38 @@ void BatchRun::add(const Row& row) {
 
 void BatchRun::flush() {
   _prices.assign(_contracts.size(), {});
-  if (!_contracts.empty()) {
-    const auto begin = Clock::now();
-    const options::Timing timing = _pricer.price(_contracts, _prices);
-    const double seconds = std::chrono::duration<double>(Clock::now() - begin).count();
-    _timing.h2d += timing.h2d;
-    _timing.compute += timing.compute;
-    _timing.d2h += timing.d2h;
-    _pricing += seconds;
-    choose_chunk(seconds);
-  }
-  std::size_t priced = 0;
-  for (std::size_t i = 0; i < _owners.size(); ++i) {
-    if (_is_valid[i]) {
-      _writer.write(*_owners[i], _contracts[priced], _prices[priced]);
-      ++priced;
-    } else {
-      _writer.write_invalid(*_owners[i]);
-    }
-  }
+  if (!_contracts.empty()) price();
+  write();
   _owners.clear();
   _is_valid.clear();
   _contracts.clear();
+}
+
+void BatchRun::price() {
+  const auto begin = Clock::now();
+  const options::Timing timing = _pricer.price(_contracts, _prices);
+  const double seconds = std::chrono::duration<double>(Clock::now() - begin).count();
+  _timing.h2d += timing.h2d;
+  _timing.compute += timing.compute;
+  _timing.d2h += timing.d2h;
+  _pricing += seconds;
+  choose_chunk(seconds);
+}
+
+void BatchRun::write() {
+  std::size_t priced = 0;
+  for (std::size_t i = 0; i < _owners.size(); ++i) {
+    if (!_is_valid[i]) {
+      _writer.write_invalid(*_owners[i]);
+      continue;
+    }
+    const options::Contract& contract = _contracts[priced];
+    _writer.write(*_owners[i], contract, _prices[priced]);
+    if (_boundaries && contract.style == options::Style::american &&
+        _prices[priced].outcome != options::Outcome::failed)
+      _boundaries->write(_owners[i]->id, _pricer.boundary(contract));
+    ++priced;
+  }
 }
 
 void BatchRun::choose_chunk(double seconds) {

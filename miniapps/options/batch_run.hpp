@@ -1,12 +1,13 @@
 #pragma once
 
-#include <chrono>
+#include <optional>
 #include <vector>
 
 #include "common/program/progress.hpp"
 #include "common/run/result_document.hpp"
 #include "kernels/options/pricer.hpp"
 #include "miniapps/options/batch_reader.hpp"
+#include "miniapps/options/boundary_writer.hpp"
 #include "miniapps/options/command.hpp"
 #include "miniapps/options/price_writer.hpp"
 
@@ -15,7 +16,8 @@ namespace drogue::options_app {
 /// Reads, prices and writes a batch a chunk at a time, so that memory does not grow with it.
 class BatchRun {
  public:
-  BatchRun(const Command& command, BatchReader& reader, PriceWriter& writer, options::Pricer& pricer);
+  BatchRun(const Command& command, BatchReader& reader, PriceWriter& writer,
+           std::optional<BoundaryWriter>& boundaries, options::Pricer& pricer);
 
   /// Prices all rows. Returns `interrupted` after a signal, else `ok`, whatever became of the rows; times are
   /// added to `timing`.
@@ -24,11 +26,14 @@ class BatchRun {
  private:
   void add(const Row& row);
   void flush();
+  void price();
+  void write();
   void choose_chunk(double seconds);
 
   const Command& _command;
   BatchReader& _reader;
   PriceWriter& _writer;
+  std::optional<BoundaryWriter>& _boundaries;
   options::Pricer& _pricer;
   ProgressLine _progress;
   options::Timing _timing;

@@ -70,7 +70,7 @@ options::Settings settings(const Words& words) {
                     : words.method == "seed" ? options::Method::seed
                                              : options::Method::pide;
   if (!words.tolerance.empty()) settings.tolerance = number("--tolerance", words.tolerance, 1e-12, 1.0);
-  if (!words.mesh.empty()) settings.mesh = whole("--mesh", words.mesh, 8, 1 << 16);
+  if (!words.mesh.empty()) settings.mesh = whole("--mesh", words.mesh, 1, 1 << 20);
   if (!words.steps.empty()) settings.steps = whole("--steps", words.steps, 1, 1 << 20);
   settings.greeks = words.greeks;
   if (settings.method == options::Method::cos && settings.mesh > 0)
@@ -124,6 +124,9 @@ Command parse_command(int argc, const char* const* argv) {
   CLI::App* price = app.add_subcommand("price", "price every contract of a CSV file");
   price->add_option("BATCH", words.input, "CSV file, or name of a shipped batch")->required();
   price->add_option("--out", words.out, "CSV file of the prices (prices.csv)")->type_name("FILE");
+  price
+      ->add_option("--boundary", words.boundary, "write the exercise boundaries of American contracts (pide)")
+      ->type_name("FILE");
   declare_pricing(*price, words, command);
   CLI::App* surface = app.add_subcommand("surface", "price strikes x maturities for every parameter set");
   surface->add_option("PARAMS", words.input, "CSV file without strike and maturity")->required();
@@ -148,7 +151,10 @@ Command parse_command(int argc, const char* const* argv) {
   command.input = words.input;
   command.out = !words.out.empty() ? words.out : prices ? "prices.csv" : "surface.csv";
   command.result = words.result;
+  command.boundary = words.boundary;
   command.settings = settings(words);
+  if (!words.boundary.empty() && command.settings.method != options::Method::pide)
+    throw Failure(ExitCode::usage, "--boundary needs --method pide: the others give no curve");
   if (!words.chunk.empty())
     command.chunk = static_cast<std::size_t>(whole("--chunk", words.chunk, 1, 1 << 20));
   if (!prices) {
