@@ -31,15 +31,16 @@ void AmericanPut::prepare(double maturity, int dates) {
   const Exponent::Cumulants c = psi.cumulants();
   const Exponent::Reach reach = psi.reach();
   constexpr double deviations = 12.0;
-  constexpr double deepest = 30.0;  // e^-30 of a strike is left to gain
+  // Heavier tails than this leaves room for are folded back by the cosines.
+  constexpr double deepest = 100.0;
   const double spread =
       deviations * std::sqrt(c.second * maturity + std::sqrt(std::abs(c.fourth) * maturity));
   const double shift = c.mean * maturity;
   const double low =
       std::min(x, 0.0) - std::min(std::max(spread, reach.down) + std::max(-shift, 0.0), deepest);
-  const double high =
-      std::max(x, 0.0) + std::min(std::max(spread, reach.up) + std::max(shift, 0.0), 2.0 * deepest);
+  const double high = std::max(x, 0.0) + std::min(std::max(spread, reach.up) + std::max(shift, 0.0), deepest);
   const double width = high - low;
+  folded = std::exp(-Exponent::reach_digits * deepest / std::max(reach.down, 1.0));
 
   const double dt = maturity / (dates << (levels - 1));
   const auto decay = [&](int log_terms) {
@@ -73,6 +74,7 @@ Price american_price(const Contract& c, const AmericanPut& put, const BermudanVa
   // Half the cosines are further off than all.
   if (put.puts.size() > AmericanPut::levels)
     error += std::abs(values[AmericanPut::levels].value - values[AmericanPut::levels - 1].value);
+  error += put.folded;
   const double payoff = std::max(-std::expm1(put.x), 0.0);
   const bool exercised = payoff >= value.best;
 

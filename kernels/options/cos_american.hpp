@@ -20,6 +20,7 @@ struct AmericanPut {
   std::vector<BermudanPut> puts;       ///< those of the levels; the finest again with half the cosines, where
                                        ///< they fall slowly
   std::vector<double> psi_re, psi_im;  ///< at pi k / width
+  double folded = 0.0;                 ///< what part of the law may lie below the interval
 
   explicit AmericanPut(const Contract& contract);
 

@@ -96,19 +96,18 @@ Exponent::Cumulants Exponent::cumulants() const {
 /// The tails of the jumps fall as exponentials, or as a normal law.
 Exponent::Reach Exponent::reach() const {
   const auto& jump = _contract.jump;
-  constexpr double digits = 23.0;
   Reach reach{0.0, 0.0};
   const double shift = _is_dual ? 1.0 : 0.0;
   switch (_contract.model) {
     case Model::generalized_hyperbolic:
-      reach = {digits / (jump[1] + jump[2] + shift), digits / (jump[1] - jump[2] - shift)};
+      reach = {reach_digits / (jump[1] + jump[2] + shift), reach_digits / (jump[1] - jump[2] - shift)};
       break;
     case Model::kou:
-      reach = {digits / (jump[3] + shift), digits / (jump[2] - shift)};
+      reach = {reach_digits / (jump[3] + shift), reach_digits / (jump[2] - shift)};
       break;
     case Model::merton: {
       const double mean = jump[1] + shift * jump[2] * jump[2];
-      const double deviations = std::sqrt(2.0 * digits) * jump[2];
+      const double deviations = std::sqrt(2.0 * reach_digits) * jump[2];
       reach = {std::max(deviations - mean, 0.0), std::max(deviations + mean, 0.0)};
       break;
     }

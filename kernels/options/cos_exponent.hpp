@@ -30,7 +30,9 @@ class Exponent {
   [[nodiscard]] Cumulants cumulants() const;
 
   /// How far down and up a single jump may go whose probability, weighed with the asset's price, is not
-  /// negligible (1e-10). At short maturities it is this and no deviation that says where the law ends.
+  /// negligible: exp(-reach_digits). At short maturities it is this and no deviation that says where the law
+  /// ends.
+  static constexpr double reach_digits = 23.0;
   struct Reach {
     double down, up;
   };
