@@ -79,7 +79,7 @@ function(drogue_add_header_test)
     list(APPEND _sources "${_source}")
   endforeach()
   add_library(drogue_header_test OBJECT ${_sources})
-  target_link_libraries(drogue_header_test PRIVATE drogue_gas_app drogue_springs_app drogue_private drogue_toml muparser::muparser)
+  target_link_libraries(drogue_header_test PRIVATE drogue_gas_app drogue_springs_app drogue_options_app drogue_private drogue_toml muparser::muparser)
   # Each is to compile alone. Nothing runs: only whether it compiles is asked.
   set_target_properties(drogue_header_test PROPERTIES UNITY_BUILD OFF)
   target_compile_options(drogue_header_test PRIVATE -O0)
