@@ -112,7 +112,9 @@ class CosPricer final : public Pricer {
         const std::size_t i = open[k];
         prices[i] = american_price(contracts[i], puts[k], mine);
         mine += puts[k].puts.size();
-        if (!(prices[i].error <= _settings.tolerance * contracts[i].strike)) still_open.push_back(i);
+        const bool can_be_reached = puts[k].folded < _settings.tolerance;
+        if (can_be_reached && !(prices[i].error <= _settings.tolerance * contracts[i].strike))
+          still_open.push_back(i);
       }
       open = std::move(still_open);
     }

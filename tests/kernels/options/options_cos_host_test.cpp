@@ -141,21 +141,37 @@ TEST(CosEuropean, ReachesItsLimits) {
               1e-10);
 }
 
+/// The put under variance gamma as a mixture: a normal law of mean beta g and variance g, whose g has a gamma
+/// law of shape lambda T (Madan, Carr and Chang 1998). What the price is at g = 0 is taken off, so that the
+/// trapezoid rule in log g converges.
+double gamma_mixture_put(const Contract& c) {
+  const double lambda = c.jump[0], alpha = c.jump[1], beta = c.jump[2];
+  const double scale = 2.0 / (alpha * alpha - beta * beta), shape = lambda * c.maturity;
+  const double drift = c.rate + lambda * std::log1p(-scale * (beta + 0.5));
+  const double forward = c.spot * std::exp((drift - c.rate) * c.maturity);
+  const double bond = std::exp(-c.rate * c.maturity);
+  const auto normal = [](double x) { return 0.5 * std::erfc(-x / std::sqrt(2.0)); };
+  const auto put = [&](double g) {
+    const double d = (std::log(forward / bond) + beta * g) / std::sqrt(g);
+    return bond * normal(-d) - forward * std::exp((beta + 0.5) * g) * normal(-d - std::sqrt(g));
+  };
+  const double still = std::max(bond - forward, 0.0);
+  const double step = 0.01;
+  double sum = 0.0;
+  for (double s = -80.0; s < 8.0; s += step) {
+    const double g = scale * std::exp(s);
+    sum += step * std::exp(shape * s - std::exp(s)) * (put(g) - still);
+  }
+  return still + sum / std::tgamma(shape);
+}
+
 /// Where the density has a pole a series of cosines does not converge; the integral does.
 TEST(CosEuropean, PricesADayOfPureVarianceGamma) {
   Contract c = european();
   c.maturity = 1.0 / 365.0, c.jump[0] = 2.0, c.jump[1] = 11.0, c.jump[2] = -5.0;
-  const double drift = Exponent(c).drift();
-  for (const double x : {-0.01, -c.maturity * drift, 0.0, 0.02}) {
+  for (const double x : {-0.01, -c.maturity * Exponent(c).drift(), 0.0, 0.02}) {
     c.spot = std::exp(x);
-    c.type = Type::put;
-    const Price put = european_price(c, Exponent(c));
-    c.type = Type::call;
-    const Price call = european_price(c, Exponent(c));
-    EXPECT_NEAR(call.price - put.price, c.spot - std::exp(-c.rate * c.maturity), 1e-14) << x;
-    const auto expected = reference::bermudan_put({c.rate, 0.0, 0.0, 2.0, 11.0, -5.0, 0.0}, c.maturity, 1,
-                                                  -6.0, 12.0, 4000, 40000, {x});
-    EXPECT_NEAR(put.price, expected[0], 2e-7) << x;
+    EXPECT_NEAR(european_price(c, Exponent(c)).price, gamma_mixture_put(c), 1e-12) << x;
   }
 }
 
