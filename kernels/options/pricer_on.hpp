@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <compare>
+#include <optional>
 #include <stdexcept>
 #include <vector>
 
@@ -32,18 +34,19 @@ class PricerOn final : public Pricer {
     fetch_panels(contracts);
     copy_in(_contracts, contracts.data(), contracts.size());
     timing.h2d = setting_up.seconds();
-    const int first = _settings.mesh != 0 ? _settings.mesh : first_mesh;
-    const int last = _settings.mesh != 0 ? _settings.mesh : last_mesh;
-    std::vector<int> wanted(contracts.size(), first);  // the mesh that a row asks for next
-    for (int mesh = first; mesh <= last; mesh *= 2) {
-      if (std::find(wanted.begin(), wanted.end(), mesh) == wanted.end()) continue;
+    const bool chosen = _settings.mesh == 0;
+    Effort first;
+    first.mesh = chosen ? first_mesh : _settings.mesh;
+    first.steps = steps_of(first.mesh, 1);
+    std::vector<Row> rows(contracts.size(), Row{first, 1, 0.0});
+    for (std::optional<Effort> effort = first; effort; effort = chosen ? least_effort(rows) : std::nullopt) {
       const Clock computing;
       for (int model = 0; model < models; ++model) {
-        std::vector<int> rows;
+        std::vector<int> batch;
         for (std::size_t k = 0; k < contracts.size(); ++k)
-          if (wanted[k] == mesh && static_cast<int>(contracts[k].model) == model)
-            rows.push_back(static_cast<int>(k));
-        launch(rows, mesh, {nullptr, nullptr});
+          if (rows[k].next == *effort && static_cast<int>(contracts[k].model) == model)
+            batch.push_back(static_cast<int>(k));
+        launch(batch, *effort, {nullptr, nullptr});
       }
       timing.compute += computing.seconds();
       const Clock copying;
@@ -52,8 +55,7 @@ class PricerOn final : public Pricer {
       _instance.space().fence("drogue::options: prices are there");
       timing.d2h += copying.seconds();
       for (std::size_t k = 0; k < contracts.size(); ++k)
-        if (wanted[k] == mesh)
-          wanted[k] = next_mesh(mesh, prices[k], _settings.tolerance * contracts[k].strike);
+        if (rows[k].next == *effort) advance(rows[k], prices[k], _settings.tolerance * contracts[k].strike);
     }
     return timing;
   }
@@ -64,9 +66,10 @@ class PricerOn final : public Pricer {
     fetch_panels(one);
     copy_in(_contracts, &contract, 1);
     const int mesh = _settings.mesh != 0 ? _settings.mesh : boundary_mesh;
-    const auto steps = static_cast<std::size_t>(steps_of(mesh));
+    const Effort effort{mesh, steps_of(mesh, 1)};
+    const auto steps = static_cast<std::size_t>(effort.steps);
     View<double> curve("drogue::options::boundary", 2 * steps);
-    launch({0}, mesh, {curve.data(), curve.data() + steps});
+    launch({0}, effort, {curve.data(), curve.data() + steps});
     std::vector<double> values(2 * steps);
     copy_bytes(_instance.space(), device::copy_way<ExecutionSpace, Kokkos::HostSpace, Space>(), values.data(),
                curve.data(), values.size() * sizeof(double));
@@ -81,7 +84,7 @@ class PricerOn final : public Pricer {
   }
 
  private:
-  static constexpr int first_mesh = 64, last_mesh = 2048, boundary_mesh = 512, models = 4;
+  static constexpr int first_mesh = 64, last_mesh = 2048, boundary_mesh = 512, models = 4, most_often = 4;
 
   class Clock {
    public:
@@ -93,14 +96,48 @@ class PricerOn final : public Pricer {
     std::chrono::steady_clock::time_point _begin = std::chrono::steady_clock::now();
   };
 
-  [[nodiscard]] int steps_of(int mesh) const { return _settings.steps != 0 ? _settings.steps : mesh / 4; }
+  [[nodiscard]] int steps_of(int mesh, int often) const {
+    return _settings.steps != 0 ? _settings.steps : mesh / 4 * often;
+  }
 
-  /// The error falls by at least 4 where the mesh doubles.
-  [[nodiscard]] static int next_mesh(int mesh, const Price& price, double tolerance) {
-    if (price.outcome != Outcome::coarse) return 0;
-    int next = 2 * mesh;
-    for (double error = price.error / 16.0; error > tolerance && next < last_mesh; error /= 4.0) next *= 2;
-    return next;
+  /// What a launch spends on each row.
+  struct Effort {
+    int mesh = 0, steps = 0;
+    friend auto operator<=>(const Effort&, const Effort&) = default;
+  };
+
+  /// How far a row has come whose tolerance decides.
+  struct Row {
+    Effort next;   ///< no mesh: it is priced
+    int often;     ///< steps, of a fourth of the mesh
+    double error;  ///< stated last
+  };
+
+  [[nodiscard]] static std::optional<Effort> least_effort(const std::vector<Row>& rows) {
+    std::optional<Effort> least;
+    for (const Row& row : rows)
+      if (row.next.mesh != 0 && (!least || row.next < *least)) least = row.next;
+    return least;
+  }
+
+  /// The error falls by at least 4 where mesh and steps double. Where it does not fall, more steps are tried
+  /// first: jumps of long maturities are stiff.
+  void advance(Row& row, const Price& price, double tolerance) const {
+    const int mesh = row.next.mesh;
+    row.next = {};
+    if (price.outcome == Outcome::ok) return;
+    const bool stuck = price.outcome == Outcome::failed || (row.error > 0.0 && price.error > 0.5 * row.error);
+    row.error = price.error;
+    int next = mesh;
+    if (stuck && row.often < most_often && _settings.steps == 0) {
+      row.often *= 4;
+    } else {
+      next *= 2;
+      if (price.outcome == Outcome::coarse)
+        for (double error = price.error / 16.0; error > tolerance && next < last_mesh; error /= 4.0)
+          next *= 2;
+    }
+    if (next <= last_mesh) row.next = {next, steps_of(next, row.often)};
   }
 
   void reserve(std::size_t count) {
@@ -139,7 +176,7 @@ class PricerOn final : public Pricer {
     copy_in(_panel_slot, _slots.data(), _slots.size());
   }
 
-  void launch(const std::vector<int>& rows, int mesh, Curve curve) {
+  void launch(const std::vector<int>& rows, const Effort& effort, Curve curve) {
     if (rows.empty()) return;
     copy_in(_order, rows.data(), rows.size());
     PriceBatch<ExecutionSpace> batch;
@@ -150,8 +187,8 @@ class PricerOn final : public Pricer {
     batch.panel_slot = _panel_slot;
     batch.curve = curve;
     batch.count = static_cast<int>(rows.size());
-    batch.mesh = mesh;
-    batch.steps = steps_of(mesh);
+    batch.mesh = effort.mesh;
+    batch.steps = effort.steps;
     batch.tolerance = _settings.tolerance;
     price_batch(_instance.space(), batch);
     _instance.space().fence("drogue::options: priced");

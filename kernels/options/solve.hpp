@@ -48,7 +48,7 @@ KOKKOS_INLINE_FUNCTION R step_end(R maturity, int n, int steps) {
 /// Marches from expiry to the puts' maturities on `grid`; `answers` gets one for each member.
 template <class Workers, class R>
 KOKKOS_INLINE_FUNCTION void solve(const Workers& workers, const PutPack<R>& put, const Law<R>& law,
-                                  const Tails<R>& tails, const Grid<R>& grid, int steps,
+                                  const Tails<R>& tails, const Grid<R>& grid, int steps, int stride,
                                   const Memory<R>& memory, Curve curve, Answer* answers) {
   constexpr int members = device::Access<R>::lanes;
   const int mesh = grid.mesh, count = node_count(mesh);
@@ -125,12 +125,16 @@ KOKKOS_INLINE_FUNCTION void solve(const Workers& workers, const PutPack<R>& put,
   });
   const Certain<R> ended = certain(put, lowest, scheme.best, put.maturity);
   workers.each([=](int lane) {
-    for (int k = lane; k < members; k += lanes)
-      answers[k] =
-          answer_of(memory.puts[k], {reinterpret_cast<const double*>(march.value[1]) + k, members},
-                    {reinterpret_cast<const double*>(march.y) + k, members}, mesh,
-                    static_cast<int>(device::Access<R>::lane(grid.strike, k)), device::Access<R>::lane(h, k),
-                    device::Access<R>::lane(ended.strike, k), device::Access<R>::lane(ended.asset, k));
+    for (int k = lane; k < members; k += lanes) {
+      const auto member = [k](const R& number) { return device::Access<R>::lane(number, k); };
+      answers[k] = answer_of(memory.puts[k], {reinterpret_cast<const double*>(march.value[1]) + k, members},
+                             {reinterpret_cast<const double*>(march.y) + k, members},
+                             {mesh,
+                              static_cast<int>(member(grid.strike)),
+                              stride,
+                              member(h),
+                              {member(ended.strike), member(ended.asset)}});
+    }
   });
 }
 
