@@ -20,7 +20,7 @@ std::string_view first_broken(const Condition (&conditions)[count]) {
 std::string_view violated_by_hyperbolic(const Contract& c) {
   const double lambda = c.jump[0], alpha = c.jump[1], beta = c.jump[2], delta = c.jump[3];
   return first_broken({
-      {std::isfinite(lambda), "lambda must be finite"},
+      {std::abs(lambda) < 128.0, "lambda must lie between -128 and 128"},
       {std::isfinite(alpha) && alpha > 0.0, "alpha must be finite and > 0"},
       {std::isfinite(beta), "beta must be finite"},
       {std::isfinite(delta) && delta >= 0.0, "delta must be finite and >= 0"},

@@ -121,7 +121,7 @@ ExitCode price_batch(const Command& command, const std::filesystem::path& input,
   BatchReader reader(input, kind);
   if (reader.has_ids()) BatchReader(input, kind).require_unique_ids();
   const device::Backend backend = choose_backend(command.backend);
-  PriceWriter writer(command.out, command.action == Action::surface);
+  PriceWriter writer(command.out, {command.action == Action::surface, command.settings.greeks});
   const auto runtime = start_kokkos(command.kokkos);
   device::start_ledger();
   describe_device(result, backend);

@@ -1,5 +1,7 @@
 #include "miniapps/options/price_writer.hpp"
 
+#include <limits>
+
 #include "common/csv/fields.hpp"
 #include "common/csv/numbers.hpp"
 
@@ -22,8 +24,8 @@ const char* status(options::Outcome outcome) {
 
 }  // namespace
 
-PriceWriter::PriceWriter(const std::filesystem::path& file, bool surface) : _file(file), _surface(surface) {
-  _text = surface ? "id,strike,maturity," : "id,";
+PriceWriter::PriceWriter(const std::filesystem::path& file, Layout layout) : _file(file), _layout(layout) {
+  _text = layout.surface ? "id,strike,maturity," : "id,";
   _text += "price,error,delta,gamma,theta,exercise_boundary,mesh,steps,status,message\n";
 }
 
@@ -34,16 +36,18 @@ void PriceWriter::write(const Row& row, const options::Contract& contract, const
     _text += ',';
     csv::append_number(_text, value);
   };
-  if (_surface) {
+  if (_layout.surface) {
     number(contract.strike);
     number(contract.maturity);
   }
   if (failed) {
     _text += ",,,,,,,,";
   } else {
-    for (const double value :
-         {price.price, price.error, price.delta, price.gamma, price.theta, price.exercise_boundary})
-      number(value);
+    number(price.price);
+    number(price.error);
+    for (const double greek : {price.delta, price.gamma, price.theta})
+      number(_layout.greeks ? greek : std::numeric_limits<double>::quiet_NaN());
+    number(price.exercise_boundary);
     _text += ',' + std::to_string(price.mesh) + ',' + std::to_string(price.steps);
   }
   _text += ',';
@@ -57,7 +61,7 @@ void PriceWriter::write(const Row& row, const options::Contract& contract, const
 
 void PriceWriter::write_invalid(const Row& row) {
   csv::append_field(_text, row.id);
-  _text += _surface ? ",,,,,,,,,,,invalid," : ",,,,,,,,,invalid,";
+  _text += _layout.surface ? ",,,,,,,,,,,invalid," : ",,,,,,,,,invalid,";
   csv::append_field(_text, row.fault);
   ++_tally.rows;
   if (_tally.invalid++ == 0) {

@@ -20,8 +20,14 @@ struct Tally {
 /// Writes rows of prices; the file appears under its name when all of them are on disk.
 class PriceWriter {
  public:
-  /// With `surface` each row names its strike and maturity behind the id. Throws Failure(io_error).
-  PriceWriter(const std::filesystem::path& file, bool surface);
+  /// What the rows hold beside prices.
+  struct Layout {
+    bool surface = false;  ///< the strike and the maturity, behind the id
+    bool greeks = false;   ///< delta, gamma, theta; else their fields are empty
+  };
+
+  /// Throws Failure(io_error).
+  PriceWriter(const std::filesystem::path& file, Layout layout);
 
   /// A row that was priced: a number that is none gives an empty field.
   void write(const Row& row, const options::Contract& contract, const options::Price& price);
@@ -37,7 +43,7 @@ class PriceWriter {
   void end_row();
 
   run::AtomicFile _file;
-  bool _surface;
+  Layout _layout;
   std::string _text;
   Tally _tally;
 };

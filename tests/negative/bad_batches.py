@@ -14,6 +14,8 @@ BAD_ROWS = [
     ({"beta": 7.15}, ["|beta+1| < alpha"]),
     ({"delta": 0, "lambda": 0}, ["delta = 0 needs lambda > 0"]),
     ({"delta": 0, "lambda": -1}, ["delta = 0 needs lambda > 0"]),
+    ({"lambda": 128}, ["lambda", "between -128 and 128"]),
+    ({"lambda": -1e308}, ["lambda", "between -128 and 128"]),
     ({"alpha": 0}, ["alpha", "> 0"]),
     ({"alpha": -8}, ["alpha", "> 0"]),
     ({"delta": -0.1}, ["delta", ">= 0"]),
@@ -102,11 +104,13 @@ BAD_FILES = [
 
 # Rows with a column `model` behind the others, words of the message.
 BAD_MODELS = [
-    ("kuo,,,,", ['model = "kuo"', 'did you mean "kou"?']),
-    ("merton,-1,0,0.1,", ["intensity", ">= 0"]),
-    ("merton,1,,0.1,", ["jump_mean is empty"]),
-    ("merton,1,0,-0.1,", ["jump_deviation", ">= 0"]),
-    ("kou,1,,,1.5", ["up_probability", "0 .. 1"]),
-    ("black-scholes,1,,,", ["intensity must be empty", "black-scholes"]),
-    ("gh,,,,", ["lambda is empty"]),
+    ("kuo,,,,,,", ['model = "kuo"', 'did you mean "kou"?']),
+    ("merton,-1,0,0.1,,,", ["intensity", ">= 0"]),
+    ("merton,1,,0.1,,,", ["jump_mean is empty"]),
+    ("merton,1,0,-0.1,,,", ["jump_deviation", ">= 0"]),
+    ("kou,1,,,1.5,2,2", ["up_probability", "0 .. 1"]),
+    ("kou,1,,,0.5,1,2", ["up_rate", "> 1"]),
+    ("kou,1,,,0.5,2,0", ["down_rate", "> 0"]),
+    ("black-scholes,1,,,,,", ["intensity must be empty", "black-scholes"]),
+    ("gh,,,,,,", ["lambda is empty"]),
 ]

@@ -49,7 +49,7 @@ class BadBatches(options_program.OptionsTest):
         names = "id,spot,strike,rate,maturity,variance,model,intensity,jump_mean,jump_deviation,up_probability"
         lines = [names + ",up_rate,down_rate", "good,1,1,0.05,1,0.04,merton,0.1,-0.9,0.45,,,"]
         for k, (line, _) in enumerate(bad_batches.BAD_MODELS):
-            lines.append(f"bad{k},1,1,0.05,1,0.04,{line},,")
+            lines.append(f"bad{k},1,1,0.05,1,0.04,{line}")
         self.price(3, "\n".join(lines), *FAST, "--tolerance", "1e-2")
         prices = self.prices()
         self.assertEqual("ok", prices[0]["status"])

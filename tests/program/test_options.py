@@ -200,7 +200,7 @@ class SameBits(options_program.OptionsTest):
         for method in ([], [*FAST, "--tolerance", "1e-3"]):
             written = set()
             for backend in ("serial", "openmp"):
-                self.price(3, self.BATCH, *method, "--backend", backend)
+                self.expect(3, "price", self.write(self.BATCH), "--quiet", *method, "--backend", backend)
                 written.add((self.folder / "prices.csv").read_bytes())
             self.assertEqual(1, len(written), method)
 
@@ -210,7 +210,7 @@ class Files(options_program.OptionsTest):
         """A limit on file sizes stands for a full disk."""
         file = self.write(batch([row(k) for k in range(300)]))
         self.write("former", "prices.csv")
-        for limit in (0, 100, 5000, 20000):
+        for limit in (0, 100, 5000):
             with self.subTest(limit):
                 run = self.run_with("price", file, "--backend", "serial", "--quiet", *FAST, preexec_fn=lambda: resource.setrlimit(
                     resource.RLIMIT_FSIZE, (limit, resource.RLIM_INFINITY)))
@@ -252,10 +252,10 @@ class Files(options_program.OptionsTest):
 
     def test_memory_does_not_grow_with_the_batch(self):
         peaks = []
-        for rows in (2000, 40000):
+        for rows in (1000, 10000):
             self.price(0, batch([row(k) for k in range(rows)]), *FAST, "--chunk", "500", "--result", "r.json")
             peaks.append(json.loads((self.folder / "r.json").read_text())["peak_bytes"]["host"])
-        self.assertLess(peaks[1], peaks[0] + 8 * 2**20)
+        self.assertLess(peaks[1], peaks[0] + 2 * 2**20)
 
     def test_a_line_of_a_gigabyte(self):
         """A hole in the file, which takes no space on the disk."""
