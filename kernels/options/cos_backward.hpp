@@ -116,15 +116,15 @@ class CosBackward {
              [=](int k) { work.value[k] = scale * work.wait.re[k] + payoff_coefficient(put, k, part); });
   }
 
-  /// w_j = e^(dt (psi_j - rate)) V_j, half of it at j = 0, and its transform: the value of waiting at the
+  /// w_j = e^(dt (psi_j - rate)) V_j, weight of it at j = 0, and its transform: the value of waiting at the
   /// angles pi n / terms, in bit-reversed order.
   KOKKOS_INLINE_FUNCTION void load_waiting() const {
     const auto work = _work;
     const int terms = _terms;
     for_team(_team, terms, [=](int j) {
-      const double half = j == 0 ? 0.5 : 1.0;
-      const double re = half * work.growth.re[j] * work.value[j];
-      const double im = half * work.growth.im[j] * work.value[j];
+      const double weight = j == 0 ? 0.5 : 1.0;
+      const double re = weight * work.growth.re[j] * work.value[j];
+      const double im = weight * work.growth.im[j] * work.value[j];
       work.wait.re[j] = re;
       work.wait.im[j] = im;
       work.wait.re[j + terms] = 0.0;
@@ -245,9 +245,9 @@ class CosBackward {
     const auto put = _put;
     const auto psi = _psi;
     for_team(_team, _terms, [=](int j) {
-      const double half = j == 0 ? 0.5 : 1.0;
+      const double weight = j == 0 ? 0.5 : 1.0;
       const double cosine = portable::cos(j * angle), sine = portable::sin(j * angle);
-      const double w = half * work.value[j];
+      const double w = weight * work.value[j];
       const double re = w * (work.growth.re[j] * cosine - work.growth.im[j] * sine);
       const double im = w * (work.growth.re[j] * sine + work.growth.im[j] * cosine);
       const double u = portable::pi * j / put.width;

@@ -27,13 +27,13 @@ KOKKOS_INLINE_FUNCTION void for_team(const Team& team, int count, const Body& bo
 template <class Team>
 KOKKOS_INLINE_FUNCTION void fft_to_reversed(const Team& team, ComplexArray x, int log_size,
                                             ConstComplexArray roots, int log_roots) {
-  for (int log_half = log_size - 1; log_half >= 0; --log_half) {
-    const int half = 1 << log_half;
+  for (int log_distance = log_size - 1; log_distance >= 0; --log_distance) {
+    const int distance = 1 << log_distance;
     for_team(team, 1 << (log_size - 1), [=](int k) {
-      const int j = k & (half - 1);
-      const int first = ((k >> log_half) << (log_half + 1)) + j;
-      const int second = first + half;
-      const int root = j << (log_roots - 1 - log_half);
+      const int j = k & (distance - 1);
+      const int first = ((k >> log_distance) << (log_distance + 1)) + j;
+      const int second = first + distance;
+      const int root = j << (log_roots - 1 - log_distance);
       const double re = x.re[first] - x.re[second];
       const double im = x.im[first] - x.im[second];
       x.re[first] += x.re[second];
@@ -48,13 +48,13 @@ KOKKOS_INLINE_FUNCTION void fft_to_reversed(const Team& team, ComplexArray x, in
 template <class Team>
 KOKKOS_INLINE_FUNCTION void fft_from_reversed(const Team& team, ComplexArray x, int log_size,
                                               ConstComplexArray roots, int log_roots) {
-  for (int log_half = 0; log_half < log_size; ++log_half) {
-    const int half = 1 << log_half;
+  for (int log_distance = 0; log_distance < log_size; ++log_distance) {
+    const int distance = 1 << log_distance;
     for_team(team, 1 << (log_size - 1), [=](int k) {
-      const int j = k & (half - 1);
-      const int first = ((k >> log_half) << (log_half + 1)) + j;
-      const int second = first + half;
-      const int root = j << (log_roots - 1 - log_half);
+      const int j = k & (distance - 1);
+      const int first = ((k >> log_distance) << (log_distance + 1)) + j;
+      const int second = first + distance;
+      const int root = j << (log_roots - 1 - log_distance);
       const double re = x.re[second] * roots.re[root] + x.im[second] * roots.im[root];
       const double im = x.im[second] * roots.re[root] - x.re[second] * roots.im[root];
       x.re[second] = x.re[first] - re;
@@ -68,9 +68,9 @@ KOKKOS_INLINE_FUNCTION void fft_from_reversed(const Team& team, ComplexArray x, 
 /// The sum of 2^log_size values, spoiling them, in an order that does not depend on the team.
 template <class Team>
 KOKKOS_INLINE_FUNCTION double sum_pairwise(const Team& team, double* values, int log_size) {
-  for (int log_half = log_size - 1; log_half >= 0; --log_half) {
-    const int half = 1 << log_half;
-    for_team(team, half, [=](int k) { values[k] += values[k + half]; });
+  for (int log_distance = log_size - 1; log_distance >= 0; --log_distance) {
+    const int distance = 1 << log_distance;
+    for_team(team, distance, [=](int k) { values[k] += values[k + distance]; });
   }
   const double sum = values[0];
   team.team_barrier();  // the next use of `values` must not come before the slowest thread has read
