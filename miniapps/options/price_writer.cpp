@@ -25,6 +25,7 @@ const char* status(options::Outcome outcome) {
 }  // namespace
 
 PriceWriter::PriceWriter(const std::filesystem::path& file, Layout layout) : _file(file), _layout(layout) {
+  _text.reserve(2 * block);
   _text = layout.surface ? "id,strike,maturity," : "id,";
   _text += "price,error,delta,gamma,theta,exercise_boundary,mesh,steps,status,message\n";
 }
