@@ -116,7 +116,7 @@ class CosBackward {
              [=](int k) { work.value[k] = scale * work.wait.re[k] + payoff_coefficient(put, k, part); });
   }
 
-  /// w_j = e^(dt (psi_j - rate)) V_j, weight of it at j = 0, and its transform: the value of waiting at the
+  /// w_j = e^(dt (psi_j - rate)) V_j, half of it at j = 0, and its transform: the value of waiting at the
   /// angles pi n / terms, in bit-reversed order.
   KOKKOS_INLINE_FUNCTION void load_waiting() const {
     const auto work = _work;
@@ -170,8 +170,8 @@ class CosBackward {
     return {first == 0 ? 0.0 : root_between(first, first - 1), root_between(last, last + 1)};
   }
 
-  /// The angle at which exercise and waiting are equal, from node `inside` towards `outside`: secant steps
-  /// kept between the two by Newton's derivative.
+  /// The angle at which exercise and waiting are equal, between the nodes `inside` and `outside`: Newton's
+  /// steps from where the secant points, bisection where they leave the interval.
   KOKKOS_INLINE_FUNCTION double root_between(int inside, int outside) const {
     const double spacing = portable::pi / _terms;
     double in = spacing * inside, out = spacing * outside;

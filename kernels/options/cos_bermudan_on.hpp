@@ -17,6 +17,7 @@ template <class ExecutionSpace>
 struct ValueBermudans {
   using Memory = typename ExecutionSpace::memory_space;
   using Team = typename Kokkos::TeamPolicy<ExecutionSpace>::member_type;
+  static_assert(Kokkos::SpaceAccessibility<ExecutionSpace, Memory>::accessible);
 
   Kokkos::View<const BermudanPut*, Memory> puts;
   Kokkos::View<const double*, Memory> psi_re, psi_im, roots_re, roots_im;

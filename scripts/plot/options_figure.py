@@ -46,11 +46,13 @@ def options_figure(folder: Path):
         first = next(iter(curves), ("",))[0]
         chosen = {names[1]: curve for names, curve in curves.items() if names[0] == first}
         if chosen:
-            panels.append((list(chosen.values()), list(chosen), f"price of {first} by years to maturity", "strike", "price"))
+            title = f"price of {first} by years to maturity"
+            panels.append((list(chosen.values()), list(chosen), title, "strike", "price"))
     if boundary.is_file():
         curves = _curves(boundary, ("id",), "time", "spot")
         if curves:
-            panels.append((list(curves.values()), [name for (name,) in curves], "exercise boundary", "time (years)", "spot"))
+            names = [name for (name,) in curves]
+            panels.append((list(curves.values()), names, "exercise boundary", "time (years)", "spot"))
     if not panels:
         return None
     height = 1.0 + 2.6 * len(panels)
