@@ -9,7 +9,6 @@ struct Answer {
   double value, slope, bend;  ///< V, dV/dx, d2V/dx2
   double decay;               ///< dV/dtau, a year
   double boundary;            ///< x up to which exercise is right; not a number where there is none
-  double near[2];             ///< V at the nodes of the coarser grid about x
 };
 
 /// One member's values on the nodes of a pack.
@@ -35,7 +34,6 @@ KOKKOS_INLINE_FUNCTION double boundary_of(const Column& value, int strike, doubl
 /// The nodes of one member.
 struct Nodes {
   int mesh, strike;
-  int stride;  ///< every how many of them the coarser grid of two has one
   double h;
   Certain<double> certain;  ///< below node 0
 };
@@ -53,16 +51,16 @@ KOKKOS_INLINE_FUNCTION void interpolate(const Column& value, int first, double t
 /// on: there the value has kinks that short maturities leave sharp. `change` holds dV/dtau.
 KOKKOS_INLINE_FUNCTION Answer answer_of(const Put& put, const Column& value, const Column& change,
                                         const Nodes& nodes) {
-  const int mesh = nodes.mesh, strike = nodes.strike, stride = nodes.stride;
+  const int mesh = nodes.mesh, strike = nodes.strike;
   const double h = nodes.h;
   const double x = put.log_spot, asset = exponential(x);
-  Answer answer{0.0, 0.0, 0.0, 0.0, device::portable::not_a_number(), {0.0, 0.0}};
+  Answer answer{0.0, 0.0, 0.0, 0.0, device::portable::not_a_number()};
   if (put.early) answer.boundary = boundary_of(value, strike, h);
   const double t = x / h + strike;
   if (put.early && (x <= answer.boundary) && !(put.split && t < 1.0)) {
     if (!put.split ||
         value(static_cast<int>(t)) - (1.0 - exponential((static_cast<int>(t) - strike) * h)) < 1e-13)
-      return {1.0 - asset, -asset, -asset, 0.0, answer.boundary, {0.0, 0.0}};
+      return {1.0 - asset, -asset, -asset, 0.0, answer.boundary};
   }
   if (t <= 0.0) {
     answer.value = nodes.certain.strike - nodes.certain.asset * asset;
@@ -71,8 +69,6 @@ KOKKOS_INLINE_FUNCTION Answer answer_of(const Put& put, const Column& value, con
     return answer;
   }
   if (t >= mesh) return answer;
-  const int coarse = static_cast<int>(t / stride) * stride;
-  for (int k = 0; k < 2; ++k) answer.near[k] = value(coarse + k * stride);
   const int cell = static_cast<int>(t);
   int first = cell - 1;
   if (cell >= strike) {

@@ -11,12 +11,13 @@ struct Domain {
 };
 
 /// What a cut of the grid may change of the price, of the strike.
-KOKKOS_INLINE_FUNCTION double cut_error(int mesh) { return 0.3 / (double(mesh) * mesh); }
+KOKKOS_INLINE_FUNCTION double cut_error(int mesh) { return 0.03 / (double(mesh) * mesh); }
 
 /// The value at a cut is wrong only as far as a path gets back to the strike from there, so a path has to go
 /// to the cut and back. By Chernoff's bound that has a probability below
-///   exp(-tu (above - x0) - td above + T max(psi(tu), psi(-td)))
-/// for any tilts tu, td > 0, and likewise for the lower end: both ends are the least over 12 x 12 tilts. An
+///   exp(-tu (above - x0) - td above) (exp(T psi(tu)) + exp(T psi(-td)) - 2)
+/// for any tilts tu, td > 0, and likewise for the lower end: both ends are the least over 12 x 12 tilts. (The
+/// 2 is what paths that hardly move contribute, nearly all of a short maturity.) An
 /// early exercise boundary of a put with r > 0 lies above ln(t/(1+t)) for every t with psi(-t) <= r
 /// (Lundberg's bound on the infimum, Mordecki 2002), and below it the value is known.
 /// `scratch` holds 4 lanes values.
@@ -53,7 +54,8 @@ KOKKOS_INLINE_FUNCTION Domain<R> domain_of(const Workers& workers, const PutPack
     for (int k = 0; k < n; ++k) {
       const R td = -tilt[n + k];
       const R fall = device::maximum(R(0.0), maturity * (cumulant[n + k] - mean * td - rate));
-      const R need = base + device::maximum(rise, fall), per = 1.0 / (tu + td);
+      const R moved = exponential(rise) + exponential(fall) - 2.0;
+      const R need = base + logarithm(device::maximum(moved, R(1e-3))), per = 1.0 / (tu + td);
       above = device::minimum(above, (need + tu * spot_above) * per);
       below = device::minimum(below, (need + td * spot_below) * per);
     }

@@ -67,8 +67,8 @@ template <class R>
 KOKKOS_INLINE_FUNCTION R logarithm(R x) {
   const R m = fraction_of(x), e = exponent_of(x);
   const auto large = m > R(1.4142135623730951);
-  const R half = device::select(large, R(0.5), R(1.0)), up = device::select(large, R(1.0), R(0.0));
-  const R y = m * half;
+  const R factor = device::select(large, R(0.5), R(1.0)), up = device::select(large, R(1.0), R(0.0));
+  const R y = m * factor;
   const R s = (y - 1.0) / (y + 1.0), s2 = s * s;
   R sum = 1.0 / 23;
   for (int k = 21; k >= 1; k -= 2) sum = sum * s2 + 1.0 / k;
@@ -91,6 +91,23 @@ KOKKOS_INLINE_FUNCTION R exponential_integral(R x) {
   }
   const R near = series - 0.57721566490153286 - logarithm(x);
   return device::select(x > R(40.0), R(0.0), device::select(x < R(1.0), near, far));
+}
+
+/// The chance of a standard normal number above z: for |z| < 3 from the series of its other part, else from
+/// a continued fraction (Abramowitz and Stegun 26.2.11, 26.2.14).
+template <class R>
+KOKKOS_INLINE_FUNCTION R normal_above(R z) {
+  const R size = device::minimum(device::absolute(z), R(40.0));
+  const R density = 0.3989422804014327 * exponential(-0.5 * size * size);
+  R term = size, series = size;
+  for (int k = 1; k <= 32; ++k) {
+    term = term * size * size * (1.0 / (2 * k + 1));
+    series += term;
+  }
+  R fraction = size;
+  for (int k = 40; k >= 1; --k) fraction = size + double(k) / fraction;
+  const R above = device::select(size < R(3.0), 0.5 - density * series, density / fraction);
+  return device::select(z < R(0.0), 1.0 - above, above);
 }
 
 }  // namespace drogue::options

@@ -18,8 +18,8 @@ template <class R>
 KOKKOS_INLINE_FUNCTION Grid<R> grid_of(const Domain<R>& domain, int mesh) {
   const R wished = (0.5 * mesh) * domain.below / (domain.below + domain.above);
   const R whole = (wished + rounder) - rounder;
-  const R half = device::maximum(R(1.0), device::minimum(R(0.5 * mesh - 2.0), whole));
-  const R strike = 2.0 * half;
+  const R pairs = device::maximum(R(1.0), device::minimum(R(0.5 * mesh - 2.0), whole));
+  const R strike = 2.0 * pairs;
   return {mesh, device::maximum(domain.below / strike, domain.above / (double(mesh) - strike)), strike};
 }
 

@@ -38,21 +38,20 @@ KOKKOS_INLINE_FUNCTION WeightPair<R> kou_weights(const PutPack<R>& put, R h, int
   return {cell(put.jump[0] * put.jump[1], put.jump[2]), cell(put.jump[0] * (1.0 - put.jump[1]), put.jump[3])};
 }
 
-/// Cell masses of Merton's density, by Simpson's rule over 8 parts of a cell.
+/// The mass of a normal density between two numbers, from the tails that do not cancel.
+template <class R>
+KOKKOS_INLINE_FUNCTION R normal_between(R from, R to) {
+  const auto flipped = from + to < R(0.0);
+  const R a = device::select(flipped, -to, from), b = device::select(flipped, -from, to);
+  return normal_above(a) - normal_above(b);
+}
+
 template <class R>
 KOKKOS_INLINE_FUNCTION WeightPair<R> merton_weights(const PutPack<R>& put, R h, int d) {
-  const R deviation = put.jump[2], part = h * 0.125;
-  const R scale = put.jump[0] * part / (3.0 * 2.5066282746310002 * deviation);
-  R sums[2] = {0.0, 0.0};
-  for (int k = 0; k <= 8; ++k) {
-    const double weight = k == 0 || k == 8 ? 1.0 : k % 2 == 1 ? 4.0 : 2.0;
-    for (int side = 0; side < 2; ++side) {
-      const R y = (side == 0 ? 1.0 : -1.0) * ((d - 0.5) * h + double(k) * part);
-      const R z = (y - put.jump[1]) / deviation;
-      sums[side] += weight * exponential(-0.5 * z * z);
-    }
-  }
-  return {scale * sums[0], scale * sums[1]};
+  const R per = 1.0 / merton_deviation(put), mean = put.jump[1];
+  const R near = (d - 0.5) * h, far = (d + 0.5) * h;
+  return {put.jump[0] * normal_between((near - mean) * per, (far - mean) * per),
+          put.jump[0] * normal_between((-far - mean) * per, (-near - mean) * per)};
 }
 
 /// cos(pi 2^{-k/2}).
@@ -143,9 +142,10 @@ KOKKOS_INLINE_FUNCTION Jumps<R> jumps_of(const Workers& workers, const PutPack<R
   jumps.diffusion = 0.5 * device::maximum(R(0.0), put.variance + rest);
   const R compensator =
       total(memory.slot + 2 * lanes) + (tails.up_price - tails.up) + (tails.down_price - tails.down);
-  const R growth = exponential(0.5 * h), half = growth - 1.0 / growth;  // 2 sinh(h/2)
-  const R sinh = 0.5 * half * (growth + 1.0 / growth);
-  jumps.drift = (put.rate - put.dividend - compensator - jumps.diffusion * half * half / (h * h)) * h / sinh;
+  const R growth = exponential(0.5 * h), chord = growth - 1.0 / growth;  // 2 sinh(h/2)
+  const R sinh = 0.5 * chord * (growth + 1.0 / growth);
+  jumps.drift =
+      (put.rate - put.dividend - compensator - jumps.diffusion * chord * chord / (h * h)) * h / sinh;
   workers.each([=](int lane) {
     if (lane == 0) {
       memory.left[mesh - 1] += tails.down;

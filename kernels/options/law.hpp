@@ -98,6 +98,12 @@ KOKKOS_INLINE_FUNCTION Law<R> law_of(const Workers& workers, const PutPack<R>& p
   return law;
 }
 
+/// The deviation of Merton's jumps; they may all be alike.
+template <class R>
+KOKKOS_INLINE_FUNCTION R merton_deviation(const PutPack<R>& put) {
+  return device::maximum(put.jump[2], R(1e-9));
+}
+
 /// The integral of (e^{theta y} - 1 - theta y) g(y) dy, a year.
 template <class R>
 KOKKOS_INLINE_FUNCTION R jump_cumulant(const PutPack<R>& put, const Law<R>& law, R theta) {

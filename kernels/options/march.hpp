@@ -45,8 +45,8 @@ KOKKOS_INLINE_FUNCTION void convolve(const Workers& workers, int mesh, const R* 
   const int octets = (mesh + 7) / 8, halved = (octets + 1) / 2;
   workers.each([=](int lane) {
     for (int task = lane; task < 2 * octets; task += lanes) {
-      const int half = task / octets, chunk = task % octets;
-      const int begin = half == 0 ? 0 : halved, end = half == 0 ? halved : octets;
+      const int part = task / octets, chunk = task % octets;
+      const int begin = part == 0 ? 0 : halved, end = part == 0 ? halved : octets;
       R sum[8] = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
       if constexpr (WeightLayout<R>::interleaved) {
         R window[16];
@@ -68,7 +68,7 @@ KOKKOS_INLINE_FUNCTION void convolve(const Workers& workers, int mesh, const R* 
         for (int j = 8 * begin; j < 8 * end; ++j, ++from, ++value)
           for (int m = 0; m < 8; ++m) sum[m] += from[-m] * *value;
       }
-      R* to = (half == 0 ? out : other) + 8 * chunk;
+      R* to = (part == 0 ? out : other) + 8 * chunk;
       for (int m = 0; m < 8; ++m) to[m] = sum[m];
     }
   });

@@ -6,16 +6,19 @@
 
 namespace drogue::options {
 
-/// What |V(fine) - V(coarse)| is multiplied by for the stated error of their extrapolation. That error is of
-/// an order between two, at kinks, and three: docs/options.md tells how often it is below what is stated.
+/// What the largest |V(fine) - V(coarse)| near the spot is multiplied by for the stated error of their
+/// extrapolation. That error is of an order between two, at kinks, and three: docs/options.md tells how often
+/// it is below what is stated. The largest near the spot and not that at it, which changes sign somewhere.
 KOKKOS_INLINE_FUNCTION double error_factor(int mesh) {
-  return mesh <= 128 ? 0.5 : 0.5 * Kokkos::sqrt(128.0 / mesh);
+  const double finer = mesh <= 128 ? 1.0 : 128.0 / mesh;
+  return 0.22 * Kokkos::sqrt(finer * Kokkos::sqrt(finer));
 }
 
 /// The answer for a put of strike 1 on two grids, extrapolated to steps of length zero (the error of both is
 /// of second order), as the contract's price.
 KOKKOS_INLINE_FUNCTION Price price_of(const Contract& contract, const Put& put, const Answer& fine,
-                                      const Answer& coarse, int mesh, int steps, double tolerance) {
+                                      const Answer& coarse, double change, int mesh, int steps,
+                                      double tolerance) {
   const auto limit = [](double f, double c) { return f + (f - c) * (1.0 / 3); };
   const double asset = exponential(put.log_spot);
   const bool exercised = put.early && fine.slope == -asset && fine.decay == 0.0;
@@ -30,10 +33,7 @@ KOKKOS_INLINE_FUNCTION Price price_of(const Contract& contract, const Put& put, 
   }
   const bool call = contract.type == Type::call;
   const double unit = call ? contract.spot : contract.strike, s = contract.spot;
-  double change = device::absolute(fine.value - coarse.value);
-  for (int k = 0; k < 2 && !exercised; ++k)
-    change = device::maximum(change, device::absolute(fine.near[k] - coarse.near[k]));
-  const double error = error_factor(mesh) * change + 0.1 * cut_error(mesh);
+  const double error = error_factor(mesh) * change + cut_error(mesh);
   Price price;
   price.price = unit * a.value;
   price.error = unit * error;
@@ -71,7 +71,7 @@ struct PriceBatch {
   Kokkos::View<const int*, Space> order;           ///< (count)
   Kokkos::View<const double*, Space> panels;       ///< (panels, HankelGrid::panel_size)
   Kokkos::View<const int*, Space> panel_slot;      ///< (HankelGrid::panels)
-  Curve curve{nullptr, nullptr};                   ///< in `Space`
+  Record record{};                                 ///< of the only contract, if at all
   int count = 0, mesh = 0, steps = 0, level = 0;
   double tolerance = 0.0;
 
@@ -101,16 +101,38 @@ struct PriceBatch {
     const Domain<R> domain = domain_of(workers, put, law, cut_error(mesh), memory.slot);
     Grid<R> grid = grid_of(domain, mesh);
     const Tails<R> tails = tails_of(workers, put, law, grid.h * double(mesh), memory.slot);
-    solve(workers, put, law, tails, grid, steps, 2, memory, curve, memory.answers);
+    const R* fine = solve(workers, put, law, tails, grid, steps, memory, record, memory.answers);
+    R* const kept =
+        memory.row(10, node_count(mesh));  // which the smaller rows of the coarser grid leave alone
+    workers.each([=, this](int lane) {
+      for (int i = lane; i < mesh / 2; i += lanes) kept[i] = fine[2 * i];
+    });
     grid = {mesh / 2, 2.0 * grid.h, 0.5 * grid.strike};
-    solve(workers, put, law, tails, grid, steps / 2, 1, memory, Curve{nullptr, nullptr},
-          memory.answers + members);
+    const R* coarse =
+        solve(workers, put, law, tails, grid, steps / 2, memory, Record{}, memory.answers + members);
+    const R deviation = device::square_root((put.variance + law.variance) * put.maturity);
+    R* const change = memory.slot;
+    workers.each([=, this, &put](int lane) {
+      const R window = device::maximum(grid.h, 1.0 * deviation);
+      R largest = 0.0;
+      for (int i = lane; i < mesh / 2; i += lanes) {
+        const auto near = device::absolute((double(i) - grid.strike) * grid.h - put.log_spot) <= window;
+        largest =
+            device::maximum(largest, device::select(near, device::absolute(kept[i] - coarse[i]), R(0.0)));
+      }
+      change[lane] = largest;
+    });
     workers.each([=, this](int lane) {
       for (int k = lane; k < members; k += lanes) {
         if (group * members + k >= count) continue;
+        double largest = 0.0;
+        for (int m = 0; m < lanes; ++m) {
+          const double one = device::Access<R>::lane(change[m], k);
+          largest = one > largest || one != one ? one : largest;
+        }
         const int at = place(group, k);
         prices(at) = price_of(contracts(at), memory.puts[k], memory.answers[k], memory.answers[members + k],
-                              mesh, steps, tolerance);
+                              largest, mesh, steps, tolerance);
       }
     });
   }

@@ -37,6 +37,11 @@ struct BoundaryPoint {
   double spot;  ///< money: at it and beyond exercise is right
 };
 
+/// A price of an option at another spot, money both.
+struct ProfilePoint {
+  double spot, price;
+};
+
 /// Prices batches on a backend. Needs an initialised runtime.
 class Pricer {
  public:
@@ -50,6 +55,11 @@ class Pricer {
   /// The early exercise boundary of an American contract from now on to its expiry, a point for each step of
   /// the solve; empty where exercise is never right.
   virtual std::vector<BoundaryPoint> boundary(const Contract& contract) = 0;
+
+  /// Prices now at the spots of the nodes of one solve, which rise; the contract's own spot only has a say in
+  /// how far they reach. Prices are as good as one grid makes them. Since V(c spot, c strike) = c V they are
+  /// those of other strikes as well.
+  virtual std::vector<ProfilePoint> profile(const Contract& contract) = 0;
 };
 
 /// Throws std::invalid_argument for settings out of range; the backend must be available.

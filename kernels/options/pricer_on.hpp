@@ -6,6 +6,7 @@
 #include <compare>
 #include <optional>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "kernels/device/copy.hpp"
@@ -46,7 +47,7 @@ class PricerOn final : public Pricer {
         for (std::size_t k = 0; k < contracts.size(); ++k)
           if (rows[k].next == *effort && static_cast<int>(contracts[k].model) == model)
             batch.push_back(static_cast<int>(k));
-        launch(batch, *effort, {nullptr, nullptr});
+        launch(batch, *effort, Record{});
       }
       timing.compute += computing.seconds();
       const Clock copying;
@@ -61,30 +62,64 @@ class PricerOn final : public Pricer {
   }
 
   std::vector<BoundaryPoint> boundary(const Contract& contract) override {
-    const std::span<const Contract> one(&contract, 1);
-    reserve(1);
-    fetch_panels(one);
-    copy_in(_contracts, &contract, 1);
-    const int mesh = _settings.mesh != 0 ? _settings.mesh : boundary_mesh;
-    const Effort effort{mesh, steps_of(mesh, 1)};
-    const auto steps = static_cast<std::size_t>(effort.steps);
-    View<double> curve("drogue::options::boundary", 2 * steps);
-    launch({0}, effort, {curve.data(), curve.data() + steps});
-    std::vector<double> values(2 * steps);
-    copy_bytes(_instance.space(), device::copy_way<ExecutionSpace, Kokkos::HostSpace, Space>(), values.data(),
-               curve.data(), values.size() * sizeof(double));
-    _instance.space().fence("drogue::options: boundary is there");
+    const Recorded all = record(contract);
     std::vector<BoundaryPoint> points;
-    const double sign = contract.type == Type::call ? -1.0 : 1.0;
-    for (std::size_t k = steps; k-- > 0;)
-      if (values[steps + k] == values[steps + k])
-        points.push_back(
-            {contract.maturity - values[k], contract.strike * std::exp(sign * values[steps + k])});
+    for (std::size_t k = all.time.size(); k-- > 0;)
+      if (std::isfinite(all.boundary[k]))
+        points.push_back({contract.maturity - all.time[k], spot_at(contract, all.boundary[k])});
+    return points;
+  }
+
+  std::vector<ProfilePoint> profile(const Contract& contract) override {
+    const Recorded all = record(contract);
+    std::vector<ProfilePoint> points;
+    for (std::size_t k = 0; k < all.x.size(); ++k) {
+      const double spot = spot_at(contract, all.x[k]);
+      points.push_back({spot, all.value[k] * (contract.type == Type::call ? spot : contract.strike)});
+    }
+    if (contract.type == Type::call) std::reverse(points.begin(), points.end());
     return points;
   }
 
  private:
-  static constexpr int first_mesh = 64, last_mesh = 2048, boundary_mesh = 512, models = 4, most_often = 4;
+  static constexpr int first_mesh = 64, last_mesh = 2048, record_mesh = 512, models = 4, most_often = 4;
+
+  struct Recorded {
+    std::vector<double> time, boundary, x, value;
+  };
+
+  /// The spot at ln(spot/strike) = x of the put that a contract is solved as.
+  [[nodiscard]] static double spot_at(const Contract& contract, double x) {
+    return contract.strike * std::exp(contract.type == Type::call ? -x : x);
+  }
+
+  /// Solves one contract and brings what a solve leaves to the host.
+  Recorded record(const Contract& contract) {
+    const std::span<const Contract> one(&contract, 1);
+    reserve(1);
+    fetch_panels(one);
+    copy_in(_contracts, &contract, 1);
+    const int mesh = _settings.mesh != 0 ? _settings.mesh : record_mesh;
+    const Effort effort{mesh, steps_of(mesh, 1)};
+    const auto steps = static_cast<std::size_t>(effort.steps), nodes = static_cast<std::size_t>(mesh) + 1;
+    const View<double> all("drogue::options::record", 2 * (steps + nodes));
+    double* const at = all.data();
+    launch({0}, effort, {at, at + steps, at + 2 * steps, at + 2 * steps + nodes});
+    std::vector<double> values(all.size());
+    copy_bytes(_instance.space(), device::copy_way<ExecutionSpace, Kokkos::HostSpace, Space>(), values.data(),
+               at, values.size() * sizeof(double));
+    _instance.space().fence("drogue::options: record is there");
+    auto part = [begin = values.cbegin()](std::size_t count) mutable {
+      const auto end = begin + static_cast<std::ptrdiff_t>(count);
+      return std::vector<double>(std::exchange(begin, end), end);
+    };
+    Recorded recorded;
+    recorded.time = part(steps);
+    recorded.boundary = part(steps);
+    recorded.x = part(nodes);
+    recorded.value = part(nodes);
+    return recorded;
+  }
 
   class Clock {
    public:
@@ -176,7 +211,7 @@ class PricerOn final : public Pricer {
     copy_in(_panel_slot, _slots.data(), _slots.size());
   }
 
-  void launch(const std::vector<int>& rows, const Effort& effort, Curve curve) {
+  void launch(const std::vector<int>& rows, const Effort& effort, const Record& record) {
     if (rows.empty()) return;
     copy_in(_order, rows.data(), rows.size());
     PriceBatch<ExecutionSpace> batch;
@@ -185,7 +220,7 @@ class PricerOn final : public Pricer {
     batch.order = _order;
     batch.panels = _panels;
     batch.panel_slot = _panel_slot;
-    batch.curve = curve;
+    batch.record = record;
     batch.count = static_cast<int>(rows.size());
     batch.mesh = effort.mesh;
     batch.steps = effort.steps;

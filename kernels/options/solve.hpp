@@ -31,10 +31,12 @@ struct Memory {
   [[nodiscard]] KOKKOS_INLINE_FUNCTION R* row(int k, int count) const { return nodes + k * count; }
 };
 
-/// Where the exercise boundary of a pack's first member goes, step by step; or nowhere.
-struct Curve {
-  double* time;
-  double* boundary;
+/// Where more of a solve's first member is left than its answer, in the memory of the backend; or nowhere.
+struct Record {
+  double* time = nullptr;  ///< (steps): to expiry, years
+  double* boundary;        ///< (steps): x at these times
+  double* x;               ///< (mesh + 1): nodes, at maturity
+  double* value;           ///< (mesh + 1)
 };
 
 /// The end of step n of `steps`, years: steps grow with the square root of time, as the solution's changes
@@ -45,11 +47,12 @@ KOKKOS_INLINE_FUNCTION R step_end(R maturity, int n, int steps) {
   return maturity * (part * Kokkos::sqrt(part));
 }
 
-/// Marches from expiry to the puts' maturities on `grid`; `answers` gets one for each member.
+/// Marches from expiry to the puts' maturities on `grid`; `answers` gets one for each member. Returns the
+/// values of the nodes, which stay in the memory until the next solve.
 template <class Workers, class R>
-KOKKOS_INLINE_FUNCTION void solve(const Workers& workers, const PutPack<R>& put, const Law<R>& law,
-                                  const Tails<R>& tails, const Grid<R>& grid, int steps, int stride,
-                                  const Memory<R>& memory, Curve curve, Answer* answers) {
+KOKKOS_INLINE_FUNCTION const R* solve(const Workers& workers, const PutPack<R>& put, const Law<R>& law,
+                                      const Tails<R>& tails, const Grid<R>& grid, int steps,
+                                      const Memory<R>& memory, const Record& record, Answer* answers) {
   constexpr int members = device::Access<R>::lanes;
   const int mesh = grid.mesh, count = node_count(mesh);
   const R h = grid.h;
@@ -96,13 +99,13 @@ KOKKOS_INLINE_FUNCTION void solve(const Workers& workers, const PutPack<R>& put,
     dt = end - begin;
     ratio = n <= 2 ? R(0.0) : dt / dt_before;
     step(workers, put, jumps, grid, scheme, march, end, dt, ratio);
-    if (curve.time != nullptr) {
+    if (record.time != nullptr) {
       workers.each([=](int lane) {
         if (lane != 0) return;
         const auto at_strike = static_cast<int>(device::Access<R>::lane(grid.strike, 0));
         const double width = device::Access<R>::lane(h, 0);
-        curve.time[n - 1] = device::Access<R>::lane(end, 0);
-        curve.boundary[n - 1] =
+        record.time[n - 1] = device::Access<R>::lane(end, 0);
+        record.boundary[n - 1] =
             boundary_of({reinterpret_cast<const double*>(march.value[0]), members}, at_strike, width);
       });
     }
@@ -123,6 +126,14 @@ KOKKOS_INLINE_FUNCTION void solve(const Workers& workers, const PutPack<R>& put,
       march.y[i] = (1.0 + 2.0 * ratio) * per * march.value[1][i] - (1.0 + ratio) / dt * march.value[2][i] +
                    ratio * ratio * per * march.value[0][i];
   });
+  if (record.time != nullptr) {
+    workers.each([=](int lane) {
+      for (int i = lane; i <= mesh; i += lanes) {
+        record.x[i] = device::Access<R>::lane((double(i) - grid.strike) * h, 0);
+        record.value[i] = device::Access<R>::lane(march.value[1][i], 0);
+      }
+    });
+  }
   const Certain<R> ended = certain(put, lowest, scheme.best, put.maturity);
   workers.each([=](int lane) {
     for (int k = lane; k < members; k += lanes) {
@@ -131,11 +142,11 @@ KOKKOS_INLINE_FUNCTION void solve(const Workers& workers, const PutPack<R>& put,
                              {reinterpret_cast<const double*>(march.y) + k, members},
                              {mesh,
                               static_cast<int>(member(grid.strike)),
-                              stride,
                               member(h),
                               {member(ended.strike), member(ended.asset)}});
     }
   });
+  return march.value[1];
 }
 
 }  // namespace drogue::options

@@ -23,6 +23,16 @@ KOKKOS_INLINE_FUNCTION Tails<R> tails_of(const Workers& workers, const PutPack<R
     return {b, b * down / (down + 1.0) * exponential(-length), a, a * up / (up - 1.0) * exponential(length),
             a * (length * length + 2.0 * i * (length + i)) + b * (length * length + 2.0 * j * (length + j))};
   }
+  if (put.model == Model::merton) {
+    const R rate = put.jump[0], m = put.jump[1], s = merton_deviation(put);
+    const R price = rate * exponential(m + 0.5 * s * s), square = m * m + s * s;
+    const R z_up = (length - m) / s, z_down = (length + m) / s;
+    const R up = normal_above(z_up), down = normal_above(z_down);
+    const auto density = [](R z) { return 0.3989422804014327 * exponential(-0.5 * z * z); };
+    return {
+        rate * down, price * normal_above(z_down + s), rate * up, price * normal_above(z_up - s),
+        rate * (square * (up + down) + s * ((length + m) * density(z_up) + (length - m) * density(z_down)))};
+  }
   if (put.model != Model::generalized_hyperbolic) return {R(0.0), R(0.0), R(0.0), R(0.0), R(0.0)};
   workers.each([&, scratch](int lane) {
     R sum[5] = {0.0, 0.0, 0.0, 0.0, 0.0};

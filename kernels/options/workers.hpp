@@ -12,10 +12,10 @@ inline constexpr int lanes = 32;
 template <class R>
 struct SerialWorkers {
   template <class F>
-  void each(const F& f) const {
+  KOKKOS_INLINE_FUNCTION void each(const F& f) const {
     for (int lane = 0; lane < lanes; ++lane) f(lane);
   }
-  void meet() const {}
+  KOKKOS_INLINE_FUNCTION void meet() const {}
 };
 
 /// A warp that is a team of its own.
