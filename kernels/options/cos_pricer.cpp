@@ -89,6 +89,10 @@ class CosPricer final : public Pricer {
     throw std::invalid_argument("cos: no exercise boundary; take the method pide");
   }
 
+  std::vector<ProfilePoint> profile(const Contract& /*contract*/) override {
+    throw std::invalid_argument("cos: each spot is a solve of its own; take the method pide");
+  }
+
  private:
   static constexpr std::size_t most_together = 1024;       ///< so that their tables take some 60 MB at most
   static constexpr int fewest_dates = 4, most_dates = 32;  ///< of the coarsest level
