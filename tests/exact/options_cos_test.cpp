@@ -7,7 +7,7 @@
 #include "kernels/options/cos_pricer.hpp"
 #include "tests/support/cuda_device.hpp"
 #include "tests/support/in_child.hpp"
-#include "tests/support/options_reference.hpp"
+#include "tests/support/option_sets.hpp"
 
 // Every backend and every number of threads prices options by Fourier's series to the same bits.
 
@@ -17,9 +17,10 @@ namespace {
 std::string cos_bytes(device::Backend backend, int threads) {
   const device::Runtime runtime({"--kokkos-num-threads=" + std::to_string(threads)});
   std::vector<Contract> contracts;
-  for (const auto& set : testing::reference_sets)
+  for (const auto& set : testing::option_sets())
     for (const Type type : {Type::put, Type::call}) {
-      contracts.push_back(testing::contract_of(set, 3, Style::american, type));
+      contracts.push_back(testing::contract_of(set, 3, Style::american));
+      contracts.back().type = type;
       contracts.back().dividend = 0.02;
     }
   Settings settings;
