@@ -20,6 +20,8 @@ foreach(_app IN ITEMS gas springs)
   install(DIRECTORY "${PROJECT_SOURCE_DIR}/miniapps/${_app}/scenes/"
     DESTINATION "${CMAKE_INSTALL_DATADIR}/drogue/scenes/${_app}" FILES_MATCHING PATTERN "*.toml")
 endforeach()
+install(DIRECTORY "${PROJECT_SOURCE_DIR}/miniapps/options/batches/"
+  DESTINATION "${CMAKE_INSTALL_DATADIR}/drogue/batches" FILES_MATCHING PATTERN "*.csv")
 if(DROGUE_CUDA)
   install(FILES "${PROJECT_SOURCE_DIR}/cmake/cuda13_kokkos45.hpp" DESTINATION "${_package}")
 endif()

@@ -37,7 +37,7 @@ build() {
     -DCMAKE_CXX_FLAGS=-march=x86-64-v3 -DCMAKE_CUDA_FLAGS=-Xcompiler=-march=x86-64-v3 \
     -DCMAKE_EXE_LINKER_FLAGS=-Wl,--disable-new-dtags "$@"
   say "building the $kind programs"
-  local targets=(drogue-gas drogue-springs drogue-perf)
+  local targets=(drogue-gas drogue-springs drogue-options drogue-perf)
   [ "$tests" = no ] || targets+=(drogue_kernel_tests)
   run_logged "bundle-$kind-build" cmake --build "$folder" --parallel "$jobs" --target "${targets[@]}"
   local program
@@ -87,6 +87,7 @@ mkdir -p "$out/share/drogue/scenes"
 for app in miniapps/*/scenes; do
   cp -r "$app" "$out/share/drogue/scenes/$(basename "$(dirname "$app")")"
 done
+cp -r miniapps/options/batches "$out/share/drogue/batches"
 cp -r scripts/plot "$out/share/drogue/plot"
 find "$out" -name __pycache__ -prune -exec rm -rf {} +
 install -m 755 build/bundle/work-host-"$exact"/bin/drogue-plot "$out/bin/drogue-plot"

@@ -38,6 +38,15 @@ std::string progress_text(std::int64_t step, std::int64_t steps_done, double tim
   return text;
 }
 
+std::string rows_text(std::int64_t rows, double share, double elapsed) {
+  const double rate = elapsed > 0.0 ? static_cast<double>(rows) / elapsed : 0.0;
+  const double eta = share > 0.0 ? elapsed * (1.0 - share) / share : -1.0;
+  char text[160];
+  std::snprintf(text, sizeof text, "%lld rows (%.0f %%)  %.4g rows/s  ETA %s", static_cast<long long>(rows),
+                100.0 * share, rate, clock_text(eta).c_str());
+  return text;
+}
+
 ProgressLine::ProgressLine(bool quiet, std::FILE* stream)
     : _stream(stream), _active(!quiet && isatty(fileno(stream)) == 1 && launched_rank().rank == 0) {}
 
@@ -56,7 +65,18 @@ void ProgressLine::update(std::int64_t step, double time, double end_time) {
   if (now - _last < interval) return;
   _last = now;
   const double elapsed = std::chrono::duration<double>(now - _start).count();
-  const std::string text = progress_text(step, step - _first_step, time, _first_time, end_time, elapsed);
+  show(progress_text(step, step - _first_step, time, _first_time, end_time, elapsed));
+}
+
+void ProgressLine::update_rows(std::int64_t rows, double share) {
+  if (!_active) return;
+  const Clock::time_point now = Clock::now();
+  if (now - _last < interval) return;
+  _last = now;
+  show(rows_text(rows, share, std::chrono::duration<double>(now - _start).count()));
+}
+
+void ProgressLine::show(const std::string& text) {
   // Return to the margin, write, clear what a longer line left behind.
   std::fprintf(_stream, "\r%s\x1b[K", text.c_str());
   std::fflush(_stream);

@@ -12,6 +12,10 @@ namespace drogue {
 std::string progress_text(std::int64_t step, std::int64_t steps_done, double time, double begin, double end,
                           double elapsed);
 
+/// The text of the line of a batch: `1200 rows (33 %)  5210 rows/s  ETA 0:12`. `share` of the whole is done
+/// after `elapsed` seconds.
+std::string rows_text(std::int64_t rows, double share, double elapsed);
+
 /// One line on a terminal, rewritten ten times a second at most; silent if `stream` is not a terminal, if
 /// quiet, or on any rank but 0.
 class ProgressLine {
@@ -24,18 +28,23 @@ class ProgressLine {
   /// Shows where the run is. The first call sets where the rate is counted from.
   void update(std::int64_t step, double time, double end_time);
 
+  /// Shows how much of a batch is done, `share` of all of it. The clock starts with the object.
+  void update_rows(std::int64_t rows, double share);
+
   /// Removes the line, so that what is printed next starts at the left margin.
   void finish();
 
  private:
   using Clock = std::chrono::steady_clock;
+  void show(const std::string& text);
+
   std::FILE* _stream;
   bool _active;
   bool _started = false;
   bool _shown = false;
   std::int64_t _first_step = 0;
   double _first_time = 0.0;
-  Clock::time_point _start;
+  Clock::time_point _start = Clock::now();
   Clock::time_point _last;
 };
 

@@ -130,6 +130,7 @@ std::string to_json(const ResultDocument& result) {
   json["dt_max"] = number(result.dt_max);
   json["errors"] = errors_json(result.errors);
   json["checks"] = checks_json(result.checks);
+  if (!result.counts.empty()) json["counts"] = result.counts;
   json["limiter"] = {{"touches", result.limiter.touches},
                      {"cells", result.limiter.cells},
                      {"redone_steps", result.limiter.redone_steps}};

@@ -32,6 +32,7 @@ struct ResultDocument {
   double dt_min = 0.0, dt_max = 0.0;  ///< s
   std::map<std::string, double> errors;
   std::vector<Check> checks;
+  std::map<std::string, std::int64_t> counts;  ///< of a batch: how many rows ended how; else empty
   struct Limiter {
     std::int64_t touches = 0;  ///< faces limited, summed over all stages
     std::int64_t cells = 0;    ///< cells that had such a face at least once

@@ -45,7 +45,7 @@ def arguments(words: list[str]) -> argparse.Namespace:
     )
     parser.add_argument(
         "directory", metavar="DIR", nargs="?", type=Path,
-        help="run directory, or one with study.csv or records (*.jsonl)",
+        help="run directory, or one with study.csv, surface.csv, boundary.csv or records (*.jsonl)",
     )  # fmt: skip
     parser.add_argument("--out", type=Path, help="folder of the pictures (default: DIR)")
     parser.add_argument("--field", default="", help="fields to draw, by commas (default: all)")
@@ -131,6 +131,7 @@ def draw(options: argparse.Namespace):
     """Yields the name of each picture once it is written."""
     from . import evidence_records, style
     from .history_figure import history_figure
+    from .options_figure import options_figure
     from .run_directory import read
     from .springs_history import springs_history_figure
     from .study_figure import check_norm, study_figure
@@ -152,6 +153,8 @@ def draw(options: argparse.Namespace):
     draw_history = springs_history_figure if "kinetic" in run.history else history_figure
     if (figure := draw_history(run)) is not None:
         yield save(figure, "history")
+    if (figure := options_figure(options.directory)) is not None:
+        yield save(figure, "fields")
     if run.study:
         yield save(study_figure(run.scene_name, run.study, options.norm or ""), "study")
     if evidence:

@@ -9,7 +9,7 @@ from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from . import demo_pictures
+from . import demo_options, demo_pictures
 from .demo_page import write_page
 from .failure import IO_ERROR, OK, USAGE, Failure
 from .style import check_label
@@ -24,6 +24,7 @@ class App:
 
 
 APPS = (App("drogue-gas", "Gas dynamics"), App("drogue-springs", "Cloth and strings"))
+OPTIONS = App("drogue-options", "Options")
 INTERRUPTED = 130
 
 
@@ -121,6 +122,9 @@ def _chosen(arguments) -> list[SceneRun]:
             for name, sentence in shipped_scenes(program):
                 directory = arguments.out / app.program.removeprefix("drogue-") / name
                 runs.append(SceneRun(app, name, sentence, directory))
+    if (arguments.bin / OPTIONS.program).is_file():
+        sentence = "American and European options by finite differences, against the Fourier methods."
+        runs.append(SceneRun(OPTIONS, demo_options.BATCH, sentence, arguments.out / "options" / demo_options.BATCH))
     unknown = set(arguments.scenes) - {run.name for run in runs}
     if unknown:
         raise Failure(
@@ -139,7 +143,10 @@ def demo(words=None) -> int:
     for run in runs:
         run.directory.parent.mkdir(parents=True, exist_ok=True)
         program = arguments.bin / run.app.program
-        run_scene(program, run)
+        if run.app is OPTIONS:
+            demo_options.run_batch(program, run)
+        else:
+            run_scene(program, run)
         print(table_row(run), flush=True)
     # After all runs: pictures beside them would disturb their times.
     with ProcessPoolExecutor(max_workers=os.cpu_count()) as pool:

@@ -11,7 +11,7 @@ import numpy as np
 
 from .failure import IO_ERROR, USAGE, Failure
 
-READABLE = ("fields.h5", "history.csv", "study.csv")
+READABLE = ("fields.h5", "history.csv", "study.csv", "surface.csv", "boundary.csv")
 RECORDS = "*.jsonl"
 
 

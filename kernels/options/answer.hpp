@@ -1,0 +1,94 @@
+#pragma once
+
+#include "kernels/options/march.hpp"
+
+namespace drogue::options {
+
+/// What a solve says of a put of strike 1, at x = ln(spot/strike) and maturity.
+struct Answer {
+  double value, slope, bend;  ///< V, dV/dx, d2V/dx2
+  double decay;               ///< dV/dtau, a year
+  double boundary;            ///< x up to which exercise is right; not a number where there is none
+};
+
+/// One member's values on the nodes of a pack.
+struct Column {
+  const double* values;
+  int members;
+  KOKKOS_INLINE_FUNCTION double operator()(int i) const { return values[i * members]; }
+};
+
+/// Where exercise ends. Above it the time value grows with the square of the distance, so two nodes tell
+/// where it begins; what differs from the payoff by less than rounding is exercised.
+KOKKOS_INLINE_FUNCTION double boundary_of(const Column& value, int strike, double h) {
+  const auto time_value = [&](int i) { return value(i) - (1.0 - exponential((i - strike) * h)); };
+  int i = strike - 1;
+  while (i >= 0 && time_value(i) > 1e-13) --i;
+  if (i < 0) return device::portable::not_a_number();
+  const double first = Kokkos::sqrt(device::maximum(0.0, time_value(i + 1))),
+               second = Kokkos::sqrt(device::maximum(0.0, time_value(i + 2)));
+  const double within = second > first ? 1.0 - first / (second - first) : 0.0;
+  return (i - strike + device::maximum(0.0, device::minimum(1.0, within))) * h;
+}
+
+/// The nodes of one member.
+struct Nodes {
+  int mesh, strike;
+  double h;
+  Certain<double> certain;  ///< below node 0
+};
+
+/// Cubic interpolation between four nodes, value and two derivatives.
+KOKKOS_INLINE_FUNCTION void interpolate(const Column& value, int first, double t, double h, double* result) {
+  const double p = value(first), q = value(first + 1), r = value(first + 2), s = value(first + 3);
+  const double d1 = q - p, d2 = r - 2.0 * q + p, d3 = s - 3.0 * r + 3.0 * q - p;  // Newton's form
+  result[0] = p + t * (d1 + (t - 1.0) * (0.5 * d2 + (t - 2.0) * (1.0 / 6) * d3));
+  result[1] = (d1 + (t - 0.5) * d2 + (0.5 * t * t - t + 1.0 / 3) * d3) / h;
+  result[2] = (d2 + (t - 1.0) * d3) / (h * h);
+}
+
+/// Reads the answer for one member. Nodes are taken from the side of the strike and of the boundary that x is
+/// on: there the value has kinks that short maturities leave sharp. `change` holds dV/dtau.
+KOKKOS_INLINE_FUNCTION Answer answer_of(const Put& put, const Column& value, const Column& change,
+                                        const Nodes& nodes) {
+  const int mesh = nodes.mesh, strike = nodes.strike;
+  const double h = nodes.h;
+  const double x = put.log_spot, asset = exponential(x);
+  Answer answer{0.0, 0.0, 0.0, 0.0, device::portable::not_a_number()};
+  if (put.early) answer.boundary = boundary_of(value, strike, h);
+  const double t = x / h + strike;
+  if (put.early && (x <= answer.boundary) && !(put.split && t < 1.0)) {
+    if (!put.split ||
+        value(static_cast<int>(t)) - (1.0 - exponential((static_cast<int>(t) - strike) * h)) < 1e-13)
+      return {1.0 - asset, -asset, -asset, 0.0, answer.boundary};
+  }
+  if (t <= 0.0) {
+    answer.value = nodes.certain.strike - nodes.certain.asset * asset;
+    answer.slope = answer.bend = -nodes.certain.asset * asset;
+    answer.decay = put.dividend * nodes.certain.asset * asset - put.rate * nodes.certain.strike;
+    return answer;
+  }
+  if (t >= mesh) return answer;
+  const int cell = static_cast<int>(t);
+  int first = cell - 1;
+  if (cell >= strike) {
+    first = first < strike ? strike : first;
+  } else {
+    first = first > strike - 3 ? strike - 3 : first;
+  }
+  if (!put.split && answer.boundary == answer.boundary) {
+    const int exercised = static_cast<int>(answer.boundary / h + strike);
+    first = first < exercised ? exercised : first;
+  }
+  first = first > mesh - 3 ? mesh - 3 : first < 0 ? 0 : first;
+  double result[3], rate[3];
+  interpolate(value, first, t - first, h, result);
+  interpolate(change, first, t - first, h, rate);
+  answer.value = put.early ? device::maximum(result[0], 1.0 - asset) : result[0];
+  answer.slope = result[1];
+  answer.bend = result[2];
+  answer.decay = rate[0];
+  return answer;
+}
+
+}  // namespace drogue::options

@@ -1,0 +1,63 @@
+#pragma once
+
+#include "kernels/options/domain.hpp"
+
+namespace drogue::options {
+
+/// The nodes x_i = (i - strike) h, i = 0 .. mesh, of ln(spot/strike). `strike` is even, so that every other
+/// node makes the coarser grid; a pack's members may have it at different nodes.
+template <class R>
+struct Grid {
+  int mesh;
+  R h;
+  R strike;  ///< index of the node x = 0
+};
+
+/// The widest steps that reach as far as `domain`.
+template <class R>
+KOKKOS_INLINE_FUNCTION Grid<R> grid_of(const Domain<R>& domain, int mesh) {
+  const R wished = (0.5 * mesh) * domain.below / (domain.below + domain.above);
+  const R whole = (wished + rounder) - rounder;
+  const R pairs = device::maximum(R(1.0), device::minimum(R(0.5 * mesh - 2.0), whole));
+  const R strike = 2.0 * pairs;
+  return {mesh, device::maximum(domain.below / strike, domain.above / (double(mesh) - strike)), strike};
+}
+
+/// Blocks of nodes that lanes own, from node 1 on, and the length of an array that holds them all and whole
+/// octets of nodes.
+KOKKOS_INLINE_FUNCTION int block_of(int mesh) { return (mesh - 1 + lanes - 1) / lanes; }
+KOKKOS_INLINE_FUNCTION int node_count(int mesh) {
+  const int owned = 1 + block_of(mesh) * lanes, octets = mesh / 8 * 8 + 16;
+  return owned > octets ? owned : octets;
+}
+
+/// Where the weight of a jump by d nodes, |d| <= mesh + 7, lies. On CUDA a warp reads every eighth of them at
+/// once: these are neighbours there, so that no two are in one bank.
+template <class R>
+struct WeightLayout {
+  static constexpr bool interleaved = device::Access<R>::lanes == 1;
+  int centre, stride;
+
+  KOKKOS_INLINE_FUNCTION explicit WeightLayout(int mesh)
+      : centre(mesh / 8 * 8 + 16), stride((2 * centre + 8) / 8 + 1) {}
+  [[nodiscard]] KOKKOS_INLINE_FUNCTION int size() const { return 8 * stride; }
+  [[nodiscard]] KOKKOS_INLINE_FUNCTION int place(int d) const {
+    const int e = centre + d;
+    return interleaved ? (e % 8) * stride + e / 8 : e;
+  }
+};
+
+/// The puts' jumps on their grid: the weights w_d = h g(d h) of jumps by d nodes (half of it for d = +-1),
+/// what goes beyond the grid, and what of the variance and of the drift is left for differences.
+template <class R>
+struct Jumps {
+  R* w;           ///< in the order of a WeightLayout; 0 for d = 0 and |d| > mesh
+  R* left;        ///< (node_count): mass of the jumps from a node to below the grid, a year
+  R* left_price;  ///< (node_count): the same of e^{x + y}
+  R rate;         ///< mass of all jumps, a year
+  R diffusion;    ///< D, so that D, the weights and the tails have the variance of the law
+  R drift;        ///< b, so that the scheme prices e^x without an error
+  R symbol[16];   ///< sum of w_d (1 - cos(d angle)) at the angles pi 2^{-k/2}
+};
+
+}  // namespace drogue::options

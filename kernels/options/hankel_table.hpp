@@ -1,0 +1,41 @@
+#pragma once
+
+#include <Kokkos_Core.hpp>
+#include <cmath>
+#include <vector>
+
+namespace drogue::options {
+
+/// The spectral density m(z) = 2 / (pi (J^2 + Y^2)) of the generalized hyperbolic Levy measure, J and Y of
+/// order |lambda|, on the grid z = e^(q step) that all contracts share, and the sum of its values below a
+/// node. Both are logarithms, and Chebyshev series in the order on panels of orders.
+struct HankelGrid {
+  static constexpr double step = 0.4;  ///< of ln z: the sum over nodes is as good as the integral to 1e-7
+  static constexpr int first = -100;   ///< z = 4e-18
+  static constexpr int count = 131;    ///< to z = 1.6e5, beyond which Hankel's expansion holds
+  static constexpr int terms = 14;
+  static constexpr int panel_size = 2 * count * terms;
+  static constexpr double largest_order = 128.0;
+  static constexpr int panels = 6 + 127;
+};
+
+/// Panels end at 1/16, 1/8, 1/4, 1/2, 1, 2, 3, ...: towards 0 the density of small z varies fast.
+KOKKOS_INLINE_FUNCTION int panel_of(double order) {
+  if (order >= 1.0) return 4 + static_cast<int>(order);
+  int panel = 0;
+  for (double end = 0.0625; order >= end; end *= 2.0) ++panel;
+  return panel;
+}
+KOKKOS_INLINE_FUNCTION double panel_begin(int panel) {
+  if (panel >= 5) return panel - 4.0;
+  double begin = 0.0;
+  for (int k = 1; k <= panel; ++k) begin = k == 1 ? 0.0625 : 2.0 * begin;
+  return begin;
+}
+KOKKOS_INLINE_FUNCTION double panel_end(int panel) { return panel_begin(panel + 1); }
+
+/// The series of a panel, (2, count, terms): of ln m, and of the logarithm of the sum of step/pi m over all
+/// nodes below. Takes some milliseconds.
+[[nodiscard]] std::vector<double> hankel_panel(int panel);
+
+}  // namespace drogue::options

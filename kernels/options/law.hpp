@@ -1,0 +1,128 @@
+#pragma once
+
+#include "kernels/options/mixture.hpp"
+#include "kernels/options/workers.hpp"
+
+namespace drogue::options {
+
+/// The puts of a pack (one for R = double), member by member; all have the same model.
+template <class R>
+struct PutPack {
+  Model model;
+  bool any_split;
+  R early;  ///< 1 or 0, as the next
+  R split;
+  R log_spot, rate, dividend, maturity, variance;
+  R jump[4];
+};
+
+template <class R>
+KOKKOS_INLINE_FUNCTION PutPack<R> pack_of(const Put* puts) {
+  PutPack<R> pack{};
+  pack.model = puts[0].model;
+  for (int k = 0; k < device::Access<R>::lanes; ++k) {
+    const auto set = [k](R& number, double value) { reinterpret_cast<double*>(&number)[k] = value; };
+    const Put& put = puts[k];
+    pack.any_split = pack.any_split || put.split;
+    set(pack.early, put.early ? 1.0 : 0.0);
+    set(pack.split, put.split ? 1.0 : 0.0);
+    set(pack.log_spot, put.log_spot);
+    set(pack.rate, put.rate);
+    set(pack.dividend, put.dividend);
+    set(pack.maturity, put.maturity);
+    set(pack.variance, put.variance);
+    for (int m = 0; m < 4; ++m) set(pack.jump[m], put.jump[m]);
+  }
+  return pack;
+}
+
+/// What a pack's jumps are made of. Terms of a mixture are in scratch memory; the other models have none.
+template <class R>
+struct Law {
+  R* s;        ///< (Mixture::size): rates
+  R* c;        ///< (Mixture::size): weights; 0 for the models without
+  R variance;  ///< of the jumps, a year
+  R high;      ///< what terms from Mixture::low on contribute to it
+};
+
+/// Rates at which the density of the jumps decays upwards and downwards; of Merton's none limits a tilt.
+template <class R>
+KOKKOS_INLINE_FUNCTION R decay_up(const PutPack<R>& put) {
+  if (put.model == Model::generalized_hyperbolic) return put.jump[1] - put.jump[2];
+  return put.model == Model::kou ? put.jump[2] : R(1e4);
+}
+template <class R>
+KOKKOS_INLINE_FUNCTION R decay_down(const PutPack<R>& put) {
+  if (put.model == Model::generalized_hyperbolic) return put.jump[1] + put.jump[2];
+  return put.model == Model::kou ? put.jump[3] : R(1e4);
+}
+
+/// Puts the terms of member `k` of a pack into scratch memory and sums the variance.
+template <class Workers, class R>
+KOKKOS_INLINE_FUNCTION Law<R> law_of(const Workers& workers, const PutPack<R>& pack, const Put* puts,
+                                     const double* panels, const int* panel_slot, R* s, R* c, R* slot) {
+  constexpr int members = device::Access<R>::lanes;
+  Law<R> law{s, c, R(0.0), R(0.0)};
+  if (pack.model == Model::generalized_hyperbolic) {
+    workers.each([=](int lane) {
+      for (int k = 0; k < members; ++k) {
+        const MixtureGrid grid = mixture_grid(puts[k], panels, panel_slot);
+        for (int q = lane; q < Mixture::size; q += lanes) {
+          const Term term = mixture_term(puts[k], grid, q);
+          reinterpret_cast<double*>(s + q)[k] = term.rate;
+          reinterpret_cast<double*>(c + q)[k] = term.weight;
+        }
+      }
+    });
+    const R up = -pack.jump[2], down = pack.jump[2];
+    for (int part = 0; part < 2; ++part) {
+      workers.each([=](int lane) {
+        R sum = 0.0;
+        const int begin = part == 0 ? 0 : Mixture::low, end = part == 0 ? Mixture::low : Mixture::size;
+        for (int q = begin + lane; q < end; q += lanes) {
+          const R a = 1.0 / (s[q] + up), b = 1.0 / (s[q] + down);
+          sum += c[q] * (a * a + b * b);
+        }
+        slot[lane] = sum;
+      });
+      (part == 0 ? law.variance : law.high) = total(slot);
+      workers.meet();
+    }
+    law.variance += law.high;
+  } else if (pack.model == Model::merton) {
+    law.variance = pack.jump[0] * (pack.jump[1] * pack.jump[1] + pack.jump[2] * pack.jump[2]);
+  } else if (pack.model == Model::kou) {
+    const R p = pack.jump[1], a = 1.0 / pack.jump[2], b = 1.0 / pack.jump[3];
+    law.variance = 2.0 * pack.jump[0] * (p * a * a + (1.0 - p) * b * b);
+  }
+  return law;
+}
+
+/// The deviation of Merton's jumps; they may all be alike.
+template <class R>
+KOKKOS_INLINE_FUNCTION R merton_deviation(const PutPack<R>& put) {
+  return device::maximum(put.jump[2], R(1e-9));
+}
+
+/// The integral of (e^{theta y} - 1 - theta y) g(y) dy, a year.
+template <class R>
+KOKKOS_INLINE_FUNCTION R jump_cumulant(const PutPack<R>& put, const Law<R>& law, R theta) {
+  if (put.model == Model::merton) {
+    const R m = put.jump[1], d = put.jump[2];
+    return put.jump[0] * (exponential(theta * (m + 0.5 * theta * d * d)) - 1.0 - theta * m);
+  }
+  if (put.model == Model::kou) {
+    const R p = put.jump[1], up = put.jump[2], down = put.jump[3];
+    const R a = theta / (up - theta), b = theta / (down + theta);
+    return put.jump[0] * (p * (a - theta / up) - (1.0 - p) * (b - theta / down));
+  }
+  if (put.model == Model::black_scholes) return R(0.0);
+  R sum = 0.5 * theta * theta * law.high;
+  for (int q = 0; q < Mixture::low; ++q) {
+    const R a = theta / (law.s[q] - put.jump[2]), b = theta / (law.s[q] + put.jump[2]);
+    sum += law.c[q] * (b - a - logarithm((1.0 - a) * (1.0 + b)));
+  }
+  return sum;
+}
+
+}  // namespace drogue::options

@@ -1,0 +1,78 @@
+#pragma once
+
+#include "kernels/options/elementary.hpp"
+#include "kernels/options/hankel_table.hpp"
+#include "kernels/options/put.hpp"
+
+namespace drogue::options {
+
+/// A generalized hyperbolic Levy density as a mixture of exponentials,
+///   |x| e^{-beta x} g(x) = sum_q c_q e^{-s_q |x|},
+/// the sum over the grid of ln z that replaces the integral over the phase of the Hankel function of order
+/// |lambda| (Prause 1999, with the Wronskian): s = sqrt((z/delta)^2 + alpha^2), c = step/pi m(z). What lies
+/// below `lowest` alpha, and the part max(lambda, 0) e^{-alpha|x|}, are the one term s = alpha.
+struct Mixture {
+  static constexpr int size = 64;
+  static constexpr double lowest = 2e-3;  ///< (s - alpha)/alpha is below 2e-6 there
+  static constexpr int low = 34;          ///< terms after which s exceeds 1000 alpha
+};
+
+/// A Chebyshev series at t in [-1, 1], by Clenshaw's recurrence.
+KOKKOS_INLINE_FUNCTION double chebyshev(const double* series, double t) {
+  double next = 0.0, value = 0.0;
+  for (int k = HankelGrid::terms - 1; k >= 1; --k) {
+    const double before = 2.0 * t * value - next + series[k];
+    next = value;
+    value = before;
+  }
+  return t * value - next + series[0];
+}
+
+/// One term of a mixture.
+struct Term {
+  double rate;    ///< s, 1
+  double weight;  ///< c, 1/year
+};
+
+/// Where the terms of a generalized hyperbolic put lie on the grid.
+struct MixtureGrid {
+  const double* panel;  ///< series of its panel of orders
+  double t;             ///< its order's place in the panel
+  int first;            ///< node of the grid that term 1 belongs to
+};
+
+KOKKOS_INLINE_FUNCTION MixtureGrid mixture_grid(const Put& put, const double* panels, const int* slot) {
+  const double order = device::portable::magnitude(put.jump[0]);
+  const int panel = panel_of(order);
+  const double begin = panel_begin(panel), end = panel_end(panel);
+  const double z = put.jump[3] * (Mixture::lowest * put.jump[1]);
+  int first = HankelGrid::first;
+  if (z > 4e-18) first = static_cast<int>(Kokkos::ceil(device::portable::log(z) * (1.0 / HankelGrid::step)));
+  return {panels + slot[panel] * std::size_t(HankelGrid::panel_size),
+          (2.0 * order - begin - end) / (end - begin), first};
+}
+
+/// Term q of the mixture of `put`, a generalized hyperbolic one.
+KOKKOS_INLINE_FUNCTION Term mixture_term(const Put& put, const MixtureGrid& grid, int q) {
+  const double lambda = put.jump[0], alpha = put.jump[1], delta = put.jump[3];
+  if (delta == 0.0) return {alpha, q == 0 ? lambda : 0.0};
+  const int node = grid.first + q - 1 - HankelGrid::first;  // of term 0 the last one that is lumped
+  const double positive = lambda > 0.0 ? lambda : 0.0;
+  if (q == 0) {
+    const int beyond = node + 1 < HankelGrid::count ? node + 1 : HankelGrid::count - 1;
+    const double* below = grid.panel + (HankelGrid::count + beyond) * HankelGrid::terms;
+    return {alpha, positive + exponential(chebyshev(below, grid.t))};
+  }
+  const double z = exponential((grid.first + q - 1) * HankelGrid::step);
+  double density = 0.0;
+  if (node < HankelGrid::count) {
+    density = exponential(chebyshev(grid.panel + node * HankelGrid::terms, grid.t));
+  } else {
+    const double mu = 4.0 * lambda * lambda;
+    density = z / (1.0 + (mu - 1.0) / (8.0 * z * z));
+  }
+  const double w = z / delta;
+  return {Kokkos::sqrt(w * w + alpha * alpha), HankelGrid::step / device::portable::pi * density};
+}
+
+}  // namespace drogue::options

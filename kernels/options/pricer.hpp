@@ -1,0 +1,68 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "kernels/device/backend.hpp"
+#include "kernels/options/contract.hpp"
+
+namespace drogue::options {
+
+enum class Method : unsigned char {
+  pide,  ///< finite differences of the integro-differential equation
+  cos,   ///< Fourier cosine series
+  seed,  ///< the dissertation's scheme (Listing 4.6)
+};
+
+/// How to price. Either mesh and steps are given, or the tolerance chooses them.
+struct Settings {
+  Method method = Method::pide;
+  int mesh = 0;             ///< intervals in space; 0: chosen by `tolerance`
+  int steps = 0;            ///< steps in time; 0: chosen by `tolerance`
+  double tolerance = 1e-4;  ///< of |price - true price|, relative to the strike
+  bool greeks = false;      ///< delta, gamma and theta are computed
+};
+
+/// Wall time of a batch's parts, s.
+struct Timing {
+  double h2d = 0.0;
+  double compute = 0.0;
+  double d2h = 0.0;
+};
+
+/// A point of an early exercise boundary.
+struct BoundaryPoint {
+  double time;  ///< from now, years
+  double spot;  ///< money: at it and beyond exercise is right
+};
+
+/// A price of an option at another spot, money both.
+struct ProfilePoint {
+  double spot, price;
+};
+
+/// Prices batches on a backend. Needs an initialised runtime.
+class Pricer {
+ public:
+  virtual ~Pricer() = default;
+
+  /// Prices every contract; `prices` has the length of `contracts`, each of which must satisfy
+  /// `violated_condition` (std::invalid_argument for spans of different lengths). Returns when the prices
+  /// are there. A contract's bits do not depend on the others of the batch.
+  virtual Timing price(std::span<const Contract> contracts, std::span<Price> prices) = 0;
+
+  /// The early exercise boundary of an American contract from now on to its expiry, a point for each step of
+  /// the solve; empty where exercise is never right.
+  virtual std::vector<BoundaryPoint> boundary(const Contract& contract) = 0;
+
+  /// Prices now at the spots of the nodes of one solve, which rise; the contract's own spot only has a say in
+  /// how far they reach. Prices are as good as one grid makes them. Since V(c spot, c strike) = c V they are
+  /// those of other strikes as well.
+  virtual std::vector<ProfilePoint> profile(const Contract& contract) = 0;
+};
+
+/// Throws std::invalid_argument for settings out of range; the backend must be available.
+[[nodiscard]] std::unique_ptr<Pricer> create_pricer(device::Backend backend, const Settings& settings);
+
+}  // namespace drogue::options

@@ -1,0 +1,242 @@
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <compare>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "kernels/device/copy.hpp"
+#include "kernels/device/instance.hpp"
+#include "kernels/options/price_batch.hpp"
+
+namespace drogue::options {
+
+/// The pricer on `ExecutionSpace`.
+template <class ExecutionSpace>
+class PricerOn final : public Pricer {
+  using Space = typename ExecutionSpace::memory_space;
+  template <class T>
+  using View = Kokkos::View<T*, Space>;
+
+ public:
+  explicit PricerOn(const Settings& settings) : _settings(settings), _instance(1 << 20) {}
+
+  Timing price(std::span<const Contract> contracts, std::span<Price> prices) override {
+    if (contracts.size() != prices.size())
+      throw std::invalid_argument("options pricer: as many prices as contracts are needed");
+    Timing timing;
+    if (contracts.empty()) return timing;
+    const Clock setting_up;
+    reserve(contracts.size());
+    fetch_panels(contracts);
+    copy_in(_contracts, contracts.data(), contracts.size());
+    timing.h2d = setting_up.seconds();
+    const bool chosen = _settings.mesh == 0;
+    Effort first;
+    first.mesh = chosen ? first_mesh : _settings.mesh;
+    first.steps = steps_of(first.mesh, 1);
+    std::vector<Row> rows(contracts.size(), Row{first, 1, 0.0});
+    for (std::optional<Effort> effort = first; effort; effort = chosen ? least_effort(rows) : std::nullopt) {
+      const Clock computing;
+      for (int model = 0; model < models; ++model) {
+        std::vector<int> batch;
+        for (std::size_t k = 0; k < contracts.size(); ++k)
+          if (rows[k].next == *effort && static_cast<int>(contracts[k].model) == model)
+            batch.push_back(static_cast<int>(k));
+        launch(batch, *effort, Record{});
+      }
+      timing.compute += computing.seconds();
+      const Clock copying;
+      copy_bytes(_instance.space(), device::copy_way<ExecutionSpace, Kokkos::HostSpace, Space>(),
+                 prices.data(), _prices.data(), prices.size() * sizeof(Price));
+      _instance.space().fence("drogue::options: prices are there");
+      timing.d2h += copying.seconds();
+      for (std::size_t k = 0; k < contracts.size(); ++k)
+        if (rows[k].next == *effort) advance(rows[k], prices[k], _settings.tolerance * contracts[k].strike);
+    }
+    return timing;
+  }
+
+  std::vector<BoundaryPoint> boundary(const Contract& contract) override {
+    const Recorded all = record(contract);
+    std::vector<BoundaryPoint> points;
+    for (std::size_t k = all.time.size(); k-- > 0;)
+      if (std::isfinite(all.boundary[k]))
+        points.push_back({contract.maturity - all.time[k], spot_at(contract, all.boundary[k])});
+    return points;
+  }
+
+  std::vector<ProfilePoint> profile(const Contract& contract) override {
+    const Recorded all = record(contract);
+    std::vector<ProfilePoint> points;
+    for (std::size_t k = 0; k < all.x.size(); ++k) {
+      const double spot = spot_at(contract, all.x[k]);
+      points.push_back({spot, all.value[k] * (contract.type == Type::call ? spot : contract.strike)});
+    }
+    if (contract.type == Type::call) std::reverse(points.begin(), points.end());
+    return points;
+  }
+
+ private:
+  static constexpr int first_mesh = 64, last_mesh = 2048, record_mesh = 512, models = 4, most_often = 4;
+
+  struct Recorded {
+    std::vector<double> time, boundary, x, value;
+  };
+
+  /// The spot at ln(spot/strike) = x of the put that a contract is solved as.
+  [[nodiscard]] static double spot_at(const Contract& contract, double x) {
+    return contract.strike * std::exp(contract.type == Type::call ? -x : x);
+  }
+
+  /// Solves one contract and brings what a solve leaves to the host.
+  Recorded record(const Contract& contract) {
+    const std::span<const Contract> one(&contract, 1);
+    reserve(1);
+    fetch_panels(one);
+    copy_in(_contracts, &contract, 1);
+    const int mesh = _settings.mesh != 0 ? _settings.mesh : record_mesh;
+    const Effort effort{mesh, steps_of(mesh, 1)};
+    const auto steps = static_cast<std::size_t>(effort.steps), nodes = static_cast<std::size_t>(mesh) + 1;
+    const View<double> all("drogue::options::record", 2 * (steps + nodes));
+    double* const at = all.data();
+    launch({0}, effort, {at, at + steps, at + 2 * steps, at + 2 * steps + nodes});
+    std::vector<double> values(all.size());
+    copy_bytes(_instance.space(), device::copy_way<ExecutionSpace, Kokkos::HostSpace, Space>(), values.data(),
+               at, values.size() * sizeof(double));
+    _instance.space().fence("drogue::options: record is there");
+    auto part = [begin = values.cbegin()](std::size_t count) mutable {
+      const auto end = begin + static_cast<std::ptrdiff_t>(count);
+      return std::vector<double>(std::exchange(begin, end), end);
+    };
+    Recorded recorded;
+    recorded.time = part(steps);
+    recorded.boundary = part(steps);
+    recorded.x = part(nodes);
+    recorded.value = part(nodes);
+    return recorded;
+  }
+
+  class Clock {
+   public:
+    [[nodiscard]] double seconds() const {
+      return std::chrono::duration<double>(std::chrono::steady_clock::now() - _begin).count();
+    }
+
+   private:
+    std::chrono::steady_clock::time_point _begin = std::chrono::steady_clock::now();
+  };
+
+  [[nodiscard]] int steps_of(int mesh, int often) const {
+    return _settings.steps != 0 ? _settings.steps : mesh / 4 * often;
+  }
+
+  /// What a launch spends on each row.
+  struct Effort {
+    int mesh = 0, steps = 0;
+    friend auto operator<=>(const Effort&, const Effort&) = default;
+  };
+
+  /// How far a row has come whose tolerance decides.
+  struct Row {
+    Effort next;   ///< no mesh: it is priced
+    int often;     ///< steps, of a fourth of the mesh
+    double error;  ///< stated last
+  };
+
+  [[nodiscard]] static std::optional<Effort> least_effort(const std::vector<Row>& rows) {
+    std::optional<Effort> least;
+    for (const Row& row : rows)
+      if (row.next.mesh != 0 && (!least || row.next < *least)) least = row.next;
+    return least;
+  }
+
+  /// The error falls by at least 4 where mesh and steps double. Where it does not fall, more steps are tried
+  /// first: jumps of long maturities are stiff.
+  void advance(Row& row, const Price& price, double tolerance) const {
+    const int mesh = row.next.mesh;
+    row.next = {};
+    if (price.outcome == Outcome::ok) return;
+    const bool stuck = price.outcome == Outcome::failed || (row.error > 0.0 && price.error > 0.5 * row.error);
+    row.error = price.error;
+    int next = mesh;
+    if (stuck && row.often < most_often && _settings.steps == 0) {
+      row.often *= 4;
+    } else {
+      next *= 2;
+      if (price.outcome == Outcome::coarse)
+        for (double error = price.error / 16.0; error > tolerance && next < last_mesh; error /= 4.0)
+          next *= 2;
+    }
+    if (next <= last_mesh) row.next = {next, steps_of(next, row.often)};
+  }
+
+  void reserve(std::size_t count) {
+    if (_contracts.size() >= count) return;
+    _contracts =
+        View<Contract>(Kokkos::view_alloc("drogue::options::contracts", Kokkos::WithoutInitializing), count);
+    _prices = View<Price>(Kokkos::view_alloc("drogue::options::prices", Kokkos::WithoutInitializing), count);
+    _order = View<int>(Kokkos::view_alloc("drogue::options::order", Kokkos::WithoutInitializing), count);
+  }
+
+  template <class T>
+  void copy_in(const View<T>& to, const T* from, std::size_t count) {
+    copy_bytes(_instance.space(), device::copy_way<ExecutionSpace, Space, Kokkos::HostSpace>(), to.data(),
+               from, count * sizeof(T));
+    _instance.space().fence("drogue::options: input is copied");
+  }
+
+  /// Builds the series of those panels of orders that are new.
+  void fetch_panels(std::span<const Contract> contracts) {
+    bool found = false;
+    for (const Contract& contract : contracts) {
+      if (contract.model != Model::generalized_hyperbolic || contract.jump[3] == 0.0) continue;
+      const double order = std::fabs(contract.jump[0]);
+      if (!(order < HankelGrid::largest_order)) continue;
+      int& slot = _slots[static_cast<std::size_t>(panel_of(order))];
+      if (slot >= 0) continue;
+      slot = static_cast<int>(_series.size()) / HankelGrid::panel_size;
+      const std::vector<double> panel = hankel_panel(panel_of(order));
+      _series.insert(_series.end(), panel.begin(), panel.end());
+      found = true;
+    }
+    if (!found && _panel_slot.size() != 0) return;
+    _panels = View<double>("drogue::options::panels", _series.size());
+    _panel_slot = View<int>("drogue::options::panel slots", _slots.size());
+    copy_in(_panels, _series.data(), _series.size());
+    copy_in(_panel_slot, _slots.data(), _slots.size());
+  }
+
+  void launch(const std::vector<int>& rows, const Effort& effort, const Record& record) {
+    if (rows.empty()) return;
+    copy_in(_order, rows.data(), rows.size());
+    PriceBatch<ExecutionSpace> batch;
+    batch.contracts = _contracts;
+    batch.prices = _prices;
+    batch.order = _order;
+    batch.panels = _panels;
+    batch.panel_slot = _panel_slot;
+    batch.record = record;
+    batch.count = static_cast<int>(rows.size());
+    batch.mesh = effort.mesh;
+    batch.steps = effort.steps;
+    batch.tolerance = _settings.tolerance;
+    price_batch(_instance.space(), batch);
+    _instance.space().fence("drogue::options: priced");
+  }
+
+  Settings _settings;
+  device::Instance<ExecutionSpace> _instance;
+  View<Contract> _contracts;
+  View<Price> _prices;
+  View<int> _order, _panel_slot;
+  View<double> _panels;
+  std::vector<double> _series;
+  std::vector<int> _slots = std::vector<int>(HankelGrid::panels, -1);
+};
+
+}  // namespace drogue::options

@@ -1,0 +1,59 @@
+#pragma once
+
+#include "kernels/device/portable_math.hpp"
+#include "kernels/options/contract.hpp"
+
+namespace drogue::options {
+
+/// A put of strike 1 on the logarithm of the asset's price: what every contract is solved as.
+///
+/// A call is the put with spot and strike, and rate and dividend, exchanged under the measure whose jumps
+/// have the density e^{-y} g(-y) (Peskir and Shiryaev 2002; Fajardo and Mordecki 2006).
+struct Put {
+  Model model = Model::generalized_hyperbolic;
+  bool early = true;      ///< may be exercised early, and it may pay
+  bool split = false;     ///< where exercise pays is no half line: see `step`
+  double log_spot = 0.0;  ///< ln(spot/strike)
+  double rate = 0.0, dividend = 0.0, maturity = 0.0, variance = 0.0;
+  double jump[4] = {0.0, 0.0, 0.0, 0.0};
+};
+
+/// Parameters of the jumps that have the density e^{-y} g(-y).
+KOKKOS_INLINE_FUNCTION void mirror(Model model, double* jump) {
+  if (model == Model::generalized_hyperbolic) {
+    jump[2] = -jump[2] - 1.0;
+  } else if (model == Model::merton) {
+    const double variance = jump[2] * jump[2];
+    jump[0] *= device::portable::exp(jump[1] + 0.5 * variance);
+    jump[1] = -jump[1] - variance;
+  } else if (model == Model::kou) {
+    const double up = jump[1] * jump[2] / (jump[2] - 1.0), down = (1.0 - jump[1]) * jump[3] / (jump[3] + 1.0);
+    const double rate_up = jump[2];
+    jump[0] *= up + down;
+    jump[1] = down / (up + down);
+    jump[2] = jump[3] + 1.0;
+    jump[3] = rate_up - 1.0;
+  }
+}
+
+/// Early exercise of a put of strike 1 gains r - q e^x a year while x < 0. Without a region where that is
+/// positive it never pays; if r < 0 the region, if any, does not reach down to x = -inf.
+KOKKOS_INLINE_FUNCTION Put put_of(const Contract& contract) {
+  const bool call = contract.type == Type::call;
+  Put put;
+  put.model = contract.model;
+  put.rate = call ? contract.dividend : contract.rate;
+  put.dividend = call ? contract.rate : contract.dividend;
+  put.maturity = contract.maturity;
+  put.variance = contract.variance;
+  const double ratio = contract.spot / contract.strike;
+  put.log_spot = device::portable::log(call ? 1.0 / ratio : ratio);
+  for (int k = 0; k < 4; ++k) put.jump[k] = contract.jump[k];
+  if (call) mirror(put.model, put.jump);
+  const bool gains = put.rate > 0.0 || put.dividend < put.rate;
+  put.early = contract.style == Style::american && gains;
+  put.split = put.early && put.rate < 0.0;
+  return put;
+}
+
+}  // namespace drogue::options

@@ -1,0 +1,96 @@
+#include "kernels/reference/options/cos.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace drogue::reference {
+namespace {
+
+using Real = long double;
+using Complex = std::complex<Real>;
+constexpr Real pi = std::numbers::pi_v<Real>;
+
+Complex jump_exponent(const LevyAsset& a, Complex u) {
+  const Complex shifted = Real(a.beta) + Complex(0, 1) * u;
+  const Complex w = Real(a.alpha) * a.alpha - shifted * shifted;
+  const Real w0 = (Real(a.alpha) - a.beta) * (Real(a.alpha) + a.beta);
+  const Complex power = Real(a.lambda) / 2 * (std::log(w0) - std::log(w));
+  if (a.delta == 0.0) return Real(2) * power;
+  const Complex z = Real(a.delta) * std::sqrt(w);
+  const Real z0 = Real(a.delta) * std::sqrt(w0);
+  return power + std::log(scaled_bessel_k(a.lambda, z)) - z - std::log(scaled_bessel_k(a.lambda, z0)) + z0;
+}
+
+}  // namespace
+
+std::complex<long double> scaled_bessel_k(long double nu, std::complex<long double> z) {
+  const Real step = 1.0L / 64;
+  Complex sum = 0.5L;
+  for (int k = 1;; ++k) {
+    const Real t = step * static_cast<Real>(k);
+    const Complex term = std::exp(-z * (std::cosh(t) - 1)) * std::cosh(nu * t);
+    sum += term;
+    if (std::real(z) * (std::cosh(t) - 1) > 60 + std::abs(nu) * t) return step * sum;
+  }
+}
+
+std::complex<long double> characteristic_exponent(const LevyAsset& a, std::complex<long double> u) {
+  const Complex i(0, 1);
+  const Complex drift = Real(a.rate) - a.dividend - Real(a.variance) / 2 - jump_exponent(a, -i);
+  return i * u * drift - Real(a.variance) / 2 * u * u + jump_exponent(a, u);
+}
+
+std::vector<double> bermudan_put(const LevyAsset& asset, double maturity, int dates, double low, double width,
+                                 int terms, int nodes, const std::vector<double>& x) {
+  const Real dt = Real(maturity) / dates;
+  std::vector<Complex> growth;
+  for (int k = 0; k < terms; ++k)
+    growth.push_back(std::exp(dt * (characteristic_exponent(asset, pi * k / width) - Real(asset.rate))));
+  std::vector<Real> cosine(4 * static_cast<std::size_t>(nodes));
+  for (std::size_t k = 0; k < cosine.size(); ++k)
+    cosine[k] = std::cos(pi * static_cast<Real>(k) / (2 * nodes));
+  const auto cos_at = [&](int k, int m) {  // cos(k pi (m + 1/2) / nodes)
+    return cosine[static_cast<std::size_t>(k) * (2 * static_cast<std::size_t>(m) + 1) % cosine.size()];
+  };
+  const auto sin_at = [&](int k, int m) {  // a quarter of a turn behind
+    const std::size_t turn = cosine.size();
+    return cosine[(static_cast<std::size_t>(k) * (2 * static_cast<std::size_t>(m) + 1) + turn -
+                   static_cast<std::size_t>(nodes)) %
+                  turn];
+  };
+  std::vector<Real> value(static_cast<std::size_t>(nodes));
+  const auto payoff = [&](int m) {
+    return std::max(1 - std::exp(Real(low) + Real(width) * (m + 0.5L) / nodes), Real(0));
+  };
+  for (int m = 0; m < nodes; ++m) value[static_cast<std::size_t>(m)] = payoff(m);
+  std::vector<Real> coefficient(static_cast<std::size_t>(terms));
+  for (int date = dates; date > 0; --date) {
+    for (int k = 0; k < terms; ++k) {
+      Real sum = 0;
+      for (int m = 0; m < nodes; ++m) sum += value[static_cast<std::size_t>(m)] * cos_at(k, m);
+      coefficient[static_cast<std::size_t>(k)] = sum * (k == 0 ? 1 : 2) / nodes;
+    }
+    if (date == 1) break;
+    for (int m = 0; m < nodes; ++m) {
+      Real wait = 0;
+      for (int k = 0; k < terms; ++k)
+        wait += coefficient[static_cast<std::size_t>(k)] *
+                (std::real(growth[static_cast<std::size_t>(k)]) * cos_at(k, m) -
+                 std::imag(growth[static_cast<std::size_t>(k)]) * sin_at(k, m));
+      value[static_cast<std::size_t>(m)] = std::max(wait, payoff(m));
+    }
+  }
+  std::vector<double> values;
+  for (const double at : x) {
+    Real sum = 0;
+    for (int k = 0; k < terms; ++k)
+      sum += coefficient[static_cast<std::size_t>(k)] *
+             std::real(growth[static_cast<std::size_t>(k)] *
+                       std::exp(Complex(0, pi * k * (Real(at) - low) / width)));
+    values.push_back(static_cast<double>(sum));
+  }
+  return values;
+}
+
+}  // namespace drogue::reference

@@ -1,0 +1,193 @@
+#include "miniapps/options/app.hpp"
+
+#include <chrono>
+#include <cstdio>
+#include <iostream>
+#include <optional>
+#include <stdexcept>
+
+#include "common/csv/header.hpp"
+#include "common/program/mpi_guard.hpp"
+#include "common/program/program.hpp"
+#include "common/program/provenance.hpp"
+#include "common/program/signals.hpp"
+#include "common/run/result_document.hpp"
+#include "kernels/device/ledger.hpp"
+#include "kernels/device/runtime.hpp"
+#include "miniapps/options/batch_run.hpp"
+#include "miniapps/options/batches.hpp"
+
+namespace drogue::options_app {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+device::Backend choose_backend(const std::string& wanted) {
+  const device::Backend backend =
+      wanted == "auto" ? device::fastest_backend() : device::backend_from_name(wanted).value();
+  if (const auto reason = device::why_unavailable(backend)) throw Failure(ExitCode::no_backend, *reason);
+  return backend;
+}
+
+std::unique_ptr<device::Runtime> start_kokkos(const std::vector<std::string>& arguments) {
+  try {
+    return std::make_unique<device::Runtime>(arguments);
+  } catch (const std::invalid_argument& refused) {
+    throw Failure(ExitCode::usage, refused.what());
+  }
+}
+
+std::unique_ptr<options::Pricer> make_pricer(device::Backend backend, const options::Settings& settings) {
+  try {
+    return options::create_pricer(backend, settings);
+  } catch (const std::invalid_argument& refused) {
+    throw Failure(ExitCode::usage, refused.what());
+  }
+}
+
+void describe_device(run::ResultDocument& result, device::Backend backend) {
+  const device::DeviceFacts facts = device::device_facts();
+  result.backend = std::string(device::name(backend));
+  result.threads = backend == device::Backend::openmp ? facts.threads : 1;
+  result.device = backend == device::Backend::cuda ? facts.gpu : result.provenance.cpu;
+  result.provenance.kokkos = facts.kokkos_version;
+  result.provenance.gpu = facts.gpu;
+  result.provenance.driver = facts.driver;
+}
+
+/// Outputs replace what has their names: that must not be the input, another output, or a device.
+void check_outputs(const Command& command, const std::filesystem::path& input) {
+  std::vector<std::filesystem::path> taken = {input};
+  for (const std::filesystem::path* path : {&command.out, &command.result, &command.boundary}) {
+    if (path->empty()) continue;
+    std::error_code error;
+    if (std::filesystem::exists(*path, error) && !std::filesystem::is_regular_file(*path, error))
+      throw Failure(ExitCode::usage, "'" + path->string() + "' is no regular file: name another output");
+    for (const std::filesystem::path& other : taken)
+      if (std::filesystem::weakly_canonical(*path, error) ==
+              std::filesystem::weakly_canonical(other, error) ||
+          std::filesystem::equivalent(*path, other, error))
+        throw Failure(ExitCode::usage,
+                      "'" + path->string() + "' is read or written already: name another output");
+    taken.push_back(*path);
+  }
+}
+
+void print_summary(const Command& command, const run::ResultDocument& result, const Tally& tally) {
+  const auto ok = tally.rows - tally.coarse - tally.invalid - tally.failed;
+  const auto count = [](std::int64_t rows) { return static_cast<long long>(rows); };
+  std::printf("%s on %s: %lld rows in %.3g s: %lld ok, %lld coarse, %lld invalid, %lld failed\n",
+              result.scene.c_str(), result.backend.c_str(), count(tally.rows), result.timing.wall_s,
+              count(ok), count(tally.coarse), count(tally.invalid), count(tally.failed));
+  std::printf("prices in %s\n", command.out.string().c_str());
+  if (!command.boundary.empty()) std::printf("boundaries in %s\n", command.boundary.string().c_str());
+}
+
+/// What the exit code says of rows that did not end well.
+void blame_rows(const Tally& tally, const BatchReader& reader, const std::filesystem::path& out) {
+  const std::string rest = "; every other row is priced in '" + out.string() + "'";
+  const auto of_all = [&](std::int64_t rows) {
+    return std::to_string(rows) + " of " + std::to_string(tally.rows) + " rows ";
+  };
+  if (tally.failed > 0)
+    throw Failure(ExitCode::numerical_failure, of_all(tally.failed) + "failed, the first in line " +
+                                                   std::to_string(tally.failed_line) + rest);
+  if (tally.invalid > 0)
+    throw csv::invalid_at(reader.file(), tally.invalid_line,
+                          tally.invalid_fault + " (" + of_all(tally.invalid) + "invalid" + rest + ")");
+}
+
+void count_rows(const Tally& tally, run::ResultDocument& result) {
+  result.counts = {{"rows", tally.rows},
+                   {"ok", tally.rows - tally.coarse - tally.invalid - tally.failed},
+                   {"coarse", tally.coarse},
+                   {"invalid", tally.invalid},
+                   {"failed", tally.failed}};
+}
+
+void read_ledger(run::ResultDocument& result) {
+  const device::Ledger ledger = device::ledger();
+  result.ledger = {ledger.kernel_launches, ledger.fences, ledger.allocations_after_warmup, ledger.h2d_bytes,
+                   ledger.d2h_bytes};
+  result.peak_bytes.device = ledger.peak_device_bytes;
+}
+
+/// Reads, prices, writes. `result` is filled also where rows did not end well, which is thrown.
+ExitCode price_batch(const Command& command, const std::filesystem::path& input,
+                     run::ResultDocument& result) {
+  const auto begin = Clock::now();
+  const RowKind kind = command.action == Action::price ? RowKind::contract : RowKind::parameter_set;
+  const auto since = [&begin] { return std::chrono::duration<double>(Clock::now() - begin).count(); };
+  BatchReader reader(input, kind);
+  if (reader.has_ids()) BatchReader(input, kind).require_unique_ids();
+  const device::Backend backend = choose_backend(command.backend);
+  PriceWriter writer(command.out, {command.action == Action::surface, command.settings.greeks});
+  const auto runtime = start_kokkos(command.kokkos);
+  device::start_ledger();
+  describe_device(result, backend);
+  const auto pricer = make_pricer(backend, command.settings);
+  result.timing.setup_s = since();
+  std::optional<BoundaryWriter> boundaries;
+  if (!command.boundary.empty()) boundaries.emplace(command.boundary);
+  BatchRun run(command, reader, writer, boundaries, *pricer);
+  const ExitCode code = run.run(result.timing);
+  result.timing.wall_s = since();
+  read_ledger(result);
+  count_rows(writer.tally(), result);
+  if (code == ExitCode::interrupted) {
+    result.message = "interrupted by a signal; nothing is written to '" + command.out.string() + "'";
+    return code;
+  }
+  if (!command.quiet) print_summary(command, result, writer.tally());
+  blame_rows(writer.tally(), reader, command.out);
+  return code;
+}
+
+/// One batch, whose --result tells how it ended, whatever happened.
+ExitCode run_batch(const Command& command) {
+  const std::filesystem::path input = find_batch(command.input);
+  check_outputs(command, input);
+  run::ResultDocument result = run::new_result("drogue-options", input.stem().string());
+  const auto write_result = [&] {
+    if (!command.result.empty()) run::write_result(command.result, result);
+  };
+  try {
+    result.exit_code = price_batch(command, input, result);
+  } catch (...) {
+    const Failure failure = current_failure();
+    result.exit_code = failure.code();
+    result.message = failure.what();
+    try {
+      write_result();
+    } catch (const Failure& second) {
+      throw Failure(failure.code(), std::string(failure.what()) + "; and " + second.what());
+    }
+    throw failure;
+  }
+  write_result();
+  return result.exit_code;
+}
+
+}  // namespace
+
+ExitCode run_app(const Command& command) {
+  switch (command.action) {
+    case Action::help:
+      std::cout << command.help;
+      return ExitCode::ok;
+    case Action::version:
+      std::cout << version_text("drogue-options");
+      return ExitCode::ok;
+    case Action::list_batches:
+      std::cout << batch_list();
+      return ExitCode::ok;
+    case Action::price:
+    case Action::surface:
+      break;
+  }
+  require_one_rank("drogue-options");
+  install_signal_handlers();
+  return run_batch(command);
+}
+
+}  // namespace drogue::options_app

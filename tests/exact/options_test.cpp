@@ -1,0 +1,78 @@
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "kernels/device/runtime.hpp"
+#include "kernels/options/pricer.hpp"
+#include "tests/support/cuda_device.hpp"
+#include "tests/support/option_sets.hpp"
+
+// Every backend and every number of threads gives the same bits. Kokkos starts once a process, so each run is
+// a child of its own that leaves its bytes in a file.
+
+namespace drogue {
+namespace {
+
+using testing::in_child;
+
+/// What a pricer says of all contracts, without the padding between.
+std::string price_bytes(device::Backend backend, const options::Settings& settings,
+                        const std::vector<options::Contract>& contracts) {
+  std::vector<options::Price> prices(contracts.size());
+  options::create_pricer(backend, settings)->price(contracts, prices);
+  std::string bytes;
+  for (const options::Price& p : prices) {
+    for (const double value : {p.price, p.error, p.delta, p.gamma, p.theta, p.exercise_boundary})
+      bytes.append(reinterpret_cast<const char*>(&value), sizeof(value));  // NOLINT: bits are compared
+    bytes += std::to_string(p.mesh) + "," + std::to_string(static_cast<int>(p.outcome)) + ";";
+  }
+  return bytes;
+}
+
+void expect_same_prices(const options::Settings& settings, const std::vector<options::Contract>& contracts) {
+  std::string serial;
+  for (const device::Backend backend : device::compiled_backends()) {
+    if (!testing::runs_in_child(backend)) continue;
+    for (const int threads : {1, 2, 4}) {
+      if (threads > 1 && backend != device::Backend::openmp) continue;
+      const std::string bytes = in_child([&] {
+        const device::Runtime runtime({"--kokkos-num-threads=" + std::to_string(threads)});
+        return price_bytes(backend, settings, contracts);
+      });
+      EXPECT_GT(bytes.size(), 48 * contracts.size());
+      if (serial.empty()) serial = bytes;
+      EXPECT_TRUE(bytes == serial) << device::name(backend) << " with " << threads << " threads";
+    }
+  }
+}
+
+std::vector<options::Contract> of_all_models() {
+  auto contracts = testing::random_contracts(25, 8);
+  for (std::size_t k = 0; k < 6; ++k) {
+    options::Contract& c = contracts[4 * k];
+    c.model = k < 2 ? options::Model::kou : k < 4 ? options::Model::merton : options::Model::black_scholes;
+    const double jump[4] = {0.4, 0.3, k < 2 ? 6.0 : 0.2, 4.0};
+    for (int m = 0; m < 4; ++m) c.jump[m] = jump[m];
+  }
+  contracts[1].rate = -0.04;  // exercise between two boundaries
+  contracts[1].dividend = -0.08;
+  contracts[1].type = options::Type::put;
+  contracts[1].style = options::Style::american;
+  return contracts;
+}
+
+TEST(OptionsExact, FixedMesh) {
+  options::Settings settings;
+  settings.mesh = 96;
+  settings.steps = 24;
+  expect_same_prices(settings, of_all_models());
+}
+
+TEST(OptionsExact, MeshChosenByTolerance) {
+  options::Settings settings;
+  settings.tolerance = 3e-5;
+  expect_same_prices(settings, of_all_models());
+}
+
+}  // namespace
+}  // namespace drogue

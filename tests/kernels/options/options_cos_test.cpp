@@ -1,0 +1,160 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "kernels/options/cos_american.hpp"
+#include "kernels/options/cos_pricer.hpp"
+#include "kernels/reference/options/cos.hpp"
+#include "tests/support/option_sets.hpp"
+
+// The Bermudan solver against a plain oracle, and American prices against the reference.
+
+namespace drogue::options {
+namespace {
+
+constexpr auto backend = device::Backend::DROGUE_TEST_BACKEND;
+
+std::vector<Price> cos_prices(const std::vector<Contract>& contracts, double tolerance) {
+  Settings settings;
+  settings.method = Method::cos;
+  settings.tolerance = tolerance;
+  settings.greeks = true;
+  std::vector<Price> prices(contracts.size());
+  create_cos_pricer(backend, settings)->price(contracts, prices);
+  return prices;
+}
+
+/// Values of waiting by the kernel and by the oracle, on the same interval with the same dates.
+TEST(OptionsBermudan, EqualsTheOracle) {
+  const int dates = 4;
+  const auto solver = create_bermudan_solver(backend);
+  for (const std::size_t which : {0, 5}) {
+    const auto& set = testing::option_sets()[which];
+    for (const double spot : {0.6, 0.95, 1.2}) {
+      Contract c = testing::contract_of(set, 0, Style::american);
+      c.spot = spot;
+      AmericanPut put(c);
+      put.prepare(c.maturity, dates);
+      std::vector<BermudanPut> puts = {put.puts[0]};
+      std::vector<BermudanValue> values(1);
+      solver->solve(puts, put.psi_re, put.psi_im, values);
+      const std::vector<double> truth = reference::bermudan_put(
+          {c.rate, 0.0, c.variance, set.lambda, set.alpha, set.beta, set.delta}, c.maturity, dates,
+          puts[0].low, puts[0].width, 160, 12000, {puts[0].x, puts[0].x + 1e-3, puts[0].x - 1e-3});
+      EXPECT_NEAR(values[0].value, truth[0], 1e-6) << set.name << ' ' << spot;
+      EXPECT_NEAR(values[0].slope, (truth[1] - truth[2]) / 2e-3, 1e-5);
+      EXPECT_NEAR(values[0].curvature, (truth[1] - 2.0 * truth[0] + truth[2]) / 1e-6, 1e-4);
+    }
+  }
+}
+
+TEST(OptionsCos, AmericanPricesEqualTheReference) {
+  for (const auto& set : testing::option_sets()) {
+    std::vector<Contract> contracts;
+    for (std::size_t spot = 0; spot < 7; spot += 3)
+      contracts.push_back(testing::contract_of(set, spot, Style::american));
+    const std::vector<Price> prices = cos_prices(contracts, 1e-3);
+    for (std::size_t k = 0; k < prices.size(); ++k) {
+      const double error = std::abs(prices[k].price - set.american[3 * k]);
+      EXPECT_LE(error, 1e-3) << set.name << ' ' << contracts[k].spot;
+      EXPECT_LE(error, prices[k].error + 1e-7) << set.name << ' ' << contracts[k].spot;
+    }
+  }
+}
+
+/// More dates where they are asked for, less error.
+TEST(OptionsCos, ReachesItsTolerance) {
+  const auto& set = testing::option_sets()[0];
+  const std::vector<Contract> contracts = {testing::contract_of(set, 3, Style::american)};
+  const Price coarse = cos_prices(contracts, 1e-3)[0], fine = cos_prices(contracts, 1e-5)[0];
+  EXPECT_GT(fine.steps, coarse.steps);
+  EXPECT_LT(fine.error, 1e-5);
+  EXPECT_NEAR(fine.price, set.american[3], 1e-5);
+}
+
+/// C(S, K, r, q, beta) = P(K, S, q, r, -beta - 1), Greeks included.
+TEST(OptionsCos, CallsArePutsOfTheOtherSide) {
+  Contract call;
+  call.type = Type::call;
+  call.spot = 0.9, call.strike = 1.1, call.rate = 0.03, call.dividend = 0.06, call.variance = 0.03;
+  call.jump[0] = -0.5, call.jump[1] = 9.0, call.jump[2] = -3.0, call.jump[3] = 0.3;
+  Contract put = call;
+  put.type = Type::put;
+  std::swap(put.spot, put.strike);
+  std::swap(put.rate, put.dividend);
+  put.jump[2] = -call.jump[2] - 1.0;
+  Contract up = call, down = call;
+  const double h = 1e-3;
+  up.spot += h, down.spot -= h;
+  const std::vector<Price> prices = cos_prices({call, put, up, down}, 1e-4);
+  EXPECT_NEAR(prices[0].price, prices[1].price, 1e-12);
+  EXPECT_NEAR(prices[0].delta, (prices[2].price - prices[3].price) / (2.0 * h), 1e-4);
+  EXPECT_NEAR(prices[0].gamma, (prices[2].price - 2.0 * prices[0].price + prices[3].price) / (h * h), 1e-2);
+}
+
+TEST(OptionsCos, WaitsWhereWaitingIsRight) {
+  Contract american = testing::contract_of(testing::option_sets()[0], 3, Style::american);
+  american.type = Type::call;
+  Contract european = american;
+  european.style = Style::european;
+  Contract negative = american;
+  negative.type = Type::put, negative.rate = -0.02;
+  Contract both = negative;
+  both.style = Style::european;
+  const std::vector<Price> prices = cos_prices({american, european, negative, both}, 1e-4);
+  EXPECT_EQ(prices[0].price, prices[1].price);
+  EXPECT_EQ(prices[2].price, prices[3].price);
+}
+
+/// With q < r < 0 exercise is right between two spots; beyond both one waits.
+TEST(OptionsCos, KnowsABoundaryOnBothSides) {
+  Contract c = testing::contract_of(testing::option_sets()[1], 3, Style::american);
+  c.rate = -0.02, c.dividend = -0.08, c.variance = 0.02;
+  std::vector<Contract> contracts;
+  for (const double spot : {0.02, 0.7, 1.0}) {
+    c.spot = spot;
+    contracts.push_back(c);
+    contracts.back().style = Style::european;
+    contracts.push_back(c);
+  }
+  const std::vector<Price> prices = cos_prices(contracts, 1e-3);
+  for (std::size_t k = 0; k < prices.size(); k += 2) {
+    EXPECT_GE(prices[k + 1].price, prices[k].price - 1e-9);
+    EXPECT_GE(prices[k + 1].price, 1.0 - contracts[k].spot - 1e-12);
+  }
+  EXPECT_GT(prices[1].price, 1.0 - 0.02 + 1e-3);  // deep in the money one waits
+}
+
+TEST(OptionsCos, SaysWhatItDoesNotReach) {
+  // The left tail of these jumps falls as e^(-0.001 |x|): no interval holds it.
+  Contract heavy = testing::contract_of(testing::option_sets()[0], 3, Style::american);
+  heavy.jump[2] = 0.001 - heavy.jump[1];
+  const Price price = cos_prices({heavy}, 1e-4)[0];
+  EXPECT_EQ(price.outcome, Outcome::coarse);
+  EXPECT_GT(price.error, 0.05);
+}
+
+/// A contract's bits do not depend on its neighbours.
+TEST(OptionsCos, BatchesAreNoMoreThanTheirContracts) {
+  std::vector<Contract> contracts;
+  for (std::size_t spot = 0; spot < 7; spot += 2)
+    for (const std::size_t set : {0, 3})
+      contracts.push_back(testing::contract_of(testing::option_sets()[set], spot, Style::american));
+  const std::vector<Price> together = cos_prices(contracts, 1e-3);
+  for (std::size_t k = 0; k < contracts.size(); k += 3)
+    EXPECT_EQ(together[k].price, cos_prices({contracts[k]}, 1e-3)[0].price);
+}
+
+TEST(OptionsCos, RefusesAMesh) {
+  Settings settings;
+  settings.mesh = 128;
+  EXPECT_THROW((void)create_cos_pricer(backend, settings), std::invalid_argument);
+  settings = {};
+  settings.tolerance = 0.0;
+  EXPECT_THROW((void)create_cos_pricer(backend, settings), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace drogue::options

@@ -1,0 +1,108 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "kernels/options/hankel_table.hpp"
+#include "kernels/options/pricer.hpp"
+#include "kernels/reference/options/levy.hpp"
+#include "kernels/reference/options/scheme.hpp"
+#include "tests/support/option_sets.hpp"
+
+// The values of all nodes against a plain serial solve with weights from the printed density.
+
+namespace drogue::options {
+namespace {
+
+constexpr auto backend = device::Backend::DROGUE_TEST_BACKEND;
+
+/// The jumps of a put on a grid, by adaptive integrals of the density.
+reference::JumpTable table_of(const reference::Hyperbolic& law, double variance, int mesh, double h) {
+  reference::JumpTable table;
+  table.up.resize(static_cast<std::size_t>(mesh) + 1);
+  table.down = table.up;
+  const double length = mesh * h;
+  table.variance_left = variance + reference::levy_variance(law) - reference::levy_tail_variance(law, length);
+  for (int d = 1; d <= mesh; ++d) {
+    const double y = d * h, part = d == 1 || d == mesh ? 0.5 * h : h;
+    const double up = part * reference::levy_density(law, y), down = part * reference::levy_density(law, -y);
+    table.up[static_cast<std::size_t>(d)] = up;
+    table.down[static_cast<std::size_t>(d)] = down;
+    table.variance_left -= (up + down) * y * y;
+  }
+  table.beyond_up = reference::levy_tail(law, length, 1, 0);
+  table.beyond_down = reference::levy_tail(law, length, -1, 0);
+  table.beyond_up_price = reference::levy_tail(law, length, 1, 1);
+  table.beyond_down_price = reference::levy_tail(law, length, -1, 1);
+  return table;
+}
+
+/// The largest difference of a node's value, of the strike.
+double difference(const Contract& c, int mesh, int steps) {
+  Settings settings;
+  settings.mesh = mesh;
+  settings.steps = steps;
+  std::vector<ProfilePoint> profile = create_pricer(backend, settings)->profile(c);
+  const bool call = c.type == Type::call;
+  reference::PutProblem problem{};
+  problem.rate = call ? c.dividend : c.rate;
+  problem.dividend = call ? c.rate : c.dividend;
+  problem.maturity = c.maturity;
+  problem.american = c.style == Style::american;
+  problem.mesh = mesh;
+  problem.steps = steps;
+  if (call) std::reverse(profile.begin(), profile.end());
+  const auto x = [&](std::size_t k) { return std::log(profile[k].spot / c.strike) * (call ? -1.0 : 1.0); };
+  problem.h = (x(static_cast<std::size_t>(mesh)) - x(0)) / mesh;
+  problem.strike = static_cast<int>(std::lround(-x(0) / problem.h));
+  const reference::Hyperbolic law{c.jump[0], c.jump[1], call ? -c.jump[2] - 1.0 : c.jump[2], c.jump[3]};
+  const std::vector<double> expected = solve_put(problem, table_of(law, c.variance, mesh, problem.h));
+  double worst = 0.0;
+  for (std::size_t k = 0; k + 1 < profile.size(); ++k) {
+    const double unit = call ? profile[k].spot : c.strike;
+    worst = std::max(worst, std::abs(profile[k].price / unit - expected[k]));
+  }
+  return worst;
+}
+
+TEST(OptionsOracle, NodesOfRandomContracts) {
+  for (const Contract& c : testing::random_contracts(12, 5))
+    EXPECT_LT(difference(c, 48, 12), 1e-7) << "lambda " << c.jump[0] << " alpha " << c.jump[1] << " beta "
+                                           << c.jump[2] << " delta " << c.jump[3];
+}
+
+// Stiff jumps bring the implicit diffusion into play; a high rate cuts the grid at the boundary.
+TEST(OptionsOracle, NodesOfStiffAndPureJumps) {
+  Contract c;
+  c.rate = 0.2;
+  c.maturity = 3.0;
+  const double rows[4][4] = {
+      {-0.5, 15.0, -5.0, 0.5}, {2.0, 11.0, -5.0, 0.0}, {5.0, 18.0, -2.0, 0.8}, {-1.2, 3.0, -1.5, 0.4}};
+  for (const auto& row : rows) {
+    for (int k = 0; k < 4; ++k) c.jump[k] = row[k];
+    EXPECT_LT(difference(c, 64, 16), 1e-6) << row[0];
+  }
+}
+
+double table_density(double order, int node) {
+  const std::vector<double> panel = hankel_panel(panel_of(order));
+  const double begin = panel_begin(panel_of(order)), end = panel_end(panel_of(order));
+  const double angle = std::acos((2.0 * order - begin - end) / (end - begin));
+  double sum = 0.0;
+  for (int k = 0; k < HankelGrid::terms; ++k)
+    sum += panel[static_cast<std::size_t>(node * HankelGrid::terms + k)] * std::cos(k * angle);
+  return std::exp(sum);
+}
+
+TEST(OptionsOracle, SpectralDensityIsThatOfBesselFunctions) {
+  for (const double order : {0.0, 0.01, 0.3, 0.5, 0.77, 1.0, 1.6, 4.9})
+    for (int node = 40; node < HankelGrid::count; node += 5) {
+      const double z = std::exp((HankelGrid::first + node) * HankelGrid::step);
+      const double j = std::cyl_bessel_j(order, z), y = std::cyl_neumann(order, z);
+      const double expected = order == 0.5 ? z : 2.0 / (3.141592653589793 * (j * j + y * y));
+      if (z > 900.0 && order != 0.5) continue;  // where the standard library takes few terms
+      EXPECT_NEAR(table_density(order, node) / expected, 1.0, 2e-8) << order << ", z = " << z;
+    }
+}
+
+}  // namespace
+}  // namespace drogue::options

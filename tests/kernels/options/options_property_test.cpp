@@ -1,0 +1,205 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <stdexcept>
+
+#include "kernels/options/pricer.hpp"
+#include "tests/support/option_sets.hpp"
+
+// What holds for every price, whatever it is.
+
+namespace drogue::options {
+namespace {
+
+using testing::option_sets;
+using testing::random_contracts;
+
+constexpr auto backend = device::Backend::DROGUE_TEST_BACKEND;
+
+Settings on_mesh(int mesh, int steps) {
+  Settings settings;
+  settings.mesh = mesh;
+  settings.steps = steps;
+  return settings;
+}
+
+std::vector<Price> priced(const Settings& settings, const std::vector<Contract>& contracts) {
+  std::vector<Price> prices(contracts.size());
+  create_pricer(backend, settings)->price(contracts, prices);
+  return prices;
+}
+
+double payoff(const Contract& c) {
+  return std::max(0.0, c.type == Type::put ? c.strike - c.spot : c.spot - c.strike);
+}
+
+template <class Change>
+std::vector<Contract> changed(std::vector<Contract> contracts, const Change& change) {
+  for (Contract& c : contracts) change(c);
+  return contracts;
+}
+
+TEST(OptionsProperty, PutCallParityAndEarlyExercise) {
+  auto contracts = random_contracts(40, 1);
+  const auto all = [&](Style style, Type type) {
+    return priced(on_mesh(128, 32), changed(contracts, [=](Contract& c) { c.style = style, c.type = type; }));
+  };
+  const auto put = all(Style::european, Type::put), call = all(Style::european, Type::call);
+  const auto early = all(Style::american, Type::put), early_call = all(Style::american, Type::call);
+  for (std::size_t k = 0; k < contracts.size(); ++k) {
+    const Contract& c = contracts[k];
+    const double forward =
+        c.spot * std::exp(-c.dividend * c.maturity) - c.strike * std::exp(-c.rate * c.maturity);
+    const double room = put[k].error + call[k].error;
+    EXPECT_NEAR(call[k].price - put[k].price, forward, room) << k;
+    EXPECT_GE(early[k].price, put[k].price - room) << k;
+    EXPECT_GE(early_call[k].price, call[k].price - room) << k;
+    EXPECT_GE(early[k].price, std::max(0.0, c.strike - c.spot)) << k;
+    EXPECT_LE(early[k].price, c.strike) << k;
+    EXPECT_LE(early_call[k].price, c.spot) << k;
+    if (c.dividend == 0.0) {
+      EXPECT_NEAR(early_call[k].price, call[k].price, room) << k;
+    }
+  }
+}
+
+TEST(OptionsProperty, ACallIsThePutOfTheOtherMeasure) {
+  const auto contracts = random_contracts(16, 2);
+  const auto mirrored = changed(contracts, [](Contract& c) {
+    c.type = c.type == Type::put ? Type::call : Type::put;
+    std::swap(c.spot, c.strike);
+    std::swap(c.rate, c.dividend);
+    c.jump[2] = -c.jump[2] - 1.0;
+  });
+  const auto one = priced(on_mesh(64, 16), contracts), other = priced(on_mesh(64, 16), mirrored);
+  for (std::size_t k = 0; k < one.size(); ++k)
+    EXPECT_NEAR(one[k].price, other[k].price, 1e-10 * contracts[k].strike) << k;
+}
+
+TEST(OptionsProperty, PricesScaleWithMoney) {
+  const auto contracts = random_contracts(16, 3);
+  const auto dear = changed(contracts, [](Contract& c) { c.spot *= 37.0, c.strike *= 37.0; });
+  const auto one = priced(on_mesh(64, 16), contracts), other = priced(on_mesh(64, 16), dear);
+  for (std::size_t k = 0; k < one.size(); ++k) {
+    EXPECT_NEAR(37.0 * one[k].price, other[k].price, 1e-10 * dear[k].strike) << k;
+    EXPECT_NEAR(one[k].delta, other[k].delta, 1e-8) << k;
+  }
+}
+
+TEST(OptionsProperty, ThePlaceInABatchChangesNoBit) {
+  auto contracts = random_contracts(11, 4);
+  contracts[3].model = Model::black_scholes;
+  Settings settings;
+  settings.tolerance = 1e-4;
+  const auto together = priced(settings, contracts);
+  std::reverse(contracts.begin(), contracts.end());
+  contracts.resize(9);
+  const auto fewer = priced(settings, contracts);
+  for (std::size_t k = 0; k < fewer.size(); ++k)
+    EXPECT_EQ(std::memcmp(&fewer[k].price, &together[together.size() - 1 - k].price, sizeof(double)), 0) << k;
+  EXPECT_EQ(priced(settings, {contracts[4]})[0].price, fewer[4].price);
+}
+
+/// Lagrange's cubic through the four nodes about a spot, in its logarithm.
+double value_at(const std::vector<ProfilePoint>& profile, double spot) {
+  std::size_t k = 1;
+  while (profile[k + 1].spot <= spot) ++k;
+  const double t = std::log(spot / profile[k].spot) / std::log(profile[k + 1].spot / profile[k].spot);
+  return -t * (t - 1) * (t - 2) / 6 * profile[k - 1].price +
+         (t + 1) * (t - 1) * (t - 2) / 2 * profile[k].price -
+         (t + 1) * t * (t - 2) / 2 * profile[k + 1].price + (t + 1) * t * (t - 1) / 6 * profile[k + 2].price;
+}
+
+/// The largest error of one grid at a set's spots that are not exercised, and the grid's step.
+struct GridError {
+  double worst, h;
+};
+
+GridError grid_error(const testing::OptionSet& set, int mesh, int steps) {
+  const auto profile =
+      create_pricer(backend, on_mesh(mesh, steps))->profile(contract_of(set, 3, Style::american));
+  double worst = 0.0;
+  for (std::size_t k = 2; k < 6; ++k)
+    worst = std::max(worst, std::abs(value_at(profile, set.spot[k]) - set.american[k]));
+  return {worst, std::log(profile[1].spot / profile[0].spot)};
+}
+
+// Grids of four times the nodes reach a little farther, so their steps are not a fourth.
+TEST(OptionsProperty, SecondOrder) {
+  for (const testing::OptionSet& set : option_sets()) {
+    const GridError coarse = grid_error(set, 96, 48), fine = grid_error(set, 384, 192);
+    const double order = std::log(coarse.worst / fine.worst) / std::log(coarse.h / fine.h);
+    EXPECT_GT(order, 1.7) << set.name << ", " << coarse.worst << " to " << fine.worst;
+    EXPECT_LT(order, 2.6) << set.name << ", " << coarse.worst << " to " << fine.worst;
+  }
+}
+
+TEST(OptionsProperty, LimitsAreSmooth) {
+  Contract c;
+  c.rate = 0.05;
+  c.variance = 0.02;
+  const auto price = [&](double lambda, double alpha, double beta, double delta) {
+    const double jump[4] = {lambda, alpha, beta, delta};
+    std::copy(jump, jump + 4, c.jump);
+    return priced(on_mesh(128, 32), {c})[0].price;
+  };
+  // Orders about those where the panels of the table meet, and towards variance gamma.
+  for (const double order : {-0.5, 0.0625, 0.5, 1.0, -2.0})
+    EXPECT_NEAR(price(order - 1e-9, 9.0, -3.0, 0.4), price(order + 1e-9, 9.0, -3.0, 0.4), 1e-7) << order;
+  EXPECT_NEAR(price(1.5, 9.0, -3.0, 1e-7), price(1.5, 9.0, -3.0, 0.0), 1e-7);
+  EXPECT_NEAR(price(-1.0, 9.0, -3.0, 1e-9), price(1e-12, 9.0, -3.0, 0.0), 1e-7);  // no jumps are left
+  EXPECT_NEAR(price(1.0, 3.0, -2.999, 0.2), price(1.0, 3.0, -2.99900001, 0.2), 1e-5);
+}
+
+TEST(OptionsProperty, HardContractsArePricedOrSaidToBeCoarse) {
+  std::vector<Contract> contracts;
+  for (const double maturity : {1.0 / 365, 1.0, 30.0})
+    for (const double variance : {0.0, 0.04})
+      for (const auto& jump : {std::array{2.0, 11.0, -5.0, 0.0}, std::array{-0.5, 15.0, -5.0, 0.5},
+                               std::array{-5.0, 8.0, -2.0, 0.8}, std::array{5.0, 18.0, -2.0, 0.8},
+                               std::array{1.0, 8.0, -2.0, 1e-6}, std::array{-0.5, 3.0, -2.95, 0.5},
+                               std::array{-0.5, 3.0, 1.95, 0.5}})
+        for (const auto& [rate, dividend] : {std::pair{0.05, 0.0}, {0.0, 0.0}, {-0.02, 0.01}, {0.0, -0.03}}) {
+          Contract c;
+          c.type = contracts.size() % 2 == 0 ? Type::put : Type::call;
+          c.maturity = maturity;
+          c.variance = variance;
+          c.rate = rate;
+          c.dividend = dividend;
+          c.spot = 1.02;
+          std::copy(jump.begin(), jump.end(), c.jump);
+          contracts.push_back(c);
+        }
+  const auto prices = priced(on_mesh(128, 32), contracts);
+  std::size_t failed = 0;
+  for (std::size_t k = 0; k < prices.size(); ++k) {
+    if (prices[k].outcome == Outcome::failed) {
+      ++failed;
+      continue;
+    }
+    EXPECT_GE(prices[k].price, payoff(contracts[k]) - 1e-12) << k;
+    EXPECT_LT(prices[k].price, 1.02 * std::exp(0.03 * 30.0)) << k;  // what the asset earns at most
+    EXPECT_TRUE(std::isfinite(prices[k].delta) && std::isfinite(prices[k].gamma)) << k;
+  }
+  EXPECT_EQ(failed, 0U);
+}
+
+TEST(OptionsProperty, WhatCannotBeIsRefused) {
+  Settings settings;
+  settings.mesh = 33;
+  EXPECT_THROW(create_pricer(backend, settings), std::invalid_argument);
+  settings = on_mesh(128, 7);
+  EXPECT_THROW(create_pricer(backend, settings), std::invalid_argument);
+  settings = Settings{};
+  settings.tolerance = 0.0;
+  EXPECT_THROW(create_pricer(backend, settings), std::invalid_argument);
+  std::vector<Price> prices(2);
+  const std::vector<Contract> one = random_contracts(1, 1);
+  EXPECT_THROW(create_pricer(backend, Settings{})->price(one, prices), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace drogue::options

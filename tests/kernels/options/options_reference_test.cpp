@@ -1,0 +1,141 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "kernels/options/pricer.hpp"
+#include "tests/support/option_sets.hpp"
+
+// Prices against known ones, and stated errors against true ones.
+
+namespace drogue::options {
+namespace {
+
+using testing::contract_of;
+using testing::option_sets;
+using testing::OptionSet;
+
+constexpr auto backend = device::Backend::DROGUE_TEST_BACKEND;
+
+std::vector<Price> priced(const Settings& settings, const std::vector<Contract>& contracts) {
+  std::vector<Price> prices(contracts.size());
+  create_pricer(backend, settings)->price(contracts, prices);
+  return prices;
+}
+
+struct Known {
+  std::vector<Contract> contracts;
+  std::vector<double> values;
+  std::vector<std::string> names;
+};
+
+Known known_sets() {
+  Known known;
+  for (const OptionSet& set : option_sets())
+    for (std::size_t k = 0; k < set.spot.size(); ++k)
+      for (const Style style : {Style::american, Style::european}) {
+        known.contracts.push_back(contract_of(set, k, style));
+        known.values.push_back(style == Style::american ? set.american[k] : set.european[k]);
+        known.names.push_back(set.name + " at " + std::to_string(set.spot[k]));
+      }
+  return known;
+}
+
+void expect_known(const Settings& settings, double bar) {
+  const Known known = known_sets();
+  const std::vector<Price> prices = priced(settings, known.contracts);
+  std::size_t covered = 0;
+  for (std::size_t k = 0; k < prices.size(); ++k) {
+    const double error = std::abs(prices[k].price - known.values[k]);
+    EXPECT_LT(error, bar) << known.names[k];
+    if (error <= prices[k].error + 1e-7) ++covered;
+  }
+  EXPECT_GE(10 * covered, 9 * prices.size()) << covered << " of " << prices.size();
+}
+
+TEST(OptionsReference, MeshOf128) {
+  Settings settings;
+  settings.mesh = 128;
+  settings.steps = 32;
+  expect_known(settings, 7.5e-5);
+}
+
+TEST(OptionsReference, ToleranceIsKept) {
+  Settings settings;
+  settings.tolerance = 1e-5;
+  expect_known(settings, 1e-5);
+}
+
+struct Literature {
+  Model model;
+  double spot, price;
+};
+
+// An American put of a quarter of a year, strike 100, r = 0.05, sigma = 0.15.
+Contract merton_or_kou(const Literature& row) {
+  Contract c;
+  c.model = row.model;
+  c.spot = row.spot;
+  c.strike = 100.0;
+  c.rate = 0.05;
+  c.maturity = 0.25;
+  c.variance = 0.15 * 0.15;
+  const double merton[4] = {0.1, -0.9, 0.45, 0.0}, kou[4] = {0.1, 0.3445, 3.0465, 3.0775};
+  for (int k = 0; k < 4; ++k) c.jump[k] = row.model == Model::merton ? merton[k] : kou[k];
+  return c;
+}
+
+// d'Halluin, Forsyth and Labahn 2004 and Toivanen 2008, digits as their tables have them.
+TEST(OptionsReference, MertonAndKouOfTheLiterature) {
+  const std::vector<Literature> rows = {{Model::merton, 90.0, 10.0038},  {Model::merton, 100.0, 3.24125},
+                                        {Model::merton, 110.0, 1.41980}, {Model::kou, 90.0, 10.0051},
+                                        {Model::kou, 100.0, 2.80788},    {Model::kou, 110.0, 0.561877}};
+  std::vector<Contract> contracts;
+  for (const Literature& row : rows) contracts.push_back(merton_or_kou(row));
+  Settings settings;
+  settings.tolerance = 2e-6;
+  const std::vector<Price> prices = priced(settings, contracts);
+  for (std::size_t k = 0; k < rows.size(); ++k) EXPECT_NEAR(prices[k].price, rows[k].price, 1e-4) << k;
+}
+
+double normal_cdf(double x) { return 0.5 * std::erfc(-x / std::sqrt(2.0)); }
+
+// Every model without jumps is Black and Scholes', whose European price has a closed form.
+TEST(OptionsReference, WithoutJumpsItIsBlackAndScholes) {
+  std::vector<Contract> contracts(6);
+  for (std::size_t k = 0; k < contracts.size(); ++k) {
+    Contract& c = contracts[k];
+    c.model = k < 2 ? Model::black_scholes : k < 4 ? Model::merton : Model::kou;
+    c.style = Style::european;
+    c.type = k % 2 == 0 ? Type::put : Type::call;
+    c.spot = 95.0;
+    c.strike = 100.0;
+    c.rate = 0.03;
+    c.dividend = 0.01;
+    c.variance = 0.09;
+    c.jump[1] = c.model == Model::kou ? 0.4 : -0.1;
+    c.jump[2] = c.jump[3] = 5.0;
+  }
+  Settings settings;
+  settings.tolerance = 1e-6;
+  settings.greeks = true;
+  const std::vector<Price> prices = priced(settings, contracts);
+  const double d1 = (std::log(0.95) + 0.03 - 0.01 + 0.045) / 0.3, d2 = d1 - 0.3;
+  const double density = std::exp(-0.5 * d1 * d1) / std::sqrt(2.0 * 3.141592653589793);
+  const double call = 95.0 * std::exp(-0.01) * normal_cdf(d1) - 100.0 * std::exp(-0.03) * normal_cdf(d2);
+  const double put = call - 95.0 * std::exp(-0.01) + 100.0 * std::exp(-0.03);
+  const double gamma = std::exp(-0.01) * density / (95.0 * 0.3);
+  for (std::size_t k = 0; k < contracts.size(); ++k) {
+    const bool is_put = k % 2 == 0;
+    EXPECT_NEAR(prices[k].price, is_put ? put : call, 1e-4) << k;
+    EXPECT_NEAR(prices[k].delta, std::exp(-0.01) * (normal_cdf(d1) - (is_put ? 1.0 : 0.0)), 1e-5) << k;
+    EXPECT_NEAR(prices[k].gamma, gamma, 1e-5 * gamma + 1e-6) << k;
+    // Black and Scholes' equation gives the decay from the rest.
+    const double theta = 0.03 * prices[k].price - 0.02 * 95.0 * prices[k].delta - 0.045 * 95.0 * 95.0 * gamma;
+    EXPECT_NEAR(prices[k].theta, theta, 1e-2) << k;
+    EXPECT_TRUE(std::isnan(prices[k].exercise_boundary));
+  }
+}
+
+}  // namespace
+}  // namespace drogue::options

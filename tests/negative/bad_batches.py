@@ -1,0 +1,116 @@
+"""A valid row of a batch, and the ways in which it and its file are spoiled."""
+
+import options_program
+
+GOOD = options_program.row("good")
+HEADER = options_program.HEADER
+
+# Values of columns, words of the message that the row gets; every other row is priced.
+BAD_ROWS = [
+    # the domain of the parameters
+    ({"beta": 7.5}, ["|beta+1| < alpha"]),
+    ({"beta": -8.15}, ["|beta| < alpha"]),
+    ({"beta": -9}, ["|beta| < alpha"]),
+    ({"beta": 7.15}, ["|beta+1| < alpha"]),
+    ({"delta": 0, "lambda": 0}, ["delta = 0 needs lambda > 0"]),
+    ({"delta": 0, "lambda": -1}, ["delta = 0 needs lambda > 0"]),
+    ({"lambda": 128}, ["lambda", "between -128 and 128"]),
+    ({"lambda": -1e308}, ["lambda", "between -128 and 128"]),
+    ({"alpha": 0}, ["alpha", "> 0"]),
+    ({"alpha": -8}, ["alpha", "> 0"]),
+    ({"delta": -0.1}, ["delta", ">= 0"]),
+    ({"variance": -1e-9}, ["variance", ">= 0"]),
+    ({"spot": 0}, ["spot", "> 0"]),
+    ({"spot": -1}, ["spot", "> 0"]),
+    ({"strike": 0}, ["strike", "> 0"]),
+    ({"strike": -0.0}, ["strike", "> 0"]),
+    ({"maturity": 0}, ["maturity", "> 0"]),
+    ({"maturity": -1}, ["maturity", "> 0"]),
+    # no finite numbers
+    ({"spot": "nan"}, ['spot = "nan"', "not finite"]),
+    ({"spot": "-nan"}, ["spot", "not finite"]),
+    ({"strike": "inf"}, ["strike", "not finite"]),
+    ({"rate": "-inf"}, ["rate", "not finite"]),
+    ({"dividend": "infinity"}, ["dividend", "not finite"]),
+    ({"maturity": "1e309"}, ["maturity", "not finite"]),
+    ({"lambda": "-1e999"}, ["lambda", "not finite"]),
+    ({"variance": "NaN"}, ["variance", "not finite"]),
+    ({"delta": "1" + "0" * 400}, ["delta", "not finite", "..."]),
+    ({"spot": "1e-400"}, ["spot", "> 0"]),
+    # no numbers
+    ({"spot": "abc"}, ['spot = "abc"', "not a number"]),
+    ({"spot": "1.0.0"}, ["spot", "not a number"]),
+    ({"strike": "0x10"}, ["strike", "not a number"]),
+    ({"rate": "5 %"}, ["rate", "not a number"]),
+    ({"rate": "--1"}, ["rate", "not a number"]),
+    ({"rate": "+-1"}, ["rate", "not a number"]),
+    ({"alpha": "1e"}, ["alpha", "not a number"]),
+    ({"beta": '"1,5"'}, ["beta", "not a number"]),
+    ({"maturity": "1\0"}, ["maturity", "not a number"]),
+    ({"variance": "\xa01"}, ["variance", "not a number"]),
+    # nothing
+    ({"spot": ""}, ["spot is empty"]),
+    ({"strike": "  "}, ["strike is empty"]),
+    ({"rate": '""'}, ["rate is empty"]),
+    ({"maturity": ""}, ["maturity is empty"]),
+    ({"lambda": ""}, ["lambda is empty"]),
+    ({"alpha": ""}, ["alpha is empty"]),
+    ({"beta": ""}, ["beta is empty"]),
+    ({"delta": ""}, ["delta is empty"]),
+    # words
+    ({"style": "amercan"}, ['style = "amercan"', 'did you mean "american"?']),
+    ({"style": "bermudan"}, ["style", "american, european"]),
+    ({"type": "Put"}, ['did you mean "put"?']),
+    ({"type": "straddle"}, ["type", "put, call"]),
+]
+
+# Whole lines, words of the message.
+BAD_LINES = [
+    ("only,three,fields", ["3 fields", "13"]),
+    (GOOD + ",more", ["14 fields", "13"]),
+    (",", ["2 fields"]),
+    ('"open' + GOOD, ["quoted field does not end"]),
+    ('"closed"x' + GOOD, ["text follows the quote"]),
+    ('in"side' + GOOD, ["quote stands inside"]),
+    ("x\ty" + GOOD[4:], ["control character"]),
+    ("i" * 300 + GOOD[4:], ["id is longer"]),
+    ("x" * 70000, ["line is longer"]),
+]
+
+# Whole files, the line that is blamed, words of the message; nothing is priced.
+BAD_FILES = [
+    (b"", 1, ["empty"]),
+    (b"\n\n  \n", 1, ["empty"]),
+    (b"\xef\xbb\xbf", 1, ["empty"]),
+    (HEADER.replace("strike", "strke").encode(), 1, ['"strke"', 'did you mean "strike"?']),
+    (HEADER.replace("strike", "Strike").encode(), 1, ['"Strike"', '"strike"']),
+    (HEADER.replace("variance", "sigma").encode(), 1, ['"sigma"']),
+    (HEADER.replace(",strike", "").encode(), 1, ['missing column "strike"']),
+    (HEADER.replace(",delta", "").encode(), 1, ['missing column "delta"']),
+    (HEADER.replace(",spot", "").encode(), 1, ['missing column "spot"']),
+    (b"\n\n" + HEADER.replace(",rate", "").encode(), 3, ['missing column "rate"']),
+    ((HEADER + ",spot").encode(), 1, ['"spot" is named twice']),
+    ((HEADER + ",").encode(), 1, ["unknown column"]),
+    ((HEADER + ",price\n").encode(), 1, ["unknown column", '"price"']),
+    (HEADER.replace(",", ";").encode(), 1, ["unknown column"]),
+    (b'"' + HEADER.encode(), 1, ["header", "does not end"]),
+    (b"x" * 70000, 1, ["header is longer"]),
+    (b"\x00\x01\x02", 1, ["unknown column"]),
+    (b"\x89PNG\r\n\x1a\n" + bytes(range(256)), 1, []),
+    (f"{HEADER}\n{GOOD}\n\n{GOOD}\n".encode(), 4, ['"good"', "line 2"]),
+    (f'{HEADER}\n{GOOD}\n"{GOOD[:4]}"{GOOD[4:]}\n'.encode(), 3, ['"good"', "line 2"]),
+    (f"{HEADER}\n2{GOOD[4:]}\n{GOOD[4:]}\n".encode(), 3, ['"2"', "line 2"]),
+]
+
+# Rows with a column `model` behind the others, words of the message.
+BAD_MODELS = [
+    ("kuo,,,,,,", ['model = "kuo"', 'did you mean "kou"?']),
+    ("merton,-1,0,0.1,,,", ["intensity", ">= 0"]),
+    ("merton,1,,0.1,,,", ["jump_mean is empty"]),
+    ("merton,1,0,-0.1,,,", ["jump_deviation", ">= 0"]),
+    ("kou,1,,,1.5,2,2", ["up_probability", "0 .. 1"]),
+    ("kou,1,,,0.5,1,2", ["up_rate", "> 1"]),
+    ("kou,1,,,0.5,2,0", ["down_rate", "> 0"]),
+    ("black-scholes,1,,,,,", ["intensity must be empty", "black-scholes"]),
+    ("gh,,,,,,", ["lambda is empty"]),
+]

@@ -1,0 +1,95 @@
+"""Every wrong row of a batch gets `invalid` and a sentence, every other is priced; every wrong file ends with exit code 3."""
+
+import os
+import sys
+import unittest
+
+sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
+
+import bad_batches
+import mutations
+import options_program
+from options_program import FAST, HEADER, batch, row
+
+
+class BadBatches(options_program.OptionsTest):
+    def test_rows(self):
+        """All in one file, a good one before and behind each."""
+        self.assertGreaterEqual(len(bad_batches.BAD_ROWS) + len(bad_batches.BAD_LINES), 40)
+        cases = [(row(f"bad{k}", **values), words) for k, (values, words) in enumerate(bad_batches.BAD_ROWS)]
+        cases += bad_batches.BAD_LINES
+        lines = [row("first")]
+        for k, (line, _) in enumerate(cases):
+            lines += [line, row(f"good{k}")]
+        message = self.price(3, batch(lines), *FAST).stderr
+        self.assertTrue(message.startswith(f"{self.folder / 'batch.csv'}:3: |beta+1| < alpha"), message)
+        self.assertIn(f"{len(cases)} of {len(lines)} rows invalid", message)
+        prices = self.prices()
+        self.assertEqual(len(lines), len(prices))
+        for k, (line, words) in enumerate(cases):
+            with self.subTest(line=line[:60]):
+                told = prices[2 * k + 1]
+                self.assertEqual(("invalid", ""), (told["status"], told["price"]))
+                for word in words:
+                    self.assertIn(word, told["message"])
+        for told in prices[::2]:
+            self.assertEqual(("ok", prices[0]["price"]), (told["status"], told["price"]))
+
+    def test_files(self):
+        self.assertGreaterEqual(len(bad_batches.BAD_FILES), 20)
+        for content, line, words in bad_batches.BAD_FILES:
+            with self.subTest(content=content[:60]):
+                message = self.price(3, content, *FAST).stderr
+                self.assertTrue(message.startswith(f"{self.folder / 'batch.csv'}:{line}: "), message)
+                for word in words:
+                    self.assertIn(word, message)
+                self.assertEqual(["batch.csv"], self.names())
+
+    def test_models(self):
+        names = "id,spot,strike,rate,maturity,variance,model,intensity,jump_mean,jump_deviation,up_probability"
+        lines = [names + ",up_rate,down_rate", "good,1,1,0.05,1,0.04,merton,0.1,-0.9,0.45,,,"]
+        for k, (line, _) in enumerate(bad_batches.BAD_MODELS):
+            lines.append(f"bad{k},1,1,0.05,1,0.04,{line}")
+        self.price(3, "\n".join(lines), *FAST, "--tolerance", "1e-2")
+        prices = self.prices()
+        self.assertEqual("ok", prices[0]["status"])
+        for told, (line, words) in zip(prices[1:], bad_batches.BAD_MODELS, strict=True):
+            with self.subTest(line):
+                self.assertEqual("invalid", told["status"])
+                for word in words:
+                    self.assertIn(word, told["message"])
+
+    def test_numbers_at_the_end_of_the_range(self):
+        """Finite, so they are priced; what comes of them is said, and is no number that looks like a price."""
+        values = [{name: text} for name in ("spot", "strike", "maturity", "variance", "alpha", "delta", "rate", "lambda")
+                  for text in ("1e308", "4.9e-324", "1e-308")]
+        lines = [row(k, **each) for k, each in enumerate(values)]
+        for method in ("cos", "pide"):
+            with self.subTest(method):
+                run = self.start("price", self.write(batch(lines)), "--backend", "serial", "--quiet", "--method", method)
+                self.assertIn(run.returncode, (0, 3, 4), run.stderr)
+                for told in self.prices():
+                    self.assertIn(told["status"], ("ok", "coarse", "invalid", "failed"))
+                    if told["price"]:
+                        self.assertGreaterEqual(float(told["price"]), 0.0)
+                        self.assertLess(float(told["price"]), float("inf"))
+
+    def test_a_parameter_set_has_no_strike(self):
+        message = self.expect(3, "surface", self.write(batch([row("a")])), "--strikes", "1", "--maturities", "1").stderr
+        self.assertIn('unknown column "strike"', message)
+
+    def test_500_damaged_batches(self):
+        """A damaged batch is refused or priced: the program never ends by a signal or with another code."""
+        good = batch([row(k, spot=0.8 + 0.05 * k, type="call" if k % 2 else "put") for k in range(5)]
+                     + ['"quoted, ""id""",european,put,1,1,0.1,0,1,-0.5,15,-5,0.5,0.0']).encode()
+        codes = set()
+        for seed in range(500):
+            run = self.start("price", self.write(mutations.mutate(good, seed)), "--backend", "serial", "--quiet", *FAST)
+            self.assertIn(run.returncode, (0, 3, 4), f"mutation {seed}: {run.stderr[-2000:]}")
+            self.assertEqual(1 if run.returncode else 0, len(run.stderr.splitlines()), f"mutation {seed}: {run.stderr}")
+            codes.add(run.returncode)
+        self.assertLessEqual({0, 3}, codes)
+
+
+if __name__ == "__main__":
+    unittest.main()

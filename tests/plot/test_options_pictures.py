@@ -1,0 +1,53 @@
+"""drogue-plot on the files of drogue-options, and what the demo makes of its prices."""
+
+import shutil
+import tempfile
+import unittest
+from pathlib import Path
+
+import packages  # before all that needs the packages  isort: skip
+from PIL import Image
+from plot import cli, demo_options
+from plot.options_figure import options_figure
+
+assert packages.SOURCE
+
+SURFACE = "id,strike,maturity,price\na,1,0.5,0.1\na,2,0.5,1.1\na,1,1,0.2\na,2,1,1.2\nb,1,1,7\nbad,,,\n"
+BOUNDARY = "id,time,spot\na,0,0.8\na,0.5,0.9\n"
+
+
+class OptionsPictures(unittest.TestCase):
+    def setUp(self):
+        self.folder = Path(tempfile.mkdtemp())
+        self.addCleanup(shutil.rmtree, self.folder)
+
+    def write(self, **files):
+        for name, text in files.items():
+            (self.folder / f"{name}.csv").write_text(text)
+
+    def test_surface_and_boundary(self):
+        self.write(surface=SURFACE, boundary=BOUNDARY)
+        self.assertEqual(0, cli.main([str(self.folder), "--quiet"]))
+        with Image.open(self.folder / "fields.png") as picture:
+            self.assertGreater(picture.size[1], 700)
+        first, second = options_figure(self.folder).axes
+        self.assertEqual([[0.1, 1.1], [0.2, 1.2]], [list(line.get_ydata()) for line in first.lines])
+        self.assertEqual([[0.8, 0.9]], [list(line.get_ydata()) for line in second.lines])
+
+    def test_nothing_priced(self):
+        self.write(surface="id,strike,maturity,price\nbad,,,\n")
+        self.assertIsNone(options_figure(self.folder))
+
+    def test_damaged(self):
+        for text in ("id,strike\n1,2\n", "id,strike,maturity,price\na,1,1,x\n"):
+            self.write(surface=text)
+            self.assertEqual(6, cli.main([str(self.folder), "--quiet"]))
+
+    def test_the_demo_finds_the_largest_difference(self):
+        self.write(batch="id,strike\na,1\nb,100\n", one="id,price\na,0.1\nb,5\n", other="id,price\na,0.2\nb,6\n")
+        files = [self.folder / f"{name}.csv" for name in ("one", "other", "batch")]
+        self.assertAlmostEqual(0.1, demo_options.largest_difference(*files))
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,272 @@
+"""What drogue-options takes, prints, writes and answers."""
+
+import csv
+import json
+import os
+import resource
+import signal
+import subprocess
+import sys
+import time
+import unittest
+
+sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
+
+import gas_program
+import options_program
+from options_program import FAST, HEADER, batch, row
+
+
+class CommandLine(options_program.OptionsTest):
+    def test_information(self):
+        self.assertRegex(self.expect(0, "--version").stdout, r"^drogue-options \d+\.\d+\.\d+\n")
+        self.assertIn("surface", self.expect(0, "--help").stdout)
+        for word in ("--out", "--tolerance", "--mesh", "--greeks", "--boundary", "--method", "--result", "--backend"):
+            self.assertIn(word, self.expect(0, "price", "--help").stdout)
+        self.assertIn("--strikes", self.expect(0, "surface", "--help").stdout)
+        names = sorted(path.stem for path in options_program.BATCHES.glob("*.csv"))
+        self.assertEqual(names, [line.split()[0] for line in self.expect(0, "--list-batches").stdout.splitlines()])
+        self.assertEqual([], self.names())
+
+    def test_usage(self):
+        cases = {
+            (): "no command",
+            ("prize", "example"): "prize",
+            ("price",): "BATCH",
+            ("price", "exampel"): 'did you mean "example"?',
+            ("price", "example", "--tolerence", "1"): "--tolerance",
+            ("price", "example", "--tolerance", "0"): "--tolerance",
+            ("price", "example", "--tolerance", "nan"): "--tolerance",
+            ("price", "example", "--tolerance", "2"): "--tolerance",
+            ("price", "example", "--tolerance", ""): "--tolerance is empty",
+            ("price", "example", "--mesh", "128"): "--steps",
+            ("price", "example", "--mesh", "128.5", "--steps", "32"): "whole number",
+            ("price", "example", "--mesh", "-4", "--steps", "32"): "--mesh",
+            ("price", "example", "--mesh", "33", "--steps", "32"): "mesh",
+            ("price", "example", "--mesh", "128", "--steps", "32", "--tolerance", "1e-3"): "--tolerance",
+            ("price", "example", "--method", "tree"): "--method",
+            ("price", "example", "--method", "cos", "--mesh", "128", "--steps", "32"): "no mesh",
+            ("price", "example", "--method", "cos", "--boundary", "b.csv"): "--boundary",
+            ("price", "example", "--method", "seed"): "--mesh",
+            ("price", "example", "--backend", "gpu"): "--backend",
+            ("price", "example", "--chunk", "0"): "--chunk",
+            ("surface", "example"): "--strikes",
+            ("surface", "example", "--strikes", "1:2", "--maturities", "1"): "first:last:count",
+            ("surface", "example", "--strikes", "0", "--maturities", "1"): "--strikes",
+            ("surface", "example", "--strikes", "1", "--maturities", "1,,2"): "--maturities",
+            ("price", "example", "extra"): "extra",
+            ("price", "example", "--kokkos-num-threads=0"): "0",
+        }
+        for words, told in cases.items():
+            with self.subTest(words):
+                self.assertIn(told, self.expect(2, *(words or ("--kokkos-tune-internals",))).stderr)
+        self.assertEqual([], self.names())
+
+    def test_backend_that_is_not_there(self):
+        if "cuda" in gas_program.backends():
+            self.skipTest("a CUDA build has that backend")
+        self.assertRegex(self.expect(77, "price", "example", "--backend", "cuda", "--result", "r.json").stderr, "cuda.*preset")
+        told = json.loads((self.folder / "r.json").read_text())
+        self.assertEqual(("no-backend", 77), (told["status"], told["exit_code"]))
+        self.assertEqual(["r.json"], self.names())
+
+    def test_more_than_one_rank(self):
+        message = self.expect(2, "price", "example", environment={"PMI_SIZE": "2", "PMI_RANK": "0"}).stderr
+        self.assertIn("one rank", message)
+
+    def test_what_is_no_input(self):
+        (self.folder / "folder").mkdir()
+        os.mkfifo(self.folder / "pipe")
+        for name, told in (("folder", "directory"), ("pipe", "regular"), ("/dev/null", "regular"), ("none.csv", "no file")):
+            with self.subTest(name):
+                self.assertIn(told, self.expect(2, "price", name).stderr)
+        self.assertEqual(["folder", "pipe"], self.names())
+
+    def test_files_that_would_be_overwritten(self):
+        file = self.write(batch([row("a")]))
+        (self.folder / "link.csv").symlink_to(file)
+        os.link(file, self.folder / "hard.csv")
+        for words in (["--out", file], ["--out", "./batch.csv"], ["--out", "link.csv"], ["--out", "hard.csv"],
+                      ["--result", file], ["--boundary", file], ["--out", "x", "--result", "x"], ["--out", "/dev/null"],
+                      ["--boundary", "y", "--result", "y"], ["--out", self.folder]):
+            with self.subTest(words):
+                self.assertIn("name another output", self.expect(2, "price", file, *words).stderr)
+        self.assertEqual(batch([row("a")]), file.read_text())
+        self.assertEqual(["batch.csv", "hard.csv", "link.csv"], self.names())
+
+
+class Prices(options_program.OptionsTest):
+    def test_every_way_to_write_a_batch(self):
+        """Order of columns, defaults, quotes, ends of lines, a byte-order mark: all the same contracts."""
+        self.price(0, batch([row("a"), row("b", style="american")]), *FAST)
+        expected = self.prices()
+        plain = HEADER + "\n" + row("a") + "\n" + row("b", style="american")
+        order = list(reversed(range(13)))
+        turned = "\n".join(",".join(line.split(",")[k] for k in order) for line in plain.splitlines())
+        quoted = "\n".join(",".join(f' "{field}"\t' for field in line.split(",")) for line in plain.splitlines())
+        for content in (plain, turned, quoted, plain.replace("\n", "\r\n") + "\r\n", "\ufeff" + plain,
+                        "\n \n" + plain.replace("\n", "\n\n") + "\n\t\n", plain.replace(",0,1,", ",,1,").replace("put", "")):
+            with self.subTest(content[:30]):
+                self.price(0, content, *FAST)
+                self.assertEqual(expected, self.prices())
+
+    def test_ids(self):
+        for given in ('comma, "quote"', "0007", " inner blank", "ünï"):
+            quoted = '"' + given.replace('"', '""') + '"'
+            self.price(0, batch([row(quoted)]), *FAST)
+            self.assertEqual(given, self.prices()[0]["id"])
+        without = batch([row("")] * 3)
+        self.price(0, without, *FAST)
+        self.assertEqual(["1", "2", "3"], [told["id"] for told in self.prices()])
+        self.price(0, "\n".join(line.split(",", 1)[1] for line in without.splitlines()), *FAST)
+        self.assertEqual(["1", "2", "3"], [told["id"] for told in self.prices()])
+
+    def test_no_rows(self):
+        self.price(0, HEADER + "\n")
+        self.assertEqual([], self.prices())
+
+    def test_greeks_when_asked_for(self):
+        content = batch([row("a", style="american")])
+        self.price(0, content)
+        self.assertEqual(("", "", ""), tuple(self.prices()[0][name] for name in ("delta", "gamma", "theta")))
+        self.price(0, content, "--greeks")
+        greeks = {name: float(self.prices()[0][name]) for name in ("delta", "gamma", "theta")}
+        self.price(0, content, "--greeks", *FAST)
+        for name, value in greeks.items():
+            self.assertAlmostEqual(value, float(self.prices()[0][name]), delta=2e-3, msg=name)
+
+    def test_methods_agree(self):
+        """Two methods that share nothing."""
+        self.expect(0, "price", "example", "--quiet", "--out", "pide.csv")
+        self.expect(0, "price", "example", "--quiet", "--out", "cos.csv", *FAST)
+        for one, other in zip(self.prices("pide.csv"), self.prices("cos.csv"), strict=True):
+            bar = float(one["error"]) + float(other["error"])
+            self.assertAlmostEqual(float(one["price"]), float(other["price"]), delta=bar, msg=one["id"])
+
+    def test_boundary(self):
+        lines = [row("put", style="american"), row("europe"), row("wait", style="american", type="call")]
+        self.price(0, batch(lines), "--boundary", "b.csv")
+        with (self.folder / "b.csv").open(encoding="utf-8", newline="") as file:
+            points = list(csv.DictReader(file))
+        self.assertEqual(["id", "time", "spot"], list(points[0]))
+        self.assertEqual({"put"}, {point["id"] for point in points})
+        times = [float(point["time"]) for point in points]
+        self.assertEqual((0.0, True), (times[0], times == sorted(times) and times[-1] < 1.0))
+        spots = [float(point["spot"]) for point in points]
+        self.assertTrue(all(0.3 < spot < 1.0 for spot in spots))
+        self.assertLess(spots[0], spots[-1])
+
+    def test_surface(self):
+        header = ",".join(name for name in HEADER.split(",") if name not in ("strike", "maturity"))
+        sets = f"{header}\nset,european,put,1.0,0.1,0,1,8.15,-2.5,0.767,0.4\nbad,european,put,1.0,0.1,0,1,8.15,9,0.767,0.4\n"
+        self.expect(3, "surface", self.write(sets), "--strikes", "0.8:1.2:5", "--maturities", "0.25,1", "--quiet", *FAST)
+        with (self.folder / "surface.csv").open(encoding="utf-8", newline="") as file:
+            told = list(csv.DictReader(file))
+        self.assertEqual(11, len(told))
+        self.assertEqual(["0.8", "0.9", "1", "1.1", "1.2"], [f"{float(point['strike']):g}" for point in told[:5]])
+        self.assertEqual({"0.25", "1"}, {point["maturity"] for point in told[:10]})
+        self.assertEqual(("bad", "invalid", ""), (told[10]["id"], told[10]["status"], told[10]["strike"]))
+        self.price(0, batch([row("one", strike=1.2)]), *FAST)
+        self.assertEqual(self.prices()[0]["price"], told[9]["price"])
+
+    def test_result(self):
+        content = batch([row("a"), row("b", beta=9), row("c", style="american")])
+        message = self.price(3, content, "--result", "r.json").stderr.strip()
+        told = json.loads((self.folder / "r.json").read_text())
+        self.assertEqual(("drogue.result/1", "drogue-options", "batch", "serial", "invalid", 3, message),
+                         tuple(told[key] for key in ("schema", "program", "scene", "backend", "status", "exit_code", "message")))
+        self.assertEqual({"rows": 3, "ok": 2, "coarse": 0, "invalid": 1, "failed": 0}, told["counts"])
+        self.assertGreater(told["timing"]["compute_s"], 0.0)
+        self.assertGreater(told["ledger"]["kernel_launches"], 0)
+
+    def test_summary(self):
+        run = self.expect(0, "price", "example", *FAST, "--tolerance", "1e-3")
+        self.assertRegex(run.stdout, r"^example on \w+: 11 rows in \S+ s: 11 ok, 0 coarse, 0 invalid, 0 failed\n")
+
+
+class SameBits(options_program.OptionsTest):
+    BATCH = batch([row(k, style="american" if k % 2 else "european", spot=0.7 + 0.02 * k, maturity=0.1 + 0.05 * k,
+                       beta=9 if k % 11 == 5 else -2.5) for k in range(40)])
+
+    def test_chunks(self):
+        written = set()
+        for chunk in (["--chunk", "1"], ["--chunk", "7"], ["--chunk", "1000"], []):
+            self.price(3, self.BATCH, *chunk)
+            written.add((self.folder / "prices.csv").read_bytes())
+        self.assertEqual(1, len(written))
+
+    @gas_program.needs_openmp
+    def test_backends(self):
+        for method in ([], [*FAST, "--tolerance", "1e-3"]):
+            written = set()
+            for backend in ("serial", "openmp"):
+                self.expect(3, "price", self.write(self.BATCH), "--quiet", *method, "--backend", backend)
+                written.add((self.folder / "prices.csv").read_bytes())
+            self.assertEqual(1, len(written), method)
+
+
+class Files(options_program.OptionsTest):
+    def test_disk_full(self):
+        """A limit on file sizes stands for a full disk."""
+        file = self.write(batch([row(k) for k in range(300)]))
+        self.write("former", "prices.csv")
+        for limit in (0, 100, 5000):
+            with self.subTest(limit):
+                run = self.run_with("price", file, "--backend", "serial", "--quiet", *FAST, preexec_fn=lambda: resource.setrlimit(
+                    resource.RLIMIT_FSIZE, (limit, resource.RLIM_INFINITY)))
+                self.assertEqual((6, 1), (run.returncode, len(run.stderr.splitlines())), run.stderr)
+                self.assertRegex(run.stderr, "cannot write 'prices.csv'.*File too large")
+                self.assertEqual(["batch.csv", "prices.csv"], self.names())
+                self.assertEqual("former", (self.folder / "prices.csv").read_text())
+
+    def test_folder_that_is_not_there(self):
+        self.assertIn("no/prices.csv", self.price(6, batch([row("a")]), "--out", "no/prices.csv").stderr)
+
+    def start_long_run(self):
+        """A run that has begun to price, and goes on for long."""
+        file = self.write(batch([row(k, style="american", spot=0.5 + 1e-4 * k) for k in range(3000)]))
+        command = [options_program.PROGRAM, "price", file, "--backend", "serial", *FAST, "--result", "r.json"]
+        process = subprocess.Popen(command, cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                   env=gas_program.ENVIRONMENT)
+        for _ in range(200):
+            if any(name.startswith(".prices.csv") for name in self.names()):
+                return process
+            time.sleep(0.05)
+        process.kill()
+        self.fail("the run has not begun")
+
+    def test_killed(self):
+        process = self.start_long_run()
+        process.kill()
+        process.communicate()
+        self.assertFalse((self.folder / "prices.csv").exists())
+
+    def test_interrupted(self):
+        process = self.start_long_run()
+        time.sleep(0.5)
+        process.send_signal(signal.SIGINT)
+        process.communicate(timeout=60)
+        self.assertEqual(130, process.returncode)
+        self.assertEqual(["batch.csv", "r.json"], self.names())
+        self.assertEqual("interrupted", json.loads((self.folder / "r.json").read_text())["status"])
+
+    def test_memory_does_not_grow_with_the_batch(self):
+        peaks = []
+        for rows in (1000, 10000):
+            self.price(0, batch([row(k) for k in range(rows)]), *FAST, "--chunk", "500", "--result", "r.json")
+            peaks.append(json.loads((self.folder / "r.json").read_text())["peak_bytes"]["host"])
+        self.assertLess(peaks[1], peaks[0] + 2 * 2**20)
+
+    def test_a_line_of_a_gigabyte(self):
+        """A hole in the file, which takes no space on the disk."""
+        file = self.write(batch([row("a")]))
+        with file.open("r+b") as stream:
+            stream.seek(2**30)
+            stream.write(f"\n{row('b')}\n".encode())
+        self.expect(3, "price", file, "--backend", "serial", "--quiet", *FAST, "--result", "r.json")
+        self.assertEqual(["ok", "invalid", "ok"], [told["status"] for told in self.prices()])
+        self.assertLess(json.loads((self.folder / "r.json").read_text())["peak_bytes"]["host"], 200 * 2**20)
+
+
+if __name__ == "__main__":
+    unittest.main()

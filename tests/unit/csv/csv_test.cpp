@@ -1,0 +1,157 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <random>
+
+#include "common/csv/fields.hpp"
+#include "common/csv/header.hpp"
+#include "common/csv/line_reader.hpp"
+#include "common/csv/numbers.hpp"
+
+namespace drogue::csv {
+namespace {
+
+std::vector<std::string> split_line(const std::string& line) {
+  Fields fields;
+  EXPECT_EQ(fields.split(line), "") << line;
+  std::vector<std::string> values;
+  for (std::size_t i = 0; i < fields.size(); ++i) values.emplace_back(fields[i]);
+  return values;
+}
+
+/// A file that is gone with the test.
+class CsvFile {
+ public:
+  explicit CsvFile(const std::string& content) : _path(::testing::TempDir() + "drogue_csv_test.csv") {
+    std::ofstream(_path, std::ios::binary) << content;
+  }
+  ~CsvFile() { std::filesystem::remove(_path); }
+  [[nodiscard]] const std::filesystem::path& path() const { return _path; }
+
+ private:
+  std::filesystem::path _path;
+};
+
+TEST(CsvFields, Splits) {
+  using Words = std::vector<std::string>;
+  EXPECT_EQ(split_line("a, b ,,\tc"), (Words{"a", "b", "", "c"}));
+  EXPECT_EQ(split_line(""), Words{""});
+  EXPECT_EQ(split_line(","), (Words{"", ""}));
+  EXPECT_EQ(split_line(R"("a,b", "say ""no""" ,"",x)"), (Words{"a,b", "say \"no\"", "", "x"}));
+  EXPECT_EQ(split_line(R"("",)"), (Words{"", ""}));
+}
+
+TEST(CsvFields, TellsWhatIsWrong) {
+  Fields fields;
+  EXPECT_NE(fields.split("\"a"), "");
+  EXPECT_NE(fields.split("\"a\"b"), "");
+  EXPECT_NE(fields.split("a\"b"), "");
+  EXPECT_NE(fields.split("a,\"b\"\""), "");
+}
+
+TEST(CsvFields, WhatIsWrittenIsReadAgain) {
+  std::mt19937 random(1);
+  const std::string letters = "ab ,\"\t'";
+  for (int trial = 0; trial < 300; ++trial) {
+    std::vector<std::string> values(1 + random() % 4);
+    std::string line;
+    for (std::string& value : values) {
+      for (auto k = random() % 6; k > 0; --k) value += letters[random() % letters.size()];
+      if (&value != values.data()) line += ',';
+      append_field(line, value);
+    }
+    EXPECT_EQ(split_line(line), values) << line;
+  }
+}
+
+TEST(CsvNumbers, ReadsDecimalsOnly) {
+  double value = 0.0;
+  EXPECT_EQ(parse_number("+1.5e-3", value), NumberError::none);
+  EXPECT_EQ(value, 1.5e-3);
+  for (const char* text : {"", "+", "-", "1 ", " 1", "0x1p3", "1,5", "+-1", "++1", "1e", "one"})
+    EXPECT_EQ(parse_number(text, value), NumberError::no_number) << text;
+  for (const char* text : {"nan", "inf", "-inf", "INFINITY", "1e309", "-1e400"})
+    EXPECT_EQ(parse_number(text, value), NumberError::not_finite) << text;
+  EXPECT_EQ(parse_number("1e-400", value), NumberError::none);
+  EXPECT_EQ(value, 0.0);
+  EXPECT_EQ(parse_number("5e-324", value), NumberError::none);
+  EXPECT_EQ(value, std::numeric_limits<double>::denorm_min());
+}
+
+TEST(CsvNumbers, WhatIsWrittenIsReadAgain) {
+  std::mt19937_64 random(2);
+  for (int trial = 0; trial < 1000; ++trial) {
+    const double value = std::ldexp(static_cast<double>(random()), static_cast<int>(random() % 2000) - 1060);
+    std::string text;
+    append_number(text, value);
+    double again = 0.0;
+    ASSERT_EQ(parse_number(text, again), NumberError::none) << text;
+    EXPECT_EQ(again, value);
+  }
+  std::string nothing;
+  append_number(nothing, std::nan(""));
+  EXPECT_EQ(nothing, "");
+}
+
+TEST(CsvLines, AreCountedAndStripped) {
+  const CsvFile file(
+      "\xEF\xBB\xBF"
+      "first\r\n\n  \nfourth\n\r\nlast");
+  LineReader reader(file.path());
+  Line line;
+  std::vector<std::pair<std::string, std::int64_t>> seen;
+  while (reader.next(line)) seen.emplace_back(line.text, line.number);
+  using Seen = decltype(seen);
+  EXPECT_EQ(seen, (Seen{{"first", 1}, {"fourth", 4}, {"last", 6}}));
+  EXPECT_EQ(reader.share(), 1.0);
+}
+
+/// Lines that end at and about the ends of the blocks that are read.
+TEST(CsvLines, CrossBlocks) {
+  std::string content;
+  std::vector<std::string> lines;
+  std::mt19937 random(3);
+  while (content.size() < (std::size_t{5} << 20)) {
+    lines.push_back("x" + std::string(random() % 65000, static_cast<char>('a' + random() % 26)));
+    content += lines.back() + (random() % 2 == 0 ? "\n" : "\r\n");
+  }
+  const CsvFile file(content);
+  LineReader reader(file.path());
+  Line line;
+  for (const std::string& expected : lines) {
+    ASSERT_TRUE(reader.next(line));
+    ASSERT_TRUE(line.text == expected) << line.number;
+    EXPECT_FALSE(line.too_long);
+  }
+  EXPECT_FALSE(reader.next(line));
+}
+
+TEST(CsvLines, TooLongOnesAreSkipped) {
+  for (const std::size_t length : {LineReader::longest, LineReader::longest + 1, std::size_t{3} << 20})
+    for (const char* end : {"", "\n", "\nnext"}) {
+      const CsvFile file("before\n" + std::string(length, 'x') + end);
+      LineReader reader(file.path());
+      Line line;
+      ASSERT_TRUE(reader.next(line));
+      EXPECT_EQ(line.text, "before");
+      ASSERT_TRUE(reader.next(line));
+      EXPECT_EQ(line.too_long, length > LineReader::longest);
+      EXPECT_EQ(reader.next(line), std::string(end) == "\nnext");
+      if (std::string(end) == "\nnext") {
+        EXPECT_EQ(line.text, "next");
+      }
+    }
+}
+
+TEST(CsvHeader, FindsColumns) {
+  const CsvFile file("\n c ,a\n1,2\n");
+  LineReader reader(file.path());
+  const Header header = read_header(reader, {"a", "b", "c"});
+  EXPECT_EQ(header.line, 2);
+  EXPECT_EQ(header.places, (std::vector<int>{1, -1, 0}));
+}
+
+}  // namespace
+}  // namespace drogue::csv
