@@ -83,7 +83,8 @@ TEST(OptionsReference, StatedErrorsCoverAndDoNotExaggerate) {
     const std::vector<Price> prices = priced(settings, contracts);
     std::vector<double> ratio;
     for (std::size_t k = 0; k < prices.size(); ++k)
-      ratio.push_back(prices[k].error / (std::abs(prices[k].price - known[k].price) + 1e-7 * contracts[k].strike));
+      ratio.push_back(prices[k].error /
+                      (std::abs(prices[k].price - known[k].price) + 1e-7 * contracts[k].strike));
     std::sort(ratio.begin(), ratio.end());
     EXPECT_GE(ratio[ratio.size() / 10], 1.0) << mesh;
     EXPECT_LE(ratio[ratio.size() / 2], 10.0) << mesh;
