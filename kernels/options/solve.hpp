@@ -106,7 +106,9 @@ KOKKOS_INLINE_FUNCTION const R* solve(const Workers& workers, const PutPack<R>& 
         const double width = device::Access<R>::lane(h, 0);
         record.time[n - 1] = device::Access<R>::lane(end, 0);
         record.boundary[n - 1] =
-            boundary_of({reinterpret_cast<const double*>(march.value[0]), members}, at_strike, width);
+            memory.puts[0].early
+                ? boundary_of({reinterpret_cast<const double*>(march.value[0]), members}, at_strike, width)
+                : device::portable::not_a_number();
       });
     }
     R* const oldest = march.value[2];
