@@ -178,7 +178,9 @@ Problem make_problem(const SpringsScene& scene) {
   p.damping = scene.damping.absolute;
   p.relative_damping = scene.damping.relative;
   p.integrator = scene.time.integrator;
-  p.dt = scene.time.dt.value_or(1.0);
+  // Until one is planned: pins are placed with the velocity over one, and what moves them ends with the
+  // scene.
+  p.dt = scene.time.dt.value_or(1e-6 * scene.time.end_time);
   p.driver = scene.driver;
   for (const Probe& probe : scene.output.probes) problem.probes.push_back(nearest_vertex(p.mesh, probe.at));
   return problem;

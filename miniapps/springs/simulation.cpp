@@ -24,8 +24,12 @@ double seconds_since(Clock::time_point begin) {
 constexpr double look_every_s = 0.1;
 
 /// Steps from one look at the fastest frequency to the next: stiffness grows with strain, mostly at the
-/// start.
-std::int64_t bound_every(std::int64_t step) { return step < 1024 ? 64 : 512; }
+/// start, where a step that loads overwhelm lasts for few.
+std::int64_t bound_every(std::int64_t step) {
+  if (step < 16) return 1;
+  if (step < 64) return 4;
+  return step < 1024 ? 64 : 512;
+}
 
 const char* lost_text(fabric::Trouble trouble) {
   switch (trouble) {
@@ -224,8 +228,10 @@ std::string Simulation::failure_text(const fabric::Failure& failure) const {
   text << lost_text(failure.trouble) << " at vertex " << vertex << " (at rest at " << rest[0] << ", "
        << rest[1] << ", " << rest[2] << " m) at step " << failure.step << ", t = " << failure.time
        << " s; restart.h5 holds the last good state, of step " << _solver->clock().step;
-  if (failure.trouble == fabric::Trouble::not_finite && _scene.time.dt)
-    text << "; time.dt = \"auto\" takes a step that is stable";
+  if (failure.trouble == fabric::Trouble::not_finite)
+    text << (_scene.time.dt
+                 ? "; if no expression gives such a number, time.dt = \"auto\" takes a step that is stable"
+                 : "; if no expression gives such a number, a smaller time.safety takes shorter steps");
   return text.str();
 }
 

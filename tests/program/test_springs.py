@@ -137,6 +137,20 @@ class Failures(springs_program.SpringsTest):
         self.assertIn(told["message"], message)
         self.assertTrue((self.folder / "out/restart.h5").exists())
 
+    def test_loads_that_stiffen_cloth_at_once(self):
+        """The step follows within the first few: a pressure that blows a flat membrane up, a sheet torn apart."""
+        blown = DRUM.replace("gravity = [0, 0, -9.81]", 'follower_pressure = "5000"').replace("prestretch = 0.05\n", "")
+        torn = DRUM.replace('displacement = { z = "0.01*(1-(x^2+y^2)/0.16)" }', 'velocity = { x = "100*x", y = "100*y" }')
+        for name, text in (("blown", blown), ("torn", torn)):
+            with self.subTest(name):
+                self.expect(0, self.write(text, f"{name}.toml"), "--quiet", "--out", name, sets=["time.end_time=0.05", "output.times=[0.05]"])
+                told = self.result(name)
+                self.assertLess(told["dt_min"], 0.7 * told["dt_max"])
+
+    def test_a_motion_need_not_outlive_the_scene(self):
+        ends = DRUM.replace('0.4-1e-9"', '0.4-1e-9"\nmotion = { z = "0.01*sqrt(0.4-t)" }')
+        self.expect(0, self.write(ends), "--quiet", "--out", "out")
+
     def test_verification_fails_where_it_must(self):
         """A fault in what is computed or in what is expected is found by each check."""
         faults = {
