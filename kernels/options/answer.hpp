@@ -55,6 +55,10 @@ KOKKOS_INLINE_FUNCTION Answer answer_of(const Put& put, const Column& value, con
   const double h = nodes.h;
   const double x = put.log_spot, asset = exponential(x);
   Answer answer{0.0, 0.0, 0.0, 0.0, device::portable::not_a_number()};
+  if (!(h < 1e30)) {
+    answer.value = device::portable::not_a_number();
+    return answer;
+  }
   if (put.early) answer.boundary = boundary_of(value, strike, h);
   const double t = x / h + strike;
   if (!(t == t)) {  // no cell has such a number
@@ -88,7 +92,7 @@ KOKKOS_INLINE_FUNCTION Answer answer_of(const Put& put, const Column& value, con
   double result[3], rate[3];
   interpolate(value, first, t - first, h, result);
   interpolate(change, first, t - first, h, rate);
-  answer.value = put.early ? device::maximum(result[0], 1.0 - asset) : result[0];
+  answer.value = put.early && result[0] < 1.0 - asset ? 1.0 - asset : result[0];  // a NaN stays one
   answer.slope = result[1];
   answer.bend = result[2];
   answer.decay = rate[0];

@@ -43,6 +43,7 @@ struct MixtureGrid {
 
 KOKKOS_INLINE_FUNCTION MixtureGrid mixture_grid(const Put& put, const double* panels, const int* slot) {
   const double order = device::portable::magnitude(put.jump[0]);
+  if (put.jump[3] == 0.0 || !(order < HankelGrid::largest_order)) return {nullptr, 0.0, 0};
   const int panel = panel_of(order);
   const double begin = panel_begin(panel), end = panel_end(panel);
   const double z = put.jump[3] * (Mixture::lowest * put.jump[1]);
@@ -52,10 +53,11 @@ KOKKOS_INLINE_FUNCTION MixtureGrid mixture_grid(const Put& put, const double* pa
           (2.0 * order - begin - end) / (end - begin), first};
 }
 
-/// Term q of the mixture of `put`, a generalized hyperbolic one.
+/// Term q of the mixture of `put`, a generalized hyperbolic one; not a number beyond the largest order.
 KOKKOS_INLINE_FUNCTION Term mixture_term(const Put& put, const MixtureGrid& grid, int q) {
   const double lambda = put.jump[0], alpha = put.jump[1], delta = put.jump[3];
   if (delta == 0.0) return {alpha, q == 0 ? lambda : 0.0};
+  if (grid.panel == nullptr) return {alpha, device::portable::not_a_number()};
   const int node = grid.first + q - 1 - HankelGrid::first;  // of term 0 the last one that is lumped
   const double positive = lambda > 0.0 ? lambda : 0.0;
   if (q == 0) {

@@ -28,8 +28,8 @@ KOKKOS_INLINE_FUNCTION Price price_of(const Contract& contract, const Put& put, 
     a.slope = limit(fine.slope, coarse.slope);
     a.bend = limit(fine.bend, coarse.bend);
     a.decay = limit(fine.decay, coarse.decay);
-    if (put.early) a.value = device::maximum(a.value, 1.0 - asset);
-    a.value = device::maximum(a.value, 0.0);
+    const double least = put.early && asset < 1.0 ? 1.0 - asset : 0.0;
+    if (a.value < least) a.value = least;  // a NaN stays one
   }
   const bool call = contract.type == Type::call;
   const double unit = call ? contract.spot : contract.strike, s = contract.spot;
@@ -47,6 +47,7 @@ KOKKOS_INLINE_FUNCTION Price price_of(const Contract& contract, const Put& put, 
   // Nobody pays more for a put than what it can earn at most.
   const double most = put.rate < 0.0 ? exponential(-put.rate * put.maturity) : 1.0;
   const bool finite = a.value <= 1.001 * most && price.error < 1e300;
+  if (!finite) price.price = device::portable::not_a_number();
   price.outcome = !finite                                     ? Outcome::failed
                   : price.error > tolerance * contract.strike ? Outcome::coarse
                                                               : Outcome::ok;
@@ -138,21 +139,34 @@ struct PriceBatch {
   }
 };
 
-/// Enqueues the launch.
+/// Where a team's memory is: in that of its multiprocessor, if it fits, else (and on hosts) beside.
 template <class ExecutionSpace>
-void price_batch(const ExecutionSpace& space, PriceBatch<ExecutionSpace> batch) {
+[[nodiscard]] int scratch_level(int mesh) {
+  constexpr std::size_t most_shared = 100 * 1024;
+  return !device::is_host<ExecutionSpace> && Memory<Number<ExecutionSpace>>::bytes(mesh) + 64 <= most_shared
+             ? 0
+             : 1;
+}
+
+/// Enqueues a functor that prices `count` contracts on a mesh.
+template <class ExecutionSpace, class Functor>
+void launch_batch(const ExecutionSpace& space, const char* label, const Functor& functor, int count,
+                  int mesh) {
   using R = Number<ExecutionSpace>;
   constexpr int members = device::Access<R>::lanes;
+  if (count == 0) return;
+  Kokkos::TeamPolicy<ExecutionSpace> policy(space, (count + members - 1) / members,
+                                            device::is_host<ExecutionSpace> ? 1 : lanes);
+  policy.set_scratch_size(scratch_level<ExecutionSpace>(mesh), Kokkos::PerTeam(Memory<R>::bytes(mesh) + 64));
+  Kokkos::parallel_for(label, policy, functor);
+}
+
+/// Enqueues the launch.
+template <class ExecutionSpace>
+void price_batch(const ExecutionSpace& space, const PriceBatch<ExecutionSpace>& batch) {
   static_assert(
       Kokkos::SpaceAccessibility<ExecutionSpace, typename decltype(batch.prices)::memory_space>::accessible);
-  if (batch.count == 0) return;
-  const std::size_t bytes = Memory<R>::bytes(batch.mesh) + 64;
-  constexpr std::size_t most_shared = 100 * 1024;
-  batch.level = !device::is_host<ExecutionSpace> && bytes <= most_shared ? 0 : 1;
-  Kokkos::TeamPolicy<ExecutionSpace> policy(space, (batch.count + members - 1) / members,
-                                            device::is_host<ExecutionSpace> ? 1 : lanes);
-  policy.set_scratch_size(batch.level, Kokkos::PerTeam(bytes));
-  Kokkos::parallel_for("drogue::options::price", policy, batch);
+  launch_batch(space, "drogue::options::price", batch, batch.count, batch.mesh);
 }
 
 }  // namespace drogue::options

@@ -11,7 +11,7 @@
 
 #include "kernels/device/copy.hpp"
 #include "kernels/device/instance.hpp"
-#include "kernels/options/price_batch.hpp"
+#include "kernels/options/seed_batch.hpp"
 
 namespace drogue::options {
 
@@ -28,6 +28,11 @@ class PricerOn final : public Pricer {
   Timing price(std::span<const Contract> contracts, std::span<Price> prices) override {
     if (contracts.size() != prices.size())
       throw std::invalid_argument("options pricer: as many prices as contracts are needed");
+    if (_settings.method == Method::seed)
+      for (const Contract& contract : contracts)
+        if (contract.model != Model::generalized_hyperbolic)
+          throw std::invalid_argument(
+              "options pricer: the dissertation's scheme has generalized hyperbolic jumps");
     Timing timing;
     if (contracts.empty()) return timing;
     const Clock setting_up;
@@ -35,9 +40,9 @@ class PricerOn final : public Pricer {
     fetch_panels(contracts);
     copy_in(_contracts, contracts.data(), contracts.size());
     timing.h2d = setting_up.seconds();
-    const bool chosen = _settings.mesh == 0;
+    const bool chosen = _settings.mesh == 0 && _settings.method == Method::pide;
     Effort first;
-    first.mesh = chosen ? first_mesh : _settings.mesh;
+    first.mesh = chosen ? first_mesh : _settings.mesh == 0 ? seed_mesh : _settings.mesh;
     first.steps = steps_of(first.mesh, 1);
     std::vector<Row> rows(contracts.size(), Row{first, 1, 0.0});
     for (std::optional<Effort> effort = first; effort; effort = chosen ? least_effort(rows) : std::nullopt) {
@@ -82,7 +87,8 @@ class PricerOn final : public Pricer {
   }
 
  private:
-  static constexpr int first_mesh = 64, last_mesh = 2048, record_mesh = 512, models = 4, most_often = 4;
+  static constexpr int first_mesh = 64, seed_mesh = 128, last_mesh = 2048, record_mesh = 512, models = 4,
+                       most_often = 4;
 
   struct Recorded {
     std::vector<double> time, boundary, x, value;
@@ -132,7 +138,8 @@ class PricerOn final : public Pricer {
   };
 
   [[nodiscard]] int steps_of(int mesh, int often) const {
-    return _settings.steps != 0 ? _settings.steps : mesh / 4 * often;
+    if (_settings.steps != 0) return _settings.steps;
+    return _settings.method == Method::seed ? mesh : mesh / 4 * often;
   }
 
   /// What a launch spends on each row.
@@ -225,7 +232,12 @@ class PricerOn final : public Pricer {
     batch.mesh = effort.mesh;
     batch.steps = effort.steps;
     batch.tolerance = _settings.tolerance;
-    price_batch(_instance.space(), batch);
+    batch.level = scratch_level<ExecutionSpace>(effort.mesh);
+    if (_settings.method == Method::seed && record.time == nullptr) {
+      seed_batch(_instance.space(), batch);
+    } else {
+      price_batch(_instance.space(), batch);
+    }
     _instance.space().fence("drogue::options: priced");
   }
 

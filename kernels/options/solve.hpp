@@ -70,9 +70,8 @@ KOKKOS_INLINE_FUNCTION const R* solve(const Workers& workers, const PutPack<R>& 
   // over nodes amount to, lacks there.
   const R spread = 2.0 * jumps.diffusion * put.maturity;
   const R kink = h * (1.0 / 12) * spread / (spread + h * h);
-  workers.each([=, &put](int lane) {
+  workers.each([=](int lane) {
     for (int k = lane; k < 9 * count; k += lanes) memory.nodes[k] = 0.0;
-    (void)put;
   });
   workers.each([=, &put](int lane) {
     for (int i = lane; i < mesh; i += lanes) {
@@ -106,7 +105,9 @@ KOKKOS_INLINE_FUNCTION const R* solve(const Workers& workers, const PutPack<R>& 
         const double width = device::Access<R>::lane(h, 0);
         record.time[n - 1] = device::Access<R>::lane(end, 0);
         record.boundary[n - 1] =
-            boundary_of({reinterpret_cast<const double*>(march.value[0]), members}, at_strike, width);
+            memory.puts[0].early
+                ? boundary_of({reinterpret_cast<const double*>(march.value[0]), members}, at_strike, width)
+                : device::portable::not_a_number();
       });
     }
     R* const oldest = march.value[2];

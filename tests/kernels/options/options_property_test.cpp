@@ -187,6 +187,70 @@ TEST(OptionsProperty, HardContractsArePricedOrSaidToBeCoarse) {
   EXPECT_EQ(failed, 0U);
 }
 
+TEST(OptionsProperty, WhatHasNoTableFails) {
+  std::vector<Contract> contracts = random_contracts(5, 9);
+  contracts[2].jump[0] = 200.0;
+  contracts[2].jump[3] = 1.0;
+  const auto prices = priced(on_mesh(64, 16), contracts);
+  for (std::size_t k = 0; k < prices.size(); ++k)
+    EXPECT_EQ(prices[k].outcome == Outcome::failed, k == 2) << k;
+  EXPECT_TRUE(std::isnan(prices[2].price));
+}
+
+// The dissertation's scheme: its errors fall to a fourth where its mesh has four times the nodes.
+TEST(OptionsProperty, SeedIsOfFirstOrder) {
+  const testing::OptionSet& set = option_sets()[0];
+  const auto error = [&](int mesh) {
+    Settings settings = on_mesh(mesh, mesh);
+    settings.method = Method::seed;
+    const Price price = priced(settings, {contract_of(set, 3, Style::american)})[0];
+    EXPECT_TRUE(std::isnan(price.error));
+    return std::abs(price.price - set.american[3]);
+  };
+  EXPECT_LT(error(128), 2e-3);
+  EXPECT_NEAR(std::log2(error(128) / error(512)), 2.0, 0.3);
+}
+
+TEST(OptionsProperty, TheBoundaryRisesTowardsExpiry) {
+  Contract c = contract_of(option_sets()[0], 3, Style::american);
+  const auto curve = create_pricer(backend, on_mesh(256, 64))->boundary(c);
+  ASSERT_GT(curve.size(), 60U);
+  for (std::size_t k = 1; k < curve.size(); ++k) {
+    EXPECT_GT(curve[k].time, curve[k - 1].time);
+    EXPECT_GE(curve[k].spot, curve[k - 1].spot - 2e-3) << curve[k].time;
+  }
+  EXPECT_NEAR(curve[0].time, 0.0, 1e-12);
+  EXPECT_NEAR(curve[0].spot, priced(on_mesh(256, 64), {c})[0].exercise_boundary, 1e-12);
+  // At and below it the price is the payoff, above it is more.
+  for (const double factor : {0.98, 1.02}) {
+    c.spot = factor * curve[0].spot;
+    const double time_value = priced(on_mesh(256, 64), {c})[0].price - payoff(c);
+    EXPECT_EQ(time_value > 1e-9, factor > 1.0) << time_value;
+  }
+  c.style = Style::european;
+  EXPECT_TRUE(create_pricer(backend, on_mesh(64, 16))->boundary(c).empty());
+}
+
+// Differences of prices, as far as these are smooth in the spot.
+TEST(OptionsProperty, GreeksAreSlopes) {
+  Contract c = contract_of(option_sets()[1], 3, Style::american);
+  for (const Type type : {Type::put, Type::call}) {
+    c.type = type;
+    c.dividend = 0.03;
+    const auto at = [&](double spot, double maturity) {
+      Contract moved = c;
+      moved.spot = spot;
+      moved.maturity = maturity;
+      return priced(on_mesh(512, 128), {moved})[0];
+    };
+    const double step = 0.02;
+    const Price here = at(1.1, 1.0), above = at(1.1 + step, 1.0), below = at(1.1 - step, 1.0);
+    EXPECT_NEAR(here.delta, (above.price - below.price) / (2 * step), 2e-3);
+    EXPECT_NEAR(here.gamma, (above.price - 2 * here.price + below.price) / (step * step), 2e-2);
+    EXPECT_NEAR(here.theta, -(at(1.1, 1.01).price - at(1.1, 0.99).price) / 0.02, 1e-3);
+  }
+}
+
 TEST(OptionsProperty, WhatCannotBeIsRefused) {
   Settings settings;
   settings.mesh = 33;

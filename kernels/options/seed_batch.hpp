@@ -1,0 +1,171 @@
+#pragma once
+
+#include "kernels/options/price_batch.hpp"
+
+namespace drogue::options {
+
+/// The grid of the dissertation's scheme: x in [-4, 4], the strike in the middle.
+inline constexpr double seed_reach = 4.0;
+
+/// Jumps as section 4.6.2 of the dissertation has them: exact masses of cells of the density, none within
+/// epsilon = h; the variance of those is diffusion. `jumps.left` and `left_price` are the B_l of Listing 4.6,
+/// what leaves the grid downwards; what leaves it upwards is worth nothing.
+template <class Workers, class R>
+KOKKOS_INLINE_FUNCTION Jumps<R> seed_jumps(const Workers& workers, const PutPack<R>& put, const Law<R>& law,
+                                           const Grid<R>& grid, const JumpsMemory<R>& memory) {
+  const int mesh = grid.mesh, nodes = node_count(mesh);
+  const R h = grid.h, beta = put.jump[2];
+  const WeightLayout<R> layout(mesh);
+  const R *s = law.s, *c = law.c;
+  // The integral over y > length, upwards (side 1) or downwards (-1), of e^{side k y} g.
+  const auto beyond = [=](R length, double side, double k) {
+    R sum = 0.0;
+    for (int q = 0; q < Mixture::size; ++q)
+      sum += c[q] * exponential_integral((s[q] - side * (beta + k)) * length);
+    return sum;
+  };
+  workers.each([=](int lane) {
+    for (int k = lane; k < layout.size(); k += lanes) memory.w[k] = 0.0;
+    for (int k = lane; k < nodes; k += lanes) memory.left[k] = memory.left_price[k] = 0.0;
+  });
+  workers.each([=](int lane) {
+    for (int d = 1 + lane; d <= mesh; d += lanes) {
+      const R near = d == 1 ? h : (d - 0.5) * h, far = (d + 0.5) * h;
+      memory.w[layout.place(d)] = beyond(near, 1.0, 0.0) - beyond(far, 1.0, 0.0);
+      memory.w[layout.place(-d)] = beyond(near, -1.0, 0.0) - beyond(far, -1.0, 0.0);
+      if (d < mesh) {
+        memory.left[d] = beyond((d + 0.5) * h, -1.0, 0.0);
+        memory.left_price[d] = exponential((double(d) - grid.strike) * h) * beyond((d + 0.5) * h, -1.0, 1.0);
+      }
+    }
+  });
+  Jumps<R> jumps{};
+  jumps.w = memory.w;
+  jumps.left = memory.left;
+  jumps.left_price = memory.left_price;
+  jumps.rate = beyond(h, 1.0, 0.0) + beyond(h, -1.0, 0.0);
+  R small = law.variance;
+  for (int q = 0; q < Mixture::size; ++q)
+    for (int side = -1; side <= 1; side += 2) {
+      const R decay = s[q] - double(side) * beta;
+      small = small - c[q] * (h + 1.0 / decay) / decay * exponential(-decay * h);
+    }
+  jumps.diffusion = 0.5 * (put.variance + small);
+  jumps.drift =
+      put.rate - put.dividend - jumps.diffusion - (beyond(h, 1.0, 1.0) + beyond(h, -1.0, 1.0) - jumps.rate);
+  return jumps;
+}
+
+/// The dissertation's scheme on `batch`: diffusion implicit, the rest explicit, steps of equal length, and
+/// f = max(payoff, f) after each. What it leaves open is chosen here: epsilon = h and the domain.
+template <class ExecutionSpace>
+struct SeedBatch {
+  using Batch = PriceBatch<ExecutionSpace>;
+  using R = typename Batch::R;
+  using Member = typename Batch::Member;
+  static constexpr int members = Batch::members;
+
+  Batch batch;
+
+  KOKKOS_FUNCTION void operator()(const Member& team) const {
+    const Memory<R> memory(team.team_scratch(batch.level).get_shmem_aligned(Memory<R>::bytes(batch.mesh), 64),
+                           batch.mesh);
+    if constexpr (members == 1 && !device::is_host<ExecutionSpace>) {
+      price(WarpWorkers<Member>{team}, memory, team.league_rank());
+    } else {
+      price(SerialWorkers<R>{}, memory, team.league_rank());
+    }
+  }
+
+  template <class Workers>
+  KOKKOS_INLINE_FUNCTION void price(const Workers& workers, const Memory<R>& memory, int group) const {
+    const int mesh = batch.mesh, steps = batch.steps, count = node_count(mesh), block = block_of(mesh);
+    workers.each([=, this](int lane) {
+      for (int k = lane; k < members; k += lanes)
+        memory.puts[k] = put_of(batch.contracts(batch.place(group, k)));
+    });
+    const PutPack<R> put = pack_of<R>(memory.puts);
+    const Law<R> law = law_of(workers, put, memory.puts, batch.panels.data(), batch.panel_slot.data(),
+                              memory.s, memory.c, memory.slot);
+    const Grid<R> grid{mesh, R(2.0 * seed_reach / mesh), R(0.5 * mesh)};
+    const Jumps<R> jumps = seed_jumps(workers, put, law, grid,
+                                      {memory.w, memory.row(9, count), memory.row(10, count), memory.slot});
+    R *now = memory.row(0, count), *value = memory.row(1, count);
+    R *sum = memory.row(2, count), *other = memory.row(3, count), *y = memory.row(4, count),
+      *payoff = memory.row(5, count), *none = memory.row(6, count), *change = memory.row(7, count);
+    workers.each([=](int lane) {
+      for (int i = lane; i < count; i += lanes) {
+        const R paid = device::maximum(R(0.0), 1.0 - exponential((double(i) - grid.strike) * grid.h));
+        payoff[i] = paid;
+        value[i] = i < mesh ? paid : R(0.0);
+        now[i] = change[i] = 0.0;
+        none[i] = -unbounded;
+      }
+    });
+    const R h = grid.h, dt = put.maturity * (1.0 / steps), lowest = -seed_reach;
+    const R implicit = jumps.diffusion / (h * h), diagonal = 1.0 / dt + 2.0 * implicit;
+    const R pivot = 0.5 * (diagonal + device::square_root(diagonal * diagonal - 4.0 * implicit * implicit));
+    const R inverse = 1.0 / pivot, slope = 0.5 * jumps.drift / h, stay = -jumps.rate - put.rate;
+    const R early = put.early;
+    const auto deep = [=](R tau) {
+      const Certain<R> late{exponential(-put.rate * tau), exponential(-put.dividend * tau)};
+      return Certain<R>{device::select(early > R(0.0), R(1.0), late.strike),
+                        device::select(early > R(0.0), R(1.0), late.asset)};
+    };
+    for (int n = 1; n <= steps; ++n) {
+      convolve(workers, mesh, jumps.w, value, sum, other);
+      const Certain<R> begun = deep(double(n - 1) * dt), ended = deep(double(n) * dt);
+      workers.each([=, &jumps](int lane) {
+        for (int m = 0; m < block; ++m) {
+          const int i = 1 + lane * block + m;
+          if (i >= mesh) {
+            y[i] = 0.0;
+            continue;
+          }
+          const R outside = begun.strike * jumps.left[i] - begun.asset * jumps.left_price[i];
+          const R right = value[i] / dt + slope * (value[i + 1] - value[i - 1]) + stay * value[i] +
+                          (sum[i] + other[i]) + outside;
+          y[i] = right * inverse;
+        }
+      });
+      recur_backward(workers, y, 1, block, implicit * inverse, memory.slot);
+      const R edge = ended.strike - ended.asset * exponential(lowest);
+      recur_forward(workers, now, y, none, 1, block, mesh, implicit * inverse, edge, memory.maps);
+      workers.each([=](int lane) {
+        if (lane == 0) now[0] = edge;
+        for (int i = 1 + lane; i < mesh; i += lanes) {
+          now[i] = device::select(early > R(0.0), device::maximum(payoff[i], now[i]), now[i]);
+          change[i] = (now[i] - value[i]) / dt;
+        }
+      });
+      R* const swapped = now;
+      now = value;
+      value = swapped;
+    }
+    const Certain<R> ended = deep(put.maturity);
+    workers.each([=, this](int lane) {
+      for (int k = lane; k < members; k += lanes) {
+        if (group * members + k >= batch.count) continue;
+        const int at = batch.place(group, k);
+        const Answer answer =
+            answer_of(memory.puts[k], {reinterpret_cast<const double*>(value) + k, members},
+                      {reinterpret_cast<const double*>(change) + k, members},
+                      {mesh,
+                       mesh / 2,
+                       2.0 * seed_reach / mesh,
+                       {device::Access<R>::lane(ended.strike, k), device::Access<R>::lane(ended.asset, k)}});
+        Price price = price_of(batch.contracts(at), memory.puts[k], answer, answer, 0.0, mesh, steps, 1.0);
+        price.error = device::portable::not_a_number();
+        batch.prices(at) = price;
+      }
+    });
+  }
+};
+
+/// Enqueues the launch.
+template <class ExecutionSpace>
+void seed_batch(const ExecutionSpace& space, const PriceBatch<ExecutionSpace>& batch) {
+  launch_batch(space, "drogue::options::seed", SeedBatch<ExecutionSpace>{batch}, batch.count, batch.mesh);
+}
+
+}  // namespace drogue::options
