@@ -61,6 +61,10 @@ KOKKOS_INLINE_FUNCTION Answer answer_of(const Put& put, const Column& value, con
   }
   if (put.early) answer.boundary = boundary_of(value, strike, h);
   const double t = x / h + strike;
+  if (!(t == t)) {  // no cell has such a number
+    answer.value = device::portable::not_a_number();
+    return answer;
+  }
   if (put.early && (x <= answer.boundary) && !(put.split && t < 1.0)) {
     if (!put.split ||
         value(static_cast<int>(t)) - (1.0 - exponential((static_cast<int>(t) - strike) * h)) < 1e-13)

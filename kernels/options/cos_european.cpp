@@ -10,7 +10,7 @@ namespace drogue::options {
 namespace {
 
 using Complex = std::complex<double>;
-constexpr Complex i{0.0, 1.0};
+constexpr std::complex<double> unit_up{0.0, 1.0};
 
 /// Of integrals over the contour in the strip -1 < Im u < 0: of the value and its derivatives by log spot
 /// (twice) and maturity.
@@ -25,9 +25,9 @@ struct Contour {
   double tilt, centre, scale, step;
 
   [[nodiscard]] Complex point(double y) const {
-    return bends ? i * centre + scale * std::sinh(i * tilt + y) : Complex(y, -0.5);
+    return bends ? unit_up * centre + scale * std::sinh(unit_up * tilt + y) : Complex(y, -0.5);
   }
-  [[nodiscard]] Complex slope(double y) const { return bends ? scale * std::cosh(i * tilt + y) : 1.0; }
+  [[nodiscard]] Complex slope(double y) const { return bends ? scale * std::cosh(unit_up * tilt + y) : 1.0; }
 };
 
 constexpr double digits = 40.0;  // of exp(-digits) are the errors of step and cut
@@ -46,8 +46,8 @@ Contour contour_of(const Contract& c, double log_moneyness) {
   return {true, tilt, -scale * high, scale, 2.0 * pi * half_width / digits};
 }
 
-/// integral of exp(i u log_moneyness + T psi(u)) / (u (u + i)) du / (2 pi), by the trapezoid rule. The halves
-/// right and left of the imaginary axis are conjugate.
+/// integral of exp(i u log_moneyness + T psi(u)) / (u (u + unit_up)) du / (2 pi), by the trapezoid rule. The
+/// halves right and left of the imaginary axis are conjugate.
 Integrals integrate(const Contract& c, const Exponent& psi, double log_moneyness) {
   const Contour contour = contour_of(c, log_moneyness + c.maturity * psi.drift());
   Integrals sums;
@@ -57,10 +57,11 @@ Integrals integrate(const Contract& c, const Exponent& psi, double log_moneyness
     const double y = sums.nodes * contour.step;
     const Complex u = contour.point(y);
     const Complex exponent = psi(u);
-    const Complex value = std::exp(i * u * log_moneyness + c.maturity * exponent) * contour.slope(y) *
-                          (contour.step / std::numbers::pi / (sums.nodes == 0 ? 2.0 : 1.0)) / (u * (u + i));
+    const Complex value = std::exp(unit_up * u * log_moneyness + c.maturity * exponent) * contour.slope(y) *
+                          (contour.step / std::numbers::pi / (sums.nodes == 0 ? 2.0 : 1.0)) /
+                          (u * (u + unit_up));
     sums.value += std::real(value);
-    sums.first += std::real(i * u * value);
+    sums.first += std::real(unit_up * u * value);
     sums.second += std::real(-u * u * value);
     sums.by_maturity += std::real(exponent * value);
     small = std::abs(value) * (1.0 + std::abs(u * u)) < 1e-18 || std::abs(value) < 1e-30 ? small + 1 : 0;

@@ -10,7 +10,7 @@ namespace drogue::options {
 namespace {
 
 using Complex = std::complex<double>;
-constexpr Complex i{0.0, 1.0};
+constexpr std::complex<double> imaginary{0.0, 1.0};
 
 /// How far from 0 the exponent is analytic; that of the dual process from -i.
 double radius_of(const Contract& c, bool is_dual) {
@@ -36,14 +36,14 @@ Exponent::Exponent(const Contract& contract) : _contract(contract) {
     const double z = delta * std::exp(0.5 * _log_gamma_squared);
     if (delta > 0.0) _log_k = std::real(log_bessel_k(lambda, z)) - z;
   }
-  _drift = contract.rate - contract.dividend - 0.5 * contract.variance - std::real(jumps(-i));
+  _drift = contract.rate - contract.dividend - 0.5 * contract.variance - std::real(jumps(-imaginary));
 }
 
 /// Barndorff-Nielsen (1977): (gamma^2 / w)^(lambda/2) K_lambda(delta sqrt w) / K_lambda(delta gamma), with
 /// w = alpha^2 - (beta + i u)^2 in two factors, each of which keeps to its branch.
 Complex Exponent::hyperbolic(Complex u) const {
   const auto [lambda, alpha, beta, delta] = _contract.jump;
-  const Complex log_w = std::log(alpha - beta - i * u) + std::log(alpha + beta + i * u);
+  const Complex log_w = std::log(alpha - beta - imaginary * u) + std::log(alpha + beta + imaginary * u);
   if (delta == 0.0) return lambda * (_log_gamma_squared - log_w);
   const Complex z = delta * std::exp(0.5 * log_w);
   return 0.5 * lambda * (_log_gamma_squared - log_w) + (log_bessel_k(lambda, z) - z) - _log_k;
@@ -57,15 +57,16 @@ Complex Exponent::jumps(Complex u) const {
     case Model::black_scholes:
       return 0.0;
     case Model::merton:
-      return jump[0] * (std::exp(i * u * jump[1] - 0.5 * jump[2] * jump[2] * u * u) - 1.0);
+      return jump[0] * (std::exp(imaginary * u * jump[1] - 0.5 * jump[2] * jump[2] * u * u) - 1.0);
     case Model::kou:
-      return jump[0] * (jump[1] * i * u / (jump[2] - i * u) - (1.0 - jump[1]) * i * u / (jump[3] + i * u));
+      return jump[0] * (jump[1] * imaginary * u / (jump[2] - imaginary * u) -
+                        (1.0 - jump[1]) * imaginary * u / (jump[3] + imaginary * u));
   }
   return 0.0;
 }
 
 Complex Exponent::operator()(Complex u) const {
-  return _is_dual ? primal(-u - i) - (_contract.rate - _contract.dividend) : primal(u);
+  return _is_dual ? primal(-u - imaginary) - (_contract.rate - _contract.dividend) : primal(u);
 }
 
 Exponent Exponent::dual() const {
@@ -75,7 +76,7 @@ Exponent Exponent::dual() const {
 }
 
 Complex Exponent::primal(Complex u) const {
-  return i * _drift * u - 0.5 * _contract.variance * u * u + jumps(u);
+  return imaginary * _drift * u - 0.5 * _contract.variance * u * u + jumps(u);
 }
 
 /// Cauchy's integrals of psi on a circle about 0.

@@ -70,9 +70,8 @@ KOKKOS_INLINE_FUNCTION const R* solve(const Workers& workers, const PutPack<R>& 
   // over nodes amount to, lacks there.
   const R spread = 2.0 * jumps.diffusion * put.maturity;
   const R kink = h * (1.0 / 12) * spread / (spread + h * h);
-  workers.each([=, &put](int lane) {
+  workers.each([=](int lane) {
     for (int k = lane; k < 9 * count; k += lanes) memory.nodes[k] = 0.0;
-    (void)put;
   });
   workers.each([=, &put](int lane) {
     for (int i = lane; i < mesh; i += lanes) {

@@ -143,6 +143,10 @@ class Prices(options_program.OptionsTest):
             bar = float(one["error"]) + float(other["error"])
             self.assertAlmostEqual(float(one["price"]), float(other["price"]), delta=bar, msg=one["id"])
 
+    def test_the_dissertations_scheme(self):
+        self.price(0, batch([row("a", style="american")]), "--method", "seed", "--mesh", "128", "--steps", "128")
+        self.assertAlmostEqual(0.239004005, float(self.prices()[0]["price"]), delta=5e-3)
+
     def test_boundary(self):
         lines = [row("put", style="american"), row("europe"), row("wait", style="american", type="call")]
         self.price(0, batch(lines), "--boundary", "b.csv")

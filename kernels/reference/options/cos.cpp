@@ -7,49 +7,50 @@
 namespace drogue::reference {
 namespace {
 
-using Real = long double;
-using Complex = std::complex<Real>;
-constexpr Real pi = std::numbers::pi_v<Real>;
+using Long = long double;
+using LongComplex = std::complex<Long>;
+constexpr Long half_turn = std::numbers::pi_v<Long>;
 
-Complex jump_exponent(const LevyAsset& a, Complex u) {
-  const Complex shifted = Real(a.beta) + Complex(0, 1) * u;
-  const Complex w = Real(a.alpha) * a.alpha - shifted * shifted;
-  const Real w0 = (Real(a.alpha) - a.beta) * (Real(a.alpha) + a.beta);
-  const Complex power = Real(a.lambda) / 2 * (std::log(w0) - std::log(w));
-  if (a.delta == 0.0) return Real(2) * power;
-  const Complex z = Real(a.delta) * std::sqrt(w);
-  const Real z0 = Real(a.delta) * std::sqrt(w0);
+LongComplex jump_exponent(const LevyAsset& a, LongComplex u) {
+  const LongComplex shifted = Long(a.beta) + LongComplex(0, 1) * u;
+  const LongComplex w = Long(a.alpha) * a.alpha - shifted * shifted;
+  const Long w0 = (Long(a.alpha) - a.beta) * (Long(a.alpha) + a.beta);
+  const LongComplex power = Long(a.lambda) / 2 * (std::log(w0) - std::log(w));
+  if (a.delta == 0.0) return Long(2) * power;
+  const LongComplex z = Long(a.delta) * std::sqrt(w);
+  const Long z0 = Long(a.delta) * std::sqrt(w0);
   return power + std::log(scaled_bessel_k(a.lambda, z)) - z - std::log(scaled_bessel_k(a.lambda, z0)) + z0;
 }
 
 }  // namespace
 
 std::complex<long double> scaled_bessel_k(long double nu, std::complex<long double> z) {
-  const Real step = 1.0L / 64;
-  Complex sum = 0.5L;
+  const Long step = 1.0L / 64;
+  LongComplex sum = 0.5L;
   for (int k = 1;; ++k) {
-    const Real t = step * static_cast<Real>(k);
-    const Complex term = std::exp(-z * (std::cosh(t) - 1)) * std::cosh(nu * t);
+    const Long t = step * static_cast<Long>(k);
+    const LongComplex term = std::exp(-z * (std::cosh(t) - 1)) * std::cosh(nu * t);
     sum += term;
     if (std::real(z) * (std::cosh(t) - 1) > 60 + std::abs(nu) * t) return step * sum;
   }
 }
 
 std::complex<long double> characteristic_exponent(const LevyAsset& a, std::complex<long double> u) {
-  const Complex i(0, 1);
-  const Complex drift = Real(a.rate) - a.dividend - Real(a.variance) / 2 - jump_exponent(a, -i);
-  return i * u * drift - Real(a.variance) / 2 * u * u + jump_exponent(a, u);
+  const LongComplex i(0, 1);
+  const LongComplex drift = Long(a.rate) - a.dividend - Long(a.variance) / 2 - jump_exponent(a, -i);
+  return i * u * drift - Long(a.variance) / 2 * u * u + jump_exponent(a, u);
 }
 
 std::vector<double> bermudan_put(const LevyAsset& asset, double maturity, int dates, double low, double width,
                                  int terms, int nodes, const std::vector<double>& x) {
-  const Real dt = Real(maturity) / dates;
-  std::vector<Complex> growth;
+  const Long dt = Long(maturity) / dates;
+  std::vector<LongComplex> growth;
   for (int k = 0; k < terms; ++k)
-    growth.push_back(std::exp(dt * (characteristic_exponent(asset, pi * k / width) - Real(asset.rate))));
-  std::vector<Real> cosine(4 * static_cast<std::size_t>(nodes));
+    growth.push_back(
+        std::exp(dt * (characteristic_exponent(asset, half_turn * k / width) - Long(asset.rate))));
+  std::vector<Long> cosine(4 * static_cast<std::size_t>(nodes));
   for (std::size_t k = 0; k < cosine.size(); ++k)
-    cosine[k] = std::cos(pi * static_cast<Real>(k) / (2 * nodes));
+    cosine[k] = std::cos(half_turn * static_cast<Long>(k) / (2 * nodes));
   const auto cos_at = [&](int k, int m) {  // cos(k pi (m + 1/2) / nodes)
     return cosine[static_cast<std::size_t>(k) * (2 * static_cast<std::size_t>(m) + 1) % cosine.size()];
   };
@@ -59,21 +60,21 @@ std::vector<double> bermudan_put(const LevyAsset& asset, double maturity, int da
                    static_cast<std::size_t>(nodes)) %
                   turn];
   };
-  std::vector<Real> value(static_cast<std::size_t>(nodes));
+  std::vector<Long> value(static_cast<std::size_t>(nodes));
   const auto payoff = [&](int m) {
-    return std::max(1 - std::exp(Real(low) + Real(width) * (m + 0.5L) / nodes), Real(0));
+    return std::max(1 - std::exp(Long(low) + Long(width) * (m + 0.5L) / nodes), Long(0));
   };
   for (int m = 0; m < nodes; ++m) value[static_cast<std::size_t>(m)] = payoff(m);
-  std::vector<Real> coefficient(static_cast<std::size_t>(terms));
+  std::vector<Long> coefficient(static_cast<std::size_t>(terms));
   for (int date = dates; date > 0; --date) {
     for (int k = 0; k < terms; ++k) {
-      Real sum = 0;
+      Long sum = 0;
       for (int m = 0; m < nodes; ++m) sum += value[static_cast<std::size_t>(m)] * cos_at(k, m);
       coefficient[static_cast<std::size_t>(k)] = sum * (k == 0 ? 1 : 2) / nodes;
     }
     if (date == 1) break;
     for (int m = 0; m < nodes; ++m) {
-      Real wait = 0;
+      Long wait = 0;
       for (int k = 0; k < terms; ++k)
         wait += coefficient[static_cast<std::size_t>(k)] *
                 (std::real(growth[static_cast<std::size_t>(k)]) * cos_at(k, m) -
@@ -83,11 +84,11 @@ std::vector<double> bermudan_put(const LevyAsset& asset, double maturity, int da
   }
   std::vector<double> values;
   for (const double at : x) {
-    Real sum = 0;
+    Long sum = 0;
     for (int k = 0; k < terms; ++k)
       sum += coefficient[static_cast<std::size_t>(k)] *
              std::real(growth[static_cast<std::size_t>(k)] *
-                       std::exp(Complex(0, pi * k * (Real(at) - low) / width)));
+                       std::exp(LongComplex(0, half_turn * k * (Long(at) - low) / width)));
     values.push_back(static_cast<double>(sum));
   }
   return values;
