@@ -42,6 +42,7 @@ struct Case {
 std::vector<Case> gas_cases(bool quick);
 std::vector<Case> fabric_cases(bool quick);
 std::vector<Case> contact_cases(bool quick);
+std::vector<Case> options_cases(bool quick);
 std::vector<Case> ceiling_cases();
 std::vector<Case> all_cases(bool quick);
 
