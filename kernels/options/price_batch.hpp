@@ -139,10 +139,11 @@ struct PriceBatch {
   }
 };
 
-/// Where a team's memory is: in that of its multiprocessor, if it fits, else (and on hosts) beside.
+/// Where a team's memory is: in that of its multiprocessor, if Kokkos has so much for a team, else (and on
+/// hosts) beside.
 template <class ExecutionSpace>
 [[nodiscard]] int scratch_level(int mesh) {
-  constexpr std::size_t most_shared = 100 * 1024;
+  const auto most_shared = static_cast<std::size_t>(Kokkos::TeamPolicy<ExecutionSpace>::scratch_size_max(0));
   return !device::is_host<ExecutionSpace> && Memory<Number<ExecutionSpace>>::bytes(mesh) + 64 <= most_shared
              ? 0
              : 1;
