@@ -102,6 +102,21 @@ TEST(FabricContact, AStackOfThreeComesToRest) {
   EXPECT_LT(lowest, 1.1 * s.p.contact.thickness);
 }
 
+TEST(FabricContact, PartsThatStartTooNearPartSlowlyWhateverTheStep) {
+  for (const double dt : {5e-5, 5e-6}) {
+    Sheets s;
+    s.add(6, 0.06, level(0.0, 0.0, 0.0), {0.0, 0.0, 0.0});
+    s.add(5, 0.05, level(0.003, 0.004, 0.0005), {0.0, 0.0, 0.0});
+    s.p.dt = dt;
+    double mass = 0.0;
+    for (const double m : s.p.mass) mass += m;
+    const Outcome o = watched(s, 100, 100);
+    ASSERT_FALSE(o.failure);
+    EXPECT_GT(o.work, 0.0) << dt;
+    EXPECT_LT(o.work, 0.5 * mass * std::pow(s.p.contact.thickness / 0.1, 2)) << dt;  // within 0.1 s
+  }
+}
+
 /// A sheet that lies on a plane leaning by an angle, released at `speed` downhill; its way and speed.
 std::array<double, 2> slid(double angle, double friction, double speed, int steps) {
   const double c = std::cos(angle), d = std::sin(angle);
