@@ -137,6 +137,12 @@ class Failures(springs_program.SpringsTest):
         self.assertIn(told["message"], message)
         self.assertTrue((self.folder / "out/restart.h5").exists())
 
+    def test_a_level_set_that_is_no_number(self):
+        """Cloth that falls where it is none neither passes nor freezes."""
+        message = self.expect(4, self.write(springs_program.FALLING), "--quiet", "--backend", "serial", "--out", "out", sets=[
+            'contact={objects=[{kind="level-set",expression="z+0.06+0*sqrt(z+0.03)"}]}', "verify={}"]).stderr
+        self.assertRegex(message, r"level-set of contact.objects, or its slope, is not a number at vertex \d+ .* at step \d+")
+
     def test_verification_fails_where_it_must(self):
         """A fault in what is computed or in what is expected is found by each check."""
         faults = {
