@@ -22,7 +22,7 @@ void declare_verify(Table& table, Verify& verify) {
       "gives");
   bar("intersections", verify.intersections,
       "Largest number of parts of cloth that meet one another or a body, at rows of history.csv and at the "
-      "end, that passes: 0");
+      "end, that passes: 0. Not with a level-set");
   bar("penetration", verify.penetration,
       "Largest part of contact.thickness that a vertex lacks of its distance from a body at the end that "
       "passes");

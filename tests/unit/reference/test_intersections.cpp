@@ -91,6 +91,10 @@ TEST(ReferenceBodies, TrianglesEnterWhereTheirPointsDo) {
       fabric::Body smaller = body;
       smaller.radius = 0.35;
       EXPECT_TRUE(in || !enters(smaller, t));
+      const std::array<Place, 2> side = {t[0], t[1]};
+      EXPECT_EQ(enters(body, side), enters(body, std::array{t[0], t[1], t[1]}));
+      EXPECT_TRUE(in || !enters(body, side));
+      EXPECT_TRUE(enters(body, side) || !sampled(body, {t[0], t[1], t[1]}));
     }
     EXPECT_GT(entered, 20);
     EXPECT_GT(missed, 20);
