@@ -3,6 +3,7 @@
 import json
 import math
 import os
+import resource
 import sys
 import unittest
 
@@ -40,6 +41,15 @@ class CommandLine(springs_program.SpringsTest):
         if "cuda" in gas_program.backends():
             self.skipTest("a CUDA build has that backend")
         self.assertIn("cuda", self.expect(77, self.write(DRUM), "--backend", "cuda").stderr)
+
+
+    def test_a_fine_mesh_is_looked_through_in_a_moment(self):
+        """Flat cloth, whose parts near one another lie in a plane, so that numbers that round cannot tell on which
+        side of one another they are."""
+        before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
+        self.expect(0, self.write(springs_program.FALLING), "--check", sets=[
+            "mesh.rectangle.vertices=90000", "contact={self=true,thickness=1e-4}"])
+        self.assertLess(resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before, 15.0)
 
 
 class RunDirectory(springs_program.SpringsTest):
