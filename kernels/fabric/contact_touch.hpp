@@ -4,22 +4,22 @@
 
 namespace drogue::fabric {
 
-/// Parts nearer than the thickness win back what they lack within `recovery_time`, s. By a share of it a
-/// step, as in Bridson, Fedkiw and Anderson 2002, 7.2 (0.1 h / dt), a shorter step would throw them apart
-/// faster.
-inline constexpr double recovery_time = 0.1;
+/// What parts nearer than the thickness are given to part, m/s^2: a speed that would lift them by what they
+/// lack against it, no more. About gravity, by which most come too near. A share of the lack a step, as in
+/// Bridson, Fedkiw and Anderson 2002, 7.2 (0.1 h / dt), throws them apart faster the shorter the step is.
+inline constexpr double recovery = 10.0;
 
-/// The most that they win back in a step where they press on one another, as a share of what they lack.
+/// The most of their lack that parts win back in a step.
 inline constexpr double most_recovery = 0.1;
 
 /// The least velocity, m/s, along the normal of parts `distance` apart whose velocity is `closing`, negative
-/// where they approach: they may come as near as the thickness, and part where they are nearer, by no more
-/// than thickness / recovery_time or half of the speed of their approach. That half is what a force that
+/// where they approach: they may come as near as the thickness, and part where they are nearer, at no more
+/// than sqrt(2 recovery thickness) and half of the speed of their approach. That half is what a force that
 /// presses them together all the time takes of the way in a step; it takes from the energy, whatever dt.
 KOKKOS_INLINE_FUNCTION double wanted_velocity(double distance, double thickness, double closing, double dt) {
   const double lack = thickness - distance;
   if (!(lack > 0.0)) return lack / dt;
-  const double back = lack / recovery_time + (closing < 0.0 ? -0.5 * closing : 0.0),
+  const double back = Kokkos::sqrt(2.0 * recovery * lack) + (closing < 0.0 ? -0.5 * closing : 0.0),
                most = most_recovery * lack / dt;
   return back < most ? back : most;
 }

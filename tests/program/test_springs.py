@@ -184,7 +184,7 @@ class Failures(springs_program.SpringsTest):
         return self.history("out")
 
     def test_contact_that_gives_energy_is_told_and_is_bounded_whatever_the_step(self):
-        """Cloth starts nearer to a table than the thickness: it is lifted, at no more than thickness / 0.1 s."""
+        """Cloth starts nearer to a table than the thickness: it is lifted by no more than it lacks."""
         for dt in (3e-4, 3e-5):
             with self.subTest(dt):
                 rows = self.assert_fails_alone(
@@ -192,7 +192,7 @@ class Failures(springs_program.SpringsTest):
                     'contact.objects=[{kind="disk",centre=[0.25,0.25,-0.0005],radius=0.15,friction=0.1}]',
                     f"time.dt={dt}", "time.end_time=0.003", "output={history_every=1}")
                 self.assertGreater(rows["contact_work"][-1], 0.0)
-                self.assertLess(max(rows["kinetic"]), 0.5 * 0.2 * 0.5**2 * (0.003 / 0.1) ** 2)
+                self.assertLess(max(rows["kinetic"]), 0.2 * 0.5**2 * 10.0 * 0.0025)
 
     def test_cloth_that_is_driven_through_a_body_is_told(self):
         rows = self.assert_fails_alone(

@@ -113,7 +113,7 @@ TEST(FabricContact, PartsThatStartTooNearPartSlowlyWhateverTheStep) {
     const Outcome o = watched(s, 100, 100);
     ASSERT_FALSE(o.failure);
     EXPECT_GT(o.work, 0.0) << dt;
-    EXPECT_LT(o.work, 0.5 * mass * std::pow(s.p.contact.thickness / 0.1, 2)) << dt;  // within 0.1 s
+    EXPECT_LT(o.work, mass * 10.0 * 0.0015) << dt;  // as if lifted by what they lack, 1.5 mm
   }
 }
 
