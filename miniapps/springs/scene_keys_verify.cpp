@@ -15,8 +15,8 @@ void declare_verify(Table& table, Verify& verify) {
     table.value(name, scene::real_codec(place), help).at_least(0.0);
   };
   bar("energy_drift", verify.energy_drift,
-      "Largest change of the energy over the largest kinetic energy, there or left from the start, that "
-      "passes");
+      "Largest change of the energy, over the largest kinetic energy that rows have or released energy would "
+      "make, that passes");
   bar("energy_balance", verify.energy_balance,
       "The same after the work of contact, friction included, is taken off the energy; also what contact "
       "gives");

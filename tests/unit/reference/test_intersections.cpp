@@ -57,7 +57,7 @@ TEST(ReferenceIntersections, OfAMeshLeaveOutWhatSharesAVertex) {
 }
 
 /// Whether the boxes about some corners overlap.
-bool near(const std::vector<Place>& a, const std::vector<Place>& b) {
+bool boxes_overlap(const std::vector<Place>& a, const std::vector<Place>& b) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const auto of = [axis](const Place& p) { return p[axis]; };
     if (of(std::ranges::min(a, {}, of)) > of(std::ranges::max(b, {}, of)) ||
@@ -103,7 +103,7 @@ TEST(ReferenceIntersections, AreThoseOfAllPairs) {
     std::size_t all = 0;
     for (const auto& [i, j] : segments)
       for (const auto& [a, b, c] : triangles)
-        if (i != a && i != b && i != c && near({at(i), at(j)}, {at(a), at(b), at(c)}) &&
+        if (i != a && i != b && i != c && boxes_overlap({at(i), at(j)}, {at(a), at(b), at(c)}) &&
             meet({at(i), at(j)}, {at(a), at(b), at(c)}))
           ++all;
     EXPECT_EQ(intersections(x, triangles, lines).size(), all) << draw;
