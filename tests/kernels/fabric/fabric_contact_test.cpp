@@ -216,6 +216,20 @@ TEST(FabricContact, ALevelSetIsTheBodyItDescribes) {
   EXPECT_LT(apart, 2e-3);
 }
 
+TEST(FabricContact, ALevelSetThatIsNoNumberIsTold) {
+  Body body;
+  body.kind = BodyKind::level_set;
+  body.level_set = postfix({"z", 1.0, "+", 0.0, "z", "sqrt", "*", "+"});  // far away, and none below z = 0
+  Sheets s;
+  s.p.contact.self = false;
+  s.add(4, 0.03, level(0.0, 0.0, 0.01), {0.0, 0.0, -1.0});
+  s.p.contact.bodies = {body};
+  const Outcome o = watched(s, 300, 10);
+  ASSERT_TRUE(o.failure);
+  EXPECT_EQ(o.failure->trouble, Trouble::no_number);
+  EXPECT_NEAR(static_cast<double>(o.failure->step), 200.0, 2.0);  // 10 mm at 1 m/s in steps of 50 us
+}
+
 TEST(FabricContact, ASolverThatGoesOnFromAStateHasTheSameBits) {
   Sheets s = folded(3.0);
   const auto whole = create_solver(backend, s.p);
