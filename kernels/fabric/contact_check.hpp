@@ -136,7 +136,9 @@ struct CheckFunctor {
           for (int k = 0; k < 2; ++k)
             distance[k] =
                 level_clearance(body, own.from[0] + (1.0 * k) * own.way[0], 0.01 * table.thickness).distance;
-          keeps_out = distance[1] > least_distance(distance[0], table.thickness);
+          const bool told = distance[0] == distance[0] && distance[1] == distance[1];
+          if (!told && strayed < lost_beyond) table.raise(table.steps(), Trouble::no_number, i);
+          keeps_out = !told || distance[1] > least_distance(distance[0], table.thickness);
         } else {
           const auto distance_at = [&](double part) {
             return clearance(body, own.from[0] + part * own.way[0]).distance;

@@ -4,14 +4,24 @@
 
 namespace drogue::fabric {
 
-/// Share of what a touch lacks of the thickness that it is to win back in a step.
-inline constexpr double recovery = 0.1;
+/// What parts nearer than the thickness are given to part, m/s^2: a speed that would lift them by what they
+/// lack against it, no more. About gravity, by which most come too near. A share of the lack a step, as in
+/// Bridson, Fedkiw and Anderson 2002, 7.2 (0.1 h / dt), throws them apart faster the shorter the step is.
+inline constexpr double recovery = 10.0;
 
-/// The least velocity, m/s, along the normal of parts `distance` apart: they may come as near as the
-/// thickness, and part where they are nearer.
-KOKKOS_INLINE_FUNCTION double wanted_velocity(double distance, double thickness, double dt) {
+/// The most of their lack that parts win back in a step.
+inline constexpr double most_recovery = 0.1;
+
+/// The least velocity, m/s, along the normal of parts `distance` apart whose velocity is `closing`, negative
+/// where they approach: they may come as near as the thickness, and part where they are nearer, at no more
+/// than sqrt(2 recovery thickness) and half of the speed of their approach. That half is what a force that
+/// presses them together all the time takes of the way in a step; it takes from the energy, whatever dt.
+KOKKOS_INLINE_FUNCTION double wanted_velocity(double distance, double thickness, double closing, double dt) {
   const double lack = thickness - distance;
-  return (lack > 0.0 ? recovery * lack : lack) / dt;
+  if (!(lack > 0.0)) return lack / dt;
+  const double back = Kokkos::sqrt(2.0 * recovery * lack) + (closing < 0.0 ? -0.5 * closing : 0.0),
+               most = most_recovery * lack / dt;
+  return back < most ? back : most;
 }
 
 /// Vectors A and B such that k_i = a_i . t, with a_i = `lever_of` of them, is a couple along the normal n
@@ -59,7 +69,7 @@ struct TouchFunctor {
       if (touch.share[slot] != 0.0)
         closing +=
             touch.share[slot] * dot(load_points<double>(table.start_v, touch.vertex[slot]), touch.normal);
-    touch.wanted = wanted_velocity(distance, table.thickness, table.dt);
+    touch.wanted = wanted_velocity(distance, table.thickness, closing, table.dt);
     // Neighbours may yet drive them together.
     if (distance > table.thickness && closing > 0.5 * touch.wanted) return;
     const int number = Kokkos::atomic_fetch_add(&table.progress(0).touches, 1);
@@ -106,7 +116,8 @@ struct TouchFunctor {
       const Clearance clear = body.kind == BodyKind::level_set
                                   ? level_clearance(body, own, 0.01 * table.thickness)
                                   : clearance(body, own);
-      if (clear.distance > table.thickness + step_reach()) continue;
+      // Not a number either: the check has told of it.
+      if (!(clear.distance <= table.thickness + step_reach())) continue;
       Touch touch = blank(TouchKind::vertex_body, i, b, body.friction);
       touch.vertex[0] = i, touch.share[0] = 1.0, touch.normal = clear.away;
       keep(touch, clear.distance);

@@ -22,6 +22,7 @@ enum class Trouble {
   crossing,   ///< parts of cloth, or cloth and a body, that no zone keeps from crossing
   too_fast,   ///< a vertex moved farther in a step than contact looks
   too_dense,  ///< more parts near one another than there is room for
+  no_number,  ///< the expression of a level set, or its slope, is none where a vertex is
 };
 
 /// Where a state ceased to be one.

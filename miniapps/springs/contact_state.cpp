@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "common/expression/expression.hpp"
 #include "kernels/reference/fabric/bodies.hpp"
@@ -30,8 +31,13 @@ void find_within(const SpringsScene& scene, std::size_t number, const std::vecto
   };
   if (object.kind == BodyKind::level_set) {
     const expression::Expression level(object.expression, {"x", "y", "z"});
-    for (std::size_t i = 0; i < x.size(); ++i)
-      if (level(x[i]) <= 0.0) meets("vertex", i);
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      const double value = level(x[i]);
+      if (std::isnan(value) && state.meeting.empty())
+        state.meeting = "contact.objects[" + std::to_string(number) +
+                        "].expression is not a number at vertex " + std::to_string(i);
+      if (!(value > 0.0)) meets("vertex", i);
+    }
     return;
   }
   const fabric::Body body = object.body();
@@ -43,7 +49,11 @@ void find_within(const SpringsScene& scene, std::size_t number, const std::vecto
   const fabric::Mesh& mesh = scene.mesh;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const std::vector<Vector> at = places(x, mesh.triangles[t]);
-    if (reference::enters(body, {at[0], at[1], at[2]})) meets("face", t + 1);
+    if (reference::enters(body, std::array{at[0], at[1], at[2]})) meets("face", t + 1);
+  }
+  for (std::size_t k = 0; k < mesh.lines.size(); ++k) {
+    const auto end = [&](std::size_t which) { return x[static_cast<std::size_t>(mesh.lines[k][which])]; };
+    if (reference::enters(body, std::array{end(0), end(1)})) meets("line", k + 1);
   }
 }
 

@@ -65,14 +65,17 @@ void check_verify(const Table& root, const SpringsScene& scene) {
   for (const auto& [name, bar] : {std::pair{"verify.energy_balance", verify.energy_balance},
                                   std::pair{"verify.intersections", verify.intersections}})
     if (bar) require(root, meets, name, "contact.self or contact.objects");
-  if (verify.intersections) require(root, has_rows, "verify.intersections", rows);
+  const bool has_level_set = std::ranges::any_of(scene.contact.objects, [](const ContactObject& object) {
+    return object.kind == fabric::BodyKind::level_set;
+  });
+  if (verify.intersections) {
+    require(root, has_rows, "verify.intersections", rows);
+    require(root, !has_level_set, "verify.intersections",
+            "contact.objects without a level-set, which keeps out vertices alone");
+  }
   if (verify.penetration)
-    require(root,
-            !scene.contact.objects.empty() &&
-                std::ranges::none_of(
-                    scene.contact.objects,
-                    [](const ContactObject& object) { return object.kind == fabric::BodyKind::level_set; }),
-            "verify.penetration", "contact.objects, none of them a level-set");
+    require(root, !scene.contact.objects.empty() && !has_level_set, "verify.penetration",
+            "contact.objects, none of them a level-set");
   if (verify.momentum) require(root, has_rows, "verify.momentum", rows);
   if (verify.angular_momentum) require(root, has_rows, "verify.angular_momentum", rows);
   for (const auto& [name, bar] :

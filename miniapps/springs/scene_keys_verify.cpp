@@ -15,17 +15,19 @@ void declare_verify(Table& table, Verify& verify) {
     table.value(name, scene::real_codec(place), help).at_least(0.0);
   };
   bar("energy_drift", verify.energy_drift,
-      "Largest change of the energy over the largest kinetic energy that passes");
+      "Largest change of the energy, over the largest kinetic energy that rows have or released energy would "
+      "make, that passes");
   bar("energy_balance", verify.energy_balance,
-      "The same after the work of contact, friction included, is taken off the energy");
+      "The same after the work of contact, friction included, is taken off the energy; also what contact "
+      "gives");
   bar("intersections", verify.intersections,
       "Largest number of parts of cloth that meet one another or a body, at rows of history.csv and at the "
-      "end, that passes: 0");
+      "end, that passes: 0. Not with a level-set");
   bar("penetration", verify.penetration,
       "Largest part of contact.thickness that a vertex lacks of its distance from a body at the end that "
       "passes");
   bar("momentum", verify.momentum,
-      "Largest change of the momentum over the largest sqrt(2 M K) that passes; M mass, K kinetic energy");
+      "Largest change of the momentum over the largest sqrt(2 M K) that passes; M mass, K that energy");
   bar("angular_momentum", verify.angular_momentum,
       "Largest change of the angular momentum over the largest R sqrt(2 M K) that passes; R extent of the "
       "mesh");

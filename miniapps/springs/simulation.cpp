@@ -41,6 +41,8 @@ const char* lost_text(fabric::Trouble trouble) {
     case fabric::Trouble::too_dense:
       return "more parts of cloth are near one another than contact has room for; take a shorter time.dt, a "
              "smaller contact.thickness or a coarser mesh,";
+    case fabric::Trouble::no_number:
+      return "the expression of a level-set of contact.objects, or its slope, is not a number";
     default:
       return "the state is not finite";
   }

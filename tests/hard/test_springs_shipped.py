@@ -50,6 +50,25 @@ class Shipped(springs_program.SpringsTest):
         start = list(file.values("/steps/000000/position"))
         self.assertGreater(max(abs(x - along * X) for x, X in zip(start[0::3], rest[0::3], strict=True)), 1e-3)
 
+    def test_curtain(self):
+        """It is drawn together as cloth is: its top keeps its length in folds, which press on one another."""
+        self.expect(0, "curtain", "--backend", "serial", "--quiet")
+        file = self.fields("out/curtain")
+        numbers = list(file.values("/mesh/vertices"))
+        rest = [numbers[k:k + 3] for k in range(0, len(numbers), 3)]
+        top = sorted((i for i, place in enumerate(rest) if place[1] > 0.3 - 1e-9), key=lambda i: rest[i][0])
+        widths = []
+        for step in file.children("/steps"):
+            numbers = list(file.values(f"/steps/{step}/position"))
+            line = [numbers[3 * i:3 * i + 3] for i in top]
+            edges = [math.dist(a, b) for a, b in zip(line, line[1:])]
+            self.assertAlmostEqual(0.6, sum(edges), delta=0.03)
+            for edge in edges:
+                self.assertAlmostEqual(0.6 / len(edges), edge, delta=0.1 * edge)
+            widths.append(line[-1][0] - line[0][0])
+        self.assertLess(widths[-1], 0.3 * widths[0])
+        self.assertLess(self.history("out/curtain")["contact_work"][-1], 0.0)
+
 
 if __name__ == "__main__":
     unittest.main()

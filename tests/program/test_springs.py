@@ -3,6 +3,7 @@
 import json
 import math
 import os
+import resource
 import sys
 import unittest
 
@@ -40,6 +41,15 @@ class CommandLine(springs_program.SpringsTest):
         if "cuda" in gas_program.backends():
             self.skipTest("a CUDA build has that backend")
         self.assertIn("cuda", self.expect(77, self.write(DRUM), "--backend", "cuda").stderr)
+
+
+    def test_a_fine_mesh_is_looked_through_in_a_moment(self):
+        """Flat cloth, whose parts near one another lie in a plane, so that numbers that round cannot tell on which
+        side of one another they are."""
+        before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
+        self.expect(0, self.write(springs_program.FALLING), "--check", sets=[
+            "mesh.rectangle.vertices=90000", "contact={self=true,thickness=1e-4}"])
+        self.assertLess(resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before, 15.0)
 
 
 class RunDirectory(springs_program.SpringsTest):
@@ -151,6 +161,12 @@ class Failures(springs_program.SpringsTest):
         ends = DRUM.replace('0.4-1e-9"', '0.4-1e-9"\nmotion = { z = "0.01*sqrt(0.4-t)" }')
         self.expect(0, self.write(ends), "--quiet", "--out", "out")
 
+    def test_a_level_set_that_is_no_number(self):
+        """Cloth that falls where it is none neither passes nor freezes."""
+        message = self.expect(4, self.write(springs_program.FALLING), "--quiet", "--backend", "serial", "--out", "out", sets=[
+            'contact={objects=[{kind="level-set",expression="z+0.06+0*sqrt(z+0.03)"}]}', "verify={}"]).stderr
+        self.assertRegex(message, r"level-set of contact.objects, or its slope, is not a number at vertex \d+ .* at step \d+")
+
     def test_verification_fails_where_it_must(self):
         """A fault in what is computed or in what is expected is found by each check."""
         faults = {
@@ -174,6 +190,40 @@ class Failures(springs_program.SpringsTest):
                 self.assertIn("above its bar", process.stderr)
                 checks = json.loads((self.folder / f"out/{scene}/result.json").read_text(encoding="utf-8"))["checks"]
                 self.assertTrue(any(not check["passed"] for check in checks))
+
+    def assert_fails_alone(self, names, scene, *sets):
+        """All checks but the named ones pass; the history of the run."""
+        self.expect(5, scene, "--quiet", "--backend", "serial", "--overwrite", "--out", "out", sets=sets)
+        self.assertEqual(names, {check["name"] for check in self.result("out")["checks"] if not check["passed"]})
+        return self.history("out")
+
+    def test_contact_that_gives_energy_is_told_and_is_bounded_whatever_the_step(self):
+        """Cloth starts nearer to a table than the thickness: it is lifted by no more than it lacks."""
+        for dt in (3e-4, 3e-5):
+            with self.subTest(dt):
+                rows = self.assert_fails_alone(
+                    {"energy_balance", "penetration"}, "table-cloth",
+                    'contact.objects=[{kind="disk",centre=[0.25,0.25,-0.0005],radius=0.15,friction=0.1}]',
+                    f"time.dt={dt}", "time.end_time=0.003", "output={history_every=1}")
+                self.assertGreater(rows["contact_work"][-1], 0.0)
+                self.assertLess(max(rows["kinetic"]), 0.2 * 0.5**2 * 10.0 * 0.0025)
+
+    def test_cloth_that_is_driven_through_a_body_is_told(self):
+        rows = self.assert_fails_alone(
+            {"intersections"}, self.write(springs_program.FALLING), "output={history_every=7}",
+            'pin=[{where="x<1",motion={z="-t"}}]', "verify.penetration=0.5")
+        self.assertEqual((0, 0), (rows["intersections"][0], rows["intersections"][-1]))
+
+    def test_a_check_of_energy_does_not_depend_on_the_rows(self):
+        """Cloth that fell, and lies still at the end: the energy that it had is not in the last row."""
+        scene = self.write(springs_program.FALLING)
+        values = []
+        for every in (20, 100000):
+            self.expect(0, scene, "--quiet", "--backend", "serial", "--overwrite", "--out", "out", sets=[
+                'contact={thickness=0.003,objects=[{kind="plane",centre=[0,0,-0.01],friction=0.3}]}',
+                "time.end_time=0.3", f"output={{history_every={every}}}", "verify={energy_balance=2e-2}"])
+            values.append(self.result("out")["errors"]["energy_balance"])
+        self.assertLess(values[1], 1.01 * values[0])
 
     def test_errors_of_second_order(self):
         """Frequencies of the drum, and of one with equal masses, which is of first order only."""

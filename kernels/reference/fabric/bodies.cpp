@@ -65,24 +65,29 @@ double distance_from(const fabric::Body& body, const std::array<double, 3>& plac
   }
 }
 
-bool enters(const fabric::Body& body, const std::array<std::array<double, 3>, 3>& triangle) {
-  std::array<LongVector, 3> t;
-  for (std::size_t k = 0; k < 3; ++k) t[k] = less(triangle[k], body.centre);
+namespace {
+
+/// Of a segment or a triangle.
+template <std::size_t size>
+bool part_enters(const fabric::Body& body, const std::array<std::array<double, 3>, size>& corners) {
+  std::array<LongVector, size> t;
+  for (std::size_t k = 0; k < size; ++k) t[k] = less(corners[k], body.centre);
   if (body.kind != fabric::BodyKind::disk) {
-    if (std::ranges::any_of(triangle, [&](const auto& x) { return distance_from(body, x) < 0.0; }))
+    if (std::ranges::any_of(corners, [&](const auto& x) { return distance_from(body, x) < 0.0; }))
       return true;
     if (body.kind != fabric::BodyKind::sphere) return false;
+    for (std::size_t k = 0; k < size; ++k)
+      if (from_segment(t[k], t[(k + 1) % size]) < body.radius) return true;
     long double height = 0;
-    for (std::size_t k = 0; k < 3; ++k)
-      if (from_segment(t[k], t[(k + 1) % 3]) < body.radius) return true;
-    return above(t, height) && height < body.radius;
+    if constexpr (size == 3) return above(t, height) && height < body.radius;
+    return false;
   }
-  // Where the triangle passes through the plane of the disk: a piece of a line, which meets the disk if its
+  // Where it passes through the plane of the disk: a place or a piece of a line, which meets the disk if its
   // nearest point to the centre does.
   const LongVector n = {body.normal[0], body.normal[1], body.normal[2]};
   std::vector<LongVector> passing;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const LongVector &a = t[k], &b = t[(k + 1) % 3];
+  for (std::size_t k = 0; k < size; ++k) {
+    const LongVector &a = t[k], &b = t[(k + 1) % size];
     const long double from = inner(a, n), to = inner(b, n);
     if (from == 0) passing.push_back(a);
     if (from * to >= 0) continue;
@@ -93,6 +98,16 @@ bool enters(const fabric::Body& body, const std::array<std::array<double, 3>, 3>
     for (const LongVector& b : passing)
       if (from_segment(a, b) <= body.radius) return true;
   return false;
+}
+
+}  // namespace
+
+bool enters(const fabric::Body& body, const std::array<std::array<double, 3>, 3>& triangle) {
+  return part_enters(body, triangle);
+}
+
+bool enters(const fabric::Body& body, const std::array<std::array<double, 3>, 2>& segment) {
+  return part_enters(body, segment);
 }
 
 }  // namespace drogue::reference

@@ -13,4 +13,7 @@ namespace drogue::reference {
 /// Whether some point of a triangle, not only a corner, lies within a sphere, in a disk, or behind a plane.
 [[nodiscard]] bool enters(const fabric::Body& body, const std::array<std::array<double, 3>, 3>& triangle);
 
+/// The same of a segment.
+[[nodiscard]] bool enters(const fabric::Body& body, const std::array<std::array<double, 3>, 2>& segment);
+
 }  // namespace drogue::reference

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <boost/multiprecision/cpp_int.hpp>
 #include <cmath>
+#include <cstdint>
 #include <limits>
-#include <numeric>
-#include <set>
+#include <utility>
 
 namespace drogue::reference {
 
@@ -90,11 +90,113 @@ Box box_of(std::span<const Place> positions, const Vertices& vertices) {
   return box;
 }
 
+/// Whether some points lie beyond others along a direction by more than sums of products of differences, each
+/// rounded, can be wrong.
+template <std::size_t m, std::size_t n>
+bool beyond(const std::array<long double, 3>& along, const std::array<Place, m>& p,
+            const std::array<Place, n>& q) {
+  long double size = 0.0L;
+  const auto height = [&](const Place& x) {
+    long double sum = 0.0L;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const long double part = along[axis] * (static_cast<long double>(x[axis]) - q[0][axis]);
+      sum += part, size = std::max(size, std::abs(part));
+    }
+    return sum;
+  };
+  long double p_low = height(p[0]), p_high = p_low, q_low = 0.0L, q_high = 0.0L;
+  for (const Place& x : p) p_low = std::min(p_low, height(x)), p_high = std::max(p_high, height(x));
+  for (const Place& x : q) q_low = std::min(q_low, height(x)), q_high = std::max(q_high, height(x));
+  return std::max(p_low - q_high, q_low - p_high) >
+         64.0L * std::numeric_limits<long double>::epsilon() * size;
+}
+
+/// Whether a plane is seen to lie between a segment and a triangle. Any would do; those along the triangle,
+/// across it through a side or along the segment are tried. Spares the rational numbers most pairs of a sheet
+/// that is flat.
+bool seen_apart(const std::array<Place, 2>& segment, const std::array<Place, 3>& triangle) {
+  using Long = std::array<long double, 3>;
+  const auto way = [](const Place& from, const Place& to) {
+    return Long{static_cast<long double>(to[0]) - from[0], static_cast<long double>(to[1]) - from[1],
+                static_cast<long double>(to[2]) - from[2]};
+  };
+  const auto cross = [](const Long& a, const Long& b) {
+    return Long{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+  };
+  const Long normal = cross(way(triangle[0], triangle[1]), way(triangle[0], triangle[2]));
+  if (beyond(normal, segment, triangle)) return true;
+  const Long along = way(segment[0], segment[1]);
+  if (beyond(cross(normal, along), segment, triangle)) return true;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Long side = way(triangle[k], triangle[(k + 1) % 3]);
+    if (beyond(cross(normal, side), segment, triangle) || beyond(cross(along, side), segment, triangle))
+      return true;
+  }
+  return false;
+}
+
 bool overlap(const Box& a, const Box& b) {
   for (std::size_t axis = 0; axis < 3; ++axis)
     if (a.low[axis] > b.high[axis] || b.low[axis] > a.high[axis]) return false;
   return true;
 }
+
+/// Boxes in the cells of a grid by their lowest corners. A cell is wider than the widest box by more than
+/// round-off, so what overlaps a box begins in one of its cells or one lower.
+class BoxGrid {
+ public:
+  /// `asked` is the widest box that will be asked about, m: it spans few cells.
+  BoxGrid(std::span<const Box> boxes, double asked) : _width(asked) {
+    if (boxes.empty()) return;
+    _low = boxes[0].low;
+    Place high = _low;
+    for (const Box& box : boxes)
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        _low[axis] = std::min(_low[axis], box.low[axis]), high[axis] = std::max(high[axis], box.low[axis]);
+        _width = std::max(_width, box.high[axis] - box.low[axis]);
+      }
+    for (std::size_t axis = 0; axis < 3; ++axis) _width = std::max(_width, (high[axis] - _low[axis]) / most);
+    _width *= 1.0 + 1e-6;
+    for (std::size_t k = 0; k < boxes.size(); ++k) {
+      const auto at = [&](std::size_t axis) { return cell(axis, boxes[k].low[axis]); };
+      _places.push_back({key(at(0), at(1), at(2)), k});
+    }
+    std::ranges::sort(_places);
+  }
+
+  /// Calls `take(number)` at least for every box that overlaps another.
+  template <class Take>
+  void each_near(const Box& box, const Take& take) const {
+    const auto first = [&](std::size_t axis) {
+      return std::max<std::int64_t>(1, cell(axis, box.low[axis])) - 1;
+    };
+    const auto last = [&](std::size_t axis) { return cell(axis, box.high[axis]); };
+    for (std::int64_t x = first(0); x <= last(0); ++x)
+      for (std::int64_t y = first(1); y <= last(1); ++y) {
+        auto next = std::ranges::lower_bound(_places, std::pair{key(x, y, first(2)), std::size_t{0}});
+        for (const std::uint64_t end = key(x, y, last(2)); next != _places.end() && next->first <= end;
+             ++next)
+          take(next->second);
+      }
+  }
+
+ private:
+  static constexpr double most = 1 << 20;  ///< cells along an axis, 21 bits of a key
+
+  /// Rounding is monotone: of two places the higher one has no lower cell.
+  [[nodiscard]] std::int64_t cell(std::size_t axis, double x) const {
+    const double from_low = (x - _low[axis]) / _width;
+    return from_low > 0.0 ? static_cast<std::int64_t>(std::min(from_low, most)) : 0;
+  }
+  static std::uint64_t key(std::int64_t x, std::int64_t y, std::int64_t z) {
+    return static_cast<std::uint64_t>(x) << 42U | static_cast<std::uint64_t>(y) << 21U |
+           static_cast<std::uint64_t>(z);
+  }
+
+  Place _low{};
+  double _width;  ///< of a cell, m
+  std::vector<std::pair<std::uint64_t, std::size_t>> _places;
+};
 
 }  // namespace
 
@@ -123,30 +225,32 @@ bool meet(const std::array<Place, 2>& segment, const std::array<Place, 3>& trian
 std::vector<Intersection> intersections(std::span<const Place> positions,
                                         std::span<const std::array<int, 3>> triangles,
                                         std::span<const std::array<int, 2>> lines) {
-  std::set<std::array<int, 2>> segments(lines.begin(), lines.end());
+  std::vector<std::array<int, 2>> segments(lines.begin(), lines.end());
   for (const auto& t : triangles)
     for (std::size_t k = 0; k < 3; ++k)
-      segments.insert({std::min(t[k], t[(k + 1) % 3]), std::max(t[k], t[(k + 1) % 3])});
+      segments.push_back({std::min(t[k], t[(k + 1) % 3]), std::max(t[k], t[(k + 1) % 3])});
+  std::ranges::sort(segments);
+  segments.erase(std::ranges::unique(segments).begin(), segments.end());
   std::vector<Box> boxes;
   for (const auto& t : triangles) boxes.push_back(box_of(positions, t));
-  std::vector<std::size_t> by_low(triangles.size());
-  std::iota(by_low.begin(), by_low.end(), std::size_t{0});
-  std::ranges::sort(by_low, {}, [&](std::size_t t) { return boxes[t].low[0]; });
   double widest = 0.0;
-  for (const Box& box : boxes) widest = std::max(widest, box.high[0] - box.low[0]);
+  for (const auto& line : lines) {
+    const Box box = box_of(positions, line);
+    for (std::size_t axis = 0; axis < 3; ++axis) widest = std::max(widest, box.high[axis] - box.low[axis]);
+  }
+  const BoxGrid grid(boxes, widest);
   std::vector<Intersection> found;
   const auto place = [&](int i) { return positions[static_cast<std::size_t>(i)]; };
   for (const auto& segment : segments) {
     const Box box = box_of(positions, segment);
-    auto next = std::ranges::lower_bound(by_low, box.low[0] - widest, {},
-                                         [&](std::size_t t) { return boxes[t].low[0]; });
-    for (; next != by_low.end() && boxes[*next].low[0] <= box.high[0]; ++next) {
-      const auto& t = triangles[*next];
+    const std::array<Place, 2> ends = {place(segment[0]), place(segment[1])};
+    grid.each_near(box, [&](std::size_t number) {
+      const auto& t = triangles[number];
       const bool shares = std::ranges::any_of(t, [&](int i) { return i == segment[0] || i == segment[1]; });
-      if (shares || !overlap(box, boxes[*next])) continue;
-      if (meet({place(segment[0]), place(segment[1])}, {place(t[0]), place(t[1]), place(t[2])}))
-        found.push_back({segment, *next});
-    }
+      if (shares || !overlap(box, boxes[number])) return;
+      const std::array<Place, 3> corners = {place(t[0]), place(t[1]), place(t[2])};
+      if (!seen_apart(ends, corners) && meet(ends, corners)) found.push_back({segment, number});
+    });
   }
   return found;
 }

@@ -102,6 +102,21 @@ TEST(FabricContact, AStackOfThreeComesToRest) {
   EXPECT_LT(lowest, 1.1 * s.p.contact.thickness);
 }
 
+TEST(FabricContact, PartsThatStartTooNearPartSlowlyWhateverTheStep) {
+  for (const double dt : {5e-5, 5e-6}) {
+    Sheets s;
+    s.add(6, 0.06, level(0.0, 0.0, 0.0), {0.0, 0.0, 0.0});
+    s.add(5, 0.05, level(0.003, 0.004, 0.0005), {0.0, 0.0, 0.0});
+    s.p.dt = dt;
+    double mass = 0.0;
+    for (const double m : s.p.mass) mass += m;
+    const Outcome o = watched(s, 100, 100);
+    ASSERT_FALSE(o.failure);
+    EXPECT_GT(o.work, 0.0) << dt;
+    EXPECT_LT(o.work, mass * 10.0 * 0.0015) << dt;  // as if lifted by what they lack, 1.5 mm
+  }
+}
+
 /// A sheet that lies on a plane leaning by an angle, released at `speed` downhill; its way and speed.
 std::array<double, 2> slid(double angle, double friction, double speed, int steps) {
   const double c = std::cos(angle), d = std::sin(angle);
@@ -199,6 +214,20 @@ TEST(FabricContact, ALevelSetIsTheBodyItDescribes) {
       apart = std::max(apart, std::abs(ends[0][i][axis] - ends[1][i][axis]));
   // The sphere keeps edges and faces out too, a level set vertices alone.
   EXPECT_LT(apart, 2e-3);
+}
+
+TEST(FabricContact, ALevelSetThatIsNoNumberIsTold) {
+  Body body;
+  body.kind = BodyKind::level_set;
+  body.level_set = postfix({"z", 1.0, "+", 0.0, "z", "sqrt", "*", "+"});  // far away, and none below z = 0
+  Sheets s;
+  s.p.contact.self = false;
+  s.add(4, 0.03, level(0.0, 0.0, 0.01), {0.0, 0.0, -1.0});
+  s.p.contact.bodies = {body};
+  const Outcome o = watched(s, 300, 10);
+  ASSERT_TRUE(o.failure);
+  EXPECT_EQ(o.failure->trouble, Trouble::no_number);
+  EXPECT_NEAR(static_cast<double>(o.failure->step), 200.0, 2.0);  // 10 mm at 1 m/s in steps of 50 us
 }
 
 TEST(FabricContact, ASolverThatGoesOnFromAStateHasTheSameBits) {

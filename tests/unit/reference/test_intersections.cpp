@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -55,6 +56,62 @@ TEST(ReferenceIntersections, OfAMeshLeaveOutWhatSharesAVertex) {
   EXPECT_EQ(intersections(x, std::vector<std::array<int, 3>>{{0, 1, 2}, {0, 3, 4}}, {}).size(), 1U);
 }
 
+/// Whether the boxes about some corners overlap.
+bool boxes_overlap(const std::vector<Place>& a, const std::vector<Place>& b) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto of = [axis](const Place& p) { return p[axis]; };
+    if (of(std::ranges::min(a, {}, of)) > of(std::ranges::max(b, {}, of)) ||
+        of(std::ranges::min(b, {}, of)) > of(std::ranges::max(a, {}, of)))
+      return false;
+  }
+  return true;
+}
+
+TEST(ReferenceIntersections, AreThoseOfAllPairs) {
+  // Triangles and lines of all sizes; in space, in a plane, and on whole numbers, where they touch.
+  std::mt19937 engine(7);
+  const auto random = [&] { return std::generate_canonical<double, 53>(engine); };
+  std::size_t met = 0;
+  for (int draw = 0; draw < 20; ++draw) {
+    const bool whole = draw % 2 == 1;
+    const std::size_t axes = draw % 3 == 0 ? 2 : 3;
+    std::vector<Place> x;
+    const auto part = [&](int corners) {
+      Place centre{};
+      const double size = whole ? 4.0 : std::pow(10.0, 0.5 - 2.0 * random());
+      for (std::size_t axis = 0; axis < axes; ++axis) centre[axis] = 6.0 * random();
+      for (int k = 0; k < corners; ++k) {
+        x.push_back(centre);
+        for (std::size_t axis = 0; axis < axes; ++axis) {
+          double& place = x.back()[axis];
+          place += size * random();
+          if (whole) place = std::round(place);
+        }
+      }
+      return static_cast<int>(x.size()) - corners;
+    };
+    const auto at = [&](int i) { return x[static_cast<std::size_t>(i)]; };
+    std::vector<std::array<int, 3>> triangles;
+    std::vector<std::array<int, 2>> lines, segments;
+    while (triangles.size() < 25) {
+      const int t = part(3), line = part(2);
+      // Whether a triangle without area meets anything is not asked.
+      if (side_of_plane(at(t), at(t + 1), at(t + 2), {0.7, 0.3, 99.9}) == 0) continue;
+      triangles.push_back({t, t + 1, t + 2}), lines.push_back({line, line + 1});
+      segments.insert(segments.end(), {{line, line + 1}, {t, t + 1}, {t + 1, t + 2}, {t + 2, t}});
+    }
+    std::size_t all = 0;
+    for (const auto& [i, j] : segments)
+      for (const auto& [a, b, c] : triangles)
+        if (i != a && i != b && i != c && boxes_overlap({at(i), at(j)}, {at(a), at(b), at(c)}) &&
+            meet({at(i), at(j)}, {at(a), at(b), at(c)}))
+          ++all;
+    EXPECT_EQ(intersections(x, triangles, lines).size(), all) << draw;
+    met += all;
+  }
+  EXPECT_GT(met, 1000U);
+}
+
 /// Whether a triangle enters a body, by many of its points.
 bool sampled(const fabric::Body& body, const std::array<Place, 3>& t) {
   constexpr int n = 60;
@@ -91,6 +148,10 @@ TEST(ReferenceBodies, TrianglesEnterWhereTheirPointsDo) {
       fabric::Body smaller = body;
       smaller.radius = 0.35;
       EXPECT_TRUE(in || !enters(smaller, t));
+      const std::array<Place, 2> side = {t[0], t[1]};
+      EXPECT_EQ(enters(body, side), enters(body, std::array{t[0], t[1], t[1]}));
+      EXPECT_TRUE(in || !enters(body, side));
+      EXPECT_TRUE(enters(body, side) || !sampled(body, {t[0], t[1], t[1]}));
     }
     EXPECT_GT(entered, 20);
     EXPECT_GT(missed, 20);
