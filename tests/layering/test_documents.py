@@ -3,9 +3,10 @@
 import os
 import re
 import unittest
-from pathlib import Path
 
-SOURCE = Path(os.environ["DROGUE_SOURCE"])
+import layers
+
+SOURCE = layers.repository(os.environ)
 FILE = r"`((?:common|kernels|miniapps|perf|tests)/[\w/.]+\.(?:[ch]pp|py))`"
 NAMED = re.compile(FILE + r": (`[\w:]+`(?:, `[\w:]+`)*)")
 
