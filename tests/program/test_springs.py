@@ -157,6 +157,24 @@ class Failures(springs_program.SpringsTest):
                 told = self.result(name)
                 self.assertLess(told["dt_min"], 0.7 * told["dt_max"])
 
+    def test_fifty_times_the_load(self):
+        """Cloth under 50 g, which stretches it to several times its size, ends well."""
+        self.expect(0, self.write(DRUM), "--quiet", "--out", "out", sets=["load=[{gravity=[0,0,-490.5]}]"])
+        self.assertGreater(self.result("out")["steps"], 100)
+
+    def test_a_force_that_becomes_no_number(self):
+        """The last good state is of a step before it, wherever in the cloth it begins."""
+        force = 'load=[{where="x>0.2",force={z="sqrt(0.1-t)"}}]'
+        for dt in ("auto", 1e-4):
+            with self.subTest(dt):
+                message = self.expect(4, self.write(DRUM), "--quiet", "--overwrite", "--out", "out", sets=[force, f"time.dt={dt}"]).stderr
+                self.assertRegex(message, r"not finite at vertex \d+ .*, t = 0\.1\d* s")
+                self.assertIn("if no expression gives such a number", message)
+                told = self.result("out")
+                self.assertEqual(("numerical-failure", 4), (told["status"], told["exit_code"]))
+                self.assertLessEqual(told["time"], 0.1)
+                self.assertTrue(all(map(math.isfinite, self.history("out")["kinetic"])))
+
     def test_a_motion_need_not_outlive_the_scene(self):
         ends = DRUM.replace('0.4-1e-9"', '0.4-1e-9"\nmotion = { z = "0.01*sqrt(0.4-t)" }')
         self.expect(0, self.write(ends), "--quiet", "--out", "out")
