@@ -1,6 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <unistd.h>
+
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <limits>
 #include <random>
@@ -24,7 +27,8 @@ std::vector<std::string> split_line(const std::string& line) {
 /// A file that is gone with the test.
 class CsvFile {
  public:
-  explicit CsvFile(const std::string& content) : _path(::testing::TempDir() + "drogue_csv_test.csv") {
+  explicit CsvFile(const std::string& content)
+      : _path(::testing::TempDir() + "drogue_csv_test_" + std::to_string(::getpid()) + ".csv") {
     std::ofstream(_path, std::ios::binary) << content;
   }
   ~CsvFile() { std::filesystem::remove(_path); }
