@@ -39,6 +39,23 @@ function(drogue_instantiate sources template)
   set(${sources} ${_generated} PARENT_SCOPE)
 endfunction()
 
+# drogue_includes_kokkos(result <file>): whether it does, itself or by our headers that it includes.
+function(drogue_includes_kokkos result file)
+  file(STRINGS "${file}" _lines REGEX "^#include [<\"](Kokkos_|[a-z]+/).*")
+  set(${result} NO PARENT_SCOPE)
+  foreach(_line IN LISTS _lines)
+    if(_line MATCHES "<Kokkos_")
+      set(_found YES)
+    elseif(_line MATCHES "\"(.*)\"" AND EXISTS "${PROJECT_SOURCE_DIR}/${CMAKE_MATCH_1}")
+      drogue_includes_kokkos(_found "${PROJECT_SOURCE_DIR}/${CMAKE_MATCH_1}")
+    endif()
+    if(_found)
+      set(${result} YES PARENT_SCOPE)
+      return()
+    endif()
+  endforeach()
+endfunction()
+
 # Sources that include Kokkos go through nvcc in a CUDA build.
 function(drogue_use_device_language)
   if(DROGUE_CUDA)

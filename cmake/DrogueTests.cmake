@@ -80,23 +80,6 @@ function(drogue_add_python_test file label)
     "DROGUE_BIN=${CMAKE_RUNTIME_OUTPUT_DIRECTORY};DROGUE_SOURCE=${PROJECT_SOURCE_DIR};DROGUE_BUILD=${PROJECT_BINARY_DIR};OMP_NUM_THREADS=2")
 endfunction()
 
-# drogue_includes_kokkos(result <header>): whether it does, itself or by our headers that it includes.
-function(drogue_includes_kokkos result header)
-  file(STRINGS "${header}" _lines REGEX "^#include [<\"](Kokkos_|[a-z]+/).*")
-  set(${result} NO PARENT_SCOPE)
-  foreach(_line IN LISTS _lines)
-    if(_line MATCHES "<Kokkos_")
-      set(_found YES)
-    elseif(_line MATCHES "\"(.*)\"" AND EXISTS "${PROJECT_SOURCE_DIR}/${CMAKE_MATCH_1}")
-      drogue_includes_kokkos(_found "${PROJECT_SOURCE_DIR}/${CMAKE_MATCH_1}")
-    endif()
-    if(_found)
-      set(${result} YES PARENT_SCOPE)
-      return()
-    endif()
-  endforeach()
-endfunction()
-
 # drogue_add_header_test(<headers>): compiles every header alone, twice in one source, as part of the build.
 # Those that include Kokkos find it compiled already.
 function(drogue_add_header_test)
