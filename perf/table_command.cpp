@@ -17,9 +17,7 @@ struct TableOptions {
 
 /// Block sizes and transfers, which need a backend and Kokkos.
 Table timed_table(const TableOptions& options, const std::vector<std::string>& kokkos) {
-  const device::Backend backend = options.backend == "auto"
-                                      ? device::fastest_backend()
-                                      : device::backend_from_name(options.backend).value();
+  const device::Backend backend = device::wanted_backend(options.backend);
   require(backend);
   const bool block_size = options.table == "block-size", of_gas = options.app == "gas";
   if (block_size && backend != device::Backend::cuda)

@@ -20,12 +20,9 @@ struct WorkPrecisionOptions {
 };
 
 std::vector<device::Backend> backends_of(const std::string& name) {
-  if (name != "auto") {
-    const device::Backend backend = device::backend_from_name(name).value();
-    require(backend);
-    return {backend};
-  }
-  require(device::fastest_backend());
+  const device::Backend wanted = device::wanted_backend(name);
+  require(wanted);
+  if (name != "auto") return {wanted};
   std::vector<device::Backend> present;
   for (const device::Backend backend : device::compiled_backends())
     if (device::is_present(backend)) present.push_back(backend);

@@ -28,4 +28,14 @@ class Failure : public std::runtime_error {
   ExitCode _code;
 };
 
+/// What `make()` gives, whose std::invalid_argument tells of what the user asked for: a usage failure.
+template <class Make>
+auto made_as_asked(const Make& make) {
+  try {
+    return make();
+  } catch (const std::invalid_argument& refused) {
+    throw Failure(ExitCode::usage, refused.what());
+  }
+}
+
 }  // namespace drogue

@@ -52,6 +52,26 @@ struct ResultDocument {
     std::string compiler, flags, kokkos, cpu, gpu, driver, date;
   } provenance;
 
+  /// Tells what the run is on. `Facts` are those of kernels/device/runtime.hpp, which this layer does not
+  /// include.
+  template <class Facts>
+  void describe_device(const std::string& name_of_backend, const Facts& facts) {
+    backend = name_of_backend;
+    threads = backend == "openmp" ? facts.threads : 1;
+    device = backend == "cuda" ? facts.gpu : provenance.cpu;
+    provenance.kokkos = facts.kokkos_version;
+    provenance.gpu = facts.gpu;
+    provenance.driver = facts.driver;
+  }
+
+  /// Tells what the run asked of the device. `Asked` is the Ledger of kernels/device/ledger.hpp.
+  template <class Asked>
+  void describe_ledger(const Asked& asked) {
+    ledger = {asked.kernel_launches, asked.fences, asked.allocations_after_warmup, asked.h2d_bytes,
+              asked.d2h_bytes};
+    peak_bytes.device = asked.peak_device_bytes;
+  }
+
   /// Adds a check and says whether it passed; a value that is not a number fails.
   bool add_check(const std::string& name, double value, double bar);
 

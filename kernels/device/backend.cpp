@@ -56,6 +56,10 @@ Backend fastest_backend() {
   return fastest;
 }
 
+Backend wanted_backend(std::string_view option) {
+  return option == "auto" ? fastest_backend() : backend_from_name(option).value();
+}
+
 std::optional<std::string> why_unavailable(Backend backend) {
   const std::string text(name(backend));
   if (!is_compiled(backend))

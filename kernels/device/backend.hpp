@@ -40,6 +40,10 @@ enum class Backend { serial, openmp, cuda };
 /// The fastest backend that is compiled in and present.
 [[nodiscard]] Backend fastest_backend();
 
+/// What the value of an option `--backend` means: the fastest for "auto", else the one of that name, which
+/// must be one (std::bad_optional_access).
+[[nodiscard]] Backend wanted_backend(std::string_view option);
+
 /// Why `backend` cannot run here, or nothing: not compiled in, or no device. Says which build has it.
 [[nodiscard]] std::optional<std::string> why_unavailable(Backend backend);
 

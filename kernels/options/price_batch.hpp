@@ -76,12 +76,16 @@ struct PriceBatch {
   int count = 0, mesh = 0, steps = 0, level = 0;
   double tolerance = 0.0;
 
-  KOKKOS_FUNCTION void operator()(const Member& team) const {
+  KOKKOS_FUNCTION void operator()(const Member& team) const { price_group(*this, team); }
+
+  /// Calls `functor.price` with the workers and the memory of a team.
+  template <class Functor>
+  KOKKOS_INLINE_FUNCTION void price_group(const Functor& functor, const Member& team) const {
     const Memory<R> memory(team.team_scratch(level).get_shmem_aligned(Memory<R>::bytes(mesh), 64), mesh);
     if constexpr (members == 1 && !device::is_host<ExecutionSpace>) {
-      price(WarpWorkers<Member>{team}, memory, team.league_rank());
+      functor.price(WarpWorkers<Member>{team}, memory, team.league_rank());
     } else {
-      price(SerialWorkers<R>{}, memory, team.league_rank());
+      functor.price(SerialWorkers<R>{}, memory, team.league_rank());
     }
   }
 
@@ -149,16 +153,16 @@ template <class ExecutionSpace>
              : 1;
 }
 
-/// Enqueues a functor that prices `count` contracts on a mesh.
+/// Enqueues a functor that prices the contracts of `batch`.
 template <class ExecutionSpace, class Functor>
-void launch_batch(const ExecutionSpace& space, const char* label, const Functor& functor, int count,
-                  int mesh) {
+void launch_batch(const ExecutionSpace& space, const char* label, const Functor& functor,
+                  const PriceBatch<ExecutionSpace>& batch) {
   using R = Number<ExecutionSpace>;
   constexpr int members = device::Access<R>::lanes;
-  if (count == 0) return;
-  Kokkos::TeamPolicy<ExecutionSpace> policy(space, (count + members - 1) / members,
+  if (batch.count == 0) return;
+  Kokkos::TeamPolicy<ExecutionSpace> policy(space, (batch.count + members - 1) / members,
                                             device::is_host<ExecutionSpace> ? 1 : lanes);
-  policy.set_scratch_size(scratch_level<ExecutionSpace>(mesh), Kokkos::PerTeam(Memory<R>::bytes(mesh) + 64));
+  policy.set_scratch_size(batch.level, Kokkos::PerTeam(Memory<R>::bytes(batch.mesh) + 64));
   Kokkos::parallel_for(label, policy, functor);
 }
 
@@ -167,7 +171,7 @@ template <class ExecutionSpace>
 void price_batch(const ExecutionSpace& space, const PriceBatch<ExecutionSpace>& batch) {
   static_assert(
       Kokkos::SpaceAccessibility<ExecutionSpace, typename decltype(batch.prices)::memory_space>::accessible);
-  launch_batch(space, "drogue::options::price", batch, batch.count, batch.mesh);
+  launch_batch(space, "drogue::options::price", batch, batch);
 }
 
 }  // namespace drogue::options

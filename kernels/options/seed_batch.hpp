@@ -67,15 +67,7 @@ struct SeedBatch {
 
   Batch batch;
 
-  KOKKOS_FUNCTION void operator()(const Member& team) const {
-    const Memory<R> memory(team.team_scratch(batch.level).get_shmem_aligned(Memory<R>::bytes(batch.mesh), 64),
-                           batch.mesh);
-    if constexpr (members == 1 && !device::is_host<ExecutionSpace>) {
-      price(WarpWorkers<Member>{team}, memory, team.league_rank());
-    } else {
-      price(SerialWorkers<R>{}, memory, team.league_rank());
-    }
-  }
+  KOKKOS_FUNCTION void operator()(const Member& team) const { batch.price_group(*this, team); }
 
   template <class Workers>
   KOKKOS_INLINE_FUNCTION void price(const Workers& workers, const Memory<R>& memory, int group) const {
@@ -165,7 +157,7 @@ struct SeedBatch {
 /// Enqueues the launch.
 template <class ExecutionSpace>
 void seed_batch(const ExecutionSpace& space, const PriceBatch<ExecutionSpace>& batch) {
-  launch_batch(space, "drogue::options::seed", SeedBatch<ExecutionSpace>{batch}, batch.count, batch.mesh);
+  launch_batch(space, "drogue::options::seed", SeedBatch<ExecutionSpace>{batch}, batch);
 }
 
 }  // namespace drogue::options

@@ -3,7 +3,6 @@
 #include <chrono>
 #include <cstdio>
 #include <iostream>
-#include <stdexcept>
 #include <system_error>
 
 #include "common/program/mpi_guard.hpp"
@@ -21,18 +20,13 @@
 namespace drogue::gas_app {
 
 device::Backend choose_backend(const std::string& wanted) {
-  const device::Backend backend =
-      wanted == "auto" ? device::fastest_backend() : device::backend_from_name(wanted).value();
+  const device::Backend backend = device::wanted_backend(wanted);
   if (const auto reason = device::why_unavailable(backend)) throw Failure(ExitCode::no_backend, *reason);
   return backend;
 }
 
 std::unique_ptr<device::Runtime> start_kokkos(const std::vector<std::string>& arguments) {
-  try {
-    return std::make_unique<device::Runtime>(arguments);
-  } catch (const std::invalid_argument& refused) {
-    throw Failure(ExitCode::usage, refused.what());
-  }
+  return made_as_asked([&] { return std::make_unique<device::Runtime>(arguments); });
 }
 
 namespace {

@@ -24,14 +24,8 @@ double seconds_since(Clock::time_point begin) {
 
 void describe_device(run::ResultDocument& result, const gas::Parameters& parameters,
                      device::Backend backend) {
-  const device::DeviceFacts facts = device::device_facts();
-  result.backend = std::string(device::name(backend));
+  result.describe_device(std::string(device::name(backend)), device::device_facts());
   result.precision = parameters.precision == gas::Precision::split ? "split" : "double";
-  result.threads = backend == device::Backend::openmp ? facts.threads : 1;
-  result.device = backend == device::Backend::cuda ? facts.gpu : result.provenance.cpu;
-  result.provenance.kokkos = facts.kokkos_version;
-  result.provenance.gpu = facts.gpu;
-  result.provenance.driver = facts.driver;
 }
 
 Simulation::Simulation(const GasScene& scene, const RunSettings& settings)
@@ -135,7 +129,6 @@ void Simulation::write_restart(const run::RunDirectory& directory) {
 void Simulation::describe(run::ResultDocument& result) {
   const gas::Resume now = _solver->resume_state();
   const gas::Phases phases = _solver->phases();
-  const device::Ledger ledger = device::ledger();
   result.steps = now.step;
   result.driver = _solver->driver();
   result.time = now.time;
@@ -147,9 +140,7 @@ void Simulation::describe(run::ResultDocument& result) {
   result.timing.h2d_s = _settings.seed_mode ? phases.h2d : _h2d_s;
   result.timing.d2h_s = _settings.seed_mode ? phases.d2h : _d2h_s;
   result.timing.io_s = _io_s;
-  result.ledger = {ledger.kernel_launches, ledger.fences, ledger.allocations_after_warmup, ledger.h2d_bytes,
-                   ledger.d2h_bytes};
-  result.peak_bytes.device = ledger.peak_device_bytes;
+  result.describe_ledger(device::ledger());
 }
 
 }  // namespace drogue::gas_app

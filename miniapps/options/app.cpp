@@ -4,7 +4,6 @@
 #include <cstdio>
 #include <iostream>
 #include <optional>
-#include <stdexcept>
 
 #include "common/csv/header.hpp"
 #include "common/program/mpi_guard.hpp"
@@ -23,36 +22,17 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 device::Backend choose_backend(const std::string& wanted) {
-  const device::Backend backend =
-      wanted == "auto" ? device::fastest_backend() : device::backend_from_name(wanted).value();
+  const device::Backend backend = device::wanted_backend(wanted);
   if (const auto reason = device::why_unavailable(backend)) throw Failure(ExitCode::no_backend, *reason);
   return backend;
 }
 
 std::unique_ptr<device::Runtime> start_kokkos(const std::vector<std::string>& arguments) {
-  try {
-    return std::make_unique<device::Runtime>(arguments);
-  } catch (const std::invalid_argument& refused) {
-    throw Failure(ExitCode::usage, refused.what());
-  }
+  return made_as_asked([&] { return std::make_unique<device::Runtime>(arguments); });
 }
 
 std::unique_ptr<options::Pricer> make_pricer(device::Backend backend, const options::Settings& settings) {
-  try {
-    return options::create_pricer(backend, settings);
-  } catch (const std::invalid_argument& refused) {
-    throw Failure(ExitCode::usage, refused.what());
-  }
-}
-
-void describe_device(run::ResultDocument& result, device::Backend backend) {
-  const device::DeviceFacts facts = device::device_facts();
-  result.backend = std::string(device::name(backend));
-  result.threads = backend == device::Backend::openmp ? facts.threads : 1;
-  result.device = backend == device::Backend::cuda ? facts.gpu : result.provenance.cpu;
-  result.provenance.kokkos = facts.kokkos_version;
-  result.provenance.gpu = facts.gpu;
-  result.provenance.driver = facts.driver;
+  return made_as_asked([&] { return options::create_pricer(backend, settings); });
 }
 
 /// Outputs replace what has their names: that must not be the input, another output, or a device.
@@ -105,13 +85,6 @@ void count_rows(const Tally& tally, run::ResultDocument& result) {
                    {"failed", tally.failed}};
 }
 
-void read_ledger(run::ResultDocument& result) {
-  const device::Ledger ledger = device::ledger();
-  result.ledger = {ledger.kernel_launches, ledger.fences, ledger.allocations_after_warmup, ledger.h2d_bytes,
-                   ledger.d2h_bytes};
-  result.peak_bytes.device = ledger.peak_device_bytes;
-}
-
 /// Reads, prices, writes. `result` is filled also where rows did not end well, which is thrown.
 ExitCode price_batch(const Command& command, const std::filesystem::path& input,
                      run::ResultDocument& result) {
@@ -124,7 +97,7 @@ ExitCode price_batch(const Command& command, const std::filesystem::path& input,
   PriceWriter writer(command.out, {command.action == Action::surface, command.settings.greeks});
   const auto runtime = start_kokkos(command.kokkos);
   device::start_ledger();
-  describe_device(result, backend);
+  result.describe_device(std::string(device::name(backend)), device::device_facts());
   const auto pricer = make_pricer(backend, command.settings);
   result.timing.setup_s = since();
   std::optional<BoundaryWriter> boundaries;
@@ -132,7 +105,7 @@ ExitCode price_batch(const Command& command, const std::filesystem::path& input,
   BatchRun run(command, reader, writer, boundaries, *pricer);
   const ExitCode code = run.run(result.timing);
   result.timing.wall_s = since();
-  read_ledger(result);
+  result.describe_ledger(device::ledger());
   count_rows(writer.tally(), result);
   if (code == ExitCode::interrupted) {
     result.message = "interrupted by a signal; nothing is written to '" + command.out.string() + "'";

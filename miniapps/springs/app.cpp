@@ -3,7 +3,6 @@
 #include <chrono>
 #include <cstdio>
 #include <iostream>
-#include <stdexcept>
 #include <system_error>
 
 #include "common/program/mpi_guard.hpp"
@@ -22,18 +21,13 @@
 namespace drogue::springs_app {
 
 device::Backend choose_backend(const std::string& wanted) {
-  const device::Backend backend =
-      wanted == "auto" ? device::fastest_backend() : device::backend_from_name(wanted).value();
+  const device::Backend backend = device::wanted_backend(wanted);
   if (const auto reason = device::why_unavailable(backend)) throw Failure(ExitCode::no_backend, *reason);
   return backend;
 }
 
 std::unique_ptr<device::Runtime> start_kokkos(const std::vector<std::string>& arguments) {
-  try {
-    return std::make_unique<device::Runtime>(arguments);
-  } catch (const std::invalid_argument& refused) {
-    throw Failure(ExitCode::usage, refused.what());
-  }
+  return made_as_asked([&] { return std::make_unique<device::Runtime>(arguments); });
 }
 
 namespace {
@@ -86,7 +80,7 @@ void run_in(run::RunDirectory& directory, const SpringsScene& scene, device::Bac
             run::ResultDocument& result) {
   const auto runtime = start_kokkos(options.kokkos);
   device::start_ledger();
-  describe_device(result, backend);
+  result.describe_device(std::string(device::name(backend)), device::device_facts());
   Simulation simulation(scene, {backend, options.seed_mode, options.quiet, restart, {}});
   directory.begin();
   directory.write_scene(print_springs_scene(scene));

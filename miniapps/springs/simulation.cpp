@@ -50,16 +50,6 @@ const char* lost_text(fabric::Trouble trouble) {
 
 }  // namespace
 
-void describe_device(run::ResultDocument& result, device::Backend backend) {
-  const device::DeviceFacts facts = device::device_facts();
-  result.backend = std::string(device::name(backend));
-  result.threads = backend == device::Backend::openmp ? facts.threads : 1;
-  result.device = backend == device::Backend::cuda ? facts.gpu : result.provenance.cpu;
-  result.provenance.kokkos = facts.kokkos_version;
-  result.provenance.gpu = facts.gpu;
-  result.provenance.driver = facts.driver;
-}
-
 Simulation::Simulation(const SpringsScene& scene, const RunSettings& settings)
     : _scene(scene), _settings(settings), _problem(make_problem(scene)) {
   const auto begin = Clock::now();
@@ -238,7 +228,6 @@ std::string Simulation::failure_text(const fabric::Failure& failure) const {
 }
 
 void Simulation::describe(run::ResultDocument& result) const {
-  const device::Ledger ledger = device::ledger();
   result.driver = _settings.seed_mode ? "seed" : _solver->driver();
   result.steps = _solver->clock().step;
   result.time = time();
@@ -249,9 +238,7 @@ void Simulation::describe(run::ResultDocument& result) const {
   result.timing.h2d_s = _h2d_s;
   result.timing.d2h_s = _d2h_s;
   result.timing.io_s = _io_s;
-  result.ledger = {ledger.kernel_launches, ledger.fences, ledger.allocations_after_warmup, ledger.h2d_bytes,
-                   ledger.d2h_bytes};
-  result.peak_bytes.device = ledger.peak_device_bytes;
+  result.describe_ledger(device::ledger());
 }
 
 }  // namespace drogue::springs_app

@@ -26,9 +26,6 @@ struct RunSettings {
   std::function<void(const Row& row, const std::vector<fabric::Vector>& x)> at_output;
 };
 
-/// Fills in what the machine and the backend are. Needs an initialised runtime.
-void describe_device(run::ResultDocument& result, device::Backend backend);
-
 /// Runs a scene from its state to its end, writes its files and fills `result`.
 class Simulation {
  public:

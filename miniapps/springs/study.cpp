@@ -51,7 +51,7 @@ ExitCode run_study(const MiniAppOptions& options, const std::filesystem::path& f
   const auto runtime = start_kokkos(options.kokkos);
   device::start_ledger();
   run::ResultDocument facts = run::new_result("drogue-springs", base.name);
-  describe_device(facts, backend);
+  facts.describe_device(std::string(device::name(backend)), device::device_facts());
 
   Scratch scratch(out / "point");
   study::Columns columns{{"model", "mass", "integrator"}, "vertices", {}, "", ""};

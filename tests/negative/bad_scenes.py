@@ -1,43 +1,11 @@
 """A valid gas scene and the ways in which it is spoiled: one line replaced, or an assignment added."""
 
-GOOD = """\
-app = "gas"
-description = "A shock tube."
-[gas]
-gamma = 1.4
-[mesh]
-cells = 100
-domain = [-1.0, 1.0]
-[initial]
-riemann = { x0 = 0.0, left = { rho = 1.0, u = 0.0, p = 1.0 }, right = { rho = 0.125, u = 0.0, p = 0.1 } }
-[boundary]
-left = "outflow"
-right = "outflow"
-[scheme]
-weno = "z"
-weno_power = 1
-splitting = "lf-stencil"
-time = "ssprk3"
-mean = "arithmetic"
-cfl = 0.6
-ramp_steps = 20
-positivity = "auto"
-precision = "double"
-[run]
-end_time = 0.1
-max_steps = 10000
-[output]
-fields = ["rho", "u", "p"]
-times = [0.05, 0.1]
-history_every = 10
-restart_every = 0
-[verify]
-exact = "riemann"
-l1_density = 0.1
-conservation = 1e-12
-[tuning]
-stage = { block = 128 }
-"""
+import pathlib
+
+# Every way a scene is written: expressions, regions and tables beside inline tables. DamagedGasScene reads them too.
+_FOLDER = pathlib.Path(__file__).parent / "sound_scenes"
+SOUND = [(_FOLDER / f"{name}.toml").read_text(encoding="utf-8") for name in ("riemann", "expressions", "regions")]
+GOOD = SOUND[0]
 
 # Replaced line, its new text, the line the error names, words the error holds.
 BAD_LINES = [
