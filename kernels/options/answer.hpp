@@ -18,12 +18,18 @@ struct Column {
   KOKKOS_INLINE_FUNCTION double operator()(int i) const { return values[i * members]; }
 };
 
-/// Where exercise ends. Above it the time value grows with the square of the distance, so two nodes tell
-/// where it begins; what differs from the payoff by less than rounding is exercised.
-KOKKOS_INLINE_FUNCTION double boundary_of(const Column& value, int strike, double h) {
-  const auto time_value = [&](int i) { return value(i) - (1.0 - exponential((i - strike) * h)); };
+/// The last node below the strike that is exercised, -1 if none is.
+KOKKOS_INLINE_FUNCTION int last_exercised(const Column& value, int strike, double h) {
   int i = strike - 1;
-  while (i >= 0 && time_value(i) > 1e-13) --i;
+  while (i >= 0 && !is_exercised(value(i), i - strike, h)) --i;
+  return i;
+}
+
+/// Where exercise ends, from the last node where it is right. Above it the time value grows with the square
+/// of the distance, so two nodes tell where it begins.
+KOKKOS_INLINE_FUNCTION double boundary_of(const Column& value, int exercised, int strike, double h) {
+  const auto time_value = [&](int i) { return value(i) - (1.0 - exponential((i - strike) * h)); };
+  const int i = exercised;
   if (i < 0) return device::portable::not_a_number();
   const double first = Kokkos::sqrt(device::maximum(0.0, time_value(i + 1))),
                second = Kokkos::sqrt(device::maximum(0.0, time_value(i + 2)));
@@ -34,6 +40,7 @@ KOKKOS_INLINE_FUNCTION double boundary_of(const Column& value, int strike, doubl
 /// The nodes of one member.
 struct Nodes {
   int mesh, strike;
+  int exercised;  ///< last node below the strike that is; only read for puts that may be
   double h;
   Certain<double> certain;  ///< below node 0
 };
@@ -59,15 +66,14 @@ KOKKOS_INLINE_FUNCTION Answer answer_of(const Put& put, const Column& value, con
     answer.value = device::portable::not_a_number();
     return answer;
   }
-  if (put.early) answer.boundary = boundary_of(value, strike, h);
+  if (put.early) answer.boundary = boundary_of(value, nodes.exercised, strike, h);
   const double t = x / h + strike;
   if (!(t == t)) {  // no cell has such a number
     answer.value = device::portable::not_a_number();
     return answer;
   }
   if (put.early && (x <= answer.boundary) && !(put.split && t < 1.0)) {
-    if (!put.split ||
-        value(static_cast<int>(t)) - (1.0 - exponential((static_cast<int>(t) - strike) * h)) < 1e-13)
+    if (!put.split || is_exercised(value(static_cast<int>(t)), static_cast<int>(t) - strike, h))
       return {1.0 - asset, -asset, -asset, 0.0, answer.boundary};
   }
   if (t <= 0.0) {

@@ -20,12 +20,12 @@ KOKKOS_INLINE_FUNCTION double cut_error(int mesh) { return 0.03 / (double(mesh) 
 /// 2 is what paths that hardly move contribute, nearly all of a short maturity.) An
 /// early exercise boundary of a put with r > 0 lies above ln(t/(1+t)) for every t with psi(-t) <= r
 /// (Lundberg's bound on the infimum, Mordecki 2002), and below it the value is known.
-/// `scratch` holds 4 lanes values.
+/// `scratch` holds 5 lanes values.
 template <class Workers, class R>
 KOKKOS_INLINE_FUNCTION Domain<R> domain_of(const Workers& workers, const PutPack<R>& put, const Law<R>& law,
                                            double error, R* scratch) {
   constexpr int n = 12;
-  R *tilt = scratch, *cumulant = scratch + lanes, *best = scratch + 2 * lanes;
+  R *tilt = scratch, *cumulant = scratch + lanes, *best = scratch + 2 * lanes, *grown = scratch + 4 * lanes;
   const R up = decay_up(put), down = decay_down(put), maturity = put.maturity, rate = put.rate;
   const R variance = put.variance + law.variance;
   const double depth = -device::portable::log(error);
@@ -36,7 +36,7 @@ KOKKOS_INLINE_FUNCTION Domain<R> domain_of(const Workers& workers, const PutPack
     if (lane < 2 * n) {
       R t = 2.0 * gaussian;
       for (int k = lane % n; k > 0; --k) t = t * 0.7071067811865476;
-      theta = lane < n ? t * up / (t + up) : -(t * down / (t + down));
+      theta = lane < n ? t * up * device::reciprocal(t + up) : -(t * down * device::reciprocal(t + down));
     }
     tilt[lane] = theta;
     cumulant[lane] = 0.5 * put.variance * theta * theta + jump_cumulant(put, law, theta);
@@ -46,16 +46,19 @@ KOKKOS_INLINE_FUNCTION Domain<R> domain_of(const Workers& workers, const PutPack
   const R base = depth + device::maximum(R(0.0), -rate * maturity);
   const R spot_above = device::maximum(put.log_spot, R(0.0)),
           spot_below = device::maximum(-put.log_spot, R(0.0));
-  workers.each([&, tilt, cumulant, best](int lane) {
+  workers.each([&, tilt, cumulant, grown](int lane) {
+    if (lane < 2 * n)
+      grown[lane] =
+          exponential(device::maximum(R(0.0), maturity * (cumulant[lane] + mean * tilt[lane] - rate)));
+  });
+  workers.each([&, tilt, grown, best](int lane) {
     if (lane >= n) return;
     const R tu = tilt[lane];
-    const R rise = device::maximum(R(0.0), maturity * (cumulant[lane] + mean * tu - rate));
     R below = 1e30, above = 1e30;
     for (int k = 0; k < n; ++k) {
       const R td = -tilt[n + k];
-      const R fall = device::maximum(R(0.0), maturity * (cumulant[n + k] - mean * td - rate));
-      const R moved = exponential(rise) + exponential(fall) - 2.0;
-      const R need = base + logarithm(device::maximum(moved, R(1e-3))), per = 1.0 / (tu + td);
+      const R moved = grown[lane] + grown[n + k] - 2.0;
+      const R need = base + logarithm(device::maximum(moved, R(1e-3))), per = device::reciprocal(tu + td);
       above = device::minimum(above, (need + tu * spot_above) * per);
       below = device::minimum(below, (need + td * spot_below) * per);
     }
@@ -71,7 +74,8 @@ KOKKOS_INLINE_FUNCTION Domain<R> domain_of(const Workers& workers, const PutPack
   R root = 0.0, at = 0.0, value = 0.0;
   for (int k = n - 1; k >= 0; --k) {
     const R t = -tilt[n + k], psi = cumulant[n + k] - mean * t;
-    const R chord = at + (t - at) * (rate - value) / device::maximum(psi - value, R(1e-300));
+    const R chord =
+        at + (t - at) * (rate - value) * device::reciprocal(device::maximum(psi - value, R(1e-300)));
     const auto inside = psi <= rate;
     root = device::select(inside, t, device::select(root > at, root, device::minimum(chord, t)));
     value = device::select(inside, psi, value);

@@ -69,7 +69,7 @@ KOKKOS_INLINE_FUNCTION R logarithm(R x) {
   const auto large = m > R(1.4142135623730951);
   const R factor = device::select(large, R(0.5), R(1.0)), up = device::select(large, R(1.0), R(0.0));
   const R y = m * factor;
-  const R s = (y - 1.0) / (y + 1.0), s2 = s * s;
+  const R s = (y - 1.0) * device::reciprocal(y + 1.0), s2 = s * s;
   R sum = 1.0 / 23;
   for (int k = 21; k >= 1; k -= 2) sum = sum * s2 + 1.0 / k;
   const R n = e + up;
@@ -81,9 +81,14 @@ KOKKOS_INLINE_FUNCTION R logarithm(R x) {
 template <class R>
 KOKKOS_INLINE_FUNCTION R exponential_integral(R x) {
   if (device::all(x > R(40.0))) return R(0.0);
-  R fraction = x + 61.0;
-  for (int k = 30; k >= 1; --k) fraction = x + (2.0 * k - 1.0) - double(k) * k / fraction;
-  const R far = exponential(-x) / fraction;
+  // The fraction as the quotient of two numbers, so that one division is enough.
+  R above = x + 61.0, below = 1.0;
+  for (int k = 30; k >= 1; --k) {
+    const R next = (x + (2.0 * k - 1.0)) * above - (double(k) * k) * below;
+    below = above;
+    above = next;
+  }
+  const R far = exponential(-x) * below * device::reciprocal(above);
   R term = x, series = x;
   for (int k = 2; k <= 14; ++k) {
     term = term * x * (-1.0 / k);

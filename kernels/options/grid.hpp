@@ -23,11 +23,10 @@ KOKKOS_INLINE_FUNCTION Grid<R> grid_of(const Domain<R>& domain, int mesh) {
   return {mesh, device::maximum(domain.below / strike, domain.above / (double(mesh) - strike)), strike};
 }
 
-/// Blocks of nodes that lanes own, from node 1 on, and the length of an array that holds them all and whole
-/// octets of nodes.
-KOKKOS_INLINE_FUNCTION int block_of(int mesh) { return (mesh - 1 + lanes - 1) / lanes; }
+/// Blocks of nodes that lanes own, and the length of an array that holds them all and whole octets of nodes.
+KOKKOS_INLINE_FUNCTION int block_of(int mesh) { return (mesh + lanes - 1) / lanes; }
 KOKKOS_INLINE_FUNCTION int node_count(int mesh) {
-  const int owned = 1 + block_of(mesh) * lanes, octets = mesh / 8 * 8 + 16;
+  const int owned = block_of(mesh) * lanes, octets = mesh / 8 * 8 + 16;
   return owned > octets ? owned : octets;
 }
 
@@ -47,6 +46,9 @@ struct WeightLayout {
   }
 };
 
+/// Angles at which the jumps' symbol is known.
+inline constexpr int symbols = 16;
+
 /// The puts' jumps on their grid: the weights w_d = h g(d h) of jumps by d nodes (half of it for d = +-1),
 /// what goes beyond the grid, and what of the variance and of the drift is left for differences.
 template <class R>
@@ -57,7 +59,7 @@ struct Jumps {
   R rate;         ///< mass of all jumps, a year
   R diffusion;    ///< D, so that D, the weights and the tails have the variance of the law
   R drift;        ///< b, so that the scheme prices e^x without an error
-  R symbol[16];   ///< sum of w_d (1 - cos(d angle)) at the angles pi 2^{-k/2}
+  R* symbol;      ///< (symbols): sum of w_d (1 - cos(d angle)) at the angles pi 2^{-k/2}
 };
 
 }  // namespace drogue::options

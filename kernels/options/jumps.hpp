@@ -5,23 +5,36 @@
 
 namespace drogue::options {
 
-/// y g(y) on the heavier side at y = first h, (first + 1) h, ...: the mixture times e^{|beta| y}. Terms that
-/// have died out at h add nothing.
-template <class R>
-KOKKOS_INLINE_FUNCTION void add_mixture(const PutPack<R>& put, const Law<R>& law, R h, int first, int count,
-                                        R* sum) {
+/// y g(y) on the heavier side at y = d h, d = 1 .. mesh: the mixture times e^{|beta| y}, in two parts, that
+/// of even and that of odd terms. Terms that have died out at h add nothing. `ratio` holds Mixture::size
+/// values.
+template <class Workers, class R>
+KOKKOS_INLINE_FUNCTION void sum_mixture(const Workers& workers, const PutPack<R>& put, const Law<R>& law, R h,
+                                        int mesh, R* ratio, R* even, R* odd) {
   const R tilt = device::absolute(put.jump[2]);
-  for (int m = 0; m < count; ++m) sum[m] = 0.0;
-  for (int q = 0; q < Mixture::size; ++q) {
-    const R rate = (law.s[q] - tilt) * h;
-    if (device::all(rate > R(30.0))) break;  // the rates of all members rise with q
-    const R ratio = exponential(-rate);
-    R power = device::select(rate > R(30.0), R(0.0), law.c[q] * exponential(rate * -double(first)));
-    for (int m = 0; m < count; ++m) {
-      sum[m] += power;
-      power = power * ratio;
+  const R *s = law.s, *c = law.c;
+  workers.each([=](int lane) {
+    for (int q = lane; q < Mixture::size; q += lanes) ratio[q] = exponential((tilt - s[q]) * h);
+  });
+  workers.each([=](int lane) {
+    const int octets = (mesh + 7) / 8;
+    for (int task = lane; task < 2 * octets; task += lanes) {
+      const int part = task / octets, first = task % octets * 8 + 1;
+      R sum[8] = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+      for (int q = part; q < Mixture::size; q += 2) {
+        const R rate = (s[q] - tilt) * h;
+        if (device::all(rate > R(30.0))) break;  // the rates of all members rise with q
+        const R by = ratio[q];
+        R power = device::select(rate > R(30.0), R(0.0), c[q] * exponential(rate * -double(first)));
+        for (int m = 0; m < 8; ++m) {
+          sum[m] += power;
+          power = power * by;
+        }
+      }
+      R* to = (part == 0 ? even : odd) + first;
+      for (int m = 0; m < 8; ++m) to[m] = sum[m];
     }
-  }
+  });
 }
 
 /// The weights up (d > 0) and down of jumps by d nodes.
@@ -75,20 +88,45 @@ KOKKOS_INLINE_FUNCTION double angle_cosine(int k) {
   return cosine[k];
 }
 
-/// Scratch memory of `jumps_of`: that of the result, and sums of lanes.
+/// Scratch memory of `jumps_of`: that of the result, and sums.
 template <class R>
 struct JumpsMemory {
-  R *w, *left, *left_price, *slot;  ///< slot: (5 lanes)
+  R *w, *left, *left_price, *symbol;
+  R *even, *odd;  ///< (node_count)
+  R* ratio;       ///< (Mixture::size)
+  R* slot;        ///< (5 lanes)
 };
 
-/// Sets the weights up. A mixture's are nodal values of the density: with what they leave of the variance as
-/// a difference the scheme is of second order for every density that x^2 makes bounded (Cont and Voltchkova
-/// 2005 for the idea), and no quadrature is needed. The other models' are masses of cells.
+/// The weights of jumps by d nodes: a mixture's are nodal values of the density. On a grid of twice the steps
+/// they are those of the finer one; d h is the same there.
+template <class R>
+KOKKOS_INLINE_FUNCTION WeightPair<R> weights(const PutPack<R>& put, const Grid<R>& grid, int d, const R* even,
+                                             const R* odd, const R* finer) {
+  if (put.model == Model::kou) return kou_weights(put, grid.h, d);
+  if (put.model == Model::merton) return merton_weights(put, grid.h, d);
+  if (put.model != Model::generalized_hyperbolic) return {R(0.0), R(0.0)};
+  // Half of the first is what differences stand for; that of the last is among the tails.
+  if (finer != nullptr) {
+    const WeightLayout<R> layout(2 * grid.mesh);
+    const double part = d == 1 ? 1.0 : 2.0;
+    return {part * finer[layout.place(2 * d)], part * finer[layout.place(-2 * d)]};
+  }
+  const double part = d == grid.mesh || d == 1 ? 0.5 : 1.0;
+  const R heavy = (even[d] + odd[d]) * (part / d);
+  const R light = heavy * exponential(-2.0 * device::absolute(put.jump[2]) * (double(d) * grid.h));
+  const auto upwards = put.jump[2] > R(0.0);
+  return {device::select(upwards, heavy, light), device::select(upwards, light, heavy)};
+}
+
+/// Sets the weights up, if given from those of a grid of half the steps. A mixture's are nodal values: with
+/// what they leave of the variance as a difference the scheme is of second order for every density that x^2
+/// makes bounded (Cont and Voltchkova 2005 for the idea), and no quadrature is needed. The other models' are
+/// masses of cells.
 template <class Workers, class R>
 KOKKOS_INLINE_FUNCTION Jumps<R> jumps_of(const Workers& workers, const PutPack<R>& put, const Law<R>& law,
                                          const Tails<R>& tails, const Grid<R>& grid,
-                                         const JumpsMemory<R>& memory) {
-  const int mesh = grid.mesh, block = (mesh + lanes - 1) / lanes, nodes = node_count(mesh);
+                                         const JumpsMemory<R>& memory, const R* finer) {
+  const int mesh = grid.mesh, nodes = node_count(mesh);
   const R h = grid.h;
   const WeightLayout<R> layout(mesh);
   const bool mixed = put.model == Model::generalized_hyperbolic;
@@ -96,38 +134,25 @@ KOKKOS_INLINE_FUNCTION Jumps<R> jumps_of(const Workers& workers, const PutPack<R
     for (int k = lane; k < layout.size(); k += lanes) memory.w[k] = 0.0;
     for (int k = lane; k < nodes; k += lanes) memory.left[k] = memory.left_price[k] = 0.0;
   });
-  workers.each([=, &put, &law](int lane) {
+  if (mixed && finer == nullptr)
+    sum_mixture(workers, put, law, h, mesh, memory.ratio, memory.even, memory.odd);
+  workers.each([=, &put, &grid](int lane) {
     R rate = 0.0, variance = 0.0, price = 0.0;
-    const int end = mesh < (lane + 1) * block ? mesh : (lane + 1) * block;
-    const R tilt = 2.0 * device::absolute(put.jump[2]);
-    for (int first = lane * block + 1; first <= end && put.model != Model::black_scholes; first += 8) {
-      R sum[8];
-      const int count = end - first + 1 < 8 ? end - first + 1 : 8;
-      if (mixed) add_mixture(put, law, h, first, count, sum);
-      for (int m = 0; m < count; ++m) {
-        const int d = first + m;
-        const R y = double(d) * h, growth = exponential(y);
-        WeightPair<R> pair{};
-        if (mixed) {
-          const R heavy = sum[m] * (1.0 / d), light = heavy * exponential(-tilt * y);
-          const auto upwards = put.jump[2] > R(0.0);
-          pair = {device::select(upwards, heavy, light), device::select(upwards, light, heavy)};
-        } else {
-          pair = put.model == Model::kou ? kou_weights(put, h, d) : merton_weights(put, h, d);
-        }
-        // The other half of the first is what differences stand for; that of the last is among the tails.
-        const double part = d == mesh || (mixed && d == 1) ? 0.5 : 1.0;
-        const R up = part * pair.up, down = part * pair.down;
-        memory.w[layout.place(d)] = up;
-        memory.w[layout.place(-d)] = down;
-        if (d >= 2) {
-          memory.left[d - 1] = down;
-          memory.left_price[d - 1] = down / growth;
-        }
-        rate += up + down;
-        variance += (up + down) * y * y;
-        price += (growth - 1.0) * (up - down / growth);
+    for (int d = 1 + lane; d <= mesh; d += lanes) {
+      const double part = !mixed && d == mesh ? 0.5 : 1.0;
+      const WeightPair<R> pair = weights(put, grid, d, memory.even, memory.odd, finer);
+      const R up = part * pair.up, down = part * pair.down, both = up + down;
+      const R y = double(d) * h, growth = exponential(y), down_price = down * device::reciprocal(growth);
+      memory.w[layout.place(d)] = up;
+      memory.w[layout.place(-d)] = down;
+      memory.even[d] = both;
+      if (d >= 2) {
+        memory.left[d - 1] = down;
+        memory.left_price[d - 1] = down_price;
       }
+      rate += both;
+      variance += both * y * y;
+      price += (growth - 1.0) * (up - down_price);
     }
     memory.slot[lane] = rate;
     memory.slot[lanes + lane] = variance;
@@ -137,6 +162,7 @@ KOKKOS_INLINE_FUNCTION Jumps<R> jumps_of(const Workers& workers, const PutPack<R
   jumps.w = memory.w;
   jumps.left = memory.left;
   jumps.left_price = memory.left_price;
+  jumps.symbol = memory.symbol;
   jumps.rate = total(memory.slot) + tails.up + tails.down;
   const R rest = law.variance - total(memory.slot + lanes) - tails.variance;
   jumps.diffusion = 0.5 * device::maximum(R(0.0), put.variance + rest);
@@ -151,21 +177,26 @@ KOKKOS_INLINE_FUNCTION Jumps<R> jumps_of(const Workers& workers, const PutPack<R
       memory.left[mesh - 1] += tails.down;
       memory.left_price[mesh - 1] += tails.down_price;
     }
-    if (lane >= 16) return;
-    const double twice = 2.0 * angle_cosine(lane);
+    // Odd d in the lower half of the lanes, even d in the upper.
+    const double cosine = angle_cosine(lane % symbols), twice = 2.0 * (2.0 * cosine * cosine - 1.0);
+    const int first = lane < symbols ? 1 : 2;
+    double before = first == 1 ? cosine : 1.0, now = first == 1 ? cosine : 0.5 * twice;
     R sum = 0.0;
-    double before = 1.0, cosine = 0.5 * twice;
-    for (int d = 1; d <= mesh; ++d) {
-      sum += (1.0 - cosine) * (memory.w[layout.place(d)] + memory.w[layout.place(-d)]);
-      const double next = twice * cosine - before;
-      before = cosine;
-      cosine = next;
+    for (int d = first; d <= mesh; d += 2) {
+      sum += (1.0 - now) * memory.even[d];
+      const double next = twice * now - before;
+      before = now;
+      now = next;
     }
     memory.slot[3 * lanes + lane] = sum;
   });
-  for (int k = 0; k < 16; ++k) jumps.symbol[k] = memory.slot[3 * lanes + k] + tails.up + tails.down;
-  recur_backward(workers, memory.left, 1, block_of(mesh), R(1.0), memory.slot);
-  recur_backward(workers, memory.left_price, 1, block_of(mesh), R(1.0), memory.slot);
+  workers.each([=](int lane) {
+    if (lane < symbols)
+      memory.symbol[lane] =
+          memory.slot[3 * lanes + lane] + memory.slot[3 * lanes + symbols + lane] + (tails.up + tails.down);
+  });
+  recur_backward(workers, memory.left, block_of(mesh), R(1.0), memory.slot);
+  recur_backward(workers, memory.left_price, block_of(mesh), R(1.0), memory.slot);
   workers.each([=](int lane) {
     for (int i = 1 + lane; i < mesh; i += lanes)
       memory.left_price[i] = memory.left_price[i] * exponential((double(i) - grid.strike) * h);

@@ -40,7 +40,9 @@ KOKKOS_INLINE_FUNCTION PutPack<R> pack_of(const Put* puts) {
 template <class R>
 struct Law {
   R* s;        ///< (Mixture::size): rates
-  R* c;        ///< (Mixture::size): weights; 0 for the models without
+  R* c;        ///< (Mixture::size): weights
+  R* up;       ///< (Mixture::low): 1/(s - beta), the length at which a term decays upwards
+  R* down;     ///< (Mixture::low): 1/(s + beta), downwards
   R variance;  ///< of the jumps, a year
   R high;      ///< what terms from Mixture::low on contribute to it
 };
@@ -57,12 +59,14 @@ KOKKOS_INLINE_FUNCTION R decay_down(const PutPack<R>& put) {
   return put.model == Model::kou ? put.jump[3] : R(1e4);
 }
 
-/// Puts the terms of member `k` of a pack into scratch memory and sums the variance.
+/// Puts the terms of all members of a pack into `memory`, scratch memory, and sums the variance.
 template <class Workers, class R>
 KOKKOS_INLINE_FUNCTION Law<R> law_of(const Workers& workers, const PutPack<R>& pack, const Put* puts,
-                                     const double* panels, const int* panel_slot, R* s, R* c, R* slot) {
+                                     const double* panels, const int* panel_slot, const Law<R>& memory,
+                                     R* slot) {
   constexpr int members = device::Access<R>::lanes;
-  Law<R> law{s, c, R(0.0), R(0.0)};
+  Law<R> law = memory;
+  R *s = law.s, *c = law.c, *ups = law.up, *downs = law.down;
   if (pack.model == Model::generalized_hyperbolic) {
     workers.each([=](int lane) {
       for (int k = 0; k < members; ++k) {
@@ -80,8 +84,11 @@ KOKKOS_INLINE_FUNCTION Law<R> law_of(const Workers& workers, const PutPack<R>& p
         R sum = 0.0;
         const int begin = part == 0 ? 0 : Mixture::low, end = part == 0 ? Mixture::low : Mixture::size;
         for (int q = begin + lane; q < end; q += lanes) {
-          const R a = 1.0 / (s[q] + up), b = 1.0 / (s[q] + down);
+          const R a = device::reciprocal(s[q] + up), b = device::reciprocal(s[q] + down);
           sum += c[q] * (a * a + b * b);
+          if (part != 0) continue;
+          ups[q] = a;
+          downs[q] = b;
         }
         slot[lane] = sum;
       });
@@ -119,7 +126,7 @@ KOKKOS_INLINE_FUNCTION R jump_cumulant(const PutPack<R>& put, const Law<R>& law,
   if (put.model == Model::black_scholes) return R(0.0);
   R sum = 0.5 * theta * theta * law.high;
   for (int q = 0; q < Mixture::low; ++q) {
-    const R a = theta / (law.s[q] - put.jump[2]), b = theta / (law.s[q] + put.jump[2]);
+    const R a = theta * law.up[q], b = theta * law.down[q];
     sum += law.c[q] * (b - a - logarithm((1.0 - a) * (1.0 + b)));
   }
   return sum;

@@ -11,10 +11,9 @@ struct March {
   R* jump[2];   ///< the explicit part of the operator, of the beginning and of the step before
   R* other;     ///< the other half of the sum over jumps
   R* y;
-  R* floor;             ///< payoff; `-unbounded` where early exercise is not looked for
-  R* force;             ///< what exercise pushes with, of split puts
-  ClampedMap<R>* maps;  ///< (2 lanes)
-  R* slot;              ///< (2 lanes)
+  R* floor;  ///< payoff; `-unbounded` where early exercise is not looked for
+  R* force;  ///< what exercise pushes with, of split puts
+  R* slot;   ///< (6 lanes)
 };
 
 /// The value e^{-r t} - e^{x - q t} of a put that will certainly be exercised, at the time t <= tau that is
@@ -80,14 +79,31 @@ struct Scheme {
   R lower, upper;  ///< l, u: D/h^2 -+ b/2h
   R best;          ///< time at which exercise of node 0 would be best: `Certain`
   R lowest;        ///< x of node 0
+  int steps;
 };
+
+template <class R>
+KOKKOS_INLINE_FUNCTION Scheme<R> scheme_of(const PutPack<R>& put, const Jumps<R>& jumps, const Grid<R>& grid,
+                                           int steps) {
+  const R h = grid.h, lowest = -grid.strike * h;
+  const R advection = 0.5 * jumps.drift / h, diffusion = jumps.diffusion / (h * h);
+  // e^{-r t} - e^{x - q t} is stationary where r/q = e^{x + (r - q) t}.
+  const R quotient = put.rate / put.dividend;
+  const auto stationary = quotient > R(1e-300);
+  const R best = device::select(
+      stationary,
+      (logarithm(device::select(stationary, device::minimum(quotient, R(1e300)), R(1.0))) - lowest) /
+          (put.rate - put.dividend),
+      R(0.0));
+  return {diffusion - advection, diffusion + advection, best, lowest, steps};
+}
 
 /// Implicit diffusion beyond D that the explicit jumps need, of which as much is taken back explicitly:
 /// IMEX-BDF2 damps the highest mode of a symbol I implicit, E explicit while 3E <= 4/dt + I.
 template <class R>
 KOKKOS_INLINE_FUNCTION R added_diffusion(const PutPack<R>& put, const Jumps<R>& jumps, R diffusion, R dt) {
   R added = 0.0;
-  for (int k = 0; k < 16; ++k) {
+  for (int k = 0; k < symbols; ++k) {
     const double form = 2.0 - 2.0 * angle_cosine(k);
     const R need = 3.0 * (jumps.symbol[k] + put.rate) - diffusion * form - 3.6 / dt;
     added = device::maximum(added, need * (0.25 / form));
@@ -95,66 +111,165 @@ KOKKOS_INLINE_FUNCTION R added_diffusion(const PutPack<R>& put, const Jumps<R>& 
   return added;
 }
 
-/// One step of IMEX-BDF2, or of IMEX-Euler while `ratio` is 0: jumps and -r f explicit and extrapolated,
-/// diffusion and drift implicit. Exercise is the linear complementarity problem, solved exactly where it
-/// pays on a half line (Brennan and Schwartz 1977): the matrix is eliminated from above, where its factors
-/// are those of the whole line, and x_i = max(payoff_i, a x_{i-1} + y_i). Where exercise pays between two
-/// boundaries it is split off (Ikonen and Toivanen 2004).
+/// The end of step n of `steps`, years: steps grow with the square root of time, as the solution's changes
+/// shrink.
+template <class R>
+KOKKOS_INLINE_FUNCTION R step_end(R maturity, int n, int steps) {
+  const double part = double(n) / steps;
+  return maturity * (part * Kokkos::sqrt(part));
+}
+
+/// Length of step n, and its ratio to the one before; 0 while steps are IMEX-Euler's.
+template <class R>
+struct StepLength {
+  R dt, ratio;
+};
+
+template <class R>
+KOKKOS_INLINE_FUNCTION StepLength<R> step_length(R maturity, int n, int steps) {
+  const R begin = step_end(maturity, n - 1, steps), dt = step_end(maturity, n, steps) - begin;
+  return {dt, n <= 2 ? R(0.0) : dt / (begin - step_end(maturity, n - 2, steps))};
+}
+
+/// dV/dtau at the end of a step by its formula, from the last three values; `per` is 1/(dt (1 + ratio)).
+template <class R>
+KOKKOS_INLINE_FUNCTION R rate_of_change(const StepLength<R>& step, R per, R value, R before, R oldest) {
+  return (1.0 + 2.0 * step.ratio) * per * value - (1.0 + step.ratio) / step.dt * before +
+         step.ratio * step.ratio * per * oldest;
+}
+
+/// Whether a put's value is its payoff `nodes` above the strike: what differs by less than rounding is
+/// exercised.
+KOKKOS_INLINE_FUNCTION bool is_exercised(double value, int nodes, double h) {
+  return !(value - (1.0 - exponential(nodes * h)) > 1e-13);
+}
+
+/// What a step multiplies with, divided by the pivot of its matrix.
+template <class R>
+struct StepFactors {
+  static constexpr int size = 13;
+  R value, before;          ///< of the values at the step's beginning, and a step before
+  R fresh, stale;           ///< of the explicit part, likewise
+  R bend, bend_before;      ///< of what is taken back of added diffusion, likewise
+  R inverse, diagonal;      ///< 1/pivot; of the derivative
+  R from_left, from_right;  ///< slopes of the recurrences
+  R strike, asset;          ///< of the certain value below node 0 at the step's beginning
+  R edge;                   ///< value of node 0 at its end
+};
+
+/// The factors of 32 steps, which lanes compute side by side; in scratch memory.
+template <class R>
+struct StepTable {
+  R* place;  ///< (StepFactors::size, lanes)
+
+  KOKKOS_INLINE_FUNCTION void store(int n, const StepFactors<R>& f) const {
+    const R row[] = {f.value,    f.before,    f.fresh,      f.stale,  f.bend,  f.bend_before, f.inverse,
+                     f.diagonal, f.from_left, f.from_right, f.strike, f.asset, f.edge};
+    for (int k = 0; k < StepFactors<R>::size; ++k) place[k * lanes + (n - 1) % lanes] = row[k];
+  }
+  [[nodiscard]] KOKKOS_INLINE_FUNCTION StepFactors<R> load(int n) const {
+    const R* at = place + (n - 1) % lanes;
+    return {at[0],          at[lanes],      at[2 * lanes], at[3 * lanes], at[4 * lanes],
+            at[5 * lanes],  at[6 * lanes],  at[7 * lanes], at[8 * lanes], at[9 * lanes],
+            at[10 * lanes], at[11 * lanes], at[12 * lanes]};
+  }
+};
+
+/// The factors of step n of IMEX-BDF2, or of IMEX-Euler at first.
+template <class R>
+KOKKOS_INLINE_FUNCTION StepFactors<R> step_factors(const PutPack<R>& put, const Jumps<R>& jumps,
+                                                   const Scheme<R>& scheme, int n) {
+  const StepLength<R> step = step_length(put.maturity, n, scheme.steps);
+  const R per = 1.0 / (step.dt * (1.0 + step.ratio));
+  const R c0 = (1.0 + 2.0 * step.ratio) * per;
+  const R added = added_diffusion(put, jumps, 0.5 * (scheme.lower + scheme.upper), step.dt);
+  const R lower = scheme.lower + added, upper = scheme.upper + added;
+  const R diagonal = c0 + lower + upper;
+  const R inverse = 1.0 / (0.5 * (diagonal + device::square_root(diagonal * diagonal - 4.0 * lower * upper)));
+  const Certain<R> begun =
+      certain(put, scheme.lowest, scheme.best, step_end(put.maturity, n - 1, scheme.steps));
+  const Certain<R> ended = certain(put, scheme.lowest, scheme.best, step_end(put.maturity, n, scheme.steps));
+  StepFactors<R> f;
+  f.value = (1.0 + step.ratio) / step.dt * inverse;
+  f.before = step.ratio * step.ratio * per * inverse;
+  f.fresh = (1.0 + step.ratio) * inverse;
+  f.stale = step.ratio * inverse;
+  f.bend = added * f.fresh;
+  f.bend_before = added * f.stale;
+  f.inverse = inverse;
+  f.diagonal = c0;
+  f.from_left = lower * inverse;
+  f.from_right = upper * inverse;
+  f.strike = begun.strike;
+  f.asset = begun.asset;
+  f.edge = device::maximum(R(0.0), ended.strike - ended.asset * exponential(scheme.lowest));
+  return f;
+}
+
+/// Fills the table with the factors of the steps from n on.
+template <class Workers, class R>
+KOKKOS_INLINE_FUNCTION void fill_table(const Workers& workers, const PutPack<R>& put, const Jumps<R>& jumps,
+                                       const Scheme<R>& scheme, const StepTable<R>& table, int n) {
+  workers.each([=, &put, &jumps, &scheme](int lane) {
+    if (n + lane <= scheme.steps) table.store(n + lane, step_factors(put, jumps, scheme, n + lane));
+  });
+}
+
+/// What exercise adds to a step of split puts.
+template <class Workers, class R>
+KOKKOS_INLINE_FUNCTION void split_exercise(const Workers& workers, const PutPack<R>& put, const Grid<R>& grid,
+                                           R diagonal, R* now, R* force) {
+  workers.each([=, &put, &grid](int lane) {
+    for (int i = 1 + lane; i < grid.mesh; i += lanes) {
+      const R payoff = device::maximum(R(0.0), 1.0 - exponential((double(i) - grid.strike) * grid.h));
+      const R pushed = device::maximum(payoff, now[i] - force[i] / diagonal);
+      force[i] = put.split * device::maximum(R(0.0), force[i] + diagonal * (payoff - now[i]));
+      now[i] = device::select(put.split > R(0.0), pushed, now[i]);
+    }
+  });
+}
+
+/// One step: jumps and -r f explicit and extrapolated, diffusion and drift implicit. Exercise is the linear
+/// complementarity problem, solved exactly where it pays on a half line (Brennan and Schwartz 1977): the
+/// matrix is eliminated from above, where its factors are those of the whole line, and
+/// x_i = max(payoff_i, a x_{i-1} + y_i). Where exercise pays between two boundaries it is split off (Ikonen
+/// and Toivanen 2004).
 template <class Workers, class R>
 KOKKOS_INLINE_FUNCTION void step(const Workers& workers, const PutPack<R>& put, const Jumps<R>& jumps,
-                                 const Grid<R>& grid, const Scheme<R>& scheme, const March<R>& march, R tau,
-                                 R dt, R ratio) {
+                                 const Grid<R>& grid, const March<R>& march, const StepFactors<R>& f) {
   const int mesh = grid.mesh, block = block_of(mesh);
   R* const now = march.value[0];
   const R *value = march.value[1], *before = march.value[2];
   R* const jump = march.jump[0];
   const R* jump_before = march.jump[1];
   R *other = march.other, *y = march.y, *force = march.force;
-  const R *left = jumps.left, *left_price = jumps.left_price, *floor = march.floor;
+  const R *left = jumps.left, *left_price = jumps.left_price;
   convolve(workers, mesh, jumps.w, value, jump, other);
-
-  const R per = 1.0 / (dt * (1.0 + ratio));
-  const R c0 = (1.0 + 2.0 * ratio) * per, c1 = (1.0 + ratio) / dt, c2 = ratio * ratio * per;
-  const R diffusion = 0.5 * (scheme.lower + scheme.upper);
-  const R added = added_diffusion(put, jumps, diffusion, dt);
-  const R lower = scheme.lower + added, upper = scheme.upper + added;
-  const R diagonal = c0 + lower + upper;
-  const R pivot = 0.5 * (diagonal + device::square_root(diagonal * diagonal - 4.0 * lower * upper));
-  const R inverse = 1.0 / pivot;
-  const Certain<R> begun = certain(put, scheme.lowest, scheme.best, tau - dt);
   const R stay = -jumps.rate - put.rate;
-  workers.each([=](int lane) {
-    for (int m = 0; m < block; ++m) {
-      const int i = 1 + lane * block + m;
-      if (i >= mesh) {
+  const bool bends = !device::all(f.bend <= R(0.0));
+  workers.each([=, &f, &put](int lane) {
+    for (int i = lane * block; i < (lane + 1) * block; ++i) {
+      if (i == 0 || i >= mesh) {
         y[i] = 0.0;
         continue;
       }
-      const R outside = begun.strike * left[i] - begun.asset * left_price[i];
+      const R outside = f.strike * left[i] - f.asset * left_price[i];
       const R explicit_part = (jump[i] + other[i]) + (stay * value[i] + outside);
       jump[i] = explicit_part;
-      const R bend = value[i - 1] - 2.0 * value[i] + value[i + 1];
-      const R bend_before = before[i - 1] - 2.0 * before[i] + before[i + 1];
-      const R right = c1 * value[i] - c2 * before[i] + (1.0 + ratio) * explicit_part -
-                      ratio * jump_before[i] - added * ((1.0 + ratio) * bend - ratio * bend_before) +
-                      force[i];
-      y[i] = right * inverse;
+      R right =
+          f.value * value[i] - f.before * before[i] + f.fresh * explicit_part - f.stale * jump_before[i];
+      if (bends) {
+        const R bend = value[i - 1] - 2.0 * value[i] + value[i + 1];
+        const R bend_before = before[i - 1] - 2.0 * before[i] + before[i + 1];
+        right = right - (f.bend * bend - f.bend_before * bend_before);
+      }
+      if (put.any_split) right += f.inverse * force[i];
+      y[i] = right;
     }
   });
-  recur_backward(workers, y, 1, block, upper * inverse, march.slot);
-  const Certain<R> ended = certain(put, scheme.lowest, scheme.best, tau);
-  const R edge = device::maximum(R(0.0), ended.strike - ended.asset * exponential(scheme.lowest));
-  recur_forward(workers, now, y, floor, 1, block, mesh, lower * inverse, edge, march.maps);
-  workers.each([=](int lane) {
-    if (lane == 0) now[0] = edge;
-    if (!put.any_split) return;
-    for (int i = 1 + lane; i < mesh; i += lanes) {
-      const R payoff = device::maximum(R(0.0), 1.0 - exponential((double(i) - grid.strike) * grid.h));
-      const R pushed = device::maximum(payoff, now[i] - force[i] / c0);
-      force[i] = put.split * device::maximum(R(0.0), force[i] + c0 * (payoff - now[i]));
-      now[i] = device::select(put.split > R(0.0), pushed, now[i]);
-    }
-  });
+  recur_backward(workers, y, block, f.from_right, march.slot);
+  recur_forward(workers, now, y, march.floor, block, mesh, f.from_left, f.edge, march.slot);
+  if (put.any_split) split_exercise(workers, put, grid, f.diagonal, now, force);
 }
 
 }  // namespace drogue::options

@@ -14,7 +14,7 @@ namespace drogue::options {
 struct Mixture {
   static constexpr int size = 64;
   static constexpr double lowest = 2e-3;  ///< (s - alpha)/alpha is below 2e-6 there
-  static constexpr int low = 34;          ///< terms after which s exceeds 1000 alpha
+  static constexpr int low = 32;          ///< terms after which s exceeds 450 alpha
 };
 
 /// A Chebyshev series at t in [-1, 1], by Clenshaw's recurrence.

@@ -59,13 +59,14 @@ template <class ExecutionSpace>
 using Number = std::conditional_t<device::is_host<ExecutionSpace>, device::HostPack<double>, double>;
 
 /// Prices contracts order(0), order(1), ... of one model on one mesh, a team for each, or on hosts for each
-/// pack of them, in one launch.
-template <class ExecutionSpace>
+/// pack of them, in one launch. For `block` see `solve`.
+template <class ExecutionSpace, int block = 0>
 struct PriceBatch {
   using Space = typename ExecutionSpace::memory_space;
   using R = Number<ExecutionSpace>;
   using Member = typename Kokkos::TeamPolicy<ExecutionSpace>::member_type;
   static constexpr int members = device::Access<R>::lanes;
+  static constexpr int rows = block > 0 ? 7 : 12;
 
   Kokkos::View<const Contract*, Space> contracts;  ///< (batch)
   Kokkos::View<Price*, Space> prices;              ///< (batch)
@@ -81,9 +82,11 @@ struct PriceBatch {
   /// Calls `functor.price` with the workers and the memory of a team.
   template <class Functor>
   KOKKOS_INLINE_FUNCTION void price_group(const Functor& functor, const Member& team) const {
-    const Memory<R> memory(team.team_scratch(level).get_shmem_aligned(Memory<R>::bytes(mesh), 64), mesh);
+    void* place = team.team_scratch(level).get_shmem_aligned(Memory<R>::bytes(mesh, rows), 64);
+    if constexpr (block > 0) place = device::in_shared_memory(place);
+    const Memory<R> memory(place, mesh, rows);
     if constexpr (members == 1 && !device::is_host<ExecutionSpace>) {
-      functor.price(WarpWorkers<Member>{team}, memory, team.league_rank());
+      functor.price(WarpWorkers{static_cast<int>(team.team_rank())}, memory, team.league_rank());
     } else {
       functor.price(SerialWorkers<R>{}, memory, team.league_rank());
     }
@@ -102,19 +105,21 @@ struct PriceBatch {
     });
     PutPack<R> put = pack_of<R>(memory.puts);
     const Law<R> law =
-        law_of(workers, put, memory.puts, panels.data(), panel_slot.data(), memory.s, memory.c, memory.slot);
+        law_of(workers, put, memory.puts, panels.data(), panel_slot.data(), memory.law_memory(), memory.slot);
     const Domain<R> domain = domain_of(workers, put, law, cut_error(mesh), memory.slot);
     Grid<R> grid = grid_of(domain, mesh);
     const Tails<R> tails = tails_of(workers, put, law, grid.h * double(mesh), memory.slot);
-    const R* fine = solve(workers, put, law, tails, grid, steps, memory, record, memory.answers);
+    const R* fine = solve<block>(workers, put, law, tails, grid, steps, memory, {memory.w, nullptr}, record,
+                                 memory.answers);
     R* const kept =
-        memory.row(10, node_count(mesh));  // which the smaller rows of the coarser grid leave alone
+        memory.row(rows - 1, node_count(mesh));  // which the smaller rows of the coarser grid leave alone
     workers.each([=, this](int lane) {
       for (int i = lane; i < mesh / 2; i += lanes) kept[i] = fine[2 * i];
     });
     grid = {mesh / 2, 2.0 * grid.h, 0.5 * grid.strike};
-    const R* coarse =
-        solve(workers, put, law, tails, grid, steps / 2, memory, Record{}, memory.answers + members);
+    const R* coarse = solve<block / 2>(workers, put, law, tails, grid, steps / 2, memory,
+                                       {memory.w + WeightLayout<R>(mesh).size(), memory.w}, Record{},
+                                       memory.answers + members);
     const R deviation = device::square_root((put.variance + law.variance) * put.maturity);
     R* const change = memory.slot;
     workers.each([=, this, &put](int lane) {
@@ -148,22 +153,43 @@ struct PriceBatch {
 template <class ExecutionSpace>
 [[nodiscard]] int scratch_level(int mesh) {
   const auto most_shared = static_cast<std::size_t>(Kokkos::TeamPolicy<ExecutionSpace>::scratch_size_max(0));
-  return !device::is_host<ExecutionSpace> && Memory<Number<ExecutionSpace>>::bytes(mesh) + 64 <= most_shared
+  return !device::is_host<ExecutionSpace> &&
+                 Memory<Number<ExecutionSpace>>::bytes(mesh, PriceBatch<ExecutionSpace>::rows) + 64 <=
+                     most_shared
              ? 0
              : 1;
 }
 
 /// Enqueues a functor that prices the contracts of `batch`.
-template <class ExecutionSpace, class Functor>
+template <class ExecutionSpace, int block, class Functor>
 void launch_batch(const ExecutionSpace& space, const char* label, const Functor& functor,
-                  const PriceBatch<ExecutionSpace>& batch) {
-  using R = Number<ExecutionSpace>;
-  constexpr int members = device::Access<R>::lanes;
+                  const PriceBatch<ExecutionSpace, block>& batch) {
+  using Batch = PriceBatch<ExecutionSpace, block>;
+  using R = typename Batch::R;
   if (batch.count == 0) return;
-  Kokkos::TeamPolicy<ExecutionSpace> policy(space, (batch.count + members - 1) / members,
-                                            device::is_host<ExecutionSpace> ? 1 : lanes);
-  policy.set_scratch_size(batch.level, Kokkos::PerTeam(Memory<R>::bytes(batch.mesh) + 64));
+  // With nodes in registers a lane needs 168 of them, and twelve warps share a multiprocessor.
+  using Bounds = std::conditional_t<(block > 0), Kokkos::LaunchBounds<lanes, 12>, Kokkos::LaunchBounds<>>;
+  Kokkos::TeamPolicy<ExecutionSpace, Bounds> policy(space,
+                                                    (batch.count + Batch::members - 1) / Batch::members,
+                                                    device::is_host<ExecutionSpace> ? 1 : lanes);
+  policy.set_scratch_size(batch.level, Kokkos::PerTeam(Memory<R>::bytes(batch.mesh, Batch::rows) + 64));
   Kokkos::parallel_for(label, policy, functor);
+}
+
+/// Enqueues the launch of a batch whose nodes are in registers.
+template <int block, class ExecutionSpace>
+void price_in_registers(const ExecutionSpace& space, const PriceBatch<ExecutionSpace>& batch) {
+  PriceBatch<ExecutionSpace, block> same;
+  same.contracts = batch.contracts;
+  same.prices = batch.prices;
+  same.order = batch.order;
+  same.panels = batch.panels;
+  same.panel_slot = batch.panel_slot;
+  same.count = batch.count;
+  same.mesh = batch.mesh;
+  same.steps = batch.steps;
+  same.tolerance = batch.tolerance;
+  launch_batch(space, "drogue::options::price in registers", same, same);
 }
 
 /// Enqueues the launch.
@@ -171,6 +197,13 @@ template <class ExecutionSpace>
 void price_batch(const ExecutionSpace& space, const PriceBatch<ExecutionSpace>& batch) {
   static_assert(
       Kokkos::SpaceAccessibility<ExecutionSpace, typename decltype(batch.prices)::memory_space>::accessible);
+  if constexpr (!device::is_host<ExecutionSpace>) {
+    if (batch.record.time == nullptr) {
+      if (batch.mesh == 64) return price_in_registers<2>(space, batch);
+      if (batch.mesh == 128) return price_in_registers<4>(space, batch);
+      if (batch.mesh == 256) return price_in_registers<8>(space, batch);
+    }
+  }
   launch_batch(space, "drogue::options::price", batch, batch);
 }
 

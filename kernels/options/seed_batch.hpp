@@ -12,7 +12,7 @@ inline constexpr double seed_reach = 4.0;
 /// what leaves the grid downwards; what leaves it upwards is worth nothing.
 template <class Workers, class R>
 KOKKOS_INLINE_FUNCTION Jumps<R> seed_jumps(const Workers& workers, const PutPack<R>& put, const Law<R>& law,
-                                           const Grid<R>& grid, const JumpsMemory<R>& memory) {
+                                           const Grid<R>& grid, R* w, R* left, R* left_price) {
   const int mesh = grid.mesh, nodes = node_count(mesh);
   const R h = grid.h, beta = put.jump[2];
   const WeightLayout<R> layout(mesh);
@@ -25,24 +25,24 @@ KOKKOS_INLINE_FUNCTION Jumps<R> seed_jumps(const Workers& workers, const PutPack
     return sum;
   };
   workers.each([=](int lane) {
-    for (int k = lane; k < layout.size(); k += lanes) memory.w[k] = 0.0;
-    for (int k = lane; k < nodes; k += lanes) memory.left[k] = memory.left_price[k] = 0.0;
+    for (int k = lane; k < layout.size(); k += lanes) w[k] = 0.0;
+    for (int k = lane; k < nodes; k += lanes) left[k] = left_price[k] = 0.0;
   });
   workers.each([=](int lane) {
     for (int d = 1 + lane; d <= mesh; d += lanes) {
       const R near = d == 1 ? h : (d - 0.5) * h, far = (d + 0.5) * h;
-      memory.w[layout.place(d)] = beyond(near, 1.0, 0.0) - beyond(far, 1.0, 0.0);
-      memory.w[layout.place(-d)] = beyond(near, -1.0, 0.0) - beyond(far, -1.0, 0.0);
+      w[layout.place(d)] = beyond(near, 1.0, 0.0) - beyond(far, 1.0, 0.0);
+      w[layout.place(-d)] = beyond(near, -1.0, 0.0) - beyond(far, -1.0, 0.0);
       if (d < mesh) {
-        memory.left[d] = beyond((d + 0.5) * h, -1.0, 0.0);
-        memory.left_price[d] = exponential((double(d) - grid.strike) * h) * beyond((d + 0.5) * h, -1.0, 1.0);
+        left[d] = beyond((d + 0.5) * h, -1.0, 0.0);
+        left_price[d] = exponential((double(d) - grid.strike) * h) * beyond((d + 0.5) * h, -1.0, 1.0);
       }
     }
   });
   Jumps<R> jumps{};
-  jumps.w = memory.w;
-  jumps.left = memory.left;
-  jumps.left_price = memory.left_price;
+  jumps.w = w;
+  jumps.left = left;
+  jumps.left_price = left_price;
   jumps.rate = beyond(h, 1.0, 0.0) + beyond(h, -1.0, 0.0);
   R small = law.variance;
   for (int q = 0; q < Mixture::size; ++q)
@@ -78,10 +78,10 @@ struct SeedBatch {
     });
     const PutPack<R> put = pack_of<R>(memory.puts);
     const Law<R> law = law_of(workers, put, memory.puts, batch.panels.data(), batch.panel_slot.data(),
-                              memory.s, memory.c, memory.slot);
+                              memory.law_memory(), memory.slot);
     const Grid<R> grid{mesh, R(2.0 * seed_reach / mesh), R(0.5 * mesh)};
-    const Jumps<R> jumps = seed_jumps(workers, put, law, grid,
-                                      {memory.w, memory.row(9, count), memory.row(10, count), memory.slot});
+    const Jumps<R> jumps =
+        seed_jumps(workers, put, law, grid, memory.w, memory.row(9, count), memory.row(10, count));
     R *now = memory.row(0, count), *value = memory.row(1, count);
     R *sum = memory.row(2, count), *other = memory.row(3, count), *y = memory.row(4, count),
       *payoff = memory.row(5, count), *none = memory.row(6, count), *change = memory.row(7, count);
@@ -108,9 +108,8 @@ struct SeedBatch {
       convolve(workers, mesh, jumps.w, value, sum, other);
       const Certain<R> begun = deep(double(n - 1) * dt), ended = deep(double(n) * dt);
       workers.each([=, &jumps](int lane) {
-        for (int m = 0; m < block; ++m) {
-          const int i = 1 + lane * block + m;
-          if (i >= mesh) {
+        for (int i = lane * block; i < (lane + 1) * block; ++i) {
+          if (i == 0 || i >= mesh) {
             y[i] = 0.0;
             continue;
           }
@@ -120,11 +119,10 @@ struct SeedBatch {
           y[i] = right * inverse;
         }
       });
-      recur_backward(workers, y, 1, block, implicit * inverse, memory.slot);
+      recur_backward(workers, y, block, implicit * inverse, memory.slot);
       const R edge = ended.strike - ended.asset * exponential(lowest);
-      recur_forward(workers, now, y, none, 1, block, mesh, implicit * inverse, edge, memory.maps);
+      recur_forward(workers, now, y, none, block, mesh, implicit * inverse, edge, memory.slot);
       workers.each([=](int lane) {
-        if (lane == 0) now[0] = edge;
         for (int i = 1 + lane; i < mesh; i += lanes) {
           now[i] = device::select(early > R(0.0), device::maximum(payoff[i], now[i]), now[i]);
           change[i] = (now[i] - value[i]) / dt;
@@ -139,12 +137,14 @@ struct SeedBatch {
       for (int k = lane; k < members; k += lanes) {
         if (group * members + k >= batch.count) continue;
         const int at = batch.place(group, k);
+        const Column values{reinterpret_cast<const double*>(value) + k, members};
+        const double width = 2.0 * seed_reach / mesh;
         const Answer answer =
-            answer_of(memory.puts[k], {reinterpret_cast<const double*>(value) + k, members},
-                      {reinterpret_cast<const double*>(change) + k, members},
+            answer_of(memory.puts[k], values, {reinterpret_cast<const double*>(change) + k, members},
                       {mesh,
                        mesh / 2,
-                       2.0 * seed_reach / mesh,
+                       last_exercised(values, mesh / 2, width),
+                       width,
                        {device::Access<R>::lane(ended.strike, k), device::Access<R>::lane(ended.asset, k)}});
         Price price = price_of(batch.contracts(at), memory.puts[k], answer, answer, 0.0, mesh, steps, 1.0);
         price.error = device::portable::not_a_number();

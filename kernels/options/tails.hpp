@@ -42,8 +42,9 @@ KOKKOS_INLINE_FUNCTION Tails<R> tails_of(const Workers& workers, const PutPack<R
       sum[1] += c * exponential_integral((b + 1.0) * length);
       sum[2] += c * exponential_integral(a * length);
       sum[3] += c * exponential_integral((a - 1.0) * length);
-      sum[4] += c * ((length + 1.0 / b) / b * exponential(-b * length) +
-                     (length + 1.0 / a) / a * exponential(-a * length));
+      const R up = law.up[q], down = law.down[q];
+      sum[4] += c * ((length + down) * down * exponential(-b * length) +
+                     (length + up) * up * exponential(-a * length));
     }
     for (int k = 0; k < 5; ++k) scratch[k * lanes + lane] = sum[k];
   });

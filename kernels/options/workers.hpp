@@ -1,6 +1,7 @@
 #pragma once
 
 #include "kernels/device/pack.hpp"
+#include "kernels/device/warp.hpp"
 
 /// The threads that price one option, and what they do together. All arithmetic is cut into 32 lanes, so that
 /// a warp and a host thread, which takes the lanes in turn, round alike.
@@ -19,36 +20,36 @@ struct SerialWorkers {
 };
 
 /// A warp that is a team of its own.
-template <class Member>
 struct WarpWorkers {
-  const Member& member;
+  int lane;
 
   /// Runs f(lane) on every lane; what they wrote is seen by all after it.
   template <class F>
   KOKKOS_INLINE_FUNCTION void each(const F& f) const {
-    f(static_cast<int>(member.team_rank()));
+    f(lane);
     meet();
   }
   /// What all have read before it may be written after it.
-  KOKKOS_INLINE_FUNCTION void meet() const { member.team_barrier(); }
+  KOKKOS_INLINE_FUNCTION void meet() const { device::meet_warp(); }
 };
 
-/// The sum of slot[0 .. lanes-1], in order; every lane gets it.
+/// The sum of slot[0 .. lanes-1], in four chains; every lane gets it.
 template <class R>
 KOKKOS_INLINE_FUNCTION R total(const R* slot) {
-  R sum = slot[0];
-  for (int k = 1; k < lanes; ++k) sum += slot[k];
-  return sum;
+  R sum[4] = {slot[0], slot[1], slot[2], slot[3]};
+  for (int k = 4; k < lanes; k += 4)
+    for (int m = 0; m < 4; ++m) sum[m] += slot[k + m];
+  return (sum[0] + sum[1]) + (sum[2] + sum[3]);
 }
 
-/// y_i = a_i + g y_{i+1} for i = first .. first + lanes block - 1 in place, from 0 beyond: each lane runs
-/// through its block, then blocks are joined by doubling (Kogge and Stone). `slot` holds 2 lanes values.
+/// y_i = a_i + g y_{i+1} for i = 0 .. lanes block - 1 in place, from 0 beyond: each lane runs through its
+/// block, then blocks are joined by doubling (Kogge and Stone). `slot` holds 2 lanes values.
 template <class Workers, class R>
-KOKKOS_INLINE_FUNCTION void recur_backward(const Workers& workers, R* y, int first, int block, R g, R* slot) {
+KOKKOS_INLINE_FUNCTION void recur_backward(const Workers& workers, R* y, int block, R g, R* slot) {
   R joined = 1.0;
   for (int m = 0; m < block; ++m) joined = joined * g;
   workers.each([=](int lane) {
-    R* own = y + first + lane * block;
+    R* own = y + lane * block;
     R value = 0.0;
     for (int m = block - 1; m >= 0; --m) {
       value = own[m] + g * value;
@@ -68,7 +69,7 @@ KOKKOS_INLINE_FUNCTION void recur_backward(const Workers& workers, R* y, int fir
   }
   workers.each([=](int lane) {
     if (lane + 1 == lanes) return;
-    R* own = y + first + lane * block;
+    R* own = y + lane * block;
     R inflow = from[lane + 1];
     for (int m = block - 1; m >= 0; --m) {
       inflow = g * inflow;
@@ -77,14 +78,32 @@ KOKKOS_INLINE_FUNCTION void recur_backward(const Workers& workers, R* y, int fir
   });
 }
 
-/// x -> min(hi, max(lo, a x + b)), a known to all. Such maps compose to maps of their kind, whatever a's
-/// sign.
+/// x -> max(lo, a x + b), a >= 0 known to all. Such maps compose to maps of their kind.
 template <class R>
-struct ClampedMap {
-  R b, lo, hi;
+struct RisingMap {
+  R b, lo;
+  KOKKOS_INLINE_FUNCTION static RisingMap at_least(R lo, R b) { return {b, lo}; }
+  KOKKOS_INLINE_FUNCTION static RisingMap constant(R x) { return {x, x}; }
 };
 
 /// `second` after `first`; a2 is the slope of `second`.
+template <class R>
+KOKKOS_INLINE_FUNCTION RisingMap<R> after(const RisingMap<R>& second, R a2, const RisingMap<R>& first) {
+  return {a2 * first.b + second.b, device::maximum(second.lo, a2 * first.lo + second.b)};
+}
+
+/// Stands for no bound; its products with a slope stay finite.
+inline constexpr double unbounded = 1e200;
+
+/// x -> min(hi, max(lo, a x + b)), a of any sign known to all. Such maps compose to maps of their kind. Where
+/// no a is negative `hi` stays without effect, and b and lo have the bits of a RisingMap.
+template <class R>
+struct ClampedMap {
+  R b, lo, hi;
+  KOKKOS_INLINE_FUNCTION static ClampedMap at_least(R lo, R b) { return {b, lo, R(unbounded)}; }
+  KOKKOS_INLINE_FUNCTION static ClampedMap constant(R x) { return {x, x, x}; }
+};
+
 template <class R>
 KOKKOS_INLINE_FUNCTION ClampedMap<R> after(const ClampedMap<R>& second, R a2, const ClampedMap<R>& first) {
   const R low = device::maximum(second.lo, device::minimum(second.hi, a2 * first.lo + second.b));
@@ -92,52 +111,51 @@ KOKKOS_INLINE_FUNCTION ClampedMap<R> after(const ClampedMap<R>& second, R a2, co
   return {a2 * first.b + second.b, device::minimum(low, high), device::maximum(low, high)};
 }
 
-/// Stands for no bound; its products with a slope stay finite.
-inline constexpr double unbounded = 1e200;
-
-/// x_i = max(floor_i, a x_{i-1} + y_i) for the nodes of all blocks, x_{first-1} = inflow given; 0 from node
-/// `end` on. `slot` holds 2 lanes maps.
-template <class Workers, class R>
-KOKKOS_INLINE_FUNCTION void recur_forward(const Workers& workers, R* x, const R* y, const R* floor, int first,
-                                          int block, int end, R a, R inflow, ClampedMap<R>* slot) {
+/// x_i = max(floor_i, a x_{i-1} + y_i) for the nodes 1, 2, ... of all blocks, x_0 given; 0 from node `end`
+/// on. The first block's map is a constant, so the bounds of what blocks compose to are the values. `slot`
+/// holds 2 lanes maps.
+template <class Map, class Workers, class R>
+KOKKOS_INLINE_FUNCTION void recur_by_maps(const Workers& workers, R* x, const R* y, const R* floor, int block,
+                                          int end, R a, R x0, Map* slot) {
   R joined = 1.0;
   for (int m = 0; m < block; ++m) joined = joined * a;
   workers.each([=](int lane) {
-    const int begin = first + lane * block;
-    ClampedMap<R> map{y[begin], floor[begin], R(unbounded)};
-    for (int m = 1; m < block; ++m)
-      map = after(ClampedMap<R>{y[begin + m], floor[begin + m], R(unbounded)}, a, map);
+    const int begin = lane * block;
+    Map map = lane == 0 ? Map::constant(x0) : Map::at_least(floor[begin], y[begin]);
+    for (int m = 1; m < block; ++m) map = after(Map::at_least(floor[begin + m], y[begin + m]), a, map);
     slot[lane] = map;
   });
-  ClampedMap<R>*from = slot, *to = slot + lanes;
+  Map *from = slot, *to = slot + lanes;
   for (int reach = 1; reach < lanes; reach *= 2) {
     workers.each([=](int lane) {
       to[lane] = lane >= reach ? after(from[lane], joined, from[lane - reach]) : from[lane];
     });
     joined = joined * joined;
-    ClampedMap<R>* const other = from;
+    Map* const other = from;
     from = to;
     to = other;
   }
-  R across = 1.0;
-  for (int m = 0; m < block; ++m) across = across * a;
   workers.each([=](int lane) {
-    const int begin = first + lane * block;
-    R value = inflow;
-    if (lane > 0) {
-      R slope = 1.0, power = across;  // of the maps of all lanes before: across^lane
-      for (int bits = lane; bits != 0; bits /= 2) {
-        if (bits % 2 == 1) slope = slope * power;
-        power = power * power;
-      }
-      const ClampedMap<R> map = from[lane - 1];
-      value = device::maximum(map.lo, device::minimum(map.hi, slope * inflow + map.b));
-    }
-    for (int m = 0; m < block; ++m) {
+    const int begin = lane * block;
+    R value = x0;
+    if (lane > 0) value = device::maximum(floor[begin], a * from[lane - 1].lo + y[begin]);
+    x[begin] = begin < end ? value : R(0.0);
+    for (int m = 1; m < block; ++m) {
       value = device::maximum(floor[begin + m], a * value + y[begin + m]);
       x[begin + m] = begin + m < end ? value : R(0.0);
     }
   });
+}
+
+/// The same for a of any sign; `slot` holds 2 lanes ClampedMaps.
+template <class Workers, class R>
+KOKKOS_INLINE_FUNCTION void recur_forward(const Workers& workers, R* x, const R* y, const R* floor, int block,
+                                          int end, R a, R x0, R* slot) {
+  if (device::all(a >= R(0.0))) {
+    recur_by_maps(workers, x, y, floor, block, end, a, x0, reinterpret_cast<RisingMap<R>*>(slot));
+  } else {
+    recur_by_maps(workers, x, y, floor, block, end, a, x0, reinterpret_cast<ClampedMap<R>*>(slot));
+  }
 }
 
 }  // namespace drogue::options

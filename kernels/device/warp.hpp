@@ -1,0 +1,42 @@
+#pragma once
+
+#include <Kokkos_Core.hpp>
+
+/// What the lanes of a warp, all of which call these functions together, tell one another without memory. On
+/// the host, where no warps are, a lane is alone.
+namespace drogue::device {
+
+inline constexpr int warp_lanes = 32;
+
+/// What any lane has written before is seen by all after it.
+KOKKOS_INLINE_FUNCTION void meet_warp() { KOKKOS_IF_ON_DEVICE((__syncwarp();)) }
+
+/// The value of the lane `reach` below; of the lowest lanes their own.
+KOKKOS_INLINE_FUNCTION double from_below(double value, int reach) {
+  KOKKOS_IF_ON_DEVICE((return __shfl_up_sync(~0U, value, static_cast<unsigned>(reach));))
+  KOKKOS_IF_ON_HOST(((void)reach; return value;))
+}
+
+/// The value of the lane `reach` above; of the highest lanes their own.
+KOKKOS_INLINE_FUNCTION double from_above(double value, int reach) {
+  KOKKOS_IF_ON_DEVICE((return __shfl_down_sync(~0U, value, static_cast<unsigned>(reach));))
+  KOKKOS_IF_ON_HOST(((void)reach; return value;))
+}
+
+/// The largest of all lanes' numbers.
+KOKKOS_INLINE_FUNCTION int warp_largest(int value) {
+  KOKKOS_IF_ON_DEVICE((for (int reach = warp_lanes / 2; reach > 0; reach /= 2) {
+    const int other = __shfl_xor_sync(~0U, value, reach);
+    value = other > value ? other : value;
+  }))
+  return value;
+}
+
+/// Tells the compiler that `place` is in shared memory, which Kokkos' scratch handles hide from it.
+template <class T>
+KOKKOS_INLINE_FUNCTION T* in_shared_memory(T* place) {
+  KOKKOS_IF_ON_DEVICE((__builtin_assume(__isShared(place));))
+  return place;
+}
+
+}  // namespace drogue::device
