@@ -177,7 +177,10 @@ KOKKOS_INLINE_FUNCTION int march_in_registers(const WarpWorkers& workers, const 
     floor.node[m] = put.early * (1.0 - put.split) > 0.0 ? payoff : -unbounded;
   }
   for (int n = 1; n <= scheme.steps; ++n) {
-    if (n % lanes == 1) fill_table(workers, put, jumps, scheme, table, n);
+    if (n % lanes == 1) {
+      workers.meet();
+      fill_table(workers, put, jumps, scheme, table, n);
+    }
     value.store(lane, rows.value);
     workers.meet();
     convolve_tiles<block>(lane, jumps.w, rows.value, rows.out, rows.other);
@@ -209,6 +212,7 @@ KOKKOS_INLINE_FUNCTION int march_in_registers(const WarpWorkers& workers, const 
       value = recur_forward(lane, y, floor, f.from_left, f.edge);
     } else {
       // Rare: a drift that the diffusion left does not carry. Rows that the step no longer needs serve.
+      workers.meet();
       y.store(lane, rows.value);
       floor.store(lane, rows.other);
       workers.meet();
@@ -233,6 +237,7 @@ KOKKOS_INLINE_FUNCTION int march_in_registers(const WarpWorkers& workers, const 
     change.node[m] = rate_of_change(last, per, value.node[m], before.node[m], oldest.node[m]);
     if (i < strike && is_exercised(value.node[m], i - strike, h)) exercised = i;
   }
+  workers.meet();
   value.store(lane, rows.value);
   change.store(lane, rows.other);
   workers.meet();
