@@ -167,8 +167,10 @@ void launch_batch(const ExecutionSpace& space, const char* label, const Functor&
   using Batch = PriceBatch<ExecutionSpace, block>;
   using R = typename Batch::R;
   if (batch.count == 0) return;
-  // With nodes in registers a lane needs 168 of them, and twelve warps share a multiprocessor.
-  using Bounds = std::conditional_t<(block > 0), Kokkos::LaunchBounds<lanes, 12>, Kokkos::LaunchBounds<>>;
+  // With nodes in registers a lane gets 168 or, for many of them, 255; more warps a multiprocessor are
+  // slower.
+  using Bounds = std::conditional_t < (block > 0),
+        Kokkos::LaunchBounds<lanes, block<8 ? 12 : 8>, Kokkos::LaunchBounds<>>;
   Kokkos::TeamPolicy<ExecutionSpace, Bounds> policy(space,
                                                     (batch.count + Batch::members - 1) / Batch::members,
                                                     device::is_host<ExecutionSpace> ? 1 : lanes);
