@@ -26,7 +26,7 @@ KOKKOS_INLINE_FUNCTION Grid<R> grid_of(const Domain<R>& domain, int mesh) {
 /// Blocks of nodes that lanes own, and the length of an array that holds them all and whole octets of nodes.
 KOKKOS_INLINE_FUNCTION int block_of(int mesh) { return (mesh + lanes - 1) / lanes; }
 KOKKOS_INLINE_FUNCTION int node_count(int mesh) {
-  const int owned = block_of(mesh) * lanes, octets = mesh / 8 * 8 + 16;
+  const int owned = block_of(mesh) * lanes, octets = (mesh + 7) / 8 * 8 + 8;
   return owned > octets ? owned : octets;
 }
 

@@ -112,7 +112,7 @@ KOKKOS_INLINE_FUNCTION WeightPair<R> weights(const PutPack<R>& put, const Grid<R
     return {part * finer[layout.place(2 * d)], part * finer[layout.place(-2 * d)]};
   }
   const double part = d == grid.mesh || d == 1 ? 0.5 : 1.0;
-  const R heavy = (even[d] + odd[d]) * (part / d);
+  const R heavy = (even[d] + odd[d]) * (part * device::reciprocal(double(d)));
   const R light = heavy * exponential(-2.0 * device::absolute(put.jump[2]) * (double(d) * grid.h));
   const auto upwards = put.jump[2] > R(0.0);
   return {device::select(upwards, heavy, light), device::select(upwards, light, heavy)};
@@ -168,10 +168,12 @@ KOKKOS_INLINE_FUNCTION Jumps<R> jumps_of(const Workers& workers, const PutPack<R
   jumps.diffusion = 0.5 * device::maximum(R(0.0), put.variance + rest);
   const R compensator =
       total(memory.slot + 2 * lanes) + (tails.up_price - tails.up) + (tails.down_price - tails.down);
-  const R growth = exponential(0.5 * h), chord = growth - 1.0 / growth;  // 2 sinh(h/2)
-  const R sinh = 0.5 * chord * (growth + 1.0 / growth);
-  jumps.drift =
-      (put.rate - put.dividend - compensator - jumps.diffusion * chord * chord / (h * h)) * h / sinh;
+  const R growth = exponential(0.5 * h), shrink = device::reciprocal(growth);
+  const R chord = growth - shrink;  // 2 sinh(h/2)
+  const R sinh = 0.5 * chord * (growth + shrink);
+  const R per = device::reciprocal(h);
+  jumps.drift = (put.rate - put.dividend - compensator - jumps.diffusion * (chord * per) * (chord * per)) *
+                h * device::reciprocal(sinh);
   workers.each([=](int lane) {
     if (lane == 0) {
       memory.left[mesh - 1] += tails.down;

@@ -102,10 +102,11 @@ KOKKOS_INLINE_FUNCTION Scheme<R> scheme_of(const PutPack<R>& put, const Jumps<R>
 /// IMEX-BDF2 damps the highest mode of a symbol I implicit, E explicit while 3E <= 4/dt + I.
 template <class R>
 KOKKOS_INLINE_FUNCTION R added_diffusion(const PutPack<R>& put, const Jumps<R>& jumps, R diffusion, R dt) {
+  const R most = 3.6 * device::reciprocal(dt);
   R added = 0.0;
   for (int k = 0; k < symbols; ++k) {
     const double form = 2.0 - 2.0 * angle_cosine(k);
-    const R need = 3.0 * (jumps.symbol[k] + put.rate) - diffusion * form - 3.6 / dt;
+    const R need = 3.0 * (jumps.symbol[k] + put.rate) - diffusion * form - most;
     added = device::maximum(added, need * (0.25 / form));
   }
   return added;
@@ -128,7 +129,7 @@ struct StepLength {
 template <class R>
 KOKKOS_INLINE_FUNCTION StepLength<R> step_length(R maturity, int n, int steps) {
   const R begin = step_end(maturity, n - 1, steps), dt = step_end(maturity, n, steps) - begin;
-  return {dt, n <= 2 ? R(0.0) : dt / (begin - step_end(maturity, n - 2, steps))};
+  return {dt, n <= 2 ? R(0.0) : dt * device::reciprocal(begin - step_end(maturity, n - 2, steps))};
 }
 
 /// dV/dtau at the end of a step by its formula, from the last three values; `per` is 1/(dt (1 + ratio)).
@@ -180,7 +181,7 @@ template <class R>
 KOKKOS_INLINE_FUNCTION StepFactors<R> step_factors(const PutPack<R>& put, const Jumps<R>& jumps,
                                                    const Scheme<R>& scheme, int n) {
   const StepLength<R> step = step_length(put.maturity, n, scheme.steps);
-  const R per = 1.0 / (step.dt * (1.0 + step.ratio));
+  const R per = device::reciprocal(step.dt * (1.0 + step.ratio));
   const R c0 = (1.0 + 2.0 * step.ratio) * per;
   const R added = added_diffusion(put, jumps, 0.5 * (scheme.lower + scheme.upper), step.dt);
   const R lower = scheme.lower + added, upper = scheme.upper + added;
@@ -190,7 +191,7 @@ KOKKOS_INLINE_FUNCTION StepFactors<R> step_factors(const PutPack<R>& put, const 
       certain(put, scheme.lowest, scheme.best, step_end(put.maturity, n - 1, scheme.steps));
   const Certain<R> ended = certain(put, scheme.lowest, scheme.best, step_end(put.maturity, n, scheme.steps));
   StepFactors<R> f;
-  f.value = (1.0 + step.ratio) / step.dt * inverse;
+  f.value = (1.0 + step.ratio) * device::reciprocal(step.dt) * inverse;
   f.before = step.ratio * step.ratio * per * inverse;
   f.fresh = (1.0 + step.ratio) * inverse;
   f.stale = step.ratio * inverse;

@@ -66,7 +66,7 @@ struct PriceBatch {
   using R = Number<ExecutionSpace>;
   using Member = typename Kokkos::TeamPolicy<ExecutionSpace>::member_type;
   static constexpr int members = device::Access<R>::lanes;
-  static constexpr int rows = block > 0 ? 7 : 12;
+  using Scratch = Memory<R, block>;
 
   Kokkos::View<const Contract*, Space> contracts;  ///< (batch)
   Kokkos::View<Price*, Space> prices;              ///< (batch)
@@ -82,9 +82,9 @@ struct PriceBatch {
   /// Calls `functor.price` with the workers and the memory of a team.
   template <class Functor>
   KOKKOS_INLINE_FUNCTION void price_group(const Functor& functor, const Member& team) const {
-    void* place = team.team_scratch(level).get_shmem_aligned(Memory<R>::bytes(mesh, rows), 64);
+    void* place = team.team_scratch(level).get_shmem_aligned(Scratch::bytes(mesh), 64);
     if constexpr (block > 0) place = device::in_shared_memory(place);
-    const Memory<R> memory(place, mesh, rows);
+    const Scratch memory(place, mesh);
     if constexpr (members == 1 && !device::is_host<ExecutionSpace>) {
       functor.price(WarpWorkers{static_cast<int>(team.team_rank())}, memory, team.league_rank());
     } else {
@@ -99,7 +99,7 @@ struct PriceBatch {
   }
 
   template <class Workers>
-  KOKKOS_INLINE_FUNCTION void price(const Workers& workers, const Memory<R>& memory, int group) const {
+  KOKKOS_INLINE_FUNCTION void price(const Workers& workers, const Scratch& memory, int group) const {
     workers.each([=, this](int lane) {
       for (int k = lane; k < members; k += lanes) memory.puts[k] = put_of(contracts(place(group, k)));
     });
@@ -111,15 +111,14 @@ struct PriceBatch {
     const Tails<R> tails = tails_of(workers, put, law, grid.h * double(mesh), memory.slot);
     const R* fine = solve<block>(workers, put, law, tails, grid, steps, memory, {memory.w, nullptr}, record,
                                  memory.answers);
-    R* const kept =
-        memory.row(rows - 1, node_count(mesh));  // which the smaller rows of the coarser grid leave alone
+    R* const kept = memory.kept(mesh);
     workers.each([=, this](int lane) {
       for (int i = lane; i < mesh / 2; i += lanes) kept[i] = fine[2 * i];
     });
     grid = {mesh / 2, 2.0 * grid.h, 0.5 * grid.strike};
-    const R* coarse = solve<block / 2>(workers, put, law, tails, grid, steps / 2, memory,
-                                       {memory.w + WeightLayout<R>(mesh).size(), memory.w}, Record{},
-                                       memory.answers + members);
+    const R* coarse =
+        solve<block / 2>(workers, put, law, tails, grid, steps / 2, memory,
+                         {memory.coarse_weights(mesh), memory.w}, Record{}, memory.answers + members);
     const R deviation = device::square_root((put.variance + law.variance) * put.maturity);
     R* const change = memory.slot;
     workers.each([=, this, &put](int lane) {
@@ -154,8 +153,7 @@ template <class ExecutionSpace>
 [[nodiscard]] int scratch_level(int mesh) {
   const auto most_shared = static_cast<std::size_t>(Kokkos::TeamPolicy<ExecutionSpace>::scratch_size_max(0));
   return !device::is_host<ExecutionSpace> &&
-                 Memory<Number<ExecutionSpace>>::bytes(mesh, PriceBatch<ExecutionSpace>::rows) + 64 <=
-                     most_shared
+                 PriceBatch<ExecutionSpace>::Scratch::bytes(mesh) + 64 <= most_shared
              ? 0
              : 1;
 }
@@ -165,16 +163,14 @@ template <class ExecutionSpace, int block, class Functor>
 void launch_batch(const ExecutionSpace& space, const char* label, const Functor& functor,
                   const PriceBatch<ExecutionSpace, block>& batch) {
   using Batch = PriceBatch<ExecutionSpace, block>;
-  using R = typename Batch::R;
   if (batch.count == 0) return;
-  // With nodes in registers a lane gets 168 or, for many of them, 255; more warps a multiprocessor are
-  // slower.
+  // Warps that share a multiprocessor: as many as registers for the nodes allow.
   using Bounds = std::conditional_t < (block > 0),
-        Kokkos::LaunchBounds<lanes, block<8 ? 12 : 8>, Kokkos::LaunchBounds<>>;
+        Kokkos::LaunchBounds<lanes, block<8 ? 16 : 8>, Kokkos::LaunchBounds<>>;
   Kokkos::TeamPolicy<ExecutionSpace, Bounds> policy(space,
                                                     (batch.count + Batch::members - 1) / Batch::members,
                                                     device::is_host<ExecutionSpace> ? 1 : lanes);
-  policy.set_scratch_size(batch.level, Kokkos::PerTeam(Memory<R>::bytes(batch.mesh, Batch::rows) + 64));
+  policy.set_scratch_size(batch.level, Kokkos::PerTeam(Batch::Scratch::bytes(batch.mesh) + 64));
   Kokkos::parallel_for(label, policy, functor);
 }
 

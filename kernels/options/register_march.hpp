@@ -18,36 +18,53 @@ struct alignas(16) NodePair {
 KOKKOS_INLINE_FUNCTION int swizzled(int pair) { return (pair & ~3) | ((pair & 3) ^ ((pair >> 3) & 3)); }
 
 /// `convolve` for 32 block intervals: tasks of as many nodes as give every lane one, at most eight. The
-/// weights that a task needs are a window that slides through registers. Results lie `swizzled`.
+/// weights that a task needs are a window that slides through registers. Results lie `swizzled`. What does
+/// not change from step to step is found once.
 template <int block>
-KOKKOS_INLINE_FUNCTION void convolve_tiles(int lane, const double* w, const double* v, double* out,
-                                           double* other) {
-  constexpr int mesh = lanes * block, outs = block < 4 ? 2 * block : 8, chunks = mesh / outs;
-  constexpr int half = mesh / 8 / 2;
-  const WeightLayout<double> layout(mesh);
-  for (int task = lane; task < 2 * chunks; task += lanes) {
-    const int part = task / chunks, chunk = task % chunks;
+class Convolution {
+ public:
+  KOKKOS_INLINE_FUNCTION Convolution(int lane, const double* w, const double* v, double* out, double* other) {
+    const WeightLayout<double> layout(mesh);
+    const int part = rounds == 1 ? lane / chunks : 0, chunk = lane % chunks;
     const int begin = layout.centre + 8 * half * part - outs * chunk;
-    const double* from[8 / outs];
     for (int k = 0; k < 8 / outs; ++k)
-      from[k] = w + (begin + k * outs) % 8 * layout.stride + (begin + k * outs) / 8;
-    double sum[outs], window[outs + 7];
-    for (int m = 0; m < outs; ++m) sum[m] = 0.0;
-    for (int m = 0; m < outs - 1; ++m) window[m] = w[layout.place(begin - layout.centre - (outs - 1) + m)];
-    const auto* values = reinterpret_cast<const NodePair*>(v) + 4 * half * part;
-    for (int u = 0; u < half; ++u, values += 4) {
-      for (int k = 0; k < 8; ++k) window[outs - 1 + k] = from[k / outs][k % outs * layout.stride + u];
-      for (int k = 0; k < 8; k += 2) {
-        const NodePair value = values[k / 2];
-        for (int m = 0; m < outs; ++m) sum[m] += window[outs - 1 + k - m] * value.first;
-        for (int m = 0; m < outs; ++m) sum[m] += window[outs + k - m] * value.second;
-      }
-      for (int m = 0; m < outs - 1; ++m) window[m] = window[8 + m];
-    }
-    auto* to = reinterpret_cast<NodePair*>(part == 0 ? out : other);
-    for (int m = 0; m < outs; m += 2) to[swizzled((outs * chunk + m) / 2)] = {sum[m], sum[m + 1]};
+      _weights[k] = w + (begin + k * outs) % 8 * layout.stride + (begin + k * outs) / 8;
+    _values = reinterpret_cast<const NodePair*>(v) + 4 * half * part;
+    for (int m = 0; m < outs; m += 2)
+      _sums[m / 2] = reinterpret_cast<NodePair*>(part == 0 ? out : other) + swizzled((outs * chunk + m) / 2);
+    _other = other - out;
   }
-}
+
+  KOKKOS_INLINE_FUNCTION void operator()() const {
+    constexpr int last = 8 / outs - 1;  // the row of the weights before the first lies under the last
+    for (int round = 0; round < rounds; ++round) {
+      const int first = round * half;
+      double sum[outs], window[outs + 7];
+      for (int m = 0; m < outs; ++m) sum[m] = 0.0;
+      for (int m = 0; m < outs - 1; ++m) window[m] = _weights[last][(m + 1) * stride + first - 1];
+      for (int u = first; u < first + half; ++u) {
+        for (int k = 0; k < 8; ++k) window[outs - 1 + k] = _weights[k / outs][k % outs * stride + u];
+        for (int k = 0; k < 8; k += 2) {
+          const NodePair value = _values[4 * u + k / 2];
+          for (int m = 0; m < outs; ++m) sum[m] += window[outs - 1 + k - m] * value.first;
+          for (int m = 0; m < outs; ++m) sum[m] += window[outs + k - m] * value.second;
+        }
+        for (int m = 0; m < outs - 1; ++m) window[m] = window[8 + m];
+      }
+      for (int m = 0; m < outs; m += 2) _sums[m / 2][round * (_other / 2)] = {sum[m], sum[m + 1]};
+    }
+  }
+
+ private:
+  static constexpr int mesh = lanes * block, outs = block < 4 ? 2 * block : 8, chunks = mesh / outs;
+  static constexpr int half = mesh / 8 / 2, rounds = 2 * chunks / lanes;
+  static constexpr int stride = (2 * (mesh + 16) + 8) / 8 + 1;  ///< WeightLayout's
+
+  const double* _weights[8 / outs];
+  const NodePair* _values;
+  NodePair* _sums[(outs + 1) / 2];
+  std::ptrdiff_t _other;
+};
 
 /// A lane's nodes of an array, read and written by pairs where it has pairs.
 template <int block>
@@ -116,25 +133,32 @@ KOKKOS_INLINE_FUNCTION void recur_backward(int lane, LaneNodes<block>& nodes, do
   }
 }
 
-/// `recur_forward` on registers for a >= 0.
-template <int block>
-KOKKOS_INLINE_FUNCTION LaneNodes<block> recur_forward(int lane, const LaneNodes<block>& nodes,
-                                                      const LaneNodes<block>& floors, double a, double x0) {
-  const double(&y)[block] = nodes.node, (&floor)[block] = floors.node;
-  using Map = RisingMap<double>;
+/// The map of the lane `reach` below.
+KOKKOS_INLINE_FUNCTION RisingMap<double> from_below(const RisingMap<double>& map, int reach) {
+  return {device::from_below(map.b, reach), device::from_below(map.lo, reach)};
+}
+KOKKOS_INLINE_FUNCTION ClampedMap<double> from_below(const ClampedMap<double>& map, int reach) {
+  return {device::from_below(map.b, reach), device::from_below(map.lo, reach),
+          device::from_below(map.hi, reach)};
+}
+
+/// `recur_by_maps` on registers.
+template <class Map, int block>
+KOKKOS_INLINE_FUNCTION LaneNodes<block> recur_by_maps(int lane, const LaneNodes<block>& y,
+                                                      const LaneNodes<block>& floor, double a, double x0) {
   double joined = a;
   for (int m = 1; m < block; ++m) joined *= a;
-  Map map = lane == 0 ? Map::constant(x0) : Map::at_least(floor[0], y[0]);
-  for (int m = 1; m < block; ++m) map = after(Map::at_least(floor[m], y[m]), a, map);
+  Map map = lane == 0 ? Map::constant(x0) : Map::at_least(floor.node[0], y.node[0]);
+  for (int m = 1; m < block; ++m) map = after(Map::at_least(floor.node[m], y.node[m]), a, map);
   for (int reach = 1; reach < lanes; reach *= 2) {
-    const Map below{device::from_below(map.b, reach), device::from_below(map.lo, reach)};
-    if (lane >= reach) map = after(map, joined, below);
+    const Map whole = after(map, joined, from_below(map, reach));
+    if (lane >= reach) map = whole;
     joined *= joined;
   }
   const double inflow = device::from_below(map.lo, 1);
   LaneNodes<block> x;
-  x.node[0] = lane == 0 ? x0 : device::maximum(floor[0], a * inflow + y[0]);
-  for (int m = 1; m < block; ++m) x.node[m] = device::maximum(floor[m], a * x.node[m - 1] + y[m]);
+  x.node[0] = lane == 0 ? x0 : device::maximum(floor.node[0], a * inflow + y.node[0]);
+  for (int m = 1; m < block; ++m) x.node[m] = device::maximum(floor.node[m], a * x.node[m - 1] + y.node[m]);
   return x;
 }
 
@@ -151,12 +175,11 @@ KOKKOS_INLINE_FUNCTION LaneNodes<block> bends_of(int lane, const LaneNodes<block
   return bend;
 }
 
-/// Shared memory of a march, (node_count) each but `slot`.
+/// Shared memory of a march, (node_count) each.
 struct RegisterRows {
   double* value;        ///< at maturity, in plain order when the march is over
   double *out, *other;  ///< `other`: in the end dV/dtau in plain order
   double* force;        ///< of split puts
-  double* slot;         ///< (6 lanes)
 };
 
 /// Marches from expiry to maturity. Returns the last node below the strike that is exercised, -1 if none is.
@@ -168,6 +191,7 @@ KOKKOS_INLINE_FUNCTION int march_in_registers(const WarpWorkers& workers, const 
   using Own = LaneNodes<block>;
   const int lane = workers.lane, strike = static_cast<int>(grid.strike);
   const double h = grid.h, stay = -jumps.rate - put.rate;
+  const Convolution<block> convolution(lane, jumps.w, rows.value, rows.out, rows.other);
   Own value, before{}, stale{}, floor;
   before.store(lane, rows.force);
   for (int m = 0; m < block; ++m) {
@@ -183,7 +207,7 @@ KOKKOS_INLINE_FUNCTION int march_in_registers(const WarpWorkers& workers, const 
     }
     value.store(lane, rows.value);
     workers.meet();
-    convolve_tiles<block>(lane, jumps.w, rows.value, rows.out, rows.other);
+    convolution();
     workers.meet();
     const StepFactors<double> f = table.load(n);
     const Own sum = Own::load_swizzled(lane, rows.out), rest = Own::load_swizzled(lane, rows.other),
@@ -208,18 +232,8 @@ KOKKOS_INLINE_FUNCTION int march_in_registers(const WarpWorkers& workers, const 
     }
     before = value;
     recur_backward(lane, y, f.from_right);
-    if (f.from_left >= 0.0) {
-      value = recur_forward(lane, y, floor, f.from_left, f.edge);
-    } else {
-      // Rare: a drift that the diffusion left does not carry. Rows that the step no longer needs serve.
-      workers.meet();
-      y.store(lane, rows.value);
-      floor.store(lane, rows.other);
-      workers.meet();
-      recur_by_maps(workers, rows.value, rows.value, rows.other, block, grid.mesh, f.from_left, f.edge,
-                    reinterpret_cast<ClampedMap<double>*>(rows.slot));
-      value = Own::load(lane, rows.value);
-    }
+    value = f.from_left >= 0.0 ? recur_by_maps<RisingMap<double>>(lane, y, floor, f.from_left, f.edge)
+                               : recur_by_maps<ClampedMap<double>>(lane, y, floor, f.from_left, f.edge);
     if (put.any_split) {
       value.store(lane, rows.value);
       workers.meet();

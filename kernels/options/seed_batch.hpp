@@ -70,7 +70,8 @@ struct SeedBatch {
   KOKKOS_FUNCTION void operator()(const Member& team) const { batch.price_group(*this, team); }
 
   template <class Workers>
-  KOKKOS_INLINE_FUNCTION void price(const Workers& workers, const Memory<R>& memory, int group) const {
+  KOKKOS_INLINE_FUNCTION void price(const Workers& workers, const typename Batch::Scratch& memory,
+                                    int group) const {
     const int mesh = batch.mesh, steps = batch.steps, count = node_count(mesh), block = block_of(mesh);
     workers.each([=, this](int lane) {
       for (int k = lane; k < members; k += lanes)
@@ -81,10 +82,10 @@ struct SeedBatch {
                               memory.law_memory(), memory.slot);
     const Grid<R> grid{mesh, R(2.0 * seed_reach / mesh), R(0.5 * mesh)};
     const Jumps<R> jumps =
-        seed_jumps(workers, put, law, grid, memory.w, memory.row(9, count), memory.row(10, count));
-    R *now = memory.row(0, count), *value = memory.row(1, count);
-    R *sum = memory.row(2, count), *other = memory.row(3, count), *y = memory.row(4, count),
-      *payoff = memory.row(5, count), *none = memory.row(6, count), *change = memory.row(7, count);
+        seed_jumps(workers, put, law, grid, memory.w, memory.row(9, mesh), memory.row(10, mesh));
+    R *now = memory.row(0, mesh), *value = memory.row(1, mesh);
+    R *sum = memory.row(2, mesh), *other = memory.row(3, mesh), *y = memory.row(4, mesh),
+      *payoff = memory.row(5, mesh), *none = memory.row(6, mesh), *change = memory.row(7, mesh);
     workers.each([=](int lane) {
       for (int i = lane; i < count; i += lanes) {
         const R paid = device::maximum(R(0.0), 1.0 - exponential((double(i) - grid.strike) * grid.h));

@@ -5,41 +5,56 @@
 
 namespace drogue::options {
 
-/// Rows of scratch memory for the solves of one team.
-template <class R>
+/// Scratch memory of one team for its two solves. For `block` see `solve`: with a block > 0 there is so
+/// little of it that sixteen warps share a multiprocessor.
+template <class R, int block>
 struct Memory {
-  static constexpr int terms = (StepFactors<R>::size + 1) * lanes;  ///< of the law, and then the step table
+  static constexpr int members = device::Access<R>::lanes;
+  static constexpr int rows = block > 0 ? 5 : 11;
 
-  R* law;
-  R* slot;          ///< (6 lanes)
-  R* w;             ///< of a WeightLayout, and of that of the coarser grid
-  R* nodes;         ///< rows of `node_count`: 12, or 7 where a march keeps its nodes in registers
+  R* law;           ///< what `law_of` leaves, and then the step table
+  R* slot;          ///< (6 lanes); (5 lanes) with a block > 0, where force is there as well
+  R* w;             ///< of a WeightLayout
+  R* nodes;         ///< rows of `node_count`, and what the coarser solve has beyond its own, shorter ones
   Put* puts;        ///< of the members, as the next
   Answer* answers;  ///< on the grid and on the coarser one
 
-  [[nodiscard]] KOKKOS_INLINE_FUNCTION static int weight_count(int mesh) {
-    return WeightLayout<R>(mesh).size() + WeightLayout<R>(mesh / 2).size();
+  [[nodiscard]] KOKKOS_INLINE_FUNCTION static std::size_t bytes(int mesh) {
+    return sizeof(R) * static_cast<std::size_t>(law_size + slot_size + WeightLayout<R>(mesh).size() +
+                                                node_size(mesh)) +
+           members * (sizeof(Put) + 2 * sizeof(Answer));
   }
-  [[nodiscard]] KOKKOS_INLINE_FUNCTION static std::size_t bytes(int mesh, int rows) {
-    return sizeof(R) *
-               static_cast<std::size_t>(terms + 6 * lanes + weight_count(mesh) + rows * node_count(mesh)) +
-           device::Access<R>::lanes * (sizeof(Put) + 2 * sizeof(Answer));
-  }
-  KOKKOS_INLINE_FUNCTION Memory(void* place, int mesh, int rows)
+  KOKKOS_INLINE_FUNCTION Memory(void* place, int mesh)
       : law(static_cast<R*>(place)),
-        slot(law + terms),
-        w(slot + 6 * lanes),
-        nodes(w + weight_count(mesh)),
-        puts(reinterpret_cast<Put*>(nodes + rows * node_count(mesh))),
-        answers(reinterpret_cast<Answer*>(puts + device::Access<R>::lanes)) {}
-  [[nodiscard]] KOKKOS_INLINE_FUNCTION R* row(int k, int count) const { return nodes + k * count; }
-  [[nodiscard]] KOKKOS_INLINE_FUNCTION R* ratio() const { return law + 3 * Mixture::size; }
-  [[nodiscard]] KOKKOS_INLINE_FUNCTION R* symbol() const { return law + StepFactors<R>::size * lanes; }
-  /// Where `law_of` leaves a law; from the first step on the step table is there.
+        slot(law + law_size),
+        w(slot + slot_size),
+        nodes(w + WeightLayout<R>(mesh).size()),
+        puts(reinterpret_cast<Put*>(nodes + node_size(mesh))),
+        answers(reinterpret_cast<Answer*>(puts + members)) {}
+
+  [[nodiscard]] KOKKOS_INLINE_FUNCTION R* row(int k, int mesh) const { return nodes + k * node_count(mesh); }
+  /// Weights of the coarser grid of a mesh, and every other value of the finer one; rows 0 to 2 of the finer
+  /// solve that are read last lie before both.
+  [[nodiscard]] KOKKOS_INLINE_FUNCTION R* coarse_weights(int mesh) const { return row(rows, mesh / 2); }
+  [[nodiscard]] KOKKOS_INLINE_FUNCTION R* kept(int mesh) const {
+    return coarse_weights(mesh) + WeightLayout<R>(mesh / 2).size();
+  }
   [[nodiscard]] KOKKOS_INLINE_FUNCTION Law<R> law_memory() const {
     return {
         law,   law + Mixture::size, law + 2 * Mixture::size, law + 2 * Mixture::size + Mixture::low, R(0.0),
         R(0.0)};
+  }
+  [[nodiscard]] KOKKOS_INLINE_FUNCTION R* ratio() const { return law + 3 * Mixture::size; }
+  [[nodiscard]] KOKKOS_INLINE_FUNCTION R* symbol() const { return law + StepFactors<R>::size * lanes; }
+
+ private:
+  static constexpr int law_size = StepFactors<R>::size * lanes + symbols;
+  static constexpr int slot_size = block == 0 ? 6 * lanes : block <= 5 ? 5 * lanes : block * lanes;
+
+  [[nodiscard]] KOKKOS_INLINE_FUNCTION static int node_size(int mesh) {
+    const int coarse = rows * node_count(mesh / 2) + WeightLayout<R>(mesh / 2).size() + mesh / 2 + 2,
+              fine = rows * node_count(mesh);
+    return fine > coarse ? fine : coarse;
   }
 };
 
@@ -56,15 +71,15 @@ template <class Workers, class R>
 KOKKOS_INLINE_FUNCTION March<R> march_in_memory(const Workers& workers, const PutPack<R>& put,
                                                 const Jumps<R>& jumps, const Grid<R>& grid,
                                                 const Scheme<R>& scheme, const StepTable<R>& table,
-                                                const Memory<R>& memory, R kink, const Record& record) {
+                                                const Memory<R, 0>& memory, R kink, const Record& record) {
   const int mesh = grid.mesh, count = node_count(mesh), steps = scheme.steps;
   const R h = grid.h;
-  March<R> march{{memory.row(0, count), memory.row(1, count), memory.row(2, count)},
-                 {memory.row(3, count), memory.row(4, count)},
-                 memory.row(5, count),
-                 memory.row(6, count),
-                 memory.row(7, count),
-                 memory.row(8, count),
+  March<R> march{{memory.row(0, mesh), memory.row(1, mesh), memory.row(2, mesh)},
+                 {memory.row(3, mesh), memory.row(4, mesh)},
+                 memory.row(5, mesh),
+                 memory.row(6, mesh),
+                 memory.row(7, mesh),
+                 memory.row(8, mesh),
                  memory.slot};
   workers.each([=](int lane) {
     for (int k = lane; k < 9 * count; k += lanes) memory.nodes[k] = 0.0;
@@ -128,19 +143,19 @@ struct Weights {
 /// Marches from expiry to the puts' maturities on `grid`; `answers` gets one for each member. Returns the
 /// values of the nodes, which stay in the memory until the next solve. With a block > 0 the mesh is 32 block
 /// and a warp keeps its nodes in registers; then nothing is recorded.
-template <int block, class Workers, class R>
+template <int block, class Workers, class R, class Memory>
 KOKKOS_INLINE_FUNCTION const R* solve(const Workers& workers, const PutPack<R>& put, const Law<R>& law,
                                       const Tails<R>& tails, const Grid<R>& grid, int steps,
-                                      const Memory<R>& memory, const Weights<R>& weights,
-                                      const Record& record, Answer* answers) {
+                                      const Memory& memory, const Weights<R>& weights, const Record& record,
+                                      Answer* answers) {
   constexpr int members = device::Access<R>::lanes;
-  const int mesh = grid.mesh, count = node_count(mesh);
+  const int mesh = grid.mesh;
   const R h = grid.h;
   constexpr int left = block > 0 ? 3 : 9;
   const Jumps<R> jumps =
       jumps_of(workers, put, law, tails, grid,
-               {weights.own, memory.row(left, count), memory.row(left + 1, count), memory.symbol(),
-                memory.row(1, count), memory.row(2, count), memory.ratio(), memory.slot},
+               {weights.own, memory.row(left, mesh), memory.row(left + 1, mesh), memory.symbol(),
+                memory.row(1, mesh), memory.row(2, mesh), memory.ratio(), memory.slot},
                weights.finer);
   // The kink of the payoff, as far as it gets smoothed out: h/12 is what the rule of trapezoids, which sums
   // over nodes amount to, lacks there.
@@ -151,8 +166,7 @@ KOKKOS_INLINE_FUNCTION const R* solve(const Workers& workers, const PutPack<R>& 
   const R *value = nullptr, *change = nullptr;
   int exercised = -1;
   if constexpr (block > 0) {
-    const RegisterRows rows{memory.row(0, count), memory.row(1, count), memory.row(2, count),
-                            memory.row(5, count), memory.slot};
+    const RegisterRows rows{memory.row(0, mesh), memory.row(1, mesh), memory.row(2, mesh), memory.slot};
     exercised = march_in_registers<block>(workers, put, jumps, grid, scheme, table, rows, kink);
     value = rows.value;
     change = rows.other;
