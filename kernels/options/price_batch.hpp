@@ -100,31 +100,32 @@ struct PriceBatch {
 
   template <class Workers>
   KOKKOS_INLINE_FUNCTION void price(const Workers& workers, const Scratch& memory, int group) const {
+    const int cells = block > 0 ? lanes * block : mesh;  // which a compiler may unroll loops for
     workers.each([=, this](int lane) {
       for (int k = lane; k < members; k += lanes) memory.puts[k] = put_of(contracts(place(group, k)));
     });
     PutPack<R> put = pack_of<R>(memory.puts);
     const Law<R> law =
         law_of(workers, put, memory.puts, panels.data(), panel_slot.data(), memory.law_memory(), memory.slot);
-    const Domain<R> domain = domain_of(workers, put, law, cut_error(mesh), memory.slot);
-    Grid<R> grid = grid_of(domain, mesh);
-    const Tails<R> tails = tails_of(workers, put, law, grid.h * double(mesh), memory.slot);
+    const Domain<R> domain = domain_of(workers, put, law, cut_error(cells), memory.slot);
+    Grid<R> grid = grid_of(domain, cells);
+    const Tails<R> tails = tails_of(workers, put, law, grid.h * double(cells), memory.slot);
     const R* fine = solve<block>(workers, put, law, tails, grid, steps, memory, {memory.w, nullptr}, record,
                                  memory.answers);
-    R* const kept = memory.kept(mesh);
+    R* const kept = memory.kept(cells);
     workers.each([=, this](int lane) {
-      for (int i = lane; i < mesh / 2; i += lanes) kept[i] = fine[2 * i];
+      for (int i = lane; i < cells / 2; i += lanes) kept[i] = fine[2 * i];
     });
-    grid = {mesh / 2, 2.0 * grid.h, 0.5 * grid.strike};
+    grid = {cells / 2, 2.0 * grid.h, 0.5 * grid.strike};
     const R* coarse =
         solve<block / 2>(workers, put, law, tails, grid, steps / 2, memory,
-                         {memory.coarse_weights(mesh), memory.w}, Record{}, memory.answers + members);
+                         {memory.coarse_weights(cells), memory.w}, Record{}, memory.answers + members);
     const R deviation = device::square_root((put.variance + law.variance) * put.maturity);
     R* const change = memory.slot;
     workers.each([=, this, &put](int lane) {
       const R window = device::maximum(grid.h, 1.0 * deviation);
       R largest = 0.0;
-      for (int i = lane; i < mesh / 2; i += lanes) {
+      for (int i = lane; i < cells / 2; i += lanes) {
         const auto near = device::absolute((double(i) - grid.strike) * grid.h - put.log_spot) <= window;
         largest =
             device::maximum(largest, device::select(near, device::absolute(kept[i] - coarse[i]), R(0.0)));
@@ -141,7 +142,7 @@ struct PriceBatch {
         }
         const int at = place(group, k);
         prices(at) = price_of(contracts(at), memory.puts[k], memory.answers[k], memory.answers[members + k],
-                              largest, mesh, steps, tolerance);
+                              largest, cells, steps, tolerance);
       }
     });
   }
@@ -165,10 +166,10 @@ void launch_batch(const ExecutionSpace& space, const char* label, const Functor&
   using Batch = PriceBatch<ExecutionSpace, block>;
   if (batch.count == 0) return;
   // Warps that share a multiprocessor: as many as registers for the nodes allow.
-  using Bounds = std::conditional_t < (block > 0),
-        Kokkos::LaunchBounds<lanes, block<8 ? 16 : 8>, Kokkos::LaunchBounds<>>;
-  Kokkos::TeamPolicy<ExecutionSpace, Bounds> policy(space,
-                                                    (batch.count + Batch::members - 1) / Batch::members,
+  constexpr unsigned teams = block == 0 ? 1 : block < 8 ? 16 : 8;
+  using Bounds = std::conditional_t<block == 0, Kokkos::LaunchBounds<>, Kokkos::LaunchBounds<lanes, teams>>;
+  const int league = (batch.count + Batch::members - 1) / Batch::members;
+  Kokkos::TeamPolicy<ExecutionSpace, Bounds> policy(space, league,
                                                     device::is_host<ExecutionSpace> ? 1 : lanes);
   policy.set_scratch_size(batch.level, Kokkos::PerTeam(Batch::Scratch::bytes(batch.mesh) + 64));
   Kokkos::parallel_for(label, policy, functor);

@@ -39,29 +39,16 @@ class PricerOn final : public Pricer {
     reserve(contracts.size());
     fetch_panels(contracts);
     copy_in(_contracts, contracts.data(), contracts.size());
+    _instance.space().fence("drogue::options: contracts are copied");
     timing.h2d = setting_up.seconds();
-    const bool chosen = _settings.mesh == 0 && _settings.method == Method::pide;
-    Effort first;
-    first.mesh = chosen ? first_mesh : _settings.mesh == 0 ? seed_mesh : _settings.mesh;
-    first.steps = steps_of(first.mesh, 1);
-    std::vector<Row> rows(contracts.size(), Row{first, 1, 0.0});
-    for (std::optional<Effort> effort = first; effort; effort = chosen ? least_effort(rows) : std::nullopt) {
+    if (_settings.mesh == 0 && _settings.method == Method::pide) {
+      price_to_tolerance(contracts, prices, timing);
+    } else {
+      const int mesh = _settings.mesh == 0 ? seed_mesh : _settings.mesh;
       const Clock computing;
-      for (int model = 0; model < models; ++model) {
-        std::vector<int> batch;
-        for (std::size_t k = 0; k < contracts.size(); ++k)
-          if (rows[k].next == *effort && static_cast<int>(contracts[k].model) == model)
-            batch.push_back(static_cast<int>(k));
-        launch(batch, *effort, Record{});
-      }
-      timing.compute += computing.seconds();
-      const Clock copying;
-      copy_bytes(_instance.space(), device::copy_way<ExecutionSpace, Kokkos::HostSpace, Space>(),
-                 prices.data(), _prices.data(), prices.size() * sizeof(Price));
-      _instance.space().fence("drogue::options: prices are there");
-      timing.d2h += copying.seconds();
-      for (std::size_t k = 0; k < contracts.size(); ++k)
-        if (rows[k].next == *effort) advance(rows[k], prices[k], _settings.tolerance * contracts[k].strike);
+      launch_models(contracts, {mesh, steps_of(mesh, 1)}, [](std::size_t) { return true; });
+      timing.compute = computing.seconds();
+      copy_out(prices, timing);
     }
     return timing;
   }
@@ -87,6 +74,19 @@ class PricerOn final : public Pricer {
   }
 
  private:
+  void price_to_tolerance(std::span<const Contract> contracts, std::span<Price> prices, Timing& timing) {
+    const Effort first{first_mesh, steps_of(first_mesh, 1)};
+    std::vector<Row> rows(contracts.size(), Row{first, 1, 0.0});
+    for (std::optional<Effort> effort = first; effort; effort = least_effort(rows)) {
+      const Clock computing;
+      launch_models(contracts, *effort, [&](std::size_t k) { return rows[k].next == *effort; });
+      timing.compute += computing.seconds();
+      copy_out(prices, timing);
+      for (std::size_t k = 0; k < contracts.size(); ++k)
+        if (rows[k].next == *effort) advance(rows[k], prices[k], _settings.tolerance * contracts[k].strike);
+    }
+  }
+
   static constexpr int first_mesh = 64, seed_mesh = 128, last_mesh = 2048, record_mesh = 512, models = 4,
                        most_often = 4;
 
@@ -188,13 +188,22 @@ class PricerOn final : public Pricer {
         View<Contract>(Kokkos::view_alloc("drogue::options::contracts", Kokkos::WithoutInitializing), count);
     _prices = View<Price>(Kokkos::view_alloc("drogue::options::prices", Kokkos::WithoutInitializing), count);
     _order = View<int>(Kokkos::view_alloc("drogue::options::order", Kokkos::WithoutInitializing), count);
+    _rows.clear();
   }
 
+  /// Enqueues a copy; `from` must stay as it is until the next fence.
   template <class T>
   void copy_in(const View<T>& to, const T* from, std::size_t count) {
     copy_bytes(_instance.space(), device::copy_way<ExecutionSpace, Space, Kokkos::HostSpace>(), to.data(),
                from, count * sizeof(T));
-    _instance.space().fence("drogue::options: input is copied");
+  }
+
+  void copy_out(std::span<Price> prices, Timing& timing) {
+    const Clock copying;
+    copy_bytes(_instance.space(), device::copy_way<ExecutionSpace, Kokkos::HostSpace, Space>(), prices.data(),
+               _prices.data(), prices.size() * sizeof(Price));
+    _instance.space().fence("drogue::options: prices are there");
+    timing.d2h += copying.seconds();
   }
 
   /// Builds the series of those panels of orders that are new.
@@ -218,9 +227,23 @@ class PricerOn final : public Pricer {
     copy_in(_panel_slot, _slots.data(), _slots.size());
   }
 
-  void launch(const std::vector<int>& rows, const Effort& effort, const Record& record) {
+  /// Prices the contracts k for which `asked(k)`, those of a model in a launch.
+  template <class Asked>
+  void launch_models(std::span<const Contract> contracts, const Effort& effort, const Asked& asked) {
+    for (int model = 0; model < models; ++model) {
+      std::vector<int> rows;
+      for (std::size_t k = 0; k < contracts.size(); ++k)
+        if (static_cast<int>(contracts[k].model) == model && asked(k)) rows.push_back(static_cast<int>(k));
+      launch(std::move(rows), effort, Record{});
+    }
+  }
+
+  void launch(std::vector<int> rows, const Effort& effort, const Record& record) {
     if (rows.empty()) return;
-    copy_in(_order, rows.data(), rows.size());
+    if (rows != _rows) {
+      copy_in(_order, rows.data(), rows.size());
+      _rows.swap(rows);
+    }
     PriceBatch<ExecutionSpace> batch;
     batch.contracts = _contracts;
     batch.prices = _prices;
@@ -228,7 +251,7 @@ class PricerOn final : public Pricer {
     batch.panels = _panels;
     batch.panel_slot = _panel_slot;
     batch.record = record;
-    batch.count = static_cast<int>(rows.size());
+    batch.count = static_cast<int>(_rows.size());
     batch.mesh = effort.mesh;
     batch.steps = effort.steps;
     batch.tolerance = _settings.tolerance;
@@ -246,6 +269,7 @@ class PricerOn final : public Pricer {
   View<Contract> _contracts;
   View<Price> _prices;
   View<int> _order, _panel_slot;
+  std::vector<int> _rows;  ///< what _order holds
   View<double> _panels;
   std::vector<double> _series;
   std::vector<int> _slots = std::vector<int>(HankelGrid::panels, -1);
