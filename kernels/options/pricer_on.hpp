@@ -11,6 +11,7 @@
 
 #include "kernels/device/copy.hpp"
 #include "kernels/device/instance.hpp"
+#include "kernels/device/pinned_memory.hpp"
 #include "kernels/options/seed_batch.hpp"
 
 namespace drogue::options {
@@ -38,7 +39,7 @@ class PricerOn final : public Pricer {
     const Clock setting_up;
     reserve(contracts.size());
     fetch_panels(contracts);
-    copy_in(_contracts, contracts.data(), contracts.size());
+    copy_in(_contracts, staged(contracts), contracts.size());
     _instance.space().fence("drogue::options: contracts are copied");
     timing.h2d = setting_up.seconds();
     if (_settings.mesh == 0 && _settings.method == Method::pide) {
@@ -198,11 +199,25 @@ class PricerOn final : public Pricer {
                from, count * sizeof(T));
   }
 
+  /// The contracts where a device copies them from without a detour.
+  const Contract* staged(std::span<const Contract> contracts) {
+    if constexpr (device::is_host<ExecutionSpace>) return contracts.data();
+    _staged_contracts.resize(contracts.size());
+    std::ranges::copy(contracts, _staged_contracts.begin());
+    return _staged_contracts.data();
+  }
+
   void copy_out(std::span<Price> prices, Timing& timing) {
     const Clock copying;
-    copy_bytes(_instance.space(), device::copy_way<ExecutionSpace, Kokkos::HostSpace, Space>(), prices.data(),
+    Price* to = prices.data();
+    if constexpr (!device::is_host<ExecutionSpace>) {
+      _staged_prices.resize(prices.size());
+      to = _staged_prices.data();
+    }
+    copy_bytes(_instance.space(), device::copy_way<ExecutionSpace, Kokkos::HostSpace, Space>(), to,
                _prices.data(), prices.size() * sizeof(Price));
     _instance.space().fence("drogue::options: prices are there");
+    if (to != prices.data()) std::ranges::copy(_staged_prices, prices.begin());
     timing.d2h += copying.seconds();
   }
 
@@ -230,12 +245,10 @@ class PricerOn final : public Pricer {
   /// Prices the contracts k for which `asked(k)`, those of a model in a launch.
   template <class Asked>
   void launch_models(std::span<const Contract> contracts, const Effort& effort, const Asked& asked) {
-    for (int model = 0; model < models; ++model) {
-      std::vector<int> rows;
-      for (std::size_t k = 0; k < contracts.size(); ++k)
-        if (static_cast<int>(contracts[k].model) == model && asked(k)) rows.push_back(static_cast<int>(k));
-      launch(std::move(rows), effort, Record{});
-    }
+    std::vector<int> rows[models];
+    for (std::size_t k = 0; k < contracts.size(); ++k)
+      if (asked(k)) rows[static_cast<std::size_t>(contracts[k].model)].push_back(static_cast<int>(k));
+    for (std::vector<int>& of_model : rows) launch(std::move(of_model), effort, Record{});
   }
 
   void launch(std::vector<int> rows, const Effort& effort, const Record& record) {
@@ -270,6 +283,9 @@ class PricerOn final : public Pricer {
   View<Price> _prices;
   View<int> _order, _panel_slot;
   std::vector<int> _rows;  ///< what _order holds
+  device::PinnedMemory<ExecutionSpace> _pinned;
+  std::pmr::vector<Contract> _staged_contracts{&_pinned};
+  std::pmr::vector<Price> _staged_prices{&_pinned};
   View<double> _panels;
   std::vector<double> _series;
   std::vector<int> _slots = std::vector<int>(HankelGrid::panels, -1);

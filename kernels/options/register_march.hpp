@@ -42,9 +42,6 @@ class Convolution {
       double sum[outs], window[outs + 7];
       for (int m = 0; m < outs; ++m) sum[m] = 0.0;
       for (int m = 0; m < outs - 1; ++m) window[m] = _weights[last][(m + 1) * stride + first - 1];
-#if defined(V_UNROLL)
-#pragma unroll V_UNROLL
-#endif
       for (int u = first; u < first + half; ++u) {
         for (int k = 0; k < 8; ++k) window[outs - 1 + k] = _weights[k / outs][k % outs * stride + u];
         for (int k = 0; k < 8; k += 2) {
