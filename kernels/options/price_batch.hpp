@@ -165,8 +165,8 @@ void launch_batch(const ExecutionSpace& space, const char* label, const Functor&
                   const PriceBatch<ExecutionSpace, block>& batch) {
   using Batch = PriceBatch<ExecutionSpace, block>;
   if (batch.count == 0) return;
-  // Warps that share a multiprocessor: as many as registers for the nodes allow.
-  constexpr unsigned teams = block == 0 ? 1 : block < 8 ? 16 : 8;
+  // Warps that share a multiprocessor: as many as registers for the nodes allow without spilling.
+  constexpr unsigned teams = block == 0 ? 1 : block < 8 ? 12 : 8;
   using Bounds = std::conditional_t<block == 0, Kokkos::LaunchBounds<>, Kokkos::LaunchBounds<lanes, teams>>;
   const int league = (batch.count + Batch::members - 1) / Batch::members;
   Kokkos::TeamPolicy<ExecutionSpace, Bounds> policy(space, league,

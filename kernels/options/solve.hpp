@@ -5,8 +5,8 @@
 
 namespace drogue::options {
 
-/// Scratch memory of one team for its two solves. For `block` see `solve`: with a block > 0 there is so
-/// little of it that sixteen warps share a multiprocessor.
+/// Scratch memory of one team for its two solves. For `block` see `solve`: with a block > 0 there is little
+/// of it, so that many warps share a multiprocessor.
 template <class R, int block>
 struct Memory {
   static constexpr int members = device::Access<R>::lanes;
