@@ -45,4 +45,23 @@ inline constexpr FabricTransferRow table_5_6[] = {
 /// Numbers of substeps beside which its times may stand.
 inline constexpr int table_5_6_substeps[] = {1, 10, 34, 100};
 
+/// Tables 5.7 and 5.8: microseconds of a batch of American puts on the CPU and on the GPU; 0 where none is
+/// printed.
+struct OptionsRow {
+  int options, mesh;
+  double cpu, h2d, compute, d2h, total;
+};
+inline constexpr OptionsRow table_5_7[] = {
+    {1, 128, 0, 752740, 540774, 55, 1293569},          {1, 256, 2825369, 757925, 1034025, 59, 1792009},
+    {1, 512, 8088534, 757555, 2124162, 115, 2881832},  {1, 1024, 22214927, 780483, 3867521, 79, 4648083},
+    {1, 2048, 55254249, 810256, 6475537, 87, 7285880}, {1, 4096, 134558431, 755945, 11294322, 256, 12050523}};
+inline constexpr OptionsRow table_5_8[] = {{32, 128, 35361760, 2902, 3892648, 96, 3895646},
+                                           {64, 128, 70723520, 3484, 3900757, 324, 3904565},
+                                           {128, 128, 141447040, 2752, 3954747, 195, 3957694},
+                                           {256, 128, 282894080, 3199, 3955152, 382, 3958733},
+                                           {512, 128, 565788160, 3200, 4097343, 1429, 4101972},
+                                           {1024, 128, 1131576320, 3232, 4366600, 1064, 4370896},
+                                           {2048, 128, 2263152640, 3257, 4767045, 1945, 4772247},
+                                           {4096, 128, 4526305280, 3328, 9540157, 3352, 9546837}};
+
 }  // namespace drogue::perf::dissertation

@@ -19,26 +19,28 @@ struct TableOptions {
 Table timed_table(const TableOptions& options, const std::vector<std::string>& kokkos) {
   const device::Backend backend = device::wanted_backend(options.backend);
   require(backend);
-  const bool block_size = options.table == "block-size", of_gas = options.app == "gas";
+  const bool block_size = options.table == "block-size";
   if (block_size && backend != device::Backend::cuda)
     throw Failure(ExitCode::usage, "a block size means nothing to the host backend '" +
                                        std::string(device::name(backend)) +
                                        "', whose teams are single threads; give --backend cuda");
   const device::Runtime runtime(kokkos);
   const nlohmann::json here = provenance(device::device_facts());
-  return block_size ? print_block_sizes(backend, options.quick, here)
-         : of_gas   ? print_transfers(backend, options.quick, here)
-                    : print_fabric_transfers(backend, options.quick, here);
+  if (block_size) return print_block_sizes(backend, options.quick, here);
+  const auto print = options.app == "gas"       ? print_transfers
+                     : options.app == "springs" ? print_fabric_transfers
+                                                : print_options_transfers;
+  return print(backend, options.quick, here);
 }
 
 ExitCode print_table(const TableOptions& options, const std::vector<std::string>& kokkos) {
   require_name("table", options.table, {"occupancy", "block-size", "transfers"});
-  require_name("app", options.app, {"gas", "springs"});
+  require_name("app", options.app, {"gas", "springs", "options"});
   if (options.app == "springs" && options.table == "block-size")
     throw Failure(ExitCode::usage,
                   "kernels of springs are compiled for one block size; what can be chosen is the size of a "
                   "patch, which drogue-perf run --filter springs-step/cuda/.*/patch times");
-  if (options.app == "springs") require_name("table of springs", options.table, {"transfers"});
+  if (options.app != "gas") require_name("table of " + options.app, options.table, {"transfers"});
   Table table;
   if (options.table == "occupancy")
     table =

@@ -27,6 +27,9 @@ Table print_transfers(device::Backend backend, bool quick, const nlohmann::json&
 /// Table 5.6: the state to the device, some steps of Runge and Kutta, and back, for several numbers of steps.
 Table print_fabric_transfers(device::Backend backend, bool quick, const nlohmann::json& provenance);
 
+/// Tables 5.7 and 5.8: batches of American puts to the device, their prices, and back.
+Table print_options_transfers(device::Backend backend, bool quick, const nlohmann::json& provenance);
+
 /// Figure 4.4: time a step for block sizes and meshes, of the seed kernel and of the fused step. `backend` is
 /// a device.
 Table print_block_sizes(device::Backend backend, bool quick, const nlohmann::json& provenance);

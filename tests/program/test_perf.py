@@ -78,6 +78,20 @@ class Record(perf_program.PerfTest):
                              record["facts"]["thesis"])
         self.assertLess(3 * records[0]["facts"]["compute_s"], records[1]["facts"]["compute_s"])
 
+    def test_of_transfers_of_options(self):
+        text = self.expect(0, "table", "transfers", "--app", "options", "--quick", "--backend", "serial", "--out",
+                           "rows.jsonl").stdout
+        self.assertIn("Tables 5.7 and 5.8", text)
+        records = self.records("rows.jsonl")
+        self.assertEqual([f"options-transfers/serial/{method}/{count}/128"
+                          for count in (1, 32, 64) for method in ("seed", "pide")],
+                         [record["case"] for record in records])
+        for seed, ours in zip(records[::2], records[1::2]):
+            self.assert_timed(seed, 5)
+            self.assertLess(ours["error"], 0.1 * seed["error"])
+        self.assertEqual({"h2d_us": 752740, "compute_us": 540774, "d2h_us": 55, "total_us": 1293569},
+                         records[0]["facts"]["thesis"])
+
 
 class Occupancy(perf_program.PerfTest):
     def setUp(self):
@@ -166,7 +180,7 @@ class WorkPrecisionOfSprings(perf_program.PerfTest):
 class Refusals(perf_program.PerfTest):
     def test_usage(self):
         for words, hint in ((["table"], "TABLE"), (["table", "occupancey"], 'did you mean "occupancy"?'),
-                            (["table", "occupancy", "--app", "options"], "valid names are gas, springs"),
+                            (["table", "occupancy", "--app", "option"], 'did you mean "options"?'),
                             (["table", "occupancy", "--app", "springs"], "the only valid name is transfers"),
                             (["table", "block-size", "--app", "springs"], "compiled for one block size"),
                             (["work-precision", "--app", "options"], "valid names are gas, springs"),

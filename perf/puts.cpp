@@ -1,0 +1,49 @@
+#include "perf/puts.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+namespace drogue::perf::puts {
+namespace {
+
+/// The dissertation's parameters, a year, r = 0.1, strike 1, and American puts at five spots: cosine series
+/// with Romberg's extrapolation, to 1e-7.
+constexpr options::Contract thesis{.rate = 0.1, .variance = 0.4, .jump = {1.0, 8.15, -2.5, 0.767}};
+constexpr double known_spot[] = {1.0, 0.8, 0.9, 1.1, 1.2};
+constexpr double known_price[] = {0.239004005, 0.318658312, 0.275403193, 0.208230166, 0.182096749};
+
+}  // namespace
+
+std::vector<options::Contract> distinct(std::size_t count) {
+  std::mt19937 random(7);
+  const auto between = [&](double low, double high) {
+    return low + (high - low) * (static_cast<double>(random()) / 4294967296.0);
+  };
+  std::vector<options::Contract> contracts(count, thesis);
+  for (std::size_t i = 0; i < count; ++i) {
+    options::Contract& c = contracts[i];
+    if (i < std::size(known_spot)) {
+      c.spot = known_spot[i];
+      continue;
+    }
+    c.spot = between(0.8, 1.2), c.rate = between(0.01, 0.1), c.maturity = between(0.25, 2.0);
+    c.variance = between(0.0, 0.4);
+    const double law[] = {between(-2.0, 2.0), between(6.0, 15.0), between(-4.0, 0.0), between(0.2, 1.0)};
+    std::ranges::copy(law, c.jump);
+  }
+  return contracts;
+}
+
+double error(const std::vector<options::Price>& prices) {
+  double largest = 0.0;
+  for (std::size_t i = 0; i < std::min(prices.size(), std::size(known_price)); ++i)
+    largest = std::max(largest, std::abs(prices[i].price - known_price[i]));
+  return largest;
+}
+
+std::map<std::string, double> parts(const options::Timing& timing) {
+  return {{"h2d", timing.h2d}, {"compute", timing.compute}, {"d2h", timing.d2h}};
+}
+
+}  // namespace drogue::perf::puts
