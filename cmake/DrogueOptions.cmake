@@ -82,7 +82,7 @@ endfunction()
 
 # What reads, writes and decides takes longer to optimise than it ever runs.
 function(drogue_optimise_little target)
-  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
+  target_compile_options(${target} PRIVATE $<$<AND:$<CONFIG:Release>,$<COMPILE_LANGUAGE:CXX>>:-O1>)
 endfunction()
 
 if(DROGUE_CUDA)

@@ -16,6 +16,7 @@ function(drogue_kernel_test_headers)
   # A program as the tests are: gcc takes no headers that were compiled for a library.
   add_executable(drogue_kernel_test_headers EXCLUDE_FROM_ALL "${_source}")
   target_link_libraries(drogue_kernel_test_headers PRIVATE drogue_kernels drogue_private GTest::gtest)
+  drogue_optimise_little(drogue_kernel_test_headers)
   target_precompile_headers(drogue_kernel_test_headers PRIVATE <Kokkos_Core.hpp> <gtest/gtest.h>)
 endfunction()
 
@@ -37,6 +38,8 @@ function(drogue_add_test)
     drogue_use_device_language(${_test_SOURCES})
     # Helpers of these tests have the same names in many files: a unity build shares what they include instead.
     set_target_properties(${_test_NAME} PROPERTIES UNITY_BUILD OFF)
+    # What they ask of the kernels is asked of the library, which is optimised as users have it.
+    drogue_optimise_little(${_test_NAME})
     if(CMAKE_UNITY_BUILD)
       drogue_kernel_test_headers()
       target_precompile_headers(${_test_NAME} REUSE_FROM drogue_kernel_test_headers)

@@ -67,19 +67,17 @@ check_tools
 exec 9>"$deps/.lock"
 flock -n 9 || { say "waiting for another set-up in $deps to end" && flock 9; }
 python_environment
-picture_packages &
-pictures=$!
-trap 'pkill -P "$pictures" 2>/dev/null; kill "$pictures" 2>/dev/null || true' EXIT
+in_background picture_packages
 [ "$deps/venv" -ef "$root/build/venv" ] || { mkdir -p "$root/build" && ln -sfn "$deps/venv" "$root/build/venv"; }
-build_kokkos host
-[ "$bundle" = no ] || build_kokkos bundle
+variants=(host) arch=
+[ "$bundle" = no ] || variants+=(bundle)
 nvcc="$(find_nvcc)"
 if [ "$cuda" = yes ] && [ -n "$nvcc" ]; then
   version="$("$nvcc" --version | sed -n 's/.*release \([0-9.]*\).*/\1/p')"
   at_least "$version" "$MINIMUM_CUDA" || fail "$nvcc is version $version and C++20 on the device needs $MINIMUM_CUDA or newer: update the CUDA toolkit, or use --no-cuda."
   arch="$(cuda_architecture)"
-  build_kokkos cuda "$arch"
-  [ "$bundle" = no ] || build_kokkos bundle-cuda "$arch"
+  variants+=(cuda)
+  [ "$bundle" = no ] || variants+=(bundle-cuda)
 fi
-wait "$pictures" || fail "what pictures are made with is missing: the reason is above, and in $deps/log/pip-pictures.log."
-trap - EXIT
+build_variants "$arch" "${variants[@]}"
+wait_for_background

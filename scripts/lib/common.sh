@@ -44,6 +44,22 @@ explain_failure() {
   fail "$1 failed: the reason is in $log."
 }
 
+# in_background COMMAND...: starts it beside what follows; wait_for_background stops where one of them has failed and said
+# why. Each is a process group, so that what one has started ends with this script.
+background=()
+in_background() {
+  set -m
+  "$@" &
+  background+=($!)
+  set +m
+  trap 'kill -- "${background[@]/#/-}" 2>/dev/null || true' EXIT
+}
+wait_for_background() {
+  local group
+  for group in ${background[@]+"${background[@]}"}; do wait "$group" || exit 1; done
+  trap - EXIT
+}
+
 # find_nvcc: prints the path of nvcc, or nothing.
 find_nvcc() {
   local candidate

@@ -74,32 +74,42 @@ kokkos_cuda_flags() {
   [ "$1" != 100 ] || printf -- ' --generate-code=arch=compute_100,code=[compute_100,sm_100]'
 }
 
-# variant_stamp VARIANT ARCH: what the installation depends on. Native code of another processor is built anew.
+# variant_stamp VARIANT ARCH: what the installation depends on, ARCH where it is for CUDA. Native code of another processor is built anew.
 variant_stamp() {
   {
-    printf '%s\n' "$1" "$2" "$KOKKOS_SHA256"
+    printf '%s\n' "$1" "$KOKKOS_SHA256"
     declare -f build_kokkos build_one kokkos_architecture kokkos_cuda_flags
     "${CXX:-c++}" -dumpfullversion -dumpmachine
     [ "$1" = bundle ] || grep -m 1 '^flags' /proc/cpuinfo
-    case "$1" in *cuda*) cat "$root/cmake/cuda13_kokkos45.hpp" && "$nvcc" --version ;; esac
+    cat "$root/cmake/kokkos_in_one.cmake"
+    case "$1" in *cuda*) printf '%s\n' "$2" && cat "$root/cmake/cuda13_kokkos45.hpp" && "$nvcc" --version ;; esac
   } 2>/dev/null | sha256sum
 }
 
-# build_kokkos VARIANT [ARCH]: installs host, cuda, bundle or bundle-cuda into $deps/VARIANT.
+# build_variants ARCH VARIANT...: installs host, cuda, bundle or bundle-cuda into $deps/VARIANT where it is not there, all at
+# once: much of each is work for one core.
+build_variants() {
+  local arch="$1" variant stamp free
+  shift
+  for variant in "$@"; do
+    stamp="$(variant_stamp "$variant" "$arch")"
+    [ "$(cat "$deps/$variant/.stamp" 2>/dev/null)" != "$stamp" ] || continue
+    free="$(df -Pk "$deps" | awk 'NR == 2 { print int($4 / 1024) }')"
+    [ "$free" -ge 1000 ] || fail "the disk of $deps has ${free} MB free and Kokkos needs 1000 MB: free some space, or set DROGUE_DEPS to a larger disk."
+    unpack_kokkos
+    in_background build_kokkos "$variant" "$arch" "$stamp"
+  done
+}
+
+# build_kokkos VARIANT ARCH STAMP: installs one of them.
 build_kokkos() {
-  local variant="$1" arch="${2:-}" stamp
-  stamp="$(variant_stamp "$variant" "$arch")"
-  [ "$(cat "$deps/$variant/.stamp" 2>/dev/null)" = "$stamp" ] && return 0
-  local free
-  free="$(df -Pk "$deps" | awk 'NR == 2 { print int($4 / 1024) }')"
-  [ "$free" -ge 1000 ] || fail "the disk of $deps has ${free} MB free and Kokkos needs 1000 MB: free some space, or set DROGUE_DEPS to a larger disk."
-  unpack_kokkos
-  say "building Kokkos and Kokkos Kernels $KOKKOS_VERSION ($variant${arch:+, architecture $arch})"
+  local variant="$1" arch="$2" stamp="$3"
+  say "building Kokkos and Kokkos Kernels $KOKKOS_VERSION ($variant)"
   local common=(-G Ninja -Wno-dev -DCMAKE_BUILD_TYPE=Release "-DCMAKE_INSTALL_PREFIX=$deps/$variant"
     -DCMAKE_CXX_STANDARD=20 -DCMAKE_CXX_EXTENSIONS=OFF -DCMAKE_POSITION_INDEPENDENT_CODE=ON -DBUILD_SHARED_LIBS=OFF)
   # What nobody here uses and every source would read: views from mdspan, what is deprecated.
   local kokkos=(-DKokkos_ENABLE_SERIAL=ON -DKokkos_ENABLE_OPENMP=ON -DKokkos_ENABLE_IMPL_MDSPAN=OFF
-    -DKokkos_ENABLE_DEPRECATED_CODE_4=OFF)
+    -DKokkos_ENABLE_DEPRECATED_CODE_4=OFF "-DCMAKE_PROJECT_Kokkos_INCLUDE=$root/cmake/kokkos_in_one.cmake")
   local kernels=(-DKokkosKernels_ENABLE_ALL_COMPONENTS=OFF -DKokkosKernels_ENABLE_COMPONENT_BATCHED=ON
     -DKokkosKernels_ENABLE_COMPONENT_BLAS=ON -DKokkosKernels_ADD_DEFAULT_ETI=OFF -DKokkosKernels_INST_DOUBLE=OFF
     -DKokkosKernels_INST_LAYOUTLEFT=OFF "-DKokkos_ROOT=$deps/$variant")

@@ -101,6 +101,12 @@ def reaches_kokkos(path, texts, seen=None):
     return []
 
 
+def uses_kokkos_unseen(path, texts):
+    """Whether the file names what is Kokkos's without an include that leads there: headers compiled before would hide it."""
+    code = re.sub(r'//.*|"[^"\n]*"', "", texts[path])
+    return bool(re.search(r"\bKokkos::|\bKOKKOS_[A-Z]", code)) and not reaches_kokkos(path, texts)
+
+
 def repository(environment):
     """The repository root: DROGUE_SOURCE, or two folders up."""
     return Path(environment.get("DROGUE_SOURCE", Path(__file__).resolve().parents[2]))

@@ -25,6 +25,10 @@ class Repository(unittest.TestCase):
             if path.startswith(("miniapps/", "common/")):
                 self.assertEqual([], layers.reaches_kokkos(path, TEXTS))
 
+    def test_what_uses_kokkos_includes_it(self):
+        self.assertEqual([], [path for path in TEXTS
+                              if path.startswith("kernels/") and layers.uses_kokkos_unseen(path, TEXTS)])
+
     def test_own_includes_exist(self):
         missing = [
             f"{path}: {name}"
@@ -93,6 +97,12 @@ class EachRuleCatchesItsBreach(unittest.TestCase):
         }
         chain = layers.reaches_kokkos("miniapps/gas/a.cpp", texts)
         self.assertEqual(["miniapps/gas/a.cpp", "kernels/b.hpp", "kernels/c.hpp", "<Kokkos_Core.hpp>"], chain)
+
+    def test_kokkos_without_its_include(self):
+        use = "int n = Kokkos::num_threads();\n"
+        texts = {"kernels/a.hpp": use, "kernels/b.hpp": "#include <Kokkos_Core.hpp>\n" + use,
+                 "kernels/c.hpp": '#include "kernels/b.hpp"\nKOKKOS_FUNCTION void f();\n', "kernels/d.hpp": "// Kokkos::View\n"}
+        self.assertEqual(["kernels/a.hpp"], [path for path in texts if layers.uses_kokkos_unseen(path, texts)])
 
 
 if __name__ == "__main__":
