@@ -41,13 +41,6 @@ fabric::Mesh make_mesh(const Table& root, SpringsScene& scene) {
   return read_obj(file);
 }
 
-/// Coordinates of a vertex for an error.
-std::string place_text(const SpringsScene& scene, std::size_t i) {
-  const fabric::Vector& x = scene.mesh.rest[i];
-  return "at vertex " + std::to_string(i) + " (" + real_text(x[0]) + ", " + real_text(x[1]) + ", " +
-         real_text(x[2]) + ")";
-}
-
 /// At every vertex and time 0; one that a kernel must evaluate has to fit there too.
 void require_finite(const Table& root, const SpringsScene& scene, const std::string& path,
                     const std::string& expression, bool for_device = false) {
@@ -69,15 +62,6 @@ void require_finite(const Table& root, const SpringsScene& scene, const std::str
   for (std::size_t axis = 0; axis < 3; ++axis)
     require_finite(root, scene, path + "." + axis_names[axis], vector.of(axis),
                    depends_on_time(vector.of(axis)));
-}
-
-std::vector<int> require_some(const Table& root, const SpringsScene& scene, const std::string& path,
-                              const std::string& where, const std::string& what) {
-  require_finite(root, scene, path, where);
-  std::vector<int> vertices = selected(where, scene.mesh);
-  if (vertices.empty())
-    contradict(root, path, path + " = " + scene::toml_string(where) + " holds at no vertex: " + what);
-  return vertices;
 }
 
 void complete_material(const Table& root, SpringsScene& scene) {
@@ -203,9 +187,26 @@ void check_initial(const Table& root, const SpringsScene& scene) {
 
 }  // namespace
 
+std::string place_text(const SpringsScene& scene, std::size_t vertex) {
+  const fabric::Vector& x = scene.mesh.rest[vertex];
+  return "at vertex " + std::to_string(vertex) + " (" + real_text(x[0]) + ", " + real_text(x[1]) + ", " +
+         real_text(x[2]) + ")";
+}
+
+std::vector<int> require_some(const Table& root, const SpringsScene& scene, const std::string& path,
+                              const std::string& where, const std::string& what) {
+  require_finite(root, scene, path, where);
+  std::vector<int> vertices = selected(where, scene.mesh);
+  if (vertices.empty())
+    contradict(root, path, path + " = " + scene::toml_string(where) + " holds at no vertex: " + what);
+  return vertices;
+}
+
 void complete_and_check(const Table& root, SpringsScene& scene) {
   scene.mesh = make_mesh(root, scene);
+  scene.lines = scene.mesh.lines.size();
   complete_material(root, scene);
+  add_reinforcements(root, scene);
   check_time(root, scene.time);
   check_initial(root, scene);
   check_pins(root, scene);

@@ -278,6 +278,29 @@ void declare_springs_scene(Table& root, SpringsScene& scene) {
       .required();
   root.table(
       "material", [&](Table& table) { declare_material(table, scene); }, "What they are made of");
+  root.tables(
+      "reinforcement", scene.reinforcements,
+      [](Table& table, Reinforcement& reinforcement) {
+        table
+            .value(
+                "where", scene::expression_codec(reinforcement.where, of_place),
+                "The edges: those at both ends of which this is not 0; each is of one reinforcement at most")
+            .required();
+        table
+            .value("axial_stiffness", scene::real_codec(reinforcement.axial_stiffness),
+                   "E A of each, which adds to what the cloth bears")
+            .unit("N")
+            .above(0.0)
+            .required();
+        table
+            .value("line_density", scene::real_codec(reinforcement.line_density),
+                   "Mass per length at rest, which adds to that of the cloth")
+            .unit("kg/m")
+            .at_least(0.0);
+      },
+      "Strings along edges of cloth, as seams and tapes are; lines of the mesh get this stiffness and "
+      "density "
+      "in place of those of [material]");
   root.table(
       "initial",
       [&](Table& table) {

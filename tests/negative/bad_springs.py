@@ -130,6 +130,14 @@ BAD_LINES = [
     (41, "young = 1e-5", 41, ["verify.young", "mesh.strip"]),
     (41, "energy_drift = 1e-5", 41, ["verify.energy_drift", "pins that stay"]),
     (41, "catenary = 1e-5", 41, ["verify.catenary", "mesh.string"]),
+    # reinforcement
+    (12, '[[reinforcement]]\nwhere = "x == 1"', 12, ['missing key "reinforcement[0].axial_stiffness"']),
+    (12, '[[reinforcement]]\nwhere = "x == 1"\naxial_stiffnes = 3', 14,
+     ['"reinforcement[0].axial_stiffnes"', "axial_stiffness"]),
+    (12, '[[reinforcement]]\nwhere = "x == 7"\naxial_stiffness = 3', 13, ["reinforcement[0].where", "no vertex"]),
+    (12, '[[reinforcement]]\nwhere = "x+y == 1 && z > -0.5"\naxial_stiffness = 3', 13, ["both ends of no edge"]),
+    (12, '[[reinforcement]]\nwhere = "z < -0.5"\naxial_stiffness = 3', 12, ["no mass", "vertex 5"]),
+    (12, '[[reinforcements]]', 12, ['did you mean "reinforcement"?']),
     # contact
     (40, "[contact]\nself = 1\n[verify]", 41, ["contact.self", "true or false"]),
     (40, "[contact]\nthickness = 0.1\n[verify]", 41, ["contact.thickness", "with objects or self"]),
