@@ -33,6 +33,13 @@ struct Failure {
   Trouble trouble = Trouble::not_finite;
 };
 
+/// Work of contact on a vertex, negative where it took energy.
+struct ContactWork {
+  double normal = 0.0;    ///< J, of what keeps parts apart: impulses along normals, and zones
+  double friction = 0.0;  ///< J, of friction
+  bool operator==(const ContactWork&) const = default;
+};
+
 /// Sums over all vertices.
 struct Totals {
   double kinetic = 0.0;  ///< J
@@ -41,7 +48,8 @@ struct Totals {
   double load = 0.0;     ///< J, minus the work of dead loads from the origin to where the vertices are
   std::array<double, 3> momentum{};          ///< kg m/s
   std::array<double, 3> angular_momentum{};  ///< kg m^2/s, about the origin
-  double contact = 0.0;                      ///< J, work that contact has done since the solver was made
+  double contact = 0.0;   ///< J, work that contact has done since the solver was made, friction apart
+  double friction = 0.0;  ///< J, work that friction in contact has done
 
   /// What steps without damping, moving pins and loads that change keep.
   [[nodiscard]] double energy() const { return kinetic + elastic + gravity + load; }

@@ -89,6 +89,7 @@ void run_in(run::RunDirectory& directory, const SpringsScene& scene, device::Bac
     result.message = "interrupted by a signal; restart.h5 is written";
     return;
   }
+  result.energy = simulation.energies();
   verify(scene, simulation.final_state(), directory.file("history.csv"), result);
   if (const std::string failed = result.failed_check(); !failed.empty())
     throw Failure(ExitCode::verification_failed, failed);

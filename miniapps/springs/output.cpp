@@ -86,7 +86,7 @@ void RunOutput::write_row(const Row& row) {
   const auto append = [&values](const Vector& v) { values.insert(values.end(), v.begin(), v.end()); };
   append(row.momentum);
   append(row.angular_momentum);
-  if (_scene.contact.asked_for()) values.push_back(row.contact_work);
+  if (_scene.contact.asked_for()) values.insert(values.end(), {row.contact_work, row.friction_work});
   if (_scene.verify.intersections) values.push_back(row.intersections);
   std::ranges::for_each(row.probes, append);
   _history->append(row.time, values);

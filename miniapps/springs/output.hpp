@@ -18,7 +18,8 @@ struct Row {
   double kinetic = 0.0, elastic = 0.0, potential = 0.0;  ///< J
   fabric::Vector momentum{}, angular_momentum{};
   std::vector<fabric::Vector> probes;  ///< positions, m
-  double contact_work = 0.0;           ///< J
+  double contact_work = 0.0;           ///< J, friction apart
+  double friction_work = 0.0;          ///< J
   int intersections = 0;
 };
 

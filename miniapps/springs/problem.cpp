@@ -10,6 +10,7 @@
 namespace drogue::springs_app {
 namespace {
 
+using fabric::ContactWork;
 using fabric::Vector;
 
 std::vector<double> masses_of(const SpringsScene& scene, Problem& problem) {
@@ -156,11 +157,15 @@ std::vector<Vector> Problem::to_scene(std::span<const Vector> values) const {
   return returned(values, order);
 }
 
-std::vector<double> Problem::to_solver(std::span<const double> values) const {
+std::vector<ContactWork> Problem::to_solver(std::span<const ContactWork> values) const {
   return permuted(values, order);
 }
 
-std::vector<double> Problem::to_scene(std::span<const double> values) const {
+std::vector<ContactWork> Problem::to_scene(std::span<const ContactWork> values) const {
+  return returned(values, order);
+}
+
+std::vector<fabric::Stress> Problem::to_scene(std::span<const fabric::Stress> values) const {
   return returned(values, order);
 }
 

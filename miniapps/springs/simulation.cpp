@@ -70,7 +70,7 @@ void Simulation::resume() {
   _solver->set_clock(state.clock);
   _solver->upload(_problem.to_solver(state.x), _problem.to_solver(state.v));
   if (_scene.contact.asked_for())
-    _solver->set_contact_work(_problem.to_solver(std::span<const double>(state.contact_work)));
+    _solver->set_contact_work(_problem.to_solver(std::span<const fabric::ContactWork>(state.contact_work)));
   _stop_step = state.stop_step;
   _stop_time = state.stop_time;
   _dt_min = state.dt_min;

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 
 #include "common/program/progress.hpp"
@@ -34,6 +35,9 @@ class Simulation {
   /// Steps to the end time. Throws Failure: numerical_failure (after the last good state is on disk),
   /// io_error. Returns `interrupted` after a signal, the restart file written; otherwise `ok`.
   ExitCode run(const run::RunDirectory& directory, run::ResultDocument& result);
+
+  /// Energies now and work done so far, J, as columns of history.csv.
+  [[nodiscard]] std::map<std::string, double> energies();
 
   /// For verification.
   [[nodiscard]] FinalState final_state();

@@ -57,16 +57,24 @@ double energy_drift(const History& history) {
   return change / energy_scale(history);
 }
 
-/// Of the energy less what contact has put in; and what it has put in since it had put in the least, for
-/// bodies at rest and layers only take.
-double energy_imbalance(const History& history) {
-  const std::vector<double>&energy = history.at("energy"), &work = history.at("contact_work");
-  double change = 0.0, least = work[0];
-  for (std::size_t k = 0; k < energy.size(); ++k) {
-    change = larger(change, std::abs(energy[k] - work[k] - (energy[0] - work[0])));
-    change = larger(change, work[k] - least);
-    least = std::min(least, work[k]);
+/// The most that a sum has grown since it was least.
+double largest_rise(const std::vector<double>& values) {
+  double rise = 0.0, least = values[0];
+  for (const double value : values) {
+    rise = larger(rise, value - least);
+    least = std::min(least, value);
   }
+  return rise;
+}
+
+/// Of the energy less what contact and friction have put in; and what either has put in since it had put in
+/// the least, for bodies at rest and layers only take.
+double energy_imbalance(const History& history) {
+  const std::vector<double>&energy = history.at("energy"), &contact = history.at("contact_work"),
+        &friction = history.at("friction_work");
+  double change = larger(largest_rise(contact), largest_rise(friction));
+  const auto rest = [&](std::size_t k) { return energy[k] - contact[k] - friction[k]; };
+  for (std::size_t k = 0; k < energy.size(); ++k) change = larger(change, std::abs(rest(k) - rest(0)));
   return change / energy_scale(history);
 }
 

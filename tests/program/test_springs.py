@@ -243,6 +243,22 @@ class Failures(springs_program.SpringsTest):
             values.append(self.result("out")["errors"]["energy_balance"])
         self.assertLess(values[1], 1.01 * values[0])
 
+    def test_work_of_friction_is_part_of_the_balance(self):
+        scene = self.write(springs_program.FALLING)
+        self.expect(0, scene, "--quiet", "--backend", "serial", "--out", "out", sets=["verify={energy_balance=2e-2}"])
+        rows = self.history("out")
+        told = self.result("out")["energy"]
+        self.assertEqual({name: rows[name][-1] for name in ("kinetic", "elastic", "potential", "contact_work", "friction_work")}, told)
+        scale = max(a - b for a, b in zip([rows["potential"][0]] * len(rows["time"]), rows["potential"]))
+        lost = rows["energy"][-1] - rows["energy"][0]
+        self.assertLess(abs(lost - told["contact_work"] - told["friction_work"]), 2e-2 * scale)
+        self.assertGreater(abs(lost - told["contact_work"]), 4e-2 * scale)
+        for earlier, later in zip(rows["friction_work"], rows["friction_work"][1:]):
+            self.assertLessEqual(later, earlier)
+        self.expect(0, scene, "--quiet", "--backend", "serial", "--out", "none", sets=[
+            "contact.friction=0", "contact.objects.0.friction=0"])
+        self.assertEqual({0.0}, set(self.history("none")["friction_work"]))
+
     def test_errors_of_second_order(self):
         """Frequencies of the drum, and of one with equal masses, which is of first order only."""
         def error(vertices, mass):
