@@ -81,7 +81,7 @@ void run_in(run::RunDirectory& directory, const SpringsScene& scene, device::Bac
   const auto runtime = start_kokkos(options.kokkos);
   device::start_ledger();
   result.describe_device(std::string(device::name(backend)), device::device_facts());
-  Simulation simulation(scene, {backend, options.seed_mode, options.quiet, restart, {}});
+  Simulation simulation(scene, {backend, options.seed_mode, options.quiet, restart, true, {}});
   directory.begin();
   directory.write_scene(print_springs_scene(scene));
   result.exit_code = simulation.run(directory, result);

@@ -22,6 +22,7 @@ struct RunSettings {
   bool seed_mode = false;  ///< the state travels to the device and back at every step
   bool quiet = false;
   std::filesystem::path restart;  ///< a restart file, or empty
+  bool can_be_continued = true;   ///< a run that ends before its time leaves restart.h5
   /// Told of every output time, whether or not fields are written, with the positions in the scene's
   /// numbering, m; may be empty.
   std::function<void(const Row& row, const std::vector<fabric::Vector>& x)> at_output;
