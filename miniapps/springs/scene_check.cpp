@@ -37,7 +37,10 @@ fabric::Mesh make_mesh(const Table& root, SpringsScene& scene) {
   source.file = file.string();
   std::error_code unreadable;
   if (!std::filesystem::is_regular_file(file, unreadable))
-    contradict(root, "mesh.file", "mesh.file: there is no file " + file.string());
+    contradict(root, "mesh.file",
+               "mesh.file: " + (std::filesystem::exists(file, unreadable)
+                                    ? file.string() + " is no file but a directory or device"
+                                    : "there is no file " + file.string()));
   return read_obj(file);
 }
 
