@@ -185,7 +185,7 @@ Problem make_problem(const SpringsScene& scene) {
   p.integrator = scene.time.integrator;
   // Until one is planned: pins are placed with the velocity over one, and what moves them ends with the
   // scene.
-  p.dt = scene.time.dt.value_or(1e-6 * scene.time.end_time);
+  p.dt = scene.time.dt.value_or(scene.time.end_time > 0.0 ? 1e-6 * scene.time.end_time : 1.0);
   p.driver = scene.driver;
   for (const Probe& probe : scene.output.probes) problem.probes.push_back(nearest_vertex(p.mesh, probe.at));
   return problem;
