@@ -62,6 +62,17 @@ enum class StressMeasure { nominal, cauchy };
 struct Stress {
   double major = 0.0, minor = 0.0;    ///< principal values
   std::array<double, 3> direction{};  ///< of the major one: a unit vector in the plane of the cloth now
+  std::array<double, 3> across{};     ///< of the minor one
+
+  /// The tensor in space: xx, xy, xz, yy, yz, zz.
+  [[nodiscard]] std::array<double, 6> tensor() const {
+    std::array<double, 6> sum{};
+    std::size_t place = 0;
+    for (std::size_t i = 0; i < 3; ++i)
+      for (std::size_t j = i; j < 3; ++j)
+        sum[place++] = major * direction[i] * direction[j] + minor * across[i] * across[j];
+    return sum;
+  }
 
   /// Of plane stress (eq. 2.19).
   [[nodiscard]] double von_mises() const { return std::sqrt(major * major - major * minor + minor * minor); }

@@ -5,6 +5,7 @@
 
 #include "miniapps/springs/history.hpp"
 #include "miniapps/springs/mesh_topology.hpp"
+#include "miniapps/springs/stress_fields.hpp"
 #include "miniapps/springs/vectors.hpp"
 
 namespace drogue::springs_app {
@@ -27,11 +28,10 @@ class Stopwatch {
 };
 
 run::DatasetSpec field_spec(const std::string& name, const fabric::Mesh& mesh) {
-  const std::uint64_t vertices = mesh.rest.size(), triangles = mesh.triangles.size();
+  const std::uint64_t vertices = mesh.rest.size();
   if (name == "position") return {name, {vertices, 3}, "m", "vertex", "positions of the vertices"};
   if (name == "velocity") return {name, {vertices, 3}, "m/s", "vertex", "velocities of the vertices"};
-  return {
-      name, {triangles}, "N/m", "face", "von Mises stress of the triangles, Cauchy stress times thickness"};
+  return stress_spec(name, mesh);
 }
 
 std::vector<run::DatasetSpec> field_specs(const SpringsScene& scene) {
@@ -101,7 +101,7 @@ void RunOutput::write_fields(Snapshot snapshot) {
       _fields->write(name, 0,
                      name == "position"   ? numbers(now.position)
                      : name == "velocity" ? numbers(now.velocity)
-                                          : std::span<const double>(now.von_mises));
+                                          : std::span<const double>(now.stress.at(name)));
     _fields->end_step();
   });
 }

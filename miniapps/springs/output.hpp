@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <map>
 #include <optional>
 
 #include "common/run/background_writer.hpp"
@@ -28,7 +29,7 @@ struct Snapshot {
   double time = 0.0;
   std::int64_t step = 0;
   std::vector<fabric::Vector> position, velocity;
-  std::vector<double> von_mises;  ///< of every triangle, N/m
+  std::map<std::string, std::vector<double>> stress;  ///< by the names of its fields
 };
 
 /// The files of a run that grow while it steps: history.csv, fields.h5, restart.h5. Only what the scene asks

@@ -111,7 +111,7 @@ struct Probe {
 };
 
 struct Output {
-  std::vector<std::string> fields;  ///< subset of position, velocity, von_mises; empty: no fields.h5
+  std::vector<std::string> fields;  ///< position, velocity, names of stresses; empty: no fields.h5
   std::vector<double> times;        ///< s, increasing, within the run; empty exactly if `fields` is
   std::vector<Probe> probes;
   int history_every = 100;  ///< steps between rows of history.csv; 0: none

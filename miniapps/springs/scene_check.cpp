@@ -8,6 +8,7 @@
 #include "miniapps/springs/expressions.hpp"
 #include "miniapps/springs/mesh_topology.hpp"
 #include "miniapps/springs/obj_file.hpp"
+#include "miniapps/springs/stress_fields.hpp"
 
 namespace drogue::springs_app {
 namespace {
@@ -167,13 +168,16 @@ void complete_output(const Table& root, SpringsScene& scene) {
     contradict(root, "output.times",
                "output.times: " + real_text(output.times.back()) +
                    " is later than time.end_time = " + real_text(end_time));
-  const bool asks_stress = std::ranges::count(output.fields, "von_mises") > 0;
-  if (asks_stress && !scene.has_triangles())
-    contradict(root, "output.fields",
-               "output.fields: von_mises is a stress of triangles, and the mesh has none");
-  if (asks_stress && scene.fabric.material.model == fabric::Model::linear_vector)
-    contradict(root, "output.fields",
-               "output.fields: model \"linear-vector\" has no von_mises, its forces are not along edges");
+  for (const std::string& field : output.fields) {
+    if (!stress_kind(field)) continue;
+    if (!scene.has_triangles())
+      contradict(root, "output.fields",
+                 "output.fields: " + field + " is a stress of triangles, and the mesh has none");
+    if (scene.fabric.material.model == fabric::Model::linear_vector)
+      contradict(
+          root, "output.fields",
+          "output.fields: model \"linear-vector\" has no " + field + ", its forces are not along edges");
+  }
 }
 
 void check_time(const Table& root, const Time& time) {

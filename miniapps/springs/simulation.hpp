@@ -12,6 +12,7 @@
 #include "miniapps/springs/output.hpp"
 #include "miniapps/springs/problem.hpp"
 #include "miniapps/springs/restart.hpp"
+#include "miniapps/springs/stress_fields.hpp"
 #include "miniapps/springs/verify.hpp"
 
 namespace drogue::springs_app {
@@ -58,6 +59,7 @@ class Simulation {
   [[nodiscard]] double time() const;
   [[nodiscard]] Row row();
   [[nodiscard]] Snapshot snapshot();
+  [[nodiscard]] std::vector<fabric::Stress> stress_of(const StressKind& kind);
   [[nodiscard]] RestartState restart_state();
   [[nodiscard]] std::string failure_text(const fabric::Failure& failure) const;
   void describe(run::ResultDocument& result) const;

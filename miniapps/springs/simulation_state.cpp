@@ -57,11 +57,24 @@ Snapshot Simulation::snapshot() {
   const auto wanted = [&](const char* field) { return std::ranges::count(_scene.output.fields, field) > 0; };
   if (wanted("position")) snapshot.position = _problem.to_scene(x);
   if (wanted("velocity")) snapshot.velocity = _problem.to_scene(v);
-  if (!wanted("von_mises")) return snapshot;
-  std::vector<fabric::Stress> stress(_scene.mesh.triangles.size());
-  _solver->stress(fabric::StressMeasure::cauchy, stress);
-  for (const fabric::Stress& s : stress) snapshot.von_mises.push_back(s.von_mises());
+  std::map<StressKind, std::vector<fabric::Stress>> known;
+  for (const std::string& field : _scene.output.fields) {
+    const auto kind = stress_kind(field);
+    if (!kind) continue;
+    if (!known.contains(*kind)) known[*kind] = stress_of(*kind);
+    snapshot.stress[field] = stress_values(field, known[*kind]);
+  }
   return snapshot;
+}
+
+std::vector<fabric::Stress> Simulation::stress_of(const StressKind& kind) {
+  std::vector<fabric::Stress> stress(kind.at_vertices ? _problem.x.size() : _scene.mesh.triangles.size());
+  if (!kind.at_vertices) {
+    _solver->stress(kind.measure, stress);
+    return stress;
+  }
+  _solver->vertex_stress(kind.measure, stress);
+  return _problem.to_scene(stress);
 }
 
 void Simulation::reach_output(RunOutput& output) {
