@@ -312,8 +312,7 @@ void declare_springs_scene(Table& root, SpringsScene& scene) {
             .at_least(0.0);
       },
       "Strings along edges of cloth, as seams and tapes are; lines of the mesh get this stiffness and "
-      "density "
-      "in place of those of [material]");
+      "density in place of those of [material]");
   root.table(
       "initial",
       [&](Table& table) {
