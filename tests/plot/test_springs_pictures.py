@@ -12,6 +12,7 @@ from PIL import Image
 from plot import cli, style
 from plot.run_directory import read
 from plot.springs_figures import View, figure
+from plot.springs_history import springs_history_figure
 
 assert packages.SOURCE
 
@@ -78,6 +79,15 @@ class SpringsPictures(unittest.TestCase):
         self.assert_drawn(run)
         self.assertEqual(("x", "z"), View(read(run)).labels)
 
+
+    def test_history_takes_off_what_contact_and_friction_did(self):
+        run = write_run(self.folder / "run", SQUARE, TRIANGLES, EDGES, [SQUARE])
+        rows = ["time [s],step,kinetic [J],elastic [J],potential [J],energy [J],contact_work [J],friction_work [J]",
+                "0,0,4,0,0,4,0,0", "1,1,2,0,0,2,-1.5,-0.5", "2,2,1,0,0,1,-2,-0.9"]  # fmt: skip
+        (run / "history.csv").write_text("\n".join(rows) + "\n")
+        energies, rest = springs_history_figure(read(run)).axes
+        self.assertEqual(5, len(energies.lines))
+        np.testing.assert_allclose(rest.lines[0].get_ydata(), [0, 0, -0.1 / 4], atol=1e-15)
 
     def test_directions_of_the_larger_stress(self):
         """Of flat cloth, where there is stress to speak of, as far apart as triangles are."""
