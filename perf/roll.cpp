@@ -77,7 +77,7 @@ double usual_dt(const fabric::Parameters& p, fabric::Solver& solver) {
 
 Sample steps(const fabric::Parameters& p, fabric::Solver& solver, long count) {
   solver.set_dt(usual_dt(p, solver));
-  return {[&solver, from = start(p), none = std::vector<double>(p.mass.size(), 0.0)] {
+  return {[&solver, from = start(p), none = std::vector<fabric::ContactWork>(p.mass.size())] {
             solver.upload(from.x, from.v);
             solver.set_contact_work(none);
           },
@@ -100,7 +100,7 @@ double imbalance(const fabric::Parameters& p, fabric::Solver& solver) {
   state = start(p);
   solver.upload(state.x, state.v);
   const fabric::Totals begin = solver.totals();
-  return std::abs(end.energy() - end.contact - begin.energy()) / begin.kinetic;
+  return std::abs(end.energy() - end.contact - end.friction - begin.energy()) / begin.kinetic;
 }
 
 }  // namespace drogue::perf::roll

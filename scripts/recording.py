@@ -26,8 +26,8 @@ def scenes(program):
 
 
 def summary(result):
-    keep = ("scene", "backend", "device", "threads", "steps", "exit_code", "message", "checks", "limiter", "ledger")
-    short = {key: result.get(key) for key in keep}
+    keep = ("scene", "backend", "device", "threads", "steps", "exit_code", "message", "checks", "ledger")
+    short = {key: result.get(key) for key in keep} | {key: result[key] for key in ("limiter", "energy") if key in result}
     timing = result.get("timing", {})
     return short | {"compute_s": timing.get("compute_s"), "wall_s": timing.get("wall_s")}
 

@@ -17,9 +17,9 @@ using Json = nlohmann::ordered_json;
 /// JSON has no NaN and no infinity.
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
-Json errors_json(const std::map<std::string, double>& errors) {
+Json numbers_json(const std::map<std::string, double>& numbers) {
   Json json = Json::object();
-  for (const auto& [name, value] : errors) json[name] = number(value);
+  for (const auto& [name, value] : numbers) json[name] = number(value);
   return json;
 }
 
@@ -128,12 +128,14 @@ std::string to_json(const ResultDocument& result) {
   json["time"] = number(result.time);
   json["dt_min"] = number(result.dt_min);
   json["dt_max"] = number(result.dt_max);
-  json["errors"] = errors_json(result.errors);
+  json["errors"] = numbers_json(result.errors);
   json["checks"] = checks_json(result.checks);
   if (!result.counts.empty()) json["counts"] = result.counts;
-  json["limiter"] = {{"touches", result.limiter.touches},
-                     {"cells", result.limiter.cells},
-                     {"redone_steps", result.limiter.redone_steps}};
+  if (!result.energy.empty()) json["energy"] = numbers_json(result.energy);
+  if (result.limiter)
+    json["limiter"] = {{"touches", result.limiter->touches},
+                       {"cells", result.limiter->cells},
+                       {"redone_steps", result.limiter->redone_steps}};
   json["timing"] = timing_json(result.timing);
   json["ledger"] = ledger_json(result.ledger);
   json["peak_bytes"] = {{"host", result.peak_bytes.host}, {"device", result.peak_bytes.device}};

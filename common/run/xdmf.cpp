@@ -93,7 +93,7 @@ std::string topology(const std::vector<DatasetSpec>& mesh) {
 }
 
 std::string attribute(const DatasetSpec& field, const std::string& place) {
-  const std::string type = field.shape.size() == 2 ? "Vector" : "Scalar";
+  const std::string type = field.shape.size() < 2 ? "Scalar" : field.shape[1] == 6 ? "Tensor6" : "Vector";
   const std::string centre = field.centering == "vertex" ? "Node" : "Cell";
   return R"(        <Attribute Name=")" + escaped(field.name) + R"(" AttributeType=")" + type +
          R"(" Center=")" + centre + "\">\n          " + hdf_item(dimensions(field), place + field.name) +

@@ -61,7 +61,8 @@ struct PushFunctor {
 
 /// Gives every vertex what its touches have for it in this round, in their order, which the first round
 /// finds. After the last one the step gets the velocities, and what impulses did is counted: a kick changes
-/// the kinetic energy alone.
+/// the kinetic energy alone, each part of it by its impulse times the mean of the velocities before and
+/// after.
 template <class ExecutionSpace>
 struct GatherFunctor {
   ContactTable<ExecutionSpace> table;
@@ -83,8 +84,16 @@ struct GatherFunctor {
         load_points<double>(table.start_v, i) + Point{free.x * dv.x, free.y * dv.y, free.z * dv.z};
     store_points(table.start_v, i, after);
     if (round + 1 < impulse_rounds) return;
-    const Point before = load_points<double>(v, i);
-    table.work(i) += 0.5 / table.inverse_mass(i) * dot(after - before, after + before);
+    const Point before = load_points<double>(v, i), mean = 0.5 * (after + before);
+    Point held{0.0, 0.0, 0.0};  // what friction gave in all rounds, kg m/s
+    for (int k = 0; k < count; ++k) {
+      const int number = table.mine(i, k);
+      const Touch& touch = table.touch(number / 4);
+      if (touch.friction > 0.0) held = held + impulse_on(touch, number % 4, 0.0, touch.grip);
+    }
+    const double friction = dot(Point{free.x * held.x, free.y * held.y, free.z * held.z}, mean);
+    table.work(i).normal += 1.0 / table.inverse_mass(i) * dot(after - before, mean) - friction;
+    table.work(i).friction += friction;
     store_points(v, i, after);
   }
 };

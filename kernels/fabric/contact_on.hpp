@@ -37,8 +37,8 @@ class ContactOn final : public ContactSteps<ExecutionSpace> {
   void keep() override;
   void go_back() override { device::copy(_instance.space(), _work, _kept_work); }
   [[nodiscard]] Trouble trouble(std::int64_t step) const override;
-  void work(std::span<double> of_vertices) const override;
-  void set_work(std::span<const double> of_vertices) override;
+  void work(std::span<ContactWork> of_vertices) const override;
+  void set_work(std::span<const ContactWork> of_vertices) override;
 
  private:
   using Places = LentTable<ExecutionSpace, double, 3>;
@@ -69,7 +69,7 @@ class ContactOn final : public ContactSteps<ExecutionSpace> {
   std::vector<std::shared_ptr<void>> _owned;
   Kokkos::View<double*, typename ExecutionSpace::memory_space> _inverse_mass;
   Kokkos::View<std::uint8_t*, typename ExecutionSpace::memory_space> _held;
-  ListView<ExecutionSpace, double> _work, _kept_work;
+  ListView<ExecutionSpace, ContactWork> _work, _kept_work;
   ContactTable<ExecutionSpace> _table;
   std::list<Recorded> _recorded;
 };
@@ -78,7 +78,7 @@ class ContactOn final : public ContactSteps<ExecutionSpace> {
 template <class ExecutionSpace>
 struct KeepWorkFunctor {
   Watch<ExecutionSpace> watch;
-  ListView<ExecutionSpace, double> work, kept;
+  ListView<ExecutionSpace, ContactWork> work, kept;
 
   KOKKOS_FUNCTION void operator()(const int i) const {
     if (watch.lost() == none_lost) kept(i) = work(i);
@@ -143,8 +143,8 @@ ContactOn<ExecutionSpace>::ContactOn(const Parameters& p, const ContactCloth<Exe
   lend(t.zone, "zone", n), lend(t.label, "zone_label", n), lend(t.zone_end, "zone_end", n);
   lend(t.stuck, "stuck", n), lend(t.motion, "zone_motion", n);
   lend(t.progress, "contact_progress", 1);
-  _work = ListView<ExecutionSpace, double>("drogue::fabric::contact_work", n);
-  _kept_work = ListView<ExecutionSpace, double>("drogue::fabric::kept_contact_work", n);
+  _work = ListView<ExecutionSpace, ContactWork>("drogue::fabric::contact_work", n);
+  _kept_work = ListView<ExecutionSpace, ContactWork>("drogue::fabric::kept_contact_work", n);
   t.work = _work;
   forget();
 }
@@ -232,7 +232,7 @@ Trouble ContactOn<ExecutionSpace>::trouble(std::int64_t step) const {
 }
 
 template <class ExecutionSpace>
-void ContactOn<ExecutionSpace>::work(std::span<double> of_vertices) const {
+void ContactOn<ExecutionSpace>::work(std::span<ContactWork> of_vertices) const {
   const auto mirror = Kokkos::create_mirror_view(_work);
   device::copy(_instance.space(), mirror, _work);
   _instance.space().fence("drogue::fabric::contact_work");
@@ -240,7 +240,7 @@ void ContactOn<ExecutionSpace>::work(std::span<double> of_vertices) const {
 }
 
 template <class ExecutionSpace>
-void ContactOn<ExecutionSpace>::set_work(std::span<const double> of_vertices) {
+void ContactOn<ExecutionSpace>::set_work(std::span<const ContactWork> of_vertices) {
   const auto mirror = Kokkos::create_mirror_view(_work);
   std::copy(of_vertices.begin(), of_vertices.end(), mirror.data());
   device::copy(_instance.space(), _work, mirror);

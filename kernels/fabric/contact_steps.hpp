@@ -38,9 +38,9 @@ class ContactSteps {
   /// Why step `step` was lost. Waits.
   [[nodiscard]] virtual Trouble trouble(std::int64_t step) const = 0;
 
-  /// J, that contact has done on every vertex so far, less what it has taken. Both wait.
-  virtual void work(std::span<double> of_vertices) const = 0;
-  virtual void set_work(std::span<const double> of_vertices) = 0;
+  /// What contact has done on every vertex so far. Both wait.
+  virtual void work(std::span<ContactWork> of_vertices) const = 0;
+  virtual void set_work(std::span<const ContactWork> of_vertices) = 0;
 };
 
 /// What a solver lends to contact.

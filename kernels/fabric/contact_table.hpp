@@ -1,6 +1,7 @@
 #pragma once
 
 #include "kernels/fabric/contact_body.hpp"
+#include "kernels/fabric/status.hpp"
 #include "kernels/fabric/watch.hpp"
 
 namespace drogue::fabric {
@@ -105,7 +106,7 @@ struct ContactTable {
   Places start_x, start_v;  ///< at the beginning of the step, impulses included
   Places end_x, end_v;      ///< with zones
   Places listed_x;          ///< where the lists were made
-  List<double> work;        ///< J, of contact on every vertex so far
+  List<ContactWork> work;   ///< of contact on every vertex so far
   // A hashed grid of cells, each a chain.
   List<int> first_triangle, first_edge;
   List<Ball> ball_of_triangle, ball_of_edge;

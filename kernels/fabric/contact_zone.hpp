@@ -179,7 +179,7 @@ struct SettleFunctor {
     const Point start = load_points<double>(table.start_v, i);
     const Point force = (1.0 / table.dt) * (load_points<double>(v, i) - start);  // over the mass
     const Point moved = place - load_points<double>(table.start_x, i);
-    table.work(i) +=
+    table.work(i).normal +=
         (0.5 * dot(velocity - start, velocity + start) - dot(force, moved)) / table.inverse_mass(i);
     store_points(x, i, place);
     store_points(v, i, velocity);

@@ -52,6 +52,7 @@ struct Mesh {
   std::vector<std::array<int, 3>> triangles;
   std::vector<std::array<int, 2>> lines;  ///< pieces of strings, or of reinforcements along edges
   std::vector<double> line_stiffness;     ///< E A of every line, N; empty: Material::axial_stiffness
+  std::vector<double> line_density;       ///< of every line, kg/m; empty: what `lumped_masses` is told
 };
 
 /// A force that changes: strength times direction, N. The strength is an expression of the place at rest, m,

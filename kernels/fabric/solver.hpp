@@ -84,11 +84,11 @@ class Solver {
 
   /// How steps reach the device: "persistent", "graph" or "plain".
   [[nodiscard]] virtual const char* driver() const = 0;
-  /// Work that contact has done on every vertex since the solver was made, J, negative where it took energy;
-  /// zero without contact. Zones that move as rigid bodies count to first order. `set_contact_work` brings
-  /// back what a restart has kept.
-  virtual void contact_work(std::span<double> of_vertices) = 0;
-  virtual void set_contact_work(std::span<const double> of_vertices) = 0;
+
+  /// Work that contact has done on every vertex since the solver was made; zero without contact. Zones that
+  /// move as rigid bodies count to first order. `set_contact_work` brings back what a restart has kept.
+  virtual void contact_work(std::span<ContactWork> of_vertices) = 0;
+  virtual void set_contact_work(std::span<const ContactWork> of_vertices) = 0;
 };
 
 /// Throws std::invalid_argument for parameters out of range; the backend must be available.

@@ -52,8 +52,8 @@ class SolverOn final : public Solver {
   void vertex_stress(StressMeasure measure, std::span<Stress> of_vertices) override;
   Totals totals() override;
   [[nodiscard]] const char* driver() const override;
-  void contact_work(std::span<double> of_vertices) override;
-  void set_contact_work(std::span<const double> of_vertices) override;
+  void contact_work(std::span<ContactWork> of_vertices) override;
+  void set_contact_work(std::span<const ContactWork> of_vertices) override;
 
  private:
   static constexpr int lanes = device::Access<

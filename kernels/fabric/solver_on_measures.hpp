@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <vector>
 
 #include "kernels/fabric/solver_on.hpp"
@@ -67,26 +66,26 @@ Totals SolverOn<ExecutionSpace, law>::totals() {
   const auto mirror = Kokkos::create_mirror_view(sums);
   device::copy(space, mirror, sums);
   space.fence("drogue::fabric::totals");
-  Totals t{mirror(0, 0), mirror(0, 1) + _rest_energy, mirror(0, 2), mirror(0, 3), {}, {}, 0.0};
+  Totals t{mirror(0, 0), mirror(0, 1) + _rest_energy, mirror(0, 2), mirror(0, 3), {}, {}, 0.0, 0.0};
   for (std::size_t axis = 0; axis < 3; ++axis)
     t.momentum[axis] = mirror(0, 4 + axis), t.angular_momentum[axis] = mirror(0, 7 + axis);
   if (!_contact) return t;
-  std::vector<double> work(static_cast<std::size_t>(_vertices));
+  std::vector<ContactWork> work(static_cast<std::size_t>(_vertices));
   _contact->work(work);
-  t.contact = std::accumulate(work.begin(), work.end(), 0.0);
+  for (const ContactWork& of_vertex : work) t.contact += of_vertex.normal, t.friction += of_vertex.friction;
   return t;
 }
 
 template <class ExecutionSpace, Law law>
-void SolverOn<ExecutionSpace, law>::contact_work(std::span<double> of_vertices) {
+void SolverOn<ExecutionSpace, law>::contact_work(std::span<ContactWork> of_vertices) {
   settle();
   require_one_a_vertex(of_vertices.size());
-  std::ranges::fill(of_vertices, 0.0);
+  std::ranges::fill(of_vertices, ContactWork{});
   if (_contact) _contact->work(of_vertices);
 }
 
 template <class ExecutionSpace, Law law>
-void SolverOn<ExecutionSpace, law>::set_contact_work(std::span<const double> of_vertices) {
+void SolverOn<ExecutionSpace, law>::set_contact_work(std::span<const ContactWork> of_vertices) {
   settle();
   require_one_a_vertex(of_vertices.size());
   if (_contact) _contact->set_work(of_vertices);

@@ -25,7 +25,7 @@ SolverOn<ExecutionSpace, law>::SolverOn(const Parameters& p)
              decltype(_watch.raised)("drogue::fabric::raised")} {
   const auto n = static_cast<std::size_t>(_vertices);
   const ExecutionSpace& space = _instance.space();
-  const RingSlots rings = ring_slots(has_triangles(law.model) ? p.mesh : Mesh{p.mesh.rest, {}, {}, {}});
+  const RingSlots rings = ring_slots(has_triangles(law.model) ? p.mesh : Mesh{p.mesh.rest, {}, {}, {}, {}});
   const SpringSlots springs = spring_slots(p.mesh, p.material);
   if constexpr (has_triangles(law.model)) {
     _cloth.triangles = slot_views(space, rings, device::is_host<ExecutionSpace>);

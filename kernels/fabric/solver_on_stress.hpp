@@ -50,7 +50,10 @@ void SolverOn<ExecutionSpace, law>::stress_to_host(const StressView<ExecutionSpa
   device::copy(_instance.space(), mirror, from);
   _instance.space().fence("drogue::fabric::stress_to_host");
   for (std::size_t i = 0; i < to.size(); ++i)
-    to[i] = {mirror(i, 0), mirror(i, 1), {mirror(i, 2), mirror(i, 3), mirror(i, 4)}};
+    to[i] = {mirror(i, 0),
+             mirror(i, 1),
+             {mirror(i, 2), mirror(i, 3), mirror(i, 4)},
+             {mirror(i, 5), mirror(i, 6), mirror(i, 7)}};
 }
 
 }  // namespace drogue::fabric

@@ -33,6 +33,13 @@ struct Failure {
   Trouble trouble = Trouble::not_finite;
 };
 
+/// Work of contact on a vertex, negative where it took energy.
+struct ContactWork {
+  double normal = 0.0;    ///< J, of what keeps parts apart: impulses along normals, and zones
+  double friction = 0.0;  ///< J, of friction
+  bool operator==(const ContactWork&) const = default;
+};
+
 /// Sums over all vertices.
 struct Totals {
   double kinetic = 0.0;  ///< J
@@ -41,7 +48,8 @@ struct Totals {
   double load = 0.0;     ///< J, minus the work of dead loads from the origin to where the vertices are
   std::array<double, 3> momentum{};          ///< kg m/s
   std::array<double, 3> angular_momentum{};  ///< kg m^2/s, about the origin
-  double contact = 0.0;                      ///< J, work that contact has done since the solver was made
+  double contact = 0.0;   ///< J, work that contact has done since the solver was made, friction apart
+  double friction = 0.0;  ///< J, work that friction in contact has done
 
   /// What steps without damping, moving pins and loads that change keep.
   [[nodiscard]] double energy() const { return kinetic + elastic + gravity + load; }
@@ -54,6 +62,17 @@ enum class StressMeasure { nominal, cauchy };
 struct Stress {
   double major = 0.0, minor = 0.0;    ///< principal values
   std::array<double, 3> direction{};  ///< of the major one: a unit vector in the plane of the cloth now
+  std::array<double, 3> across{};     ///< of the minor one
+
+  /// The tensor in space: xx, xy, xz, yy, yz, zz.
+  [[nodiscard]] std::array<double, 6> tensor() const {
+    std::array<double, 6> sum{};
+    std::size_t place = 0;
+    for (std::size_t i = 0; i < 3; ++i)
+      for (std::size_t j = i; j < 3; ++j)
+        sum[place++] = major * direction[i] * direction[j] + minor * across[i] * across[j];
+    return sum;
+  }
 
   /// Of plane stress (eq. 2.19).
   [[nodiscard]] double von_mises() const { return std::sqrt(major * major - major * minor + minor * minor); }

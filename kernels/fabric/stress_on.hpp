@@ -23,9 +23,9 @@ struct TriangleViews {
   ListView<ExecutionSpace, int> first, around;
 };
 
-/// `major`, `minor` and the direction, one row a triangle or a vertex.
+/// `major`, `minor` and the directions of both, one row a triangle or a vertex.
 template <class ExecutionSpace>
-using StressView = TableView<ExecutionSpace, double, 5>;
+using StressView = TableView<ExecutionSpace, double, 8>;
 
 /// xx, yy and xy of a triangle's tensor, then both axes of the frame in which it is.
 template <class ExecutionSpace>
@@ -34,9 +34,10 @@ using TensorView = TableView<ExecutionSpace, double, 9>;
 template <class View>
 KOKKOS_INLINE_FUNCTION void store_stress(const View& view, int i, const Principal& p,
                                          const Vector3<double>& e1, const Vector3<double>& e2) {
-  const Vector3<double> direction = p.cosine * e1 + p.sine * e2;
+  const Vector3<double> direction = p.cosine * e1 + p.sine * e2, across = p.cosine * e2 - p.sine * e1;
   view(i, 0) = p.major, view(i, 1) = p.minor;
   view(i, 2) = direction.x, view(i, 3) = direction.y, view(i, 4) = direction.z;
+  view(i, 5) = across.x, view(i, 6) = across.y, view(i, 7) = across.z;
 }
 
 /// The stress of each triangle.

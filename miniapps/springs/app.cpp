@@ -81,7 +81,7 @@ void run_in(run::RunDirectory& directory, const SpringsScene& scene, device::Bac
   const auto runtime = start_kokkos(options.kokkos);
   device::start_ledger();
   result.describe_device(std::string(device::name(backend)), device::device_facts());
-  Simulation simulation(scene, {backend, options.seed_mode, options.quiet, restart, {}});
+  Simulation simulation(scene, {backend, options.seed_mode, options.quiet, restart, true, {}});
   directory.begin();
   directory.write_scene(print_springs_scene(scene));
   result.exit_code = simulation.run(directory, result);
@@ -89,6 +89,7 @@ void run_in(run::RunDirectory& directory, const SpringsScene& scene, device::Bac
     result.message = "interrupted by a signal; restart.h5 is written";
     return;
   }
+  result.energy = simulation.energies();
   verify(scene, simulation.final_state(), directory.file("history.csv"), result);
   if (const std::string failed = result.failed_check(); !failed.empty())
     throw Failure(ExitCode::verification_failed, failed);

@@ -152,6 +152,7 @@ Mesh renumbered(const Mesh& mesh, const std::vector<int>& order) {
   result.triangles = mesh.triangles;
   result.lines = mesh.lines;
   result.line_stiffness = mesh.line_stiffness;
+  result.line_density = mesh.line_density;
   for (auto& triangle : result.triangles)
     for (int& i : triangle) i = place[static_cast<std::size_t>(i)];
   for (auto& line : result.lines)

@@ -5,6 +5,7 @@
 
 #include "miniapps/springs/history.hpp"
 #include "miniapps/springs/mesh_topology.hpp"
+#include "miniapps/springs/stress_fields.hpp"
 #include "miniapps/springs/vectors.hpp"
 
 namespace drogue::springs_app {
@@ -27,11 +28,10 @@ class Stopwatch {
 };
 
 run::DatasetSpec field_spec(const std::string& name, const fabric::Mesh& mesh) {
-  const std::uint64_t vertices = mesh.rest.size(), triangles = mesh.triangles.size();
+  const std::uint64_t vertices = mesh.rest.size();
   if (name == "position") return {name, {vertices, 3}, "m", "vertex", "positions of the vertices"};
   if (name == "velocity") return {name, {vertices, 3}, "m/s", "vertex", "velocities of the vertices"};
-  return {
-      name, {triangles}, "N/m", "face", "von Mises stress of the triangles, Cauchy stress times thickness"};
+  return stress_spec(name, mesh);
 }
 
 std::vector<run::DatasetSpec> field_specs(const SpringsScene& scene) {
@@ -86,7 +86,7 @@ void RunOutput::write_row(const Row& row) {
   const auto append = [&values](const Vector& v) { values.insert(values.end(), v.begin(), v.end()); };
   append(row.momentum);
   append(row.angular_momentum);
-  if (_scene.contact.asked_for()) values.push_back(row.contact_work);
+  if (_scene.contact.asked_for()) values.insert(values.end(), {row.contact_work, row.friction_work});
   if (_scene.verify.intersections) values.push_back(row.intersections);
   std::ranges::for_each(row.probes, append);
   _history->append(row.time, values);
@@ -101,7 +101,7 @@ void RunOutput::write_fields(Snapshot snapshot) {
       _fields->write(name, 0,
                      name == "position"   ? numbers(now.position)
                      : name == "velocity" ? numbers(now.velocity)
-                                          : std::span<const double>(now.von_mises));
+                                          : std::span<const double>(now.stress.at(name)));
     _fields->end_step();
   });
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <map>
 #include <optional>
 
 #include "common/run/background_writer.hpp"
@@ -18,7 +19,8 @@ struct Row {
   double kinetic = 0.0, elastic = 0.0, potential = 0.0;  ///< J
   fabric::Vector momentum{}, angular_momentum{};
   std::vector<fabric::Vector> probes;  ///< positions, m
-  double contact_work = 0.0;           ///< J
+  double contact_work = 0.0;           ///< J, friction apart
+  double friction_work = 0.0;          ///< J
   int intersections = 0;
 };
 
@@ -27,7 +29,7 @@ struct Snapshot {
   double time = 0.0;
   std::int64_t step = 0;
   std::vector<fabric::Vector> position, velocity;
-  std::vector<double> von_mises;  ///< of every triangle, N/m
+  std::map<std::string, std::vector<double>> stress;  ///< by the names of its fields
 };
 
 /// The files of a run that grow while it steps: history.csv, fields.h5, restart.h5. Only what the scene asks

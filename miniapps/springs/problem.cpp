@@ -10,6 +10,7 @@
 namespace drogue::springs_app {
 namespace {
 
+using fabric::ContactWork;
 using fabric::Vector;
 
 std::vector<double> masses_of(const SpringsScene& scene, Problem& problem) {
@@ -156,11 +157,15 @@ std::vector<Vector> Problem::to_scene(std::span<const Vector> values) const {
   return returned(values, order);
 }
 
-std::vector<double> Problem::to_solver(std::span<const double> values) const {
+std::vector<ContactWork> Problem::to_solver(std::span<const ContactWork> values) const {
   return permuted(values, order);
 }
 
-std::vector<double> Problem::to_scene(std::span<const double> values) const {
+std::vector<ContactWork> Problem::to_scene(std::span<const ContactWork> values) const {
+  return returned(values, order);
+}
+
+std::vector<fabric::Stress> Problem::to_scene(std::span<const fabric::Stress> values) const {
   return returned(values, order);
 }
 
@@ -180,7 +185,7 @@ Problem make_problem(const SpringsScene& scene) {
   p.integrator = scene.time.integrator;
   // Until one is planned: pins are placed with the velocity over one, and what moves them ends with the
   // scene.
-  p.dt = scene.time.dt.value_or(1e-6 * scene.time.end_time);
+  p.dt = scene.time.dt.value_or(scene.time.end_time > 0.0 ? 1e-6 * scene.time.end_time : 1.0);
   p.driver = scene.driver;
   for (const Probe& probe : scene.output.probes) problem.probes.push_back(nearest_vertex(p.mesh, probe.at));
   return problem;

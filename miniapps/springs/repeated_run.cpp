@@ -19,7 +19,7 @@ namespace {
 ExitCode run_once(const SpringsScene& scene, device::Backend backend, const run::RunDirectory& directory,
                   RepeatedRun& runs) {
   const bool first = runs.samples.empty();
-  RunSettings settings{backend, false, true, {}, {}};
+  RunSettings settings{backend, false, true, {}, false, {}};
   if (first)
     settings.at_output = [&](const Row& now, const std::vector<fabric::Vector>& x) {
       const auto add = [&runs](const char* name, double value) { runs.series[name].push_back(value); };

@@ -22,6 +22,10 @@ void visit(State& state, const Number& number, const Integer& integer) {
   number("dt_max", state.dt_max);
 }
 
+/// What is kept of the work of contact, under the names that history.csv has for it.
+constexpr std::pair<const char*, double fabric::ContactWork::*> work_parts[] = {
+    {"contact_work", &fabric::ContactWork::normal}, {"friction_work", &fabric::ContactWork::friction}};
+
 }  // namespace
 
 std::string scene_fingerprint(SpringsScene scene) {
@@ -54,9 +58,12 @@ void write_restart(const std::filesystem::path& file, const std::string& fingerp
     writer.array(name, 3 * vectors->size());
     writer.write(name, 0, numbers(*vectors));
   }
-  if (!state.contact_work.empty()) {
-    writer.array("contact_work", state.contact_work.size());
-    writer.write("contact_work", 0, state.contact_work);
+  for (const auto& [name, part] : work_parts) {
+    if (state.contact_work.empty()) break;
+    std::vector<double> values;
+    for (const fabric::ContactWork& work : state.contact_work) values.push_back(work.*part);
+    writer.array(name, values.size());
+    writer.write(name, 0, values);
   }
   writer.commit();
 }
@@ -73,7 +80,11 @@ RestartState read_restart(const std::filesystem::path& file, const SpringsScene&
   reader.read("velocity", 0, numbers(state.v));
   if (!scene.contact.asked_for()) return state;
   state.contact_work.resize(scene.mesh.rest.size());
-  reader.read("contact_work", 0, state.contact_work);
+  for (const auto& [name, part] : work_parts) {
+    std::vector<double> values(scene.mesh.rest.size());
+    reader.read(name, 0, values);
+    for (std::size_t i = 0; i < values.size(); ++i) state.contact_work[i].*part = values[i];
+  }
   return state;
 }
 

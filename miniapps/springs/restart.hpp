@@ -16,7 +16,7 @@ struct RestartState {
   double stop_time = 0.0;             ///< s
   double dt_min = 0.0, dt_max = 0.0;  ///< s, of the steps so far
   std::vector<fabric::Vector> x, v;
-  std::vector<double> contact_work;  ///< of every vertex, J; empty without contact
+  std::vector<fabric::ContactWork> contact_work;  ///< of every vertex; empty without contact
 };
 
 /// Names the mesh, the fabric and what acts on it; output, end time and checks may change between a run and

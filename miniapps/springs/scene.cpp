@@ -14,7 +14,7 @@ bool SpringsScene::has_triangles() const {
 }
 
 bool SpringsScene::has_lines() const {
-  return mesh.rest.empty() ? source.string || !source.file.empty() : !mesh.lines.empty();
+  return mesh.rest.empty() ? source.string || !source.file.empty() : lines > 0;
 }
 
 SpringsScene read_springs_scene(const std::filesystem::path& file, const std::vector<std::string>& sets) {

@@ -40,6 +40,13 @@ struct Fabric {
   std::optional<double> stiffness;  ///< N/m an edge
 };
 
+/// Edges of triangles, and lines of the mesh, that are strings of their own.
+struct Reinforcement {
+  std::string where;             ///< of x, y, z at rest; of both ends
+  double axial_stiffness = 0.0;  ///< E A, N
+  double line_density = 0.0;     ///< kg/m, beside what the cloth has
+};
+
 struct Initial {
   ExpressionVector displacement, velocity;  ///< of x, y, z at rest
   double prestretch = 0.0;                  ///< rest coordinates grow by this strain
@@ -104,7 +111,7 @@ struct Probe {
 };
 
 struct Output {
-  std::vector<std::string> fields;  ///< subset of position, velocity, von_mises; empty: no fields.h5
+  std::vector<std::string> fields;  ///< position, velocity, names of stresses; empty: no fields.h5
   std::vector<double> times;        ///< s, increasing, within the run; empty exactly if `fields` is
   std::vector<Probe> probes;
   int history_every = 100;  ///< steps between rows of history.csv; 0: none
@@ -141,8 +148,10 @@ struct SpringsScene {
   std::string name;  ///< the file's name without folder and extension
   std::string description;
   MeshSource source;
-  fabric::Mesh mesh;  ///< what the source gives, in its own numbering
+  fabric::Mesh mesh;      ///< what the source gives, in its own numbering; then lines of reinforcements
+  std::size_t lines = 0;  ///< those of the source
   Fabric fabric;
+  std::vector<Reinforcement> reinforcements;
   Initial initial;
   std::vector<Pin> pins;
   std::vector<Load> loads;
@@ -154,7 +163,7 @@ struct SpringsScene {
   Verify verify;
   fabric::Driver driver = fabric::Driver::automatic;
 
-  /// Whether there is cloth, or strings; both where the mesh is yet to be read from a file.
+  /// Whether the source has cloth, or strings; both where it is a file that is yet to be read.
   [[nodiscard]] bool has_triangles() const;
   [[nodiscard]] bool has_lines() const;
 };

@@ -8,6 +8,7 @@
 #include "miniapps/springs/expressions.hpp"
 #include "miniapps/springs/mesh_topology.hpp"
 #include "miniapps/springs/obj_file.hpp"
+#include "miniapps/springs/stress_fields.hpp"
 
 namespace drogue::springs_app {
 namespace {
@@ -37,15 +38,11 @@ fabric::Mesh make_mesh(const Table& root, SpringsScene& scene) {
   source.file = file.string();
   std::error_code unreadable;
   if (!std::filesystem::is_regular_file(file, unreadable))
-    contradict(root, "mesh.file", "mesh.file: there is no file " + file.string());
+    contradict(root, "mesh.file",
+               "mesh.file: " + (std::filesystem::exists(file, unreadable)
+                                    ? file.string() + " is no file but a directory or device"
+                                    : "there is no file " + file.string()));
   return read_obj(file);
-}
-
-/// Coordinates of a vertex for an error.
-std::string place_text(const SpringsScene& scene, std::size_t i) {
-  const fabric::Vector& x = scene.mesh.rest[i];
-  return "at vertex " + std::to_string(i) + " (" + real_text(x[0]) + ", " + real_text(x[1]) + ", " +
-         real_text(x[2]) + ")";
 }
 
 /// At every vertex and time 0; one that a kernel must evaluate has to fit there too.
@@ -69,15 +66,6 @@ void require_finite(const Table& root, const SpringsScene& scene, const std::str
   for (std::size_t axis = 0; axis < 3; ++axis)
     require_finite(root, scene, path + "." + axis_names[axis], vector.of(axis),
                    depends_on_time(vector.of(axis)));
-}
-
-std::vector<int> require_some(const Table& root, const SpringsScene& scene, const std::string& path,
-                              const std::string& where, const std::string& what) {
-  require_finite(root, scene, path, where);
-  std::vector<int> vertices = selected(where, scene.mesh);
-  if (vertices.empty())
-    contradict(root, path, path + " = " + scene::toml_string(where) + " holds at no vertex: " + what);
-  return vertices;
 }
 
 void complete_material(const Table& root, SpringsScene& scene) {
@@ -180,13 +168,16 @@ void complete_output(const Table& root, SpringsScene& scene) {
     contradict(root, "output.times",
                "output.times: " + real_text(output.times.back()) +
                    " is later than time.end_time = " + real_text(end_time));
-  const bool asks_stress = std::ranges::count(output.fields, "von_mises") > 0;
-  if (asks_stress && !scene.has_triangles())
-    contradict(root, "output.fields",
-               "output.fields: von_mises is a stress of triangles, and the mesh has none");
-  if (asks_stress && scene.fabric.material.model == fabric::Model::linear_vector)
-    contradict(root, "output.fields",
-               "output.fields: model \"linear-vector\" has no von_mises, its forces are not along edges");
+  for (const std::string& field : output.fields) {
+    if (!stress_kind(field)) continue;
+    if (!scene.has_triangles())
+      contradict(root, "output.fields",
+                 "output.fields: " + field + " is a stress of triangles, and the mesh has none");
+    if (scene.fabric.material.model == fabric::Model::linear_vector)
+      contradict(
+          root, "output.fields",
+          "output.fields: model \"linear-vector\" has no " + field + ", its forces are not along edges");
+  }
 }
 
 void check_time(const Table& root, const Time& time) {
@@ -203,9 +194,26 @@ void check_initial(const Table& root, const SpringsScene& scene) {
 
 }  // namespace
 
+std::string place_text(const SpringsScene& scene, std::size_t vertex) {
+  const fabric::Vector& x = scene.mesh.rest[vertex];
+  return "at vertex " + std::to_string(vertex) + " (" + real_text(x[0]) + ", " + real_text(x[1]) + ", " +
+         real_text(x[2]) + ")";
+}
+
+std::vector<int> require_some(const Table& root, const SpringsScene& scene, const std::string& path,
+                              const std::string& where, const std::string& what) {
+  require_finite(root, scene, path, where);
+  std::vector<int> vertices = selected(where, scene.mesh);
+  if (vertices.empty())
+    contradict(root, path, path + " = " + scene::toml_string(where) + " holds at no vertex: " + what);
+  return vertices;
+}
+
 void complete_and_check(const Table& root, SpringsScene& scene) {
   scene.mesh = make_mesh(root, scene);
+  scene.lines = scene.mesh.lines.size();
   complete_material(root, scene);
+  add_reinforcements(root, scene);
   check_time(root, scene.time);
   check_initial(root, scene);
   check_pins(root, scene);

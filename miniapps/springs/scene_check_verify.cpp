@@ -4,6 +4,7 @@
 #include "common/scene/read.hpp"
 #include "miniapps/springs/expressions.hpp"
 #include "miniapps/springs/scene_check.hpp"
+#include "miniapps/springs/verify.hpp"
 
 namespace drogue::springs_app {
 namespace {
@@ -27,8 +28,8 @@ void check_frequency(const Table& root, const SpringsScene& scene) {
     require(root, numbers == 0 || (numbers == 1 && f.mode[0] >= 1.0), "verify.frequency.mode",
             "one number from 1 for a string");
   const bool has_closed_form = numbers > 0 && (scene.source.disk || scene.source.string);
-  require(root, f.value || has_closed_form, "verify.frequency",
-          "a value, or a mode of a disk or of a string, whose closed form is known");
+  require(root, f.value || (has_closed_form && scene.reinforcements.empty()), "verify.frequency",
+          "a value, or a mode of a disk or of a string without reinforcement, whose closed form is known");
   if (scene.source.disk && !f.value)
     require(root, scene.initial.prestretch > 0.0 && fabric::has_triangles(scene.fabric.material.model),
             "verify.frequency.mode", "initial.prestretch > 0 and model quadratic or biquadratic");
@@ -79,10 +80,17 @@ void check_verify(const Table& root, const SpringsScene& scene) {
   if (verify.momentum) require(root, has_rows, "verify.momentum", rows);
   if (verify.angular_momentum) require(root, has_rows, "verify.angular_momentum", rows);
   for (const auto& [name, bar] :
-       {std::pair{"verify.young", verify.young}, std::pair{"verify.poisson", verify.poisson}})
-    if (bar)
-      require(root, (source.strip || source.rectangle) && fabric::has_triangles(scene.fabric.material.model),
-              name, "mesh.strip or mesh.rectangle, and model quadratic or biquadratic");
+       {std::pair{"verify.young", verify.young}, std::pair{"verify.poisson", verify.poisson}}) {
+    if (!bar) continue;
+    require(root, (source.strip || source.rectangle) && fabric::has_triangles(scene.fabric.material.model),
+            name, "mesh.strip or mesh.rectangle, and model quadratic or biquadratic");
+    require(root, even_line_stiffness(scene.mesh).has_value(), name,
+            "reinforcements that run along x from end to end, with the same stiffness all the way");
+  }
+  for (const auto& [name, bar] :
+       {std::pair{"verify.hencky", verify.hencky}, std::pair{"verify.catenary", verify.catenary},
+        std::pair{"verify.stretch", verify.stretch}})
+    if (bar) require(root, scene.reinforcements.empty(), name, "a scene without reinforcement");
   if (verify.hencky)
     require(root,
             source.disk && fabric::has_triangles(scene.fabric.material.model) && scene.loads.size() == 1 &&

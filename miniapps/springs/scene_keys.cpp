@@ -1,6 +1,7 @@
 #include "miniapps/springs/scene_keys.hpp"
 
 #include "common/scene/codec.hpp"
+#include "miniapps/springs/stress_fields.hpp"
 
 namespace drogue::springs_app {
 namespace {
@@ -51,6 +52,14 @@ Codec real_or_auto_codec(std::optional<double>& value) {
           },
           [&value] { return std::optional(value ? scene::toml_text(*value) : "\"auto\""); },
           scene::back_to_default(value)};
+}
+
+Codec fields_codec(std::vector<std::string>& fields) {
+  std::vector<std::string> names = stress_field_names();
+  names.insert(names.begin(), {"position", "velocity"});
+  Codec codec = scene::names_codec(fields, names);
+  codec.type = "array of names";
+  return codec;
 }
 
 void declare_vector(Table& table, ExpressionVector& value, const std::vector<std::string>& variables,
@@ -209,8 +218,12 @@ void declare_load(Table& table, Load& load) {
 void declare_output(Table& table, Output& output) {
   const Key& fields =
       table
-          .value("fields", scene::names_codec(output.fields, {"position", "velocity", "von_mises"}),
-                 "Fields written to fields.h5; von_mises is that of every triangle")
+          .value(
+              "fields", fields_codec(output.fields),
+              "Fields written to fields.h5: position, velocity, and of every triangle stress, major_stress, "
+              "minor_stress, major_direction, minor_direction, von_mises; vertex_ before these for every "
+              "vertex, nominal_ before the last for the nominal stress in place of Cauchy's, as in "
+              "vertex_nominal_stress")
           .default_text("position where times are given, else none");
   table.value("times", scene::reals_codec(output.times, 0, true), "Times at which fields are written")
       .unit("s")
@@ -278,6 +291,28 @@ void declare_springs_scene(Table& root, SpringsScene& scene) {
       .required();
   root.table(
       "material", [&](Table& table) { declare_material(table, scene); }, "What they are made of");
+  root.tables(
+      "reinforcement", scene.reinforcements,
+      [](Table& table, Reinforcement& reinforcement) {
+        table
+            .value(
+                "where", scene::expression_codec(reinforcement.where, of_place),
+                "The edges: those at both ends of which this is not 0; each is of one reinforcement at most")
+            .required();
+        table
+            .value("axial_stiffness", scene::real_codec(reinforcement.axial_stiffness),
+                   "E A of each, which adds to what the cloth bears")
+            .unit("N")
+            .above(0.0)
+            .required();
+        table
+            .value("line_density", scene::real_codec(reinforcement.line_density),
+                   "Mass per length at rest, which adds to that of the cloth")
+            .unit("kg/m")
+            .at_least(0.0);
+      },
+      "Strings along edges of cloth, as seams and tapes are; lines of the mesh get this stiffness and "
+      "density in place of those of [material]");
   root.table(
       "initial",
       [&](Table& table) {

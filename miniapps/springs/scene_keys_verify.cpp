@@ -18,7 +18,7 @@ void declare_verify(Table& table, Verify& verify) {
       "Largest change of the energy, over the largest kinetic energy that rows have or released energy would "
       "make, that passes");
   bar("energy_balance", verify.energy_balance,
-      "The same after the work of contact, friction included, is taken off the energy; also what contact "
+      "The same after the work of contact and that of friction are taken off the energy; also what either "
       "gives");
   bar("intersections", verify.intersections,
       "Largest number of parts of cloth that meet one another or a body, at rows of history.csv and at the "

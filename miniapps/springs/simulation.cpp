@@ -70,7 +70,7 @@ void Simulation::resume() {
   _solver->set_clock(state.clock);
   _solver->upload(_problem.to_solver(state.x), _problem.to_solver(state.v));
   if (_scene.contact.asked_for())
-    _solver->set_contact_work(_problem.to_solver(std::span<const double>(state.contact_work)));
+    _solver->set_contact_work(_problem.to_solver(std::span<const fabric::ContactWork>(state.contact_work)));
   _stop_step = state.stop_step;
   _stop_time = state.stop_time;
   _dt_min = state.dt_min;
@@ -205,7 +205,7 @@ ExitCode Simulation::run(const run::RunDirectory& directory, run::ResultDocument
   progress.finish();
   const auto failure = _solver->failure();
   const bool done = !failure && _solver->clock().step == _stop_step;
-  if (!done) output.write_restart(restart_state());
+  if (!done && _settings.can_be_continued) output.write_restart(restart_state());
   output.finish();
   _io_s = output.waited();
   if (failure) throw Failure(ExitCode::numerical_failure, failure_text(*failure));
@@ -218,8 +218,9 @@ std::string Simulation::failure_text(const fabric::Failure& failure) const {
   const auto vertex = static_cast<std::size_t>(_problem.order.at(static_cast<std::size_t>(failure.vertex)));
   const Vector& rest = _scene.mesh.rest[vertex];
   text << lost_text(failure.trouble) << " at vertex " << vertex << " (at rest at " << rest[0] << ", "
-       << rest[1] << ", " << rest[2] << " m) at step " << failure.step << ", t = " << failure.time
-       << " s; restart.h5 holds the last good state, of step " << _solver->clock().step;
+       << rest[1] << ", " << rest[2] << " m) at step " << failure.step << ", t = " << failure.time << " s";
+  if (_settings.can_be_continued)
+    text << "; restart.h5 holds the last good state, of step " << _solver->clock().step;
   if (failure.trouble == fabric::Trouble::not_finite)
     text << (_scene.time.dt
                  ? "; if no expression gives such a number, time.dt = \"auto\" takes a step that is stable"

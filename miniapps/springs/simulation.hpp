@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 
 #include "common/program/progress.hpp"
@@ -11,6 +12,7 @@
 #include "miniapps/springs/output.hpp"
 #include "miniapps/springs/problem.hpp"
 #include "miniapps/springs/restart.hpp"
+#include "miniapps/springs/stress_fields.hpp"
 #include "miniapps/springs/verify.hpp"
 
 namespace drogue::springs_app {
@@ -21,6 +23,7 @@ struct RunSettings {
   bool seed_mode = false;  ///< the state travels to the device and back at every step
   bool quiet = false;
   std::filesystem::path restart;  ///< a restart file, or empty
+  bool can_be_continued = true;   ///< a run that ends before its time leaves restart.h5
   /// Told of every output time, whether or not fields are written, with the positions in the scene's
   /// numbering, m; may be empty.
   std::function<void(const Row& row, const std::vector<fabric::Vector>& x)> at_output;
@@ -34,6 +37,9 @@ class Simulation {
   /// Steps to the end time. Throws Failure: numerical_failure (after the last good state is on disk),
   /// io_error. Returns `interrupted` after a signal, the restart file written; otherwise `ok`.
   ExitCode run(const run::RunDirectory& directory, run::ResultDocument& result);
+
+  /// Energies now and work done so far, J, as columns of history.csv.
+  [[nodiscard]] std::map<std::string, double> energies();
 
   /// For verification.
   [[nodiscard]] FinalState final_state();
@@ -53,6 +59,7 @@ class Simulation {
   [[nodiscard]] double time() const;
   [[nodiscard]] Row row();
   [[nodiscard]] Snapshot snapshot();
+  [[nodiscard]] std::vector<fabric::Stress> stress_of(const StressKind& kind);
   [[nodiscard]] RestartState restart_state();
   [[nodiscard]] std::string failure_text(const fabric::Failure& failure) const;
   void describe(run::ResultDocument& result) const;

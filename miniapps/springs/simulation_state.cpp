@@ -18,9 +18,17 @@ double Simulation::time() const {
 
 Row Simulation::row() {
   const fabric::Totals sum = _solver->totals();
-  Row row{time(),       _solver->clock().step, sum.kinetic, sum.elastic, sum.gravity + sum.load,
-          sum.momentum, sum.angular_momentum,  {},          0.0,         0};
-  row.contact_work = sum.contact;
+  Row row{time(),
+          _solver->clock().step,
+          sum.kinetic,
+          sum.elastic,
+          sum.gravity + sum.load,
+          sum.momentum,
+          sum.angular_momentum,
+          {},
+          sum.contact,
+          sum.friction,
+          0};
   const bool counts = _scene.verify.intersections.has_value();
   if (_scene.output.probes.empty() && !counts) return row;
   std::vector<Vector> x(_problem.x.size()), v(x.size());
@@ -28,6 +36,16 @@ Row Simulation::row() {
   if (counts) row.intersections = contact_state(_scene, _problem.to_scene(x)).intersections;
   for (const int vertex : _problem.probes) row.probes.push_back(x[static_cast<std::size_t>(vertex)]);
   return row;
+}
+
+std::map<std::string, double> Simulation::energies() {
+  const Row now = row();
+  std::map<std::string, double> account = {
+      {"kinetic", now.kinetic}, {"elastic", now.elastic}, {"potential", now.potential}};
+  if (!_scene.contact.asked_for()) return account;
+  account["contact_work"] = now.contact_work;
+  account["friction_work"] = now.friction_work;
+  return account;
 }
 
 Snapshot Simulation::snapshot() {
@@ -39,11 +57,24 @@ Snapshot Simulation::snapshot() {
   const auto wanted = [&](const char* field) { return std::ranges::count(_scene.output.fields, field) > 0; };
   if (wanted("position")) snapshot.position = _problem.to_scene(x);
   if (wanted("velocity")) snapshot.velocity = _problem.to_scene(v);
-  if (!wanted("von_mises")) return snapshot;
-  std::vector<fabric::Stress> stress(_scene.mesh.triangles.size());
-  _solver->stress(fabric::StressMeasure::cauchy, stress);
-  for (const fabric::Stress& s : stress) snapshot.von_mises.push_back(s.von_mises());
+  std::map<StressKind, std::vector<fabric::Stress>> known;
+  for (const std::string& field : _scene.output.fields) {
+    const auto kind = stress_kind(field);
+    if (!kind) continue;
+    if (!known.contains(*kind)) known[*kind] = stress_of(*kind);
+    snapshot.stress[field] = stress_values(field, known[*kind]);
+  }
   return snapshot;
+}
+
+std::vector<fabric::Stress> Simulation::stress_of(const StressKind& kind) {
+  std::vector<fabric::Stress> stress(kind.at_vertices ? _problem.x.size() : _scene.mesh.triangles.size());
+  if (!kind.at_vertices) {
+    _solver->stress(kind.measure, stress);
+    return stress;
+  }
+  _solver->vertex_stress(kind.measure, stress);
+  return _problem.to_scene(stress);
 }
 
 void Simulation::reach_output(RunOutput& output) {
@@ -61,9 +92,9 @@ RestartState Simulation::restart_state() {
   state.x = _problem.to_scene(x);
   state.v = _problem.to_scene(v);
   if (!_scene.contact.asked_for()) return state;
-  std::vector<double> work(x.size());
+  std::vector<fabric::ContactWork> work(x.size());
   _solver->contact_work(work);
-  state.contact_work = _problem.to_scene(std::span<const double>(work));
+  state.contact_work = _problem.to_scene(std::span<const fabric::ContactWork>(work));
   return state;
 }
 

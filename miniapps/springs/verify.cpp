@@ -57,16 +57,24 @@ double energy_drift(const History& history) {
   return change / energy_scale(history);
 }
 
-/// Of the energy less what contact has put in; and what it has put in since it had put in the least, for
-/// bodies at rest and layers only take.
-double energy_imbalance(const History& history) {
-  const std::vector<double>&energy = history.at("energy"), &work = history.at("contact_work");
-  double change = 0.0, least = work[0];
-  for (std::size_t k = 0; k < energy.size(); ++k) {
-    change = larger(change, std::abs(energy[k] - work[k] - (energy[0] - work[0])));
-    change = larger(change, work[k] - least);
-    least = std::min(least, work[k]);
+/// The most that a sum has grown since it was least.
+double largest_rise(const std::vector<double>& values) {
+  double rise = 0.0, least = values[0];
+  for (const double value : values) {
+    rise = larger(rise, value - least);
+    least = std::min(least, value);
   }
+  return rise;
+}
+
+/// Of the energy less what contact and friction have put in; and what either has put in since it had put in
+/// the least, for bodies at rest and layers only take.
+double energy_imbalance(const History& history) {
+  const std::vector<double>&energy = history.at("energy"), &contact = history.at("contact_work"),
+        &friction = history.at("friction_work");
+  double change = larger(largest_rise(contact), largest_rise(friction));
+  const auto rest = [&](std::size_t k) { return energy[k] - contact[k] - friction[k]; };
+  for (std::size_t k = 0; k < energy.size(); ++k) change = larger(change, std::abs(rest(k) - rest(0)));
   return change / energy_scale(history);
 }
 
@@ -182,11 +190,33 @@ Response pulled_response(const fabric::Mesh& mesh, const FinalState& state) {
   const auto ends = sides(0), flanks = sides(1);
   const double width = flanks[1].rest - flanks[0].rest;
   Response response;
+  response.width = width;
   response.strain = (ends[1].moved - ends[0].moved) / (ends[1].rest - ends[0].rest);
   // What pulls at the last column is minus the force of the cloth on it.
   response.young = -ends[1].force / width / response.strain;
   response.poisson = -(flanks[1].moved - flanks[0].moved) / width / response.strain;
   return response;
+}
+
+std::optional<double> even_line_stiffness(const fabric::Mesh& mesh) {
+  std::vector<double> ahead(mesh.rest.size(), 0.0), behind = ahead;
+  for (std::size_t k = 0; k < mesh.lines.size(); ++k) {
+    auto [a, b] = mesh.lines[k];
+    const auto place = [&](int i) -> const Vector& { return mesh.rest[static_cast<std::size_t>(i)]; };
+    if (place(a)[0] > place(b)[0]) std::swap(a, b);
+    if (place(a)[0] == place(b)[0] || place(a)[1] != place(b)[1] || place(a)[2] != place(b)[2])
+      return std::nullopt;
+    ahead[static_cast<std::size_t>(a)] += mesh.line_stiffness[k];
+    behind[static_cast<std::size_t>(b)] += mesh.line_stiffness[k];
+  }
+  const auto [low, high] = std::ranges::minmax(mesh.rest, {}, [](const Vector& x) { return x[0]; });
+  double sum = 0.0;
+  for (std::size_t i = 0; i < mesh.rest.size(); ++i) {
+    const double x = mesh.rest[i][0];
+    if (x > low[0] && x < high[0] && ahead[i] != behind[i]) return std::nullopt;
+    if (x == high[0]) sum += behind[i];
+  }
+  return sum;
 }
 
 void verify(const SpringsScene& scene, const FinalState& state, const std::filesystem::path& history_file,
@@ -214,9 +244,10 @@ void verify(const SpringsScene& scene, const FinalState& state, const std::files
     const fabric::Material& m = scene.fabric.material;
     const Response response = pulled_response(scene.mesh, state);
     const double e = response.strain;
-    // St Venant-Kirchhoff: nominal stress E (1 + e)(e + e^2/2).
+    // St Venant-Kirchhoff: nominal stress E (1 + e)(e + e^2/2). Reinforcements bear E A e beside it.
     const double expected =
-        m.membrane_modulus * (m.model == fabric::Model::biquadratic ? (1.0 + e) * (1.0 + 0.5 * e) : 1.0);
+        m.membrane_modulus * (m.model == fabric::Model::biquadratic ? (1.0 + e) * (1.0 + 0.5 * e) : 1.0) +
+        *even_line_stiffness(scene.mesh) / response.width;
     if (wanted.young) add("young", relative_error(response.young, expected), *wanted.young);
     if (wanted.poisson) add("poisson", std::abs(response.poisson - m.poisson), *wanted.poisson);
   }

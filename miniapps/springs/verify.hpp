@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 
 #include "common/run/result_document.hpp"
 #include "miniapps/springs/scene.hpp"
@@ -24,8 +25,14 @@ void verify(const SpringsScene& scene, const FinalState& state, const std::files
 /// Young's modulus (N/m) and Poisson's ratio of a rectangle pulled along x by its last column.
 struct Response {
   double young = 0.0, poisson = 0.0, strain = 0.0;
+  double width = 0.0;  ///< m, at rest
 };
 Response pulled_response(const fabric::Mesh& mesh, const FinalState& state);
+
+/// What all lines together add to the force over strain of a mesh pulled along x, N, if an even strain leaves
+/// them balanced: they run along x, and of every vertex within to both sides with the same stiffness. The
+/// mesh must have its line_stiffness.
+std::optional<double> even_line_stiffness(const fabric::Mesh& mesh);
 
 /// Largest force on a free axis over the largest on a held one or dead load.
 double imbalance(const FinalState& state);

@@ -21,11 +21,11 @@ def _unpacked(colours: np.ndarray) -> np.ndarray:
 
 
 def _common_colours(frames) -> np.ndarray:
-    """The 64 commonest colours of all frames: one palette keeps them from flickering, and white stays white."""
+    """The 256 commonest colours of all frames: one palette keeps them from flickering, and white stays white."""
     counts = Counter()
     for pixels in frames:
         counts.update(dict(zip(*(part.tolist() for part in np.unique(_packed(pixels), return_counts=True)))))
-    return np.array([colour for colour, _ in counts.most_common(64)])
+    return np.array([colour for colour, _ in counts.most_common(256)])
 
 
 def _in_palette(pixels: np.ndarray, palette: np.ndarray) -> Image.Image:

@@ -1,4 +1,4 @@
-"""Pictures of a run of drogue-springs: shaded cloth in the colours of its stress or displacement, strings as lines."""
+"""Pictures of a run of drogue-springs: shaded cloth in the colours of its stress or displacement, strings as lines, bodies grey."""
 
 from dataclasses import dataclass, field
 
@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import Normalize
 
-from . import style
+from . import springs_bodies, style
 from .run_directory import Run, Snapshot
 from .style import plt
 
@@ -20,6 +20,11 @@ _FLAT = 0.02
 _BRIGHT = 99.5
 _AZIMUTH, _ELEVATION = np.radians(-65), np.radians(28)
 _LIGHT = np.array([-0.4, -0.5, 0.77])
+# Bodies are seen as far from the cloth as this share of its extent.
+_BEYOND = 0.3
+# Principal directions drawn at most, and the stress, over the largest, from which they mean something.
+_MAX_DIRECTIONS = 1500
+_LEAST_STRESS = 0.02
 
 
 @dataclass
@@ -29,10 +34,12 @@ class View:
     run: Run
     across: np.ndarray = field(init=False)  # rows: to the right, up, towards the eye
     labels: tuple[str, str] | None = field(init=False)
+    bodies: np.ndarray = field(init=False)  # facets (n, 4, 3)
 
     def __post_init__(self):
         every = np.concatenate([self.positions(snapshot) for snapshot in self.run.snapshots])
         extent = np.ptp(every, axis=0)
+        self.bodies = springs_bodies.facets(self.run.scene, every)
         thin = int(extent.argmin())
         self.labels = None
         if extent[thin] < _FLAT * extent.max():
@@ -73,11 +80,25 @@ class View:
         return self.positions(snapshot) @ self.across.T
 
 
-def _shades(view: View, snapshot: Snapshot, colours: np.ndarray) -> np.ndarray:
-    """Colours darker where the cloth turns from the light; both sides look alike."""
+    def directions(self, snapshot: Snapshot) -> np.ndarray:
+        """Segments (n, 2, 2) along the larger principal stress, of flat cloth and where the run has them."""
+        told = snapshot.fields.get("major_direction")
+        if told is None or self.labels is None:
+            return np.empty((0, 2, 2))
+        every = -(-len(self.triangles) // _MAX_DIRECTIONS)
+        corners = self.positions(snapshot)[self.triangles]
+        areas = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1) / 2
+        half = 0.35 * np.sqrt(every * areas.mean()) * told.values
+        values = self.values(snapshot)
+        shown = (np.arange(len(half)) % every == 0) & (values > _LEAST_STRESS * np.nanmax(values))
+        middle = corners.mean(axis=1)
+        return (np.stack((middle - half, middle + half), axis=1)[shown] @ self.across.T)[:, :, :2]
+
+
+def _shades(view: View, corners: np.ndarray, colours: np.ndarray) -> np.ndarray:
+    """Colours darker where facets turn from the light; both sides look alike."""
     if view.labels is not None:
         return colours
-    corners = view.positions(snapshot)[view.triangles]
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     lengths = np.linalg.norm(normals, axis=1)
     facing = np.abs(normals @ _LIGHT) / np.where(lengths > 0, lengths, 1)
@@ -101,11 +122,16 @@ class Picture:
             self._parts = PolyCollection([], linewidth=0.2)
         else:
             self._parts = LineCollection([], linewidth=2.2)
+        colours = _shades(view, view.bodies, np.tile(springs_bodies.COLOUR, (len(view.bodies), 1)))
+        self._bodies = (view.bodies @ view.across.T, colours)
+        if not len(view.triangles):
+            axes.add_collection(PolyCollection(self._bodies[0][..., :2], facecolors=colours, edgecolors=colours, linewidth=0.4))
         axes.add_collection(self._parts)
-        seen = np.concatenate([view.seen(snapshot)[:, :2] for snapshot in snapshots])
-        margin = 0.04 * max(np.ptp(seen[:, 0]), np.ptp(seen[:, 1]))
-        axes.set_xlim(seen[:, 0].min() - margin, seen[:, 0].max() + margin)
-        axes.set_ylim(seen[:, 1].min() - margin, seen[:, 1].max() + margin)
+        self._directions = LineCollection([], linewidth=0.6, color="white")
+        axes.add_collection(self._directions)
+        low, high = self._range(np.concatenate([view.seen(snapshot)[:, :2] for snapshot in snapshots]))
+        axes.set_xlim(low[0], high[0])
+        axes.set_ylim(low[1], high[1])
         axes.set_aspect("equal")
         if view.labels is None:
             axes.axis("off")
@@ -119,16 +145,35 @@ class Picture:
         self.figure.subplots_adjust(left=0.14, right=0.94, top=0.86, bottom=0.12)
         self._caption = style.heading(self.figure, view.run.name, "")
 
+    def _range(self, seen: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """The lowest and highest places shown: all cloth, and bodies near it."""
+        low, high = seen.min(axis=0), seen.max(axis=0)
+        near = _BEYOND * np.max(high - low)
+        if len(self._bodies[0]):
+            corners = self._bodies[0][..., :2].reshape(-1, 2)
+            lowest, highest = np.maximum(corners.min(axis=0), low - near), np.minimum(corners.max(axis=0), high + near)
+            low, high = np.minimum(low, lowest), np.maximum(high, highest)
+        margin = 0.04 * np.max(high - low)
+        return low - margin, high + margin
+
     def show(self, snapshot: Snapshot) -> None:
         view = self._view
         seen, colours = view.seen(snapshot), self._map.to_rgba(view.values(snapshot))
         if len(view.triangles):
-            # What is farther from the eye is painted first.
-            order = seen[view.triangles, 2].mean(axis=1).argsort(kind="stable")
-            colours = _shades(view, snapshot, colours)[order]
-            self._parts.set_verts(seen[view.triangles[order], :2])
+            bodies, body_colours = self._bodies
+            # What is farther from the eye is painted first. Cloth that lies on a body is nearer by less than facets are
+            # deep: of bodies the farthest corner counts, and they stand back by what a triangle reaches behind its middle.
+            corners = seen[view.triangles]
+            depths = corners[..., 2].mean(axis=1)
+            back = np.max(depths - corners[..., 2].min(axis=1))
+            order = np.concatenate((depths, bodies[..., 2].min(axis=1) - back)).argsort(kind="stable")
+            parts = [*corners[..., :2], *bodies[..., :2]]
+            shades = _shades(view, view.positions(snapshot)[view.triangles], colours)
+            colours = np.concatenate((shades, body_colours))[order]
+            self._parts.set_verts([parts[k] for k in order])
             self._parts.set_facecolor(colours)
             self._parts.set_edgecolor(colours)
+            self._directions.set_segments(view.directions(snapshot))
         else:
             self._parts.set_segments(seen[view.run.mesh["edges"].values, :2])
             self._parts.set_color(colours)

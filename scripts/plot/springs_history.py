@@ -7,6 +7,7 @@ from .run_directory import Run
 from .style import plt
 
 _ENERGIES = ("kinetic", "elastic", "potential")
+_WORKS = ("contact", "friction")  # columns end in _work
 
 
 def _probes(run: Run) -> list[str]:
@@ -34,11 +35,13 @@ def springs_history_figure(run: Run):
     values = {name: run.history[name].values for name in (*_ENERGIES, "energy")}
     # Of the potential energy only changes mean something.
     values["potential"] = values["potential"] - values["potential"][0]
-    _draw_curves(axes[0], time.values, {name: values[name] for name in _ENERGIES})
-    axes[0].set_title("energies, the potential one from its start (J)")
+    works = {name: run.history[f"{name}_work"].values for name in _WORKS if f"{name}_work" in run.history}
+    _draw_curves(axes[0], time.values, {name: values[name] for name in _ENERGIES} | works)
+    axes[0].set_title("energies, the potential one from its start" + (", and works" if works else "") + " (J)")
     largest = values["kinetic"].max() or 1.0
-    axes[1].plot(*style.thin(time.values, (values["energy"] - values["energy"][0]) / largest), color=style.ERROR_COLOUR)
-    axes[1].set_title("change of their sum over the largest kinetic energy")
+    kept = values["energy"] - sum(works.values())
+    axes[1].plot(*style.thin(time.values, (kept - kept[0]) / largest), color=style.ERROR_COLOUR)
+    axes[1].set_title("change of their sum" + (" less works," if works else "") + " over the largest kinetic energy")
     for panel, probe in zip(axes[2:], probes):
         moved = {axis: run.history[f"{probe}_{axis}"].values for axis in "xyz"}
         _draw_curves(panel, time.values, {axis: place - place[0] for axis, place in moved.items()})

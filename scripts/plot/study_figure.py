@@ -18,7 +18,8 @@ TITLES = {
     "cauchy_elastic": "difference of elastic energy to the next mesh (J)",
 }  # fmt: skip
 # What a run keeps, or not, on any mesh: no error that a finer one makes small.
-KEPT = ("conservation", "equilibrium", "energy_drift", "momentum", "angular_momentum")
+KEPT = ("conservation", "equilibrium", "energy_drift", "energy_balance", "momentum", "angular_momentum", "intersections",
+        "penetration")  # fmt: skip
 SCHEMES = {"js": "WENO-JS", "z": "WENO-Z", "z2": "WENO-Z (p = 2)", "m": "WENO-M", "teno5": "TENO5"}
 
 
@@ -139,7 +140,9 @@ def study_figure(name: str, rows: list[dict[str, str]], norm: str = ""):
             IO_ERROR, f"The study of {name} has nothing to draw: {' and '.join(left_out) or 'it is empty'}."
         )
     figure, (by_time, by_mesh) = plt.subplots(1, 2, sharey=True)
-    labels = {label: label + _order(points, _dimension(rows)) for label, points in curves.items()}
+    labels = {
+        label: label if norm in KEPT else label + _order(points, _dimension(rows)) for label, points in curves.items()
+    }
     _make_room(figure, list(labels.values()))
     _draw(by_time, curves, 1, {})
     style.mark_logarithm(by_time.xaxis)

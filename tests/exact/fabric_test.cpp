@@ -126,7 +126,7 @@ std::string contact_bytes(device::Backend backend, int threads, testing::Sheets 
   solver->upload(s.x, s.v);
   if (!solver->advance(200) || solver->failure()) throw std::runtime_error("the state was lost");
   solver->download(s.x, s.v);
-  std::vector<double> work(s.x.size());
+  std::vector<ContactWork> work(s.x.size());
   solver->contact_work(work);
   std::string bytes;
   for (const auto& values : {s.x, s.v}) append(bytes, values);

@@ -55,9 +55,9 @@ class BadSprings(springs_program.SpringsTest):
                 self.mesh.write_bytes(content)
                 self.assert_refused(f"{self.mesh}:1: ", [])
         self.mesh.unlink()
-        self.assert_refused(f"{self.scene}:4: ", ["mesh.file"])
+        self.assert_refused(f"{self.scene}:4: ", ["mesh.file", "there is no file"])
         self.mesh.mkdir()
-        self.assert_refused(f"{self.scene}:4: ", ["mesh.file"])
+        self.assert_refused(f"{self.scene}:4: ", ["mesh.file", "directory"])
 
     def test_stress_without_triangles(self):
         string = ["mesh={string={}}", "material={}", "pin=[{where='x==0'}]", "mass=[{where='x==1',add=1}]"]

@@ -166,6 +166,12 @@ class Pictures(unittest.TestCase):
         # Of one mesh there is no difference.
         self.assertIn("energy drift", study_figure("cone", rows[-1:]).axes[0].get_ylabel())
 
+    def test_study_of_what_is_kept_tells_no_order(self):
+        synthetic.write_springs_study(self.folder / "study.csv", checks=("energy_balance",))
+        rows = read(self.folder).study
+        for norm, label in (("energy_balance", "biquadratic"), ("cauchy_area", "biquadratic  order 2.00")):
+            with self.subTest(norm):
+                self.assertEqual([label], [text.get_text() for text in study_figure("cloth", rows, norm).axes[1].texts])
 
     def test_labels_of_a_study_fit_however_long_and_many(self):
         axes = ("", " lf-global", " lf-single"), ("", " ssprk43"), ("", " split")

@@ -9,17 +9,18 @@ import packages  # before all that needs the packages  isort: skip
 import h5py
 import numpy as np
 from PIL import Image
-from plot import cli
+from plot import cli, style
 from plot.run_directory import read
-from plot.springs_figures import View
+from plot.springs_figures import View, figure
+from plot.springs_history import springs_history_figure
 
 assert packages.SOURCE
 
 
-def write_run(folder, vertices, triangles, edges, moved, stress=None):
+def write_run(folder, vertices, triangles, edges, moved, stress=None, directions=None, contact=""):
     """A run directory whose snapshots are the positions `moved`."""
     folder.mkdir()
-    (folder / "scene.toml").write_text('app = "springs"\n')
+    (folder / "scene.toml").write_text('app = "springs"\n' + contact)
     header = "time [s],step,kinetic [J],elastic [J],potential [J],energy [J],probe_0_x [m],probe_0_y [m],probe_0_z [m]"
     rows = [f"{0.1 * k},{k},{1.0 + k},{2.0 - k},0,3,0,0,{0.1 * k}" for k in range(3)]
     (folder / "history.csv").write_text("\n".join([header, *rows]) + "\n")
@@ -32,6 +33,8 @@ def write_run(folder, vertices, triangles, edges, moved, stress=None):
             group["position"] = positions
             if stress is not None:
                 group["von_mises"] = stress[k]
+            if directions is not None:
+                group["major_direction"] = np.array(directions, float)
     return folder
 
 
@@ -75,6 +78,68 @@ class SpringsPictures(unittest.TestCase):
         run = write_run(self.folder / "run", line, [], [[0, 1], [1, 2]], [line, sagging])
         self.assert_drawn(run)
         self.assertEqual(("x", "z"), View(read(run)).labels)
+
+
+    def test_history_takes_off_what_contact_and_friction_did(self):
+        run = write_run(self.folder / "run", SQUARE, TRIANGLES, EDGES, [SQUARE])
+        rows = ["time [s],step,kinetic [J],elastic [J],potential [J],energy [J],contact_work [J],friction_work [J]",
+                "0,0,4,0,0,4,0,0", "1,1,2,0,0,2,-1.5,-0.5", "2,2,1,0,0,1,-2,-0.9"]  # fmt: skip
+        (run / "history.csv").write_text("\n".join(rows) + "\n")
+        energies, rest = springs_history_figure(read(run)).axes
+        self.assertEqual(5, len(energies.lines))
+        np.testing.assert_allclose(rest.lines[0].get_ydata(), [0, 0, -0.1 / 4], atol=1e-15)
+
+    def test_directions_of_the_larger_stress(self):
+        """Of flat cloth, where there is stress to speak of, as far apart as triangles are."""
+        run = write_run(self.folder / "run", SQUARE, TRIANGLES, EDGES, [SQUARE, SQUARE], [[1.0, 0.01]] * 2, [[0.6, 0.8, 0], [1, 0, 0]])
+        self.assert_drawn(run)
+        view = View(read(run))
+        (start, end), = view.directions(view.run.snapshots[0])
+        np.testing.assert_allclose((start + end) / 2, [2 / 3, 1 / 3])
+        np.testing.assert_allclose((end - start) / np.linalg.norm(end - start), [0.6, 0.8])
+        self.assertLess(np.linalg.norm(end - start), 0.6)
+        without = write_run(self.folder / "without", SQUARE, TRIANGLES, EDGES, [SQUARE], [[1.0, 0.01]])
+        view = View(read(without))
+        self.assertEqual(0, len(view.directions(view.run.snapshots[0])))
+
+    def test_bodies(self):
+        """Facets lie on their bodies, which are seen."""
+        raised = SQUARE + [[0, 0, 0], [0, 0, 0], [0, 0, 0.5], [0, 0, 0]]
+        bodies = {
+            "disk": ("centre = [0.0, -0.1, 0.2], normal = [0, -0.6, 0.8], radius = 0.3",
+                     lambda x: (np.abs((x - [0.0, -0.1, 0.2]) @ [0, -0.6, 0.8]), np.linalg.norm(x - [0.0, -0.1, 0.2], axis=-1), 0.3)),
+            "sphere": ("centre = [0.5, 0.5, -1.0], radius = 0.4",
+                       lambda x: (np.abs(np.linalg.norm(x - [0.5, 0.5, -1.0], axis=-1) - 0.4), x[..., 2], -0.6)),
+            "plane": ("centre = [0.0, 0.0, -0.1], normal = [0, 0, 2]",
+                      lambda x: (np.abs(x[..., 2] + 0.1), x[..., 0], 1.1)),
+        }  # fmt: skip
+        stress = [[0.0, 0.0], [2.0, 1.0]]
+        plain = self.greys(write_run(self.folder / "plain", SQUARE, TRIANGLES, EDGES, [SQUARE, raised], stress))
+        for kind, (words, of) in bodies.items():
+            with self.subTest(kind):
+                contact = f'[contact]\nobjects = [{{ kind = "{kind}", {words} }}, {{ kind = "level-set", expression = "z+9" }}]\n'
+                run = write_run(self.folder / kind, SQUARE, TRIANGLES, EDGES, [SQUARE, raised], stress, contact=contact)
+                distance, reach, most = of(View(read(run)).bodies)
+                self.assertLess(distance.max(), 1e-12)
+                self.assertAlmostEqual(most, reach.max())
+                self.assertGreater(self.greys(run), plain + 1000)
+
+    @staticmethod
+    def greys(run):
+        """Pixels of the colour of bodies, lit or in the shade, in the last picture."""
+        view = View(read(run))
+        drawn = figure(view, view.run.snapshots[-1])
+        drawn.canvas.draw()
+        red, green, blue = np.asarray(drawn.canvas.buffer_rgba(), float)[..., :3].reshape(-1, 3).T
+        style.plt.close(drawn)
+        return int(((red > green) & (green > blue) & (red - blue < 12) & (red > 90) & (red < 200)).sum())
+
+    def test_a_string_over_a_ball(self):
+        line = np.array([[0, 0, 0], [1, 0, 0], [2, 0, 0]], float)
+        sagging = line - [[0, 0, 0], [0, 0, 1], [0, 0, 0]]
+        run = write_run(self.folder / "run", line, [], [[0, 1], [1, 2]], [line, sagging],
+                        contact='[contact]\nobjects = [{ kind = "sphere", centre = [1, 0, -2], radius = 0.5 }]\n')
+        self.assertGreater(self.greys(run), 1000)
 
 
 if __name__ == "__main__":

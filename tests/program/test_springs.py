@@ -113,6 +113,50 @@ class RunDirectory(springs_program.SpringsTest):
         for value in stress:
             self.assertAlmostEqual(1000.0 / 0.7 * (0.05 + 0.05**2 / 2), value, delta=1e-9 * value)
 
+    STRESSES = ("stress", "major_stress", "minor_stress", "major_direction", "minor_direction", "von_mises")
+
+    def test_stresses_of_a_sheet_drawn_along_x(self):
+        """Cauchy and nominal stress of St Venant-Kirchhoff's cloth, of triangles and vertices: F = diag(1.1, 1)."""
+        names = [centre + measure + name for centre in ("", "vertex_") for measure in ("", "nominal_") for name in self.STRESSES]
+        scene = self.write('app = "springs"\n[mesh]\nrectangle = { vertices = 30, distortion = 0.2 }\n'
+                           '[initial]\ndisplacement = { x = "0.1*x" }\n[time]\nend_time = 0\n')
+        self.expect(0, scene, "--quiet", "--out", "out", sets=[f"output.fields={names}"])
+        file = self.fields("out")
+        along = 1000.0 / (1 - 0.3**2) * 0.5 * (1.1**2 - 1)
+        across = 0.3 * along  # second stresses of Piola and Kirchhoff
+        rows = {"": len(list(file.values("/mesh/triangles"))) // 3, "vertex_": len(list(file.values("/mesh/vertices"))) // 3}
+        for centre, count in rows.items():
+            for measure, (s, t) in {"": (1.1 * along, across / 1.1), "nominal_": (1.1 * along, across)}.items():
+                expected = ([s, 0, 0, t, 0, 0], [s], [t], [1, 0, 0], [0, 1, 0], [math.sqrt(s * s - s * t + t * t)])
+                for name, row in zip(self.STRESSES, expected, strict=True):
+                    path = f"/steps/000000/{centre}{measure}{name}"
+                    values = list(file.values(path))
+                    if "direction" in name:
+                        values = list(map(abs, values))
+                    self.assertEqual(count * len(row), len(values), path)
+                    for k, value in enumerate(values):
+                        self.assertAlmostEqual(row[k % len(row)], value, delta=1e-10 * s, msg=path)
+                    self.assertEqual("vertex" if centre else "face", file.attributes[path]["centering"])
+        xdmf = (self.folder / "out/fields.xdmf").read_text(encoding="utf-8")
+        self.assertEqual([4, 8], [xdmf.count(f'AttributeType="{kind}"') for kind in ("Tensor6", "Vector")])
+
+    def test_stress_is_computed_where_it_is_asked_for(self):
+        """Launches tell: none for no stress, and as many for all of a kind as for one."""
+        scene = self.write(DRUM)
+
+        def launches(*fields):
+            self.expect(0, scene, "--quiet", "--backend", "serial", "--overwrite", "--out", "out", sets=[
+                f"output.fields={list(fields)}", "time.end_time=0.01", "output.times=[0, 0.01]"])
+            return self.result("out")["ledger"]["kernel_launches"]
+
+        none = launches("position")
+        self.assertEqual(none, launches("position", "velocity"))
+        one = launches("von_mises")
+        self.assertGreater(one, none)
+        self.assertEqual(one, launches("position", *self.STRESSES))
+        self.assertGreater(launches("von_mises", "nominal_von_mises"), one)
+        self.assertGreater(launches("vertex_stress"), one)
+
     def test_seed_mode_copies_the_state_and_gives_the_same_result(self):
         scene = self.write(DRUM)
         for words in (["--out", "a"], ["--out", "b", "--seed-mode"]):
@@ -242,6 +286,22 @@ class Failures(springs_program.SpringsTest):
                 "time.end_time=0.3", f"output={{history_every={every}}}", "verify={energy_balance=2e-2}"])
             values.append(self.result("out")["errors"]["energy_balance"])
         self.assertLess(values[1], 1.01 * values[0])
+
+    def test_work_of_friction_is_part_of_the_balance(self):
+        scene = self.write(springs_program.FALLING)
+        self.expect(0, scene, "--quiet", "--backend", "serial", "--out", "out", sets=["verify={energy_balance=2e-2}"])
+        rows = self.history("out")
+        told = self.result("out")["energy"]
+        self.assertEqual({name: rows[name][-1] for name in ("kinetic", "elastic", "potential", "contact_work", "friction_work")}, told)
+        scale = max(a - b for a, b in zip([rows["potential"][0]] * len(rows["time"]), rows["potential"]))
+        lost = rows["energy"][-1] - rows["energy"][0]
+        self.assertLess(abs(lost - told["contact_work"] - told["friction_work"]), 2e-2 * scale)
+        self.assertGreater(abs(lost - told["contact_work"]), 4e-2 * scale)
+        for earlier, later in zip(rows["friction_work"], rows["friction_work"][1:]):
+            self.assertLessEqual(later, earlier)
+        self.expect(0, scene, "--quiet", "--backend", "serial", "--out", "none", sets=[
+            "contact.friction=0", "contact.objects.0.friction=0"])
+        self.assertEqual({0.0}, set(self.history("none")["friction_work"]))
 
     def test_errors_of_second_order(self):
         """Frequencies of the drum, and of one with equal masses, which is of first order only."""

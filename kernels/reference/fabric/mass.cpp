@@ -18,7 +18,9 @@ std::vector<double> row_sum_masses(const Mesh& mesh, double area_density, double
           mass[static_cast<std::size_t>(t[i])] += whole / 3.0 * shape_i * shape_j;
         }
   }
-  for (const auto& line : mesh.lines) {
+  for (std::size_t k = 0; k < mesh.lines.size(); ++k) {
+    const auto& line = mesh.lines[k];
+    const double density = mesh.line_density.empty() ? line_density : mesh.line_density[k];
     double squared = 0.0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const double d = mesh.rest[static_cast<std::size_t>(line[1])][axis] -
@@ -27,7 +29,7 @@ std::vector<double> row_sum_masses(const Mesh& mesh, double area_density, double
     }
     // 1/3 on the diagonal and 1/6 beside it.
     for (const int i : line)
-      mass[static_cast<std::size_t>(i)] += line_density * std::sqrt(squared) * (1.0 / 3.0 + 1.0 / 6.0);
+      mass[static_cast<std::size_t>(i)] += density * std::sqrt(squared) * (1.0 / 3.0 + 1.0 / 6.0);
   }
   return mass;
 }

@@ -44,8 +44,9 @@ Outcome watched(Sheets& s, int steps, int every) {
       outcome.angular_momentum = std::max(
           outcome.angular_momentum, std::abs(now.angular_momentum[axis] - start.angular_momentum[axis]));
     }
-    outcome.imbalance = std::max(outcome.imbalance, std::abs(now.energy() - now.contact - start.energy()));
-    outcome.work = now.contact;
+    outcome.imbalance =
+        std::max(outcome.imbalance, std::abs(now.energy() - now.contact - now.friction - start.energy()));
+    outcome.work = now.contact + now.friction;
   }
   return outcome;
 }
@@ -159,6 +160,72 @@ TEST(FabricContact, SlidingObeysCoulomb) {
   EXPECT_NEAR(slid(angle, 0.5, 0.0, steps)[0], 0.0, g * dt * t);
 }
 
+TEST(FabricContact, WorkOfFrictionIsItsForceTimesTheWay) {
+  // A block of cloth slides over the level plane, pressed down by its weight N: friction takes mu N s.
+  const double mu = 0.3, g = 9.81;
+  Sheets s;
+  s.p.contact.self = false;
+  s.add(5, 0.04, level(0.0, 0.0, 0.002), {0.5, 0.2, 0.0});
+  s.p.gravity = {0.0, 0.0, -g};
+  Body plane;
+  plane.kind = BodyKind::plane, plane.friction = mu;
+  s.p.contact.bodies = {plane};
+  const auto solver = create_solver(backend, s.p);
+  solver->upload(s.x, s.v);
+  double weight = 0.0;
+  for (const double m : s.p.mass) weight += m * g;
+  const Vector from = s.x[12];
+  const Totals start = solver->totals();
+  Totals before = start;
+  double way_before = 0.0;
+  for (int part = 0; part < 5; ++part) {
+    ASSERT_TRUE(solver->advance(200) && !solver->failure());
+    solver->download(s.x, s.v);
+    const double way = std::hypot(s.x[12][0] - from[0], s.x[12][1] - from[1]);
+    const Totals now = solver->totals();
+    EXPECT_NEAR(now.friction, -mu * weight * way, 1e-3 * start.kinetic);
+    EXPECT_NEAR(now.kinetic - start.kinetic, now.friction, 1e-4 * start.kinetic);
+    // The first step has but half of gravity's impulse. From then on it is exact: work counts the mean of the
+    // velocities before and after an impulse, the way is that of the one after.
+    if (part > 0) {
+      const double more = 0.5 * mu * g * s.p.dt * (200.0 * s.p.dt);
+      EXPECT_NEAR(now.friction - before.friction, -mu * weight * (way - way_before + more),
+                  1e-9 * start.kinetic);
+      EXPECT_NEAR(now.kinetic - before.kinetic, now.friction - before.friction, 1e-9 * start.kinetic);
+      EXPECT_NEAR(now.contact, before.contact, 1e-9 * start.kinetic);
+    }
+    before = now, way_before = way;
+  }
+  std::vector<ContactWork> work(s.x.size());
+  solver->contact_work(work);
+  for (const ContactWork& of_vertex : work) EXPECT_LT(of_vertex.friction, 0.0);
+}
+
+TEST(FabricContact, FrictionBetweenLayersTakesAndFrictionlessTakesNone) {
+  for (const double friction : {0.0, 0.3}) {
+    Sheets s = impact(3.0);
+    for (std::size_t i = 0; i < s.v.size(); ++i)
+      if (s.x[i][2] > 0.0) s.v[i][0] += 2.0;  // one slides over the other
+    s.p.contact.friction = friction;
+    const auto solver = create_solver(backend, s.p);
+    solver->upload(s.x, s.v);
+    const Totals start = solver->totals();
+    double before = 0.0;
+    for (int part = 0; part < 10; ++part) {
+      ASSERT_TRUE(solver->advance(20) && !solver->failure());
+      const double now = solver->totals().friction;
+      EXPECT_LE(now, before);
+      before = now;
+    }
+    const Totals end = solver->totals();
+    EXPECT_NEAR(end.energy() - start.energy(), end.contact + end.friction, 1e-2 * start.kinetic) << friction;
+    if (friction == 0.0)
+      EXPECT_EQ(end.friction, 0.0);
+    else
+      EXPECT_LT(end.friction, -0.01 * start.kinetic);
+  }
+}
+
 TEST(FabricContact, BodiesStayOutside) {
   Body disk;
   disk.kind = BodyKind::disk, disk.radius = 0.031, disk.normal = {0.6, 0.0, 0.8};
@@ -237,7 +304,7 @@ TEST(FabricContact, ASolverThatGoesOnFromAStateHasTheSameBits) {
   ASSERT_TRUE(whole->advance(150));
   std::vector<Vector> x = s.x, v = s.v;
   whole->download(x, v);
-  std::vector<double> work(x.size()), end_work = work, other_work = work;
+  std::vector<ContactWork> work(x.size()), end_work = work, other_work = work;
   whole->contact_work(work);
   const auto part = create_solver(backend, s.p);
   part->set_clock(whole->clock());

@@ -24,6 +24,19 @@ TEST(FabricMass, IsTheRowSumOfTheConsistentMatrix) {
   EXPECT_NEAR(mine.back(), 0.5 * 0.5 * 0.2, 1e-15) << "the end of a string has half a piece";
 }
 
+TEST(FabricMass, LinesMayHaveTheirOwnDensities) {
+  Mesh mesh = testing::random_patch(9, 6, 2);
+  mesh.line_density = {0.1, 0.0, 0.3, 0.7};
+  const std::vector<double> mine = lumped_masses(mesh, 0.756, 0.2, Lumping::area),
+                            exact = reference::row_sum_masses(mesh, 0.756, 0.2);
+  for (std::size_t i = 0; i < mine.size(); ++i) EXPECT_NEAR(mine[i], exact[i], 1e-15) << i;
+  EXPECT_NEAR(mine.back(), 0.5 * 0.5 * 0.3, 1e-15);
+  mesh.line_density.pop_back();
+  EXPECT_THROW(static_cast<void>(lumped_masses(mesh, 1.0, 0.2, Lumping::area)), std::invalid_argument);
+  mesh.line_density.push_back(-1.0);
+  EXPECT_THROW(static_cast<void>(lumped_masses(mesh, 1.0, 0.2, Lumping::area)), std::invalid_argument);
+}
+
 TEST(FabricMass, EqualMassesHaveTheSameSum) {
   const Mesh mesh = testing::random_patch(9, 6, 2);
   const std::vector<double> equal = lumped_masses(mesh, 0.756, 0.2, Lumping::equal);

@@ -146,7 +146,7 @@ void run_emulated(const Parameters& p, int count, const std::vector<std::int64_t
   const Space space;
   Material material = p.material;
   material.model = law.model;
-  const Mesh cloth_mesh = has_triangles(law.model) ? p.mesh : Mesh{p.mesh.rest, {}, {}, {}};
+  const Mesh cloth_mesh = has_triangles(law.model) ? p.mesh : Mesh{p.mesh.rest, {}, {}, {}, {}};
   const Patches patches =
       cut_patches(p.mesh.rest, ring_slots(cloth_mesh), spring_slots(p.mesh, material), count);
   const PatchViews<Space> views = patch_views(space, patches);

@@ -95,6 +95,10 @@ TEST(FabricStress, IsThatOfTheContinuum) {
       if (model == Model::biquadratic)
         expect_same(tensor_of(cauchy[t], n), reference::cauchy_stress(p.material, rest, there), bar);
       expect_same(tensor_of(nominal[t], n), reference::nominal_stress(virial, rest, there), bar);
+      const auto whole = cauchy[t].tensor();
+      std::size_t place = 0;
+      for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t j = i; j < 3; ++j) EXPECT_NEAR(whole[place++], virial[i][j], bar) << i << j;
       EXPECT_GE(cauchy[t].major, cauchy[t].minor);
       EXPECT_NEAR(std::hypot(cauchy[t].direction[0], cauchy[t].direction[1], cauchy[t].direction[2]), 1.0,
                   1e-14);
@@ -180,12 +184,15 @@ TEST(FabricStress, AtAVertexIsTheMeanByAreas) {
   EXPECT_NEAR(vertices[0].major, (first + 2.0 * second) / 3.0, 1e-10);
   EXPECT_NEAR(vertices[2].major, first, 1e-10);
   EXPECT_NEAR(vertices[3].major, second, 1e-10);
+  // Both pull along y: the mean tensor, and the direction of nothing across.
+  EXPECT_NEAR(vertices[0].tensor()[3], (first + 2.0 * second) / 3.0, 1e-10);
+  EXPECT_NEAR(std::abs(vertices[0].across[0]), 1.0, 1e-12);
 }
 
 TEST(FabricStress, VonMisesOfPrincipalValues) {
-  EXPECT_NEAR((Stress{3.0, 0.0, {}}.von_mises()), 3.0, 1e-15);
-  EXPECT_NEAR((Stress{2.0, 2.0, {}}.von_mises()), 2.0, 1e-15);
-  EXPECT_NEAR((Stress{1.0, -1.0, {}}.von_mises()), std::sqrt(3.0), 1e-15);
+  EXPECT_NEAR((Stress{3.0, 0.0, {}, {}}.von_mises()), 3.0, 1e-15);
+  EXPECT_NEAR((Stress{2.0, 2.0, {}, {}}.von_mises()), 2.0, 1e-15);
+  EXPECT_NEAR((Stress{1.0, -1.0, {}, {}}.von_mises()), std::sqrt(3.0), 1e-15);
 }
 
 TEST(FabricStress, WhatHasNoneIsToldOrRefused) {

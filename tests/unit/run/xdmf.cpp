@@ -5,6 +5,17 @@
 namespace drogue::run {
 namespace {
 
+TEST(Xdmf, SixComponentsAreASymmetricTensor) {
+  const std::vector<DatasetSpec> mesh = {{"vertices", {3, 3}, "m", "vertex", ""},
+                                         {"triangles", {1, 3}, "1", "face", ""}};
+  const std::string text =
+      xdmf_cloth_document("c", mesh, {{"stress", {1, 6}, "N/m", "face", ""}}, {{"000000", 0.0}});
+  EXPECT_NE(text.find("<Attribute Name=\"stress\" AttributeType=\"Tensor6\" Center=\"Cell\">"),
+            std::string::npos)
+      << text;
+  EXPECT_NE(text.find("Dimensions=\"1 6\""), std::string::npos) << text;
+}
+
 TEST(Xdmf, ListsEveryStepOverTheLine) {
   const DatasetSpec x = {"x", {3}, "m", "cell", "cell centres"};
   const DatasetSpec rho = {"rho", {3}, "kg/m^3", "cell", "density"};

@@ -129,6 +129,55 @@ TEST(SpringsScene, StiffnessOfAStringIsThatOfItsPieces) {
   EXPECT_EQ(uneven.mesh.line_stiffness, (std::vector<double>{5.0, 10.0}));
 }
 
+TEST(SpringsScene, ReinforcementsAreLinesOfTheirOwn) {
+  const auto with = [](const std::string& list) {
+    return std::vector<std::string>{"reinforcement=[" + list + "]"};
+  };
+  // Both edges of the triangle at its first corner; neither is a string of the mesh.
+  const SpringsScene cloth = read_text(with_file,
+                                       with("{where=\"y==0\",axial_stiffness=3,line_density=0.5},"
+                                            "{where=\"x==0\",axial_stiffness=7}"),
+                                       triangle);
+  EXPECT_EQ(cloth.mesh.lines, (std::vector<std::array<int, 2>>{{0, 1}, {0, 2}}));
+  EXPECT_EQ(cloth.mesh.line_stiffness, (std::vector<double>{3.0, 7.0}));
+  EXPECT_EQ(cloth.mesh.line_density, (std::vector<double>{0.5, 0.0}));
+  EXPECT_FALSE(cloth.has_lines());
+  EXPECT_FALSE(holds(print_springs_scene(cloth), "material.axial_stiffness"));
+  // A line of the mesh gets it in place of the material's; the other keeps that.
+  const SpringsScene string =
+      read_text(with_file, with("{where=\"x>0.5\",axial_stiffness=9,line_density=0.1}"), rope);
+  EXPECT_EQ(string.mesh.lines.size(), 2U);
+  EXPECT_EQ(string.mesh.line_stiffness, (std::vector<double>{5000.0, 9.0}));
+  EXPECT_EQ(string.mesh.line_density, (std::vector<double>{0.001, 0.1}));
+  const auto wrong = [&](const std::string& list, const std::string& mesh = triangle) {
+    return error_of(with(list), with_file, mesh);
+  };
+  EXPECT_TRUE(holds(wrong("{where=\"x>2\",axial_stiffness=1}"), "holds at no vertex: nothing is reinforced"));
+  EXPECT_TRUE(holds(wrong("{where=\"x==1\",axial_stiffness=1}"), "holds at both ends of no edge"));
+  EXPECT_TRUE(
+      holds(wrong("{where=\"x==0\",axial_stiffness=1},{where=\"1\",axial_stiffness=1}"),
+            "reinforcement[1] and reinforcement[0] both reinforce the edge at vertex 0 (0.0, 0.0, 0.0) "
+            "and at vertex 2"));
+  EXPECT_TRUE(holds(wrong("{where=\"1\",axial_stiffness=1}", rope), "leave no mass at vertex 0"));
+  EXPECT_TRUE(holds(wrong("{where=\"1\"}"), "missing key \"reinforcement[0].axial_stiffness\""));
+  EXPECT_TRUE(holds(wrong("{where=\"1\",axial_stiffness=0}"), "> 0"));
+  EXPECT_TRUE(holds(wrong("{where=\"1\",axial_stiffness=1,stiffness=1}"), "axial_stiffness"));
+}
+
+TEST(SpringsScene, ClosedFormsKnowWhichReinforcementTheyBear) {
+  const std::string sheet = "app = \"springs\"\n[mesh]\nrectangle = { vertices = 9 }\n[time]\nend_time = 1\n";
+  const auto young = [&](const std::string& where) {
+    return error_of({"reinforcement=[{where=\"" + where + "\",axial_stiffness=1}]", "verify.young=1e-9"},
+                    sheet);
+  };
+  EXPECT_EQ(young("y==0.5"), "");
+  EXPECT_TRUE(holds(young("y==0.5 && x<0.7"), "from end to end"));
+  EXPECT_TRUE(holds(young("x==0.5"), "run along x"));
+  EXPECT_TRUE(holds(error_of({"mesh.string={}", "load=[{gravity=[1,0,0]}]", "verify.stretch=1",
+                              "reinforcement=[{where=\"1\",axial_stiffness=1,line_density=1}]"}),
+                    "without reinforcement"));
+}
+
 TEST(SpringsScene, ModelOneIsRefusedWhereItMoves) {
   EXPECT_TRUE(holds(error_of({"material.model=linear-vector"}), "rigid rotation"));
   EXPECT_EQ(error_of({"material.model=linear-vector", "time.end_time=0"}), "");

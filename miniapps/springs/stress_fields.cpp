@@ -1,0 +1,97 @@
+#include "miniapps/springs/stress_fields.hpp"
+
+#include <map>
+
+namespace drogue::springs_app {
+namespace {
+
+using fabric::Stress;
+using fabric::StressMeasure;
+
+/// What of a stress is a field.
+struct StressPart {
+  std::string name;
+  std::uint64_t columns;
+  std::string unit, description;
+  std::vector<double> (*of)(const Stress& stress);
+};
+
+template <std::size_t n>
+std::vector<double> listed(const std::array<double, n>& values) {
+  return {values.begin(), values.end()};
+}
+
+const std::vector<StressPart>& stress_parts() {
+  static const std::vector<StressPart> parts = {
+      {"stress", 6, "N/m", "components xx, xy, xz, yy, yz, zz in space",
+       [](const Stress& s) { return listed(s.tensor()); }},
+      {"major_stress", 1, "N/m", "the larger principal value",
+       [](const Stress& s) { return std::vector{s.major}; }},
+      {"minor_stress", 1, "N/m", "the smaller principal value",
+       [](const Stress& s) { return std::vector{s.minor}; }},
+      {"major_direction", 3, "1", "unit vector along the larger principal value",
+       [](const Stress& s) { return listed(s.direction); }},
+      {"minor_direction", 3, "1", "unit vector along the smaller principal value",
+       [](const Stress& s) { return listed(s.across); }},
+      {"von_mises", 1, "N/m", "von Mises stress", [](const Stress& s) { return std::vector{s.von_mises()}; }},
+  };
+  return parts;
+}
+
+struct StressField {
+  StressKind kind;
+  const StressPart& part;
+};
+
+std::map<std::string, StressField> all_stress_fields() {
+  std::map<std::string, StressField> fields;
+  for (const bool at_vertices : {false, true})
+    for (const StressMeasure measure : {StressMeasure::cauchy, StressMeasure::nominal})
+      for (const StressPart& part : stress_parts())
+        fields.emplace((at_vertices ? "vertex_" : "") +
+                           std::string(measure == StressMeasure::nominal ? "nominal_" : "") + part.name,
+                       StressField{{at_vertices, measure}, part});
+  return fields;
+}
+
+const std::map<std::string, StressField>& stress_fields() {
+  static const std::map<std::string, StressField> fields = all_stress_fields();
+  return fields;
+}
+
+}  // namespace
+
+std::vector<std::string> stress_field_names() {
+  std::vector<std::string> names;
+  for (const auto& [name, field] : stress_fields()) names.push_back(name);
+  return names;
+}
+
+std::optional<StressKind> stress_kind(const std::string& field) {
+  const auto found = stress_fields().find(field);
+  return found == stress_fields().end() ? std::nullopt : std::optional(found->second.kind);
+}
+
+run::DatasetSpec stress_spec(const std::string& field, const fabric::Mesh& mesh) {
+  const auto& [kind, part] = stress_fields().at(field);
+  const std::uint64_t rows = kind.at_vertices ? mesh.rest.size() : mesh.triangles.size();
+  const std::string measure = kind.measure == StressMeasure::cauchy
+                                  ? "Cauchy stress times thickness"
+                                  : "nominal stress, force per length at rest, turned to where the cloth is";
+  return {field, part.columns == 1 ? std::vector{rows} : std::vector{rows, part.columns}, part.unit,
+          kind.at_vertices ? "vertex" : "face",
+          part.description + " of the " + (kind.at_vertices ? "vertices" : "triangles") + ", " + measure};
+}
+
+std::vector<double> stress_values(const std::string& field, const std::vector<Stress>& stress) {
+  const StressPart& part = stress_fields().at(field).part;
+  std::vector<double> values;
+  values.reserve(part.columns * stress.size());
+  for (const Stress& s : stress) {
+    const std::vector<double> row = part.of(s);
+    values.insert(values.end(), row.begin(), row.end());
+  }
+  return values;
+}
+
+}  // namespace drogue::springs_app

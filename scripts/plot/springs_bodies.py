@@ -1,0 +1,50 @@
+"""Surfaces of the bodies of a springs scene, in facets small enough to be painted among the cloth by their distance."""
+
+import numpy as np
+
+_FACETS = 24  # along a diameter
+COLOUR = np.array([0.74, 0.73, 0.71, 1.0])
+
+
+def _frame(normal) -> np.ndarray:
+    """Rows: two unit vectors across a direction, and itself."""
+    axis = np.asarray(normal, float) / np.linalg.norm(normal)
+    first = np.cross(axis, np.eye(3)[np.abs(axis).argmin()])
+    first /= np.linalg.norm(first)
+    return np.array([first, np.cross(axis, first), axis])
+
+
+def _quads(grid: np.ndarray) -> np.ndarray:
+    """Facets (n, 4, 3) between neighbouring points of a grid (i, j, 3)."""
+    corners = (grid[:-1, :-1], grid[1:, :-1], grid[1:, 1:], grid[:-1, 1:])
+    return np.stack(corners, axis=2).reshape(-1, 4, 3)
+
+
+def _disk(body) -> np.ndarray:
+    radius, angle = np.linspace(0, body["radius"], _FACETS // 2 + 1), np.linspace(0, 2 * np.pi, 2 * _FACETS + 1)
+    across = np.stack(np.broadcast_arrays(np.cos(angle), np.sin(angle), 0 * angle), axis=-1)
+    return _quads(body["centre"] + (radius[:, None, None] * across) @ _frame(body["normal"]))
+
+
+def _sphere(body) -> np.ndarray:
+    height, angle = np.meshgrid(np.linspace(0, np.pi, _FACETS + 1), np.linspace(0, 2 * np.pi, 2 * _FACETS + 1), indexing="ij")
+    out = np.stack((np.sin(height) * np.cos(angle), np.sin(height) * np.sin(angle), np.cos(height)), axis=-1)
+    return _quads(body["centre"] + body["radius"] * out)
+
+
+def _plane(body, places: np.ndarray) -> np.ndarray:
+    """The part under what lies at `places`, and a little more."""
+    frame = _frame(body["normal"])
+    flat = (places - body["centre"]) @ frame[:2].T
+    middle, half = (flat.min(axis=0) + flat.max(axis=0)) / 2, 0.6 * np.ptp(flat, axis=0).max()
+    along, across = (np.linspace(m - half, m + half, _FACETS + 1) for m in middle)
+    grid = np.stack(np.meshgrid(along, across, indexing="ij"), axis=-1)
+    return _quads(body["centre"] + grid @ frame[:2])
+
+
+def facets(scene: dict, places: np.ndarray) -> np.ndarray:
+    """Facets (n, 4, 3) of all disks, spheres and planes that a resolved scene has; `places` are where cloth comes to."""
+    make = {"disk": _disk, "sphere": _sphere, "plane": lambda body: _plane(body, places)}
+    bodies = scene.get("contact", {}).get("objects", [])
+    found = [make[body["kind"]](body) for body in bodies if body["kind"] in make]
+    return np.concatenate(found) if found else np.empty((0, 4, 3))
