@@ -76,26 +76,43 @@ KOKKOS_INLINE_FUNCTION R logarithm(R x) {
   return n * 6.93147180369123816490e-01 + (n * 1.90821492927058770002e-10 + 2.0 * s * sum);
 }
 
-/// The exponential integral E1(x) of x > 0, to 1e-8 of itself and to 1e-10 absolutely; 0 beyond 40.
-/// Below 1 the series (Abramowitz and Stegun 5.1.11), above the continued fraction (5.1.22).
+/// The exponential integrals E1(x) of x > 0, to 1e-8 of themselves and to 1e-10 absolutely; 0 beyond 40.
+/// Below 1 the series (Abramowitz and Stegun 5.1.11), above the continued fraction (5.1.22), as the quotient
+/// of two numbers, so that one division is enough. Several at a time do not wait for one another.
+template <int n, class R>
+KOKKOS_INLINE_FUNCTION void exponential_integrals(const R (&x)[n], R (&result)[n]) {
+  bool beyond = true;
+  for (int i = 0; i < n; ++i) {
+    result[i] = 0.0;
+    beyond = beyond && device::all(x[i] > R(40.0));
+  }
+  if (beyond) return;
+  R above[n], below[n], term[n], series[n];
+  for (int i = 0; i < n; ++i) above[i] = x[i] + 61.0, below[i] = 1.0, term[i] = series[i] = x[i];
+  for (int k = 30; k >= 1; --k)
+    for (int i = 0; i < n; ++i) {
+      const R next = (x[i] + (2.0 * k - 1.0)) * above[i] - (double(k) * k) * below[i];
+      below[i] = above[i];
+      above[i] = next;
+    }
+  for (int k = 2; k <= 14; ++k)
+    for (int i = 0; i < n; ++i) {
+      term[i] = term[i] * x[i] * (-1.0 / k);
+      series[i] += term[i] * (1.0 / k);
+    }
+  for (int i = 0; i < n; ++i) {
+    const R far = exponential(-x[i]) * below[i] * device::reciprocal(above[i]);
+    const R near = series[i] - 0.57721566490153286 - logarithm(x[i]);
+    result[i] = device::select(x[i] > R(40.0), R(0.0), device::select(x[i] < R(1.0), near, far));
+  }
+}
+
 template <class R>
 KOKKOS_INLINE_FUNCTION R exponential_integral(R x) {
-  if (device::all(x > R(40.0))) return R(0.0);
-  // The fraction as the quotient of two numbers, so that one division is enough.
-  R above = x + 61.0, below = 1.0;
-  for (int k = 30; k >= 1; --k) {
-    const R next = (x + (2.0 * k - 1.0)) * above - (double(k) * k) * below;
-    below = above;
-    above = next;
-  }
-  const R far = exponential(-x) * below * device::reciprocal(above);
-  R term = x, series = x;
-  for (int k = 2; k <= 14; ++k) {
-    term = term * x * (-1.0 / k);
-    series += term * (1.0 / k);
-  }
-  const R near = series - 0.57721566490153286 - logarithm(x);
-  return device::select(x > R(40.0), R(0.0), device::select(x < R(1.0), near, far));
+  const R one[1] = {x};
+  R result[1];
+  exponential_integrals(one, result);
+  return result[0];
 }
 
 /// The chance of a standard normal number above z: for |z| < 3 from the series of its other part, else from

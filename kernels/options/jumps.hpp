@@ -11,6 +11,8 @@ namespace drogue::options {
 template <class Workers, class R>
 KOKKOS_INLINE_FUNCTION void sum_mixture(const Workers& workers, const PutPack<R>& put, const Law<R>& law, R h,
                                         int mesh, R* ratio, R* even, R* odd) {
+  constexpr int at_once = 4;  // terms that do not wait for one another
+  static_assert(Mixture::size % (2 * at_once) == 0);
   const R tilt = device::absolute(put.jump[2]);
   const R *s = law.s, *c = law.c;
   workers.each([=](int lane) {
@@ -21,15 +23,20 @@ KOKKOS_INLINE_FUNCTION void sum_mixture(const Workers& workers, const PutPack<R>
     for (int task = lane; task < 2 * octets; task += lanes) {
       const int part = task / octets, first = task % octets * 8 + 1;
       R sum[8] = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
-      for (int q = part; q < Mixture::size; q += 2) {
-        const R rate = (s[q] - tilt) * h;
-        if (device::all(rate > R(30.0))) break;  // the rates of all members rise with q
-        const R by = ratio[q];
-        R power = device::select(rate > R(30.0), R(0.0), c[q] * exponential(rate * -double(first)));
-        for (int m = 0; m < 8; ++m) {
-          sum[m] += power;
-          power = power * by;
+      for (int q = part; q < Mixture::size; q += 2 * at_once) {
+        if (device::all((s[q] - tilt) * h > R(30.0))) break;  // the rates of all members rise with q
+        R power[at_once], by[at_once];
+        for (int i = 0; i < at_once; ++i) {
+          const R rate = (s[q + 2 * i] - tilt) * h;
+          by[i] = ratio[q + 2 * i];
+          power[i] =
+              device::select(rate > R(30.0), R(0.0), c[q + 2 * i] * exponential(rate * -double(first)));
         }
+        for (int m = 0; m < 8; ++m)
+          for (int i = 0; i < at_once; ++i) {
+            sum[m] += power[i];
+            power[i] = power[i] * by[i];
+          }
       }
       R* to = (part == 0 ? even : odd) + first;
       for (int m = 0; m < 8; ++m) to[m] = sum[m];

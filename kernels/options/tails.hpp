@@ -38,10 +38,10 @@ KOKKOS_INLINE_FUNCTION Tails<R> tails_of(const Workers& workers, const PutPack<R
     R sum[5] = {0.0, 0.0, 0.0, 0.0, 0.0};
     for (int q = lane; q < Mixture::low; q += lanes) {
       const R a = law.s[q] - put.jump[2], b = law.s[q] + put.jump[2], c = law.c[q];
-      sum[0] += c * exponential_integral(b * length);
-      sum[1] += c * exponential_integral((b + 1.0) * length);
-      sum[2] += c * exponential_integral(a * length);
-      sum[3] += c * exponential_integral((a - 1.0) * length);
+      const R decay[4] = {b * length, (b + 1.0) * length, a * length, (a - 1.0) * length};
+      R tail[4];
+      exponential_integrals(decay, tail);
+      for (int k = 0; k < 4; ++k) sum[k] += c * tail[k];
       const R up = law.up[q], down = law.down[q];
       sum[4] += c * ((length + down) * down * exponential(-b * length) +
                      (length + up) * up * exponential(-a * length));
