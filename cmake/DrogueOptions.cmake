@@ -5,7 +5,7 @@
 option(DROGUE_EXACT "No fused multiply-add: all backends agree bit for bit" OFF)
 option(DROGUE_WARNINGS_AS_ERRORS "Stop at a warning in our own code" OFF)
 option(DROGUE_SANITIZE "Address and undefined-behaviour sanitizers" OFF)
-option(DROGUE_UNITY_TESTS "Compile several sources of a test as one" ${CMAKE_UNITY_BUILD})
+option(DROGUE_UNITY_TESTS "Compile several sources of a test, or of drogue-perf, as one" ${CMAKE_UNITY_BUILD})
 option(DROGUE_SYSTEM "Ignore build/deps: take every library from the system" OFF)
 
 set(CMAKE_CXX_STANDARD 20)
