@@ -21,7 +21,7 @@ struct Settings {
   int mesh = 0;             ///< intervals in space; 0: chosen by `tolerance`
   int steps = 0;            ///< steps in time; 0: chosen by `tolerance`
   double tolerance = 1e-4;  ///< of |price - true price|, relative to the strike
-  bool greeks = false;      ///< delta, gamma and theta are computed
+  bool greeks = false;      ///< `cos` computes delta, gamma and theta; the other methods always do
 };
 
 /// Wall time of a batch's parts, s.
