@@ -37,7 +37,7 @@ struct WeightLayout {
   static constexpr bool interleaved = device::Access<R>::lanes == 1;
   int centre, stride;
 
-  KOKKOS_INLINE_FUNCTION explicit WeightLayout(int mesh)
+  KOKKOS_INLINE_FUNCTION constexpr explicit WeightLayout(int mesh)
       : centre(mesh / 8 * 8 + 16), stride((2 * centre + 8) / 8 + 1) {}
   [[nodiscard]] KOKKOS_INLINE_FUNCTION int size() const { return 8 * stride; }
   [[nodiscard]] KOKKOS_INLINE_FUNCTION int place(int d) const {

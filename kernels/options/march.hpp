@@ -132,9 +132,10 @@ KOKKOS_INLINE_FUNCTION StepLength<R> step_length(R maturity, int n, int steps) {
   return {dt, n <= 2 ? R(0.0) : dt * device::reciprocal(begin - step_end(maturity, n - 2, steps))};
 }
 
-/// dV/dtau at the end of a step by its formula, from the last three values; `per` is 1/(dt (1 + ratio)).
+/// dV/dtau at the end of a step by its formula, from the last three values.
 template <class R>
-KOKKOS_INLINE_FUNCTION R rate_of_change(const StepLength<R>& step, R per, R value, R before, R oldest) {
+KOKKOS_INLINE_FUNCTION R rate_of_change(const StepLength<R>& step, R value, R before, R oldest) {
+  const R per = 1.0 / (step.dt * (1.0 + step.ratio));
   return (1.0 + 2.0 * step.ratio) * per * value - (1.0 + step.ratio) / step.dt * before +
          step.ratio * step.ratio * per * oldest;
 }
@@ -216,6 +217,33 @@ KOKKOS_INLINE_FUNCTION void fill_table(const Workers& workers, const PutPack<R>&
   });
 }
 
+/// What a march begins with at a node, and below what it never falls there.
+template <class R>
+struct AtExpiry {
+  R value, floor;
+};
+
+/// The payoff, `kink` at the strike; no floor where early exercise is not looked for or split off.
+template <class R>
+KOKKOS_INLINE_FUNCTION AtExpiry<R> at_expiry(const PutPack<R>& put, const Grid<R>& grid, int i, R kink) {
+  const R x = (double(i) - grid.strike) * grid.h;
+  const R payoff = device::maximum(R(0.0), 1.0 - exponential(x));
+  return {device::select(device::absolute(x) < 0.5 * grid.h, kink, payoff),
+          device::select(put.early * (1.0 - put.split) > R(0.0), payoff, R(-unbounded))};
+}
+
+/// The explicit part of the operator at a node: jumps to nodes, jumps away and -rV, jumps to below the grid.
+template <class R>
+KOKKOS_INLINE_FUNCTION R explicit_part(const StepFactors<R>& f, R jumps, R away, R left, R left_price) {
+  return jumps + (away + (f.strike * left - f.asset * left_price));
+}
+
+/// The right side of a step's equations at a node, but for added diffusion and split exercise.
+template <class R>
+KOKKOS_INLINE_FUNCTION R right_side(const StepFactors<R>& f, R value, R before, R fresh, R stale) {
+  return f.value * value - f.before * before + f.fresh * fresh - f.stale * stale;
+}
+
 /// What exercise adds to a step of split puts.
 template <class Workers, class R>
 KOKKOS_INLINE_FUNCTION void split_exercise(const Workers& workers, const PutPack<R>& put, const Grid<R>& grid,
@@ -254,11 +282,9 @@ KOKKOS_INLINE_FUNCTION void step(const Workers& workers, const PutPack<R>& put, 
         y[i] = 0.0;
         continue;
       }
-      const R outside = f.strike * left[i] - f.asset * left_price[i];
-      const R explicit_part = (jump[i] + other[i]) + (stay * value[i] + outside);
-      jump[i] = explicit_part;
-      R right =
-          f.value * value[i] - f.before * before[i] + f.fresh * explicit_part - f.stale * jump_before[i];
+      const R fresh = explicit_part(f, jump[i] + other[i], stay * value[i], left[i], left_price[i]);
+      jump[i] = fresh;
+      R right = right_side(f, value[i], before[i], fresh, jump_before[i]);
       if (bends) {
         const R bend = value[i - 1] - 2.0 * value[i] + value[i + 1];
         const R bend_before = before[i - 1] - 2.0 * before[i] + before[i + 1];

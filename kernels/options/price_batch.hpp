@@ -58,15 +58,14 @@ KOKKOS_INLINE_FUNCTION Price price_of(const Contract& contract, const Put& put, 
 template <class ExecutionSpace>
 using Number = std::conditional_t<device::is_host<ExecutionSpace>, device::HostPack<double>, double>;
 
-/// Prices contracts order(0), order(1), ... of one model on one mesh, a team for each, or on hosts for each
-/// pack of them, in one launch. For `block` see `solve`.
-template <class ExecutionSpace, int block = 0>
+/// Contracts order(0), order(1), ... of one model, priced on one mesh in one launch by a team for each, or on
+/// hosts for each pack of them.
+template <class ExecutionSpace>
 struct PriceBatch {
   using Space = typename ExecutionSpace::memory_space;
   using R = Number<ExecutionSpace>;
   using Member = typename Kokkos::TeamPolicy<ExecutionSpace>::member_type;
   static constexpr int members = device::Access<R>::lanes;
-  using Scratch = Memory<R, block>;
 
   Kokkos::View<const Contract*, Space> contracts;  ///< (batch)
   Kokkos::View<Price*, Space> prices;              ///< (batch)
@@ -77,11 +76,10 @@ struct PriceBatch {
   int count = 0, mesh = 0, steps = 0, level = 0;
   double tolerance = 0.0;
 
-  KOKKOS_FUNCTION void operator()(const Member& team) const { price_group(*this, team); }
-
-  /// Calls `functor.price` with the workers and the memory of a team.
-  template <class Functor>
+  /// Calls `functor.price` with the workers and the memory of a team. For `block` see `solve`.
+  template <int block, class Functor>
   KOKKOS_INLINE_FUNCTION void price_group(const Functor& functor, const Member& team) const {
+    using Scratch = Memory<R, block>;
     void* place = team.team_scratch(level).get_shmem_aligned(Scratch::bytes(mesh), 64);
     if constexpr (block > 0) place = device::in_shared_memory(place);
     const Scratch memory(place, mesh);
@@ -98,8 +96,8 @@ struct PriceBatch {
     return order(at < count ? at : count - 1);
   }
 
-  template <class Workers>
-  KOKKOS_INLINE_FUNCTION void price(const Workers& workers, const Scratch& memory, int group) const {
+  template <int block, class Workers>
+  KOKKOS_INLINE_FUNCTION void price(const Workers& workers, const Memory<R, block>& memory, int group) const {
     const int cells = block > 0 ? lanes * block : mesh;  // which a compiler may unroll loops for
     workers.each([=, this](int lane) {
       for (int k = lane; k < members; k += lanes) memory.puts[k] = put_of(contracts(place(group, k)));
@@ -148,22 +146,37 @@ struct PriceBatch {
   }
 };
 
+/// Prices a batch; with a `block` > 0 its mesh is 32 block.
+template <class ExecutionSpace, int block>
+struct PriceFunctor {
+  using Batch = PriceBatch<ExecutionSpace>;
+
+  Batch batch;
+
+  KOKKOS_FUNCTION void operator()(const typename Batch::Member& team) const {
+    batch.template price_group<block>(*this, team);
+  }
+  template <class Workers>
+  KOKKOS_INLINE_FUNCTION void price(const Workers& workers, const Memory<typename Batch::R, block>& memory,
+                                    int group) const {
+    batch.price(workers, memory, group);
+  }
+};
+
 /// Where a team's memory is: in that of its multiprocessor, if Kokkos has so much for a team, else (and on
 /// hosts) beside.
 template <class ExecutionSpace>
 [[nodiscard]] int scratch_level(int mesh) {
   const auto most_shared = static_cast<std::size_t>(Kokkos::TeamPolicy<ExecutionSpace>::scratch_size_max(0));
-  return !device::is_host<ExecutionSpace> &&
-                 PriceBatch<ExecutionSpace>::Scratch::bytes(mesh) + 64 <= most_shared
-             ? 0
-             : 1;
+  const bool shared =
+      !device::is_host<ExecutionSpace> && Memory<Number<ExecutionSpace>, 0>::bytes(mesh) + 64 <= most_shared;
+  return shared ? 0 : 1;
 }
 
-/// Enqueues a functor that prices the contracts of `batch`.
-template <class ExecutionSpace, int block, class Functor>
-void launch_batch(const ExecutionSpace& space, const char* label, const Functor& functor,
-                  const PriceBatch<ExecutionSpace, block>& batch) {
-  using Batch = PriceBatch<ExecutionSpace, block>;
+/// Enqueues `Functor{batch}`, which prices the batch.
+template <int block, class Functor, class ExecutionSpace>
+void launch_batch(const ExecutionSpace& space, const char* label, const PriceBatch<ExecutionSpace>& batch) {
+  using Batch = PriceBatch<ExecutionSpace>;
   if (batch.count == 0) return;
   // Warps that share a multiprocessor: as many as registers for the nodes allow without spilling.
   constexpr unsigned teams = block == 0 ? 1 : block < 8 ? 12 : 8;
@@ -171,24 +184,9 @@ void launch_batch(const ExecutionSpace& space, const char* label, const Functor&
   const int league = (batch.count + Batch::members - 1) / Batch::members;
   Kokkos::TeamPolicy<ExecutionSpace, Bounds> policy(space, league,
                                                     device::is_host<ExecutionSpace> ? 1 : lanes);
-  policy.set_scratch_size(batch.level, Kokkos::PerTeam(Batch::Scratch::bytes(batch.mesh) + 64));
-  Kokkos::parallel_for(label, policy, functor);
-}
-
-/// Enqueues the launch of a batch whose nodes are in registers.
-template <int block, class ExecutionSpace>
-void price_in_registers(const ExecutionSpace& space, const PriceBatch<ExecutionSpace>& batch) {
-  PriceBatch<ExecutionSpace, block> same;
-  same.contracts = batch.contracts;
-  same.prices = batch.prices;
-  same.order = batch.order;
-  same.panels = batch.panels;
-  same.panel_slot = batch.panel_slot;
-  same.count = batch.count;
-  same.mesh = batch.mesh;
-  same.steps = batch.steps;
-  same.tolerance = batch.tolerance;
-  launch_batch(space, "drogue::options::price in registers", same, same);
+  policy.set_scratch_size(batch.level,
+                          Kokkos::PerTeam(Memory<typename Batch::R, block>::bytes(batch.mesh) + 64));
+  Kokkos::parallel_for(label, policy, Functor{batch});
 }
 
 /// Enqueues the launch.
@@ -196,14 +194,18 @@ template <class ExecutionSpace>
 void price_batch(const ExecutionSpace& space, const PriceBatch<ExecutionSpace>& batch) {
   static_assert(
       Kokkos::SpaceAccessibility<ExecutionSpace, typename decltype(batch.prices)::memory_space>::accessible);
+  const auto launch = [&]<int block>(const char* label) {
+    launch_batch<block, PriceFunctor<ExecutionSpace, block>>(space, label, batch);
+  };
   if constexpr (!device::is_host<ExecutionSpace>) {
+    constexpr const char* in_registers = "drogue::options::price in registers";
     if (batch.record.time == nullptr) {
-      if (batch.mesh == 64) return price_in_registers<2>(space, batch);
-      if (batch.mesh == 128) return price_in_registers<4>(space, batch);
-      if (batch.mesh == 256) return price_in_registers<8>(space, batch);
+      if (batch.mesh == 64) return launch.template operator()<2>(in_registers);
+      if (batch.mesh == 128) return launch.template operator()<4>(in_registers);
+      if (batch.mesh == 256) return launch.template operator()<8>(in_registers);
     }
   }
-  launch_batch(space, "drogue::options::price", batch, batch);
+  launch.template operator()<0>("drogue::options::price");
 }
 
 }  // namespace drogue::options

@@ -26,9 +26,8 @@ class Convolution {
   KOKKOS_INLINE_FUNCTION Convolution(int lane, const double* w, const double* v, double* out, double* other) {
     const WeightLayout<double> layout(mesh);
     const int part = rounds == 1 ? lane / chunks : 0, chunk = lane % chunks;
-    const int begin = layout.centre + 8 * half * part - outs * chunk;
-    for (int k = 0; k < 8 / outs; ++k)
-      _weights[k] = w + (begin + k * outs) % 8 * layout.stride + (begin + k * outs) / 8;
+    const int jump = 8 * half * part - outs * chunk;
+    for (int k = 0; k < 8 / outs; ++k) _weights[k] = w + layout.place(jump + k * outs);
     _values = reinterpret_cast<const NodePair*>(v) + 4 * half * part;
     for (int m = 0; m < outs; m += 2)
       _sums[m / 2] = reinterpret_cast<NodePair*>(part == 0 ? out : other) + swizzled((outs * chunk + m) / 2);
@@ -58,7 +57,7 @@ class Convolution {
  private:
   static constexpr int mesh = lanes * block, outs = block < 4 ? 2 * block : 8, chunks = mesh / outs;
   static constexpr int half = mesh / 8 / 2, rounds = 2 * chunks / lanes;
-  static constexpr int stride = (2 * (mesh + 16) + 8) / 8 + 1;  ///< WeightLayout's
+  static constexpr int stride = WeightLayout<double>(mesh).stride;
 
   const double* _weights[8 / outs];
   const NodePair* _values;
@@ -195,10 +194,9 @@ KOKKOS_INLINE_FUNCTION int march_in_registers(const WarpWorkers& workers, const 
   Own value, before{}, stale{}, floor;
   before.store(lane, rows.force);
   for (int m = 0; m < block; ++m) {
-    const double x = (double(lane * block + m) - grid.strike) * h;
-    const double payoff = device::maximum(0.0, 1.0 - exponential(x));
-    value.node[m] = device::absolute(x) < 0.5 * h ? kink : payoff;
-    floor.node[m] = put.early * (1.0 - put.split) > 0.0 ? payoff : -unbounded;
+    const AtExpiry<double> node = at_expiry(put, grid, lane * block + m, kink);
+    value.node[m] = node.value;
+    floor.node[m] = node.floor;
   }
   for (int n = 1; n <= scheme.steps; ++n) {
     if (n % lanes == 1) {
@@ -215,11 +213,10 @@ KOKKOS_INLINE_FUNCTION int march_in_registers(const WarpWorkers& workers, const 
     if (n == scheme.steps) before.store_swizzled(lane, rows.out);
     Own y;
     for (int m = 0; m < block; ++m) {
-      const double outside = f.strike * left.node[m] - f.asset * left_price.node[m];
-      const double explicit_part = (sum.node[m] + rest.node[m]) + (stay * value.node[m] + outside);
-      y.node[m] = f.value * value.node[m] - f.before * before.node[m] + f.fresh * explicit_part -
-                  f.stale * stale.node[m];
-      stale.node[m] = explicit_part;
+      const double fresh = explicit_part(f, sum.node[m] + rest.node[m], stay * value.node[m], left.node[m],
+                                         left_price.node[m]);
+      y.node[m] = right_side(f, value.node[m], before.node[m], fresh, stale.node[m]);
+      stale.node[m] = fresh;
     }
     if (!(f.bend <= 0.0)) {
       const Own bend = bends_of(lane, value), bend_before = bends_of(lane, before);
@@ -243,12 +240,11 @@ KOKKOS_INLINE_FUNCTION int march_in_registers(const WarpWorkers& workers, const 
   }
   const Own oldest = Own::load_swizzled(lane, rows.out);
   const StepLength<double> last = step_length(put.maturity, scheme.steps, scheme.steps);
-  const double per = 1.0 / (last.dt * (1.0 + last.ratio));
   Own change;
   int exercised = -1;
   for (int m = 0; m < block; ++m) {
     const int i = lane * block + m;
-    change.node[m] = rate_of_change(last, per, value.node[m], before.node[m], oldest.node[m]);
+    change.node[m] = rate_of_change(last, value.node[m], before.node[m], oldest.node[m]);
     if (i < strike && is_exercised(value.node[m], i - strike, h)) exercised = i;
   }
   workers.meet();

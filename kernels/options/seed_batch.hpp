@@ -67,11 +67,10 @@ struct SeedBatch {
 
   Batch batch;
 
-  KOKKOS_FUNCTION void operator()(const Member& team) const { batch.price_group(*this, team); }
+  KOKKOS_FUNCTION void operator()(const Member& team) const { batch.template price_group<0>(*this, team); }
 
   template <class Workers>
-  KOKKOS_INLINE_FUNCTION void price(const Workers& workers, const typename Batch::Scratch& memory,
-                                    int group) const {
+  KOKKOS_INLINE_FUNCTION void price(const Workers& workers, const Memory<R, 0>& memory, int group) const {
     const int mesh = batch.mesh, steps = batch.steps, count = node_count(mesh), block = block_of(mesh);
     workers.each([=, this](int lane) {
       for (int k = lane; k < members; k += lanes)
@@ -158,7 +157,7 @@ struct SeedBatch {
 /// Enqueues the launch.
 template <class ExecutionSpace>
 void seed_batch(const ExecutionSpace& space, const PriceBatch<ExecutionSpace>& batch) {
-  launch_batch(space, "drogue::options::seed", SeedBatch<ExecutionSpace>{batch}, batch);
+  launch_batch<0, SeedBatch<ExecutionSpace>>(space, "drogue::options::seed", batch);
 }
 
 }  // namespace drogue::options

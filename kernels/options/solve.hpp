@@ -86,10 +86,9 @@ KOKKOS_INLINE_FUNCTION March<R> march_in_memory(const Workers& workers, const Pu
   });
   workers.each([=, &put](int lane) {
     for (int i = lane; i < mesh; i += lanes) {
-      const R x = (double(i) - grid.strike) * h;
-      const R payoff = device::maximum(R(0.0), 1.0 - exponential(x));
-      march.value[1][i] = device::select(device::absolute(x) < 0.5 * h, kink, payoff);
-      march.floor[i] = device::select(put.early * (1.0 - put.split) > R(0.0), payoff, R(-unbounded));
+      const AtExpiry<R> node = at_expiry(put, grid, i, kink);
+      march.value[1][i] = node.value;
+      march.floor[i] = node.floor;
     }
   });
   for (int n = 1; n <= steps; ++n) {
@@ -117,10 +116,9 @@ KOKKOS_INLINE_FUNCTION March<R> march_in_memory(const Workers& workers, const Pu
   }
   // After the rotation value[0] is what value[2] was.
   const StepLength<R> last = step_length(put.maturity, steps, steps);
-  const R per = 1.0 / (last.dt * (1.0 + last.ratio));
   workers.each([=](int lane) {
     for (int i = lane; i < mesh; i += lanes)
-      march.y[i] = rate_of_change(last, per, march.value[1][i], march.value[2][i], march.value[0][i]);
+      march.y[i] = rate_of_change(last, march.value[1][i], march.value[2][i], march.value[0][i]);
   });
   if (record.time != nullptr) {
     workers.each([=](int lane) {
@@ -143,10 +141,10 @@ struct Weights {
 /// Marches from expiry to the puts' maturities on `grid`; `answers` gets one for each member. Returns the
 /// values of the nodes, which stay in the memory until the next solve. With a block > 0 the mesh is 32 block
 /// and a warp keeps its nodes in registers; then nothing is recorded.
-template <int block, class Workers, class R, class Memory>
+template <int block, class Workers, class R, class Scratch>
 KOKKOS_INLINE_FUNCTION const R* solve(const Workers& workers, const PutPack<R>& put, const Law<R>& law,
                                       const Tails<R>& tails, const Grid<R>& grid, int steps,
-                                      const Memory& memory, const Weights<R>& weights, const Record& record,
+                                      const Scratch& memory, const Weights<R>& weights, const Record& record,
                                       Answer* answers) {
   constexpr int members = device::Access<R>::lanes;
   const int mesh = grid.mesh;
