@@ -1,5 +1,3 @@
-#include <memory>
-
 #include "perf/measurement.hpp"
 #include "perf/puts.hpp"
 
@@ -8,33 +6,11 @@ namespace drogue::perf {
 namespace {
 
 Case batch_case(device::Backend backend, std::size_t count, int mesh, int steps) {
-  struct Run {
-    std::vector<options::Contract> contracts;
-    std::vector<options::Price> prices;
-    std::unique_ptr<options::Pricer> pricer;
-    options::Timing timing;
-  };
-  const auto run = std::make_shared<Run>();
   const std::string name(device::name(backend)), grid = std::to_string(mesh) + "x" + std::to_string(steps);
-  return {"options/" + name + "/" + std::to_string(count) + "/" + grid,
-          "batch",
-          "arithmetic of the convolution",
-          [=] {
-            run->contracts = puts::distinct(count);
-            run->prices.resize(count);
-            run->pricer = options::create_pricer(backend, {.mesh = mesh, .steps = steps});
-            return Sample{[] {},
-                          [=] {
-                            run->timing = run->pricer->price(run->contracts, run->prices);
-                            return 1L;
-                          },
-                          [=] { return puts::parts(run->timing); }};
-          },
-          [=] { return puts::error(run->prices); },
-          puts::bar,
-          [=] {
-            return Facts{name, static_cast<std::int64_t>(count), grid};
-          }};
+  Case batch = puts::batch("options/" + name + "/" + std::to_string(count) + "/" + grid, backend, count,
+                           {.mesh = mesh, .steps = steps}, puts::bar);
+  batch.facts = [=] { return Facts{name, static_cast<std::int64_t>(count), grid}; };
+  return batch;
 }
 
 }  // namespace

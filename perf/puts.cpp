@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <random>
+#include <vector>
 
 namespace drogue::perf::puts {
 namespace {
@@ -13,7 +15,12 @@ constexpr options::Contract thesis{.rate = 0.1, .variance = 0.4, .jump = {1.0, 8
 constexpr double known_spot[] = {1.0, 0.8, 0.9, 1.1, 1.2};
 constexpr double known_price[] = {0.239004005, 0.318658312, 0.275403193, 0.208230166, 0.182096749};
 
-}  // namespace
+struct Run {
+  std::vector<options::Contract> contracts;
+  std::vector<options::Price> prices;
+  std::unique_ptr<options::Pricer> pricer;
+  options::Timing timing;
+};
 
 std::vector<options::Contract> distinct(std::size_t count) {
   std::mt19937 random(7);
@@ -42,8 +49,31 @@ double error(const std::vector<options::Price>& prices) {
   return largest;
 }
 
-std::map<std::string, double> parts(const options::Timing& timing) {
-  return {{"h2d", timing.h2d}, {"compute", timing.compute}, {"d2h", timing.d2h}};
+}  // namespace
+
+Case batch(const std::string& name, device::Backend backend, std::size_t count,
+           const options::Settings& settings, double limit) {
+  const auto run = std::make_shared<Run>();
+  return {name,
+          "batch",
+          "arithmetic of the convolution",
+          [=] {
+            run->contracts = distinct(count);
+            run->prices.resize(count);
+            run->pricer = options::create_pricer(backend, settings);
+            return Sample{[] {},
+                          [=] {
+                            run->timing = run->pricer->price(run->contracts, run->prices);
+                            return 1L;
+                          },
+                          [=] {
+                            return std::map<std::string, double>{{"h2d", run->timing.h2d},
+                                                                 {"compute", run->timing.compute},
+                                                                 {"d2h", run->timing.d2h}};
+                          }};
+          },
+          [=] { return error(run->prices); },
+          limit};
 }
 
 }  // namespace drogue::perf::puts

@@ -13,27 +13,28 @@ struct StressPart {
   std::string name;
   std::uint64_t columns;
   std::string unit, description;
-  std::vector<double> (*of)(const Stress& stress);
+  void (*append)(const Stress& stress, std::vector<double>& to);
 };
 
 template <std::size_t n>
-std::vector<double> listed(const std::array<double, n>& values) {
-  return {values.begin(), values.end()};
+void append(const std::array<double, n>& values, std::vector<double>& to) {
+  to.insert(to.end(), values.begin(), values.end());
 }
 
 const std::vector<StressPart>& stress_parts() {
   static const std::vector<StressPart> parts = {
       {"stress", 6, "N/m", "components xx, xy, xz, yy, yz, zz in space",
-       [](const Stress& s) { return listed(s.tensor()); }},
+       [](const Stress& s, std::vector<double>& to) { append(s.tensor(), to); }},
       {"major_stress", 1, "N/m", "the larger principal value",
-       [](const Stress& s) { return std::vector{s.major}; }},
+       [](const Stress& s, std::vector<double>& to) { to.push_back(s.major); }},
       {"minor_stress", 1, "N/m", "the smaller principal value",
-       [](const Stress& s) { return std::vector{s.minor}; }},
+       [](const Stress& s, std::vector<double>& to) { to.push_back(s.minor); }},
       {"major_direction", 3, "1", "unit vector along the larger principal value",
-       [](const Stress& s) { return listed(s.direction); }},
+       [](const Stress& s, std::vector<double>& to) { append(s.direction, to); }},
       {"minor_direction", 3, "1", "unit vector along the smaller principal value",
-       [](const Stress& s) { return listed(s.across); }},
-      {"von_mises", 1, "N/m", "von Mises stress", [](const Stress& s) { return std::vector{s.von_mises()}; }},
+       [](const Stress& s, std::vector<double>& to) { append(s.across, to); }},
+      {"von_mises", 1, "N/m", "von Mises stress",
+       [](const Stress& s, std::vector<double>& to) { to.push_back(s.von_mises()); }},
   };
   return parts;
 }
@@ -87,10 +88,7 @@ std::vector<double> stress_values(const std::string& field, const std::vector<St
   const StressPart& part = stress_fields().at(field).part;
   std::vector<double> values;
   values.reserve(part.columns * stress.size());
-  for (const Stress& s : stress) {
-    const std::vector<double> row = part.of(s);
-    values.insert(values.end(), row.begin(), row.end());
-  }
+  for (const Stress& s : stress) part.append(s, values);
   return values;
 }
 

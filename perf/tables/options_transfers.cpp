@@ -1,5 +1,4 @@
 #include <cstdio>
-#include <memory>
 
 #include "common/run/statistics.hpp"
 #include "perf/dissertation.hpp"
@@ -36,31 +35,12 @@ std::vector<OptionsLine> options_lines(bool quick) {
 const char* word(options::Method method) { return method == options::Method::seed ? "seed" : "pide"; }
 
 Case case_of(device::Backend backend, const OptionsLine& line) {
-  struct Run {
-    std::vector<options::Contract> contracts;
-    std::vector<options::Price> prices;
-    std::unique_ptr<options::Pricer> pricer;
-    options::Timing timing;
-  };
-  const auto run = std::make_shared<Run>();
-  const auto count = static_cast<std::size_t>(line.printed.options);
-  return {"options-transfers/" + std::string(device::name(backend)) + "/" + word(line.method) + "/" +
-              std::to_string(count) + "/" + std::to_string(line.printed.mesh),
-          "batch",
-          "arithmetic of the convolution",
-          [=] {
-            run->contracts = puts::distinct(count);
-            run->prices.resize(count);
-            run->pricer = options::create_pricer(backend, {.method = line.method, .mesh = line.printed.mesh});
-            return Sample{[] {},
-                          [=] {
-                            run->timing = run->pricer->price(run->contracts, run->prices);
-                            return 1L;
-                          },
-                          [=] { return puts::parts(run->timing); }};
-          },
-          [=] { return puts::error(run->prices); },
-          line.method == options::Method::seed ? seed_bar : puts::bar};
+  const std::string name = "options-transfers/" + std::string(device::name(backend)) + "/" +
+                           word(line.method) + "/" + std::to_string(line.printed.options) + "/" +
+                           std::to_string(line.printed.mesh);
+  return puts::batch(name, backend, static_cast<std::size_t>(line.printed.options),
+                     {.method = line.method, .mesh = line.printed.mesh},
+                     line.method == options::Method::seed ? seed_bar : puts::bar);
 }
 
 nlohmann::json facts_of(device::Backend backend, const OptionsLine& line, const Record& record) {
