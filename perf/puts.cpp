@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <memory_resource>
+#include <optional>
 #include <random>
+#include <span>
 #include <vector>
 
 namespace drogue::perf::puts {
@@ -16,18 +19,18 @@ constexpr double known_spot[] = {1.0, 0.8, 0.9, 1.1, 1.2};
 constexpr double known_price[] = {0.239004005, 0.318658312, 0.275403193, 0.208230166, 0.182096749};
 
 struct Run {
-  std::vector<options::Contract> contracts;
-  std::vector<options::Price> prices;
   std::unique_ptr<options::Pricer> pricer;
+  std::pmr::vector<options::Contract> contracts;
+  std::pmr::vector<options::Price> prices;
   options::Timing timing;
 };
 
-std::vector<options::Contract> distinct(std::size_t count) {
+std::pmr::vector<options::Contract> distinct(std::size_t count, std::pmr::memory_resource& memory) {
   std::mt19937 random(7);
   const auto between = [&](double low, double high) {
     return low + (high - low) * (static_cast<double>(random()) / 4294967296.0);
   };
-  std::vector<options::Contract> contracts(count, thesis);
+  std::pmr::vector<options::Contract> contracts(count, thesis, &memory);
   for (std::size_t i = 0; i < count; ++i) {
     options::Contract& c = contracts[i];
     if (i < std::size(known_spot)) {
@@ -42,7 +45,7 @@ std::vector<options::Contract> distinct(std::size_t count) {
   return contracts;
 }
 
-double error(const std::vector<options::Price>& prices) {
+double error(std::span<const options::Price> prices) {
   double largest = 0.0;
   for (std::size_t i = 0; i < std::min(prices.size(), std::size(known_price)); ++i)
     largest = std::max(largest, std::abs(prices[i].price - known_price[i]));
@@ -53,26 +56,30 @@ double error(const std::vector<options::Price>& prices) {
 
 Case batch(const std::string& name, device::Backend backend, std::size_t count,
            const options::Settings& settings, double limit) {
-  const auto run = std::make_shared<Run>();
+  const auto run = std::make_shared<std::optional<Run>>();
   return {name,
           "batch",
           "arithmetic of the convolution",
           [=] {
-            run->contracts = distinct(count);
-            run->prices.resize(count);
-            run->pricer = options::create_pricer(backend, settings);
+            std::unique_ptr<options::Pricer> pricer = options::create_pricer(backend, settings);
+            std::pmr::memory_resource& memory = pricer->memory();
+            run->emplace(Run{std::move(pricer),
+                             distinct(count, memory),
+                             std::pmr::vector<options::Price>(count, &memory),
+                             {}});
             return Sample{[] {},
                           [=] {
-                            run->timing = run->pricer->price(run->contracts, run->prices);
+                            Run& now = **run;
+                            now.timing = now.pricer->price(now.contracts, now.prices);
                             return 1L;
                           },
                           [=] {
-                            return std::map<std::string, double>{{"h2d", run->timing.h2d},
-                                                                 {"compute", run->timing.compute},
-                                                                 {"d2h", run->timing.d2h}};
+                            return std::map<std::string, double>{{"h2d", (*run)->timing.h2d},
+                                                                 {"compute", (*run)->timing.compute},
+                                                                 {"d2h", (*run)->timing.d2h}};
                           }};
           },
-          [=] { return error(run->prices); },
+          [=] { return error((*run)->prices); },
           limit};
 }
 

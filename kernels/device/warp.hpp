@@ -23,6 +23,12 @@ KOKKOS_INLINE_FUNCTION double from_above(double value, int reach) {
   KOKKOS_IF_ON_HOST(((void)reach; return value;))
 }
 
+/// The value of the lane whose number differs in the bit `reach`.
+KOKKOS_INLINE_FUNCTION double from_across(double value, int reach) {
+  KOKKOS_IF_ON_DEVICE((return __shfl_xor_sync(~0U, value, reach);))
+  KOKKOS_IF_ON_HOST(((void)reach; return value;))
+}
+
 /// The largest of all lanes' numbers.
 KOKKOS_INLINE_FUNCTION int warp_largest(int value) {
   KOKKOS_IF_ON_DEVICE((for (int reach = warp_lanes / 2; reach > 0; reach /= 2) {

@@ -20,12 +20,12 @@ KOKKOS_INLINE_FUNCTION double cut_error(int mesh) { return 0.03 / (double(mesh) 
 /// 2 is what paths that hardly move contribute, nearly all of a short maturity.) An
 /// early exercise boundary of a put with r > 0 lies above ln(t/(1+t)) for every t with psi(-t) <= r
 /// (Lundberg's bound on the infimum, Mordecki 2002), and below it the value is known.
-/// `scratch` holds 5 lanes values.
+/// `scratch` holds 3 lanes values.
 template <class Workers, class R>
 KOKKOS_INLINE_FUNCTION Domain<R> domain_of(const Workers& workers, const PutPack<R>& put, const Law<R>& law,
                                            double error, R* scratch) {
   constexpr int n = 12;
-  R *tilt = scratch, *cumulant = scratch + lanes, *best = scratch + 2 * lanes, *grown = scratch + 4 * lanes;
+  R *tilt = scratch, *cumulant = scratch + lanes, *grown = scratch + 2 * lanes;
   const R up = decay_up(put), down = decay_down(put), maturity = put.maturity, rate = put.rate;
   const R variance = put.variance + law.variance;
   const double depth = -device::portable::log(error);
@@ -34,8 +34,8 @@ KOKKOS_INLINE_FUNCTION Domain<R> domain_of(const Workers& workers, const PutPack
     if (lane > 2 * n) return;
     R theta = 1.0;
     if (lane < 2 * n) {
-      R t = 2.0 * gaussian;
-      for (int k = lane % n; k > 0; --k) t = t * 0.7071067811865476;
+      const int k = lane % n;
+      const R t = 2.0 * gaussian * ((k % 2 == 0 ? 1.0 : 0.7071067811865476) * power_of_two(rounder - k / 2));
       theta = lane < n ? t * up * device::reciprocal(t + up) : -(t * down * device::reciprocal(t + down));
     }
     tilt[lane] = theta;
@@ -51,36 +51,35 @@ KOKKOS_INLINE_FUNCTION Domain<R> domain_of(const Workers& workers, const PutPack
       grown[lane] =
           exponential(device::maximum(R(0.0), maturity * (cumulant[lane] + mean * tilt[lane] - rate)));
   });
-  workers.each([&, tilt, grown, best](int lane) {
-    if (lane >= n) return;
-    const R tu = tilt[lane];
-    R below = 1e30, above = 1e30;
-    for (int k = 0; k < n; ++k) {
-      const R td = -tilt[n + k];
-      const R moved = grown[lane] + grown[n + k] - 2.0;
-      const R need = base + logarithm(device::maximum(moved, R(1e-3))), per = device::reciprocal(tu + td);
-      above = device::minimum(above, (need + tu * spot_above) * per);
-      below = device::minimum(below, (need + td * spot_below) * per);
+  const auto least_ends = [&, tilt, grown](int lane) {
+    Kokkos::Array<R, 2> least = {R(1e30), R(1e30)};
+    for (int pair = lane; pair < n * n; pair += lanes) {
+      const int k = pair / n, m = n + pair % n;
+      const R tu = tilt[k], td = -tilt[m], per = device::reciprocal(tu + td);
+      const R need = base + rough_logarithm(device::maximum(grown[k] + grown[m] - 2.0, R(1e-3)));
+      least[0] = device::minimum(least[0], (need + td * spot_below) * per);
+      least[1] = device::minimum(least[1], (need + tu * spot_above) * per);
     }
-    best[lane] = below;
-    best[lanes + lane] = above;
-  });
-  Domain<R> domain{best[0], best[lanes]};
-  for (int k = 1; k < n; ++k) {
-    domain.below = device::minimum(domain.below, best[k]);
-    domain.above = device::minimum(domain.above, best[lanes + k]);
-  }
-  // psi is convex, so a chord lies above it: where the chord between two tilts meets r, psi is no larger.
-  R root = 0.0, at = 0.0, value = 0.0;
+    return least;
+  };
+  const Kokkos::Array<R, 2> ends =
+      workers.reduce(least_ends, [](const R& a, const R& b) { return device::minimum(a, b); });
+  Domain<R> domain{ends[0], ends[1]};
+  // psi is convex, so a chord lies above it: where the chord between the last tilt at which psi is not above
+  // r and the next one meets r, psi is no larger.
+  R at = 0.0, value = 0.0, beyond = 0.0, above = 0.0;
   for (int k = n - 1; k >= 0; --k) {
     const R t = -tilt[n + k], psi = cumulant[n + k] - mean * t;
-    const R chord =
-        at + (t - at) * (rate - value) * device::reciprocal(device::maximum(psi - value, R(1e-300)));
     const auto inside = psi <= rate;
-    root = device::select(inside, t, device::select(root > at, root, device::minimum(chord, t)));
-    value = device::select(inside, psi, value);
+    const auto first = beyond <= at;
     at = device::select(inside, t, at);
+    value = device::select(inside, psi, value);
+    beyond = device::select(inside | first, t, beyond);
+    above = device::select(inside | first, psi, above);
   }
+  const R rise = device::reciprocal(device::maximum(above - value, R(1e-300)));
+  const R root =
+      device::select(beyond > at, device::minimum(at + (beyond - at) * (rate - value) * rise, beyond), at);
   const R exercised =
       device::select(root > R(1e-6), logarithm(1.0 + 1.0 / device::maximum(root, R(1e-6))), R(1e30));
   const R limit = device::select(put.early * rate > R(0.0), exercised, R(1e30));

@@ -62,56 +62,71 @@ KOKKOS_INLINE_FUNCTION R exponential(R x) {
   return (sum * r * r + (r + 1.0)) * power_of_two(shifted);
 }
 
-/// log x of positive normal numbers: e ln 2 + 2 artanh((m - 1)/(m + 1)), m in [sqrt(1/2), sqrt(2)].
-template <class R>
-KOKKOS_INLINE_FUNCTION R logarithm(R x) {
+/// log x of positive normal numbers: e ln 2 + 2 artanh((m - 1)/(m + 1)), m in [sqrt(1/2), sqrt(2)], by so
+/// many terms of its series.
+template <int terms, class R>
+KOKKOS_INLINE_FUNCTION R logarithm_by(R x) {
   const R m = fraction_of(x), e = exponent_of(x);
   const auto large = m > R(1.4142135623730951);
   const R factor = device::select(large, R(0.5), R(1.0)), up = device::select(large, R(1.0), R(0.0));
   const R y = m * factor;
   const R s = (y - 1.0) * device::reciprocal(y + 1.0), s2 = s * s;
-  R sum = 1.0 / 23;
-  for (int k = 21; k >= 1; k -= 2) sum = sum * s2 + 1.0 / k;
+  R sum = 1.0 / (2 * terms - 1);
+  for (int k = 2 * terms - 3; k >= 1; k -= 2) sum = sum * s2 + 1.0 / k;
   const R n = e + up;
   return n * 6.93147180369123816490e-01 + (n * 1.90821492927058770002e-10 + 2.0 * s * sum);
 }
 
+template <class R>
+KOKKOS_INLINE_FUNCTION R logarithm(R x) {
+  return logarithm_by<12>(x);
+}
+/// To 4e-9 of itself, for bounds.
+template <class R>
+KOKKOS_INLINE_FUNCTION R rough_logarithm(R x) {
+  return logarithm_by<5>(x);
+}
+
 /// The exponential integrals E1(x) of x > 0, to 1e-8 of themselves and to 1e-10 absolutely; 0 beyond 40.
 /// Below 1 the series (Abramowitz and Stegun 5.1.11), above the continued fraction (5.1.22), as the quotient
-/// of two numbers, so that one division is enough. Several at a time do not wait for one another.
+/// of two numbers, so that one division is enough. Several at a time do not wait for one another. `decay`
+/// holds e^{-x}.
 template <int n, class R>
-KOKKOS_INLINE_FUNCTION void exponential_integrals(const R (&x)[n], R (&result)[n]) {
-  bool beyond = true;
+KOKKOS_INLINE_FUNCTION void exponential_integrals(const R (&x)[n], const R (&decay)[n], R (&result)[n]) {
+  bool beyond = true, far = true;
   for (int i = 0; i < n; ++i) {
     result[i] = 0.0;
     beyond = beyond && device::all(x[i] > R(40.0));
+    far = far && device::all(x[i] >= R(1.0));
   }
   if (beyond) return;
-  R above[n], below[n], term[n], series[n];
-  for (int i = 0; i < n; ++i) above[i] = x[i] + 61.0, below[i] = 1.0, term[i] = series[i] = x[i];
+  R above[n], below[n];
+  for (int i = 0; i < n; ++i) above[i] = x[i] + 61.0, below[i] = 1.0;
   for (int k = 30; k >= 1; --k)
     for (int i = 0; i < n; ++i) {
       const R next = (x[i] + (2.0 * k - 1.0)) * above[i] - (double(k) * k) * below[i];
       below[i] = above[i];
       above[i] = next;
     }
+  for (int i = 0; i < n; ++i)
+    result[i] = device::select(x[i] > R(40.0), R(0.0), decay[i] * below[i] * device::reciprocal(above[i]));
+  if (far) return;
+  R term[n], series[n];
+  for (int i = 0; i < n; ++i) term[i] = series[i] = x[i];
   for (int k = 2; k <= 14; ++k)
     for (int i = 0; i < n; ++i) {
       term[i] = term[i] * x[i] * (-1.0 / k);
       series[i] += term[i] * (1.0 / k);
     }
-  for (int i = 0; i < n; ++i) {
-    const R far = exponential(-x[i]) * below[i] * device::reciprocal(above[i]);
-    const R near = series[i] - 0.57721566490153286 - logarithm(x[i]);
-    result[i] = device::select(x[i] > R(40.0), R(0.0), device::select(x[i] < R(1.0), near, far));
-  }
+  for (int i = 0; i < n; ++i)
+    result[i] = device::select(x[i] < R(1.0), series[i] - 0.57721566490153286 - logarithm(x[i]), result[i]);
 }
 
 template <class R>
 KOKKOS_INLINE_FUNCTION R exponential_integral(R x) {
-  const R one[1] = {x};
+  const R one[1] = {x}, decay[1] = {exponential(-x)};
   R result[1];
-  exponential_integrals(one, result);
+  exponential_integrals(one, decay, result);
   return result[0];
 }
 

@@ -101,14 +101,14 @@ struct JumpsMemory {
   R *w, *left, *left_price, *symbol;
   R *even, *odd;  ///< (node_count)
   R* ratio;       ///< (Mixture::size)
-  R* slot;        ///< (5 lanes)
+  R* slot;        ///< (2 lanes)
 };
 
 /// The weights of jumps by d nodes: a mixture's are nodal values of the density. On a grid of twice the steps
-/// they are those of the finer one; d h is the same there.
+/// they are those of the finer one; d h is the same there. `tilted` is e^{-2 |beta| d h}.
 template <class R>
-KOKKOS_INLINE_FUNCTION WeightPair<R> weights(const PutPack<R>& put, const Grid<R>& grid, int d, const R* even,
-                                             const R* odd, const R* finer) {
+KOKKOS_INLINE_FUNCTION WeightPair<R> weights(const PutPack<R>& put, const Grid<R>& grid, int d, R tilted,
+                                             const R* even, const R* odd, const R* finer) {
   if (put.model == Model::kou) return kou_weights(put, grid.h, d);
   if (put.model == Model::merton) return merton_weights(put, grid.h, d);
   if (put.model != Model::generalized_hyperbolic) return {R(0.0), R(0.0)};
@@ -120,7 +120,7 @@ KOKKOS_INLINE_FUNCTION WeightPair<R> weights(const PutPack<R>& put, const Grid<R
   }
   const double part = d == grid.mesh || d == 1 ? 0.5 : 1.0;
   const R heavy = (even[d] + odd[d]) * (part * device::reciprocal(double(d)));
-  const R light = heavy * exponential(-2.0 * device::absolute(put.jump[2]) * (double(d) * grid.h));
+  const R light = heavy * tilted;
   const auto upwards = put.jump[2] > R(0.0);
   return {device::select(upwards, heavy, light), device::select(upwards, light, heavy)};
 }
@@ -143,13 +143,16 @@ KOKKOS_INLINE_FUNCTION Jumps<R> jumps_of(const Workers& workers, const PutPack<R
   });
   if (mixed && finer == nullptr)
     sum_mixture(workers, put, law, h, mesh, memory.ratio, memory.even, memory.odd);
-  workers.each([=, &put, &grid](int lane) {
+  const R tilt = mixed && finer == nullptr ? R(-2.0 * device::absolute(put.jump[2]) * h) : R(0.0);
+  const R next_growth = exponential(double(lanes) * h), next_tilted = exponential(double(lanes) * tilt);
+  const Kokkos::Array<R, 3> whole = sums(workers, [=, &put, &grid](int lane) {
     R rate = 0.0, variance = 0.0, price = 0.0;
+    R growth = exponential((lane + 1.0) * h), tilted = exponential((lane + 1.0) * tilt);
     for (int d = 1 + lane; d <= mesh; d += lanes) {
       const double part = !mixed && d == mesh ? 0.5 : 1.0;
-      const WeightPair<R> pair = weights(put, grid, d, memory.even, memory.odd, finer);
+      const WeightPair<R> pair = weights(put, grid, d, tilted, memory.even, memory.odd, finer);
       const R up = part * pair.up, down = part * pair.down, both = up + down;
-      const R y = double(d) * h, growth = exponential(y), down_price = down * device::reciprocal(growth);
+      const R y = double(d) * h, down_price = down * device::reciprocal(growth);
       memory.w[layout.place(d)] = up;
       memory.w[layout.place(-d)] = down;
       memory.even[d] = both;
@@ -160,21 +163,21 @@ KOKKOS_INLINE_FUNCTION Jumps<R> jumps_of(const Workers& workers, const PutPack<R
       rate += both;
       variance += both * y * y;
       price += (growth - 1.0) * (up - down_price);
+      growth = device::minimum(growth * next_growth, R(1e304));
+      tilted = tilted * next_tilted;
     }
-    memory.slot[lane] = rate;
-    memory.slot[lanes + lane] = variance;
-    memory.slot[2 * lanes + lane] = price;
+    return Kokkos::Array<R, 3>{rate, variance, price};
   });
+  workers.meet();
   Jumps<R> jumps{};
   jumps.w = memory.w;
   jumps.left = memory.left;
   jumps.left_price = memory.left_price;
   jumps.symbol = memory.symbol;
-  jumps.rate = total(memory.slot) + tails.up + tails.down;
-  const R rest = law.variance - total(memory.slot + lanes) - tails.variance;
+  jumps.rate = whole[0] + tails.up + tails.down;
+  const R rest = law.variance - whole[1] - tails.variance;
   jumps.diffusion = 0.5 * device::maximum(R(0.0), put.variance + rest);
-  const R compensator =
-      total(memory.slot + 2 * lanes) + (tails.up_price - tails.up) + (tails.down_price - tails.down);
+  const R compensator = whole[2] + (tails.up_price - tails.up) + (tails.down_price - tails.down);
   const R growth = exponential(0.5 * h), shrink = device::reciprocal(growth);
   const R chord = growth - shrink;  // 2 sinh(h/2)
   const R sinh = 0.5 * chord * (growth + shrink);
@@ -192,20 +195,17 @@ KOKKOS_INLINE_FUNCTION Jumps<R> jumps_of(const Workers& workers, const PutPack<R
     double before = first == 1 ? cosine : 1.0, now = first == 1 ? cosine : 0.5 * twice;
     R sum = 0.0;
     for (int d = first; d <= mesh; d += 2) {
-      sum += (1.0 - now) * memory.even[d];
+      sum += now * memory.even[d];
       const double next = twice * now - before;
       before = now;
       now = next;
     }
-    memory.slot[3 * lanes + lane] = sum;
+    memory.slot[lane] = sum;
   });
   workers.each([=](int lane) {
-    if (lane < symbols)
-      memory.symbol[lane] =
-          memory.slot[3 * lanes + lane] + memory.slot[3 * lanes + symbols + lane] + (tails.up + tails.down);
+    if (lane < symbols) memory.symbol[lane] = jumps.rate - (memory.slot[lane] + memory.slot[symbols + lane]);
   });
-  recur_backward(workers, memory.left, block_of(mesh), R(1.0), memory.slot);
-  recur_backward(workers, memory.left_price, block_of(mesh), R(1.0), memory.slot);
+  recur_backward(workers, {memory.left, memory.left_price}, block_of(mesh), R(1.0), memory.slot);
   workers.each([=](int lane) {
     for (int i = 1 + lane; i < mesh; i += lanes)
       memory.left_price[i] = memory.left_price[i] * exponential((double(i) - grid.strike) * h);

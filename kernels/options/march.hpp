@@ -17,18 +17,17 @@ struct March {
 };
 
 /// The value e^{-r t} - e^{x - q t} of a put that will certainly be exercised, at the time t <= tau that is
-/// best for node 0 (for European ones tau); below node 0 it is the value at all x.
+/// best for node 0 (for European ones tau), where e^x is `asset`; below node 0 it is the value at all x.
 template <class R>
 struct Certain {
   R strike, asset;  ///< e^{-r t}, e^{-q t}
 };
 
 template <class R>
-KOKKOS_INLINE_FUNCTION Certain<R> certain(const PutPack<R>& put, R x, R best, R tau) {
+KOKKOS_INLINE_FUNCTION Certain<R> certain(const PutPack<R>& put, R asset, R best, R tau) {
   const R late = exponential(-put.rate * tau), late_asset = exponential(-put.dividend * tau);
   const R t = device::maximum(R(0.0), device::minimum(best, tau));
   const R between = exponential(-put.rate * t), between_asset = exponential(-put.dividend * t);
-  const R asset = exponential(x);
   const auto sooner = put.early * (between - between_asset * asset - (late - late_asset * asset)) > R(0.0);
   R strike = device::select(sooner, between, late), price = device::select(sooner, between_asset, late_asset);
   const auto now = put.early * (1.0 - asset - (strike - price * asset)) > R(0.0);
@@ -78,7 +77,7 @@ template <class R>
 struct Scheme {
   R lower, upper;  ///< l, u: D/h^2 -+ b/2h
   R best;          ///< time at which exercise of node 0 would be best: `Certain`
-  R lowest;        ///< x of node 0
+  R lowest;        ///< e^x at node 0
   int steps;
 };
 
@@ -95,7 +94,7 @@ KOKKOS_INLINE_FUNCTION Scheme<R> scheme_of(const PutPack<R>& put, const Jumps<R>
       (logarithm(device::select(stationary, device::minimum(quotient, R(1e300)), R(1.0))) - lowest) /
           (put.rate - put.dividend),
       R(0.0));
-  return {diffusion - advection, diffusion + advection, best, lowest, steps};
+  return {diffusion - advection, diffusion + advection, best, exponential(lowest), steps};
 }
 
 /// Implicit diffusion beyond D that the explicit jumps need, of which as much is taken back explicitly:
@@ -155,7 +154,7 @@ struct StepFactors {
   R bend, bend_before;      ///< of what is taken back of added diffusion, likewise
   R inverse, diagonal;      ///< 1/pivot; of the derivative
   R from_left, from_right;  ///< slopes of the recurrences
-  R strike, asset;          ///< of the certain value below node 0 at the step's beginning
+  Certain<R> certain;       ///< at the step's end
   R edge;                   ///< value of node 0 at its end
 };
 
@@ -165,15 +164,25 @@ struct StepTable {
   R* place;  ///< (StepFactors::size, lanes)
 
   KOKKOS_INLINE_FUNCTION void store(int n, const StepFactors<R>& f) const {
-    const R row[] = {f.value,    f.before,    f.fresh,      f.stale,  f.bend,  f.bend_before, f.inverse,
-                     f.diagonal, f.from_left, f.from_right, f.strike, f.asset, f.edge};
+    const R row[] = {f.value,          f.before,        f.fresh,    f.stale,     f.bend,
+                     f.bend_before,    f.inverse,       f.diagonal, f.from_left, f.from_right,
+                     f.certain.strike, f.certain.asset, f.edge};
     for (int k = 0; k < StepFactors<R>::size; ++k) place[k * lanes + (n - 1) % lanes] = row[k];
   }
   [[nodiscard]] KOKKOS_INLINE_FUNCTION StepFactors<R> load(int n) const {
     const R* at = place + (n - 1) % lanes;
-    return {at[0],          at[lanes],      at[2 * lanes], at[3 * lanes], at[4 * lanes],
-            at[5 * lanes],  at[6 * lanes],  at[7 * lanes], at[8 * lanes], at[9 * lanes],
-            at[10 * lanes], at[11 * lanes], at[12 * lanes]};
+    return {at[0],
+            at[lanes],
+            at[2 * lanes],
+            at[3 * lanes],
+            at[4 * lanes],
+            at[5 * lanes],
+            at[6 * lanes],
+            at[7 * lanes],
+            at[8 * lanes],
+            at[9 * lanes],
+            {at[10 * lanes], at[11 * lanes]},
+            at[12 * lanes]};
   }
 };
 
@@ -187,10 +196,8 @@ KOKKOS_INLINE_FUNCTION StepFactors<R> step_factors(const PutPack<R>& put, const 
   const R added = added_diffusion(put, jumps, 0.5 * (scheme.lower + scheme.upper), step.dt);
   const R lower = scheme.lower + added, upper = scheme.upper + added;
   const R diagonal = c0 + lower + upper;
-  const R inverse = 1.0 / (0.5 * (diagonal + device::square_root(diagonal * diagonal - 4.0 * lower * upper)));
-  const Certain<R> begun =
-      certain(put, scheme.lowest, scheme.best, step_end(put.maturity, n - 1, scheme.steps));
-  const Certain<R> ended = certain(put, scheme.lowest, scheme.best, step_end(put.maturity, n, scheme.steps));
+  const R inverse =
+      device::reciprocal(0.5 * (diagonal + device::root(diagonal * diagonal - 4.0 * lower * upper).value));
   StepFactors<R> f;
   f.value = (1.0 + step.ratio) * device::reciprocal(step.dt) * inverse;
   f.before = step.ratio * step.ratio * per * inverse;
@@ -202,9 +209,8 @@ KOKKOS_INLINE_FUNCTION StepFactors<R> step_factors(const PutPack<R>& put, const 
   f.diagonal = c0;
   f.from_left = lower * inverse;
   f.from_right = upper * inverse;
-  f.strike = begun.strike;
-  f.asset = begun.asset;
-  f.edge = device::maximum(R(0.0), ended.strike - ended.asset * exponential(scheme.lowest));
+  f.certain = certain(put, scheme.lowest, scheme.best, step_end(put.maturity, n, scheme.steps));
+  f.edge = device::maximum(R(0.0), f.certain.strike - f.certain.asset * scheme.lowest);
   return f;
 }
 
@@ -234,8 +240,8 @@ KOKKOS_INLINE_FUNCTION AtExpiry<R> at_expiry(const PutPack<R>& put, const Grid<R
 
 /// The explicit part of the operator at a node: jumps to nodes, jumps away and -rV, jumps to below the grid.
 template <class R>
-KOKKOS_INLINE_FUNCTION R explicit_part(const StepFactors<R>& f, R jumps, R away, R left, R left_price) {
-  return jumps + (away + (f.strike * left - f.asset * left_price));
+KOKKOS_INLINE_FUNCTION R explicit_part(const Certain<R>& begun, R jumps, R away, R left, R left_price) {
+  return jumps + (away + (begun.strike * left - begun.asset * left_price));
 }
 
 /// The right side of a step's equations at a node, but for added diffusion and split exercise.
@@ -265,7 +271,8 @@ KOKKOS_INLINE_FUNCTION void split_exercise(const Workers& workers, const PutPack
 /// and Toivanen 2004).
 template <class Workers, class R>
 KOKKOS_INLINE_FUNCTION void step(const Workers& workers, const PutPack<R>& put, const Jumps<R>& jumps,
-                                 const Grid<R>& grid, const March<R>& march, const StepFactors<R>& f) {
+                                 const Grid<R>& grid, const March<R>& march, const StepFactors<R>& f,
+                                 const Certain<R>& begun) {
   const int mesh = grid.mesh, block = block_of(mesh);
   R* const now = march.value[0];
   const R *value = march.value[1], *before = march.value[2];
@@ -276,13 +283,13 @@ KOKKOS_INLINE_FUNCTION void step(const Workers& workers, const PutPack<R>& put, 
   convolve(workers, mesh, jumps.w, value, jump, other);
   const R stay = -jumps.rate - put.rate;
   const bool bends = !device::all(f.bend <= R(0.0));
-  workers.each([=, &f, &put](int lane) {
+  workers.each([=, &f, &put, &begun](int lane) {
     for (int i = lane * block; i < (lane + 1) * block; ++i) {
       if (i == 0 || i >= mesh) {
         y[i] = 0.0;
         continue;
       }
-      const R fresh = explicit_part(f, jump[i] + other[i], stay * value[i], left[i], left_price[i]);
+      const R fresh = explicit_part(begun, jump[i] + other[i], stay * value[i], left[i], left_price[i]);
       jump[i] = fresh;
       R right = right_side(f, value[i], before[i], fresh, jump_before[i]);
       if (bends) {
@@ -294,7 +301,7 @@ KOKKOS_INLINE_FUNCTION void step(const Workers& workers, const PutPack<R>& put, 
       y[i] = right;
     }
   });
-  recur_backward(workers, y, block, f.from_right, march.slot);
+  recur_backward(workers, {y}, block, f.from_right, march.slot);
   recur_forward(workers, now, y, march.floor, block, mesh, f.from_left, f.edge, march.slot);
   if (put.any_split) split_exercise(workers, put, grid, f.diagonal, now, force);
 }

@@ -54,6 +54,12 @@ KOKKOS_INLINE_FUNCTION Price price_of(const Contract& contract, const Put& put, 
   return price;
 }
 
+/// The larger of two; not a number if one of them is none.
+template <class R>
+KOKKOS_INLINE_FUNCTION R larger(R a, R b) {
+  return device::select(b >= b, device::select(b > a, b, a), b);
+}
+
 /// The number that a thread of `ExecutionSpace` computes with: one option's, or on hosts several options'.
 template <class ExecutionSpace>
 using Number = std::conditional_t<device::is_host<ExecutionSpace>, device::HostPack<double>, double>;
@@ -104,10 +110,10 @@ struct PriceBatch {
     });
     PutPack<R> put = pack_of<R>(memory.puts);
     const Law<R> law =
-        law_of(workers, put, memory.puts, panels.data(), panel_slot.data(), memory.law_memory(), memory.slot);
+        law_of(workers, put, memory.puts, panels.data(), panel_slot.data(), memory.law_memory());
     const Domain<R> domain = domain_of(workers, put, law, cut_error(cells), memory.slot);
     Grid<R> grid = grid_of(domain, cells);
-    const Tails<R> tails = tails_of(workers, put, law, grid.h * double(cells), memory.slot);
+    const Tails<R> tails = tails_of(workers, put, law, grid.h * double(cells));
     const R* fine = solve<block>(workers, put, law, tails, grid, steps, memory, {memory.w, nullptr}, record,
                                  memory.answers);
     R* const kept = memory.kept(cells);
@@ -119,28 +125,22 @@ struct PriceBatch {
         solve<block / 2>(workers, put, law, tails, grid, steps / 2, memory,
                          {memory.coarse_weights(cells), memory.w}, Record{}, memory.answers + members);
     const R deviation = device::square_root((put.variance + law.variance) * put.maturity);
-    R* const change = memory.slot;
-    workers.each([=, this, &put](int lane) {
-      const R window = device::maximum(grid.h, 1.0 * deviation);
-      R largest = 0.0;
+    const R window = device::maximum(grid.h, 1.0 * deviation);
+    const auto largest_change = [=, this, &put](int lane) {
+      Kokkos::Array<R, 1> largest = {R(0.0)};
       for (int i = lane; i < cells / 2; i += lanes) {
         const auto near = device::absolute((double(i) - grid.strike) * grid.h - put.log_spot) <= window;
-        largest =
-            device::maximum(largest, device::select(near, device::absolute(kept[i] - coarse[i]), R(0.0)));
+        largest[0] = larger(largest[0], device::select(near, device::absolute(kept[i] - coarse[i]), R(0.0)));
       }
-      change[lane] = largest;
-    });
+      return largest;
+    };
+    const R change = workers.reduce(largest_change, [](const R& a, const R& b) { return larger(a, b); })[0];
     workers.each([=, this](int lane) {
       for (int k = lane; k < members; k += lanes) {
         if (group * members + k >= count) continue;
-        double largest = 0.0;
-        for (int m = 0; m < lanes; ++m) {
-          const double one = device::Access<R>::lane(change[m], k);
-          largest = one > largest || one != one ? one : largest;
-        }
         const int at = place(group, k);
         prices(at) = price_of(contracts(at), memory.puts[k], memory.answers[k], memory.answers[members + k],
-                              largest, cells, steps, tolerance);
+                              device::Access<R>::lane(change, k), cells, steps, tolerance);
       }
     });
   }

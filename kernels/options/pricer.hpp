@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <memory_resource>
 #include <span>
 #include <vector>
 
@@ -51,6 +52,10 @@ class Pricer {
   /// `violated_condition` (std::invalid_argument for spans of different lengths). Returns when the prices
   /// are there. A contract's bits do not depend on the others of the batch.
   virtual Timing price(std::span<const Contract> contracts, std::span<Price> prices) = 0;
+
+  /// Memory from which and to which a device copies without a detour: contracts and prices may lie there. It
+  /// lasts as long as the pricer.
+  [[nodiscard]] virtual std::pmr::memory_resource& memory() { return *std::pmr::new_delete_resource(); }
 
   /// The early exercise boundary of an American contract from now on to its expiry, a point for each step of
   /// the solve; empty where exercise is never right.

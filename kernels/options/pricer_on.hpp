@@ -54,6 +54,8 @@ class PricerOn final : public Pricer {
     return timing;
   }
 
+  std::pmr::memory_resource& memory() override { return _pinned; }
+
   std::vector<BoundaryPoint> boundary(const Contract& contract) override {
     const Recorded all = record(contract);
     std::vector<BoundaryPoint> points;
@@ -201,7 +203,7 @@ class PricerOn final : public Pricer {
 
   /// The contracts where a device copies them from without a detour.
   const Contract* staged(std::span<const Contract> contracts) {
-    if constexpr (device::is_host<ExecutionSpace>) return contracts.data();
+    if (device::is_host<ExecutionSpace> || _pinned.holds(contracts.data())) return contracts.data();
     _staged_contracts.resize(contracts.size());
     std::ranges::copy(contracts, _staged_contracts.begin());
     return _staged_contracts.data();
@@ -210,7 +212,7 @@ class PricerOn final : public Pricer {
   void copy_out(std::span<Price> prices, Timing& timing) {
     const Clock copying;
     Price* to = prices.data();
-    if constexpr (!device::is_host<ExecutionSpace>) {
+    if (!device::is_host<ExecutionSpace> && !_pinned.holds(to)) {
       _staged_prices.resize(prices.size());
       to = _staged_prices.data();
     }

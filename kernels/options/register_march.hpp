@@ -192,6 +192,7 @@ KOKKOS_INLINE_FUNCTION int march_in_registers(const WarpWorkers& workers, const 
   const double h = grid.h, stay = -jumps.rate - put.rate;
   const Convolution<block> convolution(lane, jumps.w, rows.value, rows.out, rows.other);
   Own value, before{}, stale{}, floor;
+  Certain<double> begun{1.0, 1.0};
   before.store(lane, rows.force);
   for (int m = 0; m < block; ++m) {
     const AtExpiry<double> node = at_expiry(put, grid, lane * block + m, kink);
@@ -213,8 +214,8 @@ KOKKOS_INLINE_FUNCTION int march_in_registers(const WarpWorkers& workers, const 
     if (n == scheme.steps) before.store_swizzled(lane, rows.out);
     Own y;
     for (int m = 0; m < block; ++m) {
-      const double fresh = explicit_part(f, sum.node[m] + rest.node[m], stay * value.node[m], left.node[m],
-                                         left_price.node[m]);
+      const double fresh = explicit_part(begun, sum.node[m] + rest.node[m], stay * value.node[m],
+                                         left.node[m], left_price.node[m]);
       y.node[m] = right_side(f, value.node[m], before.node[m], fresh, stale.node[m]);
       stale.node[m] = fresh;
     }
@@ -227,6 +228,7 @@ KOKKOS_INLINE_FUNCTION int march_in_registers(const WarpWorkers& workers, const 
       const Own force = Own::load(lane, rows.force);
       for (int m = 0; m < block; ++m) y.node[m] += f.inverse * force.node[m];
     }
+    begun = f.certain;
     before = value;
     recur_backward(lane, y, f.from_right);
     value = f.from_left >= 0.0 ? recur_by_maps<RisingMap<double>>(lane, y, floor, f.from_left, f.edge)

@@ -77,8 +77,8 @@ struct SeedBatch {
         memory.puts[k] = put_of(batch.contracts(batch.place(group, k)));
     });
     const PutPack<R> put = pack_of<R>(memory.puts);
-    const Law<R> law = law_of(workers, put, memory.puts, batch.panels.data(), batch.panel_slot.data(),
-                              memory.law_memory(), memory.slot);
+    const Law<R> law =
+        law_of(workers, put, memory.puts, batch.panels.data(), batch.panel_slot.data(), memory.law_memory());
     const Grid<R> grid{mesh, R(2.0 * seed_reach / mesh), R(0.5 * mesh)};
     const Jumps<R> jumps =
         seed_jumps(workers, put, law, grid, memory.w, memory.row(9, mesh), memory.row(10, mesh));
@@ -119,7 +119,7 @@ struct SeedBatch {
           y[i] = right * inverse;
         }
       });
-      recur_backward(workers, y, block, implicit * inverse, memory.slot);
+      recur_backward(workers, {y}, block, implicit * inverse, memory.slot);
       const R edge = ended.strike - ended.asset * exponential(lowest);
       recur_forward(workers, now, y, none, block, mesh, implicit * inverse, edge, memory.slot);
       workers.each([=](int lane) {

@@ -91,9 +91,12 @@ KOKKOS_INLINE_FUNCTION March<R> march_in_memory(const Workers& workers, const Pu
       march.floor[i] = node.floor;
     }
   });
+  Certain<R> begun{R(1.0), R(1.0)};
   for (int n = 1; n <= steps; ++n) {
     if (n % lanes == 1) fill_table(workers, put, jumps, scheme, table, n);
-    step(workers, put, jumps, grid, march, table.load(n));
+    const StepFactors<R> factors = table.load(n);
+    step(workers, put, jumps, grid, march, factors, begun);
+    begun = factors.certain;
     if (record.time != nullptr) {
       workers.each([=, &put](int lane) {
         if (lane != 0) return;
@@ -173,7 +176,7 @@ KOKKOS_INLINE_FUNCTION const R* solve(const Workers& workers, const PutPack<R>& 
     value = march.value[1];
     change = march.y;
   }
-  const Certain<R> ended = certain(put, scheme.lowest, scheme.best, put.maturity);
+  const Certain<R> ended = table.load(steps).certain;
   workers.each([=](int lane) {
     for (int k = lane; k < members; k += lanes) {
       const auto member = [k](const R& number) { return device::Access<R>::lane(number, k); };

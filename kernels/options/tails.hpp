@@ -14,7 +14,7 @@ struct Tails {
 /// Of a mixture they are exponential integrals, of the others closed forms. `length` is that of the grid.
 template <class Workers, class R>
 KOKKOS_INLINE_FUNCTION Tails<R> tails_of(const Workers& workers, const PutPack<R>& put, const Law<R>& law,
-                                         R length, R* scratch) {
+                                         R length) {
   if (put.model == Model::kou) {
     const R p = put.jump[1], up = put.jump[2], down = put.jump[3];
     const R a = put.jump[0] * p * exponential(-up * length),
@@ -34,22 +34,23 @@ KOKKOS_INLINE_FUNCTION Tails<R> tails_of(const Workers& workers, const PutPack<R
         rate * (square * (up + down) + s * ((length + m) * density(z_up) + (length - m) * density(z_down)))};
   }
   if (put.model != Model::generalized_hyperbolic) return {R(0.0), R(0.0), R(0.0), R(0.0), R(0.0)};
-  workers.each([&, scratch](int lane) {
-    R sum[5] = {0.0, 0.0, 0.0, 0.0, 0.0};
+  const R shrink = exponential(-length);
+  const Kokkos::Array<R, 5> tails = sums(workers, [&](int lane) {
+    Kokkos::Array<R, 5> sum = {R(0.0), R(0.0), R(0.0), R(0.0), R(0.0)};
     for (int q = lane; q < Mixture::low; q += lanes) {
       const R a = law.s[q] - put.jump[2], b = law.s[q] + put.jump[2], c = law.c[q];
-      const R decay[4] = {b * length, (b + 1.0) * length, a * length, (a - 1.0) * length};
+      const R rate[4] = {b * length, (b + 1.0) * length, a * length, (a - 1.0) * length};
+      const R down = exponential(-rate[0]), up = exponential(-rate[2]);
+      const R decay[4] = {down, down * shrink, up, exponential(-rate[3])};
       R tail[4];
-      exponential_integrals(decay, tail);
+      exponential_integrals(rate, decay, tail);
       for (int k = 0; k < 4; ++k) sum[k] += c * tail[k];
-      const R up = law.up[q], down = law.down[q];
-      sum[4] += c * ((length + down) * down * exponential(-b * length) +
-                     (length + up) * up * exponential(-a * length));
+      const R far_up = law.up[q], far_down = law.down[q];
+      sum[4] += c * ((length + far_down) * far_down * down + (length + far_up) * far_up * up);
     }
-    for (int k = 0; k < 5; ++k) scratch[k * lanes + lane] = sum[k];
+    return sum;
   });
-  return {total(scratch), total(scratch + lanes), total(scratch + 2 * lanes), total(scratch + 3 * lanes),
-          total(scratch + 4 * lanes)};
+  return {tails[0], tails[1], tails[2], tails[3], tails[4]};
 }
 
 }  // namespace drogue::options

@@ -17,6 +17,16 @@ struct SerialWorkers {
     for (int lane = 0; lane < lanes; ++lane) f(lane);
   }
   KOKKOS_INLINE_FUNCTION void meet() const {}
+  /// Joins the arrays f(lane) of all lanes, element by element and by halves.
+  template <class F, class Join>
+  KOKKOS_INLINE_FUNCTION auto reduce(const F& f, const Join& join) const {
+    decltype(f(0)) part[lanes];
+    for (int lane = 0; lane < lanes; ++lane) part[lane] = f(lane);
+    for (int reach = lanes / 2; reach > 0; reach /= 2)
+      for (int lane = 0; lane < reach; ++lane)
+        for (int k = 0; k < part[0].size(); ++k) part[lane][k] = join(part[lane][k], part[lane + reach][k]);
+    return part[0];
+  }
 };
 
 /// A warp that is a team of its own.
@@ -31,51 +41,93 @@ struct WarpWorkers {
   }
   /// What all have read before it may be written after it.
   KOKKOS_INLINE_FUNCTION void meet() const { device::meet_warp(); }
+  /// Joins the arrays f(lane) of all lanes, element by element and by halves; every lane gets the result.
+  template <class F, class Join>
+  KOKKOS_INLINE_FUNCTION auto reduce(const F& f, const Join& join) const {
+    auto part = f(lane);
+    for (int reach = lanes / 2; reach > 0; reach /= 2)
+      for (int k = 0; k < part.size(); ++k) part[k] = join(part[k], device::from_across(part[k], reach));
+    return part;
+  }
 };
 
-/// The sum of slot[0 .. lanes-1], in four chains; every lane gets it.
-template <class R>
-KOKKOS_INLINE_FUNCTION R total(const R* slot) {
-  R sum[4] = {slot[0], slot[1], slot[2], slot[3]};
-  for (int k = 4; k < lanes; k += 4)
-    for (int m = 0; m < 4; ++m) sum[m] += slot[k + m];
-  return (sum[0] + sum[1]) + (sum[2] + sum[3]);
+/// The sums of the arrays f(lane) of all lanes.
+template <class Workers, class F>
+KOKKOS_INLINE_FUNCTION auto sums(const Workers& workers, const F& f) {
+  return workers.reduce(f, [](const auto& a, const auto& b) { return a + b; });
 }
 
-/// y_i = a_i + g y_{i+1} for i = 0 .. lanes block - 1 in place, from 0 beyond: each lane runs through its
-/// block, then blocks are joined by doubling (Kogge and Stone). `slot` holds 2 lanes values.
-template <class Workers, class R>
-KOKKOS_INLINE_FUNCTION void recur_backward(const Workers& workers, R* y, int block, R g, R* slot) {
-  R joined = 1.0;
-  for (int m = 0; m < block; ++m) joined = joined * g;
-  workers.each([=](int lane) {
-    R* own = y + lane * block;
-    R value = 0.0;
-    for (int m = block - 1; m >= 0; --m) {
-      value = own[m] + g * value;
-      own[m] = value;
-    }
-    slot[lane] = value;
-  });
-  R *from = slot, *to = slot + lanes;
-  for (int reach = 1; reach < lanes; reach *= 2) {
+/// y_i = a_i + g y_{i+1} for i = 0 .. lanes block - 1 in place, from 0 beyond, on n arrays: each lane runs
+/// through its block, then blocks are joined by doubling (Kogge and Stone). `slot` holds 2 lanes values.
+template <int n, class R>
+KOKKOS_INLINE_FUNCTION void recur_backward(const SerialWorkers<R>& workers, R* const (&rows)[n], int block,
+                                           R g, R* slot) {
+  for (R* const y : rows) {
+    R joined = 1.0;
+    for (int m = 0; m < block; ++m) joined = joined * g;
     workers.each([=](int lane) {
-      to[lane] = lane + reach < lanes ? from[lane] + joined * from[lane + reach] : from[lane];
+      R* own = y + lane * block;
+      R value = 0.0;
+      for (int m = block - 1; m >= 0; --m) {
+        value = own[m] + g * value;
+        own[m] = value;
+      }
+      slot[lane] = value;
     });
-    joined = joined * joined;
-    R* const other = from;
-    from = to;
-    to = other;
+    R *from = slot, *to = slot + lanes;
+    for (int reach = 1; reach < lanes; reach *= 2) {
+      workers.each([=](int lane) {
+        to[lane] = lane + reach < lanes ? from[lane] + joined * from[lane + reach] : from[lane];
+      });
+      joined = joined * joined;
+      R* const other = from;
+      from = to;
+      to = other;
+    }
+    workers.each([=](int lane) {
+      if (lane + 1 == lanes) return;
+      R* own = y + lane * block;
+      R inflow = from[lane + 1];
+      for (int m = block - 1; m >= 0; --m) {
+        inflow = g * inflow;
+        own[m] = own[m] + inflow;
+      }
+    });
   }
-  workers.each([=](int lane) {
-    if (lane + 1 == lanes) return;
-    R* own = y + lane * block;
-    R inflow = from[lane + 1];
+}
+
+/// The same by a warp, whose lanes ask one another for what joins their blocks.
+template <int n>
+KOKKOS_INLINE_FUNCTION void recur_backward(const WarpWorkers& workers, double* const (&rows)[n], int block,
+                                           double g, double* /*slot*/) {
+  const int lane = workers.lane;
+  double joined = 1.0, carry[n];
+  for (int m = 0; m < block; ++m) joined = joined * g;
+  for (int k = 0; k < n; ++k) {
+    double* own = rows[k] + lane * block;
+    carry[k] = 0.0;
+    for (int m = block - 1; m >= 0; --m) {
+      carry[k] = own[m] + g * carry[k];
+      own[m] = carry[k];
+    }
+  }
+  for (int reach = 1; reach < lanes; reach *= 2) {
+    for (int k = 0; k < n; ++k) {
+      const double next = device::from_above(carry[k], reach);
+      if (lane + reach < lanes) carry[k] = carry[k] + joined * next;
+    }
+    joined = joined * joined;
+  }
+  for (int k = 0; k < n; ++k) {
+    double* own = rows[k] + lane * block;
+    double inflow = device::from_above(carry[k], 1);
+    if (lane + 1 == lanes) continue;
     for (int m = block - 1; m >= 0; --m) {
       inflow = g * inflow;
       own[m] = own[m] + inflow;
     }
-  });
+  }
+  workers.meet();
 }
 
 /// x -> max(lo, a x + b), a >= 0 known to all. Such maps compose to maps of their kind.
