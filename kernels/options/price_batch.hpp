@@ -72,6 +72,7 @@ struct PriceBatch {
   Kokkos::View<const int*, Space> order;           ///< (count)
   Kokkos::View<const double*, Space> panels;       ///< (panels, HankelGrid::panel_size)
   Kokkos::View<const int*, Space> panel_slot;      ///< (HankelGrid::panels)
+  FourierRoots roots{};                            ///< in the memory of the backend
   Record record{};                                 ///< of the only contract, if at all
   int count = 0, mesh = 0, steps = 0, level = 0;
   double tolerance = 0.0;
@@ -108,8 +109,8 @@ struct PriceBatch {
     const Domain<R> domain = domain_of(workers, put, law, cut_error(cells), memory.slot);
     Grid<R> grid = grid_of(domain, cells);
     const Tails<R> tails = tails_of(workers, put, law, grid.h * double(cells), memory.slot);
-    const R* fine = solve<block>(workers, put, law, tails, grid, steps, memory, {memory.w, nullptr}, record,
-                                 memory.answers);
+    const R* fine = solve<block>(workers, put, law, tails, grid, steps, memory, {memory.w, nullptr, roots},
+                                 record, memory.answers);
     R* const kept = memory.kept(cells);
     workers.each([=, this](int lane) {
       for (int i = lane; i < cells / 2; i += lanes) kept[i] = fine[2 * i];
@@ -117,7 +118,7 @@ struct PriceBatch {
     grid = {cells / 2, 2.0 * grid.h, 0.5 * grid.strike};
     const R* coarse =
         solve<block / 2>(workers, put, law, tails, grid, steps / 2, memory,
-                         {memory.coarse_weights(cells), memory.w}, Record{}, memory.answers + members);
+                         {memory.coarse_weights(cells), memory.w, roots}, Record{}, memory.answers + members);
     const R deviation = device::square_root((put.variance + law.variance) * put.maturity);
     R* const change = memory.slot;
     workers.each([=, this, &put](int lane) {
