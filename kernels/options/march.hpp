@@ -1,5 +1,6 @@
 #pragma once
 
+#include "kernels/options/fourier_sum.hpp"
 #include "kernels/options/jumps.hpp"
 
 namespace drogue::options {
@@ -9,7 +10,7 @@ template <class R>
 struct March {
   R* value[3];  ///< of this step's end, its beginning, and of the step before
   R* jump[2];   ///< the explicit part of the operator, of the beginning and of the step before
-  R* other;     ///< the other half of the sum over jumps
+  R* other;     ///< the other half of the sum over jumps; with `y` after it the memory of transforms
   R* y;
   R* floor;  ///< payoff; `-unbounded` where early exercise is not looked for
   R* force;  ///< what exercise pushes with, of split puts
@@ -271,8 +272,8 @@ KOKKOS_INLINE_FUNCTION void split_exercise(const Workers& workers, const PutPack
 /// and Toivanen 2004).
 template <class Workers, class R>
 KOKKOS_INLINE_FUNCTION void step(const Workers& workers, const PutPack<R>& put, const Jumps<R>& jumps,
-                                 const Grid<R>& grid, const March<R>& march, const StepFactors<R>& f,
-                                 const Certain<R>& begun) {
+                                 const Grid<R>& grid, const JumpSpectrum<R>& spectrum, const March<R>& march,
+                                 const StepFactors<R>& f, const Certain<R>& begun) {
   const int mesh = grid.mesh, block = block_of(mesh);
   R* const now = march.value[0];
   const R *value = march.value[1], *before = march.value[2];
@@ -280,7 +281,12 @@ KOKKOS_INLINE_FUNCTION void step(const Workers& workers, const PutPack<R>& put, 
   const R* jump_before = march.jump[1];
   R *other = march.other, *y = march.y, *force = march.force;
   const R *left = jumps.left, *left_price = jumps.left_price;
-  convolve(workers, mesh, jumps.w, value, jump, other);
+  const bool transformed = is_transformed(mesh);
+  if (transformed) {
+    sum_by_transforms(workers, mesh, spectrum, value, jump, reinterpret_cast<Complex<R>*>(other));
+  } else {
+    convolve(workers, mesh, jumps.w, value, jump, other);
+  }
   const R stay = -jumps.rate - put.rate;
   const bool bends = !device::all(f.bend <= R(0.0));
   workers.each([=, &f, &put, &begun](int lane) {
@@ -289,7 +295,8 @@ KOKKOS_INLINE_FUNCTION void step(const Workers& workers, const PutPack<R>& put, 
         y[i] = 0.0;
         continue;
       }
-      const R fresh = explicit_part(begun, jump[i] + other[i], stay * value[i], left[i], left_price[i]);
+      const R sum = transformed ? jump[i] : jump[i] + other[i];
+      const R fresh = explicit_part(begun, sum, stay * value[i], left[i], left_price[i]);
       jump[i] = fresh;
       R right = right_side(f, value[i], before[i], fresh, jump_before[i]);
       if (bends) {

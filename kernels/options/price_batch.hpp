@@ -78,6 +78,7 @@ struct PriceBatch {
   Kokkos::View<const int*, Space> order;           ///< (count)
   Kokkos::View<const double*, Space> panels;       ///< (panels, HankelGrid::panel_size)
   Kokkos::View<const int*, Space> panel_slot;      ///< (HankelGrid::panels)
+  FourierRoots roots{};                            ///< in the memory of the backend
   Record record{};                                 ///< of the only contract, if at all
   int count = 0, mesh = 0, steps = 0, level = 0;
   double tolerance = 0.0;
@@ -114,8 +115,8 @@ struct PriceBatch {
     const Domain<R> domain = domain_of(workers, put, law, cut_error(cells), memory.slot);
     Grid<R> grid = grid_of(domain, cells);
     const Tails<R> tails = tails_of(workers, put, law, grid.h * double(cells));
-    const R* fine = solve<block>(workers, put, law, tails, grid, steps, memory, {memory.w, nullptr}, record,
-                                 memory.answers);
+    const R* fine = solve<block>(workers, put, law, tails, grid, steps, memory, {memory.w, nullptr, roots},
+                                 record, memory.answers);
     R* const kept = memory.kept(cells);
     workers.each([=, this](int lane) {
       for (int i = lane; i < cells / 2; i += lanes) kept[i] = fine[2 * i];
@@ -123,7 +124,7 @@ struct PriceBatch {
     grid = {cells / 2, 2.0 * grid.h, 0.5 * grid.strike};
     const R* coarse =
         solve<block / 2>(workers, put, law, tails, grid, steps / 2, memory,
-                         {memory.coarse_weights(cells), memory.w}, Record{}, memory.answers + members);
+                         {memory.coarse_weights(cells), memory.w, roots}, Record{}, memory.answers + members);
     const R deviation = device::square_root((put.variance + law.variance) * put.maturity);
     const R window = device::maximum(grid.h, 1.0 * deviation);
     const auto largest_change = [=, this, &put](int lane) {

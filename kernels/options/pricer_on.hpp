@@ -39,6 +39,7 @@ class PricerOn final : public Pricer {
     const Clock setting_up;
     reserve(contracts.size());
     fetch_panels(contracts);
+    fetch_roots();
     copy_in(_contracts, staged(contracts), contracts.size());
     _instance.space().fence("drogue::options: contracts are copied");
     timing.h2d = setting_up.seconds();
@@ -107,6 +108,7 @@ class PricerOn final : public Pricer {
     const std::span<const Contract> one(&contract, 1);
     reserve(1);
     fetch_panels(one);
+    fetch_roots();
     copy_in(_contracts, &contract, 1);
     const int mesh = _settings.mesh != 0 ? _settings.mesh : record_mesh;
     const Effort effort{mesh, steps_of(mesh, 1)};
@@ -244,6 +246,14 @@ class PricerOn final : public Pricer {
     copy_in(_panel_slot, _slots.data(), _slots.size());
   }
 
+  /// Copies the roots of unity when they are needed first.
+  void fetch_roots() {
+    if (_roots.size() != 0) return;
+    _host_roots = fourier_roots();
+    _roots = View<double>("drogue::options::roots", _host_roots.size());
+    copy_in(_roots, _host_roots.data(), _host_roots.size());
+  }
+
   /// Prices the contracts k for which `asked(k)`, those of a model in a launch.
   template <class Asked>
   void launch_models(std::span<const Contract> contracts, const Effort& effort, const Asked& asked) {
@@ -265,6 +275,7 @@ class PricerOn final : public Pricer {
     batch.order = _order;
     batch.panels = _panels;
     batch.panel_slot = _panel_slot;
+    batch.roots = FourierRoots::of(_roots.data());
     batch.record = record;
     batch.count = static_cast<int>(_rows.size());
     batch.mesh = effort.mesh;
@@ -288,8 +299,8 @@ class PricerOn final : public Pricer {
   device::PinnedMemory<ExecutionSpace> _pinned;
   std::pmr::vector<Contract> _staged_contracts{&_pinned};
   std::pmr::vector<Price> _staged_prices{&_pinned};
-  View<double> _panels;
-  std::vector<double> _series;
+  View<double> _panels, _roots;
+  std::vector<double> _series, _host_roots;
   std::vector<int> _slots = std::vector<int>(HankelGrid::panels, -1);
 };
 

@@ -2,20 +2,12 @@
 
 #include "kernels/device/warp.hpp"
 #include "kernels/options/march.hpp"
+#include "kernels/options/register_fourier.hpp"
 
 /// A march with the nodes of one option in the registers of a warp, for meshes of 32 `block` intervals: lane
 /// L has the nodes L block, ..., L block + block - 1. It does what `step` does, number by number and in the
 /// same order. Shared memory holds what lanes read of one another in the sum over jumps.
 namespace drogue::options {
-
-/// Two neighbours of an array in shared memory, which are read and written at once.
-struct alignas(16) NodePair {
-  double first, second;
-};
-
-/// Place of a pair of nodes in an array of results. Lanes that write eight nodes each, and lanes that read
-/// `block` nodes each, then find them in different banks.
-KOKKOS_INLINE_FUNCTION int swizzled(int pair) { return (pair & ~3) | ((pair & 3) ^ ((pair >> 3) & 3)); }
 
 /// `convolve` for 32 block intervals: tasks of as many nodes as give every lane one, at most eight. The
 /// weights that a task needs are a window that slides through registers. Results lie `swizzled`. What does
@@ -63,52 +55,6 @@ class Convolution {
   const NodePair* _values;
   NodePair* _sums[(outs + 1) / 2];
   std::ptrdiff_t _other;
-};
-
-/// A lane's nodes of an array, read and written by pairs where it has pairs.
-template <int block>
-struct LaneNodes {
-  double node[block];
-
-  /// From an array in plain order.
-  KOKKOS_INLINE_FUNCTION static LaneNodes load(int lane, const double* from) {
-    return load(lane, from, [](int pair) { return pair; });
-  }
-  KOKKOS_INLINE_FUNCTION void store(int lane, double* to) const {
-    store(lane, to, [](int pair) { return pair; });
-  }
-  /// From an array whose pairs lie `swizzled`.
-  KOKKOS_INLINE_FUNCTION static LaneNodes load_swizzled(int lane, const double* from) {
-    return load(lane, from, [](int pair) { return swizzled(pair); });
-  }
-  KOKKOS_INLINE_FUNCTION void store_swizzled(int lane, double* to) const {
-    store(lane, to, [](int pair) { return swizzled(pair); });
-  }
-
- private:
-  template <class Place>
-  KOKKOS_INLINE_FUNCTION static LaneNodes load(int lane, const double* from, const Place& place) {
-    LaneNodes nodes;
-    if constexpr (block == 1) {
-      nodes.node[0] = from[2 * place(lane / 2) + lane % 2];
-    } else {
-      for (int m = 0; m < block; m += 2) {
-        const NodePair pair = reinterpret_cast<const NodePair*>(from)[place((lane * block + m) / 2)];
-        nodes.node[m] = pair.first;
-        nodes.node[m + 1] = pair.second;
-      }
-    }
-    return nodes;
-  }
-  template <class Place>
-  KOKKOS_INLINE_FUNCTION void store(int lane, double* to, const Place& place) const {
-    if constexpr (block == 1) {
-      to[2 * place(lane / 2) + lane % 2] = node[0];
-    } else {
-      for (int m = 0; m < block; m += 2)
-        reinterpret_cast<NodePair*>(to)[place((lane * block + m) / 2)] = {node[m], node[m + 1]};
-    }
-  }
 };
 
 /// `recur_backward` on registers.
@@ -177,20 +123,62 @@ KOKKOS_INLINE_FUNCTION LaneNodes<block> bends_of(int lane, const LaneNodes<block
 /// Shared memory of a march, (node_count) each.
 struct RegisterRows {
   double* value;        ///< at maturity, in plain order when the march is over
-  double *out, *other;  ///< `other`: in the end dV/dtau in plain order
+  double *out, *other;  ///< one after the other: room for a transform; in the end dV/dtau in `other`
   double* force;        ///< of split puts
+};
+
+/// The sum over jumps of a lane's nodes, by `Convolution` or by `RegisterFourier`.
+template <int block, bool transformed = is_transformed(lanes* block)>
+class JumpSum {
+ public:
+  KOKKOS_INLINE_FUNCTION JumpSum(int lane, const double* w, const JumpSpectrum<double>& /*spectrum*/,
+                                 const RegisterRows& rows)
+      : _lane(lane), _rows(rows), _convolution(lane, w, rows.value, rows.out, rows.other) {}
+
+  KOKKOS_INLINE_FUNCTION LaneNodes<block> operator()(const WarpWorkers& workers,
+                                                     const LaneNodes<block>& value) const {
+    value.store(_lane, _rows.value);
+    workers.meet();
+    _convolution();
+    workers.meet();
+    LaneNodes<block> sum = LaneNodes<block>::load_swizzled(_lane, _rows.out);
+    const LaneNodes<block> rest = LaneNodes<block>::load_swizzled(_lane, _rows.other);
+    for (int m = 0; m < block; ++m) sum.node[m] += rest.node[m];
+    return sum;
+  }
+
+ private:
+  int _lane;
+  RegisterRows _rows;
+  Convolution<block> _convolution;
+};
+template <int block>
+class JumpSum<block, true> {
+ public:
+  KOKKOS_INLINE_FUNCTION JumpSum(int lane, const double* /*w*/, const JumpSpectrum<double>& spectrum,
+                                 const RegisterRows& rows)
+      : _transforms(lane, spectrum, rows.value, reinterpret_cast<Complex<double>*>(rows.out)) {}
+
+  KOKKOS_INLINE_FUNCTION LaneNodes<block> operator()(const WarpWorkers& workers,
+                                                     const LaneNodes<block>& value) const {
+    return _transforms(workers, value);
+  }
+
+ private:
+  RegisterFourier _transforms;
 };
 
 /// Marches from expiry to maturity. Returns the last node below the strike that is exercised, -1 if none is.
 template <int block>
 KOKKOS_INLINE_FUNCTION int march_in_registers(const WarpWorkers& workers, const PutPack<double>& put,
                                               const Jumps<double>& jumps, const Grid<double>& grid,
+                                              const JumpSpectrum<double>& spectrum,
                                               const Scheme<double>& scheme, const StepTable<double>& table,
                                               const RegisterRows& rows, double kink) {
   using Own = LaneNodes<block>;
   const int lane = workers.lane, strike = static_cast<int>(grid.strike);
   const double h = grid.h, stay = -jumps.rate - put.rate;
-  const Convolution<block> convolution(lane, jumps.w, rows.value, rows.out, rows.other);
+  const JumpSum<block> sum_over_jumps(lane, jumps.w, spectrum, rows);
   Own value, before{}, stale{}, floor;
   Certain<double> begun{1.0, 1.0};
   before.store(lane, rows.force);
@@ -204,18 +192,14 @@ KOKKOS_INLINE_FUNCTION int march_in_registers(const WarpWorkers& workers, const 
       workers.meet();
       fill_table(workers, put, jumps, scheme, table, n);
     }
-    value.store(lane, rows.value);
-    workers.meet();
-    convolution();
-    workers.meet();
+    const Own sum = sum_over_jumps(workers, value);
     const StepFactors<double> f = table.load(n);
-    const Own sum = Own::load_swizzled(lane, rows.out), rest = Own::load_swizzled(lane, rows.other),
-              left = Own::load(lane, jumps.left), left_price = Own::load(lane, jumps.left_price);
+    const Own left = Own::load(lane, jumps.left), left_price = Own::load(lane, jumps.left_price);
     if (n == scheme.steps) before.store_swizzled(lane, rows.out);
     Own y;
     for (int m = 0; m < block; ++m) {
-      const double fresh = explicit_part(begun, sum.node[m] + rest.node[m], stay * value.node[m],
-                                         left.node[m], left_price.node[m]);
+      const double fresh =
+          explicit_part(begun, sum.node[m], stay * value.node[m], left.node[m], left_price.node[m]);
       y.node[m] = right_side(f, value.node[m], before.node[m], fresh, stale.node[m]);
       stale.node[m] = fresh;
     }

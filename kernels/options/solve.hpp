@@ -10,7 +10,6 @@ namespace drogue::options {
 template <class R, int block>
 struct Memory {
   static constexpr int members = device::Access<R>::lanes;
-  static constexpr int rows = block > 0 ? 5 : 11;
 
   R* law;           ///< what `law_of` leaves, and then the step table
   R* slot;          ///< (6 lanes); (5 lanes) with a block > 0, where force is there as well
@@ -33,9 +32,15 @@ struct Memory {
         answers(reinterpret_cast<Answer*>(puts + members)) {}
 
   [[nodiscard]] KOKKOS_INLINE_FUNCTION R* row(int k, int mesh) const { return nodes + k * node_count(mesh); }
+  /// The spectrum of the weights of a mesh that is transformed, in its two last rows.
+  [[nodiscard]] KOKKOS_INLINE_FUNCTION Complex<R>* spectrum(int mesh) const {
+    return reinterpret_cast<Complex<R>*>(row(rows(mesh) - 2, mesh));
+  }
   /// Weights of the coarser grid of a mesh, and every other value of the finer one; rows 0 to 2 of the finer
   /// solve that are read last lie before both.
-  [[nodiscard]] KOKKOS_INLINE_FUNCTION R* coarse_weights(int mesh) const { return row(rows, mesh / 2); }
+  [[nodiscard]] KOKKOS_INLINE_FUNCTION R* coarse_weights(int mesh) const {
+    return row(rows(mesh / 2), mesh / 2);
+  }
   [[nodiscard]] KOKKOS_INLINE_FUNCTION R* kept(int mesh) const {
     return coarse_weights(mesh) + WeightLayout<R>(mesh / 2).size();
   }
@@ -51,9 +56,13 @@ struct Memory {
   static constexpr int law_size = StepFactors<R>::size * lanes + symbols;
   static constexpr int slot_size = block == 0 ? 6 * lanes : block <= 5 ? 5 * lanes : block * lanes;
 
+  [[nodiscard]] KOKKOS_INLINE_FUNCTION static int rows(int mesh) {
+    return (block > 0 ? 5 : 11) + (is_transformed(mesh) ? 2 : 0);
+  }
   [[nodiscard]] KOKKOS_INLINE_FUNCTION static int node_size(int mesh) {
-    const int coarse = rows * node_count(mesh / 2) + WeightLayout<R>(mesh / 2).size() + mesh / 2 + 2,
-              fine = rows * node_count(mesh);
+    const int coarse =
+                  rows(mesh / 2) * node_count(mesh / 2) + WeightLayout<R>(mesh / 2).size() + mesh / 2 + 2,
+              fine = rows(mesh) * node_count(mesh);
     return fine > coarse ? fine : coarse;
   }
 };
@@ -70,8 +79,9 @@ struct Record {
 template <class Workers, class R>
 KOKKOS_INLINE_FUNCTION March<R> march_in_memory(const Workers& workers, const PutPack<R>& put,
                                                 const Jumps<R>& jumps, const Grid<R>& grid,
-                                                const Scheme<R>& scheme, const StepTable<R>& table,
-                                                const Memory<R, 0>& memory, R kink, const Record& record) {
+                                                const JumpSpectrum<R>& spectrum, const Scheme<R>& scheme,
+                                                const StepTable<R>& table, const Memory<R, 0>& memory, R kink,
+                                                const Record& record) {
   const int mesh = grid.mesh, count = node_count(mesh), steps = scheme.steps;
   const R h = grid.h;
   March<R> march{{memory.row(0, mesh), memory.row(1, mesh), memory.row(2, mesh)},
@@ -95,7 +105,7 @@ KOKKOS_INLINE_FUNCTION March<R> march_in_memory(const Workers& workers, const Pu
   for (int n = 1; n <= steps; ++n) {
     if (n % lanes == 1) fill_table(workers, put, jumps, scheme, table, n);
     const StepFactors<R> factors = table.load(n);
-    step(workers, put, jumps, grid, march, factors, begun);
+    step(workers, put, jumps, grid, spectrum, march, factors, begun);
     begun = factors.certain;
     if (record.time != nullptr) {
       workers.each([=, &put](int lane) {
@@ -134,11 +144,13 @@ KOKKOS_INLINE_FUNCTION March<R> march_in_memory(const Workers& workers, const Pu
   return march;
 }
 
-/// Where the weights of a solve's jumps go, and those that a solve with half the steps has left, if any.
+/// Where the weights of a solve's jumps go, those that a solve with half the steps has left, if any, and what
+/// they are transformed with.
 template <class R>
 struct Weights {
   R* own;
   const R* finer;
+  FourierRoots roots;
 };
 
 /// Marches from expiry to the puts' maturities on `grid`; `answers` gets one for each member. Returns the
@@ -164,15 +176,19 @@ KOKKOS_INLINE_FUNCTION const R* solve(const Workers& workers, const PutPack<R>& 
   const R kink = h * (1.0 / 12) * spread / (spread + h * h);
   const Scheme<R> scheme = scheme_of(put, jumps, grid, steps);
   const StepTable<R> table{memory.law};
+  JumpSpectrum<R> spectrum{};
+  if (is_transformed(mesh))
+    spectrum = spectrum_of(workers, mesh, weights.roots, jumps.w, memory.spectrum(mesh));
   const R *value = nullptr, *change = nullptr;
   int exercised = -1;
   if constexpr (block > 0) {
     const RegisterRows rows{memory.row(0, mesh), memory.row(1, mesh), memory.row(2, mesh), memory.slot};
-    exercised = march_in_registers<block>(workers, put, jumps, grid, scheme, table, rows, kink);
+    exercised = march_in_registers<block>(workers, put, jumps, grid, spectrum, scheme, table, rows, kink);
     value = rows.value;
     change = rows.other;
   } else {
-    const March<R> march = march_in_memory(workers, put, jumps, grid, scheme, table, memory, kink, record);
+    const March<R> march =
+        march_in_memory(workers, put, jumps, grid, spectrum, scheme, table, memory, kink, record);
     value = march.value[1];
     change = march.y;
   }

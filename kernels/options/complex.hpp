@@ -1,0 +1,38 @@
+#pragma once
+
+#include <Kokkos_Core.hpp>
+
+namespace drogue::options {
+
+/// A complex number, or one of each option of a pack; of doubles it is read and written at once.
+template <class R>
+struct alignas(alignof(R) > 16 ? alignof(R) : 16) Complex {
+  R re, im;
+
+  KOKKOS_INLINE_FUNCTION friend Complex operator+(const Complex& a, const Complex& b) {
+    return {a.re + b.re, a.im + b.im};
+  }
+  KOKKOS_INLINE_FUNCTION friend Complex operator-(const Complex& a, const Complex& b) {
+    return {a.re - b.re, a.im - b.im};
+  }
+};
+
+template <class R, class S>
+KOKKOS_INLINE_FUNCTION Complex<R> product(const Complex<R>& a, const Complex<S>& b) {
+  return {a.re * b.re - a.im * b.im, a.re * b.im + a.im * b.re};
+}
+
+/// a times the conjugate of b.
+template <class R, class S>
+KOKKOS_INLINE_FUNCTION Complex<R> quotient(const Complex<R>& a, const Complex<S>& b) {
+  return {a.re * b.re + a.im * b.im, a.im * b.re - a.re * b.im};
+}
+
+/// sign i a.
+template <int sign, class R>
+KOKKOS_INLINE_FUNCTION Complex<R> turned(const Complex<R>& a) {
+  if constexpr (sign > 0) return {-a.im, a.re};
+  return {a.im, -a.re};
+}
+
+}  // namespace drogue::options
