@@ -127,12 +127,12 @@ struct Octet {
     for (int m = 1; m < 8; ++m) write(m, z[m].im * turn.cosine[m] - z[m].re * turn.cosine[8 - m]);
   }
 
-  /// The last pass forward, the product with eight neighbours of a spectrum, and the first pass back.
+  /// The last pass forward, the product with the spectrum's eight numbers, and the first pass back.
   template <int radix>
   KOKKOS_INLINE_FUNCTION void multiply_last(const FourierRoots& roots, int level, int task,
                                             const Complex<R>* spectrum) {
     split_last<radix>(roots, level, task * (8 / radix));
-    for (int m = 0; m < 8; ++m) z[m] = product(z[m], spectrum[padded(8 * task) + m]);
+    for (int m = 0; m < 8; ++m) z[m] = product(z[m], spectrum[m]);
     join_last<radix>(roots, level, task * (8 / radix));
   }
 

@@ -101,7 +101,7 @@ KOKKOS_INLINE_FUNCTION void sum_by_transforms(const Workers& workers, int mesh,
                [=](Octet<R>& octet, int factor) { octet.split(roots, level, factor); });
   with_last_radix(mesh, [=, &workers]<int radix>() {
     each_last(workers, mesh, z, [=](Octet<R>& octet, int task) {
-      octet.template multiply_last<radix>(roots, last, task, factors);
+      octet.template multiply_last<radix>(roots, last, task, factors + padded(8 * task));
     });
   });
   for (int level = last - 1; level > 0; --level)

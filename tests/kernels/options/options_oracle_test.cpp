@@ -83,6 +83,13 @@ TEST(OptionsOracle, NodesOfStiffAndPureJumps) {
   }
 }
 
+// Meshes whose sums over jumps go through transforms, as `solve_put` does not.
+TEST(OptionsOracle, NodesOfTransformedMeshes) {
+  const std::vector<Contract> contracts = testing::random_contracts(2, 6);
+  EXPECT_LT(difference(contracts[0], 256, 12), 1e-7);
+  EXPECT_LT(difference(contracts[1], 512, 12), 1e-7);
+}
+
 double table_density(double order, int node) {
   const std::vector<double> panel = hankel_panel(panel_of(order));
   const double begin = panel_begin(panel_of(order)), end = panel_end(panel_of(order));
