@@ -13,6 +13,7 @@ class RegisterFourier {
                                          Complex<double>* z)
       : _lane(lane),
         _roots(spectrum.roots),
+        _second_roots(spectrum.roots.seven(1, lane / 4)),
         _row(row),
         _first(z + padded(lane)),
         _second(z + padded(lane / 4 * 32 + lane % 4)),
@@ -29,7 +30,7 @@ class RegisterFourier {
     octet.store(_first, 32);
     workers.meet();
     octet.load(_second, 4);
-    octet.split(_roots, 1, _lane / 4);
+    octet.split(_second_roots);
     octet.store(_second, 4);
     workers.meet();
     octet.load(_third, 1);
@@ -37,7 +38,7 @@ class RegisterFourier {
     octet.store(_third, 1);
     workers.meet();
     octet.load(_second, 4);
-    octet.join(_roots, 1, _lane / 4);
+    octet.join(_second_roots);
     octet.store(_second, 4);
     workers.meet();
     octet.load(_first, 32);
@@ -54,6 +55,7 @@ class RegisterFourier {
 
   int _lane;
   FourierRoots _roots;
+  SevenRoots _second_roots;
   Octet<double> _spectrum;
   double* _row;
   Complex<double>*_first, *_second, *_third;

@@ -83,11 +83,9 @@ TEST(OptionsOracle, NodesOfStiffAndPureJumps) {
   }
 }
 
-// Meshes whose sums over jumps go through transforms, as `solve_put` does not.
-TEST(OptionsOracle, NodesOfTransformedMeshes) {
-  const std::vector<Contract> contracts = testing::random_contracts(2, 6);
-  EXPECT_LT(difference(contracts[0], 256, 12), 1e-7);
-  EXPECT_LT(difference(contracts[1], 512, 12), 1e-7);
+// The sums over jumps of this mesh go through transforms; those of `solve_put` do not.
+TEST(OptionsOracle, NodesOfATransformedMesh) {
+  EXPECT_LT(difference(testing::random_contracts(1, 6)[0], 256, 12), 1e-7);
 }
 
 double table_density(double order, int node) {
