@@ -4,10 +4,10 @@
 #include "kernels/options/grid.hpp"
 
 /// The sum over jumps y_i = sum_j w_{j-i} v_j by Fourier transforms. With V = sum v_k x^k and
-/// W = sum w_{n-k} x^k, k < 2n, the y_i are the coefficients n, ..., 2n - 1 of V W. Its remainder of division
-/// by x^n - i is P0 + i P1 - P2 for the three parts of n coefficients each: all are real, so P1 is the
-/// imaginary part, and n complex points do what a real transform would need 3n for. The remainder falls by
-/// and by into those by the n factors x - e^{2 pi i phi}, eight at a time (`FourierRoots`), and back.
+/// W = sum w_{n-k} x^k, k < 2n, the y_i are the coefficients n .. 2n - 1 of V W. Its remainder of division by
+/// x^n - i is P0 + i P1 - P2 for the three parts of n coefficients each. All are real, so P1 is the imaginary
+/// part, and n complex points are enough. The remainder falls into those by the eight factors of x^n - i, and
+/// so on to x - e^{2 pi i phi} (`FourierRoots`); products of these are taken back to the product of V and W.
 namespace drogue::options {
 
 /// sum_m z_m e^{sign 2 pi i q m/2}, q = 0, 1, in place; the next ones likewise.
@@ -72,37 +72,37 @@ struct Octet {
   KOKKOS_INLINE_FUNCTION void store(Complex<R>* to, int stride) const {
     for (int m = 0; m < 8; ++m) to[padded(m * stride)] = z[m];
   }
-  /// Remainders by a factor's eight factors, and back.
-  KOKKOS_INLINE_FUNCTION void split(const FourierRoots& roots, int level, int factor) {
-    for (int m = 1; m < 8; ++m) z[m] = product(z[m], roots.at(level, m, factor));
+  /// Remainders by the eight factors of a factor with these roots, and back.
+  KOKKOS_INLINE_FUNCTION void split(const SevenRoots& roots) {
+    for (int m = 1; m < 8; ++m) z[m] = product(z[m], roots.of[m - 1]);
     transform<1>(z);
   }
-  KOKKOS_INLINE_FUNCTION void join(const FourierRoots& roots, int level, int factor) {
+  KOKKOS_INLINE_FUNCTION void join(const SevenRoots& roots) {
     transform<-1>(z);
-    for (int m = 1; m < 8; ++m) z[m] = quotient(z[m], roots.at(level, m, factor));
+    for (int m = 1; m < 8; ++m) z[m] = quotient(z[m], roots.of[m - 1]);
   }
-  /// The same where two, four or eight neighbours are all that is left of a factor, for the first of them.
+  /// The same in a last pass, where `radix` neighbours are all that is left of a factor; octet `task`.
   template <int radix>
-  KOKKOS_INLINE_FUNCTION void split_last(const FourierRoots& roots, int level, int factor) {
+  KOKKOS_INLINE_FUNCTION void split_last(const FourierRoots& roots, int level, int task) {
     if constexpr (radix == 8) {
-      split(roots, level, factor);
+      split(roots.seven(level, task));
     } else {
       for (int k = 0; k < 8; k += radix) {
         for (int m = 1; m < radix; ++m)
-          z[k + m] = product(z[k + m], roots.at(level, m * (8 / radix), factor + k / radix));
+          z[k + m] = product(z[k + m], roots.at(level, m * (8 / radix), (8 * task + k) / radix));
         transform_few<1, radix>(k);
       }
     }
   }
   template <int radix>
-  KOKKOS_INLINE_FUNCTION void join_last(const FourierRoots& roots, int level, int factor) {
+  KOKKOS_INLINE_FUNCTION void join_last(const FourierRoots& roots, int level, int task) {
     if constexpr (radix == 8) {
-      join(roots, level, factor);
+      join(roots.seven(level, task));
     } else {
       for (int k = 0; k < 8; k += radix) {
         transform_few<-1, radix>(k);
         for (int m = 1; m < radix; ++m)
-          z[k + m] = quotient(z[k + m], roots.at(level, m * (8 / radix), factor + k / radix));
+          z[k + m] = quotient(z[k + m], roots.at(level, m * (8 / radix), (8 * task + k) / radix));
       }
     }
   }
@@ -127,13 +127,13 @@ struct Octet {
     for (int m = 1; m < 8; ++m) write(m, z[m].im * turn.cosine[m] - z[m].re * turn.cosine[8 - m]);
   }
 
-  /// The last pass forward, the product with eight neighbours of a spectrum, and the first pass back.
+  /// The last pass forward, the product with the spectrum's eight numbers, and the first pass back.
   template <int radix>
   KOKKOS_INLINE_FUNCTION void multiply_last(const FourierRoots& roots, int level, int task,
                                             const Complex<R>* spectrum) {
-    split_last<radix>(roots, level, task * (8 / radix));
-    for (int m = 0; m < 8; ++m) z[m] = product(z[m], spectrum[padded(8 * task) + m]);
-    join_last<radix>(roots, level, task * (8 / radix));
+    split_last<radix>(roots, level, task);
+    for (int m = 0; m < 8; ++m) z[m] = product(z[m], spectrum[m]);
+    join_last<radix>(roots, level, task);
   }
 
  private:

@@ -5,58 +5,57 @@
 
 namespace drogue::options {
 
-/// What a sum over jumps by transforms reads: made once a solve.
+/// What a sum over jumps by transforms reads; made once a solve.
 template <class R>
 struct JumpSpectrum {
   FourierRoots roots;
   const Complex<R>* place;  ///< (padded(mesh)): the weights' transform, divided by the mesh
 };
 
-/// Passes of a transform of `mesh` points; the last one has `last_radix`, the others eight.
-KOKKOS_INLINE_FUNCTION constexpr int last_level(int mesh) {
-  int level = 0;
-  for (int rest = mesh; rest > 8; rest /= 8) ++level;
-  return level;
-}
+/// The passes of a transform of 2^log_size numbers: each of radix 8 but the last, of 2^last_log_radix.
+struct Passes {
+  int log_size, last, last_log_radix;
 
-/// Calls f(octet, own, stride, factor) for the numbers of all tasks of a level.
+  KOKKOS_INLINE_FUNCTION constexpr explicit Passes(int size) : log_size(0) {
+    while (1 << log_size < size) ++log_size;
+    last = (log_size - 1) / 3;
+    last_log_radix = log_size - 3 * last;
+  }
+  /// Of the numbers that a task of a pass takes: the distance, in the last pass 1.
+  [[nodiscard]] KOKKOS_INLINE_FUNCTION constexpr int log_stride(int pass) const {
+    return pass < last ? log_size - 3 * (pass + 1) : 0;
+  }
+};
+
+/// Calls f(octet, factor) for all tasks of a pass on z, and leaves what f makes of their numbers. In the last
+/// pass `factor` counts octets.
 template <class Workers, class R, class F>
-KOKKOS_INLINE_FUNCTION void each_octet(const Workers& workers, int mesh, int level, Complex<R>* z,
+KOKKOS_INLINE_FUNCTION void each_octet(const Workers& workers, const Passes& passes, int pass, Complex<R>* z,
                                        const F& f) {
-  const int stride = mesh >> (3 * (level + 1));
+  const int log_stride = passes.log_stride(pass), tasks = 1 << (passes.log_size - 3);
   workers.each([=](int lane) {
-    for (int task = lane; task < mesh / 8; task += lanes) {
-      const int factor = task / stride, k = task % stride;
-      Complex<R>* const own = z + padded(8 * stride * factor + k);
+    for (int task = lane; task < tasks; task += lanes) {
+      const int factor = task >> log_stride, k = task - (factor << log_stride);
+      Complex<R>* const own = z + padded((factor << (log_stride + 3)) + k);
       Octet<R> octet;
-      octet.load(own, stride);
+      octet.load(own, 1 << log_stride);
       f(octet, factor);
-      octet.store(own, stride);
+      octet.store(own, 1 << log_stride);
     }
   });
 }
 
-/// Calls f.operator()<radix>() with the radix of the last pass.
-template <class F>
-KOKKOS_INLINE_FUNCTION void with_last_radix(int mesh, const F& f) {
-  const int radix = mesh >> (3 * last_level(mesh));
-  if (radix == 2) return f.template operator()<2>();
-  if (radix == 4) return f.template operator()<4>();
-  f.template operator()<8>();
-}
-
-/// The last pass forward, `f(octet, first)` on eight neighbours of the transform, and whatever is written
-/// back.
+/// The same for the last pass, of which f is to know the radix: f.operator()<radix>(octet, task).
 template <class Workers, class R, class F>
-KOKKOS_INLINE_FUNCTION void each_last(const Workers& workers, int mesh, Complex<R>* z, const F& f) {
-  workers.each([=](int lane) {
-    for (int task = lane; task < mesh / 8; task += lanes) {
-      Octet<R> octet;
-      octet.load(z + padded(8 * task), 1);
-      f(octet, task);
-      octet.store(z + padded(8 * task), 1);
-    }
-  });
+KOKKOS_INLINE_FUNCTION void each_last(const Workers& workers, const Passes& passes, Complex<R>* z,
+                                      const F& f) {
+  const auto with = [&]<int radix>() {
+    each_octet(workers, passes, passes.last, z,
+               [=](Octet<R>& octet, int task) { f.template operator()<radix>(octet, task); });
+  };
+  if (passes.last_log_radix == 1) return with.template operator()<2>();
+  if (passes.last_log_radix == 2) return with.template operator()<4>();
+  with.template operator()<8>();
 }
 
 /// The transform of the weights of jumps, divided by the mesh, into `z` (padded(mesh)).
@@ -64,19 +63,17 @@ template <class Workers, class R>
 KOKKOS_INLINE_FUNCTION JumpSpectrum<R> spectrum_of(const Workers& workers, int mesh,
                                                    const FourierRoots& roots, const R* w, Complex<R>* z) {
   const WeightLayout<R> layout(mesh);
+  const Passes passes(mesh);
   const double part = 1.0 / mesh;
   workers.each([=](int lane) {
     for (int k = lane; k < mesh; k += lanes)
       z[padded(k)] = {part * w[layout.place(mesh - k)], part * w[layout.place(-k)]};
   });
-  const int last = last_level(mesh);
-  for (int level = 0; level < last; ++level)
-    each_octet(workers, mesh, level, z,
-               [=](Octet<R>& octet, int factor) { octet.split(roots, level, factor); });
-  with_last_radix(mesh, [=, &workers]<int radix>() {
-    each_last(workers, mesh, z, [=](Octet<R>& octet, int task) {
-      octet.template split_last<radix>(roots, last, task * (8 / radix));
-    });
+  for (int pass = 0; pass < passes.last; ++pass)
+    each_octet(workers, passes, pass, z,
+               [=](Octet<R>& octet, int factor) { octet.split(roots.seven(pass, factor)); });
+  each_last(workers, passes, z, [=]<int radix>(Octet<R>& octet, int task) {
+    octet.template split_last<radix>(roots, passes.last, task);
   });
   return {roots, z};
 }
@@ -86,7 +83,8 @@ template <class Workers, class R>
 KOKKOS_INLINE_FUNCTION void sum_by_transforms(const Workers& workers, int mesh,
                                               const JumpSpectrum<R>& spectrum, const R* v, R* out,
                                               Complex<R>* z) {
-  const int last = last_level(mesh), stride = mesh / 8;
+  const Passes passes(mesh);
+  const int stride = mesh / 8;
   const FourierRoots roots = spectrum.roots;
   const Complex<R>* const factors = spectrum.place;
   workers.each([=](int lane) {
@@ -96,17 +94,15 @@ KOKKOS_INLINE_FUNCTION void sum_by_transforms(const Workers& workers, int mesh,
       octet.store(z + padded(k), stride);
     }
   });
-  for (int level = 1; level < last; ++level)
-    each_octet(workers, mesh, level, z,
-               [=](Octet<R>& octet, int factor) { octet.split(roots, level, factor); });
-  with_last_radix(mesh, [=, &workers]<int radix>() {
-    each_last(workers, mesh, z, [=](Octet<R>& octet, int task) {
-      octet.template multiply_last<radix>(roots, last, task, factors);
-    });
+  for (int pass = 1; pass < passes.last; ++pass)
+    each_octet(workers, passes, pass, z,
+               [=](Octet<R>& octet, int factor) { octet.split(roots.seven(pass, factor)); });
+  each_last(workers, passes, z, [=]<int radix>(Octet<R>& octet, int task) {
+    octet.template multiply_last<radix>(roots, passes.last, task, factors + padded(8 * task));
   });
-  for (int level = last - 1; level > 0; --level)
-    each_octet(workers, mesh, level, z,
-               [=](Octet<R>& octet, int factor) { octet.join(roots, level, factor); });
+  for (int pass = passes.last - 1; pass > 0; --pass)
+    each_octet(workers, passes, pass, z,
+               [=](Octet<R>& octet, int factor) { octet.join(roots.seven(pass, factor)); });
   workers.each([=](int lane) {
     for (int k = lane; k < stride; k += lanes) {
       Octet<R> octet;

@@ -12,11 +12,14 @@ class RegisterFourier {
   KOKKOS_INLINE_FUNCTION RegisterFourier(int lane, const JumpSpectrum<double>& spectrum, double* row,
                                          Complex<double>* z)
       : _lane(lane),
-        _spectrum(spectrum),
+        _roots(spectrum.roots),
+        _second_roots(spectrum.roots.seven(1, lane / 4)),
         _row(row),
         _first(z + padded(lane)),
         _second(z + padded(lane / 4 * 32 + lane % 4)),
-        _third(z + padded(8 * lane)) {}
+        _third(z + padded(8 * lane)) {
+    _spectrum.load(spectrum.place + padded(8 * lane), 1);
+  }
 
   KOKKOS_INLINE_FUNCTION LaneNodes<8> operator()(const WarpWorkers& workers,
                                                  const LaneNodes<8>& value) const {
@@ -27,15 +30,15 @@ class RegisterFourier {
     octet.store(_first, 32);
     workers.meet();
     octet.load(_second, 4);
-    octet.split(_spectrum.roots, 1, _lane / 4);
+    octet.split(_second_roots);
     octet.store(_second, 4);
     workers.meet();
     octet.load(_third, 1);
-    octet.multiply_last<4>(_spectrum.roots, 2, _lane, _spectrum.place);
+    octet.multiply_last<4>(_roots, 2, _lane, _spectrum.z);
     octet.store(_third, 1);
     workers.meet();
     octet.load(_second, 4);
-    octet.join(_spectrum.roots, 1, _lane / 4);
+    octet.join(_second_roots);
     octet.store(_second, 4);
     workers.meet();
     octet.load(_first, 32);
@@ -51,7 +54,9 @@ class RegisterFourier {
   }
 
   int _lane;
-  JumpSpectrum<double> _spectrum;
+  FourierRoots _roots;
+  SevenRoots _second_roots;
+  Octet<double> _spectrum;
   double* _row;
   Complex<double>*_first, *_second, *_third;
 };

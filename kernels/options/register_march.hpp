@@ -168,7 +168,16 @@ class JumpSum<block, true> {
   RegisterFourier _transforms;
 };
 
-/// Marches from expiry to maturity. Returns the last node below the strike that is exercised, -1 if none is.
+/// Turns an array of nodes in plain order into a `swizzled` one.
+template <int block>
+KOKKOS_INLINE_FUNCTION void swizzle(const WarpWorkers& workers, double* nodes) {
+  const auto own = LaneNodes<block>::load(workers.lane, nodes);
+  workers.meet();
+  own.store_swizzled(workers.lane, nodes);
+}
+
+/// Marches from expiry to maturity; `jumps.left` and `left_price` are left `swizzled`. Returns the last node
+/// below the strike that is exercised, -1 if none is.
 template <int block>
 KOKKOS_INLINE_FUNCTION int march_in_registers(const WarpWorkers& workers, const PutPack<double>& put,
                                               const Jumps<double>& jumps, const Grid<double>& grid,
@@ -182,6 +191,8 @@ KOKKOS_INLINE_FUNCTION int march_in_registers(const WarpWorkers& workers, const 
   Own value, before{}, stale{}, floor;
   Certain<double> begun{1.0, 1.0};
   before.store(lane, rows.force);
+  swizzle<block>(workers, jumps.left);
+  swizzle<block>(workers, jumps.left_price);
   for (int m = 0; m < block; ++m) {
     const AtExpiry<double> node = at_expiry(put, grid, lane * block + m, kink);
     value.node[m] = node.value;
@@ -194,7 +205,8 @@ KOKKOS_INLINE_FUNCTION int march_in_registers(const WarpWorkers& workers, const 
     }
     const Own sum = sum_over_jumps(workers, value);
     const StepFactors<double> f = table.load(n);
-    const Own left = Own::load(lane, jumps.left), left_price = Own::load(lane, jumps.left_price);
+    const Own left = Own::load_swizzled(lane, jumps.left),
+              left_price = Own::load_swizzled(lane, jumps.left_price);
     if (n == scheme.steps) before.store_swizzled(lane, rows.out);
     Own y;
     for (int m = 0; m < block; ++m) {

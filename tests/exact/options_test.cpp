@@ -68,6 +68,16 @@ TEST(OptionsExact, FixedMesh) {
   expect_same_prices(settings, of_all_models());
 }
 
+// Sums over jumps by transforms; on CUDA in registers, and in memory.
+TEST(OptionsExact, TransformedMeshes) {
+  options::Settings settings;
+  settings.steps = 16;
+  for (const int mesh : {256, 1024}) {
+    settings.mesh = mesh;
+    expect_same_prices(settings, of_all_models());
+  }
+}
+
 TEST(OptionsExact, MeshChosenByTolerance) {
   options::Settings settings;
   settings.tolerance = 3e-5;

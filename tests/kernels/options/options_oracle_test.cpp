@@ -83,6 +83,11 @@ TEST(OptionsOracle, NodesOfStiffAndPureJumps) {
   }
 }
 
+// The sums over jumps of this mesh go through transforms; those of `solve_put` do not.
+TEST(OptionsOracle, NodesOfATransformedMesh) {
+  EXPECT_LT(difference(testing::random_contracts(1, 6)[0], 256, 12), 1e-7);
+}
+
 double table_density(double order, int node) {
   const std::vector<double> panel = hankel_panel(panel_of(order));
   const double begin = panel_begin(panel_of(order)), end = panel_end(panel_of(order));

@@ -1,0 +1,112 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "kernels/device/memory.hpp"
+#include "kernels/options/register_fourier.hpp"
+
+// Sums over jumps by Fourier transforms against plain sums.
+
+namespace drogue::options {
+namespace {
+
+using Space = DROGUE_TEST_SPACE;
+using Numbers = Kokkos::View<double*, Space::memory_space>;
+using R = std::conditional_t<device::is_host<Space>, device::HostPack<double>, double>;
+constexpr int members = device::Access<R>::lanes;
+
+struct SumFunctor {
+  int mesh;
+  bool in_registers;
+  Numbers weights, values, sums, roots, spectrum, work;
+
+  KOKKOS_FUNCTION void operator()(const Kokkos::TeamPolicy<Space>::member_type& team) const {
+    if constexpr (device::is_host<Space>) {
+      sum_on(SerialWorkers<R>{});
+    } else {
+      sum_on(WarpWorkers{static_cast<int>(team.team_rank())});
+    }
+  }
+
+ private:
+  template <class Workers>
+  KOKKOS_FUNCTION void sum_on(const Workers& workers) const {
+    const auto* const w = reinterpret_cast<const R*>(weights.data());
+    const auto* const v = reinterpret_cast<const R*>(values.data());
+    auto* const to = reinterpret_cast<R*>(sums.data());
+    auto* const z = reinterpret_cast<Complex<R>*>(work.data());
+    const JumpSpectrum<R> made = spectrum_of(workers, mesh, FourierRoots::of(roots.data()), w,
+                                             reinterpret_cast<Complex<R>*>(spectrum.data()));
+    if constexpr (!device::is_host<Space>) {
+      if (in_registers) {
+        const auto own = LaneNodes<8>::load(workers.lane, v);
+        RegisterFourier(workers.lane, made, to, z)(workers, own).store(workers.lane, to);
+        return;
+      }
+    }
+    sum_by_transforms(workers, mesh, made, v, to, z);
+  }
+};
+
+Numbers on_backend(const std::vector<double>& numbers) {
+  const Numbers view("numbers", numbers.size());
+  Kokkos::deep_copy(view, Kokkos::View<const double*, Kokkos::HostSpace>(numbers.data(), numbers.size()));
+  return view;
+}
+
+/// Random values, and weights like those of jumps; those of a pack's members are of other magnitudes.
+void expect_plain_sums(int mesh, bool in_registers) {
+  const WeightLayout<R> layout(mesh);
+  std::vector<double> w(static_cast<std::size_t>(layout.size() * members)),
+      v(static_cast<std::size_t>(mesh * members));
+  const auto weight = [&](int d, int k) -> double& {
+    return w[static_cast<std::size_t>(layout.place(d) * members + k)];
+  };
+  const auto value = [&](int i, int k) -> double& { return v[static_cast<std::size_t>(i * members + k)]; };
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> part(0.0, 1.0);
+  std::vector<double> all(members, 0.0);  // of the weights
+  for (int k = 0; k < members; ++k) {
+    for (int d = 1 - mesh; d < mesh; ++d) {
+      weight(d, k) = d == 0 ? 0.0 : std::pow(100.0, k) * part(random) / (double(d) * d);
+      all[static_cast<std::size_t>(k)] += weight(d, k);
+    }
+    for (int i = 0; i < mesh; ++i) value(i, k) = part(random);
+  }
+  const auto room = static_cast<std::size_t>(2 * padded(mesh) * members);
+  const Numbers sums("sums", v.size());
+  const SumFunctor functor{mesh,
+                           in_registers,
+                           on_backend(w),
+                           on_backend(v),
+                           sums,
+                           on_backend(fourier_roots()),
+                           Numbers("spectrum", room),
+                           Numbers("work", room)};
+  Kokkos::parallel_for("sum_test", Kokkos::TeamPolicy<Space>(1, device::is_host<Space> ? 1 : lanes), functor);
+  const auto found = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace{}, sums);
+  for (int k = 0; k < members; ++k) {
+    double worst = 0.0;
+    for (int i = 0; i < mesh; i += 5) {
+      double sum = 0.0;
+      for (int j = 0; j < mesh; ++j) sum += weight(j - i, k) * value(j, k);
+      worst = std::max(worst, std::abs(found(i * members + k) - sum));
+    }
+    EXPECT_LT(worst, 3e-14 * all[static_cast<std::size_t>(k)]) << "mesh " << mesh << ", member " << k;
+  }
+}
+
+TEST(OptionsSum, TransformsEqualPlainSums) {
+  for (const int mesh : {256, 512, 1024, 2048, 4096}) {
+    ASSERT_TRUE(is_transformed(mesh));
+    expect_plain_sums(mesh, false);
+  }
+  EXPECT_FALSE(is_transformed(128) || is_transformed(384));
+  if (!device::is_host<Space>) expect_plain_sums(256, true);
+}
+
+}  // namespace
+}  // namespace drogue::options
