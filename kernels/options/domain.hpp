@@ -20,26 +20,28 @@ KOKKOS_INLINE_FUNCTION double cut_error(int mesh) { return 0.03 / (double(mesh) 
 /// 2 is what paths that hardly move contribute, nearly all of a short maturity.) An
 /// early exercise boundary of a put with r > 0 lies above ln(t/(1+t)) for every t with psi(-t) <= r
 /// (Lundberg's bound on the infimum, Mordecki 2002), and below it the value is known.
-/// `scratch` holds 3 lanes values.
+/// `scratch` holds 3 `most_lanes` values.
 template <class Workers, class R>
 KOKKOS_INLINE_FUNCTION Domain<R> domain_of(const Workers& workers, const PutPack<R>& put, const Law<R>& law,
                                            double error, R* scratch) {
   constexpr int n = 12;
-  R *tilt = scratch, *cumulant = scratch + lanes, *grown = scratch + 2 * lanes;
+  R *tilt = scratch, *cumulant = scratch + most_lanes, *grown = scratch + 2 * most_lanes;
   const R up = decay_up(put), down = decay_down(put), maturity = put.maturity, rate = put.rate;
   const R variance = put.variance + law.variance;
   const double depth = -device::portable::log(error);
   const R gaussian = device::square_root(2.0 * depth / (device::maximum(variance, R(1e-12)) * maturity));
   workers.each([&, tilt, cumulant](int lane) {
-    if (lane > 2 * n) return;
-    R theta = 1.0;
-    if (lane < 2 * n) {
-      const int k = lane % n;
-      const R t = 2.0 * gaussian * ((k % 2 == 0 ? 1.0 : 0.7071067811865476) * power_of_two(rounder - k / 2));
-      theta = lane < n ? t * up * device::reciprocal(t + up) : -(t * down * device::reciprocal(t + down));
+    for (int m = lane; m <= 2 * n; m += workers.lanes) {
+      R theta = 1.0;
+      if (m < 2 * n) {
+        const int k = m % n;
+        const R t =
+            2.0 * gaussian * ((k % 2 == 0 ? 1.0 : 0.7071067811865476) * power_of_two(rounder - k / 2));
+        theta = m < n ? t * up * device::reciprocal(t + up) : -(t * down * device::reciprocal(t + down));
+      }
+      tilt[m] = theta;
+      cumulant[m] = 0.5 * put.variance * theta * theta + jump_cumulant(put, law, theta);
     }
-    tilt[lane] = theta;
-    cumulant[lane] = 0.5 * put.variance * theta * theta + jump_cumulant(put, law, theta);
   });
   const R mean = put.rate - put.dividend - cumulant[2 * n];
   // What a path earns on its way: a discount, or, where r < 0, the opposite.
@@ -47,13 +49,12 @@ KOKKOS_INLINE_FUNCTION Domain<R> domain_of(const Workers& workers, const PutPack
   const R spot_above = device::maximum(put.log_spot, R(0.0)),
           spot_below = device::maximum(-put.log_spot, R(0.0));
   workers.each([&, tilt, cumulant, grown](int lane) {
-    if (lane < 2 * n)
-      grown[lane] =
-          exponential(device::maximum(R(0.0), maturity * (cumulant[lane] + mean * tilt[lane] - rate)));
+    for (int m = lane; m < 2 * n; m += workers.lanes)
+      grown[m] = exponential(device::maximum(R(0.0), maturity * (cumulant[m] + mean * tilt[m] - rate)));
   });
   const auto least_ends = [&, tilt, grown](int lane) {
     Kokkos::Array<R, 2> least = {R(1e30), R(1e30)};
-    for (int pair = lane; pair < n * n; pair += lanes) {
+    for (int pair = lane; pair < n * n; pair += workers.lanes) {
       const int k = pair / n, m = n + pair % n;
       const R tu = tilt[k], td = -tilt[m], per = device::reciprocal(tu + td);
       const R need = base + rough_logarithm(device::maximum(grown[k] + grown[m] - 2.0, R(1e-3)));

@@ -23,9 +23,10 @@ KOKKOS_INLINE_FUNCTION Grid<R> grid_of(const Domain<R>& domain, int mesh) {
   return {mesh, device::maximum(domain.below / strike, domain.above / (double(mesh) - strike)), strike};
 }
 
-/// Whether the sum over jumps of a mesh goes through Fourier transforms, which then are the faster.
-KOKKOS_INLINE_FUNCTION constexpr bool is_transformed(int mesh) {
-  return mesh >= 256 && (mesh & (mesh - 1)) == 0;
+/// Whether the sum over jumps of a mesh goes through Fourier transforms, which are the faster where every
+/// lane has work in them.
+KOKKOS_INLINE_FUNCTION constexpr bool is_transformed(int mesh, int lanes) {
+  return mesh >= 128 && mesh >= 8 * lanes && (mesh & (mesh - 1)) == 0;
 }
 
 /// Place of number i of a transform: numbers that lanes read or write at once then are in different banks of
@@ -34,10 +35,10 @@ KOKKOS_INLINE_FUNCTION constexpr int padded(int i) { return i + i / 8; }
 
 /// Blocks of nodes that lanes own, and the length of an array that holds them all and whole octets of nodes,
 /// two of which hold a transform.
-KOKKOS_INLINE_FUNCTION int block_of(int mesh) { return (mesh + lanes - 1) / lanes; }
+KOKKOS_INLINE_FUNCTION int block_of(int mesh, int lanes) { return (mesh + lanes - 1) / lanes; }
 KOKKOS_INLINE_FUNCTION int node_count(int mesh) {
-  const int owned = block_of(mesh) * lanes, octets = (mesh + 7) / 8 * 8 + 8;
-  if (is_transformed(mesh)) return padded(mesh);
+  const int owned = block_of(mesh, most_lanes) * most_lanes, octets = (mesh + 7) / 8 * 8 + 8;
+  if (is_transformed(mesh, 1)) return padded(mesh);
   return owned > octets ? owned : octets;
 }
 

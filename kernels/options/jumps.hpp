@@ -16,11 +16,11 @@ KOKKOS_INLINE_FUNCTION void sum_mixture(const Workers& workers, const PutPack<R>
   const R tilt = device::absolute(put.jump[2]);
   const R *s = law.s, *c = law.c;
   workers.each([=](int lane) {
-    for (int q = lane; q < Mixture::size; q += lanes) ratio[q] = exponential((tilt - s[q]) * h);
+    for (int q = lane; q < Mixture::size; q += workers.lanes) ratio[q] = exponential((tilt - s[q]) * h);
   });
   workers.each([=](int lane) {
     const int octets = (mesh + 7) / 8;
-    for (int task = lane; task < 2 * octets; task += lanes) {
+    for (int task = lane; task < 2 * octets; task += workers.lanes) {
       const int part = task / octets, first = task % octets * 8 + 1;
       R sum[8] = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
       for (int q = part; q < Mixture::size; q += 2 * at_once) {
@@ -101,7 +101,7 @@ struct JumpsMemory {
   R *w, *left, *left_price, *symbol;
   R *even, *odd;  ///< (node_count)
   R* ratio;       ///< (Mixture::size)
-  R* slot;        ///< (2 lanes)
+  R* slot;        ///< (2 most_lanes)
 };
 
 /// The weights of jumps by d nodes: a mixture's are nodal values of the density. On a grid of twice the steps
@@ -138,17 +138,18 @@ KOKKOS_INLINE_FUNCTION Jumps<R> jumps_of(const Workers& workers, const PutPack<R
   const WeightLayout<R> layout(mesh);
   const bool mixed = put.model == Model::generalized_hyperbolic;
   workers.each([=](int lane) {
-    for (int k = lane; k < layout.size(); k += lanes) memory.w[k] = 0.0;
-    for (int k = lane; k < nodes; k += lanes) memory.left[k] = memory.left_price[k] = 0.0;
+    for (int k = lane; k < layout.size(); k += workers.lanes) memory.w[k] = 0.0;
+    for (int k = lane; k < nodes; k += workers.lanes) memory.left[k] = memory.left_price[k] = 0.0;
   });
   if (mixed && finer == nullptr)
     sum_mixture(workers, put, law, h, mesh, memory.ratio, memory.even, memory.odd);
   const R tilt = mixed && finer == nullptr ? R(-2.0 * device::absolute(put.jump[2]) * h) : R(0.0);
-  const R next_growth = exponential(double(lanes) * h), next_tilted = exponential(double(lanes) * tilt);
+  const R next_growth = exponential(double(workers.lanes) * h),
+          next_tilted = exponential(double(workers.lanes) * tilt);
   const Kokkos::Array<R, 3> whole = sums(workers, [=, &put, &grid](int lane) {
     R rate = 0.0, variance = 0.0, price = 0.0;
     R growth = exponential((lane + 1.0) * h), tilted = exponential((lane + 1.0) * tilt);
-    for (int d = 1 + lane; d <= mesh; d += lanes) {
+    for (int d = 1 + lane; d <= mesh; d += workers.lanes) {
       const double part = !mixed && d == mesh ? 0.5 : 1.0;
       const WeightPair<R> pair = weights(put, grid, d, tilted, memory.even, memory.odd, finer);
       const R up = part * pair.up, down = part * pair.down, both = up + down;
@@ -189,25 +190,28 @@ KOKKOS_INLINE_FUNCTION Jumps<R> jumps_of(const Workers& workers, const PutPack<R
       memory.left[mesh - 1] += tails.down;
       memory.left_price[mesh - 1] += tails.down_price;
     }
-    // Odd d in the lower half of the lanes, even d in the upper.
-    const double cosine = angle_cosine(lane % symbols), twice = 2.0 * (2.0 * cosine * cosine - 1.0);
-    const int first = lane < symbols ? 1 : 2;
-    double before = first == 1 ? cosine : 1.0, now = first == 1 ? cosine : 0.5 * twice;
-    R sum = 0.0;
-    for (int d = first; d <= mesh; d += 2) {
-      sum += now * memory.even[d];
-      const double next = twice * now - before;
-      before = now;
-      now = next;
+    // The odd d of all angles first, then the even ones.
+    for (int task = lane; task < 2 * symbols; task += workers.lanes) {
+      const double cosine = angle_cosine(task % symbols), twice = 2.0 * (2.0 * cosine * cosine - 1.0);
+      const int first = task < symbols ? 1 : 2;
+      double before = first == 1 ? cosine : 1.0, now = first == 1 ? cosine : 0.5 * twice;
+      R sum = 0.0;
+      for (int d = first; d <= mesh; d += 2) {
+        sum += now * memory.even[d];
+        const double next = twice * now - before;
+        before = now;
+        now = next;
+      }
+      memory.slot[task] = sum;
     }
-    memory.slot[lane] = sum;
   });
   workers.each([=](int lane) {
     if (lane < symbols) memory.symbol[lane] = jumps.rate - (memory.slot[lane] + memory.slot[symbols + lane]);
   });
-  recur_backward(workers, {memory.left, memory.left_price}, block_of(mesh), R(1.0), memory.slot);
+  recur_backward(workers, {memory.left, memory.left_price}, block_of(mesh, workers.lanes), R(1.0),
+                 memory.slot);
   workers.each([=](int lane) {
-    for (int i = 1 + lane; i < mesh; i += lanes)
+    for (int i = 1 + lane; i < mesh; i += workers.lanes)
       memory.left_price[i] = memory.left_price[i] * exponential((double(i) - grid.strike) * h);
   });
   return jumps;

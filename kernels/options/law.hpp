@@ -70,7 +70,7 @@ KOKKOS_INLINE_FUNCTION Law<R> law_of(const Workers& workers, const PutPack<R>& p
     workers.each([=](int lane) {
       for (int k = 0; k < members; ++k) {
         const MixtureGrid grid = mixture_grid(puts[k], panels, panel_slot);
-        for (int q = lane; q < Mixture::size; q += lanes) {
+        for (int q = lane; q < Mixture::size; q += workers.lanes) {
           const Term term = mixture_term(puts[k], grid, q);
           reinterpret_cast<double*>(s + q)[k] = term.rate;
           reinterpret_cast<double*>(c + q)[k] = term.weight;
@@ -80,7 +80,7 @@ KOKKOS_INLINE_FUNCTION Law<R> law_of(const Workers& workers, const PutPack<R>& p
     const R up = -pack.jump[2], down = pack.jump[2];
     const Kokkos::Array<R, 2> variance = sums(workers, [=](int lane) {
       Kokkos::Array<R, 2> sum = {R(0.0), R(0.0)};
-      for (int q = lane; q < Mixture::size; q += lanes) {
+      for (int q = lane; q < Mixture::size; q += workers.lanes) {
         const R a = device::reciprocal(s[q] + up), b = device::reciprocal(s[q] + down);
         sum[q < Mixture::low ? 0 : 1] += c[q] * (a * a + b * b);
         if (q >= Mixture::low) continue;

@@ -14,7 +14,7 @@ struct March {
   R* y;
   R* floor;  ///< payoff; `-unbounded` where early exercise is not looked for
   R* force;  ///< what exercise pushes with, of split puts
-  R* slot;   ///< (6 lanes)
+  R* slot;   ///< (6 most_lanes)
 };
 
 /// The value e^{-r t} - e^{x - q t} of a put that will certainly be exercised, at the time t <= tau that is
@@ -43,7 +43,7 @@ KOKKOS_INLINE_FUNCTION void convolve(const Workers& workers, int mesh, const R* 
   const WeightLayout<R> layout(mesh);
   const int octets = (mesh + 7) / 8, halved = (octets + 1) / 2;
   workers.each([=](int lane) {
-    for (int task = lane; task < 2 * octets; task += lanes) {
+    for (int task = lane; task < 2 * octets; task += workers.lanes) {
       const int part = task / octets, chunk = task % octets;
       const int begin = part == 0 ? 0 : halved, end = part == 0 ? halved : octets;
       R sum[8] = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
@@ -162,28 +162,28 @@ struct StepFactors {
 /// The factors of 32 steps, which lanes compute side by side; in scratch memory.
 template <class R>
 struct StepTable {
-  R* place;  ///< (StepFactors::size, lanes)
+  R* place;  ///< (StepFactors::size, most_lanes)
 
   KOKKOS_INLINE_FUNCTION void store(int n, const StepFactors<R>& f) const {
     const R row[] = {f.value,          f.before,        f.fresh,    f.stale,     f.bend,
                      f.bend_before,    f.inverse,       f.diagonal, f.from_left, f.from_right,
                      f.certain.strike, f.certain.asset, f.edge};
-    for (int k = 0; k < StepFactors<R>::size; ++k) place[k * lanes + (n - 1) % lanes] = row[k];
+    for (int k = 0; k < StepFactors<R>::size; ++k) place[k * most_lanes + (n - 1) % most_lanes] = row[k];
   }
   [[nodiscard]] KOKKOS_INLINE_FUNCTION StepFactors<R> load(int n) const {
-    const R* at = place + (n - 1) % lanes;
+    const R* at = place + (n - 1) % most_lanes;
     return {at[0],
-            at[lanes],
-            at[2 * lanes],
-            at[3 * lanes],
-            at[4 * lanes],
-            at[5 * lanes],
-            at[6 * lanes],
-            at[7 * lanes],
-            at[8 * lanes],
-            at[9 * lanes],
-            {at[10 * lanes], at[11 * lanes]},
-            at[12 * lanes]};
+            at[most_lanes],
+            at[2 * most_lanes],
+            at[3 * most_lanes],
+            at[4 * most_lanes],
+            at[5 * most_lanes],
+            at[6 * most_lanes],
+            at[7 * most_lanes],
+            at[8 * most_lanes],
+            at[9 * most_lanes],
+            {at[10 * most_lanes], at[11 * most_lanes]},
+            at[12 * most_lanes]};
   }
 };
 
@@ -220,7 +220,8 @@ template <class Workers, class R>
 KOKKOS_INLINE_FUNCTION void fill_table(const Workers& workers, const PutPack<R>& put, const Jumps<R>& jumps,
                                        const Scheme<R>& scheme, const StepTable<R>& table, int n) {
   workers.each([=, &put, &jumps, &scheme](int lane) {
-    if (n + lane <= scheme.steps) table.store(n + lane, step_factors(put, jumps, scheme, n + lane));
+    for (int k = n + lane; k < n + most_lanes && k <= scheme.steps; k += workers.lanes)
+      table.store(k, step_factors(put, jumps, scheme, k));
   });
 }
 
@@ -256,7 +257,7 @@ template <class Workers, class R>
 KOKKOS_INLINE_FUNCTION void split_exercise(const Workers& workers, const PutPack<R>& put, const Grid<R>& grid,
                                            R diagonal, R* now, R* force) {
   workers.each([=, &put, &grid](int lane) {
-    for (int i = 1 + lane; i < grid.mesh; i += lanes) {
+    for (int i = 1 + lane; i < grid.mesh; i += workers.lanes) {
       const R payoff = device::maximum(R(0.0), 1.0 - exponential((double(i) - grid.strike) * grid.h));
       const R pushed = device::maximum(payoff, now[i] - force[i] / diagonal);
       force[i] = put.split * device::maximum(R(0.0), force[i] + diagonal * (payoff - now[i]));
@@ -274,21 +275,21 @@ template <class Workers, class R>
 KOKKOS_INLINE_FUNCTION void step(const Workers& workers, const PutPack<R>& put, const Jumps<R>& jumps,
                                  const Grid<R>& grid, const JumpSpectrum<R>& spectrum, const March<R>& march,
                                  const StepFactors<R>& f, const Certain<R>& begun) {
-  const int mesh = grid.mesh, block = block_of(mesh);
+  const int mesh = grid.mesh, block = block_of(mesh, workers.lanes);
   R* const now = march.value[0];
   const R *value = march.value[1], *before = march.value[2];
   R* const jump = march.jump[0];
   const R* jump_before = march.jump[1];
   R *other = march.other, *y = march.y, *force = march.force;
   const R *left = jumps.left, *left_price = jumps.left_price;
-  const bool transformed = is_transformed(mesh);
+  const bool transformed = is_transformed(mesh, workers.lanes);
   if (transformed) {
     sum_by_transforms(workers, mesh, spectrum, value, jump, reinterpret_cast<Complex<R>*>(other));
   } else {
     convolve(workers, mesh, jumps.w, value, jump, other);
   }
   const R stay = -jumps.rate - put.rate;
-  const bool bends = !device::all(f.bend <= R(0.0));
+  const bool bends = !workers.all(f.bend <= R(0.0));
   workers.each([=, &f, &put, &begun](int lane) {
     for (int i = lane * block; i < (lane + 1) * block; ++i) {
       if (i == 0 || i >= mesh) {

@@ -64,8 +64,14 @@ KOKKOS_INLINE_FUNCTION R larger(R a, R b) {
 template <class ExecutionSpace>
 using Number = std::conditional_t<device::is_host<ExecutionSpace>, device::HostPack<double>, double>;
 
-/// Contracts order(0), order(1), ... of one model, priced on one mesh in one launch by a team for each, or on
-/// hosts for each pack of them.
+/// The lanes that an option on a mesh has, so that each of them has eight nodes or four. Two options of 16
+/// lanes share a warp.
+KOKKOS_INLINE_FUNCTION constexpr int lanes_of(int mesh) {
+  return mesh == 64 || mesh == 128 ? 16 : most_lanes;
+}
+
+/// Contracts order(0), order(1), ... of one model, priced on one mesh in one launch by a team for one or two
+/// of them, or on hosts for each pack of them.
 template <class ExecutionSpace>
 struct PriceBatch {
   using Space = typename ExecutionSpace::memory_space;
@@ -81,19 +87,29 @@ struct PriceBatch {
   FourierRoots roots{};                            ///< in the memory of the backend
   Record record{};                                 ///< of the only contract, if at all
   int count = 0, mesh = 0, steps = 0, level = 0;
+  int lanes = most_lanes;  ///< of an option on hosts
   double tolerance = 0.0;
 
-  /// Calls `functor.price` with the workers and the memory of a team. For `block` see `solve`.
-  template <int block, class Functor>
+  /// Groups, of an option or of a pack of them, that a team prices side by side.
+  static KOKKOS_INLINE_FUNCTION constexpr int groups(int fixed) {
+    return device::is_host<ExecutionSpace> ? 1 : most_lanes / lanes_of(fixed);
+  }
+
+  /// Calls `functor.price` with the workers and the memory of a group. For `fixed` see `solve`.
+  template <int fixed, class Functor>
   KOKKOS_INLINE_FUNCTION void price_group(const Functor& functor, const Member& team) const {
-    using Scratch = Memory<R, block>;
-    void* place = team.team_scratch(level).get_shmem_aligned(Scratch::bytes(mesh), 64);
-    if constexpr (block > 0) place = device::in_shared_memory(place);
-    const Scratch memory(place, mesh);
+    using Scratch = Memory<R, fixed>;
+    const std::size_t bytes = Scratch::bytes(mesh);
+    void* place = team.team_scratch(level).get_shmem_aligned(groups(fixed) * bytes, 64);
+    if constexpr (fixed > 0) place = device::in_shared_memory(place);
     if constexpr (members == 1 && !device::is_host<ExecutionSpace>) {
-      functor.price(WarpWorkers{static_cast<int>(team.team_rank())}, memory, team.league_rank());
+      constexpr int width = lanes_of(fixed);
+      const int rank = static_cast<int>(team.team_rank()), own = rank / width;
+      functor.price(WarpWorkers<width>{rank % width},
+                    Scratch(static_cast<std::byte*>(place) + own * bytes, mesh),
+                    team.league_rank() * groups(fixed) + own);
     } else {
-      functor.price(SerialWorkers<R>{}, memory, team.league_rank());
+      functor.price(SerialWorkers<R>{lanes}, Scratch(place, mesh), team.league_rank());
     }
   }
 
@@ -103,33 +119,34 @@ struct PriceBatch {
     return order(at < count ? at : count - 1);
   }
 
-  template <int block, class Workers>
-  KOKKOS_INLINE_FUNCTION void price(const Workers& workers, const Memory<R, block>& memory, int group) const {
-    const int cells = block > 0 ? lanes * block : mesh;  // which a compiler may unroll loops for
+  template <int fixed, class Workers>
+  KOKKOS_INLINE_FUNCTION void price(const Workers& workers, const Memory<R, fixed>& memory, int group) const {
+    const int cells = fixed > 0 ? fixed : mesh;  // which a compiler may unroll loops for
     workers.each([=, this](int lane) {
-      for (int k = lane; k < members; k += lanes) memory.puts[k] = put_of(contracts(place(group, k)));
+      for (int k = lane; k < members; k += workers.lanes) memory.puts[k] = put_of(contracts(place(group, k)));
     });
     PutPack<R> put = pack_of<R>(memory.puts);
+    put.any_split = !workers.all(!put.any_split);
     const Law<R> law =
         law_of(workers, put, memory.puts, panels.data(), panel_slot.data(), memory.law_memory());
     const Domain<R> domain = domain_of(workers, put, law, cut_error(cells), memory.slot);
     Grid<R> grid = grid_of(domain, cells);
     const Tails<R> tails = tails_of(workers, put, law, grid.h * double(cells));
-    const R* fine = solve<block>(workers, put, law, tails, grid, steps, memory, {memory.w, nullptr, roots},
+    const R* fine = solve<fixed>(workers, put, law, tails, grid, steps, memory, {memory.w, nullptr, roots},
                                  record, memory.answers);
     R* const kept = memory.kept(cells);
     workers.each([=, this](int lane) {
-      for (int i = lane; i < cells / 2; i += lanes) kept[i] = fine[2 * i];
+      for (int i = lane; i < cells / 2; i += workers.lanes) kept[i] = fine[2 * i];
     });
     grid = {cells / 2, 2.0 * grid.h, 0.5 * grid.strike};
     const R* coarse =
-        solve<block / 2>(workers, put, law, tails, grid, steps / 2, memory,
+        solve<fixed / 2>(workers, put, law, tails, grid, steps / 2, memory,
                          {memory.coarse_weights(cells), memory.w, roots}, Record{}, memory.answers + members);
     const R deviation = device::square_root((put.variance + law.variance) * put.maturity);
     const R window = device::maximum(grid.h, 1.0 * deviation);
     const auto largest_change = [=, this, &put](int lane) {
       Kokkos::Array<R, 1> largest = {R(0.0)};
-      for (int i = lane; i < cells / 2; i += lanes) {
+      for (int i = lane; i < cells / 2; i += workers.lanes) {
         const auto near = device::absolute((double(i) - grid.strike) * grid.h - put.log_spot) <= window;
         largest[0] = larger(largest[0], device::select(near, device::absolute(kept[i] - coarse[i]), R(0.0)));
       }
@@ -137,7 +154,7 @@ struct PriceBatch {
     };
     const R change = workers.reduce(largest_change, [](const R& a, const R& b) { return larger(a, b); })[0];
     workers.each([=, this](int lane) {
-      for (int k = lane; k < members; k += lanes) {
+      for (int k = lane; k < members; k += workers.lanes) {
         if (group * members + k >= count) continue;
         const int at = place(group, k);
         prices(at) = price_of(contracts(at), memory.puts[k], memory.answers[k], memory.answers[members + k],
@@ -147,18 +164,18 @@ struct PriceBatch {
   }
 };
 
-/// Prices a batch; with a `block` > 0 its mesh is 32 block.
-template <class ExecutionSpace, int block>
+/// Prices a batch; for `fixed` see `solve`.
+template <class ExecutionSpace, int fixed>
 struct PriceFunctor {
   using Batch = PriceBatch<ExecutionSpace>;
 
   Batch batch;
 
   KOKKOS_FUNCTION void operator()(const typename Batch::Member& team) const {
-    batch.template price_group<block>(*this, team);
+    batch.template price_group<fixed>(*this, team);
   }
   template <class Workers>
-  KOKKOS_INLINE_FUNCTION void price(const Workers& workers, const Memory<typename Batch::R, block>& memory,
+  KOKKOS_INLINE_FUNCTION void price(const Workers& workers, const Memory<typename Batch::R, fixed>& memory,
                                     int group) const {
     batch.price(workers, memory, group);
   }
@@ -175,35 +192,39 @@ template <class ExecutionSpace>
 }
 
 /// Enqueues `Functor{batch}`, which prices the batch.
-template <int block, class Functor, class ExecutionSpace>
+template <int fixed, class Functor, class ExecutionSpace>
 void launch_batch(const ExecutionSpace& space, const char* label, const PriceBatch<ExecutionSpace>& batch) {
   using Batch = PriceBatch<ExecutionSpace>;
   if (batch.count == 0) return;
   // Warps that share a multiprocessor: as many as registers for the nodes allow without spilling.
-  constexpr unsigned teams = block == 0 ? 1 : block < 8 ? 12 : 8;
-  using Bounds = std::conditional_t<block == 0, Kokkos::LaunchBounds<>, Kokkos::LaunchBounds<lanes, teams>>;
-  const int league = (batch.count + Batch::members - 1) / Batch::members;
+  constexpr unsigned teams = fixed == 0 ? 1 : fixed < 128 ? 12 : 8;
+  using Bounds =
+      std::conditional_t<fixed == 0, Kokkos::LaunchBounds<>, Kokkos::LaunchBounds<most_lanes, teams>>;
+  constexpr int options = Batch::members * Batch::groups(fixed);
+  const int league = (batch.count + options - 1) / options;
   Kokkos::TeamPolicy<ExecutionSpace, Bounds> policy(space, league,
-                                                    device::is_host<ExecutionSpace> ? 1 : lanes);
-  policy.set_scratch_size(batch.level,
-                          Kokkos::PerTeam(Memory<typename Batch::R, block>::bytes(batch.mesh) + 64));
+                                                    device::is_host<ExecutionSpace> ? 1 : most_lanes);
+  policy.set_scratch_size(
+      batch.level,
+      Kokkos::PerTeam(Batch::groups(fixed) * Memory<typename Batch::R, fixed>::bytes(batch.mesh) + 64));
   Kokkos::parallel_for(label, policy, Functor{batch});
 }
 
 /// Enqueues the launch.
 template <class ExecutionSpace>
-void price_batch(const ExecutionSpace& space, const PriceBatch<ExecutionSpace>& batch) {
+void price_batch(const ExecutionSpace& space, PriceBatch<ExecutionSpace> batch) {
   static_assert(
       Kokkos::SpaceAccessibility<ExecutionSpace, typename decltype(batch.prices)::memory_space>::accessible);
-  const auto launch = [&]<int block>(const char* label) {
-    launch_batch<block, PriceFunctor<ExecutionSpace, block>>(space, label, batch);
+  if (batch.record.time == nullptr) batch.lanes = lanes_of(batch.mesh);
+  const auto launch = [&]<int fixed>(const char* label) {
+    launch_batch<fixed, PriceFunctor<ExecutionSpace, fixed>>(space, label, batch);
   };
   if constexpr (!device::is_host<ExecutionSpace>) {
     constexpr const char* in_registers = "drogue::options::price in registers";
     if (batch.record.time == nullptr) {
-      if (batch.mesh == 64) return launch.template operator()<2>(in_registers);
-      if (batch.mesh == 128) return launch.template operator()<4>(in_registers);
-      if (batch.mesh == 256) return launch.template operator()<8>(in_registers);
+      if (batch.mesh == 64) return launch.template operator()<64>(in_registers);
+      if (batch.mesh == 128) return launch.template operator()<128>(in_registers);
+      if (batch.mesh == 256) return launch.template operator()<256>(in_registers);
     }
   }
   launch.template operator()<0>("drogue::options::price");

@@ -4,61 +4,56 @@
 #include "kernels/options/march.hpp"
 #include "kernels/options/register_fourier.hpp"
 
-/// A march with the nodes of one option in the registers of a warp, for meshes of 32 `block` intervals: lane
-/// L has the nodes L block, ..., L block + block - 1. It does what `step` does, number by number and in the
-/// same order. Shared memory holds what lanes read of one another in the sum over jumps.
+/// A march with the nodes of one option in the registers of a group of lanes, each of which has `block` nodes
+/// side by side. It does what `step` does, number by number and in the same order. Shared memory holds what
+/// lanes read of one another in the sum over jumps.
 namespace drogue::options {
 
-/// `convolve` for 32 block intervals: tasks of as many nodes as give every lane one, at most eight. The
+/// `convolve` for lanes x block intervals: a task of 2 block nodes and half of the values for every lane. The
 /// weights that a task needs are a window that slides through registers. Results lie `swizzled`. What does
 /// not change from step to step is found once.
-template <int block>
+template <int block, int lanes>
 class Convolution {
  public:
   KOKKOS_INLINE_FUNCTION Convolution(int lane, const double* w, const double* v, double* out, double* other) {
     const WeightLayout<double> layout(mesh);
-    const int part = rounds == 1 ? lane / chunks : 0, chunk = lane % chunks;
+    const int part = lane / chunks, chunk = lane % chunks;
     const int jump = 8 * half * part - outs * chunk;
     for (int k = 0; k < 8 / outs; ++k) _weights[k] = w + layout.place(jump + k * outs);
     _values = reinterpret_cast<const NodePair*>(v) + 4 * half * part;
     for (int m = 0; m < outs; m += 2)
       _sums[m / 2] = reinterpret_cast<NodePair*>(part == 0 ? out : other) + swizzled((outs * chunk + m) / 2);
-    _other = other - out;
   }
 
   KOKKOS_INLINE_FUNCTION void operator()() const {
     constexpr int last = 8 / outs - 1;  // the row of the weights before the first lies under the last
-    for (int round = 0; round < rounds; ++round) {
-      const int first = round * half;
-      double sum[outs], window[outs + 7];
-      for (int m = 0; m < outs; ++m) sum[m] = 0.0;
-      for (int m = 0; m < outs - 1; ++m) window[m] = _weights[last][(m + 1) * stride + first - 1];
-      for (int u = first; u < first + half; ++u) {
-        for (int k = 0; k < 8; ++k) window[outs - 1 + k] = _weights[k / outs][k % outs * stride + u];
-        for (int k = 0; k < 8; k += 2) {
-          const NodePair value = _values[4 * u + k / 2];
-          for (int m = 0; m < outs; ++m) sum[m] += window[outs - 1 + k - m] * value.first;
-          for (int m = 0; m < outs; ++m) sum[m] += window[outs + k - m] * value.second;
-        }
-        for (int m = 0; m < outs - 1; ++m) window[m] = window[8 + m];
+    double sum[outs], window[outs + 7];
+    for (int m = 0; m < outs; ++m) sum[m] = 0.0;
+    for (int m = 0; m < outs - 1; ++m) window[m] = _weights[last][(m + 1) * stride - 1];
+    for (int u = 0; u < half; ++u) {
+      for (int k = 0; k < 8; ++k) window[outs - 1 + k] = _weights[k / outs][k % outs * stride + u];
+      for (int k = 0; k < 8; k += 2) {
+        const NodePair value = _values[4 * u + k / 2];
+        for (int m = 0; m < outs; ++m) sum[m] += window[outs - 1 + k - m] * value.first;
+        for (int m = 0; m < outs; ++m) sum[m] += window[outs + k - m] * value.second;
       }
-      for (int m = 0; m < outs; m += 2) _sums[m / 2][round * (_other / 2)] = {sum[m], sum[m + 1]};
+      for (int m = 0; m < outs - 1; ++m) window[m] = window[8 + m];
     }
+    for (int m = 0; m < outs; m += 2) *_sums[m / 2] = {sum[m], sum[m + 1]};
   }
 
  private:
-  static constexpr int mesh = lanes * block, outs = block < 4 ? 2 * block : 8, chunks = mesh / outs;
-  static constexpr int half = mesh / 8 / 2, rounds = 2 * chunks / lanes;
+  static constexpr int mesh = lanes * block, outs = 2 * block, chunks = lanes / 2, half = mesh / 8 / 2;
   static constexpr int stride = WeightLayout<double>(mesh).stride;
+  static_assert(outs <= 8);
 
   const double* _weights[8 / outs];
   const NodePair* _values;
   NodePair* _sums[(outs + 1) / 2];
-  std::ptrdiff_t _other;
 };
 
 /// `recur_backward` on registers.
-template <int block>
+template <int lanes, int block>
 KOKKOS_INLINE_FUNCTION void recur_backward(int lane, LaneNodes<block>& nodes, double g) {
   double(&y)[block] = nodes.node;
   double joined = g;
@@ -66,11 +61,11 @@ KOKKOS_INLINE_FUNCTION void recur_backward(int lane, LaneNodes<block>& nodes, do
   for (int m = block - 2; m >= 0; --m) y[m] += g * y[m + 1];
   double carry = y[0];
   for (int reach = 1; reach < lanes; reach *= 2) {
-    const double next = device::from_above(carry, reach);
+    const double next = device::from_above<lanes>(carry, reach);
     if (lane + reach < lanes) carry += joined * next;
     joined *= joined;
   }
-  double inflow = device::from_above(carry, 1);
+  double inflow = device::from_above<lanes>(carry, 1);
   if (lane + 1 == lanes) return;
   for (int m = block - 1; m >= 0; --m) {
     inflow *= g;
@@ -79,16 +74,18 @@ KOKKOS_INLINE_FUNCTION void recur_backward(int lane, LaneNodes<block>& nodes, do
 }
 
 /// The map of the lane `reach` below.
+template <int lanes>
 KOKKOS_INLINE_FUNCTION RisingMap<double> from_below(const RisingMap<double>& map, int reach) {
-  return {device::from_below(map.b, reach), device::from_below(map.lo, reach)};
+  return {device::from_below<lanes>(map.b, reach), device::from_below<lanes>(map.lo, reach)};
 }
+template <int lanes>
 KOKKOS_INLINE_FUNCTION ClampedMap<double> from_below(const ClampedMap<double>& map, int reach) {
-  return {device::from_below(map.b, reach), device::from_below(map.lo, reach),
-          device::from_below(map.hi, reach)};
+  return {device::from_below<lanes>(map.b, reach), device::from_below<lanes>(map.lo, reach),
+          device::from_below<lanes>(map.hi, reach)};
 }
 
 /// `recur_by_maps` on registers.
-template <class Map, int block>
+template <int lanes, class Map, int block>
 KOKKOS_INLINE_FUNCTION LaneNodes<block> recur_by_maps(int lane, const LaneNodes<block>& y,
                                                       const LaneNodes<block>& floor, double a, double x0) {
   double joined = a;
@@ -96,11 +93,11 @@ KOKKOS_INLINE_FUNCTION LaneNodes<block> recur_by_maps(int lane, const LaneNodes<
   Map map = lane == 0 ? Map::constant(x0) : Map::at_least(floor.node[0], y.node[0]);
   for (int m = 1; m < block; ++m) map = after(Map::at_least(floor.node[m], y.node[m]), a, map);
   for (int reach = 1; reach < lanes; reach *= 2) {
-    const Map whole = after(map, joined, from_below(map, reach));
+    const Map whole = after(map, joined, from_below<lanes>(map, reach));
     if (lane >= reach) map = whole;
     joined *= joined;
   }
-  const double inflow = device::from_below(map.lo, 1);
+  const double inflow = device::from_below<lanes>(map.lo, 1);
   LaneNodes<block> x;
   x.node[0] = lane == 0 ? x0 : device::maximum(floor.node[0], a * inflow + y.node[0]);
   for (int m = 1; m < block; ++m) x.node[m] = device::maximum(floor.node[m], a * x.node[m - 1] + y.node[m]);
@@ -108,10 +105,10 @@ KOKKOS_INLINE_FUNCTION LaneNodes<block> recur_by_maps(int lane, const LaneNodes<
 }
 
 /// v_{i-1} - 2 v_i + v_{i+1} of a lane's nodes; 0 beyond the grid, and of no use at node 0.
-template <int block>
+template <int lanes, int block>
 KOKKOS_INLINE_FUNCTION LaneNodes<block> bends_of(int lane, const LaneNodes<block>& value) {
-  const double below = device::from_below(value.node[block - 1], 1);
-  double above = device::from_above(value.node[0], 1);
+  const double below = device::from_below<lanes>(value.node[block - 1], 1);
+  double above = device::from_above<lanes>(value.node[0], 1);
   if (lane + 1 == lanes) above = 0.0;
   LaneNodes<block> bend;
   for (int m = 0; m < block; ++m)
@@ -128,14 +125,15 @@ struct RegisterRows {
 };
 
 /// The sum over jumps of a lane's nodes, by `Convolution` or by `RegisterFourier`.
-template <int block, bool transformed = is_transformed(lanes* block)>
+template <int block, int lanes, bool transformed = is_transformed(lanes* block, lanes)>
 class JumpSum {
  public:
   KOKKOS_INLINE_FUNCTION JumpSum(int lane, const double* w, const JumpSpectrum<double>& /*spectrum*/,
                                  const RegisterRows& rows)
       : _lane(lane), _rows(rows), _convolution(lane, w, rows.value, rows.out, rows.other) {}
 
-  KOKKOS_INLINE_FUNCTION LaneNodes<block> operator()(const WarpWorkers& workers,
+  template <class Workers>
+  KOKKOS_INLINE_FUNCTION LaneNodes<block> operator()(const Workers& workers,
                                                      const LaneNodes<block>& value) const {
     value.store(_lane, _rows.value);
     workers.meet();
@@ -150,27 +148,19 @@ class JumpSum {
  private:
   int _lane;
   RegisterRows _rows;
-  Convolution<block> _convolution;
+  Convolution<block, lanes> _convolution;
 };
-template <int block>
-class JumpSum<block, true> {
+template <int lanes>
+class JumpSum<8, lanes, true> : public RegisterFourier<lanes> {
  public:
   KOKKOS_INLINE_FUNCTION JumpSum(int lane, const double* /*w*/, const JumpSpectrum<double>& spectrum,
                                  const RegisterRows& rows)
-      : _transforms(lane, spectrum, rows.value, reinterpret_cast<Complex<double>*>(rows.out)) {}
-
-  KOKKOS_INLINE_FUNCTION LaneNodes<block> operator()(const WarpWorkers& workers,
-                                                     const LaneNodes<block>& value) const {
-    return _transforms(workers, value);
-  }
-
- private:
-  RegisterFourier _transforms;
+      : RegisterFourier<lanes>(lane, spectrum, rows.value, reinterpret_cast<Complex<double>*>(rows.out)) {}
 };
 
 /// Turns an array of nodes in plain order into a `swizzled` one.
-template <int block>
-KOKKOS_INLINE_FUNCTION void swizzle(const WarpWorkers& workers, double* nodes) {
+template <int block, class Workers>
+KOKKOS_INLINE_FUNCTION void swizzle(const Workers& workers, double* nodes) {
   const auto own = LaneNodes<block>::load(workers.lane, nodes);
   workers.meet();
   own.store_swizzled(workers.lane, nodes);
@@ -178,8 +168,8 @@ KOKKOS_INLINE_FUNCTION void swizzle(const WarpWorkers& workers, double* nodes) {
 
 /// Marches from expiry to maturity; `jumps.left` and `left_price` are left `swizzled`. Returns the last node
 /// below the strike that is exercised, -1 if none is.
-template <int block>
-KOKKOS_INLINE_FUNCTION int march_in_registers(const WarpWorkers& workers, const PutPack<double>& put,
+template <int block, int lanes>
+KOKKOS_INLINE_FUNCTION int march_in_registers(const WarpWorkers<lanes>& workers, const PutPack<double>& put,
                                               const Jumps<double>& jumps, const Grid<double>& grid,
                                               const JumpSpectrum<double>& spectrum,
                                               const Scheme<double>& scheme, const StepTable<double>& table,
@@ -187,7 +177,7 @@ KOKKOS_INLINE_FUNCTION int march_in_registers(const WarpWorkers& workers, const 
   using Own = LaneNodes<block>;
   const int lane = workers.lane, strike = static_cast<int>(grid.strike);
   const double h = grid.h, stay = -jumps.rate - put.rate;
-  const JumpSum<block> sum_over_jumps(lane, jumps.w, spectrum, rows);
+  const JumpSum<block, lanes> sum_over_jumps(lane, jumps.w, spectrum, rows);
   Own value, before{}, stale{}, floor;
   Certain<double> begun{1.0, 1.0};
   before.store(lane, rows.force);
@@ -199,7 +189,7 @@ KOKKOS_INLINE_FUNCTION int march_in_registers(const WarpWorkers& workers, const 
     floor.node[m] = node.floor;
   }
   for (int n = 1; n <= scheme.steps; ++n) {
-    if (n % lanes == 1) {
+    if (n % most_lanes == 1) {
       workers.meet();
       fill_table(workers, put, jumps, scheme, table, n);
     }
@@ -215,8 +205,8 @@ KOKKOS_INLINE_FUNCTION int march_in_registers(const WarpWorkers& workers, const 
       y.node[m] = right_side(f, value.node[m], before.node[m], fresh, stale.node[m]);
       stale.node[m] = fresh;
     }
-    if (!(f.bend <= 0.0)) {
-      const Own bend = bends_of(lane, value), bend_before = bends_of(lane, before);
+    if (!workers.all(f.bend <= 0.0)) {
+      const Own bend = bends_of<lanes>(lane, value), bend_before = bends_of<lanes>(lane, before);
       for (int m = 0; m < block; ++m)
         y.node[m] = y.node[m] - (f.bend * bend.node[m] - f.bend_before * bend_before.node[m]);
     }
@@ -226,9 +216,10 @@ KOKKOS_INLINE_FUNCTION int march_in_registers(const WarpWorkers& workers, const 
     }
     begun = f.certain;
     before = value;
-    recur_backward(lane, y, f.from_right);
-    value = f.from_left >= 0.0 ? recur_by_maps<RisingMap<double>>(lane, y, floor, f.from_left, f.edge)
-                               : recur_by_maps<ClampedMap<double>>(lane, y, floor, f.from_left, f.edge);
+    recur_backward<lanes>(lane, y, f.from_right);
+    value = workers.all(f.from_left >= 0.0)
+                ? recur_by_maps<lanes, RisingMap<double>>(lane, y, floor, f.from_left, f.edge)
+                : recur_by_maps<lanes, ClampedMap<double>>(lane, y, floor, f.from_left, f.edge);
     if (put.any_split) {
       value.store(lane, rows.value);
       workers.meet();
@@ -249,7 +240,7 @@ KOKKOS_INLINE_FUNCTION int march_in_registers(const WarpWorkers& workers, const 
   value.store(lane, rows.value);
   change.store(lane, rows.other);
   workers.meet();
-  return device::warp_largest(exercised);
+  return device::warp_largest<lanes>(exercised);
 }
 
 }  // namespace drogue::options

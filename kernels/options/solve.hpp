@@ -5,23 +5,25 @@
 
 namespace drogue::options {
 
-/// Scratch memory of one team for its two solves. For `block` see `solve`: with a block > 0 there is little
-/// of it, so that many warps share a multiprocessor.
-template <class R, int block>
+/// Scratch memory of one option (or pack) for its two solves. For `fixed` see `solve`: with a fixed mesh
+/// there is little of it, so that many warps share a multiprocessor.
+template <class R, int fixed>
 struct Memory {
   static constexpr int members = device::Access<R>::lanes;
 
   R* law;           ///< what `law_of` leaves, and then the step table
-  R* slot;          ///< (6 lanes); (5 lanes) with a block > 0, where force is there as well
+  R* slot;          ///< (6 most_lanes); with a fixed mesh what `domain_of` takes, or force
   R* w;             ///< of a WeightLayout
   R* nodes;         ///< rows of `node_count`, and what the coarser solve has beyond its own, shorter ones
   Put* puts;        ///< of the members, as the next
   Answer* answers;  ///< on the grid and on the coarser one
 
   [[nodiscard]] KOKKOS_INLINE_FUNCTION static std::size_t bytes(int mesh) {
-    return sizeof(R) * static_cast<std::size_t>(law_size + slot_size + WeightLayout<R>(mesh).size() +
-                                                node_size(mesh)) +
-           members * (sizeof(Put) + 2 * sizeof(Answer));
+    const std::size_t all =
+        sizeof(R) *
+            static_cast<std::size_t>(law_size + slot_size + WeightLayout<R>(mesh).size() + node_size(mesh)) +
+        members * (sizeof(Put) + 2 * sizeof(Answer));
+    return (all + 63) / 64 * 64;
   }
   KOKKOS_INLINE_FUNCTION Memory(void* place, int mesh)
       : law(static_cast<R*>(place)),
@@ -32,9 +34,10 @@ struct Memory {
         answers(reinterpret_cast<Answer*>(puts + members)) {}
 
   [[nodiscard]] KOKKOS_INLINE_FUNCTION R* row(int k, int mesh) const { return nodes + k * node_count(mesh); }
-  /// The spectrum of the weights of a mesh that is transformed, in its two last rows.
+  /// The spectrum of the weights of a mesh that is transformed, in its two last rows; with a fixed mesh it
+  /// only passes through.
   [[nodiscard]] KOKKOS_INLINE_FUNCTION Complex<R>* spectrum(int mesh) const {
-    return reinterpret_cast<Complex<R>*>(row(rows(mesh) - 2, mesh));
+    return reinterpret_cast<Complex<R>*>(row(fixed > 0 ? 1 : rows(mesh) - 2, mesh));
   }
   /// Weights of the coarser grid of a mesh, and every other value of the finer one; rows 0 to 2 of the finer
   /// solve that are read last lie before both.
@@ -50,14 +53,16 @@ struct Memory {
         R(0.0)};
   }
   [[nodiscard]] KOKKOS_INLINE_FUNCTION R* ratio() const { return law + 3 * Mixture::size; }
-  [[nodiscard]] KOKKOS_INLINE_FUNCTION R* symbol() const { return law + StepFactors<R>::size * lanes; }
+  [[nodiscard]] KOKKOS_INLINE_FUNCTION R* symbol() const { return law + StepFactors<R>::size * most_lanes; }
 
  private:
-  static constexpr int law_size = StepFactors<R>::size * lanes + symbols;
-  static constexpr int slot_size = block == 0 ? 6 * lanes : block <= 5 ? 5 * lanes : block * lanes;
+  static constexpr int law_size = StepFactors<R>::size * most_lanes + symbols;
+  static constexpr int slot_size = fixed == 0               ? 6 * most_lanes
+                                   : fixed < 3 * most_lanes ? 3 * most_lanes
+                                                            : fixed;
 
   [[nodiscard]] KOKKOS_INLINE_FUNCTION static int rows(int mesh) {
-    return (block > 0 ? 5 : 11) + (is_transformed(mesh) ? 2 : 0);
+    return fixed > 0 ? 5 : is_transformed(mesh, 1) ? 13 : 11;
   }
   [[nodiscard]] KOKKOS_INLINE_FUNCTION static int node_size(int mesh) {
     const int coarse =
@@ -92,10 +97,10 @@ KOKKOS_INLINE_FUNCTION March<R> march_in_memory(const Workers& workers, const Pu
                  memory.row(8, mesh),
                  memory.slot};
   workers.each([=](int lane) {
-    for (int k = lane; k < 9 * count; k += lanes) memory.nodes[k] = 0.0;
+    for (int k = lane; k < 9 * count; k += workers.lanes) memory.nodes[k] = 0.0;
   });
   workers.each([=, &put](int lane) {
-    for (int i = lane; i < mesh; i += lanes) {
+    for (int i = lane; i < mesh; i += workers.lanes) {
       const AtExpiry<R> node = at_expiry(put, grid, i, kink);
       march.value[1][i] = node.value;
       march.floor[i] = node.floor;
@@ -103,7 +108,7 @@ KOKKOS_INLINE_FUNCTION March<R> march_in_memory(const Workers& workers, const Pu
   });
   Certain<R> begun{R(1.0), R(1.0)};
   for (int n = 1; n <= steps; ++n) {
-    if (n % lanes == 1) fill_table(workers, put, jumps, scheme, table, n);
+    if (n % most_lanes == 1) fill_table(workers, put, jumps, scheme, table, n);
     const StepFactors<R> factors = table.load(n);
     step(workers, put, jumps, grid, spectrum, march, factors, begun);
     begun = factors.certain;
@@ -130,12 +135,12 @@ KOKKOS_INLINE_FUNCTION March<R> march_in_memory(const Workers& workers, const Pu
   // After the rotation value[0] is what value[2] was.
   const StepLength<R> last = step_length(put.maturity, steps, steps);
   workers.each([=](int lane) {
-    for (int i = lane; i < mesh; i += lanes)
+    for (int i = lane; i < mesh; i += workers.lanes)
       march.y[i] = rate_of_change(last, march.value[1][i], march.value[2][i], march.value[0][i]);
   });
   if (record.time != nullptr) {
     workers.each([=](int lane) {
-      for (int i = lane; i <= mesh; i += lanes) {
+      for (int i = lane; i <= mesh; i += workers.lanes) {
         record.x[i] = device::Access<R>::lane((double(i) - grid.strike) * h, 0);
         record.value[i] = device::Access<R>::lane(march.value[1][i], 0);
       }
@@ -154,9 +159,9 @@ struct Weights {
 };
 
 /// Marches from expiry to the puts' maturities on `grid`; `answers` gets one for each member. Returns the
-/// values of the nodes, which stay in the memory until the next solve. With a block > 0 the mesh is 32 block
-/// and a warp keeps its nodes in registers; then nothing is recorded.
-template <int block, class Workers, class R, class Scratch>
+/// values of the nodes, which stay in the memory until the next solve. With a `fixed` > 0 that is the mesh
+/// and a group of lanes keeps its nodes in registers; then nothing is recorded.
+template <int fixed, class Workers, class R, class Scratch>
 KOKKOS_INLINE_FUNCTION const R* solve(const Workers& workers, const PutPack<R>& put, const Law<R>& law,
                                       const Tails<R>& tails, const Grid<R>& grid, int steps,
                                       const Scratch& memory, const Weights<R>& weights, const Record& record,
@@ -164,7 +169,7 @@ KOKKOS_INLINE_FUNCTION const R* solve(const Workers& workers, const PutPack<R>& 
   constexpr int members = device::Access<R>::lanes;
   const int mesh = grid.mesh;
   const R h = grid.h;
-  constexpr int left = block > 0 ? 3 : 9;
+  constexpr int left = fixed > 0 ? 3 : 9;
   const Jumps<R> jumps =
       jumps_of(workers, put, law, tails, grid,
                {weights.own, memory.row(left, mesh), memory.row(left + 1, mesh), memory.symbol(),
@@ -177,13 +182,14 @@ KOKKOS_INLINE_FUNCTION const R* solve(const Workers& workers, const PutPack<R>& 
   const Scheme<R> scheme = scheme_of(put, jumps, grid, steps);
   const StepTable<R> table{memory.law};
   JumpSpectrum<R> spectrum{};
-  if (is_transformed(mesh))
+  if (is_transformed(mesh, workers.lanes))
     spectrum = spectrum_of(workers, mesh, weights.roots, jumps.w, memory.spectrum(mesh));
   const R *value = nullptr, *change = nullptr;
   int exercised = -1;
-  if constexpr (block > 0) {
+  if constexpr (fixed > 0) {
     const RegisterRows rows{memory.row(0, mesh), memory.row(1, mesh), memory.row(2, mesh), memory.slot};
-    exercised = march_in_registers<block>(workers, put, jumps, grid, spectrum, scheme, table, rows, kink);
+    exercised = march_in_registers<fixed / Workers::lanes>(workers, put, jumps, grid, spectrum, scheme, table,
+                                                           rows, kink);
     value = rows.value;
     change = rows.other;
   } else {
@@ -194,11 +200,11 @@ KOKKOS_INLINE_FUNCTION const R* solve(const Workers& workers, const PutPack<R>& 
   }
   const Certain<R> ended = table.load(steps).certain;
   workers.each([=](int lane) {
-    for (int k = lane; k < members; k += lanes) {
+    for (int k = lane; k < members; k += workers.lanes) {
       const auto member = [k](const R& number) { return device::Access<R>::lane(number, k); };
       const Column values{reinterpret_cast<const double*>(value) + k, members};
       const int strike = static_cast<int>(member(grid.strike));
-      const int last = block > 0              ? exercised
+      const int last = fixed > 0              ? exercised
                        : memory.puts[k].early ? last_exercised(values, strike, member(h))
                                               : -1;
       answers[k] = answer_of(memory.puts[k], values, {reinterpret_cast<const double*>(change) + k, members},

@@ -37,7 +37,7 @@ KOKKOS_INLINE_FUNCTION Tails<R> tails_of(const Workers& workers, const PutPack<R
   const R shrink = exponential(-length);
   const Kokkos::Array<R, 5> tails = sums(workers, [&](int lane) {
     Kokkos::Array<R, 5> sum = {R(0.0), R(0.0), R(0.0), R(0.0), R(0.0)};
-    for (int q = lane; q < Mixture::low; q += lanes) {
+    for (int q = lane; q < Mixture::low; q += workers.lanes) {
       const R a = law.s[q] - put.jump[2], b = law.s[q] + put.jump[2], c = law.c[q];
       const R rate[4] = {b * length, (b + 1.0) * length, a * length, (a - 1.0) * length};
       const R down = exponential(-rate[0]), up = exponential(-rate[2]);

@@ -3,15 +3,18 @@
 #include "kernels/device/pack.hpp"
 #include "kernels/device/warp.hpp"
 
-/// The threads that price one option, and what they do together. All arithmetic is cut into 32 lanes, so that
-/// a warp and a host thread, which takes the lanes in turn, round alike.
+/// The threads that price one option, and what they do together. All arithmetic is cut into 32 or 16 lanes,
+/// so that a warp or half of one and a host thread, which takes the lanes in turn, round alike.
 namespace drogue::options {
 
-inline constexpr int lanes = 32;
+/// The most lanes that an option has.
+inline constexpr int most_lanes = 32;
 
 /// One host thread, which prices a pack of options, `R`.
 template <class R>
 struct SerialWorkers {
+  int lanes = most_lanes;
+
   template <class F>
   KOKKOS_INLINE_FUNCTION void each(const F& f) const {
     for (int lane = 0; lane < lanes; ++lane) f(lane);
@@ -20,18 +23,27 @@ struct SerialWorkers {
   /// Joins the arrays f(lane) of all lanes, element by element and by halves.
   template <class F, class Join>
   KOKKOS_INLINE_FUNCTION auto reduce(const F& f, const Join& join) const {
-    decltype(f(0)) part[lanes];
+    decltype(f(0)) part[most_lanes];
     for (int lane = 0; lane < lanes; ++lane) part[lane] = f(lane);
     for (int reach = lanes / 2; reach > 0; reach /= 2)
       for (int lane = 0; lane < reach; ++lane)
         for (int k = 0; k < part[0].size(); ++k) part[lane][k] = join(part[lane][k], part[lane + reach][k]);
     return part[0];
   }
+  /// Whether a condition holds for all options of the pack.
+  template <class Condition>
+  KOKKOS_INLINE_FUNCTION bool all(const Condition& condition) const {
+    return device::all(condition);
+  }
 };
 
-/// A warp that is a team of its own.
+/// A warp that is a team of its own and prices as many options as groups of `count` lanes make it up, side by
+/// side: what all of them ask of `all` they do together.
+template <int count = most_lanes>
 struct WarpWorkers {
-  int lane;
+  static constexpr int lanes = count;
+
+  int lane;  ///< within its group
 
   /// Runs f(lane) on every lane; what they wrote is seen by all after it.
   template <class F>
@@ -48,6 +60,10 @@ struct WarpWorkers {
     for (int reach = lanes / 2; reach > 0; reach /= 2)
       for (int k = 0; k < part.size(); ++k) part[k] = join(part[k], device::from_across(part[k], reach));
     return part;
+  }
+  /// Whether a condition holds for all options of the warp.
+  KOKKOS_INLINE_FUNCTION bool all(bool condition) const {
+    return lanes == most_lanes ? condition : device::all_of_warp(condition);
   }
 };
 
@@ -74,10 +90,10 @@ KOKKOS_INLINE_FUNCTION void recur_backward(const SerialWorkers<R>& workers, R* c
       }
       slot[lane] = value;
     });
-    R *from = slot, *to = slot + lanes;
-    for (int reach = 1; reach < lanes; reach *= 2) {
+    R *from = slot, *to = slot + workers.lanes;
+    for (int reach = 1; reach < workers.lanes; reach *= 2) {
       workers.each([=](int lane) {
-        to[lane] = lane + reach < lanes ? from[lane] + joined * from[lane + reach] : from[lane];
+        to[lane] = lane + reach < workers.lanes ? from[lane] + joined * from[lane + reach] : from[lane];
       });
       joined = joined * joined;
       R* const other = from;
@@ -85,7 +101,7 @@ KOKKOS_INLINE_FUNCTION void recur_backward(const SerialWorkers<R>& workers, R* c
       to = other;
     }
     workers.each([=](int lane) {
-      if (lane + 1 == lanes) return;
+      if (lane + 1 == workers.lanes) return;
       R* own = y + lane * block;
       R inflow = from[lane + 1];
       for (int m = block - 1; m >= 0; --m) {
@@ -97,9 +113,9 @@ KOKKOS_INLINE_FUNCTION void recur_backward(const SerialWorkers<R>& workers, R* c
 }
 
 /// The same by a warp, whose lanes ask one another for what joins their blocks.
-template <int n>
-KOKKOS_INLINE_FUNCTION void recur_backward(const WarpWorkers& workers, double* const (&rows)[n], int block,
-                                           double g, double* /*slot*/) {
+template <int n, int lanes>
+KOKKOS_INLINE_FUNCTION void recur_backward(const WarpWorkers<lanes>& workers, double* const (&rows)[n],
+                                           int block, double g, double* /*slot*/) {
   const int lane = workers.lane;
   double joined = 1.0, carry[n];
   for (int m = 0; m < block; ++m) joined = joined * g;
@@ -113,14 +129,14 @@ KOKKOS_INLINE_FUNCTION void recur_backward(const WarpWorkers& workers, double* c
   }
   for (int reach = 1; reach < lanes; reach *= 2) {
     for (int k = 0; k < n; ++k) {
-      const double next = device::from_above(carry[k], reach);
+      const double next = device::from_above<lanes>(carry[k], reach);
       if (lane + reach < lanes) carry[k] = carry[k] + joined * next;
     }
     joined = joined * joined;
   }
   for (int k = 0; k < n; ++k) {
     double* own = rows[k] + lane * block;
-    double inflow = device::from_above(carry[k], 1);
+    double inflow = device::from_above<lanes>(carry[k], 1);
     if (lane + 1 == lanes) continue;
     for (int m = block - 1; m >= 0; --m) {
       inflow = g * inflow;
@@ -177,8 +193,8 @@ KOKKOS_INLINE_FUNCTION void recur_by_maps(const Workers& workers, R* x, const R*
     for (int m = 1; m < block; ++m) map = after(Map::at_least(floor[begin + m], y[begin + m]), a, map);
     slot[lane] = map;
   });
-  Map *from = slot, *to = slot + lanes;
-  for (int reach = 1; reach < lanes; reach *= 2) {
+  Map *from = slot, *to = slot + workers.lanes;
+  for (int reach = 1; reach < workers.lanes; reach *= 2) {
     workers.each([=](int lane) {
       to[lane] = lane >= reach ? after(from[lane], joined, from[lane - reach]) : from[lane];
     });
@@ -203,7 +219,7 @@ KOKKOS_INLINE_FUNCTION void recur_by_maps(const Workers& workers, R* x, const R*
 template <class Workers, class R>
 KOKKOS_INLINE_FUNCTION void recur_forward(const Workers& workers, R* x, const R* y, const R* floor, int block,
                                           int end, R a, R x0, R* slot) {
-  if (device::all(a >= R(0.0))) {
+  if (workers.all(a >= R(0.0))) {
     recur_by_maps(workers, x, y, floor, block, end, a, x0, reinterpret_cast<RisingMap<R>*>(slot));
   } else {
     recur_by_maps(workers, x, y, floor, block, end, a, x0, reinterpret_cast<ClampedMap<R>*>(slot));
