@@ -277,7 +277,7 @@ KOKKOS_INLINE_FUNCTION void step(const Workers& workers, const PutPack<R>& put, 
   const R *left = jumps.left, *left_price = jumps.left_price;
   const bool transformed = is_transformed(mesh);
   if (transformed) {
-    sum_by_transforms(workers, mesh, spectrum, value, jump, reinterpret_cast<Complex<R>*>(other));
+    sum_by_transforms(workers, mesh, spectrum, value, jump, reinterpret_cast<ComplexNumber<R>*>(other));
   } else {
     convolve(workers, mesh, jumps.w, value, jump, other);
   }

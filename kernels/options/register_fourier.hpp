@@ -10,7 +10,7 @@ class RegisterFourier {
  public:
   /// `row` (256) and `z` (padded(256)) are shared memory for it alone.
   KOKKOS_INLINE_FUNCTION RegisterFourier(int lane, const JumpSpectrum<double>& spectrum, double* row,
-                                         Complex<double>* z)
+                                         ComplexNumber<double>* z)
       : _lane(lane),
         _roots(spectrum.roots),
         _second_roots(spectrum.roots.seven(1, lane / 4)),
@@ -58,7 +58,7 @@ class RegisterFourier {
   SevenRoots _second_roots;
   Octet<double> _spectrum;
   double* _row;
-  Complex<double>*_first, *_second, *_third;
+  ComplexNumber<double>*_first, *_second, *_third;
 };
 
 }  // namespace drogue::options

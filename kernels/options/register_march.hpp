@@ -157,7 +157,7 @@ class JumpSum<block, true> {
  public:
   KOKKOS_INLINE_FUNCTION JumpSum(int lane, const double* /*w*/, const JumpSpectrum<double>& spectrum,
                                  const RegisterRows& rows)
-      : _transforms(lane, spectrum, rows.value, reinterpret_cast<Complex<double>*>(rows.out)) {}
+      : _transforms(lane, spectrum, rows.value, reinterpret_cast<ComplexNumber<double>*>(rows.out)) {}
 
   KOKKOS_INLINE_FUNCTION LaneNodes<block> operator()(const WarpWorkers& workers,
                                                      const LaneNodes<block>& value) const {

@@ -33,8 +33,8 @@ struct Memory {
 
   [[nodiscard]] KOKKOS_INLINE_FUNCTION R* row(int k, int mesh) const { return nodes + k * node_count(mesh); }
   /// The spectrum of the weights of a mesh that is transformed, in its two last rows.
-  [[nodiscard]] KOKKOS_INLINE_FUNCTION Complex<R>* spectrum(int mesh) const {
-    return reinterpret_cast<Complex<R>*>(row(rows(mesh) - 2, mesh));
+  [[nodiscard]] KOKKOS_INLINE_FUNCTION ComplexNumber<R>* spectrum(int mesh) const {
+    return reinterpret_cast<ComplexNumber<R>*>(row(rows(mesh) - 2, mesh));
   }
   /// Weights of the coarser grid of a mesh, and every other value of the finer one; rows 0 to 2 of the finer
   /// solve that are read last lie before both.
