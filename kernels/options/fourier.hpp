@@ -12,22 +12,23 @@ namespace drogue::options {
 
 /// sum_m z_m e^{sign 2 pi i q m/2}, q = 0, 1, in place; the next ones likewise.
 template <int sign, class R>
-KOKKOS_INLINE_FUNCTION void transform(Complex<R>& z0, Complex<R>& z1) {
-  const Complex<R> first = z0;
+KOKKOS_INLINE_FUNCTION void transform(ComplexNumber<R>& z0, ComplexNumber<R>& z1) {
+  const ComplexNumber<R> first = z0;
   z0 = first + z1;
   z1 = first - z1;
 }
 template <int sign, class R>
-KOKKOS_INLINE_FUNCTION void transform(Complex<R>& z0, Complex<R>& z1, Complex<R>& z2, Complex<R>& z3) {
-  const Complex<R> a = z0 + z2, b = z0 - z2, c = z1 + z3, d = turned<sign>(z1 - z3);
+KOKKOS_INLINE_FUNCTION void transform(ComplexNumber<R>& z0, ComplexNumber<R>& z1, ComplexNumber<R>& z2,
+                                      ComplexNumber<R>& z3) {
+  const ComplexNumber<R> a = z0 + z2, b = z0 - z2, c = z1 + z3, d = turned<sign>(z1 - z3);
   z0 = a + c;
   z1 = b + d;
   z2 = a - c;
   z3 = b - d;
 }
 template <int sign, class R>
-KOKKOS_INLINE_FUNCTION void transform(Complex<R> (&z)[8]) {
-  Complex<R> even[4], odd[4];
+KOKKOS_INLINE_FUNCTION void transform(ComplexNumber<R> (&z)[8]) {
+  ComplexNumber<R> even[4], odd[4];
   for (int m = 0; m < 4; ++m) {
     even[m] = z[m] + z[m + 4];
     odd[m] = z[m] - z[m + 4];
@@ -35,12 +36,12 @@ KOKKOS_INLINE_FUNCTION void transform(Complex<R> (&z)[8]) {
   transform<sign>(even[0], even[1], even[2], even[3]);
   // odd[m] e^{sign 2 pi i m/8}, where the factor sqrt(1/2) of m = 1 and 3 comes last, and m = 3 negated.
   constexpr double diagonal = 0.70710678118654752440;
-  const Complex<R> second = turned<sign>(odd[2]), first = odd[1] + turned<sign>(odd[1]),
-                   third = odd[3] - turned<sign>(odd[3]);
-  const Complex<R> a = odd[0] + second, b = odd[0] - second, sum = first - third,
-                   difference = turned<sign>(first + third);
-  const Complex<R> c = {diagonal * sum.re, diagonal * sum.im},
-                   d = {diagonal * difference.re, diagonal * difference.im};
+  const ComplexNumber<R> second = turned<sign>(odd[2]), first = odd[1] + turned<sign>(odd[1]),
+                         third = odd[3] - turned<sign>(odd[3]);
+  const ComplexNumber<R> a = odd[0] + second, b = odd[0] - second, sum = first - third,
+                         difference = turned<sign>(first + third);
+  const ComplexNumber<R> c = {diagonal * sum.re, diagonal * sum.im},
+                         d = {diagonal * difference.re, diagonal * difference.im};
   for (int q = 0; q < 4; ++q) z[2 * q] = even[q];
   z[1] = a + c;
   z[3] = b + d;
@@ -64,12 +65,12 @@ struct Turn {
 /// Eight numbers of which one pass makes others in their places. `stride` of them lie between.
 template <class R>
 struct Octet {
-  Complex<R> z[8];
+  ComplexNumber<R> z[8];
 
-  KOKKOS_INLINE_FUNCTION void load(const Complex<R>* from, int stride) {
+  KOKKOS_INLINE_FUNCTION void load(const ComplexNumber<R>* from, int stride) {
     for (int m = 0; m < 8; ++m) z[m] = from[padded(m * stride)];
   }
-  KOKKOS_INLINE_FUNCTION void store(Complex<R>* to, int stride) const {
+  KOKKOS_INLINE_FUNCTION void store(ComplexNumber<R>* to, int stride) const {
     for (int m = 0; m < 8; ++m) to[padded(m * stride)] = z[m];
   }
   /// Remainders by the eight factors of a factor with these roots, and back.
@@ -130,7 +131,7 @@ struct Octet {
   /// The last pass forward, the product with the spectrum's eight numbers, and the first pass back.
   template <int radix>
   KOKKOS_INLINE_FUNCTION void multiply_last(const FourierRoots& roots, int level, int task,
-                                            const Complex<R>* spectrum) {
+                                            const ComplexNumber<R>* spectrum) {
     split_last<radix>(roots, level, task);
     for (int m = 0; m < 8; ++m) z[m] = product(z[m], spectrum[m]);
     join_last<radix>(roots, level, task);

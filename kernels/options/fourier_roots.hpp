@@ -2,13 +2,13 @@
 
 #include <vector>
 
-#include "kernels/options/complex.hpp"
+#include "kernels/options/complex_number.hpp"
 
 namespace drogue::options {
 
 /// e^{2 pi i phi m/8}, m = 1 .. 7.
 struct SevenRoots {
-  Complex<double> of[7];
+  ComplexNumber<double> of[7];
 };
 
 /// The roots of unity that transforms of up to 4096 points multiply with. x^n - i falls into eight factors,
@@ -16,13 +16,13 @@ struct SevenRoots {
 /// m = n/8^level, phi = 1/4 at the first level and (phi + q)/8 for the parts q of a factor. The roots do not
 /// depend on n.
 struct FourierRoots {
-  const Complex<double>* place;  ///< in the memory of the backend, as the next
+  const ComplexNumber<double>* place;  ///< in the memory of the backend, as the next
 
   KOKKOS_INLINE_FUNCTION static FourierRoots of(const double* table) {
-    return {reinterpret_cast<const Complex<double>*>(table)};
+    return {reinterpret_cast<const ComplexNumber<double>*>(table)};
   }
   /// e^{2 pi i phi m/8}, m = 1 .. 7. Those of one m lie side by side, as lanes read them.
-  [[nodiscard]] KOKKOS_INLINE_FUNCTION Complex<double> at(int level, int m, int factor) const {
+  [[nodiscard]] KOKKOS_INLINE_FUNCTION ComplexNumber<double> at(int level, int m, int factor) const {
     return place[first(level) + ((m - 1) << (3 * level)) + factor];
   }
   [[nodiscard]] KOKKOS_INLINE_FUNCTION SevenRoots seven(int level, int factor) const {

@@ -9,7 +9,7 @@ namespace drogue::options {
 template <class R>
 struct JumpSpectrum {
   FourierRoots roots;
-  const Complex<R>* place;  ///< (padded(mesh)): the weights' transform, divided by the mesh
+  const ComplexNumber<R>* place;  ///< (padded(mesh)): the weights' transform, divided by the mesh
 };
 
 /// The passes of a transform of 2^log_size numbers: each of radix 8 but the last, of 2^last_log_radix.
@@ -30,13 +30,13 @@ struct Passes {
 /// Calls f(octet, factor) for all tasks of a pass on z, and leaves what f makes of their numbers. In the last
 /// pass `factor` counts octets.
 template <class Workers, class R, class F>
-KOKKOS_INLINE_FUNCTION void each_octet(const Workers& workers, const Passes& passes, int pass, Complex<R>* z,
-                                       const F& f) {
+KOKKOS_INLINE_FUNCTION void each_octet(const Workers& workers, const Passes& passes, int pass,
+                                       ComplexNumber<R>* z, const F& f) {
   const int log_stride = passes.log_stride(pass), tasks = 1 << (passes.log_size - 3);
   workers.each([=](int lane) {
     for (int task = lane; task < tasks; task += workers.lanes) {
       const int factor = task >> log_stride, k = task - (factor << log_stride);
-      Complex<R>* const own = z + padded((factor << (log_stride + 3)) + k);
+      ComplexNumber<R>* const own = z + padded((factor << (log_stride + 3)) + k);
       Octet<R> octet;
       octet.load(own, 1 << log_stride);
       f(octet, factor);
@@ -47,7 +47,7 @@ KOKKOS_INLINE_FUNCTION void each_octet(const Workers& workers, const Passes& pas
 
 /// The same for the last pass, of which f is to know the radix: f.operator()<radix>(octet, task).
 template <class Workers, class R, class F>
-KOKKOS_INLINE_FUNCTION void each_last(const Workers& workers, const Passes& passes, Complex<R>* z,
+KOKKOS_INLINE_FUNCTION void each_last(const Workers& workers, const Passes& passes, ComplexNumber<R>* z,
                                       const F& f) {
   const auto with = [&]<int radix>() {
     each_octet(workers, passes, passes.last, z,
@@ -61,7 +61,8 @@ KOKKOS_INLINE_FUNCTION void each_last(const Workers& workers, const Passes& pass
 /// The transform of the weights of jumps, divided by the mesh, into `z` (padded(mesh)).
 template <class Workers, class R>
 KOKKOS_INLINE_FUNCTION JumpSpectrum<R> spectrum_of(const Workers& workers, int mesh,
-                                                   const FourierRoots& roots, const R* w, Complex<R>* z) {
+                                                   const FourierRoots& roots, const R* w,
+                                                   ComplexNumber<R>* z) {
   const WeightLayout<R> layout(mesh);
   const Passes passes(mesh);
   const double part = 1.0 / mesh;
@@ -82,11 +83,11 @@ KOKKOS_INLINE_FUNCTION JumpSpectrum<R> spectrum_of(const Workers& workers, int m
 template <class Workers, class R>
 KOKKOS_INLINE_FUNCTION void sum_by_transforms(const Workers& workers, int mesh,
                                               const JumpSpectrum<R>& spectrum, const R* v, R* out,
-                                              Complex<R>* z) {
+                                              ComplexNumber<R>* z) {
   const Passes passes(mesh);
   const int stride = mesh / 8;
   const FourierRoots roots = spectrum.roots;
-  const Complex<R>* const factors = spectrum.place;
+  const ComplexNumber<R>* const factors = spectrum.place;
   workers.each([=](int lane) {
     for (int k = lane; k < stride; k += workers.lanes) {
       Octet<R> octet;

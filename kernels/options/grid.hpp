@@ -23,6 +23,16 @@ KOKKOS_INLINE_FUNCTION Grid<R> grid_of(const Domain<R>& domain, int mesh) {
   return {mesh, device::maximum(domain.below / strike, domain.above / (double(mesh) - strike)), strike};
 }
 
+/// The lanes that an option on a mesh has, so that each of them has eight nodes or four. Two options of 16
+/// lanes share a warp.
+KOKKOS_INLINE_FUNCTION constexpr int lanes_of(int mesh) {
+  return mesh == 64 || mesh == 128 ? 16 : most_lanes;
+}
+
+/// Whether lanes, so many an option, keep the spectrum of its jumps in registers: where two options share a warp
+/// shared memory has no room for it, and else registers have none.
+KOKKOS_INLINE_FUNCTION constexpr bool keeps_spectrum(int lanes) { return lanes < most_lanes; }
+
 /// Whether the sum over jumps of a mesh goes through Fourier transforms, which are the faster where every
 /// lane has work in them.
 KOKKOS_INLINE_FUNCTION constexpr bool is_transformed(int mesh, int lanes) {

@@ -92,7 +92,9 @@ KOKKOS_INLINE_FUNCTION double angle_cosine(int k) {
                                  0.99939796607266041,
                                  0.99969881869620425,
                                  0.99984948021804443};
-  return cosine[k];
+  double chosen = cosine[0];  // an array in registers has no address
+  for (int m = 1; m < 16; ++m) chosen = m == k ? cosine[m] : chosen;
+  return chosen;
 }
 
 /// Scratch memory of `jumps_of`: that of the result, and sums.

@@ -27,8 +27,12 @@ struct Certain {
 template <class R>
 KOKKOS_INLINE_FUNCTION Certain<R> certain(const PutPack<R>& put, R asset, R best, R tau) {
   const R late = exponential(-put.rate * tau), late_asset = exponential(-put.dividend * tau);
-  const R t = device::maximum(R(0.0), device::minimum(best, tau));
-  const R between = exponential(-put.rate * t), between_asset = exponential(-put.dividend * t);
+  R between = 1.0, between_asset = 1.0;
+  if (!device::all(best <= R(0.0))) {
+    const R t = device::maximum(R(0.0), device::minimum(best, tau));
+    between = exponential(-put.rate * t);
+    between_asset = exponential(-put.dividend * t);
+  }
   const auto sooner = put.early * (between - between_asset * asset - (late - late_asset * asset)) > R(0.0);
   R strike = device::select(sooner, between, late), price = device::select(sooner, between_asset, late_asset);
   const auto now = put.early * (1.0 - asset - (strike - price * asset)) > R(0.0);
@@ -284,7 +288,7 @@ KOKKOS_INLINE_FUNCTION void step(const Workers& workers, const PutPack<R>& put, 
   const R *left = jumps.left, *left_price = jumps.left_price;
   const bool transformed = is_transformed(mesh, workers.lanes);
   if (transformed) {
-    sum_by_transforms(workers, mesh, spectrum, value, jump, reinterpret_cast<Complex<R>*>(other));
+    sum_by_transforms(workers, mesh, spectrum, value, jump, reinterpret_cast<ComplexNumber<R>*>(other));
   } else {
     convolve(workers, mesh, jumps.w, value, jump, other);
   }

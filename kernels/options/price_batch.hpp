@@ -64,12 +64,6 @@ KOKKOS_INLINE_FUNCTION R larger(R a, R b) {
 template <class ExecutionSpace>
 using Number = std::conditional_t<device::is_host<ExecutionSpace>, device::HostPack<double>, double>;
 
-/// The lanes that an option on a mesh has, so that each of them has eight nodes or four. Two options of 16
-/// lanes share a warp.
-KOKKOS_INLINE_FUNCTION constexpr int lanes_of(int mesh) {
-  return mesh == 64 || mesh == 128 ? 16 : most_lanes;
-}
-
 /// Contracts order(0), order(1), ... of one model, priced on one mesh in one launch by a team for one or two
 /// of them, or on hosts for each pack of them.
 template <class ExecutionSpace>

@@ -39,7 +39,6 @@ class PricerOn final : public Pricer {
     const Clock setting_up;
     reserve(contracts.size());
     fetch_panels(contracts);
-    fetch_roots();
     copy_in(_contracts, staged(contracts), contracts.size());
     _instance.space().fence("drogue::options: contracts are copied");
     timing.h2d = setting_up.seconds();
@@ -108,7 +107,6 @@ class PricerOn final : public Pricer {
     const std::span<const Contract> one(&contract, 1);
     reserve(1);
     fetch_panels(one);
-    fetch_roots();
     copy_in(_contracts, &contract, 1);
     const int mesh = _settings.mesh != 0 ? _settings.mesh : record_mesh;
     const Effort effort{mesh, steps_of(mesh, 1)};
@@ -269,6 +267,7 @@ class PricerOn final : public Pricer {
       copy_in(_order, rows.data(), rows.size());
       _rows.swap(rows);
     }
+    if (is_transformed(effort.mesh)) fetch_roots();
     PriceBatch<ExecutionSpace> batch;
     batch.contracts = _contracts;
     batch.prices = _prices;

@@ -12,15 +12,18 @@ class RegisterFourier {
  public:
   /// `row` (mesh) and `z` (padded(mesh)) are shared memory for it alone from its first call on.
   KOKKOS_INLINE_FUNCTION RegisterFourier(int lane, const JumpSpectrum<double>& spectrum, double* row,
-                                         Complex<double>* z)
+                                         ComplexNumber<double>* z)
       : _lane(lane),
         _roots(spectrum.roots),
-        _second_roots(spectrum.roots.seven(1, lane / radix)),
+        _spectrum(spectrum.place + padded(8 * lane)),
         _row(row),
         _first(z + padded(lane)),
         _second(z + padded(lane / radix * (8 * radix) + lane % radix)),
         _third(z + padded(8 * lane)) {
-    _spectrum.load(spectrum.place + padded(8 * lane), 1);
+    if constexpr (keeps) {
+      _kept.roots = spectrum.roots.seven(1, lane / radix);
+      _kept.spectrum.load(_spectrum, 1);
+    }
   }
 
   template <class Workers>
@@ -32,15 +35,15 @@ class RegisterFourier {
     octet.store(_first, lanes);
     workers.meet();
     octet.load(_second, radix);
-    octet.split(_second_roots);
+    octet.split(second_roots());
     octet.store(_second, radix);
     workers.meet();
     octet.load(_third, 1);
-    octet.multiply_last<radix>(_roots, 2, _lane, _spectrum.z);
+    octet.multiply_last<radix>(_roots, 2, _lane, own_spectrum());
     octet.store(_third, 1);
     workers.meet();
     octet.load(_second, radix);
-    octet.join(_second_roots);
+    octet.join(second_roots());
     octet.store(_second, radix);
     workers.meet();
     octet.load(_first, lanes);
@@ -53,6 +56,24 @@ class RegisterFourier {
   static constexpr Passes passes{8 * lanes};
   static constexpr int radix = 1 << passes.last_log_radix;
   static_assert(passes.last == 2);
+  static constexpr bool keeps = keeps_spectrum(lanes);
+
+  /// What every step reads.
+  struct Kept {
+    SevenRoots roots;
+    Octet<double> spectrum;
+  };
+  struct Nothing {};
+
+  [[nodiscard]] KOKKOS_INLINE_FUNCTION SevenRoots second_roots() const {
+    if constexpr (keeps) return _kept.roots;
+    return _roots.seven(1, _lane / radix);
+  }
+  /// Eight numbers.
+  [[nodiscard]] KOKKOS_INLINE_FUNCTION const ComplexNumber<double>* own_spectrum() const {
+    if constexpr (keeps) return _kept.spectrum.z;
+    return _spectrum;
+  }
 
   /// Where node lane + lanes m is in the row.
   [[nodiscard]] KOKKOS_INLINE_FUNCTION int place(int m) const {
@@ -61,10 +82,10 @@ class RegisterFourier {
 
   int _lane;
   FourierRoots _roots;
-  SevenRoots _second_roots;
-  Octet<double> _spectrum;
+  const ComplexNumber<double>* _spectrum;  ///< the lane's part
   double* _row;
-  Complex<double>*_first, *_second, *_third;
+  ComplexNumber<double>*_first, *_second, *_third;
+  std::conditional_t<keeps, Kept, Nothing> _kept;
 };
 
 }  // namespace drogue::options

@@ -155,7 +155,8 @@ class JumpSum<8, lanes, true> : public RegisterFourier<lanes> {
  public:
   KOKKOS_INLINE_FUNCTION JumpSum(int lane, const double* /*w*/, const JumpSpectrum<double>& spectrum,
                                  const RegisterRows& rows)
-      : RegisterFourier<lanes>(lane, spectrum, rows.value, reinterpret_cast<Complex<double>*>(rows.out)) {}
+      : RegisterFourier<lanes>(lane, spectrum, rows.value,
+                               reinterpret_cast<ComplexNumber<double>*>(rows.out)) {}
 };
 
 /// Turns an array of nodes in plain order into a `swizzled` one.

@@ -34,10 +34,10 @@ struct Memory {
         answers(reinterpret_cast<Answer*>(puts + members)) {}
 
   [[nodiscard]] KOKKOS_INLINE_FUNCTION R* row(int k, int mesh) const { return nodes + k * node_count(mesh); }
-  /// The spectrum of the weights of a mesh that is transformed, in its two last rows; with a fixed mesh it
-  /// only passes through.
-  [[nodiscard]] KOKKOS_INLINE_FUNCTION Complex<R>* spectrum(int mesh) const {
-    return reinterpret_cast<Complex<R>*>(row(fixed > 0 ? 1 : rows(mesh) - 2, mesh));
+  /// The spectrum of the weights of a mesh that is transformed, in its two last rows; of the mesh that lanes keep
+  /// it of in registers it only passes through.
+  [[nodiscard]] KOKKOS_INLINE_FUNCTION ComplexNumber<R>* spectrum(int mesh) const {
+    return reinterpret_cast<ComplexNumber<R>*>(row(passes_through ? 1 : rows(mesh) - 2, mesh));
   }
   /// Weights of the coarser grid of a mesh, and every other value of the finer one; rows 0 to 2 of the finer
   /// solve that are read last lie before both.
@@ -56,13 +56,14 @@ struct Memory {
   [[nodiscard]] KOKKOS_INLINE_FUNCTION R* symbol() const { return law + StepFactors<R>::size * most_lanes; }
 
  private:
+  static constexpr bool passes_through = fixed > 0 && keeps_spectrum(lanes_of(fixed));
   static constexpr int law_size = StepFactors<R>::size * most_lanes + symbols;
   static constexpr int slot_size = fixed == 0               ? 6 * most_lanes
                                    : fixed < 3 * most_lanes ? 3 * most_lanes
                                                             : fixed;
 
   [[nodiscard]] KOKKOS_INLINE_FUNCTION static int rows(int mesh) {
-    return fixed > 0 ? 5 : is_transformed(mesh, 1) ? 13 : 11;
+    return (fixed > 0 ? 5 : 11) + (is_transformed(mesh, 1) && !passes_through ? 2 : 0);
   }
   [[nodiscard]] KOKKOS_INLINE_FUNCTION static int node_size(int mesh) {
     const int coarse =

@@ -37,9 +37,9 @@ struct SumFunctor {
     const auto* const w = reinterpret_cast<const R*>(weights.data());
     const auto* const v = reinterpret_cast<const R*>(values.data());
     auto* const to = reinterpret_cast<R*>(sums.data());
-    auto* const z = reinterpret_cast<Complex<R>*>(work.data());
+    auto* const z = reinterpret_cast<ComplexNumber<R>*>(work.data());
     const JumpSpectrum<R> made = spectrum_of(workers, mesh, FourierRoots::of(roots.data()), w,
-                                             reinterpret_cast<Complex<R>*>(spectrum.data()));
+                                             reinterpret_cast<ComplexNumber<R>*>(spectrum.data()));
     if constexpr (!device::is_host<Space>) {
       if (in_registers) {
         const auto own = LaneNodes<8>::load(workers.lane, v);

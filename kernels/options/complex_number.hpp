@@ -6,31 +6,31 @@ namespace drogue::options {
 
 /// A complex number, or one of each option of a pack; of doubles it is read and written at once.
 template <class R>
-struct alignas(alignof(R) > 16 ? alignof(R) : 16) Complex {
+struct alignas(alignof(R) > 16 ? alignof(R) : 16) ComplexNumber {
   R re, im;
 
-  KOKKOS_INLINE_FUNCTION friend Complex operator+(const Complex& a, const Complex& b) {
+  KOKKOS_INLINE_FUNCTION friend ComplexNumber operator+(const ComplexNumber& a, const ComplexNumber& b) {
     return {a.re + b.re, a.im + b.im};
   }
-  KOKKOS_INLINE_FUNCTION friend Complex operator-(const Complex& a, const Complex& b) {
+  KOKKOS_INLINE_FUNCTION friend ComplexNumber operator-(const ComplexNumber& a, const ComplexNumber& b) {
     return {a.re - b.re, a.im - b.im};
   }
 };
 
 template <class R, class S>
-KOKKOS_INLINE_FUNCTION Complex<R> product(const Complex<R>& a, const Complex<S>& b) {
+KOKKOS_INLINE_FUNCTION ComplexNumber<R> product(const ComplexNumber<R>& a, const ComplexNumber<S>& b) {
   return {a.re * b.re - a.im * b.im, a.re * b.im + a.im * b.re};
 }
 
 /// a times the conjugate of b.
 template <class R, class S>
-KOKKOS_INLINE_FUNCTION Complex<R> quotient(const Complex<R>& a, const Complex<S>& b) {
+KOKKOS_INLINE_FUNCTION ComplexNumber<R> quotient(const ComplexNumber<R>& a, const ComplexNumber<S>& b) {
   return {a.re * b.re + a.im * b.im, a.im * b.re - a.re * b.im};
 }
 
 /// sign i a.
 template <int sign, class R>
-KOKKOS_INLINE_FUNCTION Complex<R> turned(const Complex<R>& a) {
+KOKKOS_INLINE_FUNCTION ComplexNumber<R> turned(const ComplexNumber<R>& a) {
   if constexpr (sign > 0) return {-a.im, a.re};
   return {a.im, -a.re};
 }
