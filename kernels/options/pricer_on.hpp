@@ -267,7 +267,7 @@ class PricerOn final : public Pricer {
       copy_in(_order, rows.data(), rows.size());
       _rows.swap(rows);
     }
-    if (is_transformed(effort.mesh)) fetch_roots();
+    if (is_transformed(effort.mesh, lanes_of(effort.mesh))) fetch_roots();
     PriceBatch<ExecutionSpace> batch;
     batch.contracts = _contracts;
     batch.prices = _prices;
