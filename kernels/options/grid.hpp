@@ -29,8 +29,8 @@ KOKKOS_INLINE_FUNCTION constexpr int lanes_of(int mesh) {
   return mesh == 64 || mesh == 128 ? 16 : most_lanes;
 }
 
-/// Whether lanes, so many an option, keep the spectrum of its jumps in registers: where two options share a warp
-/// shared memory has no room for it, and else registers have none.
+/// Whether lanes, so many an option, keep the spectrum of its jumps in registers: where two options share a
+/// warp shared memory has no room for it, and else registers have none.
 KOKKOS_INLINE_FUNCTION constexpr bool keeps_spectrum(int lanes) { return lanes < most_lanes; }
 
 /// Whether the sum over jumps of a mesh goes through Fourier transforms, which are the faster where every

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <utility>
+
 #include "kernels/options/grid.hpp"
 #include "kernels/options/tails.hpp"
 
@@ -74,28 +76,43 @@ KOKKOS_INLINE_FUNCTION WeightPair<R> merton_weights(const PutPack<R>& put, R h, 
           put.jump[0] * normal_between((-far - mean) * per, (-near - mean) * per)};
 }
 
-/// cos(pi 2^{-k/2}).
-KOKKOS_INLINE_FUNCTION double angle_cosine(int k) {
-  constexpr double cosine[16] = {-1.0,
-                                 -0.60569968077342403,
-                                 0.0,
-                                 0.44406709312226836,
-                                 0.70710678118654757,
-                                 0.84972234063003164,
-                                 0.92387953251128674,
-                                 0.96171261162945637,
-                                 0.98078528040323043,
-                                 0.99038193932259957,
-                                 0.99518472667219693,
-                                 0.99759258832293451,
-                                 0.99879545620517241,
-                                 0.99939796607266041,
-                                 0.99969881869620425,
-                                 0.99984948021804443};
-  double chosen = cosine[0];  // an array in registers has no address
-  for (int m = 1; m < 16; ++m) chosen = m == k ? cosine[m] : chosen;
-  return chosen;
-}
+/// cos(pi 2^{-k/2}), k = 0 .. 15.
+struct AngleCosines {
+  static constexpr double of[symbols] = {-1.0,
+                                         -0.60569968077342403,
+                                         0.0,
+                                         0.44406709312226836,
+                                         0.70710678118654757,
+                                         0.84972234063003164,
+                                         0.92387953251128674,
+                                         0.96171261162945637,
+                                         0.98078528040323043,
+                                         0.99038193932259957,
+                                         0.99518472667219693,
+                                         0.99759258832293451,
+                                         0.99879545620517241,
+                                         0.99939796607266041,
+                                         0.99969881869620425,
+                                         0.99984948021804443};
+
+  /// Calls f(k, cosine) for all of them, of which the compiler knows the numbers: an array of registers could
+  /// not be indexed.
+  template <class F>
+  KOKKOS_INLINE_FUNCTION static void each(const F& f) {
+    each(f, std::make_integer_sequence<int, symbols>());
+  }
+
+ private:
+  template <class F, int... k>
+  KOKKOS_INLINE_FUNCTION static void each(const F& f, std::integer_sequence<int, k...> /*all*/) {
+    (call<k>(f), ...);
+  }
+  template <int k, class F>
+  KOKKOS_INLINE_FUNCTION static void call(const F& f) {
+    constexpr double cosine = of[k];
+    f(k, cosine);
+  }
+};
 
 /// Scratch memory of `jumps_of`: that of the result, and sums.
 template <class R>
@@ -194,7 +211,9 @@ KOKKOS_INLINE_FUNCTION Jumps<R> jumps_of(const Workers& workers, const PutPack<R
     }
     // The odd d of all angles first, then the even ones.
     for (int task = lane; task < 2 * symbols; task += workers.lanes) {
-      const double cosine = angle_cosine(task % symbols), twice = 2.0 * (2.0 * cosine * cosine - 1.0);
+      double cosine = 0.0;
+      AngleCosines::each([&](int k, double known) { cosine = k == task % symbols ? known : cosine; });
+      const double twice = 2.0 * (2.0 * cosine * cosine - 1.0);
       const int first = task < symbols ? 1 : 2;
       double before = first == 1 ? cosine : 1.0, now = first == 1 ? cosine : 0.5 * twice;
       R sum = 0.0;

@@ -107,13 +107,13 @@ KOKKOS_INLINE_FUNCTION Scheme<R> scheme_of(const PutPack<R>& put, const Jumps<R>
 template <class R>
 KOKKOS_INLINE_FUNCTION R added_diffusion(const PutPack<R>& put, const Jumps<R>& jumps, R diffusion, R dt) {
   const R most = 3.6 * device::reciprocal(dt);
-  R added = 0.0;
-  for (int k = 0; k < symbols; ++k) {
-    const double form = 2.0 - 2.0 * angle_cosine(k);
+  R added[4] = {0.0, 0.0, 0.0, 0.0};  // that do not wait for one another
+  AngleCosines::each([&](int k, double cosine) {
+    const double form = 2.0 - 2.0 * cosine;
     const R need = 3.0 * (jumps.symbol[k] + put.rate) - diffusion * form - most;
-    added = device::maximum(added, need * (0.25 / form));
-  }
-  return added;
+    added[k % 4] = device::maximum(added[k % 4], need * (0.25 / form));
+  });
+  return device::maximum(device::maximum(added[0], added[1]), device::maximum(added[2], added[3]));
 }
 
 /// The end of step n of `steps`, years: steps grow with the square root of time, as the solution's changes

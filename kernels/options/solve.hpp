@@ -34,8 +34,8 @@ struct Memory {
         answers(reinterpret_cast<Answer*>(puts + members)) {}
 
   [[nodiscard]] KOKKOS_INLINE_FUNCTION R* row(int k, int mesh) const { return nodes + k * node_count(mesh); }
-  /// The spectrum of the weights of a mesh that is transformed, in its two last rows; of the mesh that lanes keep
-  /// it of in registers it only passes through.
+  /// The spectrum of the weights of a mesh that is transformed, in its two last rows; of the mesh that lanes
+  /// keep it of in registers it only passes through.
   [[nodiscard]] KOKKOS_INLINE_FUNCTION ComplexNumber<R>* spectrum(int mesh) const {
     return reinterpret_cast<ComplexNumber<R>*>(row(passes_through ? 1 : rows(mesh) - 2, mesh));
   }
