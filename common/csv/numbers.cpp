@@ -26,4 +26,10 @@ void append_number(std::string& out, double value) {
   out.append(text, end);
 }
 
+void append_number(std::string& out, int value) {
+  char text[16];
+  const auto [end, error] = std::to_chars(text, text + sizeof text, value);
+  out.append(text, end);
+}
+
 }  // namespace drogue::csv
