@@ -1,8 +1,10 @@
 #include "miniapps/options/batch_reader.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <functional>
 #include <map>
+#include <utility>
 
 #include "common/csv/header.hpp"
 
@@ -11,6 +13,25 @@ namespace {
 
 /// Bytes: of a chunk, that a rank may hold a few of them whatever the lines.
 constexpr std::size_t most_text = std::size_t{8} << 20;
+
+/// Those that come more than once, in order.
+std::vector<std::size_t> repeated_of(std::vector<std::size_t> hashes) {
+  // To sort all of them takes as long as to read them: only those few are sorted that share a slot.
+  constexpr int slots_a_hash = 16;
+  const std::size_t slots = std::bit_ceil(slots_a_hash * (hashes.size() + 1));
+  const auto slot = [slots](std::size_t hash) { return hash & (slots - 1); };
+  std::vector<bool> is_taken(slots), is_shared(slots);
+  for (const std::size_t hash : hashes) {
+    if (is_taken[slot(hash)]) is_shared[slot(hash)] = true;
+    is_taken[slot(hash)] = true;
+  }
+  std::erase_if(hashes, [&](std::size_t hash) { return !is_shared[slot(hash)]; });
+  std::sort(hashes.begin(), hashes.end());
+  std::vector<std::size_t> repeated;
+  for (std::size_t i = 1; i < hashes.size(); ++i)
+    if (hashes[i] == hashes[i - 1]) repeated.push_back(hashes[i]);
+  return repeated;
+}
 
 }  // namespace
 
@@ -43,12 +64,8 @@ void BatchReader::require_unique_ids() {
   std::vector<std::size_t> hashes;
   RowReader rows(_kind, _places);
   while (_lines.next(_line)) hashes.push_back(hash(rows.read_id(_line, ++_rows)));
-  std::sort(hashes.begin(), hashes.end());
-  std::vector<std::size_t> repeated;
-  for (std::size_t i = 1; i < hashes.size(); ++i)
-    if (hashes[i] == hashes[i - 1]) repeated.push_back(hashes[i]);
+  const std::vector<std::size_t> repeated = repeated_of(std::move(hashes));
   if (repeated.empty()) return;
-  hashes = {};
   std::map<std::string, std::int64_t, std::less<>> first;
   BatchReader again(file(), _kind);
   while (again._lines.next(again._line)) {
