@@ -9,18 +9,18 @@ namespace drogue::options_app {
 namespace {
 
 constexpr int chunks_a_helper = 2;  // one that is priced and one that waits
-constexpr std::size_t most_held = std::size_t{64} << 20;
 
 std::size_t size_of(const Piece& piece) { return piece.prices.size() + piece.boundaries.size(); }
 
 }  // namespace
 
 Dispatcher::Dispatcher(ChunkSource& source, Outputs& outputs, ProgressLine& progress,
-                       std::vector<Helper*> helpers)
+                       std::vector<Helper*> helpers, std::size_t most_held)
     : _source(source),
       _outputs(outputs),
       _progress(progress),
       _helpers(std::move(helpers)),
+      _most_held(most_held),
       _given(_helpers.size(), 0),
       _has_left(_helpers.size(), false) {}
 
@@ -73,7 +73,7 @@ bool Dispatcher::take() {
   bool took = false;
   for (std::size_t i = 0; i < _helpers.size(); ++i) {
     const bool has_first = !_open.empty() && _open.front().helper == i;
-    if (!has_first && _held > most_held) continue;
+    if (!has_first && _held > _most_held) continue;
     if (std::optional<Piece> piece = _helpers[i]->take()) {
       accept(i, *std::move(piece));
       took = true;

@@ -15,7 +15,9 @@ namespace drogue::options_app {
 /// listened to.
 class Dispatcher {
  public:
-  Dispatcher(ChunkSource& source, Outputs& outputs, ProgressLine& progress, std::vector<Helper*> helpers);
+  /// `most_held`: bytes that may wait to be written, but for what one helper hands in at a time.
+  Dispatcher(ChunkSource& source, Outputs& outputs, ProgressLine& progress, std::vector<Helper*> helpers,
+             std::size_t most_held = std::size_t{64} << 20);
 
   /// Returns when all helpers have left: true if every row is written, false after a signal here or at a
   /// helper, or if a helper left that had a chunk. Throws Failure(io_error) after it let all of them go.
@@ -46,6 +48,7 @@ class Dispatcher {
   Outputs& _outputs;
   ProgressLine& _progress;
   std::vector<Helper*> _helpers;
+  std::size_t _most_held;
   std::vector<int> _given;      ///< chunks that each helper has
   std::vector<bool> _has_left;  ///< of each helper
   std::size_t _helpers_left = 0;

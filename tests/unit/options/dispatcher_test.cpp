@@ -4,9 +4,11 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
+#include <string>
+#include <vector>
 
 namespace drogue::options_app {
 namespace {
@@ -73,7 +75,7 @@ class OptionsDispatcher : public ::testing::Test {
     ChunkSource source(_command, reader, 3);
     Outputs outputs(_command);
     ProgressLine progress(true);
-    Dispatcher dispatcher(source, outputs, progress, helpers);
+    Dispatcher dispatcher(source, outputs, progress, helpers, 350);
     const bool is_complete = dispatcher.run();
     EXPECT_EQ(dispatcher.spent().pricing, static_cast<double>(helpers.size()));
     if (is_complete) outputs.commit();
@@ -118,7 +120,7 @@ TEST_F(OptionsDispatcher, LeavesNothingWhereAHelperLeavesEarly) {
 TEST_F(OptionsDispatcher, HearsOnlyTheNextOneWhileMuchWaits) {
   constexpr int patience = 50;
   SlowHelper a(_asked, 0, patience), b(_asked, 1, 1);
-  b.be_verbose(std::size_t{20} << 20);
+  b.be_verbose(100);
   EXPECT_TRUE(run({&a, &b}));
   const auto first_row = static_cast<std::ptrdiff_t>(
       std::find_if(_asked.begin(), _asked.end(),
