@@ -12,7 +12,7 @@ namespace drogue::options_app {
 namespace {
 
 /// Bytes: of a chunk, that a rank may hold a few of them whatever the lines.
-constexpr std::size_t most_text = std::size_t{8} << 20;
+constexpr std::size_t most_of_chunk = std::size_t{8} << 20;
 
 /// Those that come more than once, in order.
 std::vector<std::size_t> repeated_of(std::vector<std::size_t> hashes) {
@@ -47,7 +47,7 @@ bool BatchReader::next(Chunk& chunk, std::size_t most) {
   chunk.first_row = _rows + 1;
   chunk.lines.clear();
   chunk.text.clear();
-  while (chunk.lines.size() < most && chunk.text.size() < most_text && _lines.next(_line)) {
+  while (chunk.lines.size() < most && chunk.text.size() < most_of_chunk && _lines.next(_line)) {
     chunk.lines.push_back({_line.number, static_cast<std::uint32_t>(_line.text.size()), _line.too_long});
     chunk.text += _line.text;
   }

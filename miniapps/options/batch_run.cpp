@@ -9,7 +9,7 @@
 namespace drogue::options_app {
 namespace {
 
-constexpr std::size_t most_text = std::size_t{1} << 20;  // of a piece, but for one row's
+constexpr std::size_t most_of_piece = std::size_t{1} << 20;  // of a piece, but for one row's
 
 double now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -93,7 +93,7 @@ void BatchRun::flush(Desk& desk) {
     if (!_command.boundary.empty() && contract.style == options::Style::american &&
         price.outcome != options::Outcome::failed)
       append_boundary(_piece, *row, _pricer.boundary(contract));
-    if (_piece.prices.size() + _piece.boundaries.size() >= most_text) hand_in(desk, false);
+    if (_piece.prices.size() + _piece.boundaries.size() >= most_of_piece) hand_in(desk, false);
   }
   _owners.clear();
   _contracts.clear();
