@@ -8,6 +8,7 @@
 
 #include "common/csv/header.hpp"
 #include "common/program/message.hpp"
+#include "common/program/mpi_guard.hpp"
 #include "common/program/program.hpp"
 #include "common/program/provenance.hpp"
 #include "common/program/ranks.hpp"
@@ -191,16 +192,17 @@ ExitCode run_batch(Ranks& ranks, const Command& command) {
 }  // namespace
 
 ExitCode run_app(const Command& command) {
+  const auto say = [](const std::string& text) {
+    if (launched_rank().rank == 0) std::cout << text;
+    return ExitCode::ok;
+  };
   switch (command.action) {
     case Action::help:
-      std::cout << command.help;
-      return ExitCode::ok;
+      return say(command.help);
     case Action::version:
-      std::cout << version_text("drogue-options");
-      return ExitCode::ok;
+      return say(version_text("drogue-options"));
     case Action::list_batches:
-      std::cout << batch_list();
-      return ExitCode::ok;
+      return say(batch_list());
     case Action::price:
     case Action::surface:
       break;

@@ -119,6 +119,7 @@ class SameFiles(RanksTest):
 
 class Ends(RanksTest):
     def test_what_every_rank_sees(self):
+        self.assertEqual(1, self.expect_ranks(0, 2, "price", "--help").count("--boundary"))
         self.assertIn("--tolerance", self.expect_ranks(2, 2, "price", "example", "--tolerance", "0"))
 
     def test_what_the_first_rank_sees(self):
