@@ -36,7 +36,7 @@ find_package(KokkosKernels 4.5 CONFIG QUIET)
 drogue_require(KokkosKernels_FOUND "Kokkos Kernels" "batched linear algebra" "${_setup}")
 
 find_package(MPI QUIET COMPONENTS C)
-drogue_require(MPI_C_FOUND "MPI" "the guard against several ranks and parallel output"
+drogue_require(MPI_C_FOUND "MPI" "options on several ranks and parallel output"
   "Install libopenmpi-dev or load an MPI module.")
 set(HDF5_PREFER_PARALLEL TRUE)
 find_package(HDF5 QUIET COMPONENTS C)

@@ -85,6 +85,14 @@ function(drogue_optimise_little target)
   target_compile_options(${target} PRIVATE $<$<AND:$<CONFIG:Release>,$<COMPILE_LANGUAGE:CXX>>:-O1>)
 endfunction()
 
+# Compiles sources with an optimisation of their own in a release, like -O2 for what runs once a row of a batch. Not in a
+# unity build, which would have to leave them out.
+function(drogue_optimise_sources optimisation)
+  if(NOT CMAKE_UNITY_BUILD)
+    set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS "$<$<CONFIG:Release>:${optimisation}>")
+  endif()
+endfunction()
+
 if(DROGUE_CUDA)
   # See the header: Kokkos 4.5 calls three functions by signatures that CUDA 13 dropped.
   target_compile_options(drogue_arithmetic INTERFACE

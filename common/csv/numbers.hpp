@@ -14,5 +14,6 @@ NumberError parse_number(std::string_view text, double& value);
 
 /// Appends the shortest text that reads back as the same number; nothing where there is no number.
 void append_number(std::string& out, double value);
+void append_number(std::string& out, int value);
 
 }  // namespace drogue::csv

@@ -1,20 +1,24 @@
 #include "miniapps/options/app.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <iostream>
 #include <optional>
 
 #include "common/csv/header.hpp"
+#include "common/program/message.hpp"
 #include "common/program/mpi_guard.hpp"
 #include "common/program/program.hpp"
 #include "common/program/provenance.hpp"
+#include "common/program/ranks.hpp"
 #include "common/program/signals.hpp"
 #include "common/run/result_document.hpp"
 #include "kernels/device/ledger.hpp"
 #include "kernels/device/runtime.hpp"
 #include "miniapps/options/batch_run.hpp"
 #include "miniapps/options/batches.hpp"
+#include "miniapps/options/distribution.hpp"
 
 namespace drogue::options_app {
 namespace {
@@ -85,47 +89,91 @@ void count_rows(const Tally& tally, run::ResultDocument& result) {
                    {"failed", tally.failed}};
 }
 
+void describe_spent(const Spent& spent, double seconds, run::ResultDocument& result) {
+  result.timing.h2d_s = spent.timing.h2d;
+  result.timing.compute_s = spent.timing.compute;
+  result.timing.d2h_s = spent.timing.d2h;
+  result.timing.io_s = std::max(0.0, seconds - spent.pricing / result.ranks);
+  result.describe_ledger(spent.ledger);
+}
+
+/// What the first rank tells the others of the batch.
+std::string batch_message(device::Backend backend, const std::optional<BatchReader>& reader) {
+  MessageWriter message;
+  message.put(backend);
+  message.put_all(reader ? reader->places() : std::vector<int>());
+  return message.take();
+}
+
 /// Reads, prices, writes. `result` is filled also where rows did not end well, which is thrown.
-ExitCode price_batch(const Command& command, const std::filesystem::path& input,
+ExitCode price_batch(Ranks& ranks, const Command& command, const std::filesystem::path& input,
                      run::ResultDocument& result) {
   const auto begin = Clock::now();
   const RowKind kind = command.action == Action::price ? RowKind::contract : RowKind::parameter_set;
-  const auto since = [&begin] { return std::chrono::duration<double>(Clock::now() - begin).count(); };
-  BatchReader reader(input, kind);
-  if (reader.has_ids()) BatchReader(input, kind).require_unique_ids();
-  const device::Backend backend = choose_backend(command.backend);
-  PriceWriter writer(command.out, {command.action == Action::surface, command.settings.greeks});
-  const auto runtime = start_kokkos(command.kokkos);
-  device::start_ledger();
-  result.describe_device(std::string(device::name(backend)), device::device_facts());
-  const auto pricer = make_pricer(backend, command.settings);
-  result.timing.setup_s = since();
-  std::optional<BoundaryWriter> boundaries;
-  if (!command.boundary.empty()) boundaries.emplace(command.boundary);
-  BatchRun run(command, reader, writer, boundaries, *pricer);
-  const ExitCode code = run.run(result.timing);
-  result.timing.wall_s = since();
-  result.describe_ledger(device::ledger());
-  count_rows(writer.tally(), result);
-  if (code == ExitCode::interrupted) {
+  const auto since = [](Clock::time_point then) {
+    return std::chrono::duration<double>(Clock::now() - then).count();
+  };
+  device::Backend backend{};
+  std::optional<BatchReader> reader;
+  std::optional<Outputs> outputs;
+  ranks.together([&] {
+    if (!ranks.is_first()) return;
+    reader.emplace(input, kind);
+    if (reader->has_ids()) BatchReader(input, kind).require_unique_ids();
+    backend = choose_backend(command.backend);
+    outputs.emplace(command);
+  });
+  // One backend on all ranks, whatever each would choose: prices have the bits of one backend.
+  const std::string message = ranks.from_first(batch_message(backend, reader));
+  MessageReader facts(message);
+  backend = facts.get<device::Backend>();
+  const auto places = facts.get_all<int>();
+  std::unique_ptr<device::Runtime> runtime;
+  std::unique_ptr<options::Pricer> pricer;
+  ranks.together([&] {
+    choose_backend(std::string(device::name(backend)));
+    runtime = start_kokkos(command.kokkos);
+    device::start_ledger();
+    result.describe_device(std::string(device::name(backend)), device::device_facts());
+    pricer = make_pricer(backend, command.settings);
+  });
+  result.timing.setup_s = since(begin);
+  const auto pricing = Clock::now();
+  BatchRun run(command, kind, places, *pricer);
+  Distribution done;
+  ranks.together([&] {
+    if (!ranks.is_first()) return assist(ranks, run);
+    done = distribute(ranks, command, *reader, *outputs, run);
+    if (done.is_complete) outputs->commit();
+  });
+  if (!ranks.is_first()) return ExitCode::ok;
+  describe_spent(done.spent, since(pricing), result);
+  result.timing.wall_s = since(begin);
+  count_rows(outputs->tally(), result);
+  if (!done.is_complete) {
     result.message = "interrupted by a signal; nothing is written to '" + command.out.string() + "'";
-    return code;
+    return ExitCode::interrupted;
   }
-  if (!command.quiet) print_summary(command, result, writer.tally());
-  blame_rows(writer.tally(), reader, command.out);
-  return code;
+  if (!command.quiet) print_summary(command, result, outputs->tally());
+  blame_rows(outputs->tally(), *reader, command.out);
+  return ExitCode::ok;
 }
 
 /// One batch, whose --result tells how it ended, whatever happened.
-ExitCode run_batch(const Command& command) {
-  const std::filesystem::path input = find_batch(command.input);
-  check_outputs(command, input);
+ExitCode run_batch(Ranks& ranks, const Command& command) {
+  std::filesystem::path input;
+  ranks.together([&] {
+    if (!ranks.is_first()) return;
+    input = find_batch(command.input);
+    check_outputs(command, input);
+  });
   run::ResultDocument result = run::new_result("drogue-options", input.stem().string());
+  result.ranks = ranks.count();
   const auto write_result = [&] {
-    if (!command.result.empty()) run::write_result(command.result, result);
+    if (ranks.is_first() && !command.result.empty()) run::write_result(command.result, result);
   };
   try {
-    result.exit_code = price_batch(command, input, result);
+    result.exit_code = price_batch(ranks, command, input, result);
   } catch (...) {
     const Failure failure = current_failure();
     result.exit_code = failure.code();
@@ -144,23 +192,30 @@ ExitCode run_batch(const Command& command) {
 }  // namespace
 
 ExitCode run_app(const Command& command) {
+  const auto say = [](const std::string& text) {
+    if (launched_rank().rank == 0) std::cout << text;
+    return ExitCode::ok;
+  };
   switch (command.action) {
     case Action::help:
-      std::cout << command.help;
-      return ExitCode::ok;
+      return say(command.help);
     case Action::version:
-      std::cout << version_text("drogue-options");
-      return ExitCode::ok;
+      return say(version_text("drogue-options"));
     case Action::list_batches:
-      std::cout << batch_list();
-      return ExitCode::ok;
+      return say(batch_list());
     case Action::price:
     case Action::surface:
       break;
   }
-  require_one_rank("drogue-options");
+  Ranks ranks;
   install_signal_handlers();
-  return run_batch(command);
+  try {
+    return run_batch(ranks, command);
+  } catch (const Failure&) {
+    // The first rank throws the same, and tells it.
+    if (ranks.is_first()) throw;
+    return ExitCode::ok;
+  }
 }
 
 }  // namespace drogue::options_app

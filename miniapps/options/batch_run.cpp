@@ -1,53 +1,67 @@
 #include "miniapps/options/batch_run.hpp"
 
-#include <algorithm>
 #include <chrono>
+#include <utility>
 
 #include "common/program/signals.hpp"
+#include "miniapps/options/outputs.hpp"
 
 namespace drogue::options_app {
 namespace {
 
-using Clock = std::chrono::steady_clock;
+constexpr std::size_t most_of_piece = std::size_t{1} << 20;  // of a piece, but for one row's
 
-constexpr std::size_t least_chunk = 64, most_chunk = 65536;
-constexpr double wanted_chunk_time = 0.1;  // s: an answer to Ctrl-C, and work enough for a device
+double now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
 
 }  // namespace
 
-BatchRun::BatchRun(const Command& command, BatchReader& reader, PriceWriter& writer,
-                   std::optional<BoundaryWriter>& boundaries, options::Pricer& pricer)
-    : _command(command),
-      _reader(reader),
-      _writer(writer),
-      _boundaries(boundaries),
-      _pricer(pricer),
-      _progress(command.quiet),
-      _chunk(command.chunk > 0 ? command.chunk : least_chunk) {}
+BatchRun::BatchRun(const Command& command, RowKind kind, const std::vector<int>& places,
+                   options::Pricer& pricer)
+    : _command(command), _layout(layout_of(command)), _reader(kind, places), _pricer(pricer) {}
 
-ExitCode BatchRun::run(run::ResultDocument::Timing& timing) {
-  const auto begin = Clock::now();
-  while (!interrupted() && _reader.next(_rows, _chunk)) {
-    for (const Row& row : _rows) add(row);
-    flush();
-    _progress.update_rows(_writer.tally().rows, _reader.share());
+void BatchRun::work(Desk& desk) {
+  const auto leave = [&] {
+    Piece last;
+    last.leaves = true;
+    last.spent = _spent;
+    last.spent.ledger = device::ledger();
+    desk.hand_in(std::move(last));
+  };
+  try {
+    Chunk chunk;
+    while (!interrupted() && desk.next(chunk)) price(chunk, desk);
+  } catch (...) {
+    leave();
+    throw;
   }
-  _progress.finish();
-  if (interrupted()) return ExitCode::interrupted;
-  if (_boundaries) _boundaries->commit();
-  _writer.commit();
-  timing.h2d_s += _timing.h2d;
-  timing.compute_s += _timing.compute;
-  timing.d2h_s += _timing.d2h;
-  timing.io_s += std::chrono::duration<double>(Clock::now() - begin).count() - _pricing;
-  return ExitCode::ok;
+  leave();
 }
 
-void BatchRun::add(const Row& row) {
+void BatchRun::price(const Chunk& chunk, Desk& desk) {
+  _begin = now();
+  _piece.chunk = chunk.number;
+  _rows.resize(chunk.lines.size());
+  std::string_view rest = chunk.text;
+  for (std::size_t i = 0; i < _rows.size(); ++i) {
+    const ChunkLine& line = chunk.lines[i];
+    _reader.read({rest.substr(0, line.length), line.number, line.too_long},
+                 chunk.first_row + static_cast<std::int64_t>(i), _rows[i]);
+    rest.remove_prefix(line.length);
+  }
+  for (const Row& row : _rows) {
+    add(row, chunk, desk);
+    if (_is_stopped) return;
+  }
+  flush(desk);
+  if (!_is_stopped) hand_in(desk, true);
+}
+
+void BatchRun::add(const Row& row, const Chunk& chunk, Desk& desk) {
   const auto put = [&](const options::Contract& contract) {
-    if (_owners.size() >= _chunk) flush();
+    if (_owners.size() >= chunk.together) flush(desk);
     _owners.push_back(&row);
-    _is_valid.push_back(row.fault.empty());
     if (row.fault.empty()) _contracts.push_back(contract);
   };
   if (!row.fault.empty() || _command.action == Action::price) return put(row.contract);
@@ -57,54 +71,49 @@ void BatchRun::add(const Row& row) {
       contract.maturity = maturity;
       contract.strike = strike;
       put(contract);
-      if (interrupted()) return;
+      if (_is_stopped) return;
     }
   }
 }
 
-void BatchRun::flush() {
+void BatchRun::flush(Desk& desk) {
+  _is_stopped = interrupted() || desk.is_closed();
+  if (_is_stopped) return;
   _prices.assign(_contracts.size(), {});
-  if (!_contracts.empty()) price();
-  write();
-  _owners.clear();
-  _is_valid.clear();
-  _contracts.clear();
-}
-
-void BatchRun::price() {
-  const auto begin = Clock::now();
-  const options::Timing timing = _pricer.price(_contracts, _prices);
-  const double seconds = std::chrono::duration<double>(Clock::now() - begin).count();
-  _timing.h2d += timing.h2d;
-  _timing.compute += timing.compute;
-  _timing.d2h += timing.d2h;
-  _pricing += seconds;
-  choose_chunk(seconds);
-}
-
-void BatchRun::write() {
+  if (!_contracts.empty()) price_contracts();
   std::size_t priced = 0;
-  for (std::size_t i = 0; i < _owners.size(); ++i) {
-    if (!_is_valid[i]) {
-      _writer.write_invalid(*_owners[i]);
+  for (const Row* row : _owners) {
+    if (!row->fault.empty()) {
+      append_invalid(_piece, _layout, *row);
       continue;
     }
     const options::Contract& contract = _contracts[priced];
-    _writer.write(*_owners[i], contract, _prices[priced]);
-    if (_boundaries && contract.style == options::Style::american &&
-        _prices[priced].outcome != options::Outcome::failed)
-      _boundaries->write(_owners[i]->id, _pricer.boundary(contract));
-    ++priced;
+    const options::Price& price = _prices[priced++];
+    append_price(_piece, _layout, *row, contract, price);
+    if (!_command.boundary.empty() && contract.style == options::Style::american &&
+        price.outcome != options::Outcome::failed)
+      append_boundary(_piece, *row, _pricer.boundary(contract));
+    if (_piece.prices.size() + _piece.boundaries.size() >= most_of_piece) hand_in(desk, false);
   }
+  _owners.clear();
+  _contracts.clear();
 }
 
-void BatchRun::choose_chunk(double seconds) {
-  if (_command.chunk > 0) return;
-  if (seconds < 0.5 * wanted_chunk_time) {
-    if (_contracts.size() >= _chunk) _chunk = std::min(2 * _chunk, most_chunk);
-  } else if (seconds > 2.0 * wanted_chunk_time) {
-    _chunk = std::max(_chunk / 2, least_chunk);
-  }
+void BatchRun::price_contracts() {
+  const double begin = now();
+  const options::Timing timing = _pricer.price(_contracts, _prices);
+  _spent.timing.h2d += timing.h2d;
+  _spent.timing.compute += timing.compute;
+  _spent.timing.d2h += timing.d2h;
+  _spent.pricing += now() - begin;
+}
+
+void BatchRun::hand_in(Desk& desk, bool ends_chunk) {
+  _piece.ends_chunk = ends_chunk;
+  if (ends_chunk) _piece.seconds = now() - _begin;
+  const std::int64_t chunk = _piece.chunk;
+  desk.hand_in(std::exchange(_piece, {}));
+  _piece.chunk = chunk;
 }
 
 }  // namespace drogue::options_app

@@ -1,49 +1,44 @@
 #pragma once
 
-#include <optional>
 #include <vector>
 
-#include "common/program/progress.hpp"
-#include "common/run/result_document.hpp"
 #include "kernels/options/pricer.hpp"
-#include "miniapps/options/batch_reader.hpp"
-#include "miniapps/options/boundary_writer.hpp"
 #include "miniapps/options/command.hpp"
-#include "miniapps/options/price_writer.hpp"
+#include "miniapps/options/desk.hpp"
+#include "miniapps/options/price_text.hpp"
+#include "miniapps/options/row_reader.hpp"
 
 namespace drogue::options_app {
 
-/// Reads, prices and writes a batch a chunk at a time, so that memory does not grow with it.
+/// Prices chunks of a batch on one rank: what comes in are lines, what goes out are lines.
 class BatchRun {
  public:
-  BatchRun(const Command& command, BatchReader& reader, PriceWriter& writer,
-           std::optional<BoundaryWriter>& boundaries, options::Pricer& pricer);
+  /// `places` are those of the batch's BatchReader.
+  BatchRun(const Command& command, RowKind kind, const std::vector<int>& places, options::Pricer& pricer);
 
-  /// Prices all rows. Returns `interrupted` after a signal, else `ok`, whatever became of the rows; times are
-  /// added to `timing`.
-  ExitCode run(run::ResultDocument::Timing& timing);
+  /// Prices what there is at the desk until that has no more or a signal comes, and tells it that it leaves,
+  /// also where it throws.
+  void work(Desk& desk);
 
  private:
-  void add(const Row& row);
-  void flush();
-  void price();
-  void write();
-  void choose_chunk(double seconds);
+  void price(const Chunk& chunk, Desk& desk);
+  void add(const Row& row, const Chunk& chunk, Desk& desk);
+  void flush(Desk& desk);
+  void price_contracts();
+  void hand_in(Desk& desk, bool ends_chunk);
 
   const Command& _command;
-  BatchReader& _reader;
-  PriceWriter& _writer;
-  std::optional<BoundaryWriter>& _boundaries;
+  Layout _layout;
+  RowReader _reader;
   options::Pricer& _pricer;
-  ProgressLine _progress;
-  options::Timing _timing;
-  double _pricing = 0.0;  ///< s
-  std::size_t _chunk;
   std::vector<Row> _rows;
   std::vector<const Row*> _owners;  ///< of each contract; of an invalid row there is none
   std::vector<options::Contract> _contracts;
   std::vector<options::Price> _prices;
-  std::vector<bool> _is_valid;  ///< of what is to be written, in order
+  Piece _piece;
+  Spent _spent;
+  double _begin = 0.0;  ///< of the chunk
+  bool _is_stopped = false;
 };
 
 }  // namespace drogue::options_app

@@ -70,10 +70,6 @@ class CommandLine(options_program.OptionsTest):
         self.assertEqual(("no-backend", 77), (told["status"], told["exit_code"]))
         self.assertEqual(["r.json"], self.names())
 
-    def test_more_than_one_rank(self):
-        message = self.expect(2, "price", "example", environment={"PMI_SIZE": "2", "PMI_RANK": "0"}).stderr
-        self.assertIn("one rank", message)
-
     def test_what_is_no_input(self):
         (self.folder / "folder").mkdir()
         os.mkfifo(self.folder / "pipe")

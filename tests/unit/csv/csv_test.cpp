@@ -2,6 +2,8 @@
 
 #include <unistd.h>
 
+#include <bit>
+#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -47,6 +49,25 @@ TEST(CsvFields, Splits) {
   EXPECT_EQ(split_line(R"("",)"), (Words{"", ""}));
 }
 
+/// Lines are looked at eight characters at a time.
+TEST(CsvFields, SplitsLinesOfAnyLength) {
+  std::mt19937 random(5);
+  for (int trial = 0; trial < 2000; ++trial) {
+    std::string line;
+    std::vector<std::string> values(1);
+    for (auto k = random() % 40; k > 0; --k) {
+      const char letter = "ab.-+\xac\x7f\xff,,"[random() % 10];
+      line += letter;
+      if (letter == ',') {
+        values.emplace_back();
+      } else {
+        values.back() += letter;
+      }
+    }
+    EXPECT_EQ(split_line(line), values) << line;
+  }
+}
+
 TEST(CsvFields, TellsWhatIsWrong) {
   Fields fields;
   EXPECT_NE(fields.split("\"a"), "");
@@ -82,6 +103,30 @@ TEST(CsvNumbers, ReadsDecimalsOnly) {
   EXPECT_EQ(value, 0.0);
   EXPECT_EQ(parse_number("5e-324", value), NumberError::none);
   EXPECT_EQ(value, std::numeric_limits<double>::denorm_min());
+}
+
+/// Short numbers are read by code of our own: bit for bit as the library reads them.
+TEST(CsvNumbers, AreReadAsTheLibraryReadsThem) {
+  std::mt19937 random(6);
+  const std::string letters = "0123456789.";
+  int with_value = 0;
+  for (int trial = 0; trial < 200000; ++trial) {
+    std::string text(random() % 3 == 0 ? "-" : "");
+    bool has_point = false;
+    for (auto k = random() % 18; k > 0; --k) {
+      text += letters[random() % (has_point ? 10 : 11)];
+      has_point = has_point || text.back() == '.';
+    }
+    double expected = 0.0, value = 0.0;
+    const char* const end = text.data() + text.size();
+    const auto [stopped, error] = std::from_chars(text.data(), end, expected);
+    const bool is_number = stopped == end && error == std::errc{};
+    ASSERT_EQ(parse_number(text, value) == NumberError::none, is_number) << text;
+    if (!is_number) continue;
+    ++with_value;
+    ASSERT_EQ(std::bit_cast<std::uint64_t>(value), std::bit_cast<std::uint64_t>(expected)) << text;
+  }
+  EXPECT_GT(with_value, 100000);
 }
 
 TEST(CsvNumbers, WhatIsWrittenIsReadAgain) {

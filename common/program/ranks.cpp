@@ -1,0 +1,150 @@
+#include "common/program/ranks.hpp"
+
+#include <mpi.h>
+
+#include <algorithm>
+#include <chrono>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "common/program/mpi_guard.hpp"
+#include "common/program/program.hpp"
+
+namespace drogue {
+namespace {
+
+/// MPI waits by turning; a rank that waits for seconds must leave its core to others.
+void finish(MPI_Request& request) {
+  Pause pause;
+  int done = 0;
+  for (;;) {
+    MPI_Test(&request, &done, MPI_STATUS_IGNORE);
+    if (done != 0) return;
+    pause.wait();
+  }
+}
+
+std::string of_rank(const std::string& sentence, int rank) {
+  return rank == 0 ? sentence : sentence + " (on rank " + std::to_string(rank) + ")";
+}
+
+}  // namespace
+
+struct Ranks::Sending {
+  std::string bytes;
+  MPI_Request request = MPI_REQUEST_NULL;
+};
+
+Ranks::Ranks() {
+  const LaunchedRank launched = launched_rank();
+  if (launched.ranks == 1) return;
+  int threads = MPI_THREAD_SINGLE;
+  MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &threads);
+  MPI_Comm_rank(MPI_COMM_WORLD, &_rank);
+  MPI_Comm_size(MPI_COMM_WORLD, &_count);
+  const bool complete = _count == launched.ranks;
+  if (complete && threads >= MPI_THREAD_SERIALIZED) return;
+  MPI_Finalize();
+  if (!complete)
+    throw Failure(ExitCode::usage, "the launcher started " + std::to_string(launched.ranks) +
+                                       " processes, of which MPI finds " + std::to_string(_count) +
+                                       ": use the mpirun of the MPI that --version names");
+  throw Failure(ExitCode::usage, "this MPI does not serve threads: start the program without mpirun");
+}
+
+Ranks::~Ranks() {
+  if (_count == 1) return;
+  wait_until_sent();
+  MPI_Finalize();
+}
+
+void Ranks::send(int to, int tag, std::string bytes) {
+  forget_sent();
+  Sending& sending = *_sendings.emplace_back(std::make_unique<Sending>());
+  sending.bytes = std::move(bytes);
+  MPI_Isend(sending.bytes.data(), static_cast<int>(sending.bytes.size()), MPI_BYTE, to, tag, MPI_COMM_WORLD,
+            &sending.request);
+}
+
+void Ranks::forget_sent() {
+  _sendings.remove_if([](const std::unique_ptr<Sending>& sending) {
+    int done = 0;
+    MPI_Test(&sending->request, &done, MPI_STATUS_IGNORE);
+    return done != 0;
+  });
+}
+
+void Ranks::wait_until_sent() {
+  for (const std::unique_ptr<Sending>& sending : _sendings) finish(sending->request);
+  _sendings.clear();
+}
+
+bool Ranks::has_message(int from, int tag) {
+  int there = 0;
+  MPI_Iprobe(from, tag, MPI_COMM_WORLD, &there, MPI_STATUS_IGNORE);
+  return there != 0;
+}
+
+std::optional<std::string> Ranks::receive(int from, int tag) {
+  // Large messages move only while both sides ask for them.
+  forget_sent();
+  int there = 0;
+  MPI_Status status;
+  MPI_Iprobe(from, tag, MPI_COMM_WORLD, &there, &status);
+  if (there == 0) return std::nullopt;
+  int count = 0;
+  MPI_Get_count(&status, MPI_BYTE, &count);
+  std::string bytes(static_cast<std::size_t>(count), '\0');
+  MPI_Recv(bytes.data(), count, MPI_BYTE, from, tag, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+  return bytes;
+}
+
+std::string Ranks::from_first(std::string bytes) {
+  if (_count == 1) return bytes;
+  std::uint64_t size = bytes.size();
+  MPI_Request request;
+  MPI_Ibcast(&size, 1, MPI_UINT64_T, 0, MPI_COMM_WORLD, &request);
+  finish(request);
+  bytes.resize(size);
+  MPI_Ibcast(bytes.data(), static_cast<int>(size), MPI_BYTE, 0, MPI_COMM_WORLD, &request);
+  finish(request);
+  return bytes;
+}
+
+void Ranks::together(const std::function<void()>& act) {
+  if (_count == 1) return act();
+  std::optional<Failure> mine;
+  try {
+    act();
+  } catch (...) {
+    mine = current_failure();
+  }
+  constexpr int fine = -1;
+  const int code = mine ? static_cast<int>(mine->code()) : fine;
+  std::vector<int> codes(static_cast<std::size_t>(_count));
+  MPI_Request request;
+  MPI_Iallgather(&code, 1, MPI_INT, codes.data(), 1, MPI_INT, MPI_COMM_WORLD, &request);
+  finish(request);
+  const auto failed = std::find_if(codes.begin(), codes.end(), [](int each) { return each != fine; });
+  if (failed == codes.end()) return;
+  // Only the first rank tells it, so only that one needs the words.
+  const int rank = static_cast<int>(failed - codes.begin());
+  std::string sentence = mine ? mine->what() : "another rank gave up";
+  constexpr int tag = 0;
+  if (rank != 0 && _rank == rank) send(0, tag, sentence);
+  if (rank != 0 && _rank == 0) {
+    Pause pause;
+    std::optional<std::string> words;
+    while (!(words = receive(rank, tag))) pause.wait();
+    sentence = *words;
+  }
+  throw Failure(static_cast<ExitCode>(*failed), of_rank(sentence, rank));
+}
+
+void Pause::wait() {
+  std::this_thread::sleep_for(std::chrono::microseconds(_microseconds));
+  _microseconds = std::min(2 * _microseconds, most);
+}
+
+}  // namespace drogue

@@ -1,0 +1,85 @@
+#include "miniapps/options/price_text.hpp"
+
+#include <limits>
+
+#include "common/csv/fields.hpp"
+#include "common/csv/numbers.hpp"
+
+namespace drogue::options_app {
+namespace {
+
+const char* status(options::Outcome outcome) {
+  switch (outcome) {
+    case options::Outcome::ok:
+      return ",ok,";
+    case options::Outcome::coarse:
+      return ",coarse,";
+    case options::Outcome::failed:
+      return ",failed,a number that is not finite came up";
+  }
+  return ",failed,";
+}
+
+template <class Number>
+void append_next(std::string& text, Number value) {
+  text += ',';
+  csv::append_number(text, value);
+}
+
+}  // namespace
+
+std::string price_header(const Layout& layout) {
+  return std::string(layout.surface ? "id,strike,maturity," : "id,") +
+         "price,error,delta,gamma,theta,exercise_boundary,mesh,steps,status,message\n";
+}
+
+void append_price(Piece& piece, const Layout& layout, const Row& row, const options::Contract& contract,
+                  const options::Price& price) {
+  std::string& text = piece.prices;
+  csv::append_field(text, row.id);
+  if (layout.surface) {
+    append_next(text, contract.strike);
+    append_next(text, contract.maturity);
+  }
+  if (price.outcome == options::Outcome::failed) {
+    text += ",,,,,,,,";
+  } else {
+    append_next(text, price.price);
+    append_next(text, price.error);
+    for (const double greek : {price.delta, price.gamma, price.theta})
+      append_next(text, layout.greeks ? greek : std::numeric_limits<double>::quiet_NaN());
+    append_next(text, price.exercise_boundary);
+    append_next(text, price.mesh);
+    append_next(text, price.steps);
+  }
+  text += status(price.outcome);
+  text += '\n';
+  Tally& tally = piece.tally;
+  ++tally.rows;
+  if (price.outcome == options::Outcome::coarse) ++tally.coarse;
+  if (price.outcome == options::Outcome::failed && tally.failed++ == 0) tally.failed_line = row.line;
+}
+
+void append_invalid(Piece& piece, const Layout& layout, const Row& row) {
+  csv::append_field(piece.prices, row.id);
+  piece.prices += layout.surface ? ",,,,,,,,,,,invalid," : ",,,,,,,,,invalid,";
+  csv::append_field(piece.prices, row.fault);
+  piece.prices += '\n';
+  Tally& tally = piece.tally;
+  ++tally.rows;
+  if (tally.invalid++ == 0) {
+    tally.invalid_line = row.line;
+    tally.invalid_fault = row.fault;
+  }
+}
+
+void append_boundary(Piece& piece, const Row& row, std::span<const options::BoundaryPoint> points) {
+  for (const options::BoundaryPoint& point : points) {
+    csv::append_field(piece.boundaries, row.id);
+    append_next(piece.boundaries, point.time);
+    append_next(piece.boundaries, point.spot);
+    piece.boundaries += '\n';
+  }
+}
+
+}  // namespace drogue::options_app

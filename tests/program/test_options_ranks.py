@@ -1,0 +1,173 @@
+"""drogue-options on several ranks: the files of one rank, and an end of all of them whatever happens to one."""
+
+import json
+import os
+import pathlib
+import shutil
+import signal
+import subprocess
+import sys
+import time
+import unittest
+
+sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
+
+import options_program
+from gas_program import ENVIRONMENT
+from options_program import FAST, HEADER, batch, row
+
+LAUNCHER = shutil.which("mpirun")
+# One thread a rank: ranks share the cores with each other and with other tests. Root may test, too.
+ALLOWED = {**ENVIRONMENT, "OMP_NUM_THREADS": "1", "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
+
+
+@unittest.skipIf(LAUNCHER is None, "there is no mpirun")
+class RanksTest(options_program.OptionsTest):
+    def begin(self, ranks, *words, first=(), last=(), seconds="1"):
+        """Starts ranks, the first and the last of which by other words before the program. The launcher waits
+        some seconds between asking ranks to end and killing them, even where none is left."""
+        program = [*words, "--backend", "serial"]
+        line = [LAUNCHER, "--oversubscribe", "--mca", "odls_base_sigkill_timeout", seconds]
+        for rank in range(ranks):
+            before = first if rank == 0 else last if rank == ranks - 1 else ()
+            line += [*([":"] if rank else []), "-n", "1", *before, options_program.PROGRAM, *program]
+        process = subprocess.Popen(list(map(str, line)), cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                   stdin=subprocess.DEVNULL, text=True, env=ALLOWED)
+        self.addCleanup(process.kill)
+        return process
+
+    def end(self, process):
+        """The exit code and the program's own lines on stderr: mpirun adds some of its own where it is not 0."""
+        said, told = process.communicate(timeout=60)
+        own = [line for line in told.splitlines() if line.startswith("drogue-options:") or ".csv:" in line]
+        return process.returncode, own, said
+
+    def expect_ranks(self, code, ranks, *words, **settings):
+        ended = self.end(self.begin(ranks, *words, seconds="0", **settings))
+        self.assertEqual((code, 1 if code else 0), (ended[0], len(ended[1])), ended)
+        return ended[1][0] if code else ended[2]
+
+    def begin_long_run(self):
+        """Three ranks that price for long; the process of each."""
+        lines = [row(k, style="american", spot=0.5 + 1e-4 * k) for k in range(5000)]
+        launcher = self.begin(3, "price", self.write(batch(lines)), "--mesh", "512", "--steps", "128", "--result", "r.json")
+        for _ in range(400):
+            ranks = self.processes_of(launcher)
+            if len(ranks) == 3 and any(name.startswith(".prices.csv") for name in self.names()):
+                time.sleep(0.5)
+                return launcher, ranks
+            time.sleep(0.05)
+        self.fail("the run has not begun")
+
+    @staticmethod
+    def processes_of(launcher):
+        """Ranks by their number."""
+        found = {}
+        for folder in pathlib.Path("/proc").glob("[0-9]*"):
+            try:
+                parent = int((folder / "stat").read_text().rsplit(")", 1)[1].split()[1])
+                if parent == launcher.pid:
+                    words = (folder / "environ").read_bytes().split(b"\0")
+                    found.update({int(word.split(b"=")[1]): int(folder.name) for word in words
+                                  if word.startswith(b"OMPI_COMM_WORLD_RANK=")})
+            except (OSError, ValueError):
+                continue  # it has ended
+        return found
+
+
+class SameFiles(RanksTest):
+    LINES = [row(k, style="american" if k % 2 else "european", spot=0.7 + 0.02 * k, maturity=0.1 + 0.05 * k,
+                 beta=9 if k % 11 == 5 else -2.5) for k in range(40)]
+
+    def test_prices_and_boundaries(self):
+        """More ranks than rows in the last: two chunks of 20 for three ranks."""
+        file = self.write(batch(self.LINES))
+        words = ("--mesh", "64", "--steps", "16", "--boundary", "b.csv", "--greeks", "--quiet", "--result", "r.json")
+        written = []
+        for ranks, chunk in ((1, "40"), (2, "1"), (3, "7"), (3, "20")):
+            told = self.expect_ranks(3, ranks, "price", file, *words, "--chunk", chunk)
+            self.assertIn(f"{file}:7: |beta| < alpha", told)
+            self.assertIn("4 of 40 rows invalid", told)
+            written.append([(self.folder / name).read_bytes() for name in ("prices.csv", "b.csv")])
+            result = json.loads((self.folder / "r.json").read_text())
+            self.assertEqual((ranks, "invalid", 3, told), tuple(result[key] for key in ("ranks", "status", "exit_code", "message")))
+            self.assertEqual({"rows": 40, "ok": result["counts"]["ok"], "coarse": 36 - result["counts"]["ok"], "invalid": 4,
+                              "failed": 0}, result["counts"])
+            self.assertGreater(result["timing"]["compute_s"], 0.0)
+            self.assertGreater(result["ledger"]["kernel_launches"], 0)
+        for other in written[1:]:
+            self.assertEqual(written[0], other)
+        self.assertEqual(["b.csv", "batch.csv", "prices.csv", "r.json"], self.names())
+
+    def test_a_surface_in_pieces(self):
+        """Its only row is more than a piece of the outputs holds."""
+        header = ",".join(name for name in HEADER.split(",") if name not in ("strike", "maturity"))
+        file = self.write(f"{header}\nset,european,put,1.0,0.1,0,1,8.15,-2.5,0.767,0.4\n")
+        words = ("surface", file, "--strikes", "0.8:1.2:150", "--maturities", "0.1:2:100", "--mesh", "32", "--steps", "8", "--quiet")
+        for ranks in (1, 2):
+            self.expect_ranks(0, ranks, *words, "--out", f"{ranks}.csv")
+        self.assertGreater((self.folder / "1.csv").stat().st_size, 1_000_000)
+        self.assertEqual((self.folder / "1.csv").read_bytes(), (self.folder / "2.csv").read_bytes())
+
+    def test_more_ranks_than_rows(self):
+        for rows in (0, 2):
+            said = self.expect_ranks(0, 4, "price", self.write(batch(self.LINES[:rows])), *FAST, "--tolerance", "1e-3")
+            self.assertRegex(said, rf"^batch on serial: {rows} rows in ")
+            self.assertEqual(2, len(said.splitlines()))
+            self.assertEqual(rows, len(self.prices()))
+
+
+class Ends(RanksTest):
+    def test_what_every_rank_sees(self):
+        self.assertEqual(1, self.expect_ranks(0, 2, "price", "--help").count("--boundary"))
+        self.assertIn("--tolerance", self.expect_ranks(2, 2, "price", "example", "--tolerance", "0"))
+
+    def test_what_the_first_rank_sees(self):
+        self.assertIn("no file", self.expect_ranks(2, 2, "price", "none.csv"))
+        self.assertIn("is that of line 2", self.expect_ranks(3, 2, "price", self.write(batch([row("a"), row("a")]))))
+        self.assertEqual(["batch.csv"], self.names())
+
+    def test_what_another_rank_sees(self):
+        told = self.expect_ranks(2, 3, "price", "example", "--result", "r.json", last=("env", "KOKKOS_NUM_THREADS=0"))
+        self.assertRegex(told, r"KOKKOS_NUM_THREADS = 0 .* \(on rank 2\)$")
+        self.assertEqual(["r.json"], self.names())
+        self.assertEqual(told, "drogue-options: " + json.loads((self.folder / "r.json").read_text())["message"])
+
+    def test_disk_full(self):
+        """A limit on file sizes stands for it, one that leaves MPI the files it needs."""
+        file = self.write(batch([row(k, strike=-1) for k in range(200_000)]))
+        self.write("former", "prices.csv")
+        limit = ("sh", "-c", 'ulimit -f 16384; exec "$0" "$@"')
+        self.assertRegex(self.expect_ranks(6, 2, "price", file, first=limit), "cannot write 'prices.csv'.*File too large")
+        self.assertEqual(["batch.csv", "prices.csv"], self.names())
+        self.assertEqual("former", (self.folder / "prices.csv").read_text())
+
+    def test_a_rank_that_is_killed(self):
+        for victim in (0, 2):
+            with self.subTest(victim):
+                launcher, ranks = self.begin_long_run()
+                os.kill(ranks[victim], signal.SIGKILL)
+                launcher.communicate(timeout=60)
+                self.assertNotEqual(0, launcher.returncode)
+                self.assertFalse((self.folder / "prices.csv").exists())
+                for left in self.folder.glob(".prices*"):
+                    self.assertEqual(0, victim)
+                    left.unlink()
+
+    def test_a_rank_that_is_asked_to_end(self):
+        for victim in (0, 1):
+            with self.subTest(victim):
+                launcher, ranks = self.begin_long_run()
+                os.kill(ranks[victim], signal.SIGTERM)
+                self.assertEqual((130, []), self.end(launcher)[:2])
+                self.assertEqual(["batch.csv", "r.json"], self.names())
+                self.assertEqual("interrupted", json.loads((self.folder / "r.json").read_text())["status"])
+                (self.folder / "r.json").unlink()
+
+    def test_ranks_of_another_launcher(self):
+        told = self.expect(2, "price", "example", environment={"PMI_SIZE": "2", "PMI_RANK": "0"}).stderr
+        self.assertIn("started 2 processes, of which MPI finds 1", told)
+
+
+if __name__ == "__main__":
+    unittest.main()
