@@ -75,6 +75,8 @@ struct PriceBatch {
   Record record{};                                 ///< of the only contract, if at all
   int count = 0, mesh = 0, steps = 0, level = 0;
   double tolerance = 0.0;
+  bool split = false;     ///< exercise is, wherever it pays
+  bool one_grid = false;  ///< no second solve: the price is not extrapolated and has no error
 
   /// Calls `functor.price` with the workers and the memory of a team. For `block` see `solve`.
   template <int block, class Functor>
@@ -100,7 +102,10 @@ struct PriceBatch {
   KOKKOS_INLINE_FUNCTION void price(const Workers& workers, const Memory<R, block>& memory, int group) const {
     const int cells = block > 0 ? lanes * block : mesh;  // which a compiler may unroll loops for
     workers.each([=, this](int lane) {
-      for (int k = lane; k < members; k += lanes) memory.puts[k] = put_of(contracts(place(group, k)));
+      for (int k = lane; k < members; k += lanes) {
+        memory.puts[k] = put_of(contracts(place(group, k)));
+        if (split) memory.puts[k].split = memory.puts[k].early;
+      }
     });
     PutPack<R> put = pack_of<R>(memory.puts);
     const Law<R> law =
@@ -115,9 +120,13 @@ struct PriceBatch {
       for (int i = lane; i < cells / 2; i += lanes) kept[i] = fine[2 * i];
     });
     grid = {cells / 2, 2.0 * grid.h, 0.5 * grid.strike};
-    const R* coarse =
-        solve<block / 2>(workers, put, law, tails, grid, steps / 2, memory,
-                         {memory.coarse_weights(cells), memory.w}, Record{}, memory.answers + members);
+    const R* coarse = kept;
+    Answer* coarse_answers = memory.answers;
+    if (!one_grid) {
+      coarse_answers += members;
+      coarse = solve<block / 2>(workers, put, law, tails, grid, steps / 2, memory,
+                                {memory.coarse_weights(cells), memory.w}, Record{}, coarse_answers);
+    }
     const R deviation = device::square_root((put.variance + law.variance) * put.maturity);
     R* const change = memory.slot;
     workers.each([=, this, &put](int lane) {
@@ -139,8 +148,9 @@ struct PriceBatch {
           largest = one > largest || one != one ? one : largest;
         }
         const int at = place(group, k);
-        prices(at) = price_of(contracts(at), memory.puts[k], memory.answers[k], memory.answers[members + k],
-                              largest, cells, steps, tolerance);
+        prices(at) = price_of(contracts(at), memory.puts[k], memory.answers[k], coarse_answers[k], largest,
+                              cells, steps, tolerance);
+        if (one_grid) prices(at).error = device::portable::not_a_number();
       }
     });
   }

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 from . import style
 from .evidence_solution import Curve
+from .options_marks import Mark
 from .perf_record import BACKENDS, Machine
 from .solution_family import Family
 from .style import plt
@@ -49,6 +50,21 @@ def _draw_variant(axes, curve: Curve) -> None:
     _draw(axes, curve, _place_colour(list(family.firsts), first), line, marker)
 
 
+def _column_of(mark: Mark, columns: list[str]) -> str:
+    """The backend that a mark compares with, or the first there is."""
+    return mark.on if mark.on in columns else columns[0]
+
+
+def _draw_marks(axes, marks: list[Mark]) -> None:
+    for mark in marks:
+        x, y = zip(*mark.points)
+        axes.plot(x, y, ":D", color=style.MUTED, markersize=3.4, linewidth=0.8, zorder=1)
+        axes.annotate(
+            mark.label, (x[-1], y[-1]), (0, 4), textcoords="offset points", ha="right" if len(x) > 1 else "center",
+            fontsize=6.5, color=style.MUTED,
+        )  # fmt: skip
+
+
 def _scheme_key(curves: list[Curve]) -> list[tuple[str, str, str]]:
     family, present = curves[0].scheme.family, {curve.scheme.word for curve in curves}
     ordered = [word for word in family.names if word in present] + sorted(present - set(family.names))
@@ -68,7 +84,11 @@ def _variant_key(curves: list[Curve]) -> list[tuple[str, str, str]]:
         return []
     family = curves[0].scheme.family
     firsts, seconds = (list(dict.fromkeys(curve.scheme.settings[axis] for curve in curves)) for axis in range(2))
-    key = [("\u2014", word, _place_colour(list(family.firsts), word)) for word in firsts if len(firsts) > 1]
+    key = [
+        ("\u2014", family.words.get(word, word), _place_colour(list(family.firsts), word))
+        for word in firsts
+        if len(firsts) > 1
+    ]
     for word in seconds if len(seconds) > 1 else ():
         key.append((_line(family, word)[2], family.seconds.get(word, word), style.INK))
     return key
@@ -91,7 +111,8 @@ def _rows(title: str, found: list[Curve], best: str | None) -> list[_Row]:
     variants = [curve for curve in found if best and curve.scheme.word == best]
     for of_row in dict.fromkeys(curve.scheme.row for curve in variants):
         drawn = [curve for curve in variants if curve.scheme.row == of_row]
-        words = drawn[0].scheme.family.names.get(best, best) + (f", {of_row} precision" if of_row else "")
+        family = drawn[0].scheme.family
+        words = ", ".join(filter(None, (family.names.get(best, best), family.words.get(of_row, of_row))))
         rows.append(_Row(words, _variant_key(variants), drawn, _draw_variant, _SETTINGS_HEIGHT))
     return rows
 
@@ -124,7 +145,11 @@ def solution_figure(problem: str, machine: Machine, found: list[Curve], best: st
     title = family.problems.get(problem, problem)
     rows = _rows(title, found, best)
     columns = list(dict.fromkeys(curve.scheme.backend for row in rows for curve in row.curves))
-    figure, axes = plt.subplots(len(rows), len(columns), sharex=True, sharey="row", squeeze=False)
+    # What others reach may be far off: the settings keep a scale of their own.
+    marks = [mark for mark in family.marks if mark.problem == problem]
+    figure, axes = plt.subplots(
+        len(rows), len(columns), sharex="row" if marks else True, sharey="row", squeeze=False
+    )
     details = f"{family.usual_words}; {machine.name}"
     tops = _make_room(figure, rows, axes, details)
     for row, of_row in zip(rows, axes):
@@ -132,6 +157,8 @@ def solution_figure(problem: str, machine: Machine, found: list[Curve], best: st
             for curve in row.curves:
                 if curve.scheme.backend == backend:
                     row.draw(panel_axes, curve)
+            if row is rows[0]:
+                _draw_marks(panel_axes, [mark for mark in marks if _column_of(mark, columns) == backend])
             panel_axes.set_title(BACKENDS.get(backend, backend) + (threads if backend == "openmp" else ""), pad=4)
             panel_axes.set_xscale("log")
             panel_axes.set_yscale("log")
@@ -146,7 +173,7 @@ def solution_figure(problem: str, machine: Machine, found: list[Curve], best: st
     for panel_axes in axes[:, 0]:
         panel_axes.set_ylabel(family.error_titles.get(problem, "error"))
     for panel_axes in axes[-1]:
-        panel_axes.set_xlabel("time to solution (s)")
+        panel_axes.set_xlabel(family.time)
     figure.align_ylabels(axes[:, 0])
     style.heading(figure, title, details, rows[0].key)
     width, height = figure.get_size_inches()
