@@ -96,9 +96,16 @@ std::string label_of(const OptionsPoint& point) {
   return label;
 }
 
+/// A multiple of the lanes of any vector register, and what fills a large GPU. Most of the time of `cos`,
+/// some thousand times as long, goes into tables that each contract has of its own.
+std::size_t batch_of(const KnownPuts& puts, device::Backend backend, options::Method method) {
+  const bool gpu = backend == device::Backend::cuda;
+  if (method == options::Method::cos) return gpu ? 256 : puts.spots.size();
+  return gpu ? 4096 : 40;
+}
+
 Solution options_solution(const KnownPuts& puts, device::Backend backend, const OptionsPoint& point) {
-  // A multiple of the lanes of any vector register, and of what fills a large GPU.
-  const std::size_t count = backend == device::Backend::cuda ? 4096 : 40;
+  const std::size_t count = batch_of(puts, backend, point.settings.method);
   const std::vector<options::Contract> contracts = contracts_of(puts, point.style, count);
   std::vector<options::Price> prices(count);
   Solution s;
@@ -108,7 +115,8 @@ Solution options_solution(const KnownPuts& puts, device::Backend backend, const 
   s.scheme = {{"method", point.method}, {"exercise", point.exercise}, {"grids", point.grids}};
   if (point.intervals_a_step != 0) s.scheme["intervals_a_step"] = std::to_string(point.intervals_a_step);
   const auto pricer = create_pricer(backend, point.settings);
-  pricer->price(contracts, prices);  // memory and tables, which later batches find
+  if (point.settings.method != options::Method::cos)
+    pricer->price(contracts, prices);  // memory and tables, which later batches find
   while (!options_repeats.reached(s.samples)) {
     const auto begin = std::chrono::steady_clock::now();
     pricer->price(contracts, prices);

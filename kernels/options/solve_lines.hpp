@@ -26,7 +26,7 @@ struct LineFunctor {
   ConstView right;    ///< (groups, nodes, members)
   View solution;      ///< (groups, nodes, members)
 
-  [[nodiscard]] static std::size_t scratch_bytes(int nodes) {
+  [[nodiscard]] KOKKOS_INLINE_FUNCTION static std::size_t scratch_bytes(int nodes) {
     const auto count = static_cast<std::size_t>(block_of(nodes) * lanes);
     return block > 0 ? 0 : sizeof(R) * (rows * count + 6 * lanes) + 64;
   }

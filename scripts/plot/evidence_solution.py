@@ -79,7 +79,9 @@ def curves(records: list[Record]) -> list[Curve]:
         known = (
             list_.index(word) if word in list_ else 99 for list_, word in zip(order, (scheme.backend, scheme.word))
         )
-        return *known, not scheme.is_usual, scheme.settings
+        words = list(scheme.family.words)
+        settings = ((words.index(word) if word in words else len(words), word) for word in scheme.settings)
+        return *known, not scheme.is_usual, tuple(settings)
 
     return [Curve(scheme, np.array(sorted(points[scheme]))) for scheme in sorted(points, key=place)]
 

@@ -15,6 +15,7 @@ _LINES = (("-", "o", "\u2014\u25cb"), ("--", "v", "\u2013 \u2013 \u25bd"))
 _OTHER_LINE = (":", "s", "\u2026\u25a1")
 _PANEL_WIDTH, _SCHEMES_HEIGHT, _SETTINGS_HEIGHT = 2.75, 2.5, 2.0  # inches of an axes
 _LEFT, _BOTTOM, _HEADING, _GAP, _RIGHT, _BETWEEN_ROWS = 0.95, 0.45, 0.72, 0.2, 0.15, 0.62
+_TICKS = 0.16  # what the labels of an axis of its own take
 
 
 def _colour(family: Family, word: str) -> str:
@@ -50,18 +51,22 @@ def _draw_variant(axes, curve: Curve) -> None:
     _draw(axes, curve, _place_colour(list(family.firsts), first), line, marker)
 
 
-def _column_of(mark: Mark, columns: list[str]) -> str:
-    """The backend that a mark compares with, or the first there is."""
-    return mark.on if mark.on in columns else columns[0]
+def _column_of(mark: Mark, columns: list[str]) -> str | None:
+    """The backend beside which a mark stands; what is no GPU's may stand in the first column."""
+    if mark.on in columns:
+        return mark.on
+    return None if mark.on == "cuda" else columns[0]
 
 
 def _draw_marks(axes, marks: list[Mark]) -> None:
     for mark in marks:
         x, y = zip(*mark.points)
         axes.plot(x, y, ":D", color=style.MUTED, markersize=3.4, linewidth=0.8, zorder=1)
+        # Of several points, which fall to the right, the first has room at its left.
+        side = (-5, "right") if len(x) > 1 else (5, "left")
         axes.annotate(
-            mark.label, (x[-1], y[-1]), (0, 4), textcoords="offset points", ha="right" if len(x) > 1 else "center",
-            fontsize=6.5, color=style.MUTED,
+            mark.label, (x[0], y[0]), (side[0], 0), textcoords="offset points", ha=side[1], va="center", fontsize=6.5,
+            color=style.MUTED,
         )  # fmt: skip
 
 
@@ -117,13 +122,13 @@ def _rows(title: str, found: list[Curve], best: str | None) -> list[_Row]:
     return rows
 
 
-def _make_room(figure, rows: list[_Row], axes, details: str) -> list[float]:
+def _make_room(figure, rows: list[_Row], axes, details: str, between: float) -> list[float]:
     """Sizes a figure for its panels, keys and heading; returns the top of every row's axes as a share of the height."""
     columns = axes.shape[1]
     keys = [style.titled_key_width(figure, row.title, row.key) for row in rows]
     panels = _LEFT + (_PANEL_WIDTH + _GAP) * columns - _GAP + _RIGHT
     width = max(panels, style.details_width(figure, details), *keys)
-    height = _HEADING + sum(row.height for row in rows) + _BETWEEN_ROWS * (len(rows) - 1) + _BOTTOM
+    height = _HEADING + sum(row.height for row in rows) + between * (len(rows) - 1) + _BOTTOM
     figure.set_size_inches(width, height)
     panel = (width - _LEFT - _RIGHT - _GAP * (columns - 1)) / columns
     tops, top = [], height - _HEADING
@@ -132,7 +137,7 @@ def _make_room(figure, rows: list[_Row], axes, details: str) -> list[float]:
             left = _LEFT + column * (panel + _GAP)
             panel_axes.set_position((left / width, (top - row.height) / height, panel / width, row.height / height))
         tops.append(top / height)
-        top -= row.height + _BETWEEN_ROWS
+        top -= row.height + between
     return tops
 
 
@@ -151,7 +156,7 @@ def solution_figure(problem: str, machine: Machine, found: list[Curve], best: st
         len(rows), len(columns), sharex="row" if marks else True, sharey="row", squeeze=False
     )
     details = f"{family.usual_words}; {machine.name}"
-    tops = _make_room(figure, rows, axes, details)
+    tops = _make_room(figure, rows, axes, details, _BETWEEN_ROWS + (_TICKS if marks else 0.0))
     for row, of_row in zip(rows, axes):
         for panel_axes, backend in zip(of_row, columns):
             for curve in row.curves:
@@ -163,10 +168,13 @@ def solution_figure(problem: str, machine: Machine, found: list[Curve], best: st
             panel_axes.set_xscale("log")
             panel_axes.set_yscale("log")
     if len(rows) > 2:
-        # Both precisions on one scale, so that they can be compared.
+        # All settings on one scale, so that they can be compared.
         limits = [limit for of_row in axes[1:] for limit in of_row[0].get_ylim()]
         for of_row in axes[1:]:
             of_row[0].set_ylim(min(limits), max(limits))
+        widths = [limit for of_row in axes[1:] for panel_axes in of_row for limit in panel_axes.get_xlim()]
+        for panel_axes in axes[1:].flat if marks else ():
+            panel_axes.set_xlim(min(widths), max(widths))
     for panel_axes in axes.flat:
         style.mark_logarithm(panel_axes.yaxis)
         style.mark_logarithm(panel_axes.xaxis)

@@ -35,10 +35,11 @@ class _Kind:
     goals: tuple[Goal, ...] = ()
     time: str = STEP_US
     scales: tuple[float, float] = (1e9, 1e-9)  # of time and rate
+    errors: bool = False  # whether a column tells them: they depend on the variant
 
 
 _OF_SPRINGS = "vertices", (VERTEX_NS, "G vertex-steps/s"), springs_goals.GOALS
-_OF_BATCH = {"time": BATCH_US, "scales": (1e6, 1.0)}
+_OF_BATCH = {"time": BATCH_US, "scales": (1e6, 1.0), "errors": True}
 _KINDS = {
     "gas-step": _Kind("A step", "cells", (CELL_NS, RATE), gas_goals.GOALS),
     "springs-step": _Kind("A step", *_OF_SPRINGS),
@@ -181,11 +182,11 @@ def step_table(records: list[Record]) -> Table:
                 _NAMES.get(record.facts["backend"], record.facts["backend"]), record.facts["variant"],
                 page.grouped(cells), _with_interval(_scaled(seconds, 1e6)),
                 page.number(kind.scales[0] * seconds[0] / cells), page.number(kind.scales[1] * cells / seconds[0]),
-                page.number(record.error),
+                *([page.number(record.error)] if kind.errors else []),
             ]  # fmt: skip
         )
     columns = [("backend", False), ("variant", False), (kind.mesh, True)]
-    columns += [(name, True) for name in (kind.time, *kind.per_mesh, "error")]
+    columns += [(name, True) for name in (kind.time, *kind.per_mesh, *(["error"] if kind.errors else []))]
     return Table(columns, rows, f"What {kind.title[0].lower()}{kind.title[1:]} cost{'s' if kind.title[:2] == 'A ' else ''}")
 
 

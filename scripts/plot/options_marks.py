@@ -9,7 +9,7 @@ class Mark:
 
     problem: str
     label: str
-    on: str  # the backend that it compares with
+    on: str  # the backend beside which it stands
     points: tuple[tuple[float, float], ...]
     source: str
 
@@ -19,11 +19,11 @@ _PROBE = "a prototype of this project without error estimate, one grid, 128 inte
 
 MARKS = (
     Mark(
-        "thesis", "dissertation, one option", "cuda", ((2.881832, 9.1e-5), (12.050523, 1.0e-5)),
+        "thesis", "dissertation, one option", "serial", ((2.881832, 9.1e-5), (12.050523, 1.0e-5)),
         "its Table 5.7, Quadro 6000, 512 and 4096 intervals; errors computed for this project",
     ),
     Mark(
-        "thesis", "dissertation, 4096 options", "cuda", ((9.546837 / 4096, 4.4e-4),),
+        "thesis", "dissertation, 4096 options", "serial", ((9.546837 / 4096, 4.4e-4),),
         "its Table 5.8, Quadro 6000, 128 intervals; error computed for this project",
     ),
     Mark("thesis", "hand-written CUDA", "cuda", ((0.25e-3 / 4096, 1.6e-5),), f"{_PROBE}, H200, kernel alone"),
