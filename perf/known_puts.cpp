@@ -3,14 +3,14 @@
 namespace drogue::perf {
 namespace {
 
-constexpr options::Contract thesis{.rate = 0.1, .variance = 0.4, .jump = {1.0, 8.15, -2.5, 0.767}};
+constexpr options::Contract thesis_contract{.rate = 0.1, .variance = 0.4, .jump = {1.0, 8.15, -2.5, 0.767}};
 constexpr double day = 1.0 / 365.0;
 
 }  // namespace
 
 const KnownPuts& thesis_puts() {
   static const KnownPuts puts = {"thesis",
-                                 thesis,
+                                 thesis_contract,
                                  {1.0, 0.8, 0.9, 1.1, 1.2},
                                  {0.239004005, 0.318658312, 0.275403193, 0.208230166, 0.182096749}};
   return puts;

@@ -105,7 +105,8 @@ Command work_precision_command(CLI::App& program) {
   const auto options = std::make_shared<WorkPrecisionOptions>();
   CLI::App* app = program.add_subcommand(
       "work-precision",
-      "Time to solution and error over meshes, schemes and backends; of gas beside a second-order scheme");
+      "Time to solution and error over meshes, schemes and backends; of gas beside a second-order scheme, of "
+      "options for known prices");
   app->add_option("--app", options->app, "Mini-app whose problems are run")->capture_default_str();
   app->add_option("--backend", options->backend, "auto takes all that are present")
       ->check(CLI::IsMember({"auto", "serial", "openmp", "cuda"}))

@@ -3,6 +3,8 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
+import numpy as np
+
 from . import style
 from .evidence_solution import Curve
 from .options_marks import Mark
@@ -62,10 +64,10 @@ def _draw_marks(axes, marks: list[Mark]) -> None:
     for mark in marks:
         x, y = zip(*mark.points)
         axes.plot(x, y, ":D", color=style.MUTED, markersize=3.4, linewidth=0.8, zorder=1)
-        # Of several points, which fall to the right, the first has room at its left.
-        side = (-5, "right") if len(x) > 1 else (5, "left")
+        middle = (np.exp(np.mean(np.log(values))) for values in (x[:2], y[:2]))
+        shift, side = (5, "bottom") if len(x) > 1 else (-5, "top")
         axes.annotate(
-            mark.label, (x[0], y[0]), (side[0], 0), textcoords="offset points", ha=side[1], va="center", fontsize=6.5,
+            mark.label, tuple(middle), (0, shift), textcoords="offset points", ha="center", va=side, fontsize=6.5,
             color=style.MUTED,
         )  # fmt: skip
 

@@ -154,7 +154,9 @@ def _section(
         if variants:
             tables.append(_table(variants, found, errors, "The same with other settings", True))
     notes = [_explanation(found, best)] if usual else []
-    notes += [f"{mark.label}: {mark.source}." for mark in family.marks if mark.problem == problem]
+    on_gpu = any(curve.scheme.backend == "cuda" for curve in found)
+    drawn = [mark for mark in family.marks if mark.problem == problem and (on_gpu or mark.on != "cuda")]
+    notes += [f"{mark.label}: {mark.source}." for mark in drawn]
     exact = sum(record.error <= 0 for record in solved)
     if exact:
         notes.append(f"{exact} runs without any error are not drawn.")
