@@ -96,8 +96,8 @@ std::string label_of(const OptionsPoint& point) {
   return label;
 }
 
-/// A multiple of the lanes of any vector register, and what fills a large GPU. Most of the time of `cos`,
-/// some thousand times as long, goes into tables that each contract has of its own.
+/// A multiple of the lanes of any vector register, and what fills a large GPU. Most of the time of `cos` goes
+/// into tables that each contract has of its own.
 std::size_t batch_of(const KnownPuts& puts, device::Backend backend, options::Method method) {
   const bool gpu = backend == device::Backend::cuda;
   if (method == options::Method::cos) return gpu ? 256 : puts.spots.size();

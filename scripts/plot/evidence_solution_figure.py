@@ -68,7 +68,7 @@ def _draw_marks(axes, marks: list[Mark]) -> None:
         shift, side = (5, "bottom") if len(x) > 1 else (-5, "top")
         axes.annotate(
             mark.label, tuple(middle), (0, shift), textcoords="offset points", ha="center", va=side, fontsize=6.5,
-            color=style.MUTED,
+            color=style.MUTED, bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.5, "alpha": 0.85},
         )  # fmt: skip
 
 
