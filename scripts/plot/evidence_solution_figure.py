@@ -119,7 +119,8 @@ def _rows(title: str, found: list[Curve], best: str | None) -> list[_Row]:
     for of_row in dict.fromkeys(curve.scheme.row for curve in variants):
         drawn = [curve for curve in variants if curve.scheme.row == of_row]
         family = drawn[0].scheme.family
-        words = ", ".join(filter(None, (family.names.get(best, best), family.words.get(of_row, of_row))))
+        of_third = family.rows.get(of_row, family.words.get(of_row, of_row))
+        words = ", ".join(filter(None, (family.names.get(best, best), of_third)))
         rows.append(_Row(words, _variant_key(variants), drawn, _draw_variant, _SETTINGS_HEIGHT))
     return rows
 

@@ -27,6 +27,7 @@ class Family:
     mesh: str = "cells"
     time: str = "time to solution (s)"
     words: Mapping[str, str] = field(default_factory=dict)  # of a setting, where it is not its own
+    rows: Mapping[str, str] = field(default_factory=dict)  # of the third setting, where `words` do not say enough
     marks: tuple[Mark, ...] = ()
     note: str = ""
     planar: tuple[str, ...] = ()  # schemes whose mesh has as many edges along an axis as the root of its number
@@ -52,7 +53,7 @@ GAS = Family(
     seconds={"ssprk3": "SSP-RK3", "ssprk43": "SSPRK(4,3)"},
     problems=_GAS_PROBLEMS,
     error_titles=dict.fromkeys(_GAS_PROBLEMS, TITLES["l1_density"]),
-    words={"double": "double precision", "split": "split precision"},
+    rows={"double": "double precision", "split": "split precision"},
     competitor="muscl-hancock",
 )
 SPRINGS = Family(
