@@ -43,6 +43,7 @@ std::vector<Case> gas_cases(bool quick);
 std::vector<Case> fabric_cases(bool quick);
 std::vector<Case> contact_cases(bool quick);
 std::vector<Case> options_cases(bool quick);
+std::vector<Case> tridiagonal_cases(bool quick);
 std::vector<Case> ceiling_cases();
 std::vector<Case> all_cases(bool quick);
 

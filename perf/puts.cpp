@@ -9,14 +9,10 @@
 #include <span>
 #include <vector>
 
+#include "perf/known_puts.hpp"
+
 namespace drogue::perf::puts {
 namespace {
-
-/// The dissertation's parameters, a year, r = 0.1, strike 1, and American puts at five spots: cosine series
-/// with Romberg's extrapolation, to 1e-7.
-constexpr options::Contract thesis{.rate = 0.1, .variance = 0.4, .jump = {1.0, 8.15, -2.5, 0.767}};
-constexpr double known_spot[] = {1.0, 0.8, 0.9, 1.1, 1.2};
-constexpr double known_price[] = {0.239004005, 0.318658312, 0.275403193, 0.208230166, 0.182096749};
 
 struct Run {
   std::unique_ptr<options::Pricer> pricer;
@@ -30,11 +26,12 @@ std::pmr::vector<options::Contract> distinct(std::size_t count, std::pmr::memory
   const auto between = [&](double low, double high) {
     return low + (high - low) * (static_cast<double>(random()) / 4294967296.0);
   };
-  std::pmr::vector<options::Contract> contracts(count, thesis, &memory);
+  const KnownPuts& known = thesis_puts();
+  std::pmr::vector<options::Contract> contracts(count, known.contract, &memory);
   for (std::size_t i = 0; i < count; ++i) {
     options::Contract& c = contracts[i];
-    if (i < std::size(known_spot)) {
-      c.spot = known_spot[i];
+    if (i < known.spots.size()) {
+      c.spot = known.spots[i];
       continue;
     }
     c.spot = between(0.8, 1.2), c.rate = between(0.01, 0.1), c.maturity = between(0.25, 2.0);
@@ -46,9 +43,10 @@ std::pmr::vector<options::Contract> distinct(std::size_t count, std::pmr::memory
 }
 
 double error(std::span<const options::Price> prices) {
+  const std::vector<double>& known = thesis_puts().prices;
   double largest = 0.0;
-  for (std::size_t i = 0; i < std::min(prices.size(), std::size(known_price)); ++i)
-    largest = std::max(largest, std::abs(prices[i].price - known_price[i]));
+  for (std::size_t i = 0; i < std::min(prices.size(), known.size()); ++i)
+    largest = std::max(largest, std::abs(prices[i].price - known[i]));
   return largest;
 }
 

@@ -13,12 +13,12 @@ namespace drogue::perf {
 
 /// One run to solution: a point of a diagram of error against time.
 struct Solution {
-  std::string problem;           ///< a shipped scene
+  std::string problem;           ///< a shipped scene, or a kind of option
   device::Backend backend;       ///< serial for a competitor
   std::string label;             ///< of the scheme
   nlohmann::json scheme;         ///< what it is, as facts of a record
-  std::int64_t cells = 0;        ///< or vertices
-  std::vector<double> samples;   ///< s
+  std::int64_t cells = 0;        ///< or vertices, or intervals of an option's mesh
+  std::vector<double> samples;   ///< s; of an option its share of a batch
   std::int64_t steps = 0;        ///< time steps of a run
   double error = 0.0;            ///< against the exact solution
   bool sound = false;            ///< a number, and what is to be kept is kept
@@ -33,6 +33,14 @@ using SolutionSink = std::function<void(const Solution&)>;
 /// each of `backends`, and the MUSCL-Hancock scheme of `kernels/reference` beside them. A solution is passed
 /// on as soon as it is there. `quick`: two small meshes of the wave and of Sod. Returns false after a signal.
 bool gas_work_precision(const std::vector<device::Backend>& backends, bool quick, const SolutionSink& sink);
+
+/// Prices the puts of `known_puts`, repeated to a batch, by `pide` in every combination of mesh, steps a
+/// mesh, one grid or two, and exercise (in the solve, split off, European), by the dissertation's scheme on
+/// the same meshes where it has the jumps, and by `cos` to falling tolerances, on each of `backends`. Errors
+/// are the largest of a price over the strike; European prices are held against Fourier's integral. `quick`:
+/// two small meshes of the dissertation's contract and of Merton's jumps. Returns false after a signal.
+bool options_work_precision(const std::vector<device::Backend>& backends, bool quick,
+                            const SolutionSink& sink);
 
 /// Runs the drum, Hencky's membrane and the catenary on meshes whose edges are halved, in every combination
 /// of model (of cloth), masses and integrator on each of `backends`. Errors are relative: of the frequency,

@@ -1,5 +1,6 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 
@@ -29,13 +30,31 @@ std::vector<device::Backend> backends_of(const std::string& name) {
   return present;
 }
 
-nlohmann::json to_json(const std::string& app, const Solution& solution, const nlohmann::json& provenance) {
+/// What a mini-app's problems are solved by, and how its records call a sample.
+struct WorkPrecision {
+  const char* app;
+  bool (*solve)(const std::vector<device::Backend>&, bool quick, const SolutionSink&);
+  const char *unit, *bound;
+};
+constexpr WorkPrecision apps[] = {
+    {"gas", gas_work_precision, "solution", "time to the end of the run"},
+    {"springs", springs_work_precision, "solution", "time to the end of the run"},
+    {"options", options_work_precision, "option", "time of a batch, by option"}};
+
+const WorkPrecision& work_precision_of(const std::string& name) {
+  std::vector<std::string> names;
+  for (const WorkPrecision& app : apps) names.emplace_back(app.app);
+  require_name("app", name, names);
+  return *std::ranges::find(apps, name, &WorkPrecision::app);
+}
+
+nlohmann::json to_json(const WorkPrecision& app, const Solution& solution, const nlohmann::json& provenance) {
   const std::string backend(device::name(solution.backend));
   Record record;
-  record.name = app + "-solution/" + solution.problem + "/" + backend + "/" + solution.label + "/" +
-                std::to_string(solution.cells);
-  record.unit_of_work = "solution";
-  record.bound = "time to the end of the run";
+  record.name = std::string(app.app) + "-solution/" + solution.problem + "/" + backend + "/" +
+                solution.label + "/" + std::to_string(solution.cells);
+  record.unit_of_work = app.unit;
+  record.bound = app.bound;
   record.samples = solution.samples;
   record.error = solution.error;
   // A scheme that loses a problem is a finding, not a measurement.
@@ -62,16 +81,15 @@ void print(const Solution& solution) {
 }
 
 ExitCode measure_solutions(const WorkPrecisionOptions& options, const std::vector<std::string>& kokkos) {
-  require_name("app", options.app, {"gas", "springs"});
-  const auto& solve = options.app == "gas" ? gas_work_precision : springs_work_precision;
+  const WorkPrecision& app = work_precision_of(options.app);
   const std::vector<device::Backend> backends = backends_of(options.backend);
   const device::Runtime runtime(kokkos);
   install_signal_handlers();
   const nlohmann::json here = provenance(device::device_facts());
   std::vector<nlohmann::json> lines;
-  const bool finished = solve(backends, options.quick, [&](const Solution& solution) {
+  const bool finished = app.solve(backends, options.quick, [&](const Solution& solution) {
     print(solution);
-    lines.push_back(to_json(options.app, solution, here));
+    lines.push_back(to_json(app, solution, here));
     // Early, so that a file that cannot be written is found before hours are spent; and what ends a long run
     // leaves most of what it has found.
     if (lines.size() % 32 == 1) write_records(options.out, lines);
@@ -87,7 +105,8 @@ Command work_precision_command(CLI::App& program) {
   const auto options = std::make_shared<WorkPrecisionOptions>();
   CLI::App* app = program.add_subcommand(
       "work-precision",
-      "Time to solution and error over meshes, schemes and backends; of gas beside a second-order scheme");
+      "Time to solution and error over meshes, schemes and backends; of gas beside a second-order scheme, of "
+      "options for known prices");
   app->add_option("--app", options->app, "Mini-app whose problems are run")->capture_default_str();
   app->add_option("--backend", options->backend, "auto takes all that are present")
       ->check(CLI::IsMember({"auto", "serial", "openmp", "cuda"}))

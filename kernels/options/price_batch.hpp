@@ -83,6 +83,8 @@ struct PriceBatch {
   int count = 0, mesh = 0, steps = 0, level = 0;
   int lanes = most_lanes;  ///< of an option on hosts
   double tolerance = 0.0;
+  bool split = false;     ///< exercise is, wherever it pays
+  bool one_grid = false;  ///< no second solve: the price is not extrapolated and has no error
 
   /// Groups, of an option or of a pack of them, that a team prices side by side.
   static KOKKOS_INLINE_FUNCTION constexpr int groups(int fixed) {
@@ -117,7 +119,10 @@ struct PriceBatch {
   KOKKOS_INLINE_FUNCTION void price(const Workers& workers, const Memory<R, fixed>& memory, int group) const {
     const int cells = fixed > 0 ? fixed : mesh;  // which a compiler may unroll loops for
     workers.each([=, this](int lane) {
-      for (int k = lane; k < members; k += workers.lanes) memory.puts[k] = put_of(contracts(place(group, k)));
+      for (int k = lane; k < members; k += workers.lanes) {
+        memory.puts[k] = put_of(contracts(place(group, k)));
+        if (split) memory.puts[k].split = memory.puts[k].early;
+      }
     });
     PutPack<R> put = pack_of<R>(memory.puts);
     put.any_split = !workers.all(!put.any_split);
@@ -133,9 +138,13 @@ struct PriceBatch {
       for (int i = lane; i < cells / 2; i += workers.lanes) kept[i] = fine[2 * i];
     });
     grid = {cells / 2, 2.0 * grid.h, 0.5 * grid.strike};
-    const R* coarse =
-        solve<fixed / 2>(workers, put, law, tails, grid, steps / 2, memory,
-                         {memory.coarse_weights(cells), memory.w, roots}, Record{}, memory.answers + members);
+    const R* coarse = kept;
+    Answer* coarse_answers = memory.answers;
+    if (!one_grid) {
+      coarse_answers += members;
+      coarse = solve<fixed / 2>(workers, put, law, tails, grid, steps / 2, memory,
+                                {memory.coarse_weights(cells), memory.w, roots}, Record{}, coarse_answers);
+    }
     const R deviation = device::square_root((put.variance + law.variance) * put.maturity);
     const R window = device::maximum(grid.h, 1.0 * deviation);
     const auto largest_change = [=, this, &put](int lane) {
@@ -151,8 +160,9 @@ struct PriceBatch {
       for (int k = lane; k < members; k += workers.lanes) {
         if (group * members + k >= count) continue;
         const int at = place(group, k);
-        prices(at) = price_of(contracts(at), memory.puts[k], memory.answers[k], memory.answers[members + k],
+        prices(at) = price_of(contracts(at), memory.puts[k], memory.answers[k], coarse_answers[k],
                               device::Access<R>::lane(change, k), cells, steps, tolerance);
+        if (one_grid) prices(at).error = device::portable::not_a_number();
       }
     });
   }

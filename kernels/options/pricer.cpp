@@ -22,6 +22,7 @@ void check(const Settings& s) {
   require(s.steps == 0 || (s.steps >= 8 && s.steps <= 16384 && s.steps % 2 == 0),
           "steps must be 0 or an even number from 8 to 16384");
   require(s.tolerance > 0.0, "the tolerance must be positive");
+  require(!s.one_grid || s.mesh != 0, "one grid states no error by which to choose a mesh");
 }
 
 }  // namespace

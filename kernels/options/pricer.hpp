@@ -16,6 +16,12 @@ enum class Method : unsigned char {
   seed,  ///< the dissertation's scheme (Listing 4.6)
 };
 
+/// How early exercise that pays on a half line is imposed; between two boundaries it is always split off.
+enum class Exercise : unsigned char {
+  exact,  ///< in the solve of a step (Brennan and Schwartz 1977)
+  split,  ///< after it (Ikonen and Toivanen 2004), to compare
+};
+
 /// How to price. Either mesh and steps are given, or the tolerance chooses them.
 struct Settings {
   Method method = Method::pide;
@@ -23,6 +29,8 @@ struct Settings {
   int steps = 0;            ///< steps in time; 0: chosen by `tolerance`
   double tolerance = 1e-4;  ///< of |price - true price|, relative to the strike
   bool greeks = false;      ///< `cos` computes delta, gamma and theta; the other methods always do
+  Exercise exercise = Exercise::exact;  ///< `pide` alone, as the next
+  bool one_grid = false;  ///< with `mesh`: nothing is extrapolated and no error stated, to compare
 };
 
 /// Wall time of a batch's parts, s.

@@ -280,6 +280,8 @@ class PricerOn final : public Pricer {
     batch.mesh = effort.mesh;
     batch.steps = effort.steps;
     batch.tolerance = _settings.tolerance;
+    batch.split = _settings.exercise == Exercise::split;
+    batch.one_grid = _settings.one_grid;
     batch.level = scratch_level<ExecutionSpace>(effort.mesh);
     if (_settings.method == Method::seed && record.time == nullptr) {
       seed_batch(_instance.space(), batch);

@@ -7,6 +7,7 @@ from PIL import Image
 
 from . import (
     evidence_blocks,
+    evidence_options,
     evidence_roofline,
     evidence_solution_section,
     evidence_steps,
@@ -37,7 +38,15 @@ def _springs_sections(evidence: Evidence, machine: Machine) -> list[Section]:
     return found + evidence_transfers.sections(machine, evidence.of(machine, "springs-transfers"))
 
 
-_SECTIONS = {"gas": _gas_sections, "springs": _springs_sections}
+def _options_sections(evidence: Evidence, machine: Machine) -> list[Section]:
+    solved = evidence.of(machine, "options-solution")
+    found = evidence_solution_section.sections(machine, solved, evidence.unsolved_of(machine))
+    found += evidence_steps.sections(evidence.of(machine, "options"))
+    found += evidence_steps.sections(evidence.of(machine, "tridiagonal"))
+    return found + evidence_options.sections(machine, evidence.of(machine, "options-transfers"))
+
+
+_SECTIONS = {"gas": _gas_sections, "springs": _springs_sections, "options": _options_sections}
 
 
 def _counted(count: int, words: str, plural: str) -> str:

@@ -24,7 +24,7 @@ class Scheme:
 
     @property
     def is_usual(self) -> bool:
-        return self.is_competitor or self.settings == self.family.usual
+        return self.is_competitor or not any(self.settings) or self.settings == self.family.usual
 
     @property
     def row(self) -> str:
@@ -35,7 +35,8 @@ class Scheme:
     def name(self) -> str:
         """Name, and the settings that are not the usual ones."""
         usual = zip(self.settings, self.family.usual)
-        changed = [word for word, wanted in usual if word != wanted and not self.is_usual]
+        words = self.family.words
+        changed = [words.get(word, word) for word, wanted in usual if word != wanted and not self.is_usual]
         return ", ".join([self.family.names.get(self.word, self.word), *changed])
 
 
@@ -78,7 +79,9 @@ def curves(records: list[Record]) -> list[Curve]:
         known = (
             list_.index(word) if word in list_ else 99 for list_, word in zip(order, (scheme.backend, scheme.word))
         )
-        return *known, not scheme.is_usual, scheme.settings
+        words = list(scheme.family.words)
+        settings = ((words.index(word) if word in words else len(words), word) for word in scheme.settings)
+        return *known, not scheme.is_usual, tuple(settings)
 
     return [Curve(scheme, np.array(sorted(points[scheme]))) for scheme in sorted(points, key=place)]
 

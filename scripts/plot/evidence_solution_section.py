@@ -95,17 +95,19 @@ def _explanation(found: list[Curve], best: str | None) -> str:
     """What the table says and what it compares with what."""
     stick = yardstick(found).scheme.name
     family = found[0].scheme.family
+    *but_last, last = (f"{100 * error:g} %" for error in family.errors or (0.0,))
     asked = (
-        "The errors asked for are 1 %, 0.1 % and 0.01 %."
+        f"The errors asked for are {', '.join(but_last)} and {last}."
         if family.errors
         else f"The errors asked for are those of {stick} on its middle and its finest mesh, and one half-way, in "
         "logarithms, to the least error of all schemes (where none is smaller: that of its coarsest mesh)."
     )
     words = [
         f"{asked} They are met on straight lines between the meshes, in logarithms; > : the finest mesh still misses "
-        "the error, < : the coarsest has it already. Order: least squares of error against cells, or edges along an "
-        "axis."
+        f"the error, < : the coarsest has it already. Order: least squares of error against {family.mesh}"
+        + (", or edges along an axis." if family.planar else ".")
     ]
+    words += [family.note] if family.note else []
     rival = family.names.get(family.competitor, "")
     holders = list(dict.fromkeys(curve.scheme.backend for curve in found if curve.scheme.is_competitor))
     if holders:
@@ -152,6 +154,9 @@ def _section(
         if variants:
             tables.append(_table(variants, found, errors, "The same with other settings", True))
     notes = [_explanation(found, best)] if usual else []
+    on_gpu = any(curve.scheme.backend == "cuda" for curve in found)
+    drawn = [mark for mark in family.marks if mark.problem == problem and (on_gpu or mark.on != "cuda")]
+    notes += [f"{mark.label}: {mark.source}." for mark in drawn]
     exact = sum(record.error <= 0 for record in solved)
     if exact:
         notes.append(f"{exact} runs without any error are not drawn.")

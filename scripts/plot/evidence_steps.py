@@ -5,12 +5,13 @@ from dataclasses import dataclass
 
 from markupsafe import Markup
 
-from . import gas_goals, page, springs_goals
+from . import gas_goals, options_goals, page, springs_goals
 from .evidence_section import Cell, Section, Table, cells_text
 from .gas_goals import (
     CELL_NS,
     EFFICIENCY,
     HIGHER_IS_BETTER,
+    OPTION_RATE,
     RATE,
     SPEED_UP,
     STEP_US,
@@ -18,6 +19,7 @@ from .gas_goals import (
     VERTEX_NS,
     Goal,
 )
+from .options_goals import BATCH_US, OPTION_US
 from .perf_record import BACKENDS, Record
 
 _NAMES = BACKENDS | {"dense-loop": "dense loop, one core", "scatter-loop": "loop that scatters, one core"}
@@ -30,14 +32,20 @@ class _Kind:
     title: str
     mesh: str
     per_mesh: tuple[str, str]  # time and rate
-    goals: tuple[Goal, ...]
+    goals: tuple[Goal, ...] = ()
+    time: str = STEP_US
+    scales: tuple[float, float] = (1e9, 1e-9)  # of time and rate
+    errors: bool = False  # whether a column tells them: they depend on the variant
 
 
 _OF_SPRINGS = "vertices", (VERTEX_NS, "G vertex-steps/s"), springs_goals.GOALS
+_OF_BATCH = {"time": BATCH_US, "scales": (1e6, 1.0), "errors": True}
 _KINDS = {
     "gas-step": _Kind("A step", "cells", (CELL_NS, RATE), gas_goals.GOALS),
     "springs-step": _Kind("A step", *_OF_SPRINGS),
     "springs-contact": _Kind("A step in contact", *_OF_SPRINGS),
+    "options": _Kind("A batch", "options", (OPTION_US, OPTION_RATE), options_goals.GOALS, **_OF_BATCH),
+    "tridiagonal": _Kind("Tridiagonal systems", "systems", ("\u00b5s a system", "systems/s"), **_OF_BATCH),
 }
 _Interval = tuple[float, float, float]  # median, low, high
 
@@ -71,12 +79,12 @@ def vector_bits(record: Record) -> int | None:
 def measured(goal: Goal, record: Record, beside: Record | None) -> _Interval | None:
     """The measure of a goal with its interval; None where it wants a case that is not in the same run."""
     seconds, cells = _seconds(record), record.facts["cells"]
-    if goal.measure == STEP_US:
+    if goal.measure in (STEP_US, BATCH_US):
         return _scaled(seconds, 1e6)
     if goal.measure in (CELL_NS, VERTEX_NS):
         return _scaled(seconds, 1e9 / cells)
-    if goal.measure == RATE:
-        return _over((1e-9 * cells,) * 3, seconds)
+    if goal.measure in (RATE, OPTION_RATE):
+        return _over(((1e-9 if goal.measure == RATE else 1.0) * cells,) * 3, seconds)
     if beside is None:
         return None
     if goal.measure == TIME_RATIO:
@@ -166,19 +174,20 @@ def goal_table(records: list[Record]) -> Table | None:
 
 
 def step_table(records: list[Record]) -> Table:
-    rows = []
+    kind, rows = _KINDS[records[0].kind], []
     for record in records:
         seconds, cells = _seconds(record), record.facts["cells"]
         rows.append(
             [
                 _NAMES.get(record.facts["backend"], record.facts["backend"]), record.facts["variant"],
-                page.grouped(cells), _with_interval(_scaled(seconds, 1e6)), page.number(1e9 * seconds[0] / cells),
-                page.number(1e-9 * cells / seconds[0]),
+                page.grouped(cells), _with_interval(_scaled(seconds, 1e6)),
+                page.number(kind.scales[0] * seconds[0] / cells), page.number(kind.scales[1] * cells / seconds[0]),
+                *([page.number(record.error)] if kind.errors else []),
             ]  # fmt: skip
         )
-    kind = _KINDS[records[0].kind]
     columns = [("backend", False), ("variant", False), (kind.mesh, True)]
-    return Table(columns + [(name, True) for name in (STEP_US, *kind.per_mesh)], rows, "What a step costs")
+    columns += [(name, True) for name in (kind.time, *kind.per_mesh, *(["error"] if kind.errors else []))]
+    return Table(columns, rows, f"What {kind.title[0].lower()}{kind.title[1:]} cost{'s' if kind.title[:2] == 'A ' else ''}")
 
 
 def sections(records: list[Record]) -> list[Section]:
@@ -196,5 +205,5 @@ def sections(records: list[Record]) -> list[Section]:
     )
     goals = goal_table(ordered)
     kind = records[0].kind
-    command = f"drogue-perf run --filter ^{kind} --out FILE.jsonl"
+    command = f"drogue-perf run --filter ^{kind}/ --out FILE.jsonl"
     return [Section(_KINDS[kind].title, command, ordered, tables=[step_table(ordered)] + ([goals] if goals else []))]

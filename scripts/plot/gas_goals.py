@@ -11,7 +11,9 @@ TIME_RATIO = "times as long"
 SPEED_UP = "times as fast"
 EFFICIENCY = "of the rate of all cores"
 
-HIGHER_IS_BETTER = {RATE, SPEED_UP, EFFICIENCY}
+OPTION_RATE = "options/s"
+
+HIGHER_IS_BETTER = {RATE, OPTION_RATE, SPEED_UP, EFFICIENCY}
 
 
 @dataclass(frozen=True)

@@ -23,8 +23,14 @@ _FACTS = {
     "springs-transfers": {
         "backend": str, "substeps": int, "cells": int, "h2d_s": float, "compute_s": float, "d2h_s": float,
     },
+    "options": {},
+    "options-solution": {"problem": str, "backend": str, "method": str, "cells": int},
+    "options-transfers": {
+        "backend": str, "method": str, "mesh": int, "cells": int, "h2d_s": float, "compute_s": float, "d2h_s": float,
+    },
+    "tridiagonal": {},
 }  # fmt: skip
-_STEPS = ("gas-step", "springs-step", "springs-contact")  # what their names say, their facts need not
+_STEPS = ("gas-step", "springs-step", "springs-contact", "options", "tridiagonal")  # what their names say, their facts need not
 _OPTIONAL = {
     "gas-solution": {
         "weno_power": float, "splitting": str, "time_scheme": str, "precision": str, "status": str, "message": str,
@@ -34,6 +40,8 @@ _OPTIONAL = {
     "gas-transfers": {"thesis": dict},
     "springs-solution": {"status": str, "message": str},
     "springs-transfers": {"thesis": dict},
+    "options-solution": {"exercise": str, "grids": str, "intervals_a_step": str, "status": str, "message": str},
+    "options-transfers": {"thesis": dict},
 }  # fmt: skip
 KINDS = frozenset(_FACTS)
 _TYPES = {str: "text", int: "positive whole number", float: "number", dict: "JSON object"}
@@ -76,9 +84,9 @@ class Record:
 
     @property
     def app(self) -> str:
-        """The mini-app whose page shows it; ceilings are those of the gas roofline."""
+        """The mini-app whose page shows it; ceilings are those of the gas roofline, tridiagonal systems of options."""
         app = self.kind.partition("-")[0]
-        return "gas" if app == "ceiling" else app
+        return {"ceiling": "gas", "tridiagonal": "options"}.get(app, app)
 
     @property
     def machine(self) -> Machine:

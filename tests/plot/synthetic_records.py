@@ -196,6 +196,57 @@ def springs_transfers(machine=H200):
     return found
 
 
+def options_solutions(machine=EPYC, backend="serial"):
+    """Errors of finite differences are n^-2 of n intervals, four times that on one grid and ten times with exercise
+    split off; the dissertation's scheme is of first order, cosine series have one point and no settings."""
+    found = []
+
+    def add(method, n, seconds, error, **settings):
+        facts = {"problem": "thesis", "backend": backend, "method": method, "cells": n, "steps": n, "status": "ok",
+                 "message": "", "exercise": "", "grids": ""} | settings  # fmt: skip
+        label = " ".join([method, *settings.values()])
+        case = f"options-solution/thesis/{backend}/{label}/{n}"
+        found.append(record(case, seconds, machine, facts, error=error, unit="s per option"))
+
+    for n, step in itertools.product((64, 128, 256), (4, 2)):
+        for (exercise, factor), (grids, other) in itertools.product(
+            (("exact", 1.0), ("split", 10.0)), (("two", 1.0), ("one", 4.0))
+        ):
+            settings = {"exercise": exercise, "grids": grids, "intervals_a_step": str(step)}
+            add("pide", n, 1e-9 * n**2 / step, factor * other * n**-2.0, **settings)
+    for n in (64, 128, 256):
+        add("seed", n, 1e-8 * n**2, 0.1 / n)
+    add("cos", 32, 0.04, 3e-6)
+    return found
+
+
+def options_batches(machine=H200):
+    """A batch that meets its goal and one that misses it; tridiagonal systems by two solvers."""
+    times = {
+        "options/cuda/4096/128x32": 3e-4, "options/cuda/1/128x32": 2e-4, "tridiagonal/cuda/4096/pttrf/128": 4e-5,
+        "tridiagonal/cuda/4096/scan/128": 1e-5,
+    }  # fmt: skip
+    return [record(case, seconds, machine) for case, seconds in times.items()]
+
+
+def options_transfers(machine=H200):
+    """One option on two meshes and one batch, by both methods."""
+    found = []
+    for options, mesh, method in itertools.product((1, 32), (128, 256), ("seed", "pide")):
+        if options == 32 and mesh == 256:
+            continue
+        thesis = {"h2d_us": 2902, "compute_us": 3892648, "d2h_us": 96, "total_us": 3895646}
+        if options == 32:
+            thesis["cpu_us"] = 35361760
+        seconds = 1e-3 if method == "seed" else 2e-4
+        facts = {
+            "backend": "cuda", "method": method, "cells": options, "mesh": mesh, "h2d_s": 0.1 * seconds,
+            "compute_s": 0.8 * seconds, "d2h_s": 0.1 * seconds, "thesis": thesis,
+        }  # fmt: skip
+        found.append(record(f"options-transfers/cuda/{method}/{options}/{mesh}", seconds, machine, facts))
+    return found
+
+
 def write(file, records):
     file.parent.mkdir(parents=True, exist_ok=True)
     file.write_text("".join(json.dumps(line) + "\n" for line in records))

@@ -177,13 +177,48 @@ class WorkPrecisionOfSprings(perf_program.PerfTest):
                                runs["catenary", "string", "area", "verlet"][1][1], places=3)
 
 
+class WorkPrecisionOfOptions(perf_program.PerfTest):
+    def test_records(self):
+        self.expect(0, "work-precision", "--app", "options", "--quick", "--backend", "serial", "--out", "runs.jsonl")
+        errors = {}
+        for record in self.records("runs.jsonl"):
+            facts = record["facts"]
+            self.assertEqual(("passed", "ok", "s per option"), (record["check"], facts["status"], record["unit"]))
+            self.assertEqual(f"options-solution/{facts['problem']}/serial", record["case"].rsplit("/", 2)[0])
+            if facts["method"] == "pide":
+                self.assertEqual(facts["cells"], 4 * facts["steps"])
+            scheme = facts["problem"], facts["method"], facts["exercise"], facts["grids"]
+            errors.setdefault(scheme, []).append(record["error"])
+        self.assertEqual({"thesis": {"pide", "seed", "cos"}, "merton": {"pide", "cos"}},
+                         {problem: {scheme[1] for scheme in errors if scheme[0] == problem}
+                          for problem in ("thesis", "merton")})
+        for scheme, of_meshes in errors.items():
+            if scheme[1] == "pide":
+                coarse, fine = of_meshes
+                self.assertLess(fine, 0.8 * coarse, scheme)
+        # Exercise in the solve, and two grids, are there for their errors.
+        of_thesis = {scheme[2:]: of_meshes[1] for scheme, of_meshes in errors.items() if scheme[:2] == ("thesis", "pide")}
+        self.assertLess(5 * of_thesis["exact", "two"], of_thesis["split", "two"])
+        self.assertLess(3 * of_thesis["exact", "two"], of_thesis["exact", "one"])
+
+
+class Tridiagonal(perf_program.PerfTest):
+    def test_records(self):
+        self.expect(0, "run", "--quick", "--filter", "^tridiagonal/serial", "--out", "run.jsonl")
+        records = self.records("run.jsonl")
+        self.assertEqual(["pttrf/64", "scan/64"], [record["facts"]["variant"] for record in records])
+        for record in records:
+            self.assertEqual(("passed", "s per batch", 64), (record["check"], record["unit"], record["facts"]["cells"]))
+            self.assertTrue(0.0 < record["error"] < 1e-12)
+
+
 class Refusals(perf_program.PerfTest):
     def test_usage(self):
         for words, hint in ((["table"], "TABLE"), (["table", "occupancey"], 'did you mean "occupancy"?'),
                             (["table", "occupancy", "--app", "option"], 'did you mean "options"?'),
                             (["table", "occupancy", "--app", "springs"], "the only valid name is transfers"),
                             (["table", "block-size", "--app", "springs"], "compiled for one block size"),
-                            (["work-precision", "--app", "options"], "valid names are gas, springs"),
+                            (["work-precision", "--app", "parachute"], "valid names are gas, springs, options"),
                             (["table", "transfers", "--backend", "gpu"], "gpu"),
                             (["table", "transfers", "--bakend", "serial"], 'did you mean "--backend"?'),
                             (["run", "all"], "'all'"), (["run", "--filter", "no such case"], "no case matches"),

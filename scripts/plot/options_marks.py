@@ -1,0 +1,45 @@
+"""What others reach with American puts, to stand beside our curves: times as published or measured for this project."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Mark:
+    """Points (s an option, error over the strike) of one program on one problem."""
+
+    problem: str
+    label: str
+    on: str  # the backend beside which it stands
+    points: tuple[tuple[float, float], ...]
+    source: str
+
+
+_PEERS = "measured for this project on one core of a Xeon, 2026-11-21; strike 100, a year, QuantLib 1.44"
+_PROBE = "a prototype of this project without error estimate, one grid, 128 intervals and 32 steps"
+
+MARKS = (
+    Mark(
+        "thesis", "dissertation, one option", "serial", ((2.881832, 9.1e-5), (12.050523, 1.0e-5)),
+        "its Table 5.7, Quadro 6000, 512 and 4096 intervals; errors computed for this project",
+    ),
+    Mark(
+        "thesis", "dissertation, 4096 options", "serial", ((9.546837 / 4096, 4.4e-4),),
+        "its Table 5.8, Quadro 6000, 128 intervals; error computed for this project",
+    ),
+    Mark("thesis", "hand-written CUDA", "cuda", ((0.25e-3 / 4096, 1.6e-5),), f"{_PROBE}, H200, kernel alone"),
+    Mark("thesis", "hand-written AVX-512", "serial", ((1 / 7900, 3.4e-5),), f"{_PROBE}, one core"),
+    Mark(
+        "black-scholes", "QuantLib FD", "serial", ((1 / 4298, 1.7e-4), (1 / 2361, 7.7e-5), (1 / 186, 1.6e-5)),
+        f"FdBlackScholes, 128 x 32, 100 x 100 and 400 x 400, {_PEERS}",
+    ),
+    Mark(
+        "black-scholes", "QuantLib QdFp", "serial", ((1 / 64180, 8.7e-8), (1 / 6798, 4.1e-8)),
+        f"QdFp, fast and accurate scheme, no jumps, {_PEERS}",
+    ),
+    Mark("black-scholes", "QuantLib CRR", "serial", ((1 / 337, 1.9e-5),), f"binomial tree of 801 steps, {_PEERS}"),
+    Mark(
+        "merton", "QuantLib FdBates", "serial", ((1 / 89, 1.8e-4), (1 / 5.2, 1.8e-4), (1 / 0.38, 1.8e-4)),
+        "FdBates with frozen variance, 32 x 128 x 5 to 400 x 800 x 10, whose European prices stay 0.018 off on all "
+        f"grids; the same jumps with volatility 0.2, {_PEERS}",
+    ),
+)  # fmt: skip

@@ -1,0 +1,98 @@
+"""drogue-plot on records of options: curves and their settings, marks of others, goals, the dissertation's tables."""
+
+import unittest
+
+import packages  # noqa: F401, before all that needs the packages  isort: skip
+import synthetic_records as records
+from evidence_pages import Folder
+from plot import evidence_options, evidence_solution, perf_record, solution_family
+from plot.evidence_solution_figure import solution_figure
+from plot.options_marks import MARKS
+
+MACHINE = "NVIDIA H200, Intel Xeon Processor"
+SOLUTION = "The dissertation's put: error against time"
+
+
+def figure_of(folder, machine=records.EPYC, backend="serial"):
+    evidence = folder.evidence(records.options_solutions(machine, backend))
+    found = evidence_solution.curves(evidence.records)
+    best = evidence_solution.best_scheme(found)
+    return solution_figure("thesis", evidence.machines[0], found, best, "")
+
+
+class Solutions(Folder):
+    def test_schemes_without_settings_stand_beside_the_usual_ones(self):
+        found = evidence_solution.curves(self.evidence(records.options_solutions()).records)
+        usual = [curve.scheme.word for curve in found if curve.scheme.is_usual]
+        self.assertEqual(["pide", "cos", "seed"], usual)
+        self.assertEqual("pide", evidence_solution.best_scheme(found))
+        self.assertAlmostEqual(2.0, found[0].order)
+
+    def test_rows_are_those_of_the_steps(self):
+        figure = figure_of(self)
+        titles = {text.get_text() for text in figure.texts}
+        self.assertIn("finite differences, a step for four intervals", titles)
+        self.assertIn("finite differences, a step for two intervals", titles)
+        top, four, two = figure.axes
+        self.assertEqual([4, 4], [len(axes.lines) for axes in (four, two)])
+        self.assertEqual(four.get_xlim(), two.get_xlim())
+        self.assertGreater(top.get_xlim()[1], four.get_xlim()[1])
+
+    def test_marks_stand_where_they_belong(self):
+        def labels(figure):
+            return {text.get_text() for text in figure.axes[0].texts}
+
+        core, gpu = labels(figure_of(self)), labels(figure_of(self, records.H200, "cuda"))
+        self.assertEqual({"dissertation, one option", "dissertation, 4096 options", "hand-written AVX-512"}, core)
+        self.assertEqual(core | {"hand-written CUDA"}, gpu)
+
+    def test_every_mark_has_a_problem_and_a_source(self):
+        for mark in MARKS:
+            self.assertIn(mark.problem, solution_family.OPTIONS.problems)
+            self.assertIn(mark.on, perf_record.BACKENDS)
+            self.assertTrue(mark.source and all(seconds > 0 and error > 0 for seconds, error in mark.points))
+
+    def test_times_to_the_errors_asked_for(self):
+        page, files = self.page(records.options_solutions(), "options")
+        self.assertEqual(["options.html", "solution_thesis_amd-epyc.png"], files)
+        rows = page.tables["AMD EPYC", SOLUTION]
+        names = [row[1] for row in rows]
+        for name in ("finite differences", "cosine series", "finite differences, split exercise, one grid"):
+            self.assertIn(name, names)
+        # 1e-4 is met at 100 intervals: n^2/4 ns.
+        own = rows[names.index("finite differences")]
+        self.assertEqual("2.5 \u00b5s", own[rows[0].index("to 1\u00d710\u22124")])
+        self.assertIn("hand-written AVX-512: a prototype", page.words)
+        self.assertIn("0.1 %, 0.01 % and 0.001 %", page.words)
+
+
+class Batches(Folder):
+    def test_goals_and_systems(self):
+        page, _ = self.page(records.options_batches(), "options")
+        rows = page.tables[MACHINE, "A batch"]
+        verdicts = {row[0]: row[-1] for row in rows if len(row) == 7}
+        self.assertEqual("goal met", verdicts["CUDA, 4096 options, 128x32"])
+        self.assertEqual("missed by 233 %", verdicts["CUDA, 1 options, 128x32"])
+        systems = {row[1]: row for row in page.tables[MACHINE, "Tridiagonal systems"]}
+        self.assertEqual(["CUDA", "scan/128", "4\u2009096"], systems["scan/128"][:3])
+        self.assertTrue(systems["pttrf/128"][3].startswith("40 ["))
+
+    def test_tables_of_the_dissertation(self):
+        page, files = self.page(records.options_transfers(), "options")
+        self.assertEqual(["options-transfers_cuda_nvidia-h200.png", "options.html"], files)
+        rows = page.tables[MACHINE, "Tables 5.7 and 5.8, CUDA"]
+        self.assertEqual([3, 3, 4], [sum(row[:2] == place for row in rows) for place in (
+            ["1", "128"], ["1", "256"], ["32", "128"])])  # fmt: skip
+        own = next(row for row in rows if row[:3] == ["32", "128", "ours, two solves for an error"])
+        self.assertEqual(["20", "160", "20", "200", "19\u2009478", "1\u00d710\u22124"], own[3:])
+
+    def test_a_batch_without_printed_times(self):
+        lines = [line | {"facts": line["facts"] | {"thesis": {}}} for line in records.options_transfers()]
+        evidence = self.evidence(lines)
+        rows = evidence_options.rows_of(evidence.records)
+        self.assertEqual({"seed", "pide"}, {row.source for row in rows})
+        evidence_options.transfers_figure("title", evidence.machines[0], evidence.records)
+
+
+if __name__ == "__main__":
+    unittest.main()
