@@ -173,10 +173,11 @@ template <class ExecutionSpace>
   return shared ? 0 : 1;
 }
 
-/// Enqueues `Functor{batch}`, which prices the batch.
-template <int block, class Functor, class ExecutionSpace>
-void launch_batch(const ExecutionSpace& space, const char* label, const PriceBatch<ExecutionSpace>& batch) {
+/// Enqueues `functor`, which prices its batch.
+template <int block, class ExecutionSpace, class Functor>
+void launch_batch(const ExecutionSpace& space, const char* label, const Functor& functor) {
   using Batch = PriceBatch<ExecutionSpace>;
+  const Batch& batch = functor.batch;
   if (batch.count == 0) return;
   // Warps that share a multiprocessor: as many as registers for the nodes allow without spilling.
   constexpr unsigned teams = block == 0 ? 1 : block < 8 ? 12 : 8;
@@ -186,7 +187,7 @@ void launch_batch(const ExecutionSpace& space, const char* label, const PriceBat
                                                     device::is_host<ExecutionSpace> ? 1 : lanes);
   policy.set_scratch_size(batch.level,
                           Kokkos::PerTeam(Memory<typename Batch::R, block>::bytes(batch.mesh) + 64));
-  Kokkos::parallel_for(label, policy, Functor{batch});
+  Kokkos::parallel_for(label, policy, functor);
 }
 
 /// Enqueues the launch.
@@ -195,7 +196,7 @@ void price_batch(const ExecutionSpace& space, const PriceBatch<ExecutionSpace>& 
   static_assert(
       Kokkos::SpaceAccessibility<ExecutionSpace, typename decltype(batch.prices)::memory_space>::accessible);
   const auto launch = [&]<int block>(const char* label) {
-    launch_batch<block, PriceFunctor<ExecutionSpace, block>>(space, label, batch);
+    launch_batch<block>(space, label, PriceFunctor<ExecutionSpace, block>{batch});
   };
   if constexpr (!device::is_host<ExecutionSpace>) {
     constexpr const char* in_registers = "drogue::options::price in registers";

@@ -7,7 +7,9 @@
 
 namespace drogue::options {
 
-#define DROGUE_DECLARE(backend) std::unique_ptr<Pricer> create_pide_##backend(const Settings& settings);
+#define DROGUE_DECLARE(backend)                                            \
+  std::unique_ptr<Pricer> create_pide_##backend(const Settings& settings); \
+  std::unique_ptr<Pricer> create_surface_##backend(const Settings& settings, std::unique_ptr<Pricer> single);
 DROGUE_FOR_EACH_BACKEND(DROGUE_DECLARE)
 #undef DROGUE_DECLARE
 
@@ -22,17 +24,19 @@ void check(const Settings& s) {
   require(s.steps == 0 || (s.steps >= 8 && s.steps <= 16384 && s.steps % 2 == 0),
           "steps must be 0 or an even number from 8 to 16384");
   require(s.tolerance > 0.0, "the tolerance must be positive");
+  require(!s.surface || s.method == Method::pide, "a surface needs the method pide");
 }
 
 }  // namespace
 
 std::unique_ptr<Pricer> create_pricer(device::Backend backend, const Settings& settings) {
-  if (settings.method == Method::cos) return create_cos_pricer(backend, settings);
+  if (settings.method == Method::cos && !settings.surface) return create_cos_pricer(backend, settings);
   check(settings);
   switch (backend) {
-#define DROGUE_CREATE(name)   \
-  case device::Backend::name: \
-    return create_pide_##name(settings);
+#define DROGUE_CREATE(name)                                                                 \
+  case device::Backend::name:                                                               \
+    return settings.surface ? create_surface_##name(settings, create_pide_##name(settings)) \
+                            : create_pide_##name(settings);
     DROGUE_FOR_EACH_BACKEND(DROGUE_CREATE)
 #undef DROGUE_CREATE
     default:

@@ -22,6 +22,7 @@ struct Settings {
   int steps = 0;            ///< steps in time; 0: chosen by `tolerance`
   double tolerance = 1e-4;  ///< of |price - true price|, relative to the strike
   bool greeks = false;      ///< `cos` computes delta, gamma and theta; the other methods always do
+  bool surface = false;     ///< contracts in a row that differ in the strike alone share solves; for `pide`
 };
 
 /// Wall time of a batch's parts, s.

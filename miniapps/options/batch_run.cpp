@@ -10,8 +10,16 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::size_t least_chunk = 64, most_chunk = 65536;
+constexpr std::size_t least_chunk = 64, first_surface_chunk = 4096, most_chunk = 65536;
 constexpr double wanted_chunk_time = 0.1;  // s: an answer to Ctrl-C, and work enough for a device
+
+/// Strikes of a maturity that go into one chunk share their solves.
+std::size_t smallest_chunk(const Command& command) { return std::max(least_chunk, command.strikes.size()); }
+
+std::size_t first_chunk(const Command& command) {
+  if (command.chunk > 0) return command.chunk;
+  return command.settings.surface ? std::max(first_surface_chunk, command.strikes.size()) : least_chunk;
+}
 
 }  // namespace
 
@@ -23,7 +31,7 @@ BatchRun::BatchRun(const Command& command, BatchReader& reader, PriceWriter& wri
       _boundaries(boundaries),
       _pricer(pricer),
       _progress(command.quiet),
-      _chunk(command.chunk > 0 ? command.chunk : least_chunk) {}
+      _chunk(first_chunk(command)) {}
 
 ExitCode BatchRun::run(run::ResultDocument::Timing& timing) {
   const auto begin = Clock::now();
@@ -53,6 +61,7 @@ void BatchRun::add(const Row& row) {
   if (!row.fault.empty() || _command.action == Action::price) return put(row.contract);
   options::Contract contract = row.contract;
   for (const double maturity : _command.maturities) {
+    if (_owners.size() + _command.strikes.size() > _chunk) flush();
     for (const double strike : _command.strikes) {
       contract.maturity = maturity;
       contract.strike = strike;
@@ -103,7 +112,7 @@ void BatchRun::choose_chunk(double seconds) {
   if (seconds < 0.5 * wanted_chunk_time) {
     if (_contracts.size() >= _chunk) _chunk = std::min(2 * _chunk, most_chunk);
   } else if (seconds > 2.0 * wanted_chunk_time) {
-    _chunk = std::max(_chunk / 2, least_chunk);
+    _chunk = std::max(_chunk / 2, smallest_chunk(_command));
   }
 }
 
