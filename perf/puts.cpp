@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <random>
 #include <vector>
@@ -42,24 +43,45 @@ std::vector<options::Contract> distinct(std::size_t count) {
   return contracts;
 }
 
-double error(const std::vector<options::Price>& prices) {
+/// The known ones first: V(c spot, c strike) = c V, so they are strikes of the spot 1.
+std::vector<options::Contract> surfaces(const SurfaceSize& size) {
+  std::vector<options::Contract> contracts;
+  std::vector<options::Contract> sets = distinct(std::size(known_spot) + size.sets);
+  sets.erase(sets.begin(), sets.begin() + std::size(known_spot));
+  sets.front() = thesis;
+  for (options::Contract c : sets) {
+    c.spot = 1.0;
+    for (std::size_t m = 0; m < size.maturities; ++m) {
+      // From a year on, round to the shorter ones.
+      c.maturity = 0.25 * static_cast<double>((m + 3) % 8 + 1);
+      for (std::size_t k = 0; k < size.strikes; ++k) {
+        c.strike = k < std::size(known_spot)
+                       ? 1.0 / known_spot[k]
+                       : 0.5 * std::exp2(2.0 * static_cast<double>(k) / static_cast<double>(size.strikes));
+        contracts.push_back(c);
+      }
+    }
+  }
+  return contracts;
+}
+
+double error(const Run& run) {
   double largest = 0.0;
-  for (std::size_t i = 0; i < std::min(prices.size(), std::size(known_price)); ++i)
-    largest = std::max(largest, std::abs(prices[i].price - known_price[i]));
+  for (std::size_t i = 0; i < std::min(run.prices.size(), std::size(known_price)); ++i)
+    largest = std::max(largest, std::abs(run.prices[i].price / run.contracts[i].strike - known_price[i]));
   return largest;
 }
 
-}  // namespace
-
-Case batch(const std::string& name, device::Backend backend, std::size_t count,
+Case timed(const std::string& name, device::Backend backend,
+           const std::function<std::vector<options::Contract>()>& contracts,
            const options::Settings& settings, double limit) {
   const auto run = std::make_shared<Run>();
   return {name,
           "batch",
           "arithmetic of the convolution",
           [=] {
-            run->contracts = distinct(count);
-            run->prices.resize(count);
+            run->contracts = contracts();
+            run->prices.resize(run->contracts.size());
             run->pricer = options::create_pricer(backend, settings);
             return Sample{[] {},
                           [=] {
@@ -72,8 +94,22 @@ Case batch(const std::string& name, device::Backend backend, std::size_t count,
                                                                  {"d2h", run->timing.d2h}};
                           }};
           },
-          [=] { return error(run->prices); },
+          [=] { return error(*run); },
           limit};
+}
+
+}  // namespace
+
+Case batch(const std::string& name, device::Backend backend, std::size_t count,
+           const options::Settings& settings, double limit) {
+  return timed(
+      name, backend, [=] { return distinct(count); }, settings, limit);
+}
+
+Case surface(const std::string& name, device::Backend backend, const SurfaceSize& size,
+             const options::Settings& settings, double limit) {
+  return timed(
+      name, backend, [=] { return surfaces(size); }, settings, limit);
 }
 
 }  // namespace drogue::perf::puts

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <compare>
 #include <optional>
 #include <vector>
 
@@ -12,7 +11,11 @@ namespace drogue::options {
 /// What a launch spends on each price.
 struct Effort {
   int mesh = 0, steps = 0;
-  friend auto operator<=>(const Effort&, const Effort&) = default;
+
+  friend bool operator==(const Effort& a, const Effort& b) { return a.mesh == b.mesh && a.steps == b.steps; }
+  friend bool operator<(const Effort& a, const Effort& b) {
+    return a.mesh != b.mesh ? a.mesh < b.mesh : a.steps < b.steps;
+  }
 };
 
 /// How far a price has come whose tolerance decides.
