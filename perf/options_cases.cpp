@@ -13,6 +13,19 @@ Case batch_case(device::Backend backend, std::size_t count, int mesh, int steps)
   return batch;
 }
 
+/// Strikes of one law share a solve, or, `apart`, get one each as those of a batch do.
+Case surface_case(device::Backend backend, const puts::SurfaceSize& size, bool apart) {
+  const std::string name(device::name(backend));
+  const std::string count =
+      std::to_string(size.sets) + "x" + std::to_string(size.strikes) + "x" + std::to_string(size.maturities);
+  const std::string variant = apart ? "apart" : "surface";
+  Case surface = puts::surface("options/" + name + "/" + variant + "/" + count, backend, size,
+                               {.mesh = 128, .steps = 32, .surface = !apart}, puts::bar);
+  const auto prices = static_cast<std::int64_t>(size.sets * size.strikes * size.maturities);
+  surface.facts = [=] { return Facts{name, prices, variant + " " + count}; };
+  return surface;
+}
+
 }  // namespace
 
 std::vector<Case> options_cases(bool quick) {
@@ -25,12 +38,17 @@ std::vector<Case> options_cases(bool quick) {
     };
     if (quick) {
       add(16, 64, 16);
+      cases.push_back(surface_case(backend, {1, 33, 2}, false));
       continue;
     }
     add(1, 128, 32);
     add(gpu ? 4096 : 256, 128, 32);
     add(gpu ? 4096 : 256, 256, 64);
     if (gpu) add(1'000'000, 128, 32);
+    cases.push_back(surface_case(backend, {1, 33, 8}, true));
+    cases.push_back(surface_case(backend, {1, 33, 8}, false));
+    cases.push_back(surface_case(backend, {1, 1000, 8}, false));
+    cases.push_back(surface_case(backend, {gpu ? 512U : 16U, 33, 8}, false));
   }
   return cases;
 }

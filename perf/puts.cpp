@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <memory_resource>
 #include <optional>
@@ -21,13 +22,13 @@ struct Run {
   options::Timing timing;
 };
 
-std::pmr::vector<options::Contract> distinct(std::size_t count, std::pmr::memory_resource& memory) {
+std::vector<options::Contract> distinct(std::size_t count) {
   std::mt19937 random(7);
   const auto between = [&](double low, double high) {
     return low + (high - low) * (static_cast<double>(random()) / 4294967296.0);
   };
   const KnownPuts& known = thesis_puts();
-  std::pmr::vector<options::Contract> contracts(count, known.contract, &memory);
+  std::vector<options::Contract> contracts(count, known.contract);
   for (std::size_t i = 0; i < count; ++i) {
     options::Contract& c = contracts[i];
     if (i < known.spots.size()) {
@@ -42,17 +43,39 @@ std::pmr::vector<options::Contract> distinct(std::size_t count, std::pmr::memory
   return contracts;
 }
 
-double error(std::span<const options::Price> prices) {
+/// The known ones first: V(c spot, c strike) = c V, so they are strikes of the spot 1.
+std::vector<options::Contract> surfaces(const SurfaceSize& size) {
+  const KnownPuts& known = thesis_puts();
+  const auto others = static_cast<std::ptrdiff_t>(known.spots.size());
+  std::vector<options::Contract> contracts, sets = distinct(known.spots.size() + size.sets);
+  sets.erase(sets.begin(), sets.begin() + others);
+  sets.front() = known.contract;
+  for (options::Contract c : sets) {
+    c.spot = 1.0;
+    for (std::size_t m = 0; m < size.maturities; ++m) {
+      // From a year on, round to the shorter ones.
+      c.maturity = 0.25 * static_cast<double>((m + 3) % 8 + 1);
+      for (std::size_t k = 0; k < size.strikes; ++k) {
+        c.strike = k < known.spots.size()
+                       ? 1.0 / known.spots[k]
+                       : 0.5 * std::exp2(2.0 * static_cast<double>(k) / static_cast<double>(size.strikes));
+        contracts.push_back(c);
+      }
+    }
+  }
+  return contracts;
+}
+
+double error(const Run& run) {
   const std::vector<double>& known = thesis_puts().prices;
   double largest = 0.0;
-  for (std::size_t i = 0; i < std::min(prices.size(), known.size()); ++i)
-    largest = std::max(largest, std::abs(prices[i].price - known[i]));
+  for (std::size_t i = 0; i < std::min(run.prices.size(), known.size()); ++i)
+    largest = std::max(largest, std::abs(run.prices[i].price / run.contracts[i].strike - known[i]));
   return largest;
 }
 
-}  // namespace
-
-Case batch(const std::string& name, device::Backend backend, std::size_t count,
+Case timed(const std::string& name, device::Backend backend,
+           const std::function<std::vector<options::Contract>()>& contracts,
            const options::Settings& settings, double limit) {
   const auto run = std::make_shared<std::optional<Run>>();
   return {name,
@@ -61,9 +84,10 @@ Case batch(const std::string& name, device::Backend backend, std::size_t count,
           [=] {
             std::unique_ptr<options::Pricer> pricer = options::create_pricer(backend, settings);
             std::pmr::memory_resource& memory = pricer->memory();
+            const std::vector<options::Contract> asked = contracts();
             run->emplace(Run{std::move(pricer),
-                             distinct(count, memory),
-                             std::pmr::vector<options::Price>(count, &memory),
+                             {asked.begin(), asked.end(), &memory},
+                             std::pmr::vector<options::Price>(asked.size(), &memory),
                              {}});
             return Sample{[] {},
                           [=] {
@@ -77,8 +101,22 @@ Case batch(const std::string& name, device::Backend backend, std::size_t count,
                                                                  {"d2h", (*run)->timing.d2h}};
                           }};
           },
-          [=] { return error((*run)->prices); },
+          [=] { return error(**run); },
           limit};
+}
+
+}  // namespace
+
+Case batch(const std::string& name, device::Backend backend, std::size_t count,
+           const options::Settings& settings, double limit) {
+  return timed(
+      name, backend, [=] { return distinct(count); }, settings, limit);
+}
+
+Case surface(const std::string& name, device::Backend backend, const SurfaceSize& size,
+             const options::Settings& settings, double limit) {
+  return timed(
+      name, backend, [=] { return surfaces(size); }, settings, limit);
 }
 
 }  // namespace drogue::perf::puts

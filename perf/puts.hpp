@@ -16,4 +16,14 @@ inline constexpr double bar = 4.4e-4;
 Case batch(const std::string& name, device::Backend backend, std::size_t count,
            const options::Settings& settings, double limit);
 
+/// The strikes of a surface, from half to twice the spot, at maturities of a quarter to two years.
+struct SurfaceSize {
+  std::size_t sets, strikes, maturities;
+};
+
+/// Prices surfaces of puts, strike after strike of a maturity and a set: of the dissertation's law first,
+/// then of laws about it. A sample is the sum of copies and compute; the error is that of the known ones.
+Case surface(const std::string& name, device::Backend backend, const SurfaceSize& size,
+             const options::Settings& settings, double limit);
+
 }  // namespace drogue::perf::puts

@@ -54,8 +54,25 @@ KOKKOS_INLINE_FUNCTION void interpolate(const Column& value, int first, double t
   result[2] = (d2 + (t - 1.0) * d3) / (h * h);
 }
 
-/// Reads the answer for one member. Nodes are taken from the side of the strike and of the boundary that x is
-/// on: there the value has kinks that short maturities leave sharp. `change` holds dV/dtau.
+/// The first of the four nodes that a value at t, in steps from node 0, is read from. They are taken from the
+/// side of the strike and of the boundary that it is on: there the value has kinks that short maturities
+/// leave sharp.
+KOKKOS_INLINE_FUNCTION int stencil_of(const Put& put, const Nodes& nodes, double t, double boundary) {
+  const int mesh = nodes.mesh, strike = nodes.strike, cell = static_cast<int>(t);
+  int first = cell - 1;
+  if (cell >= strike) {
+    first = first < strike ? strike : first;
+  } else {
+    first = first > strike - 3 ? strike - 3 : first;
+  }
+  if (!put.split && boundary == boundary) {
+    const int exercised = static_cast<int>(boundary / nodes.h + strike);
+    first = first < exercised ? exercised : first;
+  }
+  return first > mesh - 3 ? mesh - 3 : first < 0 ? 0 : first;
+}
+
+/// Reads the answer for one member. `change` holds dV/dtau.
 KOKKOS_INLINE_FUNCTION Answer answer_of(const Put& put, const Column& value, const Column& change,
                                         const Nodes& nodes) {
   const int mesh = nodes.mesh, strike = nodes.strike;
@@ -83,18 +100,7 @@ KOKKOS_INLINE_FUNCTION Answer answer_of(const Put& put, const Column& value, con
     return answer;
   }
   if (t >= mesh) return answer;
-  const int cell = static_cast<int>(t);
-  int first = cell - 1;
-  if (cell >= strike) {
-    first = first < strike ? strike : first;
-  } else {
-    first = first > strike - 3 ? strike - 3 : first;
-  }
-  if (!put.split && answer.boundary == answer.boundary) {
-    const int exercised = static_cast<int>(answer.boundary / h + strike);
-    first = first < exercised ? exercised : first;
-  }
-  first = first > mesh - 3 ? mesh - 3 : first < 0 ? 0 : first;
+  const int first = stencil_of(put, nodes, t, answer.boundary);
   double result[3], rate[3];
   interpolate(value, first, t - first, h, result);
   interpolate(change, first, t - first, h, rate);

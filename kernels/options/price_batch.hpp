@@ -195,10 +195,11 @@ template <class ExecutionSpace>
   return shared ? 0 : 1;
 }
 
-/// Enqueues `Functor{batch}`, which prices the batch.
-template <int fixed, class Functor, class ExecutionSpace>
-void launch_batch(const ExecutionSpace& space, const char* label, const PriceBatch<ExecutionSpace>& batch) {
+/// Enqueues `functor`, which prices its batch.
+template <int fixed, class ExecutionSpace, class Functor>
+void launch_batch(const ExecutionSpace& space, const char* label, const Functor& functor) {
   using Batch = PriceBatch<ExecutionSpace>;
+  const Batch& batch = functor.batch;
   if (batch.count == 0) return;
   // Warps that share a multiprocessor: as many as registers for the nodes allow without spilling.
   constexpr unsigned teams = fixed == 0 ? 1 : fixed < 128 ? 12 : 8;
@@ -211,7 +212,7 @@ void launch_batch(const ExecutionSpace& space, const char* label, const PriceBat
   policy.set_scratch_size(
       batch.level,
       Kokkos::PerTeam(Batch::groups(fixed) * Memory<typename Batch::R, fixed>::bytes(batch.mesh) + 64));
-  Kokkos::parallel_for(label, policy, Functor{batch});
+  Kokkos::parallel_for(label, policy, functor);
 }
 
 /// Enqueues the launch.
@@ -221,7 +222,7 @@ void price_batch(const ExecutionSpace& space, PriceBatch<ExecutionSpace> batch) 
       Kokkos::SpaceAccessibility<ExecutionSpace, typename decltype(batch.prices)::memory_space>::accessible);
   if (batch.record.time == nullptr) batch.lanes = lanes_of(batch.mesh);
   const auto launch = [&]<int fixed>(const char* label) {
-    launch_batch<fixed, PriceFunctor<ExecutionSpace, fixed>>(space, label, batch);
+    launch_batch<fixed>(space, label, PriceFunctor<ExecutionSpace, fixed>{batch});
   };
   if constexpr (!device::is_host<ExecutionSpace>) {
     constexpr const char* in_registers = "drogue::options::price in registers";

@@ -7,7 +7,9 @@
 
 namespace drogue::options {
 
-#define DROGUE_DECLARE(backend) std::unique_ptr<Pricer> create_pide_##backend(const Settings& settings);
+#define DROGUE_DECLARE(backend)                                            \
+  std::unique_ptr<Pricer> create_pide_##backend(const Settings& settings); \
+  std::unique_ptr<Pricer> create_surface_##backend(const Settings& settings, std::unique_ptr<Pricer> single);
 DROGUE_FOR_EACH_BACKEND(DROGUE_DECLARE)
 #undef DROGUE_DECLARE
 
@@ -23,17 +25,19 @@ void check(const Settings& s) {
           "steps must be 0 or an even number from 8 to 16384");
   require(s.tolerance > 0.0, "the tolerance must be positive");
   require(!s.one_grid || s.mesh != 0, "one grid states no error by which to choose a mesh");
+  require(!s.surface || s.method == Method::pide, "a surface needs the method pide");
 }
 
 }  // namespace
 
 std::unique_ptr<Pricer> create_pricer(device::Backend backend, const Settings& settings) {
-  if (settings.method == Method::cos) return create_cos_pricer(backend, settings);
+  if (settings.method == Method::cos && !settings.surface) return create_cos_pricer(backend, settings);
   check(settings);
   switch (backend) {
-#define DROGUE_CREATE(name)   \
-  case device::Backend::name: \
-    return create_pide_##name(settings);
+#define DROGUE_CREATE(name)                                                                 \
+  case device::Backend::name:                                                               \
+    return settings.surface ? create_surface_##name(settings, create_pide_##name(settings)) \
+                            : create_pide_##name(settings);
     DROGUE_FOR_EACH_BACKEND(DROGUE_CREATE)
 #undef DROGUE_CREATE
     default:

@@ -1,9 +1,7 @@
 #pragma once
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <compare>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -12,6 +10,10 @@
 #include "kernels/device/copy.hpp"
 #include "kernels/device/instance.hpp"
 #include "kernels/device/pinned_memory.hpp"
+#include "kernels/options/clock.hpp"
+#include "kernels/options/hankel_panels.hpp"
+#include "kernels/options/refinement.hpp"
+#include "kernels/options/roots_of_unity.hpp"
 #include "kernels/options/seed_batch.hpp"
 
 namespace drogue::options {
@@ -38,7 +40,7 @@ class PricerOn final : public Pricer {
     if (contracts.empty()) return timing;
     const Clock setting_up;
     reserve(contracts.size());
-    fetch_panels(contracts);
+    _panels.fetch(_instance.space(), contracts);
     copy_in(_contracts, staged(contracts), contracts.size());
     _instance.space().fence("drogue::options: contracts are copied");
     timing.h2d = setting_up.seconds();
@@ -47,7 +49,7 @@ class PricerOn final : public Pricer {
     } else {
       const int mesh = _settings.mesh == 0 ? seed_mesh : _settings.mesh;
       const Clock computing;
-      launch_models(contracts, {mesh, steps_of(mesh, 1)}, [](std::size_t) { return true; });
+      launch_models(contracts, {mesh, steps_of(mesh)}, [](std::size_t) { return true; });
       timing.compute = computing.seconds();
       copy_out(prices, timing);
     }
@@ -78,20 +80,20 @@ class PricerOn final : public Pricer {
 
  private:
   void price_to_tolerance(std::span<const Contract> contracts, std::span<Price> prices, Timing& timing) {
-    const Effort first{first_mesh, steps_of(first_mesh, 1)};
-    std::vector<Row> rows(contracts.size(), Row{first, 1, 0.0});
+    const Effort first{first_mesh, steps_of(first_mesh)};
+    std::vector<Refinement> rows(contracts.size(), Refinement{first});
     for (std::optional<Effort> effort = first; effort; effort = least_effort(rows)) {
       const Clock computing;
       launch_models(contracts, *effort, [&](std::size_t k) { return rows[k].next == *effort; });
       timing.compute += computing.seconds();
       copy_out(prices, timing);
       for (std::size_t k = 0; k < contracts.size(); ++k)
-        if (rows[k].next == *effort) advance(rows[k], prices[k], _settings.tolerance * contracts[k].strike);
+        if (rows[k].next == *effort)
+          refine(rows[k], prices[k], _settings.tolerance * contracts[k].strike, _settings);
     }
   }
 
-  static constexpr int first_mesh = 64, seed_mesh = 128, last_mesh = 2048, record_mesh = 512, models = 4,
-                       most_often = 4;
+  static constexpr int first_mesh = 64, seed_mesh = 128, record_mesh = 512, models = 4;
 
   struct Recorded {
     std::vector<double> time, boundary, x, value;
@@ -106,10 +108,10 @@ class PricerOn final : public Pricer {
   Recorded record(const Contract& contract) {
     const std::span<const Contract> one(&contract, 1);
     reserve(1);
-    fetch_panels(one);
+    _panels.fetch(_instance.space(), one);
     copy_in(_contracts, &contract, 1);
     const int mesh = _settings.mesh != 0 ? _settings.mesh : record_mesh;
-    const Effort effort{mesh, steps_of(mesh, 1)};
+    const Effort effort{mesh, steps_of(mesh)};
     const auto steps = static_cast<std::size_t>(effort.steps), nodes = static_cast<std::size_t>(mesh) + 1;
     const View<double> all("drogue::options::record", 2 * (steps + nodes));
     double* const at = all.data();
@@ -130,59 +132,9 @@ class PricerOn final : public Pricer {
     return recorded;
   }
 
-  class Clock {
-   public:
-    [[nodiscard]] double seconds() const {
-      return std::chrono::duration<double>(std::chrono::steady_clock::now() - _begin).count();
-    }
-
-   private:
-    std::chrono::steady_clock::time_point _begin = std::chrono::steady_clock::now();
-  };
-
-  [[nodiscard]] int steps_of(int mesh, int often) const {
-    if (_settings.steps != 0) return _settings.steps;
-    return _settings.method == Method::seed ? mesh : mesh / 4 * often;
-  }
-
-  /// What a launch spends on each row.
-  struct Effort {
-    int mesh = 0, steps = 0;
-    friend auto operator<=>(const Effort&, const Effort&) = default;
-  };
-
-  /// How far a row has come whose tolerance decides.
-  struct Row {
-    Effort next;   ///< no mesh: it is priced
-    int often;     ///< steps, of a fourth of the mesh
-    double error;  ///< stated last
-  };
-
-  [[nodiscard]] static std::optional<Effort> least_effort(const std::vector<Row>& rows) {
-    std::optional<Effort> least;
-    for (const Row& row : rows)
-      if (row.next.mesh != 0 && (!least || row.next < *least)) least = row.next;
-    return least;
-  }
-
-  /// The error falls by at least 4 where mesh and steps double. Where it does not fall, more steps are tried
-  /// first: jumps of long maturities are stiff.
-  void advance(Row& row, const Price& price, double tolerance) const {
-    const int mesh = row.next.mesh;
-    row.next = {};
-    if (price.outcome == Outcome::ok) return;
-    const bool stuck = price.outcome == Outcome::failed || (row.error > 0.0 && price.error > 0.5 * row.error);
-    row.error = price.error;
-    int next = mesh;
-    if (stuck && row.often < most_often && _settings.steps == 0) {
-      row.often *= 4;
-    } else {
-      next *= 2;
-      if (price.outcome == Outcome::coarse)
-        for (double error = price.error / 16.0; error > tolerance && next < last_mesh; error /= 4.0)
-          next *= 2;
-    }
-    if (next <= last_mesh) row.next = {next, steps_of(next, row.often)};
+  [[nodiscard]] int steps_of(int mesh) const {
+    return _settings.method == Method::seed && _settings.steps == 0 ? mesh
+                                                                    : options::steps_of(_settings, mesh, 1);
   }
 
   void reserve(std::size_t count) {
@@ -223,35 +175,6 @@ class PricerOn final : public Pricer {
     timing.d2h += copying.seconds();
   }
 
-  /// Builds the series of those panels of orders that are new.
-  void fetch_panels(std::span<const Contract> contracts) {
-    bool found = false;
-    for (const Contract& contract : contracts) {
-      if (contract.model != Model::generalized_hyperbolic || contract.jump[3] == 0.0) continue;
-      const double order = std::fabs(contract.jump[0]);
-      if (!(order < HankelGrid::largest_order)) continue;
-      int& slot = _slots[static_cast<std::size_t>(panel_of(order))];
-      if (slot >= 0) continue;
-      slot = static_cast<int>(_series.size()) / HankelGrid::panel_size;
-      const std::vector<double> panel = hankel_panel(panel_of(order));
-      _series.insert(_series.end(), panel.begin(), panel.end());
-      found = true;
-    }
-    if (!found && _panel_slot.size() != 0) return;
-    _panels = View<double>("drogue::options::panels", _series.size());
-    _panel_slot = View<int>("drogue::options::panel slots", _slots.size());
-    copy_in(_panels, _series.data(), _series.size());
-    copy_in(_panel_slot, _slots.data(), _slots.size());
-  }
-
-  /// Copies the roots of unity when they are needed first.
-  void fetch_roots() {
-    if (_roots.size() != 0) return;
-    _host_roots = fourier_roots();
-    _roots = View<double>("drogue::options::roots", _host_roots.size());
-    copy_in(_roots, _host_roots.data(), _host_roots.size());
-  }
-
   /// Prices the contracts k for which `asked(k)`, those of a model in a launch.
   template <class Asked>
   void launch_models(std::span<const Contract> contracts, const Effort& effort, const Asked& asked) {
@@ -267,14 +190,14 @@ class PricerOn final : public Pricer {
       copy_in(_order, rows.data(), rows.size());
       _rows.swap(rows);
     }
-    if (is_transformed(effort.mesh, lanes_of(effort.mesh))) fetch_roots();
+    if (is_transformed(effort.mesh, lanes_of(effort.mesh))) _roots.fetch(_instance.space());
     PriceBatch<ExecutionSpace> batch;
     batch.contracts = _contracts;
     batch.prices = _prices;
     batch.order = _order;
-    batch.panels = _panels;
-    batch.panel_slot = _panel_slot;
-    batch.roots = FourierRoots::of(_roots.data());
+    batch.panels = _panels.series();
+    batch.panel_slot = _panels.slots();
+    batch.roots = _roots.roots();
     batch.record = record;
     batch.count = static_cast<int>(_rows.size());
     batch.mesh = effort.mesh;
@@ -295,14 +218,13 @@ class PricerOn final : public Pricer {
   device::Instance<ExecutionSpace> _instance;
   View<Contract> _contracts;
   View<Price> _prices;
-  View<int> _order, _panel_slot;
+  View<int> _order;
   std::vector<int> _rows;  ///< what _order holds
   device::PinnedMemory<ExecutionSpace> _pinned;
   std::pmr::vector<Contract> _staged_contracts{&_pinned};
   std::pmr::vector<Price> _staged_prices{&_pinned};
-  View<double> _panels, _roots;
-  std::vector<double> _series, _host_roots;
-  std::vector<int> _slots = std::vector<int>(HankelGrid::panels, -1);
+  HankelPanels<ExecutionSpace> _panels;
+  RootsOfUnity<ExecutionSpace> _roots;
 };
 
 }  // namespace drogue::options

@@ -158,7 +158,7 @@ struct SeedBatch {
 /// Enqueues the launch.
 template <class ExecutionSpace>
 void seed_batch(const ExecutionSpace& space, const PriceBatch<ExecutionSpace>& batch) {
-  launch_batch<0, SeedBatch<ExecutionSpace>>(space, "drogue::options::seed", batch);
+  launch_batch<0>(space, "drogue::options::seed", SeedBatch<ExecutionSpace>{batch});
 }
 
 }  // namespace drogue::options

@@ -159,15 +159,38 @@ struct Weights {
   FourierRoots roots;
 };
 
-/// Marches from expiry to the puts' maturities on `grid`; `answers` gets one for each member. Returns the
-/// values of the nodes, which stay in the memory until the next solve. With a `fixed` > 0 that is the mesh
-/// and a group of lanes keeps its nodes in registers; then nothing is recorded.
+/// What a march leaves on the nodes of a pack, in the memory until the next one.
+template <class R>
+struct Solution {
+  const R *value, *change;  ///< V and dV/dtau at maturity
+  Certain<R> certain;       ///< below node 0
+  int exercised;            ///< last node below the strike that is, where lanes marched in registers
+};
+
+template <class R>
+KOKKOS_INLINE_FUNCTION Column column_of(const R* nodes, int member) {
+  return {reinterpret_cast<const double*>(nodes) + member, device::Access<R>::lanes};
+}
+
+/// Where the nodes of member k lie.
+template <int fixed, class R>
+KOKKOS_INLINE_FUNCTION Nodes nodes_of(const Solution<R>& solution, const Put& put, const Grid<R>& grid,
+                                      int k) {
+  const auto member = [k](const R& number) { return device::Access<R>::lane(number, k); };
+  const Column values = column_of(solution.value, k);
+  const int strike = static_cast<int>(member(grid.strike));
+  const double h = member(grid.h);
+  const int last = fixed > 0 ? solution.exercised : put.early ? last_exercised(values, strike, h) : -1;
+  return {grid.mesh, strike, last, h, {member(solution.certain.strike), member(solution.certain.asset)}};
+}
+
+/// Marches from expiry to the puts' maturities on `grid`. With a `fixed` > 0 that is the mesh and a group of
+/// lanes keeps its nodes in registers; then nothing is recorded.
 template <int fixed, class Workers, class R, class Scratch>
-KOKKOS_INLINE_FUNCTION const R* solve(const Workers& workers, const PutPack<R>& put, const Law<R>& law,
-                                      const Tails<R>& tails, const Grid<R>& grid, int steps,
-                                      const Scratch& memory, const Weights<R>& weights, const Record& record,
-                                      Answer* answers) {
-  constexpr int members = device::Access<R>::lanes;
+KOKKOS_INLINE_FUNCTION Solution<R> march_nodes(const Workers& workers, const PutPack<R>& put,
+                                               const Law<R>& law, const Tails<R>& tails, const Grid<R>& grid,
+                                               int steps, const Scratch& memory, const Weights<R>& weights,
+                                               const Record& record) {
   const int mesh = grid.mesh;
   const R h = grid.h;
   constexpr int left = fixed > 0 ? 3 : 9;
@@ -185,34 +208,34 @@ KOKKOS_INLINE_FUNCTION const R* solve(const Workers& workers, const PutPack<R>& 
   JumpSpectrum<R> spectrum{};
   if (is_transformed(mesh, workers.lanes))
     spectrum = spectrum_of(workers, mesh, weights.roots, jumps.w, memory.spectrum(mesh));
-  const R *value = nullptr, *change = nullptr;
-  int exercised = -1;
   if constexpr (fixed > 0) {
     const RegisterRows rows{memory.row(0, mesh), memory.row(1, mesh), memory.row(2, mesh), memory.slot};
-    exercised = march_in_registers<fixed / Workers::lanes>(workers, put, jumps, grid, spectrum, scheme, table,
-                                                           rows, kink);
-    value = rows.value;
-    change = rows.other;
+    const int exercised = march_in_registers<fixed / Workers::lanes>(workers, put, jumps, grid, spectrum,
+                                                                     scheme, table, rows, kink);
+    return {rows.value, rows.other, table.load(steps).certain, exercised};
   } else {
     const March<R> march =
         march_in_memory(workers, put, jumps, grid, spectrum, scheme, table, memory, kink, record);
-    value = march.value[1];
-    change = march.y;
+    return {march.value[1], march.y, table.load(steps).certain, -1};
   }
-  const Certain<R> ended = table.load(steps).certain;
+}
+
+/// `march_nodes`; `answers` gets one for each member. Returns the values of the nodes.
+template <int fixed, class Workers, class R, class Scratch>
+KOKKOS_INLINE_FUNCTION const R* solve(const Workers& workers, const PutPack<R>& put, const Law<R>& law,
+                                      const Tails<R>& tails, const Grid<R>& grid, int steps,
+                                      const Scratch& memory, const Weights<R>& weights, const Record& record,
+                                      Answer* answers) {
+  constexpr int members = device::Access<R>::lanes;
+  const Solution<R> solution =
+      march_nodes<fixed>(workers, put, law, tails, grid, steps, memory, weights, record);
   workers.each([=](int lane) {
     for (int k = lane; k < members; k += workers.lanes) {
-      const auto member = [k](const R& number) { return device::Access<R>::lane(number, k); };
-      const Column values{reinterpret_cast<const double*>(value) + k, members};
-      const int strike = static_cast<int>(member(grid.strike));
-      const int last = fixed > 0              ? exercised
-                       : memory.puts[k].early ? last_exercised(values, strike, member(h))
-                                              : -1;
-      answers[k] = answer_of(memory.puts[k], values, {reinterpret_cast<const double*>(change) + k, members},
-                             {mesh, strike, last, member(h), {member(ended.strike), member(ended.asset)}});
+      answers[k] = answer_of(memory.puts[k], column_of(solution.value, k), column_of(solution.change, k),
+                             nodes_of<fixed>(solution, memory.puts[k], grid, k));
     }
   });
-  return value;
+  return solution.value;
 }
 
 }  // namespace drogue::options

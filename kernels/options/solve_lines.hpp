@@ -27,8 +27,8 @@ struct LineFunctor {
   View solution;      ///< (groups, nodes, members)
 
   [[nodiscard]] KOKKOS_INLINE_FUNCTION static std::size_t scratch_bytes(int nodes) {
-    const auto count = static_cast<std::size_t>(block_of(nodes) * lanes);
-    return block > 0 ? 0 : sizeof(R) * (rows * count + 6 * lanes) + 64;
+    const auto count = static_cast<std::size_t>(block_of(nodes, most_lanes) * most_lanes);
+    return block > 0 ? 0 : sizeof(R) * (rows * count + 6 * most_lanes) + 64;
   }
 
   KOKKOS_FUNCTION void operator()(const Member& team) const {
@@ -42,7 +42,7 @@ struct LineFunctor {
     } else if constexpr (device::is_host<ExecutionSpace>) {
       in_scratch(SerialWorkers<R>{}, team, f, right.data() + first, solution.data() + first);
     } else {
-      in_scratch(WarpWorkers{static_cast<int>(team.team_rank())}, team, f, right.data() + first,
+      in_scratch(WarpWorkers<>{static_cast<int>(team.team_rank())}, team, f, right.data() + first,
                  solution.data() + first);
     }
   }
@@ -54,29 +54,30 @@ struct LineFunctor {
       y.node[m] = f.inverse * y.node[m];
       floor.node[m] = -unbounded;
     }
-    recur_backward(lane, y, f.from_right);
-    const LaneNodes<block> x = f.from_left >= 0.0
-                                   ? recur_by_maps<RisingMap<double>>(lane, y, floor, f.from_left, f.edge)
-                                   : recur_by_maps<ClampedMap<double>>(lane, y, floor, f.from_left, f.edge);
+    recur_backward<most_lanes>(lane, y, f.from_right);
+    const LaneNodes<block> x =
+        f.from_left >= 0.0
+            ? recur_by_maps<most_lanes, RisingMap<double>>(lane, y, floor, f.from_left, f.edge)
+            : recur_by_maps<most_lanes, ClampedMap<double>>(lane, y, floor, f.from_left, f.edge);
     x.store(lane, to);
   }
 
   template <class Workers>
   KOKKOS_INLINE_FUNCTION void in_scratch(const Workers& workers, const Member& team, const LineFactors<R>& f,
                                          const double* from, double* to) const {
-    const int block_nodes = block_of(nodes), count = block_nodes * lanes, last = nodes;
+    const int block_nodes = block_of(nodes, workers.lanes), count = block_nodes * workers.lanes, last = nodes;
     R* const y = static_cast<R*>(team.team_scratch(1).get_shmem_aligned(scratch_bytes(nodes) - 64, 64));
     R *const x = y + count, *const floor = x + count, *const slot = floor + count;
     workers.each([=](int lane) {
-      for (int i = lane; i < count; i += lanes) {
+      for (int i = lane; i < count; i += workers.lanes) {
         y[i] = i < last ? f.inverse * device::Access<R>::load(from + i * members) : R(0.0);
         floor[i] = -unbounded;
       }
     });
-    recur_backward(workers, y, block_nodes, f.from_right, slot);
+    recur_backward(workers, {y}, block_nodes, f.from_right, slot);
     recur_forward(workers, x, y, floor, block_nodes, last, f.from_left, f.edge, slot);
     workers.each([=](int lane) {
-      for (int i = lane; i < last; i += lanes) device::Access<R>::store(to + i * members, x[i]);
+      for (int i = lane; i < last; i += workers.lanes) device::Access<R>::store(to + i * members, x[i]);
     });
   }
 };
@@ -89,7 +90,8 @@ void solve_lines(const ExecutionSpace& space, int groups, int nodes, const Facto
   static_assert(Kokkos::SpaceAccessibility<ExecutionSpace, typename Solution::memory_space>::accessible);
   const auto launch = [&]<int block>() {
     using Functor = LineFunctor<ExecutionSpace, block>;
-    Kokkos::TeamPolicy<ExecutionSpace> policy(space, groups, device::is_host<ExecutionSpace> ? 1 : lanes);
+    Kokkos::TeamPolicy<ExecutionSpace> policy(space, groups,
+                                              device::is_host<ExecutionSpace> ? 1 : most_lanes);
     policy.set_scratch_size(1, Kokkos::PerTeam(Functor::scratch_bytes(nodes)));
     Kokkos::parallel_for("drogue::options::solve lines", policy, Functor{nodes, factors, right, solution});
   };

@@ -67,6 +67,7 @@ void BatchRun::add(const Row& row, const Chunk& chunk, Desk& desk) {
   if (!row.fault.empty() || _command.action == Action::price) return put(row.contract);
   options::Contract contract = row.contract;
   for (const double maturity : _command.maturities) {
+    if (_owners.size() + _command.strikes.size() > chunk.together) flush(desk);
     for (const double strike : _command.strikes) {
       contract.maturity = maturity;
       contract.strike = strike;

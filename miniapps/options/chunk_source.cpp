@@ -5,7 +5,7 @@
 namespace drogue::options_app {
 namespace {
 
-constexpr std::size_t least_chunk = 16, most_chunk = 65536;
+constexpr std::size_t least_chunk = 16, first_surface_chunk = 4096, most_chunk = 65536;
 constexpr std::size_t least_last_chunk = 1024;  // of those that become smaller
 constexpr double wanted_chunk_time = 0.1;       // s
 
@@ -17,7 +17,10 @@ ChunkSource::ChunkSource(const Command& command, BatchReader& reader, int ranks)
       _ranks(ranks),
       _contracts_a_row(command.action == Action::surface ? command.strikes.size() * command.maturities.size()
                                                          : 1),
-      _contracts(_is_fixed ? command.chunk : least_chunk) {}
+      _least(std::max(least_chunk, command.strikes.size())),
+      _contracts(_is_fixed                  ? command.chunk
+                 : command.settings.surface ? std::max(first_surface_chunk, _least)
+                                            : least_chunk) {}
 
 bool ChunkSource::next(Chunk& chunk) {
   chunk.together = _contracts;
@@ -36,9 +39,10 @@ std::size_t ChunkSource::rows_wanted() const {
 void ChunkSource::learn(std::int64_t rows, double seconds) {
   if (_is_fixed) return;
   if (seconds < 0.5 * wanted_chunk_time) {
-    if (static_cast<std::size_t>(rows) >= _contracts) _contracts = std::min(2 * _contracts, most_chunk);
+    if ((static_cast<std::size_t>(rows) + 1) * _contracts_a_row > _contracts)
+      _contracts = std::min(2 * _contracts, most_chunk);
   } else if (seconds > 2.0 * wanted_chunk_time) {
-    _contracts = std::max(_contracts / 2, least_chunk);
+    _contracts = std::max(_contracts / 2, _least);
   }
 }
 

@@ -28,6 +28,7 @@ class ChunkSource {
   bool _is_fixed;
   int _ranks;
   std::size_t _contracts_a_row;
+  std::size_t _least;      ///< strikes of a maturity share solves if they are in one chunk
   std::size_t _contracts;  ///< of a chunk
 };
 

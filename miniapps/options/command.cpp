@@ -160,6 +160,7 @@ Command parse_command(int argc, const char* const* argv) {
   if (!prices) {
     command.strikes = parse_values("--strikes", words.strikes);
     command.maturities = parse_values("--maturities", words.maturities);
+    command.settings.surface = command.settings.method == options::Method::pide;
   }
   return command;
 }

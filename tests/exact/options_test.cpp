@@ -84,5 +84,31 @@ TEST(OptionsExact, MeshChosenByTolerance) {
   expect_same_prices(settings, of_all_models());
 }
 
+/// Strikes of every contract, near and far.
+std::vector<options::Contract> strikes_of_all_models() {
+  std::vector<options::Contract> contracts;
+  for (options::Contract c : of_all_models())
+    for (const double ratio : {0.3, 0.8, 1.0, 1.1, 2.5}) {
+      c.strike = ratio * c.spot;
+      contracts.push_back(c);
+    }
+  return contracts;
+}
+
+TEST(OptionsExact, SurfaceOnAFixedMesh) {
+  options::Settings settings;
+  settings.mesh = 96;
+  settings.steps = 24;
+  settings.surface = true;
+  expect_same_prices(settings, strikes_of_all_models());
+}
+
+TEST(OptionsExact, SurfaceOnAMeshChosenByTolerance) {
+  options::Settings settings;
+  settings.tolerance = 3e-5;
+  settings.surface = true;
+  expect_same_prices(settings, strikes_of_all_models());
+}
+
 }  // namespace
 }  // namespace drogue

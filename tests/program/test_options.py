@@ -169,6 +169,30 @@ class Prices(options_program.OptionsTest):
         self.price(0, batch([row("one", strike=1.2)]), *FAST)
         self.assertEqual(self.prices()[0]["price"], told[9]["price"])
 
+    def test_surface_by_finite_differences(self):
+        """Strikes share solves, and are within the errors of contracts that do not."""
+        header = ",".join(name for name in HEADER.split(",") if name not in ("strike", "maturity"))
+        sets = self.write(f"{header}\nset,american,put,1.0,0.1,0,1,8.15,-2.5,0.767,0.4\n", "sets.csv")
+        words = ("--maturities", "0.25,1", "--mesh", "128", "--steps", "32", "--greeks", "--backend", "serial", "--quiet")
+        told = {}
+        for name, strikes in (("all", "0.5:2:7"), ("one", "1.25"), ("pieces", "0.5:2:7")):
+            chunk = ("--chunk", "3") if name == "pieces" else ()
+            self.expect(0, "surface", sets, "--strikes", strikes, *words, *chunk, "--out", f"{name}.csv", "--result", "r.json")
+            with (self.folder / f"{name}.csv").open(encoding="utf-8", newline="") as file:
+                told[name] = list(csv.DictReader(file))
+        self.assertEqual({"rows": 14, "ok": 14, "coarse": 0, "invalid": 0, "failed": 0},
+                         json.loads((self.folder / "r.json").read_text())["counts"])
+        self.assertEqual(told["all"], told["pieces"])
+        self.assertEqual(told["one"], [told["all"][3], told["all"][10]])
+        contracts = [row(k, style="american", strike=point["strike"], maturity=point["maturity"]) for k, point in enumerate(told["all"])]
+        self.price(0, batch(contracts), "--mesh", "128", "--steps", "32", "--greeks")
+        for point, own in zip(told["all"], self.prices(), strict=True):
+            room = float(point["error"]) + float(own["error"])
+            self.assertAlmostEqual(float(point["price"]), float(own["price"]), delta=room, msg=point["strike"])
+            self.assertAlmostEqual(float(point["delta"]), float(own["delta"]), delta=5e-3, msg=point["strike"])
+        boundary = [float(point["exercise_boundary"]) / float(point["strike"]) for point in told["all"][:7]]
+        self.assertLess(max(boundary) - min(boundary), 1e-12)
+
     def test_result(self):
         content = batch([row("a"), row("b", beta=9), row("c", style="american")])
         message = self.price(3, content, "--result", "r.json").stderr.strip()

@@ -40,6 +40,10 @@ TEST(OptionsCommand, ReadsSurfaces) {
   EXPECT_EQ(command.action, Action::surface);
   EXPECT_EQ(command.strikes, (std::vector<double>{1.0, 1.5, 2.0}));
   EXPECT_EQ(command.maturities, (std::vector<double>{0.5, 1.0}));
+  EXPECT_TRUE(command.settings.surface);
+  EXPECT_FALSE(parse_words({"surface", "p.csv", "--strikes", "1", "--maturities", "1", "--method", "cos"})
+                   .settings.surface);
+  EXPECT_FALSE(parse_words({"price", "b.csv"}).settings.surface);
 }
 
 TEST(OptionsCommand, ReadsRanges) {

@@ -1,0 +1,221 @@
+#pragma once
+
+#include "kernels/options/price_batch.hpp"
+
+/// Prices of all strikes of one law and maturity, a smile, from one solve: V(c spot, c strike) = c V, so a
+/// solve for the strike 1 has them at x = ln(spot/strike).
+namespace drogue::options {
+
+/// What a solve of a smile leaves beside the values of its nodes.
+struct Smile {
+  Nodes fine, coarse;
+  double window;  ///< about a strike in which the largest difference of both solves tells of its error
+};
+
+/// The values of a smile's nodes: V and dV/dtau on the fine grid and on the coarse one, one after another.
+struct SmileNodes {
+  double* first;
+  int mesh;  ///< of the fine grid
+
+  [[nodiscard]] KOKKOS_INLINE_FUNCTION static std::size_t size(int mesh) {
+    return static_cast<std::size_t>(2 * (mesh + 1) + 2 * (mesh / 2 + 1));
+  }
+  [[nodiscard]] KOKKOS_INLINE_FUNCTION double* fine() const { return first; }
+  [[nodiscard]] KOKKOS_INLINE_FUNCTION double* coarse() const { return first + 2 * (mesh + 1); }
+};
+
+/// Smiles of one model, solved on one mesh in one launch by a team for each, or on hosts for each pack of
+/// them: smile k is that of contract k of the batch, whose strike does not matter. For `fixed` see
+/// `march_nodes`.
+template <class ExecutionSpace, int fixed>
+struct SmileFunctor {
+  using Batch = PriceBatch<ExecutionSpace>;
+  using R = typename Batch::R;
+  using Space = typename Batch::Space;
+  using Scratch = Memory<R, fixed>;
+  static constexpr int members = Batch::members;
+
+  Batch batch;                                 ///< without prices
+  Kokkos::View<const double*, Space> reaches;  ///< (smiles)
+  Kokkos::View<Smile*, Space> smiles;          ///< (smiles)
+  Kokkos::View<double*, Space> values;         ///< (smiles, SmileNodes::size)
+
+  KOKKOS_FUNCTION void operator()(const typename Batch::Member& team) const {
+    batch.template price_group<fixed>(*this, team);
+  }
+
+  template <class Workers>
+  KOKKOS_INLINE_FUNCTION void price(const Workers& workers, const Scratch& memory, int group) const {
+    const int mesh = fixed > 0 ? fixed : batch.mesh;
+    workers.each([=, this](int lane) {
+      for (int k = lane; k < members; k += workers.lanes) {
+        const int at = batch.place(group, k);
+        memory.puts[k] = put_of(batch.contracts(at));
+        memory.puts[k].log_spot = reaches(at);
+      }
+    });
+    PutPack<R> put = pack_of<R>(memory.puts);
+    put.any_split = !workers.all(!put.any_split);
+    const Law<R> law =
+        law_of(workers, put, memory.puts, batch.panels.data(), batch.panel_slot.data(), memory.law_memory());
+    const R deviation = device::square_root((put.variance + law.variance) * put.maturity);
+    const R above = domain_of(workers, put, law, cut_error(mesh), memory.slot).above;
+    put.log_spot = -put.log_spot;
+    const R below = domain_of(workers, put, law, cut_error(mesh), memory.slot).below;
+    const Grid<R> grid = grid_of(Domain<R>{below, above}, mesh);
+    const Tails<R> tails = tails_of(workers, put, law, grid.h * double(mesh));
+    keep<fixed, false>(workers, memory, group, grid, deviation,
+                       march_nodes<fixed>(workers, put, law, tails, grid, batch.steps, memory,
+                                          {memory.w, nullptr, batch.roots}, Record{}));
+    const Grid<R> half{mesh / 2, 2.0 * grid.h, 0.5 * grid.strike};
+    keep<fixed / 2, true>(
+        workers, memory, group, half, deviation,
+        march_nodes<fixed / 2>(workers, put, law, tails, half, batch.steps / 2, memory,
+                               {memory.coarse_weights(mesh), memory.w, batch.roots}, Record{}));
+  }
+
+ private:
+  /// Copies what a solve has left to the smiles of the pack's members.
+  template <int solved, bool coarse, class Workers>
+  KOKKOS_INLINE_FUNCTION void keep(const Workers& workers, const Scratch& memory, int group,
+                                   const Grid<R>& grid, const R& deviation,
+                                   const Solution<R>& solution) const {
+    const int mesh = grid.mesh;
+    workers.each([=, this](int lane) {
+      for (int k = 0; k < members; ++k) {
+        if (group * members + k >= batch.count) continue;
+        const int at = batch.place(group, k);
+        const SmileNodes nodes = nodes_at(at);
+        double* const to = coarse ? nodes.coarse() : nodes.fine();
+        for (int i = lane; i <= mesh; i += workers.lanes) {  // the last node is the upper end
+          to[i] = i < mesh ? device::Access<R>::lane(solution.value[i], k) : 0.0;
+          to[mesh + 1 + i] = i < mesh ? device::Access<R>::lane(solution.change[i], k) : 0.0;
+        }
+        if (lane != 0) continue;
+        const Nodes found = nodes_of<solved>(solution, memory.puts[k], grid, k);
+        if constexpr (coarse) {
+          const double width = device::Access<R>::lane(deviation, k);
+          smiles(at).coarse = found;
+          smiles(at).window = device::maximum(found.h, width);
+        } else {
+          smiles(at).fine = found;
+        }
+      }
+    });
+  }
+
+  [[nodiscard]] KOKKOS_INLINE_FUNCTION SmileNodes nodes_at(int smile) const {
+    const int mesh = fixed > 0 ? fixed : batch.mesh;
+    return {values.data() + static_cast<std::size_t>(smile) * SmileNodes::size(mesh), mesh};
+  }
+};
+
+/// Enqueues the solves of smiles of one model.
+template <class ExecutionSpace>
+void solve_smiles(const ExecutionSpace& space, const SmileFunctor<ExecutionSpace, 0>& work) {
+  static_assert(
+      Kokkos::SpaceAccessibility<ExecutionSpace, typename decltype(work.values)::memory_space>::accessible);
+  const auto launch = [&]<int fixed>(const char* label) {
+    launch_batch<fixed, ExecutionSpace>(
+        space, label,
+        SmileFunctor<ExecutionSpace, fixed>{work.batch, work.reaches, work.smiles, work.values});
+  };
+  if constexpr (!device::is_host<ExecutionSpace>) {
+    constexpr const char* in_registers = "drogue::options::solve smiles in registers";
+    if (work.batch.mesh == 128) return launch.template operator()<128>(in_registers);
+    if (work.batch.mesh == 256) return launch.template operator()<256>(in_registers);
+  }
+  launch.template operator()<0>("drogue::options::solve smiles");
+}
+
+/// A price that is read from a smile.
+struct Reading {
+  int smile;
+  double spot, strike;
+};
+
+/// How much cubic interpolation at x may miss: the next term of Newton's form, from a fifth node on the same
+/// side of the strike and of the boundary as the four of `stencil_of`; 0 where there is none, and where the
+/// value is not interpolated.
+KOKKOS_INLINE_FUNCTION double interpolation_gap(const Put& put, const Column& value, const Nodes& nodes,
+                                                double boundary) {
+  const double x = put.log_spot, t = x / nodes.h + nodes.strike;
+  const bool bounded = !put.split && boundary == boundary;
+  if (!(t > 0.0 && t < nodes.mesh) || (bounded && x <= boundary)) return 0.0;
+  const int first = stencil_of(put, nodes, t, boundary), strike = nodes.strike;
+  const bool crosses_above = first + 4 > nodes.mesh || (first < strike && first + 4 > strike);
+  const bool crosses_below =
+      first == 0 || first == strike || (bounded && (first - 1 - strike) * nodes.h < boundary);
+  if (crosses_above && crosses_below) return 0.0;
+  const int from = crosses_above ? first - 1 : first;
+  const double fourth =
+      value(from) - 4.0 * value(from + 1) + 6.0 * value(from + 2) - 4.0 * value(from + 3) + value(from + 4);
+  const double u = t - first;
+  return device::absolute(fourth * u * (u - 1.0) * (u - 2.0) * (u - 3.0)) * (1.0 / 24);
+}
+
+/// Reads prices of strikes from solved smiles, a thread for each.
+template <class ExecutionSpace>
+struct ReadSmiles {
+  using Space = typename ExecutionSpace::memory_space;
+
+  Kokkos::View<const Contract*, Space> contracts;  ///< (smiles)
+  Kokkos::View<const Smile*, Space> smiles;        ///< (smiles)
+  Kokkos::View<double*, Space> values;             ///< (smiles, SmileNodes::size)
+  Kokkos::View<const Reading*, Space> readings;    ///< (readings)
+  Kokkos::View<Price*, Space> prices;              ///< (readings)
+  int mesh, steps;
+  double tolerance;
+
+  KOKKOS_FUNCTION void operator()(int k) const {
+    const Reading& reading = readings(k);
+    Contract contract = contracts(reading.smile);
+    contract.spot = reading.spot;
+    contract.strike = reading.strike;
+    const Put put = put_of(contract);
+    const Smile& smile = smiles(reading.smile);
+    const SmileNodes nodes{values.data() + static_cast<std::size_t>(reading.smile) * SmileNodes::size(mesh),
+                           mesh};
+    const Column fine{nodes.fine(), 1}, coarse{nodes.coarse(), 1};
+    const Answer answer = answer_of(put, fine, {nodes.fine() + mesh + 1, 1}, smile.fine);
+    const Answer rough = answer_of(put, coarse, {nodes.coarse() + mesh / 2 + 1, 1}, smile.coarse);
+    // What interpolation may miss counts as a difference of the solves; the extrapolation has 4/3 of that of
+    // the fine grid and a third of that of the coarse one.
+    const double gap = (4.0 * interpolation_gap(put, fine, smile.fine, answer.boundary) +
+                        interpolation_gap(put, coarse, smile.coarse, rough.boundary)) *
+                       (1.0 / 3);
+    const double change = largest_change(put, fine, coarse, smile) + gap / error_factor(mesh);
+    prices(k) = price_of(contract, put, answer, rough, change, mesh, steps, tolerance);
+  }
+
+ private:
+  /// The largest difference of both solves at their common nodes near x, as for a price of its own.
+  [[nodiscard]] KOKKOS_INLINE_FUNCTION double largest_change(const Put& put, const Column& fine,
+                                                             const Column& coarse, const Smile& smile) const {
+    const double h = smile.coarse.h, place = put.log_spot / h + smile.coarse.strike, wide = smile.window / h;
+    const double last = mesh / 2 - 1.0;
+    if (!(wide < 1e9)) return device::portable::not_a_number();
+    const int begin =
+                  static_cast<int>(device::maximum(0.0, device::minimum(last, Kokkos::ceil(place - wide)))),
+              end =
+                  static_cast<int>(device::maximum(0.0, device::minimum(last, Kokkos::floor(place + wide))));
+    double largest = 0.0;
+    for (int i = begin; i <= end; ++i) {
+      const double one = device::absolute(fine(2 * i) - coarse(i));
+      largest = one > largest || one != one ? one : largest;
+    }
+    return largest;
+  }
+};
+
+/// Enqueues the readings.
+template <class ExecutionSpace>
+void read_smiles(const ExecutionSpace& space, const ReadSmiles<ExecutionSpace>& work, int count) {
+  static_assert(
+      Kokkos::SpaceAccessibility<ExecutionSpace, typename decltype(work.prices)::memory_space>::accessible);
+  if (count == 0) return;
+  Kokkos::parallel_for("drogue::options::read smiles", Kokkos::RangePolicy<ExecutionSpace>(space, 0, count),
+                       work);
+}
+
+}  // namespace drogue::options

@@ -1,0 +1,237 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <stdexcept>
+
+#include "kernels/options/pricer.hpp"
+#include "tests/support/option_sets.hpp"
+
+// Strikes that share a solve, against known prices and against those of solves of their own.
+
+namespace drogue::options {
+namespace {
+
+constexpr auto backend = device::Backend::DROGUE_TEST_BACKEND;
+
+Settings surface_on(int mesh) {
+  Settings settings;
+  settings.mesh = mesh;
+  settings.steps = mesh / 4;
+  settings.surface = true;
+  return settings;
+}
+
+std::vector<Price> prices_of(const Settings& settings, const std::vector<Contract>& contracts) {
+  std::vector<Price> prices(contracts.size());
+  create_pricer(backend, settings)->price(contracts, prices);
+  return prices;
+}
+
+/// Of every set, the spots it is known at as strikes of the spot 1: V(c spot, c strike) = c V.
+struct KnownStrikes {
+  std::vector<Contract> contracts;
+  std::vector<double> values;  ///< of the strike
+};
+
+KnownStrikes known_strikes() {
+  KnownStrikes known;
+  for (const testing::OptionSet& set : testing::option_sets())
+    for (const Style style : {Style::american, Style::european})
+      for (std::size_t k = 0; k < set.spot.size(); ++k) {
+        known.contracts.push_back(testing::contract_of(set, k, style));
+        known.contracts.back().spot = 1.0;
+        known.contracts.back().strike = 1.0 / set.spot[k];
+        known.values.push_back(style == Style::american ? set.american[k] : set.european[k]);
+      }
+  return known;
+}
+
+/// `count` sets of all kinds, some of days and of years, some of negative rates, with strikes from a half to
+/// twice the spot.
+constexpr int strikes = 13;
+std::vector<Contract> random_strikes(std::size_t count, std::uint64_t seed) {
+  std::vector<Contract> contracts;
+  const std::vector<Contract> sets = testing::random_contracts(count, seed);
+  for (std::size_t k = 0; k < sets.size(); ++k) {
+    Contract c = sets[k];
+    if (k % 7 == 3) c.maturity = 5.0 / 365;
+    if (k % 7 == 5) c.maturity = 8.0;
+    if (k % 9 == 4) {
+      c.rate = -0.02;
+      c.dividend = k % 2 == 0 ? 0.01 : -0.05;
+    }
+    c.spot = 100.0;
+    for (int i = 0; i < strikes; ++i) {
+      c.strike = c.spot * std::exp2(2.0 * i / (strikes - 1) - 1.0);
+      contracts.push_back(c);
+    }
+  }
+  return contracts;
+}
+
+TEST(OptionsSurface, KnownPrices) {
+  const KnownStrikes known = known_strikes();
+  const std::vector<Price> prices = prices_of(surface_on(128), known.contracts);
+  std::size_t covered = 0;
+  double worst = 0.0;
+  for (std::size_t k = 0; k < prices.size(); ++k) {
+    const double error = std::abs(prices[k].price / known.contracts[k].strike - known.values[k]);
+    if (error <= prices[k].error / known.contracts[k].strike + 1e-7) ++covered;
+    worst = std::max(worst, error);
+  }
+  std::printf("largest error %.1e, %zu of %zu covered\n", worst, covered, prices.size());
+  EXPECT_LT(worst, 9e-5);
+  EXPECT_GE(10 * covered, 9 * prices.size());
+}
+
+// Stated errors cover in nine cases of ten, and so tolerances are kept.
+TEST(OptionsSurface, ToleranceIsKept) {
+  const KnownStrikes known = known_strikes();
+  Settings settings;
+  settings.tolerance = 1e-5;
+  settings.surface = true;
+  const std::vector<Price> prices = prices_of(settings, known.contracts);
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < prices.size(); ++k) {
+    EXPECT_EQ(prices[k].outcome, Outcome::ok) << k;
+    const double error = std::abs(prices[k].price / known.contracts[k].strike - known.values[k]);
+    EXPECT_LT(error, 2e-5) << k;
+    if (error <= settings.tolerance) ++kept;
+  }
+  EXPECT_GE(10 * kept, 9 * prices.size());
+}
+
+// A grid of its own for each strike, which has the spot elsewhere, and one for all.
+TEST(OptionsSurface, AgreesWithContractsOnTheirOwn) {
+  const std::vector<Contract> contracts = random_strikes(40, 12);
+  Settings alone = surface_on(256);
+  alone.surface = false;
+  const std::vector<Price> shared = prices_of(surface_on(256), contracts), own = prices_of(alone, contracts);
+  std::size_t apart = 0;
+  for (std::size_t k = 0; k < contracts.size(); ++k) {
+    const Contract& c = contracts[k];
+    const double room = shared[k].error + own[k].error;
+    if (std::abs(shared[k].price - own[k].price) > room) ++apart;
+    EXPECT_NEAR(shared[k].price, own[k].price, 3.0 * room) << k;
+    // Next to the boundary gamma jumps, and Greeks of both are rough.
+    const double payoff = c.type == Type::put ? c.strike - c.spot : c.spot - c.strike;
+    if (own[k].price - payoff > 0.01 * c.strike) {
+      EXPECT_NEAR(shared[k].delta, own[k].delta, 2e-3 * c.strike / c.spot) << k;
+      EXPECT_NEAR(shared[k].gamma, own[k].gamma, 0.02 * own[k].gamma + 1e-3 * c.strike / (c.spot * c.spot))
+          << k;
+      EXPECT_NEAR(shared[k].theta, own[k].theta, 0.02 * std::abs(own[k].theta) + 1e-3 * c.strike) << k;
+    }
+    if (!std::isnan(own[k].exercise_boundary)) {
+      EXPECT_FALSE(std::isnan(shared[k].exercise_boundary)) << k;
+    }
+  }
+  EXPECT_LE(100 * apart, contracts.size());
+}
+
+// The prices of a finer grid, which the test above ties to those of contracts, stand for the true ones.
+TEST(OptionsSurface, StatedErrorsCoverAndDoNotExaggerate) {
+  const std::vector<Contract> contracts = random_strikes(60, 5);
+  const std::vector<Price> known = prices_of(surface_on(512), contracts);
+  for (const int mesh : {128, 256}) {
+    const std::vector<Price> prices = prices_of(surface_on(mesh), contracts);
+    std::vector<double> ratio;
+    for (std::size_t k = 0; k < prices.size(); ++k)
+      ratio.push_back(prices[k].error /
+                      (std::abs(prices[k].price - known[k].price) + 1e-7 * contracts[k].strike));
+    std::sort(ratio.begin(), ratio.end());
+    std::printf("mesh %d: stated over true error %.2g, %.2g, %.2g at 10, 50, 90 %% of the prices\n", mesh,
+                ratio[ratio.size() / 10], ratio[ratio.size() / 2], ratio[ratio.size() * 9 / 10]);
+    EXPECT_GE(ratio[ratio.size() / 10], 1.0) << mesh;
+    EXPECT_LE(ratio[ratio.size() / 2], 10.0) << mesh;
+  }
+}
+
+TEST(OptionsSurface, MonotoneAndConvexInTheStrike) {
+  const std::vector<Contract> contracts = random_strikes(40, 3);
+  const std::vector<Price> prices = prices_of(surface_on(128), contracts);
+  const auto slope = [&](std::size_t k) {
+    return (prices[k + 1].price - prices[k].price) / (contracts[k + 1].strike - contracts[k].strike);
+  };
+  const auto room = [&](std::size_t k) {
+    return (prices[k + 1].error + prices[k].error) / (contracts[k + 1].strike - contracts[k].strike);
+  };
+  for (std::size_t k = 0; k + 1 < contracts.size(); ++k) {
+    if (k % strikes + 1 == strikes) continue;
+    const double sign = contracts[k].type == Type::put ? 1.0 : -1.0;
+    EXPECT_GE(sign * slope(k), -room(k)) << k;
+    EXPECT_LE(sign * slope(k), 1.0 + room(k)) << k;
+    if (k % strikes + 2 == strikes) continue;
+    EXPECT_GE(slope(k + 1) - slope(k), -room(k + 1) - room(k)) << k;
+  }
+}
+
+TEST(OptionsSurface, OtherStrikesChangeNoBit) {
+  const std::vector<Contract> contracts = random_strikes(12, 8);
+  Settings settings;
+  settings.tolerance = 3e-5;
+  settings.surface = true;
+  for (const Settings& used : {settings, surface_on(128)}) {
+    const std::vector<Price> together = prices_of(used, contracts);
+    std::vector<Contract> some;
+    std::vector<std::size_t> place;
+    for (std::size_t k = contracts.size(); k-- > 0;)
+      if (k % 5 == 2) {
+        some.push_back(contracts[k]);
+        place.push_back(k);
+      }
+    const std::vector<Price> fewer = prices_of(used, some);
+    for (std::size_t k = 0; k < some.size(); ++k)
+      for (const auto member : {&Price::price, &Price::error, &Price::delta, &Price::gamma, &Price::theta})
+        EXPECT_EQ(std::memcmp(&(fewer[k].*member), &(together[place[k]].*member), sizeof(double)), 0)
+            << place[k];
+  }
+}
+
+// Beyond the grid a value is known: what exercise or expiry is certain to bring, or 0.
+TEST(OptionsSurface, StrikesFarAway) {
+  std::vector<Contract> contracts;
+  for (const Style style : {Style::american, Style::european})
+    for (const Type type : {Type::put, Type::call})
+      for (const double strike : {1e-9, 1e-3, 1e3, 1e9}) {
+        Contract c = testing::contract_of(testing::option_sets()[2], 3, style);
+        c.dividend = 0.03;
+        c.type = type;
+        c.strike = strike;
+        contracts.push_back(c);
+      }
+  const std::vector<Price> prices = prices_of(surface_on(128), contracts);
+  for (std::size_t k = 0; k < contracts.size(); ++k) {
+    const Contract& c = contracts[k];
+    const bool early = c.style == Style::american;
+    const double asset = early ? c.spot : c.spot * std::exp(-c.dividend * c.maturity);
+    const double cash = early ? c.strike : c.strike * std::exp(-c.rate * c.maturity);
+    const double certain = std::max(0.0, c.type == Type::put ? cash - asset : asset - cash);
+    EXPECT_NEAR(prices[k].price, certain, prices[k].error + 1e-12 * certain) << k;
+    EXPECT_LT(prices[k].error, 1e-4 * std::max(c.strike, c.spot)) << k;
+  }
+}
+
+TEST(OptionsSurface, IsOneOfFiniteDifferences) {
+  Settings settings = surface_on(128);
+  for (const Method method : {Method::cos, Method::seed}) {
+    settings.method = method;
+    EXPECT_THROW(static_cast<void>(create_pricer(backend, settings)), std::invalid_argument);
+  }
+}
+
+TEST(OptionsSurface, BoundaryIsThatOfTheContract) {
+  const Contract contract = testing::contract_of(testing::option_sets()[0], 3, Style::american);
+  Settings alone = surface_on(128);
+  alone.surface = false;
+  const auto shared = create_pricer(backend, surface_on(128))->boundary(contract),
+             own = create_pricer(backend, alone)->boundary(contract);
+  ASSERT_EQ(shared.size(), own.size());
+  ASSERT_FALSE(own.empty());
+  EXPECT_EQ(shared.front().spot, own.front().spot);
+}
+
+}  // namespace
+}  // namespace drogue::options
