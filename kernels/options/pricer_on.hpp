@@ -40,8 +40,8 @@ class PricerOn final : public Pricer {
     if (contracts.empty()) return timing;
     const Clock setting_up;
     reserve(contracts.size());
-    _panels.fetch(_instance.space(), contracts);
     copy_in(_contracts, staged(contracts), contracts.size());
+    _panels.fetch(_instance.space(), contracts);
     _instance.space().fence("drogue::options: contracts are copied");
     timing.h2d = setting_up.seconds();
     if (_settings.mesh == 0 && _settings.method == Method::pide) {
@@ -179,6 +179,7 @@ class PricerOn final : public Pricer {
   template <class Asked>
   void launch_models(std::span<const Contract> contracts, const Effort& effort, const Asked& asked) {
     std::vector<int> rows[models];
+    rows[static_cast<std::size_t>(contracts.front().model)].reserve(contracts.size());
     for (std::size_t k = 0; k < contracts.size(); ++k)
       if (asked(k)) rows[static_cast<std::size_t>(contracts[k].model)].push_back(static_cast<int>(k));
     for (std::vector<int>& of_model : rows) launch(std::move(of_model), effort, Record{});
