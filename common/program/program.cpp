@@ -1,10 +1,12 @@
 #include "common/program/program.hpp"
 
 #include <CLI/Error.hpp>
+#include <chrono>
 #include <cstdio>
 #include <exception>
 #include <new>
 #include <string>
+#include <thread>
 
 #include "common/program/mpi_guard.hpp"
 
@@ -46,6 +48,9 @@ int run_program(const std::string& program, const std::function<ExitCode()>& bod
     if (launched_rank().rank == 0) {
       const bool located = code == ExitCode::invalid_scene;
       std::fprintf(stderr, "%s%s%s\n", located ? "" : program.c_str(), located ? "" : ": ", failure.what());
+    } else {
+      // A launcher ends all ranks as soon as one has failed: the first must have told why by then.
+      std::this_thread::sleep_for(std::chrono::seconds(1));
     }
   }
   // Output that never arrived, say of --print-scene into a full disk, must not look like success.
