@@ -76,7 +76,7 @@ Price american_price(const Contract& c, const AmericanPut& put, const BermudanVa
     error += std::abs(values[AmericanPut::levels].value - values[AmericanPut::levels - 1].value);
   error += put.folded;
   const double payoff = std::max(-std::expm1(put.x), 0.0);
-  const bool exercised = payoff >= value.best;
+  const bool exercised = payoff > 0.0 && payoff >= value.best;
 
   // The put's strike is the unit: the strike of a put, the spot of a call.
   const bool is_put = c.type == Type::put;

@@ -10,9 +10,10 @@ namespace drogue::options {
 /// order |lambda|, on the grid z = e^(q step) that all contracts share, and the sum of its values below a
 /// node. Both are logarithms, and Chebyshev series in the order on panels of orders.
 struct HankelGrid {
-  static constexpr double step = 0.4;  ///< of ln z: the sum over nodes is as good as the integral to 1e-7
-  static constexpr int first = -100;   ///< z = 4e-18
-  static constexpr int count = 131;    ///< to z = 1.6e5, beyond which Hankel's expansion holds
+  static constexpr double step =
+      0.4;  ///< of ln z: to order 4 the sum over nodes is as good as the integral to 1e-6
+  static constexpr int first = -100;  ///< z = 4e-18
+  static constexpr int count = 131;   ///< to z = 1.6e5, beyond which Hankel's expansion holds
   static constexpr int terms = 14;
   static constexpr int panel_size = 2 * count * terms;
   static constexpr double largest_order = 128.0;

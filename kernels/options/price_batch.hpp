@@ -131,11 +131,11 @@ struct PriceBatch {
     const Domain<R> domain = domain_of(workers, put, law, cut_error(cells), memory.slot);
     Grid<R> grid = grid_of(domain, cells);
     const Tails<R> tails = tails_of(workers, put, law, grid.h * double(cells));
-    const R* fine = solve<fixed>(workers, put, law, tails, grid, steps, memory, {memory.w, nullptr, roots},
-                                 record, memory.answers);
+    const Solution<R> fine = solve<fixed>(workers, put, law, tails, grid, steps, memory,
+                                          {memory.w, nullptr, roots}, record, memory.answers);
     R* const kept = memory.kept(cells);
     workers.each([=, this](int lane) {
-      for (int i = lane; i < cells / 2; i += workers.lanes) kept[i] = fine[2 * i];
+      for (int i = lane; i < cells / 2; i += workers.lanes) kept[i] = fine.value[2 * i];
     });
     grid = {cells / 2, 2.0 * grid.h, 0.5 * grid.strike};
     const R* coarse = kept;
@@ -143,7 +143,8 @@ struct PriceBatch {
     if (!one_grid) {
       coarse_answers += members;
       coarse = solve<fixed / 2>(workers, put, law, tails, grid, steps / 2, memory,
-                                {memory.coarse_weights(cells), memory.w, roots}, Record{}, coarse_answers);
+                                {memory.coarse_weights(cells), memory.w, roots}, Record{}, coarse_answers)
+                   .value;
     }
     const R deviation = device::square_root((put.variance + law.variance) * put.maturity);
     const R window = device::maximum(grid.h, 1.0 * deviation);
@@ -155,7 +156,8 @@ struct PriceBatch {
       }
       return largest;
     };
-    const R change = workers.reduce(largest_change, [](const R& a, const R& b) { return larger(a, b); })[0];
+    const R largest = workers.reduce(largest_change, [](const R& a, const R& b) { return larger(a, b); })[0];
+    const R change = fine.doubt.factor * largest + fine.doubt.gap * (1.0 / error_factor(cells));
     workers.each([=, this](int lane) {
       for (int k = lane; k < members; k += workers.lanes) {
         if (group * members + k >= count) continue;

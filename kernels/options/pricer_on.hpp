@@ -58,17 +58,8 @@ class PricerOn final : public Pricer {
 
   std::pmr::memory_resource& memory() override { return _pinned; }
 
-  std::vector<BoundaryPoint> boundary(const Contract& contract) override {
-    const Recorded all = record(contract);
-    std::vector<BoundaryPoint> points;
-    for (std::size_t k = all.time.size(); k-- > 0;)
-      if (std::isfinite(all.boundary[k]))
-        points.push_back({contract.maturity - all.time[k], spot_at(contract, all.boundary[k])});
-    return points;
-  }
-
   std::vector<ProfilePoint> profile(const Contract& contract) override {
-    const Recorded all = record(contract);
+    const Recorded all = record(contract, recorded_effort());
     std::vector<ProfilePoint> points;
     for (std::size_t k = 0; k < all.x.size(); ++k) {
       const double spot = spot_at(contract, all.x[k]);
@@ -79,6 +70,15 @@ class PricerOn final : public Pricer {
   }
 
  private:
+  std::vector<BoundaryPoint> boundary_on(const Contract& contract, int mesh, int steps) override {
+    const Recorded all = record(contract, mesh != 0 ? Effort{mesh, steps} : recorded_effort());
+    std::vector<BoundaryPoint> points;
+    for (std::size_t k = all.time.size(); k-- > 0;)
+      if (std::isfinite(all.boundary[k]))
+        points.push_back({contract.maturity - all.time[k], spot_at(contract, all.boundary[k])});
+    return points;
+  }
+
   void price_to_tolerance(std::span<const Contract> contracts, std::span<Price> prices, Timing& timing) {
     const Effort first{first_mesh, steps_of(first_mesh)};
     std::vector<Refinement> rows(contracts.size(), Refinement{first});
@@ -105,14 +105,13 @@ class PricerOn final : public Pricer {
   }
 
   /// Solves one contract and brings what a solve leaves to the host.
-  Recorded record(const Contract& contract) {
+  Recorded record(const Contract& contract, const Effort& effort) {
     const std::span<const Contract> one(&contract, 1);
     reserve(1);
     _panels.fetch(_instance.space(), one);
     copy_in(_contracts, &contract, 1);
-    const int mesh = _settings.mesh != 0 ? _settings.mesh : record_mesh;
-    const Effort effort{mesh, steps_of(mesh)};
-    const auto steps = static_cast<std::size_t>(effort.steps), nodes = static_cast<std::size_t>(mesh) + 1;
+    const auto steps = static_cast<std::size_t>(effort.steps),
+               nodes = static_cast<std::size_t>(effort.mesh) + 1;
     const View<double> all("drogue::options::record", 2 * (steps + nodes));
     double* const at = all.data();
     launch({0}, effort, {at, at + steps, at + 2 * steps, at + 2 * steps + nodes});
@@ -130,6 +129,11 @@ class PricerOn final : public Pricer {
     recorded.x = part(nodes);
     recorded.value = part(nodes);
     return recorded;
+  }
+
+  [[nodiscard]] Effort recorded_effort() const {
+    const int mesh = _settings.mesh != 0 ? _settings.mesh : record_mesh;
+    return {mesh, steps_of(mesh)};
   }
 
   [[nodiscard]] int steps_of(int mesh) const {

@@ -39,9 +39,10 @@ struct Refinement {
 }
 
 /// Goes on from a price. The error falls by at least 4 where mesh and steps double. Where it does not fall,
-/// more steps are tried first: jumps of long maturities are stiff. `tolerance`: money.
+/// more steps are tried first: jumps of long maturities are stiff. Where that does not help on a fine mesh
+/// either, nothing will. `tolerance`: money.
 inline void refine(Refinement& row, const Price& price, double tolerance, const Settings& settings) {
-  constexpr int last_mesh = 2048, most_often = 4;
+  constexpr int last_mesh = 2048, most_often = 4, hopeless_mesh = 512;
   const int mesh = row.next.mesh;
   row.next = {};
   if (price.outcome == Outcome::ok) return;
@@ -50,6 +51,8 @@ inline void refine(Refinement& row, const Price& price, double tolerance, const 
   int next = mesh;
   if (stuck && row.often < most_often && settings.steps == 0) {
     row.often *= 4;
+  } else if (stuck && mesh >= hopeless_mesh && price.outcome == Outcome::coarse) {
+    return;
   } else {
     next *= 2;
     if (price.outcome == Outcome::coarse)

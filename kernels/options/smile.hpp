@@ -9,6 +9,7 @@ namespace drogue::options {
 /// What a solve of a smile leaves beside the values of its nodes.
 struct Smile {
   Nodes fine, coarse;
+  Doubt<double> doubt;
   double window;  ///< about a strike in which the largest difference of both solves tells of its error
 };
 
@@ -99,6 +100,8 @@ struct SmileFunctor {
           smiles(at).window = device::maximum(found.h, width);
         } else {
           smiles(at).fine = found;
+          smiles(at).doubt = {device::Access<R>::lane(solution.doubt.factor, k),
+                              device::Access<R>::lane(solution.doubt.gap, k)};
         }
       }
     });
@@ -184,7 +187,8 @@ struct ReadSmiles {
     const double gap = (4.0 * interpolation_gap(put, fine, smile.fine, answer.boundary) +
                         interpolation_gap(put, coarse, smile.coarse, rough.boundary)) *
                        (1.0 / 3);
-    const double change = largest_change(put, fine, coarse, smile) + gap / error_factor(mesh);
+    const double change = smile.doubt.factor * largest_change(put, fine, coarse, smile) +
+                          (gap + smile.doubt.gap) / error_factor(mesh);
     prices(k) = price_of(contract, put, answer, rough, change, mesh, steps, tolerance);
   }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "kernels/options/answer.hpp"
+#include "kernels/options/doubt.hpp"
 #include "kernels/options/register_march.hpp"
 
 namespace drogue::options {
@@ -165,6 +166,7 @@ struct Solution {
   const R *value, *change;  ///< V and dV/dtau at maturity
   Certain<R> certain;       ///< below node 0
   int exercised;            ///< last node below the strike that is, where lanes marched in registers
+  Doubt<R> doubt;
 };
 
 template <class R>
@@ -203,6 +205,7 @@ KOKKOS_INLINE_FUNCTION Solution<R> march_nodes(const Workers& workers, const Put
   // over nodes amount to, lacks there.
   const R spread = 2.0 * jumps.diffusion * put.maturity;
   const R kink = h * (1.0 / 12) * spread / (spread + h * h);
+  const Doubt<R> doubt = doubt_of(put, law, h, spread);
   const Scheme<R> scheme = scheme_of(put, jumps, grid, steps);
   const StepTable<R> table{memory.law};
   JumpSpectrum<R> spectrum{};
@@ -212,20 +215,20 @@ KOKKOS_INLINE_FUNCTION Solution<R> march_nodes(const Workers& workers, const Put
     const RegisterRows rows{memory.row(0, mesh), memory.row(1, mesh), memory.row(2, mesh), memory.slot};
     const int exercised = march_in_registers<fixed / Workers::lanes>(workers, put, jumps, grid, spectrum,
                                                                      scheme, table, rows, kink);
-    return {rows.value, rows.other, table.load(steps).certain, exercised};
+    return {rows.value, rows.other, table.load(steps).certain, exercised, doubt};
   } else {
     const March<R> march =
         march_in_memory(workers, put, jumps, grid, spectrum, scheme, table, memory, kink, record);
-    return {march.value[1], march.y, table.load(steps).certain, -1};
+    return {march.value[1], march.y, table.load(steps).certain, -1, doubt};
   }
 }
 
-/// `march_nodes`; `answers` gets one for each member. Returns the values of the nodes.
+/// `march_nodes`; `answers` gets one for each member.
 template <int fixed, class Workers, class R, class Scratch>
-KOKKOS_INLINE_FUNCTION const R* solve(const Workers& workers, const PutPack<R>& put, const Law<R>& law,
-                                      const Tails<R>& tails, const Grid<R>& grid, int steps,
-                                      const Scratch& memory, const Weights<R>& weights, const Record& record,
-                                      Answer* answers) {
+KOKKOS_INLINE_FUNCTION Solution<R> solve(const Workers& workers, const PutPack<R>& put, const Law<R>& law,
+                                         const Tails<R>& tails, const Grid<R>& grid, int steps,
+                                         const Scratch& memory, const Weights<R>& weights,
+                                         const Record& record, Answer* answers) {
   constexpr int members = device::Access<R>::lanes;
   const Solution<R> solution =
       march_nodes<fixed>(workers, put, law, tails, grid, steps, memory, weights, record);
@@ -235,7 +238,7 @@ KOKKOS_INLINE_FUNCTION const R* solve(const Workers& workers, const PutPack<R>& 
                              nodes_of<fixed>(solution, memory.puts[k], grid, k));
     }
   });
-  return solution.value;
+  return solution;
 }
 
 }  // namespace drogue::options

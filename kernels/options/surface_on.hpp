@@ -66,12 +66,17 @@ class SurfaceOn final : public Pricer {
     return timing;
   }
 
-  std::vector<BoundaryPoint> boundary(const Contract& contract) override {
-    return _single->boundary(contract);
-  }
   std::vector<ProfilePoint> profile(const Contract& contract) override { return _single->profile(contract); }
 
  private:
+  std::vector<BoundaryPoint> boundary_on(const Contract& contract, int mesh, int steps) override {
+    if (mesh == 0) return _single->boundary(contract);
+    Price solved;
+    solved.mesh = mesh;
+    solved.steps = steps;
+    return _single->boundary(contract, solved);
+  }
+
   static constexpr int first_mesh = 128, models = 4;
   static constexpr std::size_t most_values = std::size_t{1} << 23U;  ///< of nodes in memory at a time
 

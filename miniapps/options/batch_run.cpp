@@ -93,7 +93,7 @@ void BatchRun::flush(Desk& desk) {
     append_price(_piece, _layout, *row, contract, price);
     if (!_command.boundary.empty() && contract.style == options::Style::american &&
         price.outcome != options::Outcome::failed)
-      append_boundary(_piece, *row, _pricer.boundary(contract));
+      append_boundary(_piece, *row, _pricer.boundary(contract, price));
     if (_piece.prices.size() + _piece.boundaries.size() >= most_of_piece) hand_in(desk, false);
   }
   _owners.clear();

@@ -178,6 +178,23 @@ TEST(CosEuropean, PricesADayOfPureVarianceGamma) {
   }
 }
 
+// Where delta alpha T is large the integrand grows beside the contour. The price is a mixture of normal
+// laws'.
+TEST(CosEuropean, PricesManyYearsOfJumps) {
+  Contract c{.style = Style::european,
+             .type = Type::put,
+             .spot = 103.429,
+             .strike = 100.0,
+             .rate = 0.0932,
+             .dividend = 0.034,
+             .maturity = 10.0};
+  const double law[] = {-0.5, 32.26880092138141, 3.576405459003245, 0.75651991864889};
+  std::copy(law, law + 4, c.jump);
+  const Price price = european_price(c, Exponent(c));
+  EXPECT_NEAR(price.price, 1.2142633, 1e-7);
+  EXPECT_LT(price.error, 1e-9);
+}
+
 TEST(Condition, NamesWhatIsBroken) {
   Contract c;
   c.jump[0] = 1.0, c.jump[1] = 8.0, c.jump[2] = -2.0, c.jump[3] = 0.5;

@@ -108,6 +108,13 @@ TEST(OptionsCos, WaitsWhereWaitingIsRight) {
   EXPECT_EQ(prices[2].price, prices[3].price);
 }
 
+TEST(OptionsCos, IsNotExercisedForNothing) {
+  Contract far = testing::contract_of(testing::option_sets()[0], 3, Style::american);
+  far.maturity = 1.0 / 365.0;
+  far.spot = 3.0 * far.strike;
+  EXPECT_GT(cos_prices({far}, 1e-4)[0].delta, -0.01);
+}
+
 /// With q < r < 0 exercise is right between two spots; beyond both one waits.
 TEST(OptionsCos, KnowsABoundaryOnBothSides) {
   Contract c = testing::contract_of(testing::option_sets()[1], 3, Style::american);

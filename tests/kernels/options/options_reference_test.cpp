@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 
@@ -126,6 +127,43 @@ TEST(OptionsReference, MertonAndKouOfTheLiterature) {
 }
 
 double normal_cdf(double x) { return 0.5 * std::erfc(-x / std::sqrt(2.0)); }
+
+// Laws that grids find hard: of large order, without a Brownian part for a few days, with the heaviest of
+// tails and with jumps that are all alike. Known are European prices, by a mixture of normal laws or Merton's
+// series.
+TEST(OptionsReference, StatedErrorsCoverLawsThatAreHard) {
+  struct Hard {
+    Contract contract;
+    double value;
+  };
+  const auto put = [](double strike, double rate, double dividend, double maturity, double variance,
+                      std::array<double, 4> jump) {
+    Contract c{.style = Style::european,
+               .type = Type::put,
+               .spot = 100.0,
+               .strike = strike,
+               .rate = rate,
+               .dividend = dividend,
+               .maturity = maturity,
+               .variance = variance};
+    std::ranges::copy(jump, c.jump);
+    return c;
+  };
+  std::vector<Hard> hard = {{put(90.0, 0.05, 0.02, 1.0, 0.0, {-100.0, 30.0, -2.5, 10.0}), 12.28734},
+                            {put(100.0, 0.05, 0.0, 0.01, 0.0, {2.0, 11.0, -5.0, 0.0}), 0.28357},
+                            {put(90.0, 0.05, 0.02, 1.0, 0.04, {1.0, 8.15, -8.149, 0.767}), 85.1442},
+                            {put(100.0, 0.03, 0.01, 1.0, 1e-4, {5.0, 0.3, 1e-4, 0.0}), 26.7213}};
+  hard.back().contract.model = Model::merton;
+  for (const double tolerance : {1e-4, 1e-5}) {
+    Settings settings;
+    settings.tolerance = tolerance;
+    for (const Hard& one : hard) {
+      const Price price = priced(settings, {one.contract}).front();
+      EXPECT_NEAR(price.price, one.value, price.error + 1e-4) << one.value;
+      EXPECT_TRUE(price.outcome == Outcome::coarse || price.error <= tolerance * one.contract.strike);
+    }
+  }
+}
 
 // Every model without jumps is Black and Scholes', whose European price has a closed form.
 TEST(OptionsReference, WithoutJumpsItIsBlackAndScholes) {
