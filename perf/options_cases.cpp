@@ -19,7 +19,7 @@ Case surface_case(device::Backend backend, const puts::SurfaceSize& size, bool a
   const std::string count =
       std::to_string(size.sets) + "x" + std::to_string(size.strikes) + "x" + std::to_string(size.maturities);
   const std::string variant = apart ? "apart" : "surface";
-  Case surface = puts::surface("options/" + name + "/" + variant + "/" + count, backend, size,
+  Case surface = puts::surface("options-surface/" + name + "/" + variant + "/" + count, backend, size,
                                {.mesh = 128, .steps = 32, .surface = !apart}, puts::bar);
   const auto prices = static_cast<std::int64_t>(size.sets * size.strikes * size.maturities);
   surface.facts = [=] { return Facts{name, prices, variant + " " + count}; };

@@ -50,7 +50,10 @@ void BatchRun::price(const Chunk& chunk, Desk& desk) {
                  chunk.first_row + static_cast<std::int64_t>(i), _rows[i]);
     rest.remove_prefix(line.length);
   }
-  for (const Row& row : _rows) {
+  for (Row& row : _rows) {
+    if (row.fault.empty() && _command.settings.method == options::Method::seed &&
+        row.contract.model != options::Model::generalized_hyperbolic)
+      row.fault = "--method seed has generalized hyperbolic jumps alone";
     add(row, chunk, desk);
     if (_is_stopped) return;
   }

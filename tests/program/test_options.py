@@ -142,6 +142,9 @@ class Prices(options_program.OptionsTest):
     def test_the_dissertations_scheme(self):
         self.price(0, batch([row("a", style="american")]), "--method", "seed", "--mesh", "128", "--steps", "128")
         self.assertAlmostEqual(0.239004005, float(self.prices()[0]["price"]), delta=5e-3)
+        other = f"{HEADER},model\n{row('a')},gh\nb,european,put,1,1,0.1,0,1,,,,,0.4,black-scholes\n"
+        self.price(3, other, "--method", "seed", "--mesh", "128", "--steps", "32")
+        self.assertEqual(["ok", "invalid"], [price["status"] for price in self.prices()])
 
     def test_boundary(self):
         lines = [row("put", style="american"), row("europe"), row("wait", style="american", type="call")]
