@@ -38,7 +38,7 @@ std::vector<OptionsPoint> pide_points(bool quick) {
                             intervals,
                             {.mesh = mesh,
                              .steps = mesh / intervals,
-                             .exercise = split ? options::Exercise::split : options::Exercise::exact,
+                             .exercise = split ? options::ExerciseRule::split : options::ExerciseRule::exact,
                              .one_grid = one_grid},
                             none ? options::Style::european : options::Style::american});
         }

@@ -17,7 +17,7 @@ enum class Method : unsigned char {
 };
 
 /// How early exercise that pays on a half line is imposed; between two boundaries it is always split off.
-enum class Exercise : unsigned char {
+enum class ExerciseRule : unsigned char {
   exact,  ///< in the solve of a step (Brennan and Schwartz 1977)
   split,  ///< after it (Ikonen and Toivanen 2004), to compare
 };
@@ -30,7 +30,7 @@ struct Settings {
   double tolerance = 1e-4;  ///< of |price - true price|, relative to the strike
   bool greeks = false;      ///< `cos` computes delta, gamma and theta; the other methods always do
   bool surface = false;     ///< contracts in a row that differ in the strike alone share solves; for `pide`
-  Exercise exercise = Exercise::exact;  ///< `pide` alone, as the next
+  ExerciseRule exercise = ExerciseRule::exact;  ///< `pide` alone, as the next
   bool one_grid = false;  ///< with `mesh`: nothing is extrapolated and no error stated, to compare
 };
 

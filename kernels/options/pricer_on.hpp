@@ -208,7 +208,7 @@ class PricerOn final : public Pricer {
     batch.mesh = effort.mesh;
     batch.steps = effort.steps;
     batch.tolerance = _settings.tolerance;
-    batch.split = _settings.exercise == Exercise::split;
+    batch.split = _settings.exercise == ExerciseRule::split;
     batch.one_grid = _settings.one_grid;
     batch.level = scratch_level<ExecutionSpace>(effort.mesh);
     if (_settings.method == Method::seed && record.time == nullptr) {
