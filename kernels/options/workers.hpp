@@ -27,7 +27,8 @@ struct SerialWorkers {
     for (int lane = 0; lane < lanes; ++lane) part[lane] = f(lane);
     for (int reach = lanes / 2; reach > 0; reach /= 2)
       for (int lane = 0; lane < reach; ++lane)
-        for (int k = 0; k < part[0].size(); ++k) part[lane][k] = join(part[lane][k], part[lane + reach][k]);
+        for (std::size_t k = 0; k < part[0].size(); ++k)
+          part[lane][k] = join(part[lane][k], part[lane + reach][k]);
     return part[0];
   }
   /// Whether a condition holds for all options of the pack.
@@ -58,7 +59,8 @@ struct WarpWorkers {
   KOKKOS_INLINE_FUNCTION auto reduce(const F& f, const Join& join) const {
     auto part = f(lane);
     for (int reach = lanes / 2; reach > 0; reach /= 2)
-      for (int k = 0; k < part.size(); ++k) part[k] = join(part[k], device::from_across(part[k], reach));
+      for (std::size_t k = 0; k < part.size(); ++k)
+        part[k] = join(part[k], device::from_across(part[k], reach));
     return part;
   }
   /// Whether a condition holds for all options of the warp.
