@@ -48,4 +48,21 @@ void copy(const ExecutionSpace& space, const To& to, const From& from) {
              to.data(), from.data(), to.size() * sizeof(typename To::value_type));
 }
 
+/// Copies `count` values in host memory to the first ones of a View without gaps, without waiting: they must
+/// stay as they are until the next fence.
+template <class ExecutionSpace, class To>
+void copy_in(const ExecutionSpace& space, const To& to, const typename To::value_type* from,
+             std::size_t count) {
+  copy_bytes(space, copy_way<ExecutionSpace, typename To::memory_space, Kokkos::HostSpace>(), to.data(), from,
+             count * sizeof *from);
+}
+
+/// Copies the first `count` values of a View without gaps to host memory, without waiting.
+template <class ExecutionSpace, class From>
+void copy_out(const ExecutionSpace& space, typename From::non_const_value_type* to, const From& from,
+              std::size_t count) {
+  copy_bytes(space, copy_way<ExecutionSpace, Kokkos::HostSpace, typename From::memory_space>(), to,
+             from.data(), count * sizeof *to);
+}
+
 }  // namespace drogue::device

@@ -19,6 +19,12 @@ struct Integrals {
   int nodes = 0;
 };
 
+/// The sums over the nodes of both, of half the step.
+Integrals mean(const Integrals& a, const Integrals& b) {
+  return {0.5 * (a.value + b.value), 0.5 * (a.first + b.first), 0.5 * (a.second + b.second),
+          0.5 * (a.by_maturity + b.by_maturity), a.nodes + b.nodes};
+}
+
 /// Where the integrand is taken: u = i centre + scale sinh(i tilt + y), or, if it may not bend, u = y - i/2.
 struct Contour {
   bool bends;
@@ -47,18 +53,19 @@ Contour contour_of(const Contract& c, double log_moneyness) {
 }
 
 /// integral of exp(i u log_moneyness + T psi(u)) / (u (u + unit_up)) du / (2 pi), by the trapezoid rule. The
-/// halves right and left of the imaginary axis are conjugate.
-Integrals integrate(const Contract& c, const Exponent& psi, double log_moneyness, const Contour& contour) {
+/// halves right and left of the imaginary axis are conjugate. Nodes lie `offset` steps beside those from 0
+/// on.
+Integrals integrate(const Contract& c, const Exponent& psi, double log_moneyness, const Contour& contour,
+                    double offset) {
   Integrals sums;
   int small = 0;
   constexpr int most_nodes = 4000000;
   for (; sums.nodes < most_nodes && small < 8; ++sums.nodes) {
-    const double y = sums.nodes * contour.step;
+    const double y = (sums.nodes + offset) * contour.step;
     const Complex u = contour.point(y);
     const Complex exponent = psi(u);
     const Complex value = std::exp(unit_up * u * log_moneyness + c.maturity * exponent) * contour.slope(y) *
-                          (contour.step / std::numbers::pi / (sums.nodes == 0 ? 2.0 : 1.0)) /
-                          (u * (u + unit_up));
+                          (contour.step / std::numbers::pi / (y == 0.0 ? 2.0 : 1.0)) / (u * (u + unit_up));
     sums.value += std::real(value);
     sums.first += std::real(unit_up * u * value);
     sums.second += std::real(-u * u * value);
@@ -76,12 +83,13 @@ Integrals integrate(const Contract& c, const Exponent& psi, double log_moneyness
 Price european_price(const Contract& c, const Exponent& psi) {
   const double log_moneyness = std::log(c.spot / c.strike);
   Contour contour = contour_of(c, log_moneyness + c.maturity * psi.drift());
-  Integrals sums = integrate(c, psi, log_moneyness, contour);
+  Integrals sums = integrate(c, psi, log_moneyness, contour, 0.0);
   // Laws of many jumps grow beside the contour, where the step looks: it is halved until that does not show.
   double change = 1.0;
   for (int halvings = 0; halvings < 8 && change > 1e-14; ++halvings) {
+    const Integrals between = integrate(c, psi, log_moneyness, contour, 0.5);
     contour.step *= 0.5;
-    const Integrals finer = integrate(c, psi, log_moneyness, contour);
+    const Integrals finer = mean(sums, between);
     change = std::abs(finer.value - sums.value);
     sums = finer;
   }

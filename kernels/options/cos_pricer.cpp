@@ -85,15 +85,15 @@ class CosPricer final : public Pricer {
     return timing;
   }
 
+  std::vector<BoundaryPoint> boundary_on(const Contract& /*contract*/, int /*mesh*/, int /*steps*/) override {
+    throw std::invalid_argument("cos: no exercise boundary; take the method pide");
+  }
+
   std::vector<ProfilePoint> profile(const Contract& /*contract*/) override {
     throw std::invalid_argument("cos: each spot is a solve of its own; take the method pide");
   }
 
  private:
-  std::vector<BoundaryPoint> boundary_on(const Contract& /*contract*/, int /*mesh*/, int /*steps*/) override {
-    throw std::invalid_argument("cos: no exercise boundary; take the method pide");
-  }
-
   static constexpr std::size_t most_together = 1024;       ///< so that their tables take some 60 MB at most
   static constexpr int fewest_dates = 4, most_dates = 32;  ///< of the coarsest level
 

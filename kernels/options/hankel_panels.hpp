@@ -33,9 +33,8 @@ class HankelPanels {
     if (!found && _slots.size() != 0) return;
     _series = Kokkos::View<double*, Space>("drogue::options::panels", _host_series.size());
     _slots = Kokkos::View<int*, Space>("drogue::options::panel slots", _host_slots.size());
-    constexpr auto way = device::copy_way<ExecutionSpace, Space, Kokkos::HostSpace>();
-    copy_bytes(space, way, _series.data(), _host_series.data(), _host_series.size() * sizeof(double));
-    copy_bytes(space, way, _slots.data(), _host_slots.data(), _host_slots.size() * sizeof(int));
+    device::copy_in(space, _series, _host_series.data(), _host_series.size());
+    device::copy_in(space, _slots, _host_slots.data(), _host_slots.size());
   }
 
   /// (panels, HankelGrid::panel_size)

@@ -71,9 +71,7 @@ class LineSolveOn final : public linear::BatchSolve {
 
   [[nodiscard]] View upload(const std::vector<double>& values) const {
     const View there("drogue::options::lines", values.size());
-    copy_bytes(_instance.space(),
-               device::copy_way<ExecutionSpace, typename View::memory_space, Kokkos::HostSpace>(),
-               there.data(), values.data(), values.size() * sizeof(double));
+    device::copy_in(_instance.space(), there, values.data(), values.size());
     _instance.space().fence("drogue::options: lines are copied");
     return there;
   }

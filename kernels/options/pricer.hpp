@@ -72,19 +72,14 @@ class Pricer {
     return boundary_on(contract, 0, 0);
   }
 
-  /// The same on the mesh and with the steps of a price.
-  [[nodiscard]] std::vector<BoundaryPoint> boundary(const Contract& contract, const Price& solved) {
-    return boundary_on(contract, solved.mesh, solved.steps);
-  }
+  /// The same on a mesh and with steps, say those of a price. A mesh of 0 intervals is that of the settings,
+  /// or 512.
+  virtual std::vector<BoundaryPoint> boundary_on(const Contract& contract, int mesh, int steps) = 0;
 
   /// Prices now at the spots of the nodes of one solve, which rise; the contract's own spot only has a say in
   /// how far they reach. Prices are as good as one grid makes them. Since V(c spot, c strike) = c V they are
   /// those of other strikes as well.
   virtual std::vector<ProfilePoint> profile(const Contract& contract) = 0;
-
- private:
-  /// A mesh of 0 intervals is that of the settings, or 512.
-  virtual std::vector<BoundaryPoint> boundary_on(const Contract& contract, int mesh, int steps) = 0;
 };
 
 /// Throws std::invalid_argument for settings out of range; the backend must be available.

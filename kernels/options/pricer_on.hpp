@@ -40,7 +40,7 @@ class PricerOn final : public Pricer {
     if (contracts.empty()) return timing;
     const Clock setting_up;
     reserve(contracts.size());
-    copy_in(_contracts, staged(contracts), contracts.size());
+    device::copy_in(_instance.space(), _contracts, staged(contracts), contracts.size());
     _panels.fetch(_instance.space(), contracts);
     _instance.space().fence("drogue::options: contracts are copied");
     timing.h2d = setting_up.seconds();
@@ -58,6 +58,15 @@ class PricerOn final : public Pricer {
 
   std::pmr::memory_resource& memory() override { return _pinned; }
 
+  std::vector<BoundaryPoint> boundary_on(const Contract& contract, int mesh, int steps) override {
+    const Recorded all = record(contract, mesh != 0 ? Effort{mesh, steps} : recorded_effort());
+    std::vector<BoundaryPoint> points;
+    for (std::size_t k = all.time.size(); k-- > 0;)
+      if (std::isfinite(all.boundary[k]))
+        points.push_back({contract.maturity - all.time[k], spot_at(contract, all.boundary[k])});
+    return points;
+  }
+
   std::vector<ProfilePoint> profile(const Contract& contract) override {
     const Recorded all = record(contract, recorded_effort());
     std::vector<ProfilePoint> points;
@@ -70,15 +79,6 @@ class PricerOn final : public Pricer {
   }
 
  private:
-  std::vector<BoundaryPoint> boundary_on(const Contract& contract, int mesh, int steps) override {
-    const Recorded all = record(contract, mesh != 0 ? Effort{mesh, steps} : recorded_effort());
-    std::vector<BoundaryPoint> points;
-    for (std::size_t k = all.time.size(); k-- > 0;)
-      if (std::isfinite(all.boundary[k]))
-        points.push_back({contract.maturity - all.time[k], spot_at(contract, all.boundary[k])});
-    return points;
-  }
-
   void price_to_tolerance(std::span<const Contract> contracts, std::span<Price> prices, Timing& timing) {
     const Effort first{first_mesh, steps_of(first_mesh)};
     std::vector<Refinement> rows(contracts.size(), Refinement{first});
@@ -109,15 +109,14 @@ class PricerOn final : public Pricer {
     const std::span<const Contract> one(&contract, 1);
     reserve(1);
     _panels.fetch(_instance.space(), one);
-    copy_in(_contracts, &contract, 1);
+    device::copy_in(_instance.space(), _contracts, &contract, 1);
     const auto steps = static_cast<std::size_t>(effort.steps),
                nodes = static_cast<std::size_t>(effort.mesh) + 1;
     const View<double> all("drogue::options::record", 2 * (steps + nodes));
     double* const at = all.data();
     launch({0}, effort, {at, at + steps, at + 2 * steps, at + 2 * steps + nodes});
     std::vector<double> values(all.size());
-    copy_bytes(_instance.space(), device::copy_way<ExecutionSpace, Kokkos::HostSpace, Space>(), values.data(),
-               at, values.size() * sizeof(double));
+    device::copy_out(_instance.space(), values.data(), all, values.size());
     _instance.space().fence("drogue::options: record is there");
     auto part = [begin = values.cbegin()](std::size_t count) mutable {
       const auto end = begin + static_cast<std::ptrdiff_t>(count);
@@ -150,13 +149,6 @@ class PricerOn final : public Pricer {
     _rows.clear();
   }
 
-  /// Enqueues a copy; `from` must stay as it is until the next fence.
-  template <class T>
-  void copy_in(const View<T>& to, const T* from, std::size_t count) {
-    copy_bytes(_instance.space(), device::copy_way<ExecutionSpace, Space, Kokkos::HostSpace>(), to.data(),
-               from, count * sizeof(T));
-  }
-
   /// The contracts where a device copies them from without a detour.
   const Contract* staged(std::span<const Contract> contracts) {
     if (device::is_host<ExecutionSpace> || _pinned.holds(contracts.data())) return contracts.data();
@@ -172,8 +164,7 @@ class PricerOn final : public Pricer {
       _staged_prices.resize(prices.size());
       to = _staged_prices.data();
     }
-    copy_bytes(_instance.space(), device::copy_way<ExecutionSpace, Kokkos::HostSpace, Space>(), to,
-               _prices.data(), prices.size() * sizeof(Price));
+    device::copy_out(_instance.space(), to, _prices, prices.size());
     _instance.space().fence("drogue::options: prices are there");
     if (to != prices.data()) std::ranges::copy(_staged_prices, prices.begin());
     timing.d2h += copying.seconds();
@@ -192,17 +183,16 @@ class PricerOn final : public Pricer {
   void launch(std::vector<int> rows, const Effort& effort, const Record& record) {
     if (rows.empty()) return;
     if (rows != _rows) {
-      copy_in(_order, rows.data(), rows.size());
+      device::copy_in(_instance.space(), _order, rows.data(), rows.size());
       _rows.swap(rows);
     }
-    if (is_transformed(effort.mesh, lanes_of(effort.mesh))) _roots.fetch(_instance.space());
     PriceBatch<ExecutionSpace> batch;
     batch.contracts = _contracts;
     batch.prices = _prices;
     batch.order = _order;
     batch.panels = _panels.series();
     batch.panel_slot = _panels.slots();
-    batch.roots = _roots.roots();
+    batch.roots = _roots.of_mesh(_instance.space(), effort.mesh);
     batch.record = record;
     batch.count = static_cast<int>(_rows.size());
     batch.mesh = effort.mesh;

@@ -59,13 +59,9 @@ KOKKOS_INLINE_FUNCTION void recur_backward(int lane, LaneNodes<block>& nodes, do
   double joined = g;
   for (int m = 1; m < block; ++m) joined *= g;
   for (int m = block - 2; m >= 0; --m) y[m] += g * y[m + 1];
-  double carry = y[0];
-  for (int reach = 1; reach < lanes; reach *= 2) {
-    const double next = device::from_above<lanes>(carry, reach);
-    if (lane + reach < lanes) carry += joined * next;
-    joined *= joined;
-  }
-  double inflow = device::from_above<lanes>(carry, 1);
+  double carry[] = {y[0]};
+  join_backward<lanes>(lane, carry, joined);
+  double inflow = device::from_above<lanes>(carry[0], 1);
   if (lane + 1 == lanes) return;
   for (int m = block - 1; m >= 0; --m) {
     inflow *= g;

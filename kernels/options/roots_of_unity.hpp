@@ -4,6 +4,7 @@
 
 #include "kernels/device/copy.hpp"
 #include "kernels/options/fourier_roots.hpp"
+#include "kernels/options/grid.hpp"
 
 namespace drogue::options {
 
@@ -13,16 +14,15 @@ class RootsOfUnity {
   using Space = typename ExecutionSpace::memory_space;
 
  public:
-  /// Enqueues the copy of the table when it is needed first.
-  void fetch(const ExecutionSpace& space) {
-    if (_table.size() != 0) return;
-    _host_table = fourier_roots();
-    _table = Kokkos::View<double*, Space>("drogue::options::roots", _host_table.size());
-    copy_bytes(space, device::copy_way<ExecutionSpace, Space, Kokkos::HostSpace>(), _table.data(),
-               _host_table.data(), _host_table.size() * sizeof(double));
+  /// The roots that solves on a mesh need. Enqueues the copy of the table for the first mesh that does.
+  [[nodiscard]] FourierRoots of_mesh(const ExecutionSpace& space, int mesh) {
+    if (_table.size() == 0 && is_transformed(mesh, lanes_of(mesh))) {
+      _host_table = fourier_roots();
+      _table = Kokkos::View<double*, Space>("drogue::options::roots", _host_table.size());
+      device::copy_in(space, _table, _host_table.data(), _host_table.size());
+    }
+    return FourierRoots::of(_table.data());
   }
-
-  [[nodiscard]] FourierRoots roots() const { return FourierRoots::of(_table.data()); }
 
  private:
   Kokkos::View<double*, Space> _table;

@@ -115,9 +115,11 @@ struct SmileFunctor {
 
 /// Enqueues the solves of smiles of one model.
 template <class ExecutionSpace>
-void solve_smiles(const ExecutionSpace& space, const SmileFunctor<ExecutionSpace, 0>& work) {
+void solve_smiles(const ExecutionSpace& space, SmileFunctor<ExecutionSpace, 0> work) {
   static_assert(
       Kokkos::SpaceAccessibility<ExecutionSpace, typename decltype(work.values)::memory_space>::accessible);
+  // On a device the other meshes are solved in memory, by whole warps.
+  if (work.batch.mesh == 128) work.batch.lanes = lanes_of(work.batch.mesh);
   const auto launch = [&]<int fixed>(const char* label) {
     launch_batch<fixed, ExecutionSpace>(
         space, label,

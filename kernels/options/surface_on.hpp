@@ -66,17 +66,12 @@ class SurfaceOn final : public Pricer {
     return timing;
   }
 
+  std::vector<BoundaryPoint> boundary_on(const Contract& contract, int mesh, int steps) override {
+    return _single->boundary_on(contract, mesh, steps);
+  }
   std::vector<ProfilePoint> profile(const Contract& contract) override { return _single->profile(contract); }
 
  private:
-  std::vector<BoundaryPoint> boundary_on(const Contract& contract, int mesh, int steps) override {
-    if (mesh == 0) return _single->boundary(contract);
-    Price solved;
-    solved.mesh = mesh;
-    solved.steps = steps;
-    return _single->boundary(contract, solved);
-  }
-
   static constexpr int first_mesh = 128, models = 4;
   static constexpr std::size_t most_values = std::size_t{1} << 23U;  ///< of nodes in memory at a time
 
@@ -166,8 +161,7 @@ class SurfaceOn final : public Pricer {
     timing.compute += computing.seconds();
     const Clock copying_out;
     _staged_prices.resize(_staged_readings.size());
-    copy_bytes(space, device::copy_way<ExecutionSpace, Kokkos::HostSpace, Space>(), _staged_prices.data(),
-               _prices.data(), _staged_prices.size() * sizeof(Price));
+    device::copy_out(space, _staged_prices.data(), _prices, _staged_prices.size());
     space.fence("drogue::options: prices are there");
     timing.d2h += copying_out.seconds();
   }
@@ -175,7 +169,6 @@ class SurfaceOn final : public Pricer {
   /// Enqueues the solves of the smiles begin .. end - 1 of the order, which have one model.
   void launch(const Effort& effort, int begin, int end) {
     if (begin == end) return;
-    if (is_transformed(effort.mesh, lanes_of(effort.mesh))) _roots.fetch(_instance.space());
     SmileFunctor<ExecutionSpace, 0> work{};
     work.batch.contracts = _contracts;
     work.batch.order = Kokkos::View<const int*, Space>(_order.data() + begin, end - begin);
@@ -185,8 +178,7 @@ class SurfaceOn final : public Pricer {
     work.batch.mesh = effort.mesh;
     work.batch.steps = effort.steps;
     work.batch.level = scratch_level<ExecutionSpace>(effort.mesh);
-    work.batch.roots = _roots.roots();
-    if (effort.mesh == 128) work.batch.lanes = lanes_of(128);
+    work.batch.roots = _roots.of_mesh(_instance.space(), effort.mesh);
     work.reaches = _reach;
     work.smiles = _smiles;
     work.values = _values;
@@ -202,8 +194,7 @@ class SurfaceOn final : public Pricer {
   template <class T>
   void copy_in(View<T>& to, const Staged<T>& from, const std::string& label) {
     reserve(to, from.size(), label);
-    copy_bytes(_instance.space(), device::copy_way<ExecutionSpace, Space, Kokkos::HostSpace>(), to.data(),
-               from.data(), from.size() * sizeof(T));
+    device::copy_in(_instance.space(), to, from.data(), from.size());
   }
 
   Settings _settings;

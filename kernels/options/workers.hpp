@@ -114,6 +114,19 @@ KOKKOS_INLINE_FUNCTION void recur_backward(const SerialWorkers<R>& workers, R* c
   }
 }
 
+/// Joins what the lanes' blocks begin with, n numbers each, to those of all blocks above; `joined` is the
+/// slope of a block.
+template <int lanes, int n>
+KOKKOS_INLINE_FUNCTION void join_backward(int lane, double (&carry)[n], double joined) {
+  for (int reach = 1; reach < lanes; reach *= 2) {
+    for (double& own : carry) {
+      const double next = device::from_above<lanes>(own, reach);
+      if (lane + reach < lanes) own = own + joined * next;
+    }
+    joined = joined * joined;
+  }
+}
+
 /// The same by a warp, whose lanes ask one another for what joins their blocks.
 template <int n, int lanes>
 KOKKOS_INLINE_FUNCTION void recur_backward(const WarpWorkers<lanes>& workers, double* const (&rows)[n],
@@ -129,13 +142,7 @@ KOKKOS_INLINE_FUNCTION void recur_backward(const WarpWorkers<lanes>& workers, do
       own[m] = carry[k];
     }
   }
-  for (int reach = 1; reach < lanes; reach *= 2) {
-    for (int k = 0; k < n; ++k) {
-      const double next = device::from_above<lanes>(carry[k], reach);
-      if (lane + reach < lanes) carry[k] = carry[k] + joined * next;
-    }
-    joined = joined * joined;
-  }
+  join_backward<lanes>(lane, carry, joined);
   for (int k = 0; k < n; ++k) {
     double* own = rows[k] + lane * block;
     double inflow = device::from_above<lanes>(carry[k], 1);

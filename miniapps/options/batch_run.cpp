@@ -96,7 +96,7 @@ void BatchRun::flush(Desk& desk) {
     append_price(_piece, _layout, *row, contract, price);
     if (!_command.boundary.empty() && contract.style == options::Style::american &&
         price.outcome != options::Outcome::failed)
-      append_boundary(_piece, *row, _pricer.boundary(contract, price));
+      append_boundary(_piece, *row, _pricer.boundary_on(contract, price.mesh, price.steps));
     if (_piece.prices.size() + _piece.boundaries.size() >= most_of_piece) hand_in(desk, false);
   }
   _owners.clear();

@@ -222,8 +222,8 @@ TEST(OptionsProperty, TheBoundaryRisesTowardsExpiry) {
   EXPECT_NEAR(curve[0].time, 0.0, 1e-12);
   EXPECT_NEAR(curve[0].spot, priced(on_mesh(256, 64), {c})[0].exercise_boundary, 1e-12);
   const Price chosen = priced(Settings{}, {c})[0];
-  EXPECT_NEAR(create_pricer(backend, Settings{})->boundary(c, chosen)[0].spot, chosen.exercise_boundary,
-              1e-12);
+  EXPECT_NEAR(create_pricer(backend, Settings{})->boundary_on(c, chosen.mesh, chosen.steps)[0].spot,
+              chosen.exercise_boundary, 1e-12);
   // At and below it the price is the payoff, above it is more.
   for (const double factor : {0.98, 1.02}) {
     c.spot = factor * curve[0].spot;
