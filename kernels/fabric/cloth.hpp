@@ -13,7 +13,13 @@ namespace drogue::fabric {
 template <class ExecutionSpace>
 using PointsView = Kokkos::View<double* [3], Kokkos::LayoutLeft, typename ExecutionSpace::memory_space>;
 
-template <class R, class Points>
+/// A table of points: rows of three numbers.
+template <class Points>
+concept Table = requires(const Points& points) {
+  points(0, 2);
+};
+
+template <class R, Table Points>
 KOKKOS_INLINE_FUNCTION Vector3<R> load_points(const Points& points, int i) {
   using Lanes = device::Access<R>;
   return {Lanes::load(&points(i, 0)), Lanes::load(&points(i, 1)), Lanes::load(&points(i, 2))};
@@ -27,12 +33,28 @@ KOKKOS_INLINE_FUNCTION void store_points(const Points& points, int i, const Vect
   Lanes::store(&points(i, 2), value.z);
 }
 
-template <class R, class Points>
+template <class R, Table Points>
 KOKKOS_INLINE_FUNCTION Vector3<R> gather_points(const Points& points,
                                                 typename device::Access<R>::Index index) {
   using Lanes = device::Access<R>;
   return {Lanes::gather(&points(0, 0), index), Lanes::gather(&points(0, 1), index),
           Lanes::gather(&points(0, 2), index)};
+}
+
+/// Where points will be that move on for a while.
+template <class Points>
+struct Ahead {
+  Points x, v;
+  double time;
+};
+template <class R, class Points>
+KOKKOS_INLINE_FUNCTION Vector3<R> load_points(const Ahead<Points>& points, int i) {
+  return load_points<R>(points.x, i) + points.time * load_points<R>(points.v, i);
+}
+template <class R, class Points>
+KOKKOS_INLINE_FUNCTION Vector3<R> gather_points(const Ahead<Points>& points,
+                                                typename device::Access<R>::Index index) {
+  return gather_points<R>(points.x, index) + points.time * gather_points<R>(points.v, index);
 }
 
 /// A triangle at rest: products of the edges from its first vertex, m^2, and 1/m^2.
@@ -132,26 +154,35 @@ KOKKOS_INLINE_FUNCTION Vector3<R> spring_pull(R stiffness, R rest, const Vector3
   return spring_tension<law>(stiffness, dot(edge, edge), rest) * edge;
 }
 
-/// Calls `take(j, k, rest)` for the triangles of vertex i and the lanes after it: their spokes and the
-/// triangle at rest.
-template <class R, class Fabric, class Points, class Take>
-KOKKOS_INLINE_FUNCTION void each_triangle(const Fabric& cloth, const Points& positions, int i,
-                                          const Take& take) {
-  const Vector3<R> own = load_points<R>(positions, i);
+/// Calls `take(j, k, rest)` for the triangles of vertex i and the lanes after it: what `read` gives of the
+/// neighbours at both their ends, and the triangle at rest.
+template <class R, class Fabric, class Read, class Take>
+KOKKOS_INLINE_FUNCTION void each_side_by_side(const Fabric& cloth, int i, const Read& read,
+                                              const Take& take) {
   using Lanes = device::Access<R>;
   using Index = typename Lanes::Index;
   struct Side {
-    Spoke<R> now;
+    decltype(read(Index{})) now;
     decltype(cloth.template rest_edge<R>(0, 0, Index{})) rest;
   };
   cloth.triangles.each_pair(
       i, [&](int slot) { return Lanes::index(&cloth.triangles.neighbour(slot)); },
       [&](int slot, Index neighbour) {
-        return Side{spoke<R>(positions, own, neighbour), cloth.template rest_edge<R>(i, slot, neighbour)};
+        return Side{read(neighbour), cloth.template rest_edge<R>(i, slot, neighbour)};
       },
       [&](const Side& j, const Side& k, int slot) {
         take(j.now, k.now, cloth.template rest_triangle<R>(j.rest, k.rest, slot));
       });
+}
+
+/// Calls `take(j, k, rest)` with their spokes.
+template <class R, class Fabric, class Points, class Take>
+KOKKOS_INLINE_FUNCTION void each_triangle(const Fabric& cloth, const Points& positions, int i,
+                                          const Take& take) {
+  const Vector3<R> own = load_points<R>(positions, i);
+  using Index = typename device::Access<R>::Index;
+  each_side_by_side<R>(
+      cloth, i, [&](Index neighbour) { return spoke<R>(positions, own, neighbour); }, take);
 }
 
 /// `sum` and the pulls of the springs of vertex i and the lanes after it, N, in the order of their slots.
@@ -182,11 +213,40 @@ KOKKOS_INLINE_FUNCTION Vector3<R> elastic_force(const Fabric& cloth, const Point
   return with_springs<law>(cloth, positions, i, sum);
 }
 
+/// Of two states, whose neighbours and triangles at rest are read once.
+template <class T>
+struct Twice {
+  T first, second;
+};
+template <Law law, class R, class Fabric, class First, class Second>
+KOKKOS_INLINE_FUNCTION Twice<Vector3<R>> elastic_forces(const Fabric& cloth, const First& first,
+                                                        const Second& second, int i) {
+  Twice<Vector3<R>> sum{{R(0.0), R(0.0), R(0.0)}, {R(0.0), R(0.0), R(0.0)}};
+  if constexpr (whole_triangles<law>) {
+    using Spokes = Twice<Spoke<R>>;
+    const Twice<Vector3<R>> own{load_points<R>(first, i), load_points<R>(second, i)};
+    each_side_by_side<R>(
+        cloth, i,
+        [&](typename device::Access<R>::Index neighbour) {
+          return Spokes{spoke<R>(first, own.first, neighbour), spoke<R>(second, own.second, neighbour)};
+        },
+        [&](const Spokes& j, const Spokes& k, const RestTriangle<R>& rest) {
+          sum.first = sum.first + triangle_pull<law>(cloth.moduli, j.first, k.first, rest);
+          sum.second = sum.second + triangle_pull<law>(cloth.moduli, j.second, k.second, rest);
+        });
+  }
+  return {with_springs<law>(cloth, first, i, sum.first), with_springs<law>(cloth, second, i, sum.second)};
+}
+
 /// With dead forces.
+template <class R, class ExecutionSpace>
+KOKKOS_INLINE_FUNCTION Vector3<R> with_load(const Cloth<ExecutionSpace>& cloth, const Vector3<R>& elastic,
+                                            int i) {
+  return cloth.load.extent(0) > 0 ? elastic + load_points<R>(cloth.load, i) : elastic;
+}
 template <Law law, class R, class ExecutionSpace, class Points>
 KOKKOS_INLINE_FUNCTION Vector3<R> force(const Cloth<ExecutionSpace>& cloth, const Points& positions, int i) {
-  const Vector3<R> elastic = elastic_force<law, R>(cloth, positions, i);
-  return cloth.load.extent(0) > 0 ? elastic + load_points<R>(cloth.load, i) : elastic;
+  return with_load(cloth, elastic_force<law, R>(cloth, positions, i), i);
 }
 
 /// m/s^2; zero along pinned axes. `Fabric` as above.

@@ -50,7 +50,7 @@ struct OwnVertex {
   Vector3<double> x, v, load;
   Vector3<double> v2, v3, v_now;  ///< velocities of the stages after the first; of this one
   double inverse_mass;
-  std::uint8_t held;
+  Vector3<double> free;  ///< axes: 1, or 0 of those that are pinned
 };
 
 /// Many steps of Runge and Kutta's method in one launch: what `RungeKuttaFunctor` does in four launches a
@@ -112,7 +112,7 @@ struct ResidentSteps {
   template <class Member>
   KOKKOS_FUNCTION OwnVertex begin(const Member& member, const Halo& halo, const Tables& points) const {
     const Vector3<double> zero{0.0, 0.0, 0.0};
-    OwnVertex own{-1, -1, zero, zero, zero, zero, zero, zero, 0.0, 0};
+    OwnVertex own{-1, -1, zero, zero, zero, zero, zero, zero, 0.0, zero};
     const auto store = [&](int number, const Vector3<double>& at, const Vector3<double>& velocity) {
       store_points(points(0), number, at);
       const double part = share_after(0) * dt;
@@ -124,7 +124,7 @@ struct ResidentSteps {
       if (own.vertex >= 0) {
         own.x = load_points<double>(x, own.vertex), own.v_now = own.v = load_points<double>(v, own.vertex);
         if (cloth.load.extent(0) > 0) own.load = load_points<double>(cloth.load, own.vertex);
-        own.held = cloth.held(own.vertex);
+        own.free = free_axes<double>(cloth, own.vertex);
         own.inverse_mass = cloth.inverse_mass(own.vertex);
       } else {
         store_points(points(points.count - 1), rank, zero);  // neutral slots of its lane read it
@@ -143,13 +143,11 @@ struct ResidentSteps {
   template <class Member>
   KOKKOS_FUNCTION void end_stage(const Member& member, OwnVertex& own, std::int64_t done,
                                  const Vector3<double>& elastic, const TeamTable& points) const {
-    const Vector3<double> a =
-        acceleration(cloth, elastic + own.load, own.inverse_mass, own.v_now, free_axes<double>(&own.held));
+    const Vector3<double> a = acceleration(cloth, elastic + own.load, own.inverse_mass, own.v_now, own.free);
     const int stage = static_cast<int>(done % 4);
     Vector3<double> position;
     if (stage == 3) {
       own.v = own.v_now = end_velocity(dt, own.v, own.v2, own.v3, own.v_now, a);
-      watch.look(begun + done / 4 + 1, own.vertex, own.x, own.v);
       position = own.x + (share_after(0) * dt) * own.v;
     } else {
       const Vector3<double> velocity = own.v + (share_after(stage) * dt) * a;
@@ -166,6 +164,8 @@ struct ResidentSteps {
       member.post(epoch_after(done), static_cast<std::size_t>(own.place),
                   {{position.x, position.y, position.z}});
     store_points(points, member.team_rank(), position);
+    // Others wait for the post and not for this.
+    if (stage == 3) watch.look(begun + done / 4 + 1, own.vertex, own.x, own.v);
   }
 
   /// Brings what the halo posted at the end of stage `done` into `points`.

@@ -20,6 +20,7 @@ namespace drogue::fabric {
 template <class ExecutionSpace, Law law>
 struct ForceFunctor {
   using R = std::conditional_t<device::is_host<ExecutionSpace>, device::HostPack<double>, double>;
+  using Bounds = Kokkos::LaunchBounds<>;
   Cloth<ExecutionSpace> cloth;
   PointsView<ExecutionSpace> x, out;
 
@@ -65,10 +66,10 @@ class SolverOn final : public Solver {
     return Points(label, static_cast<std::size_t>(_padded));
   }
 
-  /// Of each pack of vertices; with as many blocks on a multiprocessor as hide the wait for memory.
+  /// Of each pack of vertices; with as many blocks on a multiprocessor as run fastest there.
   template <class Functor>
   void launch(const char* label, const Functor& functor) const {
-    launch_each<Kokkos::LaunchBounds<128, 7>>(label, _padded / lanes, functor);
+    launch_each<typename Functor::Bounds>(label, _padded / lanes, functor);
   }
   template <class Bounds = Kokkos::LaunchBounds<>, class Functor>
   void launch_each(const char* label, int count, const Functor& functor) const {
@@ -90,11 +91,19 @@ class SolverOn final : public Solver {
   [[nodiscard]] ProgramsView<ExecutionSpace> programs(
       const std::vector<device::ExpressionProgram>& from) const;
   [[nodiscard]] Timing<ExecutionSpace> timing(double part) const { return {_watch, _clock, _hand, part}; }
+  /// Whether each stage is a kernel: where others must see it, and on hosts, whose few registers two stages
+  /// at once would not fit.
+  [[nodiscard]] bool goes_by_stages() const {
+    return device::is_host<ExecutionSpace> || _acts || _prescribed;
+  }
   [[nodiscard]] ExternalFunctor<ExecutionSpace> loads_at(const Points& x, const Points& v, double part,
                                                          bool damps) const;
   void act(const Points& x, const Points& v, double part, bool damps) const;
   void place(const Points& x, const Points& v, double part, bool looks) const;
   void runge_kutta_step() const;
+  void runge_kutta_stages() const;
+  template <bool last>
+  void runge_kutta_half(const char* label) const;
   void verlet(bool ends, bool begins);
   void take(std::int64_t steps);
   void take_in_contact(std::int64_t steps);
@@ -134,8 +143,8 @@ class SolverOn final : public Solver {
   Points _x, _v, _next;
   Points _kept_x, _kept_v;
   Kokkos::View<std::int64_t, typename ExecutionSpace::memory_space> _kept_step;
-  Points _other, _velocity[3];                              ///< of Runge and Kutta alone
-  Points _dragged;                                          ///< of Verlet with dashpots
+  Points _other, _velocity[3];  ///< of Runge and Kutta alone, the last one only by stages
+  Points _dragged;              ///< of Verlet with dashpots
   std::optional<TriangleViews<ExecutionSpace>> _triangles;  ///< made when stress is asked for
   std::optional<device::Replay<ExecutionSpace>> _step;
   std::optional<Resident<ExecutionSpace>> _resident;

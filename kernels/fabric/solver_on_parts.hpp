@@ -81,7 +81,8 @@ SolverOn<ExecutionSpace, law>::SolverOn(const Parameters& p)
   if (p.contact.asked_for())
     _contact = make_contact<ExecutionSpace>(p, {_instance, _cloth.inverse_mass, _cloth.held, _watch});
   if (_integrator != Integrator::rk4) return;
-  for (Points& velocity : _velocity) velocity = points("drogue::fabric::stage_velocities");
+  for (int stage = 0; stage < (goes_by_stages() ? 3 : 2); ++stage)
+    _velocity[stage] = points("drogue::fabric::stage_velocities");
   _other = points("drogue::fabric::stage_positions");
   make_resident(p, rings, springs);
   record();

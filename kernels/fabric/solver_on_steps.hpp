@@ -10,7 +10,23 @@
 namespace drogue::fabric {
 
 template <class ExecutionSpace, Law law>
+template <bool last>
+void SolverOn<ExecutionSpace, law>::runge_kutta_half(const char* label) const {
+  launch(label, RungeKuttaHalfFunctor<ExecutionSpace, law, last>{
+                    _cloth, _x, _v, _next, _other, {_velocity[0], _velocity[1]}, _watch, _clock.dt});
+}
+
+template <class ExecutionSpace, Law law>
 void SolverOn<ExecutionSpace, law>::runge_kutta_step() const {
+  if (goes_by_stages()) return runge_kutta_stages();
+  if constexpr (!device::is_host<ExecutionSpace>) {
+    runge_kutta_half<false>("drogue::fabric::rk4_begin");
+    runge_kutta_half<true>("drogue::fabric::rk4_end");
+  }
+}
+
+template <class ExecutionSpace, Law law>
+void SolverOn<ExecutionSpace, law>::runge_kutta_stages() const {
   const Points at[] = {_x, _next, _other, _next}, next[] = {_next, _other, _next, _x};
   // Of the step that has gone by before a stage, and after it.
   const double before[] = {0.0, 0.5, 0.5, 1.0}, after[] = {0.5, 0.5, 1.0, 0.0};

@@ -32,6 +32,7 @@ template <class ExecutionSpace, Law law>
 struct RungeKuttaFunctor {
   using R = std::conditional_t<device::is_host<ExecutionSpace>, device::HostPack<double>, double>;
   using Points = PointsView<ExecutionSpace>;
+  using Bounds = Kokkos::LaunchBounds<128, 7>;
   static constexpr int lanes = device::Access<R>::lanes;
 
   Cloth<ExecutionSpace> cloth;
@@ -67,6 +68,62 @@ struct RungeKuttaFunctor {
   }
 };
 
+/// Two stages of it at once on a device, the first or the last two, where nothing but a vertex' own velocity
+/// changes its force from stage to stage: positions of a stage follow from the velocities of the one before,
+/// so those of both are known before either force is. What both read of the neighbours is read once.
+template <class ExecutionSpace, Law law, bool last>
+struct RungeKuttaHalfFunctor {
+  using Points = PointsView<ExecutionSpace>;
+  using Vector = Vector3<double>;
+  using Bounds = Kokkos::LaunchBounds<128, 4>;  // two states need their registers
+
+  Cloth<ExecutionSpace> cloth;
+  Points x, v;           ///< of step n; the last half replaces them
+  Points third, fourth;  ///< positions of these stages
+  Points velocity[2];    ///< of the second and the third
+  Watch<ExecutionSpace> watch;
+  double dt;
+
+  KOKKOS_FUNCTION void operator()(const int i) const {
+    if constexpr (last)
+      end(i);
+    else
+      begin(i);
+  }
+
+  /// Of stage `stage`, in which vertex i has velocity `now`, to that of the next one; v_n begins the step.
+  KOKKOS_FUNCTION Vector next_velocity(int stage, const Vector& v_n, const Vector& elastic, const Vector& now,
+                                       int i) const {
+    return v_n + (share_after(stage) * dt) * acceleration(cloth, with_load(cloth, elastic, i), now, i);
+  }
+
+  KOKKOS_FUNCTION void begin(int i) const {
+    const Twice<Vector> pull =
+        elastic_forces<law, double>(cloth, x, Ahead<Points>{x, v, share_after(0) * dt}, i);
+    const Vector v_n = load_points<double>(v, i), v2 = next_velocity(0, v_n, pull.first, v_n, i),
+                 v3 = next_velocity(1, v_n, pull.second, v2, i), x_n = load_points<double>(x, i);
+    store_points(third, i, x_n + (share_after(1) * dt) * v2);
+    store_points(fourth, i, x_n + (share_after(2) * dt) * v3);
+    store_points(velocity[0], i, v2);
+    store_points(velocity[1], i, v3);
+    if (i == 0) watch.steps(1) = watch.steps(0);
+  }
+
+  KOKKOS_FUNCTION void end(int i) const {
+    const Twice<Vector> pull = elastic_forces<law, double>(cloth, third, fourth, i);
+    const Vector v_n = load_points<double>(v, i), v2 = load_points<double>(velocity[0], i),
+                 v3 = load_points<double>(velocity[1], i), v4 = next_velocity(2, v_n, pull.first, v3, i),
+                 a4 = acceleration(cloth, with_load(cloth, pull.second, i), v4, i),
+                 end_x = end_position(dt, load_points<double>(x, i), v_n, v2, v3, v4),
+                 end_v = end_velocity(dt, v_n, v2, v3, v4, a4);
+    store_points(x, i, end_x);
+    store_points(v, i, end_v);
+    const std::int64_t step = watch.steps(1) + 1;
+    watch.look(step, i, end_x, end_v);
+    if (i == 0) watch.steps(0) = step;
+  }
+};
+
 /// Velocity Verlet (Swope et al. 1982) with one force a step: half a kick that ends the step before, half a
 /// kick that begins the next, and its drift. Damping is taken at the middle of half a kick. However steps are
 /// cut into launches, the same operations follow one another.
@@ -74,6 +131,7 @@ template <class ExecutionSpace, Law law>
 struct VerletFunctor {
   using R = std::conditional_t<device::is_host<ExecutionSpace>, device::HostPack<double>, double>;
   using Points = PointsView<ExecutionSpace>;
+  using Bounds = Kokkos::LaunchBounds<128, 6>;
   static constexpr int lanes = device::Access<R>::lanes;
 
   Cloth<ExecutionSpace> cloth;  ///< its damping is zero

@@ -5,6 +5,7 @@
 
 #include "kernels/fabric/solver.hpp"
 #include "kernels/reference/fabric/membrane.hpp"
+#include "tests/support/expression_program.hpp"
 #include "tests/support/fabric_mesh.hpp"
 
 // How vertices move: orders of accuracy, what is kept, what is held.
@@ -68,6 +69,10 @@ TEST(FabricMotion, DriversTakeTheSameSteps) {
       for (std::size_t axis = 0; axis < 3; ++axis) EXPECT_NEAR(now.x[i][axis], expected.x[i][axis], 1e-9);
   };
   expect_same(Driver::graph, 0, "graph");
+  // A load, though it is zero, is asked for in every stage.
+  p.timed_loads = {{testing::postfix({0.0}), std::vector<Vector>(p.mass.size(), Vector{})}};
+  expect_same(Driver::plain, 0, "plain");
+  p.timed_loads.clear();
   expect_same(Driver::automatic, 0, "persistent");
   expect_same(Driver::persistent, 500, "persistent");
   p.relative_damping = 1.0;
