@@ -27,6 +27,18 @@ KOKKOS_INLINE_FUNCTION Vector3<R> end_velocity(double dt, const Vector3<R>& v, c
   return v + ((1.0 / 3.0) * gained + (dt / 6.0) * a4);
 }
 
+/// Leaves vertex i, and the lanes after it, where a step ends.
+template <class ExecutionSpace, class R>
+KOKKOS_INLINE_FUNCTION void store_end(const Watch<ExecutionSpace>& watch, const PointsView<ExecutionSpace>& x,
+                                      const PointsView<ExecutionSpace>& v, int i, const Vector3<R>& end_x,
+                                      const Vector3<R>& end_v) {
+  store_points(x, i, end_x);
+  store_points(v, i, end_v);
+  const std::int64_t step = watch.steps(1) + 1;
+  watch.look(step, i, end_x, end_v);
+  if (i == 0) watch.steps(0) = step;
+}
+
 /// One stage of it.
 template <class ExecutionSpace, Law law>
 struct RungeKuttaFunctor {
@@ -51,14 +63,9 @@ struct RungeKuttaFunctor {
     const Vector3<R> v_now = stage == 0 ? v_n : load_points<R>(velocity[stage - 1], i);
     const Vector3<R> a = acceleration(cloth, pull, v_now, i), x_n = load_points<R>(x, i);
     if (stage == 3) {
-      const Vector3<R> v2 = load_points<R>(velocity[0], i), v3 = load_points<R>(velocity[1], i),
-                       end_x = end_position(dt, x_n, v_n, v2, v3, v_now),
-                       end_v = end_velocity(dt, v_n, v2, v3, v_now, a);
-      store_points(x, i, end_x);
-      store_points(v, i, end_v);
-      const std::int64_t step = watch.steps(1) + 1;
-      watch.look(step, i, end_x, end_v);
-      if (pack == 0) watch.steps(0) = step;
+      const Vector3<R> v2 = load_points<R>(velocity[0], i), v3 = load_points<R>(velocity[1], i);
+      store_end(watch, x, v, i, end_position(dt, x_n, v_n, v2, v3, v_now),
+                end_velocity(dt, v_n, v2, v3, v_now, a));
       return;
     }
     if (stage == 1 && pack == 0) watch.steps(1) = watch.steps(0);
@@ -113,14 +120,9 @@ struct RungeKuttaHalfFunctor {
     const Twice<Vector> pull = elastic_forces<law, double>(cloth, third, fourth, i);
     const Vector v_n = load_points<double>(v, i), v2 = load_points<double>(velocity[0], i),
                  v3 = load_points<double>(velocity[1], i), v4 = next_velocity(2, v_n, pull.first, v3, i),
-                 a4 = acceleration(cloth, with_load(cloth, pull.second, i), v4, i),
-                 end_x = end_position(dt, load_points<double>(x, i), v_n, v2, v3, v4),
-                 end_v = end_velocity(dt, v_n, v2, v3, v4, a4);
-    store_points(x, i, end_x);
-    store_points(v, i, end_v);
-    const std::int64_t step = watch.steps(1) + 1;
-    watch.look(step, i, end_x, end_v);
-    if (i == 0) watch.steps(0) = step;
+                 a4 = acceleration(cloth, with_load(cloth, pull.second, i), v4, i);
+    store_end(watch, x, v, i, end_position(dt, load_points<double>(x, i), v_n, v2, v3, v4),
+              end_velocity(dt, v_n, v2, v3, v4, a4));
   }
 };
 
