@@ -66,7 +66,8 @@ if(DROGUE_SANITIZE)
   # Null pointers and ends of objects are what the address sanitizer sees too, and a quarter of the time to compile.
   drogue_host_option(drogue_private INTERFACE -fsanitize=address,undefined
     -fno-sanitize=null,alignment,object-size -fno-sanitize-recover=all -fno-omit-frame-pointer)
-  target_link_options(drogue_private INTERFACE -fsanitize=address,undefined)
+  # Checks name where they stand: a program at any address would fix as many pointers at each start.
+  target_link_options(drogue_private INTERFACE -fsanitize=address,undefined -no-pie)
   # gcc 12 takes what it instruments for uninitialised.
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     drogue_host_option(drogue_private INTERFACE -Wno-maybe-uninitialized)

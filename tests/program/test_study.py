@@ -17,8 +17,9 @@ import springs_program
 
 class StudyTest(gas_program.GasTest):
     def study(self, code, scene, lists, *words, sets=()):
-        """Runs a study; that there is nothing here to draw pictures with is no failure."""
-        run = self.start(scene, "--backend", "serial", "--study", lists, *words, sets=sets)
+        """Runs a study where no interpreter starts: that there is nothing to draw pictures with is no failure."""
+        run = self.start(scene, "--backend", "serial", "--study", lists, *words, sets=sets,
+                         environment={"PYTHONHOME": os.devnull})
         self.assertEqual(code, run.returncode, run.stderr)
         return run
 
