@@ -77,24 +77,32 @@ struct FrequencyFunctor {
       }
       sum += norm_bound(block);
     };
+    // A spring of no length pulls nowhere, though it will as soon as it has one: until then it counts with
+    // the stiffness of a softer law, which pulls everywhere.
     if constexpr (whole_triangles<law>)
       each_triangle<double>(
           cloth, x, i,
           [&](const Spoke<double>& j, const Spoke<double>& k, const RestTriangle<double>& at_rest) {
             const Products<double>& products = at_rest.products;
             const RestTriangle<Dual> rest{{products.jj, products.jk, products.kk}, at_rest.inverse_area};
-            add(j.neighbour, [&](int axis) {
-              return triangle_pull<law>(cloth.moduli, along(j, axis), along(k, -1), rest);
-            });
-            add(k.neighbour, [&](int axis) {
-              return triangle_pull<law>(cloth.moduli, along(j, -1), along(k, axis), rest);
-            });
+            const Vector3<double> third = k.to - j.to;
+            const bool vanishes = j.squared == 0.0 || k.squared == 0.0 || dot(third, third) == 0.0;
+            const auto pull = [&](const Spoke<Dual>& to_j, const Spoke<Dual>& to_k) {
+              return vanishes ? triangle_pull<Law{Model::biquadratic}>(cloth.moduli, to_j, to_k, rest)
+                              : triangle_pull<law>(cloth.moduli, to_j, to_k, rest);
+            };
+            add(j.neighbour, [&](int axis) { return pull(along(j, axis), along(k, -1)); });
+            add(k.neighbour, [&](int axis) { return pull(along(j, -1), along(k, axis)); });
           });
     cloth.springs.each(i, [&](int slot) {
       const int j = cloth.springs.neighbour(slot);
       const Vector3<double> edge = load_points<double>(x, j) - load_points<double>(x, i);
       const Dual stiffness = cloth.springs.value(slot, 0), rest = cloth.springs.value(slot, 1);
-      add(j, [&](int axis) { return spring_pull<law>(stiffness, rest, along(edge, axis)); });
+      const bool vanishes = dot(edge, edge) == 0.0;
+      add(j, [&](int axis) {
+        return vanishes ? stiffness * along(edge, axis)
+                        : spring_pull<law>(stiffness, rest, along(edge, axis));
+      });
     });
     return sum + norm_bound(diagonal);
   }

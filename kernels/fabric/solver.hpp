@@ -91,6 +91,10 @@ class Solver {
   virtual void set_contact_work(std::span<const ContactWork> of_vertices) = 0;
 };
 
+/// Whether a triangle can be computed with: it is not flat to round-off, and its longest side, m, is within
+/// 1e-70 and 1e70, so that the square of its area is a number.
+[[nodiscard]] bool has_area(const std::vector<Vector>& rest, const std::array<int, 3>& triangle);
+
 /// Throws std::invalid_argument for parameters out of range; the backend must be available.
 [[nodiscard]] std::unique_ptr<Solver> create_solver(device::Backend backend, const Parameters& parameters);
 

@@ -5,6 +5,7 @@
 
 #include "common/scene/node.hpp"
 #include "common/scene/read.hpp"
+#include "kernels/fabric/solver.hpp"
 #include "miniapps/springs/expressions.hpp"
 #include "miniapps/springs/mesh_topology.hpp"
 #include "miniapps/springs/obj_file.hpp"
@@ -45,7 +46,8 @@ fabric::Mesh make_mesh(const Table& root, SpringsScene& scene) {
   return read_obj(file);
 }
 
-/// At every vertex and time 0; one that a kernel must evaluate has to fit there too.
+/// At every vertex and time 0, and less than what counts as lost; one that a kernel must evaluate has to fit
+/// there too.
 void require_finite(const Table& root, const SpringsScene& scene, const std::string& path,
                     const std::string& expression, bool for_device = false) {
   try {
@@ -54,11 +56,12 @@ void require_finite(const Table& root, const SpringsScene& scene, const std::str
     contradict(root, path, path + ": " + refused.what());
   }
   const std::vector<double> values = values_at(expression, scene.mesh);
-  const auto bad = std::ranges::find_if(values, [](double value) { return !std::isfinite(value); });
+  const auto bad = std::ranges::find_if(values, [](double value) { return !(std::abs(value) < 1e99); });
   if (bad != values.end())
     contradict(root, path,
                path + " gives " + real_text(*bad) + " " +
-                   place_text(scene, static_cast<std::size_t>(bad - values.begin())) + "; it must be finite");
+                   place_text(scene, static_cast<std::size_t>(bad - values.begin())) +
+                   (std::isfinite(*bad) ? "; it must be less than 1e99" : "; it must be finite"));
 }
 
 void require_finite(const Table& root, const SpringsScene& scene, const std::string& path,
@@ -211,6 +214,11 @@ std::vector<int> require_some(const Table& root, const SpringsScene& scene, cons
 
 void complete_and_check(const Table& root, SpringsScene& scene) {
   scene.mesh = make_mesh(root, scene);
+  for (const auto& triangle : scene.mesh.triangles)
+    if (!fabric::has_area(scene.mesh.rest, triangle))
+      contradict(root, "mesh",
+                 "mesh: the triangle " + place_text(scene, static_cast<std::size_t>(triangle[0])) +
+                     " has no area: it is too thin, or not between 1e-70 and 1e70 m long");
   scene.lines = scene.mesh.lines.size();
   complete_material(root, scene);
   add_reinforcements(root, scene);

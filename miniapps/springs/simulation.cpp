@@ -129,6 +129,28 @@ void Simulation::replan_if_stiffer() {
   if (_solver->clock().dt > 1.02 * _scene.time.safety * stable_dt()) plan();
 }
 
+/// Steps that are too long double the motion again and again, and a run may end before a number overflows:
+/// then cloth moves farther in a step than the whole mesh reaches. What flies freely may do so too, but there
+/// is no step too long for it.
+void Simulation::require_stable() {
+  const double dt = _solver->clock().dt;
+  const double way = std::sqrt(2.0 * _solver->totals().kinetic / _problem.mass) * dt;
+  Vector low = _scene.mesh.rest.front(), high = low;
+  for (const Vector& place : _scene.mesh.rest)
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      low[axis] = std::min(low[axis], place[axis]);
+      high[axis] = std::max(high[axis], place[axis]);
+    }
+  if (!(way > std::hypot(high[0] - low[0], high[1] - low[1], high[2] - low[2]))) return;
+  const double stable =
+      fabric::stable_dt(_scene.time.integrator, _solver->fastest_frequency(), _solver->fastest_decay());
+  if (dt <= stable) return;
+  std::ostringstream text;
+  text << "a step of " << dt << " s is too long: cloth moves " << way
+       << " m in it on average, farther than the whole mesh reaches; take a shorter time.dt, or \"auto\"";
+  throw Failure(ExitCode::numerical_failure, text.str());
+}
+
 std::int64_t Simulation::steps_to_event() const {
   const std::int64_t step = _solver->clock().step;
   std::int64_t next = _stop_step;
@@ -209,6 +231,7 @@ ExitCode Simulation::run(const run::RunDirectory& directory, run::ResultDocument
   output.finish();
   _io_s = output.waited();
   if (failure) throw Failure(ExitCode::numerical_failure, failure_text(*failure));
+  if (done && _scene.time.dt) require_stable();
   return done ? ExitCode::ok : ExitCode::interrupted;
 }
 

@@ -49,6 +49,7 @@ class Simulation {
   void plan();
   void replan_if_stiffer();
   [[nodiscard]] double stable_dt();
+  void require_stable();
   [[nodiscard]] double next_stop(double time) const;
   [[nodiscard]] bool is_output_time(double time) const;
   [[nodiscard]] std::int64_t steps_to_event() const;

@@ -181,6 +181,26 @@ class RunDirectory(springs_program.SpringsTest):
         self.assertEqual(list(map(float, order)), list(file.values("/steps/000000/velocity"))[1::3])
 
 
+SHEET = """app = "springs"
+mesh.rectangle = { width = 1.0, height = 1.0, vertices = 100 }
+pin = [{ where = "x==0" }]
+load = [{ gravity = [0, 0, -9.81] }]
+time.end_time = 0.05
+"""
+
+BUNGEE = """app = "springs"
+mesh.string = { from = [0, 0, 0], to = [0, 0, -1], vertices = 11 }
+material = { axial_stiffness = 50.0, line_density = 0.01 }
+initial.displacement.z = "-z"
+pin = [{ where = "z==0" }]
+mass = [{ where = "z==-1", add = 0.1 }]
+load = [{ gravity = [0, 0, -9.81] }]
+time.end_time = 0.5
+output.history_every = 100
+verify.energy_drift = 1e-2
+"""
+
+
 class Failures(springs_program.SpringsTest):
     def test_a_step_that_is_too_long(self):
         message = self.expect(4, self.write(DRUM), "--quiet", "--out", "out", sets=["time.dt=0.01", "time.end_time=10"]).stderr
@@ -190,6 +210,31 @@ class Failures(springs_program.SpringsTest):
         self.assertEqual(("numerical-failure", 4), (told["status"], told["exit_code"]))
         self.assertIn(told["message"], message)
         self.assertTrue((self.folder / "out/restart.h5").exists())
+
+    def test_a_step_that_is_too_long_for_a_few_steps(self):
+        """The run is over before a number overflows."""
+        message = self.expect(4, self.write(SHEET), "--quiet", "--out", "out", sets=["time.dt=0.01", "time.end_time=0.05"]).stderr
+        self.assertRegex(message, r"a step of 0\.01 s is too long: cloth moves .* m in it on average, farther than the whole mesh reaches")
+
+    def test_what_flies_fast_is_not_too_long_a_step(self):
+        """Cloth that flies farther in a stable step than it reaches."""
+        self.expect(0, self.write(SHEET.replace('pin = [{ where = "x==0" }]\n', "")), "--quiet", "--out", "out",
+                    sets=["initial.velocity.z=1e6", "time.dt=1e-4", "time.end_time=0.003"])
+
+    def test_a_string_that_starts_with_no_length(self):
+        self.expect(0, self.write(BUNGEE), "--quiet", "--out", "out", sets=["material.tension_only=true"])
+        self.assertGreater(self.result("out")["steps"], 100)
+
+    def test_numbers_beyond_all_cloth(self):
+        for key, value, message in (
+            ("initial.velocity.z", "1e200", r"initial\.velocity\.z gives 1e\+?200 .*; it must be less than 1e99"),
+            ("initial.displacement.z", "1e150", r"initial\.displacement\.z gives 1e\+?150 .*; it must be less than 1e99"),
+            ("pin", '[{where="x==0",motion={z="1e200+t"}}]', r"motion\.z gives 1e\+?200"),
+            ("mesh.rectangle.width", "1e101", "has no area"),
+            ("mesh.rectangle.width", "1e-200", "has no area"),
+        ):
+            with self.subTest(key, value=value):
+                self.assertRegex(self.expect(3, self.write(SHEET), "--check", sets=[f"{key}={value}"]).stderr, message)
 
     def test_loads_that_stiffen_cloth_at_once(self):
         """The step follows within the first few: a pressure that blows a flat membrane up, a sheet torn apart."""

@@ -14,21 +14,30 @@ using testing::random_patch;
 using testing::shaken;
 
 constexpr auto backend = device::Backend::DROGUE_TEST_BACKEND;
-constexpr Integrator integrators[] = {Integrator::rk4, Integrator::verlet};
+/// How steps are taken.
+struct Way {
+  Integrator integrator;
+  Driver driver = Driver::automatic;
+};
+constexpr Way ways[] = {{Integrator::rk4},
+                        {Integrator::rk4, Driver::graph},
+                        {Integrator::rk4, Driver::plain},
+                        {Integrator::verlet}};
 
 /// A hundred vertices of which each goes its own way.
-Parameters dust(Integrator integrator) {
+Parameters dust(const Way& way) {
   Parameters p;
   p.mesh.rest.assign(100, Vector{});
   p.mass.assign(100, 1.0);
-  p.integrator = integrator;
+  p.integrator = way.integrator;
+  p.driver = way.driver;
   p.dt = 0.1;
   return p;
 }
 
 TEST(FabricFailure, NamesTheFirstStepAndItsFirstVertex) {
-  for (const Integrator integrator : integrators) {
-    const auto solver = create_solver(backend, dust(integrator));
+  for (const Way& way : ways) {
+    const auto solver = create_solver(backend, dust(way));
     const std::vector<Vector> x(100, Vector{});
     std::vector<Vector> v = x;
     v[20] = {0.0, -0.5e100, 0.0};         // lost when 0.5 + 0.05 n reaches 1: at step 10
@@ -47,13 +56,14 @@ TEST(FabricFailure, NamesTheFirstStepAndItsFirstVertex) {
 }
 
 /// A patch, and beside it a vertex that leaves: it is lost after about a thousand steps.
-Parameters leaving(Integrator integrator) {
+Parameters leaving(const Way& way) {
   Parameters p;
   p.mesh = random_patch(11, 8, 3);
   p.mesh.rest.push_back({0.0, 0.0, 5.0});
   p.material.axial_stiffness = 500.0;
   p.mass.assign(p.mesh.rest.size(), 0.01);
-  p.integrator = integrator;
+  p.integrator = way.integrator;
+  p.driver = way.driver;
   p.dt = 1e-3;
   return p;
 }
@@ -77,8 +87,8 @@ std::unique_ptr<Solver> started(const Parameters& p) {
 }
 
 TEST(FabricFailure, GoesBackToAStateThatWasPutAside) {
-  for (const Integrator integrator : integrators) {
-    const Parameters p = leaving(integrator);
+  for (const Way& way : ways) {
+    const Parameters p = leaving(way);
     const auto solver = started(p);
     solver->advance(700);
     solver->advance(1700);
@@ -109,7 +119,7 @@ TEST(FabricFailure, GoesBackToAStateThatWasPutAside) {
 }
 
 TEST(FabricFailure, IsForgottenWithANewState) {
-  const Parameters p = dust(Integrator::verlet);
+  const Parameters p = dust({Integrator::verlet});
   const auto solver = create_solver(backend, p);
   std::vector<Vector> x(100, Vector{}), v = x;
   v[3] = {0.9e100, 0.0, 0.0};
@@ -125,7 +135,7 @@ TEST(FabricFailure, IsForgottenWithANewState) {
 }
 
 TEST(FabricFailure, TheClockStaysWithTheStateGoneBackTo) {
-  const Parameters p = leaving(Integrator::rk4);
+  const Parameters p = leaving({Integrator::rk4});
   const auto solver = started(p);
   solver->advance(2400);
   solver->set_dt(2e-3);
@@ -135,7 +145,7 @@ TEST(FabricFailure, TheClockStaysWithTheStateGoneBackTo) {
 }
 
 TEST(FabricFailure, WhatIsNoStateIsRefused) {
-  const auto solver = create_solver(backend, dust(Integrator::rk4));
+  const auto solver = create_solver(backend, dust({Integrator::rk4}));
   const std::vector<Vector> good(100, Vector{});
   for (const double wrong : {std::nan(""), static_cast<double>(INFINITY), -1e101}) {
     std::vector<Vector> bad = good;
@@ -148,7 +158,7 @@ TEST(FabricFailure, WhatIsNoStateIsRefused) {
 // ---- the clock ----
 
 TEST(FabricClock, CountsStepsAndKeepsTimeWhenTheStepChanges) {
-  const auto solver = create_solver(backend, dust(Integrator::rk4));
+  const auto solver = create_solver(backend, dust({Integrator::rk4}));
   std::vector<Vector> x(100, Vector{}), v(100, Vector{1.0, 0.0, 0.0});
   solver->upload(x, v);
   solver->advance(5);

@@ -113,6 +113,25 @@ TEST(FabricFrequency, TensionAcrossAStringIsSeen) {
               1e-9);
 }
 
+TEST(FabricFrequency, SpringsOfNoLengthCount) {
+  // Two masses at one place that a string of 25 N/m joins.
+  Parameters p;
+  p.mesh.rest = {{0, 0, 0}, {2, 0, 0}};
+  p.mesh.lines = {{0, 1}};
+  p.material.axial_stiffness = 50.0;
+  p.mass = {2, 2};
+  p.dt = 1e-4;
+  const std::vector<Vector> one_place(2, Vector{1, 1, 0});
+  EXPECT_NEAR(bound_of(p, one_place), 5.0, 0.1);
+  p.material.tension_only = true;
+  EXPECT_NEAR(bound_of(p, one_place), 5.0, 0.1);
+  for (const Model model : {Model::edge, Model::quadratic, Model::biquadratic}) {
+    const Parameters folded = cloth(model);
+    const std::vector<Vector> nowhere(folded.mass.size(), Vector{});
+    EXPECT_GT(bound_of(folded, nowhere), 0.3 * bound_of(folded, folded.mesh.rest)) << static_cast<int>(model);
+  }
+}
+
 /// How much the largest displacement has grown after steps of `z` over the frequency; infinite when lost.
 double growth(Parameters p, double dt) {
   p.dt = dt;
