@@ -141,8 +141,8 @@ void check_loads(const Table& root, const SpringsScene& scene) {
         contradict(root, path + "." + name, path + "." + name + " needs triangles, and the mesh has none");
       if (const auto opposed = opposed_triangles(scene.mesh))
         contradict(root, path + "." + name,
-                   path + "." + name + " has no side to act on: faces " + std::to_string((*opposed)[0] + 1) +
-                       " and " + std::to_string((*opposed)[1] + 1) + " of the mesh turn in opposite senses");
+                   path + "." + name + " has no side to act on: faces " + std::to_string((*opposed)[0]) +
+                       " and " + std::to_string((*opposed)[1]) + " of the mesh turn in opposite senses");
       require_finite(root, scene, path + "." + name, text,
                      name != std::string("pressure") || depends_on_time(text));
     }

@@ -119,7 +119,8 @@ TEST(SpringsScene, AFileDecidesWhichKeysApply) {
   EXPECT_TRUE(holds(error_of({"material.line_density=0.2"}, with_file, triangle), "applies only with lines"));
   EXPECT_FALSE(holds(print_springs_scene(read_text(with_file, {}, rope)), "poisson"));
   EXPECT_TRUE(holds(error_of({}, with_file), "there is no file"));
-  EXPECT_TRUE(holds(error_of({}, with_file, triangle + "f 1 2 9\n"), "m.obj:5: face 2 names vertex 9"));
+  EXPECT_TRUE(
+      holds(error_of({}, with_file, triangle + "f 1 2 9\n"), "m.obj:5: face 2 of the file names vertex 9"));
 }
 
 TEST(SpringsScene, StiffnessOfAStringIsThatOfItsPieces) {
@@ -212,7 +213,7 @@ TEST(SpringsScene, PressureNeedsASide) {
   const std::string two = triangle + "v 1 1 0\n", along = two + "f 2 4 3\n", against = two + "f 2 3 4\n";
   EXPECT_EQ(error_of({"load=[{pressure=1}]"}, with_file, along), "");
   EXPECT_EQ(error_of({"load=[{gravity=[0,0,1]}]"}, with_file, against), "");
-  EXPECT_TRUE(holds(error_of({"load=[{follower_pressure=1}]"}, with_file, against), "faces 1 and 2"));
+  EXPECT_TRUE(holds(error_of({"load=[{follower_pressure=1}]"}, with_file, against), "faces 0 and 1"));
 }
 
 TEST(SpringsScene, BendingNeedsCloth) {
