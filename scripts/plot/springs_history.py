@@ -43,7 +43,7 @@ def springs_history_figure(run: Run):
     largest = max(values["kinetic"].max(), released.max()) or 1.0
     kept = values["energy"] - sum(works.values())
     axes[1].plot(*style.thin(time.values, (kept - kept[0]) / largest), color=style.ERROR_COLOUR)
-    axes[1].set_title("change of their sum" + (" less works," if works else "") + " over the largest kinetic or released energy")
+    axes[1].set_title("change of sum" + (" less works," if works else "") + " over largest kinetic or released energy")
     for panel, probe in zip(axes[2:], probes):
         moved = {axis: run.history[f"{probe}_{axis}"].values for axis in "xyz"}
         _draw_curves(panel, time.values, {axis: place - place[0] for axis, place in moved.items()})

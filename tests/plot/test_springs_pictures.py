@@ -85,7 +85,10 @@ class SpringsPictures(unittest.TestCase):
         rows = ["time [s],step,kinetic [J],elastic [J],potential [J],energy [J],contact_work [J],friction_work [J]",
                 "0,0,4,0,0,4,0,0", "1,1,2,0,0,2,-1.5,-0.5", "2,2,1,0,0,1,-2,-0.9"]  # fmt: skip
         (run / "history.csv").write_text("\n".join(rows) + "\n")
-        energies, rest = springs_history_figure(read(run)).axes
+        figure = springs_history_figure(read(run))
+        energies, rest = figure.axes
+        title = rest._left_title.get_window_extent(figure.canvas.get_renderer())
+        self.assertLess(title.x1, figure.bbox.width)
         self.assertEqual(5, len(energies.lines))
         np.testing.assert_allclose(rest.lines[0].get_ydata(), [0, 0, -0.1 / 4], atol=1e-15)
 
