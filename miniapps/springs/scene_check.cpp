@@ -87,13 +87,18 @@ void complete_material(const Table& root, SpringsScene& scene) {
     needless(key, cloth, "triangles");
   for (const char* key : {"line_density", "axial_stiffness"}) needless(key, lines, "lines");
   needless("stiffness", lines || springs, "lines or model edge");
+  if (f.stiffness && f.axial_stiffness && !springs)
+    contradict(root, "material.axial_stiffness",
+               "material.axial_stiffness and material.stiffness are both of strings, and the mesh has no "
+               "triangles: give one");
   if (f.material.bending_stiffness > 0.0 && !is_flat(scene.mesh))
     contradict(root, "material.bending_stiffness",
                "material.bending_stiffness needs cloth that is flat at rest, and this mesh is not");
   if (springs && !f.stiffness) f.stiffness = f.material.stiffness;
   if (f.stiffness) f.material.stiffness = *f.stiffness;
-  f.material.axial_stiffness = lines ? f.axial_stiffness : 0.0;
-  if (!lines || !f.stiffness) return;
+  if (lines && !f.stiffness && !f.axial_stiffness) f.axial_stiffness = 5000.0;
+  f.material.axial_stiffness = f.axial_stiffness.value_or(0.0);
+  if (!lines || f.axial_stiffness) return;
   scene.mesh.line_stiffness.clear();
   for (const auto& [i, j] : scene.mesh.lines) {
     const fabric::Vector &a = scene.mesh.rest[static_cast<std::size_t>(i)],

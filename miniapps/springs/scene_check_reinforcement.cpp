@@ -22,7 +22,7 @@ void add_reinforcements(const Table& root, SpringsScene& scene) {
   if (scene.reinforcements.empty()) return;
   fabric::Mesh& mesh = scene.mesh;
   const Fabric& f = scene.fabric;
-  if (mesh.line_stiffness.empty()) mesh.line_stiffness.assign(mesh.lines.size(), f.axial_stiffness);
+  if (mesh.line_stiffness.empty()) mesh.line_stiffness.assign(mesh.lines.size(), f.material.axial_stiffness);
   mesh.line_density.assign(mesh.lines.size(), f.line_density);
   std::map<Edge, std::size_t> line_of;
   for (std::size_t k = 0; k < mesh.lines.size(); ++k) {

@@ -130,6 +130,23 @@ TEST(SpringsScene, StiffnessOfAStringIsThatOfItsPieces) {
   EXPECT_EQ(uneven.mesh.line_stiffness, (std::vector<double>{5.0, 10.0}));
 }
 
+TEST(SpringsScene, StringsBesideEdgesMayHaveAnAxialStiffness) {
+  const std::string both = triangle + "v 0 0 -2\nl 1 4\n";
+  const std::string edge = "material.model=edge", axial = "material.axial_stiffness=50",
+                    stiffness = "material.stiffness=70";
+  const SpringsScene scene = read_text(with_file, {edge, axial, stiffness}, both);
+  EXPECT_EQ(scene.fabric.material.stiffness, 70.0);
+  EXPECT_EQ(scene.fabric.material.axial_stiffness, 50.0);
+  EXPECT_TRUE(scene.mesh.line_stiffness.empty());
+  EXPECT_TRUE(holds(print_springs_scene(scene), "\naxial_stiffness = 50.0"));
+  EXPECT_EQ(read_text(with_file, {edge, axial}, both).fabric.material.stiffness, 1000.0);
+  const SpringsScene one = read_text(with_file, {edge, stiffness}, both);
+  EXPECT_EQ(one.mesh.line_stiffness, std::vector<double>{140.0});
+  EXPECT_FALSE(holds(print_springs_scene(one), "axial_stiffness"));
+  EXPECT_TRUE(holds(error_of({axial, stiffness}, with_file, both), "without stiffness"));
+  EXPECT_TRUE(holds(error_of({edge, axial, stiffness}, with_file, rope), "give one"));
+}
+
 TEST(SpringsScene, ReinforcementsAreLinesOfTheirOwn) {
   const auto with = [](const std::string& list) {
     return std::vector<std::string>{"reinforcement=[" + list + "]"};
