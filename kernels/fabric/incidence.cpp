@@ -4,30 +4,19 @@
 #include <cmath>
 #include <map>
 #include <optional>
-#include <set>
 #include <stdexcept>
 
+#include "kernels/fabric/edges.hpp"
 #include "kernels/fabric/membrane.hpp"
-#include "kernels/fabric/vector3.hpp"
+#include "kernels/fabric/way.hpp"
 
 namespace drogue::fabric {
 
 namespace {
 
-double squared_distance(const Vector& a, const Vector& b) {
-  const double x = b[0] - a[0], y = b[1] - a[1], z = b[2] - a[2];
-  return x * x + y * y + z * z;
-}
-
-Vector3<double> way(const Vector& a, const Vector& b) { return {b[0] - a[0], b[1] - a[1], b[2] - a[2]}; }
-
-/// Each edge of the triangles once.
-std::set<std::array<int, 2>> edges_of(const Mesh& mesh) {
-  std::set<std::array<int, 2>> edges;
-  for (const auto& t : mesh.triangles)
-    for (std::size_t k = 0; k < 3; ++k)
-      edges.insert({std::min(t[k], t[(k + 1) % 3]), std::max(t[k], t[(k + 1) % 3])});
-  return edges;
+double squared_distance(const Mesh& mesh, int from, int to) {
+  const Vector3<double> between = way(mesh, from, to);
+  return dot(between, between);
 }
 
 /// Chains the triangles of a vertex, of which each is given by its other two vertices: neighbours one after
@@ -69,11 +58,10 @@ RingSlots ring_slots(const Mesh& mesh) {
       const auto own = static_cast<int>(i);
       if (!entries.empty()) entries.push_back({own, {}});
       for (std::size_t k = 0; k < ring.size(); ++k) {
-        const auto to = [&](int j) { return way(mesh.rest[i], mesh.rest[static_cast<std::size_t>(j)]); };
-        const Vector3<double> next = to(ring[k]);
+        const Vector3<double> next = way(mesh, own, ring[k]);
         entries.push_back({ring[k], {dot(next, next)}});
         if (k == 0) continue;
-        const Vector3<double> before = to(ring[k - 1]);
+        const Vector3<double> before = way(mesh, own, ring[k - 1]);
         const Products<double> rest{dot(before, before), dot(before, next), dot(next, next)};
         entries.back().value = {rest.kk, rest.jk, inverse_area(rest)};
       }
@@ -83,9 +71,7 @@ RingSlots ring_slots(const Mesh& mesh) {
 
 DashpotSlots dashpot_slots(const Mesh& mesh, const std::vector<double>& mass, double rate) {
   std::vector<std::vector<Entry<1>>> of_vertex(mesh.rest.size());
-  std::set<std::array<int, 2>> pairs = edges_of(mesh);
-  for (const auto& line : mesh.lines) pairs.insert({std::min(line[0], line[1]), std::max(line[0], line[1])});
-  for (const auto& [i, j] : pairs) {
+  for (const auto& [i, j] : edges_of(mesh)) {
     const double a = mass[static_cast<std::size_t>(i)], b = mass[static_cast<std::size_t>(j)];
     const double dashpot = rate * (a * b / (a + b));
     of_vertex[static_cast<std::size_t>(i)].push_back({j, {dashpot}});
@@ -100,13 +86,10 @@ SpringSlots spring_slots(const Mesh& mesh, const Material& material) {
     of_vertex[static_cast<std::size_t>(i)].push_back({j, {stiffness, length}});
     of_vertex[static_cast<std::size_t>(j)].push_back({i, {stiffness, length}});
   };
-  const auto rest_length = [&](int i, int j) {
-    return std::sqrt(
-        squared_distance(mesh.rest[static_cast<std::size_t>(i)], mesh.rest[static_cast<std::size_t>(j)]));
-  };
+  const auto rest_length = [&](int i, int j) { return std::sqrt(squared_distance(mesh, i, j)); };
   if (material.model == Model::edge || material.model == Model::linear_vector) {
     const bool of_vectors = material.model == Model::linear_vector;
-    for (const auto& [i, j] : edges_of(mesh))
+    for (const auto& [i, j] : triangle_edges(mesh))
       add(i, j, material.stiffness, of_vectors ? 0.0 : rest_length(i, j));
   }
   for (std::size_t k = 0; k < mesh.lines.size(); ++k) {
@@ -120,22 +103,18 @@ SpringSlots spring_slots(const Mesh& mesh, const Material& material) {
 
 BendingSlots bending_slots(const Mesh& mesh, double stiffness) {
   const auto place = [&](int i) -> const Vector& { return mesh.rest[static_cast<std::size_t>(i)]; };
-  std::map<std::array<int, 2>, std::vector<int>> opposite;  // vertices across an edge
+  std::map<Edge, std::vector<int>> opposite;  // vertices across an edge
   for (const auto& t : mesh.triangles)
-    for (std::size_t k = 0; k < 3; ++k) {
-      const int a = t[(k + 1) % 3], b = t[(k + 2) % 3];
-      opposite[{std::min(a, b), std::max(a, b)}].push_back(t[k]);
-    }
+    for (std::size_t k = 0; k < 3; ++k) opposite[opposite_edge(t, k)].push_back(t[k]);
   std::vector<std::map<int, double>> weights(mesh.rest.size());
-  const auto add_hinge = [&](const std::array<int, 2>& edge, const std::array<int, 2>& across) {
+  const auto add_hinge = [&](const Edge& edge, const std::array<int, 2>& across) {
     const std::array<int, 4> vertex = {edge[0], edge[1], across[0], across[1]};
-    const double squared = squared_distance(place(edge[0]), place(edge[1]));
+    const double squared = squared_distance(mesh, edge[0], edge[1]);
     double k[4] = {}, areas = 0.0;
     for (std::size_t side = 0; side < 2; ++side) {
-      const Vector& top = place(across[side]);
-      const double to_0 = squared_distance(place(edge[0]), top), to_1 = squared_distance(place(edge[1]), top),
-                   four_areas =
-                       4.0 / inverse_area(way(place(edge[0]), place(edge[1])), way(place(edge[0]), top));
+      const int top = across[side];
+      const double to_0 = squared_distance(mesh, edge[0], top), to_1 = squared_distance(mesh, edge[1], top),
+                   four_areas = 4.0 / inverse_area(way(mesh, edge[0], edge[1]), way(mesh, edge[0], top));
       const double at_0 = (squared + to_0 - to_1) / four_areas, at_1 = (squared + to_1 - to_0) / four_areas;
       k[0] += at_1, k[1] += at_0, k[2 + side] -= at_0 + at_1;
       areas += 0.25 * four_areas;
@@ -164,7 +143,7 @@ BendingSlots bending_slots(const Mesh& mesh, double stiffness) {
 std::vector<Vector> rest_pull(const Mesh& mesh, const Material& material) {
   if (material.model != Model::linear_vector) return {};
   std::vector<Vector> pull(mesh.rest.size(), Vector{});
-  for (const auto& edge : edges_of(mesh)) {
+  for (const auto& edge : triangle_edges(mesh)) {
     const auto i = static_cast<std::size_t>(edge[0]), j = static_cast<std::size_t>(edge[1]);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const double force = material.stiffness * (mesh.rest[j][axis] - mesh.rest[i][axis]);

@@ -49,11 +49,11 @@ void find_within(const SpringsScene& scene, std::size_t number, const std::vecto
   const fabric::Mesh& mesh = scene.mesh;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const std::vector<Vector> at = places(x, mesh.triangles[t]);
-    if (reference::enters(body, std::array{at[0], at[1], at[2]})) meets("face", t + 1);
+    if (reference::enters(body, std::array{at[0], at[1], at[2]})) meets("face", t);
   }
   for (std::size_t k = 0; k < mesh.lines.size(); ++k) {
     const auto end = [&](std::size_t which) { return x[static_cast<std::size_t>(mesh.lines[k][which])]; };
-    if (reference::enters(body, std::array{end(0), end(1)})) meets("line", k + 1);
+    if (reference::enters(body, std::array{end(0), end(1)})) meets("line", k);
   }
 }
 
@@ -67,8 +67,7 @@ ContactState contact_state(const SpringsScene& scene, const std::vector<Vector>&
   state.intersections += static_cast<int>(found.size());
   if (state.meeting.empty() && !found.empty())
     state.meeting = "the edge of vertices " + std::to_string(found[0].segment[0]) + " and " +
-                    std::to_string(found[0].segment[1]) + " meets face " +
-                    std::to_string(found[0].triangle + 1);
+                    std::to_string(found[0].segment[1]) + " meets face " + std::to_string(found[0].triangle);
   return state;
 }
 

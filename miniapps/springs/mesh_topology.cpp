@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <numbers>
 
+#include "kernels/fabric/edges.hpp"
+
 namespace drogue::springs_app {
 namespace {
 
@@ -63,18 +65,6 @@ struct Range {
 };
 
 }  // namespace
-
-std::vector<std::array<int, 2>> edges_of(const Mesh& mesh) {
-  std::vector<std::array<int, 2>> edges;
-  const auto add = [&](int i, int j) { edges.push_back({std::min(i, j), std::max(i, j)}); };
-  for (const auto& t : mesh.triangles)
-    for (std::size_t k = 0; k < 3; ++k) add(t[k], t[(k + 1) % 3]);
-  for (const auto& [i, j] : mesh.lines) add(i, j);
-  std::ranges::sort(edges);
-  const auto repeated = std::ranges::unique(edges);
-  edges.erase(repeated.begin(), repeated.end());
-  return edges;
-}
 
 Vector double_area(const std::vector<Vector>& points, const std::array<int, 3>& triangle) {
   const Vector u = difference(at(points, triangle[1]), at(points, triangle[0])),

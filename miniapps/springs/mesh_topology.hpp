@@ -9,9 +9,6 @@
 
 namespace drogue::springs_app {
 
-/// Every edge of the triangles and every line once, the smaller vertex first, ascending.
-std::vector<std::array<int, 2>> edges_of(const fabric::Mesh& mesh);
-
 /// Twice the area of a triangle times its unit normal, m^2.
 fabric::Vector double_area(const std::vector<fabric::Vector>& points, const std::array<int, 3>& triangle);
 

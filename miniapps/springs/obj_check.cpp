@@ -36,6 +36,8 @@ class ObjChecker {
 
   static std::string one_based(int i) { return std::to_string(i + 1); }
 
+  static std::string part(const char* kind, int i) { return part_of_file(kind, static_cast<std::size_t>(i)); }
+
   /// The first entry that equals one before it, and that one; equal parts of a file mean a slip.
   template <class T>
   static std::pair<int, int> first_repeated(const std::vector<T>& values) {
@@ -54,7 +56,7 @@ class ObjChecker {
     const auto [second, first] = first_repeated(_mesh.rest);
     if (first < 0) return;
     refuse(_contents.vertex_line[static_cast<std::size_t>(second)],
-           "vertex " + one_based(second) + " lies where vertex " + one_based(first) +
+           part("vertex", second) + " lies where vertex " + one_based(first) +
                " does; name one vertex in both places");
   }
 
@@ -68,7 +70,7 @@ class ObjChecker {
     if (orphan == used.end()) return;
     const auto i = static_cast<std::size_t>(orphan - used.begin());
     refuse(_contents.vertex_line[i],
-           "vertex " + std::to_string(i + 1) + " belongs to no face and no line: it would have no mass");
+           part_of_file("vertex", i) + " belongs to no face and no line: it would have no mass");
   }
 
   void degenerate_triangles() const {
@@ -82,7 +84,7 @@ class ObjChecker {
       }
       const double twice = std::hypot(normal[0], normal[1], normal[2]);
       if (!(twice > flat * longest * longest) || !std::isfinite(longest))
-        refuse(_contents.triangle_line[k], "face " + std::to_string(k + 1) + " (vertices " +
+        refuse(_contents.triangle_line[k], part_of_file("face", k) + " (vertices " +
                                                one_based(_mesh.triangles[k][0]) + ", " +
                                                one_based(_mesh.triangles[k][1]) + ", " +
                                                one_based(_mesh.triangles[k][2]) + ") has no area");
@@ -94,7 +96,7 @@ class ObjChecker {
     for (auto& triangle : sorted) std::ranges::sort(triangle);
     if (const auto [second, first] = first_repeated(sorted); first >= 0)
       refuse(_contents.triangle_line[static_cast<std::size_t>(second)],
-             "face " + one_based(second) + " repeats face " + one_based(first));
+             part("face", second) + " repeats face " + one_based(first));
     // Edge and the triangle it is of.
     std::vector<std::array<int, 3>> edges;
     for (std::size_t k = 0; k < sorted.size(); ++k)
@@ -107,8 +109,8 @@ class ObjChecker {
         worst = edges[k];
     if (worst[2] == static_cast<int>(sorted.size())) return;
     refuse(_contents.triangle_line[static_cast<std::size_t>(worst[2])],
-           "face " + one_based(worst[2]) + " is the third at the edge of vertices " + one_based(worst[0]) +
-               " and " + one_based(worst[1]) + ": cloth must be a manifold");
+           part("face", worst[2]) + " is the third at the edge of vertices " + one_based(worst[0]) + " and " +
+               one_based(worst[1]) + ": cloth must be a manifold");
   }
 
   void repeated_lines() const {
@@ -118,8 +120,7 @@ class ObjChecker {
     if (first < 0) return;
     const auto& [a, b] = sorted[static_cast<std::size_t>(second)];
     refuse(_contents.line_line[static_cast<std::size_t>(second)],
-           "the line from vertex " + one_based(a) + " to " + one_based(b) +
-               " is given twice, first in line " +
+           "the line from " + part("vertex", a) + " to " + one_based(b) + " is given twice, first in line " +
                std::to_string(_contents.line_line[static_cast<std::size_t>(first)]));
   }
 

@@ -69,7 +69,7 @@ class ObjParser {
   }
 
   void vertex(const std::vector<std::string_view>& words) {
-    const std::string which = "vertex " + std::to_string(_contents.mesh.rest.size() + 1);
+    const std::string which = part_of_file("vertex", _contents.mesh.rest.size());
     if (words.size() != 4)
       refuse(which + " has " + std::to_string(words.size() - 1) + " coordinates; it must have 3");
     fabric::Vector point;
@@ -89,7 +89,7 @@ class ObjParser {
   }
 
   void face(const std::vector<std::string_view>& words) {
-    const std::string which = "face " + std::to_string(_contents.mesh.triangles.size() + 1);
+    const std::string which = part_of_file("face", _contents.mesh.triangles.size());
     if (words.size() != 4)
       refuse(which + " has " + std::to_string(words.size() - 1) +
              " vertices; it must have 3: divide larger faces into triangles");
@@ -107,7 +107,8 @@ class ObjParser {
     int before = index(words[1], "line");
     for (std::size_t k = 2; k < words.size(); ++k) {
       const int here = index(words[k], "line");
-      if (here == before) refuse("a line leads from vertex " + std::to_string(here + 1) + " to itself");
+      if (here == before)
+        refuse("a line leads from " + part_of_file("vertex", static_cast<std::size_t>(here)) + " to itself");
       _contents.mesh.lines.push_back({before, here});
       _contents.line_line.push_back(_line);
       before = here;
@@ -130,11 +131,10 @@ class ObjParser {
 
   template <std::size_t n>
   void check_range(const std::vector<std::array<int, n>>& parts, const std::vector<int>& lines) const {
-    const std::string kind = n == 3 ? "face " : "line ";
     for (std::size_t k = 0; k < parts.size(); ++k)
       for (const int i : parts[k])
         if (static_cast<std::size_t>(i) >= _contents.mesh.rest.size())
-          refuse_at(lines[k], kind + (n == 3 ? std::to_string(k + 1) + " " : "") + "names vertex " +
+          refuse_at(lines[k], (n == 3 ? part_of_file("face", k) : "line") + " names vertex " +
                                   std::to_string(i + 1) + "; the file has " +
                                   std::to_string(_contents.mesh.rest.size()));
   }
@@ -146,6 +146,10 @@ class ObjParser {
 };
 
 }  // namespace
+
+std::string part_of_file(const std::string& kind, std::size_t k) {
+  return kind + " " + std::to_string(k + 1) + " of the file";
+}
 
 ObjContents parse_obj(std::string_view text, const std::string& name) { return ObjParser(text, name).run(); }
 

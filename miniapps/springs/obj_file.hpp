@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <string_view>
 
 #include "kernels/fabric/parameters.hpp"
@@ -12,6 +13,9 @@ struct ObjContents {
   fabric::Mesh mesh;
   std::vector<int> vertex_line, triangle_line, line_line;
 };
+
+/// What errors call vertex or face k, k from 0: by its number in the file, which counts from 1.
+std::string part_of_file(const std::string& kind, std::size_t k);
 
 /// Reads Wavefront OBJ: `v x y z`, `f` with three vertices (texture and normal numbers are passed over), `l`
 /// with two or more; names, groups, materials, normals and texture coordinates mean nothing to cloth and are

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <chrono>
 
+#include "kernels/fabric/edges.hpp"
 #include "miniapps/springs/history.hpp"
-#include "miniapps/springs/mesh_topology.hpp"
 #include "miniapps/springs/stress_fields.hpp"
 #include "miniapps/springs/vectors.hpp"
 

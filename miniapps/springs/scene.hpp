@@ -35,9 +35,9 @@ struct Fabric {
   fabric::Material material;
   double area_density = 0.756;  ///< kg/m^2
   fabric::Lumping mass = fabric::Lumping::area;
-  double line_density = 0.001;      ///< kg/m
-  double axial_stiffness = 5000.0;  ///< of strings, N
-  std::optional<double> stiffness;  ///< N/m an edge
+  double line_density = 0.001;            ///< kg/m
+  std::optional<double> axial_stiffness;  ///< of strings, N
+  std::optional<double> stiffness;        ///< N/m an edge; of strings too where those have no axial one
 };
 
 /// Edges of triangles, and lines of the mesh, that are strings of their own.

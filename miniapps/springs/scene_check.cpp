@@ -90,13 +90,18 @@ void complete_material(const Table& root, SpringsScene& scene) {
     needless(key, cloth, "triangles");
   for (const char* key : {"line_density", "axial_stiffness"}) needless(key, lines, "lines");
   needless("stiffness", lines || springs, "lines or model edge");
+  if (f.stiffness && f.axial_stiffness && !springs)
+    contradict(root, "material.axial_stiffness",
+               "material.axial_stiffness and material.stiffness are both of strings, and the mesh has no "
+               "triangles: give one");
   if (f.material.bending_stiffness > 0.0 && !is_flat(scene.mesh))
     contradict(root, "material.bending_stiffness",
                "material.bending_stiffness needs cloth that is flat at rest, and this mesh is not");
   if (springs && !f.stiffness) f.stiffness = f.material.stiffness;
   if (f.stiffness) f.material.stiffness = *f.stiffness;
-  f.material.axial_stiffness = lines ? f.axial_stiffness : 0.0;
-  if (!lines || !f.stiffness) return;
+  if (lines && !f.stiffness && !f.axial_stiffness) f.axial_stiffness = 5000.0;
+  f.material.axial_stiffness = f.axial_stiffness.value_or(0.0);
+  if (!lines || f.axial_stiffness) return;
   scene.mesh.line_stiffness.clear();
   for (const auto& [i, j] : scene.mesh.lines) {
     const fabric::Vector &a = scene.mesh.rest[static_cast<std::size_t>(i)],
@@ -144,8 +149,8 @@ void check_loads(const Table& root, const SpringsScene& scene) {
         contradict(root, path + "." + name, path + "." + name + " needs triangles, and the mesh has none");
       if (const auto opposed = opposed_triangles(scene.mesh))
         contradict(root, path + "." + name,
-                   path + "." + name + " has no side to act on: faces " + std::to_string((*opposed)[0] + 1) +
-                       " and " + std::to_string((*opposed)[1] + 1) + " of the mesh turn in opposite senses");
+                   path + "." + name + " has no side to act on: faces " + std::to_string((*opposed)[0]) +
+                       " and " + std::to_string((*opposed)[1]) + " of the mesh turn in opposite senses");
       require_finite(root, scene, path + "." + name, text,
                      name != std::string("pressure") || depends_on_time(text));
     }

@@ -3,7 +3,7 @@
 
 #include "common/scene/node.hpp"
 #include "common/scene/read.hpp"
-#include "miniapps/springs/mesh_topology.hpp"
+#include "kernels/fabric/edges.hpp"
 #include "miniapps/springs/scene_check.hpp"
 
 namespace drogue::springs_app {
@@ -12,7 +12,7 @@ namespace {
 using scene::contradict;
 using scene::Table;
 
-using Edge = std::array<int, 2>;
+using fabric::Edge;
 
 std::string reinforcement_path(std::size_t number) { return "reinforcement[" + std::to_string(number) + "]"; }
 
@@ -22,12 +22,12 @@ void add_reinforcements(const Table& root, SpringsScene& scene) {
   if (scene.reinforcements.empty()) return;
   fabric::Mesh& mesh = scene.mesh;
   const Fabric& f = scene.fabric;
-  if (mesh.line_stiffness.empty()) mesh.line_stiffness.assign(mesh.lines.size(), f.axial_stiffness);
+  if (mesh.line_stiffness.empty()) mesh.line_stiffness.assign(mesh.lines.size(), f.material.axial_stiffness);
   mesh.line_density.assign(mesh.lines.size(), f.line_density);
   std::map<Edge, std::size_t> line_of;
   for (std::size_t k = 0; k < mesh.lines.size(); ++k) {
     const auto& [i, j] = mesh.lines[k];
-    line_of[{std::min(i, j), std::max(i, j)}] = k;
+    line_of[fabric::edge_between(i, j)] = k;
   }
   const std::vector<Edge> edges = edges_of(mesh);
   std::vector<std::size_t> holder(edges.size(), 0);  // its number from 1; 0: none

@@ -154,7 +154,7 @@ void declare_material(Table& table, SpringsScene& scene) {
             "model");
   table
       .value("stiffness", scene::real_codec(f.stiffness),
-             "Stiffness of an edge; of strings in place of axial_stiffness")
+             "Stiffness of an edge; of strings that have no axial_stiffness")
       .unit("N/m")
       .above(0.0)
       .default_text("1000 for model edge")
@@ -174,7 +174,9 @@ void declare_material(Table& table, SpringsScene& scene) {
   table.value("axial_stiffness", scene::real_codec(f.axial_stiffness), "E A of strings")
       .unit("N")
       .above(0.0)
-      .when([&f, lines] { return lines() && !f.stiffness; }, "with lines and without stiffness", "stiffness");
+      .default_text("5000 without stiffness")
+      .when([=, &f] { return lines() && (!f.stiffness || (cloth() && springs())); },
+            "with lines and without stiffness, or with model edge", "stiffness");
   table
       .value("bending_stiffness", scene::real_codec(f.material.bending_stiffness),
              "Bending stiffness of cloth that is flat at rest")

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "common/program/signals.hpp"
+#include "common/scene/node.hpp"
 #include "kernels/device/ledger.hpp"
 #include "kernels/device/runtime.hpp"
 #include "kernels/fabric/contact_parts.hpp"
@@ -115,7 +116,7 @@ void Simulation::plan() {
   if (!(steps <= most_steps))
     throw Failure(ExitCode::numerical_failure,
                   "the fastest frequency of the mesh allows no step that ends: more than 1e15 to t = " +
-                      std::to_string(_stop_time) + " s");
+                      scene::real_text(_stop_time) + " s");
   const double dt = (_stop_time - begin) / steps;
   _stop_step += static_cast<std::int64_t>(steps);
   _solver->set_clock({step, dt, step, begin});

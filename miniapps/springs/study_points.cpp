@@ -46,7 +46,8 @@ void refuse_what_the_mesh_has_not(const study::Axes& axes, const SpringsScene& b
 }
 
 /// The table [material] with springs along edges in place of triangles, or the other way round.
-std::string material_table(const Fabric& f, const std::string& model) {
+std::string material_table(const SpringsScene& base, const std::string& model) {
+  const Fabric& f = base.fabric;
   const auto pair = [](const char* key, double value) {
     return std::string(", ") + key + " = " + scene::toml_text(value);
   };
@@ -57,6 +58,7 @@ std::string material_table(const Fabric& f, const std::string& model) {
   else
     text += pair("membrane_modulus", f.material.stiffness / of_equilateral) + pair("poisson", 1.0 / 3.0);
   text += pair("area_density", f.area_density) + pair("bending_stiffness", f.material.bending_stiffness);
+  if (base.has_lines()) text += pair("line_density", f.line_density);
   text += std::string(", tension_only = ") + (f.material.tension_only ? "true" : "false");
   return text + ", mass = \"" + (f.mass == fabric::Lumping::area ? "area" : "equal") + "\" }";
 }
@@ -67,7 +69,7 @@ std::vector<std::string> assignments(const SpringsScene& base, const Wanted& wan
   if (!wanted.model.empty()) {
     const bool whole = wanted.model != "edge";
     sets.push_back(whole == fabric::has_triangles(f.material.model) ? "material.model=\"" + wanted.model + '"'
-                                                                    : material_table(f, wanted.model));
+                                                                    : material_table(base, wanted.model));
   }
   if (!wanted.mass.empty()) sets.push_back("material.mass=\"" + wanted.mass + '"');
   if (!wanted.integrator.empty()) sets.push_back("time.integrator=\"" + wanted.integrator + '"');
@@ -79,6 +81,13 @@ std::vector<std::string> assignments(const SpringsScene& base, const Wanted& wan
                    scene::toml_text(*f.stiffness * static_cast<double>(wanted.vertices - 1) / edges));
   }
   return sets;
+}
+
+/// Strings beside cloth keep the E A of each, which no key of another model may tell.
+void keep_strings(const SpringsScene& base, SpringsScene& scene) {
+  if (!base.has_triangles() || !base.has_lines()) return;
+  scene.mesh.line_stiffness = base.mesh.line_stiffness;
+  scene.fabric.material.axial_stiffness = base.fabric.material.axial_stiffness;
 }
 
 StudyPoint named(SpringsScene scene) {
@@ -108,7 +117,9 @@ std::vector<StudyPoint> study_points(const std::filesystem::path& file, const st
   for (const Wanted& wanted : product(axes)) {
     std::vector<std::string> all = sets;
     std::ranges::move(assignments(base, wanted), std::back_inserter(all));
-    StudyPoint point = named(read_springs_scene(file, all));
+    SpringsScene scene = read_springs_scene(file, all);
+    keep_strings(base, scene);
+    StudyPoint point = named(std::move(scene));
     // A generator may make the same mesh of two numbers.
     const bool again = !points.empty() && points.back().label == point.label &&
                        points.back().scene.mesh.rest.size() == point.scene.mesh.rest.size();

@@ -57,13 +57,14 @@ def _dimension(rows: list[dict[str, str]]) -> int:
 def _curves(rows: list[dict[str, str]], norm: str) -> tuple[dict[str, np.ndarray], list[str]]:
     """Per label an array of (mesh, seconds, error) by rising mesh, and what is left out in words."""
     curves: dict[str, list[tuple[float, float, float]]] = {}
-    failed = exact = 0
+    failed = exact = finest = 0
     for row in rows:
         if row.get("status") != "ok":
             failed += 1
             continue
         if row[norm] == "" and row["compute_s"] != "":
-            continue  # the finest mesh has no next one
+            finest += 1
+            continue
         point = tuple(float(row[column]) for column in (_mesh_column(rows), "compute_s", norm))
         if point[2] > 0:
             curves.setdefault(_words(row["label"]), []).append(point)
@@ -71,6 +72,8 @@ def _curves(rows: list[dict[str, str]], norm: str) -> tuple[dict[str, np.ndarray
             exact += 1
     left_out = [f"{failed} of {len(rows)} runs failed"] if failed else []
     left_out += [f"{exact} of {len(rows)} have error 0"] if exact else []
+    if finest and not curves:  # a curve does without its finest mesh
+        left_out.append(f"{finest} of {len(rows)} have no finer mesh to be compared with and nothing to verify")
     return {label: np.array(sorted(points)) for label, points in curves.items()}, left_out
 
 

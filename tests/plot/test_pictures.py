@@ -18,6 +18,7 @@ import synthetic
 from PIL import Image
 from plot import cli
 from plot.exact import errors, exact_solution
+from plot.failure import Failure
 from plot.gas_figures import View, fields_figure
 from plot.history_figure import conservation
 from plot.run_directory import read
@@ -165,6 +166,15 @@ class Pictures(unittest.TestCase):
         self.assertIn("area", study_figure("cone", rows).axes[0].get_ylabel())
         # Of one mesh there is no difference.
         self.assertIn("energy drift", study_figure("cone", rows[-1:]).axes[0].get_ylabel())
+
+    def test_study_of_one_mesh_without_checks_says_what_it_lacks(self):
+        synthetic.write_springs_study(self.folder / "study.csv", checks=())
+        (self.folder / "study.json").write_text('{"scene": "cone"}')
+        rows = read(self.folder).study
+        with self.assertRaisesRegex(Failure, "cone has nothing to draw: 1 of 1 have no finer mesh"):
+            study_figure("cone", rows[-1:])
+        with self.assertRaisesRegex(Failure, "it is empty"):
+            study_figure("cone", [])
 
     def test_study_of_what_is_kept_tells_no_order(self):
         synthetic.write_springs_study(self.folder / "study.csv", checks=("energy_balance",))

@@ -85,9 +85,21 @@ class SpringsPictures(unittest.TestCase):
         rows = ["time [s],step,kinetic [J],elastic [J],potential [J],energy [J],contact_work [J],friction_work [J]",
                 "0,0,4,0,0,4,0,0", "1,1,2,0,0,2,-1.5,-0.5", "2,2,1,0,0,1,-2,-0.9"]  # fmt: skip
         (run / "history.csv").write_text("\n".join(rows) + "\n")
-        energies, rest = springs_history_figure(read(run)).axes
+        figure = springs_history_figure(read(run))
+        energies, rest = figure.axes
+        title = rest._left_title.get_window_extent(figure.canvas.get_renderer())
+        self.assertLess(title.x1, figure.bbox.width)
         self.assertEqual(5, len(energies.lines))
         np.testing.assert_allclose(rest.lines[0].get_ydata(), [0, 0, -0.1 / 4], atol=1e-15)
+
+    def test_history_divides_by_what_the_check_divides_by(self):
+        """Kinetic energy that the elastic and potential energy given up between rows would make counts too."""
+        run = write_run(self.folder / "run", SQUARE, TRIANGLES, EDGES, [SQUARE])
+        rows = ["time [s],step,kinetic [J],elastic [J],potential [J],energy [J]",
+                "0,0,1,3,5,9", "1,1,4,0,5,9", "2,2,0,1,-2,-1"]  # fmt: skip
+        (run / "history.csv").write_text("\n".join(rows) + "\n")
+        change = springs_history_figure(read(run)).axes[1].lines[0].get_ydata()
+        np.testing.assert_allclose(change, [0, 0, -10 / (1 + 2 + 7)], atol=1e-15)
 
     def test_directions_of_the_larger_stress(self):
         """Of flat cloth, where there is stress to speak of, as far apart as triangles are."""

@@ -202,6 +202,17 @@ verify.energy_drift = 1e-2
 
 
 class Failures(springs_program.SpringsTest):
+    def test_an_end_that_no_step_reaches(self):
+        """The time is told as a scene would have it, not with all of its digits."""
+        message = self.expect(4, self.write(DRUM), "--quiet", "--out", "out", sets=["time.end_time=1e300", "output.times=[1e300]"]).stderr
+        self.assertRegex(message, r"more than 1e15 to t = 1e\+300 s")
+
+    def test_parts_that_meet_are_told_by_numbers_from_0(self):
+        """A triangle through another: its vertices are 3 to 5 of fields.h5, and the first face is 0."""
+        self.write("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0.2 0.2 -1\nv 0.3 0.2 -1\nv 0.2 0.2 1\nf 1 2 3\nf 4 5 6\n", "m.obj")
+        scene = self.write('app = "springs"\n[mesh]\nfile = "m.obj"\n[contact]\nself = true\n[time]\nend_time = 1\n')
+        self.assertRegex(self.expect(3, scene, "--check").stderr, "the edge of vertices [34] and 5 meets face 0")
+
     def test_a_step_that_is_too_long(self):
         message = self.expect(4, self.write(DRUM), "--quiet", "--out", "out", sets=["time.dt=0.01", "time.end_time=10"]).stderr
         self.assertRegex(message, r"not finite at vertex \d+ \(at rest at .* m\) at step \d+, t = .* s")

@@ -180,6 +180,19 @@ class SpringsStudy(springs_program.SpringsTest, StudyTest):
         self.assertEqual(101, len(document["rows"][0]["series"]["length"]))
         self.assertNotIn("cauchy_area", rows[0])
 
+    def test_strings_beside_cloth_are_the_same_in_every_model(self):
+        """The string has the shortest step, so that a string of another mass or stiffness would take others."""
+        self.write("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0.5 0.5 0\nv 0 0 -0.01\nv 0 0 -0.02\n"
+                   "f 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\nl 1 6 7\n", "m.obj")
+        scene = self.write('app = "springs"\n[mesh]\nfile = "m.obj"\n[material]\nmembrane_modulus = 20\npoisson = 0\n'
+                           'line_density = 0.3\naxial_stiffness = 50\n[time]\nend_time = 2\n')
+        text = self.study(0, scene, "models=edge:biquadratic", "--quiet").stderr
+        steps = [entry["steps"] for entry in self.tables("out/scene-study")[1]["rows"]]
+        self.assertEqual(2, len(steps))
+        self.assertEqual(steps[0], steps[1])
+        self.assertGreater(steps[0], 1000)
+        self.assertNotIn("it is empty", text)
+
     def test_a_mesh_that_fails_is_a_row(self):
         scene = self.write(springs_program.DRUM)
         self.study(0, scene, "meshes=61:817", "--out", "study", "--quiet", sets=["time.dt=0.0008"])

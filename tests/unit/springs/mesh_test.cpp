@@ -3,6 +3,8 @@
 #include <cmath>
 #include <set>
 
+#include "kernels/fabric/contact_parts.hpp"
+#include "kernels/fabric/edges.hpp"
 #include "miniapps/springs/mesh_generators.hpp"
 #include "miniapps/springs/mesh_topology.hpp"
 
@@ -40,6 +42,25 @@ double largest_edge(const Mesh& mesh) {
     largest = std::max(largest, std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]));
   }
   return largest;
+}
+
+TEST(SpringsMesh, EdgesAreTakenOnceWhicheverWayTheyAreNamed) {
+  Mesh mesh;
+  mesh.rest = {{0.0, 0.0, 0.0}, {3.0, 0.0, 0.0}, {0.0, 4.0, 0.0}, {3.0, 4.0, 0.0}, {0.0, 0.0, 7.0}};
+  mesh.triangles = {{0, 1, 2}, {3, 2, 1}};
+  mesh.lines = {{4, 0}, {2, 1}};  // a string, and a seam that is an edge of both triangles
+  using Edges = std::vector<fabric::Edge>;
+  const Edges of_triangles = {{0, 1}, {0, 2}, {1, 2}, {1, 3}, {2, 3}};
+  EXPECT_EQ(triangle_edges(mesh), of_triangles);
+  EXPECT_EQ(edges_of(mesh), (Edges{{0, 1}, {0, 2}, {0, 4}, {1, 2}, {1, 3}, {2, 3}}));
+  const fabric::ContactEdges edges = contact_edges(mesh);
+  Edges lines_last = of_triangles;
+  lines_last.push_back({0, 4});
+  EXPECT_EQ(edges.ends, lines_last);
+  EXPECT_EQ(edges.first_line, 5);
+  EXPECT_DOUBLE_EQ(edges.mean_length, (3.0 + 4.0 + 7.0 + 5.0 + 4.0 + 3.0) / 6.0);
+  for (std::size_t k = 0; k < 3; ++k)
+    EXPECT_EQ(fabric::opposite_edge({3, 2, 1}, k), (Edges{{1, 2}, {1, 3}, {2, 3}})[k]);
 }
 
 TEST(SpringsMesh, RectangleCoversItsArea) {

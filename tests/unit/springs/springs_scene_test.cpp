@@ -119,7 +119,8 @@ TEST(SpringsScene, AFileDecidesWhichKeysApply) {
   EXPECT_TRUE(holds(error_of({"material.line_density=0.2"}, with_file, triangle), "applies only with lines"));
   EXPECT_FALSE(holds(print_springs_scene(read_text(with_file, {}, rope)), "poisson"));
   EXPECT_TRUE(holds(error_of({}, with_file), "there is no file"));
-  EXPECT_TRUE(holds(error_of({}, with_file, triangle + "f 1 2 9\n"), "m.obj:5: face 2 names vertex 9"));
+  EXPECT_TRUE(
+      holds(error_of({}, with_file, triangle + "f 1 2 9\n"), "m.obj:5: face 2 of the file names vertex 9"));
 }
 
 TEST(SpringsScene, StiffnessOfAStringIsThatOfItsPieces) {
@@ -127,6 +128,23 @@ TEST(SpringsScene, StiffnessOfAStringIsThatOfItsPieces) {
   EXPECT_DOUBLE_EQ(scene.fabric.material.axial_stiffness, 25.0);
   const SpringsScene uneven = read_text(with_file, {"material.stiffness=5"}, rope);
   EXPECT_EQ(uneven.mesh.line_stiffness, (std::vector<double>{5.0, 10.0}));
+}
+
+TEST(SpringsScene, StringsBesideEdgesMayHaveAnAxialStiffness) {
+  const std::string both = triangle + "v 0 0 -2\nl 1 4\n";
+  const std::string edge = "material.model=edge", axial = "material.axial_stiffness=50",
+                    stiffness = "material.stiffness=70";
+  const SpringsScene scene = read_text(with_file, {edge, axial, stiffness}, both);
+  EXPECT_EQ(scene.fabric.material.stiffness, 70.0);
+  EXPECT_EQ(scene.fabric.material.axial_stiffness, 50.0);
+  EXPECT_TRUE(scene.mesh.line_stiffness.empty());
+  EXPECT_TRUE(holds(print_springs_scene(scene), "\naxial_stiffness = 50.0"));
+  EXPECT_EQ(read_text(with_file, {edge, axial}, both).fabric.material.stiffness, 1000.0);
+  const SpringsScene one = read_text(with_file, {edge, stiffness}, both);
+  EXPECT_EQ(one.mesh.line_stiffness, std::vector<double>{140.0});
+  EXPECT_FALSE(holds(print_springs_scene(one), "axial_stiffness"));
+  EXPECT_TRUE(holds(error_of({axial, stiffness}, with_file, both), "without stiffness"));
+  EXPECT_TRUE(holds(error_of({edge, axial, stiffness}, with_file, rope), "give one"));
 }
 
 TEST(SpringsScene, ReinforcementsAreLinesOfTheirOwn) {
@@ -212,7 +230,7 @@ TEST(SpringsScene, PressureNeedsASide) {
   const std::string two = triangle + "v 1 1 0\n", along = two + "f 2 4 3\n", against = two + "f 2 3 4\n";
   EXPECT_EQ(error_of({"load=[{pressure=1}]"}, with_file, along), "");
   EXPECT_EQ(error_of({"load=[{gravity=[0,0,1]}]"}, with_file, against), "");
-  EXPECT_TRUE(holds(error_of({"load=[{follower_pressure=1}]"}, with_file, against), "faces 1 and 2"));
+  EXPECT_TRUE(holds(error_of({"load=[{follower_pressure=1}]"}, with_file, against), "faces 0 and 1"));
 }
 
 TEST(SpringsScene, BendingNeedsCloth) {

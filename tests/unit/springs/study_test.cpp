@@ -1,6 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <unistd.h>
+
 #include <cmath>
+#include <fstream>
 #include <numbers>
 
 #include "common/program/failure.hpp"
@@ -71,6 +74,34 @@ TEST(SpringsStudy, AStringKeepsItsAxialStiffness) {
     EXPECT_NEAR(point.scene.fabric.material.axial_stiffness, 5000.0 * std::hypot(0.3, 0.5) / 59.0, 1e-10);
     EXPECT_EQ(point.model, "string");
   }
+}
+
+TEST(SpringsStudy, StringsBesideClothAreThoseOfTheSceneInEveryModel) {
+  const std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / ("drogue-study-" + std::to_string(::getpid()));
+  std::filesystem::create_directory(folder);
+  std::ofstream(folder / "m.obj") << "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 -1\nv 0 0 -3\nf 1 2 3\nl 1 4 5\n";
+  std::ofstream(folder / "s.toml") << "app = \"springs\"\n[mesh]\nfile = \"m.obj\"\n[time]\nend_time = 1\n";
+  const std::vector<std::string> of_material = {
+      "membrane_modulus=500,line_density=0.3,axial_stiffness=50",
+      "membrane_modulus=500,line_density=0.3,stiffness=40",
+      "model=\"edge\",stiffness=70,line_density=0.3,axial_stiffness=50",
+      "model=\"edge\",stiffness=70,line_density=0.3",
+  };
+  for (const std::string& keys : of_material) {
+    const std::vector<std::string> sets = {"material={" + keys + "}"};
+    const SpringsScene base = read_springs_scene(folder / "s.toml", sets);
+    const auto points = study_points(folder / "s.toml", sets, "models=edge:quadratic:biquadratic");
+    ASSERT_EQ(points.size(), 3U);
+    for (const StudyPoint& point : points) {
+      EXPECT_EQ(point.scene.fabric.line_density, 0.3) << keys;
+      EXPECT_EQ(point.scene.mesh.line_stiffness, base.mesh.line_stiffness) << keys << point.label;
+      EXPECT_EQ(point.scene.fabric.material.axial_stiffness, base.fabric.material.axial_stiffness) << keys;
+    }
+    const double edge = base.fabric.material.model == fabric::Model::edge ? 70.0 : 250.0 * std::sqrt(3.0);
+    EXPECT_DOUBLE_EQ(points[0].scene.fabric.material.stiffness, edge) << keys;
+  }
+  std::filesystem::remove_all(folder);
 }
 
 TEST(SpringsStudy, WrongAxes) {

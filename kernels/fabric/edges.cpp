@@ -1,0 +1,37 @@
+#include "kernels/fabric/edges.hpp"
+
+#include <algorithm>
+
+namespace drogue::fabric {
+
+namespace {
+
+std::vector<Edge> each_once(std::vector<Edge> edges) {
+  std::ranges::sort(edges);
+  const auto repeated = std::ranges::unique(edges);
+  edges.erase(repeated.begin(), repeated.end());
+  return edges;
+}
+
+}  // namespace
+
+Edge edge_between(int a, int b) { return {std::min(a, b), std::max(a, b)}; }
+
+Edge opposite_edge(const std::array<int, 3>& triangle, std::size_t k) {
+  return edge_between(triangle[(k + 1) % 3], triangle[(k + 2) % 3]);
+}
+
+std::vector<Edge> triangle_edges(const Mesh& mesh) {
+  std::vector<Edge> edges;
+  for (const auto& t : mesh.triangles)
+    for (std::size_t k = 0; k < 3; ++k) edges.push_back(opposite_edge(t, k));
+  return each_once(std::move(edges));
+}
+
+std::vector<Edge> edges_of(const Mesh& mesh) {
+  std::vector<Edge> edges = triangle_edges(mesh);
+  for (const auto& [i, j] : mesh.lines) edges.push_back(edge_between(i, j));
+  return each_once(std::move(edges));
+}
+
+}  // namespace drogue::fabric
