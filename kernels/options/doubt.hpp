@@ -16,27 +16,14 @@ struct Doubt {
 /// A kink that hardly spreads, of pure jumps in a short time, leaves an order far below two: with phi =
 /// spread/(spread + h^2) the factor has 90 (1 - phi)^4. Jumps of Merton's that are alike within a step stand
 /// on a node beside their place. A step that does not resolve e^x misses h^4/20.
-///
-/// The mixture's rule of trapezoids misses exp(-2 pi d/0.4) of the density, where d is how far 1/(J^2 + Y^2)
-/// is regular in the imaginary part of ln z: 1.607 |lambda|^{-2/3} at the zero of the Hankel function next to
-/// |lambda| (Abramowitz and Stegun 9.5.22 with the first zero of the Airy function). The prefactor is fitted
-/// to European prices of orders 5 to 100 (docs/options.md).
 template <class R>
-KOKKOS_INLINE_FUNCTION Doubt<R> doubt_of(const PutPack<R>& put, const Law<R>& law, R h, R spread) {
+KOKKOS_INLINE_FUNCTION Doubt<R> doubt_of(const PutPack<R>& put, R h, R spread) {
   const R sharp = h * h / (spread + h * h), square = sharp * sharp;
   const R resolved = device::minimum(h, R(2.0)), squared = resolved * resolved;
   Doubt<R> doubt{1.0 + 90.0 * square * square, 0.05 * squared * squared};
   if (put.model == Model::merton) {
     const R alike = device::maximum(R(0.0), 1.0 - merton_deviation(put) / h);
     doubt.factor += device::select(put.jump[0] > R(0.0), 30.0 * alike, R(0.0));
-  }
-  if (put.model == Model::generalized_hyperbolic) {
-    const R order = device::maximum(device::absolute(put.jump[0]), R(0.5));
-    const R regular = exponential(logarithm(order) * (-2.0 / 3.0));
-    const R variance = put.variance + law.variance;
-    const R deviation = device::minimum(device::square_root(variance * put.maturity), R(1.0));
-    const R missed = 0.06 * exponential(-25.24 * regular) * deviation * law.variance / variance;
-    doubt.gap += device::select(put.jump[3] > R(0.0), missed, R(0.0));
   }
   return doubt;
 }

@@ -205,7 +205,7 @@ KOKKOS_INLINE_FUNCTION Solution<R> march_nodes(const Workers& workers, const Put
   // over nodes amount to, lacks there.
   const R spread = 2.0 * jumps.diffusion * put.maturity;
   const R kink = h * (1.0 / 12) * spread / (spread + h * h);
-  const Doubt<R> doubt = doubt_of(put, law, h, spread);
+  const Doubt<R> doubt = doubt_of(put, h, spread);
   const Scheme<R> scheme = scheme_of(put, jumps, grid, steps);
   const StepTable<R> table{memory.law};
   JumpSpectrum<R> spectrum{};
