@@ -37,17 +37,20 @@ KOKKOS_INLINE_FUNCTION Doubt<R> doubt_of(const PutPack<R>& put, R h, int mesh, R
   }
   if (put.model == Model::generalized_hyperbolic) {
     const R tilt = device::absolute(put.jump[2]);
-    const R slow = device::reciprocal(put.jump[1] - tilt), fast = device::reciprocal(put.jump[1] + tilt);
-    const R x = device::maximum(1.8 * h / slow, R(0.01)), q = exponential(-x), rest = 1.0 - q;
-    const R summed = 0.5 * x * x * x * q * ((1.0 + q) / (rest * rest * rest) - 0.5);
+    const R decay = put.jump[1] - tilt, slow = device::reciprocal(decay),
+            fast = device::reciprocal(put.jump[1] + tilt);
+    const R x = device::maximum(1.8 * h * decay, R(0.01)), q = exponential(-x);
+    const R part = x * device::reciprocal(1.0 - q);
+    const R summed = 0.5 * q * ((1.0 + q) * part * part * part - 0.5 * x * x * x);
     const R missed = device::maximum(R(0.0), 1.0 - summed);
-    const R skew = 2.0 * (slow * slow * slow - fast * fast * fast) / (slow * slow + fast * fast);
-    const R away = 0.125 * put.log_spot, near = spread / (spread + away * away);
+    const R skew =
+        2.0 * (slow * slow * slow - fast * fast * fast) * device::reciprocal(slow * slow + fast * fast);
+    const R away = 0.125 * put.log_spot, near = spread * device::reciprocal(spread + away * away + R(1e-100));
     doubt.gap += 0.04 * near * skew * missed * missed;
   }
   if (put.any_split) {
     const double finer = mesh <= 128 ? 1.0 : mesh / 128.0;
-    const R more = 1.5 * Kokkos::sqrt(Kokkos::sqrt(finer));
+    const R more = 1.5 * device::square_root(device::square_root(R(finer)));
     doubt.factor = doubt.factor * device::select(put.split > R(0.0), more, R(1.0));
   }
   return doubt;
@@ -61,9 +64,9 @@ KOKKOS_INLINE_FUNCTION R doubt_of_stiff_jumps(const PutPack<R>& put, const Law<R
                                               const Scheme<R>& scheme, R h) {
   const R dt = step_length(put.maturity, scheme.steps, scheme.steps).dt;
   const R added = added_diffusion(put, jumps, 0.5 * (scheme.lower + scheme.upper), dt);
-  const R variance = device::maximum(put.variance + law.variance, R(1e-300));
-  const R wide = added * h * h / (double(scheme.steps) * scheme.steps);
-  return 0.6 * wide * device::square_root(put.maturity / variance);
+  const R variance = device::maximum(put.variance + law.variance, R(1e-100));
+  const R wide = added * h * h * device::reciprocal(double(scheme.steps) * scheme.steps);
+  return 0.6 * wide * device::square_root(put.maturity * device::reciprocal(variance));
 }
 
 }  // namespace drogue::options

@@ -172,9 +172,10 @@ struct StepFactors {
 template <class R>
 KOKKOS_INLINE_FUNCTION R taken_beyond(const StepFactors<R>& f) {
   constexpr double share = 1.4;
-  const R added = f.bend * f.inverse / f.fresh, whole = 0.5 * (f.from_left + f.from_right);
-  const R some = device::maximum(added, R(1e-300));
-  return f.from_left * device::maximum(R(0.0), 1.0 + share - share * whole / some);
+  const R added = f.bend * f.inverse * device::reciprocal(f.fresh),
+          whole = 0.5 * (f.from_left + f.from_right);
+  const R per = device::reciprocal(device::maximum(added, R(1e-100)));
+  return f.from_left * device::maximum(R(0.0), ((1.0 + share) * added - share * whole) * per);
 }
 
 /// The factors of 32 steps, which lanes compute side by side; in scratch memory.
