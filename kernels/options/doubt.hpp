@@ -24,7 +24,7 @@ struct Doubt {
 /// variance and V_xxx/6, of which far from the strike there is little.
 ///
 /// Exercise that is split off is of first order in time, and extrapolation for the second leaves 2/3 of the
-/// difference where it decides and less elsewhere: 1.5 times more counts, and more on finer meshes, where
+/// difference where it decides and less elsewhere: 1.8 times more counts, and more on finer meshes, where
 /// `error_factor` expects the difference to tell more.
 template <class R>
 KOKKOS_INLINE_FUNCTION Doubt<R> doubt_of(const PutPack<R>& put, R h, int mesh, R spread) {
@@ -50,7 +50,7 @@ KOKKOS_INLINE_FUNCTION Doubt<R> doubt_of(const PutPack<R>& put, R h, int mesh, R
   }
   if (put.any_split) {
     const double finer = mesh <= 128 ? 1.0 : mesh / 128.0;
-    const R more = 1.5 * device::square_root(device::square_root(R(finer)));
+    const R more = 1.8 * device::square_root(device::square_root(R(finer)));
     doubt.factor = doubt.factor * device::select(put.split > R(0.0), more, R(1.0));
   }
   return doubt;
