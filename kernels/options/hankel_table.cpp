@@ -56,7 +56,7 @@ PanelNodes even_nodes() {
 /// trapezoids misses e^{-16} of the weights there, and away from v = 0 the nodes are even. PanelNodes
 /// begin where what lies below is 1e-14 of the variance of the jumps.
 PanelNodes nodes_about_zeros(double begin) {
-  constexpr double step = HankelGrid::step, closer = 0.6, far = 30.0;
+  constexpr double step = HankelGrid::step, closer = 0.6;
   const double order = begin + 0.5, scale = std::pow(order, -2.0 / 3);
   const double centre = std::log(order) - 0.928 * scale;
   const double d = 0.9 * 1.607 * std::pow(begin + 1.0, -2.0 / 3);
