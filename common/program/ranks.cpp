@@ -44,7 +44,13 @@ Ranks::Ranks() {
   MPI_Comm_rank(MPI_COMM_WORLD, &_rank);
   MPI_Comm_size(MPI_COMM_WORLD, &_count);
   const bool complete = _count == launched.ranks;
-  if (complete && threads >= MPI_THREAD_SERIALIZED) return;
+  if (complete && threads >= MPI_THREAD_SERIALIZED) {
+    MPI_Comm host = MPI_COMM_NULL;
+    MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &host);
+    MPI_Comm_size(host, &_of_host);
+    MPI_Comm_free(&host);
+    return;
+  }
   MPI_Finalize();
   if (!complete)
     throw Failure(ExitCode::usage, "the launcher started " + std::to_string(launched.ranks) +

@@ -24,6 +24,8 @@ class Ranks {
   [[nodiscard]] int rank() const { return _rank; }
   [[nodiscard]] int count() const { return _count; }
   [[nodiscard]] bool is_first() const { return _rank == 0; }
+  /// How many of them share this rank's host, itself included.
+  [[nodiscard]] int of_host() const { return _of_host; }
 
   /// Sends and does not wait until it has arrived.
   void send(int to, int tag, std::string bytes);
@@ -50,6 +52,7 @@ class Ranks {
 
   int _rank = 0;
   int _count = 1;
+  int _of_host = 1;
   std::list<std::unique_ptr<Sending>> _sendings;
 };
 

@@ -22,6 +22,7 @@ std::string_view violated_by_hyperbolic(const Contract& c) {
   return first_broken({
       {std::abs(lambda) < 128.0, "lambda must lie between -128 and 128"},
       {std::isfinite(alpha) && alpha > 0.0, "alpha must be finite and > 0"},
+      {alpha <= 1e100, "alpha must not be above 1e100"},
       {std::isfinite(beta), "beta must be finite"},
       {std::isfinite(delta) && delta >= 0.0, "delta must be finite and >= 0"},
       {std::abs(beta) < alpha, "|beta| < alpha must hold, else the jumps have no density"},
@@ -51,12 +52,18 @@ std::string_view violated_by_kou(const Contract& c) {
   });
 }
 
+/// So that no Greek leaves the range of numbers.
+bool is_money(double x) { return x >= 1e-100 && x <= 1e100; }
+
 }  // namespace
 
 std::string_view violated_condition(const Contract& c) {
   const std::string_view common = first_broken({
       {std::isfinite(c.spot) && c.spot > 0.0, "spot must be finite and > 0"},
       {std::isfinite(c.strike) && c.strike > 0.0, "strike must be finite and > 0"},
+      {is_money(c.spot), "spot must lie between 1e-100 and 1e100"},
+      {is_money(c.strike), "strike must lie between 1e-100 and 1e100"},
+      {c.spot <= 1e20 * c.strike && c.strike <= 1e20 * c.spot, "spot/strike must lie between 1e-20 and 1e20"},
       {std::isfinite(c.rate), "rate must be finite"},
       {std::isfinite(c.dividend), "dividend must be finite"},
       {std::isfinite(c.maturity) && c.maturity > 0.0, "maturity must be finite and > 0"},

@@ -33,7 +33,16 @@ struct Contract {
 enum class Outcome : unsigned char {
   ok,
   coarse,  ///< priced, but `error` is above the tolerance asked for
-  failed,  ///< a number that is not finite came up; nothing of the price can be used
+  failed,  ///< nothing of the price can be used; `Failure` says why
+};
+
+/// Why there is no price.
+enum class Failure : unsigned char {
+  none,
+  too_large,  ///< e^{-r T} is beyond all numbers: r the rate, of a call the dividend
+  no_grid,    ///< no grid reaches as far as the law does until maturity
+  grown,      ///< the values grew without bound: steps are too few
+  series,     ///< a Fourier integral or series is not finite
 };
 
 /// What a pricer says of a contract. Not a number where the method does not give a value.
@@ -47,6 +56,7 @@ struct Price {
   int mesh = 0;                    ///< intervals in space of the solve that gave the price
   int steps = 0;                   ///< its steps in time
   Outcome outcome = Outcome::ok;
+  Failure failure = Failure::none;
 };
 
 }  // namespace drogue::options

@@ -16,17 +16,23 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Calls `work(i)` for i in [0, count), by all threads of the machine but on the serial backend.
+/// Calls `work(i)` for i in [0, count) by so many threads.
 template <class Work>
-void for_each(device::Backend backend, std::size_t count, const Work& work) {
+void for_each(std::size_t threads, std::size_t count, const Work& work) {
   std::atomic<std::size_t> next{0};
   const auto take = [&] {
     for (std::size_t i = next++; i < count; i = next++) work(i);
   };
-  const std::size_t cores = backend == device::Backend::serial ? 1 : std::thread::hardware_concurrency();
   std::vector<std::jthread> others;
-  for (std::size_t k = 1; k < std::min(cores, count); ++k) others.emplace_back(take);
+  for (std::size_t k = 1; k < std::min(threads, count); ++k) others.emplace_back(take);
   take();
+}
+
+/// One on the serial backend.
+std::size_t host_threads(device::Backend backend, const Settings& settings) {
+  if (backend == device::Backend::serial) return 1;
+  return settings.host_threads > 0 ? static_cast<std::size_t>(settings.host_threads)
+                                   : std::thread::hardware_concurrency();
 }
 
 /// Puts of many contracts, those with the same number of cosines side by side, as one call takes them.
@@ -61,7 +67,9 @@ Bundle bundle(const std::vector<AmericanPut>& contracts) {
 class CosPricer final : public Pricer {
  public:
   CosPricer(device::Backend backend, const Settings& settings)
-      : _backend(backend), _settings(settings), _solver(create_bermudan_solver(backend)) {}
+      : _threads(host_threads(backend, settings)),
+        _settings(settings),
+        _solver(create_bermudan_solver(backend)) {}
 
   Timing price(std::span<const Contract> contracts, std::span<Price> prices) override {
     if (contracts.size() != prices.size())
@@ -71,7 +79,7 @@ class CosPricer final : public Pricer {
     for (std::size_t i = 0; i < contracts.size(); ++i)
       if (contracts[i].style == Style::american && !AmericanPut(contracts[i]).never_exercised())
         american.push_back(i);
-    for_each(_backend, contracts.size(), [&](std::size_t i) {
+    for_each(_threads, contracts.size(), [&](std::size_t i) {
       if (!std::binary_search(american.begin(), american.end(), i))
         prices[i] = european_price(contracts[i], Exponent(contracts[i]));
     });
@@ -104,7 +112,7 @@ class CosPricer final : public Pricer {
     for (int dates = fewest_dates; !open.empty() && dates <= most_dates; dates *= 2) {
       std::vector<AmericanPut> puts;
       for (const std::size_t i : open) puts.emplace_back(contracts[i]);
-      for_each(_backend, open.size(),
+      for_each(_threads, open.size(),
                [&](std::size_t k) { puts[k].prepare(contracts[open[k]].maturity, dates); });
       const Bundle all = bundle(puts);
       std::vector<BermudanValue> sorted(all.puts.size()), values(all.puts.size());
@@ -131,7 +139,7 @@ class CosPricer final : public Pricer {
     price.delta = price.gamma = price.theta = std::numeric_limits<double>::quiet_NaN();
   }
 
-  device::Backend _backend;
+  std::size_t _threads;
   Settings _settings;
   std::unique_ptr<BermudanSolver> _solver;
 };

@@ -7,15 +7,23 @@
 namespace drogue::options {
 
 /// The spectral density m(z) = 2 / (pi (J^2 + Y^2)) of the generalized hyperbolic Levy measure, J and Y of
-/// order |lambda|, on the grid z = e^(q step) that all contracts share, and the sum of its values below a
-/// node. Both are logarithms, and Chebyshev series in the order on panels of orders.
+/// order |lambda|, at the nodes of a rule of trapezoids that all contracts of a panel of orders share, and
+/// the sum of its weights below a node. Both are logarithms, and Chebyshev series in the order.
+///
+/// Below the order 2 the nodes are z = e^(k step). The density is regular in ln z only as far as the zero of
+/// the Hankel function next to the order, so for larger ones nodes lie closer there (`hankel_table.cpp`), and
+/// `log_m` includes what they lie closer. From the node `count` on they are z = e^(k step) again.
 struct HankelGrid {
-  static constexpr double step =
-      0.4;  ///< of ln z: to order 4 the sum over nodes is as good as the integral to 1e-6
+  static constexpr double step = 0.4;
   static constexpr int first = -100;  ///< z = 4e-18
-  static constexpr int count = 131;   ///< to z = 1.6e5, beyond which Hankel's expansion holds
+  static constexpr int count = 131;   ///< to z = 1.6e5 or more, beyond which Hankel's expansion holds
   static constexpr int terms = 14;
-  static constexpr int panel_size = 2 * count * terms;
+  static constexpr int log_m = 0;                  ///< (count, terms)
+  static constexpr int log_below = count * terms;  ///< (count, terms)
+  static constexpr int log_z = 2 * count * terms;  ///< (count)
+  static constexpr int shift = log_z + count;      ///< a whole number: from `count` on
+                                                   ///< node k is e^((k + first + shift) step)
+  static constexpr int panel_size = shift + 1;
   static constexpr double largest_order = 128.0;
   static constexpr int panels = 6 + 127;
 };
@@ -34,8 +42,7 @@ KOKKOS_INLINE_FUNCTION double panel_begin(int panel) {
 }
 KOKKOS_INLINE_FUNCTION double panel_end(int panel) { return panel_begin(panel + 1); }
 
-/// The series of a panel, (2, count, terms): of ln m, and of the logarithm of the sum of step/pi m over all
-/// nodes below. Takes some milliseconds.
+/// What HankelGrid says of a panel. Takes some milliseconds.
 [[nodiscard]] std::vector<double> hankel_panel(int panel);
 
 }  // namespace drogue::options

@@ -163,6 +163,21 @@ struct StepFactors {
   R edge;                   ///< value of node 0 at its end
 };
 
+/// What the value beyond the last node is of that at it where added diffusion is taken back. The implicit
+/// part takes from_left, being that of a line without an end, and all of it would leave the explicit part too
+/// little of that diffusion to bear the jumps at the last node, and none, a value of 0, would give it more
+/// than the implicit part has: there the march would grow without bound where most of the diffusion is added.
+/// The part 1 - 1.4 D/added keeps all modes of the truncated matrices bounded (docs/options.md); up to 1.4 D
+/// the value is 0.
+template <class R>
+KOKKOS_INLINE_FUNCTION R taken_beyond(const StepFactors<R>& f) {
+  constexpr double share = 1.4;
+  const R added = f.bend * f.inverse * device::reciprocal(f.fresh),
+          whole = 0.5 * (f.from_left + f.from_right);
+  const R per = device::reciprocal(device::maximum(added, R(1e-100)));
+  return f.from_left * device::maximum(R(0.0), ((1.0 + share) * added - share * whole) * per);
+}
+
 /// The factors of 32 steps, which lanes compute side by side; in scratch memory.
 template <class R>
 struct StepTable {
@@ -294,6 +309,7 @@ KOKKOS_INLINE_FUNCTION void step(const Workers& workers, const PutPack<R>& put, 
   }
   const R stay = -jumps.rate - put.rate;
   const bool bends = !workers.all(f.bend <= R(0.0));
+  const R beyond = bends ? taken_beyond(f) : R(0.0);
   workers.each([=, &f, &put, &begun](int lane) {
     for (int i = lane * block; i < (lane + 1) * block; ++i) {
       if (i == 0 || i >= mesh) {
@@ -305,8 +321,9 @@ KOKKOS_INLINE_FUNCTION void step(const Workers& workers, const PutPack<R>& put, 
       jump[i] = fresh;
       R right = right_side(f, value[i], before[i], fresh, jump_before[i]);
       if (bends) {
-        const R bend = value[i - 1] - 2.0 * value[i] + value[i + 1];
-        const R bend_before = before[i - 1] - 2.0 * before[i] + before[i + 1];
+        const bool last = i + 1 == mesh;
+        const R bend = value[i - 1] - 2.0 * value[i] + (last ? beyond * value[i] : value[i + 1]);
+        const R bend_before = before[i - 1] - 2.0 * before[i] + (last ? beyond * before[i] : before[i + 1]);
         right = right - (f.bend * bend - f.bend_before * bend_before);
       }
       if (put.any_split) right += f.inverse * force[i];

@@ -8,9 +8,9 @@ namespace drogue::options {
 
 /// A generalized hyperbolic Levy density as a mixture of exponentials,
 ///   |x| e^{-beta x} g(x) = sum_q c_q e^{-s_q |x|},
-/// the sum over the grid of ln z that replaces the integral over the phase of the Hankel function of order
-/// |lambda| (Prause 1999, with the Wronskian): s = sqrt((z/delta)^2 + alpha^2), c = step/pi m(z). What lies
-/// below `lowest` alpha, and the part max(lambda, 0) e^{-alpha|x|}, are the one term s = alpha.
+/// the sum over the nodes of HankelGrid that replaces the integral over the phase of the Hankel function of
+/// order |lambda| (Prause 1999, with the Wronskian): s = sqrt((z/delta)^2 + alpha^2), c = step/pi m(z). What
+/// lies below `lowest` alpha, and the part max(lambda, 0) e^{-alpha|x|}, are the one term s = alpha.
 struct Mixture {
   static constexpr int size = 64;
   static constexpr double lowest = 2e-3;  ///< (s - alpha)/alpha is below 2e-6 there
@@ -36,9 +36,9 @@ struct Term {
 
 /// Where the terms of a generalized hyperbolic put lie on the grid.
 struct MixtureGrid {
-  const double* panel;  ///< series of its panel of orders
+  const double* panel;  ///< its panel of orders
   double t;             ///< its order's place in the panel
-  int first;            ///< node of the grid that term 1 belongs to
+  int first;            ///< node of the panel that term 1 belongs to
 };
 
 KOKKOS_INLINE_FUNCTION MixtureGrid mixture_grid(const Put& put, const double* panels, const int* slot) {
@@ -46,11 +46,20 @@ KOKKOS_INLINE_FUNCTION MixtureGrid mixture_grid(const Put& put, const double* pa
   if (put.jump[3] == 0.0 || !(order < HankelGrid::largest_order)) return {nullptr, 0.0, 0};
   const int panel = panel_of(order);
   const double begin = panel_begin(panel), end = panel_end(panel);
+  const double* const table = panels + slot[panel] * std::size_t(HankelGrid::panel_size);
   const double z = put.jump[3] * (Mixture::lowest * put.jump[1]);
-  int first = HankelGrid::first;
-  if (z > 4e-18) first = static_cast<int>(Kokkos::ceil(device::portable::log(z) * (1.0 / HankelGrid::step)));
-  return {panels + slot[panel] * std::size_t(HankelGrid::panel_size),
-          (2.0 * order - begin - end) / (end - begin), first};
+  int first = 0;
+  if (z > 4e-18) {
+    // Where nodes lie even this is the one; where some lie closer the one is before it.
+    const double log_z = device::portable::log(z);
+    first = static_cast<int>(Kokkos::ceil(log_z * (1.0 / HankelGrid::step))) - HankelGrid::first -
+            static_cast<int>(table[HankelGrid::shift]);
+    if (first < 0) first = 0;
+    if (table[HankelGrid::shift] != 0.0)
+      while (first > 0 && first <= HankelGrid::count && table[HankelGrid::log_z + first - 1] >= log_z)
+        --first;
+  }
+  return {table, (2.0 * order - begin - end) / (end - begin), first};
 }
 
 /// Term q of the mixture of `put`, a generalized hyperbolic one; not a number beyond the largest order.
@@ -58,19 +67,21 @@ KOKKOS_INLINE_FUNCTION Term mixture_term(const Put& put, const MixtureGrid& grid
   const double lambda = put.jump[0], alpha = put.jump[1], delta = put.jump[3];
   if (delta == 0.0) return {alpha, q == 0 ? lambda : 0.0};
   if (grid.panel == nullptr) return {alpha, device::portable::not_a_number()};
-  const int node = grid.first + q - 1 - HankelGrid::first;  // of term 0 the last one that is lumped
+  const int node = grid.first + q - 1;  // of term 0 the last one that is lumped
   const double positive = lambda > 0.0 ? lambda : 0.0;
   if (q == 0) {
     const int beyond = node + 1 < HankelGrid::count ? node + 1 : HankelGrid::count - 1;
-    const double* below = grid.panel + (HankelGrid::count + beyond) * HankelGrid::terms;
+    const double* below = grid.panel + HankelGrid::log_below + beyond * HankelGrid::terms;
     return {alpha, positive + exponential(chebyshev(below, grid.t))};
   }
-  const double z = exponential((grid.first + q - 1) * HankelGrid::step);
-  double density = 0.0;
+  double z = 0.0, density = 0.0;
   if (node < HankelGrid::count) {
-    density = exponential(chebyshev(grid.panel + node * HankelGrid::terms, grid.t));
+    z = exponential(grid.panel[HankelGrid::log_z + node]);
+    density = exponential(chebyshev(grid.panel + HankelGrid::log_m + node * HankelGrid::terms, grid.t));
   } else {
     const double mu = 4.0 * lambda * lambda;
+    z = exponential((node + HankelGrid::first + static_cast<int>(grid.panel[HankelGrid::shift])) *
+                    HankelGrid::step);
     density = z / (1.0 + (mu - 1.0) / (8.0 * z * z));
   }
   const double w = z / delta;

@@ -14,10 +14,16 @@ KOKKOS_INLINE_FUNCTION double error_factor(int mesh) {
   return 0.22 * Kokkos::sqrt(finer * Kokkos::sqrt(finer));
 }
 
-/// The answer for a put of strike 1 on two grids, extrapolated to steps of length zero (the error of both is
-/// of second order), as the contract's price.
+/// Why a put has no price on a grid of steps h.
+KOKKOS_INLINE_FUNCTION Failure failure_of(const Put& put, double h) {
+  if (put.rate * put.maturity < -650.0) return Failure::too_large;
+  return h < 100.0 ? Failure::grown : Failure::no_grid;
+}
+
+/// The answer for a put of strike 1 on two grids, the coarser one with steps h, extrapolated to steps of
+/// length zero (the error of both is of second order), as the contract's price.
 KOKKOS_INLINE_FUNCTION Price price_of(const Contract& contract, const Put& put, const Answer& fine,
-                                      const Answer& coarse, double change, int mesh, int steps,
+                                      const Answer& coarse, double change, double h, int mesh, int steps,
                                       double tolerance) {
   const auto limit = [](double f, double c) { return f + (f - c) * (1.0 / 3); };
   const double asset = exponential(put.log_spot);
@@ -44,13 +50,14 @@ KOKKOS_INLINE_FUNCTION Price price_of(const Contract& contract, const Put& put, 
   if (!(fine.boundary == fine.boundary)) price.exercise_boundary = fine.boundary;
   price.mesh = mesh;
   price.steps = steps;
-  // Nobody pays more for a put than what it can earn at most.
+  // Nobody pays more for a put than what it can earn at most, and no error is larger.
   const double most = put.rate < 0.0 ? exponential(-put.rate * put.maturity) : 1.0;
-  const bool finite = a.value <= 1.001 * most && price.error < 1e300;
+  const bool finite = a.value <= 1.001 * most && error <= most && price.error < 1e300;
   if (!finite) price.price = device::portable::not_a_number();
   price.outcome = !finite                                     ? Outcome::failed
                   : price.error > tolerance * contract.strike ? Outcome::coarse
                                                               : Outcome::ok;
+  if (!finite) price.failure = failure_of(put, h);
   return price;
 }
 
@@ -163,7 +170,8 @@ struct PriceBatch {
         if (group * members + k >= count) continue;
         const int at = place(group, k);
         prices(at) = price_of(contracts(at), memory.puts[k], memory.answers[k], coarse_answers[k],
-                              device::Access<R>::lane(change, k), cells, steps, tolerance);
+                              device::Access<R>::lane(change, k), device::Access<R>::lane(grid.h, k), cells,
+                              steps, tolerance);
         if (one_grid) prices(at).error = device::portable::not_a_number();
       }
     });

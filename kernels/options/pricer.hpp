@@ -29,6 +29,7 @@ struct Settings {
   int steps = 0;            ///< steps in time; 0: chosen by `tolerance`
   double tolerance = 1e-4;  ///< of |price - true price|, relative to the strike
   bool greeks = false;      ///< `cos` computes delta, gamma and theta; the other methods always do
+  int host_threads = 0;     ///< by which `cos` makes its tables on the host; 0: as many as there are cores
   bool surface = false;     ///< contracts in a row that differ in the strike alone share solves; for `pide`
   ExerciseRule exercise = ExerciseRule::exact;  ///< `pide` alone, as the next
   bool one_grid = false;  ///< with `mesh`: nothing is extrapolated and no error stated, to compare

@@ -39,13 +39,15 @@ struct Refinement {
 }
 
 /// Goes on from a price. The error falls by at least 4 where mesh and steps double. Where it does not fall,
-/// more steps are tried first: jumps of long maturities are stiff. Where that does not help on a fine mesh
-/// either, nothing will. `tolerance`: money.
+/// more steps are tried first, and still more where the values grew: jumps of long maturities are stiff.
+/// Where that does not help on a fine mesh either, nothing will. `tolerance`: money.
 inline void refine(Refinement& row, const Price& price, double tolerance, const Settings& settings) {
-  constexpr int last_mesh = 2048, most_often = 4, hopeless_mesh = 512;
+  constexpr int last_mesh = 2048, hopeless_mesh = 512;
   const int mesh = row.next.mesh;
   row.next = {};
   if (price.outcome == Outcome::ok) return;
+  if (price.failure != Failure::none && price.failure != Failure::grown) return;
+  const int most_often = price.failure == Failure::grown ? 16 : 4;
   const bool stuck = price.outcome == Outcome::failed || (row.error > 0.0 && price.error > 0.5 * row.error);
   row.error = price.error;
   int next = mesh;

@@ -100,12 +100,13 @@ KOKKOS_INLINE_FUNCTION LaneNodes<block> recur_by_maps(int lane, const LaneNodes<
   return x;
 }
 
-/// v_{i-1} - 2 v_i + v_{i+1} of a lane's nodes; 0 beyond the grid, and of no use at node 0.
+/// v_{i-1} - 2 v_i + v_{i+1} of a lane's nodes; beyond the grid v is the part `beyond` of the last one, and
+/// node 0 gets what is of no use.
 template <int lanes, int block>
-KOKKOS_INLINE_FUNCTION LaneNodes<block> bends_of(int lane, const LaneNodes<block>& value) {
+KOKKOS_INLINE_FUNCTION LaneNodes<block> bends_of(int lane, const LaneNodes<block>& value, double beyond) {
   const double below = device::from_below<lanes>(value.node[block - 1], 1);
   double above = device::from_above<lanes>(value.node[0], 1);
-  if (lane + 1 == lanes) above = 0.0;
+  if (lane + 1 == lanes) above = beyond * value.node[block - 1];
   LaneNodes<block> bend;
   for (int m = 0; m < block; ++m)
     bend.node[m] = (m == 0 ? below : value.node[m - 1]) - 2.0 * value.node[m] +
@@ -203,7 +204,9 @@ KOKKOS_INLINE_FUNCTION int march_in_registers(const WarpWorkers<lanes>& workers,
       stale.node[m] = fresh;
     }
     if (!workers.all(f.bend <= 0.0)) {
-      const Own bend = bends_of<lanes>(lane, value), bend_before = bends_of<lanes>(lane, before);
+      const double beyond = taken_beyond(f);
+      const Own bend = bends_of<lanes>(lane, value, beyond),
+                bend_before = bends_of<lanes>(lane, before, beyond);
       for (int m = 0; m < block; ++m)
         y.node[m] = y.node[m] - (f.bend * bend.node[m] - f.bend_before * bend_before.node[m]);
     }

@@ -147,7 +147,8 @@ struct SeedBatch {
                        last_exercised(values, mesh / 2, width),
                        width,
                        {device::Access<R>::lane(ended.strike, k), device::Access<R>::lane(ended.asset, k)}});
-        Price price = price_of(batch.contracts(at), memory.puts[k], answer, answer, 0.0, mesh, steps, 1.0);
+        Price price =
+            price_of(batch.contracts(at), memory.puts[k], answer, answer, 0.0, width, mesh, steps, 1.0);
         price.error = device::portable::not_a_number();
         batch.prices(at) = price;
       }

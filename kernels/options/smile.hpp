@@ -191,7 +191,7 @@ struct ReadSmiles {
                        (1.0 / 3);
     const double change = smile.doubt.factor * largest_change(put, fine, coarse, smile) +
                           (gap + smile.doubt.gap) / error_factor(mesh);
-    prices(k) = price_of(contract, put, answer, rough, change, mesh, steps, tolerance);
+    prices(k) = price_of(contract, put, answer, rough, change, smile.coarse.h, mesh, steps, tolerance);
   }
 
  private:

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <iostream>
 #include <optional>
+#include <thread>
 
 #include "common/csv/header.hpp"
 #include "common/program/message.hpp"
@@ -35,7 +36,10 @@ std::unique_ptr<device::Runtime> start_kokkos(const std::vector<std::string>& ar
   return made_as_asked([&] { return std::make_unique<device::Runtime>(arguments); });
 }
 
-std::unique_ptr<options::Pricer> make_pricer(device::Backend backend, const options::Settings& settings) {
+std::unique_ptr<options::Pricer> make_pricer(device::Backend backend, options::Settings settings,
+                                             const Ranks& ranks) {
+  const int cores = static_cast<int>(std::thread::hardware_concurrency());
+  settings.host_threads = std::max(1, cores / ranks.of_host());
   return made_as_asked([&] { return options::create_pricer(backend, settings); });
 }
 
@@ -135,7 +139,7 @@ ExitCode price_batch(Ranks& ranks, const Command& command, const std::filesystem
     runtime = start_kokkos(command.kokkos);
     device::start_ledger();
     result.describe_device(std::string(device::name(backend)), device::device_facts());
-    pricer = make_pricer(backend, command.settings);
+    pricer = make_pricer(backend, command.settings, ranks);
   });
   result.timing.setup_s = since(begin);
   const auto pricing = Clock::now();

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "common/program/signals.hpp"
+#include "kernels/options/condition.hpp"
 #include "miniapps/options/outputs.hpp"
 
 namespace drogue::options_app {
@@ -54,11 +55,23 @@ void BatchRun::price(const Chunk& chunk, Desk& desk) {
     if (row.fault.empty() && _command.settings.method == options::Method::seed &&
         row.contract.model != options::Model::generalized_hyperbolic)
       row.fault = "--method seed has generalized hyperbolic jumps alone";
+    check_strikes(row);
     add(row, chunk, desk);
     if (_is_stopped) return;
   }
   flush(desk);
   if (!_is_stopped) hand_in(desk, true);
+}
+
+/// A surface's strikes meet the row's spot here first.
+void BatchRun::check_strikes(Row& row) const {
+  if (_command.action == Action::price) return;
+  options::Contract contract = row.contract;
+  for (const double strike : _command.strikes) {
+    if (!row.fault.empty()) return;
+    contract.strike = strike;
+    row.fault = options::violated_condition(contract);
+  }
 }
 
 void BatchRun::add(const Row& row, const Chunk& chunk, Desk& desk) {

@@ -22,6 +22,7 @@ class BatchRun {
 
  private:
   void price(const Chunk& chunk, Desk& desk);
+  void check_strikes(Row& row) const;
   void add(const Row& row, const Chunk& chunk, Desk& desk);
   void flush(Desk& desk);
   void price_contracts();

@@ -8,14 +8,26 @@
 namespace drogue::options_app {
 namespace {
 
-const char* status(options::Outcome outcome) {
-  switch (outcome) {
+const char* status(const options::Price& price) {
+  switch (price.outcome) {
     case options::Outcome::ok:
       return ",ok,";
     case options::Outcome::coarse:
       return ",coarse,";
     case options::Outcome::failed:
-      return ",failed,a number that is not finite came up";
+      break;
+  }
+  switch (price.failure) {
+    case options::Failure::too_large:
+      return ",failed,e^(-rate maturity) (of a call -dividend maturity) is too large a number";
+    case options::Failure::no_grid:
+      return ",failed,no grid reaches as far as this law does until maturity";
+    case options::Failure::grown:
+      return ",failed,the values grew without bound: more --steps or a shorter maturity are needed";
+    case options::Failure::series:
+      return ",failed,the Fourier integral or series of this law and maturity is not finite";
+    case options::Failure::none:
+      break;
   }
   return ",failed,";
 }
@@ -52,7 +64,7 @@ void append_price(Piece& piece, const Layout& layout, const Row& row, const opti
     append_next(text, price.mesh);
     append_next(text, price.steps);
   }
-  text += status(price.outcome);
+  text += status(price);
   text += '\n';
   Tally& tally = piece.tally;
   ++tally.rows;

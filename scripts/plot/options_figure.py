@@ -26,6 +26,17 @@ def _curves(file: Path, names: tuple[str, ...], x: str, y: str) -> dict[str, tup
     return curves
 
 
+def _distinct(curves: dict) -> dict:
+    """Curves of which no two are equal, by their label: that of the first with the number of those under it."""
+    equal = {}
+    for label, (x, y) in curves.items():
+        equal.setdefault((tuple(x), tuple(y)), []).append(label)
+    return {
+        f"{labels[0]} ({len(labels)} equal)" if len(labels) > 1 else labels[0]: curve
+        for curve, labels in equal.items()
+    }
+
+
 def _draw(axes, curves, labels, title, across, up):
     ends = []
     for colour, (label, (x, y)) in zip(style.PALETTE, zip(labels, curves)):
@@ -44,15 +55,14 @@ def options_figure(folder: Path):
     if surface.is_file():
         curves = _curves(surface, ("id", "maturity"), "strike", "price")
         first = next(iter(curves), ("",))[0]
-        chosen = {names[1]: curve for names, curve in curves.items() if names[0] == first}
+        chosen = _distinct({names[1]: curve for names, curve in curves.items() if names[0] == first})
         if chosen:
             title = f"price of {first} by years to maturity"
             panels.append((list(chosen.values()), list(chosen), title, "strike", "price"))
     if boundary.is_file():
-        curves = _curves(boundary, ("id",), "time", "spot")
+        curves = _distinct({name: curve for (name,), curve in _curves(boundary, ("id",), "time", "spot").items()})
         if curves:
-            names = [name for (name,) in curves]
-            panels.append((list(curves.values()), names, "exercise boundary", "time (years)", "spot"))
+            panels.append((list(curves.values()), list(curves), "exercise boundary", "time (years)", "spot"))
     if not panels:
         return None
     height = 1.0 + 2.6 * len(panels)

@@ -140,6 +140,12 @@ def read(path: Path) -> Run:
 
     Of a folder of records alone an empty run: evidence_records reads those.
     """
+    if path.is_file():
+        names = f"{', '.join(READABLE)} or {RECORDS}"
+        raise Failure(
+            USAGE,
+            f"{path} is a file: drogue-plot takes the folder, {path.parent}, and draws what is called {names} in it.",
+        )
     if not path.is_dir():
         raise Failure(USAGE, f"{path} is not a run directory: no such folder.")
     run = Run(path)

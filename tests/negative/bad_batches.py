@@ -37,6 +37,13 @@ BAD_ROWS = [
     ({"variance": "NaN"}, ["variance", "not finite"]),
     ({"delta": "1" + "0" * 400}, ["delta", "not finite", "..."]),
     ({"spot": "1e-400"}, ["spot", "> 0"]),
+    # numbers whose Greeks would leave their range
+    ({"spot": "1e308", "strike": "1e308"}, ["spot must lie between 1e-100 and 1e100"]),
+    ({"spot": "5e-324", "strike": "5e-324"}, ["spot must lie between 1e-100 and 1e100"]),
+    ({"strike": "1.1e100", "spot": "1e100"}, ["strike must lie between 1e-100 and 1e100"]),
+    ({"spot": "1e25"}, ["spot/strike must lie between 1e-20 and 1e20"]),
+    ({"strike": "1e25"}, ["spot/strike must lie between 1e-20 and 1e20"]),
+    ({"alpha": "1e200"}, ["alpha must not be above 1e100"]),
     # no numbers
     ({"spot": "abc"}, ['spot = "abc"', "not a number"]),
     ({"spot": "1.0.0"}, ["spot", "not a number"]),

@@ -74,6 +74,23 @@ class BadBatches(options_program.OptionsTest):
                         self.assertGreaterEqual(float(told["price"]), 0.0)
                         self.assertLess(float(told["price"]), float("inf"))
 
+    def test_money_of_any_size(self):
+        """A price with its Greeks, all finite, and those of the same contract in other money."""
+        lines = [row(k, style="american", spot=1.1 * unit, strike=unit, type=kind)
+                 for k, (unit, kind) in enumerate((unit, kind) for kind in ("put", "call") for unit in (1e-99, 1.0, 1e99))]
+        for method in ((), FAST):
+            self.expect(0, "price", self.write(batch(lines)), "--backend", "serial", "--quiet", "--greeks", *method)
+            prices = self.prices()
+            for told, unit in zip(prices, (1e-99, 1.0, 1e99) * 2, strict=True):
+                one = prices[1 if int(told["id"]) < 3 else 4]
+                for name, power in (("price", 1), ("error", 1), ("delta", 0), ("gamma", -1), ("theta", 1)):
+                    self.assertAlmostEqual(1, float(told[name]) / unit**power / float(one[name]), delta=1e-6, msg=name)
+
+    def test_a_surface_of_strikes_that_no_spot_meets(self):
+        head, line = "id,spot,rate,lambda,alpha,beta,delta,variance", "a,1,0.05,1,8.15,-2.5,0.767,0.04"
+        message = self.expect(3, "surface", self.write(f"{head}\n{line}\n"), "--strikes", "1,1e30", "--maturities", "1").stderr
+        self.assertIn("spot/strike must lie between 1e-20 and 1e20", message)
+
     def test_a_parameter_set_has_no_strike(self):
         message = self.expect(3, "surface", self.write(batch([row("a")])), "--strikes", "1", "--maturities", "1").stderr
         self.assertIn('unknown column "strike"', message)

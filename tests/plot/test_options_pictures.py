@@ -1,5 +1,7 @@
 """drogue-plot on the files of drogue-options, and what the demo makes of its prices."""
 
+import contextlib
+import io
 import shutil
 import tempfile
 import unittest
@@ -33,6 +35,21 @@ class OptionsPictures(unittest.TestCase):
         first, second = options_figure(self.folder).axes
         self.assertEqual([[0.1, 1.1], [0.2, 1.2]], [list(line.get_ydata()) for line in first.lines])
         self.assertEqual([[0.8, 0.9]], [list(line.get_ydata()) for line in second.lines])
+
+    def test_equal_curves_are_counted(self):
+        """One drawn over another would be seen as one."""
+        self.write(boundary=BOUNDARY + "b,0,0.8\nb,0.5,0.9\nc,0,0.7\nc,0.5,0.9\n")
+        (panel,) = options_figure(self.folder).axes
+        self.assertEqual(2, len(panel.lines))
+        self.assertEqual({"a (2 equal)", "c"}, {text.get_text() for text in panel.texts})
+
+    def test_a_file_is_no_run_directory(self):
+        self.write(prices="id,price\na,1\n", surface=SURFACE)
+        for name, hint in (("prices", "surface.csv"), ("surface", str(self.folder))):
+            with contextlib.redirect_stderr(io.StringIO()) as said:
+                self.assertEqual(2, cli.main([str(self.folder / f"{name}.csv")]))
+            self.assertIn("takes the folder", said.getvalue())
+            self.assertIn(hint, said.getvalue())
 
     def test_nothing_priced(self):
         self.write(surface="id,strike,maturity,price\nbad,,,\n")

@@ -1,5 +1,6 @@
 #include "kernels/reference/options/levy.hpp"
 
+#include <algorithm>
 #include <boost/math/quadrature/exp_sinh.hpp>
 #include <boost/math/special_functions/bessel.hpp>
 #include <boost/math/special_functions/expint.hpp>
@@ -20,8 +21,8 @@ double over_spectrum(const Hyperbolic& law, const F& f) {
   // With w = sqrt(2y) the printed integrand is 2/(pi^2 w (J^2 + Y^2)).
   const auto integrand = [&](double w) {
     const double z = law.delta * w, s = std::hypot(w, law.alpha);
-    // (2/z)^(2 order) is J^2 + Y^2 up to a factor: what follows from beyond 1e250 is nothing.
-    if (z == 0.0 || !std::isfinite(s) || (z < 1.0 && -order * std::log(z) > 250.0)) return 0.0;
+    // (2 order/(e z))^(2 order) is J^2 + Y^2 up to a factor: what follows from beyond 1e250 is nothing.
+    if (z == 0.0 || !std::isfinite(s) || order * std::log(std::max(order, 1.0) / z) > 250.0) return 0.0;
     const double value = f(s);
     if (value == 0.0) return 0.0;
     if (z > 1e4) return value * law.delta / pi;  // there pi z (J^2 + Y^2) = 2 to 1e-8

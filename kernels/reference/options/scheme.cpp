@@ -106,8 +106,14 @@ std::vector<double> solve_put(const PutProblem& p, const JumpTable& jumps) {
     // Elimination from above on the line without an end, on which the factors are constant.
     const Real pivot = (diagonal + std::sqrt(diagonal * diagonal - 4 * lower * upper)) / 2;
     Values y(n + 1, 0.0L);
+    // Of the value beyond the last node, lower/pivot of it in the implicit part, the explicit one sees a
+    // part.
+    const Real beyond =
+        extra > 0 ? lower / pivot * std::max(0.0L, 1 - 1.4L * op.diffusion / h / h / extra) : 0.0L;
     for (std::size_t i = n - 1; i >= 1; --i) {
-      const auto bend = [&](const Values& f) { return f[i - 1] - 2 * f[i] + f[i + 1]; };
+      const auto bend = [&](const Values& f) {
+        return f[i - 1] - 2 * f[i] + (i + 1 == n ? beyond * f[i] : f[i + 1]);
+      };
       const Real right = ((1 + w) * v[i] - w * w / (1 + w) * before[i]) / dt + (1 + w) * jump[i] -
                          w * jump_before[i] - extra * ((1 + w) * bend(v) - w * bend(before));
       y[i] = (right + upper * y[i + 1]) / pivot;

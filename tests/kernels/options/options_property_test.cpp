@@ -197,6 +197,110 @@ TEST(OptionsProperty, WhatHasNoTableFails) {
   EXPECT_TRUE(std::isnan(prices[2].price));
 }
 
+// Stiff jumps: a hundred years of them in few steps on grids that are cut at the boundary of exercise, where
+// diffusion that is added and taken back grew without bound once.
+TEST(OptionsProperty, AHundredYearsOfPureJumps) {
+  std::vector<Contract> contracts;
+  for (const auto& jump : {std::array{-0.5, 15.0, -0.5, 0.5}, std::array{-0.5, 15.0, -5.0, 0.5},
+                           std::array{1.0, 8.15, -2.5, 0.767}})
+    for (const Type type : {Type::put, Type::call}) {
+      Contract c{.type = type, .rate = 0.05, .dividend = type == Type::put ? 0.0 : 0.05, .maturity = 100.0};
+      std::ranges::copy(jump, c.jump);
+      contracts.push_back(c);
+    }
+  const auto few = priced(on_mesh(512, 128), contracts), many = priced(on_mesh(512, 512), contracts);
+  for (std::size_t k = 0; k < contracts.size(); ++k) {
+    EXPECT_LT(few[k].error, 1e-3) << k;
+    EXPECT_NEAR(few[k].price, many[k].price, few[k].error + many[k].error) << k;
+  }
+}
+
+Price one_price(double rate, double maturity, double variance, double delta, const Settings& settings) {
+  Contract c{.style = Style::european, .rate = rate, .maturity = maturity, .variance = variance};
+  std::ranges::copy(std::array{-0.5, 15.0, -5.0, delta}, c.jump);
+  return priced(settings, {c})[0];
+}
+
+TEST(OptionsProperty, WhatFailsSaysWhy) {
+  EXPECT_EQ(one_price(-10.0, 100.0, 0.04, 0.5, Settings{}).failure, Failure::too_large);
+  EXPECT_EQ(one_price(0.05, 1.0, 1e300, 0.5, Settings{}).failure, Failure::no_grid);
+  EXPECT_EQ(one_price(0.0, 100.0, 0.0, 20.0, on_mesh(512, 64)).failure, Failure::grown);
+  // A tolerance takes more steps.
+  Settings loose;
+  loose.tolerance = 1e-3;
+  const Price price = one_price(0.0, 100.0, 0.0, 20.0, loose);
+  EXPECT_EQ(price.failure, Failure::none);
+  EXPECT_NEAR(price.price, 1.0, price.error);
+  EXPECT_GT(price.steps, price.mesh / 4);
+}
+
+std::vector<Price> at_maturities(Contract c, const std::vector<double>& maturities) {
+  std::vector<Contract> contracts;
+  for (const double maturity : maturities) {
+    c.maturity = maturity;
+    contracts.push_back(c);
+  }
+  return priced(on_mesh(128, 32), contracts);
+}
+
+// More time is worth more to whoever may exercise at any time, and to whoever owns a call without dividends.
+TEST(OptionsProperty, PricesRiseWithMaturity) {
+  const std::vector<double> maturities = {1.0 / 52, 0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0};
+  for (Contract c : random_contracts(16, 11)) {
+    if (c.style == Style::european) {
+      c.type = Type::call;
+      c.dividend = 0.0;
+    }
+    const auto prices = at_maturities(c, maturities);
+    for (std::size_t k = 1; k < prices.size(); ++k)
+      EXPECT_GE(prices[k].price, prices[k - 1].price - prices[k].error - prices[k - 1].error)
+          << maturities[k] << " years, spot " << c.spot << ", strike " << c.strike;
+  }
+}
+
+/// The time value at the second node above the exercised ones over the distance, and the grid's step.
+GridError misfit(const testing::OptionSet& set, int mesh) {
+  const auto profile =
+      create_pricer(backend, on_mesh(mesh, mesh / 4))->profile(contract_of(set, 3, Style::american));
+  const auto time_value = [&](std::size_t k) { return profile[k].price - (1.0 - profile[k].spot); };
+  std::size_t k = 1;
+  while (time_value(k) < 1e-12) ++k;
+  const double h = std::log(profile[1].spot / profile[0].spot);
+  return {time_value(k + 1) / (2.0 * h), h};
+}
+
+// The price leaves the payoff without a kink: its slope there differs from -1 by what falls with the step,
+// where there is diffusion to the first power. Within a step the boundary may lie anywhere, so meshes differ
+// by 16.
+TEST(OptionsProperty, SmoothFit) {
+  for (const std::size_t k : {0U, 1U, 3U, 4U}) {
+    const testing::OptionSet& set = option_sets()[k];
+    const GridError coarse = misfit(set, 64), fine = misfit(set, 1024);
+    const double order = std::log(coarse.worst / fine.worst) / std::log(coarse.h / fine.h);
+    EXPECT_GT(order, 0.7) << set.name << ", " << coarse.worst << " to " << fine.worst;
+    EXPECT_LT(order, 1.3) << set.name << ", " << coarse.worst << " to " << fine.worst;
+  }
+}
+
+// Exercised it is -1, and just above the boundary little more.
+TEST(OptionsProperty, DeltaIsContinuousAtTheBoundary) {
+  for (const std::size_t k : {0U, 1U, 3U, 4U}) {
+    Contract c = contract_of(option_sets()[k], 3, Style::american);
+    const double boundary = priced(on_mesh(512, 128), {c})[0].exercise_boundary;
+    std::vector<Contract> contracts;
+    for (const double distance : {-1e-3, 1e-3, 4e-3, 16e-3}) {
+      c.spot = boundary * std::exp(distance);
+      contracts.push_back(c);
+    }
+    const auto prices = priced(on_mesh(512, 128), contracts);
+    EXPECT_NEAR(prices[0].delta, -1.0, 1e-12);
+    for (std::size_t i = 1; i < prices.size(); ++i) {
+      EXPECT_GE(prices[i].delta, prices[i - 1].delta) << option_sets()[k].name << " " << i;
+    }
+    EXPECT_LT(prices[1].delta, -0.98) << option_sets()[k].name;
+  }
+}
+
 // The dissertation's scheme: its errors fall to a fourth where its mesh has four times the nodes.
 TEST(OptionsProperty, SeedIsOfFirstOrder) {
   const testing::OptionSet& set = option_sets()[0];

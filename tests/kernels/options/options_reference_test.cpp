@@ -165,6 +165,34 @@ TEST(OptionsReference, StatedErrorsCoverLawsThatAreHard) {
   }
 }
 
+// Orders beyond 5, whose Hankel function has a zero close to the real axis: against Fourier's integral, which
+// takes Bessel functions of the exponent, within the tolerance and in nine of ten within the stated errors.
+TEST(OptionsReference, LargeOrdersHaveNoBias) {
+  std::vector<Contract> contracts;
+  for (const double lambda : {-127.0, -50.0, -30.0, -12.0, -6.0, 6.0, 15.0, 50.0, 100.0})
+    for (const auto& [alpha, beta, delta] :
+         {std::array{30.0, -2.5, 10.0}, {12.0, -4.0, 1.5}, {8.15, -2.5, 0.767}})
+      for (const double strike : {0.9, 1.1}) {
+        Contract c{
+            .style = Style::european, .strike = strike, .rate = 0.05, .dividend = 0.02, .maturity = 0.5};
+        std::ranges::copy(std::array{lambda, alpha, beta, delta}, c.jump);
+        contracts.push_back(c);
+      }
+  Settings settings;
+  settings.tolerance = 3e-6;
+  const std::vector<Price> prices = priced(settings, contracts);
+  settings.method = Method::cos;
+  const std::vector<Price> known = priced(settings, contracts);
+  std::size_t covered = 0;
+  for (std::size_t k = 0; k < contracts.size(); ++k) {
+    EXPECT_EQ(prices[k].outcome, Outcome::ok) << contracts[k].jump[0];
+    const double error = std::abs(prices[k].price - known[k].price);
+    EXPECT_LT(error, 6e-6 * contracts[k].strike) << contracts[k].jump[0];
+    if (error <= prices[k].error) ++covered;
+  }
+  EXPECT_GE(10 * covered, 9 * contracts.size());
+}
+
 // Every model without jumps is Black and Scholes', whose European price has a closed form.
 TEST(OptionsReference, WithoutJumpsItIsBlackAndScholes) {
   std::vector<Contract> contracts(6);

@@ -190,6 +190,37 @@ TEST(OptionsSurface, OtherStrikesChangeNoBit) {
   }
 }
 
+// Puts with q < r < 0 are exercised between two boundaries, where exercise is split off and the difference of
+// grids tells less.
+TEST(OptionsSurface, StatedErrorsCoverExerciseBetweenTwoBoundaries) {
+  std::vector<Contract> contracts;
+  std::size_t set = 0;
+  for (Contract c : testing::random_contracts(12, 21)) {
+    c.style = Style::american;
+    c.type = Type::put;
+    c.spot = 1.0;
+    c.variance = set % 2 == 0 ? 0.0 : 0.04;
+    c.rate = -0.004 * static_cast<double>(1 + set % 4);
+    c.dividend = c.rate - 0.09;
+    c.maturity = 1.0 + static_cast<double>(set++ % 3);
+    for (c.strike = 0.7; c.strike < 1.45; c.strike += 0.1) contracts.push_back(c);
+  }
+  Settings finest = surface_on(1024);
+  finest.steps = 1024;
+  const std::vector<Price> known = prices_of(finest, contracts);
+  for (const int mesh : {64, 128, 256}) {
+    const std::vector<Price> prices = prices_of(surface_on(mesh), contracts);
+    std::vector<double> ratio;
+    for (std::size_t k = 0; k < prices.size(); ++k)
+      ratio.push_back(prices[k].error / (std::abs(prices[k].price - known[k].price) + 1e-7));
+    std::sort(ratio.begin(), ratio.end());
+    EXPECT_GE(ratio[ratio.size() / 10], 1.0) << mesh;
+    EXPECT_LE(ratio[ratio.size() / 2], 10.0) << mesh;
+    std::printf("mesh %d: stated over true error %.2g, %.2g, %.2g at 10, 50, 90 %% of the prices\n", mesh,
+                ratio[ratio.size() / 10], ratio[ratio.size() / 2], ratio[ratio.size() * 9 / 10]);
+  }
+}
+
 // Beyond the grid a value is known: what exercise or expiry is certain to bring, or 0.
 TEST(OptionsSurface, StrikesFarAway) {
   std::vector<Contract> contracts;
