@@ -1,7 +1,6 @@
 #include "kernels/fabric/contact_parts.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 #include <limits>
 #include <set>
@@ -11,19 +10,13 @@
 
 namespace drogue::fabric {
 
-namespace {
-
-double size_of(const Vector3<double>& v) { return std::hypot(v.x, v.y, v.z); }
-
-}  // namespace
-
 ContactEdges contact_edges(const Mesh& mesh) {
   const std::vector<Edge> of_triangles = triangle_edges(mesh);
   ContactEdges edges;
   edges.ends = of_triangles;
   edges.first_line = static_cast<int>(of_triangles.size());
   std::ranges::set_difference(edges_of(mesh), of_triangles, std::back_inserter(edges.ends));
-  for (const auto& [a, b] : edges.ends) edges.mean_length += size_of(way(mesh, a, b));
+  for (const auto& [a, b] : edges.ends) edges.mean_length += rest_distance(mesh, a, b);
   edges.mean_length /= std::max(1.0, static_cast<double>(edges.ends.size()));
   return edges;
 }

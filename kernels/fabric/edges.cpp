@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "kernels/fabric/way.hpp"
+
 namespace drogue::fabric {
 
 namespace {
@@ -16,6 +18,8 @@ std::vector<Edge> each_once(std::vector<Edge> edges) {
 }  // namespace
 
 Edge edge_between(int a, int b) { return {std::min(a, b), std::max(a, b)}; }
+
+double rest_distance(const Mesh& mesh, int a, int b) { return size_of(way(mesh, a, b)); }
 
 Edge opposite_edge(const std::array<int, 3>& triangle, std::size_t k) {
   return edge_between(triangle[(k + 1) % 3], triangle[(k + 2) % 3]);

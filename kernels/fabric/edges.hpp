@@ -12,6 +12,9 @@ using Edge = std::array<int, 2>;
 
 [[nodiscard]] Edge edge_between(int a, int b);
 
+/// How far apart they are at rest, m.
+[[nodiscard]] double rest_distance(const Mesh& mesh, int a, int b);
+
 /// The edge of a triangle that its corner k (0, 1, 2) is no end of.
 [[nodiscard]] Edge opposite_edge(const std::array<int, 3>& triangle, std::size_t k);
 

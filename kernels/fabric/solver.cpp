@@ -6,6 +6,7 @@
 #include <string>
 
 #include "kernels/fabric/contact_parts.hpp"
+#include "kernels/fabric/edges.hpp"
 
 namespace drogue::fabric {
 
@@ -34,11 +35,6 @@ void check_contact(const Parameters& p, const Require& require) {
   }
 }
 
-double distance_of(const std::vector<Vector>& points, int i, int j) {
-  const Vector &a = points[static_cast<std::size_t>(i)], &b = points[static_cast<std::size_t>(j)];
-  return std::hypot(b[0] - a[0], b[1] - a[1], b[2] - a[2]);
-}
-
 void check(const Parameters& p) {
   const auto require = [](bool holds, const char* what) {
     if (!holds) throw std::invalid_argument(std::string("fabric solver: ") + what);
@@ -48,16 +44,15 @@ void check(const Parameters& p) {
     return std::ranges::all_of(v, [](double x) { return std::isfinite(x); });
   };
   const auto is_vertex = [&](int i) { return i >= 0 && static_cast<std::size_t>(i) < n; };
-  const auto distance = [&](int i, int j) { return distance_of(p.mesh.rest, i, j); };
   require(n > 0 && std::ranges::all_of(p.mesh.rest, finite),
           "there must be a vertex, and all must be somewhere");
   for (const auto& t : p.mesh.triangles) {
     require(std::ranges::all_of(t, is_vertex), "a triangle names a vertex that is not there");
-    require(has_area(p.mesh.rest, t), "a triangle has no area");
+    require(has_area(p.mesh, t), "a triangle has no area");
   }
   for (const auto& line : p.mesh.lines) {
     require(std::ranges::all_of(line, is_vertex), "a line names a vertex that is not there");
-    require(distance(line[0], line[1]) > 0.0, "a line has no length");
+    require(rest_distance(p.mesh, line[0], line[1]) > 0.0, "a line has no length");
   }
   const auto positive = [](double x) { return x > 0.0 && std::isfinite(x); };
   const auto not_negative = [](double x) { return x >= 0.0 && std::isfinite(x); };
@@ -108,11 +103,11 @@ void check(const Parameters& p) {
 
 }  // namespace
 
-bool has_area(const std::vector<Vector>& rest, const std::array<int, 3>& t) {
+bool has_area(const Mesh& mesh, const std::array<int, 3>& t) {
   // Heron's formula without its cancellation (Kahan 2014); rounding of the coordinates is what is asked
   // about.
-  double side[3] = {distance_of(rest, t[0], t[1]), distance_of(rest, t[1], t[2]),
-                    distance_of(rest, t[2], t[0])};
+  double side[3] = {rest_distance(mesh, t[0], t[1]), rest_distance(mesh, t[1], t[2]),
+                    rest_distance(mesh, t[2], t[0])};
   std::ranges::sort(side);
   return side[0] + side[1] - side[2] > 1e-14 * side[2] && side[2] > 1e-70 && side[2] < 1e70;
 }

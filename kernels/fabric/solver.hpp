@@ -93,7 +93,7 @@ class Solver {
 
 /// Whether a triangle can be computed with: it is not flat to round-off, and its longest side, m, is within
 /// 1e-70 and 1e70, so that the square of its area is a number.
-[[nodiscard]] bool has_area(const std::vector<Vector>& rest, const std::array<int, 3>& triangle);
+[[nodiscard]] bool has_area(const Mesh& mesh, const std::array<int, 3>& triangle);
 
 /// Throws std::invalid_argument for parameters out of range; the backend must be available.
 [[nodiscard]] std::unique_ptr<Solver> create_solver(device::Backend backend, const Parameters& parameters);

@@ -93,10 +93,6 @@ Price american_price(const Contract& c, const AmericanPut& put, const BermudanVa
   price.exercise_boundary = std::numeric_limits<double>::quiet_NaN();
   price.mesh = static_cast<int>(put.psi_re.size());
   price.steps = put.puts[AmericanPut::levels - 1].dates;
-  if (!std::isfinite(price.price) || !std::isfinite(price.error)) {
-    price.outcome = Outcome::failed;
-    price.failure = Failure::series;
-  }
   return price;
 }
 

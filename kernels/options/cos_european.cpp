@@ -110,10 +110,6 @@ Price european_price(const Contract& c, const Exponent& psi) {
   price.exercise_boundary = std::numeric_limits<double>::quiet_NaN();
   price.mesh = sums.nodes;
   price.steps = 1;
-  if (!std::isfinite(price.price) || !std::isfinite(price.error)) {
-    price.outcome = Outcome::failed;
-    price.failure = Failure::series;
-  }
   return price;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <limits>
 #include <numeric>
 #include <stdexcept>
@@ -133,8 +134,12 @@ class CosPricer final : public Pricer {
   }
 
   void finish(const Contract& contract, Price& price) const {
-    if (price.outcome == Outcome::ok && price.error > _settings.tolerance * contract.strike)
+    if (!std::isfinite(price.price) || !std::isfinite(price.error)) {
+      price.outcome = Outcome::failed;
+      price.failure = Failure::series;
+    } else if (price.error > _settings.tolerance * contract.strike) {
       price.outcome = Outcome::coarse;
+    }
     if (_settings.greeks) return;
     price.delta = price.gamma = price.theta = std::numeric_limits<double>::quiet_NaN();
   }

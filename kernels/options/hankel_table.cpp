@@ -53,7 +53,7 @@ PanelNodes even_nodes() {
 /// first zero of the Airy function). With v = ln z - ln nu + 0.928 nu^{-2/3} the nodes are where
 ///   k = v/step + arsinh(tanh(v)/d)/0.6 + constant
 /// is whole, d just below 1.607 nu^{-2/3}. It takes the zeros to |Im k| > (pi/2)/0.6, so that the rule of
-/// trapezoids misses e^{-16} of the weights there, and away from v = 0 the nodes are even. PanelNodes
+/// trapezoids misses e^{-16} of the weights there, and away from v = 0 the nodes are even. They
 /// begin where what lies below is 1e-14 of the variance of the jumps.
 PanelNodes nodes_about_zeros(double begin) {
   constexpr double step = HankelGrid::step, closer = 0.6;

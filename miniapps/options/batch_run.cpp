@@ -63,9 +63,8 @@ void BatchRun::price(const Chunk& chunk, Desk& desk) {
   if (!_is_stopped) hand_in(desk, true);
 }
 
-/// A surface's strikes meet the row's spot here first.
+/// The strikes of a surface, which meet the row's spot here first.
 void BatchRun::check_strikes(Row& row) const {
-  if (_command.action == Action::price) return;
   options::Contract contract = row.contract;
   for (const double strike : _command.strikes) {
     if (!row.fault.empty()) return;

@@ -4,6 +4,7 @@
 
 #include "common/program/failure.hpp"
 #include "common/scene/node.hpp"
+#include "kernels/fabric/edges.hpp"
 #include "miniapps/springs/mesh_topology.hpp"
 #include "miniapps/springs/obj_file.hpp"
 
@@ -77,11 +78,9 @@ class ObjChecker {
     for (std::size_t k = 0; k < _mesh.triangles.size(); ++k) {
       const Vector normal = double_area(_mesh.rest, _mesh.triangles[k]);
       double longest = 0.0;
-      for (std::size_t e = 0; e < 3; ++e) {
-        const Vector &a = _mesh.rest[static_cast<std::size_t>(_mesh.triangles[k][e])],
-                     &b = _mesh.rest[static_cast<std::size_t>(_mesh.triangles[k][(e + 1) % 3])];
-        longest = std::max(longest, std::hypot(b[0] - a[0], b[1] - a[1], b[2] - a[2]));
-      }
+      for (std::size_t e = 0; e < 3; ++e)
+        longest = std::max(
+            longest, fabric::rest_distance(_mesh, _mesh.triangles[k][e], _mesh.triangles[k][(e + 1) % 3]));
       const double twice = std::hypot(normal[0], normal[1], normal[2]);
       if (!(twice > flat * longest * longest) || !std::isfinite(longest))
         refuse(_contents.triangle_line[k], part_of_file("face", k) + " (vertices " +

@@ -5,6 +5,7 @@
 
 #include "common/scene/node.hpp"
 #include "common/scene/read.hpp"
+#include "kernels/fabric/edges.hpp"
 #include "kernels/fabric/solver.hpp"
 #include "miniapps/springs/expressions.hpp"
 #include "miniapps/springs/mesh_topology.hpp"
@@ -103,11 +104,8 @@ void complete_material(const Table& root, SpringsScene& scene) {
   f.material.axial_stiffness = f.axial_stiffness.value_or(0.0);
   if (!lines || f.axial_stiffness) return;
   scene.mesh.line_stiffness.clear();
-  for (const auto& [i, j] : scene.mesh.lines) {
-    const fabric::Vector &a = scene.mesh.rest[static_cast<std::size_t>(i)],
-                         &b = scene.mesh.rest[static_cast<std::size_t>(j)];
-    scene.mesh.line_stiffness.push_back(*f.stiffness * std::hypot(b[0] - a[0], b[1] - a[1], b[2] - a[2]));
-  }
+  for (const auto& [i, j] : scene.mesh.lines)
+    scene.mesh.line_stiffness.push_back(*f.stiffness * fabric::rest_distance(scene.mesh, i, j));
   f.material.axial_stiffness = scene.mesh.line_stiffness.front();
 }
 
@@ -220,7 +218,7 @@ std::vector<int> require_some(const Table& root, const SpringsScene& scene, cons
 void complete_and_check(const Table& root, SpringsScene& scene) {
   scene.mesh = make_mesh(root, scene);
   for (const auto& triangle : scene.mesh.triangles)
-    if (!fabric::has_area(scene.mesh.rest, triangle))
+    if (!fabric::has_area(scene.mesh, triangle))
       contradict(root, "mesh",
                  "mesh: the triangle " + place_text(scene, static_cast<std::size_t>(triangle[0])) +
                      " has no area: it is too thin, or not between 1e-70 and 1e70 m long");

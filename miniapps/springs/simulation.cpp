@@ -90,9 +90,13 @@ bool Simulation::is_output_time(double time) const {
   return std::ranges::count(_scene.output.times, time) > 0;
 }
 
+/// By the frequencies of the fabric alone.
+double Simulation::longest_stable_step() {
+  return fabric::stable_dt(_scene.time.integrator, _solver->fastest_frequency(), _solver->fastest_decay());
+}
+
 double Simulation::stable_dt() {
-  const double stable =
-      fabric::stable_dt(_scene.time.integrator, _solver->fastest_frequency(), _solver->fastest_decay());
+  const double stable = longest_stable_step();
   if (!_scene.contact.self) return stable;
   // Contact looks about as far as it moves: a tenth of an edge a step keeps its lists short.
   std::vector<Vector> x(_problem.x.size()), v(x.size());
@@ -136,16 +140,12 @@ void Simulation::replan_if_stiffer() {
 void Simulation::require_stable() {
   const double dt = _solver->clock().dt;
   const double way = std::sqrt(2.0 * _solver->totals().kinetic / _problem.mass) * dt;
-  Vector low = _scene.mesh.rest.front(), high = low;
-  for (const Vector& place : _scene.mesh.rest)
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      low[axis] = std::min(low[axis], place[axis]);
-      high[axis] = std::max(high[axis], place[axis]);
-    }
-  if (!(way > std::hypot(high[0] - low[0], high[1] - low[1], high[2] - low[2]))) return;
-  const double stable =
-      fabric::stable_dt(_scene.time.integrator, _solver->fastest_frequency(), _solver->fastest_decay());
-  if (dt <= stable) return;
+  const auto extent = [&](std::size_t axis) {
+    const auto [low, high] =
+        std::ranges::minmax(_scene.mesh.rest, {}, [axis](const Vector& x) { return x[axis]; });
+    return high[axis] - low[axis];
+  };
+  if (!(way > std::hypot(extent(0), extent(1), extent(2))) || dt <= longest_stable_step()) return;
   std::ostringstream text;
   text << "a step of " << dt << " s is too long: cloth moves " << way
        << " m in it on average, farther than the whole mesh reaches; take a shorter time.dt, or \"auto\"";

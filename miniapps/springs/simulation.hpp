@@ -48,6 +48,7 @@ class Simulation {
   void resume();
   void plan();
   void replan_if_stiffer();
+  [[nodiscard]] double longest_stable_step();
   [[nodiscard]] double stable_dt();
   void require_stable();
   [[nodiscard]] double next_stop(double time) const;
