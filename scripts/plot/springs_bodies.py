@@ -2,6 +2,8 @@
 
 import numpy as np
 
+from .expression import evaluate
+
 _FACETS = 24  # along a diameter
 COLOUR = np.array([0.74, 0.73, 0.71, 1.0])
 
@@ -42,9 +44,43 @@ def _plane(body, places: np.ndarray) -> np.ndarray:
     return _quads(body["centre"] + grid @ frame[:2])
 
 
+def _level_set(body, places: np.ndarray) -> np.ndarray:
+    """The part about what lies at `places`: a corner in each cell of a lattice that the surface passes, amid the places where it
+    cuts the cell's edges, and a facet across each edge that it cuts (surface nets, Gibson 1998)."""
+    low, high = places.min(axis=0), places.max(axis=0)
+    half = 0.8 * np.max(high - low)
+    origin, step = (low + high) / 2 - half, 2 * half / (2 * _FACETS)
+    count = 2 * _FACETS + 1
+    x, y, z = (origin[:, None] + step * np.arange(count)).reshape(3, count)
+    with np.errstate(all="ignore"):
+        value = evaluate(body["expression"], x=x[:, None, None], y=y[:, None], z=z)
+    inside = value < 0
+    sums, cuts = np.zeros((count, count, count, 3)), np.zeros((count, count, count, 1))
+    across = []
+    for axis, unit in enumerate(np.eye(3, dtype=int)):
+        edges = np.argwhere(np.diff(inside, axis=axis))
+        below, above = value[tuple(edges.T)], value[tuple((edges + unit).T)]
+        # Beside what is not a number the surface is half a step away.
+        part = np.where(np.isfinite(below - above), below / (below - above), 0.5)
+        first, second = np.eye(3, dtype=int)[[axis - 2, axis - 1]]
+        about = np.stack([edges, edges - first, edges - first - second, edges - second], axis=1)
+        across.append(about[(edges[:, [axis - 2, axis - 1]] > 0).all(axis=1) & (edges < count - 1).all(axis=1)])
+        for k in range(4):
+            cell = tuple(about[:, k].T)
+            np.add.at(sums, cell, edges + part[:, None] * unit)
+            np.add.at(cuts, cell, 1)
+    with np.errstate(invalid="ignore"):
+        corners = origin + step * sums / cuts
+    return corners[tuple(np.moveaxis(np.concatenate(across), -1, 0))]
+
+
 def facets(scene: dict, places: np.ndarray) -> np.ndarray:
-    """Facets (n, 4, 3) of all disks, spheres and planes that a resolved scene has; `places` are where cloth comes to."""
-    make = {"disk": _disk, "sphere": _sphere, "plane": lambda body: _plane(body, places)}
+    """Facets (n, 4, 3) of all bodies that a resolved scene has; `places` are where cloth comes to."""
+    make = {
+        "disk": _disk,
+        "sphere": _sphere,
+        "plane": lambda body: _plane(body, places),
+        "level-set": lambda body: _level_set(body, places),
+    }
     bodies = scene.get("contact", {}).get("objects", [])
-    found = [make[body["kind"]](body) for body in bodies if body["kind"] in make]
-    return np.concatenate(found) if found else np.empty((0, 4, 3))
+    return np.concatenate([make[body["kind"]](body) for body in bodies] or [np.empty((0, 4, 3))])

@@ -136,6 +136,27 @@ class SpringsPictures(unittest.TestCase):
                 self.assertAlmostEqual(most, reach.max())
                 self.assertGreater(self.greys(run), plain + 1000)
 
+    def test_a_level_set(self):
+        """Its facets are a closed surface; of one that is not a number everywhere those about its numbers are there."""
+        raised = SQUARE + [0, 0, 0.6]
+        for text, closed in (("(x-0.5)^2+(y-0.5)^2+(z-0.3)^2-0.16", True), ("sqrt((z+0.1)*(z+0.1))-0.2+0*sqrt(x)", False)):
+            with self.subTest(text):
+                contact = f'[contact]\nobjects = [{{ kind = "level-set", expression = "{text}" }}]\n'
+                run = write_run(self.folder / f"run{closed}", SQUARE, TRIANGLES, EDGES, [SQUARE, raised], contact=contact)
+                facets = View(read(run)).bodies
+                self.assertTrue(np.isfinite(facets).all())
+                if closed:
+                    distance = np.abs(np.linalg.norm(facets - [0.5, 0.5, 0.3], axis=-1) - 0.4)
+                    self.assertLess(distance.max(), (1.6 / 48) ** 2)  # the square of the cells
+                    _, corners = np.unique(facets.reshape(-1, 3), axis=0, return_inverse=True)
+                    loops = corners.reshape(-1, 4)
+                    edges = np.sort(np.stack((loops, np.roll(loops, 1, axis=1)), axis=-1).reshape(-1, 2), axis=1)
+                    self.assertTrue((np.unique(edges, axis=0, return_counts=True)[1] == 2).all())
+                else:
+                    inner = facets[(facets[..., 0] > 0.1).all(axis=1)]
+                    self.assertLess(np.abs(np.abs(inner[..., 2] + 0.1) - 0.2).max(), 1e-12)
+                self.assertGreater(self.greys(run), 1000)
+
     @staticmethod
     def greys(run):
         """Pixels of the colour of bodies, lit or in the shade, in the last picture."""
