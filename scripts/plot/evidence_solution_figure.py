@@ -64,10 +64,10 @@ def _draw_marks(axes, marks: list[Mark]) -> None:
     for mark in marks:
         x, y = zip(*mark.points)
         axes.plot(x, y, ":D", color=style.MUTED, markersize=3.4, linewidth=0.8, zorder=1)
-        middle = (np.exp(np.mean(np.log(values))) for values in (x[:2], y[:2]))
+        # Of several points above the first, of one below it.
         shift, side = (5, "bottom") if len(x) > 1 else (-5, "top")
         axes.annotate(
-            mark.label, tuple(middle), (0, shift), textcoords="offset points", ha="center", va=side, fontsize=6.5,
+            mark.label, mark.points[0], (0, shift), textcoords="offset points", ha="center", va=side, fontsize=6.5,
             color=style.MUTED, bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.5, "alpha": 0.85},
         )  # fmt: skip
 

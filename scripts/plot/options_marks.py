@@ -15,6 +15,10 @@ class Mark:
 
 
 _PEERS = "measured for this project on one core of a Xeon, 2026-11-21; strike 100, a year, QuantLib 1.44"
+_PROJ = (
+    "Bermudan puts on 2048 nodes with 4 to 32, 8 to 64 and 16 to 128 dates, extrapolated, by PROJ_Option_Pricing_Matlab (commit 8fd82b2, Kirkby "
+    "2018) in GNU Octave 7.3; least of nine times an option on one core of an AMD EPYC that others shared, 2026-11-23, measured for this project"
+)
 _PROBE = "a prototype of this project without error estimate, one grid, 128 intervals and 32 steps"
 
 MARKS = (
@@ -28,6 +32,11 @@ MARKS = (
     ),
     Mark("thesis", "hand-written CUDA", "cuda", ((0.25e-3 / 4096, 1.6e-5),), f"{_PROBE}, H200, kernel alone"),
     Mark("thesis", "hand-written AVX-512", "serial", ((1 / 7900, 3.4e-5),), f"{_PROBE}, one core"),
+    Mark("thesis", "PROJ", "serial", ((0.032, 3.2e-6), (0.055, 2.2e-6), (0.069, 1.2e-6)), _PROJ),
+    Mark("five-years", "PROJ", "serial", ((0.033, 6.9e-5), (0.038, 8.9e-6), (0.084, 3.5e-6)), _PROJ),
+    Mark("pure-jumps", "PROJ", "serial", ((0.031, 2.0e-6), (0.048, 1.1e-6), (0.104, 1.3e-7)), _PROJ),
+    Mark("merton", "PROJ", "serial", ((0.028, 2.5e-5), (0.047, 1.3e-5), (0.059, 7.8e-6)), _PROJ),
+    Mark("black-scholes", "PROJ", "serial", ((0.015, 1.8e-6), (0.028, 2.1e-7), (0.055, 5.4e-8)), _PROJ),
     Mark(
         "black-scholes", "QuantLib FD", "serial", ((1 / 4298, 1.7e-4), (1 / 2361, 7.7e-5), (1 / 186, 1.6e-5)),
         f"FdBlackScholes, 128 x 32, 100 x 100 and 400 x 400, {_PEERS}",

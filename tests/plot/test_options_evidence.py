@@ -43,7 +43,7 @@ class Solutions(Folder):
             return {text.get_text() for text in figure.axes[0].texts}
 
         core, gpu = labels(figure_of(self)), labels(figure_of(self, records.H200, "cuda"))
-        self.assertEqual({"dissertation, one option", "dissertation, 4096 options", "hand-written AVX-512"}, core)
+        self.assertEqual({"dissertation, one option", "dissertation, 4096 options", "hand-written AVX-512", "PROJ"}, core)
         self.assertEqual(core | {"hand-written CUDA"}, gpu)
 
     def test_every_mark_has_a_problem_and_a_source(self):
