@@ -20,13 +20,37 @@ function(drogue_kernel_test_headers)
   target_precompile_headers(drogue_kernel_test_headers PRIVATE <Kokkos_Core.hpp> <gtest/gtest.h>)
 endfunction()
 
-# drogue_add_test(NAME <name> SOURCES <files> LABEL <label> [LIBRARIES <targets>] [BACKEND <backend>])
+# How tests of kernels are compiled, whatever they run on.
+function(drogue_kernel_test_options target)
+  # Helpers of these tests have the same names in many files: a unity build shares what they include instead.
+  set_target_properties(${target} PROPERTIES UNITY_BUILD OFF)
+  # What they ask of the kernels is asked of the library, which is optimised as users have it.
+  drogue_optimise_little(${target})
+  if(CMAKE_UNITY_BUILD)
+    drogue_kernel_test_headers()
+    target_precompile_headers(${target} REUSE_FROM drogue_kernel_test_headers)
+  endif()
+endfunction()
+
+# drogue_add_kernel_test_objects(<name> <sources>): those that name no execution space, compiled once for all backends. What
+# they run on they learn from tests/support/backend.hpp.
+function(drogue_add_kernel_test_objects name)
+  add_library(${name} OBJECT ${ARGN})
+  target_link_libraries(${name} PRIVATE drogue_kernels drogue_reference drogue_private GTest::gtest)
+  drogue_use_device_language(${ARGN})
+  drogue_kernel_test_options(${name})
+  # As a program is compiled: gcc takes no compiled headers of another kind.
+  set_target_properties(${name} PROPERTIES POSITION_INDEPENDENT_CODE OFF)
+  drogue_host_option(${name} PRIVATE -fPIE)
+endfunction()
+
+# drogue_add_test(NAME <name> SOURCES <files> LABEL <label> [OBJECTS <files>] [LIBRARIES <targets>] [BACKEND <backend>])
 # One GoogleTest executable; each of its cases becomes a ctest test `<label>.<Suite>.<Case>`.
-# With BACKEND the sources see DROGUE_TEST_SPACE (Kokkos::OpenMP) and DROGUE_TEST_BACKEND (openmp), go through nvcc
-# in a CUDA build, and a test of the cuda backend has the label gpu. A name that ends in _long has the label long.
+# With BACKEND the sources see DROGUE_TEST_SPACE (Kokkos::OpenMP), go through nvcc in a CUDA build, and a test of the cuda backend
+# has the label gpu. A name that ends in _long has the label long.
 function(drogue_add_test)
-  cmake_parse_arguments(_test "" "NAME;LABEL;BACKEND" "SOURCES;LIBRARIES" ${ARGN})
-  add_executable(${_test_NAME} ${_test_SOURCES})
+  cmake_parse_arguments(_test "" "NAME;LABEL;BACKEND" "SOURCES;OBJECTS;LIBRARIES" ${ARGN})
+  add_executable(${_test_NAME} ${_test_SOURCES} ${_test_OBJECTS})
   set_target_properties(${_test_NAME} PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/tests")
   target_link_libraries(${_test_NAME} PRIVATE ${_test_LIBRARIES} drogue_private GTest::gtest)
   target_compile_definitions(${_test_NAME} PRIVATE
@@ -36,16 +60,8 @@ function(drogue_add_test)
   set(_threads 1)
   if(_test_BACKEND)
     drogue_use_device_language(${_test_SOURCES})
-    # Helpers of these tests have the same names in many files: a unity build shares what they include instead.
-    set_target_properties(${_test_NAME} PROPERTIES UNITY_BUILD OFF)
-    # What they ask of the kernels is asked of the library, which is optimised as users have it.
-    drogue_optimise_little(${_test_NAME})
-    if(CMAKE_UNITY_BUILD)
-      drogue_kernel_test_headers()
-      target_precompile_headers(${_test_NAME} REUSE_FROM drogue_kernel_test_headers)
-    endif()
-    target_compile_definitions(${_test_NAME} PRIVATE
-      DROGUE_TEST_BACKEND=${_test_BACKEND} DROGUE_TEST_SPACE=${DROGUE_EXECUTION_SPACE_${_test_BACKEND}})
+    drogue_kernel_test_options(${_test_NAME})
+    target_compile_definitions(${_test_NAME} PRIVATE DROGUE_TEST_SPACE=${DROGUE_EXECUTION_SPACE_${_test_BACKEND}})
     string(APPEND _prefix "${_test_BACKEND}.")
     if(_test_BACKEND STREQUAL "cuda")
       set(_label gpu)
