@@ -5,19 +5,26 @@ include(GoogleTest)
 # All tests that run on a backend; scripts/bundle.sh carries them to other machines.
 add_custom_target(drogue_kernel_tests)
 
-# What all kernel tests include, compiled once for all of them.
-function(drogue_kernel_test_headers)
-  if(TARGET drogue_kernel_test_headers)
+# drogue_share_headers(<test>): takes what tests include from headers that are compiled once for all of them, in a unity build.
+function(drogue_share_headers target)
+  if(NOT CMAKE_UNITY_BUILD)
     return()
   endif()
-  set(_source "${PROJECT_BINARY_DIR}/generated/kernel_test_headers.cpp")
+  drogue_test_headers()
+  target_precompile_headers(${target} REUSE_FROM drogue_test_headers)
+endfunction()
+function(drogue_test_headers)
+  if(TARGET drogue_test_headers)
+    return()
+  endif()
+  set(_source "${PROJECT_BINARY_DIR}/generated/test_headers.cpp")
   file(CONFIGURE OUTPUT "${_source}" CONTENT "int main() {}\n")
   drogue_use_device_language("${_source}")
   # A program as the tests are: gcc takes no headers that were compiled for a library.
-  add_executable(drogue_kernel_test_headers EXCLUDE_FROM_ALL "${_source}")
-  target_link_libraries(drogue_kernel_test_headers PRIVATE drogue_kernels drogue_private GTest::gtest)
-  drogue_optimise_little(drogue_kernel_test_headers)
-  target_precompile_headers(drogue_kernel_test_headers PRIVATE <Kokkos_Core.hpp> <gtest/gtest.h>)
+  add_executable(drogue_test_headers EXCLUDE_FROM_ALL "${_source}")
+  target_link_libraries(drogue_test_headers PRIVATE drogue_kernels drogue_private GTest::gtest)
+  drogue_optimise_little(drogue_test_headers)
+  target_precompile_headers(drogue_test_headers PRIVATE <Kokkos_Core.hpp> <gtest/gtest.h>)
 endfunction()
 
 # How tests of kernels are compiled, whatever they run on.
@@ -26,10 +33,7 @@ function(drogue_kernel_test_options target)
   set_target_properties(${target} PROPERTIES UNITY_BUILD OFF)
   # What they ask of the kernels is asked of the library, which is optimised as users have it.
   drogue_optimise_little(${target})
-  if(CMAKE_UNITY_BUILD)
-    drogue_kernel_test_headers()
-    target_precompile_headers(${target} REUSE_FROM drogue_kernel_test_headers)
-  endif()
+  drogue_share_headers(${target})
 endfunction()
 
 # drogue_add_kernel_test_objects(<name> <sources>): those that name no execution space, compiled once for all backends. What
