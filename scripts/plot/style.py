@@ -131,7 +131,8 @@ LABEL_STEP = 11.5 / 72
 
 def label_ends(axes, ends) -> None:
     """Names curves beside their right ends in their own colours, no two on each other; ends: ((x, y), words, colour)."""
-    axes.figure.canvas.draw()
+    # Asking for the limits settles them; all else of a drawing moves nothing.
+    axes.get_xlim(), axes.get_ylim()
     box = axes.get_window_extent()
     step = LABEL_STEP * axes.figure.dpi
     levels = sorted(

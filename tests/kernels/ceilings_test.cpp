@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "kernels/device/ceilings.hpp"
+#include "tests/support/backend.hpp"
 
 // The kernels that measure what a backend can do compute what they are said to.
 
@@ -10,7 +11,7 @@ namespace {
 class Ceilings : public ::testing::TestWithParam<Ceiling> {};
 
 TEST_P(Ceilings, ResultsAreThoseOfTheClosedForm) {
-  const auto kernel = create_ceiling(Backend::DROGUE_TEST_BACKEND, GetParam());
+  const auto kernel = create_ceiling(testing::tested_backend, GetParam());
   // The chains round at every step; the triads add small integers.
   const double bar = GetParam() == Ceiling::fp64 ? 1e-9 : 0.0;
   for (int round = 0; round < 2; ++round) {

@@ -4,6 +4,7 @@
 
 #include "kernels/fabric/solver.hpp"
 #include "kernels/reference/fabric/bending.hpp"
+#include "tests/support/backend.hpp"
 #include "tests/support/fabric_mesh.hpp"
 
 // Resistance to bending against the reference, folds and cylinders.
@@ -14,7 +15,7 @@ namespace {
 using testing::random_patch;
 using testing::shaken;
 
-constexpr auto backend = device::Backend::DROGUE_TEST_BACKEND;
+constexpr const auto& backend = testing::tested_backend;
 
 /// Nothing but bending.
 Parameters sheet(const Mesh& mesh, double stiffness) {

@@ -6,6 +6,7 @@
 #include "kernels/fabric/solver.hpp"
 #include "kernels/reference/fabric/bodies.hpp"
 #include "kernels/reference/fabric/intersections.hpp"
+#include "tests/support/backend.hpp"
 #include "tests/support/expression_program.hpp"
 #include "tests/support/fabric_sheets.hpp"
 
@@ -16,7 +17,7 @@ namespace {
 
 using namespace testing;
 
-constexpr auto backend = device::Backend::DROGUE_TEST_BACKEND;
+constexpr const auto& backend = testing::tested_backend;
 
 struct Outcome {
   std::size_t crossings = 0;

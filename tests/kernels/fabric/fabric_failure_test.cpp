@@ -4,6 +4,7 @@
 #include <span>
 
 #include "kernels/fabric/solver.hpp"
+#include "tests/support/backend.hpp"
 #include "tests/support/fabric_mesh.hpp"
 
 // A state that is lost: what is told of it, and where the solver goes back to.
@@ -14,7 +15,7 @@ namespace {
 using testing::random_patch;
 using testing::shaken;
 
-constexpr auto backend = device::Backend::DROGUE_TEST_BACKEND;
+constexpr const auto& backend = testing::tested_backend;
 /// How steps are taken.
 struct Way {
   Integrator integrator;

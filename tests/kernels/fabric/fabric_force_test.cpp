@@ -4,6 +4,7 @@
 
 #include "kernels/fabric/solver.hpp"
 #include "kernels/reference/fabric/membrane.hpp"
+#include "tests/support/backend.hpp"
 #include "tests/support/fabric_mesh.hpp"
 
 // Forces of the kernels against derivatives of energies that the reference writes down.
@@ -14,7 +15,7 @@ namespace {
 using testing::random_patch;
 using testing::shaken;
 
-constexpr auto backend = device::Backend::DROGUE_TEST_BACKEND;
+constexpr const auto& backend = testing::tested_backend;
 constexpr Model models[] = {Model::linear_vector, Model::edge, Model::quadratic, Model::biquadratic};
 
 Parameters cloth_of(Model model, const Mesh& mesh) {

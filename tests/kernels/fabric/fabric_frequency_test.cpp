@@ -6,6 +6,7 @@
 #include "kernels/fabric/mass.hpp"
 #include "kernels/fabric/solver.hpp"
 #include "kernels/reference/fabric/frequency.hpp"
+#include "tests/support/backend.hpp"
 #include "tests/support/fabric_mesh.hpp"
 
 // The bound of the frequencies against the largest one of the reference, and against the steps that blow up.
@@ -16,7 +17,7 @@ namespace {
 using testing::random_patch;
 using testing::shaken;
 
-constexpr auto backend = device::Backend::DROGUE_TEST_BACKEND;
+constexpr const auto& backend = testing::tested_backend;
 
 Parameters cloth(Model model, double line_density = 0.3) {
   Parameters p;

@@ -2,6 +2,7 @@
 
 #include "kernels/device/ledger.hpp"
 #include "kernels/fabric/solver.hpp"
+#include "tests/support/backend.hpp"
 #include "tests/support/expression_program.hpp"
 #include "tests/support/fabric_mesh.hpp"
 #include "tests/support/fabric_sheets.hpp"
@@ -15,8 +16,8 @@ using device::Ledger;
 using testing::random_patch;
 using testing::shaken;
 
-constexpr auto backend = device::Backend::DROGUE_TEST_BACKEND;
-constexpr bool on_device = backend == device::Backend::cuda;
+constexpr const auto& backend = testing::tested_backend;
+const bool on_device = backend == device::Backend::cuda;
 
 /// The ledger, started by the first who asks.
 Ledger counted() {

@@ -4,6 +4,7 @@
 
 #include "kernels/fabric/solver.hpp"
 #include "kernels/reference/fabric/loads.hpp"
+#include "tests/support/backend.hpp"
 #include "tests/support/expression_program.hpp"
 #include "tests/support/fabric_mesh.hpp"
 
@@ -16,7 +17,7 @@ using testing::postfix;
 using testing::random_patch;
 using testing::shaken;
 
-constexpr auto backend = device::Backend::DROGUE_TEST_BACKEND;
+constexpr const auto& backend = testing::tested_backend;
 constexpr Integrator integrators[] = {Integrator::rk4, Integrator::verlet};
 constexpr Model models[] = {Model::edge, Model::quadratic, Model::biquadratic};
 

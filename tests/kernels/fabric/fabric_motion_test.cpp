@@ -5,6 +5,7 @@
 
 #include "kernels/fabric/solver.hpp"
 #include "kernels/reference/fabric/membrane.hpp"
+#include "tests/support/backend.hpp"
 #include "tests/support/expression_program.hpp"
 #include "tests/support/fabric_mesh.hpp"
 
@@ -16,7 +17,7 @@ namespace {
 using testing::random_patch;
 using testing::shaken;
 
-constexpr auto backend = device::Backend::DROGUE_TEST_BACKEND;
+constexpr const auto& backend = testing::tested_backend;
 
 struct State {
   std::vector<Vector> x, v;

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "kernels/fabric/solver.hpp"
+#include "tests/support/backend.hpp"
 #include "tests/support/expression_program.hpp"
 #include "tests/support/fabric_mesh.hpp"
 
@@ -13,7 +14,7 @@ namespace {
 
 using testing::postfix;
 
-constexpr auto backend = device::Backend::DROGUE_TEST_BACKEND;
+constexpr const auto& backend = testing::tested_backend;
 constexpr Integrator integrators[] = {Integrator::rk4, Integrator::verlet};
 
 /// A mass of 1 kg on a spring of 16 N/m whose other end moves by 0.1 sin(3 t): omega = 4 rad/s.

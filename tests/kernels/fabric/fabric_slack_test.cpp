@@ -4,6 +4,7 @@
 
 #include "kernels/fabric/solver.hpp"
 #include "kernels/reference/fabric/frequency.hpp"
+#include "tests/support/backend.hpp"
 #include "tests/support/fabric_mesh.hpp"
 
 // Materials that bear tension only: the relaxed energy, its forces, its stress.
@@ -14,7 +15,7 @@ namespace {
 using testing::random_patch;
 using testing::shaken;
 
-constexpr auto backend = device::Backend::DROGUE_TEST_BACKEND;
+constexpr const auto& backend = testing::tested_backend;
 constexpr Model models[] = {Model::edge, Model::quadratic, Model::biquadratic};
 
 Parameters slack_cloth(Model model) {

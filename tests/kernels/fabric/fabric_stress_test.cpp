@@ -4,6 +4,7 @@
 
 #include "kernels/fabric/solver.hpp"
 #include "kernels/reference/fabric/stress.hpp"
+#include "tests/support/backend.hpp"
 #include "tests/support/fabric_mesh.hpp"
 
 // Stress against the continuum's, and against the virial of the forces.
@@ -15,7 +16,7 @@ using reference::Tensor;
 using testing::random_patch;
 using testing::shaken;
 
-constexpr auto backend = device::Backend::DROGUE_TEST_BACKEND;
+constexpr const auto& backend = testing::tested_backend;
 
 Parameters cloth(Model model, const Mesh& mesh) {
   Parameters p;

@@ -4,6 +4,7 @@
 
 #include "kernels/fabric/solver.hpp"
 #include "kernels/reference/fabric/totals.hpp"
+#include "tests/support/backend.hpp"
 #include "tests/support/fabric_mesh.hpp"
 
 // Energies and momenta against the reference, and what steps keep of them.
@@ -14,7 +15,7 @@ namespace {
 using testing::random_patch;
 using testing::shaken;
 
-constexpr auto backend = device::Backend::DROGUE_TEST_BACKEND;
+constexpr const auto& backend = testing::tested_backend;
 
 Parameters cloth(Model model, int nx, int ny) {
   Parameters p;

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "kernels/device/ledger.hpp"
+#include "tests/support/backend.hpp"
 #include "tests/support/gas_state.hpp"
 
 // What stepping asks of the device and of the host, and how it ends.
@@ -14,8 +15,8 @@ namespace {
 using namespace drogue::testing;  // NOLINT: helpers of these tests
 using device::Ledger;
 
-constexpr auto backend = device::Backend::DROGUE_TEST_BACKEND;
-constexpr bool on_device = backend == device::Backend::cuda;
+constexpr const auto& backend = testing::tested_backend;
+const bool on_device = backend == device::Backend::cuda;
 constexpr auto never = std::numeric_limits<double>::max();
 
 /// The ledger, started by the first who asks.

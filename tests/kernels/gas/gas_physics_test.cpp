@@ -3,6 +3,7 @@
 #include <string>
 
 #include "kernels/reference/gas/exact_riemann.hpp"
+#include "tests/support/backend.hpp"
 #include "tests/support/gas_state.hpp"
 
 // What a gas must do, whatever the arithmetic: order of accuracy, contacts at rest, symmetries.
@@ -13,7 +14,7 @@ namespace {
 using namespace drogue::testing;  // NOLINT: helpers of these tests
 using reference::Primitive;
 
-constexpr auto backend = device::Backend::DROGUE_TEST_BACKEND;
+constexpr const auto& backend = testing::tested_backend;
 
 #if defined(DROGUE_EXACT)
 constexpr bool exact_arithmetic = true;

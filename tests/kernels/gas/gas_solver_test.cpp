@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "tests/support/backend.hpp"
 #include "tests/support/gas_state.hpp"
 
 // Whole solvers against the serial oracle on random states, and what moves their state.
@@ -11,7 +12,7 @@ namespace {
 
 using namespace drogue::testing;  // NOLINT: helpers of these tests
 
-constexpr auto backend = device::Backend::DROGUE_TEST_BACKEND;
+constexpr const auto& backend = testing::tested_backend;
 
 #if defined(DROGUE_EXACT)
 constexpr bool exact_arithmetic = true;

@@ -8,13 +8,14 @@
 #include "kernels/linear/positive.hpp"
 #include "kernels/options/line_solve.hpp"
 #include "kernels/reference/linear/tridiagonal.hpp"
+#include "tests/support/backend.hpp"
 
 // Batches of tridiagonal systems on random data against elimination with pivots in long double.
 
 namespace drogue::linear {
 namespace {
 
-constexpr auto backend = device::Backend::DROGUE_TEST_BACKEND;
+constexpr const auto& backend = testing::tested_backend;
 
 class Random {
  public:

@@ -7,6 +7,7 @@
 #include "kernels/options/cos_american.hpp"
 #include "kernels/options/cos_pricer.hpp"
 #include "kernels/reference/options/cos.hpp"
+#include "tests/support/backend.hpp"
 #include "tests/support/option_sets.hpp"
 
 // The Bermudan solver against a plain oracle, and American prices against the reference.
@@ -14,7 +15,7 @@
 namespace drogue::options {
 namespace {
 
-constexpr auto backend = device::Backend::DROGUE_TEST_BACKEND;
+constexpr const auto& backend = testing::tested_backend;
 
 std::vector<Price> cos_prices(const std::vector<Contract>& contracts, double tolerance) {
   Settings settings;

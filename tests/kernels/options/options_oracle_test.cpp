@@ -6,6 +6,7 @@
 #include "kernels/options/pricer.hpp"
 #include "kernels/reference/options/levy.hpp"
 #include "kernels/reference/options/scheme.hpp"
+#include "tests/support/backend.hpp"
 #include "tests/support/option_sets.hpp"
 
 // The values of all nodes against a plain serial solve with weights from the printed density.
@@ -13,7 +14,7 @@
 namespace drogue::options {
 namespace {
 
-constexpr auto backend = device::Backend::DROGUE_TEST_BACKEND;
+constexpr const auto& backend = testing::tested_backend;
 
 /// The jumps of a put on a grid, by adaptive integrals of the density.
 reference::JumpTable table_of(const reference::Hyperbolic& law, double variance, int mesh, double h) {

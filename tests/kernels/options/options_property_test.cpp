@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "kernels/options/pricer.hpp"
+#include "tests/support/backend.hpp"
 #include "tests/support/option_sets.hpp"
 
 // What holds for every price, whatever it is.
@@ -17,7 +18,7 @@ namespace {
 using testing::option_sets;
 using testing::random_contracts;
 
-constexpr auto backend = device::Backend::DROGUE_TEST_BACKEND;
+constexpr const auto& backend = testing::tested_backend;
 
 Settings on_mesh(int mesh, int steps) {
   Settings settings;

@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "kernels/options/pricer.hpp"
+#include "tests/support/backend.hpp"
 #include "tests/support/option_sets.hpp"
 
 // Prices against known ones, and stated errors against true ones.
@@ -17,7 +18,7 @@ using testing::contract_of;
 using testing::option_sets;
 using testing::OptionSet;
 
-constexpr auto backend = device::Backend::DROGUE_TEST_BACKEND;
+constexpr const auto& backend = testing::tested_backend;
 
 std::vector<Price> priced(const Settings& settings, const std::vector<Contract>& contracts) {
   std::vector<Price> prices(contracts.size());

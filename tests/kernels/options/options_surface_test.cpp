@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "kernels/options/pricer.hpp"
+#include "tests/support/backend.hpp"
 #include "tests/support/option_sets.hpp"
 
 // Strikes that share a solve, against known prices and against those of solves of their own.
@@ -14,7 +15,7 @@
 namespace drogue::options {
 namespace {
 
-constexpr auto backend = device::Backend::DROGUE_TEST_BACKEND;
+constexpr const auto& backend = testing::tested_backend;
 
 Settings surface_on(int mesh) {
   Settings settings;
