@@ -164,8 +164,9 @@ struct ReadSmiles {
     const Column fine{nodes.fine(), 1}, coarse{nodes.coarse(), 1};
     const Answer answer = answer_of(put, fine, {nodes.fine() + mesh + 1, 1}, smile.fine);
     const Answer rough = answer_of(put, coarse, {nodes.coarse() + mesh / 2 + 1, 1}, smile.coarse);
-    const double error = smile.doubt.factor * largest_change(put, fine, coarse, smile) + smile.doubt.gap;
-    prices(k) = price_of(contract, put, answer, rough, error, smile.coarse.h, mesh, steps, tolerance);
+    const double largest = largest_change(put, fine, coarse, smile);
+    prices(k) =
+        price_of(contract, put, answer, rough, smile.doubt, largest, smile.coarse.h, mesh, steps, tolerance);
   }
 
  private:
