@@ -22,8 +22,8 @@ struct Doubt {
 /// counts 1 + 2.6 (1 - phi)^2 (h^2/spread)^{3/4} times, phi = spread/(spread + h^2).
 template <class R>
 KOKKOS_INLINE_FUNCTION R error_factor(R h, int mesh, R spread) {
-  const double finer = mesh <= 128 ? 1.0 : 128.0 / mesh;
-  const double in_time = 0.22 * Kokkos::sqrt(finer * Kokkos::sqrt(finer));
+  const double finer = 128.0 / mesh;
+  const double in_time = 0.17 * Kokkos::sqrt(finer * Kokkos::sqrt(finer));
   const R wide = 25.0 * h * h, in_space = 0.18 * (wide / device::maximum(spread, wide));
   const R sharp = h * h / (spread + h * h), bare = h * h / device::maximum(spread, h * h * (1.0 / 500));
   const R kink = 1.0 + 2.6 * sharp * sharp * device::square_root(bare * device::square_root(bare));
