@@ -22,8 +22,8 @@ struct Doubt {
 /// counts 1 + 2.6 (1 - phi)^2 (h^2/spread)^{3/4} times, phi = spread/(spread + h^2).
 template <class R>
 KOKKOS_INLINE_FUNCTION R error_factor(R h, int mesh, R spread) {
-  const double finer = 128.0 / mesh;
-  const double in_time = 0.17 * Kokkos::sqrt(finer * Kokkos::sqrt(finer));
+  const double finer = mesh <= 128 ? 1.0 : 128.0 / mesh;
+  const double in_time = 0.22 * Kokkos::sqrt(finer * Kokkos::sqrt(finer));
   const R wide = 25.0 * h * h, in_space = 0.18 * (wide / device::maximum(spread, wide));
   const R sharp = h * h / (spread + h * h), bare = h * h / device::maximum(spread, h * h * (1.0 / 500));
   const R kink = 1.0 + 2.6 * sharp * sharp * device::square_root(bare * device::square_root(bare));
@@ -50,7 +50,7 @@ KOKKOS_INLINE_FUNCTION double boundary_factor(const Put& put, double boundary, d
 /// variance and V_xxx/6, of which far from the strike there is little.
 ///
 /// Exercise that is split off is of first order in time, and extrapolation for the second leaves 2/3 of the
-/// difference where it decides and less elsewhere: 1.8 times more counts, and more on finer meshes, where
+/// difference where it decides and less elsewhere: twice as much counts, and more on finer meshes, where
 /// `error_factor` expects the difference to tell more.
 template <class R>
 KOKKOS_INLINE_FUNCTION Doubt<R> doubt_of(const PutPack<R>& put, R h, int mesh, R spread) {
@@ -71,7 +71,7 @@ KOKKOS_INLINE_FUNCTION Doubt<R> doubt_of(const PutPack<R>& put, R h, int mesh, R
   }
   if (put.any_split) {
     const double finer = mesh <= 128 ? 1.0 : mesh / 128.0;
-    const R more = 1.8 * device::square_root(device::square_root(R(finer)));
+    const R more = 2.0 * device::square_root(device::square_root(R(finer)));
     doubt.factor = doubt.factor * device::select(put.split > R(0.0), more, R(1.0));
   }
   return doubt;
