@@ -9,6 +9,7 @@ struct Answer {
   double value, slope, bend;  ///< V, dV/dx, d2V/dx2
   double decay;               ///< dV/dtau, a year
   double boundary;            ///< x up to which exercise is right; not a number where there is none
+  double missed;              ///< how much of the value interpolation may miss
 };
 
 /// One member's values on the nodes of a pack.
@@ -72,13 +73,31 @@ KOKKOS_INLINE_FUNCTION int stencil_of(const Put& put, const Nodes& nodes, double
   return first > mesh - 3 ? mesh - 3 : first < 0 ? 0 : first;
 }
 
+/// How much cubic interpolation at t from the nodes `first` to `first` + 3 may miss: the next term of
+/// Newton's form, from a fifth node on the same side of the strike and of the boundary; 0 where there is
+/// none.
+KOKKOS_INLINE_FUNCTION double missed_by_cubic(const Put& put, const Column& value, const Nodes& nodes,
+                                              int first, double t, double boundary) {
+  const int strike = nodes.strike;
+  const bool bounded = !put.split && boundary == boundary;
+  const bool crosses_above = first + 4 > nodes.mesh || (first < strike && first + 4 > strike);
+  const bool crosses_below =
+      first == 0 || first == strike || (bounded && (first - 1 - strike) * nodes.h < boundary);
+  if (crosses_above && crosses_below) return 0.0;
+  const int from = crosses_above ? first - 1 : first;
+  const double fourth =
+      value(from) - 4.0 * value(from + 1) + 6.0 * value(from + 2) - 4.0 * value(from + 3) + value(from + 4);
+  const double u = t - first;
+  return device::absolute(fourth * u * (u - 1.0) * (u - 2.0) * (u - 3.0)) * (1.0 / 24);
+}
+
 /// Reads the answer for one member. `change` holds dV/dtau.
 KOKKOS_INLINE_FUNCTION Answer answer_of(const Put& put, const Column& value, const Column& change,
                                         const Nodes& nodes) {
   const int mesh = nodes.mesh, strike = nodes.strike;
   const double h = nodes.h;
   const double x = put.log_spot, asset = exponential(x);
-  Answer answer{0.0, 0.0, 0.0, 0.0, device::portable::not_a_number()};
+  Answer answer{0.0, 0.0, 0.0, 0.0, device::portable::not_a_number(), 0.0};
   if (!(h < 1e30)) {
     answer.value = device::portable::not_a_number();
     return answer;
@@ -91,7 +110,7 @@ KOKKOS_INLINE_FUNCTION Answer answer_of(const Put& put, const Column& value, con
   }
   if (put.early && (x <= answer.boundary) && !(put.split && t < 1.0)) {
     if (!put.split || is_exercised(value(static_cast<int>(t)), static_cast<int>(t) - strike, h))
-      return {1.0 - asset, -asset, -asset, 0.0, answer.boundary};
+      return {1.0 - asset, -asset, -asset, 0.0, answer.boundary, 0.0};
   }
   if (t <= 0.0) {
     answer.value = nodes.certain.strike - nodes.certain.asset * asset;
@@ -108,6 +127,7 @@ KOKKOS_INLINE_FUNCTION Answer answer_of(const Put& put, const Column& value, con
   answer.slope = result[1];
   answer.bend = result[2];
   answer.decay = rate[0];
+  answer.missed = missed_by_cubic(put, value, nodes, first, t, answer.boundary);
   return answer;
 }
 

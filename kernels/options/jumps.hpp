@@ -60,20 +60,29 @@ KOKKOS_INLINE_FUNCTION WeightPair<R> kou_weights(const PutPack<R>& put, R h, int
   return {cell(put.jump[0] * put.jump[1], put.jump[2]), cell(put.jump[0] * (1.0 - put.jump[1]), put.jump[3])};
 }
 
-/// The mass of a normal density between two numbers, from the tails that do not cancel.
+/// The integral from z to infinity of what a normal density has above.
 template <class R>
-KOKKOS_INLINE_FUNCTION R normal_between(R from, R to) {
-  const auto flipped = from + to < R(0.0);
-  const R a = device::select(flipped, -to, from), b = device::select(flipped, -from, to);
-  return normal_above(a) - normal_above(b);
+KOKKOS_INLINE_FUNCTION R summed_above(R z) {
+  return 0.3989422804014327 * exponential(-0.5 * z * z) - z * normal_above(z);
+}
+
+/// The part of jumps of a normal density that goes to the node at d h, by a hat over the two steps beside it.
+/// Between two nodes a jump is shared so that its mean stays, however narrow the density is. Of the last node
+/// the hat ends where it is highest.
+template <class R>
+KOKKOS_INLINE_FUNCTION R normal_part(R mean, R per, R h, int d, bool last) {
+  const R centre = (double(d) * h - mean) * per, reach = h * per, share = device::reciprocal(reach);
+  if (last) return (summed_above(centre - reach) - summed_above(centre)) * share - normal_above(centre);
+  // The second difference is the same for the mirrored density, whose tail does not cancel.
+  const R away = device::absolute(centre);
+  return (summed_above(away - reach) - 2.0 * summed_above(away) + summed_above(away + reach)) * share;
 }
 
 template <class R>
-KOKKOS_INLINE_FUNCTION WeightPair<R> merton_weights(const PutPack<R>& put, R h, int d) {
+KOKKOS_INLINE_FUNCTION WeightPair<R> merton_weights(const PutPack<R>& put, R h, int d, bool last) {
   const R per = 1.0 / merton_deviation(put), mean = put.jump[1];
-  const R near = (d - 0.5) * h, far = (d + 0.5) * h;
-  return {put.jump[0] * normal_between((near - mean) * per, (far - mean) * per),
-          put.jump[0] * normal_between((-far - mean) * per, (-near - mean) * per)};
+  return {put.jump[0] * normal_part(mean, per, h, d, last),
+          put.jump[0] * normal_part(-mean, per, h, d, last)};
 }
 
 /// cos(pi 2^{-k/2}), k = 0 .. 15.
@@ -129,7 +138,7 @@ template <class R>
 KOKKOS_INLINE_FUNCTION WeightPair<R> weights(const PutPack<R>& put, const Grid<R>& grid, int d, R tilted,
                                              const R* even, const R* odd, const R* finer) {
   if (put.model == Model::kou) return kou_weights(put, grid.h, d);
-  if (put.model == Model::merton) return merton_weights(put, grid.h, d);
+  if (put.model == Model::merton) return merton_weights(put, grid.h, d, d == grid.mesh);
   if (put.model != Model::generalized_hyperbolic) return {R(0.0), R(0.0)};
   // Half of the first is what differences stand for; that of the last is among the tails.
   if (finer != nullptr) {
@@ -146,8 +155,8 @@ KOKKOS_INLINE_FUNCTION WeightPair<R> weights(const PutPack<R>& put, const Grid<R
 
 /// Sets the weights up, if given from those of a grid of half the steps. A mixture's are nodal values: with
 /// what they leave of the variance as a difference the scheme is of second order for every density that x^2
-/// makes bounded (Cont and Voltchkova 2005 for the idea), and no quadrature is needed. The other models' are
-/// masses of cells.
+/// makes bounded (Cont and Voltchkova 2005 for the idea), and no quadrature is needed. Kou's are masses of
+/// cells, Merton's, whose density may be narrow, those of hats.
 template <class Workers, class R>
 KOKKOS_INLINE_FUNCTION Jumps<R> jumps_of(const Workers& workers, const PutPack<R>& put, const Law<R>& law,
                                          const Tails<R>& tails, const Grid<R>& grid,
@@ -169,7 +178,7 @@ KOKKOS_INLINE_FUNCTION Jumps<R> jumps_of(const Workers& workers, const PutPack<R
     R rate = 0.0, variance = 0.0, price = 0.0;
     R growth = exponential((lane + 1.0) * h), tilted = exponential((lane + 1.0) * tilt);
     for (int d = 1 + lane; d <= mesh; d += workers.lanes) {
-      const double part = !mixed && d == mesh ? 0.5 : 1.0;
+      const double part = put.model == Model::kou && d == mesh ? 0.5 : 1.0;
       const WeightPair<R> pair = weights(put, grid, d, tilted, memory.even, memory.odd, finer);
       const R up = part * pair.up, down = part * pair.down, both = up + down;
       const R y = double(d) * h, down_price = down * device::reciprocal(growth);

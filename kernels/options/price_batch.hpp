@@ -6,14 +6,6 @@
 
 namespace drogue::options {
 
-/// What the largest |V(fine) - V(coarse)| near the spot is multiplied by for the stated error of their
-/// extrapolation. That error is of an order between two, at kinks, and three: docs/options.md tells how often
-/// it is below what is stated. The largest near the spot and not that at it, which changes sign somewhere.
-KOKKOS_INLINE_FUNCTION double error_factor(int mesh) {
-  const double finer = mesh <= 128 ? 1.0 : 128.0 / mesh;
-  return 0.22 * Kokkos::sqrt(finer * Kokkos::sqrt(finer));
-}
-
 /// Why a put has no price on a grid of steps h.
 KOKKOS_INLINE_FUNCTION Failure failure_of(const Put& put, double h) {
   if (put.rate * put.maturity < -650.0) return Failure::too_large;
@@ -21,10 +13,11 @@ KOKKOS_INLINE_FUNCTION Failure failure_of(const Put& put, double h) {
 }
 
 /// The answer for a put of strike 1 on two grids, the coarser one with steps h, extrapolated to steps of
-/// length zero (the error of both is of second order), as the contract's price.
+/// length zero (the error of both is of second order), as the contract's price. `largest`: |V(fine) -
+/// V(coarse)| near the spot.
 KOKKOS_INLINE_FUNCTION Price price_of(const Contract& contract, const Put& put, const Answer& fine,
-                                      const Answer& coarse, double change, double h, int mesh, int steps,
-                                      double tolerance) {
+                                      const Answer& coarse, const Doubt<double>& doubt, double largest,
+                                      double h, int mesh, int steps, double tolerance) {
   const auto limit = [](double f, double c) { return f + (f - c) * (1.0 / 3); };
   const double asset = exponential(put.log_spot);
   const bool exercised = put.early && fine.slope == -asset && fine.decay == 0.0;
@@ -39,7 +32,10 @@ KOKKOS_INLINE_FUNCTION Price price_of(const Contract& contract, const Put& put, 
   }
   const bool call = contract.type == Type::call;
   const double unit = call ? contract.spot : contract.strike, s = contract.spot;
-  const double error = error_factor(mesh) * change + cut_error(mesh);
+  // The extrapolation has 4/3 of what the fine grid misses and a third of what the coarse one does.
+  const double missed = (4.0 * fine.missed + coarse.missed) * (1.0 / 3);
+  const double factor = device::maximum(doubt.factor, boundary_factor(put, fine.boundary, 0.5 * h));
+  const double error = factor * largest + doubt.gap + missed + cut_error(mesh);
   Price price;
   price.price = unit * a.value;
   price.error = unit * error;
@@ -164,13 +160,13 @@ struct PriceBatch {
       return largest;
     };
     const R largest = workers.reduce(largest_change, [](const R& a, const R& b) { return larger(a, b); })[0];
-    const R change = fine.doubt.factor * largest + fine.doubt.gap * (1.0 / error_factor(cells));
     workers.each([=, this](int lane) {
       for (int k = lane; k < members; k += workers.lanes) {
         if (group * members + k >= count) continue;
         const int at = place(group, k);
+        const auto own = [k](const R& number) { return device::Access<R>::lane(number, k); };
         prices(at) = price_of(contracts(at), memory.puts[k], memory.answers[k], coarse_answers[k],
-                              device::Access<R>::lane(change, k), device::Access<R>::lane(grid.h, k), cells,
+                              {own(fine.doubt.factor), own(fine.doubt.gap)}, own(largest), own(grid.h), cells,
                               steps, tolerance);
         if (one_grid) prices(at).error = device::portable::not_a_number();
       }

@@ -148,7 +148,7 @@ struct SeedBatch {
                        width,
                        {device::Access<R>::lane(ended.strike, k), device::Access<R>::lane(ended.asset, k)}});
         Price price =
-            price_of(batch.contracts(at), memory.puts[k], answer, answer, 0.0, width, mesh, steps, 1.0);
+            price_of(batch.contracts(at), memory.puts[k], answer, answer, {}, 0.0, width, mesh, steps, 1.0);
         price.error = device::portable::not_a_number();
         batch.prices(at) = price;
       }

@@ -139,26 +139,6 @@ struct Reading {
   double spot, strike;
 };
 
-/// How much cubic interpolation at x may miss: the next term of Newton's form, from a fifth node on the same
-/// side of the strike and of the boundary as the four of `stencil_of`; 0 where there is none, and where the
-/// value is not interpolated.
-KOKKOS_INLINE_FUNCTION double interpolation_gap(const Put& put, const Column& value, const Nodes& nodes,
-                                                double boundary) {
-  const double x = put.log_spot, t = x / nodes.h + nodes.strike;
-  const bool bounded = !put.split && boundary == boundary;
-  if (!(t > 0.0 && t < nodes.mesh) || (bounded && x <= boundary)) return 0.0;
-  const int first = stencil_of(put, nodes, t, boundary), strike = nodes.strike;
-  const bool crosses_above = first + 4 > nodes.mesh || (first < strike && first + 4 > strike);
-  const bool crosses_below =
-      first == 0 || first == strike || (bounded && (first - 1 - strike) * nodes.h < boundary);
-  if (crosses_above && crosses_below) return 0.0;
-  const int from = crosses_above ? first - 1 : first;
-  const double fourth =
-      value(from) - 4.0 * value(from + 1) + 6.0 * value(from + 2) - 4.0 * value(from + 3) + value(from + 4);
-  const double u = t - first;
-  return device::absolute(fourth * u * (u - 1.0) * (u - 2.0) * (u - 3.0)) * (1.0 / 24);
-}
-
 /// Reads prices of strikes from solved smiles, a thread for each.
 template <class ExecutionSpace>
 struct ReadSmiles {
@@ -184,14 +164,9 @@ struct ReadSmiles {
     const Column fine{nodes.fine(), 1}, coarse{nodes.coarse(), 1};
     const Answer answer = answer_of(put, fine, {nodes.fine() + mesh + 1, 1}, smile.fine);
     const Answer rough = answer_of(put, coarse, {nodes.coarse() + mesh / 2 + 1, 1}, smile.coarse);
-    // What interpolation may miss counts as a difference of the solves; the extrapolation has 4/3 of that of
-    // the fine grid and a third of that of the coarse one.
-    const double gap = (4.0 * interpolation_gap(put, fine, smile.fine, answer.boundary) +
-                        interpolation_gap(put, coarse, smile.coarse, rough.boundary)) *
-                       (1.0 / 3);
-    const double change = smile.doubt.factor * largest_change(put, fine, coarse, smile) +
-                          (gap + smile.doubt.gap) / error_factor(mesh);
-    prices(k) = price_of(contract, put, answer, rough, change, smile.coarse.h, mesh, steps, tolerance);
+    const double largest = largest_change(put, fine, coarse, smile);
+    prices(k) =
+        price_of(contract, put, answer, rough, smile.doubt, largest, smile.coarse.h, mesh, steps, tolerance);
   }
 
  private:
