@@ -36,7 +36,7 @@ KOKKOS_INLINE_FUNCTION R error_factor(R h, int mesh, R spread) {
 KOKKOS_INLINE_FUNCTION double boundary_factor(const Put& put, double boundary, double h) {
   if (put.split || !(boundary == boundary)) return 0.0;
   const double away = device::portable::magnitude(put.log_spot - boundary), beside = 1.5 * h;
-  return away > beside ? 0.5 * beside / away : 0.5;
+  return away > beside ? 0.42 * beside / away : 0.42;
 }
 
 /// Of a solve on a mesh of steps h whose differences spread the payoff by `spread`.
