@@ -13,6 +13,39 @@ struct Domain {
 /// What a cut of the grid may change of the price, of the strike.
 KOKKOS_INLINE_FUNCTION double cut_error(int mesh) { return 0.03 / (double(mesh) * mesh); }
 
+inline constexpr int tilts = 12;  ///< of a bound, upwards and downwards each
+
+/// How far below the strike a grid has to reach for a premium of early exercise that does not begin at the
+/// strike; 0 where it does. Exercise gains r - q e^x a year: if q < r < 0 above the x = -onset where that is
+/// 0, if 0 < r < q below it. What is assumed at the cut lacks at most that premium, so it matters if a path
+/// gets to the cut and from there, by the same bound, back up to -onset in the one case, and in the other if
+/// it gets to the cut, unless not even -onset is within reach.
+template <class Workers, class R>
+KOKKOS_INLINE_FUNCTION R reach_of_premium(const Workers& workers, const PutPack<R>& put, R spot_below, R base,
+                                          const R* tilt, const R* grown) {
+  constexpr int n = tilts;
+  const auto late = put.early * (put.dividend - put.rate) * put.rate > R(0.0);
+  if (workers.all(device::select(late, R(1.0), R(0.0)) <= R(0.0))) return 0.0;
+  const R quotient = device::select(late, put.dividend / put.rate, R(1.0));
+  const R onset = logarithm(device::minimum(quotient, R(1e300)));
+  const auto between = put.rate < R(0.0);
+  const R gain = put.maturity * device::select(between, put.rate - put.dividend, put.rate);
+  const R most = base + rough_logarithm(device::maximum(device::minimum(gain, R(1.0)), R(1e-300)));
+  const auto least_reach = [&, tilt, grown](int lane) {
+    Kokkos::Array<R, 1> least = {R(1e30)};
+    for (int pair = lane; pair < n * n; pair += workers.lanes) {
+      const int k = pair / n, m = n + pair % n;
+      const R back = device::select(between, tilt[k], R(0.0)), td = -tilt[m];
+      const R need = most + rough_logarithm(device::maximum(grown[k] + grown[m] - 2.0, R(1e-3)));
+      least[0] = device::minimum(least[0], (need + td * spot_below + back * onset) / (back + td));
+    }
+    return least;
+  };
+  const R reach =
+      workers.reduce(least_reach, [](const R& a, const R& b) { return device::minimum(a, b); })[0];
+  return device::select(late & (between | (reach > onset)), reach, R(0.0));
+}
+
 /// The value at a cut is wrong only as far as a path gets back to the strike from there, so a path has to go
 /// to the cut and back. By Chernoff's bound that has a probability below
 ///   exp(-tu (above - x0) - td above) (exp(T psi(tu)) + exp(T psi(-td)) - 2)
@@ -24,7 +57,7 @@ KOKKOS_INLINE_FUNCTION double cut_error(int mesh) { return 0.03 / (double(mesh) 
 template <class Workers, class R>
 KOKKOS_INLINE_FUNCTION Domain<R> domain_of(const Workers& workers, const PutPack<R>& put, const Law<R>& law,
                                            double error, R* scratch) {
-  constexpr int n = 12;
+  constexpr int n = tilts;
   R *tilt = scratch, *cumulant = scratch + most_lanes, *grown = scratch + 2 * most_lanes;
   const R up = decay_up(put), down = decay_down(put), maturity = put.maturity, rate = put.rate;
   const R variance = put.variance + law.variance;
@@ -66,6 +99,7 @@ KOKKOS_INLINE_FUNCTION Domain<R> domain_of(const Workers& workers, const PutPack
   const Kokkos::Array<R, 2> ends =
       workers.reduce(least_ends, [](const R& a, const R& b) { return device::minimum(a, b); });
   Domain<R> domain{ends[0], ends[1]};
+  domain.below = device::maximum(domain.below, reach_of_premium(workers, put, spot_below, base, tilt, grown));
   // psi is convex, so a chord lies above it: where the chord between the last tilt at which psi is not above
   // r and the next one meets r, psi is no larger.
   R at = 0.0, value = 0.0, beyond = 0.0, above = 0.0;

@@ -18,11 +18,24 @@ struct March {
 };
 
 /// The value e^{-r t} - e^{x - q t} of a put that will certainly be exercised, at the time t <= tau that is
-/// best for node 0 (for European ones tau), where e^x is `asset`; below node 0 it is the value at all x.
+/// best at some x (for European ones tau), where e^x is `asset`. A march takes that of node 0 for all x
+/// below.
 template <class R>
 struct Certain {
   R strike, asset;  ///< e^{-r t}, e^{-q t}
 };
+
+/// The time at which e^{-r t} - e^{x - q t} is stationary, r/q = e^{x + (r - q) t}; 0 where there is none.
+template <class R>
+KOKKOS_INLINE_FUNCTION R best_time(const PutPack<R>& put, R x) {
+  const R quotient = put.rate / put.dividend;
+  const auto stationary = quotient > R(1e-300);
+  return device::select(
+      stationary,
+      (logarithm(device::select(stationary, device::minimum(quotient, R(1e300)), R(1.0))) - x) /
+          (put.rate - put.dividend),
+      R(0.0));
+}
 
 template <class R>
 KOKKOS_INLINE_FUNCTION Certain<R> certain(const PutPack<R>& put, R asset, R best, R tau) {
@@ -91,15 +104,7 @@ KOKKOS_INLINE_FUNCTION Scheme<R> scheme_of(const PutPack<R>& put, const Jumps<R>
                                            int steps) {
   const R h = grid.h, lowest = -grid.strike * h;
   const R advection = 0.5 * jumps.drift / h, diffusion = jumps.diffusion / (h * h);
-  // e^{-r t} - e^{x - q t} is stationary where r/q = e^{x + (r - q) t}.
-  const R quotient = put.rate / put.dividend;
-  const auto stationary = quotient > R(1e-300);
-  const R best = device::select(
-      stationary,
-      (logarithm(device::select(stationary, device::minimum(quotient, R(1e300)), R(1.0))) - lowest) /
-          (put.rate - put.dividend),
-      R(0.0));
-  return {diffusion - advection, diffusion + advection, best, exponential(lowest), steps};
+  return {diffusion - advection, diffusion + advection, best_time(put, lowest), exponential(lowest), steps};
 }
 
 /// Implicit diffusion beyond D that the explicit jumps need, of which as much is taken back explicitly:

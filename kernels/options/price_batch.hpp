@@ -20,11 +20,17 @@ KOKKOS_INLINE_FUNCTION Failure failure_of(const Put& put, double h) {
   return h < 100.0 ? Failure::grown : Failure::no_grid;
 }
 
+/// What two grids say of an error, of the strike.
+struct Change {
+  double largest;   ///< |V(fine) - V(coarse)| near the spot
+  double weighted;  ///< the same with what `Doubt` adds
+};
+
 /// The answer for a put of strike 1 on two grids, the coarser one with steps h, extrapolated to steps of
 /// length zero (the error of both is of second order), as the contract's price.
 KOKKOS_INLINE_FUNCTION Price price_of(const Contract& contract, const Put& put, const Answer& fine,
-                                      const Answer& coarse, double change, double h, int mesh, int steps,
-                                      double tolerance) {
+                                      const Answer& coarse, const Change& change, double h, int mesh,
+                                      int steps, double tolerance) {
   const auto limit = [](double f, double c) { return f + (f - c) * (1.0 / 3); };
   const double asset = exponential(put.log_spot);
   const bool exercised = put.early && fine.slope == -asset && fine.decay == 0.0;
@@ -34,12 +40,21 @@ KOKKOS_INLINE_FUNCTION Price price_of(const Contract& contract, const Put& put, 
     a.slope = limit(fine.slope, coarse.slope);
     a.bend = limit(fine.bend, coarse.bend);
     a.decay = limit(fine.decay, coarse.decay);
-    const double least = put.early && asset < 1.0 ? 1.0 - asset : 0.0;
-    if (a.value < least) a.value = least;  // a NaN stays one
   }
   const bool call = contract.type == Type::call;
   const double unit = call ? contract.spot : contract.strike, s = contract.spot;
-  const double error = error_factor(mesh) * change + cut_error(mesh);
+  // Nobody pays more for a put than what it can earn at most, and no error is larger; nor less than what
+  // exercise now or at expiry, whatever happens, is worth. A value that is not a number stays one.
+  const double bond = exponential(-put.rate * put.maturity);
+  const double most = put.rate < 0.0 ? bond : 1.0;
+  const double late = bond - exponential(put.log_spot - put.dividend * put.maturity);
+  const double least = device::maximum(put.early ? 1.0 - asset : 0.0, device::maximum(0.0, late));
+  const bool finite = fine.value <= 1.001 * most && error_factor(mesh) * change.largest <= most &&
+                      unit * most < 1e300 && put.rate * put.maturity >= -650.0;
+  if (a.value < least) a.value = least;
+  if (a.value > most) a.value = most;
+  const double stated = error_factor(mesh) * change.weighted + cut_error(mesh);
+  const double error = stated < most ? stated : most;
   Price price;
   price.price = unit * a.value;
   price.error = unit * error;
@@ -50,9 +65,6 @@ KOKKOS_INLINE_FUNCTION Price price_of(const Contract& contract, const Put& put, 
   if (!(fine.boundary == fine.boundary)) price.exercise_boundary = fine.boundary;
   price.mesh = mesh;
   price.steps = steps;
-  // Nobody pays more for a put than what it can earn at most, and no error is larger.
-  const double most = put.rate < 0.0 ? exponential(-put.rate * put.maturity) : 1.0;
-  const bool finite = a.value <= 1.001 * most && error <= most && price.error < 1e300;
   if (!finite) price.price = device::portable::not_a_number();
   price.outcome = !finite                                     ? Outcome::failed
                   : price.error > tolerance * contract.strike ? Outcome::coarse
@@ -154,7 +166,7 @@ struct PriceBatch {
                    .value;
     }
     const R deviation = device::square_root((put.variance + law.variance) * put.maturity);
-    const R window = device::maximum(grid.h, 1.0 * deviation);
+    const R window = device::maximum(grid.h, deviation);
     const auto largest_change = [=, this, &put](int lane) {
       Kokkos::Array<R, 1> largest = {R(0.0)};
       for (int i = lane; i < cells / 2; i += workers.lanes) {
@@ -170,8 +182,8 @@ struct PriceBatch {
         if (group * members + k >= count) continue;
         const int at = place(group, k);
         prices(at) = price_of(contracts(at), memory.puts[k], memory.answers[k], coarse_answers[k],
-                              device::Access<R>::lane(change, k), device::Access<R>::lane(grid.h, k), cells,
-                              steps, tolerance);
+                              {device::Access<R>::lane(largest, k), device::Access<R>::lane(change, k)},
+                              device::Access<R>::lane(grid.h, k), cells, steps, tolerance);
         if (one_grid) prices(at).error = device::portable::not_a_number();
       }
     });

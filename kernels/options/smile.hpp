@@ -88,9 +88,9 @@ struct SmileFunctor {
         const int at = batch.place(group, k);
         const SmileNodes nodes = nodes_at(at);
         double* const to = coarse ? nodes.coarse() : nodes.fine();
-        for (int i = lane; i <= mesh; i += workers.lanes) {  // the last node is the upper end
-          to[i] = i < mesh ? device::Access<R>::lane(solution.value[i], k) : 0.0;
-          to[mesh + 1 + i] = i < mesh ? device::Access<R>::lane(solution.change[i], k) : 0.0;
+        for (int i = lane; i <= mesh; i += workers.lanes) {
+          to[i] = device::Access<R>::lane(solution.value[i], k);
+          to[mesh + 1 + i] = device::Access<R>::lane(solution.change[i], k);
         }
         if (lane != 0) continue;
         const Nodes found = nodes_of<solved>(solution, memory.puts[k], grid, k);
@@ -184,14 +184,15 @@ struct ReadSmiles {
     const Column fine{nodes.fine(), 1}, coarse{nodes.coarse(), 1};
     const Answer answer = answer_of(put, fine, {nodes.fine() + mesh + 1, 1}, smile.fine);
     const Answer rough = answer_of(put, coarse, {nodes.coarse() + mesh / 2 + 1, 1}, smile.coarse);
-    // What interpolation may miss counts as a difference of the solves; the extrapolation has 4/3 of that of
-    // the fine grid and a third of that of the coarse one.
+    // What interpolation may miss is added to the error in full: 4/3 of that of the fine grid and a third of
+    // that of the coarse one are in the extrapolation.
     const double gap = (4.0 * interpolation_gap(put, fine, smile.fine, answer.boundary) +
                         interpolation_gap(put, coarse, smile.coarse, rough.boundary)) *
                        (1.0 / 3);
-    const double change = smile.doubt.factor * largest_change(put, fine, coarse, smile) +
-                          (gap + smile.doubt.gap) / error_factor(mesh);
-    prices(k) = price_of(contract, put, answer, rough, change, smile.coarse.h, mesh, steps, tolerance);
+    const double largest = largest_change(put, fine, coarse, smile);
+    const double change = smile.doubt.factor * largest + (gap + smile.doubt.gap) / error_factor(mesh);
+    prices(k) =
+        price_of(contract, put, answer, rough, {largest, change}, smile.coarse.h, mesh, steps, tolerance);
   }
 
  private:
