@@ -50,11 +50,12 @@ KOKKOS_INLINE_FUNCTION Price price_of(const Contract& contract, const Put& put, 
   const double late = bond - exponential(put.log_spot - put.dividend * put.maturity);
   const double least = device::maximum(put.early ? 1.0 - asset : 0.0, device::maximum(0.0, late));
   const bool finite = fine.value <= 1.001 * most && error_factor(mesh) * change.largest <= most &&
-                      unit * most < 1e300 && put.rate * put.maturity >= -650.0;
+                      unit * most < 1e300 && put.rate * put.maturity >= -650.0 && h < 100.0;
   if (a.value < least) a.value = least;
   if (a.value > most) a.value = most;
+  // Grids that differ by a quarter of all there is to know say nothing of the error.
   const double stated = error_factor(mesh) * change.weighted + cut_error(mesh);
-  const double error = stated < most ? stated : most;
+  const double error = stated < most && change.largest < 0.25 * most ? stated : most;
   Price price;
   price.price = unit * a.value;
   price.error = unit * error;
