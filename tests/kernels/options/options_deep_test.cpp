@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "kernels/options/pricer.hpp"
@@ -102,6 +104,8 @@ TEST(OptionsDeep, ThetaFadesTowardsTheUpperEnd) {
     for (int k = 0; k < 150; ++k) {
       Contract c = plain_put(std::exp(0.01 * k), 0.03, 0.01, 0.25, 0.04);
       c.style = Style::european;
+      c.model = Model::generalized_hyperbolic;
+      std::ranges::copy(std::array{1.0, 30.0, -2.5, 0.1}, c.jump);
       contracts.push_back(c);
     }
     const std::vector<Price> prices = on_mesh(mesh, false, contracts);
