@@ -43,7 +43,6 @@ struct Nodes {
   int mesh, strike;
   int exercised;  ///< last node below the strike that is; only read for puts that may be
   double h;
-  Certain<double> certain;  ///< below node 0
 };
 
 /// Cubic interpolation between four nodes, value and two derivatives.
@@ -91,6 +90,17 @@ KOKKOS_INLINE_FUNCTION double missed_by_cubic(const Put& put, const Column& valu
   return device::absolute(fourth * u * (u - 1.0) * (u - 2.0) * (u - 3.0)) * (1.0 / 24);
 }
 
+/// The answer at an x below the grid, `asset` = e^x, where exercise or expiry is certain at the time that is
+/// best there (`Domain` says why).
+KOKKOS_INLINE_FUNCTION Answer answer_below(const Put& put, double asset, double boundary) {
+  const PutPack<double> pack = pack_of<double>(&put);
+  const Certain<double> sure = certain(pack, asset, best_time(pack, put.log_spot), put.maturity);
+  const double strike = sure.strike, price = sure.asset * asset;
+  const bool at_once = put.early && strike == 1.0 && sure.asset == 1.0;
+  const double decay = at_once ? 0.0 : put.dividend * price - put.rate * strike;
+  return {strike - price, -price, -price, decay, boundary, 0.0};
+}
+
 /// Reads the answer for one member. `change` holds dV/dtau.
 KOKKOS_INLINE_FUNCTION Answer answer_of(const Put& put, const Column& value, const Column& change,
                                         const Nodes& nodes) {
@@ -112,12 +122,7 @@ KOKKOS_INLINE_FUNCTION Answer answer_of(const Put& put, const Column& value, con
     if (!put.split || is_exercised(value(static_cast<int>(t)), static_cast<int>(t) - strike, h))
       return {1.0 - asset, -asset, -asset, 0.0, answer.boundary, 0.0};
   }
-  if (t <= 0.0) {
-    answer.value = nodes.certain.strike - nodes.certain.asset * asset;
-    answer.slope = answer.bend = -nodes.certain.asset * asset;
-    answer.decay = put.dividend * nodes.certain.asset * asset - put.rate * nodes.certain.strike;
-    return answer;
-  }
+  if (t <= 0.0) return answer_below(put, asset, answer.boundary);
   if (t >= mesh) return answer;
   const int first = stencil_of(put, nodes, t, answer.boundary);
   double result[3], rate[3];

@@ -5,6 +5,7 @@
 #include "kernels/options/contract.hpp"
 #include "kernels/options/cos_bermudan.hpp"
 #include "kernels/options/cos_exponent.hpp"
+#include "kernels/options/put.hpp"
 
 namespace drogue::options {
 
@@ -25,7 +26,7 @@ struct AmericanPut {
   explicit AmericanPut(const Contract& contract);
 
   /// Whether to wait is always right: the price is that of the European option.
-  [[nodiscard]] bool never_exercised() const { return rate <= 0.0 && dividend >= rate; }
+  [[nodiscard]] bool never_exercised() const { return !early_may_pay(rate, dividend); }
 
   /// Chooses interval and cosines for `dates` to 8 `dates` dates and fills `puts` and the table.
   void prepare(double maturity, int dates);

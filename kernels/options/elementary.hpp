@@ -6,7 +6,7 @@
 /// branch, so that a lane has the bits that the number alone would have, on every backend.
 namespace drogue::options {
 
-/// A third of 2^54: added to a small number it leaves that number, rounded, in the lowest bits.
+/// 1.5 x 2^52: added to a small number it leaves that number, rounded, in the lowest bits.
 inline constexpr double rounder = 6755399441055744.0;
 
 /// 2^n from n + rounder.

@@ -16,9 +16,8 @@ class HankelPanels {
   using Space = typename ExecutionSpace::memory_space;
 
  public:
-  /// Builds the series of the panels that are new, and enqueues their copies.
-  void fetch(const ExecutionSpace& space, std::span<const Contract> contracts) {
-    bool found = false;
+  /// Builds the series of the panels that are new.
+  void build(std::span<const Contract> contracts) {
     for (const Contract& contract : contracts) {
       if (contract.model != Model::generalized_hyperbolic || contract.jump[3] == 0.0) continue;
       const double order = std::fabs(contract.jump[0]);
@@ -28,13 +27,18 @@ class HankelPanels {
       slot = static_cast<int>(_host_series.size()) / HankelGrid::panel_size;
       const std::vector<double> panel = hankel_panel(panel_of(order));
       _host_series.insert(_host_series.end(), panel.begin(), panel.end());
-      found = true;
+      _copied = false;
     }
-    if (!found && _slots.size() != 0) return;
+  }
+
+  /// Enqueues copies of what the backend does not have.
+  void copy_in(const ExecutionSpace& space) {
+    if (_copied) return;
     _series = Kokkos::View<double*, Space>("drogue::options::panels", _host_series.size());
     _slots = Kokkos::View<int*, Space>("drogue::options::panel slots", _host_slots.size());
     device::copy_in(space, _series, _host_series.data(), _host_series.size());
     device::copy_in(space, _slots, _host_slots.data(), _host_slots.size());
+    _copied = true;
   }
 
   /// (panels, HankelGrid::panel_size)
@@ -47,6 +51,7 @@ class HankelPanels {
  private:
   Kokkos::View<double*, Space> _series;
   Kokkos::View<int*, Space> _slots;
+  bool _copied = false;
   std::vector<double> _host_series;
   std::vector<int> _host_slots = std::vector<int>(HankelGrid::panels, -1);
 };

@@ -184,7 +184,7 @@ KOKKOS_INLINE_FUNCTION Jumps<R> jumps_of(const Workers& workers, const PutPack<R
       const R y = double(d) * h, down_price = down * device::reciprocal(growth);
       memory.w[layout.place(d)] = up;
       memory.w[layout.place(-d)] = down;
-      memory.even[d] = both;
+      memory.even[d] = both;  // of the mixture it holds no more
       if (d >= 2) {
         memory.left[d - 1] = down;
         memory.left_price[d - 1] = down_price;

@@ -27,15 +27,25 @@ KOKKOS_INLINE_FUNCTION Price price_of(const Contract& contract, const Put& put, 
     a.slope = limit(fine.slope, coarse.slope);
     a.bend = limit(fine.bend, coarse.bend);
     a.decay = limit(fine.decay, coarse.decay);
-    const double least = put.early && asset < 1.0 ? 1.0 - asset : 0.0;
-    if (a.value < least) a.value = least;  // a NaN stays one
   }
   const bool call = contract.type == Type::call;
   const double unit = call ? contract.spot : contract.strike, s = contract.spot;
   // The extrapolation has 4/3 of what the fine grid misses and a third of what the coarse one does.
   const double missed = (4.0 * fine.missed + coarse.missed) * (1.0 / 3);
   const double factor = device::maximum(doubt.factor, boundary_factor(put, fine.boundary, 0.5 * h));
-  const double error = factor * largest + doubt.gap + missed + cut_error(mesh);
+  const double stated = factor * largest + doubt.gap + missed + cut_error(mesh);
+  // Nobody pays more for a put than what it can earn at most, and no error is larger; nor less than what
+  // exercise now or at expiry, whatever happens, is worth. A value that is not a number stays one.
+  const double bond = exponential(-put.rate * put.maturity);
+  const double most = put.rate < 0.0 ? bond : 1.0;
+  const double late = bond - exponential(put.log_spot - put.dividend * put.maturity);
+  const double least = device::maximum(put.early ? 1.0 - asset : 0.0, device::maximum(0.0, late));
+  const bool finite = fine.value <= 1.001 * most && largest <= 4.0 * most && unit * most < 1e300 &&
+                      put.rate * put.maturity >= -650.0 && h < 100.0;
+  if (a.value < least) a.value = least;
+  if (a.value > most) a.value = most;
+  // Grids that differ by a quarter of all there is to know say nothing of the error.
+  const double error = stated < most && largest < 0.25 * most ? stated : most;
   Price price;
   price.price = unit * a.value;
   price.error = unit * error;
@@ -46,9 +56,6 @@ KOKKOS_INLINE_FUNCTION Price price_of(const Contract& contract, const Put& put, 
   if (!(fine.boundary == fine.boundary)) price.exercise_boundary = fine.boundary;
   price.mesh = mesh;
   price.steps = steps;
-  // Nobody pays more for a put than what it can earn at most, and no error is larger.
-  const double most = put.rate < 0.0 ? exponential(-put.rate * put.maturity) : 1.0;
-  const bool finite = a.value <= 1.001 * most && error <= most && price.error < 1e300;
   if (!finite) price.price = device::portable::not_a_number();
   price.outcome = !finite                                     ? Outcome::failed
                   : price.error > tolerance * contract.strike ? Outcome::coarse
@@ -150,7 +157,7 @@ struct PriceBatch {
                    .value;
     }
     const R deviation = device::square_root((put.variance + law.variance) * put.maturity);
-    const R window = device::maximum(grid.h, 1.0 * deviation);
+    const R window = device::maximum(grid.h, deviation);
     const auto largest_change = [=, this, &put](int lane) {
       Kokkos::Array<R, 1> largest = {R(0.0)};
       for (int i = lane; i < cells / 2; i += workers.lanes) {

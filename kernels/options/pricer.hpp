@@ -38,7 +38,7 @@ struct Settings {
 /// Wall time of a batch's parts, s.
 struct Timing {
   double h2d = 0.0;
-  double compute = 0.0;
+  double compute = 0.0;  ///< with what the host computes before: tables of Bessel functions, say
   double d2h = 0.0;
 };
 

@@ -38,19 +38,22 @@ class PricerOn final : public Pricer {
               "options pricer: the dissertation's scheme has generalized hyperbolic jumps");
     Timing timing;
     if (contracts.empty()) return timing;
-    const Clock setting_up;
+    const Clock building;
+    _panels.build(contracts);
+    timing.compute = building.seconds();
+    const Clock copying_in;
     reserve(contracts.size());
     device::copy_in(_instance.space(), _contracts, staged(contracts), contracts.size());
-    _panels.fetch(_instance.space(), contracts);
+    _panels.copy_in(_instance.space());
     _instance.space().fence("drogue::options: contracts are copied");
-    timing.h2d = setting_up.seconds();
+    timing.h2d = copying_in.seconds();
     if (_settings.mesh == 0 && _settings.method == Method::pide) {
       price_to_tolerance(contracts, prices, timing);
     } else {
       const int mesh = _settings.mesh == 0 ? seed_mesh : _settings.mesh;
       const Clock computing;
       launch_models(contracts, {mesh, steps_of(mesh)}, [](std::size_t) { return true; });
-      timing.compute = computing.seconds();
+      timing.compute += computing.seconds();
       copy_out(prices, timing);
     }
     return timing;
@@ -108,7 +111,8 @@ class PricerOn final : public Pricer {
   Recorded record(const Contract& contract, const Effort& effort) {
     const std::span<const Contract> one(&contract, 1);
     reserve(1);
-    _panels.fetch(_instance.space(), one);
+    _panels.build(one);
+    _panels.copy_in(_instance.space());
     device::copy_in(_instance.space(), _contracts, &contract, 1);
     const auto steps = static_cast<std::size_t>(effort.steps),
                nodes = static_cast<std::size_t>(effort.mesh) + 1;

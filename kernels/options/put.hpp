@@ -36,8 +36,13 @@ KOKKOS_INLINE_FUNCTION void mirror(Model model, double* jump) {
   }
 }
 
-/// Early exercise of a put of strike 1 gains r - q e^x a year while x < 0. Without a region where that is
-/// positive it never pays; if r < 0 the region, if any, does not reach down to x = -inf.
+/// Whether early exercise of a put may pay: it gains r - q e^x a year while x < 0, which is positive
+/// somewhere.
+KOKKOS_INLINE_FUNCTION bool early_may_pay(double rate, double dividend) {
+  return rate > 0.0 || dividend < rate;
+}
+
+/// If r < 0 the region where exercise pays, if any, does not reach down to x = -inf.
 KOKKOS_INLINE_FUNCTION Put put_of(const Contract& contract) {
   const bool call = contract.type == Type::call;
   Put put;
@@ -50,8 +55,7 @@ KOKKOS_INLINE_FUNCTION Put put_of(const Contract& contract) {
   put.log_spot = device::portable::log(call ? 1.0 / ratio : ratio);
   for (int k = 0; k < 4; ++k) put.jump[k] = contract.jump[k];
   if (call) mirror(put.model, put.jump);
-  const bool gains = put.rate > 0.0 || put.dividend < put.rate;
-  put.early = contract.style == Style::american && gains;
+  put.early = contract.style == Style::american && early_may_pay(put.rate, put.dividend);
   put.split = put.early && put.rate < 0.0;
   return put;
 }

@@ -239,6 +239,7 @@ KOKKOS_INLINE_FUNCTION int march_in_registers(const WarpWorkers<lanes>& workers,
   workers.meet();
   value.store(lane, rows.value);
   change.store(lane, rows.other);
+  if (lane == 0) rows.value[grid.mesh] = rows.other[grid.mesh] = 0.0;  // the upper end, which answers read
   workers.meet();
   return device::warp_largest<lanes>(exercised);
 }

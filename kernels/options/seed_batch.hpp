@@ -133,7 +133,6 @@ struct SeedBatch {
       now = value;
       value = swapped;
     }
-    const Certain<R> ended = deep(put.maturity);
     workers.each([=, this](int lane) {
       for (int k = lane; k < members; k += workers.lanes) {
         if (group * members + k >= batch.count) continue;
@@ -142,11 +141,7 @@ struct SeedBatch {
         const double width = 2.0 * seed_reach / mesh;
         const Answer answer =
             answer_of(memory.puts[k], values, {reinterpret_cast<const double*>(change) + k, members},
-                      {mesh,
-                       mesh / 2,
-                       last_exercised(values, mesh / 2, width),
-                       width,
-                       {device::Access<R>::lane(ended.strike, k), device::Access<R>::lane(ended.asset, k)}});
+                      {mesh, mesh / 2, last_exercised(values, mesh / 2, width), width});
         Price price =
             price_of(batch.contracts(at), memory.puts[k], answer, answer, {}, 0.0, width, mesh, steps, 1.0);
         price.error = device::portable::not_a_number();

@@ -88,9 +88,9 @@ struct SmileFunctor {
         const int at = batch.place(group, k);
         const SmileNodes nodes = nodes_at(at);
         double* const to = coarse ? nodes.coarse() : nodes.fine();
-        for (int i = lane; i <= mesh; i += workers.lanes) {  // the last node is the upper end
-          to[i] = i < mesh ? device::Access<R>::lane(solution.value[i], k) : 0.0;
-          to[mesh + 1 + i] = i < mesh ? device::Access<R>::lane(solution.change[i], k) : 0.0;
+        for (int i = lane; i <= mesh; i += workers.lanes) {
+          to[i] = device::Access<R>::lane(solution.value[i], k);
+          to[mesh + 1 + i] = device::Access<R>::lane(solution.change[i], k);
         }
         if (lane != 0) continue;
         const Nodes found = nodes_of<solved>(solution, memory.puts[k], grid, k);

@@ -137,7 +137,7 @@ KOKKOS_INLINE_FUNCTION March<R> march_in_memory(const Workers& workers, const Pu
   // After the rotation value[0] is what value[2] was.
   const StepLength<R> last = step_length(put.maturity, steps, steps);
   workers.each([=](int lane) {
-    for (int i = lane; i < mesh; i += workers.lanes)
+    for (int i = lane; i <= mesh; i += workers.lanes)  // the upper end too, where transforms leave numbers
       march.y[i] = rate_of_change(last, march.value[1][i], march.value[2][i], march.value[0][i]);
   });
   if (record.time != nullptr) {
@@ -164,7 +164,6 @@ struct Weights {
 template <class R>
 struct Solution {
   const R *value, *change;  ///< V and dV/dtau at maturity
-  Certain<R> certain;       ///< below node 0
   int exercised;            ///< last node below the strike that is, where lanes marched in registers
   Doubt<R> doubt;
 };
@@ -183,7 +182,7 @@ KOKKOS_INLINE_FUNCTION Nodes nodes_of(const Solution<R>& solution, const Put& pu
   const int strike = static_cast<int>(member(grid.strike));
   const double h = member(grid.h);
   const int last = fixed > 0 ? solution.exercised : put.early ? last_exercised(values, strike, h) : -1;
-  return {grid.mesh, strike, last, h, {member(solution.certain.strike), member(solution.certain.asset)}};
+  return {grid.mesh, strike, last, h};
 }
 
 /// Marches from expiry to the puts' maturities on `grid`. With a `fixed` > 0 that is the mesh and a group of
@@ -216,11 +215,11 @@ KOKKOS_INLINE_FUNCTION Solution<R> march_nodes(const Workers& workers, const Put
     const RegisterRows rows{memory.row(0, mesh), memory.row(1, mesh), memory.row(2, mesh), memory.slot};
     const int exercised = march_in_registers<fixed / Workers::lanes>(workers, put, jumps, grid, spectrum,
                                                                      scheme, table, rows, kink);
-    return {rows.value, rows.other, table.load(steps).certain, exercised, doubt};
+    return {rows.value, rows.other, exercised, doubt};
   } else {
     const March<R> march =
         march_in_memory(workers, put, jumps, grid, spectrum, scheme, table, memory, kink, record);
-    return {march.value[1], march.y, table.load(steps).certain, -1, doubt};
+    return {march.value[1], march.y, -1, doubt};
   }
 }
 

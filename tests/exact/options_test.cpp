@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
 
 #include "kernels/device/runtime.hpp"
@@ -66,6 +67,25 @@ TEST(OptionsExact, FixedMesh) {
   settings.mesh = 96;
   settings.steps = 24;
   expect_same_prices(settings, of_all_models());
+}
+
+// Spots in the last cells of their grids and beyond them, and below the grids.
+TEST(OptionsExact, BesideTheEnds) {
+  std::vector<options::Contract> contracts;
+  for (int k = -20; k < 60; ++k) {
+    options::Contract c = testing::random_contracts(1, 8)[0];
+    c.style = k % 2 == 0 ? options::Style::american : options::Style::european;
+    c.type = options::Type::put;
+    c.maturity = 0.05;
+    c.spot = c.strike * std::exp(0.05 * k);
+    contracts.push_back(c);
+  }
+  options::Settings settings;
+  settings.steps = 16;
+  for (const int mesh : {64, 128, 256}) {
+    settings.mesh = mesh;
+    expect_same_prices(settings, contracts);
+  }
 }
 
 // Sums over jumps by transforms; on CUDA in registers, and in memory.

@@ -18,32 +18,35 @@ using Numbers = Kokkos::View<double*, Space::memory_space>;
 using R = std::conditional_t<device::is_host<Space>, device::HostPack<double>, double>;
 constexpr int members = device::Access<R>::lanes;
 
+/// Two groups of 16 lanes share a warp; each sums in memory of its own, the first where it is looked at.
 struct SumFunctor {
-  int mesh;
+  int mesh, lanes;
   bool in_registers;
   Numbers weights, values, sums, roots, spectrum, work;
 
   KOKKOS_FUNCTION void operator()(const Kokkos::TeamPolicy<Space>::member_type& team) const {
     if constexpr (device::is_host<Space>) {
-      sum_on(SerialWorkers<R>{});
+      sum_on(SerialWorkers<R>{lanes}, 0);
     } else {
-      sum_on(WarpWorkers<>{static_cast<int>(team.team_rank())});
+      const auto rank = static_cast<int>(team.team_rank());
+      if (lanes == most_lanes) return sum_on(WarpWorkers<>{rank}, 0);
+      sum_on(WarpWorkers<most_lanes / 2>{rank % lanes}, rank / lanes);
     }
   }
 
  private:
   template <class Workers>
-  KOKKOS_FUNCTION void sum_on(const Workers& workers) const {
+  KOKKOS_FUNCTION void sum_on(const Workers& workers, int group) const {
     const auto* const w = reinterpret_cast<const R*>(weights.data());
     const auto* const v = reinterpret_cast<const R*>(values.data());
-    auto* const to = reinterpret_cast<R*>(sums.data());
-    auto* const z = reinterpret_cast<ComplexNumber<R>*>(work.data());
-    const JumpSpectrum<R> made = spectrum_of(workers, mesh, FourierRoots::of(roots.data()), w,
-                                             reinterpret_cast<ComplexNumber<R>*>(spectrum.data()));
+    auto* const to = reinterpret_cast<R*>(sums.data()) + group * mesh;
+    auto* const z = reinterpret_cast<ComplexNumber<R>*>(work.data()) + group * padded(mesh);
+    auto* const place = reinterpret_cast<ComplexNumber<R>*>(spectrum.data()) + group * padded(mesh);
+    const JumpSpectrum<R> made = spectrum_of(workers, mesh, FourierRoots::of(roots.data()), w, place);
     if constexpr (!device::is_host<Space>) {
       if (in_registers) {
         const auto own = LaneNodes<8>::load(workers.lane, v);
-        RegisterFourier<most_lanes>(workers.lane, made, to, z)(workers, own).store(workers.lane, to);
+        RegisterFourier<Workers::lanes>(workers.lane, made, to, z)(workers, own).store(workers.lane, to);
         return;
       }
     }
@@ -58,7 +61,7 @@ Numbers on_backend(const std::vector<double>& numbers) {
 }
 
 /// Random values, and weights like those of jumps; those of a pack's members are of other magnitudes.
-void expect_plain_sums(int mesh, bool in_registers) {
+void expect_plain_sums(int mesh, int lanes, bool in_registers) {
   const WeightLayout<R> layout(mesh);
   std::vector<double> w(static_cast<std::size_t>(layout.size() * members)),
       v(static_cast<std::size_t>(mesh * members));
@@ -76,9 +79,11 @@ void expect_plain_sums(int mesh, bool in_registers) {
     }
     for (int i = 0; i < mesh; ++i) value(i, k) = part(random);
   }
-  const auto room = static_cast<std::size_t>(2 * padded(mesh) * members);
-  const Numbers sums("sums", v.size());
+  const auto groups = static_cast<std::size_t>(most_lanes / lanes),
+             room = groups * static_cast<std::size_t>(2 * padded(mesh) * members);
+  const Numbers sums("sums", groups * v.size());
   const SumFunctor functor{mesh,
+                           lanes,
                            in_registers,
                            on_backend(w),
                            on_backend(v),
@@ -103,10 +108,14 @@ void expect_plain_sums(int mesh, bool in_registers) {
 TEST(OptionsSum, TransformsEqualPlainSums) {
   for (const int mesh : {256, 512, 1024, 2048, 4096}) {
     ASSERT_TRUE(is_transformed(mesh, most_lanes));
-    expect_plain_sums(mesh, false);
+    expect_plain_sums(mesh, most_lanes, false);
   }
   EXPECT_FALSE(is_transformed(128, most_lanes) || is_transformed(384, 16));
-  if (!device::is_host<Space>) expect_plain_sums(256, true);
+  ASSERT_TRUE(is_transformed(128, lanes_of(128)));
+  expect_plain_sums(128, lanes_of(128), false);
+  if (device::is_host<Space>) return;
+  expect_plain_sums(256, most_lanes, true);
+  expect_plain_sums(128, lanes_of(128), true);
 }
 
 }  // namespace

@@ -1,0 +1,122 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "kernels/options/pricer.hpp"
+
+// Spots at and beyond the ends of the grid.
+
+namespace drogue::options {
+namespace {
+
+constexpr auto backend = device::Backend::DROGUE_TEST_BACKEND;
+
+Contract plain_put(double spot, double rate, double dividend, double maturity, double variance) {
+  return {.model = Model::black_scholes,
+          .spot = spot,
+          .rate = rate,
+          .dividend = dividend,
+          .maturity = maturity,
+          .variance = variance};
+}
+
+std::vector<Price> on_mesh(int mesh, bool surface, const std::vector<Contract>& contracts) {
+  Settings settings;
+  settings.mesh = mesh;
+  settings.steps = mesh / 4;
+  settings.surface = surface;
+  std::vector<Price> prices(contracts.size());
+  create_pricer(backend, settings)->price(contracts, prices);
+  return prices;
+}
+
+struct DeepPut {
+  Contract contract;
+  double value;
+};
+
+/// American puts that wait. The first three wait until expiry; the others are a tree's, extrapolated from
+/// 2000 and 4000 steps: exercise pays above a boundary that the first has below the strike's own grid, and
+/// below one that lies deep in the second.
+std::vector<DeepPut> deep_puts() {
+  return {{plain_put(0.4, -0.01, -0.02, 2.0, 0.0025), 0.603877},
+          {plain_put(0.03, -0.02, -0.1, 10.0, 0.0025), 1.139854},
+          {plain_put(0.005, -0.1, -0.3, 2.0, 0.0025), 1.212292},
+          {plain_put(0.1, -0.02, -0.1, 30.0, 0.0025), 0.954707},
+          {plain_put(0.05, 0.001, 0.1, 30.0, 0.0025), 0.974236}};
+}
+
+TEST(OptionsDeep, PutsThatWait) {
+  std::vector<Contract> contracts;
+  for (const DeepPut& put : deep_puts()) contracts.push_back(put.contract);
+  for (const bool surface : {false, true}) {
+    const std::vector<Price> prices = on_mesh(128, surface, contracts);
+    for (std::size_t k = 0; k < prices.size(); ++k)
+      EXPECT_NEAR(prices[k].price, deep_puts()[k].value, prices[k].error + 1e-6) << k << ' ' << surface;
+  }
+}
+
+// Below the grid nothing moves but the certain value e^{-r T} - e^{x - q T}.
+TEST(OptionsDeep, GreeksOfPutsThatWaitUntilExpiry) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Contract c = deep_puts()[k].contract;
+    const Price price = on_mesh(128, false, {c})[0];
+    const double bond = std::exp(-c.rate * c.maturity), share = std::exp(-c.dividend * c.maturity);
+    EXPECT_NEAR(price.delta, -share, 1e-4) << k;
+    EXPECT_NEAR(price.theta, c.rate * bond - c.dividend * c.spot * share, 1e-5) << k;
+  }
+}
+
+// A put is worth no less than the European one, whatever the signs of the rates, and so is a call.
+TEST(OptionsDeep, AmericansAreWorthNoLessThanEuropeans) {
+  std::vector<Contract> early, late;
+  for (const auto& [rate, dividend] : {std::pair{-0.01, -0.03}, {-0.05, -0.2}, {0.002, 0.06}, {0.03, 0.04}})
+    for (const double maturity : {0.3, 3.0, 20.0})
+      for (const double spot : {0.9, 0.5, 0.2, 0.05, 0.002})
+        for (const Type type : {Type::put, Type::call}) {
+          Contract c = plain_put(spot, rate, dividend, maturity, 0.01);
+          if (type == Type::call) {
+            c.type = type;
+            c.spot = 1.0 / spot;
+            std::swap(c.rate, c.dividend);
+          }
+          early.push_back(c);
+          c.style = Style::european;
+          late.push_back(c);
+        }
+  Settings settings;
+  settings.method = Method::cos;
+  std::vector<Price> european(late.size());
+  create_pricer(backend, settings)->price(late, european);
+  const std::vector<Price> american = on_mesh(64, false, early);
+  for (std::size_t k = 0; k < early.size(); ++k)
+    EXPECT_GE(american[k].price, european[k].price - american[k].error)
+        << early[k].rate << ' ' << early[k].dividend << ' ' << early[k].maturity << ' ' << early[k].spot;
+}
+
+// The last cells of a grid end at a node whose value is 0 and stays so. Meshes whose jumps are summed by
+// transforms and one whose jumps are not.
+TEST(OptionsDeep, ThetaFadesTowardsTheUpperEnd) {
+  for (const int mesh : {64, 128, 256}) {
+    std::vector<Contract> contracts;
+    for (int k = 0; k < 150; ++k) {
+      Contract c = plain_put(std::exp(0.01 * k), 0.03, 0.01, 0.25, 0.04);
+      c.style = Style::european;
+      c.model = Model::generalized_hyperbolic;
+      std::ranges::copy(std::array{1.0, 30.0, -2.5, 0.1}, c.jump);
+      contracts.push_back(c);
+    }
+    const std::vector<Price> prices = on_mesh(mesh, false, contracts);
+    double before = 1.0;
+    for (std::size_t k = 50; k < prices.size(); ++k) {
+      EXPECT_LE(std::abs(prices[k].theta), before + 1e-5) << mesh << ' ' << k;
+      before = std::abs(prices[k].theta);
+    }
+    EXPECT_EQ(before, 0.0);
+  }
+}
+
+}  // namespace
+}  // namespace drogue::options
