@@ -5,13 +5,14 @@
 #include <cmath>
 
 #include "kernels/options/pricer.hpp"
+#include "tests/support/backend.hpp"
 
 // Spots at and beyond the ends of the grid.
 
 namespace drogue::options {
 namespace {
 
-constexpr auto backend = device::Backend::DROGUE_TEST_BACKEND;
+constexpr const auto& backend = testing::tested_backend;
 
 Contract plain_put(double spot, double rate, double dividend, double maturity, double variance) {
   return {.model = Model::black_scholes,

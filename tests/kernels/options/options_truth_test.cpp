@@ -6,6 +6,7 @@
 
 #include "kernels/options/pricer.hpp"
 #include "kernels/options/tails.hpp"
+#include "tests/support/backend.hpp"
 #include "tests/support/option_sets.hpp"
 
 // Finite differences against Fourier's integral, closed forms and the literature: calls and tails of every
@@ -14,7 +15,7 @@
 namespace drogue::options {
 namespace {
 
-constexpr auto backend = device::Backend::DROGUE_TEST_BACKEND;
+constexpr const auto& backend = testing::tested_backend;
 
 Settings on_mesh(int mesh, int steps) {
   Settings settings;
