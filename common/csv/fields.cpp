@@ -92,10 +92,10 @@ std::string_view Fields::split_quoted(std::string_view line) {
         }
         field = text;
       }
-      _values.push_back(field);
       ++at;
       while (at < line.size() && is_gap(line[at])) ++at;
       if (at < line.size() && line[at] != ',') return "text follows the quote that ends a field";
+      _values.push_back(field);
     }
     if (at == line.size()) return {};
     ++at;

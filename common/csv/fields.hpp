@@ -10,7 +10,8 @@ namespace drogue::csv {
 /// The fields of a line (RFC 4180), unquoted, blanks around them taken off.
 class Fields {
  public:
-  /// Splits `line`, which has to outlive the fields. Returns what is wrong with it as a clause, or nothing.
+  /// Splits `line`, which has to outlive the fields. Returns what is wrong with it as a clause, or nothing;
+  /// the fields are those before the one that is wrong.
   std::string_view split(std::string_view line);
 
   [[nodiscard]] std::size_t size() const { return _values.size(); }

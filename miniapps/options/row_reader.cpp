@@ -93,33 +93,40 @@ std::string_view RowReader::field(int place) const {
   return place < 0 ? std::string_view() : _fields[static_cast<std::size_t>(place)];
 }
 
-/// Splits a line of as many fields as there are columns; else `_fault` says what is wrong.
+/// Splits a line of as many fields as there are columns; else `_fault` says what is wrong, and the fields are
+/// those that can be read.
 void RowReader::split(const csv::Line& line) {
-  _fault.clear();
+  _fault = _fields.split(line.too_long ? std::string_view() : line.text);
   if (line.too_long) {
     _fault = "the line is longer than " + std::to_string(csv::LineReader::longest) + " bytes";
-  } else if (const std::string_view wrong = _fields.split(line.text); !wrong.empty()) {
-    _fault = wrong;
-  } else if (_fields.size() != _columns) {
+  } else if (_fault.empty() && _fields.size() != _columns) {
     _fault = "the row has " + std::to_string(_fields.size()) + " fields where the header has " +
              std::to_string(_columns);
   }
 }
 
-/// What stands there, or the row's number where there is none that could be one. `_fault` says what is wrong
-/// with the line or its id.
+/// What stands there, the row's number where nothing does, or nothing where that cannot be read: the number
+/// may be another row's id. `_fault` says what is wrong with the line or its id.
 std::string_view RowReader::read_id(const csv::Line& line, std::int64_t number) {
   split(line);
-  const std::string_view given = _fault.empty() ? field(_id_place) : std::string_view();
-  if (given.size() > longest_id) {
-    _fault = "the id is longer than " + std::to_string(longest_id) + " bytes";
-  } else if (std::any_of(given.begin(), given.end(), is_control)) {
-    _fault = "the id holds a control character";
-  } else if (!given.empty()) {
-    return given;
+  const bool is_cut_off = _id_place >= static_cast<int>(_fields.size());
+  const std::string_view given = is_cut_off ? std::string_view() : field(_id_place);
+  const bool is_long = given.size() > longest_id;
+  if (is_long || std::any_of(given.begin(), given.end(), is_control)) {
+    if (_fault.empty())
+      _fault = is_long ? "the id is longer than " + std::to_string(longest_id) + " bytes"
+                       : "the id " + quoted(given) + " holds a control character";
+    return {};
   }
+  const bool has_number = given.empty() && (_id_place < 0 || _fault.empty());
+  if (!has_number) return given;
   _id = std::to_string(number);
   return _id;
+}
+
+std::optional<std::string_view> RowReader::own_id(const csv::Line& line, std::int64_t number) {
+  const std::string_view id = read_id(line, number);
+  return _fault.empty() ? std::optional(id) : std::nullopt;
 }
 
 void RowReader::read(const csv::Line& line, std::int64_t number, Row& row) {

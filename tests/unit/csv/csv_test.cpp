@@ -76,6 +76,16 @@ TEST(CsvFields, TellsWhatIsWrong) {
   EXPECT_NE(fields.split("a,\"b\"\""), "");
 }
 
+TEST(CsvFields, KeepsThoseBeforeTheOneThatIsWrong) {
+  Fields fields;
+  for (const char* line : {R"(a,"b ""c""",d"e,f)", R"(a,"b ""c""","d,e)", R"(a,"b ""c""","d"e)"}) {
+    EXPECT_NE(fields.split(line), "");
+    ASSERT_EQ(fields.size(), 2U) << line;
+    EXPECT_EQ(fields[0], "a");
+    EXPECT_EQ(fields[1], "b \"c\"");
+  }
+}
+
 TEST(CsvFields, WhatIsWrittenIsReadAgain) {
   std::mt19937 random(1);
   const std::string letters = "ab ,\"\t'";
