@@ -102,6 +102,15 @@ std::string_view Fields::split_quoted(std::string_view line) {
   }
 }
 
+bool is_control(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }
+
+std::string shown(std::string_view text) {
+  constexpr std::size_t most = 40;
+  std::string start(text.substr(0, most));
+  std::replace_if(start.begin(), start.end(), is_control, '?');
+  return '"' + start + (text.size() > most ? "..." : "") + '"';
+}
+
 void append_field(std::string& out, std::string_view text) {
   const bool plain = std::none_of(text.begin(), text.end(), needs_quotes) && trimmed(text) == text;
   if (plain) {

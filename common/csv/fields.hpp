@@ -24,6 +24,12 @@ class Fields {
   std::deque<std::string> _unquoted;  ///< those that held a doubled quote
 };
 
+/// Whether `c` has no place in a name: it moves a cursor, rings a bell, or ends a string.
+[[nodiscard]] bool is_control(char c);
+
+/// Text of a file as a sentence shows it: short, in quotes, on one line.
+[[nodiscard]] std::string shown(std::string_view text);
+
 /// Appends `text` as a field, quoted where it must be.
 void append_field(std::string& out, std::string_view text);
 

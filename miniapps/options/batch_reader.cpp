@@ -6,6 +6,7 @@
 #include <map>
 #include <utility>
 
+#include "common/csv/fields.hpp"
 #include "common/csv/header.hpp"
 
 namespace drogue::options_app {
@@ -75,8 +76,8 @@ void BatchReader::require_unique_ids() {
     const auto [place, is_new] = first.emplace(*id, again._line.number);
     if (!is_new)
       throw csv::invalid_at(file(), again._line.number,
-                            "the id " + quoted(*id) + " is that of line " + std::to_string(place->second) +
-                                "; every row needs its own");
+                            "the id " + csv::shown(*id) + " is that of line " +
+                                std::to_string(place->second) + "; every row needs its own");
   }
 }
 

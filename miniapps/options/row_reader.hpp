@@ -62,7 +62,4 @@ class RowReader {
 /// The first column that every row of the file needs and that has no place; null if there is none.
 [[nodiscard]] const char* missing_column(RowKind kind, const std::vector<int>& places);
 
-/// Text of a file as a sentence shows it: short, and on one line.
-[[nodiscard]] std::string quoted(std::string_view text);
-
 }  // namespace drogue::options_app
