@@ -316,14 +316,14 @@ class Files(options_program.OptionsTest):
     def test_folder_that_is_not_there(self):
         self.assertIn("no/prices.csv", self.price(6, batch([row("a")]), "--out", "no/prices.csv").stderr)
 
-    def start_long_run(self):
+    def start_long_run(self, *words, method=FAST):
         """A run that has begun to price, and goes on for long."""
         file = self.write(batch([row(k, style="american", spot=0.5 + 1e-4 * k) for k in range(3000)]))
-        command = [options_program.PROGRAM, "price", file, "--backend", "serial", *FAST, "--result", "r.json"]
+        command = [options_program.PROGRAM, "price", file, "--backend", "serial", *method, "--result", "r.json", *words]
         process = subprocess.Popen(command, cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                                    env=gas_program.ENVIRONMENT)
         for _ in range(200):
-            if any(name.startswith(".prices.csv") for name in self.names()):
+            if any(name.endswith(".tmp") for name in self.names()):
                 return process
             time.sleep(0.05)
         process.kill()
@@ -334,6 +334,13 @@ class Files(options_program.OptionsTest):
         process.kill()
         process.communicate()
         self.assertFalse((self.folder / "prices.csv").exists())
+
+    def test_interrupted_with_an_output_that_is_no_file(self):
+        process = self.start_long_run("--out", "/dev/null", "--boundary", "b.csv", "--mesh", "512", "--steps", "512", method=())
+        process.send_signal(signal.SIGINT)
+        process.communicate(timeout=60)
+        self.assertEqual((130, ["batch.csv", "r.json"]), (process.returncode, self.names()))
+        self.assertIn("not all is written to '/dev/null'", json.loads((self.folder / "r.json").read_text())["message"])
 
     def test_interrupted(self):
         process = self.start_long_run()
