@@ -25,12 +25,35 @@ nlohmann::json to_json(const Facts& facts) {
   return json;
 }
 
-ExitCode run_cases(const RunOptions& options) {
-  std::vector<Case> cases;
-  for (const Case& c : all_cases(options.quick))
-    if (std::regex_search(c.name, std::regex(options.filter))) cases.push_back(c);
-  if (cases.empty())
-    throw Failure(ExitCode::usage, "no case matches '" + options.filter + "'; see drogue-perf list");
+std::regex filter_of(const std::string& text) {
+  try {
+    return std::regex(text);
+  } catch (const std::regex_error&) {
+    throw Failure(ExitCode::usage,
+                  "--filter '" + text +
+                      "' is no regular expression; a bracket or a star that stands for itself "
+                      "needs a backslash before it");
+  }
+}
+
+std::vector<Case> matching_cases(const std::regex& filter, bool quick) {
+  std::vector<Case> cases = all_cases(quick);
+  std::erase_if(cases, [&](const Case& c) { return !std::regex_search(c.name, filter); });
+  return cases;
+}
+
+Failure no_case(const RunOptions& options, const std::regex& filter) {
+  const std::string list = options.quick ? "drogue-perf list --quick" : "drogue-perf list";
+  const auto left_out = options.quick ? matching_cases(filter, false).size() : 0;
+  return {ExitCode::usage,
+          "no case matches '" + options.filter + "'" +
+              (left_out > 0 ? " but " + std::to_string(left_out) + " that --quick leaves out" : "") +
+              "; see " + list};
+}
+
+ExitCode run_cases(const RunOptions& options, const std::regex& filter) {
+  const std::vector<Case> cases = matching_cases(filter, options.quick);
+  if (cases.empty()) throw no_case(options, filter);
   const nlohmann::json here = provenance(device::device_facts());
   std::vector<nlohmann::json> lines;
   bool passed = true;
@@ -49,9 +72,11 @@ ExitCode run_cases(const RunOptions& options) {
 }  // namespace
 
 Command list_command(CLI::App& program) {
-  const CLI::App* app = program.add_subcommand("list", "Print the cases that this build and machine can run");
-  return {app, [](const std::vector<std::string>&) {
-            for (const Case& c : all_cases(false)) std::printf("%s\n", c.name.c_str());
+  const auto quick = std::make_shared<bool>(false);
+  CLI::App* app = program.add_subcommand("list", "Print the cases that this build and machine can run");
+  app->add_flag("--quick", *quick, "Those of run --quick");
+  return {app, [quick](const std::vector<std::string>&) {
+            for (const Case& c : all_cases(*quick)) std::printf("%s\n", c.name.c_str());
             return ExitCode::ok;
           }};
 }
@@ -63,9 +88,10 @@ Command run_command(CLI::App& program) {
   app->add_option("--out", options->out, "File for the records, one JSON line a case");
   app->add_flag("--quick", options->quick, "Small cases and few samples");
   return {app, [options](const std::vector<std::string>& kokkos) {
+            const std::regex filter = filter_of(options->filter);
             require(device::fastest_backend());
             const device::Runtime runtime(kokkos);
-            return run_cases(*options);
+            return run_cases(*options, filter);
           }};
 }
 

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "common/program/signals.hpp"
+#include "common/run/output_path.hpp"
 #include "common/run/result_document.hpp"
 #include "common/run/statistics.hpp"
 #include "perf/command.hpp"
@@ -92,7 +93,7 @@ ExitCode measure_solutions(const WorkPrecisionOptions& options, const std::vecto
     lines.push_back(to_json(app, solution, here));
     // Early, so that a file that cannot be written is found before hours are spent; and what ends a long run
     // leaves most of what it has found.
-    if (lines.size() % 32 == 1) write_records(options.out, lines);
+    if (lines.size() % 32 == 1 && run::is_replaced(options.out)) write_records(options.out, lines);
   });
   // What a signal ended is kept as far as it came.
   write_records(options.out, lines);

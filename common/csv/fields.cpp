@@ -92,14 +92,23 @@ std::string_view Fields::split_quoted(std::string_view line) {
         }
         field = text;
       }
-      _values.push_back(field);
       ++at;
       while (at < line.size() && is_gap(line[at])) ++at;
       if (at < line.size() && line[at] != ',') return "text follows the quote that ends a field";
+      _values.push_back(field);
     }
     if (at == line.size()) return {};
     ++at;
   }
+}
+
+bool is_control(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }
+
+std::string shown(std::string_view text) {
+  constexpr std::size_t most = 40;
+  std::string start(text.substr(0, most));
+  std::replace_if(start.begin(), start.end(), is_control, '?');
+  return '"' + start + (text.size() > most ? "..." : "") + '"';
 }
 
 void append_field(std::string& out, std::string_view text) {

@@ -7,17 +7,6 @@
 #include "common/scene/nearest.hpp"
 
 namespace drogue::csv {
-namespace {
-
-/// A name as it is shown: of a file that is no CSV it may be anything.
-std::string shown(std::string_view name) {
-  std::string text(name.substr(0, 40));
-  for (char& c : text)
-    if (static_cast<unsigned char>(c) < 0x20) c = '?';
-  return '"' + text + '"';
-}
-
-}  // namespace
 
 Failure invalid_at(const std::filesystem::path& file, std::int64_t line, const std::string& sentence) {
   return {ExitCode::invalid_scene, file.string() + ":" + std::to_string(line) + ": " + sentence};

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "common/run/io_error.hpp"
+#include "common/run/output_path.hpp"
 
 namespace drogue::run {
 
@@ -38,9 +39,16 @@ void replace_file(const std::filesystem::path& temporary, const std::filesystem:
   sync_path(directory.empty() ? "." : directory);
 }
 
-AtomicFile::AtomicFile(std::filesystem::path target)
-    : _target(std::move(target)), _temporary(temporary_name(_target)) {
-  _descriptor = open(_temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+AtomicFile::AtomicFile(std::filesystem::path target) : _target(std::move(target)) {
+  if (const int own = own_descriptor(_target); own >= 0) {
+    // Opened again, a file would be written from its beginning, over what stands there.
+    _descriptor = fcntl(own, F_DUPFD_CLOEXEC, 0);
+  } else if (is_replaced(_target)) {
+    _temporary = temporary_name(_target);
+    _descriptor = open(_temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  } else {
+    _descriptor = open(_target.c_str(), O_WRONLY | O_NOCTTY | O_CLOEXEC);
+  }
   if (_descriptor < 0) throw io_failure("write", _target, errno);
 }
 
@@ -50,7 +58,7 @@ void AtomicFile::discard() noexcept {
   if (_descriptor < 0) return;
   close(_descriptor);
   _descriptor = -1;
-  unlink(_temporary.c_str());
+  if (!_temporary.empty()) unlink(_temporary.c_str());
 }
 
 void AtomicFile::fail(int error) {
@@ -68,15 +76,16 @@ void AtomicFile::write(std::string_view bytes) {
 }
 
 void AtomicFile::commit() {
-  if (fsync(_descriptor) != 0) fail(errno);
+  // A pipe and most devices cannot be synced.
+  if (fsync(_descriptor) != 0 && (!_temporary.empty() || errno != EINVAL)) fail(errno);
   const int descriptor = std::exchange(_descriptor, -1);
   // A network file system may report a full disk only here.
   if (close(descriptor) != 0) {
     const int error = errno;
-    unlink(_temporary.c_str());
+    if (!_temporary.empty()) unlink(_temporary.c_str());
     throw io_failure("write", _target, error);
   }
-  replace_file(_temporary, _target);
+  if (!_temporary.empty()) replace_file(_temporary, _target);
 }
 
 void write_file_atomically(const std::filesystem::path& target, std::string_view content) {

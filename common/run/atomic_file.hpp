@@ -17,9 +17,10 @@ void sync_path(const std::filesystem::path& path);
 void replace_file(const std::filesystem::path& temporary, const std::filesystem::path& target);
 
 /// A file that appears under its name complete and on disk, or not at all: until commit() a former file
-/// stays.
+/// stays. What has the name and is no file (see `is_replaced`) gets every byte at once.
 class AtomicFile {
  public:
+  /// Waits for a reader where `target` is a named pipe. Throws Failure(io_error), as the others do.
   explicit AtomicFile(std::filesystem::path target);
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;
@@ -33,7 +34,7 @@ class AtomicFile {
   void discard() noexcept;
 
   std::filesystem::path _target;
-  std::filesystem::path _temporary;
+  std::filesystem::path _temporary;  ///< empty where bytes go straight to the target
   int _descriptor = -1;
 };
 

@@ -2,24 +2,24 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdio>
 #include <iostream>
 #include <optional>
 #include <thread>
 
-#include "common/csv/header.hpp"
 #include "common/program/message.hpp"
 #include "common/program/mpi_guard.hpp"
 #include "common/program/program.hpp"
 #include "common/program/provenance.hpp"
 #include "common/program/ranks.hpp"
 #include "common/program/signals.hpp"
+#include "common/run/output_path.hpp"
 #include "common/run/result_document.hpp"
 #include "kernels/device/ledger.hpp"
 #include "kernels/device/runtime.hpp"
 #include "miniapps/options/batch_run.hpp"
 #include "miniapps/options/batches.hpp"
 #include "miniapps/options/distribution.hpp"
+#include "miniapps/options/summary.hpp"
 
 namespace drogue::options_app {
 namespace {
@@ -43,54 +43,11 @@ std::unique_ptr<options::Pricer> make_pricer(device::Backend backend, options::S
   return made_as_asked([&] { return options::create_pricer(backend, settings); });
 }
 
-/// Outputs replace what has their names: that must not be the input, another output, or a device.
-void check_outputs(const Command& command, const std::filesystem::path& input) {
-  std::vector<std::filesystem::path> taken = {input};
-  for (const std::filesystem::path* path : {&command.out, &command.result, &command.boundary}) {
-    if (path->empty()) continue;
-    std::error_code error;
-    if (std::filesystem::exists(*path, error) && !std::filesystem::is_regular_file(*path, error))
-      throw Failure(ExitCode::usage, "'" + path->string() + "' is no regular file: name another output");
-    for (const std::filesystem::path& other : taken)
-      if (std::filesystem::weakly_canonical(*path, error) ==
-              std::filesystem::weakly_canonical(other, error) ||
-          std::filesystem::equivalent(*path, other, error))
-        throw Failure(ExitCode::usage,
-                      "'" + path->string() + "' is read or written already: name another output");
-    taken.push_back(*path);
-  }
-}
-
-void print_summary(const Command& command, const run::ResultDocument& result, const Tally& tally) {
-  const auto ok = tally.rows - tally.coarse - tally.invalid - tally.failed;
-  const auto count = [](std::int64_t rows) { return static_cast<long long>(rows); };
-  std::printf("%s on %s: %lld rows in %.3g s: %lld ok, %lld coarse, %lld invalid, %lld failed\n",
-              result.scene.c_str(), result.backend.c_str(), count(tally.rows), result.timing.wall_s,
-              count(ok), count(tally.coarse), count(tally.invalid), count(tally.failed));
-  std::printf("prices in %s\n", command.out.string().c_str());
-  if (!command.boundary.empty()) std::printf("boundaries in %s\n", command.boundary.string().c_str());
-}
-
-/// What the exit code says of rows that did not end well.
-void blame_rows(const Tally& tally, const BatchReader& reader, const std::filesystem::path& out) {
-  const std::string rest = "; every other row is priced in '" + out.string() + "'";
-  const auto of_all = [&](std::int64_t rows) {
-    return std::to_string(rows) + " of " + std::to_string(tally.rows) + " rows ";
-  };
-  if (tally.failed > 0)
-    throw Failure(ExitCode::numerical_failure, of_all(tally.failed) + "failed, the first in line " +
-                                                   std::to_string(tally.failed_line) + rest);
-  if (tally.invalid > 0)
-    throw csv::invalid_at(reader.file(), tally.invalid_line,
-                          tally.invalid_fault + " (" + of_all(tally.invalid) + "invalid" + rest + ")");
-}
-
-void count_rows(const Tally& tally, run::ResultDocument& result) {
-  result.counts = {{"rows", tally.rows},
-                   {"ok", tally.rows - tally.coarse - tally.invalid - tally.failed},
-                   {"coarse", tally.coarse},
-                   {"invalid", tally.invalid},
-                   {"failed", tally.failed}};
+/// Then a summary there would stand among rows.
+bool writes_to_standard_output(const Command& command) {
+  for (const std::filesystem::path* path : {&command.out, &command.result, &command.boundary})
+    if (run::is_same_file(*path, "/proc/self/fd/1")) return true;
+  return false;
 }
 
 void describe_spent(const Spent& spent, double seconds, run::ResultDocument& result) {
@@ -155,11 +112,14 @@ ExitCode price_batch(Ranks& ranks, const Command& command, const std::filesystem
   result.timing.wall_s = since(begin);
   count_rows(outputs->tally(), result);
   if (!done.is_complete) {
-    result.message = "interrupted by a signal; nothing is written to '" + command.out.string() + "'";
+    result.message = "interrupted by a signal; " +
+                     std::string(run::is_replaced(command.out) ? "nothing" : "not all") + " is written to '" +
+                     command.out.string() + "'";
     return ExitCode::interrupted;
   }
-  if (!command.quiet) print_summary(command, result, outputs->tally());
-  blame_rows(outputs->tally(), *reader, command.out);
+  if (!command.quiet && !writes_to_standard_output(command))
+    print_summary(command, result, outputs->tally(), reader->rows());
+  require_priced_rows(command, outputs->tally(), *reader);
   return ExitCode::ok;
 }
 

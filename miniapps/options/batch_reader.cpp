@@ -6,6 +6,7 @@
 #include <map>
 #include <utility>
 
+#include "common/csv/fields.hpp"
 #include "common/csv/header.hpp"
 
 namespace drogue::options_app {
@@ -63,19 +64,20 @@ void BatchReader::require_unique_ids() {
   const std::hash<std::string_view> hash;
   std::vector<std::size_t> hashes;
   RowReader rows(_kind, _places);
-  while (_lines.next(_line)) hashes.push_back(hash(rows.read_id(_line, ++_rows)));
+  while (_lines.next(_line))
+    if (const auto id = rows.own_id(_line, ++_rows)) hashes.push_back(hash(*id));
   const std::vector<std::size_t> repeated = repeated_of(std::move(hashes));
   if (repeated.empty()) return;
   std::map<std::string, std::int64_t, std::less<>> first;
   BatchReader again(file(), _kind);
   while (again._lines.next(again._line)) {
-    const std::string_view id = rows.read_id(again._line, ++again._rows);
-    if (!std::binary_search(repeated.begin(), repeated.end(), hash(id))) continue;
-    const auto [place, is_new] = first.emplace(id, again._line.number);
+    const auto id = rows.own_id(again._line, ++again._rows);
+    if (!id || !std::binary_search(repeated.begin(), repeated.end(), hash(*id))) continue;
+    const auto [place, is_new] = first.emplace(*id, again._line.number);
     if (!is_new)
       throw csv::invalid_at(file(), again._line.number,
-                            "the id " + quoted(id) + " is that of line " + std::to_string(place->second) +
-                                "; every row needs its own");
+                            "the id " + csv::shown(*id) + " is that of line " +
+                                std::to_string(place->second) + "; every row needs its own");
   }
 }
 

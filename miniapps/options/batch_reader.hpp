@@ -21,7 +21,7 @@ class BatchReader {
   bool next(Chunk& chunk, std::size_t most);
 
   /// Throws Failure(invalid_scene) if an id comes twice in the file; reads it from where it stands to the
-  /// end.
+  /// end. A line that cannot be read has no say.
   void require_unique_ids();
 
   /// Whether ids are given; if not, they are numbers of rows and need no check.

@@ -108,11 +108,20 @@ void BatchRun::flush(Desk& desk) {
     append_price(_piece, _layout, *row, contract, price);
     if (!_command.boundary.empty() && contract.style == options::Style::american &&
         price.outcome != options::Outcome::failed)
-      append_boundary(_piece, *row, _pricer.boundary_on(contract, price.mesh, price.steps));
+      append_boundary(_piece, *row, boundary_of(contract, price));
     if (_piece.prices.size() + _piece.boundaries.size() >= most_of_piece) hand_in(desk, false);
   }
   _owners.clear();
   _contracts.clear();
+}
+
+/// The boundary on the price's own grid. What it says of now is the price's, which another order of
+/// operations may have rounded otherwise.
+std::vector<options::BoundaryPoint> BatchRun::boundary_of(const options::Contract& contract,
+                                                          const options::Price& price) const {
+  std::vector<options::BoundaryPoint> points = _pricer.boundary_on(contract, price.mesh, price.steps);
+  if (!points.empty() && points.front().time == 0.0) points.front().spot = price.exercise_boundary;
+  return points;
 }
 
 void BatchRun::price_contracts() {

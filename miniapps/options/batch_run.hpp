@@ -25,6 +25,8 @@ class BatchRun {
   void check_strikes(Row& row) const;
   void add(const Row& row, const Chunk& chunk, Desk& desk);
   void flush(Desk& desk);
+  [[nodiscard]] std::vector<options::BoundaryPoint> boundary_of(const options::Contract& contract,
+                                                                const options::Price& price) const;
   void price_contracts();
   void hand_in(Desk& desk, bool ends_chunk);
 

@@ -3,6 +3,8 @@
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
+#include <algorithm>
+#include <cmath>
 
 #include "common/csv/numbers.hpp"
 #include "common/program/command_line.hpp"
@@ -22,15 +24,19 @@ void declare_pricing(CLI::App& app, Words& words, Command& command) {
   app.add_option("--backend", command.backend, "where to compute: auto takes the fastest present")
       ->check(CLI::IsMember({"auto", "serial", "openmp", "cuda"}))
       ->capture_default_str();
-  app.add_option("--method", words.method, "pide: finite differences; cos: Fourier; seed: the dissertation's")
+  app.add_option("--method", words.method,
+                 "pide: finite differences; cos: Fourier; seed: the dissertation's, which states no error")
       ->check(CLI::IsMember({"pide", "cos", "seed"}))
       ->capture_default_str();
   auto* tolerance = app.add_option("--tolerance", words.tolerance,
                                    "largest error, in strikes; chooses mesh and steps (1e-4)")
                         ->type_name("E");
-  auto* mesh =
-      app.add_option("--mesh", words.mesh, "intervals in space")->type_name("N")->excludes(tolerance);
-  auto* steps = app.add_option("--steps", words.steps, "steps in time")->type_name("N")->excludes(tolerance);
+  auto* mesh = app.add_option("--mesh", words.mesh, "intervals in space, even, 32 .. 4096")
+                   ->type_name("N")
+                   ->excludes(tolerance);
+  auto* steps = app.add_option("--steps", words.steps, "steps in time, even, 8 .. 16384")
+                    ->type_name("N")
+                    ->excludes(tolerance);
   mesh->needs(steps);
   steps->needs(mesh);
   app.add_flag("--greeks", words.greeks, "delta, gamma and theta too");
@@ -47,21 +53,30 @@ void refuse_empty_values(const CLI::App& app) {
       if (value.empty()) throw Failure(ExitCode::usage, option->get_name() + " is empty");
 }
 
-double number(const std::string& option, const std::string& text, double least, double most) {
+/// What a number may be a multiple of, as a sentence says it.
+struct Kind {
+  const char* what;
+  int multiple;  ///< 0: of nothing
+};
+constexpr Kind any{"a number", 0}, whole{"a whole number", 1}, even{"an even whole number", 2};
+
+double number(const std::string& option, const std::string& text, double least, double most,
+              const Kind& kind = any) {
   double value = 0.0;
   const bool valid = csv::parse_number(text, value) == csv::NumberError::none;
-  if (valid && value >= least && value <= most) return value;
-  std::string range;
-  csv::append_number(range, least);
-  range += " .. ";
-  csv::append_number(range, most);
-  throw Failure(ExitCode::usage, option + " = '" + text + "' is not a number in " + range);
+  if (valid && value >= least && value <= most &&
+      (kind.multiple == 0 || std::fmod(value, kind.multiple) == 0.0))
+    return value;
+  std::string sentence = option + " = '" + text + "' is not " + kind.what + " in ";
+  csv::append_number(sentence, least);
+  sentence += " .. ";
+  csv::append_number(sentence, most);
+  throw Failure(ExitCode::usage, sentence);
 }
 
-int whole(const std::string& option, const std::string& text, int least, int most) {
-  const double value = number(option, text, least, most);
-  if (value == static_cast<int>(value)) return static_cast<int>(value);
-  throw Failure(ExitCode::usage, option + " = '" + text + "' is not a whole number");
+int whole_number(const std::string& option, const std::string& text, int least, int most,
+                 const Kind& kind = whole) {
+  return static_cast<int>(number(option, text, least, most, kind));
 }
 
 options::Settings settings(const Words& words) {
@@ -70,8 +85,9 @@ options::Settings settings(const Words& words) {
                     : words.method == "seed" ? options::Method::seed
                                              : options::Method::pide;
   if (!words.tolerance.empty()) settings.tolerance = number("--tolerance", words.tolerance, 1e-12, 1.0);
-  if (!words.mesh.empty()) settings.mesh = whole("--mesh", words.mesh, 1, 1 << 20);
-  if (!words.steps.empty()) settings.steps = whole("--steps", words.steps, 1, 1 << 20);
+  // What options::create_pricer takes.
+  if (!words.mesh.empty()) settings.mesh = whole_number("--mesh", words.mesh, 32, 4096, even);
+  if (!words.steps.empty()) settings.steps = whole_number("--steps", words.steps, 8, 16384, even);
   settings.greeks = words.greeks;
   if (settings.method == options::Method::cos && settings.mesh > 0)
     throw Failure(ExitCode::usage, "--method cos has no mesh: give it a --tolerance");
@@ -106,7 +122,7 @@ std::vector<double> parse_values(const std::string& option, const std::string& t
                   option + " needs first:last:count or a list with commas, not '" + text + "'");
   const double first = number(option, parts[0], least, most);
   const double last = number(option, parts[1], least, most);
-  const int count = whole(option, parts[2], 1, most_values);
+  const int count = whole_number(option, parts[2], 1, most_values);
   for (int i = 0; i < count; ++i)
     values.push_back(i + 1 == count && count > 1 ? last
                                                  : first + (last - first) * i / std::max(count - 1, 1));
@@ -156,7 +172,7 @@ Command parse_command(int argc, const char* const* argv) {
   if (!words.boundary.empty() && command.settings.method != options::Method::pide)
     throw Failure(ExitCode::usage, "--boundary needs --method pide: the others give no curve");
   if (!words.chunk.empty())
-    command.chunk = static_cast<std::size_t>(whole("--chunk", words.chunk, 1, 1 << 20));
+    command.chunk = static_cast<std::size_t>(whole_number("--chunk", words.chunk, 1, 1 << 20));
   if (!prices) {
     command.strikes = parse_values("--strikes", words.strikes);
     command.maturities = parse_values("--maturities", words.maturities);

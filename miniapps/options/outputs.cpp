@@ -1,5 +1,10 @@
 #include "miniapps/options/outputs.hpp"
 
+#include <vector>
+
+#include "common/program/failure.hpp"
+#include "common/run/output_path.hpp"
+
 namespace drogue::options_app {
 namespace {
 
@@ -9,6 +14,24 @@ constexpr std::size_t block = std::size_t{1} << 18;
 
 Layout layout_of(const Command& command) {
   return {command.action == Action::surface, command.settings.greeks};
+}
+
+void check_outputs(const Command& command, const std::filesystem::path& input) {
+  namespace fs = std::filesystem;
+  std::vector<fs::path> taken = {input};
+  for (const fs::path* path : {&command.out, &command.result, &command.boundary}) {
+    if (path->empty()) continue;
+    std::error_code error;
+    if (fs::is_directory(*path, error))
+      throw Failure(ExitCode::usage, "'" + path->string() + "' is a directory: name another output");
+    if (fs::is_character_file(*path, error)) continue;
+    for (const fs::path& other : taken)
+      if (fs::weakly_canonical(*path, error) == fs::weakly_canonical(other, error) ||
+          run::is_same_file(*path, other))
+        throw Failure(ExitCode::usage,
+                      "'" + path->string() + "' is read or written already: name another output");
+    taken.push_back(*path);
+  }
 }
 
 Outputs::Outputs(const Command& command) {

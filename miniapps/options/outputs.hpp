@@ -12,8 +12,13 @@ namespace drogue::options_app {
 /// What the rows of a run's prices hold.
 [[nodiscard]] Layout layout_of(const Command& command);
 
+/// Throws Failure(usage) where an output is the input, another output or a directory. Devices may be given
+/// twice.
+void check_outputs(const Command& command, const std::filesystem::path& input);
+
 /// The files of prices and, if asked for, of exercise boundaries; each appears under its name when all of it
-/// is on disk. All functions throw Failure(io_error).
+/// is on disk, but for a device or a pipe, which is written to as prices come. All functions throw
+/// Failure(io_error).
 class Outputs {
  public:
   explicit Outputs(const Command& command);

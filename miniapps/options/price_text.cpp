@@ -75,7 +75,9 @@ void append_price(Piece& piece, const Layout& layout, const Row& row, const opti
 void append_invalid(Piece& piece, const Layout& layout, const Row& row) {
   csv::append_field(piece.prices, row.id);
   piece.prices += layout.surface ? ",,,,,,,,,,,invalid," : ",,,,,,,,,invalid,";
-  csv::append_field(piece.prices, row.fault);
+  // Without an id the line is what tells which row it is.
+  csv::append_field(piece.prices,
+                    row.id.empty() ? "line " + std::to_string(row.line) + ": " + row.fault : row.fault);
   piece.prices += '\n';
   Tally& tally = piece.tally;
   ++tally.rows;

@@ -12,8 +12,6 @@ namespace {
 
 constexpr std::size_t longest_id = 256;
 
-bool is_control(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }
-
 template <class Value, std::size_t count>
 bool find_word(std::string_view text, const Word<Value> (&words)[count], Value& value) {
   const auto word = std::find_if(words, words + count, [&](const auto& each) { return text == each.text; });
@@ -28,7 +26,7 @@ void read_word(Row& row, const char* column, std::string_view text, const Word<V
   if (!row.fault.empty() || text.empty() || find_word(text, words, value)) return;
   std::vector<std::string> valid;
   for (const auto& word : words) valid.emplace_back(word.text);
-  row.fault = std::string(column) + " = " + quoted(text) + ": " + scene::suggestion(text, valid);
+  row.fault = std::string(column) + " = " + csv::shown(text) + ": " + scene::suggestion(text, valid);
 }
 
 bool belongs_to(const NumberColumn& column, RowKind kind) {
@@ -52,12 +50,6 @@ class PlaceOf {
 };
 
 }  // namespace
-
-std::string quoted(std::string_view text) {
-  std::string shown(text.substr(0, 40));
-  std::replace_if(shown.begin(), shown.end(), is_control, '?');
-  return '"' + shown + (text.size() > 40 ? "..." : "") + '"';
-}
 
 std::vector<std::string> columns_of(RowKind kind) {
   std::vector<std::string> names = input_columns();
@@ -93,33 +85,40 @@ std::string_view RowReader::field(int place) const {
   return place < 0 ? std::string_view() : _fields[static_cast<std::size_t>(place)];
 }
 
-/// Splits a line of as many fields as there are columns; else `_fault` says what is wrong.
+/// Splits a line of as many fields as there are columns; else `_fault` says what is wrong, and the fields are
+/// those that can be read.
 void RowReader::split(const csv::Line& line) {
-  _fault.clear();
+  _fault = _fields.split(line.too_long ? std::string_view() : line.text);
   if (line.too_long) {
     _fault = "the line is longer than " + std::to_string(csv::LineReader::longest) + " bytes";
-  } else if (const std::string_view wrong = _fields.split(line.text); !wrong.empty()) {
-    _fault = wrong;
-  } else if (_fields.size() != _columns) {
+  } else if (_fault.empty() && _fields.size() != _columns) {
     _fault = "the row has " + std::to_string(_fields.size()) + " fields where the header has " +
              std::to_string(_columns);
   }
 }
 
-/// What stands there, or the row's number where there is none that could be one. `_fault` says what is wrong
-/// with the line or its id.
+/// What stands there, the row's number where nothing does, or nothing where that cannot be read: the number
+/// may be another row's id. `_fault` says what is wrong with the line or its id.
 std::string_view RowReader::read_id(const csv::Line& line, std::int64_t number) {
   split(line);
-  const std::string_view given = _fault.empty() ? field(_id_place) : std::string_view();
-  if (given.size() > longest_id) {
-    _fault = "the id is longer than " + std::to_string(longest_id) + " bytes";
-  } else if (std::any_of(given.begin(), given.end(), is_control)) {
-    _fault = "the id holds a control character";
-  } else if (!given.empty()) {
-    return given;
+  const bool is_cut_off = _id_place >= static_cast<int>(_fields.size());
+  const std::string_view given = is_cut_off ? std::string_view() : field(_id_place);
+  const bool is_long = given.size() > longest_id;
+  if (is_long || std::any_of(given.begin(), given.end(), csv::is_control)) {
+    if (_fault.empty())
+      _fault = is_long ? "the id is longer than " + std::to_string(longest_id) + " bytes"
+                       : "the id " + csv::shown(given) + " holds a control character";
+    return {};
   }
+  const bool has_number = given.empty() && (_id_place < 0 || _fault.empty());
+  if (!has_number) return given;
   _id = std::to_string(number);
   return _id;
+}
+
+std::optional<std::string_view> RowReader::own_id(const csv::Line& line, std::int64_t number) {
+  const std::string_view id = read_id(line, number);
+  return _fault.empty() ? std::optional(id) : std::nullopt;
 }
 
 void RowReader::read(const csv::Line& line, std::int64_t number, Row& row) {
@@ -180,10 +179,10 @@ void RowReader::read_number(Row& row, const char* name, int place, bool required
     case csv::NumberError::none:
       return;
     case csv::NumberError::no_number:
-      row.fault = std::string(name) + " = " + quoted(text) + " is not a number";
+      row.fault = std::string(name) + " = " + csv::shown(text) + " is not a number";
       return;
     case csv::NumberError::not_finite:
-      row.fault = std::string(name) + " = " + quoted(text) + " is not finite";
+      row.fault = std::string(name) + " = " + csv::shown(text) + " is not finite";
   }
 }
 

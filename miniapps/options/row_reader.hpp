@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,7 +14,7 @@ namespace drogue::options_app {
 
 /// One row of a batch; a row with a `fault` cannot be priced.
 struct Row {
-  std::string id;
+  std::string id;  ///< empty where the line or its id cannot be read
   options::Contract contract;
   std::string fault;      ///< a sentence on what is wrong, or empty
   std::int64_t line = 0;  ///< in the file
@@ -34,11 +35,13 @@ class RowReader {
   /// The row of a line, which is the `number`th of its batch.
   void read(const csv::Line& line, std::int64_t number, Row& row);
 
-  /// The id of that row alone; valid until the next line is read.
-  [[nodiscard]] std::string_view read_id(const csv::Line& line, std::int64_t number);
+  /// The id of that row alone, which no other row may have; valid until the next line is read. None of a
+  /// line that cannot be read: what seems to be its id refuses no other row.
+  [[nodiscard]] std::optional<std::string_view> own_id(const csv::Line& line, std::int64_t number);
 
  private:
   void split(const csv::Line& line);
+  std::string_view read_id(const csv::Line& line, std::int64_t number);
   void read_contract(Row& row) const;
   void read_words(Row& row) const;
   void read_parameters(Row& row) const;
@@ -58,8 +61,5 @@ class RowReader {
 
 /// The first column that every row of the file needs and that has no place; null if there is none.
 [[nodiscard]] const char* missing_column(RowKind kind, const std::vector<int>& places);
-
-/// Text of a file as a sentence shows it: short, and on one line.
-[[nodiscard]] std::string quoted(std::string_view text);
 
 }  // namespace drogue::options_app

@@ -84,6 +84,23 @@ BAD_LINES = [
     ("x" * 70000, ["line is longer"]),
 ]
 
+# Lines that cannot be read, the id that each shows. Rows around them have the ids 0, 1, 2, ...
+BROKEN_LINES = [
+    ("short,american,put,1,1", "short"),
+    (options_program.row("long") + ",more", "long"),
+    ("7,american,put,1,1", "7"),
+    ('open,american,"put,1,1', "open"),
+    ('"in ""quotes""",a"b', 'in "quotes"'),
+    ('"open' + GOOD, ""),
+    ('"closed"x' + GOOD, ""),
+    ('in"side' + GOOD, ""),
+    (",american,put", ""),
+    ("x\ty" + GOOD[4:], ""),
+    ("i" * 300 + GOOD[4:], ""),
+    ("i" * 300 + ",american", ""),
+    ("x" * 70000, ""),
+]
+
 # Whole files, the line that is blamed, words of the message; nothing is priced.
 BAD_FILES = [
     (b"", 1, ["empty"]),

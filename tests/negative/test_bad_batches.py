@@ -35,6 +35,45 @@ class BadBatches(options_program.OptionsTest):
         for told in prices[::2]:
             self.assertEqual(("ok", prices[0]["price"]), (told["status"], told["price"]))
 
+    def test_ids_of_lines_that_cannot_be_read(self):
+        """Each shows its own id where there is one, and refuses no other row, whatever its number or its id."""
+        broken = bad_batches.BROKEN_LINES
+        lines = [row(k) for k in range(2 * len(broken))]
+        for k, (line, _) in enumerate(broken):
+            lines.insert(3 * k + 1, line)
+        written = set()
+        for chunk in ("1", "4", "1000"):
+            self.price(3, batch(lines), *FAST, "--chunk", chunk)
+            written.add((self.folder / "prices.csv").read_bytes())
+        self.assertEqual(1, len(written))
+        prices = self.prices()
+        for k, (line, identity) in enumerate(broken):
+            with self.subTest(line=line[:40]):
+                told = prices.pop(2 * k + 1)
+                self.assertEqual((identity, "invalid"), (told["id"], told["status"]))
+                self.assertEqual(not identity, told["message"].startswith(f"line {3 * k + 3}: "), told["message"])
+        self.assertEqual([(str(k), "ok") for k in range(2 * len(broken))], [(told["id"], told["status"]) for told in prices])
+
+    def test_lines_that_cannot_be_read_without_ids(self):
+        """Then a row is its number, whatever stands in it."""
+        def without(line):
+            return line.split(",", 1)[1]
+        lines = [without(row("x")), "1,2", without(row("x")), '"', without(row("x"))]
+        self.price(3, "\n".join([without(HEADER), *lines]), *FAST)
+        self.assertEqual([("1", "ok"), ("2", "invalid"), ("3", "ok"), ("4", "invalid"), ("5", "ok")],
+                         [(told["id"], told["status"]) for told in self.prices()])
+
+    def test_ids_that_do_not_come_first(self):
+        names = HEADER.split(",")
+        head = ",".join([*names[1:3], "id", *names[3:]])
+
+        def moved(line):
+            fields = line.split(",")
+            return ",".join([*fields[1:3], fields[0], *fields[3:]])
+        lines = [moved(row("a")), "european,put", moved(row("b")) + ",9", 'european,"put', 'european,put,c,"1', moved(row("d"))]
+        self.price(3, "\n".join([head, *lines]), *FAST)
+        self.assertEqual(["a", "", "b", "", "c", "d"], [told["id"] for told in self.prices()])
+
     def test_files(self):
         self.assertGreaterEqual(len(bad_batches.BAD_FILES), 20)
         for content, line, words in bad_batches.BAD_FILES:

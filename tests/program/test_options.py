@@ -9,6 +9,7 @@ import subprocess
 import sys
 import time
 import unittest
+from pathlib import Path
 
 sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
@@ -42,7 +43,11 @@ class CommandLine(options_program.OptionsTest):
             ("price", "example", "--mesh", "128"): "--steps",
             ("price", "example", "--mesh", "128.5", "--steps", "32"): "whole number",
             ("price", "example", "--mesh", "-4", "--steps", "32"): "--mesh",
-            ("price", "example", "--mesh", "33", "--steps", "32"): "mesh",
+            ("price", "example", "--mesh", "33", "--steps", "32"): "--mesh = '33' is not an even whole number in 32 .. 4096",
+            ("price", "example", "--mesh", "0", "--steps", "32"): "in 32 .. 4096",
+            ("price", "example", "--mesh", "4098", "--steps", "32"): "in 32 .. 4096",
+            ("price", "example", "--mesh", "128", "--steps", "6"): "--steps = '6' is not an even whole number in 8 .. 16384",
+            ("price", "example", "--mesh", "128", "--steps", "16386"): "in 8 .. 16384",
             ("price", "example", "--mesh", "128", "--steps", "32", "--tolerance", "1e-3"): "--tolerance",
             ("price", "example", "--method", "tree"): "--method",
             ("price", "example", "--method", "cos", "--mesh", "128", "--steps", "32"): "no mesh",
@@ -82,13 +87,15 @@ class CommandLine(options_program.OptionsTest):
         file = self.write(batch([row("a")]))
         (self.folder / "link.csv").symlink_to(file)
         os.link(file, self.folder / "hard.csv")
+        os.mkfifo(self.folder / "pipe")
+        os.link(self.folder / "pipe", self.folder / "pipe2")
         for words in (["--out", file], ["--out", "./batch.csv"], ["--out", "link.csv"], ["--out", "hard.csv"],
-                      ["--result", file], ["--boundary", file], ["--out", "x", "--result", "x"], ["--out", "/dev/null"],
+                      ["--result", file], ["--boundary", file], ["--out", "x", "--result", "x"], ["--out", "pipe", "--boundary", "pipe2"],
                       ["--boundary", "y", "--result", "y"], ["--out", self.folder]):
             with self.subTest(words):
                 self.assertIn("name another output", self.expect(2, "price", file, *words).stderr)
         self.assertEqual(batch([row("a")]), file.read_text())
-        self.assertEqual(["batch.csv", "hard.csv", "link.csv"], self.names())
+        self.assertEqual(["batch.csv", "hard.csv", "link.csv", "pipe", "pipe2"], self.names())
 
 
 class Prices(options_program.OptionsTest):
@@ -118,8 +125,14 @@ class Prices(options_program.OptionsTest):
         self.assertEqual(["1", "2", "3"], [told["id"] for told in self.prices()])
 
     def test_no_rows(self):
+        """No contract, no price, nothing wrong."""
         self.price(0, HEADER + "\n")
         self.assertEqual([], self.prices())
+
+    def test_ends_of_the_ranges_of_meshes_and_steps(self):
+        for mesh, steps in ((32, 8), (4096, 8), (32, 16384)):
+            self.price(0, batch([row("a")]), "--mesh", mesh, "--steps", steps)
+            self.assertEqual((str(mesh), str(steps)), tuple(self.prices()[0][name] for name in ("mesh", "steps")))
 
     def test_greeks_when_asked_for(self):
         content = batch([row("a", style="american")])
@@ -142,6 +155,7 @@ class Prices(options_program.OptionsTest):
     def test_the_dissertations_scheme(self):
         self.price(0, batch([row("a", style="american")]), "--method", "seed", "--mesh", "128", "--steps", "128")
         self.assertAlmostEqual(0.239004005, float(self.prices()[0]["price"]), delta=5e-3)
+        self.assertEqual("", self.prices()[0]["error"])
         other = f"{HEADER},model\n{row('a')},gh\nb,european,put,1,1,0.1,0,1,,,,,0.4,black-scholes\n"
         self.price(3, other, "--method", "seed", "--mesh", "128", "--steps", "32")
         self.assertEqual(["ok", "invalid"], [price["status"] for price in self.prices()])
@@ -158,6 +172,12 @@ class Prices(options_program.OptionsTest):
         spots = [float(point["spot"]) for point in points]
         self.assertTrue(all(0.3 < spot < 1.0 for spot in spots))
         self.assertLess(spots[0], spots[-1])
+
+    def test_boundary_of_now_is_that_of_the_price(self):
+        self.expect(0, "price", "example", "--quiet", "--backend", "serial", "--boundary", "b.csv")
+        with (self.folder / "b.csv").open(encoding="utf-8", newline="") as file:
+            now = {point["id"]: point["spot"] for point in csv.DictReader(file) if point["time"] == "0"}
+        self.assertEqual({told["id"]: told["exercise_boundary"] for told in self.prices() if told["exercise_boundary"]}, now)
 
     def test_surface(self):
         header = ",".join(name for name in HEADER.split(",") if name not in ("strike", "maturity"))
@@ -210,6 +230,13 @@ class Prices(options_program.OptionsTest):
         run = self.expect(0, "price", "example", *FAST, "--tolerance", "1e-3")
         self.assertRegex(run.stdout, r"^example on \w+: 11 rows in \S+ s: 11 ok, 0 coarse, 0 invalid, 0 failed\n")
 
+    def test_summary_of_a_surface(self):
+        """Parameter sets are invalid, prices are ok: what is counted is said."""
+        sets = "spot,rate,lambda,alpha,beta,delta,style\n" + "".join(f"1,0.1,1,8,{beta},0.7,european\n" for beta in (-2, 9, -3))
+        run = self.expect(3, "surface", self.write(sets), "--strikes", "0.9,1,1.1", "--maturities", "1,2", *FAST)
+        self.assertRegex(run.stdout, r"^batch on \w+: 3 parameter sets in \S+ s: 1 invalid; 12 prices: 12 ok, 0 coarse, 0 failed\n")
+        self.assertIn("(1 of 3 parameter sets invalid; all others are priced in 'surface.csv')", run.stderr)
+
 
 class SameBits(options_program.OptionsTest):
     BATCH = batch([row(k, style="american" if k % 2 else "european", spot=0.7 + 0.02 * k, maturity=0.1 + 0.05 * k,
@@ -246,17 +273,57 @@ class Files(options_program.OptionsTest):
                 self.assertEqual(["batch.csv", "prices.csv"], self.names())
                 self.assertEqual("former", (self.folder / "prices.csv").read_text())
 
+    def test_devices(self):
+        file = self.write(batch([row("a", style="american")]))
+        for words in (("--out", "/dev/full"), ("--boundary", "/dev/full"), ("--result", "/dev/full")):
+            run = self.expect(6, "price", file, "--quiet", *words)
+            self.assertEqual("drogue-options: cannot write '/dev/full': No space left on device\n", run.stderr)
+        self.expect(0, "price", file, "--out", "/dev/null", "--boundary", "/dev/null", "--result", "/dev/null")
+        head, line = "id,spot,rate,lambda,alpha,beta,delta,variance", "a,1,0.05,1,8.15,-2.5,0.767,0.04"
+        sets = self.write(f"{head}\n{line}\n", "sets.csv")
+        self.expect(6, "surface", sets, "--strikes", "1", "--maturities", "1", "--out", "/dev/full")
+
+    def test_standard_output(self):
+        """What stood there stays, the link to it too, and no summary is among the rows. A link of our own: should this fail,
+        the system's stays."""
+        file = self.write(batch([row("a")]))
+        (self.folder / "out").symlink_to("/proc/self/fd/1")
+        self.expect(0, "price", file, *FAST)
+        expected = (self.folder / "prices.csv").read_text()
+        self.assertEqual(expected, self.expect(0, "price", file, *FAST, "--out", "out").stdout)
+        with (self.folder / "all").open("w", encoding="utf-8") as stream:
+            print("title", file=stream, flush=True)
+            subprocess.run([options_program.PROGRAM, "price", file, *FAST, "--out", "out"], cwd=self.folder, check=True,
+                           stdout=stream, env=gas_program.ENVIRONMENT)
+        self.assertEqual("title\n" + expected, (self.folder / "all").read_text())
+        self.assertTrue((self.folder / "out").is_symlink())
+
+    def test_a_pipe_whose_reader_leaves(self):
+        file = self.write(batch([row("a")]))
+        os.mkfifo(self.folder / "pipe")
+        reader = os.open(self.folder / "pipe", os.O_RDONLY | os.O_NONBLOCK)
+        process = subprocess.Popen([options_program.PROGRAM, "price", file, "--quiet", "--out", "pipe", "--mesh", "512", "--steps",
+                                    "512"], cwd=self.folder, stderr=subprocess.PIPE, text=True, env=gas_program.ENVIRONMENT)
+        self.addCleanup(process.kill)
+        for _ in range(200):
+            if any(name.resolve() == (self.folder / "pipe").resolve() for name in Path(f"/proc/{process.pid}/fd").iterdir()):
+                break
+            time.sleep(0.02)
+        os.close(reader)
+        self.assertEqual("drogue-options: cannot write 'pipe': Broken pipe\n", process.communicate(timeout=60)[1])
+        self.assertEqual(6, process.returncode)
+
     def test_folder_that_is_not_there(self):
         self.assertIn("no/prices.csv", self.price(6, batch([row("a")]), "--out", "no/prices.csv").stderr)
 
-    def start_long_run(self):
+    def start_long_run(self, *words, method=FAST):
         """A run that has begun to price, and goes on for long."""
         file = self.write(batch([row(k, style="american", spot=0.5 + 1e-4 * k) for k in range(3000)]))
-        command = [options_program.PROGRAM, "price", file, "--backend", "serial", *FAST, "--result", "r.json"]
+        command = [options_program.PROGRAM, "price", file, "--backend", "serial", *method, "--result", "r.json", *words]
         process = subprocess.Popen(command, cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                                    env=gas_program.ENVIRONMENT)
         for _ in range(200):
-            if any(name.startswith(".prices.csv") for name in self.names()):
+            if any(name.endswith(".tmp") for name in self.names()):
                 return process
             time.sleep(0.05)
         process.kill()
@@ -267,6 +334,13 @@ class Files(options_program.OptionsTest):
         process.kill()
         process.communicate()
         self.assertFalse((self.folder / "prices.csv").exists())
+
+    def test_interrupted_with_an_output_that_is_no_file(self):
+        process = self.start_long_run("--out", "/dev/null", "--boundary", "b.csv", "--mesh", "512", "--steps", "512", method=())
+        process.send_signal(signal.SIGINT)
+        process.communicate(timeout=60)
+        self.assertEqual((130, ["batch.csv", "r.json"]), (process.returncode, self.names()))
+        self.assertIn("not all is written to '/dev/null'", json.loads((self.folder / "r.json").read_text())["message"])
 
     def test_interrupted(self):
         process = self.start_long_run()

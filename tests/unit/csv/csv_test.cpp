@@ -76,6 +76,22 @@ TEST(CsvFields, TellsWhatIsWrong) {
   EXPECT_NE(fields.split("a,\"b\"\""), "");
 }
 
+TEST(CsvFields, AreShownShortAndOnOneLine) {
+  EXPECT_EQ(shown("a b"), "\"a b\"");
+  EXPECT_EQ(shown(std::string_view("a\n\0\x7f", 4)), "\"a???\"");
+  EXPECT_EQ(shown(std::string(41, 'x')), '"' + std::string(40, 'x') + "...\"");
+}
+
+TEST(CsvFields, KeepsThoseBeforeTheOneThatIsWrong) {
+  Fields fields;
+  for (const char* line : {R"(a,"b ""c""",d"e,f)", R"(a,"b ""c""","d,e)", R"(a,"b ""c""","d"e)"}) {
+    EXPECT_NE(fields.split(line), "");
+    ASSERT_EQ(fields.size(), 2U) << line;
+    EXPECT_EQ(fields[0], "a");
+    EXPECT_EQ(fields[1], "b \"c\"");
+  }
+}
+
 TEST(CsvFields, WhatIsWrittenIsReadAgain) {
   std::mt19937 random(1);
   const std::string letters = "ab ,\"\t'";

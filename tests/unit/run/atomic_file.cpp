@@ -2,6 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+
 #include "tests/unit/run/temporary_directory.hpp"
 
 namespace drogue::run {
@@ -76,6 +82,42 @@ TEST(AtomicFile, ADirectoryInTheWayStays) {
       failure_of(ExitCode::io_error, [&directory] { write_file_atomically(directory / "result.json", "x"); });
   EXPECT_NE(sentence.find("directory"), std::string::npos) << sentence;
   EXPECT_EQ(directory.entries(), 1U) << "the temporary file was left";
+}
+
+TEST(AtomicFile, AFullDeviceIsAFailure) {
+  EXPECT_EQ(failure_of(ExitCode::io_error, [] { write_file_atomically("/dev/full", "x"); }),
+            "cannot write '/dev/full': No space left on device");
+  write_file_atomically("/dev/null", "x");
+  EXPECT_TRUE(std::filesystem::is_character_file("/dev/null"));
+}
+
+TEST(AtomicFile, APipeStaysOneAndGetsEveryByte) {
+  const TemporaryDirectory directory;
+  const std::string pipe = directory / "pipe";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  const int reader = open(pipe.c_str(), O_RDONLY | O_NONBLOCK);
+  write_file_atomically(pipe, "rows");
+  std::string got(16, '\0');
+  got.resize(static_cast<std::size_t>(std::max<ssize_t>(0, read(reader, got.data(), got.size()))));
+  close(reader);
+  EXPECT_EQ(got, "rows");
+  EXPECT_TRUE(std::filesystem::is_fifo(pipe));
+  EXPECT_EQ(directory.entries(), 1U);
+}
+
+/// As /dev/stdout is one: neither may the link be replaced, nor what was written before it.
+TEST(AtomicFile, AnOpenDescriptorIsWrittenOn) {
+  const TemporaryDirectory directory;
+  const std::string file = directory / "a.txt";
+  const int descriptor = open(file.c_str(), O_WRONLY | O_CREAT, 0600);
+  ASSERT_EQ(write(descriptor, "top ", 4), 4);
+  std::filesystem::create_symlink("/proc/self/fd/" + std::to_string(descriptor), directory / "out");
+  write_file_atomically(directory / "out", "rows");
+  close(descriptor);
+  EXPECT_EQ(content(file), "top rows");
+  EXPECT_TRUE(std::filesystem::is_symlink(directory / "out"));
+  EXPECT_EQ(directory.entries(), 2U);
+  failure_of(ExitCode::io_error, [&directory] { write_file_atomically(directory / "out", "x"); });
 }
 
 }  // namespace

@@ -1,0 +1,70 @@
+#include "miniapps/options/summary.hpp"
+
+#include <cstdio>
+#include <string>
+
+#include "common/csv/header.hpp"
+#include "common/program/failure.hpp"
+
+namespace drogue::options_app {
+namespace {
+
+std::int64_t priced_well(const Tally& tally) {
+  return tally.rows - tally.coarse - tally.invalid - tally.failed;
+}
+
+std::string counted(std::int64_t number, const char* what) { return std::to_string(number) + what; }
+
+std::string share(std::int64_t number, std::int64_t all, const char* what) {
+  return counted(number, " of ") + counted(all, what);
+}
+
+}  // namespace
+
+// What is invalid of a surface are parameter sets, rows of the input; what is priced are points, rows of the
+// output.
+
+void print_summary(const Command& command, const run::ResultDocument& result, const Tally& tally,
+                   std::int64_t read) {
+  char time[32];
+  std::snprintf(time, sizeof time, " in %.3g s: ", result.timing.wall_s);
+  std::string text = result.scene + " on " + result.backend + ": ";
+  if (command.action == Action::surface)
+    text += counted(read, " parameter sets") + time + counted(tally.invalid, " invalid; ") +
+            counted(tally.rows - tally.invalid, " prices: ") + counted(priced_well(tally), " ok, ") +
+            counted(tally.coarse, " coarse, ");
+  else
+    text += counted(tally.rows, " rows") + time + counted(priced_well(tally), " ok, ") +
+            counted(tally.coarse, " coarse, ") + counted(tally.invalid, " invalid, ");
+  text += counted(tally.failed, " failed\n") + "prices in " + command.out.string() + "\n";
+  if (!command.boundary.empty()) text += "boundaries in " + command.boundary.string() + "\n";
+  std::fputs(text.c_str(), stdout);
+}
+
+void require_priced_rows(const Command& command, const Tally& tally, const BatchReader& reader) {
+  const bool surface = command.action == Action::surface;
+  const std::string rest = std::string(surface ? "; all others are" : "; every other row is") +
+                           " priced in '" + command.out.string() + "'";
+  if (tally.failed > 0) {
+    const std::string failed = surface ? share(tally.failed, tally.rows - tally.invalid, " prices failed")
+                                       : share(tally.failed, tally.rows, " rows failed");
+    throw Failure(ExitCode::numerical_failure,
+                  failed + ", the first in line " + std::to_string(tally.failed_line) + rest);
+  }
+  if (tally.invalid > 0)
+    throw csv::invalid_at(
+        reader.file(), tally.invalid_line,
+        tally.invalid_fault + " (" +
+            share(tally.invalid, reader.rows(), surface ? " parameter sets invalid" : " rows invalid") +
+            rest + ")");
+}
+
+void count_rows(const Tally& tally, run::ResultDocument& result) {
+  result.counts = {{"rows", tally.rows},
+                   {"ok", priced_well(tally)},
+                   {"coarse", tally.coarse},
+                   {"invalid", tally.invalid},
+                   {"failed", tally.failed}};
+}
+
+}  // namespace drogue::options_app
