@@ -68,14 +68,21 @@ KOKKOS_INLINE_FUNCTION R summed_above(R z) {
 
 /// The part of jumps of a normal density that goes to the node at d h, by a hat over the two steps beside it.
 /// Between two nodes a jump is shared so that its mean stays, however narrow the density is. Of the last node
-/// the hat ends where it is highest.
+/// the hat ends where it is highest. One loop, whose length the compiler does not know: a GPU has no
+/// registers for three of its bodies.
 template <class R>
 KOKKOS_INLINE_FUNCTION R normal_part(R mean, R per, R h, int d, bool last) {
-  const R centre = (double(d) * h - mean) * per, reach = h * per, share = device::reciprocal(reach);
-  if (last) return (summed_above(centre - reach) - summed_above(centre)) * share - normal_above(centre);
+  const R centre = (double(d) * h - mean) * per, reach = h * per;
   // The second difference is the same for the mirrored density, whose tail does not cancel.
-  const R away = device::absolute(centre);
-  return (summed_above(away - reach) - 2.0 * summed_above(away) + summed_above(away + reach)) * share;
+  const R middle = last ? centre : device::absolute(centre);
+  const int points = last ? 2 : 3;
+  R sum = 0.0;
+  for (int k = 0; k < points; ++k) {
+    const double times = k != 1 ? 1.0 : last ? -1.0 : -2.0;
+    sum += times * summed_above(middle + (k - 1.0) * reach);
+  }
+  const R part = sum * device::reciprocal(reach);
+  return last ? part - normal_above(centre) : part;
 }
 
 template <class R>
