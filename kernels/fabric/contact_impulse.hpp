@@ -50,7 +50,8 @@ struct PushFunctor {
     touch.push = pressed;
     if (touch.friction > 0.0) {
       const Point sliding = relative - speed * touch.normal + turned;
-      Point grip = touch.grip - (1.0 / across) * (sliding - dot(sliding, touch.normal) * touch.normal);
+      Point grip =
+          touch.grip - (1.0 / across) * (sliding - dot(sliding, touch.normal) * touch.normal - touch.hold);
       const double size = length(grip), most = touch.friction * pressed;
       if (size > most) grip = (most / size) * grip;
       touch.more_grip = grip - touch.grip;
