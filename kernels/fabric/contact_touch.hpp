@@ -88,8 +88,8 @@ struct TouchFunctor {
   }
 
   /// Forces that do not change move parts in a step by half of what they kick them: held parts start against
-  /// it, or what sticks would creep. Where forces change, the ways of all steps sum to that of the last one,
-  /// and the work to what is left of a kick's.
+  /// it, or what sticks would creep. Where forces change, the ways of all steps sum to half of the last
+  /// kick's, and what friction gives is at most an eighth of the mass times the square of a kick.
   KOKKOS_FUNCTION void hold(Touch& touch) const {
     Point kick{0.0, 0.0, 0.0};
     for (int slot = 0; slot < 4; ++slot) {
