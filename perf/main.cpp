@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "common/program/command_line.hpp"
+#include "common/program/mpi_guard.hpp"
 #include "common/program/program.hpp"
 #include "common/program/provenance.hpp"
 #include "perf/command.hpp"
@@ -29,7 +30,10 @@ ExitCode run_program_body(int argc, char** argv) {
   }
   std::string names;
   for (const perf::Command& command : commands) {
-    if (command.app->parsed()) return command.execute(arguments.kokkos);
+    if (command.app->parsed()) {
+      if (command.app->get_name() != "list") require_one_rank("drogue-perf");
+      return command.execute(arguments.kokkos);
+    }
     names += (names.empty() ? "" : ", ") + command.app->get_name();
   }
   throw Failure(ExitCode::usage, "say what to do (" + names + "); see drogue-perf --help");

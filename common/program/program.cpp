@@ -1,5 +1,8 @@
 #include "common/program/program.hpp"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <CLI/Error.hpp>
 #include <chrono>
 #include <cstdio>
@@ -19,6 +22,30 @@ std::string first_line(const std::string& text) {
   if (begin == std::string::npos) return "no description";
   return text.substr(begin, text.find('\n', begin) - begin);
 }
+
+/// Where `silent`, all that is written to stdout from here on goes nowhere, until this is destroyed.
+class Silence {
+ public:
+  explicit Silence(bool silent) {
+    if (!silent) return;
+    std::fflush(stdout);
+    _before = ::dup(STDOUT_FILENO);
+    const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
+    ::dup2(nowhere, STDOUT_FILENO);
+    ::close(nowhere);
+  }
+  ~Silence() {
+    if (_before < 0) return;
+    std::fflush(stdout);
+    ::dup2(_before, STDOUT_FILENO);
+    ::close(_before);
+  }
+  Silence(const Silence&) = delete;
+  Silence& operator=(const Silence&) = delete;
+
+ private:
+  int _before = -1;
+};
 
 }  // namespace
 
@@ -40,6 +67,7 @@ Failure current_failure() {
 
 int run_program(const std::string& program, const std::function<ExitCode()>& body) {
   ExitCode code = ExitCode::ok;
+  const Silence silence(launched_rank().rank != 0);
   try {
     code = body();
   } catch (...) {

@@ -16,7 +16,7 @@ Failure current_failure();
 
 /// Runs `body` and returns the exit code of the process. Whatever `body` throws ends as one sentence on
 /// stderr: `program: sentence`, or for an invalid scene the sentence alone, which starts with FILE:LINE.
-/// Under mpirun only rank 0 prints.
+/// Under mpirun only rank 0 prints: what the others write to stdout goes nowhere.
 int run_program(const std::string& program, const std::function<ExitCode()>& body);
 
 }  // namespace drogue

@@ -132,10 +132,9 @@ std::string to_json(const ResultDocument& result) {
   json["checks"] = checks_json(result.checks);
   if (!result.counts.empty()) json["counts"] = result.counts;
   if (!result.energy.empty()) json["energy"] = numbers_json(result.energy);
-  if (result.limiter)
-    json["limiter"] = {{"touches", result.limiter->touches},
-                       {"cells", result.limiter->cells},
-                       {"redone_steps", result.limiter->redone_steps}};
+  json["limiter"] = {{"touches", result.limiter.touches},
+                     {"cells", result.limiter.cells},
+                     {"redone_steps", result.limiter.redone_steps}};
   json["timing"] = timing_json(result.timing);
   json["ledger"] = ledger_json(result.ledger);
   json["peak_bytes"] = {{"host", result.peak_bytes.host}, {"device", result.peak_bytes.device}};

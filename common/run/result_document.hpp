@@ -3,7 +3,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,12 +34,12 @@ struct ResultDocument {
   std::vector<Check> checks;
   std::map<std::string, std::int64_t> counts;  ///< of a batch: how many rows ended how; else empty
   std::map<std::string, double> energy;        ///< J, of a run that accounts for it: at its end; else empty
+  /// Of what has none, zeros.
   struct Limiter {
     std::int64_t touches = 0;  ///< faces limited, summed over all stages
     std::int64_t cells = 0;    ///< cells that had such a face at least once
     std::int64_t redone_steps = 0;
-  };
-  std::optional<Limiter> limiter;  ///< of what has one
+  } limiter;
   struct Timing {
     double wall_s = 0, setup_s = 0, compute_s = 0, h2d_s = 0, d2h_s = 0, io_s = 0;
   } timing;

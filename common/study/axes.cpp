@@ -41,7 +41,10 @@ std::vector<std::int64_t> meshes(const std::vector<std::string>& values, const M
              " and 2^" + std::to_string(axis.most_exponent));
     numbers.push_back(n);
   }
-  if (numbers.size() != 2 || numbers[1] < numbers[0]) return numbers;
+  if (numbers.size() != 2) return numbers;
+  if (numbers[1] < numbers[0])
+    refuse("two meshes stand for all doublings from the one to the other; the smaller comes first: meshes=" +
+           values[1] + ":" + values[0]);
   std::vector<std::int64_t> doubled;
   for (std::int64_t n = numbers[0]; n < numbers[1]; n *= 2) doubled.push_back(n);
   doubled.push_back(numbers[1]);

@@ -8,7 +8,7 @@ namespace drogue::fabric {
 // them a share 1/n of its mass (mass splitting, Tonge, Benevolenski and Voroshilov 2012). Impulses act
 // between the vertices of a touch by their shares, so momentum is kept. What they add to the energy is at
 // most what parts nearer than the thickness are given to part, each push times `wanted`, which has a bound
-// that does not depend on the step (`wanted_velocity`).
+// that does not depend on the step (`wanted_velocity`), and what friction gives back of a kick (`hold`).
 
 /// The impulse of a touch on the vertex in a slot of it, kg m/s.
 KOKKOS_INLINE_FUNCTION Point impulse_on(const Touch& touch, int slot, double push, const Point& grip) {
@@ -50,7 +50,8 @@ struct PushFunctor {
     touch.push = pressed;
     if (touch.friction > 0.0) {
       const Point sliding = relative - speed * touch.normal + turned;
-      Point grip = touch.grip - (1.0 / across) * (sliding - dot(sliding, touch.normal) * touch.normal);
+      Point grip =
+          touch.grip - (1.0 / across) * (sliding - dot(sliding, touch.normal) * touch.normal - touch.hold);
       const double size = length(grip), most = touch.friction * pressed;
       if (size > most) grip = (most / size) * grip;
       touch.more_grip = grip - touch.grip;

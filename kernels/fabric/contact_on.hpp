@@ -70,6 +70,7 @@ class ContactOn final : public ContactSteps<ExecutionSpace> {
   Kokkos::View<double*, typename ExecutionSpace::memory_space> _inverse_mass;
   Kokkos::View<std::uint8_t*, typename ExecutionSpace::memory_space> _held;
   ListView<ExecutionSpace, ContactWork> _work, _kept_work;
+  typename ListView<ExecutionSpace, ContactWork>::HostMirror _work_on_host;
   ContactTable<ExecutionSpace> _table;
   std::list<Recorded> _recorded;
 };
@@ -82,6 +83,16 @@ struct KeepWorkFunctor {
 
   KOKKOS_FUNCTION void operator()(const int i) const {
     if (watch.lost() == none_lost) kept(i) = work(i);
+  }
+};
+
+/// Forgets the kicks: of other velocities than those of now.
+template <class ExecutionSpace>
+struct ForgetKickFunctor {
+  ListView<ExecutionSpace, ContactWork> work;
+
+  KOKKOS_FUNCTION void operator()(const int i) const {
+    work(i) = {work(i).normal, work(i).friction, 0.0, 0.0, 0.0};
   }
 };
 
@@ -145,6 +156,7 @@ ContactOn<ExecutionSpace>::ContactOn(const Parameters& p, const ContactCloth<Exe
   lend(t.progress, "contact_progress", 1);
   _work = ListView<ExecutionSpace, ContactWork>("drogue::fabric::contact_work", n);
   _kept_work = ListView<ExecutionSpace, ContactWork>("drogue::fabric::kept_contact_work", n);
+  _work_on_host = Kokkos::create_mirror_view(_work);
   t.work = _work;
   forget();
 }
@@ -212,6 +224,7 @@ void ContactOn<ExecutionSpace>::forget() {
   progress(0).skin = -1.0;  // no list holds
   progress(0).trouble = none_lost;
   device::copy(_instance.space(), _table.progress, progress);
+  launch("drogue::fabric::forget_kick", _table.vertices, ForgetKickFunctor<ExecutionSpace>{_work});
   _instance.space().fence("drogue::fabric::forget");
 }
 
@@ -233,7 +246,7 @@ Trouble ContactOn<ExecutionSpace>::trouble(std::int64_t step) const {
 
 template <class ExecutionSpace>
 void ContactOn<ExecutionSpace>::work(std::span<ContactWork> of_vertices) const {
-  const auto mirror = Kokkos::create_mirror_view(_work);
+  const auto& mirror = _work_on_host;
   device::copy(_instance.space(), mirror, _work);
   _instance.space().fence("drogue::fabric::contact_work");
   std::copy_n(mirror.data(), of_vertices.size(), of_vertices.begin());
@@ -241,7 +254,7 @@ void ContactOn<ExecutionSpace>::work(std::span<ContactWork> of_vertices) const {
 
 template <class ExecutionSpace>
 void ContactOn<ExecutionSpace>::set_work(std::span<const ContactWork> of_vertices) {
-  const auto mirror = Kokkos::create_mirror_view(_work);
+  const auto& mirror = _work_on_host;
   std::copy(of_vertices.begin(), of_vertices.end(), mirror.data());
   device::copy(_instance.space(), _work, mirror);
   _instance.space().fence("drogue::fabric::contact_work");

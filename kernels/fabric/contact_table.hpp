@@ -22,6 +22,7 @@ struct Touch {
   Point lever[2];    ///< of the couple that friction needs, `lever_of`
   double wanted;     ///< least relative velocity along the normal, m/s
   double friction;   ///< Coulomb's coefficient
+  Point hold;        ///< relative velocity across, m/s, with which parts that friction holds stay
   double push;       ///< impulse so far along the normal, kg m/s
   Point grip;        ///< and across
   double more_push;  ///< of this round

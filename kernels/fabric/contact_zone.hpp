@@ -163,9 +163,9 @@ struct FollowFunctor {
   }
 };
 
-/// Puts the state where zones have brought it, and counts what that did. A zone keeps its elastic energy, so
-/// what its vertices gained in the step counts, less the work of the forces on where they went; velocities
-/// tell their mean.
+/// Puts the state where zones have brought it, and counts what that did; notes what forces alone gave. A zone
+/// keeps its elastic energy, so what its vertices gained in the step counts, less the work of the forces on
+/// where they went; velocities tell their mean.
 template <class ExecutionSpace>
 struct SettleFunctor {
   using Places = LentTable<ExecutionSpace, double, 3>;
@@ -174,12 +174,14 @@ struct SettleFunctor {
   Places x, v;
 
   KOKKOS_FUNCTION void operator()(const int i) const {
+    const Point start = load_points<double>(table.start_v, i), kick = load_points<double>(v, i) - start;
+    ContactWork& work = table.work(i);
+    work.kick_x = kick.x, work.kick_y = kick.y, work.kick_z = kick.z;
     if (table.progress(0).crossing[0] == 0 || !table.in_zone(i)) return;
     const Point place = load_points<double>(table.end_x, i), velocity = load_points<double>(table.end_v, i);
-    const Point start = load_points<double>(table.start_v, i);
-    const Point force = (1.0 / table.dt) * (load_points<double>(v, i) - start);  // over the mass
+    const Point force = (1.0 / table.dt) * kick;  // over the mass
     const Point moved = place - load_points<double>(table.start_x, i);
-    table.work(i).normal +=
+    work.normal +=
         (0.5 * dot(velocity - start, velocity + start) - dot(force, moved)) / table.inverse_mass(i);
     store_points(x, i, place);
     store_points(v, i, velocity);

@@ -1,6 +1,8 @@
 #include "kernels/fabric/edges.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "kernels/fabric/way.hpp"
 
@@ -36,6 +38,12 @@ std::vector<Edge> edges_of(const Mesh& mesh) {
   std::vector<Edge> edges = triangle_edges(mesh);
   for (const auto& [i, j] : mesh.lines) edges.push_back(edge_between(i, j));
   return each_once(std::move(edges));
+}
+
+double shortest_edge(const Mesh& mesh) {
+  double shortest = std::numeric_limits<double>::infinity();
+  for (const auto& [i, j] : edges_of(mesh)) shortest = std::min(shortest, rest_distance(mesh, i, j));
+  return std::isfinite(shortest) ? shortest : 0.0;
 }
 
 }  // namespace drogue::fabric

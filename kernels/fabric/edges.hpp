@@ -24,4 +24,7 @@ using Edge = std::array<int, 2>;
 /// Every edge of the triangles and every line once, ascending.
 [[nodiscard]] std::vector<Edge> edges_of(const Mesh& mesh);
 
+/// The length at rest of the shortest of them, m; zero where there is none.
+[[nodiscard]] double shortest_edge(const Mesh& mesh);
+
 }  // namespace drogue::fabric

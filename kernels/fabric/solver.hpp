@@ -25,6 +25,20 @@ namespace drogue::fabric {
   return decay * undamped > 1.0 ? 1.0 / decay : undamped;
 }
 
+/// Whether oscillations of `frequency`, rad/s, grow in steps of dt, s, at any damping up to what is given,
+/// 1/s: `absolute` of all motion, and `relative` up to a solver's `fastest_decay`. False where it cannot be
+/// told. The roots z of z^2 + c dt z + (omega dt)^2 have no smaller modulus than omega dt on the mean, and
+/// Runge and Kutta's region reaches 2.9602 from the origin; of Verlet's step the trace and the determinant
+/// tell (Jury 1962).
+[[nodiscard]] constexpr bool grows(Integrator integrator, double dt, double frequency, double absolute,
+                                   double relative) {
+  const double z = frequency * dt;
+  if (integrator == Integrator::rk4)
+    return z > (absolute + relative > 0.0 ? 2.9602 : stability_limit(integrator));
+  const double half = 0.25 * absolute * dt, keep = (1.0 - half) / (1.0 + half), drag = 1.0 - relative * dt;
+  return drag > 0.0 && drag * z * z > 2.0 * (1.0 + drag * keep * keep) * (1.0 + half) * (1.0 + half);
+}
+
 /// Cloth and strings that live on a backend and move there. Needs an initialised runtime.
 ///
 /// Life: `upload`, then `advance` as often as wanted. Once a state is lost (a number that is not finite, or
@@ -67,6 +81,11 @@ class Solver {
   /// under the pressure of now; what is slack counts as taut. `stable_dt` makes a step of it. Stiffness grows
   /// with strain, so ask again when the cloth has stretched.
   [[nodiscard]] virtual double fastest_frequency() = 0;
+
+  /// A lower bound of the largest of them, mostly within 1 % of it, by which steps are surely too long
+  /// (`grows`): what Lanczos' method finds from forces about where the vertices are now. It takes a hundred
+  /// forces and copies: not for every step.
+  [[nodiscard]] virtual double frequency_at_least() = 0;
 
   /// An upper bound of the rates at which damping slows, 1/s; of Verlet absolute damping does not count,
   /// which is stable whatever it is.

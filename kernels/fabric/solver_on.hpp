@@ -4,6 +4,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "kernels/device/replay.hpp"
 #include "kernels/fabric/contact_steps.hpp"
@@ -48,6 +49,7 @@ class SolverOn final : public Solver {
   void set_clock(const Clock& clock) override;
   void forces(std::span<Vector> forces) override;
   double fastest_frequency() override;
+  double frequency_at_least() override;
   double fastest_decay() const override { return _decay; }
   void stress(StressMeasure measure, std::span<Stress> of_triangles) override;
   void vertex_stress(StressMeasure measure, std::span<Stress> of_vertices) override;
@@ -110,6 +112,8 @@ class SolverOn final : public Solver {
   void keep();
   template <Law of>
   [[nodiscard]] double largest_row(const ListView<ExecutionSpace, double>& more) const;
+  void make_sums();
+  void forces_at(const Points& x, std::span<Vector> forces) const;
   void settle();
   void set_steps();
   [[nodiscard]] bool lost() const;
@@ -137,9 +141,13 @@ class SolverOn final : public Solver {
   Watch<ExecutionSpace> _watch;
   int _hand = 0;  ///< of the watch, that tells the steps taken
   std::optional<Failure> _failure;
-  Points _pull;               ///< of springs of vectors
-  double _rest_energy = 0.0;  ///< J, of theirs
-  Points _dead;               ///< loads, N; may be empty
+  Points _pull;                                   ///< of springs of vectors
+  double _rest_energy = 0.0;                      ///< J, of theirs
+  Points _dead;                                   ///< loads, N; may be empty
+  std::vector<TotalsView<ExecutionSpace>> _sums;  ///< ever fewer rows, down to one
+  typename TotalsView<ExecutionSpace>::HostMirror _sum;
+  mutable typename Points::HostMirror _on_host;  ///< of a device, made when first asked for
+  ListView<ExecutionSpace, double> _load_stiffness;
   Points _x, _v, _next;
   Points _kept_x, _kept_v;
   Kokkos::View<std::int64_t, typename ExecutionSpace::memory_space> _kept_step;

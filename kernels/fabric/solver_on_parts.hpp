@@ -71,6 +71,9 @@ SolverOn<ExecutionSpace, law>::SolverOn(const Parameters& p)
   _cloth.load = _dead;
   prepare_external(p);
   prepare_motions(p);
+  if (_external.pressure.extent(0) > 0 || _external.bending.first.extent(0) > 0)
+    _load_stiffness = decltype(_load_stiffness)("drogue::fabric::load_stiffness", n);
+  make_sums();
   _x = points("drogue::fabric::positions");
   _v = points("drogue::fabric::velocities");
   _next = points("drogue::fabric::next");
@@ -133,7 +136,11 @@ void SolverOn<ExecutionSpace, law>::to_device(std::span<const Vector> from, cons
 template <class ExecutionSpace, Law law>
 void SolverOn<ExecutionSpace, law>::to_host(const Points& from, std::span<Vector> to) const {
   require_one_a_vertex(to.size());
-  const auto mirror = Kokkos::create_mirror_view(from);
+  typename Points::HostMirror mirror = _on_host;
+  if constexpr (device::is_host<ExecutionSpace>)
+    mirror = from;
+  else if (mirror.extent(0) == 0)
+    mirror = _on_host = Kokkos::create_mirror(from);
   device::copy(_instance.space(), mirror, from);
   _instance.space().fence("drogue::fabric::to_host");
   for (std::size_t i = 0; i < to.size(); ++i)

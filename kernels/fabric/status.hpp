@@ -33,10 +33,11 @@ struct Failure {
   Trouble trouble = Trouble::not_finite;
 };
 
-/// Work of contact on a vertex, negative where it took energy.
+/// Work of contact on a vertex, negative where it took energy, and what friction looks back at.
 struct ContactWork {
   double normal = 0.0;    ///< J, of what keeps parts apart: impulses along normals, and zones
   double friction = 0.0;  ///< J, of friction
+  double kick_x = 0.0, kick_y = 0.0, kick_z = 0.0;  ///< m/s, that forces gave in the last step
   bool operator==(const ContactWork&) const = default;
 };
 

@@ -66,8 +66,8 @@ run::ExistingRun existing_run(const MiniAppOptions& options, bool is_empty,
 void print_summary(const run::ResultDocument& result, const std::filesystem::path& directory) {
   std::printf("%s on %s: %lld steps to t = %g s in %.3g s, limiter touches %lld, redone steps %lld\n",
               result.scene.c_str(), result.backend.c_str(), static_cast<long long>(result.steps), result.time,
-              result.timing.wall_s, static_cast<long long>(result.limiter->touches),
-              static_cast<long long>(result.limiter->redone_steps));
+              result.timing.wall_s, static_cast<long long>(result.limiter.touches),
+              static_cast<long long>(result.limiter.redone_steps));
   for (const run::Check& check : result.checks)
     std::printf("  %-16s %.4g  (bar %.4g)  %s\n", check.name.c_str(), check.value, check.bar,
                 check.passed ? "passed" : "FAILED");
@@ -84,7 +84,6 @@ ExitCode run_scene(const MiniAppOptions& options, const std::filesystem::path& f
   const bool is_empty = !holds_results(out);
   run::RunDirectory directory(out, existing_run(options, is_empty, restart));
   run::ResultDocument result = run::new_result("drogue-gas", name);
-  result.limiter.emplace();
   try {
     const GasScene scene = read_gas_scene(
         file, options.set, options.seed_mode ? SchemeSource::dissertation : SchemeSource::scene);

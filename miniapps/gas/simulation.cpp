@@ -134,7 +134,7 @@ void Simulation::describe(run::ResultDocument& result) {
   result.time = now.time;
   result.dt_min = now.dt_min;
   result.dt_max = now.dt_max;
-  result.limiter = run::ResultDocument::Limiter{now.touches, _solver->touched_cells(), now.redone};
+  result.limiter = {now.touches, _solver->touched_cells(), now.redone};
   result.timing.setup_s = _setup_s;
   result.timing.compute_s = _settings.seed_mode ? phases.compute : _compute_s;
   result.timing.h2d_s = _settings.seed_mode ? phases.h2d : _h2d_s;

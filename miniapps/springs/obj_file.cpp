@@ -70,16 +70,22 @@ class ObjParser {
 
   void vertex(const std::vector<std::string_view>& words) {
     const std::string which = part_of_file("vertex", _contents.mesh.rest.size());
-    if (words.size() != 4)
-      refuse(which + " has " + std::to_string(words.size() - 1) + " coordinates; it must have 3");
+    const bool weighted = words.size() == 5, coloured = words.size() == 7;
+    if (words.size() != 4 && !weighted && !coloured)
+      refuse(which + " has " + std::to_string(words.size() - 1) +
+             " numbers; it must have 3 coordinates, and after them nothing, a weight of 1 or a colour of 3");
     fabric::Vector point;
-    for (std::size_t axis = 0; axis < 3; ++axis) point[axis] = coordinate(words[axis + 1], which);
+    for (std::size_t axis = 0; axis < 3; ++axis) point[axis] = real(words[axis + 1], which);
+    for (std::size_t k = 4; k < words.size(); ++k)
+      if (real(words[k], which) != 1.0 && weighted)
+        refuse(which + " has the weight " + std::string(words[k]) +
+               "; only 1 is taken, which weights of curves and surfaces are not");
     if (_contents.mesh.rest.size() == most_file_vertices) refuse("the file has more than 67108864 vertices");
     _contents.mesh.rest.push_back(point);
     _contents.vertex_line.push_back(_line);
   }
 
-  double coordinate(std::string_view word, const std::string& which) const {
+  double real(std::string_view word, const std::string& which) const {
     if (word.starts_with('+')) word.remove_prefix(1);
     double value = 0.0;
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);

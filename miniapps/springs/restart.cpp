@@ -22,9 +22,13 @@ void visit(State& state, const Number& number, const Integer& integer) {
   number("dt_max", state.dt_max);
 }
 
-/// What is kept of the work of contact, under the names that history.csv has for it.
+/// What is kept of contact; its work under the names that history.csv has for it.
 constexpr std::pair<const char*, double fabric::ContactWork::*> work_parts[] = {
-    {"contact_work", &fabric::ContactWork::normal}, {"friction_work", &fabric::ContactWork::friction}};
+    {"contact_work", &fabric::ContactWork::normal},
+    {"friction_work", &fabric::ContactWork::friction},
+    {"contact_kick_x", &fabric::ContactWork::kick_x},
+    {"contact_kick_y", &fabric::ContactWork::kick_y},
+    {"contact_kick_z", &fabric::ContactWork::kick_z}};
 
 }  // namespace
 

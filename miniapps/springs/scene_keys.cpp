@@ -1,5 +1,7 @@
 #include "miniapps/springs/scene_keys.hpp"
 
+#include <algorithm>
+
 #include "common/scene/codec.hpp"
 #include "miniapps/springs/stress_fields.hpp"
 
@@ -35,6 +37,24 @@ Codec optional_vector_codec(std::vector<double>& value) {
   Codec codec = scene::reals_codec(value, 3, false);
   codec.type = "[real, real, real]";
   codec.print = [print = codec.print, &value] { return value.empty() ? std::nullopt : print(); };
+  return codec;
+}
+
+/// Some of x, y and z, in any order; kept in theirs.
+Codec axes_codec(std::string& axes) {
+  Codec codec = scene::choice_codec(axes, axes_choices);
+  codec.type += ", in any order";
+  codec.read = [read = codec.read, &axes](const scene::Node& node, const scene::Limits& limits) {
+    if (const auto* text = node.as<std::string>()) {
+      std::string sorted = *text;
+      std::ranges::sort(sorted);
+      if (std::ranges::any_of(axes_choices, [&](const auto& choice) { return choice.first == sorted; })) {
+        axes = sorted;
+        return std::string();
+      }
+    }
+    return read(node, limits);
+  };
   return codec;
 }
 
@@ -341,8 +361,7 @@ void declare_springs_scene(Table& root, SpringsScene& scene) {
             .value("where", scene::expression_codec(pin.where, of_place),
                    "The vertices that are held: those where this is not 0")
             .required();
-        table.value("axes", scene::choice_codec(pin.axes, axes_choices),
-                    "The axes along which they are held");
+        table.value("axes", axes_codec(pin.axes), "The axes along which they are held");
         table.table(
             "motion",
             [&](Table& t) {

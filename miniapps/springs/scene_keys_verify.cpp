@@ -54,8 +54,12 @@ void declare_verify(Table& table, Verify& verify) {
              [&value] {
                scene::Codec codec = scene::reals_codec(value.mode, 0, false);
                codec.type = "array of integers";
-               codec.print = [print = codec.print, &value] {
-                 return value.mode.empty() ? std::nullopt : print();
+               codec.print = [&value]() -> std::optional<std::string> {
+                 if (value.mode.empty()) return std::nullopt;
+                 std::string text;
+                 for (const double number : value.mode)
+                   text += (text.empty() ? "" : ", ") + scene::toml_text(static_cast<std::int64_t>(number));
+                 return "[" + text + "]";
                };
                return codec;
              }(),

@@ -134,30 +134,44 @@ void Simulation::replan_if_stiffer() {
   if (_solver->clock().dt > 1.02 * _scene.time.safety * stable_dt()) plan();
 }
 
-/// Steps that are too long double the motion again and again, and a run may end before a number overflows:
-/// then cloth moves farther in a step than the whole mesh reaches. What flies freely may do so too, but there
-/// is no step too long for it.
-void Simulation::require_stable() {
-  const double dt = _solver->clock().dt;
+/// Why the step that a scene asks for is too long, if it is. Steps beyond the stable ones double the motion
+/// again and again, and a run may end before a number overflows. The bound of the frequencies lies above the
+/// largest: where it would forbid the step the largest itself is looked for, and again where the bound has
+/// grown. Of dashpots no more than a bound is known: there cloth that moves farther in a step than the whole
+/// mesh reaches tells. What flies freely may do so too, but there is no step too long for it.
+std::string Simulation::too_long_step() {
+  const Time& asked = _scene.time;
+  const double dt = _solver->clock().dt, bound = _solver->fastest_frequency();
+  if (!asked.dt || dt <= fabric::stable_dt(asked.integrator, bound, _solver->fastest_decay())) return {};
+  std::ostringstream text;
+  text << "a step of " << dt << " s is too long: ";
+  if (bound > 1.01 * _asked_at) {
+    _asked_at = bound;
+    const double frequency = _solver->frequency_at_least();
+    // Forces whose differences tell it have round-off.
+    if (fabric::grows(asked.integrator, dt, (1.0 - 1e-5) * frequency, _scene.damping.absolute,
+                      _solver->fastest_decay())) {
+      text << "oscillations of the cloth at " << frequency << " rad/s grow in it at step "
+           << _solver->clock().step << ", t = " << time() << " s";
+      return text.str();
+    }
+  }
   const double way = std::sqrt(2.0 * _solver->totals().kinetic / _problem.mass) * dt;
   const auto extent = [&](std::size_t axis) {
     const auto [low, high] =
         std::ranges::minmax(_scene.mesh.rest, {}, [axis](const Vector& x) { return x[axis]; });
     return high[axis] - low[axis];
   };
-  if (!(way > std::hypot(extent(0), extent(1), extent(2))) || dt <= longest_stable_step()) return;
-  std::ostringstream text;
-  text << "a step of " << dt << " s is too long: cloth moves " << way
-       << " m in it on average, farther than the whole mesh reaches; take a shorter time.dt, or \"auto\"";
-  throw Failure(ExitCode::numerical_failure, text.str());
+  if (!(way > std::hypot(extent(0), extent(1), extent(2)))) return {};
+  text << "cloth moves " << way << " m in it on average, farther than the whole mesh reaches";
+  return text.str();
 }
 
 std::int64_t Simulation::steps_to_event() const {
   const std::int64_t step = _solver->clock().step;
   std::int64_t next = _stop_step;
-  for (const std::int64_t every :
-       {std::int64_t{_scene.output.history_every}, std::int64_t{_scene.output.restart_every},
-        _scene.time.dt ? 0 : bound_every(step)})
+  for (const std::int64_t every : {std::int64_t{_scene.output.history_every},
+                                   std::int64_t{_scene.output.restart_every}, bound_every(step)})
     if (every > 0) next = std::min(next, (step / every + 1) * every);
   return next - step;
 }
@@ -165,9 +179,12 @@ std::int64_t Simulation::steps_to_event() const {
 void Simulation::round_trip() {
   std::vector<Vector> x(_problem.x.size()), v(x.size());
   const auto begin = Clock::now();
+  std::vector<fabric::ContactWork> work(_scene.contact.asked_for() ? x.size() : 0);
   _solver->download(x, v);
+  if (!work.empty()) _solver->contact_work(work);
   const auto middle = Clock::now();
   _solver->upload(x, v);
+  if (!work.empty()) _solver->set_contact_work(work);
   _d2h_s += std::chrono::duration<double>(middle - begin).count();
   _h2d_s += seconds_since(middle);
 }
@@ -221,9 +238,12 @@ ExitCode Simulation::run(const run::RunDirectory& directory, run::ResultDocument
     run::ResultDocument& result;
     ~Describe() { simulation.describe(result); }
   } describe_at_end{*this, result};
-  while (_solver->clock().step < _stop_step && !interrupted()) {
+  std::string too_long = too_long_step();
+  while (too_long.empty() && _solver->clock().step < _stop_step && !interrupted()) {
     if (!advance(steps_to_event(), progress)) break;
     reach_event(output);
+    const std::int64_t step = _solver->clock().step;
+    if (step == _stop_step || step % bound_every(step) == 0) too_long = too_long_step();
   }
   progress.finish();
   const auto failure = _solver->failure();
@@ -232,7 +252,12 @@ ExitCode Simulation::run(const run::RunDirectory& directory, run::ResultDocument
   output.finish();
   _io_s = output.waited();
   if (failure) throw Failure(ExitCode::numerical_failure, failure_text(*failure));
-  if (done && _scene.time.dt) require_stable();
+  if (!too_long.empty()) {
+    too_long += "; take a shorter time.dt, or \"auto\"";
+    if (!done && _settings.can_be_continued)
+      too_long += "; restart.h5 holds the state of step " + std::to_string(_solver->clock().step);
+    throw Failure(ExitCode::numerical_failure, too_long);
+  }
   return done ? ExitCode::ok : ExitCode::interrupted;
 }
 

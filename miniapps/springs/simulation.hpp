@@ -50,7 +50,7 @@ class Simulation {
   void replan_if_stiffer();
   [[nodiscard]] double longest_stable_step();
   [[nodiscard]] double stable_dt();
-  void require_stable();
+  [[nodiscard]] std::string too_long_step();
   [[nodiscard]] double next_stop(double time) const;
   [[nodiscard]] bool is_output_time(double time) const;
   [[nodiscard]] std::int64_t steps_to_event() const;
@@ -73,6 +73,7 @@ class Simulation {
   std::int64_t _stop_step = 0;
   double _stop_time = 0.0;
   double _dt_min = 0.0, _dt_max = 0.0;
+  double _asked_at = 0.0;   ///< 1/s, the bound of frequencies when the largest was last looked for
   std::int64_t _piece = 1;  ///< steps asked for at once
   bool _warm = false;       ///< the first step allocates what all of them use
   double _setup_s = 0.0, _compute_s = 0.0, _h2d_s = 0.0, _d2h_s = 0.0, _io_s = 0.0;

@@ -70,6 +70,17 @@ def arguments(words: list[str]) -> argparse.Namespace:
     return options
 
 
+def _named_fields(wanted: str, present: list[str]) -> list[str]:
+    """The fields that --field names, each one that the run has."""
+    names = [name.strip() for name in wanted.split(",") if name.strip()]
+    for name in names:
+        if name not in present:
+            near = difflib.get_close_matches(name, present, 1)
+            hint = f"nearest is {near[0]}" if near else f"it has {', '.join(present) or 'none'}"
+            raise Failure(USAGE, f"The run has no field '{name}'; {hint}.")
+    return names
+
+
 def _chosen_fields(run, wanted: str) -> list[str]:
     import numpy as np
 
@@ -77,15 +88,7 @@ def _chosen_fields(run, wanted: str) -> list[str]:
     present = [name for name, item in run.snapshots[-1].fields.items() if item.values.shape == (size,)]
     usual = [name for name in ("rho", "u", "p") if name in present]
     ordered = usual + [name for name in present if name not in usual]
-    if not wanted:
-        return ordered
-    names = [name.strip() for name in wanted.split(",") if name.strip()]
-    for name in names:
-        if name not in ordered:
-            near = difflib.get_close_matches(name, ordered, 1)
-            hint = f"nearest is {near[0]}" if near else f"it has {', '.join(ordered)}"
-            raise Failure(USAGE, f"The run has no field '{name}'; {hint}.")
-    return names
+    return _named_fields(wanted, ordered) if wanted else ordered
 
 
 def _gas_pictures(run, options, out, save):
@@ -140,6 +143,8 @@ def draw(options: argparse.Namespace):
     # Before the first picture: a mistyped option must leave nothing behind.
     if options.norm is not None:
         check_norm(run, options.norm)
+    if options.field:
+        _named_fields(options.field, list(run.snapshots[-1].fields) if run.snapshots else [])
     evidence = evidence_records.read(options.directory)
     out = options.out or options.directory
 
@@ -168,9 +173,13 @@ def main(words: list[str] | None = None) -> int:
         if options.version:
             print(_version())
             return OK
+        drawn = 0
         for file in draw(options):
+            drawn += 1
             if not options.quiet:
                 print(file)
+        if drawn == 0:
+            raise Failure(USAGE, f"{options.directory} holds nothing to draw: no fields, and too short a history.")
     except Failure as failure:
         print(f"drogue-plot: {failure}", file=sys.stderr)
         return failure.code

@@ -171,7 +171,7 @@ BAD_LINES = [
 
 # Replaced line of the mesh, its new text, the line the error names, words the error holds.
 BAD_MESHES = [
-    (2, "v 0 0", 2, ["vertex 1 of the file has 2 coordinates"]),
+    (2, "v 0 0", 2, ["vertex 1 of the file has 2 numbers"]),
     (2, "v 0 0 O", 2, ["vertex 1", '"O"', "finite number"]),
     (3, "v 0 0 0", 3, ["vertex 2 of the file lies where vertex 1 does"]),
     (3, "v inf 0 0", 3, ["vertex 2", "finite number"]),

@@ -1,5 +1,7 @@
 """drogue-plot on a synthetic run of cloth and on one of a string."""
 
+import contextlib
+import io
 import shutil
 import tempfile
 import unittest
@@ -27,6 +29,7 @@ def write_run(folder, vertices, triangles, edges, moved, stress=None, directions
     with h5py.File(folder / "fields.h5", "w") as h5:
         for name, values in (("vertices", vertices), ("triangles", triangles), ("edges", edges)):
             h5[f"mesh/{name}"] = np.array(values).reshape(-1, 2 if name == "edges" else 3)
+        h5.create_group("steps")
         for k, positions in enumerate(moved):
             group = h5.create_group(f"steps/{k:06d}")
             group.attrs["time"] = 0.1 * k
@@ -64,6 +67,24 @@ class SpringsPictures(unittest.TestCase):
         self.assertGreater(view.across[1] @ [0, 0, 1], 0.5, "up is up")
         with Image.open(run / "fields.gif") as movie:
             self.assertEqual(2, movie.n_frames)
+
+    def refusal(self, run, *words):
+        with contextlib.redirect_stderr(io.StringIO()) as told:
+            self.assertEqual(2, cli.main([str(run), *words]))
+        self.assertEqual([], [file.name for file in run.iterdir() if file.suffix in (".png", ".gif")])
+        return told.getvalue()
+
+    def test_unknown_field(self):
+        run = write_run(self.folder / "run", SQUARE, TRIANGLES, EDGES, [SQUARE], [[1.0, 1.0]])
+        self.assertIn("no field 'von_mise'; nearest is von_mises", self.refusal(run, "--field", "von_mise"))
+        self.assertEqual(0, cli.main([str(run), "--quiet", "--field", "von_mises"]))
+
+    def test_a_run_that_failed_at_once(self):
+        run = write_run(self.folder / "run", SQUARE, TRIANGLES, EDGES, [])
+        history = run / "history.csv"
+        history.write_text("\n".join(history.read_text().splitlines()[:2]) + "\n")
+        self.assertIn("nothing to draw", self.refusal(run))
+        self.assertIn("no field 'position'; it has none", self.refusal(run, "--field", "position"))
 
     def test_flat_cloth_lies_in_its_plane(self):
         run = write_run(self.folder / "run", SQUARE, TRIANGLES, EDGES, [SQUARE, 1.5 * SQUARE])

@@ -24,6 +24,22 @@ class CommandLine(springs_program.SpringsTest):
             self.assertRegex(line, r"^\S+  +\S.*\.( \[gpu\])?$")
         self.assertEqual([], list(self.folder.iterdir()))
 
+    def test_only_the_first_rank_prints(self):
+        """What needs no solver is answered by one of many ranks; what does is refused by all."""
+        of_rank = {"OMPI_COMM_WORLD_SIZE": "2"}
+        programs = {name: gas_program.BIN / name for name in ("drogue-springs", "drogue-gas", "drogue-options", "drogue-perf")}
+        for name, program in programs.items():
+            words = [["--version"], ["--help"], *({"drogue-options": [], "drogue-perf": [["list"]]}.get(name, [["--list-scenes"]]))]
+            for line in words:
+                for rank in (0, 1):
+                    with self.subTest(name, line=line, rank=rank):
+                        done = gas_program.run(*line, program=program, environment={**of_rank, "OMPI_COMM_WORLD_RANK": str(rank)})
+                        self.assertEqual((0, rank == 0, ""), (done.returncode, done.stdout != "", done.stderr))
+        for name, line in (("drogue-springs", ["drum"]), ("drogue-perf", ["run", "--filter", "nothing"])):
+            done = gas_program.run(*line, program=programs[name], environment={**of_rank, "OMPI_COMM_WORLD_RANK": "0"})
+            self.assertEqual(2, done.returncode)
+            self.assertIn("one rank", done.stderr)
+
     def test_printed_scenes_resolve_to_themselves(self):
         for scene in springs_program.SCENES:
             with self.subTest(scene):
@@ -60,6 +76,7 @@ class RunDirectory(springs_program.SpringsTest):
         self.assertEqual(("drogue.result/1", "drogue-springs", "ok", 0, 0.3),
                          tuple(told[key] for key in ("schema", "program", "status", "exit_code", "time")))
         self.assertLess(told["dt_max"] / told["dt_min"], 1.1)
+        self.assertEqual((0, 0), (told["limiter"]["touches"], told["limiter"]["cells"]))
         file = self.fields("out")
         vertices, triangles = 61, 96
         for path, count in (("/mesh/vertices", 3 * vertices), ("/mesh/triangles", 3 * triangles),
@@ -88,6 +105,9 @@ class RunDirectory(springs_program.SpringsTest):
         self.assertAlmostEqual(0.01, rows["probe_0_z"][0])
         spread = max(rows["energy"]) - min(rows["energy"])
         self.assertLess(spread, 1e-3 * max(rows["kinetic"]))
+        # However many rows there are, memory for them is asked for once.
+        self.assertGreater(len(rows["time"]), 20)
+        self.assertEqual(0, self.result("out")["ledger"]["device_allocations_after_warmup"])
 
     def test_a_run_is_not_replaced_unasked(self):
         scene = self.write(DRUM)
@@ -188,6 +208,13 @@ load = [{ gravity = [0, 0, -9.81] }]
 time.end_time = 0.05
 """
 
+PAIR = """app = "springs"
+mesh.string = { from = [0, 0, 0], to = [1, 0, 0], vertices = 2 }
+material = { axial_stiffness = 100.0, line_density = 2.0 }
+initial.velocity.x = "0.0001*(2*x-1)"
+time.end_time = 1.0
+"""
+
 BUNGEE = """app = "springs"
 mesh.string = { from = [0, 0, 0], to = [0, 0, -1], vertices = 11 }
 material = { axial_stiffness = 50.0, line_density = 0.01 }
@@ -213,19 +240,52 @@ class Failures(springs_program.SpringsTest):
         scene = self.write('app = "springs"\n[mesh]\nfile = "m.obj"\n[contact]\nself = true\n[time]\nend_time = 1\n')
         self.assertRegex(self.expect(3, scene, "--check").stderr, "the edge of vertices [34] and 5 meets face 0")
 
-    def test_a_step_that_is_too_long(self):
-        message = self.expect(4, self.write(DRUM), "--quiet", "--out", "out", sets=["time.dt=0.01", "time.end_time=10"]).stderr
-        self.assertRegex(message, r"not finite at vertex \d+ \(at rest at .* m\) at step \d+, t = .* s")
+    def test_a_state_that_is_lost(self):
+        message = self.expect(4, self.write(DRUM), "--quiet", "--out", "out", sets=['load=[{force={z="sqrt(0.05-t)"}}]']).stderr
+        self.assertRegex(message, r"not finite at vertex \d+ \(at rest at .* m\) at step \d+, t = 0\.05.* s")
         self.assertIn("restart.h5 holds the last good state", message)
         told = self.result("out")
         self.assertEqual(("numerical-failure", 4), (told["status"], told["exit_code"]))
         self.assertIn(told["message"], message)
         self.assertTrue((self.folder / "out/restart.h5").exists())
 
-    def test_a_step_that_is_too_long_for_a_few_steps(self):
-        """The run is over before a number overflows."""
-        message = self.expect(4, self.write(SHEET), "--quiet", "--out", "out", sets=["time.dt=0.01", "time.end_time=0.05"]).stderr
-        self.assertRegex(message, r"a step of 0\.01 s is too long: cloth moves .* m in it on average, farther than the whole mesh reaches")
+    def test_a_step_that_is_too_long(self):
+        """Two masses of 1 kg on a spring swing with omega^2 = 200/s^2. In few steps no number overflows."""
+        for integrator, limit in (("rk4", 8**0.5), ("verlet", 2.0)):
+            for share, code in ((1.02, 4), (0.999, 0)):
+                with self.subTest(integrator, share=share):
+                    dt = share * limit / 200**0.5
+                    message = self.expect(code, self.write(PAIR), "--quiet", "--overwrite", "--out", "out", sets=[
+                        f'time.integrator="{integrator}"', f"time.dt={dt!r}", f"time.end_time={20 * dt!r}"]).stderr
+                    if code == 0:
+                        continue
+                    self.assertRegex(message, rf"a step of {dt:.6g} s is too long: oscillations of the cloth at 14\.1421 rad/s grow in it at step 0, t = 0 s")
+                    self.assertIn("restart.h5 holds the state of step 0", message)
+                    self.assertTrue((self.folder / "out/restart.h5").exists())
+
+    def test_a_step_that_is_too_long_for_a_mesh(self):
+        """The step that a bound of the frequencies allows is below the longest stable one, and is not refused."""
+        sets = ['time.integrator="verlet"', "time.end_time=0.01", "output.times=[0.01]"]
+        self.expect(0, self.write(DRUM), "--quiet", "--out", "auto", sets=[*sets, "time.safety=1.0"])
+        dt = self.result("auto")["dt_max"]
+        for share, code in ((1.0, 0), (1.5, 4)):
+            self.expect(code, self.write(DRUM), "--quiet", "--out", f"{code}", sets=[*sets, f"time.dt={share * dt!r}"])
+
+    def test_a_step_that_becomes_too_long(self):
+        """A sheet that flies apart grows stiffer."""
+        scene = self.write(SHEET.replace('pin = [{ where = "x==0" }]\n', 'initial.velocity = { x = "100*x", y = "100*y" }\n'))
+        self.expect(0, scene, "--quiet", "--out", "auto", sets=["time.safety=1.0"])
+        dt = self.result("auto")["dt_max"]
+        self.expect(4, scene, "--quiet", "--out", "out", sets=[f"time.dt={dt!r}"])
+        told = self.result("out")
+        self.assertRegex(told["message"], f"grow in it at step {told['steps']}, t = ")
+        self.assertGreater(told["steps"], 0)
+
+    def test_damping_that_is_too_fast_for_a_step(self):
+        """It doubles what it should slow."""
+        message = self.expect(4, self.write(SHEET), "--quiet", "--out", "out", sets=[
+            "time.dt=1e-4", "damping.absolute=5e4", "time.end_time=0.002"]).stderr
+        self.assertRegex(message, r"a step of 0\.0001 s is too long: cloth moves .* m in it on average, farther than the whole mesh reaches")
 
     def test_what_flies_fast_is_not_too_long_a_step(self):
         """Cloth that flies farther in a stable step than it reaches."""
@@ -342,6 +402,20 @@ class Failures(springs_program.SpringsTest):
                 "time.end_time=0.3", f"output={{history_every={every}}}", "verify={energy_balance=2e-2}"])
             values.append(self.result("out")["errors"]["energy_balance"])
         self.assertLess(values[1], 1.01 * values[0])
+
+    def test_what_friction_holds_stays(self):
+        """Cloth on a plane, gravity leaning by 20 degrees, of which tan 27 degrees of friction holds all."""
+        for integrator in ("rk4", "verlet"):
+            with self.subTest(integrator):
+                self.expect(0, self.write(springs_program.FALLING), "--quiet", "--backend", "serial", "--overwrite", "--out", "out", sets=[
+                    f'time.integrator="{integrator}"', "mesh.rectangle.vertices=36", 'initial.displacement.z="0.003"',
+                    "load=[{gravity=[3.3552,0,-9.2184]}]", "verify={}", "time.end_time=0.5", "output.times=[0.5]",
+                    'contact={thickness=0.003,objects=[{kind="plane",centre=[0,0,0],friction=0.5}]}'])
+                file = self.fields("out")
+                rest, now = file.values("/mesh/vertices")[::3], file.values("/steps/000000/position")[::3]
+                # Half of a kick a step would be 0.4 mm.
+                self.assertLess(max(abs(a - b) for a, b in zip(rest, now)), 5e-6)
+                self.assertLess(abs(self.result("out")["energy"]["friction_work"]), 1e-7)
 
     def test_work_of_friction_is_part_of_the_balance(self):
         scene = self.write(springs_program.FALLING)

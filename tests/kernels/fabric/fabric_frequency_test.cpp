@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 #include <string>
 
 #include "kernels/fabric/mass.hpp"
@@ -35,6 +36,13 @@ double bound_of(const Parameters& p, const std::vector<Vector>& now) {
   return solver->fastest_frequency();
 }
 
+/// What is found from below.
+double found_of(const Parameters& p, const std::vector<Vector>& now) {
+  const auto solver = create_solver(backend, p);
+  solver->upload(now, std::vector<Vector>(now.size(), Vector{}));
+  return solver->frequency_at_least();
+}
+
 double truth_of(const Parameters& p, const std::vector<Vector>& now) {
   return reference::largest_frequency(p.material, p.mesh, p.mass, p.pinned, now);
 }
@@ -45,7 +53,9 @@ std::vector<Vector> stretched(std::vector<Vector> points, double x, double y) {
 }
 
 void expect_tight(const Parameters& p, const std::vector<Vector>& now, const char* what) {
-  const double truth = truth_of(p, now), bound = bound_of(p, now);
+  const double truth = truth_of(p, now), bound = bound_of(p, now), found = found_of(p, now);
+  EXPECT_GE(found, truth * (1.0 - 1e-3)) << what << ", model " << static_cast<int>(p.material.model);
+  EXPECT_LE(found, bound * (1.0 + 1e-6)) << what << ", model " << static_cast<int>(p.material.model);
   EXPECT_GE(bound, truth * (1.0 - 1e-6)) << what << ", model " << static_cast<int>(p.material.model);
   EXPECT_LE(bound, 2.0 * truth) << what << ", model " << static_cast<int>(p.material.model);
   ::testing::Test::RecordProperty(
@@ -91,12 +101,15 @@ TEST(FabricFrequency, OfAChainIsExactUpToItsEnds) {
   const double exact = 2.0 * std::sqrt(500.0 / 0.02);
   EXPECT_GE(bound_of(p, p.mesh.rest), exact * (1.0 - 1e-12));
   EXPECT_LE(bound_of(p, p.mesh.rest), 1.01 * exact);
+  // Of 41 masses and free ends the fastest of the modes.
+  EXPECT_NEAR(found_of(p, p.mesh.rest), exact * std::sin(std::numbers::pi * 40.0 / 82.0), 1e-5 * exact);
 }
 
 TEST(FabricFrequency, WhollyPinnedClothHasNone) {
   Parameters p = cloth(Model::biquadratic);
   p.pinned.assign(p.mass.size(), 7);
   EXPECT_EQ(bound_of(p, p.mesh.rest), 0.0);
+  EXPECT_EQ(found_of(p, p.mesh.rest), 0.0);
 }
 
 TEST(FabricFrequency, TensionAcrossAStringIsSeen) {
@@ -161,6 +174,29 @@ TEST(FabricFrequency, StepsOfTheBoundHoldAndThoseBeyondTheTruthBlowUp) {
       EXPECT_LT(growth(p, 0.98 * limit / truth), 50.0) << static_cast<int>(model);
       EXPECT_GT(growth(p, 1.02 * limit / truth), 1e4) << static_cast<int>(model);
     }
+}
+
+TEST(FabricFrequency, StepsThatAreToldToGrowDo) {
+  for (const Integrator integrator : {Integrator::rk4, Integrator::verlet})
+    for (const auto& [absolute, relative] : {std::pair{0.0, 0.0}, {30.0, 0.0}, {0.0, 2.0}, {30.0, 2.0}}) {
+      Parameters p = cloth(Model::biquadratic);
+      p.integrator = integrator;
+      p.damping = absolute, p.relative_damping = relative;
+      const auto solver = create_solver(backend, p);
+      solver->upload(p.mesh.rest, std::vector<Vector>(p.mass.size(), Vector{}));
+      const double frequency = solver->frequency_at_least(), decay = solver->fastest_decay();
+      const double stable = stable_dt(integrator, solver->fastest_frequency(), decay);
+      EXPECT_FALSE(grows(integrator, stable, frequency, absolute, decay));
+      double dt = stable;
+      while (dt < 4.0 * stable && !grows(integrator, dt, frequency, absolute, decay)) dt *= 1.002;
+      EXPECT_LT(dt, 3.0 * stable) << absolute << ' ' << relative;
+      EXPECT_GT(growth(p, 1.01 * dt), 1e4) << absolute << ' ' << relative;
+    }
+  // A step of an oscillation without damping is told to the bit.
+  EXPECT_FALSE(grows(Integrator::rk4, 2.8284, 1.0, 0.0, 0.0));
+  EXPECT_TRUE(grows(Integrator::rk4, 2.8285, 1.0, 0.0, 0.0));
+  EXPECT_FALSE(grows(Integrator::verlet, 2.0, 1.0, 0.0, 0.0));
+  EXPECT_TRUE(grows(Integrator::verlet, 2.0001, 1.0, 0.0, 0.0));
 }
 
 TEST(FabricFrequency, GrowsWithStrain) {

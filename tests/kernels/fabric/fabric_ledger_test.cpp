@@ -65,6 +65,24 @@ TEST(FabricLedger, StepsAreTheirKernelsAlone) {
   EXPECT_EQ(launches_of(patch(Integrator::verlet)), 1024 + 4 + 4);
 }
 
+TEST(FabricLedger, AskingAgainAllocatesNothing) {
+  testing::Sheets s = testing::folded(3.0);
+  s.p.follower_pressures = {{testing::postfix({1.0}), {}}};
+  const auto solver = create_solver(backend, s.p);
+  solver->upload(s.x, s.v);
+  std::vector<ContactWork> work(s.x.size());
+  const auto ask = [&] {
+    EXPECT_TRUE(solver->advance(2));
+    EXPECT_GT(solver->totals().kinetic, 0.0);
+    EXPECT_GT(solver->fastest_frequency(), 0.0);
+    solver->download(s.x, s.v);
+    solver->contact_work(work);
+    return counted().allocations;
+  };
+  const std::int64_t before = ask();
+  EXPECT_EQ(ask(), before);
+}
+
 TEST(FabricLedger, AVertexNeedsLittleMemory) {
   counted();
   const auto bytes_of = [](int rows) {

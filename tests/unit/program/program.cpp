@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <CLI/Error.hpp>
+#include <cstdio>
 #include <cstdlib>
+#include <iostream>
 #include <new>
 #include <stdexcept>
 
@@ -68,10 +70,21 @@ TEST(RunProgram, OnlyRankZeroSpeaks) {
   setenv("OMPI_COMM_WORLD_RANK", "1", 1);
   setenv("OMPI_COMM_WORLD_SIZE", "2", 1);
   const Outcome outcome = run([]() -> ExitCode { throw Failure(ExitCode::usage, "too many ranks"); });
+  ::testing::internal::CaptureStdout();
+  std::puts("before");
+  const Outcome printed = run([] {
+    std::puts("a scene");
+    std::cout << "another\n";
+    return ExitCode::ok;
+  });
+  std::puts("after");
+  std::fflush(stdout);
   unsetenv("OMPI_COMM_WORLD_RANK");
   unsetenv("OMPI_COMM_WORLD_SIZE");
   EXPECT_EQ(outcome.code, 2);
   EXPECT_EQ(outcome.error, "");
+  EXPECT_EQ(printed.code, 0);
+  EXPECT_EQ(::testing::internal::GetCapturedStdout(), "before\nafter\n");
 }
 
 TEST(CurrentFailure, KeepsCodeAndWords) {

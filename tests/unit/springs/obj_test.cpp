@@ -42,12 +42,19 @@ TEST(ObjFile, ReadsWindowsLinesAndNumbersOfAllForms) {
   EXPECT_EQ(contents.mesh.triangles[0], (std::array{0, 1, 2}));
 }
 
+TEST(ObjFile, TakesAWeightOfOneAndColours) {
+  const ObjContents contents = read_mesh("v 1 0 0 1.0\nv 0 1 0 0.5 0.25 1\nv 0 0 1\nf 1 2 3\n");
+  EXPECT_EQ(contents.mesh.rest, (std::vector<fabric::Vector>{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}));
+}
+
 TEST(ObjFile, NamesFileLineAndPart) {
   const std::string three = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
   const std::vector<std::array<std::string, 3>> cases = {
       {"", "m.obj:1: ", "no vertex"},
-      {"v 0 0\n", "m.obj:1: ", "vertex 1 of the file has 2 coordinates"},
-      {"v 0 0 0 0\n", "m.obj:1: ", "vertex 1 of the file has 4 coordinates"},
+      {"v 0 0\n", "m.obj:1: ", "vertex 1 of the file has 2 numbers"},
+      {"v 0 0 0 0 0\n", "m.obj:1: ", "vertex 1 of the file has 5 numbers"},
+      {"v 0 0 0 0.5\n", "m.obj:1: ", "vertex 1 of the file has the weight 0.5"},
+      {"v 0 0 0 1 1 red\n", "m.obj:1: ", "\"red\" is not a finite number"},
       {"v 0 0 zero\n", "m.obj:1: ", "\"zero\" is not a finite number"},
       {"v 0 0 nan\n", "m.obj:1: ", "not a finite number"},
       {three + "f 1 2\n", "m.obj:4: ", "face 1 of the file has 2 vertices"},

@@ -94,6 +94,10 @@ TEST(SpringsScene, PrintsNoKeyThatDoesNotApply) {
     EXPECT_TRUE(holds(cloth, key)) << key << cloth;
   for (const char* key : {"\nstiffness", "line_density", "prestretch = 1", "times", "[verify]"})
     EXPECT_FALSE(holds(cloth, key)) << key << cloth;
+  EXPECT_FALSE(holds(cloth, "contact")) << cloth;
+  EXPECT_TRUE(holds(print_springs_scene(read_text(least, {"contact.self=true"})), "self = true"));
+  const std::string met = "contact.objects=[{kind=\"sphere\",centre=[0,0,-9],radius=1}]";
+  EXPECT_TRUE(holds(print_springs_scene(read_text(least, {met})), "self = false"));
   const std::string edges = print_springs_scene(read_text(least, {"material.model=edge"}));
   EXPECT_TRUE(holds(edges, "\nstiffness = 1000.0"));
   EXPECT_FALSE(holds(edges, "membrane_modulus"));
@@ -103,6 +107,35 @@ TEST(SpringsScene, PrintsNoKeyThatDoesNotApply) {
   const std::string fixed = print_springs_scene(read_text(least, {"time.dt=1e-4"}));
   EXPECT_TRUE(holds(fixed, "dt = 1e-04"));
   EXPECT_FALSE(holds(fixed, "safety"));
+}
+
+TEST(SpringsScene, PressureNeedsOneSide) {
+  const std::string square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\n";
+  // Three squares in a ring, the last turned over: a strip with one side.
+  const std::string moebius =
+      "v 1 0 -.2\nv 1 0 .2\nv -.5 .9 -.2\nv -.5 .9 .2\nv -.5 -.9 -.2\nv -.5 -.9 .2\n"
+      "f 1 3 2\nf 2 3 4\nf 3 5 4\nf 4 5 6\nf 5 2 6\nf 6 2 1\n";
+  for (const std::string load : {"pressure=\"1\"", "follower_pressure=\"t\""}) {
+    const std::vector<std::string> sets = {"load=[{" + load + "}]"};
+    EXPECT_EQ(error_of(sets, with_file, square + "f 1 3 4\n"), "");
+    EXPECT_TRUE(holds(error_of(sets, with_file, square + "f 1 4 3\n"), "faces 0 and 1 of the mesh turn"));
+    EXPECT_TRUE(holds(error_of(sets, with_file, moebius), "turn in opposite senses"));
+  }
+  EXPECT_EQ(error_of({}, with_file, moebius), "");
+}
+
+TEST(SpringsScene, AxesOfPinsHaveAnyOrder) {
+  const auto axes = [](const std::string& text) {
+    return read_text(least, {"pin=[{where=\"1\",axes=\"" + text + "\"}]"}).pins.at(0).axes;
+  };
+  EXPECT_EQ(axes("zyx"), "xyz");
+  EXPECT_EQ(axes("zx"), "xz");
+  EXPECT_TRUE(holds(error_of({"pin=[{where=\"1\",axes=\"xx\"}]"}), "\"xx\""));
+}
+
+TEST(SpringsScene, IntegersArePrintedAsSuch) {
+  const SpringsScene drum = read_springs_scene(shipped / "drum.toml");
+  EXPECT_TRUE(holds(print_springs_scene(drum), "mode = [0, 1]")) << print_springs_scene(drum);
 }
 
 TEST(SpringsScene, FilesAreRelativeToTheScene) {

@@ -54,6 +54,11 @@ TEST(SpringsStudy, PointsAreTheProductAndEachMeshOnce) {
   }
 }
 
+TEST(SpringsStudy, TwoMeshesGoUp) {
+  EXPECT_EQ(study_points(scenes / "drum-cone.toml", {}, "meshes=61:217").size(), 3U);
+  EXPECT_NE(refusal("drum-cone", "meshes=217:61").find("meshes=61:217"), std::string::npos);
+}
+
 TEST(SpringsStudy, SpringsAlongEdgesAreTheMembraneOfEquilateralTriangles) {
   const auto from_membrane =
       study_points(scenes / "drum-cone.toml", {}, "models=edge:quadratic,masses=equal");
