@@ -79,8 +79,8 @@ void expect_covered(const std::vector<Price>& prices, const std::vector<Price>& 
 TEST(OptionsError, AnHourToAWeek) {
   std::vector<Contract> contracts;
   for (const auto& law : laws)
-    for (const double hours : {1.0, 4.0, 24.0, 72.0, 168.0})
-      for (const double spot : {0.99, 1.0, 1.003, 1.02})
+    for (const double hours : {1.0, 24.0, 168.0})
+      for (const double spot : {1.0, 1.003, 1.02})
         for (const double variance : {0.01, 0.04})
           contracts.push_back(put(Style::european, spot, hours / 8760.0, variance, law));
   const std::vector<Price> known = by_fourier(contracts);
