@@ -2,20 +2,18 @@
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <numeric>
 #include <stdexcept>
 #include <thread>
 
+#include "kernels/options/clock.hpp"
 #include "kernels/options/cos_american.hpp"
 #include "kernels/options/cos_european.hpp"
 
 namespace drogue::options {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 /// Calls `work(i)` for i in [0, count) by so many threads.
 template <class Work>
@@ -75,7 +73,7 @@ class CosPricer final : public Pricer {
   Timing price(std::span<const Contract> contracts, std::span<Price> prices) override {
     if (contracts.size() != prices.size())
       throw std::invalid_argument("cos: as many prices as contracts are needed");
-    const auto begin = Clock::now();
+    const Clock pricing;
     std::vector<std::size_t> american;
     for (std::size_t i = 0; i < contracts.size(); ++i)
       if (contracts[i].style == Style::american && !AmericanPut(contracts[i]).never_exercised())
@@ -90,7 +88,7 @@ class CosPricer final : public Pricer {
     }
     for (std::size_t i = 0; i < contracts.size(); ++i) finish(contracts[i], prices[i]);
     Timing timing;
-    timing.compute = std::chrono::duration<double>(Clock::now() - begin).count();
+    timing.compute = pricing.seconds();
     return timing;
   }
 
