@@ -79,7 +79,9 @@ TEST(CsvFields, TellsWhatIsWrong) {
 TEST(CsvFields, AreShownShortAndOnOneLine) {
   EXPECT_EQ(shown("a b"), "\"a b\"");
   EXPECT_EQ(shown(std::string_view("a\n\0\x7f", 4)), "\"a???\"");
-  EXPECT_EQ(shown(std::string(41, 'x')), '"' + std::string(40, 'x') + "...\"");
+  std::string cut(1, '"');
+  cut.append(40, 'x').append("...\"");
+  EXPECT_EQ(shown(std::string(41, 'x')), cut);
 }
 
 TEST(CsvFields, KeepsThoseBeforeTheOneThatIsWrong) {
