@@ -110,15 +110,15 @@ TEST(SpringsScene, PrintsNoKeyThatDoesNotApply) {
 }
 
 TEST(SpringsScene, PressureNeedsOneSide) {
-  const std::string square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\n";
+  const std::string half = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\n";
   // Three squares in a ring, the last turned over: a strip with one side.
   const std::string moebius =
       "v 1 0 -.2\nv 1 0 .2\nv -.5 .9 -.2\nv -.5 .9 .2\nv -.5 -.9 -.2\nv -.5 -.9 .2\n"
       "f 1 3 2\nf 2 3 4\nf 3 5 4\nf 4 5 6\nf 5 2 6\nf 6 2 1\n";
   for (const std::string load : {"pressure=\"1\"", "follower_pressure=\"t\""}) {
     const std::vector<std::string> sets = {"load=[{" + load + "}]"};
-    EXPECT_EQ(error_of(sets, with_file, square + "f 1 3 4\n"), "");
-    EXPECT_TRUE(holds(error_of(sets, with_file, square + "f 1 4 3\n"), "faces 0 and 1 of the mesh turn"));
+    EXPECT_EQ(error_of(sets, with_file, half + "f 1 3 4\n"), "");
+    EXPECT_TRUE(holds(error_of(sets, with_file, half + "f 1 4 3\n"), "faces 0 and 1 of the mesh turn"));
     EXPECT_TRUE(holds(error_of(sets, with_file, moebius), "turn in opposite senses"));
   }
   EXPECT_EQ(error_of({}, with_file, moebius), "");
