@@ -299,11 +299,12 @@ class Files(options_program.OptionsTest):
         self.assertTrue((self.folder / "out").is_symlink())
 
     def test_a_pipe_whose_reader_leaves(self):
-        file = self.write(batch([row("a")]))
+        """The prices do not fit into the pipe, so the program cannot have ended before."""
+        file = self.write(batch([row(f"a{k:0100}") for k in range(2000)]))
         os.mkfifo(self.folder / "pipe")
         reader = os.open(self.folder / "pipe", os.O_RDONLY | os.O_NONBLOCK)
-        process = subprocess.Popen([options_program.PROGRAM, "price", file, "--quiet", "--out", "pipe", "--mesh", "512", "--steps",
-                                    "512"], cwd=self.folder, stderr=subprocess.PIPE, text=True, env=gas_program.ENVIRONMENT)
+        process = subprocess.Popen([options_program.PROGRAM, "price", file, "--quiet", "--out", "pipe", *FAST],
+                                   cwd=self.folder, stderr=subprocess.PIPE, text=True, env=gas_program.ENVIRONMENT)
         self.addCleanup(process.kill)
         for _ in range(200):
             if any(name.resolve() == (self.folder / "pipe").resolve() for name in Path(f"/proc/{process.pid}/fd").iterdir()):
