@@ -5,14 +5,12 @@
 #include <cmath>
 
 #include "kernels/options/pricer.hpp"
-#include "tests/support/backend.hpp"
+#include "tests/support/priced.hpp"
 
 // Spots at and beyond the ends of the grid.
 
 namespace drogue::options {
 namespace {
-
-constexpr const auto& backend = testing::tested_backend;
 
 Contract plain_put(double spot, double rate, double dividend, double maturity, double variance) {
   return {.model = Model::black_scholes,
@@ -24,13 +22,9 @@ Contract plain_put(double spot, double rate, double dividend, double maturity, d
 }
 
 std::vector<Price> on_mesh(int mesh, bool surface, const std::vector<Contract>& contracts) {
-  Settings settings;
-  settings.mesh = mesh;
-  settings.steps = mesh / 4;
+  Settings settings = testing::on_mesh(mesh, mesh / 4);
   settings.surface = surface;
-  std::vector<Price> prices(contracts.size());
-  create_pricer(backend, settings)->price(contracts, prices);
-  return prices;
+  return testing::priced(settings, contracts);
 }
 
 struct DeepPut {
@@ -87,10 +81,7 @@ TEST(OptionsDeep, AmericansAreWorthNoLessThanEuropeans) {
           c.style = Style::european;
           late.push_back(c);
         }
-  Settings settings;
-  settings.method = Method::cos;
-  std::vector<Price> european(late.size());
-  create_pricer(backend, settings)->price(late, european);
+  const std::vector<Price> european = testing::priced_by_fourier(late);
   const std::vector<Price> american = on_mesh(64, false, early);
   for (std::size_t k = 0; k < early.size(); ++k)
     EXPECT_GE(american[k].price, european[k].price - american[k].error)

@@ -6,37 +6,20 @@
 #include <cstdio>
 
 #include "kernels/options/pricer.hpp"
-#include "tests/support/backend.hpp"
+#include "tests/support/priced.hpp"
 
 // Stated errors where two grids tell less of them than elsewhere.
 
 namespace drogue::options {
 namespace {
 
-constexpr const auto& backend = testing::tested_backend;
-
-std::vector<Price> priced(const Settings& settings, const std::vector<Contract>& contracts) {
-  std::vector<Price> prices(contracts.size());
-  create_pricer(backend, settings)->price(contracts, prices);
-  return prices;
-}
-
-std::vector<Price> priced(int mesh, int steps, const std::vector<Contract>& contracts) {
-  Settings settings;
-  settings.mesh = mesh;
-  settings.steps = steps;
-  return priced(settings, contracts);
-}
+using testing::on_mesh;
+using testing::priced;
+using testing::priced_by_fourier;
 
 std::vector<Price> priced_to(double tolerance, const std::vector<Contract>& contracts) {
   Settings settings;
   settings.tolerance = tolerance;
-  return priced(settings, contracts);
-}
-
-std::vector<Price> by_fourier(const std::vector<Contract>& contracts) {
-  Settings settings;
-  settings.method = Method::cos;
   return priced(settings, contracts);
 }
 
@@ -83,8 +66,8 @@ TEST(OptionsError, AnHourToAWeek) {
       for (const double spot : {1.0, 1.003, 1.02})
         for (const double variance : {0.01, 0.04})
           contracts.push_back(put(Style::european, spot, hours / 8760.0, variance, law));
-  const std::vector<Price> known = by_fourier(contracts);
-  expect_covered(priced(256, 64, contracts), known, "256 intervals");
+  const std::vector<Price> known = priced_by_fourier(contracts);
+  expect_covered(priced(on_mesh(256, 64), contracts), known, "256 intervals");
   expect_covered(priced_to(1e-5, contracts), known, "tolerance 1e-5");
 }
 
@@ -94,13 +77,14 @@ TEST(OptionsError, BesideTheBoundaryOfExercise) {
   for (const auto& law : laws)
     for (const double maturity : {0.25, 2.0}) {
       const Contract at_the_money = put(Style::american, 1.0, maturity, 0.04, law);
-      const double boundary = priced(256, 64, {at_the_money}).front().exercise_boundary;
+      const double boundary = priced(on_mesh(256, 64), {at_the_money}).front().exercise_boundary;
       for (const double above : {0.001, 0.004, 0.01, 0.02, 0.05})
         contracts.push_back(put(Style::american, boundary * (1.0 + above), maturity, 0.04, law));
     }
-  const std::vector<Price> known = priced(1024, 512, contracts);
+  const std::vector<Price> known = priced(on_mesh(1024, 512), contracts);
   for (const int mesh : {128, 256})
-    expect_covered(priced(mesh, mesh / 4, contracts), known, mesh == 128 ? "128 intervals" : "256 intervals");
+    expect_covered(priced(on_mesh(mesh, mesh / 4), contracts), known,
+                   mesh == 128 ? "128 intervals" : "256 intervals");
 }
 
 // A jump that is the same every time falls between nodes. It is shared by them so that its mean stays.
@@ -112,9 +96,9 @@ TEST(OptionsError, JumpsThatAreAlike) {
         contracts.push_back(put(Style::european, spot, 1.0, 0.02, {0.4, jump, deviation, 0.0}));
         contracts.back().model = Model::merton;
       }
-  const std::vector<Price> known = by_fourier(contracts);
+  const std::vector<Price> known = priced_by_fourier(contracts);
   const auto largest = [&](int mesh) {
-    const std::vector<Price> prices = priced(mesh, mesh, contracts);
+    const std::vector<Price> prices = priced(on_mesh(mesh, mesh), contracts);
     double error = 0.0;
     for (std::size_t k = 0; k < prices.size(); ++k)
       error = std::max(error, std::abs(prices[k].price - known[k].price));

@@ -7,31 +7,20 @@
 #include <stdexcept>
 
 #include "kernels/options/pricer.hpp"
-#include "tests/support/backend.hpp"
 #include "tests/support/option_sets.hpp"
+#include "tests/support/priced.hpp"
 
 // What holds for every price, whatever it is.
 
 namespace drogue::options {
 namespace {
 
+using testing::on_mesh;
 using testing::option_sets;
+using testing::priced;
 using testing::random_contracts;
 
 constexpr const auto& backend = testing::tested_backend;
-
-Settings on_mesh(int mesh, int steps) {
-  Settings settings;
-  settings.mesh = mesh;
-  settings.steps = steps;
-  return settings;
-}
-
-std::vector<Price> priced(const Settings& settings, const std::vector<Contract>& contracts) {
-  std::vector<Price> prices(contracts.size());
-  create_pricer(backend, settings)->price(contracts, prices);
-  return prices;
-}
 
 double payoff(const Contract& c) {
   return std::max(0.0, c.type == Type::put ? c.strike - c.spot : c.spot - c.strike);

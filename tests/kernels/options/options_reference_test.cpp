@@ -6,8 +6,8 @@
 #include <cstdio>
 
 #include "kernels/options/pricer.hpp"
-#include "tests/support/backend.hpp"
 #include "tests/support/option_sets.hpp"
+#include "tests/support/priced.hpp"
 
 // Prices against known ones, and stated errors against true ones.
 
@@ -17,14 +17,7 @@ namespace {
 using testing::contract_of;
 using testing::option_sets;
 using testing::OptionSet;
-
-constexpr const auto& backend = testing::tested_backend;
-
-std::vector<Price> priced(const Settings& settings, const std::vector<Contract>& contracts) {
-  std::vector<Price> prices(contracts.size());
-  create_pricer(backend, settings)->price(contracts, prices);
-  return prices;
-}
+using testing::priced;
 
 struct Known {
   std::vector<Contract> contracts;

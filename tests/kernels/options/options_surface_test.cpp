@@ -7,8 +7,8 @@
 #include <stdexcept>
 
 #include "kernels/options/pricer.hpp"
-#include "tests/support/backend.hpp"
 #include "tests/support/option_sets.hpp"
+#include "tests/support/priced.hpp"
 
 // Strikes that share a solve, against known prices and against those of solves of their own.
 
@@ -18,17 +18,9 @@ namespace {
 constexpr const auto& backend = testing::tested_backend;
 
 Settings surface_on(int mesh) {
-  Settings settings;
-  settings.mesh = mesh;
-  settings.steps = mesh / 4;
+  Settings settings = testing::on_mesh(mesh, mesh / 4);
   settings.surface = true;
   return settings;
-}
-
-std::vector<Price> prices_of(const Settings& settings, const std::vector<Contract>& contracts) {
-  std::vector<Price> prices(contracts.size());
-  create_pricer(backend, settings)->price(contracts, prices);
-  return prices;
 }
 
 /// Of every set, the spots it is known at as strikes of the spot 1: V(c spot, c strike) = c V.
@@ -75,7 +67,7 @@ std::vector<Contract> random_strikes(std::size_t count, std::uint64_t seed) {
 
 TEST(OptionsSurface, KnownPrices) {
   const KnownStrikes known = known_strikes();
-  const std::vector<Price> prices = prices_of(surface_on(128), known.contracts);
+  const std::vector<Price> prices = testing::priced(surface_on(128), known.contracts);
   std::size_t covered = 0;
   double worst = 0.0;
   for (std::size_t k = 0; k < prices.size(); ++k) {
@@ -94,7 +86,7 @@ TEST(OptionsSurface, ToleranceIsKept) {
   Settings settings;
   settings.tolerance = 1e-5;
   settings.surface = true;
-  const std::vector<Price> prices = prices_of(settings, known.contracts);
+  const std::vector<Price> prices = testing::priced(settings, known.contracts);
   std::size_t kept = 0;
   for (std::size_t k = 0; k < prices.size(); ++k) {
     EXPECT_EQ(prices[k].outcome, Outcome::ok) << k;
@@ -110,7 +102,8 @@ TEST(OptionsSurface, AgreesWithContractsOnTheirOwn) {
   const std::vector<Contract> contracts = random_strikes(40, 12);
   Settings alone = surface_on(256);
   alone.surface = false;
-  const std::vector<Price> shared = prices_of(surface_on(256), contracts), own = prices_of(alone, contracts);
+  const std::vector<Price> shared = testing::priced(surface_on(256), contracts),
+                           own = testing::priced(alone, contracts);
   std::size_t apart = 0;
   for (std::size_t k = 0; k < contracts.size(); ++k) {
     const Contract& c = contracts[k];
@@ -135,9 +128,9 @@ TEST(OptionsSurface, AgreesWithContractsOnTheirOwn) {
 // The prices of a finer grid, which the test above ties to those of contracts, stand for the true ones.
 TEST(OptionsSurface, StatedErrorsCoverAndDoNotExaggerate) {
   const std::vector<Contract> contracts = random_strikes(60, 5);
-  const std::vector<Price> known = prices_of(surface_on(512), contracts);
+  const std::vector<Price> known = testing::priced(surface_on(512), contracts);
   for (const int mesh : {128, 256}) {
-    const std::vector<Price> prices = prices_of(surface_on(mesh), contracts);
+    const std::vector<Price> prices = testing::priced(surface_on(mesh), contracts);
     std::vector<double> ratio;
     for (std::size_t k = 0; k < prices.size(); ++k)
       ratio.push_back(prices[k].error /
@@ -152,7 +145,7 @@ TEST(OptionsSurface, StatedErrorsCoverAndDoNotExaggerate) {
 
 TEST(OptionsSurface, MonotoneAndConvexInTheStrike) {
   const std::vector<Contract> contracts = random_strikes(40, 3);
-  const std::vector<Price> prices = prices_of(surface_on(128), contracts);
+  const std::vector<Price> prices = testing::priced(surface_on(128), contracts);
   const auto slope = [&](std::size_t k) {
     return (prices[k + 1].price - prices[k].price) / (contracts[k + 1].strike - contracts[k].strike);
   };
@@ -175,7 +168,7 @@ TEST(OptionsSurface, OtherStrikesChangeNoBit) {
   settings.tolerance = 3e-5;
   settings.surface = true;
   for (const Settings& used : {settings, surface_on(128)}) {
-    const std::vector<Price> together = prices_of(used, contracts);
+    const std::vector<Price> together = testing::priced(used, contracts);
     std::vector<Contract> some;
     std::vector<std::size_t> place;
     for (std::size_t k = contracts.size(); k-- > 0;)
@@ -183,7 +176,7 @@ TEST(OptionsSurface, OtherStrikesChangeNoBit) {
         some.push_back(contracts[k]);
         place.push_back(k);
       }
-    const std::vector<Price> fewer = prices_of(used, some);
+    const std::vector<Price> fewer = testing::priced(used, some);
     for (std::size_t k = 0; k < some.size(); ++k)
       for (const auto member : {&Price::price, &Price::error, &Price::delta, &Price::gamma, &Price::theta})
         EXPECT_EQ(std::memcmp(&(fewer[k].*member), &(together[place[k]].*member), sizeof(double)), 0)
@@ -208,9 +201,9 @@ TEST(OptionsSurface, StatedErrorsCoverExerciseBetweenTwoBoundaries) {
   }
   Settings finest = surface_on(1024);
   finest.steps = 1024;
-  const std::vector<Price> known = prices_of(finest, contracts);
+  const std::vector<Price> known = testing::priced(finest, contracts);
   for (const int mesh : {64, 128, 256}) {
-    const std::vector<Price> prices = prices_of(surface_on(mesh), contracts);
+    const std::vector<Price> prices = testing::priced(surface_on(mesh), contracts);
     std::vector<double> ratio;
     for (std::size_t k = 0; k < prices.size(); ++k)
       ratio.push_back(prices[k].error / (std::abs(prices[k].price - known[k].price) + 1e-7));
@@ -234,7 +227,7 @@ TEST(OptionsSurface, StrikesFarAway) {
         c.strike = strike;
         contracts.push_back(c);
       }
-  const std::vector<Price> prices = prices_of(surface_on(128), contracts);
+  const std::vector<Price> prices = testing::priced(surface_on(128), contracts);
   for (std::size_t k = 0; k < contracts.size(); ++k) {
     const Contract& c = contracts[k];
     const bool early = c.style == Style::american;

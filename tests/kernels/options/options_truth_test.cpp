@@ -6,8 +6,8 @@
 
 #include "kernels/options/pricer.hpp"
 #include "kernels/options/tails.hpp"
-#include "tests/support/backend.hpp"
 #include "tests/support/option_sets.hpp"
+#include "tests/support/priced.hpp"
 
 // Finite differences against Fourier's integral, closed forms and the literature: calls and tails of every
 // law, boundaries of calls, Greeks, and the orders in space and in time.
@@ -15,27 +15,9 @@
 namespace drogue::options {
 namespace {
 
-constexpr const auto& backend = testing::tested_backend;
-
-Settings on_mesh(int mesh, int steps) {
-  Settings settings;
-  settings.mesh = mesh;
-  settings.steps = steps;
-  return settings;
-}
-
-std::vector<Price> priced_by(const Settings& settings, const std::vector<Contract>& contracts) {
-  std::vector<Price> prices(contracts.size());
-  create_pricer(backend, settings)->price(contracts, prices);
-  return prices;
-}
-
-/// European prices by Fourier's integral, to ten digits.
-std::vector<Price> known_prices(const std::vector<Contract>& contracts) {
-  Settings settings;
-  settings.method = Method::cos;
-  return priced_by(settings, contracts);
-}
+using testing::on_mesh;
+using testing::priced;
+using testing::priced_by_fourier;
 
 Contract european(Model model, Type type, std::array<double, 4> jump) {
   Contract c{.model = model,
@@ -68,9 +50,9 @@ TEST(OptionsTruth, JumpsOfMertonAndKou) {
     c.type = Type::call;
     contracts.push_back(c);
   }
-  const std::vector<Price> known = known_prices(contracts);
+  const std::vector<Price> known = priced_by_fourier(contracts);
   for (const int mesh : {64, 256}) {
-    const std::vector<Price> prices = priced_by(on_mesh(mesh, mesh / 2), contracts);
+    const std::vector<Price> prices = priced(on_mesh(mesh, mesh / 2), contracts);
     for (std::size_t k = 0; k < contracts.size(); ++k)
       EXPECT_NEAR(prices[k].price, known[k].price, prices[k].error) << mesh << ' ' << k;
     for (const std::size_t k : {0U, 1U, 2U, 3U, 8U, 9U, 10U, 11U})
@@ -130,7 +112,8 @@ TEST(OptionsTruth, LimitsOfTheDomain) {
         contracts.push_back(european(Model::kou, type, {5.0, 0.5, 1.0 + std::max(gap, 1e-3), 40.0}));
         contracts.back().maturity = 1e-4 * maturity;
       }
-  const std::vector<Price> known = known_prices(contracts), prices = priced_by(on_mesh(256, 256), contracts);
+  const std::vector<Price> known = priced_by_fourier(contracts),
+                           prices = priced(on_mesh(256, 256), contracts);
   for (std::size_t k = 0; k < contracts.size(); ++k) {
     EXPECT_NE(prices[k].outcome, Outcome::failed) << k;
     EXPECT_NEAR(prices[k].price, known[k].price, prices[k].error) << k;
@@ -145,7 +128,7 @@ TEST(OptionsTruth, HirsaAndMadansVarianceGamma) {
   Contract c{.spot = 1369.41, .strike = 1200.0, .rate = 0.0541, .dividend = 0.012, .maturity = 0.56164};
   const double squared = sigma * sigma, beta = theta / squared;
   std::ranges::copy(std::array{1.0 / nu, std::sqrt(beta * beta + 2.0 / (nu * squared)), beta, 0.0}, c.jump);
-  const Price price = priced_by(on_mesh(512, 128), {c})[0];
+  const Price price = priced(on_mesh(512, 128), {c})[0];
   EXPECT_NEAR(price.price, 35.4928, 0.002);
   EXPECT_NEAR(price.price, 35.5301, 3.5e-5 * c.strike);
 }
@@ -163,11 +146,11 @@ TEST(OptionsTruth, BoundaryOfACall) {
   const double a = (c.rate - c.dividend) / c.variance - 0.5;
   const double g = -a + std::sqrt(a * a + 2.0 * c.rate / c.variance);
   c.spot = c.strike;
-  const double boundary = priced_by(on_mesh(512, 256), {c})[0].exercise_boundary;
+  const double boundary = priced(on_mesh(512, 256), {c})[0].exercise_boundary;
   EXPECT_NEAR(boundary, c.strike * g / (g - 1.0), 0.01 * boundary);
   for (const double factor : {0.97, 1.03}) {
     c.spot = factor * boundary;
-    EXPECT_EQ(priced_by(on_mesh(512, 256), {c})[0].price > c.spot - c.strike + 1e-9, factor < 1.0) << factor;
+    EXPECT_EQ(priced(on_mesh(512, 256), {c})[0].price > c.spot - c.strike + 1e-9, factor < 1.0) << factor;
   }
 }
 
@@ -189,8 +172,8 @@ TEST(OptionsTruth, BoundariesOfACallAndItsPut) {
     }
     put.spot = put.strike;
     const Settings settings = on_mesh(256, 64);
-    const double high = priced_by(settings, {call})[0].exercise_boundary,
-                 low = priced_by(settings, {put})[0].exercise_boundary;
+    const double high = priced(settings, {call})[0].exercise_boundary,
+                 low = priced(settings, {put})[0].exercise_boundary;
     EXPECT_GT(high, 1.0);
     EXPECT_NEAR(high * low, 1.3, 1e-9) << static_cast<int>(model);
   }
@@ -209,8 +192,9 @@ TEST(OptionsTruth, GreeksOfEuropeans) {
         return other;
       };
       const double ds = 1e-3, dt = 1e-3;
-      const auto known = known_prices({c, moved(ds, 0.0), moved(-ds, 0.0), moved(0.0, dt), moved(0.0, -dt)});
-      const Price price = priced_by(on_mesh(256, 128), {c})[0];
+      const auto known =
+          priced_by_fourier({c, moved(ds, 0.0), moved(-ds, 0.0), moved(0.0, dt), moved(0.0, -dt)});
+      const Price price = priced(on_mesh(256, 128), {c})[0];
       const double delta = (known[1].price - known[2].price) / (2.0 * ds);
       const double gamma = (known[1].price - 2.0 * known[0].price + known[2].price) / (ds * ds);
       EXPECT_NEAR(price.delta, delta, 1e-4) << static_cast<int>(c.model);
@@ -235,7 +219,7 @@ std::vector<Contract> of_three_years(Model model) {
 std::vector<Price> on_one_grid(const std::vector<Contract>& contracts, int mesh, int steps) {
   Settings settings = on_mesh(mesh, steps);
   settings.one_grid = true;
-  return priced_by(settings, contracts);
+  return priced(settings, contracts);
 }
 
 double largest_difference(const std::vector<Price>& one, const std::vector<Price>& other) {
@@ -249,7 +233,7 @@ double largest_difference(const std::vector<Price>& one, const std::vector<Price
 TEST(OptionsTruth, SecondOrderInSpace) {
   for (const Model model : {Model::generalized_hyperbolic, Model::black_scholes}) {
     const std::vector<Contract> contracts = of_three_years(model);
-    const std::vector<Price> known = known_prices(contracts);
+    const std::vector<Price> known = priced_by_fourier(contracts);
     const double coarse = largest_difference(on_one_grid(contracts, 64, 256), known),
                  fine = largest_difference(on_one_grid(contracts, 256, 256), known);
     EXPECT_NEAR(std::log2(coarse / fine) / 2.0, 1.9, 0.2) << coarse << ' ' << fine;
