@@ -7,7 +7,6 @@
 #include <thread>
 
 #include "common/program/message.hpp"
-#include "common/program/mpi_guard.hpp"
 #include "common/program/program.hpp"
 #include "common/program/provenance.hpp"
 #include "common/program/ranks.hpp"
@@ -157,7 +156,7 @@ ExitCode run_batch(Ranks& ranks, const Command& command) {
 
 ExitCode run_app(const Command& command) {
   const auto say = [](const std::string& text) {
-    if (launched_rank().rank == 0) std::cout << text;
+    std::cout << text;
     return ExitCode::ok;
   };
   switch (command.action) {

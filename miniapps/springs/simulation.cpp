@@ -90,13 +90,13 @@ bool Simulation::is_output_time(double time) const {
   return std::ranges::count(_scene.output.times, time) > 0;
 }
 
-/// By the frequencies of the fabric alone.
-double Simulation::longest_stable_step() {
-  return fabric::stable_dt(_scene.time.integrator, _solver->fastest_frequency(), _solver->fastest_decay());
+/// Where nothing in the fabric is faster than `frequency`, rad/s.
+double Simulation::longest_stable_step(double frequency) {
+  return fabric::stable_dt(_scene.time.integrator, frequency, _solver->fastest_decay());
 }
 
 double Simulation::stable_dt() {
-  const double stable = longest_stable_step();
+  const double stable = longest_stable_step(_solver->fastest_frequency());
   if (!_scene.contact.self) return stable;
   // Contact looks about as far as it moves: a tenth of an edge a step keeps its lists short.
   std::vector<Vector> x(_problem.x.size()), v(x.size());
@@ -142,7 +142,7 @@ void Simulation::replan_if_stiffer() {
 std::string Simulation::too_long_step() {
   const Time& asked = _scene.time;
   const double dt = _solver->clock().dt, bound = _solver->fastest_frequency();
-  if (!asked.dt || dt <= fabric::stable_dt(asked.integrator, bound, _solver->fastest_decay())) return {};
+  if (!asked.dt || dt <= longest_stable_step(bound)) return {};
   std::ostringstream text;
   text << "a step of " << dt << " s is too long: ";
   if (bound > 1.01 * _asked_at) {

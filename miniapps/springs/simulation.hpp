@@ -48,7 +48,7 @@ class Simulation {
   void resume();
   void plan();
   void replan_if_stiffer();
-  [[nodiscard]] double longest_stable_step();
+  [[nodiscard]] double longest_stable_step(double frequency);
   [[nodiscard]] double stable_dt();
   [[nodiscard]] std::string too_long_step();
   [[nodiscard]] double next_stop(double time) const;

@@ -49,7 +49,7 @@ def _level_set(body, places: np.ndarray) -> np.ndarray:
     cuts the cell's edges, and a facet across each edge that it cuts (surface nets, Gibson 1998)."""
     low, high = places.min(axis=0), places.max(axis=0)
     half = 0.8 * np.max(high - low)
-    origin, step = (low + high) / 2 - half, 2 * half / (2 * _FACETS)
+    origin, step = (low + high) / 2 - half, half / _FACETS
     count = 2 * _FACETS + 1
     x, y, z = (origin[:, None] + step * np.arange(count)).reshape(3, count)
     with np.errstate(all="ignore"):
