@@ -17,14 +17,6 @@ namespace {
 constexpr auto flush_interval = std::chrono::seconds(1);
 constexpr std::size_t flush_bytes = 1 << 20;
 
-std::string header(const std::vector<Column>& columns) {
-  std::string line = "time [s]";
-  for (const Column& column : columns) {
-    line += "," + column.name + (column.unit.empty() ? "" : " [" + column.unit + "]");
-  }
-  return line + "\n";
-}
-
 void append_number(std::string& text, double value) {
   char digits[32];
   const auto [end, error] = std::to_chars(digits, digits + sizeof digits, value);
@@ -53,10 +45,18 @@ std::uintmax_t bytes_until(const std::filesystem::path& file, const std::string&
 
 }  // namespace
 
+std::string history_header(const std::vector<Column>& columns) {
+  std::string line = "time [s]";
+  for (const Column& column : columns) {
+    line += "," + column.name + (column.unit.empty() ? "" : " [" + column.unit + "]");
+  }
+  return line + "\n";
+}
+
 HistoryWriter::HistoryWriter(std::filesystem::path file, const std::vector<Column>& columns,
                              std::optional<double> resume_time)
     : _file(std::move(file)), _width(columns.size()), _last_flush(std::chrono::steady_clock::now()) {
-  const std::string first_line = header(columns);
+  const std::string first_line = history_header(columns);
   const std::uintmax_t kept = resume_time ? bytes_until(_file, first_line, *resume_time) : 0;
   _descriptor = open(_file.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
   if (_descriptor < 0) throw io_failure("write", _file, errno);

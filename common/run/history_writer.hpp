@@ -16,6 +16,9 @@ struct Column {
   std::string unit;
 };
 
+/// The first line of history.csv, with its end.
+[[nodiscard]] std::string history_header(const std::vector<Column>& columns);
+
 /// history.csv: first column `time [s]`, one row per reported step, numbers in the shortest form that reads
 /// back equal. Rows reach the system once a second, at flush() and at the end, also when a failure unwinds.
 class HistoryWriter {

@@ -5,10 +5,12 @@
 #include <map>
 #include <utility>
 
+#include "common/program/failure.hpp"
 #include "common/run/atomic_file.hpp"
 #include "common/run/checksum.hpp"
 #include "common/run/hdf5.hpp"
 #include "common/run/restart_seal.hpp"
+#include "common/scene/node.hpp"
 
 namespace drogue::run {
 
@@ -16,6 +18,13 @@ std::string fingerprint(std::string_view text) {
   Checksum checksum;
   checksum.add({text.data(), text.size()});
   return hexadecimal(checksum.value());
+}
+
+void require_not_after(const std::filesystem::path& file, double time, const char* key, double end) {
+  if (time <= end) return;
+  throw Failure(ExitCode::io_error, "cannot continue from restart file '" + file.string() +
+                                        "': it is of t = " + scene::real_text(time) + " s, later than " +
+                                        key + " = " + scene::real_text(end));
 }
 
 struct RestartWriter::State {

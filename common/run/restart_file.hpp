@@ -12,6 +12,10 @@ namespace drogue::run {
 /// 16 hexadecimal digits that stand for a text; equal texts, equal digits on every machine.
 std::string fingerprint(std::string_view text);
 
+/// Throws Failure(io_error) where the state of `file`, at `time`, s, is later than the end, which `key` of a
+/// scene gives.
+void require_not_after(const std::filesystem::path& file, double time, const char* key, double end);
+
 /// Writes a restart file: named numbers, texts and arrays of doubles. Until commit() a former file stays
 /// whole.
 ///

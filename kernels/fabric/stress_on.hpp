@@ -80,7 +80,9 @@ struct StressFunctor {
 };
 
 /// The stress at each vertex: the mean over its triangles, weighted by their areas at rest and in the order
-/// of the mesh, in the plane across their mean normal. Without triangles there is none.
+/// of the mesh, in the plane across their mean normal. Stress has no side, and in a mesh of a file neighbours
+/// may turn against one another: each normal counts on the side of those before it. Without triangles there
+/// is none.
 template <class ExecutionSpace>
 struct VertexStressFunctor {
   TriangleViews<ExecutionSpace> triangles;
@@ -96,7 +98,8 @@ struct VertexStressFunctor {
     Vector3<double> normal{0.0, 0.0, 0.0};
     for (int k = begin; k < end; ++k) {
       const int t = triangles.around(k);
-      normal = normal + (1.0 / triangles.inverse_area(t)) * cross(axis(t, 0), axis(t, 1));
+      const Vector3<double> own = cross(axis(t, 0), axis(t, 1));
+      normal = normal + (dot(own, normal) < 0.0 ? -1.0 : 1.0) / triangles.inverse_area(t) * own;
     }
     normal = unit(normal);
     // The first axis is the one of the first triangle, laid into the plane.

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "common/program/signals.hpp"
+#include "common/run/restart_file.hpp"
 #include "kernels/device/ledger.hpp"
 #include "kernels/device/runtime.hpp"
 #include "miniapps/gas/failure_text.hpp"
@@ -40,6 +41,7 @@ Simulation::Simulation(const GasScene& scene, const RunSettings& settings)
     _initial = _solver->totals();
   } else {
     const RestartState state = read_restart(settings.restart, scene, *_solver);
+    run::require_not_after(settings.restart, state.resume.time, "run.end_time", scene.end_time);
     _solver->restore(state.resume);
     _initial = state.initial;
   }

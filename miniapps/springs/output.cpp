@@ -51,13 +51,16 @@ run::IntegerSource source_of(const std::vector<std::array<int, n>>& parts) {
 }  // namespace
 
 RunOutput::RunOutput(const SpringsScene& scene, const run::RunDirectory& directory,
-                     std::optional<double> resume_time)
-    : _scene(scene),
-      _restart_file(directory.file("restart.h5")),
-      _fingerprint(scene_fingerprint(scene)),
-      _last_row_time(resume_time.value_or(-1.0)) {
-  if (scene.output.history_every > 0)
-    _history.emplace(directory.file("history.csv"), history_columns(scene), resume_time);
+                     std::optional<double> resume_time, const std::filesystem::path& restart)
+    : _scene(scene), _restart_file(directory.file("restart.h5")), _fingerprint(scene_fingerprint(scene)) {
+  if (scene.output.history_every > 0) {
+    const std::filesystem::path file = directory.file("history.csv");
+    const std::vector<run::Column> columns = history_columns(scene);
+    if (resume_time) take_history(restart, columns, file);
+    _continues_rows = resume_time && std::filesystem::exists(file);
+    if (_continues_rows) _last_row_time = *resume_time;
+    _history.emplace(file, columns, resume_time);
+  }
   if (scene.output.fields.empty()) return;
   _fields.emplace(directory.path(), scene.name, field_specs(scene), resume_time);
   add_mesh();

@@ -36,8 +36,13 @@ struct Snapshot {
 /// for exists. Fields are written by one thread behind the steps, in the order they were asked for.
 class RunOutput {
  public:
-  /// With `resume_time` existing files are continued after that time.
-  RunOutput(const SpringsScene& scene, const run::RunDirectory& directory, std::optional<double> resume_time);
+  /// With `resume_time` existing files are continued after that time, and rows of the run that the file
+  /// `restart` is of are taken along.
+  RunOutput(const SpringsScene& scene, const run::RunDirectory& directory, std::optional<double> resume_time,
+            const std::filesystem::path& restart);
+
+  /// Whether rows of before are there to be continued.
+  [[nodiscard]] bool continues_rows() const { return _continues_rows; }
 
   void write_row(const Row& row);
   void write_fields(Snapshot snapshot);
@@ -57,6 +62,7 @@ class RunOutput {
   std::string _fingerprint;
   std::optional<run::HistoryWriter> _history;
   std::optional<run::FieldsWriter> _fields;
+  bool _continues_rows = false;
   double _last_row_time = -1.0;
   double _waited = 0.0;
   run::BackgroundWriter _writer;  // last: its thread uses the others until it is gone

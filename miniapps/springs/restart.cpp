@@ -20,6 +20,8 @@ void visit(State& state, const Number& number, const Integer& integer) {
   number("stop_time", state.stop_time);
   number("dt_min", state.dt_min);
   number("dt_max", state.dt_max);
+  number("asked_dt", state.asked.dt);
+  number("asked_safety", state.asked.safety);
 }
 
 /// What is kept of contact; its work under the names that history.csv has for it.
@@ -32,12 +34,16 @@ constexpr std::pair<const char*, double fabric::ContactWork::*> work_parts[] = {
 
 }  // namespace
 
+AskedSteps asked_steps(const SpringsScene& scene) { return {scene.time.dt.value_or(0.0), scene.time.safety}; }
+
 std::string scene_fingerprint(SpringsScene scene) {
   scene.description.clear();
   scene.output = {};
   scene.verify = {};
   scene.driver = fabric::Driver::automatic;
   scene.time.end_time = 0.0;
+  scene.time.dt.reset();
+  scene.time.safety = Time{}.safety;
   // What a file holds counts, not where it lies.
   std::string contents;
   if (!scene.source.file.empty()) {

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "common/program/signals.hpp"
+#include "common/run/restart_file.hpp"
 #include "common/scene/node.hpp"
 #include "kernels/device/ledger.hpp"
 #include "kernels/device/runtime.hpp"
@@ -20,6 +21,10 @@ using Clock = std::chrono::steady_clock;
 double seconds_since(Clock::time_point begin) {
   return std::chrono::duration<double>(Clock::now() - begin).count();
 }
+
+/// Absolute damping times dt beyond which half a kick of Verlet's method turns a velocity round: the middle
+/// of the half kick takes (1 - z/4)/(1 + z/4) of it.
+constexpr double turning_damping = 4.0;
 
 /// Device time after which the host looks whether a signal came.
 constexpr double look_every_s = 0.1;
@@ -68,6 +73,7 @@ Simulation::Simulation(const SpringsScene& scene, const RunSettings& settings)
 
 void Simulation::resume() {
   const RestartState state = read_restart(_settings.restart, _scene);
+  run::require_not_after(_settings.restart, state.clock.time(), "time.end_time", _scene.time.end_time);
   _solver->set_clock(state.clock);
   _solver->upload(_problem.to_solver(state.x), _problem.to_solver(state.v));
   if (_scene.contact.asked_for())
@@ -76,8 +82,10 @@ void Simulation::resume() {
   _stop_time = state.stop_time;
   _dt_min = state.dt_min;
   _dt_max = state.dt_max;
-  // Other outputs than before, or a later end: from here on the steps meet those.
-  if (state.clock.step >= _stop_step || _stop_time != next_stop(state.clock.time())) plan();
+  // Other outputs than before, another end or other steps: from here on they are met.
+  if (state.clock.step >= _stop_step || _stop_time != next_stop(state.clock.time()) ||
+      state.asked != asked_steps(_scene))
+    plan();
 }
 
 double Simulation::next_stop(double time) const {
@@ -90,9 +98,13 @@ bool Simulation::is_output_time(double time) const {
   return std::ranges::count(_scene.output.times, time) > 0;
 }
 
-/// Where nothing in the fabric is faster than `frequency`, rad/s.
+/// Where nothing in the fabric is faster than `frequency`, rad/s. Verlet's method is stable at any absolute
+/// damping; but no step takes more velocity away than there is, so that it slows and does not turn round.
 double Simulation::longest_stable_step(double frequency) {
-  return fabric::stable_dt(_scene.time.integrator, frequency, _solver->fastest_decay());
+  const double stable = fabric::stable_dt(_scene.time.integrator, frequency, _solver->fastest_decay());
+  const double damping = _scene.damping.absolute;
+  return damping * stable > 1.0 && _scene.time.integrator == fabric::Integrator::verlet ? 1.0 / damping
+                                                                                        : stable;
 }
 
 double Simulation::stable_dt() {
@@ -145,6 +157,10 @@ std::string Simulation::too_long_step() {
   if (!asked.dt || dt <= longest_stable_step(bound)) return {};
   std::ostringstream text;
   text << "a step of " << dt << " s is too long: ";
+  if (asked.integrator == fabric::Integrator::verlet && _scene.damping.absolute * dt > turning_damping) {
+    text << "damping.absolute = " << _scene.damping.absolute << " 1/s turns velocities round in it";
+    return text.str();
+  }
   if (bound > 1.01 * _asked_at) {
     _asked_at = bound;
     const double frequency = _solver->frequency_at_least();
@@ -210,6 +226,12 @@ bool Simulation::advance(std::int64_t steps, ProgressLine& progress) {
   return true;
 }
 
+/// From the state that the solver went back to on through the steps before `lost`, which were good.
+void Simulation::return_to_last_good(std::int64_t lost) {
+  round_trip();  // what is uploaded has not failed
+  static_cast<void>(_solver->advance(lost - 1 - _solver->clock().step) && !_solver->failure());
+}
+
 /// What falls on the step now.
 void Simulation::reach_event(RunOutput& output) {
   const Output& wanted = _scene.output;
@@ -226,11 +248,10 @@ void Simulation::reach_event(RunOutput& output) {
 
 ExitCode Simulation::run(const run::RunDirectory& directory, run::ResultDocument& result) {
   const bool resumed = !_settings.restart.empty();
-  RunOutput output(_scene, directory, resumed ? std::optional<double>(time()) : std::nullopt);
-  if (!resumed) {
-    output.write_row(row());
-    if (is_output_time(0.0)) reach_output(output);
-  }
+  RunOutput output(_scene, directory, resumed ? std::optional<double>(time()) : std::nullopt,
+                   _settings.restart);
+  if (_scene.output.history_every > 0 && !output.continues_rows()) output.write_row(row());
+  if (!resumed && is_output_time(0.0)) reach_output(output);
   ProgressLine progress(_settings.quiet);
   // However this ends, the result says how far it came.
   const struct Describe {
@@ -247,6 +268,7 @@ ExitCode Simulation::run(const run::RunDirectory& directory, run::ResultDocument
   }
   progress.finish();
   const auto failure = _solver->failure();
+  if (failure) return_to_last_good(failure->step);
   const bool done = !failure && _solver->clock().step == _stop_step;
   if (!done && _settings.can_be_continued) output.write_restart(restart_state());
   output.finish();

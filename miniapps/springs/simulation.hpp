@@ -58,6 +58,7 @@ class Simulation {
   void reach_event(RunOutput& output);
   void reach_output(RunOutput& output);
   void round_trip();
+  void return_to_last_good(std::int64_t lost);
   [[nodiscard]] double time() const;
   [[nodiscard]] Row row();
   [[nodiscard]] Snapshot snapshot();

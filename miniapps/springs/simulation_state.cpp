@@ -86,7 +86,8 @@ void Simulation::reach_output(RunOutput& output) {
 }
 
 RestartState Simulation::restart_state() {
-  RestartState state{_solver->clock(), _stop_step, _stop_time, _dt_min, _dt_max, {}, {}, {}};
+  RestartState state{_solver->clock(),    _stop_step, _stop_time, _dt_min, _dt_max,
+                     asked_steps(_scene), {},         {},         {}};
   std::vector<Vector> x(_problem.x.size()), v(x.size());
   _solver->download(x, v);
   state.x = _problem.to_scene(x);

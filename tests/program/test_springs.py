@@ -3,6 +3,7 @@
 import json
 import math
 import os
+import re
 import resource
 import sys
 import unittest
@@ -344,6 +345,46 @@ class Failures(springs_program.SpringsTest):
         message = self.expect(4, self.write(springs_program.FALLING), "--quiet", "--backend", "serial", "--out", "out", sets=[
             'contact={objects=[{kind="level-set",expression="z+0.06+0*sqrt(z+0.03)"}]}', "verify={}"]).stderr
         self.assertRegex(message, r"level-set of contact.objects, or its slope, is not a number at vertex \d+ .* at step \d+")
+
+    def test_moduli_of_what_nothing_pulls(self):
+        for check in ("young", "poisson"):
+            message = self.expect(3, self.write(SHEET), sets=[f"verify.{check}=1"]).stderr
+            self.assertIn(f"verify.{check} needs a pin whose motion.x pulls", message)
+
+    def test_strong_damping(self):
+        """What is thrown against it comes to rest after v/K; no method turns it round."""
+        scene = self.write(SHEET.replace('pin = [{ where = "x==0" }]\nload = [{ gravity = [0, 0, -9.81] }]\n',
+                                         'initial.velocity.z = "1"\n'))
+        for integrator in ("verlet", "rk4"):
+            for damping in (1e3, 1e4, 1e5):
+                with self.subTest(integrator, damping=damping):
+                    self.expect(0, scene, "--quiet", "--backend", "serial", "--overwrite", "--out", "out", sets=[
+                        f'time.integrator="{integrator}"', f"damping.absolute={damping}", "time.end_time=0.02",
+                        'output={fields=["position"],times=[0.02]}'])
+                    height = self.fields("out").values("/steps/000000/position")[2]
+                    self.assertLess(abs(height * damping - 1), 0.1)
+
+    def test_damping_that_turns_velocities_round(self):
+        words = ["--quiet", "--overwrite", "--out", "out"]
+        for share, code in ((0.99, 0), (1.01, 4)):
+            message = self.expect(code, self.write(SHEET), *words, sets=[
+                'time.integrator="verlet"', "time.dt=1e-4", f"damping.absolute={4e4 * share}"]).stderr
+        self.assertIn("a step of 0.0001 s is too long: damping.absolute = 40400 1/s turns velocities round in it", message)
+
+    def test_the_last_good_state(self):
+        """It is that before the step that failed, whatever the solver had put aside."""
+        kick = 'load=[{force={z="sqrt(0.05-t)"}}]'
+        for sets in (['time.integrator="verlet"'], [], ["contact.self=true"]):
+            with self.subTest(sets):
+                sets = [kick, "output.history_every=1", "verify={}", *sets]
+                message = self.expect(4, self.write(DRUM), "--quiet", "--overwrite", "--out", "out", sets=sets).stderr
+                lost = int(re.search(r"at step (\d+)", message)[1])
+                self.assertIn(f"restart.h5 holds the last good state, of step {lost - 1}", message)
+                before = self.history("out")
+                self.assertEqual(lost - 1, before["step"][-1])
+                # From there the next step fails again, and no row is lost or written twice.
+                self.expect(4, self.write(DRUM), "--quiet", "--out", "out", "--restart", "auto", sets=sets)
+                self.assertEqual(before, self.history("out"))
 
     def test_verification_fails_where_it_must(self):
         """A fault in what is computed or in what is expected is found by each check."""

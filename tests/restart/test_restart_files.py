@@ -69,6 +69,9 @@ class RestartFiles(gas_program.GasTest):
             with self.subTest(change):
                 self.assert_refused("another scene", sets=[*SETS, change])
 
+    def test_an_end_that_is_over(self):
+        self.assert_refused(" s, later than run.end_time = 0.1", sets=[*SETS, "run.end_time=0.1", "output.times=[0.1]"])
+
     def test_missing(self):
         self.assertIn("no/such.h5", self.resume(2, "--restart", "no/such.h5"))
 

@@ -101,6 +101,37 @@ class Restart(springs_program.SpringsTest):
         work = self.history("whole")["contact_work"]
         self.assertLess(work[-1], work[0])
 
+    def test_an_end_that_is_over(self):
+        self.finish("serial", "part")
+        sets = [*SETS, "time.end_time=1.5", "output.times=[0.6]"]
+        message = self.expect(6, self.scene, "--out", "new", "--restart", "part/restart.h5", sets=sets).stderr
+        self.assertRegex(message, r"cannot continue from restart file 'part/restart.h5': it is of t = 2\.\S+ s, later than time.end_time = 1.5\n$")
+
+    def test_shorter_steps(self):
+        """What ends since a step is too long goes on with a shorter one."""
+        words = ["--quiet", "--backend", "serial", "--out", "part"]
+        message = self.expect(4, self.scene, *words, sets=[*SETS, "time.dt=0.03"]).stderr
+        self.assertIn("restart.h5 holds", message)
+        for change in ("time.dt=0.001", "time.safety=0.5"):
+            with self.subTest(change):
+                self.expect(0, self.scene, *words, "--restart", "auto", sets=[*SETS, change])
+                self.assertLessEqual(self.result("part")["dt_min"], 0.001)
+                shutil.rmtree(self.folder / "part")
+                self.expect(4, self.scene, *words, sets=[*SETS, "time.dt=0.03"])
+
+    def test_a_run_that_is_continued_elsewhere_is_checked_as_a_whole(self):
+        """Its rows go with it, but not past other columns."""
+        sets = ["time.integrator=rk4", "output.restart_every=500", "verify.energy_drift=1e-3"]
+        words = ["--quiet", "--backend", "serial", "--out"]
+        self.expect(5, "free-patch", *words, "whole", sets=sets)
+        self.expect(5, "free-patch", *words, "part", "--restart", "whole/restart.h5", sets=sets)
+        self.assertEqual(self.result("whole")["checks"], self.result("part")["checks"])
+        self.assertEqual((self.folder / "whole/history.csv").read_text(), (self.folder / "part/history.csv").read_text())
+        self.expect(0, "free-patch", *words, "other", "--restart", "whole/restart.h5", sets=[
+            "time.integrator=rk4", "output.probes=[{at=[0,0,0]}]", "verify={}"])
+        time = self.history("other")["time"]
+        self.assertGreater(time[0], 0.0)
+
     def test_later_end(self):
         self.finish("serial", "part")
         longer = [*SETS, "time.end_time=3", "output.times=[0.6, 1.3, 2.5, 3]"]
