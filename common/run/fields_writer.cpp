@@ -133,7 +133,7 @@ void FieldsWriter::State::write_xdmf() const {
   });
   if (line != mesh.end())
     write_file_atomically(xdmf, xdmf_document(title, *line, fields, outputs));
-  else if (holds("vertices") && holds("edges"))
+  else if (holds("vertices") && holds("triangles") && holds("strings"))
     write_file_atomically(xdmf, xdmf_cloth_document(title, mesh, fields, outputs));
 }
 

@@ -48,6 +48,10 @@ std::string dimensions(const DatasetSpec& spec) {
   return text;
 }
 
+std::string time_of(const OutputStep& output) {
+  return R"(        <Time Value=")" + shortest(output.time) + "\"/>\n";
+}
+
 /// A rectilinear grid of n x 1 x 1 points: the one kind of line that all versions of ParaView's reader know.
 std::string grid(const std::string& title, const DatasetSpec& x, const std::vector<DatasetSpec>& fields,
                  const OutputStep& output) {
@@ -55,7 +59,7 @@ std::string grid(const std::string& title, const DatasetSpec& x, const std::vect
   const std::string zero =
       R"(<DataItem Dimensions="1" NumberType="Float" Precision="8" Format="XML">0</DataItem>)";
   std::string text = R"(      <Grid Name=")" + escaped(title) + "\" GridType=\"Uniform\">\n";
-  text += R"(        <Time Value=")" + shortest(output.time) + "\"/>\n";
+  text += time_of(output);
   text += R"(        <Topology TopologyType="3DRectMesh" Dimensions="1 1 )" + points + "\"/>\n";
   text += "        <Geometry GeometryType=\"VXVYVZ\">\n          " + hdf_item(points, "/mesh/" + x.name);
   text += "          " + zero + "\n          " + zero + "\n        </Geometry>\n";
@@ -67,11 +71,15 @@ std::string grid(const std::string& title, const DatasetSpec& x, const std::vect
   return text + "      </Grid>\n";
 }
 
-std::string collection(const std::string& title, const std::string& grids) {
-  std::string text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<Xdmf Version=\"3.0\">\n  <Domain>\n";
-  text +=
-      R"(    <Grid Name=")" + escaped(title) + "\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
-  return text + grids + "    </Grid>\n  </Domain>\n</Xdmf>\n";
+/// One mesh at all times.
+std::string series(const std::string& name, const std::string& grids) {
+  return R"(    <Grid Name=")" + escaped(name) + "\" GridType=\"Collection\" CollectionType=\"Temporal\">\n" +
+         grids + "    </Grid>\n";
+}
+
+std::string document(const std::string& meshes) {
+  return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<Xdmf Version=\"3.0\">\n  <Domain>\n" + meshes +
+         "  </Domain>\n</Xdmf>\n";
 }
 
 const DatasetSpec* find(const std::vector<DatasetSpec>& specs, std::string_view name) {
@@ -80,16 +88,11 @@ const DatasetSpec* find(const std::vector<DatasetSpec>& specs, std::string_view 
   return nullptr;
 }
 
-std::string topology(const std::vector<DatasetSpec>& mesh) {
-  const DatasetSpec* cells = find(mesh, "triangles");
-  std::string kind = "Triangle\"";
-  if (cells == nullptr || cells->shape.at(0) == 0) {
-    cells = find(mesh, "edges");
-    kind = "Polyline\" NodesPerElement=\"2\"";
-  }
+std::string topology(const DatasetSpec& cells) {
+  const std::string kind = cells.shape.at(1) == 3 ? "Triangle\"" : "Polyline\" NodesPerElement=\"2\"";
   return R"(        <Topology TopologyType=")" + kind + " NumberOfElements=\"" +
-         std::to_string(cells->shape.at(0)) + "\">\n          " +
-         hdf_item(dimensions(*cells), "/mesh/" + cells->name, "Int") + "        </Topology>\n";
+         std::to_string(cells.shape.at(0)) + "\">\n          " +
+         hdf_item(dimensions(cells), "/mesh/" + cells.name, "Int") + "        </Topology>\n";
 }
 
 std::string attribute(const DatasetSpec& field, const std::string& place) {
@@ -100,34 +103,45 @@ std::string attribute(const DatasetSpec& field, const std::string& place) {
          "        </Attribute>\n";
 }
 
+/// `cells` at one time, with the fields at their vertices and their own.
+std::string cloth_grid(const std::string& name, const DatasetSpec& cells, const DatasetSpec& vertices,
+                       const std::vector<DatasetSpec>& fields, const OutputStep& output) {
+  const DatasetSpec* moved = find(fields, "position");
+  const std::string place = "/steps/" + output.group + "/";
+  std::string text = R"(      <Grid Name=")" + escaped(name) + "\" GridType=\"Uniform\">\n";
+  text += time_of(output) + topology(cells);
+  text += "        <Geometry GeometryType=\"XYZ\">\n          " +
+          (moved != nullptr ? hdf_item(dimensions(*moved), place + moved->name)
+                            : hdf_item(dimensions(vertices), "/mesh/" + vertices.name)) +
+          "        </Geometry>\n";
+  for (const DatasetSpec& field : fields)
+    if (&field != moved && (field.centering == "vertex" || field.centering == cells.centering))
+      text += attribute(field, place);
+  return text + "      </Grid>\n";
+}
+
 }  // namespace
 
 std::string xdmf_cloth_document(const std::string& title, const std::vector<DatasetSpec>& mesh,
                                 const std::vector<DatasetSpec>& fields,
                                 const std::vector<OutputStep>& outputs) {
-  const DatasetSpec* moved = find(fields, "position");
-  const DatasetSpec* vertices = find(mesh, "vertices");
-  std::string grids;
-  for (const OutputStep& output : outputs) {
-    const std::string place = "/steps/" + output.group + "/";
-    grids += R"(      <Grid Name=")" + escaped(title) + "\" GridType=\"Uniform\">\n";
-    grids += R"(        <Time Value=")" + shortest(output.time) + "\"/>\n" + topology(mesh);
-    grids += "        <Geometry GeometryType=\"XYZ\">\n          " +
-             (moved != nullptr ? hdf_item(dimensions(*moved), place + moved->name)
-                               : hdf_item(dimensions(*vertices), "/mesh/" + vertices->name)) +
-             "        </Geometry>\n";
-    for (const DatasetSpec& field : fields)
-      if (&field != moved) grids += attribute(field, place);
-    grids += "      </Grid>\n";
-  }
-  return collection(title, grids);
+  const DatasetSpec& vertices = *find(mesh, "vertices");
+  const auto series_of = [&](const std::string& name, const DatasetSpec& cells) {
+    std::string grids;
+    for (const OutputStep& output : outputs) grids += cloth_grid(name, cells, vertices, fields, output);
+    return series(name, grids);
+  };
+  const DatasetSpec &triangles = *find(mesh, "triangles"), &strings = *find(mesh, "strings");
+  if (strings.shape.at(0) == 0) return document(series_of(title, triangles));
+  if (triangles.shape.at(0) == 0) return document(series_of(title, strings));
+  return document(series_of(title + " cloth", triangles) + series_of(title + " strings", strings));
 }
 
 std::string xdmf_document(const std::string& title, const DatasetSpec& x,
                           const std::vector<DatasetSpec>& fields, const std::vector<OutputStep>& outputs) {
   std::string grids;
   for (const OutputStep& output : outputs) grids += grid(title, x, fields, output);
-  return collection(title, grids);
+  return document(series(title, grids));
 }
 
 }  // namespace drogue::run

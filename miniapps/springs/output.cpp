@@ -73,6 +73,13 @@ void RunOutput::add_mesh() {
                     source_of(mesh.triangles));
   _fields->add_mesh({"edges", {edges.size(), 2}, "1", "edge", "vertices of every edge and line"},
                     source_of(edges));
+  // Edges do not tell which of them are strings.
+  _fields->add_mesh({"strings",
+                     {mesh.lines.size(), 2},
+                     "1",
+                     "edge",
+                     "vertices of every piece of a string, those that reinforce edges of cloth alone last"},
+                    source_of(mesh.lines));
   // Last: with it fields.xdmf is complete.
   _fields->add_mesh({"vertices", {mesh.rest.size(), 3}, "m", "vertex", "vertices at rest"},
                     [&mesh](std::uint64_t first, std::span<double> values) {

@@ -4,9 +4,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 from matplotlib.collections import LineCollection, PolyCollection
-from matplotlib.colors import Normalize
+from matplotlib.colors import Normalize, to_rgba
 
-from . import springs_bodies, style
+from . import springs_bodies, springs_strings, style
 from .run_directory import Run, Snapshot
 from .style import plt
 
@@ -57,6 +57,10 @@ class View:
         return self.run.mesh["triangles"].values
 
     @property
+    def strings(self) -> np.ndarray:
+        return springs_strings.pieces(self.run.mesh)
+
+    @property
     def quantity(self) -> tuple[str, str]:
         """Name and unit of what the colours mean."""
         if "von_mises" in self.run.snapshots[-1].fields:
@@ -68,11 +72,11 @@ class View:
         return self.run.mesh["vertices"].values if moved is None else moved.values
 
     def values(self, snapshot: Snapshot) -> np.ndarray:
-        """What is coloured: a value a triangle, or of strings an edge."""
+        """What is coloured: a value a triangle, or of strings without cloth a piece."""
         if "von_mises" in snapshot.fields:
             return snapshot.fields["von_mises"].values
         moved = np.linalg.norm(self.positions(snapshot) - self.run.mesh["vertices"].values, axis=1)
-        parts = self.triangles if len(self.triangles) else self.run.mesh["edges"].values
+        parts = self.triangles if len(self.triangles) else self.strings
         return moved[parts].mean(axis=1)
 
     def seen(self, snapshot: Snapshot) -> np.ndarray:
@@ -119,7 +123,8 @@ class Picture:
         low, high = float(np.nanmin(values)), float(np.nanpercentile(values, _BRIGHT))
         self._map = plt.cm.ScalarMappable(Normalize(low, high if high > low else low + 1), "viridis")
         if len(view.triangles):
-            self._parts = PolyCollection([], linewidth=0.2)
+            self._parts = PolyCollection([], joinstyle="round")
+            self._seams = springs_strings.along_cloth(view.strings, view.triangles)
         else:
             self._parts = LineCollection([], linewidth=2.2)
         colours = _shades(view, view.bodies, np.tile(springs_bodies.COLOUR, (len(view.bodies), 1)))
@@ -166,16 +171,21 @@ class Picture:
             corners = seen[view.triangles]
             depths = corners[..., 2].mean(axis=1)
             back = np.max(depths - corners[..., 2].min(axis=1))
-            order = np.concatenate((depths, bodies[..., 2].min(axis=1) - back)).argsort(kind="stable")
-            parts = [*corners[..., :2], *bodies[..., :2]]
+            ends = seen[view.strings]
+            string_depths = springs_strings.depths(seen, view.strings, self._seams, view.triangles, depths)
+            # Stable: strings come after cloth that is as near.
+            order = np.concatenate((depths, bodies[..., 2].min(axis=1) - back, string_depths)).argsort(kind="stable")
+            parts = [*corners[..., :2], *bodies[..., :2], *ends[..., :2]]
             shades = _shades(view, view.positions(snapshot)[view.triangles], colours)
-            colours = np.concatenate((shades, body_colours))[order]
+            string_colours = np.tile(to_rgba(springs_strings.COLOUR), (len(ends), 1))
+            colours = np.concatenate((shades, body_colours, string_colours))[order]
             self._parts.set_verts([parts[k] for k in order])
             self._parts.set_facecolor(colours)
             self._parts.set_edgecolor(colours)
+            self._parts.set_linewidth(np.where(order < len(parts) - len(ends), 0.2, springs_strings.WIDTH))
             self._directions.set_segments(view.directions(snapshot))
         else:
-            self._parts.set_segments(seen[view.run.mesh["edges"].values, :2])
+            self._parts.set_segments(seen[view.strings, :2])
             self._parts.set_color(colours)
         count = len(view.run.mesh["vertices"].values)
         self._caption.set_text(f"{count} vertices, t = {snapshot.time:.4g} s{_checks(view.run)}")

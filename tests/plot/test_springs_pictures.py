@@ -10,7 +10,7 @@ from pathlib import Path
 import packages  # before all that needs the packages  isort: skip
 import h5py
 import numpy as np
-from PIL import Image
+from PIL import Image, ImageSequence
 from plot import cli, style
 from plot.run_directory import read
 from plot.springs_figures import View, figure
@@ -19,7 +19,7 @@ from plot.springs_history import springs_history_figure
 assert packages.SOURCE
 
 
-def write_run(folder, vertices, triangles, edges, moved, stress=None, directions=None, contact=""):
+def write_run(folder, vertices, triangles, edges, moved, stress=None, directions=None, contact="", strings=None):
     """A run directory whose snapshots are the positions `moved`."""
     folder.mkdir()
     (folder / "scene.toml").write_text('app = "springs"\n' + contact)
@@ -29,6 +29,8 @@ def write_run(folder, vertices, triangles, edges, moved, stress=None, directions
     with h5py.File(folder / "fields.h5", "w") as h5:
         for name, values in (("vertices", vertices), ("triangles", triangles), ("edges", edges)):
             h5[f"mesh/{name}"] = np.array(values).reshape(-1, 2 if name == "edges" else 3)
+        if strings is not None:
+            h5["mesh/strings"] = np.array(strings)
         h5.create_group("steps")
         for k, positions in enumerate(moved):
             group = h5.create_group(f"steps/{k:06d}")
@@ -100,6 +102,35 @@ class SpringsPictures(unittest.TestCase):
         self.assert_drawn(run)
         self.assertEqual(("x", "z"), View(read(run)).labels)
 
+
+    def test_strings_beside_cloth(self):
+        """One that hangs from a corner, and one along the edge that two triangles share, a ridge or a valley; edges of cloth are none."""
+        place = np.array([*SQUARE, [1.5, 0, -0.5], [2, 0, -1]], float)
+        for name, height in (("valley", 0.4), ("ridge", -0.4), ("flat", 0)):
+            folded = place * [1, 1, int(height != 0)] + np.outer([0, 1, 0, 1, 0, 0], [0, 0, height])
+            for strings, least in (([], 0), ([[5, 4], [4, 1]], 200), ([[2, 0]], 200)):
+                for stress in (None, [[0.0, 2.0]]):
+                    with self.subTest(name, strings=strings, stress=stress):
+                        run = write_run(self.folder / f"{name}-{len(strings)}-{stress is None}", place, TRIANGLES,
+                                        [*EDGES, [1, 4], [4, 5]], [folded], stress, strings=np.array(strings, int).reshape(-1, 2))
+                        pixels = self.vermilion(run)
+                        self.assertTrue(pixels > least if strings else pixels == 0, pixels)
+
+    def test_strings_beside_cloth_move(self):
+        place = np.array([*SQUARE, [1.5, 0, -0.5]], float)
+        moved = place + np.outer([0, 0, 0, 0, 1], [0, 0.5, 0.2])
+        run = write_run(self.folder / "run", place, TRIANGLES, [*EDGES, [1, 4]], [place, moved], strings=[[1, 4]])
+        self.assert_drawn(run)
+        with Image.open(run / "fields.gif") as movie:
+            frames = [np.asarray(frame.convert("RGB"), float) for frame in ImageSequence.Iterator(movie)]
+        first, last = (self.vermilion_of(frame.reshape(-1, 3).T) for frame in frames)
+        self.assertGreater(np.count_nonzero(first & ~last), 20)
+        self.assertGreater(np.count_nonzero(last & ~first), 20)
+
+    def test_a_file_that_does_not_name_strings(self):
+        for triangles, count in ((TRIANGLES, 0), ([], 5)):
+            run = write_run(self.folder / f"run{count}", SQUARE, triangles, EDGES, [SQUARE])
+            self.assertEqual(count, len(View(read(run)).strings))
 
     def test_history_takes_off_what_contact_and_friction_did(self):
         run = write_run(self.folder / "run", SQUARE, TRIANGLES, EDGES, [SQUARE])
@@ -179,13 +210,27 @@ class SpringsPictures(unittest.TestCase):
                 self.assertGreater(self.greys(run), 1000)
 
     @staticmethod
-    def greys(run):
-        """Pixels of the colour of bodies, lit or in the shade, in the last picture."""
+    def last_picture(run):
+        """Red, green and blue of its pixels."""
         view = View(read(run))
         drawn = figure(view, view.run.snapshots[-1])
         drawn.canvas.draw()
-        red, green, blue = np.asarray(drawn.canvas.buffer_rgba(), float)[..., :3].reshape(-1, 3).T
+        colours = np.asarray(drawn.canvas.buffer_rgba(), float)[..., :3].reshape(-1, 3).T
         style.plt.close(drawn)
+        return colours
+
+    @staticmethod
+    def vermilion_of(colours):
+        """Which pixels have the colour of strings."""
+        red, green, blue = colours
+        return (red > 190) & (np.abs(green - 94) < 30) & (blue < 40)
+
+    def vermilion(self, run):
+        return int(self.vermilion_of(self.last_picture(run)).sum())
+
+    def greys(self, run):
+        """Pixels of the colour of bodies, lit or in the shade, in the last picture."""
+        red, green, blue = self.last_picture(run)
         return int(((red > green) & (green > blue) & (red - blue < 12) & (red > 90) & (red < 200)).sum())
 
     def test_a_string_over_a_ball(self):
