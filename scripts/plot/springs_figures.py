@@ -75,14 +75,14 @@ class View:
         """What is coloured: a value a triangle, or of strings without cloth a piece."""
         if "von_mises" in snapshot.fields:
             return snapshot.fields["von_mises"].values
-        moved = np.linalg.norm(self.positions(snapshot) - self.run.mesh["vertices"].values, axis=1)
+        stretched = 1 + self.run.scene.get("initial", {}).get("prestretch", 0.0)  # which would hide what a drum does
+        moved = np.linalg.norm(self.positions(snapshot) - stretched * self.run.mesh["vertices"].values, axis=1)
         parts = self.triangles if len(self.triangles) else self.strings
         return moved[parts].mean(axis=1)
 
     def seen(self, snapshot: Snapshot) -> np.ndarray:
         """Coordinates to the right, up and towards the eye."""
         return self.positions(snapshot) @ self.across.T
-
 
     def directions(self, snapshot: Snapshot) -> np.ndarray:
         """Segments (n, 2, 2) along the larger principal stress, of flat cloth and where the run has them."""

@@ -95,6 +95,12 @@ class SpringsPictures(unittest.TestCase):
         self.assertEqual(("x", "y"), view.labels)
         np.testing.assert_allclose(view.values(view.run.snapshots[1]), (0.5 + np.sqrt(0.5)) / 3)
 
+    def test_what_a_stretched_drum_does_is_not_hidden(self):
+        moved = 1.5 * SQUARE + [0, 0, 1e-6]
+        run = write_run(self.folder / "run", SQUARE, TRIANGLES, EDGES, [moved], contact="[initial]\nprestretch = 0.5\n")
+        view = View(read(run))
+        np.testing.assert_allclose(view.values(view.run.snapshots[0]), 1e-6)
+
     def test_a_string(self):
         line = np.array([[0, 0, 0], [1, 0, 0], [2, 0, 0]], float)
         sagging = line - [[0, 0, 0], [0, 0, 1], [0, 0, 0]]
