@@ -10,6 +10,7 @@ struct Answer {
   double decay;               ///< dV/dtau, a year
   double boundary;            ///< x up to which exercise is right; not a number where there is none
   double missed;              ///< how much of the value interpolation may miss
+  double contact;             ///< what the second step above the boundary adds to the time value; 0: no such
 };
 
 /// One member's values on the nodes of a pack.
@@ -26,16 +27,27 @@ KOKKOS_INLINE_FUNCTION int last_exercised(const Column& value, int strike, doubl
   return i;
 }
 
+/// What a put is worth at a node beyond exercise.
+KOKKOS_INLINE_FUNCTION double time_value(const Column& value, int i, int strike, double h) {
+  return value(i) - (1.0 - exponential((i - strike) * h));
+}
+
 /// Where exercise ends, from the last node where it is right. Above it the time value grows with the square
 /// of the distance, so two nodes tell where it begins.
 KOKKOS_INLINE_FUNCTION double boundary_of(const Column& value, int exercised, int strike, double h) {
-  const auto time_value = [&](int i) { return value(i) - (1.0 - exponential((i - strike) * h)); };
   const int i = exercised;
   if (i < 0) return device::portable::not_a_number();
-  const double first = Kokkos::sqrt(device::maximum(0.0, time_value(i + 1))),
-               second = Kokkos::sqrt(device::maximum(0.0, time_value(i + 2)));
+  const double first = Kokkos::sqrt(device::maximum(0.0, time_value(value, i + 1, strike, h))),
+               second = Kokkos::sqrt(device::maximum(0.0, time_value(value, i + 2, strike, h)));
   const double within = second > first ? 1.0 - first / (second - first) : 0.0;
   return (i - strike + device::maximum(0.0, device::minimum(1.0, within))) * h;
+}
+
+/// What the second node above the last exercised one has of time value beyond the first.
+KOKKOS_INLINE_FUNCTION double contact_of(const Column& value, int exercised, int strike, double h) {
+  if (exercised < 0) return 0.0;
+  return device::absolute(time_value(value, exercised + 2, strike, h) -
+                          time_value(value, exercised + 1, strike, h));
 }
 
 /// The nodes of one member.
@@ -98,7 +110,7 @@ KOKKOS_INLINE_FUNCTION Answer answer_below(const Put& put, double asset, double 
   const double strike = sure.strike, price = sure.asset * asset;
   const bool at_once = put.early && strike == 1.0 && sure.asset == 1.0;
   const double decay = at_once ? 0.0 : put.dividend * price - put.rate * strike;
-  return {strike - price, -price, -price, decay, boundary, 0.0};
+  return {strike - price, -price, -price, decay, boundary, 0.0, 0.0};
 }
 
 /// Reads the answer for one member. `change` holds dV/dtau.
@@ -107,12 +119,15 @@ KOKKOS_INLINE_FUNCTION Answer answer_of(const Put& put, const Column& value, con
   const int mesh = nodes.mesh, strike = nodes.strike;
   const double h = nodes.h;
   const double x = put.log_spot, asset = exponential(x);
-  Answer answer{0.0, 0.0, 0.0, 0.0, device::portable::not_a_number(), 0.0};
+  Answer answer{0.0, 0.0, 0.0, 0.0, device::portable::not_a_number(), 0.0, 0.0};
   if (!(h < 1e30)) {
     answer.value = device::portable::not_a_number();
     return answer;
   }
-  if (put.early) answer.boundary = boundary_of(value, nodes.exercised, strike, h);
+  if (put.early) {
+    answer.boundary = boundary_of(value, nodes.exercised, strike, h);
+    answer.contact = contact_of(value, nodes.exercised, strike, h);
+  }
   const double t = x / h + strike;
   if (!(t == t)) {  // no cell has such a number
     answer.value = device::portable::not_a_number();
@@ -120,7 +135,7 @@ KOKKOS_INLINE_FUNCTION Answer answer_of(const Put& put, const Column& value, con
   }
   if (put.early && (x <= answer.boundary) && !(put.split && t < 1.0)) {
     if (!put.split || is_exercised(value(static_cast<int>(t)), static_cast<int>(t) - strike, h))
-      return {1.0 - asset, -asset, -asset, 0.0, answer.boundary, 0.0};
+      return {1.0 - asset, -asset, -asset, 0.0, answer.boundary, 0.0, answer.contact};
   }
   if (t <= 0.0) return answer_below(put, asset, answer.boundary);
   if (t >= mesh) return answer;

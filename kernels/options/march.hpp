@@ -55,10 +55,13 @@ KOKKOS_INLINE_FUNCTION void convolve(const Workers& workers, int mesh, const R* 
   });
 }
 
+/// Time value, of the strike, that may be rounding alone.
+inline constexpr double no_time_value = 1e-13;
+
 /// Whether a put's value is its payoff `nodes` above the strike: what differs by less than rounding is
 /// exercised.
 KOKKOS_INLINE_FUNCTION bool is_exercised(double value, int nodes, double h) {
-  return !(value - (1.0 - exponential(nodes * h)) > 1e-13);
+  return !(value - (1.0 - exponential(nodes * h)) > no_time_value);
 }
 
 /// What a march begins with at a node, and below what it never falls there.

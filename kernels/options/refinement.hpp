@@ -39,8 +39,9 @@ struct Refinement {
 }
 
 /// Goes on from a price. The error falls by at least 4 where mesh and steps double. Where it does not fall,
-/// more steps are tried first, and still more where the values grew: jumps of long maturities are stiff.
-/// Where that does not help on a fine mesh either, nothing will. `tolerance`: money.
+/// more steps are tried first, and still more where the values grew: jumps of long maturities are stiff. It
+/// does where it falls as of an order of a half, as at a kink that hardly spreads. Where that does not help
+/// on a fine mesh either, nothing will. `tolerance`: money.
 inline void refine(Refinement& row, const Price& price, double tolerance, const Settings& settings) {
   constexpr int last_mesh = 2048, hopeless_mesh = 512;
   const int mesh = row.next.mesh;
@@ -48,7 +49,7 @@ inline void refine(Refinement& row, const Price& price, double tolerance, const 
   if (price.outcome == Outcome::ok) return;
   if (price.failure != Failure::none && price.failure != Failure::grown) return;
   const int most_often = price.failure == Failure::grown ? 16 : 4;
-  const bool stuck = price.outcome == Outcome::failed || (row.error > 0.0 && price.error > 0.5 * row.error);
+  const bool stuck = price.outcome == Outcome::failed || (row.error > 0.0 && price.error > 0.7 * row.error);
   row.error = price.error;
   int next = mesh;
   if (stuck && row.often < most_often && settings.steps == 0) {

@@ -205,7 +205,7 @@ KOKKOS_INLINE_FUNCTION Solution<R> march_nodes(const Workers& workers, const Put
   const R spread = 2.0 * jumps.diffusion * put.maturity;
   const R kink = h * (1.0 / 12) * spread / (spread + h * h);
   const Scheme<R> scheme = scheme_of(put, jumps, grid, steps);
-  Doubt<R> doubt = doubt_of(put, h, mesh, spread);
+  Doubt<R> doubt = doubt_of(put, law, h, steps, spread);
   doubt.gap += doubt_of_stiff_jumps(put, law, jumps, scheme, h);
   const StepTable<R> table{memory.law};
   JumpSpectrum<R> spectrum{};

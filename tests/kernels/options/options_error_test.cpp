@@ -41,21 +41,22 @@ Contract put(Style style, double spot, double maturity, double variance, const s
   return c;
 }
 
-/// Expects that nine of ten errors are below what is stated and that half are not ten times as small.
-void expect_covered(const std::vector<Price>& prices, const std::vector<Price>& known, const char* what) {
+/// Expects that all errors but a `part` are below what is stated and that half are not `most` times as small.
+void expect_covered(const std::vector<Price>& prices, const std::vector<Price>& known, const char* what,
+                    double most = 10.0, double part = 0.1) {
   std::vector<double> ratio;
   for (std::size_t k = 0; k < prices.size(); ++k) {
     const double error = std::abs(prices[k].price - known[k].price);
     ratio.push_back((prices[k].error + known[k].error) / (error + 1e-9));
   }
   std::ranges::sort(ratio);
-  const auto at = [&](double part) {
-    return ratio[static_cast<std::size_t>(part * static_cast<double>(ratio.size() - 1))];
+  const auto at = [&](double share) {
+    return ratio[static_cast<std::size_t>(share * static_cast<double>(ratio.size() - 1))];
   };
   std::printf("%s: stated over true error %.2g, %.2g, %.2g at 2, 10, 50 %% of the rows\n", what, at(0.02),
               at(0.1), at(0.5));
-  EXPECT_GE(at(0.1), 1.0) << what;
-  EXPECT_LE(at(0.5), 10.0) << what;
+  EXPECT_GE(at(part), 1.0) << what;
+  EXPECT_LE(at(0.5), most) << what;
 }
 
 // Heavy tails make steps so long that Brownian motion spreads the payoff over few of them.
@@ -85,6 +86,121 @@ TEST(OptionsError, BesideTheBoundaryOfExercise) {
   for (const int mesh : {128, 256})
     expect_covered(priced(on_mesh(mesh, mesh / 4), contracts), known,
                    mesh == 128 ? "128 intervals" : "256 intervals");
+}
+
+// There the kink of the payoff spreads over less than a step.
+TEST(OptionsError, AnHourAtTheStrike) {
+  std::vector<Contract> contracts;
+  for (const auto& law : laws)
+    for (const double hours : {1.0, 3.0})
+      for (const double variance : {0.01, 0.02, 0.04})
+        contracts.push_back(put(Style::european, 1.0, hours / 8760.0, variance, law));
+  const std::vector<Price> known = priced_by_fourier(contracts);
+  expect_covered(priced(on_mesh(128, 32), contracts), known, "an hour at the strike");
+  // The order is low, but grids of 1024 do meet that.
+  Contract heavy = put(Style::european, 1.0, 0.001, 0.002, {-3.0, 8.0, -4.5, 0.12});
+  heavy.rate = 0.036;
+  EXPECT_EQ(priced_to(1e-4, {heavy}).front().outcome, Outcome::ok);
+}
+
+// What cubic interpolation misses beside a sharp kink is more than its next term.
+TEST(OptionsError, BetweenTheNodesOfAnHour) {
+  std::vector<Contract> contracts;
+  for (const auto& law : laws)
+    for (const double deviations : {-2.5, -2.0, -1.5, -1.0, 1.0, 1.5, 2.0, 2.5})
+      for (const double days : {0.1, 0.3, 1.0}) {
+        const double maturity = days / 365.0;
+        contracts.push_back(
+            put(Style::european, std::exp(deviations * std::sqrt(0.02 * maturity)), maturity, 0.02, law));
+      }
+  const std::vector<Price> known = priced_by_fourier(contracts);
+  expect_covered(priced(on_mesh(128, 32), contracts), known, "between nodes", 10.0, 0.02);
+}
+
+// Few paths get from there to the boundary, where exercise at nodes leaves an error.
+TEST(OptionsError, FarAboveTheBoundary) {
+  std::vector<Contract> contracts;
+  for (const auto& law : laws) contracts.push_back(put(Style::american, 2.0, 0.25, 0.04, law));
+  const std::vector<Price> prices = priced(on_mesh(128, 128), contracts),
+                           known = priced(on_mesh(1024, 1024), contracts);
+  for (std::size_t k = 0; k < prices.size(); ++k) {
+    EXPECT_NEAR(prices[k].price, known[k].price, prices[k].error) << k;
+    EXPECT_LT(prices[k].error, 1.2e-6) << k;
+  }
+}
+
+/// European puts and calls of half a year to two years, about the strike and far from it.
+std::vector<Contract> about_the_strike(const std::vector<double>& spots) {
+  std::vector<Contract> contracts;
+  for (const auto& law : laws)
+    for (const double maturity : {0.5, 2.0})
+      for (const double spot : spots)
+        for (const Type type : {Type::put, Type::call}) {
+          contracts.push_back(put(Style::european, spot, maturity, 0.04, law));
+          contracts.back().type = type;
+        }
+  return contracts;
+}
+
+// What extrapolation leaves falls faster than the difference of two grids.
+TEST(OptionsError, FineGrids) {
+  const std::vector<Contract> contracts = about_the_strike({0.8, 0.93, 1.0, 1.1, 1.3});
+  const std::vector<Price> known = priced_by_fourier(contracts);
+  expect_covered(priced(on_mesh(512, 128), contracts), known, "512 intervals", 8.0);
+  expect_covered(priced(on_mesh(1024, 256), contracts), known, "1024 intervals", 8.0);
+}
+
+// Time decides there, whatever the mesh.
+TEST(OptionsError, FewStepsOnAFineMesh) {
+  const std::vector<Contract> contracts = about_the_strike({0.8, 0.93, 1.0, 1.1, 1.3});
+  const std::vector<Price> known = priced_by_fourier(contracts);
+  expect_covered(priced(on_mesh(1024, 16), contracts), known, "1024 intervals, 16 steps");
+}
+
+// Nothing is left but what the ends of the grid cost.
+TEST(OptionsError, FarOutOfTheMoney) {
+  std::vector<Contract> contracts;
+  for (const auto& law : laws) contracts.push_back(put(Style::european, 20.0, 0.02, 0.01, law));
+  for (const int mesh : {128, 512}) {
+    const std::vector<Price> prices = priced(on_mesh(mesh, mesh / 4), contracts),
+                             known = priced_by_fourier(contracts);
+    for (std::size_t k = 0; k < prices.size(); ++k) {
+      EXPECT_NEAR(prices[k].price, known[k].price, prices[k].error) << mesh << ' ' << k;
+      EXPECT_LT(prices[k].error, 0.01 / (mesh * mesh)) << mesh << ' ' << k;
+    }
+  }
+}
+
+// The price is the payoff, and the boundary lies far above: what other spots have for an error, or the cut of
+// the grid, does not matter.
+TEST(OptionsError, DeepInTheMoneyNothingIsInDoubt) {
+  std::vector<Contract> contracts;
+  for (const auto& law : laws) contracts.push_back(put(Style::american, 0.3, 0.5, 0.04, law));
+  const std::vector<Price> prices = priced(on_mesh(128, 32), contracts);
+  for (std::size_t k = 0; k < prices.size(); ++k) {
+    EXPECT_DOUBLE_EQ(prices[k].price, 0.7) << k;
+    EXPECT_GT(prices[k].error, 0.0) << k;
+    EXPECT_LT(prices[k].error, 1e-6) << k;
+  }
+}
+
+// Drift carries the spot over many deviations, so few steps resolve what changes on the way.
+TEST(OptionsError, DriftThatCrossesManyDeviations) {
+  std::vector<Contract> contracts;
+  for (const double rate : {0.1, -0.08})
+    for (const double spot : {0.85, 1.0, 1.2})
+      for (const double maturity : {10.0, 20.0, 30.0})
+        for (const Type type : {Type::put, Type::call}) {
+          Contract c = put(Style::european, 1.0, maturity, 0.0009, {});
+          c.model = Model::black_scholes;
+          c.rate = rate;
+          c.dividend = 0.0;
+          c.spot = spot * std::exp(-rate * maturity);
+          c.type = type;
+          contracts.push_back(c);
+        }
+  const std::vector<Price> known = priced_by_fourier(contracts);
+  expect_covered(priced(on_mesh(512, 64), contracts), known, "drift over many deviations");
 }
 
 // A jump that is the same every time falls between nodes. It is shared by them so that its mean stays.

@@ -134,7 +134,7 @@ TEST(OptionsSurface, StatedErrorsCoverAndDoNotExaggerate) {
     std::vector<double> ratio;
     for (std::size_t k = 0; k < prices.size(); ++k)
       ratio.push_back(prices[k].error /
-                      (std::abs(prices[k].price - known[k].price) + 1e-7 * contracts[k].strike));
+                      (std::abs(prices[k].price - known[k].price) + 1e-12 * contracts[k].strike));
     std::sort(ratio.begin(), ratio.end());
     std::printf("mesh %d: stated over true error %.2g, %.2g, %.2g at 10, 50, 90 %% of the prices\n", mesh,
                 ratio[ratio.size() / 10], ratio[ratio.size() / 2], ratio[ratio.size() * 9 / 10]);
