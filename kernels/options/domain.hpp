@@ -21,6 +21,18 @@ KOKKOS_INLINE_FUNCTION double cut_doubt(int mesh) { return 0.04 * cut_error(mesh
 
 inline constexpr int tilts = 12;  ///< of a bound, upwards and downwards each
 
+/// A tilt that is t where it is small, and short of where the law decays no faster.
+template <class R>
+KOKKOS_INLINE_FUNCTION R tilt_upwards(R t, R decay) {
+  return t * decay * device::reciprocal(t + decay);
+}
+
+/// ln E e^{theta X} of a year without the drift.
+template <class R>
+KOKKOS_INLINE_FUNCTION R cumulant_of(const PutPack<R>& put, const Law<R>& law, R theta) {
+  return 0.5 * put.variance * theta * theta + jump_cumulant(put, law, theta);
+}
+
 /// How far below the strike a grid has to reach for a premium of early exercise that does not begin at the
 /// strike; 0 where it does. Exercise gains r - q e^x a year: if q < r < 0 above the x = -onset where that is
 /// 0, if 0 < r < q below it. What is assumed at the cut lacks at most that premium, so it matters if a path
@@ -48,8 +60,7 @@ KOKKOS_INLINE_FUNCTION R reach_of_premium(const Workers& workers, const PutPack<
     }
     return least;
   };
-  const R reach =
-      workers.reduce(least_reach, [](const R& a, const R& b) { return device::minimum(a, b); })[0];
+  const R reach = minima(workers, least_reach)[0];
   return device::select(late & (between | (reach > onset)), reach, R(0.0));
 }
 
@@ -65,11 +76,10 @@ KOKKOS_INLINE_FUNCTION Domain<R> wide_domain(const Workers& workers, const PutPa
   workers.each([=, &put, &law](int lane) {
     for (int m = lane; m < 2 * n; m += workers.lanes) {
       const double t = 100.0 * power_of_two(rounder - 2 * (m % n));
-      const R theta =
-          m < n ? t * up * device::reciprocal(t + up) : -(t * down * device::reciprocal(t + down));
-      const R cumulant = 0.5 * put.variance * theta * theta + jump_cumulant(put, law, theta);
+      const R theta = m < n ? tilt_upwards(R(t), up) : -tilt_upwards(R(t), down);
       tilt[m] = theta;
-      growth[m] = device::maximum(R(0.0), put.maturity * (cumulant + mean * theta - put.rate));
+      growth[m] =
+          device::maximum(R(0.0), put.maturity * (cumulant_of(put, law, theta) + mean * theta - put.rate));
     }
   });
   const R spot_above = device::maximum(put.log_spot, R(0.0)),
@@ -87,8 +97,7 @@ KOKKOS_INLINE_FUNCTION Domain<R> wide_domain(const Workers& workers, const PutPa
     }
     return least;
   };
-  const Kokkos::Array<R, 2> ends =
-      workers.reduce(least_ends, [](const R& a, const R& b) { return device::minimum(a, b); });
+  const Kokkos::Array<R, 2> ends = minima(workers, least_ends);
   return {ends[0], ends[1]};
 }
 
@@ -116,10 +125,10 @@ KOKKOS_INLINE_FUNCTION Domain<R> domain_of(const Workers& workers, const PutPack
         const int k = m % n;
         const R t =
             2.0 * gaussian * ((k % 2 == 0 ? 1.0 : 0.7071067811865476) * power_of_two(rounder - k / 2));
-        theta = m < n ? t * up * device::reciprocal(t + up) : -(t * down * device::reciprocal(t + down));
+        theta = m < n ? tilt_upwards(t, up) : -tilt_upwards(t, down);
       }
       tilt[m] = theta;
-      cumulant[m] = 0.5 * put.variance * theta * theta + jump_cumulant(put, law, theta);
+      cumulant[m] = cumulant_of(put, law, theta);
     }
   });
   const R mean = put.rate - put.dividend - cumulant[2 * n];
@@ -143,8 +152,7 @@ KOKKOS_INLINE_FUNCTION Domain<R> domain_of(const Workers& workers, const PutPack
     }
     return least;
   };
-  const Kokkos::Array<R, 2> ends =
-      workers.reduce(least_ends, [](const R& a, const R& b) { return device::minimum(a, b); });
+  const Kokkos::Array<R, 2> ends = minima(workers, least_ends);
   Domain<R> domain{ends[0], ends[1]};
   const R premium = reach_of_premium(workers, put, spot_below, base, tilt, grown);
   // psi is convex, so a chord lies above it: where the chord between the last tilt at which psi is not above

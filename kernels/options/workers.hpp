@@ -75,6 +75,12 @@ KOKKOS_INLINE_FUNCTION auto sums(const Workers& workers, const F& f) {
   return workers.reduce(f, [](const auto& a, const auto& b) { return a + b; });
 }
 
+/// The least of the arrays f(lane) of all lanes, number by number.
+template <class Workers, class F>
+KOKKOS_INLINE_FUNCTION auto minima(const Workers& workers, const F& f) {
+  return workers.reduce(f, [](const auto& a, const auto& b) { return device::minimum(a, b); });
+}
+
 /// y_i = a_i + g y_{i+1} for i = 0 .. lanes block - 1 in place, from 0 beyond, on n arrays: each lane runs
 /// through its block, then blocks are joined by doubling (Kogge and Stone). `slot` holds 2 lanes values.
 template <int n, class R>

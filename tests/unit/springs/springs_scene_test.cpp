@@ -218,7 +218,8 @@ TEST(SpringsScene, ReinforcementsAreLinesOfTheirOwn) {
 TEST(SpringsScene, ClosedFormsKnowWhichReinforcementTheyBear) {
   const std::string sheet = "app = \"springs\"\n[mesh]\nrectangle = { vertices = 9 }\n[time]\nend_time = 1\n";
   const auto young = [&](const std::string& where) {
-    return error_of({"reinforcement=[{where=\"" + where + "\",axial_stiffness=1}]", "verify.young=1e-9"},
+    return error_of({"reinforcement=[{where=\"" + where + "\",axial_stiffness=1}]", "verify.young=1e-9",
+                     "pin=[{where=\"x==1\",motion={x=1e-3}}]"},
                     sheet);
   };
   EXPECT_EQ(young("y==0.5"), "");
