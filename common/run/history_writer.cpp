@@ -66,6 +66,7 @@ HistoryWriter::HistoryWriter(std::filesystem::path file, const std::vector<Colum
     throw io_failure("write", _file, error);
   }
   if (kept == 0) _pending = first_line;
+  _continues = kept > first_line.size();
 }
 
 HistoryWriter::~HistoryWriter() {

@@ -31,6 +31,9 @@ class HistoryWriter {
   HistoryWriter(const HistoryWriter&) = delete;
   HistoryWriter& operator=(const HistoryWriter&) = delete;
 
+  /// Whether rows of the existing file were kept.
+  [[nodiscard]] bool continues() const { return _continues; }
+
   /// Appends a row; `values` has one entry per column after the time.
   void append(double time, std::span<const double> values);
 
@@ -43,6 +46,7 @@ class HistoryWriter {
  private:
   std::filesystem::path _file;
   std::size_t _width;
+  bool _continues = false;
   int _descriptor = -1;
   std::string _pending;
   std::chrono::steady_clock::time_point _last_flush;

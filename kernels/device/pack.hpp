@@ -250,7 +250,8 @@ Root<Pack<T, L>> root(Pack<T, L> x) {
 
 // All lanes are taken; in the intrinsics without a mask GCC 12 warns of a value that it does not use.
 
-/// 1 - a b with one rounding: a compiler that fuses no operations would leave an error as large as 1 has.
+/// 1 - a b with one rounding, where a compiler that fuses no operations would leave the error of a b, as
+/// large as that of 1.
 inline Pack<double, 8> one_less(Pack<double, 8> a, Pack<double, 8> b) {
   return Pack<double, 8>::of(_mm512_mask3_fnmadd_pd(a.v, b.v, Pack<double, 8>(1.0).v, 0xFF));
 }
@@ -263,7 +264,8 @@ inline Pack<double, 8> reciprocal(Pack<double, 8> x) {
   return better + better * (e * e);
 }
 
-/// With e = 1 - x y^2, 1/sqrt(x) is y (1 - e)^(-1/2), here its series to e^4.
+/// With e = 1 - x y^2, 1/sqrt(x) is y (1 - e)^(-1/2), here its series to e^4. Of e half counts, so that the
+/// rounding of x y costs half a digit.
 inline Root<Pack<double, 8>> root(Pack<double, 8> x) {
   auto y = Pack<double, 8>::of(_mm512_mask_rsqrt14_pd(x.v, 0xFF, x.v));
   const Pack<double, 8> e = one_less(x * y, y);

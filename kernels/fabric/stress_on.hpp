@@ -81,8 +81,8 @@ struct StressFunctor {
 
 /// The stress at each vertex: the mean over its triangles, weighted by their areas at rest and in the order
 /// of the mesh, in the plane across their mean normal. Stress has no side, and in a mesh of a file neighbours
-/// may turn against one another: each normal counts on the side of those before it. Without triangles there
-/// is none.
+/// may turn against one another: each normal counts on the side of those before it. So a fold by more than a
+/// right angle is laid flat, as it lies. Without triangles there is none.
 template <class ExecutionSpace>
 struct VertexStressFunctor {
   TriangleViews<ExecutionSpace> triangles;

@@ -16,7 +16,7 @@ KOKKOS_INLINE_FUNCTION double cut_error(int mesh) { return 0.03 / (double(mesh) 
 /// What it does change, of the strike. Chernoff's bounds of the legs lack what a tail is short of its bound,
 /// for a normal one 1/(t s sqrt(2 pi)), t the tilt and s the deviation, below 0.09 for each path that gets to
 /// a cut and back, and what such a path finds below the strike, less than all of it. So the ends are chosen
-/// with care to spare; of random laws hardly any misses more than this part.
+/// with care to spare, and the part is fitted.
 KOKKOS_INLINE_FUNCTION double cut_doubt(int mesh) { return 0.04 * cut_error(mesh); }
 
 inline constexpr int tilts = 12;  ///< of a bound, upwards and downwards each

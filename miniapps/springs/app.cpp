@@ -42,8 +42,13 @@ bool holds_results(const std::filesystem::path& directory) {
   return false;
 }
 
-/// `--restart auto` without a restart file begins anew, but only what was begun before.
-void require_same_scene(const SpringsScene& scene, const std::filesystem::path& directory) {
+/// In a directory that holds results `--restart auto` without a restart file begins anew, and the restart
+/// file of another directory goes on, but only if they are of the same scene.
+void require_same_scene(const SpringsScene& scene, const std::filesystem::path& directory,
+                        const std::filesystem::path& restart) {
+  const std::filesystem::path from = restart.has_parent_path() ? restart.parent_path() : ".";
+  if (std::error_code ignored; !restart.empty() && std::filesystem::equivalent(from, directory, ignored))
+    return;
   bool same = false;
   try {
     // A copy of the scene in another folder finds no mesh file beside it.
@@ -52,9 +57,10 @@ void require_same_scene(const SpringsScene& scene, const std::filesystem::path& 
     // No scene, or none of this program.
   }
   if (!same)
-    throw Failure(ExitCode::usage, "'" + directory.string() +
-                                       "' holds a run of another scene and no restart file; choose another "
-                                       "--out, or give --overwrite to replace it");
+    throw Failure(ExitCode::usage, "'" + directory.string() + "' holds a run of another scene" +
+                                       (restart.empty() ? " and no restart file; choose another --out, or "
+                                                          "give --overwrite to replace it"
+                                                        : "; choose another --out"));
 }
 
 run::ExistingRun existing_run(const MiniAppOptions& options, bool is_empty,
@@ -111,8 +117,7 @@ ExitCode run_scene(const MiniAppOptions& options, const std::filesystem::path& f
   try {
     const SpringsScene scene = read_springs_scene(file, options.set);
     const device::Backend backend = choose_backend(options.backend);
-    if (!is_empty && options.restart == "auto" && restart.empty() && !options.overwrite)
-      require_same_scene(scene, out);
+    if (!is_empty && !options.restart.empty() && !options.overwrite) require_same_scene(scene, out, restart);
     run_in(directory, scene, backend, options, restart, result);
   } catch (...) {
     const Failure failure = current_failure();

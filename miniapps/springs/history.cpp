@@ -62,7 +62,6 @@ History read_history(const std::filesystem::path& file) {
 
 void take_history(const std::filesystem::path& restart, const std::vector<run::Column>& columns,
                   const std::filesystem::path& file) {
-  // A copy of it under another name may lie beside the rows of another run.
   if (restart.filename() != "restart.h5" || std::filesystem::exists(file)) return;
   const std::filesystem::path before = restart.parent_path() / "history.csv";
   std::string line;

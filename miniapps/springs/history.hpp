@@ -18,9 +18,9 @@ std::vector<run::Column> history_columns(const SpringsScene& scene);
 using History = std::map<std::string, std::vector<double>>;
 History read_history(const std::filesystem::path& file);
 
-/// Copies the history.csv that lies beside the restart file of a run to `file`, unless there is one already
-/// or its columns are others: so that a run that is continued elsewhere is checked as a whole too. Throws
-/// Failure(io_error).
+/// Copies the history.csv that lies beside the restart.h5 of a run to `file`, unless there is one already or
+/// its columns are others: so that a run that is continued elsewhere is checked as a whole too. What lies
+/// beside a restart file of another name may be of another run, and stays. Throws Failure(io_error).
 void take_history(const std::filesystem::path& restart, const std::vector<run::Column>& columns,
                   const std::filesystem::path& file);
 

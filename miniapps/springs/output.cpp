@@ -57,9 +57,8 @@ RunOutput::RunOutput(const SpringsScene& scene, const run::RunDirectory& directo
     const std::filesystem::path file = directory.file("history.csv");
     const std::vector<run::Column> columns = history_columns(scene);
     if (resume_time) take_history(restart, columns, file);
-    _continues_rows = resume_time && std::filesystem::exists(file);
-    if (_continues_rows) _last_row_time = *resume_time;
     _history.emplace(file, columns, resume_time);
+    if (_history->continues()) _last_row_time = *resume_time;
   }
   if (scene.output.fields.empty()) return;
   _fields.emplace(directory.path(), scene.name, field_specs(scene), resume_time);

@@ -42,7 +42,7 @@ class RunOutput {
             const std::filesystem::path& restart);
 
   /// Whether rows of before are there to be continued.
-  [[nodiscard]] bool continues_rows() const { return _continues_rows; }
+  [[nodiscard]] bool continues_rows() const { return _history && _history->continues(); }
 
   void write_row(const Row& row);
   void write_fields(Snapshot snapshot);
@@ -62,7 +62,6 @@ class RunOutput {
   std::string _fingerprint;
   std::optional<run::HistoryWriter> _history;
   std::optional<run::FieldsWriter> _fields;
-  bool _continues_rows = false;
   double _last_row_time = -1.0;
   double _waited = 0.0;
   run::BackgroundWriter _writer;  // last: its thread uses the others until it is gone

@@ -85,7 +85,7 @@ void check_verify(const Table& root, const SpringsScene& scene) {
     require(root, (source.strip || source.rectangle) && fabric::has_triangles(scene.fabric.material.model),
             name, "mesh.strip or mesh.rectangle, and model quadratic or biquadratic");
     require(root, std::ranges::any_of(scene.pins, [](const Pin& pin) { return !pin.motion.x.empty(); }), name,
-            "a pin whose motion.x pulls");
+            "a pin with motion.x, which pulls");
     require(root, even_line_stiffness(scene.mesh).has_value(), name,
             "reinforcements that run along x from end to end, with the same stiffness all the way");
   }

@@ -22,8 +22,8 @@ double seconds_since(Clock::time_point begin) {
   return std::chrono::duration<double>(Clock::now() - begin).count();
 }
 
-/// Absolute damping times dt beyond which half a kick of Verlet's method turns a velocity round: the middle
-/// of the half kick takes (1 - z/4)/(1 + z/4) of it.
+/// Absolute damping times dt, z, beyond which half a kick of Verlet's method turns a velocity round, of which
+/// it leaves (1 - z/4)/(1 + z/4).
 constexpr double turning_damping = 4.0;
 
 /// Device time after which the host looks whether a signal came.
@@ -73,13 +73,13 @@ Simulation::Simulation(const SpringsScene& scene, const RunSettings& settings)
 
 void Simulation::resume() {
   const RestartState state = read_restart(_settings.restart, _scene);
-  run::require_not_after(_settings.restart, state.clock.time(), "time.end_time", _scene.time.end_time);
   _solver->set_clock(state.clock);
   _solver->upload(_problem.to_solver(state.x), _problem.to_solver(state.v));
   if (_scene.contact.asked_for())
     _solver->set_contact_work(_problem.to_solver(std::span<const fabric::ContactWork>(state.contact_work)));
   _stop_step = state.stop_step;
   _stop_time = state.stop_time;
+  run::require_not_after(_settings.restart, time(), "time.end_time", _scene.time.end_time);
   _dt_min = state.dt_min;
   _dt_max = state.dt_max;
   // Other outputs than before, another end or other steps: from here on they are met.
@@ -98,17 +98,17 @@ bool Simulation::is_output_time(double time) const {
   return std::ranges::count(_scene.output.times, time) > 0;
 }
 
-/// Where nothing in the fabric is faster than `frequency`, rad/s. Verlet's method is stable at any absolute
-/// damping; but no step takes more velocity away than there is, so that it slows and does not turn round.
+/// Where nothing in the fabric is faster than `frequency`, rad/s.
 double Simulation::longest_stable_step(double frequency) {
-  const double stable = fabric::stable_dt(_scene.time.integrator, frequency, _solver->fastest_decay());
-  const double damping = _scene.damping.absolute;
-  return damping * stable > 1.0 && _scene.time.integrator == fabric::Integrator::verlet ? 1.0 / damping
-                                                                                        : stable;
+  return fabric::stable_dt(_scene.time.integrator, frequency, _solver->fastest_decay());
 }
 
+/// What automatic steps are a share of.
 double Simulation::stable_dt() {
-  const double stable = longest_stable_step(_solver->fastest_frequency());
+  double stable = longest_stable_step(_solver->fastest_frequency());
+  // Verlet's method is stable at any absolute damping, but what damping slows it follows in steps below 1/K.
+  const double damping = _scene.damping.absolute;
+  if (_scene.time.integrator == fabric::Integrator::verlet && damping * stable > 1.0) stable = 1.0 / damping;
   if (!_scene.contact.self) return stable;
   // Contact looks about as far as it moves: a tenth of an edge a step keeps its lists short.
   std::vector<Vector> x(_problem.x.size()), v(x.size());
@@ -154,13 +154,14 @@ void Simulation::replan_if_stiffer() {
 std::string Simulation::too_long_step() {
   const Time& asked = _scene.time;
   const double dt = _solver->clock().dt, bound = _solver->fastest_frequency();
-  if (!asked.dt || dt <= longest_stable_step(bound)) return {};
+  if (!asked.dt) return {};
   std::ostringstream text;
   text << "a step of " << dt << " s is too long: ";
   if (asked.integrator == fabric::Integrator::verlet && _scene.damping.absolute * dt > turning_damping) {
     text << "damping.absolute = " << _scene.damping.absolute << " 1/s turns velocities round in it";
     return text.str();
   }
+  if (dt <= longest_stable_step(bound)) return {};
   if (bound > 1.01 * _asked_at) {
     _asked_at = bound;
     const double frequency = _solver->frequency_at_least();
@@ -229,7 +230,8 @@ bool Simulation::advance(std::int64_t steps, ProgressLine& progress) {
 /// From the state that the solver went back to on through the steps before `lost`, which were good.
 void Simulation::return_to_last_good(std::int64_t lost) {
   round_trip();  // what is uploaded has not failed
-  static_cast<void>(_solver->advance(lost - 1 - _solver->clock().step) && !_solver->failure());
+  _solver->advance(lost - 1 - _solver->clock().step);
+  _solver->failure();  // waits
 }
 
 /// What falls on the step now.
@@ -268,7 +270,7 @@ ExitCode Simulation::run(const run::RunDirectory& directory, run::ResultDocument
   }
   progress.finish();
   const auto failure = _solver->failure();
-  if (failure) return_to_last_good(failure->step);
+  if (failure && _settings.can_be_continued) return_to_last_good(failure->step);
   const bool done = !failure && _solver->clock().step == _stop_step;
   if (!done && _settings.can_be_continued) output.write_restart(restart_state());
   output.finish();

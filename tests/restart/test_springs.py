@@ -101,6 +101,35 @@ class Restart(springs_program.SpringsTest):
         work = self.history("whole")["contact_work"]
         self.assertLess(work[-1], work[0])
 
+    def test_a_run_that_is_done(self):
+        """Its last step may end an ulp after the end, in a sum of steps."""
+        words = ["--quiet", "--backend", "serial", "--out"]
+        for end in (0.06, 0.07, 0.11, 0.12, 0.23, 0.29):
+            sets = ["output.restart_every=1", f"time.end_time={end}", f"output.times=[{end}]"]
+            self.expect(0, self.scene, *words, f"{end}", sets=sets)
+            rows = self.history(f"{end}")
+            self.expect(0, self.scene, *words, f"{end}", "--restart", "auto", sets=sets)
+            self.assertEqual((rows, end), (self.history(f"{end}"), self.result(f"{end}")["time"]))
+
+    def test_a_folder_of_another_run(self):
+        self.finish("serial", "part")
+        words = ["--quiet", "--backend", "serial", "--out", "other"]
+        self.expect(0, self.scene, *words, sets=[*SETS, "material.poisson=0.2"])
+        before = (self.folder / "other/history.csv").read_text()
+        message = self.expect(2, self.scene, *words, "--restart", "part/restart.h5", sets=SETS).stderr
+        self.assertIn("'other' holds a run of another scene; choose another --out", message)
+        self.assertEqual(before, (self.folder / "other/history.csv").read_text())
+
+    def test_rows_that_are_lost(self):
+        """Then they begin at the restart."""
+        self.finish("serial", "part")
+        history = self.folder / "part/history.csv"
+        history.write_text(history.read_text().splitlines()[0] + "\n")
+        self.finish("serial", "part", "--restart", "auto")
+        first = self.history("part")["step"][0]
+        self.assertEqual(0, first % 50)
+        self.assertGreater(first, 0)
+
     def test_an_end_that_is_over(self):
         self.finish("serial", "part")
         sets = [*SETS, "time.end_time=1.5", "output.times=[0.6]"]

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "kernels/fabric/solver.hpp"
 #include "kernels/reference/fabric/stress.hpp"
@@ -191,6 +192,23 @@ TEST(FabricStress, AtAVertexIsTheMeanByAreas) {
   // Both pull along y: the mean tensor, and the direction of nothing across.
   EXPECT_NEAR(vertices[0].tensor()[3], (first + 2.0 * second) / 3.0, 1e-10);
   EXPECT_NEAR(std::abs(vertices[0].across[0]), 1.0, 1e-12);
+}
+
+TEST(FabricStress, AtASharpFoldIsThatOfItsLayers) {
+  // Drawn across the fold, which leaves 10 degrees between the layers.
+  Parameters p;
+  p.mesh.rest = {{0, 0, 0}, {0, 1, 0}, {1, 0, 0}, {-1, 0, 0}};
+  p.mesh.triangles = {{0, 2, 1}, {0, 1, 3}};
+  p.material.poisson = 0.0;
+  p.mass.assign(4, 1.0);
+  p.dt = 1e-3;
+  const double l = 1.1, angle = std::numbers::pi / 18;
+  const auto solver = at(p, {{0, 0, 0}, {0, 1, 0}, {l, 0, 0}, {l * std::cos(angle), 0, l * std::sin(angle)}});
+  std::vector<Stress> vertices(4);
+  solver->vertex_stress(StressMeasure::nominal, vertices);
+  const double expected = 1000.0 * 0.5 * (l * l - 1.0) * l, leaning = std::cos(0.5 * angle);
+  for (const std::size_t shared : {0, 1})
+    EXPECT_NEAR(vertices[shared].major, expected * leaning * leaning, 1e-10);
 }
 
 TEST(FabricStress, VonMisesOfPrincipalValues) {

@@ -41,7 +41,8 @@ Contract put(Style style, double spot, double maturity, double variance, const s
   return c;
 }
 
-/// Expects that all errors but a `part` are below what is stated and that half are not `most` times as small.
+/// Expects that all errors but a `part` are below what is stated, and the median of their quotients at most
+/// `most`.
 void expect_covered(const std::vector<Price>& prices, const std::vector<Price>& known, const char* what,
                     double most = 10.0, double part = 0.1) {
   std::vector<double> ratio;
