@@ -90,8 +90,10 @@ Solution gas_solution(const Problem& problem, device::Backend backend, const gas
 
 }  // namespace
 
-bool gas_work_precision(const std::vector<device::Backend>& backends, bool quick, const SolutionSink& sink) {
-  for (const Problem& problem : quick ? quick_problems : problems) {
+bool gas_work_precision(const SolutionsAsked& asked, const SolutionSink& sink) {
+  const std::vector<device::Backend>& backends = asked.backends;
+  for (const Problem& problem : asked.quick ? quick_problems : problems) {
+    if (!asked.wants(problem.scene)) continue;
     gas_app::GasScene scene =
         gas_app::read_gas_scene(gas_app::scene_folder() / (std::string(problem.scene) + ".toml"));
     std::optional<gas_app::Reference> finer = gas_app::Reference{};
@@ -103,7 +105,7 @@ bool gas_work_precision(const std::vector<device::Backend>& backends, bool quick
       sink(gas_solution(problem, device::Backend::serial,
                         {"muscl-hancock", "muscl-hancock", "", "", "double"}, 1, scene.parameters.cells,
                         muscl_hancock_run(scene, exact)));
-      for (const gas::Parameters& p : schemes(scene.parameters, quick))
+      for (const gas::Parameters& p : schemes(scene.parameters, asked.quick))
         for (const device::Backend backend : backends) {
           gas_app::GasScene point = scene;
           point.parameters = p;

@@ -133,13 +133,14 @@ Solution options_solution(const KnownPuts& puts, device::Backend backend, const 
 
 }  // namespace
 
-bool options_work_precision(const std::vector<device::Backend>& backends, bool quick,
-                            const SolutionSink& sink) {
+bool options_work_precision(const SolutionsAsked& asked, const SolutionSink& sink) {
+  const bool quick = asked.quick;
   for (const KnownPuts& puts : known_puts()) {
     if (quick && &puts != &known_puts()[0] && std::string(puts.name) != "merton") continue;
+    if (!asked.wants(puts.name)) continue;
     std::vector<OptionsPoint> points = pide_points(quick);
     std::ranges::copy(other_points(puts, quick), std::back_inserter(points));
-    for (const device::Backend backend : backends) {
+    for (const device::Backend backend : asked.backends) {
       std::set<std::pair<std::string, std::int64_t>> done;
       for (const OptionsPoint& point : points) {
         if (interrupted()) return false;

@@ -6,6 +6,7 @@
 
 #include "common/run/statistics.hpp"
 #include "perf/command.hpp"
+#include "perf/filter.hpp"
 #include "perf/record.hpp"
 
 namespace drogue::perf {
@@ -23,17 +24,6 @@ nlohmann::json to_json(const Facts& facts) {
   if (facts.flops > 0.0) json["flops"] = facts.flops;
   if (facts.bytes > 0.0) json["bytes"] = facts.bytes;
   return json;
-}
-
-std::regex filter_of(const std::string& text) {
-  try {
-    return std::regex(text);
-  } catch (const std::regex_error&) {
-    throw Failure(ExitCode::usage,
-                  "--filter '" + text +
-                      "' is no regular expression; a bracket or a star that stands for itself "
-                      "needs a backslash before it");
-  }
 }
 
 std::vector<Case> matching_cases(const std::regex& filter, bool quick) {

@@ -28,25 +28,30 @@ struct Solution {
 
 using SolutionSink = std::function<void(const Solution&)>;
 
+/// What is to be solved.
+struct SolutionsAsked {
+  std::vector<device::Backend> backends;
+  bool quick = false;
+  std::function<bool(const std::string&)> wants;  ///< called once for each problem
+};
+
 /// Runs the entropy wave, Shu-Osher, the blast waves, LeBlanc and Sod on doubling meshes in every combination
 /// of WENO-JS, -Z, -M and TENO5, splitting, time scheme (CFL 0.6 and 1.2, the same work) and precision on
-/// each of `backends`, and the MUSCL-Hancock scheme of `kernels/reference` beside them. A solution is passed
+/// each backend, and the MUSCL-Hancock scheme of `kernels/reference` beside them. A solution is passed
 /// on as soon as it is there. `quick`: two small meshes of the wave and of Sod. Returns false after a signal.
-bool gas_work_precision(const std::vector<device::Backend>& backends, bool quick, const SolutionSink& sink);
+bool gas_work_precision(const SolutionsAsked& asked, const SolutionSink& sink);
 
 /// Prices the puts of `known_puts`, repeated to a batch, by `pide` in every combination of mesh, steps a
 /// mesh, one grid or two, and exercise (in the solve, split off, European), by the dissertation's scheme on
-/// the same meshes where it has the jumps, and by `cos` to falling tolerances, on each of `backends`. Errors
+/// the same meshes where it has the jumps, and by `cos` to falling tolerances, on each backend. Errors
 /// are the largest of a price over the strike; European prices are held against Fourier's integral. `quick`:
 /// two small meshes of the dissertation's contract and of Merton's jumps. Returns false after a signal.
-bool options_work_precision(const std::vector<device::Backend>& backends, bool quick,
-                            const SolutionSink& sink);
+bool options_work_precision(const SolutionsAsked& asked, const SolutionSink& sink);
 
 /// Runs the drum, Hencky's membrane and the catenary on meshes whose edges are halved, in every combination
-/// of model (of cloth), masses and integrator on each of `backends`. Errors are relative: of the frequency,
+/// of model (of cloth), masses and integrator on each backend. Errors are relative: of the frequency,
 /// of the deflection at the centre, and of the farthest vertex over the span. `quick`: two small meshes of
 /// the drum and of the catenary. Returns false after a signal.
-bool springs_work_precision(const std::vector<device::Backend>& backends, bool quick,
-                            const SolutionSink& sink);
+bool springs_work_precision(const SolutionsAsked& asked, const SolutionSink& sink);
 
 }  // namespace drogue::perf

@@ -63,14 +63,14 @@ Solution springs_solution(const SpringsProblem& problem, device::Backend backend
 
 }  // namespace
 
-bool springs_work_precision(const std::vector<device::Backend>& backends, bool quick,
-                            const SolutionSink& sink) {
+bool springs_work_precision(const SolutionsAsked& asked, const SolutionSink& sink) {
   springs_app::Scratch scratch(std::filesystem::temp_directory_path() /
                                ("drogue-perf-" + std::to_string(getpid())));
-  for (const SpringsProblem& problem : quick ? quick_springs_problems : springs_problems) {
+  for (const SpringsProblem& problem : asked.quick ? quick_springs_problems : springs_problems) {
+    if (!asked.wants(problem.scene)) continue;
     const auto file = springs_app::scene_folder() / (std::string(problem.scene) + ".toml");
     for (const springs_app::StudyPoint& point : springs_app::study_points(file, {}, problem.axes))
-      for (const device::Backend backend : backends) {
+      for (const device::Backend backend : asked.backends) {
         const bool host = backend != device::Backend::cuda;
         if (host && point.scene.mesh.rest.size() > problem.most_on_host) continue;
         springs_app::RepeatedRun run =

@@ -9,6 +9,7 @@
 #include "common/run/result_document.hpp"
 #include "common/run/statistics.hpp"
 #include "perf/command.hpp"
+#include "perf/filter.hpp"
 #include "perf/record.hpp"
 #include "perf/solution.hpp"
 
@@ -16,7 +17,7 @@ namespace drogue::perf {
 namespace {
 
 struct WorkPrecisionOptions {
-  std::string out;
+  std::string filter, out;
   std::string app = "gas", backend = "auto";
   bool quick = false;
 };
@@ -34,7 +35,7 @@ std::vector<device::Backend> backends_of(const std::string& name) {
 /// What a mini-app's problems are solved by, and how its records call a sample.
 struct WorkPrecision {
   const char* app;
-  bool (*solve)(const std::vector<device::Backend>&, bool quick, const SolutionSink&);
+  bool (*solve)(const SolutionsAsked&, const SolutionSink&);
   const char *unit, *bound;
 };
 constexpr WorkPrecision apps[] = {
@@ -83,18 +84,29 @@ void print(const Solution& solution) {
 
 ExitCode measure_solutions(const WorkPrecisionOptions& options, const std::vector<std::string>& kokkos) {
   const WorkPrecision& app = work_precision_of(options.app);
-  const std::vector<device::Backend> backends = backends_of(options.backend);
+  const std::regex filter = filter_of(options.filter);
+  std::string known;
+  bool matched = false;
+  const auto wants = [&](const std::string& problem) {
+    known += (known.empty() ? "" : ", ") + problem;
+    const bool wanted = std::regex_search(problem, filter);
+    matched = matched || wanted;
+    return wanted;
+  };
+  const SolutionsAsked asked{backends_of(options.backend), options.quick, wants};
   const device::Runtime runtime(kokkos);
   install_signal_handlers();
   const nlohmann::json here = provenance(device::device_facts());
   std::vector<nlohmann::json> lines;
-  const bool finished = app.solve(backends, options.quick, [&](const Solution& solution) {
+  const bool finished = app.solve(asked, [&](const Solution& solution) {
     print(solution);
     lines.push_back(to_json(app, solution, here));
     // Early, so that a file that cannot be written is found before hours are spent; and what ends a long run
     // leaves most of what it has found.
     if (lines.size() % 32 == 1 && run::is_replaced(options.out)) write_records(options.out, lines);
   });
+  if (finished && !matched)
+    throw Failure(ExitCode::usage, "no problem matches '" + options.filter + "'; there are " + known);
   // What a signal ended is kept as far as it came.
   write_records(options.out, lines);
   return finished ? ExitCode::ok : ExitCode::interrupted;
@@ -112,6 +124,7 @@ Command work_precision_command(CLI::App& program) {
   app->add_option("--backend", options->backend, "auto takes all that are present")
       ->check(CLI::IsMember({"auto", "serial", "openmp", "cuda"}))
       ->capture_default_str();
+  app->add_option("--filter", options->filter, "Regular expression for the names of the problems");
   app->add_option("--out", options->out, "File for the records, one JSON line a run to solution");
   app->add_flag("--quick", options->quick, "Two small meshes of two problems");
   return {app,

@@ -38,13 +38,9 @@ class PricerOn final : public Pricer {
               "options pricer: the dissertation's scheme has generalized hyperbolic jumps");
     Timing timing;
     if (contracts.empty()) return timing;
-    const Clock building;
-    _panels.build(contracts);
-    timing.compute = building.seconds();
     const Clock copying_in;
     reserve(contracts.size());
     device::copy_in(_instance.space(), _contracts, staged(contracts), contracts.size());
-    _panels.copy_in(_instance.space());
     _instance.space().fence("drogue::options: contracts are copied");
     timing.h2d = copying_in.seconds();
     if (_settings.mesh == 0 && _settings.method == Method::pide) {
@@ -53,7 +49,7 @@ class PricerOn final : public Pricer {
       const int mesh = _settings.mesh == 0 ? seed_mesh : _settings.mesh;
       const Clock computing;
       launch_models(contracts, {mesh, steps_of(mesh)}, [](std::size_t) { return true; });
-      timing.compute += computing.seconds();
+      timing.compute = computing.seconds();
       copy_out(prices, timing);
     }
     return timing;
@@ -97,6 +93,8 @@ class PricerOn final : public Pricer {
   }
 
   static constexpr int first_mesh = 64, seed_mesh = 128, record_mesh = 512, models = 4;
+  /// Contracts that the host looks through for a launch, while a device is busy with those before.
+  static constexpr std::size_t slab = 1 << 17;
 
   struct Recorded {
     std::vector<double> time, boundary, x, value;
@@ -112,13 +110,13 @@ class PricerOn final : public Pricer {
     const std::span<const Contract> one(&contract, 1);
     reserve(1);
     _panels.build(one);
-    _panels.copy_in(_instance.space());
     device::copy_in(_instance.space(), _contracts, &contract, 1);
     const auto steps = static_cast<std::size_t>(effort.steps),
                nodes = static_cast<std::size_t>(effort.mesh) + 1;
     const View<double> all("drogue::options::record", 2 * (steps + nodes));
     double* const at = all.data();
-    launch({0}, effort, {at, at + steps, at + 2 * steps, at + 2 * steps + nodes});
+    constexpr int first[] = {0};
+    launch(first, 0, effort, {at, at + steps, at + 2 * steps, at + 2 * steps + nodes});
     std::vector<double> values(all.size());
     device::copy_out(_instance.space(), values.data(), all, values.size());
     _instance.space().fence("drogue::options: record is there");
@@ -150,7 +148,7 @@ class PricerOn final : public Pricer {
         View<Contract>(Kokkos::view_alloc("drogue::options::contracts", Kokkos::WithoutInitializing), count);
     _prices = View<Price>(Kokkos::view_alloc("drogue::options::prices", Kokkos::WithoutInitializing), count);
     _order = View<int>(Kokkos::view_alloc("drogue::options::order", Kokkos::WithoutInitializing), count);
-    _rows.clear();
+    _rows.assign(count, -1);
   }
 
   /// The contracts where a device copies them from without a detour.
@@ -174,31 +172,46 @@ class PricerOn final : public Pricer {
     timing.d2h += copying.seconds();
   }
 
-  /// Prices the contracts k for which `asked(k)`, those of a model in a launch.
+  /// Prices the contracts k for which `asked(k)`, those of a model and a slab in a launch.
   template <class Asked>
   void launch_models(std::span<const Contract> contracts, const Effort& effort, const Asked& asked) {
-    std::vector<int> rows[models];
-    rows[static_cast<std::size_t>(contracts.front().model)].reserve(contracts.size());
-    for (std::size_t k = 0; k < contracts.size(); ++k)
-      if (asked(k)) rows[static_cast<std::size_t>(contracts[k].model)].push_back(static_cast<int>(k));
-    for (std::vector<int>& of_model : rows) launch(std::move(of_model), effort, Record{});
+    for (std::size_t begin = 0; begin < contracts.size(); begin += slab) {
+      const std::size_t end = std::min(begin + slab, contracts.size());
+      std::vector<int> rows[models];
+      rows[static_cast<std::size_t>(contracts[begin].model)].reserve(end - begin);
+      for (std::size_t k = begin; k < end; ++k) {
+        if (!asked(k)) continue;
+        _panels.build(contracts.subspan(k, 1));
+        rows[static_cast<std::size_t>(contracts[k].model)].push_back(static_cast<int>(k));
+      }
+      std::size_t place = begin;
+      for (const std::vector<int>& of_model : rows) {
+        launch(of_model, place, effort, Record{});
+        place += of_model.size();
+      }
+    }
+    _instance.space().fence("drogue::options: priced");
   }
 
-  void launch(std::vector<int> rows, const Effort& effort, const Record& record) {
+  /// Enqueues the launch for `rows`, whose numbers go to `place` in the order.
+  void launch(std::span<const int> rows, std::size_t place, const Effort& effort, const Record& record) {
     if (rows.empty()) return;
-    if (rows != _rows) {
-      device::copy_in(_instance.space(), _order, rows.data(), rows.size());
-      _rows.swap(rows);
+    const auto order = Kokkos::subview(_order, std::pair(place, place + rows.size()));
+    int* const known = _rows.data() + place;
+    if (!std::equal(rows.begin(), rows.end(), known)) {
+      std::ranges::copy(rows, known);
+      device::copy_in(_instance.space(), order, known, rows.size());
     }
+    _panels.copy_in(_instance.space());
     PriceBatch<ExecutionSpace> batch;
     batch.contracts = _contracts;
     batch.prices = _prices;
-    batch.order = _order;
+    batch.order = order;
     batch.panels = _panels.series();
     batch.panel_slot = _panels.slots();
     batch.roots = _roots.of_mesh(_instance.space(), effort.mesh);
     batch.record = record;
-    batch.count = static_cast<int>(_rows.size());
+    batch.count = static_cast<int>(rows.size());
     batch.mesh = effort.mesh;
     batch.steps = effort.steps;
     batch.tolerance = _settings.tolerance;
@@ -210,7 +223,6 @@ class PricerOn final : public Pricer {
     } else {
       price_batch(_instance.space(), batch);
     }
-    _instance.space().fence("drogue::options: priced");
   }
 
   Settings _settings;
@@ -218,8 +230,8 @@ class PricerOn final : public Pricer {
   View<Contract> _contracts;
   View<Price> _prices;
   View<int> _order;
-  std::vector<int> _rows;  ///< what _order holds
   device::PinnedMemory<ExecutionSpace> _pinned;
+  std::pmr::vector<int> _rows{&_pinned};  ///< what _order holds
   std::pmr::vector<Contract> _staged_contracts{&_pinned};
   std::pmr::vector<Price> _staged_prices{&_pinned};
   HankelPanels<ExecutionSpace> _panels;

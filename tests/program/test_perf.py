@@ -178,6 +178,11 @@ class WorkPrecisionOfSprings(perf_program.PerfTest):
 
 
 class WorkPrecisionOfOptions(perf_program.PerfTest):
+    def test_only_what_is_asked_for(self):
+        self.expect(0, "work-precision", "--app", "options", "--quick", "--backend", "serial", "--filter", "^mer",
+                    "--out", "runs.jsonl")
+        self.assertEqual({"merton"}, {record["facts"]["problem"] for record in self.records("runs.jsonl")})
+
     def test_records(self):
         self.expect(0, "work-precision", "--app", "options", "--quick", "--backend", "serial", "--out", "runs.jsonl")
         errors = {}
@@ -219,6 +224,9 @@ class Refusals(perf_program.PerfTest):
                             (["table", "occupancy", "--app", "springs"], "the only valid name is transfers"),
                             (["table", "block-size", "--app", "springs"], "compiled for one block size"),
                             (["work-precision", "--app", "parachute"], "valid names are gas, springs, options"),
+                            (["work-precision", "--quick", "--app", "options", "--filter", "day$"],
+                             "no problem matches 'day$'; there are thesis, merton"),
+                            (["work-precision", "--app", "options", "--filter", "("], "is no regular expression"),
                             (["table", "transfers", "--backend", "gpu"], "gpu"),
                             (["table", "transfers", "--bakend", "serial"], 'did you mean "--backend"?'),
                             (["run", "all"], "'all'"), (["run", "--filter", "no such case"], "no case matches"),

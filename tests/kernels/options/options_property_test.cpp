@@ -93,6 +93,28 @@ TEST(OptionsProperty, ThePlaceInABatchChangesNoBit) {
   EXPECT_EQ(priced(settings, {contracts[4]})[0].price, fewer[4].price);
 }
 
+// More contracts than a launch takes, of two models, by a pricer that knows another order of them.
+TEST(OptionsProperty, LaunchesOfABatchChangeNoBit) {
+  constexpr std::size_t many = (1 << 17) + 5;
+  auto kinds = random_contracts(7, 5);
+  kinds[3].model = Model::black_scholes;
+  const Settings settings = on_mesh(32, 8);
+  const auto pricer = create_pricer(backend, settings);
+  for (const std::size_t shift : {0U, 3U}) {
+    std::vector<Contract> contracts(many - shift);
+    for (std::size_t k = 0; k < contracts.size(); ++k) contracts[k] = kinds[(k + shift) % kinds.size()];
+    std::vector<Price> prices(contracts.size());
+    pricer->price(contracts, prices);
+    std::size_t other = 0;
+    for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
+      const double alone = priced(settings, {kinds[kind]})[0].price;
+      for (std::size_t k = (kind + kinds.size() - shift) % kinds.size(); k < prices.size(); k += kinds.size())
+        other += std::memcmp(&prices[k].price, &alone, sizeof alone) == 0 ? 0 : 1;
+    }
+    EXPECT_EQ(other, 0U) << shift;
+  }
+}
+
 /// Lagrange's cubic through the four nodes about a spot, in its logarithm.
 double value_at(const std::vector<ProfilePoint>& profile, double spot) {
   std::size_t k = 1;

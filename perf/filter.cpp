@@ -1,0 +1,18 @@
+#include "perf/filter.hpp"
+
+#include "common/program/failure.hpp"
+
+namespace drogue::perf {
+
+std::regex filter_of(const std::string& text) {
+  try {
+    return std::regex(text);
+  } catch (const std::regex_error&) {
+    throw Failure(ExitCode::usage,
+                  "--filter '" + text +
+                      "' is no regular expression; a bracket or a star that stands for itself "
+                      "needs a backslash before it");
+  }
+}
+
+}  // namespace drogue::perf
