@@ -63,6 +63,18 @@ class RestartFiles(gas_program.GasTest):
         self.assert_refused("another scene", scene="toro-1",
                             sets=["run.end_time=0.1", "output.times=[0.1]", "verify.l1_density=1.0"])
 
+    def test_a_folder_of_another_run(self):
+        words = ["--quiet", "--backend", "serial", "--out", "other"]
+        self.expect(0, "sod", *words, sets=[*SETS, "mesh.cells=100"])
+        names = ("history.csv", "fields.h5", "scene.toml", "result.json")
+        before = [(self.folder / "other" / name).read_bytes() for name in names]
+        message = self.expect(2, "sod", *words, "--restart", "run/restart.h5", sets=SETS).stderr
+        self.assertIn("'other' holds a run of another scene; choose another --out", message)
+        self.assertEqual(before, [(self.folder / "other" / name).read_bytes() for name in names])
+        later = [*SETS, "run.end_time=0.25", "output.times=[0.1, 0.2, 0.25]"]
+        self.expect(0, "sod", "--quiet", "--backend", "serial", "--out", "new", "--restart", "run/restart.h5", sets=later)
+        self.expect(0, "sod", "--quiet", "--backend", "serial", "--out", "new", "--restart", "run/restart.h5", sets=later)
+
     def test_another_scheme_or_mesh(self):
         for change in ("mesh.cells=100", 'scheme.weno="js"', "scheme.cfl=0.5", "gas.gamma=1.3",
                        'boundary.left="reflecting"'):
