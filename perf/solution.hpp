@@ -32,7 +32,7 @@ using SolutionSink = std::function<void(const Solution&)>;
 struct SolutionsAsked {
   std::vector<device::Backend> backends;
   bool quick = false;
-  std::function<bool(const std::string&)> wants;  ///< called once for each problem
+  std::function<bool(const std::string&)> wants;  ///< whether a problem is; called once for each, by its name
 };
 
 /// Runs the entropy wave, Shu-Osher, the blast waves, LeBlanc and Sod on doubling meshes in every combination

@@ -106,7 +106,8 @@ ExitCode measure_solutions(const WorkPrecisionOptions& options, const std::vecto
     if (lines.size() % 32 == 1 && run::is_replaced(options.out)) write_records(options.out, lines);
   });
   if (finished && !matched)
-    throw Failure(ExitCode::usage, "no problem matches '" + options.filter + "'; there are " + known);
+    throw Failure(ExitCode::usage, "no problem matches '" + options.filter + "'; " +
+                                       (options.quick ? "with --quick there are " : "there are ") + known);
   // What a signal ended is kept as far as it came.
   write_records(options.out, lines);
   return finished ? ExitCode::ok : ExitCode::interrupted;

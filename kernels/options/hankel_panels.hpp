@@ -31,13 +31,14 @@ class HankelPanels {
     }
   }
 
-  /// Enqueues copies of what the backend does not have.
+  /// Copies what the backend does not have.
   void copy_in(const ExecutionSpace& space) {
     if (_copied) return;
     _series = Kokkos::View<double*, Space>("drogue::options::panels", _host_series.size());
     _slots = Kokkos::View<int*, Space>("drogue::options::panel slots", _host_slots.size());
     device::copy_in(space, _series, _host_series.data(), _host_series.size());
     device::copy_in(space, _slots, _host_slots.data(), _host_slots.size());
+    space.fence("drogue::options: panels are copied");  // `build` may change them next
     _copied = true;
   }
 

@@ -38,7 +38,8 @@ struct Settings {
 /// Wall time of a batch's parts, s.
 struct Timing {
   double h2d = 0.0;
-  double compute = 0.0;  ///< with what the host computes before: tables of Bessel functions, say
+  double compute =
+      0.0;  ///< with what the host does for it: tables of Bessel functions, say, and their copies
   double d2h = 0.0;
 };
 

@@ -93,7 +93,7 @@ class PricerOn final : public Pricer {
   }
 
   static constexpr int first_mesh = 64, seed_mesh = 128, record_mesh = 512, models = 4;
-  /// Contracts that the host looks through for a launch, while a device is busy with those before.
+  /// Contracts that the host gathers for its next launches, while a device is busy with those before.
   static constexpr std::size_t slab = 1 << 17;
 
   struct Recorded {
@@ -144,11 +144,12 @@ class PricerOn final : public Pricer {
 
   void reserve(std::size_t count) {
     if (_contracts.size() >= count) return;
-    _contracts =
-        View<Contract>(Kokkos::view_alloc("drogue::options::contracts", Kokkos::WithoutInitializing), count);
     _prices = View<Price>(Kokkos::view_alloc("drogue::options::prices", Kokkos::WithoutInitializing), count);
     _order = View<int>(Kokkos::view_alloc("drogue::options::order", Kokkos::WithoutInitializing), count);
     _rows.assign(count, -1);
+    // Last, since it tells that there is room.
+    _contracts =
+        View<Contract>(Kokkos::view_alloc("drogue::options::contracts", Kokkos::WithoutInitializing), count);
   }
 
   /// The contracts where a device copies them from without a detour.
@@ -175,25 +176,28 @@ class PricerOn final : public Pricer {
   /// Prices the contracts k for which `asked(k)`, those of a model and a slab in a launch.
   template <class Asked>
   void launch_models(std::span<const Contract> contracts, const Effort& effort, const Asked& asked) {
-    for (std::size_t begin = 0; begin < contracts.size(); begin += slab) {
-      const std::size_t end = std::min(begin + slab, contracts.size());
-      std::vector<int> rows[models];
-      rows[static_cast<std::size_t>(contracts[begin].model)].reserve(end - begin);
-      for (std::size_t k = begin; k < end; ++k) {
-        if (!asked(k)) continue;
-        _panels.build(contracts.subspan(k, 1));
-        rows[static_cast<std::size_t>(contracts[k].model)].push_back(static_cast<int>(k));
-      }
-      std::size_t place = begin;
-      for (const std::vector<int>& of_model : rows) {
+    std::vector<int> rows[models];
+    std::size_t place = 0, gathered = 0;
+    const auto launch_gathered = [&] {
+      for (std::vector<int>& of_model : rows) {
         launch(of_model, place, effort, Record{});
         place += of_model.size();
+        of_model.clear();
       }
+      gathered = 0;
+    };
+    rows[static_cast<std::size_t>(contracts.front().model)].reserve(std::min(slab, contracts.size()));
+    for (std::size_t k = 0; k < contracts.size(); ++k) {
+      if (!asked(k)) continue;
+      _panels.build(contracts.subspan(k, 1));
+      rows[static_cast<std::size_t>(contracts[k].model)].push_back(static_cast<int>(k));
+      if (++gathered == slab) launch_gathered();
     }
+    launch_gathered();
     _instance.space().fence("drogue::options: priced");
   }
 
-  /// Enqueues the launch for `rows`, whose numbers go to `place` in the order.
+  /// Enqueues the launch for `rows`, which are put at `place` of the order.
   void launch(std::span<const int> rows, std::size_t place, const Effort& effort, const Record& record) {
     if (rows.empty()) return;
     const auto order = Kokkos::subview(_order, std::pair(place, place + rows.size()));

@@ -46,7 +46,6 @@ class SurfaceOn final : public Pricer {
     timing.compute = building.seconds();
     const Clock copying_in;
     _panels.copy_in(_instance.space());
-    _instance.space().fence("drogue::options: panels are copied");
     timing.h2d = copying_in.seconds();
     const int mesh = _settings.mesh != 0 ? _settings.mesh : first_mesh;
     const Effort first{mesh, steps_of(_settings, mesh, 1)};

@@ -225,7 +225,7 @@ class Refusals(perf_program.PerfTest):
                             (["table", "block-size", "--app", "springs"], "compiled for one block size"),
                             (["work-precision", "--app", "parachute"], "valid names are gas, springs, options"),
                             (["work-precision", "--quick", "--app", "options", "--filter", "day$"],
-                             "no problem matches 'day$'; there are thesis, merton"),
+                             "no problem matches 'day$'; with --quick there are thesis, merton"),
                             (["work-precision", "--app", "options", "--filter", "("], "is no regular expression"),
                             (["table", "transfers", "--backend", "gpu"], "gpu"),
                             (["table", "transfers", "--bakend", "serial"], 'did you mean "--backend"?'),

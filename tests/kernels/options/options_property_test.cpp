@@ -93,18 +93,24 @@ TEST(OptionsProperty, ThePlaceInABatchChangesNoBit) {
   EXPECT_EQ(priced(settings, {contracts[4]})[0].price, fewer[4].price);
 }
 
-// More contracts than a launch takes, of two models, by a pricer that knows another order of them.
+// More contracts than a launch takes, of two models, by a pricer that knows another order of them; the last
+// ones have jumps of orders that need tables of their own.
 TEST(OptionsProperty, LaunchesOfABatchChangeNoBit) {
   constexpr std::size_t many = (1 << 17) + 5;
   auto kinds = random_contracts(7, 5);
   kinds[3].model = Model::black_scholes;
+  Contract late = kinds[0];
   const Settings settings = on_mesh(32, 8);
   const auto pricer = create_pricer(backend, settings);
   for (const std::size_t shift : {0U, 3U}) {
     std::vector<Contract> contracts(many - shift);
     for (std::size_t k = 0; k < contracts.size(); ++k) contracts[k] = kinds[(k + shift) % kinds.size()];
+    late.jump[0] = 20.5 + static_cast<double>(shift);
+    contracts.back() = late;
     std::vector<Price> prices(contracts.size());
     pricer->price(contracts, prices);
+    EXPECT_EQ(prices.back().price, priced(settings, {late})[0].price);
+    prices.pop_back();
     std::size_t other = 0;
     for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
       const double alone = priced(settings, {kinds[kind]})[0].price;
