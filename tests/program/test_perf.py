@@ -231,6 +231,7 @@ class Refusals(perf_program.PerfTest):
                             (["table", "transfers", "--bakend", "serial"], 'did you mean "--backend"?'),
                             (["run", "all"], "'all'"), (["run", "--filter", "no such case"], "no case matches"),
                             (["run", "--filter", "["], "--filter '[' is no regular expression"),
+                            (["run", "--filter", "(" * 20000 + ")" * 20000], "more than 1000 characters"),
                             (["run", "--quick", "--filter", "^options/serial/256/128x32$"], "but 1 that --quick leaves out"),
                             (["run", "--quikc"], 'did you mean "--quick"?'), ([], "list, run, table"),
                             (["lits"], "'lits'")):
