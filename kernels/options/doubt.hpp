@@ -11,6 +11,17 @@ struct Doubt {
   R gap;     ///< what that difference does not tell at all, of the strike
 };
 
+/// What the factor is at least where exercise is split off and the premium of it is not known. Splitting is
+/// of first order in time, and extrapolation for the second leaves 2/3 of the difference where it decides and
+/// less elsewhere: this is fitted.
+inline constexpr double split_factor = 0.4;
+
+/// What splitting exercise off may miss where its premium, of the strike, is known: no more than a part of
+/// the premium that falls with the steps. Fitted.
+KOKKOS_INLINE_FUNCTION double doubt_of_splitting(double premium, int steps, double largest) {
+  return device::minimum(0.5 * device::maximum(0.0, premium) / steps, split_factor * largest);
+}
+
 /// What the largest |V(fine) - V(coarse)| near the spot is multiplied by for the error of their
 /// extrapolation: docs/options.md tells how often it is below what is stated. The largest near the spot and
 /// not that at it, which changes sign somewhere. The difference is of second order and what extrapolation
@@ -29,7 +40,7 @@ KOKKOS_INLINE_FUNCTION R error_factor(R h, int steps, R spread, R crossed) {
 }
 
 /// How much of what is in doubt at the boundary of exercise is so at a put's spot: it spreads, and from two
-/// steps on falls with the distance. None where exercise is split off, whose factor holds it.
+/// steps on falls with the distance. None where exercise is split off, whose own doubt holds it.
 KOKKOS_INLINE_FUNCTION double nearness(const Put& put, double boundary, double h) {
   if (put.split || !(boundary == boundary)) return 0.0;
   const double away = device::portable::magnitude(put.log_spot - boundary), beside = 2.0 * h;
@@ -56,9 +67,6 @@ KOKKOS_INLINE_FUNCTION double doubt_of_contact(const Answer& answer) {
 /// q)/(1 - q)^3 - q/2)/2, x = p h, q = e^{-x}; p is 1.8 times the least decay, since a mixture has faster
 /// ones. The rest, squared since an extrapolation sees what is little, times the third cumulant over the
 /// variance and V_xxx/6, of which far from the strike there is little.
-///
-/// Exercise that is split off is of first order in time, and extrapolation for the second leaves 2/3 of the
-/// difference where it decides and less elsewhere: 0.4 is fitted.
 template <class R>
 KOKKOS_INLINE_FUNCTION Doubt<R> doubt_of(const PutPack<R>& put, const Law<R>& law, R h, int steps, R spread) {
   const R variance = device::maximum((put.variance + law.variance) * put.maturity, R(1e-100));
@@ -79,7 +87,6 @@ KOKKOS_INLINE_FUNCTION Doubt<R> doubt_of(const PutPack<R>& put, const Law<R>& la
     const R away = 0.125 * put.log_spot, near = spread * device::reciprocal(spread + away * away + R(1e-100));
     doubt.gap += 0.04 * near * skew * missed * missed;
   }
-  if (put.any_split) doubt.factor = device::maximum(doubt.factor, 0.4 * put.split);
   return doubt;
 }
 

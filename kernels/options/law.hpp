@@ -36,6 +36,14 @@ KOKKOS_INLINE_FUNCTION PutPack<R> pack_of(const Put* puts) {
   return pack;
 }
 
+/// The puts without early exercise.
+template <class R>
+KOKKOS_INLINE_FUNCTION PutPack<R> unexercised(PutPack<R> put) {
+  put.any_split = false;
+  put.early = put.split = 0.0;
+  return put;
+}
+
 /// What a pack's jumps are made of. Terms of a mixture are in scratch memory; the other models have none.
 template <class R>
 struct Law {

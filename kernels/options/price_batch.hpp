@@ -12,6 +12,12 @@ KOKKOS_INLINE_FUNCTION Failure failure_of(const Put& put, double h) {
   return h < 100.0 ? Failure::grown : Failure::no_grid;
 }
 
+/// The node next to the spot of a put.
+KOKKOS_INLINE_FUNCTION int node_beside(const Put& put, double strike, double h, int mesh) {
+  const double t = put.log_spot / h + strike + 0.5;
+  return t > 0.0 ? t < mesh ? static_cast<int>(t) : mesh - 1 : 0;
+}
+
 /// The answer for a put of strike 1 on two grids, the coarser one with steps h, extrapolated to steps of
 /// length zero (the error of both is of second order), as the contract's price. `largest`: |V(fine) -
 /// V(coarse)| near the spot.
@@ -153,12 +159,24 @@ struct PriceBatch {
     });
     grid = {cells / 2, 2.0 * grid.h, 0.5 * grid.strike};
     const R* coarse = kept;
-    Answer* coarse_answers = memory.answers;
+    Answer* const coarse_answers = one_grid ? memory.answers : memory.answers + members;
+    const auto beside_spot = [&memory, &grid](const R* nodes, int k) {
+      const auto own = [k](const R& number) { return device::Access<R>::lane(number, k); };
+      return column_of(nodes, k)(node_beside(memory.puts[k], own(grid.strike), own(grid.h), grid.mesh));
+    };
     if (!one_grid) {
-      coarse_answers += members;
-      coarse = solve<fixed / 2>(workers, put, law, tails, grid, steps / 2, memory,
-                                {memory.coarse_weights(cells), memory.w, roots}, Record{}, coarse_answers)
-                   .value;
+      // Where exercise is split off, once more without it before: the premium tells what splitting misses.
+      for (int exercise = put.any_split ? 0 : 1; exercise < 2; ++exercise) {
+        coarse = solve<fixed / 2>(workers, exercise == 0 ? unexercised(put) : put, law, tails, grid,
+                                  steps / 2, memory, {memory.coarse_weights(cells), memory.w, roots},
+                                  Record{}, coarse_answers)
+                     .value;
+        if (exercise == 0)
+          workers.each([=](int lane) {
+            for (int k = lane; k < members; k += workers.lanes)
+              memory.unexercised[k] = beside_spot(coarse, k);
+          });
+      }
     }
     const R deviation = device::square_root((put.variance + law.variance) * put.maturity);
     const R window = device::maximum(grid.h, deviation);
@@ -176,9 +194,12 @@ struct PriceBatch {
         if (group * members + k >= count) continue;
         const int at = place(group, k);
         const auto own = [k](const R& number) { return device::Access<R>::lane(number, k); };
-        prices(at) = price_of(contracts(at), memory.puts[k], memory.answers[k], coarse_answers[k],
-                              {own(fine.doubt.factor), own(fine.doubt.gap)}, own(largest), own(grid.h), cells,
-                              steps, tolerance);
+        Doubt<double> doubt{own(fine.doubt.factor), own(fine.doubt.gap)};
+        if (memory.puts[k].split)
+          doubt.gap +=
+              doubt_of_splitting(beside_spot(coarse, k) - memory.unexercised[k], steps, own(largest));
+        prices(at) = price_of(contracts(at), memory.puts[k], memory.answers[k], coarse_answers[k], doubt,
+                              own(largest), own(grid.h), cells, steps, tolerance);
         if (one_grid) prices(at).error = device::portable::not_a_number();
       }
     });

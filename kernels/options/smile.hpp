@@ -100,7 +100,8 @@ struct SmileFunctor {
           smiles(at).window = device::maximum(found.h, width);
         } else {
           smiles(at).fine = found;
-          smiles(at).doubt = {device::Access<R>::lane(solution.doubt.factor, k),
+          const double factor = device::Access<R>::lane(solution.doubt.factor, k);
+          smiles(at).doubt = {memory.puts[k].split ? device::maximum(factor, split_factor) : factor,
                               device::Access<R>::lane(solution.doubt.gap, k)};
         }
       }

@@ -12,18 +12,19 @@ template <class R, int fixed>
 struct Memory {
   static constexpr int members = device::Access<R>::lanes;
 
-  R* law;           ///< what `law_of` leaves, and then the step table
-  R* slot;          ///< (6 most_lanes); with a fixed mesh what `domain_of` takes, or force
-  R* w;             ///< of a WeightLayout
-  R* nodes;         ///< rows of `node_count`, and what the coarser solve has beyond its own, shorter ones
-  Put* puts;        ///< of the members, as the next
-  Answer* answers;  ///< on the grid and on the coarser one
+  R* law;               ///< what `law_of` leaves, and then the step table
+  R* slot;              ///< (6 most_lanes); with a fixed mesh what `domain_of` takes, or force
+  R* w;                 ///< of a WeightLayout
+  R* nodes;             ///< rows of `node_count`, and what the coarser solve has beyond its own, shorter ones
+  Put* puts;            ///< of the members, as the next
+  Answer* answers;      ///< on the grid and on the coarser one
+  double* unexercised;  ///< (members): values beside the spots on the coarser grid, without early exercise
 
   [[nodiscard]] KOKKOS_INLINE_FUNCTION static std::size_t bytes(int mesh) {
     const std::size_t all =
         sizeof(R) *
             static_cast<std::size_t>(law_size + slot_size + WeightLayout<R>(mesh).size() + node_size(mesh)) +
-        members * (sizeof(Put) + 2 * sizeof(Answer));
+        members * (sizeof(Put) + 2 * sizeof(Answer) + sizeof(double));
     return (all + 63) / 64 * 64;
   }
   KOKKOS_INLINE_FUNCTION Memory(void* place, int mesh)
@@ -32,7 +33,8 @@ struct Memory {
         w(slot + slot_size),
         nodes(w + WeightLayout<R>(mesh).size()),
         puts(reinterpret_cast<Put*>(nodes + node_size(mesh))),
-        answers(reinterpret_cast<Answer*>(puts + members)) {}
+        answers(reinterpret_cast<Answer*>(puts + members)),
+        unexercised(reinterpret_cast<double*>(answers + 2 * members)) {}
 
   [[nodiscard]] KOKKOS_INLINE_FUNCTION R* row(int k, int mesh) const { return nodes + k * node_count(mesh); }
   /// The spectrum of the weights of a mesh that is transformed, in its two last rows; of the mesh that lanes

@@ -89,6 +89,24 @@ TEST(OptionsError, BesideTheBoundaryOfExercise) {
                    mesh == 128 ? "128 intervals" : "256 intervals");
 }
 
+// Exercise is split off there, with an error of first order in time that the difference of grids does not
+// tell.
+TEST(OptionsError, BetweenTwoBoundaries) {
+  std::vector<Contract> contracts;
+  for (const auto& law : laws)
+    for (const double years : {0.5, 3.0})
+      for (const double spot : {0.8, 1.0, 1.25})
+        for (const double rate : {-0.005, -0.03}) {
+          contracts.push_back(put(Style::american, spot, years, 0.03, law));
+          contracts.back().rate = rate;
+          contracts.back().dividend = rate - 0.05;
+        }
+  const std::vector<Price> known = priced(on_mesh(512, 2048), contracts);
+  for (const double tolerance : {1e-4, 1e-5})
+    expect_covered(priced_to(tolerance, contracts), known,
+                   ("between two boundaries, tolerance " + std::to_string(tolerance)).c_str());
+}
+
 // There the kink of the payoff spreads over less than a step.
 TEST(OptionsError, AnHourAtTheStrike) {
   std::vector<Contract> contracts;
