@@ -17,9 +17,11 @@ struct Doubt {
 inline constexpr double split_factor = 0.4;
 
 /// What splitting exercise off may miss where its premium, of the strike, is known: no more than a part of
-/// the premium that falls with the steps. Fitted.
-KOKKOS_INLINE_FUNCTION double doubt_of_splitting(double premium, int steps, double largest) {
-  return device::minimum(0.5 * device::maximum(0.0, premium) / steps, split_factor * largest);
+/// the premium that falls with the steps, or with the mesh where that is coarse, since nodes know the two
+/// boundaries to a part of a step in space. Fitted.
+KOKKOS_INLINE_FUNCTION double doubt_of_splitting(double premium, int mesh, int steps, double largest) {
+  const double resolved = device::minimum(double(steps), 0.25 * mesh);
+  return device::minimum(0.5 * device::absolute(premium) / resolved, split_factor * largest);
 }
 
 /// What the largest |V(fine) - V(coarse)| near the spot is multiplied by for the error of their

@@ -165,8 +165,8 @@ struct PriceBatch {
       return column_of(nodes, k)(node_beside(memory.puts[k], own(grid.strike), own(grid.h), grid.mesh));
     };
     if (!one_grid) {
-      // Where exercise is split off, once more without it before: the premium tells what splitting misses.
-      for (int exercise = put.any_split ? 0 : 1; exercise < 2; ++exercise) {
+      // Where exercise has to be split off, once more without it before: the premium tells what that misses.
+      for (int exercise = put.any_split && !split ? 0 : 1; exercise < 2; ++exercise) {
         coarse = solve<fixed / 2>(workers, exercise == 0 ? unexercised(put) : put, law, tails, grid,
                                   steps / 2, memory, {memory.coarse_weights(cells), memory.w, roots},
                                   Record{}, coarse_answers)
@@ -195,9 +195,12 @@ struct PriceBatch {
         const int at = place(group, k);
         const auto own = [k](const R& number) { return device::Access<R>::lane(number, k); };
         Doubt<double> doubt{own(fine.doubt.factor), own(fine.doubt.gap)};
-        if (memory.puts[k].split)
-          doubt.gap +=
-              doubt_of_splitting(beside_spot(coarse, k) - memory.unexercised[k], steps, own(largest));
+        if (memory.puts[k].split && split) {
+          doubt.factor = device::maximum(doubt.factor, split_factor);
+        } else if (memory.puts[k].split && !one_grid) {
+          const double premium = beside_spot(coarse, k) - memory.unexercised[k];
+          doubt.gap += doubt_of_splitting(premium, cells, steps, own(largest));
+        }
         prices(at) = price_of(contracts(at), memory.puts[k], memory.answers[k], coarse_answers[k], doubt,
                               own(largest), own(grid.h), cells, steps, tolerance);
         if (one_grid) prices(at).error = device::portable::not_a_number();

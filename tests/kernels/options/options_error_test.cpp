@@ -105,6 +105,7 @@ TEST(OptionsError, BetweenTwoBoundaries) {
   for (const double tolerance : {1e-4, 1e-5})
     expect_covered(priced_to(tolerance, contracts), known,
                    ("between two boundaries, tolerance " + std::to_string(tolerance)).c_str());
+  expect_covered(priced(on_mesh(64, 512), contracts), known, "between two boundaries, many steps");
 }
 
 // There the kink of the payoff spreads over less than a step.
