@@ -36,6 +36,12 @@ struct Ranks::Sending {
   MPI_Request request = MPI_REQUEST_NULL;
 };
 
+struct Ranks::Receiving {
+  int from, tag;
+  std::string bytes;
+  MPI_Request request = MPI_REQUEST_NULL;
+};
+
 Ranks::Ranks() {
   const LaunchedRank launched = launched_rank();
   if (launched.ranks == 1) return;
@@ -62,6 +68,7 @@ Ranks::Ranks() {
 Ranks::~Ranks() {
   if (_count == 1) return;
   wait_until_sent();
+  for (const std::unique_ptr<Receiving>& receiving : _receivings) finish(receiving->request);
   MPI_Finalize();
 }
 
@@ -86,7 +93,15 @@ void Ranks::wait_until_sent() {
   _sendings.clear();
 }
 
+Ranks::Receiving* Ranks::begun_to_receive(int from, int tag) {
+  const auto at = std::ranges::find_if(_receivings, [=](const std::unique_ptr<Receiving>& receiving) {
+    return receiving->from == from && receiving->tag == tag;
+  });
+  return at == _receivings.end() ? nullptr : at->get();
+}
+
 bool Ranks::has_message(int from, int tag) {
+  if (begun_to_receive(from, tag) != nullptr) return true;
   int there = 0;
   MPI_Iprobe(from, tag, MPI_COMM_WORLD, &there, MPI_STATUS_IGNORE);
   return there != 0;
@@ -95,14 +110,25 @@ bool Ranks::has_message(int from, int tag) {
 std::optional<std::string> Ranks::receive(int from, int tag) {
   // Large messages move only while both sides ask for them.
   forget_sent();
-  int there = 0;
-  MPI_Status status;
-  MPI_Iprobe(from, tag, MPI_COMM_WORLD, &there, &status);
-  if (there == 0) return std::nullopt;
-  int count = 0;
-  MPI_Get_count(&status, MPI_BYTE, &count);
-  std::string bytes(static_cast<std::size_t>(count), '\0');
-  MPI_Recv(bytes.data(), count, MPI_BYTE, from, tag, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+  Receiving* receiving = begun_to_receive(from, tag);
+  if (receiving == nullptr) {
+    int there = 0, count = 0;
+    MPI_Status status;
+    MPI_Iprobe(from, tag, MPI_COMM_WORLD, &there, &status);
+    if (there == 0) return std::nullopt;
+    MPI_Get_count(&status, MPI_BYTE, &count);
+    receiving = _receivings.emplace_back(std::make_unique<Receiving>()).get();
+    receiving->from = from;
+    receiving->tag = tag;
+    receiving->bytes.resize(static_cast<std::size_t>(count));
+    MPI_Irecv(receiving->bytes.data(), count, MPI_BYTE, from, tag, MPI_COMM_WORLD, &receiving->request);
+  }
+  // What has been announced may never come: its sender may be killed.
+  int done = 0;
+  MPI_Test(&receiving->request, &done, MPI_STATUS_IGNORE);
+  if (done == 0) return std::nullopt;
+  std::string bytes = std::move(receiving->bytes);
+  _receivings.remove_if([=](const std::unique_ptr<Receiving>& each) { return each.get() == receiving; });
   return bytes;
 }
 

@@ -33,10 +33,10 @@ class Ranks {
   /// Returns when all that was sent has left this rank.
   void wait_until_sent();
 
-  /// The next message of that rank and tag, if one has come.
+  /// The next message of that rank and tag, if all of it has come. Does not wait.
   [[nodiscard]] std::optional<std::string> receive(int from, int tag);
 
-  /// Whether there is such a message.
+  /// Whether there is such a message, or has begun to come.
   [[nodiscard]] bool has_message(int from, int tag);
 
   /// The first rank's bytes, on every rank.
@@ -48,12 +48,16 @@ class Ranks {
 
  private:
   struct Sending;
+  struct Receiving;
   void forget_sent();
+  /// Null if there is none.
+  Receiving* begun_to_receive(int from, int tag);
 
   int _rank = 0;
   int _count = 1;
   int _of_host = 1;
   std::list<std::unique_ptr<Sending>> _sendings;
+  std::list<std::unique_ptr<Receiving>> _receivings;  ///< at most one of a rank and a tag
 };
 
 /// Sleeps the longer the more often it is asked to since `reset`: 20 us to 1 ms.

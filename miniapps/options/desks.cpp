@@ -97,7 +97,7 @@ void RankDesk::await_dismissal() {
   for (;;) {
     is_dismissed = is_dismissed || _ranks.receive(first_rank, dismissal_tag);
     const bool took = _ranks.receive(first_rank, chunk_tag).has_value();
-    if (is_dismissed && !took) return;
+    if (is_dismissed && !took && !_ranks.has_message(first_rank, chunk_tag)) return;
     pause.wait();
   }
 }
