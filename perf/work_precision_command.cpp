@@ -86,12 +86,9 @@ ExitCode measure_solutions(const WorkPrecisionOptions& options, const std::vecto
   const WorkPrecision& app = work_precision_of(options.app);
   const std::regex filter = filter_of(options.filter);
   std::string known;
-  bool matched = false;
   const auto wants = [&](const std::string& problem) {
     known += (known.empty() ? "" : ", ") + problem;
-    const bool wanted = std::regex_search(problem, filter);
-    matched = matched || wanted;
-    return wanted;
+    return std::regex_search(problem, filter);
   };
   const SolutionsAsked asked{backends_of(options.backend), options.quick, wants};
   const device::Runtime runtime(kokkos);
@@ -105,7 +102,7 @@ ExitCode measure_solutions(const WorkPrecisionOptions& options, const std::vecto
     // leaves most of what it has found.
     if (lines.size() % 32 == 1 && run::is_replaced(options.out)) write_records(options.out, lines);
   });
-  if (finished && !matched)
+  if (finished && lines.empty())
     throw Failure(ExitCode::usage, "no problem matches '" + options.filter + "'; " +
                                        (options.quick ? "with --quick there are " : "there are ") + known);
   // What a signal ended is kept as far as it came.

@@ -14,15 +14,15 @@
 namespace drogue {
 namespace {
 
+bool is_done(MPI_Request& request) {
+  int done = 0;
+  MPI_Test(&request, &done, MPI_STATUS_IGNORE);
+  return done != 0;
+}
+
 /// MPI waits by turning; a rank that waits for seconds must leave its core to others.
 void finish(MPI_Request& request) {
-  Pause pause;
-  int done = 0;
-  for (;;) {
-    MPI_Test(&request, &done, MPI_STATUS_IGNORE);
-    if (done != 0) return;
-    pause.wait();
-  }
+  for (Pause pause; !is_done(request);) pause.wait();
 }
 
 std::string of_rank(const std::string& sentence, int rank) {
@@ -31,13 +31,7 @@ std::string of_rank(const std::string& sentence, int rank) {
 
 }  // namespace
 
-struct Ranks::Sending {
-  std::string bytes;
-  MPI_Request request = MPI_REQUEST_NULL;
-};
-
-struct Ranks::Receiving {
-  int from, tag;
+struct Ranks::Transfer {
   std::string bytes;
   MPI_Request request = MPI_REQUEST_NULL;
 };
@@ -68,40 +62,29 @@ Ranks::Ranks() {
 Ranks::~Ranks() {
   if (_count == 1) return;
   wait_until_sent();
-  for (const std::unique_ptr<Receiving>& receiving : _receivings) finish(receiving->request);
+  for (const auto& [sender, receiving] : _receivings) finish(receiving->request);
   MPI_Finalize();
 }
 
 void Ranks::send(int to, int tag, std::string bytes) {
   forget_sent();
-  Sending& sending = *_sendings.emplace_back(std::make_unique<Sending>());
+  Transfer& sending = *_sendings.emplace_back(std::make_unique<Transfer>());
   sending.bytes = std::move(bytes);
   MPI_Isend(sending.bytes.data(), static_cast<int>(sending.bytes.size()), MPI_BYTE, to, tag, MPI_COMM_WORLD,
             &sending.request);
 }
 
 void Ranks::forget_sent() {
-  _sendings.remove_if([](const std::unique_ptr<Sending>& sending) {
-    int done = 0;
-    MPI_Test(&sending->request, &done, MPI_STATUS_IGNORE);
-    return done != 0;
-  });
+  _sendings.remove_if([](const std::unique_ptr<Transfer>& sending) { return is_done(sending->request); });
 }
 
 void Ranks::wait_until_sent() {
-  for (const std::unique_ptr<Sending>& sending : _sendings) finish(sending->request);
+  for (const std::unique_ptr<Transfer>& sending : _sendings) finish(sending->request);
   _sendings.clear();
 }
 
-Ranks::Receiving* Ranks::begun_to_receive(int from, int tag) {
-  const auto at = std::ranges::find_if(_receivings, [=](const std::unique_ptr<Receiving>& receiving) {
-    return receiving->from == from && receiving->tag == tag;
-  });
-  return at == _receivings.end() ? nullptr : at->get();
-}
-
 bool Ranks::has_message(int from, int tag) {
-  if (begun_to_receive(from, tag) != nullptr) return true;
+  if (_receivings.contains({from, tag})) return true;
   int there = 0;
   MPI_Iprobe(from, tag, MPI_COMM_WORLD, &there, MPI_STATUS_IGNORE);
   return there != 0;
@@ -110,25 +93,22 @@ bool Ranks::has_message(int from, int tag) {
 std::optional<std::string> Ranks::receive(int from, int tag) {
   // Large messages move only while both sides ask for them.
   forget_sent();
-  Receiving* receiving = begun_to_receive(from, tag);
-  if (receiving == nullptr) {
+  auto at = _receivings.find({from, tag});
+  if (at == _receivings.end()) {
     int there = 0, count = 0;
     MPI_Status status;
     MPI_Iprobe(from, tag, MPI_COMM_WORLD, &there, &status);
     if (there == 0) return std::nullopt;
     MPI_Get_count(&status, MPI_BYTE, &count);
-    receiving = _receivings.emplace_back(std::make_unique<Receiving>()).get();
-    receiving->from = from;
-    receiving->tag = tag;
-    receiving->bytes.resize(static_cast<std::size_t>(count));
-    MPI_Irecv(receiving->bytes.data(), count, MPI_BYTE, from, tag, MPI_COMM_WORLD, &receiving->request);
+    at = _receivings.emplace(std::pair(from, tag), std::make_unique<Transfer>()).first;
+    Transfer& receiving = *at->second;
+    receiving.bytes.resize(static_cast<std::size_t>(count));
+    MPI_Irecv(receiving.bytes.data(), count, MPI_BYTE, from, tag, MPI_COMM_WORLD, &receiving.request);
   }
   // What has been announced may never come: its sender may be killed.
-  int done = 0;
-  MPI_Test(&receiving->request, &done, MPI_STATUS_IGNORE);
-  if (done == 0) return std::nullopt;
-  std::string bytes = std::move(receiving->bytes);
-  _receivings.remove_if([=](const std::unique_ptr<Receiving>& each) { return each.get() == receiving; });
+  if (!is_done(at->second->request)) return std::nullopt;
+  std::string bytes = std::move(at->second->bytes);
+  _receivings.erase(at);
   return bytes;
 }
 

@@ -2,9 +2,11 @@
 
 #include <functional>
 #include <list>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
 namespace drogue {
 
@@ -47,17 +49,14 @@ class Ranks {
   void together(const std::function<void()>& act);
 
  private:
-  struct Sending;
-  struct Receiving;
+  struct Transfer;
   void forget_sent();
-  /// Null if there is none.
-  Receiving* begun_to_receive(int from, int tag);
 
   int _rank = 0;
   int _count = 1;
   int _of_host = 1;
-  std::list<std::unique_ptr<Sending>> _sendings;
-  std::list<std::unique_ptr<Receiving>> _receivings;  ///< at most one of a rank and a tag
+  std::list<std::unique_ptr<Transfer>> _sendings;
+  std::map<std::pair<int, int>, std::unique_ptr<Transfer>> _receivings;  ///< by rank and tag
 };
 
 /// Sleeps the longer the more often it is asked to since `reset`: 20 us to 1 ms.

@@ -16,6 +16,13 @@ struct Doubt {
 /// less elsewhere: this is fitted.
 inline constexpr double split_factor = 0.4;
 
+/// The doubt of member k of a pack, of whose put no premium is known.
+template <class R>
+KOKKOS_INLINE_FUNCTION Doubt<double> doubt_without_premium(const Doubt<R>& doubt, const Put& put, int k) {
+  const double factor = device::Access<R>::lane(doubt.factor, k);
+  return {put.split ? device::maximum(factor, split_factor) : factor, device::Access<R>::lane(doubt.gap, k)};
+}
+
 /// What splitting exercise off may miss where its premium, of the strike, is known: no more than a part of
 /// the premium that falls with the steps, or with the mesh where that is coarse, since nodes know the two
 /// boundaries to a part of a step in space. Fitted.

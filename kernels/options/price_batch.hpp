@@ -164,9 +164,10 @@ struct PriceBatch {
       const auto own = [k](const R& number) { return device::Access<R>::lane(number, k); };
       return column_of(nodes, k)(node_beside(memory.puts[k], own(grid.strike), own(grid.h), grid.mesh));
     };
+    const bool knows_premium = !split && !one_grid;
     if (!one_grid) {
       // Where exercise has to be split off, once more without it before: the premium tells what that misses.
-      for (int exercise = put.any_split && !split ? 0 : 1; exercise < 2; ++exercise) {
+      for (int exercise = put.any_split && knows_premium ? 0 : 1; exercise < 2; ++exercise) {
         coarse = solve<fixed / 2>(workers, exercise == 0 ? unexercised(put) : put, law, tails, grid,
                                   steps / 2, memory, {memory.coarse_weights(cells), memory.w, roots},
                                   Record{}, coarse_answers)
@@ -194,12 +195,11 @@ struct PriceBatch {
         if (group * members + k >= count) continue;
         const int at = place(group, k);
         const auto own = [k](const R& number) { return device::Access<R>::lane(number, k); };
-        Doubt<double> doubt{own(fine.doubt.factor), own(fine.doubt.gap)};
-        if (memory.puts[k].split && split) {
-          doubt.factor = device::maximum(doubt.factor, split_factor);
-        } else if (memory.puts[k].split && !one_grid) {
+        Doubt<double> doubt = doubt_without_premium(fine.doubt, memory.puts[k], k);
+        if (knows_premium && memory.puts[k].split) {
           const double premium = beside_spot(coarse, k) - memory.unexercised[k];
-          doubt.gap += doubt_of_splitting(premium, cells, steps, own(largest));
+          doubt = {own(fine.doubt.factor),
+                   own(fine.doubt.gap) + doubt_of_splitting(premium, cells, steps, own(largest))};
         }
         prices(at) = price_of(contracts(at), memory.puts[k], memory.answers[k], coarse_answers[k], doubt,
                               own(largest), own(grid.h), cells, steps, tolerance);

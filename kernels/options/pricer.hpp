@@ -38,8 +38,7 @@ struct Settings {
 /// Wall time of a batch's parts, s.
 struct Timing {
   double h2d = 0.0;
-  double compute =
-      0.0;  ///< with what the host does for it: tables of Bessel functions, say, and their copies
+  double compute = 0.0;  ///< with tables of Bessel functions and what else the host does for it
   double d2h = 0.0;
 };
 

@@ -100,9 +100,7 @@ struct SmileFunctor {
           smiles(at).window = device::maximum(found.h, width);
         } else {
           smiles(at).fine = found;
-          const double factor = device::Access<R>::lane(solution.doubt.factor, k);
-          smiles(at).doubt = {memory.puts[k].split ? device::maximum(factor, split_factor) : factor,
-                              device::Access<R>::lane(solution.doubt.gap, k)};
+          smiles(at).doubt = doubt_without_premium(solution.doubt, memory.puts[k], k);
         }
       }
     });
