@@ -78,6 +78,11 @@ Case timed(const std::string& name, device::Backend backend,
            const std::function<std::vector<options::Contract>()>& contracts,
            const options::Settings& settings, double limit) {
   const auto run = std::make_shared<std::optional<Run>>();
+  const std::function<std::map<std::string, double>()> parts = [=] {
+    const options::Timing& timing = (*run)->timing;
+    return std::map<std::string, double>{
+        {"h2d", timing.h2d}, {"compute", timing.compute}, {"d2h", timing.d2h}};
+  };
   return {name,
           "batch",
           "arithmetic of the convolution",
@@ -95,11 +100,7 @@ Case timed(const std::string& name, device::Backend backend,
                             now.timing = now.pricer->price(now.contracts, now.prices);
                             return 1L;
                           },
-                          [=] {
-                            return std::map<std::string, double>{{"h2d", (*run)->timing.h2d},
-                                                                 {"compute", (*run)->timing.compute},
-                                                                 {"d2h", (*run)->timing.d2h}};
-                          }};
+                          settings.timed_apart ? parts : nullptr};
           },
           [=] { return error(**run); },
           limit};

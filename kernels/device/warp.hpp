@@ -47,6 +47,12 @@ KOKKOS_INLINE_FUNCTION int warp_largest(int value) {
   return value;
 }
 
+/// Tells the compiler what holds.
+KOKKOS_INLINE_FUNCTION void assume(bool condition) {
+  KOKKOS_IF_ON_DEVICE((__builtin_assume(condition);))
+  KOKKOS_IF_ON_HOST(((void)condition;))
+}
+
 /// Tells the compiler that `place` is in shared memory, which Kokkos' scratch handles hide from it.
 template <class T>
 KOKKOS_INLINE_FUNCTION T* in_shared_memory(T* place) {

@@ -74,7 +74,7 @@ KOKKOS_INLINE_FUNCTION Domain<R> wide_domain(const Workers& workers, const PutPa
   constexpr int n = tilts;
   const R up = decay_up(put), down = decay_down(put);
   workers.each([=, &put, &law](int lane) {
-    for (int m = lane; m < 2 * n; m += workers.lanes) {
+    for (int m = lane; m < 2 * n; m += workers.threads()) {
       const double t = 100.0 * power_of_two(rounder - 2 * (m % n));
       const R theta = m < n ? tilt_upwards(R(t), up) : -tilt_upwards(R(t), down);
       tilt[m] = theta;
@@ -119,7 +119,7 @@ KOKKOS_INLINE_FUNCTION Domain<R> domain_of(const Workers& workers, const PutPack
   const double depth = -device::portable::log(error);
   const R gaussian = device::square_root(2.0 * depth / (device::maximum(variance, R(1e-12)) * maturity));
   workers.each([&, tilt, cumulant](int lane) {
-    for (int m = lane; m <= 2 * n; m += workers.lanes) {
+    for (int m = lane; m <= 2 * n; m += workers.threads()) {
       R theta = 1.0;
       if (m < 2 * n) {
         const int k = m % n;
@@ -137,7 +137,7 @@ KOKKOS_INLINE_FUNCTION Domain<R> domain_of(const Workers& workers, const PutPack
   const R spot_above = device::maximum(put.log_spot, R(0.0)),
           spot_below = device::maximum(-put.log_spot, R(0.0));
   workers.each([&, tilt, cumulant, grown](int lane) {
-    for (int m = lane; m < 2 * n; m += workers.lanes)
+    for (int m = lane; m < 2 * n; m += workers.threads())
       grown[m] = exponential(device::maximum(R(0.0), maturity * (cumulant[m] + mean * tilt[m] - rate)));
   });
   const auto least_ends = [&, tilt, grown](int lane) {

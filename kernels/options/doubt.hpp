@@ -104,11 +104,11 @@ KOKKOS_INLINE_FUNCTION Doubt<R> doubt_of(const PutPack<R>& put, const Law<R>& la
 /// step, 1.5 T/steps, V_xx at most 0.4/sqrt(v T), and the number in front, 1, is fitted to European prices.
 template <class R>
 KOKKOS_INLINE_FUNCTION R doubt_of_stiff_jumps(const PutPack<R>& put, const Law<R>& law, const Jumps<R>& jumps,
-                                              const Scheme<R>& scheme, R h) {
-  const R dt = step_length(put.maturity, scheme.steps, scheme.steps).dt;
-  const R added = added_diffusion(put, jumps, 0.5 * (scheme.lower + scheme.upper), dt);
+                                              int steps, R h) {
+  const R dt = step_length(put.maturity, steps, steps).dt;
+  const R added = added_diffusion(put, jumps, jumps.diffusion / (h * h), dt);
   const R variance = device::maximum(put.variance + law.variance, R(1e-100));
-  const R wide = added * h * h * device::reciprocal(double(scheme.steps) * scheme.steps);
+  const R wide = added * h * h * device::reciprocal(double(steps) * steps);
   return wide * device::square_root(put.maturity * device::reciprocal(variance));
 }
 

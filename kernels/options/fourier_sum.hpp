@@ -34,7 +34,7 @@ KOKKOS_INLINE_FUNCTION void each_octet(const Workers& workers, const Passes& pas
                                        ComplexNumber<R>* z, const F& f) {
   const int log_stride = passes.log_stride(pass), tasks = 1 << (passes.log_size - 3);
   workers.each([=](int lane) {
-    for (int task = lane; task < tasks; task += workers.lanes) {
+    for (int task = lane; task < tasks; task += workers.threads()) {
       const int factor = task >> log_stride, k = task - (factor << log_stride);
       ComplexNumber<R>* const own = z + padded((factor << (log_stride + 3)) + k);
       Octet<R> octet;
@@ -67,7 +67,7 @@ KOKKOS_INLINE_FUNCTION JumpSpectrum<R> spectrum_of(const Workers& workers, int m
   const Passes passes(mesh);
   const double part = 1.0 / mesh;
   workers.each([=](int lane) {
-    for (int k = lane; k < mesh; k += workers.lanes)
+    for (int k = lane; k < mesh; k += workers.threads())
       z[padded(k)] = {part * w[layout.place(mesh - k)], part * w[layout.place(-k)]};
   });
   for (int pass = 0; pass < passes.last; ++pass)
@@ -89,7 +89,7 @@ KOKKOS_INLINE_FUNCTION void sum_by_transforms(const Workers& workers, int mesh,
   const FourierRoots roots = spectrum.roots;
   const ComplexNumber<R>* const factors = spectrum.place;
   workers.each([=](int lane) {
-    for (int k = lane; k < stride; k += workers.lanes) {
+    for (int k = lane; k < stride; k += workers.threads()) {
       Octet<R> octet;
       octet.split_real([=](int m) { return v[k + m * stride]; });
       octet.store(z + padded(k), stride);
@@ -105,7 +105,7 @@ KOKKOS_INLINE_FUNCTION void sum_by_transforms(const Workers& workers, int mesh,
     each_octet(workers, passes, pass, z,
                [=](Octet<R>& octet, int factor) { octet.join(roots.seven(pass, factor)); });
   workers.each([=](int lane) {
-    for (int k = lane; k < stride; k += workers.lanes) {
+    for (int k = lane; k < stride; k += workers.threads()) {
       Octet<R> octet;
       octet.load(z + padded(k), stride);
       octet.join_imaginary([=](int m, R y) { out[k + m * stride] = y; });

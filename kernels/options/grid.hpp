@@ -23,6 +23,12 @@ KOKKOS_INLINE_FUNCTION Grid<R> grid_of(const Domain<R>& domain, int mesh) {
   return {mesh, device::maximum(domain.below / strike, domain.above / (double(mesh) - strike)), strike};
 }
 
+/// Every other node.
+template <class R>
+KOKKOS_INLINE_FUNCTION Grid<R> coarser(const Grid<R>& grid) {
+  return {grid.mesh / 2, 2.0 * grid.h, 0.5 * grid.strike};
+}
+
 /// The lanes that an option on a mesh has, so that each of them has eight nodes or four. Two options of 16
 /// lanes share a warp.
 KOKKOS_INLINE_FUNCTION constexpr int lanes_of(int mesh) {

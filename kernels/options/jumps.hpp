@@ -18,11 +18,11 @@ KOKKOS_INLINE_FUNCTION void sum_mixture(const Workers& workers, const PutPack<R>
   const R tilt = device::absolute(put.jump[2]);
   const R *s = law.s, *c = law.c;
   workers.each([=](int lane) {
-    for (int q = lane; q < Mixture::size; q += workers.lanes) ratio[q] = exponential((tilt - s[q]) * h);
+    for (int q = lane; q < Mixture::size; q += workers.threads()) ratio[q] = exponential((tilt - s[q]) * h);
   });
   workers.each([=](int lane) {
     const int octets = (mesh + 7) / 8;
-    for (int task = lane; task < 2 * octets; task += workers.lanes) {
+    for (int task = lane; task < 2 * octets; task += workers.threads()) {
       const int part = task / octets, first = task % octets * 8 + 1;
       R sum[8] = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
       for (int q = part; q < Mixture::size; q += 2 * at_once) {
@@ -134,7 +134,8 @@ struct AngleCosines {
 template <class R>
 struct JumpsMemory {
   R *w, *left, *left_price, *symbol;
-  R *even, *odd;  ///< (node_count)
+  R *even, *odd;  ///< (node_count), as the next
+  R* both;        ///< the sums of both weights of a distance
   R* ratio;       ///< (Mixture::size)
   R* slot;        ///< (2 most_lanes)
 };
@@ -173,8 +174,8 @@ KOKKOS_INLINE_FUNCTION Jumps<R> jumps_of(const Workers& workers, const PutPack<R
   const WeightLayout<R> layout(mesh);
   const bool mixed = put.model == Model::generalized_hyperbolic;
   workers.each([=](int lane) {
-    for (int k = lane; k < layout.size(); k += workers.lanes) memory.w[k] = 0.0;
-    for (int k = lane; k < nodes; k += workers.lanes) memory.left[k] = memory.left_price[k] = 0.0;
+    for (int k = lane; k < layout.size(); k += workers.threads()) memory.w[k] = 0.0;
+    for (int k = lane; k < nodes; k += workers.threads()) memory.left[k] = memory.left_price[k] = 0.0;
   });
   if (mixed && finer == nullptr)
     sum_mixture(workers, put, law, h, mesh, memory.ratio, memory.even, memory.odd);
@@ -191,7 +192,7 @@ KOKKOS_INLINE_FUNCTION Jumps<R> jumps_of(const Workers& workers, const PutPack<R
       const R y = double(d) * h, down_price = down * device::reciprocal(growth);
       memory.w[layout.place(d)] = up;
       memory.w[layout.place(-d)] = down;
-      memory.even[d] = both;  // of the mixture it holds no more
+      memory.both[d] = both;
       if (d >= 2) {
         memory.left[d - 1] = down;
         memory.left_price[d - 1] = down_price;
@@ -226,7 +227,7 @@ KOKKOS_INLINE_FUNCTION Jumps<R> jumps_of(const Workers& workers, const PutPack<R
       memory.left_price[mesh - 1] += tails.down_price;
     }
     // The odd d of all angles first, then the even ones.
-    for (int task = lane; task < 2 * symbols; task += workers.lanes) {
+    for (int task = lane; task < 2 * symbols; task += workers.threads()) {
       double cosine = 0.0;
       AngleCosines::each([&](int k, double known) { cosine = k == task % symbols ? known : cosine; });
       const double twice = 2.0 * (2.0 * cosine * cosine - 1.0);
@@ -234,7 +235,7 @@ KOKKOS_INLINE_FUNCTION Jumps<R> jumps_of(const Workers& workers, const PutPack<R
       double before = first == 1 ? cosine : 1.0, now = first == 1 ? cosine : 0.5 * twice;
       R sum = 0.0;
       for (int d = first; d <= mesh; d += 2) {
-        sum += now * memory.even[d];
+        sum += now * memory.both[d];
         const double next = twice * now - before;
         before = now;
         now = next;
@@ -248,7 +249,7 @@ KOKKOS_INLINE_FUNCTION Jumps<R> jumps_of(const Workers& workers, const PutPack<R
   recur_backward(workers, {memory.left, memory.left_price}, block_of(mesh, workers.lanes), R(1.0),
                  memory.slot);
   workers.each([=](int lane) {
-    for (int i = 1 + lane; i < mesh; i += workers.lanes)
+    for (int i = 1 + lane; i < mesh; i += workers.threads())
       memory.left_price[i] = memory.left_price[i] * exponential((double(i) - grid.strike) * h);
   });
   return jumps;

@@ -16,10 +16,23 @@ struct PutPack {
   R jump[4];
 };
 
-template <class R>
+/// The laws that a kernel is compiled for. All contracts of a launch have one model, and without the others'
+/// code a GPU's compiler inlines all of a solve: of what is too much for that it makes calls, which keep
+/// everything in memory.
+enum class Laws : unsigned char { all, mixtures, closed_forms };
+
+/// Calls f.operator()<laws>() for the laws that a model belongs to.
+template <class F>
+void for_laws_of(Model model, const F& f) {
+  if (model == Model::generalized_hyperbolic) return f.template operator()<Laws::mixtures>();
+  f.template operator()<Laws::closed_forms>();
+}
+
+template <class R, Laws laws = Laws::all>
 KOKKOS_INLINE_FUNCTION PutPack<R> pack_of(const Put* puts) {
   PutPack<R> pack{};
-  pack.model = puts[0].model;
+  pack.model = laws == Laws::mixtures ? Model::generalized_hyperbolic : puts[0].model;
+  if constexpr (laws == Laws::closed_forms) device::assume(pack.model != Model::generalized_hyperbolic);
   for (int k = 0; k < device::Access<R>::lanes; ++k) {
     const auto set = [k](R& number, double value) { reinterpret_cast<double*>(&number)[k] = value; };
     const Put& put = puts[k];
@@ -36,11 +49,13 @@ KOKKOS_INLINE_FUNCTION PutPack<R> pack_of(const Put* puts) {
   return pack;
 }
 
-/// The puts without early exercise.
+/// The puts, or the same without early exercise.
 template <class R>
-KOKKOS_INLINE_FUNCTION PutPack<R> unexercised(PutPack<R> put) {
-  put.any_split = false;
-  put.early = put.split = 0.0;
+KOKKOS_INLINE_FUNCTION PutPack<R> with_exercise(PutPack<R> put, bool allowed) {
+  if (!allowed) {
+    put.any_split = false;
+    put.early = put.split = 0.0;
+  }
   return put;
 }
 
@@ -78,7 +93,7 @@ KOKKOS_INLINE_FUNCTION Law<R> law_of(const Workers& workers, const PutPack<R>& p
     workers.each([=](int lane) {
       for (int k = 0; k < members; ++k) {
         const MixtureGrid grid = mixture_grid(puts[k], panels, panel_slot);
-        for (int q = lane; q < Mixture::size; q += workers.lanes) {
+        for (int q = lane; q < Mixture::size; q += workers.threads()) {
           const Term term = mixture_term(puts[k], grid, q);
           reinterpret_cast<double*>(s + q)[k] = term.rate;
           reinterpret_cast<double*>(c + q)[k] = term.weight;

@@ -12,6 +12,7 @@
 #include "kernels/device/pinned_memory.hpp"
 #include "kernels/options/clock.hpp"
 #include "kernels/options/hankel_panels.hpp"
+#include "kernels/options/price_functors.hpp"
 #include "kernels/options/refinement.hpp"
 #include "kernels/options/roots_of_unity.hpp"
 #include "kernels/options/seed_batch.hpp"
@@ -38,20 +39,26 @@ class PricerOn final : public Pricer {
               "options pricer: the dissertation's scheme has generalized hyperbolic jumps");
     Timing timing;
     if (contracts.empty()) return timing;
-    const Clock copying_in;
+    const Clock all;
     reserve(contracts.size());
-    device::copy_in(_instance.space(), _contracts, staged(contracts), contracts.size());
-    _instance.space().fence("drogue::options: contracts are copied");
-    timing.h2d = copying_in.seconds();
-    if (_settings.mesh == 0 && _settings.method == Method::pide) {
-      price_to_tolerance(contracts, prices, timing);
+    const int mesh = _settings.mesh == 0 && _settings.method == Method::seed ? seed_mesh : _settings.mesh;
+    if (mesh != 0 && is_priced_in_place(contracts.size())) {
+      price_in_place(contracts, prices, {mesh, steps_of(mesh)});
     } else {
-      const int mesh = _settings.mesh == 0 ? seed_mesh : _settings.mesh;
-      const Clock computing;
-      launch_models(contracts, {mesh, steps_of(mesh)}, [](std::size_t) { return true; });
-      timing.compute = computing.seconds();
-      copy_out(prices, timing);
+      device::copy_in(_instance.space(), _contracts, staged(contracts), contracts.size());
+      if (_settings.timed_apart) _instance.space().fence("drogue::options: contracts are copied");
+      timing.h2d = all.seconds();
+      _places = {_contracts, _prices};
+      if (mesh == 0) {
+        price_to_tolerance(contracts, prices, timing);
+      } else {
+        const Clock computing;
+        launch_all(contracts, {mesh, steps_of(mesh)});
+        timing.compute = computing.seconds();
+        copy_out(prices, timing);
+      }
     }
+    if (!_settings.timed_apart) timing = {0.0, all.seconds(), 0.0};
     return timing;
   }
 
@@ -92,9 +99,34 @@ class PricerOn final : public Pricer {
     }
   }
 
+  /// Whether contracts are so few that a device rather reads and writes them in the host's memory than waits
+  /// for two copies.
+  [[nodiscard]] bool is_priced_in_place(std::size_t count) const {
+    return !device::is_host<ExecutionSpace> && !_settings.timed_apart && count <= 64;
+  }
+
+  void price_in_place(std::span<const Contract> contracts, std::span<Price> prices, const Effort& effort) {
+    Price* const to = landing(prices);
+    _places.contracts = Kokkos::View<const Contract*, Space>(staged(contracts), contracts.size());
+    _places.prices = View<Price>(to, prices.size());
+    launch_all(contracts, effort);
+    _instance.space().fence("drogue::options: prices are there");
+    if (to != prices.data()) std::ranges::copy(_staged_prices, prices.begin());
+  }
+
+  void launch_all(std::span<const Contract> contracts, const Effort& effort) {
+    launch_models(contracts, effort, [](std::size_t) { return true; });
+  }
+
   static constexpr int first_mesh = 64, seed_mesh = 128, record_mesh = 512, models = 4;
   /// Contracts that the host gathers for its next launches, while a device is busy with those before.
   static constexpr std::size_t slab = 1 << 17;
+
+  /// What launches read and write, in the memory of the backend or in page-locked memory of the host.
+  struct Places {
+    Kokkos::View<const Contract*, Space> contracts;
+    View<Price> prices;
+  };
 
   struct Recorded {
     std::vector<double> time, boundary, x, value;
@@ -111,12 +143,13 @@ class PricerOn final : public Pricer {
     reserve(1);
     _panels.build(one);
     device::copy_in(_instance.space(), _contracts, &contract, 1);
+    _places = {_contracts, _prices};
     const auto steps = static_cast<std::size_t>(effort.steps),
                nodes = static_cast<std::size_t>(effort.mesh) + 1;
     const View<double> all("drogue::options::record", 2 * (steps + nodes));
     double* const at = all.data();
     constexpr int first[] = {0};
-    launch(first, 0, effort, {at, at + steps, at + 2 * steps, at + 2 * steps + nodes});
+    launch(first, contract.model, 0, effort, {at, at + steps, at + 2 * steps, at + 2 * steps + nodes});
     std::vector<double> values(all.size());
     device::copy_out(_instance.space(), values.data(), all, values.size());
     _instance.space().fence("drogue::options: record is there");
@@ -160,13 +193,16 @@ class PricerOn final : public Pricer {
     return _staged_contracts.data();
   }
 
+  /// Where prices arrive from a device without a detour.
+  Price* landing(std::span<Price> prices) {
+    if (device::is_host<ExecutionSpace> || _pinned.holds(prices.data())) return prices.data();
+    _staged_prices.resize(prices.size());
+    return _staged_prices.data();
+  }
+
   void copy_out(std::span<Price> prices, Timing& timing) {
     const Clock copying;
-    Price* to = prices.data();
-    if (!device::is_host<ExecutionSpace> && !_pinned.holds(to)) {
-      _staged_prices.resize(prices.size());
-      to = _staged_prices.data();
-    }
+    Price* const to = landing(prices);
     device::copy_out(_instance.space(), to, _prices, prices.size());
     _instance.space().fence("drogue::options: prices are there");
     if (to != prices.data()) std::ranges::copy(_staged_prices, prices.begin());
@@ -179,8 +215,9 @@ class PricerOn final : public Pricer {
     std::vector<int> rows[models];
     std::size_t place = 0, gathered = 0;
     const auto launch_gathered = [&] {
-      for (std::vector<int>& of_model : rows) {
-        launch(of_model, place, effort, Record{});
+      for (int model = 0; model < models; ++model) {
+        std::vector<int>& of_model = rows[model];
+        launch(of_model, static_cast<Model>(model), place, effort, Record{});
         place += of_model.size();
         of_model.clear();
       }
@@ -194,11 +231,12 @@ class PricerOn final : public Pricer {
       if (++gathered == slab) launch_gathered();
     }
     launch_gathered();
-    _instance.space().fence("drogue::options: priced");
+    if (_settings.timed_apart) _instance.space().fence("drogue::options: priced");
   }
 
   /// Enqueues the launch for `rows`, which are put at `place` of the order.
-  void launch(std::span<const int> rows, std::size_t place, const Effort& effort, const Record& record) {
+  void launch(std::span<const int> rows, Model model, std::size_t place, const Effort& effort,
+              const Record& record) {
     if (rows.empty()) return;
     const auto order = Kokkos::subview(_order, std::pair(place, place + rows.size()));
     int* const known = _rows.data() + place;
@@ -208,13 +246,14 @@ class PricerOn final : public Pricer {
     }
     _panels.copy_in(_instance.space());
     PriceBatch<ExecutionSpace> batch;
-    batch.contracts = _contracts;
-    batch.prices = _prices;
+    batch.contracts = _places.contracts;
+    batch.prices = _places.prices;
     batch.order = order;
     batch.panels = _panels.series();
     batch.panel_slot = _panels.slots();
     batch.roots = _roots.of_mesh(_instance.space(), effort.mesh);
     batch.record = record;
+    batch.model = model;
     batch.count = static_cast<int>(rows.size());
     batch.mesh = effort.mesh;
     batch.steps = effort.steps;
@@ -233,6 +272,7 @@ class PricerOn final : public Pricer {
   device::Instance<ExecutionSpace> _instance;
   View<Contract> _contracts;
   View<Price> _prices;
+  Places _places;
   View<int> _order;
   device::PinnedMemory<ExecutionSpace> _pinned;
   std::pmr::vector<int> _rows{&_pinned};  ///< what _order holds

@@ -166,10 +166,10 @@ KOKKOS_INLINE_FUNCTION void swizzle(const Workers& workers, double* nodes) {
 
 /// Marches from expiry to maturity; `jumps.left` and `left_price` are left `swizzled`. Returns the last node
 /// below the strike that is exercised, -1 if none is.
-template <int block, int lanes>
-KOKKOS_INLINE_FUNCTION int march_in_registers(const WarpWorkers<lanes>& workers, const PutPack<double>& put,
-                                              const Jumps<double>& jumps, const Grid<double>& grid,
-                                              const JumpSpectrum<double>& spectrum,
+template <int block, int lanes, bool alone>
+KOKKOS_INLINE_FUNCTION int march_in_registers(const WarpWorkers<lanes, alone>& workers,
+                                              const PutPack<double>& put, const Jumps<double>& jumps,
+                                              const Grid<double>& grid, const JumpSpectrum<double>& spectrum,
                                               const Scheme<double>& scheme, const StepTable<double>& table,
                                               const RegisterRows& rows, double kink) {
   using Own = LaneNodes<block>;

@@ -25,8 +25,8 @@ KOKKOS_INLINE_FUNCTION Jumps<R> seed_jumps(const Workers& workers, const PutPack
     return sum;
   };
   workers.each([=](int lane) {
-    for (int k = lane; k < layout.size(); k += workers.lanes) w[k] = 0.0;
-    for (int k = lane; k < nodes; k += workers.lanes) left[k] = left_price[k] = 0.0;
+    for (int k = lane; k < layout.size(); k += workers.threads()) w[k] = 0.0;
+    for (int k = lane; k < nodes; k += workers.threads()) left[k] = left_price[k] = 0.0;
   });
   workers.each([=](int lane) {
     for (int d = 1 + lane; d <= mesh; d += workers.lanes) {
@@ -74,7 +74,7 @@ struct SeedBatch {
     const int mesh = batch.mesh, steps = batch.steps, count = node_count(mesh),
               block = block_of(mesh, workers.lanes);
     workers.each([=, this](int lane) {
-      for (int k = lane; k < members; k += workers.lanes)
+      for (int k = lane; k < members; k += workers.threads())
         memory.puts[k] = put_of(batch.contracts(batch.place(group, k)));
     });
     const PutPack<R> put = pack_of<R>(memory.puts);
@@ -87,7 +87,7 @@ struct SeedBatch {
     R *sum = memory.row(2, mesh), *other = memory.row(3, mesh), *y = memory.row(4, mesh),
       *payoff = memory.row(5, mesh), *none = memory.row(6, mesh), *change = memory.row(7, mesh);
     workers.each([=](int lane) {
-      for (int i = lane; i < count; i += workers.lanes) {
+      for (int i = lane; i < count; i += workers.threads()) {
         const R paid = device::maximum(R(0.0), 1.0 - exponential((double(i) - grid.strike) * grid.h));
         payoff[i] = paid;
         value[i] = i < mesh ? paid : R(0.0);
@@ -124,7 +124,7 @@ struct SeedBatch {
       const R edge = ended.strike - ended.asset * exponential(lowest);
       recur_forward(workers, now, y, none, block, mesh, implicit * inverse, edge, memory.slot);
       workers.each([=](int lane) {
-        for (int i = 1 + lane; i < mesh; i += workers.lanes) {
+        for (int i = 1 + lane; i < mesh; i += workers.threads()) {
           now[i] = device::select(early > R(0.0), device::maximum(payoff[i], now[i]), now[i]);
           change[i] = (now[i] - value[i]) / dt;
         }
@@ -134,7 +134,7 @@ struct SeedBatch {
       value = swapped;
     }
     workers.each([=, this](int lane) {
-      for (int k = lane; k < members; k += workers.lanes) {
+      for (int k = lane; k < members; k += workers.threads()) {
         if (group * members + k >= batch.count) continue;
         const int at = batch.place(group, k);
         const Column values{reinterpret_cast<const double*>(value) + k, members};

@@ -28,7 +28,7 @@ struct SmileNodes {
 /// Smiles of one model, solved on one mesh in one launch by a team for each, or on hosts for each pack of
 /// them: smile k is that of contract k of the batch, whose strike does not matter. For `fixed` see
 /// `march_nodes`.
-template <class ExecutionSpace, int fixed>
+template <class ExecutionSpace, int fixed, Laws laws>
 struct SmileFunctor {
   using Batch = PriceBatch<ExecutionSpace>;
   using R = typename Batch::R;
@@ -41,7 +41,7 @@ struct SmileFunctor {
   Kokkos::View<Smile*, Space> smiles;          ///< (smiles)
   Kokkos::View<double*, Space> values;         ///< (smiles, SmileNodes::size)
 
-  KOKKOS_FUNCTION void operator()(const typename Batch::Member& team) const {
+  KOKKOS_FORCEINLINE_FUNCTION void operator()(const typename Batch::Member& team) const {
     batch.template price_group<fixed>(*this, team);
   }
 
@@ -49,13 +49,13 @@ struct SmileFunctor {
   KOKKOS_INLINE_FUNCTION void price(const Workers& workers, const Scratch& memory, int group) const {
     const int mesh = fixed > 0 ? fixed : batch.mesh;
     workers.each([=, this](int lane) {
-      for (int k = lane; k < members; k += workers.lanes) {
+      for (int k = lane; k < members; k += workers.threads()) {
         const int at = batch.place(group, k);
         memory.puts[k] = put_of(batch.contracts(at));
         memory.puts[k].log_spot = reaches(at);
       }
     });
-    PutPack<R> put = pack_of<R>(memory.puts);
+    PutPack<R> put = pack_of<R, laws>(memory.puts);
     put.any_split = !workers.all(!put.any_split);
     const Law<R> law =
         law_of(workers, put, memory.puts, batch.panels.data(), batch.panel_slot.data(), memory.law_memory());
@@ -65,22 +65,38 @@ struct SmileFunctor {
     const R below = domain_of(workers, put, law, cut_error(mesh), memory.slot).below;
     const Grid<R> grid = grid_of(Domain<R>{below, above}, mesh);
     const Tails<R> tails = tails_of(workers, put, law, grid.h * double(mesh));
-    keep<fixed, false>(workers, memory, group, grid, deviation,
-                       march_nodes<fixed>(workers, put, law, tails, grid, batch.steps, memory,
-                                          {memory.w, nullptr, batch.roots}, Record{}));
-    const Grid<R> half{mesh / 2, 2.0 * grid.h, 0.5 * grid.strike};
+    const Jumps<R> jumps = jumps_on<fixed>(workers, put, law, tails, grid, memory, memory.w);
+    const Grid<R> half = coarser(grid);
+    note(workers, memory, group, doubt_of_solve(put, law, jumps, grid, batch.steps),
+         device::maximum(half.h, deviation));
+    keep<fixed, false>(workers, memory, group, grid,
+                       march_nodes<fixed>(workers, put, jumps, grid, batch.steps, memory, batch.roots));
+    const Jumps<R> wider =
+        jumps_on<fixed / 2>(workers, put, law, tails, half, memory, memory.coarse_weights(mesh), memory.w);
     keep<fixed / 2, true>(
-        workers, memory, group, half, deviation,
-        march_nodes<fixed / 2>(workers, put, law, tails, half, batch.steps / 2, memory,
-                               {memory.coarse_weights(mesh), memory.w, batch.roots}, Record{}));
+        workers, memory, group, half,
+        march_nodes<fixed / 2>(workers, put, wider, half, batch.steps / 2, memory, batch.roots));
   }
 
  private:
+  /// Tells the smiles of the pack's members what readings need beside values.
+  template <class Workers>
+  KOKKOS_INLINE_FUNCTION void note(const Workers& workers, const Scratch& memory, int group,
+                                   const Doubt<R>& doubt, const R& window) const {
+    workers.each([=, this](int lane) {
+      for (int k = lane; k < members; k += workers.threads()) {
+        if (group * members + k >= batch.count) continue;
+        Smile& smile = smiles(batch.place(group, k));
+        smile.doubt = doubt_without_premium(doubt, memory.puts[k], k);
+        smile.window = device::Access<R>::lane(window, k);
+      }
+    });
+  }
+
   /// Copies what a solve has left to the smiles of the pack's members.
   template <int solved, bool coarse, class Workers>
   KOKKOS_INLINE_FUNCTION void keep(const Workers& workers, const Scratch& memory, int group,
-                                   const Grid<R>& grid, const R& deviation,
-                                   const Solution<R>& solution) const {
+                                   const Grid<R>& grid, const Solution<R>& solution) const {
     const int mesh = grid.mesh;
     workers.each([=, this](int lane) {
       for (int k = 0; k < members; ++k) {
@@ -88,20 +104,13 @@ struct SmileFunctor {
         const int at = batch.place(group, k);
         const SmileNodes nodes = nodes_at(at);
         double* const to = coarse ? nodes.coarse() : nodes.fine();
-        for (int i = lane; i <= mesh; i += workers.lanes) {
+        for (int i = lane; i <= mesh; i += workers.threads()) {
           to[i] = device::Access<R>::lane(solution.value[i], k);
           to[mesh + 1 + i] = device::Access<R>::lane(solution.change[i], k);
         }
-        if (lane != 0) continue;
-        const Nodes found = nodes_of<solved>(solution, memory.puts[k], grid, k);
-        if constexpr (coarse) {
-          const double width = device::Access<R>::lane(deviation, k);
-          smiles(at).coarse = found;
-          smiles(at).window = device::maximum(found.h, width);
-        } else {
-          smiles(at).fine = found;
-          smiles(at).doubt = doubt_without_premium(solution.doubt, memory.puts[k], k);
-        }
+        if (lane == 0)
+          (coarse ? smiles(at).coarse : smiles(at).fine) =
+              nodes_of<solved>(solution, memory.puts[k], grid, k);
       }
     });
   }
@@ -114,22 +123,23 @@ struct SmileFunctor {
 
 /// Enqueues the solves of smiles of one model.
 template <class ExecutionSpace>
-void solve_smiles(const ExecutionSpace& space, SmileFunctor<ExecutionSpace, 0> work) {
+void solve_smiles(const ExecutionSpace& space, SmileFunctor<ExecutionSpace, 0, Laws::all> work) {
   static_assert(
       Kokkos::SpaceAccessibility<ExecutionSpace, typename decltype(work.values)::memory_space>::accessible);
   // On a device the other meshes are solved in memory, by whole warps.
   if (work.batch.mesh == 128) work.batch.lanes = lanes_of(work.batch.mesh);
-  const auto launch = [&]<int fixed>(const char* label) {
-    launch_batch<fixed, ExecutionSpace>(
-        space, label,
-        SmileFunctor<ExecutionSpace, fixed>{work.batch, work.reaches, work.smiles, work.values});
-  };
   if constexpr (!device::is_host<ExecutionSpace>) {
-    constexpr const char* in_registers = "drogue::options::solve smiles in registers";
-    if (work.batch.mesh == 128) return launch.template operator()<128>(in_registers);
-    if (work.batch.mesh == 256) return launch.template operator()<256>(in_registers);
+    const auto launch = [&]<int fixed> {
+      return for_laws_of(work.batch.model, [&]<Laws laws> {
+        launch_batch<fixed>(
+            space, "drogue::options::solve smiles in registers",
+            SmileFunctor<ExecutionSpace, fixed, laws>{work.batch, work.reaches, work.smiles, work.values});
+      });
+    };
+    if (work.batch.mesh == 128) return launch.template operator()<128>();
+    if (work.batch.mesh == 256) return launch.template operator()<256>();
   }
-  launch.template operator()<0>("drogue::options::solve smiles");
+  launch_batch<0>(space, "drogue::options::solve smiles", work);
 }
 
 /// A price that is read from a smile.

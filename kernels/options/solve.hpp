@@ -84,13 +84,15 @@ struct Record {
   double* value;           ///< (mesh + 1)
 };
 
-/// Marches with the nodes in the memory, whose rows 0 to 8 it takes.
+/// Marches with the nodes in the memory, whose rows 0 to 8 it takes. Not inlined: of a kernel that both
+/// solves' code makes too large a GPU's compiler makes calls elsewhere.
 template <class Workers, class R>
-KOKKOS_INLINE_FUNCTION March<R> march_in_memory(const Workers& workers, const PutPack<R>& put,
-                                                const Jumps<R>& jumps, const Grid<R>& grid,
-                                                const JumpSpectrum<R>& spectrum, const Scheme<R>& scheme,
-                                                const StepTable<R>& table, const Memory<R, 0>& memory, R kink,
-                                                const Record& record) {
+[[gnu::noinline]] KOKKOS_FUNCTION March<R> march_in_memory(const Workers& workers, const PutPack<R>& put,
+                                                           const Jumps<R>& jumps, const Grid<R>& grid,
+                                                           const JumpSpectrum<R>& spectrum,
+                                                           const Scheme<R>& scheme, const StepTable<R>& table,
+                                                           const Memory<R, 0>& memory, R kink,
+                                                           const Record& record) {
   const int mesh = grid.mesh, count = node_count(mesh), steps = scheme.steps;
   const R h = grid.h;
   March<R> march{{memory.row(0, mesh), memory.row(1, mesh), memory.row(2, mesh)},
@@ -101,10 +103,10 @@ KOKKOS_INLINE_FUNCTION March<R> march_in_memory(const Workers& workers, const Pu
                  memory.row(8, mesh),
                  memory.slot};
   workers.each([=](int lane) {
-    for (int k = lane; k < 9 * count; k += workers.lanes) memory.nodes[k] = 0.0;
+    for (int k = lane; k < 9 * count; k += workers.threads()) memory.nodes[k] = 0.0;
   });
   workers.each([=, &put](int lane) {
-    for (int i = lane; i < mesh; i += workers.lanes) {
+    for (int i = lane; i < mesh; i += workers.threads()) {
       const AtExpiry<R> node = at_expiry(put, grid, i, kink);
       march.value[1][i] = node.value;
       march.floor[i] = node.floor;
@@ -139,12 +141,13 @@ KOKKOS_INLINE_FUNCTION March<R> march_in_memory(const Workers& workers, const Pu
   // After the rotation value[0] is what value[2] was.
   const StepLength<R> last = step_length(put.maturity, steps, steps);
   workers.each([=](int lane) {
-    for (int i = lane; i <= mesh; i += workers.lanes)  // the upper end too, where transforms leave numbers
+    for (int i = lane; i <= mesh;
+         i += workers.threads())  // the upper end too, where transforms leave numbers
       march.y[i] = rate_of_change(last, march.value[1][i], march.value[2][i], march.value[0][i]);
   });
   if (record.time != nullptr) {
     workers.each([=](int lane) {
-      for (int i = lane; i <= mesh; i += workers.lanes) {
+      for (int i = lane; i <= mesh; i += workers.threads()) {
         record.x[i] = device::Access<R>::lane((double(i) - grid.strike) * h, 0);
         record.value[i] = device::Access<R>::lane(march.value[1][i], 0);
       }
@@ -153,21 +156,11 @@ KOKKOS_INLINE_FUNCTION March<R> march_in_memory(const Workers& workers, const Pu
   return march;
 }
 
-/// Where the weights of a solve's jumps go, those that a solve with half the steps has left, if any, and what
-/// they are transformed with.
-template <class R>
-struct Weights {
-  R* own;
-  const R* finer;
-  FourierRoots roots;
-};
-
 /// What a march leaves on the nodes of a pack, in the memory until the next one.
 template <class R>
 struct Solution {
   const R *value, *change;  ///< V and dV/dtau at maturity
   int exercised;            ///< last node below the strike that is, where lanes marched in registers
-  Doubt<R> doubt;
 };
 
 template <class R>
@@ -187,55 +180,75 @@ KOKKOS_INLINE_FUNCTION Nodes nodes_of(const Solution<R>& solution, const Put& pu
   return {grid.mesh, strike, last, h};
 }
 
+/// The jumps on `grid`, their weights in `weights`; if given from those of a grid of half the steps. For
+/// `fixed` see `march_nodes`.
+template <int fixed, class Workers, class R, class Scratch>
+KOKKOS_INLINE_FUNCTION Jumps<R> jumps_on(const Workers& workers, const PutPack<R>& put, const Law<R>& law,
+                                         const Tails<R>& tails, const Grid<R>& grid, const Scratch& memory,
+                                         R* weights, const R* finer = nullptr) {
+  const int mesh = fixed > 0 ? fixed : grid.mesh;
+  constexpr int left = fixed > 0 ? 3 : 9;
+  return jumps_of(
+      workers, put, law, tails, grid,
+      {weights, memory.row(left, mesh), memory.row(left + 1, mesh), memory.symbol(), memory.row(1, mesh),
+       memory.row(2, mesh), memory.row(0, mesh), memory.ratio(), memory.slot},
+      finer);
+}
+
+/// The variance by which differences spread the payoff until maturity.
+template <class R>
+KOKKOS_INLINE_FUNCTION R spread_of(const PutPack<R>& put, const Jumps<R>& jumps) {
+  return 2.0 * jumps.diffusion * put.maturity;
+}
+
+/// What is in doubt of a solve on `grid`, which another one on the coarser grid is compared with.
+template <class R>
+KOKKOS_INLINE_FUNCTION Doubt<R> doubt_of_solve(const PutPack<R>& put, const Law<R>& law,
+                                               const Jumps<R>& jumps, const Grid<R>& grid, int steps) {
+  Doubt<R> doubt = doubt_of(put, law, grid.h, steps, spread_of(put, jumps));
+  doubt.gap += doubt_of_stiff_jumps(put, law, jumps, steps, grid.h);
+  return doubt;
+}
+
 /// Marches from expiry to the puts' maturities on `grid`. With a `fixed` > 0 that is the mesh and a group of
 /// lanes keeps its nodes in registers; then nothing is recorded.
 template <int fixed, class Workers, class R, class Scratch>
 KOKKOS_INLINE_FUNCTION Solution<R> march_nodes(const Workers& workers, const PutPack<R>& put,
-                                               const Law<R>& law, const Tails<R>& tails, const Grid<R>& grid,
-                                               int steps, const Scratch& memory, const Weights<R>& weights,
-                                               const Record& record) {
-  const int mesh = grid.mesh;
-  const R h = grid.h;
-  constexpr int left = fixed > 0 ? 3 : 9;
-  const Jumps<R> jumps =
-      jumps_of(workers, put, law, tails, grid,
-               {weights.own, memory.row(left, mesh), memory.row(left + 1, mesh), memory.symbol(),
-                memory.row(1, mesh), memory.row(2, mesh), memory.ratio(), memory.slot},
-               weights.finer);
+                                               const Jumps<R>& jumps, const Grid<R>& grid, int steps,
+                                               const Scratch& memory, const FourierRoots& roots,
+                                               const Record& record = {}) {
+  const int mesh = fixed > 0 ? fixed : grid.mesh;
   // The kink of the payoff, as far as it gets smoothed out: h/12 is what the rule of trapezoids, which sums
   // over nodes amount to, lacks there.
-  const R spread = 2.0 * jumps.diffusion * put.maturity;
-  const R kink = h * (1.0 / 12) * spread / (spread + h * h);
+  const R spread = spread_of(put, jumps);
+  const R kink = grid.h * (1.0 / 12) * spread / (spread + grid.h * grid.h);
   const Scheme<R> scheme = scheme_of(put, jumps, grid, steps);
-  Doubt<R> doubt = doubt_of(put, law, h, steps, spread);
-  doubt.gap += doubt_of_stiff_jumps(put, law, jumps, scheme, h);
   const StepTable<R> table{memory.law};
   JumpSpectrum<R> spectrum{};
   if (is_transformed(mesh, workers.lanes))
-    spectrum = spectrum_of(workers, mesh, weights.roots, jumps.w, memory.spectrum(mesh));
+    spectrum = spectrum_of(workers, mesh, roots, jumps.w, memory.spectrum(mesh));
   if constexpr (fixed > 0) {
     const RegisterRows rows{memory.row(0, mesh), memory.row(1, mesh), memory.row(2, mesh), memory.slot};
     const int exercised = march_in_registers<fixed / Workers::lanes>(workers, put, jumps, grid, spectrum,
                                                                      scheme, table, rows, kink);
-    return {rows.value, rows.other, exercised, doubt};
+    return {rows.value, rows.other, exercised};
   } else {
     const March<R> march =
         march_in_memory(workers, put, jumps, grid, spectrum, scheme, table, memory, kink, record);
-    return {march.value[1], march.y, -1, doubt};
+    return {march.value[1], march.y, -1};
   }
 }
 
 /// `march_nodes`; `answers` gets one for each member.
 template <int fixed, class Workers, class R, class Scratch>
-KOKKOS_INLINE_FUNCTION Solution<R> solve(const Workers& workers, const PutPack<R>& put, const Law<R>& law,
-                                         const Tails<R>& tails, const Grid<R>& grid, int steps,
-                                         const Scratch& memory, const Weights<R>& weights,
-                                         const Record& record, Answer* answers) {
+KOKKOS_INLINE_FUNCTION Solution<R> solve(const Workers& workers, const PutPack<R>& put, const Jumps<R>& jumps,
+                                         const Grid<R>& grid, int steps, const Scratch& memory,
+                                         const FourierRoots& roots, Answer* answers,
+                                         const Record& record = {}) {
   constexpr int members = device::Access<R>::lanes;
-  const Solution<R> solution =
-      march_nodes<fixed>(workers, put, law, tails, grid, steps, memory, weights, record);
+  const Solution<R> solution = march_nodes<fixed>(workers, put, jumps, grid, steps, memory, roots, record);
   workers.each([=](int lane) {
-    for (int k = lane; k < members; k += workers.lanes) {
+    for (int k = lane; k < members; k += workers.threads()) {
       answers[k] = answer_of(memory.puts[k], column_of(solution.value, k), column_of(solution.change, k),
                              nodes_of<fixed>(solution, memory.puts[k], grid, k));
     }

@@ -153,7 +153,8 @@ class SurfaceOn final : public Pricer {
     space.fence("drogue::options: smiles are asked for");
     timing.h2d += copying_in.seconds();
     const Clock computing;
-    for (int model = 0, begin = 0; model < models; begin = end[model++]) launch(effort, begin, end[model]);
+    for (int model = 0, begin = 0; model < models; begin = end[model++])
+      launch(static_cast<Model>(model), effort, begin, end[model]);
     const int count = static_cast<int>(_staged_readings.size());
     read_smiles(
         space,
@@ -169,9 +170,10 @@ class SurfaceOn final : public Pricer {
   }
 
   /// Enqueues the solves of the smiles begin .. end - 1 of the order, which have one model.
-  void launch(const Effort& effort, int begin, int end) {
+  void launch(Model model, const Effort& effort, int begin, int end) {
     if (begin == end) return;
-    SmileFunctor<ExecutionSpace, 0> work{};
+    SmileFunctor<ExecutionSpace, 0, Laws::all> work{};
+    work.batch.model = model;
     work.batch.contracts = _contracts;
     work.batch.order = Kokkos::View<const int*, Space>(_order.data() + begin, end - begin);
     work.batch.panels = _panels.series();

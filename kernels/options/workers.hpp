@@ -3,8 +3,9 @@
 #include "kernels/device/pack.hpp"
 #include "kernels/device/warp.hpp"
 
-/// The threads that price one option, and what they do together. All arithmetic is cut into 32 or 16 lanes,
-/// so that a warp or half of one and a host thread, which takes the lanes in turn, round alike.
+/// The threads that price one option, and what they do together. All arithmetic whose order matters is cut
+/// into 32 or 16 lanes, so that a warp or half of one and a host thread, which takes the lanes in turn, round
+/// alike.
 namespace drogue::options {
 
 /// The most lanes that an option has.
@@ -15,6 +16,7 @@ template <class R>
 struct SerialWorkers {
   int lanes = most_lanes;
 
+  [[nodiscard]] KOKKOS_INLINE_FUNCTION int threads() const { return lanes; }
   template <class F>
   KOKKOS_INLINE_FUNCTION void each(const F& f) const {
     for (int lane = 0; lane < lanes; ++lane) f(lane);
@@ -38,18 +40,24 @@ struct SerialWorkers {
   }
 };
 
-/// A warp that is a team of its own and prices as many options as groups of `count` lanes make it up, side by
-/// side: what all of them ask of `all` they do together.
-template <int count = most_lanes>
+/// A warp that prices as many options as groups of `count` lanes make it up, side by side: what all of them
+/// ask of `all` they do together. Where the warp has one option `alone`, its other threads do as the lanes
+/// do, and share what may be done in any order.
+template <int count = most_lanes, bool alone = false>
 struct WarpWorkers {
   static constexpr int lanes = count;
 
-  int lane;  ///< within its group
+  int lane;    ///< within its group
+  int thread;  ///< of those that share what `each` does
 
-  /// Runs f(lane) on every lane; what they wrote is seen by all after it.
+  KOKKOS_INLINE_FUNCTION explicit WarpWorkers(int rank)
+      : lane(rank % count), thread(alone ? rank % most_lanes : rank % count) {}
+
+  [[nodiscard]] KOKKOS_INLINE_FUNCTION static constexpr int threads() { return alone ? most_lanes : count; }
+  /// Runs f(thread) on every thread; what they wrote is seen by all after it.
   template <class F>
   KOKKOS_INLINE_FUNCTION void each(const F& f) const {
-    f(lane);
+    f(thread);
     meet();
   }
   /// What all have read before it may be written after it.
@@ -134,31 +142,37 @@ KOKKOS_INLINE_FUNCTION void join_backward(int lane, double (&carry)[n], double j
 }
 
 /// The same by a warp, whose lanes ask one another for what joins their blocks.
-template <int n, int lanes>
-KOKKOS_INLINE_FUNCTION void recur_backward(const WarpWorkers<lanes>& workers, double* const (&rows)[n],
+template <int n, int lanes, bool alone>
+KOKKOS_INLINE_FUNCTION void recur_backward(const WarpWorkers<lanes, alone>& workers, double* const (&rows)[n],
                                            int block, double g, double* /*slot*/) {
   const int lane = workers.lane;
-  double joined = 1.0, carry[n];
-  for (int m = 0; m < block; ++m) joined = joined * g;
-  for (int k = 0; k < n; ++k) {
-    double* own = rows[k] + lane * block;
-    carry[k] = 0.0;
-    for (int m = block - 1; m >= 0; --m) {
-      carry[k] = own[m] + g * carry[k];
-      own[m] = carry[k];
+  if constexpr (alone && lanes < most_lanes && n > 1) {  // rows are dealt out to groups of lanes
+    static_assert(n == most_lanes / lanes);
+    recur_backward(WarpWorkers<lanes>(lane), {rows[workers.thread / lanes]}, block, g,
+                   static_cast<double*>(nullptr));
+  } else {
+    double joined = 1.0, carry[n];
+    for (int m = 0; m < block; ++m) joined = joined * g;
+    for (int k = 0; k < n; ++k) {
+      double* own = rows[k] + lane * block;
+      carry[k] = 0.0;
+      for (int m = block - 1; m >= 0; --m) {
+        carry[k] = own[m] + g * carry[k];
+        own[m] = carry[k];
+      }
     }
-  }
-  join_backward<lanes>(lane, carry, joined);
-  for (int k = 0; k < n; ++k) {
-    double* own = rows[k] + lane * block;
-    double inflow = device::from_above<lanes>(carry[k], 1);
-    if (lane + 1 == lanes) continue;
-    for (int m = block - 1; m >= 0; --m) {
-      inflow = g * inflow;
-      own[m] = own[m] + inflow;
+    join_backward<lanes>(lane, carry, joined);
+    for (int k = 0; k < n; ++k) {
+      double* own = rows[k] + lane * block;
+      double inflow = device::from_above<lanes>(carry[k], 1);
+      if (lane + 1 == lanes) continue;
+      for (int m = block - 1; m >= 0; --m) {
+        inflow = g * inflow;
+        own[m] = own[m] + inflow;
+      }
     }
+    workers.meet();
   }
-  workers.meet();
 }
 
 /// x -> max(lo, a x + b), a >= 0 known to all. Such maps compose to maps of their kind.

@@ -89,6 +89,7 @@ options::Settings settings(const Words& words) {
   if (!words.mesh.empty()) settings.mesh = whole_number("--mesh", words.mesh, 32, 4096, even);
   if (!words.steps.empty()) settings.steps = whole_number("--steps", words.steps, 8, 16384, even);
   settings.greeks = words.greeks;
+  settings.timed_apart = true;  // result.json tells copies apart
   if (settings.method == options::Method::cos && settings.mesh > 0)
     throw Failure(ExitCode::usage, "--method cos has no mesh: give it a --tolerance");
   if (settings.method == options::Method::seed && settings.mesh == 0)

@@ -39,7 +39,7 @@ Case case_of(device::Backend backend, const OptionsLine& line) {
                            word(line.method) + "/" + std::to_string(line.printed.options) + "/" +
                            std::to_string(line.printed.mesh);
   return puts::batch(name, backend, static_cast<std::size_t>(line.printed.options),
-                     {.method = line.method, .mesh = line.printed.mesh},
+                     {.method = line.method, .mesh = line.printed.mesh, .timed_apart = true},
                      line.method == options::Method::seed ? seed_bar : puts::bar);
 }
 

@@ -88,6 +88,20 @@ TEST(OptionsExact, BesideTheEnds) {
   }
 }
 
+// So many that a GPU has a warp for each; there are fewer in the other tests.
+TEST(OptionsExact, ManyAtOnce) {
+  std::vector<options::Contract> contracts;
+  for (int k = 0; k < 48; ++k)
+    for (options::Contract c : of_all_models()) {
+      c.spot *= 1.0 + 0.001 * k;
+      contracts.push_back(c);
+    }
+  options::Settings settings;
+  settings.mesh = 128;
+  settings.steps = 32;
+  expect_same_prices(settings, contracts);
+}
+
 // Sums over jumps by transforms; on CUDA in registers, and in memory.
 TEST(OptionsExact, TransformedMeshes) {
   options::Settings settings;

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <memory_resource>
+#include <span>
 #include <stdexcept>
 
 #include "kernels/options/pricer.hpp"
@@ -118,6 +120,61 @@ TEST(OptionsProperty, LaunchesOfABatchChangeNoBit) {
         other += std::memcmp(&prices[k].price, &alone, sizeof alone) == 0 ? 0 : 1;
     }
     EXPECT_EQ(other, 0U) << shift;
+  }
+}
+
+bool same_bits(const Price& a, const Price& b) {
+  for (double Price::*member :
+       {&Price::price, &Price::error, &Price::delta, &Price::gamma, &Price::theta, &Price::exercise_boundary})
+    if (std::memcmp(&(a.*member), &(b.*member), sizeof(double)) != 0) return false;
+  return a.outcome == b.outcome;
+}
+
+// A device prices few contracts by other launches than many: with a warp for each of the two grids, and the
+// fewest where they lie in the host's memory.
+TEST(OptionsProperty, HowManyAreAskedForChangesNoBit) {
+  auto contracts = random_contracts(1200, 9);
+  for (std::size_t k = 0; k < contracts.size(); ++k) {
+    Contract& c = contracts[k];
+    if (k % 7 == 0) c.model = Model::black_scholes, c.variance += 0.01;
+    if (k % 7 == 1) {
+      c.model = k % 2 == 0 ? Model::merton : Model::kou;
+      const double jump[4] = {0.4, 0.3, k % 2 == 0 ? 0.2 : 6.0, 4.0};
+      std::copy_n(jump, 4, c.jump);
+      c.variance += 0.01;
+    }
+    if (k % 11 == 0) c.rate = -0.02, c.dividend = -0.05;
+    if (k % 13 == 0) c.maturity = 0.003;
+    if (k % 17 == 0) c.variance = c.model == Model::generalized_hyperbolic ? 0.0 : c.variance;
+  }
+  const auto pricer = create_pricer(backend, on_mesh(128, 32));
+  std::vector<Price> together(contracts.size()), apart(contracts.size());
+  pricer->price(contracts, together);
+  for (const std::size_t part : {300U, 65U, 64U, 7U, 1U}) {
+    for (std::size_t k = 0; k < contracts.size(); k += part) {
+      const std::size_t count = std::min(part, contracts.size() - k);
+      pricer->price(std::span(contracts).subspan(k, count), std::span(apart).subspan(k, count));
+    }
+    std::size_t other = 0;
+    for (std::size_t k = 0; k < contracts.size(); ++k) other += same_bits(together[k], apart[k]) ? 0 : 1;
+    EXPECT_EQ(other, 0U) << part;
+  }
+}
+
+// What is told of times does not change prices, wherever contracts and prices lie.
+TEST(OptionsProperty, TimesAreToldApartWhereAskedFor) {
+  const auto contracts = random_contracts(5, 10);
+  Settings settings = on_mesh(128, 32);
+  const auto expected = priced(settings, contracts);
+  for (const bool apart : {false, true}) {
+    settings.timed_apart = apart;
+    const auto pricer = create_pricer(backend, settings);
+    const std::pmr::vector<Contract> from(contracts.begin(), contracts.end(), &pricer->memory());
+    std::pmr::vector<Price> to(contracts.size(), &pricer->memory());
+    const Timing timing = pricer->price(from, to);
+    EXPECT_GT(timing.compute, 0.0);
+    EXPECT_EQ(timing.h2d > 0.0 && timing.d2h > 0.0, apart);
+    for (std::size_t k = 0; k < to.size(); ++k) EXPECT_TRUE(same_bits(to[k], expected[k])) << k;
   }
 }
 
