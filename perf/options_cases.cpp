@@ -19,8 +19,9 @@ Case surface_case(device::Backend backend, const puts::SurfaceSize& size, bool a
   const std::string count =
       std::to_string(size.sets) + "x" + std::to_string(size.strikes) + "x" + std::to_string(size.maturities);
   const std::string variant = apart ? "apart" : "surface";
-  Case surface = puts::surface("options-surface/" + name + "/" + variant + "/" + count, backend, size,
-                               {.mesh = 128, .steps = 32, .surface = !apart, .timed_apart = true}, puts::bar);
+  Case surface =
+      puts::surface("options-surface/" + name + "/" + variant + "/" + count, backend, size,
+                    {.mesh = 128, .steps = 32, .surface = !apart, .timed_apart = !apart}, puts::bar);
   const auto prices = static_cast<std::int64_t>(size.sets * size.strikes * size.maturities);
   surface.facts = [=] { return Facts{name, prices, variant + " " + count}; };
   return surface;

@@ -73,8 +73,8 @@ KOKKOS_INLINE_FUNCTION Domain<R> wide_domain(const Workers& workers, const PutPa
                                              R base, R mean, R* tilt, R* growth) {
   constexpr int n = tilts;
   const R up = decay_up(put), down = decay_down(put);
-  workers.each([=, &put, &law](int lane) {
-    for (int m = lane; m < 2 * n; m += workers.threads()) {
+  workers.each([=, &put, &law](int thread) {
+    for (int m = thread; m < 2 * n; m += workers.threads()) {
       const double t = 100.0 * power_of_two(rounder - 2 * (m % n));
       const R theta = m < n ? tilt_upwards(R(t), up) : -tilt_upwards(R(t), down);
       tilt[m] = theta;
@@ -118,8 +118,8 @@ KOKKOS_INLINE_FUNCTION Domain<R> domain_of(const Workers& workers, const PutPack
   const R variance = put.variance + law.variance;
   const double depth = -device::portable::log(error);
   const R gaussian = device::square_root(2.0 * depth / (device::maximum(variance, R(1e-12)) * maturity));
-  workers.each([&, tilt, cumulant](int lane) {
-    for (int m = lane; m <= 2 * n; m += workers.threads()) {
+  workers.each([&, tilt, cumulant](int thread) {
+    for (int m = thread; m <= 2 * n; m += workers.threads()) {
       R theta = 1.0;
       if (m < 2 * n) {
         const int k = m % n;
@@ -136,8 +136,8 @@ KOKKOS_INLINE_FUNCTION Domain<R> domain_of(const Workers& workers, const PutPack
   const R base = depth + device::maximum(R(0.0), -rate * maturity);
   const R spot_above = device::maximum(put.log_spot, R(0.0)),
           spot_below = device::maximum(-put.log_spot, R(0.0));
-  workers.each([&, tilt, cumulant, grown](int lane) {
-    for (int m = lane; m < 2 * n; m += workers.threads())
+  workers.each([&, tilt, cumulant, grown](int thread) {
+    for (int m = thread; m < 2 * n; m += workers.threads())
       grown[m] = exponential(device::maximum(R(0.0), maturity * (cumulant[m] + mean * tilt[m] - rate)));
   });
   const auto least_ends = [&, tilt, grown](int lane) {

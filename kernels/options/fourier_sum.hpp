@@ -33,8 +33,8 @@ template <class Workers, class R, class F>
 KOKKOS_INLINE_FUNCTION void each_octet(const Workers& workers, const Passes& passes, int pass,
                                        ComplexNumber<R>* z, const F& f) {
   const int log_stride = passes.log_stride(pass), tasks = 1 << (passes.log_size - 3);
-  workers.each([=](int lane) {
-    for (int task = lane; task < tasks; task += workers.threads()) {
+  workers.each([=](int thread) {
+    for (int task = thread; task < tasks; task += workers.threads()) {
       const int factor = task >> log_stride, k = task - (factor << log_stride);
       ComplexNumber<R>* const own = z + padded((factor << (log_stride + 3)) + k);
       Octet<R> octet;
@@ -66,8 +66,8 @@ KOKKOS_INLINE_FUNCTION JumpSpectrum<R> spectrum_of(const Workers& workers, int m
   const WeightLayout<R> layout(mesh);
   const Passes passes(mesh);
   const double part = 1.0 / mesh;
-  workers.each([=](int lane) {
-    for (int k = lane; k < mesh; k += workers.threads())
+  workers.each([=](int thread) {
+    for (int k = thread; k < mesh; k += workers.threads())
       z[padded(k)] = {part * w[layout.place(mesh - k)], part * w[layout.place(-k)]};
   });
   for (int pass = 0; pass < passes.last; ++pass)
@@ -88,8 +88,8 @@ KOKKOS_INLINE_FUNCTION void sum_by_transforms(const Workers& workers, int mesh,
   const int stride = mesh / 8;
   const FourierRoots roots = spectrum.roots;
   const ComplexNumber<R>* const factors = spectrum.place;
-  workers.each([=](int lane) {
-    for (int k = lane; k < stride; k += workers.threads()) {
+  workers.each([=](int thread) {
+    for (int k = thread; k < stride; k += workers.threads()) {
       Octet<R> octet;
       octet.split_real([=](int m) { return v[k + m * stride]; });
       octet.store(z + padded(k), stride);
@@ -104,8 +104,8 @@ KOKKOS_INLINE_FUNCTION void sum_by_transforms(const Workers& workers, int mesh,
   for (int pass = passes.last - 1; pass > 0; --pass)
     each_octet(workers, passes, pass, z,
                [=](Octet<R>& octet, int factor) { octet.join(roots.seven(pass, factor)); });
-  workers.each([=](int lane) {
-    for (int k = lane; k < stride; k += workers.threads()) {
+  workers.each([=](int thread) {
+    for (int k = thread; k < stride; k += workers.threads()) {
       Octet<R> octet;
       octet.load(z + padded(k), stride);
       octet.join_imaginary([=](int m, R y) { out[k + m * stride] = y; });

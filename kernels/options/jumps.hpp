@@ -17,12 +17,12 @@ KOKKOS_INLINE_FUNCTION void sum_mixture(const Workers& workers, const PutPack<R>
   static_assert(Mixture::size % (2 * at_once) == 0);
   const R tilt = device::absolute(put.jump[2]);
   const R *s = law.s, *c = law.c;
-  workers.each([=](int lane) {
-    for (int q = lane; q < Mixture::size; q += workers.threads()) ratio[q] = exponential((tilt - s[q]) * h);
+  workers.each([=](int thread) {
+    for (int q = thread; q < Mixture::size; q += workers.threads()) ratio[q] = exponential((tilt - s[q]) * h);
   });
-  workers.each([=](int lane) {
+  workers.each([=](int thread) {
     const int octets = (mesh + 7) / 8;
-    for (int task = lane; task < 2 * octets; task += workers.threads()) {
+    for (int task = thread; task < 2 * octets; task += workers.threads()) {
       const int part = task / octets, first = task % octets * 8 + 1;
       R sum[8] = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
       for (int q = part; q < Mixture::size; q += 2 * at_once) {
@@ -173,9 +173,9 @@ KOKKOS_INLINE_FUNCTION Jumps<R> jumps_of(const Workers& workers, const PutPack<R
   const R h = grid.h;
   const WeightLayout<R> layout(mesh);
   const bool mixed = put.model == Model::generalized_hyperbolic;
-  workers.each([=](int lane) {
-    for (int k = lane; k < layout.size(); k += workers.threads()) memory.w[k] = 0.0;
-    for (int k = lane; k < nodes; k += workers.threads()) memory.left[k] = memory.left_price[k] = 0.0;
+  workers.each([=](int thread) {
+    for (int k = thread; k < layout.size(); k += workers.threads()) memory.w[k] = 0.0;
+    for (int k = thread; k < nodes; k += workers.threads()) memory.left[k] = memory.left_price[k] = 0.0;
   });
   if (mixed && finer == nullptr)
     sum_mixture(workers, put, law, h, mesh, memory.ratio, memory.even, memory.odd);
@@ -190,12 +190,14 @@ KOKKOS_INLINE_FUNCTION Jumps<R> jumps_of(const Workers& workers, const PutPack<R
       const WeightPair<R> pair = weights(put, grid, d, tilted, memory.even, memory.odd, finer);
       const R up = part * pair.up, down = part * pair.down, both = up + down;
       const R y = double(d) * h, down_price = down * device::reciprocal(growth);
-      memory.w[layout.place(d)] = up;
-      memory.w[layout.place(-d)] = down;
-      memory.both[d] = both;
-      if (d >= 2) {
-        memory.left[d - 1] = down;
-        memory.left_price[d - 1] = down_price;
+      if (workers.writes()) {
+        memory.w[layout.place(d)] = up;
+        memory.w[layout.place(-d)] = down;
+        memory.both[d] = both;
+        if (d >= 2) {
+          memory.left[d - 1] = down;
+          memory.left_price[d - 1] = down_price;
+        }
       }
       rate += both;
       variance += both * y * y;
@@ -221,13 +223,13 @@ KOKKOS_INLINE_FUNCTION Jumps<R> jumps_of(const Workers& workers, const PutPack<R
   const R per = device::reciprocal(h);
   jumps.drift = (put.rate - put.dividend - compensator - jumps.diffusion * (chord * per) * (chord * per)) *
                 h * device::reciprocal(sinh);
-  workers.each([=](int lane) {
-    if (lane == 0) {
+  workers.each([=](int thread) {
+    if (thread == 0) {
       memory.left[mesh - 1] += tails.down;
       memory.left_price[mesh - 1] += tails.down_price;
     }
     // The odd d of all angles first, then the even ones.
-    for (int task = lane; task < 2 * symbols; task += workers.threads()) {
+    for (int task = thread; task < 2 * symbols; task += workers.threads()) {
       double cosine = 0.0;
       AngleCosines::each([&](int k, double known) { cosine = k == task % symbols ? known : cosine; });
       const double twice = 2.0 * (2.0 * cosine * cosine - 1.0);
@@ -248,8 +250,8 @@ KOKKOS_INLINE_FUNCTION Jumps<R> jumps_of(const Workers& workers, const PutPack<R
   });
   recur_backward(workers, {memory.left, memory.left_price}, block_of(mesh, workers.lanes), R(1.0),
                  memory.slot);
-  workers.each([=](int lane) {
-    for (int i = 1 + lane; i < mesh; i += workers.threads())
+  workers.each([=](int thread) {
+    for (int i = 1 + thread; i < mesh; i += workers.threads())
       memory.left_price[i] = memory.left_price[i] * exponential((double(i) - grid.strike) * h);
   });
   return jumps;

@@ -90,10 +90,10 @@ KOKKOS_INLINE_FUNCTION Law<R> law_of(const Workers& workers, const PutPack<R>& p
   Law<R> law = memory;
   R *s = law.s, *c = law.c, *ups = law.up, *downs = law.down;
   if (pack.model == Model::generalized_hyperbolic) {
-    workers.each([=](int lane) {
+    workers.each([=](int thread) {
       for (int k = 0; k < members; ++k) {
         const MixtureGrid grid = mixture_grid(puts[k], panels, panel_slot);
-        for (int q = lane; q < Mixture::size; q += workers.threads()) {
+        for (int q = thread; q < Mixture::size; q += workers.threads()) {
           const Term term = mixture_term(puts[k], grid, q);
           reinterpret_cast<double*>(s + q)[k] = term.rate;
           reinterpret_cast<double*>(c + q)[k] = term.weight;
@@ -106,7 +106,7 @@ KOKKOS_INLINE_FUNCTION Law<R> law_of(const Workers& workers, const PutPack<R>& p
       for (int q = lane; q < Mixture::size; q += workers.lanes) {
         const R a = device::reciprocal(s[q] + up), b = device::reciprocal(s[q] + down);
         sum[q < Mixture::low ? 0 : 1] += c[q] * (a * a + b * b);
-        if (q >= Mixture::low) continue;
+        if (q >= Mixture::low || !workers.writes()) continue;
         ups[q] = a;
         downs[q] = b;
       }

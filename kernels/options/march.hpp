@@ -24,8 +24,8 @@ KOKKOS_INLINE_FUNCTION void convolve(const Workers& workers, int mesh, const R* 
                                      R* other) {
   const WeightLayout<R> layout(mesh);
   const int octets = (mesh + 7) / 8, halved = (octets + 1) / 2;
-  workers.each([=](int lane) {
-    for (int task = lane; task < 2 * octets; task += workers.threads()) {
+  workers.each([=](int thread) {
+    for (int task = thread; task < 2 * octets; task += workers.threads()) {
       const int part = task / octets, chunk = task % octets;
       const int begin = part == 0 ? 0 : halved, end = part == 0 ? halved : octets;
       R sum[8] = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
@@ -95,8 +95,8 @@ KOKKOS_INLINE_FUNCTION R right_side(const StepFactors<R>& f, R value, R before, 
 template <class Workers, class R>
 KOKKOS_INLINE_FUNCTION void split_exercise(const Workers& workers, const PutPack<R>& put, const Grid<R>& grid,
                                            R diagonal, R* now, R* force) {
-  workers.each([=, &put, &grid](int lane) {
-    for (int i = 1 + lane; i < grid.mesh; i += workers.threads()) {
+  workers.each([=, &put, &grid](int thread) {
+    for (int i = 1 + thread; i < grid.mesh; i += workers.threads()) {
       const R payoff = device::maximum(R(0.0), 1.0 - exponential((double(i) - grid.strike) * grid.h));
       const R pushed = device::maximum(payoff, now[i] - force[i] / diagonal);
       force[i] = put.split * device::maximum(R(0.0), force[i] + diagonal * (payoff - now[i]));

@@ -83,8 +83,8 @@ struct PriceBatch {
   KOKKOS_FORCEINLINE_FUNCTION void price(const Workers& workers, const Memory<R, fixed>& memory,
                                          int group) const {
     const Prepared<R> prepared = prepare<laws>(workers, memory, group);
-    solve_fine(workers, prepared, memory);
     const Doubt<R> doubt = doubt_of_solve(prepared.put, prepared.law, prepared.jumps, prepared.grid, steps);
+    solve_fine(workers, prepared, memory);
     const R* coarse = one_grid ? memory.kept(prepared.grid.mesh) : solve_coarse(workers, prepared, memory);
     conclude(workers, prepared, doubt, memory, coarse, memory, group);
   }
@@ -95,8 +95,8 @@ struct PriceBatch {
                                                                 const Memory<R, fixed>& memory,
                                                                 int group) const {
     const int cells = fixed > 0 ? fixed : mesh;  // which a compiler may unroll loops for
-    workers.each([=, this](int lane) {
-      for (int k = lane; k < members; k += workers.threads()) {
+    workers.each([=, this](int thread) {
+      for (int k = thread; k < members; k += workers.threads()) {
         memory.puts[k] = put_of(contracts(place(group, k)));
         if (split) memory.puts[k].split = memory.puts[k].early;
       }
@@ -121,8 +121,8 @@ struct PriceBatch {
     const Solution<R> fine = solve<fixed>(workers, prepared.put, prepared.jumps, prepared.grid, steps, memory,
                                           roots, memory.answers, record);
     R* const kept = memory.kept(cells);
-    workers.each([=](int lane) {
-      for (int i = lane; i < cells / 2; i += workers.threads()) kept[i] = fine.value[2 * i];
+    workers.each([=](int thread) {
+      for (int i = thread; i < cells / 2; i += workers.threads()) kept[i] = fine.value[2 * i];
     });
   }
 
@@ -141,8 +141,8 @@ struct PriceBatch {
       value = solve<fixed / 2>(workers, put, jumps, grid, steps / 2, memory, roots, memory.answers + members)
                   .value;
       if (exercise == 0)
-        workers.each([=, &memory](int lane) {
-          for (int k = lane; k < members; k += workers.threads())
+        workers.each([=, &memory](int thread) {
+          for (int k = thread; k < members; k += workers.threads())
             memory.unexercised[k] = beside_spot(memory.puts[k], grid, value, k);
         });
     }
@@ -171,8 +171,8 @@ struct PriceBatch {
       return largest;
     };
     const R largest = workers.reduce(largest_change, [](const R& a, const R& b) { return larger(a, b); })[0];
-    workers.each([=, this, &memory, &other](int lane) {
-      for (int k = lane; k < members; k += workers.threads()) {
+    workers.each([=, this, &memory, &other](int thread) {
+      for (int k = thread; k < members; k += workers.threads()) {
         if (group * members + k >= count) continue;
         const int at = place(group, k);
         const auto own = [k](const R& number) { return device::Access<R>::lane(number, k); };
@@ -217,7 +217,8 @@ void launch_batch(const ExecutionSpace& space, const char* label, const Functor&
   using Batch = PriceBatch<ExecutionSpace>;
   const Batch& batch = functor.batch;
   if (batch.count == 0) return;
-  // Warps that share a multiprocessor: as many as registers for the nodes allow without spilling.
+  // Teams that share a multiprocessor: of their warps as many as registers for the nodes allow without
+  // spilling.
   constexpr unsigned teams = fixed == 0 ? 1 : (fixed < 128 ? 12 : 8) / warps;
   using Bounds =
       std::conditional_t<fixed == 0, Kokkos::LaunchBounds<>, Kokkos::LaunchBounds<warps * most_lanes, teams>>;

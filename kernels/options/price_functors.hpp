@@ -52,7 +52,7 @@ struct PriceByTwoFunctor {
     team.team_barrier();
     if (finer)
       batch.conclude(workers, prepared, *reinterpret_cast<const Doubt<double>*>(coarser_memory.law), memory,
-                     coarser_memory.nodes, coarser_memory, option);
+                     coarser_memory.row(0, fixed / 2), coarser_memory, option);
   }
 };
 
@@ -70,8 +70,8 @@ void price_batch(const ExecutionSpace& space, PriceBatch<ExecutionSpace> batch) 
       });
     };
     if (batch.record.time == nullptr) {
-      // Two warps an option where one each would leave most of a GPU's schedulers idle.
-      if (batch.mesh == 128 && !batch.one_grid && 16 * most_lanes * batch.count <= space.concurrency())
+      // Two warps an option where half of one each would leave half of a GPU's schedulers idle.
+      if (batch.mesh == 128 && !batch.one_grid && batch.count <= space.concurrency() / (16 * most_lanes))
         return for_laws_of(batch.model, [&]<Laws laws> {
           launch_batch<128, 2>(space, "drogue::options::price by two",
                                PriceByTwoFunctor<ExecutionSpace, 128, laws>{batch});

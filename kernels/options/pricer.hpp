@@ -32,11 +32,12 @@ struct Settings {
   int host_threads = 0;     ///< by which `cos` makes its tables on the host; 0: as many as there are cores
   bool surface = false;     ///< contracts in a row that differ in the strike alone share solves; for `pide`
   ExerciseRule exercise = ExerciseRule::exact;  ///< `pide` alone, as the next
-  bool one_grid = false;     ///< with `mesh`: nothing is extrapolated and no error stated, to compare
-  bool timed_apart = false;  ///< copies are timed apart from the rest, which waits for each; else all is one
+  bool one_grid = false;  ///< with `mesh`: nothing is extrapolated and no error stated, to compare
+  bool timed_apart =
+      false;  ///< copies from the rest, which waits for each; `surface` always does, `cos` never
 };
 
-/// Wall time of a batch's parts, s; of a batch that is not timed apart it is all in `compute`.
+/// Wall time of a batch's parts, s; where they are not timed apart it is all in `compute`.
 struct Timing {
   double h2d = 0.0;
   double compute = 0.0;  ///< with tables of Bessel functions and what else the host does for it

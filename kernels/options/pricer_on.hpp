@@ -40,23 +40,11 @@ class PricerOn final : public Pricer {
     Timing timing;
     if (contracts.empty()) return timing;
     const Clock all;
-    reserve(contracts.size());
-    const int mesh = _settings.mesh == 0 && _settings.method == Method::seed ? seed_mesh : _settings.mesh;
-    if (mesh != 0 && is_priced_in_place(contracts.size())) {
-      price_in_place(contracts, prices, {mesh, steps_of(mesh)});
-    } else {
-      device::copy_in(_instance.space(), _contracts, staged(contracts), contracts.size());
-      if (_settings.timed_apart) _instance.space().fence("drogue::options: contracts are copied");
-      timing.h2d = all.seconds();
-      _places = {_contracts, _prices};
-      if (mesh == 0) {
-        price_to_tolerance(contracts, prices, timing);
-      } else {
-        const Clock computing;
-        launch_all(contracts, {mesh, steps_of(mesh)});
-        timing.compute = computing.seconds();
-        copy_out(prices, timing);
-      }
+    try {
+      price_all(contracts, prices, timing);
+    } catch (...) {  // what is under way may read and write memory of the caller's
+      _instance.space().fence("drogue::options: a batch is given up");
+      throw;
     }
     if (!_settings.timed_apart) timing = {0.0, all.seconds(), 0.0};
     return timing;
@@ -85,18 +73,41 @@ class PricerOn final : public Pricer {
   }
 
  private:
+  /// What launches read and write, in the memory of the backend or in page-locked memory of the host.
+  struct Places {
+    Kokkos::View<const Contract*, Space> contracts;
+    View<Price> prices;
+  };
+
   void price_to_tolerance(std::span<const Contract> contracts, std::span<Price> prices, Timing& timing) {
     const Effort first{first_mesh, steps_of(first_mesh)};
     std::vector<Refinement> rows(contracts.size(), Refinement{first});
     for (std::optional<Effort> effort = first; effort; effort = least_effort(rows)) {
       const Clock computing;
-      launch_models(contracts, *effort, [&](std::size_t k) { return rows[k].next == *effort; });
+      launch_models({_contracts, _prices}, contracts, *effort,
+                    [&](std::size_t k) { return rows[k].next == *effort; });
       timing.compute += computing.seconds();
       copy_out(prices, timing);
       for (std::size_t k = 0; k < contracts.size(); ++k)
         if (rows[k].next == *effort)
           refine(rows[k], prices[k], _settings.tolerance * contracts[k].strike, _settings);
     }
+  }
+
+  void price_all(std::span<const Contract> contracts, std::span<Price> prices, Timing& timing) {
+    const int mesh = _settings.mesh == 0 && _settings.method == Method::seed ? seed_mesh : _settings.mesh;
+    reserve(contracts.size());
+    if (mesh != 0 && is_priced_in_place(contracts.size()))
+      return price_in_place(contracts, prices, {mesh, steps_of(mesh)});
+    const Clock copying_in;
+    device::copy_in(_instance.space(), _contracts, staged(contracts), contracts.size());
+    if (_settings.timed_apart) _instance.space().fence("drogue::options: contracts are copied");
+    timing.h2d = copying_in.seconds();
+    if (mesh == 0) return price_to_tolerance(contracts, prices, timing);
+    const Clock computing;
+    launch_all({_contracts, _prices}, contracts, {mesh, steps_of(mesh)});
+    timing.compute = computing.seconds();
+    copy_out(prices, timing);
   }
 
   /// Whether contracts are so few that a device rather reads and writes them in the host's memory than waits
@@ -107,26 +118,20 @@ class PricerOn final : public Pricer {
 
   void price_in_place(std::span<const Contract> contracts, std::span<Price> prices, const Effort& effort) {
     Price* const to = landing(prices);
-    _places.contracts = Kokkos::View<const Contract*, Space>(staged(contracts), contracts.size());
-    _places.prices = View<Price>(to, prices.size());
-    launch_all(contracts, effort);
+    launch_all({Kokkos::View<const Contract*, Space>(staged(contracts), contracts.size()),
+                View<Price>(to, prices.size())},
+               contracts, effort);
     _instance.space().fence("drogue::options: prices are there");
     if (to != prices.data()) std::ranges::copy(_staged_prices, prices.begin());
   }
 
-  void launch_all(std::span<const Contract> contracts, const Effort& effort) {
-    launch_models(contracts, effort, [](std::size_t) { return true; });
+  void launch_all(const Places& places, std::span<const Contract> contracts, const Effort& effort) {
+    launch_models(places, contracts, effort, [](std::size_t) { return true; });
   }
 
   static constexpr int first_mesh = 64, seed_mesh = 128, record_mesh = 512, models = 4;
   /// Contracts that the host gathers for its next launches, while a device is busy with those before.
   static constexpr std::size_t slab = 1 << 17;
-
-  /// What launches read and write, in the memory of the backend or in page-locked memory of the host.
-  struct Places {
-    Kokkos::View<const Contract*, Space> contracts;
-    View<Price> prices;
-  };
 
   struct Recorded {
     std::vector<double> time, boundary, x, value;
@@ -143,13 +148,13 @@ class PricerOn final : public Pricer {
     reserve(1);
     _panels.build(one);
     device::copy_in(_instance.space(), _contracts, &contract, 1);
-    _places = {_contracts, _prices};
     const auto steps = static_cast<std::size_t>(effort.steps),
                nodes = static_cast<std::size_t>(effort.mesh) + 1;
     const View<double> all("drogue::options::record", 2 * (steps + nodes));
     double* const at = all.data();
     constexpr int first[] = {0};
-    launch(first, contract.model, 0, effort, {at, at + steps, at + 2 * steps, at + 2 * steps + nodes});
+    launch({_contracts, _prices}, first, contract.model, 0, effort,
+           {at, at + steps, at + 2 * steps, at + 2 * steps + nodes});
     std::vector<double> values(all.size());
     device::copy_out(_instance.space(), values.data(), all, values.size());
     _instance.space().fence("drogue::options: record is there");
@@ -211,13 +216,14 @@ class PricerOn final : public Pricer {
 
   /// Prices the contracts k for which `asked(k)`, those of a model and a slab in a launch.
   template <class Asked>
-  void launch_models(std::span<const Contract> contracts, const Effort& effort, const Asked& asked) {
+  void launch_models(const Places& places, std::span<const Contract> contracts, const Effort& effort,
+                     const Asked& asked) {
     std::vector<int> rows[models];
     std::size_t place = 0, gathered = 0;
     const auto launch_gathered = [&] {
       for (int model = 0; model < models; ++model) {
         std::vector<int>& of_model = rows[model];
-        launch(of_model, static_cast<Model>(model), place, effort, Record{});
+        launch(places, of_model, static_cast<Model>(model), place, effort, Record{});
         place += of_model.size();
         of_model.clear();
       }
@@ -235,8 +241,8 @@ class PricerOn final : public Pricer {
   }
 
   /// Enqueues the launch for `rows`, which are put at `place` of the order.
-  void launch(std::span<const int> rows, Model model, std::size_t place, const Effort& effort,
-              const Record& record) {
+  void launch(const Places& places, std::span<const int> rows, Model model, std::size_t place,
+              const Effort& effort, const Record& record) {
     if (rows.empty()) return;
     const auto order = Kokkos::subview(_order, std::pair(place, place + rows.size()));
     int* const known = _rows.data() + place;
@@ -246,8 +252,8 @@ class PricerOn final : public Pricer {
     }
     _panels.copy_in(_instance.space());
     PriceBatch<ExecutionSpace> batch;
-    batch.contracts = _places.contracts;
-    batch.prices = _places.prices;
+    batch.contracts = places.contracts;
+    batch.prices = places.prices;
     batch.order = order;
     batch.panels = _panels.series();
     batch.panel_slot = _panels.slots();
@@ -272,7 +278,6 @@ class PricerOn final : public Pricer {
   device::Instance<ExecutionSpace> _instance;
   View<Contract> _contracts;
   View<Price> _prices;
-  Places _places;
   View<int> _order;
   device::PinnedMemory<ExecutionSpace> _pinned;
   std::pmr::vector<int> _rows{&_pinned};  ///< what _order holds

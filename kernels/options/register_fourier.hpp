@@ -28,27 +28,35 @@ class RegisterFourier {
 
   template <class Workers>
   KOKKOS_INLINE_FUNCTION LaneNodes<8> operator()(const Workers& workers, const LaneNodes<8>& value) const {
-    value.store_swizzled(_lane, _row);
-    workers.meet();
+    const auto pass = [&](const auto& work) {
+      if (workers.writes()) work();
+      workers.meet();
+    };
     Octet<double> octet;
-    octet.split_real([this](int m) { return _row[place(m)]; });
-    octet.store(_first, lanes);
-    workers.meet();
-    octet.load(_second, radix);
-    octet.split(second_roots());
-    octet.store(_second, radix);
-    workers.meet();
-    octet.load(_third, 1);
-    octet.multiply_last<radix>(_roots, 2, _lane, own_spectrum());
-    octet.store(_third, 1);
-    workers.meet();
-    octet.load(_second, radix);
-    octet.join(second_roots());
-    octet.store(_second, radix);
-    workers.meet();
-    octet.load(_first, lanes);
-    octet.join_imaginary([this](int m, double y) { _row[place(m)] = y; });
-    workers.meet();
+    pass([&] { value.store_swizzled(_lane, _row); });
+    pass([&] {
+      octet.split_real([this](int m) { return _row[place(m)]; });
+      octet.store(_first, lanes);
+    });
+    pass([&] {
+      octet.load(_second, radix);
+      octet.split(second_roots());
+      octet.store(_second, radix);
+    });
+    pass([&] {
+      octet.load(_third, 1);
+      octet.multiply_last<radix>(_roots, 2, _lane, own_spectrum());
+      octet.store(_third, 1);
+    });
+    pass([&] {
+      octet.load(_second, radix);
+      octet.join(second_roots());
+      octet.store(_second, radix);
+    });
+    pass([&] {
+      octet.load(_first, lanes);
+      octet.join_imaginary([this](int m, double y) { _row[place(m)] = y; });
+    });
     return LaneNodes<8>::load_swizzled(_lane, _row);
   }
 

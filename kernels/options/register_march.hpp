@@ -132,9 +132,9 @@ class JumpSum {
   template <class Workers>
   KOKKOS_INLINE_FUNCTION LaneNodes<block> operator()(const Workers& workers,
                                                      const LaneNodes<block>& value) const {
-    value.store(_lane, _rows.value);
+    if (workers.writes()) value.store(_lane, _rows.value);
     workers.meet();
-    _convolution();
+    if (workers.writes()) _convolution();
     workers.meet();
     LaneNodes<block> sum = LaneNodes<block>::load_swizzled(_lane, _rows.out);
     const LaneNodes<block> rest = LaneNodes<block>::load_swizzled(_lane, _rows.other);
@@ -161,7 +161,7 @@ template <int block, class Workers>
 KOKKOS_INLINE_FUNCTION void swizzle(const Workers& workers, double* nodes) {
   const auto own = LaneNodes<block>::load(workers.lane, nodes);
   workers.meet();
-  own.store_swizzled(workers.lane, nodes);
+  if (workers.writes()) own.store_swizzled(workers.lane, nodes);
 }
 
 /// Marches from expiry to maturity; `jumps.left` and `left_price` are left `swizzled`. Returns the last node
@@ -178,7 +178,7 @@ KOKKOS_INLINE_FUNCTION int march_in_registers(const WarpWorkers<lanes, alone>& w
   const JumpSum<block, lanes> sum_over_jumps(lane, jumps.w, spectrum, rows);
   Own value, before{}, stale{}, floor;
   Certain<double> begun{1.0, 1.0};
-  before.store(lane, rows.force);
+  if (workers.writes()) before.store(lane, rows.force);
   swizzle<block>(workers, jumps.left);
   swizzle<block>(workers, jumps.left_price);
   for (int m = 0; m < block; ++m) {
@@ -191,11 +191,13 @@ KOKKOS_INLINE_FUNCTION int march_in_registers(const WarpWorkers<lanes, alone>& w
       workers.meet();
       fill_table(workers, put, jumps, scheme, table, n);
     }
+    workers.meet_alike();
     const Own sum = sum_over_jumps(workers, value);
     const StepFactors<double> f = table.load(n);
     const Own left = Own::load_swizzled(lane, jumps.left),
               left_price = Own::load_swizzled(lane, jumps.left_price);
-    if (n == scheme.steps) before.store_swizzled(lane, rows.out);
+    workers.meet_alike();
+    if (n == scheme.steps && workers.writes()) before.store_swizzled(lane, rows.out);
     Own y;
     for (int m = 0; m < block; ++m) {
       const double fresh =
@@ -221,12 +223,13 @@ KOKKOS_INLINE_FUNCTION int march_in_registers(const WarpWorkers<lanes, alone>& w
                 ? recur_by_maps<lanes, RisingMap<double>>(lane, y, floor, f.from_left, f.edge)
                 : recur_by_maps<lanes, ClampedMap<double>>(lane, y, floor, f.from_left, f.edge);
     if (put.any_split) {
-      value.store(lane, rows.value);
+      if (workers.writes()) value.store(lane, rows.value);
       workers.meet();
       split_exercise(workers, put, grid, f.diagonal, rows.value, rows.force);
       value = Own::load(lane, rows.value);
     }
   }
+  workers.meet_alike();
   const Own oldest = Own::load_swizzled(lane, rows.out);
   const StepLength<double> last = step_length(put.maturity, scheme.steps, scheme.steps);
   Own change;
@@ -237,9 +240,11 @@ KOKKOS_INLINE_FUNCTION int march_in_registers(const WarpWorkers<lanes, alone>& w
     if (i < strike && is_exercised(value.node[m], i - strike, h)) exercised = i;
   }
   workers.meet();
-  value.store(lane, rows.value);
-  change.store(lane, rows.other);
-  if (lane == 0) rows.value[grid.mesh] = rows.other[grid.mesh] = 0.0;  // the upper end, which answers read
+  if (workers.writes()) {
+    value.store(lane, rows.value);
+    change.store(lane, rows.other);
+    if (lane == 0) rows.value[grid.mesh] = rows.other[grid.mesh] = 0.0;  // the upper end, which answers read
+  }
   workers.meet();
   return device::warp_largest<lanes>(exercised);
 }

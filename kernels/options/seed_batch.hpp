@@ -24,12 +24,12 @@ KOKKOS_INLINE_FUNCTION Jumps<R> seed_jumps(const Workers& workers, const PutPack
       sum += c[q] * exponential_integral((s[q] - side * (beta + k)) * length);
     return sum;
   };
-  workers.each([=](int lane) {
-    for (int k = lane; k < layout.size(); k += workers.threads()) w[k] = 0.0;
-    for (int k = lane; k < nodes; k += workers.threads()) left[k] = left_price[k] = 0.0;
+  workers.each([=](int thread) {
+    for (int k = thread; k < layout.size(); k += workers.threads()) w[k] = 0.0;
+    for (int k = thread; k < nodes; k += workers.threads()) left[k] = left_price[k] = 0.0;
   });
-  workers.each([=](int lane) {
-    for (int d = 1 + lane; d <= mesh; d += workers.lanes) {
+  workers.each([=](int thread) {
+    for (int d = 1 + thread; d <= mesh; d += workers.threads()) {
       const R near = d == 1 ? h : (d - 0.5) * h, far = (d + 0.5) * h;
       w[layout.place(d)] = beyond(near, 1.0, 0.0) - beyond(far, 1.0, 0.0);
       w[layout.place(-d)] = beyond(near, -1.0, 0.0) - beyond(far, -1.0, 0.0);
@@ -73,8 +73,8 @@ struct SeedBatch {
   KOKKOS_INLINE_FUNCTION void price(const Workers& workers, const Memory<R, 0>& memory, int group) const {
     const int mesh = batch.mesh, steps = batch.steps, count = node_count(mesh),
               block = block_of(mesh, workers.lanes);
-    workers.each([=, this](int lane) {
-      for (int k = lane; k < members; k += workers.threads())
+    workers.each([=, this](int thread) {
+      for (int k = thread; k < members; k += workers.threads())
         memory.puts[k] = put_of(batch.contracts(batch.place(group, k)));
     });
     const PutPack<R> put = pack_of<R>(memory.puts);
@@ -86,8 +86,8 @@ struct SeedBatch {
     R *now = memory.row(0, mesh), *value = memory.row(1, mesh);
     R *sum = memory.row(2, mesh), *other = memory.row(3, mesh), *y = memory.row(4, mesh),
       *payoff = memory.row(5, mesh), *none = memory.row(6, mesh), *change = memory.row(7, mesh);
-    workers.each([=](int lane) {
-      for (int i = lane; i < count; i += workers.threads()) {
+    workers.each([=](int thread) {
+      for (int i = thread; i < count; i += workers.threads()) {
         const R paid = device::maximum(R(0.0), 1.0 - exponential((double(i) - grid.strike) * grid.h));
         payoff[i] = paid;
         value[i] = i < mesh ? paid : R(0.0);
@@ -123,8 +123,8 @@ struct SeedBatch {
       recur_backward(workers, {y}, block, implicit * inverse, memory.slot);
       const R edge = ended.strike - ended.asset * exponential(lowest);
       recur_forward(workers, now, y, none, block, mesh, implicit * inverse, edge, memory.slot);
-      workers.each([=](int lane) {
-        for (int i = 1 + lane; i < mesh; i += workers.threads()) {
+      workers.each([=](int thread) {
+        for (int i = 1 + thread; i < mesh; i += workers.threads()) {
           now[i] = device::select(early > R(0.0), device::maximum(payoff[i], now[i]), now[i]);
           change[i] = (now[i] - value[i]) / dt;
         }
@@ -133,8 +133,8 @@ struct SeedBatch {
       now = value;
       value = swapped;
     }
-    workers.each([=, this](int lane) {
-      for (int k = lane; k < members; k += workers.threads()) {
+    workers.each([=, this](int thread) {
+      for (int k = thread; k < members; k += workers.threads()) {
         if (group * members + k >= batch.count) continue;
         const int at = batch.place(group, k);
         const Column values{reinterpret_cast<const double*>(value) + k, members};

@@ -48,8 +48,8 @@ struct SmileFunctor {
   template <class Workers>
   KOKKOS_INLINE_FUNCTION void price(const Workers& workers, const Scratch& memory, int group) const {
     const int mesh = fixed > 0 ? fixed : batch.mesh;
-    workers.each([=, this](int lane) {
-      for (int k = lane; k < members; k += workers.threads()) {
+    workers.each([=, this](int thread) {
+      for (int k = thread; k < members; k += workers.threads()) {
         const int at = batch.place(group, k);
         memory.puts[k] = put_of(batch.contracts(at));
         memory.puts[k].log_spot = reaches(at);
@@ -83,8 +83,8 @@ struct SmileFunctor {
   template <class Workers>
   KOKKOS_INLINE_FUNCTION void note(const Workers& workers, const Scratch& memory, int group,
                                    const Doubt<R>& doubt, const R& window) const {
-    workers.each([=, this](int lane) {
-      for (int k = lane; k < members; k += workers.threads()) {
+    workers.each([=, this](int thread) {
+      for (int k = thread; k < members; k += workers.threads()) {
         if (group * members + k >= batch.count) continue;
         Smile& smile = smiles(batch.place(group, k));
         smile.doubt = doubt_without_premium(doubt, memory.puts[k], k);
@@ -98,17 +98,17 @@ struct SmileFunctor {
   KOKKOS_INLINE_FUNCTION void keep(const Workers& workers, const Scratch& memory, int group,
                                    const Grid<R>& grid, const Solution<R>& solution) const {
     const int mesh = grid.mesh;
-    workers.each([=, this](int lane) {
+    workers.each([=, this](int thread) {
       for (int k = 0; k < members; ++k) {
         if (group * members + k >= batch.count) continue;
         const int at = batch.place(group, k);
         const SmileNodes nodes = nodes_at(at);
         double* const to = coarse ? nodes.coarse() : nodes.fine();
-        for (int i = lane; i <= mesh; i += workers.threads()) {
+        for (int i = thread; i <= mesh; i += workers.threads()) {
           to[i] = device::Access<R>::lane(solution.value[i], k);
           to[mesh + 1 + i] = device::Access<R>::lane(solution.change[i], k);
         }
-        if (lane == 0)
+        if (thread == 0)
           (coarse ? smiles(at).coarse : smiles(at).fine) =
               nodes_of<solved>(solution, memory.puts[k], grid, k);
       }

@@ -12,12 +12,12 @@ template <class R, int fixed>
 struct Memory {
   static constexpr int members = device::Access<R>::lanes;
 
-  R* law;               ///< what `law_of` leaves, and then the step table
-  R* slot;              ///< (6 most_lanes); with a fixed mesh what `domain_of` takes, or force
-  R* w;                 ///< of a WeightLayout
-  R* nodes;             ///< rows of `node_count`, and what the coarser solve has beyond its own, shorter ones
-  Put* puts;            ///< of the members, as the next
-  Answer* answers;      ///< on the grid and on the coarser one
+  R* law;           ///< what `law_of` leaves, then the step table, and last a doubt that another warp reads
+  R* slot;          ///< (6 most_lanes); with a fixed mesh what `domain_of` takes, or force
+  R* w;             ///< of a WeightLayout
+  R* nodes;         ///< rows of `node_count`, and what the coarser solve has beyond its own, shorter ones
+  Put* puts;        ///< of the members, as the next
+  Answer* answers;  ///< on the grid and on the coarser one
   double* unexercised;  ///< (members): values beside the spots on the coarser grid, without early exercise
 
   [[nodiscard]] KOKKOS_INLINE_FUNCTION static std::size_t bytes(int mesh) {
@@ -42,8 +42,8 @@ struct Memory {
   [[nodiscard]] KOKKOS_INLINE_FUNCTION ComplexNumber<R>* spectrum(int mesh) const {
     return reinterpret_cast<ComplexNumber<R>*>(row(passes_through ? 1 : rows(mesh) - 2, mesh));
   }
-  /// Weights of the coarser grid of a mesh, and every other value of the finer one; rows 0 to 2 of the finer
-  /// solve that are read last lie before both.
+  /// Weights of the coarser grid of a mesh, and every other value of the finer one, which does not reach into
+  /// the rows 0 to 2 of the finer solve that are read last.
   [[nodiscard]] KOKKOS_INLINE_FUNCTION R* coarse_weights(int mesh) const {
     return row(rows(mesh / 2), mesh / 2);
   }
@@ -102,11 +102,11 @@ template <class Workers, class R>
                  memory.row(7, mesh),
                  memory.row(8, mesh),
                  memory.slot};
-  workers.each([=](int lane) {
-    for (int k = lane; k < 9 * count; k += workers.threads()) memory.nodes[k] = 0.0;
+  workers.each([=](int thread) {
+    for (int k = thread; k < 9 * count; k += workers.threads()) memory.nodes[k] = 0.0;
   });
-  workers.each([=, &put](int lane) {
-    for (int i = lane; i < mesh; i += workers.threads()) {
+  workers.each([=, &put](int thread) {
+    for (int i = thread; i < mesh; i += workers.threads()) {
       const AtExpiry<R> node = at_expiry(put, grid, i, kink);
       march.value[1][i] = node.value;
       march.floor[i] = node.floor;
@@ -140,14 +140,14 @@ template <class Workers, class R>
   }
   // After the rotation value[0] is what value[2] was.
   const StepLength<R> last = step_length(put.maturity, steps, steps);
-  workers.each([=](int lane) {
-    for (int i = lane; i <= mesh;
+  workers.each([=](int thread) {
+    for (int i = thread; i <= mesh;
          i += workers.threads())  // the upper end too, where transforms leave numbers
       march.y[i] = rate_of_change(last, march.value[1][i], march.value[2][i], march.value[0][i]);
   });
   if (record.time != nullptr) {
-    workers.each([=](int lane) {
-      for (int i = lane; i <= mesh; i += workers.threads()) {
+    workers.each([=](int thread) {
+      for (int i = thread; i <= mesh; i += workers.threads()) {
         record.x[i] = device::Access<R>::lane((double(i) - grid.strike) * h, 0);
         record.value[i] = device::Access<R>::lane(march.value[1][i], 0);
       }
@@ -247,8 +247,8 @@ KOKKOS_INLINE_FUNCTION Solution<R> solve(const Workers& workers, const PutPack<R
                                          const Record& record = {}) {
   constexpr int members = device::Access<R>::lanes;
   const Solution<R> solution = march_nodes<fixed>(workers, put, jumps, grid, steps, memory, roots, record);
-  workers.each([=](int lane) {
-    for (int k = lane; k < members; k += workers.threads()) {
+  workers.each([=](int thread) {
+    for (int k = thread; k < members; k += workers.threads()) {
       answers[k] = answer_of(memory.puts[k], column_of(solution.value, k), column_of(solution.change, k),
                              nodes_of<fixed>(solution, memory.puts[k], grid, k));
     }

@@ -68,16 +68,16 @@ struct LineFunctor {
     const int block_nodes = block_of(nodes, workers.lanes), count = block_nodes * workers.lanes, last = nodes;
     R* const y = static_cast<R*>(team.team_scratch(1).get_shmem_aligned(scratch_bytes(nodes) - 64, 64));
     R *const x = y + count, *const floor = x + count, *const slot = floor + count;
-    workers.each([=](int lane) {
-      for (int i = lane; i < count; i += workers.threads()) {
+    workers.each([=](int thread) {
+      for (int i = thread; i < count; i += workers.threads()) {
         y[i] = i < last ? f.inverse * device::Access<R>::load(from + i * members) : R(0.0);
         floor[i] = -unbounded;
       }
     });
     recur_backward(workers, {y}, block_nodes, f.from_right, slot);
     recur_forward(workers, x, y, floor, block_nodes, last, f.from_left, f.edge, slot);
-    workers.each([=](int lane) {
-      for (int i = lane; i < last; i += workers.threads()) device::Access<R>::store(to + i * members, x[i]);
+    workers.each([=](int thread) {
+      for (int i = thread; i < last; i += workers.threads()) device::Access<R>::store(to + i * members, x[i]);
     });
   }
 };

@@ -14,9 +14,12 @@ inline constexpr int most_lanes = 32;
 /// One host thread, which prices a pack of options, `R`.
 template <class R>
 struct SerialWorkers {
+  static constexpr bool is_alone = false;
+
   int lanes = most_lanes;
 
   [[nodiscard]] KOKKOS_INLINE_FUNCTION int threads() const { return lanes; }
+  [[nodiscard]] KOKKOS_INLINE_FUNCTION static constexpr bool writes() { return true; }
   template <class F>
   KOKKOS_INLINE_FUNCTION void each(const F& f) const {
     for (int lane = 0; lane < lanes; ++lane) f(lane);
@@ -46,6 +49,7 @@ struct SerialWorkers {
 template <int count = most_lanes, bool alone = false>
 struct WarpWorkers {
   static constexpr int lanes = count;
+  static constexpr bool is_alone = alone;
 
   int lane;    ///< within its group
   int thread;  ///< of those that share what `each` does
@@ -54,6 +58,8 @@ struct WarpWorkers {
       : lane(rank % count), thread(alone ? rank % most_lanes : rank % count) {}
 
   [[nodiscard]] KOKKOS_INLINE_FUNCTION static constexpr int threads() { return alone ? most_lanes : count; }
+  /// Whether the thread writes what its lane has to: not if it only does as another one does.
+  [[nodiscard]] KOKKOS_INLINE_FUNCTION bool writes() const { return !alone || thread < count; }
   /// Runs f(thread) on every thread; what they wrote is seen by all after it.
   template <class F>
   KOKKOS_INLINE_FUNCTION void each(const F& f) const {
@@ -62,6 +68,10 @@ struct WarpWorkers {
   }
   /// What all have read before it may be written after it.
   KOKKOS_INLINE_FUNCTION void meet() const { device::meet_warp(); }
+  /// The same where lanes read but what they have written themselves: of threads that do alike one writes.
+  KOKKOS_INLINE_FUNCTION void meet_alike() const {
+    if constexpr (alone) meet();
+  }
   /// Joins the arrays f(lane) of all lanes, element by element and by halves; every lane gets the result.
   template <class F, class Join>
   KOKKOS_INLINE_FUNCTION auto reduce(const F& f, const Join& join) const {
@@ -146,7 +156,7 @@ template <int n, int lanes, bool alone>
 KOKKOS_INLINE_FUNCTION void recur_backward(const WarpWorkers<lanes, alone>& workers, double* const (&rows)[n],
                                            int block, double g, double* /*slot*/) {
   const int lane = workers.lane;
-  if constexpr (alone && lanes < most_lanes && n > 1) {  // rows are dealt out to groups of lanes
+  if constexpr (alone && lanes < most_lanes) {  // rows are dealt out to groups of lanes
     static_assert(n == most_lanes / lanes);
     recur_backward(WarpWorkers<lanes>(lane), {rows[workers.thread / lanes]}, block, g,
                    static_cast<double*>(nullptr));
@@ -214,6 +224,7 @@ KOKKOS_INLINE_FUNCTION ClampedMap<R> after(const ClampedMap<R>& second, R a2, co
 template <class Map, class Workers, class R>
 KOKKOS_INLINE_FUNCTION void recur_by_maps(const Workers& workers, R* x, const R* y, const R* floor, int block,
                                           int end, R a, R x0, Map* slot) {
+  static_assert(!Workers::is_alone);  // `each` runs lanes here
   R joined = 1.0;
   for (int m = 0; m < block; ++m) joined = joined * a;
   workers.each([=](int lane) {
