@@ -23,6 +23,12 @@ KOKKOS_INLINE_FUNCTION Grid<R> grid_of(const Domain<R>& domain, int mesh) {
   return {mesh, device::maximum(domain.below / strike, domain.above / (double(mesh) - strike)), strike};
 }
 
+/// The mesh of a kernel that may be compiled for a fixed one, which a compiler may unroll loops for; 0: none.
+template <int fixed>
+KOKKOS_INLINE_FUNCTION constexpr int mesh_for(int mesh) {
+  return fixed > 0 ? fixed : mesh;
+}
+
 /// Every other node.
 template <class R>
 KOKKOS_INLINE_FUNCTION Grid<R> coarser(const Grid<R>& grid) {

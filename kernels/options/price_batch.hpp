@@ -94,7 +94,7 @@ struct PriceBatch {
   [[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION Prepared<R> prepare(const Workers& workers,
                                                                 const Memory<R, fixed>& memory,
                                                                 int group) const {
-    const int cells = fixed > 0 ? fixed : mesh;  // which a compiler may unroll loops for
+    const int cells = mesh_for<fixed>(mesh);
     workers.each([=, this](int thread) {
       for (int k = thread; k < members; k += workers.threads()) {
         memory.puts[k] = put_of(contracts(place(group, k)));
@@ -117,7 +117,7 @@ struct PriceBatch {
   template <int fixed, class Workers>
   KOKKOS_FORCEINLINE_FUNCTION void solve_fine(const Workers& workers, const Prepared<R>& prepared,
                                               const Memory<R, fixed>& memory) const {
-    const int cells = fixed > 0 ? fixed : prepared.grid.mesh;
+    const int cells = mesh_for<fixed>(prepared.grid.mesh);
     const Solution<R> fine = solve<fixed>(workers, prepared.put, prepared.jumps, prepared.grid, steps, memory,
                                           roots, memory.answers, record);
     R* const kept = memory.kept(cells);
@@ -137,7 +137,7 @@ struct PriceBatch {
       const PutPack<R> put = with_exercise(prepared.put, exercise != 0);
       const Jumps<R> jumps =
           jumps_on<fixed / 2>(workers, put, prepared.law, prepared.tails, grid, memory,
-                              memory.coarse_weights(fixed > 0 ? fixed : prepared.grid.mesh), memory.w);
+                              memory.coarse_weights(mesh_for<fixed>(prepared.grid.mesh)), memory.w);
       value = solve<fixed / 2>(workers, put, jumps, grid, steps / 2, memory, roots, memory.answers + members)
                   .value;
       if (exercise == 0)
@@ -156,7 +156,7 @@ struct PriceBatch {
                                             const Doubt<R>& doubt, const Memory<R, fixed>& memory,
                                             const R* coarse, const Memory<R, fixed>& other, int group) const {
     const PutPack<R>& put = prepared.put;
-    const int cells = fixed > 0 ? fixed : prepared.grid.mesh;
+    const int cells = mesh_for<fixed>(prepared.grid.mesh);
     const Grid<R> grid = coarser(prepared.grid);
     const R* const kept = memory.kept(cells);
     const Answer* const coarse_answers = one_grid ? memory.answers : other.answers + members;

@@ -46,13 +46,13 @@ struct PriceByTwoFunctor {
           doubt_of_solve(prepared.put, prepared.law, prepared.jumps, prepared.grid, batch.steps);
       batch.solve_coarse(workers, prepared, memory);
       workers.each([=](int thread) {
-        if (thread == 0) *reinterpret_cast<Doubt<double>*>(memory.law) = doubt;
+        if (thread == 0) *memory.doubt() = doubt;
       });
     }
     team.team_barrier();
     if (finer)
-      batch.conclude(workers, prepared, *reinterpret_cast<const Doubt<double>*>(coarser_memory.law), memory,
-                     coarser_memory.row(0, fixed / 2), coarser_memory, option);
+      batch.conclude(workers, prepared, *coarser_memory.doubt(), memory, coarser_memory.row(0, fixed / 2),
+                     coarser_memory, option);
   }
 };
 

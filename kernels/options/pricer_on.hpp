@@ -121,8 +121,7 @@ class PricerOn final : public Pricer {
     launch_all({Kokkos::View<const Contract*, Space>(staged(contracts), contracts.size()),
                 View<Price>(to, prices.size())},
                contracts, effort);
-    _instance.space().fence("drogue::options: prices are there");
-    if (to != prices.data()) std::ranges::copy(_staged_prices, prices.begin());
+    await(to, prices);
   }
 
   void launch_all(const Places& places, std::span<const Contract> contracts, const Effort& effort) {
@@ -205,12 +204,17 @@ class PricerOn final : public Pricer {
     return _staged_prices.data();
   }
 
+  /// Waits for prices that arrive at `landed`, which `landing` has given.
+  void await(const Price* landed, std::span<Price> prices) {
+    _instance.space().fence("drogue::options: prices are there");
+    if (landed != prices.data()) std::copy_n(landed, prices.size(), prices.begin());
+  }
+
   void copy_out(std::span<Price> prices, Timing& timing) {
     const Clock copying;
     Price* const to = landing(prices);
     device::copy_out(_instance.space(), to, _prices, prices.size());
-    _instance.space().fence("drogue::options: prices are there");
-    if (to != prices.data()) std::ranges::copy(_staged_prices, prices.begin());
+    await(to, prices);
     timing.d2h += copying.seconds();
   }
 

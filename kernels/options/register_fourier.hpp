@@ -28,32 +28,28 @@ class RegisterFourier {
 
   template <class Workers>
   KOKKOS_INLINE_FUNCTION LaneNodes<8> operator()(const Workers& workers, const LaneNodes<8>& value) const {
-    const auto pass = [&](const auto& work) {
-      if (workers.writes()) work();
-      workers.meet();
-    };
     Octet<double> octet;
-    pass([&] { value.store_swizzled(_lane, _row); });
-    pass([&] {
+    workers.each_lane([&] { value.store_swizzled(_lane, _row); });
+    workers.each_lane([&] {
       octet.split_real([this](int m) { return _row[place(m)]; });
       octet.store(_first, lanes);
     });
-    pass([&] {
+    workers.each_lane([&] {
       octet.load(_second, radix);
       octet.split(second_roots());
       octet.store(_second, radix);
     });
-    pass([&] {
+    workers.each_lane([&] {
       octet.load(_third, 1);
       octet.multiply_last<radix>(_roots, 2, _lane, own_spectrum());
       octet.store(_third, 1);
     });
-    pass([&] {
+    workers.each_lane([&] {
       octet.load(_second, radix);
       octet.join(second_roots());
       octet.store(_second, radix);
     });
-    pass([&] {
+    workers.each_lane([&] {
       octet.load(_first, lanes);
       octet.join_imaginary([this](int m, double y) { _row[place(m)] = y; });
     });

@@ -132,10 +132,8 @@ class JumpSum {
   template <class Workers>
   KOKKOS_INLINE_FUNCTION LaneNodes<block> operator()(const Workers& workers,
                                                      const LaneNodes<block>& value) const {
-    if (workers.writes()) value.store(_lane, _rows.value);
-    workers.meet();
-    if (workers.writes()) _convolution();
-    workers.meet();
+    workers.each_lane([&] { value.store(_lane, _rows.value); });
+    workers.each_lane(_convolution);
     LaneNodes<block> sum = LaneNodes<block>::load_swizzled(_lane, _rows.out);
     const LaneNodes<block> rest = LaneNodes<block>::load_swizzled(_lane, _rows.other);
     for (int m = 0; m < block; ++m) sum.node[m] += rest.node[m];
@@ -223,8 +221,7 @@ KOKKOS_INLINE_FUNCTION int march_in_registers(const WarpWorkers<lanes, alone>& w
                 ? recur_by_maps<lanes, RisingMap<double>>(lane, y, floor, f.from_left, f.edge)
                 : recur_by_maps<lanes, ClampedMap<double>>(lane, y, floor, f.from_left, f.edge);
     if (put.any_split) {
-      if (workers.writes()) value.store(lane, rows.value);
-      workers.meet();
+      workers.each_lane([&] { value.store(lane, rows.value); });
       split_exercise(workers, put, grid, f.diagonal, rows.value, rows.force);
       value = Own::load(lane, rows.value);
     }
@@ -240,12 +237,11 @@ KOKKOS_INLINE_FUNCTION int march_in_registers(const WarpWorkers<lanes, alone>& w
     if (i < strike && is_exercised(value.node[m], i - strike, h)) exercised = i;
   }
   workers.meet();
-  if (workers.writes()) {
+  workers.each_lane([&] {
     value.store(lane, rows.value);
     change.store(lane, rows.other);
     if (lane == 0) rows.value[grid.mesh] = rows.other[grid.mesh] = 0.0;  // the upper end, which answers read
-  }
-  workers.meet();
+  });
   return device::warp_largest<lanes>(exercised);
 }
 

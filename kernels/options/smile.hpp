@@ -47,7 +47,7 @@ struct SmileFunctor {
 
   template <class Workers>
   KOKKOS_INLINE_FUNCTION void price(const Workers& workers, const Scratch& memory, int group) const {
-    const int mesh = fixed > 0 ? fixed : batch.mesh;
+    const int mesh = mesh_for<fixed>(batch.mesh);
     workers.each([=, this](int thread) {
       for (int k = thread; k < members; k += workers.threads()) {
         const int at = batch.place(group, k);
@@ -116,7 +116,7 @@ struct SmileFunctor {
   }
 
   [[nodiscard]] KOKKOS_INLINE_FUNCTION SmileNodes nodes_at(int smile) const {
-    const int mesh = fixed > 0 ? fixed : batch.mesh;
+    const int mesh = mesh_for<fixed>(batch.mesh);
     return {values.data() + static_cast<std::size_t>(smile) * SmileNodes::size(mesh), mesh};
   }
 };

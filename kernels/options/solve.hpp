@@ -37,6 +37,8 @@ struct Memory {
         unexercised(reinterpret_cast<double*>(answers + 2 * members)) {}
 
   [[nodiscard]] KOKKOS_INLINE_FUNCTION R* row(int k, int mesh) const { return nodes + k * node_count(mesh); }
+  /// What is left at last where the law was.
+  [[nodiscard]] KOKKOS_INLINE_FUNCTION Doubt<R>* doubt() const { return reinterpret_cast<Doubt<R>*>(law); }
   /// The spectrum of the weights of a mesh that is transformed, in its two last rows; of the mesh that lanes
   /// keep it of in registers it only passes through.
   [[nodiscard]] KOKKOS_INLINE_FUNCTION ComplexNumber<R>* spectrum(int mesh) const {
@@ -186,7 +188,7 @@ template <int fixed, class Workers, class R, class Scratch>
 KOKKOS_INLINE_FUNCTION Jumps<R> jumps_on(const Workers& workers, const PutPack<R>& put, const Law<R>& law,
                                          const Tails<R>& tails, const Grid<R>& grid, const Scratch& memory,
                                          R* weights, const R* finer = nullptr) {
-  const int mesh = fixed > 0 ? fixed : grid.mesh;
+  const int mesh = mesh_for<fixed>(grid.mesh);
   constexpr int left = fixed > 0 ? 3 : 9;
   return jumps_of(
       workers, put, law, tails, grid,
@@ -217,7 +219,7 @@ KOKKOS_INLINE_FUNCTION Solution<R> march_nodes(const Workers& workers, const Put
                                                const Jumps<R>& jumps, const Grid<R>& grid, int steps,
                                                const Scratch& memory, const FourierRoots& roots,
                                                const Record& record = {}) {
-  const int mesh = fixed > 0 ? fixed : grid.mesh;
+  const int mesh = mesh_for<fixed>(grid.mesh);
   // The kink of the payoff, as far as it gets smoothed out: h/12 is what the rule of trapezoids, which sums
   // over nodes amount to, lacks there.
   const R spread = spread_of(put, jumps);

@@ -66,6 +66,12 @@ struct WarpWorkers {
     f(thread);
     meet();
   }
+  /// Runs f() once for each lane; what it wrote is seen by all after it.
+  template <class F>
+  KOKKOS_INLINE_FUNCTION void each_lane(const F& f) const {
+    if (writes()) f();
+    meet();
+  }
   /// What all have read before it may be written after it.
   KOKKOS_INLINE_FUNCTION void meet() const { device::meet_warp(); }
   /// The same where lanes read but what they have written themselves: of threads that do alike one writes.
