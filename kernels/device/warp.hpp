@@ -25,6 +25,12 @@ KOKKOS_INLINE_FUNCTION double from_above(double value, int reach) {
   KOKKOS_IF_ON_HOST(((void)reach; return value;))
 }
 
+/// The value of a lane, whose number counts modulo those of a warp.
+KOKKOS_INLINE_FUNCTION double from_lane(double value, int lane) {
+  KOKKOS_IF_ON_DEVICE((return __shfl_sync(~0U, value, lane);))
+  KOKKOS_IF_ON_HOST(((void)lane; return value;))
+}
+
 /// The value of the lane whose number differs in the bit `reach`.
 KOKKOS_INLINE_FUNCTION double from_across(double value, int reach) {
   KOKKOS_IF_ON_DEVICE((return __shfl_xor_sync(~0U, value, reach);))

@@ -14,7 +14,7 @@ struct March {
   R* y;
   R* floor;  ///< payoff; `-unbounded` where early exercise is not looked for
   R* force;  ///< what exercise pushes with, of split puts
-  R* slot;   ///< (6 most_lanes)
+  R* slot;   ///< (9 most_lanes)
 };
 
 /// The sums over jumps w_{j-i} v_j, j = 0 .. mesh - 1, into `out` (j in the lower half) and `other`: 8 nodes

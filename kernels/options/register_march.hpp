@@ -3,6 +3,7 @@
 #include "kernels/device/warp.hpp"
 #include "kernels/options/march.hpp"
 #include "kernels/options/register_fourier.hpp"
+#include "kernels/options/shared_fourier.hpp"
 
 /// A march with the nodes of one option in the registers of a group of lanes, each of which has `block` nodes
 /// side by side. It does what `step` does, number by number and in the same order. Shared memory holds what
@@ -52,20 +53,26 @@ class Convolution {
   NodePair* _sums[(outs + 1) / 2];
 };
 
-/// `recur_backward` on registers.
-template <int lanes, int block>
+/// `recur_backward` on registers. `halved`: a lane is two threads, each with a part of the lane's nodes, and
+/// `lanes` counts threads.
+template <int lanes, bool halved = false, int block>
 KOKKOS_INLINE_FUNCTION void recur_backward(int lane, LaneNodes<block>& nodes, double g) {
-  double(&y)[block] = nodes.node;
-  double joined = g;
-  for (int m = 1; m < block; ++m) joined *= g;
-  for (int m = block - 2; m >= 0; --m) y[m] += g * y[m + 1];
-  double carry[] = {y[0]};
-  join_backward<lanes>(lane, carry, joined);
-  double inflow = device::from_above<lanes>(carry[0], 1);
-  if (lane + 1 == lanes) return;
-  for (int m = block - 1; m >= 0; --m) {
-    inflow *= g;
-    y[m] += inflow;
+  if constexpr (halved) {
+    const double slope = slope_of(g, block), low = run_backward(nodes.node, block, g),
+                 high = device::from_above<lanes>(low, 1);
+    double carry[] = {low + slope * high};
+    join_backward<lanes, 2>(lane, carry, slope * slope);
+    const int next = lane / 2 * 2 + 2;
+    double inflow = device::from_lane(carry[0], next);
+    if (next == lanes) inflow = 0.0;
+    flow_backward(nodes.node, block, g, lane % 2 == 0 ? high + slope * inflow : inflow);
+  } else {
+    constexpr int part = part_of(block);
+    const double slope = slope_of(g, part);
+    double carry[] = {begin_backward(nodes.node, block, g, slope)};
+    join_backward<lanes>(lane, carry, part < block ? slope * slope : slope);
+    const double inflow = device::from_above<lanes>(carry[0], 1);
+    end_backward(nodes.node, block, g, slope, lane + 1 < lanes ? inflow : 0.0);
   }
 }
 
@@ -80,23 +87,49 @@ KOKKOS_INLINE_FUNCTION ClampedMap<double> from_below(const ClampedMap<double>& m
           device::from_below<lanes>(map.hi, reach)};
 }
 
-/// `recur_by_maps` on registers.
-template <int lanes, class Map, int block>
-KOKKOS_INLINE_FUNCTION LaneNodes<block> recur_by_maps(int lane, const LaneNodes<block>& y,
-                                                      const LaneNodes<block>& floor, double a, double x0) {
-  double joined = a;
-  for (int m = 1; m < block; ++m) joined *= a;
-  Map map = lane == 0 ? Map::constant(x0) : Map::at_least(floor.node[0], y.node[0]);
-  for (int m = 1; m < block; ++m) map = after(Map::at_least(floor.node[m], y.node[m]), a, map);
-  for (int reach = 1; reach < lanes; reach *= 2) {
+/// Joins the maps of lanes to those of all below; `joined` is the slope of one. Of `stride` threads the last
+/// counts.
+template <int lanes, int stride = 1, class Map>
+KOKKOS_INLINE_FUNCTION void join_forward(int lane, Map& map, double joined) {
+  for (int reach = stride; reach < lanes; reach *= 2) {
     const Map whole = after(map, joined, from_below<lanes>(map, reach));
     if (lane >= reach) map = whole;
     joined *= joined;
   }
-  const double inflow = device::from_below<lanes>(map.lo, 1);
+}
+
+/// `recur_by_maps` on registers; for `halved` see `recur_backward`.
+template <int lanes, class Map, bool halved = false, int block>
+KOKKOS_INLINE_FUNCTION LaneNodes<block> recur_by_maps(int lane, const LaneNodes<block>& y,
+                                                      const LaneNodes<block>& floor, double a, double x0) {
+  constexpr int part = halved ? block : part_of(block);
+  const double slope = slope_of(a, part);
+  const auto map_of = [&](int m) {
+    const Map first = lane == 0 && m == 0 ? Map::constant(x0) : Map::at_least(floor.node[m], y.node[m]);
+    return compose(first, y.node + m, floor.node + m, part, a);
+  };
+  Map low = map_of(0), map = low;
+  double begin[2];  // what flows into the parts
+  if constexpr (halved) {
+    low = from_below<lanes>(low, 1);
+    map = after(map, slope, low);
+    join_forward<lanes, 2>(lane, map, slope * slope);
+    const double inflow = device::from_lane(map.lo, lane / 2 * 2 - 1);
+    begin[0] = lane % 2 == 0 ? inflow : lane == 1 ? low.lo : low.at(inflow, slope);
+  } else {
+    if constexpr (part < block) map = after(map_of(part), slope, low);
+    join_forward<lanes>(lane, map, part < block ? slope * slope : slope);
+    begin[0] = device::from_below<lanes>(map.lo, 1);
+    begin[1] = lane == 0 ? low.lo : low.at(begin[0], slope);
+  }
   LaneNodes<block> x;
-  x.node[0] = lane == 0 ? x0 : device::maximum(floor.node[0], a * inflow + y.node[0]);
-  for (int m = 1; m < block; ++m) x.node[m] = device::maximum(floor.node[m], a * x.node[m - 1] + y.node[m]);
+  for (int k = 0; k < block; k += part) {
+    double value = begin[k / part];
+    for (int m = k; m < k + part; ++m) {
+      value = lane == 0 && m == 0 ? x0 : device::maximum(floor.node[m], a * value + y.node[m]);
+      x.node[m] = value;
+    }
+  }
   return x;
 }
 
@@ -121,8 +154,8 @@ struct RegisterRows {
   double* force;        ///< of split puts
 };
 
-/// The sum over jumps of a lane's nodes, by `Convolution` or by `RegisterFourier`.
-template <int block, int lanes, bool transformed = is_transformed(lanes* block, lanes)>
+/// The sum over jumps of a lane's nodes, by `Convolution`, `RegisterFourier` or `SharedFourier`.
+template <int block, int lanes, bool transformed>
 class JumpSum {
  public:
   KOKKOS_INLINE_FUNCTION JumpSum(int lane, const double* w, const JumpSpectrum<double>& /*spectrum*/,
@@ -145,6 +178,13 @@ class JumpSum {
   RegisterRows _rows;
   Convolution<block, lanes> _convolution;
 };
+template <>
+class JumpSum<4, most_lanes, true> : public SharedFourier {
+ public:
+  KOKKOS_INLINE_FUNCTION JumpSum(int thread, const double* /*w*/, const JumpSpectrum<double>& spectrum,
+                                 const RegisterRows& rows)
+      : SharedFourier(thread, spectrum, rows.value, reinterpret_cast<ComplexNumber<double>*>(rows.out)) {}
+};
 template <int lanes>
 class JumpSum<8, lanes, true> : public RegisterFourier<lanes> {
  public:
@@ -163,8 +203,8 @@ KOKKOS_INLINE_FUNCTION void swizzle(const Workers& workers, double* nodes) {
 }
 
 /// Marches from expiry to maturity; `jumps.left` and `left_price` are left `swizzled`. Returns the last node
-/// below the strike that is exercised, -1 if none is.
-template <int block, int lanes, bool alone>
+/// below the strike that is exercised, -1 if none is. For `halved` see `recur_backward`.
+template <int block, bool halved = false, int lanes, bool alone>
 KOKKOS_INLINE_FUNCTION int march_in_registers(const WarpWorkers<lanes, alone>& workers,
                                               const PutPack<double>& put, const Jumps<double>& jumps,
                                               const Grid<double>& grid, const JumpSpectrum<double>& spectrum,
@@ -173,7 +213,8 @@ KOKKOS_INLINE_FUNCTION int march_in_registers(const WarpWorkers<lanes, alone>& w
   using Own = LaneNodes<block>;
   const int lane = workers.lane, strike = static_cast<int>(grid.strike);
   const double h = grid.h, stay = -jumps.rate - put.rate;
-  const JumpSum<block, lanes> sum_over_jumps(lane, jumps.w, spectrum, rows);
+  const JumpSum<block, lanes, halved || is_transformed(lanes * block, lanes)> sum_over_jumps(lane, jumps.w,
+                                                                                             spectrum, rows);
   Own value, before{}, stale{}, floor;
   Certain<double> begun{1.0, 1.0};
   if (workers.writes()) before.store(lane, rows.force);
@@ -216,10 +257,10 @@ KOKKOS_INLINE_FUNCTION int march_in_registers(const WarpWorkers<lanes, alone>& w
     }
     begun = f.certain;
     before = value;
-    recur_backward<lanes>(lane, y, f.from_right);
+    recur_backward<lanes, halved>(lane, y, f.from_right);
     value = workers.all(f.from_left >= 0.0)
-                ? recur_by_maps<lanes, RisingMap<double>>(lane, y, floor, f.from_left, f.edge)
-                : recur_by_maps<lanes, ClampedMap<double>>(lane, y, floor, f.from_left, f.edge);
+                ? recur_by_maps<lanes, RisingMap<double>, halved>(lane, y, floor, f.from_left, f.edge)
+                : recur_by_maps<lanes, ClampedMap<double>, halved>(lane, y, floor, f.from_left, f.edge);
     if (put.any_split) {
       workers.each_lane([&] { value.store(lane, rows.value); });
       split_exercise(workers, put, grid, f.diagonal, rows.value, rows.force);

@@ -13,7 +13,7 @@ struct Memory {
   static constexpr int members = device::Access<R>::lanes;
 
   R* law;           ///< what `law_of` leaves, then the step table, and last a doubt that another warp reads
-  R* slot;          ///< (6 most_lanes); with a fixed mesh what `domain_of` takes, or force
+  R* slot;          ///< (9 most_lanes); with a fixed mesh what `domain_of` takes, or force
   R* w;             ///< of a WeightLayout
   R* nodes;         ///< rows of `node_count`, and what the coarser solve has beyond its own, shorter ones
   Put* puts;        ///< of the members, as the next
@@ -63,7 +63,7 @@ struct Memory {
  private:
   static constexpr bool passes_through = fixed > 0 && keeps_spectrum(lanes_of(fixed));
   static constexpr int law_size = StepFactors<R>::size * most_lanes + symbols;
-  static constexpr int slot_size = fixed == 0               ? 6 * most_lanes
+  static constexpr int slot_size = fixed == 0               ? 9 * most_lanes
                                    : fixed < 3 * most_lanes ? 3 * most_lanes
                                                             : fixed;
 
@@ -231,9 +231,15 @@ KOKKOS_INLINE_FUNCTION Solution<R> march_nodes(const Workers& workers, const Put
     spectrum = spectrum_of(workers, mesh, roots, jumps.w, memory.spectrum(mesh));
   if constexpr (fixed > 0) {
     const RegisterRows rows{memory.row(0, mesh), memory.row(1, mesh), memory.row(2, mesh), memory.slot};
-    const int exercised = march_in_registers<fixed / Workers::lanes>(workers, put, jumps, grid, spectrum,
-                                                                     scheme, table, rows, kink);
-    return {rows.value, rows.other, exercised};
+    const auto march = [&]<int block, bool halved>(const auto& threads) -> Solution<R> {
+      return {
+          rows.value, rows.other,
+          march_in_registers<block, halved>(threads, put, jumps, grid, spectrum, scheme, table, rows, kink)};
+    };
+    if constexpr (Workers::is_alone && fixed == 8 * Workers::lanes)
+      return march.template operator()<fixed / most_lanes, true>(WarpWorkers<>(workers.thread));
+    else
+      return march.template operator()<fixed / Workers::lanes, false>(workers);
   } else {
     const March<R> march =
         march_in_memory(workers, put, jumps, grid, spectrum, scheme, table, memory, kink, record);

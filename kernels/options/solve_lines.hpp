@@ -28,7 +28,7 @@ struct LineFunctor {
 
   [[nodiscard]] KOKKOS_INLINE_FUNCTION static std::size_t scratch_bytes(int nodes) {
     const auto count = static_cast<std::size_t>(block_of(nodes, most_lanes) * most_lanes);
-    return block > 0 ? 0 : sizeof(R) * (rows * count + 6 * most_lanes) + 64;
+    return block > 0 ? 0 : sizeof(R) * (rows * count + 9 * most_lanes) + 64;
   }
 
   KOKKOS_FUNCTION void operator()(const Member& team) const {

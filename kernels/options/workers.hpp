@@ -105,23 +105,66 @@ KOKKOS_INLINE_FUNCTION auto minima(const Workers& workers, const F& f) {
   return workers.reduce(f, [](const auto& a, const auto& b) { return device::minimum(a, b); });
 }
 
+/// The nodes of each of two parts that a lane's block of nodes is cut into, so that no chain of operations is
+/// longer than need be; of a short block the only part.
+KOKKOS_INLINE_FUNCTION constexpr int part_of(int block) {
+  return block >= 8 && block % 2 == 0 ? block / 2 : block;
+}
+
+/// The slope of what `count` nodes with this one compose to.
+template <class R>
+KOKKOS_INLINE_FUNCTION R slope_of(R slope, int count) {
+  R joined = slope;
+  for (int m = 1; m < count; ++m) joined = joined * slope;
+  return joined;
+}
+
+/// y_i = a_i + g y_{i+1} of some nodes in place, from 0 beyond; returns the first.
+template <class R>
+KOKKOS_INLINE_FUNCTION R run_backward(R* y, int count, R g) {
+  for (int m = count - 2; m >= 0; --m) y[m] = y[m] + g * y[m + 1];
+  return y[0];
+}
+
+/// Adds what flows into them from above.
+template <class R>
+KOKKOS_INLINE_FUNCTION void flow_backward(R* y, int count, R g, R inflow) {
+  for (int m = count - 1; m >= 0; --m) {
+    inflow = g * inflow;
+    y[m] = y[m] + inflow;
+  }
+}
+
+/// What a lane's block begins with, from 0 beyond it: each part by itself, then both joined.
+template <class R>
+KOKKOS_INLINE_FUNCTION R begin_backward(R* own, int block, R g, R slope) {
+  const int part = part_of(block);
+  const R low = run_backward(own, part, g);
+  return part == block ? low : low + slope * run_backward(own + part, part, g);
+}
+
+/// The same once what flows into the block is known.
+template <class R>
+KOKKOS_INLINE_FUNCTION void end_backward(R* own, int block, R g, R slope, R inflow) {
+  const int part = part_of(block);
+  if (part < block) {
+    const R high = own[part] + slope * inflow;
+    flow_backward(own + part, part, g, inflow);
+    inflow = high;
+  }
+  flow_backward(own, part, g, inflow);
+}
+
 /// y_i = a_i + g y_{i+1} for i = 0 .. lanes block - 1 in place, from 0 beyond, on n arrays: each lane runs
 /// through its block, then blocks are joined by doubling (Kogge and Stone). `slot` holds 2 lanes values.
 template <int n, class R>
 KOKKOS_INLINE_FUNCTION void recur_backward(const SerialWorkers<R>& workers, R* const (&rows)[n], int block,
                                            R g, R* slot) {
+  const int part = part_of(block);
+  const R slope = slope_of(g, part);
   for (R* const y : rows) {
-    R joined = 1.0;
-    for (int m = 0; m < block; ++m) joined = joined * g;
-    workers.each([=](int lane) {
-      R* own = y + lane * block;
-      R value = 0.0;
-      for (int m = block - 1; m >= 0; --m) {
-        value = own[m] + g * value;
-        own[m] = value;
-      }
-      slot[lane] = value;
-    });
+    R joined = part < block ? slope * slope : slope;
+    workers.each([=](int lane) { slot[lane] = begin_backward(y + lane * block, block, g, slope); });
     R *from = slot, *to = slot + workers.lanes;
     for (int reach = 1; reach < workers.lanes; reach *= 2) {
       workers.each([=](int lane) {
@@ -133,22 +176,16 @@ KOKKOS_INLINE_FUNCTION void recur_backward(const SerialWorkers<R>& workers, R* c
       to = other;
     }
     workers.each([=](int lane) {
-      if (lane + 1 == workers.lanes) return;
-      R* own = y + lane * block;
-      R inflow = from[lane + 1];
-      for (int m = block - 1; m >= 0; --m) {
-        inflow = g * inflow;
-        own[m] = own[m] + inflow;
-      }
+      end_backward(y + lane * block, block, g, slope, lane + 1 < workers.lanes ? from[lane + 1] : R(0.0));
     });
   }
 }
 
 /// Joins what the lanes' blocks begin with, n numbers each, to those of all blocks above; `joined` is the
-/// slope of a block.
-template <int lanes, int n>
+/// slope of a block. Of `stride` threads the first counts.
+template <int lanes, int stride = 1, int n>
 KOKKOS_INLINE_FUNCTION void join_backward(int lane, double (&carry)[n], double joined) {
-  for (int reach = 1; reach < lanes; reach *= 2) {
+  for (int reach = stride; reach < lanes; reach *= 2) {
     for (double& own : carry) {
       const double next = device::from_above<lanes>(own, reach);
       if (lane + reach < lanes) own = own + joined * next;
@@ -167,25 +204,14 @@ KOKKOS_INLINE_FUNCTION void recur_backward(const WarpWorkers<lanes, alone>& work
     recur_backward(WarpWorkers<lanes>(lane), {rows[workers.thread / lanes]}, block, g,
                    static_cast<double*>(nullptr));
   } else {
-    double joined = 1.0, carry[n];
-    for (int m = 0; m < block; ++m) joined = joined * g;
+    const int part = part_of(block);
+    const double slope = slope_of(g, part);
+    double carry[n];
+    for (int k = 0; k < n; ++k) carry[k] = begin_backward(rows[k] + lane * block, block, g, slope);
+    join_backward<lanes>(lane, carry, part < block ? slope * slope : slope);
     for (int k = 0; k < n; ++k) {
-      double* own = rows[k] + lane * block;
-      carry[k] = 0.0;
-      for (int m = block - 1; m >= 0; --m) {
-        carry[k] = own[m] + g * carry[k];
-        own[m] = carry[k];
-      }
-    }
-    join_backward<lanes>(lane, carry, joined);
-    for (int k = 0; k < n; ++k) {
-      double* own = rows[k] + lane * block;
-      double inflow = device::from_above<lanes>(carry[k], 1);
-      if (lane + 1 == lanes) continue;
-      for (int m = block - 1; m >= 0; --m) {
-        inflow = g * inflow;
-        own[m] = own[m] + inflow;
-      }
+      const double inflow = device::from_above<lanes>(carry[k], 1);
+      end_backward(rows[k] + lane * block, block, g, slope, lane + 1 < lanes ? inflow : 0.0);
     }
     workers.meet();
   }
@@ -197,6 +223,7 @@ struct RisingMap {
   R b, lo;
   KOKKOS_INLINE_FUNCTION static RisingMap at_least(R lo, R b) { return {b, lo}; }
   KOKKOS_INLINE_FUNCTION static RisingMap constant(R x) { return {x, x}; }
+  [[nodiscard]] KOKKOS_INLINE_FUNCTION R at(R x, R a) const { return device::maximum(lo, a * x + b); }
 };
 
 /// `second` after `first`; a2 is the slope of `second`.
@@ -215,6 +242,9 @@ struct ClampedMap {
   R b, lo, hi;
   KOKKOS_INLINE_FUNCTION static ClampedMap at_least(R lo, R b) { return {b, lo, R(unbounded)}; }
   KOKKOS_INLINE_FUNCTION static ClampedMap constant(R x) { return {x, x, x}; }
+  [[nodiscard]] KOKKOS_INLINE_FUNCTION R at(R x, R a) const {
+    return device::maximum(lo, device::minimum(hi, a * x + b));
+  }
 };
 
 template <class R>
@@ -224,20 +254,33 @@ KOKKOS_INLINE_FUNCTION ClampedMap<R> after(const ClampedMap<R>& second, R a2, co
   return {a2 * first.b + second.b, device::minimum(low, high), device::maximum(low, high)};
 }
 
+/// What the nodes of a part compose to, `map` being the first node's.
+template <class Map, class R>
+KOKKOS_INLINE_FUNCTION Map compose(Map map, const R* y, const R* floor, int count, R a) {
+  for (int m = 1; m < count; ++m) map = after(Map::at_least(floor[m], y[m]), a, map);
+  return map;
+}
+
 /// x_i = max(floor_i, a x_{i-1} + y_i) for the nodes 1, 2, ... of all blocks, x_0 given; 0 from node `end`
 /// on. The first block's map is a constant, so the bounds of what blocks compose to are the values. `slot`
-/// holds 2 lanes maps.
+/// holds 3 lanes maps.
 template <class Map, class Workers, class R>
 KOKKOS_INLINE_FUNCTION void recur_by_maps(const Workers& workers, R* x, const R* y, const R* floor, int block,
                                           int end, R a, R x0, Map* slot) {
   static_assert(!Workers::is_alone);  // `each` runs lanes here
-  R joined = 1.0;
-  for (int m = 0; m < block; ++m) joined = joined * a;
+  const int part = part_of(block);
+  const R slope = slope_of(a, part);
+  R joined = part < block ? slope * slope : slope;
+  Map* const low = slot + 2 * workers.lanes;
   workers.each([=](int lane) {
-    const int begin = lane * block;
-    Map map = lane == 0 ? Map::constant(x0) : Map::at_least(floor[begin], y[begin]);
-    for (int m = 1; m < block; ++m) map = after(Map::at_least(floor[begin + m], y[begin + m]), a, map);
-    slot[lane] = map;
+    const int begin = lane * block, middle = begin + part;
+    const Map first = lane == 0 ? Map::constant(x0) : Map::at_least(floor[begin], y[begin]);
+    low[lane] = compose(first, y + begin, floor + begin, part, a);
+    slot[lane] =
+        part == block
+            ? low[lane]
+            : after(compose(Map::at_least(floor[middle], y[middle]), y + middle, floor + middle, part, a),
+                    slope, low[lane]);
   });
   Map *from = slot, *to = slot + workers.lanes;
   for (int reach = 1; reach < workers.lanes; reach *= 2) {
@@ -250,18 +293,19 @@ KOKKOS_INLINE_FUNCTION void recur_by_maps(const Workers& workers, R* x, const R*
     to = other;
   }
   workers.each([=](int lane) {
-    const int begin = lane * block;
-    R value = x0;
-    if (lane > 0) value = device::maximum(floor[begin], a * from[lane - 1].lo + y[begin]);
-    x[begin] = begin < end ? value : R(0.0);
-    for (int m = 1; m < block; ++m) {
-      value = device::maximum(floor[begin + m], a * value + y[begin + m]);
-      x[begin + m] = begin + m < end ? value : R(0.0);
+    const R inflow = lane > 0 ? from[lane - 1].lo : x0;
+    for (int k = 0; k < block; k += part) {
+      const int begin = lane * block + k;
+      R value = k == 0 ? inflow : lane == 0 ? low[lane].lo : low[lane].at(inflow, slope);
+      for (int m = 0; m < part; ++m) {
+        if (lane + k + m > 0) value = device::maximum(floor[begin + m], a * value + y[begin + m]);
+        x[begin + m] = begin + m < end ? value : R(0.0);
+      }
     }
   });
 }
 
-/// The same for a of any sign; `slot` holds 2 lanes ClampedMaps.
+/// The same for a of any sign; `slot` holds 3 lanes ClampedMaps.
 template <class Workers, class R>
 KOKKOS_INLINE_FUNCTION void recur_forward(const Workers& workers, R* x, const R* y, const R* floor, int block,
                                           int end, R a, R x0, R* slot) {
