@@ -87,8 +87,8 @@ KOKKOS_INLINE_FUNCTION ClampedMap<double> from_below(const ClampedMap<double>& m
           device::from_below<lanes>(map.hi, reach)};
 }
 
-/// Joins the maps of lanes to those of all below; `joined` is the slope of one. Of `stride` threads the last
-/// counts.
+/// Joins the maps of lanes to those of all below; `joined` is the slope of one. Of each `stride` threads the
+/// last counts.
 template <int lanes, int stride = 1, class Map>
 KOKKOS_INLINE_FUNCTION void join_forward(int lane, Map& map, double joined) {
   for (int reach = stride; reach < lanes; reach *= 2) {
@@ -105,22 +105,23 @@ KOKKOS_INLINE_FUNCTION LaneNodes<block> recur_by_maps(int lane, const LaneNodes<
   constexpr int part = halved ? block : part_of(block);
   const double slope = slope_of(a, part);
   const auto map_of = [&](int m) {
-    const Map first = lane == 0 && m == 0 ? Map::constant(x0) : Map::at_least(floor.node[m], y.node[m]);
-    return compose(first, y.node + m, floor.node + m, part, a);
+    const Map node = lane == 0 && m == 0 ? Map::constant(x0) : Map::at_least(floor.node[m], y.node[m]);
+    return compose(node, y.node + m, floor.node + m, part, a);
   };
-  Map low = map_of(0), map = low;
+  const Map first = map_of(0);
   double begin[2];  // what flows into the parts
   if constexpr (halved) {
-    low = from_below<lanes>(low, 1);
-    map = after(map, slope, low);
+    const Map low = from_below<lanes>(first, 1);
+    Map map = after(first, slope, low);
     join_forward<lanes, 2>(lane, map, slope * slope);
     const double inflow = device::from_lane(map.lo, lane / 2 * 2 - 1);
     begin[0] = lane % 2 == 0 ? inflow : lane == 1 ? low.lo : low.at(inflow, slope);
   } else {
-    if constexpr (part < block) map = after(map_of(part), slope, low);
+    Map map = first;
+    if constexpr (part < block) map = after(map_of(part), slope, first);
     join_forward<lanes>(lane, map, part < block ? slope * slope : slope);
     begin[0] = device::from_below<lanes>(map.lo, 1);
-    begin[1] = lane == 0 ? low.lo : low.at(begin[0], slope);
+    begin[1] = lane == 0 ? first.lo : first.at(begin[0], slope);
   }
   LaneNodes<block> x;
   for (int k = 0; k < block; k += part) {

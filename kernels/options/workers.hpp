@@ -182,7 +182,7 @@ KOKKOS_INLINE_FUNCTION void recur_backward(const SerialWorkers<R>& workers, R* c
 }
 
 /// Joins what the lanes' blocks begin with, n numbers each, to those of all blocks above; `joined` is the
-/// slope of a block. Of `stride` threads the first counts.
+/// slope of a block. Of each `stride` threads the first counts.
 template <int lanes, int stride = 1, int n>
 KOKKOS_INLINE_FUNCTION void join_backward(int lane, double (&carry)[n], double joined) {
   for (int reach = stride; reach < lanes; reach *= 2) {
