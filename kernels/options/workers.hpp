@@ -122,8 +122,12 @@ KOKKOS_INLINE_FUNCTION R slope_of(R slope, int count) {
 /// y_i = a_i + g y_{i+1} of some nodes in place, from 0 beyond; returns the first.
 template <class R>
 KOKKOS_INLINE_FUNCTION R run_backward(R* y, int count, R g) {
-  for (int m = count - 2; m >= 0; --m) y[m] = y[m] + g * y[m + 1];
-  return y[0];
+  R value = y[count - 1];
+  for (int m = count - 2; m >= 0; --m) {
+    value = y[m] + g * value;
+    y[m] = value;
+  }
+  return value;
 }
 
 /// Adds what flows into them from above.
@@ -294,13 +298,12 @@ KOKKOS_INLINE_FUNCTION void recur_by_maps(const Workers& workers, R* x, const R*
   }
   workers.each([=](int lane) {
     const R inflow = lane > 0 ? from[lane - 1].lo : x0;
-    for (int k = 0; k < block; k += part) {
-      const int begin = lane * block + k;
-      R value = k == 0 ? inflow : lane == 0 ? low[lane].lo : low[lane].at(inflow, slope);
-      for (int m = 0; m < part; ++m) {
-        if (lane + k + m > 0) value = device::maximum(floor[begin + m], a * value + y[begin + m]);
-        x[begin + m] = begin + m < end ? value : R(0.0);
-      }
+    R value = inflow;
+    for (int m = 0; m < block; ++m) {
+      const int i = lane * block + m;
+      if (m == part) value = lane == 0 ? low[lane].lo : low[lane].at(inflow, slope);
+      value = i == 0 ? x0 : device::maximum(floor[i], a * value + y[i]);
+      x[i] = i < end ? value : R(0.0);
     }
   });
 }
