@@ -6,8 +6,9 @@
 #include "kernels/options/shared_fourier.hpp"
 
 /// A march with the nodes of one option in the registers of a group of lanes, each of which has `block` nodes
-/// side by side. It does what `step` does, number by number and in the same order. Shared memory holds what
-/// lanes read of one another in the sum over jumps.
+/// side by side; or `halved`: of two threads for each lane, which `lane` and `lanes` count then. It does what
+/// `step` does, number by number and in the same order. Shared memory holds what lanes read of one another in
+/// the sum over jumps.
 namespace drogue::options {
 
 /// `convolve` for lanes x block intervals: a task of 2 block nodes and half of the values for every lane. The
@@ -53,8 +54,7 @@ class Convolution {
   NodePair* _sums[(outs + 1) / 2];
 };
 
-/// `recur_backward` on registers. `halved`: a lane is two threads, each with a part of the lane's nodes, and
-/// `lanes` counts threads.
+/// `recur_backward` on registers.
 template <int lanes, bool halved = false, int block>
 KOKKOS_INLINE_FUNCTION void recur_backward(int lane, LaneNodes<block>& nodes, double g) {
   if constexpr (halved) {
@@ -64,7 +64,7 @@ KOKKOS_INLINE_FUNCTION void recur_backward(int lane, LaneNodes<block>& nodes, do
     join_backward<lanes, 2>(lane, carry, slope * slope);
     const int next = lane / 2 * 2 + 2;
     double inflow = device::from_lane(carry[0], next);
-    if (next == lanes) inflow = 0.0;
+    if (next == lanes) inflow = 0.0;  // not what the first one has
     flow_backward(nodes.node, block, g, lane % 2 == 0 ? high + slope * inflow : inflow);
   } else {
     constexpr int part = part_of(block);
@@ -98,12 +98,13 @@ KOKKOS_INLINE_FUNCTION void join_forward(int lane, Map& map, double joined) {
   }
 }
 
-/// `recur_by_maps` on registers; for `halved` see `recur_backward`.
+/// `recur_by_maps` on registers.
 template <int lanes, class Map, bool halved = false, int block>
 KOKKOS_INLINE_FUNCTION LaneNodes<block> recur_by_maps(int lane, const LaneNodes<block>& y,
                                                       const LaneNodes<block>& floor, double a, double x0) {
   constexpr int part = halved ? block : part_of(block);
-  const double slope = slope_of(a, part);
+  double slope = a;  // not by `slope_of`: the kernel of 64 nodes would spill twice as much
+  for (int m = 1; m < part; ++m) slope *= a;
   const auto map_of = [&](int m) {
     const Map node = lane == 0 && m == 0 ? Map::constant(x0) : Map::at_least(floor.node[m], y.node[m]);
     return compose(node, y.node + m, floor.node + m, part, a);
@@ -114,7 +115,7 @@ KOKKOS_INLINE_FUNCTION LaneNodes<block> recur_by_maps(int lane, const LaneNodes<
     const Map low = from_below<lanes>(first, 1);
     Map map = after(first, slope, low);
     join_forward<lanes, 2>(lane, map, slope * slope);
-    const double inflow = device::from_lane(map.lo, lane / 2 * 2 - 1);
+    const double inflow = device::from_lane(map.lo, lane / 2 * 2 - 1);  // of no use to the first two
     begin[0] = lane % 2 == 0 ? inflow : lane == 1 ? low.lo : low.at(inflow, slope);
   } else {
     Map map = first;
@@ -179,7 +180,7 @@ class JumpSum {
   RegisterRows _rows;
   Convolution<block, lanes> _convolution;
 };
-template <>
+template <>  // halved: 32 lanes of four nodes would sum as it stands there
 class JumpSum<4, most_lanes, true> : public SharedFourier {
  public:
   KOKKOS_INLINE_FUNCTION JumpSum(int thread, const double* /*w*/, const JumpSpectrum<double>& spectrum,
@@ -204,7 +205,7 @@ KOKKOS_INLINE_FUNCTION void swizzle(const Workers& workers, double* nodes) {
 }
 
 /// Marches from expiry to maturity; `jumps.left` and `left_price` are left `swizzled`. Returns the last node
-/// below the strike that is exercised, -1 if none is. For `halved` see `recur_backward`.
+/// below the strike that is exercised, -1 if none is.
 template <int block, bool halved = false, int lanes, bool alone>
 KOKKOS_INLINE_FUNCTION int march_in_registers(const WarpWorkers<lanes, alone>& workers,
                                               const PutPack<double>& put, const Jumps<double>& jumps,
@@ -263,9 +264,11 @@ KOKKOS_INLINE_FUNCTION int march_in_registers(const WarpWorkers<lanes, alone>& w
                 ? recur_by_maps<lanes, RisingMap<double>, halved>(lane, y, floor, f.from_left, f.edge)
                 : recur_by_maps<lanes, ClampedMap<double>, halved>(lane, y, floor, f.from_left, f.edge);
     if (put.any_split) {
+      workers.meet();  // swizzled, as sums over jumps store them, two halves of a lane share their places
       workers.each_lane([&] { value.store(lane, rows.value); });
       split_exercise(workers, put, grid, f.diagonal, rows.value, rows.force);
       value = Own::load(lane, rows.value);
+      workers.meet();
     }
   }
   workers.meet_alike();

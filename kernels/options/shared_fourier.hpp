@@ -31,8 +31,9 @@ KOKKOS_INLINE_FUNCTION void transform_half(const ComplexNumber<double> (&low)[4]
 }
 
 /// `RegisterFourier` of 128 nodes by all threads of a warp, each of which has four nodes: thread t and t + 16
-/// share an octet, of which one makes the even numbers and the other one the odd. What a number is multiplied
-/// with before the next pass whoever makes it does.
+/// share an octet, of which one makes the even numbers and the other one the odd. Whoever makes a number
+/// multiplies it with the root that the next pass would; by {1, 0}, where there is none, at most the sign of
+/// a zero changes.
 class SharedFourier {
  public:
   /// `row` (mesh) and `z` (padded(mesh)) are shared memory for it alone from its first call on.
@@ -48,8 +49,8 @@ class SharedFourier {
     const int m = _octet / 2;  // the number's place in its octet of the second pass
     for (int j = 0; j < 4; ++j) {
       const int q = 2 * j + _odd;
-      _before[j] = m > 0 ? spectrum.roots.at(1, m, q) : ComplexNumber<double>{1.0, 0.0};
-      _after[j] = q > 0 ? spectrum.roots.at(1, q, _octet / 2) : ComplexNumber<double>{1.0, 0.0};
+      _split_roots[j] = m > 0 ? spectrum.roots.at(1, m, q) : ComplexNumber<double>{1.0, 0.0};
+      _join_roots[j] = q > 0 ? spectrum.roots.at(1, q, _octet / 2) : ComplexNumber<double>{1.0, 0.0};
       _spectrum[j] = spectrum.place[padded(4 * thread) + j];
     }
     for (int k = 0; k < 2; ++k) _last[k] = spectrum.roots.at(2, 4, 2 * thread + k);
@@ -63,7 +64,7 @@ class SharedFourier {
     workers.each_lane([&] {
       real_halves(low, high);
       transform_half<1>(low, high, odd, half);
-      for (int j = 0; j < 4; ++j) _first[padded(octets * (2 * j + _odd))] = product(half[j], _before[j]);
+      for (int j = 0; j < 4; ++j) _first[padded(octets * (2 * j + _odd))] = product(half[j], _split_roots[j]);
     });
     workers.each_lane([&] { load(_second, 2, low, high); });
     workers.each_lane([&] {
@@ -83,7 +84,7 @@ class SharedFourier {
     workers.each_lane([&] { load(_second, 2, low, high); });
     workers.each_lane([&] {
       transform_half<-1>(low, high, odd, half);
-      for (int j = 0; j < 4; ++j) _second[padded(2 * (2 * j + _odd))] = quotient(half[j], _after[j]);
+      for (int j = 0; j < 4; ++j) _second[padded(2 * (2 * j + _odd))] = quotient(half[j], _join_roots[j]);
     });
     workers.each_lane([&] {
       load(_first, octets, low, high);
@@ -132,7 +133,7 @@ class SharedFourier {
   int _thread, _octet, _odd;
   double* _row;
   ComplexNumber<double>*_first, *_second, *_third;
-  ComplexNumber<double> _before[4], _after[4], _last[2], _spectrum[4];
+  ComplexNumber<double> _split_roots[4], _join_roots[4], _last[2], _spectrum[4];
 };
 
 }  // namespace drogue::options

@@ -45,7 +45,7 @@ struct SerialWorkers {
 
 /// A warp that prices as many options as groups of `count` lanes make it up, side by side: what all of them
 /// ask of `all` they do together. Where the warp has one option `alone`, its other threads do as the lanes
-/// do, and share what may be done in any order.
+/// do, and share what may be done in any order; but for its march, where they are lanes too.
 template <int count = most_lanes, bool alone = false>
 struct WarpWorkers {
   static constexpr int lanes = count;
@@ -160,7 +160,8 @@ KOKKOS_INLINE_FUNCTION void end_backward(R* own, int block, R g, R slope, R infl
 }
 
 /// y_i = a_i + g y_{i+1} for i = 0 .. lanes block - 1 in place, from 0 beyond, on n arrays: each lane runs
-/// through its block, then blocks are joined by doubling (Kogge and Stone). `slot` holds 2 lanes values.
+/// through the parts of its block, then blocks are joined by doubling (Kogge and Stone). `slot` holds 2 lanes
+/// values.
 template <int n, class R>
 KOKKOS_INLINE_FUNCTION void recur_backward(const SerialWorkers<R>& workers, R* const (&rows)[n], int block,
                                            R g, R* slot) {

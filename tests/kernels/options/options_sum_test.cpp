@@ -7,6 +7,7 @@
 
 #include "kernels/device/memory.hpp"
 #include "kernels/options/register_fourier.hpp"
+#include "kernels/options/shared_fourier.hpp"
 
 // Sums over jumps by Fourier transforms against plain sums.
 
@@ -18,10 +19,13 @@ using Numbers = Kokkos::View<double*, Space::memory_space>;
 using R = std::conditional_t<device::is_host<Space>, device::HostPack<double>, double>;
 constexpr int members = device::Access<R>::lanes;
 
-/// Two groups of 16 lanes share a warp; each sums in memory of its own, the first where it is looked at.
+enum class Way { in_memory, in_registers, shared };
+
+/// Two groups of 16 lanes share a warp; each sums in memory of its own, the first where it is looked at. Or
+/// all threads share octets.
 struct SumFunctor {
   int mesh, lanes;
-  bool in_registers;
+  Way way;
   Numbers weights, values, sums, roots, spectrum, work;
 
   KOKKOS_FUNCTION void operator()(const Kokkos::TeamPolicy<Space>::member_type& team) const {
@@ -29,6 +33,7 @@ struct SumFunctor {
       sum_on(SerialWorkers<R>{lanes}, 0);
     } else {
       const auto rank = static_cast<int>(team.team_rank());
+      if (way == Way::shared) return sum_on(WarpWorkers<most_lanes / 2, true>{rank}, 0);
       if (lanes == most_lanes) return sum_on(WarpWorkers<>{rank}, 0);
       sum_on(WarpWorkers<most_lanes / 2>{rank % lanes}, rank / lanes);
     }
@@ -44,10 +49,16 @@ struct SumFunctor {
     auto* const place = reinterpret_cast<ComplexNumber<R>*>(spectrum.data()) + group * padded(mesh);
     const JumpSpectrum<R> made = spectrum_of(workers, mesh, FourierRoots::of(roots.data()), w, place);
     if constexpr (!device::is_host<Space>) {
-      if (in_registers) {
+      if constexpr (Workers::is_alone) {
+        const WarpWorkers<> threads(workers.thread);
+        const auto own = LaneNodes<4>::load(threads.lane, v);
+        const auto sum = SharedFourier(threads.lane, made, to, z)(threads, own);
+        threads.meet();  // halves of a lane share their swizzled places
+        return sum.store(threads.lane, to);
+      } else if (way == Way::in_registers) {
         const auto own = LaneNodes<8>::load(workers.lane, v);
-        RegisterFourier<Workers::lanes>(workers.lane, made, to, z)(workers, own).store(workers.lane, to);
-        return;
+        return RegisterFourier<Workers::lanes>(workers.lane, made, to, z)(workers, own)
+            .store(workers.lane, to);
       }
     }
     sum_by_transforms(workers, mesh, made, v, to, z);
@@ -61,7 +72,7 @@ Numbers on_backend(const std::vector<double>& numbers) {
 }
 
 /// Random values, and weights like those of jumps; those of a pack's members are of other magnitudes.
-void expect_plain_sums(int mesh, int lanes, bool in_registers) {
+void expect_plain_sums(int mesh, int lanes, Way way) {
   const WeightLayout<R> layout(mesh);
   std::vector<double> w(static_cast<std::size_t>(layout.size() * members)),
       v(static_cast<std::size_t>(mesh * members));
@@ -84,7 +95,7 @@ void expect_plain_sums(int mesh, int lanes, bool in_registers) {
   const Numbers sums("sums", groups * v.size());
   const SumFunctor functor{mesh,
                            lanes,
-                           in_registers,
+                           way,
                            on_backend(w),
                            on_backend(v),
                            sums,
@@ -108,14 +119,15 @@ void expect_plain_sums(int mesh, int lanes, bool in_registers) {
 TEST(OptionsSum, TransformsEqualPlainSums) {
   for (const int mesh : {256, 512, 1024, 2048, 4096}) {
     ASSERT_TRUE(is_transformed(mesh, most_lanes));
-    expect_plain_sums(mesh, most_lanes, false);
+    expect_plain_sums(mesh, most_lanes, Way::in_memory);
   }
   EXPECT_FALSE(is_transformed(128, most_lanes) || is_transformed(384, 16));
   ASSERT_TRUE(is_transformed(128, lanes_of(128)));
-  expect_plain_sums(128, lanes_of(128), false);
+  expect_plain_sums(128, lanes_of(128), Way::in_memory);
   if (device::is_host<Space>) return;
-  expect_plain_sums(256, most_lanes, true);
-  expect_plain_sums(128, lanes_of(128), true);
+  expect_plain_sums(256, most_lanes, Way::in_registers);
+  expect_plain_sums(128, lanes_of(128), Way::in_registers);
+  expect_plain_sums(128, lanes_of(128), Way::shared);
 }
 
 }  // namespace

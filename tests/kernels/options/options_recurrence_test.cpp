@@ -1,0 +1,116 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "kernels/device/memory.hpp"
+#include "kernels/options/register_march.hpp"
+
+// Recurrences cut into lanes and parts of their blocks against plain ones, one node after the other.
+
+namespace drogue::options {
+namespace {
+
+using Space = DROGUE_TEST_SPACE;
+using Numbers = Kokkos::View<double*, Space::memory_space>;
+using R = std::conditional_t<device::is_host<Space>, device::HostPack<double>, double>;
+constexpr int members = device::Access<R>::lanes;
+
+enum class Way { in_memory, in_registers, halved };
+
+/// Both recurrences of one line, of as many nodes as lanes have; y is changed in place.
+struct RecurrenceFunctor {
+  Way way;
+  int block, end;
+  double below, above, x0;
+  Numbers x, y, floor, slot;
+
+  KOKKOS_FUNCTION void operator()(const Kokkos::TeamPolicy<Space>::member_type& team) const {
+    if constexpr (device::is_host<Space>) {
+      recur_on(SerialWorkers<R>{});
+    } else {
+      const auto rank = static_cast<int>(team.team_rank());
+      if (way == Way::in_memory) return recur_on(WarpWorkers<>{rank});
+      if (way == Way::halved) return in_registers<most_lanes, 4, true>(rank);
+      if (block == 8) return in_registers<most_lanes, 8, false>(rank);
+      in_registers<most_lanes, 4, false>(rank);
+    }
+  }
+
+ private:
+  template <class Workers>
+  KOKKOS_FUNCTION void recur_on(const Workers& workers) const {
+    auto* const line = reinterpret_cast<R*>(y.data());
+    auto* const place = reinterpret_cast<R*>(slot.data());
+    recur_backward(workers, {line}, block, R(above), place);
+    recur_forward(workers, reinterpret_cast<R*>(x.data()), line, reinterpret_cast<const R*>(floor.data()),
+                  block, end, R(below), R(x0), place);
+  }
+  template <int lanes, int nodes, bool halved>
+  KOKKOS_FUNCTION void in_registers(int lane) const {
+    auto line = LaneNodes<nodes>::load(lane, y.data());
+    const auto least = LaneNodes<nodes>::load(lane, floor.data());
+    recur_backward<lanes, halved>(lane, line, above);
+    (below >= 0.0 ? recur_by_maps<lanes, RisingMap<double>, halved>(lane, line, least, below, x0)
+                  : recur_by_maps<lanes, ClampedMap<double>, halved>(lane, line, least, below, x0))
+        .store(lane, x.data());
+  }
+};
+
+Numbers on_backend(const std::vector<double>& numbers) {
+  const Numbers view("numbers", numbers.size());
+  Kokkos::deep_copy(view, Kokkos::View<const double*, Kokkos::HostSpace>(numbers.data(), numbers.size()));
+  return view;
+}
+
+/// Random right sides, and floors that hold some of the nodes; node 0 is given, nodes from `end` on are 0.
+void expect_plain_recurrences(Way way, int block, int end, double below, double above) {
+  SCOPED_TRACE("block " + std::to_string(block) + ", end " + std::to_string(end) + ", slopes " +
+               std::to_string(below) + " and " + std::to_string(above));
+  const auto nodes = static_cast<std::size_t>(block * most_lanes);
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> part(-1.0, 1.0);
+  std::vector<double> y(nodes), floor(nodes), wide(nodes * members), wide_floor(nodes * members);
+  for (std::size_t i = 0; i < nodes; ++i) {
+    y[i] = part(random);
+    floor[i] = part(random) > 0.0 ? part(random) : -unbounded;
+    std::fill_n(wide.begin() + static_cast<std::ptrdiff_t>(i * members), members, y[i]);
+    std::fill_n(wide_floor.begin() + static_cast<std::ptrdiff_t>(i * members), members, floor[i]);
+  }
+  constexpr double x0 = 0.7;
+  const Numbers x("x", nodes * members);
+  Kokkos::parallel_for("recurrence_test",
+                       Kokkos::TeamPolicy<Space>(1, device::is_host<Space> ? 1 : most_lanes),
+                       RecurrenceFunctor{way, block, end, below, above, x0, x, on_backend(wide),
+                                         on_backend(wide_floor), Numbers("slot", 9 * most_lanes * members)});
+  for (std::size_t i = nodes - 1; i-- > 0;) y[i] += above * y[i + 1];
+  std::vector<double> plain(nodes, x0);
+  for (std::size_t i = 1; i < nodes; ++i) plain[i] = std::max(floor[i], below * plain[i - 1] + y[i]);
+  const auto found = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace{}, x);
+  double worst = 0.0;
+  for (std::size_t i = 0; i < nodes; ++i)
+    for (std::size_t k = 0; k < members; ++k)
+      worst =
+          std::max(worst, std::abs(found(i * members + k) - (static_cast<int>(i) < end ? plain[i] : 0.0)));
+  EXPECT_LT(worst, 1e-13);
+}
+
+TEST(OptionsRecurrence, PartsOfBlocksEqualOneLine) {
+  for (const double below : {0.9, 0.3, 0.0, -0.6})
+    for (const double above : {0.8, 0.1}) {
+      for (const int block : {1, 4, 7, 8, 9, 16}) {
+        expect_plain_recurrences(Way::in_memory, block, block * most_lanes, below, above);
+        expect_plain_recurrences(Way::in_memory, block, block * most_lanes - 3, below, above);
+      }
+      if (device::is_host<Space>) continue;
+      expect_plain_recurrences(Way::in_registers, 8, 8 * most_lanes, below, above);
+      expect_plain_recurrences(Way::in_registers, 4, 4 * most_lanes, below, above);
+      expect_plain_recurrences(Way::halved, 4, 4 * most_lanes, below, above);
+    }
+}
+
+}  // namespace
+}  // namespace drogue::options
