@@ -51,10 +51,10 @@ struct SumFunctor {
     if constexpr (!device::is_host<Space>) {
       if constexpr (Workers::is_alone) {
         const WarpWorkers<> threads(workers.thread);
-        const auto own = LaneNodes<4>::load(threads.lane, v);
-        const auto sum = SharedFourier(threads.lane, made, to, z)(threads, own);
+        const auto own = LaneNodes<4>::load(workers.thread, v);
+        const auto sum = SharedFourier(workers.thread, made, to, z)(threads, own);
         threads.meet();  // halves of a lane share their swizzled places
-        return sum.store(threads.lane, to);
+        return sum.store(workers.thread, to);
       } else if (way == Way::in_registers) {
         const auto own = LaneNodes<8>::load(workers.lane, v);
         return RegisterFourier<Workers::lanes>(workers.lane, made, to, z)(workers, own)
