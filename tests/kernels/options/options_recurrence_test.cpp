@@ -6,18 +6,13 @@
 #include <string>
 #include <vector>
 
-#include "kernels/device/memory.hpp"
 #include "kernels/options/register_march.hpp"
+#include "tests/support/options_numbers.hpp"
 
 // Recurrences cut into lanes and parts of their blocks against plain ones, one node after the other.
 
 namespace drogue::options {
 namespace {
-
-using Space = DROGUE_TEST_SPACE;
-using Numbers = Kokkos::View<double*, Space::memory_space>;
-using R = std::conditional_t<device::is_host<Space>, device::HostPack<double>, double>;
-constexpr int members = device::Access<R>::lanes;
 
 enum class Way { in_memory, in_registers, halved };
 
@@ -59,12 +54,6 @@ struct RecurrenceFunctor {
         .store(lane, x.data());
   }
 };
-
-Numbers on_backend(const std::vector<double>& numbers) {
-  const Numbers view("numbers", numbers.size());
-  Kokkos::deep_copy(view, Kokkos::View<const double*, Kokkos::HostSpace>(numbers.data(), numbers.size()));
-  return view;
-}
 
 /// Random right sides, and floors that hold some of the nodes; node 0 is given, nodes from `end` on are 0.
 void expect_plain_recurrences(Way way, int block, int end, double below, double above) {

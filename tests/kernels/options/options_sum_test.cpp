@@ -5,19 +5,14 @@
 #include <random>
 #include <vector>
 
-#include "kernels/device/memory.hpp"
 #include "kernels/options/register_fourier.hpp"
 #include "kernels/options/shared_fourier.hpp"
+#include "tests/support/options_numbers.hpp"
 
 // Sums over jumps by Fourier transforms against plain sums.
 
 namespace drogue::options {
 namespace {
-
-using Space = DROGUE_TEST_SPACE;
-using Numbers = Kokkos::View<double*, Space::memory_space>;
-using R = std::conditional_t<device::is_host<Space>, device::HostPack<double>, double>;
-constexpr int members = device::Access<R>::lanes;
 
 enum class Way { in_memory, in_registers, shared };
 
@@ -64,12 +59,6 @@ struct SumFunctor {
     sum_by_transforms(workers, mesh, made, v, to, z);
   }
 };
-
-Numbers on_backend(const std::vector<double>& numbers) {
-  const Numbers view("numbers", numbers.size());
-  Kokkos::deep_copy(view, Kokkos::View<const double*, Kokkos::HostSpace>(numbers.data(), numbers.size()));
-  return view;
-}
 
 /// Random values, and weights like those of jumps; those of a pack's members are of other magnitudes.
 void expect_plain_sums(int mesh, int lanes, Way way) {
