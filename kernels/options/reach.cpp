@@ -15,14 +15,15 @@ double first_reach(double deviation) {
 
 }  // namespace
 
-Reaches::Reaches(double deviation) : _first(first_reach(deviation)) {
-  for (int k = 0; k < most; ++k) _ratio[k] = device::portable::exp(reach(k));
-}
+Reaches::Reaches(double deviation) : _first(first_reach(deviation)) {}
 
-std::uint8_t Reaches::find(double ratio) const {
+std::uint8_t Reaches::find(double ratio) {
   const double size = std::max(ratio, 1.0 / ratio);
   std::uint8_t k = 0;
-  while (k + 1 < most && size > _ratio[k]) ++k;
+  for (; k + 1 < most; ++k) {
+    if (k == _known) _ratio[_known++] = device::portable::exp(reach(k));
+    if (!(size > _ratio[k])) break;
+  }
   return k;
 }
 

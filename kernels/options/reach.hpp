@@ -18,14 +18,15 @@ class Reaches {
   explicit Reaches(double deviation);
 
   /// The least reach that spot/strike = `ratio` is within; the last one for what none reaches.
-  [[nodiscard]] std::uint8_t find(double ratio) const;
+  [[nodiscard]] std::uint8_t find(double ratio);
 
   /// Of ln(spot/strike).
   [[nodiscard]] double reach(int k) const;
 
  private:
   double _first;
-  double _ratio[most];  ///< of spot and strike at the reaches; filled as far as they are finite
+  int _known = 0;
+  double _ratio[most];  ///< of spot and strike at the reaches; as far as strikes were
 };
 
 /// Whether a solve for one contract holds the price of the other.

@@ -49,19 +49,19 @@ class SurfaceOn final : public Pricer {
     timing.h2d = copying_in.seconds();
     const int mesh = _settings.mesh != 0 ? _settings.mesh : first_mesh;
     const Effort first{mesh, steps_of(_settings, mesh, 1)};
-    std::vector<Refinement> rows(contracts.size(), Refinement{first});
-    for (std::optional<Effort> effort = first; effort; effort = least_effort(rows)) {
+    _rows.assign(contracts.size(), Refinement{first});
+    for (std::optional<Effort> effort = first; effort; effort = least_effort(_rows)) {
       for (std::size_t begin = 0; begin < contracts.size();) {
-        begin = gather(contracts, rows, *effort, begin);
+        begin = gather(contracts, *effort, begin);
         price_gathered(*effort, timing);
         for (std::size_t k = 0; k < _places.size(); ++k) prices[_places[k]] = _staged_prices[k];
       }
       for (std::size_t k = 0; k < contracts.size(); ++k) {
-        if (rows[k].next != *effort) continue;
+        if (_rows[k].next != *effort) continue;
         if (_settings.mesh != 0) {
-          rows[k].next = {};
+          _rows[k].next = {};
         } else {
-          refine(rows[k], prices[k], _settings.tolerance * contracts[k].strike, _settings);
+          refine(_rows[k], prices[k], _settings.tolerance * contracts[k].strike, _settings);
         }
       }
     }
@@ -103,8 +103,7 @@ class SurfaceOn final : public Pricer {
 
   /// Gathers what contracts from `begin` on ask for with this effort, as far as memory for smiles reaches.
   /// Returns the contract that it ends before.
-  std::size_t gather(std::span<const Contract> contracts, const std::vector<Refinement>& rows,
-                     const Effort& effort, std::size_t begin) {
+  std::size_t gather(std::span<const Contract> contracts, const Effort& effort, std::size_t begin) {
     const std::size_t most = std::max(most_values / SmileNodes::size(effort.mesh), std::size_t{1});
     _staged_contracts.clear();
     _staged_reaches.clear();
@@ -113,7 +112,7 @@ class SurfaceOn final : public Pricer {
     int run = -1;
     std::vector<int> smile_at;  // of the run's reaches
     for (std::size_t k = begin; k < contracts.size(); ++k) {
-      if (rows[k].next != effort) continue;
+      if (_rows[k].next != effort) continue;
       if (_place[k].run != run) {
         run = _place[k].run;
         smile_at.assign(Reaches::most, -1);
@@ -206,7 +205,8 @@ class SurfaceOn final : public Pricer {
   device::Instance<ExecutionSpace> _instance;
   HankelPanels<ExecutionSpace> _panels;
   RootsOfUnity<ExecutionSpace> _roots;
-  std::vector<Place> _place;         ///< of each contract
+  std::vector<Refinement> _rows;  ///< of each contract, as the next
+  std::vector<Place> _place;
   std::vector<Reaches> _reaches;     ///< of each smile
   double _variance = 0.0;            ///< a year, of the law asked for last
   std::vector<std::size_t> _places;  ///< contracts of the readings

@@ -14,6 +14,11 @@
 namespace drogue::options {
 namespace {
 
+using Space = DROGUE_TEST_SPACE;
+using Numbers = NumbersOn<Space>;
+using R = std::conditional_t<device::is_host<Space>, device::HostPack<double>, double>;
+constexpr int members = device::Access<R>::lanes;
+
 enum class Way { in_memory, in_registers, halved };
 
 /// Both recurrences of one line, of as many nodes as lanes have; y is changed in place.
@@ -71,10 +76,10 @@ void expect_plain_recurrences(Way way, int block, int end, double below, double 
   }
   constexpr double x0 = 0.7;
   const Numbers x("x", nodes * members);
-  Kokkos::parallel_for("recurrence_test",
-                       Kokkos::TeamPolicy<Space>(1, device::is_host<Space> ? 1 : most_lanes),
-                       RecurrenceFunctor{way, block, end, below, above, x0, x, on_backend(wide),
-                                         on_backend(wide_floor), Numbers("slot", 9 * most_lanes * members)});
+  Kokkos::parallel_for(
+      "recurrence_test", Kokkos::TeamPolicy<Space>(1, device::is_host<Space> ? 1 : most_lanes),
+      RecurrenceFunctor{way, block, end, below, above, x0, x, on_backend<Space>(wide),
+                        on_backend<Space>(wide_floor), Numbers("slot", 9 * most_lanes * members)});
   for (std::size_t i = nodes - 1; i-- > 0;) y[i] += above * y[i + 1];
   std::vector<double> plain(nodes, x0);
   for (std::size_t i = 1; i < nodes; ++i) plain[i] = std::max(floor[i], below * plain[i - 1] + y[i]);

@@ -14,6 +14,11 @@
 namespace drogue::options {
 namespace {
 
+using Space = DROGUE_TEST_SPACE;
+using Numbers = NumbersOn<Space>;
+using R = std::conditional_t<device::is_host<Space>, device::HostPack<double>, double>;
+constexpr int members = device::Access<R>::lanes;
+
 enum class Way { in_memory, in_registers, shared };
 
 /// Two groups of 16 lanes share a warp; each sums in memory of its own, the first where it is looked at. Or
@@ -85,10 +90,10 @@ void expect_plain_sums(int mesh, int lanes, Way way) {
   const SumFunctor functor{mesh,
                            lanes,
                            way,
-                           on_backend(w),
-                           on_backend(v),
+                           on_backend<Space>(w),
+                           on_backend<Space>(v),
                            sums,
-                           on_backend(fourier_roots()),
+                           on_backend<Space>(fourier_roots()),
                            Numbers("spectrum", room),
                            Numbers("work", room)};
   Kokkos::parallel_for("sum_test", Kokkos::TeamPolicy<Space>(1, device::is_host<Space> ? 1 : most_lanes),
