@@ -10,11 +10,22 @@ namespace drogue::options {
 ///   |x| e^{-beta x} g(x) = sum_q c_q e^{-s_q |x|},
 /// the sum over the nodes of HankelGrid that replaces the integral over the phase of the Hankel function of
 /// order |lambda| (Prause 1999, with the Wronskian): s = sqrt((z/delta)^2 + alpha^2), c = step/pi m(z). What
-/// lies below `lowest` alpha, and the part max(lambda, 0) e^{-alpha|x|}, are the one term s = alpha.
+/// lies below z = `lowest_of`, and the part max(lambda, 0) e^{-alpha|x|}, are the one term s = alpha.
 struct Mixture {
   static constexpr int size = 64;
-  static constexpr double lowest = 2e-3;  ///< (s - alpha)/alpha is below 2e-6 there
-  static constexpr int low = 32;          ///< terms after which s exceeds 450 alpha
+  static constexpr int low = 32;  ///< terms after which s exceeds 450 alpha, or is far beyond all that decays
+                                  ///< slowly
+
+  /// s - alpha is below 2e-6 alpha there, and where a tail, or its mean of e^x, decays slower than a tenth of
+  /// alpha, below 2e-5 of that decay; as far as terms reach. Orders from 1.5 on have less than 1e-8 of their
+  /// weight below the former, and what lies closer to alpha is of no account.
+  [[nodiscard]] KOKKOS_INLINE_FUNCTION static double lowest_of(double order, double alpha, double beta,
+                                                               double delta) {
+    const double usual = delta * (2e-3 * alpha);
+    const double tilt = device::maximum(device::portable::magnitude(beta), beta + 1.0);
+    const double left = 10.0 * (1.0 - tilt / alpha);
+    return order < 1.5 && left < 1.0 ? usual * Kokkos::sqrt(device::maximum(1e-7, left)) : usual;
+  }
 };
 
 /// A Chebyshev series at t in [-1, 1], by Clenshaw's recurrence.
@@ -47,7 +58,7 @@ KOKKOS_INLINE_FUNCTION MixtureGrid mixture_grid(const Put& put, const double* pa
   const int panel = panel_of(order);
   const double begin = panel_begin(panel), end = panel_end(panel);
   const double* const table = panels + slot[panel] * std::size_t(HankelGrid::panel_size);
-  const double z = put.jump[3] * (Mixture::lowest * put.jump[1]);
+  const double z = Mixture::lowest_of(order, put.jump[1], put.jump[2], put.jump[3]);
   int first = 0;
   if (z > 4e-18) {
     // Where nodes lie even this is the one; where some lie closer the one is before it.
