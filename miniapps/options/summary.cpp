@@ -45,18 +45,19 @@ void require_priced_rows(const Command& command, const Tally& tally, const Batch
   const bool surface = command.action == Action::surface;
   const std::string rest = std::string(surface ? "; all others are" : "; every other row is") +
                            " priced in '" + command.out.string() + "'";
+  const std::string invalid =
+      share(tally.invalid, reader.rows(), surface ? " parameter sets invalid" : " rows invalid");
   if (tally.failed > 0) {
-    const std::string failed = surface ? share(tally.failed, tally.rows - tally.invalid, " prices failed")
-                                       : share(tally.failed, tally.rows, " rows failed");
-    throw Failure(ExitCode::numerical_failure,
-                  failed + ", the first in line " + std::to_string(tally.failed_line) + rest);
+    std::string told = (surface ? share(tally.failed, tally.rows - tally.invalid, " prices failed")
+                                : share(tally.failed, tally.rows, " rows failed")) +
+                       ", the first in line " + std::to_string(tally.failed_line);
+    if (tally.invalid > 0)
+      told += ", and " + invalid + ", the first in line " + std::to_string(tally.invalid_line);
+    throw Failure(ExitCode::numerical_failure, told + rest);
   }
   if (tally.invalid > 0)
-    throw csv::invalid_at(
-        reader.file(), tally.invalid_line,
-        tally.invalid_fault + " (" +
-            share(tally.invalid, reader.rows(), surface ? " parameter sets invalid" : " rows invalid") +
-            rest + ")");
+    throw csv::invalid_at(reader.file(), tally.invalid_line,
+                          tally.invalid_fault + " (" + invalid + rest + ")");
 }
 
 void count_rows(const Tally& tally, run::ResultDocument& result) {

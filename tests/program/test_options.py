@@ -226,6 +226,12 @@ class Prices(options_program.OptionsTest):
         self.assertGreater(told["timing"]["compute_s"], 0.0)
         self.assertGreater(told["ledger"]["kernel_launches"], 0)
 
+    def test_failed_and_invalid_rows_are_both_told(self):
+        content = batch([row("a"), row("b", beta=9), row("c", rate=-400, maturity=2)])
+        self.assertEqual("drogue-options: 1 of 3 rows failed, the first in line 4, and 1 of 3 rows invalid, the first in line 3; "
+                         "every other row is priced in 'prices.csv'", self.price(4, content).stderr.strip())
+        self.assertEqual(["ok", "invalid", "failed"], [price["status"] for price in self.prices()])
+
     def test_summary(self):
         run = self.expect(0, "price", "example", *FAST, "--tolerance", "1e-3")
         self.assertRegex(run.stdout, r"^example on \w+: 11 rows in \S+ s: 11 ok, 0 coarse, 0 invalid, 0 failed\n")
