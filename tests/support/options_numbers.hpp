@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "kernels/device/memory.hpp"
+#include "kernels/options/price_batch.hpp"
 
 namespace drogue::options {
 

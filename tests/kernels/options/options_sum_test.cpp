@@ -16,7 +16,7 @@ namespace {
 
 using Space = DROGUE_TEST_SPACE;
 using Numbers = NumbersOn<Space>;
-using R = std::conditional_t<device::is_host<Space>, device::HostPack<double>, double>;
+using R = Number<Space>;
 constexpr int members = device::Access<R>::lanes;
 
 enum class Way { in_memory, in_registers, shared };
