@@ -11,6 +11,7 @@ struct Answer {
   double boundary;            ///< x up to which exercise is right; not a number where there is none
   double missed;              ///< how much of the value interpolation may miss
   double contact;             ///< what the second step above the boundary adds to the time value; 0: no such
+  double parting;             ///< dV/dtau at that step's end, a year; 0: no such
 };
 
 /// One member's values on the nodes of a pack.
@@ -110,7 +111,7 @@ KOKKOS_INLINE_FUNCTION Answer answer_below(const Put& put, double asset, double 
   const double strike = sure.strike, price = sure.asset * asset;
   const bool at_once = put.early && strike == 1.0 && sure.asset == 1.0;
   const double decay = at_once ? 0.0 : put.dividend * price - put.rate * strike;
-  return {strike - price, -price, -price, decay, boundary, 0.0, 0.0};
+  return {strike - price, -price, -price, decay, boundary, 0.0, 0.0, 0.0};
 }
 
 /// Reads the answer for one member. `change` holds dV/dtau.
@@ -119,7 +120,7 @@ KOKKOS_INLINE_FUNCTION Answer answer_of(const Put& put, const Column& value, con
   const int mesh = nodes.mesh, strike = nodes.strike;
   const double h = nodes.h;
   const double x = put.log_spot, asset = exponential(x);
-  Answer answer{0.0, 0.0, 0.0, 0.0, device::portable::not_a_number(), 0.0, 0.0};
+  Answer answer{0.0, 0.0, 0.0, 0.0, device::portable::not_a_number(), 0.0, 0.0, 0.0};
   if (!(h < 1e30)) {
     answer.value = device::portable::not_a_number();
     return answer;
@@ -127,6 +128,7 @@ KOKKOS_INLINE_FUNCTION Answer answer_of(const Put& put, const Column& value, con
   if (put.early) {
     answer.boundary = boundary_of(value, nodes.exercised, strike, h);
     answer.contact = contact_of(value, nodes.exercised, strike, h);
+    answer.parting = nodes.exercised < 0 ? 0.0 : change(nodes.exercised + 2);
   }
   const double t = x / h + strike;
   if (!(t == t)) {  // no cell has such a number
@@ -135,7 +137,7 @@ KOKKOS_INLINE_FUNCTION Answer answer_of(const Put& put, const Column& value, con
   }
   if (put.early && (x <= answer.boundary) && !(put.split && t < 1.0)) {
     if (!put.split || is_exercised(value(static_cast<int>(t)), static_cast<int>(t) - strike, h))
-      return {1.0 - asset, -asset, -asset, 0.0, answer.boundary, 0.0, answer.contact};
+      return {1.0 - asset, -asset, -asset, 0.0, answer.boundary, 0.0, answer.contact, answer.parting};
   }
   if (t <= 0.0) return answer_below(put, asset, answer.boundary);
   if (t >= mesh) return answer;

@@ -7,8 +7,9 @@ namespace drogue::options {
 /// What the stated error is made of, beside what interpolation and the grid's ends leave.
 template <class R>
 struct Doubt {
-  R factor;  ///< of the largest difference of two grids near the spot
-  R gap;     ///< what that difference does not tell at all, of the strike
+  R factor;    ///< of the largest difference of two grids near the spot
+  R gap;       ///< what that difference does not tell at all, of the strike
+  R variance;  ///< of the law, a year
 };
 
 /// What the factor is at least where exercise is split off and the premium of it is not known. Splitting is
@@ -20,7 +21,8 @@ inline constexpr double split_factor = 0.4;
 template <class R>
 KOKKOS_INLINE_FUNCTION Doubt<double> doubt_without_premium(const Doubt<R>& doubt, const Put& put, int k) {
   const double factor = device::Access<R>::lane(doubt.factor, k);
-  return {put.split ? device::maximum(factor, split_factor) : factor, device::Access<R>::lane(doubt.gap, k)};
+  return {put.split ? device::maximum(factor, split_factor) : factor, device::Access<R>::lane(doubt.gap, k),
+          device::Access<R>::lane(doubt.variance, k)};
 }
 
 /// What splitting exercise off may miss where its premium, of the strike, is known: no more than a part of
@@ -48,12 +50,24 @@ KOKKOS_INLINE_FUNCTION R error_factor(R h, int steps, R spread, R crossed) {
   return device::maximum(in_time, 0.45 * root * device::square_root(device::maximum(root, R(1.0))));
 }
 
-/// How much of what is in doubt at the boundary of exercise is so at a put's spot: it spreads, and from two
-/// steps on falls with the distance. None where exercise is split off, whose own doubt holds it.
+/// How much of what is in doubt at the boundary of exercise is so at a put's spot: from two steps on it falls
+/// with the distance, since the boundary moves on and is now above a node and now below one. None where
+/// exercise is split off, whose own doubt holds it.
 KOKKOS_INLINE_FUNCTION double nearness(const Put& put, double boundary, double h) {
   if (put.split || !(boundary == boundary)) return 0.0;
   const double away = device::portable::magnitude(put.log_spot - boundary), beside = 2.0 * h;
   return away > beside ? beside / away : 1.0;
+}
+
+/// The part that is so whatever the distance, since the boundary of decades hardly moves. Near the boundary b
+/// the time value is B (x - b)^2/2, of which `contact` and `parting` tell the time t = 3/4 contact/parting in
+/// which b moves by half a step. The chance to get from x to b within t falls with q = (x - b)^2/(variance
+/// t), as fitted like 1/(1 + q + q^2/2).
+KOKKOS_INLINE_FUNCTION double persistence(const Put& put, const Answer& answer, double variance) {
+  const double away = put.log_spot - answer.boundary;
+  const double stays = device::maximum(answer.contact * variance, 1e-150),
+               moves = (4.0 / 3) * away * away * device::maximum(answer.parting, 0.0);
+  return stays * stays / (stays * stays + moves * (stays + 0.5 * moves));
 }
 
 /// What exercise at nodes alone may change of the value. Grids know the boundary to a part of a step,
@@ -82,7 +96,8 @@ KOKKOS_INLINE_FUNCTION Doubt<R> doubt_of(const PutPack<R>& put, const Law<R>& la
   const R drift = (put.rate - put.dividend) * put.maturity - 0.5 * variance;
   const R crossed = device::absolute(drift) * device::reciprocal(device::square_root(variance));
   const R resolved = device::minimum(h, R(2.0)), squared = resolved * resolved;
-  Doubt<R> doubt{error_factor(h, steps, spread, crossed), 0.05 * squared * squared};
+  Doubt<R> doubt{error_factor(h, steps, spread, crossed), 0.05 * squared * squared,
+                 put.variance + law.variance};
   if (put.model == Model::generalized_hyperbolic) {
     const R tilt = device::absolute(put.jump[2]);
     const R decay = put.jump[1] - tilt, slow = device::reciprocal(decay),

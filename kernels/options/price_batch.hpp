@@ -181,7 +181,8 @@ struct PriceBatch {
         if (knows_premium() && one.split) {
           const double premium = beside_spot(one, grid, coarse, k) - other.unexercised[k];
           known = {own(doubt.factor),
-                   own(doubt.gap) + doubt_of_splitting(premium, cells, steps, own(largest))};
+                   own(doubt.gap) + doubt_of_splitting(premium, cells, steps, own(largest)),
+                   own(doubt.variance)};
         }
         prices(at) = price_of(contracts(at), one, memory.answers[k], coarse_answers[k], known, own(largest),
                               own(grid.h), cells, steps, tolerance);

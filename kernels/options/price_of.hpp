@@ -39,9 +39,11 @@ KOKKOS_INLINE_FUNCTION Price price_of(const Contract& contract, const Put& put, 
   const double missed = 2.0 * (4.0 * fine.missed + coarse.missed) * (1.0 / 3);
   const double near = nearness(put, fine.boundary, 0.5 * h), unseen = doubt.gap + cut_doubt(mesh);
   const double contact = near > 0.0 ? doubt_of_contact(fine) : 0.0;
+  const double lasting = near > 0.0 ? device::maximum(near, persistence(put, fine, doubt.variance)) : 0.0;
   // Where the payoff is the price nothing is in doubt but whether the boundary lies above.
-  const double stated = exercised && near > 0.0 ? near * near * (contact + unseen) + no_time_value
-                                                : doubt.factor * largest + near * contact + missed + unseen;
+  const double stated = exercised && near > 0.0
+                            ? near * near * (contact + unseen) + no_time_value
+                            : doubt.factor * largest + lasting * contact + missed + unseen;
   // Nobody pays more for a put than what it can earn at most, and no error is larger; nor less than what
   // exercise now or at expiry, whatever happens, is worth. A value that is not a number stays one.
   const double bond = exponential(-put.rate * put.maturity);

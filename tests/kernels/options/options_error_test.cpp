@@ -89,6 +89,21 @@ TEST(OptionsError, BesideTheBoundaryOfExercise) {
                    mesh == 128 ? "128 intervals" : "256 intervals");
 }
 
+// The boundary hardly moves there, so what exercise at nodes misses reaches spots far from it.
+TEST(OptionsError, BoundaryThatStands) {
+  std::vector<Contract> contracts;
+  for (const double variance : {0.04, 0.09, 0.2})
+    for (const double rate : {0.04, 0.06, 0.09})
+      for (const double maturity : {15.0, 30.0})
+        for (const double spot : {0.95, 1.3}) {
+          contracts.push_back(put(Style::american, spot, maturity, variance, {}));
+          contracts.back().model = Model::black_scholes;
+          contracts.back().rate = rate;
+        }
+  const std::vector<Price> known = priced(on_mesh(2048, 1024), contracts);
+  expect_covered(priced_to(3e-6, contracts), known, "a boundary that stands");
+}
+
 // Exercise is split off there, with an error of first order in time that the difference of grids does not
 // tell.
 TEST(OptionsError, BetweenTwoBoundaries) {
