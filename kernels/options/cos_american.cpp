@@ -27,7 +27,16 @@ AmericanPut::AmericanPut(const Contract& c)
       dividend(c.type == Type::put ? c.dividend : c.rate),
       psi(c.type == Type::put ? Exponent(c) : Exponent(c).dual()) {}
 
-void AmericanPut::prepare(double maturity, int dates) {
+void AmericanPut::prepare(double expiry, int dates, double tolerance) {
+  const double enough = std::log(10.0 + 10.0 / tolerance);
+  const double maturity = rate * expiry > enough ? enough / rate : expiry;
+  beyond = maturity < expiry ? std::exp(-enough) : 0.0;
+  // A year's wait costs at most what exercise earns in it. Where that is all there is to earn between two
+  // dates of the coarsest level, values of all levels may agree that hardly anything is exercised.
+  const double earned = std::max(rate, rate - dividend) * maturity / dates;
+  between = earned > 1.0
+                ? -std::expm1(-earned / (1 << (levels - 1))) * std::exp(std::max(-rate * maturity, 0.0))
+                : 0.0;
   const Exponent::Cumulants c = psi.cumulants();
   const Exponent::Reach reach = psi.reach();
   constexpr double deviations = 12.0;
@@ -69,12 +78,14 @@ void AmericanPut::prepare(double maturity, int dates) {
 
 Price american_price(const Contract& c, const AmericanPut& put, const BermudanValue* values) {
   const Extrapolated value = extrapolate(values, &BermudanValue::value);
-  // The boundary at maturity is no power of dt: what extrapolation gains is less than its last step.
-  double error = 2.0 * (std::abs(value.best - value.second) + std::abs(value.second - value.third));
+  // The boundary at maturity is no power of dt: what extrapolation gains is less than its last step. That may
+  // change its sign between the levels, hence a fiftieth of what the last level has added.
+  double error = 2.0 * (std::abs(value.best - value.second) + std::abs(value.second - value.third)) +
+                 0.02 * std::abs(values[3].value - values[2].value);
   // Half the cosines are further off than all.
   if (put.puts.size() > AmericanPut::levels)
     error += std::abs(values[AmericanPut::levels].value - values[AmericanPut::levels - 1].value);
-  error += put.folded;
+  error += put.folded + put.beyond + put.between;
   const double payoff = std::max(-std::expm1(put.x), 0.0);
   const bool exercised = payoff > 0.0 && payoff >= value.best;
 

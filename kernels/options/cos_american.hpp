@@ -22,14 +22,17 @@ struct AmericanPut {
                                        ///< they fall slowly
   std::vector<double> psi_re, psi_im;  ///< at pi k / width
   double folded = 0.0;                 ///< what part of the law may lie below the interval
+  double beyond = 0.0;                 ///< what dates later than those of the puts are worth at most
+  double between = 0.0;  ///< what exercise between dates gains at most, if they are too few to tell
 
   explicit AmericanPut(const Contract& contract);
 
   /// Whether to wait is always right: the price is that of the European option.
   [[nodiscard]] bool never_exercised() const { return !early_may_pay(rate, dividend); }
 
-  /// Chooses interval and cosines for `dates` to 8 `dates` dates and fills `puts` and the table.
-  void prepare(double maturity, int dates);
+  /// Chooses interval and cosines for `dates` to 8 `dates` dates and fills `puts` and the table. There are no
+  /// dates where all money is worth less than a tenth of `tolerance`, of the put's strike.
+  void prepare(double maturity, int dates, double tolerance);
 };
 
 /// Price, Greeks and error from the values of the puts of a contract: (64 v_8 - 56 v_4 + 14 v_2 - v_1) / 21

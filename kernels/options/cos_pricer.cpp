@@ -111,8 +111,11 @@ class CosPricer final : public Pricer {
     for (int dates = fewest_dates; !open.empty() && dates <= most_dates; dates *= 2) {
       std::vector<AmericanPut> puts;
       for (const std::size_t i : open) puts.emplace_back(contracts[i]);
-      for_each(_threads, open.size(),
-               [&](std::size_t k) { puts[k].prepare(contracts[open[k]].maturity, dates); });
+      for_each(_threads, open.size(), [&](std::size_t k) {
+        const Contract& c = contracts[open[k]];
+        const double unit = c.type == Type::put ? c.strike : c.spot;
+        puts[k].prepare(c.maturity, dates, _settings.tolerance * c.strike / unit);
+      });
       const Bundle all = bundle(puts);
       std::vector<BermudanValue> sorted(all.puts.size()), values(all.puts.size());
       _solver->solve(all.puts, all.psi_re, all.psi_im, sorted);

@@ -37,7 +37,7 @@ TEST(OptionsBermudan, EqualsTheOracle) {
       Contract c = testing::contract_of(set, 0, Style::american);
       c.spot = spot;
       AmericanPut put(c);
-      put.prepare(c.maturity, dates);
+      put.prepare(c.maturity, dates, 1e-6);
       std::vector<BermudanPut> puts = {put.puts[0]};
       std::vector<BermudanValue> values(1);
       solver->solve(puts, put.psi_re, put.psi_im, values);
@@ -76,6 +76,41 @@ TEST(OptionsCos, ReachesItsTolerance) {
 }
 
 /// C(S, K, r, q, beta) = P(K, S, q, r, -beta - 1), Greeks included.
+// A put that never expires is worth (1 - b) (S/b)^{-g}, g = 2 r/sigma^2, b = g/(1 + g) (Merton 1973). Dates
+// that are centuries apart would miss nearly all of it, on every level.
+TEST(OptionsCos, PutsOfThousandsOfYearsArePerpetual) {
+  for (const double rate : {0.02, 0.05, 0.1})
+    for (const double years : {300.0, 1e4, 1e7}) {
+      const Contract c{.model = Model::black_scholes,
+                       .style = Style::american,
+                       .spot = 100.0,
+                       .strike = 95.0,
+                       .rate = rate,
+                       .maturity = years,
+                       .variance = 0.04};
+      const double g = 2.0 * rate / c.variance, b = g / (1.0 + g);
+      const double perpetual = c.strike * (1.0 - b) * std::pow(c.spot / (c.strike * b), -g);
+      const Price price = cos_prices({c}, 1e-3)[0];
+      EXPECT_NEAR(price.price, perpetual, price.error) << rate << ' ' << years;
+      EXPECT_LT(price.error, 0.02 * perpetual) << rate << ' ' << years;
+    }
+}
+
+// Without enough dates to tell, what is stated says so.
+TEST(OptionsCos, DatesThatAreTooFewStateNoSmallError) {
+  const Contract c{.model = Model::black_scholes,
+                   .style = Style::american,
+                   .spot = 1.0,
+                   .strike = 1.0,
+                   .rate = 1e-4,
+                   .dividend = -0.05,
+                   .maturity = 4000.0,
+                   .variance = 0.04};
+  const Price price = cos_prices({c}, 1e-3)[0];
+  EXPECT_EQ(price.outcome, Outcome::coarse);
+  EXPECT_GT(price.error, 0.5);
+}
+
 TEST(OptionsCos, CallsArePutsOfTheOtherSide) {
   Contract call;
   call.type = Type::call;
