@@ -93,7 +93,11 @@ KOKKOS_INLINE_FUNCTION double doubt_of_contact(const Answer& answer) {
 template <class R>
 KOKKOS_INLINE_FUNCTION Doubt<R> doubt_of(const PutPack<R>& put, const Law<R>& law, R h, int steps, R spread) {
   const R variance = device::maximum((put.variance + law.variance) * put.maturity, R(1e-100));
-  const R drift = (put.rate - put.dividend) * put.maturity - 0.5 * variance;
+  // What a mean of e^y - 1 - y takes from the drift is nearly half of the variance, but not where Kou's jumps
+  // upwards hardly have a mean.
+  R taken = 0.5 * law.variance;
+  if (put.model == Model::merton || put.model == Model::kou) taken = jump_cumulant(put, law, R(1.0));
+  const R drift = (put.rate - put.dividend - 0.5 * put.variance - taken) * put.maturity;
   const R crossed = device::absolute(drift) * device::reciprocal(device::square_root(variance));
   const R resolved = device::minimum(h, R(2.0)), squared = resolved * resolved;
   Doubt<R> doubt{error_factor(h, steps, spread, crossed), 0.05 * squared * squared,

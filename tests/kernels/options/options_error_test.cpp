@@ -238,6 +238,19 @@ TEST(OptionsError, DriftThatCrossesManyDeviations) {
   expect_covered(priced(on_mesh(512, 64), contracts), known, "drift over many deviations");
 }
 
+// Between jumps whose mean hardly exists the asset falls by the hundredfold.
+TEST(OptionsError, KousJumpsWithHardlyAMean) {
+  std::vector<Contract> contracts;
+  for (const double up : {1.01, 1.02, 1.05}) {
+    contracts.push_back(put(Style::american, 1.0, 3.0, 0.04, {1.0, 0.4, up, 5.0}));
+    contracts.back().model = Model::kou;
+  }
+  const std::vector<Price> prices = priced_to(1e-4, contracts),
+                           known = priced(on_mesh(1024, 4096), contracts);
+  for (std::size_t k = 0; k < prices.size(); ++k)
+    EXPECT_NEAR(prices[k].price, known[k].price, prices[k].error + known[k].error) << k;
+}
+
 // A jump that is the same every time falls between nodes. It is shared by them so that its mean stays.
 TEST(OptionsError, JumpsThatAreAlike) {
   std::vector<Contract> contracts;
