@@ -23,14 +23,26 @@ int edit_distance(std::string_view a, std::string_view b) {
   return above.back();
 }
 
+namespace {
+
+/// One slip, or fewer than one for three letters: more of them make another word ("heston" of "merton").
+/// Up to a half of a name may be left out at its end.
+bool is_near(std::string_view word, std::string_view name) {
+  const int edits = edit_distance(word, name);
+  const auto letters = static_cast<int>(std::max(word.size(), name.size()));
+  if (edits == 1 || name.starts_with(word)) return 2 * edits <= letters;
+  return 3 * edits < letters;
+}
+
+}  // namespace
+
 std::string suggestion(std::string_view word, const std::vector<std::string>& valid) {
   if (valid.empty()) return "no name is valid here";
   word = word.substr(0, 100);  // a fuzzed key may be as long as the file
   const auto distance = [word](const std::string& name) { return edit_distance(word, name); };
   const auto nearest = std::min_element(
       valid.begin(), valid.end(), [&](const auto& a, const auto& b) { return distance(a) < distance(b); });
-  const auto length = static_cast<int>(std::max(word.size(), nearest->size()));
-  if (2 * distance(*nearest) <= length) return "did you mean \"" + *nearest + "\"?";
+  if (is_near(word, *nearest)) return "did you mean \"" + *nearest + "\"?";
   std::string all;
   for (const std::string& name : valid) all += (all.empty() ? "" : ", ") + name;
   return (valid.size() == 1 ? "the only valid name is " : "valid names are ") + all;

@@ -129,6 +129,7 @@ BAD_FILES = [
 # Rows with a column `model` behind the others, words of the message.
 BAD_MODELS = [
     ("kuo,,,,,,", ['model = "kuo"', 'did you mean "kou"?']),
+    ("heston,,,,,,", ['model = "heston"', "valid names are gh, black-scholes, merton, kou"]),
     ("merton,-1,0,0.1,,,", ["intensity", ">= 0"]),
     ("merton,1,,0.1,,,", ["jump_mean is empty"]),
     ("merton,1,0,-0.1,,,", ["jump_deviation", ">= 0"]),

@@ -222,6 +222,10 @@ TEST(Nearest, CountsEdits) {
   EXPECT_EQ(edit_distance("kitten", "sitting"), 3);
   EXPECT_EQ(suggestion("gama", {"cells", "gamma"}), "did you mean \"gamma\"?");
   EXPECT_EQ(suggestion("zzzzzz", {"cells", "gamma"}), "valid names are cells, gamma");
+  EXPECT_EQ(suggestion("kuo", {"merton", "kou"}), "did you mean \"kou\"?");
+  EXPECT_EQ(suggestion("heston", {"merton", "kou"}), "valid names are merton, kou");
+  EXPECT_EQ(suggestion("prob", {"fields", "probes"}), "did you mean \"probes\"?");
+  EXPECT_EQ(suggestion("dvidnd", {"dividend", "rate"}), "did you mean \"dividend\"?");
 }
 
 }  // namespace
