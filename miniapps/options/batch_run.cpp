@@ -55,7 +55,6 @@ void BatchRun::price(const Chunk& chunk, Desk& desk) {
     if (row.fault.empty() && _command.settings.method == options::Method::seed &&
         row.contract.model != options::Model::generalized_hyperbolic)
       row.fault = "--method seed has generalized hyperbolic jumps alone";
-    check_strikes(row);
     add(row, chunk, desk);
     if (_is_stopped) return;
   }
@@ -63,30 +62,21 @@ void BatchRun::price(const Chunk& chunk, Desk& desk) {
   if (!_is_stopped) hand_in(desk, true);
 }
 
-/// The strikes of a surface, which meet the row's spot here first.
-void BatchRun::check_strikes(Row& row) const {
-  options::Contract contract = row.contract;
-  for (const double strike : _command.strikes) {
-    if (!row.fault.empty()) return;
-    contract.strike = strike;
-    row.fault = options::violated_condition(contract);
-  }
-}
-
 void BatchRun::add(const Row& row, const Chunk& chunk, Desk& desk) {
-  const auto put = [&](const options::Contract& contract) {
-    if (_owners.size() >= chunk.together) flush(desk);
-    _owners.push_back(&row);
-    if (row.fault.empty()) _contracts.push_back(contract);
+  const auto put = [&](const options::Contract& contract, std::string_view fault) {
+    if (_asked.size() >= chunk.together) flush(desk);
+    _asked.push_back({&row, contract.strike, contract.maturity, fault});
+    if (row.fault.empty() && fault.empty()) _contracts.push_back(contract);
   };
-  if (!row.fault.empty() || _command.action == Action::price) return put(row.contract);
+  if (!row.fault.empty() || _command.action == Action::price) return put(row.contract, {});
   options::Contract contract = row.contract;
   for (const double maturity : _command.maturities) {
-    if (_owners.size() + _command.strikes.size() > chunk.together) flush(desk);
+    if (_asked.size() + _command.strikes.size() > chunk.together) flush(desk);
     for (const double strike : _command.strikes) {
       contract.maturity = maturity;
       contract.strike = strike;
-      put(contract);
+      // The row breaks none, so what is broken here its strike or maturity breaks.
+      put(contract, options::violated_condition(contract));
       if (_is_stopped) return;
     }
   }
@@ -98,9 +88,14 @@ void BatchRun::flush(Desk& desk) {
   _prices.assign(_contracts.size(), {});
   if (!_contracts.empty()) price_contracts();
   std::size_t priced = 0;
-  for (const Row* row : _owners) {
+  for (const Asked& asked : _asked) {
+    const Row* const row = asked.row;
     if (!row->fault.empty()) {
       append_invalid(_piece, _layout, *row);
+      continue;
+    }
+    if (!asked.fault.empty()) {
+      append_invalid_point(_piece, *row, asked.strike, asked.maturity, asked.fault);
       continue;
     }
     const options::Contract& contract = _contracts[priced];
@@ -111,7 +106,7 @@ void BatchRun::flush(Desk& desk) {
       append_boundary(_piece, *row, boundary_of(contract, price));
     if (_piece.prices.size() + _piece.boundaries.size() >= most_of_piece) hand_in(desk, false);
   }
-  _owners.clear();
+  _asked.clear();
   _contracts.clear();
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string_view>
 #include <vector>
 
 #include "kernels/options/pricer.hpp"
@@ -21,8 +22,14 @@ class BatchRun {
   void work(Desk& desk);
 
  private:
+  /// What a row of the prices is of.
+  struct Asked {
+    const Row* row;
+    double strike, maturity;
+    std::string_view fault;  ///< a condition that these two break, of a surface; the row's own are in `row`
+  };
+
   void price(const Chunk& chunk, Desk& desk);
-  void check_strikes(Row& row) const;
   void add(const Row& row, const Chunk& chunk, Desk& desk);
   void flush(Desk& desk);
   [[nodiscard]] std::vector<options::BoundaryPoint> boundary_of(const options::Contract& contract,
@@ -35,8 +42,8 @@ class BatchRun {
   RowReader _reader;
   options::Pricer& _pricer;
   std::vector<Row> _rows;
-  std::vector<const Row*> _owners;  ///< of each contract; of an invalid row there is none
-  std::vector<options::Contract> _contracts;
+  std::vector<Asked> _asked;                  ///< a row of the prices each
+  std::vector<options::Contract> _contracts;  ///< of those that are valid
   std::vector<options::Price> _prices;
   Piece _piece;
   Spent _spent;

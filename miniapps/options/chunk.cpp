@@ -16,6 +16,7 @@ void Tally::add(const Tally& later) {
   coarse += later.coarse;
   invalid += later.invalid;
   failed += later.failed;
+  invalid_points += later.invalid_points;
 }
 
 void Spent::add(const Spent& other) {
@@ -58,8 +59,8 @@ std::string to_message(const Piece& piece) {
   message.put(piece.ends_chunk);
   message.put(piece.seconds);
   const Tally& tally = piece.tally;
-  for (const std::int64_t count :
-       {tally.rows, tally.coarse, tally.invalid, tally.failed, tally.invalid_line, tally.failed_line})
+  for (const std::int64_t count : {tally.rows, tally.coarse, tally.invalid, tally.failed,
+                                   tally.invalid_points, tally.invalid_line, tally.failed_line})
     message.put(count);
   message.put_text(tally.invalid_fault);
   message.put_text(piece.prices);
@@ -76,8 +77,8 @@ Piece piece_from(const std::string& message) {
   piece.ends_chunk = reader.get<bool>();
   piece.seconds = reader.get<double>();
   Tally& tally = piece.tally;
-  for (std::int64_t* count :
-       {&tally.rows, &tally.coarse, &tally.invalid, &tally.failed, &tally.invalid_line, &tally.failed_line})
+  for (std::int64_t* count : {&tally.rows, &tally.coarse, &tally.invalid, &tally.failed,
+                              &tally.invalid_points, &tally.invalid_line, &tally.failed_line})
     *count = reader.get<std::int64_t>();
   tally.invalid_fault = reader.get_text();
   piece.prices = reader.get_text();

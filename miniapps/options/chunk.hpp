@@ -28,6 +28,7 @@ struct Chunk {
 /// How many rows ended how, and the first of those that did not end well.
 struct Tally {
   std::int64_t rows = 0, coarse = 0, invalid = 0, failed = 0;
+  std::int64_t invalid_points = 0;  ///< of the invalid ones: of valid parameter sets of a surface
   std::int64_t invalid_line = 0, failed_line = 0;
   std::string invalid_fault;
 

@@ -38,6 +38,13 @@ void append_next(std::string& text, Number value) {
   csv::append_number(text, value);
 }
 
+void count_invalid(Tally& tally, const Row& row, std::string_view fault) {
+  ++tally.rows;
+  if (tally.invalid++ > 0) return;
+  tally.invalid_line = row.line;
+  tally.invalid_fault = fault;
+}
+
 }  // namespace
 
 std::string price_header(const Layout& layout) {
@@ -79,12 +86,19 @@ void append_invalid(Piece& piece, const Layout& layout, const Row& row) {
   csv::append_field(piece.prices,
                     row.id.empty() ? "line " + std::to_string(row.line) + ": " + row.fault : row.fault);
   piece.prices += '\n';
-  Tally& tally = piece.tally;
-  ++tally.rows;
-  if (tally.invalid++ == 0) {
-    tally.invalid_line = row.line;
-    tally.invalid_fault = row.fault;
-  }
+  count_invalid(piece.tally, row, row.fault);
+}
+
+void append_invalid_point(Piece& piece, const Row& row, double strike, double maturity,
+                          std::string_view fault) {
+  csv::append_field(piece.prices, row.id);
+  append_next(piece.prices, strike);
+  append_next(piece.prices, maturity);
+  piece.prices += ",,,,,,,,,invalid,";
+  csv::append_field(piece.prices, fault);
+  piece.prices += '\n';
+  count_invalid(piece.tally, row, fault);
+  ++piece.tally.invalid_points;
 }
 
 void append_boundary(Piece& piece, const Row& row, std::span<const options::BoundaryPoint> points) {

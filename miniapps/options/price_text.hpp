@@ -2,6 +2,7 @@
 
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "kernels/options/contract.hpp"
 #include "kernels/options/pricer.hpp"
@@ -25,6 +26,11 @@ void append_price(Piece& piece, const Layout& layout, const Row& row, const opti
 
 /// Appends a row with a fault.
 void append_invalid(Piece& piece, const Layout& layout, const Row& row);
+
+/// Appends a strike and maturity of a surface that the parameter set of `row`, which is valid, has no price
+/// for.
+void append_invalid_point(Piece& piece, const Row& row, double strike, double maturity,
+                          std::string_view fault);
 
 /// The line that names the columns of exercise boundaries.
 inline constexpr const char* boundary_header = "id,time,spot\n";

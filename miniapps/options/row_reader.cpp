@@ -136,6 +136,7 @@ void RowReader::read_contract(Row& row) const {
                 number_columns[i].required && belongs_to(number_columns[i], _kind),
                 row.contract.*number_columns[i].member);
   read_parameters(row);
+  if (_kind == RowKind::parameter_set) row.contract.strike = row.contract.spot;  // breaks none of its own
   if (row.fault.empty()) row.fault = options::violated_condition(row.contract);
 }
 

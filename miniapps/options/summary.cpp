@@ -19,10 +19,23 @@ std::string share(std::int64_t number, std::int64_t all, const char* what) {
   return counted(number, " of ") + counted(all, what);
 }
 
-}  // namespace
+// What is invalid of a surface are parameter sets, rows of the input, or points of valid ones; what is priced
+// are points, rows of the output.
 
-// What is invalid of a surface are parameter sets, rows of the input; what is priced are points, rows of the
-// output.
+std::int64_t invalid_sets(const Tally& tally) { return tally.invalid - tally.invalid_points; }
+
+std::int64_t points(const Tally& tally) { return tally.rows - invalid_sets(tally); }
+
+std::string invalid_of_surface(const Tally& tally, std::int64_t sets) {
+  const std::string of_sets = share(invalid_sets(tally), sets, " parameter sets"),
+                    of_points = share(tally.invalid_points, points(tally), " prices");
+  return (tally.invalid_points == 0  ? of_sets
+          : invalid_sets(tally) == 0 ? of_points
+                                     : of_sets + " and " + of_points) +
+         " invalid";
+}
+
+}  // namespace
 
 void print_summary(const Command& command, const run::ResultDocument& result, const Tally& tally,
                    std::int64_t read) {
@@ -30,9 +43,9 @@ void print_summary(const Command& command, const run::ResultDocument& result, co
   std::snprintf(time, sizeof time, " in %.3g s: ", result.timing.wall_s);
   std::string text = result.scene + " on " + result.backend + ": ";
   if (command.action == Action::surface)
-    text += counted(read, " parameter sets") + time + counted(tally.invalid, " invalid; ") +
-            counted(tally.rows - tally.invalid, " prices: ") + counted(priced_well(tally), " ok, ") +
-            counted(tally.coarse, " coarse, ");
+    text += counted(read, " parameter sets") + time + counted(invalid_sets(tally), " invalid; ") +
+            counted(points(tally), " prices: ") + counted(priced_well(tally), " ok, ") +
+            counted(tally.coarse, " coarse, ") + counted(tally.invalid_points, " invalid, ");
   else
     text += counted(tally.rows, " rows") + time + counted(priced_well(tally), " ok, ") +
             counted(tally.coarse, " coarse, ") + counted(tally.invalid, " invalid, ");
@@ -45,10 +58,10 @@ void require_priced_rows(const Command& command, const Tally& tally, const Batch
   const bool surface = command.action == Action::surface;
   const std::string rest = std::string(surface ? "; all others are" : "; every other row is") +
                            " priced in '" + command.out.string() + "'";
-  const std::string invalid =
-      share(tally.invalid, reader.rows(), surface ? " parameter sets invalid" : " rows invalid");
+  const std::string invalid = surface ? invalid_of_surface(tally, reader.rows())
+                                      : share(tally.invalid, reader.rows(), " rows invalid");
   if (tally.failed > 0) {
-    std::string told = (surface ? share(tally.failed, tally.rows - tally.invalid, " prices failed")
+    std::string told = (surface ? share(tally.failed, points(tally), " prices failed")
                                 : share(tally.failed, tally.rows, " rows failed")) +
                        ", the first in line " + std::to_string(tally.failed_line);
     if (tally.invalid > 0)

@@ -124,10 +124,10 @@ class BadBatches(options_program.OptionsTest):
                 for name, power in (("price", 1), ("error", 1), ("delta", 0), ("gamma", -1), ("theta", 1)):
                     self.assertAlmostEqual(1, float(told[name]) / unit**power / float(one[name]), delta=1e-6, msg=name)
 
-    def test_a_surface_of_strikes_that_no_spot_meets(self):
+    def test_a_surface_of_a_strike_that_no_spot_meets(self):
         head, line = "id,spot,rate,lambda,alpha,beta,delta,variance", "a,1,0.05,1,8.15,-2.5,0.767,0.04"
         message = self.expect(3, "surface", self.write(f"{head}\n{line}\n"), "--strikes", "1,1e30", "--maturities", "1").stderr
-        self.assertIn("spot/strike must lie between 1e-20 and 1e20", message)
+        self.assertIn("batch.csv:2: spot/strike must lie between 1e-20 and 1e20 (1 of 2 prices invalid; all others", message)
 
     def test_a_parameter_set_has_no_strike(self):
         message = self.expect(3, "surface", self.write(batch([row("a")])), "--strikes", "1", "--maturities", "1").stderr

@@ -240,8 +240,42 @@ class Prices(options_program.OptionsTest):
         """Parameter sets are invalid, prices are ok: what is counted is said."""
         sets = "spot,rate,lambda,alpha,beta,delta,style\n" + "".join(f"1,0.1,1,8,{beta},0.7,european\n" for beta in (-2, 9, -3))
         run = self.expect(3, "surface", self.write(sets), "--strikes", "0.9,1,1.1", "--maturities", "1,2", *FAST)
-        self.assertRegex(run.stdout, r"^batch on \w+: 3 parameter sets in \S+ s: 1 invalid; 12 prices: 12 ok, 0 coarse, 0 failed\n")
+        self.assertRegex(run.stdout, r"^batch on \w+: 3 parameter sets in \S+ s: 1 invalid; 12 prices: 12 ok, 0 coarse, 0 invalid, 0 failed\n")
         self.assertIn("(1 of 3 parameter sets invalid; all others are priced in 'surface.csv')", run.stderr)
+
+    def test_a_strike_beyond_reason_is_one_point_of_a_surface(self):
+        """The others have the same bits whatever it is, and whatever chunks they are in."""
+        head = "id,style,spot,rate,lambda,alpha,beta,delta,variance"
+        good = ["low,american,100,0.05,-0.5,15,-5,0.5,0.04", "high,european,1e25,0.05,-0.5,15,-5,0.5,0.04"]
+        sets = self.write("\n".join([head, *good, "bad,european,100,0.05,-0.5,15,19,0.5,0.04"]))
+        told = {}
+        for strikes, chunk in (("100,1e25", ()), ("100,1e23", ()), ("1e101,100,1e25", ()), ("1e101,100,1e25", ("--chunk", "1")),
+                               ("100", ()), ("1e25", ())):
+            run = self.expect(3, "surface", sets, "--strikes", strikes, "--maturities", "0.5,1", "--mesh", "64", "--steps", "16",
+                              "--result", "r.json", "--backend", "serial", *chunk)
+            with (self.folder / "surface.csv").open(encoding="utf-8", newline="") as file:
+                told[strikes, chunk] = list(csv.DictReader(file))
+            points = 4 * len(strikes.split(","))
+            wrong = points - (2 if strikes in ("100", "1e25") else 4)
+            self.assertRegex(run.stdout, rf": 3 parameter sets in \S+ s: 1 invalid; {points} prices: \d+ ok, \d+ coarse, {wrong} invalid, 0 failed")
+            self.assertIn(f"batch.csv:{3 if strikes == '100' else 2}: s", run.stderr)
+            self.assertIn(f"(1 of 3 parameter sets and {wrong} of {points} prices invalid; all others are priced", run.stderr)
+            counts = json.loads((self.folder / "r.json").read_text())["counts"]
+            self.assertEqual((points + 1, wrong + 1, points - wrong), (counts["rows"], counts["invalid"], counts["ok"] + counts["coarse"]))
+        mixed = told["100,1e25", ()]
+        self.assertEqual(["low"] * 4 + ["high"] * 4 + ["bad"], [point["id"] for point in mixed])
+        self.assertEqual(["100", "1e+25"] * 4, [point["strike"] for point in mixed[:8]])
+        self.assertEqual(["0.5", "0.5", "1", "1"] * 2, [point["maturity"] for point in mixed[:8]])
+        self.assertEqual({("spot/strike must lie between 1e-20 and 1e20", "", "")},
+                         {(p["message"], p["price"], p["steps"]) for p in mixed[:8] if p["status"] == "invalid"})
+        self.assertEqual(("|beta| < alpha", ""), (mixed[8]["message"][:14], mixed[8]["strike"]))
+        self.assertIn("strike must lie between 1e-100 and 1e100", {point["message"] for point in told["1e101,100,1e25", ()]})
+        self.assertEqual(told["1e101,100,1e25", ()], told["1e101,100,1e25", ("--chunk", "1")])
+        priced = {strikes: [point for point in points if point["price"]] for (strikes, _), points in told.items()}
+        self.assertEqual(4, len(priced["100,1e25"]))
+        self.assertEqual(priced["100,1e25"], priced["1e101,100,1e25"])
+        self.assertEqual(priced["100,1e25"], priced["100"] + priced["1e25"])
+        self.assertEqual(priced["100"], priced["100,1e23"][:2])
 
 
 class SameBits(options_program.OptionsTest):
