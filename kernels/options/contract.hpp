@@ -39,9 +39,11 @@ enum class Outcome : unsigned char {
 /// Why there is no price.
 enum class Failure : unsigned char {
   none,
-  too_large,  ///< e^{-r T} is beyond all numbers: r the rate, of a call the dividend
+  too_large,  ///< e^{-r T}, in money, is beyond all numbers: r the rate, of a call the dividend
   no_grid,    ///< no grid reaches as far as the law does until maturity
-  grown,      ///< the values grew without bound: steps are too few
+  grown,      ///< the values grew without bound: steps are too few for the mesh, or the mesh too coarse
+  stiff,      ///< they grew, and more happens until maturity than any steps follow
+  overflow,   ///< what finite differences of the law and the rates are made of is beyond all numbers
   series,     ///< a Fourier integral or series is not finite
 };
 

@@ -47,8 +47,9 @@ inline void refine(Refinement& row, const Price& price, double tolerance, const 
   const int mesh = row.next.mesh;
   row.next = {};
   if (price.outcome == Outcome::ok) return;
-  if (price.failure != Failure::none && price.failure != Failure::grown) return;
-  const int most_often = price.failure == Failure::grown ? 16 : 4;
+  const bool grew = price.failure == Failure::grown || price.failure == Failure::stiff;
+  if (price.failure != Failure::none && !grew) return;
+  const int most_often = grew ? 16 : 4;
   const bool stuck = price.outcome == Outcome::failed || (row.error > 0.0 && price.error > 0.7 * row.error);
   row.error = price.error;
   int next = mesh;

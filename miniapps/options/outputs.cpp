@@ -13,7 +13,7 @@ constexpr std::size_t block = std::size_t{1} << 18;
 }  // namespace
 
 Layout layout_of(const Command& command) {
-  return {command.action == Action::surface, command.settings.greeks};
+  return {command.action == Action::surface, command.settings.greeks, command.settings.mesh != 0};
 }
 
 void check_outputs(const Command& command, const std::filesystem::path& input) {

@@ -8,7 +8,7 @@
 namespace drogue::options_app {
 namespace {
 
-const char* status(const options::Price& price) {
+const char* status(const Layout& layout, const options::Price& price) {
   switch (price.outcome) {
     case options::Outcome::ok:
       return ",ok,";
@@ -23,7 +23,17 @@ const char* status(const options::Price& price) {
     case options::Failure::no_grid:
       return ",failed,no grid reaches as far as this law does until maturity";
     case options::Failure::grown:
-      return ",failed,the values grew without bound: more --steps or a shorter maturity are needed";
+      return layout.grid_given
+                 ? ",failed,the values grew without bound: more --steps or another --mesh or --method cos "
+                   "may price it"
+                 : ",failed,the values grew without bound on all grids that --tolerance tries: --mesh "
+                   "and --steps together instead of it or --method cos may price it";
+    case options::Failure::stiff:
+      return ",failed,the values grew without bound: more happens until maturity than steps can follow; "
+             "--method cos may price it";
+    case options::Failure::overflow:
+      return ",failed,finite differences of this law and these rates need numbers beyond all range; "
+             "--method cos may price it";
     case options::Failure::series:
       return ",failed,the Fourier integral or series of this law and maturity is not finite";
     case options::Failure::none:
@@ -71,7 +81,7 @@ void append_price(Piece& piece, const Layout& layout, const Row& row, const opti
     append_next(text, price.mesh);
     append_next(text, price.steps);
   }
-  text += status(price);
+  text += status(layout, price);
   text += '\n';
   Tally& tally = piece.tally;
   ++tally.rows;

@@ -13,8 +13,9 @@ namespace drogue::options_app {
 
 /// What rows of prices hold beside prices.
 struct Layout {
-  bool surface = false;  ///< the strike and the maturity, behind the id
-  bool greeks = false;   ///< delta, gamma, theta; else their fields are empty
+  bool surface = false;     ///< the strike and the maturity, behind the id
+  bool greeks = false;      ///< delta, gamma, theta; else their fields are empty
+  bool grid_given = false;  ///< by mesh and steps, which then may be advised; else the tolerance chooses
 };
 
 /// The line that names the columns of the prices.

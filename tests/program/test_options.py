@@ -232,6 +232,30 @@ class Prices(options_program.OptionsTest):
                          "every other row is priced in 'prices.csv'", self.price(4, content).stderr.strip())
         self.assertEqual(["ok", "invalid", "failed"], [price["status"] for price in self.prices()])
 
+    def test_failed_rows_are_advised_what_helps(self):
+        """Steps where steps may help, and what is an option of the run; prices by the advice where it is one."""
+        header = HEADER + ",model,intensity,jump_mean,jump_deviation"
+        gh = {"delta": row("delta", delta="1e-300"), "rate": row("rate", rate="1e308")}
+        lines = [line + ",,,," for line in gh.values()]
+        lines += [f"{k},european,put,1,1,0.05,0,1,,,,,0.04,merton,{k},-0.1,0.2" for k in ("1e4", "1e12")]
+        content = header + "\n" + "\n".join(lines) + "\n"
+        grid = ("--mesh", "128", "--steps", "32")
+        for words in (grid, ()):
+            self.price(4, content, *words)
+            told = {price["id"]: price["message"] for price in self.prices()}
+            for name in ("delta", "rate"):
+                self.assertIn("need numbers beyond all range", told[name])
+            self.assertIn("more happens until maturity than steps can follow", told["1e12"])
+            self.assertFalse([name for name in told if name != "1e4" and "--steps" in told[name]])
+            advice = "more --steps or another --mesh or" if words else "--mesh and --steps together instead of it or"
+            self.assertIn(advice, told["1e4"])
+            self.assertEqual(not words, "--tolerance" in told["1e4"])
+            self.assertTrue(all("--method cos may price it" in message for message in told.values()))
+        self.price(4, content, "--mesh", "128", "--steps", "16384")
+        self.assertEqual(["failed", "failed", "coarse", "failed"], [price["status"] for price in self.prices()])
+        self.price(4, content, *FAST)
+        self.assertEqual(["ok", "failed", "ok", "ok"], [price["status"] for price in self.prices()])
+
     def test_summary(self):
         run = self.expect(0, "price", "example", *FAST, "--tolerance", "1e-3")
         self.assertRegex(run.stdout, r"^example on \w+: 11 rows in \S+ s: 11 ok, 0 coarse, 0 invalid, 0 failed\n")

@@ -297,8 +297,20 @@ Price one_price(double rate, double maturity, double variance, double delta, con
 
 TEST(OptionsProperty, WhatFailsSaysWhy) {
   EXPECT_EQ(one_price(-10.0, 100.0, 0.04, 0.5, Settings{}).failure, Failure::too_large);
+  Contract money{.style = Style::european, .spot = 1e99, .strike = 1e99, .rate = -5.0, .maturity = 100.0};
+  std::ranges::copy(std::array{-0.5, 15.0, -5.0, 0.5}, money.jump);
+  EXPECT_EQ(priced(Settings{}, {money})[0].failure, Failure::too_large);
   EXPECT_EQ(one_price(0.05, 1.0, 1e300, 0.5, Settings{}).failure, Failure::no_grid);
   EXPECT_EQ(one_price(0.0, 100.0, 0.0, 20.0, on_mesh(512, 64)).failure, Failure::grown);
+  // Neither more steps nor another mesh would help.
+  for (const Settings& settings : {Settings{}, on_mesh(128, 32)}) {
+    EXPECT_EQ(one_price(0.05, 1.0, 0.04, 1e-300, settings).failure, Failure::overflow);
+    EXPECT_EQ(one_price(1e308, 1.0, 0.04, 0.5, settings).failure, Failure::overflow);
+  }
+  EXPECT_EQ(one_price(1e12, 1.0, 0.04, 0.5, on_mesh(128, 32)).failure, Failure::stiff);
+  Contract merton{.model = Model::merton, .style = Style::european, .rate = 0.05, .variance = 0.04};
+  std::ranges::copy(std::array{1e12, -0.1, 0.2}, merton.jump);
+  EXPECT_EQ(priced(on_mesh(128, 32), {merton})[0].failure, Failure::stiff);
   // A tolerance takes more steps.
   Settings loose;
   loose.tolerance = 1e-3;
