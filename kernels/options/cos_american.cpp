@@ -31,13 +31,14 @@ void AmericanPut::prepare(double expiry, int dates, double tolerance) {
   const double enough = std::log(10.0 + 10.0 / tolerance);
   const double maturity = rate * expiry > enough ? enough / rate : expiry;
   beyond = maturity < expiry ? std::exp(-enough) : 0.0;
-  // A year's wait costs at most what exercise earns in it. Where that is all there is to earn between two
-  // dates of the coarsest level, values of all levels may agree that hardly anything is exercised.
-  const double earned = std::max(rate, rate - dividend) * maturity / dates;
-  between = earned > 1.0
-                ? -std::expm1(-earned / (1 << (levels - 1))) * std::exp(std::max(-rate * maturity, 0.0))
-                : 0.0;
   const Exponent::Cumulants c = psi.cumulants();
+  // A year's wait costs at most what exercise earns in it. Where that is all there is to earn between two
+  // dates of the coarsest level, or the drift carries the spot by more than a deviation from one to the
+  // next, values of all levels may agree that hardly anything is exercised.
+  const double interval = maturity / dates, earned = std::max(rate, rate - dividend) * interval;
+  const bool too_few = earned > 1.0 || c.mean * c.mean * interval > c.second;
+  between =
+      too_few ? -std::expm1(-earned / (1 << (levels - 1))) * std::exp(std::max(-rate * maturity, 0.0)) : 0.0;
   const Exponent::Reach reach = psi.reach();
   constexpr double deviations = 12.0;
   // Heavier tails than this leaves room for are folded back by the cosines.

@@ -103,12 +103,13 @@ KOKKOS_INLINE_FUNCTION Domain<R> wide_domain(const Workers& workers, const PutPa
 
 /// An error at a cut matters only if a path reaches the cut and then returns to the strike. Chernoff's bounds
 /// of both legs, with tilts tu, td > 0, suggest the error
-///   exp(-tu (above - x0) - td above) (g(tu) + g(-td) - 2),   g(t) = exp(T max(0, psi(t) - r)),
+///   exp(-tu (above - x0) - td above) (|g(tu) - 1| + |g(-td) - 1|),   g(t) = exp(T (psi(t) - r)),
 /// times e^{-r T} where r < 0, and likewise for the lower end: both ends are the least over 12 x 12 tilts.
-/// The 2 is what paths that hardly move contribute, nearly all of a short maturity; taking it off, though not
-/// less than 1e-3 is left, makes this an estimate and no bound. An early exercise boundary of a put with r >
-/// 0 lies above ln(t/(1+t)) for every t with psi(-t) <= r (Lundberg's bound on the infimum, Mordecki 2002),
-/// and below it the value is known. `scratch` holds 3 `most_lanes` values.
+/// The bounds themselves have max(1, g); the 1 is what paths that hardly move contribute, nearly all of a
+/// short maturity. Taking it off, though not less than 1e-3 is left, makes this an estimate and no bound. An
+/// early exercise boundary of a put with r > 0 lies above ln(t/(1+t)) for every t with psi(-t) <= r
+/// (Lundberg's bound on the infimum, Mordecki 2002), and below it the value is known. `scratch` holds 3
+/// `most_lanes` values.
 template <class Workers, class R>
 KOKKOS_INLINE_FUNCTION Domain<R> domain_of(const Workers& workers, const PutPack<R>& put, const Law<R>& law,
                                            double error, R* scratch) {
@@ -137,8 +138,10 @@ KOKKOS_INLINE_FUNCTION Domain<R> domain_of(const Workers& workers, const PutPack
   const R spot_above = device::maximum(put.log_spot, R(0.0)),
           spot_below = device::maximum(-put.log_spot, R(0.0));
   workers.each([&, tilt, cumulant, grown](int thread) {
-    for (int m = thread; m < 2 * n; m += workers.threads())
-      grown[m] = exponential(device::maximum(R(0.0), maturity * (cumulant[m] + mean * tilt[m] - rate)));
+    for (int m = thread; m < 2 * n; m += workers.threads()) {
+      const R g = exponential(maturity * (cumulant[m] + mean * tilt[m] - rate));
+      grown[m] = device::maximum(g, 2.0 - g);
+    }
   });
   const auto least_ends = [&, tilt, grown](int lane) {
     Kokkos::Array<R, 2> least = {R(1e30), R(1e30)};

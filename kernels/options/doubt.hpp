@@ -12,6 +12,9 @@ struct Doubt {
   R variance;  ///< of the law, a year
 };
 
+/// The factor of a solve that tells nothing.
+inline constexpr double nothing_known = 1e6;
+
 /// What the factor is at least where exercise is split off and the premium of it is not known. Splitting is
 /// of first order in time, and extrapolation for the second leaves 2/3 of the difference where it decides and
 /// less elsewhere: this is fitted.
@@ -37,15 +40,14 @@ KOKKOS_INLINE_FUNCTION double doubt_of_splitting(double premium, int mesh, int s
 /// extrapolation: docs/options.md tells how often it is below what is stated. The largest near the spot and
 /// not that at it, which changes sign somewhere. The difference is of second order and what extrapolation
 /// leaves is of the next one, so their quotient falls with the steps, measured by what they resolve. In time
-/// that is the maturity, of which a drift that crosses many deviations, `crossed` of them, leaves a part. In
+/// that is the maturity, of which a drift that crosses many deviations, `crossed` >= 1, leaves a part. In
 /// space it is the deviation sqrt(spread), spread = 2 D T, by which differences smooth the kink of the
 /// payoff: y^{1/2}, y = h^2/spread. A kink that hardly spreads, of short times or of pure jumps, leaves an
 /// order far below two, and the quotient grows faster, y^{3/4}. The numbers and the root of `crossed` are
 /// fitted to prices of random laws; at the strike the one of space is 0.42.
 template <class R>
 KOKKOS_INLINE_FUNCTION R error_factor(R h, int steps, R spread, R crossed) {
-  const R in_time =
-      device::minimum(R(0.3), R(6.5 / steps)) * device::square_root(device::maximum(crossed, R(1.0)));
+  const R in_time = device::minimum(R(0.3), R(6.5 / steps)) * device::square_root(crossed);
   const R y = h * h / device::maximum(spread, h * h * (1.0 / 500)), root = device::square_root(y);
   return device::maximum(in_time, 0.45 * root * device::square_root(device::maximum(root, R(1.0))));
 }
@@ -98,7 +100,16 @@ KOKKOS_INLINE_FUNCTION Doubt<R> doubt_of(const PutPack<R>& put, const Law<R>& la
   R taken = 0.5 * law.variance;
   if (put.model == Model::merton || put.model == Model::kou) taken = jump_cumulant(put, law, R(1.0));
   const R drift = (put.rate - put.dividend - 0.5 * put.variance - taken) * put.maturity;
-  const R crossed = device::absolute(drift) * device::reciprocal(device::square_root(variance));
+  R crossed =
+      device::maximum(R(1.0), device::absolute(drift) * device::reciprocal(device::square_root(variance)));
+  if (put.model == Model::generalized_hyperbolic) {
+    // Tilted jumps (those of beta = -1/2 are alike in both directions but for e^y) leave more once they have
+    // deviations and years to act on; where exercise is early they have less time to. Fitted.
+    const R years = put.maturity * device::minimum(R(1.0), 0.25 * put.maturity);
+    const R tilted = (1.0 - put.early) * device::absolute(put.jump[2] + 0.5) *
+                     device::square_root(law.variance * years + R(1e-100));
+    crossed = crossed * device::minimum(device::maximum(R(1.0), tilted - 0.4), R(10.0));
+  }
   const R resolved = device::minimum(h, R(2.0)), squared = resolved * resolved;
   Doubt<R> doubt{error_factor(h, steps, spread, crossed), 0.05 * squared * squared,
                  put.variance + law.variance};
@@ -116,6 +127,22 @@ KOKKOS_INLINE_FUNCTION Doubt<R> doubt_of(const PutPack<R>& put, const Law<R>& la
     doubt.gap += 0.04 * near * skew * missed * missed;
   }
   return doubt;
+}
+
+/// The factor at least, of Merton's and Kou's jumps, many of which may be shorter than a step. Nodes have
+/// their mean, but more variance; what is more, of second order, is taken from that of diffusion. Where that
+/// is not enough on the coarser grid, with four times as much, the extrapolation has up to a third of the
+/// difference of both grids; where it is not by far on the finer one, the law that was solved is another one.
+/// And where dozens of them, of those that nodes see, come in a step, values may grow; exercise would cut
+/// them back so that both grids agree.
+template <class R>
+KOKKOS_INLINE_FUNCTION R factor_of_many_jumps(const PutPack<R>& put, const Law<R>& law, const Jumps<R>& jumps,
+                                              int steps) {
+  constexpr double most_a_step = 40.0;
+  const R a_step = jumps.symbol[0] * step_length(put.maturity, steps, steps).dt;
+  const auto coarse = 2.0 * jumps.diffusion <= 0.8 * put.variance;
+  const auto fine = (jumps.excess > 0.1 * (put.variance + law.variance)) | (a_step > R(most_a_step));
+  return device::select(fine, R(nothing_known), device::select(coarse, R(0.5), R(0.0)));
 }
 
 /// What is added to diffusion and taken back from the values before leaves an error of

@@ -93,6 +93,7 @@ struct Jumps {
   R rate;         ///< mass of all jumps, a year
   R diffusion;    ///< D, so that D, the weights and the tails have the variance of the law
   R drift;        ///< b, so that the scheme prices e^x without an error
+  R excess;       ///< variance a year that they have beyond the law's, which no D can take back
   R* symbol;      ///< (symbols): sum of w_d (1 - cos(d angle)) at the angles pi 2^{-k/2}
 };
 

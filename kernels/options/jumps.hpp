@@ -216,6 +216,7 @@ KOKKOS_INLINE_FUNCTION Jumps<R> jumps_of(const Workers& workers, const PutPack<R
   jumps.rate = whole[0] + tails.up + tails.down;
   const R rest = law.variance - whole[1] - tails.variance;
   jumps.diffusion = 0.5 * device::maximum(R(0.0), put.variance + rest);
+  jumps.excess = device::maximum(R(0.0), -(put.variance + rest));
   const R compensator = whole[2] + (tails.up_price - tails.up) + (tails.down_price - tails.down);
   const R growth = exponential(0.5 * h), shrink = device::reciprocal(growth);
   const R chord = growth - shrink;  // 2 sinh(h/2)

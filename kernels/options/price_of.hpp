@@ -64,9 +64,10 @@ KOKKOS_INLINE_FUNCTION Price price_of(const Contract& contract, const Put& put, 
   const bool finite = fine.value <= 1.001 * most && largest <= 4.0 * most && unit * most < 1e300 &&
                       put.rate * put.maturity >= -650.0 && h < 100.0;
   if (a.value < least) a.value = least;
-  if (a.value > most) a.value = most;
+  if (a.value > (put.early ? most : bond)) a.value = put.early ? most : bond;
   // Grids that differ by a quarter of all there is to know say nothing of the error.
-  const double error = stated < most && largest < 0.25 * most ? stated : most;
+  const bool known = largest < 0.25 * most && doubt.factor < nothing_known;
+  const double error = stated < most && known ? stated : most;
   Price price;
   price.price = unit * a.value;
   price.error = unit * error;

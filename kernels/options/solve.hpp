@@ -209,6 +209,8 @@ KOKKOS_INLINE_FUNCTION Doubt<R> doubt_of_solve(const PutPack<R>& put, const Law<
                                                const Jumps<R>& jumps, const Grid<R>& grid, int steps) {
   Doubt<R> doubt = doubt_of(put, law, grid.h, steps, spread_of(put, jumps));
   doubt.gap += doubt_of_stiff_jumps(put, law, jumps, steps, grid.h);
+  if (put.model == Model::merton || put.model == Model::kou)
+    doubt.factor = device::maximum(doubt.factor, factor_of_many_jumps(put, law, jumps, steps));
   return doubt;
 }
 

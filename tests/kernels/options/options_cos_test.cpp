@@ -75,7 +75,6 @@ TEST(OptionsCos, ReachesItsTolerance) {
   EXPECT_NEAR(fine.price, set.american[3], 1e-5);
 }
 
-/// C(S, K, r, q, beta) = P(K, S, q, r, -beta - 1), Greeks included.
 // A put that never expires is worth (1 - b) (S/b)^{-g}, g = 2 r/sigma^2, b = g/(1 + g) (Merton 1973). Dates
 // that are centuries apart would miss nearly all of it, on every level.
 TEST(OptionsCos, PutsOfThousandsOfYearsArePerpetual) {
@@ -96,21 +95,34 @@ TEST(OptionsCos, PutsOfThousandsOfYearsArePerpetual) {
     }
 }
 
-// Without enough dates to tell, what is stated says so.
+// Without enough dates to tell, what is stated says so: exercise would pay within a small part of an
+// interval.
 TEST(OptionsCos, DatesThatAreTooFewStateNoSmallError) {
-  const Contract c{.model = Model::black_scholes,
-                   .style = Style::american,
-                   .spot = 1.0,
-                   .strike = 1.0,
-                   .rate = 1e-4,
-                   .dividend = -0.05,
-                   .maturity = 4000.0,
-                   .variance = 0.04};
-  const Price price = cos_prices({c}, 1e-3)[0];
-  EXPECT_EQ(price.outcome, Outcome::coarse);
-  EXPECT_GT(price.error, 0.5);
+  Contract c{.model = Model::black_scholes,
+             .style = Style::american,
+             .spot = 1.0,
+             .strike = 1.0,
+             .rate = 1e-4,
+             .dividend = -0.05,
+             .maturity = 4000.0,
+             .variance = 0.04};
+  const Price centuries = cos_prices({c}, 1e-3)[0];
+  EXPECT_EQ(centuries.outcome, Outcome::coarse);
+  EXPECT_GT(centuries.error, 0.5);
+
+  // A put at the strike that never expires, with g and b as above; drift is all that moves it.
+  c.dividend = 0.0;
+  for (const double rate : {0.05, 5.0, 20.0}) {
+    c.rate = rate;
+    c.maturity = 1.5 / rate;
+    c.variance = 2e-3 * rate;
+    const double g = 2.0 * rate / c.variance, b = g / (1.0 + g), perpetual = (1.0 - b) * std::pow(b, g);
+    const Price price = cos_prices({c}, 1e-3)[0];
+    EXPECT_NEAR(price.price, perpetual, price.error) << rate;
+  }
 }
 
+/// C(S, K, r, q, beta) = P(K, S, q, r, -beta - 1), Greeks included.
 TEST(OptionsCos, CallsArePutsOfTheOtherSide) {
   Contract call;
   call.type = Type::call;

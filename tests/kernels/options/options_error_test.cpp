@@ -238,6 +238,61 @@ TEST(OptionsError, DriftThatCrossesManyDeviations) {
   expect_covered(priced(on_mesh(512, 64), contracts), known, "drift over many deviations");
 }
 
+// Paths that leave the grid upwards may come back against the drift in all of the time there is.
+TEST(OptionsError, DriftAwayFromTheStrike) {
+  std::vector<Contract> contracts;
+  for (const double rate : {0.07, 0.09})
+    for (const double spot : {0.55, 0.7, 1.0})
+      for (const double maturity : {15.0, 24.0}) {
+        contracts.push_back(put(Style::european, spot, maturity, 0.018, {}));
+        contracts.back().model = Model::black_scholes;
+        contracts.back().rate = rate;
+        contracts.back().dividend = 0.0;
+      }
+  const std::vector<Price> known = priced_by_fourier(contracts);
+  expect_covered(priced(on_mesh(128, 128), contracts), known, "drift away from the strike", 20.0);
+  expect_covered(priced_to(3e-6, contracts), known, "drift away from the strike, tolerance 3e-6");
+}
+
+// What tilts jumps has decades to act.
+TEST(OptionsError, TiltedJumpsOfDecades) {
+  std::vector<Contract> contracts;
+  for (const std::array<double, 4>& law :
+       {std::array{-0.5, 12.0, -4.0, 0.3}, std::array{-1.4, 20.0, -13.6, 0.23},
+        std::array{1.5, 25.0, 15.0, 0.2}, std::array{-2.8, 30.0, -19.0, 0.3}})
+    for (const double maturity : {5.0, 10.0, 20.0})
+      for (const double spot : {0.5, 0.8, 1.0, 1.3, 2.0})
+        for (const double variance : {0.01, 0.03})
+          contracts.push_back(put(Style::european, spot, maturity, variance, law));
+  const std::vector<Price> known = priced_by_fourier(contracts);
+  expect_covered(priced(on_mesh(128, 32), contracts), known, "tilted jumps of decades");
+  expect_covered(priced_to(1e-5, contracts), known, "tilted jumps of decades, tolerance 1e-5");
+}
+
+// Nodes see them as longer than they are, and too many come in a step.
+TEST(OptionsError, JumpsThatAreManyAndShort) {
+  std::vector<Contract> contracts;
+  for (const double rate : {2000.0, 10000.0, 20000.0})
+    for (const double maturity : {0.25, 1.0})
+      for (const double spot : {0.4, 0.8, 1.0, 1.3}) {
+        contracts.push_back(
+            put(Style::european, spot, maturity, 0.04, {rate, 0.0, std::sqrt(0.3 / rate), 0.0}));
+        contracts.back().model = Model::merton;
+      }
+  const std::vector<Price> known = priced_by_fourier(contracts);
+  const std::vector<Price> prices = priced_to(1e-3, contracts);
+  std::size_t covered = 0;
+  for (std::size_t k = 0; k < prices.size(); ++k)
+    covered += std::abs(prices[k].price - known[k].price) <= prices[k].error ? 1U : 0U;
+  EXPECT_GE(covered, prices.size() - 2);
+
+  // Exercise cuts back what grows: both grids of this put agree on the payoff, and it is worth 0.7686.
+  Contract american = put(Style::american, 0.6, 1.0, 0.04, {10000.0, -0.01, 0.02, 0.0});
+  american.model = Model::merton;
+  for (const int mesh : {256, 512})
+    EXPECT_GT(priced(on_mesh(mesh, mesh / 4), {american}).front().error, 0.36);
+}
+
 // Between jumps whose mean hardly exists the asset falls by the hundredfold.
 TEST(OptionsError, KousJumpsWithHardlyAMean) {
   std::vector<Contract> contracts;
