@@ -14,8 +14,8 @@ KOKKOS_INLINE_FUNCTION Failure failure_of(const Put& put, double most, double va
   const double pull = device::absolute(put.rate) + device::absolute(put.dividend);
   const double largest = (pull + variance / h) / h;
   if (!(largest * largest < 1e300)) return Failure::overflow;
-  // From a million jumps until maturity on, or a discount e^{-1e10}, the most steps there are, 16384, were
-  // seen to tell nothing on any mesh.
+  // From a million jumps until maturity on, or a discount e^{-1e10}, the most steps there are, 16384, rarely
+  // tell anything.
   const bool counted = put.model == Model::merton || put.model == Model::kou;
   const bool stiff = (counted && put.jump[0] * put.maturity >= 1e6) || put.rate * put.maturity >= 1e10;
   return stiff ? Failure::stiff : Failure::grown;

@@ -112,14 +112,13 @@ TEST(OptionsCos, DatesThatAreTooFewStateNoSmallError) {
 
   // A put at the strike that never expires, with g and b as above; drift is all that moves it.
   c.dividend = 0.0;
-  for (const double rate : {0.05, 5.0, 20.0}) {
-    c.rate = rate;
-    c.maturity = 1.5 / rate;
-    c.variance = 2e-3 * rate;
-    const double g = 2.0 * rate / c.variance, b = g / (1.0 + g), perpetual = (1.0 - b) * std::pow(b, g);
-    const Price price = cos_prices({c}, 1e-3)[0];
-    EXPECT_NEAR(price.price, perpetual, price.error) << rate;
-  }
+  c.rate = 0.05;
+  c.maturity = 30.0;
+  c.variance = 1e-4;
+  const double g = 2.0 * c.rate / c.variance, b = g / (1.0 + g), perpetual = (1.0 - b) * std::pow(b, g);
+  const Price drifting = cos_prices({c}, 1e-3)[0];
+  EXPECT_NEAR(drifting.price, perpetual, drifting.error);
+  EXPECT_LT(drifting.error, 0.02);
 }
 
 /// C(S, K, r, q, beta) = P(K, S, q, r, -beta - 1), Greeks included.

@@ -280,17 +280,28 @@ TEST(OptionsError, JumpsThatAreManyAndShort) {
         contracts.back().model = Model::merton;
       }
   const std::vector<Price> known = priced_by_fourier(contracts);
-  const std::vector<Price> prices = priced_to(1e-3, contracts);
-  std::size_t covered = 0;
-  for (std::size_t k = 0; k < prices.size(); ++k)
-    covered += std::abs(prices[k].price - known[k].price) <= prices[k].error ? 1U : 0U;
-  EXPECT_GE(covered, prices.size() - 2);
+  expect_covered(priced_to(1e-3, contracts), known, "many short jumps", 100.0, 0.2);
 
   // Exercise cuts back what grows: both grids of this put agree on the payoff, and it is worth 0.7686.
   Contract american = put(Style::american, 0.6, 1.0, 0.04, {10000.0, -0.01, 0.02, 0.0});
   american.model = Model::merton;
   for (const int mesh : {256, 512})
     EXPECT_GT(priced(on_mesh(mesh, mesh / 4), {american}).front().error, 0.36);
+}
+
+// Cells of nodes see hardly any of these jumps, and their difference tells nothing of what that leaves out.
+TEST(OptionsError, KousJumpsShorterThanACell) {
+  std::vector<Contract> contracts;
+  for (const double rate : {150.0, 400.0, 900.0})
+    for (const double maturity : {1.0, 7.0, 20.0})
+      for (const double spot : {0.7, 1.0, 1.5}) {
+        contracts.push_back(put(Style::european, spot, maturity, 0.02, {rate, 0.3, 170.0, 140.0}));
+        contracts.back().model = Model::kou;
+      }
+  const std::vector<Price> known = priced_by_fourier(contracts);
+  expect_covered(priced(on_mesh(128, 128), contracts), known, "Kou's jumps shorter than a cell");
+  expect_covered(priced_to(1e-4, contracts), known, "Kou's jumps shorter than a cell, tolerance 1e-4", 10.0,
+                 0.2);
 }
 
 // Between jumps whose mean hardly exists the asset falls by the hundredfold.
