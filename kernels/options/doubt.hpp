@@ -83,62 +83,71 @@ KOKKOS_INLINE_FUNCTION double doubt_of_contact(const Answer& answer) {
   return 0.06 * answer.contact * (answer.value < payoff ? answer.value / payoff : 1.0);
 }
 
-/// Of a solve on a mesh of steps h whose differences spread the payoff by `spread`.
-///
-/// A step that does not resolve e^x misses h^4/20.
-///
-/// Generalized hyperbolic jumps that are shorter than a step have their variance on the grid but not their
-/// skewness. Of the integral of y^2 e^{-p y} the nodes, with half the first one, sum the part x^3 (q (1 +
-/// q)/(1 - q)^3 - q/2)/2, x = p h, q = e^{-x}; p is 1.8 times the least decay, since a mixture has faster
-/// ones. The rest, squared since an extrapolation sees what is little, times the third cumulant over the
-/// variance and V_xxx/6, of which far from the strike there is little.
+/// How many deviations the drift crosses until maturity, as `error_factor` counts them, 1 at least.
 template <class R>
-KOKKOS_INLINE_FUNCTION Doubt<R> doubt_of(const PutPack<R>& put, const Law<R>& law, R h, int steps, R spread) {
+KOKKOS_INLINE_FUNCTION R crossed_deviations(const PutPack<R>& put, const Law<R>& law) {
   const R variance = device::maximum((put.variance + law.variance) * put.maturity, R(1e-100));
   // What a mean of e^y - 1 - y takes from the drift is nearly half of the variance, but not where Kou's jumps
   // upwards hardly have a mean.
   R taken = 0.5 * law.variance;
   if (put.model == Model::merton || put.model == Model::kou) taken = jump_cumulant(put, law, R(1.0));
   const R drift = (put.rate - put.dividend - 0.5 * put.variance - taken) * put.maturity;
-  R crossed =
+  const R crossed =
       device::maximum(R(1.0), device::absolute(drift) * device::reciprocal(device::square_root(variance)));
-  if (put.model == Model::generalized_hyperbolic) {
-    // Tilted jumps (those of beta = -1/2 are alike in both directions but for e^y) leave more once they have
-    // deviations and years to act on; where exercise is early they have less time to. Fitted.
-    const R years = put.maturity * device::minimum(R(1.0), 0.25 * put.maturity);
-    const R tilted = (1.0 - put.early) * device::absolute(put.jump[2] + 0.5) *
-                     device::square_root(law.variance * years + R(1e-100));
-    crossed = crossed * device::minimum(device::maximum(R(1.0), tilted - 0.4), R(10.0));
-  }
+  if (put.model != Model::generalized_hyperbolic) return crossed;
+  // Tilted jumps (those of beta = -1/2 are alike in both directions but for e^y) leave more once they have
+  // deviations and years to act on; where exercise is early they have less time to. Fitted.
+  const R years = put.maturity * device::minimum(R(1.0), 0.25 * put.maturity);
+  const R tilted = (1.0 - put.early) * device::absolute(put.jump[2] + 0.5) *
+                   device::square_root(law.variance * years + R(1e-100));
+  return crossed * device::minimum(device::maximum(R(1.0), tilted - 0.4), R(10.0));
+}
+
+/// Kou's jumps in the cell about 0 have their variance on the grid but not their skewness: the third cumulant
+/// that cells miss over the variance, and V_xxx/6. 4 f, since the coarser grid misses up to sixteen times the
+/// part f that the finer one does.
+template <class R>
+KOKKOS_INLINE_FUNCTION R doubt_of_kous_skewness(const PutPack<R>& put, const Law<R>& law, R h) {
+  const auto third_missed = [=](R share, R decay) {
+    const R length = device::reciprocal(decay), x = 0.5 * h * decay;
+    const R f = 1.0 - exponential(-x) * (1.0 + x * (1.0 + x * (0.5 + x * (1.0 / 6))));
+    return share * length * length * length * device::minimum(R(1.0), 4.0 * f);
+  };
+  const R p = put.jump[1];
+  const R missed =
+      6.0 * put.jump[0] * device::absolute(third_missed(p, put.jump[2]) - third_missed(1.0 - p, put.jump[3]));
+  return 0.06 * missed * device::reciprocal(device::maximum(put.variance + law.variance, R(1e-100)));
+}
+
+/// Generalized hyperbolic jumps that are shorter than a step have their variance on the grid but not their
+/// skewness. Of the integral of y^2 e^{-p y} the nodes, with half the first one, sum the part x^3 (q (1 +
+/// q)/(1 - q)^3 - q/2)/2, x = p h, q = e^{-x}; p is 1.8 times the least decay, since a mixture has faster
+/// ones. The rest, squared since an extrapolation sees what is little, times the third cumulant over the
+/// variance and V_xxx/6, of which far from the strike there is little.
+template <class R>
+KOKKOS_INLINE_FUNCTION R doubt_of_hyperbolic_skewness(const PutPack<R>& put, R h, R spread) {
+  const R tilt = device::absolute(put.jump[2]);
+  const R decay = put.jump[1] - tilt, slow = device::reciprocal(decay),
+          fast = device::reciprocal(put.jump[1] + tilt);
+  const R x = device::maximum(1.8 * h * decay, R(0.01)), q = exponential(-x);
+  const R part = x * device::reciprocal(1.0 - q);
+  const R summed = 0.5 * q * ((1.0 + q) * part * part * part - 0.5 * x * x * x);
+  const R missed = device::maximum(R(0.0), 1.0 - summed);
+  const R skew =
+      2.0 * (slow * slow * slow - fast * fast * fast) * device::reciprocal(slow * slow + fast * fast);
+  const R away = 0.125 * put.log_spot, near = spread * device::reciprocal(spread + away * away + R(1e-100));
+  return 0.04 * near * skew * missed * missed;
+}
+
+/// Of a solve on a mesh of steps h whose differences spread the payoff by `spread`. A step that does not
+/// resolve e^x misses h^4/20.
+template <class R>
+KOKKOS_INLINE_FUNCTION Doubt<R> doubt_of(const PutPack<R>& put, const Law<R>& law, R h, int steps, R spread) {
   const R resolved = device::minimum(h, R(2.0)), squared = resolved * resolved;
-  Doubt<R> doubt{error_factor(h, steps, spread, crossed), 0.05 * squared * squared,
+  Doubt<R> doubt{error_factor(h, steps, spread, crossed_deviations(put, law)), 0.05 * squared * squared,
                  put.variance + law.variance};
-  if (put.model == Model::kou) {
-    // Of jumps in the cell about 0 differences have the variance alone, as above. 4 f, since the coarser grid
-    // misses up to sixteen times the part f that the finer one does.
-    const auto third_missed = [=](R share, R decay) {
-      const R length = device::reciprocal(decay), x = 0.5 * h * decay;
-      const R f = 1.0 - exponential(-x) * (1.0 + x * (1.0 + x * (0.5 + x * (1.0 / 6))));
-      return share * length * length * length * device::minimum(R(1.0), 4.0 * f);
-    };
-    const R p = put.jump[1];
-    const R missed = 6.0 * put.jump[0] *
-                     device::absolute(third_missed(p, put.jump[2]) - third_missed(1.0 - p, put.jump[3]));
-    doubt.gap += 0.06 * missed * device::reciprocal(device::maximum(put.variance + law.variance, R(1e-100)));
-  }
-  if (put.model == Model::generalized_hyperbolic) {
-    const R tilt = device::absolute(put.jump[2]);
-    const R decay = put.jump[1] - tilt, slow = device::reciprocal(decay),
-            fast = device::reciprocal(put.jump[1] + tilt);
-    const R x = device::maximum(1.8 * h * decay, R(0.01)), q = exponential(-x);
-    const R part = x * device::reciprocal(1.0 - q);
-    const R summed = 0.5 * q * ((1.0 + q) * part * part * part - 0.5 * x * x * x);
-    const R missed = device::maximum(R(0.0), 1.0 - summed);
-    const R skew =
-        2.0 * (slow * slow * slow - fast * fast * fast) * device::reciprocal(slow * slow + fast * fast);
-    const R away = 0.125 * put.log_spot, near = spread * device::reciprocal(spread + away * away + R(1e-100));
-    doubt.gap += 0.04 * near * skew * missed * missed;
-  }
+  if (put.model == Model::kou) doubt.gap += doubt_of_kous_skewness(put, law, h);
+  if (put.model == Model::generalized_hyperbolic) doubt.gap += doubt_of_hyperbolic_skewness(put, h, spread);
   return doubt;
 }
 

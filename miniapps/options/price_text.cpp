@@ -48,7 +48,15 @@ void append_next(std::string& text, Number value) {
   csv::append_number(text, value);
 }
 
-void count_invalid(Tally& tally, const Row& row, std::string_view fault) {
+/// Ends a row that begins like those of the layout and has no price.
+void append_fault(Piece& piece, const Row& row, std::string_view fault) {
+  piece.prices += ",,,,,,,,,invalid,";
+  // Without an id the line is what tells which row it is.
+  csv::append_field(piece.prices, row.id.empty()
+                                      ? "line " + std::to_string(row.line) + ": " + std::string(fault)
+                                      : std::string(fault));
+  piece.prices += '\n';
+  Tally& tally = piece.tally;
   ++tally.rows;
   if (tally.invalid++ > 0) return;
   tally.invalid_line = row.line;
@@ -91,12 +99,8 @@ void append_price(Piece& piece, const Layout& layout, const Row& row, const opti
 
 void append_invalid(Piece& piece, const Layout& layout, const Row& row) {
   csv::append_field(piece.prices, row.id);
-  piece.prices += layout.surface ? ",,,,,,,,,,,invalid," : ",,,,,,,,,invalid,";
-  // Without an id the line is what tells which row it is.
-  csv::append_field(piece.prices,
-                    row.id.empty() ? "line " + std::to_string(row.line) + ": " + row.fault : row.fault);
-  piece.prices += '\n';
-  count_invalid(piece.tally, row, row.fault);
+  if (layout.surface) piece.prices += ",,";
+  append_fault(piece, row, row.fault);
 }
 
 void append_invalid_point(Piece& piece, const Row& row, double strike, double maturity,
@@ -104,10 +108,7 @@ void append_invalid_point(Piece& piece, const Row& row, double strike, double ma
   csv::append_field(piece.prices, row.id);
   append_next(piece.prices, strike);
   append_next(piece.prices, maturity);
-  piece.prices += ",,,,,,,,,invalid,";
-  csv::append_field(piece.prices, fault);
-  piece.prices += '\n';
-  count_invalid(piece.tally, row, fault);
+  append_fault(piece, row, fault);
   ++piece.tally.invalid_points;
 }
 

@@ -29,8 +29,10 @@ constexpr std::array<std::array<double, 4>, 5> laws = {{{1.0, 8.15, -2.5, 0.767}
                                                         {-1.2, 3.0, -1.5, 0.4},
                                                         {1.0, 30.0, -8.0, 0.2}}};
 
-Contract put(Style style, double spot, double maturity, double variance, const std::array<double, 4>& jump) {
-  Contract c{.style = style,
+Contract put(Style style, double spot, double maturity, double variance, const std::array<double, 4>& jump,
+             Model model = Model::generalized_hyperbolic) {
+  Contract c{.model = model,
+             .style = style,
              .spot = spot,
              .strike = 1.0,
              .rate = 0.05,
@@ -96,8 +98,7 @@ TEST(OptionsError, BoundaryThatStands) {
     for (const double rate : {0.04, 0.06, 0.09})
       for (const double maturity : {15.0, 30.0})
         for (const double spot : {0.95, 1.3}) {
-          contracts.push_back(put(Style::american, spot, maturity, variance, {}));
-          contracts.back().model = Model::black_scholes;
+          contracts.push_back(put(Style::american, spot, maturity, variance, {}, Model::black_scholes));
           contracts.back().rate = rate;
         }
   const std::vector<Price> known = priced(on_mesh(2048, 1024), contracts);
@@ -226,8 +227,7 @@ TEST(OptionsError, DriftThatCrossesManyDeviations) {
     for (const double spot : {0.85, 1.0, 1.2})
       for (const double maturity : {10.0, 20.0, 30.0})
         for (const Type type : {Type::put, Type::call}) {
-          Contract c = put(Style::european, 1.0, maturity, 0.0009, {});
-          c.model = Model::black_scholes;
+          Contract c = put(Style::european, 1.0, maturity, 0.0009, {}, Model::black_scholes);
           c.rate = rate;
           c.dividend = 0.0;
           c.spot = spot * std::exp(-rate * maturity);
@@ -244,8 +244,7 @@ TEST(OptionsError, DriftAwayFromTheStrike) {
   for (const double rate : {0.07, 0.09})
     for (const double spot : {0.55, 0.7, 1.0})
       for (const double maturity : {15.0, 24.0}) {
-        contracts.push_back(put(Style::european, spot, maturity, 0.018, {}));
-        contracts.back().model = Model::black_scholes;
+        contracts.push_back(put(Style::european, spot, maturity, 0.018, {}, Model::black_scholes));
         contracts.back().rate = rate;
         contracts.back().dividend = 0.0;
       }
@@ -275,16 +274,14 @@ TEST(OptionsError, JumpsThatAreManyAndShort) {
   for (const double rate : {2000.0, 10000.0, 20000.0})
     for (const double maturity : {0.25, 1.0})
       for (const double spot : {0.4, 0.8, 1.0, 1.3}) {
-        contracts.push_back(
-            put(Style::european, spot, maturity, 0.04, {rate, 0.0, std::sqrt(0.3 / rate), 0.0}));
-        contracts.back().model = Model::merton;
+        contracts.push_back(put(Style::european, spot, maturity, 0.04,
+                                {rate, 0.0, std::sqrt(0.3 / rate), 0.0}, Model::merton));
       }
   const std::vector<Price> known = priced_by_fourier(contracts);
   expect_covered(priced_to(1e-3, contracts), known, "many short jumps", 100.0, 0.2);
 
   // Exercise cuts back what grows: both grids of this put agree on the payoff, and it is worth 0.7686.
-  Contract american = put(Style::american, 0.6, 1.0, 0.04, {10000.0, -0.01, 0.02, 0.0});
-  american.model = Model::merton;
+  Contract american = put(Style::american, 0.6, 1.0, 0.04, {10000.0, -0.01, 0.02, 0.0}, Model::merton);
   for (const int mesh : {256, 512})
     EXPECT_GT(priced(on_mesh(mesh, mesh / 4), {american}).front().error, 0.36);
 }
@@ -295,8 +292,8 @@ TEST(OptionsError, KousJumpsShorterThanACell) {
   for (const double rate : {150.0, 400.0, 900.0})
     for (const double maturity : {1.0, 7.0, 20.0})
       for (const double spot : {0.7, 1.0, 1.5}) {
-        contracts.push_back(put(Style::european, spot, maturity, 0.02, {rate, 0.3, 170.0, 140.0}));
-        contracts.back().model = Model::kou;
+        contracts.push_back(
+            put(Style::european, spot, maturity, 0.02, {rate, 0.3, 170.0, 140.0}, Model::kou));
       }
   const std::vector<Price> known = priced_by_fourier(contracts);
   expect_covered(priced(on_mesh(128, 128), contracts), known, "Kou's jumps shorter than a cell");
@@ -308,8 +305,7 @@ TEST(OptionsError, KousJumpsShorterThanACell) {
 TEST(OptionsError, KousJumpsWithHardlyAMean) {
   std::vector<Contract> contracts;
   for (const double up : {1.01, 1.02, 1.05}) {
-    contracts.push_back(put(Style::american, 1.0, 3.0, 0.04, {1.0, 0.4, up, 5.0}));
-    contracts.back().model = Model::kou;
+    contracts.push_back(put(Style::american, 1.0, 3.0, 0.04, {1.0, 0.4, up, 5.0}, Model::kou));
   }
   const std::vector<Price> prices = priced_to(1e-4, contracts),
                            known = priced(on_mesh(1024, 4096), contracts);
@@ -323,8 +319,8 @@ TEST(OptionsError, JumpsThatAreAlike) {
   for (const double jump : {-0.5, -0.31, 0.17})
     for (const double deviation : {0.0, 1e-6, 1e-2})
       for (const double spot : {0.8, 1.0, 1.25}) {
-        contracts.push_back(put(Style::european, spot, 1.0, 0.02, {0.4, jump, deviation, 0.0}));
-        contracts.back().model = Model::merton;
+        contracts.push_back(
+            put(Style::european, spot, 1.0, 0.02, {0.4, jump, deviation, 0.0}, Model::merton));
       }
   const std::vector<Price> known = priced_by_fourier(contracts);
   const auto largest = [&](int mesh) {
