@@ -10,7 +10,7 @@ namespace {
 struct CeilingName {
   device::Ceiling ceiling;
   const char *name, *bound;
-  double bar;  ///< relative; the chains round at every step, the triads never
+  double tolerance;  ///< relative; the chains round at every step, the triads never
 };
 
 constexpr CeilingName ceilings[] = {
@@ -33,7 +33,7 @@ Case ceiling_case(device::Backend backend, const CeilingName& what) {
                           }};
           },
           [=] { return (*kernel)->error(); },
-          what.bar,
+          what.tolerance,
           [=] {
             return Facts{name, 0, "", (*kernel)->flops(), (*kernel)->bytes()};
           }};

@@ -26,7 +26,7 @@ Case roll_case(device::Backend backend, int vertices, long steps, fabric::Integr
             return roll::steps(run->p, *run->solver, steps);
           },
           [=] { return roll::imbalance(run->p, *run->solver); },
-          roll::bar,
+          roll::tolerance,
           [=] {
             return Facts{name, static_cast<std::int64_t>(run->p.mass.size()), variant};
           }};

@@ -33,7 +33,7 @@ Case scatter_case(int vertices, long steps) {
                           }};
           },
           [=] { return sheet::energy_drift(run->p, run->state); },
-          sheet::bar,
+          sheet::tolerance,
           [=] {
             return Facts{"serial", static_cast<std::int64_t>(run->p.mass.size()), "scatter-loop"};
           }};
@@ -76,7 +76,7 @@ Case sheet_case(device::Backend backend, int vertices, long steps, const FabricV
             return sheet::steps(run->p, *run->solver, steps);
           },
           [=] { return sheet::energy_drift(run->p, *run->solver); },
-          sheet::bar,
+          sheet::tolerance,
           [=] {
             return Facts{name, static_cast<std::int64_t>(run->p.mass.size()), variant.name};
           }};

@@ -41,7 +41,7 @@ Case dense_case(std::int64_t cells, long steps) {
             for (const auto& u : run->state) rho.push_back(u[0]);
             return sod::l1_error(p, rho, run->time);
           },
-          sod::bar(p),
+          sod::tolerance(p),
           [=] {
             return Facts{"serial", cells, "dense-loop"};
           }};
@@ -82,7 +82,7 @@ Case solver_case(device::Backend backend, std::int64_t cells, long steps, const 
             return sod::steps(p, **solver, steps);
           },
           [=] { return sod::l1_error(p, **solver); },
-          sod::bar(p),
+          sod::tolerance(p),
           [=] {
             const gas::StepWork work = gas::step_work(p, (*solver)->tiling());
             return Facts{name, cells, variant.name, static_cast<double>(work.arithmetic.flops()),

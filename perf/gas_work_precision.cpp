@@ -27,7 +27,7 @@ constexpr gas_app::Repeats repeats{20, 0.2};
 
 std::vector<gas::Parameters> schemes(gas::Parameters p, bool quick) {
   using enum gas::Splitting;
-  // The scenes' own choices belong to their bars; here all run alike.
+  // The scenes' own choices belong to their tolerances; here all run alike.
   p.fixed_dt = 0.0;
   p.positivity = gas::Positivity::automatic;
   p.weno_power = 1;

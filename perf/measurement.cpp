@@ -18,7 +18,7 @@ std::vector<Record> measure(const std::vector<Case>& cases, int warm_up, int rou
   std::vector<Record> records;
   std::vector<Sample> samples;
   for (const Case& c : cases) {
-    records.push_back({c.name, c.unit_of_work, c.bound, {}, 0.0, c.bar, {}, {}});
+    records.push_back({c.name, c.unit_of_work, c.bound, {}, 0.0, c.tolerance, {}, {}});
     samples.push_back(c.prepare());
   }
   for (int round = -warm_up; round < rounds; ++round)

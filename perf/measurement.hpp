@@ -34,7 +34,7 @@ struct Case {
   std::function<Sample()> prepare;
   /// Error of the state it ends in, against the oracle or an exact solution; called after the last sample.
   std::function<double()> error;
-  double bar;                         ///< largest error with which the timing counts
+  double tolerance;                   ///< largest error with which the timing counts
   std::function<Facts()> facts = {};  ///< called after the last sample, where there is one
 };
 
@@ -51,11 +51,11 @@ struct Record {
   std::string name, unit_of_work, bound;
   std::vector<double> samples;  ///< seconds per unit of work
   double error = 0.0;
-  double bar = 0.0;
+  double tolerance = 0.0;
   std::map<std::string, std::vector<double>> parts;  ///< of `samples`, where a case names any
   Facts facts;
 
-  [[nodiscard]] bool passed() const { return error <= bar; }
+  [[nodiscard]] bool passed() const { return error <= tolerance; }
 };
 
 /// Rounds that are not kept, and those that are.

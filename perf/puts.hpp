@@ -9,7 +9,7 @@
 namespace drogue::perf::puts {
 
 /// What the dissertation's own scheme misses at mesh 128, of the strike (reference values of this project).
-inline constexpr double bar = 4.4e-4;
+inline constexpr double tolerance = 4.4e-4;
 
 /// Prices `count` distinct ones: the dissertation's law at five spots first, then laws about it. A sample is
 /// the sum of copies and compute; the error is the largest of the known ones.

@@ -26,6 +26,6 @@ double imbalance(const fabric::Parameters& p, fabric::Solver& solver);
 inline constexpr std::size_t most_checked = 30'000;
 
 /// As the scenes' that let cloth meet itself: what friction and the step leave unaccounted for.
-inline constexpr double bar = 2e-2;
+inline constexpr double tolerance = 2e-2;
 
 }  // namespace drogue::perf::roll

@@ -32,6 +32,6 @@ double energy_drift(const fabric::Parameters& p, fabric::Solver& solver);
 double energy_drift(const fabric::Parameters& p, const State& state);
 
 /// With room: a wrong step misses it by decades.
-inline constexpr double bar = 1e-4;
+inline constexpr double tolerance = 1e-4;
 
 }  // namespace drogue::perf::sheet

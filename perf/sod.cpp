@@ -58,6 +58,6 @@ double l1_error(const gas::Parameters& p, gas::Solver& solver) {
   return l1_error(p, now[0], solver.resume_state().time);
 }
 
-double bar(const gas::Parameters& p) { return 1.0 / static_cast<double>(p.cells); }
+double tolerance(const gas::Parameters& p) { return 1.0 / static_cast<double>(p.cells); }
 
 }  // namespace drogue::perf::sod

@@ -28,6 +28,6 @@ double l1_error(const gas::Parameters& p, const std::vector<double>& rho, double
 double l1_error(const gas::Parameters& p, gas::Solver& solver);
 
 /// First-order convergence at the discontinuities, with room: a wrong step misses it by decades.
-double bar(const gas::Parameters& p);
+double tolerance(const gas::Parameters& p);
 
 }  // namespace drogue::perf::sod

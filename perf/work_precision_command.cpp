@@ -60,7 +60,7 @@ nlohmann::json to_json(const WorkPrecision& app, const Solution& solution, const
   record.samples = solution.samples;
   record.error = solution.error;
   // A scheme that loses a problem is a finding, not a measurement.
-  record.bar = solution.sound ? solution.error : -1.0;
+  record.tolerance = solution.sound ? solution.error : -1.0;
   nlohmann::json facts = solution.scheme;
   facts.update({{"problem", solution.problem},
                 {"backend", backend},

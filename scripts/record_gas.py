@@ -4,7 +4,7 @@
     scripts/record_gas.py MACHINE --bin build/cuda/bin [--exact build/cuda-exact/bin] [--backends serial,openmp,cuda]
                           [--largest] [--long] [--work FOLDER]
 
-Every shipped scene on every backend (error, bar, steps, time, limiter), seed mode over the meshes of the dissertation's
+Every shipped scene on every backend (error, tolerance, steps, time, limiter), seed mode over the meshes of the dissertation's
 Table 5.5, with --exact the datasets of all scenes compared bit for bit between backends (needs h5py), with --largest
 a run of 2^28 cells, and with --long runs of many steps in a closed box, twice each: conservation, and whether both end in
 the same bits (needs h5py). The summary is printed; the exit code is 1 if any run failed.
@@ -36,7 +36,7 @@ def seed_rows(program, backend, work):
 
 
 def long_rows(program, backend, work, largest):
-    """Sod's gas between walls at about half the largest stable dt: the bars are conservation and equal bits."""
+    """Sod's gas between walls at about half the largest stable dt: the tolerances are conservation and equal bits."""
     rows = []
     for cells, steps in LONG_RUNS if largest else LONG_RUNS[:1]:
         dt = 0.4 * 2.0 / cells / 2.2

@@ -4,7 +4,7 @@
     scripts/record_springs.py MACHINE --bin build/cuda/bin [--exact build/cuda-exact/bin] [--backends serial,openmp,cuda]
                               [--tables serial] [--largest] [--work FOLDER] [--to FOLDER]
 
-Every shipped scene on every backend (error, bar, steps, time, ledger), with --exact the datasets of all scenes compared
+Every shipped scene on every backend (error, tolerance, steps, time, ledger), with --exact the datasets of all scenes compared
 bit for bit between backends, and tables 5.1 to 5.4 of the dissertation beside its numbers, on the backend of --tables,
 the last unless given; table 5.3 with its finest mesh only with --largest. Needs numpy and h5py. Tables are printed as
 Markdown; the exit code is 1 if any run failed.

@@ -47,7 +47,7 @@ ExistingRun existing_run(const MiniAppOptions& options, bool is_empty, const std
 void print_summary(const OneRun& run, const ResultDocument& result, const std::filesystem::path& directory) {
   run.print_steps(result);
   for (const Check& check : result.checks)
-    std::printf("  %-16s %.4g  (bar %.4g)  %s\n", check.name.c_str(), check.value, check.bar,
+    std::printf("  %-16s %.4g  (tolerance %.4g)  %s\n", check.name.c_str(), check.value, check.tolerance,
                 check.passed ? "passed" : "FAILED");
   std::printf("files in %s\n", directory.string().c_str());
 }

@@ -28,7 +28,7 @@ Json checks_json(const std::vector<Check>& checks) {
   for (const Check& check : checks) {
     json.push_back({{"name", check.name},
                     {"value", number(check.value)},
-                    {"bar", number(check.bar)},
+                    {"tolerance", number(check.tolerance)},
                     {"passed", check.passed}});
   }
   return json;
@@ -77,9 +77,9 @@ std::string status_name(ExitCode code) {
   return "io-error";
 }
 
-bool ResultDocument::add_check(const std::string& name, double value, double bar) {
-  const bool passed = std::abs(value) <= bar;  // false for NaN
-  checks.push_back({name, value, bar, passed});
+bool ResultDocument::add_check(const std::string& name, double value, double tolerance) {
+  const bool passed = std::abs(value) <= tolerance;  // false for NaN
+  checks.push_back({name, value, tolerance, passed});
   return passed;
 }
 
@@ -88,8 +88,8 @@ std::string ResultDocument::failed_check() const {
       std::find_if(checks.begin(), checks.end(), [](const Check& check) { return !check.passed; });
   if (failed == checks.end()) return {};
   char text[256];
-  std::snprintf(text, sizeof text, "%s is %.6g, above its bar %.6g", failed->name.c_str(), failed->value,
-                failed->bar);
+  std::snprintf(text, sizeof text, "%s is %.6g, above its tolerance %.6g", failed->name.c_str(),
+                failed->value, failed->tolerance);
   return text;
 }
 

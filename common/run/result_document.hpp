@@ -10,11 +10,11 @@
 
 namespace drogue::run {
 
-/// One verified quantity: passed if |value| <= bar.
+/// One verified quantity: passed if |value| <= tolerance.
 struct Check {
   std::string name;
   double value = 0.0;
-  double bar = 0.0;
+  double tolerance = 0.0;
   bool passed = false;
 };
 
@@ -66,7 +66,7 @@ struct ResultDocument {
     provenance.driver = facts.driver;
   }
 
-  /// Tells what the run asked of the device. `Asked` is the Ledger of kernels/device/ledger.hpp.
+  /// Tells what the run asked of the device. `Asked` is the Ledger of kernels/device/profiling_counters.hpp.
   template <class Asked>
   void describe_ledger(const Asked& asked) {
     ledger = {asked.kernel_launches, asked.fences, asked.allocations_after_warmup, asked.h2d_bytes,
@@ -75,7 +75,7 @@ struct ResultDocument {
   }
 
   /// Adds a check and says whether it passed; a value that is not a number fails.
-  bool add_check(const std::string& name, double value, double bar);
+  bool add_check(const std::string& name, double value, double tolerance);
 
   /// First check that failed, as the Failure to throw (verification_failed) says it; empty if all passed.
   [[nodiscard]] std::string failed_check() const;

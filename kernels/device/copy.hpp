@@ -10,27 +10,27 @@
 
 namespace drogue::device {
 
-/// Where bytes go: from host memory, to it, to a report (see `ReportSpace`), or within the memory of a
+/// Where bytes go: from host memory, to it, to a report (see `HostPinnedSpace`), or within the memory of a
 /// backend.
-enum class Copy { to_device, to_host, to_report, within };
+enum class CopyKind { to_device, to_host, to_host_pinned, within };
 
 /// Kokkos::deep_copy of bytes, without waiting. Compiled once a backend: for two types of Views that it has
 /// not met before, Kokkos' copy brings some fifty kernels that serve Views of other layouts.
 template <class ExecutionSpace>
-void copy_bytes(const ExecutionSpace& space, Copy way, void* to, const void* from, std::size_t bytes);
+void copy_bytes(const ExecutionSpace& space, CopyKind kind, void* to, const void* from, std::size_t bytes);
 
 /// The way from one memory space to another.
 template <class ExecutionSpace, class To, class From>
-[[nodiscard]] constexpr Copy copy_way() {
+[[nodiscard]] constexpr CopyKind copy_kind() {
   using Device = typename ExecutionSpace::memory_space;
   using Host = Kokkos::HostSpace;
   if constexpr (std::is_same_v<To, Device>) {
     static_assert(std::is_same_v<From, Device> || std::is_same_v<From, Host>);
-    return std::is_same_v<From, Device> ? Copy::within : Copy::to_device;
+    return std::is_same_v<From, Device> ? CopyKind::within : CopyKind::to_device;
   } else {
     static_assert(std::is_same_v<From, Device>);
-    static_assert(std::is_same_v<To, Host> || std::is_same_v<To, ReportSpace<ExecutionSpace>>);
-    return std::is_same_v<To, Host> ? Copy::to_host : Copy::to_report;
+    static_assert(std::is_same_v<To, Host> || std::is_same_v<To, HostPinnedSpace<ExecutionSpace>>);
+    return std::is_same_v<To, Host> ? CopyKind::to_host : CopyKind::to_host_pinned;
   }
 }
 
@@ -44,7 +44,7 @@ void copy(const ExecutionSpace& space, const To& to, const From& from) {
   if (to.size() != from.size() || !to.span_is_contiguous() || !from.span_is_contiguous())
     throw std::invalid_argument("cannot copy '" + from.label() + "' to '" + to.label() +
                                 "': their sizes differ, or they have gaps");
-  copy_bytes(space, copy_way<ExecutionSpace, typename To::memory_space, typename From::memory_space>(),
+  copy_bytes(space, copy_kind<ExecutionSpace, typename To::memory_space, typename From::memory_space>(),
              to.data(), from.data(), to.size() * sizeof(typename To::value_type));
 }
 
@@ -53,15 +53,15 @@ void copy(const ExecutionSpace& space, const To& to, const From& from) {
 template <class ExecutionSpace, class To>
 void copy_in(const ExecutionSpace& space, const To& to, const typename To::value_type* from,
              std::size_t count) {
-  copy_bytes(space, copy_way<ExecutionSpace, typename To::memory_space, Kokkos::HostSpace>(), to.data(), from,
-             count * sizeof *from);
+  copy_bytes(space, copy_kind<ExecutionSpace, typename To::memory_space, Kokkos::HostSpace>(), to.data(),
+             from, count * sizeof *from);
 }
 
 /// Copies the first `count` values of a View without gaps to host memory, without waiting.
 template <class ExecutionSpace, class From>
 void copy_out(const ExecutionSpace& space, typename From::non_const_value_type* to, const From& from,
               std::size_t count) {
-  copy_bytes(space, copy_way<ExecutionSpace, Kokkos::HostSpace, typename From::memory_space>(), to,
+  copy_bytes(space, copy_kind<ExecutionSpace, Kokkos::HostSpace, typename From::memory_space>(), to,
              from.data(), count * sizeof *to);
 }
 

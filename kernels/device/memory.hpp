@@ -13,11 +13,11 @@ inline constexpr bool is_host = Kokkos::SpaceAccessibility<Kokkos::DefaultHostEx
 /// device reports to the host.
 #if defined(KOKKOS_ENABLE_CUDA)
 template <class ExecutionSpace>
-using ReportSpace =
+using HostPinnedSpace =
     std::conditional_t<is_host<ExecutionSpace>, Kokkos::HostSpace, Kokkos::CudaHostPinnedSpace>;
 #else
 template <class ExecutionSpace>
-using ReportSpace = Kokkos::HostSpace;
+using HostPinnedSpace = Kokkos::HostSpace;
 #endif
 
 }  // namespace drogue::device

@@ -14,7 +14,7 @@ namespace drogue::device {
 /// without a detour. On host backends it is like any other.
 template <class ExecutionSpace>
 class PinnedMemory final : public std::pmr::memory_resource {
-  using Space = ReportSpace<ExecutionSpace>;
+  using Space = HostPinnedSpace<ExecutionSpace>;
 
  public:
   /// Whether an address lies in what has been allocated here.

@@ -31,7 +31,7 @@ KOKKOS_INLINE_FUNCTION void raise_to_team_maximum(const Member& member, std::uin
   if (member.team_rank() % 32 != 0) return;
 #else
   double largest = mine;
-  // Nothing for a resident grid's teams: these lines are their host side, which never runs.
+  // Nothing for a persistent kernel's teams: these lines are their host side, which never runs.
   if constexpr (requires { member.team_reduce(Kokkos::Max<double>(largest)); })
     member.team_reduce(Kokkos::Max<double>(largest));
   if (member.team_rank() != 0) return;

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "kernels/device/replay.hpp"
+#include "kernels/device/captured_graph.hpp"
 #include "kernels/fabric/contact_impulse.hpp"
 #include "kernels/fabric/contact_parts.hpp"
 #include "kernels/fabric/contact_search.hpp"
@@ -53,7 +53,7 @@ class ContactOn final : public ContactSteps<ExecutionSpace> {
           end(contact._instance,
               [&contact, at, velocity](const auto&) { contact.enqueue_end(at, velocity); }) {}
     Places x, v;
-    device::Replay<ExecutionSpace> begin, end;
+    device::CapturedGraph<ExecutionSpace> begin, end;
   };
 
   template <class Lends, class... Sizes>

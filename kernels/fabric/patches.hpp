@@ -14,10 +14,10 @@ struct PairRow {
   int triangles;  ///< 1 or 2
 };
 
-/// A mesh in patches, one for each team of a resident grid. Rank r of patch p stands at p * team + r. A team
-/// numbers what it holds: its ranks first, then its halo, the vertices of other patches that share a triangle
-/// or spring with its own. Who reads a vertex of another patch has one that is read there: neighbours wait
-/// for each other.
+/// A mesh in patches, one for each team of a persistent kernel. Rank r of patch p stands at p * team + r. A
+/// team numbers what it holds: its ranks first, then its halo, the vertices of other patches that share a
+/// triangle or spring with its own. Who reads a vertex of another patch has one that is read there:
+/// neighbours wait for each other.
 struct Patches {
   int team = 0;             ///< ranks, whole slices
   std::vector<int> vertex;  ///< (patches * team): of the mesh; -1 for ranks without

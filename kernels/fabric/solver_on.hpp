@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "kernels/device/replay.hpp"
+#include "kernels/device/captured_graph.hpp"
 #include "kernels/fabric/contact_steps.hpp"
 #include "kernels/fabric/frequency.hpp"
+#include "kernels/fabric/persistent_steps.hpp"
 #include "kernels/fabric/prescribed.hpp"
-#include "kernels/fabric/resident_steps.hpp"
 #include "kernels/fabric/solver.hpp"
 #include "kernels/fabric/step.hpp"
 #include "kernels/fabric/stress_on.hpp"
@@ -87,9 +87,9 @@ class SolverOn final : public Solver {
   [[nodiscard]] Points rest_places(const Parameters& p) const;
   void prepare_external(const Parameters& p);
   void prepare_motions(const Parameters& p);
-  void make_resident(const Parameters& p, const RingSlots& rings, const SpringSlots& springs);
+  void make_persistent(const Parameters& p, const RingSlots& rings, const SpringSlots& springs);
   void record();
-  void take_resident(std::int64_t steps);
+  void take_persistent(std::int64_t steps);
   [[nodiscard]] ProgramsView<ExecutionSpace> programs(
       const std::vector<device::ExpressionProgram>& from) const;
   [[nodiscard]] Timing<ExecutionSpace> timing(double part) const { return {_watch, _clock, _hand, part}; }
@@ -154,8 +154,8 @@ class SolverOn final : public Solver {
   Points _other, _velocity[3];  ///< of Runge and Kutta alone, the last one only by stages
   Points _dragged;              ///< of Verlet with dashpots
   std::optional<TriangleViews<ExecutionSpace>> _triangles;  ///< made when stress is asked for
-  std::optional<device::Replay<ExecutionSpace>> _step;
-  std::optional<Resident<ExecutionSpace>> _resident;
+  std::optional<device::CapturedGraph<ExecutionSpace>> _step;
+  std::optional<Persistent<ExecutionSpace>> _persistent;
   std::unique_ptr<ContactSteps<ExecutionSpace>> _contact;  ///< none: nothing meets
 };
 
@@ -164,6 +164,6 @@ class SolverOn final : public Solver {
 #include "kernels/fabric/solver_on_external.hpp"
 #include "kernels/fabric/solver_on_measures.hpp"
 #include "kernels/fabric/solver_on_parts.hpp"
-#include "kernels/fabric/solver_on_resident.hpp"
+#include "kernels/fabric/solver_on_persistent.hpp"
 #include "kernels/fabric/solver_on_steps.hpp"
 #include "kernels/fabric/solver_on_stress.hpp"

@@ -87,7 +87,7 @@ SolverOn<ExecutionSpace, law>::SolverOn(const Parameters& p)
   for (int stage = 0; stage < (goes_by_stages() ? 3 : 2); ++stage)
     _velocity[stage] = points("drogue::fabric::stage_velocities");
   _other = points("drogue::fabric::stage_positions");
-  make_resident(p, rings, springs);
+  make_persistent(p, rings, springs);
   record();
 }
 

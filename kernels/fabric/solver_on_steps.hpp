@@ -50,13 +50,13 @@ void SolverOn<ExecutionSpace, law>::runge_kutta_stages() const {
 /// A step at the present dt, if it is to be replayed.
 template <class ExecutionSpace, Law law>
 void SolverOn<ExecutionSpace, law>::record() {
-  if (_integrator == Integrator::rk4 && !_resident && _driver != Driver::plain)
+  if (_integrator == Integrator::rk4 && !_persistent && _driver != Driver::plain)
     _step.emplace(_instance, [this](const ExecutionSpace&) { runge_kutta_step(); });
 }
 
 template <class ExecutionSpace, Law law>
 const char* SolverOn<ExecutionSpace, law>::driver() const {
-  return _resident ? "persistent" : _step ? _step->driver : "plain";
+  return _persistent ? "persistent" : _step ? _step->driver : "plain";
 }
 
 template <class ExecutionSpace, Law law>
@@ -81,8 +81,8 @@ template <class ExecutionSpace, Law law>
 void SolverOn<ExecutionSpace, law>::take(std::int64_t steps) {
   if (_contact) return take_in_contact(steps);
   if (_integrator == Integrator::rk4) {
-    if (_resident)
-      take_resident(steps);
+    if (_persistent)
+      take_persistent(steps);
     else if (_step)
       for (std::int64_t step = 0; step < steps; ++step) _step->launch();
     else

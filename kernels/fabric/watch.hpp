@@ -22,7 +22,7 @@ struct Watch {
   /// Steps taken, told twice: while kernels read one, a later one may set the other.
   Kokkos::View<std::int64_t[2], Memory> steps;
   Kokkos::View<std::uint64_t, Memory> lost;  ///< the least step, and of it the least vertex
-  Kokkos::View<int, device::ReportSpace<ExecutionSpace>> raised;
+  Kokkos::View<int, device::HostPinnedSpace<ExecutionSpace>> raised;
 
   /// Raises the flag where vertex i, or a lane after it, is nowhere at the end of `step`.
   template <class R>

@@ -52,7 +52,7 @@ struct Control {
   Failed failed;
 };
 
-/// A team's own control block, where the teams of a resident grid decide for themselves.
+/// A team's own control block, where the teams of a persistent kernel decide for themselves.
 struct Judgement {
   Resume resume;
   Attempt attempt;

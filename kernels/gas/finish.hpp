@@ -144,7 +144,7 @@ struct FinishFunctor {
   using Member = typename Kokkos::TeamPolicy<ExecutionSpace>::member_type;
 
   Kokkos::View<Control, typename ExecutionSpace::memory_space> control;
-  Kokkos::View<Status, device::ReportSpace<ExecutionSpace>> status;
+  Kokkos::View<Status, device::HostPinnedSpace<ExecutionSpace>> status;
   StepConstants constants;
   StageTable table;
   bool limited;  ///< the step this kernel ends was computed with the limiter
@@ -187,7 +187,7 @@ struct FinishFunctor {
 template <class ExecutionSpace>
 struct ResumeFunctor {
   Kokkos::View<Control, typename ExecutionSpace::memory_space> control;
-  Kokkos::View<Status, device::ReportSpace<ExecutionSpace>> status;
+  Kokkos::View<Status, device::HostPinnedSpace<ExecutionSpace>> status;
   StepConstants constants;
   double target;
   std::int64_t pause_step, row_step;

@@ -37,8 +37,8 @@ template <class ExecutionSpace>
 struct RowFunctor {
   using Memory = typename ExecutionSpace::memory_space;
   Kokkos::View<Control, Memory> control;
-  Kokkos::View<Status, device::ReportSpace<ExecutionSpace>> status;
-  Kokkos::View<HistoryRow*, device::ReportSpace<ExecutionSpace>> ring;
+  Kokkos::View<Status, device::HostPinnedSpace<ExecutionSpace>> status;
+  Kokkos::View<HistoryRow*, device::HostPinnedSpace<ExecutionSpace>> ring;
   Kokkos::View<double* [3], Kokkos::LayoutLeft, Memory> partial;
   std::int64_t n;
   StepConstants constants;

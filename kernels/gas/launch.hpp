@@ -1,7 +1,7 @@
 #pragma once
 
 #include "kernels/device/memory.hpp"
-#include "kernels/device/resident_grid.hpp"
+#include "kernels/device/persistent_kernel.hpp"
 #include "kernels/gas/control.hpp"
 #include "kernels/gas/tile.hpp"
 #include "kernels/gas/weno.hpp"
@@ -24,14 +24,14 @@ struct StageSetup {
 };
 
 /// Threads of a team that has a multiprocessor for itself, each with 168 registers.
-inline constexpr int largest_resident_team = 384;
+inline constexpr int largest_persistent_team = 384;
 
 /// What steps that share a launch need beside it.
 template <class ExecutionSpace>
-struct ResidentSetup {
-  device::ResidentGrid<ExecutionSpace> grid;
+struct PersistentSetup {
+  device::PersistentKernel<ExecutionSpace> grid;
   TileShape shape;
-  Kokkos::View<Status, device::ReportSpace<ExecutionSpace>> status;
+  Kokkos::View<Status, device::HostPinnedSpace<ExecutionSpace>> status;
   StepConstants constants;
 };
 
@@ -48,8 +48,8 @@ void launch_step(const ExecutionSpace& space, const StageSetup<ExecutionSpace>& 
 
 /// Enqueues one launch of up to `most_steps` steps: with alpha from the stencil, and without the limiter.
 template <Reconstruction scheme, class ExecutionSpace>
-void launch_resident_steps(const StageSetup<ExecutionSpace>& setup,
-                           const ResidentSetup<ExecutionSpace>& resident, Precision precision,
-                           std::int64_t most_steps);
+void launch_persistent_steps(const StageSetup<ExecutionSpace>& setup,
+                             const PersistentSetup<ExecutionSpace>& persistent, Precision precision,
+                             std::int64_t most_steps);
 
 }  // namespace drogue::gas

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "kernels/gas/launch.hpp"
-#include "kernels/gas/resident_step.hpp"
+#include "kernels/gas/persistent_step.hpp"
 #include "kernels/gas/stage.hpp"
 #include "kernels/gas/step.hpp"
 
@@ -103,23 +103,23 @@ void launch_step_as(const ExecutionSpace& space, const StageSetup<ExecutionSpace
 }
 
 template <Reconstruction scheme, Precision precision, class ExecutionSpace>
-void launch_resident_steps_as(const StageSetup<ExecutionSpace>& setup,
-                              const ResidentSetup<ExecutionSpace>& resident, std::int64_t most_steps) {
-  const ResidentStepFunctor<ExecutionSpace, scheme, precision> functor{
-      step_functor<scheme, precision, false>(setup, resident.shape), resident.status, resident.constants,
-      most_steps};
-  resident.grid.template launch<largest_resident_team, 1>(functor);
+void launch_persistent_steps_as(const StageSetup<ExecutionSpace>& setup,
+                                const PersistentSetup<ExecutionSpace>& persistent, std::int64_t most_steps) {
+  const PersistentStepFunctor<ExecutionSpace, scheme, precision> functor{
+      step_functor<scheme, precision, false>(setup, persistent.shape), persistent.status,
+      persistent.constants, most_steps};
+  persistent.grid.template launch<largest_persistent_team, 1>(functor);
 }
 
 template <Reconstruction scheme, class ExecutionSpace>
-void launch_resident_steps(const StageSetup<ExecutionSpace>& setup,
-                           const ResidentSetup<ExecutionSpace>& resident, Precision precision,
-                           std::int64_t most_steps) {
-  if constexpr (device::ResidentGrid<ExecutionSpace>::available) {
+void launch_persistent_steps(const StageSetup<ExecutionSpace>& setup,
+                             const PersistentSetup<ExecutionSpace>& persistent, Precision precision,
+                             std::int64_t most_steps) {
+  if constexpr (device::PersistentKernel<ExecutionSpace>::available) {
     if (precision == Precision::full)
-      launch_resident_steps_as<scheme, Precision::full>(setup, resident, most_steps);
+      launch_persistent_steps_as<scheme, Precision::full>(setup, persistent, most_steps);
     else
-      launch_resident_steps_as<scheme, Precision::split>(setup, resident, most_steps);
+      launch_persistent_steps_as<scheme, Precision::split>(setup, persistent, most_steps);
   }
 }
 

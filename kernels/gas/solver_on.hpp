@@ -3,7 +3,7 @@
 #include <array>
 #include <optional>
 
-#include "kernels/device/replay.hpp"
+#include "kernels/device/captured_graph.hpp"
 #include "kernels/gas/history.hpp"
 #include "kernels/gas/launch.hpp"
 #include "kernels/gas/solver.hpp"
@@ -38,7 +38,7 @@ class SolverOn final : public Solver {
 
  private:
   using Memory = typename ExecutionSpace::memory_space;
-  using Report = device::ReportSpace<ExecutionSpace>;
+  using Report = device::HostPinnedSpace<ExecutionSpace>;
   using Fields = FieldsView<ExecutionSpace>;
   using HostFields = Kokkos::View<double* [3], Kokkos::LayoutLeft, Report>;
   static constexpr bool on_host = device::is_host<ExecutionSpace>;
@@ -53,7 +53,7 @@ class SolverOn final : public Solver {
   }
   void enqueue_step(const ExecutionSpace& space, bool limited) const;
   void enqueue_sums(const ExecutionSpace& space, int row_every, bool always) const;
-  void make_resident();
+  void make_persistent();
   void ensure_recorded(bool limited);
   void enqueue(bool limited, std::int64_t most_steps);
   void drain_rows(const RowSink& rows);
@@ -66,9 +66,9 @@ class SolverOn final : public Solver {
   Kokkos::View<Status, Report> _status;
   Kokkos::View<HistoryRow*, Report> _ring;
   std::array<Fields, 4> _partial;  ///< sums after each level
-  std::array<std::unique_ptr<device::Replay<ExecutionSpace>>, 2> _step;
-  std::unique_ptr<device::Replay<ExecutionSpace>> _row;
-  std::optional<ResidentSetup<ExecutionSpace>> _resident;
+  std::array<std::unique_ptr<device::CapturedGraph<ExecutionSpace>>, 2> _step;
+  std::unique_ptr<device::CapturedGraph<ExecutionSpace>> _row;
+  std::optional<PersistentSetup<ExecutionSpace>> _persistent;
   int _row_every = 0;
   Fields _snapshot;
   HostFields _host_snapshot;

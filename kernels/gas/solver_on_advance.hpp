@@ -97,16 +97,16 @@ template <class ExecutionSpace>
 void SolverOn<ExecutionSpace>::ensure_recorded(bool limited) {
   auto& step = _step[limited ? 1 : 0];
   if (step) return;
-  step = std::make_unique<device::Replay<ExecutionSpace>>(
+  step = std::make_unique<device::CapturedGraph<ExecutionSpace>>(
       _instance, [this, limited](const ExecutionSpace& space) { enqueue_step(space, limited); });
 }
 
-/// Enqueues a step, or as many as a resident grid takes in one launch.
+/// Enqueues a step, or as many as a persistent kernel takes in one launch.
 template <class ExecutionSpace>
 void SolverOn<ExecutionSpace>::enqueue(bool limited, std::int64_t most_steps) {
-  if (_resident && !limited)
+  if (_persistent && !limited)
     return with_reconstruction(_parameters, [&](auto scheme) {
-      launch_resident_steps<scheme.value>(_setup, *_resident, _parameters.precision, most_steps);
+      launch_persistent_steps<scheme.value>(_setup, *_persistent, _parameters.precision, most_steps);
     });
   if (_parameters.driver == Driver::plain) return enqueue_step(_instance.space(), limited);
   ensure_recorded(limited);
@@ -139,7 +139,7 @@ Stop SolverOn<ExecutionSpace>::advance(double target, std::int64_t pause_step, i
   // Also before a stretch that ends sooner than the next look at the clock.
   if (poll && !poll(status())) return Stop::interrupted;
   if (row_every > 0 && row_every != _row_every) {
-    _row = std::make_unique<device::Replay<ExecutionSpace>>(
+    _row = std::make_unique<device::CapturedGraph<ExecutionSpace>>(
         _instance, [this, row_every](const ExecutionSpace& on) { enqueue_sums(on, row_every, false); });
     _row_every = row_every;
   }
@@ -153,7 +153,7 @@ Stop SolverOn<ExecutionSpace>::advance(double target, std::int64_t pause_step, i
 
   std::int64_t since_row = row_every > 0 ? first_step % row_every : 0;
   std::int64_t window = on_host ? 1 : 8;
-  std::int64_t steps_a_launch = 1024;  // of a resident grid
+  std::int64_t steps_a_launch = 1024;  // of a persistent kernel
   const auto begin = Clock::now();
   auto last_poll = begin;
   bool interrupted = false;
@@ -179,10 +179,10 @@ Stop SolverOn<ExecutionSpace>::advance(double target, std::int64_t pause_step, i
       steps_a_launch = std::max<std::int64_t>(static_cast<std::int64_t>(0.5 * seconds_in_flight * rate), 64);
     }
     const std::int64_t in_flight = _launched - now.launches;
-    const bool resident = _resident && now.limited == 0;
+    const bool persistent = _persistent && now.limited == 0;
     const std::int64_t left = steps_left(now, target, pause_step);
     // A row ends a launch that holds many steps, and then another begins.
-    const std::int64_t useful = !resident
+    const std::int64_t useful = !persistent
                                     ? std::min(window, left + (row_every > 0 ? left / row_every + 1 : 0))
                                 : row_every > 0 ? 2
                                                 : std::min<std::int64_t>(2, (left - 1) / steps_a_launch + 1);
@@ -195,7 +195,7 @@ Stop SolverOn<ExecutionSpace>::advance(double target, std::int64_t pause_step, i
       since_row = 0;
     } else {
       enqueue(now.limited != 0, steps_a_launch);
-      since_row += resident ? steps_a_launch : 1;
+      since_row += persistent ? steps_a_launch : 1;
     }
     ++_launched;
   }

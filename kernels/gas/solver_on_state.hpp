@@ -68,15 +68,15 @@ SolverOn<ExecutionSpace>::SolverOn(const Parameters& p)
     level = Fields(uninitialised("drogue::gas::partial_sums"), static_cast<std::size_t>(values));
     if (values <= sum_radix) break;
   }
-  make_resident();
+  make_persistent();
   space.fence("drogue::gas::solver: allocated");
 }
 
 /// Steps of a mesh that fits the multiprocessors' scratch memory share a launch, if their alpha is local.
 template <class ExecutionSpace>
-void SolverOn<ExecutionSpace>::make_resident() {
-  if constexpr (device::ResidentGrid<ExecutionSpace>::available) {
-    using Grid = device::ResidentGrid<ExecutionSpace>;
+void SolverOn<ExecutionSpace>::make_persistent() {
+  if constexpr (device::PersistentKernel<ExecutionSpace>::available) {
+    using Grid = device::PersistentKernel<ExecutionSpace>;
     const Parameters& p = _parameters;
     const bool wanted = p.driver == Driver::persistent || p.driver == Driver::automatic;
     if (!wanted || p.splitting != Splitting::lf_stencil || p.positivity == Positivity::on) return;
@@ -92,8 +92,8 @@ void SolverOn<ExecutionSpace>::make_resident() {
         sizeof(Judgement) + sizeof(double) + Tile<ExecutionSpace>::scratch_bytes(shape);
     if (scratch > Grid::most_scratch_bytes(_instance)) return;
     const std::int64_t threads = p.block > 0 ? p.block : (slots + warp - 1) / warp * warp + warp;
-    const int team = static_cast<int>(std::min<std::int64_t>(threads, largest_resident_team));
-    _resident.emplace(ResidentSetup<ExecutionSpace>{
+    const int team = static_cast<int>(std::min<std::int64_t>(threads, largest_persistent_team));
+    _persistent.emplace(PersistentSetup<ExecutionSpace>{
         {_instance, static_cast<int>(share(cells)), team, scratch, static_cast<std::size_t>(p.cells)},
         shape,
         _status,
@@ -103,16 +103,16 @@ void SolverOn<ExecutionSpace>::make_resident() {
 
 template <class ExecutionSpace>
 const char* SolverOn<ExecutionSpace>::driver() const {
-  if (_resident) return "persistent";
+  if (_persistent) return "persistent";
   if (_parameters.driver == Driver::stages) return "stages";
-  return _parameters.driver == Driver::plain ? "plain" : device::Replay<ExecutionSpace>::driver;
+  return _parameters.driver == Driver::plain ? "plain" : device::CapturedGraph<ExecutionSpace>::driver;
 }
 
 template <class ExecutionSpace>
 Tiling SolverOn<ExecutionSpace>::tiling() const {
-  const TileShape& shape = !is_fused() ? _setup.stage_shape
-                           : _resident ? _resident->shape
-                                       : _setup.step_shape;
+  const TileShape& shape = !is_fused()   ? _setup.stage_shape
+                           : _persistent ? _persistent->shape
+                                         : _setup.step_shape;
   return {shape.cells, shape.halo, is_fused()};
 }
 

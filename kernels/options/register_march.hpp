@@ -59,11 +59,11 @@ template <int lanes, bool halved = false, int block>
 KOKKOS_INLINE_FUNCTION void recur_backward(int lane, LaneNodes<block>& nodes, double g) {
   if constexpr (halved) {
     const double slope = slope_of(g, block), low = run_backward(nodes.node, block, g),
-                 high = device::from_above<lanes>(low, 1);
+                 high = device::shuffle_down<lanes>(low, 1);
     double carry[] = {low + slope * high};
     join_backward<lanes, 2>(lane, carry, slope * slope);
     const int next = lane / 2 * 2 + 2;
-    double inflow = device::from_lane(carry[0], next);
+    double inflow = device::shuffle(carry[0], next);
     if (next == lanes) inflow = 0.0;  // not what the first one has
     flow_backward(nodes.node, block, g, lane % 2 == 0 ? high + slope * inflow : inflow);
   } else {
@@ -71,20 +71,20 @@ KOKKOS_INLINE_FUNCTION void recur_backward(int lane, LaneNodes<block>& nodes, do
     const double slope = slope_of(g, part);
     double carry[] = {begin_backward(nodes.node, block, g, slope)};
     join_backward<lanes>(lane, carry, part < block ? slope * slope : slope);
-    const double inflow = device::from_above<lanes>(carry[0], 1);
+    const double inflow = device::shuffle_down<lanes>(carry[0], 1);
     end_backward(nodes.node, block, g, slope, lane + 1 < lanes ? inflow : 0.0);
   }
 }
 
 /// The map of the lane `reach` below.
 template <int lanes>
-KOKKOS_INLINE_FUNCTION RisingMap<double> from_below(const RisingMap<double>& map, int reach) {
-  return {device::from_below<lanes>(map.b, reach), device::from_below<lanes>(map.lo, reach)};
+KOKKOS_INLINE_FUNCTION RisingMap<double> shuffle_up(const RisingMap<double>& map, int reach) {
+  return {device::shuffle_up<lanes>(map.b, reach), device::shuffle_up<lanes>(map.lo, reach)};
 }
 template <int lanes>
-KOKKOS_INLINE_FUNCTION ClampedMap<double> from_below(const ClampedMap<double>& map, int reach) {
-  return {device::from_below<lanes>(map.b, reach), device::from_below<lanes>(map.lo, reach),
-          device::from_below<lanes>(map.hi, reach)};
+KOKKOS_INLINE_FUNCTION ClampedMap<double> shuffle_up(const ClampedMap<double>& map, int reach) {
+  return {device::shuffle_up<lanes>(map.b, reach), device::shuffle_up<lanes>(map.lo, reach),
+          device::shuffle_up<lanes>(map.hi, reach)};
 }
 
 /// Joins the maps of lanes to those of all below; `joined` is the slope of one. Of each `stride` threads the
@@ -92,7 +92,7 @@ KOKKOS_INLINE_FUNCTION ClampedMap<double> from_below(const ClampedMap<double>& m
 template <int lanes, int stride = 1, class Map>
 KOKKOS_INLINE_FUNCTION void join_forward(int lane, Map& map, double joined) {
   for (int reach = stride; reach < lanes; reach *= 2) {
-    const Map whole = after(map, joined, from_below<lanes>(map, reach));
+    const Map whole = after(map, joined, shuffle_up<lanes>(map, reach));
     if (lane >= reach) map = whole;
     joined *= joined;
   }
@@ -112,16 +112,16 @@ KOKKOS_INLINE_FUNCTION LaneNodes<block> recur_by_maps(int lane, const LaneNodes<
   const Map first = map_of(0);
   double begin[2];  // what flows into the parts
   if constexpr (halved) {
-    const Map low = from_below<lanes>(first, 1);
+    const Map low = shuffle_up<lanes>(first, 1);
     Map map = after(first, slope, low);
     join_forward<lanes, 2>(lane, map, slope * slope);
-    const double inflow = device::from_lane(map.lo, lane / 2 * 2 - 1);  // of no use to the first two
+    const double inflow = device::shuffle(map.lo, lane / 2 * 2 - 1);  // of no use to the first two
     begin[0] = lane % 2 == 0 ? inflow : lane == 1 ? low.lo : low.at(inflow, slope);
   } else {
     Map map = first;
     if constexpr (part < block) map = after(map_of(part), slope, first);
     join_forward<lanes>(lane, map, part < block ? slope * slope : slope);
-    begin[0] = device::from_below<lanes>(map.lo, 1);
+    begin[0] = device::shuffle_up<lanes>(map.lo, 1);
     begin[1] = lane == 0 ? first.lo : first.at(begin[0], slope);
   }
   LaneNodes<block> x;
@@ -139,8 +139,8 @@ KOKKOS_INLINE_FUNCTION LaneNodes<block> recur_by_maps(int lane, const LaneNodes<
 /// node 0 gets what is of no use.
 template <int lanes, int block>
 KOKKOS_INLINE_FUNCTION LaneNodes<block> bends_of(int lane, const LaneNodes<block>& value, double beyond) {
-  const double below = device::from_below<lanes>(value.node[block - 1], 1);
-  double above = device::from_above<lanes>(value.node[0], 1);
+  const double below = device::shuffle_up<lanes>(value.node[block - 1], 1);
+  double above = device::shuffle_down<lanes>(value.node[0], 1);
   if (lane + 1 == lanes) above = beyond * value.node[block - 1];
   LaneNodes<block> bend;
   for (int m = 0; m < block; ++m)
@@ -287,7 +287,7 @@ KOKKOS_INLINE_FUNCTION int march_in_registers(const WarpWorkers<lanes, alone>& w
     change.store(lane, rows.other);
     if (lane == 0) rows.value[grid.mesh] = rows.other[grid.mesh] = 0.0;  // the upper end, which answers read
   });
-  return device::warp_largest<lanes>(exercised);
+  return device::warp_max<lanes>(exercised);
 }
 
 }  // namespace drogue::options

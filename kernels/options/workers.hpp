@@ -73,7 +73,7 @@ struct WarpWorkers {
     meet();
   }
   /// What all have read before it may be written after it.
-  KOKKOS_INLINE_FUNCTION void meet() const { device::meet_warp(); }
+  KOKKOS_INLINE_FUNCTION void meet() const { device::warp_sync(); }
   /// The same where lanes read but what they have written themselves: of threads that do alike one writes.
   KOKKOS_INLINE_FUNCTION void meet_alike() const {
     if constexpr (alone) meet();
@@ -84,12 +84,12 @@ struct WarpWorkers {
     auto part = f(lane);
     for (int reach = lanes / 2; reach > 0; reach /= 2)
       for (std::size_t k = 0; k < part.size(); ++k)
-        part[k] = join(part[k], device::from_across(part[k], reach));
+        part[k] = join(part[k], device::shuffle_xor(part[k], reach));
     return part;
   }
   /// Whether a condition holds for all options of the warp.
   KOKKOS_INLINE_FUNCTION bool all(bool condition) const {
-    return lanes == most_lanes ? condition : device::all_of_warp(condition);
+    return lanes == most_lanes ? condition : device::warp_all(condition);
   }
 };
 
@@ -192,7 +192,7 @@ template <int lanes, int stride = 1, int n>
 KOKKOS_INLINE_FUNCTION void join_backward(int lane, double (&carry)[n], double joined) {
   for (int reach = stride; reach < lanes; reach *= 2) {
     for (double& own : carry) {
-      const double next = device::from_above<lanes>(own, reach);
+      const double next = device::shuffle_down<lanes>(own, reach);
       if (lane + reach < lanes) own = own + joined * next;
     }
     joined = joined * joined;
@@ -215,7 +215,7 @@ KOKKOS_INLINE_FUNCTION void recur_backward(const WarpWorkers<lanes, alone>& work
     for (int k = 0; k < n; ++k) carry[k] = begin_backward(rows[k] + lane * block, block, g, slope);
     join_backward<lanes>(lane, carry, part < block ? slope * slope : slope);
     for (int k = 0; k < n; ++k) {
-      const double inflow = device::from_above<lanes>(carry[k], 1);
+      const double inflow = device::shuffle_down<lanes>(carry[k], 1);
       end_backward(rows[k] + lane * block, block, g, slope, lane + 1 < lanes ? inflow : 0.0);
     }
     workers.meet();

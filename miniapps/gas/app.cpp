@@ -9,7 +9,7 @@
 #include "common/program/signals.hpp"
 #include "common/run/one_run.hpp"
 #include "common/scene/library.hpp"
-#include "kernels/device/ledger.hpp"
+#include "kernels/device/profiling_counters.hpp"
 #include "kernels/device/runtime.hpp"
 #include "miniapps/gas/restart.hpp"
 #include "miniapps/gas/scene_folder.hpp"
@@ -42,7 +42,7 @@ void run_in(run::RunDirectory& directory, const GasScene& scene, device::Backend
             const MiniAppOptions& options, const std::filesystem::path& restart,
             run::ResultDocument& result) {
   const auto runtime = start_kokkos(options.kokkos);
-  device::start_ledger();
+  device::start_profiling();
   describe_device(result, scene.parameters, backend);
   Simulation simulation(scene, {backend, options.seed_mode, options.quiet, restart});
   directory.begin();

@@ -28,7 +28,7 @@ std::optional<Reference> run_reference(const GasScene& scene, device::Backend ba
 ExactSolution exact_solution(const GasScene& scene, double time, const Reference& reference);
 
 /// L1 (sum |e| dx), L2 (sqrt(sum e^2 dx)) and L-infinity norms of the error at the cell centres, for density,
-/// velocity and pressure, by the names of the scene's bars.
+/// velocity and pressure, by the names of the scene's tolerances.
 std::map<std::string, double> error_norms(gas::Solver& solver, const gas::Parameters& parameters,
                                           const ExactSolution& exact);
 

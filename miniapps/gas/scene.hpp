@@ -65,9 +65,9 @@ struct Target {
 struct Verify {
   std::optional<Exact> exact;
   std::optional<gas::Parameters> reference;  ///< the finer own run; set exactly if `exact` is reference
-  std::map<std::string, double> bars;        ///< by name: l1_density ... linf_pressure
+  std::map<std::string, double> tolerances;  ///< by name: l1_density ... linf_pressure
   std::optional<Target> max_density;         ///< of all cells at the end, kg/m^3
-  std::optional<double> conservation;        ///< bar of the relative change of mass, momentum, energy
+  std::optional<double> conservation;        ///< tolerance of the relative change of mass, momentum, energy
 };
 
 struct GasScene {

@@ -179,7 +179,7 @@ void declare_verify(Table& table, Verify& verify) {
       const std::string unit = quantity == "density" ? "kg/m^3" : quantity == "velocity" ? "m/s" : "Pa";
       const std::string measure = norm == "l1" ? unit + " m" : norm == "l2" ? unit + " m^(1/2)" : unit;
       const std::string name = std::string(norm).append("_").append(quantity);
-      table.value(name, scene::real_codec(verify.bars, name), "Largest error that passes")
+      table.value(name, scene::real_codec(verify.tolerances, name), "Largest error that passes")
           .unit(measure)
           .at_least(0.0)
           .when([&verify] { return verify.exact.has_value(); },

@@ -6,7 +6,7 @@
 
 #include "common/program/signals.hpp"
 #include "common/run/restart_file.hpp"
-#include "kernels/device/ledger.hpp"
+#include "kernels/device/profiling_counters.hpp"
 #include "kernels/device/runtime.hpp"
 #include "miniapps/gas/failure_text.hpp"
 #include "miniapps/gas/fields.hpp"
@@ -142,7 +142,7 @@ void Simulation::describe(run::ResultDocument& result) {
   result.timing.h2d_s = _settings.seed_mode ? phases.h2d : _h2d_s;
   result.timing.d2h_s = _settings.seed_mode ? phases.d2h : _d2h_s;
   result.timing.io_s = _io_s;
-  result.describe_ledger(device::ledger());
+  result.describe_ledger(device::profiling_counters());
 }
 
 }  // namespace drogue::gas_app

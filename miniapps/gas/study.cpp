@@ -4,7 +4,7 @@
 
 #include "common/study/axes.hpp"
 #include "common/study/study.hpp"
-#include "kernels/device/ledger.hpp"
+#include "kernels/device/profiling_counters.hpp"
 #include "miniapps/gas/repeated_run.hpp"
 #include "miniapps/gas/scheme_names.hpp"
 #include "miniapps/gas/simulation.hpp"
@@ -82,7 +82,7 @@ ExitCode run_study(const MiniAppOptions& options, const std::filesystem::path& f
   directory.begin();
   directory.write_scene(print_gas_scene(base));
   const auto runtime = start_kokkos(options.kokkos);
-  device::start_ledger();
+  device::start_profiling();
   run::ResultDocument facts = run::new_result("drogue-gas", base.name);
   describe_device(facts, base.parameters, backend);
 

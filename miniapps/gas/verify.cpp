@@ -35,7 +35,8 @@ ExitCode Simulation::verify(const run::RunDirectory* directory, run::ResultDocum
     if (directory != nullptr && !reference->x.empty() && !_scene.output.fields.empty())
       write_reference(_scene, *directory, *reference);
     result.errors = error_norms(*_solver, _scene.parameters, exact_solution(_scene, result.time, *reference));
-    for (const auto& [name, bar] : wanted.bars) result.add_check(name, result.errors.at(name), bar);
+    for (const auto& [name, tolerance] : wanted.tolerances)
+      result.add_check(name, result.errors.at(name), tolerance);
   }
   if (wanted.max_density) {
     double largest = 0.0;

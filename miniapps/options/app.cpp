@@ -13,7 +13,7 @@
 #include "common/program/signals.hpp"
 #include "common/run/output_path.hpp"
 #include "common/run/result_document.hpp"
-#include "kernels/device/ledger.hpp"
+#include "kernels/device/profiling_counters.hpp"
 #include "kernels/device/runtime.hpp"
 #include "miniapps/options/batch_run.hpp"
 #include "miniapps/options/batches.hpp"
@@ -93,7 +93,7 @@ ExitCode price_batch(Ranks& ranks, const Command& command, const std::filesystem
   ranks.together([&] {
     choose_backend(std::string(device::name(backend)));
     runtime = start_kokkos(command.kokkos);
-    device::start_ledger();
+    device::start_profiling();
     result.describe_device(std::string(device::name(backend)), device::device_facts());
     pricer = make_pricer(backend, command.settings, ranks);
   });

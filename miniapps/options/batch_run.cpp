@@ -27,7 +27,7 @@ void BatchRun::work(Desk& desk) {
     Piece last;
     last.leaves = true;
     last.spent = _spent;
-    last.spent.ledger = device::ledger();
+    last.spent.ledger = device::profiling_counters();
     desk.hand_in(std::move(last));
   };
   try {

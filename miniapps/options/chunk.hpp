@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "kernels/device/ledger.hpp"
+#include "kernels/device/profiling_counters.hpp"
 #include "kernels/options/pricer.hpp"
 
 namespace drogue::options_app {
@@ -40,7 +40,7 @@ struct Tally {
 struct Spent {
   options::Timing timing;
   double pricing = 0.0;  ///< s
-  device::Ledger ledger;
+  device::ProfilingCounters ledger;
 
   void add(const Spent& other);
 };

@@ -9,7 +9,7 @@
 #include "common/program/signals.hpp"
 #include "common/run/one_run.hpp"
 #include "common/scene/library.hpp"
-#include "kernels/device/ledger.hpp"
+#include "kernels/device/profiling_counters.hpp"
 #include "miniapps/springs/mesh_topology.hpp"
 #include "miniapps/springs/restart.hpp"
 #include "miniapps/springs/scene_folder.hpp"
@@ -41,7 +41,7 @@ void run_in(run::RunDirectory& directory, const SpringsScene& scene, device::Bac
             const MiniAppOptions& options, const std::filesystem::path& restart,
             run::ResultDocument& result) {
   const auto runtime = start_kokkos(options.kokkos);
-  device::start_ledger();
+  device::start_profiling();
   result.describe_device(std::string(device::name(backend)), device::device_facts());
   Simulation simulation(scene, {backend, options.seed_mode, options.quiet, restart, true, {}});
   directory.begin();

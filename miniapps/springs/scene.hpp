@@ -122,15 +122,15 @@ struct Output {
 struct Frequency {
   std::vector<double> mode;     ///< of a disk (diameters, circles) or of a string (number)
   std::optional<double> value;  ///< Hz; none: the closed form of the mode
-  double bar = 0.0;             ///< relative
+  double tolerance = 0.0;       ///< relative
   int probe = 0;
   std::string axis = "z";
 };
 
 /// How fast a front runs from the first probe to the second.
 struct FrontSpeed {
-  double value = 0.0;  ///< m/s
-  double bar = 0.0;    ///< relative
+  double value = 0.0;      ///< m/s
+  double tolerance = 0.0;  ///< relative
   std::string axis = "x";
 };
 

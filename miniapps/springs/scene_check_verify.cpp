@@ -48,9 +48,9 @@ void check_verify(const Table& root, const SpringsScene& scene) {
   if (verify.energy_drift)
     require(root, !meets, "verify.energy_drift",
             "a scene without contact, of which energy_balance counts the work");
-  for (const auto& [name, bar] : {std::pair{"verify.energy_drift", verify.energy_drift},
-                                  std::pair{"verify.energy_balance", verify.energy_balance}}) {
-    if (!bar) continue;
+  for (const auto& [name, tolerance] : {std::pair{"verify.energy_drift", verify.energy_drift},
+                                        std::pair{"verify.energy_balance", verify.energy_balance}}) {
+    if (!tolerance) continue;
     require(root, has_rows, name, rows);
     require(root, scene.damping.absolute == 0.0 && scene.damping.relative == 0.0, name,
             "a scene without damping");
@@ -63,9 +63,9 @@ void check_verify(const Table& root, const SpringsScene& scene) {
         });
     require(root, steady, name, "pins that stay and loads that do not change");
   }
-  for (const auto& [name, bar] : {std::pair{"verify.energy_balance", verify.energy_balance},
-                                  std::pair{"verify.intersections", verify.intersections}})
-    if (bar) require(root, meets, name, "contact.self or contact.objects");
+  for (const auto& [name, tolerance] : {std::pair{"verify.energy_balance", verify.energy_balance},
+                                        std::pair{"verify.intersections", verify.intersections}})
+    if (tolerance) require(root, meets, name, "contact.self or contact.objects");
   const bool has_level_set = std::ranges::any_of(scene.contact.objects, [](const ContactObject& object) {
     return object.kind == fabric::BodyKind::level_set;
   });
@@ -79,9 +79,9 @@ void check_verify(const Table& root, const SpringsScene& scene) {
             "contact.objects, none of them a level-set");
   if (verify.momentum) require(root, has_rows, "verify.momentum", rows);
   if (verify.angular_momentum) require(root, has_rows, "verify.angular_momentum", rows);
-  for (const auto& [name, bar] :
+  for (const auto& [name, tolerance] :
        {std::pair{"verify.young", verify.young}, std::pair{"verify.poisson", verify.poisson}}) {
-    if (!bar) continue;
+    if (!tolerance) continue;
     require(root, (source.strip || source.rectangle) && fabric::has_triangles(scene.fabric.material.model),
             name, "mesh.strip or mesh.rectangle, and model quadratic or biquadratic");
     require(root, std::ranges::any_of(scene.pins, [](const Pin& pin) { return !pin.motion.x.empty(); }), name,
@@ -89,18 +89,18 @@ void check_verify(const Table& root, const SpringsScene& scene) {
     require(root, even_line_stiffness(scene.mesh).has_value(), name,
             "reinforcements that run along x from end to end, with the same stiffness all the way");
   }
-  for (const auto& [name, bar] :
+  for (const auto& [name, tolerance] :
        {std::pair{"verify.hencky", verify.hencky}, std::pair{"verify.catenary", verify.catenary},
         std::pair{"verify.stretch", verify.stretch}})
-    if (bar) require(root, scene.reinforcements.empty(), name, "a scene without reinforcement");
+    if (tolerance) require(root, scene.reinforcements.empty(), name, "a scene without reinforcement");
   if (verify.hencky)
     require(root,
             source.disk && fabric::has_triangles(scene.fabric.material.model) && scene.loads.size() == 1 &&
                 constant_value(scene.loads[0].pressure),
             "verify.hencky", "mesh.disk, model quadratic or biquadratic, and one load, a constant pressure");
-  for (const auto& [name, bar] :
+  for (const auto& [name, tolerance] :
        {std::pair{"verify.catenary", verify.catenary}, std::pair{"verify.stretch", verify.stretch}})
-    if (bar)
+    if (tolerance)
       require(root, source.string && scene.loads.size() == 1 && !scene.loads[0].gravity.empty(), name,
               "mesh.string and one load, gravity");
   if (verify.frequency) {

@@ -11,41 +11,50 @@ const scene::Choices<std::string> axis_choices = {{"x", "x"}, {"y", "y"}, {"z", 
 }  // namespace
 
 void declare_verify(Table& table, Verify& verify) {
-  const auto bar = [&table](const std::string& name, std::optional<double>& place, const std::string& help) {
+  const auto tolerance = [&table](const std::string& name, std::optional<double>& place,
+                                  const std::string& help) {
     table.value(name, scene::real_codec(place), help).at_least(0.0);
   };
-  bar("energy_drift", verify.energy_drift,
+  tolerance(
+      "energy_drift", verify.energy_drift,
       "Largest change of the energy, over the largest kinetic energy that rows have or released energy would "
       "make, that passes");
-  bar("energy_balance", verify.energy_balance,
+  tolerance(
+      "energy_balance", verify.energy_balance,
       "The same after the work of contact and that of friction are taken off the energy; also what either "
       "gives");
-  bar("intersections", verify.intersections,
+  tolerance(
+      "intersections", verify.intersections,
       "Largest number of parts of cloth that meet one another or a body, at rows of history.csv and at the "
       "end, that passes: 0. Not with a level-set");
-  bar("penetration", verify.penetration,
+  tolerance(
+      "penetration", verify.penetration,
       "Largest part of contact.thickness that a vertex lacks of its distance from a body at the end that "
       "passes");
-  bar("momentum", verify.momentum,
-      "Largest change of the momentum over the largest sqrt(2 M K) that passes; M mass, K that energy");
-  bar("angular_momentum", verify.angular_momentum,
+  tolerance("momentum", verify.momentum,
+            "Largest change of the momentum over the largest sqrt(2 M K) that passes; M mass, K that energy");
+  tolerance(
+      "angular_momentum", verify.angular_momentum,
       "Largest change of the angular momentum over the largest R sqrt(2 M K) that passes; R extent of the "
       "mesh");
-  bar("equilibrium", verify.equilibrium,
+  tolerance(
+      "equilibrium", verify.equilibrium,
       "Largest force along a free axis at the end over the largest one along a held axis, or of a dead load, "
       "that passes");
-  bar("young", verify.young,
+  tolerance(
+      "young", verify.young,
       "Largest relative error of the apparent modulus of a rectangle or strip pulled along x that passes");
-  bar("poisson", verify.poisson,
-      "Largest difference of the apparent Poisson's ratio from the given one that passes");
-  bar("hencky", verify.hencky,
+  tolerance("poisson", verify.poisson,
+            "Largest difference of the apparent Poisson's ratio from the given one that passes");
+  tolerance(
+      "hencky", verify.hencky,
       "Largest relative error of the deflection at the centre of a clamped disk under a dead pressure that "
       "passes");
-  bar("catenary", verify.catenary,
-      "Largest distance of a vertex of a hanging string from the elastic catenary, over the span, that "
-      "passes");
-  bar("stretch", verify.stretch,
-      "Largest relative error of the stretch of a string that hangs from its first end that passes");
+  tolerance("catenary", verify.catenary,
+            "Largest distance of a vertex of a hanging string from the elastic catenary, over the span, that "
+            "passes");
+  tolerance("stretch", verify.stretch,
+            "Largest relative error of the stretch of a string that hangs from its first end that passes");
   table.optional_table(
       "frequency", verify.frequency,
       [](Table& t, Frequency& value) {
@@ -72,7 +81,7 @@ void declare_verify(Table& table, Verify& verify) {
             .unit("Hz")
             .above(0.0)
             .default_text("closed form of the mode");
-        t.value("bar", scene::real_codec(value.bar), "Largest relative error that passes")
+        t.value("tolerance", scene::real_codec(value.tolerance), "Largest relative error that passes")
             .at_least(0.0)
             .required();
         t.value("probe", scene::integer_codec(value.probe), "Number of the probe, from 0").range(0, 1e6);
@@ -86,7 +95,7 @@ void declare_verify(Table& table, Verify& verify) {
             .unit("m/s")
             .above(0.0)
             .required();
-        t.value("bar", scene::real_codec(value.bar), "Largest relative error that passes")
+        t.value("tolerance", scene::real_codec(value.tolerance), "Largest relative error that passes")
             .at_least(0.0)
             .required();
         t.value("axis", scene::choice_codec(value.axis, axis_choices),

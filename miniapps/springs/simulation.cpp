@@ -8,7 +8,7 @@
 #include "common/program/signals.hpp"
 #include "common/run/restart_file.hpp"
 #include "common/scene/node.hpp"
-#include "kernels/device/ledger.hpp"
+#include "kernels/device/profiling_counters.hpp"
 #include "kernels/device/runtime.hpp"
 #include "kernels/fabric/contact_parts.hpp"
 
@@ -312,7 +312,7 @@ void Simulation::describe(run::ResultDocument& result) const {
   result.timing.h2d_s = _h2d_s;
   result.timing.d2h_s = _d2h_s;
   result.timing.io_s = _io_s;
-  result.describe_ledger(device::ledger());
+  result.describe_ledger(device::profiling_counters());
 }
 
 }  // namespace drogue::springs_app

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "common/study/study.hpp"
-#include "kernels/device/ledger.hpp"
+#include "kernels/device/profiling_counters.hpp"
 #include "miniapps/springs/app.hpp"
 #include "miniapps/springs/repeated_run.hpp"
 #include "miniapps/springs/samples.hpp"
@@ -49,7 +49,7 @@ ExitCode run_study(const MiniAppOptions& options, const std::filesystem::path& f
   directory.begin();
   directory.write_scene(print_springs_scene(base));
   const auto runtime = start_kokkos(options.kokkos);
-  device::start_ledger();
+  device::start_profiling();
   run::ResultDocument facts = run::new_result("drogue-springs", base.name);
   facts.describe_device(std::string(device::name(backend)), device::device_facts());
 

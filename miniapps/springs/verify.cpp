@@ -226,16 +226,16 @@ void verify(const SpringsScene& scene, const FinalState& state, const std::files
                             wanted.energy_balance || wanted.intersections || wanted.momentum ||
                             wanted.angular_momentum;
   const History history = asks_history ? read_history(history_file) : History{};
-  const auto add = [&result](const std::string& name, double error, double bar) {
+  const auto add = [&result](const std::string& name, double error, double tolerance) {
     result.errors[name] = error;
-    result.add_check(name, error, bar);
+    result.add_check(name, error, tolerance);
   };
   if (wanted.frequency) {
     const Frequency& f = *wanted.frequency;
     const auto& column = history.at("probe_" + std::to_string(f.probe) + "_" + f.axis);
     add("frequency",
         relative_error(fitted_frequency(history.at("time"), column), expected_frequency(scene, state)),
-        f.bar);
+        f.tolerance);
   }
   if (wanted.hencky) add("hencky", hencky_error(scene, state), *wanted.hencky);
   if (wanted.catenary) add("catenary", catenary_error(scene, state), *wanted.catenary);
@@ -253,7 +253,7 @@ void verify(const SpringsScene& scene, const FinalState& state, const std::files
   }
   if (wanted.front_speed)
     add("front_speed", relative_error(front_speed(scene, history), wanted.front_speed->value),
-        wanted.front_speed->bar);
+        wanted.front_speed->tolerance);
   if (wanted.equilibrium) add("equilibrium", imbalance(state), *wanted.equilibrium);
   if (wanted.energy_drift) add("energy_drift", energy_drift(history), *wanted.energy_drift);
   if (wanted.energy_balance) add("energy_balance", energy_imbalance(history), *wanted.energy_balance);

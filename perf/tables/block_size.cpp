@@ -24,7 +24,7 @@ Case fused_case(const std::string& name, device::Backend backend, const gas::Par
             return sod::steps(p, **solver, fused_steps);
           },
           [=] { return sod::l1_error(p, **solver); },
-          sod::bar(p)};
+          sod::tolerance(p)};
 }
 
 enum class Form { seed, step };

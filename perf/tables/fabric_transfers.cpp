@@ -64,7 +64,7 @@ Case case_of(device::Backend backend, const FabricRow& row) {
                           [=] { return run->parts; }};
           },
           [=] { return sheet::energy_drift(run->p, run->state); },
-          sheet::bar};
+          sheet::tolerance};
 }
 
 nlohmann::json facts_of(device::Backend backend, const FabricRow& row, const Record& record) {

@@ -19,7 +19,7 @@ struct OptionsLine {
 /// A put of the largest meshes takes seconds, and their scheme's steps rise with the mesh.
 constexpr int rounds_kept = 5, rounds_to_warm_up = 1;
 /// The seed scheme's own choices (docs/options.md) cost accuracy at mesh 128.
-constexpr double seed_bar = 2e-3;
+constexpr double seed_tolerance = 2e-3;
 
 std::vector<OptionsLine> options_lines(bool quick) {
   std::vector<OptionsLine> lines;
@@ -40,7 +40,7 @@ Case case_of(device::Backend backend, const OptionsLine& line) {
                            std::to_string(line.printed.mesh);
   return puts::batch(name, backend, static_cast<std::size_t>(line.printed.options),
                      {.method = line.method, .mesh = line.printed.mesh, .timed_apart = true},
-                     line.method == options::Method::seed ? seed_bar : puts::bar);
+                     line.method == options::Method::seed ? seed_tolerance : puts::tolerance);
 }
 
 nlohmann::json facts_of(device::Backend backend, const OptionsLine& line, const Record& record) {

@@ -36,7 +36,7 @@ Case seed_case(const std::string& name, const std::string& bound, device::Backen
                 }};
           },
           [=] { return sod::l1_error(p, **solver); },
-          sod::bar(p)};
+          sod::tolerance(p)};
 }
 
 }  // namespace drogue::perf

@@ -98,11 +98,11 @@ def table_row(run: SceneRun) -> str:
     check, result = run.main_check, run.result
     name = check_label(check.get("name", ""))
     error = f"{name} {check['value']:.3g}" if check.get("value") is not None else "-"
-    bar = f"{check['bar']:.3g}" if check else "-"
+    tolerance = f"{check['tolerance']:.3g}" if check else "-"
     time = seconds(result.get("timing", {}).get("compute_s"))
     end = "" if run.passed else "FAILED"
     return _ROW.format(
-        run.name, result.get("backend", "-"), result.get("steps", "-"), error, bar, time, end
+        run.name, result.get("backend", "-"), result.get("steps", "-"), error, tolerance, time, end
     ).rstrip()
 
 
@@ -139,7 +139,7 @@ def demo(words=None) -> int:
     """Exit code 0 if all scenes passed and were drawn, else that of the first that did not."""
     arguments = _arguments(words)
     runs = _chosen(arguments)
-    print(_ROW.format("scene", "backend", "steps", "error", "bar", "time", "").rstrip())
+    print(_ROW.format("scene", "backend", "steps", "error", "tolerance", "time", "").rstrip())
     for run in runs:
         run.directory.parent.mkdir(parents=True, exist_ok=True)
         program = arguments.bin / run.app.program

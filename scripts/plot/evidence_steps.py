@@ -98,8 +98,8 @@ def measured(goal: Goal, record: Record, beside: Record | None) -> _Interval | N
 def verdict(goal: Goal, value: float) -> str:
     """`goal met`, `stretch met` or `missed by N %`, of the median."""
 
-    def reaches(bar: float) -> bool:
-        return value >= bar if goal.measure in HIGHER_IS_BETTER else value <= bar
+    def reaches(tolerance: float) -> bool:
+        return value >= tolerance if goal.measure in HIGHER_IS_BETTER else value <= tolerance
 
     if goal.stretch is not None and reaches(goal.stretch):
         return "stretch met"
@@ -142,19 +142,19 @@ def _with_interval(values: _Interval) -> str:
 
 
 def _goal_row(goal: Goal, record: Record, of_run: dict[tuple, Record]) -> list[Cell | str]:
-    bars = ["" if bar is None else page.number(bar) for bar in (goal.probe, goal.goal, goal.stretch)]
+    tolerances = ["" if tolerance is None else page.number(tolerance) for tolerance in (goal.probe, goal.goal, goal.stretch)]
     values = measured(goal, record, of_run.get((goal.beside, *record.run)))
     if values is None:
         return [
             _what(goal, record),
             goal.measure,
             "",
-            *bars,
+            *tolerances,
             f"{_short(goal.beside)} is not in the same run",
         ]
     words = verdict(goal, values[0])
     return [
-        _what(goal, record), goal.measure, _with_interval(values), *bars,
+        _what(goal, record), goal.measure, _with_interval(values), *tolerances,
         Cell(words, "bad" if words.startswith("missed") else "good"),
     ]  # fmt: skip
 

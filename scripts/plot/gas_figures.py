@@ -115,7 +115,7 @@ def set_range(axes, name: str, arrays) -> None:
 def _checks_in_words(run: Run) -> str:
     """What was verified, for a picture without an error panel."""
     return "".join(
-        f";  {style.check_label(check['name'])} {style.number(check['value'])} (bar {style.number(check['bar'])})"
+        f";  {style.check_label(check['name'])} {style.number(check['value'])} (tolerance {style.number(check['tolerance'])})"
         for check in run.result.get("checks", [])
         if check["name"] != "conservation" and check["value"] is not None
     )
@@ -126,9 +126,9 @@ def _error_title(run: Run, name: str) -> str:
     value = run.result.get("errors", {}).get(norm)
     if value is None:
         return "|error|"
-    bars = [check["bar"] for check in run.result.get("checks", []) if check["name"] == norm]
-    bar = f" (bar {style.number(bars[0])})" if bars else ""
-    return rf"|error|,  $L_1$ = {style.number(value)}{bar}"
+    tolerances = [check["tolerance"] for check in run.result.get("checks", []) if check["name"] == norm]
+    tolerance = f" (tolerance {style.number(tolerances[0])})" if tolerances else ""
+    return rf"|error|,  $L_1$ = {style.number(value)}{tolerance}"
 
 
 def _draw_error(axes, view: View, snapshot: Snapshot, name: str, error: np.ndarray, title: str) -> None:
@@ -201,9 +201,9 @@ def space_time_figure(view: View, name: str):
     image = axes.pcolormesh(_edges(x), edges, values, cmap="viridis", norm=norm, rasterized=True)
     axes.grid(False)
     item = snapshots[-1].fields[name]
-    bar = figure.colorbar(image, ax=axes, pad=0.03, aspect=28)
-    bar.outline.set_visible(False)
-    bar.ax.set_title(style.axis_label(name, item.units), fontsize=8.5, pad=6, loc="center")
+    tolerance = figure.colorbar(image, ax=axes, pad=0.03, aspect=28)
+    tolerance.outline.set_visible(False)
+    tolerance.ax.set_title(style.axis_label(name, item.units), fontsize=8.5, pad=6, loc="center")
     axes.set_xlabel(view.x_label)
     axes.set_ylabel("time (s)")
     figure.tight_layout(rect=(0, 0, 1, 1 - 0.48 / 3.6))

@@ -144,9 +144,9 @@ class Picture:
             axes.set_xlabel(style.axis_label(view.labels[0], "m"))
             axes.set_ylabel(style.axis_label(view.labels[1], "m"))
         extend = "max" if np.nanmax(values) > self._map.norm.vmax else "neither"
-        bar = self.figure.colorbar(self._map, ax=axes, shrink=0.8, pad=0.03, extend=extend)
-        bar.set_label(style.axis_label(*view.quantity))
-        bar.outline.set_visible(False)
+        tolerance = self.figure.colorbar(self._map, ax=axes, shrink=0.8, pad=0.03, extend=extend)
+        tolerance.set_label(style.axis_label(*view.quantity))
+        tolerance.outline.set_visible(False)
         self.figure.subplots_adjust(left=0.14, right=0.94, top=0.86, bottom=0.12)
         self._caption = style.heading(self.figure, view.run.name, "")
 
@@ -197,7 +197,7 @@ def _checks(run: Run) -> str:
     if not checks or checks[0]["value"] is None:
         return ""
     check = checks[0]
-    return f", {style.check_label(check['name'])} {check['value']:.2g} (bar {check['bar']:.2g})"
+    return f", {style.check_label(check['name'])} {check['value']:.2g} (tolerance {check['tolerance']:.2g})"
 
 
 def figure(view: View, snapshot: Snapshot):

@@ -1,4 +1,4 @@
-"""Every check of the program is shown to fail: a bar below what the run reaches ends in exit code 5."""
+"""Every check of the program is shown to fail: a tolerance below what the run reaches ends in exit code 5."""
 
 import os
 import re
@@ -14,18 +14,18 @@ COARSE = ["mesh.cells=50", "verify.l1_density=1.0", "output.times=[0.4]"]
 
 
 class Fault(gas_program.GasTest):
-    def assert_fails(self, scene, name, bar, *words, sets=()):
-        """The bar is one that no run of the scene meets; message, result.json and files tell so."""
+    def assert_fails(self, scene, name, tolerance, *words, sets=()):
+        """The tolerance is one that no run of the scene meets; message, result.json and files tell so."""
         run = self.expect(5, scene, "--overwrite", "--out", "run", "--backend", "serial", *words, sets=sets)
-        found = re.search(rf"{name} is (\S+), above its bar (\S+)$", run.stderr.strip())
+        found = re.search(rf"{name} is (\S+), above its tolerance (\S+)$", run.stderr.strip())
         self.assertTrue(found, run.stderr)
-        self.assertEqual(bar, float(found[2]))
-        self.assertGreater(float(found[1]), bar)
+        self.assertEqual(tolerance, float(found[2]))
+        self.assertGreater(float(found[1]), tolerance)
         told = self.result("run")
         self.assertEqual(("verification-failed", 5), (told["status"], told["exit_code"]))
         self.assertIn(told["message"], run.stderr)
         check = next(check for check in told["checks"] if check["name"] == name)
-        self.assertEqual((False, bar), (check["passed"], check["bar"]))
+        self.assertEqual((False, tolerance), (check["passed"], check["tolerance"]))
         self.assertAlmostEqual(check["value"], float(found[1]), delta=1e-5 * check["value"])
         others = [other for other in told["checks"] if other is not check]
         self.assertTrue(all(other["passed"] for other in others), others)
@@ -62,7 +62,7 @@ class Fault(gas_program.GasTest):
         self.assert_fails("sedov", "max_density", 1e-6, sets=["verify.max_density.tolerance=1e-6"])
 
     def test_a_wrong_scheme_is_caught(self):
-        """As shipped but for the scheme, which does not meet the bar of Z."""
+        """As shipped but for the scheme, which does not meet the tolerance of Z."""
         self.assert_fails("sod", "l1_density", 0.00518, sets=['scheme.weno="js"', "output.times=[0.4]"])
 
     def test_a_wrong_gas_is_caught(self):

@@ -1,4 +1,4 @@
-"""The rows of bars.csv and failures.csv, and the assignments that make a shipped scene one of them."""
+"""The rows of tolerances.csv and failures.csv, and the assignments that make a shipped scene one of them."""
 
 import csv
 import pathlib
@@ -33,11 +33,11 @@ def label(row):
 
 
 def bar_sets(row):
-    """`row_sets` and the bar itself: 5 % above the error, or 2 % around the largest density."""
-    bar = float(row["bar"])
+    """`row_sets` and the tolerance itself: 5 % above the error, or 2 % around the largest density."""
+    tolerance = float(row["tolerance"])
     if row["quantity"] == "max_density":
-        return row_sets(row) + [f"verify.max_density.value={bar}", "verify.max_density.tolerance=0.02"]
-    return row_sets(row) + [f"verify.{row['quantity']}={1.05 * bar!r}"]
+        return row_sets(row) + [f"verify.max_density.value={tolerance}", "verify.max_density.tolerance=0.02"]
+    return row_sets(row) + [f"verify.{row['quantity']}={1.05 * tolerance!r}"]
 
 
 def unverified(test, case):

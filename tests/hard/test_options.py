@@ -1,4 +1,4 @@
-"""The hard cases of drogue-options: finite differences meet their bars against the Fourier methods, whose prices are kept."""
+"""The hard cases of drogue-options: finite differences meet their tolerances against the Fourier methods, whose prices are kept."""
 
 import csv
 import os
@@ -32,12 +32,12 @@ class HardCases(options_program.OptionsTest):
         self.assertEqual(list(EXPECTED), list(CONTRACTS))
         self.assertGreaterEqual(len(EXPECTED), 40)
 
-    def test_bars(self):
+    def test_tolerances(self):
         for name, expected in EXPECTED.items():
             if expected["price"]:
                 with self.subTest(name):
-                    bar = float(expected["bar"]) + float(expected["uncertainty"])
-                    self.assertAlmostEqual(float(expected["price"]), float(self.told[name]["price"]), delta=bar)
+                    tolerance = float(expected["tolerance"]) + float(expected["uncertainty"])
+                    self.assertAlmostEqual(float(expected["price"]), float(self.told[name]["price"]), delta=tolerance)
 
     def test_errors_cover_the_truth(self):
         """In nine of ten rows."""

@@ -1,4 +1,4 @@
-"""Every shipped scene meets its own bar, as it is shipped."""
+"""Every shipped scene meets its own tolerance, as it is shipped."""
 
 import os
 import sys
@@ -19,7 +19,7 @@ class Shipped(gas_program.GasTest):
                 self.assertEqual(("ok", backend, scene), (told["status"], told["backend"], told["scene"]))
                 self.assertIn("conservation", [check["name"] for check in told["checks"]])
                 self.assertGreaterEqual(len(told["checks"]), 2)
-                self.assertTrue(all(check["passed"] and check["value"] <= check["bar"] for check in told["checks"]))
+                self.assertTrue(all(check["passed"] and check["value"] <= check["tolerance"] for check in told["checks"]))
                 outputs = gas_program.fields(self.folder / "out" / scene).children("/steps")
                 self.assertGreaterEqual(len(outputs), 2)
 

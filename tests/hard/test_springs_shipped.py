@@ -1,4 +1,4 @@
-"""Every shipped scene of cloth and strings meets its own bars, as it is shipped."""
+"""Every shipped scene of cloth and strings meets its own tolerances, as it is shipped."""
 
 import math
 import os
@@ -25,7 +25,7 @@ class Shipped(springs_program.SpringsTest):
                 told = self.result(f"out/{scene}")
                 self.assertEqual(("ok", backend, scene), (told["status"], told["backend"], told["scene"]))
                 self.assertGreaterEqual(len(told["checks"]), 1)
-                self.assertTrue(all(check["passed"] and check["value"] <= check["bar"] for check in told["checks"]))
+                self.assertTrue(all(check["passed"] and check["value"] <= check["tolerance"] for check in told["checks"]))
 
     def test_serial(self):
         self.assert_all_pass("serial", springs_program.SCENES)

@@ -13,12 +13,12 @@ class Ceilings : public ::testing::TestWithParam<Ceiling> {};
 TEST_P(Ceilings, ResultsAreThoseOfTheClosedForm) {
   const auto kernel = create_ceiling(testing::tested_backend, GetParam());
   // The chains round at every step; the triads add small integers.
-  const double bar = GetParam() == Ceiling::fp64 ? 1e-9 : 0.0;
+  const double tolerance = GetParam() == Ceiling::fp64 ? 1e-9 : 0.0;
   for (int round = 0; round < 2; ++round) {
     kernel->reset();
     EXPECT_GT(kernel->error(), 0.1) << "nothing has run yet";
     kernel->run();
-    EXPECT_LE(kernel->error(), bar);
+    EXPECT_LE(kernel->error(), tolerance);
   }
   EXPECT_GT(kernel->flops(), 0.0);
   EXPECT_GT(kernel->bytes(), 0.0);

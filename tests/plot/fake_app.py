@@ -24,14 +24,14 @@ def main():
     fails = name == os.environ.get("FAKE_FAILURE")
     value = 2 * _BAR if fails else 0.8 * _BAR
     checks = [
-        {"name": "conservation", "value": 3e-16, "bar": 1e-12, "passed": True},
-        {"name": "l1_density", "value": value, "bar": _BAR, "passed": not fails},
+        {"name": "conservation", "value": 3e-16, "tolerance": 1e-12, "passed": True},
+        {"name": "l1_density", "value": value, "tolerance": _BAR, "passed": not fails},
     ]
     result = {
         "version": "0.1.0", "git": "abc", "backend": "openmp", "threads": 2, "steps": 1234, "checks": checks,
         "errors": {"l1_density": value}, "limiter": {"touches": 0}, "timing": {"compute_s": 0.0123},
         "provenance": {"cpu": "a processor", "gpu": "", "compiler": "gcc", "date": "today"},
-        "message": f"l1_density is {value:g}, above its bar {_BAR:g}." if fails else "",
+        "message": f"l1_density is {value:g}, above its tolerance {_BAR:g}." if fails else "",
     }  # fmt: skip
     (directory / "result.json").write_text(json.dumps(result))
     return 5 if fails else 0

@@ -89,7 +89,7 @@ def write_sod(directory, cells=200, snapshots=20):
     x = -1 + (np.arange(cells) + 0.5) * 2 / cells
     write_fields(directory / "fields.h5", x, np.linspace(0, 0.4, snapshots + 1)[1:], smeared_sod)
     (directory / "scene.toml").write_text(SOD_SCENE.format(cells=cells))
-    checks = [{"name": "l1_density", "value": 4.93e-3, "bar": 6.5e-3, "passed": True}]
+    checks = [{"name": "l1_density", "value": 4.93e-3, "tolerance": 6.5e-3, "passed": True}]
     errors = {"l1_density": 4.93e-3, "l1_velocity": 8.2e-3, "l1_pressure": 3.6e-3}
     (directory / "result.json").write_text(json.dumps({"status": "ok", "checks": checks, "errors": errors}))
     write_history(directory / "history.csv")

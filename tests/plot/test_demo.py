@@ -40,7 +40,7 @@ class Demo(unittest.TestCase):
         done = self._demo()
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         rows = [re.split(r"\s{2,}", line) for line in done.stdout.splitlines()[:3]]
-        self.assertEqual(rows[0], ["scene", "backend", "steps", "error", "bar", "time"])
+        self.assertEqual(rows[0], ["scene", "backend", "steps", "error", "tolerance", "time"])
         self.assertEqual(rows[1], ["sod", "openmp", "1234", "l1 density 0.0052", "0.0065", "12.3 ms"])
         self.assertEqual(rows[2][0], "lax")
         page = (self.folder / "out/index.html").read_text()
@@ -56,12 +56,12 @@ class Demo(unittest.TestCase):
         done = self._demo("lax", failure="lax")
         self.assertEqual(done.returncode, 5)
         self.assertEqual(
-            done.stderr, "demo: drogue-gas lax failed: l1_density is 0.013, above its bar 0.0065.\n"
+            done.stderr, "demo: drogue-gas lax failed: l1_density is 0.013, above its tolerance 0.0065.\n"
         )
         self.assertRegex(done.stdout, r"lax .*FAILED")
         page = (self.folder / "out/index.html").read_text()
         self.assertIn("0 of 1 scenes verified", page)
-        self.assertIn("above its bar 0.0065", page)
+        self.assertIn("above its tolerance 0.0065", page)
 
     def test_unknown_scene(self):
         done = self._demo("sood")

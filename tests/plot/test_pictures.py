@@ -202,13 +202,13 @@ class Pictures(unittest.TestCase):
 
     def test_largest_density_is_told_as_a_deviation(self):
         run = synthetic.write_sod(self.folder / "sedov", cells=20, snapshots=1)
-        check = {"name": "max_density", "value": 1.2e-3, "bar": 0.02, "passed": True}
+        check = {"name": "max_density", "value": 1.2e-3, "tolerance": 0.02, "passed": True}
         (run / "result.json").write_text(json.dumps({"checks": [check]}))
         (run / "scene.toml").write_text("")
         loaded = read(run)
         figure = fields_figure(View(loaded, ["rho"], exact_solution(loaded)), loaded.snapshots[-1])
         captions = "".join(text.get_text() for text in figure.texts)
-        self.assertRegex(captions, r"max density off by 1\.2.* \(bar 0\.02\)")
+        self.assertRegex(captions, r"max density off by 1\.2.* \(tolerance 0\.02\)")
 
 
 class Refusals(unittest.TestCase):

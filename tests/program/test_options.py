@@ -149,8 +149,8 @@ class Prices(options_program.OptionsTest):
         self.expect(0, "price", "example", "--quiet", "--out", "pide.csv")
         self.expect(0, "price", "example", "--quiet", "--out", "cos.csv", *FAST)
         for one, other in zip(self.prices("pide.csv"), self.prices("cos.csv"), strict=True):
-            bar = float(one["error"]) + float(other["error"])
-            self.assertAlmostEqual(float(one["price"]), float(other["price"]), delta=bar, msg=one["id"])
+            tolerance = float(one["error"]) + float(other["error"])
+            self.assertAlmostEqual(float(one["price"]), float(other["price"]), delta=tolerance, msg=one["id"])
 
     def test_the_dissertations_scheme(self):
         self.price(0, batch([row("a", style="american")]), "--method", "seed", "--mesh", "128", "--steps", "128")

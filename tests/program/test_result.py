@@ -51,7 +51,7 @@ class Result(gas_program.GasTest):
         self.assertEqual(NORMS, set(told["errors"]))
         self.assertEqual({"l1_density", "conservation"}, {check["name"] for check in told["checks"]})
         for check in told["checks"]:
-            self.assertEqual({"name", "value", "bar", "passed"}, set(check))
+            self.assertEqual({"name", "value", "tolerance", "passed"}, set(check))
         self.assertTrue(0.0 < told["dt_min"] <= told["dt_max"] < 0.4)
         self.assertEqual({"touches": 0, "cells": 0, "redone_steps": 0}, told["limiter"])
         self.assertTrue(0.0 < told["timing"]["compute_s"] < told["timing"]["wall_s"])

@@ -135,7 +135,7 @@ class Directory(gas_program.GasTest):
 class Words(gas_program.GasTest):
     def test_summary(self):
         text = self.expect(0, "sod", "--backend", "serial", sets=COARSE).stdout
-        for word in ("sod on serial", "steps", "l1_density", "bar 1", "passed", "conservation", "out/sod"):
+        for word in ("sod on serial", "steps", "l1_density", "tolerance 1", "passed", "conservation", "out/sod"):
             self.assertIn(word, text)
 
     def test_quiet(self):

@@ -416,7 +416,7 @@ class Failures(springs_program.SpringsTest):
             with self.subTest(scene):
                 process = self.expect(5, scene, "--quiet", "--backend", "serial", "--overwrite",
                                       sets=[*sets, *small.get(scene, [])])
-                self.assertIn("above its bar", process.stderr)
+                self.assertIn("above its tolerance", process.stderr)
                 checks = json.loads((self.folder / f"out/{scene}/result.json").read_text(encoding="utf-8"))["checks"]
                 self.assertTrue(any(not check["passed"] for check in checks))
 
@@ -488,7 +488,7 @@ class Failures(springs_program.SpringsTest):
         """Frequencies of the drum, and of one with equal masses, which is of first order only."""
         def error(vertices, mass):
             self.expect(0, "drum", "--quiet", "--backend", "serial", "--overwrite", sets=[
-                f"mesh.disk.vertices={vertices}", f"material.mass={mass}", "verify.frequency.bar=1",
+                f"mesh.disk.vertices={vertices}", f"material.mass={mass}", "verify.frequency.tolerance=1",
                 "verify.energy_drift=1", "output.fields=[]"])
             return self.result("out/drum")["errors"]["frequency"]
 

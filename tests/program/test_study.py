@@ -123,7 +123,7 @@ class GasStudy(StudyTest):
 
 
 class SpringsStudy(springs_program.SpringsTest, StudyTest):
-    VERIFY = "verify={frequency={mode=[0,1],bar=1},energy_drift=1}"
+    VERIFY = "verify={frequency={mode=[0,1],tolerance=1},energy_drift=1}"
     LEVEL = "load=[{gravity=[0,0,0]}]"
 
     def difference(self, coarse, fine, name):

@@ -7,11 +7,12 @@
 #include <thread>
 #include <vector>
 
-#include "kernels/device/resident_grid.hpp"
+#include "kernels/device/persistent_kernel.hpp"
 
 namespace drogue::testing {
 
-/// A resident grid of host threads: what device::ResidentMember promises, and a watch over its two boards.
+/// A persistent kernel of host threads: what device::PersistentMember promises, and a watch over its two
+/// boards.
 class EmulatedGrid {
  public:
   EmulatedGrid(int teams, int team_size, std::size_t scratch_bytes, std::size_t places)
@@ -41,15 +42,15 @@ class EmulatedGrid {
       return place;
     }
 
-    void post(std::uint64_t epoch, std::size_t place, const device::Posted& numbers) const {
+    void post(std::uint64_t epoch, std::size_t place, const device::HaloValue& numbers) const {
       Place& at = _grid.at(epoch, place);
       for (std::size_t k = 0; k < 3; ++k) at.value[k] = numbers.value[k];
       at.epoch = epoch;
     }
-    [[nodiscard]] device::Posted collect(std::uint64_t epoch, std::size_t place) const {
+    [[nodiscard]] device::HaloValue collect(std::uint64_t epoch, std::size_t place) const {
       const Place& at = _grid.at(epoch, place);
       while (at.epoch < epoch) std::this_thread::yield();
-      const device::Posted numbers{{at.value[0], at.value[1], at.value[2]}};
+      const device::HaloValue numbers{{at.value[0], at.value[1], at.value[2]}};
       if (at.epoch != epoch) _grid._overwritten = true;
       return numbers;
     }

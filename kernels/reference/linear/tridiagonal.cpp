@@ -11,9 +11,9 @@ std::vector<double> solve_tridiagonal(const std::vector<double>& below, const st
   const std::size_t n = diagonal.size();
   // Columns i, i + 1, i + 2 of row i, and its right side: where rows are exchanged a third one fills.
   using Row = std::array<long double, 4>;
-  const auto row = [&](std::size_t i, bool from_below) {
+  const auto row = [&](std::size_t i, bool shuffle_up) {
     const long double after = i + 1 < n ? above[i] : 0.0L;
-    return from_below ? Row{below[i], diagonal[i], after, right[i]} : Row{diagonal[i], after, 0.0L, right[i]};
+    return shuffle_up ? Row{below[i], diagonal[i], after, right[i]} : Row{diagonal[i], after, 0.0L, right[i]};
   };
   std::vector<Row> rows(n);
   if (n > 0) rows[0] = row(0, false);

@@ -53,10 +53,10 @@ TEST(FabricForce, IsTheDerivativeOfTheEnergy) {
         const std::vector<Vector> mine = kernel_forces(p, now),
                                   exact = reference::forces(p.material, mesh, now);
         // What is rounded are tensions and squared lengths of order one beside changes of order `size`.
-        const double bar = 1e-13 * (largest(exact) + p.material.membrane_modulus);
+        const double tolerance = 1e-13 * (largest(exact) + p.material.membrane_modulus);
         for (std::size_t i = 0; i < now.size(); ++i)
           for (std::size_t axis = 0; axis < 3; ++axis)
-            ASSERT_NEAR(mine[i][axis], exact[i][axis], bar)
+            ASSERT_NEAR(mine[i][axis], exact[i][axis], tolerance)
                 << "model " << static_cast<int>(model) << " vertex " << i;
       }
 }

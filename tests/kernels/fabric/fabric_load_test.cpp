@@ -55,9 +55,9 @@ std::vector<Vector> forces_at(const Parameters& p, const std::vector<Vector>& x,
   return forces;
 }
 
-void expect_near(const std::vector<Vector>& a, const std::vector<Vector>& b, double bar) {
+void expect_near(const std::vector<Vector>& a, const std::vector<Vector>& b, double tolerance) {
   for (std::size_t i = 0; i < a.size(); ++i)
-    for (std::size_t axis = 0; axis < 3; ++axis) ASSERT_NEAR(a[i][axis], b[i][axis], bar) << i;
+    for (std::size_t axis = 0; axis < 3; ++axis) ASSERT_NEAR(a[i][axis], b[i][axis], tolerance) << i;
 }
 
 TEST(FabricLoad, LinesMayEachHaveTheirStiffness) {

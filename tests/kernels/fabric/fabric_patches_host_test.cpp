@@ -3,8 +3,8 @@
 #include <map>
 #include <set>
 
-#include "kernels/fabric/resident_pairs.hpp"
-#include "kernels/fabric/resident_rings.hpp"
+#include "kernels/fabric/persistent_pairs.hpp"
+#include "kernels/fabric/persistent_rings.hpp"
 #include "kernels/fabric/solver.hpp"
 #include "tests/support/emulated_grid.hpp"
 #include "tests/support/fabric_mesh.hpp"
@@ -138,7 +138,7 @@ Parameters cloth_of(const Mesh& mesh) {
   return p;
 }
 
-/// Steps as a resident grid takes them, in launches of `cuts` steps.
+/// Steps as a persistent kernel takes them, in launches of `cuts` steps.
 template <Law law, template <class, Law> class Functor>
 void run_emulated(const Parameters& p, int count, const std::vector<std::int64_t>& cuts,
                   std::vector<Vector>& x, std::vector<Vector>& v) {
@@ -213,10 +213,10 @@ void expect_the_same_steps() {
 }
 
 TEST(FabricPatches, TakeTheStepsOfTheOtherDrivers) {
-  expect_the_same_steps<Law{Model::biquadratic}, ResidentRingsFunctor>();
-  expect_the_same_steps<Law{Model::biquadratic}, ResidentPairsFunctor>();
-  expect_the_same_steps<Law{Model::edge}, ResidentRingsFunctor>();
-  expect_the_same_steps<Law{Model::edge}, ResidentPairsFunctor>();
+  expect_the_same_steps<Law{Model::biquadratic}, PersistentRingsFunctor>();
+  expect_the_same_steps<Law{Model::biquadratic}, PersistentPairsFunctor>();
+  expect_the_same_steps<Law{Model::edge}, PersistentRingsFunctor>();
+  expect_the_same_steps<Law{Model::edge}, PersistentPairsFunctor>();
 }
 
 }  // namespace

@@ -65,9 +65,9 @@ Tensor tensor_of(const Stress& s, const Vector& n) {
   return t;
 }
 
-void expect_same(const Tensor& a, const Tensor& b, double bar) {
+void expect_same(const Tensor& a, const Tensor& b, double tolerance) {
   for (std::size_t i = 0; i < 3; ++i)
-    for (std::size_t j = 0; j < 3; ++j) ASSERT_NEAR(a[i][j], b[i][j], bar) << i << j;
+    for (std::size_t j = 0; j < 3; ++j) ASSERT_NEAR(a[i][j], b[i][j], tolerance) << i << j;
 }
 
 /// Each triangle of a patch alone: its forces know of no neighbour.
@@ -92,15 +92,15 @@ TEST(FabricStress, IsThatOfTheContinuum) {
       const auto rest = corners(mesh.rest, mesh.triangles[t]), there = corners(now, mesh.triangles[t]);
       const Vector n = normal_of(there);
       const Tensor virial = reference::virial_stress(forces_of_one(p, now, mesh.triangles[t]), there);
-      const double bar = 1e-11 * p.material.membrane_modulus;
-      expect_same(tensor_of(cauchy[t], n), virial, bar);
+      const double tolerance = 1e-11 * p.material.membrane_modulus;
+      expect_same(tensor_of(cauchy[t], n), virial, tolerance);
       if (model == Model::biquadratic)
-        expect_same(tensor_of(cauchy[t], n), reference::cauchy_stress(p.material, rest, there), bar);
-      expect_same(tensor_of(nominal[t], n), reference::nominal_stress(virial, rest, there), bar);
+        expect_same(tensor_of(cauchy[t], n), reference::cauchy_stress(p.material, rest, there), tolerance);
+      expect_same(tensor_of(nominal[t], n), reference::nominal_stress(virial, rest, there), tolerance);
       const auto whole = cauchy[t].tensor();
       std::size_t place = 0;
       for (std::size_t i = 0; i < 3; ++i)
-        for (std::size_t j = i; j < 3; ++j) EXPECT_NEAR(whole[place++], virial[i][j], bar) << i << j;
+        for (std::size_t j = i; j < 3; ++j) EXPECT_NEAR(whole[place++], virial[i][j], tolerance) << i << j;
       EXPECT_GE(cauchy[t].major, cauchy[t].minor);
       EXPECT_NEAR(std::hypot(cauchy[t].direction[0], cauchy[t].direction[1], cauchy[t].direction[2]), 1.0,
                   1e-14);

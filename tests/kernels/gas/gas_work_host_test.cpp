@@ -77,9 +77,9 @@ TEST(GasWork, EveryKindOfOperationIsCounted) {
 
 TEST(GasWork, CountedNumbersAreThoseOfADouble) {
 #if defined(DROGUE_EXACT)
-  constexpr double bar = 0.0;
+  constexpr double tolerance = 0.0;
 #else
-  constexpr double bar = 1e-13;  // fused multiply-adds
+  constexpr double tolerance = 1e-13;  // fused multiply-adds
 #endif
   for_schemes([&](auto scheme, const Parameters&) {
     Counting counted(ssprk3, 1);
@@ -87,7 +87,7 @@ TEST(GasWork, CountedNumbersAreThoseOfADouble) {
     counted.run_fused<scheme.value>();
     plain.run_fused<scheme.value>();
     for (std::size_t i = 0; i < plain.result().size(); ++i)
-      ASSERT_LE(std::abs(counted.result()[i] - plain.result()[i]), bar);
+      ASSERT_LE(std::abs(counted.result()[i] - plain.result()[i]), tolerance);
   });
 }
 

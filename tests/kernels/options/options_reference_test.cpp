@@ -37,14 +37,14 @@ Known known_sets() {
   return known;
 }
 
-void expect_known(const Settings& settings, double bar) {
+void expect_known(const Settings& settings, double tolerance) {
   const Known known = known_sets();
   const std::vector<Price> prices = priced(settings, known.contracts);
   std::size_t covered = 0;
   double worst = 0.0;
   for (std::size_t k = 0; k < prices.size(); ++k) {
     const double error = std::abs(prices[k].price - known.values[k]);
-    EXPECT_LT(error, bar) << known.names[k];
+    EXPECT_LT(error, tolerance) << known.names[k];
     if (error <= prices[k].error + 1e-7) ++covered;
     worst = std::max(worst, error);
   }

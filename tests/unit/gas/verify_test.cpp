@@ -71,7 +71,7 @@ class FinishedRun {
   Simulation _simulation;
 };
 
-/// Sod's tube with a bar 1 % above each of its own nine errors, and its conservation.
+/// Sod's tube with a tolerance 1 % above each of its own nine errors, and its conservation.
 FinishedRun strict_sod() {
   std::vector<std::string> sets = {"output.fields=[]"};
   FinishedRun run("sod", sets);
@@ -116,7 +116,7 @@ TEST_F(GasVerify, ErrorsOfOneCellAreSeen) {
 
 TEST_F(GasVerify, ConservationSeesTheTwelfthDigit) {
   FinishedRun run = strict_sod();
-  // The bar is 1e-12 of the total, and one of 200 cells is changed.
+  // The tolerance is 1e-12 of the total, and one of 200 cells is changed.
   const auto fails = [&](auto&& change) {
     return run.verify_with(50, change).failed.count("conservation") == 1;
   };

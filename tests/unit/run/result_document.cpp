@@ -41,7 +41,7 @@ TEST(ResultDocument, HoldsEveryFieldOfTheSchema) {
   EXPECT_EQ(plain["limiter"]["touches"], 0);
   EXPECT_EQ(plain["limiter"]["cells"], 0);
   for (const char* absent : {"energy", "counts"}) EXPECT_FALSE(plain.contains(absent)) << absent;
-  EXPECT_EQ(keys(json["checks"][0]), sorted({"name", "value", "bar", "passed"}));
+  EXPECT_EQ(keys(json["checks"][0]), sorted({"name", "value", "tolerance", "passed"}));
   EXPECT_EQ(keys(json["limiter"]), sorted({"touches", "cells", "redone_steps"}));
   EXPECT_EQ(keys(json["timing"]), sorted({"wall_s", "setup_s", "compute_s", "h2d_s", "d2h_s", "io_s"}));
   EXPECT_EQ(keys(json["ledger"]), sorted({"kernel_launches", "fences", "device_allocations_after_warmup",
@@ -107,11 +107,11 @@ TEST(ResultDocument, NamesTheStatusOfEveryExitCode) {
 
 TEST(ResultDocument, ChecksPassUpToTheirBar) {
   ResultDocument result;
-  EXPECT_TRUE(result.add_check("at the bar", -2.0, 2.0));
+  EXPECT_TRUE(result.add_check("at the tolerance", -2.0, 2.0));
   EXPECT_EQ(result.failed_check(), "");
   EXPECT_FALSE(result.add_check("above", 2.5, 2.0));
   EXPECT_FALSE(result.add_check("not a number", std::nan(""), 2.0));
-  EXPECT_EQ(result.failed_check(), "above is 2.5, above its bar 2");
+  EXPECT_EQ(result.failed_check(), "above is 2.5, above its tolerance 2");
 }
 
 TEST(ResultDocument, KnowsItsBuildAndIsWrittenWithTheMemoryPeak) {

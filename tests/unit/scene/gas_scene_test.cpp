@@ -152,7 +152,7 @@ TEST(GasScene, TheReferenceRunTakesGasAndMeshFromTheScene) {
   EXPECT_EQ(scene.verify.reference->gamma, 1.5);
   EXPECT_EQ(scene.verify.reference->left, gas::Boundary::reflecting);
   EXPECT_EQ(scene.verify.reference->weno, gas::Weno::z);
-  EXPECT_EQ(scene.verify.bars.at("l1_density"), 0.1);
+  EXPECT_EQ(scene.verify.tolerances.at("l1_density"), 0.1);
   EXPECT_TRUE(holds(error_of({"verify.exact=reference"}), "missing table \"verify.reference\""));
   EXPECT_TRUE(holds(error_of({"verify.exact=reference", "verify.reference.cells=200"}),
                     "not finer than mesh.cells = 200"));

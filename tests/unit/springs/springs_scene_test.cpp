@@ -294,11 +294,11 @@ TEST(SpringsScene, ChecksNeedWhatTheyCheck) {
   EXPECT_TRUE(holds(error_of({"verify.energy_drift=1", "output.history_every=0"}), "history_every"));
   EXPECT_TRUE(holds(error_of({"verify.energy_drift=1", "damping.absolute=1"}), "without damping"));
   const std::string probe = "output.probes=[{at=[0,0,0]}]";
-  EXPECT_TRUE(holds(error_of({"verify.frequency={mode=[0,1],bar=1}"}), "prestretch"));
-  EXPECT_TRUE(holds(error_of({"verify.frequency={value=3,bar=1}"}), "probe of that number"));
-  EXPECT_TRUE(holds(error_of({"verify.frequency={bar=1}", probe}), "needs a value"));
-  EXPECT_EQ(error_of({"verify.frequency={mode=[0,1],bar=1}", probe, "initial.prestretch=0.01"}), "");
-  EXPECT_TRUE(holds(error_of({"verify.frequency={mode=[0.5,1],bar=1}", probe}), "integers"));
+  EXPECT_TRUE(holds(error_of({"verify.frequency={mode=[0,1],tolerance=1}"}), "prestretch"));
+  EXPECT_TRUE(holds(error_of({"verify.frequency={value=3,tolerance=1}"}), "probe of that number"));
+  EXPECT_TRUE(holds(error_of({"verify.frequency={tolerance=1}", probe}), "needs a value"));
+  EXPECT_EQ(error_of({"verify.frequency={mode=[0,1],tolerance=1}", probe, "initial.prestretch=0.01"}), "");
+  EXPECT_TRUE(holds(error_of({"verify.frequency={mode=[0.5,1],tolerance=1}", probe}), "integers"));
 }
 
 TEST(SpringsSceneDocument, IsWhatTheDeclarationsGive) {

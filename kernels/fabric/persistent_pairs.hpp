@@ -1,22 +1,22 @@
 #pragma once
 
-#include "kernels/fabric/resident_steps.hpp"
+#include "kernels/fabric/persistent_steps.hpp"
 
 namespace drogue::fabric {
 
 /// Vertices of a patch, at most, and threads of its team, with 128 registers each.
 inline constexpr int most_pair_vertices = 384, most_pair_threads = 512;
 
-/// `ResidentSteps` of patches of few vertices, which would leave a multiprocessor idle if a thread went round
-/// the ring of its vertex: a warp takes a row of pairs of triangles and leaves their pulls in the team's
-/// memory, where the thread of the vertex adds them in the order of the ring. Rows that read no halo are done
-/// before the halo is there. What triangles are at rest stays in registers, of a warp's first row.
+/// `PersistentSteps` of patches of few vertices, which would leave a multiprocessor idle if a thread went
+/// round the ring of its vertex: a warp takes a row of pairs of triangles and leaves their pulls in the
+/// team's memory, where the thread of the vertex adds them in the order of the ring. Rows that read no halo
+/// are done before the halo is there. What triangles are at rest stays in registers, of a warp's first row.
 template <class ExecutionSpace, Law law>
-struct ResidentPairsFunctor {
-  ResidentSteps<ExecutionSpace> of;
+struct PersistentPairsFunctor {
+  PersistentSteps<ExecutionSpace> of;
 
   [[nodiscard]] static std::size_t scratch_bytes(const PatchViews<ExecutionSpace>& patches) {
-    return ResidentSteps<ExecutionSpace>::tables_bytes(patches, 3) +
+    return PersistentSteps<ExecutionSpace>::tables_bytes(patches, 3) +
            2 * 3 * patches.most_triangle_slots * sizeof(double) +
            TeamSlots<2>::bytes(patches.team, patches.most_spring_slots) + 3 * alignof(double);
   }

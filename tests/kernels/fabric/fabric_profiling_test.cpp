@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "kernels/device/ledger.hpp"
+#include "kernels/device/profiling_counters.hpp"
 #include "kernels/fabric/solver.hpp"
 #include "tests/support/backend.hpp"
 #include "tests/support/expression_program.hpp"
@@ -12,7 +12,7 @@
 namespace drogue::fabric {
 namespace {
 
-using device::Ledger;
+using device::ProfilingCounters;
 using testing::random_patch;
 using testing::shaken;
 
@@ -20,10 +20,10 @@ constexpr const auto& backend = testing::tested_backend;
 const bool on_device = backend == device::Backend::cuda;
 
 /// The ledger, started by the first who asks.
-Ledger counted() {
-  static const bool once = (device::start_ledger(), true);
+ProfilingCounters counted() {
+  static const bool once = (device::start_profiling(), true);
   static_cast<void>(once);
-  return device::ledger();
+  return device::profiling_counters();
 }
 
 Parameters patch(Integrator integrator) {
@@ -41,9 +41,9 @@ std::int64_t launches_of(const Parameters& p) {
   const auto solver = create_solver(backend, p);
   solver->upload(shaken(p.mesh.rest, 0.1, 1), std::vector<Vector>(p.mass.size(), Vector{}));
   EXPECT_TRUE(solver->advance(256));
-  const Ledger before = counted();
+  const ProfilingCounters before = counted();
   EXPECT_TRUE(solver->advance(1024));
-  const Ledger after = counted();
+  const ProfilingCounters after = counted();
   EXPECT_EQ(after.fences, before.fences);
   EXPECT_EQ(after.allocations, before.allocations);
   EXPECT_EQ(after.copies, before.copies);
@@ -133,9 +133,9 @@ TEST(FabricLedger, ContactIsKernelsAlone) {
   const auto solver = create_solver(backend, s.p);
   solver->upload(s.x, s.v);
   EXPECT_TRUE(solver->advance(10));
-  const Ledger before = counted();
+  const ProfilingCounters before = counted();
   EXPECT_TRUE(solver->advance(100));
-  const Ledger after = counted();
+  const ProfilingCounters after = counted();
   EXPECT_EQ(after.fences, before.fences);
   EXPECT_EQ(after.allocations, before.allocations);
   EXPECT_EQ(after.copies, before.copies);
@@ -148,7 +148,7 @@ TEST(FabricLedger, ASceneWithoutContactHoldsNothingOfIt) {
   const auto bytes = [](bool self) {
     testing::Sheets s = testing::folded(3.0);
     s.p.contact.self = self;
-    const Ledger before = counted();
+    const ProfilingCounters before = counted();
     const auto solver = create_solver(backend, s.p);
     return counted().device_bytes - before.device_bytes;
   };

@@ -7,11 +7,11 @@ import unittest
 sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
 import gas_program
-import reference_bars
+import reference_tolerances
 
 
-class ReferenceBars(reference_bars.ReferenceTest):
-    ROWS = reference_bars.rows(lambda row: row["reference"] == "z1:3200" and int(row["N"]) <= 400)
+class ReferenceBars(reference_tolerances.ReferenceTest):
+    ROWS = reference_tolerances.rows(lambda row: row["reference"] == "z1:3200" and int(row["N"]) <= 400)
 
     def test_table(self):
         self.assertEqual(16, len(self.ROWS))

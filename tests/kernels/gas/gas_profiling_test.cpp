@@ -3,7 +3,7 @@
 #include <limits>
 #include <string>
 
-#include "kernels/device/ledger.hpp"
+#include "kernels/device/profiling_counters.hpp"
 #include "tests/support/backend.hpp"
 #include "tests/support/gas_state.hpp"
 
@@ -13,21 +13,21 @@ namespace drogue::gas {
 namespace {
 
 using namespace drogue::testing;  // NOLINT: helpers of these tests
-using device::Ledger;
+using device::ProfilingCounters;
 
 constexpr const auto& backend = testing::tested_backend;
 const bool on_device = backend == device::Backend::cuda;
 constexpr auto never = std::numeric_limits<double>::max();
 
 /// The ledger, started by the first who asks.
-Ledger counted() {
-  static const bool once = (device::start_ledger(), true);
+ProfilingCounters counted() {
+  static const bool once = (device::start_profiling(), true);
   static_cast<void>(once);
-  return device::ledger();
+  return device::profiling_counters();
 }
 
-Ledger operator-(const Ledger& after, const Ledger& before) {
-  Ledger d;
+ProfilingCounters operator-(const ProfilingCounters& after, const ProfilingCounters& before) {
+  ProfilingCounters d;
   d.kernel_launches = after.kernel_launches - before.kernel_launches;
   d.fences = after.fences - before.fences;
   d.allocations = after.allocations - before.allocations;
@@ -39,9 +39,9 @@ Ledger operator-(const Ledger& after, const Ledger& before) {
 }
 
 /// What `advance` by `steps` steps asks for, rows every `row_every` included; the solver is warm.
-Ledger cost(Solver& solver, std::int64_t steps, int row_every = 0) {
+ProfilingCounters cost(Solver& solver, std::int64_t steps, int row_every = 0) {
   const std::int64_t now = solver.resume_state().step;
-  const Ledger before = counted();
+  const ProfilingCounters before = counted();
   EXPECT_EQ(solver.advance(never, now + steps, row_every, {}, {}), Stop::pause);
   return counted() - before;
 }
@@ -66,7 +66,7 @@ TEST(GasLedger, StepsWithoutOutputFenceAllocateAndCopyNothing) {
       Parameters p = sod(positivity);
       p.time_scheme = time;
       const auto solver = warm(p);
-      const Ledger few = cost(*solver, 50), many = cost(*solver, 500);
+      const ProfilingCounters few = cost(*solver, 50), many = cost(*solver, 500);
       EXPECT_EQ(many.fences, few.fences);
       EXPECT_LE(many.fences, 4);
       EXPECT_EQ(many.allocations, 0);
@@ -94,7 +94,7 @@ TEST(GasLedger, DriversThatAreAskedForLaunchWhatTheySay) {
       const bool stages = driver == Driver::stages;
       const bool graph = on_device && driver != Driver::plain;
       EXPECT_STREQ(solver->driver(), stages ? "stages" : graph ? "graph" : "plain");
-      const Ledger few = cost(*solver, 50), many = cost(*solver, 500);
+      const ProfilingCounters few = cost(*solver, 50), many = cost(*solver, 500);
       EXPECT_EQ(many.kernel_launches, 500 * (graph ? 1 : stages ? 4 : 2) + 1);
       EXPECT_EQ(many.fences, few.fences);
       EXPECT_EQ(many.allocations, 0);
@@ -103,9 +103,9 @@ TEST(GasLedger, DriversThatAreAskedForLaunchWhatTheySay) {
 }
 
 TEST(GasLedger, AutomaticPositivityThatIsNeverNeededCostsNoLaunch) {
-  const Ledger off = cost(*warm(sod(Positivity::off)), 300);
+  const ProfilingCounters off = cost(*warm(sod(Positivity::off)), 300);
   const auto automatic = warm(sod(Positivity::automatic));
-  const Ledger idle = cost(*automatic, 300);
+  const ProfilingCounters idle = cost(*automatic, 300);
   EXPECT_EQ(automatic->resume_state().redone, 0);
   EXPECT_EQ(idle.fences, off.fences);
   if (!on_device) {
@@ -122,7 +122,7 @@ TEST(GasLedger, RowsCostLaunchesButNeitherFencesNorBits) {
   cost(*plain, 500);
   for (const int every : {1, 7, 100}) {
     const auto solver = warm(sod());
-    const Ledger rows = cost(*solver, 500, every);
+    const ProfilingCounters rows = cost(*solver, 500, every);
     EXPECT_LE(rows.fences, 5);
     EXPECT_EQ(rows.allocations, 0);
     EXPECT_EQ(rows.copies, 0);
@@ -137,7 +137,7 @@ TEST(GasLedger, RowsCostLaunchesButNeitherFencesNorBits) {
 
 TEST(GasLedger, MemoryStaysWithinEightyBytesACell) {
   constexpr std::int64_t cells = 1 << 20;
-  const Ledger before = counted();
+  const ProfilingCounters before = counted();
   Parameters p = sod();
   p.cells = cells;
   const GasState state = sod_state(p);
@@ -154,7 +154,7 @@ TEST(GasLedger, MemoryStaysWithinEightyBytesACell) {
 }
 
 TEST(GasLedger, MemoryComesBack) {
-  const Ledger before = counted();
+  const ProfilingCounters before = counted();
   warm(sod());
   EXPECT_LE((counted() - before).device_bytes, 1 << 20);  // scratch of the backend's own
 }
@@ -311,7 +311,7 @@ TEST(GasPositivity, AutomaticSavesWhatFailsWithout) {
 
   p.positivity = Positivity::automatic;
   const auto solver = started(backend, p, leblanc);
-  const Ledger before = counted();
+  const ProfilingCounters before = counted();
   EXPECT_EQ(solver->advance(6.0, -1, 0, {}, {}), Stop::target);
   const Resume end = solver->resume_state();
   EXPECT_GT(end.redone, 0);

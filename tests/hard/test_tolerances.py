@@ -1,4 +1,4 @@
-"""Every hard case with a closed form meets its bar, with every scheme, up to 401 cells."""
+"""Every hard case with a closed form meets its tolerance, with every scheme, up to 401 cells."""
 
 import os
 import sys
@@ -9,7 +9,7 @@ sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 import gas_program
 import hard_cases
 
-ROWS = [row for row in hard_cases.rows("bars.csv") if row["reference"] in ("exact", "none") and int(row["N"]) <= 401]
+ROWS = [row for row in hard_cases.rows("tolerances.csv") if row["reference"] in ("exact", "none") and int(row["N"]) <= 401]
 
 
 class Bars(gas_program.GasTest):

@@ -1,4 +1,4 @@
-"""Rows of bars.csv whose reference is a finer own run: it is made once, and compared with here."""
+"""Rows of tolerances.csv whose reference is a finer own run: it is made once, and compared with here."""
 
 import bisect
 
@@ -7,7 +7,7 @@ import hard_cases
 
 
 def rows(wanted):
-    return [row for row in hard_cases.rows("bars.csv") if ":" in row["reference"] and wanted(row)]
+    return [row for row in hard_cases.rows("tolerances.csv") if ":" in row["reference"] and wanted(row)]
 
 
 def interpolate(xs, values, x):
@@ -49,5 +49,5 @@ class ReferenceTest(gas_program.GasTest):
             with self.subTest(hard_cases.label(row)):
                 density = self.density(row["case"], backend, hard_cases.row_sets(row))
                 error = l1_difference(*density, self.reference(row))
-                self.assertLessEqual(error, 1.05 * float(row["bar"]))
-                self.assertGreater(error, 0.5 * float(row["bar"]))  # a reference that was not finer would give 0
+                self.assertLessEqual(error, 1.05 * float(row["tolerance"]))
+                self.assertGreater(error, 0.5 * float(row["tolerance"]))  # a reference that was not finer would give 0

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "kernels/fabric/resident_steps.hpp"
+#include "kernels/fabric/persistent_steps.hpp"
 
 namespace drogue::fabric {
 
@@ -23,14 +23,14 @@ struct TeamCloth {
   }
 };
 
-/// `ResidentSteps` of patches of many vertices: a thread goes round the ring of its vertex, and what
+/// `PersistentSteps` of patches of many vertices: a thread goes round the ring of its vertex, and what
 /// triangles and springs are at rest lies in the team's memory.
 template <class ExecutionSpace, Law law>
-struct ResidentRingsFunctor {
-  ResidentSteps<ExecutionSpace> of;
+struct PersistentRingsFunctor {
+  PersistentSteps<ExecutionSpace> of;
 
   [[nodiscard]] static std::size_t scratch_bytes(const PatchViews<ExecutionSpace>& patches) {
-    return ResidentSteps<ExecutionSpace>::tables_bytes(patches, 2) +
+    return PersistentSteps<ExecutionSpace>::tables_bytes(patches, 2) +
            TeamSlots<3>::bytes(patches.team, patches.most_triangle_slots) +
            TeamSlots<2>::bytes(patches.team, patches.most_spring_slots) + 4 * alignof(double);
   }

@@ -4,8 +4,8 @@
 #include <cstdint>
 
 #include "kernels/device/instance.hpp"
-#include "kernels/device/ledger.hpp"
 #include "kernels/device/pack.hpp"
+#include "kernels/device/profiling_counters.hpp"
 #include "kernels/device/team_maximum.hpp"
 
 namespace drogue::device {
@@ -13,13 +13,13 @@ namespace drogue::device {
 /// The one launcher that Kokkos lacks: a grid whose teams all run at once, so that a kernel may hold many
 /// steps and teams may wait for one another. Only CUDA has it.
 template <class ExecutionSpace>
-class ResidentGrid {
+class PersistentKernel {
  public:
   static constexpr bool available = false;
 };
 
 /// What a place of a grid's board holds.
-struct Posted {
+struct HaloValue {
   double value[3];
 };
 
@@ -27,29 +27,29 @@ struct Posted {
 
 /// A number that a team tells all others, with the epoch that it belongs to. Sixteen aligned bytes are read
 /// and written at once by every GPU since Volta, which PTX promises only for its newer 128-bit type.
-struct alignas(16) Packet {
+struct alignas(16) HaloMessage {
   std::uint64_t value, epoch;
 };
 
-/// What the teams of a resident grid know of one another. Epochs only rise, over all launches, so that none
-/// has to begin by clearing them.
-struct Rendezvous {
+/// What the teams of a persistent kernel know of one another. Epochs only rise, over all launches, so that
+/// none has to begin by clearing them.
+struct GridSync {
   std::uint64_t* published;  ///< (teams): epoch that a team has ended
-  Packet* packets;           ///< (2, teams): of even and of odd epochs
-  Packet* board;             ///< (2, 3, places): what neighbours read, of even and of odd epochs
+  HaloMessage* packets;      ///< (2, teams): of even and of odd epochs
+  HaloMessage* board;        ///< (2, 3, places): what neighbours read, of even and of odd epochs
   std::size_t places;
 };
 
 /// A team's member as kernels use Kokkos' own, and what lets teams wait for one another. On the host, where
 /// none ever runs, its functions do nothing.
-class ResidentMember {
+class PersistentMember {
  public:
   /// Teams that a warp can listen to at once.
   static constexpr int most_teams = 192;
 
-  KOKKOS_FUNCTION ResidentMember(Rendezvous rendezvous, int team_rank, int team_size, int league_rank,
-                                 int league_size)
-      : _rendezvous(rendezvous),
+  KOKKOS_FUNCTION PersistentMember(GridSync grid_sync, int team_rank, int team_size, int league_rank,
+                                   int league_size)
+      : _grid_sync(grid_sync),
         _team_rank(team_rank),
         _team_size(team_size),
         _league_rank(league_rank),
@@ -62,25 +62,25 @@ class ResidentMember {
   KOKKOS_FUNCTION void team_barrier() const { KOKKOS_IF_ON_DEVICE((__syncthreads();)) }
 
   /// Kokkos' own scratch handle hides from the compiler that its memory is shared memory.
-  [[nodiscard]] KOKKOS_FUNCTION const ResidentMember& team_scratch(int) const { return *this; }
+  [[nodiscard]] KOKKOS_FUNCTION const PersistentMember& team_scratch(int) const { return *this; }
   KOKKOS_FUNCTION void* get_shmem_aligned(std::size_t bytes, std::size_t alignment) const {
     void* place = nullptr;
-    KOKKOS_IF_ON_DEVICE((extern __shared__ double resident_scratch[];
+    KOKKOS_IF_ON_DEVICE((extern __shared__ double persistent_scratch[];
                          _used = (_used + alignment - 1) / alignment * alignment;
-                         place = reinterpret_cast<char*>(resident_scratch) + _used;))
+                         place = reinterpret_cast<char*>(persistent_scratch) + _used;))
     KOKKOS_IF_ON_HOST(((void)alignment;))
     _used += bytes;
     return place;
   }
 
   /// The epoch that this team, and so every team, has ended at the beginning of a launch.
-  [[nodiscard]] KOKKOS_FUNCTION std::uint64_t epoch() const { return _rendezvous.published[_league_rank]; }
+  [[nodiscard]] KOKKOS_FUNCTION std::uint64_t epoch() const { return _grid_sync.published[_league_rank]; }
 
   /// Ends `epoch` for this team: one thread calls it after a barrier, and who awaits it sees what the team
   /// has written until then.
   KOKKOS_FUNCTION void publish(std::uint64_t epoch) const {
     KOKKOS_IF_ON_DEVICE((asm volatile("fence.acq_rel.gpu;\n\tst.relaxed.gpu.global.u64 [%0], %1;" ::"l"(
-                                          _rendezvous.published + _league_rank),
+                                          _grid_sync.published + _league_rank),
                                       "l"(epoch)
                                       : "memory");))
     KOKKOS_IF_ON_HOST(((void)epoch;))
@@ -91,7 +91,7 @@ class ResidentMember {
     KOKKOS_IF_ON_DEVICE((std::uint64_t seen; do {
       asm volatile("ld.acquire.gpu.global.u64 %0, [%1];"
                    : "=l"(seen)
-                   : "l"(_rendezvous.published + other)
+                   : "l"(_grid_sync.published + other)
                    : "memory");
     } while (seen < epoch);))
     KOKKOS_IF_ON_HOST(((void)other; (void)epoch;))
@@ -99,15 +99,15 @@ class ResidentMember {
 
   /// Leaves three numbers of `epoch` at a place of the board. No order is kept with other memory: each number
   /// carries its epoch.
-  KOKKOS_FUNCTION void post(std::uint64_t epoch, std::size_t place, const Posted& numbers) const {
+  KOKKOS_FUNCTION void post(std::uint64_t epoch, std::size_t place, const HaloValue& numbers) const {
     for (std::size_t k = 0; k < 3; ++k) store(row(epoch, k) + place, numbers.value[k], epoch);
   }
 
   /// The numbers at a place of the board, once those of `epoch` are there. Two boards are enough where who
   /// posts the next epoch but one has heard that this one is read: from all (`await_largest`), or from all
   /// who read its places.
-  [[nodiscard]] KOKKOS_FUNCTION Posted collect(std::uint64_t epoch, std::size_t place) const {
-    Posted numbers{};
+  [[nodiscard]] KOKKOS_FUNCTION HaloValue collect(std::uint64_t epoch, std::size_t place) const {
+    HaloValue numbers{};
     KOKKOS_IF_ON_DEVICE((bool all = false; while (!all) {
       all = true;
       // Without a branch, so that the loads are in flight together.
@@ -134,12 +134,12 @@ class ResidentMember {
   /// one.
   [[nodiscard]] KOKKOS_FUNCTION std::uint64_t await_largest(std::uint64_t epoch) const {
     std::uint64_t largest = 0;
-    KOKKOS_IF_ON_DEVICE((const Packet* box = mailbox(epoch); bool all = false; while (!all) {
+    KOKKOS_IF_ON_DEVICE((const HaloMessage* box = mailbox(epoch); bool all = false; while (!all) {
       all = true;
       largest = 0;
       // Without a branch, so that the loads are in flight together; lanes beyond the last team ask it again.
       for (int k = 0; k < most_teams; k += 32) {
-        const Packet* from = box + minimum(k + _team_rank % 32, _league_size - 1);
+        const HaloMessage* from = box + minimum(k + _team_rank % 32, _league_size - 1);
         std::uint64_t value, of;
         asm volatile("ld.relaxed.gpu.global.v2.u64 {%0, %1}, [%2];" : "=l"(value), "=l"(of) : "l"(from));
         all = all && of == epoch;
@@ -152,33 +152,33 @@ class ResidentMember {
   }
 
  private:
-  KOKKOS_FUNCTION static void store(Packet* to, double value, std::uint64_t epoch) {
+  KOKKOS_FUNCTION static void store(HaloMessage* to, double value, std::uint64_t epoch) {
     KOKKOS_IF_ON_DEVICE((asm volatile("st.relaxed.gpu.global.v2.u64 [%0], {%1, %2};" ::"l"(to),
                                       "l"(Kokkos::bit_cast<std::uint64_t>(value)), "l"(epoch)
                                       : "memory");))
     KOKKOS_IF_ON_HOST(((void)to; (void)value; (void)epoch;))
   }
-  [[nodiscard]] KOKKOS_FUNCTION Packet* row(std::uint64_t epoch, std::size_t k) const {
-    return _rendezvous.board + (epoch % 2 * 3 + k) * _rendezvous.places;
+  [[nodiscard]] KOKKOS_FUNCTION HaloMessage* row(std::uint64_t epoch, std::size_t k) const {
+    return _grid_sync.board + (epoch % 2 * 3 + k) * _grid_sync.places;
   }
-  [[nodiscard]] KOKKOS_FUNCTION Packet* mailbox(std::uint64_t epoch) const {
-    return _rendezvous.packets + (epoch % 2) * static_cast<std::uint64_t>(_league_size);
+  [[nodiscard]] KOKKOS_FUNCTION HaloMessage* mailbox(std::uint64_t epoch) const {
+    return _grid_sync.packets + (epoch % 2) * static_cast<std::uint64_t>(_league_size);
   }
 
-  Rendezvous _rendezvous;
+  GridSync _grid_sync;
   int _team_rank, _team_size, _league_rank, _league_size;
   mutable std::size_t _used = 0;  ///< bytes of scratch memory
 };
 
 template <int most_threads, int least_teams, class Functor>
 __global__ void __launch_bounds__(most_threads, least_teams)
-    resident_kernel(const __grid_constant__ Functor functor, Rendezvous rendezvous) {
-  functor(ResidentMember(rendezvous, static_cast<int>(threadIdx.x), static_cast<int>(blockDim.x),
-                         static_cast<int>(blockIdx.x), static_cast<int>(gridDim.x)));
+    persistent_kernel(const __grid_constant__ Functor functor, GridSync grid_sync) {
+  functor(PersistentMember(grid_sync, static_cast<int>(threadIdx.x), static_cast<int>(blockDim.x),
+                           static_cast<int>(blockIdx.x), static_cast<int>(gridDim.x)));
 }
 
 template <>
-class ResidentGrid<Kokkos::Cuda> {
+class PersistentKernel<Kokkos::Cuda> {
  public:
   static constexpr bool available = true;
 
@@ -186,7 +186,7 @@ class ResidentGrid<Kokkos::Cuda> {
   /// launch.
   static int most_teams(const Instance<Kokkos::Cuda>& instance) {
     const cudaDeviceProp& device = instance.space().cuda_device_prop();
-    return device.cooperativeLaunch != 0 ? std::min(device.multiProcessorCount, ResidentMember::most_teams)
+    return device.cooperativeLaunch != 0 ? std::min(device.multiProcessorCount, PersistentMember::most_teams)
                                          : 0;
   }
   static std::size_t most_scratch_bytes(const Instance<Kokkos::Cuda>& instance) {
@@ -194,8 +194,8 @@ class ResidentGrid<Kokkos::Cuda> {
   }
 
   /// `teams` of `team_size` threads, each with `scratch_bytes` of shared memory, and a board of `places`.
-  ResidentGrid(const Instance<Kokkos::Cuda>& instance, int teams, int team_size, std::size_t scratch_bytes,
-               std::size_t places)
+  PersistentKernel(const Instance<Kokkos::Cuda>& instance, int teams, int team_size,
+                   std::size_t scratch_bytes, std::size_t places)
       : _stream(instance.stream()),
         _teams(teams),
         _team_size(team_size),
@@ -209,9 +209,9 @@ class ResidentGrid<Kokkos::Cuda> {
   /// teams cannot all run at once.
   template <int most_threads, int least_teams, class Functor>
   void launch(const Functor& functor) const {
-    const auto kernel = resident_kernel<most_threads, least_teams, Functor>;
-    Rendezvous rendezvous{_published.data(), _packets.data(), _board.data(), _places};
-    void* arguments[] = {const_cast<Functor*>(&functor), &rendezvous};
+    const auto kernel = persistent_kernel<most_threads, least_teams, Functor>;
+    GridSync grid_sync{_published.data(), _packets.data(), _board.data(), _places};
+    void* arguments[] = {const_cast<Functor*>(&functor), &grid_sync};
     KOKKOS_IMPL_CUDA_SAFE_CALL(
         cudaFuncSetAttribute(kernel, cudaFuncAttributeMaxDynamicSharedMemorySize, _scratch_bytes));
     count_launch();
@@ -225,7 +225,7 @@ class ResidentGrid<Kokkos::Cuda> {
   cudaStream_t _stream;
   int _teams, _team_size, _scratch_bytes;
   Kokkos::View<std::uint64_t*, Kokkos::CudaSpace> _published;
-  Kokkos::View<Packet*, Kokkos::CudaSpace> _packets, _board;
+  Kokkos::View<HaloMessage*, Kokkos::CudaSpace> _packets, _board;
   std::size_t _places;
 };
 

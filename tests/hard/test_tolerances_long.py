@@ -1,4 +1,4 @@
-"""The finest rows of bars.csv: 800 cells and more, and the published references of 12800 cells."""
+"""The finest rows of tolerances.csv: 800 cells and more, and the published references of 12800 cells."""
 
 import os
 import sys
@@ -8,9 +8,9 @@ sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
 import gas_program
 import hard_cases
-import reference_bars
+import reference_tolerances
 
-ROWS = [row for row in hard_cases.rows("bars.csv") if row["reference"] in ("exact", "none") and int(row["N"]) >= 800]
+ROWS = [row for row in hard_cases.rows("tolerances.csv") if row["reference"] in ("exact", "none") and int(row["N"]) >= 800]
 
 
 class FineBars(gas_program.GasTest):
@@ -23,14 +23,14 @@ class FineBars(gas_program.GasTest):
                 self.assertEqual(0, run.returncode, run.stderr)
 
 
-class FineReferenceBars(reference_bars.ReferenceTest):
+class FineReferenceBars(reference_tolerances.ReferenceTest):
     def test_800_cells(self):
-        rows = reference_bars.rows(lambda row: row["reference"] == "z1:3200" and row["N"] == "800")
+        rows = reference_tolerances.rows(lambda row: row["reference"] == "z1:3200" and row["N"] == "800")
         self.assertEqual(8, len(rows))
         self.assert_all_met(rows, "serial")
 
     def test_published(self):
-        rows = reference_bars.rows(lambda row: row["source"] == "published")
+        rows = reference_tolerances.rows(lambda row: row["source"] == "published")
         self.assertEqual(21, len(rows))
         self.assert_all_met(rows, "serial")
 

@@ -3,17 +3,17 @@
 #include <functional>
 
 #include "kernels/device/instance.hpp"
-#include "kernels/device/ledger.hpp"
+#include "kernels/device/profiling_counters.hpp"
 
 namespace drogue::device {
 
 /// A sequence of kernels that is recorded once and replayed. On the host it is called again.
 template <class ExecutionSpace>
-class Replay {
+class CapturedGraph {
  public:
   using Enqueue = std::function<void(const ExecutionSpace&)>;
 
-  Replay(const Instance<ExecutionSpace>& instance, Enqueue enqueue)
+  CapturedGraph(const Instance<ExecutionSpace>& instance, Enqueue enqueue)
       : _instance(&instance), _enqueue(std::move(enqueue)) {}
 
   void launch() const { _enqueue(_instance->space()); }
@@ -29,11 +29,11 @@ class Replay {
 /// On CUDA the kernels are captured from the instance's stream, and a replay is one graph launch. What is
 /// enqueued must neither fence nor allocate.
 template <>
-class Replay<Kokkos::Cuda> {
+class CapturedGraph<Kokkos::Cuda> {
  public:
   using Enqueue = std::function<void(const Kokkos::Cuda&)>;
 
-  Replay(const Instance<Kokkos::Cuda>& instance, const Enqueue& enqueue) : _stream(instance.stream()) {
+  CapturedGraph(const Instance<Kokkos::Cuda>& instance, const Enqueue& enqueue) : _stream(instance.stream()) {
     cudaGraph_t graph = nullptr;
     KOKKOS_IMPL_CUDA_SAFE_CALL(cudaStreamBeginCapture(_stream, cudaStreamCaptureModeThreadLocal));
     enqueue(instance.space());
@@ -41,9 +41,9 @@ class Replay<Kokkos::Cuda> {
     KOKKOS_IMPL_CUDA_SAFE_CALL(cudaGraphInstantiate(&_graph, graph, 0));
     cudaGraphDestroy(graph);
   }
-  ~Replay() { cudaGraphExecDestroy(_graph); }
-  Replay(const Replay&) = delete;
-  Replay& operator=(const Replay&) = delete;
+  ~CapturedGraph() { cudaGraphExecDestroy(_graph); }
+  CapturedGraph(const CapturedGraph&) = delete;
+  CapturedGraph& operator=(const CapturedGraph&) = delete;
 
   void launch() const {
     count_launch();

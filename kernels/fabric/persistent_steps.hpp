@@ -1,6 +1,6 @@
 #pragma once
 
-#include "kernels/device/resident_grid.hpp"
+#include "kernels/device/persistent_kernel.hpp"
 #include "kernels/fabric/patches.hpp"
 #include "kernels/fabric/step.hpp"
 #include "kernels/fabric/team_slots.hpp"
@@ -38,8 +38,8 @@ template <class ExecutionSpace>
 
 /// What steps that share a launch need beside the cloth.
 template <class ExecutionSpace>
-struct Resident {
-  device::ResidentGrid<ExecutionSpace> grid;
+struct Persistent {
+  device::PersistentKernel<ExecutionSpace> grid;
   PatchViews<ExecutionSpace> patches;
   std::uint64_t epoch = 0;  ///< of the last stage launched
 };
@@ -66,7 +66,7 @@ struct OwnVertex {
 /// and nothing of an older launch is read any more. A team needs three tables of positions, or two if it
 /// reads none behind the barrier of a stage.
 template <class ExecutionSpace>
-struct ResidentSteps {
+struct PersistentSteps {
   using Points = PointsView<ExecutionSpace>;
   PatchViews<ExecutionSpace> patches;
   Cloth<ExecutionSpace> cloth;
@@ -161,8 +161,8 @@ struct ResidentSteps {
     }
     // What nobody reads would replace what somebody may still have to read.
     if (own.place >= 0 && done + 2 < 4 * steps)
-      member.post(epoch_after(done), static_cast<std::size_t>(own.place),
-                  {{position.x, position.y, position.z}});
+      member.put(epoch_after(done), static_cast<std::size_t>(own.place),
+                 {{position.x, position.y, position.z}});
     store_points(points, member.team_rank(), position);
     // Others wait for the post and not for this.
     if (stage == 3) watch.look(begun + done / 4 + 1, own.vertex, own.x, own.v);
@@ -175,7 +175,7 @@ struct ResidentSteps {
     int place = halo.place;
     for (int k = halo.rank; k < halo.count; k += member.team_size()) {
       if (k > halo.rank) place = patches.halo_place(halo.first + k);
-      const device::Posted other = member.collect(epoch_after(done), static_cast<std::size_t>(place));
+      const device::HaloValue other = member.get(epoch_after(done), static_cast<std::size_t>(place));
       store_points(points, patches.team + k, Vector3<double>{other.value[0], other.value[1], other.value[2]});
     }
   }

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "kernels/device/resident_grid.hpp"
+#include "kernels/device/persistent_kernel.hpp"
 #include "kernels/gas/finish.hpp"
 #include "kernels/gas/step.hpp"
 
@@ -11,19 +11,19 @@ namespace drogue::gas {
 /// cells of its halo from the board of its grid, as soon as its neighbours have posted them, and goes on with
 /// the fluxes, which need no dt; meanwhile its last warp hears the fastest signals of all teams and decides.
 template <class ExecutionSpace, Reconstruction scheme, Precision precision>
-struct ResidentStepFunctor {
+struct PersistentStepFunctor {
   using Step = StepFunctor<ExecutionSpace, scheme, precision, false>;
   static constexpr std::uint64_t bad_state = ~std::uint64_t{0};  ///< told instead of a speed
 
   Step step;
-  Kokkos::View<Status, device::ReportSpace<ExecutionSpace>> status;
+  Kokkos::View<Status, device::HostPinnedSpace<ExecutionSpace>> status;
   StepConstants constants;
   std::int64_t most_steps;
 
   /// What `StepFunctor::run` asks for: whether the step before stands, the next dt, and the cells of others.
   template <class Member>
   struct Decision {
-    const ResidentStepFunctor& self;
+    const PersistentStepFunctor& self;
     const Member& member;
     const Tile<ExecutionSpace>& tile;
     Judgement& own;
@@ -44,14 +44,14 @@ struct ResidentStepFunctor {
       const Source from = source_cell(ends, cell);
       const std::int64_t in_tile = from.cell - tile.first;
       if (done == 0 || (in_tile >= 0 && in_tile < tile.cells)) return load_state<double>(in, ends, cell);
-      const device::Posted u = member.collect(epoch, static_cast<std::size_t>(from.cell));
+      const device::HaloValue u = member.get(epoch, static_cast<std::size_t>(from.cell));
       return {u.value[0], from.sign * u.value[1], u.value[2]};
     }
     /// Cells that a neighbour's halo holds.
     KOKKOS_FUNCTION void stored(std::int64_t cell, const Triple<double>& u) const {
       const std::int64_t in_tile = cell - tile.first;
       if (in_tile < tile.halo || in_tile >= tile.cells - tile.halo)
-        member.post(epoch + 1, static_cast<std::size_t>(cell), {{u.rho, u.m, u.energy}});
+        member.put(epoch + 1, static_cast<std::size_t>(cell), {{u.rho, u.m, u.energy}});
     }
   };
 

@@ -1,4 +1,4 @@
-#include "kernels/device/ledger.hpp"
+#include "kernels/device/profiling_counters.hpp"
 
 #include <Kokkos_Core.hpp>
 #include <algorithm>
@@ -68,7 +68,7 @@ void count_copy(Kokkos_Profiling_SpaceHandle to, const char* to_label, const voi
 
 }  // namespace
 
-void start_ledger() {
+void start_profiling() {
   using Kokkos::Tools::Experimental::EventSet;
   namespace tools = Kokkos::Tools::Experimental;
   tool = tools::get_callbacks();
@@ -85,7 +85,7 @@ void end_warmup() { counters.warm = true; }
 
 void count_launch() { ++counters.launches; }
 
-Ledger ledger() {
+ProfilingCounters profiling_counters() {
   return {counters.launches, counters.fences, counters.allocations,
           counters.h2d,      counters.d2h,    counters.copies,
           counters.bytes,    counters.peak,   counters.warm_allocations};

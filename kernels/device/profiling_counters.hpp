@@ -4,8 +4,8 @@
 
 namespace drogue::device {
 
-/// What a run asked of the device, counted through Kokkos Tools callbacks from `start_ledger` on.
-struct Ledger {
+/// What a run asked of the device, counted through Kokkos Tools callbacks from `start_profiling` on.
+struct ProfilingCounters {
   std::int64_t kernel_launches = 0;  ///< a replayed graph counts as one
   std::int64_t fences = 0;
   std::int64_t allocations = 0;
@@ -18,14 +18,14 @@ struct Ledger {
 };
 
 /// Installs the callbacks; tools loaded by Kokkos keep theirs and are called first. Once, after `Runtime`.
-void start_ledger();
+void start_profiling();
 
 /// From here on allocations count as `allocations_after_warmup`.
 void end_warmup();
 
-[[nodiscard]] Ledger ledger();
+[[nodiscard]] ProfilingCounters profiling_counters();
 
-/// A launch that no callback sees: of a recorded graph, or of a resident grid.
+/// A launch that no callback sees: of a recorded graph, or of a persistent kernel.
 void count_launch();
 
 }  // namespace drogue::device
