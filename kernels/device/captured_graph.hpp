@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <type_traits>
 
 #include "kernels/device/instance.hpp"
 #include "kernels/device/profiling_counters.hpp"
@@ -24,6 +25,20 @@ class CapturedGraph {
   const Instance<ExecutionSpace>* _instance;
   Enqueue _enqueue;
 };
+
+/// Whether the caller captures the work of `space` into a CUDA graph.
+template <class ExecutionSpace>
+[[nodiscard]] bool is_capturing(const ExecutionSpace& space) {
+#if defined(KOKKOS_ENABLE_CUDA)
+  if constexpr (std::is_same_v<ExecutionSpace, Kokkos::Cuda>) {
+    cudaStreamCaptureStatus status = cudaStreamCaptureStatusNone;
+    KOKKOS_IMPL_CUDA_SAFE_CALL(cudaStreamIsCapturing(space.cuda_stream(), &status));
+    return status == cudaStreamCaptureStatusActive;
+  }
+#endif
+  static_cast<void>(space);
+  return false;
+}
 
 #if defined(KOKKOS_ENABLE_CUDA)
 /// On CUDA the kernels are captured from the instance's stream, and a replay is one graph launch. What is

@@ -4,12 +4,13 @@
 
 namespace drogue::device {
 
-/// An execution-space instance of its own: on CUDA a stream, with OpenMP a pool of threads, elsewhere the
-/// default instance. `most_threads` is what the work can use; a host thread more would only be waited for.
+/// An execution-space instance of its own: on CUDA a stream, with OpenMP a pool of at most `most_threads`
+/// threads, elsewhere the default instance. Constructed from an execution space it refers to that instance.
 template <class ExecutionSpace>
 class Instance {
  public:
   explicit Instance(int /*most_threads*/) {}
+  explicit Instance(const ExecutionSpace& space) : _space(space) {}
   [[nodiscard]] const ExecutionSpace& space() const { return _space; }
 
  private:
@@ -23,6 +24,7 @@ class Instance<Kokkos::OpenMP> {
   explicit Instance(int most_threads)
       : _space(most_threads < Kokkos::OpenMP().concurrency() ? Kokkos::OpenMP(most_threads)
                                                              : Kokkos::OpenMP()) {}
+  explicit Instance(const Kokkos::OpenMP& space) : _space(space) {}
   [[nodiscard]] const Kokkos::OpenMP& space() const { return _space; }
 
  private:
@@ -34,8 +36,11 @@ class Instance<Kokkos::OpenMP> {
 template <>
 class Instance<Kokkos::Cuda> {
  public:
-  explicit Instance(int /*most_threads*/) : _stream(create()), _space(_stream) {}
+  explicit Instance(int /*most_threads*/) : _stream(create()), _space(_stream), _owns_stream(true) {}
+  explicit Instance(const Kokkos::Cuda& space)
+      : _stream(space.cuda_stream()), _space(space), _owns_stream(false) {}
   ~Instance() {
+    if (!_owns_stream) return;
     _space.fence("drogue::device::instance: last use");
     _space = Kokkos::Cuda();
     cudaStreamDestroy(_stream);
@@ -55,6 +60,7 @@ class Instance<Kokkos::Cuda> {
 
   cudaStream_t _stream;
   Kokkos::Cuda _space;
+  bool _owns_stream;
 };
 #endif
 

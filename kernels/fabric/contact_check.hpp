@@ -72,14 +72,14 @@ struct CheckFunctor {
   template <int size>
   KOKKOS_FUNCTION void cross_over(const int (&vertex)[size]) const {
     Kokkos::atomic_store(&table.progress(0).crossing[round], 1);
-    if (round == zone_rounds) table.raise(table.steps(), Trouble::crossing, vertex[0]);
+    if (round == zone_rounds) table.raise(table.steps(), FailureReason::crossing, vertex[0]);
     for (int k = 1; k < size; ++k) join(table.zone, vertex[0], vertex[k]);
   }
 
   template <int size>
   KOKKOS_FUNCTION void enter(const int (&vertex)[size]) const {
     Kokkos::atomic_store(&table.progress(0).crossing[round], 1);
-    if (round == zone_rounds) table.raise(table.steps(), Trouble::crossing, vertex[0]);
+    if (round == zone_rounds) table.raise(table.steps(), FailureReason::crossing, vertex[0]);
     for (const int i : vertex) Kokkos::atomic_store(&table.stuck(i), 1);
   }
 
@@ -101,7 +101,7 @@ struct CheckFunctor {
       w.way[k] = load_points<double>(end, vertex[k]) - w.from[k];
       w.rigid = w.rigid && table.label(vertex[k]) == zone;
     }
-    w.rigid = w.rigid && table.motion(zone).held == 0;
+    w.rigid = w.rigid && table.motion(zone).fixed_dofs == 0;
     return w;
   }
 
@@ -124,8 +124,8 @@ struct CheckFunctor {
     const Ways<1> own = ways(only);
     const double length_of_way = length(own.way[0]);
     const double strayed = length(own.from[0] + own.way[0] - load_points<double>(table.listed_x, i));
-    if (table.self && strayed > 0.5 * table.progress(0).skin && strayed < lost_beyond)
-      table.raise(table.steps(), Trouble::too_fast, i);
+    if (table.self && strayed > 0.5 * table.progress(0).skin && strayed < divergence_limit)
+      table.raise(table.steps(), FailureReason::too_fast, i);
     if (length_of_way > 0.0 && !table.is_held(i))
       for (int b = 0; b < static_cast<int>(table.bodies.extent(0)); ++b) {
         const Obstacle& body = table.bodies(b);
@@ -137,7 +137,7 @@ struct CheckFunctor {
             distance[k] =
                 level_clearance(body, own.from[0] + (1.0 * k) * own.way[0], 0.01 * table.thickness).distance;
           const bool told = distance[0] == distance[0] && distance[1] == distance[1];
-          if (!told && strayed < lost_beyond) table.raise(table.steps(), Trouble::no_number, i);
+          if (!told && strayed < divergence_limit) table.raise(table.steps(), FailureReason::no_number, i);
           keeps_out = !told || distance[1] > least_distance(distance[0], table.thickness);
         } else {
           const auto distance_at = [&](double part) {
@@ -219,13 +219,13 @@ struct CheckFunctor {
       if (!between_vertices(body)) continue;
       const Ways<size> w = ways(vertex);
       double most = 0.0, extent = 0.0;
-      bool held = true;
+      bool fixed_dofs = true;
       for (int k = 0; k < size; ++k) {
         const double way = length(w.way[k]), side = length(w.from[k] - w.from[0]);
         most = way > most ? way : most, extent = side > extent ? side : extent;
-        held = held && table.is_held(vertex[k]);
+        fixed_dofs = fixed_dofs && table.is_held(vertex[k]);
       }
-      if (held || clearance(body, w.from[0]).distance > extent + most + 0.1 * table.thickness) continue;
+      if (fixed_dofs || clearance(body, w.from[0]).distance > extent + most + 0.1 * table.thickness) continue;
       const auto distance_at = [&](double part) {
         Point at[size];
         for (int k = 0; k < size; ++k) at[k] = w.from[k] + part * w.way[k];

@@ -34,7 +34,7 @@ struct PushFunctor {
     for (int slot = 0; slot < 4; ++slot) {
       if (!TouchFunctor<ExecutionSpace>::takes_part(touch, slot)) continue;
       const int i = touch.vertex[slot];
-      const Point v = load_points<double>(table.start_v, i), free = free_axes<double>(&table.held(i));
+      const Point v = load_points<double>(table.start_v, i), free = free_axes<double>(&table.fixed_dofs(i));
       const Point lever = lever_of(touch, edges, slot), &n = touch.normal;
       const double share = touch.share[slot], split = table.touches(i) * table.inverse_mass(i);
       const double any = free.x + free.y + free.z > 0.0 ? 1.0 : 0.0;
@@ -80,19 +80,20 @@ struct GatherFunctor {
       const Touch& touch = table.touch(number / 4);
       sum = sum + impulse_on(touch, number % 4, touch.more_push, touch.more_grip);
     }
-    const Point free = free_axes<double>(&table.held(i)), dv = table.inverse_mass(i) * sum;
+    const Point free = free_axes<double>(&table.fixed_dofs(i)), dv = table.inverse_mass(i) * sum;
     const Point after =
         load_points<double>(table.start_v, i) + Point{free.x * dv.x, free.y * dv.y, free.z * dv.z};
     store_points(table.start_v, i, after);
     if (round + 1 < impulse_rounds) return;
     const Point before = load_points<double>(v, i), mean = 0.5 * (after + before);
-    Point held{0.0, 0.0, 0.0};  // what friction gave in all rounds, kg m/s
+    Point fixed_dofs{0.0, 0.0, 0.0};  // what friction gave in all rounds, kg m/s
     for (int k = 0; k < count; ++k) {
       const int number = table.mine(i, k);
       const Touch& touch = table.touch(number / 4);
-      if (touch.friction > 0.0) held = held + impulse_on(touch, number % 4, 0.0, touch.grip);
+      if (touch.friction > 0.0) fixed_dofs = fixed_dofs + impulse_on(touch, number % 4, 0.0, touch.grip);
     }
-    const double friction = dot(Point{free.x * held.x, free.y * held.y, free.z * held.z}, mean);
+    const double friction =
+        dot(Point{free.x * fixed_dofs.x, free.y * fixed_dofs.y, free.z * fixed_dofs.z}, mean);
     table.work(i).normal += 1.0 / table.inverse_mass(i) * dot(after - before, mean) - friction;
     table.work(i).friction += friction;
     store_points(v, i, after);

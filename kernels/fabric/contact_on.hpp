@@ -36,7 +36,7 @@ class ContactOn final : public ContactSteps<ExecutionSpace> {
   void forget() override;
   void keep() override;
   void go_back() override { device::copy(_instance.space(), _work, _kept_work); }
-  [[nodiscard]] Trouble trouble(std::int64_t step) const override;
+  [[nodiscard]] FailureReason reason(std::int64_t step) const override;
   void work(std::span<ContactWork> of_vertices) const override;
   void set_work(std::span<const ContactWork> of_vertices) override;
 
@@ -68,7 +68,7 @@ class ContactOn final : public ContactSteps<ExecutionSpace> {
   const device::Instance<ExecutionSpace>& _instance;
   std::vector<std::shared_ptr<void>> _owned;
   Kokkos::View<double*, typename ExecutionSpace::memory_space> _inverse_mass;
-  Kokkos::View<std::uint8_t*, typename ExecutionSpace::memory_space> _held;
+  Kokkos::View<std::uint8_t*, typename ExecutionSpace::memory_space> _fixed_dofs;
   ListView<ExecutionSpace, ContactWork> _work, _kept_work;
   typename ListView<ExecutionSpace, ContactWork>::HostMirror _work_on_host;
   ContactTable<ExecutionSpace> _table;
@@ -78,11 +78,11 @@ class ContactOn final : public ContactSteps<ExecutionSpace> {
 /// Puts the work aside unless a state before was lost.
 template <class ExecutionSpace>
 struct KeepWorkFunctor {
-  Watch<ExecutionSpace> watch;
+  StepMonitor<ExecutionSpace> monitor;
   ListView<ExecutionSpace, ContactWork> work, kept;
 
   KOKKOS_FUNCTION void operator()(const int i) const {
-    if (watch.lost() == none_lost) kept(i) = work(i);
+    if (monitor.lost() == no_failure) kept(i) = work(i);
   }
 };
 
@@ -109,7 +109,7 @@ void ContactOn<ExecutionSpace>::lend(Lends& to, const char* label, Sizes... size
 
 template <class ExecutionSpace>
 ContactOn<ExecutionSpace>::ContactOn(const Parameters& p, const ContactCloth<ExecutionSpace>& cloth)
-    : _instance(cloth.instance), _inverse_mass(cloth.inverse_mass), _held(cloth.held) {
+    : _instance(cloth.instance), _inverse_mass(cloth.inverse_mass), _fixed_dofs(cloth.fixed_dofs) {
   const ContactEdges edges = contact_edges(p.mesh);
   const auto n = p.mesh.rest.size(), faces = p.mesh.triangles.size(), sides = edges.ends.size();
   auto& t = _table;
@@ -118,7 +118,7 @@ ContactOn<ExecutionSpace>::ContactOn(const Parameters& p, const ContactCloth<Exe
   t.thickness = p.contact.thickness, t.self_friction = p.contact.friction, t.self = p.contact.self;
   t.widest_skin = std::max(p.contact.thickness, 0.5 * edges.mean_length);
   t.dt = p.dt;
-  t.inverse_mass = _inverse_mass, t.held = _held, t.watch = cloth.watch;
+  t.inverse_mass = _inverse_mass, t.fixed_dofs = _fixed_dofs, t.monitor = cloth.monitor;
   lend(t.bodies, "bodies", p.contact.bodies.size());
   lend(t.triangle, "contact_triangles", faces);
   lend(t.edge, "contact_edges", sides);
@@ -222,7 +222,7 @@ void ContactOn<ExecutionSpace>::forget() {
   const auto progress = Kokkos::create_mirror_view(_table.progress);
   progress(0) = ContactProgress{};
   progress(0).skin = -1.0;  // no list holds
-  progress(0).trouble = none_lost;
+  progress(0).reason = no_failure;
   device::copy(_instance.space(), _table.progress, progress);
   launch("drogue::fabric::forget_kick", _table.vertices, ForgetKickFunctor<ExecutionSpace>{_work});
   _instance.space().fence("drogue::fabric::forget");
@@ -231,17 +231,17 @@ void ContactOn<ExecutionSpace>::forget() {
 template <class ExecutionSpace>
 void ContactOn<ExecutionSpace>::keep() {
   launch("drogue::fabric::keep_contact", _table.vertices,
-         KeepWorkFunctor<ExecutionSpace>{_table.watch, _work, _kept_work});
+         KeepWorkFunctor<ExecutionSpace>{_table.monitor, _work, _kept_work});
 }
 
 template <class ExecutionSpace>
-Trouble ContactOn<ExecutionSpace>::trouble(std::int64_t step) const {
+FailureReason ContactOn<ExecutionSpace>::reason(std::int64_t step) const {
   const auto progress = Kokkos::create_mirror_view(_table.progress);
   device::copy(_instance.space(), progress, _table.progress);
-  _instance.space().fence("drogue::fabric::trouble");
-  const std::uint64_t told = progress(0).trouble;
-  return static_cast<std::int64_t>(told >> 4U) == step ? static_cast<Trouble>(told & 15U)
-                                                       : Trouble::not_finite;
+  _instance.space().fence("drogue::fabric::reason");
+  const std::uint64_t told = progress(0).reason;
+  return static_cast<std::int64_t>(told >> 4U) == step ? static_cast<FailureReason>(told & 15U)
+                                                       : FailureReason::not_finite;
 }
 
 template <class ExecutionSpace>

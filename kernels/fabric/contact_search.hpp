@@ -173,7 +173,7 @@ struct ListFunctor {
       if (count < most_near)
         table.near_triangle(i, count) = t;
       else
-        table.raise(table.steps() + 1, Trouble::too_dense, i);
+        table.raise(table.steps() + 1, FailureReason::too_dense, i);
       ++count;
     });
     table.near_triangles(i) = count < most_near ? count : most_near;
@@ -196,7 +196,7 @@ struct ListFunctor {
       if (count < most_near)
         table.near_edge(e, count) = f;
       else
-        table.raise(table.steps() + 1, Trouble::too_dense, a);
+        table.raise(table.steps() + 1, FailureReason::too_dense, a);
       ++count;
     });
     table.near_edges(e) = count < most_near ? count : most_near;

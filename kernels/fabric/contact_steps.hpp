@@ -5,8 +5,8 @@
 
 #include "kernels/device/instance.hpp"
 #include "kernels/fabric/parameters.hpp"
-#include "kernels/fabric/status.hpp"
-#include "kernels/fabric/watch.hpp"
+#include "kernels/fabric/state.hpp"
+#include "kernels/fabric/stepping/step_monitor.hpp"
 
 namespace drogue::fabric {
 
@@ -21,7 +21,7 @@ class ContactSteps {
   /// Before a step: changes velocities, so that parts that would meet do not.
   virtual void begin(const Points& x, const Points& v) = 0;
 
-  /// After it: where parts have crossed all the same, puts them back as rigid zones; raises the watch where
+  /// After it: where parts have crossed all the same, puts them back as rigid zones; raises the monitor where
   /// that does not help.
   virtual void end(const Points& x, const Points& v) = 0;
 
@@ -36,7 +36,7 @@ class ContactSteps {
   virtual void go_back() = 0;
 
   /// Why step `step` was lost. Waits.
-  [[nodiscard]] virtual Trouble trouble(std::int64_t step) const = 0;
+  [[nodiscard]] virtual FailureReason reason(std::int64_t step) const = 0;
 
   /// What contact has done on every vertex so far. Both wait.
   virtual void work(std::span<ContactWork> of_vertices) const = 0;
@@ -48,8 +48,8 @@ template <class ExecutionSpace>
 struct ContactCloth {
   const device::Instance<ExecutionSpace>& instance;
   Kokkos::View<double*, typename ExecutionSpace::memory_space> inverse_mass;
-  Kokkos::View<std::uint8_t*, typename ExecutionSpace::memory_space> held;  ///< as of Cloth
-  Watch<ExecutionSpace> watch;
+  Kokkos::View<std::uint8_t*, typename ExecutionSpace::memory_space> fixed_dofs;  ///< as of Cloth
+  StepMonitor<ExecutionSpace> monitor;
 };
 
 template <class ExecutionSpace>

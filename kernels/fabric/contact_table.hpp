@@ -1,8 +1,8 @@
 #pragma once
 
 #include "kernels/fabric/contact_body.hpp"
-#include "kernels/fabric/status.hpp"
-#include "kernels/fabric/watch.hpp"
+#include "kernels/fabric/state.hpp"
+#include "kernels/fabric/stepping/step_monitor.hpp"
 
 namespace drogue::fabric {
 
@@ -57,7 +57,7 @@ struct ContactProgress {
   int stale;              ///< the lists are to be made again in this step
   int touches;            ///< found in this step
   int crossing[zone_rounds + 1];  ///< whether parts would cross before and after each round of zones
-  std::uint64_t trouble;          ///< the least of step and kind
+  std::uint64_t reason;           ///< the least of step and kind
 };
 
 /// Fixed memory, which belongs to `ContactSteps`; counting references at every launch would cost.
@@ -82,7 +82,7 @@ struct Ball {
 
 /// How a zone moves.
 struct ZoneMotion {
-  int held;              ///< 1: with its held vertices, by `shift` at `velocity`
+  int fixed_dofs;        ///< 1: with its held vertices, by `shift` at `velocity`
   Point from, to;        ///< its centre at the beginning and at the end of the step
   Point turn;            ///< Cayley's vector of its rotation
   Point velocity, spin;  ///< m/s, 1/s
@@ -103,11 +103,11 @@ struct ContactTable {
   List<int> owned;  ///< `owned_parts` of every triangle
   LentTable<ExecutionSpace, int, 2> edge;
   List<double> inverse_mass;
-  List<std::uint8_t> held;  ///< as of Cloth
-  Places start_x, start_v;  ///< at the beginning of the step, impulses included
-  Places end_x, end_v;      ///< with zones
-  Places listed_x;          ///< where the lists were made
-  List<ContactWork> work;   ///< of contact on every vertex so far
+  List<std::uint8_t> fixed_dofs;  ///< as of Cloth
+  Places start_x, start_v;        ///< at the beginning of the step, impulses included
+  Places end_x, end_v;            ///< with zones
+  Places listed_x;                ///< where the lists were made
+  List<ContactWork> work;         ///< of contact on every vertex so far
   // A hashed grid of cells, each a chain.
   List<int> first_triangle, first_edge;
   List<Ball> ball_of_triangle, ball_of_edge;
@@ -122,7 +122,7 @@ struct ContactTable {
   List<int> stuck;          ///< 1: would enter a body, and stays
   List<ZoneMotion> motion;  ///< of the zone of a least vertex
   List<ContactProgress> progress;
-  Watch<ExecutionSpace> watch;
+  StepMonitor<ExecutionSpace> monitor;
 
   [[nodiscard]] KOKKOS_FUNCTION double reach() const { return thickness + progress(0).skin; }
 
@@ -139,18 +139,18 @@ struct ContactTable {
     return zone_end(label(i)) != label(i) || stuck(i) != 0;
   }
 
-  [[nodiscard]] KOKKOS_FUNCTION bool is_held(int i) const { return held(i) != 0; }
+  [[nodiscard]] KOKKOS_FUNCTION bool is_held(int i) const { return fixed_dofs(i) != 0; }
 
-  /// Steps taken when this is called between them; both words of the watch agree on no less.
+  /// Steps taken when this is called between them; both words of the monitor agree on no less.
   [[nodiscard]] KOKKOS_FUNCTION std::int64_t steps() const {
-    const std::int64_t a = watch.steps(0), b = watch.steps(1);
+    const std::int64_t a = monitor.steps(0), b = monitor.steps(1);
     return a > b ? a : b;
   }
 
-  KOKKOS_FUNCTION void raise(std::int64_t step, Trouble trouble, int vertex) const {
-    watch.raise(step, vertex);
-    Kokkos::atomic_min(&progress(0).trouble,
-                       static_cast<std::uint64_t>(step) << 4U | static_cast<std::uint64_t>(trouble));
+  KOKKOS_FUNCTION void raise(std::int64_t step, FailureReason reason, int vertex) const {
+    monitor.raise(step, vertex);
+    Kokkos::atomic_min(&progress(0).reason,
+                       static_cast<std::uint64_t>(step) << 4U | static_cast<std::uint64_t>(reason));
   }
 };
 

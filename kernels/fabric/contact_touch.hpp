@@ -75,14 +75,14 @@ struct TouchFunctor {
     if (touch.friction > 0.0) hold(touch);
     const int number = Kokkos::atomic_fetch_add(&table.progress(0).touches, 1);
     if (number >= static_cast<int>(table.touch.extent(0)))
-      return table.raise(table.steps() + 1, Trouble::too_dense, touch.vertex[0]);
+      return table.raise(table.steps() + 1, FailureReason::too_dense, touch.vertex[0]);
     for (int slot = 0; slot < 4; ++slot)
       if (takes_part(touch, slot)) {
         const int i = touch.vertex[slot], place = Kokkos::atomic_fetch_add(&table.touches(i), 1);
         if (place < most_touches)
           table.mine(i, place) = 4 * number + slot;
         else
-          table.raise(table.steps() + 1, Trouble::too_dense, i);
+          table.raise(table.steps() + 1, FailureReason::too_dense, i);
       }
     table.touch(number) = touch;
   }

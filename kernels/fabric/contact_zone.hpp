@@ -83,20 +83,20 @@ struct ZoneFunctor {
 
   /// A zone with vertices that are held, or stuck, goes where they go on the mean.
   KOKKOS_FUNCTION bool hold(int i, ZoneMotion& motion) const {
-    double held = 0.0;
+    double fixed_dofs = 0.0;
     Point shift{0.0, 0.0, 0.0}, velocity{0.0, 0.0, 0.0};
     each(i, [&](int j) {
       const bool stuck = table.stuck(j) != 0;
       if (!stuck && !table.is_held(j)) return;
-      held += 1.0;
+      fixed_dofs += 1.0;
       if (stuck) return;
       shift = shift + (load_points<double>(x, j) - load_points<double>(table.start_x, j));
       velocity = velocity + load_points<double>(v, j);
     });
-    if (held == 0.0) return false;
-    motion.held = 1;
-    motion.to = (1.0 / held) * shift;
-    motion.velocity = (1.0 / held) * velocity;
+    if (fixed_dofs == 0.0) return false;
+    motion.fixed_dofs = 1;
+    motion.to = (1.0 / fixed_dofs) * shift;
+    motion.velocity = (1.0 / fixed_dofs) * velocity;
     return true;
   }
 
@@ -149,7 +149,7 @@ struct FollowFunctor {
     if (table.in_zone(i)) {
       const ZoneMotion& motion = table.motion(table.label(i));
       const Point from = load_points<double>(table.start_x, i);
-      if (motion.held == 0) {
+      if (motion.fixed_dofs == 0) {
         const Point arm = turned(motion.turn, from - motion.from);
         place = motion.to + arm;
         velocity = motion.velocity + cross(motion.spin, arm);

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "kernels/fabric/cloth.hpp"
+#include "kernels/fabric/fabric_views.hpp"
 #include "kernels/fabric/views.hpp"
 
 namespace drogue::fabric {
@@ -30,15 +30,15 @@ KOKKOS_INLINE_FUNCTION double norm_bound(const double (&b)[3][3]) {
 /// Row i of the block norms of M^-1 K, 1/s^2; K is minus the derivative of the elastic forces at the
 /// positions x, geometric stiffness included, and pinned axes are struck out. By Gershgorin's theorem for
 /// blocks (Feingold and Varga 1962) no omega^2 exceeds the largest row.
-template <class ExecutionSpace, Law law>
+template <class ExecutionSpace, ConstitutiveModel law>
 struct FrequencyFunctor {
   using Dual = device::Dual;
-  Cloth<ExecutionSpace> cloth;
+  FabricViews<ExecutionSpace> cloth;
   PointsView<ExecutionSpace> x;
   ListView<ExecutionSpace, double> more;  ///< rows of other stiffness, N/m; may be empty
 
   KOKKOS_FUNCTION void operator()(const int i, double& largest) const {
-    const bool moves = cloth.held(i) != 7U;
+    const bool moves = cloth.fixed_dofs(i) != 7U;
     const double other = more.extent(0) > 0 && moves ? more(i) : 0.0;
     const double row = cloth.inverse_mass(i) * (row_sum(i) + other);
     // What is not a number is no bound.
@@ -51,13 +51,13 @@ struct FrequencyFunctor {
     return {Dual(v.x, axis == 0 ? 1.0 : 0.0), Dual(v.y, axis == 1 ? 1.0 : 0.0),
             Dual(v.z, axis == 2 ? 1.0 : 0.0)};
   }
-  KOKKOS_FUNCTION static Spoke<Dual> along(const Spoke<double>& spoke, int axis) {
-    const Vector3<Dual> to = along(spoke.to, axis);
-    return {to, dot(to, to), spoke.neighbour};
+  KOKKOS_FUNCTION static EdgeVector<Dual> along(const EdgeVector<double>& edge_to, int axis) {
+    const Vector3<Dual> to = along(edge_to.to, axis);
+    return {to, dot(to, to), edge_to.neighbour};
   }
 
   KOKKOS_FUNCTION double is_free(int i, int axis) const {
-    return device::Access<double>::unless_set(&cloth.held(i), 1U << static_cast<unsigned>(axis));
+    return device::Access<double>::unless_set(&cloth.fixed_dofs(i), 1U << static_cast<unsigned>(axis));
   }
 
   KOKKOS_FUNCTION double row_sum(const int i) const {
@@ -82,13 +82,14 @@ struct FrequencyFunctor {
     if constexpr (whole_triangles<law>)
       each_triangle<double>(
           cloth, x, i,
-          [&](const Spoke<double>& j, const Spoke<double>& k, const RestTriangle<double>& at_rest) {
+          [&](const EdgeVector<double>& j, const EdgeVector<double>& k, const RestTriangle<double>& at_rest) {
             const Products<double>& products = at_rest.products;
             const RestTriangle<Dual> rest{{products.jj, products.jk, products.kk}, at_rest.inverse_area};
             const Vector3<double> third = k.to - j.to;
             const bool vanishes = j.squared == 0.0 || k.squared == 0.0 || dot(third, third) == 0.0;
-            const auto pull = [&](const Spoke<Dual>& to_j, const Spoke<Dual>& to_k) {
-              return vanishes ? triangle_pull<Law{Model::biquadratic}>(cloth.moduli, to_j, to_k, rest)
+            const auto pull = [&](const EdgeVector<Dual>& to_j, const EdgeVector<Dual>& to_k) {
+              return vanishes ? triangle_pull<ConstitutiveModel{Model::biquadratic}>(cloth.moduli, to_j, to_k,
+                                                                                     rest)
                               : triangle_pull<law>(cloth.moduli, to_j, to_k, rest);
             };
             add(j.neighbour, [&](int axis) { return pull(along(j, axis), along(k, -1)); });

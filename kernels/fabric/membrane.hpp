@@ -7,13 +7,13 @@
 namespace drogue::fabric {
 
 /// What a kernel is compiled for: a model, and whether it goes slack where it would be compressed.
-struct Law {
+struct ConstitutiveModel {
   Model model;
   bool tension_only = false;
 };
 
 /// Whether triangles resist as a whole: a constant, for in device code nvcc wants no constexpr function.
-template <Law law>
+template <ConstitutiveModel law>
 inline constexpr bool whole_triangles = has_triangles(law.model);
 
 /// Lame's first constant and twice the shear modulus of plane stress, and Young's modulus, N/m. The
@@ -117,7 +117,7 @@ KOKKOS_INLINE_FUNCTION Edges<R> relaxed_tensions(const Moduli& m, const Edges<R>
 }
 
 /// Of either energy.
-template <Law law, class R>
+template <ConstitutiveModel law, class R>
 KOKKOS_INLINE_FUNCTION Edges<R> tensions_of_changes(const Moduli& m, const Edges<R>& q, const Edges<R>& rest,
                                                     R inverse_area) {
   if constexpr (law.tension_only)
@@ -128,7 +128,7 @@ KOKKOS_INLINE_FUNCTION Edges<R> tensions_of_changes(const Moduli& m, const Edges
 
 /// What the energy is quadratic in, m^2: l^2 - L^2, or for Model::quadratic 2 L (l - L). `now` and `rest` are
 /// squared lengths.
-template <Law law, class R>
+template <ConstitutiveModel law, class R>
 KOKKOS_INLINE_FUNCTION Edges<R> changes(const Edges<R>& now, const Edges<R>& rest) {
   static_assert(whole_triangles<law>, "springs along edges have no triangles");
   Edges<R> q;
@@ -142,7 +142,7 @@ KOKKOS_INLINE_FUNCTION Edges<R> changes(const Edges<R>& now, const Edges<R>& res
 
 /// Tension of each edge, N/m: the force on a vertex is that of an edge times the vector to its other vertex.
 /// `now` and `rest` are squared lengths.
-template <Law law, class R>
+template <ConstitutiveModel law, class R>
 KOKKOS_INLINE_FUNCTION Edges<R> membrane_tensions(const Moduli& m, const Edges<R>& now, const Edges<R>& rest,
                                                   R inverse_area) {
   const Edges<R> q = changes<law>(now, rest);
@@ -158,7 +158,7 @@ KOKKOS_INLINE_FUNCTION Edges<R> membrane_tensions(const Moduli& m, const Edges<R
 
 /// Energy of a triangle, J: what is of second degree is half of its derivative times its argument, the
 /// relaxed energy too.
-template <Law law>
+template <ConstitutiveModel law>
 KOKKOS_INLINE_FUNCTION double membrane_energy(const Moduli& m, const Edges<double>& now,
                                               const Edges<double>& rest, double inverse_area) {
   const Edges<double> q = changes<law>(now, rest), s = tensions_of_changes<law>(m, q, rest, inverse_area);
@@ -167,7 +167,7 @@ KOKKOS_INLINE_FUNCTION double membrane_energy(const Moduli& m, const Edges<doubl
 
 /// Tension of a spring of stiffness `k` (N/m) and length at rest `rest` (m), N/m; `now` is its squared
 /// length. None where it has no length, or no direction.
-template <Law law, class R>
+template <ConstitutiveModel law, class R>
 KOKKOS_INLINE_FUNCTION R spring_tension(R k, R now, R rest) {
   const R tension = device::select(now > R(0.0), k * (R(1.0) - rest / device::square_root(now)), R(0.0));
   if constexpr (law.tension_only)
@@ -177,7 +177,7 @@ KOKKOS_INLINE_FUNCTION R spring_tension(R k, R now, R rest) {
 }
 
 /// Energy of a spring, J; `now` is its squared length.
-template <Law law>
+template <ConstitutiveModel law>
 KOKKOS_INLINE_FUNCTION double spring_energy(double k, double now, double rest) {
   const double change = device::square_root(now) - rest;
   return law.tension_only && change < 0.0 ? 0.0 : 0.5 * k * change * change;

@@ -35,7 +35,9 @@ void check_contact(const Parameters& p, const Require& require) {
   }
 }
 
-void check(const Parameters& p) {
+}  // namespace
+
+void check_parameters(const Parameters& p) {
   const auto require = [](bool holds, const char* what) {
     if (!holds) throw std::invalid_argument(std::string("fabric solver: ") + what);
   };
@@ -101,8 +103,6 @@ void check(const Parameters& p) {
     require(m.poisson > -1.0 && m.poisson <= 0.5, "Poisson's ratio must lie between -1 and 1/2");
 }
 
-}  // namespace
-
 bool has_area(const Mesh& mesh, const std::array<int, 3>& t) {
   // Heron's formula without its cancellation (Kahan 2014); rounding of the coordinates is what is asked
   // about.
@@ -113,7 +113,6 @@ bool has_area(const Mesh& mesh, const std::array<int, 3>& t) {
 }
 
 std::unique_ptr<Solver> create_solver(device::Backend backend, const Parameters& parameters) {
-  check(parameters);
   switch (backend) {
 #define DROGUE_CREATE(name)   \
   case device::Backend::name: \

@@ -6,7 +6,7 @@
 
 #include "kernels/device/backend.hpp"
 #include "kernels/fabric/parameters.hpp"
-#include "kernels/fabric/status.hpp"
+#include "kernels/fabric/state.hpp"
 
 namespace drogue::fabric {
 
@@ -53,8 +53,8 @@ class Solver {
   virtual void upload(std::span<const Vector> positions, std::span<const Vector> velocities) = 0;
   virtual void download(std::span<Vector> positions, std::span<Vector> velocities) = 0;
 
-  /// Takes `steps` steps of `clock().dt`. Returns before they are done, and false once it is known that a
-  /// state was lost; then none follow until the next `upload`. How steps are cut into calls changes no bit.
+  /// Takes `steps` steps of `time_state().dt`. Returns before they are done, and false once it is known that
+  /// a state was lost; then none follow until the next `upload`. How steps are cut into calls changes no bit.
   virtual bool advance(std::int64_t steps) = 0;
 
   /// Waits for the steps that were asked for; where and when the state was lost, if it was.
@@ -62,16 +62,16 @@ class Solver {
 
   /// Of the steps asked for, and once a failure was told of the state gone back to; begins at step 0, time 0
   /// and `Parameters::dt`.
-  [[nodiscard]] virtual Clock clock() const = 0;
+  [[nodiscard]] virtual TimeState time_state() const = 0;
 
   /// Sets step, time, and dt, which must be positive (std::invalid_argument).
-  virtual void set_clock(const Clock& clock) = 0;
+  virtual void set_time_state(const TimeState& clock) = 0;
 
   /// From here on steps take dt, s.
   void set_dt(double dt) {
     static_cast<void>(failure());  // which may set the clock back
-    const Clock now = clock();
-    set_clock({now.step, dt, now.step, now.time()});
+    const TimeState now = time_state();
+    set_time_state({now.step, dt, now.step, now.time()});
   }
 
   /// The elastic forces and all loads where the vertices are now, N, without gravity and damping.
@@ -114,7 +114,11 @@ class Solver {
 /// 1e-70 and 1e70, so that the square of its area is a number.
 [[nodiscard]] bool has_area(const Mesh& mesh, const std::array<int, 3>& triangle);
 
-/// Throws std::invalid_argument for parameters out of range; the backend must be available.
+/// Throws std::invalid_argument, with one sentence that names the fault, for parameters out of range.
+void check_parameters(const Parameters& parameters);
+
+/// Makes a solver on a backend, which must be available. Blocks. Throws std::invalid_argument for parameters
+/// out of range.
 [[nodiscard]] std::unique_ptr<Solver> create_solver(device::Backend backend, const Parameters& parameters);
 
 }  // namespace drogue::fabric

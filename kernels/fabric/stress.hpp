@@ -1,7 +1,7 @@
 #pragma once
 
-#include "kernels/fabric/cloth.hpp"
-#include "kernels/fabric/status.hpp"
+#include "kernels/fabric/fabric_views.hpp"
+#include "kernels/fabric/state.hpp"
 
 namespace drogue::fabric {
 

@@ -41,7 +41,7 @@ KOKKOS_INLINE_FUNCTION void store_stress(const View& view, int i, const Principa
 }
 
 /// The stress of each triangle.
-template <class ExecutionSpace, Law law>
+template <class ExecutionSpace, ConstitutiveModel law>
 struct StressFunctor {
   TriangleViews<ExecutionSpace> triangles;
   PointsView<ExecutionSpace> x;

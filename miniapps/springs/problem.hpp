@@ -2,7 +2,7 @@
 
 #include <span>
 
-#include "kernels/fabric/status.hpp"
+#include "kernels/fabric/state.hpp"
 #include "miniapps/springs/scene.hpp"
 
 namespace drogue::springs_app {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "kernels/fabric/status.hpp"
+#include "kernels/fabric/state.hpp"
 #include "miniapps/springs/scene.hpp"
 
 namespace drogue::springs_app {
@@ -19,7 +19,7 @@ AskedSteps asked_steps(const SpringsScene& scene);
 
 /// All that a restarted run needs to go on with the same bits, vertices in the scene's numbering.
 struct RestartState {
-  fabric::Clock clock;
+  fabric::TimeState clock;
   std::int64_t stop_step = 0;         ///< at which the steps in progress reach `stop_time`
   double stop_time = 0.0;             ///< s
   double dt_min = 0.0, dt_max = 0.0;  ///< s, of the steps so far

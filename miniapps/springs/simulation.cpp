@@ -37,17 +37,17 @@ std::int64_t bound_every(std::int64_t step) {
   return step < 1024 ? 64 : 512;
 }
 
-const char* lost_text(fabric::Trouble trouble) {
-  switch (trouble) {
-    case fabric::Trouble::crossing:
+const char* lost_text(fabric::FailureReason reason) {
+  switch (reason) {
+    case fabric::FailureReason::crossing:
       return "parts of cloth, or cloth and a body, cross whatever contact does; a shorter time.dt or a finer "
              "mesh may help,";
-    case fabric::Trouble::too_fast:
+    case fabric::FailureReason::too_fast:
       return "a step moves cloth farther than contact looks; take a shorter time.dt,";
-    case fabric::Trouble::too_dense:
+    case fabric::FailureReason::too_dense:
       return "more parts of cloth are near one another than contact has room for; take a shorter time.dt, a "
              "smaller contact.thickness or a coarser mesh,";
-    case fabric::Trouble::no_number:
+    case fabric::FailureReason::no_number:
       return "the expression of a level-set of contact.objects, or its slope, is not a number";
     default:
       return "the state is not finite";
@@ -73,7 +73,7 @@ Simulation::Simulation(const SpringsScene& scene, const RunSettings& settings)
 
 void Simulation::resume() {
   const RestartState state = read_restart(_settings.restart, _scene);
-  _solver->set_clock(state.clock);
+  _solver->set_time_state(state.clock);
   _solver->upload(_problem.to_solver(state.x), _problem.to_solver(state.v));
   if (_scene.contact.asked_for())
     _solver->set_contact_work(_problem.to_solver(std::span<const fabric::ContactWork>(state.contact_work)));
@@ -121,7 +121,7 @@ double Simulation::stable_dt() {
 
 /// Equal steps from now to the next stop, none longer than is stable or asked for.
 void Simulation::plan() {
-  const std::int64_t step = _solver->clock().step;
+  const std::int64_t step = _solver->time_state().step;
   const double begin = time();
   _stop_time = next_stop(begin);
   _stop_step = step;
@@ -135,7 +135,7 @@ void Simulation::plan() {
                       scene::real_text(_stop_time) + " s");
   const double dt = (_stop_time - begin) / steps;
   _stop_step += static_cast<std::int64_t>(steps);
-  _solver->set_clock({step, dt, step, begin});
+  _solver->set_time_state({step, dt, step, begin});
   _dt_min = _dt_min > 0.0 ? std::min(_dt_min, dt) : dt;
   _dt_max = std::max(_dt_max, dt);
 }
@@ -143,7 +143,7 @@ void Simulation::plan() {
 /// The bound of the step is asked for again now and then; where it has shrunk, so do the steps.
 void Simulation::replan_if_stiffer() {
   if (_scene.time.dt) return;
-  if (_solver->clock().dt > 1.02 * _scene.time.safety * stable_dt()) plan();
+  if (_solver->time_state().dt > 1.02 * _scene.time.safety * stable_dt()) plan();
 }
 
 /// Why the step that a scene asks for is too long, if it is. Steps beyond the stable ones double the motion
@@ -153,7 +153,7 @@ void Simulation::replan_if_stiffer() {
 /// mesh reaches tells. What flies freely may do so too, but there is no step too long for it.
 std::string Simulation::too_long_step() {
   const Time& asked = _scene.time;
-  const double dt = _solver->clock().dt, bound = _solver->fastest_frequency();
+  const double dt = _solver->time_state().dt, bound = _solver->fastest_frequency();
   if (!asked.dt) return {};
   std::ostringstream text;
   text << "a step of " << dt << " s is too long: ";
@@ -169,7 +169,7 @@ std::string Simulation::too_long_step() {
     if (fabric::grows(asked.integrator, dt, (1.0 - 1e-5) * frequency, _scene.damping.absolute,
                       _solver->fastest_decay())) {
       text << "oscillations of the cloth at " << frequency << " rad/s grow in it at step "
-           << _solver->clock().step << ", t = " << time() << " s";
+           << _solver->time_state().step << ", t = " << time() << " s";
       return text.str();
     }
   }
@@ -185,7 +185,7 @@ std::string Simulation::too_long_step() {
 }
 
 std::int64_t Simulation::steps_to_event() const {
-  const std::int64_t step = _solver->clock().step;
+  const std::int64_t step = _solver->time_state().step;
   std::int64_t next = _stop_step;
   for (const std::int64_t every : {std::int64_t{_scene.output.history_every},
                                    std::int64_t{_scene.output.restart_every}, bound_every(step)})
@@ -221,7 +221,7 @@ bool Simulation::advance(std::int64_t steps, ProgressLine& progress) {
     if (seconds > look_every_s) _piece = std::max<std::int64_t>(1, _piece / 2);
     _warm = true;
     steps -= part;
-    progress.update(_solver->clock().step, time(), _scene.time.end_time);
+    progress.update(_solver->time_state().step, time(), _scene.time.end_time);
     if (steps > 0 && interrupted()) return false;
   }
   return true;
@@ -230,14 +230,14 @@ bool Simulation::advance(std::int64_t steps, ProgressLine& progress) {
 /// From the state that the solver went back to on through the steps before `lost`, which were good.
 void Simulation::return_to_last_good(std::int64_t lost) {
   round_trip();  // what is uploaded has not failed
-  _solver->advance(lost - 1 - _solver->clock().step);
+  _solver->advance(lost - 1 - _solver->time_state().step);
   _solver->failure();  // waits
 }
 
 /// What falls on the step now.
 void Simulation::reach_event(RunOutput& output) {
   const Output& wanted = _scene.output;
-  const std::int64_t step = _solver->clock().step;
+  const std::int64_t step = _solver->time_state().step;
   const bool at_stop = step == _stop_step, at_end = at_stop && _stop_time == _scene.time.end_time;
   if (wanted.history_every > 0 && (at_end || step % wanted.history_every == 0)) output.write_row(row());
   if (at_stop && is_output_time(_stop_time)) reach_output(output);
@@ -262,16 +262,16 @@ ExitCode Simulation::run(const run::RunDirectory& directory, run::ResultDocument
     ~Describe() { simulation.describe(result); }
   } describe_at_end{*this, result};
   std::string too_long = too_long_step();
-  while (too_long.empty() && _solver->clock().step < _stop_step && !interrupted()) {
+  while (too_long.empty() && _solver->time_state().step < _stop_step && !interrupted()) {
     if (!advance(steps_to_event(), progress)) break;
     reach_event(output);
-    const std::int64_t step = _solver->clock().step;
+    const std::int64_t step = _solver->time_state().step;
     if (step == _stop_step || step % bound_every(step) == 0) too_long = too_long_step();
   }
   progress.finish();
   const auto failure = _solver->failure();
   if (failure && _settings.can_be_continued) return_to_last_good(failure->step);
-  const bool done = !failure && _solver->clock().step == _stop_step;
+  const bool done = !failure && _solver->time_state().step == _stop_step;
   if (!done && _settings.can_be_continued) output.write_restart(restart_state());
   output.finish();
   _io_s = output.waited();
@@ -279,7 +279,7 @@ ExitCode Simulation::run(const run::RunDirectory& directory, run::ResultDocument
   if (!too_long.empty()) {
     too_long += "; take a shorter time.dt, or \"auto\"";
     if (!done && _settings.can_be_continued)
-      too_long += "; restart.h5 holds the state of step " + std::to_string(_solver->clock().step);
+      too_long += "; restart.h5 holds the state of step " + std::to_string(_solver->time_state().step);
     throw Failure(ExitCode::numerical_failure, too_long);
   }
   return done ? ExitCode::ok : ExitCode::interrupted;
@@ -290,11 +290,11 @@ std::string Simulation::failure_text(const fabric::Failure& failure) const {
   text.precision(9);
   const auto vertex = static_cast<std::size_t>(_problem.order.at(static_cast<std::size_t>(failure.vertex)));
   const Vector& rest = _scene.mesh.rest[vertex];
-  text << lost_text(failure.trouble) << " at vertex " << vertex << " (at rest at " << rest[0] << ", "
+  text << lost_text(failure.reason) << " at vertex " << vertex << " (at rest at " << rest[0] << ", "
        << rest[1] << ", " << rest[2] << " m) at step " << failure.step << ", t = " << failure.time << " s";
   if (_settings.can_be_continued)
-    text << "; restart.h5 holds the last good state, of step " << _solver->clock().step;
-  if (failure.trouble == fabric::Trouble::not_finite)
+    text << "; restart.h5 holds the last good state, of step " << _solver->time_state().step;
+  if (failure.reason == fabric::FailureReason::not_finite)
     text << (_scene.time.dt
                  ? "; if no expression gives such a number, time.dt = \"auto\" takes a step that is stable"
                  : "; if no expression gives such a number, a smaller time.safety takes shorter steps");
@@ -303,7 +303,7 @@ std::string Simulation::failure_text(const fabric::Failure& failure) const {
 
 void Simulation::describe(run::ResultDocument& result) const {
   result.driver = _settings.seed_mode ? "seed" : _solver->driver();
-  result.steps = _solver->clock().step;
+  result.steps = _solver->time_state().step;
   result.time = time();
   result.dt_min = _dt_min;
   result.dt_max = _dt_max;

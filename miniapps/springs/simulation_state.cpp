@@ -11,7 +11,7 @@ namespace drogue::springs_app {
 using fabric::Vector;
 
 double Simulation::time() const {
-  const fabric::Clock now = _solver->clock();
+  const fabric::TimeState now = _solver->time_state();
   // At a stop the time is that stop to the bit.
   return now.step == _stop_step ? _stop_time : now.time();
 }
@@ -19,7 +19,7 @@ double Simulation::time() const {
 Row Simulation::row() {
   const fabric::Totals sum = _solver->totals();
   Row row{time(),
-          _solver->clock().step,
+          _solver->time_state().step,
           sum.kinetic,
           sum.elastic,
           sum.gravity + sum.load,
@@ -53,7 +53,7 @@ Snapshot Simulation::snapshot() {
   _solver->download(x, v);
   Snapshot snapshot;
   snapshot.time = time();
-  snapshot.step = _solver->clock().step;
+  snapshot.step = _solver->time_state().step;
   const auto wanted = [&](const char* field) { return std::ranges::count(_scene.output.fields, field) > 0; };
   if (wanted("position")) snapshot.position = _problem.to_scene(x);
   if (wanted("velocity")) snapshot.velocity = _problem.to_scene(v);
@@ -86,8 +86,8 @@ void Simulation::reach_output(RunOutput& output) {
 }
 
 RestartState Simulation::restart_state() {
-  RestartState state{_solver->clock(),    _stop_step, _stop_time, _dt_min, _dt_max,
-                     asked_steps(_scene), {},         {},         {}};
+  RestartState state{_solver->time_state(), _stop_step, _stop_time, _dt_min, _dt_max,
+                     asked_steps(_scene),   {},         {},         {}};
   std::vector<Vector> x(_problem.x.size()), v(x.size());
   _solver->download(x, v);
   state.x = _problem.to_scene(x);

@@ -325,7 +325,7 @@ TEST(FabricContact, ALevelSetThatIsNoNumberIsTold) {
   s.p.contact.bodies = {body};
   const Outcome o = watched(s, 300, 10);
   ASSERT_TRUE(o.failure);
-  EXPECT_EQ(o.failure->trouble, Trouble::no_number);
+  EXPECT_EQ(o.failure->reason, FailureReason::no_number);
   EXPECT_NEAR(static_cast<double>(o.failure->step), 200.0, 2.0);  // 10 mm at 1 m/s in steps of 50 us
 }
 
@@ -339,7 +339,7 @@ TEST(FabricContact, ASolverThatGoesOnFromAStateHasTheSameBits) {
   std::vector<ContactWork> work(x.size()), end_work = work, other_work = work;
   whole->contact_work(work);
   const auto part = create_solver(backend, s.p);
-  part->set_clock(whole->clock());
+  part->set_time_state(whole->time_state());
   part->upload(x, v);
   part->set_contact_work(work);
   ASSERT_TRUE(whole->advance(150) && part->advance(70) && part->advance(80));
@@ -362,7 +362,7 @@ TEST(FabricContact, WhatCannotBeKeptApartIsTold) {
   s.p.pinned.assign(32, 7);
   const Outcome o = watched(s, 60, 1);
   ASSERT_TRUE(o.failure);
-  EXPECT_EQ(o.failure->trouble, Trouble::crossing);
+  EXPECT_EQ(o.failure->reason, FailureReason::crossing);
   EXPECT_EQ(o.failure->step, 20);  // 10 mm at 10 m/s in steps of 50 us
   EXPECT_EQ(o.crossings, 0U);
 }
@@ -371,7 +371,7 @@ TEST(FabricContact, AStepThatLeapsIsTold) {
   Sheets s = impact(2000.0);
   const Outcome o = watched(s, 10, 1);
   ASSERT_TRUE(o.failure);
-  EXPECT_NE(o.failure->trouble, Trouble::not_finite);
+  EXPECT_NE(o.failure->reason, FailureReason::not_finite);
 }
 
 TEST(FabricContact, WhatIsNoContactIsRefused) {

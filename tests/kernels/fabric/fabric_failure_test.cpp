@@ -55,7 +55,7 @@ TEST(FabricFailure, NamesTheFirstStepAndItsFirstVertex) {
     EXPECT_EQ(failure->vertex, 71);
     EXPECT_EQ(failure->step, 7);
     EXPECT_NEAR(failure->time, 0.7, 1e-15);
-    EXPECT_EQ(solver->clock().step, 0) << "the state uploaded is the last that was put aside";
+    EXPECT_EQ(solver->time_state().step, 0) << "the state uploaded is the last that was put aside";
   }
 }
 
@@ -98,7 +98,7 @@ TEST(FabricFailure, GoesBackToAStateThatWasPutAside) {
     solver->advance(1700);
     const std::optional<Failure> failure = solver->failure();
     ASSERT_TRUE(failure);
-    const Clock clock = solver->clock();
+    const TimeState clock = solver->time_state();
     EXPECT_EQ(failure->vertex, 91);
     EXPECT_NEAR(static_cast<double>(failure->step), 1000.0, 1.0);
     EXPECT_EQ(clock.step, 768) << "a multiple of 256";
@@ -117,7 +117,7 @@ TEST(FabricFailure, GoesBackToAStateThatWasPutAside) {
     EXPECT_EQ(stopped->failure()->step, failure->step);
     // A solver that has failed stays where it is.
     EXPECT_FALSE(solver->advance(10));
-    EXPECT_EQ(solver->clock().step, clock.step);
+    EXPECT_EQ(solver->time_state().step, clock.step);
     EXPECT_EQ(state_of(*solver, p.mass.size()).x, kept.x);
   }
 }
@@ -143,8 +143,8 @@ TEST(FabricFailure, TheClockStaysWithTheStateGoneBackTo) {
   const auto solver = started(p);
   solver->advance(2400);
   solver->set_dt(2e-3);
-  EXPECT_EQ(solver->clock().step, 768);
-  EXPECT_NEAR(solver->clock().time(), 0.768, 1e-13);
+  EXPECT_EQ(solver->time_state().step, 768);
+  EXPECT_NEAR(solver->time_state().time(), 0.768, 1e-13);
   EXPECT_FALSE(solver->advance(1));
 }
 
@@ -166,12 +166,12 @@ TEST(FabricClock, CountsStepsAndKeepsTimeWhenTheStepChanges) {
   std::vector<Vector> x(100, Vector{}), v(100, Vector{1.0, 0.0, 0.0});
   solver->upload(x, v);
   solver->advance(5);
-  EXPECT_EQ(solver->clock().step, 5);
-  EXPECT_NEAR(solver->clock().time(), 0.5, 1e-15);
+  EXPECT_EQ(solver->time_state().step, 5);
+  EXPECT_NEAR(solver->time_state().time(), 0.5, 1e-15);
   solver->set_dt(0.25);
   solver->advance(2);
-  EXPECT_EQ(solver->clock().step, 7);
-  EXPECT_NEAR(solver->clock().time(), 1.0, 1e-15);
+  EXPECT_EQ(solver->time_state().step, 7);
+  EXPECT_NEAR(solver->time_state().time(), 1.0, 1e-15);
   solver->download(x, v);
   EXPECT_NEAR(x[50][0], 1.0, 1e-15);
   for (const double wrong : {0.0, -1.0, std::nan("")})

@@ -49,7 +49,7 @@ Parameters cloth(Model model) {
 std::vector<Vector> forces_at(const Parameters& p, const std::vector<Vector>& x, double time) {
   const auto solver = create_solver(backend, p);
   solver->upload(x, still(x.size()));
-  solver->set_clock({0, p.dt, 0, time});
+  solver->set_time_state({0, p.dt, 0, time});
   std::vector<Vector> forces(x.size());
   solver->forces(forces);
   return forces;
@@ -296,14 +296,14 @@ TEST(FabricLoad, AStateAndItsClockAreAllThatARestartNeeds) {
     first->advance(80);
     first->download(state.x, state.v);
     second->upload(state.x, state.v);
-    second->set_clock(first->clock());
+    second->set_time_state(first->time_state());
     first->advance(150), second->advance(150);
     State there = state;
     first->download(state.x, state.v);
     second->download(there.x, there.v);
     EXPECT_EQ(state.x, there.x);
     EXPECT_EQ(state.v, there.v);
-    EXPECT_EQ(first->clock().time(), second->clock().time());
+    EXPECT_EQ(first->time_state().time(), second->time_state().time());
   }
 }
 

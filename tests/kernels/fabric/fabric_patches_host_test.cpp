@@ -3,9 +3,9 @@
 #include <map>
 #include <set>
 
-#include "kernels/fabric/persistent_pairs.hpp"
-#include "kernels/fabric/persistent_rings.hpp"
 #include "kernels/fabric/solver.hpp"
+#include "kernels/fabric/stepping/persistent_pairs.hpp"
+#include "kernels/fabric/stepping/persistent_rings.hpp"
 #include "tests/support/emulated_grid.hpp"
 #include "tests/support/fabric_mesh.hpp"
 
@@ -139,7 +139,7 @@ Parameters cloth_of(const Mesh& mesh) {
 }
 
 /// Steps as a persistent kernel takes them, in launches of `cuts` steps.
-template <Law law, template <class, Law> class Functor>
+template <ConstitutiveModel law, template <class, ConstitutiveModel> class Functor>
 void run_emulated(const Parameters& p, int count, const std::vector<std::int64_t>& cuts,
                   std::vector<Vector>& x, std::vector<Vector>& v) {
   using Space = Kokkos::Serial;
@@ -151,9 +151,9 @@ void run_emulated(const Parameters& p, int count, const std::vector<std::int64_t
       cut_patches(p.mesh.rest, ring_slots(cloth_mesh), spring_slots(p.mesh, material), count);
   const PatchViews<Space> views = patch_views(space, patches);
   const std::size_t n = p.mass.size();
-  Cloth<Space> cloth;
+  FabricViews<Space> cloth;
   cloth.inverse_mass = decltype(cloth.inverse_mass)("inverse mass", n);
-  cloth.held = decltype(cloth.held)("held", n);
+  cloth.fixed_dofs = decltype(cloth.fixed_dofs)("fixed_dofs", n);
   cloth.load = PointsView<Space>("load", n);
   cloth.moduli = moduli(material.membrane_modulus, material.poisson);
   cloth.gravity = {p.gravity[0], p.gravity[1], p.gravity[2]};
@@ -161,26 +161,26 @@ void run_emulated(const Parameters& p, int count, const std::vector<std::int64_t
   const PointsView<Space> at("x", n), velocity("v", n);
   for (std::size_t i = 0; i < n; ++i) {
     cloth.inverse_mass(i) = 1.0 / p.mass[i];
-    cloth.held(i) = p.pinned[i];
+    cloth.fixed_dofs(i) = p.pinned[i];
     for (std::size_t axis = 0; axis < 3; ++axis)
       cloth.load(i, axis) = p.load[i][axis], at(i, axis) = x[i][axis], velocity(i, axis) = v[i][axis];
   }
-  Watch<Space> watch{decltype(watch.steps)("steps"), decltype(watch.lost)("lost"),
-                     decltype(watch.raised)("raised")};
-  watch.lost() = none_lost;
+  StepMonitor<Space> monitor{decltype(monitor.steps)("steps"), decltype(monitor.lost)("lost"),
+                             decltype(monitor.raised)("raised")};
+  monitor.lost() = no_failure;
   using Steps = Functor<Space, law>;
   testing::EmulatedGrid grid(count, team_threads(patches, patches.most_rows, most_threads),
                              Steps::scratch_bytes(views), static_cast<std::size_t>(patches.places));
   std::int64_t begun = 0;
   std::uint64_t epoch = 0;
   for (const std::int64_t steps : cuts) {
-    grid.launch(Steps{{views, cloth, at, velocity, watch, p.dt, begun, steps, epoch}});
+    grid.launch(Steps{{views, cloth, at, velocity, monitor, p.dt, begun, steps, epoch, {}, {}}});
     begun += steps;
     epoch += 4 * static_cast<std::uint64_t>(steps);
-    EXPECT_EQ(watch.steps(0), begun);
+    EXPECT_EQ(monitor.steps(0), begun);
   }
   EXPECT_FALSE(grid.overwritten()) << "two boards are too few";
-  EXPECT_EQ(watch.lost(), none_lost);
+  EXPECT_EQ(monitor.lost(), no_failure);
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t axis = 0; axis < 3; ++axis) x[i][axis] = at(i, axis), v[i][axis] = velocity(i, axis);
 }
@@ -193,7 +193,7 @@ double distance(const std::vector<Vector>& a, const std::vector<Vector>& b) {
   return largest;
 }
 
-template <Law law, template <class, Law> class Functor>
+template <ConstitutiveModel law, template <class, ConstitutiveModel> class Functor>
 void expect_the_same_steps() {
   Parameters p = cloth_of(mesh_of(11, 8));
   p.material.model = law.model;
@@ -213,10 +213,10 @@ void expect_the_same_steps() {
 }
 
 TEST(FabricPatches, TakeTheStepsOfTheOtherDrivers) {
-  expect_the_same_steps<Law{Model::biquadratic}, PersistentRingsFunctor>();
-  expect_the_same_steps<Law{Model::biquadratic}, PersistentPairsFunctor>();
-  expect_the_same_steps<Law{Model::edge}, PersistentRingsFunctor>();
-  expect_the_same_steps<Law{Model::edge}, PersistentPairsFunctor>();
+  expect_the_same_steps<ConstitutiveModel{Model::biquadratic}, PersistentRingsFunctor>();
+  expect_the_same_steps<ConstitutiveModel{Model::biquadratic}, PersistentPairsFunctor>();
+  expect_the_same_steps<ConstitutiveModel{Model::edge}, PersistentRingsFunctor>();
+  expect_the_same_steps<ConstitutiveModel{Model::edge}, PersistentPairsFunctor>();
 }
 
 }  // namespace

@@ -69,7 +69,7 @@ TEST(FabricPrescribed, UploadPutsItWhereItIsAtThatTime) {
   EXPECT_EQ(x[0][0], 0.0);
   EXPECT_NEAR(v[0][0], 0.3, 1e-4);
   EXPECT_EQ(v[1][0], 9.0);
-  solver->set_clock({50, 0.01, 50, 0.5});
+  solver->set_time_state({50, 0.01, 50, 0.5});
   solver->download(x, v);
   EXPECT_NEAR(x[0][0], 0.1 * std::sin(1.5), 1e-15);
   EXPECT_NEAR(v[0][0], 0.3 * std::cos(1.5), 1e-7);

@@ -1,11 +1,11 @@
 #include <gtest/gtest.h>
 
-#include "kernels/device/profiling_counters.hpp"
 #include "kernels/fabric/solver.hpp"
 #include "tests/support/backend.hpp"
 #include "tests/support/expression_program.hpp"
 #include "tests/support/fabric_mesh.hpp"
 #include "tests/support/fabric_sheets.hpp"
+#include "tests/support/profiled.hpp"
 
 // What stepping asks of the device and of the host: nothing but its kernels.
 
@@ -18,13 +18,6 @@ using testing::shaken;
 
 constexpr const auto& backend = testing::tested_backend;
 const bool on_device = backend == device::Backend::cuda;
-
-/// The ledger, started by the first who asks.
-ProfilingCounters counted() {
-  static const bool once = (device::start_profiling(), true);
-  static_cast<void>(once);
-  return device::profiling_counters();
-}
 
 Parameters patch(Integrator integrator) {
   Parameters p;
@@ -41,9 +34,9 @@ std::int64_t launches_of(const Parameters& p) {
   const auto solver = create_solver(backend, p);
   solver->upload(shaken(p.mesh.rest, 0.1, 1), std::vector<Vector>(p.mass.size(), Vector{}));
   EXPECT_TRUE(solver->advance(256));
-  const ProfilingCounters before = counted();
+  const ProfilingCounters before = testing::profiled();
   EXPECT_TRUE(solver->advance(1024));
-  const ProfilingCounters after = counted();
+  const ProfilingCounters after = testing::profiled();
   EXPECT_EQ(after.fences, before.fences);
   EXPECT_EQ(after.allocations, before.allocations);
   EXPECT_EQ(after.copies, before.copies);
@@ -77,22 +70,22 @@ TEST(FabricLedger, AskingAgainAllocatesNothing) {
     EXPECT_GT(solver->fastest_frequency(), 0.0);
     solver->download(s.x, s.v);
     solver->contact_work(work);
-    return counted().allocations;
+    return testing::profiled().allocations;
   };
   const std::int64_t before = ask();
   EXPECT_EQ(ask(), before);
 }
 
 TEST(FabricLedger, AVertexNeedsLittleMemory) {
-  counted();
+  testing::profiled();
   const auto bytes_of = [](int rows) {
     Parameters p = patch(Integrator::rk4);
     p.mesh = random_patch(100, rows, 3);
     p.mass.assign(p.mesh.rest.size(), 0.01);
     p.driver = Driver::graph;
-    const std::int64_t before = counted().device_bytes;
+    const std::int64_t before = testing::profiled().device_bytes;
     const auto solver = create_solver(backend, p);
-    return counted().device_bytes - before;
+    return testing::profiled().device_bytes - before;
   };
   // A host keeps the values of triangles at rest, a device computes them.
   EXPECT_LT(static_cast<double>(bytes_of(60) - bytes_of(20)) / 4000.0, on_device ? 400.0 : 550.0);
@@ -133,9 +126,9 @@ TEST(FabricLedger, ContactIsKernelsAlone) {
   const auto solver = create_solver(backend, s.p);
   solver->upload(s.x, s.v);
   EXPECT_TRUE(solver->advance(10));
-  const ProfilingCounters before = counted();
+  const ProfilingCounters before = testing::profiled();
   EXPECT_TRUE(solver->advance(100));
-  const ProfilingCounters after = counted();
+  const ProfilingCounters after = testing::profiled();
   EXPECT_EQ(after.fences, before.fences);
   EXPECT_EQ(after.allocations, before.allocations);
   EXPECT_EQ(after.copies, before.copies);
@@ -148,9 +141,9 @@ TEST(FabricLedger, ASceneWithoutContactHoldsNothingOfIt) {
   const auto bytes = [](bool self) {
     testing::Sheets s = testing::folded(3.0);
     s.p.contact.self = self;
-    const ProfilingCounters before = counted();
+    const ProfilingCounters before = testing::profiled();
     const auto solver = create_solver(backend, s.p);
-    return counted().device_bytes - before.device_bytes;
+    return testing::profiled().device_bytes - before.device_bytes;
   };
   const std::int64_t without = bytes(false);
   EXPECT_LT(without, 144 * 1500) << "the cloth alone";

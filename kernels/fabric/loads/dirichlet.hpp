@@ -1,25 +1,26 @@
 #pragma once
 
-#include "kernels/fabric/external.hpp"
+#include "kernels/fabric/loads/external.hpp"
 
 namespace drogue::fabric {
 
-/// Axes of vertices that are held where an expression says.
+/// Prescribed displacements of single axes of vertices, one row per axis and vertex.
 template <class ExecutionSpace>
-struct Prescribed {
+struct DirichletConditions {
   PointsView<ExecutionSpace> rest;
   ProgramsView<ExecutionSpace> displacement;
   ListView<ExecutionSpace, int> vertex, axis, program;
 };
 
-/// Puts them there, and gives them the velocity of their motion from differences of fourth order over a step;
-/// within the first step of second order and ahead, for an expression need not know a time before 0.
+/// Applies Dirichlet conditions: sets positions and their velocities, from central differences of fourth
+/// order over a step. Within the first step the differences are one-sided and of second order, since an
+/// expression need not be defined before time 0.
 template <class ExecutionSpace>
-struct PlaceFunctor {
-  Prescribed<ExecutionSpace> prescribed;
+struct DirichletFunctor {
+  DirichletConditions<ExecutionSpace> prescribed;
   PointsView<ExecutionSpace> x, v;
-  Timing<ExecutionSpace> timing;
-  bool looks;  ///< at what it leaves, for this ends a step
+  StageTime<ExecutionSpace> stage_time;
+  bool looks;  ///< checks for divergence, at the end of a step
 
   KOKKOS_FUNCTION void operator()(const int k) const {
     const int i = prescribed.vertex(k), axis = prescribed.axis(k);
@@ -27,15 +28,15 @@ struct PlaceFunctor {
     const auto moved = [&](double t) {
       return device::evaluate(prescribed.displacement(prescribed.program(k)), place.x, place.y, place.z, t);
     };
-    const double t = timing.time(), dt = timing.clock.dt, half = 0.5 * dt, now = moved(t);
+    const double t = stage_time.time(), dt = stage_time.clock.dt, half = 0.5 * dt, now = moved(t);
     const double position = prescribed.rest(i, axis) + now;
     const double velocity =
         t < dt ? (4.0 * moved(t + half) - 3.0 * now - moved(t + dt)) / dt
                : (8.0 * (moved(t + half) - moved(t - half)) - (moved(t + dt) - moved(t - dt))) / (6.0 * dt);
     x(i, axis) = position;
     v(i, axis) = velocity;
-    if (looks && !(Kokkos::fabs(position) + Kokkos::fabs(velocity) < lost_beyond))
-      timing.watch.raise(timing.watch.steps(timing.hand), i);
+    if (looks && !(Kokkos::fabs(position) + Kokkos::fabs(velocity) < divergence_limit))
+      stage_time.monitor.raise(stage_time.monitor.steps(stage_time.parity), i);
   }
 };
 

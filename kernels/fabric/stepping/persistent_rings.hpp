@@ -1,13 +1,13 @@
 #pragma once
 
-#include "kernels/fabric/persistent_steps.hpp"
+#include "kernels/fabric/stepping/persistent_steps.hpp"
 
 namespace drogue::fabric {
 
 /// Threads of the largest team, with 80 registers each.
 inline constexpr int most_ring_threads = 768;
 
-/// What `elastic_force` asks of a Cloth, of a patch.
+/// Slots of a patch in the interface of FabricViews that `elastic_force` uses.
 struct TeamCloth {
   TeamSlots<3> triangles;
   TeamSlots<2> springs;
@@ -23,11 +23,11 @@ struct TeamCloth {
   }
 };
 
-/// `PersistentSteps` of patches of many vertices: a thread goes round the ring of its vertex, and what
-/// triangles and springs are at rest lies in the team's memory.
-template <class ExecutionSpace, Law law>
+/// `PersistentSteps` of patches of many vertices: a thread traverses the ring of its vertex. Triangles and
+/// springs at rest are in the team's scratch memory.
+template <class ExecutionSpace, ConstitutiveModel law, class VertexForce = NoVertexForce, bool loads = false>
 struct PersistentRingsFunctor {
-  PersistentSteps<ExecutionSpace> of;
+  PersistentSteps<ExecutionSpace, VertexForce, loads> of;
 
   [[nodiscard]] static std::size_t scratch_bytes(const PatchViews<ExecutionSpace>& patches) {
     return PersistentSteps<ExecutionSpace>::tables_bytes(patches, 2) +
@@ -44,12 +44,13 @@ struct PersistentRingsFunctor {
                           TeamSlots<2>(member, slices, of.patches.springs), of.cloth.moduli};
     OwnVertex own = of.begin(member, halo, points);
     member.team_barrier();
-    of.run(member, halo, points, own, [&](const TeamTable& now, std::int64_t, const auto& arrive) {
-      Vector3<double> elastic{0.0, 0.0, 0.0};
-      if (own.vertex >= 0) elastic = elastic_force<law, double>(local, now, member.team_rank());
-      arrive();
-      return elastic;
-    });
+    of.run(member, halo, points, own, local.triangles,
+           [&](const TeamTable& now, std::int64_t, const auto& arrive) {
+             Vector3<double> elastic{0.0, 0.0, 0.0};
+             if (own.vertex >= 0) elastic = elastic_force<law, double>(local, now, member.team_rank());
+             arrive();
+             return elastic;
+           });
   }
 };
 

@@ -7,7 +7,7 @@
 namespace drogue::fabric {
 
 /// Where a solver's steps are in time. A restart that brings back all four has the same times to the bit.
-struct Clock {
+struct TimeState {
   std::int64_t step = 0;   ///< steps taken
   double dt = 0.0;         ///< s, of the steps to come
   std::int64_t since = 0;  ///< the step from which dt holds
@@ -17,7 +17,7 @@ struct Clock {
 };
 
 /// Why a state cannot go on.
-enum class Trouble {
+enum class FailureReason {
   not_finite,
   crossing,   ///< parts of cloth, or cloth and a body, that no zone keeps from crossing
   too_fast,   ///< a vertex moved farther in a step than contact looks
@@ -30,7 +30,7 @@ struct Failure {
   std::int64_t vertex = -1;  ///< the first in the numbering that was lost in that step
   std::int64_t step = 0;     ///< the first step, counted from 1, whose end is not finite
   double time = 0.0;         ///< s, at its end
-  Trouble trouble = Trouble::not_finite;
+  FailureReason reason = FailureReason::not_finite;
 };
 
 /// Work of contact on a vertex, negative where it took energy, and what friction looks back at.

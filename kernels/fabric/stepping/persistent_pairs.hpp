@@ -1,19 +1,19 @@
 #pragma once
 
-#include "kernels/fabric/persistent_steps.hpp"
+#include "kernels/fabric/stepping/persistent_steps.hpp"
 
 namespace drogue::fabric {
 
 /// Vertices of a patch, at most, and threads of its team, with 128 registers each.
 inline constexpr int most_pair_vertices = 384, most_pair_threads = 512;
 
-/// `PersistentSteps` of patches of few vertices, which would leave a multiprocessor idle if a thread went
-/// round the ring of its vertex: a warp takes a row of pairs of triangles and leaves their pulls in the
-/// team's memory, where the thread of the vertex adds them in the order of the ring. Rows that read no halo
-/// are done before the halo is there. What triangles are at rest stays in registers, of a warp's first row.
-template <class ExecutionSpace, Law law>
+/// `PersistentSteps` of patches of few vertices, which would leave a multiprocessor idle if a thread
+/// traversed the ring of its vertex. A warp computes the forces of a row of pairs of triangles and stores
+/// them in the team's scratch memory, where the thread of the vertex adds them in the order of the ring. The
+/// triangles at rest of a warp's first row stay in registers.
+template <class ExecutionSpace, ConstitutiveModel law, class VertexForce = NoVertexForce>
 struct PersistentPairsFunctor {
-  PersistentSteps<ExecutionSpace> of;
+  PersistentSteps<ExecutionSpace, VertexForce> of;
 
   [[nodiscard]] static std::size_t scratch_bytes(const PatchViews<ExecutionSpace>& patches) {
     return PersistentSteps<ExecutionSpace>::tables_bytes(patches, 3) +
@@ -21,7 +21,7 @@ struct PersistentPairsFunctor {
            TeamSlots<2>::bytes(patches.team, patches.most_spring_slots) + 3 * alignof(double);
   }
 
-  /// The pair of a lane.
+  /// Pair of triangles of a lane.
   struct Pair {
     int vertex, pulls, triangles;  ///< `pulls` is the place of the first one in its table
     int neighbour[3];
@@ -44,8 +44,8 @@ struct PersistentPairsFunctor {
   KOKKOS_FUNCTION void pull(const Pair& pair, const TeamTable& points, const TeamTable& pulls) const {
     if constexpr (whole_triangles<law>) {
       const Vector3<double> own = load_points<double>(points, pair.vertex);
-      const auto to = [&](int k) { return spoke<double>(points, own, pair.neighbour[k]); };
-      const Spoke<double> middle = to(1);
+      const auto to = [&](int k) { return edge_to<double>(points, own, pair.neighbour[k]); };
+      const EdgeVector<double> middle = to(1);
       store_points(pulls, pair.pulls, triangle_pull<law>(of.cloth.moduli, to(0), middle, pair.rest[0]));
       if (pair.triangles == 2)
         store_points(pulls, pair.pulls + slice,
@@ -53,8 +53,8 @@ struct PersistentPairsFunctor {
     }
   }
 
-  /// The sum of the pulls from `begin` on, one a slice, in their order. Four at once, so that they do not
-  /// wait for one another's reading.
+  /// Sum of the forces from `begin` to `end`, one per slice, in their order. Four loads are in flight at
+  /// once.
   KOKKOS_FUNCTION static Vector3<double> sum_of(const TeamTable& pulls, int begin, int end) {
     const Vector3<double> zero{0.0, 0.0, 0.0};
     Vector3<double> sum = zero;
@@ -90,18 +90,19 @@ struct PersistentPairsFunctor {
       pulls_end = of.patches.triangles.first(first + rank / slice + 1) * slice - first_slot;
     }
     member.team_barrier();
-    of.run(member, halo, points, own, [&](const TeamTable& now, std::int64_t done, const auto& arrive) {
-      // Two tables, for some threads add up those of the stage before.
-      const TeamTable pulls{memory + done % 2 * 3 * slots, slots};
-      if (row < end) pull(mine, now, pulls);
-      for (int more = row + stride; more < end; more += stride)
-        pull(pair(more, lane, first_slot), now, pulls);
-      arrive();
-      Vector3<double> elastic{0.0, 0.0, 0.0};
-      if (own.vertex >= 0)
-        elastic = with_springs<law>(local, now, rank, sum_of(pulls, first_pull, pulls_end));
-      return elastic;
-    });
+    of.run(member, halo, points, own, of.patches.triangles,
+           [&](const TeamTable& now, std::int64_t done, const auto& arrive) {
+             // Two tables: some threads still add those of the stage before.
+             const TeamTable pulls{memory + done % 2 * 3 * slots, slots};
+             if (row < end) pull(mine, now, pulls);
+             for (int more = row + stride; more < end; more += stride)
+               pull(pair(more, lane, first_slot), now, pulls);
+             arrive();
+             Vector3<double> elastic{0.0, 0.0, 0.0};
+             if (own.vertex >= 0)
+               elastic = with_springs<law>(local, now, rank, sum_of(pulls, first_pull, pulls_end));
+             return elastic;
+           });
   }
 };
 

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "kernels/device/expression.hpp"
+#include "kernels/fabric/stepping/stage_time.hpp"
 #include "kernels/fabric/stress.hpp"
-#include "kernels/fabric/timing.hpp"
 #include "kernels/fabric/views.hpp"
 
 namespace drogue::fabric {
@@ -10,29 +10,68 @@ namespace drogue::fabric {
 template <class ExecutionSpace>
 using ProgramsView = ListView<ExecutionSpace, device::ExpressionProgram>;
 
-/// What acts on cloth beside its elasticity and dead loads, in a kernel of its own that scenes without it do
-/// not launch. Views of what a scene does not have are empty.
+/// Loads beside elasticity and dead forces. Views of absent loads are empty.
 template <class ExecutionSpace>
 struct External {
   using Memory = typename ExecutionSpace::memory_space;
-  PointsView<ExecutionSpace> rest;
-  ProgramsView<ExecutionSpace> load;
-  Kokkos::View<double** [3], Kokkos::LayoutLeft, Memory> direction;  ///< vertex, load
-  ProgramsView<ExecutionSpace> pressure;
-  Kokkos::View<double**, Kokkos::LayoutLeft, Memory> weight;  ///< vertex, pressure
-  SlotViews<ExecutionSpace, 3> surface;                       ///< rings; nobody reads its values
+  PointsView<ExecutionSpace> rest;                                   ///< (vertices, 3), m
+  ProgramsView<ExecutionSpace> load;                                 ///< strengths of timed loads
+  Kokkos::View<double** [3], Kokkos::LayoutLeft, Memory> direction;  ///< (vertices, loads, 3), N
+  ProgramsView<ExecutionSpace> pressure;                             ///< strengths of pressures, Pa
+  Kokkos::View<double**, Kokkos::LayoutLeft, Memory> weight;         ///< (vertices, pressures)
+  ListView<ExecutionSpace, double> pressure_values;                  ///< (vertices), Pa, set by the caller
+  SlotViews<ExecutionSpace, 3> surface;                              ///< rings; their values are not read
   SlotViews<ExecutionSpace, 1> dashpots, bending;
+
+  [[nodiscard]] KOKKOS_FUNCTION bool has_pressure() const {
+    return pressure.extent(0) > 0 || pressure_values.extent(0) > 0;
+  }
+
+  /// `sum`, N, and the timed loads on vertex i, at rest at `place`, m, at time `t`, s.
+  KOKKOS_INLINE_FUNCTION Vector3<double> with_timed_loads(Vector3<double> sum, int i,
+                                                          const Vector3<double>& place, double t) const {
+    for (int k = 0; k < static_cast<int>(load.extent(0)); ++k) {
+      const double strength = device::evaluate(load(k), place.x, place.y, place.z, t);
+      sum = sum + strength * Vector3<double>{direction(i, k, 0), direction(i, k, 1), direction(i, k, 2)};
+    }
+    return sum;
+  }
+
+  /// Pressure at vertex i, Pa.
+  KOKKOS_INLINE_FUNCTION double pressure_at(int i, const Vector3<double>& place, double t) const {
+    double sum = 0.0;
+    for (int k = 0; k < static_cast<int>(pressure.extent(0)); ++k)
+      sum += weight(i, k) * device::evaluate(pressure(k), place.x, place.y, place.z, t);
+    if (pressure_values.extent(0) > 0) sum += pressure_values(i);
+    return sum;
+  }
 };
 
-/// The pull of a dashpot on the end from which `edge` leads, N: along the edge alone, so that the pull on the
-/// other end is its opposite and both have no torque. `faster` is the other end's velocity less the own.
+/// Twice the area vector of the triangles of vertex i, m^2. `rings` are slots of triangles, `x` positions, m,
+/// by the numbers of the rings.
+template <class Rings, class Points>
+KOKKOS_INLINE_FUNCTION Vector3<double> twice_area_vector(const Rings& rings, const Points& x, int i) {
+  const Vector3<double> own = load_points<double>(x, i);
+  Vector3<double> twice_area{0.0, 0.0, 0.0};
+  rings.each_pair(
+      i, [&](int slot) { return rings.neighbour(slot); },
+      [&](int, int neighbour) { return load_points<double>(x, neighbour) - own; },
+      [&](const Vector3<double>& to_j, const Vector3<double>& to_k, int) {
+        twice_area = twice_area + cross(to_j, to_k);
+      });
+  return twice_area;
+}
+
+/// Force of a dashpot, N, on the end from which `edge`, m, leads. It acts along the edge, so that the forces
+/// on both ends cancel and have no torque. `faster` is the velocity of the other end minus that of this end,
+/// m/s.
 KOKKOS_INLINE_FUNCTION Vector3<double> dashpot_pull(double dashpot, const Vector3<double>& edge,
                                                     const Vector3<double>& faster) {
   const double squared = dot(edge, edge);
   return (squared > 0.0 ? dashpot * dot(faster, edge) / squared : 0.0) * edge;
 }
 
-/// The pulls of all dashpots on vertex i, N.
+/// Force of all dashpots on vertex i, N.
 template <class ExecutionSpace>
 KOKKOS_INLINE_FUNCTION Vector3<double> dashpot_force(const SlotViews<ExecutionSpace, 1>& dashpots,
                                                      const PointsView<ExecutionSpace>& x,
@@ -47,7 +86,7 @@ KOKKOS_INLINE_FUNCTION Vector3<double> dashpot_force(const SlotViews<ExecutionSp
   return sum;
 }
 
-/// The resistance of vertex i to bending, N.
+/// Bending force on vertex i, N.
 template <class ExecutionSpace>
 KOKKOS_INLINE_FUNCTION Vector3<double> bending_force(const SlotViews<ExecutionSpace, 1>& bending,
                                                      const PointsView<ExecutionSpace>& x, int i) {
@@ -59,51 +98,34 @@ KOKKOS_INLINE_FUNCTION Vector3<double> bending_force(const SlotViews<ExecutionSp
   return sum;
 }
 
-/// The loads on every vertex, N: dead ones, those that change, pressures, bending, and with `damps` dashpots.
+/// Loads on every vertex, N: dead forces, timed loads, pressures, bending and, if `damps`, dashpots.
 template <class ExecutionSpace>
 struct ExternalFunctor {
   External<ExecutionSpace> external;
   PointsView<ExecutionSpace> dead;  ///< may be empty
   PointsView<ExecutionSpace> x, v, out;
-  Timing<ExecutionSpace> timing;
+  StageTime<ExecutionSpace> stage_time;
   bool damps;
 
   KOKKOS_FUNCTION double pressure_on(int i, const Vector3<double>& place) const {
-    double sum = 0.0;
-    for (int k = 0; k < static_cast<int>(external.pressure.extent(0)); ++k)
-      sum += external.weight(i, k) *
-             device::evaluate(external.pressure(k), place.x, place.y, place.z, timing.time());
-    return sum;
+    return external.pressure_at(i, place, stage_time.time());
   }
 
   KOKKOS_FUNCTION void operator()(const int i) const {
     const Vector3<double> place = load_points<double>(external.rest, i);
     Vector3<double> sum{0.0, 0.0, 0.0};
     if (dead.extent(0) > 0) sum = load_points<double>(dead, i);
-    for (int k = 0; k < static_cast<int>(external.load.extent(0)); ++k) {
-      const double strength = device::evaluate(external.load(k), place.x, place.y, place.z, timing.time());
-      sum = sum + strength * Vector3<double>{external.direction(i, k, 0), external.direction(i, k, 1),
-                                             external.direction(i, k, 2)};
-    }
-    if (external.pressure.extent(0) > 0) {
-      const Vector3<double> own = load_points<double>(x, i);
-      Vector3<double> twice_area{0.0, 0.0, 0.0};
-      external.surface.each_pair(
-          i, [&](int slot) { return external.surface.neighbour(slot); },
-          [&](int, int neighbour) { return load_points<double>(x, neighbour) - own; },
-          [&](const Vector3<double>& to_j, const Vector3<double>& to_k, int) {
-            twice_area = twice_area + cross(to_j, to_k);
-          });
-      sum = sum + (pressure_on(i, place) / 6.0) * twice_area;
-    }
+    sum = external.with_timed_loads(sum, i, place, stage_time.time());
+    if (external.has_pressure())
+      sum = sum + (pressure_on(i, place) / 6.0) * twice_area_vector(external.surface, x, i);
     if (external.bending.first.extent(0) > 0) sum = sum + bending_force(external.bending, x, i);
     if (damps) sum = sum + dashpot_force(external.dashpots, x, v, i);
     store_points(out, i, sum);
   }
 };
 
-/// What pressure and bending add to the rows of `FrequencyFunctor`, N/m. Derivatives of a third of the area
-/// (x_j - x_i) x (x_k - x_i) / 2 are cross products with an edge over 6, at the present pressure.
+/// Contribution of pressure and bending to the rows of `FrequencyFunctor`, N/m. Derivatives of a third of the
+/// area (x_j - x_i) x (x_k - x_i) / 2 are cross products with an edge over 6, at the present pressure.
 template <class ExecutionSpace>
 struct LoadStiffnessFunctor {
   ExternalFunctor<ExecutionSpace> loads;
@@ -112,7 +134,7 @@ struct LoadStiffnessFunctor {
   KOKKOS_FUNCTION void operator()(const int i) const {
     const External<ExecutionSpace>& external = loads.external;
     double row = 0.0;
-    if (external.pressure.extent(0) > 0) {
+    if (external.has_pressure()) {
       const Vector3<double> place = load_points<double>(external.rest, i);
       row = Kokkos::fabs(loads.pressure_on(i, place)) / 6.0 * edges_about(i);
     }
@@ -127,7 +149,7 @@ struct LoadStiffnessFunctor {
     out(i) = row;
   }
 
-  /// The edges of the triangles of vertex i, m, each as often as there are triangles.
+  /// Sum of the edge lengths of the triangles of vertex i, m, each edge once per triangle.
   KOKKOS_FUNCTION double edges_about(const int i) const {
     const auto& surface = loads.external.surface;
     const Vector3<double> own = load_points<double>(loads.x, i);
@@ -137,7 +159,7 @@ struct LoadStiffnessFunctor {
         i, [&](int slot) { return surface.neighbour(slot); },
         [&](int, int neighbour) { return load_points<double>(loads.x, neighbour) - own; },
         [&](const Vector3<double>& to_j, const Vector3<double>& to_k, int) {
-          // Not of the triangles without area that stand for none.
+          // Neutral slots have edges of length zero.
           if (dot(to_j, to_j) > 0.0 && dot(to_k, to_k) > 0.0)
             edges += length(to_j) + length(to_k) + length(to_k - to_j);
         });
@@ -145,11 +167,11 @@ struct LoadStiffnessFunctor {
   }
 };
 
-/// Velocity Verlet's share of dashpots: they act on the velocities in the middle of a step, for all of it,
-/// and the drift follows. Stable where dt times the fastest decay is at most 1.
+/// Dashpots in velocity Verlet's method: they act for a whole dt on the velocities in the middle of a step,
+/// and the drift follows. Stable if dt times the fastest decay is at most 1.
 template <class ExecutionSpace>
-struct DragFunctor {
-  Cloth<ExecutionSpace> cloth;
+struct DashpotDampingFunctor {
+  FabricViews<ExecutionSpace> cloth;
   SlotViews<ExecutionSpace, 1> dashpots;
   PointsView<ExecutionSpace> x, v, dragged, next;
   double dt;

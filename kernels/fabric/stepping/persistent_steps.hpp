@@ -1,13 +1,14 @@
 #pragma once
 
 #include "kernels/device/persistent_kernel.hpp"
+#include "kernels/fabric/loads/external.hpp"
 #include "kernels/fabric/patches.hpp"
-#include "kernels/fabric/step.hpp"
-#include "kernels/fabric/team_slots.hpp"
+#include "kernels/fabric/stepping/step.hpp"
+#include "kernels/fabric/stepping/team_slots.hpp"
 
 namespace drogue::fabric {
 
-/// `Patches` where kernels read them.
+/// `Patches` in the memory of an execution space.
 template <class ExecutionSpace>
 struct PatchViews {
   ListView<ExecutionSpace, int> vertex, place, first_halo, halo_vertex, halo_place;
@@ -36,15 +37,16 @@ template <class ExecutionSpace>
           most_slots(from, from.springs)};
 }
 
-/// What steps that share a launch need beside the cloth.
+/// Launcher and mesh partition of the persistent driver.
 template <class ExecutionSpace>
-struct Persistent {
+struct PersistentDriver {
   device::PersistentKernel<ExecutionSpace> grid;
   PatchViews<ExecutionSpace> patches;
+  bool pairs;               ///< runs PersistentPairsFunctor, else PersistentRingsFunctor
   std::uint64_t epoch = 0;  ///< of the last stage launched
 };
 
-/// A thread's vertex, in registers.
+/// State of a thread's vertex, in registers.
 struct OwnVertex {
   int vertex, place;
   Vector3<double> x, v, load;
@@ -53,41 +55,57 @@ struct OwnVertex {
   Vector3<double> free;  ///< axes: 1, or 0 of those that are pinned
 };
 
-/// Many steps of Runge and Kutta's method in one launch: what `RungeKuttaFunctor` does in four launches a
-/// step, with the state of a vertex in the registers of a thread, and no barrier across the grid. The
-/// positions of a stage follow from the velocities of the one before, and these from the forces of the one
-/// before that: at the end of stage e a team posts the positions of stage e+2, of those vertices that others
-/// read, and while it computes stage e+1 those of its halo arrive.
-///
-/// Two boards, of even and of odd stages, are enough, though nobody hears from all: who ends stage e has read
-/// what all its neighbours posted for e+1. They had posted it after their barrier in stage e-1, with all of
-/// stage e read. So whoever reads the place of e that is now written anew for e+2, and only neighbours do
-/// (`Patches`), has read it. The first two stages of a launch read memory, which the launch before has left,
-/// and nothing of an older launch is read any more. A team needs three tables of positions, or two if it
-/// reads none behind the barrier of a stage.
+/// Loads that `PersistentSteps` evaluates in every stage; empty without.
+template <class ExecutionSpace, bool loads>
+struct PersistentLoads {
+  External<ExecutionSpace> external;  ///< its timed loads and pressures
+  TimeState clock;                    ///< `step` is not used
+};
 template <class ExecutionSpace>
+struct PersistentLoads<ExecutionSpace, false> {};
+
+/// Many steps of Runge and Kutta's method in one launch: `RungeKuttaFunctor` with the state of a vertex in
+/// the registers of a thread and without a barrier across the grid. The positions of a stage follow from the
+/// velocities of the stage before, and these from the forces of the stage before that. At the end of stage e
+/// a team puts the positions of stage e+2 of vertices that other teams read. It gets those of its halo while
+/// it computes stage e+1.
+///
+/// Two halo buffers, for even and odd stages, suffice without global synchronization. A team that ends stage
+/// e has read the messages of all its neighbours for e+1. The neighbours put them after their barrier in
+/// stage e-1, when they had read all of stage e. Only neighbours read a message (`Patches`), so the buffer of
+/// e is free for e+2. The first two stages of a launch read the state in memory, and none of the messages of
+/// an earlier launch are read. A team needs three tables of positions, or two if no thread reads a table
+/// after the barrier of its stage.
+///
+/// `loads`: timed loads and follower pressures are evaluated in every stage.
+template <class ExecutionSpace, class VertexForce = NoVertexForce, bool loads = false>
 struct PersistentSteps {
   using Points = PointsView<ExecutionSpace>;
   PatchViews<ExecutionSpace> patches;
-  Cloth<ExecutionSpace> cloth;
+  FabricViews<ExecutionSpace> cloth;
   Points x, v;
-  Watch<ExecutionSpace> watch;
+  StepMonitor<ExecutionSpace> monitor;
   double dt;
-  std::int64_t begun;   ///< steps taken before
+  std::int64_t begun;   ///< steps taken before; negative: their number is `monitor.steps(1)`
   std::int64_t steps;   ///< to take, at least 1
   std::uint64_t epoch;  ///< of the last stage of the launch before
+  VertexForceTerm<VertexForce> vertex_force;
+  PersistentLoads<ExecutionSpace, loads> load;
 
-  /// Positions that a team holds, of `count` stages.
+  /// Steps taken before this launch. A captured launch reads them on the device.
+  KOKKOS_FUNCTION std::int64_t steps_before() const { return begun >= 0 ? begun : monitor.steps(1); }
+
+  /// Tables of a team's positions in `count` stages.
   struct Tables {
     double* memory;
-    int held, count;
-    KOKKOS_FUNCTION TeamTable operator()(int turn) const { return {memory + turn * 3 * held, held}; }
+    int rows, count;
+    KOKKOS_FUNCTION TeamTable operator()(int turn) const { return {memory + turn * 3 * rows, rows}; }
   };
   [[nodiscard]] static std::size_t tables_bytes(const PatchViews<ExecutionSpace>& patches, int count) {
     return 3 * static_cast<std::size_t>(count * (patches.team + patches.most_halo)) * sizeof(double);
   }
 
-  /// What a thread collects: its first vertex of the halo and where others post it, and how many there are.
+  /// Halo of a team and the share of a thread: its first halo vertex and the place of that vertex' message.
   struct Halo {
     int first, count, rank, place;
   };
@@ -102,13 +120,13 @@ struct PersistentSteps {
 
   template <class Member>
   KOKKOS_FUNCTION Tables tables(const Member& member, const Halo& halo, int count) const {
-    const int held = patches.team + halo.count;
+    const int rows = patches.team + halo.count;
     return {static_cast<double*>(member.team_scratch(0).get_shmem_aligned(
-                3 * static_cast<std::size_t>(count * held) * sizeof(double), alignof(double))),
-            held, count};
+                3 * static_cast<std::size_t>(count * rows) * sizeof(double), alignof(double))),
+            rows, count};
   }
 
-  /// The thread's vertex, if it has one, with the positions of the first two stages.
+  /// Loads the thread's vertex, if any, and stores the positions of the first two stages.
   template <class Member>
   KOKKOS_FUNCTION OwnVertex begin(const Member& member, const Halo& halo, const Tables& points) const {
     const Vector3<double> zero{0.0, 0.0, 0.0};
@@ -138,13 +156,35 @@ struct PersistentSteps {
     return own;
   }
 
-  /// Ends stage `done` of this launch under an elastic force, N: posts the position of the next stage but one
-  /// and leaves it in `points`.
+  /// All loads on the thread's vertex in stage `done` at the positions `now` of its team, N.
+  template <class Rings>
+  KOKKOS_FUNCTION Vector3<double> loads_on(const OwnVertex& own, std::int64_t done, const Rings& rings,
+                                           const TeamTable& now, int rank) const {
+    Vector3<double> sum = own.load;
+    if constexpr (loads) {
+      const Vector3<double> place = load_points<double>(load.external.rest, own.vertex);
+      const double t =
+          stage_time(load.clock, steps_before() + done / 4, share_before(static_cast<int>(done % 4)));
+      sum = load.external.with_timed_loads(sum, own.vertex, place, t);
+      if (load.external.has_pressure())
+        sum = sum +
+              (load.external.pressure_at(own.vertex, place, t) / 6.0) * twice_area_vector(rings, now, rank);
+    }
+    return sum;
+  }
+
+  /// Ends stage `done` of this launch at position `at`, m, under `elastic` and `loaded` forces, N: puts the
+  /// position of the next stage but one and stores it in `points`.
   template <class Member>
   KOKKOS_FUNCTION void end_stage(const Member& member, OwnVertex& own, std::int64_t done,
-                                 const Vector3<double>& elastic, const TeamTable& points) const {
-    const Vector3<double> a = acceleration(cloth, elastic + own.load, own.inverse_mass, own.v_now, own.free);
+                                 const Vector3<double>& elastic, const Vector3<double>& loaded,
+                                 const Vector3<double>& at, const TeamTable& points) const {
     const int stage = static_cast<int>(done % 4);
+    Vector3<double> force = elastic + loaded;
+    if constexpr (has_vertex_force<VertexForce>)
+      force = vertex_force.add_to(force, at, own.v_now, &own.inverse_mass, own.vertex,
+                                  steps_before() + done / 4, share_before(stage));
+    const Vector3<double> a = acceleration(cloth, force, own.inverse_mass, own.v_now, own.free);
     Vector3<double> position;
     if (stage == 3) {
       own.v = own.v_now = end_velocity(dt, own.v, own.v2, own.v3, own.v_now, a);
@@ -159,19 +199,24 @@ struct PersistentSteps {
       if (stage == 1) own.v3 = velocity;
       own.v_now = velocity;
     }
-    // What nobody reads would replace what somebody may still have to read.
+    // A message without readers would replace one that a neighbour may still have to read.
     if (own.place >= 0 && done + 2 < 4 * steps)
       member.put(epoch_after(done), static_cast<std::size_t>(own.place),
                  {{position.x, position.y, position.z}});
     store_points(points, member.team_rank(), position);
-    // Others wait for the post and not for this.
-    if (stage == 3) watch.look(begun + done / 4 + 1, own.vertex, own.x, own.v);
+    // After the message, which other teams wait for.
+    if (stage == 3) {
+      monitor.look(steps_before() + done / 4 + 1, own.vertex, own.x, own.v);
+      if constexpr (has_vertex_force<VertexForce>)
+        vertex_force.end_step(own.x, own.v, &own.inverse_mass, own.vertex, steps_before() + done / 4 + 1);
+    }
   }
 
-  /// Brings what the halo posted at the end of stage `done` into `points`.
+  /// Gets the positions of the halo that its teams put at the end of stage `done` and stores them in
+  /// `points`.
   template <class Member>
-  KOKKOS_FUNCTION void collect(const Member& member, const Halo& halo, std::int64_t done,
-                               const TeamTable& points) const {
+  KOKKOS_FUNCTION void get_halo(const Member& member, const Halo& halo, std::int64_t done,
+                                const TeamTable& points) const {
     int place = halo.place;
     for (int k = halo.rank; k < halo.count; k += member.team_size()) {
       if (k > halo.rank) place = patches.halo_place(halo.first + k);
@@ -183,26 +228,35 @@ struct PersistentSteps {
     return epoch + 1 + static_cast<std::uint64_t>(done);
   }
 
-  /// Calls `force(points, done)` for each stage: what is the elastic force on the thread's vertex, N, when
-  /// `arrive` has been called in it, which waits for the team and the positions of the next stage.
-  template <class Member, class Force>
+  /// Takes all steps. `force(points, done, arrive)` returns the elastic force on the thread's vertex in stage
+  /// `done`, N, and calls `arrive`, which gets the positions of the next stage and is a team barrier. `rings`
+  /// are the slots of the team's triangles, which loads read.
+  template <class Member, class Rings, class Force>
   KOKKOS_FUNCTION void run(const Member& member, const Halo& halo, const Tables& points, OwnVertex& own,
-                           const Force& force) const {
+                           const Rings& rings, const Force& force) const {
     const std::int64_t stages = 4 * steps;
-    int now = 0;  // of the tables
+    int now = 0;  // table
     for (std::int64_t done = 0; done < stages; ++done) {
       const int last = points.count - 1, next = now == last ? 0 : now + 1, then = next == last ? 0 : next + 1;
+      Vector3<double> loaded = own.load, at = own.x;
+      if constexpr (loads || has_vertex_force<VertexForce>) {
+        // Before the barrier of the stage, after which a table may be overwritten.
+        if (own.vertex >= 0) {
+          loaded = loads_on(own, done, rings, points(now), member.team_rank());
+          at = load_points<double>(points(now), member.team_rank());
+        }
+      }
       const Vector3<double> elastic = force(points(now), done, [&] {
-        if (done > 0 && done + 1 < stages) collect(member, halo, done - 1, points(next));
+        if (done > 0 && done + 1 < stages) get_halo(member, halo, done - 1, points(next));
         member.team_barrier();
       });
-      if (own.vertex >= 0) end_stage(member, own, done, elastic, points(then));
+      if (own.vertex >= 0) end_stage(member, own, done, elastic, loaded, at, points(then));
       now = next;
     }
     if (own.vertex < 0) return;
     store_points(x, own.vertex, own.x);
     store_points(v, own.vertex, own.v);
-    if (own.vertex == 0) watch.steps(0) = begun + steps;
+    if (own.vertex == 0) monitor.steps(0) = steps_before() + steps;
   }
 };
 

@@ -43,16 +43,16 @@ KOKKOS_INLINE_FUNCTION Vector3<R> gather_points(const Points& points,
 
 /// Where points will be that move on for a while.
 template <class Points>
-struct Ahead {
+struct ExtrapolatedPoints {
   Points x, v;
   double time;
 };
 template <class R, class Points>
-KOKKOS_INLINE_FUNCTION Vector3<R> load_points(const Ahead<Points>& points, int i) {
+KOKKOS_INLINE_FUNCTION Vector3<R> load_points(const ExtrapolatedPoints<Points>& points, int i) {
   return load_points<R>(points.x, i) + points.time * load_points<R>(points.v, i);
 }
 template <class R, class Points>
-KOKKOS_INLINE_FUNCTION Vector3<R> gather_points(const Ahead<Points>& points,
+KOKKOS_INLINE_FUNCTION Vector3<R> gather_points(const ExtrapolatedPoints<Points>& points,
                                                 typename device::Access<R>::Index index) {
   return gather_points<R>(points.x, index) + points.time * gather_points<R>(points.v, index);
 }
@@ -66,7 +66,7 @@ struct RestTriangle {
 
 /// The edge from a vertex to a neighbour, m, and its squared length, m^2.
 template <class R>
-struct Spoke {
+struct EdgeVector {
   Vector3<R> to;
   R squared;
   typename device::Access<R>::Index neighbour;
@@ -81,22 +81,22 @@ KOKKOS_INLINE_FUNCTION RestTriangle<R> stored_triangle(const Values& value, R be
 }
 
 template <class R, class Points>
-KOKKOS_INLINE_FUNCTION Spoke<R> spoke(const Points& points, const Vector3<R>& own,
-                                      typename device::Access<R>::Index neighbour) {
+KOKKOS_INLINE_FUNCTION EdgeVector<R> edge_to(const Points& points, const Vector3<R>& own,
+                                             typename device::Access<R>::Index neighbour) {
   const Vector3<R> to = gather_points<R>(points, neighbour) - own;
   return {to, dot(to, to), neighbour};
 }
 
 /// What does not change while cloth moves.
 template <class ExecutionSpace>
-struct Cloth {
+struct FabricViews {
   using Points = PointsView<ExecutionSpace>;
   SlotViews<ExecutionSpace, 3> triangles;  ///< a device, which waits for memory, stores no values
   SlotViews<ExecutionSpace, 2> springs;
-  Points rest;                                                                ///< m; on the host empty
-  Kokkos::View<double*, typename ExecutionSpace::memory_space> inverse_mass;  ///< 1/kg
-  Kokkos::View<std::uint8_t*, typename ExecutionSpace::memory_space> held;    ///< axes: 1 x, 2 y, 4 z
-  Points load;                                                                ///< dead force, N; may be empty
+  Points rest;                                                                    ///< m; on the host empty
+  Kokkos::View<double*, typename ExecutionSpace::memory_space> inverse_mass;      ///< 1/kg
+  Kokkos::View<std::uint8_t*, typename ExecutionSpace::memory_space> fixed_dofs;  ///< axes: 1 x, 2 y, 4 z
+  Points load;  ///< dead force, N; may be empty
   Moduli moduli;
   Vector3<double> gravity;
   double damping;
@@ -107,7 +107,7 @@ struct Cloth {
     if constexpr (device::is_host<ExecutionSpace>)
       return device::Access<R>::load(&triangles.value(slot, 0));
     else
-      return spoke<R>(rest, load_points<R>(rest, i), neighbour);
+      return edge_to<R>(rest, load_points<R>(rest, i), neighbour);
   }
   template <class R, class RestEdge>
   KOKKOS_INLINE_FUNCTION RestTriangle<R> rest_triangle(const RestEdge& before, const RestEdge& next,
@@ -123,19 +123,20 @@ struct Cloth {
 
 /// 1 along free axes of a vertex and the lanes after it, 0 along those that `held` names.
 template <class R>
-KOKKOS_INLINE_FUNCTION Vector3<R> free_axes(const std::uint8_t* held) {
+KOKKOS_INLINE_FUNCTION Vector3<R> free_axes(const std::uint8_t* fixed_dofs) {
   using Lanes = device::Access<R>;
-  return {Lanes::unless_set(held, 1U), Lanes::unless_set(held, 2U), Lanes::unless_set(held, 4U)};
+  return {Lanes::unless_set(fixed_dofs, 1U), Lanes::unless_set(fixed_dofs, 2U),
+          Lanes::unless_set(fixed_dofs, 4U)};
 }
 template <class R, class ExecutionSpace>
-KOKKOS_INLINE_FUNCTION Vector3<R> free_axes(const Cloth<ExecutionSpace>& cloth, int i) {
-  return free_axes<R>(&cloth.held(i));
+KOKKOS_INLINE_FUNCTION Vector3<R> free_axes(const FabricViews<ExecutionSpace>& cloth, int i) {
+  return free_axes<R>(&cloth.fixed_dofs(i));
 }
 
 /// The pull of a triangle on its first vertex, N.
-template <Law law, class R>
-KOKKOS_INLINE_FUNCTION Vector3<R> triangle_pull(const Moduli& m, const Spoke<R>& j, const Spoke<R>& k,
-                                                const RestTriangle<R>& rest) {
+template <ConstitutiveModel law, class R>
+KOKKOS_INLINE_FUNCTION Vector3<R> triangle_pull(const Moduli& m, const EdgeVector<R>& j,
+                                                const EdgeVector<R>& k, const RestTriangle<R>& rest) {
   const Products<R> now{j.squared, dot(j.to, k.to), k.squared};
   if constexpr (law.model == Model::biquadratic && !law.tension_only) {
     const SpokeTensions<R> tension = spoke_tensions(m, now, rest.products, rest.inverse_area);
@@ -149,7 +150,7 @@ KOKKOS_INLINE_FUNCTION Vector3<R> triangle_pull(const Moduli& m, const Spoke<R>&
 }
 
 /// The pull of a spring on the vertex from which `edge` leads, N.
-template <Law law, class R>
+template <ConstitutiveModel law, class R>
 KOKKOS_INLINE_FUNCTION Vector3<R> spring_pull(R stiffness, R rest, const Vector3<R>& edge) {
   return spring_tension<law>(stiffness, dot(edge, edge), rest) * edge;
 }
@@ -182,11 +183,11 @@ KOKKOS_INLINE_FUNCTION void each_triangle(const Fabric& cloth, const Points& pos
   const Vector3<R> own = load_points<R>(positions, i);
   using Index = typename device::Access<R>::Index;
   each_side_by_side<R>(
-      cloth, i, [&](Index neighbour) { return spoke<R>(positions, own, neighbour); }, take);
+      cloth, i, [&](Index neighbour) { return edge_to<R>(positions, own, neighbour); }, take);
 }
 
 /// `sum` and the pulls of the springs of vertex i and the lanes after it, N, in the order of their slots.
-template <Law law, class R, class Fabric, class Points>
+template <ConstitutiveModel law, class R, class Fabric, class Points>
 KOKKOS_INLINE_FUNCTION Vector3<R> with_springs(const Fabric& cloth, const Points& positions, int i,
                                                Vector3<R> sum) {
   using Lanes = device::Access<R>;
@@ -202,12 +203,12 @@ KOKKOS_INLINE_FUNCTION Vector3<R> with_springs(const Fabric& cloth, const Points
 /// The elastic forces on vertex i and the lanes after it, N, each vertex in the fixed order of its slots.
 /// Momentum is kept to round-off: both ends of an edge, and all corners of a triangle, compute the same
 /// tension. `Fabric` is a Cloth or what has its tables elsewhere.
-template <Law law, class R, class Fabric, class Points>
+template <ConstitutiveModel law, class R, class Fabric, class Points>
 KOKKOS_INLINE_FUNCTION Vector3<R> elastic_force(const Fabric& cloth, const Points& positions, int i) {
   Vector3<R> sum{R(0.0), R(0.0), R(0.0)};
   if constexpr (whole_triangles<law>)
     each_triangle<R>(cloth, positions, i,
-                     [&](const Spoke<R>& j, const Spoke<R>& k, const RestTriangle<R>& rest) {
+                     [&](const EdgeVector<R>& j, const EdgeVector<R>& k, const RestTriangle<R>& rest) {
                        sum = sum + triangle_pull<law>(cloth.moduli, j, k, rest);
                      });
   return with_springs<law>(cloth, positions, i, sum);
@@ -215,20 +216,20 @@ KOKKOS_INLINE_FUNCTION Vector3<R> elastic_force(const Fabric& cloth, const Point
 
 /// Of two states, whose neighbours and triangles at rest are read once.
 template <class T>
-struct Twice {
+struct StatePair {
   T first, second;
 };
-template <Law law, class R, class Fabric, class First, class Second>
-KOKKOS_INLINE_FUNCTION Twice<Vector3<R>> elastic_forces(const Fabric& cloth, const First& first,
-                                                        const Second& second, int i) {
-  Twice<Vector3<R>> sum{{R(0.0), R(0.0), R(0.0)}, {R(0.0), R(0.0), R(0.0)}};
+template <ConstitutiveModel law, class R, class Fabric, class First, class Second>
+KOKKOS_INLINE_FUNCTION StatePair<Vector3<R>> elastic_forces(const Fabric& cloth, const First& first,
+                                                            const Second& second, int i) {
+  StatePair<Vector3<R>> sum{{R(0.0), R(0.0), R(0.0)}, {R(0.0), R(0.0), R(0.0)}};
   if constexpr (whole_triangles<law>) {
-    using Spokes = Twice<Spoke<R>>;
-    const Twice<Vector3<R>> own{load_points<R>(first, i), load_points<R>(second, i)};
+    using Spokes = StatePair<EdgeVector<R>>;
+    const StatePair<Vector3<R>> own{load_points<R>(first, i), load_points<R>(second, i)};
     each_side_by_side<R>(
         cloth, i,
         [&](typename device::Access<R>::Index neighbour) {
-          return Spokes{spoke<R>(first, own.first, neighbour), spoke<R>(second, own.second, neighbour)};
+          return Spokes{edge_to<R>(first, own.first, neighbour), edge_to<R>(second, own.second, neighbour)};
         },
         [&](const Spokes& j, const Spokes& k, const RestTriangle<R>& rest) {
           sum.first = sum.first + triangle_pull<law>(cloth.moduli, j.first, k.first, rest);
@@ -240,12 +241,13 @@ KOKKOS_INLINE_FUNCTION Twice<Vector3<R>> elastic_forces(const Fabric& cloth, con
 
 /// With dead forces.
 template <class R, class ExecutionSpace>
-KOKKOS_INLINE_FUNCTION Vector3<R> with_load(const Cloth<ExecutionSpace>& cloth, const Vector3<R>& elastic,
-                                            int i) {
+KOKKOS_INLINE_FUNCTION Vector3<R> with_load(const FabricViews<ExecutionSpace>& cloth,
+                                            const Vector3<R>& elastic, int i) {
   return cloth.load.extent(0) > 0 ? elastic + load_points<R>(cloth.load, i) : elastic;
 }
-template <Law law, class R, class ExecutionSpace, class Points>
-KOKKOS_INLINE_FUNCTION Vector3<R> force(const Cloth<ExecutionSpace>& cloth, const Points& positions, int i) {
+template <ConstitutiveModel law, class R, class ExecutionSpace, class Points>
+KOKKOS_INLINE_FUNCTION Vector3<R> force(const FabricViews<ExecutionSpace>& cloth, const Points& positions,
+                                        int i) {
   return with_load(cloth, elastic_force<law, R>(cloth, positions, i), i);
 }
 
@@ -260,8 +262,8 @@ KOKKOS_INLINE_FUNCTION Vector3<R> acceleration(const Fabric& cloth, const Vector
 
 /// Of vertex i and the lanes after it.
 template <class R, class ExecutionSpace>
-KOKKOS_INLINE_FUNCTION Vector3<R> acceleration(const Cloth<ExecutionSpace>& cloth, const Vector3<R>& force,
-                                               const Vector3<R>& velocity, int i) {
+KOKKOS_INLINE_FUNCTION Vector3<R> acceleration(const FabricViews<ExecutionSpace>& cloth,
+                                               const Vector3<R>& force, const Vector3<R>& velocity, int i) {
   return acceleration(cloth, force, device::Access<R>::load(&cloth.inverse_mass(i)), velocity,
                       free_axes<R>(cloth, i));
 }

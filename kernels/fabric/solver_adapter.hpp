@@ -1,0 +1,46 @@
+#pragma once
+
+#include "kernels/fabric/fabric_solver.hpp"
+
+namespace drogue::fabric {
+
+/// `FabricSolver` behind the virtual interface, on an execution-space instance of its own.
+template <class ExecutionSpace>
+class SolverAdapter final : public Solver {
+ public:
+  explicit SolverAdapter(const Parameters& p)
+      : _instance(static_cast<int>(1 + p.mesh.rest.size() / 512)), _solver(_instance.space(), p) {}
+
+  void upload(std::span<const Vector> positions, std::span<const Vector> velocities) override {
+    _solver.upload(positions, velocities);
+  }
+  void download(std::span<Vector> positions, std::span<Vector> velocities) override {
+    _solver.download(positions, velocities);
+  }
+  bool advance(std::int64_t steps) override { return _solver.advance(steps); }
+  std::optional<Failure> failure() override { return _solver.failure(); }
+  [[nodiscard]] TimeState time_state() const override { return _solver.time_state(); }
+  void set_time_state(const TimeState& time) override { _solver.set_time_state(time); }
+  void forces(std::span<Vector> forces) override { _solver.forces(forces); }
+  double fastest_frequency() override { return _solver.fastest_frequency(); }
+  double frequency_at_least() override { return _solver.frequency_at_least(); }
+  [[nodiscard]] double fastest_decay() const override { return _solver.fastest_decay(); }
+  void stress(StressMeasure measure, std::span<Stress> of_triangles) override {
+    _solver.stress(measure, of_triangles);
+  }
+  void vertex_stress(StressMeasure measure, std::span<Stress> of_vertices) override {
+    _solver.vertex_stress(measure, of_vertices);
+  }
+  Totals totals() override { return _solver.totals(); }
+  [[nodiscard]] const char* driver() const override { return _solver.driver(); }
+  void contact_work(std::span<ContactWork> of_vertices) override { _solver.contact_work(of_vertices); }
+  void set_contact_work(std::span<const ContactWork> of_vertices) override {
+    _solver.set_contact_work(of_vertices);
+  }
+
+ private:
+  device::Instance<ExecutionSpace> _instance;
+  FabricSolver<ExecutionSpace> _solver;
+};
+
+}  // namespace drogue::fabric

@@ -1,0 +1,406 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "kernels/fabric/fabric_solver.hpp"
+#include "tests/support/backend.hpp"
+#include "tests/support/expression_program.hpp"
+#include "tests/support/fabric_mesh.hpp"
+#include "tests/support/profiled.hpp"
+
+// Coupling of a fabric to other kernels on the device: forces of the caller, state and loads in device Views.
+
+namespace drogue::fabric {
+namespace {
+
+using device::ProfilingCounters;
+using testing::postfix;
+using testing::random_patch;
+using testing::shaken;
+
+using Space = DROGUE_TEST_SPACE;
+using Points = PointsView<Space>;
+constexpr bool on_device = !device::is_host<Space>;
+
+/// Without fused multiply-add all drivers have the same bits.
+#if defined(DROGUE_EXACT)
+constexpr double rounding = 0.0;
+#else
+constexpr double rounding = 1.0;
+#endif
+
+struct Motions {
+  std::vector<Vector> x, v;
+};
+
+double distance(const Motions& a, const Motions& b) {
+  double largest = 0.0;
+  for (std::size_t i = 0; i < a.x.size(); ++i)
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      largest =
+          std::max({largest, std::abs(a.x[i][axis] - b.x[i][axis]), std::abs(a.v[i][axis] - b.v[i][axis])});
+  return largest;
+}
+
+/// A sheet whose corners hang in springs from pinned anchors.
+Parameters mounted_sheet(Integrator integrator, Driver driver, Model model = Model::biquadratic) {
+  Parameters p;
+  p.mesh = random_patch(11, 9, 3);
+  const int corners[] = {0, 10, 88, 98};
+  for (const int corner : corners) {
+    Vector anchor = p.mesh.rest[static_cast<std::size_t>(corner)];
+    anchor[2] += 2.0;
+    p.mesh.lines.push_back({corner, static_cast<int>(p.mesh.rest.size())});
+    p.mesh.rest.push_back(anchor);
+  }
+  p.material.model = model;
+  p.material.axial_stiffness = 50.0;
+  p.mass.assign(p.mesh.rest.size(), 0.01);
+  p.pinned.assign(p.mass.size(), 0);
+  for (std::size_t k = 1; k <= 4; ++k) p.pinned[p.pinned.size() - k] = 7;
+  p.gravity = {0.0, 0.0, -9.81};
+  p.damping = 0.2;
+  p.integrator = integrator;
+  p.driver = driver;
+  p.dt = 1e-4;
+  return p;
+}
+
+Points on_device_points(const Space& space, const std::vector<Vector>& from) {
+  const Points to("points", from.size());
+  const auto mirror = Kokkos::create_mirror_view(to);
+  for (std::size_t i = 0; i < from.size(); ++i)
+    for (std::size_t axis = 0; axis < 3; ++axis) mirror(i, axis) = from[i][axis];
+  device::copy(space, to, mirror);
+  space.fence("test");
+  return to;
+}
+
+/// Strength times direction, as a timed load.
+struct Push {
+  Points rest, direction;
+  device::ExpressionProgram strength;
+
+  KOKKOS_FUNCTION Vector3<double> operator()(const VertexStage& at) const {
+    const Vector3<double> place = load_points<double>(rest, at.vertex);
+    return device::evaluate(strength, place.x, place.y, place.z, at.time) *
+           load_points<double>(direction, at.vertex);
+  }
+};
+
+/// A damped spring to the place at rest, and a force that grows by `push` times dt in every step.
+struct Mount {
+  Points rest;
+  Kokkos::View<double*, Space::memory_space> force;
+  Kokkos::View<int*, Space::memory_space> steps;
+  double stiffness, damping, push;
+
+  KOKKOS_FUNCTION Vector3<double> operator()(const VertexStage& at) const {
+    const Vector3<double> pull =
+        stiffness * (load_points<double>(rest, at.vertex) - at.position) - damping * at.velocity;
+    return pull + Vector3<double>{force(at.vertex), 0.0, 0.0};
+  }
+  KOKKOS_FUNCTION void end_step(const VertexStage& at) const {
+    force(at.vertex) += push * at.dt;
+    ++steps(at.vertex);
+  }
+};
+
+Mount mount(const Space& space, const Parameters& p, double stiffness, double damping, double push) {
+  return {on_device_points(space, p.mesh.rest),
+          decltype(Mount::force)("force", p.mass.size()),
+          decltype(Mount::steps)("steps", p.mass.size()),
+          stiffness,
+          damping,
+          push};
+}
+
+/// Takes 256 steps, then 1000 that are counted: returns their launches and leaves the state in `end`.
+template <class Solver>
+std::int64_t launches_of(Solver& solver, Motions& end) {
+  solver.upload(end.x, end.v);
+  solver.enqueue_steps(256);
+  const ProfilingCounters before = testing::profiled();
+  solver.enqueue_steps(1000);
+  const ProfilingCounters after = testing::profiled();
+  EXPECT_EQ(after.fences, before.fences);
+  EXPECT_EQ(after.allocations, before.allocations);
+  EXPECT_EQ(after.copies, before.copies);
+  EXPECT_EQ(after.h2d_bytes + after.d2h_bytes, before.h2d_bytes + before.d2h_bytes);
+  EXPECT_FALSE(solver.failure());
+  EXPECT_EQ(solver.time_state().step, 1256);
+  solver.download(end.x, end.v);
+  return after.kernel_launches - before.kernel_launches;
+}
+
+/// Launches of 1000 steps from step 256: three checkpoints and four launches of the persistent driver.
+std::int64_t expected_launches(Integrator integrator, Driver driver) {
+  if (integrator == Integrator::verlet) return 1000 + 4 + 3;
+  if (!on_device) return 4 * 1000 + 3;
+  return (driver == Driver::plain ? 2 * 1000 : driver == Driver::graph ? 1000 : 4) + 3;
+}
+
+void expect_force_like_load(Integrator integrator, Driver driver, Model model, double tolerance) {
+  const device::Instance<Space> instance(1);
+  const Space& space = instance.space();
+  const device::ExpressionProgram strength = postfix({"x", "t", 60.0, "*", "+", "sin", "y", 0.1, "*", "+"});
+  Parameters p = mounted_sheet(integrator, driver, model);
+  std::vector<Vector> direction;
+  // Products with powers of two are exact: fused multiply-add does not change them.
+  for (std::size_t i = 0; i < p.mass.size(); ++i) direction.push_back({0.125, i % 2 == 0 ? 0.25 : 0.0, -0.5});
+  const Motions start{shaken(p.mesh.rest, 0.05, 1),
+                      shaken(std::vector<Vector>(p.mass.size(), Vector{}), 0.1, 2)};
+
+  FabricSolver<Space, Push> forced(
+      space, p, {on_device_points(space, p.mesh.rest), on_device_points(space, direction), strength});
+  Motions by_force = start;
+  EXPECT_EQ(launches_of(forced, by_force), expected_launches(integrator, driver));
+
+  FabricSolver<Space> free(space, p);
+  Motions without = start;
+  EXPECT_EQ(launches_of(free, without), expected_launches(integrator, driver));
+  EXPECT_STREQ(forced.driver(), free.driver());
+  EXPECT_GT(distance(by_force, without), 1e-3);
+
+  p.timed_loads = {{strength, direction}};
+  FabricSolver<Space> loaded(space, p);
+  Motions by_load = start;
+  launches_of(loaded, by_load);
+  EXPECT_STREQ(loaded.driver(), free.driver()) << "loads do not change the driver";
+  EXPECT_LE(distance(by_force, by_load), tolerance);
+}
+
+TEST(FabricCoupling, VertexForceHasTheBitsOfALoadAndNoLaunchOfItsOwn) {
+  for (const Driver driver : {Driver::plain, Driver::graph, Driver::persistent})
+    expect_force_like_load(Integrator::rk4, driver, Model::biquadratic, rounding * 1e-9);
+  expect_force_like_load(Integrator::verlet, Driver::plain, Model::biquadratic, rounding * 1e-9);
+  expect_force_like_load(Integrator::rk4, Driver::automatic, Model::edge, rounding * 1e-9);
+}
+
+/// Motions after the sums of `cuts` steps.
+Motions mounted_motions(Integrator integrator, Driver driver, const std::vector<std::int64_t>& cuts) {
+  const device::Instance<Space> instance(1);
+  const Parameters p = mounted_sheet(integrator, driver);
+  const Mount functor = mount(instance.space(), p, 20.0, 0.05, 3.0);
+  FabricSolver<Space, Mount> solver(instance.space(), p, functor);
+  Motions now{shaken(p.mesh.rest, 0.05, 1), std::vector<Vector>(p.mass.size(), Vector{})};
+  solver.upload(now.x, now.v);
+  int sum = 0;
+  for (const std::int64_t steps : cuts) solver.enqueue_steps(steps), sum += static_cast<int>(steps);
+  solver.download(now.x, now.v);
+  const auto taken = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), functor.steps);
+  for (std::size_t i = 0; i < taken.extent(0); ++i) EXPECT_EQ(taken(i), sum);
+  return now;
+}
+
+TEST(FabricCoupling, StateOfAVertexForceAdvancesOncePerStepInEveryDriver) {
+  const Motions plain = mounted_motions(Integrator::rk4, Driver::plain, {20});
+  for (const Driver driver : {Driver::graph, Driver::persistent})
+    EXPECT_LE(distance(plain, mounted_motions(Integrator::rk4, driver, {20})), rounding * 1e-11);
+  for (const Integrator integrator : {Integrator::rk4, Integrator::verlet}) {
+    const Motions whole = mounted_motions(integrator, Driver::automatic, {20});
+    EXPECT_EQ(distance(whole, mounted_motions(integrator, Driver::automatic, {7, 1, 12})), 0.0);
+  }
+}
+
+TEST(FabricCoupling, MassInAVertexForceSpringOscillates) {
+  const device::Instance<Space> instance(1);
+  for (const Integrator integrator : {Integrator::rk4, Integrator::verlet}) {
+    Parameters p;
+    p.mesh.rest = {{0, 0, 0}, {1, 0, 0}};
+    p.mass = {2.0, 2.0};
+    p.integrator = integrator;
+    p.dt = 1e-3;
+    FabricSolver<Space, Mount> solver(instance.space(), p, mount(instance.space(), p, 50.0, 0.0, 0.0));
+    Motions now{{{0.1, 0, 0}, {1, 0.2, 0}}, std::vector<Vector>(2)};
+    solver.upload(now.x, now.v);
+    solver.advance_to(1.0);
+    EXPECT_EQ(solver.time_state().step, 1000);
+    solver.download(now.x, now.v);
+    const double tolerance = integrator == Integrator::rk4 ? 1e-9 : 1e-5;
+    EXPECT_NEAR(now.x[0][0], 0.1 * std::cos(5.0), tolerance);
+    EXPECT_NEAR(now.v[1][1], -1.0 * std::sin(5.0), 5.0 * tolerance);
+    solver.advance_to(0.5);
+    EXPECT_EQ(solver.time_state().step, 1000) << "time does not run backwards";
+  }
+}
+
+/// Moves all vertices by a vector and gives them a velocity.
+struct Shift {
+  State<Space> state;
+  Vector3<double> way, velocity;
+
+  KOKKOS_FUNCTION void operator()(const int i) const {
+    state.positions(i, 0) += way.x, state.positions(i, 1) += way.y, state.positions(i, 2) += way.z;
+    state.velocities(i, 0) = velocity.x, state.velocities(i, 1) = velocity.y,
+                        state.velocities(i, 2) = velocity.z;
+  }
+};
+
+TEST(FabricCoupling, AnotherKernelWritesTheStateWithoutACopy) {
+  const device::Instance<Space> instance(1);
+  const Space& space = instance.space();
+  for (const Integrator integrator : {Integrator::rk4, Integrator::verlet}) {
+    Parameters p = mounted_sheet(integrator, Driver::automatic);
+    p.relative_damping = 0.5;  // Verlet's method alternates between buffers of velocities, too
+    FabricSolver<Space> solver(space, p), other(space, p);
+    Motions now{shaken(p.mesh.rest, 0.05, 1), std::vector<Vector>(p.mass.size(), Vector{})};
+    solver.upload(now.x, now.v);
+    const State<Space> state = solver.state();
+    ASSERT_EQ(state.positions.extent(0), p.mass.size());
+    ASSERT_EQ(state.positions.extent(1), 3U);
+    const ProfilingCounters before = testing::profiled();
+    solver.enqueue_steps(3);
+    Kokkos::parallel_for("shift", Kokkos::RangePolicy<Space>(space, 0, solver.vertices()),
+                         Shift{state, {0.5, 0.25, -1.0}, {0.1, 0.2, 0.3}});
+    const ProfilingCounters after = testing::profiled();
+    EXPECT_EQ(after.fences, before.fences);
+    EXPECT_EQ(after.copies, before.copies);
+    EXPECT_EQ(solver.state().positions.data(), state.positions.data());
+    EXPECT_EQ(solver.state().velocities.data(), state.velocities.data());
+    Motions shifted = now;
+    solver.download(shifted.x, shifted.v);
+
+    other.upload(now.x, now.v);
+    EXPECT_TRUE(other.advance(3));
+    other.download(now.x, now.v);
+    for (std::size_t i = 0; i < now.x.size(); ++i) {
+      EXPECT_EQ(shifted.x[i], (Vector{now.x[i][0] + 0.5, now.x[i][1] + 0.25, now.x[i][2] - 1.0}));
+      EXPECT_EQ(shifted.v[i], (Vector{0.1, 0.2, 0.3}));
+    }
+    // The steps go on from the state written.
+    solver.enqueue_steps(4);
+    other.upload(shifted.x, shifted.v);
+    other.enqueue_steps(4);
+    solver.download(now.x, now.v);
+    other.download(shifted.x, shifted.v);
+    EXPECT_EQ(distance(now, shifted), 0.0);
+  }
+}
+
+TEST(FabricCoupling, APayloadMovesFreelyAndPinsFollowTheVelocityWritten) {
+  const device::Instance<Space> instance(1);
+  const Space& space = instance.space();
+  for (const Integrator integrator : {Integrator::rk4, Integrator::verlet}) {
+    Parameters p = mounted_sheet(integrator, Driver::automatic);
+    p.damping = 0.0;
+    // A mass of 20 kg on four lines from the corners.
+    const int payload = static_cast<int>(p.mesh.rest.size());
+    p.mesh.rest.push_back({5.0, 4.0, -12.0});
+    p.mass.push_back(20.0);
+    p.pinned.push_back(0);
+    for (const int corner : {0, 10, 88, 98}) p.mesh.lines.push_back({corner, payload});
+    FabricSolver<Space> solver(space, p);
+    Motions now{p.mesh.rest, std::vector<Vector>(p.mass.size(), Vector{})};
+    solver.upload(now.x, now.v);
+    // Anchors move with 2 m/s along x.
+    const auto anchors =
+        Kokkos::subview(solver.state().velocities, Kokkos::make_pair(payload - 4, payload), Kokkos::ALL);
+    Kokkos::deep_copy(space, Kokkos::subview(anchors, Kokkos::ALL, 0), 2.0);
+    solver.enqueue_steps(101);
+    solver.download(now.x, now.v);
+    const double t = 101 * p.dt;
+    for (int k = 1; k <= 4; ++k) {
+      const auto i = static_cast<std::size_t>(payload - k);
+      EXPECT_NEAR(now.x[i][0], p.mesh.rest[i][0] + 2.0 * t, 1e-12);
+      EXPECT_EQ(now.v[i][0], 2.0);
+    }
+    // The lines are nearly slack so far: the payload falls.
+    const auto i = static_cast<std::size_t>(payload);
+    EXPECT_NEAR(now.x[i][2], -12.0 - 0.5 * 9.81 * t * t, 1e-6);
+    EXPECT_NEAR(now.v[i][2], -9.81 * t, 1e-3);
+  }
+}
+
+/// Sets loads as time goes on.
+struct SetLoads {
+  Points load;
+  ListView<Space, double> pressure;
+  double strength;
+
+  KOKKOS_FUNCTION void operator()(const int i) const {
+    load(i, 2) = 0.5 * strength;
+    pressure(i) = strength;
+  }
+};
+
+TEST(FabricCoupling, LoadsInViewsActFromTheNextStepOn) {
+  const device::Instance<Space> instance(1);
+  const Space& space = instance.space();
+  const auto run = [&](Integrator integrator, Driver driver, Model model) {
+    Parameters p = mounted_sheet(integrator, driver, model);
+    const Motions start{shaken(p.mesh.rest, 0.05, 1), std::vector<Vector>(p.mass.size(), Vector{})};
+    FabricSolver<Space> live(space, p);
+    const Points load = live.loads();
+    const ListView<Space, double> pressure = live.pressures();
+    live.upload(start.x, start.v);
+    live.enqueue_steps(5);
+    Kokkos::parallel_for("set loads", Kokkos::RangePolicy<Space>(space, 0, live.vertices()),
+                         SetLoads{load, pressure, 2.0});
+    live.enqueue_steps(6);
+    EXPECT_GT(live.fastest_frequency(), 0.0);
+
+    FabricSolver<Space> before(space, p);
+    p.load.assign(p.mass.size(), {0.0, 0.0, 1.0});
+    p.follower_pressures = {{postfix({2.0}), {}}};
+    FabricSolver<Space> fixed(space, p);
+    Motions expected = start;
+    before.upload(expected.x, expected.v);
+    before.enqueue_steps(5);
+    before.download(expected.x, expected.v);
+    fixed.upload(expected.x, expected.v);
+    fixed.enqueue_steps(6);
+    fixed.download(expected.x, expected.v);
+    Motions now = start;
+    live.download(now.x, now.v);
+    EXPECT_LE(distance(now, expected), rounding * 1e-11);
+    EXPECT_GT(distance(now, start), 1e-4);
+  };
+  for (const Driver driver : {Driver::plain, Driver::graph, Driver::persistent}) {
+    run(Integrator::rk4, driver, Model::biquadratic);
+    run(Integrator::rk4, driver, Model::edge);
+  }
+  run(Integrator::verlet, Driver::plain, Model::quadratic);
+}
+
+#if defined(KOKKOS_ENABLE_CUDA)
+template <class ExecutionSpace>
+void expect_replays(Driver driver) {
+  if constexpr (std::is_same_v<ExecutionSpace, Kokkos::Cuda>) {
+    const device::Instance<ExecutionSpace> instance(1);
+    for (const Integrator integrator : {Integrator::rk4, Integrator::verlet}) {
+      const Parameters p = mounted_sheet(integrator, driver);
+      FabricSolver<ExecutionSpace> captured(instance.space(), p), direct(instance.space(), p);
+      Motions now{shaken(p.mesh.rest, 0.05, 1), std::vector<Vector>(p.mass.size(), Vector{})}, other = now;
+      captured.upload(now.x, now.v);
+      direct.upload(now.x, now.v);
+      cudaGraph_t graph = nullptr;
+      cudaGraphExec_t executable = nullptr;
+      ASSERT_EQ(cudaStreamBeginCapture(instance.stream(), cudaStreamCaptureModeThreadLocal), cudaSuccess);
+      captured.enqueue_steps(7);
+      ASSERT_EQ(cudaStreamEndCapture(instance.stream(), &graph), cudaSuccess);
+      ASSERT_EQ(cudaGraphInstantiate(&executable, graph, 0), cudaSuccess);
+      for (int replay = 0; replay < 10; ++replay)
+        ASSERT_EQ(cudaGraphLaunch(executable, instance.stream()), cudaSuccess);
+      EXPECT_FALSE(captured.failure());
+      EXPECT_EQ(captured.time_state().step, 70);
+      captured.enqueue_steps(3);
+      direct.enqueue_steps(73);
+      captured.download(now.x, now.v);
+      direct.download(other.x, other.v);
+      EXPECT_LE(distance(now, other), rounding * 1e-11);
+      cudaGraphExecDestroy(executable);
+      cudaGraphDestroy(graph);
+    }
+  }
+}
+
+TEST(FabricCoupling, StepsCanBeCapturedIntoTheCallersGraph) {
+  if (!on_device) GTEST_SKIP() << "only CUDA has graphs";
+  for (const Driver driver : {Driver::plain, Driver::graph, Driver::persistent})
+    expect_replays<Space>(driver);
+}
+#endif
+
+}  // namespace
+}  // namespace drogue::fabric
