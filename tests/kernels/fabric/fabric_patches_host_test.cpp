@@ -3,10 +3,11 @@
 #include <map>
 #include <set>
 
-#include "kernels/fabric/solver.hpp"
+#include "kernels/fabric/fabric_solver.hpp"
 #include "kernels/fabric/stepping/persistent_pairs.hpp"
 #include "kernels/fabric/stepping/persistent_rings.hpp"
 #include "tests/support/emulated_grid.hpp"
+#include "tests/support/expression_program.hpp"
 #include "tests/support/fabric_mesh.hpp"
 
 // Patches of a mesh, and steps of them all in one launch, on threads of the host.
@@ -138,15 +139,19 @@ Parameters cloth_of(const Mesh& mesh) {
   return p;
 }
 
-/// Steps as a persistent kernel takes them, in launches of `cuts` steps.
-template <ConstitutiveModel law, template <class, ConstitutiveModel> class Functor>
+using Space = Kokkos::Serial;
+
+/// Steps of the persistent driver in launches of `cuts` steps.
+template <ConstitutiveModel law, class Functor, class VertexForce = NoVertexForce,
+          class Loads = PersistentLoads<Space, false>>
 void run_emulated(const Parameters& p, int count, const std::vector<std::int64_t>& cuts,
-                  std::vector<Vector>& x, std::vector<Vector>& v) {
-  using Space = Kokkos::Serial;
+                  std::vector<Vector>& x, std::vector<Vector>& v, const VertexForce& vertex_force = {},
+                  const Loads& loads = {}) {
   const Space space;
   Material material = p.material;
   material.model = law.model;
-  const Mesh cloth_mesh = has_triangles(law.model) ? p.mesh : Mesh{p.mesh.rest, {}, {}, {}, {}};
+  const bool rings = has_triangles(law.model) || !p.follower_pressures.empty();
+  const Mesh cloth_mesh = rings ? p.mesh : Mesh{p.mesh.rest, {}, {}, {}, {}};
   const Patches patches =
       cut_patches(p.mesh.rest, ring_slots(cloth_mesh), spring_slots(p.mesh, material), count);
   const PatchViews<Space> views = patch_views(space, patches);
@@ -168,13 +173,22 @@ void run_emulated(const Parameters& p, int count, const std::vector<std::int64_t
   StepMonitor<Space> monitor{decltype(monitor.steps)("steps"), decltype(monitor.lost)("lost"),
                              decltype(monitor.raised)("raised")};
   monitor.lost() = no_failure;
-  using Steps = Functor<Space, law>;
   testing::EmulatedGrid grid(count, team_threads(patches, patches.most_rows, most_threads),
-                             Steps::scratch_bytes(views), static_cast<std::size_t>(patches.places));
+                             Functor::scratch_bytes(views), static_cast<std::size_t>(patches.places));
   std::int64_t begun = 0;
   std::uint64_t epoch = 0;
   for (const std::int64_t steps : cuts) {
-    grid.launch(Steps{{views, cloth, at, velocity, monitor, p.dt, begun, steps, epoch, {}, {}}});
+    grid.launch(Functor{{views,
+                         cloth,
+                         at,
+                         velocity,
+                         monitor,
+                         p.dt,
+                         begun,
+                         steps,
+                         epoch,
+                         {vertex_force, {0, p.dt, 0, 0.0}, static_cast<int>(n)},
+                         loads}});
     begun += steps;
     epoch += 4 * static_cast<std::uint64_t>(steps);
     EXPECT_EQ(monitor.steps(0), begun);
@@ -193,6 +207,11 @@ double distance(const std::vector<Vector>& a, const std::vector<Vector>& b) {
   return largest;
 }
 
+template <class ExecutionSpace, ConstitutiveModel law>
+using Rings = PersistentRingsFunctor<ExecutionSpace, law>;
+template <class ExecutionSpace, ConstitutiveModel law>
+using Pairs = PersistentPairsFunctor<ExecutionSpace, law>;
+
 template <ConstitutiveModel law, template <class, ConstitutiveModel> class Functor>
 void expect_the_same_steps() {
   Parameters p = cloth_of(mesh_of(11, 8));
@@ -206,17 +225,115 @@ void expect_the_same_steps() {
   EXPECT_GT(distance(x, start), 1e-5);
   for (const int count : {1, 3}) {
     other_x = start, other_v = still;
-    run_emulated<law, Functor>(p, count, {2, 1, 4}, other_x, other_v);
+    run_emulated<law, Functor<Space, law>>(p, count, {2, 1, 4}, other_x, other_v);
     EXPECT_LE(distance(x, other_x), rounding * 1e-13) << count << " patches";
     EXPECT_LE(distance(v, other_v), rounding * 1e-11) << count << " patches";
   }
 }
 
 TEST(FabricPatches, TakeTheStepsOfTheOtherDrivers) {
-  expect_the_same_steps<ConstitutiveModel{Model::biquadratic}, PersistentRingsFunctor>();
-  expect_the_same_steps<ConstitutiveModel{Model::biquadratic}, PersistentPairsFunctor>();
-  expect_the_same_steps<ConstitutiveModel{Model::edge}, PersistentRingsFunctor>();
-  expect_the_same_steps<ConstitutiveModel{Model::edge}, PersistentPairsFunctor>();
+  expect_the_same_steps<ConstitutiveModel{Model::biquadratic}, Rings>();
+  expect_the_same_steps<ConstitutiveModel{Model::biquadratic}, Pairs>();
+  expect_the_same_steps<ConstitutiveModel{Model::edge}, Rings>();
+  expect_the_same_steps<ConstitutiveModel{Model::edge}, Pairs>();
+}
+
+/// Loads of `p` where the persistent driver reads them.
+PersistentLoads<Space, true> loads_of(const Parameters& p) {
+  PersistentLoads<Space, true> loads{{}, {0, p.dt, 0, 0.0}};
+  External<Space>& external = loads.external;
+  const std::size_t n = p.mass.size();
+  external.rest = PointsView<Space>("rest", n);
+  external.direction = decltype(external.direction)("direction", n, p.timed_loads.size());
+  external.weight = decltype(external.weight)("weight", n, p.follower_pressures.size());
+  external.load = decltype(external.load)("load", p.timed_loads.size());
+  external.pressure = decltype(external.pressure)("pressure", p.follower_pressures.size());
+  for (std::size_t k = 0; k < p.timed_loads.size(); ++k) external.load(k) = p.timed_loads[k].strength;
+  for (std::size_t k = 0; k < p.follower_pressures.size(); ++k)
+    external.pressure(k) = p.follower_pressures[k].strength;
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      external.rest(i, axis) = p.mesh.rest[i][axis];
+      for (std::size_t k = 0; k < p.timed_loads.size(); ++k)
+        external.direction(i, k, axis) = p.timed_loads[k].direction[i][axis];
+    }
+    for (std::size_t k = 0; k < p.follower_pressures.size(); ++k) external.weight(i, k) = 1.0;
+  }
+  return loads;
+}
+
+template <ConstitutiveModel law>
+void expect_the_same_steps_under_loads() {
+  using testing::postfix;
+  Parameters p = cloth_of(mesh_of(11, 8));
+  p.material.model = law.model;
+  p.timed_loads = {{postfix({"x", "t", 900.0, "*", "+", "sin"}),
+                    shaken(std::vector<Vector>(p.mass.size(), Vector{}), 0.5, 5)}};
+  p.follower_pressures = {{postfix({"t", 2e3, "*", 1.0, "+"}), {}}};
+  const std::vector<Vector> start = shaken(p.mesh.rest, 0.1, 1), still(p.mass.size(), Vector{});
+  std::vector<Vector> x = start, v = still;
+  const auto solver = create_solver(device::Backend::serial, p);
+  solver->upload(x, v);
+  ASSERT_TRUE(solver->advance(7));
+  solver->download(x, v);
+  for (const int count : {1, 3}) {
+    std::vector<Vector> other_x = start, other_v = still;
+    run_emulated<law, PersistentRingsFunctor<Space, law, NoVertexForce, true>>(
+        p, count, {2, 1, 4}, other_x, other_v, NoVertexForce{}, loads_of(p));
+    EXPECT_LE(distance(x, other_x), rounding * 1e-13) << count << " patches";
+    EXPECT_LE(distance(v, other_v), rounding * 1e-11) << count << " patches";
+  }
+}
+
+TEST(FabricPatches, PersistentStepsTakeTimedLoadsAndPressures) {
+  expect_the_same_steps_under_loads<ConstitutiveModel{Model::biquadratic}>();
+  expect_the_same_steps_under_loads<ConstitutiveModel{Model::edge}>();
+}
+
+/// A force of place, velocity and time that grows in every step.
+struct Spring {
+  PointsView<Space> rest;
+  ListView<Space, double> grown;
+
+  KOKKOS_FUNCTION Vector3<double> operator()(const VertexStage& at) const {
+    const Vector3<double> pull =
+        3.0 * (load_points<double>(rest, at.vertex) - at.position) - 0.5 * at.velocity;
+    return pull + Vector3<double>{grown(at.vertex), 50.0 * at.time, 0.0};
+  }
+  KOKKOS_FUNCTION void end_step(const VertexStage& at) const {
+    grown(at.vertex) += 0.01 * at.position.x + 10.0 * at.time;
+  }
+};
+
+template <template <class, ConstitutiveModel, class> class Functor>
+void expect_the_same_steps_under_a_vertex_force() {
+  constexpr ConstitutiveModel law{Model::biquadratic};
+  Parameters p = cloth_of(mesh_of(11, 8));
+  const std::size_t n = p.mass.size();
+  const std::vector<Vector> start = shaken(p.mesh.rest, 0.1, 1), still(n, Vector{});
+  std::vector<Vector> x = start, v = still;
+  const auto spring = [&] { return Spring{loads_of(p).external.rest, ListView<Space, double>("grown", n)}; };
+  const Spring used = spring();
+  FabricSolver<Space, Spring> solver(Space(), p, used);
+  solver.upload(x, v);
+  solver.enqueue_steps(7);
+  solver.download(x, v);
+  for (const int count : {1, 3}) {
+    const Spring other = spring();
+    std::vector<Vector> other_x = start, other_v = still;
+    run_emulated<law, Functor<Space, law, Spring>>(p, count, {2, 1, 4}, other_x, other_v, other);
+    EXPECT_LE(distance(x, other_x), rounding * 1e-13) << count << " patches";
+    EXPECT_LE(distance(v, other_v), rounding * 1e-11) << count << " patches";
+    for (std::size_t i = 0; i < n; ++i) EXPECT_NEAR(used.grown(i), other.grown(i), rounding * 1e-13);
+  }
+}
+
+template <class ExecutionSpace, ConstitutiveModel law, class VertexForce>
+using ForcedRings = PersistentRingsFunctor<ExecutionSpace, law, VertexForce>;
+
+TEST(FabricPatches, PersistentStepsTakeAVertexForce) {
+  expect_the_same_steps_under_a_vertex_force<ForcedRings>();
+  expect_the_same_steps_under_a_vertex_force<PersistentPairsFunctor>();
 }
 
 }  // namespace
