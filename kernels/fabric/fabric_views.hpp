@@ -9,7 +9,7 @@
 
 namespace drogue::fabric {
 
-/// A vector a vertex, (vertices, 3), whole slices.
+/// One vector per vertex, (vertices, 3), with whole slices of vertices.
 template <class ExecutionSpace>
 using PointsView = Kokkos::View<double* [3], Kokkos::LayoutLeft, typename ExecutionSpace::memory_space>;
 
@@ -41,7 +41,7 @@ KOKKOS_INLINE_FUNCTION Vector3<R> gather_points(const Points& points,
           Lanes::gather(&points(0, 2), index)};
 }
 
-/// Where points will be that move on for a while.
+/// Points extrapolated with their velocities over `time`, s.
 template <class Points>
 struct ExtrapolatedPoints {
   Points x, v;
@@ -72,8 +72,8 @@ struct EdgeVector {
   typename device::Access<R>::Index neighbour;
 };
 
-/// Of slot `next` of a ring, from the values that it stores; `before` and `next` are squared lengths of the
-/// edges to the two neighbours.
+/// Triangle at rest from the values that a slot of a ring stores; `before` and `next` are squared lengths of
+/// the edges to the two neighbours, m^2.
 template <class R, class Values>
 KOKKOS_INLINE_FUNCTION RestTriangle<R> stored_triangle(const Values& value, R before, R next, int slot) {
   using Lanes = device::Access<R>;
@@ -87,7 +87,7 @@ KOKKOS_INLINE_FUNCTION EdgeVector<R> edge_to(const Points& points, const Vector3
   return {to, dot(to, to), neighbour};
 }
 
-/// What does not change while cloth moves.
+/// Constant tables and parameters of a fabric.
 template <class ExecutionSpace>
 struct FabricViews {
   using Points = PointsView<ExecutionSpace>;
@@ -121,7 +121,7 @@ struct FabricViews {
   }
 };
 
-/// 1 along free axes of a vertex and the lanes after it, 0 along those that `held` names.
+/// 1 along free axes of a vertex and the lanes after it, 0 along fixed ones.
 template <class R>
 KOKKOS_INLINE_FUNCTION Vector3<R> free_axes(const std::uint8_t* fixed_dofs) {
   using Lanes = device::Access<R>;
@@ -214,7 +214,7 @@ KOKKOS_INLINE_FUNCTION Vector3<R> elastic_force(const Fabric& cloth, const Point
   return with_springs<law>(cloth, positions, i, sum);
 }
 
-/// Of two states, whose neighbours and triangles at rest are read once.
+/// Values of two states, whose neighbours and triangles at rest are read once.
 template <class T>
 struct StatePair {
   T first, second;
@@ -239,7 +239,7 @@ KOKKOS_INLINE_FUNCTION StatePair<Vector3<R>> elastic_forces(const Fabric& cloth,
   return {with_springs<law>(cloth, first, i, sum.first), with_springs<law>(cloth, second, i, sum.second)};
 }
 
-/// With dead forces.
+/// `elastic` and the dead load on vertex i and the lanes after it, N.
 template <class R, class ExecutionSpace>
 KOKKOS_INLINE_FUNCTION Vector3<R> with_load(const FabricViews<ExecutionSpace>& cloth,
                                             const Vector3<R>& elastic, int i) {
@@ -251,7 +251,7 @@ KOKKOS_INLINE_FUNCTION Vector3<R> force(const FabricViews<ExecutionSpace>& cloth
   return with_load(cloth, elastic_force<law, R>(cloth, positions, i), i);
 }
 
-/// m/s^2; zero along pinned axes. `Fabric` as above.
+/// Acceleration, m/s^2; zero along pinned axes. `Fabric` as above.
 template <class R, class Fabric>
 KOKKOS_INLINE_FUNCTION Vector3<R> acceleration(const Fabric& cloth, const Vector3<R>& force, R inverse_mass,
                                                const Vector3<R>& velocity, const Vector3<R>& free) {
@@ -260,7 +260,7 @@ KOKKOS_INLINE_FUNCTION Vector3<R> acceleration(const Fabric& cloth, const Vector
   return {free.x * a.x, free.y * a.y, free.z * a.z};
 }
 
-/// Of vertex i and the lanes after it.
+/// Acceleration of vertex i and the lanes after it, m/s^2.
 template <class R, class ExecutionSpace>
 KOKKOS_INLINE_FUNCTION Vector3<R> acceleration(const FabricViews<ExecutionSpace>& cloth,
                                                const Vector3<R>& force, const Vector3<R>& velocity, int i) {

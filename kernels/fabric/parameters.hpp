@@ -8,7 +8,7 @@
 
 namespace drogue::fabric {
 
-/// How cloth resists deformation.
+/// Constitutive model of cloth.
 enum class Model {
   linear_vector,  ///< Model I: springs of vectors; not invariant under rotation, for linear analysis alone
   edge,           ///< Model II: springs of lengths along the edges
@@ -16,22 +16,22 @@ enum class Model {
   biquadratic,    ///< Delingette 2008: quadratic in the squared lengths; equals St Venant-Kirchhoff
 };
 
-/// Whether triangles resist as a whole; of the other models their edges do.
+/// True if triangles resist as a whole; in the other models their edges resist. Does not throw.
 [[nodiscard]] constexpr bool has_triangles(Model model) {
   return model == Model::quadratic || model == Model::biquadratic;
 }
 
 enum class Integrator { rk4, verlet };
 
-/// How steps of Runge and Kutta's method reach a device. Host backends have only loops.
+/// Launches of the Runge-Kutta method's steps on a device. Host backends have only loops.
 enum class Driver {
   automatic,   ///< persistent where mesh and loads allow it, else graph
-  plain,       ///< kernels one by one, as Verlet's always are
-  graph,       ///< the kernels of a step as one recorded graph
-  persistent,  ///< many steps in one launch; not with loads that change, dashpots, bending or motions
+  plain,       ///< single kernels, the only driver of Verlet's method
+  graph,       ///< the kernels of a step as one captured graph
+  persistent,  ///< many steps in one launch; not with dashpots, bending, motions or contact
 };
 
-/// What cloth and strings are made of. `membrane_modulus` is Young's modulus times thickness.
+/// Material of cloth and strings. `membrane_modulus` is Young's modulus times thickness.
 struct Material {
   Model model = Model::biquadratic;
   double membrane_modulus = 1000.0;  ///< N/m; quadratic and biquadratic
@@ -69,7 +69,7 @@ struct FollowerPressure {
   std::vector<double> weight;          ///< of every vertex; empty: 1
 };
 
-/// Where an axis of some vertices is held, as a displacement from rest.
+/// Prescribed displacement of one axis of some vertices from rest.
 struct Motion {
   int axis = 0;  ///< 0 x, 1 y, 2 z
   std::vector<int> vertices;
@@ -93,7 +93,7 @@ struct Body {
   double friction = 0.0;                ///< Coulomb's coefficient between cloth and body
 };
 
-/// What cloth may meet.
+/// Contact of cloth with bodies and with itself.
 struct Contact {
   std::vector<Body> bodies;
   bool self = false;         ///< cloth and strings meet themselves
@@ -103,7 +103,7 @@ struct Contact {
   [[nodiscard]] bool asked_for() const { return self || !bodies.empty(); }
 };
 
-/// Everything a fabric solver needs to know but the initial state.
+/// Parameters of a fabric solver, without the initial state.
 struct Parameters {
   Mesh mesh;
   Material material;

@@ -15,9 +15,9 @@ KOKKOS_INLINE_FUNCTION void each_slot(const First& first, int i, const Take& tak
   for (int k = first(i / slice); k < end; ++k) take(k * slice + i % slice);
 }
 
-/// Calls `take(before, next, slot)` for the slots but the first one: what `read(slot, index(slot))` gives of
-/// the slot before, which is read once, and of the slot. Indices are read a slot ahead: what they name then
-/// waits for one way to memory and not for two.
+/// Calls `take(before, next, slot)` for the slots but the first, with the values of `read(slot, index(slot))`
+/// of the slot before and of the slot. Each slot is read once. Indices are read one slot ahead, so that two
+/// dependent memory latencies overlap.
 template <class First, class Index, class Read, class Take>
 KOKKOS_INLINE_FUNCTION void each_pair_of_slots(const First& first, int i, const Index& index,
                                                const Read& read, const Take& take) {
@@ -38,7 +38,7 @@ KOKKOS_INLINE_FUNCTION void each_pair_of_slots(const First& first, int i, const 
   }
 }
 
-/// `Slots` where kernels read them.
+/// `Slots` in the memory of an execution space.
 template <class ExecutionSpace, int values>
 struct SlotViews {
   using Memory = typename ExecutionSpace::memory_space;
@@ -58,7 +58,7 @@ struct SlotViews {
   }
 };
 
-/// Copies slots to where kernels read them, or of rings all but their values. Waits.
+/// Copies slots to the memory of an execution space, without values if `with_values` is false. Blocks.
 template <class ExecutionSpace, int values>
 [[nodiscard]] SlotViews<ExecutionSpace, values> slot_views(const ExecutionSpace& space,
                                                            const Slots<values>& from,

@@ -10,26 +10,27 @@
 
 namespace drogue::fabric {
 
-/// omega dt up to which an oscillation without damping does not grow. Of Runge and Kutta's method
-/// |G|^2 = 1 - z^6/72 + z^8/576 is 1 at z^2 = 8.
+/// Stability limit of omega dt for undamped oscillations. For the classical Runge-Kutta method
+/// |G|^2 = 1 - z^6/72 + z^8/576 is 1 at z^2 = 8. Does not throw.
 [[nodiscard]] constexpr double stability_limit(Integrator integrator) {
   return integrator == Integrator::rk4 ? 2.8284271247461903 : 2.0;
 }
 
-/// The largest step, s, that is stable for frequencies up to `frequency`, rad/s, and decays up to `decay`,
-/// 1/s (those that a solver gives); infinite for neither. Runge and Kutta's region holds the half disc |z|
-/// <= 2.61 left of the imaginary axis; Verlet's needs decay dt <= 1.
+/// Largest stable step, s, for angular frequencies up to `frequency`, rad/s, and rates of damping up to
+/// `decay`, 1/s, as a solver bounds them; infinite if both are zero. The stability region of the Runge-Kutta
+/// method contains the half disc |z| <= 2.61 left of the imaginary axis; Verlet's method needs decay dt <= 1.
+/// Does not throw.
 [[nodiscard]] constexpr double stable_dt(Integrator integrator, double frequency, double decay) {
   if (integrator == Integrator::rk4 && decay > 0.0) return 2.61 / (frequency > decay ? frequency : decay);
   const double undamped = stability_limit(integrator) / frequency;
   return decay * undamped > 1.0 ? 1.0 / decay : undamped;
 }
 
-/// Whether oscillations of `frequency`, rad/s, grow in steps of dt, s, at any damping up to what is given,
-/// 1/s: `absolute` of all motion, and `relative` up to a solver's `fastest_decay`. False where it cannot be
-/// told. The roots z of z^2 + c dt z + (omega dt)^2 have no smaller modulus than omega dt on the mean, and
-/// Runge and Kutta's region reaches 2.9602 from the origin; of Verlet's step the trace and the determinant
-/// tell (Jury 1962).
+/// True if oscillations of `frequency`, rad/s, grow in steps of dt, s, for every damping up to the given
+/// rates, 1/s: `absolute` of all motion, and `relative` up to a solver's `fastest_decay`. False in undecided
+/// cases. The roots z of z^2 + c dt z + (omega dt)^2 have a mean modulus of omega dt at least, and the
+/// stability region of the Runge-Kutta method ends 2.9602 from the origin. For Verlet's step, the trace and
+/// the determinant decide (Jury 1962). Does not throw.
 [[nodiscard]] constexpr bool grows(Integrator integrator, double dt, double frequency, double absolute,
                                    double relative) {
   const double z = frequency * dt;
@@ -39,79 +40,91 @@ namespace drogue::fabric {
   return drag > 0.0 && drag * z * z > 2.0 * (1.0 + drag * keep * keep) * (1.0 + half) * (1.0 + half);
 }
 
-/// Cloth and strings that live on a backend and move there. Needs an initialised runtime.
+/// Cloth and strings on a backend that a program chooses at run time. Needs an initialised runtime. To couple
+/// other kernels on the device, use `FabricSolver`.
 ///
-/// Life: `upload`, then `advance` as often as wanted. Once a state is lost (a number that is not finite, or
-/// beyond 1e100) the solver goes back to the last state that it had put aside, one of every 256 steps or the
-/// one uploaded: `download` and all that looks at the state finds that one, and `clock` tells its step.
+/// Call `upload`, then `advance` as often as needed. A state is lost if a number in it is not finite or
+/// exceeds 1e100. The solver then returns to its last checkpoint: one of every 256 steps, or the state
+/// uploaded. All functions that read the state find the checkpoint, and `time_state` returns its step.
 class Solver {
  public:
   virtual ~Solver() = default;
 
-  /// Positions, m, and velocities, m/s, of all vertices, at the clock's time; a failure is forgotten. What
-  /// is not finite, and spans of another length here and below, throw std::invalid_argument.
+  /// Sets positions, m, and velocities, m/s, of all vertices at the present time and forgets a failure.
+  /// Blocks. Throws std::invalid_argument for values that are not finite and spans of the wrong length.
   virtual void upload(std::span<const Vector> positions, std::span<const Vector> velocities) = 0;
+
+  /// Copies positions, m, and velocities, m/s. Blocks. Throws std::invalid_argument for spans of the wrong
+  /// length.
   virtual void download(std::span<Vector> positions, std::span<Vector> velocities) = 0;
 
-  /// Takes `steps` steps of `time_state().dt`. Returns before they are done, and false once it is known that
-  /// a state was lost; then none follow until the next `upload`. How steps are cut into calls changes no bit.
+  /// Enqueues `steps` steps of `time_state().dt`. Asynchronous. Returns false once a lost state is known; no
+  /// steps follow until the next `upload`. The distribution of steps over calls changes no bit. Does not
+  /// throw.
   virtual bool advance(std::int64_t steps) = 0;
 
-  /// Waits for the steps that were asked for; where and when the state was lost, if it was.
+  /// Step and vertex of the first lost state, if any. Blocks until all steps are done. Does not throw.
   [[nodiscard]] virtual std::optional<Failure> failure() = 0;
 
-  /// Of the steps asked for, and once a failure was told of the state gone back to; begins at step 0, time 0
-  /// and `Parameters::dt`.
+  /// Step count, dt and time, s, after the steps enqueued; after a failure was reported, those of the
+  /// checkpoint. The initial values are step 0, time 0 and `Parameters::dt`. Does not throw.
   [[nodiscard]] virtual TimeState time_state() const = 0;
 
-  /// Sets step, time, and dt, which must be positive (std::invalid_argument).
-  virtual void set_time_state(const TimeState& clock) = 0;
+  /// Sets step count, time and dt, s. Blocks. Throws std::invalid_argument unless dt is positive and time
+  /// finite.
+  virtual void set_time_state(const TimeState& time) = 0;
 
-  /// From here on steps take dt, s.
+  /// Sets dt, s, of the following steps. Blocks. Throws std::invalid_argument unless dt is positive.
   void set_dt(double dt) {
-    static_cast<void>(failure());  // which may set the clock back
+    static_cast<void>(failure());  // a failure sets the time back
     const TimeState now = time_state();
     set_time_state({now.step, dt, now.step, now.time()});
   }
 
-  /// The elastic forces and all loads where the vertices are now, N, without gravity and damping.
+  /// Elastic forces and all loads at the present positions, N, without gravity and damping. Blocks. Throws
+  /// std::invalid_argument for a span of the wrong length.
   virtual void forces(std::span<Vector> forces) = 0;
 
-  /// An upper bound of the angular frequencies of small oscillations about where the vertices are now, rad/s,
-  /// under the pressure of now; what is slack counts as taut. `stable_dt` makes a step of it. Stiffness grows
-  /// with strain, so ask again when the cloth has stretched.
+  /// Upper bound of the angular frequencies of small oscillations about the present positions, rad/s, at the
+  /// present pressure. Slack elements count as taut. Pass the result to `stable_dt`. Stiffness grows with
+  /// strain: compute it again after the cloth has stretched. Blocks. Does not throw.
   [[nodiscard]] virtual double fastest_frequency() = 0;
 
-  /// A lower bound of the largest of them, mostly within 1 % of it, by which steps are surely too long
-  /// (`grows`): what Lanczos' method finds from forces about where the vertices are now. It takes a hundred
-  /// forces and copies: not for every step.
+  /// Lower bound of the largest angular frequency, rad/s, mostly within 1 % of it, from Lanczos' method on
+  /// differences of forces. Use it with `grows` to detect unstable steps. It evaluates and copies forces
+  /// about a hundred times. Blocks. Does not throw.
   [[nodiscard]] virtual double frequency_at_least() = 0;
 
-  /// An upper bound of the rates at which damping slows, 1/s; of Verlet absolute damping does not count,
-  /// which is stable whatever it is.
+  /// Upper bound of the rates of damping, 1/s. It excludes absolute damping in Verlet's method, which is
+  /// stable for every rate. Does not throw.
   [[nodiscard]] virtual double fastest_decay() const = 0;
 
-  /// Of every triangle where the vertices are now; lines do not count. Throws std::invalid_argument for
-  /// Model::linear_vector, whose forces are not along edges.
+  /// Stress of every triangle at the present positions, N/m; lines do not contribute. Blocks. Throws
+  /// std::invalid_argument for a span of the wrong length, and for Model::linear_vector, whose forces are not
+  /// along edges.
   virtual void stress(StressMeasure measure, std::span<Stress> of_triangles) = 0;
 
-  /// The same of every vertex: the mean over its triangles by their areas.
+  /// Stress of every vertex, N/m: the mean over its triangles, weighted by area. Blocks. Throws as `stress`.
   virtual void vertex_stress(StressMeasure measure, std::span<Stress> of_vertices) = 0;
 
-  /// Energies and momenta where the vertices are now, summed in an order that no backend changes.
+  /// Energies, J, and momenta, kg m/s and kg m^2/s, of the present state. The order of summation is the same
+  /// on every backend. Blocks. Does not throw.
   [[nodiscard]] virtual Totals totals() = 0;
 
-  /// How steps reach the device: "persistent", "graph" or "plain".
+  /// Name of the driver of steps: "persistent", "graph" or "plain". Does not throw.
   [[nodiscard]] virtual const char* driver() const = 0;
 
-  /// Work that contact has done on every vertex since the solver was made; zero without contact. Zones that
-  /// move as rigid bodies count to first order. `set_contact_work` brings back what a restart has kept.
+  /// Work of contact on every vertex since the solver was made, J; zero without contact. Zones that move as
+  /// rigid bodies count to first order. Blocks. Throws std::invalid_argument for a span of the wrong length.
   virtual void contact_work(std::span<ContactWork> of_vertices) = 0;
+
+  /// Restores the work of contact, J, from a restart. Blocks. Throws std::invalid_argument for a span of the
+  /// wrong length.
   virtual void set_contact_work(std::span<const ContactWork> of_vertices) = 0;
 };
 
-/// Whether a triangle can be computed with: it is not flat to round-off, and its longest side, m, is within
-/// 1e-70 and 1e70, so that the square of its area is a number.
+/// True if a triangle is not flat to round-off and its longest side, m, lies between 1e-70 and 1e70, so that
+/// the square of its area is finite. Does not throw.
 [[nodiscard]] bool has_area(const Mesh& mesh, const std::array<int, 3>& triangle);
 
 /// Throws std::invalid_argument, with one sentence that names the fault, for parameters out of range.

@@ -6,17 +6,18 @@
 
 namespace drogue::fabric {
 
-/// Where a solver's steps are in time. A restart that brings back all four has the same times to the bit.
+/// Step count and time of a solver. A restart that restores all four numbers has the same times to the bit.
 struct TimeState {
   std::int64_t step = 0;   ///< steps taken
   double dt = 0.0;         ///< s, of the steps to come
-  std::int64_t since = 0;  ///< the step from which dt holds
+  std::int64_t since = 0;  ///< step since which dt holds
   double start = 0.0;      ///< s, the time of that step
 
+  /// Time, s. Does not throw.
   [[nodiscard]] double time() const { return start + static_cast<double>(step - since) * dt; }
 };
 
-/// Why a state cannot go on.
+/// Reason of a lost state.
 enum class FailureReason {
   not_finite,
   crossing,   ///< parts of cloth, or cloth and a body, that no zone keeps from crossing
@@ -25,7 +26,7 @@ enum class FailureReason {
   no_number,  ///< the expression of a level set, or its slope, is none where a vertex is
 };
 
-/// Where a state ceased to be one.
+/// First lost state.
 struct Failure {
   std::int64_t vertex = -1;  ///< the first in the numbering that was lost in that step
   std::int64_t step = 0;     ///< the first step, counted from 1, whose end is not finite
@@ -33,7 +34,7 @@ struct Failure {
   FailureReason reason = FailureReason::not_finite;
 };
 
-/// Work of contact on a vertex, negative where it took energy, and what friction looks back at.
+/// Work of contact on a vertex, negative for dissipation, and the velocity change that friction needs.
 struct ContactWork {
   double normal = 0.0;    ///< J, of what keeps parts apart: impulses along normals, and zones
   double friction = 0.0;  ///< J, of friction
@@ -52,7 +53,7 @@ struct Totals {
   double contact = 0.0;   ///< J, work that contact has done since the solver was made, friction apart
   double friction = 0.0;  ///< J, work that friction in contact has done
 
-  /// What steps without damping, moving pins and loads that change keep.
+  /// Total energy, J, which is constant without damping, moving pins and loads that change. Does not throw.
   [[nodiscard]] double energy() const { return kinetic + elastic + gravity + load; }
 };
 
@@ -65,7 +66,7 @@ struct Stress {
   std::array<double, 3> direction{};  ///< of the major one: a unit vector in the plane of the cloth now
   std::array<double, 3> across{};     ///< of the minor one
 
-  /// The tensor in space: xx, xy, xz, yy, yz, zz.
+  /// Stress tensor, N/m: xx, xy, xz, yy, yz, zz. Does not throw.
   [[nodiscard]] std::array<double, 6> tensor() const {
     std::array<double, 6> sum{};
     std::size_t place = 0;
@@ -75,7 +76,7 @@ struct Stress {
     return sum;
   }
 
-  /// Of plane stress (eq. 2.19).
+  /// Von Mises stress of plane stress, N/m ([Shi], eq. (2.19)). Does not throw.
   [[nodiscard]] double von_mises() const { return std::sqrt(major * major - major * minor + minor * minor); }
 };
 

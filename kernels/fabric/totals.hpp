@@ -77,7 +77,7 @@ struct TotalsFunctor {
   }
 };
 
-/// Thread j adds rows j, j + n_out, ... of what threads before have added.
+/// Thread j adds rows j, j + n_out, ... of the level before.
 template <class ExecutionSpace>
 struct SumFunctor {
   TotalsView<ExecutionSpace> in, out;

@@ -29,8 +29,8 @@ KOKKOS_INLINE_FUNCTION Vector3<R> cross(const Vector3<R>& a, const Vector3<R>& b
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
-/// 1/m^2, of a triangle between two edges (m) from one corner; 0 if it has none. Written once for all who
-/// compute it, so that they find the same bits where the build promises that.
+/// Inverse area, 1/m^2, of a triangle between two edges, m, from one corner; 0 for a triangle without area.
+/// All callers share it, so that the exact build gives them the same bits.
 template <class R>
 KOKKOS_INLINE_FUNCTION R inverse_area(const Vector3<R>& a, const Vector3<R>& b) {
   const Vector3<R> normal = cross(a, b);

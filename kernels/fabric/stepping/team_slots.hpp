@@ -4,21 +4,21 @@
 
 namespace drogue::fabric {
 
-/// A column of numbers in a team's memory.
+/// Column of numbers in a team's scratch memory.
 template <class T>
 struct TeamList {
   T* data;
   KOKKOS_FUNCTION T& operator()(int i) const { return data[i]; }
 };
 
-/// Columns of them.
+/// Columns of numbers in a team's scratch memory.
 struct TeamTable {
   double* data;
   int rows;
   KOKKOS_FUNCTION double& operator()(int row, int column) const { return data[column * rows + row]; }
 };
 
-/// The slots of a patch in its team's memory.
+/// Slots of a patch in its team's scratch memory.
 template <int values>
 struct TeamSlots {
   TeamList<int> first, neighbour;
