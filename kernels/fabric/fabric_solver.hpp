@@ -78,6 +78,8 @@ struct ForceFunctor {
 /// a checkpoint does not hold its state.
 template <class ExecutionSpace, class VertexForce = NoVertexForce>
 class FabricSolver {
+  // Members with generic lambdas are defined in the class: nvcc cannot emit them outside of a class template
+  // with a default argument.
  public:
   using Points = PointsView<ExecutionSpace>;
   using PressureView = ListView<ExecutionSpace, double>;
@@ -113,7 +115,21 @@ class FabricSolver {
   /// (std::logic_error). Each launch of that graph takes `steps` steps. From the first capture on, the solver
   /// takes no checkpoints of its own, and `time_state` is valid after `synchronize`. A captured graph is
   /// invalid after `set_time_state`, `set_vertex_force`, and the first calls of `loads` and `pressures`.
-  void enqueue_steps(std::int64_t steps);
+  void enqueue_steps(std::int64_t steps) {
+    const bool capturing = device::is_capturing(space());
+    if (capturing && _contact) throw std::logic_error("fabric solver: steps with contact cannot be captured");
+    _captured = _captured || capturing;
+    while (steps > 0) {
+      // Checkpoints fall on multiples, so that they do not depend on how steps are distributed over calls.
+      const std::int64_t until =
+          _captured ? checkpoint_interval : checkpoint_interval - _time.step % checkpoint_interval;
+      const std::int64_t part = std::min(steps, until);
+      with_model([&]<ConstitutiveModel law>() { this->template step<law>(part, capturing); });
+      if (!_captured && _time.step % checkpoint_interval == 0) enqueue_checkpoint();
+      steps -= part;
+    }
+    restore_addresses();
+  }
 
   /// Enqueues the steps whose last end is nearest to `time`, s; none if that time has passed.
   void advance_to(double time);
@@ -147,12 +163,50 @@ class FabricSolver {
 
   /// The functions below block and are those of `Solver`.
   void forces(std::span<Vector> forces);
-  [[nodiscard]] double fastest_frequency();
+  [[nodiscard]] double fastest_frequency() {
+    synchronize();
+    const ListView<ExecutionSpace, double>& more = _load_stiffness;
+    if (more.extent(0) > 0)
+      launch_each("drogue::fabric::load_stiffness", _vertices,
+                  LoadStiffnessFunctor<ExecutionSpace>{external_functor(_x, _v, 0.0, false), more});
+    return with_model([&]<ConstitutiveModel law>() {
+      double row = this->template largest_row<law>(more);
+      // Elements that are slack now may be taut before the next call.
+      if constexpr (law.tension_only)
+        row = std::max(row, this->template largest_row<ConstitutiveModel{law.model}>(more));
+      return std::sqrt(row);
+    });
+  }
   [[nodiscard]] double frequency_at_least();
   [[nodiscard]] double fastest_decay() const { return _decay; }
   void stress(StressMeasure measure, std::span<Stress> of_triangles);
   void vertex_stress(StressMeasure measure, std::span<Stress> of_vertices);
-  [[nodiscard]] Totals totals();
+  [[nodiscard]] Totals totals() {
+    synchronize();
+    FabricViews<ExecutionSpace> dead_alone = _cloth;
+    dead_alone.load = _dead;
+    with_model([&]<ConstitutiveModel law>() {
+      Kokkos::parallel_for("drogue::fabric::totals",
+                           Kokkos::RangePolicy<ExecutionSpace>(space(), 0, _sums.front().extent(0)),
+                           TotalsFunctor<ExecutionSpace, law>{dead_alone, _x, _v, _pull, _external.bending,
+                                                              _sums.front(), _vertices});
+    });
+    for (std::size_t level = 1; level < _sums.size(); ++level)
+      Kokkos::parallel_for("drogue::fabric::sum",
+                           Kokkos::RangePolicy<ExecutionSpace>(space(), 0, _sums[level].extent(0)),
+                           SumFunctor<ExecutionSpace>{_sums[level - 1], _sums[level]});
+    const auto& mirror = _sum;
+    device::copy(space(), mirror, _sums.back());
+    space().fence("drogue::fabric::totals");
+    Totals t{mirror(0, 0), mirror(0, 1) + _rest_energy, mirror(0, 2), mirror(0, 3), {}, {}, 0.0, 0.0};
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      t.momentum[axis] = mirror(0, 4 + axis), t.angular_momentum[axis] = mirror(0, 7 + axis);
+    if (!_contact) return t;
+    std::vector<ContactWork> work(static_cast<std::size_t>(_vertices));
+    _contact->work(work);
+    for (const ContactWork& of_vertex : work) t.contact += of_vertex.normal, t.friction += of_vertex.friction;
+    return t;
+  }
   [[nodiscard]] const char* driver() const;
   void contact_work(std::span<ContactWork> of_vertices);
   void set_contact_work(std::span<const ContactWork> of_vertices);
@@ -201,7 +255,13 @@ class FabricSolver {
   void make_sums();
   void make_stages();
   void make_persistent();
-  void record();
+  /// Captures a step at the present dt where a driver replays it.
+  void record() {
+    if (_parameters.integrator == Integrator::rk4 && !_persistent && _parameters.driver != Driver::plain)
+      _step.emplace(_instance, [this](const ExecutionSpace&) {
+        with_model([this]<ConstitutiveModel law>() { this->template runge_kutta_step<law>(); });
+      });
+  }
   void rebuild_drivers();
   [[nodiscard]] Points rest_places() const;
   [[nodiscard]] ProgramsView<ExecutionSpace> programs(
@@ -251,8 +311,40 @@ class FabricSolver {
   void runge_kutta_step() const;
   template <ConstitutiveModel law>
   void verlet(bool ends, bool begins);
+  /// Takes steps in one launch. Checkpoints end launches, so that none has more than `checkpoint_interval`
+  /// steps, which take a few milliseconds.
   template <ConstitutiveModel law>
-  void step_persistent(std::int64_t steps);
+  void step_persistent(std::int64_t steps) {
+    if constexpr (device::PersistentKernel<ExecutionSpace>::available) {
+      if (_captured) {
+        // A launch that is replayed finds its step count on the device, and messages of epoch 0.
+        device::copy_bytes(space(), device::CopyKind::within, &_monitor.steps(1), &_monitor.steps(0),
+                           sizeof(std::int64_t));
+        _persistent->grid.clear_messages();
+        _persistent->epoch = 0;
+      }
+      FabricViews<ExecutionSpace> cloth = _cloth;
+      cloth.load = _dead;
+      const std::int64_t before = _captured ? -1 : _time.step;
+      const auto with = [&]<bool loads>(const PersistentLoads<ExecutionSpace, loads>& load) {
+        return PersistentSteps<ExecutionSpace, VertexForce, loads>{
+            _persistent->patches, cloth, _x, _v, _monitor, _time.dt, before, steps, _persistent->epoch,
+            vertex_force_term(),  load};
+      };
+      const auto& grid = _persistent->grid;
+      if (_has_external)
+        grid.template launch<most_ring_threads, 1>(
+            PersistentRingsFunctor<ExecutionSpace, law, VertexForce, true>{
+                with(PersistentLoads<ExecutionSpace, true>{_external, _time})});
+      else if (_persistent->pairs)
+        grid.template launch<most_pair_threads, 1>(PersistentPairsFunctor<ExecutionSpace, law, VertexForce>{
+            with(PersistentLoads<ExecutionSpace, false>{})});
+      else
+        grid.template launch<most_ring_threads, 1>(PersistentRingsFunctor<ExecutionSpace, law, VertexForce>{
+            with(PersistentLoads<ExecutionSpace, false>{})});
+      _persistent->epoch += 4 * static_cast<std::uint64_t>(steps);
+    }
+  }
   template <ConstitutiveModel law>
   void step(std::int64_t steps, bool capturing);
   template <ConstitutiveModel law>
@@ -264,11 +356,30 @@ class FabricSolver {
   }
 
   // ---- evaluation ----
-  void forces_at(const Points& x, std::span<Vector> forces) const;
+  void forces_at(const Points& x, std::span<Vector> forces) const {
+    if (_has_external) compute_external_forces(x, _v, 0.0, false);
+    with_model([&]<ConstitutiveModel law>() {
+      launch("drogue::fabric::force", ForceFunctor<ExecutionSpace, law>{_cloth, x, _next});
+    });
+    to_host(_next, forces);
+  }
   template <ConstitutiveModel law>
   [[nodiscard]] double largest_row(const ListView<ExecutionSpace, double>& more) const;
+  /// Stress of all triangles, and their tensors if `tensor` is not empty.
   void find_stress(StressMeasure measure, const StressView<ExecutionSpace>& to,
-                   const TensorView<ExecutionSpace>& tensor);
+                   const TensorView<ExecutionSpace>& tensor) {
+    if (_parameters.material.model == Model::linear_vector)
+      throw std::invalid_argument("fabric solver: springs of vectors (Model I) have no stress");
+    synchronize();
+    if (!_triangles) _triangles.emplace(space(), triangle_list(_parameters.mesh, _parameters.material));
+    with_model([&]<ConstitutiveModel law>() {
+      Kokkos::parallel_for(
+          "drogue::fabric::stress",
+          Kokkos::RangePolicy<ExecutionSpace>(space(), 0,
+                                              static_cast<int>(_parameters.mesh.triangles.size())),
+          StressFunctor<ExecutionSpace, law>{*_triangles, _x, _cloth.moduli, measure, to, tensor});
+    });
+  }
   void stress_to_host(const StressView<ExecutionSpace>& from, std::span<Stress> to) const;
   void require_vertices(std::size_t count) const;
   void to_device(std::span<const Vector> from, const Points& to) const;
@@ -538,15 +649,6 @@ void FabricSolver<ExecutionSpace, VertexForce>::make_persistent() {
   }
 }
 
-/// Captures a step at the present dt where a driver replays it.
-template <class ExecutionSpace, class VertexForce>
-void FabricSolver<ExecutionSpace, VertexForce>::record() {
-  if (_parameters.integrator == Integrator::rk4 && !_persistent && _parameters.driver != Driver::plain)
-    _step.emplace(_instance, [this](const ExecutionSpace&) {
-      with_model([this]<ConstitutiveModel law>() { this->template runge_kutta_step<law>(); });
-    });
-}
-
 template <class ExecutionSpace, class VertexForce>
 void FabricSolver<ExecutionSpace, VertexForce>::rebuild_drivers() {
   if (_parameters.integrator != Integrator::rk4) return;
@@ -715,42 +817,6 @@ void FabricSolver<ExecutionSpace, VertexForce>::verlet(bool ends, bool begins) {
   if (_dirichlet) apply_dirichlet(_x, _v, 0.0, true);
 }
 
-/// Takes steps in one launch. Checkpoints end launches, so that none has more than `checkpoint_interval`
-/// steps, which take a few milliseconds.
-template <class ExecutionSpace, class VertexForce>
-template <ConstitutiveModel law>
-void FabricSolver<ExecutionSpace, VertexForce>::step_persistent(std::int64_t steps) {
-  if constexpr (device::PersistentKernel<ExecutionSpace>::available) {
-    if (_captured) {
-      // A launch that is replayed finds its step count on the device, and messages of epoch 0.
-      device::copy_bytes(space(), device::CopyKind::within, &_monitor.steps(1), &_monitor.steps(0),
-                         sizeof(std::int64_t));
-      _persistent->grid.clear_messages();
-      _persistent->epoch = 0;
-    }
-    FabricViews<ExecutionSpace> cloth = _cloth;
-    cloth.load = _dead;
-    const std::int64_t before = _captured ? -1 : _time.step;
-    const auto with = [&]<bool loads>(const PersistentLoads<ExecutionSpace, loads>& load) {
-      return PersistentSteps<ExecutionSpace, VertexForce, loads>{
-          _persistent->patches, cloth, _x, _v, _monitor, _time.dt, before, steps, _persistent->epoch,
-          vertex_force_term(),  load};
-    };
-    const auto& grid = _persistent->grid;
-    if (_has_external)
-      grid.template launch<most_ring_threads, 1>(
-          PersistentRingsFunctor<ExecutionSpace, law, VertexForce, true>{
-              with(PersistentLoads<ExecutionSpace, true>{_external, _time})});
-    else if (_persistent->pairs)
-      grid.template launch<most_pair_threads, 1>(PersistentPairsFunctor<ExecutionSpace, law, VertexForce>{
-          with(PersistentLoads<ExecutionSpace, false>{})});
-    else
-      grid.template launch<most_ring_threads, 1>(PersistentRingsFunctor<ExecutionSpace, law, VertexForce>{
-          with(PersistentLoads<ExecutionSpace, false>{})});
-    _persistent->epoch += 4 * static_cast<std::uint64_t>(steps);
-  }
-}
-
 /// Enqueues steps without looking for failures.
 template <class ExecutionSpace, class VertexForce>
 template <ConstitutiveModel law>
@@ -787,23 +853,6 @@ void FabricSolver<ExecutionSpace, VertexForce>::step_in_contact(std::int64_t ste
     _contact->end(_x, _v);
   }
   _time.step += steps;
-}
-
-template <class ExecutionSpace, class VertexForce>
-void FabricSolver<ExecutionSpace, VertexForce>::enqueue_steps(std::int64_t steps) {
-  const bool capturing = device::is_capturing(space());
-  if (capturing && _contact) throw std::logic_error("fabric solver: steps with contact cannot be captured");
-  _captured = _captured || capturing;
-  while (steps > 0) {
-    // Checkpoints fall on multiples, so that they do not depend on how steps are distributed over calls.
-    const std::int64_t until =
-        _captured ? checkpoint_interval : checkpoint_interval - _time.step % checkpoint_interval;
-    const std::int64_t part = std::min(steps, until);
-    with_model([&]<ConstitutiveModel law>() { this->template step<law>(part, capturing); });
-    if (!_captured && _time.step % checkpoint_interval == 0) enqueue_checkpoint();
-    steps -= part;
-  }
-  restore_addresses();
 }
 
 template <class ExecutionSpace, class VertexForce>
@@ -909,15 +958,6 @@ void FabricSolver<ExecutionSpace, VertexForce>::forces(std::span<Vector> forces)
 }
 
 template <class ExecutionSpace, class VertexForce>
-void FabricSolver<ExecutionSpace, VertexForce>::forces_at(const Points& x, std::span<Vector> forces) const {
-  if (_has_external) compute_external_forces(x, _v, 0.0, false);
-  with_model([&]<ConstitutiveModel law>() {
-    launch("drogue::fabric::force", ForceFunctor<ExecutionSpace, law>{_cloth, x, _next});
-  });
-  to_host(_next, forces);
-}
-
-template <class ExecutionSpace, class VertexForce>
 template <ConstitutiveModel law>
 double FabricSolver<ExecutionSpace, VertexForce>::largest_row(
     const ListView<ExecutionSpace, double>& more) const {
@@ -926,22 +966,6 @@ double FabricSolver<ExecutionSpace, VertexForce>::largest_row(
       "drogue::fabric::frequency", Kokkos::RangePolicy<ExecutionSpace>(space(), 0, _vertices),
       FrequencyFunctor<ExecutionSpace, law>{_cloth, _x, more}, Kokkos::Max<double>(largest));
   return largest;
-}
-
-template <class ExecutionSpace, class VertexForce>
-double FabricSolver<ExecutionSpace, VertexForce>::fastest_frequency() {
-  synchronize();
-  const ListView<ExecutionSpace, double>& more = _load_stiffness;
-  if (more.extent(0) > 0)
-    launch_each("drogue::fabric::load_stiffness", _vertices,
-                LoadStiffnessFunctor<ExecutionSpace>{external_functor(_x, _v, 0.0, false), more});
-  return with_model([&]<ConstitutiveModel law>() {
-    double row = this->template largest_row<law>(more);
-    // Elements that are slack now may be taut before the next call.
-    if constexpr (law.tension_only)
-      row = std::max(row, this->template largest_row<ConstitutiveModel{law.model}>(more));
-    return std::sqrt(row);
-  });
 }
 
 template <class ExecutionSpace, class VertexForce>
@@ -981,34 +1005,6 @@ double FabricSolver<ExecutionSpace, VertexForce>::frequency_at_least() {
 }
 
 template <class ExecutionSpace, class VertexForce>
-Totals FabricSolver<ExecutionSpace, VertexForce>::totals() {
-  synchronize();
-  FabricViews<ExecutionSpace> dead_alone = _cloth;
-  dead_alone.load = _dead;
-  with_model([&]<ConstitutiveModel law>() {
-    Kokkos::parallel_for("drogue::fabric::totals",
-                         Kokkos::RangePolicy<ExecutionSpace>(space(), 0, _sums.front().extent(0)),
-                         TotalsFunctor<ExecutionSpace, law>{dead_alone, _x, _v, _pull, _external.bending,
-                                                            _sums.front(), _vertices});
-  });
-  for (std::size_t level = 1; level < _sums.size(); ++level)
-    Kokkos::parallel_for("drogue::fabric::sum",
-                         Kokkos::RangePolicy<ExecutionSpace>(space(), 0, _sums[level].extent(0)),
-                         SumFunctor<ExecutionSpace>{_sums[level - 1], _sums[level]});
-  const auto& mirror = _sum;
-  device::copy(space(), mirror, _sums.back());
-  space().fence("drogue::fabric::totals");
-  Totals t{mirror(0, 0), mirror(0, 1) + _rest_energy, mirror(0, 2), mirror(0, 3), {}, {}, 0.0, 0.0};
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    t.momentum[axis] = mirror(0, 4 + axis), t.angular_momentum[axis] = mirror(0, 7 + axis);
-  if (!_contact) return t;
-  std::vector<ContactWork> work(static_cast<std::size_t>(_vertices));
-  _contact->work(work);
-  for (const ContactWork& of_vertex : work) t.contact += of_vertex.normal, t.friction += of_vertex.friction;
-  return t;
-}
-
-template <class ExecutionSpace, class VertexForce>
 void FabricSolver<ExecutionSpace, VertexForce>::contact_work(std::span<ContactWork> of_vertices) {
   synchronize();
   require_vertices(of_vertices.size());
@@ -1021,23 +1017,6 @@ void FabricSolver<ExecutionSpace, VertexForce>::set_contact_work(std::span<const
   synchronize();
   require_vertices(of_vertices.size());
   if (_contact) _contact->set_work(of_vertices);
-}
-
-/// Stress of all triangles, and their tensors if `tensor` is not empty.
-template <class ExecutionSpace, class VertexForce>
-void FabricSolver<ExecutionSpace, VertexForce>::find_stress(StressMeasure measure,
-                                                            const StressView<ExecutionSpace>& to,
-                                                            const TensorView<ExecutionSpace>& tensor) {
-  if (_parameters.material.model == Model::linear_vector)
-    throw std::invalid_argument("fabric solver: springs of vectors (Model I) have no stress");
-  synchronize();
-  if (!_triangles) _triangles.emplace(space(), triangle_list(_parameters.mesh, _parameters.material));
-  with_model([&]<ConstitutiveModel law>() {
-    Kokkos::parallel_for(
-        "drogue::fabric::stress",
-        Kokkos::RangePolicy<ExecutionSpace>(space(), 0, static_cast<int>(_parameters.mesh.triangles.size())),
-        StressFunctor<ExecutionSpace, law>{*_triangles, _x, _cloth.moduli, measure, to, tensor});
-  });
 }
 
 template <class ExecutionSpace, class VertexForce>
