@@ -3,11 +3,13 @@
 #include <Kokkos_Core.hpp>
 
 #include "kernels/device/memory.hpp"
-#include "kernels/fabric/membrane.hpp"
-#include "kernels/fabric/slot_views.hpp"
-#include "kernels/fabric/vector3.hpp"
+#include "kernels/fabric/elastic/membrane.hpp"
+#include "kernels/fabric/elastic/sliced_ell_views.hpp"
+#include "kernels/spatial/vector3.hpp"
 
 namespace drogue::fabric {
+
+using spatial::Vector3;
 
 /// A vector a vertex, (vertices, 3), whole slices.
 template <class ExecutionSpace>
@@ -60,13 +62,13 @@ KOKKOS_INLINE_FUNCTION Vector3<R> gather_points(const Ahead<Points>& points,
 /// A triangle at rest: products of the edges from its first vertex, m^2, and 1/m^2.
 template <class R>
 struct RestTriangle {
-  Products<R> products;
+  GramMatrix<R> products;
   R inverse_area;
 };
 
 /// The edge from a vertex to a neighbour, m, and its squared length, m^2.
 template <class R>
-struct Spoke {
+struct EdgeVector {
   Vector3<R> to;
   R squared;
   typename device::Access<R>::Index neighbour;
@@ -81,8 +83,8 @@ KOKKOS_INLINE_FUNCTION RestTriangle<R> stored_triangle(const Values& value, R be
 }
 
 template <class R, class Points>
-KOKKOS_INLINE_FUNCTION Spoke<R> spoke(const Points& points, const Vector3<R>& own,
-                                      typename device::Access<R>::Index neighbour) {
+KOKKOS_INLINE_FUNCTION EdgeVector<R> edge_to(const Points& points, const Vector3<R>& own,
+                                             typename device::Access<R>::Index neighbour) {
   const Vector3<R> to = gather_points<R>(points, neighbour) - own;
   return {to, dot(to, to), neighbour};
 }
@@ -91,8 +93,8 @@ KOKKOS_INLINE_FUNCTION Spoke<R> spoke(const Points& points, const Vector3<R>& ow
 template <class ExecutionSpace>
 struct Cloth {
   using Points = PointsView<ExecutionSpace>;
-  SlotViews<ExecutionSpace, 3> triangles;  ///< a device, which waits for memory, stores no values
-  SlotViews<ExecutionSpace, 2> springs;
+  SlicedEllViews<ExecutionSpace, 3> triangles;  ///< a device, which waits for memory, stores no values
+  SlicedEllViews<ExecutionSpace, 2> springs;
   Points rest;                                                                ///< m; on the host empty
   Kokkos::View<double*, typename ExecutionSpace::memory_space> inverse_mass;  ///< 1/kg
   Kokkos::View<std::uint8_t*, typename ExecutionSpace::memory_space> held;    ///< axes: 1 x, 2 y, 4 z
@@ -107,7 +109,7 @@ struct Cloth {
     if constexpr (device::is_host<ExecutionSpace>)
       return device::Access<R>::load(&triangles.value(slot, 0));
     else
-      return spoke<R>(rest, load_points<R>(rest, i), neighbour);
+      return edge_to<R>(rest, load_points<R>(rest, i), neighbour);
   }
   template <class R, class RestEdge>
   KOKKOS_INLINE_FUNCTION RestTriangle<R> rest_triangle(const RestEdge& before, const RestEdge& next,
@@ -115,7 +117,7 @@ struct Cloth {
     if constexpr (device::is_host<ExecutionSpace>) {
       return stored_triangle(triangles.value, before, next, slot);
     } else {
-      const Products<R> products{before.squared, dot(before.to, next.to), next.squared};
+      const GramMatrix<R> products{before.squared, dot(before.to, next.to), next.squared};
       return {products, inverse_area(products)};
     }
   }
@@ -133,12 +135,12 @@ KOKKOS_INLINE_FUNCTION Vector3<R> free_axes(const Cloth<ExecutionSpace>& cloth, 
 }
 
 /// The pull of a triangle on its first vertex, N.
-template <Law law, class R>
-KOKKOS_INLINE_FUNCTION Vector3<R> triangle_pull(const Moduli& m, const Spoke<R>& j, const Spoke<R>& k,
-                                                const RestTriangle<R>& rest) {
-  const Products<R> now{j.squared, dot(j.to, k.to), k.squared};
+template <ConstitutiveModel law, class R>
+KOKKOS_INLINE_FUNCTION Vector3<R> triangle_pull(const Moduli& m, const EdgeVector<R>& j,
+                                                const EdgeVector<R>& k, const RestTriangle<R>& rest) {
+  const GramMatrix<R> now{j.squared, dot(j.to, k.to), k.squared};
   if constexpr (law.model == Model::biquadratic && !law.tension_only) {
-    const SpokeTensions<R> tension = spoke_tensions(m, now, rest.products, rest.inverse_area);
+    const EdgePairTensions<R> tension = edge_pair_tensions(m, now, rest.products, rest.inverse_area);
     return tension.j * j.to + tension.k * k.to;
   } else {
     // Edge j lies opposite vertex j: it leads to k.
@@ -149,7 +151,7 @@ KOKKOS_INLINE_FUNCTION Vector3<R> triangle_pull(const Moduli& m, const Spoke<R>&
 }
 
 /// The pull of a spring on the vertex from which `edge` leads, N.
-template <Law law, class R>
+template <ConstitutiveModel law, class R>
 KOKKOS_INLINE_FUNCTION Vector3<R> spring_pull(R stiffness, R rest, const Vector3<R>& edge) {
   return spring_tension<law>(stiffness, dot(edge, edge), rest) * edge;
 }
@@ -182,11 +184,11 @@ KOKKOS_INLINE_FUNCTION void each_triangle(const Fabric& cloth, const Points& pos
   const Vector3<R> own = load_points<R>(positions, i);
   using Index = typename device::Access<R>::Index;
   each_side_by_side<R>(
-      cloth, i, [&](Index neighbour) { return spoke<R>(positions, own, neighbour); }, take);
+      cloth, i, [&](Index neighbour) { return edge_to<R>(positions, own, neighbour); }, take);
 }
 
 /// `sum` and the pulls of the springs of vertex i and the lanes after it, N, in the order of their slots.
-template <Law law, class R, class Fabric, class Points>
+template <ConstitutiveModel law, class R, class Fabric, class Points>
 KOKKOS_INLINE_FUNCTION Vector3<R> with_springs(const Fabric& cloth, const Points& positions, int i,
                                                Vector3<R> sum) {
   using Lanes = device::Access<R>;
@@ -202,12 +204,12 @@ KOKKOS_INLINE_FUNCTION Vector3<R> with_springs(const Fabric& cloth, const Points
 /// The elastic forces on vertex i and the lanes after it, N, each vertex in the fixed order of its slots.
 /// Momentum is kept to round-off: both ends of an edge, and all corners of a triangle, compute the same
 /// tension. `Fabric` is a Cloth or what has its tables elsewhere.
-template <Law law, class R, class Fabric, class Points>
+template <ConstitutiveModel law, class R, class Fabric, class Points>
 KOKKOS_INLINE_FUNCTION Vector3<R> elastic_force(const Fabric& cloth, const Points& positions, int i) {
   Vector3<R> sum{R(0.0), R(0.0), R(0.0)};
   if constexpr (whole_triangles<law>)
     each_triangle<R>(cloth, positions, i,
-                     [&](const Spoke<R>& j, const Spoke<R>& k, const RestTriangle<R>& rest) {
+                     [&](const EdgeVector<R>& j, const EdgeVector<R>& k, const RestTriangle<R>& rest) {
                        sum = sum + triangle_pull<law>(cloth.moduli, j, k, rest);
                      });
   return with_springs<law>(cloth, positions, i, sum);
@@ -218,17 +220,17 @@ template <class T>
 struct Twice {
   T first, second;
 };
-template <Law law, class R, class Fabric, class First, class Second>
+template <ConstitutiveModel law, class R, class Fabric, class First, class Second>
 KOKKOS_INLINE_FUNCTION Twice<Vector3<R>> elastic_forces(const Fabric& cloth, const First& first,
                                                         const Second& second, int i) {
   Twice<Vector3<R>> sum{{R(0.0), R(0.0), R(0.0)}, {R(0.0), R(0.0), R(0.0)}};
   if constexpr (whole_triangles<law>) {
-    using Spokes = Twice<Spoke<R>>;
+    using Spokes = Twice<EdgeVector<R>>;
     const Twice<Vector3<R>> own{load_points<R>(first, i), load_points<R>(second, i)};
     each_side_by_side<R>(
         cloth, i,
         [&](typename device::Access<R>::Index neighbour) {
-          return Spokes{spoke<R>(first, own.first, neighbour), spoke<R>(second, own.second, neighbour)};
+          return Spokes{edge_to<R>(first, own.first, neighbour), edge_to<R>(second, own.second, neighbour)};
         },
         [&](const Spokes& j, const Spokes& k, const RestTriangle<R>& rest) {
           sum.first = sum.first + triangle_pull<law>(cloth.moduli, j.first, k.first, rest);
@@ -244,7 +246,7 @@ KOKKOS_INLINE_FUNCTION Vector3<R> with_load(const Cloth<ExecutionSpace>& cloth, 
                                             int i) {
   return cloth.load.extent(0) > 0 ? elastic + load_points<R>(cloth.load, i) : elastic;
 }
-template <Law law, class R, class ExecutionSpace, class Points>
+template <ConstitutiveModel law, class R, class ExecutionSpace, class Points>
 KOKKOS_INLINE_FUNCTION Vector3<R> force(const Cloth<ExecutionSpace>& cloth, const Points& positions, int i) {
   return with_load(cloth, elastic_force<law, R>(cloth, positions, i), i);
 }

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "kernels/device/expression.hpp"
-#include "kernels/fabric/stress.hpp"
+#include "kernels/fabric/elastic/stress.hpp"
 #include "kernels/fabric/timing.hpp"
 #include "kernels/fabric/views.hpp"
 
@@ -20,8 +20,8 @@ struct External {
   Kokkos::View<double** [3], Kokkos::LayoutLeft, Memory> direction;  ///< vertex, load
   ProgramsView<ExecutionSpace> pressure;
   Kokkos::View<double**, Kokkos::LayoutLeft, Memory> weight;  ///< vertex, pressure
-  SlotViews<ExecutionSpace, 3> surface;                       ///< rings; nobody reads its values
-  SlotViews<ExecutionSpace, 1> dashpots, bending;
+  SlicedEllViews<ExecutionSpace, 3> surface;                  ///< rings; nobody reads its values
+  SlicedEllViews<ExecutionSpace, 1> dashpots, bending;
 };
 
 /// The pull of a dashpot on the end from which `edge` leads, N: along the edge alone, so that the pull on the
@@ -34,7 +34,7 @@ KOKKOS_INLINE_FUNCTION Vector3<double> dashpot_pull(double dashpot, const Vector
 
 /// The pulls of all dashpots on vertex i, N.
 template <class ExecutionSpace>
-KOKKOS_INLINE_FUNCTION Vector3<double> dashpot_force(const SlotViews<ExecutionSpace, 1>& dashpots,
+KOKKOS_INLINE_FUNCTION Vector3<double> dashpot_force(const SlicedEllViews<ExecutionSpace, 1>& dashpots,
                                                      const PointsView<ExecutionSpace>& x,
                                                      const PointsView<ExecutionSpace>& v, int i) {
   const Vector3<double> own = load_points<double>(x, i), velocity = load_points<double>(v, i);
@@ -49,7 +49,7 @@ KOKKOS_INLINE_FUNCTION Vector3<double> dashpot_force(const SlotViews<ExecutionSp
 
 /// The resistance of vertex i to bending, N.
 template <class ExecutionSpace>
-KOKKOS_INLINE_FUNCTION Vector3<double> bending_force(const SlotViews<ExecutionSpace, 1>& bending,
+KOKKOS_INLINE_FUNCTION Vector3<double> bending_force(const SlicedEllViews<ExecutionSpace, 1>& bending,
                                                      const PointsView<ExecutionSpace>& x, int i) {
   const Vector3<double> own = load_points<double>(x, i);
   Vector3<double> sum{0.0, 0.0, 0.0};
@@ -150,7 +150,7 @@ struct LoadStiffnessFunctor {
 template <class ExecutionSpace>
 struct DragFunctor {
   Cloth<ExecutionSpace> cloth;
-  SlotViews<ExecutionSpace, 1> dashpots;
+  SlicedEllViews<ExecutionSpace, 1> dashpots;
   PointsView<ExecutionSpace> x, v, dragged, next;
   double dt;
 

@@ -11,14 +11,14 @@ inline constexpr int most_pair_vertices = 384, most_pair_threads = 512;
 /// round the ring of its vertex: a warp takes a row of pairs of triangles and leaves their pulls in the
 /// team's memory, where the thread of the vertex adds them in the order of the ring. Rows that read no halo
 /// are done before the halo is there. What triangles are at rest stays in registers, of a warp's first row.
-template <class ExecutionSpace, Law law>
+template <class ExecutionSpace, ConstitutiveModel law>
 struct PersistentPairsFunctor {
   PersistentSteps<ExecutionSpace> of;
 
   [[nodiscard]] static std::size_t scratch_bytes(const PatchViews<ExecutionSpace>& patches) {
     return PersistentSteps<ExecutionSpace>::tables_bytes(patches, 3) +
            2 * 3 * patches.most_triangle_slots * sizeof(double) +
-           TeamSlots<2>::bytes(patches.team, patches.most_spring_slots) + 3 * alignof(double);
+           TeamSlicedEll<2>::bytes(patches.team, patches.most_spring_slots) + 3 * alignof(double);
   }
 
   /// The pair of a lane.
@@ -44,8 +44,8 @@ struct PersistentPairsFunctor {
   KOKKOS_FUNCTION void pull(const Pair& pair, const TeamTable& points, const TeamTable& pulls) const {
     if constexpr (whole_triangles<law>) {
       const Vector3<double> own = load_points<double>(points, pair.vertex);
-      const auto to = [&](int k) { return spoke<double>(points, own, pair.neighbour[k]); };
-      const Spoke<double> middle = to(1);
+      const auto to = [&](int k) { return edge_to<double>(points, own, pair.neighbour[k]); };
+      const EdgeVector<double> middle = to(1);
       store_points(pulls, pair.pulls, triangle_pull<law>(of.cloth.moduli, to(0), middle, pair.rest[0]));
       if (pair.triangles == 2)
         store_points(pulls, pair.pulls + slice,
@@ -75,7 +75,7 @@ struct PersistentPairsFunctor {
               slots = static_cast<int>(of.patches.most_triangle_slots);
     auto* const memory = static_cast<double*>(member.team_scratch(0).get_shmem_aligned(
         2 * 3 * of.patches.most_triangle_slots * sizeof(double), alignof(double)));
-    const struct { TeamSlots<2> springs; } local{TeamSlots<2>(member, slices, of.patches.springs)};
+    const struct { TeamSlicedEll<2> springs; } local{TeamSlicedEll<2>(member, slices, of.patches.springs)};
     OwnVertex own = of.begin(member, halo, points);
 
     const int patch = member.league_rank(), first = patch * slices,

@@ -7,18 +7,18 @@
 #include <vector>
 
 #include "kernels/device/captured_graph.hpp"
-#include "kernels/fabric/contact_steps.hpp"
-#include "kernels/fabric/frequency.hpp"
+#include "kernels/fabric/contact/contact.hpp"
+#include "kernels/fabric/elastic/frequency.hpp"
+#include "kernels/fabric/elastic/stress.hpp"
 #include "kernels/fabric/persistent_steps.hpp"
 #include "kernels/fabric/prescribed.hpp"
 #include "kernels/fabric/solver.hpp"
 #include "kernels/fabric/step.hpp"
-#include "kernels/fabric/stress_on.hpp"
 #include "kernels/fabric/totals.hpp"
 
 namespace drogue::fabric {
 
-template <class ExecutionSpace, Law law>
+template <class ExecutionSpace, ConstitutiveModel law>
 struct ForceFunctor {
   using R = std::conditional_t<device::is_host<ExecutionSpace>, device::HostPack<double>, double>;
   using Bounds = Kokkos::LaunchBounds<>;
@@ -32,7 +32,7 @@ struct ForceFunctor {
 };
 
 /// A solver of one model on one backend.
-template <class ExecutionSpace, Law law>
+template <class ExecutionSpace, ConstitutiveModel law>
 class SolverOn final : public Solver {
  public:
   using Points = PointsView<ExecutionSpace>;
@@ -87,7 +87,7 @@ class SolverOn final : public Solver {
   [[nodiscard]] Points rest_places(const Parameters& p) const;
   void prepare_external(const Parameters& p);
   void prepare_motions(const Parameters& p);
-  void make_persistent(const Parameters& p, const RingSlots& rings, const SpringSlots& springs);
+  void make_persistent(const Parameters& p, const RingAdjacency& rings, const SpringAdjacency& springs);
   void record();
   void take_persistent(std::int64_t steps);
   [[nodiscard]] ProgramsView<ExecutionSpace> programs(
@@ -110,7 +110,7 @@ class SolverOn final : public Solver {
   void take(std::int64_t steps);
   void take_in_contact(std::int64_t steps);
   void keep();
-  template <Law of>
+  template <ConstitutiveModel of>
   [[nodiscard]] double largest_row(const ListView<ExecutionSpace, double>& more) const;
   void make_sums();
   void forces_at(const Points& x, std::span<Vector> forces) const;
@@ -156,7 +156,7 @@ class SolverOn final : public Solver {
   std::optional<TriangleViews<ExecutionSpace>> _triangles;  ///< made when stress is asked for
   std::optional<device::CapturedGraph<ExecutionSpace>> _step;
   std::optional<Persistent<ExecutionSpace>> _persistent;
-  std::unique_ptr<ContactSteps<ExecutionSpace>> _contact;  ///< none: nothing meets
+  std::unique_ptr<ContactHandler<ExecutionSpace>> _contact;  ///< none: nothing meets
 };
 
 }  // namespace drogue::fabric

@@ -8,14 +8,14 @@
 
 namespace drogue::fabric {
 
-template <class ExecutionSpace, Law law>
+template <class ExecutionSpace, ConstitutiveModel law>
 ProgramsView<ExecutionSpace> SolverOn<ExecutionSpace, law>::programs(
     const std::vector<device::ExpressionProgram>& from) const {
   return list_view(_instance.space(), "drogue::fabric::programs", from);
 }
 
 /// Those that forces read, or loads, or new ones.
-template <class ExecutionSpace, Law law>
+template <class ExecutionSpace, ConstitutiveModel law>
 PointsView<ExecutionSpace> SolverOn<ExecutionSpace, law>::rest_places(const Parameters& p) const {
   if (_cloth.rest.extent(0) > 0) return _cloth.rest;
   if (_external.rest.extent(0) > 0) return _external.rest;
@@ -24,16 +24,17 @@ PointsView<ExecutionSpace> SolverOn<ExecutionSpace, law>::rest_places(const Para
   return rest;
 }
 
-template <class ExecutionSpace, Law law>
+template <class ExecutionSpace, ConstitutiveModel law>
 void SolverOn<ExecutionSpace, law>::prepare_external(const Parameters& p) {
   _drags = p.relative_damping > 0.0;
   const double bending = p.material.bending_stiffness;
-  if (bending > 0.0) _external.bending = slot_views(_instance.space(), bending_slots(p.mesh, bending));
+  if (bending > 0.0)
+    _external.bending = sliced_ell_views(_instance.space(), bending_adjacency(p.mesh, bending));
   _acts = !p.timed_loads.empty() || !p.follower_pressures.empty() || bending > 0.0 ||
           (_drags && _integrator == Integrator::rk4);
   if (_drags) {
-    const DashpotSlots dashpots = dashpot_slots(p.mesh, p.mass, p.relative_damping);
-    _external.dashpots = slot_views(_instance.space(), dashpots);
+    const DashpotAdjacency dashpots = dashpot_adjacency(p.mesh, p.mass, p.relative_damping);
+    _external.dashpots = sliced_ell_views(_instance.space(), dashpots);
     // Gershgorin: both ends of a dashpot, each over its mass.
     std::vector<double> row(p.mass.size(), 0.0);
     for (std::size_t slice_number = 0; slice_number + 1 < dashpots.first.size(); ++slice_number)
@@ -66,7 +67,7 @@ void SolverOn<ExecutionSpace, law>::prepare_external(const Parameters& p) {
   if constexpr (has_triangles(law.model))
     _external.surface = _cloth.triangles;
   else
-    _external.surface = slot_views(_instance.space(), ring_slots(p.mesh), false);
+    _external.surface = sliced_ell_views(_instance.space(), ring_adjacency(p.mesh), false);
   strength.clear();
   _external.weight =
       decltype(_external.weight)("drogue::fabric::pressure_weights", n, p.follower_pressures.size());
@@ -80,7 +81,7 @@ void SolverOn<ExecutionSpace, law>::prepare_external(const Parameters& p) {
   _external.pressure = programs(strength);
 }
 
-template <class ExecutionSpace, Law law>
+template <class ExecutionSpace, ConstitutiveModel law>
 void SolverOn<ExecutionSpace, law>::prepare_motions(const Parameters& p) {
   if (p.motions.empty()) return;
   std::vector<device::ExpressionProgram> displacement;
@@ -101,19 +102,19 @@ void SolverOn<ExecutionSpace, law>::prepare_motions(const Parameters& p) {
                                            list_view(space, "drogue::fabric::moved_by", program)};
 }
 
-template <class ExecutionSpace, Law law>
+template <class ExecutionSpace, ConstitutiveModel law>
 ExternalFunctor<ExecutionSpace> SolverOn<ExecutionSpace, law>::loads_at(const Points& x, const Points& v,
                                                                         double part, bool damps) const {
   return {_external, _dead, x, v, _cloth.load, timing(part), damps};
 }
 
 /// Fills `_cloth.load`.
-template <class ExecutionSpace, Law law>
+template <class ExecutionSpace, ConstitutiveModel law>
 void SolverOn<ExecutionSpace, law>::act(const Points& x, const Points& v, double part, bool damps) const {
   launch_each("drogue::fabric::external", _vertices, loads_at(x, v, part, damps));
 }
 
-template <class ExecutionSpace, Law law>
+template <class ExecutionSpace, ConstitutiveModel law>
 void SolverOn<ExecutionSpace, law>::place(const Points& x, const Points& v, double part, bool looks) const {
   launch_each("drogue::fabric::place", static_cast<int>(_prescribed->vertex.extent(0)),
               PlaceFunctor<ExecutionSpace>{*_prescribed, x, v, timing(part), looks});

@@ -6,27 +6,27 @@
 #include <cmath>
 #include <vector>
 
-#include "kernels/fabric/edges.hpp"
-#include "kernels/fabric/lanczos.hpp"
+#include "kernels/fabric/elastic/lanczos.hpp"
 #include "kernels/fabric/solver_on.hpp"
+#include "kernels/mesh/edges.hpp"
 
 namespace drogue::fabric {
 
-template <class ExecutionSpace, Law law>
+template <class ExecutionSpace, ConstitutiveModel law>
 void SolverOn<ExecutionSpace, law>::forces(std::span<Vector> forces) {
   settle();
   forces_at(_x, forces);
 }
 
-template <class ExecutionSpace, Law law>
+template <class ExecutionSpace, ConstitutiveModel law>
 void SolverOn<ExecutionSpace, law>::forces_at(const Points& x, std::span<Vector> forces) const {
   if (_acts) act(x, _v, 0.0, false);
   launch("drogue::fabric::force", ForceFunctor<ExecutionSpace, law>{_cloth, x, _next});
   to_host(_next, forces);
 }
 
-template <class ExecutionSpace, Law law>
-template <Law of>
+template <class ExecutionSpace, ConstitutiveModel law>
+template <ConstitutiveModel of>
 double SolverOn<ExecutionSpace, law>::largest_row(const ListView<ExecutionSpace, double>& more) const {
   double largest = 0.0;
   Kokkos::parallel_reduce(
@@ -35,7 +35,7 @@ double SolverOn<ExecutionSpace, law>::largest_row(const ListView<ExecutionSpace,
   return largest;
 }
 
-template <class ExecutionSpace, Law law>
+template <class ExecutionSpace, ConstitutiveModel law>
 double SolverOn<ExecutionSpace, law>::fastest_frequency() {
   settle();
   const ListView<ExecutionSpace, double>& more = _load_stiffness;
@@ -44,11 +44,11 @@ double SolverOn<ExecutionSpace, law>::fastest_frequency() {
                 LoadStiffnessFunctor<ExecutionSpace>{loads_at(_x, _v, 0.0, false), more});
   double row = largest_row<law>(more);
   // What is slack now may be taut before it is asked again.
-  if constexpr (law.tension_only) row = std::max(row, largest_row<Law{law.model}>(more));
+  if constexpr (law.tension_only) row = std::max(row, largest_row<ConstitutiveModel{law.model}>(more));
   return std::sqrt(row);
 }
 
-template <class ExecutionSpace, Law law>
+template <class ExecutionSpace, ConstitutiveModel law>
 double SolverOn<ExecutionSpace, law>::frequency_at_least() {
   settle();
   const auto n = static_cast<std::size_t>(_vertices);
@@ -85,7 +85,7 @@ double SolverOn<ExecutionSpace, law>::frequency_at_least() {
 }
 
 /// Totals are asked for again and again: what sums need is made once.
-template <class ExecutionSpace, Law law>
+template <class ExecutionSpace, ConstitutiveModel law>
 void SolverOn<ExecutionSpace, law>::make_sums() {
   int rows = _vertices;
   do {
@@ -95,7 +95,7 @@ void SolverOn<ExecutionSpace, law>::make_sums() {
   _sum = Kokkos::create_mirror_view(_sums.back());
 }
 
-template <class ExecutionSpace, Law law>
+template <class ExecutionSpace, ConstitutiveModel law>
 Totals SolverOn<ExecutionSpace, law>::totals() {
   settle();
   const ExecutionSpace& space = _instance.space();
@@ -122,7 +122,7 @@ Totals SolverOn<ExecutionSpace, law>::totals() {
   return t;
 }
 
-template <class ExecutionSpace, Law law>
+template <class ExecutionSpace, ConstitutiveModel law>
 void SolverOn<ExecutionSpace, law>::contact_work(std::span<ContactWork> of_vertices) {
   settle();
   require_one_a_vertex(of_vertices.size());
@@ -130,7 +130,7 @@ void SolverOn<ExecutionSpace, law>::contact_work(std::span<ContactWork> of_verti
   if (_contact) _contact->work(of_vertices);
 }
 
-template <class ExecutionSpace, Law law>
+template <class ExecutionSpace, ConstitutiveModel law>
 void SolverOn<ExecutionSpace, law>::set_contact_work(std::span<const ContactWork> of_vertices) {
   settle();
   require_one_a_vertex(of_vertices.size());

@@ -9,7 +9,7 @@
 
 namespace drogue::fabric {
 
-template <class ExecutionSpace, Law law>
+template <class ExecutionSpace, ConstitutiveModel law>
 SolverOn<ExecutionSpace, law>::SolverOn(const Parameters& p)
     : _instance(static_cast<int>(1 + p.mesh.rest.size() / 512)),
       _mesh(p.mesh),
@@ -25,13 +25,14 @@ SolverOn<ExecutionSpace, law>::SolverOn(const Parameters& p)
              decltype(_watch.raised)("drogue::fabric::raised")} {
   const auto n = static_cast<std::size_t>(_vertices);
   const ExecutionSpace& space = _instance.space();
-  const RingSlots rings = ring_slots(has_triangles(law.model) ? p.mesh : Mesh{p.mesh.rest, {}, {}, {}, {}});
-  const SpringSlots springs = spring_slots(p.mesh, p.material);
+  const RingAdjacency rings =
+      ring_adjacency(has_triangles(law.model) ? p.mesh : Mesh{p.mesh.rest, {}, {}, {}, {}});
+  const SpringAdjacency springs = spring_adjacency(p.mesh, p.material);
   if constexpr (has_triangles(law.model)) {
-    _cloth.triangles = slot_views(space, rings, device::is_host<ExecutionSpace>);
+    _cloth.triangles = sliced_ell_views(space, rings, device::is_host<ExecutionSpace>);
     if constexpr (!device::is_host<ExecutionSpace>) _cloth.rest = rest_places(p);
   }
-  _cloth.springs = slot_views(space, springs);
+  _cloth.springs = sliced_ell_views(space, springs);
   _cloth.moduli = moduli(p.material.membrane_modulus, p.material.poisson);
   _cloth.gravity = {p.gravity[0], p.gravity[1], p.gravity[2]};
   _cloth.damping = _integrator == Integrator::rk4 ? p.damping : 0.0;
@@ -91,7 +92,7 @@ SolverOn<ExecutionSpace, law>::SolverOn(const Parameters& p)
   record();
 }
 
-template <class ExecutionSpace, Law law>
+template <class ExecutionSpace, ConstitutiveModel law>
 void SolverOn<ExecutionSpace, law>::upload(std::span<const Vector> positions,
                                            std::span<const Vector> velocities) {
   const auto within = [](const Vector& vector) {
@@ -110,20 +111,20 @@ void SolverOn<ExecutionSpace, law>::upload(std::span<const Vector> positions,
   keep();
 }
 
-template <class ExecutionSpace, Law law>
+template <class ExecutionSpace, ConstitutiveModel law>
 void SolverOn<ExecutionSpace, law>::download(std::span<Vector> positions, std::span<Vector> velocities) {
   settle();
   to_host(_x, positions);
   to_host(_v, velocities);
 }
 
-template <class ExecutionSpace, Law law>
+template <class ExecutionSpace, ConstitutiveModel law>
 void SolverOn<ExecutionSpace, law>::require_one_a_vertex(std::size_t count) const {
   if (count != static_cast<std::size_t>(_vertices))
     throw std::invalid_argument("fabric solver: there must be one vector a vertex");
 }
 
-template <class ExecutionSpace, Law law>
+template <class ExecutionSpace, ConstitutiveModel law>
 void SolverOn<ExecutionSpace, law>::to_device(std::span<const Vector> from, const Points& to) const {
   require_one_a_vertex(from.size());
   const auto mirror = Kokkos::create_mirror_view(to);
@@ -133,7 +134,7 @@ void SolverOn<ExecutionSpace, law>::to_device(std::span<const Vector> from, cons
   _instance.space().fence("drogue::fabric::to_device");
 }
 
-template <class ExecutionSpace, Law law>
+template <class ExecutionSpace, ConstitutiveModel law>
 void SolverOn<ExecutionSpace, law>::to_host(const Points& from, std::span<Vector> to) const {
   require_one_a_vertex(to.size());
   typename Points::HostMirror mirror = _on_host;

@@ -10,9 +10,9 @@
 
 namespace drogue::fabric {
 
-template <class ExecutionSpace, Law law>
-void SolverOn<ExecutionSpace, law>::make_persistent(const Parameters& p, const RingSlots& rings,
-                                                    const SpringSlots& springs) {
+template <class ExecutionSpace, ConstitutiveModel law>
+void SolverOn<ExecutionSpace, law>::make_persistent(const Parameters& p, const RingAdjacency& rings,
+                                                    const SpringAdjacency& springs) {
   if constexpr (device::PersistentKernel<ExecutionSpace>::available) {
     using Grid = device::PersistentKernel<ExecutionSpace>;
     const bool wanted = p.driver == Driver::persistent || p.driver == Driver::automatic;
@@ -22,7 +22,7 @@ void SolverOn<ExecutionSpace, law>::make_persistent(const Parameters& p, const R
     const auto share = [&](int parts) { return (_vertices + parts - 1) / parts; };
     const int count = std::min(teams, share(p.patch > 0 ? p.patch : slice));
     if (share(count) > most_ring_threads) return;
-    const Patches patches = cut_patches(p.mesh.rest, rings, springs, count);
+    const Patches patches = make_patches(p.mesh.rest, rings, springs, count);
     const PatchViews<ExecutionSpace> views = patch_views(_instance.space(), patches);
     const bool pairs = patches.team <= most_pair_vertices;
     const std::size_t scratch = pairs ? PersistentPairsFunctor<ExecutionSpace, law>::scratch_bytes(views)
@@ -37,7 +37,7 @@ void SolverOn<ExecutionSpace, law>::make_persistent(const Parameters& p, const R
 
 /// In one launch. Copies that are put aside end a launch too, so that none has more than `keep_every` steps:
 /// a few milliseconds.
-template <class ExecutionSpace, Law law>
+template <class ExecutionSpace, ConstitutiveModel law>
 void SolverOn<ExecutionSpace, law>::take_persistent(std::int64_t steps) {
   if constexpr (device::PersistentKernel<ExecutionSpace>::available) {
     const PersistentSteps<ExecutionSpace> of{

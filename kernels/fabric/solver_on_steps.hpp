@@ -9,14 +9,14 @@
 
 namespace drogue::fabric {
 
-template <class ExecutionSpace, Law law>
+template <class ExecutionSpace, ConstitutiveModel law>
 template <bool last>
 void SolverOn<ExecutionSpace, law>::runge_kutta_half(const char* label) const {
   launch(label, RungeKuttaHalfFunctor<ExecutionSpace, law, last>{
                     _cloth, _x, _v, _next, _other, {_velocity[0], _velocity[1]}, _watch, _clock.dt});
 }
 
-template <class ExecutionSpace, Law law>
+template <class ExecutionSpace, ConstitutiveModel law>
 void SolverOn<ExecutionSpace, law>::runge_kutta_step() const {
   if (goes_by_stages()) return runge_kutta_stages();
   if constexpr (!device::is_host<ExecutionSpace>) {
@@ -25,7 +25,7 @@ void SolverOn<ExecutionSpace, law>::runge_kutta_step() const {
   }
 }
 
-template <class ExecutionSpace, Law law>
+template <class ExecutionSpace, ConstitutiveModel law>
 void SolverOn<ExecutionSpace, law>::runge_kutta_stages() const {
   const Points at[] = {_x, _next, _other, _next}, next[] = {_next, _other, _next, _x};
   // Of the step that has gone by before a stage, and after it.
@@ -48,18 +48,18 @@ void SolverOn<ExecutionSpace, law>::runge_kutta_stages() const {
 }
 
 /// A step at the present dt, if it is to be replayed.
-template <class ExecutionSpace, Law law>
+template <class ExecutionSpace, ConstitutiveModel law>
 void SolverOn<ExecutionSpace, law>::record() {
   if (_integrator == Integrator::rk4 && !_persistent && _driver != Driver::plain)
     _step.emplace(_instance, [this](const ExecutionSpace&) { runge_kutta_step(); });
 }
 
-template <class ExecutionSpace, Law law>
+template <class ExecutionSpace, ConstitutiveModel law>
 const char* SolverOn<ExecutionSpace, law>::driver() const {
   return _persistent ? "persistent" : _step ? _step->driver : "plain";
 }
 
-template <class ExecutionSpace, Law law>
+template <class ExecutionSpace, ConstitutiveModel law>
 void SolverOn<ExecutionSpace, law>::verlet(bool ends, bool begins) {
   if (_acts) act(_x, _v, 0.0, false);
   launch("drogue::fabric::verlet",
@@ -77,7 +77,7 @@ void SolverOn<ExecutionSpace, law>::verlet(bool ends, bool begins) {
 }
 
 /// Takes steps without a look at what becomes of them.
-template <class ExecutionSpace, Law law>
+template <class ExecutionSpace, ConstitutiveModel law>
 void SolverOn<ExecutionSpace, law>::take(std::int64_t steps) {
   if (_contact) return take_in_contact(steps);
   if (_integrator == Integrator::rk4) {
@@ -95,7 +95,7 @@ void SolverOn<ExecutionSpace, law>::take(std::int64_t steps) {
   _clock.step += steps;
 }
 
-template <class ExecutionSpace, Law law>
+template <class ExecutionSpace, ConstitutiveModel law>
 void SolverOn<ExecutionSpace, law>::take_in_contact(std::int64_t steps) {
   for (std::int64_t step = 0; step < steps; ++step) {
     _contact->begin(_x, _v);
@@ -112,7 +112,7 @@ void SolverOn<ExecutionSpace, law>::take_in_contact(std::int64_t steps) {
   _clock.step += steps;
 }
 
-template <class ExecutionSpace, Law law>
+template <class ExecutionSpace, ConstitutiveModel law>
 bool SolverOn<ExecutionSpace, law>::advance(std::int64_t steps) {
   // Copies fall on multiples, so that they are the same however steps are cut into calls.
   while (steps > 0 && !lost()) {
@@ -125,12 +125,12 @@ bool SolverOn<ExecutionSpace, law>::advance(std::int64_t steps) {
 }
 
 /// What the device has told so far, without waiting.
-template <class ExecutionSpace, Law law>
+template <class ExecutionSpace, ConstitutiveModel law>
 bool SolverOn<ExecutionSpace, law>::lost() const {
   return _failure || *static_cast<const volatile int*>(_watch.raised.data()) != 0;
 }
 
-template <class ExecutionSpace, Law law>
+template <class ExecutionSpace, ConstitutiveModel law>
 void SolverOn<ExecutionSpace, law>::keep() {
   Kokkos::parallel_for(
       "drogue::fabric::keep",
@@ -141,7 +141,7 @@ void SolverOn<ExecutionSpace, law>::keep() {
 }
 
 /// Waits; where a state was lost, goes back to the one kept.
-template <class ExecutionSpace, Law law>
+template <class ExecutionSpace, ConstitutiveModel law>
 void SolverOn<ExecutionSpace, law>::settle() {
   const ExecutionSpace& space = _instance.space();
   space.fence("drogue::fabric::settle");
@@ -160,14 +160,14 @@ void SolverOn<ExecutionSpace, law>::settle() {
   _clock.step = kept;
 }
 
-template <class ExecutionSpace, Law law>
+template <class ExecutionSpace, ConstitutiveModel law>
 std::optional<Failure> SolverOn<ExecutionSpace, law>::failure() {
   settle();
   return _failure;
 }
 
 /// Sets the watch to the clock and to nothing lost.
-template <class ExecutionSpace, Law law>
+template <class ExecutionSpace, ConstitutiveModel law>
 void SolverOn<ExecutionSpace, law>::set_steps() {
   const ExecutionSpace& space = _instance.space();
   Kokkos::deep_copy(space, _watch.steps, _clock.step);
@@ -177,7 +177,7 @@ void SolverOn<ExecutionSpace, law>::set_steps() {
   _hand = 0;
 }
 
-template <class ExecutionSpace, Law law>
+template <class ExecutionSpace, ConstitutiveModel law>
 void SolverOn<ExecutionSpace, law>::set_clock(const Clock& clock) {
   if (!(clock.dt > 0.0 && std::isfinite(clock.dt) && std::isfinite(clock.start)))
     throw std::invalid_argument("fabric solver: dt must be positive, and time finite");

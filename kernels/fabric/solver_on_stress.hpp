@@ -7,7 +7,7 @@
 namespace drogue::fabric {
 
 /// Stress of all triangles, and where there is room for them the tensors.
-template <class ExecutionSpace, Law law>
+template <class ExecutionSpace, ConstitutiveModel law>
 void SolverOn<ExecutionSpace, law>::find_stress(StressMeasure measure, const StressView<ExecutionSpace>& to,
                                                 const TensorView<ExecutionSpace>& tensor) {
   if (_material.model == Model::linear_vector)
@@ -21,7 +21,7 @@ void SolverOn<ExecutionSpace, law>::find_stress(StressMeasure measure, const Str
       StressFunctor<ExecutionSpace, law>{*_triangles, _x, _cloth.moduli, measure, to, tensor});
 }
 
-template <class ExecutionSpace, Law law>
+template <class ExecutionSpace, ConstitutiveModel law>
 void SolverOn<ExecutionSpace, law>::stress(StressMeasure measure, std::span<Stress> of_triangles) {
   if (of_triangles.size() != _mesh.triangles.size())
     throw std::invalid_argument("fabric solver: there must be one stress a triangle");
@@ -30,7 +30,7 @@ void SolverOn<ExecutionSpace, law>::stress(StressMeasure measure, std::span<Stre
   stress_to_host(found, of_triangles);
 }
 
-template <class ExecutionSpace, Law law>
+template <class ExecutionSpace, ConstitutiveModel law>
 void SolverOn<ExecutionSpace, law>::vertex_stress(StressMeasure measure, std::span<Stress> of_vertices) {
   require_one_a_vertex(of_vertices.size());
   const StressView<ExecutionSpace> of_triangles("drogue::fabric::stress", _mesh.triangles.size()),
@@ -43,7 +43,7 @@ void SolverOn<ExecutionSpace, law>::vertex_stress(StressMeasure measure, std::sp
   stress_to_host(found, of_vertices);
 }
 
-template <class ExecutionSpace, Law law>
+template <class ExecutionSpace, ConstitutiveModel law>
 void SolverOn<ExecutionSpace, law>::stress_to_host(const StressView<ExecutionSpace>& from,
                                                    std::span<Stress> to) const {
   const auto mirror = Kokkos::create_mirror_view(from);

@@ -40,7 +40,7 @@ KOKKOS_INLINE_FUNCTION void store_end(const Watch<ExecutionSpace>& watch, const 
 }
 
 /// One stage of it.
-template <class ExecutionSpace, Law law>
+template <class ExecutionSpace, ConstitutiveModel law>
 struct RungeKuttaFunctor {
   using R = std::conditional_t<device::is_host<ExecutionSpace>, device::HostPack<double>, double>;
   using Points = PointsView<ExecutionSpace>;
@@ -78,7 +78,7 @@ struct RungeKuttaFunctor {
 /// Two stages of it at once on a device, the first or the last two, where nothing but a vertex' own velocity
 /// changes its force from stage to stage: positions of a stage follow from the velocities of the one before,
 /// so those of both are known before either force is. What both read of the neighbours is read once.
-template <class ExecutionSpace, Law law, bool last>
+template <class ExecutionSpace, ConstitutiveModel law, bool last>
 struct RungeKuttaHalfFunctor {
   using Points = PointsView<ExecutionSpace>;
   using Vector = Vector3<double>;
@@ -129,7 +129,7 @@ struct RungeKuttaHalfFunctor {
 /// Velocity Verlet (Swope et al. 1982) with one force a step: half a kick that ends the step before, half a
 /// kick that begins the next, and its drift. Damping is taken at the middle of half a kick. However steps are
 /// cut into launches, the same operations follow one another.
-template <class ExecutionSpace, Law law>
+template <class ExecutionSpace, ConstitutiveModel law>
 struct VerletFunctor {
   using R = std::conditional_t<device::is_host<ExecutionSpace>, device::HostPack<double>, double>;
   using Points = PointsView<ExecutionSpace>;

@@ -17,12 +17,12 @@ using TotalsView = TableView<ExecutionSpace, double, total_count>;
 /// Thread j adds the shares of vertices j, j + n_out, j + 2 n_out, ... in this order, so that sums have the
 /// same bits on every backend and with any number of threads. Corners of a triangle have a third of its
 /// energy, ends of a spring half.
-template <class ExecutionSpace, Law law>
+template <class ExecutionSpace, ConstitutiveModel law>
 struct TotalsFunctor {
   Cloth<ExecutionSpace> cloth;
   PointsView<ExecutionSpace> x, v;
   PointsView<ExecutionSpace> pull;  ///< of springs of vectors, which `cloth.load` holds too; may be empty
-  SlotViews<ExecutionSpace, 1> bending;  ///< may be empty
+  SlicedEllViews<ExecutionSpace, 1> bending;  ///< may be empty
   TotalsView<ExecutionSpace> out;
   int vertices;
 
@@ -56,8 +56,9 @@ struct TotalsFunctor {
     const auto to = [&](int neighbour) { return load_points<double>(x, neighbour) - own; };
     if constexpr (whole_triangles<law>)
       each_triangle<double>(
-          cloth, x, i, [&](const Spoke<double>& j, const Spoke<double>& k, const RestTriangle<double>& rest) {
-            const Products<double> now{j.squared, dot(j.to, k.to), k.squared};
+          cloth, x, i,
+          [&](const EdgeVector<double>& j, const EdgeVector<double>& k, const RestTriangle<double>& rest) {
+            const GramMatrix<double> now{j.squared, dot(j.to, k.to), k.squared};
             energy += membrane_energy<law>(cloth.moduli, squared_edges(now), squared_edges(rest.products),
                                            rest.inverse_area) /
                       3.0;

@@ -33,7 +33,7 @@ Mesh mesh_of(int nx, int ny) {
 }
 
 Patches cut(const Mesh& mesh, int count) {
-  return cut_patches(mesh.rest, ring_slots(mesh), spring_slots(mesh, {}), count);
+  return make_patches(mesh.rest, ring_adjacency(mesh), spring_adjacency(mesh, {}), count);
 }
 
 /// Those who share a triangle or a line with vertex i.
@@ -94,9 +94,9 @@ TEST(FabricPatches, HoldEveryVertexOnceAndAllThatItReads) {
 
 TEST(FabricPatches, KeepTheOrderOfSlots) {
   const Mesh mesh = mesh_of(13, 9);
-  const RingSlots rings = ring_slots(mesh);
+  const RingAdjacency rings = ring_adjacency(mesh);
   const Patches patches = cut(mesh, 4);
-  const auto slot = [](const RingSlots& slots, std::size_t i, int k) {
+  const auto slot = [](const RingAdjacency& slots, std::size_t i, int k) {
     return static_cast<std::size_t>(slots.first[i / slice] + k) * slice + i % slice;
   };
   for (std::size_t at = 0; at < patches.vertex.size(); ++at) {
@@ -139,7 +139,7 @@ Parameters cloth_of(const Mesh& mesh) {
 }
 
 /// Steps as a persistent kernel takes them, in launches of `cuts` steps.
-template <Law law, template <class, Law> class Functor>
+template <ConstitutiveModel law, template <class, ConstitutiveModel> class Functor>
 void run_emulated(const Parameters& p, int count, const std::vector<std::int64_t>& cuts,
                   std::vector<Vector>& x, std::vector<Vector>& v) {
   using Space = Kokkos::Serial;
@@ -148,7 +148,7 @@ void run_emulated(const Parameters& p, int count, const std::vector<std::int64_t
   material.model = law.model;
   const Mesh cloth_mesh = has_triangles(law.model) ? p.mesh : Mesh{p.mesh.rest, {}, {}, {}, {}};
   const Patches patches =
-      cut_patches(p.mesh.rest, ring_slots(cloth_mesh), spring_slots(p.mesh, material), count);
+      make_patches(p.mesh.rest, ring_adjacency(cloth_mesh), spring_adjacency(p.mesh, material), count);
   const PatchViews<Space> views = patch_views(space, patches);
   const std::size_t n = p.mass.size();
   Cloth<Space> cloth;
@@ -193,7 +193,7 @@ double distance(const std::vector<Vector>& a, const std::vector<Vector>& b) {
   return largest;
 }
 
-template <Law law, template <class, Law> class Functor>
+template <ConstitutiveModel law, template <class, ConstitutiveModel> class Functor>
 void expect_the_same_steps() {
   Parameters p = cloth_of(mesh_of(11, 8));
   p.material.model = law.model;
@@ -213,10 +213,10 @@ void expect_the_same_steps() {
 }
 
 TEST(FabricPatches, TakeTheStepsOfTheOtherDrivers) {
-  expect_the_same_steps<Law{Model::biquadratic}, PersistentRingsFunctor>();
-  expect_the_same_steps<Law{Model::biquadratic}, PersistentPairsFunctor>();
-  expect_the_same_steps<Law{Model::edge}, PersistentRingsFunctor>();
-  expect_the_same_steps<Law{Model::edge}, PersistentPairsFunctor>();
+  expect_the_same_steps<ConstitutiveModel{Model::biquadratic}, PersistentRingsFunctor>();
+  expect_the_same_steps<ConstitutiveModel{Model::biquadratic}, PersistentPairsFunctor>();
+  expect_the_same_steps<ConstitutiveModel{Model::edge}, PersistentRingsFunctor>();
+  expect_the_same_steps<ConstitutiveModel{Model::edge}, PersistentPairsFunctor>();
 }
 
 }  // namespace
