@@ -34,7 +34,7 @@ struct NearestFunctor {
     const Point triangle[3] = {q, r, s}, first[2] = {p, q}, second[2] = {r, s};
     const ClosestOnTriangle face = closest_on_triangle(p, triangle);
     const ClosestOfSegments edges = closest_of_segments(first, second);
-    for (int i = 0; i < 3; ++i) out(k, i) = face.share[i];
+    for (int i = 0; i < 3; ++i) out(k, i) = face.weight[i];
     out(k, 3) = face.squared;
     out(k, 4) = edges.first, out(k, 5) = edges.second, out(k, 6) = edges.squared;
   }
