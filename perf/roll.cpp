@@ -5,11 +5,11 @@
 #include <limits>
 #include <numbers>
 
-#include "kernels/fabric/contact_parts.hpp"
-#include "kernels/fabric/mass.hpp"
+#include "kernels/fabric/contact/features.hpp"
+#include "kernels/fabric/elastic/lumped_mass.hpp"
+#include "kernels/mesh/generators.hpp"
+#include "kernels/mesh/renumbering.hpp"
 #include "kernels/reference/fabric/intersections.hpp"
-#include "miniapps/springs/mesh_generators.hpp"
-#include "miniapps/springs/mesh_topology.hpp"
 
 namespace drogue::perf::roll {
 
@@ -42,12 +42,12 @@ struct Spiral {
 }  // namespace
 
 fabric::Parameters parameters(int vertices) {
-  const fabric::Mesh mesh = springs_app::generate(springs_app::Strip{1.0, 1.0, vertices});
+  const fabric::Mesh mesh = mesh::generate(mesh::Strip{1.0, 1.0, vertices});
   fabric::Parameters p;
-  p.mesh = springs_app::renumbered(mesh, springs_app::local_order(mesh));
+  p.mesh = mesh::renumber(mesh, mesh::reverse_cuthill_mckee(mesh));
   p.mass = fabric::lumped_masses(p.mesh, 0.1, 0.0, fabric::Lumping::area);
   p.contact.self = true;
-  p.contact.thickness = 0.4 * fabric::contact_edges(p.mesh).mean_length;
+  p.contact.thickness = 0.4 * fabric::collision_edges(p.mesh).mean_length;
   p.contact.friction = 0.2;
   p.dt = 1.0;
   return p;
@@ -72,7 +72,7 @@ double usual_dt(const fabric::Parameters& p, fabric::Solver& solver) {
   const sheet::State from = start(p);
   solver.upload(from.x, from.v);
   const double stable = fabric::stable_dt(p.integrator, solver.fastest_frequency(), solver.fastest_decay());
-  return std::min(0.5 * stable, 0.1 * fabric::contact_edges(p.mesh).mean_length / fastest);
+  return std::min(0.5 * stable, 0.1 * fabric::collision_edges(p.mesh).mean_length / fastest);
 }
 
 Sample steps(const fabric::Parameters& p, fabric::Solver& solver, long count) {

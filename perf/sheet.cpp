@@ -4,20 +4,20 @@
 #include <cmath>
 #include <numbers>
 
-#include "kernels/fabric/mass.hpp"
+#include "kernels/fabric/elastic/lumped_mass.hpp"
+#include "kernels/mesh/generators.hpp"
+#include "kernels/mesh/renumbering.hpp"
 #include "kernels/reference/fabric/membrane.hpp"
 #include "kernels/reference/fabric/totals.hpp"
-#include "miniapps/springs/mesh_generators.hpp"
-#include "miniapps/springs/mesh_topology.hpp"
 
 namespace drogue::perf::sheet {
 
 using fabric::Vector;
 
 fabric::Parameters parameters(int vertices) {
-  const fabric::Mesh mesh = springs_app::generate(springs_app::Strip{1.0, 1.0, vertices});
+  const fabric::Mesh mesh = mesh::generate(mesh::Strip{1.0, 1.0, vertices});
   fabric::Parameters p;
-  p.mesh = springs_app::renumbered(mesh, springs_app::local_order(mesh));
+  p.mesh = mesh::renumber(mesh, mesh::reverse_cuthill_mckee(mesh));
   p.mass = fabric::lumped_masses(p.mesh, 0.1, 0.0, fabric::Lumping::area);
   p.gravity = {0.0, 0.0, -9.81};
   double length = 0.0, width = 0.0;

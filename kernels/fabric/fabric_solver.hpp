@@ -10,16 +10,16 @@
 #include <vector>
 
 #include "kernels/device/captured_graph.hpp"
-#include "kernels/fabric/contact_steps.hpp"
-#include "kernels/fabric/edges.hpp"
-#include "kernels/fabric/frequency.hpp"
-#include "kernels/fabric/lanczos.hpp"
+#include "kernels/fabric/contact/contact.hpp"
+#include "kernels/mesh/edges.hpp"
+#include "kernels/fabric/elastic/frequency.hpp"
+#include "kernels/fabric/elastic/lanczos.hpp"
 #include "kernels/fabric/loads/dirichlet.hpp"
 #include "kernels/fabric/solver.hpp"
 #include "kernels/fabric/stepping/persistent_pairs.hpp"
 #include "kernels/fabric/stepping/persistent_rings.hpp"
 #include "kernels/fabric/stepping/step.hpp"
-#include "kernels/fabric/stress_on.hpp"
+#include "kernels/fabric/elastic/stress.hpp"
 #include "kernels/fabric/totals.hpp"
 #include "kernels/fabric/vertex_force.hpp"
 
@@ -415,7 +415,7 @@ class FabricSolver {
   std::optional<TriangleViews<ExecutionSpace>> _triangles;  ///< made at the first request of stress
   std::optional<device::CapturedGraph<ExecutionSpace>> _step;
   std::optional<PersistentDriver<ExecutionSpace>> _persistent;
-  std::unique_ptr<ContactSteps<ExecutionSpace>> _contact;  ///< empty without contact
+  std::unique_ptr<ContactHandler<ExecutionSpace>> _contact;  ///< empty without contact
 };
 
 // ---- setup ----
@@ -433,13 +433,13 @@ FabricSolver<ExecutionSpace, VertexForce>::FabricSolver(const ExecutionSpace& sp
       _monitor{decltype(_monitor.steps)("drogue::fabric::steps"),
                decltype(_monitor.lost)("drogue::fabric::lost"),
                decltype(_monitor.raised)("drogue::fabric::raised")} {
-  const RingSlots rings =
-      ring_slots(has_triangles(p.material.model) ? p.mesh : Mesh{p.mesh.rest, {}, {}, {}, {}});
+  const RingAdjacency rings =
+      ring_adjacency(has_triangles(p.material.model) ? p.mesh : Mesh{p.mesh.rest, {}, {}, {}, {}});
   if (has_triangles(p.material.model)) {
-    _cloth.triangles = slot_views(space, rings, device::is_host<ExecutionSpace>);
+    _cloth.triangles = sliced_ell_views(space, rings, device::is_host<ExecutionSpace>);
     if constexpr (!device::is_host<ExecutionSpace>) _cloth.rest = rest_places();
   }
-  _cloth.springs = slot_views(space, spring_slots(p.mesh, p.material));
+  _cloth.springs = sliced_ell_views(space, spring_adjacency(p.mesh, p.material));
   _cloth.moduli = moduli(p.material.membrane_modulus, p.material.poisson);
   _cloth.gravity = {p.gravity[0], p.gravity[1], p.gravity[2]};
   _cloth.damping = p.integrator == Integrator::rk4 ? p.damping : 0.0;
@@ -524,12 +524,12 @@ void FabricSolver<ExecutionSpace, VertexForce>::make_loads() {
   const Parameters& p = _parameters;
   _has_dashpots = p.relative_damping > 0.0;
   const double bending = p.material.bending_stiffness;
-  if (bending > 0.0) _external.bending = slot_views(space(), bending_slots(p.mesh, bending));
+  if (bending > 0.0) _external.bending = sliced_ell_views(space(), bending_adjacency(p.mesh, bending));
   _has_external = !p.timed_loads.empty() || !p.follower_pressures.empty() || bending > 0.0 ||
                   (_has_dashpots && p.integrator == Integrator::rk4);
   if (_has_dashpots) {
-    const DashpotSlots dashpots = dashpot_slots(p.mesh, p.mass, p.relative_damping);
-    _external.dashpots = slot_views(space(), dashpots);
+    const DashpotAdjacency dashpots = dashpot_adjacency(p.mesh, p.mass, p.relative_damping);
+    _external.dashpots = sliced_ell_views(space(), dashpots);
     // Gershgorin: both ends of a dashpot, each over its mass.
     std::vector<double> row(p.mass.size(), 0.0);
     for (std::size_t slice_number = 0; slice_number + 1 < dashpots.first.size(); ++slice_number)
@@ -577,7 +577,7 @@ template <class ExecutionSpace, class VertexForce>
 void FabricSolver<ExecutionSpace, VertexForce>::make_surface() {
   _external.surface = has_triangles(_parameters.material.model)
                           ? _cloth.triangles
-                          : slot_views(space(), ring_slots(_parameters.mesh), false);
+                          : sliced_ell_views(space(), ring_adjacency(_parameters.mesh), false);
 }
 
 template <class ExecutionSpace, class VertexForce>
@@ -634,8 +634,8 @@ void FabricSolver<ExecutionSpace, VertexForce>::make_persistent() {
     if (share(count) > most_ring_threads) return;
     const bool rings = has_triangles(p.material.model) || _external.has_pressure();
     const Patches patches =
-        cut_patches(p.mesh.rest, ring_slots(rings ? p.mesh : Mesh{p.mesh.rest, {}, {}, {}, {}}),
-                    spring_slots(p.mesh, p.material), count);
+        make_patches(p.mesh.rest, ring_adjacency(rings ? p.mesh : Mesh{p.mesh.rest, {}, {}, {}, {}}),
+                    spring_adjacency(p.mesh, p.material), count);
     const PatchViews<ExecutionSpace> views = patch_views(space(), patches);
     const bool pairs = patches.team <= most_pair_vertices && !_has_external;
     constexpr ConstitutiveModel any{Model::edge};  // all models need the same memory

@@ -3,11 +3,13 @@
 #include <Kokkos_Core.hpp>
 
 #include "kernels/device/memory.hpp"
-#include "kernels/fabric/membrane.hpp"
-#include "kernels/fabric/slot_views.hpp"
-#include "kernels/fabric/vector3.hpp"
+#include "kernels/fabric/elastic/membrane.hpp"
+#include "kernels/fabric/elastic/sliced_ell_views.hpp"
+#include "kernels/spatial/vector3.hpp"
 
 namespace drogue::fabric {
+
+using spatial::Vector3;
 
 /// One vector per vertex, (vertices, 3), with whole slices of vertices.
 template <class ExecutionSpace>
@@ -60,7 +62,7 @@ KOKKOS_INLINE_FUNCTION Vector3<R> gather_points(const ExtrapolatedPoints<Points>
 /// A triangle at rest: products of the edges from its first vertex, m^2, and 1/m^2.
 template <class R>
 struct RestTriangle {
-  Products<R> products;
+  GramMatrix<R> products;
   R inverse_area;
 };
 
@@ -91,8 +93,8 @@ KOKKOS_INLINE_FUNCTION EdgeVector<R> edge_to(const Points& points, const Vector3
 template <class ExecutionSpace>
 struct FabricViews {
   using Points = PointsView<ExecutionSpace>;
-  SlotViews<ExecutionSpace, 3> triangles;  ///< a device, which waits for memory, stores no values
-  SlotViews<ExecutionSpace, 2> springs;
+  SlicedEllViews<ExecutionSpace, 3> triangles;  ///< a device, which waits for memory, stores no values
+  SlicedEllViews<ExecutionSpace, 2> springs;
   Points rest;                                                                    ///< m; on the host empty
   Kokkos::View<double*, typename ExecutionSpace::memory_space> inverse_mass;      ///< 1/kg
   Kokkos::View<std::uint8_t*, typename ExecutionSpace::memory_space> fixed_dofs;  ///< axes: 1 x, 2 y, 4 z
@@ -115,7 +117,7 @@ struct FabricViews {
     if constexpr (device::is_host<ExecutionSpace>) {
       return stored_triangle(triangles.value, before, next, slot);
     } else {
-      const Products<R> products{before.squared, dot(before.to, next.to), next.squared};
+      const GramMatrix<R> products{before.squared, dot(before.to, next.to), next.squared};
       return {products, inverse_area(products)};
     }
   }
@@ -137,9 +139,9 @@ KOKKOS_INLINE_FUNCTION Vector3<R> free_axes(const FabricViews<ExecutionSpace>& c
 template <ConstitutiveModel law, class R>
 KOKKOS_INLINE_FUNCTION Vector3<R> triangle_pull(const Moduli& m, const EdgeVector<R>& j,
                                                 const EdgeVector<R>& k, const RestTriangle<R>& rest) {
-  const Products<R> now{j.squared, dot(j.to, k.to), k.squared};
+  const GramMatrix<R> now{j.squared, dot(j.to, k.to), k.squared};
   if constexpr (law.model == Model::biquadratic && !law.tension_only) {
-    const SpokeTensions<R> tension = spoke_tensions(m, now, rest.products, rest.inverse_area);
+    const EdgePairTensions<R> tension = edge_pair_tensions(m, now, rest.products, rest.inverse_area);
     return tension.j * j.to + tension.k * k.to;
   } else {
     // Edge j lies opposite vertex j: it leads to k.

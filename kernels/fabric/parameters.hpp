@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "kernels/device/expression_program.hpp"
+#include "kernels/mesh/mesh.hpp"
 
 namespace drogue::fabric {
 
@@ -44,16 +45,8 @@ struct Material {
   bool tension_only = false;
 };
 
-using Vector = std::array<double, 3>;
-
-/// Cloth and strings by the numbers of their vertices.
-struct Mesh {
-  std::vector<Vector> rest;  ///< m
-  std::vector<std::array<int, 3>> triangles;
-  std::vector<std::array<int, 2>> lines;  ///< pieces of strings, or of reinforcements along edges
-  std::vector<double> line_stiffness;     ///< E A of every line, N; empty: Material::axial_stiffness
-  std::vector<double> line_density;       ///< of every line, kg/m; empty: what `lumped_masses` is told
-};
+using mesh::Mesh;
+using mesh::Vector;
 
 /// A force that changes: strength times direction, N. The strength is an expression of the place at rest, m,
 /// and of time, s.

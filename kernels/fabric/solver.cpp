@@ -5,8 +5,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "kernels/fabric/contact_parts.hpp"
-#include "kernels/fabric/edges.hpp"
+#include "kernels/fabric/contact/features.hpp"
+#include "kernels/mesh/edges.hpp"
 
 namespace drogue::fabric {
 
@@ -22,7 +22,7 @@ void check_contact(const Parameters& p, const Require& require) {
   if (!contact.asked_for()) return;
   const auto not_negative = [](double x) { return x >= 0.0 && std::isfinite(x); };
   require(contact.thickness > 0.0 && std::isfinite(contact.thickness), "contact needs a positive thickness");
-  require(!contact.self || contact.thickness < least_height(p.mesh),
+  require(!contact.self || contact.thickness < shortest_altitude(p.mesh),
           "contact of cloth with itself needs triangles that are higher than the thickness");
   require(not_negative(contact.friction), "friction must not be negative");
   for (const Body& body : contact.bodies) {

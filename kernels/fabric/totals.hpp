@@ -22,7 +22,7 @@ struct TotalsFunctor {
   FabricViews<ExecutionSpace> cloth;
   PointsView<ExecutionSpace> x, v;
   PointsView<ExecutionSpace> pull;  ///< of springs of vectors, which `cloth.load` holds too; may be empty
-  SlotViews<ExecutionSpace, 1> bending;  ///< may be empty
+  SlicedEllViews<ExecutionSpace, 1> bending;  ///< may be empty
   TotalsView<ExecutionSpace> out;
   int vertices;
 
@@ -58,7 +58,7 @@ struct TotalsFunctor {
       each_triangle<double>(
           cloth, x, i,
           [&](const EdgeVector<double>& j, const EdgeVector<double>& k, const RestTriangle<double>& rest) {
-            const Products<double> now{j.squared, dot(j.to, k.to), k.squared};
+            const GramMatrix<double> now{j.squared, dot(j.to, k.to), k.squared};
             energy += membrane_energy<law>(cloth.moduli, squared_edges(now), squared_edges(rest.products),
                                            rest.inverse_area) /
                       3.0;

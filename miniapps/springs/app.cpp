@@ -10,7 +10,7 @@
 #include "common/run/one_run.hpp"
 #include "common/scene/library.hpp"
 #include "kernels/device/profiling_counters.hpp"
-#include "miniapps/springs/mesh_topology.hpp"
+#include "kernels/mesh/quality.hpp"
 #include "miniapps/springs/restart.hpp"
 #include "miniapps/springs/scene_folder.hpp"
 #include "miniapps/springs/simulation.hpp"

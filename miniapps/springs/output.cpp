@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
-#include "kernels/fabric/edges.hpp"
+#include "kernels/mesh/edges.hpp"
 #include "miniapps/springs/history.hpp"
 #include "miniapps/springs/stress_fields.hpp"
 #include "miniapps/springs/vectors.hpp"

@@ -3,8 +3,9 @@
 #include <cmath>
 #include <numeric>
 
+#include "kernels/mesh/renumbering.hpp"
+#include "kernels/mesh/topology.hpp"
 #include "miniapps/springs/expressions.hpp"
-#include "miniapps/springs/mesh_topology.hpp"
 #include "miniapps/springs/probe.hpp"
 
 namespace drogue::springs_app {
@@ -30,7 +31,7 @@ std::vector<double> masses_of(const SpringsScene& scene, Problem& problem) {
 std::vector<Vector> area_vectors(const fabric::Mesh& mesh) {
   std::vector<Vector> sum(mesh.rest.size(), Vector{});
   for (const auto& triangle : mesh.triangles) {
-    const Vector twice = double_area(mesh.rest, triangle);
+    const Vector twice = mesh::doubled_area(mesh.rest, triangle);
     for (const int i : triangle)
       for (std::size_t axis = 0; axis < 3; ++axis)
         sum[static_cast<std::size_t>(i)][axis] += twice[axis] / 6.0;
@@ -171,9 +172,9 @@ std::vector<fabric::Stress> Problem::to_scene(std::span<const fabric::Stress> va
 
 Problem make_problem(const SpringsScene& scene) {
   Problem problem;
-  problem.order = local_order(scene.mesh);
+  problem.order = reverse_cuthill_mckee(scene.mesh);
   fabric::Parameters& p = problem.parameters;
-  p.mesh = renumbered(scene.mesh, problem.order);
+  p.mesh = renumber(scene.mesh, problem.order);
   p.material = scene.fabric.material;
   p.mass = permuted<double>(masses_of(scene, problem), problem.order);
   p.pinned = permuted<std::uint8_t>(place_vertices(scene, problem), problem.order);

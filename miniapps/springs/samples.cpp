@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "miniapps/springs/mesh_topology.hpp"
+#include "kernels/mesh/topology.hpp"
 
 namespace drogue::springs_app {
 
@@ -18,7 +18,7 @@ double total_length(const fabric::Mesh& mesh, const std::vector<fabric::Vector>&
 double total_area(const fabric::Mesh& mesh, const std::vector<fabric::Vector>& x) {
   double sum = 0.0;
   for (const auto& triangle : mesh.triangles) {
-    const fabric::Vector twice = double_area(x, triangle);
+    const fabric::Vector twice = mesh::doubled_area(x, triangle);
     sum += 0.5 * std::hypot(twice[0], twice[1], twice[2]);
   }
   return sum;

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "kernels/fabric/mass.hpp"
+#include "kernels/fabric/elastic/lumped_mass.hpp"
 #include "kernels/fabric/parameters.hpp"
-#include "miniapps/springs/mesh_generators.hpp"
+#include "kernels/mesh/generators.hpp"
 
 /// The scene of `drogue-springs`: what a TOML file says, checked and with every default filled in.
 namespace drogue::springs_app {
@@ -23,11 +23,11 @@ struct ExpressionVector {
 
 /// Exactly one of the generators or a file is set.
 struct MeshSource {
-  std::optional<Rectangle> rectangle;
-  std::optional<Disk> disk;
-  std::optional<Strip> strip;
-  std::optional<Triangle> triangle;
-  std::optional<String> string;
+  std::optional<mesh::Rectangle> rectangle;
+  std::optional<mesh::Disk> disk;
+  std::optional<mesh::Strip> strip;
+  std::optional<mesh::Triangle> triangle;
+  std::optional<mesh::String> string;
   std::string file;  ///< as the scene names it, relative to the scene
 };
 

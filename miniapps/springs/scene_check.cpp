@@ -5,10 +5,10 @@
 
 #include "common/scene/node.hpp"
 #include "common/scene/read.hpp"
-#include "kernels/fabric/edges.hpp"
 #include "kernels/fabric/solver.hpp"
+#include "kernels/mesh/edges.hpp"
+#include "kernels/mesh/topology.hpp"
 #include "miniapps/springs/expressions.hpp"
-#include "miniapps/springs/mesh_topology.hpp"
 #include "miniapps/springs/obj_file.hpp"
 #include "miniapps/springs/stress_fields.hpp"
 
@@ -95,7 +95,7 @@ void complete_material(const Table& root, SpringsScene& scene) {
     contradict(root, "material.axial_stiffness",
                "material.axial_stiffness and material.stiffness are both of strings, and the mesh has no "
                "triangles: give one");
-  if (f.material.bending_stiffness > 0.0 && !is_flat(scene.mesh))
+  if (f.material.bending_stiffness > 0.0 && !is_planar(scene.mesh))
     contradict(root, "material.bending_stiffness",
                "material.bending_stiffness needs cloth that is flat at rest, and this mesh is not");
   if (springs && !f.stiffness) f.stiffness = f.material.stiffness;
@@ -105,7 +105,7 @@ void complete_material(const Table& root, SpringsScene& scene) {
   if (!lines || f.axial_stiffness) return;
   scene.mesh.line_stiffness.clear();
   for (const auto& [i, j] : scene.mesh.lines)
-    scene.mesh.line_stiffness.push_back(*f.stiffness * fabric::rest_distance(scene.mesh, i, j));
+    scene.mesh.line_stiffness.push_back(*f.stiffness * mesh::rest_distance(scene.mesh, i, j));
   f.material.axial_stiffness = scene.mesh.line_stiffness.front();
 }
 
@@ -145,7 +145,7 @@ void check_loads(const Table& root, const SpringsScene& scene) {
       if (text.empty()) continue;
       if (!scene.has_triangles())
         contradict(root, path + "." + name, path + "." + name + " needs triangles, and the mesh has none");
-      if (const auto opposed = opposed_triangles(scene.mesh))
+      if (const auto opposed = inconsistent_triangles(scene.mesh))
         contradict(root, path + "." + name,
                    path + "." + name + " has no side to act on: faces " + std::to_string((*opposed)[0]) +
                        " and " + std::to_string((*opposed)[1]) + " of the mesh turn in opposite senses");

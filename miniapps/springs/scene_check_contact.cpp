@@ -2,7 +2,7 @@
 
 #include "common/scene/node.hpp"
 #include "common/scene/read.hpp"
-#include "kernels/fabric/contact_parts.hpp"
+#include "kernels/fabric/contact/features.hpp"
 #include "miniapps/springs/contact_state.hpp"
 #include "miniapps/springs/expressions.hpp"
 #include "miniapps/springs/problem.hpp"
@@ -30,7 +30,7 @@ void check_contact(const Table& root, const SpringsScene& scene) {
   }
   if (contact.self && !scene.has_triangles())
     contradict(root, "contact.self", "contact.self needs triangles, and the mesh has none");
-  if (const double height = contact.self ? fabric::least_height(scene.mesh) : contact.thickness + 1.0;
+  if (const double height = contact.self ? fabric::shortest_altitude(scene.mesh) : contact.thickness + 1.0;
       !(contact.thickness < height))
     contradict(root, "contact.thickness",
                "contact.thickness = " + real_text(contact.thickness) +

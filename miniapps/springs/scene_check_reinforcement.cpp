@@ -3,7 +3,7 @@
 
 #include "common/scene/node.hpp"
 #include "common/scene/read.hpp"
-#include "kernels/fabric/edges.hpp"
+#include "kernels/mesh/edges.hpp"
 #include "miniapps/springs/scene_check.hpp"
 
 namespace drogue::springs_app {
@@ -12,7 +12,7 @@ namespace {
 using scene::contradict;
 using scene::Table;
 
-using fabric::Edge;
+using mesh::Edge;
 
 std::string reinforcement_path(std::size_t number) { return "reinforcement[" + std::to_string(number) + "]"; }
 
@@ -27,7 +27,7 @@ void add_reinforcements(const Table& root, SpringsScene& scene) {
   std::map<Edge, std::size_t> line_of;
   for (std::size_t k = 0; k < mesh.lines.size(); ++k) {
     const auto& [i, j] = mesh.lines[k];
-    line_of[fabric::edge_between(i, j)] = k;
+    line_of[mesh::edge_between(i, j)] = k;
   }
   const std::vector<Edge> edges = edges_of(mesh);
   std::vector<std::size_t> holder(edges.size(), 0);  // its number from 1; 0: none

@@ -102,7 +102,7 @@ void declare_mesh(Table& table, MeshSource& source) {
   table.exactly_one_of({"rectangle", "disk", "strip", "triangle", "string", "file"});
   table.optional_table(
       "rectangle", source.rectangle,
-      [](Table& t, Rectangle& value) {
+      [](Table& t, mesh::Rectangle& value) {
         declare_length(t, "width", value.width, "Extent along x, from 0");
         declare_length(t, "height", value.height, "Extent along y, from 0");
         declare_vertices(t, value.vertices, 4);
@@ -113,14 +113,14 @@ void declare_mesh(Table& table, MeshSource& source) {
       "Nearly square cells with alternating diagonals in the plane z = 0");
   table.optional_table(
       "disk", source.disk,
-      [](Table& t, Disk& value) {
+      [](Table& t, mesh::Disk& value) {
         declare_length(t, "radius", value.radius, "Radius about the origin");
         declare_vertices(t, value.vertices, 7);
       },
       "Rings of triangles in the plane z = 0: 1 + 3 n (n + 1) vertices, the nearest to what is asked");
   table.optional_table(
       "strip", source.strip,
-      [](Table& t, Strip& value) {
+      [](Table& t, mesh::Strip& value) {
         declare_length(t, "length", value.length, "Extent along x, from 0");
         declare_length(t, "width", value.width, "Extent along y, from 0");
         declare_vertices(t, value.vertices, 4);
@@ -128,14 +128,14 @@ void declare_mesh(Table& table, MeshSource& source) {
       "Rows of nearly equilateral triangles in the plane z = 0");
   table.optional_table(
       "triangle", source.triangle,
-      [](Table& t, Triangle& value) {
+      [](Table& t, mesh::Triangle& value) {
         declare_length(t, "side", value.side, "Side, along x from the origin");
         declare_vertices(t, value.vertices, 3);
       },
       "An equilateral triangle in the plane z = 0, divided into n^2: (n + 1)(n + 2)/2 vertices, the nearest");
   table.optional_table(
       "string", source.string,
-      [](Table& t, String& value) {
+      [](Table& t, mesh::String& value) {
         t.value("from", vector_codec(value.from), "First end").unit("m");
         t.value("to", vector_codec(value.to), "Last end").unit("m");
         t.value("vertices", scene::integer_codec(value.vertices), "Number of vertices")

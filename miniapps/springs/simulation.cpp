@@ -10,7 +10,7 @@
 #include "common/scene/node.hpp"
 #include "kernels/device/profiling_counters.hpp"
 #include "kernels/device/runtime.hpp"
-#include "kernels/fabric/contact_parts.hpp"
+#include "kernels/fabric/contact/features.hpp"
 
 namespace drogue::springs_app {
 namespace {
@@ -116,7 +116,7 @@ double Simulation::stable_dt() {
   double fastest = 0.0;
   for (const Vector& velocity : v)
     fastest = std::max(fastest, std::hypot(velocity[0], velocity[1], velocity[2]));
-  return std::min(stable, 0.1 * fabric::contact_edges(_problem.parameters.mesh).mean_length / fastest);
+  return std::min(stable, 0.1 * fabric::collision_edges(_problem.parameters.mesh).mean_length / fastest);
 }
 
 /// Equal steps from now to the next stop, none longer than is stable or asked for.

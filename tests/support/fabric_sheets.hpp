@@ -3,7 +3,7 @@
 #include <cmath>
 #include <functional>
 
-#include "kernels/fabric/mass.hpp"
+#include "kernels/fabric/elastic/lumped_mass.hpp"
 #include "kernels/fabric/parameters.hpp"
 
 namespace drogue::testing {

@@ -2,7 +2,7 @@
 
 #include "kernels/device/expression.hpp"
 #include "kernels/fabric/stepping/stage_time.hpp"
-#include "kernels/fabric/stress.hpp"
+#include "kernels/fabric/elastic/stress.hpp"
 #include "kernels/fabric/views.hpp"
 
 namespace drogue::fabric {
@@ -20,8 +20,8 @@ struct External {
   ProgramsView<ExecutionSpace> pressure;                             ///< strengths of pressures, Pa
   Kokkos::View<double**, Kokkos::LayoutLeft, Memory> weight;         ///< (vertices, pressures)
   ListView<ExecutionSpace, double> pressure_values;                  ///< (vertices), Pa, set by the caller
-  SlotViews<ExecutionSpace, 3> surface;                              ///< rings; their values are not read
-  SlotViews<ExecutionSpace, 1> dashpots, bending;
+  SlicedEllViews<ExecutionSpace, 3> surface;                              ///< rings; their values are not read
+  SlicedEllViews<ExecutionSpace, 1> dashpots, bending;
 
   [[nodiscard]] KOKKOS_FUNCTION bool has_pressure() const {
     return pressure.extent(0) > 0 || pressure_values.extent(0) > 0;
@@ -73,7 +73,7 @@ KOKKOS_INLINE_FUNCTION Vector3<double> dashpot_pull(double dashpot, const Vector
 
 /// Force of all dashpots on vertex i, N.
 template <class ExecutionSpace>
-KOKKOS_INLINE_FUNCTION Vector3<double> dashpot_force(const SlotViews<ExecutionSpace, 1>& dashpots,
+KOKKOS_INLINE_FUNCTION Vector3<double> dashpot_force(const SlicedEllViews<ExecutionSpace, 1>& dashpots,
                                                      const PointsView<ExecutionSpace>& x,
                                                      const PointsView<ExecutionSpace>& v, int i) {
   const Vector3<double> own = load_points<double>(x, i), velocity = load_points<double>(v, i);
@@ -88,7 +88,7 @@ KOKKOS_INLINE_FUNCTION Vector3<double> dashpot_force(const SlotViews<ExecutionSp
 
 /// Bending force on vertex i, N.
 template <class ExecutionSpace>
-KOKKOS_INLINE_FUNCTION Vector3<double> bending_force(const SlotViews<ExecutionSpace, 1>& bending,
+KOKKOS_INLINE_FUNCTION Vector3<double> bending_force(const SlicedEllViews<ExecutionSpace, 1>& bending,
                                                      const PointsView<ExecutionSpace>& x, int i) {
   const Vector3<double> own = load_points<double>(x, i);
   Vector3<double> sum{0.0, 0.0, 0.0};
@@ -172,7 +172,7 @@ struct LoadStiffnessFunctor {
 template <class ExecutionSpace>
 struct DashpotDampingFunctor {
   FabricViews<ExecutionSpace> cloth;
-  SlotViews<ExecutionSpace, 1> dashpots;
+  SlicedEllViews<ExecutionSpace, 1> dashpots;
   PointsView<ExecutionSpace> x, v, dragged, next;
   double dt;
 

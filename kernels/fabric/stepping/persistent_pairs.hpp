@@ -18,7 +18,7 @@ struct PersistentPairsFunctor {
   [[nodiscard]] static std::size_t scratch_bytes(const PatchViews<ExecutionSpace>& patches) {
     return PersistentSteps<ExecutionSpace>::tables_bytes(patches, 3) +
            2 * 3 * patches.most_triangle_slots * sizeof(double) +
-           TeamSlots<2>::bytes(patches.team, patches.most_spring_slots) + 3 * alignof(double);
+           TeamSlicedEll<2>::bytes(patches.team, patches.most_spring_slots) + 3 * alignof(double);
   }
 
   /// Pair of triangles of a lane.
@@ -75,7 +75,7 @@ struct PersistentPairsFunctor {
               slots = static_cast<int>(of.patches.most_triangle_slots);
     auto* const memory = static_cast<double*>(member.team_scratch(0).get_shmem_aligned(
         2 * 3 * of.patches.most_triangle_slots * sizeof(double), alignof(double)));
-    const struct { TeamSlots<2> springs; } local{TeamSlots<2>(member, slices, of.patches.springs)};
+    const struct { TeamSlicedEll<2> springs; } local{TeamSlicedEll<2>(member, slices, of.patches.springs)};
     OwnVertex own = of.begin(member, halo, points);
 
     const int patch = member.league_rank(), first = patch * slices,

@@ -2,7 +2,7 @@
 
 #include "kernels/device/persistent_kernel.hpp"
 #include "kernels/fabric/loads/external.hpp"
-#include "kernels/fabric/patches.hpp"
+#include "kernels/fabric/stepping/patches.hpp"
 #include "kernels/fabric/stepping/step.hpp"
 #include "kernels/fabric/stepping/team_slots.hpp"
 
@@ -12,8 +12,8 @@ namespace drogue::fabric {
 template <class ExecutionSpace>
 struct PatchViews {
   ListView<ExecutionSpace, int> vertex, place, first_halo, halo_vertex, halo_place;
-  SlotViews<ExecutionSpace, 3> triangles;
-  SlotViews<ExecutionSpace, 2> springs;
+  SlicedEllViews<ExecutionSpace, 3> triangles;
+  SlicedEllViews<ExecutionSpace, 2> springs;
   ListView<ExecutionSpace, PairRow> row;
   ListView<ExecutionSpace, int> first_row;
   int team, most_halo;
@@ -27,8 +27,8 @@ template <class ExecutionSpace>
           list_view(space, "drogue::fabric::first_halo", from.first_halo),
           list_view(space, "drogue::fabric::halo_vertices", from.halo_vertex),
           list_view(space, "drogue::fabric::halo_places", from.halo_place),
-          slot_views(space, from.triangles),
-          slot_views(space, from.springs),
+          sliced_ell_views(space, from.triangles),
+          sliced_ell_views(space, from.springs),
           list_view(space, "drogue::fabric::pair_rows", from.row),
           list_view(space, "drogue::fabric::first_row", from.first_row),
           from.team,

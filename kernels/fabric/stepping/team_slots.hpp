@@ -1,6 +1,6 @@
 #pragma once
 
-#include "kernels/fabric/slot_views.hpp"
+#include "kernels/fabric/elastic/sliced_ell_views.hpp"
 
 namespace drogue::fabric {
 
@@ -20,7 +20,7 @@ struct TeamTable {
 
 /// Slots of a patch in its team's scratch memory.
 template <int values>
-struct TeamSlots {
+struct TeamSlicedEll {
   TeamList<int> first, neighbour;
   TeamTable value;
 
@@ -31,7 +31,7 @@ struct TeamSlots {
 
   /// Copies those of the member's patch of `slices`; the team must wait before it reads them.
   template <class Member, class Views>
-  KOKKOS_FUNCTION TeamSlots(const Member& member, int slices, const Views& from) {
+  KOKKOS_FUNCTION TeamSlicedEll(const Member& member, int slices, const Views& from) {
     const int patch = member.league_rank() * slices;
     const int begin = from.first(patch), slots = (from.first(patch + slices) - begin) * slice;
     value = {doubles(member, values * slots), slots};
@@ -47,11 +47,11 @@ struct TeamSlots {
 
   template <class Take>
   KOKKOS_FUNCTION void each(int i, const Take& take) const {
-    each_slot(first, i, take);
+    for_each_slot(first, i, take);
   }
   template <class Index, class Read, class Take>
   KOKKOS_FUNCTION void each_pair(int i, const Index& index, const Read& read, const Take& take) const {
-    each_pair_of_slots(first, i, index, read, take);
+    for_each_slot_pair(first, i, index, read, take);
   }
 
  private:

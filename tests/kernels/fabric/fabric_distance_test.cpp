@@ -3,7 +3,7 @@
 #include <Kokkos_Core.hpp>
 #include <random>
 
-#include "kernels/fabric/contact_check.hpp"
+#include "kernels/fabric/contact/continuous_detection.hpp"
 #include "kernels/reference/fabric/distance.hpp"
 
 // What contact knows of distances, on random data where it runs, against the oracle.
@@ -32,9 +32,9 @@ struct NearestFunctor {
     const Point p = place_of(at, k, 0), q = place_of(at, k, 1), r = place_of(at, k, 2),
                 s = place_of(at, k, 3);
     const Point triangle[3] = {q, r, s}, first[2] = {p, q}, second[2] = {r, s};
-    const NearestOnTriangle face = nearest_on_triangle(p, triangle);
-    const NearestOfSegments edges = nearest_of_segments(first, second);
-    for (int i = 0; i < 3; ++i) out(k, i) = face.share[i];
+    const ClosestOnTriangle face = closest_on_triangle(p, triangle);
+    const ClosestOfSegments edges = closest_of_segments(first, second);
+    for (int i = 0; i < 3; ++i) out(k, i) = face.weight[i];
     out(k, 3) = face.squared;
     out(k, 4) = edges.first, out(k, 5) = edges.second, out(k, 6) = edges.squared;
   }
@@ -58,15 +58,15 @@ struct ApartFunctor {
     const auto larger = [](double a, double b) { return a > b ? a : b; };
     const auto of_face = [&](double part) {
       const Point triangle[3] = {at(1, part), at(2, part), at(3, part)};
-      return Kokkos::sqrt(nearest_on_triangle(at(0, part), triangle).squared);
+      return Kokkos::sqrt(closest_on_triangle(at(0, part), triangle).squared);
     };
     const auto of_edges = [&](double part) {
       const Point first[2] = {at(0, part), at(1, part)}, second[2] = {at(2, part), at(3, part)};
-      return Kokkos::sqrt(nearest_of_segments(first, second).squared);
+      return Kokkos::sqrt(closest_of_segments(first, second).squared);
     };
     const double others = larger(longest[2], longest[3]);
-    apart(k, 0) = stay_apart(of_face, longest[0] + larger(longest[1], others), thickness);
-    apart(k, 1) = stay_apart(of_edges, larger(longest[0], longest[1]) + others, thickness);
+    apart(k, 0) = ccd_keeps_distance(of_face, longest[0] + larger(longest[1], others), thickness);
+    apart(k, 1) = ccd_keeps_distance(of_edges, larger(longest[0], longest[1]) + others, thickness);
   }
 };
 

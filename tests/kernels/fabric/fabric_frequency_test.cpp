@@ -4,7 +4,7 @@
 #include <numbers>
 #include <string>
 
-#include "kernels/fabric/mass.hpp"
+#include "kernels/fabric/elastic/lumped_mass.hpp"
 #include "kernels/fabric/solver.hpp"
 #include "kernels/reference/fabric/frequency.hpp"
 #include "tests/support/backend.hpp"

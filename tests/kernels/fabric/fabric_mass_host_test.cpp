@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "kernels/fabric/mass.hpp"
+#include "kernels/fabric/elastic/lumped_mass.hpp"
 #include "kernels/reference/fabric/mass.hpp"
 #include "tests/support/fabric_mesh.hpp"
 

@@ -34,7 +34,7 @@ Mesh mesh_of(int nx, int ny) {
 }
 
 Patches cut(const Mesh& mesh, int count) {
-  return cut_patches(mesh.rest, ring_slots(mesh), spring_slots(mesh, {}), count);
+  return make_patches(mesh.rest, ring_adjacency(mesh), spring_adjacency(mesh, {}), count);
 }
 
 /// Those who share a triangle or a line with vertex i.
@@ -95,9 +95,9 @@ TEST(FabricPatches, HoldEveryVertexOnceAndAllThatItReads) {
 
 TEST(FabricPatches, KeepTheOrderOfSlots) {
   const Mesh mesh = mesh_of(13, 9);
-  const RingSlots rings = ring_slots(mesh);
+  const RingAdjacency rings = ring_adjacency(mesh);
   const Patches patches = cut(mesh, 4);
-  const auto slot = [](const RingSlots& slots, std::size_t i, int k) {
+  const auto slot = [](const RingAdjacency& slots, std::size_t i, int k) {
     return static_cast<std::size_t>(slots.first[i / slice] + k) * slice + i % slice;
   };
   for (std::size_t at = 0; at < patches.vertex.size(); ++at) {
@@ -153,7 +153,7 @@ void run_emulated(const Parameters& p, int count, const std::vector<std::int64_t
   const bool rings = has_triangles(law.model) || !p.follower_pressures.empty();
   const Mesh cloth_mesh = rings ? p.mesh : Mesh{p.mesh.rest, {}, {}, {}, {}};
   const Patches patches =
-      cut_patches(p.mesh.rest, ring_slots(cloth_mesh), spring_slots(p.mesh, material), count);
+      make_patches(p.mesh.rest, ring_adjacency(cloth_mesh), spring_adjacency(p.mesh, material), count);
   const PatchViews<Space> views = patch_views(space, patches);
   const std::size_t n = p.mass.size();
   FabricViews<Space> cloth;

@@ -26,10 +26,10 @@ std::string refusal(const std::string& scene, const std::string& lists) {
 }
 
 TEST(SpringsStudy, LengthAndAreaAreThoseOfTheMesh) {
-  const fabric::Mesh disk = generate(Disk{0.4, 3169});
+  const fabric::Mesh disk = generate(mesh::Disk{0.4, 3169});
   EXPECT_NEAR(total_area(disk, disk.rest), std::numbers::pi * 0.16, 1e-3 * 0.16);
   EXPECT_EQ(total_length(disk, disk.rest), 0.0);
-  const fabric::Mesh string = generate(String{{0.5, 0.85, 0.0}, {0.8, 0.35, 0.0}, 60});
+  const fabric::Mesh string = generate(mesh::String{{0.5, 0.85, 0.0}, {0.8, 0.35, 0.0}, 60});
   EXPECT_NEAR(total_length(string, string.rest), std::hypot(0.3, 0.5), 1e-15);
   std::vector<fabric::Vector> doubled = disk.rest;
   for (fabric::Vector& x : doubled) x = {2.0 * x[0], 1.0, 2.0 * x[1]};

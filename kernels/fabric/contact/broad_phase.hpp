@@ -1,0 +1,172 @@
+#pragma once
+
+#include "kernels/fabric/contact/contact_views.hpp"
+#include "kernels/spatial/hash_grid.hpp"
+
+namespace drogue::fabric {
+
+// Lists of near parts, made again only when vertices have moved far enough (Verlet 1967): parts that are not
+// in them are farther apart than contact reaches, so what a step does depends on no list's age.
+
+/// Measures how far and how fast vertices move, and prepares what a step counts. Of every vertex.
+template <class ExecutionSpace>
+struct MotionBoundsFunctor {
+  ContactViews<ExecutionSpace> views;
+  UnmanagedTable<ExecutionSpace, double, 3> x, v;
+
+  KOKKOS_FUNCTION void operator()(const int i) const {
+    const Point at = load_points<double>(x, i), velocity = load_points<double>(v, i);
+    atomic_raise(views.progress(0).moved, length(at - load_points<double>(views.listed_x, i)));
+    atomic_raise(views.progress(0).fastest, length(velocity));
+    store_points(views.start_x, i, at);
+    store_points(views.start_v, i, velocity);
+    views.constraints(i) = 0;
+    views.zone(i) = views.label(i) = views.zone_end(i) = i;
+    views.stuck(i) = 0;
+  }
+};
+
+/// Decides whether the lists still hold: at the end of the step no vertex may be farther than half the skin
+/// from where they were made; forces and impulses may double the largest speed, and move what rests a little.
+/// A skin of 16 steps at the present speed: a wider one has more pairs to ask about, a narrower one is made
+/// again too often. One call.
+template <class ExecutionSpace>
+struct RebuildDecisionFunctor {
+  ContactViews<ExecutionSpace> views;
+
+  KOKKOS_FUNCTION void operator()(const int) const {
+    ContactStatus& progress = views.progress(0);
+    progress.speed = value_of_bits(progress.fastest);
+    const double stride = views.dt * progress.speed, little = 0.1 * views.widest_skin;
+    const double farthest = value_of_bits(progress.moved) + 2.0 * stride + little;
+    progress.stale = !(farthest <= 0.5 * progress.skin) ? 1 : 0;
+    if (progress.stale != 0) {
+      const auto larger = [](double a, double b) { return a > b ? a : b; };
+      const double target_velocity = larger(2.0 * (little + 18.0 * stride), 4.0 * little);
+      progress.skin =
+          larger(target_velocity < views.widest_skin ? target_velocity : views.widest_skin, 8.0 * stride);
+      progress.extent = 0;
+    }
+    progress.moved = progress.fastest = 0;
+    progress.constraints = 0;
+    for (int& crossing : progress.crossing) crossing = 0;
+  }
+};
+
+/// Empties the cells and finds the largest extent. Of every bucket, triangle, edge and vertex.
+template <class ExecutionSpace>
+struct ClearGridFunctor {
+  ContactViews<ExecutionSpace> views;
+
+  KOKKOS_FUNCTION void operator()(const int k) const {
+    if (views.progress(0).stale == 0) return;
+    if (k < static_cast<int>(views.triangle_heads.extent(0)))
+      views.triangle_heads(k) = -1, views.edge_heads(k) = -1;
+    if (k < views.vertices) store_points(views.listed_x, k, load_points<double>(views.start_x, k));
+    const auto measure = [&](const Point& d) {
+      const double x = Kokkos::fabs(d.x), y = Kokkos::fabs(d.y), z = Kokkos::fabs(d.z);
+      const double most = x > y ? x : y;
+      atomic_raise(views.progress(0).extent, most > z ? most : z);
+    };
+    // The edges of a triangle are edges too: they span it.
+    if (k < views.edges) {
+      Point end[2];
+      views.ends(k, views.start_x, end);
+      measure(end[1] - end[0]);
+    }
+  }
+};
+
+/// Grid whose cells are wide enough that near parts lie in neighbouring ones.
+template <class ExecutionSpace>
+KOKKOS_INLINE_FUNCTION spatial::HashGrid search_grid(const ContactViews<ExecutionSpace>& views) {
+  return {value_of_bits(views.progress(0).extent) + views.cutoff_distance()};
+}
+
+/// Puts every triangle and edge into the cell of its centre.
+template <class ExecutionSpace>
+struct FillGridFunctor {
+  ContactViews<ExecutionSpace> views;
+
+  KOKKOS_FUNCTION void operator()(const int k) const {
+    if (views.progress(0).stale == 0) return;
+    if (k < views.triangles) {
+      Point at[3];
+      views.corners(k, views.start_x, at);
+      put(k, at, views.triangle_sphere, views.triangle_heads);
+    }
+    if (k < views.edges) {
+      Point at[2];
+      views.ends(k, views.start_x, at);
+      put(k, at, views.edge_sphere, views.edge_heads);
+    }
+  }
+
+  template <int size, class Spheres, class Heads>
+  KOKKOS_FUNCTION void put(int k, const Point (&at)[size], const Spheres& spheres, const Heads& heads) const {
+    search_grid(views).insert(k, spatial::bounding_sphere(at), heads, spheres);
+  }
+};
+
+/// Lists what is near: triangles of every vertex, then of every edge those that come after it.
+template <class ExecutionSpace>
+struct NeighbourListFunctor {
+  ContactViews<ExecutionSpace> views;
+
+  KOKKOS_FUNCTION void operator()(const int k) const {
+    if (views.progress(0).stale == 0) return;
+    if (k < views.vertices)
+      list_triangles(k);
+    else
+      list_edges(k - views.vertices);
+  }
+
+  KOKKOS_FUNCTION void list_triangles(int i) const {
+    const Point own[1] = {load_points<double>(views.start_x, i)};
+    const double cutoff_distance = views.cutoff_distance(), squared = cutoff_distance * cutoff_distance;
+    int count = 0;
+    const spatial::HashGrid grid = search_grid(views);
+    grid.for_each_candidate(own[0], views.triangle_heads, views.triangle_sphere, [&](int t) {
+      if (!views.triangle_sphere(t).is_near(own[0], cutoff_distance)) return;
+      for (int corner = 0; corner < 3; ++corner)
+        if (views.triangle(t, corner) == i) return;
+      Point at[3];
+      views.corners(t, views.start_x, at);
+      if (boxes_apart(own, at, cutoff_distance) || closest_on_triangle(own[0], at).squared > squared) return;
+      if (count < max_neighbours)
+        views.near_triangle(i, count) = t;
+      else
+        views.raise(views.steps() + 1, FailureReason::too_dense, i);
+      ++count;
+    });
+    views.near_triangles(i) = count < max_neighbours ? count : max_neighbours;
+  }
+
+  KOKKOS_FUNCTION void list_edges(int e) const {
+    Point own[2], other[2];
+    views.ends(e, views.start_x, own);
+    const BoundingSphere vertex_constraint = views.edge_sphere(e);
+    const double cutoff_distance = views.cutoff_distance(), squared = cutoff_distance * cutoff_distance;
+    int count = 0;
+    const spatial::HashGrid grid = search_grid(views);
+    const int a = views.edge(e, 0), b = views.edge(e, 1);
+    grid.for_each_candidate(vertex_constraint.centre, views.edge_heads, views.edge_sphere, [&](int f) {
+      if (f <= e ||
+          !views.edge_sphere(f).is_near(vertex_constraint.centre, cutoff_distance + vertex_constraint.radius))
+        return;
+      const int c = views.edge(f, 0), d = views.edge(f, 1);
+      if (c == a || c == b || d == a || d == b) return;
+      views.ends(f, views.start_x, other);
+      if (boxes_apart(own, other, cutoff_distance) || closest_of_segments(own, other).squared > squared)
+        return;
+      if (count < max_neighbours)
+        views.near_edge(e, count) = f;
+      else
+        views.raise(views.steps() + 1, FailureReason::too_dense, a);
+      ++count;
+    });
+    views.near_edges(e) = count < max_neighbours ? count : max_neighbours;
+  }
+};
+
+}  // namespace drogue::fabric

@@ -1,0 +1,271 @@
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <list>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "kernels/device/captured_graph.hpp"
+#include "kernels/fabric/contact/broad_phase.hpp"
+#include "kernels/fabric/contact/contact.hpp"
+#include "kernels/fabric/contact/features.hpp"
+#include "kernels/fabric/contact/impulses.hpp"
+#include "kernels/fabric/contact/rigid_zones.hpp"
+#include "kernels/fabric/views.hpp"
+
+namespace drogue::fabric {
+
+/// Contact on one backend: owns what `ContactViews` lends to kernels, and knows their order.
+template <class ExecutionSpace>
+class ContactImpl final : public ContactHandler<ExecutionSpace> {
+ public:
+  using Points = PointsView<ExecutionSpace>;
+
+  ContactImpl(const Parameters& p, const ContactInputs<ExecutionSpace>& cloth);
+  ContactImpl(const ContactImpl&) = delete;  // recorded steps know where this one lies
+  ContactImpl& operator=(const ContactImpl&) = delete;
+
+  void begin(const Points& x, const Points& v) override { graphs(x, v).begin.launch(); }
+  void end(const Points& x, const Points& v) override { graphs(x, v).end.launch(); }
+  void set_dt(double dt) override {
+    _views.dt = dt;
+    _graphs.clear();
+  }
+  void forget() override;
+  void keep() override;
+  void go_back() override { device::copy(_instance.space(), _work, _kept_work); }
+  [[nodiscard]] FailureReason reason(std::int64_t step) const override;
+  void work(std::span<ContactWork> of_vertices) const override;
+  void set_work(std::span<const ContactWork> of_vertices) override;
+
+ private:
+  using Points3 = UnmanagedTable<ExecutionSpace, double, 3>;
+
+  /// Both sequences of kernels, for places and velocities that lie where they do.
+  struct Recorded {
+    Recorded(ContactImpl& contact, const Points3& at, const Points3& velocity)
+        : x(at),
+          v(velocity),
+          begin(contact._instance,
+                [&contact, at, velocity](const auto&) { contact.enqueue_begin(at, velocity); }),
+          end(contact._instance,
+              [&contact, at, velocity](const auto&) { contact.enqueue_end(at, velocity); }) {}
+    Points3 x, v;
+    device::CapturedGraph<ExecutionSpace> begin, end;
+  };
+
+  template <class Lends, class... Sizes>
+  void allocate(Lends& to, const char* label, Sizes... sizes);
+  template <class Functor>
+  void launch(const char* label, int count, const Functor& functor) const;
+  Recorded& graphs(const Points& x, const Points& v);
+  void enqueue_begin(const Points3& x, const Points3& v) const;
+  void enqueue_end(const Points3& x, const Points3& v) const;
+  [[nodiscard]] int parts() const { return _views.vertices + _views.edges + _views.triangles; }
+
+  const device::Instance<ExecutionSpace>& _instance;
+  std::vector<std::shared_ptr<void>> _owned;
+  Kokkos::View<double*, typename ExecutionSpace::memory_space> _inverse_mass;
+  Kokkos::View<std::uint8_t*, typename ExecutionSpace::memory_space> _fixed_dofs;
+  ListView<ExecutionSpace, ContactWork> _work, _kept_work;
+  typename ListView<ExecutionSpace, ContactWork>::HostMirror _work_on_host;
+  ContactViews<ExecutionSpace> _views;
+  std::list<Recorded> _graphs;
+};
+
+/// Puts the work aside unless a state before was lost.
+template <class ExecutionSpace>
+struct CheckpointWorkFunctor {
+  StepMonitor<ExecutionSpace> monitor;
+  ListView<ExecutionSpace, ContactWork> work, kept;
+
+  KOKKOS_FUNCTION void operator()(const int i) const {
+    if (monitor.lost() == no_failure) kept(i) = work(i);
+  }
+};
+
+/// Forgets the kicks: of other velocities than those of now.
+template <class ExecutionSpace>
+struct ResetKickFunctor {
+  ListView<ExecutionSpace, ContactWork> work;
+
+  KOKKOS_FUNCTION void operator()(const int i) const {
+    work(i) = {work(i).normal, work(i).friction, 0.0, 0.0, 0.0};
+  }
+};
+
+template <class ExecutionSpace>
+template <class Lends, class... Sizes>
+void ContactImpl<ExecutionSpace>::allocate(Lends& to, const char* label, Sizes... sizes) {
+  using Owned =
+      Kokkos::View<typename Lends::data_type, typename Lends::array_layout, typename Lends::memory_space>;
+  const auto owned =
+      std::make_shared<Owned>(std::string("drogue::fabric::") + label, static_cast<std::size_t>(sizes)...);
+  _owned.push_back(owned);
+  to = *owned;
+}
+
+template <class ExecutionSpace>
+ContactImpl<ExecutionSpace>::ContactImpl(const Parameters& p, const ContactInputs<ExecutionSpace>& cloth)
+    : _instance(cloth.instance), _inverse_mass(cloth.inverse_mass), _fixed_dofs(cloth.fixed_dofs) {
+  const CollisionEdges edges = collision_edges(p.mesh);
+  const auto n = p.mesh.rest.size(), faces = p.mesh.triangles.size(), sides = edges.ends.size();
+  auto& t = _views;
+  t.vertices = static_cast<int>(n), t.triangles = static_cast<int>(faces), t.edges = static_cast<int>(sides);
+  t.first_line = edges.first_line;
+  t.thickness = p.contact.thickness, t.self_friction = p.contact.friction, t.self = p.contact.self;
+  t.widest_skin = std::max(p.contact.thickness, 0.5 * edges.mean_length);
+  t.dt = p.dt;
+  t.inverse_mass = _inverse_mass, t.fixed_dofs = _fixed_dofs, t.monitor = cloth.monitor;
+  allocate(t.bodies, "bodies", p.contact.bodies.size());
+  allocate(t.triangle, "contact_triangles", faces);
+  allocate(t.edge, "collision_edges", sides);
+  allocate(t.owned, "owned_features", faces);
+  const auto bodies = Kokkos::create_mirror_view(t.bodies);
+  const auto triangle = Kokkos::create_mirror_view(t.triangle);
+  const auto owned = Kokkos::create_mirror_view(t.owned);
+  const std::vector<int> owned_bits = owned_features(p.mesh);
+  for (std::size_t k = 0; k < faces; ++k) owned(k) = owned_bits[k];
+  const auto edge = Kokkos::create_mirror_view(t.edge);
+  for (std::size_t k = 0; k < p.contact.bodies.size(); ++k) bodies(k) = obstacle(p.contact.bodies[k]);
+  for (std::size_t k = 0; k < faces; ++k)
+    for (std::size_t corner = 0; corner < 3; ++corner) triangle(k, corner) = p.mesh.triangles[k][corner];
+  for (std::size_t k = 0; k < sides; ++k)
+    for (std::size_t end = 0; end < 2; ++end) edge(k, end) = edges.ends[k][end];
+  device::copy(_instance.space(), t.bodies, bodies);
+  device::copy(_instance.space(), t.triangle, triangle);
+  device::copy(_instance.space(), t.edge, edge);
+  device::copy(_instance.space(), t.owned, owned);
+  _instance.space().fence("drogue::fabric::contact_parts");
+  allocate(t.start_x, "start_positions", n), allocate(t.start_v, "start_velocities", n);
+  allocate(t.end_x, "end_positions", n), allocate(t.end_v, "end_velocities", n);
+  allocate(t.listed_x, "listed_positions", n);
+  const std::size_t layers = t.self ? 1 : 0, buckets = std::bit_ceil(std::max<std::size_t>(sides, 64));
+  allocate(t.triangle_heads, "first_triangle", layers * buckets),
+      allocate(t.edge_heads, "first_edge", layers * buckets);
+  allocate(t.triangle_sphere, "ball_of_triangle", layers * faces);
+  allocate(t.edge_sphere, "ball_of_edge", layers * sides);
+  allocate(t.near_triangles, "near_triangles", layers * n),
+      allocate(t.near_edges, "near_edges", layers * sides);
+  allocate(t.near_triangle, "near_triangle", layers * n), allocate(t.near_edge, "near_edge", layers * sides);
+  allocate(t.constraint, "touch", 1024 + 8 * n);
+  allocate(t.constraints, "touches", n), allocate(t.vertex_constraint, "touches_of_vertex", n);
+  allocate(t.zone, "zone", n), allocate(t.label, "zone_label", n), allocate(t.zone_end, "zone_end", n);
+  allocate(t.stuck, "stuck", n), allocate(t.motion, "zone_motion", n);
+  allocate(t.progress, "contact_progress", 1);
+  _work = ListView<ExecutionSpace, ContactWork>("drogue::fabric::contact_work", n);
+  _kept_work = ListView<ExecutionSpace, ContactWork>("drogue::fabric::kept_contact_work", n);
+  _work_on_host = Kokkos::create_mirror_view(_work);
+  t.work = _work;
+  forget();
+}
+
+template <class ExecutionSpace>
+template <class Functor>
+void ContactImpl<ExecutionSpace>::launch(const char* label, int count, const Functor& functor) const {
+  static_assert(Kokkos::SpaceAccessibility<ExecutionSpace,
+                                           typename PointsView<ExecutionSpace>::memory_space>::accessible);
+  Kokkos::parallel_for(
+      label,
+      Kokkos::Experimental::require(Kokkos::RangePolicy<ExecutionSpace>(_instance.space(), 0, count),
+                                    Kokkos::Experimental::WorkItemProperty::HintLightWeight),
+      functor);
+}
+
+template <class ExecutionSpace>
+auto ContactImpl<ExecutionSpace>::graphs(const Points& x, const Points& v) -> Recorded& {
+  for (Recorded& known : _graphs)
+    if (known.x.data() == x.data() && known.v.data() == v.data()) return known;
+  return _graphs.emplace_back(*this, x, v);
+}
+
+template <class ExecutionSpace>
+void ContactImpl<ExecutionSpace>::enqueue_begin(const Points3& x, const Points3& v) const {
+  using Space = ExecutionSpace;
+  const int n = _views.vertices;
+  launch("drogue::fabric::contact_measure", n, MotionBoundsFunctor<Space>{_views, x, v});
+  launch("drogue::fabric::contact_decide", 1, RebuildDecisionFunctor<Space>{_views});
+  if (_views.self) {
+    const int buckets = static_cast<int>(_views.triangle_heads.extent(0));
+    launch("drogue::fabric::contact_empty", std::max({buckets, n, _views.edges}),
+           ClearGridFunctor<Space>{_views});
+    launch("drogue::fabric::contact_fill", std::max(_views.triangles, _views.edges),
+           FillGridFunctor<Space>{_views});
+    launch("drogue::fabric::contact_list", n + _views.edges, NeighbourListFunctor<Space>{_views});
+  }
+  launch("drogue::fabric::contact_touch", parts(), DetectConstraintsFunctor<Space>{_views});
+  const int items = device::is_host<Space> ? _instance.space().concurrency()
+                                           : std::min(32768, static_cast<int>(_views.constraint.extent(0)));
+  for (int round = 0; round < impulse_rounds; ++round) {
+    launch("drogue::fabric::contact_push", items, SolveImpulsesFunctor<Space>{_views, items});
+    launch("drogue::fabric::contact_gather", n, ApplyImpulsesFunctor<Space>{_views, v, round});
+  }
+}
+
+template <class ExecutionSpace>
+void ContactImpl<ExecutionSpace>::enqueue_end(const Points3& x, const Points3& v) const {
+  using Space = ExecutionSpace;
+  const int n = _views.vertices;
+  launch("drogue::fabric::contact_check", parts(), CcdFunctor<Space>{_views, x, 0});
+  for (int round = 0; round < zone_rounds; ++round) {
+    launch("drogue::fabric::zone_label", n, LabelZonesFunctor<Space>{_views, round});
+    launch("drogue::fabric::zone_motion", n, ZoneMotionFunctor<Space>{_views, x, v, round});
+    launch("drogue::fabric::zone_follow", n, MoveZonesFunctor<Space>{_views, x, v, round});
+    launch("drogue::fabric::contact_check", parts(), CcdFunctor<Space>{_views, _views.end_x, round + 1});
+  }
+  launch("drogue::fabric::zone_settle", n, CommitZonesFunctor<Space>{_views, x, v});
+}
+
+template <class ExecutionSpace>
+void ContactImpl<ExecutionSpace>::forget() {
+  const auto progress = Kokkos::create_mirror_view(_views.progress);
+  progress(0) = ContactStatus{};
+  progress(0).skin = -1.0;  // no list holds
+  progress(0).reason = no_failure;
+  device::copy(_instance.space(), _views.progress, progress);
+  launch("drogue::fabric::forget_kick", _views.vertices, ResetKickFunctor<ExecutionSpace>{_work});
+  _instance.space().fence("drogue::fabric::forget");
+}
+
+template <class ExecutionSpace>
+void ContactImpl<ExecutionSpace>::keep() {
+  launch("drogue::fabric::keep_contact", _views.vertices,
+         CheckpointWorkFunctor<ExecutionSpace>{_views.monitor, _work, _kept_work});
+}
+
+template <class ExecutionSpace>
+FailureReason ContactImpl<ExecutionSpace>::reason(std::int64_t step) const {
+  const auto progress = Kokkos::create_mirror_view(_views.progress);
+  device::copy(_instance.space(), progress, _views.progress);
+  _instance.space().fence("drogue::fabric::reason");
+  const std::uint64_t told = progress(0).reason;
+  return static_cast<std::int64_t>(told >> 4U) == step ? static_cast<FailureReason>(told & 15U)
+                                                       : FailureReason::not_finite;
+}
+
+template <class ExecutionSpace>
+void ContactImpl<ExecutionSpace>::work(std::span<ContactWork> of_vertices) const {
+  const auto& mirror = _work_on_host;
+  device::copy(_instance.space(), mirror, _work);
+  _instance.space().fence("drogue::fabric::contact_work");
+  std::copy_n(mirror.data(), of_vertices.size(), of_vertices.begin());
+}
+
+template <class ExecutionSpace>
+void ContactImpl<ExecutionSpace>::set_work(std::span<const ContactWork> of_vertices) {
+  const auto& mirror = _work_on_host;
+  std::copy(of_vertices.begin(), of_vertices.end(), mirror.data());
+  device::copy(_instance.space(), _work, mirror);
+  _instance.space().fence("drogue::fabric::contact_work");
+  keep();
+}
+
+template <class ExecutionSpace>
+std::unique_ptr<ContactHandler<ExecutionSpace>> make_contact(const Parameters& parameters,
+                                                             const ContactInputs<ExecutionSpace>& cloth) {
+  return std::make_unique<ContactImpl<ExecutionSpace>>(parameters, cloth);
+}
+
+}  // namespace drogue::fabric

@@ -1,0 +1,109 @@
+#pragma once
+
+#include "kernels/fabric/contact/narrow_phase.hpp"
+
+namespace drogue::fabric {
+
+// Impulses at the beginning of a step: projected Jacobi rounds, in which a vertex of n touches lends each of
+// them a share 1/n of its mass (mass splitting, Tonge, Benevolenski and Voroshilov 2012). Impulses act
+// between the vertices of a touch by their shares, so momentum is kept. What they add to the energy is at
+// most what parts nearer than the thickness are given to part, each push times `wanted`, which has a bound
+// that does not depend on the step (`target_velocity`), and what friction gives back of a kick (`hold`).
+
+/// The impulse of a touch on the vertex in a slot of it, kg m/s.
+KOKKOS_INLINE_FUNCTION Point impulse_on(const ContactConstraint& constraint, int slot, double normal_impulse,
+                                        const Point& friction_impulse) {
+  const Point lever = lever_of(constraint, is_edge_edge(constraint), slot);
+  return constraint.weight[slot] * (normal_impulse * constraint.normal + friction_impulse) +
+         dot(lever, friction_impulse) * constraint.normal;
+}
+
+/// What each touch gives more in this round. Called for a fixed number of items that share the touches.
+template <class ExecutionSpace>
+struct SolveImpulsesFunctor {
+  ContactViews<ExecutionSpace> views;
+  int items;
+
+  KOKKOS_FUNCTION void operator()(const int item) const {
+    const int room = static_cast<int>(views.constraint.extent(0)), found = views.progress(0).constraints;
+    for (int k = item; k < (found < room ? found : room); k += items) press(views.constraint(k));
+  }
+
+  KOKKOS_FUNCTION void press(ContactConstraint& constraint) const {
+    Point relative{0.0, 0.0, 0.0}, rotated{0.0, 0.0, 0.0};
+    double along = 0.0, across = 0.0;  // inverse masses, 1/kg
+    const bool edges = is_edge_edge(constraint);
+    for (int slot = 0; slot < 4; ++slot) {
+      if (!DetectConstraintsFunctor<ExecutionSpace>::takes_part(constraint, slot)) continue;
+      const int i = constraint.vertex[slot];
+      const Point v = load_points<double>(views.start_v, i), free = free_axes<double>(&views.fixed_dofs(i));
+      const Point lever = lever_of(constraint, edges, slot), &n = constraint.normal;
+      const double weight = constraint.weight[slot], split = views.constraints(i) * views.inverse_mass(i);
+      const double any = free.x + free.y + free.z > 0.0 ? 1.0 : 0.0;
+      relative = relative + weight * v;
+      rotated = rotated + dot(n, v) * lever;
+      along += split * weight * weight * (free.x * n.x * n.x + free.y * n.y * n.y + free.z * n.z * n.z);
+      across += split * any * (weight * weight + dot(lever, lever));
+    }
+    if (!(along > 0.0)) return;  // nothing of it can move
+    const double speed = dot(relative, constraint.normal),
+                 normal_impulse = constraint.normal_impulse + (constraint.target_velocity - speed) / along;
+    const double pressed = normal_impulse > 0.0 ? normal_impulse : 0.0;
+    constraint.normal_increment = pressed - constraint.normal_impulse;
+    constraint.normal_impulse = pressed;
+    if (constraint.friction > 0.0) {
+      const Point sliding = relative - speed * constraint.normal + rotated;
+      Point friction_impulse =
+          constraint.friction_impulse -
+          (1.0 / across) *
+              (sliding - dot(sliding, constraint.normal) * constraint.normal - constraint.friction_target);
+      const double size = length(friction_impulse), most = constraint.friction * pressed;
+      if (size > most) friction_impulse = (most / size) * friction_impulse;
+      constraint.friction_increment = friction_impulse - constraint.friction_impulse;
+      constraint.friction_impulse = friction_impulse;
+    }
+  }
+};
+
+/// Gives every vertex what its touches have for it in this round, in their order, which the first round
+/// finds. After the last one the step gets the velocities, and what impulses did is counted: a kick changes
+/// the kinetic energy alone, each part of it by its impulse times the mean of the velocities before and
+/// after.
+template <class ExecutionSpace>
+struct ApplyImpulsesFunctor {
+  ContactViews<ExecutionSpace> views;
+  UnmanagedTable<ExecutionSpace, double, 3> v;
+  int round;
+
+  KOKKOS_FUNCTION void operator()(const int i) const {
+    if (views.constraints(i) == 0) return;
+    if (round == 0) sort_constraints(views, i);
+    const int count = views.constraints(i);
+    Point sum{0.0, 0.0, 0.0};
+    for (int k = 0; k < count; ++k) {
+      const int number = views.vertex_constraint(i, k);
+      const ContactConstraint& constraint = views.constraint(number / 4);
+      sum = sum +
+            impulse_on(constraint, number % 4, constraint.normal_increment, constraint.friction_increment);
+    }
+    const Point free = free_axes<double>(&views.fixed_dofs(i)), dv = views.inverse_mass(i) * sum;
+    const Point after =
+        load_points<double>(views.start_v, i) + Point{free.x * dv.x, free.y * dv.y, free.z * dv.z};
+    store_points(views.start_v, i, after);
+    if (round + 1 < impulse_rounds) return;
+    const Point before = load_points<double>(v, i), mean = 0.5 * (after + before);
+    Point held{0.0, 0.0, 0.0};  // what friction gave in all rounds, kg m/s
+    for (int k = 0; k < count; ++k) {
+      const int number = views.vertex_constraint(i, k);
+      const ContactConstraint& constraint = views.constraint(number / 4);
+      if (constraint.friction > 0.0)
+        held = held + impulse_on(constraint, number % 4, 0.0, constraint.friction_impulse);
+    }
+    const double friction = dot(Point{free.x * held.x, free.y * held.y, free.z * held.z}, mean);
+    views.work(i).normal += 1.0 / views.inverse_mass(i) * dot(after - before, mean) - friction;
+    views.work(i).friction += friction;
+    store_points(v, i, after);
+  }
+};
+
+}  // namespace drogue::fabric

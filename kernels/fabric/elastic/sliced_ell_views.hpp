@@ -1,0 +1,73 @@
+#pragma once
+
+#include <Kokkos_Core.hpp>
+
+#include "kernels/device/pack.hpp"
+#include "kernels/fabric/elastic/sliced_ell.hpp"
+#include "kernels/fabric/views.hpp"
+
+namespace drogue::fabric {
+
+/// Calls `take(slot)` for the slots of vertex i and the lanes after it, with `first` as in Slots.
+template <class First, class Take>
+KOKKOS_INLINE_FUNCTION void for_each_slot(const First& first, int i, const Take& take) {
+  const int end = first(i / slice + 1);
+  for (int k = first(i / slice); k < end; ++k) take(k * slice + i % slice);
+}
+
+/// Calls `take(before, next, slot)` for the slots but the first, with the values of `read(slot, index(slot))`
+/// of the slot before and of the slot. Each slot is read once. Indices are read one slot ahead, so that two
+/// dependent memory latencies overlap.
+template <class First, class Index, class Read, class Take>
+KOKKOS_INLINE_FUNCTION void for_each_slot_pair(const First& first, int i, const Index& index,
+                                               const Read& read, const Take& take) {
+  const int begin = first(i / slice), end = first(i / slice + 1);
+  if (begin == end) return;
+  const int last = (end - 1) * slice + i % slice;
+  int slot = begin * slice + i % slice;
+  auto before = read(slot, index(slot));
+  auto ahead = index(device::minimum(slot + slice, last));
+#if defined(__CUDA_ARCH__)
+#pragma unroll 2  // else what is carried from slot to slot is moved
+#endif
+  for (slot += slice; slot <= last; slot += slice) {
+    const auto next = read(slot, ahead);
+    ahead = index(device::minimum(slot + slice, last));
+    take(before, next, slot);
+    before = next;
+  }
+}
+
+/// `Slots` in the memory of an execution space.
+template <class ExecutionSpace, int values>
+struct SlicedEllViews {
+  using Memory = typename ExecutionSpace::memory_space;
+  Kokkos::View<int*, Memory> first, neighbour;
+  Kokkos::View<double* [values], Kokkos::LayoutLeft, Memory> value;
+
+  /// Calls `take(slot)` for the slots of vertex i and the lanes after it.
+  template <class Take>
+  KOKKOS_INLINE_FUNCTION void each(int i, const Take& take) const {
+    for_each_slot(first, i, take);
+  }
+
+  /// Calls `take(before, next, slot)` for the slots of a ring but the first one (`for_each_slot_pair`).
+  template <class Index, class Read, class Take>
+  KOKKOS_INLINE_FUNCTION void each_pair(int i, const Index& index, const Read& read, const Take& take) const {
+    for_each_slot_pair(first, i, index, read, take);
+  }
+};
+
+/// Copies slots to the memory of an execution space, without values if `with_values` is false. Blocks.
+template <class ExecutionSpace, int values>
+[[nodiscard]] SlicedEllViews<ExecutionSpace, values> sliced_ell_views(const ExecutionSpace& space,
+                                                                      const SlicedEll<values>& from,
+                                                                      bool with_values = true) {
+  SlicedEllViews<ExecutionSpace, values> to{list_view(space, "drogue::fabric::first", from.first),
+                                            list_view(space, "drogue::fabric::neighbour", from.neighbour),
+                                            {}};
+  if (with_values) to.value = table_view(space, "drogue::fabric::slot_values", from.value);
+  return to;
+}
+
+}  // namespace drogue::fabric
