@@ -21,7 +21,7 @@ void for_chunks(std::int64_t cells, const std::function<void(std::int64_t first,
 void upload_initial_state(gas::Solver& solver, const GasScene& scene);
 
 /// Density, velocity and pressure of one cell of a conserved state.
-inline Primitive primitive(const gas::ConstConserved& u, std::size_t i, double gamma) {
+inline Primitive primitive(const gas::ConstConservedFields& u, std::size_t i, double gamma) {
   const double velocity = u.momentum[i] / u.rho[i];
   return {u.rho[i], velocity, (gamma - 1.0) * (u.energy[i] - 0.5 * u.momentum[i] * velocity)};
 }

@@ -75,7 +75,7 @@ void RunOutput::write_row(const gas::HistoryRow& row) {
                                          row.boundary[1],
                                          row.boundary[2],
                                          row.max_speed,
-                                         static_cast<double>(row.touches),
+                                         static_cast<double>(row.limited_faces),
                                          static_cast<double>(row.redone)};
   _history->append(row.time, values);
 }
@@ -87,7 +87,7 @@ void RunOutput::write_fields(double time, std::int64_t step) {
   _waited += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   _solver.begin_snapshot();
   _writer.submit([this, time, step] {
-    const gas::ConstConserved u = _solver.finish_snapshot();
+    const gas::ConstConservedFields u = _solver.finish_snapshot();
     _fields->begin_step(time, step);
     std::vector<double> values;
     for (const std::string& name : _scene.output.fields)

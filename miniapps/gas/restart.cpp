@@ -26,7 +26,7 @@ void visit(State& state, const Number& number, const Integer& integer) {
   integer("halvings", r.halvings);
   number("dt_scale", r.dt_scale);
   integer("redone", r.redone);
-  integer("touches", r.touches);
+  integer("touches", r.limited_faces);
   number("last_dt", r.last_dt);
   number("dt_min", r.dt_min);
   number("dt_max", r.dt_max);
@@ -43,7 +43,7 @@ void visit(State& state, const Number& number, const Integer& integer) {
 }
 
 /// A redone step has marked cells before it was rejected.
-bool has_marks(const gas::Resume& resume) { return resume.touches > 0 || resume.redone > 0; }
+bool has_marks(const gas::RestartState& resume) { return resume.limited_faces > 0 || resume.redone > 0; }
 
 }  // namespace
 
@@ -59,7 +59,7 @@ std::string scene_fingerprint(GasScene scene) {
 }
 
 void write_restart(const std::filesystem::path& file, const GasScene& scene, gas::Solver& solver,
-                   const gas::ConstConserved& u, const RestartState& state) {
+                   const gas::ConstConservedFields& u, const RestartState& state) {
   run::RestartWriter writer(file, scene_fingerprint(scene));
   visit(
       state, [&](const std::string& name, double value) { writer.number(name, value); },
@@ -75,7 +75,7 @@ void write_restart(const std::filesystem::path& file, const GasScene& scene, gas
     std::vector<double> values;
     for_chunks(scene.parameters.cells, [&](std::int64_t first, std::size_t count) {
       flags.resize(count);
-      solver.download_touched(first, flags);
+      solver.download_limited_cells(first, flags);
       values.assign(flags.begin(), flags.end());
       writer.write("touched", static_cast<std::uint64_t>(first), values);
     });
@@ -101,7 +101,7 @@ RestartState read_restart(const std::filesystem::path& file, const GasScene& sce
     if (!has_marks(state.resume)) return;
     reader.read("touched", static_cast<std::uint64_t>(first), fields[0]);
     std::vector<std::uint8_t> flags(fields[0].begin(), fields[0].end());
-    solver.upload_touched(first, flags);
+    solver.upload_limited_cells(first, flags);
   });
   return state;
 }

@@ -10,7 +10,7 @@ namespace drogue::gas_app {
 
 /// All that a restarted run needs to go on with the same bits.
 struct RestartState {
-  gas::Resume resume;
+  gas::RestartState resume;
   gas::HistoryRow initial;  ///< totals at the start, for the conservation check
 };
 
@@ -21,7 +21,7 @@ std::string scene_fingerprint(GasScene scene);
 /// Writes the conserved fields `u` and `state` atomically. `touched` is read from the solver if the limiter
 /// may have acted.
 void write_restart(const std::filesystem::path& file, const GasScene& scene, gas::Solver& solver,
-                   const gas::ConstConserved& u, const RestartState& state);
+                   const gas::ConstConservedFields& u, const RestartState& state);
 
 /// Uploads what `write_restart` wrote and returns its state; the solver still has to be told
 /// (`Solver::restore`). Throws Failure(io_error) for a file that is damaged or of another mesh, gas or

@@ -15,7 +15,7 @@ void take_dissertation_scheme(gas::Parameters& parameters) {
   parameters.weno = gas::Weno::js;
   parameters.splitting = gas::Splitting::lf_global;
   parameters.time_scheme = gas::TimeScheme::ssprk3;
-  parameters.mean = gas::Mean::conserved;
+  parameters.face_average = gas::FaceAverage::conserved;
   parameters.positivity = gas::Positivity::off;
   parameters.precision = gas::Precision::full;
 }

@@ -22,8 +22,9 @@ const Choices<gas::Splitting> splitting_choices = {{"lf-global", gas::Splitting:
                                                    {"lf-stencil", gas::Splitting::lf_stencil}};
 const Choices<gas::TimeScheme> time_choices = {{"ssprk3", gas::TimeScheme::ssprk3},
                                                {"ssprk43", gas::TimeScheme::ssprk43}};
-const Choices<gas::Mean> mean_choices = {
-    {"arithmetic", gas::Mean::arithmetic}, {"conserved", gas::Mean::conserved}, {"roe", gas::Mean::roe}};
+const Choices<gas::FaceAverage> mean_choices = {{"arithmetic", gas::FaceAverage::arithmetic},
+                                                {"conserved", gas::FaceAverage::conserved},
+                                                {"roe", gas::FaceAverage::roe}};
 const Choices<gas::Positivity> positivity_choices = {
     {"off", gas::Positivity::off}, {"on", gas::Positivity::on}, {"auto", gas::Positivity::automatic}};
 const Choices<gas::Precision> precision_choices = {{"double", gas::Precision::full},
@@ -58,7 +59,7 @@ void declare_weights(Table& table, gas::Parameters& scheme) {
               "field's stencil");
   table.value("time", scene::choice_codec(scheme.time_scheme, time_choices),
               "Runge-Kutta scheme, of 3 or 4 stages");
-  table.value("mean", scene::choice_codec(scheme.mean, mean_choices),
+  table.value("mean", scene::choice_codec(scheme.face_average, mean_choices),
               "State at a face whose eigenvectors are used: mean of u and H, mean of U, or Roe's");
 }
 

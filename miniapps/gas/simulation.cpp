@@ -32,7 +32,7 @@ void describe_device(run::ResultDocument& result, const gas::Parameters& paramet
 Simulation::Simulation(const GasScene& scene, const RunSettings& settings)
     : _scene(scene), _settings(settings) {
   const auto begin = Clock::now();
-  _solver = settings.seed_mode ? gas::create_seed_solver(settings.backend, scene.parameters)
+  _solver = settings.seed_mode ? gas::create_baseline_solver(settings.backend, scene.parameters)
                                : gas::create_solver(settings.backend, scene.parameters);
   const auto upload = Clock::now();
   if (settings.restart.empty()) {
@@ -66,7 +66,7 @@ bool Simulation::is_output_time(double time) const {
 
 ExitCode Simulation::run(const run::RunDirectory* directory, run::ResultDocument& result) {
   const bool resumed = !_settings.restart.empty();
-  gas::Resume now = _solver->resume_state();
+  gas::RestartState now = _solver->restart_state();
   std::optional<RunOutput> output;
   if (directory != nullptr)
     output.emplace(_scene, *_solver, *directory, resumed ? std::optional<double>(now.time) : std::nullopt);
@@ -91,7 +91,7 @@ ExitCode Simulation::run(const run::RunDirectory* directory, run::ResultDocument
   } describe_at_end{*this, result};
   bool warm = false;  // the first step allocates what all of them use
   gas::Stop stop = gas::Stop::target;
-  const auto restart_state = [&] { return RestartState{_solver->resume_state(), _initial}; };
+  const auto restart_state = [&] { return RestartState{_solver->restart_state(), _initial}; };
   while (now.time < _scene.end_time) {
     const double target = next_stop(now.time);
     std::int64_t pause = restart_every > 0 ? (now.step / restart_every + 1) * restart_every : -1;
@@ -101,7 +101,7 @@ ExitCode Simulation::run(const run::RunDirectory* directory, run::ResultDocument
     _compute_s += seconds_since(begin);
     if (!warm) device::end_warmup();
     warm = true;
-    now = _solver->resume_state();
+    now = _solver->restart_state();
     if (output && now.time == target && is_output_time(target)) output->write_fields(target, now.step);
     if (output && restart_every > 0 && now.step % restart_every == 0 && stop != gas::Stop::failed)
       output->write_restart(restart_state());
@@ -125,22 +125,22 @@ ExitCode Simulation::run(const run::RunDirectory* directory, run::ResultDocument
 void Simulation::write_restart(const run::RunDirectory& directory) {
   _solver->begin_snapshot();
   gas_app::write_restart(directory.file("restart.h5"), _scene, *_solver, _solver->finish_snapshot(),
-                         {_solver->resume_state(), _initial});
+                         {_solver->restart_state(), _initial});
 }
 
 void Simulation::describe(run::ResultDocument& result) {
-  const gas::Resume now = _solver->resume_state();
-  const gas::Phases phases = _solver->phases();
+  const gas::RestartState now = _solver->restart_state();
+  const gas::PhaseTimes phase_times = _solver->phase_times();
   result.steps = now.step;
   result.driver = _solver->driver();
   result.time = now.time;
   result.dt_min = now.dt_min;
   result.dt_max = now.dt_max;
-  result.limiter = {now.touches, _solver->touched_cells(), now.redone};
+  result.limiter = {now.limited_faces, _solver->limited_cells(), now.redone};
   result.timing.setup_s = _setup_s;
-  result.timing.compute_s = _settings.seed_mode ? phases.compute : _compute_s;
-  result.timing.h2d_s = _settings.seed_mode ? phases.h2d : _h2d_s;
-  result.timing.d2h_s = _settings.seed_mode ? phases.d2h : _d2h_s;
+  result.timing.compute_s = _settings.seed_mode ? phase_times.compute : _compute_s;
+  result.timing.h2d_s = _settings.seed_mode ? phase_times.h2d : _h2d_s;
+  result.timing.d2h_s = _settings.seed_mode ? phase_times.d2h : _d2h_s;
   result.timing.io_s = _io_s;
   result.describe_ledger(device::profiling_counters());
 }

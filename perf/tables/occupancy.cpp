@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "kernels/gas/team_shape.hpp"
+#include "kernels/gas/tile/team_shape.hpp"
 #include "perf/dissertation.hpp"
 #include "perf/tables/tables.hpp"
 

@@ -6,8 +6,8 @@
 #include "tests/support/gas_state.hpp"
 
 // After what counts them.
-#include "kernels/gas/stage.hpp"
-#include "kernels/gas/step.hpp"
+#include "kernels/gas/stepping/stage.hpp"
+#include "kernels/gas/stepping/step.hpp"
 
 namespace drogue::testing {
 
@@ -19,7 +19,8 @@ class CountedStep {
   static constexpr double gamma = 1.4, dt_over_dx = 0.1;
   static constexpr int row = 64;
   static constexpr std::int64_t cells = 44, tile_cells = 18;  ///< the last tile is smaller
-  static constexpr gas::Ends ends{cells, gas::Boundary::periodic, gas::Boundary::periodic};
+  static constexpr gas::BoundaryConditions boundaries{cells, gas::Boundary::periodic,
+                                                      gas::Boundary::periodic};
 
   using Tile = gas::Tile<Kokkos::Serial>;
   template <gas::Reconstruction scheme>
@@ -79,12 +80,12 @@ class CountedStep {
     const gas::TileShape shape{tile_cells, gas::ghost_cells, row};
     for (int k = 0; k < _table.stages; ++k) {
       const gas::StageWeights& weights = _table.stage[k];
-      const Stage<scheme> stage{{}, {},  {}, weights, shape, ends, gamma, 1.0, k, gas::Splitting::lf_stencil,
-                                {}, true};
+      const Stage<scheme> stage{
+          {}, {}, {}, weights, shape, boundaries, gamma, 1.0, k, gas::Splitting::lf_stencil, {}, true};
       for_tiles(shape, [&](const Thread& thread, const Tile& tile) {
         load(thread, tile, weights.in);
         for (int face = 0; face <= tile.cells; ++face) compute_face<scheme>(tile, face);
-        gas::Reduced<R> reduced;
+        gas::CellReduction<R> reduced;
         for (int i = tile.halo; i < tile.halo + tile.cells; ++i)
           stage.template update_cell<R>(tile, i, dt_over_dx, field(0), field(weights.out), reduced);
       });
@@ -105,7 +106,7 @@ class CountedStep {
   gas::Arithmetic load(const Thread& thread, const Tile& tile, int from) {
     return add([&] {
       gas::load_cells<R, false>(thread, tile, gamma, [&](std::int64_t cell) {
-        return gas::load_state<R>(field(from), ends, cell);
+        return gas::load_state<R>(field(from), boundaries, cell);
       });
     });
   }
@@ -113,18 +114,18 @@ class CountedStep {
   template <gas::Reconstruction scheme>
   gas::Arithmetic compute_face(const Tile& tile, int face) {
     return add([&] {
-      tile.store_flux(
-          face, gas::face_flux<scheme, R>(tile, face, gas::load_stencil<R>(tile, face), gas::Mean::arithmetic,
-                                          gamma, gas::stencil_speeds<R, R>(tile, face)));
+      tile.store_flux(face, gas::face_flux<scheme, R>(tile, face, gas::load_stencil<R>(tile, face),
+                                                      gas::FaceAverage::arithmetic, gamma,
+                                                      gas::stencil_wave_speeds<R, R>(tile, face)));
     });
   }
 
   template <bool last, class Functor>
   gas::Arithmetic update(const Functor& step, const Tile& tile, int slot, int stage) {
     return add([&] {
-      gas::Reduced<R> reduced;
+      gas::CellReduction<R> reduced;
       step.template update_slot<last, R>(tile, slot, {slot, false}, _table.stage[stage], dt_over_dx, field(0),
-                                         field(1), typename Functor::Known{}, reduced);
+                                         field(1), typename Functor::SingleStepHooks{}, reduced);
       // Of the fastest signals the fused step uses two.
       if constexpr (!std::is_same_v<R, double>)
         reduced.slow.keep(), reduced.fast.keep(), reduced.admissible.keep();
@@ -133,7 +134,8 @@ class CountedStep {
 
   template <gas::Reconstruction scheme>
   [[nodiscard]] Step<scheme> fused() const {
-    return {{}, {}, {}, _table, {tile_cells, gas::ghost_cells * _table.stages, row}, ends, gamma, 1.0, {}};
+    return {{},         {},    {},  _table, {tile_cells, gas::ghost_cells * _table.stages, row},
+            boundaries, gamma, 1.0, {}};
   }
 
  private:

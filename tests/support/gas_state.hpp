@@ -17,7 +17,7 @@ namespace drogue::testing {
 /// Density, momentum and energy of all cells.
 using GasState = std::array<std::vector<double>, 3>;
 
-inline gas::ConstConserved fields(const GasState& state) { return {state[0], state[1], state[2]}; }
+inline gas::ConstConservedFields fields(const GasState& state) { return {state[0], state[1], state[2]}; }
 
 /// What random states are drawn from: density and pressure log-uniform, |u| <= speed.
 struct GasRange {

@@ -19,7 +19,8 @@ struct Eigensystem {
 };
 
 /// Mean of two neighbouring cells; c^2 = (gamma-1)(H - u^2/2) for each kind of mean.
-[[nodiscard]] FaceState face_state(const Conserved& a, const Conserved& b, gas::Mean mean, double gamma);
+[[nodiscard]] FaceState face_state(const Conserved& a, const Conserved& b, gas::FaceAverage average,
+                                   double gamma);
 
 /// Eigenvectors of the flux Jacobian, right ones scaled as (1, u-c, H-uc), (1, u, u^2/2), (1, u+c, H+uc).
 [[nodiscard]] Eigensystem eigensystem(const FaceState& face, double gamma);

@@ -9,7 +9,7 @@ inline constexpr double positivity_floor = 1e-13;
 
 struct LimitedFlux {
   Conserved flux{};
-  bool touched = false;
+  bool limited = false;
 };
 
 /// Positivity-preserving flux limiter of Hu, Adams and Shu (2013): blends the high-order flux between cells

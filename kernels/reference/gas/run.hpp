@@ -16,7 +16,7 @@ struct GasRun {
   double time = 0.0;             ///< s
   std::int64_t steps = 0;
   std::int64_t redone_steps = 0;        ///< repeated with half the dt, or with the limiter
-  std::int64_t limiter_touches = 0;     ///< faces, summed over the stages of accepted steps
+  std::int64_t limited_faces = 0;       ///< faces, summed over the stages of accepted steps
   std::int64_t limited_steps_left = 0;  ///< of positivity automatic
   bool failed =
       false;  ///< density or pressure not positive, or max_steps reached; `state` is the last good one

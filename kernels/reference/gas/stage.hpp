@@ -18,8 +18,8 @@ inline constexpr std::size_t ghost_cells = 3;
                                                  const gas::Parameters& parameters);
 
 struct StageFluxes {
-  std::vector<Conserved> flux;  ///< n+1 faces, left to right
-  std::int64_t touches = 0;     ///< faces where the limiter acted
+  std::vector<Conserved> flux;     ///< n+1 faces, left to right
+  std::int64_t limited_faces = 0;  ///< faces where the limiter acted
 };
 
 /// Fluxes at the n+1 faces of the mesh. With `lambda` (the stage's dt/dx) they are limited for positivity.

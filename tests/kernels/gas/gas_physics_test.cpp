@@ -85,7 +85,7 @@ TEST(GasOrder, ZIsOfFifthOrder) { expect_fifth_order(Weno::z, 2, {1.272e-6, 3.99
 TEST(GasContact, KeepsItsBitsAtRest) {
   for (const Scheme& scheme : schemes)
     for (const Splitting splitting : {Splitting::lf_global, Splitting::lf_stencil})
-      for (const Mean mean : {Mean::arithmetic, Mean::conserved, Mean::roe})
+      for (const FaceAverage average : {FaceAverage::arithmetic, FaceAverage::conserved, FaceAverage::roe})
         for (const Positivity positivity : {Positivity::off, Positivity::on})
           for (const Precision precision : {Precision::full, Precision::split}) {
             Parameters p;
@@ -93,14 +93,14 @@ TEST(GasContact, KeepsItsBitsAtRest) {
             p.weno = scheme.weno;
             p.weno_power = scheme.power;
             p.splitting = splitting;
-            p.mean = mean;
+            p.face_average = average;
             p.positivity = positivity;
             p.precision = precision;
             const GasState state = riemann_state(p, 0.0, {1.4, 0, 1}, {1, 0, 1});
             const auto solver = started(backend, p, state);
             ASSERT_EQ(solver->advance(1e9, 200, 0, {}, {}), Stop::pause);
             EXPECT_TRUE(same_bits(download(*solver, p), state)) << scheme.name;
-            EXPECT_EQ(solver->resume_state().touches, 0) << scheme.name;
+            EXPECT_EQ(solver->restart_state().limited_faces, 0) << scheme.name;
           }
 }
 
@@ -119,7 +119,7 @@ Parameters variant(int n) {
   p.weno = schemes[n % 5].weno;
   p.weno_power = schemes[n % 5].power;
   p.splitting = static_cast<Splitting>(n % 3);
-  p.mean = static_cast<Mean>(n / 5 % 3);
+  p.face_average = static_cast<FaceAverage>(n / 5 % 3);
   p.positivity = n % 2 == 0 ? Positivity::on : Positivity::automatic;
   p.time_scheme = n < 8 ? TimeScheme::ssprk3 : TimeScheme::ssprk43;
   p.precision = n % 4 == 3 ? Precision::split : Precision::full;

@@ -2,7 +2,7 @@
 
 #include <Kokkos_Core.hpp>
 
-#include "kernels/gas/limiter.hpp"
+#include "kernels/gas/flux/limiter.hpp"
 #include "kernels/reference/gas/eigensystem.hpp"
 #include "kernels/reference/gas/face_flux.hpp"
 #include "kernels/reference/gas/limiter.hpp"
@@ -23,18 +23,18 @@ constexpr int faces = 2000;
 constexpr double gamma = 1.4;
 
 using Stencils = Kokkos::View<double* [6][3], Memory>;
-using Triples = Kokkos::View<double* [3], Memory>;
+using ConservedVectors = Kokkos::View<double* [3], Memory>;
 
 template <Reconstruction scheme, class N>
 struct FluxFunctor {
   Stencils stencil;
-  Triples alpha, flux;
-  Mean mean;
+  ConservedVectors alpha, flux;
+  FaceAverage average;
 
   KOKKOS_FUNCTION void operator()(const int face) const {
     Stencil<double> s;
     FaceCell<double> beside[2];
-    Triple<double> state[6], physical[6];
+    ConservedVector<double> state[6], physical[6];
     for (int k = 0; k < 6; ++k) {
       const CellState<double> c =
           cell_state<double>(gamma, stencil(face, k, 0), stencil(face, k, 1), stencil(face, k, 2));
@@ -50,39 +50,40 @@ struct FluxFunctor {
     }
     s.flux_sum = {physical[2].rho + physical[3].rho, physical[2].m + physical[3].m,
                   physical[2].energy + physical[3].energy};
-    const auto e = face_eigensystem<N, double>(mean, gamma, beside[0], beside[1]);
-    const Speeds<N> speeds{static_cast<N>(alpha(face, 0)), static_cast<N>(alpha(face, 1)),
-                           static_cast<N>(alpha(face, 2))};
-    const Triple<double> f = weno5_face<scheme, N>(s, e, speeds);
+    const auto e = face_eigensystem<N, double>(average, gamma, beside[0], beside[1]);
+    const WaveSpeeds<N> speeds{static_cast<N>(alpha(face, 0)), static_cast<N>(alpha(face, 1)),
+                               static_cast<N>(alpha(face, 2))};
+    const ConservedVector<double> f = weno5_face<scheme, N>(s, e, speeds);
     flux(face, 0) = f.rho, flux(face, 1) = f.m, flux(face, 2) = f.energy;
   }
 };
 
 template <Reconstruction scheme>
-void launch(Precision precision, const Stencils& stencil, const Triples& alpha, const Triples& flux,
-            Mean mean) {
+void launch(Precision precision, const Stencils& stencil, const ConservedVectors& alpha,
+            const ConservedVectors& flux, FaceAverage average) {
   const Kokkos::RangePolicy<Space> range(0, faces);
   if (precision == Precision::full)
-    Kokkos::parallel_for("gas_point_test", range, FluxFunctor<scheme, double>{stencil, alpha, flux, mean});
+    Kokkos::parallel_for("gas_point_test", range, FluxFunctor<scheme, double>{stencil, alpha, flux, average});
   else
-    Kokkos::parallel_for("gas_point_test", range, FluxFunctor<scheme, float>{stencil, alpha, flux, mean});
+    Kokkos::parallel_for("gas_point_test", range, FluxFunctor<scheme, float>{stencil, alpha, flux, average});
 }
 
-void launch(const Parameters& p, const Stencils& stencil, const Triples& alpha, const Triples& flux) {
+void launch(const Parameters& p, const Stencils& stencil, const ConservedVectors& alpha,
+            const ConservedVectors& flux) {
   switch (p.weno) {
     case Weno::js:
-      return launch<Reconstruction::js>(p.precision, stencil, alpha, flux, p.mean);
+      return launch<Reconstruction::js>(p.precision, stencil, alpha, flux, p.face_average);
     case Weno::m:
-      return launch<Reconstruction::m>(p.precision, stencil, alpha, flux, p.mean);
+      return launch<Reconstruction::m>(p.precision, stencil, alpha, flux, p.face_average);
     case Weno::teno5:
-      return launch<Reconstruction::teno5>(p.precision, stencil, alpha, flux, p.mean);
+      return launch<Reconstruction::teno5>(p.precision, stencil, alpha, flux, p.face_average);
     case Weno::z:
       break;
   }
   if (p.weno_power == 1)
-    launch<Reconstruction::z1>(p.precision, stencil, alpha, flux, p.mean);
+    launch<Reconstruction::z1>(p.precision, stencil, alpha, flux, p.face_average);
   else
-    launch<Reconstruction::z2>(p.precision, stencil, alpha, flux, p.mean);
+    launch<Reconstruction::z2>(p.precision, stencil, alpha, flux, p.face_average);
 }
 
 struct Sample {
@@ -116,7 +117,7 @@ Sample sample(double amplitude, unsigned seed) {
 
 std::vector<Conserved> kernel_fluxes(const Parameters& p, const Sample& in) {
   const Stencils stencil("stencil", faces);
-  const Triples alpha("alpha", faces), flux("flux", faces);
+  const ConservedVectors alpha("alpha", faces), flux("flux", faces);
   const auto host_stencil = Kokkos::create_mirror_view(stencil);
   const auto host_alpha = Kokkos::create_mirror_view(alpha);
   for (std::size_t face = 0; face < faces; ++face)
@@ -138,7 +139,8 @@ std::vector<Conserved> kernel_fluxes(const Parameters& p, const Sample& in) {
 /// of their differences, where only those are rounded.
 Conserved rounding_scale(const Parameters& p, const Cells& cells, const std::array<double, 3>& alpha,
                          bool differences) {
-  const auto basis = reference::eigensystem(reference::face_state(cells[2], cells[3], p.mean, gamma), gamma);
+  const auto basis =
+      reference::eigensystem(reference::face_state(cells[2], cells[3], p.face_average, gamma), gamma);
   Conserved scale{};
   for (std::size_t field = 0; field < 3; ++field) {
     double largest = 0.0;
@@ -186,12 +188,12 @@ void for_schemes(const Check& check) {
   };
   for (const Scheme& scheme : {Scheme{Weno::js, 1, "js"}, Scheme{Weno::z, 1, "z1"}, Scheme{Weno::z, 2, "z2"},
                                Scheme{Weno::m, 1, "m"}, Scheme{Weno::teno5, 1, "teno5"}})
-    for (const Mean mean : {Mean::arithmetic, Mean::conserved, Mean::roe}) {
+    for (const FaceAverage average : {FaceAverage::arithmetic, FaceAverage::conserved, FaceAverage::roe}) {
       Parameters p;
       p.weno = scheme.weno;
       p.weno_power = scheme.power;
-      p.mean = mean;
-      check(p, std::string(scheme.name) + ", mean " + std::to_string(static_cast<int>(mean)));
+      p.face_average = average;
+      check(p, std::string(scheme.name) + ", mean " + std::to_string(static_cast<int>(average)));
     }
 }
 
@@ -252,16 +254,16 @@ TEST(GasPoint, FluxesAreFiniteInTheColdestAndTheHottestGas) {
 
 struct LimitFunctor {
   Stencils in;  ///< per face: left state, right state, high flux, low flux
-  Triples flux;
+  ConservedVectors flux;
   Kokkos::View<double*, Memory> theta;
   double lambda;
 
-  KOKKOS_FUNCTION Triple<double> triple(int face, int k) const {
+  KOKKOS_FUNCTION ConservedVector<double> vector(int face, int k) const {
     return {in(face, k, 0), in(face, k, 1), in(face, k, 2)};
   }
   KOKKOS_FUNCTION void operator()(const int face) const {
     const auto result =
-        limit(triple(face, 0), triple(face, 1), triple(face, 2), triple(face, 3), 2.0 * lambda, gamma);
+        limit(vector(face, 0), vector(face, 1), vector(face, 2), vector(face, 3), 2.0 * lambda, gamma);
     flux(face, 0) = result.flux.rho, flux(face, 1) = result.flux.m, flux(face, 2) = result.flux.energy;
     theta(face) = result.theta;
   }
@@ -270,7 +272,7 @@ struct LimitFunctor {
 TEST(GasPoint, LimiterIsTheOraclesAndKeepsCellsPositive) {
   RandomGas random(3);
   const Stencils in("in", faces);
-  const Triples flux("flux", faces);
+  const ConservedVectors flux("flux", faces);
   const Kokkos::View<double*, Memory> theta("theta", faces);
   const auto host = Kokkos::create_mirror_view(in);
   const double lambda = 0.002;  // alpha = 250: faster than any signal of these states
@@ -293,17 +295,17 @@ TEST(GasPoint, LimiterIsTheOraclesAndKeepsCellsPositive) {
                        LimitFunctor{in, flux, theta, lambda});
   const auto got = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace{}, flux);
   const auto got_theta = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace{}, theta);
-  int touched = 0;
+  int limited_faces = 0;
   for (std::size_t face = 0; face < faces; ++face) {
     const auto& [a, b, high, low] = cases[face];
     const auto exact = reference::limit_flux(high, low, a, b, lambda, gamma);
-    EXPECT_EQ(got_theta(face) < 1.0, exact.touched);
-    touched += exact.touched ? 1 : 0;
+    EXPECT_EQ(got_theta(face) < 1.0, exact.limited_faces);
+    limited_faces += exact.limited_faces ? 1 : 0;
     Conserved left{}, right{};
     for (std::size_t s = 0; s < 3; ++s) {
       const double scale = std::abs(high[s]) + std::abs(low[s]);
       EXPECT_NEAR(got(face, s), exact.flux[s], 1e-9 * scale);
-      if (!exact.touched) {
+      if (!exact.limited_faces) {
         EXPECT_EQ(got(face, s), high[s]);
       }
       left[s] = a[s] - 2.0 * lambda * got(face, s);
@@ -314,8 +316,8 @@ TEST(GasPoint, LimiterIsTheOraclesAndKeepsCellsPositive) {
       EXPECT_GT(reference::pressure(share, gamma), -1e-15 * share[2]);
     }
   }
-  EXPECT_GT(touched, faces / 4);
-  EXPECT_LT(touched, faces * 3 / 4);
+  EXPECT_GT(limited_faces, faces / 4);
+  EXPECT_LT(limited_faces, faces * 3 / 4);
 }
 
 }  // namespace

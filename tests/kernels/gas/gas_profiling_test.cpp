@@ -40,7 +40,7 @@ ProfilingCounters operator-(const ProfilingCounters& after, const ProfilingCount
 
 /// What `advance` by `steps` steps asks for, rows every `row_every` included; the solver is warm.
 ProfilingCounters cost(Solver& solver, std::int64_t steps, int row_every = 0) {
-  const std::int64_t now = solver.resume_state().step;
+  const std::int64_t now = solver.restart_state().step;
   const ProfilingCounters before = counted();
   EXPECT_EQ(solver.advance(never, now + steps, row_every, {}, {}), Stop::pause);
   return counted() - before;
@@ -106,7 +106,7 @@ TEST(GasLedger, AutomaticPositivityThatIsNeverNeededCostsNoLaunch) {
   const ProfilingCounters off = cost(*warm(sod(Positivity::off)), 300);
   const auto automatic = warm(sod(Positivity::automatic));
   const ProfilingCounters idle = cost(*automatic, 300);
-  EXPECT_EQ(automatic->resume_state().redone, 0);
+  EXPECT_EQ(automatic->restart_state().redone, 0);
   EXPECT_EQ(idle.fences, off.fences);
   if (!on_device) {
     EXPECT_EQ(idle.kernel_launches, off.kernel_launches);
@@ -196,14 +196,14 @@ TEST(GasStops, TargetsAndPausesAreMetExactly) {
   const auto solver = warm(sod());
   for (const double target : {0.01, 0.0137, 0.1}) {
     EXPECT_EQ(solver->advance(target, -1, 3, {}, {}), Stop::target);
-    EXPECT_EQ(solver->resume_state().time, target);
+    EXPECT_EQ(solver->restart_state().time, target);
     EXPECT_EQ(solver->totals().time, target);
   }
-  const std::int64_t step = solver->resume_state().step;
+  const std::int64_t step = solver->restart_state().step;
   EXPECT_EQ(solver->advance(0.1, -1, 0, {}, {}), Stop::target) << "nothing is left to do";
-  EXPECT_EQ(solver->resume_state().step, step);
+  EXPECT_EQ(solver->restart_state().step, step);
   EXPECT_EQ(solver->advance(0.2, step + 3, 0, {}, {}), Stop::pause);
-  EXPECT_EQ(solver->resume_state().step, step + 3);
+  EXPECT_EQ(solver->restart_state().step, step + 3);
 }
 
 TEST(GasStops, LastStepBeforeATargetIsNoSplinter) {
@@ -212,8 +212,8 @@ TEST(GasStops, LastStepBeforeATargetIsNoSplinter) {
   p.fixed_dt = 0.001;
   const auto solver = started(backend, p, sod_state(p));
   EXPECT_EQ(solver->advance(0.1, -1, 0, {}, {}), Stop::target);
-  EXPECT_EQ(solver->resume_state().step, 100);
-  EXPECT_NEAR(solver->resume_state().dt_min, 0.001, 1e-15);
+  EXPECT_EQ(solver->restart_state().step, 100);
+  EXPECT_NEAR(solver->restart_state().dt_min, 0.001, 1e-15);
 }
 
 TEST(GasStops, MaxSteps) {
@@ -221,16 +221,16 @@ TEST(GasStops, MaxSteps) {
   p.max_steps = 17;
   const auto solver = started(backend, p, sod_state(p));
   EXPECT_EQ(solver->advance(never, -1, 0, {}, {}), Stop::max_steps);
-  EXPECT_EQ(solver->resume_state().step, 17);
+  EXPECT_EQ(solver->restart_state().step, 17);
   EXPECT_EQ(solver->advance(never, -1, 0, {}, {}), Stop::max_steps);
-  EXPECT_EQ(solver->resume_state().step, 17);
+  EXPECT_EQ(solver->restart_state().step, 17);
 }
 
 TEST(GasStops, PollInterruptsBetweenSteps) {
   const auto solver = warm(sod());
   const Poll stop_at_30 = [](const Status& status) { return status.step < 30; };
   EXPECT_EQ(solver->advance(never, -1, 0, {}, stop_at_30), Stop::interrupted);
-  const std::int64_t step = solver->resume_state().step;
+  const std::int64_t step = solver->restart_state().step;
   EXPECT_GE(step, 30);
   EXPECT_LE(step, on_device ? 30'000'000 : 30);
   // What follows has the bits of a run that was left alone.
@@ -247,14 +247,14 @@ TEST(GasStops, FailureNamesQuantityCellAndStep) {
   p.ramp_steps = 0;
   const auto solver = started(backend, p, sod_state(p));
   EXPECT_EQ(solver->advance(never, -1, 10, {}, {}), Stop::failed);
-  const Failed failed = solver->failure();
-  const Resume last = solver->resume_state();
+  const StepFailure failed = solver->failure();
+  const RestartState last = solver->restart_state();
   EXPECT_EQ(failed.step, last.step + 1);
   EXPECT_EQ(failed.time, last.time);
   EXPECT_GT(failed.dt, 0.0);
   ASSERT_GE(failed.cell, 0);
   ASSERT_LT(failed.cell, 100);
-  EXPECT_TRUE(failed.quantity == Quantity::density || failed.quantity == Quantity::pressure);
+  EXPECT_TRUE(failed.reason == FailureReason::density || failed.reason == FailureReason::pressure);
   // The oracle fails at the same step, and the state kept is its last good one.
   reference::GasRun run = reference_from(sod_state(p));
   reference::advance(run, p, 1e9);
@@ -262,7 +262,7 @@ TEST(GasStops, FailureNamesQuantityCellAndStep) {
   EXPECT_EQ(run.steps, last.step);
   EXPECT_LT(distance(download(*solver, p), state_of(run)), 1e-10);
   EXPECT_EQ(solver->advance(never, -1, 0, {}, {}), Stop::failed) << "a failed run stays where it is";
-  EXPECT_EQ(solver->resume_state().step, last.step);
+  EXPECT_EQ(solver->restart_state().step, last.step);
 }
 
 TEST(GasStops, FailureFindsTheCell) {
@@ -279,7 +279,7 @@ TEST(GasStops, FailureFindsTheCell) {
     EXPECT_EQ(solver->advance(never, -1, 0, {}, {}), Stop::failed);
     EXPECT_LE(std::abs(static_cast<double>(solver->failure().cell - cell) + 0.5), 3.0) << cell;
     EXPECT_EQ(solver->failure().step, 1);
-    EXPECT_EQ(solver->resume_state().step, 0);
+    EXPECT_EQ(solver->restart_state().step, 0);
     EXPECT_TRUE(same_bits(download(*solver, p), state));
   }
 }
@@ -292,7 +292,7 @@ TEST(GasStops, NotANumberNeverPasses) {
       state[k][100] = std::nan("");
       const auto solver = started(backend, p, state);
       EXPECT_EQ(solver->advance(never, 10, 0, {}, {}), Stop::failed);
-      EXPECT_EQ(solver->resume_state().step, 0);
+      EXPECT_EQ(solver->restart_state().step, 0);
     }
 }
 
@@ -313,12 +313,12 @@ TEST(GasPositivity, AutomaticSavesWhatFailsWithout) {
   const auto solver = started(backend, p, leblanc);
   const ProfilingCounters before = counted();
   EXPECT_EQ(solver->advance(6.0, -1, 0, {}, {}), Stop::target);
-  const Resume end = solver->resume_state();
+  const RestartState end = solver->restart_state();
   EXPECT_GT(end.redone, 0);
   EXPECT_LT(end.redone, end.step / 10);
-  EXPECT_GT(end.touches, 0);
-  EXPECT_GT(solver->touched_cells(), 0);
-  EXPECT_LE(solver->touched_cells(), 100);
+  EXPECT_GT(end.limited_faces, 0);
+  EXPECT_GT(solver->limited_cells(), 0);
+  EXPECT_LE(solver->limited_cells(), 100);
   if (!on_device) {
     EXPECT_LT((counted() - before).kernel_launches, (end.step + end.redone) * 4 + 10);
   }
@@ -340,7 +340,7 @@ TEST(GasPositivity, LimiterIsTurnedOffAgain) {
   const GasState state = random_state(p, 3, extreme);
   const auto solver = started(backend, p, state);
   EXPECT_EQ(solver->advance(never, 2000, 0, {}, {}), Stop::pause);
-  const Resume later = solver->resume_state();
+  const RestartState later = solver->restart_state();
   EXPECT_GT(later.redone, 0);
   EXPECT_EQ(later.limited, 0);
   EXPECT_EQ(later.limited_left, 0);

@@ -23,7 +23,7 @@ constexpr bool exact_arithmetic = false;
 /// The state after about ten steps, and the oracle's.
 struct Outcome {
   GasState state, oracle;
-  Resume resume;
+  RestartState resume;
   reference::GasRun run;
 };
 
@@ -33,7 +33,7 @@ Outcome both(const Parameters& p, const GasState& state, double end_time) {
   reference::GasRun run = reference_from(state);
   reference::advance(run, p, end_time);
   EXPECT_FALSE(run.failed);
-  return {download(*solver, p), state_of(run), solver->resume_state(), run};
+  return {download(*solver, p), state_of(run), solver->restart_state(), run};
 }
 
 /// The n-th of all combinations of scheme, splitting, mean and time scheme, with boundaries, mesh and block
@@ -46,12 +46,12 @@ Parameters combination(int n, std::string& text) {
                                   {Boundary::reflecting, Boundary::outflow},
                                   {Boundary::outflow, Boundary::outflow},
                                   {Boundary::reflecting, Boundary::reflecting}};
-  const int scheme = n % 5, splitting = n / 5 % 3, mean = n / 15 % 3, time = n / 45;
+  const int scheme = n % 5, splitting = n / 5 % 3, average = n / 15 % 3, time = n / 45;
   Parameters p;
   p.weno = scheme == 4 ? Weno::z : static_cast<Weno>(scheme);
   p.weno_power = scheme == 4 ? 2 : 1;
   p.splitting = static_cast<Splitting>(splitting);
-  p.mean = static_cast<Mean>(mean);
+  p.face_average = static_cast<FaceAverage>(average);
   p.time_scheme = time == 0 ? TimeScheme::ssprk3 : TimeScheme::ssprk43;
   p.positivity = Positivity::off;
   p.gamma = n % 2 == 0 ? 1.4 : 5.0 / 3.0;
@@ -78,7 +78,7 @@ TEST(GasSolver, StepsAsTheOracleDoes) {
 }
 
 TEST(GasSolver, StepsAsTheOracleDoesWithTheLimiter) {
-  std::int64_t touches = 0, redone = 0;
+  std::int64_t limited_faces = 0, redone = 0;
   for (int n = 0; n < 90; ++n) {
     std::string text;
     Parameters p = combination(n, text);
@@ -86,14 +86,14 @@ TEST(GasSolver, StepsAsTheOracleDoesWithTheLimiter) {
     const GasState state = random_state(p, static_cast<unsigned>(n), extreme);
     const Outcome got = both(p, state, time_of(p, state, 4));
     EXPECT_EQ(got.resume.step, got.run.steps) << text;
-    EXPECT_EQ(got.resume.touches, got.run.limiter_touches) << text;
+    EXPECT_EQ(got.resume.limited_faces, got.run.limited_faces) << text;
     EXPECT_EQ(got.resume.redone, got.run.redone_steps) << text;
     // A pressure of 1e-5 of the total energy has five digits fewer, and so has all that follows from it.
     EXPECT_LT(distance(got.state, got.oracle), 1e-8) << text;
-    touches += got.resume.touches;
+    limited_faces += got.resume.limited_faces;
     redone += got.resume.redone;
   }
-  EXPECT_GT(touches, 1000);
+  EXPECT_GT(limited_faces, 1000);
   EXPECT_GT(redone, 20);
 }
 
@@ -120,23 +120,23 @@ TEST(GasSolver, SeedModeIsTheDissertationsScheme) {
   p.cells = 100;
   p.ramp_steps = 4;
   const GasState state = random_state(p, 5, rough);
-  const auto solver = create_seed_solver(backend, p);
+  const auto solver = create_baseline_solver(backend, p);
   solver->upload(0, fields(state));
   solver->start();
   const double end_time = time_of(p, state, 8);
   EXPECT_EQ(solver->advance(end_time, -1, 0, {}, {}), Stop::target);
   p.weno = Weno::js;
-  p.mean = Mean::conserved;
+  p.face_average = FaceAverage::conserved;
   p.splitting = Splitting::lf_global;
   p.positivity = Positivity::off;
   reference::GasRun run = reference_from(state);
   reference::advance(run, p, end_time);
-  EXPECT_EQ(solver->resume_state().step, run.steps);
+  EXPECT_EQ(solver->restart_state().step, run.steps);
   EXPECT_LT(distance(download(*solver, p), state_of(run)), 1e-12);
-  const Phases phases = solver->phases();
-  EXPECT_GT(phases.h2d, 0.0);
-  EXPECT_GT(phases.compute, 0.0);
-  EXPECT_GT(phases.d2h, 0.0);
+  const PhaseTimes phase_times = solver->phase_times();
+  EXPECT_GT(phase_times.h2d, 0.0);
+  EXPECT_GT(phase_times.compute, 0.0);
+  EXPECT_GT(phase_times.d2h, 0.0);
 }
 
 TEST(GasSolver, SeedModeIsTheSameInAnyMemoryAndBlock) {
@@ -148,7 +148,7 @@ TEST(GasSolver, SeedModeIsTheSameInAnyMemoryAndBlock) {
     for (const int block : {0, 32, 512}) {
       p.pinned = pinned;
       p.block = block;
-      const auto solver = create_seed_solver(backend, p);
+      const auto solver = create_baseline_solver(backend, p);
       solver->upload(0, fields(start));
       solver->start();
       EXPECT_EQ(solver->advance(1.0, 20, 0, {}, {}), Stop::pause);
@@ -241,7 +241,7 @@ TEST(GasSolver, SnapshotsKeepTheirMoment) {
     const GasState then = download(*solver, p);
     solver->begin_snapshot();
     EXPECT_EQ(solver->advance(1.0, pause + 2, 0, {}, {}), Stop::pause);
-    const ConstConserved snapshot = solver->finish_snapshot();
+    const ConstConservedFields snapshot = solver->finish_snapshot();
     const auto copy = [](std::span<const double> values) {
       return std::vector<double>(values.begin(), values.end());
     };
@@ -250,11 +250,12 @@ TEST(GasSolver, SnapshotsKeepTheirMoment) {
   }
 }
 
-bool same_progress(const Resume& a, const Resume& b) {
+bool same_progress(const RestartState& a, const RestartState& b) {
   return a.time == b.time && a.step == b.step && a.limited == b.limited && a.limited_left == b.limited_left &&
          a.dt_scale == b.dt_scale && std::memcmp(a.speed, b.speed, sizeof(a.speed)) == 0 &&
          std::memcmp(a.boundary, b.boundary, sizeof(a.boundary)) == 0 && a.redone == b.redone &&
-         a.touches == b.touches && a.last_dt == b.last_dt && a.dt_min == b.dt_min && a.dt_max == b.dt_max;
+         a.limited_faces == b.limited_faces && a.last_dt == b.last_dt && a.dt_min == b.dt_min &&
+         a.dt_max == b.dt_max;
 }
 
 /// Runs to step 60 at once, with pauses, and in a new solver from what the first gave at step 23.
@@ -271,18 +272,18 @@ TEST(GasSolver, GoesOnWithTheSameBitsAfterARestart) {
     const auto parts = started(backend, p, state);
     ASSERT_EQ(parts->advance(100.0, 23, 0, {}, {}), Stop::pause) << text;
     const auto resumed = create_solver(backend, p);
-    std::vector<std::uint8_t> touched(p.positivity == Positivity::off ? 0
-                                                                      : static_cast<std::size_t>(p.cells));
-    parts->download_touched(0, touched);
+    std::vector<std::uint8_t> limited_faces(
+        p.positivity == Positivity::off ? 0 : static_cast<std::size_t>(p.cells));
+    parts->download_limited_cells(0, limited_faces);
     resumed->upload(0, fields(download(*parts, p)));
-    resumed->upload_touched(0, touched);
-    resumed->restore(parts->resume_state());
+    resumed->upload_limited_cells(0, limited_faces);
+    resumed->restore(parts->restart_state());
     for (const auto& solver : {parts.get(), resumed.get()}) {
       ASSERT_EQ(solver->advance(100.0, 41, 0, {}, {}), Stop::pause) << text;
       ASSERT_EQ(solver->advance(100.0, 60, 0, {}, {}), Stop::pause) << text;
       EXPECT_TRUE(same_bits(download(*solver, p), download(*whole, p))) << text;
-      EXPECT_TRUE(same_progress(solver->resume_state(), whole->resume_state())) << text;
-      EXPECT_EQ(solver->touched_cells(), whole->touched_cells()) << text;
+      EXPECT_TRUE(same_progress(solver->restart_state(), whole->restart_state())) << text;
+      EXPECT_EQ(solver->limited_cells(), whole->limited_cells()) << text;
       EXPECT_EQ(solver->totals().energy, whole->totals().energy) << text;
     }
   }
@@ -295,7 +296,7 @@ TEST(GasSolver, RowsGoOnAfterARestart) {
   ASSERT_EQ(first->advance(10.0, 37, 0, {}, {}), Stop::pause);
   const auto second = create_solver(backend, p);
   second->upload(0, fields(download(*first, p)));
-  second->restore(first->resume_state());
+  second->restore(first->restart_state());
   std::vector<std::int64_t> steps;
   ASSERT_EQ(second->advance(10.0, 65, 10, [&](const HistoryRow& row) { steps.push_back(row.step); }, {}),
             Stop::pause);
@@ -307,7 +308,7 @@ TEST(GasSolver, RefusesParametersOutOfRange) {
     Parameters p;
     change(p);
     EXPECT_THROW(static_cast<void>(create_solver(backend, p)), std::invalid_argument);
-    EXPECT_THROW(static_cast<void>(create_seed_solver(backend, p)), std::invalid_argument);
+    EXPECT_THROW(static_cast<void>(create_baseline_solver(backend, p)), std::invalid_argument);
   };
   refused([](Parameters& p) { p.cells = 7; });
   refused([](Parameters& p) { p.cells = (std::int64_t{1} << 28) + 1; });

@@ -12,7 +12,7 @@ BUILD = pathlib.Path(os.environ["DROGUE_BUILD"])
 FUNCTOR = "StepFunctor<Kokkos::Serial, (drogue::gas::Reconstruction)0, (drogue::gas::Precision)0, false>"
 # With the part of its faces that GCC keeps in a function of its own.
 CHUNK = "FaceChunk<drogue::device::Pack<double,"
-FACE_DIVISIONS = 7  # `face_arithmetic` in kernels/gas/work.hpp
+FACE_DIVISIONS = 7  # `face_arithmetic` in kernels/gas/step_work.hpp
 
 
 def not_here():

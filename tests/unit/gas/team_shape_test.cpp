@@ -1,4 +1,4 @@
-#include "kernels/gas/team_shape.hpp"
+#include "kernels/gas/tile/team_shape.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,9 +11,9 @@ TEST(TeamShape, EveryBlockFitsTheSharedMemoryOfATeam) {
   for (const int rows : {cell_rows, device_rows})
     for (int team = 32; team <= largest_team; team += 32) {
       const int slots = fitting_slots(rows, team, team);
-      EXPECT_LE(shared_bytes(rows, slots, team), most_shared_bytes) << team;
+      EXPECT_LE(shared_bytes(rows, slots, team), max_shared_bytes) << team;
       EXPECT_GT(slots, 2 * largest_halo) << team;
-      EXPECT_TRUE(slots == team || shared_bytes(rows, slots + 1, team) > most_shared_bytes) << team;
+      EXPECT_TRUE(slots == team || shared_bytes(rows, slots + 1, team) > max_shared_bytes) << team;
     }
   EXPECT_EQ(fitting_slots(device_rows, largest_tile, usual_team), largest_tile);
 }

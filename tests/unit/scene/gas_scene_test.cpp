@@ -72,7 +72,7 @@ TEST(GasScene, TheLeastSceneHasTheDocumentedDefaults) {
   EXPECT_EQ(parameters.weno_power, 1);
   EXPECT_EQ(parameters.splitting, gas::Splitting::lf_stencil);
   EXPECT_EQ(parameters.time_scheme, gas::TimeScheme::ssprk3);
-  EXPECT_EQ(parameters.mean, gas::Mean::arithmetic);
+  EXPECT_EQ(parameters.face_average, gas::FaceAverage::arithmetic);
   EXPECT_EQ(parameters.positivity, gas::Positivity::automatic);
   EXPECT_EQ(parameters.precision, gas::Precision::full);
   EXPECT_EQ(parameters.cfl, 0.6);
@@ -137,7 +137,7 @@ TEST(GasScene, SeedModeTakesTheSchemeOfTheDissertation) {
   const GasScene scene = read_text(least, {"scheme.weno_power=2"}, SchemeSource::dissertation);
   EXPECT_EQ(scene.parameters.weno, gas::Weno::js);
   EXPECT_EQ(scene.parameters.splitting, gas::Splitting::lf_global);
-  EXPECT_EQ(scene.parameters.mean, gas::Mean::conserved);
+  EXPECT_EQ(scene.parameters.face_average, gas::FaceAverage::conserved);
   EXPECT_EQ(scene.parameters.positivity, gas::Positivity::off);
   const std::string printed = print_gas_scene(scene);
   EXPECT_EQ(print_gas_scene(read_text(printed)), printed);

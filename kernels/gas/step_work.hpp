@@ -3,17 +3,20 @@
 #include <cstdint>
 
 #include "kernels/gas/parameters.hpp"
-#include "kernels/gas/stage_table.hpp"
+#include "kernels/gas/stepping/stage_table.hpp"
 
 namespace drogue::gas {
 
-/// Operations on doubles. Constants, what is computed twice, what nobody reads and signs are free.
+/// Number of FP64 operations. Constants, common subexpressions, unused results and sign changes are not
+/// counted.
 struct Arithmetic {
   std::int64_t additions = 0, multiplications = 0;
-  std::int64_t divisions = 0, roots = 0;  ///< a root and its reciprocal are one of each
-  std::int64_t comparisons = 0;           ///< with maxima, minima and selections
+  /// a square root with its reciprocal counts as one root and one division
+  std::int64_t divisions = 0, roots = 0;
+  std::int64_t comparisons = 0;  ///< including maxima, minima and selections
 
-  /// As the peak of a processor counts them: a fused multiply-add is two, a comparison none.
+  /// Floating-point operations by the convention of peak rates: a fused multiply-add is two, a comparison
+  /// none. Does not throw.
   [[nodiscard]] constexpr std::int64_t flops() const {
     return additions + multiplications + divisions + roots;
   }
@@ -29,10 +32,11 @@ struct Arithmetic {
   friend constexpr bool operator==(const Arithmetic&, const Arithmetic&) = default;
 };
 
-// The tables below are counted by tests/kernels/gas/gas_work_host_test.cpp, which runs the functions that
-// they name.
+// The tables below are counted by tests/kernels/gas/gas_step_work_host_test.cpp, which runs the named
+// functions.
 
-/// One face of one stage: `stencil_speeds`, `face_eigensystem` with the arithmetic mean, `weno5_face`.
+/// Operations per face and stage: `stencil_wave_speeds`, `face_eigensystem` with the arithmetic average,
+/// `weno5_face`. Does not throw.
 [[nodiscard]] constexpr Arithmetic face_arithmetic(Weno weno, int power) {
   switch (weno) {
     case Weno::js:
@@ -47,31 +51,32 @@ struct Arithmetic {
   return power == 1 ? Arithmetic{254, 235, 7, 1, 15} : Arithmetic{272, 289, 7, 1, 15};
 }
 
-/// One cell that a tile reads: `load_cells`.
+/// Operations per cell that a tile loads: `load_cells`.
 inline constexpr Arithmetic load_arithmetic{5, 9, 1, 1, 0};
 
-/// One cell of a stage, without U^n: `StepFunctor::update_slot`, and that of the last stage.
+/// Operations per cell of a stage without the U^n term, `StepFunctor::update_slot`; the last stage differs.
 inline constexpr Arithmetic update_arithmetic{11, 11, 1, 1, 8};
 inline constexpr Arithmetic last_update_arithmetic{9, 9, 1, 1, 10};
 
-/// U^n, where a stage has a share of it: `combined`.
+/// Operations per cell of a stage that includes U^n: `runge_kutta_combination`.
 inline constexpr Arithmetic combined_arithmetic{6, 3, 0, 0, 0};
 
-/// How a step divides the mesh.
+/// Decomposition of the mesh into tiles.
 struct Tiling {
-  std::int64_t cells = 0;  ///< that a tile updates
-  int halo = 0;            ///< cells that it reads beyond them on either side
-  bool fused = false;      ///< all stages in one kernel; else a kernel a stage
+  std::int64_t cells = 0;  ///< cells that a tile updates
+  int halo = 0;            ///< cells that a tile reads beyond them on either side
+  bool fused = false;      ///< one kernel for all stages, otherwise one kernel per stage
 };
 
-/// What a step does.
+/// Arithmetic and memory traffic of a step.
 struct StepWork {
-  Arithmetic arithmetic;   ///< none where it is not counted
-  std::int64_t bytes = 0;  ///< between the kernels and the fields: every tile reads a value once a kernel
+  Arithmetic arithmetic;  ///< all zero if not counted
+  /// bytes moved between kernels and fields: each tile reads each value once per kernel
+  std::int64_t bytes = 0;
 };
 
-/// Of one tile that updates `cells` cells. The fused form computes the halo's cells beside its own: three
-/// fewer on either side with every stage.
+/// Work of one tile that updates `cells` cells. The fused form also computes halo cells: three fewer on
+/// either side per stage. Does not throw.
 [[nodiscard]] constexpr StepWork tile_work(const Parameters& p, const Tiling& tiling, std::int64_t cells) {
   constexpr std::int64_t state = 3 * sizeof(double);
   const StageTable table = stage_table(p.time_scheme);
@@ -96,8 +101,9 @@ struct StepWork {
   return work;
 }
 
-/// Of a step of the whole mesh in FP64. Not counted: the arithmetic of a kernel a stage, of split precision,
-/// of other means than the arithmetic one and of the limiter. The ends of the mesh count as its middle.
+/// Work of one step of the whole mesh. Arithmetic is counted for the fused form in full FP64 with the
+/// arithmetic average and without the limiter, and is all zero otherwise. The domain ends count as interior.
+/// Does not throw.
 [[nodiscard]] constexpr StepWork step_work(const Parameters& p, const Tiling& tiling) {
   if (tiling.cells == 0) return {};
   const StepWork whole = tile_work(p, tiling, tiling.cells);
@@ -107,7 +113,8 @@ struct StepWork {
     const StepWork last = tile_work(p, tiling, rest);
     work = {work.arithmetic + last.arithmetic, work.bytes + last.bytes};
   }
-  if (p.precision != Precision::full || p.mean != Mean::arithmetic || p.positivity == Positivity::on)
+  if (p.precision != Precision::full || p.face_average != FaceAverage::arithmetic ||
+      p.positivity == Positivity::on)
     work.arithmetic = {};
   return work;
 }

@@ -1,9 +1,9 @@
 #pragma once
 
-#include "kernels/gas/launch.hpp"
-#include "kernels/gas/persistent_step.hpp"
-#include "kernels/gas/stage.hpp"
-#include "kernels/gas/step.hpp"
+#include "kernels/gas/stepping/launch.hpp"
+#include "kernels/gas/stepping/persistent_step.hpp"
+#include "kernels/gas/stepping/stage.hpp"
+#include "kernels/gas/stepping/step.hpp"
 
 namespace drogue::gas {
 
@@ -15,7 +15,8 @@ void launch_tiles(const char* label, const ExecutionSpace& space, const TileShap
   Policy policy(space, static_cast<int>(tiles), team_size);
   policy.set_scratch_size(
       0, Kokkos::PerTeam(static_cast<int>(Tile<ExecutionSpace>::scratch_bytes(shape) + scratch_margin)));
-  // A light functor travels as a kernel argument; the other way, through constant memory, cannot be captured.
+  // A light-weight functor is passed as a kernel argument. The alternative, constant memory, cannot be
+  // captured in a graph.
   Kokkos::parallel_for(
       label, Kokkos::Experimental::require(policy, Kokkos::Experimental::WorkItemProperty::HintLightWeight),
       functor);
@@ -24,7 +25,7 @@ void launch_tiles(const char* label, const ExecutionSpace& space, const TileShap
 template <bool many_slots, class ExecutionSpace, class Functor>
 void launch(const char* label, const ExecutionSpace& space, const StageSetup<ExecutionSpace>& setup,
             const TileShape& shape, const Functor& functor) {
-  const std::int64_t tiles = (setup.ends.cells + shape.cells - 1) / shape.cells;
+  const std::int64_t tiles = (setup.boundaries.cells + shape.cells - 1) / shape.cells;
   if constexpr (device::is_host<ExecutionSpace>) {
     launch_tiles<Kokkos::TeamPolicy<ExecutionSpace>>(label, space, shape, tiles, setup.team_size, functor);
   } else {
@@ -48,15 +49,15 @@ void launch_stage_as(const ExecutionSpace& space, const StageSetup<ExecutionSpac
   const StageFunctor<ExecutionSpace, scheme, precision, limited> functor{
       {setup.buffer[0], setup.buffer[1], setup.buffer[2]},
       setup.control,
-      setup.touched,
+      setup.limited_cells,
       setup.table.stage[stage],
       setup.stage_shape,
-      setup.ends,
+      setup.boundaries,
       setup.gamma,
       1.0 / setup.dx,
       stage,
       setup.splitting,
-      setup.mean,
+      setup.average,
       last || limited || setup.splitting != Splitting::lf_stencil};
   launch<false>(limited ? "drogue::gas::stage_limited" : "drogue::gas::stage", space, setup,
                 setup.stage_shape, functor);
@@ -83,13 +84,13 @@ StepFunctor<ExecutionSpace, scheme, precision, limited> step_functor(const Stage
                                                                      const TileShape& shape) {
   return {{setup.buffer[0], setup.buffer[1], setup.buffer[2]},
           setup.control,
-          setup.touched,
+          setup.limited_cells,
           setup.table,
           shape,
-          setup.ends,
+          setup.boundaries,
           setup.gamma,
           1.0 / setup.dx,
-          setup.mean};
+          setup.average};
 }
 
 template <Reconstruction scheme, Precision precision, class ExecutionSpace>
@@ -104,22 +105,23 @@ void launch_step_as(const ExecutionSpace& space, const StageSetup<ExecutionSpace
 
 template <Reconstruction scheme, Precision precision, class ExecutionSpace>
 void launch_persistent_steps_as(const StageSetup<ExecutionSpace>& setup,
-                                const PersistentSetup<ExecutionSpace>& persistent, std::int64_t most_steps) {
+                                const PersistentSetup<ExecutionSpace>& persistent,
+                                std::int64_t max_steps_per_launch) {
   const PersistentStepFunctor<ExecutionSpace, scheme, precision> functor{
       step_functor<scheme, precision, false>(setup, persistent.shape), persistent.status,
-      persistent.constants, most_steps};
+      persistent.constants, max_steps_per_launch};
   persistent.grid.template launch<largest_persistent_team, 1>(functor);
 }
 
 template <Reconstruction scheme, class ExecutionSpace>
 void launch_persistent_steps(const StageSetup<ExecutionSpace>& setup,
                              const PersistentSetup<ExecutionSpace>& persistent, Precision precision,
-                             std::int64_t most_steps) {
+                             std::int64_t max_steps_per_launch) {
   if constexpr (device::PersistentKernel<ExecutionSpace>::available) {
     if (precision == Precision::full)
-      launch_persistent_steps_as<scheme, Precision::full>(setup, persistent, most_steps);
+      launch_persistent_steps_as<scheme, Precision::full>(setup, persistent, max_steps_per_launch);
     else
-      launch_persistent_steps_as<scheme, Precision::split>(setup, persistent, most_steps);
+      launch_persistent_steps_as<scheme, Precision::split>(setup, persistent, max_steps_per_launch);
   }
 }
 

@@ -7,15 +7,16 @@
 
 namespace drogue::gas {
 
-/// Nonlinear weights of Z with power 2 are a scheme of their own for the compiler.
+/// Reconstruction scheme as a compile-time constant. The Z weights of power 2 are a scheme of their own.
 enum class Reconstruction { js, z1, z2, m, teno5 };
 
-/// How many times larger than l.d(F +- alpha U)/2, with the normalised left eigenvector l, a characteristic
-/// difference reaches the reconstruction, beside the eigensystem's own unit: the splitting drops its 1/2,
-/// acoustic eigenvectors carry a factor 2.
+/// Scale of the characteristic differences passed to the reconstruction, relative to l.d(F +- alpha U)/2 with
+/// the normalised left eigenvector l. The splitting omits its 1/2, and the acoustic eigenvectors carry a
+/// factor 2.
 inline constexpr int acoustic_scale = 4, entropy_scale = 2;
 
-/// How many times too large `correction` is: it has no division but the one of the weights.
+/// Factor by which `correction` exceeds the true correction. It saves all divisions but the one of the
+/// weights.
 inline constexpr int correction_scale = 3;
 
 template <class R>
@@ -23,9 +24,9 @@ struct Indicators {
   R b0, b1, b2;
 };
 
-/// b_k + epsilon with b_k of Jiang and Shu 1996, eq. (3.2)-(3.4), times 3/4, from the four differences of the
-/// five stencil values. Completing the squares, 13 (a - b)^2 + 3 (a - 3 b)^2 = 16 ((a - 11/8 b)^2 + 39/64
-/// b^2) and so on, takes ten operations where the printed form takes eighteen.
+/// Smoothness indicators b_k + epsilon of Jiang and Shu 1996, eq. (3.2)-(3.4), times 3/4, from the four
+/// differences of the five stencil values. Completing the squares, 13 (a - b)^2 + 3 (a - 3 b)^2 = 16 ((a -
+/// 11/8 b)^2 + 39/64 b^2) and so on, takes ten operations instead of eighteen.
 template <class R>
 KOKKOS_INLINE_FUNCTION Indicators<R> smoothness(R a, R b, R c, R d, R epsilon) {
   using S = typename device::Access<R>::Element;
@@ -34,8 +35,8 @@ KOKKOS_INLINE_FUNCTION Indicators<R> smoothness(R a, R b, R c, R d, R epsilon) {
   return {left * left + b_part, middle * middle + c_part, right * right + c_part};
 }
 
-/// q_k of the weights w_k = d_k q_k / (q_0 + 6 q_1 + 3 q_2) with the linear weights d = (1, 6, 3), multiplied
-/// through so that none divides.
+/// Ratios q_k of the weights w_k = d_k q_k / (q_0 + 6 q_1 + 3 q_2) with the linear weights d = (1, 6, 3),
+/// multiplied by a common denominator to avoid divisions.
 template <Reconstruction scheme, class R>
 KOKKOS_INLINE_FUNCTION Indicators<R> weight_ratios(Indicators<R> indicators) {
   using S = typename device::Access<R>::Element;
@@ -48,9 +49,9 @@ KOKKOS_INLINE_FUNCTION Indicators<R> weight_ratios(Indicators<R> indicators) {
     const R tau = device::absolute(b0 - b2);
     return {(b0 + tau) * b12, (b1 + tau) * b02, (b2 + tau) * b01};
   } else if constexpr (scheme == Reconstruction::z2) {
-    // 1 + (tau / (b_k + eps))^2. Six indicators leave the range of a double where a cold gas meets a
-    // hot one (Sedov: differences of 1e25), so the squares are taken of what is less than two; in single
-    // precision `correction` has seen to that.
+    // 1 + (tau / (b_k + eps))^2. Products of six indicators leave the range of a double where a cold gas
+    // meets a hot one (Sedov: differences of 1e25). Hence the ratios are scaled below two before squaring. In
+    // single precision `correction` has scaled them already.
     const R tau = device::absolute(b0 - b2);
     R all = b0 * b12, q0 = tau * b12, q1 = tau * b02, q2 = tau * b01;
     if constexpr (!std::is_same_v<S, float>) {
@@ -60,9 +61,9 @@ KOKKOS_INLINE_FUNCTION Indicators<R> weight_ratios(Indicators<R> indicators) {
     const R all2 = all * all;
     return {all2 + q0 * q0, all2 + q1 * q1, all2 + q2 * q2};
   } else {
-    // Fu, Hu and Adams 2016, eq. (14)-(17). The sixth power of the ratio overflows for smooth data (eps is
-    // tiny), so the ratios are brought to less than two first; the cut-off compares g_k with their sum. It is
-    // a decision, for which six digits are enough: in double precision it took a seventh of the time.
+    // Fu, Hu and Adams 2016, eq. (14)-(17). The sixth power of the ratio overflows for smooth data because
+    // eps is tiny, so the ratios are first scaled below two. The cut-off compares g_k with their sum. This
+    // decision needs only six digits; double precision took a seventh of the run time.
     using Single = typename device::SingleOf<R>::Type;
     using F = typename device::Access<Single>::Element;
     const R tau = device::absolute(b0 - b2);
@@ -81,31 +82,31 @@ KOKKOS_INLINE_FUNCTION Indicators<R> weight_ratios(Indicators<R> indicators) {
   }
 }
 
-/// Henrick, Aslam and Powers 2005, eq. (24).
+/// Mapped weight of Henrick, Aslam and Powers 2005, eq. (24).
 template <class R, class S>
 KOKKOS_INLINE_FUNCTION R mapped(R w, S d) {
   return w * (S(d + d * d) + w * (w - S(3) * d)) / (S(d * d) + w * S(S(1) - S(2) * d));
 }
 
-/// Fifth-order correction to the fourth-order central flux from one side: phi of the difference form,
-/// w_0/3 (a - 2b + c) + (w_2 - 1/2)/6 (b - 2c + d), `correction_scale` times, from the four characteristic
-/// differences in `scale` times `unit` (which epsilon follows). Jiang and Shu 1996, eq. (2.17) rewritten.
+/// Fifth-order correction phi to the fourth-order central flux from one side, times `correction_scale`: w_0/3
+/// (a - 2b + c) + (w_2 - 1/2)/6 (b - 2c + d). The four characteristic differences are in units of `scale`
+/// times `unit`, and epsilon is scaled likewise. Jiang and Shu 1996, eq. (2.17) in difference form.
 template <Reconstruction scheme, int scale, class R>
 KOKKOS_INLINE_FUNCTION R correction(R a, R b, R c, R d, R unit) {
   using S = typename device::Access<R>::Element;
   constexpr bool single = std::is_same_v<S, float>;
   constexpr double indicator_scale = 0.75 * scale * scale;  // see `smoothness`
-  // The floor keeps the fourth power of epsilon (JS, M), or its third, a normal number in the coldest gas; in
-  // single precision it is lost, and what follows does without.
+  // The floor keeps the fourth power of epsilon (JS, M), or its third power, a normal number in the coldest
+  // gas. It underflows in single precision, where later code does not need it.
   constexpr bool fourth = scheme == Reconstruction::js || scheme == Reconstruction::m;
   constexpr double floor_of_epsilon = single ? 0.0 : fourth ? 1e-75 : 1e-100;
   R epsilon = S((scheme == Reconstruction::js ? 1e-6 : 1e-40) * indicator_scale) * (unit * unit) +
               S(floor_of_epsilon);
   R ka = a, kb = b, kc = c, kd = d;
   if constexpr (single) {
-    // The indicators' products leave the range of a float: bring the largest difference to [2, 4) first. The
-    // floor keeps an empty stencil finite; 1e-6 for JS, whose eps is absolute and far larger than such a
-    // stencil. The smallest product of powers of eps (Z, p = 2: its sixth) must stay a normal number.
+    // The products of indicators leave the range of a float, so the largest difference is first scaled to [2,
+    // 4). The floor keeps a constant stencil finite; it is 1e-6 for JS, whose absolute eps is far larger than
+    // such a stencil. The smallest product of powers of eps (Z, p = 2: the sixth) must stay a normal number.
     const R largest = device::maximum(device::maximum(device::absolute(a), device::absolute(b)),
                                       device::maximum(device::absolute(c), device::absolute(d)));
     const R floor = scheme == Reconstruction::js ? 1e-6F * unit : R(1e-30F);
@@ -125,9 +126,9 @@ KOKKOS_INLINE_FUNCTION R correction(R a, R b, R c, R d, R unit) {
     sum = q.b0 + q.b1 + q.b2;
     q.b2 = S(1.0 / 3.0) * q.b2;
   }
-  // w_0 (a - 2b + c) + (2 w_2 - 1) / 4 (b - 2c + d). Little waits for the division; for JS, whose products
-  // are of ninth degree, differences may reach 1e33. In single precision, where q may be as large as numbers
-  // get, the weights come first.
+  // w_0 (a - 2b + c) + (2 w_2 - 1) / 4 (b - 2c + d). In double precision the division comes last, so that few
+  // operations depend on it; the products of JS are of ninth degree and allow differences up to 1e33. In
+  // single precision the weights are normalised first, because q may be close to the largest float.
   const R inverse = device::reciprocal(sum);
   const R first = a - S(2) * b + c, last = b - S(2) * c + d;
   if constexpr (single)

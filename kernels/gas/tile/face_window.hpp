@@ -1,34 +1,34 @@
 #pragma once
 
-#include "kernels/gas/tile_update.hpp"
+#include "kernels/gas/tile/tile_update.hpp"
 
 namespace drogue::gas {
 
-/// The stencils of consecutive faces, one after the other, for a device thread in split precision: the next
-/// face costs five differences and conversions where a stencil of its own costs twenty-five. In full
-/// precision they would fill twice the registers, and there are none left.
+/// Sliding window over the stencils of consecutive faces, for a device thread in split precision. The next
+/// face costs five differences and conversions instead of twenty-five. In full precision the window would
+/// exceed the register budget.
 template <class N, class Tile>
 class FaceWindow {
  public:
   using Value = double;
 
-  Triple<N> d_state[5];
+  ConservedVector<N> d_state[5];
   N d_flux_m[5], d_flux_energy[5];
 
-  /// Before `face`, which the first `advance` leads to.
+  /// Positions the window before `face`; the first `advance` moves to it.
   KOKKOS_FUNCTION FaceWindow(const Tile& tile, int face) : _tile(tile), _face(face - 1) {
     load(_values, face);
     load_speeds(face);
     for (int k = 1; k < 5; ++k) push(face + k);
   }
 
-  /// Moves on by a face.
+  /// Moves to the next face.
   KOKKOS_FUNCTION void advance() {
     ++_face;
     push(_face + 5);
   }
 
-  [[nodiscard]] KOKKOS_FUNCTION Speeds<N> speeds() const {
+  [[nodiscard]] KOKKOS_FUNCTION WaveSpeeds<N> wave_speeds() const {
     const auto fastest = [](const N(&speed)[6]) {
       return device::maximum(
           device::maximum(device::maximum(speed[0], speed[1]), device::maximum(speed[2], speed[3])),
@@ -37,8 +37,8 @@ class FaceWindow {
     return {fastest(_slow), fastest(_entropy), fastest(_fast)};
   }
 
-  /// Of doubles, which are read again: their registers are worth more than the loads.
-  [[nodiscard]] KOKKOS_FUNCTION Triple<double> central() const {
+  /// Central flux in double precision. Reloads its values, because registers are scarcer than loads here.
+  [[nodiscard]] KOKKOS_FUNCTION ConservedVector<double> central() const {
     const auto of = [&](TileField field) {
       const auto value = [&](int k) { return _tile.template load<double>(field, _face + k); };
       return central_flux(value(2) + value(3), value(2) - value(1), value(4) - value(3));
@@ -56,7 +56,7 @@ class FaceWindow {
     values[3] = _tile.template load<double>(TileField::flux_m, slot);
     values[4] = _tile.template load<double>(TileField::flux_energy, slot);
   }
-  /// A conversion keeps order: the largest of the converted is the largest, converted.
+  /// Conversion is monotone: the maximum of converted values is the converted maximum.
   KOKKOS_FUNCTION void load_speeds(int slot) {
     _slow[5] = To::from(_tile.template load<double>(TileField::slow, slot));
     _entropy[5] = To::from(device::absolute(_tile.template load<double>(TileField::u, slot)));
@@ -80,7 +80,7 @@ class FaceWindow {
 
   const Tile& _tile;
   int _face;
-  double _values[5];  ///< of the last slot, in the order of TileField
+  double _values[5];  ///< values of the last slot, in the order of TileField
   N _slow[6], _entropy[6], _fast[6];
 };
 

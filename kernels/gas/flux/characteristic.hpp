@@ -1,13 +1,12 @@
 #pragma once
 
-#include "kernels/gas/euler.hpp"
+#include "kernels/gas/flux/euler.hpp"
 #include "kernels/gas/parameters.hpp"
 
 namespace drogue::gas {
 
-/// Eigenvectors of dF/dU at a face: right ones (1, u-c, H-uc), (1, u, u^2/2), (1, u+c, H+uc); left ones
-/// scaled so that a projection is six operations: the acoustic ones by 2 c^2/(gamma-1), the entropy one not
-/// at all.
+/// Eigenvectors of dF/dU at a face. Right ones: (1, u-c, H-uc), (1, u, u^2/2), (1, u+c, H+uc). The acoustic
+/// left ones are scaled by 2 c^2/(gamma-1), so that a projection takes six operations.
 template <class R>
 struct Eigensystem {
   R u, c, enthalpy, kinetic;  ///< kinetic = u^2/2
@@ -20,8 +19,8 @@ struct Characteristic {
   R slow, entropy, fast;
 };
 
-/// The means and H - u^2/2 are formed in R (at Mach 2000 the difference has no digit left in single
-/// precision); what follows is of type N.
+/// Eigensystem for velocity `u` and total enthalpy `enthalpy`. H - u^2/2 is formed in R, because at Mach 2000
+/// the difference has no correct digit in single precision; later operations use N.
 template <class N, class R, class S>
 KOKKOS_INLINE_FUNCTION Eigensystem<N> eigensystem(S gamma, R u, R enthalpy) {
   using F = typename device::Access<N>::Element;
@@ -34,20 +33,20 @@ KOKKOS_INLINE_FUNCTION Eigensystem<N> eigensystem(S gamma, R u, R enthalpy) {
           unit * c.inverse};
 }
 
-/// A cell beside a face, as the means need it.
+/// Quantities of a cell beside a face that the averages use.
 template <class R>
 struct FaceCell {
   R rho, m, energy, u, enthalpy;
 };
 
-/// Eigensystem of the mean state of the two cells beside a face.
+/// Eigensystem of the average state of the two cells beside a face.
 template <class N, class R, class S>
-KOKKOS_INLINE_FUNCTION Eigensystem<N> face_eigensystem(Mean mean, S gamma, const FaceCell<R>& left,
+KOKKOS_INLINE_FUNCTION Eigensystem<N> face_eigensystem(FaceAverage average, S gamma, const FaceCell<R>& left,
                                                        const FaceCell<R>& right) {
-  if (mean == Mean::arithmetic)
+  if (average == FaceAverage::arithmetic)
     return eigensystem<N, R>(gamma, S(0.5) * (left.u + right.u), S(0.5) * (left.enthalpy + right.enthalpy));
-  if (mean == Mean::conserved) {
-    const R inverse = device::reciprocal(left.rho + right.rho);  // the halves of the three means cancel
+  if (average == FaceAverage::conserved) {
+    const R inverse = device::reciprocal(left.rho + right.rho);  // the halves of the three averages cancel
     const R m = left.m + right.m, energy = left.energy + right.energy;
     const R u = m * inverse;
     return eigensystem<N, R>(gamma, u, (energy + pressure(gamma, m, energy, u)) * inverse);
@@ -59,7 +58,7 @@ KOKKOS_INLINE_FUNCTION Eigensystem<N> face_eigensystem(Mean mean, S gamma, const
                            (wl * left.enthalpy + wr * right.enthalpy) * inverse);
 }
 
-/// L d for a difference d = (drho, dm, dE) of U or F, in the eigenvectors' scale.
+/// Projection L d of a difference d = (drho, dm, dE) of U or F, in the scale of the eigenvectors.
 template <class R>
 KOKKOS_INLINE_FUNCTION Characteristic<R> project(const Eigensystem<R>& e, R d_rho, R d_m, R d_energy) {
   const R s = e.kinetic * d_rho + (d_energy - e.u * d_m);

@@ -1,43 +1,43 @@
 #pragma once
 
-#include "kernels/gas/characteristic.hpp"
-#include "kernels/gas/weno.hpp"
+#include "kernels/gas/flux/characteristic.hpp"
+#include "kernels/gas/flux/weno.hpp"
 
 namespace drogue::gas {
 
-/// One vector of the three conserved quantities: a flux, a state or a difference of either.
+/// Vector of the three conserved quantities: a state, a flux, or a difference of either.
 template <class R>
-struct Triple {
+struct ConservedVector {
   R rho, m, energy;
 };
 
-/// (-f[-1] + 7 f[0] + 7 f[1] - f[2]) / 12, the linear fourth-order flux, from f[0] + f[1] and the differences
-/// on either side of the two.
+/// Linear fourth-order flux (-f[-1] + 7 f[0] + 7 f[1] - f[2]) / 12, from f[0] + f[1] and the differences on
+/// either side.
 template <class R>
 KOKKOS_INLINE_FUNCTION R central_flux(R sum, R before, R after) {
   using S = typename device::Access<R>::Element;
   return S(0.5) * sum - S(1.0 / 12.0) * (after - before);
 }
 
-/// What the flux at face i+1/2 sees of the six cells i-2 .. i+3: the five differences of neighbours, of
-/// states and fluxes, and the sum of the two fluxes beside the face. The mass flux is the momentum.
+/// Input of the flux at face i+1/2 from the cells i-2 .. i+3: the five differences of neighbouring states and
+/// fluxes, and the sum of the two fluxes beside the face. The mass flux is the momentum.
 template <class R>
 struct Stencil {
   using Value = R;
 
-  Triple<R> d_state[5];
+  ConservedVector<R> d_state[5];
   R d_flux_m[5], d_flux_energy[5];
-  Triple<R> flux_sum;
+  ConservedVector<R> flux_sum;
 
-  [[nodiscard]] KOKKOS_FUNCTION Triple<R> central() const {
+  [[nodiscard]] KOKKOS_FUNCTION ConservedVector<R> central() const {
     return {central_flux(flux_sum.rho, d_state[1].m, d_state[3].m),
             central_flux(flux_sum.m, d_flux_m[1], d_flux_m[3]),
             central_flux(flux_sum.energy, d_flux_energy[1], d_flux_energy[3])};
   }
 };
 
-/// The split differences of one characteristic field: the right-going part sees the first four of the five,
-/// the left-going part the last four in reverse.
+/// Split differences of one characteristic field. The right-going part uses the first four of the five
+/// differences, the left-going part the last four in reverse order.
 template <class R>
 struct SplitDifferences {
   R right[4], left[4];
@@ -46,7 +46,7 @@ struct SplitDifferences {
     if (k < 4) right[k] = df + alpha * du;
     if (k > 0) left[4 - k] = df - alpha * du;
   }
-  /// `correction_scale * scale * unit` times the field's correction from both sides.
+  /// Correction of the field from both sides, times `correction_scale * scale * unit`.
   template <Reconstruction scheme, int scale>
   KOKKOS_FUNCTION R corrected(R unit) const {
     return correction<scheme, scale, R>(right[0], right[1], right[2], right[3], unit) -
@@ -54,15 +54,15 @@ struct SplitDifferences {
   }
 };
 
-/// Characteristic finite-difference WENO5 flux at a face in difference form (gas.md section 2; Jiang and Shu
-/// 1996, section 2): the central flux minus the projected nonlinear corrections.
+/// Characteristic finite-difference WENO5 flux at a face in difference form (docs/gas.md, section 2; Jiang
+/// and Shu 1996, section 2): the central flux minus the projected nonlinear corrections.
 ///
-/// `N` is the type of all that is nonlinear: R itself, or its single-precision twin for split precision.
-/// `AnyStencil` is `Stencil` or what has its differences and its central flux. Inlined by force: called, its
-/// stencil would travel through memory.
+/// `N` is the type of the nonlinear terms: R, or its single-precision twin for split precision. `AnyStencil`
+/// is `Stencil` or a type with the same differences and `central()`. Force-inlined: a call would spill its
+/// arguments.
 template <Reconstruction scheme, class N, class AnyStencil, class R = typename AnyStencil::Value>
-KOKKOS_FORCEINLINE_FUNCTION Triple<R> weno5_face(const AnyStencil& s, const Eigensystem<N>& e,
-                                                 const Speeds<N>& alpha) {
+KOKKOS_FORCEINLINE_FUNCTION ConservedVector<R> weno5_face(const AnyStencil& s, const Eigensystem<N>& e,
+                                                          const WaveSpeeds<N>& alpha) {
   using To = device::Convert<N>;
   SplitDifferences<N> slow, entropy, fast;
   for (int k = 0; k < 5; ++k) {
@@ -81,7 +81,7 @@ KOKKOS_FORCEINLINE_FUNCTION Triple<R> weno5_face(const AnyStencil& s, const Eige
   const N acoustic = F(1.0 / (correction_scale * acoustic_scale)) * e.inverse_unit;
   const N sum = acoustic * (k1 + k3), difference = acoustic * e.c * (k3 - k1);
   using Back = device::Convert<R>;
-  const Triple<R> central = s.central();
+  const ConservedVector<R> central = s.central();
   return {central.rho - Back::from(sum + k2), central.m - Back::from(e.u * (sum + k2) + difference),
           central.energy - Back::from(e.enthalpy * sum + e.kinetic * k2 + e.u * difference)};
 }

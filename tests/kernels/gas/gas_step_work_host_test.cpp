@@ -5,8 +5,8 @@
 
 #include "tests/support/counted_step.hpp"
 
-// The tables of kernels/gas/work.hpp say what the kernels do: each number that changes here changes what a
-// step costs on every machine.
+// The tables of kernels/gas/step_work.hpp say what the kernels do: each number that changes here changes what
+// a step costs on every machine.
 
 namespace drogue::gas {
 
@@ -111,9 +111,11 @@ TEST(GasWork, ACellCostsWhatTheTableSays) {
     EXPECT_EQ(count.update<false>(step, tile, tile.halo, 0), update_arithmetic);
     EXPECT_EQ(count.update<true>(step, tile, tile.halo, 0), last_update_arithmetic);
   });
-  const auto input = [] { return Triple<Counted>{Counted::input(1), Counted::input(2), Counted::input(3)}; };
+  const auto input = [] {
+    return ConservedVector<Counted>{Counted::input(1), Counted::input(2), Counted::input(3)};
+  };
   EXPECT_EQ(arithmetic_of([&] {
-              const Triple<Counted> u = combined(input(), 0.75, input());
+              const ConservedVector<Counted> u = runge_kutta_combination(input(), 0.75, input());
               u.rho.keep(), u.m.keep(), u.energy.keep();
             }),
             combined_arithmetic);
@@ -198,9 +200,9 @@ TEST(GasWork, WhatIsNotCountedIsNotSaid) {
   p.precision = Precision::split;
   EXPECT_EQ(step_work(p, fused).arithmetic, Arithmetic{});
   p.precision = Precision::full;
-  p.mean = Mean::roe;
+  p.face_average = FaceAverage::roe;
   EXPECT_EQ(step_work(p, fused).arithmetic, Arithmetic{});
-  p.mean = Mean::arithmetic;
+  p.face_average = FaceAverage::arithmetic;
   p.positivity = Positivity::on;
   EXPECT_EQ(step_work(p, fused).arithmetic, Arithmetic{});
   p.positivity = Positivity::off;

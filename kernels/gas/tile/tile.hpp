@@ -3,46 +3,46 @@
 #include <Kokkos_Core.hpp>
 
 #include "kernels/device/memory.hpp"
-#include "kernels/gas/face_flux.hpp"
-#include "kernels/gas/team_shape.hpp"
+#include "kernels/gas/flux/face_flux.hpp"
+#include "kernels/gas/tile/team_shape.hpp"
 
 namespace drogue::gas {
 
 inline constexpr int ghost_cells = 3;
 
-/// Conserved fields of one state: (cells, 3), each field contiguous.
+/// Conserved fields of one state, shape (cells, 3), each field contiguous: kg/m^3, kg/(m^2 s), J/m^3.
 template <class ExecutionSpace>
 using FieldsView = Kokkos::View<double* [3], Kokkos::LayoutLeft, typename ExecutionSpace::memory_space>;
 
-/// What lies beyond the two ends of the mesh.
-struct Ends {
+/// Number of cells of the mesh and the boundary condition at either end.
+struct BoundaryConditions {
   std::int64_t cells;
   Boundary left, right;
 };
 
-/// Cells a tile updates, cells it loads beyond them on either side, and the distance between its scratch
-/// rows.
+/// Shape of a tile: cells that it updates, halo cells on either side, and stride of its scratch rows.
 struct TileShape {
   int cells;
   int halo;
   int row;
 };
 
-struct Source {
+struct BoundaryImage {
   std::int64_t cell;
-  double sign;  ///< of the momentum
+  double sign;  ///< factor of the momentum: -1 at a reflecting wall
 };
 
-/// The cell that stands for `index`. Beyond the ghosts of a wall or an outflow nothing is asked for but an
-/// admissible state.
-KOKKOS_INLINE_FUNCTION Source source_cell(const Ends& ends, std::int64_t index) {
-  const std::int64_t n = ends.cells;
+/// Cell and sign that provide the value at `index`, which may lie outside the mesh. Beyond the ghost cells of
+/// a wall or an outflow any admissible state suffices.
+KOKKOS_INLINE_FUNCTION BoundaryImage boundary_image(const BoundaryConditions& boundaries,
+                                                    std::int64_t index) {
+  const std::int64_t n = boundaries.cells;
   if (index >= 0 && index < n) return {index, 1.0};
   const bool left = index < 0;
-  const Boundary kind = left ? ends.left : ends.right;
+  const Boundary kind = left ? boundaries.left : boundaries.right;
   if (kind == Boundary::periodic) {
-    // A halo goes round the smallest meshes more than once. No remainder: its division is a long routine on a
-    // GPU.
+    // The halo may wrap around the smallest meshes more than once. A loop avoids the integer division of a
+    // remainder, which is slow on a GPU.
     while (index < 0) index += n;
     while (index >= n) index -= n;
     return {index, 1.0};
@@ -52,28 +52,30 @@ KOKKOS_INLINE_FUNCTION Source source_cell(const Ends& ends, std::int64_t index) 
   return {left ? beyond : n - 1 - beyond, -1.0};
 }
 
-/// The states of `lanes` cells from `cell` on, all of which lie in the mesh.
+/// States of `lanes` cells from `cell` on, all inside the mesh. `in` holds three rows of `cells`.
 template <class P>
-KOKKOS_INLINE_FUNCTION Triple<P> state_of(const double* in, std::int64_t cells, std::int64_t cell) {
+KOKKOS_INLINE_FUNCTION ConservedVector<P> state_of(const double* in, std::int64_t cells, std::int64_t cell) {
   using Lanes = device::Access<P>;
   return {Lanes::load(in + cell), Lanes::load(in + cells + cell), Lanes::load(in + 2 * cells + cell)};
 }
 
-/// The states of `lanes` cells from `index` on, ghosts included. `in` holds three rows of `ends.cells`.
+/// States of `lanes` cells from `index` on, ghost cells included. `in` holds three rows of
+/// `boundaries.cells`.
 template <class R>
-KOKKOS_INLINE_FUNCTION Triple<R> load_state(const double* in, const Ends& ends, std::int64_t index) {
+KOKKOS_INLINE_FUNCTION ConservedVector<R> load_state(const double* in, const BoundaryConditions& boundaries,
+                                                     std::int64_t index) {
   using Lanes = device::Access<R>;
-  const std::int64_t n = ends.cells;
+  const std::int64_t n = boundaries.cells;
   if constexpr (Lanes::lanes == 1) {
-    // Threads within and beyond the mesh load together.
-    const Source from = source_cell(ends, index);
+    // No branch: threads inside and outside the mesh load together.
+    const BoundaryImage from = boundary_image(boundaries, index);
     return {Lanes::load(in + from.cell), from.sign * Lanes::load(in + n + from.cell),
             Lanes::load(in + 2 * n + from.cell)};
   }
   if (index >= 0 && index + Lanes::lanes <= n) return state_of<R>(in, n, index);
   double rho[Lanes::lanes], m[Lanes::lanes], energy[Lanes::lanes];
   for (int lane = 0; lane < Lanes::lanes; ++lane) {
-    const Source from = source_cell(ends, index + lane);
+    const BoundaryImage from = boundary_image(boundaries, index + lane);
     rho[lane] = in[from.cell];
     m[lane] = from.sign * in[n + from.cell];
     energy[lane] = in[2 * n + from.cell];
@@ -84,24 +86,24 @@ KOKKOS_INLINE_FUNCTION Triple<R> load_state(const double* in, const Ends& ends, 
 enum class TileField : int { rho, m, energy, flux_m, flux_energy, u, enthalpy, slow, fast, count };
 static_assert(static_cast<int>(TileField::count) == cell_rows);
 
-/// A tile's scratch memory: rows of cell values (`TileField`), then three rows of face fluxes and, on a
-/// device, three of U^n. Slot i of a row of cells belongs to cell `first - halo + i`; face f lies left of
-/// slot f + 3 and needs slots f .. f + 5.
+/// Scratch memory of a tile: rows of cell values (`TileField`), three rows of face fluxes and, on a device,
+/// three rows of U^n. Slot i of a cell row belongs to cell `first - halo + i`. Face f lies left of slot f + 3
+/// and depends on slots f .. f + 5.
 template <class ExecutionSpace>
 class Tile {
  public:
   static constexpr bool on_host = device::is_host<ExecutionSpace>;
-  /// On the host the first level cache has no room for it, and the mesh is near.
+  /// True if U^n stays in scratch. On a host it would exceed the L1 cache, and main memory is cached.
   static constexpr bool keeps_start = !on_host;
   static constexpr int rows = keeps_start ? device_rows : cell_rows + flux_rows;
 
-  std::int64_t first;  ///< its first cell
-  int cells;           ///< that it updates
+  std::int64_t first;  ///< first cell
+  int cells;           ///< cells that the tile updates
   int halo;
-  int slots;  ///< with the halo
+  int slots;  ///< cells with the halo on both sides
   bool last;
 
-  /// With `cell_rows` alone a tile holds no fluxes.
+  /// With `used_rows` = `cell_rows` the tile has no rows for fluxes.
   template <class Member>
   KOKKOS_FUNCTION Tile(const Member& member, const TileShape& shape, std::int64_t mesh_cells,
                        int used_rows = rows)
@@ -129,7 +131,7 @@ class Tile {
     device::Access<P>::store(_data + static_cast<int>(field) * _row + i, value);
   }
   template <class P>
-  KOKKOS_FUNCTION Triple<P> state(int i) const {
+  KOKKOS_FUNCTION ConservedVector<P> state(int i) const {
     return {load<P>(TileField::rho, i), load<P>(TileField::m, i), load<P>(TileField::energy, i)};
   }
   template <class P>
@@ -138,31 +140,31 @@ class Tile {
             load<P>(TileField::u, i), load<P>(TileField::enthalpy, i)};
   }
   template <class P>
-  KOKKOS_FUNCTION Triple<P> flux(int face) const {
-    return load_triple<P>(cell_rows, face);
+  KOKKOS_FUNCTION ConservedVector<P> flux(int face) const {
+    return load_vector<P>(cell_rows, face);
   }
   template <class P>
-  KOKKOS_FUNCTION void store_flux(int face, const Triple<P>& value) const {
-    store_triple(cell_rows, face, value);
+  KOKKOS_FUNCTION void store_flux(int face, const ConservedVector<P>& value) const {
+    store_vector(cell_rows, face, value);
   }
   template <class P>
-  KOKKOS_FUNCTION Triple<P> start(int i) const {
-    return load_triple<P>(cell_rows + flux_rows, i);
+  KOKKOS_FUNCTION ConservedVector<P> start(int i) const {
+    return load_vector<P>(cell_rows + flux_rows, i);
   }
   template <class P>
-  KOKKOS_FUNCTION void store_start(int i, const Triple<P>& value) const {
-    store_triple(cell_rows + flux_rows, i, value);
+  KOKKOS_FUNCTION void store_start(int i, const ConservedVector<P>& value) const {
+    store_vector(cell_rows + flux_rows, i, value);
   }
 
  private:
   template <class P>
-  KOKKOS_FUNCTION Triple<P> load_triple(int row, int i) const {
+  KOKKOS_FUNCTION ConservedVector<P> load_vector(int row, int i) const {
     using Lanes = device::Access<P>;
     const double* f = _data + row * _row + i;
     return {Lanes::load(f), Lanes::load(f + _row), Lanes::load(f + 2 * _row)};
   }
   template <class P>
-  KOKKOS_FUNCTION void store_triple(int row, int i, const Triple<P>& value) const {
+  KOKKOS_FUNCTION void store_vector(int row, int i, const ConservedVector<P>& value) const {
     using Lanes = device::Access<P>;
     double* f = _data + row * _row + i;
     Lanes::store(f, value.rho);

@@ -6,13 +6,13 @@ namespace drogue::gas {
 
 inline constexpr int max_stages = 4;
 
-/// One Euler sub-step of a Runge-Kutta method: out = U^n + share (U_in + dt_factor dt L(U_in) - U^n). In this
-/// form a state at rest keeps its bits, where the sum of a third and two thirds of it would lose one now and
-/// then: 4e-11 of the mass in 10^6 steps.
+/// Euler sub-step of a Runge-Kutta method: out = U^n + share (U_in + dt_factor dt L(U_in) - U^n). This form
+/// preserves the bits of a state at rest. A sum of one third and two thirds of it would lose 4e-11 of the
+/// mass in 10^6 steps.
 struct StageWeights {
   double share, dt_factor;
-  double boundary;  ///< weight of this stage's flux in U^{n+1} - U^n, in units of dt
-  int in, out;      ///< buffers, counted from the one that holds U^n
+  double boundary;  ///< weight of the flux of this stage in U^{n+1} - U^n, in units of dt
+  int in, out;      ///< buffers, relative to the buffer of U^n
 };
 
 struct StageTable {
@@ -20,8 +20,8 @@ struct StageTable {
   StageWeights stage[max_stages];
 };
 
-/// Shu and Osher 1988 (SSP-RK3); Spiteri and Ruuth 2002 (SSPRK(4,3)). U^n is never written: a rejected step
-/// costs nothing but its time.
+/// Stages of SSP-RK3 (Shu and Osher 1988) or SSPRK(4,3) (Spiteri and Ruuth 2002). No stage writes U^n, so a
+/// rejected step needs no restoration. Does not throw.
 constexpr StageTable stage_table(TimeScheme scheme) {
   if (scheme == TimeScheme::ssprk3)
     return {3,

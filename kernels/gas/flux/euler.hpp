@@ -4,14 +4,14 @@
 
 namespace drogue::gas {
 
-/// What the flux needs of one cell, from the conserved state (rho, m = rho u, E).
+/// State of one cell from the conserved variables (rho, m = rho u, E), SI units.
 template <class R>
 struct CellState {
   R rho, m, energy;
   R u, p, enthalpy, c;  ///< velocity, pressure, total specific enthalpy H, sound speed
 };
 
-/// p = (gamma - 1) (E - m u / 2). Every place that asks whether a state is admissible uses this grouping.
+/// Pressure p = (gamma - 1) (E - m u / 2). Every admissibility check uses this order of operations.
 template <class R, class S>
 KOKKOS_INLINE_FUNCTION R pressure(S gamma, R m, R energy, R u) {
   return (gamma - S(1)) * (energy - S(0.5) * (m * u));
@@ -25,14 +25,14 @@ KOKKOS_INLINE_FUNCTION CellState<R> cell_state(S gamma, R rho, R m, R energy) {
   return {rho, m, energy, u, p, (energy + p) * inverse, device::root(gamma * (p * inverse)).value};
 }
 
-/// Fastest signal of each characteristic field: |u - c|, |u|, |u + c|.
+/// Magnitudes of the eigenvalues per characteristic field: |u - c|, |u|, |u + c|, m/s.
 template <class R>
-struct Speeds {
+struct WaveSpeeds {
   R slow, entropy, fast;
 };
 
 template <class R>
-KOKKOS_INLINE_FUNCTION Speeds<R> signal_speeds(R u, R c) {
+KOKKOS_INLINE_FUNCTION WaveSpeeds<R> wave_speeds(R u, R c) {
   return {device::absolute(u - c), device::absolute(u), device::absolute(u + c)};
 }
 
