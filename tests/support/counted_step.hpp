@@ -5,14 +5,14 @@
 #include "tests/support/counted.hpp"
 #include "tests/support/gas_state.hpp"
 
-// After what counts them.
+// These headers must follow the definition of the counted type.
 #include "kernels/gas/stepping/stage.hpp"
 #include "kernels/gas/stepping/step.hpp"
 
 namespace drogue::testing {
 
-/// The tiles of a small periodic mesh one after the other, by the functions that the kernels call, on numbers
-/// of type R: what they cost and which bytes of the fields they touch.
+/// Runs the tiles of a small periodic mesh one by one with the functions of the kernels on numbers of type R.
+/// Counts their operations and the bytes of the fields that they access.
 template <class R>
 class CountedStep {
  public:
@@ -28,7 +28,7 @@ class CountedStep {
   template <gas::Reconstruction scheme>
   using Stage = gas::StageFunctor<Kokkos::Serial, scheme, gas::Precision::full, false>;
 
-  /// The only thread of a team, and its scratch memory.
+  /// Only thread of a team, with its scratch memory.
   struct Thread {
     std::int64_t tile;
     double* scratch;
@@ -48,13 +48,13 @@ class CountedStep {
     _fields[1] = _fields[2] = _fields[0];
   }
 
-  gas::StepWork work;               ///< of all that has run
-  std::int64_t times_combined = 0;  ///< how often `run_fused` has given U^n its share
+  gas::StepWork work;               ///< total of all runs
+  std::int64_t times_combined = 0;  ///< number of combinations with U^n in `run_fused`
 
   /// U^{n+1} of `run_fused`, (cells, 3).
   [[nodiscard]] const std::vector<double>& result() const { return _fields[1]; }
 
-  /// What `StepFunctor` does.
+  /// Runs the operations of `StepFunctor`.
   template <gas::Reconstruction scheme>
   void run_fused() {
     const Step<scheme> step = fused<scheme>();
@@ -74,7 +74,7 @@ class CountedStep {
     });
   }
 
-  /// What `StageFunctor` does in all stages of a step.
+  /// Runs the operations of `StageFunctor` in all stages of a step.
   template <gas::Reconstruction scheme>
   void run_stages() {
     const gas::TileShape shape{tile_cells, gas::ghost_cells, row};
@@ -126,7 +126,7 @@ class CountedStep {
       gas::CellReduction<R> reduced;
       step.template update_slot<last, R>(tile, slot, {slot, false}, _table.stage[stage], dt_over_dx, field(0),
                                          field(1), typename Functor::SingleStepHooks{}, reduced);
-      // Of the fastest signals the fused step uses two.
+      // The fused step uses two of the maximum wave speeds.
       if constexpr (!std::is_same_v<R, double>)
         reduced.slow.keep(), reduced.fast.keep(), reduced.admissible.keep();
     });
@@ -148,7 +148,7 @@ class CountedStep {
     return cost;
   }
 
-  /// Bytes of the fields that have been read and written, each value once.
+  /// Bytes of the fields that were read and written, each value once.
   [[nodiscard]] std::int64_t bytes_touched() const {
     std::int64_t values = 0;
     for (const auto& f : _fields)
@@ -158,7 +158,7 @@ class CountedStep {
   }
 
   gas::StageTable _table;
-  std::vector<double> _fields[3];  ///< as the kernels see them; the first is U^n
+  std::vector<double> _fields[3];  ///< as the kernels access them; the first is U^n
   std::vector<double> _scratch = std::vector<double>(row * Tile::rows);
 };
 

@@ -11,7 +11,7 @@ namespace {
 
 enum class TrialResult { done, too_fast, not_physical };
 
-/// One stage: the share of the step's start that is kept, and the fraction of dt of its forward Euler step.
+/// One stage: the share of the state at the start of the step, and the fraction of dt of its Euler step.
 struct Stage {
   double keep;
   double dt_fraction;
@@ -34,7 +34,7 @@ double proposed_dt(const GasRun& run, const gas::Parameters& p, bool limited) {
   return ramp * cfl * spacing(p) / speed_bounds(run.state, p.gamma).largest;
 }
 
-/// Tries one step; changes `run` only if it succeeds.
+/// Tries one step. Changes `run` only on success.
 TrialResult try_step(GasRun& run, const gas::Parameters& p, double dt, bool limited) {
   std::vector<Conserved> cells = run.state;
   std::int64_t limited_faces = 0;
@@ -51,7 +51,7 @@ TrialResult try_step(GasRun& run, const gas::Parameters& p, double dt, bool limi
   return TrialResult::done;
 }
 
-/// Steps that positivity `automatic` keeps the limiter for once it was needed.
+/// Steps for which positivity `automatic` keeps the limiter on.
 constexpr std::int64_t limiter_stays = 100;
 
 }  // namespace

@@ -8,7 +8,7 @@
 #include "kernels/reference/gas/limiter.hpp"
 #include "tests/support/gas_state.hpp"
 
-// The point functions of a stage, one face a thread, against the dense form with full matrices.
+// Point functions of a stage, one face per thread, against the dense form with full matrices.
 
 namespace drogue::gas {
 namespace {
@@ -91,8 +91,8 @@ struct Sample {
   std::vector<std::array<double, 3>> alpha;
 };
 
-/// Waves of amplitude `amplitude`, or a state of its own in every cell where that is zero. Every third face
-/// splits with the stencil's alphas, the others with larger ones.
+/// Waves of amplitude `amplitude`, or independent states in all cells if it is zero. Every third face uses
+/// the alphas of its stencil, the others larger ones.
 Sample sample(double amplitude, unsigned seed) {
   RandomGas random(seed);
   Sample made;
@@ -135,8 +135,8 @@ std::vector<Conserved> kernel_fluxes(const Parameters& p, const Sample& in) {
   return out;
 }
 
-/// What rounding is measured against: |R| |L| (|F| + alpha |U|), the largest over the cells of the stencil;
-/// of their differences, where only those are rounded.
+/// Scale of the rounding errors: the maximum of |R| |L| (|F| + alpha |U|) over the cells of the stencil, or
+/// over their differences if only those are rounded.
 Conserved rounding_scale(const Parameters& p, const Cells& cells, const std::array<double, 3>& alpha,
                          bool differences) {
   const auto basis =
@@ -160,7 +160,7 @@ Conserved rounding_scale(const Parameters& p, const Cells& cells, const std::arr
   return scale;
 }
 
-/// Errors over their scale, sorted; three a face.
+/// Scaled errors in ascending order, three per face.
 std::vector<double> flux_errors(const Parameters& p, double amplitude) {
   const Sample in = sample(amplitude, 7);
   const std::vector<Conserved> got = kernel_fluxes(p, in);
@@ -178,7 +178,7 @@ std::vector<double> flux_errors(const Parameters& p, double amplitude) {
   return errors;
 }
 
-/// Calls `check(parameters, text)` for every scheme and mean.
+/// Calls `check(parameters, text)` for every scheme and average.
 template <class Check>
 void for_schemes(const Check& check) {
   struct Scheme {
@@ -197,18 +197,18 @@ void for_schemes(const Check& check) {
     }
 }
 
-TEST(GasPoint, FaceFluxesAreTheDenseOnes) {
+TEST(GasPoint, FaceFluxesMatchTheDenseForm) {
   for_schemes([](const Parameters& p, const std::string& text) {
     for (const double amplitude : {0.0, 0.1, 1e-3, 1e-6})
       EXPECT_LT(flux_errors(p, amplitude).back(), 1e-14) << text << ", amplitude " << amplitude;
   });
 }
 
-TEST(GasPoint, SplitPrecisionRoundsTheNonlinearPartAlone) {
+TEST(GasPoint, SplitPrecisionRoundsOnlyTheNonlinearTerms) {
   for_schemes([](Parameters p, const std::string& text) {
     p.precision = Precision::split;
     for (const double amplitude : {0.0, 0.1, 1e-3, 1e-6}) {
-      // TENO5 keeps or drops a stencil: one face in a thousand may fall on the other side of the cut.
+      // TENO5 keeps or drops a stencil: one face in a thousand may fall on the other side of the cut-off.
       const std::vector<double> errors = flux_errors(p, amplitude);
       EXPECT_LT(errors[errors.size() * 999 / 1000], 2e-6) << text << ", amplitude " << amplitude;
       EXPECT_LT(errors.back(), 0.1) << text << ", amplitude " << amplitude;
@@ -216,7 +216,7 @@ TEST(GasPoint, SplitPrecisionRoundsTheNonlinearPartAlone) {
   });
 }
 
-/// Gas at rest with waves of `amplitude`, one face after the other hotter: p/rho from `coldest` to `hottest`.
+/// Gas at rest with waves of `amplitude` and increasing temperature: p/rho from `coldest` to `hottest`.
 Sample temperatures(double coldest, double hottest, double amplitude) {
   Sample made;
   for (int face = 0; face < faces; ++face) {
@@ -232,8 +232,8 @@ Sample temperatures(double coldest, double hottest, double amplitude) {
   return made;
 }
 
-// Products of indicators are of the eighth power of a difference, whose unit is that of c^2.
-TEST(GasPoint, FluxesAreFiniteInTheColdestAndTheHottestGas) {
+// Products of indicators scale with the eighth power of a difference, whose unit is that of c^2.
+TEST(GasPoint, FluxesAreFiniteAtExtremeTemperatures) {
   for_schemes([](Parameters p, const std::string& text) {
     for (const Precision precision : {Precision::full, Precision::split}) {
       p.precision = precision;
@@ -269,20 +269,20 @@ struct LimitFunctor {
   }
 };
 
-TEST(GasPoint, LimiterIsTheOraclesAndKeepsCellsPositive) {
+TEST(GasPoint, LimiterMatchesTheReferenceAndKeepsCellsPositive) {
   RandomGas random(3);
   const Stencils in("in", faces);
   const ConservedVectors flux("flux", faces);
   const Kokkos::View<double*, Memory> theta("theta", faces);
   const auto host = Kokkos::create_mirror_view(in);
-  const double lambda = 0.002;  // alpha = 250: faster than any signal of these states
+  const double lambda = 0.002;  // alpha = 250 exceeds every wave speed of these states
   std::vector<std::array<Conserved, 4>> cases;
   for (std::size_t face = 0; face < faces; ++face) {
     const Conserved a = reference::to_conserved(random.primitive(drogue::testing::extreme), gamma);
     const Conserved b = reference::to_conserved(random.primitive(drogue::testing::extreme), gamma);
     const Conserved low = reference::lax_friedrichs_flux(a, b, 0.5 / lambda, gamma);
     Conserved high = low;
-    // From harmless to hopeless.
+    // The flux perturbation ranges from negligible to far too large.
     const double size = random.log_uniform(1e-3, 3.0);
     for (std::size_t s = 0; s < 3; ++s)
       high[s] += size / lambda * random.uniform(-1, 1) * std::max(a[s], b[s]);
@@ -299,13 +299,13 @@ TEST(GasPoint, LimiterIsTheOraclesAndKeepsCellsPositive) {
   for (std::size_t face = 0; face < faces; ++face) {
     const auto& [a, b, high, low] = cases[face];
     const auto exact = reference::limit_flux(high, low, a, b, lambda, gamma);
-    EXPECT_EQ(got_theta(face) < 1.0, exact.limited_faces);
-    limited_faces += exact.limited_faces ? 1 : 0;
+    EXPECT_EQ(got_theta(face) < 1.0, exact.limited);
+    limited_faces += exact.limited ? 1 : 0;
     Conserved left{}, right{};
     for (std::size_t s = 0; s < 3; ++s) {
       const double scale = std::abs(high[s]) + std::abs(low[s]);
       EXPECT_NEAR(got(face, s), exact.flux[s], 1e-9 * scale);
-      if (!exact.limited_faces) {
+      if (!exact.limited) {
         EXPECT_EQ(got(face, s), high[s]);
       }
       left[s] = a[s] - 2.0 * lambda * got(face, s);

@@ -5,7 +5,7 @@
 #include "tests/support/backend.hpp"
 #include "tests/support/gas_state.hpp"
 
-// Whole solvers against the serial oracle on random states, and what moves their state.
+// Complete solvers against the serial reference on random states, and the transfer of their state.
 
 namespace drogue::gas {
 namespace {
@@ -20,14 +20,14 @@ constexpr bool exact_arithmetic = true;
 constexpr bool exact_arithmetic = false;
 #endif
 
-/// The state after about ten steps, and the oracle's.
-struct Outcome {
-  GasState state, oracle;
-  RestartState resume;
+/// State after about ten steps, and the state of the reference.
+struct Comparison {
+  GasState state, expected;
+  RestartState restart;
   reference::GasRun run;
 };
 
-Outcome both(const Parameters& p, const GasState& state, double end_time) {
+Comparison compare_with_reference(const Parameters& p, const GasState& state, double end_time) {
   const auto solver = started(backend, p, state);
   EXPECT_EQ(solver->advance(end_time, -1, 0, {}, {}), Stop::target);
   reference::GasRun run = reference_from(state);
@@ -36,8 +36,8 @@ Outcome both(const Parameters& p, const GasState& state, double end_time) {
   return {download(*solver, p), state_of(run), solver->restart_state(), run};
 }
 
-/// The n-th of all combinations of scheme, splitting, mean and time scheme, with boundaries, mesh and block
-/// that change along.
+/// Combination number n of scheme, splitting, average and time scheme, with varying boundaries, mesh and
+/// block.
 Parameters combination(int n, std::string& text) {
   constexpr std::int64_t meshes[] = {8, 9, 127, 128, 129, 257};
   constexpr int blocks[] = {0, 32, 64, 128};
@@ -65,57 +65,57 @@ Parameters combination(int n, std::string& text) {
   return p;
 }
 
-TEST(GasSolver, StepsAsTheOracleDoes) {
+TEST(GasSolver, MatchesTheReference) {
   for (int n = 0; n < 90; ++n) {
     std::string text;
     const Parameters p = combination(n, text);
     const GasState state = random_state(p, static_cast<unsigned>(n), rough);
-    const Outcome got = both(p, state, time_of(p, state, 8));
-    EXPECT_GE(got.resume.step, 9) << text;
-    EXPECT_EQ(got.resume.step, got.run.steps) << text;
-    EXPECT_LT(distance(got.state, got.oracle), 1e-12) << text;
+    const Comparison got = compare_with_reference(p, state, time_of(p, state, 8));
+    EXPECT_GE(got.restart.step, 9) << text;
+    EXPECT_EQ(got.restart.step, got.run.steps) << text;
+    EXPECT_LT(distance(got.state, got.expected), 1e-12) << text;
   }
 }
 
-TEST(GasSolver, StepsAsTheOracleDoesWithTheLimiter) {
+TEST(GasSolver, MatchesTheReferenceWithTheLimiter) {
   std::int64_t limited_faces = 0, redone = 0;
   for (int n = 0; n < 90; ++n) {
     std::string text;
     Parameters p = combination(n, text);
     p.positivity = n % 2 == 0 ? Positivity::on : Positivity::automatic;
     const GasState state = random_state(p, static_cast<unsigned>(n), extreme);
-    const Outcome got = both(p, state, time_of(p, state, 4));
-    EXPECT_EQ(got.resume.step, got.run.steps) << text;
-    EXPECT_EQ(got.resume.limited_faces, got.run.limited_faces) << text;
-    EXPECT_EQ(got.resume.redone, got.run.redone_steps) << text;
-    // A pressure of 1e-5 of the total energy has five digits fewer, and so has all that follows from it.
-    EXPECT_LT(distance(got.state, got.oracle), 1e-8) << text;
-    limited_faces += got.resume.limited_faces;
-    redone += got.resume.redone;
+    const Comparison got = compare_with_reference(p, state, time_of(p, state, 4));
+    EXPECT_EQ(got.restart.step, got.run.steps) << text;
+    EXPECT_EQ(got.restart.limited_faces, got.run.limited_faces) << text;
+    EXPECT_EQ(got.restart.redone, got.run.redone_steps) << text;
+    // A pressure of 1e-5 of the total energy loses five digits, and so do all quantities derived from it.
+    EXPECT_LT(distance(got.state, got.expected), 1e-8) << text;
+    limited_faces += got.restart.limited_faces;
+    redone += got.restart.redone;
   }
   EXPECT_GT(limited_faces, 1000);
   EXPECT_GT(redone, 20);
 }
 
-TEST(GasSolver, SplitPrecisionStaysCloseToTheOracle) {
+TEST(GasSolver, SplitPrecisionStaysCloseToTheReference) {
   for (int n = 0; n < 90; ++n) {
     std::string text;
     Parameters p = combination(n, text);
     p.precision = Precision::split;
-    // A wave instead of noise: TENO5 keeps or drops a stencil, and must decide alike in both precisions.
+    // A wave instead of noise: TENO5 keeps or drops a stencil, and must decide equally in both precisions.
     const double length = p.x_max - p.x_min;
     const GasState state = make_state(p, [&](std::int64_t i) {
       const double s = std::sin(6.283 * (centre(p, i) - p.x_min) / length);
       return reference::Primitive{1 + 0.2 * s, 0.3 * s, 1 + 0.3 * s};
     });
-    const Outcome got = both(p, state, time_of(p, state, 8));
-    const double error = distance(got.state, got.oracle);
+    const Comparison got = compare_with_reference(p, state, time_of(p, state, 8));
+    const double error = distance(got.state, got.expected);
     EXPECT_LT(error, p.weno == Weno::teno5 ? 1e-3 : 1e-6) << text;
     EXPECT_GT(error, 0.0) << text;
   }
 }
 
-TEST(GasSolver, SeedModeIsTheDissertationsScheme) {
+TEST(GasSolver, BaselineMatchesTheReferenceOfTheDissertationsScheme) {
   Parameters p;
   p.cells = 100;
   p.ramp_steps = 4;
@@ -139,7 +139,7 @@ TEST(GasSolver, SeedModeIsTheDissertationsScheme) {
   EXPECT_GT(phase_times.d2h, 0.0);
 }
 
-TEST(GasSolver, SeedModeIsTheSameInAnyMemoryAndBlock) {
+TEST(GasSolver, BaselineResultIsIndependentOfMemoryAndTeamSize) {
   Parameters p;
   p.cells = 1000;
   const GasState start = random_state(p, 6, rough);
@@ -159,7 +159,7 @@ TEST(GasSolver, SeedModeIsTheSameInAnyMemoryAndBlock) {
     }
 }
 
-TEST(GasSolver, TilesLeaveNoTrace) {
+TEST(GasSolver, ResultIsIndependentOfTheTileSize) {
   for (const auto& [positivity, splitting] :
        {std::pair{Positivity::off, Splitting::lf_global}, std::pair{Positivity::on, Splitting::lf_global},
         std::pair{Positivity::off, Splitting::lf_stencil}})
@@ -168,10 +168,10 @@ TEST(GasSolver, TilesLeaveNoTrace) {
       p.cells = cells;
       p.positivity = positivity;
       p.splitting = splitting;
-      p.driver = Driver::graph;  // whose tiles are as large as a block
+      p.driver = Driver::graph;  // its tiles have the size of a block
       const GasState start = random_state(p, 11, positivity == Positivity::on ? extreme : rough);
       GasState first;
-      // The largest of a device have more threads than slots.
+      // The largest teams of a device have more threads than slots.
       for (const int block : {32, 64, 96, 128, 384, 512}) {
         p.block = block;
         const auto solver = started(backend, p, start);
@@ -186,7 +186,7 @@ TEST(GasSolver, TilesLeaveNoTrace) {
     }
 }
 
-TEST(GasSolver, TotalsAreSumsOfEveryCell) {
+TEST(GasSolver, TotalsSumEveryCell) {
   for (const std::int64_t cells : {8, 63, 64, 65, 4096, 4097, 300'001}) {
     Parameters p;
     p.cells = cells;
@@ -216,7 +216,7 @@ TEST(GasSolver, TotalsAreSumsOfEveryCell) {
   }
 }
 
-TEST(GasSolver, TotalsFollowASecondStart) {
+TEST(GasSolver, TotalsRestartWithASecondStart) {
   Parameters p;
   p.cells = 64;
   const GasState state = random_state(p, 1, rough);
@@ -232,7 +232,7 @@ TEST(GasSolver, TotalsFollowASecondStart) {
   EXPECT_EQ(again.step, 0);
 }
 
-TEST(GasSolver, SnapshotsKeepTheirMoment) {
+TEST(GasSolver, SnapshotsAreUnaffectedByLaterSteps) {
   Parameters p;
   p.cells = 1000;
   const auto solver = started(backend, p, random_state(p, 2, rough));
@@ -258,8 +258,8 @@ bool same_progress(const RestartState& a, const RestartState& b) {
          a.dt_max == b.dt_max;
 }
 
-/// Runs to step 60 at once, with pauses, and in a new solver from what the first gave at step 23.
-TEST(GasSolver, GoesOnWithTheSameBitsAfterARestart) {
+/// Runs to step 60 at once, with pauses, and in a new solver from the restart state at step 23.
+TEST(GasSolver, RestartContinuesBitForBit) {
   for (int n = 0; n < 90; n += 7) {
     std::string text;
     Parameters p = combination(n, text);
@@ -274,9 +274,9 @@ TEST(GasSolver, GoesOnWithTheSameBitsAfterARestart) {
     const auto resumed = create_solver(backend, p);
     std::vector<std::uint8_t> limited_faces(
         p.positivity == Positivity::off ? 0 : static_cast<std::size_t>(p.cells));
-    parts->download_limited_cells(0, limited_faces);
+    parts->download_limited_cells(0, limited_cells);
     resumed->upload(0, fields(download(*parts, p)));
-    resumed->upload_limited_cells(0, limited_faces);
+    resumed->upload_limited_cells(0, limited_cells);
     resumed->restore(parts->restart_state());
     for (const auto& solver : {parts.get(), resumed.get()}) {
       ASSERT_EQ(solver->advance(100.0, 41, 0, {}, {}), Stop::pause) << text;
@@ -289,7 +289,7 @@ TEST(GasSolver, GoesOnWithTheSameBitsAfterARestart) {
   }
 }
 
-TEST(GasSolver, RowsGoOnAfterARestart) {
+TEST(GasSolver, RowsContinueAfterARestart) {
   Parameters p;
   p.cells = 100;
   const auto first = started(backend, p, random_state(p, 4, rough));
@@ -303,7 +303,7 @@ TEST(GasSolver, RowsGoOnAfterARestart) {
   EXPECT_EQ(steps, (std::vector<std::int64_t>{40, 50, 60}));
 }
 
-TEST(GasSolver, RefusesParametersOutOfRange) {
+TEST(GasSolver, RejectsParametersOutOfRange) {
   const auto refused = [](auto&& change) {
     Parameters p;
     change(p);

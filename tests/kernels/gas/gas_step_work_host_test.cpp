@@ -5,8 +5,8 @@
 
 #include "tests/support/counted_step.hpp"
 
-// The tables of kernels/gas/step_work.hpp say what the kernels do: each number that changes here changes what
-// a step costs on every machine.
+// Checks the tables of kernels/gas/step_work.hpp by counting the operations of the kernels. A changed number
+// means a changed cost per step.
 
 namespace drogue::gas {
 
@@ -46,7 +46,7 @@ void for_schemes(const Check& check) {
 
 // ---- the counting itself ----
 
-TEST(GasWork, WhatACompilerDoesNotComputeDoesNotCount) {
+TEST(GasWork, IgnoresOperationsThatACompilerRemoves) {
   const double memory[2] = {2.0, 3.0};
   double result = 0.0;
   const Arithmetic cost = arithmetic_of([&] {
@@ -61,7 +61,7 @@ TEST(GasWork, WhatACompilerDoesNotComputeDoesNotCount) {
   EXPECT_EQ(cost, (Arithmetic{1, 2, 0, 0, 0}));
 }
 
-TEST(GasWork, EveryKindOfOperationIsCounted) {
+TEST(GasWork, CountsEveryKindOfOperation) {
   const Arithmetic cost = arithmetic_of([] {
     const Counted x = Counted::input(4.0), y = Counted::input(2.0);
     const auto [root, inverse, reciprocal] = device::root(x);
@@ -75,7 +75,7 @@ TEST(GasWork, EveryKindOfOperationIsCounted) {
   EXPECT_EQ(cost, (Arithmetic{2, 2, 2, 1, 4}));
 }
 
-TEST(GasWork, CountedNumbersAreThoseOfADouble) {
+TEST(GasWork, CountedTypeComputesLikeDouble) {
 #if defined(DROGUE_EXACT)
   constexpr double tolerance = 0.0;
 #else
@@ -93,7 +93,7 @@ TEST(GasWork, CountedNumbersAreThoseOfADouble) {
 
 // ---- the tables ----
 
-TEST(GasWork, AFaceCostsWhatTheTableSays) {
+TEST(GasWork, FaceTableMatchesTheCount) {
   for_schemes([](auto scheme, const Parameters& p) {
     Counting count(ssprk3, 1);
     count.for_tiles(count.fused<scheme.value>().shape, [&](const auto& thread, const auto& tile) {
@@ -103,7 +103,7 @@ TEST(GasWork, AFaceCostsWhatTheTableSays) {
   });
 }
 
-TEST(GasWork, ACellCostsWhatTheTableSays) {
+TEST(GasWork, CellTableMatchesTheCount) {
   Counting count(ssprk3, 1);
   const auto step = count.fused<Reconstruction::js>();
   count.for_tiles(step.shape, [&](const auto& thread, const auto& tile) {
@@ -127,8 +127,8 @@ TEST(GasWork, ACellCostsWhatTheTableSays) {
             (Arithmetic{2, 7, 1, 1, 0}));
 }
 
-// The weights' denominators, of three fields from two sides, and c with 1/c of the eigenvectors.
-TEST(GasWork, DivisionsAreOneAWeightAndOneAFace) {
+// Denominators of the weights of three fields from two sides, and c with 1/c of the eigenvectors.
+TEST(GasWork, DividesOncePerWeightAndOncePerFace) {
   const auto divisions = [](Weno weno, int power) { return face_arithmetic(weno, power).divisions; };
   EXPECT_EQ(divisions(Weno::js, 1), 6 + 1);
   EXPECT_EQ(divisions(Weno::z, 1), 6 + 1);
@@ -147,12 +147,12 @@ void expect_fused_work(const Parameters& p) {
   count.run_fused<scheme>();
   StepWork expected = step_work(p, {Counting::tile_cells, ghost_cells * table.stages, true});
   EXPECT_EQ(count.work.bytes, expected.bytes);
-  // The host, which keeps no U^n in scratch memory, gives it the sign that a wall's image would have.
+  // The host, which keeps no U^n in scratch memory, multiplies it by the sign of the boundary image.
   expected.arithmetic.multiplications += count.times_combined;
   EXPECT_EQ(count.work.arithmetic, expected.arithmetic);
 }
 
-TEST(GasWork, AFusedStepCostsAndMovesWhatItsTilesSay) {
+TEST(GasWork, FusedStepMatchesTheTileModel) {
   for_schemes([](auto scheme, Parameters p) {
     expect_fused_work<scheme.value>(p);
     p.time_scheme = TimeScheme::ssprk43;
@@ -160,7 +160,7 @@ TEST(GasWork, AFusedStepCostsAndMovesWhatItsTilesSay) {
   });
 }
 
-TEST(GasWork, AKernelAStageMovesWhatItsTilesSay) {
+TEST(GasWork, StageKernelsMatchTheTileModel) {
   for (const TimeScheme time : {TimeScheme::ssprk3, TimeScheme::ssprk43}) {
     Parameters p;
     p.cells = Counting::cells;
@@ -171,14 +171,14 @@ TEST(GasWork, AKernelAStageMovesWhatItsTilesSay) {
   }
 }
 
-TEST(GasWork, BytesWithoutHaloAreTheStates) {
+TEST(GasWork, BytesWithoutHaloEqualTheStates) {
   Parameters p;
   EXPECT_EQ(step_work(p, {50, 0, true}).bytes, 48 * p.cells);
   EXPECT_EQ(step_work(p, {50, 0, false}).bytes, 192 * p.cells);
 }
 
-// Tiles of 384 slots, those of a large mesh on a device; docs/gas.md has these numbers.
-TEST(GasWork, OperationsACellAndStage) {
+// Tiles of 384 slots, those of a large mesh on a device; docs/gas.md quotes these numbers.
+TEST(GasWork, OperationsPerCellAndStageMatchTheDocumentation) {
   const auto operations = [](Weno weno, int power) {
     Parameters p;
     p.cells = 366;
@@ -193,7 +193,7 @@ TEST(GasWork, OperationsACellAndStage) {
   EXPECT_EQ(operations(Weno::teno5, 1), 645);
 }
 
-TEST(GasWork, WhatIsNotCountedIsNotSaid) {
+TEST(GasWork, UncountedVariantsReportZero) {
   const Tiling fused{50, 9, true};
   Parameters p;
   EXPECT_GT(step_work(p, fused).arithmetic.flops(), 0);
@@ -210,7 +210,7 @@ TEST(GasWork, WhatIsNotCountedIsNotSaid) {
   EXPECT_EQ(step_work(p, {}).bytes, 0);
 }
 
-TEST(GasWork, SolversSayHowTheyDivideTheMesh) {
+TEST(GasWork, SolversReportTheirTiling) {
   Parameters p;
   p.cells = 1000;
   const auto tiling = [&] { return create_solver(device::Backend::serial, p)->tiling(); };

@@ -5,9 +5,9 @@
 namespace drogue::gas {
 namespace {
 
-// Kokkos refuses a launch with more; 384 slots and more of all rows were.
-TEST(TeamShape, EveryBlockFitsTheSharedMemoryOfATeam) {
-  constexpr int largest_halo = 12;  // of four stages
+// Kokkos refuses a launch that exceeds the limit; 384 slots of all rows did.
+TEST(TeamShape, EveryTeamSizeFitsItsSharedMemory) {
+  constexpr int largest_halo = 12;  // of a scheme with four stages
   for (const int rows : {cell_rows, device_rows})
     for (int team = 32; team <= largest_team; team += 32) {
       const int slots = fitting_slots(rows, team, team);

@@ -8,8 +8,7 @@
 #include "kernels/device/runtime.hpp"
 #include "miniapps/gas/simulation.hpp"
 
-// Every check of a scene fails when the state is wrong: one cell of a finished run is changed behind its
-// back.
+// Every check of a scene fails for a wrong state: the tests change one cell of a finished run.
 
 namespace drogue::gas_app {
 namespace {
@@ -24,12 +23,12 @@ class GasVerify : public ::testing::Test {
 };
 std::unique_ptr<device::Runtime> GasVerify::runtime;
 
-/// Names of the checks that fail, and of those that pass.
+/// Names of the failed and of the passed checks.
 struct Verdict {
   std::set<std::string> failed, passed;
 };
 
-/// A finished run of a scene; every verdict is about the state as it is then.
+/// Finished run of a scene; every verdict refers to its present state.
 class FinishedRun {
  public:
   FinishedRun(const std::string& name, const std::vector<std::string>& sets)
@@ -49,7 +48,7 @@ class FinishedRun {
     return verdict;
   }
 
-  /// The verdict with `change(rho, m, E)` applied to one cell, which is put back afterwards.
+  /// Verdict with `change(rho, m, E)` applied to one cell. Restores the cell afterwards.
   template <class Change>
   Verdict verify_with(std::int64_t cell, const Change& change) {
     std::array<std::vector<double>, 3> u = {std::vector<double>(1), std::vector<double>(1),
@@ -71,7 +70,7 @@ class FinishedRun {
   Simulation _simulation;
 };
 
-/// Sod's tube with a tolerance 1 % above each of its own nine errors, and its conservation.
+/// Sod's tube with a tolerance 1 % above each of its nine errors, and its conservation.
 FinishedRun strict_sod() {
   std::vector<std::string> sets = {"output.fields=[]"};
   FinishedRun run("sod", sets);
@@ -81,13 +80,13 @@ FinishedRun strict_sod() {
   return {"sod", sets};
 }
 
-TEST_F(GasVerify, ErrorsOfOneCellAreSeen) {
+TEST_F(GasVerify, DetectsAnErrorInOneCell) {
   FinishedRun run = strict_sod();
   const Verdict honest = run.verify();
   EXPECT_EQ(honest.failed, std::set<std::string>());
   EXPECT_EQ(honest.passed.size(), 10U);
   for (const std::int64_t cell : {0, 77, 199}) {
-    // Density alone: velocity and pressure are kept.
+    // Changes the density only; velocity and pressure are kept.
     const Verdict density = run.verify_with(cell, [](double& rho, double& m, double& e) {
       const double u = m / rho;
       e += 0.5 * 0.9 * m * u;
@@ -114,7 +113,7 @@ TEST_F(GasVerify, ErrorsOfOneCellAreSeen) {
   EXPECT_EQ(run.verify().failed, std::set<std::string>()) << "the state is what it was";
 }
 
-TEST_F(GasVerify, ConservationSeesTheTwelfthDigit) {
+TEST_F(GasVerify, ConservationDetectsAChangeInTheTwelfthDigit) {
   FinishedRun run = strict_sod();
   // The tolerance is 1e-12 of the total, and one of 200 cells is changed.
   const auto fails = [&](auto&& change) {
@@ -126,7 +125,7 @@ TEST_F(GasVerify, ConservationSeesTheTwelfthDigit) {
   EXPECT_FALSE(fails([](double& rho, double&, double&) { rho *= 1.0 + 1e-15; }));
 }
 
-TEST_F(GasVerify, NotANumberFailsWhateverItTouches) {
+TEST_F(GasVerify, NaNFailsEveryDependentCheck) {
   FinishedRun run = strict_sod();
   for (const std::int64_t cell : {0, 77, 199})
     for (int k = 0; k < 3; ++k) {
@@ -134,7 +133,7 @@ TEST_F(GasVerify, NotANumberFailsWhateverItTouches) {
         (k == 0 ? rho : k == 1 ? m : e) = std::numeric_limits<double>::quiet_NaN();
       });
       EXPECT_TRUE(verdict.failed.count("conservation")) << k;
-      // Density stands alone, velocity needs density and momentum, pressure all three.
+      // Density depends on rho alone, velocity on density and momentum, pressure on all three.
       for (const std::string norm : {"l1_", "l2_", "linf_"}) {
         EXPECT_EQ(verdict.failed.count(norm + "density"), k == 0 ? 1U : 0U);
         EXPECT_EQ(verdict.failed.count(norm + "velocity"), k <= 1 ? 1U : 0U);
@@ -143,7 +142,7 @@ TEST_F(GasVerify, NotANumberFailsWhateverItTouches) {
     }
 }
 
-TEST_F(GasVerify, DensityPeakIsSeen) {
+TEST_F(GasVerify, DetectsAWrongDensityPeak) {
   FinishedRun run("sedov",
                   {"mesh.cells=51", "output.fields=[]", "verify.max_density={value=4.22,tolerance=0.1}"});
   const Verdict honest = run.verify();
@@ -157,7 +156,7 @@ TEST_F(GasVerify, DensityPeakIsSeen) {
   EXPECT_FALSE(fails(2, 1.5));
 }
 
-TEST_F(GasVerify, ReferenceRunsJudgeLikeExactSolutions) {
+TEST_F(GasVerify, ReferenceRunsDetectErrorsLikeExactSolutions) {
   FinishedRun run("shu-osher", {"mesh.cells=100", "verify.reference.cells=400", "output.fields=[]",
                                 "verify.l1_density=2"});
   EXPECT_EQ(run.verify().failed, std::set<std::string>());
