@@ -2,6 +2,8 @@
 
 #include <cstdint>
 
+#include "kernels/stepping/driver.hpp"
+
 namespace drogue::gas {
 
 /// Nonlinear weights of the fifth-order reconstruction.
@@ -33,14 +35,7 @@ enum class Positivity { off, on, automatic };
 /// Floating-point precision. `split`: differences, central flux and update in FP64, nonlinear terms in FP32.
 enum class Precision { full, split };
 
-/// Launch strategy for the steps on a device. Host backends run plain loops.
-enum class Driver {
-  automatic,   ///< `persistent` if mesh size, splitting and limiter allow it, else `graph`
-  plain,       ///< kernels launched one by one
-  graph,       ///< the kernels of a step as one CUDA graph
-  persistent,  ///< many steps in one launch of teams that are all resident at once
-  stages,      ///< a CUDA graph with one kernel per stage; splittings other than lf_stencil always use it
-};
+using stepping::Driver;
 
 enum class Boundary { outflow, reflecting, periodic };
 
@@ -64,6 +59,8 @@ struct Parameters {
   double fixed_dt = 0.0;  ///< s; a positive value replaces the CFL condition
   std::int64_t max_steps = 1'000'000;
   int block = 0;  ///< threads per team on a device, cells per tile on a host; 0: the default of the backend
+  /// `automatic` and `persistent` need a mesh that fits the shared memory, lf_stencil, and no limiter from
+  /// the start. Splittings other than lf_stencil always run one kernel per stage.
   Driver driver = Driver::automatic;
   /// baseline solver: use page-locked host memory for transfers, on backends that have it
   bool pinned = false;

@@ -25,9 +25,7 @@ struct PhaseTimes {
   double h2d = 0.0, compute = 0.0, d2h = 0.0;
 };
 
-/// Callback that `advance` calls a few times per second. Returning false stops the run after the steps in
-/// flight.
-using Poll = std::function<bool(const Status&)>;
+using stepping::Poll;
 
 /// Callback that receives every history row, in order.
 using RowSink = std::function<void(const HistoryRow&)>;

@@ -2,17 +2,16 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
-#include <cmath>
 #include <memory>
 #include <optional>
-#include <thread>
 
 #include "kernels/device/captured_graph.hpp"
 #include "kernels/gas/solver.hpp"
 #include "kernels/gas/stepping/history.hpp"
 #include "kernels/gas/stepping/launch.hpp"
 #include "kernels/gas/transfer.hpp"
+#include "kernels/stepping/step_launcher.hpp"
+#include "kernels/stepping/step_loop.hpp"
 
 namespace drogue::gas {
 
@@ -52,34 +51,31 @@ class SolverImpl final : public Solver {
   [[nodiscard]] Control read_control() const;
   void write_control(const Control& control);
   void initialise_control(Control& control);
-  [[nodiscard]] Status status() const;
   /// True if all stages of a step run in one kernel.
   [[nodiscard]] bool is_fused() const {
-    return _setup.splitting == Splitting::lf_stencil && _parameters.driver != Driver::stages;
+    return _setup.splitting == Splitting::lf_stencil && _launcher.driver() != Driver::stages;
   }
   void enqueue_step(const ExecutionSpace& space, bool limited) const;
   void enqueue_sums(const ExecutionSpace& space, int row_every, bool always) const;
   void make_persistent();
-  void capture_step(bool limited);
-  void enqueue(bool limited, std::int64_t max_steps_per_launch);
   void read_rows(const RowSink& rows);
+  struct DeviceSteps;
 
   device::Instance<ExecutionSpace> _instance;
   device::Instance<ExecutionSpace> _copy_instance;
   Parameters _parameters;
   StepConstants _constants;
   StageSetup<ExecutionSpace> _setup;
-  Kokkos::View<Status, Report> _status;
+  stepping::StepLoop<ExecutionSpace> _loop;
+  stepping::StepLauncher<ExecutionSpace, 2> _launcher;  ///< variant 1: with the flux limiter
   Kokkos::View<HistoryRow*, Report> _ring;
   std::array<Fields, 4> _partial;  ///< partial sums after each level
-  std::array<std::unique_ptr<device::CapturedGraph<ExecutionSpace>>, 2> _step;
   std::unique_ptr<device::CapturedGraph<ExecutionSpace>> _row;
   std::optional<PersistentSetup<ExecutionSpace>> _persistent;
   int _row_every = 0;
   Fields _snapshot;
   HostFields _host_snapshot;
   std::int64_t _rows_read = 0;
-  std::int64_t _launched = 0;  ///< status-publishing kernels enqueued so far
   std::optional<HistoryRow> _last_row;
 };
 
@@ -102,7 +98,11 @@ inline int host_threads(std::int64_t cells) {
 
 template <class ExecutionSpace>
 SolverImpl<ExecutionSpace>::SolverImpl(const Parameters& p)
-    : _instance(host_threads(p.cells)), _copy_instance(1), _parameters(p) {
+    : _instance(host_threads(p.cells)),
+      _copy_instance(1),
+      _parameters(p),
+      _loop(_instance),
+      _launcher(_instance, p.driver) {
   const double dx = (p.x_max - p.x_min) / static_cast<double>(p.cells);
   _setup.table = stage_table(p.time_scheme);
   const double limited_cap = p.time_scheme == TimeScheme::ssprk3 ? 0.4 : 0.8;
@@ -136,7 +136,6 @@ SolverImpl<ExecutionSpace>::SolverImpl(const Parameters& p)
   _setup.dx = dx;
   _setup.splitting = p.splitting;
   _setup.average = p.face_average;
-  _status = decltype(_status)("drogue::gas::status");
   _ring = decltype(_ring)("drogue::gas::history", row_capacity);
   std::int64_t values = p.cells;
   for (auto& level : _partial) {
@@ -155,8 +154,9 @@ void SolverImpl<ExecutionSpace>::make_persistent() {
   if constexpr (device::PersistentKernel<ExecutionSpace>::available) {
     using Grid = device::PersistentKernel<ExecutionSpace>;
     const Parameters& p = _parameters;
-    const bool wanted = p.driver == Driver::persistent || p.driver == Driver::automatic;
-    if (!wanted || p.splitting != Splitting::lf_stencil || p.positivity == Positivity::on) return;
+    if (!_launcher.may_be_persistent(p.driver) || p.splitting != Splitting::lf_stencil ||
+        p.positivity == Positivity::on)
+      return;
     const int teams = Grid::most_teams(_instance);
     if (teams == 0) return;
     // One tile per multiprocessor, one thread per slot up to the limit, and one warp for the step control.
@@ -173,16 +173,15 @@ void SolverImpl<ExecutionSpace>::make_persistent() {
     _persistent.emplace(PersistentSetup<ExecutionSpace>{
         {_instance, static_cast<int>(share(cells)), team, scratch, static_cast<std::size_t>(p.cells)},
         shape,
-        _status,
+        _loop.status_view(),
         _constants});
+    _launcher.use_persistent();
   }
 }
 
 template <class ExecutionSpace>
 const char* SolverImpl<ExecutionSpace>::driver() const {
-  if (_persistent) return "persistent";
-  if (_parameters.driver == Driver::stages) return "stages";
-  return _parameters.driver == Driver::plain ? "plain" : device::CapturedGraph<ExecutionSpace>::driver;
+  return stepping::driver_name(_launcher.driver());
 }
 
 template <class ExecutionSpace>
@@ -205,7 +204,7 @@ template <class ExecutionSpace>
 void SolverImpl<ExecutionSpace>::write_control(const Control& control) {
   auto mirror = Kokkos::create_mirror_view(_setup.control);
   mirror() = control;
-  mirror().trial.launches = _launched;
+  mirror().trial.launches = _loop.launches();
   Kokkos::deep_copy(_instance.space(), _setup.control, mirror);
   _instance.space().fence("drogue::gas::solver: write control");
 }
@@ -248,11 +247,11 @@ struct InitialWaveSpeedFunctor {
 template <class ExecutionSpace>
 void SolverImpl<ExecutionSpace>::initialise_control(Control& c) {
   c.trial.stop = Stop::pause;
-  c.reduction.first_inadmissible = no_inadmissible_cell;
-  c.trial.rows = _rows_read;
+  c.reduction.first_inadmissible = no_failure;
+  c.trial.outputs = _rows_read;
   write_control(c);
-  _status().step = c.restart.step;
-  _status().rows = c.trial.rows;
+  _loop.status_view()().step = c.restart.step;
+  _loop.status_view()().outputs = c.trial.outputs;
   _last_row.reset();
 }
 
@@ -337,35 +336,6 @@ ConstConservedFields SolverImpl<ExecutionSpace>::finish_snapshot() {
   return {{data, n}, {data + n, n}, {data + 2 * n, n}};
 }
 
-/// Limit of the work in flight, s: bounds the delay of progress, interrupts and failures.
-inline constexpr double seconds_in_flight = 0.1;
-/// also prevents an overflow of the ring of history rows
-inline constexpr std::int64_t max_steps_in_flight = 512;
-
-template <class ExecutionSpace>
-Status SolverImpl<ExecutionSpace>::status() const {
-  // The device writes this memory asynchronously, hence volatile.
-  const volatile Status& s = _status();
-  Status seen;
-  seen.launches = s.launches;
-  seen.step = s.step;
-  seen.time = s.time;
-  seen.dt = s.dt;
-  seen.limited = s.limited;
-  seen.stop = s.stop;
-  seen.rows = s.rows;
-  return seen;
-}
-
-/// Estimated number of steps, at least one, up to `target` (s) and `pause_step` from the last published
-/// status. Launches beyond it would have nothing to do.
-inline std::int64_t estimated_steps_left(const Status& now, double target, std::int64_t pause_step) {
-  double steps = std::ceil((target - now.time) / now.dt);
-  if (pause_step > now.step) steps = std::min(steps, static_cast<double>(pause_step - now.step));
-  if (!(steps < 1e12)) return 1'000'000'000'000;
-  return std::max<std::int64_t>(1, static_cast<std::int64_t>(steps));
-}
-
 /// Calls `launch` with the reconstruction scheme as a compile-time constant.
 template <class Launch>
 void dispatch_reconstruction(const Parameters& p, const Launch& launch) {
@@ -394,7 +364,7 @@ void SolverImpl<ExecutionSpace>::enqueue_step(const ExecutionSpace& space, bool 
       "drogue::gas::finish_step",
       Kokkos::Experimental::require(Kokkos::TeamPolicy<ExecutionSpace>(space, 1, on_host ? 1 : finish_team),
                                     Kokkos::Experimental::WorkItemProperty::HintLightWeight),
-      FinishFunctor<ExecutionSpace>{_setup.control, _status, _constants, _setup.table, limited});
+      FinishFunctor<ExecutionSpace>{_setup.control, _loop.status_view(), _constants, _setup.table, limited});
 }
 
 template <class ExecutionSpace>
@@ -416,34 +386,13 @@ void SolverImpl<ExecutionSpace>::enqueue_sums(const ExecutionSpace& space, int r
     n = out;
   }
   Kokkos::parallel_for("drogue::gas::history_row", Kokkos::RangePolicy<ExecutionSpace>(space, 0, 1),
-                       RowFunctor<ExecutionSpace>{_setup.control, _status, _ring, _partial[level - 1], n,
-                                                  _constants, row_every, always});
-}
-
-template <class ExecutionSpace>
-void SolverImpl<ExecutionSpace>::capture_step(bool limited) {
-  auto& step = _step[limited ? 1 : 0];
-  if (step) return;
-  step = std::make_unique<device::CapturedGraph<ExecutionSpace>>(
-      _instance, [this, limited](const ExecutionSpace& space) { enqueue_step(space, limited); });
-}
-
-/// Enqueues one step, or up to `max_steps_per_launch` steps of a persistent kernel. Asynchronous.
-template <class ExecutionSpace>
-void SolverImpl<ExecutionSpace>::enqueue(bool limited, std::int64_t max_steps_per_launch) {
-  if (_persistent && !limited)
-    return dispatch_reconstruction(_parameters, [&](auto scheme) {
-      launch_persistent_steps<scheme.value>(_setup, *_persistent, _parameters.precision,
-                                            max_steps_per_launch);
-    });
-  if (_parameters.driver == Driver::plain) return enqueue_step(_instance.space(), limited);
-  capture_step(limited);
-  _step[limited ? 1 : 0]->launch();
+                       RowFunctor<ExecutionSpace>{_setup.control, _loop.status_view(), _ring,
+                                                  _partial[level - 1], n, _constants, row_every, always});
 }
 
 template <class ExecutionSpace>
 void SolverImpl<ExecutionSpace>::read_rows(const RowSink& rows) {
-  for (const std::int64_t written = status().rows; _rows_read < written; ++_rows_read) {
+  for (const std::int64_t written = _loop.status().outputs; _rows_read < written; ++_rows_read) {
     _last_row = _ring(static_cast<std::size_t>(_rows_read % row_capacity));
     if (rows) rows(*_last_row);
   }
@@ -452,93 +401,53 @@ void SolverImpl<ExecutionSpace>::read_rows(const RowSink& rows) {
 template <class ExecutionSpace>
 HistoryRow SolverImpl<ExecutionSpace>::totals() {
   enqueue_sums(_instance.space(), 0, true);
-  ++_launched;
+  _loop.count_launch();
   _instance.space().fence("drogue::gas::totals");
   read_rows({});
   return *_last_row;
 }
 
+/// Steps and history rows of the solver, as `StepLoop` enqueues them.
+template <class ExecutionSpace>
+struct SolverImpl<ExecutionSpace>::DeviceSteps {
+  SolverImpl& solver;
+  const RowSink& rows;
+
+  void begin(const stepping::AdvanceRequest& request, std::int64_t row_step) {
+    SolverImpl& s = solver;
+    if (const int every = request.output_every; every > 0 && every != s._row_every) {
+      s._row = std::make_unique<device::CapturedGraph<ExecutionSpace>>(
+          s._instance, [&s, every](const ExecutionSpace& on) { s.enqueue_sums(on, every, false); });
+      s._row_every = every;
+    }
+    Kokkos::parallel_for("drogue::gas::begin_advance",
+                         Kokkos::RangePolicy<ExecutionSpace>(s._instance.space(), 0, 1),
+                         BeginAdvanceFunctor<ExecutionSpace>{s._setup.control, s._loop.status_view(),
+                                                             s._constants, request, row_step});
+  }
+  bool holds_many_steps(int limited) const { return solver._persistent && limited == 0; }
+  void enqueue(int limited, std::int64_t max_steps) {
+    SolverImpl& s = solver;
+    if (holds_many_steps(limited))
+      return dispatch_reconstruction(s._parameters, [&](auto scheme) {
+        launch_persistent_steps<scheme.value>(s._setup, *s._persistent, s._parameters.precision, max_steps);
+      });
+    s._launcher.launch(limited,
+                       [&s, limited](const ExecutionSpace& space) { s.enqueue_step(space, limited != 0); });
+  }
+  void enqueue_output() { solver._row->launch(); }
+  void read_outputs() { solver.read_rows(rows); }
+  std::int64_t last_output() const { return solver._last_row ? solver._last_row->step : -1; }
+  void write_output() {
+    const HistoryRow row = solver.totals();
+    if (rows) rows(row);
+  }
+};
+
 template <class ExecutionSpace>
 Stop SolverImpl<ExecutionSpace>::advance(double target, std::int64_t pause_step, int row_every,
                                          const RowSink& rows, const Poll& poll) {
-  using Clock = std::chrono::steady_clock;
-  const auto seconds = [](auto span) { return std::chrono::duration<double>(span).count(); };
-  const ExecutionSpace& space = _instance.space();
-  // The first poll precedes the loop because a short advance may end before the next time-based poll.
-  if (poll && !poll(status())) return Stop::interrupted;
-  if (row_every > 0 && row_every != _row_every) {
-    _row = std::make_unique<device::CapturedGraph<ExecutionSpace>>(
-        _instance, [this, row_every](const ExecutionSpace& on) { enqueue_sums(on, row_every, false); });
-    _row_every = row_every;
-  }
-  const std::int64_t first_step = status().step;
-  const std::int64_t row_step = row_every > 0 ? (first_step / row_every + 1) * row_every : -1;
-  Kokkos::parallel_for(
-      "drogue::gas::resume", Kokkos::RangePolicy<ExecutionSpace>(space, 0, 1),
-      ResumeFunctor<ExecutionSpace>{_setup.control, _status, _constants, target, pause_step, row_step});
-  ++_launched;
-  space.fence("drogue::gas::advance: resumed");
-
-  std::int64_t since_row = row_every > 0 ? first_step % row_every : 0;
-  std::int64_t window = on_host ? 1 : 8;
-  std::int64_t steps_per_launch = 1024;  // of a persistent kernel
-  const auto begin = Clock::now();
-  auto last_poll = begin;
-  bool interrupted = false;
-  while (true) {
-    const Status now = status();
-    read_rows(rows);
-    const bool row_due = now.stop == Stop::pause && row_every > 0 && now.step % row_every == 0 &&
-                         (!_last_row || _last_row->step != now.step);
-    if (now.stop != Stop::running && !row_due) {
-      if (now.stop != Stop::pause || now.step == pause_step) break;
-    }
-    const auto clock = Clock::now();
-    if (seconds(clock - last_poll) > 0.02 || on_host) {
-      last_poll = clock;
-      if (poll && !poll(now)) {
-        interrupted = true;
-        break;
-      }
-      const double rate = static_cast<double>(now.step - first_step) / seconds(clock - begin);
-      if (!on_host)
-        window = std::clamp<std::int64_t>(static_cast<std::int64_t>(seconds_in_flight * rate), 8,
-                                          max_steps_in_flight);
-      steps_per_launch =
-          std::max<std::int64_t>(static_cast<std::int64_t>(0.5 * seconds_in_flight * rate), 64);
-    }
-    const std::int64_t in_flight = _launched - now.launches;
-    const bool persistent = _persistent && now.limited == 0;
-    const std::int64_t left = estimated_steps_left(now, target, pause_step);
-    // A row step ends a launch with many steps; another launch must follow.
-    const std::int64_t useful =
-        !persistent     ? std::min(window, left + (row_every > 0 ? left / row_every + 1 : 0))
-        : row_every > 0 ? 2
-                        : std::min<std::int64_t>(2, (left - 1) / steps_per_launch + 1);
-    if (in_flight >= useful) {
-      std::this_thread::yield();
-      continue;
-    }
-    if (row_every > 0 && (since_row >= row_every || (in_flight == 0 && row_due))) {
-      _row->launch();
-      since_row = 0;
-    } else {
-      enqueue(now.limited != 0, steps_per_launch);
-      since_row += persistent ? steps_per_launch : 1;
-    }
-    ++_launched;
-  }
-  space.fence("drogue::gas::advance: stopped");
-  const Status last = status();
-  if (row_every > 0 && last.step % row_every == 0 && last.step > first_step &&
-      (read_rows(rows), !_last_row || _last_row->step != last.step)) {
-    const HistoryRow row = totals();
-    if (rows) rows(row);
-  }
-  read_rows(rows);
-  const bool between_stops =
-      last.stop == Stop::running || (last.stop == Stop::pause && last.step != pause_step);
-  return interrupted && between_stops ? Stop::interrupted : last.stop;
+  return _loop.advance({target, pause_step, row_every}, DeviceSteps{*this, rows}, poll);
 }
 
 }  // namespace drogue::gas

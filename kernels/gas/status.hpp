@@ -3,11 +3,12 @@
 #include <cstdint>
 
 #include "kernels/gas/parameters.hpp"
+#include "kernels/stepping/status.hpp"
 
 namespace drogue::gas {
 
-/// Reason why `Solver::advance` returned.
-enum class Stop : int { running, target, pause, max_steps, failed, interrupted };
+using stepping::Status;
+using stepping::Stop;
 
 /// Quantity that made a step inadmissible.
 enum class FailureReason : int { density, pressure, not_finite, time_step };
@@ -21,9 +22,7 @@ struct StepFailure {
 };
 
 /// Progress of a run and counters of its adaptive step control.
-struct Progress {
-  double time = 0.0;
-  std::int64_t step = 0;
+struct Progress : stepping::AdaptiveTime {
   int current = 0;                 ///< index of the buffer that holds U^n
   int limited = 0;                 ///< 1 if the flux limiter is on
   int limited_left = 0;            ///< accepted steps until `automatic` turns the limiter off
@@ -40,18 +39,6 @@ struct RestartState : Progress {
   /// Time-integrated fluxes of mass, momentum and energy through the left and right end, per unit area
   double boundary[2][3] = {};
   double compensation[2][3] = {};
-};
-
-/// Progress that kernels publish in pinned host memory. The host reads it without a copy or fence.
-struct Status {
-  /// Kernels that have published a status, including those that had nothing to do
-  std::int64_t launches = 0;
-  std::int64_t step = 0;
-  double time = 0.0;
-  double dt = 0.0;
-  int limited = 0;
-  Stop stop = Stop::running;
-  std::int64_t rows = 0;
 };
 
 /// Row of the history: sums over the domain, SI units per unit area.

@@ -6,37 +6,29 @@
 
 #include "kernels/gas/status.hpp"
 #include "kernels/gas/stepping/stage_table.hpp"
+#include "kernels/stepping/step_control.hpp"
+#include "kernels/stepping/step_monitor.hpp"
 
 namespace drogue::gas {
 
 /// Accepted steps for which `automatic` keeps the limiter on
 inline constexpr int automatic_limited_steps = 100;
 inline constexpr int max_halvings = 40;
-inline constexpr std::uint64_t no_inadmissible_cell = ~std::uint64_t{0};
+using stepping::no_failure;
 
 /// Encodes an inadmissible cell as an integer that is least for the first stage and, within it, the leftmost
 /// cell. Later stages fail as a consequence of earlier ones.
-KOKKOS_INLINE_FUNCTION std::uint64_t encode_inadmissible(int stage, std::int64_t cell, FailureReason what) {
-  return static_cast<std::uint64_t>(stage) << 60U | static_cast<std::uint64_t>(cell) << 2U |
-         static_cast<std::uint64_t>(what);
+KOKKOS_INLINE_FUNCTION std::uint64_t encode_inadmissible(int stage, std::int64_t cell, FailureReason reason) {
+  return stepping::encode_failure(stage, cell << 2U | static_cast<std::int64_t>(reason));
 }
 KOKKOS_INLINE_FUNCTION std::int64_t inadmissible_cell(std::uint64_t first_inadmissible) {
-  return first_inadmissible == no_inadmissible_cell
-             ? -1
-             : static_cast<std::int64_t>(first_inadmissible << 4U >> 6U);
+  return first_inadmissible == no_failure ? -1 : stepping::failure_index(first_inadmissible) >> 2U;
+}
+KOKKOS_INLINE_FUNCTION FailureReason inadmissible_reason(std::uint64_t first_inadmissible) {
+  return static_cast<FailureReason>(first_inadmissible & 3U);
 }
 
-/// Step trial under way, and the stopping criteria.
-struct StepTrial {
-  double dt;                ///< s
-  double target;            ///< s, time at which `advance` stops
-  std::int64_t pause_step;  ///< step at which `advance` stops
-  std::int64_t row_step;    ///< step of the next history row
-  int reaches_target;       ///< 1 if this trial ends at `target`
-  Stop stop;
-  std::int64_t rows;      ///< history rows written
-  std::int64_t launches;  ///< kernels that have published a status
-};
+using stepping::StepTrial;
 
 /// Reductions of the stages of a step trial, which decide on its acceptance.
 struct StageReduction {

@@ -9,21 +9,14 @@ namespace drogue::gas {
 // These functions take copies of their inputs: the loads of a copy overlap, whereas decisions on global
 // memory would load one after another.
 
-/// Sets dt of the next trial from the maximum wave speed of U^n: the CFL condition with its start-up ramp (or
-/// the fixed step), shortened to meet the target time, times the reduction by rejected trials. No dt is tried
-/// twice.
-KOKKOS_INLINE_FUNCTION void choose_dt(const Progress& now, StepTrial& next, const StepConstants& k) {
-  double dt = k.fixed_dt;
-  if (!(dt > 0.0)) {
-    const double ramp = now.step < k.ramp_steps
-                            ? 0.1 + 0.9 * static_cast<double>(now.step) / static_cast<double>(k.ramp_steps)
-                            : 1.0;
-    dt = ramp * (now.limited ? k.limited_cfl : k.cfl) * k.dx * device::reciprocal(max_speed(now.speed));
-  }
-  const double left = next.target - now.time;
-  const bool meets = dt >= left * (1.0 - 1e-12);
-  next.reaches_target = meets && now.dt_scale == 1.0;
-  next.dt = now.dt_scale * (meets ? left : dt);
+/// Admissible dt of the next step, s: the CFL condition for the maximum wave speed of U^n with its start-up
+/// ramp, or the fixed step.
+KOKKOS_INLINE_FUNCTION double admissible_dt(const Progress& now, const StepConstants& k) {
+  if (k.fixed_dt > 0.0) return k.fixed_dt;
+  const double ramp = now.step < k.ramp_steps
+                          ? 0.1 + 0.9 * static_cast<double>(now.step) / static_cast<double>(k.ramp_steps)
+                          : 1.0;
+  return ramp * (now.limited ? k.limited_cfl : k.cfl) * k.dx * device::reciprocal(max_speed(now.speed));
 }
 
 KOKKOS_INLINE_FUNCTION void fail(const Progress& now, StepTrial& trial, StepFailure& failure,
@@ -35,9 +28,8 @@ KOKKOS_INLINE_FUNCTION void fail(const Progress& now, StepTrial& trial, StepFail
 /// Prepares the next trial, or records a failure if dt is too small.
 KOKKOS_INLINE_FUNCTION void prepare_trial(const Progress& now, StepTrial& next, StepFailure& failure,
                                           const StepConstants& k) {
-  choose_dt(now, next, k);
-  // Also true for a NaN.
-  if (!(now.time + next.dt > now.time)) fail(now, next, failure, FailureReason::time_step, -1);
+  if (!stepping::set_dt(now, next, admissible_dt(now, k), now.dt_scale))
+    fail(now, next, failure, FailureReason::time_step, -1);
 }
 
 /// Resets the reductions of the stages.
@@ -45,21 +37,8 @@ KOKKOS_INLINE_FUNCTION void reset(StageReduction& reduction, const Progress& now
   for (int field = 0; field < 3; ++field) reduction.stage_speed[0][field] = now.speed[field];
   for (int stage = 1; stage <= max_stages; ++stage)
     for (int field = 0; field < 3; ++field) reduction.stage_speed[stage][field] = 0;
-  reduction.first_inadmissible = no_inadmissible_cell;
+  reduction.first_inadmissible = no_failure;
   reduction.limited_faces = 0;
-}
-
-/// Publishes the progress to the host. The host reads the fields one by one while they change; each value
-/// must only have been current at some time.
-KOKKOS_INLINE_FUNCTION void publish_status(const Progress& now, StepTrial& trial, Status& s) {
-  s.step = now.step;
-  s.time = now.time;
-  s.dt = trial.dt;
-  s.limited = now.limited;
-  s.stop = trial.stop;
-  s.rows = trial.rows;
-  // Counted on the device: reading pinned host memory would take microseconds.
-  s.launches = ++trial.launches;
 }
 
 /// Compensated addition (Kahan 1965). Without it the conservation check would lose its digits over 10^6
@@ -93,8 +72,7 @@ KOKKOS_INLINE_FUNCTION void reject(Progress& now, StepTrial& trial, StepFailure&
     ++now.halvings;
     now.dt_scale *= 0.5;
   } else {
-    fail(now, trial, failure, static_cast<FailureReason>(first_inadmissible & 3U),
-         inadmissible_cell(first_inadmissible));
+    fail(now, trial, failure, inadmissible_reason(first_inadmissible), inadmissible_cell(first_inadmissible));
     return;
   }
   ++now.redone;
@@ -108,8 +86,7 @@ KOKKOS_INLINE_FUNCTION void accept(Progress& now, StepTrial& trial, StepFailure&
   now.last_dt = dt;
   now.dt_min = now.step == 0 || dt < now.dt_min ? dt : now.dt_min;
   now.dt_max = dt > now.dt_max ? dt : now.dt_max;
-  now.time = trial.reaches_target ? trial.target : now.time + dt;
-  ++now.step;
+  stepping::advance_time(now, trial);
   now.current = (now.current + result_buffer) % 3;
   now.limited_faces += result.limited_faces;
   now.halvings = 0;
@@ -117,14 +94,7 @@ KOKKOS_INLINE_FUNCTION void accept(Progress& now, StepTrial& trial, StepFailure&
   for (int field = 0; field < 3; ++field) now.speed[field] = result.speed[field];
   if (limited && k.positivity == static_cast<int>(Positivity::automatic) && --now.limited_left <= 0)
     now.limited = 0;
-  if (trial.reaches_target)
-    trial.stop = Stop::target;
-  else if (now.step >= k.max_steps)
-    trial.stop = Stop::max_steps;
-  else if (now.step == trial.pause_step || now.step == trial.row_step)
-    trial.stop = Stop::pause;
-  else
-    prepare_trial(now, trial, failure, k);
+  if (stepping::continues(now, trial, k.max_steps)) prepare_trial(now, trial, failure, k);
 }
 
 /// Flux of one field through one end of the mesh, averaged over the stages of a step.
@@ -156,8 +126,8 @@ struct FinishFunctor {
     StepTrial trial = c.trial;
     const StepResult result = step_result(c.reduction, table.stages);
     const bool finishes_trial = trial.stop == Stop::running && (now.limited != 0) == limited;
-    const bool accepted = finishes_trial && result.first_inadmissible == no_inadmissible_cell &&
-                          !violates_cfl(c.reduction, trial.dt);
+    const bool accepted =
+        finishes_trial && result.first_inadmissible == no_failure && !violates_cfl(c.reduction, trial.dt);
     if (accepted)
       for (int k = member.team_rank(); k < 6; k += member.team_size())
         add_compensated(c.restart.boundary[k / 3][k % 3], c.restart.compensation[k / 3][k % 3],
@@ -169,7 +139,7 @@ struct FinishFunctor {
     else if (finishes_trial)
       reject(now, trial, c.failure, result.first_inadmissible, constants, limited);
     if (finishes_trial) reset(c.reduction, now);
-    publish_status(now, trial, status());
+    stepping::publish_status(now, trial, now.limited, status());
     static_cast<Progress&>(c.restart) = now;
     c.trial = trial;
   }
@@ -185,33 +155,25 @@ struct FinishFunctor {
   }
 };
 
-/// Starts an advance towards a new target or pause. Idempotent.
+/// Starts an advance. Idempotent.
 template <class ExecutionSpace>
-struct ResumeFunctor {
+struct BeginAdvanceFunctor {
   Kokkos::View<Control, typename ExecutionSpace::memory_space> control;
   Kokkos::View<Status, device::HostPinnedSpace<ExecutionSpace>> status;
   StepConstants constants;
-  double target;
-  std::int64_t pause_step, row_step;
+  stepping::AdvanceRequest request;
+  std::int64_t row_step;  ///< step of the first history row
 
   KOKKOS_FUNCTION void operator()(int) const {
     Control& c = control();
     const Progress now = c.restart;
     StepTrial trial = c.trial;
     if (trial.stop != Stop::failed) {
-      trial.target = target;
-      trial.pause_step = pause_step;
-      trial.row_step = row_step;
-      trial.stop = Stop::running;
-      if (now.time >= target)
-        trial.stop = Stop::target;
-      else if (now.step >= constants.max_steps)
-        trial.stop = Stop::max_steps;
-      else
+      if (stepping::begin_advance(now, trial, request, row_step, constants.max_steps))
         prepare_trial(now, trial, c.failure, constants);
       reset(c.reduction, now);
     }
-    publish_status(now, trial, status());
+    stepping::publish_status(now, trial, now.limited, status());
     c.trial = trial;
   }
 };

@@ -5,8 +5,9 @@
 
 namespace drogue::gas {
 
-inline constexpr int sum_radix = 64;       ///< values that one thread adds
-inline constexpr int row_capacity = 1024;  ///< capacity of the ring of rows that the host has not read yet
+inline constexpr int sum_radix = 64;  ///< values that one thread adds
+inline constexpr int row_capacity =
+    2 * stepping::max_launches_in_flight;  ///< capacity of the ring of rows that the host has not read yet
 
 /// One level of the sums over all cells. Thread j adds the values j, j + n_out, j + 2 n_out, ... in this
 /// order, so that the result has the same bits on every backend and for any number of threads.
@@ -22,7 +23,7 @@ struct SumLevelFunctor {
 
   KOKKOS_FUNCTION void operator()(std::int64_t j) const {
     const Control& c = control();
-    if (!always && (c.trial.stop != Stop::pause || c.restart.step != c.trial.row_step)) return;
+    if (!always && !stepping::output_is_due(c.restart, c.trial)) return;
     const double* source = first ? buffer[c.restart.current].data() : in.data();
     const std::int64_t row = first ? n_in : static_cast<std::int64_t>(in.extent(0));
     double sum[3] = {};
@@ -48,18 +49,14 @@ struct RowFunctor {
   KOKKOS_FUNCTION void operator()(int) const {
     Control& c = control();
     StepTrial trial = c.trial;
-    if (always || (trial.stop == Stop::pause && c.restart.step == trial.row_step)) {
+    if (always || stepping::output_is_due(c.restart, trial)) {
       write_row(c.restart, trial);
-      if (!always) {
-        trial.row_step += every;
-        if (c.restart.step != trial.pause_step) {
-          trial.stop = Stop::running;
-          prepare_trial(c.restart, trial, c.failure, constants);
-          reset(c.reduction, c.restart);
-        }
+      if (!always && stepping::resume_after_output(c.restart, trial, every)) {
+        prepare_trial(c.restart, trial, c.failure, constants);
+        reset(c.reduction, c.restart);
       }
     }
-    publish_status(c.restart, trial, status());
+    stepping::publish_status(c.restart, trial, c.restart.limited, status());
     c.trial = trial;
   }
 
@@ -67,7 +64,7 @@ struct RowFunctor {
     double sum[3] = {};
     for (std::int64_t i = 0; i < n; ++i)
       for (int field = 0; field < 3; ++field) sum[field] += partial(i, field);
-    HistoryRow& row = ring(trial.rows % row_capacity);
+    HistoryRow& row = ring(trial.outputs % row_capacity);
     row.time = r.time;
     row.step = r.step;
     row.dt = r.last_dt;
@@ -78,7 +75,7 @@ struct RowFunctor {
     row.max_speed = max_speed(r.speed);
     row.limited_faces = r.limited_faces;
     row.redone = r.redone;
-    ++trial.rows;
+    ++trial.outputs;
   }
 };
 

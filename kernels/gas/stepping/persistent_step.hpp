@@ -78,8 +78,8 @@ struct PersistentStepFunctor {
       const bool accepted = fastest != inadmissible_mark;
       if (lane == 0) {
         if (accepted)
-          accept(now, trial, team.failure, {no_inadmissible_cell, 0, {0, 0, fastest}}, constants,
-                 result_buffer(), false);
+          accept(now, trial, team.failure, {no_failure, 0, {0, 0, fastest}}, constants, result_buffer(),
+                 false);
         else
           reject(now, trial, team.failure, first_inadmissible_cell(member, last.epoch), constants, false);
         static_cast<Progress&>(team.restart) = now;
@@ -109,12 +109,11 @@ struct PersistentStepFunctor {
   /// Sends the result of the step of this team to all others.
   template <class Member>
   KOKKOS_FUNCTION void end_step(const Member& member, TeamControl& team, std::uint64_t epoch) const {
-    if (member.team_rank() == 0 && team.reduction.first_inadmissible != no_inadmissible_cell)
+    if (member.team_rank() == 0 && team.reduction.first_inadmissible != no_failure)
       Kokkos::atomic_min(&step.control().reduction.first_inadmissible, team.reduction.first_inadmissible);
     if (member.team_rank() == first_of_last_warp(member)) {
       std::uint64_t& fastest = team.reduction.stage_speed[step.table.stages][2];
-      member.send(epoch,
-                  team.reduction.first_inadmissible != no_inadmissible_cell ? inadmissible_mark : fastest);
+      member.send(epoch, team.reduction.first_inadmissible != no_failure ? inadmissible_mark : fastest);
       fastest = 0;
     }
   }
@@ -160,7 +159,7 @@ struct PersistentStepFunctor {
         control.restart.compensation[side][field] = team.restart.compensation[side][field];
       }
     if (member.league_rank() != 0) return;
-    publish_status(team.restart, team.trial, status());
+    stepping::publish_status(team.restart, team.trial, team.restart.limited, status());
     static_cast<Progress&>(control.restart) = team.restart;
     control.trial = team.trial;
     control.failure = team.failure;

@@ -272,7 +272,7 @@ TEST(GasSolver, RestartContinuesBitForBit) {
     const auto parts = started(backend, p, state);
     ASSERT_EQ(parts->advance(100.0, 23, 0, {}, {}), Stop::pause) << text;
     const auto resumed = create_solver(backend, p);
-    std::vector<std::uint8_t> limited_faces(
+    std::vector<std::uint8_t> limited_cells(
         p.positivity == Positivity::off ? 0 : static_cast<std::size_t>(p.cells));
     parts->download_limited_cells(0, limited_cells);
     resumed->upload(0, fields(download(*parts, p)));
