@@ -61,11 +61,17 @@ class Solver {
   /// Sums over the current state, SI units per unit area.
   virtual HistoryRow totals() = 0;
 
+  /// State of the step control for a restart file. Throws only after a failed kernel.
   [[nodiscard]] virtual RestartState restart_state() = 0;
+
+  /// Failure that ended the last `advance` with `Stop::failed`. Throws only after a failed kernel.
   [[nodiscard]] virtual StepFailure failure() = 0;
 
   /// Number of cells beside a face that the limiter has changed since the start; 0 without a limiter.
   [[nodiscard]] virtual std::int64_t limited_cells() = 0;
+
+  /// Reads or sets a range of the flags of cells beside a limited face: 1 or 0. The range must lie within the
+  /// mesh. Requires a limiter, that is, a positivity other than `off`.
   virtual void download_limited_cells(std::int64_t first, std::span<std::uint8_t> cells) = 0;
   virtual void upload_limited_cells(std::int64_t first, std::span<const std::uint8_t> cells) = 0;
 
@@ -76,6 +82,7 @@ class Solver {
   /// Waits for the copy and returns it. Any thread may call it.
   virtual ConstConservedFields finish_snapshot() = 0;
 
+  /// Accumulated phase times, s; zero unless this is the baseline solver. Does not throw.
   [[nodiscard]] virtual PhaseTimes phase_times() const = 0;
 
   /// Launch strategy: "persistent", "graph", "plain", "stages" or "seed". Does not throw.

@@ -43,9 +43,9 @@ class SolverImpl final : public Solver {
 
  private:
   using Memory = typename ExecutionSpace::memory_space;
-  using Report = device::HostPinnedSpace<ExecutionSpace>;
+  using Pinned = device::HostPinnedSpace<ExecutionSpace>;
   using Fields = FieldsView<ExecutionSpace>;
-  using HostFields = Kokkos::View<double* [3], Kokkos::LayoutLeft, Report>;
+  using HostFields = Kokkos::View<double* [3], Kokkos::LayoutLeft, Pinned>;
   static constexpr bool on_host = device::is_host<ExecutionSpace>;
 
   [[nodiscard]] Control read_control() const;
@@ -68,7 +68,7 @@ class SolverImpl final : public Solver {
   StageSetup<ExecutionSpace> _setup;
   stepping::StepLoop<ExecutionSpace> _loop;
   stepping::StepLauncher<ExecutionSpace, 2> _launcher;  ///< variant 1: with the flux limiter
-  Kokkos::View<HistoryRow*, Report> _ring;
+  Kokkos::View<HistoryRow*, Pinned> _ring;
   std::array<Fields, 4> _partial;  ///< partial sums after each level
   std::unique_ptr<device::CapturedGraph<ExecutionSpace>> _row;
   std::optional<PersistentSetup<ExecutionSpace>> _persistent;

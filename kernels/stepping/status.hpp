@@ -19,12 +19,13 @@ struct AdaptiveTime {
 
 /// Time and step number of a run with piecewise constant dt. A restart that restores all members reproduces
 /// the times bit for bit.
-struct UniformTime {
+struct TimeState {
   std::int64_t step = 0;   ///< steps completed
   double dt = 0.0;         ///< s
   std::int64_t since = 0;  ///< first step with this dt
   double start = 0.0;      ///< s, time of step `since`
 
+  /// Time of the present step, s. Does not throw.
   [[nodiscard]] double time() const { return start + static_cast<double>(step - since) * dt; }
 };
 

@@ -48,7 +48,8 @@ struct StepMonitor {
   [[nodiscard]] KOKKOS_FUNCTION bool has_failed() const { return first_failure() != no_failure; }
 };
 
-/// Monitor whose status is `status`. Counters and record are unset: call `reset_monitor`.
+/// Monitor whose status is `status`. Counters and record are unset: call `reset_monitor`. Throws
+/// `std::runtime_error` if memory runs out.
 template <class ExecutionSpace>
 [[nodiscard]] StepMonitor<ExecutionSpace> make_monitor(
     const typename StepMonitor<ExecutionSpace>::StatusView& status) {
@@ -59,7 +60,8 @@ template <class ExecutionSpace>
   return monitor;
 }
 
-/// Sets both step counters to `step` and clears the failure record. Blocks.
+/// Sets both step counters to `step` and clears the failure record. Blocks. Throws `std::runtime_error`
+/// after a failed kernel.
 template <class ExecutionSpace>
 void reset_monitor(const ExecutionSpace& space, const StepMonitor<ExecutionSpace>& monitor,
                    std::int64_t step) {
@@ -75,9 +77,9 @@ void reset_monitor(const ExecutionSpace& space, const StepMonitor<ExecutionSpace
 template <class ExecutionSpace>
 struct StageTime {
   StepMonitor<ExecutionSpace> monitor;
-  UniformTime origin;  ///< `step` is ignored
-  int parity;          ///< entry of the step counter that holds the completed steps
-  double fraction;     ///< elapsed fraction of the present step
+  TimeState origin;  ///< `step` is ignored
+  int parity;        ///< entry of the step counter that holds the completed steps
+  double fraction;   ///< elapsed fraction of the present step
 
   /// Time, s.
   KOKKOS_FUNCTION double time() const {
@@ -117,7 +119,8 @@ class Checkpoint {
   Checkpoint() : _saved_step("drogue::stepping::checkpoint_step") {}
 
   /// Enqueues one kernel over `count` indices that calls `copy(i)` for each, unless a failure has been
-  /// recorded. It publishes `launches`. Asynchronous.
+  /// recorded. It publishes `launches`. Asynchronous; throws
+  /// `std::runtime_error` if the launch fails.
   template <class Copy>
   void save(const ExecutionSpace& space, const std::string& label, const StepMonitor<ExecutionSpace>& monitor,
             int parity, int count, const Copy& copy, std::int64_t launches) const {
@@ -129,7 +132,7 @@ class Checkpoint {
   }
 
   /// Waits for all steps and returns the first failure, if any. The solver then restores the saved arrays and
-  /// calls `reset_monitor` with `checkpoint_step`.
+  /// calls `reset_monitor` with `checkpoint_step`. Throws `std::runtime_error` after a failed kernel.
   [[nodiscard]] std::optional<FirstFailure> wait_for_failure(
       const ExecutionSpace& space, const StepMonitor<ExecutionSpace>& monitor) const {
     space.fence("drogue::stepping::wait_for_failure");

@@ -76,39 +76,38 @@ class BaselineSolver final : public Solver {
     for (std::size_t k = 0; k < 3; ++k)
       std::copy_n(_state[k].begin() + first, part[k].size(), part[k].begin());
   }
-  void start() override { _state_counters = {}; }
-  void restore(const RestartState& state) override { _state_counters = state; }
+  void start() override { _progress = {}; }
+  void restore(const RestartState& state) override { _progress = state; }
 
   Stop advance(double target, std::int64_t pause_step, int row_every, const RowSink& rows,
                const Poll& poll) override {
-    while (_state_counters.time < target) {
-      if (_state_counters.step >= _p.max_steps) return Stop::max_steps;
+    while (_progress.time < target) {
+      if (_progress.step >= _p.max_steps) return Stop::max_steps;
       if (!step(target)) return Stop::failed;
-      if (rows && row_every > 0 && _state_counters.step % row_every == 0) rows(totals());
-      if (poll && !poll({0, _state_counters.step, _state_counters.time, _state_counters.last_dt, 0,
-                         Stop::running, 0}))
+      if (rows && row_every > 0 && _progress.step % row_every == 0) rows(totals());
+      if (poll && !poll({0, _progress.step, _progress.time, _progress.last_dt, 0, Stop::running, 0}))
         return Stop::interrupted;
-      if (_state_counters.step == pause_step) return Stop::pause;
+      if (_progress.step == pause_step) return Stop::pause;
     }
     return Stop::target;
   }
 
   HistoryRow totals() override {
     HistoryRow row;
-    row.time = _state_counters.time;
-    row.step = _state_counters.step;
-    row.dt = _state_counters.last_dt;
+    row.time = _progress.time;
+    row.step = _progress.step;
+    row.dt = _progress.last_dt;
     double* sums[3] = {&row.mass, &row.momentum, &row.energy};
     for (std::size_t k = 0; k < 3; ++k) {
       double compensation = 0.0;
       for (const double value : _state[k]) add_compensated(*sums[k], compensation, value * _dx);
-      row.boundary[k] = _state_counters.boundary[1][k] - _state_counters.boundary[0][k];
+      row.boundary[k] = _progress.boundary[1][k] - _progress.boundary[0][k];
     }
     row.max_speed = fastest()[3];
     return row;
   }
 
-  RestartState restart_state() override { return _state_counters; }
+  RestartState restart_state() override { return _progress; }
   StepFailure failure() override { return _failure; }
   std::int64_t limited_cells() override { return 0; }
   void download_limited_cells(std::int64_t, std::span<std::uint8_t>) override {}
@@ -186,16 +185,15 @@ class BaselineSolver final : public Solver {
   /// Takes one step. Returns false, sets `_failure` and restores the previous state if the new state is
   /// inadmissible.
   bool step(double target) {
-    const double ramp =
-        _state_counters.step < _p.ramp_steps
-            ? 0.1 + 0.9 * static_cast<double>(_state_counters.step) / static_cast<double>(_p.ramp_steps)
-            : 1.0;
+    const double ramp = _progress.step < _p.ramp_steps ? 0.1 + 0.9 * static_cast<double>(_progress.step) /
+                                                                   static_cast<double>(_p.ramp_steps)
+                                                       : 1.0;
     std::array<double, 4> fastest_speeds = fastest();
     double dt = _p.fixed_dt > 0.0 ? _p.fixed_dt : ramp * _p.cfl * _dx / fastest_speeds[3];
-    const bool reaches_target = dt >= (target - _state_counters.time) * (1.0 - 1e-12);
-    if (reaches_target) dt = target - _state_counters.time;
-    if (!(_state_counters.time + dt > _state_counters.time)) {
-      _failure = {FailureReason::time_step, -1, _state_counters.step + 1, _state_counters.time, dt};
+    const bool reaches_target = dt >= (target - _progress.time) * (1.0 - 1e-12);
+    if (reaches_target) dt = target - _progress.time;
+    if (!(_progress.time + dt > _progress.time)) {
+      _failure = {FailureReason::time_step, -1, _progress.step + 1, _progress.time, dt};
       return false;
     }
     _start = _state;
@@ -219,13 +217,12 @@ class BaselineSolver final : public Solver {
     }
     for (int side = 0; side < 2; ++side)
       for (int k = 0; k < 3; ++k)
-        add_compensated(_state_counters.boundary[side][k], _state_counters.compensation[side][k],
-                        dt * boundary[side][k]);
-    _state_counters.dt_min = _state_counters.step == 0 ? dt : std::min(dt, _state_counters.dt_min);
-    _state_counters.dt_max = std::max(dt, _state_counters.dt_max);
-    _state_counters.last_dt = dt;
-    _state_counters.time = reaches_target ? target : _state_counters.time + dt;
-    ++_state_counters.step;
+        add_compensated(_progress.boundary[side][k], _progress.compensation[side][k], dt * boundary[side][k]);
+    _progress.dt_min = _progress.step == 0 ? dt : std::min(dt, _progress.dt_min);
+    _progress.dt_max = std::max(dt, _progress.dt_max);
+    _progress.last_dt = dt;
+    _progress.time = reaches_target ? target : _progress.time + dt;
+    ++_progress.step;
     return true;
   }
 
@@ -237,7 +234,7 @@ class BaselineSolver final : public Solver {
       const FailureReason what = rho <= 0.0 ? FailureReason::density
                                  : p <= 0.0 ? FailureReason::pressure
                                             : FailureReason::not_finite;
-      _failure = {what, static_cast<std::int64_t>(i), _state_counters.step + 1, _state_counters.time, dt};
+      _failure = {what, static_cast<std::int64_t>(i), _progress.step + 1, _progress.time, dt};
       return false;
     }
     return true;
@@ -251,7 +248,7 @@ class BaselineSolver final : public Solver {
   State _state, _flux;
   State _start, _snapshot;  ///< state before the step, and the snapshot
   FieldsView<ExecutionSpace> _device_state, _device_flux;
-  RestartState _state_counters;
+  RestartState _progress;
   StepFailure _failure;
   PhaseTimes _phase_times;
 };

@@ -29,14 +29,14 @@ void launch(const char* label, const ExecutionSpace& space, const StageSetup<Exe
   if constexpr (device::is_host<ExecutionSpace>) {
     launch_tiles<Kokkos::TeamPolicy<ExecutionSpace>>(label, space, shape, tiles, setup.team_size, functor);
   } else {
-    using Usual = Kokkos::TeamPolicy<ExecutionSpace, Kokkos::LaunchBounds<usual_team, usual_teams>>;
+    using Usual = Kokkos::TeamPolicy<ExecutionSpace, Kokkos::LaunchBounds<default_team, default_teams>>;
     using Large = Kokkos::TeamPolicy<ExecutionSpace, Kokkos::LaunchBounds<largest_team, largest_teams>>;
     if constexpr (many_slots) {
-      using Dense = Kokkos::TeamPolicy<ExecutionSpace, Kokkos::LaunchBounds<usual_team, dense_teams>>;
-      if (setup.team_size <= usual_team && shape.row > setup.team_size)
+      using Dense = Kokkos::TeamPolicy<ExecutionSpace, Kokkos::LaunchBounds<default_team, dense_teams>>;
+      if (setup.team_size <= default_team && shape.stride > setup.team_size)
         return launch_tiles<Dense>(label, space, shape, tiles, setup.team_size, functor);
     }
-    if (setup.team_size <= usual_team)
+    if (setup.team_size <= default_team)
       launch_tiles<Usual>(label, space, shape, tiles, setup.team_size, functor);
     else
       launch_tiles<Large>(label, space, shape, tiles, setup.team_size, functor);

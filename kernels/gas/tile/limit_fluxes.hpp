@@ -18,7 +18,7 @@ template <class R, class Tile>
 KOKKOS_INLINE_FUNCTION void limit_face_pack(const Tile& tile, int face, int last,
                                             const ConservedVector<R>& left, const ConservedVector<R>& right,
                                             const ConservedVector<R>& high, double two_lambda, double gamma,
-                                            const LimiterCounters& marks) {
+                                            const LimiterCounters& counters) {
   using Lanes = device::Access<R>;
   const auto load = [&](TileField field, int side) { return tile.template load<R>(field, face + side); };
   const auto fastest = [&](int side) {
@@ -34,9 +34,9 @@ KOKKOS_INLINE_FUNCTION void limit_face_pack(const Tile& tile, int face, int last
     const std::int64_t in_tile = cell - tile.first;
     if (face + lane > last || !(Lanes::lane(limited.theta, lane) < 1.0)) continue;
     if (in_tile < 0 || in_tile > tile.cells || (in_tile == tile.cells && !tile.last)) continue;
-    Kokkos::atomic_inc(marks.limited_faces);
-    if (cell > 0) marks.limited_cells[cell - 1] = 1;
-    if (cell < marks.cells) marks.limited_cells[cell] = 1;
+    Kokkos::atomic_inc(counters.limited_faces);
+    if (cell > 0) counters.limited_cells[cell - 1] = 1;
+    if (cell < counters.cells) counters.limited_cells[cell] = 1;
   }
 }
 
@@ -46,13 +46,13 @@ KOKKOS_INLINE_FUNCTION void limit_face_pack(const Tile& tile, int face, int last
 /// reduction over the mesh.
 template <class R, class Member, class Tile>
 KOKKOS_INLINE_FUNCTION void limit_fluxes(const Member& member, const Tile& tile, int first, int last,
-                                         double two_lambda, double gamma, const LimiterCounters& marks) {
+                                         double two_lambda, double gamma, const LimiterCounters& counters) {
   constexpr int lanes = device::Access<R>::lanes;
   for (int face = first + member.team_rank() * lanes; face <= last; face += member.team_size() * lanes) {
     const ConservedVector<R> left = tile.template state<R>(face + 2),
                              right = tile.template state<R>(face + 3), flux = tile.template flux<R>(face);
     if (!device::all(keeps_positive(left, right, flux, two_lambda, gamma)))
-      limit_face_pack(tile, face, last, left, right, flux, two_lambda, gamma, marks);
+      limit_face_pack(tile, face, last, left, right, flux, two_lambda, gamma, counters);
   }
 }
 

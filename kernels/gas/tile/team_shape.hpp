@@ -11,8 +11,8 @@ namespace drogue::gas {
 /// Threads of a default device team. Three teams per multiprocessor leave 168 registers per thread, four
 /// leave 128. The fused step fits into 128 registers, which is faster if a thread has several slots. One team
 /// of the largest size has 128 registers per thread, too.
-inline constexpr int usual_team = 128, largest_team = 512;
-inline constexpr int usual_teams = 3, dense_teams = 4, largest_teams = 1;
+inline constexpr int default_team = 128, largest_team = 512;
+inline constexpr int default_teams = 3, dense_teams = 4, largest_teams = 1;
 
 /// Slots per tile of a large mesh, tuned on an H200 (perf, gas step cases): three per thread of a default
 /// team, so that few of them are halo.
@@ -23,7 +23,7 @@ inline constexpr std::int64_t large_mesh = 65'536;
 /// throw.
 inline int device_team(int block, std::int64_t cells) {
   if (block > 0) return block;
-  return cells < 32'768 ? 96 : usual_team;
+  return cells < 32'768 ? 96 : default_team;
 }
 
 /// Scratch rows of a tile: cell values, face fluxes, and U^n.

@@ -24,7 +24,7 @@ struct BoundaryConditions {
 struct TileShape {
   int cells;
   int halo;
-  int row;
+  int stride;
 };
 
 struct BoundaryImage {
@@ -112,23 +112,23 @@ class Tile {
         halo(shape.halo),
         slots(cells + 2 * halo),
         last(first + cells == mesh_cells),
-        _row(shape.row),
+        _stride(shape.stride),
         _data(static_cast<double*>(
             member.team_scratch(0).get_shmem_aligned(scratch_bytes(shape, used_rows), alignof(double)))) {}
 
   KOKKOS_FUNCTION std::int64_t cell(int slot) const { return first - halo + slot; }
 
   static KOKKOS_FUNCTION std::size_t scratch_bytes(const TileShape& shape, int used_rows = rows) {
-    return sizeof(double) * static_cast<std::size_t>(used_rows) * static_cast<std::size_t>(shape.row);
+    return sizeof(double) * static_cast<std::size_t>(used_rows) * static_cast<std::size_t>(shape.stride);
   }
 
   template <class P>
   KOKKOS_FUNCTION P load(TileField field, int i) const {
-    return device::Access<P>::load(_data + static_cast<int>(field) * _row + i);
+    return device::Access<P>::load(_data + static_cast<int>(field) * _stride + i);
   }
   template <class P>
   KOKKOS_FUNCTION void store(TileField field, int i, P value) const {
-    device::Access<P>::store(_data + static_cast<int>(field) * _row + i, value);
+    device::Access<P>::store(_data + static_cast<int>(field) * _stride + i, value);
   }
   template <class P>
   KOKKOS_FUNCTION ConservedVector<P> state(int i) const {
@@ -160,19 +160,19 @@ class Tile {
   template <class P>
   KOKKOS_FUNCTION ConservedVector<P> load_vector(int row, int i) const {
     using Lanes = device::Access<P>;
-    const double* f = _data + row * _row + i;
-    return {Lanes::load(f), Lanes::load(f + _row), Lanes::load(f + 2 * _row)};
+    const double* f = _data + row * _stride + i;
+    return {Lanes::load(f), Lanes::load(f + _stride), Lanes::load(f + 2 * _stride)};
   }
   template <class P>
   KOKKOS_FUNCTION void store_vector(int row, int i, const ConservedVector<P>& value) const {
     using Lanes = device::Access<P>;
-    double* f = _data + row * _row + i;
+    double* f = _data + row * _stride + i;
     Lanes::store(f, value.rho);
-    Lanes::store(f + _row, value.m);
-    Lanes::store(f + 2 * _row, value.energy);
+    Lanes::store(f + _stride, value.m);
+    Lanes::store(f + 2 * _stride, value.energy);
   }
 
-  int _row;
+  int _stride;
   double* _data;
 };
 

@@ -365,8 +365,8 @@ TEST(StepMonitor, FailuresAreOrderedByStepThenIndex) {
   EXPECT_LT(failure, no_failure);
 }
 
-TEST(UniformTimeState, IsReproducedByARestart) {
-  const UniformTime time{1000, 0.1, 990, 7.5};
+TEST(TimeState, IsReproducedByARestart) {
+  const TimeState time{1000, 0.1, 990, 7.5};
   EXPECT_EQ(time.time(), 7.5 + 10 * 0.1);
 }
 

@@ -15,7 +15,7 @@ TEST(TeamShape, EveryTeamSizeFitsItsSharedMemory) {
       EXPECT_GT(slots, 2 * largest_halo) << team;
       EXPECT_TRUE(slots == team || shared_bytes(rows, slots + 1, team) > max_shared_bytes) << team;
     }
-  EXPECT_EQ(fitting_slots(device_rows, largest_tile, usual_team), largest_tile);
+  EXPECT_EQ(fitting_slots(device_rows, largest_tile, default_team), largest_tile);
 }
 
 }  // namespace
