@@ -6,28 +6,13 @@
 #include <Kokkos_Core.hpp>
 
 #include "kernels/device/memory.hpp"
+#include "kernels/stepping/failure_code.hpp"
 #include "kernels/stepping/status.hpp"
 
 // Asynchronous failure detection and rollback for steps that do not wait for a decision: kernels record the
 // first failure and go on; the host reads a flag without a fence, and returns to the last checkpoint.
 
 namespace drogue::stepping {
-
-inline constexpr std::uint64_t no_failure = ~std::uint64_t{0};
-
-/// Encodes a failure as an integer that is least for the first `order` (step or stage) and, within it, the
-/// least index. A minimum of integers is independent of the order of threads. `index` < 2^31, `order` < 2^32.
-KOKKOS_INLINE_FUNCTION std::uint64_t encode_failure(std::int64_t order, std::int64_t index) {
-  return static_cast<std::uint64_t>(order) << 31U | static_cast<std::uint64_t>(index);
-}
-/// Step or stage of an encoded failure.
-KOKKOS_INLINE_FUNCTION std::int64_t failure_order(std::uint64_t failure) {
-  return static_cast<std::int64_t>(failure >> 31U);
-}
-/// Index of an encoded failure.
-KOKKOS_INLINE_FUNCTION std::int64_t failure_index(std::uint64_t failure) {
-  return static_cast<std::int64_t>(failure & 0x7fffffffU);
-}
 
 /// Device-resident step counter and failure record. Kernels hold it by value.
 template <class ExecutionSpace>
@@ -72,19 +57,23 @@ void reset_monitor(const ExecutionSpace& space, const StepMonitor<ExecutionSpace
   monitor.status().failed = 0;
 }
 
+/// Time, s, after `steps` steps and a `fraction` of the next one, in a run with constant dt. `origin.step` is
+/// ignored.
+KOKKOS_INLINE_FUNCTION double stage_time(const TimeState& origin, std::int64_t steps, double fraction) {
+  return origin.start + (static_cast<double>(steps - origin.since) + fraction) * origin.dt;
+}
+
 /// Time at which a kernel of a run with constant dt works. It reads the step counter on the device, so that a
 /// captured step stays valid.
 template <class ExecutionSpace>
 struct StageTime {
   StepMonitor<ExecutionSpace> monitor;
-  TimeState origin;  ///< `step` is ignored
-  int parity;        ///< entry of the step counter that holds the completed steps
-  double fraction;   ///< elapsed fraction of the present step
+  TimeState origin;
+  int parity;       ///< entry of the step counter that holds the completed steps
+  double fraction;  ///< elapsed fraction of the present step
 
   /// Time, s.
-  KOKKOS_FUNCTION double time() const {
-    return origin.start + (static_cast<double>(monitor.steps(parity) - origin.since) + fraction) * origin.dt;
-  }
+  KOKKOS_FUNCTION double time() const { return stage_time(origin, monitor.steps(parity), fraction); }
 };
 
 /// Kernel that saves a state unless a failure has been recorded. `Copy` saves the entries of index i.
@@ -94,13 +83,14 @@ struct CheckpointFunctor {
   Copy copy;
   Kokkos::View<std::int64_t, typename ExecutionSpace::memory_space> saved_step;
   int parity;             ///< entry of the step counter that holds the completed steps
-  std::int64_t launches;  ///< published as `Status::launches`
+  std::int64_t launches;  ///< published as `Status::launches`; negative: no publication
 
   KOKKOS_FUNCTION void operator()(const int i) const {
     const bool failed = monitor.has_failed();
     if (!failed) copy(i);
     if (i != 0) return;
     if (!failed) saved_step() = monitor.steps(parity);
+    if (launches < 0) return;
     monitor.status().step = monitor.steps(parity);
     monitor.status().launches = launches;
   }
@@ -119,7 +109,8 @@ class Checkpoint {
   Checkpoint() : _saved_step("drogue::stepping::checkpoint_step") {}
 
   /// Enqueues one kernel over `count` indices that calls `copy(i)` for each, unless a failure has been
-  /// recorded. It publishes `launches`. Asynchronous; throws
+  /// recorded. It publishes `launches`, unless that is negative: in a graph of the caller, whose replays
+  /// `StepLoop` does not count. Asynchronous; throws
   /// `std::runtime_error` if the launch fails.
   template <class Copy>
   void save(const ExecutionSpace& space, const std::string& label, const StepMonitor<ExecutionSpace>& monitor,

@@ -6,8 +6,8 @@
 
 #include "kernels/gas/status.hpp"
 #include "kernels/gas/stepping/stage_table.hpp"
+#include "kernels/stepping/failure_code.hpp"
 #include "kernels/stepping/step_control.hpp"
-#include "kernels/stepping/step_monitor.hpp"
 
 namespace drogue::gas {
 
