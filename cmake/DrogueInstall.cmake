@@ -16,10 +16,6 @@ configure_package_config_file("${PROJECT_SOURCE_DIR}/cmake/DrogueConfig.cmake.in
 write_basic_package_version_file("${PROJECT_BINARY_DIR}/DrogueConfigVersion.cmake" COMPATIBILITY SameMinorVersion)
 install(FILES "${PROJECT_BINARY_DIR}/DrogueConfig.cmake" "${PROJECT_BINARY_DIR}/DrogueConfigVersion.cmake"
   DESTINATION "${_package}")
-foreach(_app IN ITEMS gas springs)
-  install(DIRECTORY "${PROJECT_SOURCE_DIR}/miniapps/${_app}/scenes/"
-    DESTINATION "${CMAKE_INSTALL_DATADIR}/drogue/scenes/${_app}" FILES_MATCHING PATTERN "*.toml")
-endforeach()
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/miniapps/options/batches/"
   DESTINATION "${CMAKE_INSTALL_DATADIR}/drogue/batches" FILES_MATCHING PATTERN "*.csv")
 if(DROGUE_CUDA)

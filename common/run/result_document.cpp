@@ -34,6 +34,15 @@ Json checks_json(const std::vector<Check>& checks) {
   return json;
 }
 
+Json group_json(const Metrics::Group& group) {
+  Json json = Json::object();
+  for (const auto& [name, value] : group.values) {
+    const auto* count = std::get_if<std::int64_t>(&value);
+    json[name] = count != nullptr ? Json(*count) : number(std::get<double>(value));
+  }
+  return json;
+}
+
 Json timing_json(const ResultDocument::Timing& timing) {
   return {{"wall_s", number(timing.wall_s)},       {"setup_s", number(timing.setup_s)},
           {"compute_s", number(timing.compute_s)}, {"h2d_s", number(timing.h2d_s)},
@@ -75,6 +84,30 @@ std::string status_name(ExitCode code) {
       return "interrupted";
   }
   return "io-error";
+}
+
+Metrics::Group& Metrics::at(const std::string& group) {
+  const auto found = std::ranges::find(_groups, group, &Group::name);
+  return found == _groups.end() ? _groups.emplace_back(Group{group, {}}) : *found;
+}
+
+void Metrics::add_group(const std::string& group) { at(group); }
+
+void Metrics::set(const std::string& group, const std::string& name, Value value) {
+  auto& values = at(group).values;
+  const auto found = std::ranges::find(values, name, &std::pair<std::string, Value>::first);
+  if (found == values.end())
+    values.emplace_back(name, value);
+  else
+    found->second = value;
+}
+
+std::int64_t Metrics::integer(const std::string& group, const std::string& name) const {
+  for (const Group& each : _groups)
+    if (each.name == group)
+      for (const auto& [key, value] : each.values)
+        if (key == name) return std::visit([](auto v) { return static_cast<std::int64_t>(v); }, value);
+  return 0;
 }
 
 bool ResultDocument::add_check(const std::string& name, double value, double tolerance) {
@@ -130,11 +163,8 @@ std::string to_json(const ResultDocument& result) {
   json["dt_max"] = number(result.dt_max);
   json["errors"] = numbers_json(result.errors);
   json["checks"] = checks_json(result.checks);
-  if (!result.counts.empty()) json["counts"] = result.counts;
-  if (!result.energy.empty()) json["energy"] = numbers_json(result.energy);
-  json["limiter"] = {{"touches", result.limiter.touches},
-                     {"cells", result.limiter.cells},
-                     {"redone_steps", result.limiter.redone_steps}};
+  for (const Metrics::Group& group : result.metrics.groups())
+    if (!group.values.empty()) json[group.name] = group_json(group);
   json["timing"] = timing_json(result.timing);
   json["ledger"] = ledger_json(result.ledger);
   json["peak_bytes"] = {{"host", result.peak_bytes.host}, {"device", result.peak_bytes.device}};

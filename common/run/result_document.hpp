@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <utility>
+#include <variant>
 #include <vector>
 
 #include "common/program/failure.hpp"
@@ -16,6 +18,33 @@ struct Check {
   double value = 0.0;
   double tolerance = 0.0;
   bool passed = false;
+};
+
+/// Named numbers of a run, in groups. Each group becomes an object of result.json, in the order in which the
+/// groups were added; empty groups are left out.
+class Metrics {
+ public:
+  using Value = std::variant<std::int64_t, double>;
+  struct Group {
+    std::string name;
+    std::vector<std::pair<std::string, Value>> values;
+  };
+
+  /// Appends an empty group unless it exists.
+  void add_group(const std::string& group);
+
+  /// Sets a number, and adds its group and its name if they are new.
+  void set(const std::string& group, const std::string& name, Value value);
+
+  /// A number as integer; 0 if it does not exist.
+  [[nodiscard]] std::int64_t integer(const std::string& group, const std::string& name) const;
+
+  [[nodiscard]] const std::vector<Group>& groups() const { return _groups; }
+
+ private:
+  [[nodiscard]] Group& at(const std::string& group);
+
+  std::vector<Group> _groups;
 };
 
 /// result.json, schema `drogue.result/1`. A number that is not finite is written as null.
@@ -32,14 +61,7 @@ struct ResultDocument {
   double dt_min = 0.0, dt_max = 0.0;  ///< s
   std::map<std::string, double> errors;
   std::vector<Check> checks;
-  std::map<std::string, std::int64_t> counts;  ///< of a batch: how many rows ended how; else empty
-  std::map<std::string, double> energy;        ///< J, of a run that accounts for it: at its end; else empty
-  /// Of what has none, zeros.
-  struct Limiter {
-    std::int64_t touches = 0;  ///< faces limited, summed over all stages
-    std::int64_t cells = 0;    ///< cells that had such a face at least once
-    std::int64_t redone_steps = 0;
-  } limiter;
+  Metrics metrics;  ///< limiter counts, energies and the like, after `checks`
   struct Timing {
     double wall_s = 0, setup_s = 0, compute_s = 0, h2d_s = 0, d2h_s = 0, io_s = 0;
   } timing;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "kernels/gas/parameters.hpp"
+#include "miniapps/framework/output_request.hpp"
 
 /// The scene of `drogue-gas`: what a TOML file says, checked and with every default filled in.
 namespace drogue::gas_app {
@@ -47,12 +48,7 @@ struct Initial {
   std::optional<ExpressionState> expression;
 };
 
-struct Output {
-  std::vector<std::string> fields;  ///< subset of rho, u, p; empty: no fields.h5
-  std::vector<double> times;        ///< s, increasing, within the run; empty exactly if `fields` is
-  int history_every = 10;           ///< steps between rows of history.csv; 0: none
-  int restart_every = 0;            ///< steps between restart files; 0: none
-};
+using Output = framework::OutputRequest;
 
 enum class Exact { riemann, advection, reference };
 
@@ -81,8 +77,8 @@ struct GasScene {
   Verify verify;
 };
 
-/// How `--seed-mode` reads a scene: with the dissertation's scheme in place of the scene's.
-enum class SchemeSource { scene, dissertation };
+/// Source of the numerical scheme. `--seed-mode` replaces the scene's scheme by the baseline of [Shi].
+enum class SchemeSource { scene, baseline };
 
 /// Reads and checks `file`, then the `--set` assignments `key.path=value` in their order. The initial state
 /// has been evaluated at every cell when this returns. Throws Failure: usage for a missing file,
@@ -92,6 +88,13 @@ GasScene read_gas_scene(const std::filesystem::path& file, const std::vector<std
 
 /// The resolved scene as TOML: every default that applies, no key that does not. Resolves to itself.
 std::string print_gas_scene(const GasScene& scene);
+
+/// Fingerprint of mesh, gas and scheme for restart files. Output, end time and checks may change between a run
+/// and its continuation.
+std::string scene_fingerprint(GasScene scene);
+
+/// Folder of the shipped scenes: beside the installed or bundled program, else in the source tree.
+std::filesystem::path scene_folder();
 
 /// The scheme as scenes spell it: js, z, m, teno5.
 std::string weno_name(gas::Weno weno);

@@ -140,21 +140,8 @@ void declare_output(Table& table, Output& output) {
                           .value("fields", scene::names_codec(output.fields, {"rho", "u", "p"}),
                                  "Fields written to fields.h5")
                           .default_text("all three where times are given, else none");
-  table.value("times", scene::reals_codec(output.times, 0, true), "Times at which fields are written")
-      .unit("s")
-      .at_least(0.0)
-      .default_text("the end time where fields are given")
-      .when(
-          [&output, &fields] { return !output.fields.empty() || (!fields.given() && !output.times.empty()); },
-          "with fields", "fields");
-  table
-      .value("history_every", scene::integer_codec(output.history_every),
-             "Steps between rows of history.csv; 0: none")
-      .range(0, 1e9);
-  table
-      .value("restart_every", scene::integer_codec(output.restart_every),
-             "Steps between restart files; 0: none")
-      .range(0, 1e9);
+  framework::declare_output_times(table, output, fields);
+  framework::declare_output_intervals(table, output);
 }
 
 void declare_verify(Table& table, Verify& verify) {

@@ -8,6 +8,7 @@
 
 #include "kernels/fabric/mass.hpp"
 #include "kernels/fabric/parameters.hpp"
+#include "miniapps/framework/output_request.hpp"
 #include "miniapps/springs/mesh_generators.hpp"
 
 /// The scene of `drogue-springs`: what a TOML file says, checked and with every default filled in.
@@ -110,12 +111,10 @@ struct Probe {
   std::vector<double> at{0.0, 0.0, 0.0};  ///< rest coordinates, m
 };
 
-struct Output {
-  std::vector<std::string> fields;  ///< position, velocity, names of stresses; empty: no fields.h5
-  std::vector<double> times;        ///< s, increasing, within the run; empty exactly if `fields` is
+/// `fields` holds position, velocity and names of stresses.
+struct Output : framework::OutputRequest {
+  Output() { history_every = 100; }
   std::vector<Probe> probes;
-  int history_every = 100;  ///< steps between rows of history.csv; 0: none
-  int restart_every = 0;    ///< steps between restart files; 0: none
 };
 
 /// The frequency at which a probe oscillates.
@@ -176,6 +175,13 @@ SpringsScene read_springs_scene(const std::filesystem::path& file, const std::ve
 /// The resolved scene as TOML: every default that applies, no key that does not. Resolves to itself where the
 /// scene itself lies.
 std::string print_springs_scene(const SpringsScene& scene);
+
+/// Fingerprint of the mesh, the fabric and everything that acts on it, for restart files. Output, end time,
+/// step lengths and checks may change between a run and its continuation.
+std::string scene_fingerprint(SpringsScene scene);
+
+/// Folder of the shipped scenes: beside the installed or bundled program, else in the source tree.
+std::filesystem::path scene_folder();
 
 /// All keys with type, range, unit, default and meaning, as the Markdown page docs/scenes-springs.md.
 std::string document_springs_scene();

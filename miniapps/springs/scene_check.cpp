@@ -165,15 +165,7 @@ void check_loads(const Table& root, const SpringsScene& scene) {
 
 void complete_output(const Table& root, SpringsScene& scene) {
   Output& output = scene.output;
-  const double end_time = scene.time.end_time;
-  if (!output.times.empty() && output.fields.empty()) output.fields = {"position"};
-  if (!output.fields.empty() && !root.given("output.times")) output.times = {end_time};
-  if (!output.fields.empty() && output.times.empty())
-    contradict(root, "output.times", "output.times is empty, yet output.fields asks for fields");
-  if (!output.times.empty() && output.times.back() > end_time)
-    contradict(root, "output.times",
-               "output.times: " + real_text(output.times.back()) +
-                   " is later than time.end_time = " + real_text(end_time));
+  framework::complete_output(root, output, {"position"}, {scene.time.end_time, "time.end_time"});
   for (const std::string& field : output.fields) {
     if (!stress_kind(field)) continue;
     if (!scene.has_triangles())

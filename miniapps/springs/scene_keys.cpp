@@ -247,13 +247,7 @@ void declare_output(Table& table, Output& output) {
               "vertex, nominal_ before the last for the nominal stress in place of Cauchy's, as in "
               "vertex_nominal_stress")
           .default_text("position where times are given, else none");
-  table.value("times", scene::reals_codec(output.times, 0, true), "Times at which fields are written")
-      .unit("s")
-      .at_least(0.0)
-      .default_text("the end time where fields are given")
-      .when(
-          [&output, &fields] { return !output.fields.empty() || (!fields.given() && !output.times.empty()); },
-          "with fields", "fields");
+  framework::declare_output_times(table, output, fields);
   table.tables(
       "probes", output.probes,
       [](Table& t, Probe& probe) {
@@ -262,14 +256,7 @@ void declare_output(Table& table, Output& output) {
             .required();
       },
       "Vertices whose positions are columns of history.csv");
-  table
-      .value("history_every", scene::integer_codec(output.history_every),
-             "Steps between rows of history.csv; 0: none")
-      .range(0, 1e9);
-  table
-      .value("restart_every", scene::integer_codec(output.restart_every),
-             "Steps between restart files; 0: none")
-      .range(0, 1e9);
+  framework::declare_output_intervals(table, output);
 }
 
 void declare_time(Table& table, Time& time) {

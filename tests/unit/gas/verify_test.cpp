@@ -6,6 +6,7 @@
 #include <set>
 
 #include "kernels/device/runtime.hpp"
+#include "miniapps/framework/run_loop.hpp"
 #include "miniapps/gas/simulation.hpp"
 
 // Every check of a scene fails when the state is wrong: one cell of a finished run is changed behind its
@@ -34,8 +35,9 @@ class FinishedRun {
  public:
   FinishedRun(const std::string& name, const std::vector<std::string>& sets)
       : _scene(read_gas_scene(shipped + name + ".toml", sets)),
-        _simulation(_scene, {device::Backend::serial, false, true, {}}) {
-    EXPECT_EQ(_simulation.run(nullptr, _result), ExitCode::ok);
+        _simulation(_scene, {device::Backend::serial, false, true}) {
+    _simulation.start();
+    EXPECT_EQ(framework::run_to_end(_simulation, {{}, true, true, {}}, _result), ExitCode::ok);
   }
 
   Verdict verify() {
