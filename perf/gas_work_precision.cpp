@@ -43,7 +43,8 @@ std::vector<gas::Parameters> schemes(gas::Parameters p, bool quick) {
 }
 
 /// The competitor at CFL 0.8, timed as the solvers are: from the initial state in memory to the end time.
-framework::RepeatedRun muscl_hancock_run(const gas_app::GasScene& scene, const gas_app::ExactSolution& exact) {
+framework::RepeatedRun muscl_hancock_run(const gas_app::GasScene& scene,
+                                         const gas_app::ExactSolution& exact) {
   gas::Parameters p = scene.parameters;
   p.cfl = 0.8;
   const gas_app::InitialState initial(scene);

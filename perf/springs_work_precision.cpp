@@ -64,7 +64,7 @@ Solution springs_solution(const SpringsProblem& problem, device::Backend backend
 
 bool springs_work_precision(const SolutionsAsked& asked, const SolutionSink& sink) {
   springs_app::ScratchDirectory scratch(std::filesystem::temp_directory_path() /
-                               ("drogue-perf-" + std::to_string(getpid())));
+                                        ("drogue-perf-" + std::to_string(getpid())));
   for (const SpringsProblem& problem : asked.quick ? quick_springs_problems : springs_problems) {
     if (!asked.wants(problem.scene)) continue;
     const auto file = springs_app::scene_folder() / (std::string(problem.scene) + ".toml");

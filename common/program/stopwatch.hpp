@@ -8,7 +8,9 @@ namespace drogue {
 class Stopwatch {
  public:
   /// Elapsed time, s.
-  [[nodiscard]] double seconds() const { return std::chrono::duration<double>(Clock::now() - _begin).count(); }
+  [[nodiscard]] double seconds() const {
+    return std::chrono::duration<double>(Clock::now() - _begin).count();
+  }
 
  private:
   using Clock = std::chrono::steady_clock;

@@ -7,7 +7,9 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
+#include <iterator>
 #include <map>
+#include <set>
 #include <utility>
 
 #include "common/run/atomic_file.hpp"
@@ -69,6 +71,7 @@ struct FieldsWriter::State {
   void create() const;
   void resume(double time);
   void require_same_fields(const h5::Handle& output) const;
+  [[nodiscard]] std::set<std::string> named_grids() const;
   void write_xdmf() const;
   void abandon_step() noexcept;
   void publish(h5::Handle file, const std::string& group, const std::string& name,
@@ -84,7 +87,8 @@ void FieldsWriter::State::create() const {
   const std::filesystem::path temporary = temporary_name(file);
   try {
     h5::Handle handle = h5::create_file(temporary);
-    h5::create_group(handle, "mesh", mesh_links, mesh_name_length);
+    const h5::Handle all = h5::create_group(handle, "mesh", mesh_links, mesh_name_length);
+    for (const std::string& grid : named_grids()) h5::create_group(all, grid, mesh_links, mesh_name_length);
     h5::create_group(handle, "steps", page_links, step_name_length);
     handle.close_file();
   } catch (...) {
@@ -113,28 +117,46 @@ void FieldsWriter::State::resume(double time) {
   handle.close_file();
 }
 
-/// fields.xdmf names the same fields for every step.
+/// fields.xdmf lists the same fields for every step.
 void FieldsWriter::State::require_same_fields(const h5::Handle& output) const {
-  std::vector<std::string> wanted;
-  for (const DatasetSpec& field : fields) wanted.push_back(field.name);
-  std::sort(wanted.begin(), wanted.end());
-  if (h5::children(output) != wanted) {
+  const std::set<std::string> grids = named_grids();
+  std::set<std::string> wanted, found;
+  for (const DatasetSpec& field : fields) wanted.insert(path_of(field));
+  for (const std::string& name : h5::children(output)) {
+    if (!grids.contains(name))
+      found.insert(name);
+    else
+      for (const std::string& field : h5::children(h5::open_group(output, name)))
+        found.insert(name + "/" + field);
+  }
+  if (found != wanted)
     throw Failure(ExitCode::io_error,
                   "cannot continue '" + file.string() + "': it has other fields than this run");
-  }
 }
 
+/// Names of the grids beside the main one, ascending.
+std::set<std::string> FieldsWriter::State::named_grids() const {
+  std::set<std::string> names;
+  for (const DatasetSpec& field : fields)
+    if (!field.grid.empty()) names.insert(field.grid);
+  return names;
+}
+
+/// Writes fields.xdmf once the mesh of every grid is complete.
 void FieldsWriter::State::write_xdmf() const {
-  const auto holds = [&](const char* name) {
-    return std::any_of(mesh.begin(), mesh.end(), [&](const DatasetSpec& spec) { return spec.name == name; });
-  };
-  const auto line = std::find_if(mesh.begin(), mesh.end(), [](const DatasetSpec& spec) {
-    return spec.name == "x" && spec.shape.size() == 1;
-  });
-  if (line != mesh.end())
-    write_file_atomically(xdmf, xdmf_document(title, *line, fields, outputs));
-  else if (holds("vertices") && holds("triangles") && holds("strings"))
-    write_file_atomically(xdmf, xdmf_cloth_document(title, mesh, fields, outputs));
+  std::set<std::string> names = named_grids();
+  for (const auto* specs : {&mesh, &fields})
+    for (const DatasetSpec& spec : *specs) names.insert(spec.grid);
+  std::vector<GridDatasets> grids;
+  for (const std::string& name : names) {
+    GridDatasets& grid = grids.emplace_back();
+    grid.name = name;
+    const auto belongs = [&](const DatasetSpec& spec) { return spec.grid == name; };
+    std::ranges::copy_if(mesh, std::back_inserter(grid.mesh), belongs);
+    std::ranges::copy_if(fields, std::back_inserter(grid.fields), belongs);
+    if (!is_complete(grid.mesh)) return;
+  }
+  write_file_atomically(xdmf, xdmf_document(title, grids, outputs));
 }
 
 /// The group that has no name yet leaves the file.
@@ -183,7 +205,8 @@ void FieldsWriter::State::add_mesh(const DatasetSpec& spec, hid_t type,
   reserve(file, entries(spec) * sizeof(Number) + metadata_bytes);
   h5::Handle handle = h5::open_file(file, true);
   mesh.push_back(spec);
-  if (h5::exists(h5::open_group(handle, "mesh"), spec.name)) return;
+  const std::string group = spec.grid.empty() ? "mesh" : "mesh/" + spec.grid;
+  if (h5::exists(h5::open_group(handle, group), spec.name)) return;
   const h5::Handle dataset = create_described(handle, "", spec, type);
   const std::uint64_t total = entries(spec);
   const std::uint64_t row = std::max<std::uint64_t>(1, total / std::max<std::uint64_t>(1, spec.shape.at(0)));
@@ -194,7 +217,7 @@ void FieldsWriter::State::add_mesh(const DatasetSpec& spec, hid_t type,
     source(first, part);
     h5::write(dataset, first, std::span<const Number>(part));
   }
-  publish(std::move(handle), "mesh", spec.name, dataset);
+  publish(std::move(handle), group, spec.name, dataset);
 }
 
 FieldsWriter::FieldsWriter(const std::filesystem::path& directory, std::string title,
@@ -235,8 +258,12 @@ void FieldsWriter::begin_step(double time, std::int64_t step) {
     _state->step = h5::create_group(_state->open, "");
     h5::write_attribute(_state->step, "time", time);
     h5::write_attribute(_state->step, "step", step);
-    for (const DatasetSpec& field : _state->fields)
-      _state->datasets[field.name] = create_described(_state->step, field.name, field, H5T_NATIVE_DOUBLE);
+    std::map<std::string, h5::Handle> groups;
+    for (const std::string& grid : _state->named_grids()) groups[grid] = h5::create_group(_state->step, grid);
+    for (const DatasetSpec& field : _state->fields) {
+      const h5::Handle& group = field.grid.empty() ? _state->step : groups.at(field.grid);
+      _state->datasets[path_of(field)] = create_described(group, field.name, field, H5T_NATIVE_DOUBLE);
+    }
   } catch (...) {
     _state->abandon_step();
     throw;

@@ -10,8 +10,8 @@
 
 namespace drogue::framework {
 
-/// Backend for the value of `--backend`. Throws `Failure` (no_backend) if it is not compiled in or no device is
-/// present.
+/// Backend for the value of `--backend`. Throws `Failure` (no_backend) if it is not compiled in or no device
+/// is present.
 [[nodiscard]] device::Backend choose_backend(const std::string& option);
 
 /// Kokkos and its profiling counters, for the life of the object.

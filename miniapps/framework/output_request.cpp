@@ -39,10 +39,9 @@ void declare_output_intervals(scene::Table& table, OutputRequest& output) {
 }
 
 void declare_output(scene::Table& table, OutputRequest& output, const std::vector<std::string>& names) {
-  const scene::Key& fields = table
-                                 .value("fields", scene::names_codec(output.fields, names),
-                                        "Fields written to fields.h5")
-                                 .default_text("all of them where times are given, else none");
+  const scene::Key& fields =
+      table.value("fields", scene::names_codec(output.fields, names), "Fields written to fields.h5")
+          .default_text("all of them where times are given, else none");
   declare_output_times(table, output, fields);
   declare_output_intervals(table, output);
 }

@@ -17,7 +17,7 @@ struct OutputRequest {
 
 /// End of a run and the key of the scene that sets it.
 struct EndTime {
-  double time = 0.0;      ///< s
+  double time = 0.0;     ///< s
   const char* key = "";  ///< say run.end_time
 };
 

@@ -15,12 +15,12 @@ struct RunRequest {
   std::function<void()> at_output;
 };
 
-/// Sets the initial state, or the state of `files.restart`. Throws `Failure` (io_error) for a restart file that
-/// is damaged, belongs to another scene, or is later than the end of the run.
+/// Sets the initial state, or the state of `files.restart`. Throws `Failure` (io_error) for a restart file
+/// that is damaged, belongs to another scene, or is later than the end of the run.
 void set_up(Simulation& simulation, const RunFiles& files);
 
-/// Runs `simulation` to its end, writes the files of the run, and fills in `result`, also if it throws. Returns
-/// `interrupted` after a signal, with the restart file written; otherwise `ok`. Throws `Failure`:
+/// Runs `simulation` to its end, writes the files of the run, and fills in `result`, also if it throws.
+/// Returns `interrupted` after a signal, with the restart file written; otherwise `ok`. Throws `Failure`:
 /// numerical_failure once the last good state is on disk, io_error.
 ExitCode run_to_end(Simulation& simulation, const RunRequest& request, run::ResultDocument& result);
 

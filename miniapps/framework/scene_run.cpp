@@ -84,11 +84,12 @@ class SceneRun {
       throw Failure(ExitCode::verification_failed, failed);
   }
 
-  /// In a directory that holds results, `--restart auto` without a restart file starts anew and the restart file
-  /// of another directory is continued, but only if both belong to the same scene.
+  /// In a directory that holds results, `--restart auto` without a restart file starts anew and the restart
+  /// file of another directory is continued, but only if both belong to the same scene.
   void require_same_scene(const std::string& fingerprint) const {
     const std::filesystem::path from = _restart.has_parent_path() ? _restart.parent_path() : ".";
-    if (std::error_code ignored; !_restart.empty() && std::filesystem::equivalent(from, _out, ignored)) return;
+    if (std::error_code ignored; !_restart.empty() && std::filesystem::equivalent(from, _out, ignored))
+      return;
     bool same = false;
     try {
       same = _app.read(_out / "scene.toml", {}, false)->fingerprint() == fingerprint;

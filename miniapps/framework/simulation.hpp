@@ -116,8 +116,8 @@ class Simulation {
   /// Fills in step counts, time step sizes, wall times (s) and metrics.
   virtual void describe(run::ResultDocument& result) = 0;
 
-  /// Computes errors and adds the checks of the scene's [verify]. `directory` holds the files of the run; null
-  /// if the run writes none. Returns `interrupted` after a signal, otherwise `ok`, also if checks fail.
+  /// Computes errors and adds the checks of the scene's [verify]. `directory` holds the files of the run;
+  /// null if the run writes none. Returns `interrupted` after a signal, otherwise `ok`, also if checks fail.
   virtual ExitCode verify(const run::RunDirectory*, run::ResultDocument&) { return ExitCode::ok; }
 };
 

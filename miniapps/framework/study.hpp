@@ -30,12 +30,12 @@ struct RepeatedRun {
 /// Runs a scene once: adds a sample, and in the first run everything else. Returns `ok` or `interrupted`.
 using RunOnce = std::function<ExitCode(RepeatedRun& runs)>;
 
-/// Calls `run_once` until `repeats` is satisfied. `code` is `interrupted` after a signal, and the exit code of a
-/// `Failure` that `run_once` throws.
+/// Calls `run_once` until `repeats` is satisfied. `code` is `interrupted` after a signal, and the exit code
+/// of a `Failure` that `run_once` throws.
 [[nodiscard]] RepeatedRun repeat_run(const study::Repeats& repeats, const RunOnce& run_once);
 
-/// The directory, device and facts of a `--study`. The constructor begins the run directory and starts Kokkos.
-/// Throws `Failure`: usage, no_backend, io_error.
+/// The directory, device and facts of a `--study`. The constructor begins the run directory and starts
+/// Kokkos. Throws `Failure`: usage, no_backend, io_error.
 class StudySession {
  public:
   /// `printed_scene` is the resolved scene before the study varies it.

@@ -31,7 +31,9 @@ std::unique_ptr<framework::Scene> read(const std::filesystem::path& file,
 }
 
 std::string limiter_summary(const run::ResultDocument& result) {
-  const auto count = [&](const char* name) { return std::to_string(result.metrics.integer("limiter", name)); };
+  const auto count = [&](const char* name) {
+    return std::to_string(result.metrics.integer("limiter", name));
+  };
   return ", limiter touches " + count("touches") + ", redone steps " + count("redone_steps");
 }
 

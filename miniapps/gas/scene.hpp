@@ -89,8 +89,8 @@ GasScene read_gas_scene(const std::filesystem::path& file, const std::vector<std
 /// The resolved scene as TOML: every default that applies, no key that does not. Resolves to itself.
 std::string print_gas_scene(const GasScene& scene);
 
-/// Fingerprint of mesh, gas and scheme for restart files. Output, end time and checks may change between a run
-/// and its continuation.
+/// Fingerprint of mesh, gas and scheme for restart files. Output, end time and checks may change between a
+/// run and its continuation.
 std::string scene_fingerprint(GasScene scene);
 
 /// Folder of the shipped scenes: beside the installed or bundled program, else in the source tree.

@@ -88,7 +88,9 @@ framework::Stop Simulation::advance(const framework::AdvanceLimits& limits, cons
   _stop = _solver->advance(
       limits.target_time, limits.pause_step, limits.row_every,
       [&](const gas::HistoryRow& row) { rows(history_row(row)); },
-      [&](const gas::Status& status) { return poll({status.step, status.time}); });
+      [&](const gas::Status& status) {
+        return poll({status.step, status.time});
+      });
   const framework::Stop stop = framework_stop(_stop);
   // The last good state of a failed run ends its history.
   if (stop == framework::Stop::failed && limits.row_every > 0) rows(history_row(_solver->totals()));

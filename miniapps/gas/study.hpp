@@ -16,8 +16,8 @@ struct SchemeNames {
 
 [[nodiscard]] SchemeNames scheme_names(const gas::Parameters& parameters);
 
-/// Runs `scene` without its outputs until `repeats` is satisfied. `errors` are the error norms against `exact`,
-/// `others` holds `conservation`. Throws nothing of a failed run, which the result describes.
+/// Runs `scene` without its outputs until `repeats` is satisfied. `errors` are the error norms against
+/// `exact`, `others` holds `conservation`. Throws nothing of a failed run, which the result describes.
 framework::RepeatedRun run_repeatedly(const GasScene& scene, device::Backend backend,
                                       const ExactSolution& exact, const study::Repeats& repeats);
 

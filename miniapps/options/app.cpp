@@ -133,7 +133,8 @@ ExitCode run_batch(Ranks& ranks, const Command& command) {
   run::ResultDocument result = run::new_result("drogue-options", input.stem().string());
   result.metrics.add_group("counts");
   // The schema of result.json holds the counts of a flux limiter for every program.
-  for (const char* count : {"touches", "cells", "redone_steps"}) result.metrics.set("limiter", count, std::int64_t{0});
+  for (const char* count : {"touches", "cells", "redone_steps"})
+    result.metrics.set("limiter", count, std::int64_t{0});
   result.ranks = ranks.count();
   const auto write_result = [&] {
     if (ranks.is_first() && !command.result.empty()) run::write_result(command.result, result);

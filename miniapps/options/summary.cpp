@@ -74,7 +74,9 @@ void require_priced_rows(const Command& command, const Tally& tally, const Batch
 }
 
 void count_rows(const Tally& tally, run::ResultDocument& result) {
-  const auto set = [&result](const char* name, std::int64_t rows) { result.metrics.set("counts", name, rows); };
+  const auto set = [&result](const char* name, std::int64_t rows) {
+    result.metrics.set("counts", name, rows);
+  };
   set("coarse", tally.coarse);
   set("failed", tally.failed);
   set("invalid", tally.invalid);

@@ -64,7 +64,9 @@ std::string scene_fingerprint(SpringsScene scene) {
   return run::fingerprint(print_springs_scene(scene) + contents);
 }
 
-std::filesystem::path scene_folder() { return framework::find_scene_folder("springs", DROGUE_SPRINGS_SCENES); }
+std::filesystem::path scene_folder() {
+  return framework::find_scene_folder("springs", DROGUE_SPRINGS_SCENES);
+}
 
 std::string document_springs_scene() {
   SpringsScene defaults;

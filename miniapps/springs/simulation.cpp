@@ -68,7 +68,8 @@ double Simulation::longest_stable_step(double frequency) {
 /// Reference of automatic steps, s: time.safety is a share of it.
 double Simulation::stable_dt() {
   double stable = longest_stable_step(_solver->fastest_frequency());
-  // Verlet's method is stable at any absolute damping, but resolves damped motion only in steps below 1/damping.
+  // Verlet's method is stable at any absolute damping, but resolves damped motion only in steps below
+  // 1/damping.
   const double damping = _scene.damping.absolute;
   if (_scene.time.integrator == fabric::Integrator::verlet && damping * stable > 1.0) stable = 1.0 / damping;
   if (!_scene.contact.self) return stable;
@@ -109,10 +110,11 @@ void Simulation::replan_if_stiffer() {
 }
 
 /// Explains why the step of the scene is too long; empty if it is not. Beyond the stability limit the motion
-/// doubles again and again, and a run may end before a number overflows. The bound of the frequencies lies above
-/// the largest frequency: where the bound forbids the step, the largest frequency itself is computed, and again
-/// once the bound has grown. Dashpots have a bound only. There the criterion is cloth that moves farther in a
-/// step than the extent of the mesh. Cloth in free flight may do so too, but no step is too long for it.
+/// doubles again and again, and a run may end before a number overflows. The bound of the frequencies lies
+/// above the largest frequency: where the bound forbids the step, the largest frequency itself is computed,
+/// and again once the bound has grown. Dashpots have a bound only. There the criterion is cloth that moves
+/// farther in a step than the extent of the mesh. Cloth in free flight may do so too, but no step is too long
+/// for it.
 std::string Simulation::too_long_step() {
   const Time& requested = _scene.time;
   const double dt = _solver->clock().dt, bound = _solver->fastest_frequency();
@@ -169,8 +171,8 @@ void Simulation::round_trip() {
   if (!work.empty()) _solver->set_contact_work(work);
 }
 
-/// Takes steps in batches that adapt to the poll interval. Returns false if the state was lost, or if the poll
-/// asked for the end before all steps were taken.
+/// Takes steps in batches that adapt to the poll interval. Returns false if the state was lost, or if the
+/// poll asked for the end before all steps were taken.
 bool Simulation::take_steps(std::int64_t steps, const framework::Poll& poll) {
   while (steps > 0) {
     const std::int64_t count = std::min(steps, _settings.seed_mode ? 1 : _batch);

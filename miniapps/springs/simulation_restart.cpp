@@ -99,6 +99,7 @@ void Simulation::restore(const run::RestartReader& reader) {
   _stop_time = plan.stop_time;
   _dt_min = plan.dt_min;
   _dt_max = plan.dt_max;
+  if (time() >= _scene.time.end_time) return;
   // New output times, another end or other steps take effect from here on.
   const double next = framework::next_stop(_scene.output, plan.clock.time(), _scene.time.end_time);
   if (plan.clock.step >= _stop_step || _stop_time != next || plan.requested != requested_steps(_scene))

@@ -60,8 +60,9 @@ std::vector<Vector> Simulation::positions() {
 
 StateTotals Simulation::totals() {
   const fabric::Totals sum = _solver->totals();
-  StateTotals totals{sum.kinetic,  sum.elastic, sum.gravity + sum.load, sum.momentum,
-                     sum.angular_momentum, {},  sum.contact,            sum.friction, 0};
+  StateTotals totals{sum.kinetic,  sum.elastic,          sum.gravity + sum.load,
+                     sum.momentum, sum.angular_momentum, {},
+                     sum.contact,  sum.friction,         0};
   const bool counts = _scene.verify.intersections.has_value();
   if (_scene.output.probes.empty() && !counts) return totals;
   std::vector<Vector> x(_problem.x.size()), v(x.size());
@@ -83,8 +84,7 @@ framework::HistoryRow Simulation::row() {
   const auto append = [&values](const Vector& v) { values.insert(values.end(), v.begin(), v.end()); };
   append(totals.momentum);
   append(totals.angular_momentum);
-  if (_scene.contact.asked_for())
-    values.insert(values.end(), {totals.contact_work, totals.friction_work});
+  if (_scene.contact.asked_for()) values.insert(values.end(), {totals.contact_work, totals.friction_work});
   if (_scene.verify.intersections) values.push_back(totals.intersections);
   std::ranges::for_each(totals.probes, append);
   return row;
@@ -100,22 +100,22 @@ void Simulation::write_mesh(run::FieldsWriter& fields) const {
   const fabric::Mesh& mesh = _scene.mesh;
   const auto edges = edges_of(mesh);
   fields.add_mesh({"triangles", {mesh.triangles.size(), 3}, "1", "face", "vertices of every triangle"},
-                    source_of(mesh.triangles));
+                  source_of(mesh.triangles));
   fields.add_mesh({"edges", {edges.size(), 2}, "1", "edge", "vertices of every edge and line"},
-                    source_of(edges));
+                  source_of(edges));
   // Edges do not tell which of them are strings.
   fields.add_mesh({"strings",
-                     {mesh.lines.size(), 2},
-                     "1",
-                     "edge",
-                     "vertices of every piece of a string, those that reinforce edges of cloth alone last"},
-                    source_of(mesh.lines));
+                   {mesh.lines.size(), 2},
+                   "1",
+                   "edge",
+                   "vertices of every piece of a string, those that reinforce edges of cloth alone last"},
+                  source_of(mesh.lines));
   // Last: with it fields.xdmf is complete.
   fields.add_mesh({"vertices", {mesh.rest.size(), 3}, "m", "vertex", "vertices at rest"},
-                    [&mesh](std::uint64_t first, std::span<double> values) {
-                      const auto from = numbers(mesh.rest).subspan(first, values.size());
-                      std::ranges::copy(from, values.begin());
-                    });
+                  [&mesh](std::uint64_t first, std::span<double> values) {
+                    const auto from = numbers(mesh.rest).subspan(first, values.size());
+                    std::ranges::copy(from, values.begin());
+                  });
 }
 
 framework::FieldsTask Simulation::snapshot() {

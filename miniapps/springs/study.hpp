@@ -25,9 +25,9 @@ class ScratchDirectory {
   run::RunDirectory _directory;
 };
 
-/// Runs `scene` until `repeats` is satisfied. `errors` and `checks` are those of the scene's [verify]; `series`
-/// holds `time` (s), `kinetic` and `elastic` (J), `length` of strings (m) and `area` of cloth (m^2). Throws
-/// nothing of a failed run, which the result describes.
+/// Runs `scene` until `repeats` is satisfied. `errors` and `checks` are those of the scene's [verify];
+/// `series` holds `time` (s), `kinetic` and `elastic` (J), `length` of strings (m) and `area` of cloth (m^2).
+/// Throws nothing of a failed run, which the result describes.
 framework::RepeatedRun run_repeatedly(const SpringsScene& scene, device::Backend backend,
                                       const study::Repeats& repeats, ScratchDirectory& scratch);
 

@@ -258,5 +258,39 @@ TEST(FieldsWriter, ADamagedFileIsNotContinued) {
       << sentence;
 }
 
+TEST(FieldsWriter, KeepsSeveralGridsInOneFile) {
+  const TemporaryDirectory directory;
+  const std::vector<DatasetSpec> specs = {{"pressure", {2, 3, 4}, "Pa", "cell", "pressure"},
+                                          {"position", {3, 3}, "m", "vertex", "positions", "canopy"}};
+  const auto zeros = [](std::uint64_t, std::span<double> values) { std::ranges::fill(values, 0.0); };
+  const auto corners = [](std::uint64_t first, std::span<std::int64_t> values) {
+    for (std::size_t k = 0; k < values.size(); ++k) values[k] = static_cast<std::int64_t>(first + k);
+  };
+  const auto write = [&](std::optional<double> resume_time, double time) {
+    FieldsWriter fields(directory.path(), "drop", specs, resume_time);
+    fields.add_mesh({"triangles", {1, 3}, "1", "face", "", "canopy"}, IntegerSource(corners));
+    fields.add_mesh({"strings", {0, 2}, "1", "edge", "", "canopy"}, IntegerSource(corners));
+    fields.add_mesh({"vertices", {3, 3}, "m", "vertex", "", "canopy"}, Source(zeros));
+    EXPECT_EQ(std::filesystem::exists(directory / "fields.xdmf"), resume_time.has_value());
+    for (const auto& [name, faces] : {std::pair{"x", 5U}, std::pair{"y", 4U}, std::pair{"z", 3U}})
+      fields.add_mesh({name, {faces}, "m", "face", ""}, Source(zeros));
+    fields.begin_step(time, 1);
+    fields.write("pressure", 0, std::vector<double>(24, time));
+    fields.write("canopy/position", 0, std::vector<double>(9, 2.0 * time));
+    fields.end_step();
+  };
+  write({}, 1.0);
+  write(1.0, 2.0);
+  EXPECT_EQ(step_groups(directory / "fields.h5"), (std::vector<std::string>{"000000", "000001"}));
+  const h5::Handle handle = h5::open_file(directory / "fields.h5", false);
+  EXPECT_EQ(h5::shape(h5::open_dataset(handle, "mesh/canopy/triangles")), (std::vector<std::uint64_t>{1, 3}));
+  std::vector<double> values(9);
+  h5::read(h5::open_dataset(handle, "steps/000001/canopy/position"), 0, values);
+  EXPECT_EQ(values, std::vector<double>(9, 4.0));
+  const std::string xdmf = content(directory / "fields.xdmf");
+  EXPECT_NE(xdmf.find("fields.h5:/steps/000001/canopy/position"), std::string::npos) << xdmf;
+  EXPECT_NE(xdmf.find("Dimensions=\"3 4 5\""), std::string::npos) << xdmf;
+}
+
 }  // namespace
 }  // namespace drogue::run
