@@ -1,4 +1,4 @@
-# Installs the kernels as the CMake package Drogue, and the programs.
+# Installs the CMake package Drogue, with the kernels and its component framework, and the programs.
 
 include(CMakePackageConfigHelpers)
 
@@ -8,6 +8,16 @@ install(TARGETS drogue_kernels drogue_arithmetic EXPORT DrogueTargets
 set_target_properties(drogue_kernels PROPERTIES EXPORT_NAME kernels)
 set_target_properties(drogue_arithmetic PROPERTIES EXPORT_NAME arithmetic)
 install(EXPORT DrogueTargets NAMESPACE Drogue:: DESTINATION "${_package}")
+# The component for mini-apps outside of this repository.
+install(TARGETS drogue_common drogue_framework EXPORT DrogueFrameworkTargets
+  ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}" LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}")
+set_target_properties(drogue_common PROPERTIES EXPORT_NAME common)
+set_target_properties(drogue_framework PROPERTIES EXPORT_NAME framework)
+install(EXPORT DrogueFrameworkTargets NAMESPACE Drogue:: DESTINATION "${_package}")
+install(DIRECTORY "${PROJECT_SOURCE_DIR}/common" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/drogue"
+  FILES_MATCHING PATTERN "*.hpp")
+install(DIRECTORY "${PROJECT_SOURCE_DIR}/miniapps/framework" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/drogue/miniapps"
+  FILES_MATCHING PATTERN "*.hpp")
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/kernels" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/drogue"
   FILES_MATCHING PATTERN "*.hpp" PATTERN "reference" EXCLUDE)
 

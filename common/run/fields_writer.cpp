@@ -245,6 +245,12 @@ void FieldsWriter::add_mesh(const DatasetSpec& spec, const IntegerSource& source
   _state->add_mesh<std::int64_t>(spec, H5T_NATIVE_INT64, source);
 }
 
+void FieldsWriter::add_mesh(const DatasetSpec& spec, const std::vector<double>& values) {
+  add_mesh(spec, Source([&](std::uint64_t first, std::span<double> to) {
+             std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(first), to.size(), to.begin());
+           }));
+}
+
 void FieldsWriter::begin_step(double time, std::int64_t step) {
   if (_state->outputs.size() == page_links) _state->enlarge_index();
   std::uint64_t bytes = metadata_bytes;

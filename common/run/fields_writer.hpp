@@ -49,6 +49,7 @@ class FieldsWriter {
   /// dataset that a resumed file already has stays.
   void add_mesh(const DatasetSpec& spec, const Source& source);
   void add_mesh(const DatasetSpec& spec, const IntegerSource& source);
+  void add_mesh(const DatasetSpec& spec, const std::vector<double>& values);
 
   /// Starts the group of an output at simulated `time` (s), reached after `step` steps. The disk space of all
   /// fields is reserved here, so that a full disk is met before anything is written.

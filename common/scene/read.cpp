@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "common/program/failure.hpp"
+#include "common/scene/parse.hpp"
 #include "common/scene/document.hpp"
 #include "common/scene/nearest.hpp"
 
@@ -161,6 +162,12 @@ class Reader {
 };
 
 void read(Table& root, const Node& document) { Reader(root).run(document); }
+
+void read_file(Table& root, const std::filesystem::path& file, const std::vector<std::string>& assignments) {
+  Node document = parse_file(file);
+  for (const std::string& assignment : assignments) apply_set(document, assignment);
+  read(root, document);
+}
 
 void contradict(const Table& root, const std::string& path, const std::string& sentence) {
   throw Failure(ExitCode::invalid_scene, root.origin(path) + ": " + sentence);

@@ -23,6 +23,9 @@ class RunLoop {
 
   /// However the run ends, the result shows how far it came.
   ~RunLoop() {
+    const TimeState now = _simulation.now();
+    _result.steps = now.step;
+    _result.time = now.time;
     _simulation.describe(_result);
     if (_output) _result.timing.io_s = _output->waited();
     _result.describe_ledger(device::profiling_counters());

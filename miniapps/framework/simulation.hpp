@@ -14,7 +14,7 @@
 #include "common/run/result_document.hpp"
 #include "common/run/run_directory.hpp"
 #include "kernels/device/backend.hpp"
-#include "miniapps/framework/output_request.hpp"
+#include "miniapps/framework/scene_keys.hpp"
 
 /// Everything that scene-driven mini-apps share. A mini-app supplies a `Scene` and a `Simulation`;
 /// `run_mini_app` does the rest.
@@ -111,10 +111,10 @@ class Simulation {
   }
 
   /// One sentence on the failure. `restart_written`: restart.h5 holds the last good state.
-  [[nodiscard]] virtual std::string failure_text(bool restart_written) = 0;
+  [[nodiscard]] virtual std::string failure_text(bool /*restart_written*/) { return "the run failed"; }
 
-  /// Fills in step counts, time step sizes, wall times (s) and metrics.
-  virtual void describe(run::ResultDocument& result) = 0;
+  /// Fills in time step sizes, wall times (s) and metrics; `steps` and `time` are set.
+  virtual void describe(run::ResultDocument&) {}
 
   /// Computes errors and adds the checks of the scene's [verify]. `directory` holds the files of the run;
   /// null if the run writes none. Returns `interrupted` after a signal, otherwise `ok`, also if checks fail.

@@ -2,7 +2,6 @@
 
 #include "common/run/restart_file.hpp"
 #include "common/scene/document.hpp"
-#include "common/scene/parse.hpp"
 #include "common/scene/print.hpp"
 #include "common/scene/read.hpp"
 #include "miniapps/framework/mini_app.hpp"
@@ -27,14 +26,12 @@ void set_baseline_scheme(gas::Parameters& parameters) {
 
 GasScene read_gas_scene(const std::filesystem::path& file, const std::vector<std::string>& sets,
                         SchemeSource source) {
-  scene::Node document = scene::parse_file(file);
-  for (const std::string& assignment : sets) scene::apply_set(document, assignment);
   GasScene result;
   result.file = file;
   result.name = file.stem().string();
   scene::Table root;
   declare_gas_scene(root, result);
-  scene::read(root, document);
+  scene::read_file(root, file, sets);
   if (source == SchemeSource::baseline) set_baseline_scheme(result.parameters);
   complete_and_check(root, result);
   return result;

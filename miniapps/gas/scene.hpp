@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "kernels/gas/parameters.hpp"
-#include "miniapps/framework/output_request.hpp"
+#include "miniapps/framework/scene_keys.hpp"
 
 /// The scene of `drogue-gas`: what a TOML file says, checked and with every default filled in.
 namespace drogue::gas_app {

@@ -196,8 +196,7 @@ void declare_verify(Table& table, Verify& verify) {
 
 void declare_gas_scene(Table& root, GasScene& scene) {
   gas::Parameters& parameters = scene.parameters;
-  root.value("app", scene::fixed_codec("gas"), "The program the scene is for").required().decisive();
-  root.value("description", scene::text_codec(scene.description), "A sentence for --list-scenes");
+  framework::declare_app(root, "gas", scene.description);
   root.table(
           "gas",
           [&](Table& table) {

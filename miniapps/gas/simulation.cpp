@@ -153,9 +153,7 @@ std::string Simulation::failure_text(bool) {
 void Simulation::describe(run::ResultDocument& result) {
   const gas::Resume now = _solver->resume_state();
   const gas::Phases phases = _solver->phases();
-  result.steps = now.step;
   result.driver = _solver->driver();
-  result.time = now.time;
   result.dt_min = now.dt_min;
   result.dt_max = now.dt_max;
   set_limiter_metrics({now.touches, _solver->touched_cells(), now.redone}, result.metrics);

@@ -4,7 +4,6 @@
 
 #include "common/run/restart_file.hpp"
 #include "common/scene/document.hpp"
-#include "common/scene/parse.hpp"
 #include "common/scene/print.hpp"
 #include "common/scene/read.hpp"
 #include "miniapps/framework/mini_app.hpp"
@@ -23,14 +22,12 @@ bool SpringsScene::has_lines() const {
 }
 
 SpringsScene read_springs_scene(const std::filesystem::path& file, const std::vector<std::string>& sets) {
-  scene::Node document = scene::parse_file(file);
-  for (const std::string& assignment : sets) scene::apply_set(document, assignment);
   SpringsScene result;
   result.file = file;
   result.name = file.stem().string();
   scene::Table root;
   declare_springs_scene(root, result);
-  scene::read(root, document);
+  scene::read_file(root, file, sets);
   complete_and_check(root, result);
   return result;
 }

@@ -8,7 +8,7 @@
 
 #include "kernels/fabric/mass.hpp"
 #include "kernels/fabric/parameters.hpp"
-#include "miniapps/framework/output_request.hpp"
+#include "miniapps/framework/scene_keys.hpp"
 #include "miniapps/springs/mesh_generators.hpp"
 
 /// The scene of `drogue-springs`: what a TOML file says, checked and with every default filled in.

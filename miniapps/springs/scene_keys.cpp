@@ -293,8 +293,7 @@ scene::Codec vector_codec(fabric::Vector& value) {
 }
 
 void declare_springs_scene(Table& root, SpringsScene& scene) {
-  root.value("app", scene::fixed_codec("springs"), "The program the scene is for").required().decisive();
-  root.value("description", scene::text_codec(scene.description), "A sentence for --list-scenes");
+  framework::declare_app(root, "springs", scene.description);
   root.table(
           "mesh", [&](Table& table) { declare_mesh(table, scene.source); }, "Cloth and strings at rest")
       .required();

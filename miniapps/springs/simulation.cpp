@@ -249,8 +249,6 @@ std::string Simulation::failure_text(bool restart_written) {
 
 void Simulation::describe(run::ResultDocument& result) {
   result.driver = _settings.seed_mode ? "seed" : _solver->driver();
-  result.steps = _solver->clock().step;
-  result.time = time();
   result.dt_min = _dt_min;
   result.dt_max = _dt_max;
   result.timing.compute_s = _compute_s;

@@ -27,6 +27,9 @@ struct EndTime {
 /// Whether fields are written at exactly `time`, s. Does not throw.
 [[nodiscard]] bool is_output_time(const OutputRequest& output, double time);
 
+/// Declares `app`, which must be `name`, and `description`: the first keys of every scene.
+void declare_app(scene::Table& root, const std::string& name, std::string& description);
+
 /// Declares `times` of [output]. `fields` is the key of the field names.
 void declare_output_times(scene::Table& table, OutputRequest& output, const scene::Key& fields);
 

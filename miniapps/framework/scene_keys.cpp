@@ -1,4 +1,4 @@
-#include "miniapps/framework/output_request.hpp"
+#include "miniapps/framework/scene_keys.hpp"
 
 #include <algorithm>
 
@@ -15,6 +15,11 @@ double next_stop(const OutputRequest& output, double time, double end_time) {
 
 bool is_output_time(const OutputRequest& output, double time) {
   return std::ranges::find(output.times, time) != output.times.end();
+}
+
+void declare_app(scene::Table& root, const std::string& name, std::string& description) {
+  root.value("app", scene::fixed_codec(name), "The program the scene is for").required().decisive();
+  root.value("description", scene::text_codec(description), "A sentence for --list-scenes");
 }
 
 void declare_output_times(scene::Table& table, OutputRequest& output, const scene::Key& fields) {
