@@ -9,12 +9,12 @@ class Stopwatch {
  public:
   /// Elapsed time, s.
   [[nodiscard]] double seconds() const {
-    return std::chrono::duration<double>(Clock::now() - _begin).count();
+    return std::chrono::duration<double>(SteadyClock::now() - _begin).count();
   }
 
  private:
-  using Clock = std::chrono::steady_clock;
-  Clock::time_point _begin = Clock::now();
+  using SteadyClock = std::chrono::steady_clock;
+  SteadyClock::time_point _begin = SteadyClock::now();
 };
 
 /// Adds the wall-clock time of its lifetime, s, to a sum.

@@ -24,23 +24,23 @@ constexpr std::uint64_t piece_entries = 1U << 18U;
 constexpr std::uint64_t metadata_bytes =
     1U << 14U;  ///< upper bound of what a group or a dataset adds to its data
 
-// Names that an index block holds: of /mesh, of /steps as it begins (a page), and of /steps of a long run.
+// Number of names per index block: of /mesh, of /steps at first (one page), and of /steps of a long run.
 constexpr unsigned mesh_links = 16, page_links = 190, many_links = 3000;
 constexpr unsigned mesh_name_length = 16, step_name_length = 6;
 
-/// Takes the space after the end of the file from the disk without making the file longer.
+/// Reserves disk space behind the end of the file without changing its length.
 void reserve(const std::filesystem::path& file, std::uint64_t bytes) {
   const int descriptor = open(file.c_str(), O_RDWR | O_CLOEXEC);
   if (descriptor < 0) throw io_failure("write", file, errno);
   const off_t end = lseek(descriptor, 0, SEEK_END);
   const int status = fallocate(descriptor, FALLOC_FL_KEEP_SIZE, end, static_cast<off_t>(bytes));
   int error = status == 0 ? 0 : errno;
-  // A limit on the length of files (ulimit -f) is not asked about before the file is longer.
+  // fallocate does not check a limit on the file length (ulimit -f) if the length does not change.
   struct rlimit limit = {};
   if (getrlimit(RLIMIT_FSIZE, &limit) == 0 && static_cast<rlim_t>(end) + bytes > limit.rlim_cur)
     error = EFBIG;
   close(descriptor);
-  // Elsewhere (say NFS) a full disk shows while writing; then end_step() is not reached.
+  // Other file systems, say NFS, report a full disk while writing; end_step() is not reached then.
   if (error == ENOSPC || error == EDQUOT || error == EFBIG) throw io_failure("write", file, error);
 }
 
@@ -65,7 +65,7 @@ struct FieldsWriter::State {
   OutputStep current;
   // Between begin_step() and end_step() only:
   h5::Handle open;
-  h5::Handle step;  // has no name yet
+  h5::Handle step;  // unnamed
   std::map<std::string, h5::Handle, std::less<>> datasets;
 
   void create() const;
@@ -159,15 +159,15 @@ void FieldsWriter::State::write_xdmf() const {
   write_file_atomically(xdmf, xdmf_document(title, grids, outputs));
 }
 
-/// The group that has no name yet leaves the file.
+/// Closes the unnamed group of a step, which removes it from the file.
 void FieldsWriter::State::abandon_step() noexcept {
   datasets.clear();
   step.reset();
   open.reset();
 }
 
-/// Gives `object`, of which all else is written, its name and closes the file. Until all of the object is on
-/// disk nothing leads to it, and the name is one write: whenever the process is killed, the file is whole.
+/// Links the complete `object` into the file and closes the file. The object is on disk before the link,
+/// which is one write, so that a kill at any moment leaves a valid file.
 void FieldsWriter::State::publish(h5::Handle handle, const std::string& group, const std::string& name,
                                   const h5::Handle& object) const {
   h5::flush(handle);
@@ -179,15 +179,15 @@ void FieldsWriter::State::publish(h5::Handle handle, const std::string& group, c
   sync_path(file);
 }
 
-/// A group with room for more names takes the place of /steps. It is complete on disk before one write of the
-/// root group, which is not written in between, leads to it.
+/// Replaces /steps by a group with room for more names. The new group is complete on disk before one write of
+/// the root group links it.
 void FieldsWriter::State::enlarge_index() const {
   reserve(file, 32ULL * many_links);
   h5::Handle handle = h5::open_file(file, true);
   h5::Handle roomy = h5::create_group(handle, "", many_links, step_name_length);
   h5::flush(handle);
   h5::link(handle, "roomy", roomy);
-  roomy = h5::open_group(handle, "roomy");  // HDF5 moves nothing to what has no name
+  roomy = h5::open_group(handle, "roomy");  // HDF5 cannot move links to an unnamed group
   h5::Handle index = h5::open_group(handle, "steps");
   for (const OutputStep& output : outputs) h5::move(index, output.group, roomy, output.group);
   h5::flush_object(roomy);

@@ -14,7 +14,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// JSON has no NaN and no infinity.
+/// Null for NaN and infinity, which JSON lacks.
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 Json numbers_json(const std::map<std::string, double>& numbers) {
@@ -43,13 +43,13 @@ Json group_json(const Metrics::Group& group) {
   return json;
 }
 
-Json timing_json(const ResultDocument::Timing& timing) {
+Json timing_json(const ResultDocument::WallTimes& timing) {
   return {{"wall_s", number(timing.wall_s)},       {"setup_s", number(timing.setup_s)},
           {"compute_s", number(timing.compute_s)}, {"h2d_s", number(timing.h2d_s)},
           {"d2h_s", number(timing.d2h_s)},         {"io_s", number(timing.io_s)}};
 }
 
-Json ledger_json(const ResultDocument::Ledger& ledger) {
+Json ledger_json(const ResultDocument::ProfilingCounters& ledger) {
   return {{"kernel_launches", ledger.kernel_launches},
           {"fences", ledger.fences},
           {"device_allocations_after_warmup", ledger.device_allocations_after_warmup},
@@ -169,7 +169,7 @@ std::string to_json(const ResultDocument& result) {
   json["ledger"] = ledger_json(result.ledger);
   json["peak_bytes"] = {{"host", result.peak_bytes.host}, {"device", result.peak_bytes.device}};
   json["provenance"] = provenance_json(result.provenance);
-  // File names and messages may hold bytes that are no UTF-8; the document must be written all the same.
+  // File names and messages may hold invalid UTF-8, which is replaced.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

@@ -12,7 +12,7 @@
 
 namespace drogue::run {
 
-/// One verified quantity: passed if |value| <= tolerance.
+/// Verified quantity; passed if |value| <= tolerance.
 struct Check {
   std::string name;
   double value = 0.0;
@@ -47,11 +47,11 @@ class Metrics {
   std::vector<Group> _groups;
 };
 
-/// result.json, schema `drogue.result/1`. A number that is not finite is written as null.
+/// Content of result.json, schema `drogue.result/1`. Non-finite numbers are written as null.
 struct ResultDocument {
   std::string program, version, git, scene, backend, device;
   std::string precision = "double";
-  std::string driver;  ///< how steps reach the device: "persistent", "graph", "plain", "stages" or "seed"
+  std::string driver;  ///< how steps are launched: "persistent", "graph", "plain", "stages" or "seed"
   int ranks = 1;
   int threads = 1;
   ExitCode exit_code = ExitCode::ok;
@@ -62,10 +62,10 @@ struct ResultDocument {
   std::map<std::string, double> errors;
   std::vector<Check> checks;
   Metrics metrics;  ///< limiter counts, energies and the like, after `checks`
-  struct Timing {
+  struct WallTimes {
     double wall_s = 0, setup_s = 0, compute_s = 0, h2d_s = 0, d2h_s = 0, io_s = 0;
   } timing;
-  struct Ledger {
+  struct ProfilingCounters {
     std::int64_t kernel_launches = 0, fences = 0, device_allocations_after_warmup = 0, h2d_bytes = 0,
                  d2h_bytes = 0;
   } ledger;
@@ -76,7 +76,7 @@ struct ResultDocument {
     std::string compiler, flags, kokkos, cpu, gpu, driver, date;
   } provenance;
 
-  /// Tells what the run is on. `Facts` are those of kernels/device/runtime.hpp, which this layer does not
+  /// Fills in backend, device, threads and driver. `Facts` is device::DeviceFacts, which this layer does not
   /// include.
   template <class Facts>
   void describe_device(const std::string& name_of_backend, const Facts& facts) {
@@ -88,30 +88,31 @@ struct ResultDocument {
     provenance.driver = facts.driver;
   }
 
-  /// Tells what the run asked of the device. `Asked` is the Ledger of kernels/device/profiling_counters.hpp.
-  template <class Asked>
-  void describe_ledger(const Asked& asked) {
-    ledger = {asked.kernel_launches, asked.fences, asked.allocations_after_warmup, asked.h2d_bytes,
-              asked.d2h_bytes};
-    peak_bytes.device = asked.peak_device_bytes;
+  /// Fills in the profiling counters. `Counters` is device::ProfilingCounters, which this layer does not
+  /// include.
+  template <class Counters>
+  void describe_ledger(const Counters& counters) {
+    ledger = {counters.kernel_launches, counters.fences, counters.allocations_after_warmup,
+              counters.h2d_bytes, counters.d2h_bytes};
+    peak_bytes.device = counters.peak_device_bytes;
   }
 
-  /// Adds a check and says whether it passed; a value that is not a number fails.
+  /// Adds a check. Returns true if it passed; NaN fails.
   bool add_check(const std::string& name, double value, double tolerance);
 
-  /// First check that failed, as the Failure to throw (verification_failed) says it; empty if all passed.
+  /// One sentence on the first failed check; empty if all passed.
   [[nodiscard]] std::string failed_check() const;
 };
 
-/// A document that knows the build, the processor and the date, before anything ran.
+/// Document with the facts of the build, the processor and the date.
 ResultDocument new_result(const std::string& program, const std::string& scene);
 
-/// `ok`, `invalid`, `numerical-failure`, ... as the schema names them.
+/// Status of an exit code in the schema: `ok`, `invalid`, `numerical-failure`, ...
 std::string status_name(ExitCode code);
 
 std::string to_json(const ResultDocument& result);
 
-/// Writes `file` atomically, the peak of host memory filled in. Throws Failure(io_error).
+/// Writes `file` atomically, with the peak of host memory. Throws `Failure` (io_error).
 void write_result(const std::filesystem::path& file, ResultDocument result);
 
 }  // namespace drogue::run

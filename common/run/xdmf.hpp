@@ -24,7 +24,7 @@ struct GridDatasets {
   std::vector<DatasetSpec> mesh, fields;
 };
 
-/// Whether `mesh` holds all datasets of a kind of grid. Does not throw.
+/// True if `mesh` holds all datasets of a kind of grid. Does not throw.
 [[nodiscard]] bool is_complete(const std::vector<DatasetSpec>& mesh);
 
 /// fields.xdmf, for ParaView: one temporal collection per grid, named `title` and the grid's name.

@@ -3,9 +3,9 @@
 #include <algorithm>
 
 #include "common/program/failure.hpp"
-#include "common/scene/parse.hpp"
 #include "common/scene/document.hpp"
 #include "common/scene/nearest.hpp"
+#include "common/scene/parse.hpp"
 
 namespace drogue::scene {
 
@@ -23,7 +23,7 @@ class Reader {
   }
 
  private:
-  /// In the order in which errors matter.
+  /// Kinds of errors by descending importance.
   enum class Rank { decisive, unknown, value, missing, contradiction };
 
   struct Problem {
@@ -100,7 +100,7 @@ class Reader {
     if (key._resize) key._resize(0);
   }
 
-  /// A `--set` has the last word: what the file gives and the assignment makes meaningless is forgotten.
+  /// Drops keys of the file that a `--set` assignment makes meaningless.
   static void drop_overridden(Table& table) {
     const auto set_alternative =
         std::find_if(table._alternatives.begin(), table._alternatives.end(),
@@ -116,7 +116,7 @@ class Reader {
     }
   }
 
-  /// What can only be seen once every value is read.
+  /// Checks that need all values.
   void check(const Table& table) {
     for (const auto& key : table._keys) {
       const bool applies = key->_applies();

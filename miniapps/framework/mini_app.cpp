@@ -36,7 +36,7 @@ ExitCode run_command(const MiniApp& app, const MiniAppOptions& options) {
   require_one_rank(app.program());
   const std::filesystem::path file = scene::find_scene(options.scene, folder);
   if (options.check || options.print_scene) {
-    const std::unique_ptr<Scene> scene = app.read(file, options.set, options.seed_mode);
+    const std::unique_ptr<Scene> scene = app.read(file, options.set, options.baseline);
     std::cout << (options.print_scene ? scene->print() : scene->check_report());
     return ExitCode::ok;
   }

@@ -17,10 +17,10 @@ struct MiniApp {
   std::string description;             ///< the sentence of --help
   std::filesystem::path scene_folder;  ///< shipped scenes in the source tree; empty: none
 
-  /// Reads and checks a scene with its `--set` assignments. `seed_mode` requests the scheme of [Shi]. Throws
+  /// Reads and checks a scene with its `--set` assignments. `baseline` requests the scheme of [Shi]. Throws
   /// `Failure`: usage, invalid_scene.
   std::function<std::unique_ptr<Scene>(const std::filesystem::path& file,
-                                       const std::vector<std::string>& assignments, bool seed_mode)>
+                                       const std::vector<std::string>& assignments, bool baseline)>
       read;
 
   /// Runs `--study` on a scene file; empty: the program has no studies.

@@ -6,7 +6,7 @@
 
 namespace drogue::framework {
 
-/// How a simulation is run to its end.
+/// Settings of a run to the end.
 struct RunRequest {
   RunFiles files;
   bool quiet = false;

@@ -30,7 +30,7 @@ class RunOutput {
   /// beside a `restart.h5` of another directory is copied first. `files.directory` must not be null.
   RunOutput(Simulation& simulation, const RunFiles& files);
 
-  /// Whether history.csv still lacks a row at `time`, s.
+  /// True if history.csv exists without a row at `time`, s. Does not throw.
   [[nodiscard]] bool lacks_row(double time) const { return _history && time != _last_row_time; }
 
   /// Appends `row`, unless a row of its time exists.

@@ -24,7 +24,7 @@ struct EndTime {
 /// First output time after `time`, at most `end_time`; all in s. Does not throw.
 [[nodiscard]] double next_stop(const OutputRequest& output, double time, double end_time);
 
-/// Whether fields are written at exactly `time`, s. Does not throw.
+/// True if fields are written at exactly `time`, s. Does not throw.
 [[nodiscard]] bool is_output_time(const OutputRequest& output, double time);
 
 /// Declares `app`, which must be `name`, and `description`: the first keys of every scene.

@@ -61,7 +61,7 @@ class SceneRun {
  private:
   /// The run itself. Sets the exit code, `ok` or `interrupted`.
   void execute() {
-    const std::unique_ptr<Scene> scene = _app.read(_file, _options.set, _options.seed_mode);
+    const std::unique_ptr<Scene> scene = _app.read(_file, _options.set, _options.baseline);
     const device::Backend backend = choose_backend(_options.backend);
     const RunFiles files{&_directory, _result.scene, scene->fingerprint(), _restart};
     if (!_is_empty && !_options.restart.empty() && !_options.overwrite) require_same_scene(files.fingerprint);
@@ -70,7 +70,7 @@ class SceneRun {
     _result.precision = scene->precision();
     const Stopwatch setup;
     const std::unique_ptr<Simulation> simulation =
-        scene->create({backend, _options.seed_mode, _options.quiet});
+        scene->create({backend, _options.baseline, _options.quiet});
     set_up(*simulation, files);
     _result.timing.setup_s = setup.seconds();
     _directory.begin();

@@ -124,8 +124,8 @@ class Simulation {
 /// Settings of a simulation that stand on the command line.
 struct SimulationSettings {
   device::Backend backend = device::Backend::serial;
-  bool seed_mode = false;  ///< the baseline algorithm of [Shi], with its host-device copies
-  bool quiet = false;      ///< no progress line
+  bool baseline = false;  ///< algorithm of [Shi], with its host-device copies
+  bool quiet = false;     ///< no progress line
 };
 
 /// A scene that was read and checked, with every default filled in.

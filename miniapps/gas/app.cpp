@@ -25,9 +25,9 @@ class RunnableScene final : public framework::Scene {
 };
 
 std::unique_ptr<framework::Scene> read(const std::filesystem::path& file,
-                                       const std::vector<std::string>& assignments, bool seed_mode) {
+                                       const std::vector<std::string>& assignments, bool baseline) {
   return std::make_unique<RunnableScene>(
-      read_gas_scene(file, assignments, seed_mode ? SchemeSource::baseline : SchemeSource::scene));
+      read_gas_scene(file, assignments, baseline ? SchemeSource::baseline : SchemeSource::scene));
 }
 
 std::string limiter_summary(const run::ResultDocument& result) {

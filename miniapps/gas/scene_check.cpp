@@ -16,7 +16,7 @@ using scene::contradict;
 using scene::real_text;
 using scene::Table;
 
-/// Largest ratio of initial pressures that the FP32 part of the split precision carries.
+/// Largest ratio of initial pressures that the FP32 part of the split precision resolves.
 constexpr double split_pressure_ratio = 1e11;
 
 std::string domain_text(const gas::Parameters& parameters) {
@@ -110,7 +110,7 @@ void complete_verify(const Table& root, GasScene& scene) {
   reference.block = scene.parameters.block;
 }
 
-/// The initial state at every cell centre of `scene`, or its first error.
+/// Surveys the initial state at every cell centre. Throws `Failure` for the first invalid one.
 Survey require_gas(const Table& root, const GasScene& scene) {
   const Survey seen = survey_initial_state(scene);
   if (seen.first_bad < scene.parameters.cells) {

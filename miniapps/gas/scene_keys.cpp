@@ -39,14 +39,14 @@ const Choices<gas::Driver> driver_choices = {{"auto", gas::Driver::automatic},
 const Choices<Exact> exact_choices = {
     {"riemann", Exact::riemann}, {"advection", Exact::advection}, {"reference", Exact::reference}};
 
-/// A value whose 0, or first choice, stands for "not given".
+/// Treats 0, or the first choice, as an absent value.
 template <class T>
 Codec zero_is_unset(Codec codec, const T& value) {
   codec.print = [print = codec.print, &value] { return value != T{} ? print() : std::nullopt; };
   return codec;
 }
 
-/// What a run and the finer run it is compared with have in common.
+/// Declares the scheme keys that a run shares with its finer reference run.
 void declare_weights(Table& table, gas::Parameters& scheme) {
   table.value("weno", scene::choice_codec(scheme.weno, weno_choices),
               "Nonlinear weights of the reconstruction");

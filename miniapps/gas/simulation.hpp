@@ -10,8 +10,8 @@ namespace drogue::gas_app {
 
 /// Counts of the positivity limiter.
 struct LimiterCounts {
-  std::int64_t touches = 0;  ///< limited faces, summed over all stages
-  std::int64_t cells = 0;    ///< cells with a limited face at least once
+  std::int64_t limited_faces = 0;  ///< summed over all stages
+  std::int64_t limited_cells = 0;  ///< cells with a limited face at least once
   std::int64_t redone_steps = 0;
 };
 

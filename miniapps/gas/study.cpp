@@ -24,8 +24,7 @@ study::Axes parse(const std::string& text) {
                             {"precisions", {"double", "split"}}});
 }
 
-/// The `--set` assignments that make the scene one point of the study, for all points; an empty text sets
-/// nothing.
+/// `--set` assignments of every point of the study. An empty value sets nothing.
 std::vector<std::vector<std::string>> assignments(const study::Axes& axes, const MiniAppOptions& options) {
   const auto meshes = axes.meshes.empty() ? std::vector<std::int64_t>{0} : axes.meshes;
   std::vector<std::vector<std::string>> points;

@@ -9,7 +9,7 @@
 
 namespace drogue::gas_app {
 
-/// A scheme as scenes spell it. `label` lists the differences to WENO over lf-stencil, ssprk3, double.
+/// Names of a scheme in scenes. `label` lists the differences to WENO with lf-stencil, ssprk3, double.
 struct SchemeNames {
   std::string label, weno, splitting, time, precision;
 };
@@ -17,7 +17,7 @@ struct SchemeNames {
 [[nodiscard]] SchemeNames scheme_names(const gas::Parameters& parameters);
 
 /// Runs `scene` without its outputs until `repeats` is satisfied. `errors` are the error norms against
-/// `exact`, `others` holds `conservation`. Throws nothing of a failed run, which the result describes.
+/// `exact`, `others` holds `conservation`. A failed run is recorded in `code` and `message`.
 framework::RepeatedRun run_repeatedly(const GasScene& scene, device::Backend backend,
                                       const ExactSolution& exact, const study::Repeats& repeats);
 

@@ -9,9 +9,8 @@ namespace drogue::gas_app {
 
 namespace {
 
-/// Largest relative change of mass, momentum and energy that the fluxes through the ends do not explain.
-/// Momentum is measured against sqrt(2 M E), which bounds it (Cauchy-Schwarz), because its own total may be
-/// zero.
+/// Largest relative change of mass, momentum and energy that the boundary fluxes do not explain. The scale of
+/// momentum is sqrt(2 M E), which bounds it (Cauchy-Schwarz), because its total may be zero.
 double conservation_error(const gas::HistoryRow& first, const gas::HistoryRow& last) {
   const double mass = last.mass - first.mass + last.boundary[0];
   const double momentum = last.momentum - first.momentum + last.boundary[1];

@@ -10,7 +10,7 @@
 
 namespace drogue::springs_app {
 
-/// The columns of history.csv after the time.
+/// Columns of history.csv after the time.
 std::vector<run::Column> history_columns(const SpringsScene& scene);
 
 /// Columns of history.csv by name, without units. Checks read the file, so that a run that was interrupted

@@ -32,7 +32,7 @@ const Choices<std::string> axes_choices = {{"x", "x"},   {"y", "y"},   {"z", "z"
                                            {"xz", "xz"}, {"yz", "yz"}, {"xyz", "xyz"}};
 const std::vector<std::string> of_place = {"x", "y", "z"}, of_place_and_time = {"x", "y", "z", "t"};
 
-/// Three numbers; an empty vector is "not given".
+/// Three numbers; an empty vector is an absent value.
 Codec optional_vector_codec(std::vector<double>& value) {
   Codec codec = scene::reals_codec(value, 3, false);
   codec.type = "[real, real, real]";
@@ -40,7 +40,7 @@ Codec optional_vector_codec(std::vector<double>& value) {
   return codec;
 }
 
-/// Some of x, y and z, in any order; kept in theirs.
+/// Subset of x, y and z in any order; stored in ascending order.
 Codec axes_codec(std::string& axes) {
   Codec codec = scene::choice_codec(axes, axes_choices);
   codec.type += ", in any order";

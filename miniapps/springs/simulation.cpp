@@ -82,7 +82,7 @@ double Simulation::stable_dt() {
   return std::min(stable, 0.1 * fabric::contact_edges(_problem.parameters.mesh).mean_length / fastest);
 }
 
-/// Equal steps from now to the next stop, none longer than is stable or asked for.
+/// Plans equal steps from now to the next stop, at most as long as is stable or requested.
 void Simulation::plan() {
   const std::int64_t step = _solver->clock().step;
   const double begin = time();
@@ -90,7 +90,7 @@ void Simulation::plan() {
   _stop_step = step;
   if (_stop_time <= begin) return;
   const double longest = _scene.time.dt ? *_scene.time.dt : _scene.time.safety * stable_dt();
-  // Round-off of a quotient that should be whole must not add a step.
+  // Round-off of an integer quotient must not add a step.
   const double steps = std::max(1.0, std::ceil((_stop_time - begin) / longest * (1.0 - 1e-12)));
   if (!(steps <= most_steps))
     throw Failure(ExitCode::numerical_failure,
@@ -175,14 +175,14 @@ void Simulation::round_trip() {
 /// poll asked for the end before all steps were taken.
 bool Simulation::take_steps(std::int64_t steps, const framework::Poll& poll) {
   while (steps > 0) {
-    const std::int64_t count = std::min(steps, _settings.seed_mode ? 1 : _batch);
+    const std::int64_t count = std::min(steps, _settings.baseline ? 1 : _batch);
     const Stopwatch stopwatch;
     const bool advanced = _solver->advance(count);
     _failure = _solver->failure();
     const double seconds = stopwatch.seconds();
     _compute_s += seconds;
     if (!advanced || _failure) return false;
-    if (_settings.seed_mode) round_trip();
+    if (_settings.baseline) round_trip();
     if (seconds < 0.5 * poll_interval_s && count == _batch) _batch *= 2;
     if (seconds > poll_interval_s) _batch = std::max<std::int64_t>(1, _batch / 2);
     steps -= count;
@@ -220,7 +220,7 @@ bool Simulation::plan_next_interval() {
   return _too_long->empty();
 }
 
-/// Repeats the steps before `lost`, which were good, from the checkpoint that the solver went back to.
+/// Repeats the valid steps before `lost` from the checkpoint that the solver restored.
 void Simulation::return_to_last_good(std::int64_t lost) {
   round_trip();  // an upload clears the failure
   _solver->advance(lost - 1 - _solver->clock().step);
@@ -248,7 +248,7 @@ std::string Simulation::failure_text(bool restart_written) {
 }
 
 void Simulation::describe(run::ResultDocument& result) {
-  result.driver = _settings.seed_mode ? "seed" : _solver->driver();
+  result.driver = _settings.baseline ? "seed" : _solver->driver();
   result.dt_min = _dt_min;
   result.dt_max = _dt_max;
   result.timing.compute_s = _compute_s;

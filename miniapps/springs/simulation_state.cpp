@@ -46,7 +46,7 @@ struct FieldValues {
 
 double Simulation::time() const {
   const fabric::Clock now = _solver->clock();
-  // At a stop the time is that stop to the bit.
+  // At a stop the time equals that stop bit for bit.
   return now.step == _stop_step ? _stop_time : now.time();
 }
 
@@ -103,14 +103,14 @@ void Simulation::write_mesh(run::FieldsWriter& fields) const {
                   source_of(mesh.triangles));
   fields.add_mesh({"edges", {edges.size(), 2}, "1", "edge", "vertices of every edge and line"},
                   source_of(edges));
-  // Edges do not tell which of them are strings.
+  // The dataset `edges` does not distinguish strings.
   fields.add_mesh({"strings",
                    {mesh.lines.size(), 2},
                    "1",
                    "edge",
                    "vertices of every piece of a string, those that reinforce edges of cloth alone last"},
                   source_of(mesh.lines));
-  // Last: with it fields.xdmf is complete.
+  // Add `vertices` last: it completes fields.xdmf.
   fields.add_mesh({"vertices", {mesh.rest.size(), 3}, "m", "vertex", "vertices at rest"},
                   [&mesh](std::uint64_t first, std::span<double> values) {
                     const auto from = numbers(mesh.rest).subspan(first, values.size());

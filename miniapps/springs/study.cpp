@@ -13,7 +13,7 @@ namespace {
 constexpr study::Repeats repeats{5, 1.0};
 constexpr int samples_by_default = 100;
 
-/// Writes no fields; its steps meet the times of its samples.
+/// Copy of a scene without fields, whose steps meet the sample times.
 SpringsScene silent(SpringsScene scene) {
   Output& output = scene.output;
   output.fields.clear();

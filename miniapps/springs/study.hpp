@@ -27,7 +27,7 @@ class ScratchDirectory {
 
 /// Runs `scene` until `repeats` is satisfied. `errors` and `checks` are those of the scene's [verify];
 /// `series` holds `time` (s), `kinetic` and `elastic` (J), `length` of strings (m) and `area` of cloth (m^2).
-/// Throws nothing of a failed run, which the result describes.
+/// A failed run is recorded in `code` and `message`.
 framework::RepeatedRun run_repeatedly(const SpringsScene& scene, device::Backend backend,
                                       const study::Repeats& repeats, ScratchDirectory& scratch);
 

@@ -86,7 +86,7 @@ TEST(ResultDocument, KeepsValuesExactly) {
   EXPECT_EQ(json["ledger"]["h2d_bytes"], 7);
 }
 
-TEST(ResultDocument, WritesWhatIsNotFiniteAsNull) {
+TEST(ResultDocument, WritesNonFiniteNumbersAsNull) {
   ResultDocument result;
   result.dt_max = std::numeric_limits<double>::infinity();
   result.errors["l1_density"] = std::nan("");
@@ -95,7 +95,7 @@ TEST(ResultDocument, WritesWhatIsNotFiniteAsNull) {
   EXPECT_TRUE(json["errors"]["l1_density"].is_null());
 }
 
-TEST(ResultDocument, SurvivesBytesThatAreNoText) {
+TEST(ResultDocument, ReplacesInvalidUtf8) {
   ResultDocument result;
   result.message = "file '\xff\xfe\"' is not there";
   EXPECT_NE(Json::parse(to_json(result))["message"].get<std::string>().find("is not there"),
@@ -122,7 +122,7 @@ TEST(ResultDocument, NamesTheStatusOfEveryExitCode) {
   }
 }
 
-TEST(ResultDocument, ChecksPassUpToTheirBar) {
+TEST(ResultDocument, ChecksPassUpToTheirTolerance) {
   ResultDocument result;
   EXPECT_TRUE(result.add_check("at the tolerance", -2.0, 2.0));
   EXPECT_EQ(result.failed_check(), "");
@@ -131,7 +131,7 @@ TEST(ResultDocument, ChecksPassUpToTheirBar) {
   EXPECT_EQ(result.failed_check(), "above is 2.5, above its tolerance 2");
 }
 
-TEST(ResultDocument, KnowsItsBuildAndIsWrittenWithTheMemoryPeak) {
+TEST(ResultDocument, HoldsBuildFactsAndPeakMemory) {
   const test::TemporaryDirectory directory;
   write_result(directory / "result.json", new_result("drogue-gas", "sod"));
   const Json json = Json::parse(test::content(directory / "result.json"));
