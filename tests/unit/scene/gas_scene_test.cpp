@@ -134,7 +134,7 @@ TEST(GasScene, CompletesTimesFromFieldsAndFieldsFromTimes) {
 }
 
 TEST(GasScene, SeedModeSelectsTheSchemeOfShi) {
-  const GasScene scene = read_text(least, {"scheme.weno_power=2"}, SchemeSource::dissertation);
+  const GasScene scene = read_text(least, {"scheme.weno_power=2"}, SchemeSource::baseline);
   EXPECT_EQ(scene.parameters.weno, gas::Weno::js);
   EXPECT_EQ(scene.parameters.splitting, gas::Splitting::lf_global);
   EXPECT_EQ(scene.parameters.mean, gas::Mean::conserved);
