@@ -40,14 +40,14 @@ const Choices<gas::Driver> driver_choices = {{"auto", gas::Driver::automatic},
 const Choices<Exact> exact_choices = {
     {"riemann", Exact::riemann}, {"advection", Exact::advection}, {"reference", Exact::reference}};
 
-/// A value whose 0, or first choice, stands for "not given".
+/// Treats 0, or the first choice, as an absent value.
 template <class T>
 Codec zero_is_unset(Codec codec, const T& value) {
   codec.print = [print = codec.print, &value] { return value != T{} ? print() : std::nullopt; };
   return codec;
 }
 
-/// What a run and the finer run it is compared with have in common.
+/// Declares the scheme keys that a run shares with its finer reference run.
 void declare_weights(Table& table, gas::Parameters& scheme) {
   table.value("weno", scene::choice_codec(scheme.weno, weno_choices),
               "Nonlinear weights of the reconstruction");
@@ -141,21 +141,8 @@ void declare_output(Table& table, Output& output) {
                           .value("fields", scene::names_codec(output.fields, {"rho", "u", "p"}),
                                  "Fields written to fields.h5")
                           .default_text("all three where times are given, else none");
-  table.value("times", scene::reals_codec(output.times, 0, true), "Times at which fields are written")
-      .unit("s")
-      .at_least(0.0)
-      .default_text("the end time where fields are given")
-      .when(
-          [&output, &fields] { return !output.fields.empty() || (!fields.given() && !output.times.empty()); },
-          "with fields", "fields");
-  table
-      .value("history_every", scene::integer_codec(output.history_every),
-             "Steps between rows of history.csv; 0: none")
-      .range(0, 1e9);
-  table
-      .value("restart_every", scene::integer_codec(output.restart_every),
-             "Steps between restart files; 0: none")
-      .range(0, 1e9);
+  framework::declare_output_times(table, output, fields);
+  framework::declare_output_intervals(table, output);
 }
 
 void declare_verify(Table& table, Verify& verify) {
@@ -210,8 +197,7 @@ void declare_verify(Table& table, Verify& verify) {
 
 void declare_gas_scene(Table& root, GasScene& scene) {
   gas::Parameters& parameters = scene.parameters;
-  root.value("app", scene::fixed_codec("gas"), "The program the scene is for").required().decisive();
-  root.value("description", scene::text_codec(scene.description), "A sentence for --list-scenes");
+  framework::declare_app(root, "gas", scene.description);
   root.table(
           "gas",
           [&](Table& table) {

@@ -32,6 +32,7 @@ LAYERS = (
     Layer("kernels/flow/halo", ("kernels/",), (FRONT_END, FILES)),
     Layer("kernels/linear/", ("kernels/",), (FRONT_END, FILES)),
     Layer("kernels/", ("kernels/",), (FRONT_END, FILES, MPI)),
+    Layer("miniapps/framework/", ("miniapps/framework/", "kernels/device/", "common/"), (KOKKOS, r"cuda", FRONT_END)),
     Layer("perf/", ("perf/", "kernels/", "common/", "miniapps/"), ()),
 )
 
@@ -44,7 +45,7 @@ def layer_of(path):
     parts = path.split("/")
     if parts[0] == "miniapps" and len(parts) > 2:
         app = f"miniapps/{parts[1]}/"
-        return Layer(app, (app, "kernels/", "common/"), (KOKKOS, r"cuda"))
+        return Layer(app, (app, "miniapps/framework/", "kernels/", "common/"), (KOKKOS, r"cuda"))
     return None
 
 

@@ -81,6 +81,14 @@ class EachRuleCatchesItsBreach(unittest.TestCase):
         self.assert_caught("miniapps/gas/x.cpp", '"miniapps/springs/scene.hpp"', "may only use")
         self.assert_caught("miniapps/gas/x.cpp", "<Kokkos_Core.hpp>", "does without")
 
+    def test_framework(self):
+        path = "miniapps/framework/x.cpp"
+        self.assert_caught(path, '"kernels/gas/solver.hpp"', "may only use")
+        self.assert_caught(path, '"miniapps/gas/scene.hpp"', "may only use")
+        self.assert_caught(path, "<Kokkos_Core.hpp>", "does without")
+        for app in ("gas", "springs"):
+            self.assertEqual([], layers.violations(f"miniapps/{app}/x.cpp", '#include "miniapps/framework/simulation.hpp"\n'))
+
     def test_own_header_first(self):
         files = {"common/a.cpp", "common/a.hpp", "common/b.cpp"}
         own, other = '#include "common/a.hpp"\n', "#include <vector>\n"

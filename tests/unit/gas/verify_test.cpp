@@ -6,9 +6,10 @@
 #include <set>
 
 #include "kernels/device/runtime.hpp"
+#include "miniapps/framework/run_loop.hpp"
 #include "miniapps/gas/simulation.hpp"
 
-// Every check of a scene fails for a wrong state: the tests change one cell of a finished run.
+// Every check of a scene must fail for an invalid state: the tests change one cell of a finished run.
 
 namespace drogue::gas_app {
 namespace {
@@ -23,18 +24,19 @@ class GasVerify : public ::testing::Test {
 };
 std::unique_ptr<device::Runtime> GasVerify::runtime;
 
-/// Names of the failed and of the passed checks.
+/// Names of failed and passed checks.
 struct Verdict {
   std::set<std::string> failed, passed;
 };
 
-/// Finished run of a scene; every verdict refers to its present state.
+/// Finished run of a scene.
 class FinishedRun {
  public:
   FinishedRun(const std::string& name, const std::vector<std::string>& sets)
       : _scene(read_gas_scene(shipped + name + ".toml", sets)),
-        _simulation(_scene, {device::Backend::serial, false, true, {}}) {
-    EXPECT_EQ(_simulation.run(nullptr, _result), ExitCode::ok);
+        _simulation(_scene, {device::Backend::serial, false, true}) {
+    _simulation.start();
+    EXPECT_EQ(framework::run_to_end(_simulation, {{}, true, true, {}}, _result), ExitCode::ok);
   }
 
   Verdict verify() {
@@ -48,7 +50,7 @@ class FinishedRun {
     return verdict;
   }
 
-  /// Verdict with `change(rho, m, E)` applied to one cell. Restores the cell afterwards.
+  /// Verdict with `change(rho, m, E)` applied to one cell, which is restored afterwards.
   template <class Change>
   Verdict verify_with(std::int64_t cell, const Change& change) {
     std::array<std::vector<double>, 3> u = {std::vector<double>(1), std::vector<double>(1),
@@ -70,7 +72,7 @@ class FinishedRun {
   Simulation _simulation;
 };
 
-/// Sod's tube with a tolerance 1 % above each of its nine errors, and its conservation.
+/// Sod's tube with tolerances 1 % above its nine errors, and its conservation.
 FinishedRun strict_sod() {
   std::vector<std::string> sets = {"output.fields=[]"};
   FinishedRun run("sod", sets);
@@ -86,7 +88,7 @@ TEST_F(GasVerify, DetectsAnErrorInOneCell) {
   EXPECT_EQ(honest.failed, std::set<std::string>());
   EXPECT_EQ(honest.passed.size(), 10U);
   for (const std::int64_t cell : {0, 77, 199}) {
-    // Changes the density only; velocity and pressure are kept.
+    // Density alone: velocity and pressure are kept.
     const Verdict density = run.verify_with(cell, [](double& rho, double& m, double& e) {
       const double u = m / rho;
       e += 0.5 * 0.9 * m * u;
@@ -113,7 +115,7 @@ TEST_F(GasVerify, DetectsAnErrorInOneCell) {
   EXPECT_EQ(run.verify().failed, std::set<std::string>()) << "the state is what it was";
 }
 
-TEST_F(GasVerify, ConservationDetectsAChangeInTheTwelfthDigit) {
+TEST_F(GasVerify, ConservationDetectsRelativeChangesOf1e12) {
   FinishedRun run = strict_sod();
   // The tolerance is 1e-12 of the total, and one of 200 cells is changed.
   const auto fails = [&](auto&& change) {
@@ -125,7 +127,7 @@ TEST_F(GasVerify, ConservationDetectsAChangeInTheTwelfthDigit) {
   EXPECT_FALSE(fails([](double& rho, double&, double&) { rho *= 1.0 + 1e-15; }));
 }
 
-TEST_F(GasVerify, NaNFailsEveryDependentCheck) {
+TEST_F(GasVerify, NaNFailsEveryAffectedCheck) {
   FinishedRun run = strict_sod();
   for (const std::int64_t cell : {0, 77, 199})
     for (int k = 0; k < 3; ++k) {
@@ -133,7 +135,7 @@ TEST_F(GasVerify, NaNFailsEveryDependentCheck) {
         (k == 0 ? rho : k == 1 ? m : e) = std::numeric_limits<double>::quiet_NaN();
       });
       EXPECT_TRUE(verdict.failed.count("conservation")) << k;
-      // Density depends on rho alone, velocity on density and momentum, pressure on all three.
+      // Density stands alone, velocity needs density and momentum, pressure all three.
       for (const std::string norm : {"l1_", "l2_", "linf_"}) {
         EXPECT_EQ(verdict.failed.count(norm + "density"), k == 0 ? 1U : 0U);
         EXPECT_EQ(verdict.failed.count(norm + "velocity"), k <= 1 ? 1U : 0U);
@@ -142,7 +144,7 @@ TEST_F(GasVerify, NaNFailsEveryDependentCheck) {
     }
 }
 
-TEST_F(GasVerify, DetectsAWrongDensityPeak) {
+TEST_F(GasVerify, ChecksTheDensityPeak) {
   FinishedRun run("sedov",
                   {"mesh.cells=51", "output.fields=[]", "verify.max_density={value=4.22,tolerance=0.1}"});
   const Verdict honest = run.verify();
@@ -156,7 +158,7 @@ TEST_F(GasVerify, DetectsAWrongDensityPeak) {
   EXPECT_FALSE(fails(2, 1.5));
 }
 
-TEST_F(GasVerify, ReferenceRunsDetectErrorsLikeExactSolutions) {
+TEST_F(GasVerify, VerifiesAgainstAReferenceRun) {
   FinishedRun run("shu-osher", {"mesh.cells=100", "verify.reference.cells=400", "output.fields=[]",
                                 "verify.l1_density=2"});
   EXPECT_EQ(run.verify().failed, std::set<std::string>());

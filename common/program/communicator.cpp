@@ -1,4 +1,4 @@
-#include "common/program/ranks.hpp"
+#include "common/program/communicator.hpp"
 
 #include <mpi.h>
 
@@ -20,9 +20,9 @@ bool is_done(MPI_Request& request) {
   return done != 0;
 }
 
-/// MPI waits by turning; a rank that waits for seconds must leave its core to others.
+/// Waits with sleeps: MPI would spin, and a rank that waits for seconds must leave its core to others.
 void finish(MPI_Request& request) {
-  for (Pause pause; !is_done(request);) pause.wait();
+  for (Backoff pause; !is_done(request);) pause.wait();
 }
 
 std::string of_rank(const std::string& sentence, int rank) {
@@ -31,89 +31,89 @@ std::string of_rank(const std::string& sentence, int rank) {
 
 }  // namespace
 
-struct Ranks::Transfer {
+struct Communicator::Transfer {
   std::string bytes;
   MPI_Request request = MPI_REQUEST_NULL;
 };
 
-Ranks::Ranks() {
+Communicator::Communicator() {
   const LaunchedRank launched = launched_rank();
   if (launched.ranks == 1) return;
   int threads = MPI_THREAD_SINGLE;
   MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &threads);
   MPI_Comm_rank(MPI_COMM_WORLD, &_rank);
-  MPI_Comm_size(MPI_COMM_WORLD, &_count);
-  const bool complete = _count == launched.ranks;
+  MPI_Comm_size(MPI_COMM_WORLD, &_size);
+  const bool complete = _size == launched.ranks;
   if (complete && threads >= MPI_THREAD_SERIALIZED) {
     MPI_Comm host = MPI_COMM_NULL;
     MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &host);
-    MPI_Comm_size(host, &_of_host);
+    MPI_Comm_size(host, &_ranks_on_host);
     MPI_Comm_free(&host);
     return;
   }
   MPI_Finalize();
   if (!complete)
     throw Failure(ExitCode::usage, "the launcher started " + std::to_string(launched.ranks) +
-                                       " processes, of which MPI finds " + std::to_string(_count) +
+                                       " processes, of which MPI finds " + std::to_string(_size) +
                                        ": use the mpirun of the MPI that --version names");
   throw Failure(ExitCode::usage, "this MPI does not serve threads: start the program without mpirun");
 }
 
-Ranks::~Ranks() {
-  if (_count == 1) return;
+Communicator::~Communicator() {
+  if (_size == 1) return;
   wait_until_sent();
-  for (const auto& [sender, receiving] : _receivings) finish(receiving->request);
+  for (const auto& [sender, receiving] : _receives) finish(receiving->request);
   MPI_Finalize();
 }
 
-void Ranks::send(int to, int tag, std::string bytes) {
-  forget_sent();
-  Transfer& sending = *_sendings.emplace_back(std::make_unique<Transfer>());
+void Communicator::send(int to, int tag, std::string bytes) {
+  release_sent();
+  Transfer& sending = *_sends.emplace_back(std::make_unique<Transfer>());
   sending.bytes = std::move(bytes);
   MPI_Isend(sending.bytes.data(), static_cast<int>(sending.bytes.size()), MPI_BYTE, to, tag, MPI_COMM_WORLD,
             &sending.request);
 }
 
-void Ranks::forget_sent() {
-  _sendings.remove_if([](const std::unique_ptr<Transfer>& sending) { return is_done(sending->request); });
+void Communicator::release_sent() {
+  _sends.remove_if([](const std::unique_ptr<Transfer>& sending) { return is_done(sending->request); });
 }
 
-void Ranks::wait_until_sent() {
-  for (const std::unique_ptr<Transfer>& sending : _sendings) finish(sending->request);
-  _sendings.clear();
+void Communicator::wait_until_sent() {
+  for (const std::unique_ptr<Transfer>& sending : _sends) finish(sending->request);
+  _sends.clear();
 }
 
-bool Ranks::has_message(int from, int tag) {
-  if (_receivings.contains({from, tag})) return true;
+bool Communicator::has_message(int from, int tag) {
+  if (_receives.contains({from, tag})) return true;
   int there = 0;
   MPI_Iprobe(from, tag, MPI_COMM_WORLD, &there, MPI_STATUS_IGNORE);
   return there != 0;
 }
 
-std::optional<std::string> Ranks::receive(int from, int tag) {
-  // Large messages move only while both sides ask for them.
-  forget_sent();
-  auto at = _receivings.find({from, tag});
-  if (at == _receivings.end()) {
+std::optional<std::string> Communicator::receive(int from, int tag) {
+  // MPI makes progress on large messages only while both sides call it.
+  release_sent();
+  auto at = _receives.find({from, tag});
+  if (at == _receives.end()) {
     int there = 0, count = 0;
     MPI_Status status;
     MPI_Iprobe(from, tag, MPI_COMM_WORLD, &there, &status);
     if (there == 0) return std::nullopt;
     MPI_Get_count(&status, MPI_BYTE, &count);
-    at = _receivings.emplace(std::pair(from, tag), std::make_unique<Transfer>()).first;
+    at = _receives.emplace(std::pair(from, tag), std::make_unique<Transfer>()).first;
     Transfer& receiving = *at->second;
     receiving.bytes.resize(static_cast<std::size_t>(count));
     MPI_Irecv(receiving.bytes.data(), count, MPI_BYTE, from, tag, MPI_COMM_WORLD, &receiving.request);
   }
-  // What has been announced may never come: its sender may be killed.
+  // The rest of an announced message may never arrive: its sender may be killed.
   if (!is_done(at->second->request)) return std::nullopt;
   std::string bytes = std::move(at->second->bytes);
-  _receivings.erase(at);
+  _receives.erase(at);
   return bytes;
 }
 
-std::string Ranks::from_first(std::string bytes) {
-  if (_count == 1) return bytes;
+std::string Communicator::broadcast(std::string bytes) {
+  if (_size == 1) return bytes;
   std::uint64_t size = bytes.size();
   MPI_Request request;
   MPI_Ibcast(&size, 1, MPI_UINT64_T, 0, MPI_COMM_WORLD, &request);
@@ -124,29 +124,29 @@ std::string Ranks::from_first(std::string bytes) {
   return bytes;
 }
 
-void Ranks::together(const std::function<void()>& act) {
-  if (_count == 1) return act();
+void Communicator::run_collectively(const std::function<void()>& action) {
+  if (_size == 1) return action();
   std::optional<Failure> mine;
   try {
-    act();
+    action();
   } catch (...) {
     mine = current_failure();
   }
   constexpr int fine = -1;
   const int code = mine ? static_cast<int>(mine->code()) : fine;
-  std::vector<int> codes(static_cast<std::size_t>(_count));
+  std::vector<int> codes(static_cast<std::size_t>(_size));
   MPI_Request request;
   MPI_Iallgather(&code, 1, MPI_INT, codes.data(), 1, MPI_INT, MPI_COMM_WORLD, &request);
   finish(request);
   const auto failed = std::find_if(codes.begin(), codes.end(), [](int each) { return each != fine; });
   if (failed == codes.end()) return;
-  // Only the first rank tells it, so only that one needs the words.
+  // Only rank 0 prints the message, so only rank 0 needs its text.
   const int rank = static_cast<int>(failed - codes.begin());
   std::string sentence = mine ? mine->what() : "another rank gave up";
   constexpr int tag = 0;
   if (rank != 0 && _rank == rank) send(0, tag, sentence);
   if (rank != 0 && _rank == 0) {
-    Pause pause;
+    Backoff pause;
     std::optional<std::string> words;
     while (!(words = receive(rank, tag))) pause.wait();
     sentence = *words;
@@ -154,7 +154,7 @@ void Ranks::together(const std::function<void()>& act) {
   throw Failure(static_cast<ExitCode>(*failed), of_rank(sentence, rank));
 }
 
-void Pause::wait() {
+void Backoff::wait() {
   std::this_thread::sleep_for(std::chrono::microseconds(_microseconds));
   _microseconds = std::min(2 * _microseconds, most);
 }
