@@ -99,14 +99,14 @@ class PersistentMember {
 
   /// Leaves three numbers of `epoch` at a place of the board. No order is kept with other memory: each number
   /// carries its epoch.
-  KOKKOS_FUNCTION void post(std::uint64_t epoch, std::size_t place, const HaloValue& numbers) const {
+  KOKKOS_FUNCTION void put(std::uint64_t epoch, std::size_t place, const HaloValue& numbers) const {
     for (std::size_t k = 0; k < 3; ++k) store(row(epoch, k) + place, numbers.value[k], epoch);
   }
 
   /// The numbers at a place of the board, once those of `epoch` are there. Two boards are enough where who
   /// posts the next epoch but one has heard that this one is read: from all (`await_largest`), or from all
   /// who read its places.
-  [[nodiscard]] KOKKOS_FUNCTION HaloValue collect(std::uint64_t epoch, std::size_t place) const {
+  [[nodiscard]] KOKKOS_FUNCTION HaloValue get(std::uint64_t epoch, std::size_t place) const {
     HaloValue numbers{};
     KOKKOS_IF_ON_DEVICE((bool all = false; while (!all) {
       all = true;

@@ -42,12 +42,12 @@ class EmulatedGrid {
       return place;
     }
 
-    void post(std::uint64_t epoch, std::size_t place, const device::HaloValue& numbers) const {
+    void put(std::uint64_t epoch, std::size_t place, const device::HaloValue& numbers) const {
       Place& at = _grid.at(epoch, place);
       for (std::size_t k = 0; k < 3; ++k) at.value[k] = numbers.value[k];
       at.epoch = epoch;
     }
-    [[nodiscard]] device::HaloValue collect(std::uint64_t epoch, std::size_t place) const {
+    [[nodiscard]] device::HaloValue get(std::uint64_t epoch, std::size_t place) const {
       const Place& at = _grid.at(epoch, place);
       while (at.epoch < epoch) std::this_thread::yield();
       const device::HaloValue numbers{{at.value[0], at.value[1], at.value[2]}};

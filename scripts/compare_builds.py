@@ -1,0 +1,121 @@
+#!/usr/bin/env python3
+"""Compares two builds of the programs: the bits of their results, and their speed in alternating runs.
+
+    scripts/compare_builds.py OLD NEW [--backend serial] [--only REGEX]        OLD, NEW: folders of programs, such as build/exact/bin
+    scripts/compare_builds.py OLD NEW --speed FILTER [--rounds 5]
+
+Without --speed every shipped scene and batch runs with both builds (preset `exact`, else fused operations differ with the
+compiler's choices) and datasets, histories and prices are compared byte for byte; needs h5py. With --speed `drogue-perf run
+--filter FILTER` of both builds runs in turns, and the medians over all samples are compared. The exit code is 1 if a result
+differs, or a case is more than 2 % slower.
+"""
+
+import argparse
+import json
+import pathlib
+import re
+import statistics
+import subprocess
+import sys
+import tempfile
+
+from recording import differing, run, scenes
+
+BATCHES = {
+    "example": ["price", "example", "--greeks"],
+    "example-128x32": ["price", "example", "--mesh", "128", "--steps", "32"],
+    "example-1e-5": ["price", "example", "--tolerance", "1e-5"],
+    "example-cos": ["price", "example", "--method", "cos"],
+    "example-baseline": ["price", "example", "--method", "seed", "--mesh", "128", "--steps", "32"],
+    "hard_cases": ["price", "hard_cases"],
+    "example_surface": ["surface", "example_surface", "--strikes", "60:140:9", "--maturities", "0.25,1"],
+}
+SLOWER = 1.02
+
+
+def scene_difference(programs, scene, backend, work):
+    """Names of the datasets that differ between the runs of one scene, or why a run cannot be compared."""
+    folders = [work / f"{scene}-{side}" for side in ("old", "new")]
+    results = [run(program, scene, backend, folder) for program, folder in zip(programs, folders, strict=True)]
+    codes = [result["exit_code"] for result in results]
+    if codes[0] != codes[1]:
+        return [f"exit codes {codes}: {results[1]['message']}"]
+    different = differing(*folders) if (folders[0] / "fields.h5").exists() else []
+    histories = [(folder / "history.csv").read_bytes() for folder in folders if (folder / "history.csv").exists()]
+    return different + (["history.csv"] if len(set(histories)) > 1 else [])
+
+
+def batch_difference(programs, words, backend, work):
+    """As `scene_difference`, for a batch of options."""
+    prices = []
+    for side, program in zip(("old", "new"), programs, strict=True):
+        file = work / f"{side}.csv"
+        file.unlink(missing_ok=True)
+        subprocess.run([program, *words, "--backend", backend, "--out", file], capture_output=True, check=False)
+        prices.append(file.read_bytes() if file.exists() else None)
+    return [] if prices[0] is not None and prices[0] == prices[1] else ["prices"]
+
+
+def compare_bits(old, new, backend, only):
+    """Prints a line for every scene and batch; the number of those that differ."""
+    count = 0
+    with tempfile.TemporaryDirectory() as folder:
+        work = pathlib.Path(folder)
+        for name in ("drogue-gas", "drogue-springs", "drogue-options"):
+            programs = [old / name, new / name]
+            if name == "drogue-options":
+                cases = {batch: (batch_difference, words) for batch, words in BATCHES.items()}
+            else:
+                # The scenes that NAME-full repeats on a mesh for GPUs run as NAME.
+                cases = {s: (scene_difference, s) for s in scenes(programs[1]) if not s.endswith("-full")}
+            for case, (difference, argument) in cases.items():
+                if not re.search(only, f"{name}/{case}"):
+                    continue
+                different = difference(programs, argument, backend, work)
+                print(f"{name} {case}: {'different: ' + ', '.join(different[:5]) if different else 'the same bits'}", flush=True)
+                count += bool(different)
+    return count
+
+
+def compare_speed(old, new, pattern, rounds):
+    """Prints old and new medians of every case; the number of cases that got slower by more than 2 %."""
+    samples = {}
+    with tempfile.TemporaryDirectory() as folder:
+        for turn in range(rounds):
+            for side, programs in (("old", old), ("new", new)) if turn % 2 == 0 else (("new", new), ("old", old)):
+                file = pathlib.Path(folder) / "records.jsonl"
+                file.unlink(missing_ok=True)
+                subprocess.run([programs / "drogue-perf", "run", "--filter", pattern, "--out", file], check=True, capture_output=True)
+                for line in file.read_text().splitlines():
+                    record = json.loads(line)
+                    if record["check"] == "passed":
+                        samples.setdefault(record["case"], {"old": [], "new": []})[side].extend(record["samples"])
+    slower = 0
+    for case, sides in samples.items():
+        if not sides["old"] or not sides["new"]:
+            print(f"{case}: only in one of the builds")
+            continue
+        before, after = statistics.median(sides["old"]), statistics.median(sides["new"])
+        best = min(sides["new"]) / min(sides["old"])
+        slower += after > SLOWER * before
+        print(f"{case}: {before:.4g} s old, {after:.4g} s new, ratio of medians {after / before:.3f}, of minima {best:.3f}")
+    return slower
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("old", type=pathlib.Path)
+    parser.add_argument("new", type=pathlib.Path)
+    parser.add_argument("--backend", default="serial")
+    parser.add_argument("--only", default="", help="regular expression for PROGRAM/SCENE")
+    parser.add_argument("--speed", metavar="FILTER", help="compare the speed of these cases of drogue-perf instead")
+    parser.add_argument("--rounds", type=int, default=5)
+    arguments = parser.parse_args()
+    old, new = arguments.old.resolve(), arguments.new.resolve()
+    if arguments.speed is not None:
+        return 1 if compare_speed(old, new, arguments.speed, arguments.rounds) else 0
+    return 1 if compare_bits(old, new, arguments.backend, arguments.only) else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
