@@ -91,7 +91,7 @@ Metrics::Group& Metrics::at(const std::string& group) {
   return found == _groups.end() ? _groups.emplace_back(Group{group, {}}) : *found;
 }
 
-void Metrics::add_group(const std::string& group) { at(group); }
+void Metrics::add_group(const std::string& group) { (void)at(group); }
 
 void Metrics::set(const std::string& group, const std::string& name, Value value) {
   auto& values = at(group).values;
