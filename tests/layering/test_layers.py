@@ -70,7 +70,7 @@ class EachRuleCatchesItsBreach(unittest.TestCase):
         self.assert_caught("kernels/gas/x.hpp", '"kernels/reference/gas/weno.hpp"', "independent")
 
     def test_layer_without_folder(self):
-        files = ["common/a.hpp", "kernels/gas/a.hpp", "kernels/reference/gas/a.hpp"]
+        files = ["common/a.hpp", "kernels/gas/a.hpp", "kernels/reference/gas/a.hpp", "miniapps/framework/a.hpp"]
         self.assertEqual(["perf/"], layers.without_folder(files))
 
     def test_miniapps(self):
