@@ -1,4 +1,4 @@
-# Installs the kernels as the CMake package Drogue, and the programs.
+# Installs the CMake package Drogue, with the kernels and its component framework, and the programs.
 
 include(CMakePackageConfigHelpers)
 
@@ -8,6 +8,16 @@ install(TARGETS drogue_kernels drogue_arithmetic EXPORT DrogueTargets
 set_target_properties(drogue_kernels PROPERTIES EXPORT_NAME kernels)
 set_target_properties(drogue_arithmetic PROPERTIES EXPORT_NAME arithmetic)
 install(EXPORT DrogueTargets NAMESPACE Drogue:: DESTINATION "${_package}")
+# The component for mini-apps outside of this repository.
+install(TARGETS drogue_common drogue_framework EXPORT DrogueFrameworkTargets
+  ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}" LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}")
+set_target_properties(drogue_common PROPERTIES EXPORT_NAME common)
+set_target_properties(drogue_framework PROPERTIES EXPORT_NAME framework)
+install(EXPORT DrogueFrameworkTargets NAMESPACE Drogue:: DESTINATION "${_package}")
+install(DIRECTORY "${PROJECT_SOURCE_DIR}/common" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/drogue"
+  FILES_MATCHING PATTERN "*.hpp")
+install(DIRECTORY "${PROJECT_SOURCE_DIR}/miniapps/framework" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/drogue/miniapps"
+  FILES_MATCHING PATTERN "*.hpp")
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/kernels" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/drogue"
   FILES_MATCHING PATTERN "*.hpp" PATTERN "reference" EXCLUDE)
 
@@ -16,10 +26,6 @@ configure_package_config_file("${PROJECT_SOURCE_DIR}/cmake/DrogueConfig.cmake.in
 write_basic_package_version_file("${PROJECT_BINARY_DIR}/DrogueConfigVersion.cmake" COMPATIBILITY SameMinorVersion)
 install(FILES "${PROJECT_BINARY_DIR}/DrogueConfig.cmake" "${PROJECT_BINARY_DIR}/DrogueConfigVersion.cmake"
   DESTINATION "${_package}")
-foreach(_app IN ITEMS gas springs)
-  install(DIRECTORY "${PROJECT_SOURCE_DIR}/miniapps/${_app}/scenes/"
-    DESTINATION "${CMAKE_INSTALL_DATADIR}/drogue/scenes/${_app}" FILES_MATCHING PATTERN "*.toml")
-endforeach()
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/miniapps/options/batches/"
   DESTINATION "${CMAKE_INSTALL_DATADIR}/drogue/batches" FILES_MATCHING PATTERN "*.csv")
 if(DROGUE_CUDA)

@@ -4,7 +4,7 @@
 
 namespace drogue {
 
-/// Facts about this build; every text is fixed when it is compiled.
+/// Facts about this build, fixed at compile time.
 struct BuildInfo {
   std::string_view version;   ///< of the project, "0.1.0"
   std::string_view git;       ///< 12 digits, "-dirty" after them if files were changed; "unknown" without git

@@ -4,9 +4,7 @@
 
 #include "common/program/signals.hpp"
 #include "kernels/reference/gas/muscl_hancock.hpp"
-#include "miniapps/gas/repeated_run.hpp"
-#include "miniapps/gas/scene_folder.hpp"
-#include "miniapps/gas/scheme_names.hpp"
+#include "miniapps/gas/study.hpp"
 #include "perf/solution.hpp"
 
 namespace drogue::perf {
@@ -23,7 +21,7 @@ const std::vector<Problem> problems = {
     {"entropy-wave", 20, 5}, {"sod", 100, 5}, {"leblanc", 100, 5}, {"shu-osher", 100, 5}, {"blast", 100, 5}};
 const std::vector<Problem> quick_problems = {{"entropy-wave", 20, 2}, {"sod", 50, 2}};
 
-constexpr gas_app::Repeats repeats{20, 0.2};
+constexpr study::Repeats repeats{20, 0.2};
 
 std::vector<gas::Parameters> schemes(gas::Parameters p, bool quick) {
   using enum gas::Splitting;
@@ -45,7 +43,8 @@ std::vector<gas::Parameters> schemes(gas::Parameters p, bool quick) {
 }
 
 /// The competitor at CFL 0.8, timed as the solvers are: from the initial state in memory to the end time.
-gas_app::RepeatedRun muscl_hancock_run(const gas_app::GasScene& scene, const gas_app::ExactSolution& exact) {
+framework::RepeatedRun muscl_hancock_run(const gas_app::GasScene& scene,
+                                         const gas_app::ExactSolution& exact) {
   gas::Parameters p = scene.parameters;
   p.cfl = 0.8;
   const gas_app::InitialState initial(scene);
@@ -53,14 +52,19 @@ gas_app::RepeatedRun muscl_hancock_run(const gas_app::GasScene& scene, const gas
     const gas_app::Primitive w = initial(x);
     return reference::Primitive{w.rho, w.u, w.p};
   });
-  gas_app::RepeatedRun runs;
+  framework::RepeatedRun runs;
   while (static_cast<int>(runs.samples.size()) < repeats.most &&
          std::accumulate(runs.samples.begin(), runs.samples.end(), 0.0) < repeats.seconds) {
     reference::GasRun run = start;
     const auto begin = std::chrono::steady_clock::now();
     reference::muscl_hancock(run, p, scene.end_time);
     runs.samples.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
-    if (run.failed) return {{}, 0, {}, 0.0, ExitCode::numerical_failure, "a state is not physical"};
+    if (run.failed) {
+      framework::RepeatedRun failed;
+      failed.code = ExitCode::numerical_failure;
+      failed.message = "a state is not physical";
+      return failed;
+    }
     runs.steps = run.steps;
     runs.errors["l1_density"] = reference::l1_density(run, p, [&](double x) { return exact(x).rho; });
   }
@@ -68,7 +72,7 @@ gas_app::RepeatedRun muscl_hancock_run(const gas_app::GasScene& scene, const gas
 }
 
 Solution gas_solution(const Problem& problem, device::Backend backend, const gas_app::SchemeNames& scheme,
-                      int weno_power, std::int64_t cells, gas_app::RepeatedRun run) {
+                      int weno_power, std::int64_t cells, framework::RepeatedRun run) {
   Solution s;
   s.problem = problem.scene;
   s.backend = backend;
@@ -84,7 +88,7 @@ Solution gas_solution(const Problem& problem, device::Backend backend, const gas
   s.code = run.code;
   s.message = std::move(run.message);
   if (s.code == ExitCode::ok) s.error = run.errors.at("l1_density");
-  s.sound = s.code == ExitCode::ok && std::isfinite(s.error) && run.conservation <= 1e-11;
+  s.sound = s.code == ExitCode::ok && std::isfinite(s.error) && run.others["conservation"] <= 1e-11;
   return s;
 }
 
@@ -109,7 +113,7 @@ bool gas_work_precision(const SolutionsAsked& asked, const SolutionSink& sink) {
         for (const device::Backend backend : backends) {
           gas_app::GasScene point = scene;
           point.parameters = p;
-          gas_app::RepeatedRun run = run_repeatedly(point, backend, exact, repeats);
+          framework::RepeatedRun run = run_repeatedly(point, backend, exact, repeats);
           if (run.code == ExitCode::interrupted || interrupted()) return false;
           sink(gas_solution(problem, backend, gas_app::scheme_names(p), p.weno_power, p.cells,
                             std::move(run)));

@@ -55,7 +55,7 @@ double l1_error(const gas::Parameters& p, gas::Solver& solver) {
   Fields now;
   for (auto& values : now) values.resize(static_cast<std::size_t>(p.cells));
   solver.download(0, {now[0], now[1], now[2]});
-  return l1_error(p, now[0], solver.resume_state().time);
+  return l1_error(p, now[0], solver.restart_state().time);
 }
 
 double tolerance(const gas::Parameters& p) { return 1.0 / static_cast<double>(p.cells); }

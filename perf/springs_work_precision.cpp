@@ -4,8 +4,7 @@
 #include <filesystem>
 
 #include "common/program/signals.hpp"
-#include "miniapps/springs/repeated_run.hpp"
-#include "miniapps/springs/scene_folder.hpp"
+#include "miniapps/springs/study.hpp"
 #include "miniapps/springs/study_points.hpp"
 #include "perf/solution.hpp"
 
@@ -45,7 +44,7 @@ springs_app::SpringsScene silent_scene(springs_app::SpringsScene scene) {
 }
 
 Solution springs_solution(const SpringsProblem& problem, device::Backend backend,
-                          const springs_app::StudyPoint& point, springs_app::RepeatedRun run) {
+                          const springs_app::StudyPoint& point, framework::RepeatedRun run) {
   Solution s;
   s.problem = problem.scene;
   s.backend = backend;
@@ -64,8 +63,8 @@ Solution springs_solution(const SpringsProblem& problem, device::Backend backend
 }  // namespace
 
 bool springs_work_precision(const SolutionsAsked& asked, const SolutionSink& sink) {
-  springs_app::Scratch scratch(std::filesystem::temp_directory_path() /
-                               ("drogue-perf-" + std::to_string(getpid())));
+  springs_app::ScratchDirectory scratch(std::filesystem::temp_directory_path() /
+                                        ("drogue-perf-" + std::to_string(getpid())));
   for (const SpringsProblem& problem : asked.quick ? quick_springs_problems : springs_problems) {
     if (!asked.wants(problem.scene)) continue;
     const auto file = springs_app::scene_folder() / (std::string(problem.scene) + ".toml");
@@ -73,7 +72,7 @@ bool springs_work_precision(const SolutionsAsked& asked, const SolutionSink& sin
       for (const device::Backend backend : asked.backends) {
         const bool host = backend != device::Backend::cuda;
         if (host && point.scene.mesh.rest.size() > problem.most_on_host) continue;
-        springs_app::RepeatedRun run =
+        framework::RepeatedRun run =
             run_repeatedly(silent_scene(point.scene), backend, springs_repeats, scratch);
         if (run.code == ExitCode::interrupted || interrupted()) return false;
         sink(springs_solution(problem, backend, point, std::move(run)));

@@ -16,8 +16,8 @@ inline std::string_view trimmed(std::string_view text) {
   return text;
 }
 
-/// Eight characters, the first of which is the lowest byte: looking at one after the other takes three times
-/// as long.
+/// Loads eight characters, the first into the lowest byte. A loop over single characters takes three times as
+/// long.
 using Word = std::uint64_t;
 static_assert(std::endian::native == std::endian::little);
 
@@ -31,7 +31,7 @@ Word word_at(std::string_view line, std::size_t at) {
   return word;
 }
 
-/// The highest bit of each byte of `word` that is `c`.
+/// Sets the highest bit of each byte of `word` that equals `c`.
 Word places_of(char c, Word word) {
   constexpr Word ones = 0x0101010101010101, low = 0x7f7f7f7f7f7f7f7f;
   const Word zero_there = word ^ (ones * static_cast<unsigned char>(c));

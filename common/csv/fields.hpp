@@ -7,11 +7,11 @@
 
 namespace drogue::csv {
 
-/// The fields of a line (RFC 4180), unquoted, blanks around them taken off.
+/// Fields of a CSV line (RFC 4180): unquoted, without surrounding blanks.
 class Fields {
  public:
-  /// Splits `line`, which has to outlive the fields. Returns what is wrong with it as a clause, or nothing;
-  /// the fields are those before the one that is wrong.
+  /// Splits `line`, which must outlive the fields. Returns the fault as a clause, or an empty text; after a
+  /// fault the fields before it are kept. Does not throw.
   std::string_view split(std::string_view line);
 
   [[nodiscard]] std::size_t size() const { return _values.size(); }
@@ -21,16 +21,16 @@ class Fields {
   std::string_view split_quoted(std::string_view line);
 
   std::vector<std::string_view> _values;
-  std::deque<std::string> _unquoted;  ///< those that held a doubled quote
+  std::deque<std::string> _unquoted;  ///< fields with a doubled quote
 };
 
-/// Whether `c` has no place in a name: it moves a cursor, rings a bell, or ends a string.
+/// True for control characters, which no name may hold.
 [[nodiscard]] bool is_control(char c);
 
-/// Text of a file as a sentence shows it: short, in quotes, on one line.
+/// Short, quoted, single-line form of a text for messages.
 [[nodiscard]] std::string shown(std::string_view text);
 
-/// Appends `text` as a field, quoted where it must be.
+/// Appends `text` as a field, quoted where necessary.
 void append_field(std::string& out, std::string_view text);
 
 }  // namespace drogue::csv

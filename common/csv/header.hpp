@@ -9,17 +9,17 @@
 
 namespace drogue::csv {
 
-/// Failure(invalid_scene): `FILE:LINE: sentence`.
+/// Returns a `Failure` (invalid_scene) `FILE:LINE: sentence`.
 Failure invalid_at(const std::filesystem::path& file, std::int64_t line, const std::string& sentence);
 
-/// The line that names the columns.
+/// Column names of a file.
 struct Header {
   std::int64_t line = 0;
-  std::vector<int> places;  ///< of each name that was asked for, in the lines; -1 for none
+  std::vector<int> places;  ///< column index of each requested name; -1: absent
 };
 
-/// Reads the first line as names of columns. Throws Failure(invalid_scene): no line, a name that is not among
-/// `names` (with the nearest), one twice.
+/// Reads the first line as column names. Throws `Failure` (invalid_scene) for an empty file, for a name that
+/// is not in `names`, with the nearest valid one, and for a repeated name.
 Header read_header(LineReader& reader, const std::vector<std::string>& names);
 
 }  // namespace drogue::csv

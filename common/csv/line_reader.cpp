@@ -25,7 +25,7 @@ bool is_blank(std::string_view text) { return text.find_first_not_of(" \t") == s
 }  // namespace
 
 LineReader::LineReader(std::filesystem::path file) : _file(std::move(file)), _buffer(block) {
-  // What a pipe holds is gone when it has been read; a batch is read twice.
+  // A batch is read twice, which a pipe does not allow.
   _descriptor = open(_file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (_descriptor < 0) {
     if (errno != ENOENT && errno != ENOTDIR) throw run::io_failure("open", _file, errno);
@@ -48,7 +48,7 @@ double LineReader::share() const {
   return _size > 0 ? std::min(1.0, static_cast<double>(_read) / static_cast<double>(_size)) : 1.0;
 }
 
-/// Moves what is unread to the front and reads more behind it; false at the end of the file.
+/// Moves unread bytes to the front and reads more behind them; false at the end of the file.
 bool LineReader::fill() {
   std::memmove(_buffer.data(), _buffer.data() + _begin, _end - _begin);
   _end -= _begin;
@@ -99,7 +99,7 @@ bool LineReader::next_line(Line& line) {
   } else if (!line.too_long) {
     _begin = _end;
   } else {
-    // The next read overwrites what has been given; of a line as long as that nobody needs the words.
+    // The next read overwrites the returned bytes; the text of an overlong line is not needed.
     line.text = {};
     skip_to_line_end();
   }

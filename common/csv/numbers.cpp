@@ -13,8 +13,8 @@ namespace {
 constexpr double powers_of_ten[] = {1e0, 1e1, 1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
                                     1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15};
 
-/// Reads digits with or without a point, at most 15 of them: both they and the power of ten are doubles, so
-/// that the one division rounds as it should (Clinger 1990). False for all other text.
+/// Parses at most 15 digits with or without a point. Digits and power of ten are exact doubles, so one
+/// division rounds correctly (Clinger 1990). Returns false for all other text.
 bool parse_short(std::string_view text, double& value) {
   const bool is_negative = text.starts_with('-');
   if (is_negative) text.remove_prefix(1);
@@ -49,7 +49,7 @@ NumberError parse_number(std::string_view text, double& value) {
   const auto [stopped, error] = std::from_chars(text.data(), end, value);
   if (stopped != end || error == std::errc::invalid_argument) return NumberError::no_number;
   if (error == std::errc::result_out_of_range) {
-    // Too large and too small come as one.
+    // std::from_chars reports overflow and underflow alike.
     value = std::strtod(std::string(text).c_str(), nullptr);
   }
   return std::isfinite(value) ? NumberError::none : NumberError::not_finite;

@@ -5,14 +5,14 @@
 
 namespace drogue::csv {
 
-/// What came of reading a number.
+/// Result of parsing a number.
 enum class NumberError { none, no_number, not_finite };
 
-/// Reads all of `text` as a decimal number. Words for infinity and what a double cannot hold are
-/// `not_finite`; what is too small for a double is 0.
+/// Parses all of `text` as a decimal number. `not_finite`: words for infinity, and overflow. Underflow gives
+/// 0. Does not throw.
 NumberError parse_number(std::string_view text, double& value);
 
-/// Appends the shortest text that reads back as the same number; nothing where there is no number.
+/// Appends the shortest text that reads back as the same double; nothing for NaN.
 void append_number(std::string& out, double value);
 void append_number(std::string& out, int value);
 

@@ -6,7 +6,7 @@
 
 namespace drogue::expression {
 
-/// What is wrong with an expression and where: `position` counts characters from 1.
+/// Error in an expression; `position` counts characters from 1.
 class ExpressionError : public std::runtime_error {
  public:
   ExpressionError(int position, const std::string& sentence)
@@ -18,20 +18,19 @@ class ExpressionError : public std::runtime_error {
   int _position;
 };
 
-/// One step of a postfix program. `name` is "constant" (pushes `value`), a variable (pushes it), an operator
-/// of the grammar, "negate", "select" (c, a, b -> c ? a : b) or a function. min, max, sum and avg are
-/// unfolded to pairs, so every name has one number of operands.
+/// Instruction of a postfix program. `name` is "constant" (pushes `value`), a variable (pushes it), an
+/// operator of the grammar, "negate", "select" (c, a, b -> c ? a : b) or a function. min, max, sum and avg
+/// are unfolded to pairs, so every name has a fixed number of operands.
 struct Instruction {
   std::string name;
   double value = 0.0;
 };
 
-/// Translates muParser's syntax without assignment, strings and lists: numbers, `variables`, pi, the
-/// operators
-/// ?: || && == != < > <= >= + - * / ^ and the functions of `function_names`. Throws ExpressionError.
+/// Compiles muParser syntax without assignment, strings and lists: numbers, `variables`, pi, the operators ?:
+/// || && == != < > <= >= + - * / ^ and the functions of `function_names`. Throws ExpressionError.
 std::vector<Instruction> compile(const std::string& text, const std::vector<std::string>& variables);
 
-/// Every function an expression may call.
+/// Functions that an expression may call.
 const std::vector<std::string>& function_names();
 
 }  // namespace drogue::expression

@@ -7,11 +7,10 @@
 
 namespace drogue::expression {
 
-/// An expression in muParser syntax, evaluated on the host. One copy a thread: a call uses the object's own
-/// scratch.
+/// Expression in muParser syntax, evaluated on the host. Not thread-safe: every thread needs a copy.
 class Expression {
  public:
-  /// Checks `text` against the grammar of compile.hpp; throws ExpressionError.
+  /// Throws ExpressionError if `text` does not fit the grammar of compile.hpp.
   Expression(std::string text, std::vector<std::string> variables);
   Expression(const Expression& other);
   Expression(Expression&& other) noexcept;
@@ -21,7 +20,8 @@ class Expression {
 
   [[nodiscard]] const std::string& text() const noexcept { return _text; }
 
-  /// `values` in the order of the variables. Not finite where the expression is undefined.
+  /// Evaluates the expression; `values` in the order of the variables. Returns a non-finite number where the
+  /// expression is undefined.
   double operator()(std::span<const double> values) const;
 
  private:

@@ -9,9 +9,9 @@ struct Token {
   enum class Kind { number, name, symbol, end };
 
   Kind kind = Kind::end;
-  std::string text;    ///< of a name or symbol
-  double value = 0.0;  ///< of a number
-  int position = 1;    ///< of its first character, counted from 1
+  std::string text;    ///< name or symbol
+  double value = 0.0;  ///< number
+  int position = 1;    ///< first character, counted from 1
 };
 
 /// Splits an expression; the last token is of kind `end`. Throws ExpressionError.

@@ -25,7 +25,7 @@ Failure unwanted_word(const CLI::App& app, const std::string& word) {
   return {ExitCode::usage, "unknown option '" + name + "'; " + scene::suggestion(name, option_names(app))};
 }
 
-/// An unknown option leaves its value behind, too: the option is the fault to name.
+/// The value of an unknown option remains too: report the option.
 void refuse_extras(const CLI::App& app) {
   const std::vector<std::string> extras = app.remaining();
   if (extras.empty()) return;
@@ -49,7 +49,7 @@ std::string parse_command_line(CLI::App& app, const std::vector<std::string>& wo
   app.allow_extras();
   for (CLI::App* subcommand : app.get_subcommands({})) subcommand->allow_extras();
   try {
-    // CLI11 takes its words from the back.
+    // CLI11 expects its arguments in reverse order.
     app.parse(std::vector<std::string>(words.rbegin(), words.rend()));
   } catch (const CLI::CallForHelp&) {
     return app.help();

@@ -6,17 +6,18 @@
 
 namespace drogue {
 
-/// The words of a command line; `--kokkos-*` belong to Kokkos and are handed to it untouched.
+/// Command-line arguments; `--kokkos-*` are passed to Kokkos unchanged.
 struct Arguments {
   std::vector<std::string> program;
   std::vector<std::string> kokkos;
 };
 
-/// Splits argv[1..] in the order given.
+/// Splits argv[1..], in order. Does not throw.
 Arguments split_arguments(int argc, const char* const* argv);
 
-/// Parses `words` into what `app` is bound to. Returns the help text if --help is among them, else nothing.
-/// Throws Failure(usage): an unknown option with the nearest valid one, a missing value, a word too many.
+/// Parses `words` into the variables that `app` is bound to. Returns the help text for --help, otherwise an
+/// empty text. Throws `Failure` (usage): an unknown option, with the nearest valid one, a missing value, or a
+/// surplus argument.
 std::string parse_command_line(CLI::App& app, const std::vector<std::string>& words);
 
 }  // namespace drogue

@@ -17,7 +17,7 @@ enum class ExitCode : int {
   interrupted = 130,
 };
 
-/// A failure the user is told about in one sentence; ends the program with `code()`.
+/// Error that ends the program with exit code `code()`. `what()` is one sentence for the user.
 class Failure : public std::runtime_error {
  public:
   Failure(ExitCode code, const std::string& sentence) : std::runtime_error(sentence), _code(code) {}
@@ -28,7 +28,7 @@ class Failure : public std::runtime_error {
   ExitCode _code;
 };
 
-/// What `make()` gives, whose std::invalid_argument tells of what the user asked for: a usage failure.
+/// Returns `make()`. Converts std::invalid_argument to a `Failure` (usage).
 template <class Make>
 auto made_as_asked(const Make& make) {
   try {

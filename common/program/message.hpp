@@ -10,7 +10,7 @@
 
 namespace drogue {
 
-/// Puts values one behind another into bytes for another process of the same program.
+/// Serializes values for another process of the same program.
 class MessageWriter {
  public:
   template <class Value>
@@ -36,8 +36,8 @@ class MessageWriter {
   std::string _bytes;
 };
 
-/// Takes values out of bytes, which have to outlive it, in the order in which they were put there. Throws
-/// std::out_of_range where there are not as many.
+/// Deserializes values in the order in which they were put. The bytes must outlive the reader. Throws
+/// std::out_of_range behind the end.
 class MessageReader {
  public:
   explicit MessageReader(const std::string& bytes) : _rest(bytes) {}

@@ -31,18 +31,18 @@ void declare(CLI::App& app, MiniAppOptions& options) {
       ->excludes(check);
   app.add_flag("--list-scenes", options.list_scenes, "list the shipped scenes, and end");
   app.add_flag("--quiet", options.quiet, "show no progress and no summary");
-  auto* seed_mode = app.add_flag("--seed-mode", options.seed_mode,
-                                 "run the dissertation's own algorithm and data movement");
+  auto* baseline =
+      app.add_flag("--seed-mode", options.baseline, "run the dissertation's own algorithm and data movement");
   app.add_option("--study", options.study,
                  "run the scene over meshes and schemes, say meshes=100:800 (two meshes: and every doubling "
                  "between them)")
       ->type_name("LISTS")
       ->excludes(restart)
-      ->excludes(seed_mode);
+      ->excludes(baseline);
   app.add_flag("--version", options.version, "print version, backends and libraries, and end");
 }
 
-/// An option given as "", say by a variable of a script that is not set: it must not pass for one not given.
+/// Returns an option with an empty value, say from an unset script variable, which must not count as absent.
 const CLI::Option* empty_value(const CLI::App& app) {
   for (const CLI::Option* option : app.get_options()) {
     for (const std::string& value : option->results()) {

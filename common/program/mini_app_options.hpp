@@ -6,7 +6,7 @@
 
 namespace drogue {
 
-/// What the command line of a mini-app asks for; the defaults are those of an option not given.
+/// Command line of a scene-driven mini-app, with the defaults of absent options.
 struct MiniAppOptions {
   std::string scene;  ///< TOML file or name of a shipped scene; empty only with list_scenes, version, help
   std::string backend = "auto";  ///< auto | serial | openmp | cuda
@@ -19,15 +19,14 @@ struct MiniAppOptions {
   bool list_scenes = false;
   bool overwrite = false;
   bool quiet = false;
-  bool seed_mode = false;
+  bool baseline = false;
   bool version = false;
-  std::string help;                 ///< the text asked for by --help, else empty
+  std::string help;                 ///< text of --help, else empty
   std::vector<std::string> kokkos;  ///< `--kokkos-*`, untouched
 };
 
-/// Reads the command line. `description` is the sentence under which --help lists the options.
-/// Throws Failure(usage): unknown option (with the nearest name), no SCENE, `--set` without `=`, an unknown
-/// backend, options that exclude each other.
+/// Parses the command line. `description` heads the output of --help. Throws `Failure` (usage): unknown
+/// option, with the nearest name, no SCENE, `--set` without `=`, unknown backend, mutually exclusive options.
 MiniAppOptions parse_mini_app_options(const std::string& program, const std::string& description, int argc,
                                       const char* const* argv);
 

@@ -20,7 +20,7 @@ std::optional<int> environment_number(const char* name) {
   return value;
 }
 
-/// Of a launcher whose number of ranks is found in nothing but what it started.
+/// Reads rank and number of ranks from environment variables of a launcher.
 std::optional<LaunchedRank> from_environment(const char* rank_name, const char* ranks_name) {
   const std::optional<int> ranks = environment_number(ranks_name);
   if (!ranks || *ranks < 1) return std::nullopt;

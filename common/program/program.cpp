@@ -16,14 +16,14 @@
 namespace drogue {
 namespace {
 
-/// Libraries append stack traces and further lines to what(); the first line names the fault.
+/// First line of what(): libraries append stack traces.
 std::string first_line(const std::string& text) {
   const std::size_t begin = text.find_first_not_of(" \t\n");
   if (begin == std::string::npos) return "no description";
   return text.substr(begin, text.find('\n', begin) - begin);
 }
 
-/// Where `silent`, all that is written to stdout from here on goes nowhere, until this is destroyed.
+/// Discards stdout for the life of the object if `silent`.
 class Silence {
  public:
   explicit Silence(bool silent) {
@@ -77,11 +77,11 @@ int run_program(const std::string& program, const std::function<ExitCode()>& bod
       const bool located = code == ExitCode::invalid_scene;
       std::fprintf(stderr, "%s%s%s\n", located ? "" : program.c_str(), located ? "" : ": ", failure.what());
     } else {
-      // A launcher ends all ranks as soon as one has failed: the first must have told why by then.
+      // A launcher ends all ranks as soon as one fails: give rank 0 time to print the reason.
       std::this_thread::sleep_for(std::chrono::seconds(1));
     }
   }
-  // Output that never arrived, say of --print-scene into a full disk, must not look like success.
+  // Lost output, say of --print-scene to a full disk, is a failure.
   if (std::fflush(stdout) != 0 && code == ExitCode::ok) {
     std::fprintf(stderr, "%s: cannot write to standard output\n", program.c_str());
     code = ExitCode::io_error;

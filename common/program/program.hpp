@@ -7,16 +7,15 @@
 
 namespace drogue {
 
-/// The exception being handled, as what the user is told. Call it inside a catch block only.
+/// Converts the exception that is being handled; call it in a catch block only.
 ///
-/// A Failure stays itself; a CLI11 error becomes `usage`; lack of memory and everything unforeseen become
-/// `io_error`, the first line of what() kept, so that no program ends with an exit code that is not
-/// documented.
+/// A `Failure` is kept. A CLI11 error becomes `usage`. Lack of memory and all other exceptions become
+/// `io_error` with the first line of what(), so that every program ends with a documented exit code.
 Failure current_failure();
 
-/// Runs `body` and returns the exit code of the process. Whatever `body` throws ends as one sentence on
-/// stderr: `program: sentence`, or for an invalid scene the sentence alone, which starts with FILE:LINE.
-/// Under mpirun only rank 0 prints: what the others write to stdout goes nowhere.
+/// Runs `body` and returns the exit code of the process. Prints an exception as one sentence on stderr:
+/// `program: sentence`, or only the sentence for an invalid scene, which starts with FILE:LINE. Under mpirun
+/// only rank 0 prints; stdout of the other ranks is discarded. Does not throw.
 int run_program(const std::string& program, const std::function<ExitCode()>& body);
 
 }  // namespace drogue

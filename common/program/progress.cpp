@@ -12,7 +12,7 @@ namespace {
 
 constexpr auto interval = std::chrono::milliseconds(100);
 
-/// `0:07`, `12:30`, `3:05:00`; `-` for what is not known or over four days.
+/// Duration as `0:07`, `12:30`, `3:05:00`; `-` if unknown or longer than four days.
 std::string clock_text(double seconds) {
   if (!(seconds >= 0.0) || seconds > 345600.0) return "-";
   const long total = std::lround(seconds);
@@ -54,7 +54,7 @@ ProgressLine::~ProgressLine() { finish(); }
 
 void ProgressLine::update(std::int64_t step, double time, double end_time) {
   if (!_active) return;
-  const Clock::time_point now = Clock::now();
+  const SteadyClock::time_point now = SteadyClock::now();
   if (!_started) {
     _started = true;
     _first_step = step;
@@ -70,14 +70,14 @@ void ProgressLine::update(std::int64_t step, double time, double end_time) {
 
 void ProgressLine::update_rows(std::int64_t rows, double share) {
   if (!_active) return;
-  const Clock::time_point now = Clock::now();
+  const SteadyClock::time_point now = SteadyClock::now();
   if (now - _last < interval) return;
   _last = now;
   show(rows_text(rows, share, std::chrono::duration<double>(now - _start).count()));
 }
 
 void ProgressLine::show(const std::string& text) {
-  // Return to the margin, write, clear what a longer line left behind.
+  // Return to the left margin, write, and clear the rest of a longer line.
   std::fprintf(_stream, "\r%s\x1b[K", text.c_str());
   std::fflush(_stream);
   _shown = true;

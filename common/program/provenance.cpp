@@ -14,7 +14,7 @@ std::string cpu_model() {
   std::ifstream file("/proc/cpuinfo");
   for (std::string line; std::getline(file, line);) {
     const std::size_t colon = line.find(": ");
-    // x86 says `model name`, POWER says `cpu`; ARM says neither.
+    // Keys of /proc/cpuinfo: `model name` on x86, `cpu` on POWER, neither on ARM.
     const bool named = line.starts_with("model name") || line.starts_with("cpu\t");
     if (named && colon != std::string::npos) return line.substr(colon + 2);
   }
@@ -31,7 +31,7 @@ std::string utc_date() {
 }
 
 std::int64_t host_peak_bytes() {
-  // Not getrusage() first: its peak includes that of the process which started this one.
+  // getrusage() would include the peak of the parent process.
   std::ifstream file("/proc/self/status");
   for (std::string line; std::getline(file, line);) {
     if (line.starts_with("VmHWM:")) return std::int64_t{1024} * std::atoll(line.c_str() + 6);

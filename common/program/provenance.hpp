@@ -5,16 +5,16 @@
 
 namespace drogue {
 
-/// Model name of the processor, `unknown` where the system does not tell.
+/// Model name of the processor; `unknown` if the system does not provide it.
 std::string cpu_model();
 
-/// Now, UTC, ISO 8601: `2025-01-31T12:00:00Z`.
+/// Current time in UTC, ISO 8601: `2025-01-31T12:00:00Z`.
 std::string utc_date();
 
-/// Largest resident set of this process so far, bytes.
+/// Peak resident set size of this process, bytes.
 std::int64_t host_peak_bytes();
 
-/// What --version prints: the program, the commit, and what it was built with.
+/// Text of --version: the program, the commit, compiler and libraries.
 std::string version_text(const std::string& program);
 
 }  // namespace drogue

@@ -16,13 +16,13 @@ extern "C" void request_interrupt(int) { interrupt_requested.store(true, std::me
 void install_signal_handlers() {
   struct sigaction once = {};
   once.sa_handler = request_interrupt;
-  // SA_RESETHAND: a second signal meets the default action, which ends a program that does not come to its
-  // next step.
+  // SA_RESETHAND: a second signal has the default action, which ends a program that does not reach its next
+  // step.
   once.sa_flags = static_cast<int>(static_cast<unsigned>(SA_RESETHAND) | static_cast<unsigned>(SA_RESTART));
   sigemptyset(&once.sa_mask);
   sigaction(SIGINT, &once, nullptr);
   sigaction(SIGTERM, &once, nullptr);
-  // A full disk and a reader that has gone are met where they are written to.
+  // Write errors report a full disk and a closed pipe.
   std::signal(SIGXFSZ, SIG_IGN);
   std::signal(SIGPIPE, SIG_IGN);
 }

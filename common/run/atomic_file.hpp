@@ -5,22 +5,21 @@
 
 namespace drogue::run {
 
-/// Name under which a file is written before it replaces `target`: same directory, hidden, own to this
-/// process.
+/// Temporary name of `target`: same directory, hidden, unique to this process.
 std::filesystem::path temporary_name(const std::filesystem::path& target);
 
-/// Forces a file, or the entries of a directory, to disk. Throws Failure(io_error).
+/// Syncs a file, or the entries of a directory, to disk. Throws `Failure` (io_error).
 void sync_path(const std::filesystem::path& path);
 
-/// Syncs `temporary`, renames it to `target`, syncs the directory. Throws Failure(io_error), `temporary`
-/// removed, a former `target` untouched.
+/// Syncs `temporary`, renames it to `target`, and syncs the directory. On failure removes `temporary`, leaves
+/// a former `target` untouched, and throws `Failure` (io_error).
 void replace_file(const std::filesystem::path& temporary, const std::filesystem::path& target);
 
-/// A file that appears under its name complete and on disk, or not at all: until commit() a former file
-/// stays. What has the name and is no file (see `is_replaced`) gets every byte at once.
+/// File that appears complete under its name or not at all; a former file stays until commit(). A target that
+/// is no regular file (see `is_replaced`) is written directly.
 class AtomicFile {
  public:
-  /// Waits for a reader where `target` is a named pipe. Throws Failure(io_error), as the others do.
+  /// Blocks until a reader opens `target` if it is a named pipe. All functions throw `Failure` (io_error).
   explicit AtomicFile(std::filesystem::path target);
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;
@@ -38,7 +37,7 @@ class AtomicFile {
   int _descriptor = -1;
 };
 
-/// Replaces `target` by `content` in one go. Throws Failure(io_error).
+/// Replaces the content of `target` atomically. Throws `Failure` (io_error).
 void write_file_atomically(const std::filesystem::path& target, std::string_view content);
 
 }  // namespace drogue::run

@@ -17,10 +17,19 @@ BackgroundWriter::~BackgroundWriter() {
 
 void BackgroundWriter::submit(std::function<void()> task) {
   std::unique_lock lock(_mutex);
-  _changed.wait(lock, [this] { return _error || _queue.size() + (_busy ? 1 : 0) < _depth; });
-  rethrow();
+  wait_for_slot(lock);
   _queue.push_back(std::move(task));
   _changed.notify_all();
+}
+
+void BackgroundWriter::wait_for_slot() {
+  std::unique_lock lock(_mutex);
+  wait_for_slot(lock);
+}
+
+void BackgroundWriter::wait_for_slot(std::unique_lock<std::mutex>& lock) {
+  _changed.wait(lock, [this] { return _error || _queue.size() + (_busy ? 1 : 0) < _depth; });
+  rethrow();
 }
 
 void BackgroundWriter::finish() {

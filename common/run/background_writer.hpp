@@ -10,26 +10,30 @@
 
 namespace drogue::run {
 
-/// One thread that writes while the steps go on. Tasks run in the order submitted.
+/// One thread that writes while the simulation takes further steps. Tasks run in the order of submission.
 class BackgroundWriter {
  public:
-  /// At most `depth` tasks wait or run: one per output buffer.
+  /// `depth` is the largest number of tasks that wait or run, one per output buffer.
   explicit BackgroundWriter(std::size_t depth = 2);
 
-  /// Finishes what was submitted; an exception nobody asked for by then is lost.
+  /// Finishes all submitted tasks. An exception that was not rethrown before is lost.
   ~BackgroundWriter();
   BackgroundWriter(const BackgroundWriter&) = delete;
   BackgroundWriter& operator=(const BackgroundWriter&) = delete;
 
-  /// Queues `task`, waiting if `depth` are under way. Throws what an earlier task threw; after that the tasks
-  /// which were waiting behind it are dropped and the writer is usable again.
+  /// Queues `task`. Blocks while `depth` tasks wait or run. Rethrows the exception of an earlier task; the
+  /// tasks behind that one are dropped, and the writer is usable again.
   void submit(std::function<void()> task);
 
-  /// Waits until all is written. Throws what a task threw.
+  /// Blocks until another task can be submitted without waiting. Rethrows the exception of an earlier task.
+  void wait_for_slot();
+
+  /// Blocks until all tasks are done. Rethrows the exception of a task.
   void finish();
 
  private:
   void work();
+  void wait_for_slot(std::unique_lock<std::mutex>& lock);
   void rethrow();
 
   std::size_t _depth;

@@ -6,12 +6,11 @@
 
 namespace drogue::run {
 
-/// Running 64-bit checksum of a stream of bytes. Each step is a bijection of its state, so any change
-/// confined to one aligned 8-byte word is detected for certain, others up to 2^-64. No protection against
-/// intent.
+/// 64-bit checksum of a byte stream. Each step is a bijection of the state, so a change within one aligned
+/// 8-byte word is always detected; other changes are missed with probability 2^-64. Not cryptographic.
 class Checksum {
  public:
-  /// Every piece but the last must be a multiple of 8 bytes long.
+  /// Adds bytes. The length of every piece but the last must be a multiple of 8.
   void add(std::span<const char> bytes);
   [[nodiscard]] std::uint64_t value() const;
 

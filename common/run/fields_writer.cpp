@@ -7,7 +7,9 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
+#include <iterator>
 #include <map>
+#include <set>
 #include <utility>
 
 #include "common/run/atomic_file.hpp"
@@ -22,23 +24,23 @@ constexpr std::uint64_t piece_entries = 1U << 18U;
 constexpr std::uint64_t metadata_bytes =
     1U << 14U;  ///< upper bound of what a group or a dataset adds to its data
 
-// Names that an index block holds: of /mesh, of /steps as it begins (a page), and of /steps of a long run.
+// Number of names per index block: of /mesh, of /steps at first (one page), and of /steps of a long run.
 constexpr unsigned mesh_links = 16, page_links = 190, many_links = 3000;
 constexpr unsigned mesh_name_length = 16, step_name_length = 6;
 
-/// Takes the space after the end of the file from the disk without making the file longer.
+/// Reserves disk space behind the end of the file without changing its length.
 void reserve(const std::filesystem::path& file, std::uint64_t bytes) {
   const int descriptor = open(file.c_str(), O_RDWR | O_CLOEXEC);
   if (descriptor < 0) throw io_failure("write", file, errno);
   const off_t end = lseek(descriptor, 0, SEEK_END);
   const int status = fallocate(descriptor, FALLOC_FL_KEEP_SIZE, end, static_cast<off_t>(bytes));
   int error = status == 0 ? 0 : errno;
-  // A limit on the length of files (ulimit -f) is not asked about before the file is longer.
+  // fallocate does not check a limit on the file length (ulimit -f) if the length does not change.
   struct rlimit limit = {};
   if (getrlimit(RLIMIT_FSIZE, &limit) == 0 && static_cast<rlim_t>(end) + bytes > limit.rlim_cur)
     error = EFBIG;
   close(descriptor);
-  // Elsewhere (say NFS) a full disk shows while writing; then end_step() is not reached.
+  // Other file systems, say NFS, report a full disk while writing; end_step() is not reached then.
   if (error == ENOSPC || error == EDQUOT || error == EFBIG) throw io_failure("write", file, error);
 }
 
@@ -63,12 +65,13 @@ struct FieldsWriter::State {
   OutputStep current;
   // Between begin_step() and end_step() only:
   h5::Handle open;
-  h5::Handle step;  // has no name yet
+  h5::Handle step;  // unnamed
   std::map<std::string, h5::Handle, std::less<>> datasets;
 
   void create() const;
   void resume(double time);
   void require_same_fields(const h5::Handle& output) const;
+  [[nodiscard]] std::set<std::string> named_grids() const;
   void write_xdmf() const;
   void abandon_step() noexcept;
   void publish(h5::Handle file, const std::string& group, const std::string& name,
@@ -84,7 +87,8 @@ void FieldsWriter::State::create() const {
   const std::filesystem::path temporary = temporary_name(file);
   try {
     h5::Handle handle = h5::create_file(temporary);
-    h5::create_group(handle, "mesh", mesh_links, mesh_name_length);
+    const h5::Handle all = h5::create_group(handle, "mesh", mesh_links, mesh_name_length);
+    for (const std::string& grid : named_grids()) h5::create_group(all, grid, mesh_links, mesh_name_length);
     h5::create_group(handle, "steps", page_links, step_name_length);
     handle.close_file();
   } catch (...) {
@@ -113,39 +117,57 @@ void FieldsWriter::State::resume(double time) {
   handle.close_file();
 }
 
-/// fields.xdmf names the same fields for every step.
+/// fields.xdmf lists the same fields for every step.
 void FieldsWriter::State::require_same_fields(const h5::Handle& output) const {
-  std::vector<std::string> wanted;
-  for (const DatasetSpec& field : fields) wanted.push_back(field.name);
-  std::sort(wanted.begin(), wanted.end());
-  if (h5::children(output) != wanted) {
+  const std::set<std::string> grids = named_grids();
+  std::set<std::string> wanted, found;
+  for (const DatasetSpec& field : fields) wanted.insert(path_of(field));
+  for (const std::string& name : h5::children(output)) {
+    if (!grids.contains(name))
+      found.insert(name);
+    else
+      for (const std::string& field : h5::children(h5::open_group(output, name)))
+        found.insert(name + "/" + field);
+  }
+  if (found != wanted)
     throw Failure(ExitCode::io_error,
                   "cannot continue '" + file.string() + "': it has other fields than this run");
-  }
 }
 
+/// Names of the grids beside the main one, ascending.
+std::set<std::string> FieldsWriter::State::named_grids() const {
+  std::set<std::string> names;
+  for (const DatasetSpec& field : fields)
+    if (!field.grid.empty()) names.insert(field.grid);
+  return names;
+}
+
+/// Writes fields.xdmf once the mesh of every grid is complete.
 void FieldsWriter::State::write_xdmf() const {
-  const auto holds = [&](const char* name) {
-    return std::any_of(mesh.begin(), mesh.end(), [&](const DatasetSpec& spec) { return spec.name == name; });
-  };
-  const auto line = std::find_if(mesh.begin(), mesh.end(), [](const DatasetSpec& spec) {
-    return spec.name == "x" && spec.shape.size() == 1;
-  });
-  if (line != mesh.end())
-    write_file_atomically(xdmf, xdmf_document(title, *line, fields, outputs));
-  else if (holds("vertices") && holds("triangles") && holds("strings"))
-    write_file_atomically(xdmf, xdmf_cloth_document(title, mesh, fields, outputs));
+  std::set<std::string> names = named_grids();
+  for (const auto* specs : {&mesh, &fields})
+    for (const DatasetSpec& spec : *specs) names.insert(spec.grid);
+  std::vector<GridDatasets> grids;
+  for (const std::string& name : names) {
+    GridDatasets& grid = grids.emplace_back();
+    grid.name = name;
+    const auto belongs = [&](const DatasetSpec& spec) { return spec.grid == name; };
+    std::ranges::copy_if(mesh, std::back_inserter(grid.mesh), belongs);
+    std::ranges::copy_if(fields, std::back_inserter(grid.fields), belongs);
+    if (!is_complete(grid.mesh)) return;
+  }
+  write_file_atomically(xdmf, xdmf_document(title, grids, outputs));
 }
 
-/// The group that has no name yet leaves the file.
+/// Closes the unnamed group of a step, which removes it from the file.
 void FieldsWriter::State::abandon_step() noexcept {
   datasets.clear();
   step.reset();
   open.reset();
 }
 
-/// Gives `object`, of which all else is written, its name and closes the file. Until all of the object is on
-/// disk nothing leads to it, and the name is one write: whenever the process is killed, the file is whole.
+/// Links the complete `object` into the file and closes the file. The object is on disk before the link,
+/// which is one write, so that a kill at any moment leaves a valid file.
 void FieldsWriter::State::publish(h5::Handle handle, const std::string& group, const std::string& name,
                                   const h5::Handle& object) const {
   h5::flush(handle);
@@ -157,15 +179,15 @@ void FieldsWriter::State::publish(h5::Handle handle, const std::string& group, c
   sync_path(file);
 }
 
-/// A group with room for more names takes the place of /steps. It is complete on disk before one write of the
-/// root group, which is not written in between, leads to it.
+/// Replaces /steps by a group with room for more names. The new group is complete on disk before one write of
+/// the root group links it.
 void FieldsWriter::State::enlarge_index() const {
   reserve(file, 32ULL * many_links);
   h5::Handle handle = h5::open_file(file, true);
   h5::Handle roomy = h5::create_group(handle, "", many_links, step_name_length);
   h5::flush(handle);
   h5::link(handle, "roomy", roomy);
-  roomy = h5::open_group(handle, "roomy");  // HDF5 moves nothing to what has no name
+  roomy = h5::open_group(handle, "roomy");  // HDF5 cannot move links to an unnamed group
   h5::Handle index = h5::open_group(handle, "steps");
   for (const OutputStep& output : outputs) h5::move(index, output.group, roomy, output.group);
   h5::flush_object(roomy);
@@ -183,7 +205,8 @@ void FieldsWriter::State::add_mesh(const DatasetSpec& spec, hid_t type,
   reserve(file, entries(spec) * sizeof(Number) + metadata_bytes);
   h5::Handle handle = h5::open_file(file, true);
   mesh.push_back(spec);
-  if (h5::exists(h5::open_group(handle, "mesh"), spec.name)) return;
+  const std::string group = spec.grid.empty() ? "mesh" : "mesh/" + spec.grid;
+  if (h5::exists(h5::open_group(handle, group), spec.name)) return;
   const h5::Handle dataset = create_described(handle, "", spec, type);
   const std::uint64_t total = entries(spec);
   const std::uint64_t row = std::max<std::uint64_t>(1, total / std::max<std::uint64_t>(1, spec.shape.at(0)));
@@ -194,7 +217,7 @@ void FieldsWriter::State::add_mesh(const DatasetSpec& spec, hid_t type,
     source(first, part);
     h5::write(dataset, first, std::span<const Number>(part));
   }
-  publish(std::move(handle), "mesh", spec.name, dataset);
+  publish(std::move(handle), group, spec.name, dataset);
 }
 
 FieldsWriter::FieldsWriter(const std::filesystem::path& directory, std::string title,
@@ -222,6 +245,12 @@ void FieldsWriter::add_mesh(const DatasetSpec& spec, const IntegerSource& source
   _state->add_mesh<std::int64_t>(spec, H5T_NATIVE_INT64, source);
 }
 
+void FieldsWriter::add_mesh(const DatasetSpec& spec, const std::vector<double>& values) {
+  add_mesh(spec, Source([&](std::uint64_t first, std::span<double> to) {
+             std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(first), to.size(), to.begin());
+           }));
+}
+
 void FieldsWriter::begin_step(double time, std::int64_t step) {
   if (_state->outputs.size() == page_links) _state->enlarge_index();
   std::uint64_t bytes = metadata_bytes;
@@ -235,8 +264,12 @@ void FieldsWriter::begin_step(double time, std::int64_t step) {
     _state->step = h5::create_group(_state->open, "");
     h5::write_attribute(_state->step, "time", time);
     h5::write_attribute(_state->step, "step", step);
-    for (const DatasetSpec& field : _state->fields)
-      _state->datasets[field.name] = create_described(_state->step, field.name, field, H5T_NATIVE_DOUBLE);
+    std::map<std::string, h5::Handle> groups;
+    for (const std::string& grid : _state->named_grids()) groups[grid] = h5::create_group(_state->step, grid);
+    for (const DatasetSpec& field : _state->fields) {
+      const h5::Handle& group = field.grid.empty() ? _state->step : groups.at(field.grid);
+      _state->datasets[path_of(field)] = create_described(group, field.name, field, H5T_NATIVE_DOUBLE);
+    }
   } catch (...) {
     _state->abandon_step();
     throw;

@@ -14,18 +14,17 @@ Handle checked(hid_t id, herr_t (*close)(hid_t), const char* action, hid_t paren
   return {id, close};
 }
 
-/// How files are opened: no file locks (the run directory has one, and a viewer must not stop a run), and
-/// metadata kept in memory until the file is closed, so that a kill within a step leaves the former content
-/// as it was.
+/// File access: without file locks (the run directory has one, and a viewer must not stop a run), and with
+/// metadata in memory until the file is closed, so that a kill within a step keeps the former content.
 Handle file_access(const std::filesystem::path& path) {
   Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   if (!access) fail("prepare to open", path);
 #if H5_VERSION_GE(1, 10, 7) && !(H5_VERS_MINOR == 12 && H5_VERS_RELEASE == 0)
   H5Pset_file_locking(access.id(), false, true);
 #endif
-  // Closing a file closes what is open in it, so that it is complete then.
+  // Closing the file closes all objects in it.
   H5Pset_fclose_degree(access.id(), H5F_CLOSE_STRONG);
-  // The format of HDF5 1.8 has groups that one write changes; later ones mark a file that a kill left open.
+  // One write changes a group of the format of HDF5 1.8; later formats mark a file that a kill left open.
   if (H5Pset_libver_bounds(access.id(), H5F_LIBVER_V18, H5F_LIBVER_V18) < 0) fail("prepare to open", path);
   H5AC_cache_config_t cache = {};
   cache.version = H5AC__CURR_CACHE_CONFIG_VERSION;
@@ -105,7 +104,8 @@ Handle create_file(const std::filesystem::path& path, std::uint64_t user_block) 
   const Handle access = file_access(path);
   const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
   if (!creation || H5Pset_userblock(creation.id(), user_block) < 0) fail("create", path);
-  // The system writes a page whole, even when the process is killed. HDF5 has this without a user block only.
+  // The operating system writes whole pages, even if the process is killed. HDF5 aligns to pages only without
+  // a user block.
   if (user_block == 0 && H5Pset_alignment(access.id(), index_page - 256, index_page) < 0)
     fail("create", path);
   const hid_t id = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation.id(), access.id());

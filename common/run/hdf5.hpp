@@ -27,10 +27,10 @@ class Handle {
   [[nodiscard]] hid_t id() const noexcept { return _id; }
   explicit operator bool() const noexcept { return _id >= 0; }
 
-  /// Closes, errors ignored.
+  /// Closes the object and ignores errors.
   void reset() noexcept;
 
-  /// Closes a file: all that was written is handed to the system, or this throws.
+  /// Flushes and closes a file. Throws `Failure` (io_error).
   void close_file();
 
  private:
@@ -40,26 +40,26 @@ class Handle {
 
 constexpr std::uint64_t index_page = 4096;  ///< bytes that the system writes whole
 
-/// A new file, `user_block` bytes (0, or a power of two from 512) left free at its begin. Without any, blocks
-/// of nearly an index_page and more begin with a page until the file is closed.
+/// Creates a file with `user_block` free bytes at its begin: 0, or a power of two from 512. Without a user
+/// block, allocations of about an index_page and more are aligned to pages until the file is closed.
 Handle create_file(const std::filesystem::path& path, std::uint64_t user_block = 0);
 Handle open_file(const std::filesystem::path& path, bool writable);
 
-/// A group. With `links` it has room for so many names of `name_length` bytes in one block of the file, so
-/// that naming something in it is one write. An empty name leaves the group without one until `link`: nothing
-/// leads to it, and writing it changes nothing that a reader sees. Closed without a name it is gone.
+/// Creates a group. With `links` it holds that many names of `name_length` bytes in one block, so that adding
+/// a name is one write. With an empty name the group stays unreachable until `link`; closed without a name it
+/// vanishes.
 Handle create_group(const Handle& parent, const std::string& name, unsigned links = 0,
                     unsigned name_length = 0);
 void link(const Handle& parent, const std::string& name, const Handle& object);
 
-/// Hands all that was written to the system, or throws.
+/// Flushes the file to the operating system.
 void flush(const Handle& file);
 
-/// The same for the header of one object: nothing else in the file changes.
+/// Flushes the header of one object only.
 void flush_object(const Handle& object);
 
-/// What was removed is not cut off the end of the file: HDF5 would do so before it writes the new length into
-/// the file, which nobody can read in between.
+/// Keeps the length of a file after a removal. HDF5 would otherwise truncate the file before it writes the
+/// new length, and leave it unreadable in between.
 void keep_length(const Handle& file);
 
 Handle open_group(const Handle& parent, const std::string& name);
@@ -67,11 +67,11 @@ bool exists(const Handle& parent, const std::string& name);
 void remove(const Handle& parent, const std::string& name);
 void move(const Handle& from, const std::string& name, const Handle& to, const std::string& new_name);
 
-/// Names of what is in a group, ascending.
+/// Names of the members of a group, ascending.
 std::vector<std::string> children(const Handle& group);
 
-/// A contiguous dataset with its space allocated; an empty name leaves it without one until `link`. `type` is
-/// H5T_NATIVE_DOUBLE or H5T_NATIVE_INT64.
+/// Creates a contiguous dataset with its space allocated; with an empty name it stays unreachable until
+/// `link`. `type` is H5T_NATIVE_DOUBLE or H5T_NATIVE_INT64.
 Handle create_dataset(const Handle& parent, const std::string& name, hid_t type,
                       const std::vector<std::uint64_t>& shape);
 Handle open_dataset(const Handle& parent, const std::string& name);

@@ -18,7 +18,7 @@ void read_scalar(const Handle& object, const std::string& name, hid_t type, void
   if (!attribute || H5Aread(attribute.id(), type, value) < 0) fail("read '" + name + "' of", object.id());
 }
 
-/// Text of any length, UTF-8: what readers in Python see as str.
+/// UTF-8 text of variable length, which Python reads as str.
 Handle text_type() {
   Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
   H5Tset_size(type.id(), H5T_VARIABLE);

@@ -17,7 +17,7 @@ struct Cause {
   std::string text;
 };
 
-/// Visits the error stack from the innermost call outwards; an errno is hidden in the words of a description.
+/// Visits the error stack from the innermost call outwards; only the text of a description holds the errno.
 herr_t look_at(unsigned, const H5E_error2_t* error, void* data) {
   auto& cause = *static_cast<Cause*>(data);
   const std::string text = error->desc == nullptr ? "" : error->desc;
@@ -33,8 +33,8 @@ herr_t look_at(unsigned, const H5E_error2_t* error, void* data) {
 }  // namespace
 
 Lock::Lock() : _lock(library_mutex()) {
-  // A file that could not be closed, say on a full disk, lets the library crash when it tidies up at exit;
-  // there is nothing to tidy up, since every handle is closed by its owner.
+  // HDF5 crashes in its exit handler after a failed close, say on a full disk. The handler is unnecessary:
+  // owners close every handle.
   static const herr_t without_exit_handler = H5dont_atexit();
   static_cast<void>(without_exit_handler);
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
@@ -49,7 +49,7 @@ void fail(const std::string& action, const std::filesystem::path& path) {
 }
 
 void fail(const std::string& action, hid_t object) {
-  // Asking for the name would clear the error stack.
+  // A query of the name would clear the error stack.
   const hid_t stack = H5Eget_current_stack();
   char name[4096] = "";
   H5Fget_name(object, name, sizeof name);

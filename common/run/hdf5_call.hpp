@@ -8,7 +8,7 @@
 
 namespace drogue::run::h5 {
 
-/// Held during every call into the library; silences its own error printing on this thread.
+/// Serializes calls into the library, and suppresses its error printing on this thread.
 class Lock {
  public:
   Lock();
@@ -17,10 +17,10 @@ class Lock {
   std::unique_lock<std::recursive_mutex> _lock;
 };
 
-/// Throws Failure(io_error) `cannot <action> 'path': <cause>` with the cause that HDF5 recorded innermost.
+/// Throws `Failure` (io_error) `cannot <action> 'path': <cause>` with the innermost cause that HDF5 recorded.
 [[noreturn]] void fail(const std::string& action, const std::filesystem::path& path);
 
-/// The same for the file that holds `object`.
+/// Overload for the file that holds `object`.
 [[noreturn]] void fail(const std::string& action, hid_t object);
 
 }  // namespace drogue::run::h5

@@ -23,7 +23,7 @@ void append_number(std::string& text, double value) {
   text.append(digits, end);
 }
 
-/// Bytes of the header and of all whole rows up to `time`; 0 if there is no header yet.
+/// Length of the header and all whole rows up to `time`, bytes; 0 without a header.
 std::uintmax_t bytes_until(const std::filesystem::path& file, const std::string& expected_header,
                            double time) {
   std::ifstream stream(file, std::ios::binary);
@@ -74,7 +74,7 @@ HistoryWriter::~HistoryWriter() {
   try {
     flush();
   } catch (const Failure&) {
-    // Unwinding from another failure, which is the one to report; finish() reports this one.
+    // Another failure is being reported; finish() reports this one.
   }
   close(_descriptor);
 }

@@ -10,37 +10,37 @@
 
 namespace drogue::run {
 
-/// A column of history.csv; the header reads `name [unit]`, or `name` for a pure number (empty unit).
+/// Column of history.csv. The header reads `name [unit]`, or `name` for an empty unit.
 struct Column {
   std::string name;
   std::string unit;
 };
 
-/// The first line of history.csv, with its end.
+/// Header line of history.csv, including its line end.
 [[nodiscard]] std::string history_header(const std::vector<Column>& columns);
 
-/// history.csv: first column `time [s]`, one row per reported step, numbers in the shortest form that reads
-/// back equal. Rows reach the system once a second, at flush() and at the end, also when a failure unwinds.
+/// Writes history.csv: first column `time [s]`, one row per reported step, numbers in the shortest form that
+/// reads back equal. Rows reach the operating system once per second, at flush() and at destruction.
 class HistoryWriter {
  public:
-  /// With `resume_time` rows of an existing file after that time are cut off and the rest is continued;
-  /// without, a new file is begun. Throws Failure(io_error), also if the existing header is another one.
+  /// With `resume_time`, s, removes the later rows of an existing file and continues it; otherwise begins a
+  /// new file. Throws `Failure` (io_error), also for a different header.
   HistoryWriter(std::filesystem::path file, const std::vector<Column>& columns,
                 std::optional<double> resume_time = std::nullopt);
   ~HistoryWriter();
   HistoryWriter(const HistoryWriter&) = delete;
   HistoryWriter& operator=(const HistoryWriter&) = delete;
 
-  /// Whether rows of the existing file were kept.
+  /// True if rows of an existing file were kept.
   [[nodiscard]] bool continues() const { return _continues; }
 
-  /// Appends a row; `values` has one entry per column after the time.
+  /// Appends a row at `time`, s; `values` has one entry per column after the time.
   void append(double time, std::span<const double> values);
 
-  /// Hands all rows to the system; needed before a restart file that comes after them is committed.
+  /// Writes all rows to the operating system; required before the commit of a later restart file.
   void flush();
 
-  /// Flushes, syncs to disk and closes. Throws Failure(io_error).
+  /// Flushes, syncs and closes the file. Throws `Failure` (io_error).
   void finish();
 
  private:

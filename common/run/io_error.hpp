@@ -7,7 +7,7 @@
 
 namespace drogue::run {
 
-/// Failure(io_error): `cannot <action> 'path': <text of the errno>`.
+/// Returns a `Failure` (io_error) `cannot <action> 'path': <text of the errno>`.
 Failure io_failure(const std::string& action, const std::filesystem::path& path, int error);
 
 }  // namespace drogue::run

@@ -11,7 +11,7 @@ bool is_replaced(const std::filesystem::path& path) {
   if (own_descriptor(path) >= 0) return false;
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(path, error);
-  // To write to a directory fails where the file is made, which says so.
+  // Opening a directory for writing fails later, with its own message.
   return !std::filesystem::exists(status) || std::filesystem::is_regular_file(status) ||
          std::filesystem::is_directory(status);
 }

@@ -9,18 +9,19 @@
 
 namespace drogue::run {
 
-/// 16 hexadecimal digits that stand for a text; equal texts, equal digits on every machine.
+/// 16 hexadecimal digits that identify a text; equal on every machine.
 std::string fingerprint(std::string_view text);
 
-/// Throws Failure(io_error) where the state of `file`, at `time`, s, is later than the end, which `key` of a
-/// scene gives.
+/// Throws `Failure` (io_error) if the state of `file`, at `time`, s, is later than `end`, s, which `key` of
+/// the scene sets.
 void require_not_after(const std::filesystem::path& file, double time, const char* key, double end);
 
-/// Writes a restart file: named numbers, texts and arrays of doubles. Until commit() a former file stays
-/// whole.
+/// Writes a restart file: named numbers, texts and arrays of doubles. A former file stays whole until
+/// commit().
 ///
-/// `scene` is the fingerprint of all that must agree between the run that writes and the run that reads. All
-/// calls throw Failure(io_error). They may come from another thread than the constructor, one at a time.
+/// `scene` is the fingerprint of everything that must agree between the writing and the reading run. All
+/// functions throw `Failure` (io_error). One thread at a time may call them, also another thread than the
+/// constructor's.
 class RestartWriter {
  public:
   RestartWriter(std::filesystem::path file, const std::string& scene);
@@ -32,11 +33,11 @@ class RestartWriter {
   void integer(const std::string& name, std::int64_t value);
   void text(const std::string& name, const std::string& value);
 
-  /// Declares an array of `size` doubles, then filled in pieces by write().
+  /// Declares an array of `size` doubles; write() fills it in pieces.
   void array(const std::string& name, std::uint64_t size);
   void write(const std::string& name, std::uint64_t first, std::span<const double> values);
 
-  /// Completes the file, checksum included, syncs it and puts it under its name.
+  /// Adds the checksum, syncs the file and renames it to its final name.
   void commit();
 
  private:
@@ -44,9 +45,8 @@ class RestartWriter {
   std::unique_ptr<State> _state;
 };
 
-/// Reads a restart file. The constructor checks every byte of it before anything is used: a file that is
-/// truncated, damaged, of another format version or of another scene is Failure(io_error), with what is
-/// wrong.
+/// Reads a restart file. The constructor verifies every byte first. Throws `Failure` (io_error), with the
+/// fault, for a truncated or damaged file and for another format version or scene.
 class RestartReader {
  public:
   RestartReader(const std::filesystem::path& file, const std::string& scene);

@@ -6,15 +6,14 @@
 
 namespace drogue::run {
 
-/// Bytes at the begin of a restart file that HDF5 leaves to us (its user block): format, length of the file,
-/// checksum of all that follows, scene. HDF5 is not made for damaged files; it sees one only after the seal
-/// was found whole.
+/// Size of the user block of a restart file, bytes: format, file length, checksum of the rest, scene. HDF5 is
+/// not robust against damaged files, so it opens a file only after its seal was verified.
 constexpr std::uint64_t seal_bytes = 512;
 
-/// Seals a closed file. Throws Failure(io_error).
+/// Writes the seal of a closed file. Throws `Failure` (io_error).
 void write_seal(const std::filesystem::path& file, const std::string& scene);
 
-/// Throws Failure(io_error), saying what is wrong, unless `file` is whole and of `scene`.
+/// Throws `Failure` (io_error), with the fault, unless `file` is whole and belongs to `scene`.
 void check_seal(const std::filesystem::path& file, const std::string& scene);
 
 }  // namespace drogue::run

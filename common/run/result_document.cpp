@@ -14,7 +14,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// JSON has no NaN and no infinity.
+/// Null for NaN and infinity, which JSON lacks.
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 Json numbers_json(const std::map<std::string, double>& numbers) {
@@ -34,13 +34,22 @@ Json checks_json(const std::vector<Check>& checks) {
   return json;
 }
 
-Json timing_json(const ResultDocument::Timing& timing) {
+Json group_json(const Metrics::Group& group) {
+  Json json = Json::object();
+  for (const auto& [name, value] : group.values) {
+    const auto* count = std::get_if<std::int64_t>(&value);
+    json[name] = count != nullptr ? Json(*count) : number(std::get<double>(value));
+  }
+  return json;
+}
+
+Json timing_json(const ResultDocument::WallTimes& timing) {
   return {{"wall_s", number(timing.wall_s)},       {"setup_s", number(timing.setup_s)},
           {"compute_s", number(timing.compute_s)}, {"h2d_s", number(timing.h2d_s)},
           {"d2h_s", number(timing.d2h_s)},         {"io_s", number(timing.io_s)}};
 }
 
-Json ledger_json(const ResultDocument::Ledger& ledger) {
+Json ledger_json(const ResultDocument::ProfilingCounters& ledger) {
   return {{"kernel_launches", ledger.kernel_launches},
           {"fences", ledger.fences},
           {"device_allocations_after_warmup", ledger.device_allocations_after_warmup},
@@ -75,6 +84,30 @@ std::string status_name(ExitCode code) {
       return "interrupted";
   }
   return "io-error";
+}
+
+Metrics::Group& Metrics::at(const std::string& group) {
+  const auto found = std::ranges::find(_groups, group, &Group::name);
+  return found == _groups.end() ? _groups.emplace_back(Group{group, {}}) : *found;
+}
+
+void Metrics::add_group(const std::string& group) { (void)at(group); }
+
+void Metrics::set(const std::string& group, const std::string& name, Value value) {
+  auto& values = at(group).values;
+  const auto found = std::ranges::find(values, name, &std::pair<std::string, Value>::first);
+  if (found == values.end())
+    values.emplace_back(name, value);
+  else
+    found->second = value;
+}
+
+std::int64_t Metrics::integer(const std::string& group, const std::string& name) const {
+  for (const Group& each : _groups)
+    if (each.name == group)
+      for (const auto& [key, value] : each.values)
+        if (key == name) return std::visit([](auto v) { return static_cast<std::int64_t>(v); }, value);
+  return 0;
 }
 
 bool ResultDocument::add_check(const std::string& name, double value, double tolerance) {
@@ -130,16 +163,13 @@ std::string to_json(const ResultDocument& result) {
   json["dt_max"] = number(result.dt_max);
   json["errors"] = numbers_json(result.errors);
   json["checks"] = checks_json(result.checks);
-  if (!result.counts.empty()) json["counts"] = result.counts;
-  if (!result.energy.empty()) json["energy"] = numbers_json(result.energy);
-  json["limiter"] = {{"touches", result.limiter.touches},
-                     {"cells", result.limiter.cells},
-                     {"redone_steps", result.limiter.redone_steps}};
+  for (const Metrics::Group& group : result.metrics.groups())
+    if (!group.values.empty()) json[group.name] = group_json(group);
   json["timing"] = timing_json(result.timing);
   json["ledger"] = ledger_json(result.ledger);
   json["peak_bytes"] = {{"host", result.peak_bytes.host}, {"device", result.peak_bytes.device}};
   json["provenance"] = provenance_json(result.provenance);
-  // File names and messages may hold bytes that are no UTF-8; the document must be written all the same.
+  // File names and messages may hold invalid UTF-8, which is replaced.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

@@ -4,13 +4,15 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <utility>
+#include <variant>
 #include <vector>
 
 #include "common/program/failure.hpp"
 
 namespace drogue::run {
 
-/// One verified quantity: passed if |value| <= tolerance.
+/// Verified quantity; passed if |value| <= tolerance.
 struct Check {
   std::string name;
   double value = 0.0;
@@ -18,11 +20,38 @@ struct Check {
   bool passed = false;
 };
 
-/// result.json, schema `drogue.result/1`. A number that is not finite is written as null.
+/// Named numbers of a run, in groups. Each group becomes an object of result.json, in the order in which the
+/// groups were added; empty groups are left out.
+class Metrics {
+ public:
+  using Value = std::variant<std::int64_t, double>;
+  struct Group {
+    std::string name;
+    std::vector<std::pair<std::string, Value>> values;
+  };
+
+  /// Appends an empty group unless it exists.
+  void add_group(const std::string& group);
+
+  /// Sets a number, and adds its group and its name if they are new.
+  void set(const std::string& group, const std::string& name, Value value);
+
+  /// A number as integer; 0 if it does not exist.
+  [[nodiscard]] std::int64_t integer(const std::string& group, const std::string& name) const;
+
+  [[nodiscard]] const std::vector<Group>& groups() const { return _groups; }
+
+ private:
+  [[nodiscard]] Group& at(const std::string& group);
+
+  std::vector<Group> _groups;
+};
+
+/// Content of result.json, schema `drogue.result/1`. Non-finite numbers are written as null.
 struct ResultDocument {
   std::string program, version, git, scene, backend, device;
   std::string precision = "double";
-  std::string driver;  ///< how steps reach the device: "persistent", "graph", "plain", "stages" or "seed"
+  std::string driver;  ///< how steps are launched: "persistent", "graph", "plain", "stages" or "seed"
   int ranks = 1;
   int threads = 1;
   ExitCode exit_code = ExitCode::ok;
@@ -32,18 +61,11 @@ struct ResultDocument {
   double dt_min = 0.0, dt_max = 0.0;  ///< s
   std::map<std::string, double> errors;
   std::vector<Check> checks;
-  std::map<std::string, std::int64_t> counts;  ///< of a batch: how many rows ended how; else empty
-  std::map<std::string, double> energy;        ///< J, of a run that accounts for it: at its end; else empty
-  /// Of what has none, zeros.
-  struct Limiter {
-    std::int64_t touches = 0;  ///< faces limited, summed over all stages
-    std::int64_t cells = 0;    ///< cells that had such a face at least once
-    std::int64_t redone_steps = 0;
-  } limiter;
-  struct Timing {
+  Metrics metrics;  ///< limiter counts, energies and the like, after `checks`
+  struct WallTimes {
     double wall_s = 0, setup_s = 0, compute_s = 0, h2d_s = 0, d2h_s = 0, io_s = 0;
   } timing;
-  struct Ledger {
+  struct ProfilingCounters {
     std::int64_t kernel_launches = 0, fences = 0, device_allocations_after_warmup = 0, h2d_bytes = 0,
                  d2h_bytes = 0;
   } ledger;
@@ -54,7 +76,7 @@ struct ResultDocument {
     std::string compiler, flags, kokkos, cpu, gpu, driver, date;
   } provenance;
 
-  /// Tells what the run is on. `Facts` are those of kernels/device/runtime.hpp, which this layer does not
+  /// Fills in backend, device, threads and driver. `Facts` is device::DeviceFacts, which this layer does not
   /// include.
   template <class Facts>
   void describe_device(const std::string& name_of_backend, const Facts& facts) {
@@ -66,30 +88,31 @@ struct ResultDocument {
     provenance.driver = facts.driver;
   }
 
-  /// Tells what the run asked of the device. `Asked` is the Ledger of kernels/device/profiling_counters.hpp.
-  template <class Asked>
-  void describe_ledger(const Asked& asked) {
-    ledger = {asked.kernel_launches, asked.fences, asked.allocations_after_warmup, asked.h2d_bytes,
-              asked.d2h_bytes};
-    peak_bytes.device = asked.peak_device_bytes;
+  /// Fills in the profiling counters. `Counters` is device::ProfilingCounters, which this layer does not
+  /// include.
+  template <class Counters>
+  void describe_ledger(const Counters& counters) {
+    ledger = {counters.kernel_launches, counters.fences, counters.allocations_after_warmup,
+              counters.h2d_bytes, counters.d2h_bytes};
+    peak_bytes.device = counters.peak_device_bytes;
   }
 
-  /// Adds a check and says whether it passed; a value that is not a number fails.
+  /// Adds a check. Returns true if it passed; NaN fails.
   bool add_check(const std::string& name, double value, double tolerance);
 
-  /// First check that failed, as the Failure to throw (verification_failed) says it; empty if all passed.
+  /// One sentence on the first failed check; empty if all passed.
   [[nodiscard]] std::string failed_check() const;
 };
 
-/// A document that knows the build, the processor and the date, before anything ran.
+/// Document with the facts of the build, the processor and the date.
 ResultDocument new_result(const std::string& program, const std::string& scene);
 
-/// `ok`, `invalid`, `numerical-failure`, ... as the schema names them.
+/// Status of an exit code in the schema: `ok`, `invalid`, `numerical-failure`, ...
 std::string status_name(ExitCode code);
 
 std::string to_json(const ResultDocument& result);
 
-/// Writes `file` atomically, the peak of host memory filled in. Throws Failure(io_error).
+/// Writes `file` atomically, with the peak of host memory. Throws `Failure` (io_error).
 void write_result(const std::filesystem::path& file, ResultDocument result);
 
 }  // namespace drogue::run

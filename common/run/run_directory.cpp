@@ -18,8 +18,7 @@ namespace {
 
 constexpr const char* lock_name = ".lock";
 
-/// True if the file that `descriptor` locks is still the one under `path`: a run that just ended may have
-/// removed it.
+/// True if `descriptor` locks the file that is still under `path`: a run that just ended may have removed it.
 bool still_there(int descriptor, const std::filesystem::path& path) {
   struct stat locked = {}, present = {};
   return fstat(descriptor, &locked) == 0 && stat(path.c_str(), &present) == 0 &&
@@ -34,7 +33,7 @@ bool is_leftover(const std::string& name) {
                      [&name](const std::string& file) { return name.starts_with("." + file + "."); });
 }
 
-/// True for a picture that drogue-plot made of a run; left, it would show the former one.
+/// True for a picture that drogue-plot made of a former run.
 bool is_picture(const std::filesystem::path& file) {
   const std::string stem = file.stem().string();
   const std::string kind = file.extension().string();
@@ -99,14 +98,14 @@ void RunDirectory::lock() {
       throw Failure(ExitCode::io_error,
                     "the run directory '" + _path.string() + "' is in use by another process");
     }
-    // Where the file system knows no locks (some Lustre mounts) a run goes on without one.
+    // File systems without locks (some Lustre mounts) are used without one.
     if (still_there(_lock, file)) return;
     close(_lock);
   }
 }
 
 void RunDirectory::unlock() noexcept {
-  // Removed while still locked: whoever opened the file meanwhile finds in lock() that it is gone.
+  // Remove the file while it is locked: lock() detects the removal.
   unlink((_path / lock_name).c_str());
   close(_lock);
 }

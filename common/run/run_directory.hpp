@@ -7,24 +7,22 @@
 
 namespace drogue::run {
 
-/// What becomes of a run that is already in the directory.
+/// Treatment of a run that already is in the directory.
 enum class ExistingRun {
   refuse,     ///< exit 2
   overwrite,  ///< its files are removed by `begin`
-  resume,     ///< they stay and are continued; `begin` removes result.json and the pictures, which tell of an
-              ///< end
+  resume,     ///< its files are continued; `begin` removes result.json and pictures
 };
 
-/// The directory of one run, locked as long as this object lives. Two runs never share one. A former run
-/// stays as it is until `begin`, so that a scene with a slip in it costs nobody a result.
+/// Directory of one run, locked for the life of the object. A former run stays untouched until `begin`, so
+/// that an invalid scene costs no result.
 class RunDirectory {
  public:
-  /// Creates `path` and its parents where missing. Throws Failure(io_error) if that fails, if the directory
-  /// cannot be written or if another process runs in it, Failure(usage) if it holds a run and `existing` is
-  /// refuse.
+  /// Creates `path` and its parents. Throws `Failure`: io_error if that fails, if the directory is not
+  /// writable or if another process uses it; usage if it holds a run and `existing` is refuse.
   RunDirectory(std::filesystem::path path, ExistingRun existing);
 
-  /// Makes room for the new run, which from here on will not be refused.
+  /// Removes or prepares the files of a former run, as `existing` states.
   void begin();
 
   [[nodiscard]] bool begun() const noexcept { return _begun; }
@@ -34,7 +32,7 @@ class RunDirectory {
 
   [[nodiscard]] const std::filesystem::path& path() const noexcept { return _path; }
 
-  /// Path of one of the files that a run writes, say `result.json`.
+  /// Path of a file of the run, say `result.json`.
   [[nodiscard]] std::filesystem::path file(std::string_view name) const { return _path / name; }
 
   /// Writes the resolved scene, `scene.toml`.
@@ -52,16 +50,16 @@ class RunDirectory {
   int _lock = -1;
 };
 
-/// Names of all files that a run may leave. Only these, their temporary forms and the pictures that
-/// drogue-plot makes of them are ever removed.
+/// Names of all files that a run may leave. Only these, their temporary forms and the pictures of drogue-plot
+/// are ever removed.
 const std::vector<std::string>& run_file_names();
 
 /// True if `directory` holds a file of a run.
 bool holds_run(const std::filesystem::path& directory);
 
-/// The file that `--restart option` means: for `auto` the restart.h5 of `directory`, or an empty path (start
-/// anew) if there is none, so that one job script serves the first and every later submission. Throws
-/// Failure(usage) if a named file does not exist.
+/// File for `--restart option`. For `auto` the restart.h5 of `directory`, or an empty path (start anew) if it
+/// does not exist, so that one job script serves all submissions. Throws `Failure` (usage) if a named file
+/// does not exist.
 std::filesystem::path restart_source(const std::string& option, const std::filesystem::path& directory);
 
 }  // namespace drogue::run

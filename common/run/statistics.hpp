@@ -4,13 +4,13 @@
 
 namespace drogue::run {
 
-/// A median and an interval that holds the true one with at least the probability `coverage`, whatever the
+/// Median and an interval that covers the true median with at least probability `coverage`, for any
 /// distribution of the samples.
 struct MedianInterval {
   double median = 0.0;
   double low = 0.0;
   double high = 0.0;
-  double coverage = 0.0;  ///< reached; below what was asked if there are too few samples
+  double coverage = 0.0;  ///< of the interval; lower than requested for too few samples
 };
 
 /// Middle value, or the mean of the two middle ones. Throws std::invalid_argument if there are no samples.

@@ -1,6 +1,8 @@
 #include "common/run/xdmf.hpp"
 
+#include <algorithm>
 #include <charconv>
+#include <stdexcept>
 #include <string_view>
 
 namespace drogue::run {
@@ -42,106 +44,174 @@ std::string hdf_item(const std::string& dimensions, const std::string& dataset,
 }
 
 /// `(3, 2)` as `3 2`.
-std::string dimensions(const DatasetSpec& spec) {
+std::string dimensions(const std::vector<std::uint64_t>& shape) {
   std::string text;
-  for (const std::uint64_t n : spec.shape) text += (text.empty() ? "" : " ") + std::to_string(n);
+  for (const std::uint64_t n : shape) text += (text.empty() ? "" : " ") + std::to_string(n);
   return text;
 }
 
-std::string time_of(const OutputStep& output) {
-  return R"(        <Time Value=")" + shortest(output.time) + "\"/>\n";
-}
-
-/// A rectilinear grid of n x 1 x 1 points: the one kind of line that all versions of ParaView's reader know.
-std::string grid(const std::string& title, const DatasetSpec& x, const std::vector<DatasetSpec>& fields,
-                 const OutputStep& output) {
-  const std::string points = std::to_string(x.shape.at(0));
-  const std::string zero =
-      R"(<DataItem Dimensions="1" NumberType="Float" Precision="8" Format="XML">0</DataItem>)";
-  std::string text = R"(      <Grid Name=")" + escaped(title) + "\" GridType=\"Uniform\">\n";
-  text += time_of(output);
-  text += R"(        <Topology TopologyType="3DRectMesh" Dimensions="1 1 )" + points + "\"/>\n";
-  text += "        <Geometry GeometryType=\"VXVYVZ\">\n          " + hdf_item(points, "/mesh/" + x.name);
-  text += "          " + zero + "\n          " + zero + "\n        </Geometry>\n";
-  for (const DatasetSpec& field : fields) {
-    text += R"(        <Attribute Name=")" + escaped(field.name) +
-            "\" AttributeType=\"Scalar\" Center=\"Node\">\n          ";
-    text += hdf_item("1 1 " + points, "/steps/" + output.group + "/" + field.name) + "        </Attribute>\n";
-  }
-  return text + "      </Grid>\n";
-}
-
-/// One mesh at all times.
-std::string series(const std::string& name, const std::string& grids) {
-  return R"(    <Grid Name=")" + escaped(name) + "\" GridType=\"Collection\" CollectionType=\"Temporal\">\n" +
-         grids + "    </Grid>\n";
-}
-
-std::string document(const std::string& meshes) {
-  return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<Xdmf Version=\"3.0\">\n  <Domain>\n" + meshes +
-         "  </Domain>\n</Xdmf>\n";
-}
-
 const DatasetSpec* find(const std::vector<DatasetSpec>& specs, std::string_view name) {
-  for (const DatasetSpec& spec : specs)
-    if (spec.name == name) return &spec;
-  return nullptr;
+  const auto found = std::ranges::find(specs, name, &DatasetSpec::name);
+  return found == specs.end() ? nullptr : &*found;
 }
 
-std::string topology(const DatasetSpec& cells) {
-  const std::string kind = cells.shape.at(1) == 3 ? "Triangle\"" : "Polyline\" NodesPerElement=\"2\"";
-  return R"(        <Topology TopologyType=")" + kind + " NumberOfElements=\"" +
-         std::to_string(cells.shape.at(0)) + "\">\n          " +
-         hdf_item(dimensions(cells), "/mesh/" + cells.name, "Int") + "        </Topology>\n";
+const DatasetSpec& at(const std::vector<DatasetSpec>& specs, std::string_view name) {
+  if (const DatasetSpec* found = find(specs, name)) return *found;
+  throw std::invalid_argument("the grid has no mesh dataset " + std::string(name));
 }
 
-std::string attribute(const DatasetSpec& field, const std::string& place) {
-  const std::string type = field.shape.size() < 2 ? "Scalar" : field.shape[1] == 6 ? "Tensor6" : "Vector";
-  const std::string centre = field.centering == "vertex" ? "Node" : "Cell";
-  return R"(        <Attribute Name=")" + escaped(field.name) + R"(" AttributeType=")" + type +
-         R"(" Center=")" + centre + "\">\n          " + hdf_item(dimensions(field), place + field.name) +
-         "        </Attribute>\n";
+bool is_rectilinear(const std::vector<DatasetSpec>& mesh) {
+  const DatasetSpec *x = find(mesh, "x"), *y = find(mesh, "y");
+  return x != nullptr && y != nullptr && x->centering == "face" && y->centering == "face";
 }
 
-/// `cells` at one time, with the fields at their vertices and their own.
-std::string cloth_grid(const std::string& name, const DatasetSpec& cells, const DatasetSpec& vertices,
-                       const std::vector<DatasetSpec>& fields, const OutputStep& output) {
-  const DatasetSpec* moved = find(fields, "position");
-  const std::string place = "/steps/" + output.group + "/";
-  std::string text = R"(      <Grid Name=")" + escaped(name) + "\" GridType=\"Uniform\">\n";
-  text += time_of(output) + topology(cells);
-  text += "        <Geometry GeometryType=\"XYZ\">\n          " +
-          (moved != nullptr ? hdf_item(dimensions(*moved), place + moved->name)
-                            : hdf_item(dimensions(vertices), "/mesh/" + vertices.name)) +
-          "        </Geometry>\n";
-  for (const DatasetSpec& field : fields)
-    if (&field != moved && (field.centering == "vertex" || field.centering == cells.centering))
-      text += attribute(field, place);
-  return text + "      </Grid>\n";
+/// One grid at one output time.
+class GridAtTime {
+ public:
+  GridAtTime(const GridDatasets& grid, const OutputStep& output)
+      : _grid(grid), _output(output), _group(grid.name.empty() ? "" : grid.name + "/") {}
+
+  /// A rectilinear grid of n x 1 x 1 points: the one kind of line that all versions of ParaView read.
+  [[nodiscard]] std::string line(const std::string& name) const {
+    const DatasetSpec& x = at(_grid.mesh, "x");
+    const std::string points = std::to_string(x.shape.at(0));
+    std::string content =
+        R"(        <Topology TopologyType="3DRectMesh" Dimensions="1 1 )" + points + "\"/>\n";
+    content += geometry("VXVYVZ", mesh_item(x) + zero() + zero());
+    for (const DatasetSpec& field : _grid.fields)
+      content += attribute(field, "Scalar", "Node", "1 1 " + points);
+    return grid(name, content);
+  }
+
+  /// Cells between face coordinates; without z one plane of cells at z = 0.
+  [[nodiscard]] std::string rectilinear(const std::string& name) const {
+    const DatasetSpec &x = at(_grid.mesh, "x"), &y = at(_grid.mesh, "y");
+    const DatasetSpec* z = find(_grid.mesh, "z");
+    const std::uint64_t faces[3] = {z != nullptr ? z->shape.at(0) : 1, y.shape.at(0), x.shape.at(0)};
+    std::string content = R"(        <Topology TopologyType="3DRectMesh" Dimensions=")" +
+                          dimensions({faces[0], faces[1], faces[2]}) + "\"/>\n";
+    content += geometry("VXVYVZ", mesh_item(x) + mesh_item(y) + (z != nullptr ? mesh_item(*z) : zero()));
+    for (const DatasetSpec& field : _grid.fields) content += structured_attribute(field, z == nullptr);
+    return grid(name, content);
+  }
+
+  /// A structured grid with explicit vertices, in any index order.
+  [[nodiscard]] std::string structured(const std::string& name) const {
+    const DatasetSpec& points = at(_grid.mesh, "points");
+    const std::vector<std::uint64_t>& n = points.shape;
+    std::string content = R"(        <Topology TopologyType="3DSMesh" Dimensions=")" +
+                          dimensions({n.at(0), n.at(1), n.at(2)}) + "\"/>\n";
+    content += geometry("XYZ", mesh_item(points));
+    for (const DatasetSpec& field : _grid.fields) content += structured_attribute(field, false);
+    return grid(name, content);
+  }
+
+  /// Triangles or strings with the fields at their vertices and cells.
+  [[nodiscard]] std::string elements(const std::string& name, const DatasetSpec& cells) const {
+    const DatasetSpec* moved = find(_grid.fields, "position");
+    const std::string kind = cells.shape.at(1) == 3 ? "Triangle\"" : "Polyline\" NodesPerElement=\"2\"";
+    std::string content = R"(        <Topology TopologyType=")" + kind + " NumberOfElements=\"" +
+                          std::to_string(cells.shape.at(0)) + "\">\n" + mesh_item(cells, "Int") +
+                          "        </Topology>\n";
+    content += geometry("XYZ", moved != nullptr ? field_item(*moved, dimensions(moved->shape))
+                                                : mesh_item(at(_grid.mesh, "vertices")));
+    for (const DatasetSpec& field : _grid.fields) {
+      const bool at_vertices = field.centering == "vertex";
+      if (&field == moved || (!at_vertices && field.centering != cells.centering)) continue;
+      const std::string type = field.shape.size() < 2 ? "Scalar" : type_of(field.shape[1]);
+      content += attribute(field, type, at_vertices ? "Node" : "Cell", dimensions(field.shape));
+    }
+    return grid(name, content);
+  }
+
+ private:
+  static std::string type_of(std::uint64_t components) {
+    return components == 6 ? "Tensor6" : components == 3 ? "Vector" : "Scalar";
+  }
+
+  static std::string zero() {
+    return "          <DataItem Dimensions=\"1\" NumberType=\"Float\" Precision=\"8\" "
+           "Format=\"XML\">0</DataItem>\n";
+  }
+
+  [[nodiscard]] std::string mesh_item(const DatasetSpec& spec, const std::string& type = "Float") const {
+    return "          " + hdf_item(dimensions(spec.shape), "/mesh/" + _group + spec.name, type);
+  }
+
+  [[nodiscard]] std::string field_item(const DatasetSpec& field, const std::string& shape) const {
+    return "          " + hdf_item(shape, "/steps/" + _output.group + "/" + _group + field.name);
+  }
+
+  static std::string geometry(const std::string& type, const std::string& items) {
+    return "        <Geometry GeometryType=\"" + type + "\">\n" + items + "        </Geometry>\n";
+  }
+
+  [[nodiscard]] std::string attribute(const DatasetSpec& field, const std::string& type,
+                                      const std::string& centre, const std::string& shape) const {
+    return R"(        <Attribute Name=")" + escaped(field.name) + R"(" AttributeType=")" + type +
+           R"(" Center=")" + centre + "\">\n" + field_item(field, shape) + "        </Attribute>\n";
+  }
+
+  /// ParaView expects three dimensions, and those of the components behind them.
+  [[nodiscard]] std::string structured_attribute(const DatasetSpec& field, bool is_planar) const {
+    std::vector<std::uint64_t> shape = field.shape;
+    const std::size_t axes = is_planar ? 2 : 3;
+    const std::string type = shape.size() > axes ? type_of(shape.back()) : "Scalar";
+    if (is_planar) shape.insert(shape.begin(), 1);
+    return attribute(field, type, field.centering == "vertex" ? "Node" : "Cell", dimensions(shape));
+  }
+
+  [[nodiscard]] std::string grid(const std::string& name, const std::string& content) const {
+    return R"(      <Grid Name=")" + escaped(name) + "\" GridType=\"Uniform\">\n        <Time Value=\"" +
+           shortest(_output.time) + "\"/>\n" + content + "      </Grid>\n";
+  }
+
+  const GridDatasets& _grid;
+  const OutputStep& _output;
+  std::string _group;
+};
+
+/// A grid at all output times. `at_time` writes it at one of them.
+template <class AtTime>
+std::string collection(const std::string& name, const GridDatasets& grid,
+                       const std::vector<OutputStep>& outputs, const AtTime& at_time) {
+  std::string text =
+      R"(    <Grid Name=")" + escaped(name) + "\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
+  for (const OutputStep& output : outputs) text += at_time(GridAtTime(grid, output));
+  return text + "    </Grid>\n";
+}
+
+std::string collections(const std::string& title, const GridDatasets& grid,
+                        const std::vector<OutputStep>& outputs) {
+  const std::string name = title + (grid.name.empty() ? "" : " " + grid.name);
+  if (find(grid.mesh, "points") != nullptr)
+    return collection(name, grid, outputs, [&](const GridAtTime& now) { return now.structured(name); });
+  if (is_rectilinear(grid.mesh))
+    return collection(name, grid, outputs, [&](const GridAtTime& now) { return now.rectilinear(name); });
+  if (find(grid.mesh, "x") != nullptr)
+    return collection(name, grid, outputs, [&](const GridAtTime& now) { return now.line(name); });
+  const DatasetSpec &triangles = at(grid.mesh, "triangles"), &strings = at(grid.mesh, "strings");
+  const auto of = [&](const std::string& part, const DatasetSpec& cells) {
+    return collection(part, grid, outputs, [&](const GridAtTime& now) { return now.elements(part, cells); });
+  };
+  if (strings.shape.at(0) == 0) return of(name, triangles);
+  if (triangles.shape.at(0) == 0) return of(name, strings);
+  return of(name + " cloth", triangles) + of(name + " strings", strings);
 }
 
 }  // namespace
 
-std::string xdmf_cloth_document(const std::string& title, const std::vector<DatasetSpec>& mesh,
-                                const std::vector<DatasetSpec>& fields,
-                                const std::vector<OutputStep>& outputs) {
-  const DatasetSpec& vertices = *find(mesh, "vertices");
-  const auto series_of = [&](const std::string& name, const DatasetSpec& cells) {
-    std::string grids;
-    for (const OutputStep& output : outputs) grids += cloth_grid(name, cells, vertices, fields, output);
-    return series(name, grids);
-  };
-  const DatasetSpec &triangles = *find(mesh, "triangles"), &strings = *find(mesh, "strings");
-  if (strings.shape.at(0) == 0) return document(series_of(title, triangles));
-  if (triangles.shape.at(0) == 0) return document(series_of(title, strings));
-  return document(series_of(title + " cloth", triangles) + series_of(title + " strings", strings));
+bool is_complete(const std::vector<DatasetSpec>& mesh) {
+  const auto holds = [&](const char* name) { return find(mesh, name) != nullptr; };
+  if (const DatasetSpec* x = find(mesh, "x"); x != nullptr && x->centering == "face") return holds("y");
+  return holds("points") || holds("x") || (holds("vertices") && holds("triangles") && holds("strings"));
 }
 
-std::string xdmf_document(const std::string& title, const DatasetSpec& x,
-                          const std::vector<DatasetSpec>& fields, const std::vector<OutputStep>& outputs) {
-  std::string grids;
-  for (const OutputStep& output : outputs) grids += grid(title, x, fields, output);
-  return document(series(title, grids));
+std::string xdmf_document(const std::string& title, const std::vector<GridDatasets>& grids,
+                          const std::vector<OutputStep>& outputs) {
+  std::string text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<Xdmf Version=\"3.0\">\n  <Domain>\n";
+  for (const GridDatasets& grid : grids) text += collections(title, grid, outputs);
+  return text + "  </Domain>\n</Xdmf>\n";
 }
 
 }  // namespace drogue::run

@@ -13,19 +13,29 @@ struct OutputStep {
   double time = 0.0;
 };
 
-/// fields.xdmf: a temporal collection of line meshes over the one-dimensional dataset `x` of `mesh`, the data
-/// of `fields` at its points. ParaView draws values at cells of a line only as steps, so cell centres become
-/// points.
-std::string xdmf_document(const std::string& title, const DatasetSpec& x,
-                          const std::vector<DatasetSpec>& fields, const std::vector<OutputStep>& outputs);
+/// The datasets of one grid. The names in `mesh` decide its kind:
+///   points                        structured grid (3DSMesh): (n0,n1,n2,3) vertices in the index order of the
+///   fields x, y [, z], centred at faces  rectilinear grid of cells: fields of shape (nz,ny,nx), or (ny,nx)
+///   without z x alone                       line; fields at its points vertices, triangles, strings triangle
+///   mesh (m,3) and polylines (k,2) over vertices (n,3)
+/// A uniform grid is a rectilinear grid with equidistant coordinates.
+struct GridDatasets {
+  std::string name;  ///< group below /mesh and /steps/N; empty: the datasets lie directly there
+  std::vector<DatasetSpec> mesh, fields;
+};
 
-/// fields.xdmf of cloth: temporal collections of meshes of the datasets `vertices` (n,3), `triangles` (m,3)
-/// and `strings` (k,2) of `mesh`, one of each that has any: a mesh of both would ask of fields at triangles
-/// for values at strings too, and of one collection of pairs ParaView names every pair otherwise. Vertices
-/// lie where the field `position` says, if it is written. Fields at vertices or triangles; those of shape
-/// (n,3) are vectors, of shape (n,6) symmetric tensors (xx, xy, xz, yy, yz, zz).
-std::string xdmf_cloth_document(const std::string& title, const std::vector<DatasetSpec>& mesh,
-                                const std::vector<DatasetSpec>& fields,
-                                const std::vector<OutputStep>& outputs);
+/// True if `mesh` holds all datasets of a kind of grid. Does not throw.
+[[nodiscard]] bool is_complete(const std::vector<DatasetSpec>& mesh);
+
+/// fields.xdmf, for ParaView: one temporal collection per grid, named `title` and the grid's name.
+///
+/// Fields are at vertices or cells as their `centering` states; a trailing dimension 3 makes a vector, 6 a
+/// symmetric tensor (xx, xy, xz, yy, yz, zz). Vertices of a triangle mesh lie at the field `position`, if it
+/// is written. Triangles and strings become two collections: a mixed mesh would require values of triangle
+/// fields at strings, and ParaView renumbers the elements of a collection of pairs. The cell centres of a
+/// line become points, because ParaView draws values at cells of a line as steps. Throws
+/// std::invalid_argument for an incomplete mesh.
+[[nodiscard]] std::string xdmf_document(const std::string& title, const std::vector<GridDatasets>& grids,
+                                        const std::vector<OutputStep>& outputs);
 
 }  // namespace drogue::run

@@ -7,7 +7,7 @@
 namespace drogue::scene {
 namespace {
 
-/// A whole number without point or exponent: limits read `>= 8`, not `>= 8.0`.
+/// Integer without point or exponent: limits read `>= 8`, not `>= 8.0`.
 std::string short_text(double value) {
   if (value == std::rint(value) && std::abs(value) < 1e10)
     return std::to_string(static_cast<std::int64_t>(value));
@@ -25,7 +25,7 @@ std::string array_text(const std::vector<std::string>& elements) {
   return "[" + text + "]";
 }
 
-/// Reads an array element by element; `read` takes a node and its index and returns a complaint.
+/// Reads an array element by element; `read` takes a node and its index and returns the fault.
 template <class Read>
 std::string read_array(const Node& node, const std::string& of, Read read) {
   const auto* array = node.as<Node::Array>();

@@ -27,26 +27,26 @@ struct Limits {
   [[nodiscard]] std::string text() const;  ///< `> 0 and <= 2`, `8 .. 268435456`; empty where all is allowed
 };
 
-/// How a value of one type is read from a node into the place it is bound to, and printed from there.
+/// Reads a value from a node into the variable that it is bound to, and prints it.
 struct Codec {
-  std::string type;  ///< for the docs and for errors
-  /// Returns what is wrong as the rest of a sentence that starts with the key, or nothing.
+  std::string type;  ///< for documentation and errors
+  /// Returns the fault as the rest of a sentence that starts with the key; empty if there is none.
   std::function<std::string(const Node&, const Limits&)> read;
   std::function<std::optional<std::string>()> print;  ///< as TOML; nothing where no value is set
   std::function<void()> reset;                        ///< back to what was there at the declaration
 };
 
-/// The `reset` of a codec bound to `value`.
+/// `reset` function of a codec bound to `value`.
 template <class T>
 std::function<void()> back_to_default(T& value) {
   return [&value, standard = value] { value = standard; };
 }
 
-/// Text of a number a `--print-scene` reads back exactly.
+/// Text of a number that reads back as the same number.
 std::string toml_text(double value);
 std::string toml_text(std::int64_t value);
 
-/// Each returns a complaint or nothing, and stores in `value` only what is right.
+/// Each returns the fault or an empty text, and changes `value` only if there is no fault.
 std::string read_real(const Node& node, const Limits& limits, double& value);
 std::string read_integer(const Node& node, const Limits& limits, std::int64_t& value);
 std::string read_name(const Node& node, const std::vector<std::string>& valid, std::string& value);
@@ -54,11 +54,11 @@ std::string read_expression(const Node& node, const std::vector<std::string>& va
 
 Codec real_codec(double& value);
 Codec real_codec(std::optional<double>& value);
-/// A real kept under `name` in a map; not set: not there.
+/// Real number under `name` in a map; absent if not set.
 Codec real_codec(std::map<std::string, double>& values, const std::string& name);
 Codec boolean_codec(bool& value);
 Codec text_codec(std::string& value);
-/// A string that can only be `value`: which app a scene is for.
+/// String that must equal `value`, say the name of the program.
 Codec fixed_codec(std::string value);
 Codec expression_codec(std::string& value, std::vector<std::string> variables);
 /// A number or an expression of `variables`; kept as the text of the expression.
@@ -67,10 +67,10 @@ Codec real_or_expression_codec(std::string& value, std::vector<std::string> vari
 Codec interval_codec(double& low, double& high);
 /// Reals in increasing order where `increasing`; of `size` elements where that is not 0.
 Codec reals_codec(std::vector<double>& values, std::size_t size, bool increasing);
-/// Names out of `valid`, none twice.
+/// Distinct names out of `valid`.
 Codec names_codec(std::vector<std::string>& values, std::vector<std::string> valid);
 
-/// An integer that fits T whatever the declared limits are.
+/// Integer within the range of T and the declared limits.
 template <class T>
 Codec integer_codec(T& value) {
   return {"integer",
@@ -89,7 +89,7 @@ Codec integer_codec(T& value) {
 template <class T>
 using Choices = std::vector<std::pair<std::string, T>>;
 
-/// One of some names, each standing for a value. `Place` is T or std::optional<T>.
+/// One of several names, each standing for a value. `Place` is T or std::optional<T>.
 template <class T, class Place>
 Codec choice_codec(Place& value, const Choices<T>& choices) {
   std::vector<std::string> names;

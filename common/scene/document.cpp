@@ -3,7 +3,7 @@
 namespace drogue::scene {
 namespace {
 
-/// A vertical bar would end the cell.
+/// Escapes vertical bars, which would end a cell.
 std::string cell(const std::string& text) {
   std::string result;
   for (const char c : text) result += c == '|' ? std::string("\\|") : std::string(1, c);

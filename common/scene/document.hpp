@@ -7,10 +7,10 @@
 
 namespace drogue::scene {
 
-/// Markdown tables of all keys, one a table of the scene: key, type, unit, default, range, meaning.
+/// Markdown tables of all keys, one per table of the scene: key, type, unit, default, range, meaning.
 std::string document(const Table& root);
 
-/// The path of every key that can be declared below `root`, array elements as `[]`.
+/// Paths of all keys that can be declared below `root`; array elements as `[]`.
 std::vector<std::string> all_paths(const Table& root);
 
 }  // namespace drogue::scene

@@ -12,15 +12,15 @@ struct ShippedScene {
   std::filesystem::path file;
 };
 
-/// The scenes in a folder, by name; none where the folder is missing. A file that is not TOML has no
+/// Scenes of a folder, sorted by name; empty if the folder is missing. A file that is not TOML has no
 /// description.
 std::vector<ShippedScene> list_scenes(const std::filesystem::path& folder);
 
-/// One line a scene: its name, then its description.
+/// One line per scene: its name, then its description.
 std::string list_text(const std::vector<ShippedScene>& scenes);
 
-/// The file that the SCENE argument means: a file of that name, else the shipped scene of that name.
-/// Throws Failure(usage) with the nearest shipped name where there is neither.
+/// File for the argument SCENE: a file of that path, else the shipped scene of that name. Throws `Failure`
+/// (usage), with the nearest shipped name, if neither exists.
 std::filesystem::path find_scene(const std::string& argument, const std::filesystem::path& folder);
 
 }  // namespace drogue::scene

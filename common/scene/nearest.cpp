@@ -25,8 +25,8 @@ int edit_distance(std::string_view a, std::string_view b) {
 
 namespace {
 
-/// One slip, or fewer than one for three letters: more of them make another word ("heston" of "merton").
-/// Up to a half of the nearest name may be left out at its end.
+/// Accepted number of edits: one per three letters, as more make another word ("heston" of "merton"). Up to
+/// half of the nearest name may be missing at its end.
 bool is_near(std::string_view word, std::string_view name) {
   const int edits = edit_distance(word, name);
   const auto letters = static_cast<int>(std::max(word.size(), name.size()));

@@ -6,10 +6,10 @@
 
 namespace drogue::scene {
 
-/// Edits (insert, delete, replace, swap of neighbours) that turn one word into another.
+/// Edit distance of two words: insertions, deletions, replacements, swaps of neighbours.
 int edit_distance(std::string_view a, std::string_view b);
 
-/// `did you mean "weno"?` for the nearest of the valid words, or all of them where none is near.
+/// Text `did you mean "weno"?` for the nearest valid word, or all valid words if none is near.
 std::string suggestion(std::string_view word, const std::vector<std::string>& valid);
 
 }  // namespace drogue::scene

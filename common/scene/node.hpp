@@ -11,10 +11,10 @@ namespace drogue::scene {
 
 struct Member;
 
-/// A date or a time of day: TOML has them, no scene does.
+/// Date or time of day: valid TOML that no scene uses.
 struct Date {};
 
-/// One value of a TOML document and where it stands. Free of toml++, so that only the parser needs it.
+/// Value of a TOML document with its origin. Independent of toml++.
 struct Node {
   using Array = std::vector<Node>;
   using Table = std::vector<Member>;  ///< in the order of the document
@@ -31,23 +31,23 @@ struct Node {
     return std::get_if<T>(&value);
   }
 
-  /// The member of a table; null if it has none of that name or is no table.
+  /// Member of a table; null if there is none or if the node is no table.
   [[nodiscard]] const Node* find(std::string_view name) const;
 };
 
 struct Member {
   std::string name;
-  std::string origin;  ///< of the key; the value may stand on a later line
+  std::string origin;  ///< origin of the key; the value may be on a later line
   Node node;
 };
 
-/// A node in words for an error: `the string "abc"`, `1.5`, `an array`.
+/// Description of a node for messages: `the string "abc"`, `1.5`, `an array`.
 std::string describe(const Node& node);
 
 /// A TOML basic string, quoted and escaped.
 std::string toml_string(std::string_view text);
 
-/// The shortest TOML float that reads back to the same double.
+/// Shortest TOML float that reads back as the same double.
 std::string real_text(double value);
 
 }  // namespace drogue::scene

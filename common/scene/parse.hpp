@@ -8,16 +8,15 @@
 
 namespace drogue::scene {
 
-/// Reads a TOML file. Throws Failure: usage where there is no readable file, invalid_scene (`FILE:LINE: ...`)
-/// where it is not TOML (bad syntax, a key given twice, bytes that are not UTF-8).
+/// Parses a TOML file. Throws `Failure`: usage if there is no readable file, invalid_scene (`FILE:LINE: ...`)
+/// for invalid TOML.
 Node parse_file(const std::filesystem::path& file);
 
-/// The same for a text; `name` stands for the file in errors.
+/// Parses a text; `name` replaces the file name in errors.
 Node parse_text(std::string_view text, const std::string& name);
 
-/// Puts `key.path=value` into the document, over what is there or beside it; a path may index an array
-/// (`initial.regions.0.rho`). The value is TOML; a bare word is taken as a string.
-/// Throws Failure(invalid_scene) that starts `--set key.path=value: `.
+/// Applies `key.path=value` to the document; a path may index an array (`initial.regions.0.rho`). The value
+/// is TOML; a bare word is a string. Throws `Failure` (invalid_scene) with `--set key.path=value: ...`.
 void apply_set(Node& document, const std::string& assignment);
 
 }  // namespace drogue::scene

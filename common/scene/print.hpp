@@ -6,7 +6,7 @@
 
 namespace drogue::scene {
 
-/// The scene that `root` is bound to, as TOML: every value that is set and applies, in the order of
+/// Prints the scene that `root` is bound to as TOML: every value that is set and applies, in the order of
 /// declaration.
 std::string print(const Table& root);
 

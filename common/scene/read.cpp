@@ -5,6 +5,7 @@
 #include "common/program/failure.hpp"
 #include "common/scene/document.hpp"
 #include "common/scene/nearest.hpp"
+#include "common/scene/parse.hpp"
 
 namespace drogue::scene {
 
@@ -22,7 +23,7 @@ class Reader {
   }
 
  private:
-  /// In the order in which errors matter.
+  /// Kinds of errors by descending importance.
   enum class Rank { decisive, unknown, value, missing, contradiction };
 
   struct Problem {
@@ -99,7 +100,7 @@ class Reader {
     if (key._resize) key._resize(0);
   }
 
-  /// A `--set` has the last word: what the file gives and the assignment makes meaningless is forgotten.
+  /// Drops keys of the file that a `--set` assignment makes meaningless.
   static void drop_overridden(Table& table) {
     const auto set_alternative =
         std::find_if(table._alternatives.begin(), table._alternatives.end(),
@@ -115,7 +116,7 @@ class Reader {
     }
   }
 
-  /// What can only be seen once every value is read.
+  /// Checks that need all values.
   void check(const Table& table) {
     for (const auto& key : table._keys) {
       const bool applies = key->_applies();
@@ -161,6 +162,12 @@ class Reader {
 };
 
 void read(Table& root, const Node& document) { Reader(root).run(document); }
+
+void read_file(Table& root, const std::filesystem::path& file, const std::vector<std::string>& assignments) {
+  Node document = parse_file(file);
+  for (const std::string& assignment : assignments) apply_set(document, assignment);
+  read(root, document);
+}
 
 void contradict(const Table& root, const std::string& path, const std::string& sentence) {
   throw Failure(ExitCode::invalid_scene, root.origin(path) + ": " + sentence);

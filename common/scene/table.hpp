@@ -10,9 +10,8 @@
 #include "common/scene/codec.hpp"
 #include "common/scene/node.hpp"
 
-/// Declarations of a scene's keys, each bound to the place in a struct that holds its value. One declaration
-/// gives reading, checking, printing, documentation and the texts of errors; a default is what the struct
-/// holds.
+/// Declarations of the keys of a scene, each bound to a variable. One declaration serves reading, checking,
+/// printing, documentation and error messages; the initial value of the variable is the default.
 namespace drogue::scene {
 
 class Table;
@@ -27,16 +26,16 @@ class Key {
 
   Key& unit(std::string unit);
   Key& required();
-  /// The key may stand in the scene only where this holds; `condition` says so: `with weno = "z"`. A `--set`
-  /// of the sibling key `decided_by` drops this key from the file where it no longer applies.
+  /// Allows the key only where `applies` returns true; `condition` names the condition: `with weno = "z"`. A
+  /// `--set` of the sibling key `decided_by` drops this key from the file where it no longer applies.
   Key& when(std::function<bool()> applies, std::string condition, std::string decided_by);
   Key& above(double low);
   Key& at_least(double low);
   Key& at_most(double high);
   Key& range(double low, double high);
-  /// What the docs say of a default that the struct cannot show.
+  /// Documentation of a default that the variable cannot show.
   Key& default_text(std::string text);
-  /// A wrong value here is reported before any other error: it makes the rest of the scene meaningless.
+  /// Reports an invalid value of this key before any other error: the rest of the scene is meaningless then.
   Key& decisive();
 
   [[nodiscard]] bool given() const { return !_origin.empty(); }
@@ -59,7 +58,7 @@ class Key {
   std::function<bool()> _applies = [] { return true; };
   std::string _condition;
   std::string _decided_by;
-  std::string _origin;                          ///< where the scene gives it
+  std::string _origin;                          ///< origin of the key in the scene
   std::vector<std::unique_ptr<Table>> _tables;  ///< one, or one an element
   std::function<void(std::size_t)>
       _resize;  ///< makes the optional value or the elements and their tables, or none
@@ -71,20 +70,19 @@ class Table {
   explicit Table(std::string path = "") : _path(std::move(path)) {}
 
   Key& value(std::string name, Codec codec, std::string help);
-  /// A table whose values stand in the struct whether the scene has the table or not. `describe(Table&)`
-  /// declares its keys.
+  /// Table that always exists in the struct. `describe(Table&)` declares its keys.
   Key& table(const std::string& name, const std::function<void(Table&)>& describe, std::string help);
-  /// A table that is there or not. `describe(Table&, T&)` declares its keys.
+  /// Optional table. `describe(Table&, T&)` declares its keys.
   template <class T, class Describe>
   Key& optional_table(const std::string& name, std::optional<T>& place, Describe describe, std::string help);
   /// An array of tables.
   template <class T, class Describe>
   Key& tables(const std::string& name, std::vector<T>& place, Describe describe, std::string help);
 
-  /// Of its keys a scene has one and no more.
+  /// Requires exactly one of the keys `names`.
   Table& exactly_one_of(std::vector<std::string> names);
 
-  /// Where the scene gives the key of this dotted path, else where the table around it starts.
+  /// Origin (`FILE:LINE`) of the key with this dotted path, else of the enclosing table.
   [[nodiscard]] std::string origin(const std::string& path) const;
   [[nodiscard]] bool given(const std::string& path) const;
   [[nodiscard]] const std::string& path() const { return _path; }

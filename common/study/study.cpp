@@ -13,7 +13,7 @@
 namespace drogue::study {
 namespace {
 
-/// Lets `drogue-plot`, which lies beside this program, draw the study.
+/// Starts `drogue-plot`, which lies beside this program.
 void draw(const run::RunDirectory& directory, const std::string& program_name) {
   std::error_code error;
   const std::filesystem::path plot =

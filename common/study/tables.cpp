@@ -12,7 +12,7 @@ namespace {
 
 double time_of(const Row& row) { return row.samples.empty() ? NAN : run::median(row.samples); }
 
-/// Not a number where the row has none of that name.
+/// Error of a row by name; NaN if the row lacks it.
 double error_of(const Row& row, const std::string& name) {
   for (const auto* values : {&row.errors, &row.others})
     if (const auto found = values->find(name); found != values->end()) return found->second;

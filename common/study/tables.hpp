@@ -10,7 +10,7 @@ std::string csv(const std::vector<Row>& rows, const Columns& columns, const std:
 /// study.json, schema `drogue.study/1`.
 std::string json(const std::vector<Row>& rows, const Columns& columns, const run::ResultDocument& facts);
 
-/// The line that tells of a run once it is done.
+/// One line for the terminal on a finished run.
 std::string line(const Row& row, const Columns& columns);
 
 }  // namespace drogue::study

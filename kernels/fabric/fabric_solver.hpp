@@ -11,17 +11,17 @@
 
 #include "kernels/device/captured_graph.hpp"
 #include "kernels/fabric/contact/contact.hpp"
-#include "kernels/mesh/edges.hpp"
 #include "kernels/fabric/elastic/frequency.hpp"
 #include "kernels/fabric/elastic/lanczos.hpp"
+#include "kernels/fabric/elastic/stress.hpp"
 #include "kernels/fabric/loads/dirichlet.hpp"
 #include "kernels/fabric/solver.hpp"
 #include "kernels/fabric/stepping/persistent_pairs.hpp"
 #include "kernels/fabric/stepping/persistent_rings.hpp"
 #include "kernels/fabric/stepping/step.hpp"
-#include "kernels/fabric/elastic/stress.hpp"
 #include "kernels/fabric/totals.hpp"
 #include "kernels/fabric/vertex_force.hpp"
+#include "kernels/mesh/edges.hpp"
 
 namespace drogue::fabric {
 
@@ -635,7 +635,7 @@ void FabricSolver<ExecutionSpace, VertexForce>::make_persistent() {
     const bool rings = has_triangles(p.material.model) || _external.has_pressure();
     const Patches patches =
         make_patches(p.mesh.rest, ring_adjacency(rings ? p.mesh : Mesh{p.mesh.rest, {}, {}, {}, {}}),
-                    spring_adjacency(p.mesh, p.material), count);
+                     spring_adjacency(p.mesh, p.material), count);
     const PatchViews<ExecutionSpace> views = patch_views(space(), patches);
     const bool pairs = patches.team <= most_pair_vertices && !_has_external;
     constexpr ConstitutiveModel any{Model::edge};  // all models need the same memory

@@ -42,7 +42,7 @@ std::unique_ptr<Solver> make_solver(device::Backend backend, const Parameters& p
   }
 }
 
-std::unique_ptr<Solver> make_seed_solver(device::Backend backend, const Parameters& parameters) {
+std::unique_ptr<Solver> make_baseline_solver(device::Backend backend, const Parameters& parameters) {
   switch (backend) {
 #define DROGUE_CREATE(name)   \
   case device::Backend::name: \
@@ -54,7 +54,7 @@ std::unique_ptr<Solver> make_seed_solver(device::Backend backend, const Paramete
   }
 }
 
-/// Kokkos tells that memory ran out by an error of the general kind.
+/// Translates the `std::runtime_error` that Kokkos throws for a failed allocation into `std::bad_alloc`.
 template <class Make>
 std::unique_ptr<Solver> allocate(const Make& make) {
   try {
@@ -73,9 +73,9 @@ std::unique_ptr<Solver> create_solver(device::Backend backend, const Parameters&
   return allocate([&] { return make_solver(backend, parameters); });
 }
 
-std::unique_ptr<Solver> create_seed_solver(device::Backend backend, const Parameters& parameters) {
+std::unique_ptr<Solver> create_baseline_solver(device::Backend backend, const Parameters& parameters) {
   check(parameters);
-  return allocate([&] { return make_seed_solver(backend, parameters); });
+  return allocate([&] { return make_baseline_solver(backend, parameters); });
 }
 
 }  // namespace drogue::gas

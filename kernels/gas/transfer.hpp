@@ -4,11 +4,12 @@
 #include <utility>
 
 #include "kernels/device/copy.hpp"
-#include "kernels/gas/tile.hpp"
+#include "kernels/gas/tile/tile.hpp"
 
 namespace drogue::gas {
 
-/// Copies `count` values of one field between a device View and host memory, and waits.
+/// Copies a range of cells of one field between a device View and host memory. Blocks until the copy is
+/// complete.
 template <class ExecutionSpace, class Device, class Value>
 void copy_range(const ExecutionSpace& space, const Device& device, std::int64_t first, std::span<Value> host,
                 bool to_device) {

@@ -1,11 +1,10 @@
 #pragma once
 
-#include "common/program/failure.hpp"
-#include "common/program/mini_app_options.hpp"
+#include "miniapps/framework/mini_app.hpp"
 
 namespace drogue::gas_app {
 
-/// Does what the command line asks for. Throws Failure; the exit code of an interrupted run is returned.
-ExitCode run_app(const MiniAppOptions& options);
+/// The program drogue-gas.
+framework::MiniApp mini_app();
 
 }  // namespace drogue::gas_app

@@ -24,8 +24,7 @@ ExactSolution riemann_solution(const GasScene& scene, double time) {
   };
 }
 
-/// The initial state carried along with its velocity, which is the same everywhere, once around the periodic
-/// domain.
+/// Initial state advected with its uniform velocity through the periodic domain.
 ExactSolution advected_solution(const GasScene& scene, double time) {
   const gas::Parameters& p = scene.parameters;
   return [initial = InitialState(scene), p, time](double x) {
@@ -35,7 +34,7 @@ ExactSolution advected_solution(const GasScene& scene, double time) {
   };
 }
 
-/// Linear between the cell centres of the reference.
+/// Linear interpolation between the cell centres of the reference.
 ExactSolution interpolated_solution(const Reference& reference) {
   return [&reference](double x) {
     const auto& xs = reference.x;

@@ -12,23 +12,24 @@
 
 namespace drogue::gas_app {
 
-/// The solution a run is compared with: state at `x` (m) and the end time.
+/// Exact solution at the end time: state at `x`, m.
 using ExactSolution = std::function<Primitive(double x)>;
 
-/// A finer own run at the end time: where no closed form exists.
+/// Result of a finer run at the end time, for scenes without a closed form.
 struct Reference {
   std::vector<double> x, rho, u, p;
 };
 
-/// Runs the scene with `scene.verify.reference` on `backend`, its progress shown unless `quiet`; nothing if a
-/// signal ended it. Throws Failure if that run fails.
+/// Runs the scene with `scene.verify.reference` on `backend`; shows progress unless `quiet`. Returns nothing
+/// after a signal. Throws `Failure` (numerical_failure).
 std::optional<Reference> run_reference(const GasScene& scene, device::Backend backend, bool quiet);
 
-/// What `scene.verify.exact` names; `reference` must be filled for `Exact::reference`.
+/// Solution that `scene.verify.exact` names at `time`, s. Keeps a reference to `reference`, which must be
+/// filled for `Exact::reference`.
 ExactSolution exact_solution(const GasScene& scene, double time, const Reference& reference);
 
-/// L1 (sum |e| dx), L2 (sqrt(sum e^2 dx)) and L-infinity norms of the error at the cell centres, for density,
-/// velocity and pressure, by the names of the scene's tolerances.
+/// Norms of the error at the cell centres by the names of the scene's tolerances: L1 (sum |e| dx), L2
+/// (sqrt(sum e^2 dx)) and L-infinity of density, velocity and pressure, in SI units.
 std::map<std::string, double> error_norms(gas::Solver& solver, const gas::Parameters& parameters,
                                           const ExactSolution& exact);
 

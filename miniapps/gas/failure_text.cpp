@@ -11,23 +11,23 @@ std::string failure_text(gas::Solver& solver, const gas::Parameters& parameters,
   std::ostringstream text;
   text.precision(9);
   if (stop == gas::Stop::max_steps) {
-    const gas::Resume now = solver.resume_state();
+    const gas::RestartState now = solver.restart_state();
     text << "max_steps = " << parameters.max_steps << " reached at t = " << now.time
          << " s, before the end time";
     return text.str();
   }
-  const gas::Failed failed = solver.failure();
-  switch (failed.quantity) {
-    case gas::Quantity::density:
+  const gas::StepFailure failed = solver.failure();
+  switch (failed.reason) {
+    case gas::FailureReason::density:
       text << "density is not positive";
       break;
-    case gas::Quantity::pressure:
+    case gas::FailureReason::pressure:
       text << "pressure is not positive";
       break;
-    case gas::Quantity::not_finite:
+    case gas::FailureReason::not_finite:
       text << "the state is not finite";
       break;
-    case gas::Quantity::time_step:
+    case gas::FailureReason::time_step:
       text << "the time step collapsed to " << failed.dt << " s (CFL)";
       break;
   }
@@ -36,7 +36,7 @@ std::string failure_text(gas::Solver& solver, const gas::Parameters& parameters,
   text << " at step " << failed.step << ", t = " << failed.time << " s";
   const bool has_limiter = std::string_view(solver.driver()) != "seed";
   if (has_limiter && parameters.positivity == gas::Positivity::off &&
-      failed.quantity != gas::Quantity::time_step)
+      failed.reason != gas::FailureReason::time_step)
     text << "; scheme.positivity = \"auto\" may save the run";
   return text.str();
 }

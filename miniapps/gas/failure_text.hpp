@@ -6,7 +6,7 @@
 
 namespace drogue::gas_app {
 
-/// One sentence on why stepping stopped short of its target: quantity, cell, x, step and time.
+/// One sentence on the reason of a premature stop: quantity, cell, x (m), step and time (s).
 std::string failure_text(gas::Solver& solver, const gas::Parameters& parameters, gas::Stop stop);
 
 }  // namespace drogue::gas_app

@@ -9,8 +9,9 @@
 #include <vector>
 
 #include "kernels/gas/parameters.hpp"
+#include "miniapps/framework/scene_keys.hpp"
 
-/// The scene of `drogue-gas`: what a TOML file says, checked and with every default filled in.
+/// Scene of `drogue-gas`: the content of a TOML file, checked and with every default filled in.
 namespace drogue::gas_app {
 
 /// State of the gas at a point: density in kg/m^3, velocity in m/s, pressure in Pa.
@@ -27,7 +28,7 @@ struct Riemann {
   Primitive right;
 };
 
-/// A constant state up to `until` (m); the last region has none and reaches the end of the domain.
+/// Constant state up to `until`, m; the last region has no `until` and reaches the end of the domain.
 struct Region {
   std::optional<double> until;
   Primitive state;
@@ -47,16 +48,11 @@ struct Initial {
   std::optional<ExpressionState> expression;
 };
 
-struct Output {
-  std::vector<std::string> fields;  ///< subset of rho, u, p; empty: no fields.h5
-  std::vector<double> times;        ///< s, increasing, within the run; empty exactly if `fields` is
-  int history_every = 10;           ///< steps between rows of history.csv; 0: none
-  int restart_every = 0;            ///< steps between restart files; 0: none
-};
+using Output = framework::OutputRequest;
 
 enum class Exact { riemann, advection, reference };
 
-/// A quantity with a known value, met within a relative tolerance.
+/// Known value of a quantity and the tolerance of its relative error.
 struct Target {
   double value = 0.0;
   double tolerance = 0.0;
@@ -64,9 +60,9 @@ struct Target {
 
 struct Verify {
   std::optional<Exact> exact;
-  std::optional<gas::Parameters> reference;  ///< the finer own run; set exactly if `exact` is reference
+  std::optional<gas::Parameters> reference;  ///< finer run; set exactly if `exact` is reference
   std::map<std::string, double> tolerances;  ///< by name: l1_density ... linf_pressure
-  std::optional<Target> max_density;         ///< of all cells at the end, kg/m^3
+  std::optional<Target> max_density;         ///< maximum over all cells at the end, kg/m^3
   std::optional<double> conservation;        ///< tolerance of the relative change of mass, momentum, energy
 };
 
@@ -81,25 +77,31 @@ struct GasScene {
   Verify verify;
 };
 
-/// How `--seed-mode` reads a scene: with the dissertation's scheme in place of the scene's.
-enum class SchemeSource { scene, dissertation };
+/// Source of the numerical scheme. `--seed-mode` replaces the scene's scheme by the baseline of [Shi].
+enum class SchemeSource { scene, baseline };
 
-/// Reads and checks `file`, then the `--set` assignments `key.path=value` in their order. The initial state
-/// has been evaluated at every cell when this returns. Throws Failure: usage for a missing file,
-/// invalid_scene (`FILE:LINE: ...`) for all that is wrong in it.
+/// Reads and checks `file` with its `--set` assignments, and evaluates the initial state at every cell.
+/// Throws `Failure`: usage for a missing file, invalid_scene (`FILE:LINE: ...`) otherwise.
 GasScene read_gas_scene(const std::filesystem::path& file, const std::vector<std::string>& sets = {},
                         SchemeSource source = SchemeSource::scene);
 
-/// The resolved scene as TOML: every default that applies, no key that does not. Resolves to itself.
+/// Resolved scene as TOML: every default that applies, no key that does not. It resolves to itself.
 std::string print_gas_scene(const GasScene& scene);
 
-/// The scheme as scenes spell it: js, z, m, teno5.
+/// Fingerprint of mesh, gas and scheme for restart files. Output, end time and checks may change between a
+/// run and its continuation.
+std::string scene_fingerprint(GasScene scene);
+
+/// Folder of the shipped scenes: beside the installed or bundled program, else in the source tree.
+std::filesystem::path scene_folder();
+
+/// Name of a reconstruction in scenes: js, z, m, teno5.
 std::string weno_name(gas::Weno weno);
 
-/// All keys with type, range, unit, default and meaning, as the Markdown page docs/scenes-gas.md.
+/// Markdown page docs/scenes-gas.md: all keys with type, range, unit, default and meaning.
 std::string document_gas_scene();
 
-/// The initial state at a point. One copy a thread: a call uses the object's own scratch.
+/// Initial state at a point. Not thread-safe: every thread needs a copy.
 class InitialState {
  public:
   explicit InitialState(const GasScene& scene);

@@ -16,7 +16,7 @@ using scene::contradict;
 using scene::real_text;
 using scene::Table;
 
-/// Largest ratio of initial pressures that the FP32 part of the split precision carries.
+/// Largest ratio of initial pressures that the FP32 part of the split precision resolves.
 constexpr double split_pressure_ratio = 1e11;
 
 std::string domain_text(const gas::Parameters& parameters) {
@@ -85,20 +85,6 @@ void check_regions(const Table& root, const GasScene& scene) {
   }
 }
 
-void complete_output(const Table& root, GasScene& scene) {
-  Output& output = scene.output;
-  if (!output.times.empty() && output.fields.empty()) output.fields = {"rho", "u", "p"};
-  if (!output.fields.empty() && !root.given("output.times")) output.times = {scene.end_time};
-  if (!output.fields.empty() && output.times.empty()) {
-    contradict(root, "output.times", "output.times is empty, yet output.fields asks for fields");
-  }
-  if (!output.times.empty() && output.times.back() > scene.end_time) {
-    contradict(root, "output.times",
-               "output.times: " + real_text(output.times.back()) +
-                   " is later than run.end_time = " + real_text(scene.end_time));
-  }
-}
-
 void complete_verify(const Table& root, GasScene& scene) {
   Verify& verify = scene.verify;
   if (verify.exact == Exact::riemann && !scene.initial.riemann) {
@@ -124,7 +110,7 @@ void complete_verify(const Table& root, GasScene& scene) {
   reference.block = scene.parameters.block;
 }
 
-/// The initial state at every cell centre of `scene`, or its first error.
+/// Surveys the initial state at every cell centre. Throws `Failure` for the first invalid one.
 Survey require_gas(const Table& root, const GasScene& scene) {
   const Survey seen = survey_initial_state(scene);
   if (seen.first_bad < scene.parameters.cells) {
@@ -161,7 +147,7 @@ void complete_and_check(const Table& root, GasScene& scene) {
   check_tuning(root, scene.parameters);
   if (scene.initial.riemann) check_riemann(root, scene);
   check_regions(root, scene);
-  complete_output(root, scene);
+  framework::complete_output(root, scene.output, {"rho", "u", "p"}, {scene.end_time, "run.end_time"});
   complete_verify(root, scene);
   check_initial(root, scene);
 }

@@ -5,8 +5,8 @@
 
 namespace drogue::gas_app {
 
-/// Fills the defaults that depend on other keys and refuses what only several keys together make wrong, the
-/// initial state at every cell included. Throws Failure(invalid_scene) at the key to blame.
+/// Fills in the defaults that depend on other keys and checks combinations of keys and the initial state at
+/// every cell. Throws `Failure` (invalid_scene) at the key in error.
 void complete_and_check(const scene::Table& root, GasScene& scene);
 
 }  // namespace drogue::gas_app

@@ -22,8 +22,9 @@ const Choices<gas::Splitting> splitting_choices = {{"lf-global", gas::Splitting:
                                                    {"lf-stencil", gas::Splitting::lf_stencil}};
 const Choices<gas::TimeScheme> time_choices = {{"ssprk3", gas::TimeScheme::ssprk3},
                                                {"ssprk43", gas::TimeScheme::ssprk43}};
-const Choices<gas::Mean> mean_choices = {
-    {"arithmetic", gas::Mean::arithmetic}, {"conserved", gas::Mean::conserved}, {"roe", gas::Mean::roe}};
+const Choices<gas::FaceAverage> mean_choices = {{"arithmetic", gas::FaceAverage::arithmetic},
+                                                {"conserved", gas::FaceAverage::conserved},
+                                                {"roe", gas::FaceAverage::roe}};
 const Choices<gas::Positivity> positivity_choices = {
     {"off", gas::Positivity::off}, {"on", gas::Positivity::on}, {"auto", gas::Positivity::automatic}};
 const Choices<gas::Precision> precision_choices = {{"double", gas::Precision::full},
@@ -39,14 +40,14 @@ const Choices<gas::Driver> driver_choices = {{"auto", gas::Driver::automatic},
 const Choices<Exact> exact_choices = {
     {"riemann", Exact::riemann}, {"advection", Exact::advection}, {"reference", Exact::reference}};
 
-/// A value whose 0, or first choice, stands for "not given".
+/// Treats 0, or the first choice, as an absent value.
 template <class T>
 Codec zero_is_unset(Codec codec, const T& value) {
   codec.print = [print = codec.print, &value] { return value != T{} ? print() : std::nullopt; };
   return codec;
 }
 
-/// What a run and the finer run it is compared with have in common.
+/// Declares the scheme keys that a run shares with its finer reference run.
 void declare_weights(Table& table, gas::Parameters& scheme) {
   table.value("weno", scene::choice_codec(scheme.weno, weno_choices),
               "Nonlinear weights of the reconstruction");
@@ -58,7 +59,7 @@ void declare_weights(Table& table, gas::Parameters& scheme) {
               "field's stencil");
   table.value("time", scene::choice_codec(scheme.time_scheme, time_choices),
               "Runge-Kutta scheme, of 3 or 4 stages");
-  table.value("mean", scene::choice_codec(scheme.mean, mean_choices),
+  table.value("mean", scene::choice_codec(scheme.face_average, mean_choices),
               "State at a face whose eigenvectors are used: mean of u and H, mean of U, or Roe's");
 }
 
@@ -140,21 +141,8 @@ void declare_output(Table& table, Output& output) {
                           .value("fields", scene::names_codec(output.fields, {"rho", "u", "p"}),
                                  "Fields written to fields.h5")
                           .default_text("all three where times are given, else none");
-  table.value("times", scene::reals_codec(output.times, 0, true), "Times at which fields are written")
-      .unit("s")
-      .at_least(0.0)
-      .default_text("the end time where fields are given")
-      .when(
-          [&output, &fields] { return !output.fields.empty() || (!fields.given() && !output.times.empty()); },
-          "with fields", "fields");
-  table
-      .value("history_every", scene::integer_codec(output.history_every),
-             "Steps between rows of history.csv; 0: none")
-      .range(0, 1e9);
-  table
-      .value("restart_every", scene::integer_codec(output.restart_every),
-             "Steps between restart files; 0: none")
-      .range(0, 1e9);
+  framework::declare_output_times(table, output, fields);
+  framework::declare_output_intervals(table, output);
 }
 
 void declare_verify(Table& table, Verify& verify) {
@@ -209,8 +197,7 @@ void declare_verify(Table& table, Verify& verify) {
 
 void declare_gas_scene(Table& root, GasScene& scene) {
   gas::Parameters& parameters = scene.parameters;
-  root.value("app", scene::fixed_codec("gas"), "The program the scene is for").required().decisive();
-  root.value("description", scene::text_codec(scene.description), "A sentence for --list-scenes");
+  framework::declare_app(root, "gas", scene.description);
   root.table(
           "gas",
           [&](Table& table) {

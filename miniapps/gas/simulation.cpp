@@ -1,148 +1,165 @@
 #include "miniapps/gas/simulation.hpp"
 
-#include <algorithm>
-#include <chrono>
-#include <cmath>
-
-#include "common/program/signals.hpp"
-#include "common/run/restart_file.hpp"
-#include "kernels/device/profiling_counters.hpp"
-#include "kernels/device/runtime.hpp"
+#include "common/program/stopwatch.hpp"
 #include "miniapps/gas/failure_text.hpp"
 #include "miniapps/gas/fields.hpp"
 
 namespace drogue::gas_app {
-
 namespace {
 
-using Clock = std::chrono::steady_clock;
+framework::HistoryRow history_row(const gas::HistoryRow& row) {
+  return {row.time,
+          {static_cast<double>(row.step), row.dt, row.mass, row.momentum, row.energy, row.boundary[0],
+           row.boundary[1], row.boundary[2], row.max_speed, static_cast<double>(row.limited_faces),
+           static_cast<double>(row.redone)}};
+}
 
-double seconds_since(Clock::time_point begin) {
-  return std::chrono::duration<double>(Clock::now() - begin).count();
+double value_of(const Primitive& state, const std::string& field) {
+  return field == "rho" ? state.rho : field == "u" ? state.u : state.p;
+}
+
+framework::Stop framework_stop(gas::Stop stop) {
+  switch (stop) {
+    case gas::Stop::target:
+      return framework::Stop::target;
+    case gas::Stop::pause:
+      return framework::Stop::pause;
+    case gas::Stop::interrupted:
+      return framework::Stop::interrupted;
+    default:
+      return framework::Stop::failed;
+  }
 }
 
 }  // namespace
 
-void describe_device(run::ResultDocument& result, const gas::Parameters& parameters,
-                     device::Backend backend) {
-  result.describe_device(std::string(device::name(backend)), device::device_facts());
-  result.precision = parameters.precision == gas::Precision::split ? "split" : "double";
+void set_limiter_metrics(const LimiterCounts& counts, run::Metrics& metrics) {
+  metrics.set("limiter", "touches", counts.limited_faces);
+  metrics.set("limiter", "cells", counts.limited_cells);
+  metrics.set("limiter", "redone_steps", counts.redone_steps);
 }
 
-Simulation::Simulation(const GasScene& scene, const RunSettings& settings)
+std::string precision_name(const gas::Parameters& parameters) {
+  return parameters.precision == gas::Precision::split ? "split" : "double";
+}
+
+run::DatasetSpec field_spec(const std::string& name, std::int64_t cells) {
+  const std::vector<std::uint64_t> shape = {static_cast<std::uint64_t>(cells)};
+  if (name == "rho") return {name, shape, "kg/m^3", "cell", "density"};
+  if (name == "u") return {name, shape, "m/s", "cell", "velocity"};
+  return {name, shape, "Pa", "cell", "pressure"};
+}
+
+run::DatasetSpec cell_centre_spec(std::int64_t cells) {
+  return {"x", {static_cast<std::uint64_t>(cells)}, "m", "cell", "cell centres"};
+}
+
+Simulation::Simulation(const GasScene& scene, const framework::SimulationSettings& settings)
     : _scene(scene), _settings(settings) {
-  const auto begin = Clock::now();
-  _solver = settings.seed_mode ? gas::create_seed_solver(settings.backend, scene.parameters)
-                               : gas::create_solver(settings.backend, scene.parameters);
-  const auto upload = Clock::now();
-  if (settings.restart.empty()) {
-    upload_initial_state(*_solver, scene);
+  _solver = settings.baseline ? gas::create_baseline_solver(settings.backend, scene.parameters)
+                              : gas::create_solver(settings.backend, scene.parameters);
+}
+
+void Simulation::start() {
+  {
+    const ScopedStopwatch stopwatch(_h2d_s);
+    upload_initial_state(*_solver, _scene);
     _solver->start();
     _initial = _solver->totals();
-  } else {
-    const RestartState state = read_restart(settings.restart, scene, *_solver);
-    run::require_not_after(settings.restart, state.resume.time, "run.end_time", scene.end_time);
-    _solver->restore(state.resume);
-    _initial = state.initial;
   }
-  _h2d_s = seconds_since(upload);
-  if (!scene.output.fields.empty() || scene.output.restart_every > 0) {
-    // The first snapshot allocates what all of them use.
-    _solver->begin_snapshot();
-    _solver->finish_snapshot();
-  }
-  _setup_s = seconds_since(begin);
+  allocate_snapshot();
 }
 
-double Simulation::next_stop(double time) const {
-  for (const double output : _scene.output.times)
-    if (output > time) return std::min(output, _scene.end_time);
-  return _scene.end_time;
-}
-
-bool Simulation::is_output_time(double time) const {
-  return std::find(_scene.output.times.begin(), _scene.output.times.end(), time) != _scene.output.times.end();
-}
-
-ExitCode Simulation::run(const run::RunDirectory* directory, run::ResultDocument& result) {
-  const bool resumed = !_settings.restart.empty();
-  gas::Resume now = _solver->resume_state();
-  std::optional<RunOutput> output;
-  if (directory != nullptr)
-    output.emplace(_scene, *_solver, *directory, resumed ? std::optional<double>(now.time) : std::nullopt);
-  if (output && !resumed) {
-    output->write_row(_initial);
-    if (is_output_time(0.0)) output->write_fields(0.0, 0);
-  }
-  ProgressLine progress(_settings.quiet);
-  const auto poll = [&](const gas::Status& status) {
-    progress.update(status.step, status.time, _scene.end_time);
-    return !interrupted();
-  };
-  const gas::RowSink rows = [&](const gas::HistoryRow& row) { output->write_row(row); };
-  const int row_every = output ? _scene.output.history_every : 0;
-  const std::int64_t restart_every = output ? _scene.output.restart_every : 0;
-
-  // However this ends, the result says how far it came.
-  const struct Describe {
-    Simulation& simulation;
-    run::ResultDocument& result;
-    ~Describe() { simulation.describe(result); }
-  } describe_at_end{*this, result};
-  bool warm = false;  // the first step allocates what all of them use
-  gas::Stop stop = gas::Stop::target;
-  const auto restart_state = [&] { return RestartState{_solver->resume_state(), _initial}; };
-  while (now.time < _scene.end_time) {
-    const double target = next_stop(now.time);
-    std::int64_t pause = restart_every > 0 ? (now.step / restart_every + 1) * restart_every : -1;
-    if (!warm) pause = now.step + 1;
-    const auto begin = Clock::now();
-    stop = _solver->advance(target, pause, row_every, rows, poll);
-    _compute_s += seconds_since(begin);
-    if (!warm) device::end_warmup();
-    warm = true;
-    now = _solver->resume_state();
-    if (output && now.time == target && is_output_time(target)) output->write_fields(target, now.step);
-    if (output && restart_every > 0 && now.step % restart_every == 0 && stop != gas::Stop::failed)
-      output->write_restart(restart_state());
-    if (stop != gas::Stop::target && stop != gas::Stop::pause) break;
-  }
-  progress.finish();
-  if (output) {
-    // An interrupted run goes on later and must then have the rows of one that was not.
-    if (stop != gas::Stop::interrupted) output->write_row(_solver->totals());
-    if (stop == gas::Stop::failed || stop == gas::Stop::max_steps || stop == gas::Stop::interrupted)
-      output->write_restart(restart_state());
-    output->finish();
-    _io_s = output->waited();
-  }
-  if (stop == gas::Stop::interrupted) return ExitCode::interrupted;
-  if (stop == gas::Stop::failed || stop == gas::Stop::max_steps)
-    throw Failure(ExitCode::numerical_failure, failure_text(*_solver, _scene.parameters, stop));
-  return ExitCode::ok;
-}
-
-void Simulation::write_restart(const run::RunDirectory& directory) {
+/// The first snapshot allocates the memory that all of them use.
+void Simulation::allocate_snapshot() {
+  if (_scene.output.fields.empty() && _scene.output.restart_every == 0) return;
   _solver->begin_snapshot();
-  gas_app::write_restart(directory.file("restart.h5"), _scene, *_solver, _solver->finish_snapshot(),
-                         {_solver->resume_state(), _initial});
+  _solver->finish_snapshot();
+}
+
+framework::TimeState Simulation::now() {
+  const gas::RestartState now = _solver->restart_state();
+  return {now.step, now.time};
+}
+
+framework::Stop Simulation::advance(const framework::AdvanceLimits& limits, const framework::RowSink& rows,
+                                    const framework::Poll& poll) {
+  const ScopedStopwatch stopwatch(_compute_s);
+  _stop = _solver->advance(
+      limits.target_time, limits.pause_step, limits.row_every,
+      [&](const gas::HistoryRow& row) { rows(history_row(row)); },
+      [&](const gas::Status& status) {
+        return poll({status.step, status.time});
+      });
+  const framework::Stop stop = framework_stop(_stop);
+  // The last good state of a failed run ends its history.
+  if (stop == framework::Stop::failed && limits.row_every > 0) rows(history_row(_solver->totals()));
+  return stop;
+}
+
+std::vector<run::Column> Simulation::history_columns() const {
+  return {{"step", ""},
+          {"dt", "s"},
+          {"mass", "kg/m^2"},
+          {"momentum", "kg/(m s)"},
+          {"energy", "J/m^2"},
+          {"mass_outflow", "kg/m^2"},
+          {"momentum_outflow", "kg/(m s)"},
+          {"energy_outflow", "J/m^2"},
+          {"max_speed", "m/s"},
+          {"limiter_touches", ""},
+          {"redone_steps", ""}};
+}
+
+framework::HistoryRow Simulation::row() {
+  const bool at_start = _solver->restart_state().step == _initial.step;
+  return history_row(at_start ? _initial : _solver->totals());
+}
+
+std::vector<run::DatasetSpec> Simulation::field_specs() const {
+  std::vector<run::DatasetSpec> specs;
+  for (const std::string& name : _scene.output.fields)
+    specs.push_back(field_spec(name, _scene.parameters.cells));
+  return specs;
+}
+
+void Simulation::write_mesh(run::FieldsWriter& fields) const {
+  fields.add_mesh(cell_centre_spec(_scene.parameters.cells), [&](std::uint64_t first, std::span<double> x) {
+    for (std::size_t i = 0; i < x.size(); ++i)
+      x[i] = cell_centre(_scene.parameters, static_cast<std::int64_t>(first + i));
+  });
+}
+
+framework::FieldsTask Simulation::snapshot() {
+  _solver->begin_snapshot();
+  return [this](run::FieldsWriter& fields) {
+    const gas::ConstConservedFields u = _solver->finish_snapshot();
+    std::vector<double> values;
+    for (const std::string& name : _scene.output.fields)
+      for_chunks(_scene.parameters.cells, [&](std::int64_t first, std::size_t count) {
+        values.resize(count);
+        for (std::size_t i = 0; i < count; ++i)
+          values[i] =
+              value_of(primitive(u, static_cast<std::size_t>(first) + i, _scene.parameters.gamma), name);
+        fields.write(name, static_cast<std::uint64_t>(first), values);
+      });
+  };
+}
+
+std::string Simulation::failure_text(bool) {
+  return gas_app::failure_text(*_solver, _scene.parameters, _stop);
 }
 
 void Simulation::describe(run::ResultDocument& result) {
-  const gas::Resume now = _solver->resume_state();
-  const gas::Phases phases = _solver->phases();
-  result.steps = now.step;
+  const gas::RestartState now = _solver->restart_state();
+  const gas::PhaseTimes phases = _solver->phase_times();
   result.driver = _solver->driver();
-  result.time = now.time;
   result.dt_min = now.dt_min;
   result.dt_max = now.dt_max;
-  result.limiter = {now.touches, _solver->touched_cells(), now.redone};
-  result.timing.setup_s = _setup_s;
-  result.timing.compute_s = _settings.seed_mode ? phases.compute : _compute_s;
-  result.timing.h2d_s = _settings.seed_mode ? phases.h2d : _h2d_s;
-  result.timing.d2h_s = _settings.seed_mode ? phases.d2h : _d2h_s;
-  result.timing.io_s = _io_s;
-  result.describe_ledger(device::profiling_counters());
+  set_limiter_metrics({now.limited_faces, _solver->limited_cells(), now.redone}, result.metrics);
+  result.timing.compute_s = _settings.baseline ? phases.compute : _compute_s;
+  result.timing.h2d_s = _settings.baseline ? phases.h2d : _h2d_s;
+  result.timing.d2h_s = _settings.baseline ? phases.d2h : 0.0;
 }
 
 }  // namespace drogue::gas_app

@@ -1,43 +1,47 @@
 #pragma once
 
-#include <filesystem>
+#include <memory>
 
-#include "common/program/progress.hpp"
-#include "common/run/result_document.hpp"
-#include "common/run/run_directory.hpp"
-#include "miniapps/gas/output.hpp"
+#include "kernels/gas/solver.hpp"
+#include "miniapps/framework/simulation.hpp"
+#include "miniapps/gas/scene.hpp"
 
 namespace drogue::gas_app {
 
-/// How a scene is run.
-struct RunSettings {
-  device::Backend backend = device::Backend::serial;
-  bool seed_mode = false;
-  bool quiet = false;
-  std::filesystem::path restart;  ///< a restart file, or empty
+/// Counts of the positivity limiter.
+struct LimiterCounts {
+  std::int64_t limited_faces = 0;  ///< summed over all stages
+  std::int64_t limited_cells = 0;  ///< cells with a limited face at least once
+  std::int64_t redone_steps = 0;
 };
 
-/// Fills in what the machine and the backend are. Needs an initialised runtime.
-void describe_device(run::ResultDocument& result, const gas::Parameters& parameters, device::Backend backend);
+/// Sets the group `limiter` of result.json. Does not throw.
+void set_limiter_metrics(const LimiterCounts& counts, run::Metrics& metrics);
 
-/// Runs a scene from its state to its end, writes its files and fills `result`.
-///
-/// Throws Failure: numerical_failure (after the last good state is on disk), io_error. Returns `interrupted`
-/// after a signal, the restart file written; otherwise `ok`. Verification is left to the caller.
-class Simulation {
+/// A scene on a solver. Functions as of `framework::Simulation`.
+class Simulation final : public framework::Simulation {
  public:
-  Simulation(const GasScene& scene, const RunSettings& settings);
+  /// Keeps a reference to `scene`. Throws `Failure` (no_backend, numerical_failure).
+  Simulation(const GasScene& scene, const framework::SimulationSettings& settings);
 
-  /// Steps to the end time. Without `directory` nothing is written.
-  ExitCode run(const run::RunDirectory* directory, run::ResultDocument& result);
-
-  /// Errors, checks and reference, as the scene's [verify] asks. Returns `interrupted` if a signal ended the
-  /// reference run, otherwise `ok`, whatever the checks say. A reference run joins the fields in `directory`,
-  /// if there is one.
-  ExitCode verify(const run::RunDirectory* directory, run::ResultDocument& result);
-
-  /// Writes restart.h5 of the state now.
-  void write_restart(const run::RunDirectory& directory);
+  [[nodiscard]] const framework::OutputRequest& output() const override { return _scene.output; }
+  [[nodiscard]] framework::EndTime end_time() const override { return {_scene.end_time, "run.end_time"}; }
+  void start() override;
+  void restore(const run::RestartReader& reader) override;
+  void write_restart(run::RestartWriter& writer) override;
+  [[nodiscard]] framework::TimeState now() override;
+  framework::Stop advance(const framework::AdvanceLimits& limits, const framework::RowSink& rows,
+                          const framework::Poll& poll) override;
+  [[nodiscard]] std::vector<run::Column> history_columns() const override;
+  [[nodiscard]] framework::HistoryRow row() override;
+  [[nodiscard]] std::vector<run::DatasetSpec> field_specs() const override;
+  void write_mesh(run::FieldsWriter& fields) const override;
+  /// The solver holds one snapshot.
+  [[nodiscard]] std::size_t snapshot_buffers() const override { return 1; }
+  [[nodiscard]] framework::FieldsTask snapshot() override;
+  [[nodiscard]] std::string failure_text(bool restart_written) override;
+  void describe(run::ResultDocument& result) override;
+  ExitCode verify(const run::RunDirectory* directory, run::ResultDocument& result) override;
 
   /// Largest relative change of mass, momentum and energy that the boundary fluxes do not explain.
   [[nodiscard]] double conservation();
@@ -45,15 +49,23 @@ class Simulation {
   [[nodiscard]] gas::Solver& solver() { return *_solver; }
 
  private:
-  void describe(run::ResultDocument& result);
-  [[nodiscard]] double next_stop(double time) const;
-  [[nodiscard]] bool is_output_time(double time) const;
+  void allocate_snapshot();
 
   const GasScene& _scene;
-  RunSettings _settings;
+  framework::SimulationSettings _settings;
   std::unique_ptr<gas::Solver> _solver;
-  gas::HistoryRow _initial;
-  double _setup_s = 0.0, _compute_s = 0.0, _h2d_s = 0.0, _d2h_s = 0.0, _io_s = 0.0;
+  gas::HistoryRow _initial;  ///< totals at the start of the first run
+  gas::Stop _stop = gas::Stop::target;
+  double _compute_s = 0.0, _h2d_s = 0.0;
 };
+
+/// Name of the precision in result.json: `double` or `split`.
+[[nodiscard]] std::string precision_name(const gas::Parameters& parameters);
+
+/// Dataset of a field of fields.h5: `rho`, `u` or `p` at `cells` cells.
+[[nodiscard]] run::DatasetSpec field_spec(const std::string& name, std::int64_t cells);
+
+/// Dataset of the cell centres.
+[[nodiscard]] run::DatasetSpec cell_centre_spec(std::int64_t cells);
 
 }  // namespace drogue::gas_app

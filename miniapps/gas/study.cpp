@@ -3,10 +3,7 @@
 #include <utility>
 
 #include "common/study/axes.hpp"
-#include "common/study/study.hpp"
-#include "kernels/device/profiling_counters.hpp"
-#include "miniapps/gas/repeated_run.hpp"
-#include "miniapps/gas/scheme_names.hpp"
+#include "miniapps/framework/run_loop.hpp"
 #include "miniapps/gas/simulation.hpp"
 
 namespace drogue::gas_app {
@@ -27,8 +24,7 @@ study::Axes parse(const std::string& text) {
                             {"precisions", {"double", "split"}}});
 }
 
-/// The `--set` assignments that make the scene one point of the study, for all points; an empty text sets
-/// nothing.
+/// `--set` assignments of every point of the study. An empty value sets nothing.
 std::vector<std::vector<std::string>> assignments(const study::Axes& axes, const MiniAppOptions& options) {
   const auto meshes = axes.meshes.empty() ? std::vector<std::int64_t>{0} : axes.meshes;
   std::vector<std::vector<std::string>> points;
@@ -53,50 +49,71 @@ std::vector<std::vector<std::string>> assignments(const study::Axes& axes, const
   return points;
 }
 
-study::Row row_of(const gas::Parameters& p, const RepeatedRun& run) {
+study::Row row_of(const gas::Parameters& p, framework::RepeatedRun run) {
   const SchemeNames names = scheme_names(p);
-  study::Row row{
-      names.label, {names.weno, std::int64_t{p.weno_power}, names.splitting, names.time, names.precision},
-      p.cells,     run.steps,
-      run.samples, run.errors,
-      {},          {},
-      run.code,    run.message};
-  if (run.code == ExitCode::ok) row.others["conservation"] = run.conservation;
+  study::Row row = framework::study_row(std::move(run));
+  row.label = names.label;
+  row.settings = {names.weno, std::int64_t{p.weno_power}, names.splitting, names.time, names.precision};
+  row.mesh = p.cells;
   return row;
 }
 
 }  // namespace
+
+SchemeNames scheme_names(const gas::Parameters& p) {
+  const char* const splittings[] = {"lf-global", "lf-single", "lf-stencil"};
+  SchemeNames names;
+  names.weno = weno_name(p.weno);
+  names.splitting = splittings[static_cast<int>(p.splitting)];
+  names.time = p.time_scheme == gas::TimeScheme::ssprk3 ? "ssprk3" : "ssprk43";
+  names.precision = precision_name(p);
+  names.label = names.weno + (p.weno == gas::Weno::z && p.weno_power == 2 ? "2" : "");
+  if (names.splitting != "lf-stencil") names.label += " " + names.splitting;
+  if (names.time != "ssprk3") names.label += " " + names.time;
+  if (names.precision != "double") names.label += " " + names.precision;
+  return names;
+}
+
+framework::RepeatedRun run_repeatedly(const GasScene& scene, device::Backend backend,
+                                      const ExactSolution& exact, const study::Repeats& repeats) {
+  GasScene silent = scene;
+  silent.output = {};  // steps shortened to meet unwritten outputs would only cost time
+  return framework::repeat_run(repeats, [&](framework::RepeatedRun& runs) {
+    Simulation simulation(silent, {backend, false, true});
+    run::ResultDocument result;
+    simulation.start();
+    if (framework::run_to_end(simulation, {{}, true, true, {}}, result) == ExitCode::interrupted)
+      return ExitCode::interrupted;
+    runs.samples.push_back(result.timing.compute_s);
+    if (runs.samples.size() > 1) return ExitCode::ok;
+    runs.steps = result.steps;
+    runs.errors = error_norms(simulation.solver(), silent.parameters, exact);
+    runs.others["conservation"] = simulation.conservation();
+    return ExitCode::ok;
+  });
+}
 
 ExitCode run_study(const MiniAppOptions& options, const std::filesystem::path& file) {
   const study::Axes axes = parse(options.study);
   const GasScene base = read_gas_scene(file, options.set);
   if (!base.verify.exact)
     throw Failure(ExitCode::usage, "--study needs a scene with [verify] exact, to measure errors against");
-  std::vector<GasScene> scenes;  // all of them, so that none is found wrong after others have run
+  std::vector<GasScene> scenes;  // read all first: an invalid one must not end a study that has run for hours
   for (const auto& sets : assignments(axes, options)) scenes.push_back(read_gas_scene(file, sets));
-  const device::Backend backend = choose_backend(options.backend);
-  const std::filesystem::path out =
-      options.out.empty() ? std::filesystem::path("out") / (base.name + "-study") : options.out;
-  run::RunDirectory directory(out,
-                              options.overwrite ? run::ExistingRun::overwrite : run::ExistingRun::refuse);
-  directory.begin();
-  directory.write_scene(print_gas_scene(base));
-  const auto runtime = start_kokkos(options.kokkos);
-  device::start_profiling();
-  run::ResultDocument facts = run::new_result("drogue-gas", base.name);
-  describe_device(facts, base.parameters, backend);
+  framework::StudySession session(options, "drogue-gas", base.name, print_gas_scene(base));
 
   std::optional<Reference> reference = Reference{};
-  if (*base.verify.exact == Exact::reference) reference = run_reference(base, backend, options.quiet);
+  if (*base.verify.exact == Exact::reference)
+    reference = run_reference(base, session.backend(), options.quiet);
   if (!reference) return ExitCode::interrupted;
   const ExactSolution exact = exact_solution(base, base.end_time, *reference);
   const auto run_point = [&](std::size_t i, std::vector<study::Row>& rows) {
-    const RepeatedRun run = run_repeatedly(scenes[i], backend, exact, {5, 1.0});
+    framework::RepeatedRun run = run_repeatedly(scenes[i], session.backend(), exact, {5, 1.0});
     if (run.code == ExitCode::interrupted) return false;
-    rows.push_back(row_of(scenes[i].parameters, run));
+    rows.push_back(row_of(scenes[i].parameters, std::move(run)));
     return true;
   };
-  return study::run_points(directory, facts, columns, scenes.size(), run_point, options.quiet);
+  return session.run(columns, scenes.size(), run_point);
 }
 
 }  // namespace drogue::gas_app

@@ -1,27 +1,28 @@
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
-#include <memory>
 #include <string>
-#include <vector>
 
-#include "common/program/failure.hpp"
 #include "common/program/mini_app_options.hpp"
-#include "kernels/device/backend.hpp"
-#include "kernels/device/runtime.hpp"
-#include "miniapps/gas/scene.hpp"
+#include "miniapps/framework/study.hpp"
+#include "miniapps/gas/exact.hpp"
 
 namespace drogue::gas_app {
 
-/// Starts Kokkos with its options. Throws Failure(usage) where it would not start.
-std::unique_ptr<device::Runtime> start_kokkos(const std::vector<std::string>& arguments);
+/// Names of a scheme in scenes. `label` lists the differences to WENO with lf-stencil, ssprk3, double.
+struct SchemeNames {
+  std::string label, weno, splitting, time, precision;
+};
 
-/// The backend an option means, present and compiled in. Throws Failure(no_backend).
-device::Backend choose_backend(const std::string& wanted);
+[[nodiscard]] SchemeNames scheme_names(const gas::Parameters& parameters);
 
-/// Runs the scene over the product of the axes and writes study.csv, study.json and their picture.
-/// Throws Failure: usage for a wrong axis, and what a run of the scene throws.
+/// Runs `scene` without its outputs until `repeats` is satisfied. `errors` are the error norms against
+/// `exact`, `others` holds `conservation`. A failed run is recorded in `code` and `message`.
+framework::RepeatedRun run_repeatedly(const GasScene& scene, device::Backend backend,
+                                      const ExactSolution& exact, const study::Repeats& repeats);
+
+/// Runs the scene over the product of the axes of `--study`, and writes study.csv, study.json and their
+/// picture. Returns `ok` or `interrupted`. Throws `Failure`: usage for an invalid axis, otherwise like a run.
 ExitCode run_study(const MiniAppOptions& options, const std::filesystem::path& file);
 
 }  // namespace drogue::gas_app

@@ -6,10 +6,10 @@
 #include <optional>
 #include <thread>
 
+#include "common/program/communicator.hpp"
 #include "common/program/message.hpp"
 #include "common/program/program.hpp"
 #include "common/program/provenance.hpp"
-#include "common/program/ranks.hpp"
 #include "common/program/signals.hpp"
 #include "common/run/output_path.hpp"
 #include "common/run/result_document.hpp"
@@ -36,9 +36,9 @@ std::unique_ptr<device::Runtime> start_kokkos(const std::vector<std::string>& ar
 }
 
 std::unique_ptr<options::Pricer> make_pricer(device::Backend backend, options::Settings settings,
-                                             const Ranks& ranks) {
+                                             const Communicator& ranks) {
   const int cores = static_cast<int>(std::thread::hardware_concurrency());
-  settings.host_threads = std::max(1, cores / ranks.of_host());
+  settings.host_threads = std::max(1, cores / ranks.ranks_on_host());
   return made_as_asked([&] { return options::create_pricer(backend, settings); });
 }
 
@@ -66,7 +66,7 @@ std::string batch_message(device::Backend backend, const std::optional<BatchRead
 }
 
 /// Reads, prices, writes. `result` is filled also where rows did not end well, which is thrown.
-ExitCode price_batch(Ranks& ranks, const Command& command, const std::filesystem::path& input,
+ExitCode price_batch(Communicator& ranks, const Command& command, const std::filesystem::path& input,
                      run::ResultDocument& result) {
   const auto begin = Clock::now();
   const RowKind kind = command.action == Action::price ? RowKind::contract : RowKind::parameter_set;
@@ -76,21 +76,21 @@ ExitCode price_batch(Ranks& ranks, const Command& command, const std::filesystem
   device::Backend backend{};
   std::optional<BatchReader> reader;
   std::optional<Outputs> outputs;
-  ranks.together([&] {
-    if (!ranks.is_first()) return;
+  ranks.run_collectively([&] {
+    if (!ranks.is_root()) return;
     reader.emplace(input, kind);
     if (reader->has_ids()) BatchReader(input, kind).require_unique_ids();
     backend = choose_backend(command.backend);
     outputs.emplace(command);
   });
   // One backend on all ranks, whatever each would choose: prices have the bits of one backend.
-  const std::string message = ranks.from_first(batch_message(backend, reader));
+  const std::string message = ranks.broadcast(batch_message(backend, reader));
   MessageReader facts(message);
   backend = facts.get<device::Backend>();
   const auto places = facts.get_all<int>();
   std::unique_ptr<device::Runtime> runtime;
   std::unique_ptr<options::Pricer> pricer;
-  ranks.together([&] {
+  ranks.run_collectively([&] {
     choose_backend(std::string(device::name(backend)));
     runtime = start_kokkos(command.kokkos);
     device::start_profiling();
@@ -101,12 +101,12 @@ ExitCode price_batch(Ranks& ranks, const Command& command, const std::filesystem
   const auto pricing = Clock::now();
   BatchRun run(command, kind, places, *pricer);
   Distribution done;
-  ranks.together([&] {
-    if (!ranks.is_first()) return assist(ranks, run);
+  ranks.run_collectively([&] {
+    if (!ranks.is_root()) return assist(ranks, run);
     done = distribute(ranks, command, *reader, *outputs, run);
     if (done.is_complete) outputs->commit();
   });
-  if (!ranks.is_first()) return ExitCode::ok;
+  if (!ranks.is_root()) return ExitCode::ok;
   describe_spent(done.spent, since(pricing), result);
   result.timing.wall_s = since(begin);
   count_rows(outputs->tally(), result);
@@ -123,17 +123,21 @@ ExitCode price_batch(Ranks& ranks, const Command& command, const std::filesystem
 }
 
 /// One batch, whose --result tells how it ended, whatever happened.
-ExitCode run_batch(Ranks& ranks, const Command& command) {
+ExitCode run_batch(Communicator& ranks, const Command& command) {
   std::filesystem::path input;
-  ranks.together([&] {
-    if (!ranks.is_first()) return;
+  ranks.run_collectively([&] {
+    if (!ranks.is_root()) return;
     input = find_batch(command.input);
     check_outputs(command, input);
   });
   run::ResultDocument result = run::new_result("drogue-options", input.stem().string());
-  result.ranks = ranks.count();
+  result.metrics.add_group("counts");
+  // The schema of result.json holds the counts of a flux limiter for every program.
+  for (const char* count : {"touches", "cells", "redone_steps"})
+    result.metrics.set("limiter", count, std::int64_t{0});
+  result.ranks = ranks.size();
   const auto write_result = [&] {
-    if (ranks.is_first() && !command.result.empty()) run::write_result(command.result, result);
+    if (ranks.is_root() && !command.result.empty()) run::write_result(command.result, result);
   };
   try {
     result.exit_code = price_batch(ranks, command, input, result);
@@ -170,13 +174,13 @@ ExitCode run_app(const Command& command) {
     case Action::surface:
       break;
   }
-  Ranks ranks;
+  Communicator ranks;
   install_signal_handlers();
   try {
     return run_batch(ranks, command);
   } catch (const Failure&) {
     // The first rank throws the same, and tells it.
-    if (ranks.is_first()) throw;
+    if (ranks.is_root()) throw;
     return ExitCode::ok;
   }
 }

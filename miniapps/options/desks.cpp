@@ -72,7 +72,7 @@ void SharedDesk::dismiss() {
 }
 
 bool RankDesk::next(Chunk& chunk) {
-  Pause pause;
+  Backoff pause;
   while (!interrupted() && !is_closed()) {
     if (const auto message = _ranks.receive(first_rank, chunk_tag)) {
       chunk = chunk_from(*message);
@@ -92,7 +92,7 @@ void RankDesk::hand_in(Piece piece) {
 /// Chunks may come until the first rank has heard that this one leaves; they have to be taken, or MPI waits
 /// for it for ever.
 void RankDesk::await_dismissal() {
-  Pause pause;
+  Backoff pause;
   bool is_dismissed = false;
   for (;;) {
     is_dismissed = is_dismissed || _ranks.receive(first_rank, dismissal_tag);

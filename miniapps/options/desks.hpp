@@ -4,8 +4,8 @@
 #include <deque>
 #include <mutex>
 
+#include "common/program/communicator.hpp"
 #include "common/program/progress.hpp"
-#include "common/program/ranks.hpp"
 #include "miniapps/options/chunk_source.hpp"
 #include "miniapps/options/desk.hpp"
 #include "miniapps/options/outputs.hpp"
@@ -57,7 +57,7 @@ class SharedDesk final : public Desk, public Helper {
 /// The desk of every rank but the first.
 class RankDesk final : public Desk {
  public:
-  explicit RankDesk(Ranks& ranks) : _ranks(ranks) {}
+  explicit RankDesk(Communicator& ranks) : _ranks(ranks) {}
 
   bool next(Chunk& chunk) override;
   void hand_in(Piece piece) override;
@@ -66,20 +66,20 @@ class RankDesk final : public Desk {
  private:
   void await_dismissal();
 
-  Ranks& _ranks;
+  Communicator& _ranks;
 };
 
 /// Such a rank as the first one sees it.
 class RankHelper final : public Helper {
  public:
-  RankHelper(Ranks& ranks, int rank) : _ranks(ranks), _rank(rank) {}
+  RankHelper(Communicator& ranks, int rank) : _ranks(ranks), _rank(rank) {}
 
   void give(Chunk chunk) override;
   std::optional<Piece> take() override;
   void dismiss() override;
 
  private:
-  Ranks& _ranks;
+  Communicator& _ranks;
   int _rank;
 };
 

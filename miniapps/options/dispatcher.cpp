@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "common/program/ranks.hpp"
+#include "common/program/communicator.hpp"
 #include "common/program/signals.hpp"
 
 namespace drogue::options_app {
@@ -38,7 +38,7 @@ bool Dispatcher::run() {
 }
 
 bool Dispatcher::hand_out() {
-  Pause pause;
+  Backoff pause;
   while (!interrupted() && _helpers_left == 0) {
     const bool gave = give();
     const bool took = take();
@@ -119,7 +119,7 @@ void Dispatcher::note_leaving(std::size_t helper, const Piece& piece) {
 
 void Dispatcher::dismiss() {
   for (Helper* helper : _helpers) helper->dismiss();
-  Pause pause;
+  Backoff pause;
   while (_helpers_left < _helpers.size()) {
     for (std::size_t i = 0; i < _helpers.size(); ++i) {
       // What is not written yet never will be.

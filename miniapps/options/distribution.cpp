@@ -18,13 +18,13 @@ Distribution price_alone(const Command& command, ChunkSource& source, Outputs& o
 
 }  // namespace
 
-Distribution distribute(Ranks& ranks, const Command& command, BatchReader& reader, Outputs& outputs,
+Distribution distribute(Communicator& ranks, const Command& command, BatchReader& reader, Outputs& outputs,
                         BatchRun& run) {
-  ChunkSource source(command, reader, ranks.count());
-  if (ranks.count() == 1) return price_alone(command, source, outputs, run);
+  ChunkSource source(command, reader, ranks.size());
+  if (ranks.size() == 1) return price_alone(command, source, outputs, run);
   SharedDesk own;
   std::vector<RankHelper> others;
-  for (int rank = 1; rank < ranks.count(); ++rank) others.emplace_back(ranks, rank);
+  for (int rank = 1; rank < ranks.size(); ++rank) others.emplace_back(ranks, rank);
   std::vector<Helper*> helpers = {&own};
   for (RankHelper& other : others) helpers.push_back(&other);
   ProgressLine progress(command.quiet);
@@ -47,7 +47,7 @@ Distribution distribute(Ranks& ranks, const Command& command, BatchReader& reade
   return {is_complete, dispatcher.spent()};
 }
 
-void assist(Ranks& ranks, BatchRun& run) {
+void assist(Communicator& ranks, BatchRun& run) {
   RankDesk desk(ranks);
   run.work(desk);
 }

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "common/program/ranks.hpp"
+#include "common/program/communicator.hpp"
 #include "miniapps/options/batch_run.hpp"
 #include "miniapps/options/chunk_source.hpp"
 #include "miniapps/options/outputs.hpp"
@@ -14,10 +14,10 @@ struct Distribution {
 };
 
 /// Prices a batch on the ranks, of which this is the first. The outputs are written, but not committed.
-Distribution distribute(Ranks& ranks, const Command& command, BatchReader& reader, Outputs& outputs,
+Distribution distribute(Communicator& ranks, const Command& command, BatchReader& reader, Outputs& outputs,
                         BatchRun& run);
 
 /// Prices what the first rank hands out.
-void assist(Ranks& ranks, BatchRun& run);
+void assist(Communicator& ranks, BatchRun& run);
 
 }  // namespace drogue::options_app

@@ -74,11 +74,14 @@ void require_priced_rows(const Command& command, const Tally& tally, const Batch
 }
 
 void count_rows(const Tally& tally, run::ResultDocument& result) {
-  result.counts = {{"rows", tally.rows},
-                   {"ok", priced_well(tally)},
-                   {"coarse", tally.coarse},
-                   {"invalid", tally.invalid},
-                   {"failed", tally.failed}};
+  const auto set = [&result](const char* name, std::int64_t rows) {
+    result.metrics.set("counts", name, rows);
+  };
+  set("coarse", tally.coarse);
+  set("failed", tally.failed);
+  set("invalid", tally.invalid);
+  set("ok", priced_well(tally));
+  set("rows", tally.rows);
 }
 
 }  // namespace drogue::options_app

@@ -7,7 +7,7 @@
 namespace drogue::springs_app {
 namespace {
 
-/// A sign change of f between a and b, to the last bit.
+/// Bisects a sign change of f between a and b to the last bit.
 double bisect(const std::function<double(double)>& f, double a, double b) {
   const bool rises = f(b) > 0.0;
   for (double middle = 0.5 * (a + b); middle > a && middle < b; middle = 0.5 * (a + b))
@@ -71,8 +71,8 @@ double drum_frequency(const fabric::Material& material, double area_density, dou
 
 double string_frequency(double axial_stiffness, double line_density, double length, double payload, int n) {
   const double speed = std::sqrt(axial_stiffness / line_density);
-  // Without payload the tangent is infinite; with one the n-th root lies in the n-th interval of pi from 0,
-  // in its first half.
+  // Without payload the tangent is infinite. With one the n-th root lies in the first half of the n-th
+  // interval of pi from 0.
   const double low = (n - 1) * std::numbers::pi, high = low + 0.5 * std::numbers::pi;
   const double mass = line_density * length;
   const double phase =

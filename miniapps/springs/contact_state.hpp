@@ -7,14 +7,14 @@
 
 namespace drogue::springs_app {
 
-/// What touches what it may not, decided exactly by `reference::intersections` and `reference::enters`.
+/// Violations of contact, decided exactly by `reference::intersections` and `reference::enters`.
 struct ContactState {
-  int intersections = 0;     ///< segments and triangles that meet, with contact.self; parts within bodies
+  int intersections = 0;     ///< of segments and triangles with contact.self; parts inside bodies
   double penetration = 0.0;  ///< the most that a vertex lacks of the thickness, over it; of bodies
-  std::string meeting;       ///< a sentence's part that names a first case; empty where there is none
+  std::string meeting;       ///< clause on the first case; empty if there is none
 };
 
-/// Of positions in the scene's numbering, m.
+/// Contact violations of positions, m, in the numbering of the scene.
 [[nodiscard]] ContactState contact_state(const SpringsScene& scene, const std::vector<fabric::Vector>& x);
 
 }  // namespace drogue::springs_app

@@ -9,23 +9,23 @@
 
 namespace drogue::springs_app {
 
-/// The vertices at which an expression of x, y, z at rest is not 0; all for an empty one.
+/// Vertices at which an expression of the rest coordinates x, y, z is not 0; all for an empty one.
 std::vector<int> selected(const std::string& where, const fabric::Mesh& mesh);
 
-/// An expression of x, y, z and t at every vertex; 0 for an empty one.
+/// Values of an expression of x, y, z and t at every vertex; 0 for an empty one.
 std::vector<double> values_at(const std::string& expression, const fabric::Mesh& mesh, double time = 0.0);
 
-/// Three of them.
+/// Values of three expressions at every vertex.
 std::vector<fabric::Vector> values_at(const ExpressionVector& expressions, const fabric::Mesh& mesh,
                                       double time = 0.0);
 
-/// Whether an expression names the time.
+/// True if an expression depends on the time.
 bool depends_on_time(const std::string& expression);
 
-/// An expression of x, y, z and t for kernels. Throws std::invalid_argument where it is too long for them.
+/// Device program of an expression of x, y, z and t. Throws std::invalid_argument if it is too long.
 device::ExpressionProgram device_program(const std::string& expression);
 
-/// The value of an expression that names no variable.
+/// Value of an expression without variables.
 std::optional<double> constant_value(const std::string& expression);
 
 }  // namespace drogue::springs_app

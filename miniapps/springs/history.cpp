@@ -5,7 +5,6 @@
 #include <string>
 
 #include "common/program/failure.hpp"
-#include "common/run/io_error.hpp"
 
 namespace drogue::springs_app {
 namespace {
@@ -58,17 +57,6 @@ History read_history(const std::filesystem::path& file) {
     }
   }
   return history;
-}
-
-void take_history(const std::filesystem::path& restart, const std::vector<run::Column>& columns,
-                  const std::filesystem::path& file) {
-  if (restart.filename() != "restart.h5" || std::filesystem::exists(file)) return;
-  const std::filesystem::path before = restart.parent_path() / "history.csv";
-  std::string line;
-  if (!std::getline(std::ifstream(before), line) || line + "\n" != run::history_header(columns)) return;
-  std::error_code error;
-  std::filesystem::copy_file(before, file, error);
-  if (error) throw run::io_failure("write", file, error.value());
 }
 
 }  // namespace drogue::springs_app

@@ -6,7 +6,7 @@
 
 namespace drogue::springs_app {
 
-/// The vertex that lies nearest to a point at rest; the first of several.
+/// Vertex nearest to a point at rest; the first of several.
 int nearest_vertex(const fabric::Mesh& mesh, const std::vector<double>& point);
 
 }  // namespace drogue::springs_app

@@ -26,8 +26,8 @@ std::vector<double> masses_of(const SpringsScene& scene, Problem& problem) {
   return mass;
 }
 
-/// What a unit of pressure does at rest: a third of the area of every triangle, along its normal, at each of
-/// its vertices, m^2.
+/// Nodal forces of a unit pressure at rest, m^2: a third of the area of every triangle along its normal at
+/// each of its vertices.
 std::vector<Vector> area_vectors(const fabric::Mesh& mesh) {
   std::vector<Vector> sum(mesh.rest.size(), Vector{});
   for (const auto& triangle : mesh.triangles) {
@@ -39,14 +39,15 @@ std::vector<Vector> area_vectors(const fabric::Mesh& mesh) {
   return sum;
 }
 
-/// A unit along an axis at the vertices where `where` holds.
+/// Unit vectors along an axis at the vertices where `where` holds.
 std::vector<Vector> unit_forces(const fabric::Mesh& mesh, const std::string& where, std::size_t axis) {
   std::vector<Vector> units(mesh.rest.size(), Vector{});
   for (const int i : selected(where, mesh)) units[static_cast<std::size_t>(i)][axis] = 1.0;
   return units;
 }
 
-/// A force of the strength of an expression along directions: dead where it does not name the time.
+/// Force along given directions with the magnitude of an expression: a dead load if the expression does not
+/// depend on the time.
 void add_force(const SpringsScene& scene, const std::string& strength, const std::vector<Vector>& direction,
                Problem& problem) {
   fabric::Parameters& p = problem.parameters;
@@ -82,7 +83,7 @@ void add_motions(const SpringsScene& scene, Problem& problem) {
     place[static_cast<std::size_t>(problem.order[k])] = static_cast<int>(k);
   for (const Pin& pin : scene.pins)
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      // A place that stays needs no motion: the vertex starts there.
+      // A fixed position needs no motion: the vertex starts there.
       if (!depends_on_time(pin.motion.of(axis))) continue;
       std::vector<int> vertices = selected(pin.where, scene.mesh);
       for (int& i : vertices) i = place[static_cast<std::size_t>(i)];
@@ -91,7 +92,7 @@ void add_motions(const SpringsScene& scene, Problem& problem) {
     }
 }
 
-/// The places and velocities at the start, and which axes are held there.
+/// Initial positions and velocities, and the prescribed axes.
 std::vector<std::uint8_t> place_vertices(const SpringsScene& scene, Problem& problem) {
   const std::size_t n = scene.mesh.rest.size();
   problem.x = values_at(scene.initial.displacement, scene.mesh);
@@ -184,8 +185,7 @@ Problem make_problem(const SpringsScene& scene) {
   p.damping = scene.damping.absolute;
   p.relative_damping = scene.damping.relative;
   p.integrator = scene.time.integrator;
-  // Until one is planned: pins are placed with the velocity over one, and what moves them ends with the
-  // scene.
+  // Provisional step until one is planned: pins take their velocity from it, and motions end with the scene.
   p.dt = scene.time.dt.value_or(scene.time.end_time > 0.0 ? 1e-6 * scene.time.end_time : 1.0);
   p.driver = scene.driver;
   for (const Probe& probe : scene.output.probes) problem.probes.push_back(nearest_vertex(p.mesh, probe.at));

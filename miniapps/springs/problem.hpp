@@ -7,16 +7,16 @@
 
 namespace drogue::springs_app {
 
-/// What a scene asks a solver to do. Its vertices are numbered so that neighbours lie close together; `order`
-/// names the vertex of the scene's mesh that each of them is.
+/// Parameters and initial state of the solver for a scene. The solver numbers vertices so that neighbours are
+/// close in memory; `order` maps its vertices to those of the scene.
 struct Problem {
   std::vector<int> order;
   fabric::Parameters parameters;
-  std::vector<fabric::Vector> x, v;  ///< at the start, in the scene's numbering
+  std::vector<fabric::Vector> x, v;  ///< initial state, in the scene's numbering
   std::vector<int> probes;           ///< their vertices, in the solver's numbering
-  double mass = 0.0, payload = 0.0;  ///< of all; part of it, kg
+  double mass = 0.0, payload = 0.0;  ///< total, and part of it, kg
 
-  /// From the scene's numbering to the solver's, and back.
+  /// Permutes from the scene's numbering to the solver's, and back.
   [[nodiscard]] std::vector<fabric::Vector> to_solver(std::span<const fabric::Vector> values) const;
   [[nodiscard]] std::vector<fabric::Vector> to_scene(std::span<const fabric::Vector> values) const;
   [[nodiscard]] std::vector<fabric::ContactWork> to_solver(std::span<const fabric::ContactWork> values) const;

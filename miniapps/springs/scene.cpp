@@ -1,11 +1,15 @@
 #include "miniapps/springs/scene.hpp"
 
+#include <span>
+
+#include "common/run/restart_file.hpp"
 #include "common/scene/document.hpp"
-#include "common/scene/parse.hpp"
 #include "common/scene/print.hpp"
 #include "common/scene/read.hpp"
+#include "miniapps/framework/mini_app.hpp"
 #include "miniapps/springs/scene_check.hpp"
 #include "miniapps/springs/scene_keys.hpp"
+#include "miniapps/springs/vectors.hpp"
 
 namespace drogue::springs_app {
 
@@ -18,14 +22,12 @@ bool SpringsScene::has_lines() const {
 }
 
 SpringsScene read_springs_scene(const std::filesystem::path& file, const std::vector<std::string>& sets) {
-  scene::Node document = scene::parse_file(file);
-  for (const std::string& assignment : sets) scene::apply_set(document, assignment);
   SpringsScene result;
   result.file = file;
   result.name = file.stem().string();
   scene::Table root;
   declare_springs_scene(root, result);
-  scene::read(root, document);
+  scene::read_file(root, file, sets);
   complete_and_check(root, result);
   return result;
 }
@@ -35,6 +37,32 @@ std::string print_springs_scene(const SpringsScene& scene) {
   scene::Table root;
   declare_springs_scene(root, copy);
   return scene::print(root);
+}
+
+std::string scene_fingerprint(SpringsScene scene) {
+  scene.description.clear();
+  scene.output = {};
+  scene.verify = {};
+  scene.driver = fabric::Driver::automatic;
+  scene.time.end_time = 0.0;
+  scene.time.dt.reset();
+  scene.time.safety = Time{}.safety;
+  // The content of a mesh file counts, not its path.
+  std::string contents;
+  if (!scene.source.file.empty()) {
+    const auto bytes = std::as_bytes(numbers(scene.mesh.rest));
+    contents.assign(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    for (const auto& triangle : scene.mesh.triangles)
+      for (const int i : triangle) contents += std::to_string(i) + " ";
+    for (const auto& line : scene.mesh.lines)
+      for (const int i : line) contents += std::to_string(i) + " ";
+    scene.source.file = "mesh.obj";
+  }
+  return run::fingerprint(print_springs_scene(scene) + contents);
+}
+
+std::filesystem::path scene_folder() {
+  return framework::find_scene_folder("springs", DROGUE_SPRINGS_SCENES);
 }
 
 std::string document_springs_scene() {

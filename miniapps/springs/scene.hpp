@@ -9,11 +9,12 @@
 #include "kernels/fabric/elastic/lumped_mass.hpp"
 #include "kernels/fabric/parameters.hpp"
 #include "kernels/mesh/generators.hpp"
+#include "miniapps/framework/scene_keys.hpp"
 
-/// The scene of `drogue-springs`: what a TOML file says, checked and with every default filled in.
+/// Scene of `drogue-springs`: the content of a TOML file, checked and with every default filled in.
 namespace drogue::springs_app {
 
-/// A vector whose components are expressions; an empty one is zero, or not given.
+/// Vector of expressions; an empty component is zero or absent.
 struct ExpressionVector {
   std::string x, y, z;
 
@@ -37,14 +38,14 @@ struct Fabric {
   fabric::Lumping mass = fabric::Lumping::area;
   double line_density = 0.001;            ///< kg/m
   std::optional<double> axial_stiffness;  ///< of strings, N
-  std::optional<double> stiffness;        ///< N/m an edge; of strings too where those have no axial one
+  std::optional<double> stiffness;        ///< N/m per edge; also of strings without axial stiffness
 };
 
-/// Edges of triangles, and lines of the mesh, that are strings of their own.
+/// Reinforced edges of triangles and lines of the mesh, which become strings.
 struct Reinforcement {
-  std::string where;             ///< of x, y, z at rest; of both ends
+  std::string where;             ///< of x, y, z at rest, for both ends
   double axial_stiffness = 0.0;  ///< E A, N
-  double line_density = 0.0;     ///< kg/m, beside what the cloth has
+  double line_density = 0.0;     ///< kg/m, in addition to the cloth
 };
 
 struct Initial {
@@ -76,7 +77,7 @@ struct Damping {
   double absolute = 0.0, relative = 0.0;  ///< 1/s
 };
 
-/// A body in the way; what its kind has no use for is not looked at.
+/// Rigid body. Members that its kind does not use are ignored.
 struct ContactObject {
   fabric::BodyKind kind = fabric::BodyKind::disk;
   fabric::Vector centre{}, normal{0.0, 0.0, 1.0};
@@ -84,7 +85,7 @@ struct ContactObject {
   std::string expression;  ///< of x, y, z; negative within
   double friction = 0.0;
 
-  /// For a solver, but for the program of the expression.
+  /// Body for the solver, without the program of the expression.
   [[nodiscard]] fabric::Body body() const;
 };
 
@@ -110,15 +111,13 @@ struct Probe {
   std::vector<double> at{0.0, 0.0, 0.0};  ///< rest coordinates, m
 };
 
-struct Output {
-  std::vector<std::string> fields;  ///< position, velocity, names of stresses; empty: no fields.h5
-  std::vector<double> times;        ///< s, increasing, within the run; empty exactly if `fields` is
+/// `fields` holds position, velocity and names of stresses.
+struct Output : framework::OutputRequest {
+  Output() { history_every = 100; }
   std::vector<Probe> probes;
-  int history_every = 100;  ///< steps between rows of history.csv; 0: none
-  int restart_every = 0;    ///< steps between restart files; 0: none
 };
 
-/// The frequency at which a probe oscillates.
+/// Oscillation frequency of a probe.
 struct Frequency {
   std::vector<double> mode;     ///< of a disk (diameters, circles) or of a string (number)
   std::optional<double> value;  ///< Hz; none: the closed form of the mode
@@ -127,14 +126,14 @@ struct Frequency {
   std::string axis = "z";
 };
 
-/// How fast a front runs from the first probe to the second.
+/// Speed of a front from the first probe to the second.
 struct FrontSpeed {
   double value = 0.0;      ///< m/s
   double tolerance = 0.0;  ///< relative
   std::string axis = "x";
 };
 
-/// Bars, all relative.
+/// Relative tolerances.
 struct Verify {
   std::optional<double> intersections, energy_balance, penetration;
   std::optional<double> energy_drift, momentum, angular_momentum, equilibrium;
@@ -148,8 +147,8 @@ struct SpringsScene {
   std::string name;  ///< the file's name without folder and extension
   std::string description;
   MeshSource source;
-  fabric::Mesh mesh;      ///< what the source gives, in its own numbering; then lines of reinforcements
-  std::size_t lines = 0;  ///< those of the source
+  fabric::Mesh mesh;      ///< mesh of the source, in its own numbering, then lines of reinforcements
+  std::size_t lines = 0;  ///< number of lines of the source
   Fabric fabric;
   std::vector<Reinforcement> reinforcements;
   Initial initial;
@@ -163,21 +162,28 @@ struct SpringsScene {
   Verify verify;
   fabric::Driver driver = fabric::Driver::automatic;
 
-  /// Whether the source has cloth, or strings; both where it is a file that is yet to be read.
+  /// True if the source has triangles, or lines; both for a file that is not read yet.
   [[nodiscard]] bool has_triangles() const;
   [[nodiscard]] bool has_lines() const;
 };
 
-/// Reads and checks `file`, then the `--set` assignments `key.path=value` in their order. The mesh has been
-/// made and every expression without t evaluated at every vertex when this returns. Throws Failure: usage for
-/// a missing file, invalid_scene (`FILE:LINE: ...`) for all that is wrong in it or in its mesh.
+/// Reads and checks `file` with its `--set` assignments, makes the mesh, and evaluates every expression
+/// without t at every vertex. Throws `Failure`: usage for a missing file, invalid_scene (`FILE:LINE: ...`)
+/// for errors in the scene or its mesh.
 SpringsScene read_springs_scene(const std::filesystem::path& file, const std::vector<std::string>& sets = {});
 
-/// The resolved scene as TOML: every default that applies, no key that does not. Resolves to itself where the
-/// scene itself lies.
+/// Resolved scene as TOML: every default that applies, no key that does not. It resolves to itself in the
+/// folder of the scene.
 std::string print_springs_scene(const SpringsScene& scene);
 
-/// All keys with type, range, unit, default and meaning, as the Markdown page docs/scenes-springs.md.
+/// Fingerprint of the mesh, the fabric and everything that acts on it, for restart files. Output, end time,
+/// step lengths and checks may change between a run and its continuation.
+std::string scene_fingerprint(SpringsScene scene);
+
+/// Folder of the shipped scenes: beside the installed or bundled program, else in the source tree.
+std::filesystem::path scene_folder();
+
+/// Markdown page docs/scenes-springs.md: all keys with type, range, unit, default and meaning.
 std::string document_springs_scene();
 
 }  // namespace drogue::springs_app

@@ -34,7 +34,7 @@ fabric::Mesh make_mesh(const Table& root, SpringsScene& scene) {
       contradict(root, "mesh.string", "mesh.string: from and to are the same point");
     return generate(*source.string);
   }
-  // The resolved scene finds it from anywhere.
+  // Absolute path, so that the resolved scene is valid in any folder.
   const std::filesystem::path file =
       std::filesystem::absolute(scene.file.parent_path() / source.file).lexically_normal();
   source.file = file.string();
@@ -47,8 +47,8 @@ fabric::Mesh make_mesh(const Table& root, SpringsScene& scene) {
   return read_obj(file);
 }
 
-/// At every vertex and time 0, and less than what counts as lost; one that a kernel must evaluate has to fit
-/// there too.
+/// Checks an expression at every vertex and time 0: finite, and below the limit of a lost state. An
+/// expression that a kernel evaluates must also fit its device program.
 void require_finite(const Table& root, const SpringsScene& scene, const std::string& path,
                     const std::string& expression, bool for_device = false) {
   try {
@@ -81,7 +81,7 @@ void complete_material(const Table& root, SpringsScene& scene) {
         root, "material.model",
         "material.model = \"linear-vector\" (Model I) stores energy in a rigid rotation and is refused in a "
         "scene that moves; take \"edge\", \"quadratic\" or \"biquadratic\"");
-  // Of a file it is known only now what it holds.
+  // The content of a mesh file is known only now.
   const auto needless = [&](const std::string& key, bool applies, const char* needs) {
     if (root.given("material." + key) && !applies)
       contradict(root, "material." + key,
@@ -110,7 +110,7 @@ void complete_material(const Table& root, SpringsScene& scene) {
 }
 
 void check_pins(const Table& root, const SpringsScene& scene) {
-  // Which pin holds an axis of a vertex; 0: none.
+  // Number of the pin that prescribes an axis of a vertex, from 1; 0: none.
   std::vector<std::array<std::size_t, 3>> holder(scene.mesh.rest.size(), {0, 0, 0});
   for (std::size_t k = 0; k < scene.pins.size(); ++k) {
     const Pin& pin = scene.pins[k];
@@ -165,15 +165,7 @@ void check_loads(const Table& root, const SpringsScene& scene) {
 
 void complete_output(const Table& root, SpringsScene& scene) {
   Output& output = scene.output;
-  const double end_time = scene.time.end_time;
-  if (!output.times.empty() && output.fields.empty()) output.fields = {"position"};
-  if (!output.fields.empty() && !root.given("output.times")) output.times = {end_time};
-  if (!output.fields.empty() && output.times.empty())
-    contradict(root, "output.times", "output.times is empty, yet output.fields asks for fields");
-  if (!output.times.empty() && output.times.back() > end_time)
-    contradict(root, "output.times",
-               "output.times: " + real_text(output.times.back()) +
-                   " is later than time.end_time = " + real_text(end_time));
+  framework::complete_output(root, output, {"position"}, {scene.time.end_time, "time.end_time"});
   for (const std::string& field : output.fields) {
     if (!stress_kind(field)) continue;
     if (!scene.has_triangles())

@@ -5,25 +5,25 @@
 
 namespace drogue::springs_app {
 
-/// Makes the mesh, fills the defaults that depend on other keys and refuses what only several keys together
-/// make wrong, every expression at every vertex included. Throws Failure(invalid_scene) at the key to blame.
+/// Makes the mesh, fills in the defaults that depend on other keys, and checks combinations of keys and every
+/// expression at every vertex. Throws `Failure` (invalid_scene) at the key in error.
 void complete_and_check(const scene::Table& root, SpringsScene& scene);
 
-/// Makes lines of the edges that are reinforced, after the materials are complete.
+/// Converts reinforced edges to lines. Requires complete materials.
 void add_reinforcements(const scene::Table& root, SpringsScene& scene);
 
-/// The vertices at which an expression is not 0. Refuses one that is not finite somewhere, or 0 everywhere:
-/// then the sentence ends in `what`.
+/// Vertices at which an expression is not 0. Throws `Failure` for an expression that is not finite somewhere,
+/// or 0 everywhere; `what` ends the sentence then.
 std::vector<int> require_some(const scene::Table& root, const SpringsScene& scene, const std::string& path,
                               const std::string& where, const std::string& what);
 
-/// Where a vertex lies, for the end of a sentence.
+/// Position of a vertex as the end of a sentence.
 std::string place_text(const SpringsScene& scene, std::size_t vertex);
 
-/// The same for [contact], where the run starts.
+/// Checks [contact] at the initial state.
 void check_contact(const scene::Table& root, const SpringsScene& scene);
 
-/// The same for [verify] alone, after all else.
+/// Checks [verify], after all other tables.
 void check_verify(const scene::Table& root, const SpringsScene& scene);
 
 }  // namespace drogue::springs_app

@@ -30,7 +30,7 @@ void add_reinforcements(const Table& root, SpringsScene& scene) {
     line_of[mesh::edge_between(i, j)] = k;
   }
   const std::vector<Edge> edges = edges_of(mesh);
-  std::vector<std::size_t> holder(edges.size(), 0);  // its number from 1; 0: none
+  std::vector<std::size_t> holder(edges.size(), 0);  // number of the reinforcement from 1; 0: none
   for (std::size_t r = 0; r < scene.reinforcements.size(); ++r) {
     const Reinforcement& reinforcement = scene.reinforcements[r];
     const std::string path = reinforcement_path(r) + ".where";

@@ -32,7 +32,7 @@ const Choices<std::string> axes_choices = {{"x", "x"},   {"y", "y"},   {"z", "z"
                                            {"xz", "xz"}, {"yz", "yz"}, {"xyz", "xyz"}};
 const std::vector<std::string> of_place = {"x", "y", "z"}, of_place_and_time = {"x", "y", "z", "t"};
 
-/// Three numbers; an empty vector is "not given".
+/// Three numbers; an empty vector is an absent value.
 Codec optional_vector_codec(std::vector<double>& value) {
   Codec codec = scene::reals_codec(value, 3, false);
   codec.type = "[real, real, real]";
@@ -40,7 +40,7 @@ Codec optional_vector_codec(std::vector<double>& value) {
   return codec;
 }
 
-/// Some of x, y and z, in any order; kept in theirs.
+/// Subset of x, y and z in any order; stored in ascending order.
 Codec axes_codec(std::string& axes) {
   Codec codec = scene::choice_codec(axes, axes_choices);
   codec.type += ", in any order";
@@ -247,13 +247,7 @@ void declare_output(Table& table, Output& output) {
               "vertex, nominal_ before the last for the nominal stress in place of Cauchy's, as in "
               "vertex_nominal_stress")
           .default_text("position where times are given, else none");
-  table.value("times", scene::reals_codec(output.times, 0, true), "Times at which fields are written")
-      .unit("s")
-      .at_least(0.0)
-      .default_text("the end time where fields are given")
-      .when(
-          [&output, &fields] { return !output.fields.empty() || (!fields.given() && !output.times.empty()); },
-          "with fields", "fields");
+  framework::declare_output_times(table, output, fields);
   table.tables(
       "probes", output.probes,
       [](Table& t, Probe& probe) {
@@ -262,14 +256,7 @@ void declare_output(Table& table, Output& output) {
             .required();
       },
       "Vertices whose positions are columns of history.csv");
-  table
-      .value("history_every", scene::integer_codec(output.history_every),
-             "Steps between rows of history.csv; 0: none")
-      .range(0, 1e9);
-  table
-      .value("restart_every", scene::integer_codec(output.restart_every),
-             "Steps between restart files; 0: none")
-      .range(0, 1e9);
+  framework::declare_output_intervals(table, output);
 }
 
 void declare_time(Table& table, Time& time) {
@@ -306,8 +293,7 @@ scene::Codec vector_codec(fabric::Vector& value) {
 }
 
 void declare_springs_scene(Table& root, SpringsScene& scene) {
-  root.value("app", scene::fixed_codec("springs"), "The program the scene is for").required().decisive();
-  root.value("description", scene::text_codec(scene.description), "A sentence for --list-scenes");
+  framework::declare_app(root, "springs", scene.description);
   root.table(
           "mesh", [&](Table& table) { declare_mesh(table, scene.source); }, "Cloth and strings at rest")
       .required();

@@ -6,16 +6,16 @@
 
 namespace drogue::springs_app {
 
-/// Declares every key of a springs scene, bound to `scene`, which has to outlive `root`.
+/// Declares every key of a springs scene, bound to `scene`, which must outlive `root`.
 void declare_springs_scene(scene::Table& root, SpringsScene& scene);
 
-/// The table of what cloth may meet.
+/// Declares [contact].
 void declare_contact(scene::Table& table, SpringsContact& contact);
 
-/// Three numbers.
+/// Codec of three numbers.
 scene::Codec vector_codec(fabric::Vector& value);
 
-/// The tables that say how the result is checked.
+/// Declares [verify].
 void declare_verify(scene::Table& table, Verify& verify);
 
 }  // namespace drogue::springs_app

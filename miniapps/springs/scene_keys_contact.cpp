@@ -43,7 +43,7 @@ void declare_object(Table& table, ContactObject& object) {
 void declare_contact(Table& table, SpringsContact& contact) {
   table.tables("objects", contact.objects, declare_object, "Bodies at rest that nothing enters");
   scene::Codec self = scene::boolean_codec(contact.self);
-  // Where nothing meets there is no contact to tell of.
+  // Without bodies and self-contact the table is absent.
   self.print = [print = self.print, &contact] { return contact.asked_for() ? print() : std::nullopt; };
   table.value("self", self, "Whether cloth and strings meet themselves").default_text("`false`");
   table

@@ -1,83 +1,86 @@
 #pragma once
 
-#include <filesystem>
-#include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 
-#include "common/program/progress.hpp"
-#include "common/run/result_document.hpp"
-#include "common/run/run_directory.hpp"
 #include "kernels/fabric/solver.hpp"
-#include "miniapps/springs/output.hpp"
+#include "miniapps/framework/simulation.hpp"
 #include "miniapps/springs/problem.hpp"
-#include "miniapps/springs/restart.hpp"
 #include "miniapps/springs/stress_fields.hpp"
 #include "miniapps/springs/verify.hpp"
 
 namespace drogue::springs_app {
 
-/// How a scene is run.
-struct RunSettings {
-  device::Backend backend = device::Backend::serial;
-  bool seed_mode = false;  ///< the state travels to the device and back at every step
-  bool quiet = false;
-  std::filesystem::path restart;  ///< a restart file, or empty
-  bool can_be_continued = true;   ///< a run that ends before its time leaves restart.h5
-  /// Told of every output time, whether or not fields are written, with the positions in the scene's
-  /// numbering, m; may be empty.
-  std::function<void(const Row& row, const std::vector<fabric::Vector>& x)> at_output;
+/// Energies, momenta and probe positions of one state.
+struct StateTotals {
+  double kinetic = 0.0, elastic = 0.0, potential = 0.0;  ///< J
+  fabric::Vector momentum{};                             ///< kg m/s
+  fabric::Vector angular_momentum{};                     ///< kg m^2/s
+  std::vector<fabric::Vector> probes;                    ///< positions, m
+  double contact_work = 0.0;                             ///< J, without friction
+  double friction_work = 0.0;                            ///< J
+  int intersections = 0;
 };
 
-/// Runs a scene from its state to its end, writes its files and fills `result`.
-class Simulation {
+/// A scene on a solver. Functions as of `framework::Simulation`; vertices are in the scene's numbering.
+class Simulation final : public framework::Simulation {
  public:
-  Simulation(const SpringsScene& scene, const RunSettings& settings);
+  /// Keeps a reference to `scene`. Throws `Failure` (no_backend).
+  Simulation(const SpringsScene& scene, const framework::SimulationSettings& settings);
 
-  /// Steps to the end time. Throws Failure: numerical_failure (after the last good state is on disk),
-  /// io_error. Returns `interrupted` after a signal, the restart file written; otherwise `ok`.
-  ExitCode run(const run::RunDirectory& directory, run::ResultDocument& result);
+  [[nodiscard]] const framework::OutputRequest& output() const override { return _scene.output; }
+  [[nodiscard]] framework::EndTime end_time() const override {
+    return {_scene.time.end_time, "time.end_time"};
+  }
+  void start() override;
+  void restore(const run::RestartReader& reader) override;
+  void write_restart(run::RestartWriter& writer) override;
+  [[nodiscard]] framework::TimeState now() override;
+  framework::Stop advance(const framework::AdvanceLimits& limits, const framework::RowSink& rows,
+                          const framework::Poll& poll) override;
+  bool plan_next_interval() override;
+  [[nodiscard]] std::vector<run::Column> history_columns() const override;
+  [[nodiscard]] framework::HistoryRow row() override;
+  [[nodiscard]] std::vector<run::DatasetSpec> field_specs() const override;
+  void write_mesh(run::FieldsWriter& fields) const override;
+  [[nodiscard]] framework::FieldsTask snapshot() override;
+  [[nodiscard]] std::string failure_text(bool restart_written) override;
+  void describe(run::ResultDocument& result) override;
+  ExitCode verify(const run::RunDirectory* directory, run::ResultDocument& result) override;
 
-  /// Energies now and work done so far, J, as columns of history.csv.
-  [[nodiscard]] std::map<std::string, double> energies();
+  /// Totals of the current state, and the work done so far. Blocks.
+  [[nodiscard]] StateTotals totals();
 
-  /// For verification.
-  [[nodiscard]] FinalState final_state();
+  /// Positions of the vertices, m. Blocks.
+  [[nodiscard]] std::vector<fabric::Vector> positions();
 
  private:
-  void resume();
   void plan();
   void replan_if_stiffer();
   [[nodiscard]] double longest_stable_step(double frequency);
   [[nodiscard]] double stable_dt();
   [[nodiscard]] std::string too_long_step();
-  [[nodiscard]] double next_stop(double time) const;
-  [[nodiscard]] bool is_output_time(double time) const;
-  [[nodiscard]] std::int64_t steps_to_event() const;
-  [[nodiscard]] bool advance(std::int64_t steps, ProgressLine& progress);
-  void reach_event(RunOutput& output);
-  void reach_output(RunOutput& output);
+  [[nodiscard]] std::int64_t steps_to_event(const framework::AdvanceLimits& limits) const;
+  [[nodiscard]] bool take_steps(std::int64_t steps, const framework::Poll& poll);
   void round_trip();
   void return_to_last_good(std::int64_t lost);
   [[nodiscard]] double time() const;
-  [[nodiscard]] Row row();
-  [[nodiscard]] Snapshot snapshot();
   [[nodiscard]] std::vector<fabric::Stress> stress_of(const StressKind& kind);
-  [[nodiscard]] RestartState restart_state();
-  [[nodiscard]] std::string failure_text(const fabric::Failure& failure) const;
-  void describe(run::ResultDocument& result) const;
+  [[nodiscard]] FinalState final_state();
 
   const SpringsScene& _scene;
-  RunSettings _settings;
+  framework::SimulationSettings _settings;
   Problem _problem;
   std::unique_ptr<fabric::Solver> _solver;
   std::int64_t _stop_step = 0;
   double _stop_time = 0.0;
   double _dt_min = 0.0, _dt_max = 0.0;
-  double _asked_at = 0.0;   ///< 1/s, the bound of frequencies when the largest was last looked for
-  std::int64_t _piece = 1;  ///< steps asked for at once
-  bool _warm = false;       ///< the first step allocates what all of them use
-  double _setup_s = 0.0, _compute_s = 0.0, _h2d_s = 0.0, _d2h_s = 0.0, _io_s = 0.0;
+  std::optional<std::string> _too_long;  ///< why the step is too long, empty if it is not; none: unchecked
+  std::optional<fabric::Failure> _failure;
+  double _checked_frequency = 0.0;  ///< 1/s, bound of the frequencies at the last search for the largest
+  std::int64_t _batch = 1;          ///< steps that one call of the solver takes
+  double _compute_s = 0.0, _h2d_s = 0.0, _d2h_s = 0.0;
 };
 
 }  // namespace drogue::springs_app

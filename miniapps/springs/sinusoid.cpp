@@ -12,7 +12,7 @@ namespace {
 
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
-/// Solves a symmetric positive system of three equations by Gauss; rows are [A | b].
+/// Solves a symmetric positive definite system of three equations by Gaussian elimination; rows are [A | b].
 std::array<double, 3> solved(std::array<std::array<double, 4>, 3> rows) {
   for (std::size_t k = 0; k < 3; ++k)
     for (std::size_t i = k + 1; i < 3; ++i) {
@@ -28,7 +28,7 @@ std::array<double, 3> solved(std::array<std::array<double, 4>, 3> rows) {
   return x;
 }
 
-/// Sum of squares that 1, cos(omega t) and sin(omega t) together leave of the samples.
+/// Residual sum of squares of the samples after a fit of 1, cos(omega t) and sin(omega t).
 double residual(const std::vector<double>& time, const std::vector<double>& value, double omega) {
   std::array<std::array<double, 4>, 3> normal{};
   const auto basis = [omega](double t) { return std::array{1.0, std::cos(omega * t), std::sin(omega * t)}; };
@@ -49,7 +49,7 @@ double residual(const std::vector<double>& time, const std::vector<double>& valu
   return sum;
 }
 
-/// The least of a function with one minimum between `low` and `high` (golden section).
+/// Minimum of a unimodal function between `low` and `high` by golden-section search.
 template <class Function>
 double least(const Function& f, double low, double high) {
   const double share = 1.0 / std::numbers::phi;
@@ -81,7 +81,7 @@ double fitted_frequency(const std::vector<double>& time, const std::vector<doubl
   if (crossings.size() < 3) return not_a_number;
   const double periods = 0.5 * static_cast<double>(crossings.size() - 1);
   const double guess = 2.0 * std::numbers::pi * periods / (crossings.back() - crossings.front());
-  // The least squares have one minimum within half a period of the whole record.
+  // The residual has one minimum within half a period of the whole record.
   const double width = std::min(0.5 * guess, 0.5 * std::numbers::pi / (time.back() - time.front()));
   const double omega =
       least([&](double w) { return residual(time, value, w); }, guess - width, guess + width);

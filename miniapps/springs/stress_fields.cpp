@@ -8,7 +8,7 @@ namespace {
 using fabric::Stress;
 using fabric::StressMeasure;
 
-/// What of a stress is a field.
+/// Component or invariant of a stress that is a field.
 struct StressPart {
   std::string name;
   std::uint64_t columns;

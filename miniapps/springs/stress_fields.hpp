@@ -10,24 +10,24 @@
 
 namespace drogue::springs_app {
 
-/// Which stresses a field is made of.
+/// Kind of stress that a field is derived from.
 struct StressKind {
-  bool at_vertices = false;  ///< else of triangles
+  bool at_vertices = false;  ///< otherwise of triangles
   fabric::StressMeasure measure = fabric::StressMeasure::cauchy;
   auto operator<=>(const StressKind&) const = default;
 };
 
-/// Every name that output.fields may hold for a stress: `von_mises` and others of triangles and of Cauchy,
-/// `vertex_` before it for vertices, `nominal_` before that for the nominal one.
+/// Names of all stress fields: `von_mises` and others for the Cauchy stress of triangles, with prefix
+/// `vertex_` for vertices and `nominal_` for the nominal stress.
 std::vector<std::string> stress_field_names();
 
-/// None for a field that is no stress.
+/// Kind of stress of a field; empty if the field is no stress.
 std::optional<StressKind> stress_kind(const std::string& field);
 
-/// The dataset of a field of stress.
+/// Dataset of a stress field.
 run::DatasetSpec stress_spec(const std::string& field, const fabric::Mesh& mesh);
 
-/// Its values, row by row, from stresses of its kind.
+/// Values of a stress field, row by row, from stresses of its kind, N/m.
 std::vector<double> stress_values(const std::string& field, const std::vector<fabric::Stress>& stress);
 
 }  // namespace drogue::springs_app

@@ -2,10 +2,7 @@
 
 #include <algorithm>
 
-#include "common/study/study.hpp"
-#include "kernels/device/profiling_counters.hpp"
-#include "miniapps/springs/app.hpp"
-#include "miniapps/springs/repeated_run.hpp"
+#include "miniapps/framework/run_loop.hpp"
 #include "miniapps/springs/samples.hpp"
 #include "miniapps/springs/simulation.hpp"
 #include "miniapps/springs/study_points.hpp"
@@ -16,7 +13,7 @@ namespace {
 constexpr study::Repeats repeats{5, 1.0};
 constexpr int samples_by_default = 100;
 
-/// Writes no fields; its steps meet the times of its samples.
+/// Copy of a scene without fields, whose steps meet the sample times.
 SpringsScene silent(SpringsScene scene) {
   Output& output = scene.output;
   output.fields.clear();
@@ -27,7 +24,7 @@ SpringsScene silent(SpringsScene scene) {
   return scene;
 }
 
-/// How far `coarse` is from `fine`, the next finer mesh of its scheme.
+/// Adds the distance of `coarse` from `fine`, the next finer mesh of its scheme.
 void add_cauchy(study::Row& coarse, const study::Row& fine) {
   for (const auto& [name, values] : coarse.series)
     if (name != "time")
@@ -35,46 +32,82 @@ void add_cauchy(study::Row& coarse, const study::Row& fine) {
           mean_difference(coarse.series.at("time"), values, fine.series.at(name));
 }
 
+/// One run; the first fills in everything but the samples. Throws `Failure`.
+ExitCode run_once(const SpringsScene& scene, device::Backend backend, const run::RunDirectory& directory,
+                  framework::RepeatedRun& runs) {
+  const bool first = runs.samples.empty();
+  Simulation simulation(scene, {backend, false, true});
+  framework::RunRequest request;
+  request.files = {&directory, scene.name, {}, {}};
+  request.quiet = true;
+  request.keeps_restart = false;
+  if (first)
+    request.at_output = [&] {
+      const auto add = [&runs](const char* name, double value) { runs.series[name].push_back(value); };
+      const StateTotals totals = simulation.totals();
+      const std::vector<fabric::Vector> x = simulation.positions();
+      add("time", simulation.now().time);
+      add("kinetic", totals.kinetic);
+      add("elastic", totals.elastic);
+      if (scene.has_lines()) add("length", total_length(scene.mesh, x));
+      if (scene.has_triangles()) add("area", total_area(scene.mesh, x));
+    };
+  run::ResultDocument result;
+  simulation.start();
+  const ExitCode code = framework::run_to_end(simulation, request, result);
+  if (code != ExitCode::ok) return code;
+  runs.samples.push_back(result.timing.compute_s);
+  if (!first) return code;
+  runs.steps = result.steps;
+  simulation.verify(&directory, result);
+  runs.errors = result.errors;
+  for (const run::Check& check : result.checks) runs.checks.push_back(check.name);
+  return code;
+}
+
+/// Columns of study.csv, complete once a run has shown what its scene verifies.
+void complete_columns(study::Columns& columns, const framework::RepeatedRun& runs) {
+  if (!columns.errors.empty() || runs.code != ExitCode::ok) return;
+  if (!runs.checks.empty()) columns.shown = columns.shown_title = runs.checks.front();
+  columns.errors = runs.checks;
+  for (const auto& [name, values] : runs.series)
+    if (name != "time") columns.errors.push_back("cauchy_" + name);
+}
+
 }  // namespace
+
+ScratchDirectory::ScratchDirectory(const std::filesystem::path& folder)
+    : _folder(folder), _directory(folder, run::ExistingRun::overwrite) {}
+
+ScratchDirectory::~ScratchDirectory() {
+  std::error_code ignored;
+  std::filesystem::remove_all(_folder, ignored);
+}
+
+framework::RepeatedRun run_repeatedly(const SpringsScene& scene, device::Backend backend,
+                                      const study::Repeats& repeats, ScratchDirectory& scratch) {
+  scratch.directory().begin();
+  return framework::repeat_run(repeats, [&](framework::RepeatedRun& runs) {
+    return run_once(scene, backend, scratch.directory(), runs);
+  });
+}
 
 ExitCode run_study(const MiniAppOptions& options, const std::filesystem::path& file) {
   const SpringsScene base = read_springs_scene(file, options.set);
-  // All of them, so that none is found wrong after others have run.
+  // Read all first: an invalid scene must not end a study that has run for hours.
   const std::vector<StudyPoint> points = study_points(file, options.set, options.study);
-  const device::Backend backend = choose_backend(options.backend);
-  const std::filesystem::path out =
-      options.out.empty() ? std::filesystem::path("out") / (base.name + "-study") : options.out;
-  run::RunDirectory directory(out,
-                              options.overwrite ? run::ExistingRun::overwrite : run::ExistingRun::refuse);
-  directory.begin();
-  directory.write_scene(print_springs_scene(base));
-  const auto runtime = start_kokkos(options.kokkos);
-  device::start_profiling();
-  run::ResultDocument facts = run::new_result("drogue-springs", base.name);
-  facts.describe_device(std::string(device::name(backend)), device::device_facts());
-
-  Scratch scratch(out / "point");
+  framework::StudySession session(options, "drogue-springs", base.name, print_springs_scene(base));
+  ScratchDirectory scratch(session.directory().path() / "point");
   study::Columns columns{{"model", "mass", "integrator"}, "vertices", {}, "", ""};
   const auto run_point = [&](std::size_t i, std::vector<study::Row>& rows) {
     const StudyPoint& point = points[i];
-    study::Row row;
+    framework::RepeatedRun runs = run_repeatedly(silent(point.scene), session.backend(), repeats, scratch);
+    if (runs.code == ExitCode::interrupted) return false;
+    complete_columns(columns, runs);
+    study::Row row = framework::study_row(std::move(runs));
     row.label = point.label;
     row.settings = {point.model, point.mass, point.integrator};
     row.mesh = static_cast<std::int64_t>(point.scene.mesh.rest.size());
-    RepeatedRun runs = run_repeatedly(silent(point.scene), backend, repeats, scratch);
-    if (runs.code == ExitCode::interrupted) return false;
-    row.samples = std::move(runs.samples);
-    row.steps = runs.steps;
-    row.errors = std::move(runs.errors);
-    row.series = std::move(runs.series);
-    row.code = runs.code;
-    row.message = runs.message;
-    if (columns.errors.empty() && row.code == ExitCode::ok) {  // what scenes verify is known once one has run
-      if (!runs.checks.empty()) columns.shown = columns.shown_title = runs.checks.front();
-      columns.errors = runs.checks;
-      for (const auto& [name, values] : row.series)
-        if (name != "time") columns.errors.push_back("cauchy_" + name);
-    }
     rows.push_back(std::move(row));
     if (rows.size() < 2) return true;
     study::Row &coarse = rows[rows.size() - 2], &fine = rows.back();
@@ -82,7 +115,7 @@ ExitCode run_study(const MiniAppOptions& options, const std::filesystem::path& f
       add_cauchy(coarse, fine);
     return true;
   };
-  return study::run_points(directory, facts, columns, points.size(), run_point, options.quiet);
+  return session.run(columns, points.size(), run_point);
 }
 
 }  // namespace drogue::springs_app

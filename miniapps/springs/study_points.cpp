@@ -12,7 +12,7 @@ namespace {
 
 const std::vector<std::string> model_names = {"linear-vector", "edge", "quadratic", "biquadratic"};
 
-/// The settings of a point; empty: the scene's own. No mesh is 0.
+/// Settings of a point. Empty texts and 0 vertices keep the value of the scene.
 struct Wanted {
   std::string model, mass, integrator;
   std::int64_t vertices = 0;
@@ -45,7 +45,7 @@ void refuse_what_the_mesh_has_not(const study::Axes& axes, const SpringsScene& b
                   "--study: models is about triangles, and the mesh of " + base.name + " has none");
 }
 
-/// The table [material] with springs along edges in place of triangles, or the other way round.
+/// Table [material] for springs along edges in place of triangles, or vice versa.
 std::string material_table(const SpringsScene& base, const std::string& model) {
   const Fabric& f = base.fabric;
   const auto pair = [](const char* key, double value) {
@@ -83,7 +83,7 @@ std::vector<std::string> assignments(const SpringsScene& base, const Wanted& wan
   return sets;
 }
 
-/// Strings beside cloth keep the E A of each, which no key of another model may tell.
+/// Keeps E A of strings beside cloth, which the keys of another model cannot express.
 void keep_strings(const SpringsScene& base, SpringsScene& scene) {
   if (!base.has_triangles() || !base.has_lines()) return;
   scene.mesh.line_stiffness = base.mesh.line_stiffness;
@@ -120,7 +120,7 @@ std::vector<StudyPoint> study_points(const std::filesystem::path& file, const st
     SpringsScene scene = read_springs_scene(file, all);
     keep_strings(base, scene);
     StudyPoint point = named(std::move(scene));
-    // A generator may make the same mesh of two numbers.
+    // A generator may round two sizes to the same mesh.
     const bool again = !points.empty() && points.back().label == point.label &&
                        points.back().scene.mesh.rest.size() == point.scene.mesh.rest.size();
     if (!again) points.push_back(std::move(point));

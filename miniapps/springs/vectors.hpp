@@ -7,7 +7,7 @@
 
 namespace drogue::springs_app {
 
-/// The coordinates of all vectors, one after the other, as files hold them.
+/// Coordinates of all vectors as a flat array (3 n), as files store them.
 inline std::span<const double> numbers(const std::vector<fabric::Vector>& vectors) {
   return {vectors.data()->data(), 3 * vectors.size()};
 }

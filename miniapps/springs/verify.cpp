@@ -16,7 +16,7 @@ namespace {
 
 using fabric::Vector;
 
-/// The larger of two numbers; not a number if either is not, so that no check passes on a spoilt state.
+/// Maximum of two numbers; NaN if either is NaN, so that no check passes on an invalid state.
 double larger(double a, double b) { return a > b || std::isnan(a) ? a : b; }
 
 double distance(const Vector& a, const Vector& b) {
@@ -29,7 +29,7 @@ double largest(const std::vector<double>& values) {
   return result;
 }
 
-/// Largest distance of a vector of the history from its first value.
+/// Largest distance of a vector in the history from its first value.
 double largest_change(const History& history, const std::string& name) {
   const auto &x = history.at(name + "_x"), &y = history.at(name + "_y"), &z = history.at(name + "_z");
   double change = 0.0;
@@ -38,8 +38,8 @@ double largest_change(const History& history, const std::string& name) {
   return change;
 }
 
-/// The largest kinetic energy, J, that was there or that the elastic and potential energy given up since the
-/// start would make: what cloth on its way had between two rows counts too.
+/// Largest kinetic energy, J, that occurred or that the released elastic and potential energy would produce:
+/// covers the maximum between two rows.
 double energy_scale(const History& history) {
   const auto &kinetic = history.at("kinetic"), &elastic = history.at("elastic"),
              &potential = history.at("potential");
@@ -57,7 +57,7 @@ double energy_drift(const History& history) {
   return change / energy_scale(history);
 }
 
-/// The most that a sum has grown since it was least.
+/// Largest increase of a series above its running minimum.
 double largest_rise(const std::vector<double>& values) {
   double rise = 0.0, least = values[0];
   for (const double value : values) {
@@ -67,8 +67,8 @@ double largest_rise(const std::vector<double>& values) {
   return rise;
 }
 
-/// Of the energy less what contact and friction have put in; and what either has put in since it had put in
-/// the least, for bodies at rest and layers only take.
+/// Increase of the energy without the work of contact and friction, and the increase of either work above its
+/// minimum: resting bodies and layers only dissipate.
 double energy_imbalance(const History& history) {
   const std::vector<double>&energy = history.at("energy"), &contact = history.at("contact_work"),
         &friction = history.at("friction_work");
@@ -91,7 +91,7 @@ double hencky_error(const SpringsScene& scene, const FinalState& state) {
   const double radius = scene.source.disk->radius, pressure = *constant_value(scene.loads[0].pressure);
   const double expected =
       hencky(m.poisson).deflection * radius * std::cbrt(std::abs(pressure) * radius / m.membrane_modulus);
-  // The generator puts a vertex there.
+  // The generator places a vertex there.
   return relative_error(std::abs(state.x.front()[2]), expected);
 }
 
@@ -171,7 +171,7 @@ Response pulled_response(const fabric::Mesh& mesh, const FinalState& state) {
     double rest, moved = 0.0, force = 0.0;
     int count = 0;
   };
-  // The sides along an axis: vertices at its least and at its largest coordinate.
+  // Sides along an axis: vertices at its minimum and maximum coordinate.
   const auto sides = [&](std::size_t axis) {
     const auto [low, high] = std::ranges::minmax_element(
         mesh.rest, [axis](const Vector& a, const Vector& b) { return a[axis] < b[axis]; });
@@ -192,7 +192,7 @@ Response pulled_response(const fabric::Mesh& mesh, const FinalState& state) {
   Response response;
   response.width = width;
   response.strain = (ends[1].moved - ends[0].moved) / (ends[1].rest - ends[0].rest);
-  // What pulls at the last column is minus the force of the cloth on it.
+  // The reaction at the last column is minus the force of the cloth.
   response.young = -ends[1].force / width / response.strain;
   response.poisson = -(flanks[1].moved - flanks[0].moved) / width / response.strain;
   return response;

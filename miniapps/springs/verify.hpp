@@ -8,17 +8,18 @@
 
 namespace drogue::springs_app {
 
-/// Where a run has come to, in the numbering of the scene's mesh.
+/// Final state of a run, in the numbering of the scene.
 struct FinalState {
   std::vector<fabric::Vector> x;      ///< m
-  std::vector<fabric::Vector> force;  ///< on every vertex, gravity included, damping not, N
+  std::vector<fabric::Vector> force;  ///< on every vertex, with gravity, without damping, N
   std::vector<std::uint8_t> pinned;   ///< 1 for x, 2 for y, 4 for z
-  double largest_load = 0.0;          ///< dead, on a vertex, gravity excluded, N
-  double mass = 0.0;                  ///< of all, kg
-  double payload = 0.0;               ///< part of it, kg
+  double largest_load = 0.0;          ///< largest dead load on a vertex without gravity, N
+  double mass = 0.0;                  ///< total, kg
+  double payload = 0.0;               ///< part of the mass, kg
 };
 
-/// Errors and checks as the scene's [verify] asks; `history` is the history.csv of the run.
+/// Adds errors and checks of the scene's [verify]; `history` is the history.csv of the run. Throws `Failure`
+/// (io_error).
 void verify(const SpringsScene& scene, const FinalState& state, const std::filesystem::path& history,
             run::ResultDocument& result);
 
@@ -29,12 +30,12 @@ struct Response {
 };
 Response pulled_response(const fabric::Mesh& mesh, const FinalState& state);
 
-/// What all lines together add to the force over strain of a mesh pulled along x, N, if an even strain leaves
-/// them balanced: they run along x, and of every vertex within to both sides with the same stiffness. The
-/// mesh must have its line_stiffness.
+/// Force over strain, N, that all lines add to a mesh pulled along x, provided that uniform strain leaves
+/// them in equilibrium: lines along x with equal stiffness on both sides of every inner vertex. Requires
+/// line_stiffness.
 std::optional<double> even_line_stiffness(const fabric::Mesh& mesh);
 
-/// Largest force on a free axis over the largest on a held one or dead load.
+/// Largest force on a free axis over the largest on a prescribed axis or dead load.
 double imbalance(const FinalState& state);
 
 }  // namespace drogue::springs_app

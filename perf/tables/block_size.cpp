@@ -53,7 +53,7 @@ Case case_of(device::Backend backend, Form form, int cells, int block) {
                            std::to_string(block) + "/" + std::to_string(cells);
   if (form == Form::step) return fused_case(name, backend, p);
   return seed_case(name, "launch latency, and blocks that wait for room", backend, p,
-                   [](const gas::Phases& spent) {
+                   [](const gas::PhaseTimes& spent) {
                      return std::map<std::string, double>{{"compute", spent.compute}};
                    });
 }

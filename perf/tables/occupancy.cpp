@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "kernels/gas/team_shape.hpp"
+#include "kernels/gas/tile/team_shape.hpp"
 #include "perf/dissertation.hpp"
 #include "perf/tables/tables.hpp"
 
@@ -100,11 +100,11 @@ struct StepKernel {
 std::vector<StepKernel> step_kernels() {
   std::vector<StepKernel> kernels;
   for (const int team : {32, 64, 96, 128, 192, 256, 384, 512}) {
-    const bool small = team <= gas::usual_team;
+    const bool small = team <= gas::default_team;
     kernels.push_back({team, gas::fitting_slots(gas::device_rows, team, team), small ? 168 : 128,
-                       small ? gas::usual_teams : gas::largest_teams, ""});
+                       small ? gas::default_teams : gas::largest_teams, ""});
   }
-  kernels.push_back({gas::usual_team, gas::largest_tile, 128, gas::dense_teams, "/large-mesh"});
+  kernels.push_back({gas::default_team, gas::largest_tile, 128, gas::dense_teams, "/large-mesh"});
   return kernels;
 }
 

@@ -11,27 +11,27 @@ constexpr long seed_steps = 20;
 
 Case seed_case(const std::string& name, const std::string& bound, device::Backend backend,
                const gas::Parameters& p,
-               const std::function<std::map<std::string, double>(const gas::Phases&)>& parts) {
+               const std::function<std::map<std::string, double>(const gas::PhaseTimes&)>& parts) {
   const auto solver = std::make_shared<std::unique_ptr<gas::Solver>>();
-  const auto before = std::make_shared<gas::Phases>();
+  const auto before = std::make_shared<gas::PhaseTimes>();
   return {name,
           "step",
           bound,
           [=] {
-            *solver = gas::create_seed_solver(backend, p);
+            *solver = gas::create_baseline_solver(backend, p);
             const sod::Fields start = sod::start(p);
             return Sample{
                 [=] {
                   (*solver)->upload(0, {start[0], start[1], start[2]});
                   (*solver)->start();
-                  *before = (*solver)->phases();
+                  *before = (*solver)->phase_times();
                 },
                 [=] {
                   (*solver)->advance(1.0, seed_steps, 0, {}, {});
                   return seed_steps;
                 },
                 [=] {
-                  const gas::Phases now = (*solver)->phases();
+                  const gas::PhaseTimes now = (*solver)->phase_times();
                   return parts({now.h2d - before->h2d, now.compute - before->compute, now.d2h - before->d2h});
                 }};
           },

@@ -8,6 +8,6 @@ namespace drogue::perf {
 /// Some steps of Sod's problem in seed mode. `parts` takes from the phases of a sample what is timed.
 Case seed_case(const std::string& name, const std::string& bound, device::Backend backend,
                const gas::Parameters& parameters,
-               const std::function<std::map<std::string, double>(const gas::Phases&)>& parts);
+               const std::function<std::map<std::string, double>(const gas::PhaseTimes&)>& parts);
 
 }  // namespace drogue::perf

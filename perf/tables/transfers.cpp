@@ -35,7 +35,7 @@ Case case_of(device::Backend backend, const Row& row) {
                        std::to_string(p.cells),
                    backend == device::Backend::cuda ? "latency of copies between host and device"
                                                     : "memory and FP64 issue of the cores",
-                   backend, p, [](const gas::Phases& spent) {
+                   backend, p, [](const gas::PhaseTimes& spent) {
                      return std::map<std::string, double>{
                          {"h2d", spent.h2d}, {"compute", spent.compute}, {"d2h", spent.d2h}};
                    });

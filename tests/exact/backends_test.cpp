@@ -29,7 +29,7 @@ void append(std::string& bytes, const T* values, std::size_t count) {
                count * sizeof(T));  // NOLINT: bits are what is compared
 }
 
-enum class Count : std::size_t { stop, step, redone, touches, cell };
+enum class Count : std::size_t { stop, step, redone, limited_faces, cell };
 
 /// Everything a run leaves: counts, rows, totals, state, what a restart would carry, the limiter's marks.
 std::string run_bytes(const Runner& runner, gas::Parameters p, const GasState& state, std::int64_t steps) {
@@ -43,9 +43,9 @@ std::string run_bytes(const Runner& runner, gas::Parameters p, const GasState& s
   };
   const gas::Stop stop = solver->advance(1e9, steps, 10, keep, {});
   keep(solver->totals());
-  const gas::Resume r = solver->resume_state();
+  const gas::RestartState r = solver->restart_state();
   std::string bytes;
-  for (const std::int64_t count : {static_cast<std::int64_t>(stop), r.step, r.redone, r.touches,
+  for (const std::int64_t count : {static_cast<std::int64_t>(stop), r.step, r.redone, r.limited_faces,
                                    solver->failure().cell, static_cast<std::int64_t>(r.limited_left)})
     append(bytes, &count, 1);
   bytes += rows;
@@ -53,10 +53,10 @@ std::string run_bytes(const Runner& runner, gas::Parameters p, const GasState& s
   append(bytes, r.speed, 3);
   append(bytes, r.boundary[0], 6);
   append(bytes, r.compensation[0], 6);
-  std::vector<std::uint8_t> touched(p.positivity == gas::Positivity::off ? 0
-                                                                         : static_cast<std::size_t>(p.cells));
-  solver->download_touched(0, touched);
-  append(bytes, touched.data(), touched.size());
+  std::vector<std::uint8_t> limited_cells(
+      p.positivity == gas::Positivity::off ? 0 : static_cast<std::size_t>(p.cells));
+  solver->download_limited_cells(0, limited_cells);
+  append(bytes, limited_cells.data(), limited_cells.size());
   return bytes;
 }
 
@@ -113,10 +113,10 @@ TEST(GasExact, ShockTube) {
 
 TEST(GasExact, GlobalSpeedsAndLimiter) {
   auto p = parameters(8199, gas::Weno::js, gas::Splitting::lf_global, gas::Positivity::on);
-  p.mean = gas::Mean::roe;
+  p.face_average = gas::FaceAverage::roe;
   p.time_scheme = gas::TimeScheme::ssprk43;
   const std::string serial = expect_same_bits(p, testing::random_state(p, 1, testing::extreme), 20);
-  EXPECT_GT(count(serial, Count::touches), 0);
+  EXPECT_GT(count(serial, Count::limited_faces), 0);
 }
 
 // Where a step shares its launch with others, the limiter is a reason to end the launch.
@@ -131,10 +131,10 @@ TEST(GasExact, LimiterOnDemandBetweenStepsInOneKernel) {
 TEST(GasExact, LimiterOnDemandAndRedoneSteps) {
   auto p = parameters(6000, gas::Weno::teno5, gas::Splitting::lf_single, gas::Positivity::automatic);
   p.left = p.right = gas::Boundary::periodic;
-  p.mean = gas::Mean::conserved;
+  p.face_average = gas::FaceAverage::conserved;
   const std::string serial = expect_same_bits(p, testing::random_state(p, 2, testing::extreme), 40);
   EXPECT_GT(count(serial, Count::redone), 0);
-  EXPECT_GT(count(serial, Count::touches), 0);
+  EXPECT_GT(count(serial, Count::limited_faces), 0);
 }
 
 TEST(GasExact, SplitPrecision) {
@@ -158,7 +158,7 @@ TEST(GasExact, FailedRunFailsInTheSameCell) {
 TEST(GasExact, AKernelAStepGivesTheBitsOfAKernelAStage) {
   using gas::Boundary;
   unsigned seed = 5;
-  bool touched = false;
+  bool limited_cells = false;
   for (const gas::Weno weno : {gas::Weno::js, gas::Weno::z, gas::Weno::m, gas::Weno::teno5})
     for (const std::int64_t cells : {8, 23, 300, 1001})
       for (const auto time : {gas::TimeScheme::ssprk3, gas::TimeScheme::ssprk43})
@@ -185,13 +185,13 @@ TEST(GasExact, AKernelAStepGivesTheBitsOfAKernelAStage) {
               return fused + (fused == run_bytes(stages, p, state, 9) ? "=" : "!");
             });
             EXPECT_EQ(count(bytes, Count::step), 9);
-            touched = touched || count(bytes, Count::touches) > 0;
+            limited_cells = limited_cells || count(bytes, Count::limited_faces) > 0;
             EXPECT_EQ(bytes.back(), '=')
                 << device::name(runner.backend) << ", driver " << static_cast<int>(runner.driver) << ", "
                 << cells << " cells, seed " << seed;
           }
         }
-  EXPECT_TRUE(touched);
+  EXPECT_TRUE(limited_cells);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-"""Who may include whom: the table of the architecture, and the code that reads the includes."""
+"""Include rules of the layers: the table of the architecture, and the code that reads the includes."""
 
 import re
 from dataclasses import dataclass
@@ -29,11 +29,15 @@ SHARED = re.compile(r"kernels/[a-z]+/parameters\.hpp$")
 LAYERS = (
     Layer("common/", ("common/",), (KOKKOS, r"cuda")),
     Layer("kernels/reference/", ("kernels/reference/",), (KOKKOS, r"cuda", FRONT_END, FILES, MPI)),
-    Layer("kernels/flow/halo", ("kernels/",), (FRONT_END, FILES)),
-    Layer("kernels/linear/", ("kernels/",), (FRONT_END, FILES)),
     Layer("kernels/", ("kernels/",), (FRONT_END, FILES, MPI)),
+    Layer("miniapps/framework/", ("miniapps/framework/", "kernels/device/", "common/"), (KOKKOS, r"cuda", FRONT_END)),
     Layer("perf/", ("perf/", "kernels/", "common/", "miniapps/"), ()),
 )
+
+
+def without_folder(files):
+    """Places of LAYERS that none of the files lies below: an entry without a folder checks nothing."""
+    return [layer.place for layer in LAYERS if not any(file.startswith(layer.place) for file in files)]
 
 
 def layer_of(path):
@@ -44,7 +48,7 @@ def layer_of(path):
     parts = path.split("/")
     if parts[0] == "miniapps" and len(parts) > 2:
         app = f"miniapps/{parts[1]}/"
-        return Layer(app, (app, "kernels/", "common/"), (KOKKOS, r"cuda"))
+        return Layer(app, (app, "miniapps/framework/", "kernels/", "common/"), (KOKKOS, r"cuda"))
     return None
 
 
@@ -54,7 +58,7 @@ def includes(text):
 
 
 def own_header_comes_late(path, text, files):
-    """Whether a source that has a header of its name includes something before it."""
+    """True if a source with a header of its own name includes another file first."""
     header = path.removesuffix(".cpp") + ".hpp"
     return path.endswith(".cpp") and header in files and includes(text)[:1] != [(True, header)]
 

@@ -1,4 +1,4 @@
-"""What documents say of the code: every file that they name is there, and every function stands in its header."""
+"""Documents agree with the code: every file that they name exists, and every function stands in its header."""
 
 import os
 import re

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "kernels/device/pack.hpp"
-#include "kernels/gas/work.hpp"
+#include "kernels/gas/step_work.hpp"
 
 // A double that counts what is done with it, for the point functions of kernels/. Include it before them:
 // they call `device::root` and the like by their full names, and see what is declared by then.

@@ -5,21 +5,22 @@
 #include "tests/support/counted.hpp"
 #include "tests/support/gas_state.hpp"
 
-// After what counts them.
-#include "kernels/gas/stage.hpp"
-#include "kernels/gas/step.hpp"
+// These headers must follow the definition of the counted type.
+#include "kernels/gas/stepping/stage.hpp"
+#include "kernels/gas/stepping/step.hpp"
 
 namespace drogue::testing {
 
-/// The tiles of a small periodic mesh one after the other, by the functions that the kernels call, on numbers
-/// of type R: what they cost and which bytes of the fields they touch.
+/// Runs the tiles of a small periodic mesh one by one with the functions of the kernels on numbers of type R.
+/// Counts their operations and the bytes of the fields that they access.
 template <class R>
 class CountedStep {
  public:
   static constexpr double gamma = 1.4, dt_over_dx = 0.1;
   static constexpr int row = 64;
   static constexpr std::int64_t cells = 44, tile_cells = 18;  ///< the last tile is smaller
-  static constexpr gas::Ends ends{cells, gas::Boundary::periodic, gas::Boundary::periodic};
+  static constexpr gas::BoundaryConditions boundaries{cells, gas::Boundary::periodic,
+                                                      gas::Boundary::periodic};
 
   using Tile = gas::Tile<Kokkos::Serial>;
   template <gas::Reconstruction scheme>
@@ -27,7 +28,7 @@ class CountedStep {
   template <gas::Reconstruction scheme>
   using Stage = gas::StageFunctor<Kokkos::Serial, scheme, gas::Precision::full, false>;
 
-  /// The only thread of a team, and its scratch memory.
+  /// Only thread of a team, with its scratch memory.
   struct Thread {
     std::int64_t tile;
     double* scratch;
@@ -47,13 +48,13 @@ class CountedStep {
     _fields[1] = _fields[2] = _fields[0];
   }
 
-  gas::StepWork work;               ///< of all that has run
-  std::int64_t times_combined = 0;  ///< how often `run_fused` has given U^n its share
+  gas::StepWork work;               ///< total of all runs
+  std::int64_t times_combined = 0;  ///< number of combinations with U^n in `run_fused`
 
   /// U^{n+1} of `run_fused`, (cells, 3).
   [[nodiscard]] const std::vector<double>& result() const { return _fields[1]; }
 
-  /// What `StepFunctor` does.
+  /// Runs the operations of `StepFunctor`.
   template <gas::Reconstruction scheme>
   void run_fused() {
     const Step<scheme> step = fused<scheme>();
@@ -73,18 +74,18 @@ class CountedStep {
     });
   }
 
-  /// What `StageFunctor` does in all stages of a step.
+  /// Runs the operations of `StageFunctor` in all stages of a step.
   template <gas::Reconstruction scheme>
   void run_stages() {
     const gas::TileShape shape{tile_cells, gas::ghost_cells, row};
     for (int k = 0; k < _table.stages; ++k) {
       const gas::StageWeights& weights = _table.stage[k];
-      const Stage<scheme> stage{{}, {},  {}, weights, shape, ends, gamma, 1.0, k, gas::Splitting::lf_stencil,
-                                {}, true};
+      const Stage<scheme> stage{
+          {}, {}, {}, weights, shape, boundaries, gamma, 1.0, k, gas::Splitting::lf_stencil, {}, true};
       for_tiles(shape, [&](const Thread& thread, const Tile& tile) {
         load(thread, tile, weights.in);
         for (int face = 0; face <= tile.cells; ++face) compute_face<scheme>(tile, face);
-        gas::Reduced<R> reduced;
+        gas::CellReduction<R> reduced;
         for (int i = tile.halo; i < tile.halo + tile.cells; ++i)
           stage.template update_cell<R>(tile, i, dt_over_dx, field(0), field(weights.out), reduced);
       });
@@ -105,7 +106,7 @@ class CountedStep {
   gas::Arithmetic load(const Thread& thread, const Tile& tile, int from) {
     return add([&] {
       gas::load_cells<R, false>(thread, tile, gamma, [&](std::int64_t cell) {
-        return gas::load_state<R>(field(from), ends, cell);
+        return gas::load_state<R>(field(from), boundaries, cell);
       });
     });
   }
@@ -113,19 +114,19 @@ class CountedStep {
   template <gas::Reconstruction scheme>
   gas::Arithmetic compute_face(const Tile& tile, int face) {
     return add([&] {
-      tile.store_flux(
-          face, gas::face_flux<scheme, R>(tile, face, gas::load_stencil<R>(tile, face), gas::Mean::arithmetic,
-                                          gamma, gas::stencil_speeds<R, R>(tile, face)));
+      tile.store_flux(face, gas::face_flux<scheme, R>(tile, face, gas::load_stencil<R>(tile, face),
+                                                      gas::FaceAverage::arithmetic, gamma,
+                                                      gas::stencil_wave_speeds<R, R>(tile, face)));
     });
   }
 
   template <bool last, class Functor>
   gas::Arithmetic update(const Functor& step, const Tile& tile, int slot, int stage) {
     return add([&] {
-      gas::Reduced<R> reduced;
+      gas::CellReduction<R> reduced;
       step.template update_slot<last, R>(tile, slot, {slot, false}, _table.stage[stage], dt_over_dx, field(0),
-                                         field(1), typename Functor::Known{}, reduced);
-      // Of the fastest signals the fused step uses two.
+                                         field(1), typename Functor::SingleStepHooks{}, reduced);
+      // The fused step uses two of the maximum wave speeds.
       if constexpr (!std::is_same_v<R, double>)
         reduced.slow.keep(), reduced.fast.keep(), reduced.admissible.keep();
     });
@@ -133,7 +134,8 @@ class CountedStep {
 
   template <gas::Reconstruction scheme>
   [[nodiscard]] Step<scheme> fused() const {
-    return {{}, {}, {}, _table, {tile_cells, gas::ghost_cells * _table.stages, row}, ends, gamma, 1.0, {}};
+    return {{},         {},    {},  _table, {tile_cells, gas::ghost_cells * _table.stages, row},
+            boundaries, gamma, 1.0, {}};
   }
 
  private:
@@ -146,7 +148,7 @@ class CountedStep {
     return cost;
   }
 
-  /// Bytes of the fields that have been read and written, each value once.
+  /// Bytes of the fields that were read and written, each value once.
   [[nodiscard]] std::int64_t bytes_touched() const {
     std::int64_t values = 0;
     for (const auto& f : _fields)
@@ -156,7 +158,7 @@ class CountedStep {
   }
 
   gas::StageTable _table;
-  std::vector<double> _fields[3];  ///< as the kernels see them; the first is U^n
+  std::vector<double> _fields[3];  ///< as the kernels access them; the first is U^n
   std::vector<double> _scratch = std::vector<double>(row * Tile::rows);
 };
 

@@ -1,4 +1,4 @@
-"""Runs drogue-gas for tests of its interface; found by them below tests/support."""
+"""Runs drogue-gas for tests of its command line."""
 
 import functools
 import json
@@ -16,18 +16,18 @@ SOURCE = pathlib.Path(os.environ["DROGUE_SOURCE"])
 PROGRAM = BIN / "drogue-gas"
 SCENES = sorted(path.stem for path in (SOURCE / "miniapps/gas/scenes").glob("*.toml"))
 
-# Threads that wait without turning: tests share their cores with other tests.
+# Passive waiting, because tests share their cores.
 ENVIRONMENT = {**os.environ, "OMP_WAIT_POLICY": "passive", "OMP_NUM_THREADS": os.environ.get("OMP_NUM_THREADS", "2")}
 
 @functools.cache
 def backends():
-    """What is compiled in."""
+    """Backends of this build."""
     text = subprocess.run([PROGRAM, "--version"], capture_output=True, text=True, check=True).stdout
     return re.search("^backends: (.*)$", text, re.MULTILINE)[1].split()
 
 
 def threaded():
-    """The backend of the host with threads, else (the sanitizer preset) the one without."""
+    """OpenMP if available, otherwise (sanitizer preset) Serial."""
     return "openmp" if "openmp" in backends() else "serial"
 
 
@@ -37,7 +37,7 @@ NO_FIELDS = "output.fields=[]"
 
 
 def arguments(scene, *words, sets=(), program=PROGRAM):
-    """The command line of a run; a word of `sets` becomes a --set of its own."""
+    """Command line of a run; each word of `sets` becomes a --set option."""
     line = [str(program), str(scene), *map(str, words)]
     for assignment in sets:
         line += ["--set", assignment]
@@ -45,7 +45,7 @@ def arguments(scene, *words, sets=(), program=PROGRAM):
 
 
 def run(scene, *words, sets=(), cwd=None, timeout=3600, environment=None, program=PROGRAM):
-    """Runs to the end; stdout and stderr are text."""
+    """Runs the program and waits; stdout and stderr are text."""
     return subprocess.run(arguments(scene, *words, sets=sets, program=program), cwd=cwd, capture_output=True, text=True, errors="replace",
                           timeout=timeout, check=False, env={**ENVIRONMENT, **(environment or {})})
 
@@ -59,13 +59,13 @@ def fields(directory, name="fields.h5"):
 
 
 def final_values(directory, field="rho"):
-    """Cell centres and one field of the last output."""
+    """Cell centres, m, and one field of the last output."""
     file = fields(directory)
     return file.values("/mesh/x"), file.values(f"/steps/{file.children('/steps')[-1]}/{field}")
 
 
 class GasTest(unittest.TestCase):
-    """A test with an empty folder, in which its programs run."""
+    """Test case whose programs run in an empty temporary folder."""
 
     program = PROGRAM
 
@@ -78,7 +78,7 @@ class GasTest(unittest.TestCase):
         return run(scene, *words, sets=sets, cwd=self.folder, program=self.program, **settings)
 
     def expect(self, code, scene, *words, sets=(), **settings):
-        """Runs in the folder, asserts the exit code and that a failure is one sentence; returns what the run said."""
+        """Runs in the folder, asserts the exit code and that a failure prints one line; returns the process."""
         process = self.start(scene, *words, sets=sets, **settings)
         self.assertEqual(code, process.returncode, f"{process.args}\n{process.stderr}")
         self.assertEqual(0 if code in (0, 130) else 1, len(process.stderr.splitlines()), process.stderr)

@@ -17,15 +17,15 @@ namespace drogue::testing {
 /// Density, momentum and energy of all cells.
 using GasState = std::array<std::vector<double>, 3>;
 
-inline gas::ConstConserved fields(const GasState& state) { return {state[0], state[1], state[2]}; }
+inline gas::ConstConservedFields fields(const GasState& state) { return {state[0], state[1], state[2]}; }
 
-/// What random states are drawn from: density and pressure log-uniform, |u| <= speed.
+/// Range of random states: density and pressure log-uniform, |u| <= speed.
 struct GasRange {
   double density_low, density_high, pressure_low, pressure_high, speed;
 };
 inline constexpr GasRange rough{0.7, 1.4, 0.7, 1.4,
-                                0.3};  ///< every cell another state, no scheme fails in ten steps
-inline constexpr GasRange extreme{1e-3, 10, 1e-4, 10, 3.0};  ///< needs the limiter
+                                0.3};  ///< independent cells; no scheme fails within ten steps
+inline constexpr GasRange extreme{1e-3, 10, 1e-4, 10, 3.0};  ///< requires the limiter
 
 class RandomGas {
  public:
@@ -45,7 +45,7 @@ class RandomGas {
   std::mt19937_64 _random;
 };
 
-/// The state whose cell i holds `value(i)`.
+/// State with `value(i)` in cell i.
 template <class Value>
 GasState make_state(const gas::Parameters& p, const Value& value) {
   GasState state;
@@ -65,7 +65,7 @@ inline double centre(const gas::Parameters& p, std::int64_t i) {
   return reference::cell_centre(p, static_cast<std::size_t>(i));
 }
 
-/// Two states that meet at `x0`.
+/// Two constant states separated at `x0`.
 inline GasState riemann_state(const gas::Parameters& p, double x0, const reference::Primitive& left,
                               const reference::Primitive& right) {
   return make_state(p, [&](std::int64_t i) { return centre(p, i) < x0 ? left : right; });
@@ -94,7 +94,7 @@ inline bool same_bits(const GasState& a, const GasState& b) {
   return true;
 }
 
-/// Largest difference of a field over its largest magnitude; infinite where anything is not finite.
+/// Largest difference of a field relative to its largest magnitude; infinite if a value is not finite.
 inline double distance(const GasState& a, const GasState& b) {
   double worst = 0.0;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -109,7 +109,7 @@ inline double distance(const GasState& a, const GasState& b) {
   return worst;
 }
 
-/// The oracle, about to step from `state`.
+/// Reference run that starts from `state`.
 inline reference::GasRun reference_from(const GasState& state) {
   reference::GasRun run;
   for (std::size_t i = 0; i < state[0].size(); ++i)
@@ -124,7 +124,7 @@ inline GasState state_of(const reference::GasRun& run) {
   return state;
 }
 
-/// Time of about `steps` steps of full CFL.
+/// Time of about `steps` steps at the full Courant number, s.
 inline double time_of(const gas::Parameters& p, const GasState& state, double steps) {
   const double dx = (p.x_max - p.x_min) / static_cast<double>(p.cells);
   return steps * p.cfl * dx / reference::speed_bounds(reference_from(state).state, p.gamma).largest;

@@ -60,7 +60,7 @@ struct ContactStatus {
   int stale;              ///< the lists are to be made again in this step
   int constraints;        ///< found in this step
   int crossing[zone_rounds + 1];  ///< whether parts would cross before and after each round of zones
-  std::uint64_t reason;          ///< the least of step and kind
+  std::uint64_t reason;           ///< the least of step and kind
 };
 
 /// Fixed memory, which belongs to `ContactHandler`; counting references at every launch would cost.
@@ -94,11 +94,11 @@ struct ContactViews {
   List<int> owned;  ///< `owned_features` of every triangle
   UnmanagedTable<ExecutionSpace, int, 2> edge;
   List<double> inverse_mass;
-  List<std::uint8_t> fixed_dofs;   ///< as of Cloth
-  Points3 start_x, start_v;  ///< at the beginning of the step, impulses included
-  Points3 end_x, end_v;      ///< with zones
-  Points3 listed_x;          ///< where the lists were made
-  List<ContactWork> work;    ///< of contact on every vertex so far
+  List<std::uint8_t> fixed_dofs;  ///< as of Cloth
+  Points3 start_x, start_v;       ///< at the beginning of the step, impulses included
+  Points3 end_x, end_v;           ///< with zones
+  Points3 listed_x;               ///< where the lists were made
+  List<ContactWork> work;         ///< of contact on every vertex so far
   // A hashed grid of cells, each a chain.
   List<int> triangle_heads, edge_heads;
   List<BoundingSphere> triangle_sphere, edge_sphere;

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "kernels/fabric/fabric_views.hpp"
 #include "kernels/fabric/elastic/triangle_list.hpp"
+#include "kernels/fabric/fabric_views.hpp"
 #include "kernels/fabric/state.hpp"
 #include "kernels/fabric/views.hpp"
 

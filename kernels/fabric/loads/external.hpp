@@ -1,8 +1,8 @@
 #pragma once
 
 #include "kernels/device/expression.hpp"
-#include "kernels/fabric/stepping/stage_time.hpp"
 #include "kernels/fabric/elastic/stress.hpp"
+#include "kernels/fabric/stepping/stage_time.hpp"
 #include "kernels/fabric/views.hpp"
 
 namespace drogue::fabric {
@@ -20,7 +20,7 @@ struct External {
   ProgramsView<ExecutionSpace> pressure;                             ///< strengths of pressures, Pa
   Kokkos::View<double**, Kokkos::LayoutLeft, Memory> weight;         ///< (vertices, pressures)
   ListView<ExecutionSpace, double> pressure_values;                  ///< (vertices), Pa, set by the caller
-  SlicedEllViews<ExecutionSpace, 3> surface;                              ///< rings; their values are not read
+  SlicedEllViews<ExecutionSpace, 3> surface;                         ///< rings; their values are not read
   SlicedEllViews<ExecutionSpace, 1> dashpots, bending;
 
   [[nodiscard]] KOKKOS_FUNCTION bool has_pressure() const {

@@ -10,7 +10,7 @@ constexpr std::size_t ghosts = 3;
 
 double square(double x) { return x * x; }
 
-/// Jiang and Shu's value at i+1/2 from f[i-2..i+2].
+/// WENO-JS value at i+1/2 from f[i-2..i+2].
 double js_value(double a, double b, double c, double d, double e) {
   const double b0 = 13.0 / 12.0 * square(a - 2.0 * b + c) + 0.25 * square(a - 4.0 * b + 3.0 * c);
   const double b1 = 13.0 / 12.0 * square(b - 2.0 * c + d) + 0.25 * square(b - d);

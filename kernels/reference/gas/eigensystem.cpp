@@ -8,15 +8,15 @@ double total_enthalpy(const Conserved& U, double gamma) { return (U[2] + pressur
 
 }  // namespace
 
-FaceState face_state(const Conserved& a, const Conserved& b, gas::Mean mean, double gamma) {
+FaceState face_state(const Conserved& a, const Conserved& b, gas::FaceAverage average, double gamma) {
   FaceState face;
-  if (mean == gas::Mean::conserved) {
+  if (average == gas::FaceAverage::conserved) {
     const Conserved U = {0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1]), 0.5 * (a[2] + b[2])};
     face.u = U[1] / U[0];
     face.enthalpy = total_enthalpy(U, gamma);
   } else {
     double weight = 0.5;
-    if (mean == gas::Mean::roe) weight = std::sqrt(a[0]) / (std::sqrt(a[0]) + std::sqrt(b[0]));
+    if (average == gas::FaceAverage::roe) weight = std::sqrt(a[0]) / (std::sqrt(a[0]) + std::sqrt(b[0]));
     face.u = weight * (a[1] / a[0]) + (1.0 - weight) * (b[1] / b[0]);
     face.enthalpy = weight * total_enthalpy(a, gamma) + (1.0 - weight) * total_enthalpy(b, gamma);
   }

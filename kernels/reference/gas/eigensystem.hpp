@@ -5,23 +5,26 @@
 
 namespace drogue::reference {
 
-/// Velocity, total specific enthalpy and speed of sound at a face.
+/// Velocity, m/s, total specific enthalpy, J/kg, and speed of sound, m/s, at a face.
 struct FaceState {
   double u = 0.0;
   double enthalpy = 0.0;
   double c = 0.0;
 };
 
-/// Full matrices: row s of `left` and column s of `right` belong to u-c, u, u+c; left * right = 1.
+/// Full eigenvector matrices. Row s of `left` and column s of `right` belong to u-c, u, u+c; left * right =
+/// 1.
 struct Eigensystem {
   std::array<std::array<double, 3>, 3> left{};
   std::array<std::array<double, 3>, 3> right{};
 };
 
-/// Mean of two neighbouring cells; c^2 = (gamma-1)(H - u^2/2) for each kind of mean.
-[[nodiscard]] FaceState face_state(const Conserved& a, const Conserved& b, gas::Mean mean, double gamma);
+/// Average of two neighbouring cells. Every kind of average uses c^2 = (gamma-1)(H - u^2/2). Does not throw.
+[[nodiscard]] FaceState face_state(const Conserved& a, const Conserved& b, gas::FaceAverage average,
+                                   double gamma);
 
-/// Eigenvectors of the flux Jacobian, right ones scaled as (1, u-c, H-uc), (1, u, u^2/2), (1, u+c, H+uc).
+/// Eigenvectors of the flux Jacobian. Right ones: (1, u-c, H-uc), (1, u, u^2/2), (1, u+c, H+uc). Does not
+/// throw.
 [[nodiscard]] Eigensystem eigensystem(const FaceState& face, double gamma);
 
 [[nodiscard]] std::array<double, 3> multiply(const std::array<std::array<double, 3>, 3>& matrix,

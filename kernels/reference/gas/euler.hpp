@@ -5,10 +5,10 @@
 
 namespace drogue::reference {
 
-/// Density, momentum density and total energy density; also their fluxes.
+/// Density, kg/m^3, momentum density, kg/(m^2 s), and total energy density, J/m^3, or their fluxes.
 using Conserved = std::array<double, 3>;
 
-/// Density rho [kg/m^3], velocity u [m/s], pressure p [Pa].
+/// Density rho, kg/m^3, velocity u, m/s, and pressure p, Pa.
 struct Primitive {
   double rho = 0.0;
   double u = 0.0;
@@ -31,13 +31,13 @@ struct Primitive {
   return std::sqrt(gamma * w.p / w.rho);
 }
 
-/// Flux of the one-dimensional Euler equations.
+/// Flux of the one-dimensional Euler equations, SI units. Does not throw.
 [[nodiscard]] inline Conserved physical_flux(const Conserved& U, double gamma) {
   const Primitive w = to_primitive(U, gamma);
   return {U[1], U[1] * w.u + w.p, w.u * (U[2] + w.p)};
 }
 
-/// Magnitudes of the eigenvalues u-c, u, u+c.
+/// Magnitudes of the eigenvalues u-c, u, u+c, m/s. Does not throw.
 [[nodiscard]] inline std::array<double, 3> wave_speeds(const Conserved& U, double gamma) {
   const Primitive w = to_primitive(U, gamma);
   const double c = sound_speed(w, gamma);

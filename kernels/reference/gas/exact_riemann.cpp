@@ -22,7 +22,7 @@ struct ValueAndSlope {
   double slope;
 };
 
-/// Velocity change across the wave that joins a side to pressure p (Toro 2009, eqs. 4.6, 4.7, 4.37).
+/// Velocity change across the wave between a side and pressure p (Toro 2009, eqs. 4.6, 4.7, 4.37).
 ValueAndSlope wave(const Primitive& side, double p, double gamma) {
   if (p > side.p) {  // shock
     const double A = 2.0 / ((gamma + 1.0) * side.rho);
@@ -36,20 +36,20 @@ ValueAndSlope wave(const Primitive& side, double p, double gamma) {
           std::pow(ratio, -(gamma + 1.0) / (2.0 * gamma)) / (side.rho * c)};
 }
 
-/// Pressure between the waves if both were rarefactions: exact if they are, an upper bound for gamma <= 5/3.
+/// Pressure between the waves if both are rarefactions; otherwise an upper bound for gamma <= 5/3.
 double two_rarefaction_pressure(const Primitive& l, const Primitive& r, double gamma) {
   const double z = (gamma - 1.0) / (2.0 * gamma);
   const double cl = sound_speed(l, gamma);
   const double cr = sound_speed(r, gamma);
-  // Pressures are scaled by the larger one: a pressure ratio of 1e300 must not overflow.
+  // Pressures are scaled by the larger one, so that a pressure ratio of 1e300 does not overflow.
   const double scale = std::max(l.p, r.p);
   const double numerator = cl + cr - 0.5 * (gamma - 1.0) * (r.u - l.u);
   const double denominator = cl / std::pow(l.p / scale, z) + cr / std::pow(r.p / scale, z);
   return scale * std::pow(numerator / denominator, 1.0 / z);
 }
 
-/// Root of the increasing concave function wave(left) + wave(right) + difference of velocities: Newton's
-/// method inside a bracket, bisected where Newton leaves it.
+/// Root of the increasing concave function wave(left) + wave(right) + velocity difference: Newton's method
+/// within a bracket, with bisection if an iterate leaves it.
 double solve_pressure(const Primitive& l, const Primitive& r, double gamma) {
   double low = 0.0;
   double high = two_rarefaction_pressure(l, r, gamma);
@@ -112,7 +112,7 @@ Primitive ExactRiemann::sample(double speed) const {
     const bool beyond_right = _right.rho == 0.0 || speed <= right_front;
     if (beyond_left && beyond_right) return {0.0, speed, 0.0};
     if (!beyond_left) return sample_side(_left, speed);
-  } else if (speed < _u) {  // at the contact itself the right state, which the initial state has at x0
+  } else if (speed < _u) {  // at the contact itself the right state, as in the initial state at x0
     return sample_side(_left, speed);
   }
   // The right side is the left side of the mirror image.
@@ -120,7 +120,7 @@ Primitive ExactRiemann::sample(double speed) const {
   return {image.rho, -image.u, image.p};
 }
 
-/// Left of the contact or of the vacuum, `side` being the left state or the mirror image of the right one.
+/// State left of the contact or vacuum. `side` is the left state or the mirror image of the right one.
 Primitive ExactRiemann::sample_side(const Primitive& side, double speed) const {
   const double c = sound_speed(side, _gamma);
   if (!_vacuum && _p > side.p) {

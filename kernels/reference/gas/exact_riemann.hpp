@@ -4,15 +4,15 @@
 
 namespace drogue::reference {
 
-/// Exact solution of the Riemann problem of the Euler equations for an ideal gas (Toro 2009, chapter 4),
-/// vacuum included: a state of density 0, or two states that part fast enough to leave one.
+/// Exact solution of the Riemann problem of the Euler equations for an ideal gas (Toro 2009, chapter 4). It
+/// includes vacuum: a state of density 0, or two states that recede fast enough to create one.
 class ExactRiemann {
  public:
-  /// Throws std::invalid_argument unless gamma > 1 and each state is a vacuum (rho = p = 0) or has rho, p >
+  /// Throws `std::invalid_argument` unless gamma > 1 and each state is a vacuum (rho = p = 0) or has rho, p >
   /// 0.
   ExactRiemann(const Primitive& left, const Primitive& right, double gamma);
 
-  /// State on the ray x/t = `speed`; in a vacuum rho = p = 0 and u = speed.
+  /// State on the ray x/t = `speed`, m/s. In a vacuum rho = p = 0 and u = speed. Does not throw.
   [[nodiscard]] Primitive sample(double speed) const;
 
   [[nodiscard]] bool has_vacuum() const { return _vacuum; }

@@ -33,7 +33,8 @@ std::array<double, 3> splitting_alpha(gas::Splitting splitting, const SpeedBound
 Conserved face_flux(std::span<const Conserved, 6> stencil, const std::array<double, 3>& alpha,
                     const gas::Parameters& parameters) {
   const double gamma = parameters.gamma;
-  const Eigensystem basis = eigensystem(face_state(stencil[2], stencil[3], parameters.mean, gamma), gamma);
+  const Eigensystem basis =
+      eigensystem(face_state(stencil[2], stencil[3], parameters.face_average, gamma), gamma);
   std::array<std::array<double, 3>, 6> states{};
   std::array<std::array<double, 3>, 6> fluxes{};
   for (std::size_t k = 0; k < 6; ++k) {

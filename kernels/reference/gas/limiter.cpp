@@ -6,7 +6,7 @@ namespace drogue::reference {
 
 namespace {
 
-/// Half of the cell's update that this face is answerable for.
+/// State after one face's share of the update of its cell.
 Conserved share(const Conserved& cell, const Conserved& flux, double signed_lambda) {
   Conserved U{};
   for (std::size_t s = 0; s < 3; ++s) U[s] = cell[s] + 2.0 * signed_lambda * flux[s];

@@ -4,18 +4,18 @@
 
 namespace drogue::reference {
 
-/// Smallest density and pressure that the limiter leaves.
+/// Minimum density and pressure of limited cells.
 inline constexpr double positivity_floor = 1e-13;
 
 struct LimitedFlux {
   Conserved flux{};
-  bool touched = false;
+  bool limited = false;
 };
 
-/// Positivity-preserving flux limiter of Hu, Adams and Shu (2013): blends the high-order flux between cells
-/// `a` and `b` with the first-order one, first for the density, then for the pressure, so that a - 2 lambda
-/// flux and b + 2 lambda flux stay above the floor. `lambda` is the stage's dt/dx; it needs lambda *
-/// max(|u|+c) <= 1/2.
+/// Positivity-preserving flux limiter of Hu, Adams and Shu (2013). Blends the high-order flux between cells
+/// `a` and `b` with the first-order one, first for density, then for pressure, so that a - 2 lambda flux and
+/// b + 2 lambda flux stay above the floor. `lambda` is dt/dx of the stage, s/m, with lambda * max(|u|+c) <=
+/// 1/2. Does not throw.
 [[nodiscard]] LimitedFlux limit_flux(const Conserved& high, const Conserved& low, const Conserved& a,
                                      const Conserved& b, double lambda, double gamma);
 

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::size_t halo = 2;
 
-/// Three values a cell or face, a row each.
+/// Three values per cell or face, one row each.
 struct Rows {
   std::vector<double> a, b, c;
 
@@ -20,7 +20,7 @@ struct Rows {
 };
 
 /// Conserved cells, their primitives (rho, u, p), the primitives at the two faces of a cell half a step
-/// later, and the fluxes; cells with `halo` beyond either end.
+/// later, and the fluxes. Cell rows have `halo` ghost cells at either end.
 struct Workspace {
   Rows conserved, primitive, at_left, at_right, flux;
   std::vector<double> speed;
@@ -55,7 +55,7 @@ void fill_ghosts(Rows& u, const gas::Parameters& p) {
   }
 }
 
-/// Fills the primitives; returns max(|u|+c), infinity if a cell is not physical.
+/// Fills the primitives. Returns max(|u|+c), m/s, or infinity if a cell is not physical.
 double primitives(Workspace& w, double gamma) {
   const std::size_t n = w.primitive.a.size();
   for (std::size_t i = 0; i < n; ++i) {
@@ -67,7 +67,7 @@ double primitives(Workspace& w, double gamma) {
   return *std::max_element(w.speed.begin(), w.speed.end());
 }
 
-/// The two face states of every cell, half a step later; where those would not be physical, the cell's own.
+/// Two face states of every cell half a step later; the state of the cell itself if they are not physical.
 void half_step(Workspace& w, double gamma, double dt_over_dx) {
   const Rows& v = w.primitive;
   const double h = 0.5 * dt_over_dx;
@@ -89,7 +89,7 @@ void half_step(Workspace& w, double gamma, double dt_over_dx) {
   }
 }
 
-/// F + signal (U* - U) of the state beside a contact, behind the signal that comes toward it.
+/// Flux F + signal (U* - U) of the state between a contact and the wave that approaches it.
 inline Conserved star_flux(double rho, double u, double p, double e, double star, double contact,
                            double p_over_mass, double signal) {
   const double e_star = star * (e / rho + (contact - u) * (contact + p_over_mass));
@@ -99,7 +99,7 @@ inline Conserved star_flux(double rho, double u, double p, double e, double star
 
 /// HLLC flux of all faces.
 void fluxes(Workspace& w, double gamma) {
-  // Pointers of their own: the compiler cannot know that storing a flux leaves the vectors where they are.
+  // Local pointers: the compiler cannot prove that storing a flux leaves the vectors in place.
   const std::size_t faces = w.flux.a.size(), i = halo - 1, j = halo;
   const double *rho_left = &w.at_right.a[i], *u_left = &w.at_right.b[i], *p_left = &w.at_right.c[i];
   const double *rho_right = &w.at_left.a[j], *u_right = &w.at_left.b[j], *p_right = &w.at_left.c[j];
@@ -110,7 +110,7 @@ void fluxes(Workspace& w, double gamma) {
     const double rho_r = rho_right[f], u_r = u_right[f], p_r = p_right[f];
     const double e_l = p_l / (gamma - 1.0) + 0.5 * rho_l * u_l * u_l;
     const double e_r = p_r / (gamma - 1.0) + 0.5 * rho_r * u_r * u_r;
-    // Roe's means bound the signals together with the states' own.
+    // The Roe averages and the wave speeds of both states bound the signals.
     const double root_l = std::sqrt(rho_l), root_r = std::sqrt(rho_r), inverse = 1.0 / (root_l + root_r);
     const double u_roe = (root_l * u_l + root_r * u_r) * inverse;
     const double h_roe = ((e_l + p_l) / root_l + (e_r + p_r) / root_r) * inverse;
@@ -119,7 +119,8 @@ void fluxes(Workspace& w, double gamma) {
     const double fast = std::max(u_r + std::sqrt(gamma * p_r / rho_r), u_roe + c_roe);
     const double mass_l = rho_l * (slow - u_l), mass_r = rho_r * (fast - u_r);
     const double contact = (p_r - p_l + mass_l * u_l - mass_r * u_r) / (mass_l - mass_r);
-    // The side of the contact that the face lies on; a state that outruns its signal is alone.
+    // The flux uses the side of the contact on which the face lies. A supersonic state uses only its own
+    // flux.
     const Conserved left = star_flux(rho_l, u_l, p_l, e_l, mass_l / (slow - contact), contact, p_l / mass_l,
                                      std::min(slow, 0.0));
     const Conserved right = star_flux(rho_r, u_r, p_r, e_r, mass_r / (fast - contact), contact, p_r / mass_r,

@@ -9,9 +9,9 @@ namespace drogue::reference {
 
 namespace {
 
-enum class Outcome { done, too_fast, not_physical };
+enum class TrialResult { done, too_fast, not_physical };
 
-/// One stage: the share of the step's start that is kept, and the fraction of dt of its forward Euler step.
+/// One stage: the share of the state at the start of the step, and the fraction of dt of its Euler step.
 struct Stage {
   double keep;
   double dt_fraction;
@@ -34,24 +34,24 @@ double proposed_dt(const GasRun& run, const gas::Parameters& p, bool limited) {
   return ramp * cfl * spacing(p) / speed_bounds(run.state, p.gamma).largest;
 }
 
-/// Tries one step; changes `run` only if it succeeds.
-Outcome attempt(GasRun& run, const gas::Parameters& p, double dt, bool limited) {
+/// Tries one step. Changes `run` only on success.
+TrialResult try_step(GasRun& run, const gas::Parameters& p, double dt, bool limited) {
   std::vector<Conserved> cells = run.state;
-  std::int64_t touches = 0;
+  std::int64_t limited_faces = 0;
   for (const Stage& stage : stages(p.time_scheme)) {
     const double lambda = stage.dt_fraction * dt / spacing(p);
-    if (limited && lambda * speed_bounds(cells, p.gamma).largest > 0.5) return Outcome::too_fast;
+    if (limited && lambda * speed_bounds(cells, p.gamma).largest > 0.5) return TrialResult::too_fast;
     const StageFluxes fluxes = stage_fluxes(cells, p, limited ? std::optional(lambda) : std::nullopt);
     cells = stage_update(run.state, cells, fluxes.flux, stage.keep, lambda);
-    touches += fluxes.touches;
-    if (!is_physical(cells, p.gamma)) return Outcome::not_physical;
+    limited_faces += fluxes.limited_faces;
+    if (!is_physical(cells, p.gamma)) return TrialResult::not_physical;
   }
   run.state = std::move(cells);
-  run.limiter_touches += touches;
-  return Outcome::done;
+  run.limited_faces += limited_faces;
+  return TrialResult::done;
 }
 
-/// Steps that positivity `automatic` keeps the limiter for once it was needed.
+/// Steps for which positivity `automatic` keeps the limiter on.
 constexpr std::int64_t limiter_stays = 100;
 
 }  // namespace
@@ -75,9 +75,9 @@ void advance(GasRun& run, const gas::Parameters& p, double end_time) {
     bool limited = p.positivity == gas::Positivity::on || run.limited_steps_left > 0;
     const double remaining = end_time - run.time;
     double dt = std::min(proposed_dt(run, p, limited), remaining);
-    Outcome outcome = attempt(run, p, dt, limited);
-    while (outcome != Outcome::done) {
-      if (outcome == Outcome::too_fast) {
+    TrialResult result = try_step(run, p, dt, limited);
+    while (result != TrialResult::done) {
+      if (result == TrialResult::too_fast) {
         dt *= 0.5;
       } else if (p.positivity == gas::Positivity::automatic && !limited) {
         limited = true;
@@ -87,9 +87,9 @@ void advance(GasRun& run, const gas::Parameters& p, double end_time) {
         break;
       }
       ++run.redone_steps;
-      outcome = attempt(run, p, dt, limited);
+      result = try_step(run, p, dt, limited);
     }
-    run.failed = outcome != Outcome::done;
+    run.failed = result != TrialResult::done;
     if (run.failed) return;
     run.time = dt == remaining ? end_time : run.time + dt;
     ++run.steps;

@@ -59,7 +59,7 @@ StageFluxes stage_fluxes(const std::vector<Conserved>& cells, const gas::Paramet
       const Conserved low = lax_friedrichs_flux(stencil[2], stencil[3], fastest, gamma);
       const LimitedFlux limited = limit_flux(result.flux[face], low, stencil[2], stencil[3], *lambda, gamma);
       result.flux[face] = limited.flux;
-      result.touches += limited.touched ? 1 : 0;
+      result.limited_faces += limited.limited ? 1 : 0;
     }
   }
   return result;

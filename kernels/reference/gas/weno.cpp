@@ -51,7 +51,7 @@ Weights teno_weights(const Weights& beta) {
   const double tau = std::abs(beta[0] - beta[2]);
   Weights scale{};
   for (std::size_t k = 0; k < 3; ++k) scale[k] = 1.0 + tau / (beta[k] + small_epsilon);
-  // The sixth power overflows where one indicator vanishes, and 0/0 follows: divide by the largest first.
+  // The sixth power overflows if one indicator vanishes, which gives 0/0; hence the division by the maximum.
   const double largest = *std::max_element(scale.begin(), scale.end());
   for (double& s : scale) s = square(square(s / largest) * (s / largest));
   const Weights chi = normalised(scale);

@@ -1,4 +1,4 @@
-"""What a compiler has made of a kernel: floating-point instructions of x86 by operation, form and register."""
+"""Counts the floating-point instructions of compiled x86 kernels by operation, form and register."""
 
 import collections
 import json
@@ -13,7 +13,7 @@ REGISTERS = ("zmm", "ymm", "xmm")
 
 
 def arithmetic(text, names):
-    """Counter of (operation, "p" packed or "s" scalar, widest register) in the symbols that hold one of `names`."""
+    """Counter of (operation, "p" packed or "s" scalar, widest register) in the symbols that contain one of `names`."""
     counts = collections.Counter()
     inside = False
     for line in text.splitlines():
@@ -35,13 +35,13 @@ def disassembled(objdump, path):
 
 
 def cache(build):
-    """The variables of a build folder."""
+    """CMake cache variables of a build folder."""
     text = (build / "CMakeCache.txt").read_text(encoding="utf-8")
     return dict(re.findall(r"^(\w+):\w+=(.*)$", text, re.MULTILINE))
 
 
 def compilation(build, source):
-    """The object of a source whose path ends in `source`, and the words that compile it."""
+    """Object file and compile command of the source whose path ends in `source`. Raises LookupError if there is none."""
     for entry in json.loads((build / "compile_commands.json").read_text(encoding="utf-8")):
         if entry["file"].endswith(source):
             words = shlex.split(entry["command"])
@@ -50,7 +50,7 @@ def compilation(build, source):
 
 
 def widest_register(words):
-    """Of the target that a compilation has, as kernels/device/pack.hpp asks for it."""
+    """Widest vector register of the target of a compile command, by the criterion of kernels/device/pack.hpp."""
     words = words[:words.index("-o")] + ["-dM", "-E", "-x", "c++", "/dev/null"]
     macros = subprocess.run(words, capture_output=True, text=True, check=True).stdout
     for macro, register in (("__AVX512F__", "zmm"), ("__AVX__", "ymm")):

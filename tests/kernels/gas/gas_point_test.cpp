@@ -2,13 +2,13 @@
 
 #include <Kokkos_Core.hpp>
 
-#include "kernels/gas/limiter.hpp"
+#include "kernels/gas/flux/limiter.hpp"
 #include "kernels/reference/gas/eigensystem.hpp"
 #include "kernels/reference/gas/face_flux.hpp"
 #include "kernels/reference/gas/limiter.hpp"
 #include "tests/support/gas_state.hpp"
 
-// The point functions of a stage, one face a thread, against the dense form with full matrices.
+// Point functions of a stage, one face per thread, against the dense form with full matrices.
 
 namespace drogue::gas {
 namespace {
@@ -23,18 +23,18 @@ constexpr int faces = 2000;
 constexpr double gamma = 1.4;
 
 using Stencils = Kokkos::View<double* [6][3], Memory>;
-using Triples = Kokkos::View<double* [3], Memory>;
+using ConservedVectors = Kokkos::View<double* [3], Memory>;
 
 template <Reconstruction scheme, class N>
 struct FluxFunctor {
   Stencils stencil;
-  Triples alpha, flux;
-  Mean mean;
+  ConservedVectors alpha, flux;
+  FaceAverage average;
 
   KOKKOS_FUNCTION void operator()(const int face) const {
     Stencil<double> s;
     FaceCell<double> beside[2];
-    Triple<double> state[6], physical[6];
+    ConservedVector<double> state[6], physical[6];
     for (int k = 0; k < 6; ++k) {
       const CellState<double> c =
           cell_state<double>(gamma, stencil(face, k, 0), stencil(face, k, 1), stencil(face, k, 2));
@@ -50,39 +50,40 @@ struct FluxFunctor {
     }
     s.flux_sum = {physical[2].rho + physical[3].rho, physical[2].m + physical[3].m,
                   physical[2].energy + physical[3].energy};
-    const auto e = face_eigensystem<N, double>(mean, gamma, beside[0], beside[1]);
-    const Speeds<N> speeds{static_cast<N>(alpha(face, 0)), static_cast<N>(alpha(face, 1)),
-                           static_cast<N>(alpha(face, 2))};
-    const Triple<double> f = weno5_face<scheme, N>(s, e, speeds);
+    const auto e = face_eigensystem<N, double>(average, gamma, beside[0], beside[1]);
+    const WaveSpeeds<N> speeds{static_cast<N>(alpha(face, 0)), static_cast<N>(alpha(face, 1)),
+                               static_cast<N>(alpha(face, 2))};
+    const ConservedVector<double> f = weno5_face<scheme, N>(s, e, speeds);
     flux(face, 0) = f.rho, flux(face, 1) = f.m, flux(face, 2) = f.energy;
   }
 };
 
 template <Reconstruction scheme>
-void launch(Precision precision, const Stencils& stencil, const Triples& alpha, const Triples& flux,
-            Mean mean) {
+void launch(Precision precision, const Stencils& stencil, const ConservedVectors& alpha,
+            const ConservedVectors& flux, FaceAverage average) {
   const Kokkos::RangePolicy<Space> range(0, faces);
   if (precision == Precision::full)
-    Kokkos::parallel_for("gas_point_test", range, FluxFunctor<scheme, double>{stencil, alpha, flux, mean});
+    Kokkos::parallel_for("gas_point_test", range, FluxFunctor<scheme, double>{stencil, alpha, flux, average});
   else
-    Kokkos::parallel_for("gas_point_test", range, FluxFunctor<scheme, float>{stencil, alpha, flux, mean});
+    Kokkos::parallel_for("gas_point_test", range, FluxFunctor<scheme, float>{stencil, alpha, flux, average});
 }
 
-void launch(const Parameters& p, const Stencils& stencil, const Triples& alpha, const Triples& flux) {
+void launch(const Parameters& p, const Stencils& stencil, const ConservedVectors& alpha,
+            const ConservedVectors& flux) {
   switch (p.weno) {
     case Weno::js:
-      return launch<Reconstruction::js>(p.precision, stencil, alpha, flux, p.mean);
+      return launch<Reconstruction::js>(p.precision, stencil, alpha, flux, p.face_average);
     case Weno::m:
-      return launch<Reconstruction::m>(p.precision, stencil, alpha, flux, p.mean);
+      return launch<Reconstruction::m>(p.precision, stencil, alpha, flux, p.face_average);
     case Weno::teno5:
-      return launch<Reconstruction::teno5>(p.precision, stencil, alpha, flux, p.mean);
+      return launch<Reconstruction::teno5>(p.precision, stencil, alpha, flux, p.face_average);
     case Weno::z:
       break;
   }
   if (p.weno_power == 1)
-    launch<Reconstruction::z1>(p.precision, stencil, alpha, flux, p.mean);
+    launch<Reconstruction::z1>(p.precision, stencil, alpha, flux, p.face_average);
   else
-    launch<Reconstruction::z2>(p.precision, stencil, alpha, flux, p.mean);
+    launch<Reconstruction::z2>(p.precision, stencil, alpha, flux, p.face_average);
 }
 
 struct Sample {
@@ -90,8 +91,8 @@ struct Sample {
   std::vector<std::array<double, 3>> alpha;
 };
 
-/// Waves of amplitude `amplitude`, or a state of its own in every cell where that is zero. Every third face
-/// splits with the stencil's alphas, the others with larger ones.
+/// Waves of amplitude `amplitude`, or independent states in all cells if it is zero. Every third face uses
+/// the alphas of its stencil, the others larger ones.
 Sample sample(double amplitude, unsigned seed) {
   RandomGas random(seed);
   Sample made;
@@ -116,7 +117,7 @@ Sample sample(double amplitude, unsigned seed) {
 
 std::vector<Conserved> kernel_fluxes(const Parameters& p, const Sample& in) {
   const Stencils stencil("stencil", faces);
-  const Triples alpha("alpha", faces), flux("flux", faces);
+  const ConservedVectors alpha("alpha", faces), flux("flux", faces);
   const auto host_stencil = Kokkos::create_mirror_view(stencil);
   const auto host_alpha = Kokkos::create_mirror_view(alpha);
   for (std::size_t face = 0; face < faces; ++face)
@@ -134,11 +135,12 @@ std::vector<Conserved> kernel_fluxes(const Parameters& p, const Sample& in) {
   return out;
 }
 
-/// What rounding is measured against: |R| |L| (|F| + alpha |U|), the largest over the cells of the stencil;
-/// of their differences, where only those are rounded.
+/// Scale of the rounding errors: the maximum of |R| |L| (|F| + alpha |U|) over the cells of the stencil, or
+/// over their differences if only those are rounded.
 Conserved rounding_scale(const Parameters& p, const Cells& cells, const std::array<double, 3>& alpha,
                          bool differences) {
-  const auto basis = reference::eigensystem(reference::face_state(cells[2], cells[3], p.mean, gamma), gamma);
+  const auto basis =
+      reference::eigensystem(reference::face_state(cells[2], cells[3], p.face_average, gamma), gamma);
   Conserved scale{};
   for (std::size_t field = 0; field < 3; ++field) {
     double largest = 0.0;
@@ -158,7 +160,7 @@ Conserved rounding_scale(const Parameters& p, const Cells& cells, const std::arr
   return scale;
 }
 
-/// Errors over their scale, sorted; three a face.
+/// Scaled errors in ascending order, three per face.
 std::vector<double> flux_errors(const Parameters& p, double amplitude) {
   const Sample in = sample(amplitude, 7);
   const std::vector<Conserved> got = kernel_fluxes(p, in);
@@ -176,7 +178,7 @@ std::vector<double> flux_errors(const Parameters& p, double amplitude) {
   return errors;
 }
 
-/// Calls `check(parameters, text)` for every scheme and mean.
+/// Calls `check(parameters, text)` for every scheme and average.
 template <class Check>
 void for_schemes(const Check& check) {
   struct Scheme {
@@ -186,27 +188,27 @@ void for_schemes(const Check& check) {
   };
   for (const Scheme& scheme : {Scheme{Weno::js, 1, "js"}, Scheme{Weno::z, 1, "z1"}, Scheme{Weno::z, 2, "z2"},
                                Scheme{Weno::m, 1, "m"}, Scheme{Weno::teno5, 1, "teno5"}})
-    for (const Mean mean : {Mean::arithmetic, Mean::conserved, Mean::roe}) {
+    for (const FaceAverage average : {FaceAverage::arithmetic, FaceAverage::conserved, FaceAverage::roe}) {
       Parameters p;
       p.weno = scheme.weno;
       p.weno_power = scheme.power;
-      p.mean = mean;
-      check(p, std::string(scheme.name) + ", mean " + std::to_string(static_cast<int>(mean)));
+      p.face_average = average;
+      check(p, std::string(scheme.name) + ", mean " + std::to_string(static_cast<int>(average)));
     }
 }
 
-TEST(GasPoint, FaceFluxesAreTheDenseOnes) {
+TEST(GasPoint, FaceFluxesMatchTheDenseForm) {
   for_schemes([](const Parameters& p, const std::string& text) {
     for (const double amplitude : {0.0, 0.1, 1e-3, 1e-6})
       EXPECT_LT(flux_errors(p, amplitude).back(), 1e-14) << text << ", amplitude " << amplitude;
   });
 }
 
-TEST(GasPoint, SplitPrecisionRoundsTheNonlinearPartAlone) {
+TEST(GasPoint, SplitPrecisionRoundsOnlyTheNonlinearTerms) {
   for_schemes([](Parameters p, const std::string& text) {
     p.precision = Precision::split;
     for (const double amplitude : {0.0, 0.1, 1e-3, 1e-6}) {
-      // TENO5 keeps or drops a stencil: one face in a thousand may fall on the other side of the cut.
+      // TENO5 keeps or drops a stencil: one face in a thousand may fall on the other side of the cut-off.
       const std::vector<double> errors = flux_errors(p, amplitude);
       EXPECT_LT(errors[errors.size() * 999 / 1000], 2e-6) << text << ", amplitude " << amplitude;
       EXPECT_LT(errors.back(), 0.1) << text << ", amplitude " << amplitude;
@@ -214,7 +216,7 @@ TEST(GasPoint, SplitPrecisionRoundsTheNonlinearPartAlone) {
   });
 }
 
-/// Gas at rest with waves of `amplitude`, one face after the other hotter: p/rho from `coldest` to `hottest`.
+/// Gas at rest with waves of `amplitude` and increasing temperature: p/rho from `coldest` to `hottest`.
 Sample temperatures(double coldest, double hottest, double amplitude) {
   Sample made;
   for (int face = 0; face < faces; ++face) {
@@ -230,8 +232,8 @@ Sample temperatures(double coldest, double hottest, double amplitude) {
   return made;
 }
 
-// Products of indicators are of the eighth power of a difference, whose unit is that of c^2.
-TEST(GasPoint, FluxesAreFiniteInTheColdestAndTheHottestGas) {
+// Products of indicators scale with the eighth power of a difference, whose unit is that of c^2.
+TEST(GasPoint, FluxesAreFiniteAtExtremeTemperatures) {
   for_schemes([](Parameters p, const std::string& text) {
     for (const Precision precision : {Precision::full, Precision::split}) {
       p.precision = precision;
@@ -252,35 +254,35 @@ TEST(GasPoint, FluxesAreFiniteInTheColdestAndTheHottestGas) {
 
 struct LimitFunctor {
   Stencils in;  ///< per face: left state, right state, high flux, low flux
-  Triples flux;
+  ConservedVectors flux;
   Kokkos::View<double*, Memory> theta;
   double lambda;
 
-  KOKKOS_FUNCTION Triple<double> triple(int face, int k) const {
+  KOKKOS_FUNCTION ConservedVector<double> vector(int face, int k) const {
     return {in(face, k, 0), in(face, k, 1), in(face, k, 2)};
   }
   KOKKOS_FUNCTION void operator()(const int face) const {
     const auto result =
-        limit(triple(face, 0), triple(face, 1), triple(face, 2), triple(face, 3), 2.0 * lambda, gamma);
+        limit(vector(face, 0), vector(face, 1), vector(face, 2), vector(face, 3), 2.0 * lambda, gamma);
     flux(face, 0) = result.flux.rho, flux(face, 1) = result.flux.m, flux(face, 2) = result.flux.energy;
     theta(face) = result.theta;
   }
 };
 
-TEST(GasPoint, LimiterIsTheOraclesAndKeepsCellsPositive) {
+TEST(GasPoint, LimiterMatchesTheReferenceAndKeepsCellsPositive) {
   RandomGas random(3);
   const Stencils in("in", faces);
-  const Triples flux("flux", faces);
+  const ConservedVectors flux("flux", faces);
   const Kokkos::View<double*, Memory> theta("theta", faces);
   const auto host = Kokkos::create_mirror_view(in);
-  const double lambda = 0.002;  // alpha = 250: faster than any signal of these states
+  const double lambda = 0.002;  // alpha = 250 exceeds every wave speed of these states
   std::vector<std::array<Conserved, 4>> cases;
   for (std::size_t face = 0; face < faces; ++face) {
     const Conserved a = reference::to_conserved(random.primitive(drogue::testing::extreme), gamma);
     const Conserved b = reference::to_conserved(random.primitive(drogue::testing::extreme), gamma);
     const Conserved low = reference::lax_friedrichs_flux(a, b, 0.5 / lambda, gamma);
     Conserved high = low;
-    // From harmless to hopeless.
+    // The flux perturbation ranges from negligible to far too large.
     const double size = random.log_uniform(1e-3, 3.0);
     for (std::size_t s = 0; s < 3; ++s)
       high[s] += size / lambda * random.uniform(-1, 1) * std::max(a[s], b[s]);
@@ -293,17 +295,17 @@ TEST(GasPoint, LimiterIsTheOraclesAndKeepsCellsPositive) {
                        LimitFunctor{in, flux, theta, lambda});
   const auto got = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace{}, flux);
   const auto got_theta = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace{}, theta);
-  int touched = 0;
+  int limited_faces = 0;
   for (std::size_t face = 0; face < faces; ++face) {
     const auto& [a, b, high, low] = cases[face];
     const auto exact = reference::limit_flux(high, low, a, b, lambda, gamma);
-    EXPECT_EQ(got_theta(face) < 1.0, exact.touched);
-    touched += exact.touched ? 1 : 0;
+    EXPECT_EQ(got_theta(face) < 1.0, exact.limited);
+    limited_faces += exact.limited ? 1 : 0;
     Conserved left{}, right{};
     for (std::size_t s = 0; s < 3; ++s) {
       const double scale = std::abs(high[s]) + std::abs(low[s]);
       EXPECT_NEAR(got(face, s), exact.flux[s], 1e-9 * scale);
-      if (!exact.touched) {
+      if (!exact.limited) {
         EXPECT_EQ(got(face, s), high[s]);
       }
       left[s] = a[s] - 2.0 * lambda * got(face, s);
@@ -314,8 +316,8 @@ TEST(GasPoint, LimiterIsTheOraclesAndKeepsCellsPositive) {
       EXPECT_GT(reference::pressure(share, gamma), -1e-15 * share[2]);
     }
   }
-  EXPECT_GT(touched, faces / 4);
-  EXPECT_LT(touched, faces * 3 / 4);
+  EXPECT_GT(limited_faces, faces / 4);
+  EXPECT_LT(limited_faces, faces * 3 / 4);
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 #include "tests/support/backend.hpp"
 #include "tests/support/gas_state.hpp"
 
-// What stepping asks of the device and of the host, and how it ends.
+// Launches, fences, allocations and copies of stepping, and its stopping criteria.
 
 namespace drogue::gas {
 namespace {
@@ -19,7 +19,7 @@ constexpr const auto& backend = testing::tested_backend;
 const bool on_device = backend == device::Backend::cuda;
 constexpr auto never = std::numeric_limits<double>::max();
 
-/// The ledger, started by the first who asks.
+/// Profiling counters; the first call starts profiling.
 ProfilingCounters counted() {
   static const bool once = (device::start_profiling(), true);
   static_cast<void>(once);
@@ -38,9 +38,9 @@ ProfilingCounters operator-(const ProfilingCounters& after, const ProfilingCount
   return d;
 }
 
-/// What `advance` by `steps` steps asks for, rows every `row_every` included; the solver is warm.
+/// Counters of `advance` by `steps` steps of a warm solver, with rows every `row_every`.
 ProfilingCounters cost(Solver& solver, std::int64_t steps, int row_every = 0) {
-  const std::int64_t now = solver.resume_state().step;
+  const std::int64_t now = solver.restart_state().step;
   const ProfilingCounters before = counted();
   EXPECT_EQ(solver.advance(never, now + steps, row_every, {}, {}), Stop::pause);
   return counted() - before;
@@ -49,7 +49,7 @@ ProfilingCounters cost(Solver& solver, std::int64_t steps, int row_every = 0) {
 Parameters sod(Positivity positivity = Positivity::automatic) {
   Parameters p;
   p.positivity = positivity;
-  p.left = p.right = Boundary::reflecting;  // goes on for ever
+  p.left = p.right = Boundary::reflecting;  // never leaves the domain
   return p;
 }
 GasState sod_state(const Parameters& p) { return riemann_state(p, 0.0, {1, 0, 1}, {0.125, 0, 0.1}); }
@@ -60,7 +60,7 @@ std::unique_ptr<Solver> warm(const Parameters& p) {
   return solver;
 }
 
-TEST(GasLedger, StepsWithoutOutputFenceAllocateAndCopyNothing) {
+TEST(GasLaunches, StepsWithoutOutputDoNotFenceAllocateOrCopy) {
   for (const TimeScheme time : {TimeScheme::ssprk3, TimeScheme::ssprk43})
     for (const Positivity positivity : {Positivity::off, Positivity::on, Positivity::automatic}) {
       Parameters p = sod(positivity);
@@ -72,8 +72,8 @@ TEST(GasLedger, StepsWithoutOutputFenceAllocateAndCopyNothing) {
       EXPECT_EQ(many.allocations, 0);
       EXPECT_EQ(many.copies, 0);
       EXPECT_EQ(many.h2d_bytes + many.d2h_bytes, 0);
-      // All stages are one kernel, and one more ends the step. On a device a recorded step is one launch, and
-      // without the limiter many steps are.
+      // All stages are one kernel, and a second kernel ends the step. On a device a captured step is one
+      // launch, and without the limiter one launch takes many steps.
       const std::int64_t a_step = on_device ? 1 : 2;
       if (on_device && positivity != Positivity::on) {
         EXPECT_STREQ(solver->driver(), "persistent");
@@ -85,7 +85,7 @@ TEST(GasLedger, StepsWithoutOutputFenceAllocateAndCopyNothing) {
     }
 }
 
-TEST(GasLedger, DriversThatAreAskedForLaunchWhatTheySay) {
+TEST(GasLaunches, RequestedDriversLaunchTheExpectedNumberOfKernels) {
   for (const Driver driver : {Driver::plain, Driver::graph, Driver::stages})
     for (const Positivity positivity : {Positivity::off, Positivity::on}) {
       Parameters p = sod(positivity);
@@ -102,11 +102,11 @@ TEST(GasLedger, DriversThatAreAskedForLaunchWhatTheySay) {
     }
 }
 
-TEST(GasLedger, AutomaticPositivityThatIsNeverNeededCostsNoLaunch) {
+TEST(GasLaunches, UnusedAutomaticPositivityAddsNoLaunches) {
   const ProfilingCounters off = cost(*warm(sod(Positivity::off)), 300);
   const auto automatic = warm(sod(Positivity::automatic));
   const ProfilingCounters idle = cost(*automatic, 300);
-  EXPECT_EQ(automatic->resume_state().redone, 0);
+  EXPECT_EQ(automatic->restart_state().redone, 0);
   EXPECT_EQ(idle.fences, off.fences);
   if (!on_device) {
     EXPECT_EQ(idle.kernel_launches, off.kernel_launches);
@@ -117,7 +117,7 @@ TEST(GasLedger, AutomaticPositivityThatIsNeverNeededCostsNoLaunch) {
   EXPECT_TRUE(same_bits(state, download(*plain, sod())));
 }
 
-TEST(GasLedger, RowsCostLaunchesButNeitherFencesNorBits) {
+TEST(GasLaunches, HistoryRowsAddLaunchesButNoFencesAndKeepTheBits) {
   const auto plain = warm(sod());
   cost(*plain, 500);
   for (const int every : {1, 7, 100}) {
@@ -135,7 +135,7 @@ TEST(GasLedger, RowsCostLaunchesButNeitherFencesNorBits) {
   }
 }
 
-TEST(GasLedger, MemoryStaysWithinEightyBytesACell) {
+TEST(GasLaunches, UsesAtMostEightyBytesPerCell) {
   constexpr std::int64_t cells = 1 << 20;
   const ProfilingCounters before = counted();
   Parameters p = sod();
@@ -153,15 +153,15 @@ TEST(GasLedger, MemoryStaysWithinEightyBytesACell) {
   EXPECT_LE(counted().peak_device_bytes, before.device_bytes + 104 * cells + (std::int64_t{1} << 20));
 }
 
-TEST(GasLedger, MemoryComesBack) {
+TEST(GasLaunches, DestructionReleasesTheMemory) {
   const ProfilingCounters before = counted();
   warm(sod());
-  EXPECT_LE((counted() - before).device_bytes, 1 << 20);  // scratch of the backend's own
+  EXPECT_LE((counted() - before).device_bytes, 1 << 20);  // scratch of the backend itself
 }
 
 // ---- rows, pauses, ends ----
 
-TEST(GasStops, RowsComeAtMultiples) {
+TEST(GasStops, WritesRowsAtMultiplesOfTheInterval) {
   for (const int every : {1, 3, 10}) {
     const auto solver = warm(sod());
     std::vector<HistoryRow> rows;
@@ -171,7 +171,7 @@ TEST(GasStops, RowsComeAtMultiples) {
     ASSERT_EQ(rows.size(), static_cast<std::size_t>(31 / every - 1 / every));
     for (std::size_t k = 0; k < rows.size(); ++k) {
       EXPECT_EQ(rows[k].step, every * static_cast<std::int64_t>(k + 1 + (every == 1 ? 1 : 0)));
-      // The end walls keep mass and energy.
+      // The reflecting ends conserve mass and energy.
       EXPECT_NEAR(rows[k].mass, 1.125, 1e-13);
       EXPECT_NEAR(rows[k].energy, 2.75, 1e-13);
       EXPECT_GT(rows[k].dt, 0.0);
@@ -182,7 +182,7 @@ TEST(GasStops, RowsComeAtMultiples) {
   }
 }
 
-TEST(GasStops, MoreRowsThanTheRingHoldsArriveAll) {
+TEST(GasStops, DeliversMoreRowsThanTheRingHolds) {
   Parameters p = sod();
   p.cells = 16;
   const auto solver = started(backend, p, sod_state(p));
@@ -192,86 +192,86 @@ TEST(GasStops, MoreRowsThanTheRingHoldsArriveAll) {
   EXPECT_EQ(next, 5001);
 }
 
-TEST(GasStops, TargetsAndPausesAreMetExactly) {
+TEST(GasStops, MeetsTargetsAndPausesExactly) {
   const auto solver = warm(sod());
   for (const double target : {0.01, 0.0137, 0.1}) {
     EXPECT_EQ(solver->advance(target, -1, 3, {}, {}), Stop::target);
-    EXPECT_EQ(solver->resume_state().time, target);
+    EXPECT_EQ(solver->restart_state().time, target);
     EXPECT_EQ(solver->totals().time, target);
   }
-  const std::int64_t step = solver->resume_state().step;
+  const std::int64_t step = solver->restart_state().step;
   EXPECT_EQ(solver->advance(0.1, -1, 0, {}, {}), Stop::target) << "nothing is left to do";
-  EXPECT_EQ(solver->resume_state().step, step);
+  EXPECT_EQ(solver->restart_state().step, step);
   EXPECT_EQ(solver->advance(0.2, step + 3, 0, {}, {}), Stop::pause);
-  EXPECT_EQ(solver->resume_state().step, step + 3);
+  EXPECT_EQ(solver->restart_state().step, step + 3);
 }
 
-TEST(GasStops, LastStepBeforeATargetIsNoSplinter) {
-  // A step that would leave less than rounding of itself ends the run instead.
+TEST(GasStops, AvoidsATinyLastStepBeforeATarget) {
+  // If the remainder after a step would be below rounding, the step extends to the target.
   Parameters p = sod();
   p.fixed_dt = 0.001;
   const auto solver = started(backend, p, sod_state(p));
   EXPECT_EQ(solver->advance(0.1, -1, 0, {}, {}), Stop::target);
-  EXPECT_EQ(solver->resume_state().step, 100);
-  EXPECT_NEAR(solver->resume_state().dt_min, 0.001, 1e-15);
+  EXPECT_EQ(solver->restart_state().step, 100);
+  EXPECT_NEAR(solver->restart_state().dt_min, 0.001, 1e-15);
 }
 
-TEST(GasStops, MaxSteps) {
+TEST(GasStops, StopsAtTheMaximumNumberOfSteps) {
   Parameters p = sod();
   p.max_steps = 17;
   const auto solver = started(backend, p, sod_state(p));
   EXPECT_EQ(solver->advance(never, -1, 0, {}, {}), Stop::max_steps);
-  EXPECT_EQ(solver->resume_state().step, 17);
+  EXPECT_EQ(solver->restart_state().step, 17);
   EXPECT_EQ(solver->advance(never, -1, 0, {}, {}), Stop::max_steps);
-  EXPECT_EQ(solver->resume_state().step, 17);
+  EXPECT_EQ(solver->restart_state().step, 17);
 }
 
 TEST(GasStops, PollInterruptsBetweenSteps) {
   const auto solver = warm(sod());
   const Poll stop_at_30 = [](const Status& status) { return status.step < 30; };
   EXPECT_EQ(solver->advance(never, -1, 0, {}, stop_at_30), Stop::interrupted);
-  const std::int64_t step = solver->resume_state().step;
+  const std::int64_t step = solver->restart_state().step;
   EXPECT_GE(step, 30);
   EXPECT_LE(step, on_device ? 30'000'000 : 30);
-  // What follows has the bits of a run that was left alone.
+  // Later steps have the bits of an uninterrupted run.
   EXPECT_EQ(solver->advance(never, step + 20, 0, {}, {}), Stop::pause);
   const auto whole = started(backend, sod(), sod_state(sod()));
   EXPECT_EQ(whole->advance(never, step + 20, 0, {}, {}), Stop::pause);
   EXPECT_TRUE(same_bits(download(*solver, sod()), download(*whole, sod())));
 }
 
-TEST(GasStops, FailureNamesQuantityCellAndStep) {
+TEST(GasStops, FailureReportsReasonCellAndStep) {
   Parameters p = sod(Positivity::off);
   p.cells = 100;
   p.cfl = 20.0;
   p.ramp_steps = 0;
   const auto solver = started(backend, p, sod_state(p));
   EXPECT_EQ(solver->advance(never, -1, 10, {}, {}), Stop::failed);
-  const Failed failed = solver->failure();
-  const Resume last = solver->resume_state();
+  const StepFailure failed = solver->failure();
+  const RestartState last = solver->restart_state();
   EXPECT_EQ(failed.step, last.step + 1);
   EXPECT_EQ(failed.time, last.time);
   EXPECT_GT(failed.dt, 0.0);
   ASSERT_GE(failed.cell, 0);
   ASSERT_LT(failed.cell, 100);
-  EXPECT_TRUE(failed.quantity == Quantity::density || failed.quantity == Quantity::pressure);
-  // The oracle fails at the same step, and the state kept is its last good one.
+  EXPECT_TRUE(failed.reason == FailureReason::density || failed.reason == FailureReason::pressure);
+  // The reference fails at the same step, and the solver keeps the last admissible state.
   reference::GasRun run = reference_from(sod_state(p));
   reference::advance(run, p, 1e9);
   EXPECT_TRUE(run.failed);
   EXPECT_EQ(run.steps, last.step);
   EXPECT_LT(distance(download(*solver, p), state_of(run)), 1e-10);
   EXPECT_EQ(solver->advance(never, -1, 0, {}, {}), Stop::failed) << "a failed run stays where it is";
-  EXPECT_EQ(solver->resume_state().step, last.step);
+  EXPECT_EQ(solver->restart_state().step, last.step);
 }
 
-TEST(GasStops, FailureFindsTheCell) {
+TEST(GasStops, FailureReportsTheCell) {
   for (const std::int64_t cell : {3, 37, 126, 127, 128, 197}) {
     Parameters p;
     p.positivity = Positivity::off;
     p.cfl = 5.0;
     p.ramp_steps = 0;
-    // Torn apart at one face, uniform elsewhere: a step that is too long empties the cells beside it.
+    // Two uniform streams diverge at one face: a step that is too long empties the cells beside it.
     const GasState state = make_state(p, [&](std::int64_t i) {
       return reference::Primitive{1.0, i < cell ? -5.0 : 5.0, 1.0};
     });
@@ -279,12 +279,12 @@ TEST(GasStops, FailureFindsTheCell) {
     EXPECT_EQ(solver->advance(never, -1, 0, {}, {}), Stop::failed);
     EXPECT_LE(std::abs(static_cast<double>(solver->failure().cell - cell) + 0.5), 3.0) << cell;
     EXPECT_EQ(solver->failure().step, 1);
-    EXPECT_EQ(solver->resume_state().step, 0);
+    EXPECT_EQ(solver->restart_state().step, 0);
     EXPECT_TRUE(same_bits(download(*solver, p), state));
   }
 }
 
-TEST(GasStops, NotANumberNeverPasses) {
+TEST(GasStops, RejectsStatesWithNaN) {
   for (const Positivity positivity : {Positivity::off, Positivity::on, Positivity::automatic})
     for (std::size_t k = 0; k < 3; ++k) {
       const Parameters p = sod(positivity);
@@ -292,13 +292,13 @@ TEST(GasStops, NotANumberNeverPasses) {
       state[k][100] = std::nan("");
       const auto solver = started(backend, p, state);
       EXPECT_EQ(solver->advance(never, 10, 0, {}, {}), Stop::failed);
-      EXPECT_EQ(solver->resume_state().step, 0);
+      EXPECT_EQ(solver->restart_state().step, 0);
     }
 }
 
 // ---- positivity on demand ----
 
-TEST(GasPositivity, AutomaticSavesWhatFailsWithout) {
+TEST(GasPositivity, AutomaticLimiterCompletesARunThatFailsWithoutIt) {
   Parameters p;
   p.cells = 100;
   p.x_min = 0.0;
@@ -313,12 +313,12 @@ TEST(GasPositivity, AutomaticSavesWhatFailsWithout) {
   const auto solver = started(backend, p, leblanc);
   const ProfilingCounters before = counted();
   EXPECT_EQ(solver->advance(6.0, -1, 0, {}, {}), Stop::target);
-  const Resume end = solver->resume_state();
+  const RestartState end = solver->restart_state();
   EXPECT_GT(end.redone, 0);
   EXPECT_LT(end.redone, end.step / 10);
-  EXPECT_GT(end.touches, 0);
-  EXPECT_GT(solver->touched_cells(), 0);
-  EXPECT_LE(solver->touched_cells(), 100);
+  EXPECT_GT(end.limited_faces, 0);
+  EXPECT_GT(solver->limited_cells(), 0);
+  EXPECT_LE(solver->limited_cells(), 100);
   if (!on_device) {
     EXPECT_LT((counted() - before).kernel_launches, (end.step + end.redone) * 4 + 10);
   }
@@ -331,8 +331,8 @@ TEST(GasPositivity, AutomaticSavesWhatFailsWithout) {
   EXPECT_LT(distance(download(*solver, p), state_of(run)), 1e-6);
 }
 
-TEST(GasPositivity, LimiterIsTurnedOffAgain) {
-  // A near vacuum that the waves fill within some steps: after the last fault 100 limited steps, then none.
+TEST(GasPositivity, AutomaticLimiterTurnsOffAgain) {
+  // Waves fill a near vacuum within some steps: after the last failure come 100 limited steps, then none.
   Parameters p;
   p.cells = 100;
   p.weno = Weno::teno5;
@@ -340,13 +340,13 @@ TEST(GasPositivity, LimiterIsTurnedOffAgain) {
   const GasState state = random_state(p, 3, extreme);
   const auto solver = started(backend, p, state);
   EXPECT_EQ(solver->advance(never, 2000, 0, {}, {}), Stop::pause);
-  const Resume later = solver->resume_state();
+  const RestartState later = solver->restart_state();
   EXPECT_GT(later.redone, 0);
   EXPECT_EQ(later.limited, 0);
   EXPECT_EQ(later.limited_left, 0);
 }
 
-TEST(GasPositivity, EightCellsRun) {
+TEST(GasPositivity, RunsOnEightCells) {
   Parameters p = sod(Positivity::on);
   p.cells = 8;
   const auto solver = started(backend, p, sod_state(p));

@@ -1,4 +1,4 @@
-"""On a host the step works on packs of cells: its machine code says so, on every machine alike."""
+"""Checks in the machine code that a host step works on packs of cells."""
 
 import os
 import pathlib
@@ -10,13 +10,13 @@ import disassembly
 BUILD = pathlib.Path(os.environ["DROGUE_BUILD"])
 # WENO-JS in full precision, all stages in one kernel.
 FUNCTOR = "StepFunctor<Kokkos::Serial, (drogue::gas::Reconstruction)0, (drogue::gas::Precision)0, false>"
-# With the part of its faces that GCC keeps in a function of its own.
+# GCC may keep the face loop in a separate function.
 CHUNK = "FaceChunk<drogue::device::Pack<double,"
-FACE_DIVISIONS = 7  # `face_arithmetic` in kernels/gas/work.hpp
+FACE_DIVISIONS = 7  # `face_arithmetic` in kernels/gas/step_work.hpp
 
 
-def not_here():
-    """Why the machine code of this build says nothing, or nothing."""
+def reason_to_skip():
+    """Reason why this build cannot be checked, or None."""
     cache = disassembly.cache(BUILD)
     if cache.get("DROGUE_CUDA") == "ON":
         return "in a CUDA build host backends have one lane"
@@ -30,19 +30,19 @@ def not_here():
 
 
 def complaints(counts, register):
-    """What is wrong with the instructions of a step, a sentence each."""
+    """Deviations of the instructions of a step from packed code, one sentence each."""
     def total(form, *operations):
         return sum(n for (operation, kind, at), n in counts.items()
                    if kind == form and (form == "s" or at == register) and (not operations or operation in operations))
 
     found = []
-    # What 512-bit registers approximate and make better counts as what it replaces.
+    # With 512-bit registers, an approximation with refinement counts as the operation that it replaces.
     divisions = total("p", "div", "rcp14")
     if divisions < FACE_DIVISIONS:
         found.append(f"{divisions} packed divisions in {register}, a face alone has {FACE_DIVISIONS}")
     if total("p", "sqrt", "rsqrt14") < 1:
         found.append(f"no packed square root in {register}")
-    # Ghosts and the cells that fill no pack are scalar.
+    # Ghost cells and the remainder after the last full pack are scalar.
     if total("p") < 5 * total("s"):
         found.append(f"{total('p')} packed operations in {register} beside {total('s')} scalar ones")
     if total("s", "div") >= FACE_DIVISIONS:
@@ -50,7 +50,7 @@ def complaints(counts, register):
     return found
 
 
-@unittest.skipIf(not_here(), not_here())
+@unittest.skipIf(reason_to_skip(), reason_to_skip())
 class Step(unittest.TestCase):
     def test_is_packed(self):
         object_file, words = disassembly.compilation(BUILD, "/step_serial.cpp")
@@ -60,7 +60,7 @@ class Step(unittest.TestCase):
         self.assertEqual([], complaints(counts, disassembly.widest_register(words)), counts)
 
 
-class ScalarCodeIsFound(unittest.TestCase):
+class ScalarCodeDetection(unittest.TestCase):
     PACKED = [f" {k:x}:\tvdivpd %ymm1,%ymm2,%ymm3" for k in range(7)] + [" 10:\tvsqrtpd %ymm1,%ymm2"]
 
     def complaints(self, *lines, register="ymm"):
@@ -68,27 +68,27 @@ class ScalarCodeIsFound(unittest.TestCase):
                           *[f" 1{k}0:\tdivsd %xmm1,%xmm0" for k in range(9)]])
         return complaints(disassembly.arithmetic(text, (FUNCTOR, CHUNK)), register)
 
-    def test_packed_code_is_none(self):
+    def test_accepts_packed_code(self):
         self.assertEqual([], self.complaints(*self.PACKED))
 
-    def test_approximations_of_512_bits(self):
+    def test_accepts_approximations_of_512_bits(self):
         approximated = [line.replace("div", "rcp14").replace("sqrt", "rsqrt14").replace("ymm", "zmm")
                         for line in self.PACKED]
         self.assertEqual([], self.complaints(*approximated, register="zmm"))
 
-    def test_scalar_code(self):
+    def test_detects_scalar_code(self):
         scalar = [line.replace("pd", "sd").replace("ymm", "xmm") for line in self.PACKED]
         self.assertEqual(4, len(self.complaints(*scalar)))
 
-    def test_scalar_code_beside_packed(self):
+    def test_detects_scalar_code_beside_packed(self):
         sentence, = self.complaints(*self.PACKED, " 20:\tvfmadd213sd %xmm1,%xmm2,%xmm3", " 21:\tmulsd (%rax),%xmm3")
         self.assertIn("8 packed operations in ymm beside 2 scalar ones", sentence)
 
-    def test_narrow_packs(self):
+    def test_detects_narrow_packs(self):
         self.assertEqual(2, len(self.complaints(*self.PACKED, register="zmm")))
         self.assertEqual(2, len(self.complaints(*[line.replace("ymm", "xmm") for line in self.PACKED])))
 
-    def test_a_root_by_one_lane(self):
+    def test_detects_a_scalar_root(self):
         sentence, = self.complaints(*self.PACKED[:7], " 10:\tvsqrtsd %xmm1,%xmm1,%xmm2")
         self.assertIn("no packed square root", sentence)
 

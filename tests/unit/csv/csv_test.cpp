@@ -26,7 +26,7 @@ std::vector<std::string> split_line(const std::string& line) {
   return values;
 }
 
-/// A file that is gone with the test.
+/// Temporary file of a test.
 class CsvFile {
  public:
   explicit CsvFile(const std::string& content)
@@ -40,7 +40,7 @@ class CsvFile {
   std::filesystem::path _path;
 };
 
-TEST(CsvFields, Splits) {
+TEST(CsvFields, SplitsALine) {
   using Words = std::vector<std::string>;
   EXPECT_EQ(split_line("a, b ,,\tc"), (Words{"a", "b", "", "c"}));
   EXPECT_EQ(split_line(""), Words{""});
@@ -49,7 +49,7 @@ TEST(CsvFields, Splits) {
   EXPECT_EQ(split_line(R"("",)"), (Words{"", ""}));
 }
 
-/// Lines are looked at eight characters at a time.
+/// The parser examines eight characters at a time.
 TEST(CsvFields, SplitsLinesOfAnyLength) {
   std::mt19937 random(5);
   for (int trial = 0; trial < 2000; ++trial) {
@@ -68,7 +68,7 @@ TEST(CsvFields, SplitsLinesOfAnyLength) {
   }
 }
 
-TEST(CsvFields, TellsWhatIsWrong) {
+TEST(CsvFields, ReportsTheFault) {
   Fields fields;
   EXPECT_NE(fields.split("\"a"), "");
   EXPECT_NE(fields.split("\"a\"b"), "");
@@ -76,7 +76,7 @@ TEST(CsvFields, TellsWhatIsWrong) {
   EXPECT_NE(fields.split("a,\"b\"\""), "");
 }
 
-TEST(CsvFields, AreShownShortAndOnOneLine) {
+TEST(CsvFields, ShownTextIsShortAndOnOneLine) {
   EXPECT_EQ(shown("a b"), "\"a b\"");
   EXPECT_EQ(shown(std::string_view("a\n\0\x7f", 4)), "\"a???\"");
   std::string cut(1, '"');
@@ -84,7 +84,7 @@ TEST(CsvFields, AreShownShortAndOnOneLine) {
   EXPECT_EQ(shown(std::string(41, 'x')), cut);
 }
 
-TEST(CsvFields, KeepsThoseBeforeTheOneThatIsWrong) {
+TEST(CsvFields, KeepsTheFieldsBeforeAFault) {
   Fields fields;
   for (const char* line : {R"(a,"b ""c""",d"e,f)", R"(a,"b ""c""","d,e)", R"(a,"b ""c""","d"e)"}) {
     EXPECT_NE(fields.split(line), "");
@@ -94,7 +94,7 @@ TEST(CsvFields, KeepsThoseBeforeTheOneThatIsWrong) {
   }
 }
 
-TEST(CsvFields, WhatIsWrittenIsReadAgain) {
+TEST(CsvFields, WrittenTextReadsBackEqual) {
   std::mt19937 random(1);
   const std::string letters = "ab ,\"\t'";
   for (int trial = 0; trial < 300; ++trial) {
@@ -123,8 +123,8 @@ TEST(CsvNumbers, ReadsDecimalsOnly) {
   EXPECT_EQ(value, std::numeric_limits<double>::denorm_min());
 }
 
-/// Short numbers are read by code of our own: bit for bit as the library reads them.
-TEST(CsvNumbers, AreReadAsTheLibraryReadsThem) {
+/// The fast path for short numbers must agree with the standard library bit for bit.
+TEST(CsvNumbers, AgreesWithTheStandardLibrary) {
   std::mt19937 random(6);
   const std::string letters = "0123456789.";
   int with_value = 0;
@@ -147,7 +147,7 @@ TEST(CsvNumbers, AreReadAsTheLibraryReadsThem) {
   EXPECT_GT(with_value, 100000);
 }
 
-TEST(CsvNumbers, WhatIsWrittenIsReadAgain) {
+TEST(CsvNumbers, WrittenTextReadsBackEqual) {
   std::mt19937_64 random(2);
   for (int trial = 0; trial < 1000; ++trial) {
     const double value = std::ldexp(static_cast<double>(random()), static_cast<int>(random() % 2000) - 1060);
@@ -162,7 +162,7 @@ TEST(CsvNumbers, WhatIsWrittenIsReadAgain) {
   EXPECT_EQ(nothing, "");
 }
 
-TEST(CsvLines, AreCountedAndStripped) {
+TEST(CsvLines, CountsLinesAndStripsTheirEnds) {
   const CsvFile file(
       "\xEF\xBB\xBF"
       "first\r\n\n  \nfourth\n\r\nlast");
@@ -175,8 +175,8 @@ TEST(CsvLines, AreCountedAndStripped) {
   EXPECT_EQ(reader.share(), 1.0);
 }
 
-/// Lines that end at and about the ends of the blocks that are read.
-TEST(CsvLines, CrossBlocks) {
+/// Lines that end at and near the ends of the read blocks.
+TEST(CsvLines, ReadsLinesAcrossBufferBlocks) {
   std::string content;
   std::vector<std::string> lines;
   std::mt19937 random(3);
@@ -195,7 +195,7 @@ TEST(CsvLines, CrossBlocks) {
   EXPECT_FALSE(reader.next(line));
 }
 
-TEST(CsvLines, TooLongOnesAreSkipped) {
+TEST(CsvLines, MarksOverlongLines) {
   for (const std::size_t length : {LineReader::longest, LineReader::longest + 1, std::size_t{3} << 20})
     for (const char* end : {"", "\n", "\nnext"}) {
       const CsvFile file("before\n" + std::string(length, 'x') + end);

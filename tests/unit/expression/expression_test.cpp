@@ -26,7 +26,7 @@ std::vector<testing::Step> steps_of(const std::string& text) {
   return steps;
 }
 
-/// Position and sentence of what is wrong with an expression.
+/// Position and message of an expression error.
 std::pair<int, std::string> error_of(const std::string& text) {
   try {
     const Expression expression(text, xyzt);
@@ -36,7 +36,7 @@ std::pair<int, std::string> error_of(const std::string& text) {
   return {0, ""};
 }
 
-TEST(Expression, HasTheMeaningOfMuParser) {
+TEST(Expression, AgreesWithMuParser) {
   EXPECT_DOUBLE_EQ(value("1 + 2*3^2"), 19.0);
   EXPECT_DOUBLE_EQ(value("-2^2"), -4.0);
   EXPECT_DOUBLE_EQ(value("2^3^2"), 512.0);
@@ -48,14 +48,14 @@ TEST(Expression, HasTheMeaningOfMuParser) {
   EXPECT_DOUBLE_EQ(value("floor(-1.5) + rint(2.4) + sign(y)"), -2.0 + 2.0 - 1.0);
 }
 
-TEST(Expression, KnowsBesselFunctions) {
+TEST(Expression, EvaluatesBesselFunctions) {
   EXPECT_NEAR(value("besselj(0, 2.404825557695773)"), 0.0, 1e-15);
   EXPECT_NEAR(value("besselj(1, 1)"), 0.44005058574493355, 1e-15);
   EXPECT_NEAR(value("besselj(2, -5)"), 0.04656511627775222, 1e-15);
   EXPECT_TRUE(std::isnan(value("besselj(0.5, 1)")));
 }
 
-TEST(Expression, CopiesEvaluateApart) {
+TEST(Expression, CopiesEvaluateIndependently) {
   const Expression first("x + 10*y", {"x", "y"});
   const Expression second = first;
   const std::array<double, 2> a = {1.0, 2.0};
@@ -65,7 +65,7 @@ TEST(Expression, CopiesEvaluateApart) {
   EXPECT_DOUBLE_EQ(first(a), 21.0);
 }
 
-TEST(Expression, ErrorsNameThePlace) {
+TEST(Expression, ErrorsNameThePosition) {
   EXPECT_EQ(error_of("1 +"),
             std::pair(4, std::string("expected a number, a name or \"(\", not the end of the expression")));
   EXPECT_EQ(error_of("sin(x").first, 6);
@@ -91,7 +91,7 @@ TEST(Expression, ErrorsNameThePlace) {
             0);
 }
 
-TEST(Compile, GivesThePostfixThatTheTextMeans) {
+TEST(Compile, EmitsPostfixInOperatorPrecedence) {
   for (unsigned seed = 0; seed < 2000; ++seed) {
     const testing::RandomExpression random(seed);
     ASSERT_EQ(steps_of(random.text()), random.steps()) << random.text();

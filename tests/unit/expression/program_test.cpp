@@ -10,21 +10,21 @@
 namespace drogue::expression {
 namespace {
 
-/// What an app does with an expression of t: translate, then put together what kernels evaluate.
+/// Compiles an expression of t and assembles its device program, as an application does.
 device::ExpressionProgram device_program(const std::string& text) {
   device::ExpressionBuilder builder;
   for (const Instruction& step : compile(text, {"x", "y", "z", "t"})) builder.push(step.name, step.value);
   return builder.program();
 }
 
-TEST(DeviceProgram, TakesEveryFunctionOfTheGrammar) {
+TEST(DeviceProgram, AcceptsEveryFunctionOfTheGrammar) {
   for (const std::string& name : function_names()) {
     const bool two = name == "atan2" || name == "besselj";
     EXPECT_NO_THROW(device_program(name + (two ? "(x, y)" : "(x)"))) << name;
   }
 }
 
-TEST(DeviceProgram, TakesEveryOperatorOfTheGrammar) {
+TEST(DeviceProgram, AcceptsEveryOperatorOfTheGrammar) {
   const auto program =
       device_program("x+y-z*t/2^3 < 1 || x > y && x <= y || x >= y && x == y || -x != y ? 1 : pi");
   EXPECT_EQ(program.operations[program.length - 1], device::Operation::select);

@@ -6,10 +6,10 @@
 #include <set>
 
 #include "kernels/device/runtime.hpp"
+#include "miniapps/framework/run_loop.hpp"
 #include "miniapps/gas/simulation.hpp"
 
-// Every check of a scene fails when the state is wrong: one cell of a finished run is changed behind its
-// back.
+// Every check of a scene must fail for an invalid state: the tests change one cell of a finished run.
 
 namespace drogue::gas_app {
 namespace {
@@ -24,18 +24,19 @@ class GasVerify : public ::testing::Test {
 };
 std::unique_ptr<device::Runtime> GasVerify::runtime;
 
-/// Names of the checks that fail, and of those that pass.
+/// Names of failed and passed checks.
 struct Verdict {
   std::set<std::string> failed, passed;
 };
 
-/// A finished run of a scene; every verdict is about the state as it is then.
+/// Finished run of a scene.
 class FinishedRun {
  public:
   FinishedRun(const std::string& name, const std::vector<std::string>& sets)
       : _scene(read_gas_scene(shipped + name + ".toml", sets)),
-        _simulation(_scene, {device::Backend::serial, false, true, {}}) {
-    EXPECT_EQ(_simulation.run(nullptr, _result), ExitCode::ok);
+        _simulation(_scene, {device::Backend::serial, false, true}) {
+    _simulation.start();
+    EXPECT_EQ(framework::run_to_end(_simulation, {{}, true, true, {}}, _result), ExitCode::ok);
   }
 
   Verdict verify() {
@@ -49,7 +50,7 @@ class FinishedRun {
     return verdict;
   }
 
-  /// The verdict with `change(rho, m, E)` applied to one cell, which is put back afterwards.
+  /// Verdict with `change(rho, m, E)` applied to one cell, which is restored afterwards.
   template <class Change>
   Verdict verify_with(std::int64_t cell, const Change& change) {
     std::array<std::vector<double>, 3> u = {std::vector<double>(1), std::vector<double>(1),
@@ -71,7 +72,7 @@ class FinishedRun {
   Simulation _simulation;
 };
 
-/// Sod's tube with a tolerance 1 % above each of its own nine errors, and its conservation.
+/// Sod's tube with tolerances 1 % above its nine errors, and its conservation.
 FinishedRun strict_sod() {
   std::vector<std::string> sets = {"output.fields=[]"};
   FinishedRun run("sod", sets);
@@ -81,7 +82,7 @@ FinishedRun strict_sod() {
   return {"sod", sets};
 }
 
-TEST_F(GasVerify, ErrorsOfOneCellAreSeen) {
+TEST_F(GasVerify, DetectsAnErrorInOneCell) {
   FinishedRun run = strict_sod();
   const Verdict honest = run.verify();
   EXPECT_EQ(honest.failed, std::set<std::string>());
@@ -114,7 +115,7 @@ TEST_F(GasVerify, ErrorsOfOneCellAreSeen) {
   EXPECT_EQ(run.verify().failed, std::set<std::string>()) << "the state is what it was";
 }
 
-TEST_F(GasVerify, ConservationSeesTheTwelfthDigit) {
+TEST_F(GasVerify, ConservationDetectsRelativeChangesOf1e12) {
   FinishedRun run = strict_sod();
   // The tolerance is 1e-12 of the total, and one of 200 cells is changed.
   const auto fails = [&](auto&& change) {
@@ -126,7 +127,7 @@ TEST_F(GasVerify, ConservationSeesTheTwelfthDigit) {
   EXPECT_FALSE(fails([](double& rho, double&, double&) { rho *= 1.0 + 1e-15; }));
 }
 
-TEST_F(GasVerify, NotANumberFailsWhateverItTouches) {
+TEST_F(GasVerify, NaNFailsEveryAffectedCheck) {
   FinishedRun run = strict_sod();
   for (const std::int64_t cell : {0, 77, 199})
     for (int k = 0; k < 3; ++k) {
@@ -143,7 +144,7 @@ TEST_F(GasVerify, NotANumberFailsWhateverItTouches) {
     }
 }
 
-TEST_F(GasVerify, DensityPeakIsSeen) {
+TEST_F(GasVerify, ChecksTheDensityPeak) {
   FinishedRun run("sedov",
                   {"mesh.cells=51", "output.fields=[]", "verify.max_density={value=4.22,tolerance=0.1}"});
   const Verdict honest = run.verify();
@@ -157,7 +158,7 @@ TEST_F(GasVerify, DensityPeakIsSeen) {
   EXPECT_FALSE(fails(2, 1.5));
 }
 
-TEST_F(GasVerify, ReferenceRunsJudgeLikeExactSolutions) {
+TEST_F(GasVerify, VerifiesAgainstAReferenceRun) {
   FinishedRun run("shu-osher", {"mesh.cells=100", "verify.reference.cells=400", "output.fields=[]",
                                 "verify.l1_density=2"});
   EXPECT_EQ(run.verify().failed, std::set<std::string>());

@@ -1,6 +1,5 @@
-// Kills a writer of fields.h5 at every moment at which a file changes. This executable stands between the
-// libraries and the system for that; a write has a moment at the end of each page too, where the system may
-// stop a write of a process that is killed.
+// Kills a writer of fields.h5 at every system call that changes a file. This executable wraps those calls. A
+// write also has a kill point at the end of each page, where the system may stop a write of a killed process.
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -19,9 +18,9 @@
 namespace {
 
 constexpr long never = -1;
-long moments_left = never;  ///< that pass before the process is killed
+long moments_left = never;  ///< kill points before the process is killed
 
-/// Bytes of a file that a write changes together.
+/// Atomic unit of a write, bytes.
 std::size_t page = drogue::run::h5::index_page;
 
 void moment() {
@@ -29,7 +28,7 @@ void moment() {
   if (moments_left != never) --moments_left;
 }
 
-/// Carries out `call(data, bytes, offset)` page by page.
+/// Executes `call(data, bytes, offset)` page by page.
 template <typename Call>
 ssize_t in_pages(const void* data, std::size_t size, off_t offset, const Call& call) {
   std::size_t done = 0;
@@ -46,7 +45,7 @@ ssize_t in_pages(const void* data, std::size_t size, off_t offset, const Call& c
 
 }  // namespace
 
-// All by which HDF5 and our own code change files.
+// Wrappers of all calls by which HDF5 and this library change files.
 extern "C" {
 
 ssize_t pwrite(int file, const void* data, std::size_t size, off_t offset) {
@@ -93,7 +92,7 @@ std::vector<double> values_of(double time, const std::string& field) {
   return values;
 }
 
-/// The writer of a run, with its mesh.
+/// Writer of a run with its mesh.
 struct SodRun {
   explicit SodRun(const std::filesystem::path& directory, std::optional<double> resume_time = std::nullopt)
       : fields(directory, "sod",
@@ -127,7 +126,7 @@ void expect_dataset(const h5::Handle& parent, const std::string& name, const std
   EXPECT_FALSE(h5::read_text(dataset, "description").empty());
 }
 
-/// Times of the steps in the file, all of which must be complete.
+/// Times of the steps in the file, which must all be complete.
 Times whole_steps(const std::filesystem::path& file) {
   const h5::Handle handle = h5::open_file(file, false);
   std::vector<std::string> groups = h5::children(handle);
@@ -150,7 +149,7 @@ Times whole_steps(const std::filesystem::path& file) {
     EXPECT_EQ(names[i], std::string(6 - digits.size(), '0') + digits);
     const h5::Handle step = h5::open_group(steps, names[i]);
     times.push_back(h5::read_number(step, "time"));
-    if (i >= 3 && i + 3 < names.size()) continue;  // it takes its time
+    if (i >= 3 && i + 3 < names.size()) continue;  // keeps the test short
     EXPECT_EQ(h5::read_integer(step, "step"), std::lround(10.0 * times.back()));
     EXPECT_EQ(h5::children(step), (std::vector<std::string>{"rho", "u"}));
     expect_dataset(step, "rho", values_of(times.back(), "rho"), "kg/m^3");
@@ -159,9 +158,9 @@ Times whole_steps(const std::filesystem::path& file) {
   return times;
 }
 
-/// Does `work` after `preparation` again and again, each time killed `stride` moments later, until it ends by
-/// itself. The steps that a kill leaves in the file are one of `stages`, never an earlier one than a former
-/// kill left, and the file can be continued. Returns how many moments there are.
+/// Repeats `work` after `preparation`, each time killed `stride` kill points later, until it completes. The
+/// steps that a kill leaves must be one of `stages`, never an earlier one than a former kill left, and the
+/// file must be continuable. Returns the number of kill points.
 long kill_everywhere(const std::function<void(const std::filesystem::path&)>& preparation,
                      const std::function<void(const std::filesystem::path&)>& work,
                      const std::vector<Times>& stages, long stride = 1) {
@@ -247,7 +246,7 @@ TEST(FieldsWriterKilled, WhileAReferenceJoinsOrIsReplaced) {
   EXPECT_GT(kill_everywhere(nothing, work, {{}, {0.0}, {0.0, 1.0}}), 60);
 }
 
-// The 191st output moves the index into a larger block, which is more than a page.
+// The 191st output moves the index into a block of more than one page.
 TEST(FieldsWriterKilled, WhileTheIndexGrows) {
   cells = 2;
   const auto preparation = [](const std::filesystem::path& directory) {

@@ -13,7 +13,7 @@ MiniAppOptions parse(std::vector<const char*> words) {
   return parse_mini_app_options("drogue-gas", "Shock tubes.", static_cast<int>(words.size()), words.data());
 }
 
-/// The sentence of the usage failure that these words lead to.
+/// Message of the usage failure for these arguments.
 std::string usage_failure(const std::vector<const char*>& words) {
   try {
     parse(words);
@@ -23,13 +23,13 @@ std::string usage_failure(const std::vector<const char*>& words) {
   return "no failure";
 }
 
-TEST(MiniAppOptions, DefaultsAreThoseOfTheInterface) {
+TEST(MiniAppOptions, HasTheDocumentedDefaults) {
   const MiniAppOptions options = parse({"sod"});
   EXPECT_EQ(options.scene, "sod");
   EXPECT_EQ(options.backend, "auto");
   EXPECT_TRUE(options.set.empty() && options.out.empty() && options.restart.empty() && options.study.empty());
   EXPECT_FALSE(options.check || options.print_scene || options.list_scenes || options.overwrite);
-  EXPECT_FALSE(options.quiet || options.seed_mode || options.version);
+  EXPECT_FALSE(options.quiet || options.baseline || options.version);
   EXPECT_TRUE(options.help.empty() && options.kokkos.empty());
 }
 
@@ -42,19 +42,19 @@ TEST(MiniAppOptions, ReadsEveryOption) {
   EXPECT_EQ(options.set, (std::vector<std::string>{"mesh.cells=100", "output.times=[0.1, 0.2]"}));
   EXPECT_EQ(options.out, "here");
   EXPECT_EQ(parse({"sod", "--study", "meshes=100:800"}).study, "meshes=100:800");
-  EXPECT_TRUE(options.overwrite && options.quiet && options.seed_mode);
+  EXPECT_TRUE(options.overwrite && options.quiet && options.baseline);
   EXPECT_EQ(parse({"sod", "--restart", "auto"}).restart, "auto");
   EXPECT_TRUE(parse({"sod", "--check"}).check);
   EXPECT_TRUE(parse({"sod", "--print-scene"}).print_scene);
 }
 
-TEST(MiniAppOptions, ValuesMayHoldEqualsBlanksAndQuotes) {
+TEST(MiniAppOptions, AcceptsEqualSignsBlanksAndQuotesInValues) {
   const std::vector<std::string> expected = {R"(initial.expression.rho="1 + 0.2*sin(pi*x) = y")",
                                              "a.b=[[1,2],[3]]"};
   EXPECT_EQ(parse({"sod", "--set", expected[0].c_str(), "--set", expected[1].c_str()}).set, expected);
 }
 
-TEST(MiniAppOptions, ListsAndVersionNeedNoScene) {
+TEST(MiniAppOptions, ListScenesAndVersionRequireNoScene) {
   EXPECT_TRUE(parse({"--list-scenes"}).list_scenes);
   EXPECT_TRUE(parse({"--version"}).version);
   const std::string help = parse({"--help"}).help;
@@ -65,13 +65,13 @@ TEST(MiniAppOptions, ListsAndVersionNeedNoScene) {
   }
 }
 
-TEST(MiniAppOptions, KokkosOptionsAreNotOurs) {
+TEST(MiniAppOptions, PassesKokkosOptionsThrough) {
   const MiniAppOptions options = parse({"--kokkos-num-threads=2", "sod", "--kokkos-tools-libs=a.so"});
   EXPECT_EQ(options.scene, "sod");
   EXPECT_EQ(options.kokkos, (std::vector<std::string>{"--kokkos-num-threads=2", "--kokkos-tools-libs=a.so"}));
 }
 
-TEST(MiniAppOptions, FaultsAreNamed) {
+TEST(MiniAppOptions, NamesTheOptionInError) {
   EXPECT_NE(usage_failure({}).find("no SCENE"), std::string::npos);
   EXPECT_NE(usage_failure({"sod", "--bakend", "serial"}).find("'--bakend'; did you mean \"--backend\"?"),
             std::string::npos);
@@ -85,7 +85,7 @@ TEST(MiniAppOptions, FaultsAreNamed) {
   EXPECT_NE(usage_failure({"sod", "--check", "--print-scene"}).find("--check"), std::string::npos);
 }
 
-TEST(MiniAppOptions, FaultsAreOneSentence) {
+TEST(MiniAppOptions, ReportsErrorsInOneSentence) {
   for (const auto& words : std::vector<std::vector<const char*>>{{},
                                                                  {"sod", "--bakend"},
                                                                  {"sod", "--backend", "gpu"},

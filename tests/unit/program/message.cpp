@@ -5,7 +5,7 @@
 namespace drogue {
 namespace {
 
-TEST(Message, GivesBackWhatWasPut) {
+TEST(Message, ReadsBackWrittenValues) {
   MessageWriter writer;
   writer.put(7);
   writer.put_text(std::string_view("a\0b", 3));
@@ -22,7 +22,7 @@ TEST(Message, GivesBackWhatWasPut) {
   EXPECT_THROW((void)reader.get<char>(), std::out_of_range);
 }
 
-TEST(Message, CutShortIsNoMessage) {
+TEST(Message, ThrowsOnATruncatedMessage) {
   MessageWriter writer;
   writer.put_text("twelve bytes");
   const std::string bytes = writer.take();

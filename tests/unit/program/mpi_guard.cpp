@@ -11,7 +11,7 @@
 namespace drogue {
 namespace {
 
-/// The environment of a launcher for the length of a test; all other launchers are removed from it.
+/// Environment of one launcher for the length of a test, without variables of other launchers.
 class Launcher {
  public:
   explicit Launcher(const std::vector<std::pair<const char*, const char*>>& variables) {
@@ -31,13 +31,13 @@ class Launcher {
   }
 };
 
-TEST(MpiGuard, WithoutALauncherThereIsOneRank) {
+TEST(MpiGuard, FindsOneRankWithoutALauncher) {
   const Launcher none({});
   EXPECT_EQ(launched_rank().ranks, 1);
   EXPECT_NO_THROW(require_one_rank("drogue-gas"));
 }
 
-TEST(MpiGuard, KnowsTheLaunchers) {
+TEST(MpiGuard, RecognizesLaunchers) {
   const std::vector<std::vector<std::pair<const char*, const char*>>> launchers = {
       {{"OMPI_COMM_WORLD_RANK", "2"}, {"OMPI_COMM_WORLD_SIZE", "4"}},
       {{"PMI_RANK", "2"}, {"PMI_SIZE", "4"}},
@@ -57,24 +57,24 @@ TEST(MpiGuard, KnowsTheLaunchers) {
   }
 }
 
-TEST(MpiGuard, OneRankUnderALauncherIsFine) {
+TEST(MpiGuard, AcceptsOneRankUnderALauncher) {
   const Launcher launcher({{"OMPI_COMM_WORLD_RANK", "0"}, {"OMPI_COMM_WORLD_SIZE", "1"}});
   EXPECT_NO_THROW(require_one_rank("drogue-gas"));
 }
 
-TEST(MpiGuard, AJobScriptOfManyTasksIsNoLauncher) {
+TEST(MpiGuard, IgnoresTheTaskCountOfAJobScript) {
   const Launcher job({{"SLURM_NTASKS", "64"}, {"SLURM_PROCID", "0"}});
   EXPECT_EQ(launched_rank().ranks, 1);
 }
 
-TEST(MpiGuard, TheNumberOfRanksIsEnough) {
+TEST(MpiGuard, AcceptsTheNumberOfRanksAlone) {
   const std::vector<std::pair<const char*, const char*>> variables = {{"OMPI_COMM_WORLD_SIZE", "2"}};
   const Launcher launcher(variables);
   EXPECT_EQ(launched_rank().rank, 0);
   EXPECT_EQ(launched_rank().ranks, 2);
 }
 
-TEST(MpiGuard, NonsenseIsIgnored) {
+TEST(MpiGuard, IgnoresInvalidValues) {
   const Launcher nonsense({{"OMPI_COMM_WORLD_RANK", "0"}, {"OMPI_COMM_WORLD_SIZE", "many"}});
   EXPECT_EQ(launched_rank().ranks, 1);
 }

@@ -26,14 +26,14 @@ Outcome run(const std::function<ExitCode()>& body) {
   return {code, testing::internal::GetCapturedStderr()};
 }
 
-TEST(RunProgram, SuccessIsSilent) {
+TEST(RunProgram, PrintsNothingOnSuccess) {
   const Outcome outcome = run([] { return ExitCode::ok; });
   EXPECT_EQ(outcome.code, 0);
   EXPECT_EQ(outcome.error, "");
   EXPECT_EQ(run([] { return ExitCode::interrupted; }).code, 130);
 }
 
-TEST(RunProgram, FailuresAreOneSentenceWithTheirCode) {
+TEST(RunProgram, PrintsAFailureAsOneSentence) {
   for (const ExitCode code : {ExitCode::usage, ExitCode::numerical_failure, ExitCode::verification_failed,
                               ExitCode::io_error, ExitCode::no_backend}) {
     const Outcome outcome = run([code]() -> ExitCode { throw Failure(code, "it went wrong"); });
@@ -42,20 +42,20 @@ TEST(RunProgram, FailuresAreOneSentenceWithTheirCode) {
   }
 }
 
-TEST(RunProgram, SceneFailuresStartWithTheirPlace) {
+TEST(RunProgram, StartsSceneErrorsWithFileAndLine) {
   const Outcome outcome =
       run([]() -> ExitCode { throw Failure(ExitCode::invalid_scene, "sod.toml:7: unknown key"); });
   EXPECT_EQ(outcome.code, 3);
   EXPECT_EQ(outcome.error, "sod.toml:7: unknown key\n");
 }
 
-TEST(RunProgram, CommandLineErrorsAreUsage) {
+TEST(RunProgram, MapsCommandLineErrorsToUsage) {
   const Outcome outcome = run([]() -> ExitCode { throw CLI::ExtrasError({"--x"}); });
   EXPECT_EQ(outcome.code, 2);
   EXPECT_EQ(outcome.error.rfind("drogue-gas: ", 0), 0U) << outcome.error;
 }
 
-TEST(RunProgram, WhatIsUnforeseenHasAListedCodeAndNoTrace) {
+TEST(RunProgram, MapsUnexpectedExceptionsToADocumentedCode) {
   const Outcome memory = run([]() -> ExitCode { throw std::bad_alloc(); });
   EXPECT_EQ(memory.code, 6);
   EXPECT_NE(memory.error.find("out of memory"), std::string::npos) << memory.error;
@@ -66,7 +66,7 @@ TEST(RunProgram, WhatIsUnforeseenHasAListedCodeAndNoTrace) {
   EXPECT_EQ(run([]() -> ExitCode { throw 7; }).code, 6);
 }
 
-TEST(RunProgram, OnlyRankZeroSpeaks) {
+TEST(RunProgram, PrintsOnRankZeroOnly) {
   setenv("OMPI_COMM_WORLD_RANK", "1", 1);
   setenv("OMPI_COMM_WORLD_SIZE", "2", 1);
   const Outcome outcome = run([]() -> ExitCode { throw Failure(ExitCode::usage, "too many ranks"); });
@@ -87,7 +87,7 @@ TEST(RunProgram, OnlyRankZeroSpeaks) {
   EXPECT_EQ(::testing::internal::GetCapturedStdout(), "before\nafter\n");
 }
 
-TEST(CurrentFailure, KeepsCodeAndWords) {
+TEST(CurrentFailure, KeepsCodeAndMessage) {
   try {
     throw Failure(ExitCode::numerical_failure, "negative density");
   } catch (...) {
@@ -113,7 +113,7 @@ TEST(Provenance, DateIsIso8601) {
   EXPECT_GT(date, "2024");
 }
 
-TEST(Provenance, MemoryPeakGrowsWithWhatIsUsed) {
+TEST(Provenance, MemoryPeakGrowsWithAllocations) {
   const std::int64_t before = host_peak_bytes();
   std::vector<char> used(std::size_t{64} << 20U);
   for (std::size_t i = 0; i < used.size(); i += 4096) static_cast<volatile char&>(used[i]) = 'x';

@@ -11,7 +11,7 @@
 namespace drogue {
 namespace {
 
-/// A pseudo terminal: what is written to `stream` is read back with text().
+/// Pseudo terminal: text() returns the output to `stream`.
 class Terminal {
  public:
   Terminal() : _master(posix_openpt(O_RDWR | O_NOCTTY)) {
@@ -49,15 +49,15 @@ std::size_t occurrences(const std::string& text, const std::string& word) {
   return count;
 }
 
-TEST(Progress, TellsStepTimeRateAndEta) {
+TEST(Progress, ShowsStepTimeRateAndEta) {
   EXPECT_EQ(progress_text(500, 500, 0.1, 0.0, 0.4, 2.0), "step 500  t 0.1/0.4 (25 %)  250 steps/s  ETA 0:06");
-  // Resumed at t = 0.2: the rate is that of the steps done here.
+  // A continued run: the rate counts its own steps only.
   EXPECT_EQ(progress_text(600, 100, 0.3, 0.2, 0.4, 3725.0),
             "step 600  t 0.3/0.4 (75 %)  0.02685 steps/s  ETA 1:02:05");
   EXPECT_EQ(progress_text(0, 0, 0.0, 0.0, 0.4, 0.0), "step 0  t 0/0.4 (0 %)  0 steps/s  ETA -");
 }
 
-TEST(Progress, ATerminalShowsOneLineAFewTimesASecond) {
+TEST(Progress, UpdatesOneTerminalLineAFewTimesPerSecond) {
   const Terminal terminal;
   if (terminal.stream == nullptr) GTEST_SKIP() << "needs pseudo terminals";
   std::string text;

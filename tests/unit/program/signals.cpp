@@ -15,7 +15,7 @@ class Signals : public ::testing::TestWithParam<int> {
   void TearDown() override { clear_interrupt(); }
 };
 
-TEST_P(Signals, TheFirstAsksTheProgramToEnd) {
+TEST_P(Signals, FirstSignalSetsInterrupted) {
   EXPECT_FALSE(interrupted());
   ASSERT_EQ(raise(GetParam()), 0);
   EXPECT_TRUE(interrupted());
@@ -25,7 +25,7 @@ TEST_P(Signals, TheFirstAsksTheProgramToEnd) {
   EXPECT_TRUE(interrupted());
 }
 
-TEST_P(Signals, TheSecondEndsItAtOnce) {
+TEST_P(Signals, SecondSignalEndsTheProcess) {
   const pid_t child = fork();
   if (child == 0) {
     raise(GetParam());

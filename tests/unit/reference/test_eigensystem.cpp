@@ -9,7 +9,7 @@
 namespace drogue::reference {
 namespace {
 
-class Eigenvectors : public ::testing::TestWithParam<gas::Mean> {
+class Eigenvectors : public ::testing::TestWithParam<gas::FaceAverage> {
  protected:
   Primitive random_state() {
     std::uniform_real_distribution<double> exponent(-1.0, 1.0);
@@ -21,7 +21,8 @@ class Eigenvectors : public ::testing::TestWithParam<gas::Mean> {
 };
 
 INSTANTIATE_TEST_SUITE_P(Means, Eigenvectors,
-                         ::testing::Values(gas::Mean::arithmetic, gas::Mean::conserved, gas::Mean::roe));
+                         ::testing::Values(gas::FaceAverage::arithmetic, gas::FaceAverage::conserved,
+                                           gas::FaceAverage::roe));
 
 TEST_P(Eigenvectors, LeftTimesRightIsOne) {
   for (int trial = 0; trial < 200; ++trial) {
@@ -68,7 +69,7 @@ TEST(RoeMean, LinearisesTheJumpOfTheFlux) {
   const double gamma = 1.4;
   const Conserved a = to_conserved({1.0, 0.3, 2.0}, gamma);
   const Conserved b = to_conserved({0.2, -1.1, 0.7}, gamma);
-  const FaceState face = face_state(a, b, gas::Mean::roe, gamma);
+  const FaceState face = face_state(a, b, gas::FaceAverage::roe, gamma);
   const Eigensystem e = eigensystem(face, gamma);
   const std::array<double, 3> strength = multiply(e.left, {b[0] - a[0], b[1] - a[1], b[2] - a[2]});
   const std::array<double, 3> speeds = {face.u - face.c, face.u, face.u + face.c};

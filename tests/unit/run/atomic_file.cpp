@@ -28,7 +28,7 @@ TEST(AtomicFile, AppearsOnlyWhenCommitted) {
   EXPECT_EQ(directory.entries(), 1U);
 }
 
-TEST(AtomicFile, AbandonedLeavesTheFormerFile) {
+TEST(AtomicFile, AbandonedWriteKeepsTheFormerFile) {
   const TemporaryDirectory directory;
   write_file_atomically(directory / "a.txt", "old");
   {
@@ -39,7 +39,7 @@ TEST(AtomicFile, AbandonedLeavesTheFormerFile) {
   EXPECT_EQ(directory.entries(), 1U);
 }
 
-TEST(AtomicFile, KilledWriterLeavesTheFormerFile) {
+TEST(AtomicFile, KilledWriterKeepsTheFormerFile) {
   const TemporaryDirectory directory;
   write_file_atomically(directory / "a.txt", "old");
   const int status = test::in_child([&directory] {
@@ -51,7 +51,7 @@ TEST(AtomicFile, KilledWriterLeavesTheFormerFile) {
   EXPECT_EQ(content(directory / "a.txt"), "old");
 }
 
-TEST(AtomicFile, FullDiskIsAFailureThatLeavesTheFormerFile) {
+TEST(AtomicFile, ThrowsOnFullDiskAndKeepsTheFormerFile) {
   const TemporaryDirectory directory;
   write_file_atomically(directory / "a.txt", "old");
   const int status = test::in_child([&directory] {
@@ -67,7 +67,7 @@ TEST(AtomicFile, FullDiskIsAFailureThatLeavesTheFormerFile) {
   EXPECT_EQ(directory.entries(), 1U);
 }
 
-TEST(AtomicFile, UnwritablePlaceNamesFileAndCause) {
+TEST(AtomicFile, NamesFileAndCauseForAnUnwritableFolder) {
   const TemporaryDirectory directory;
   write_file_atomically(directory / "file", "");
   const std::string below_a_file = failure_of(
@@ -75,7 +75,7 @@ TEST(AtomicFile, UnwritablePlaceNamesFileAndCause) {
   EXPECT_NE(below_a_file.find("file/result.json': Not a directory"), std::string::npos) << below_a_file;
 }
 
-TEST(AtomicFile, ADirectoryInTheWayStays) {
+TEST(AtomicFile, KeepsADirectoryOfThatName) {
   const TemporaryDirectory directory;
   std::filesystem::create_directories(directory / "result.json/full");
   const std::string sentence =
@@ -84,14 +84,14 @@ TEST(AtomicFile, ADirectoryInTheWayStays) {
   EXPECT_EQ(directory.entries(), 1U) << "the temporary file was left";
 }
 
-TEST(AtomicFile, AFullDeviceIsAFailure) {
+TEST(AtomicFile, ThrowsOnAFullDevice) {
   EXPECT_EQ(failure_of(ExitCode::io_error, [] { write_file_atomically("/dev/full", "x"); }),
             "cannot write '/dev/full': No space left on device");
   write_file_atomically("/dev/null", "x");
   EXPECT_TRUE(std::filesystem::is_character_file("/dev/null"));
 }
 
-TEST(AtomicFile, APipeStaysOneAndGetsEveryByte) {
+TEST(AtomicFile, WritesEveryByteToANamedPipe) {
   const TemporaryDirectory directory;
   const std::string pipe = directory / "pipe";
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
@@ -105,8 +105,8 @@ TEST(AtomicFile, APipeStaysOneAndGetsEveryByte) {
   EXPECT_EQ(directory.entries(), 1U);
 }
 
-/// As /dev/stdout is one: neither may the link be replaced, nor what was written before it.
-TEST(AtomicFile, AnOpenDescriptorIsWrittenOn) {
+/// Path like /dev/stdout: neither the link nor earlier output may be replaced.
+TEST(AtomicFile, AppendsToAnOpenDescriptor) {
   const TemporaryDirectory directory;
   const std::string file = directory / "a.txt";
   const int descriptor = open(file.c_str(), O_WRONLY | O_CREAT, 0600);

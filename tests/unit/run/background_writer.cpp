@@ -27,7 +27,7 @@ TEST(BackgroundWriter, RunsTasksInOrderOnAnotherThread) {
   EXPECT_NE(worker, std::this_thread::get_id());
 }
 
-TEST(BackgroundWriter, SubmitReturnsWhileATaskIsWriting) {
+TEST(BackgroundWriter, SubmitReturnsWhileATaskRuns) {
   std::promise<void> release;
   std::atomic<int> done = 0;
   BackgroundWriter writer(2);
@@ -42,7 +42,7 @@ TEST(BackgroundWriter, SubmitReturnsWhileATaskIsWriting) {
   EXPECT_EQ(done, 2);
 }
 
-TEST(BackgroundWriter, NoMoreThanDepthTasksAreUnderWay) {
+TEST(BackgroundWriter, RunsAtMostDepthTasks) {
   std::promise<void> release;
   BackgroundWriter writer(1);
   writer.submit([&release] { release.get_future().wait(); });
@@ -53,7 +53,7 @@ TEST(BackgroundWriter, NoMoreThanDepthTasksAreUnderWay) {
   writer.finish();
 }
 
-TEST(BackgroundWriter, FailuresReachTheCallerOnce) {
+TEST(BackgroundWriter, RethrowsAFailureOnce) {
   BackgroundWriter writer;
   writer.submit([] { throw std::runtime_error("disk full"); });
   EXPECT_THROW(writer.finish(), std::runtime_error);
@@ -63,7 +63,7 @@ TEST(BackgroundWriter, FailuresReachTheCallerOnce) {
   EXPECT_TRUE(written);
 }
 
-TEST(BackgroundWriter, SubmitReportsAnEarlierFailure) {
+TEST(BackgroundWriter, SubmitRethrowsAnEarlierFailure) {
   BackgroundWriter writer(1);
   writer.submit([] { throw std::runtime_error("disk full"); });
   EXPECT_THROW(
@@ -74,7 +74,7 @@ TEST(BackgroundWriter, SubmitReportsAnEarlierFailure) {
       std::runtime_error);
 }
 
-TEST(BackgroundWriter, DestructionFinishesWhatWasSubmitted) {
+TEST(BackgroundWriter, DestructorFinishesSubmittedTasks) {
   int written = 0;
   {
     BackgroundWriter writer;

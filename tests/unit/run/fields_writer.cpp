@@ -31,7 +31,7 @@ void add_line(FieldsWriter& fields, std::uint64_t n = cells) {
   });
 }
 
-/// Every value of a step differs from every other one, so that a misplaced piece shows.
+/// Values that are unique within a step, so that a misplaced piece is detected.
 std::vector<double> field_values(double time, double offset, std::uint64_t n = cells) {
   std::vector<double> values(n);
   for (std::size_t i = 0; i < values.size(); ++i)
@@ -59,7 +59,7 @@ std::vector<std::string> step_groups(const std::filesystem::path& file) {
   return h5::children(h5::open_group(handle, "steps"));
 }
 
-TEST(FieldsWriter, KeepsTheLayout) {
+TEST(FieldsWriter, WritesTheDocumentedLayout) {
   const TemporaryDirectory directory;
   FieldsWriter fields(directory.path(), "sod", gas_fields());
   add_line(fields);
@@ -83,7 +83,7 @@ TEST(FieldsWriter, KeepsTheLayout) {
   }
 }
 
-TEST(FieldsWriter, TakesPiecesInAnyOrder) {
+TEST(FieldsWriter, AcceptsPiecesInAnyOrder) {
   const TemporaryDirectory directory;
   FieldsWriter fields(directory.path(), "sod", gas_fields());
   const std::vector<double> values = field_values(1.0, 0.0);
@@ -121,7 +121,7 @@ TEST(FieldsWriter, WritesRowsOfVectorsAndIntegers) {
   EXPECT_EQ(row, (std::vector<double>{9, 10, 11}));
 }
 
-TEST(FieldsWriter, AKillBetweenStepsLosesNothing) {
+TEST(FieldsWriter, LosesNothingIfKilledBetweenSteps) {
   const TemporaryDirectory directory;
   const int status = test::in_child([&directory] {
     FieldsWriter fields(directory.path(), "sod", gas_fields());
@@ -135,9 +135,8 @@ TEST(FieldsWriter, AKillBetweenStepsLosesNothing) {
   EXPECT_EQ(read_back(directory / "fields.h5", "steps/000001/rho"), field_values(0.4, 0.0));
 }
 
-// Enough groups and data that HDF5, left alone, would have written some of its changed metadata within the
-// step.
-TEST(FieldsWriter, AKillWithinAStepLosesNoFormerStep) {
+// Enough groups and data that HDF5 would by default write some metadata within the step.
+TEST(FieldsWriter, KeepsFormerStepsIfKilledWithinAStep) {
   const TemporaryDirectory directory;
   std::vector<DatasetSpec> many;
   for (int i = 0; i < 3000; ++i)
@@ -161,7 +160,7 @@ TEST(FieldsWriter, AKillWithinAStepLosesNoFormerStep) {
   EXPECT_EQ(step_groups(directory / "fields.h5").size(), 2U);
 }
 
-TEST(FieldsWriter, AKillAtAnyMomentLeavesAReadableFile) {
+TEST(FieldsWriter, LeavesAReadableFileIfKilledAtAnyMoment) {
   for (int round = 0; round < 10; ++round) {
     const TemporaryDirectory directory;
     const pid_t child = fork();
@@ -183,7 +182,7 @@ TEST(FieldsWriter, AKillAtAnyMomentLeavesAReadableFile) {
   }
 }
 
-TEST(FieldsWriter, AFullDiskKeepsTheFormerSteps) {
+TEST(FieldsWriter, KeepsFormerStepsOnAFullDisk) {
   const TemporaryDirectory directory;
   constexpr std::uint64_t large = 20000;
   const int status = test::in_child([&directory] {
@@ -200,7 +199,7 @@ TEST(FieldsWriter, AFullDiskKeepsTheFormerSteps) {
   EXPECT_EQ(read_back(directory / "fields.h5", "steps/000000/u"), field_values(0.0, 1.0, large));
 }
 
-TEST(FieldsWriter, RestartDropsLaterStepsAndGoesOn) {
+TEST(FieldsWriter, ContinuesWithoutLaterStepsAfterARestart) {
   const TemporaryDirectory directory;
   {
     FieldsWriter fields(directory.path(), "sod", gas_fields());
@@ -217,7 +216,7 @@ TEST(FieldsWriter, RestartDropsLaterStepsAndGoesOn) {
   EXPECT_EQ(content(directory / "fields.xdmf").find("Time Value=\"2\""), std::string::npos);
 }
 
-TEST(FieldsWriter, KeepsManySteps) {
+TEST(FieldsWriter, HoldsMoreStepsThanOneIndexPage) {
   const TemporaryDirectory directory;
   constexpr std::uint64_t few = 2;
   const auto wanted = [](std::size_t i) { return field_values(static_cast<double>(i), 1.0, few); };
@@ -237,7 +236,7 @@ TEST(FieldsWriter, KeepsManySteps) {
   }
 }
 
-TEST(FieldsWriter, AReaderDoesNotStopTheRun) {
+TEST(FieldsWriter, WritesWhileAReaderHasTheFileOpen) {
   const TemporaryDirectory directory;
   FieldsWriter fields(directory.path(), "sod", gas_fields());
   write_step(fields, 0.0);
@@ -248,7 +247,7 @@ TEST(FieldsWriter, AReaderDoesNotStopTheRun) {
   EXPECT_EQ(step_groups(directory / "fields.h5").size(), 2U);
 }
 
-TEST(FieldsWriter, ADamagedFileIsNotContinued) {
+TEST(FieldsWriter, RefusesToContinueADamagedFile) {
   const TemporaryDirectory directory;
   write_file_atomically(directory / "fields.h5", "this is no HDF5");
   const std::string sentence = failure_of(ExitCode::io_error, [&directory] {
@@ -256,6 +255,40 @@ TEST(FieldsWriter, ADamagedFileIsNotContinued) {
   });
   EXPECT_NE(sentence.find("cannot open '" + (directory / "fields.h5").string()), std::string::npos)
       << sentence;
+}
+
+TEST(FieldsWriter, KeepsSeveralGridsInOneFile) {
+  const TemporaryDirectory directory;
+  const std::vector<DatasetSpec> specs = {{"pressure", {2, 3, 4}, "Pa", "cell", "pressure"},
+                                          {"position", {3, 3}, "m", "vertex", "positions", "canopy"}};
+  const auto zeros = [](std::uint64_t, std::span<double> values) { std::ranges::fill(values, 0.0); };
+  const auto corners = [](std::uint64_t first, std::span<std::int64_t> values) {
+    for (std::size_t k = 0; k < values.size(); ++k) values[k] = static_cast<std::int64_t>(first + k);
+  };
+  const auto write = [&](std::optional<double> resume_time, double time) {
+    FieldsWriter fields(directory.path(), "drop", specs, resume_time);
+    fields.add_mesh({"triangles", {1, 3}, "1", "face", "", "canopy"}, IntegerSource(corners));
+    fields.add_mesh({"strings", {0, 2}, "1", "edge", "", "canopy"}, IntegerSource(corners));
+    fields.add_mesh({"vertices", {3, 3}, "m", "vertex", "", "canopy"}, Source(zeros));
+    EXPECT_EQ(std::filesystem::exists(directory / "fields.xdmf"), resume_time.has_value());
+    for (const auto& [name, faces] : {std::pair{"x", 5U}, std::pair{"y", 4U}, std::pair{"z", 3U}})
+      fields.add_mesh({name, {faces}, "m", "face", ""}, Source(zeros));
+    fields.begin_step(time, 1);
+    fields.write("pressure", 0, std::vector<double>(24, time));
+    fields.write("canopy/position", 0, std::vector<double>(9, 2.0 * time));
+    fields.end_step();
+  };
+  write({}, 1.0);
+  write(1.0, 2.0);
+  EXPECT_EQ(step_groups(directory / "fields.h5"), (std::vector<std::string>{"000000", "000001"}));
+  const h5::Handle handle = h5::open_file(directory / "fields.h5", false);
+  EXPECT_EQ(h5::shape(h5::open_dataset(handle, "mesh/canopy/triangles")), (std::vector<std::uint64_t>{1, 3}));
+  std::vector<double> values(9);
+  h5::read(h5::open_dataset(handle, "steps/000001/canopy/position"), 0, values);
+  EXPECT_EQ(values, std::vector<double>(9, 4.0));
+  const std::string xdmf = content(directory / "fields.xdmf");
+  EXPECT_NE(xdmf.find("fields.h5:/steps/000001/canopy/position"), std::string::npos) << xdmf;
+  EXPECT_NE(xdmf.find("Dimensions=\"3 4 5\""), std::string::npos) << xdmf;
 }
 
 }  // namespace

@@ -31,7 +31,7 @@ TEST(HistoryWriter, WritesHeaderWithUnitsAndRowsThatReadBackEqual) {
   EXPECT_EQ(std::strtod(text.c_str() + text.find("0.333"), nullptr), 1.0 / 3.0);
 }
 
-TEST(HistoryWriter, RowsSurviveAFailureThatUnwinds) {
+TEST(HistoryWriter, KeepsRowsWhenAnExceptionUnwinds) {
   const TemporaryDirectory directory;
   EXPECT_THROW(
       {
@@ -43,7 +43,7 @@ TEST(HistoryWriter, RowsSurviveAFailureThatUnwinds) {
   EXPECT_EQ(content(directory / "history.csv"), "time [s],energy [J],touches\n0.5,1,0\n");
 }
 
-TEST(HistoryWriter, FlushedRowsSurviveAKill) {
+TEST(HistoryWriter, KeepsFlushedRowsAfterAKill) {
   const TemporaryDirectory directory;
   const int status = test::in_child([&directory] {
     HistoryWriter history(directory / "history.csv", columns);
@@ -55,7 +55,7 @@ TEST(HistoryWriter, FlushedRowsSurviveAKill) {
   EXPECT_EQ(content(directory / "history.csv"), "time [s],energy [J],touches\n0.5,1,0\n");
 }
 
-TEST(HistoryWriter, RestartDropsLaterAndTornRowsAndGoesOn) {
+TEST(HistoryWriter, ContinuesWithoutLaterAndTornRows) {
   const TemporaryDirectory directory;
   write_file_atomically(directory / "history.csv",
                         "time [s],energy [J],touches\n0.1,1,0\n0.2,2,0\n0.3,3,0\n0.4,4");
@@ -65,20 +65,20 @@ TEST(HistoryWriter, RestartDropsLaterAndTornRowsAndGoesOn) {
   EXPECT_EQ(content(directory / "history.csv"), "time [s],energy [J],touches\n0.1,1,0\n0.2,2,0\n0.25,9,1\n");
 }
 
-TEST(HistoryWriter, RestartDropsATornRowThatLooksWhole) {
+TEST(HistoryWriter, DropsATornRowThatLooksWhole) {
   const TemporaryDirectory directory;
   write_file_atomically(directory / "history.csv", "time [s],energy [J],touches\n0.1,1,0\n0.2,2");
   HistoryWriter(directory / "history.csv", columns, 0.2).finish();
   EXPECT_EQ(content(directory / "history.csv"), "time [s],energy [J],touches\n0.1,1,0\n");
 }
 
-TEST(HistoryWriter, RestartWithoutAFileBeginsOne) {
+TEST(HistoryWriter, BeginsAFileIfARestartFindsNone) {
   const TemporaryDirectory directory;
   HistoryWriter(directory / "history.csv", columns, 0.2).finish();
   EXPECT_EQ(content(directory / "history.csv"), "time [s],energy [J],touches\n");
 }
 
-TEST(HistoryWriter, RestartRefusesOtherColumns) {
+TEST(HistoryWriter, RefusesToContinueOtherColumns) {
   const TemporaryDirectory directory;
   write_file_atomically(directory / "history.csv", "time [s],mass [kg]\n0.1,1\n");
   const std::string sentence = failure_of(ExitCode::io_error, [&directory] {
@@ -88,14 +88,14 @@ TEST(HistoryWriter, RestartRefusesOtherColumns) {
   EXPECT_EQ(content(directory / "history.csv"), "time [s],mass [kg]\n0.1,1\n");
 }
 
-TEST(HistoryWriter, ANewRunReplacesTheRows) {
+TEST(HistoryWriter, ReplacesTheRowsOfAFormerRun) {
   const TemporaryDirectory directory;
   write_file_atomically(directory / "history.csv", "time [s],mass [kg]\n0.1,1\n");
   HistoryWriter(directory / "history.csv", columns).finish();
   EXPECT_EQ(content(directory / "history.csv"), "time [s],energy [J],touches\n");
 }
 
-TEST(HistoryWriter, FullDiskIsAFailure) {
+TEST(HistoryWriter, ThrowsOnAFullDisk) {
   const TemporaryDirectory directory;
   const int status = test::in_child([&directory] {
     test::limit_file_size(100);

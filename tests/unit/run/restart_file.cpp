@@ -38,7 +38,7 @@ std::string refusal(const std::filesystem::path& file) {
   return failure_of(ExitCode::io_error, [&file] { const RestartReader restart(file, scene); });
 }
 
-TEST(RestartFile, GivesBackEveryBit) {
+TEST(RestartFile, RestoresEveryBit) {
   const TemporaryDirectory directory;
   write_restart(directory / "restart.h5", 1.0 / 3.0);
   const RestartReader restart(directory / "restart.h5", scene);
@@ -52,7 +52,7 @@ TEST(RestartFile, GivesBackEveryBit) {
   EXPECT_EQ(values, state());
 }
 
-TEST(RestartFile, MissingEntriesAreNamed) {
+TEST(RestartFile, NamesAMissingEntry) {
   const TemporaryDirectory directory;
   write_restart(directory / "restart.h5", 1.0);
   const RestartReader restart(directory / "restart.h5", scene);
@@ -64,7 +64,7 @@ TEST(RestartFile, MissingEntriesAreNamed) {
   EXPECT_NE(array.find("restart.h5"), std::string::npos) << array;
 }
 
-TEST(RestartFile, FormerOneStaysUntilTheNewOneIsComplete) {
+TEST(RestartFile, KeepsTheFormerFileUntilCommit) {
   const TemporaryDirectory directory;
   write_restart(directory / "restart.h5", 1.0);
   {
@@ -81,7 +81,7 @@ TEST(RestartFile, FormerOneStaysUntilTheNewOneIsComplete) {
   EXPECT_EQ(RestartReader(directory / "restart.h5", scene).number("time"), 1.0);
 }
 
-TEST(RestartFile, FullDiskKeepsTheFormerOne) {
+TEST(RestartFile, KeepsTheFormerFileOnAFullDisk) {
   const TemporaryDirectory directory;
   write_restart(directory / "restart.h5", 1.0);
   const int status = test::in_child([&directory] {
@@ -120,7 +120,7 @@ TEST(RestartFile, RefusesAnyChangedByte) {
   }
 }
 
-TEST(RestartFile, RefusesWhatIsForeign) {
+TEST(RestartFile, RefusesForeignFilesAndScenes) {
   const TemporaryDirectory directory;
   EXPECT_NE(refusal(directory / "none.h5").find("No such file"), std::string::npos);
   EXPECT_NE(refusal(directory.path()).find("not a restart file"), std::string::npos)
@@ -140,7 +140,7 @@ TEST(RestartFile, RefusesWhatIsForeign) {
   EXPECT_NE(other.find("another scene"), std::string::npos) << other;
 }
 
-TEST(Fingerprint, TellsTextsApartOfEveryLength) {
+TEST(Fingerprint, DistinguishesTextsOfEveryLength) {
   EXPECT_EQ(fingerprint("cells = 500"), scene);
   std::string text;
   std::vector<std::string> seen;

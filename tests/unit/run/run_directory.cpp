@@ -12,21 +12,21 @@ using test::content;
 using test::failure_of;
 using test::TemporaryDirectory;
 
-TEST(RunDirectory, IsCreatedWithItsParents) {
+TEST(RunDirectory, CreatesTheDirectoryAndItsParents) {
   const TemporaryDirectory parent;
   const RunDirectory run(parent / "out/sod", ExistingRun::refuse);
   run.write_scene("app = \"gas\"\n");
   EXPECT_EQ(content(parent / "out/sod/scene.toml"), "app = \"gas\"\n");
 }
 
-TEST(RunDirectory, ForeignFilesAreNoRun) {
+TEST(RunDirectory, IgnoresForeignFiles) {
   const TemporaryDirectory parent;
   write_file_atomically(parent / "notes.txt", "mine");
   EXPECT_NO_THROW(RunDirectory(parent.path(), ExistingRun::refuse));
   EXPECT_EQ(parent.entries(), 1U) << "the lock was left behind";
 }
 
-TEST(RunDirectory, RefusesAFormerRunWithUsage) {
+TEST(RunDirectory, RefusesAFormerRunAsUsageError) {
   const TemporaryDirectory parent;
   write_file_atomically(parent / "history.csv", "time [s]\n");
   const std::string sentence =
@@ -62,7 +62,7 @@ TEST(RunDirectory, ResumeKeepsTheFormerRun) {
   EXPECT_FALSE(std::filesystem::exists(parent / "result.json"));
 }
 
-TEST(RunDirectory, IsNotSharedByTwoRuns) {
+TEST(RunDirectory, RefusesADirectoryInUse) {
   const TemporaryDirectory parent;
   const auto second = [&parent] { const RunDirectory run(parent.path(), ExistingRun::overwrite); };
   {
@@ -75,7 +75,7 @@ TEST(RunDirectory, IsNotSharedByTwoRuns) {
   EXPECT_NO_THROW(second()) << "the lock outlived its run";
 }
 
-TEST(RunDirectory, IsFreeAfterAKill) {
+TEST(RunDirectory, ReleasesTheDirectoryAfterAKill) {
   const TemporaryDirectory parent;
   const int status = test::in_child([&parent] {
     const RunDirectory run(parent.path(), ExistingRun::refuse);
@@ -86,7 +86,7 @@ TEST(RunDirectory, IsFreeAfterAKill) {
   EXPECT_NO_THROW(RunDirectory(parent.path(), ExistingRun::refuse));
 }
 
-TEST(RunDirectory, UnwritablePlaceIsAnIoError) {
+TEST(RunDirectory, ThrowsIoErrorForAnInvalidPath) {
   const TemporaryDirectory parent;
   write_file_atomically(parent / "file", "");
   const std::string below_a_file = failure_of(
@@ -94,8 +94,8 @@ TEST(RunDirectory, UnwritablePlaceIsAnIoError) {
   EXPECT_NE(below_a_file.find("file/out': Not a directory"), std::string::npos) << below_a_file;
 }
 
-// The kernel's own directories take no file even from root.
-TEST(RunDirectory, ReadOnlyPlaceIsAnIoError) {
+// The kernel refuses files in its own directories even for root.
+TEST(RunDirectory, ThrowsIoErrorForAReadOnlyFolder) {
   if (!std::filesystem::exists("/proc/self")) GTEST_SKIP() << "needs /proc";
   const std::string read_only =
       failure_of(ExitCode::io_error, [] { const RunDirectory run("/proc/drogue", ExistingRun::refuse); });
@@ -105,7 +105,7 @@ TEST(RunDirectory, ReadOnlyPlaceIsAnIoError) {
   EXPECT_NE(existing.find("cannot write to the run directory '/proc/self'"), std::string::npos) << existing;
 }
 
-TEST(RunDirectory, RestartSourceIsTheNamedOrTheOwnFile) {
+TEST(RunDirectory, RestartSourceFindsTheNamedOrOwnFile) {
   const TemporaryDirectory parent;
   EXPECT_EQ(restart_source("auto", parent.path()), "");
   write_file_atomically(parent / "restart.h5", "state");

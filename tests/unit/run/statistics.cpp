@@ -22,9 +22,9 @@ TEST(Statistics, MedianOfOddAndEvenCounts) {
   EXPECT_THROW(median({}), std::invalid_argument);
 }
 
-// Ranks and coverage of the sign-test interval, e.g. Conover, Practical Nonparametric Statistics, table A3 (p
-// = 1/2).
-TEST(Statistics, IntervalHasTheKnownRanks) {
+// Ranks and coverage of the sign-test interval: Conover, Practical Nonparametric Statistics, table A3 (p =
+// 1/2).
+TEST(Statistics, IntervalUsesTheTabulatedRanks) {
   const MedianInterval ten = median_interval(first_numbers(10));
   EXPECT_EQ(ten.median, 5.5);
   EXPECT_EQ(ten.low, 2.0);
@@ -36,7 +36,7 @@ TEST(Statistics, IntervalHasTheKnownRanks) {
   EXPECT_NEAR(twenty.coverage, 0.9586, 1e-4);
 }
 
-TEST(Statistics, FewSamplesGiveTheExtremesAndSaySo) {
+TEST(Statistics, FewSamplesGiveTheExtremesAndTheirCoverage) {
   const MedianInterval five = median_interval(first_numbers(5));
   EXPECT_EQ(five.low, 1.0);
   EXPECT_EQ(five.high, 5.0);
@@ -47,7 +47,7 @@ TEST(Statistics, FewSamplesGiveTheExtremesAndSaySo) {
   EXPECT_EQ(one.coverage, 0.0);
 }
 
-TEST(Statistics, IntervalCoversTheTrueMedianAsOftenAsItSays) {
+TEST(Statistics, IntervalCoversTheMedianAtTheStatedRate) {
   std::mt19937_64 random(4);
   std::exponential_distribution<double> skewed(1.0);
   const double truth = std::log(2.0);

@@ -17,7 +17,7 @@
 
 namespace drogue::test {
 
-/// A directory of its own for one test, removed with it.
+/// Temporary directory of one test.
 class TemporaryDirectory {
  public:
   TemporaryDirectory() {
@@ -51,7 +51,7 @@ inline std::string content(const std::filesystem::path& file) {
   return text.str();
 }
 
-/// The sentence of the Failure that `action` throws with `code`; another outcome is told in its place.
+/// Message of the `Failure` with `code` that `action` throws; otherwise a description of the outcome.
 inline std::string failure_of(ExitCode code, const std::function<void()>& action) {
   try {
     action();
@@ -62,8 +62,7 @@ inline std::string failure_of(ExitCode code, const std::function<void()>& action
   return "no failure";
 }
 
-/// Runs `action` in a child process; returns its wait status. What `action` throws ends the child with
-/// status 99.
+/// Runs `action` in a child process and returns its wait status; 99 if `action` throws.
 inline int in_child(const std::function<int()>& action) {
   const pid_t child = fork();
   if (child == 0) {
@@ -80,7 +79,7 @@ inline int in_child(const std::function<int()>& action) {
   return status;
 }
 
-/// No file of this process may grow beyond `bytes`: writing fails as on a full disk, with EFBIG.
+/// Limits the file size of this process, bytes: further writes fail with EFBIG, as on a full disk.
 inline void limit_file_size(rlim_t bytes) {
   std::signal(SIGXFSZ, SIG_IGN);
   const rlimit limit = {bytes, bytes};

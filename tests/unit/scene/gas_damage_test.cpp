@@ -15,7 +15,7 @@
 namespace drogue::gas_app {
 namespace {
 
-/// Every way a scene is written.
+/// Scenes that cover every syntax.
 std::vector<std::string> sound_scenes() {
   const std::filesystem::path folder =
       std::filesystem::path(DROGUE_SOURCE_DIR) / "tests/negative/sound_scenes";
@@ -32,7 +32,7 @@ class DamagedGasScene : public ::testing::Test {
  protected:
   void TearDown() override { std::filesystem::remove(file); }
 
-  /// Whether it is refused; nothing but a scene error with file and line may come of it.
+  /// True if the scene is refused. Only a scene error with file and line is allowed.
   bool is_refused(const std::string& text) const {
     std::ofstream(file, std::ios::binary) << text;
     try {
@@ -49,7 +49,7 @@ class DamagedGasScene : public ::testing::Test {
       std::filesystem::temp_directory_path() / ("drogue-damaged-" + std::to_string(::getpid()) + ".toml");
 };
 
-TEST_F(DamagedGasScene, IsRefusedWithItsPlaceOrSound) {
+TEST_F(DamagedGasScene, IsRefusedWithFileAndLineOrValid) {
   constexpr unsigned mutations = 2000;
   const std::vector<std::string> sound = sound_scenes();
   unsigned refused = 0;
@@ -59,7 +59,7 @@ TEST_F(DamagedGasScene, IsRefusedWithItsPlaceOrSound) {
   EXPECT_LT(refused, mutations);
 }
 
-TEST_F(DamagedGasScene, IsSoundBefore) {
+TEST_F(DamagedGasScene, IsValidBeforeTheDamage) {
   for (const std::string& text : sound_scenes()) EXPECT_FALSE(is_refused(text)) << text;
 }
 

@@ -17,7 +17,7 @@ namespace {
 const std::filesystem::path source = DROGUE_SOURCE_DIR;
 const std::filesystem::path shipped = source / "miniapps/gas/scenes";
 
-/// A file of this content, gone at the end of the test.
+/// Temporary file with this content.
 class TemporaryScene {
  public:
   explicit TemporaryScene(const std::string& text) {
@@ -46,7 +46,7 @@ GasScene read_text(const std::string& text, const std::vector<std::string>& sets
   return read_gas_scene(file.path(), sets, scheme);
 }
 
-/// The message without the folder of the file.
+/// Message without the folder of the file.
 std::string error_of(const std::vector<std::string>& sets, const std::string& text = least) {
   try {
     read_text(text, sets);
@@ -61,7 +61,7 @@ bool holds(const std::string& text, const std::string& words) {
   return text.find(words) != std::string::npos;
 }
 
-TEST(GasScene, TheLeastSceneHasTheDocumentedDefaults) {
+TEST(GasScene, MinimalSceneHasTheDocumentedDefaults) {
   const GasScene scene = read_text(least);
   const gas::Parameters& parameters = scene.parameters;
   EXPECT_EQ(parameters.gamma, 1.4);
@@ -72,7 +72,7 @@ TEST(GasScene, TheLeastSceneHasTheDocumentedDefaults) {
   EXPECT_EQ(parameters.weno_power, 1);
   EXPECT_EQ(parameters.splitting, gas::Splitting::lf_stencil);
   EXPECT_EQ(parameters.time_scheme, gas::TimeScheme::ssprk3);
-  EXPECT_EQ(parameters.mean, gas::Mean::arithmetic);
+  EXPECT_EQ(parameters.face_average, gas::FaceAverage::arithmetic);
   EXPECT_EQ(parameters.positivity, gas::Positivity::automatic);
   EXPECT_EQ(parameters.precision, gas::Precision::full);
   EXPECT_EQ(parameters.cfl, 0.6);
@@ -99,7 +99,7 @@ TEST(GasScene, EveryShippedSceneResolvesToItself) {
   }
 }
 
-TEST(GasScene, PrintsNoKeyThatDoesNotApply) {
+TEST(GasScene, OmitsInapplicableKeys) {
   EXPECT_TRUE(holds(print_gas_scene(read_text(least)), "weno_power = 1"));
   const std::string js = print_gas_scene(read_text(least, {"scheme.weno=js"}));
   EXPECT_FALSE(holds(js, "weno_power"));
@@ -123,7 +123,7 @@ TEST(GasScene, NumbersSurvivePrinting) {
   EXPECT_EQ(again.parameters.x_max, 123456789.125);
 }
 
-TEST(GasScene, TimesAndFieldsCompleteEachOther) {
+TEST(GasScene, CompletesTimesFromFieldsAndFieldsFromTimes) {
   EXPECT_EQ(read_text(least, {"output.fields=[\"p\"]"}).output.times, std::vector<double>{0.4});
   EXPECT_EQ(read_text(least, {"output.times=[0, 0.2]"}).output.fields,
             (std::vector<std::string>{"rho", "u", "p"}));
@@ -133,17 +133,17 @@ TEST(GasScene, TimesAndFieldsCompleteEachOther) {
   EXPECT_TRUE(holds(error_of({"output.fields=[\"u\",\"u\"]"}), "twice"));
 }
 
-TEST(GasScene, SeedModeTakesTheSchemeOfTheDissertation) {
-  const GasScene scene = read_text(least, {"scheme.weno_power=2"}, SchemeSource::dissertation);
+TEST(GasScene, SeedModeSelectsTheSchemeOfShi) {
+  const GasScene scene = read_text(least, {"scheme.weno_power=2"}, SchemeSource::baseline);
   EXPECT_EQ(scene.parameters.weno, gas::Weno::js);
   EXPECT_EQ(scene.parameters.splitting, gas::Splitting::lf_global);
-  EXPECT_EQ(scene.parameters.mean, gas::Mean::conserved);
+  EXPECT_EQ(scene.parameters.face_average, gas::FaceAverage::conserved);
   EXPECT_EQ(scene.parameters.positivity, gas::Positivity::off);
   const std::string printed = print_gas_scene(scene);
   EXPECT_EQ(print_gas_scene(read_text(printed)), printed);
 }
 
-TEST(GasScene, TheReferenceRunTakesGasAndMeshFromTheScene) {
+TEST(GasScene, ReferenceRunInheritsGasAndDomain) {
   const GasScene scene =
       read_text(least, {"verify.exact=reference", "verify.reference.cells=6400", "gas.gamma=1.5",
                         "boundary.left=reflecting", "scheme.weno=js", "verify.l1_density=0.1"});
@@ -159,7 +159,7 @@ TEST(GasScene, TheReferenceRunTakesGasAndMeshFromTheScene) {
   EXPECT_TRUE(holds(error_of({"verify.reference.cells=6400"}), "with exact = \"reference\""));
 }
 
-TEST(GasScene, ContradictionsAreRefused) {
+TEST(GasScene, RefusesContradictions) {
   EXPECT_TRUE(holds(error_of({"scheme.weno=js", "scheme.weno_power=2"}), "with weno = \"z\""));
   EXPECT_TRUE(holds(error_of({"scheme.cfl=0.5", "scheme.fixed_dt=1e-3"}), "without fixed_dt"));
   EXPECT_TRUE(holds(error_of({"boundary.left=periodic"}), "needs boundary.right = \"periodic\""));
@@ -199,7 +199,7 @@ TEST(GasScene, RegionsCoverTheDomainInOrder) {
   EXPECT_TRUE(holds(error_of(regions("{until=1.5," + state + ",{" + state)), "not inside the domain"));
 }
 
-TEST(GasScene, ExpressionsAreCheckedInEveryCell) {
+TEST(GasScene, ChecksExpressionsInEveryCell) {
   const auto state = [](const std::string& rho, const std::string& p) {
     return std::vector<std::string>{"initial.expression={rho=\"" + rho + "\",p=\"" + p + "\"}"};
   };
@@ -219,7 +219,7 @@ TEST(GasScene, ExpressionsAreCheckedInEveryCell) {
   EXPECT_TRUE(holds(error_of(state("1", "1.7e308")), "FP64 does not hold"));
 }
 
-TEST(GasScene, LargeMeshesAreCheckedByManyThreads) {
+TEST(GasScene, ChecksLargeMeshesWithSeveralThreads) {
   const std::vector<std::string> sets = {"mesh.cells=1000000"};
   std::vector<std::string> bad = sets;
   bad.emplace_back("initial.expression={rho=\"1\",p=\"x > 0.5 ? 0.5 - x : 1\"}");
@@ -228,7 +228,7 @@ TEST(GasScene, LargeMeshesAreCheckedByManyThreads) {
   EXPECT_NO_THROW(read_text(least, bad));
 }
 
-TEST(GasScene, AdvectionNeedsUniformFlow) {
+TEST(GasScene, AdvectionRequiresUniformFlow) {
   const std::vector<std::string> sets = {"boundary={left=\"periodic\",right=\"periodic\"}",
                                          "verify.exact=advection",
                                          "initial.expression={rho=\"2+x\",u=\"1\",p=\"1\"}"};
@@ -237,14 +237,14 @@ TEST(GasScene, AdvectionNeedsUniformFlow) {
       holds(error_of({sets[0], sets[1], "initial.expression={rho=\"1\",u=\"x\",p=\"1\"}"}), "do not vary"));
 }
 
-TEST(GasScene, MeshBoundsAreSharp) {
+TEST(GasScene, AcceptsExactlyTheDocumentedMeshSizes) {
   EXPECT_EQ(read_text(least, {"mesh.cells=8"}).parameters.cells, 8);
   EXPECT_TRUE(holds(error_of({"mesh.cells=7"}), "8 .. 268435456"));
   EXPECT_TRUE(holds(error_of({"mesh.cells=268435457"}), "8 .. 268435456"));
   EXPECT_TRUE(holds(error_of({"gas.gamma=1"}), "> 1"));
 }
 
-TEST(GasSceneDocument, IsWhatTheDeclarationsGive) {
+TEST(GasSceneDocument, MatchesTheDeclarations) {
   const std::filesystem::path page = source / "docs/scenes-gas.md";
   if (std::getenv("DROGUE_UPDATE_DOCS") != nullptr) std::ofstream(page) << document_gas_scene();
   std::ostringstream written;
@@ -253,7 +253,7 @@ TEST(GasSceneDocument, IsWhatTheDeclarationsGive) {
       << "after a change of the keys: DROGUE_UPDATE_DOCS=1 ctest -R GasSceneDocument";
 }
 
-TEST(ShippedScenes, AreFoundByName) {
+TEST(ShippedScenes, FindsScenesByName) {
   EXPECT_EQ(scene::find_scene("sod", shipped), shipped / "sod.toml");
   EXPECT_EQ(scene::find_scene((shipped / "sod.toml").string(), "nowhere"), shipped / "sod.toml");
   try {

@@ -7,7 +7,7 @@
 namespace drogue::scene {
 namespace {
 
-/// What is thrown: the message, after a check of the code.
+/// Message of the thrown failure; checks its exit code.
 template <class Call>
 std::string thrown_by(Call call, ExitCode code = ExitCode::invalid_scene) {
   try {
@@ -37,7 +37,7 @@ TEST(Parse, KeepsOrderTypesAndLines) {
   EXPECT_EQ(*array[1].as<std::string>(), "x");
 }
 
-TEST(Parse, SyntaxErrorsKeepTheirLine) {
+TEST(Parse, ReportsTheLineOfASyntaxError) {
   EXPECT_EQ(syntax_error("a = 1\nb = \n").substr(0, 10), "f.toml:2: ");
   EXPECT_EQ(syntax_error("a = 1\n\n[t\n").substr(0, 10), "f.toml:3: ");
   EXPECT_EQ(syntax_error("a = 1\na = 2\n").substr(0, 10), "f.toml:2: ");
@@ -49,7 +49,7 @@ TEST(Parse, SyntaxErrorsKeepTheirLine) {
       << "toml++ 3.3 asserts here";
 }
 
-TEST(Parse, FilesThatCannotBeReadAreUsageErrors) {
+TEST(Parse, ReportsUnreadableFilesAsUsageErrors) {
   EXPECT_NE(thrown_by([] { parse_file("no-such.toml"); }, ExitCode::usage).find("no-such.toml"),
             std::string::npos);
   EXPECT_NE(thrown_by([] { parse_file("."); }, ExitCode::usage).find("folder"), std::string::npos);
@@ -61,7 +61,7 @@ Node with_set(const std::string& assignment) {
   return root;
 }
 
-TEST(Set, ReplacesAndAdds) {
+TEST(Set, ReplacesAndAddsValues) {
   EXPECT_EQ(*with_set("gas.gamma=1.6").find("gas")->find("gamma")->as<double>(), 1.6);
   EXPECT_EQ(*with_set("gas.gamma = 2").find("gas")->find("gamma")->as<std::int64_t>(), 2);
   EXPECT_EQ(*with_set("scheme.weno=js").find("scheme")->find("weno")->as<std::string>(), "js");
@@ -71,7 +71,7 @@ TEST(Set, ReplacesAndAdds) {
   EXPECT_EQ(*(*with_set("b.0.c=9").find("b")->as<Node::Array>())[0].find("c")->as<std::int64_t>(), 9);
 }
 
-TEST(Set, BlamesTheAssignment) {
+TEST(Set, ReportsTheAssignmentInError) {
   for (const std::string bad : {"gas.gamma.x=1", "gas", "=1", "gas.=1", ".gas=1", "a..b=1",
                                 "gas.gamma=", "gas.gamma=[1", "gas.gamma=\"", "a.list.2=1", "a.list.x=1",
                                 "a.list.99999999999999999999=1", "gas.gamma=1\nx=2", "gas.gamma=1]"}) {
@@ -82,7 +82,7 @@ TEST(Set, BlamesTheAssignment) {
             "--set gas.gamma=2");
 }
 
-TEST(Node, TextsReadBack) {
+TEST(Node, PrintedTextReadsBack) {
   for (const double value : {1.0, 0.1, -2.5e-300, 1e22, 1.0 / 3.0, 5e-324, 1.7976931348623157e308}) {
     const Node root = parse_text("v = " + real_text(value) + "\n", "f");
     EXPECT_EQ(*root.find("v")->as<double>(), value);

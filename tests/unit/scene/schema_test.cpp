@@ -22,7 +22,7 @@ struct Disk {
   double radius = 0.0;
 };
 
-/// A scene of another app than gas: arrays of tables, alternatives, numbers that may be expressions.
+/// Scene of another program: arrays of tables, alternatives, numbers that may be expressions.
 struct Cloth {
   bool tension_only = false;
   int count = 3;
@@ -125,7 +125,7 @@ TEST(Schema, ReadsEveryType) {
   EXPECT_EQ(cloth.pins[1].axes[2], 2.0);
 }
 
-TEST(Schema, PrintsWhatReadsBackToTheSame) {
+TEST(Schema, PrintedSceneReadsBackEqual) {
   const std::string printed = print_cloth(
       read_cloth(head + "[[pin]]\nwhere = \"x > 1\"\n[[pin]]\nwhere = \"y\"\nmotion = \"sin(t)\"\n",
                  {"material.seed=8"}));
@@ -138,7 +138,7 @@ TEST(Schema, PrintsWhatReadsBackToTheSame) {
   EXPECT_EQ(printed.find("ring"), std::string::npos);
 }
 
-TEST(Schema, ReportsTheErrorThatMattersMost) {
+TEST(Schema, ReportsTheMostImportantError) {
   const std::string wrong_app = "app = \"cloht\"\nmush = 1\n";
   EXPECT_EQ(error_of(wrong_app).substr(0, 22), "c.toml:1: app must be ");
   const std::string all = "app = \"cloth\"\n[material]\ncount = 99\n[[pin]]\nwere = \"x\"\n";
@@ -149,7 +149,7 @@ TEST(Schema, ReportsTheErrorThatMattersMost) {
   EXPECT_EQ(error_of(""), "c.toml:1: missing key \"app\": Program");
 }
 
-TEST(Schema, ErrorsNameKeyValueAndWhatIsAllowed) {
+TEST(Schema, ErrorsNameKeyValueAndRange) {
   EXPECT_EQ(error_of(head + "[material]\ncount = 2.0\n"),
             "c.toml:5: material.count must be an integer 1 .. 10, not 2.0");
   EXPECT_EQ(error_of(head + "[material]\nstiffness = \"a\"\n"),
@@ -178,18 +178,18 @@ TEST(Schema, ErrorsNameKeyValueAndWhatIsAllowed) {
             "c.toml:2: unknown key \"radius\"; did you mean \"mesh.disk.radius\"?");
 }
 
-TEST(Schema, AlternativesAreExclusive) {
+TEST(Schema, RequiresExactlyOneAlternative) {
   EXPECT_EQ(error_of(head + "ring = { radius = 2 }\n"),
             "c.toml:4: mesh.ring contradicts mesh.disk: a scene has only one of them");
   EXPECT_EQ(error_of("app = \"cloth\"\n[mesh]\n"), "c.toml:2: [mesh] needs exactly one of disk, ring");
 }
 
-TEST(Schema, KeysThatDoNotApplyAreContradictions) {
+TEST(Schema, RefusesInapplicableKeys) {
   EXPECT_EQ(error_of(head + "[material]\ntension_only = true\n"),
             "c.toml:5: material.tension_only applies only with shape = \"string\"");
 }
 
-TEST(Schema, AnAssignmentDropsWhatItMakesMeaningless) {
+TEST(Schema, AssignmentDropsKeysThatItMakesInapplicable) {
   const std::string text = head + "[material]\nshape = \"string\"\ntension_only = true\n";
   EXPECT_FALSE(read_cloth(text, {"material.shape=disk"}).tension_only);
   EXPECT_EQ(error_of(text, {"material.shape=disk", "material.tension_only=true"}),

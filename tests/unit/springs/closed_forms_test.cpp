@@ -8,7 +8,7 @@
 namespace drogue::springs_app {
 namespace {
 
-TEST(ClosedForms, ZerosOfBesselFunctions) {
+TEST(ClosedForms, BesselZerosMatchTables) {
   // Abramowitz and Stegun, table 9.5.
   EXPECT_NEAR(bessel_zero(0, 1), 2.4048255577, 1e-10);
   EXPECT_NEAR(bessel_zero(1, 1), 3.8317059702, 1e-10);
@@ -16,7 +16,7 @@ TEST(ClosedForms, ZerosOfBesselFunctions) {
   EXPECT_NEAR(bessel_zero(5, 2), 12.3386042, 1e-6);
 }
 
-TEST(ClosedForms, HenckysMembrane) {
+TEST(ClosedForms, HenckyMembraneMatchesPublishedConstants) {
   // Deflection and tension at the centre for three ratios of Poisson.
   for (const auto& [nu, w, n] :
        {std::array{0.0, 0.71832, 0.40510}, {0.14, 0.69058, 0.41539}, {0.30, 0.65344, 0.43110}}) {
@@ -25,7 +25,7 @@ TEST(ClosedForms, HenckysMembrane) {
   }
 }
 
-TEST(ClosedForms, AStringWithAPayload) {
+TEST(ClosedForms, StringWithPayloadSolvesItsFrequencyEquation) {
   // Without payload a quarter of a wave; with a heavy one sqrt(EA / (L M)).
   EXPECT_NEAR(string_frequency(100.0, 0.01, 2.0, 0.0, 1), 100.0 / 8.0, 1e-12);
   EXPECT_NEAR(string_frequency(100.0, 0.01, 2.0, 0.0, 2), 3.0 * 100.0 / 8.0, 1e-12);
@@ -35,7 +35,7 @@ TEST(ClosedForms, AStringWithAPayload) {
   EXPECT_NEAR(z * std::tan(z), 1.0, 1e-12);
 }
 
-TEST(ClosedForms, ACatenaryThatDoesNotStretch) {
+TEST(ClosedForms, StiffCatenaryIsInextensible) {
   // Span 2 a sinh(l / 2 a) ... with a = 1: length 2 sinh(1), span 2, sag cosh(1) - 1.
   const double length = 2.0 * std::sinh(1.0);
   const auto points = catenary_points({2.0, 0.0, length, 1.0, 1e9}, {0.0, 0.5 * length, length});
@@ -49,20 +49,20 @@ TEST(ClosedForms, ACatenaryThatDoesNotStretch) {
   EXPECT_NEAR(steep[0].down, 0.7, 1e-9);
 }
 
-TEST(ClosedForms, AHangingString) {
+TEST(ClosedForms, HangingStringMatchesItsClosedForm) {
   // A payload of 3 N on 2 m: 6 / 12; the string's own 4 N hang from its middle on the average.
   EXPECT_DOUBLE_EQ(hanging_stretch(12.0, 0.0, 2.0, 3.0), 0.5);
   EXPECT_DOUBLE_EQ(hanging_stretch(12.0, 2.0, 2.0, 3.0), 0.5 + 4.0 * 1.0 / 12.0);
 }
 
-TEST(ClosedForms, AVerticalStretch) {
+TEST(ClosedForms, VerticalStretchMatchesItsClosedForm) {
   // Almost vertical: (rho g L^2 / 2) / EA longer.
   const auto points = catenary_points({1e-6, 1.05, 1.0, 1.0, 10.0}, {1.0});
   EXPECT_NEAR(points[0].down, 1.05, 1e-9);
   EXPECT_TRUE(catenary_points({0.0, 1.05, 1.0, 1.0, 10.0}, {1.0}).empty());
 }
 
-TEST(Sinusoid, FrequencyIsFitted) {
+TEST(Sinusoid, FitsTheFrequencyOfASinusoid) {
   std::vector<double> time, value;
   for (int k = 0; k < 500; ++k) {
     time.push_back(0.013 * k);
@@ -73,7 +73,7 @@ TEST(Sinusoid, FrequencyIsFitted) {
   EXPECT_TRUE(std::isnan(fitted_frequency({}, {})));
 }
 
-TEST(Sinusoid, HalfRise) {
+TEST(Sinusoid, FindsTheHalfRiseTime) {
   EXPECT_DOUBLE_EQ(half_rise_time({0, 1, 2, 3}, {5, 5, 7, 9}), 2.0);
   EXPECT_DOUBLE_EQ(half_rise_time({0, 1, 2}, {0, -3, -4}), 2.0 / 3.0);
   EXPECT_TRUE(std::isnan(half_rise_time({0, 1}, {1, 1})));

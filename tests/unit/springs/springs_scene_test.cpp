@@ -16,7 +16,7 @@ namespace {
 const std::filesystem::path source = DROGUE_SOURCE_DIR;
 const std::filesystem::path shipped = source / "miniapps/springs/scenes";
 
-/// A folder with a scene and a mesh, gone at the end of the test.
+/// Temporary folder with a scene and a mesh.
 class SceneFolder {
  public:
   explicit SceneFolder(const std::string& text, const std::string& mesh = "") {
@@ -63,7 +63,7 @@ bool holds(const std::string& text, const std::string& words) {
   return text.find(words) != std::string::npos;
 }
 
-TEST(SpringsScene, TheLeastSceneHasTheDocumentedDefaults) {
+TEST(SpringsScene, MinimalSceneHasTheDocumentedDefaults) {
   const SpringsScene scene = read_text(least);
   EXPECT_EQ(scene.fabric.material.model, fabric::Model::biquadratic);
   EXPECT_EQ(scene.fabric.material.membrane_modulus, 1000.0);
@@ -87,7 +87,7 @@ TEST(SpringsScene, EveryShippedSceneResolvesToItself) {
   }
 }
 
-TEST(SpringsScene, PrintsNoKeyThatDoesNotApply) {
+TEST(SpringsScene, OmitsInapplicableKeys) {
   const std::string cloth = print_springs_scene(read_text(least));
   for (const char* key :
        {"model = ", "membrane_modulus", "poisson", "area_density", "safety", "dt = \"auto\""})
@@ -109,7 +109,7 @@ TEST(SpringsScene, PrintsNoKeyThatDoesNotApply) {
   EXPECT_FALSE(holds(fixed, "safety"));
 }
 
-TEST(SpringsScene, PressureNeedsOneSide) {
+TEST(SpringsScene, PressureRequiresConsistentOrientation) {
   const std::string half = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\n";
   // Three squares in a ring, the last turned over: a strip with one side.
   const std::string moebius =
@@ -124,7 +124,7 @@ TEST(SpringsScene, PressureNeedsOneSide) {
   EXPECT_EQ(error_of({}, with_file, moebius), "");
 }
 
-TEST(SpringsScene, AxesOfPinsHaveAnyOrder) {
+TEST(SpringsScene, AcceptsPinAxesInAnyOrder) {
   const auto axes = [](const std::string& text) {
     return read_text(least, {"pin=[{where=\"1\",axes=\"" + text + "\"}]"}).pins.at(0).axes;
   };
@@ -133,12 +133,12 @@ TEST(SpringsScene, AxesOfPinsHaveAnyOrder) {
   EXPECT_TRUE(holds(error_of({"pin=[{where=\"1\",axes=\"xx\"}]"}), "\"xx\""));
 }
 
-TEST(SpringsScene, IntegersArePrintedAsSuch) {
+TEST(SpringsScene, PrintsIntegersWithoutAPoint) {
   const SpringsScene drum = read_springs_scene(shipped / "drum.toml");
   EXPECT_TRUE(holds(print_springs_scene(drum), "mode = [0, 1]")) << print_springs_scene(drum);
 }
 
-TEST(SpringsScene, FilesAreRelativeToTheScene) {
+TEST(SpringsScene, ResolvesFilesRelativeToTheScene) {
   const SceneFolder folder(with_file, triangle);
   const SpringsScene scene = read_springs_scene(folder.scene());
   EXPECT_EQ(scene.mesh.triangles.size(), 1U);
@@ -146,7 +146,7 @@ TEST(SpringsScene, FilesAreRelativeToTheScene) {
   EXPECT_EQ(print_springs_scene(read_text(printed)), printed) << "from another folder";
 }
 
-TEST(SpringsScene, AFileDecidesWhichKeysApply) {
+TEST(SpringsScene, MeshFileDecidesWhichKeysApply) {
   EXPECT_EQ(error_of({"material.poisson=0.2"}, with_file, triangle), "");
   EXPECT_TRUE(holds(error_of({"material.poisson=0.2"}, with_file, rope), "applies only with triangles"));
   EXPECT_TRUE(holds(error_of({"material.line_density=0.2"}, with_file, triangle), "applies only with lines"));
@@ -156,14 +156,14 @@ TEST(SpringsScene, AFileDecidesWhichKeysApply) {
       holds(error_of({}, with_file, triangle + "f 1 2 9\n"), "m.obj:5: face 2 of the file names vertex 9"));
 }
 
-TEST(SpringsScene, StiffnessOfAStringIsThatOfItsPieces) {
+TEST(SpringsScene, StringStiffnessAppliesPerEdge) {
   const SpringsScene scene = read_text(least, {"mesh.string={vertices=5}", "material.stiffness=100"});
   EXPECT_DOUBLE_EQ(scene.fabric.material.axial_stiffness, 25.0);
   const SpringsScene uneven = read_text(with_file, {"material.stiffness=5"}, rope);
   EXPECT_EQ(uneven.mesh.line_stiffness, (std::vector<double>{5.0, 10.0}));
 }
 
-TEST(SpringsScene, StringsBesideEdgesMayHaveAnAxialStiffness) {
+TEST(SpringsScene, AcceptsAxialStiffnessOfStringsBesideEdges) {
   const std::string both = triangle + "v 0 0 -2\nl 1 4\n";
   const std::string edge = "material.model=edge", axial = "material.axial_stiffness=50",
                     stiffness = "material.stiffness=70";
@@ -180,7 +180,7 @@ TEST(SpringsScene, StringsBesideEdgesMayHaveAnAxialStiffness) {
   EXPECT_TRUE(holds(error_of({edge, axial, stiffness}, with_file, rope), "give one"));
 }
 
-TEST(SpringsScene, ReinforcementsAreLinesOfTheirOwn) {
+TEST(SpringsScene, ReinforcementsBecomeLines) {
   const auto with = [](const std::string& list) {
     return std::vector<std::string>{"reinforcement=[" + list + "]"};
   };
@@ -194,7 +194,7 @@ TEST(SpringsScene, ReinforcementsAreLinesOfTheirOwn) {
   EXPECT_EQ(cloth.mesh.line_density, (std::vector<double>{0.5, 0.0}));
   EXPECT_FALSE(cloth.has_lines());
   EXPECT_FALSE(holds(print_springs_scene(cloth), "material.axial_stiffness"));
-  // A line of the mesh gets it in place of the material's; the other keeps that.
+  // The reinforcement replaces the material of one line; the other keeps it.
   const SpringsScene string =
       read_text(with_file, with("{where=\"x>0.5\",axial_stiffness=9,line_density=0.1}"), rope);
   EXPECT_EQ(string.mesh.lines.size(), 2U);
@@ -215,7 +215,7 @@ TEST(SpringsScene, ReinforcementsAreLinesOfTheirOwn) {
   EXPECT_TRUE(holds(wrong("{where=\"1\",axial_stiffness=1,stiffness=1}"), "axial_stiffness"));
 }
 
-TEST(SpringsScene, ClosedFormsKnowWhichReinforcementTheyBear) {
+TEST(SpringsScene, ClosedFormsRefuseUnsupportedReinforcements) {
   const std::string sheet = "app = \"springs\"\n[mesh]\nrectangle = { vertices = 9 }\n[time]\nend_time = 1\n";
   const auto young = [&](const std::string& where) {
     return error_of({"reinforcement=[{where=\"" + where + "\",axial_stiffness=1}]", "verify.young=1e-9",
@@ -230,12 +230,12 @@ TEST(SpringsScene, ClosedFormsKnowWhichReinforcementTheyBear) {
                     "without reinforcement"));
 }
 
-TEST(SpringsScene, ModelOneIsRefusedWhereItMoves) {
+TEST(SpringsScene, RefusesTheLinearVectorModelWithMotion) {
   EXPECT_TRUE(holds(error_of({"material.model=linear-vector"}), "rigid rotation"));
   EXPECT_EQ(error_of({"material.model=linear-vector", "time.end_time=0"}), "");
 }
 
-TEST(SpringsScene, PinsHoldSomethingInOneWay) {
+TEST(SpringsScene, RefusesEmptyAndConflictingPins) {
   const auto pins = [](const std::string& list) { return std::vector<std::string>{"pin=[" + list + "]"}; };
   EXPECT_EQ(error_of(pins("{where=\"x>0.9\"},{where=\"y>0.3\"}")), "");
   EXPECT_EQ(error_of(pins("{where=\"x>0.9\",axes=\"x\",motion={x=\"t\"}},{where=\"x>0.9\",axes=\"yz\"}")),
@@ -248,7 +248,7 @@ TEST(SpringsScene, PinsHoldSomethingInOneWay) {
   EXPECT_TRUE(holds(error_of(pins("{where=\"t\"}")), "unknown name \"t\""));
 }
 
-TEST(SpringsScene, LoadsAreOfOneKind) {
+TEST(SpringsScene, RequiresOneKindPerLoad) {
   const auto loads = [](const std::string& list) { return std::vector<std::string>{"load=[" + list + "]"}; };
   EXPECT_EQ(error_of(loads("{gravity=[0,0,-9.81]},{pressure=\"100*x\"},{force={z=\"1\"},where=\"x>0.5\"}")),
             "");
@@ -260,14 +260,14 @@ TEST(SpringsScene, LoadsAreOfOneKind) {
   EXPECT_TRUE(holds(error_of(loads("{force={}}")), "needs one of x, y, z"));
 }
 
-TEST(SpringsScene, PressureNeedsASide) {
+TEST(SpringsScene, PressureRequiresTriangles) {
   const std::string two = triangle + "v 1 1 0\n", along = two + "f 2 4 3\n", against = two + "f 2 3 4\n";
   EXPECT_EQ(error_of({"load=[{pressure=1}]"}, with_file, along), "");
   EXPECT_EQ(error_of({"load=[{gravity=[0,0,1]}]"}, with_file, against), "");
   EXPECT_TRUE(holds(error_of({"load=[{follower_pressure=1}]"}, with_file, against), "faces 0 and 1"));
 }
 
-TEST(SpringsScene, BendingNeedsCloth) {
+TEST(SpringsScene, BendingRequiresTriangles) {
   const std::vector<std::string> sets = {"material.bending_stiffness=1e-3"};
   EXPECT_EQ(error_of(sets), "");
   EXPECT_EQ(error_of(sets, with_file, "v 0 0 0\nv 1 0 1\nv 0 1 0\nv 1 1 1\nf 1 2 3\nf 2 3 4\n"), "")
@@ -276,7 +276,7 @@ TEST(SpringsScene, BendingNeedsCloth) {
   EXPECT_TRUE(holds(error_of(sets, with_file, rope), "with triangles"));
 }
 
-TEST(SpringsScene, OutputIsCompletedAndChecked) {
+TEST(SpringsScene, CompletesAndChecksOutput) {
   EXPECT_EQ(read_text(least, {"output.fields=[\"velocity\"]"}).output.times, std::vector<double>{1.0});
   EXPECT_EQ(read_text(least, {"output.times=[0.5]"}).output.fields, std::vector<std::string>{"position"});
   EXPECT_TRUE(holds(error_of({"output.times=[2]"}), "later than time.end_time = 1"));
@@ -287,7 +287,7 @@ TEST(SpringsScene, OutputIsCompletedAndChecked) {
   EXPECT_TRUE(holds(error_of({"time.dt=1e-300"}), "more than 1e15 steps"));
 }
 
-TEST(SpringsScene, ChecksNeedWhatTheyCheck) {
+TEST(SpringsScene, RefusesChecksWithoutTheirQuantity) {
   EXPECT_TRUE(holds(error_of({"verify.young=1e-5"}), "mesh.strip"));
   EXPECT_TRUE(holds(error_of({"verify.hencky=1e-5"}), "a constant pressure"));
   EXPECT_TRUE(holds(error_of({"verify.catenary=1e-5"}), "mesh.string"));
@@ -301,7 +301,7 @@ TEST(SpringsScene, ChecksNeedWhatTheyCheck) {
   EXPECT_TRUE(holds(error_of({"verify.frequency={mode=[0.5,1],tolerance=1}", probe}), "integers"));
 }
 
-TEST(SpringsSceneDocument, IsWhatTheDeclarationsGive) {
+TEST(SpringsSceneDocument, MatchesTheDeclarations) {
   const std::filesystem::path page = source / "docs/scenes-springs.md";
   if (std::getenv("DROGUE_UPDATE_DOCS") != nullptr) std::ofstream(page) << document_springs_scene();
   std::ostringstream written;

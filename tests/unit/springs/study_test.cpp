@@ -25,7 +25,7 @@ std::string refusal(const std::string& scene, const std::string& lists) {
   return "";
 }
 
-TEST(SpringsStudy, LengthAndAreaAreThoseOfTheMesh) {
+TEST(SpringsStudy, ComputesLengthAndAreaOfAMesh) {
   const fabric::Mesh disk = generate(mesh::Disk{0.4, 3169});
   EXPECT_NEAR(total_area(disk, disk.rest), std::numbers::pi * 0.16, 1e-3 * 0.16);
   EXPECT_EQ(total_length(disk, disk.rest), 0.0);
@@ -36,13 +36,13 @@ TEST(SpringsStudy, LengthAndAreaAreThoseOfTheMesh) {
   EXPECT_NEAR(total_area(disk, doubled), 4.0 * total_area(disk, disk.rest), 1e-14);
 }
 
-TEST(SpringsStudy, DifferencesAreMeansOverTime) {
+TEST(SpringsStudy, AveragesDifferencesOverTime) {
   // 2 over a first part that is three times as long as the second, where it falls to 0.
   EXPECT_DOUBLE_EQ(mean_difference({0.0, 3.0, 4.0}, {1.0, 1.0, 5.0}, {3.0, 3.0, 5.0}), (6.0 + 1.0) / 4.0);
   EXPECT_DOUBLE_EQ(mean_difference({7.0}, {1.0}, {1.5}), 0.5);
 }
 
-TEST(SpringsStudy, PointsAreTheProductAndEachMeshOnce) {
+TEST(SpringsStudy, PointsAreTheProductWithoutRepeatedMeshes) {
   const auto points =
       study_points(scenes / "drum-cone.toml", {}, "meshes=217:61:62,masses=equal:area,integrators=verlet");
   ASSERT_EQ(points.size(), 4U);
@@ -54,12 +54,12 @@ TEST(SpringsStudy, PointsAreTheProductAndEachMeshOnce) {
   }
 }
 
-TEST(SpringsStudy, TwoMeshesGoUp) {
+TEST(SpringsStudy, TwoMeshesMakeADoublingSequence) {
   EXPECT_EQ(study_points(scenes / "drum-cone.toml", {}, "meshes=61:217").size(), 3U);
   EXPECT_NE(refusal("drum-cone", "meshes=217:61").find("meshes=61:217"), std::string::npos);
 }
 
-TEST(SpringsStudy, SpringsAlongEdgesAreTheMembraneOfEquilateralTriangles) {
+TEST(SpringsStudy, EdgeSpringsHaveTheStiffnessOfEquilateralTriangles) {
   const auto from_membrane =
       study_points(scenes / "drum-cone.toml", {}, "models=edge:quadratic,masses=equal");
   EXPECT_NEAR(*from_membrane[0].scene.fabric.stiffness, 1000.0, 1e-2);
@@ -74,14 +74,14 @@ TEST(SpringsStudy, SpringsAlongEdgesAreTheMembraneOfEquilateralTriangles) {
   EXPECT_TRUE(from_edges[0].scene.fabric.material.tension_only);
 }
 
-TEST(SpringsStudy, AStringKeepsItsAxialStiffness) {
+TEST(SpringsStudy, StringsKeepTheirAxialStiffnessOnEveryMesh) {
   for (const StudyPoint& point : study_points(scenes / "swing-chord.toml", {}, "meshes=60:498")) {
     EXPECT_NEAR(point.scene.fabric.material.axial_stiffness, 5000.0 * std::hypot(0.3, 0.5) / 59.0, 1e-10);
     EXPECT_EQ(point.model, "string");
   }
 }
 
-TEST(SpringsStudy, StringsBesideClothAreThoseOfTheSceneInEveryModel) {
+TEST(SpringsStudy, StringsBesideClothKeepTheirStiffnessInEveryModel) {
   const std::filesystem::path folder =
       std::filesystem::temp_directory_path() / ("drogue-study-" + std::to_string(::getpid()));
   std::filesystem::create_directory(folder);
@@ -109,7 +109,7 @@ TEST(SpringsStudy, StringsBesideClothAreThoseOfTheSceneInEveryModel) {
   std::filesystem::remove_all(folder);
 }
 
-TEST(SpringsStudy, WrongAxes) {
+TEST(SpringsStudy, RefusesInvalidAxes) {
   EXPECT_NE(refusal("drum", "meshes=1").find("no number of vertices between 2 and 2^24"), std::string::npos);
   EXPECT_NE(refusal("drum", "models=linear-vector").find("edge, quadratic, biquadratic"), std::string::npos);
   EXPECT_NE(refusal("drum", "schemes=js").find("meshes, models, masses, integrators"), std::string::npos);

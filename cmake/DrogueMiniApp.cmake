@@ -1,0 +1,19 @@
+# drogue_add_mini_app(<name>): the scene-driven program drogue-<name> from the sources of the current folder. Everything but
+# main.cpp becomes the library drogue_<name>_app, which tests link. scenes/ is installed beside the program.
+function(drogue_add_mini_app name)
+  file(GLOB _sources CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/*.cpp")
+  list(REMOVE_ITEM _sources "${CMAKE_CURRENT_SOURCE_DIR}/main.cpp")
+  set(_library drogue_${name}_app)
+  add_library(${_library} STATIC ${_sources})
+  drogue_optimise_little(${_library})
+  target_link_libraries(${_library} PUBLIC drogue_framework drogue_reference)
+  # Folder of the shipped scenes for a program that is neither installed nor bundled.
+  string(TOUPPER "${name}" _upper)
+  target_compile_definitions(${_library} PRIVATE DROGUE_${_upper}_SCENES="${CMAKE_CURRENT_SOURCE_DIR}/scenes")
+
+  add_executable(drogue-${name} main.cpp)
+  target_link_libraries(drogue-${name} PRIVATE ${_library})
+  install(TARGETS drogue-${name} RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}")
+  install(DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}/scenes/"
+    DESTINATION "${CMAKE_INSTALL_DATADIR}/drogue/scenes/${name}" FILES_MATCHING PATTERN "*.toml")
+endfunction()

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <functional>
+#include <list>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+namespace drogue {
+
+/// Communicator of all processes that a launcher started as one program. MPI is initialized for the life of
+/// the object if there are several; a single process starts nothing.
+///
+/// Blocking functions sleep between two polls, so that a waiting rank takes no core from a computing one. One
+/// thread at a time may call the functions.
+class Communicator {
+ public:
+  /// Collective. Throws `Failure` (usage) if the launcher does not belong to the MPI of this build.
+  Communicator();
+  ~Communicator();
+  Communicator(const Communicator&) = delete;
+  Communicator& operator=(const Communicator&) = delete;
+
+  [[nodiscard]] int rank() const { return _rank; }
+  [[nodiscard]] int size() const { return _size; }
+  [[nodiscard]] bool is_root() const { return _rank == 0; }
+  /// Number of ranks on the host of this rank, including itself.
+  [[nodiscard]] int ranks_on_host() const { return _ranks_on_host; }
+
+  /// Sends a message. Asynchronous.
+  void send(int to, int tag, std::string bytes);
+
+  /// Blocks until all sent messages have left this rank.
+  void wait_until_sent();
+
+  /// Next message of that rank and tag, if it has arrived completely. Does not block.
+  [[nodiscard]] std::optional<std::string> receive(int from, int tag);
+
+  /// True if a message of that rank and tag has begun to arrive. Does not block.
+  [[nodiscard]] bool has_message(int from, int tag);
+
+  /// Returns the bytes of rank 0 on every rank. Collective and blocking.
+  [[nodiscard]] std::string broadcast(std::string bytes);
+
+  /// Runs `action` on every rank. Collective; blocks until all ranks are done. If it throws on some ranks,
+  /// all ranks throw the `Failure` of the lowest one, so that no rank waits for one that has given up.
+  void run_collectively(const std::function<void()>& action);
+
+ private:
+  struct Transfer;
+  void release_sent();
+
+  int _rank = 0;
+  int _size = 1;
+  int _ranks_on_host = 1;
+  std::list<std::unique_ptr<Transfer>> _sends;
+  std::map<std::pair<int, int>, std::unique_ptr<Transfer>> _receives;  ///< by rank and tag
+};
+
+/// Sleeps for a time that doubles with every call since `reset`, from 20 us to 1 ms.
+class Backoff {
+ public:
+  void wait();
+  void reset() { _microseconds = least; }
+
+ private:
+  static constexpr int least = 20, most = 1000;
+  int _microseconds = least;
+};
+
+}  // namespace drogue

@@ -1,0 +1,39 @@
+#pragma once
+
+#include "kernels/device/pack.hpp"
+
+namespace drogue::gas {
+
+/// State of one cell from the conserved variables (rho, m = rho u, E), SI units.
+template <class R>
+struct CellState {
+  R rho, m, energy;
+  R u, p, enthalpy, c;  ///< velocity, pressure, total specific enthalpy H, sound speed
+};
+
+/// Pressure p = (gamma - 1) (E - m u / 2). Every admissibility check uses this order of operations.
+template <class R, class S>
+KOKKOS_INLINE_FUNCTION R pressure(S gamma, R m, R energy, R u) {
+  return (gamma - S(1)) * (energy - S(0.5) * (m * u));
+}
+
+template <class R, class S>
+KOKKOS_INLINE_FUNCTION CellState<R> cell_state(S gamma, R rho, R m, R energy) {
+  const R inverse = device::reciprocal(rho);
+  const R u = m * inverse;
+  const R p = pressure(gamma, m, energy, u);
+  return {rho, m, energy, u, p, (energy + p) * inverse, device::root(gamma * (p * inverse)).value};
+}
+
+/// Magnitudes of the eigenvalues per characteristic field: |u - c|, |u|, |u + c|, m/s.
+template <class R>
+struct WaveSpeeds {
+  R slow, entropy, fast;
+};
+
+template <class R>
+KOKKOS_INLINE_FUNCTION WaveSpeeds<R> wave_speeds(R u, R c) {
+  return {device::absolute(u - c), device::absolute(u), device::absolute(u + c)};
+}
+
+}  // namespace drogue::gas

@@ -1,0 +1,55 @@
+#include "miniapps/framework/mini_app.hpp"
+
+#include <iostream>
+
+#include "common/program/mpi_guard.hpp"
+#include "common/program/program.hpp"
+#include "common/program/provenance.hpp"
+#include "common/program/signals.hpp"
+#include "common/scene/library.hpp"
+#include "miniapps/framework/scene_run.hpp"
+
+namespace drogue::framework {
+
+std::filesystem::path find_scene_folder(const std::string& name, const std::filesystem::path& source_folder) {
+  std::error_code error;
+  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", error);
+  std::filesystem::path installed = program.parent_path().parent_path() / "share/drogue/scenes" / name;
+  if (!error && std::filesystem::is_directory(installed, error)) return installed;
+  return source_folder;
+}
+
+ExitCode run_command(const MiniApp& app, const MiniAppOptions& options) {
+  if (!options.help.empty()) {
+    std::cout << options.help;
+    return ExitCode::ok;
+  }
+  if (options.version) {
+    std::cout << version_text(app.program());
+    return ExitCode::ok;
+  }
+  const std::filesystem::path folder = find_scene_folder(app.name, app.scene_folder);
+  if (options.list_scenes) {
+    std::cout << scene::list_text(scene::list_scenes(folder));
+    return ExitCode::ok;
+  }
+  require_one_rank(app.program());
+  const std::filesystem::path file = scene::find_scene(options.scene, folder);
+  if (options.check || options.print_scene) {
+    const std::unique_ptr<Scene> scene = app.read(file, options.set, options.baseline);
+    std::cout << (options.print_scene ? scene->print() : scene->check_report());
+    return ExitCode::ok;
+  }
+  install_signal_handlers();
+  if (options.study.empty()) return run_scene(app, options, file);
+  if (!app.study) throw Failure(ExitCode::usage, app.program() + " has no --study");
+  return app.study(options, file);
+}
+
+int run_mini_app(const MiniApp& app, int argc, char** argv) {
+  return run_program(app.program(), [&] {
+    return run_command(app, parse_mini_app_options(app.program(), app.description, argc, argv));
+  });
+}
+
+}  // namespace drogue::framework

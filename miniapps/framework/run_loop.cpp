@@ -1,0 +1,126 @@
+#include "miniapps/framework/run_loop.hpp"
+
+#include <optional>
+
+#include "common/program/progress.hpp"
+#include "common/program/signals.hpp"
+#include "kernels/device/profiling_counters.hpp"
+
+namespace drogue::framework {
+namespace {
+
+/// One pass from the current state to the end.
+class RunLoop {
+ public:
+  RunLoop(Simulation& simulation, const RunRequest& request, run::ResultDocument& result)
+      : _simulation(simulation),
+        _request(request),
+        _result(result),
+        _wanted(simulation.output()),
+        _end(simulation.end_time().time),
+        _now(simulation.now()),
+        _progress(request.quiet) {}
+
+  /// However the run ends, the result shows how far it came.
+  ~RunLoop() {
+    const TimeState now = _simulation.now();
+    _result.steps = now.step;
+    _result.time = now.time;
+    _simulation.describe(_result);
+    if (_output) _result.timing.io_s = _output->waited();
+    _result.describe_ledger(device::profiling_counters());
+  }
+  RunLoop(const RunLoop&) = delete;
+  RunLoop& operator=(const RunLoop&) = delete;
+
+  ExitCode run() {
+    open_files();
+    while (_now.time < _end && !ended()) take_interval();
+    _progress.finish();
+    return close_files();
+  }
+
+ private:
+  [[nodiscard]] bool ended() const { return _stop == Stop::interrupted || _stop == Stop::failed; }
+
+  void open_files() {
+    if (_request.files.directory != nullptr) _output.emplace(_simulation, _request.files);
+    if (_output && _output->lacks_row(_now.time)) _output->write_row(_simulation.row());
+    if (_request.files.restart.empty() && is_output_time(_wanted, _now.time)) reach_output();
+  }
+
+  void reach_output() {
+    if (_output) _output->write_fields();
+    if (_request.at_output) _request.at_output();
+  }
+
+  /// The first step allocates memory that all steps use, so the run pauses after it.
+  [[nodiscard]] AdvanceLimits next_limits() const {
+    AdvanceLimits limits;
+    limits.target_time = next_stop(_wanted, _now.time, _end);
+    if (_output && _wanted.restart_every > 0)
+      limits.pause_step = (_now.step / _wanted.restart_every + 1) * _wanted.restart_every;
+    if (!_warm) limits.pause_step = _now.step + 1;
+    if (_output) limits.row_every = _wanted.history_every;
+    return limits;
+  }
+
+  void take_interval() {
+    const AdvanceLimits limits = next_limits();
+    const RowSink rows = [this](const HistoryRow& row) { _output->write_row(row); };
+    const Poll poll = [this](const TimeState& now) {
+      _progress.update(now.step, now.time, _end);
+      return !interrupted();
+    };
+    _stop = _simulation.advance(limits, rows, poll);
+    if (!_warm) device::end_warmup();
+    _warm = true;
+    _now = _simulation.now();
+    if (_now.time == limits.target_time && is_output_time(_wanted, _now.time)) reach_output();
+    const bool can_continue = _stop != Stop::target || _simulation.plan_next_interval();
+    if (_output && _wanted.restart_every > 0 && _now.step % _wanted.restart_every == 0 && !ended())
+      _output->write_restart();
+    if (!can_continue) _stop = Stop::failed;
+  }
+
+  ExitCode close_files() {
+    const bool complete = !(_now.time < _end);
+    // An interrupted run is continued, and must then have the rows of a run without interruption.
+    if (complete && _stop != Stop::interrupted && _output && _output->lacks_row(_now.time))
+      _output->write_row(_simulation.row());
+    const bool restart_written =
+        _output && _request.keeps_restart && ((ended() && !complete) || _stop == Stop::interrupted);
+    if (restart_written) _output->write_restart();
+    if (_output) _output->finish();
+    if (_stop == Stop::failed)
+      throw Failure(ExitCode::numerical_failure, _simulation.failure_text(restart_written));
+    return _stop == Stop::interrupted ? ExitCode::interrupted : ExitCode::ok;
+  }
+
+  Simulation& _simulation;
+  const RunRequest& _request;
+  run::ResultDocument& _result;
+  const OutputRequest& _wanted;
+  const double _end;
+  TimeState _now;
+  ProgressLine _progress;
+  std::optional<RunOutput> _output;
+  Stop _stop = Stop::target;
+  bool _warm = false;
+};
+
+}  // namespace
+
+void set_up(Simulation& simulation, const RunFiles& files) {
+  if (files.restart.empty()) return simulation.start();
+  const run::RestartReader reader(files.restart, files.fingerprint);
+  simulation.restore(reader);
+  const EndTime end = simulation.end_time();
+  run::require_not_after(files.restart, simulation.now().time, end.key, end.time);
+}
+
+ExitCode run_to_end(Simulation& simulation, const RunRequest& request, run::ResultDocument& result) {
+  return RunLoop(simulation, request, result).run();
+}
+
+}  // namespace drogue::framework

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <functional>
+
+#include "miniapps/framework/run_output.hpp"
+
+namespace drogue::framework {
+
+/// Settings of a run to the end.
+struct RunRequest {
+  RunFiles files;
+  bool quiet = false;
+  bool keeps_restart = true;  ///< a run that ends before its time leaves restart.h5
+  /// Called at every output time, also if no fields are written; may be empty.
+  std::function<void()> at_output;
+};
+
+/// Sets the initial state, or the state of `files.restart`. Throws `Failure` (io_error) for a restart file
+/// that is damaged, belongs to another scene, or is later than the end of the run.
+void set_up(Simulation& simulation, const RunFiles& files);
+
+/// Runs `simulation` to its end, writes the files of the run, and fills in `result`, also if it throws.
+/// Returns `interrupted` after a signal, with the restart file written; otherwise `ok`. Throws `Failure`:
+/// numerical_failure once the last good state is on disk, io_error.
+ExitCode run_to_end(Simulation& simulation, const RunRequest& request, run::ResultDocument& result);
+
+}  // namespace drogue::framework

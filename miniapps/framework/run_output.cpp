@@ -1,0 +1,87 @@
+#include "miniapps/framework/run_output.hpp"
+
+#include <fstream>
+#include <utility>
+
+#include "common/program/stopwatch.hpp"
+#include "common/run/io_error.hpp"
+
+namespace drogue::framework {
+namespace {
+
+/// Copies the history.csv beside the restart.h5 of another directory to `file`, so that a run that continues
+/// elsewhere has the history of the whole. A history with other columns, or beside a restart file of another
+/// name, may belong to another run and stays.
+void copy_history(const std::filesystem::path& restart, const std::vector<run::Column>& columns,
+                  const std::filesystem::path& file) {
+  if (restart.filename() != "restart.h5" || std::filesystem::exists(file)) return;
+  const std::filesystem::path before = restart.parent_path() / "history.csv";
+  std::string line;
+  if (!std::getline(std::ifstream(before), line) || line + "\n" != run::history_header(columns)) return;
+  std::error_code error;
+  std::filesystem::copy_file(before, file, error);
+  if (error) throw run::io_failure("write", file, error.value());
+}
+
+}  // namespace
+
+void write_restart_file(const std::filesystem::path& file, const std::string& fingerprint,
+                        Simulation& simulation) {
+  run::RestartWriter writer(file, fingerprint);
+  simulation.write_restart(writer);
+  writer.commit();
+}
+
+RunOutput::RunOutput(Simulation& simulation, const RunFiles& files)
+    : _simulation(simulation),
+      _restart_file(files.directory->file("restart.h5")),
+      _fingerprint(files.fingerprint),
+      _writer(simulation.snapshot_buffers()) {
+  std::optional<double> resume_time;
+  if (!files.restart.empty()) resume_time = simulation.now().time;
+  if (simulation.output().history_every > 0) {
+    const std::filesystem::path file = files.directory->file("history.csv");
+    const std::vector<run::Column> columns = simulation.history_columns();
+    if (resume_time) copy_history(files.restart, columns, file);
+    _history.emplace(file, columns, resume_time);
+    if (_history->continues()) _last_row_time = *resume_time;
+  }
+  if (simulation.output().fields.empty()) return;
+  _fields.emplace(files.directory->path(), files.title, simulation.field_specs(), resume_time);
+  simulation.write_mesh(*_fields);
+}
+
+void RunOutput::write_row(const HistoryRow& row) {
+  if (!lacks_row(row.time)) return;
+  _last_row_time = row.time;
+  _history->append(row.time, row.values);
+}
+
+void RunOutput::write_fields() {
+  if (!_fields) return;
+  const TimeState now = _simulation.now();
+  {
+    const ScopedStopwatch stopwatch(_waited);
+    _writer.wait_for_slot();
+  }
+  _writer.submit([this, now, write = _simulation.snapshot()] {
+    _fields->begin_step(now.time, now.step);
+    write(*_fields);
+    _fields->end_step();
+  });
+}
+
+void RunOutput::write_restart() {
+  const ScopedStopwatch stopwatch(_waited);
+  _writer.finish();
+  if (_history) _history->flush();  // a restart must find every row before it
+  write_restart_file(_restart_file, _fingerprint, _simulation);
+}
+
+void RunOutput::finish() {
+  const ScopedStopwatch stopwatch(_waited);
+  _writer.finish();
+  if (_history) _history->finish();
+}
+
+}  // namespace drogue::framework

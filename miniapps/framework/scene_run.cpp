@@ -1,0 +1,151 @@
+#include "miniapps/framework/scene_run.hpp"
+
+#include <cstdio>
+#include <system_error>
+
+#include "common/program/program.hpp"
+#include "common/program/stopwatch.hpp"
+#include "miniapps/framework/device_session.hpp"
+#include "miniapps/framework/run_loop.hpp"
+
+namespace drogue::framework {
+namespace {
+
+/// False for an empty directory and for a directory whose only run never began.
+bool holds_results(const std::filesystem::path& directory) {
+  for (const std::string& name : run::run_file_names())
+    if (std::error_code ignored; name != "result.json" && std::filesystem::exists(directory / name, ignored))
+      return true;
+  return false;
+}
+
+run::ExistingRun existing_run(const MiniAppOptions& options, bool is_empty,
+                              const std::filesystem::path& restart) {
+  if (options.overwrite) return run::ExistingRun::overwrite;
+  if (!restart.empty()) return run::ExistingRun::resume;
+  if (options.restart == "auto") return run::ExistingRun::overwrite;
+  return is_empty ? run::ExistingRun::overwrite : run::ExistingRun::refuse;
+}
+
+/// One run of a scene in its directory.
+class SceneRun {
+ public:
+  SceneRun(const MiniApp& app, const MiniAppOptions& options, const std::filesystem::path& file)
+      : _app(app),
+        _options(options),
+        _file(file),
+        _out(options.out.empty() ? std::filesystem::path("out") / file.stem() : options.out),
+        _restart(options.restart.empty() ? std::filesystem::path()
+                                         : run::restart_source(options.restart, _out)),
+        _is_empty(!holds_results(_out)),
+        _directory(_out, existing_run(options, _is_empty, _restart)),
+        _result(run::new_result(app.program(), file.stem().string())) {
+    _result.metrics = app.metrics;
+  }
+
+  ExitCode run() {
+    try {
+      execute();
+    } catch (...) {
+      const Failure failure = current_failure();
+      record(failure);
+      throw failure;
+    }
+    if (_result.exit_code == ExitCode::interrupted)
+      _result.message = "interrupted by a signal; restart.h5 is written";
+    write_result();
+    if (!_options.quiet) print_summary();
+    return _result.exit_code;
+  }
+
+ private:
+  /// The run itself. Sets the exit code, `ok` or `interrupted`.
+  void execute() {
+    const std::unique_ptr<Scene> scene = _app.read(_file, _options.set, _options.baseline);
+    const device::Backend backend = choose_backend(_options.backend);
+    const RunFiles files{&_directory, _result.scene, scene->fingerprint(), _restart};
+    if (!_is_empty && !_options.restart.empty() && !_options.overwrite) require_same_scene(files.fingerprint);
+    const DeviceSession session(backend, _options.kokkos);
+    session.describe(_result);
+    _result.precision = scene->precision();
+    const Stopwatch setup;
+    const std::unique_ptr<Simulation> simulation =
+        scene->create({backend, _options.baseline, _options.quiet});
+    set_up(*simulation, files);
+    _result.timing.setup_s = setup.seconds();
+    _directory.begin();
+    _directory.write_scene(scene->print());
+    _result.exit_code = run_to_end(*simulation, {files, _options.quiet, true, {}}, _result);
+    if (_result.exit_code != ExitCode::ok) return;
+    _result.exit_code = simulation->verify(&_directory, _result);
+    if (_result.exit_code == ExitCode::interrupted)
+      write_restart_file(_directory.file("restart.h5"), files.fingerprint, *simulation);
+    if (const std::string failed = _result.failed_check(); !failed.empty())
+      throw Failure(ExitCode::verification_failed, failed);
+  }
+
+  /// In a directory that holds results, `--restart auto` without a restart file starts anew and the restart
+  /// file of another directory is continued, but only if both belong to the same scene.
+  void require_same_scene(const std::string& fingerprint) const {
+    const std::filesystem::path from = _restart.has_parent_path() ? _restart.parent_path() : ".";
+    if (std::error_code ignored; !_restart.empty() && std::filesystem::equivalent(from, _out, ignored))
+      return;
+    bool same = false;
+    try {
+      same = _app.read(_out / "scene.toml", {}, false)->fingerprint() == fingerprint;
+    } catch (const Failure&) {
+      // No scene, or none of this program; or it lacks a file that lies beside the original.
+    }
+    if (!same)
+      throw Failure(ExitCode::usage, "'" + _out.string() + "' holds a run of another scene" +
+                                         (_restart.empty() ? " and no restart file; choose another --out, or "
+                                                             "give --overwrite to replace it"
+                                                           : "; choose another --out"));
+  }
+
+  /// Writes how the run failed. An error in the scene or the command line leaves the files of a former run
+  /// untouched; a restart file that was refused is reported.
+  void record(const Failure& failure) {
+    _result.exit_code = failure.code();
+    _result.message = failure.what();
+    const bool refused_restart = !_restart.empty() && failure.code() == ExitCode::io_error;
+    try {
+      if (_is_empty || _directory.begun() || refused_restart) write_result();
+    } catch (const Failure& second) {
+      throw Failure(failure.code(), std::string(failure.what()) + "; and " + second.what());
+    }
+    if (failure.code() == ExitCode::verification_failed && !_options.quiet) print_summary();
+  }
+
+  void write_result() {
+    _result.timing.wall_s = _stopwatch.seconds();
+    run::write_result(_directory.file("result.json"), _result);
+  }
+
+  void print_summary() const {
+    std::printf("%s on %s: %lld steps to t = %g s in %.3g s%s\n", _result.scene.c_str(),
+                _result.backend.c_str(), static_cast<long long>(_result.steps), _result.time,
+                _result.timing.wall_s, _app.summary ? _app.summary(_result).c_str() : "");
+    for (const run::Check& check : _result.checks)
+      std::printf("  %-16s %.4g  (tolerance %.4g)  %s\n", check.name.c_str(), check.value, check.tolerance,
+                  check.passed ? "passed" : "FAILED");
+    std::printf("files in %s\n", _out.string().c_str());
+  }
+
+  const MiniApp& _app;
+  const MiniAppOptions& _options;
+  const std::filesystem::path& _file;
+  const Stopwatch _stopwatch;
+  const std::filesystem::path _out, _restart;
+  const bool _is_empty;
+  run::RunDirectory _directory;
+  run::ResultDocument _result;
+};
+
+}  // namespace
+
+ExitCode run_scene(const MiniApp& app, const MiniAppOptions& options, const std::filesystem::path& file) {
+  return SceneRun(app, options, file).run();
+}
+
+}  // namespace drogue::framework

@@ -1,0 +1,139 @@
+"""The tree keeps the rules of writing, and each rule is shown to catch a breach. One test per rule."""
+
+import os
+import unittest
+
+import layers
+import repeats
+import writing
+
+ROOT = layers.repository(os.environ)
+TEXTS = {path: text for path, text in writing.read_tree(
+    ROOT, ("common", "kernels", "miniapps", "perf", "tests", "scripts", "docs", "cmake", "README.md", "CONTRIBUTING.md",
+           "CHANGELOG.md")).items() if path not in writing.OWN}
+
+
+class Repository(unittest.TestCase):
+    maxDiff = None
+
+    def breaches(self, rule, select):
+        return [line for path, text in TEXTS.items() if select(path) for line in rule(path, text)]
+
+    def test_sources_are_found(self):
+        for folder in ("common/", "kernels/", "miniapps/", "perf/", "tests/", "scripts/", "docs/"):
+            self.assertTrue(any(path.startswith(folder) for path in TEXTS), folder)
+
+    def test_doc_comments_open_with_a_noun_or_a_verb(self):
+        self.assertEqual([], self.breaches(writing.refused_openings, REWRITTEN))
+
+    def test_prose_wraps(self):
+        self.assertEqual([], self.breaches(writing.wide_lines, lambda path: path.endswith(".md") and REWRITTEN(path)))
+
+    def test_no_replaced_name_is_left(self):
+        self.assertEqual([], self.breaches(writing.replaced_names, REWRITTEN))
+
+    def test_public_headers_state_units_and_errors(self):
+        public = set(writing.public_headers(TEXTS))
+        self.assertGreater(len(public), 10)
+        self.assertEqual([], self.breaches(writing.missing_contracts, lambda path: path in public and REWRITTEN(path)))
+
+    def test_mini_apps_share_the_framework(self):
+        found = repeats.repeated_lines({path: text for path, text in TEXTS.items() if REWRITTEN(path)})
+        self.assertEqual([], found)
+
+
+def REWRITTEN(path):
+    """Whether the rules hold for a file: the parts of the tree that are rewritten."""
+    return path.startswith(("tests/layering/", "tests/readme/")) or path == "CONTRIBUTING.md"
+
+
+class EachRuleCatchesItsBreach(unittest.TestCase):
+    def test_openings_of_code(self):
+        for opening in ("What is slack", "Of what has none", "That which is", "Those of a put", "The same of a vertex"):
+            for text in (f"/// {opening}.\nint f();\n", f"/** {opening}. */\nint f();\n", f"int a;  ///< {opening}\n"):
+                self.assertEqual(1, len(writing.refused_openings("kernels/a.hpp", text)), text)
+        good = "/// Position of a vertex, m.\n/// What follows is the second line of it.\nint f();\n// What is no doc comment.\n"
+        self.assertEqual([], writing.refused_openings("kernels/a.hpp", good))
+        self.assertEqual([], writing.refused_openings("kernels/a.hpp", "/// Whatever works, offset by one.\n"))
+
+    def test_openings_of_python(self):
+        self.assertEqual(1, len(writing.refused_openings("a.py", 'def f():\n    """What it is."""\n')))
+        self.assertEqual([], writing.refused_openings("a.py", 'def f():\n    """Return the sum."""\n    return "What"\n'))
+
+    def test_riddles_are_warnings(self):
+        self.assertIn("warning", writing.suspect_openings("a.hpp", "/// Whether it is so.\n")[0])
+
+    def test_widths(self):
+        wide = "word " * 25
+        self.assertEqual(1, len(writing.wide_lines("a.md", wide)))
+        for allowed in ("| " + wide + "|", "```\n" + wide + "\n```", "![a picture](" + 130 * "x" + ")",
+                        "[name]: https://" + 130 * "x", "word " * 24):
+            self.assertEqual([], writing.wide_lines("a.md", allowed), allowed)
+
+    def test_replaced_names(self):
+        for path, text in (
+            ("kernels/gas/a.hpp", "struct Judgement {};\n"),
+            ("kernels/gas/a.hpp", "// returns a `Judgement`\n"),
+            ("scripts/a.py", "seed_mode = 1\n"),
+            ("docs/a.md", "`kernels/fabric`: `Cloth`\n"),
+            ("kernels/fabric/a.hpp", "void settle();\n"),
+            ("kernels/gas/solver_on.hpp", ""),
+        ):
+            self.assertEqual(1, len(writing.replaced_names(path, text)), text)
+        for path, text in (
+            ("kernels/gas/a.hpp", "// Judgement of Solomon\n"),
+            ("miniapps/a.cpp", 'say("Cloth and bar");\n'),
+            ("scripts/a.py", '", ".join(held)\n'),
+            ("docs/a.md", "Cloth, `--seed-mode`\n"),
+            ("kernels/gas/a.hpp", "int keep = place(held);\n"),
+            ("CHANGELOG.md", "`bar` is now `tolerance`\n"),
+        ):
+            self.assertEqual([], writing.replaced_names(path, text), text)
+
+    def test_public_headers(self):
+        texts = {
+            "kernels/gas/a.hpp": "", "kernels/gas/b.hpp": "", "kernels/gas/c.hpp": "", "kernels/reference/gas/d.hpp": "",
+            "miniapps/gas/a.cpp": '#include "kernels/gas/a.hpp"\n#include "kernels/reference/gas/d.hpp"\n',
+            "kernels/flow/b.hpp": '#include "kernels/gas/b.hpp"\n',
+            "kernels/gas/c.cpp": '#include "kernels/gas/c.hpp"\n',
+        }
+        self.assertEqual(["kernels/gas/a.hpp", "kernels/gas/b.hpp"], writing.public_headers(texts))
+
+    def contracts(self, text):
+        return writing.missing_contracts("kernels/gas/a.hpp", text)
+
+    def test_contracts_that_are_missing(self):
+        for text, word in (
+            ("double speed(double x);\n", "no doc comment"),
+            ("/// Speed of sound. Does not throw.\ndouble speed(double rho);\n", "no unit"),
+            ("/// Speed of sound, m/s.\ndouble speed(double rho);\n", "whether it throws"),
+            ("class Solver {\n public:\n  /// Number of steps.\n  virtual int steps() const = 0;\n};\n", "whether it throws"),
+            ("/// Applies f.\ntemplate <class F>\nvoid apply(const F& f) {\n  f();\n}\n", "whether it throws"),
+        ):
+            found = self.contracts("#pragma once\nnamespace drogue::gas {\n" + text + "}\n")
+            self.assertEqual(1, len(found), found)
+            self.assertIn(word, found[0])
+
+    def test_contracts_that_suffice(self):
+        for text in (
+            "/// Speed of sound, m/s. Does not throw.\ndouble speed(double rho);\n",
+            "/// Speed of sound, m/s.\nKOKKOS_INLINE_FUNCTION double speed(double rho) { return rho; }\n",
+            "/// Steps. Members do not throw.\nclass Solver {\n public:\n  /// Number of steps.\n  int steps() const;\n"
+            " private:\n  void hidden(double x);\n};\n",
+            "/// Reads and writes positions, m. Throws std::invalid_argument.\nvoid read(double* x);\nvoid write(double x);\n",
+            "struct Cell {\n  double rho = f(1.0);  ///< kg/m^3\n  ~Cell();\n  Cell() = default;\n};\n",
+            "/// Largest of both.\nconstexpr int largest(int a, int b) {\n  if (a < b) { return b; }\n  return a;\n}\n",
+        ):
+            self.assertEqual([], self.contracts("#pragma once\nnamespace drogue::gas {\n" + text + "}\n"), text)
+
+    def test_repeats(self):
+        lines = "".join(f"call({n});\n" for n in range(12))
+        changed = "\n// a comment\n".join(lines.split("\n"))
+        texts = {"miniapps/gas/a.cpp": lines, "miniapps/springs/b.cpp": "int a;\n" + changed}
+        self.assertEqual(1, len(repeats.repeated_lines(texts)))
+        self.assertEqual([], repeats.repeated_lines({"miniapps/gas/a.cpp": lines, "miniapps/gas/b.cpp": lines}))
+        self.assertEqual([], repeats.repeated_lines({**texts, "miniapps/springs/b.cpp": changed.replace("call(5)", "f()")}))
+
+
+if __name__ == "__main__":
+    unittest.main()

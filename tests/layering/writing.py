@@ -1,0 +1,423 @@
+"""Rules of writing: openings of doc comments, widths of prose, replaced names, and contracts of public headers."""
+
+import ast
+import io
+import re
+import sys
+import tokenize
+from pathlib import Path
+
+CODE = (".hpp", ".cpp", ".hpp.in", ".cpp.in", ".cuh", ".cu", ".h")
+SKIPPED_FOLDERS = {"build", ".git", "evidence", "node_modules", "__pycache__"}
+WIDTH = 120
+
+# ---------------------------------------------------------------------------------------------------- openings
+
+REFUSED_OPENING = re.compile(r"(?:What|Of|That|Those|The same)\b")
+SUSPECT_OPENING = re.compile(r"(?:Whether|How|Where|Why|Who|Which|Nothing|None)\b")
+
+
+def doc_comments_of_code(text):
+    """Pairs (line, words) of the doc comments of C++ source: `///` blocks, `///<` notes, and `/** */` comments."""
+    found, previous = [], None
+    lines = text.split("\n")
+    for number, line in enumerate(lines, 1):
+        note = re.search(r"///<\s?(.*)", line)
+        block = re.match(r"\s*///(?!<)\s?(.*)", line)
+        if note:
+            # A note that goes on in the next line continues there with another `///<` and nothing before it.
+            if previous == number - 1 and line.strip().startswith("///<"):
+                found[-1][1] += " " + note.group(1)
+            else:
+                found.append([number, note.group(1)])
+            previous = number
+        elif block:
+            if previous == number - 1:
+                found[-1][1] += " " + block.group(1)
+            else:
+                found.append([number, block.group(1)])
+            previous = number
+    for match in re.finditer(r"/\*\*(.*?)\*/", text, re.DOTALL):
+        found.append([text.count("\n", 0, match.start()) + 1, re.sub(r"\n\s*\*?", " ", match.group(1))])
+    return [(number, words.strip().removeprefix("@brief ").removeprefix("\\brief ")) for number, words in found]
+
+
+def doc_comments_of_python(text):
+    """Pairs (line, words) of the docstrings of a Python source."""
+    found = []
+    for node in ast.walk(ast.parse(text)):
+        if isinstance(node, (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)):
+            words = ast.get_docstring(node)
+            if words:
+                found.append((node.body[0].lineno, words.replace("\n", " ")))
+    return found
+
+
+def doc_comments(path, text):
+    if path.endswith(CODE):
+        return doc_comments_of_code(text)
+    return doc_comments_of_python(text) if path.endswith(".py") else []
+
+
+def refused_openings(path, text):
+    """Lines `path:line: ...` for doc comments that open with What, Of, That, Those or The same."""
+    return [f"{path}:{number}: opens with '{REFUSED_OPENING.match(words).group()}': {words[:70]}"
+            for number, words in doc_comments(path, text) if REFUSED_OPENING.match(words)]
+
+
+def suspect_openings(path, text):
+    """Warnings for doc comments whose first word often starts a riddle; fine before a plain statement."""
+    return [f"{path}:{number}: warning: opens with '{SUSPECT_OPENING.match(words).group()}': {words[:70]}"
+            for number, words in doc_comments(path, text) if SUSPECT_OPENING.match(words)]
+
+
+# ------------------------------------------------------------------------------------------------------- widths
+
+
+def wide_lines(path, text):
+    """Lines of Markdown prose wider than WIDTH; tables, code blocks, and lines of one link or image may be wider."""
+    found, fenced = [], False
+    for number, line in enumerate(text.split("\n"), 1):
+        if re.match(r"\s*(```|~~~)", line):
+            fenced = not fenced
+        elif (not fenced and len(line) > WIDTH and not line.lstrip().startswith("|") and not line.startswith("    ")
+              and not re.fullmatch(r"[\s>*-]*(?:!?\[.*\]\(\S+\)|\[[^]]+\]: \S+|<?https?://\S+>?)[.,;]?", line)):
+            found.append(f"{path}:{number}: {len(line)} characters, at most {WIDTH}")
+    return found
+
+
+# -------------------------------------------------------------------------------------------------------- names
+# Left column of the vocabulary -> its standard term, and the folders where the name is refused; () stands for all.
+# Words of everyday use are refused only where they were names. Strings of C++ (keys of files, output) are not read.
+
+EVERYWHERE = ()
+CPP_ONLY = ("common/", "kernels/", "miniapps/", "perf/", "tests/")
+FABRIC, OPTIONS, GAS, KERNELS = ("kernels/fabric/",), ("kernels/options/",), ("kernels/gas/",), ("kernels/",)
+
+NAMES = (
+    (r"SolverOn|PricerOn|[A-Z]\w*On(?=<)", "SolverImpl<ExecutionSpace>", EVERYWHERE),
+    (r"bar", "tolerance", EVERYWHERE),
+    (r"Seed[A-Z]\w*|seed_(?:solver|batch|mode|step|price|march|rates)\w*", "baseline", EVERYWHERE),
+    (r"Replay", "CapturedGraph", EVERYWHERE),
+    (r"ReportSpace", "HostPinnedSpace", EVERYWHERE),
+    (r"ResidentGrid|[Rr]esident_\w+", "PersistentKernel, persistent_*", EVERYWHERE),
+    (r"Rendezvous", "GridSync", EVERYWHERE),
+    (r"Packet", "HaloMessage", EVERYWHERE),
+    (r"post|collect", "put / get", KERNELS),
+    (r"meet_warp", "warp_sync", EVERYWHERE),
+    (r"from_below", "shuffle_up", EVERYWHERE),
+    (r"from_across", "shuffle_xor", EVERYWHERE),
+    (r"reach", "lane_offset, cutoff_distance, strike_range", OPTIONS),
+    (r"Ledger", "ProfilingCounters", CPP_ONLY),
+    (r"Way", "CopyKind, edge_vector", EVERYWHERE),
+    (r"Ends", "BoundaryConditions", EVERYWHERE),
+    (r"Triple", "ConservedVector", EVERYWHERE),
+    (r"Speeds", "WaveSpeeds", EVERYWHERE),
+    (r"Mean", "FaceAverage", EVERYWHERE),
+    (r"Judgement", "TeamControl", EVERYWHERE),
+    (r"Outcome", "StageReduction", EVERYWHERE),
+    (r"Attempt", "StepTrial", EVERYWHERE),
+    (r"Findings", "StepResult", EVERYWHERE),
+    (r"outgrown", "violates_cfl", EVERYWHERE),
+    (r"Resume", "RestartState", EVERYWHERE),
+    (r"touches|touched", "limited_faces, limited_cells", ("kernels/gas/", "miniapps/gas/")),
+    (r"Law", "ConstitutiveModel, LevyMeasure", EVERYWHERE),
+    (r"Cloth", "FabricViews", EVERYWHERE),
+    (r"Lent", "unmanaged View", EVERYWHERE),
+    (r"Spoke", "EdgeVector", EVERYWHERE),
+    (r"Products", "GramMatrix", EVERYWHERE),
+    (r"Slots", "SlicedEll", EVERYWHERE),
+    (r"Watch", "StepMonitor", EVERYWHERE),
+    (r"hand", "parity", FABRIC),
+    (r"held", "fixed_dofs", FABRIC),
+    (r"act(?=\()", "compute_external_forces", FABRIC),
+    (r"place(?=\()", "apply_dirichlet", FABRIC),
+    (r"take(?=\()", "step", FABRIC),
+    (r"settle(?=\()", "synchronize", FABRIC),
+    (r"keep(?=\()", "checkpoint", FABRIC),
+    (r"DragFunctor", "DashpotDampingFunctor", EVERYWHERE),
+    (r"Touch", "ContactConstraint", EVERYWHERE),
+    (r"push(?=\()|grip|wanted", "normal impulse, friction impulse, target_velocity", FABRIC),
+    (r"Ball", "BoundingSphere", EVERYWHERE),
+    (r"Clearance", "SignedDistance", EVERYWHERE),
+    (r"stay_apart", "ccd_*", EVERYWHERE),
+    (r"join(?=\()", "unite", FABRIC),
+    (r"zone_of", "find_root", EVERYWHERE),
+    (r"Trouble", "FailureReason", EVERYWHERE),
+    (r"cut_patches", "partition_by_recursive_bisection", EVERYWHERE),
+    (r"Clock", "TimeState, Stopwatch", EVERYWHERE),
+    (r"Timing", "StageTime, WallTimes", EVERYWHERE),
+    (r"Doubt|doubt_of\w*", "ErrorEstimate, estimate_error", EVERYWHERE),
+    (r"Answer", "derivatives of the price", EVERYWHERE),
+    (r"bend", "second_derivative", OPTIONS),
+    (r"Put", "NormalizedPut", CPP_ONLY),
+    (r"Effort", "Resolution", EVERYWHERE),
+    (r"Workers", "ThreadGroup", EVERYWHERE),
+    (r"alone", "single", OPTIONS),
+    (r"RisingMap", "MaxAffineMap", EVERYWHERE),
+    (r"smile", "StrikeGroup", ("kernels/", "miniapps/", "perf/")),
+    (r"Desk", "WorkQueue", EVERYWHERE),
+    (r"Helper", "WorkerProxy", CPP_ONLY),
+    (r"dismiss", "shutdown", EVERYWHERE),
+    (r"Piece", "ResultBatch", EVERYWHERE),
+    (r"Spent", "WallTimes", EVERYWHERE),
+    (r"Tally", "RowCounts", EVERYWHERE),
+    (r"Ranks", "Communicator", EVERYWHERE),
+    (r"together", "run_collectively", CPP_ONLY),
+    (r"from_first", "broadcast", EVERYWHERE),
+    (r"OneRun", "SceneRun", EVERYWHERE),
+    (r"carry_out", "run_scene", EVERYWHERE),
+)
+PATTERNS = tuple((re.compile(rf"(?<![\w-])(?:{names})(?![\w-])"), term, where) for names, term, where in NAMES)
+
+
+def without_strings(line):
+    return re.sub(r'"(?:[^"\\\n]|\\.)*"', '""', line)
+
+
+def identifiers_of_code(text):
+    """Pairs (line, words) of C++ source: code without strings, and the parts of comments in backquotes."""
+    inside = False
+    for number, line in enumerate(text.split("\n"), 1):
+        line = line if line.lstrip().startswith("#") else without_strings(line)
+        if inside or line.lstrip().startswith("/*"):
+            inside = "*/" not in line
+            yield number, " ".join(re.findall(r"`([^`]*)`", line))
+            continue
+        code, _, comment = line.partition("//")
+        yield number, " ".join([code, *re.findall(r"`([^`]*)`", comment)])
+
+
+def identifiers_of_python(text):
+    for token in tokenize.generate_tokens(io.StringIO(text).readline):
+        if token.type == tokenize.NAME:
+            yield token.start[0], token.string
+        elif token.type == tokenize.STRING and re.fullmatch(r"[frbu]*(['\"])bar\1", token.string):
+            yield token.start[0], "bar"
+
+
+def identifiers(path, text):
+    """Pairs (line, words) of the names of any file; of a document, those in backquotes and in code blocks."""
+    if path.endswith(CODE):
+        yield from identifiers_of_code(text)
+    elif path.endswith(".py"):
+        yield from identifiers_of_python(text)
+    elif path.endswith(".md"):
+        fenced = False
+        for number, line in enumerate(text.split("\n"), 1):
+            if re.match(r"\s*```", line):
+                fenced = not fenced
+            elif fenced:
+                yield number, re.sub(r"#.*", "", line)
+            else:
+                yield number, " ".join(re.findall(r"`([^`]*)`", line))
+    elif path.endswith((".txt", ".cmake", ".toml")):
+        for number, line in enumerate(text.split("\n"), 1):
+            yield number, re.sub(r'#.*|"[^"]*"', "", line)
+
+
+def replaced_names(path, text):
+    """Lines `path:line: ...` for names of the vocabulary's left column that are left, in text or as a file's name."""
+    found = []
+    if path.endswith("CHANGELOG.md"):
+        return found
+    if re.search(r"_on\w*\.hpp$", path) or re.search(r"/(?:seed|doubt|desk)\w*\.[hc]pp", path):
+        found.append(f"{path}:1: the file's name is replaced by the vocabulary")
+    patterns = [(pattern, term) for pattern, term, where in PATTERNS if not where or path.startswith(where)]
+    for number, words in identifiers(path, text):
+        for pattern, term in patterns:
+            for match in pattern.finditer(words):
+                found.append(f"{path}:{number}: {match.group()} is {term} in the vocabulary")
+    return found
+
+
+# ---------------------------------------------------------------------------------------------------- contracts
+# Public: a header of kernels/ (not of the reference) that a mini-app, perf, the install test or another area includes.
+# Every function that it declares at namespace scope or as a public member has a doc comment, which it may share with
+# the declaration on the line before. The comment, or that of its class, says
+#   errors: throws, does not throw, noexcept. `constexpr`, `noexcept` and device functions (KOKKOS_...) cannot throw.
+#   units:  if the declaration has real numbers, vectors, spans or Views: a unit, or that there is none. Not asked of
+#           kernels/device, whose arithmetic serves any unit.
+# Exempt: destructors, operators, defaulted, deleted and friend functions, constructors without arguments.
+
+UNITS = re.compile(
+    r"\b(?:m|s|kg|N|J|K|Pa|Hz|W|rad|us|ns|ms|bytes?|GB|years?|a year|per year|seconds?|metres?|kilograms?|dimensionless|"
+    r"per cent|percent|fractions?|ratios?|counts?|number of|units?|money|price units|of the strike|strikes?|log|radians?|"
+    r"indices|index|SI|flop|cells?)\b|%|1/s|N/m|kg/m|m/s|epsilon|unitless|any unit", re.IGNORECASE)
+ERRORS = re.compile(r"[Tt]hrow|noexcept|[Aa]borts|[Nn]o errors|[Dd]oes not fail|[Nn]ever fails")
+SCOPE = re.compile(r"\b(namespace|class|struct|union|extern)\b")
+REAL = re.compile(r"\b(?:double|float|Real|R|T|Vector3?|Pair|span|View\w*|Kokkos::View|array)\b|Views?<|Vector")
+HEADERS = (".hpp",)
+
+
+def area(path):
+    """The area of kernels/ of a file: its first folder there; None elsewhere and in the reference."""
+    parts = path.split("/")
+    return parts[1] if parts[0] == "kernels" and len(parts) > 2 and parts[1] != "reference" else None
+
+
+def public_headers(texts):
+    """Headers of kernels/ that an app, perf, the install test or another area of kernels/ includes."""
+    found = set()
+    for path, text in texts.items():
+        outside = path.startswith(("miniapps/", "perf/", "tests/install/"))
+        for name in re.findall(r'^\s*#\s*include\s*"([^"]+)"', text, re.MULTILINE):
+            if area(name) and name in texts and (outside or area(path) and area(path) != area(name)):
+                found.add(name)
+    return sorted(found)
+
+
+def is_function(statement):
+    """Whether a declaration without its comments declares a function that a caller needs a contract for."""
+    plain = re.sub(r"\[\[.*?\]\]|\balignas\s*\(.*?\)|\bnoexcept\s*\(.*?\)|\brequires\s*\(.*?\)", " ", statement)
+    while re.search(r"<[^<>()]*>", plain):
+        plain = re.sub(r"<[^<>()]*>", " ", plain)
+    if re.search(r"^\s*(?:using|typedef|static_assert|friend|#|return|extern template|template class|enum)\b", plain):
+        return False
+    if re.search(r"=\s*(?:default|delete)\s*$|\boperator\b|~\w+\s*\(|\boverride\b|\bfinal\s*$", plain):
+        return False
+    head = re.split(r"=(?!=)(?!\s*0\s*$)", plain)[0]
+    match = re.search(r"(\w+)\s*\(([^)]*)", head)
+    if not match or match.group(1).isupper() or match.group(1) in ("decltype", "if", "for", "while", "sizeof"):
+        return False
+    constructor = not re.search(r"[\w>&*\]]\s+[&*]*\w+\s*\(", head) or re.match(r"\s*explicit\b", head)
+    return not (constructor and not match.group(2).strip())
+
+
+def declarations(text):
+    """Tuples (line, comment, class comment, statement) of the functions at namespace scope and of public members."""
+    found = []
+    scopes = []  # of [kind, class comment, whether members are public]; kind None: a body that is not read
+    comment, statement, start, parens, shared = "", "", 0, 0, ""
+    body = 0
+    for number, raw in enumerate(text.split("\n"), 1):
+        line = re.sub(r'"(?:[^"\\]|\\.)*"' + r"|'(?:[^'\\]|\\.)'", '""', raw)
+        doc = re.match(r"\s*///?\s?(.*)", line)
+        if doc and not body:
+            if not statement.strip():
+                comment += " " + doc.group(1) if line.strip().startswith("///") else ""
+            continue
+        note = re.search(r"///<\s?(.*)", line)
+        if note and not body:
+            comment += " " + note.group(1)
+        line = re.sub(r"//.*", "", line)
+        if line.lstrip().startswith("#"):
+            continue
+        if not line.strip() and not statement.strip() and not body:
+            comment, shared = "", ""
+            continue
+        for sign in line:
+            if body:
+                body += (sign == "{") - (sign == "}")
+                if not body:
+                    statement, comment = "", ""
+                continue
+            if sign == "{" and not parens:
+                kind = SCOPE.search(re.sub(r"template\s*<[^{]*?>\s*(?=class|struct|\[|\w)", "", statement))
+                function = "(" in re.sub(r"alignas\s*\([^)]*\)|\brequires\b.*|\[\[.*?\]\]", "", statement)
+                if kind and not function and "=" not in statement and "enum" not in statement:
+                    public = kind.group(1) != "class"
+                    scopes.append([kind.group(1), comment, public])
+                    statement, comment, shared = "", "", ""
+                else:
+                    if is_function(statement) and all(scope[2] for scope in scopes):
+                        inherited = " ".join(scope[1] for scope in scopes)
+                        found.append((start, comment or shared, inherited, statement))
+                        shared = comment or shared
+                    body = 1
+                continue
+            if sign == "}" and not parens:
+                if scopes:
+                    scopes.pop()
+                statement, comment, shared = "", "", ""
+                continue
+            parens += (sign == "(") - (sign == ")")
+            if sign == ":" and statement.strip() in ("public", "private", "protected") and scopes:
+                scopes[-1][2] = statement.strip() == "public"
+                statement, comment, shared = "", "", ""
+                continue
+            if sign == ";" and not parens:
+                if is_function(statement) and all(scope[2] for scope in scopes):
+                    inherited = " ".join(scope[1] for scope in scopes)
+                    found.append((start, comment or shared, inherited, statement))
+                    shared = comment or shared
+                statement, comment = "", ""
+                continue
+            if not statement.strip() and sign.strip():
+                start = number
+            statement += sign
+        if statement:
+            statement += " "
+    return found
+
+
+def missing_contracts(path, text):
+    """Lines `path:line: ...` for functions of a public header without a doc comment, a unit, or a word on errors."""
+    found = []
+    for line, comment, inherited, statement in declarations(text):
+        name = re.search(r"(\w+)\s*\(", re.sub(r"\[\[.*?\]\]|alignas\(.*?\)", "", statement)).group(1)
+        if not comment.strip():
+            found.append(f"{path}:{line}: {name} has no doc comment")
+            continue
+        both = comment + " " + inherited
+        if not path.startswith("kernels/device/") and REAL.search(statement) and not UNITS.search(both):
+            found.append(f"{path}:{line}: {name} states no unit")
+        if not ERRORS.search(both) and not re.search(r"\bKOKKOS_\w*FUNCTION\b|\bconstexpr\b|\bnoexcept\b", statement):
+            found.append(f"{path}:{line}: {name} does not say whether it throws")
+    return found
+
+
+# ---------------------------------------------------------------------------------------------------------- all
+
+
+def read_tree(root, tops=None):
+    """All files that the rules read below `root`, by their path from there, with their texts."""
+    texts = {}
+    for path in sorted(root.rglob("*")):
+        name = path.relative_to(root)
+        if SKIPPED_FOLDERS & set(name.parts) or not path.is_file() or (tops and name.parts[0] not in tops):
+            continue
+        if name.as_posix().endswith((*CODE, ".py", ".md", ".cmake", ".txt", ".toml")):
+            texts[name.as_posix()] = path.read_text(encoding="utf-8")
+    return texts
+
+
+# This file holds the replaced names, and its test breaches every rule.
+OWN = ("tests/layering/writing.py", "tests/layering/test_writing.py")
+
+
+def main(arguments):
+    root = Path.cwd()
+    texts = {path: text for path, text in read_tree(root).items() if path not in OWN}
+    chosen = [argument.rstrip("/") for argument in arguments if not argument.startswith("-")]
+    warn = "--no-warnings" not in arguments
+
+    def shown(path):
+        return not chosen or any(path == place or path.startswith(place + "/") for place in chosen)
+
+    count = 0
+    public = set(public_headers(texts))
+    for path, text in texts.items():
+        if not shown(path):
+            continue
+        found = refused_openings(path, text) + replaced_names(path, text)
+        found += wide_lines(path, text) if path.endswith(".md") else []
+        found += missing_contracts(path, text) if path in public else []
+        count += len(found)
+        found += suspect_openings(path, text) if warn else []
+        print("".join(line + "\n" for line in found), end="")
+    sys.path.insert(0, str(root / "tests/layering"))
+    try:
+        import repeats
+
+        found = [line for line in repeats.repeated_lines(texts) if any(shown(place) for place in line.split()[:1])]
+        count += len(found)
+        print("\n".join(found))
+    except ImportError:
+        pass
+    print(f"{count} breaches")
+    return 1 if count else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
