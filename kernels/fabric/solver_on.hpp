@@ -159,6 +159,25 @@ class SolverOn final : public Solver {
   std::unique_ptr<ContactSteps<ExecutionSpace>> _contact;  ///< none: nothing meets
 };
 
+template <class ExecutionSpace, bool tension_only>
+std::unique_ptr<Solver> make_solver_of(const Parameters& p) {
+  // Without triangles that resist both models of springs are the same kernel.
+  switch (p.material.model) {
+    case Model::quadratic:
+      return std::make_unique<SolverOn<ExecutionSpace, Law{Model::quadratic, tension_only}>>(p);
+    case Model::biquadratic:
+      return std::make_unique<SolverOn<ExecutionSpace, Law{Model::biquadratic, tension_only}>>(p);
+    default:
+      return std::make_unique<SolverOn<ExecutionSpace, Law{Model::edge, tension_only}>>(p);
+  }
+}
+
+template <class ExecutionSpace>
+std::unique_ptr<Solver> make_solver(const Parameters& p) {
+  return p.material.tension_only ? make_solver_of<ExecutionSpace, true>(p)
+                                 : make_solver_of<ExecutionSpace, false>(p);
+}
+
 }  // namespace drogue::fabric
 
 #include "kernels/fabric/solver_on_external.hpp"

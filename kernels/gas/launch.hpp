@@ -35,8 +35,8 @@ struct PersistentSetup {
   StepConstants constants;
 };
 
-/// Enqueues stage `stage` of a step. Defined in launch_tiles.hpp, instantiated in stage.cpp.in and
-/// step.cpp.in.
+/// Enqueues stage `stage` of a step. Defined in launch_tiles.hpp, instantiated in
+/// instances/stage.cpp and instances/step.cpp.
 template <Reconstruction scheme, class ExecutionSpace>
 void launch_stage(const ExecutionSpace& space, const StageSetup<ExecutionSpace>& setup, Precision precision,
                   bool limited, int stage);

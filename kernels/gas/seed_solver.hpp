@@ -249,4 +249,9 @@ class SeedSolver final : public Solver {
   Phases _phases;
 };
 
+template <class ExecutionSpace>
+std::unique_ptr<Solver> make_seed_solver(const Parameters& parameters) {
+  return std::make_unique<SeedSolver<ExecutionSpace>>(parameters);
+}
+
 }  // namespace drogue::gas

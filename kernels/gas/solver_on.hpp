@@ -77,6 +77,11 @@ class SolverOn final : public Solver {
   std::optional<HistoryRow> _last_row;
 };
 
+template <class ExecutionSpace>
+std::unique_ptr<Solver> make_solver(const Parameters& parameters) {
+  return std::make_unique<SolverOn<ExecutionSpace>>(parameters);
+}
+
 }  // namespace drogue::gas
 
 #include "kernels/gas/solver_on_advance.hpp"
