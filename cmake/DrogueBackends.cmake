@@ -1,42 +1,48 @@
-# The compiled-in backends, and the files that are written once for each of them.
+# The list of backends, which programs, tests and benchmarks share, and the sources that are compiled once for each of them.
 
 option(DROGUE_SERIAL "The Serial backend" ON)
 option(DROGUE_OPENMP "The OpenMP backend, where Kokkos has it" ON)
 
 set(DROGUE_BACKENDS)
-if(DROGUE_SERIAL)
-  list(APPEND DROGUE_BACKENDS serial)
-  set(DROGUE_EXECUTION_SPACE_serial Kokkos::Serial)
+# drogue_backend(<name> <Kokkos option> <execution space> <wanted>): an entry of the list, slowest first. The same names stand
+# in kernels/device/backend_list.hpp.
+macro(drogue_backend name option execution_space wanted)
+  if(${wanted})
+    if(NOT Kokkos_ENABLE_${option})
+      message(FATAL_ERROR "The backend ${name} needs a Kokkos with Kokkos_ENABLE_${option}=ON; Kokkos at ${Kokkos_DIR} lacks it.")
+    endif()
+    list(APPEND DROGUE_BACKENDS ${name})
+    set(DROGUE_EXECUTION_SPACE_${name} ${execution_space})
+  endif()
+endmacro()
+
+set(_openmp ${DROGUE_OPENMP})
+if(NOT Kokkos_ENABLE_OPENMP)
+  set(_openmp OFF)
 endif()
-if(DROGUE_OPENMP AND Kokkos_ENABLE_OPENMP)
-  list(APPEND DROGUE_BACKENDS openmp)
-  set(DROGUE_EXECUTION_SPACE_openmp Kokkos::OpenMP)
-endif()
-if(DROGUE_CUDA)
-  list(APPEND DROGUE_BACKENDS cuda)
-  set(DROGUE_EXECUTION_SPACE_cuda Kokkos::Cuda)
-endif()
+drogue_backend(serial SERIAL Kokkos::Serial "${DROGUE_SERIAL}")
+drogue_backend(openmp OPENMP Kokkos::OpenMP "${_openmp}")
+drogue_backend(cuda CUDA Kokkos::Cuda "${DROGUE_CUDA}")
 if(NOT DROGUE_BACKENDS)
-  message(FATAL_ERROR "There is no backend left: turn DROGUE_SERIAL, DROGUE_OPENMP or DROGUE_CUDA on.")
+  message(FATAL_ERROR "No backend is left: turn DROGUE_SERIAL, DROGUE_OPENMP or DROGUE_CUDA on.")
 endif()
 
-# Writes NAME_<backend>.cpp from NAME.cpp.in for each backend and appends the names to `sources`.
-# The template may use @DROGUE_BACKEND@ (serial), @DROGUE_BACKEND_ENUM@ (the same word, as an enumerator) and
-# @DROGUE_EXECUTION_SPACE@ (Kokkos::Serial).
-function(drogue_instantiate sources template)
-  cmake_path(RELATIVE_PATH template BASE_DIRECTORY "${PROJECT_SOURCE_DIR}" OUTPUT_VARIABLE _relative)
-  string(REGEX REPLACE "\\.cpp\\.in$" "" _stem "${_relative}")
-  set(_generated ${${sources}})
-  foreach(DROGUE_BACKEND IN LISTS DROGUE_BACKENDS)
-    set(DROGUE_BACKEND_ENUM ${DROGUE_BACKEND})
-    set(DROGUE_EXECUTION_SPACE ${DROGUE_EXECUTION_SPACE_${DROGUE_BACKEND}})
-    set(_file "${PROJECT_BINARY_DIR}/generated/${_stem}_${DROGUE_BACKEND}.cpp")
-    configure_file("${template}" "${_file}" @ONLY)
-    # The instances of a template use the same aliases, each for its backend.
-    set_source_files_properties("${_file}" PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
-    list(APPEND _generated "${_file}")
+# drogue_instantiate(sources <file>): appends one generated source per backend, which includes the file with
+# DROGUE_INSTANCE_SPACE defined as the backend's execution space. Sources of one target keep one language setting and one
+# compiled header, which a library per backend would not share.
+function(drogue_instantiate sources file)
+  cmake_path(RELATIVE_PATH file BASE_DIRECTORY "${PROJECT_SOURCE_DIR}" OUTPUT_VARIABLE _relative)
+  string(REGEX REPLACE "\\.cpp$" "" _stem "${_relative}")
+  set(_instances ${${sources}})
+  foreach(_backend IN LISTS DROGUE_BACKENDS)
+    set(_instance "${PROJECT_BINARY_DIR}/generated/${_stem}_${_backend}.cpp")
+    file(CONFIGURE OUTPUT "${_instance}" CONTENT
+      "#define DROGUE_INSTANCE_SPACE ${DROGUE_EXECUTION_SPACE_${_backend}}\n#include \"${_relative}\"\n")
+    # Two backends define the macro differently.
+    set_source_files_properties("${_instance}" PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+    list(APPEND _instances "${_instance}")
   endforeach()
-  set(${sources} ${_generated} PARENT_SCOPE)
+  set(${sources} ${_instances} PARENT_SCOPE)
 endfunction()
 
 # drogue_includes_kokkos(result <file>): whether it does, itself or by our headers that it includes.

@@ -5,27 +5,25 @@
 namespace drogue::device {
 
 std::string_view name(Backend backend) {
-  switch (backend) {
-    case Backend::serial:
-      return "serial";
-    case Backend::openmp:
-      return "openmp";
-    case Backend::cuda:
-      return "cuda";
-  }
-  return "";
+  std::string_view found;
+  for_each_backend<KnownBackends>([&](const auto& entry) {
+    if (entry.backend == backend) found = entry.name;
+  });
+  return found;
 }
 
 std::optional<Backend> backend_from_name(std::string_view text) {
-  for (const Backend backend : {Backend::serial, Backend::openmp, Backend::cuda})
-    if (text == name(backend)) return backend;
-  return std::nullopt;
+  std::optional<Backend> found;
+  for_each_backend<KnownBackends>([&](const auto& entry) {
+    if (entry.name == text) found = entry.backend;
+  });
+  return found;
 }
 
 std::vector<Backend> compiled_backends() {
-#define DROGUE_LIST(backend) Backend::backend,
-  return {DROGUE_FOR_EACH_BACKEND(DROGUE_LIST)};
-#undef DROGUE_LIST
+  std::vector<Backend> backends;
+  for_each_backend<CompiledBackends>([&](const auto& entry) { backends.push_back(entry.backend); });
+  return backends;
 }
 
 namespace {
@@ -34,6 +32,14 @@ bool is_compiled(Backend backend) {
   for (const Backend compiled : compiled_backends())
     if (compiled == backend) return true;
   return false;
+}
+
+std::string preset_of(Backend backend) {
+  std::string_view preset;
+  for_each_backend<KnownBackends>([&](const auto& entry) {
+    if (entry.backend == backend) preset = entry.preset;
+  });
+  return std::string(preset);
 }
 
 }  // namespace
@@ -63,8 +69,8 @@ Backend wanted_backend(std::string_view option) {
 std::optional<std::string> why_unavailable(Backend backend) {
   const std::string text(name(backend));
   if (!is_compiled(backend))
-    return "the backend '" + text + "' is not compiled in; build the preset '" +
-           (backend == Backend::cuda ? "cuda" : "host") + "' to have it";
+    return "the backend '" + text + "' is not compiled in; build the preset '" + preset_of(backend) +
+           "' to have it";
   if (!is_present(backend))
     return "the backend '" + text +
            "' finds no device; run on a machine with one, or build the preset 'host'";

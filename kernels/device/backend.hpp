@@ -5,46 +5,32 @@
 #include <string_view>
 #include <vector>
 
-/// DROGUE_FOR_EACH_BACKEND(X) is X(serial) X(openmp) X(cuda) for those that this build holds: for what is
-/// written once a backend and found by its name.
-#if defined(DROGUE_HAVE_SERIAL)
-#define DROGUE_ON_SERIAL(X) X(serial)
-#else
-#define DROGUE_ON_SERIAL(X)
-#endif
-#if defined(DROGUE_HAVE_OPENMP)
-#define DROGUE_ON_OPENMP(X) X(openmp)
-#else
-#define DROGUE_ON_OPENMP(X)
-#endif
-#if defined(DROGUE_HAVE_CUDA)
-#define DROGUE_ON_CUDA(X) X(cuda)
-#else
-#define DROGUE_ON_CUDA(X)
-#endif
-#define DROGUE_FOR_EACH_BACKEND(X) DROGUE_ON_SERIAL(X) DROGUE_ON_OPENMP(X) DROGUE_ON_CUDA(X)
+#include "kernels/device/backend_list.hpp"
 
 namespace drogue::device {
 
-enum class Backend { serial, openmp, cuda };
-
+/// Name of a backend as on the command line, for example "openmp". Does not throw.
 [[nodiscard]] std::string_view name(Backend backend);
+
+/// Backend of that name, compiled in or not. Empty for an unknown name. Does not throw.
 [[nodiscard]] std::optional<Backend> backend_from_name(std::string_view name);
 
-/// Those this build holds, slowest first.
+/// Backends that this build contains, slowest first.
 [[nodiscard]] std::vector<Backend> compiled_backends();
 
-/// Asks the driver, without initialising Kokkos. Host backends are always present.
+/// Whether the backend is compiled in and has a device. Queries the driver without initialising Kokkos. A
+/// compiled host backend is always present. Does not throw.
 [[nodiscard]] bool is_present(Backend backend);
 
-/// The fastest backend that is compiled in and present.
+/// Fastest backend that is compiled in and present; the slowest compiled one if none is present.
 [[nodiscard]] Backend fastest_backend();
 
-/// What the value of an option `--backend` means: the fastest for "auto", else the one of that name, which
-/// must be one (std::bad_optional_access).
+/// Backend of an option `--backend`: the fastest for "auto", else the backend of that name. Throws
+/// std::bad_optional_access for an unknown name.
 [[nodiscard]] Backend wanted_backend(std::string_view option);
 
-/// Why `backend` cannot run here, or nothing: not compiled in, or no device. Says which build has it.
+/// Reason why `backend` cannot run here, as a sentence that names the preset to build; empty if it can run.
+/// Does not throw.
 [[nodiscard]] std::optional<std::string> why_unavailable(Backend backend);
 
 }  // namespace drogue::device

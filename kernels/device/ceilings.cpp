@@ -1,23 +1,13 @@
 #include "kernels/device/ceilings.hpp"
 
-#include <stdexcept>
-
 namespace drogue::device {
 
-#define DROGUE_DECLARE(backend) std::unique_ptr<CeilingKernel> create_ceiling_##backend(Ceiling ceiling);
-DROGUE_FOR_EACH_BACKEND(DROGUE_DECLARE)
-#undef DROGUE_DECLARE
+// Defined in ceilings_on.hpp, instantiated for each backend in instances/.
+template <class ExecutionSpace>
+std::unique_ptr<CeilingKernel> make_ceiling(Ceiling ceiling);
 
 std::unique_ptr<CeilingKernel> create_ceiling(Backend backend, Ceiling ceiling) {
-  switch (backend) {
-#define DROGUE_CREATE(name) \
-  case Backend::name:       \
-    return create_ceiling_##name(ceiling);
-    DROGUE_FOR_EACH_BACKEND(DROGUE_CREATE)
-#undef DROGUE_CREATE
-    default:
-      throw std::invalid_argument("ceiling: this build lacks the backend");
-  }
+  return dispatch(backend, [&]<class ExecutionSpace>() { return make_ceiling<ExecutionSpace>(ceiling); });
 }
 
 }  // namespace drogue::device

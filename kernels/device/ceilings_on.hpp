@@ -208,7 +208,7 @@ class CeilingOn final : public CeilingKernel {
 };
 
 template <class ExecutionSpace>
-std::unique_ptr<CeilingKernel> create_ceiling_on(Ceiling ceiling) {
+std::unique_ptr<CeilingKernel> make_ceiling(Ceiling ceiling) {
   if (ceiling == Ceiling::fp64)
     return std::make_unique<CeilingOn<ExecutionSpace, FmaChainsFunctor<ExecutionSpace>>>();
   if (ceiling == Ceiling::memory)

@@ -10,9 +10,9 @@
 
 namespace drogue::fabric {
 
-#define DROGUE_DECLARE(backend) std::unique_ptr<Solver> create_solver_##backend(const Parameters& parameters);
-DROGUE_FOR_EACH_BACKEND(DROGUE_DECLARE)
-#undef DROGUE_DECLARE
+// Defined in solver_adapter.hpp, instantiated for each backend in instances/.
+template <class ExecutionSpace>
+std::unique_ptr<Solver> make_solver(const Parameters& parameters);
 
 namespace {
 
@@ -113,15 +113,8 @@ bool has_area(const Mesh& mesh, const std::array<int, 3>& t) {
 }
 
 std::unique_ptr<Solver> create_solver(device::Backend backend, const Parameters& parameters) {
-  switch (backend) {
-#define DROGUE_CREATE(name)   \
-  case device::Backend::name: \
-    return create_solver_##name(parameters);
-    DROGUE_FOR_EACH_BACKEND(DROGUE_CREATE)
-#undef DROGUE_CREATE
-    default:
-      throw std::invalid_argument("fabric solver: this build lacks the backend");
-  }
+  return device::dispatch(backend,
+                          [&]<class ExecutionSpace>() { return make_solver<ExecutionSpace>(parameters); });
 }
 
 }  // namespace drogue::fabric

@@ -43,4 +43,10 @@ class SolverAdapter final : public Solver {
   FabricSolver<ExecutionSpace> _solver;
 };
 
+/// Facade of a solver on `ExecutionSpace`. Throws as the constructor of FabricSolver does.
+template <class ExecutionSpace>
+std::unique_ptr<Solver> make_solver(const Parameters& parameters) {
+  return std::make_unique<SolverAdapter<ExecutionSpace>>(parameters);
+}
+
 }  // namespace drogue::fabric

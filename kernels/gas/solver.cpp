@@ -7,11 +7,11 @@
 
 namespace drogue::gas {
 
-#define DROGUE_DECLARE(backend)                                                  \
-  std::unique_ptr<Solver> create_solver_##backend(const Parameters& parameters); \
-  std::unique_ptr<Solver> create_seed_solver_##backend(const Parameters& parameters);
-DROGUE_FOR_EACH_BACKEND(DROGUE_DECLARE)
-#undef DROGUE_DECLARE
+// Defined in solver_impl.hpp and baseline/baseline_solver.hpp, instantiated for each backend in instances/.
+template <class ExecutionSpace>
+std::unique_ptr<Solver> make_solver(const Parameters& parameters);
+template <class ExecutionSpace>
+std::unique_ptr<Solver> make_baseline_solver(const Parameters& parameters);
 
 namespace {
 
@@ -30,30 +30,6 @@ void check(const Parameters& p) {
           "block must be a multiple of 32 between 32 and 512");
 }
 
-std::unique_ptr<Solver> make_solver(device::Backend backend, const Parameters& parameters) {
-  switch (backend) {
-#define DROGUE_CREATE(name)   \
-  case device::Backend::name: \
-    return create_solver_##name(parameters);
-    DROGUE_FOR_EACH_BACKEND(DROGUE_CREATE)
-#undef DROGUE_CREATE
-    default:
-      throw std::invalid_argument("gas solver: this build lacks the backend");
-  }
-}
-
-std::unique_ptr<Solver> make_baseline_solver(device::Backend backend, const Parameters& parameters) {
-  switch (backend) {
-#define DROGUE_CREATE(name)   \
-  case device::Backend::name: \
-    return create_seed_solver_##name(parameters);
-    DROGUE_FOR_EACH_BACKEND(DROGUE_CREATE)
-#undef DROGUE_CREATE
-    default:
-      throw std::invalid_argument("gas solver: this build lacks the backend");
-  }
-}
-
 /// Translates the `std::runtime_error` that Kokkos throws for a failed allocation into `std::bad_alloc`.
 template <class Make>
 std::unique_ptr<Solver> allocate(const Make& make) {
@@ -70,12 +46,18 @@ std::unique_ptr<Solver> allocate(const Make& make) {
 
 std::unique_ptr<Solver> create_solver(device::Backend backend, const Parameters& parameters) {
   check(parameters);
-  return allocate([&] { return make_solver(backend, parameters); });
+  return allocate([&] {
+    return device::dispatch(backend,
+                            [&]<class ExecutionSpace>() { return make_solver<ExecutionSpace>(parameters); });
+  });
 }
 
 std::unique_ptr<Solver> create_baseline_solver(device::Backend backend, const Parameters& parameters) {
   check(parameters);
-  return allocate([&] { return make_baseline_solver(backend, parameters); });
+  return allocate([&] {
+    return device::dispatch(
+        backend, [&]<class ExecutionSpace>() { return make_baseline_solver<ExecutionSpace>(parameters); });
+  });
 }
 
 }  // namespace drogue::gas

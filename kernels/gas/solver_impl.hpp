@@ -450,4 +450,10 @@ Stop SolverImpl<ExecutionSpace>::advance(double target, std::int64_t pause_step,
   return _loop.advance({target, pause_step, row_every}, DeviceSteps{*this, rows}, poll);
 }
 
+/// Solver on `ExecutionSpace`. Throws as the constructor of SolverImpl does.
+template <class ExecutionSpace>
+std::unique_ptr<Solver> make_solver(const Parameters& parameters) {
+  return std::make_unique<SolverImpl<ExecutionSpace>>(parameters);
+}
+
 }  // namespace drogue::gas

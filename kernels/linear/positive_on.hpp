@@ -63,4 +63,9 @@ class PositiveSolveOn final : public BatchSolve {
   View _given[3], _now[3];
 };
 
+template <class ExecutionSpace>
+std::unique_ptr<BatchSolve> make_positive_solve(const PositiveSystems& systems) {
+  return std::make_unique<PositiveSolveOn<ExecutionSpace>>(systems);
+}
+
 }  // namespace drogue::linear

@@ -1,23 +1,14 @@
 #include "kernels/options/cos_bermudan.hpp"
 
-#include <stdexcept>
-
 namespace drogue::options {
 
-#define DROGUE_DECLARE(backend) std::unique_ptr<BermudanSolver> create_bermudan_solver_##backend();
-DROGUE_FOR_EACH_BACKEND(DROGUE_DECLARE)
-#undef DROGUE_DECLARE
+// Defined in cos_bermudan_on.hpp, instantiated for each backend in instances/.
+template <class ExecutionSpace>
+std::unique_ptr<BermudanSolver> make_bermudan_solver();
 
 std::unique_ptr<BermudanSolver> create_bermudan_solver(device::Backend backend) {
-  switch (backend) {
-#define DROGUE_CREATE(name)   \
-  case device::Backend::name: \
-    return create_bermudan_solver_##name();
-    DROGUE_FOR_EACH_BACKEND(DROGUE_CREATE)
-#undef DROGUE_CREATE
-    default:
-      throw std::invalid_argument("cos: this build lacks the backend");
-  }
+  return device::dispatch(backend,
+                          [&]<class ExecutionSpace>() { return make_bermudan_solver<ExecutionSpace>(); });
 }
 
 }  // namespace drogue::options

@@ -112,4 +112,9 @@ class BermudanSolverOn final : public BermudanSolver {
   View<double> _workspace;
 };
 
+template <class ExecutionSpace>
+std::unique_ptr<BermudanSolver> make_bermudan_solver() {
+  return std::make_unique<BermudanSolverOn<ExecutionSpace>>();
+}
+
 }  // namespace drogue::options

@@ -81,4 +81,9 @@ class LineSolveOn final : public linear::BatchSolve {
   View _factors, _right, _solution;
 };
 
+template <class ExecutionSpace>
+std::unique_ptr<linear::BatchSolve> make_line_solve(const Lines& lines) {
+  return std::make_unique<LineSolveOn<ExecutionSpace>>(lines);
+}
+
 }  // namespace drogue::options

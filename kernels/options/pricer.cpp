@@ -7,11 +7,11 @@
 
 namespace drogue::options {
 
-#define DROGUE_DECLARE(backend)                                            \
-  std::unique_ptr<Pricer> create_pide_##backend(const Settings& settings); \
-  std::unique_ptr<Pricer> create_surface_##backend(const Settings& settings, std::unique_ptr<Pricer> single);
-DROGUE_FOR_EACH_BACKEND(DROGUE_DECLARE)
-#undef DROGUE_DECLARE
+// Defined in pricer_on.hpp and surface_on.hpp, instantiated for each backend in instances/.
+template <class ExecutionSpace>
+std::unique_ptr<Pricer> make_pide(const Settings& settings);
+template <class ExecutionSpace>
+std::unique_ptr<Pricer> make_surface(const Settings& settings, std::unique_ptr<Pricer> single);
 
 namespace {
 
@@ -33,16 +33,10 @@ void check(const Settings& s) {
 std::unique_ptr<Pricer> create_pricer(device::Backend backend, const Settings& settings) {
   if (settings.method == Method::cos && !settings.surface) return create_cos_pricer(backend, settings);
   check(settings);
-  switch (backend) {
-#define DROGUE_CREATE(name)                                                                 \
-  case device::Backend::name:                                                               \
-    return settings.surface ? create_surface_##name(settings, create_pide_##name(settings)) \
-                            : create_pide_##name(settings);
-    DROGUE_FOR_EACH_BACKEND(DROGUE_CREATE)
-#undef DROGUE_CREATE
-    default:
-      throw std::invalid_argument("options pricer: this build lacks the backend");
-  }
+  return device::dispatch(backend, [&]<class ExecutionSpace>() {
+    auto pide = make_pide<ExecutionSpace>(settings);
+    return settings.surface ? make_surface<ExecutionSpace>(settings, std::move(pide)) : std::move(pide);
+  });
 }
 
 }  // namespace drogue::options

@@ -291,4 +291,9 @@ class PricerOn final : public Pricer {
   RootsOfUnity<ExecutionSpace> _roots;
 };
 
+template <class ExecutionSpace>
+std::unique_ptr<Pricer> make_pide(const Settings& settings) {
+  return std::make_unique<PricerOn<ExecutionSpace>>(settings);
+}
+
 }  // namespace drogue::options

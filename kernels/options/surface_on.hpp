@@ -224,4 +224,9 @@ class SurfaceOn final : public Pricer {
   View<Price> _prices;
 };
 
+template <class ExecutionSpace>
+std::unique_ptr<Pricer> make_surface(const Settings& settings, std::unique_ptr<Pricer> single) {
+  return std::make_unique<SurfaceOn<ExecutionSpace>>(settings, std::move(single));
+}
+
 }  // namespace drogue::options

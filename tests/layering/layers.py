@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*(["<])([^">]+)[">]', re.MULTILINE)
-SOURCES = (".hpp", ".cpp", ".cpp.in", ".h", ".cuh", ".cu")
+SOURCES = (".hpp", ".cpp", ".h", ".cuh", ".cu")
 
 
 @dataclass(frozen=True)
@@ -108,6 +108,8 @@ def reaches_kokkos(path, texts, seen=None):
 def uses_kokkos_unseen(path, texts):
     """Whether the file names what is Kokkos's without an include that leads there: headers compiled before would hide it."""
     code = re.sub(r'//.*|"[^"\n]*"', "", texts[path])
+    for declared in re.findall(r"^class (\w+);$", "".join(re.findall(r"^namespace Kokkos \{$[^}]*", code, re.M)), re.M):
+        code = re.sub(rf"\bKokkos::{declared}\b", "", code)
     return bool(re.search(r"\bKokkos::|\bKOKKOS_[A-Z]", code)) and not reaches_kokkos(path, texts)
 
 

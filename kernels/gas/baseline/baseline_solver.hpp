@@ -253,4 +253,10 @@ class BaselineSolver final : public Solver {
   PhaseTimes _phase_times;
 };
 
+/// Solver of the baseline method on `ExecutionSpace`. Throws as its constructor does.
+template <class ExecutionSpace>
+std::unique_ptr<Solver> make_baseline_solver(const Parameters& parameters) {
+  return std::make_unique<BaselineSolver<ExecutionSpace>>(parameters);
+}
+
 }  // namespace drogue::gas

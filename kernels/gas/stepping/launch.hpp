@@ -36,7 +36,7 @@ struct PersistentSetup {
 };
 
 /// Enqueues stage `stage` of a step. Asynchronous. Defined in launch_tiles.hpp and instantiated in
-/// stage.cpp.in.
+/// instances/stage.cpp.
 template <Reconstruction scheme, class ExecutionSpace>
 void launch_stage(const ExecutionSpace& space, const StageSetup<ExecutionSpace>& setup, Precision precision,
                   bool limited, int stage);

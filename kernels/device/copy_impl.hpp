@@ -1,30 +1,28 @@
+#pragma once
+
 #include "kernels/device/copy.hpp"
 
 namespace drogue::device {
-namespace {
 
-template <class To, class From>
-void copy_between(const @DROGUE_EXECUTION_SPACE@& space, void* to, const void* from, std::size_t bytes) {
+template <class To, class From, class ExecutionSpace>
+void copy_between(const ExecutionSpace& space, void* to, const void* from, std::size_t bytes) {
   using Bytes = Kokkos::View<char*, To, Kokkos::MemoryTraits<Kokkos::Unmanaged>>;
   using ConstBytes = Kokkos::View<const char*, From, Kokkos::MemoryTraits<Kokkos::Unmanaged>>;
   Kokkos::deep_copy(space, Bytes(static_cast<char*>(to), bytes),
                     ConstBytes(static_cast<const char*>(from), bytes));
 }
 
-}  // namespace
-
-template <>
-void copy_bytes(const @DROGUE_EXECUTION_SPACE@& space, CopyKind kind, void* to, const void* from,
-                std::size_t bytes) {
+template <class ExecutionSpace>
+void copy_bytes(const ExecutionSpace& space, CopyKind kind, void* to, const void* from, std::size_t bytes) {
   using Host = Kokkos::HostSpace;
-  using Device = @DROGUE_EXECUTION_SPACE@::memory_space;
+  using Device = typename ExecutionSpace::memory_space;
   switch (kind) {
     case CopyKind::to_device:
       return copy_between<Device, Host>(space, to, from, bytes);
     case CopyKind::to_host:
       return copy_between<Host, Device>(space, to, from, bytes);
     case CopyKind::to_host_pinned:
-      return copy_between<HostPinnedSpace<@DROGUE_EXECUTION_SPACE@>, Device>(space, to, from, bytes);
+      return copy_between<HostPinnedSpace<ExecutionSpace>, Device>(space, to, from, bytes);
     case CopyKind::within:
       return copy_between<Device, Device>(space, to, from, bytes);
   }

@@ -1,0 +1,8 @@
+#include "kernels/fabric/contact/contact_impl.hpp"
+
+namespace drogue::fabric {
+
+template std::unique_ptr<ContactHandler<DROGUE_INSTANCE_SPACE>> make_contact(
+    const Parameters&, const ContactInputs<DROGUE_INSTANCE_SPACE>&);
+
+}  // namespace drogue::fabric

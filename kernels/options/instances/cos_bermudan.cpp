@@ -1,0 +1,7 @@
+#include "kernels/options/cos_bermudan_on.hpp"
+
+namespace drogue::options {
+
+template std::unique_ptr<BermudanSolver> make_bermudan_solver<DROGUE_INSTANCE_SPACE>();
+
+}  // namespace drogue::options

@@ -1,0 +1,8 @@
+#include "kernels/options/surface_on.hpp"
+
+namespace drogue::options {
+
+template std::unique_ptr<Pricer> make_surface<DROGUE_INSTANCE_SPACE>(const Settings&,
+                                                                     std::unique_ptr<Pricer>);
+
+}  // namespace drogue::options
