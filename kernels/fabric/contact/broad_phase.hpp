@@ -80,7 +80,8 @@ struct ClearGridFunctor {
 /// Grid whose cells are wide enough that near parts lie in neighbouring ones.
 template <class ExecutionSpace>
 KOKKOS_INLINE_FUNCTION spatial::HashGrid search_grid(const ContactViews<ExecutionSpace>& views) {
-  return {value_of_bits(views.progress(0).extent) + views.cutoff_distance()};
+  const double width = value_of_bits(views.progress(0).extent) + views.cutoff_distance();
+  return spatial::HashGrid{width};
 }
 
 /// Puts every triangle and edge into the cell of its centre.
