@@ -3,7 +3,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "kernels/options/cos_pricer.hpp"
+#include "kernels/options/cos/pricer.hpp"
 
 namespace drogue::options {
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "kernels/device/memory.hpp"
-#include "kernels/options/register_march.hpp"
+#include "kernels/options/pide/register_march.hpp"
 
 namespace drogue::options {
 

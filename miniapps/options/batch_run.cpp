@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "common/program/signals.hpp"
-#include "kernels/options/condition.hpp"
+#include "kernels/options/contract_check.hpp"
 #include "miniapps/options/outputs.hpp"
 
 namespace drogue::options_app {

@@ -4,7 +4,7 @@
 
 #include "common/csv/numbers.hpp"
 #include "common/scene/nearest.hpp"
-#include "kernels/options/condition.hpp"
+#include "kernels/options/contract_check.hpp"
 #include "miniapps/options/columns.hpp"
 
 namespace drogue::options_app {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "kernels/device/runtime.hpp"
-#include "kernels/options/cos_pricer.hpp"
+#include "kernels/options/cos/pricer.hpp"
 #include "tests/support/cuda_device.hpp"
 #include "tests/support/in_child.hpp"
 #include "tests/support/option_sets.hpp"

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "kernels/options/price_batch.hpp"
+#include "kernels/options/batch/price_batch.hpp"
 
 namespace drogue::options {
 

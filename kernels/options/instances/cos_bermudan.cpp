@@ -1,4 +1,4 @@
-#include "kernels/options/cos_bermudan_on.hpp"
+#include "kernels/options/cos/bermudan_impl.hpp"
 
 namespace drogue::options {
 

@@ -1,4 +1,4 @@
-#include "kernels/options/pricer_on.hpp"
+#include "kernels/options/batch/pricer_impl.hpp"
 
 namespace drogue::options {
 

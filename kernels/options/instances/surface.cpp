@@ -1,4 +1,4 @@
-#include "kernels/options/surface_on.hpp"
+#include "kernels/options/surface/surface_impl.hpp"
 
 namespace drogue::options {
 

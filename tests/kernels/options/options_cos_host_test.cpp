@@ -3,10 +3,10 @@
 #include <cmath>
 #include <complex>
 
-#include "kernels/options/condition.hpp"
-#include "kernels/options/cos_bessel.hpp"
-#include "kernels/options/cos_european.hpp"
-#include "kernels/options/cos_exponent.hpp"
+#include "kernels/options/contract_check.hpp"
+#include "kernels/options/cos/bessel.hpp"
+#include "kernels/options/cos/european.hpp"
+#include "kernels/options/cos/exponent.hpp"
 #include "kernels/reference/options/cos.hpp"
 #include "tests/support/option_sets.hpp"
 

@@ -4,8 +4,8 @@
 #include <numbers>
 #include <vector>
 
-#include "kernels/options/cos_american.hpp"
-#include "kernels/options/cos_pricer.hpp"
+#include "kernels/options/cos/american.hpp"
+#include "kernels/options/cos/pricer.hpp"
 #include "kernels/reference/options/cos.hpp"
 #include "tests/support/backend.hpp"
 #include "tests/support/option_sets.hpp"

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "kernels/options/hankel_table.hpp"
+#include "kernels/options/levy/hankel_table.hpp"
 #include "kernels/options/pricer.hpp"
 #include "kernels/reference/options/levy.hpp"
 #include "kernels/reference/options/scheme.hpp"

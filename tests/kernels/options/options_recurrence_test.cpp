@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "kernels/options/register_march.hpp"
+#include "kernels/options/pide/register_march.hpp"
 #include "tests/support/options_numbers.hpp"
 
 // Recurrences cut into lanes and parts of their blocks against plain ones, one node after the other.

@@ -5,8 +5,8 @@
 #include <random>
 #include <vector>
 
-#include "kernels/options/register_fourier.hpp"
-#include "kernels/options/shared_fourier.hpp"
+#include "kernels/options/transforms/register_fourier.hpp"
+#include "kernels/options/transforms/shared_fourier.hpp"
 #include "tests/support/options_numbers.hpp"
 
 // Sums over jumps by Fourier transforms against plain sums.

@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "kernels/options/levy/tails.hpp"
 #include "kernels/options/pricer.hpp"
-#include "kernels/options/tails.hpp"
 #include "tests/support/option_sets.hpp"
 #include "tests/support/priced.hpp"
 

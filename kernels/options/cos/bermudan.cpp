@@ -1,0 +1,14 @@
+#include "kernels/options/cos/bermudan.hpp"
+
+namespace drogue::options {
+
+// Defined in cos_bermudan_on.hpp, instantiated for each backend in instances/.
+template <class ExecutionSpace>
+std::unique_ptr<BermudanSolver> make_bermudan_solver();
+
+std::unique_ptr<BermudanSolver> create_bermudan_solver(device::Backend backend) {
+  return device::dispatch(backend,
+                          [&]<class ExecutionSpace>() { return make_bermudan_solver<ExecutionSpace>(); });
+}
+
+}  // namespace drogue::options

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <vector>
+
+#include "kernels/options/transforms/complex_number.hpp"
+
+namespace drogue::options {
+
+/// e^{2 pi i phi m/8}, m = 1 .. 7.
+struct SevenRoots {
+  ComplexNumber<double> of[7];
+};
+
+/// The roots of unity that transforms of up to 4096 points multiply with. x^n - i falls into eight factors,
+/// each of these into eight, and so on: at a level with 8^level of them factor b is x^m - e^{2 pi i phi} with
+/// m = n/8^level, phi = 1/4 at the first level and (phi + q)/8 for the parts q of a factor. The roots do not
+/// depend on n.
+struct FourierRoots {
+  const ComplexNumber<double>* place;  ///< in the memory of the backend, as the next
+
+  KOKKOS_INLINE_FUNCTION static FourierRoots of(const double* table) {
+    return {reinterpret_cast<const ComplexNumber<double>*>(table)};
+  }
+  /// e^{2 pi i phi m/8}, m = 1 .. 7. Those of one m lie side by side, as lanes read them.
+  [[nodiscard]] KOKKOS_INLINE_FUNCTION ComplexNumber<double> at(int level, int m, int factor) const {
+    return place[first(level) + ((m - 1) << (3 * level)) + factor];
+  }
+  [[nodiscard]] KOKKOS_INLINE_FUNCTION SevenRoots seven(int level, int factor) const {
+    SevenRoots roots;
+    for (int m = 1; m < 8; ++m) roots.of[m - 1] = at(level, m, factor);
+    return roots;
+  }
+  /// 7 (1 + 8 + ... + 8^{level-1}).
+  [[nodiscard]] KOKKOS_INLINE_FUNCTION static constexpr int first(int level) {
+    return (1 << (3 * level)) - 1;
+  }
+  static constexpr int levels = 4;
+};
+
+/// The table behind `FourierRoots`, (8^levels - 1, 2): cosines and sines.
+[[nodiscard]] std::vector<double> fourier_roots();
+
+}  // namespace drogue::options
