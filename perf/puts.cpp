@@ -19,7 +19,7 @@ struct Run {
   std::unique_ptr<options::Pricer> pricer;
   std::pmr::vector<options::Contract> contracts;
   std::pmr::vector<options::Price> prices;
-  options::Timing timing;
+  options::WallTimes timing;
 };
 
 std::vector<options::Contract> distinct(std::size_t count) {
@@ -79,7 +79,7 @@ Case timed(const std::string& name, device::Backend backend,
            const options::Settings& settings, double limit) {
   const auto run = std::make_shared<std::optional<Run>>();
   const std::function<std::map<std::string, double>()> parts = [=] {
-    const options::Timing& timing = (*run)->timing;
+    const options::WallTimes& timing = (*run)->timing;
     return std::map<std::string, double>{
         {"h2d", timing.h2d}, {"compute", timing.compute}, {"d2h", timing.d2h}};
   };

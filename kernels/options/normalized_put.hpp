@@ -9,7 +9,7 @@ namespace drogue::options {
 ///
 /// A call is the put with spot and strike, and rate and dividend, exchanged under the measure whose jumps
 /// have the density e^{-y} g(-y) (Peskir and Shiryaev 2002; Fajardo and Mordecki 2006).
-struct Put {
+struct NormalizedPut {
   Model model = Model::generalized_hyperbolic;
   bool early = true;      ///< may be exercised early, and it may pay
   bool split = false;     ///< where exercise pays is no half line: see `step`
@@ -43,9 +43,9 @@ KOKKOS_INLINE_FUNCTION bool early_may_pay(double rate, double dividend) {
 }
 
 /// If r < 0 the region where exercise pays, if any, does not reach down to x = -inf.
-KOKKOS_INLINE_FUNCTION Put put_of(const Contract& contract) {
+KOKKOS_INLINE_FUNCTION NormalizedPut put_of(const Contract& contract) {
   const bool call = contract.type == Type::call;
-  Put put;
+  NormalizedPut put;
   put.model = contract.model;
   put.rate = call ? contract.dividend : contract.rate;
   put.dividend = call ? contract.rate : contract.dividend;

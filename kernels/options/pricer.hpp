@@ -38,7 +38,7 @@ struct Settings {
 };
 
 /// Wall time of a batch's parts, s; where they are not timed apart it is all in `compute`.
-struct Timing {
+struct WallTimes {
   double h2d = 0.0;
   double compute = 0.0;  ///< with tables of Bessel functions and what else the host does for it
   double d2h = 0.0;
@@ -63,7 +63,7 @@ class Pricer {
   /// Prices every contract; `prices` has the length of `contracts`, each of which must satisfy
   /// `violated_condition` (std::invalid_argument for spans of different lengths). Returns when the prices
   /// are there. A contract's bits do not depend on the others of the batch.
-  virtual Timing price(std::span<const Contract> contracts, std::span<Price> prices) = 0;
+  virtual WallTimes price(std::span<const Contract> contracts, std::span<Price> prices) = 0;
 
   /// Memory from which and to which a device copies without a detour: contracts and prices may lie there. It
   /// lasts as long as the pricer.

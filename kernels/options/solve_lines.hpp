@@ -57,14 +57,14 @@ struct LineFunctor {
     recur_backward<most_lanes>(lane, y, f.from_right);
     const LaneNodes<block> x =
         f.from_left >= 0.0
-            ? recur_by_maps<most_lanes, RisingMap<double>>(lane, y, floor, f.from_left, f.edge)
+            ? recur_by_maps<most_lanes, MaxAffineMap<double>>(lane, y, floor, f.from_left, f.edge)
             : recur_by_maps<most_lanes, ClampedMap<double>>(lane, y, floor, f.from_left, f.edge);
     x.store(lane, to);
   }
 
-  template <class Workers>
-  KOKKOS_INLINE_FUNCTION void in_scratch(const Workers& workers, const Member& team, const LineFactors<R>& f,
-                                         const double* from, double* to) const {
+  template <class ThreadGroup>
+  KOKKOS_INLINE_FUNCTION void in_scratch(const ThreadGroup& workers, const Member& team,
+                                         const LineFactors<R>& f, const double* from, double* to) const {
     const int block_nodes = block_of(nodes, workers.lanes), count = block_nodes * workers.lanes, last = nodes;
     R* const y = static_cast<R*>(team.team_scratch(1).get_shmem_aligned(scratch_bytes(nodes) - 64, 64));
     R *const x = y + count, *const floor = x + count, *const slot = floor + count;

@@ -121,7 +121,7 @@ std::vector<options::BoundaryPoint> BatchRun::boundary_of(const options::Contrac
 
 void BatchRun::price_contracts() {
   const double begin = now();
-  const options::Timing timing = _pricer.price(_contracts, _prices);
+  const options::WallTimes timing = _pricer.price(_contracts, _prices);
   _spent.timing.h2d += timing.h2d;
   _spent.timing.compute += timing.compute;
   _spent.timing.d2h += timing.d2h;

@@ -38,7 +38,7 @@ struct Tally {
 
 /// What a rank spent on its chunks.
 struct Spent {
-  options::Timing timing;
+  options::WallTimes timing;
   double pricing = 0.0;  ///< s
   device::ProfilingCounters ledger;
 

@@ -10,9 +10,10 @@ inline constexpr double seed_reach = 4.0;
 /// Jumps as section 4.6.2 of the dissertation has them: exact masses of cells of the density, none within
 /// epsilon = h; the variance of those is diffusion. `jumps.left` and `left_price` are the B_l of Listing 4.6,
 /// what leaves the grid downwards; what leaves it upwards is worth nothing.
-template <class Workers, class R>
-KOKKOS_INLINE_FUNCTION Jumps<R> seed_jumps(const Workers& workers, const PutPack<R>& put, const Law<R>& law,
-                                           const Grid<R>& grid, R* w, R* left, R* left_price) {
+template <class ThreadGroup, class R>
+KOKKOS_INLINE_FUNCTION Jumps<R> seed_jumps(const ThreadGroup& workers, const PutPack<R>& put,
+                                           const LevyMeasure<R>& law, const Grid<R>& grid, R* w, R* left,
+                                           R* left_price) {
   const int mesh = grid.mesh, nodes = node_count(mesh);
   const R h = grid.h, beta = put.jump[2];
   const WeightLayout<R> layout(mesh);
@@ -59,7 +60,7 @@ KOKKOS_INLINE_FUNCTION Jumps<R> seed_jumps(const Workers& workers, const PutPack
 /// The dissertation's scheme on `batch`: diffusion implicit, the rest explicit, steps of equal length, and
 /// f = max(payoff, f) after each. What it leaves open is chosen here: epsilon = h and the domain.
 template <class ExecutionSpace>
-struct SeedBatch {
+struct BaselineBatch {
   using Batch = PriceBatch<ExecutionSpace>;
   using R = typename Batch::R;
   using Member = typename Batch::Member;
@@ -69,8 +70,8 @@ struct SeedBatch {
 
   KOKKOS_FUNCTION void operator()(const Member& team) const { batch.template price_group<0>(*this, team); }
 
-  template <class Workers>
-  KOKKOS_INLINE_FUNCTION void price(const Workers& workers, const Memory<R, 0>& memory, int group) const {
+  template <class ThreadGroup>
+  KOKKOS_INLINE_FUNCTION void price(const ThreadGroup& workers, const Memory<R, 0>& memory, int group) const {
     const int mesh = batch.mesh, steps = batch.steps, count = node_count(mesh),
               block = block_of(mesh, workers.lanes);
     workers.each([=, this](int thread) {
@@ -78,7 +79,7 @@ struct SeedBatch {
         memory.puts[k] = put_of(batch.contracts(batch.place(group, k)));
     });
     const PutPack<R> put = pack_of<R>(memory.puts);
-    const Law<R> law =
+    const LevyMeasure<R> law =
         law_of(workers, put, memory.puts, batch.panels.data(), batch.panel_slot.data(), memory.law_memory());
     const Grid<R> grid{mesh, R(2.0 * seed_reach / mesh), R(0.5 * mesh)};
     const Jumps<R> jumps =
@@ -139,7 +140,7 @@ struct SeedBatch {
         const int at = batch.place(group, k);
         const Column values{reinterpret_cast<const double*>(value) + k, members};
         const double width = 2.0 * seed_reach / mesh;
-        const Answer answer =
+        const SolutionAtSpot answer =
             answer_of(memory.puts[k], values, {reinterpret_cast<const double*>(change) + k, members},
                       {mesh, mesh / 2, last_exercised(values, mesh / 2, width), width});
         Price price =
@@ -154,7 +155,7 @@ struct SeedBatch {
 /// Enqueues the launch.
 template <class ExecutionSpace>
 void seed_batch(const ExecutionSpace& space, const PriceBatch<ExecutionSpace>& batch) {
-  launch_batch<0>(space, "drogue::options::seed", SeedBatch<ExecutionSpace>{batch});
+  launch_batch<0>(space, "drogue::options::seed", BaselineBatch<ExecutionSpace>{batch});
 }
 
 }  // namespace drogue::options

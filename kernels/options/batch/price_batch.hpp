@@ -17,7 +17,7 @@ KOKKOS_INLINE_FUNCTION R larger(R a, R b) {
 template <class R>
 struct Prepared {
   PutPack<R> put;
-  Law<R> law;
+  LevyMeasure<R> law;
   Grid<R> grid;  ///< the finer one
   Tails<R> tails;
   Jumps<R> jumps;  ///< on it
@@ -79,19 +79,20 @@ struct PriceBatch {
   }
 
   /// Prices the contracts of a group. A call would keep all that it is told in memory.
-  template <Laws laws, int fixed, class Workers>
-  KOKKOS_FORCEINLINE_FUNCTION void price(const Workers& workers, const Memory<R, fixed>& memory,
+  template <Laws laws, int fixed, class ThreadGroup>
+  KOKKOS_FORCEINLINE_FUNCTION void price(const ThreadGroup& workers, const Memory<R, fixed>& memory,
                                          int group) const {
     const Prepared<R> prepared = prepare<laws>(workers, memory, group);
-    const Doubt<R> doubt = doubt_of_solve(prepared.put, prepared.law, prepared.jumps, prepared.grid, steps);
+    const ErrorEstimate<R> doubt =
+        doubt_of_solve(prepared.put, prepared.law, prepared.jumps, prepared.grid, steps);
     solve_fine(workers, prepared, memory);
     const R* coarse = one_grid ? memory.kept(prepared.grid.mesh) : solve_coarse(workers, prepared, memory);
     conclude(workers, prepared, doubt, memory, coarse, memory, group);
   }
 
   /// What both solves need, and the weights of the finer one.
-  template <Laws laws, int fixed, class Workers>
-  [[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION Prepared<R> prepare(const Workers& workers,
+  template <Laws laws, int fixed, class ThreadGroup>
+  [[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION Prepared<R> prepare(const ThreadGroup& workers,
                                                                 const Memory<R, fixed>& memory,
                                                                 int group) const {
     const int cells = mesh_for<fixed>(mesh);
@@ -106,7 +107,7 @@ struct PriceBatch {
     PutPack<R>& put = prepared.put;
     put.any_split = !workers.all(!put.any_split);
     prepared.law = law_of(workers, put, memory.puts, panels.data(), panel_slot.data(), memory.law_memory());
-    const Law<R>& law = prepared.law;
+    const LevyMeasure<R>& law = prepared.law;
     prepared.grid = grid_of(domain_of(workers, put, law, cut_error(cells), memory.slot), cells);
     prepared.tails = tails_of(workers, put, law, prepared.grid.h * double(cells));
     prepared.jumps = jumps_on<fixed>(workers, put, law, prepared.tails, prepared.grid, memory, memory.w);
@@ -114,8 +115,8 @@ struct PriceBatch {
   }
 
   /// Leaves answers and every other value in the memory.
-  template <int fixed, class Workers>
-  KOKKOS_FORCEINLINE_FUNCTION void solve_fine(const Workers& workers, const Prepared<R>& prepared,
+  template <int fixed, class ThreadGroup>
+  KOKKOS_FORCEINLINE_FUNCTION void solve_fine(const ThreadGroup& workers, const Prepared<R>& prepared,
                                               const Memory<R, fixed>& memory) const {
     const int cells = mesh_for<fixed>(prepared.grid.mesh);
     const Solution<R> fine = solve<fixed>(workers, prepared.put, prepared.jumps, prepared.grid, steps, memory,
@@ -127,8 +128,8 @@ struct PriceBatch {
   }
 
   /// Returns the values; leaves answers in the memory.
-  template <int fixed, class Workers>
-  KOKKOS_FORCEINLINE_FUNCTION const R* solve_coarse(const Workers& workers, const Prepared<R>& prepared,
+  template <int fixed, class ThreadGroup>
+  KOKKOS_FORCEINLINE_FUNCTION const R* solve_coarse(const ThreadGroup& workers, const Prepared<R>& prepared,
                                                     const Memory<R, fixed>& memory) const {
     const Grid<R> grid = coarser(prepared.grid);
     const R* value = nullptr;
@@ -151,15 +152,15 @@ struct PriceBatch {
 
   /// Puts the prices together. `coarse` are the values that `solve_coarse` has returned, whose memory was
   /// `other`.
-  template <int fixed, class Workers>
-  KOKKOS_FORCEINLINE_FUNCTION void conclude(const Workers& workers, const Prepared<R>& prepared,
-                                            const Doubt<R>& doubt, const Memory<R, fixed>& memory,
+  template <int fixed, class ThreadGroup>
+  KOKKOS_FORCEINLINE_FUNCTION void conclude(const ThreadGroup& workers, const Prepared<R>& prepared,
+                                            const ErrorEstimate<R>& doubt, const Memory<R, fixed>& memory,
                                             const R* coarse, const Memory<R, fixed>& other, int group) const {
     const PutPack<R>& put = prepared.put;
     const int cells = mesh_for<fixed>(prepared.grid.mesh);
     const Grid<R> grid = coarser(prepared.grid);
     const R* const kept = memory.kept(cells);
-    const Answer* const coarse_answers = one_grid ? memory.answers : other.answers + members;
+    const SolutionAtSpot* const coarse_answers = one_grid ? memory.answers : other.answers + members;
     const R deviation = device::square_root((put.variance + prepared.law.variance) * put.maturity);
     const R window = device::maximum(grid.h, deviation);
     const auto largest_change = [=, &put](int lane) {
@@ -176,8 +177,8 @@ struct PriceBatch {
         if (group * members + k >= count) continue;
         const int at = place(group, k);
         const auto own = [k](const R& number) { return device::Access<R>::lane(number, k); };
-        const Put& one = memory.puts[k];
-        Doubt<double> known = doubt_without_premium(doubt, one, k);
+        const NormalizedPut& one = memory.puts[k];
+        ErrorEstimate<double> known = doubt_without_premium(doubt, one, k);
         if (knows_premium() && one.split) {
           const double premium = beside_spot(one, grid, coarse, k) - other.unexercised[k];
           known = {own(doubt.factor),
@@ -195,8 +196,8 @@ struct PriceBatch {
   [[nodiscard]] KOKKOS_INLINE_FUNCTION bool knows_premium() const { return !split && !one_grid; }
 
   /// The value of member k at the node next to its spot.
-  [[nodiscard]] static KOKKOS_INLINE_FUNCTION double beside_spot(const Put& put, const Grid<R>& grid,
-                                                                 const R* nodes, int k) {
+  [[nodiscard]] static KOKKOS_INLINE_FUNCTION double beside_spot(const NormalizedPut& put,
+                                                                 const Grid<R>& grid, const R* nodes, int k) {
     const auto own = [k](const R& number) { return device::Access<R>::lane(number, k); };
     return column_of(nodes, k)(node_beside(put, own(grid.strike), own(grid.h), grid.mesh));
   }

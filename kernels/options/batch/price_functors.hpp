@@ -14,8 +14,8 @@ struct PriceFunctor {
   KOKKOS_FORCEINLINE_FUNCTION void operator()(const typename Batch::Member& team) const {
     batch.template price_group<fixed>(*this, team);
   }
-  template <class Workers>
-  KOKKOS_FORCEINLINE_FUNCTION void price(const Workers& workers,
+  template <class ThreadGroup>
+  KOKKOS_FORCEINLINE_FUNCTION void price(const ThreadGroup& workers,
                                          const Memory<typename Batch::R, fixed>& memory, int group) const {
     batch.template price<laws>(workers, memory, group);
   }
@@ -42,7 +42,7 @@ struct PriceByTwoFunctor {
     if (finer) {
       batch.solve_fine(workers, prepared, memory);
     } else {
-      const Doubt<double> doubt =
+      const ErrorEstimate<double> doubt =
           doubt_of_solve(prepared.put, prepared.law, prepared.jumps, prepared.grid, batch.steps);
       batch.solve_coarse(workers, prepared, memory);
       workers.each([=](int thread) {

@@ -21,15 +21,15 @@ namespace drogue::options {
 
 /// The pricer on `ExecutionSpace`.
 template <class ExecutionSpace>
-class PricerOn final : public Pricer {
+class PricerImpl final : public Pricer {
   using Space = typename ExecutionSpace::memory_space;
   template <class T>
   using View = Kokkos::View<T*, Space>;
 
  public:
-  explicit PricerOn(const Settings& settings) : _settings(settings), _instance(1 << 20) {}
+  explicit PricerImpl(const Settings& settings) : _settings(settings), _instance(1 << 20) {}
 
-  Timing price(std::span<const Contract> contracts, std::span<Price> prices) override {
+  WallTimes price(std::span<const Contract> contracts, std::span<Price> prices) override {
     if (contracts.size() != prices.size())
       throw std::invalid_argument("options pricer: as many prices as contracts are needed");
     if (_settings.method == Method::seed)
@@ -37,9 +37,9 @@ class PricerOn final : public Pricer {
         if (contract.model != Model::generalized_hyperbolic)
           throw std::invalid_argument(
               "options pricer: the dissertation's scheme has generalized hyperbolic jumps");
-    Timing timing;
+    WallTimes timing;
     if (contracts.empty()) return timing;
-    const Clock all;
+    const Stopwatch all;
     try {
       price_all(contracts, prices, timing);
     } catch (...) {  // what is under way may read and write memory of the caller's
@@ -53,7 +53,7 @@ class PricerOn final : public Pricer {
   std::pmr::memory_resource& memory() override { return _pinned; }
 
   std::vector<BoundaryPoint> boundary_on(const Contract& contract, int mesh, int steps) override {
-    const Recorded all = record(contract, mesh != 0 ? Effort{mesh, steps} : recorded_effort());
+    const Recorded all = record(contract, mesh != 0 ? Resolution{mesh, steps} : recorded_effort());
     std::vector<BoundaryPoint> points;
     for (std::size_t k = all.time.size(); k-- > 0;)
       if (std::isfinite(all.boundary[k]))
@@ -79,11 +79,11 @@ class PricerOn final : public Pricer {
     View<Price> prices;
   };
 
-  void price_to_tolerance(std::span<const Contract> contracts, std::span<Price> prices, Timing& timing) {
-    const Effort first{first_mesh, steps_of(first_mesh)};
+  void price_to_tolerance(std::span<const Contract> contracts, std::span<Price> prices, WallTimes& timing) {
+    const Resolution first{first_mesh, steps_of(first_mesh)};
     std::vector<Refinement> rows(contracts.size(), Refinement{first});
-    for (std::optional<Effort> effort = first; effort; effort = least_effort(rows)) {
-      const Clock computing;
+    for (std::optional<Resolution> effort = first; effort; effort = least_effort(rows)) {
+      const Stopwatch computing;
       launch_models({_contracts, _prices}, contracts, *effort,
                     [&](std::size_t k) { return rows[k].next == *effort; });
       timing.compute += computing.seconds();
@@ -94,17 +94,17 @@ class PricerOn final : public Pricer {
     }
   }
 
-  void price_all(std::span<const Contract> contracts, std::span<Price> prices, Timing& timing) {
+  void price_all(std::span<const Contract> contracts, std::span<Price> prices, WallTimes& timing) {
     const int mesh = _settings.mesh == 0 && _settings.method == Method::seed ? seed_mesh : _settings.mesh;
     reserve(contracts.size());
     if (mesh != 0 && is_priced_in_place(contracts.size()))
       return price_in_place(contracts, prices, {mesh, steps_of(mesh)});
-    const Clock copying_in;
+    const Stopwatch copying_in;
     device::copy_in(_instance.space(), _contracts, staged(contracts), contracts.size());
     if (_settings.timed_apart) _instance.space().fence("drogue::options: contracts are copied");
     timing.h2d = copying_in.seconds();
     if (mesh == 0) return price_to_tolerance(contracts, prices, timing);
-    const Clock computing;
+    const Stopwatch computing;
     launch_all({_contracts, _prices}, contracts, {mesh, steps_of(mesh)});
     timing.compute = computing.seconds();
     copy_out(prices, timing);
@@ -116,7 +116,8 @@ class PricerOn final : public Pricer {
     return !device::is_host<ExecutionSpace> && !_settings.timed_apart && count <= 64;
   }
 
-  void price_in_place(std::span<const Contract> contracts, std::span<Price> prices, const Effort& effort) {
+  void price_in_place(std::span<const Contract> contracts, std::span<Price> prices,
+                      const Resolution& effort) {
     Price* const to = landing(prices);
     launch_all({Kokkos::View<const Contract*, Space>(staged(contracts), contracts.size()),
                 View<Price>(to, prices.size())},
@@ -124,7 +125,7 @@ class PricerOn final : public Pricer {
     await(to, prices);
   }
 
-  void launch_all(const Places& places, std::span<const Contract> contracts, const Effort& effort) {
+  void launch_all(const Places& places, std::span<const Contract> contracts, const Resolution& effort) {
     launch_models(places, contracts, effort, [](std::size_t) { return true; });
   }
 
@@ -142,7 +143,7 @@ class PricerOn final : public Pricer {
   }
 
   /// Solves one contract and brings what a solve leaves to the host.
-  Recorded record(const Contract& contract, const Effort& effort) {
+  Recorded record(const Contract& contract, const Resolution& effort) {
     const std::span<const Contract> one(&contract, 1);
     reserve(1);
     _panels.build(one);
@@ -169,7 +170,7 @@ class PricerOn final : public Pricer {
     return recorded;
   }
 
-  [[nodiscard]] Effort recorded_effort() const {
+  [[nodiscard]] Resolution recorded_effort() const {
     const int mesh = _settings.mesh != 0 ? _settings.mesh : record_mesh;
     return {mesh, steps_of(mesh)};
   }
@@ -210,8 +211,8 @@ class PricerOn final : public Pricer {
     if (landed != prices.data()) std::copy_n(landed, prices.size(), prices.begin());
   }
 
-  void copy_out(std::span<Price> prices, Timing& timing) {
-    const Clock copying;
+  void copy_out(std::span<Price> prices, WallTimes& timing) {
+    const Stopwatch copying;
     Price* const to = landing(prices);
     device::copy_out(_instance.space(), to, _prices, prices.size());
     await(to, prices);
@@ -220,7 +221,7 @@ class PricerOn final : public Pricer {
 
   /// Prices the contracts k for which `asked(k)`, those of a model and a slab in a launch.
   template <class Asked>
-  void launch_models(const Places& places, std::span<const Contract> contracts, const Effort& effort,
+  void launch_models(const Places& places, std::span<const Contract> contracts, const Resolution& effort,
                      const Asked& asked) {
     std::vector<int> rows[models];
     std::size_t place = 0, gathered = 0;
@@ -246,7 +247,7 @@ class PricerOn final : public Pricer {
 
   /// Enqueues the launch for `rows`, which are put at `place` of the order.
   void launch(const Places& places, std::span<const int> rows, Model model, std::size_t place,
-              const Effort& effort, const Record& record) {
+              const Resolution& effort, const Record& record) {
     if (rows.empty()) return;
     const auto order = Kokkos::subview(_order, std::pair(place, place + rows.size()));
     int* const known = _rows.data() + place;
@@ -293,7 +294,7 @@ class PricerOn final : public Pricer {
 
 template <class ExecutionSpace>
 std::unique_ptr<Pricer> make_pide(const Settings& settings) {
-  return std::make_unique<PricerOn<ExecutionSpace>>(settings);
+  return std::make_unique<PricerImpl<ExecutionSpace>>(settings);
 }
 
 }  // namespace drogue::options

@@ -9,18 +9,20 @@
 namespace drogue::options {
 
 /// What a launch spends on each price.
-struct Effort {
+struct Resolution {
   int mesh = 0, steps = 0;
 
-  friend bool operator==(const Effort& a, const Effort& b) { return a.mesh == b.mesh && a.steps == b.steps; }
-  friend bool operator<(const Effort& a, const Effort& b) {
+  friend bool operator==(const Resolution& a, const Resolution& b) {
+    return a.mesh == b.mesh && a.steps == b.steps;
+  }
+  friend bool operator<(const Resolution& a, const Resolution& b) {
     return a.mesh != b.mesh ? a.mesh < b.mesh : a.steps < b.steps;
   }
 };
 
 /// How far a price has come whose tolerance decides.
 struct Refinement {
-  Effort next;         ///< no mesh: it is there
+  Resolution next;     ///< no mesh: it is there
   int often = 1;       ///< steps, of a fourth of the mesh
   double error = 0.0;  ///< stated last
 };
@@ -31,8 +33,8 @@ struct Refinement {
 }
 
 /// The next effort, the least of those that are missing; none if all prices are there.
-[[nodiscard]] inline std::optional<Effort> least_effort(const std::vector<Refinement>& rows) {
-  std::optional<Effort> least;
+[[nodiscard]] inline std::optional<Resolution> least_effort(const std::vector<Refinement>& rows) {
+  std::optional<Resolution> least;
   for (const Refinement& row : rows)
     if (row.next.mesh != 0 && (!least || row.next < *least)) least = row.next;
   return least;

@@ -5,7 +5,7 @@
 namespace drogue::options {
 
 /// Wall time since it was made.
-class Clock {
+class Stopwatch {
  public:
   [[nodiscard]] double seconds() const {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - _begin).count();

@@ -37,7 +37,7 @@ struct ValueBermudans {
 };
 
 template <class ExecutionSpace>
-class BermudanSolverOn final : public BermudanSolver {
+class BermudanSolverImpl final : public BermudanSolver {
   using Memory = typename ExecutionSpace::memory_space;
   template <class Value>
   using View = Kokkos::View<Value*, Memory>;
@@ -45,7 +45,7 @@ class BermudanSolverOn final : public BermudanSolver {
   using HostView = Kokkos::View<Value*, Kokkos::HostSpace, Kokkos::MemoryTraits<Kokkos::Unmanaged>>;
 
  public:
-  BermudanSolverOn() : _instance(ExecutionSpace().concurrency()) {
+  BermudanSolverImpl() : _instance(ExecutionSpace().concurrency()) {
     constexpr int count = 1 << most_log_terms;  // half of a circle is all that is asked for
     std::vector<double> re(count), im(count);
     for (int k = 0; k < count; ++k) {
@@ -114,7 +114,7 @@ class BermudanSolverOn final : public BermudanSolver {
 
 template <class ExecutionSpace>
 std::unique_ptr<BermudanSolver> make_bermudan_solver() {
-  return std::make_unique<BermudanSolverOn<ExecutionSpace>>();
+  return std::make_unique<BermudanSolverImpl<ExecutionSpace>>();
 }
 
 }  // namespace drogue::options

@@ -70,10 +70,10 @@ class CosPricer final : public Pricer {
         _settings(settings),
         _solver(create_bermudan_solver(backend)) {}
 
-  Timing price(std::span<const Contract> contracts, std::span<Price> prices) override {
+  WallTimes price(std::span<const Contract> contracts, std::span<Price> prices) override {
     if (contracts.size() != prices.size())
       throw std::invalid_argument("cos: as many prices as contracts are needed");
-    const Clock pricing;
+    const Stopwatch pricing;
     std::vector<std::size_t> american;
     for (std::size_t i = 0; i < contracts.size(); ++i)
       if (contracts[i].style == Style::american && !AmericanPut(contracts[i]).never_exercised())
@@ -87,7 +87,7 @@ class CosPricer final : public Pricer {
       price_american(contracts, std::span(american).subspan(first, count), prices);
     }
     for (std::size_t i = 0; i < contracts.size(); ++i) finish(contracts[i], prices[i]);
-    Timing timing;
+    WallTimes timing;
     timing.compute = pricing.seconds();
     return timing;
   }

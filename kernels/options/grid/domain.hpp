@@ -29,7 +29,7 @@ KOKKOS_INLINE_FUNCTION R tilt_upwards(R t, R decay) {
 
 /// ln E e^{theta X} of a year without the drift.
 template <class R>
-KOKKOS_INLINE_FUNCTION R cumulant_of(const PutPack<R>& put, const Law<R>& law, R theta) {
+KOKKOS_INLINE_FUNCTION R cumulant_of(const PutPack<R>& put, const LevyMeasure<R>& law, R theta) {
   return 0.5 * put.variance * theta * theta + jump_cumulant(put, law, theta);
 }
 
@@ -38,9 +38,9 @@ KOKKOS_INLINE_FUNCTION R cumulant_of(const PutPack<R>& put, const Law<R>& law, R
 /// 0, if 0 < r < q below it. What is assumed at the cut lacks at most that premium, so it matters if a path
 /// gets to the cut and from there, by the same bound, back up to -onset in the one case, and in the other if
 /// it gets to the cut, unless not even -onset is within reach.
-template <class Workers, class R>
-KOKKOS_INLINE_FUNCTION R reach_of_premium(const Workers& workers, const PutPack<R>& put, R spot_below, R base,
-                                          const R* tilt, const R* grown) {
+template <class ThreadGroup, class R>
+KOKKOS_INLINE_FUNCTION R reach_of_premium(const ThreadGroup& workers, const PutPack<R>& put, R spot_below,
+                                          R base, const R* tilt, const R* grown) {
   constexpr int n = tilts;
   const R farther = put.early * (put.dividend - put.rate) * put.rate;
   if (workers.all(farther <= R(0.0))) return 0.0;
@@ -68,9 +68,9 @@ KOKKOS_INLINE_FUNCTION R reach_of_premium(const Workers& workers, const PutPack<
 /// law, one of which may decay ever so slowly: from tilts 100 4^{-k} and 0, which is a path that need not get
 /// to the cut, or need not come back. `base` and `mean` are those of `domain_of`; `tilt` and `growth` hold
 /// `most_lanes` values.
-template <class Workers, class R>
-KOKKOS_INLINE_FUNCTION Domain<R> wide_domain(const Workers& workers, const PutPack<R>& put, const Law<R>& law,
-                                             R base, R mean, R* tilt, R* growth) {
+template <class ThreadGroup, class R>
+KOKKOS_INLINE_FUNCTION Domain<R> wide_domain(const ThreadGroup& workers, const PutPack<R>& put,
+                                             const LevyMeasure<R>& law, R base, R mean, R* tilt, R* growth) {
   constexpr int n = tilts;
   const R up = decay_up(put), down = decay_down(put);
   workers.each([=, &put, &law](int thread) {
@@ -110,9 +110,9 @@ KOKKOS_INLINE_FUNCTION Domain<R> wide_domain(const Workers& workers, const PutPa
 /// early exercise boundary of a put with r > 0 lies above ln(t/(1+t)) for every t with psi(-t) <= r
 /// (Lundberg's bound on the infimum, Mordecki 2002), and below it the value is known. `scratch` holds 3
 /// `most_lanes` values.
-template <class Workers, class R>
-KOKKOS_INLINE_FUNCTION Domain<R> domain_of(const Workers& workers, const PutPack<R>& put, const Law<R>& law,
-                                           double error, R* scratch) {
+template <class ThreadGroup, class R>
+KOKKOS_INLINE_FUNCTION Domain<R> domain_of(const ThreadGroup& workers, const PutPack<R>& put,
+                                           const LevyMeasure<R>& law, double error, R* scratch) {
   constexpr int n = tilts;
   R *tilt = scratch, *cumulant = scratch + most_lanes, *grown = scratch + 2 * most_lanes;
   const R up = decay_up(put), down = decay_down(put), maturity = put.maturity, rate = put.rate;

@@ -29,13 +29,13 @@ void for_laws_of(Model model, const F& f) {
 }
 
 template <class R, Laws laws = Laws::all>
-KOKKOS_INLINE_FUNCTION PutPack<R> pack_of(const Put* puts) {
+KOKKOS_INLINE_FUNCTION PutPack<R> pack_of(const NormalizedPut* puts) {
   PutPack<R> pack{};
   pack.model = laws == Laws::mixtures ? Model::generalized_hyperbolic : puts[0].model;
   if constexpr (laws == Laws::closed_forms) device::assume(pack.model != Model::generalized_hyperbolic);
   for (int k = 0; k < device::Access<R>::lanes; ++k) {
     const auto set = [k](R& number, double value) { reinterpret_cast<double*>(&number)[k] = value; };
-    const Put& put = puts[k];
+    const NormalizedPut& put = puts[k];
     pack.any_split = pack.any_split || put.split;
     set(pack.early, put.early ? 1.0 : 0.0);
     set(pack.split, put.split ? 1.0 : 0.0);
@@ -61,7 +61,7 @@ KOKKOS_INLINE_FUNCTION PutPack<R> with_exercise(PutPack<R> put, bool allowed) {
 
 /// What a pack's jumps are made of. Terms of a mixture are in scratch memory; the other models have none.
 template <class R>
-struct Law {
+struct LevyMeasure {
   R* s;        ///< (Mixture::size): rates
   R* c;        ///< (Mixture::size): weights
   R* up;       ///< (Mixture::low): 1/(s - beta), the length at which a term decays upwards
@@ -83,11 +83,12 @@ KOKKOS_INLINE_FUNCTION R decay_down(const PutPack<R>& put) {
 }
 
 /// Puts the terms of all members of a pack into `memory`, scratch memory, and sums the variance.
-template <class Workers, class R>
-KOKKOS_INLINE_FUNCTION Law<R> law_of(const Workers& workers, const PutPack<R>& pack, const Put* puts,
-                                     const double* panels, const int* panel_slot, const Law<R>& memory) {
+template <class ThreadGroup, class R>
+KOKKOS_INLINE_FUNCTION LevyMeasure<R> law_of(const ThreadGroup& workers, const PutPack<R>& pack,
+                                             const NormalizedPut* puts, const double* panels,
+                                             const int* panel_slot, const LevyMeasure<R>& memory) {
   constexpr int members = device::Access<R>::lanes;
-  Law<R> law = memory;
+  LevyMeasure<R> law = memory;
   R *s = law.s, *c = law.c, *ups = law.up, *downs = law.down;
   if (pack.model == Model::generalized_hyperbolic) {
     workers.each([=](int thread) {
@@ -132,7 +133,7 @@ KOKKOS_INLINE_FUNCTION R merton_deviation(const PutPack<R>& put) {
 
 /// The integral of (e^{theta y} - 1 - theta y) g(y) dy, a year; a mixture's to 1e-8.
 template <class R>
-KOKKOS_INLINE_FUNCTION R jump_cumulant(const PutPack<R>& put, const Law<R>& law, R theta) {
+KOKKOS_INLINE_FUNCTION R jump_cumulant(const PutPack<R>& put, const LevyMeasure<R>& law, R theta) {
   if (put.model == Model::merton) {
     const R m = put.jump[1], d = put.jump[2];
     return put.jump[0] * (exponential(theta * (m + 0.5 * theta * d * d)) - 1.0 - theta * m);

@@ -52,7 +52,8 @@ struct MixtureGrid {
   int first;            ///< node of the panel that term 1 belongs to
 };
 
-KOKKOS_INLINE_FUNCTION MixtureGrid mixture_grid(const Put& put, const double* panels, const int* slot) {
+KOKKOS_INLINE_FUNCTION MixtureGrid mixture_grid(const NormalizedPut& put, const double* panels,
+                                                const int* slot) {
   const double order = device::portable::magnitude(put.jump[0]);
   if (put.jump[3] == 0.0 || !(order < HankelGrid::largest_order)) return {nullptr, 0.0, 0};
   const int panel = panel_of(order);
@@ -74,7 +75,7 @@ KOKKOS_INLINE_FUNCTION MixtureGrid mixture_grid(const Put& put, const double* pa
 }
 
 /// Term q of the mixture of `put`, a generalized hyperbolic one; not a number beyond the largest order.
-KOKKOS_INLINE_FUNCTION Term mixture_term(const Put& put, const MixtureGrid& grid, int q) {
+KOKKOS_INLINE_FUNCTION Term mixture_term(const NormalizedPut& put, const MixtureGrid& grid, int q) {
   const double lambda = put.jump[0], alpha = put.jump[1], delta = put.jump[3];
   if (delta == 0.0) return {alpha, q == 0 ? lambda : 0.0};
   if (grid.panel == nullptr) return {alpha, device::portable::not_a_number()};

@@ -12,9 +12,9 @@ struct Tails {
 };
 
 /// Of a mixture they are exponential integrals, of the others closed forms. `length` is that of the grid.
-template <class Workers, class R>
-KOKKOS_INLINE_FUNCTION Tails<R> tails_of(const Workers& workers, const PutPack<R>& put, const Law<R>& law,
-                                         R length) {
+template <class ThreadGroup, class R>
+KOKKOS_INLINE_FUNCTION Tails<R> tails_of(const ThreadGroup& workers, const PutPack<R>& put,
+                                         const LevyMeasure<R>& law, R length) {
   if (put.model == Model::kou) {
     const R p = put.jump[1], up = put.jump[2], down = put.jump[3];
     const R a = put.jump[0] * p * exponential(-up * length),

@@ -6,7 +6,7 @@ namespace drogue::options {
 
 /// What the stated error is made of, beside what interpolation and the grid's ends leave.
 template <class R>
-struct Doubt {
+struct ErrorEstimate {
   R factor;    ///< of the largest difference of two grids near the spot
   R gap;       ///< what that difference does not tell at all, of the strike
   R variance;  ///< of the law, a year
@@ -22,7 +22,8 @@ inline constexpr double split_factor = 0.4;
 
 /// The doubt of member k of a pack, of whose put no premium is known.
 template <class R>
-KOKKOS_INLINE_FUNCTION Doubt<double> doubt_without_premium(const Doubt<R>& doubt, const Put& put, int k) {
+KOKKOS_INLINE_FUNCTION ErrorEstimate<double> doubt_without_premium(const ErrorEstimate<R>& doubt,
+                                                                   const NormalizedPut& put, int k) {
   const double factor = device::Access<R>::lane(doubt.factor, k);
   return {put.split ? device::maximum(factor, split_factor) : factor, device::Access<R>::lane(doubt.gap, k),
           device::Access<R>::lane(doubt.variance, k)};
@@ -55,7 +56,7 @@ KOKKOS_INLINE_FUNCTION R error_factor(R h, int steps, R spread, R crossed) {
 /// How much of what is in doubt at the boundary of exercise is so at a put's spot: from two steps on it falls
 /// with the distance, since the boundary moves on and is now above a node and now below one. None where
 /// exercise is split off, whose own doubt holds it.
-KOKKOS_INLINE_FUNCTION double nearness(const Put& put, double boundary, double h) {
+KOKKOS_INLINE_FUNCTION double nearness(const NormalizedPut& put, double boundary, double h) {
   if (put.split || !(boundary == boundary)) return 0.0;
   const double away = device::portable::magnitude(put.log_spot - boundary), beside = 2.0 * h;
   return away > beside ? beside / away : 1.0;
@@ -65,7 +66,8 @@ KOKKOS_INLINE_FUNCTION double nearness(const Put& put, double boundary, double h
 /// the time value is B (x - b)^2/2, of which `contact` and `parting` tell the time t = 3/4 contact/parting in
 /// which b moves by half a step. The chance to get from x to b within t falls with q = (x - b)^2/(variance
 /// t), as fitted like 1/(1 + q + q^2/2).
-KOKKOS_INLINE_FUNCTION double persistence(const Put& put, const Answer& answer, double variance) {
+KOKKOS_INLINE_FUNCTION double persistence(const NormalizedPut& put, const SolutionAtSpot& answer,
+                                          double variance) {
   const double away = put.log_spot - answer.boundary;
   const double stays = device::maximum(answer.contact * variance, 1e-150),
                moves = (4.0 / 3) * away * away * device::maximum(answer.parting, 0.0);
@@ -74,18 +76,18 @@ KOKKOS_INLINE_FUNCTION double persistence(const Put& put, const Answer& answer, 
 
 /// What exercise at nodes alone may change of the value. Grids know the boundary to a part of a step,
 /// elsewhere on each, so their difference does not tell this. Where the time value is half its bend times the
-/// distance squared, `Answer::contact` is that bend times h^2, and a boundary that is off by 0.35 h misses
-/// 0.06 of it. Without diffusion the time value has an angle, and what 0.06 h is worth is missed. Fitted to
-/// American prices of finer grids. Away from the boundary the value says how likely a path gets there: it is
-/// no less than that of exercise at the boundary alone.
-KOKKOS_INLINE_FUNCTION double doubt_of_contact(const Answer& answer) {
+/// distance squared, `SolutionAtSpot::contact` is that bend times h^2, and a boundary that is off by 0.35 h
+/// misses 0.06 of it. Without diffusion the time value has an angle, and what 0.06 h is worth is missed.
+/// Fitted to American prices of finer grids. Away from the boundary the value says how likely a path gets
+/// there: it is no less than that of exercise at the boundary alone.
+KOKKOS_INLINE_FUNCTION double doubt_of_contact(const SolutionAtSpot& answer) {
   const double payoff = 1.0 - exponential(answer.boundary);
   return 0.06 * answer.contact * (answer.value < payoff ? answer.value / payoff : 1.0);
 }
 
 /// How many deviations the drift crosses until maturity, as `error_factor` counts them, 1 at least.
 template <class R>
-KOKKOS_INLINE_FUNCTION R crossed_deviations(const PutPack<R>& put, const Law<R>& law) {
+KOKKOS_INLINE_FUNCTION R crossed_deviations(const PutPack<R>& put, const LevyMeasure<R>& law) {
   const R variance = device::maximum((put.variance + law.variance) * put.maturity, R(1e-100));
   // What a mean of e^y - 1 - y takes from the drift is nearly half of the variance, but not where Kou's jumps
   // upwards hardly have a mean.
@@ -107,7 +109,7 @@ KOKKOS_INLINE_FUNCTION R crossed_deviations(const PutPack<R>& put, const Law<R>&
 /// that cells miss over the variance, and V_xxx/6. 4 f, since the coarser grid misses up to sixteen times the
 /// part f that the finer one does.
 template <class R>
-KOKKOS_INLINE_FUNCTION R doubt_of_kous_skewness(const PutPack<R>& put, const Law<R>& law, R h) {
+KOKKOS_INLINE_FUNCTION R doubt_of_kous_skewness(const PutPack<R>& put, const LevyMeasure<R>& law, R h) {
   const auto third_missed = [=](R share, R decay) {
     const R length = device::reciprocal(decay), x = 0.5 * h * decay;
     const R f = 1.0 - exponential(-x) * (1.0 + x * (1.0 + x * (0.5 + x * (1.0 / 6))));
@@ -142,10 +144,11 @@ KOKKOS_INLINE_FUNCTION R doubt_of_hyperbolic_skewness(const PutPack<R>& put, R h
 /// Of a solve on a mesh of steps h whose differences spread the payoff by `spread`. A step that does not
 /// resolve e^x misses h^4/20.
 template <class R>
-KOKKOS_INLINE_FUNCTION Doubt<R> doubt_of(const PutPack<R>& put, const Law<R>& law, R h, int steps, R spread) {
+KOKKOS_INLINE_FUNCTION ErrorEstimate<R> doubt_of(const PutPack<R>& put, const LevyMeasure<R>& law, R h,
+                                                 int steps, R spread) {
   const R resolved = device::minimum(h, R(2.0)), squared = resolved * resolved;
-  Doubt<R> doubt{error_factor(h, steps, spread, crossed_deviations(put, law)), 0.05 * squared * squared,
-                 put.variance + law.variance};
+  ErrorEstimate<R> doubt{error_factor(h, steps, spread, crossed_deviations(put, law)),
+                         0.05 * squared * squared, put.variance + law.variance};
   if (put.model == Model::kou) doubt.gap += doubt_of_kous_skewness(put, law, h);
   if (put.model == Model::generalized_hyperbolic) doubt.gap += doubt_of_hyperbolic_skewness(put, h, spread);
   return doubt;
@@ -158,8 +161,8 @@ KOKKOS_INLINE_FUNCTION Doubt<R> doubt_of(const PutPack<R>& put, const Law<R>& la
 /// And where the rate at which nodes see them, as the symbol of the shortest wave tells it, is dozens a step,
 /// values may grow; exercise would cut them back so that both grids agree.
 template <class R>
-KOKKOS_INLINE_FUNCTION R factor_of_many_jumps(const PutPack<R>& put, const Law<R>& law, const Jumps<R>& jumps,
-                                              int steps) {
+KOKKOS_INLINE_FUNCTION R factor_of_many_jumps(const PutPack<R>& put, const LevyMeasure<R>& law,
+                                              const Jumps<R>& jumps, int steps) {
   constexpr double most_a_step = 40.0;
   const R a_step = jumps.symbol[0] * step_length(put.maturity, steps, steps).dt;
   const auto coarse = 2.0 * jumps.diffusion <= 0.8 * put.variance;
@@ -171,8 +174,8 @@ KOKKOS_INLINE_FUNCTION R factor_of_many_jumps(const PutPack<R>& put, const Law<R
 /// added h^2 dt^2 V_xxtt, which may hide behind that of space in the difference of two grids: dt is the last
 /// step, 1.5 T/steps, V_xx at most 0.4/sqrt(v T), and the number in front, 1, is fitted to European prices.
 template <class R>
-KOKKOS_INLINE_FUNCTION R doubt_of_stiff_jumps(const PutPack<R>& put, const Law<R>& law, const Jumps<R>& jumps,
-                                              int steps, R h) {
+KOKKOS_INLINE_FUNCTION R doubt_of_stiff_jumps(const PutPack<R>& put, const LevyMeasure<R>& law,
+                                              const Jumps<R>& jumps, int steps, R h) {
   const R dt = step_length(put.maturity, steps, steps).dt;
   const R added = added_diffusion(put, jumps, jumps.diffusion / (h * h), dt);
   const R variance = device::maximum(put.variance + law.variance, R(1e-100));

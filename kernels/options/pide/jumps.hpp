@@ -10,9 +10,9 @@ namespace drogue::options {
 /// y g(y) on the heavier side at y = d h, d = 1 .. mesh: the mixture times e^{|beta| y}, in two parts, that
 /// of even and that of odd terms. Terms that have died out at h add nothing. `ratio` holds Mixture::size
 /// values.
-template <class Workers, class R>
-KOKKOS_INLINE_FUNCTION void sum_mixture(const Workers& workers, const PutPack<R>& put, const Law<R>& law, R h,
-                                        int mesh, R* ratio, R* even, R* odd) {
+template <class ThreadGroup, class R>
+KOKKOS_INLINE_FUNCTION void sum_mixture(const ThreadGroup& workers, const PutPack<R>& put,
+                                        const LevyMeasure<R>& law, R h, int mesh, R* ratio, R* even, R* odd) {
   constexpr int at_once = 4;  // terms that do not wait for one another
   static_assert(Mixture::size % (2 * at_once) == 0);
   const R tilt = device::absolute(put.jump[2]);
@@ -165,10 +165,10 @@ KOKKOS_INLINE_FUNCTION WeightPair<R> weights(const PutPack<R>& put, const Grid<R
 /// what they leave of the variance as a difference the scheme is of second order for every density that x^2
 /// makes bounded (Cont and Voltchkova 2005 for the idea), and no quadrature is needed. Kou's are masses of
 /// cells, Merton's, whose density may be narrow, those of hats.
-template <class Workers, class R>
-KOKKOS_INLINE_FUNCTION Jumps<R> jumps_of(const Workers& workers, const PutPack<R>& put, const Law<R>& law,
-                                         const Tails<R>& tails, const Grid<R>& grid,
-                                         const JumpsMemory<R>& memory, const R* finer) {
+template <class ThreadGroup, class R>
+KOKKOS_INLINE_FUNCTION Jumps<R> jumps_of(const ThreadGroup& workers, const PutPack<R>& put,
+                                         const LevyMeasure<R>& law, const Tails<R>& tails,
+                                         const Grid<R>& grid, const JumpsMemory<R>& memory, const R* finer) {
   const int mesh = grid.mesh, nodes = node_count(mesh);
   const R h = grid.h;
   const WeightLayout<R> layout(mesh);

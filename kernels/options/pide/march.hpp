@@ -19,8 +19,8 @@ struct March {
 
 /// The sums over jumps w_{j-i} v_j, j = 0 .. mesh - 1, into `out` (j in the lower half) and `other`: 8 nodes
 /// and half of the j a task, so that a value read serves 8 of them.
-template <class Workers, class R>
-KOKKOS_INLINE_FUNCTION void convolve(const Workers& workers, int mesh, const R* w, const R* v, R* out,
+template <class ThreadGroup, class R>
+KOKKOS_INLINE_FUNCTION void convolve(const ThreadGroup& workers, int mesh, const R* w, const R* v, R* out,
                                      R* other) {
   const WeightLayout<R> layout(mesh);
   const int octets = (mesh + 7) / 8, halved = (octets + 1) / 2;
@@ -92,9 +92,9 @@ KOKKOS_INLINE_FUNCTION R right_side(const StepFactors<R>& f, R value, R before, 
 }
 
 /// What exercise adds to a step of split puts.
-template <class Workers, class R>
-KOKKOS_INLINE_FUNCTION void split_exercise(const Workers& workers, const PutPack<R>& put, const Grid<R>& grid,
-                                           R diagonal, R* now, R* force) {
+template <class ThreadGroup, class R>
+KOKKOS_INLINE_FUNCTION void split_exercise(const ThreadGroup& workers, const PutPack<R>& put,
+                                           const Grid<R>& grid, R diagonal, R* now, R* force) {
   workers.each([=, &put, &grid](int thread) {
     for (int i = 1 + thread; i < grid.mesh; i += workers.threads()) {
       const R payoff = device::maximum(R(0.0), 1.0 - exponential((double(i) - grid.strike) * grid.h));
@@ -110,8 +110,8 @@ KOKKOS_INLINE_FUNCTION void split_exercise(const Workers& workers, const PutPack
 /// matrix is eliminated from above, where its factors are those of the whole line, and
 /// x_i = max(payoff_i, a x_{i-1} + y_i). Where exercise pays between two boundaries it is split off (Ikonen
 /// and Toivanen 2004).
-template <class Workers, class R>
-KOKKOS_INLINE_FUNCTION void step(const Workers& workers, const PutPack<R>& put, const Jumps<R>& jumps,
+template <class ThreadGroup, class R>
+KOKKOS_INLINE_FUNCTION void step(const ThreadGroup& workers, const PutPack<R>& put, const Jumps<R>& jumps,
                                  const Grid<R>& grid, const JumpSpectrum<R>& spectrum, const March<R>& march,
                                  const StepFactors<R>& f, const Certain<R>& begun) {
   const int mesh = grid.mesh, block = block_of(mesh, workers.lanes);

@@ -6,7 +6,7 @@ namespace drogue::options {
 
 /// Why a put has no price on a grid of steps h. `most`: what it can earn, in money; `variance`: of its law, a
 /// year.
-KOKKOS_INLINE_FUNCTION Failure failure_of(const Put& put, double most, double variance, double h) {
+KOKKOS_INLINE_FUNCTION Failure failure_of(const NormalizedPut& put, double most, double variance, double h) {
   if (put.rate * put.maturity < -650.0 || !(most < 1e300)) return Failure::too_large;
   if (variance != variance) return Failure::overflow;
   if (!(h < 100.0)) return Failure::no_grid;
@@ -22,7 +22,7 @@ KOKKOS_INLINE_FUNCTION Failure failure_of(const Put& put, double most, double va
 }
 
 /// The node next to the spot of a put.
-KOKKOS_INLINE_FUNCTION int node_beside(const Put& put, double strike, double h, int mesh) {
+KOKKOS_INLINE_FUNCTION int node_beside(const NormalizedPut& put, double strike, double h, int mesh) {
   const double t = put.log_spot / h + strike + 0.5;
   return t > 0.0 ? t < mesh ? static_cast<int>(t) : mesh - 1 : 0;
 }
@@ -30,13 +30,14 @@ KOKKOS_INLINE_FUNCTION int node_beside(const Put& put, double strike, double h, 
 /// The answer for a put of strike 1 on two grids, the coarser one with steps h, extrapolated to steps of
 /// length zero (the error of both is of second order), as the contract's price. `largest`: |V(fine) -
 /// V(coarse)| near the spot.
-KOKKOS_INLINE_FUNCTION Price price_of(const Contract& contract, const Put& put, const Answer& fine,
-                                      const Answer& coarse, const Doubt<double>& doubt, double largest,
-                                      double h, int mesh, int steps, double tolerance) {
+KOKKOS_INLINE_FUNCTION Price price_of(const Contract& contract, const NormalizedPut& put,
+                                      const SolutionAtSpot& fine, const SolutionAtSpot& coarse,
+                                      const ErrorEstimate<double>& doubt, double largest, double h, int mesh,
+                                      int steps, double tolerance) {
   const auto limit = [](double f, double c) { return f + (f - c) * (1.0 / 3); };
   const double asset = exponential(put.log_spot);
   const bool exercised = put.early && fine.slope == -asset && fine.decay == 0.0;
-  Answer a = fine;
+  SolutionAtSpot a = fine;
   if (!exercised) {
     a.value = limit(fine.value, coarse.value);
     a.slope = limit(fine.slope, coarse.slope);

@@ -78,7 +78,7 @@ KOKKOS_INLINE_FUNCTION void recur_backward(int lane, LaneNodes<block>& nodes, do
 
 /// The map of the lane `reach` below.
 template <int lanes>
-KOKKOS_INLINE_FUNCTION RisingMap<double> shuffle_up(const RisingMap<double>& map, int reach) {
+KOKKOS_INLINE_FUNCTION MaxAffineMap<double> shuffle_up(const MaxAffineMap<double>& map, int reach) {
   return {device::shuffle_up<lanes>(map.b, reach), device::shuffle_up<lanes>(map.lo, reach)};
 }
 template <int lanes>
@@ -164,8 +164,8 @@ class JumpSum {
                                  const RegisterRows& rows)
       : _lane(lane), _rows(rows), _convolution(lane, w, rows.value, rows.out, rows.other) {}
 
-  template <class Workers>
-  KOKKOS_INLINE_FUNCTION LaneNodes<block> operator()(const Workers& workers,
+  template <class ThreadGroup>
+  KOKKOS_INLINE_FUNCTION LaneNodes<block> operator()(const ThreadGroup& workers,
                                                      const LaneNodes<block>& value) const {
     workers.each_lane([&] { value.store(_lane, _rows.value); });
     workers.each_lane(_convolution);
@@ -197,8 +197,8 @@ class JumpSum<8, lanes, true> : public RegisterFourier<lanes> {
 };
 
 /// Turns an array of nodes in plain order into a `swizzled` one.
-template <int block, class Workers>
-KOKKOS_INLINE_FUNCTION void swizzle(const Workers& workers, double* nodes) {
+template <int block, class ThreadGroup>
+KOKKOS_INLINE_FUNCTION void swizzle(const ThreadGroup& workers, double* nodes) {
   const auto own = LaneNodes<block>::load(workers.lane, nodes);
   workers.meet();
   if (workers.writes()) own.store_swizzled(workers.lane, nodes);
@@ -261,7 +261,7 @@ KOKKOS_INLINE_FUNCTION int march_in_registers(const WarpWorkers<lanes, alone>& w
     before = value;
     recur_backward<lanes, halved>(lane, y, f.from_right);
     value = workers.all(f.from_left >= 0.0)
-                ? recur_by_maps<lanes, RisingMap<double>, halved>(lane, y, floor, f.from_left, f.edge)
+                ? recur_by_maps<lanes, MaxAffineMap<double>, halved>(lane, y, floor, f.from_left, f.edge)
                 : recur_by_maps<lanes, ClampedMap<double>, halved>(lane, y, floor, f.from_left, f.edge);
     if (put.any_split) {
       workers.meet();  // swizzled, as sums over jumps store them, two halves of a lane share their places

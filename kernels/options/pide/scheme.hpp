@@ -184,9 +184,10 @@ KOKKOS_INLINE_FUNCTION StepFactors<R> step_factors(const PutPack<R>& put, const 
 }
 
 /// Fills the table with the factors of the steps from n on.
-template <class Workers, class R>
-KOKKOS_INLINE_FUNCTION void fill_table(const Workers& workers, const PutPack<R>& put, const Jumps<R>& jumps,
-                                       const Scheme<R>& scheme, const StepTable<R>& table, int n) {
+template <class ThreadGroup, class R>
+KOKKOS_INLINE_FUNCTION void fill_table(const ThreadGroup& workers, const PutPack<R>& put,
+                                       const Jumps<R>& jumps, const Scheme<R>& scheme,
+                                       const StepTable<R>& table, int n) {
   workers.each([=, &put, &jumps, &scheme](int thread) {
     for (int k = n + thread; k < n + most_lanes && k <= scheme.steps; k += workers.threads())
       table.store(k, step_factors(put, jumps, scheme, k));

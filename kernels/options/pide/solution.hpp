@@ -5,7 +5,7 @@
 namespace drogue::options {
 
 /// What a solve says of a put of strike 1, at x = ln(spot/strike) and maturity.
-struct Answer {
+struct SolutionAtSpot {
   double value, slope, bend;  ///< V, dV/dx, d2V/dx2
   double decay;               ///< dV/dtau, a year
   double boundary;            ///< x up to which exercise is right; not a number where there is none
@@ -70,7 +70,8 @@ KOKKOS_INLINE_FUNCTION void interpolate(const Column& value, int first, double t
 /// The first of the four nodes that a value at t, in steps from node 0, is read from. They are taken from the
 /// side of the strike and of the boundary that it is on: there the value has kinks that short maturities
 /// leave sharp.
-KOKKOS_INLINE_FUNCTION int stencil_of(const Put& put, const Nodes& nodes, double t, double boundary) {
+KOKKOS_INLINE_FUNCTION int stencil_of(const NormalizedPut& put, const Nodes& nodes, double t,
+                                      double boundary) {
   const int mesh = nodes.mesh, strike = nodes.strike, cell = static_cast<int>(t);
   int first = cell - 1;
   if (cell >= strike) {
@@ -88,8 +89,8 @@ KOKKOS_INLINE_FUNCTION int stencil_of(const Put& put, const Nodes& nodes, double
 /// How much cubic interpolation at t from the nodes `first` to `first` + 3 may miss: the next term of
 /// Newton's form, from a fifth node on the same side of the strike and of the boundary; 0 where there is
 /// none.
-KOKKOS_INLINE_FUNCTION double missed_by_cubic(const Put& put, const Column& value, const Nodes& nodes,
-                                              int first, double t, double boundary) {
+KOKKOS_INLINE_FUNCTION double missed_by_cubic(const NormalizedPut& put, const Column& value,
+                                              const Nodes& nodes, int first, double t, double boundary) {
   const int strike = nodes.strike;
   const bool bounded = !put.split && boundary == boundary;
   const bool crosses_above = first + 4 > nodes.mesh || (first < strike && first + 4 > strike);
@@ -105,7 +106,7 @@ KOKKOS_INLINE_FUNCTION double missed_by_cubic(const Put& put, const Column& valu
 
 /// The answer at an x below the grid, `asset` = e^x, where exercise or expiry is certain at the time that is
 /// best there (`Domain` says why).
-KOKKOS_INLINE_FUNCTION Answer answer_below(const Put& put, double asset, double boundary) {
+KOKKOS_INLINE_FUNCTION SolutionAtSpot answer_below(const NormalizedPut& put, double asset, double boundary) {
   const PutPack<double> pack = pack_of<double>(&put);
   const Certain<double> sure = certain(pack, asset, best_time(pack, put.log_spot), put.maturity);
   const double strike = sure.strike, price = sure.asset * asset;
@@ -115,12 +116,12 @@ KOKKOS_INLINE_FUNCTION Answer answer_below(const Put& put, double asset, double 
 }
 
 /// Reads the answer for one member. `change` holds dV/dtau.
-KOKKOS_INLINE_FUNCTION Answer answer_of(const Put& put, const Column& value, const Column& change,
-                                        const Nodes& nodes) {
+KOKKOS_INLINE_FUNCTION SolutionAtSpot answer_of(const NormalizedPut& put, const Column& value,
+                                                const Column& change, const Nodes& nodes) {
   const int mesh = nodes.mesh, strike = nodes.strike;
   const double h = nodes.h;
   const double x = put.log_spot, asset = exponential(x);
-  Answer answer{0.0, 0.0, 0.0, 0.0, device::portable::not_a_number(), 0.0, 0.0, 0.0};
+  SolutionAtSpot answer{0.0, 0.0, 0.0, 0.0, device::portable::not_a_number(), 0.0, 0.0, 0.0};
   if (!(h < 1e30)) {
     answer.value = device::portable::not_a_number();
     return answer;

@@ -12,19 +12,19 @@ template <class R, int fixed>
 struct Memory {
   static constexpr int members = device::Access<R>::lanes;
 
-  R* law;           ///< what `law_of` leaves, then the step table, and last a doubt that another warp reads
-  R* slot;          ///< (9 most_lanes); with a fixed mesh what `domain_of` takes, or force
-  R* w;             ///< of a WeightLayout
-  R* nodes;         ///< rows of `node_count`, and what the coarser solve has beyond its own, shorter ones
-  Put* puts;        ///< of the members, as the next
-  Answer* answers;  ///< on the grid and on the coarser one
+  R* law;    ///< what `law_of` leaves, then the step table, and last a doubt that another warp reads
+  R* slot;   ///< (9 most_lanes); with a fixed mesh what `domain_of` takes, or force
+  R* w;      ///< of a WeightLayout
+  R* nodes;  ///< rows of `node_count`, and what the coarser solve has beyond its own, shorter ones
+  NormalizedPut* puts;      ///< of the members, as the next
+  SolutionAtSpot* answers;  ///< on the grid and on the coarser one
   double* unexercised;  ///< (members): values beside the spots on the coarser grid, without early exercise
 
   [[nodiscard]] KOKKOS_INLINE_FUNCTION static std::size_t bytes(int mesh) {
     const std::size_t all =
         sizeof(R) *
             static_cast<std::size_t>(law_size + slot_size + WeightLayout<R>(mesh).size() + node_size(mesh)) +
-        members * (sizeof(Put) + 2 * sizeof(Answer) + sizeof(double));
+        members * (sizeof(NormalizedPut) + 2 * sizeof(SolutionAtSpot) + sizeof(double));
     return (all + 63) / 64 * 64;
   }
   KOKKOS_INLINE_FUNCTION Memory(void* place, int mesh)
@@ -32,13 +32,15 @@ struct Memory {
         slot(law + law_size),
         w(slot + slot_size),
         nodes(w + WeightLayout<R>(mesh).size()),
-        puts(reinterpret_cast<Put*>(nodes + node_size(mesh))),
-        answers(reinterpret_cast<Answer*>(puts + members)),
+        puts(reinterpret_cast<NormalizedPut*>(nodes + node_size(mesh))),
+        answers(reinterpret_cast<SolutionAtSpot*>(puts + members)),
         unexercised(reinterpret_cast<double*>(answers + 2 * members)) {}
 
   [[nodiscard]] KOKKOS_INLINE_FUNCTION R* row(int k, int mesh) const { return nodes + k * node_count(mesh); }
   /// What is left at last where the law was.
-  [[nodiscard]] KOKKOS_INLINE_FUNCTION Doubt<R>* doubt() const { return reinterpret_cast<Doubt<R>*>(law); }
+  [[nodiscard]] KOKKOS_INLINE_FUNCTION ErrorEstimate<R>* doubt() const {
+    return reinterpret_cast<ErrorEstimate<R>*>(law);
+  }
   /// The spectrum of the weights of a mesh that is transformed, in its two last rows; of the mesh that lanes
   /// keep it of in registers it only passes through.
   [[nodiscard]] KOKKOS_INLINE_FUNCTION ComplexNumber<R>* spectrum(int mesh) const {
@@ -52,7 +54,7 @@ struct Memory {
   [[nodiscard]] KOKKOS_INLINE_FUNCTION R* kept(int mesh) const {
     return coarse_weights(mesh) + WeightLayout<R>(mesh / 2).size();
   }
-  [[nodiscard]] KOKKOS_INLINE_FUNCTION Law<R> law_memory() const {
+  [[nodiscard]] KOKKOS_INLINE_FUNCTION LevyMeasure<R> law_memory() const {
     return {
         law,   law + Mixture::size, law + 2 * Mixture::size, law + 2 * Mixture::size + Mixture::low, R(0.0),
         R(0.0)};
@@ -88,8 +90,8 @@ struct Record {
 
 /// Marches with the nodes in the memory, whose rows 0 to 8 it takes. Not inlined: of a kernel that both
 /// solves' code makes too large a GPU's compiler makes calls elsewhere.
-template <class Workers, class R>
-[[gnu::noinline]] KOKKOS_FUNCTION March<R> march_in_memory(const Workers& workers, const PutPack<R>& put,
+template <class ThreadGroup, class R>
+[[gnu::noinline]] KOKKOS_FUNCTION March<R> march_in_memory(const ThreadGroup& workers, const PutPack<R>& put,
                                                            const Jumps<R>& jumps, const Grid<R>& grid,
                                                            const JumpSpectrum<R>& spectrum,
                                                            const Scheme<R>& scheme, const StepTable<R>& table,
@@ -172,8 +174,8 @@ KOKKOS_INLINE_FUNCTION Column column_of(const R* nodes, int member) {
 
 /// Where the nodes of member k lie.
 template <int fixed, class R>
-KOKKOS_INLINE_FUNCTION Nodes nodes_of(const Solution<R>& solution, const Put& put, const Grid<R>& grid,
-                                      int k) {
+KOKKOS_INLINE_FUNCTION Nodes nodes_of(const Solution<R>& solution, const NormalizedPut& put,
+                                      const Grid<R>& grid, int k) {
   const auto member = [k](const R& number) { return device::Access<R>::lane(number, k); };
   const Column values = column_of(solution.value, k);
   const int strike = static_cast<int>(member(grid.strike));
@@ -184,10 +186,11 @@ KOKKOS_INLINE_FUNCTION Nodes nodes_of(const Solution<R>& solution, const Put& pu
 
 /// The jumps on `grid`, their weights in `weights`; if given from those of a grid of half the steps. For
 /// `fixed` see `march_nodes`.
-template <int fixed, class Workers, class R, class Scratch>
-KOKKOS_INLINE_FUNCTION Jumps<R> jumps_on(const Workers& workers, const PutPack<R>& put, const Law<R>& law,
-                                         const Tails<R>& tails, const Grid<R>& grid, const Scratch& memory,
-                                         R* weights, const R* finer = nullptr) {
+template <int fixed, class ThreadGroup, class R, class Scratch>
+KOKKOS_INLINE_FUNCTION Jumps<R> jumps_on(const ThreadGroup& workers, const PutPack<R>& put,
+                                         const LevyMeasure<R>& law, const Tails<R>& tails,
+                                         const Grid<R>& grid, const Scratch& memory, R* weights,
+                                         const R* finer = nullptr) {
   const int mesh = mesh_for<fixed>(grid.mesh);
   constexpr int left = fixed > 0 ? 3 : 9;
   return jumps_of(
@@ -205,9 +208,10 @@ KOKKOS_INLINE_FUNCTION R spread_of(const PutPack<R>& put, const Jumps<R>& jumps)
 
 /// What is in doubt of a solve on `grid`, which another one on the coarser grid is compared with.
 template <class R>
-KOKKOS_INLINE_FUNCTION Doubt<R> doubt_of_solve(const PutPack<R>& put, const Law<R>& law,
-                                               const Jumps<R>& jumps, const Grid<R>& grid, int steps) {
-  Doubt<R> doubt = doubt_of(put, law, grid.h, steps, spread_of(put, jumps));
+KOKKOS_INLINE_FUNCTION ErrorEstimate<R> doubt_of_solve(const PutPack<R>& put, const LevyMeasure<R>& law,
+                                                       const Jumps<R>& jumps, const Grid<R>& grid,
+                                                       int steps) {
+  ErrorEstimate<R> doubt = doubt_of(put, law, grid.h, steps, spread_of(put, jumps));
   doubt.gap += doubt_of_stiff_jumps(put, law, jumps, steps, grid.h);
   if (put.model == Model::merton || put.model == Model::kou)
     doubt.factor = device::maximum(doubt.factor, factor_of_many_jumps(put, law, jumps, steps));
@@ -216,8 +220,8 @@ KOKKOS_INLINE_FUNCTION Doubt<R> doubt_of_solve(const PutPack<R>& put, const Law<
 
 /// Marches from expiry to the puts' maturities on `grid`. With a `fixed` > 0 that is the mesh and a group of
 /// lanes keeps its nodes in registers; then nothing is recorded.
-template <int fixed, class Workers, class R, class Scratch>
-KOKKOS_INLINE_FUNCTION Solution<R> march_nodes(const Workers& workers, const PutPack<R>& put,
+template <int fixed, class ThreadGroup, class R, class Scratch>
+KOKKOS_INLINE_FUNCTION Solution<R> march_nodes(const ThreadGroup& workers, const PutPack<R>& put,
                                                const Jumps<R>& jumps, const Grid<R>& grid, int steps,
                                                const Scratch& memory, const FourierRoots& roots,
                                                const Record& record = {}) {
@@ -238,10 +242,10 @@ KOKKOS_INLINE_FUNCTION Solution<R> march_nodes(const Workers& workers, const Put
           rows.value, rows.other,
           march_in_registers<block, halved>(threads, put, jumps, grid, spectrum, scheme, table, rows, kink)};
     };
-    if constexpr (Workers::is_alone && fixed == 8 * Workers::lanes)
+    if constexpr (ThreadGroup::is_alone && fixed == 8 * ThreadGroup::lanes)
       return march.template operator()<fixed / most_lanes, true>(WarpWorkers<>(workers.thread));
     else
-      return march.template operator()<fixed / Workers::lanes, false>(workers);
+      return march.template operator()<fixed / ThreadGroup::lanes, false>(workers);
   } else {
     const March<R> march =
         march_in_memory(workers, put, jumps, grid, spectrum, scheme, table, memory, kink, record);
@@ -250,11 +254,11 @@ KOKKOS_INLINE_FUNCTION Solution<R> march_nodes(const Workers& workers, const Put
 }
 
 /// `march_nodes`; `answers` gets one for each member.
-template <int fixed, class Workers, class R, class Scratch>
-KOKKOS_INLINE_FUNCTION Solution<R> solve(const Workers& workers, const PutPack<R>& put, const Jumps<R>& jumps,
-                                         const Grid<R>& grid, int steps, const Scratch& memory,
-                                         const FourierRoots& roots, Answer* answers,
-                                         const Record& record = {}) {
+template <int fixed, class ThreadGroup, class R, class Scratch>
+KOKKOS_INLINE_FUNCTION Solution<R> solve(const ThreadGroup& workers, const PutPack<R>& put,
+                                         const Jumps<R>& jumps, const Grid<R>& grid, int steps,
+                                         const Scratch& memory, const FourierRoots& roots,
+                                         SolutionAtSpot* answers, const Record& record = {}) {
   constexpr int members = device::Access<R>::lanes;
   const Solution<R> solution = march_nodes<fixed>(workers, put, jumps, grid, steps, memory, roots, record);
   workers.each([=](int thread) {

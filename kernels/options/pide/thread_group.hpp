@@ -94,14 +94,14 @@ struct WarpWorkers {
 };
 
 /// The sums of the arrays f(lane) of all lanes.
-template <class Workers, class F>
-KOKKOS_INLINE_FUNCTION auto sums(const Workers& workers, const F& f) {
+template <class ThreadGroup, class F>
+KOKKOS_INLINE_FUNCTION auto sums(const ThreadGroup& workers, const F& f) {
   return workers.reduce(f, [](const auto& a, const auto& b) { return a + b; });
 }
 
 /// The least of the arrays f(lane) of all lanes, number by number.
-template <class Workers, class F>
-KOKKOS_INLINE_FUNCTION auto minima(const Workers& workers, const F& f) {
+template <class ThreadGroup, class F>
+KOKKOS_INLINE_FUNCTION auto minima(const ThreadGroup& workers, const F& f) {
   return workers.reduce(f, [](const auto& a, const auto& b) { return device::minimum(a, b); });
 }
 
@@ -224,16 +224,17 @@ KOKKOS_INLINE_FUNCTION void recur_backward(const WarpWorkers<lanes, alone>& work
 
 /// x -> max(lo, a x + b), a >= 0 known to all. Such maps compose to maps of their kind.
 template <class R>
-struct RisingMap {
+struct MaxAffineMap {
   R b, lo;
-  KOKKOS_INLINE_FUNCTION static RisingMap at_least(R lo, R b) { return {b, lo}; }
-  KOKKOS_INLINE_FUNCTION static RisingMap constant(R x) { return {x, x}; }
+  KOKKOS_INLINE_FUNCTION static MaxAffineMap at_least(R lo, R b) { return {b, lo}; }
+  KOKKOS_INLINE_FUNCTION static MaxAffineMap constant(R x) { return {x, x}; }
   [[nodiscard]] KOKKOS_INLINE_FUNCTION R at(R x, R a) const { return device::maximum(lo, a * x + b); }
 };
 
 /// `second` after `first`; a2 is the slope of `second`.
 template <class R>
-KOKKOS_INLINE_FUNCTION RisingMap<R> after(const RisingMap<R>& second, R a2, const RisingMap<R>& first) {
+KOKKOS_INLINE_FUNCTION MaxAffineMap<R> after(const MaxAffineMap<R>& second, R a2,
+                                             const MaxAffineMap<R>& first) {
   return {a2 * first.b + second.b, device::maximum(second.lo, a2 * first.lo + second.b)};
 }
 
@@ -269,10 +270,10 @@ KOKKOS_INLINE_FUNCTION Map compose(Map map, const R* y, const R* floor, int coun
 /// x_i = max(floor_i, a x_{i-1} + y_i) for the nodes 1, 2, ... of all blocks, x_0 given; 0 from node `end`
 /// on. The first block's map is a constant, so the bounds of what blocks compose to are the values. `slot`
 /// holds 3 lanes maps.
-template <class Map, class Workers, class R>
-KOKKOS_INLINE_FUNCTION void recur_by_maps(const Workers& workers, R* x, const R* y, const R* floor, int block,
-                                          int end, R a, R x0, Map* slot) {
-  static_assert(!Workers::is_alone);  // `each` runs lanes here
+template <class Map, class ThreadGroup, class R>
+KOKKOS_INLINE_FUNCTION void recur_by_maps(const ThreadGroup& workers, R* x, const R* y, const R* floor,
+                                          int block, int end, R a, R x0, Map* slot) {
+  static_assert(!ThreadGroup::is_alone);  // `each` runs lanes here
   const int part = part_of(block);
   const R slope = slope_of(a, part);
   R joined = part < block ? slope * slope : slope;
@@ -310,11 +311,11 @@ KOKKOS_INLINE_FUNCTION void recur_by_maps(const Workers& workers, R* x, const R*
 }
 
 /// The same for a of any sign; `slot` holds 3 lanes ClampedMaps.
-template <class Workers, class R>
-KOKKOS_INLINE_FUNCTION void recur_forward(const Workers& workers, R* x, const R* y, const R* floor, int block,
-                                          int end, R a, R x0, R* slot) {
+template <class ThreadGroup, class R>
+KOKKOS_INLINE_FUNCTION void recur_forward(const ThreadGroup& workers, R* x, const R* y, const R* floor,
+                                          int block, int end, R a, R x0, R* slot) {
   if (workers.all(a >= R(0.0))) {
-    recur_by_maps(workers, x, y, floor, block, end, a, x0, reinterpret_cast<RisingMap<R>*>(slot));
+    recur_by_maps(workers, x, y, floor, block, end, a, x0, reinterpret_cast<MaxAffineMap<R>*>(slot));
   } else {
     recur_by_maps(workers, x, y, floor, block, end, a, x0, reinterpret_cast<ClampedMap<R>*>(slot));
   }

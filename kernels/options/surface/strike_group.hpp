@@ -9,7 +9,7 @@ namespace drogue::options {
 /// What a solve of a smile leaves beside the values of its nodes.
 struct Smile {
   Nodes fine, coarse;
-  Doubt<double> doubt;
+  ErrorEstimate<double> doubt;
   double window;  ///< about a strike in which the largest difference of both solves tells of its error
 };
 
@@ -45,8 +45,8 @@ struct SmileFunctor {
     batch.template price_group<fixed>(*this, team);
   }
 
-  template <class Workers>
-  KOKKOS_INLINE_FUNCTION void price(const Workers& workers, const Scratch& memory, int group) const {
+  template <class ThreadGroup>
+  KOKKOS_INLINE_FUNCTION void price(const ThreadGroup& workers, const Scratch& memory, int group) const {
     const int mesh = mesh_for<fixed>(batch.mesh);
     workers.each([=, this](int thread) {
       for (int k = thread; k < members; k += workers.threads()) {
@@ -57,7 +57,7 @@ struct SmileFunctor {
     });
     PutPack<R> put = pack_of<R, laws>(memory.puts);
     put.any_split = !workers.all(!put.any_split);
-    const Law<R> law =
+    const LevyMeasure<R> law =
         law_of(workers, put, memory.puts, batch.panels.data(), batch.panel_slot.data(), memory.law_memory());
     const R deviation = device::square_root((put.variance + law.variance) * put.maturity);
     const R above = domain_of(workers, put, law, cut_error(mesh), memory.slot).above;
@@ -80,9 +80,9 @@ struct SmileFunctor {
 
  private:
   /// Tells the smiles of the pack's members what readings need beside values.
-  template <class Workers>
-  KOKKOS_INLINE_FUNCTION void note(const Workers& workers, const Scratch& memory, int group,
-                                   const Doubt<R>& doubt, const R& window) const {
+  template <class ThreadGroup>
+  KOKKOS_INLINE_FUNCTION void note(const ThreadGroup& workers, const Scratch& memory, int group,
+                                   const ErrorEstimate<R>& doubt, const R& window) const {
     workers.each([=, this](int thread) {
       for (int k = thread; k < members; k += workers.threads()) {
         if (group * members + k >= batch.count) continue;
@@ -94,8 +94,8 @@ struct SmileFunctor {
   }
 
   /// Copies what a solve has left to the smiles of the pack's members.
-  template <int solved, bool coarse, class Workers>
-  KOKKOS_INLINE_FUNCTION void keep(const Workers& workers, const Scratch& memory, int group,
+  template <int solved, bool coarse, class ThreadGroup>
+  KOKKOS_INLINE_FUNCTION void keep(const ThreadGroup& workers, const Scratch& memory, int group,
                                    const Grid<R>& grid, const Solution<R>& solution) const {
     const int mesh = grid.mesh;
     workers.each([=, this](int thread) {
@@ -166,13 +166,13 @@ struct ReadSmiles {
     Contract contract = contracts(reading.smile);
     contract.spot = reading.spot;
     contract.strike = reading.strike;
-    const Put put = put_of(contract);
+    const NormalizedPut put = put_of(contract);
     const Smile& smile = smiles(reading.smile);
     const SmileNodes nodes{values.data() + static_cast<std::size_t>(reading.smile) * SmileNodes::size(mesh),
                            mesh};
     const Column fine{nodes.fine(), 1}, coarse{nodes.coarse(), 1};
-    const Answer answer = answer_of(put, fine, {nodes.fine() + mesh + 1, 1}, smile.fine);
-    const Answer rough = answer_of(put, coarse, {nodes.coarse() + mesh / 2 + 1, 1}, smile.coarse);
+    const SolutionAtSpot answer = answer_of(put, fine, {nodes.fine() + mesh + 1, 1}, smile.fine);
+    const SolutionAtSpot rough = answer_of(put, coarse, {nodes.coarse() + mesh / 2 + 1, 1}, smile.coarse);
     const double largest = largest_change(put, fine, coarse, smile);
     prices(k) =
         price_of(contract, put, answer, rough, smile.doubt, largest, smile.coarse.h, mesh, steps, tolerance);
@@ -180,7 +180,7 @@ struct ReadSmiles {
 
  private:
   /// The largest difference of both solves at their common nodes near x, as for a price of its own.
-  [[nodiscard]] KOKKOS_INLINE_FUNCTION double largest_change(const Put& put, const Column& fine,
+  [[nodiscard]] KOKKOS_INLINE_FUNCTION double largest_change(const NormalizedPut& put, const Column& fine,
                                                              const Column& coarse, const Smile& smile) const {
     const double h = smile.coarse.h, place = put.log_spot / h + smile.coarse.strike, wide = smile.window / h;
     const double last = mesh / 2 - 1.0;

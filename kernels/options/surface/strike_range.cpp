@@ -44,12 +44,12 @@ bool have_same_law(const Contract& a, const Contract& b) {
 }
 
 double variance_of(const Contract& contract, const double* panels, const int* panel_slot) {
-  const Put put = put_of(contract);
+  const NormalizedPut put = put_of(contract);
   std::vector<double> memory(2 * Mixture::size + 2 * Mixture::low);
   double* const at = memory.data();
-  const Law<double> place{
+  const LevyMeasure<double> place{
       at, at + Mixture::size, at + 2 * Mixture::size, at + 2 * Mixture::size + Mixture::low, 0.0, 0.0};
-  const Law<double> law =
+  const LevyMeasure<double> law =
       law_of(SerialWorkers<double>{}, pack_of<double>(&put), &put, panels, panel_slot, place);
   return put.variance + law.variance;
 }

@@ -23,7 +23,7 @@ namespace drogue::options {
 /// A pricer whose contracts share solves: those that follow one another and differ in the strike alone are
 /// one smile. What a strike gets does not depend on the others: docs/options.md, "Surfaces".
 template <class ExecutionSpace>
-class SurfaceOn final : public Pricer {
+class SurfaceImpl final : public Pricer {
   using Space = typename ExecutionSpace::memory_space;
   template <class T>
   using View = Kokkos::View<T*, Space>;
@@ -32,25 +32,25 @@ class SurfaceOn final : public Pricer {
 
  public:
   /// `single` answers what is asked of one contract.
-  SurfaceOn(const Settings& settings, std::unique_ptr<Pricer> single)
+  SurfaceImpl(const Settings& settings, std::unique_ptr<Pricer> single)
       : _settings(settings), _single(std::move(single)), _instance(1 << 20) {}
 
-  Timing price(std::span<const Contract> contracts, std::span<Price> prices) override {
+  WallTimes price(std::span<const Contract> contracts, std::span<Price> prices) override {
     if (contracts.size() != prices.size())
       throw std::invalid_argument("options pricer: as many prices as contracts are needed");
-    Timing timing;
+    WallTimes timing;
     if (contracts.empty()) return timing;
-    const Clock building;
+    const Stopwatch building;
     _panels.build(contracts);
     assign_reaches(contracts);
     timing.compute = building.seconds();
-    const Clock copying_in;
+    const Stopwatch copying_in;
     _panels.copy_in(_instance.space());
     timing.h2d = copying_in.seconds();
     const int mesh = _settings.mesh != 0 ? _settings.mesh : first_mesh;
-    const Effort first{mesh, steps_of(_settings, mesh, 1)};
+    const Resolution first{mesh, steps_of(_settings, mesh, 1)};
     _rows.assign(contracts.size(), Refinement{first});
-    for (std::optional<Effort> effort = first; effort; effort = least_effort(_rows)) {
+    for (std::optional<Resolution> effort = first; effort; effort = least_effort(_rows)) {
       for (std::size_t begin = 0; begin < contracts.size();) {
         begin = gather(contracts, *effort, begin);
         price_gathered(*effort, timing);
@@ -103,7 +103,7 @@ class SurfaceOn final : public Pricer {
 
   /// Gathers what contracts from `begin` on ask for with this effort, as far as memory for smiles reaches.
   /// Returns the contract that it ends before.
-  std::size_t gather(std::span<const Contract> contracts, const Effort& effort, std::size_t begin) {
+  std::size_t gather(std::span<const Contract> contracts, const Resolution& effort, std::size_t begin) {
     const std::size_t most = std::max(most_values / SmileNodes::size(effort.mesh), std::size_t{1});
     _staged_contracts.clear();
     _staged_reaches.clear();
@@ -130,9 +130,9 @@ class SurfaceOn final : public Pricer {
     return contracts.size();
   }
 
-  void price_gathered(const Effort& effort, Timing& timing) {
+  void price_gathered(const Resolution& effort, WallTimes& timing) {
     const ExecutionSpace& space = _instance.space();
-    const Clock copying_in;
+    const Stopwatch copying_in;
     copy_in(_contracts, _staged_contracts, "drogue::options::smile contracts");
     copy_in(_reach, _staged_reaches, "drogue::options::reaches");
     copy_in(_readings, _staged_readings, "drogue::options::readings");
@@ -151,7 +151,7 @@ class SurfaceOn final : public Pricer {
     reserve(_prices, _staged_readings.size(), "drogue::options::prices");
     space.fence("drogue::options: smiles are asked for");
     timing.h2d += copying_in.seconds();
-    const Clock computing;
+    const Stopwatch computing;
     for (int model = 0, begin = 0; model < models; begin = end[model++])
       launch(static_cast<Model>(model), effort, begin, end[model]);
     const int count = static_cast<int>(_staged_readings.size());
@@ -161,7 +161,7 @@ class SurfaceOn final : public Pricer {
         count);
     space.fence("drogue::options: smiles are read");
     timing.compute += computing.seconds();
-    const Clock copying_out;
+    const Stopwatch copying_out;
     _staged_prices.resize(_staged_readings.size());
     device::copy_out(space, _staged_prices.data(), _prices, _staged_prices.size());
     space.fence("drogue::options: prices are there");
@@ -169,7 +169,7 @@ class SurfaceOn final : public Pricer {
   }
 
   /// Enqueues the solves of the smiles begin .. end - 1 of the order, which have one model.
-  void launch(Model model, const Effort& effort, int begin, int end) {
+  void launch(Model model, const Resolution& effort, int begin, int end) {
     if (begin == end) return;
     SmileFunctor<ExecutionSpace, 0, Laws::all> work{};
     work.batch.model = model;
@@ -226,7 +226,7 @@ class SurfaceOn final : public Pricer {
 
 template <class ExecutionSpace>
 std::unique_ptr<Pricer> make_surface(const Settings& settings, std::unique_ptr<Pricer> single) {
-  return std::make_unique<SurfaceOn<ExecutionSpace>>(settings, std::move(single));
+  return std::make_unique<SurfaceImpl<ExecutionSpace>>(settings, std::move(single));
 }
 
 }  // namespace drogue::options

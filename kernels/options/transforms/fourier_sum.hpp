@@ -29,8 +29,8 @@ struct Passes {
 
 /// Calls f(octet, factor) for all tasks of a pass on z, and leaves what f makes of their numbers. In the last
 /// pass `factor` counts octets.
-template <class Workers, class R, class F>
-KOKKOS_INLINE_FUNCTION void each_octet(const Workers& workers, const Passes& passes, int pass,
+template <class ThreadGroup, class R, class F>
+KOKKOS_INLINE_FUNCTION void each_octet(const ThreadGroup& workers, const Passes& passes, int pass,
                                        ComplexNumber<R>* z, const F& f) {
   const int log_stride = passes.log_stride(pass), tasks = 1 << (passes.log_size - 3);
   workers.each([=](int thread) {
@@ -46,8 +46,8 @@ KOKKOS_INLINE_FUNCTION void each_octet(const Workers& workers, const Passes& pas
 }
 
 /// The same for the last pass, of which f is to know the radix: f.operator()<radix>(octet, task).
-template <class Workers, class R, class F>
-KOKKOS_INLINE_FUNCTION void each_last(const Workers& workers, const Passes& passes, ComplexNumber<R>* z,
+template <class ThreadGroup, class R, class F>
+KOKKOS_INLINE_FUNCTION void each_last(const ThreadGroup& workers, const Passes& passes, ComplexNumber<R>* z,
                                       const F& f) {
   const auto with = [&]<int radix>() {
     each_octet(workers, passes, passes.last, z,
@@ -59,8 +59,8 @@ KOKKOS_INLINE_FUNCTION void each_last(const Workers& workers, const Passes& pass
 }
 
 /// The transform of the weights of jumps, divided by the mesh, into `z` (padded(mesh)).
-template <class Workers, class R>
-KOKKOS_INLINE_FUNCTION JumpSpectrum<R> spectrum_of(const Workers& workers, int mesh,
+template <class ThreadGroup, class R>
+KOKKOS_INLINE_FUNCTION JumpSpectrum<R> spectrum_of(const ThreadGroup& workers, int mesh,
                                                    const FourierRoots& roots, const R* w,
                                                    ComplexNumber<R>* z) {
   const WeightLayout<R> layout(mesh);
@@ -80,8 +80,8 @@ KOKKOS_INLINE_FUNCTION JumpSpectrum<R> spectrum_of(const Workers& workers, int m
 }
 
 /// The sums over jumps w_{j-i} v_j of `mesh` nodes; `z` (padded(mesh)) is spoiled.
-template <class Workers, class R>
-KOKKOS_INLINE_FUNCTION void sum_by_transforms(const Workers& workers, int mesh,
+template <class ThreadGroup, class R>
+KOKKOS_INLINE_FUNCTION void sum_by_transforms(const ThreadGroup& workers, int mesh,
                                               const JumpSpectrum<R>& spectrum, const R* v, R* out,
                                               ComplexNumber<R>* z) {
   const Passes passes(mesh);

@@ -26,8 +26,9 @@ class RegisterFourier {
     }
   }
 
-  template <class Workers>
-  KOKKOS_INLINE_FUNCTION LaneNodes<8> operator()(const Workers& workers, const LaneNodes<8>& value) const {
+  template <class ThreadGroup>
+  KOKKOS_INLINE_FUNCTION LaneNodes<8> operator()(const ThreadGroup& workers,
+                                                 const LaneNodes<8>& value) const {
     Octet<double> octet;
     workers.each_lane([&] { value.store_swizzled(_lane, _row); });
     workers.each_lane([&] {

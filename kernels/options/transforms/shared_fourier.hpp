@@ -56,8 +56,9 @@ class SharedFourier {
     for (int k = 0; k < 2; ++k) _last[k] = spectrum.roots.at(2, 4, 2 * thread + k);
   }
 
-  template <class Workers>
-  KOKKOS_INLINE_FUNCTION LaneNodes<4> operator()(const Workers& workers, const LaneNodes<4>& value) const {
+  template <class ThreadGroup>
+  KOKKOS_INLINE_FUNCTION LaneNodes<4> operator()(const ThreadGroup& workers,
+                                                 const LaneNodes<4>& value) const {
     const bool odd = _odd != 0;
     ComplexNumber<double> low[4], high[4], half[4];
     workers.each_lane([&] { value.store_swizzled(_thread, _row); });

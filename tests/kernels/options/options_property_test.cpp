@@ -170,7 +170,7 @@ TEST(OptionsProperty, TimesAreToldApartWhereAskedFor) {
     const auto pricer = create_pricer(backend, settings);
     const std::pmr::vector<Contract> from(contracts.begin(), contracts.end(), &pricer->memory());
     std::pmr::vector<Price> to(contracts.size(), &pricer->memory());
-    const Timing timing = pricer->price(from, to);
+    const WallTimes timing = pricer->price(from, to);
     EXPECT_GT(timing.compute, 0.0);
     EXPECT_EQ(timing.h2d > 0.0 && timing.d2h > 0.0, apart);
     for (std::size_t k = 0; k < to.size(); ++k) EXPECT_TRUE(same_bits(to[k], expected[k])) << k;

@@ -41,8 +41,8 @@ struct RecurrenceFunctor {
   }
 
  private:
-  template <class Workers>
-  KOKKOS_FUNCTION void recur_on(const Workers& workers) const {
+  template <class ThreadGroup>
+  KOKKOS_FUNCTION void recur_on(const ThreadGroup& workers) const {
     auto* const line = reinterpret_cast<R*>(y.data());
     auto* const place = reinterpret_cast<R*>(slot.data());
     recur_backward(workers, {line}, block, R(above), place);
@@ -54,7 +54,7 @@ struct RecurrenceFunctor {
     auto line = LaneNodes<nodes>::load(lane, y.data());
     const auto least = LaneNodes<nodes>::load(lane, floor.data());
     recur_backward<lanes, halved>(lane, line, above);
-    (below >= 0.0 ? recur_by_maps<lanes, RisingMap<double>, halved>(lane, line, least, below, x0)
+    (below >= 0.0 ? recur_by_maps<lanes, MaxAffineMap<double>, halved>(lane, line, least, below, x0)
                   : recur_by_maps<lanes, ClampedMap<double>, halved>(lane, line, least, below, x0))
         .store(lane, x.data());
   }

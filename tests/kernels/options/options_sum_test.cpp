@@ -40,8 +40,8 @@ struct SumFunctor {
   }
 
  private:
-  template <class Workers>
-  KOKKOS_FUNCTION void sum_on(const Workers& workers, int group) const {
+  template <class ThreadGroup>
+  KOKKOS_FUNCTION void sum_on(const ThreadGroup& workers, int group) const {
     const auto* const w = reinterpret_cast<const R*>(weights.data());
     const auto* const v = reinterpret_cast<const R*>(values.data());
     auto* const to = reinterpret_cast<R*>(sums.data()) + group * mesh;
@@ -49,7 +49,7 @@ struct SumFunctor {
     auto* const place = reinterpret_cast<ComplexNumber<R>*>(spectrum.data()) + group * padded(mesh);
     const JumpSpectrum<R> made = spectrum_of(workers, mesh, FourierRoots::of(roots.data()), w, place);
     if constexpr (!device::is_host<Space>) {
-      if constexpr (Workers::is_alone) {
+      if constexpr (ThreadGroup::is_alone) {
         const WarpWorkers<> threads(workers.thread);
         const auto own = LaneNodes<4>::load(workers.thread, v);
         const auto sum = SharedFourier(workers.thread, made, to, z)(threads, own);
@@ -57,7 +57,7 @@ struct SumFunctor {
         return sum.store(workers.thread, to);
       } else if (way == Way::in_registers) {
         const auto own = LaneNodes<8>::load(workers.lane, v);
-        return RegisterFourier<Workers::lanes>(workers.lane, made, to, z)(workers, own)
+        return RegisterFourier<ThreadGroup::lanes>(workers.lane, made, to, z)(workers, own)
             .store(workers.lane, to);
       }
     }

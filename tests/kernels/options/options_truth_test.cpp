@@ -61,7 +61,7 @@ TEST(OptionsTruth, JumpsOfMertonAndKou) {
 }
 
 /// A jump's density, a year.
-double density(const Put& put, double y) {
+double density(const NormalizedPut& put, double y) {
   const double* const j = put.jump;
   if (put.model == Model::merton) {
     const double z = (y - j[1]) / j[2];
@@ -72,7 +72,7 @@ double density(const Put& put, double y) {
 
 /// The sum of f(y) over the jumps beyond `length` upwards (1) or downwards (-1), by trapezoids.
 template <class F>
-double sum_beyond(const Put& put, double length, double side, const F& f) {
+double sum_beyond(const NormalizedPut& put, double length, double side, const F& f) {
   constexpr double step = 2e-3, end = 60.0;
   double sum = 0.5 * f(side * length) * density(put, side * length);
   for (double y = length + step; y < end; y += step) sum += f(side * y) * density(put, side * y);
@@ -80,12 +80,12 @@ double sum_beyond(const Put& put, double length, double side, const F& f) {
 }
 
 TEST(OptionsTruth, TailsOfMertonAndKou) {
-  for (const Put& put : {Put{.model = Model::merton, .jump = {0.8, -0.3, 0.9}},
-                         Put{.model = Model::merton, .jump = {1.5, 0.4, 1.2}},
-                         Put{.model = Model::kou, .jump = {2.0, 0.3, 2.5, 1.5}}}) {
+  for (const NormalizedPut& put : {NormalizedPut{.model = Model::merton, .jump = {0.8, -0.3, 0.9}},
+                                   NormalizedPut{.model = Model::merton, .jump = {1.5, 0.4, 1.2}},
+                                   NormalizedPut{.model = Model::kou, .jump = {2.0, 0.3, 2.5, 1.5}}}) {
     const double length = 1.1;
     const Tails<double> tails =
-        tails_of(SerialWorkers<double>{}, pack_of<double>(&put), Law<double>{}, length);
+        tails_of(SerialWorkers<double>{}, pack_of<double>(&put), LevyMeasure<double>{}, length);
     const auto one = [](double) { return 1.0; };
     const auto price = [](double y) { return std::exp(y); };
     const auto square = [](double y) { return y * y; };
