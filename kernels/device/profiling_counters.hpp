@@ -17,7 +17,8 @@ struct ProfilingCounters {
   std::int64_t allocations_after_warmup = 0;
 };
 
-/// Installs the callbacks; tools loaded by Kokkos keep theirs and are called first. Once, after `Runtime`.
+/// Installs the callbacks; tools loaded by Kokkos keep theirs and are called first. Call it after
+/// `Runtime`; later calls have no effect.
 void start_profiling();
 
 /// From here on allocations count as `allocations_after_warmup`.
