@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "kernels/device/captured_graph.hpp"
 #include "kernels/fabric/contact/contact.hpp"
 #include "kernels/fabric/elastic/frequency.hpp"
 #include "kernels/fabric/elastic/lanczos.hpp"
@@ -18,10 +17,13 @@
 #include "kernels/fabric/solver.hpp"
 #include "kernels/fabric/stepping/persistent_pairs.hpp"
 #include "kernels/fabric/stepping/persistent_rings.hpp"
+#include "kernels/fabric/stepping/state_copies.hpp"
 #include "kernels/fabric/stepping/step.hpp"
 #include "kernels/fabric/totals.hpp"
 #include "kernels/fabric/vertex_force.hpp"
 #include "kernels/mesh/edges.hpp"
+#include "kernels/stepping/step_launcher.hpp"
+#include "kernels/stepping/step_loop.hpp"
 
 namespace drogue::fabric {
 
@@ -105,46 +107,31 @@ class FabricSolver {
   /// steps. It adds to `Parameters::follower_pressures`. The first call allocates and blocks.
   [[nodiscard]] PressureView pressures();
 
-  /// Replaces the functor from the next step on. Blocks on CUDA, where it captures a step.
+  /// Replaces the functor from the next step on.
   void set_vertex_force(const VertexForce& vertex_force);
 
-  /// Enqueues `steps` steps of `time_state().dt` and a checkpoint after every 256th step. Does not look for
-  /// failures: see `failure`. The distribution of steps over calls changes no bit.
+  /// Enqueues `steps` steps of `time_state().dt` and a checkpoint after every 256th step. Asynchronous but
+  /// for a bound on the steps in flight of some 0.1 s, and at least 2048 steps. Returns false, and enqueues
+  /// nothing more, once a failure is known on the host. The distribution of steps over calls changes no bit.
   ///
   /// It may be called while the caller captures the instance's stream into a CUDA graph, except with contact
   /// (std::logic_error). Each launch of that graph takes `steps` steps. From the first capture on, the solver
   /// takes no checkpoints of its own, and `time_state` is valid after `synchronize`. A captured graph is
   /// invalid after `set_time_state`, `set_vertex_force`, and the first calls of `loads` and `pressures`.
-  void enqueue_steps(std::int64_t steps) {
-    const bool capturing = device::is_capturing(space());
-    if (capturing && _contact) throw std::logic_error("fabric solver: steps with contact cannot be captured");
-    _captured = _captured || capturing;
-    while (steps > 0) {
-      // Checkpoints fall on multiples, so that they do not depend on how steps are distributed over calls.
-      const std::int64_t until =
-          _captured ? checkpoint_interval : checkpoint_interval - _time.step % checkpoint_interval;
-      const std::int64_t part = std::min(steps, until);
-      with_model([&]<ConstitutiveModel law>() { this->template step<law>(part, capturing); });
-      if (!_captured && _time.step % checkpoint_interval == 0) enqueue_checkpoint();
-      steps -= part;
-    }
-    restore_addresses();
-  }
+  bool enqueue_steps(std::int64_t steps);
 
-  /// Enqueues the steps whose last end is nearest to `time`, s; none if that time has passed.
-  void advance_to(double time);
+  /// Enqueues the number of steps that ends nearest to `time`, s; none if that time has passed. Returns as
+  /// `enqueue_steps`.
+  bool advance_to(double time) { return enqueue_steps(_time.steps_to(time)); }
 
-  /// As `enqueue_steps`, but returns false, and enqueues no more, once a failure is known on the host.
-  bool advance(std::int64_t steps);
-
-  /// Copies the state to the checkpoint unless an earlier state was lost.
-  void enqueue_checkpoint();
+  /// Enqueues a copy of the state to the checkpoint, which has no effect after a failure.
+  void enqueue_checkpoint() { save_checkpoint(-1); }
 
   /// Blocks until all steps are done. After a failure it restores the last checkpoint.
   void synchronize();
 
   /// First failure, if any. Blocks.
-  [[nodiscard]] std::optional<Failure> failure();
+  [[nodiscard]] std::optional<StepFailure> failure();
 
   /// Sets positions, m, and velocities, m/s, and forgets a failure. Blocks. Throws std::invalid_argument for
   /// values that are not finite and spans of the wrong length.
@@ -207,7 +194,7 @@ class FabricSolver {
     for (const ContactWork& of_vertex : work) t.contact += of_vertex.normal, t.friction += of_vertex.friction;
     return t;
   }
-  [[nodiscard]] const char* driver() const;
+  [[nodiscard]] const char* driver() const { return stepping::driver_name(_launcher.driver()); }
   void contact_work(std::span<ContactWork> of_vertices);
   void set_contact_work(std::span<const ContactWork> of_vertices);
 
@@ -255,12 +242,9 @@ class FabricSolver {
   void make_sums();
   void make_stages();
   void make_persistent();
-  /// Captures a step at the present dt where a driver replays it.
-  void record() {
-    if (_parameters.integrator == Integrator::rk4 && !_persistent && _parameters.driver != Driver::plain)
-      _step.emplace(_instance, [this](const ExecutionSpace&) {
-        with_model([this]<ConstitutiveModel law>() { this->template runge_kutta_step<law>(); });
-      });
+  /// Verlet steps alternate between two buffers, which a captured graph would not see.
+  [[nodiscard]] static Driver requested_driver(const Parameters& p) {
+    return p.integrator == Integrator::verlet ? Driver::plain : p.driver;
   }
   void rebuild_drivers();
   [[nodiscard]] Points rest_places() const;
@@ -270,7 +254,12 @@ class FabricSolver {
   }
 
   // ---- steps ----
-  [[nodiscard]] StageTime<ExecutionSpace> at_stage(double part) const {
+  struct UniformSteps;
+  void enqueue(std::int64_t steps) {
+    with_model([&]<ConstitutiveModel law>() { this->template enqueue_model_steps<law>(steps); });
+  }
+  void save_checkpoint(std::int64_t launches);
+  [[nodiscard]] stepping::StageTime<ExecutionSpace> at_stage(double part) const {
     return {_monitor, _time, _parity, part};
   }
   [[nodiscard]] VertexForceTerm<VertexForce> vertex_force_term() const {
@@ -279,7 +268,8 @@ class FabricSolver {
   /// Whether every stage is a kernel: other kernels need its state, or the execution space is a host, whose
   /// registers do not hold two stages at once.
   [[nodiscard]] bool goes_by_stages() const {
-    return device::is_host<ExecutionSpace> || _has_external || _dirichlet;
+    return device::is_host<ExecutionSpace> || _has_external || _dirichlet ||
+           _launcher.driver() == Driver::stages;
   }
   [[nodiscard]] ExternalFunctor<ExecutionSpace> external_functor(const Points& x, const Points& v,
                                                                  double part, bool damps) const {
@@ -308,7 +298,16 @@ class FabricSolver {
   template <ConstitutiveModel law>
   void runge_kutta_stages() const;
   template <ConstitutiveModel law>
-  void runge_kutta_step() const;
+  void enqueue_runge_kutta_step() const;
+  /// Enqueues a step by the plain or graph driver. The caller's capture contains the kernels themselves.
+  template <ConstitutiveModel law>
+  void launch_runge_kutta_step() {
+    const auto enqueue_step = [this](const ExecutionSpace&) { enqueue_runge_kutta_step<law>(); };
+    if (_loop.is_capturing())
+      enqueue_step(space());
+    else
+      _launcher.launch(0, enqueue_step);
+  }
   template <ConstitutiveModel law>
   void verlet(bool ends, bool begins);
   /// Takes steps in one launch. Checkpoints end launches, so that none has more than `checkpoint_interval`
@@ -316,7 +315,8 @@ class FabricSolver {
   template <ConstitutiveModel law>
   void step_persistent(std::int64_t steps) {
     if constexpr (device::PersistentKernel<ExecutionSpace>::available) {
-      if (_captured) {
+      const bool captured = _loop.has_captured_steps();
+      if (captured) {
         // A launch that is replayed finds its step count on the device, and messages of epoch 0.
         device::copy_bytes(space(), device::CopyKind::within, &_monitor.steps(1), &_monitor.steps(0),
                            sizeof(std::int64_t));
@@ -325,7 +325,7 @@ class FabricSolver {
       }
       FabricViews<ExecutionSpace> cloth = _cloth;
       cloth.load = _dead;
-      const std::int64_t before = _captured ? -1 : _time.step;
+      const std::int64_t before = captured ? -1 : _time.step;
       const auto with = [&]<bool loads>(const PersistentLoads<ExecutionSpace, loads>& load) {
         return PersistentSteps<ExecutionSpace, VertexForce, loads>{
             _persistent->patches, cloth, _x, _v, _monitor, _time.dt, before, steps, _persistent->epoch,
@@ -346,14 +346,11 @@ class FabricSolver {
     }
   }
   template <ConstitutiveModel law>
-  void step(std::int64_t steps, bool capturing);
+  void enqueue_model_steps(std::int64_t steps);
   template <ConstitutiveModel law>
-  void step_in_contact(std::int64_t steps);
+  void enqueue_contact_step();
   void restore_addresses();
-  void set_steps();
-  [[nodiscard]] bool lost() const {
-    return _failure || *static_cast<const volatile int*>(_monitor.raised.data()) != 0;
-  }
+  void reset_monitor();
 
   // ---- evaluation ----
   void forces_at(const Points& x, std::span<Vector> forces) const {
@@ -396,10 +393,12 @@ class FabricSolver {
   bool _has_external = false;  ///< a kernel of its own computes loads
   bool _has_dashpots = false;
   std::optional<DirichletConditions<ExecutionSpace>> _dirichlet;
+  stepping::StepLoop<ExecutionSpace> _loop;
+  stepping::StepLauncher<ExecutionSpace> _launcher;
   StepMonitor<ExecutionSpace> _monitor;
-  int _parity = 0;         ///< entry of `_monitor.steps` that counts the steps taken
-  bool _captured = false;  ///< a caller's graph holds steps: only the device counts them
-  std::optional<Failure> _failure;
+  stepping::Checkpoint<ExecutionSpace> _checkpoint;
+  int _parity = 0;  ///< entry of `_monitor.steps` that counts the completed steps
+  std::optional<StepFailure> _failure;
   Points _pull;                                   ///< forces of springs of vectors at rest, N
   double _rest_energy = 0.0;                      ///< J, of these springs
   Points _dead;                                   ///< loads, N; may be empty
@@ -408,12 +407,10 @@ class FabricSolver {
   mutable typename Points::HostMirror _on_host;  ///< of a device, made at the first download
   ListView<ExecutionSpace, double> _load_stiffness;
   Points _x, _v, _next;
-  Points _kept_x, _kept_v;
-  Kokkos::View<std::int64_t, typename ExecutionSpace::memory_space> _kept_step;
+  Points _saved_x, _saved_v;
   Points _other, _velocity[3];  ///< of Runge and Kutta's method, the last one only by stages
   Points _dragged;              ///< of Verlet's method with dashpots
   std::optional<TriangleViews<ExecutionSpace>> _triangles;  ///< made at the first request of stress
-  std::optional<device::CapturedGraph<ExecutionSpace>> _step;
   std::optional<PersistentDriver<ExecutionSpace>> _persistent;
   std::unique_ptr<ContactHandler<ExecutionSpace>> _contact;  ///< empty without contact
 };
@@ -430,9 +427,9 @@ FabricSolver<ExecutionSpace, VertexForce>::FabricSolver(const ExecutionSpace& sp
       _padded((_vertices + slice - 1) / slice * slice),
       _decay(p.integrator == Integrator::rk4 ? p.damping : 0.0),
       _time{0, p.dt, 0, 0.0},
-      _monitor{decltype(_monitor.steps)("drogue::fabric::steps"),
-               decltype(_monitor.lost)("drogue::fabric::lost"),
-               decltype(_monitor.raised)("drogue::fabric::raised")} {
+      _loop(_instance),
+      _launcher(_instance, requested_driver(p)),
+      _monitor(stepping::make_monitor<ExecutionSpace>(_loop.status_view())) {
   const RingAdjacency rings =
       ring_adjacency(has_triangles(p.material.model) ? p.mesh : Mesh{p.mesh.rest, {}, {}, {}, {}});
   if (has_triangles(p.material.model)) {
@@ -453,10 +450,9 @@ FabricSolver<ExecutionSpace, VertexForce>::FabricSolver(const ExecutionSpace& sp
   _x = points("drogue::fabric::positions");
   _v = points("drogue::fabric::velocities");
   _next = points("drogue::fabric::next");
-  _kept_x = points("drogue::fabric::kept_positions");
-  _kept_v = points("drogue::fabric::kept_velocities");
-  _kept_step = decltype(_kept_step)("drogue::fabric::kept_step");
-  set_steps();
+  _saved_x = points("drogue::fabric::saved_positions");
+  _saved_v = points("drogue::fabric::saved_velocities");
+  reset_monitor();
   if (p.contact.asked_for())
     _contact = make_contact<ExecutionSpace>(p, {_instance, _cloth.inverse_mass, _cloth.fixed_dofs, _monitor});
   rebuild_drivers();
@@ -624,9 +620,10 @@ void FabricSolver<ExecutionSpace, VertexForce>::make_persistent() {
   if constexpr (device::PersistentKernel<ExecutionSpace>::available) {
     using Grid = device::PersistentKernel<ExecutionSpace>;
     const Parameters& p = _parameters;
-    const bool wanted = p.driver == Driver::persistent || p.driver == Driver::automatic;
     // Bending reaches beyond the halo, dashpots need the velocities of neighbours.
-    if (!wanted || _external.bending.first.extent(0) > 0 || _has_dashpots || _dirichlet || _contact) return;
+    if (!_launcher.may_be_persistent(p.driver) || _external.bending.first.extent(0) > 0 || _has_dashpots ||
+        _dirichlet || _contact)
+      return;
     const int teams = Grid::most_teams(_instance);
     if (teams == 0) return;
     const auto share = [&](int parts) { return (_vertices + parts - 1) / parts; };
@@ -646,17 +643,17 @@ void FabricSolver<ExecutionSpace, VertexForce>::make_persistent() {
                               : team_threads(patches, 0, most_ring_threads);
     _persistent.emplace(PersistentDriver<ExecutionSpace>{
         {_instance, count, threads, scratch, static_cast<std::size_t>(patches.places)}, views, pairs});
+    _launcher.use_persistent();
   }
 }
 
 template <class ExecutionSpace, class VertexForce>
 void FabricSolver<ExecutionSpace, VertexForce>::rebuild_drivers() {
   if (_parameters.integrator != Integrator::rk4) return;
-  _step.reset();
+  _launcher = {_instance, requested_driver(_parameters)};
   _persistent.reset();
   make_stages();
   make_persistent();
-  record();
 }
 
 // ---- state and loads ----
@@ -672,7 +669,7 @@ PointsView<ExecutionSpace> FabricSolver<ExecutionSpace, VertexForce>::loads() {
     synchronize();
     _dead = points("drogue::fabric::dead_load");
     if (!_has_external) _cloth.load = _dead;
-    record();
+    _launcher.discard_graphs();
   }
   return without_padding(_dead);
 }
@@ -699,7 +696,7 @@ auto FabricSolver<ExecutionSpace, VertexForce>::pressures() -> PressureView {
 template <class ExecutionSpace, class VertexForce>
 void FabricSolver<ExecutionSpace, VertexForce>::set_vertex_force(const VertexForce& vertex_force) {
   _vertex_force = vertex_force;
-  record();
+  _launcher.discard_graphs();
 }
 
 template <class ExecutionSpace, class VertexForce>
@@ -710,11 +707,12 @@ void FabricSolver<ExecutionSpace, VertexForce>::upload(std::span<const Vector> p
   };
   if (!std::ranges::all_of(positions, within) || !std::ranges::all_of(velocities, within))
     throw std::invalid_argument("fabric solver: positions and velocities must be finite");
+  if (_loop.has_captured_steps()) synchronize();
   to_device(positions, _x);
   to_device(velocities, _v);
   _failure.reset();
-  set_steps();
-  if (_contact) _contact->forget();
+  reset_monitor();
+  if (_contact) _contact->reset();
   enqueue_checkpoint();
   if (!_dirichlet) return;
   apply_dirichlet(_x, _v, 0.0, true);
@@ -764,7 +762,7 @@ void FabricSolver<ExecutionSpace, VertexForce>::to_host(const Points& from, std:
 
 template <class ExecutionSpace, class VertexForce>
 template <ConstitutiveModel law>
-void FabricSolver<ExecutionSpace, VertexForce>::runge_kutta_step() const {
+void FabricSolver<ExecutionSpace, VertexForce>::enqueue_runge_kutta_step() const {
   if (goes_by_stages()) return runge_kutta_stages<law>();
   if constexpr (!device::is_host<ExecutionSpace>) {
     runge_kutta_half<law, false>("drogue::fabric::rk4_begin");
@@ -817,58 +815,52 @@ void FabricSolver<ExecutionSpace, VertexForce>::verlet(bool ends, bool begins) {
   if (_dirichlet) apply_dirichlet(_x, _v, 0.0, true);
 }
 
-/// Enqueues steps without looking for failures.
+/// The steps as `StepLoop::enqueue_steps` calls them.
+template <class ExecutionSpace, class VertexForce>
+struct FabricSolver<ExecutionSpace, VertexForce>::UniformSteps {
+  FabricSolver& solver;
+  void enqueue(std::int64_t count) const { solver.enqueue(count); }
+  void checkpoint(std::int64_t launches) const { solver.save_checkpoint(launches); }
+};
+
+template <class ExecutionSpace, class VertexForce>
+bool FabricSolver<ExecutionSpace, VertexForce>::enqueue_steps(std::int64_t steps) {
+  if (_failure) return false;
+  if (_contact && device::is_capturing(space()))
+    throw std::logic_error("fabric solver: steps with contact cannot be captured");
+  const bool sound =
+      _loop.enqueue_steps(_time.step, steps, stepping::checkpoint_interval, UniformSteps{*this});
+  restore_addresses();
+  return sound;
+}
+
 template <class ExecutionSpace, class VertexForce>
 template <ConstitutiveModel law>
-void FabricSolver<ExecutionSpace, VertexForce>::step(std::int64_t steps, bool capturing) {
-  if (_contact) return step_in_contact<law>(steps);
-  if (_parameters.integrator == Integrator::rk4) {
-    if (_persistent)
-      step_persistent<law>(steps);
-    else if (_step && !capturing)
-      for (std::int64_t k = 0; k < steps; ++k) _step->launch();
-    else
-      for (std::int64_t k = 0; k < steps; ++k) runge_kutta_step<law>();
-  } else {
+void FabricSolver<ExecutionSpace, VertexForce>::enqueue_model_steps(std::int64_t steps) {
+  if (_contact) {
+    for (std::int64_t k = 0; k < steps; ++k) enqueue_contact_step<law>();
+  } else if (_parameters.integrator == Integrator::verlet) {
     verlet<law>(false, true);
     for (std::int64_t k = 1; k < steps; ++k) verlet<law>(true, true);
     verlet<law>(true, false);
+  } else if (_launcher.is_persistent()) {
+    step_persistent<law>(steps);
+  } else {
+    for (std::int64_t k = 0; k < steps; ++k) launch_runge_kutta_step<law>();
   }
-  if (!capturing) _time.step += steps;
 }
 
 template <class ExecutionSpace, class VertexForce>
 template <ConstitutiveModel law>
-void FabricSolver<ExecutionSpace, VertexForce>::step_in_contact(std::int64_t steps) {
-  for (std::int64_t k = 0; k < steps; ++k) {
-    _contact->begin(_x, _v);
-    if (_parameters.integrator == Integrator::verlet) {
-      verlet<law>(false, true);
-      verlet<law>(true, false);
-    } else if (_step) {
-      _step->launch();
-    } else {
-      runge_kutta_step<law>();
-    }
-    _contact->end(_x, _v);
+void FabricSolver<ExecutionSpace, VertexForce>::enqueue_contact_step() {
+  _contact->begin_step(_x, _v);
+  if (_parameters.integrator == Integrator::verlet) {
+    verlet<law>(false, true);
+    verlet<law>(true, false);
+  } else {
+    launch_runge_kutta_step<law>();
   }
-  _time.step += steps;
-}
-
-template <class ExecutionSpace, class VertexForce>
-void FabricSolver<ExecutionSpace, VertexForce>::advance_to(double time) {
-  const double steps = (time - _time.time()) / _time.dt;
-  if (steps > 0.0) enqueue_steps(std::llround(steps));
-}
-
-template <class ExecutionSpace, class VertexForce>
-bool FabricSolver<ExecutionSpace, VertexForce>::advance(std::int64_t steps) {
-  while (steps > 0 && !lost()) {
-    const std::int64_t part = std::min(steps, checkpoint_interval - _time.step % checkpoint_interval);
-    enqueue_steps(part);
-    steps -= part;
-  }
-  return !lost();
+  _contact->end_step(_x, _v);
 }
 
 /// Moves the state back to its stable addresses after an odd number of Verlet's steps, which alternate
@@ -884,50 +876,45 @@ void FabricSolver<ExecutionSpace, VertexForce>::restore_addresses() {
   _parity = 0;
 }
 
+/// Enqueues a checkpoint that publishes `launches`, unless that is negative.
 template <class ExecutionSpace, class VertexForce>
-void FabricSolver<ExecutionSpace, VertexForce>::enqueue_checkpoint() {
-  launch_each("drogue::fabric::keep", _padded,
-              CheckpointFunctor<ExecutionSpace>{_monitor, _x, _v, _kept_x, _kept_v, _kept_step, _parity});
-  if (_contact) _contact->keep();
+void FabricSolver<ExecutionSpace, VertexForce>::save_checkpoint(std::int64_t launches) {
+  SavedState<ExecutionSpace> now{_x, _v, {}}, saved{_saved_x, _saved_v, {}};
+  if (_contact) {
+    const CheckpointedWork<ExecutionSpace> work = _contact->checkpointed_work();
+    now.work = work.now, saved.work = work.saved;
+  }
+  _checkpoint.save(space(), "drogue::fabric::checkpoint", _monitor, _parity, _padded,
+                   CopyStateFunctor<ExecutionSpace>{now, saved}, launches);
 }
 
 template <class ExecutionSpace, class VertexForce>
 void FabricSolver<ExecutionSpace, VertexForce>::synchronize() {
-  space().fence("drogue::fabric::settle");
-  if (_captured && !_failure) {
-    std::int64_t steps[2] = {};
-    device::copy_out(space(), steps, _monitor.steps, 2);
-    space().fence("drogue::fabric::steps");
-    _time.step = steps[0];
-  }
-  if (_failure || !lost()) return;
-  std::uint64_t first = 0;
-  Kokkos::deep_copy(space(), first, _monitor.lost);
-  std::int64_t kept = 0;
-  Kokkos::deep_copy(space(), kept, _kept_step);
-  device::copy(space(), _x, _kept_x);
-  device::copy(space(), _v, _kept_v);
-  space().fence("drogue::fabric::kept");
-  _time.step = static_cast<std::int64_t>(first >> 31U);
-  _failure = Failure{static_cast<std::int64_t>(first & 0x7fffffffU), _time.step, _time.time(),
-                     _contact ? _contact->reason(_time.step) : FailureReason::not_finite};
-  if (_contact) _contact->go_back();
-  _time.step = kept;
+  const auto first = _checkpoint.roll_back_after_failure(space(), _monitor, [this] {
+    device::copy(space(), _x, _saved_x);
+    device::copy(space(), _v, _saved_v);
+    if (!_contact) return;
+    const CheckpointedWork<ExecutionSpace> work = _contact->checkpointed_work();
+    device::copy(space(), work.now, work.saved);
+  });
+  if (_loop.has_captured_steps()) _time.step = stepping::completed_steps(space(), _monitor, _parity);
+  if (!first) return;
+  _time.step = first->step - 1;
+  _failure = StepFailure{_contact ? _contact->reason(first->step) : FailureReason::not_finite, first->index,
+                         first->step, _time.time(), _time.dt};
+  _time.step = first->checkpoint_step;
 }
 
 template <class ExecutionSpace, class VertexForce>
-std::optional<Failure> FabricSolver<ExecutionSpace, VertexForce>::failure() {
+std::optional<StepFailure> FabricSolver<ExecutionSpace, VertexForce>::failure() {
   synchronize();
   return _failure;
 }
 
 /// Sets the device's step counter to the host's and clears its failure record. Blocks.
 template <class ExecutionSpace, class VertexForce>
-void FabricSolver<ExecutionSpace, VertexForce>::set_steps() {
-  Kokkos::deep_copy(space(), _monitor.steps, _time.step);
-  Kokkos::deep_copy(space(), _monitor.lost, no_failure);
-  space().fence("drogue::fabric::set_steps");
-  _monitor.raised() = 0;
+void FabricSolver<ExecutionSpace, VertexForce>::reset_monitor() {
+  stepping::reset_monitor(space(), _monitor, _time.step);
   _parity = 0;
 }
 
@@ -937,16 +924,11 @@ void FabricSolver<ExecutionSpace, VertexForce>::set_time_state(const TimeState& 
     throw std::invalid_argument("fabric solver: dt must be positive, and time finite");
   synchronize();
   _time = time;
-  set_steps();
+  reset_monitor();
   if (_dirichlet && !_failure) apply_dirichlet(_x, _v, 0.0, true);
   enqueue_checkpoint();
   if (_contact) _contact->set_dt(_time.dt);
-  record();
-}
-
-template <class ExecutionSpace, class VertexForce>
-const char* FabricSolver<ExecutionSpace, VertexForce>::driver() const {
-  return _persistent ? "persistent" : _step ? _step->driver : "plain";
+  _launcher.discard_graphs();
 }
 
 // ---- evaluation ----
@@ -1016,7 +998,9 @@ template <class ExecutionSpace, class VertexForce>
 void FabricSolver<ExecutionSpace, VertexForce>::set_contact_work(std::span<const ContactWork> of_vertices) {
   synchronize();
   require_vertices(of_vertices.size());
-  if (_contact) _contact->set_work(of_vertices);
+  if (!_contact) return;
+  _contact->set_work(of_vertices);
+  enqueue_checkpoint();
 }
 
 template <class ExecutionSpace, class VertexForce>

@@ -6,6 +6,7 @@
 
 #include "kernels/device/expression_program.hpp"
 #include "kernels/mesh/mesh.hpp"
+#include "kernels/stepping/driver.hpp"
 
 namespace drogue::fabric {
 
@@ -24,13 +25,9 @@ enum class Model {
 
 enum class Integrator { rk4, verlet };
 
-/// Launches of the Runge-Kutta method's steps on a device. Host backends have only loops.
-enum class Driver {
-  automatic,   ///< persistent where mesh and loads allow it, else graph
-  plain,       ///< single kernels, the only driver of Verlet's method
-  graph,       ///< the kernels of a step as one captured graph
-  persistent,  ///< many steps in one launch; not with dashpots, bending, motions or contact
-};
+/// Driver of Runge-Kutta steps; Verlet steps are always `plain`. The persistent driver does not support
+/// dashpots, bending, prescribed motions and contact.
+using stepping::Driver;
 
 /// Material of cloth and strings. `membrane_modulus` is Young's modulus times thickness.
 struct Material {

@@ -64,7 +64,7 @@ class Solver {
   virtual bool advance(std::int64_t steps) = 0;
 
   /// Step and vertex of the first lost state, if any. Blocks until all steps are done. Does not throw.
-  [[nodiscard]] virtual std::optional<Failure> failure() = 0;
+  [[nodiscard]] virtual std::optional<StepFailure> failure() = 0;
 
   /// Step count, dt and time, s, after the steps enqueued; after a failure was reported, those of the
   /// checkpoint. The initial values are step 0, time 0 and `Parameters::dt`. Does not throw.

@@ -4,18 +4,11 @@
 #include <cmath>
 #include <cstdint>
 
+#include "kernels/stepping/status.hpp"
+
 namespace drogue::fabric {
 
-/// Step count and time of a solver. A restart that restores all four numbers has the same times to the bit.
-struct TimeState {
-  std::int64_t step = 0;   ///< steps taken
-  double dt = 0.0;         ///< s, of the steps to come
-  std::int64_t since = 0;  ///< step since which dt holds
-  double start = 0.0;      ///< s, the time of that step
-
-  /// Time, s. Does not throw.
-  [[nodiscard]] double time() const { return start + static_cast<double>(step - since) * dt; }
-};
+using stepping::TimeState;
 
 /// Reason of a lost state.
 enum class FailureReason {
@@ -26,13 +19,8 @@ enum class FailureReason {
   no_number,  ///< the expression of a level set, or its slope, is none where a vertex is
 };
 
-/// First lost state.
-struct Failure {
-  std::int64_t vertex = -1;  ///< the first in the numbering that was lost in that step
-  std::int64_t step = 0;     ///< the first step, counted from 1, whose end is not finite
-  double time = 0.0;         ///< s, at its end
-  FailureReason reason = FailureReason::not_finite;
-};
+/// First failed step; `index` is the least vertex that failed in it.
+using StepFailure = stepping::StepFailure<FailureReason>;
 
 /// Work of contact on a vertex, negative for dissipation, and the velocity change that friction needs.
 struct ContactWork {

@@ -4,7 +4,7 @@
 #include <type_traits>
 
 #include "kernels/fabric/fabric_views.hpp"
-#include "kernels/fabric/stepping/stage_time.hpp"
+#include "kernels/stepping/step_monitor.hpp"
 
 namespace drogue::fabric {
 
@@ -49,8 +49,8 @@ struct VertexForceTerm {
   };
 
   VertexForce functor;
-  TimeState clock;   ///< `step` is not used: kernels count steps on the device
-  int vertices = 0;  ///< of the mesh; vertices that only fill a slice have no force
+  stepping::TimeState origin;  ///< `step` is ignored: kernels count steps on the device
+  int vertices = 0;            ///< of the mesh; vertices that only fill a slice have no force
 
   /// Force on vertex i and the lanes after it, N, `part` of a step after `steps` steps. `force` holds the
   /// elastic forces and loads, N; the result includes them.
@@ -88,8 +88,9 @@ struct VertexForceTerm {
       using Lanes = device::Access<R>;
       return Vector3<double>{Lanes::lane(v.x, lane), Lanes::lane(v.y, lane), Lanes::lane(v.z, lane)};
     };
-    return {one(position), one(velocity), one(force), inverse_mass, vertex, stage_time(clock, steps, part),
-            clock.dt};
+    return {one(position), one(velocity), one(force),
+            inverse_mass,  vertex,        stepping::stage_time(origin, steps, part),
+            origin.dt};
   }
 };
 

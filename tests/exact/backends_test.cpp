@@ -46,7 +46,7 @@ std::string run_bytes(const Runner& runner, gas::Parameters p, const GasState& s
   const gas::RestartState r = solver->restart_state();
   std::string bytes;
   for (const std::int64_t count : {static_cast<std::int64_t>(stop), r.step, r.redone, r.limited_faces,
-                                   solver->failure().cell, static_cast<std::int64_t>(r.limited_left)})
+                                   solver->failure().index, static_cast<std::int64_t>(r.limited_left)})
     append(bytes, &count, 1);
   bytes += rows;
   for (const auto& values : testing::download(*solver, p)) append(bytes, values.data(), values.size());

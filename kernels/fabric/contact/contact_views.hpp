@@ -2,7 +2,7 @@
 
 #include "kernels/fabric/contact/obstacle.hpp"
 #include "kernels/fabric/state.hpp"
-#include "kernels/fabric/stepping/step_monitor.hpp"
+#include "kernels/fabric/stepping/divergence.hpp"
 #include "kernels/spatial/bounding_sphere.hpp"
 
 namespace drogue::fabric {
@@ -140,7 +140,7 @@ struct ContactViews {
   }
 
   KOKKOS_FUNCTION void raise(std::int64_t step, FailureReason reason, int vertex) const {
-    monitor.raise(step, vertex);
+    monitor.record_failure(step, vertex);
     Kokkos::atomic_min(&progress(0).reason,
                        static_cast<std::uint64_t>(step) << 4U | static_cast<std::uint64_t>(reason));
   }

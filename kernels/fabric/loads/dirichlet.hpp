@@ -1,6 +1,7 @@
 #pragma once
 
 #include "kernels/fabric/loads/external.hpp"
+#include "kernels/fabric/stepping/divergence.hpp"
 
 namespace drogue::fabric {
 
@@ -19,7 +20,7 @@ template <class ExecutionSpace>
 struct DirichletFunctor {
   DirichletConditions<ExecutionSpace> prescribed;
   PointsView<ExecutionSpace> x, v;
-  StageTime<ExecutionSpace> stage_time;
+  stepping::StageTime<ExecutionSpace> stage_time;
   bool looks;  ///< checks for divergence, at the end of a step
 
   KOKKOS_FUNCTION void operator()(const int k) const {
@@ -28,7 +29,7 @@ struct DirichletFunctor {
     const auto moved = [&](double t) {
       return device::evaluate(prescribed.displacement(prescribed.program(k)), place.x, place.y, place.z, t);
     };
-    const double t = stage_time.time(), dt = stage_time.clock.dt, half = 0.5 * dt, now = moved(t);
+    const double t = stage_time.time(), dt = stage_time.origin.dt, half = 0.5 * dt, now = moved(t);
     const double position = prescribed.rest(i, axis) + now;
     const double velocity =
         t < dt ? (4.0 * moved(t + half) - 3.0 * now - moved(t + dt)) / dt
@@ -36,7 +37,7 @@ struct DirichletFunctor {
     x(i, axis) = position;
     v(i, axis) = velocity;
     if (looks && !(Kokkos::fabs(position) + Kokkos::fabs(velocity) < divergence_limit))
-      stage_time.monitor.raise(stage_time.monitor.steps(stage_time.parity), i);
+      stage_time.monitor.record_failure(stage_time.monitor.steps(stage_time.parity), i);
   }
 };
 

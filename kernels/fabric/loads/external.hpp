@@ -2,8 +2,8 @@
 
 #include "kernels/device/expression.hpp"
 #include "kernels/fabric/elastic/stress.hpp"
-#include "kernels/fabric/stepping/stage_time.hpp"
 #include "kernels/fabric/views.hpp"
+#include "kernels/stepping/step_monitor.hpp"
 
 namespace drogue::fabric {
 
@@ -104,7 +104,7 @@ struct ExternalFunctor {
   External<ExecutionSpace> external;
   PointsView<ExecutionSpace> dead;  ///< may be empty
   PointsView<ExecutionSpace> x, v, out;
-  StageTime<ExecutionSpace> stage_time;
+  stepping::StageTime<ExecutionSpace> stage_time;
   bool damps;
 
   KOKKOS_FUNCTION double pressure_on(int i, const Vector3<double>& place) const {

@@ -2,6 +2,7 @@
 
 #include "kernels/device/persistent_kernel.hpp"
 #include "kernels/fabric/loads/external.hpp"
+#include "kernels/fabric/state.hpp"
 #include "kernels/fabric/stepping/patches.hpp"
 #include "kernels/fabric/stepping/step.hpp"
 #include "kernels/fabric/stepping/team_slots.hpp"
@@ -59,7 +60,7 @@ struct OwnVertex {
 template <class ExecutionSpace, bool loads>
 struct PersistentLoads {
   External<ExecutionSpace> external;  ///< its timed loads and pressures
-  TimeState clock;                    ///< `step` is not used
+  TimeState origin;                   ///< `step` is ignored
 };
 template <class ExecutionSpace>
 struct PersistentLoads<ExecutionSpace, false> {};
@@ -163,8 +164,8 @@ struct PersistentSteps {
     Vector3<double> sum = own.load;
     if constexpr (loads) {
       const Vector3<double> place = load_points<double>(load.external.rest, own.vertex);
-      const double t =
-          stage_time(load.clock, steps_before() + done / 4, share_before(static_cast<int>(done % 4)));
+      const double t = stepping::stage_time(load.origin, steps_before() + done / 4,
+                                            share_before(static_cast<int>(done % 4)));
       sum = load.external.with_timed_loads(sum, own.vertex, place, t);
       if (load.external.has_pressure())
         sum = sum +
@@ -206,7 +207,7 @@ struct PersistentSteps {
     store_points(points, member.team_rank(), position);
     // After the message, which other teams wait for.
     if (stage == 3) {
-      monitor.look(steps_before() + done / 4 + 1, own.vertex, own.x, own.v);
+      record_divergence(monitor, steps_before() + done / 4 + 1, own.vertex, own.x, own.v);
       if constexpr (has_vertex_force<VertexForce>)
         vertex_force.end_step(own.x, own.v, &own.inverse_mass, own.vertex, steps_before() + done / 4 + 1);
     }

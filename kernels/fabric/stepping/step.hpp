@@ -1,6 +1,6 @@
 #pragma once
 
-#include "kernels/fabric/stepping/step_monitor.hpp"
+#include "kernels/fabric/stepping/divergence.hpp"
 #include "kernels/fabric/vertex_force.hpp"
 
 namespace drogue::fabric {
@@ -40,7 +40,7 @@ KOKKOS_INLINE_FUNCTION void store_end(const StepMonitor<ExecutionSpace>& monitor
   store_points(x, i, end_x);
   store_points(v, i, end_v);
   const std::int64_t step = monitor.steps(1) + 1;
-  monitor.look(step, i, end_x, end_v);
+  record_divergence(monitor, step, i, end_x, end_v);
   if (i == 0) monitor.steps(0) = step;
 }
 
@@ -193,7 +193,7 @@ struct VerletFunctor {
     const std::int64_t step = monitor.steps(parity);
     if (ends) {
       velocity = kicked(velocity, a, free);
-      monitor.look(step, i, position, velocity);
+      record_divergence(monitor, step, i, position, velocity);
     }
     if (begins) {
       velocity = kicked(velocity, a, free);
@@ -217,7 +217,7 @@ struct VerletFunctor {
       };
       if (ends) {
         kick();
-        monitor.look(step, i, position, velocity);
+        record_divergence(monitor, step, i, position, velocity);
         vertex_force.end_step(position, velocity, inverse_mass, i, step);
       }
       if (begins) {

@@ -23,7 +23,7 @@ struct Outcome {
   std::size_t crossings = 0;
   double momentum = 0.0, angular_momentum = 0.0, imbalance = 0.0;  ///< largest changes
   double start_kinetic = 0.0, work = 0.0;
-  std::optional<Failure> failure;
+  std::optional<StepFailure> failure;
 };
 
 /// Takes steps and counts, after every `every` of them, what meets by the exact oracle.

@@ -170,9 +170,8 @@ void run_emulated(const Parameters& p, int count, const std::vector<std::int64_t
     for (std::size_t axis = 0; axis < 3; ++axis)
       cloth.load(i, axis) = p.load[i][axis], at(i, axis) = x[i][axis], velocity(i, axis) = v[i][axis];
   }
-  StepMonitor<Space> monitor{decltype(monitor.steps)("steps"), decltype(monitor.lost)("lost"),
-                             decltype(monitor.raised)("raised")};
-  monitor.lost() = no_failure;
+  const StepMonitor<Space> monitor = stepping::make_monitor<Space>(StepMonitor<Space>::StatusView("status"));
+  stepping::reset_monitor(space, monitor, 0);
   testing::EmulatedGrid grid(count, team_threads(patches, patches.most_rows, most_threads),
                              Functor::scratch_bytes(views), static_cast<std::size_t>(patches.places));
   std::int64_t begun = 0;
@@ -194,7 +193,7 @@ void run_emulated(const Parameters& p, int count, const std::vector<std::int64_t
     EXPECT_EQ(monitor.steps(0), begun);
   }
   EXPECT_FALSE(grid.overwritten()) << "two boards are too few";
-  EXPECT_EQ(monitor.lost(), no_failure);
+  EXPECT_FALSE(monitor.has_failed());
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t axis = 0; axis < 3; ++axis) x[i][axis] = at(i, axis), v[i][axis] = velocity(i, axis);
 }
