@@ -14,6 +14,7 @@
 #include "kernels/fabric/elastic/lanczos.hpp"
 #include "kernels/fabric/elastic/stress.hpp"
 #include "kernels/fabric/loads/dirichlet.hpp"
+#include "kernels/fabric/loads/prescribed_motion.hpp"
 #include "kernels/fabric/solver.hpp"
 #include "kernels/fabric/stepping/persistent_pairs.hpp"
 #include "kernels/fabric/stepping/persistent_rings.hpp"
@@ -107,6 +108,14 @@ class FabricSolver {
   /// steps. It adds to `Parameters::follower_pressures`. The first call allocates and blocks.
   [[nodiscard]] PressureView pressures();
 
+  /// Motion of the pinned axes that no expression of `Parameters::motions` moves, which kernels may change
+  /// between steps. It is evaluated in every stage and at `upload`. Without it such an axis moves at its
+  /// velocity in `state`, in every driver.
+  ///
+  /// The first call allocates, blocks, and gives up the persistent driver. It initialises the motion with the
+  /// present positions, velocities and time. Throws std::logic_error if no such axis is pinned.
+  [[nodiscard]] PrescribedMotion<ExecutionSpace> prescribed_motion();
+
   /// Replaces the functor from the next step on.
   void set_vertex_force(const VertexForce& vertex_force);
 
@@ -117,7 +126,8 @@ class FabricSolver {
   /// It may be called while the caller captures the instance's stream into a CUDA graph, except with contact
   /// (std::logic_error). Each launch of that graph takes `steps` steps. From the first capture on, the solver
   /// takes no checkpoints of its own, and `time_state` is valid after `synchronize`. A captured graph is
-  /// invalid after `set_time_state`, `set_vertex_force`, and the first calls of `loads` and `pressures`.
+  /// invalid after `set_time_state`, `set_vertex_force`, and the first calls of `loads`, `pressures` and
+  /// `prescribed_motion`.
   bool enqueue_steps(std::int64_t steps);
 
   /// Enqueues the number of steps that ends nearest to `time`, s; none if that time has passed. Returns as
@@ -268,7 +278,7 @@ class FabricSolver {
   /// Whether every stage is a kernel: other kernels need its state, or the execution space is a host, whose
   /// registers do not hold two stages at once.
   [[nodiscard]] bool goes_by_stages() const {
-    return device::is_host<ExecutionSpace> || _has_external || _dirichlet ||
+    return device::is_host<ExecutionSpace> || _has_external || moves_pins() ||
            _launcher.driver() == Driver::stages;
   }
   [[nodiscard]] ExternalFunctor<ExecutionSpace> external_functor(const Points& x, const Points& v,
@@ -279,9 +289,16 @@ class FabricSolver {
   void compute_external_forces(const Points& x, const Points& v, double part, bool damps) const {
     launch_each("drogue::fabric::external", _vertices, external_functor(x, v, part, damps));
   }
-  void apply_dirichlet(const Points& x, const Points& v, double part, bool looks) const {
-    launch_each("drogue::fabric::place", static_cast<int>(_dirichlet->vertex.extent(0)),
-                DirichletFunctor<ExecutionSpace>{*_dirichlet, x, v, at_stage(part), looks});
+  [[nodiscard]] bool moves_pins() const { return _dirichlet || _prescribed_motion; }
+  /// Sets the axes that expressions or the caller's Views move.
+  void apply_dirichlet(const Points& x, const Points& v, double part, bool checks_divergence) const {
+    if (_dirichlet)
+      launch_each("drogue::fabric::dirichlet", static_cast<int>(_dirichlet->vertex.extent(0)),
+                  DirichletFunctor<ExecutionSpace>{*_dirichlet, x, v, at_stage(part), checks_divergence});
+    if (_prescribed_motion)
+      launch_each("drogue::fabric::prescribed_motion", static_cast<int>(_pinned_axes.vertex.extent(0)),
+                  PrescribedMotionFunctor<ExecutionSpace>{_pinned_axes, *_prescribed_motion, x, v,
+                                                          at_stage(part), checks_divergence});
   }
   template <ConstitutiveModel law, bool last>
   void runge_kutta_half(const char* label) const {
@@ -393,6 +410,8 @@ class FabricSolver {
   bool _has_external = false;  ///< a kernel of its own computes loads
   bool _has_dashpots = false;
   std::optional<DirichletConditions<ExecutionSpace>> _dirichlet;
+  std::optional<PrescribedMotion<ExecutionSpace>> _prescribed_motion;  ///< after the first request
+  PinnedAxes<ExecutionSpace> _pinned_axes;                             ///< of the prescribed motion
   stepping::StepLoop<ExecutionSpace> _loop;
   stepping::StepLauncher<ExecutionSpace> _launcher;
   StepMonitor<ExecutionSpace> _monitor;
@@ -622,7 +641,7 @@ void FabricSolver<ExecutionSpace, VertexForce>::make_persistent() {
     const Parameters& p = _parameters;
     // Bending reaches beyond the halo, dashpots need the velocities of neighbours.
     if (!_launcher.may_be_persistent(p.driver) || _external.bending.first.extent(0) > 0 || _has_dashpots ||
-        _dirichlet || _contact)
+        moves_pins() || _contact)
       return;
     const int teams = Grid::most_teams(_instance);
     if (teams == 0) return;
@@ -694,6 +713,38 @@ auto FabricSolver<ExecutionSpace, VertexForce>::pressures() -> PressureView {
 }
 
 template <class ExecutionSpace, class VertexForce>
+PrescribedMotion<ExecutionSpace> FabricSolver<ExecutionSpace, VertexForce>::prescribed_motion() {
+  if (!_prescribed_motion) {
+    synchronize();
+    const Parameters& p = _parameters;
+    std::vector<std::uint8_t> axes = p.pinned;
+    for (const Motion& motion : p.motions)
+      for (const int i : motion.vertices)
+        if (!axes.empty())
+          axes[static_cast<std::size_t>(i)] &=
+              static_cast<std::uint8_t>(~(1U << static_cast<unsigned>(motion.axis)));
+    std::vector<int> vertex, axis;
+    for (std::size_t i = 0; i < axes.size(); ++i)
+      for (unsigned a = 0; a < 3; ++a)
+        if ((axes[i] >> a & 1U) != 0U)
+          vertex.push_back(static_cast<int>(i)), axis.push_back(static_cast<int>(a));
+    if (vertex.empty()) throw std::logic_error("fabric solver: there are no pins to move");
+    _pinned_axes = {rest_places(), list_view(space(), "drogue::fabric::pinned_vertices", vertex),
+                    list_view(space(), "drogue::fabric::pinned_axes", axis)};
+    const auto n = static_cast<std::size_t>(_vertices);
+    _prescribed_motion = PrescribedMotion<ExecutionSpace>{
+        Points("drogue::fabric::pin_displacements", n), Points("drogue::fabric::pin_velocities", n),
+        Points("drogue::fabric::pin_accelerations", n),
+        decltype(PrescribedMotion<ExecutionSpace>::time)("drogue::fabric::pin_time")};
+    launch_each(
+        "drogue::fabric::initial_motion", static_cast<int>(vertex.size()),
+        InitialMotionFunctor<ExecutionSpace>{_pinned_axes, *_prescribed_motion, _x, _v, at_stage(0.0)});
+    rebuild_drivers();
+  }
+  return *_prescribed_motion;
+}
+
+template <class ExecutionSpace, class VertexForce>
 void FabricSolver<ExecutionSpace, VertexForce>::set_vertex_force(const VertexForce& vertex_force) {
   _vertex_force = vertex_force;
   _launcher.discard_graphs();
@@ -714,7 +765,7 @@ void FabricSolver<ExecutionSpace, VertexForce>::upload(std::span<const Vector> p
   reset_monitor();
   if (_contact) _contact->reset();
   enqueue_checkpoint();
-  if (!_dirichlet) return;
+  if (!moves_pins()) return;
   apply_dirichlet(_x, _v, 0.0, true);
   enqueue_checkpoint();
 }
@@ -791,7 +842,7 @@ void FabricSolver<ExecutionSpace, VertexForce>::runge_kutta_stages() const {
                                                                _time.dt,
                                                                stage,
                                                                vertex_force_term()});
-    if (_dirichlet)
+    if (moves_pins())
       apply_dirichlet(next[stage], stage == 3 ? _v : _velocity[stage], after[stage], stage == 3);
   }
 }
@@ -812,7 +863,7 @@ void FabricSolver<ExecutionSpace, VertexForce>::verlet(bool ends, bool begins) {
   }
   std::swap(_x, _next);
   _parity = 1 - _parity;
-  if (_dirichlet) apply_dirichlet(_x, _v, 0.0, true);
+  if (moves_pins()) apply_dirichlet(_x, _v, 0.0, true);
 }
 
 /// The steps as `StepLoop::enqueue_steps` calls them.
@@ -925,7 +976,7 @@ void FabricSolver<ExecutionSpace, VertexForce>::set_time_state(const TimeState& 
   synchronize();
   _time = time;
   reset_monitor();
-  if (_dirichlet && !_failure) apply_dirichlet(_x, _v, 0.0, true);
+  if (moves_pins() && !_failure) apply_dirichlet(_x, _v, 0.0, true);
   enqueue_checkpoint();
   if (_contact) _contact->set_dt(_time.dt);
   _launcher.discard_graphs();
