@@ -1,5 +1,9 @@
 #pragma once
 
+#include <vector>
+
+#include "kernels/device/copy.hpp"
+#include "kernels/fabric/elastic/dispatch_model.hpp"
 #include "kernels/fabric/fabric_views.hpp"
 #include "kernels/fabric/state.hpp"
 #include "kernels/fabric/views.hpp"
@@ -90,6 +94,48 @@ struct SumFunctor {
       out(j, k) = sum;
     }
   }
+};
+
+/// Sums over all vertices with memory that is allocated once: totals are evaluated often.
+template <class ExecutionSpace>
+class TotalsEvaluator {
+ public:
+  explicit TotalsEvaluator(int vertices) : _vertices(vertices) {
+    int rows = vertices;
+    do {
+      rows = (rows + sum_radix - 1) / sum_radix;
+      _levels.emplace_back("drogue::fabric::totals", static_cast<std::size_t>(rows));
+    } while (rows > 1);
+    _mirror = Kokkos::create_mirror_view(_levels.back());
+  }
+
+  /// Totals without contact and without the rest energy of springs of vectors. `cloth.load` holds the dead
+  /// loads alone; `pull` and `bending` may be empty. Blocks.
+  Totals evaluate(const ExecutionSpace& space, const Material& material,
+                  const FabricViews<ExecutionSpace>& cloth, const PointsView<ExecutionSpace>& x,
+                  const PointsView<ExecutionSpace>& v, const PointsView<ExecutionSpace>& pull,
+                  const SlicedEllViews<ExecutionSpace, 1>& bending) const {
+    dispatch_model(material, [&]<ConstitutiveModel law>() {
+      Kokkos::parallel_for(
+          "drogue::fabric::totals", Kokkos::RangePolicy<ExecutionSpace>(space, 0, _levels.front().extent(0)),
+          TotalsFunctor<ExecutionSpace, law>{cloth, x, v, pull, bending, _levels.front(), _vertices});
+    });
+    for (std::size_t level = 1; level < _levels.size(); ++level)
+      Kokkos::parallel_for("drogue::fabric::sum",
+                           Kokkos::RangePolicy<ExecutionSpace>(space, 0, _levels[level].extent(0)),
+                           SumFunctor<ExecutionSpace>{_levels[level - 1], _levels[level]});
+    device::copy(space, _mirror, _levels.back());
+    space.fence("drogue::fabric::totals");
+    Totals t{_mirror(0, 0), _mirror(0, 1), _mirror(0, 2), _mirror(0, 3), {}, {}, 0.0, 0.0};
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      t.momentum[axis] = _mirror(0, 4 + axis), t.angular_momentum[axis] = _mirror(0, 7 + axis);
+    return t;
+  }
+
+ private:
+  int _vertices;
+  std::vector<TotalsView<ExecutionSpace>> _levels;  ///< of the sum; the last one has one row
+  typename TotalsView<ExecutionSpace>::HostMirror _mirror;
 };
 
 }  // namespace drogue::fabric

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <cmath>
+
+#include "kernels/fabric/elastic/dispatch_model.hpp"
 #include "kernels/fabric/fabric_views.hpp"
 #include "kernels/fabric/views.hpp"
 
@@ -108,5 +111,34 @@ struct FrequencyFunctor {
     return sum + spectral_norm_bound(diagonal);
   }
 };
+
+/// Largest row of `FrequencyFunctor`, 1/s^2, over all vertices. Blocks.
+template <ConstitutiveModel law, class ExecutionSpace>
+[[nodiscard]] double largest_frequency_row(const ExecutionSpace& space,
+                                           const FabricViews<ExecutionSpace>& cloth,
+                                           const PointsView<ExecutionSpace>& x,
+                                           const ListView<ExecutionSpace, double>& more, int vertices) {
+  double largest = 0.0;
+  Kokkos::parallel_reduce(
+      "drogue::fabric::frequency", Kokkos::RangePolicy<ExecutionSpace>(space, 0, vertices),
+      FrequencyFunctor<ExecutionSpace, law>{cloth, x, more}, Kokkos::Max<double>(largest));
+  return largest;
+}
+
+/// Upper bound of the angular frequencies of small oscillations about the positions x, rad/s. Blocks.
+template <class ExecutionSpace>
+[[nodiscard]] double frequency_bound(const ExecutionSpace& space, const Material& material,
+                                     const FabricViews<ExecutionSpace>& cloth,
+                                     const PointsView<ExecutionSpace>& x,
+                                     const ListView<ExecutionSpace, double>& more, int vertices) {
+  return dispatch_model(material, [&]<ConstitutiveModel law>() {
+    double row = largest_frequency_row<law>(space, cloth, x, more, vertices);
+    // Elements that are slack now may be taut before the next call.
+    if constexpr (law.tension_only)
+      row =
+          std::max(row, largest_frequency_row<ConstitutiveModel{law.model}>(space, cloth, x, more, vertices));
+    return std::sqrt(row);
+  });
+}
 
 }  // namespace drogue::fabric

@@ -1,5 +1,9 @@
 #pragma once
 
+#include <stdexcept>
+#include <vector>
+
+#include "kernels/fabric/parameters.hpp"
 #include "kernels/fabric/stepping/divergence.hpp"
 #include "kernels/fabric/views.hpp"
 
@@ -16,6 +20,13 @@ struct PrescribedMotion {
   PointsView<ExecutionSpace> velocity;                               ///< m/s
   PointsView<ExecutionSpace> acceleration;                           ///< m/s^2
   Kokkos::View<double, typename ExecutionSpace::memory_space> time;  ///< s, to which the vectors refer
+
+  PrescribedMotion() = default;
+  explicit PrescribedMotion(std::size_t vertices)
+      : displacement("drogue::fabric::pin_displacements", vertices),
+        velocity("drogue::fabric::pin_velocities", vertices),
+        acceleration("drogue::fabric::pin_accelerations", vertices),
+        time("drogue::fabric::pin_time") {}
 };
 
 /// Pinned axes without a motion expression, one row per axis and vertex.
@@ -24,6 +35,27 @@ struct PinnedAxes {
   PointsView<ExecutionSpace> rest;  ///< m
   ListView<ExecutionSpace, int> vertex, axis;
 };
+
+/// Axes that `Parameters::pinned` pins and no motion expression moves. Blocks. Throws std::logic_error if
+/// there are none.
+template <class ExecutionSpace>
+[[nodiscard]] PinnedAxes<ExecutionSpace> make_pinned_axes(const ExecutionSpace& space, const Parameters& p,
+                                                          const PointsView<ExecutionSpace>& rest) {
+  std::vector<std::uint8_t> axes = p.pinned;
+  axes.resize(p.mesh.rest.size(), 0);
+  for (const Motion& motion : p.motions)
+    for (const int i : motion.vertices)
+      axes[static_cast<std::size_t>(i)] &=
+          static_cast<std::uint8_t>(~(1U << static_cast<unsigned>(motion.axis)));
+  std::vector<int> vertex, axis;
+  for (std::size_t i = 0; i < axes.size(); ++i)
+    for (int k = 0; k < 3; ++k)
+      if ((axes[i] >> static_cast<unsigned>(k) & 1U) != 0U)
+        vertex.push_back(static_cast<int>(i)), axis.push_back(k);
+  if (vertex.empty()) throw std::logic_error("fabric solver: there are no pins to move");
+  return {rest, list_view(space, "drogue::fabric::pinned_vertices", vertex),
+          list_view(space, "drogue::fabric::pinned_axes", axis)};
+}
 
 /// Sets positions and velocities of pinned axes to a prescribed motion.
 template <class ExecutionSpace>

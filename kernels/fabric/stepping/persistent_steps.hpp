@@ -38,15 +38,6 @@ template <class ExecutionSpace>
           most_slots(from, from.springs)};
 }
 
-/// Launcher and mesh partition of the persistent driver.
-template <class ExecutionSpace>
-struct PersistentDriver {
-  device::PersistentKernel<ExecutionSpace> grid;
-  PatchViews<ExecutionSpace> patches;
-  bool pairs;               ///< runs PersistentPairsFunctor, else PersistentRingsFunctor
-  std::uint64_t epoch = 0;  ///< of the last stage launched
-};
-
 /// State of a thread's vertex, in registers.
 struct OwnVertex {
   int vertex, place;
