@@ -4,21 +4,21 @@
 
 namespace drogue::fabric {
 
-/// Column of numbers in a team's scratch memory.
+/// Array in the scratch memory of a team.
 template <class T>
 struct TeamList {
   T* data;
   KOKKOS_FUNCTION T& operator()(int i) const { return data[i]; }
 };
 
-/// Columns of numbers in a team's scratch memory.
+/// Column-major table in the scratch memory of a team.
 struct TeamTable {
   double* data;
   int rows;
   KOKKOS_FUNCTION double& operator()(int row, int column) const { return data[column * rows + row]; }
 };
 
-/// Slots of a patch in its team's scratch memory.
+/// `SlicedEll` of a patch in the scratch memory of its team.
 template <int values>
 struct TeamSlicedEll {
   TeamList<int> first, neighbour;
@@ -29,7 +29,7 @@ struct TeamSlicedEll {
            values * slots * sizeof(double);
   }
 
-  /// Copies those of the member's patch of `slices`; the team must wait before it reads them.
+  /// Copies the slots of the patch of `member`. The team must synchronize before it reads them.
   template <class Member, class Views>
   KOKKOS_FUNCTION TeamSlicedEll(const Member& member, int slices, const Views& from) {
     const int patch = member.league_rank() * slices;
@@ -45,13 +45,13 @@ struct TeamSlicedEll {
     }
   }
 
-  template <class Take>
-  KOKKOS_FUNCTION void each(int i, const Take& take) const {
-    for_each_slot(first, i, take);
+  template <class Visit>
+  KOKKOS_FUNCTION void each(int i, const Visit& visit) const {
+    for_each_slot(first, i, visit);
   }
-  template <class Index, class Read, class Take>
-  KOKKOS_FUNCTION void each_pair(int i, const Index& index, const Read& read, const Take& take) const {
-    for_each_slot_pair(first, i, index, read, take);
+  template <class Index, class Read, class Visit>
+  KOKKOS_FUNCTION void each_pair(int i, const Index& index, const Read& read, const Visit& visit) const {
+    for_each_slot_pair(first, i, index, read, visit);
   }
 
  private:
