@@ -174,9 +174,9 @@ class FabricSolver {
   }
   [[nodiscard]] ExternalFunctor<ExecutionSpace> external_functor(const Points& x, const Points& v,
                                                                  double fraction, bool with_dashpots) const {
-    return {_external, _dead.total, x, v, _cloth.load, stage_time(fraction), with_dashpots};
+    return {_external, _dead.total, x, v, _fabric.load, stage_time(fraction), with_dashpots};
   }
-  /// Enqueues the evaluation of `_cloth.load`.
+  /// Enqueues the evaluation of `_fabric.load`.
   void evaluate_loads(const Points& x, const Points& v, double fraction, bool with_dashpots) const {
     launch_each(space(), "drogue::fabric::loads", _vertices, external_functor(x, v, fraction, with_dashpots));
   }
@@ -223,7 +223,7 @@ class FabricSolver {
     if (_has_load_kernel) evaluate_loads(x, _v, 0.0, false);
     with_model([&]<ConstitutiveModel law>() {
       launch_packs(space(), "drogue::fabric::force", _padded,
-                   ForceFunctor<ExecutionSpace, law>{_cloth, x, _next});
+                   ForceFunctor<ExecutionSpace, law>{_fabric, x, _next});
     });
     _reader.read(space(), _next, forces);
   }
@@ -234,7 +234,7 @@ class FabricSolver {
   int _vertices, _padded;  ///< `_padded`: in whole slices
   double _decay;           ///< 1/s, upper bound of the rates of damping
   TimeState _time;
-  FabricViews<ExecutionSpace> _cloth;
+  FabricViews<ExecutionSpace> _fabric;
   DeadLoads<ExecutionSpace> _dead;
   External<ExecutionSpace> _external;
   bool _has_load_kernel = false;
@@ -272,13 +272,13 @@ FabricSolver<ExecutionSpace, VertexForce>::FabricSolver(const ExecutionSpace& sp
       _padded(padded_vertices(_vertices)),
       _decay(p.integrator == Integrator::rk4 ? p.damping : 0.0),
       _time{0, p.dt, 0, 0.0},
-      _cloth(make_fabric_views(space, p)),
+      _fabric(make_fabric_views(space, p)),
       _dead(make_dead_loads(space, p)),
       _loop(_instance),
       _launcher(_instance, requested_driver(p)),
       _monitor(stepping::make_monitor<ExecutionSpace>(_loop.status_view())),
       _totals(_vertices) {
-  _cloth.load = _dead.total;
+  _fabric.load = _dead.total;
   make_external_loads();
   if (!p.motions.empty()) _dirichlet = make_dirichlet(space, p.motions, rest_positions());
   _x = points("drogue::fabric::positions");
@@ -288,14 +288,15 @@ FabricSolver<ExecutionSpace, VertexForce>::FabricSolver(const ExecutionSpace& sp
   _saved_v = points("drogue::fabric::saved_velocities");
   reset_monitor();
   if (p.contact.asked_for())
-    _contact = make_contact<ExecutionSpace>(p, {_instance, _cloth.inverse_mass, _cloth.fixed_dofs, _monitor});
+    _contact =
+        make_contact<ExecutionSpace>(p, {_instance, _fabric.inverse_mass, _fabric.fixed_dofs, _monitor});
   make_drivers();
 }
 
 /// Positions at rest, m, shared with forces or loads if they have them.
 template <class ExecutionSpace, class VertexForce>
 PointsView<ExecutionSpace> FabricSolver<ExecutionSpace, VertexForce>::rest_positions() const {
-  if (_cloth.rest.extent(0) > 0) return _cloth.rest;
+  if (_fabric.rest.extent(0) > 0) return _fabric.rest;
   if (_external.rest.extent(0) > 0) return _external.rest;
   return make_rest_positions(space(), _parameters.mesh);
 }
@@ -315,11 +316,11 @@ void FabricSolver<ExecutionSpace, VertexForce>::make_external_loads() {
   _has_load_kernel = needs_load_kernel(p);
   if (_has_load_kernel) {
     _external.rest = rest_positions();
-    _cloth.load = points("drogue::fabric::load");
+    _fabric.load = points("drogue::fabric::load");
     make_timed_loads(space(), p, _external);
   }
   if (!p.follower_pressures.empty()) {
-    _external.surface = make_surface(space(), p, _cloth);
+    _external.surface = make_surface(space(), p, _fabric);
     make_pressures(space(), p, _external);
   }
   if (_external.has_pressure() || bending > 0.0)
@@ -359,7 +360,7 @@ PointsView<ExecutionSpace> FabricSolver<ExecutionSpace, VertexForce>::loads() {
   if (_dead.total.extent(0) == 0) {
     synchronize();
     _dead.total = points("drogue::fabric::dead_load");
-    if (!_has_load_kernel) _cloth.load = _dead.total;
+    if (!_has_load_kernel) _fabric.load = _dead.total;
     _launcher.discard_graphs();
   }
   return without_padding(_dead.total);
@@ -373,11 +374,11 @@ auto FabricSolver<ExecutionSpace, VertexForce>::pressures() -> PressureView {
     _external.pressure_values = PressureView("drogue::fabric::pressures", n);
     if (!_has_load_kernel) {
       _external.rest = rest_positions();
-      _cloth.load = points("drogue::fabric::load");
+      _fabric.load = points("drogue::fabric::load");
       _has_load_kernel = true;
     }
     if (_external.surface.first.extent(0) == 0)
-      _external.surface = make_surface(space(), _parameters, _cloth);
+      _external.surface = make_surface(space(), _parameters, _fabric);
     if (_load_stiffness.extent(0) == 0)
       _load_stiffness = decltype(_load_stiffness)("drogue::fabric::load_stiffness", n);
     make_drivers();
@@ -464,7 +465,7 @@ template <ConstitutiveModel law, bool last>
 void FabricSolver<ExecutionSpace, VertexForce>::enqueue_runge_kutta_half(const char* label) const {
   launch_packs(
       space(), label, _padded,
-      RungeKuttaHalfFunctor<ExecutionSpace, law, last, VertexForce>{_cloth,
+      RungeKuttaHalfFunctor<ExecutionSpace, law, last, VertexForce>{_fabric,
                                                                     _x,
                                                                     _v,
                                                                     _next,
@@ -496,7 +497,7 @@ void FabricSolver<ExecutionSpace, VertexForce>::enqueue_runge_kutta_stages() con
       evaluate_loads(at[stage], stage == 0 ? _v : _stage_velocity[stage - 1], before[stage], _has_dashpots);
     launch_packs(space(), "drogue::fabric::rk4_stage", _padded,
                  RungeKuttaFunctor<ExecutionSpace, law, VertexForce>{
-                     _cloth,
+                     _fabric,
                      _x,
                      _v,
                      at[stage],
@@ -516,13 +517,13 @@ template <ConstitutiveModel law>
 void FabricSolver<ExecutionSpace, VertexForce>::enqueue_verlet(bool ends, bool begins) {
   if (_has_load_kernel) evaluate_loads(_x, _v, 0.0, false);
   launch_packs(space(), "drogue::fabric::verlet", _padded,
-               VerletFunctor<ExecutionSpace, law, VertexForce>{_cloth, _x, _v, _next, _monitor,
+               VerletFunctor<ExecutionSpace, law, VertexForce>{_fabric, _x, _v, _next, _monitor,
                                                                _parameters.damping, _time.dt, _parity, ends,
                                                                begins, !_has_dashpots, vertex_force_term()});
   if (!begins) return;
   if (_has_dashpots) {
     launch_each(space(), "drogue::fabric::dashpot_damping", _vertices,
-                DashpotDampingFunctor<ExecutionSpace>{_cloth, _external.dashpots, _x, _v, _damped_v, _next,
+                DashpotDampingFunctor<ExecutionSpace>{_fabric, _external.dashpots, _x, _v, _damped_v, _next,
                                                       _time.dt});
     std::swap(_v, _damped_v);
   }
@@ -537,11 +538,11 @@ template <class ExecutionSpace, class VertexForce>
 template <ConstitutiveModel law>
 void FabricSolver<ExecutionSpace, VertexForce>::enqueue_persistent_steps(std::int64_t steps) {
   if constexpr (device::PersistentKernel<ExecutionSpace>::available) {
-    FabricViews<ExecutionSpace> cloth = _cloth;
-    cloth.load = _dead.total;
+    FabricViews<ExecutionSpace> fabric = _fabric;
+    fabric.load = _dead.total;
     launch_persistent_steps<law>(
         space(), *_persistent,
-        PersistentInputs<ExecutionSpace, VertexForce>{cloth, _x, _v, _monitor, _time, vertex_force_term(),
+        PersistentInputs<ExecutionSpace, VertexForce>{fabric, _x, _v, _monitor, _time, vertex_force_term(),
                                                       _external, _has_load_kernel},
         steps, _loop.has_captured_steps());
   }
@@ -678,17 +679,17 @@ double FabricSolver<ExecutionSpace, VertexForce>::fastest_frequency() {
   if (_load_stiffness.extent(0) > 0)
     launch_each(space(), "drogue::fabric::load_stiffness", _vertices,
                 LoadStiffnessFunctor<ExecutionSpace>{external_functor(_x, _v, 0.0, false), _load_stiffness});
-  return frequency_bound(space(), _parameters.material, _cloth, _x, _load_stiffness, _vertices);
+  return frequency_bound(space(), _parameters.material, _fabric, _x, _load_stiffness, _vertices);
 }
 
 template <class ExecutionSpace, class VertexForce>
 double FabricSolver<ExecutionSpace, VertexForce>::frequency_at_least() {
   synchronize();
   const auto n = static_cast<std::size_t>(_vertices);
-  const auto inverse_mass = Kokkos::create_mirror_view(_cloth.inverse_mass);
-  const auto fixed_dofs = Kokkos::create_mirror_view(_cloth.fixed_dofs);
-  device::copy(space(), inverse_mass, _cloth.inverse_mass);
-  device::copy(space(), fixed_dofs, _cloth.fixed_dofs);
+  const auto inverse_mass = Kokkos::create_mirror_view(_fabric.inverse_mass);
+  const auto fixed_dofs = Kokkos::create_mirror_view(_fabric.fixed_dofs);
+  device::copy(space(), inverse_mass, _fabric.inverse_mass);
+  device::copy(space(), fixed_dofs, _fabric.fixed_dofs);
   space().fence("drogue::fabric::masses");
   std::vector<double> root(3 * n);
   for (std::size_t k = 0; k < root.size(); ++k)
@@ -709,7 +710,7 @@ template <class ExecutionSpace, class VertexForce>
 void FabricSolver<ExecutionSpace, VertexForce>::stress(StressMeasure measure,
                                                        std::span<Stress> of_triangles) {
   synchronize();
-  _stress.triangles(space(), _parameters, _cloth.moduli, _x, measure, of_triangles);
+  _stress.triangles(space(), _parameters, _fabric.moduli, _x, measure, of_triangles);
 }
 
 template <class ExecutionSpace, class VertexForce>
@@ -717,16 +718,16 @@ void FabricSolver<ExecutionSpace, VertexForce>::vertex_stress(StressMeasure meas
                                                               std::span<Stress> of_vertices) {
   require_vertices(of_vertices.size());
   synchronize();
-  _stress.vertices(space(), _parameters, _cloth.moduli, _x, measure, of_vertices);
+  _stress.vertices(space(), _parameters, _fabric.moduli, _x, measure, of_vertices);
 }
 
 template <class ExecutionSpace, class VertexForce>
 Totals FabricSolver<ExecutionSpace, VertexForce>::totals() {
   synchronize();
-  FabricViews<ExecutionSpace> dead_loads_alone = _cloth;
-  dead_loads_alone.load = _dead.total;
-  Totals totals = _totals.evaluate(space(), _parameters.material, dead_loads_alone, _x, _v, _dead.pull,
-                                   _external.bending);
+  FabricViews<ExecutionSpace> with_dead_loads = _fabric;
+  with_dead_loads.load = _dead.total;
+  Totals totals =
+      _totals.evaluate(space(), _parameters.material, with_dead_loads, _x, _v, _dead.pull, _external.bending);
   totals.elastic += _dead.rest_energy;
   if (!_contact) return totals;
   std::vector<ContactWork> work(static_cast<std::size_t>(_vertices));

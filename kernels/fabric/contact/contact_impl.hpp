@@ -136,14 +136,14 @@ ContactImpl<ExecutionSpace>::ContactImpl(const Parameters& p, const ContactInput
   const std::size_t layers = t.self ? 1 : 0, buckets = std::bit_ceil(std::max<std::size_t>(sides, 64));
   allocate(t.triangle_heads, "first_triangle", layers * buckets),
       allocate(t.edge_heads, "first_edge", layers * buckets);
-  allocate(t.triangle_sphere, "ball_of_triangle", layers * faces);
-  allocate(t.edge_sphere, "ball_of_edge", layers * sides);
+  allocate(t.triangle_sphere, "triangle_spheres", layers * faces);
+  allocate(t.edge_sphere, "edge_spheres", layers * sides);
   allocate(t.near_triangles, "near_triangles", layers * n),
       allocate(t.near_edges, "near_edges", layers * sides);
   allocate(t.near_triangle, "near_triangle", layers * n), allocate(t.near_edge, "near_edge", layers * sides);
-  allocate(t.constraint, "touch", 1024 + 8 * n);
-  allocate(t.constraints, "touches", n), allocate(t.vertex_constraint, "touches_of_vertex", n);
-  allocate(t.zone, "zone", n), allocate(t.label, "zone_label", n), allocate(t.zone_end, "zone_end", n);
+  allocate(t.constraint, "constraints", 1024 + 8 * n);
+  allocate(t.constraints, "constraint_counts", n), allocate(t.vertex_constraint, "vertex_constraints", n);
+  allocate(t.zone, "zone", n), allocate(t.label, "label_zones", n), allocate(t.zone_end, "zone_end", n);
   allocate(t.stuck, "stuck", n), allocate(t.motion, "zone_motion", n);
   allocate(t.progress, "contact_progress", 1);
   _work = ListView<ExecutionSpace, ContactWork>("drogue::fabric::contact_work", n);
@@ -176,22 +176,22 @@ template <class ExecutionSpace>
 void ContactImpl<ExecutionSpace>::enqueue_begin(const Points3& x, const Points3& v) const {
   using Space = ExecutionSpace;
   const int n = _views.vertices;
-  launch("drogue::fabric::contact_measure", n, MotionBoundsFunctor<Space>{_views, x, v});
-  launch("drogue::fabric::contact_decide", 1, RebuildDecisionFunctor<Space>{_views});
+  launch("drogue::fabric::motion_bounds", n, MotionBoundsFunctor<Space>{_views, x, v});
+  launch("drogue::fabric::rebuild_decision", 1, RebuildDecisionFunctor<Space>{_views});
   if (_views.self) {
     const int buckets = static_cast<int>(_views.triangle_heads.extent(0));
-    launch("drogue::fabric::contact_empty", std::max({buckets, n, _views.edges}),
+    launch("drogue::fabric::clear_grid", std::max({buckets, n, _views.edges}),
            ClearGridFunctor<Space>{_views});
-    launch("drogue::fabric::contact_fill", std::max(_views.triangles, _views.edges),
+    launch("drogue::fabric::fill_grid", std::max(_views.triangles, _views.edges),
            FillGridFunctor<Space>{_views});
-    launch("drogue::fabric::contact_list", n + _views.edges, NeighbourListFunctor<Space>{_views});
+    launch("drogue::fabric::neighbour_lists", n + _views.edges, NeighbourListFunctor<Space>{_views});
   }
-  launch("drogue::fabric::contact_touch", parts(), DetectConstraintsFunctor<Space>{_views});
+  launch("drogue::fabric::detect_constraints", parts(), DetectConstraintsFunctor<Space>{_views});
   const int items = device::is_host<Space> ? _instance.space().concurrency()
                                            : std::min(32768, static_cast<int>(_views.constraint.extent(0)));
   for (int round = 0; round < impulse_rounds; ++round) {
-    launch("drogue::fabric::contact_push", items, SolveImpulsesFunctor<Space>{_views, items});
-    launch("drogue::fabric::contact_gather", n, ApplyImpulsesFunctor<Space>{_views, v, round});
+    launch("drogue::fabric::solve_impulses", items, SolveImpulsesFunctor<Space>{_views, items});
+    launch("drogue::fabric::apply_impulses", n, ApplyImpulsesFunctor<Space>{_views, v, round});
   }
 }
 
@@ -199,14 +199,15 @@ template <class ExecutionSpace>
 void ContactImpl<ExecutionSpace>::enqueue_end(const Points3& x, const Points3& v) const {
   using Space = ExecutionSpace;
   const int n = _views.vertices;
-  launch("drogue::fabric::contact_check", parts(), CcdFunctor<Space>{_views, x, 0});
+  launch("drogue::fabric::continuous_detection", parts(), CcdFunctor<Space>{_views, x, 0});
   for (int round = 0; round < zone_rounds; ++round) {
-    launch("drogue::fabric::zone_label", n, LabelZonesFunctor<Space>{_views, round});
+    launch("drogue::fabric::label_zones", n, LabelZonesFunctor<Space>{_views, round});
     launch("drogue::fabric::zone_motion", n, ZoneMotionFunctor<Space>{_views, x, v, round});
-    launch("drogue::fabric::zone_follow", n, MoveZonesFunctor<Space>{_views, x, v, round});
-    launch("drogue::fabric::contact_check", parts(), CcdFunctor<Space>{_views, _views.end_x, round + 1});
+    launch("drogue::fabric::move_zones", n, MoveZonesFunctor<Space>{_views, x, v, round});
+    launch("drogue::fabric::continuous_detection", parts(),
+           CcdFunctor<Space>{_views, _views.end_x, round + 1});
   }
-  launch("drogue::fabric::zone_settle", n, CommitZonesFunctor<Space>{_views, x, v});
+  launch("drogue::fabric::commit_zones", n, CommitZonesFunctor<Space>{_views, x, v});
 }
 
 template <class ExecutionSpace>

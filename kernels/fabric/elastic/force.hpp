@@ -9,12 +9,12 @@ template <class ExecutionSpace, ConstitutiveModel law>
 struct ForceFunctor {
   using R = PackedReal<ExecutionSpace>;
   using Bounds = Kokkos::LaunchBounds<>;
-  FabricViews<ExecutionSpace> cloth;
+  FabricViews<ExecutionSpace> fabric;
   PointsView<ExecutionSpace> x, out;
 
   KOKKOS_FUNCTION void operator()(const int pack) const {
     const int i = pack * device::Access<R>::lanes;
-    store_points(out, i, force<law, R>(cloth, x, i));
+    store_points(out, i, force<law, R>(fabric, x, i));
   }
 };
 

@@ -15,8 +15,9 @@ double product(const std::vector<double>& a, const std::vector<double>& b) {
   return sum;
 }
 
-/// Of a symmetric tridiagonal matrix; `beside[k]` lies between rows k and k + 1. By halving: the pivots of
-/// the matrix less x are all negative exactly where x is above every eigenvalue (Sylvester's law of inertia).
+/// Largest eigenvalue of a symmetric tridiagonal matrix with `beside[k]` between rows k and k + 1, by
+/// bisection: the pivots of the matrix less x are all negative exactly if x is above every eigenvalue
+/// (Sylvester's law of inertia).
 double largest_eigenvalue(const std::vector<double>& diagonal, const std::vector<double>& beside) {
   const std::size_t n = diagonal.size();
   double low = diagonal[0], high = diagonal[0];
@@ -56,7 +57,7 @@ double largest_ritz_value(std::size_t size, int steps, const LinearOperator& app
     before.swap(now);
     now.swap(next);
     norm = std::sqrt(product(now, now));
-    // What is left of a space that is all found is round-off.
+    // The rest of an exhausted Krylov space is round-off.
     if (norm <= 1e-12 * std::abs(own)) break;
   }
   return diagonal.empty() ? 0.0 : largest_eigenvalue(diagonal, beside);

@@ -9,12 +9,12 @@
 
 namespace drogue::fabric {
 
-/// Leaves a symmetric matrix times `in` in `out`.
+/// Product of a symmetric matrix with `in`, written to `out`.
 using LinearOperator = std::function<void(std::span<const double> in, std::span<double> out)>;
 
-/// The largest eigenvalue of a symmetric matrix of `size` rows, from below: the largest Ritz value after
-/// `steps` products, from a vector of seeded noise (Lanczos 1950). That vectors lose their orthogonality
-/// brings back values already found, and none beyond (Paige 1980).
+/// Lower bound of the largest eigenvalue of a symmetric matrix of `size` rows: the largest Ritz value after
+/// `steps` products, from a vector of seeded noise (Lanczos 1950). The loss of orthogonality repeats values
+/// and adds none beyond the spectrum (Paige 1980). Throws only what `apply` throws.
 [[nodiscard]] double largest_ritz_value(std::size_t size, int steps, const LinearOperator& apply);
 
 /// Evaluates the forces at given positions, m, in N.

@@ -42,22 +42,24 @@ struct DirichletFunctor {
   DirichletConditions<ExecutionSpace> prescribed;
   PointsView<ExecutionSpace> x, v;
   stepping::StageTime<ExecutionSpace> stage_time;
-  bool looks;  ///< checks for divergence, at the end of a step
+  bool checks_divergence;  ///< at the end of a step
 
   KOKKOS_FUNCTION void operator()(const int k) const {
     const int i = prescribed.vertex(k), axis = prescribed.axis(k);
-    const Vector3<double> place = load_points<double>(prescribed.rest, i);
-    const auto moved = [&](double t) {
-      return device::evaluate(prescribed.displacement(prescribed.program(k)), place.x, place.y, place.z, t);
+    const Vector3<double> rest = load_points<double>(prescribed.rest, i);
+    const auto displacement_at = [&](double t) {
+      return device::evaluate(prescribed.displacement(prescribed.program(k)), rest.x, rest.y, rest.z, t);
     };
-    const double t = stage_time.time(), dt = stage_time.origin.dt, half = 0.5 * dt, now = moved(t);
+    const double t = stage_time.time(), dt = stage_time.origin.dt, half = 0.5 * dt, now = displacement_at(t);
     const double position = prescribed.rest(i, axis) + now;
-    const double velocity =
-        t < dt ? (4.0 * moved(t + half) - 3.0 * now - moved(t + dt)) / dt
-               : (8.0 * (moved(t + half) - moved(t - half)) - (moved(t + dt) - moved(t - dt))) / (6.0 * dt);
+    const double velocity = t < dt
+                                ? (4.0 * displacement_at(t + half) - 3.0 * now - displacement_at(t + dt)) / dt
+                                : (8.0 * (displacement_at(t + half) - displacement_at(t - half)) -
+                                   (displacement_at(t + dt) - displacement_at(t - dt))) /
+                                      (6.0 * dt);
     x(i, axis) = position;
     v(i, axis) = velocity;
-    if (looks && !(Kokkos::fabs(position) + Kokkos::fabs(velocity) < divergence_limit))
+    if (checks_divergence && !(Kokkos::fabs(position) + Kokkos::fabs(velocity) < divergence_limit))
       stage_time.monitor.record_failure(stage_time.monitor.steps(stage_time.parity), i);
   }
 };

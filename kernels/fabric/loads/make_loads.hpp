@@ -74,8 +74,8 @@ template <class ExecutionSpace>
 /// Rings of triangles on which pressures act. Blocks.
 template <class ExecutionSpace>
 [[nodiscard]] SlicedEllViews<ExecutionSpace, 3> make_surface(const ExecutionSpace& space, const Parameters& p,
-                                                             const FabricViews<ExecutionSpace>& cloth) {
-  return has_triangles(p.material.model) ? cloth.triangles
+                                                             const FabricViews<ExecutionSpace>& fabric) {
+  return has_triangles(p.material.model) ? fabric.triangles
                                          : sliced_ell_views(space, ring_adjacency(p.mesh), false);
 }
 

@@ -28,27 +28,27 @@ template <class ExecutionSpace>
   if (teams == 0) return std::nullopt;
   const auto share = [&](int parts) { return (vertices + parts - 1) / parts; };
   const int count = std::min(teams, share(p.patch > 0 ? p.patch : slice));
-  if (share(count) > most_ring_threads) return std::nullopt;
+  if (share(count) > max_ring_threads) return std::nullopt;
   const bool rings = has_triangles(p.material.model) || has_pressure;
   const Patches patches =
       make_patches(p.mesh.rest, ring_adjacency(rings ? p.mesh : Mesh{p.mesh.rest, {}, {}, {}, {}}),
                    spring_adjacency(p.mesh, p.material), count);
   const PatchViews<ExecutionSpace> views = patch_views(instance.space(), patches);
-  const bool pairs = patches.team <= most_pair_vertices && !has_loads;
+  const bool pairs = patches.team <= max_pair_vertices && !has_loads;
   constexpr ConstitutiveModel any{Model::edge};  // all models need the same memory
   const std::size_t scratch = pairs ? PersistentPairsFunctor<ExecutionSpace, any>::scratch_bytes(views)
                                     : PersistentRingsFunctor<ExecutionSpace, any>::scratch_bytes(views);
   if (scratch > Grid::most_scratch_bytes(instance)) return std::nullopt;
-  const int threads = pairs ? team_threads(patches, patches.most_rows, most_pair_threads)
-                            : team_threads(patches, 0, most_ring_threads);
+  const int threads = pairs ? team_threads(patches, patches.max_rows, max_pair_threads)
+                            : team_threads(patches, 0, max_ring_threads);
   return PersistentDriver<ExecutionSpace>{
-      {instance, count, threads, scratch, static_cast<std::size_t>(patches.places)}, views, pairs};
+      {instance, count, threads, scratch, static_cast<std::size_t>(patches.messages)}, views, pairs};
 }
 
 /// State and forces of a launch of the persistent driver.
 template <class ExecutionSpace, class VertexForce>
 struct PersistentInputs {
-  FabricViews<ExecutionSpace> cloth;  ///< `load` holds the dead loads alone
+  FabricViews<ExecutionSpace> fabric;  ///< `load` holds the dead loads alone
   PointsView<ExecutionSpace> x, v;
   StepMonitor<ExecutionSpace> monitor;
   stepping::TimeState time;  ///< before the launch
@@ -71,22 +71,20 @@ void launch_persistent_steps(const ExecutionSpace& space, PersistentDriver<Execu
   }
   const std::int64_t before = captured ? -1 : in.time.step;
   const auto with = [&]<bool loads>(const PersistentLoads<ExecutionSpace, loads>& load) {
-    return PersistentSteps<ExecutionSpace, VertexForce, loads>{driver.patches, in.cloth,        in.x,   in.v,
+    return PersistentSteps<ExecutionSpace, VertexForce, loads>{driver.patches, in.fabric,       in.x,   in.v,
                                                                in.monitor,     in.time.dt,      before, steps,
                                                                driver.epoch,   in.vertex_force, load};
   };
   if (in.has_loads)
-    driver.grid.template launch<most_ring_threads, 1>(
+    driver.grid.template launch<max_ring_threads, 1>(
         PersistentRingsFunctor<ExecutionSpace, law, VertexForce, true>{
             with(PersistentLoads<ExecutionSpace, true>{in.external, in.time})});
   else if (driver.pairs)
-    driver.grid.template launch<most_pair_threads, 1>(
-        PersistentPairsFunctor<ExecutionSpace, law, VertexForce>{
-            with(PersistentLoads<ExecutionSpace, false>{})});
+    driver.grid.template launch<max_pair_threads, 1>(PersistentPairsFunctor<ExecutionSpace, law, VertexForce>{
+        with(PersistentLoads<ExecutionSpace, false>{})});
   else
-    driver.grid.template launch<most_ring_threads, 1>(
-        PersistentRingsFunctor<ExecutionSpace, law, VertexForce>{
-            with(PersistentLoads<ExecutionSpace, false>{})});
+    driver.grid.template launch<max_ring_threads, 1>(PersistentRingsFunctor<ExecutionSpace, law, VertexForce>{
+        with(PersistentLoads<ExecutionSpace, false>{})});
   driver.epoch += 4 * static_cast<std::uint64_t>(steps);
 }
 
