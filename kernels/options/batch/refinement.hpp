@@ -22,18 +22,18 @@ struct Resolution {
 
 /// How far a price has come whose tolerance decides.
 struct Refinement {
-  Resolution next;     ///< no mesh: it is there
-  int often = 1;       ///< steps, of a fourth of the mesh
-  double error = 0.0;  ///< stated last
+  Resolution next;           ///< no mesh: it is there
+  int steps_multiplier = 1;  ///< steps, of a fourth of the mesh
+  double error = 0.0;        ///< stated last
 };
 
-/// Steps on a mesh: those that are given, or `often` for each four intervals.
-[[nodiscard]] inline int steps_of(const Settings& settings, int mesh, int often) {
-  return settings.steps != 0 ? settings.steps : mesh / 4 * often;
+/// Steps on a mesh: those that are given, or `steps_multiplier` for each four intervals.
+[[nodiscard]] inline int steps_of(const Settings& settings, int mesh, int steps_multiplier) {
+  return settings.steps != 0 ? settings.steps : mesh / 4 * steps_multiplier;
 }
 
 /// The next effort, the least of those that are missing; none if all prices are there.
-[[nodiscard]] inline std::optional<Resolution> least_effort(const std::vector<Refinement>& rows) {
+[[nodiscard]] inline std::optional<Resolution> lowest_resolution(const std::vector<Refinement>& rows) {
   std::optional<Resolution> least;
   for (const Refinement& row : rows)
     if (row.next.mesh != 0 && (!least || row.next < *least)) least = row.next;
@@ -45,26 +45,27 @@ struct Refinement {
 /// does where it falls as of an order of a half, as at a kink that hardly spreads. Where that does not help
 /// on a fine mesh either, nothing will. `tolerance`: money.
 inline void refine(Refinement& row, const Price& price, double tolerance, const Settings& settings) {
-  constexpr int last_mesh = 2048, hopeless_mesh = 512;
+  constexpr int last_mesh = 2048, stagnation_mesh = 512;
   const int mesh = row.next.mesh;
   row.next = {};
   if (price.outcome == Outcome::ok) return;
   const bool grew = price.failure == Failure::grown || price.failure == Failure::stiff;
   if (price.failure != Failure::none && !grew) return;
-  const int most_often = grew ? 16 : 4;
-  const bool stuck = price.outcome == Outcome::failed || (row.error > 0.0 && price.error > 0.7 * row.error);
+  const int max_multiplier = grew ? 16 : 4;
+  const bool stagnates =
+      price.outcome == Outcome::failed || (row.error > 0.0 && price.error > 0.7 * row.error);
   row.error = price.error;
   int next = mesh;
-  if (stuck && row.often < most_often && settings.steps == 0) {
-    row.often *= 4;
-  } else if (stuck && mesh >= hopeless_mesh && price.outcome == Outcome::coarse) {
+  if (stagnates && row.steps_multiplier < max_multiplier && settings.steps == 0) {
+    row.steps_multiplier *= 4;
+  } else if (stagnates && mesh >= stagnation_mesh && price.outcome == Outcome::coarse) {
     return;
   } else {
     next *= 2;
     if (price.outcome == Outcome::coarse)
       for (double error = price.error / 16.0; error > tolerance && next < last_mesh; error /= 4.0) next *= 2;
   }
-  if (next <= last_mesh) row.next = {next, steps_of(settings, next, row.often)};
+  if (next <= last_mesh) row.next = {next, steps_of(settings, next, row.steps_multiplier)};
 }
 
 }  // namespace drogue::options

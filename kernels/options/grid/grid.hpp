@@ -37,13 +37,11 @@ KOKKOS_INLINE_FUNCTION Grid<R> coarser(const Grid<R>& grid) {
 
 /// The lanes that an option on a mesh has, so that each of them has eight nodes or four. Two options of 16
 /// lanes share a warp.
-KOKKOS_INLINE_FUNCTION constexpr int lanes_of(int mesh) {
-  return mesh == 64 || mesh == 128 ? 16 : most_lanes;
-}
+KOKKOS_INLINE_FUNCTION constexpr int lanes_of(int mesh) { return mesh == 64 || mesh == 128 ? 16 : max_lanes; }
 
 /// Whether lanes, so many an option, keep the spectrum of its jumps in registers: where two options share a
 /// warp shared memory has no room for it, and else registers have none.
-KOKKOS_INLINE_FUNCTION constexpr bool keeps_spectrum(int lanes) { return lanes < most_lanes; }
+KOKKOS_INLINE_FUNCTION constexpr bool keeps_spectrum(int lanes) { return lanes < max_lanes; }
 
 /// Whether the sum over jumps of a mesh goes through Fourier transforms, which are the faster where every
 /// lane has work in them.
@@ -52,14 +50,14 @@ KOKKOS_INLINE_FUNCTION constexpr bool is_transformed(int mesh, int lanes) {
 }
 
 /// Place of number i of a transform: numbers that lanes read or write at once then are in different banks of
-/// shared memory, whatever power of two lies between them, and do not meet in a cache.
+/// shared memory, whatever power of two lies between them, and do not sync in a cache.
 KOKKOS_INLINE_FUNCTION constexpr int padded(int i) { return i + i / 8; }
 
 /// Blocks of nodes that lanes own, and the length of an array that holds them all and whole octets of nodes,
 /// two of which hold a transform.
 KOKKOS_INLINE_FUNCTION int block_of(int mesh, int lanes) { return (mesh + lanes - 1) / lanes; }
 KOKKOS_INLINE_FUNCTION int node_count(int mesh) {
-  const int owned = block_of(mesh, most_lanes) * most_lanes, octets = (mesh + 7) / 8 * 8 + 8;
+  const int owned = block_of(mesh, max_lanes) * max_lanes, octets = (mesh + 7) / 8 * 8 + 8;
   if (is_transformed(mesh, 1)) return padded(mesh);
   return owned > octets ? owned : octets;
 }
@@ -81,20 +79,20 @@ struct WeightLayout {
 };
 
 /// Angles at which the jumps' symbol is known.
-inline constexpr int symbols = 16;
+inline constexpr int symbol_count = 16;
 
 /// The puts' jumps on their grid: the weights w_d = h g(d h) of jumps by d nodes (half of it for d = +-1),
 /// what goes beyond the grid, and what of the variance and of the drift is left for differences.
 template <class R>
 struct Jumps {
-  R* w;           ///< in the order of a WeightLayout; 0 for d = 0 and |d| > mesh
-  R* left;        ///< (node_count): mass of the jumps from a node to below the grid, a year
-  R* left_price;  ///< (node_count): the same of e^{x + y}
-  R rate;         ///< mass of all jumps, a year
-  R diffusion;    ///< D, so that D, the weights and the tails have the variance of the law
-  R drift;        ///< b, so that the scheme prices e^x without an error
-  R excess;       ///< variance a year that they have beyond the law's, which no D can take back
-  R* symbol;      ///< (symbols): sum of w_d (1 - cos(d angle)) at the angles pi 2^{-k/2}
+  R* w;               ///< in the order of a WeightLayout; 0 for d = 0 and |d| > mesh
+  R* exit_mass;       ///< (node_count): mass of the jumps from a node to below the grid, a year
+  R* exit_price;      ///< (node_count): the same of e^{x + y}
+  R rate;             ///< mass of all jumps, a year
+  R diffusion;        ///< D, so that D, the weights and the tails have the variance of the law
+  R drift;            ///< b, so that the scheme prices e^x without an error
+  R excess_variance;  ///< variance a year that they have beyond the law's, which no D can take back
+  R* symbol;          ///< (symbols): sum of w_d (1 - cos(d angle)) at the angles pi 2^{-k/2}
 };
 
 }  // namespace drogue::options

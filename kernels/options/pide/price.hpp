@@ -4,10 +4,11 @@
 
 namespace drogue::options {
 
-/// Why a put has no price on a grid of steps h. `most`: what it can earn, in money; `variance`: of its law, a
-/// year.
-KOKKOS_INLINE_FUNCTION Failure failure_of(const NormalizedPut& put, double most, double variance, double h) {
-  if (put.rate * put.maturity < -650.0 || !(most < 1e300)) return Failure::too_large;
+/// Why a put has no price on a grid of steps h. `upper_bound`: what it can earn, in money; `variance`: of its
+/// measure, a year.
+KOKKOS_INLINE_FUNCTION Failure failure_of(const NormalizedPut& put, double upper_bound, double variance,
+                                          double h) {
+  if (put.rate * put.maturity < -650.0 || !(upper_bound < 1e300)) return Failure::too_large;
   if (variance != variance) return Failure::overflow;
   if (!(h < 100.0)) return Failure::no_grid;
   // Steps have the square of this.
@@ -22,7 +23,7 @@ KOKKOS_INLINE_FUNCTION Failure failure_of(const NormalizedPut& put, double most,
 }
 
 /// The node next to the spot of a put.
-KOKKOS_INLINE_FUNCTION int node_beside(const NormalizedPut& put, double strike, double h, int mesh) {
+KOKKOS_INLINE_FUNCTION int nearest_node(const NormalizedPut& put, double strike, double h, int mesh) {
   const double t = put.log_spot / h + strike + 0.5;
   return t > 0.0 ? t < mesh ? static_cast<int>(t) : mesh - 1 : 0;
 }
@@ -32,49 +33,55 @@ KOKKOS_INLINE_FUNCTION int node_beside(const NormalizedPut& put, double strike, 
 /// V(coarse)| near the spot.
 KOKKOS_INLINE_FUNCTION Price price_of(const Contract& contract, const NormalizedPut& put,
                                       const SolutionAtSpot& fine, const SolutionAtSpot& coarse,
-                                      const ErrorEstimate<double>& doubt, double largest, double h, int mesh,
-                                      int steps, double tolerance) {
-  const auto limit = [](double f, double c) { return f + (f - c) * (1.0 / 3); };
+                                      const ErrorEstimate<double>& estimate, double largest, double h,
+                                      int mesh, int steps, double tolerance) {
+  const auto extrapolate = [](double f, double c) { return f + (f - c) * (1.0 / 3); };
   const double asset = exponential(put.log_spot);
-  const bool exercised = put.early && fine.slope == -asset && fine.decay == 0.0;
+  const bool exercised = put.early && fine.first_derivative == -asset && fine.time_derivative == 0.0;
   SolutionAtSpot a = fine;
   if (!exercised) {
-    a.value = limit(fine.value, coarse.value);
-    a.slope = limit(fine.slope, coarse.slope);
-    a.bend = limit(fine.bend, coarse.bend);
-    a.decay = limit(fine.decay, coarse.decay);
+    a.value = extrapolate(fine.value, coarse.value);
+    a.first_derivative = extrapolate(fine.first_derivative, coarse.first_derivative);
+    a.second_derivative = extrapolate(fine.second_derivative, coarse.second_derivative);
+    a.time_derivative = extrapolate(fine.time_derivative, coarse.time_derivative);
   }
   const bool call = contract.type == Type::call;
   const double unit = call ? contract.spot : contract.strike, s = contract.spot;
   // The extrapolation has 4/3 of what the fine grid misses and a third of what the coarse one does. Twice
   // that, since beside a sharp kink the terms that follow are no smaller.
-  const double missed = 2.0 * (4.0 * fine.missed + coarse.missed) * (1.0 / 3);
-  const double near = nearness(put, fine.boundary, 0.5 * h), unseen = doubt.gap + cut_doubt(mesh);
-  const double contact = near > 0.0 ? doubt_of_contact(fine) : 0.0;
-  const double lasting = near > 0.0 ? device::maximum(near, persistence(put, fine, doubt.variance)) : 0.0;
+  const double interpolation_error =
+      2.0 * (4.0 * fine.interpolation_error + coarse.interpolation_error) * (1.0 / 3);
+  const double near_weight = boundary_weight(put, fine.boundary, 0.5 * h),
+               hidden_error = estimate.offset + truncation_error(mesh);
+  const double contact_error = near_weight > 0.0 ? boundary_error(fine) : 0.0;
+  const double contact_weight =
+      near_weight > 0.0 ? device::maximum(near_weight, standing_boundary_weight(put, fine, estimate.variance))
+                        : 0.0;
   // Where the payoff is the price nothing is in doubt but whether the boundary lies above.
-  const double stated = exercised && near > 0.0
-                            ? near * near * (contact + unseen) + no_time_value
-                            : doubt.factor * largest + lasting * contact + missed + unseen;
+  const double stated =
+      exercised && near_weight > 0.0
+          ? near_weight * near_weight * (contact_error + hidden_error) + time_value_tolerance
+          : estimate.factor * largest + contact_weight * contact_error + interpolation_error + hidden_error;
   // Nobody pays more for a put than what it can earn at most, and no error is larger; nor less than what
   // exercise now or at expiry, whatever happens, is worth. A value that is not a number stays one.
   const double bond = exponential(-put.rate * put.maturity);
-  const double most = put.rate < 0.0 ? bond : 1.0;
+  const double upper_bound = put.rate < 0.0 ? bond : 1.0;
   const double late = bond - exponential(put.log_spot - put.dividend * put.maturity);
-  const double least = device::maximum(put.early ? 1.0 - asset : 0.0, device::maximum(0.0, late));
-  const bool finite = fine.value <= 1.001 * most && largest <= 4.0 * most && unit * most < 1e300 &&
-                      put.rate * put.maturity >= -650.0 && h < 100.0;
-  if (a.value < least) a.value = least;
-  if (a.value > (put.early ? most : bond)) a.value = put.early ? most : bond;
+  const double lower_bound = device::maximum(put.early ? 1.0 - asset : 0.0, device::maximum(0.0, late));
+  const bool finite = fine.value <= 1.001 * upper_bound && largest <= 4.0 * upper_bound &&
+                      unit * upper_bound < 1e300 && put.rate * put.maturity >= -650.0 && h < 100.0;
+  if (a.value < lower_bound) a.value = lower_bound;
+  if (a.value > (put.early ? upper_bound : bond)) a.value = put.early ? upper_bound : bond;
   // Grids that differ by a quarter of all there is to know say nothing of the error.
-  const bool known = largest < 0.25 * most && doubt.factor < nothing_known;
-  const double error = stated < most && known ? stated : most;
+  const bool applied = largest < 0.25 * upper_bound && estimate.factor < unreliable_factor;
+  const double error = stated < upper_bound && applied ? stated : upper_bound;
   Price price;
   price.price = unit * a.value;
   price.error = unit * error;
-  price.delta = call ? a.value - a.slope : unit * a.slope / s;
-  price.gamma = call ? (a.bend - a.slope) / s : unit * (a.bend - a.slope) / (s * s);
-  price.theta = -unit * a.decay;
+  price.delta = call ? a.value - a.first_derivative : unit * a.first_derivative / s;
+  price.gamma = call ? (a.second_derivative - a.first_derivative) / s
+                     : unit * (a.second_derivative - a.first_derivative) / (s * s);
+  price.theta = -unit * a.time_derivative;
   price.exercise_boundary = contract.strike * exponential(call ? -fine.boundary : fine.boundary);
   if (!(fine.boundary == fine.boundary)) price.exercise_boundary = fine.boundary;
   price.mesh = mesh;
@@ -83,7 +90,7 @@ KOKKOS_INLINE_FUNCTION Price price_of(const Contract& contract, const Normalized
   price.outcome = !finite                                     ? Outcome::failed
                   : price.error > tolerance * contract.strike ? Outcome::coarse
                                                               : Outcome::ok;
-  if (!finite) price.failure = failure_of(put, unit * most, doubt.variance, h);
+  if (!finite) price.failure = failure_of(put, unit * upper_bound, estimate.variance, h);
   return price;
 }
 

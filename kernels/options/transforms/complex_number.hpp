@@ -24,13 +24,14 @@ KOKKOS_INLINE_FUNCTION ComplexNumber<R> product(const ComplexNumber<R>& a, const
 
 /// a times the conjugate of b.
 template <class R, class S>
-KOKKOS_INLINE_FUNCTION ComplexNumber<R> quotient(const ComplexNumber<R>& a, const ComplexNumber<S>& b) {
+KOKKOS_INLINE_FUNCTION ComplexNumber<R> times_conjugate(const ComplexNumber<R>& a,
+                                                        const ComplexNumber<S>& b) {
   return {a.re * b.re + a.im * b.im, a.im * b.re - a.re * b.im};
 }
 
 /// sign i a.
 template <int sign, class R>
-KOKKOS_INLINE_FUNCTION ComplexNumber<R> turned(const ComplexNumber<R>& a) {
+KOKKOS_INLINE_FUNCTION ComplexNumber<R> times_i(const ComplexNumber<R>& a) {
   if constexpr (sign > 0) return {-a.im, a.re};
   return {a.im, -a.re};
 }

@@ -20,7 +20,7 @@ KOKKOS_INLINE_FUNCTION void transform(ComplexNumber<R>& z0, ComplexNumber<R>& z1
 template <int sign, class R>
 KOKKOS_INLINE_FUNCTION void transform(ComplexNumber<R>& z0, ComplexNumber<R>& z1, ComplexNumber<R>& z2,
                                       ComplexNumber<R>& z3) {
-  const ComplexNumber<R> a = z0 + z2, b = z0 - z2, c = z1 + z3, d = turned<sign>(z1 - z3);
+  const ComplexNumber<R> a = z0 + z2, b = z0 - z2, c = z1 + z3, d = times_i<sign>(z1 - z3);
   z0 = a + c;
   z1 = b + d;
   z2 = a - c;
@@ -36,10 +36,10 @@ KOKKOS_INLINE_FUNCTION void transform(ComplexNumber<R> (&z)[8]) {
   transform<sign>(even[0], even[1], even[2], even[3]);
   // odd[m] e^{sign 2 pi i m/8}, where the factor sqrt(1/2) of m = 1 and 3 comes last, and m = 3 negated.
   constexpr double diagonal = 0.70710678118654752440;
-  const ComplexNumber<R> second = turned<sign>(odd[2]), first = odd[1] + turned<sign>(odd[1]),
-                         third = odd[3] - turned<sign>(odd[3]);
+  const ComplexNumber<R> second = times_i<sign>(odd[2]), first = odd[1] + times_i<sign>(odd[1]),
+                         third = odd[3] - times_i<sign>(odd[3]);
   const ComplexNumber<R> a = odd[0] + second, b = odd[0] - second, sum = first - third,
-                         difference = turned<sign>(first + third);
+                         difference = times_i<sign>(first + third);
   const ComplexNumber<R> c = {diagonal * sum.re, diagonal * sum.im},
                          d = {diagonal * difference.re, diagonal * difference.im};
   for (int q = 0; q < 4; ++q) z[2 * q] = even[q];
@@ -50,7 +50,7 @@ KOKKOS_INLINE_FUNCTION void transform(ComplexNumber<R> (&z)[8]) {
 }
 
 /// cos(2 pi m/32), m = 0 .. 8; the sine is that of 8 - m.
-struct Turn {
+struct QuarterCosines {
   double cosine[9] = {1.0,
                       0.98078528040323044913,
                       0.92387953251128675613,
@@ -74,19 +74,19 @@ struct Octet {
     for (int m = 0; m < 8; ++m) to[padded(m * stride)] = z[m];
   }
   /// Remainders by the eight factors of a factor with these roots, and back.
-  KOKKOS_INLINE_FUNCTION void split(const SevenRoots& roots) {
-    for (int m = 1; m < 8; ++m) z[m] = product(z[m], roots.of[m - 1]);
+  KOKKOS_INLINE_FUNCTION void forward(const SevenRoots& roots) {
+    for (int m = 1; m < 8; ++m) z[m] = product(z[m], roots.root[m - 1]);
     transform<1>(z);
   }
-  KOKKOS_INLINE_FUNCTION void join(const SevenRoots& roots) {
+  KOKKOS_INLINE_FUNCTION void inverse(const SevenRoots& roots) {
     transform<-1>(z);
-    for (int m = 1; m < 8; ++m) z[m] = quotient(z[m], roots.of[m - 1]);
+    for (int m = 1; m < 8; ++m) z[m] = times_conjugate(z[m], roots.root[m - 1]);
   }
   /// The same in a last pass, where `radix` neighbours are all that is left of a factor; octet `task`.
   template <int radix>
-  KOKKOS_INLINE_FUNCTION void split_last(const FourierRoots& roots, int level, int task) {
+  KOKKOS_INLINE_FUNCTION void forward_last(const FourierRoots& roots, int level, int task) {
     if constexpr (radix == 8) {
-      split(roots.seven(level, task));
+      forward(roots.seven(level, task));
     } else {
       for (int k = 0; k < 8; k += radix) {
         for (int m = 1; m < radix; ++m)
@@ -96,14 +96,14 @@ struct Octet {
     }
   }
   template <int radix>
-  KOKKOS_INLINE_FUNCTION void join_last(const FourierRoots& roots, int level, int task) {
+  KOKKOS_INLINE_FUNCTION void inverse_last(const FourierRoots& roots, int level, int task) {
     if constexpr (radix == 8) {
-      join(roots.seven(level, task));
+      inverse(roots.seven(level, task));
     } else {
       for (int k = 0; k < 8; k += radix) {
         transform_few<-1, radix>(k);
         for (int m = 1; m < radix; ++m)
-          z[k + m] = quotient(z[k + m], roots.at(level, m * (8 / radix), (8 * task + k) / radix));
+          z[k + m] = times_conjugate(z[k + m], roots.at(level, m * (8 / radix), (8 * task + k) / radix));
       }
     }
   }
@@ -111,8 +111,8 @@ struct Octet {
   /// The first pass, of the real numbers read(m), and the last one back, of which write(m, y) gets the
   /// imaginary parts. The roots of level 0 are e^{2 pi i m/32}.
   template <class Read>
-  KOKKOS_INLINE_FUNCTION void split_real(const Read& read) {
-    constexpr Turn turn;
+  KOKKOS_INLINE_FUNCTION void forward_real(const Read& read) {
+    constexpr QuarterCosines turn;
     z[0] = {read(0), R(0.0)};
     for (int m = 1; m < 8; ++m) {
       const R v = read(m);
@@ -121,8 +121,8 @@ struct Octet {
     transform<1>(z);
   }
   template <class Write>
-  KOKKOS_INLINE_FUNCTION void join_imaginary(const Write& write) {
-    constexpr Turn turn;
+  KOKKOS_INLINE_FUNCTION void inverse_imaginary(const Write& write) {
+    constexpr QuarterCosines turn;
     transform<-1>(z);
     write(0, z[0].im);
     for (int m = 1; m < 8; ++m) write(m, z[m].im * turn.cosine[m] - z[m].re * turn.cosine[8 - m]);
@@ -132,9 +132,9 @@ struct Octet {
   template <int radix>
   KOKKOS_INLINE_FUNCTION void multiply_last(const FourierRoots& roots, int level, int task,
                                             const ComplexNumber<R>* spectrum) {
-    split_last<radix>(roots, level, task);
+    forward_last<radix>(roots, level, task);
     for (int m = 0; m < 8; ++m) z[m] = product(z[m], spectrum[m]);
-    join_last<radix>(roots, level, task);
+    inverse_last<radix>(roots, level, task);
   }
 
  private:

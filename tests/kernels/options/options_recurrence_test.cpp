@@ -26,27 +26,27 @@ struct RecurrenceFunctor {
   Way way;
   int block, end;
   double below, above, x0;
-  Numbers x, y, floor, slot;
+  Numbers x, y, floor, scratch;
 
   KOKKOS_FUNCTION void operator()(const Kokkos::TeamPolicy<Space>::member_type& team) const {
     if constexpr (device::is_host<Space>) {
-      recur_on(SerialWorkers<R>{});
+      recur_on(SerialThreadGroup<R>{});
     } else {
       const auto rank = static_cast<int>(team.team_rank());
-      if (way == Way::in_memory) return recur_on(WarpWorkers<>{rank});
-      if (way == Way::halved) return in_registers<most_lanes, 4, true>(rank);
-      if (block == 8) return in_registers<most_lanes, 8, false>(rank);
-      in_registers<most_lanes, 4, false>(rank);
+      if (way == Way::in_memory) return recur_on(WarpThreadGroup<>{rank});
+      if (way == Way::halved) return in_registers<max_lanes, 4, true>(rank);
+      if (block == 8) return in_registers<max_lanes, 8, false>(rank);
+      in_registers<max_lanes, 4, false>(rank);
     }
   }
 
  private:
   template <class ThreadGroup>
-  KOKKOS_FUNCTION void recur_on(const ThreadGroup& workers) const {
+  KOKKOS_FUNCTION void recur_on(const ThreadGroup& group) const {
     auto* const line = reinterpret_cast<R*>(y.data());
-    auto* const place = reinterpret_cast<R*>(slot.data());
-    recur_backward(workers, {line}, block, R(above), place);
-    recur_forward(workers, reinterpret_cast<R*>(x.data()), line, reinterpret_cast<const R*>(floor.data()),
+    auto* const place = reinterpret_cast<R*>(scratch.data());
+    recur_backward(group, {line}, block, R(above), place);
+    recur_forward(group, reinterpret_cast<R*>(x.data()), line, reinterpret_cast<const R*>(floor.data()),
                   block, end, R(below), R(x0), place);
   }
   template <int lanes, int nodes, bool halved>
@@ -64,7 +64,7 @@ struct RecurrenceFunctor {
 void expect_plain_recurrences(Way way, int block, int end, double below, double above) {
   SCOPED_TRACE("block " + std::to_string(block) + ", end " + std::to_string(end) + ", slopes " +
                std::to_string(below) + " and " + std::to_string(above));
-  const auto nodes = static_cast<std::size_t>(block * most_lanes);
+  const auto nodes = static_cast<std::size_t>(block * max_lanes);
   std::mt19937 random(11);
   std::uniform_real_distribution<double> part(-1.0, 1.0);
   std::vector<double> y(nodes), floor(nodes), wide(nodes * members), wide_floor(nodes * members);
@@ -77,9 +77,9 @@ void expect_plain_recurrences(Way way, int block, int end, double below, double 
   constexpr double x0 = 0.7;
   const Numbers x("x", nodes * members);
   Kokkos::parallel_for(
-      "recurrence_test", Kokkos::TeamPolicy<Space>(1, device::is_host<Space> ? 1 : most_lanes),
+      "recurrence_test", Kokkos::TeamPolicy<Space>(1, device::is_host<Space> ? 1 : max_lanes),
       RecurrenceFunctor{way, block, end, below, above, x0, x, on_backend<Space>(wide),
-                        on_backend<Space>(wide_floor), Numbers("slot", 9 * most_lanes * members)});
+                        on_backend<Space>(wide_floor), Numbers("scratch", 9 * max_lanes * members)});
   for (std::size_t i = nodes - 1; i-- > 0;) y[i] += above * y[i + 1];
   std::vector<double> plain(nodes, x0);
   for (std::size_t i = 1; i < nodes; ++i) plain[i] = std::max(floor[i], below * plain[i - 1] + y[i]);
@@ -96,13 +96,13 @@ TEST(OptionsRecurrence, PartsOfBlocksEqualOneLine) {
   for (const double below : {0.9, 0.3, 0.0, -0.6})
     for (const double above : {0.8, 0.1}) {
       for (const int block : {1, 4, 7, 8, 9, 16}) {
-        expect_plain_recurrences(Way::in_memory, block, block * most_lanes, below, above);
-        expect_plain_recurrences(Way::in_memory, block, block * most_lanes - 3, below, above);
+        expect_plain_recurrences(Way::in_memory, block, block * max_lanes, below, above);
+        expect_plain_recurrences(Way::in_memory, block, block * max_lanes - 3, below, above);
       }
       if (device::is_host<Space>) continue;
-      expect_plain_recurrences(Way::in_registers, 8, 8 * most_lanes, below, above);
-      expect_plain_recurrences(Way::in_registers, 4, 4 * most_lanes, below, above);
-      expect_plain_recurrences(Way::halved, 4, 4 * most_lanes, below, above);
+      expect_plain_recurrences(Way::in_registers, 8, 8 * max_lanes, below, above);
+      expect_plain_recurrences(Way::in_registers, 4, 4 * max_lanes, below, above);
+      expect_plain_recurrences(Way::halved, 4, 4 * max_lanes, below, above);
     }
 }
 

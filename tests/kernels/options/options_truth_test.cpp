@@ -85,7 +85,7 @@ TEST(OptionsTruth, TailsOfMertonAndKou) {
                                    NormalizedPut{.model = Model::kou, .jump = {2.0, 0.3, 2.5, 1.5}}}) {
     const double length = 1.1;
     const Tails<double> tails =
-        tails_of(SerialWorkers<double>{}, pack_of<double>(&put), LevyMeasure<double>{}, length);
+        tails_of(SerialThreadGroup<double>{}, pack_of<double>(&put), LevyMeasure<double>{}, length);
     const auto one = [](double) { return 1.0; };
     const auto price = [](double y) { return std::exp(y); };
     const auto square = [](double y) { return y * y; };

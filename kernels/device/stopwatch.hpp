@@ -2,11 +2,12 @@
 
 #include <chrono>
 
-namespace drogue::options {
+namespace drogue::device {
 
-/// Wall time since it was made.
+/// Wall time since construction.
 class Stopwatch {
  public:
+  /// Elapsed wall time, s. Does not throw; it waits for no enqueued work.
   [[nodiscard]] double seconds() const {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - _begin).count();
   }
@@ -15,4 +16,4 @@ class Stopwatch {
   std::chrono::steady_clock::time_point _begin = std::chrono::steady_clock::now();
 };
 
-}  // namespace drogue::options
+}  // namespace drogue::device
