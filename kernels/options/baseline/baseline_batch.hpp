@@ -4,12 +4,12 @@
 
 namespace drogue::options {
 
-/// The grid of the dissertation's scheme: x in [-4, 4], the strike in the middle.
+/// Half width of the grid of [Shi] in x = ln(spot/strike), with the strike in the middle.
 inline constexpr double baseline_half_width = 4.0;
 
-/// Jumps as section 4.6.2 of the dissertation has them: exact masses of cells of the density, none within
-/// epsilon = h; the variance of those is diffusion. `jumps.exit_mass` and `exit_price` are the B_l of
-/// Listing 4.6, what leaves the grid downwards; what leaves it upwards is worth nothing.
+/// Jumps by [Shi], section 4.6.2: exact masses of cells of the density, none within epsilon = h. The variance
+/// of the jumps within epsilon is diffusion. `jumps.exit_mass` and `exit_price` are the B_l of Listing 4.6,
+/// jumps to below the grid; values above the grid are 0.
 template <class ThreadGroup, class R>
 KOKKOS_INLINE_FUNCTION Jumps<R> baseline_jumps(const ThreadGroup& group, const PutPack<R>& put,
                                                const LevyMeasure<R>& measure, const Grid<R>& grid, R* w,
@@ -18,7 +18,7 @@ KOKKOS_INLINE_FUNCTION Jumps<R> baseline_jumps(const ThreadGroup& group, const P
   const R h = grid.h, beta = put.jump[2];
   const WeightLayout<R> layout(mesh);
   const R *s = measure.s, *c = measure.c;
-  // The integral over y > length, upwards (side 1) or downwards (-1), of e^{side k y} g.
+  // Integral of e^{side k y} g over y > length, upwards (side 1) or downwards (-1).
   const auto beyond = [=](R length, double side, double k) {
     R sum = 0.0;
     for (int q = 0; q < Mixture::size; ++q)
@@ -57,8 +57,9 @@ KOKKOS_INLINE_FUNCTION Jumps<R> baseline_jumps(const ThreadGroup& group, const P
   return jumps;
 }
 
-/// The dissertation's scheme on `batch`: diffusion implicit, the rest explicit, steps of equal length, and
-/// f = max(payoff, f) after each. What it leaves open is chosen here: epsilon = h and the domain.
+/// Scheme of [Shi], Listing 4.6, for `batch`: implicit diffusion, explicit remainder, equal steps, and f =
+/// max(payoff, f) after each. epsilon = h and the domain are choices of this implementation. Provides no
+/// error estimate: `Price::error` is NaN.
 template <class ExecutionSpace>
 struct BaselineBatch {
   using Batch = PriceBatch<ExecutionSpace>;
@@ -154,7 +155,7 @@ struct BaselineBatch {
   }
 };
 
-/// Enqueues the launch.
+/// Enqueues the launch; asynchronous.
 template <class ExecutionSpace>
 void price_baseline(const ExecutionSpace& space, const PriceBatch<ExecutionSpace>& batch) {
   launch_batch<0>(space, "drogue::options::baseline", BaselineBatch<ExecutionSpace>{batch});

@@ -7,28 +7,28 @@
 
 namespace drogue::options {
 
-/// The larger of two; not a number if one of them is none.
+/// Maximum of two values; NaN if one of them is NaN.
 template <class R>
 KOKKOS_INLINE_FUNCTION R maximum_or_nan(R a, R b) {
   return device::select(b >= b, device::select(b > a, b, a), b);
 }
 
-/// What is known of the puts of a pack before the first step.
+/// Data of a pack before the first step.
 template <class R>
 struct PreparedPack {
   PutPack<R> put;
   LevyMeasure<R> measure;
-  Grid<R> grid;  ///< the finer one
+  Grid<R> grid;  ///< finer grid
   Tails<R> tails;
-  Jumps<R> jumps;  ///< on it
+  Jumps<R> jumps;  ///< on `grid`
 };
 
-/// The number that a thread of `ExecutionSpace` computes with: one option's, or on hosts several options'.
+/// Arithmetic type of a thread of `ExecutionSpace`: one option on devices, a pack of options on hosts.
 template <class ExecutionSpace>
 using Number = std::conditional_t<device::is_host<ExecutionSpace>, device::HostPack<double>, double>;
 
-/// Contracts order(0), order(1), ... of one model, priced on one mesh in one launch by a team for one or two
-/// of them, or on hosts for each pack of them.
+/// Contracts order(0), order(1), ... of one model, priced on one mesh in one launch. On devices a team prices
+/// one or two contracts, on hosts a pack.
 template <class ExecutionSpace>
 struct PriceBatch {
   using Space = typename ExecutionSpace::memory_space;
@@ -36,26 +36,27 @@ struct PriceBatch {
   using Member = typename Kokkos::TeamPolicy<ExecutionSpace>::member_type;
   static constexpr int members = device::Access<R>::lanes;
 
-  Kokkos::View<const Contract*, Space> contracts;  ///< (batch)
+  Kokkos::View<const Contract*, Space> contracts;  ///< (batch): all contracts of the caller
   Kokkos::View<Price*, Space> prices;              ///< (batch)
-  Kokkos::View<const int*, Space> order;           ///< (count)
+  Kokkos::View<const int*, Space> order;           ///< (count): indices of the contracts to price
   Kokkos::View<const double*, Space> panels;       ///< (panels, HankelGrid::panel_size)
   Kokkos::View<const int*, Space> panel_slot;      ///< (HankelGrid::panels)
   FourierRoots roots{};                            ///< in the memory of the backend
-  MarchRecord record{};                            ///< of the only contract, if at all
+  MarchRecord record{};                            ///< only for batches of one contract
   int count = 0, mesh = 0, steps = 0, level = 0;
-  int lanes = max_lanes;  ///< of an option on hosts
+  int lanes = max_lanes;  ///< per option on hosts
   double tolerance = 0.0;
-  Model model{};          ///< of all contracts
-  bool split = false;     ///< exercise is, wherever it pays
-  bool one_grid = false;  ///< no second solve: the price is not extrapolated and has no error
+  Model model{};          ///< common model of the contracts
+  bool split = false;     ///< use split exercise wherever exercise may pay
+  bool one_grid = false;  ///< no second solve: no extrapolation and no error estimate
 
-  /// Groups, of an option or of a pack of them, that a team prices side by side.
+  /// Packs, or single options on devices, that a team prices side by side.
   static KOKKOS_INLINE_FUNCTION constexpr int packs_per_team(int fixed) {
     return device::is_host<ExecutionSpace> ? 1 : max_lanes / lanes_of(fixed);
   }
 
-  /// Calls `functor.price` with the group and the memory of a pack. For `fixed` see `solve`.
+  /// Calls `functor.price` with a thread group, its memory and the index of its pack. For `fixed` see
+  /// `solve`.
   template <int fixed, class Functor>
   KOKKOS_FORCEINLINE_FUNCTION void price_pack(const Functor& functor, const Member& team) const {
     using Scratch = SolveMemory<R, fixed>;
@@ -72,13 +73,13 @@ struct PriceBatch {
     }
   }
 
-  /// The contract of member k of a pack; the last pack repeats the last contract.
+  /// Index of the contract of member k of a pack; the last pack is filled up with the last contract.
   [[nodiscard]] KOKKOS_INLINE_FUNCTION int contract_index(int pack, int k) const {
     const int at = pack * members + k;
     return order(at < count ? at : count - 1);
   }
 
-  /// Prices the contracts of a pack. A call would keep all that it is told in memory.
+  /// Prices the contracts of a pack. Force-inlined: a call would spill its arguments.
   template <Laws laws, int fixed, class ThreadGroup>
   KOKKOS_FORCEINLINE_FUNCTION void price(const ThreadGroup& group, const SolveMemory<R, fixed>& memory,
                                          int pack) const {
@@ -91,7 +92,7 @@ struct PriceBatch {
     write_prices(group, prepared, estimate, memory, coarse, memory, pack);
   }
 
-  /// What both solves need, and the weights of the finer one.
+  /// Computes the data of both solves and the weights of the finer grid.
   template <Laws laws, int fixed, class ThreadGroup>
   [[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION PreparedPack<R> prepare(const ThreadGroup& group,
                                                                     const SolveMemory<R, fixed>& memory,
@@ -117,7 +118,7 @@ struct PriceBatch {
     return prepared;
   }
 
-  /// Leaves answers and every other value in the memory.
+  /// Solves on the finer grid; leaves the solutions at the spots and every second value in the memory.
   template <int fixed, class ThreadGroup>
   KOKKOS_FORCEINLINE_FUNCTION void solve_fine(const ThreadGroup& group, const PreparedPack<R>& prepared,
                                               const SolveMemory<R, fixed>& memory) const {
@@ -130,13 +131,15 @@ struct PriceBatch {
     });
   }
 
-  /// Returns the values; leaves answers in the memory.
+  /// Solves on the coarser grid; leaves the solutions at the spots in the memory. Returns the values at the
+  /// nodes.
   template <int fixed, class ThreadGroup>
   KOKKOS_FORCEINLINE_FUNCTION const R* solve_coarse(const ThreadGroup& group, const PreparedPack<R>& prepared,
                                                     const SolveMemory<R, fixed>& memory) const {
     const Grid<R> grid = coarser(prepared.grid);
     const R* value = nullptr;
-    // Where exercise has to be split off, once more without it before: the premium tells what that misses.
+    // For split exercise the coarser grid is first solved without exercise, since the premium bounds the
+    // splitting error.
     for (int exercise = prepared.put.any_split && has_premium() ? 0 : 1; exercise < 2; ++exercise) {
       const PutPack<R> put = with_exercise(prepared.put, exercise != 0);
       const Jumps<R> jumps =
@@ -153,8 +156,7 @@ struct PriceBatch {
     return value;
   }
 
-  /// Puts the prices together. `coarse` are the values that `solve_coarse` has returned, whose memory was
-  /// `other`.
+  /// Writes the prices. `coarse` is the result of `solve_coarse`, and `other` its memory.
   template <int fixed, class ThreadGroup>
   KOKKOS_FORCEINLINE_FUNCTION void write_prices(const ThreadGroup& group, const PreparedPack<R>& prepared,
                                                 const ErrorEstimate<R>& estimate,
@@ -201,7 +203,7 @@ struct PriceBatch {
  private:
   [[nodiscard]] KOKKOS_INLINE_FUNCTION bool has_premium() const { return !split && !one_grid; }
 
-  /// The value of member k at the node next to its spot.
+  /// Value of member k at the node next to its spot.
   [[nodiscard]] static KOKKOS_INLINE_FUNCTION double value_near_spot(const NormalizedPut& put,
                                                                      const Grid<R>& grid, const R* nodes,
                                                                      int k) {
@@ -210,8 +212,7 @@ struct PriceBatch {
   }
 };
 
-/// Where a team's memory is: in that of its multiprocessor, if Kokkos has so much for a team, else (and on
-/// hosts) beside.
+/// Kokkos scratch level of a team's memory: 0, shared memory, on devices if it is large enough, else 1.
 template <class ExecutionSpace>
 [[nodiscard]] int scratch_level(int mesh) {
   const auto most_shared = static_cast<std::size_t>(Kokkos::TeamPolicy<ExecutionSpace>::scratch_size_max(0));
@@ -220,14 +221,13 @@ template <class ExecutionSpace>
   return shared ? 0 : 1;
 }
 
-/// Enqueues `functor`, which prices its batch by teams of a warp each, or of several for an option.
+/// Enqueues `functor` for its batch, with teams of a warp, or of `warps` warps per option.
 template <int fixed, int warps = 1, class ExecutionSpace, class Functor>
 void launch_batch(const ExecutionSpace& space, const char* label, const Functor& functor) {
   using Batch = PriceBatch<ExecutionSpace>;
   const Batch& batch = functor.batch;
   if (batch.count == 0) return;
-  // Teams that share a multiprocessor: of their warps as many as registers for the nodes allow without
-  // spilling.
+  // Teams per multiprocessor: as many warps as fit into the registers without spilling.
   constexpr unsigned teams = fixed == 0 ? 1 : (fixed < 128 ? 12 : 8) / warps;
   using Bounds =
       std::conditional_t<fixed == 0, Kokkos::LaunchBounds<>, Kokkos::LaunchBounds<warps * max_lanes, teams>>;

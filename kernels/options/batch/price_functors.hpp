@@ -4,7 +4,7 @@
 
 namespace drogue::options {
 
-/// Prices a batch; for `fixed` see `solve`.
+/// Kernel that prices a batch; for `fixed` see `solve`.
 template <class ExecutionSpace, int fixed, Laws laws>
 struct PriceFunctor {
   using Batch = PriceBatch<ExecutionSpace>;
@@ -22,13 +22,14 @@ struct PriceFunctor {
   }
 };
 
-/// The same for a batch that leaves most of a GPU idle: a team of two warps for each option. Both prepare it,
-/// in memory of their own; then one marches on the finer grid and the other on the coarser one.
+/// Kernel for small batches, which would leave most of a GPU idle: a team of two warps per option. Both warps
+/// prepare the data in separate memory. One warp then marches on the finer grid, the other one on the coarser
+/// grid.
 template <class ExecutionSpace, int fixed, Laws laws>
 struct TwoWarpPriceFunctor {
   using Batch = PriceBatch<ExecutionSpace>;
 
-  Batch batch;  ///< on two grids
+  Batch batch;  ///< with two grids per price
 
   KOKKOS_FORCEINLINE_FUNCTION void operator()(const typename Batch::Member& team) const {
     const std::size_t bytes = SolveMemory<double, fixed>::bytes(batch.mesh);
@@ -57,7 +58,7 @@ struct TwoWarpPriceFunctor {
   }
 };
 
-/// Enqueues the launch.
+/// Enqueues the launch; asynchronous.
 template <class ExecutionSpace>
 void price_batch(const ExecutionSpace& space, PriceBatch<ExecutionSpace> batch) {
   static_assert(
@@ -71,7 +72,7 @@ void price_batch(const ExecutionSpace& space, PriceBatch<ExecutionSpace> batch) 
       });
     };
     if (batch.record.time == nullptr) {
-      // Two warps an option where half of one each would leave half of a GPU's schedulers idle.
+      // Two warps per option if half a warp per option would leave half of the GPU's schedulers idle.
       if (batch.mesh == 128 && !batch.one_grid && batch.count <= space.concurrency() / (16 * max_lanes))
         return for_laws_of(batch.model, [&]<Laws laws> {
           launch_batch<128, 2>(space, "drogue::options::price by two warps",

@@ -19,7 +19,7 @@
 
 namespace drogue::options {
 
-/// The pricer on `ExecutionSpace`.
+/// Finite-difference pricer on `ExecutionSpace`.
 template <class ExecutionSpace>
 class PricerImpl final : public Pricer {
   using Space = typename ExecutionSpace::memory_space;
@@ -42,7 +42,7 @@ class PricerImpl final : public Pricer {
     const device::Stopwatch all;
     try {
       price_all(contracts, prices, times);
-    } catch (...) {  // what is under way may read and write memory of the caller's
+    } catch (...) {  // enqueued work may access memory of the caller
       _instance.space().fence("drogue::options: a batch is given up");
       throw;
     }
@@ -73,7 +73,7 @@ class PricerImpl final : public Pricer {
   }
 
  private:
-  /// What launches read and write, in the memory of the backend or in page-locked memory of the host.
+  /// Views of a launch, in the memory of the backend or in pinned memory of the host.
   struct BatchViews {
     Kokkos::View<const Contract*, Space> contracts;
     View<Price> prices;
@@ -110,8 +110,8 @@ class PricerImpl final : public Pricer {
     copy_out(prices, times);
   }
 
-  /// Whether contracts are so few that a device rather reads and writes them in the host's memory than waits
-  /// for two copies.
+  /// Whether a batch is so small that direct access of the device to pinned host memory is faster than two
+  /// copies.
   [[nodiscard]] bool is_priced_in_place(std::size_t count) const {
     return !device::is_host<ExecutionSpace> && !_settings.timed_apart && count <= 64;
   }
@@ -131,19 +131,19 @@ class PricerImpl final : public Pricer {
   }
 
   static constexpr int first_mesh = 64, baseline_mesh = 128, record_mesh = 512, models = 4;
-  /// Contracts that the host gathers for its next launches, while a device is busy with those before.
+  /// Contracts per launch; the host gathers them while a device processes the previous launch.
   static constexpr std::size_t launch_capacity = 1 << 17;
 
   struct RecordedSolve {
     std::vector<double> time, boundary, x, value;
   };
 
-  /// The spot at ln(spot/strike) = x of the put that a contract is solved as.
+  /// Spot at ln(spot/strike) = x of the put as which a contract is solved.
   [[nodiscard]] static double spot_at(const Contract& contract, double x) {
     return contract.strike * std::exp(contract.type == Type::call ? -x : x);
   }
 
-  /// Solves one contract and brings what a solve leaves to the host.
+  /// Solves one contract and copies the recorded arrays to the host.
   RecordedSolve record(const Contract& contract, const Resolution& resolution) {
     const std::span<const Contract> one(&contract, 1);
     reserve(1);
@@ -186,12 +186,12 @@ class PricerImpl final : public Pricer {
     _prices = View<Price>(Kokkos::view_alloc("drogue::options::prices", Kokkos::WithoutInitializing), count);
     _order = View<int>(Kokkos::view_alloc("drogue::options::order", Kokkos::WithoutInitializing), count);
     _host_order.assign(count, -1);
-    // Last, since it tells that there is room.
+    // Last, since its size is the capacity that `reserve` checks.
     _contracts =
         View<Contract>(Kokkos::view_alloc("drogue::options::contracts", Kokkos::WithoutInitializing), count);
   }
 
-  /// The contracts where a device copies them from without a detour.
+  /// Contracts in memory from which a device copies directly: those of the caller, or a pinned copy.
   const Contract* staging_buffer(std::span<const Contract> contracts) {
     if (device::is_host<ExecutionSpace> || _pinned.holds(contracts.data())) return contracts.data();
     _staged_contracts.resize(contracts.size());
@@ -199,14 +199,14 @@ class PricerImpl final : public Pricer {
     return _staged_contracts.data();
   }
 
-  /// Where prices arrive from a device without a detour.
+  /// Memory to which a device copies prices directly: that of the caller, or a pinned buffer.
   Price* landing_buffer(std::span<Price> prices) {
     if (device::is_host<ExecutionSpace> || _pinned.holds(prices.data())) return prices.data();
     _staged_prices.resize(prices.size());
     return _staged_prices.data();
   }
 
-  /// Waits for prices that arrive at `landed`, which `landing_buffer` has given.
+  /// Waits for prices in `landed`, a result of `landing_buffer`, and copies them to `prices` if necessary.
   void wait_for_prices(const Price* landed, std::span<Price> prices) {
     _instance.space().fence("drogue::options: prices are there");
     if (landed != prices.data()) std::copy_n(landed, prices.size(), prices.begin());
@@ -220,7 +220,8 @@ class PricerImpl final : public Pricer {
     times.d2h += copying.seconds();
   }
 
-  /// Prices the contracts k for which `is_selected(k)`, those of a model and a slab in a launch.
+  /// Enqueues the launches for the contracts k with `is_selected(k)`, one per model and `launch_capacity`
+  /// contracts.
   template <class Asked>
   void launch_models(const BatchViews& views, std::span<const Contract> contracts,
                      const Resolution& resolution, const Asked& is_selected) {
@@ -247,7 +248,7 @@ class PricerImpl final : public Pricer {
     if (_settings.timed_apart) _instance.space().fence("drogue::options: priced");
   }
 
-  /// Enqueues the launch for `rows`, which are put at `first` of the order.
+  /// Enqueues the launch for `rows`, which are stored from `first` on in the order.
   void launch(const BatchViews& views, std::span<const int> rows, Model model, std::size_t first,
               const Resolution& resolution, const MarchRecord& record) {
     if (rows.empty()) return;
@@ -287,7 +288,7 @@ class PricerImpl final : public Pricer {
   View<Price> _prices;
   View<int> _order;
   device::PinnedMemory<ExecutionSpace> _pinned;
-  std::pmr::vector<int> _host_order{&_pinned};  ///< what _order holds
+  std::pmr::vector<int> _host_order{&_pinned};  ///< contents of _order
   std::pmr::vector<Contract> _staged_contracts{&_pinned};
   std::pmr::vector<Price> _staged_prices{&_pinned};
   HankelPanels<ExecutionSpace> _panels;

@@ -8,14 +8,14 @@
 
 namespace drogue::options {
 
-/// y g(y) on the heavier side at y = d h, d = 1 .. mesh: the mixture times e^{|beta| y}, in two parts, that
-/// of even and that of odd terms. Terms that have died out at h add nothing. `ratio` holds Mixture::size
-/// values.
+/// y g(y) at y = d h, d = 1 .. mesh, on the side with the heavier tail: the mixture times e^{|beta| y}, as
+/// two partial sums over its even and its odd terms. Terms that are negligible at h are omitted. `ratio`
+/// holds Mixture::size values.
 template <class ThreadGroup, class R>
 KOKKOS_INLINE_FUNCTION void sum_mixture(const ThreadGroup& group, const PutPack<R>& put,
                                         const LevyMeasure<R>& measure, R h, int mesh, R* ratio, R* even,
                                         R* odd) {
-  constexpr int at_once = 4;  // terms that do not wait for one another
+  constexpr int at_once = 4;  // independent terms, for instruction-level parallelism
   static_assert(Mixture::size % (2 * at_once) == 0);
   const R tilt = device::absolute(put.jump[2]);
   const R *s = measure.s, *c = measure.c;
@@ -28,7 +28,7 @@ KOKKOS_INLINE_FUNCTION void sum_mixture(const ThreadGroup& group, const PutPack<
       const int part = task / octets, first = task % octets * 8 + 1;
       R sum[8] = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
       for (int q = part; q < Mixture::size; q += 2 * at_once) {
-        if (device::all((s[q] - tilt) * h > R(30.0))) break;  // the rates of all members rise with q
+        if (device::all((s[q] - tilt) * h > R(30.0))) break;  // the rates of all members increase with q
         R power[at_once], by[at_once];
         for (int i = 0; i < at_once; ++i) {
           const R rate = (s[q + 2 * i] - tilt) * h;
@@ -48,7 +48,7 @@ KOKKOS_INLINE_FUNCTION void sum_mixture(const ThreadGroup& group, const PutPack<
   });
 }
 
-/// The weights up (d > 0) and down of jumps by d nodes.
+/// Weights of jumps by d nodes upwards and downwards, per year.
 template <class R>
 struct WeightPair {
   R up, down;
@@ -62,20 +62,20 @@ KOKKOS_INLINE_FUNCTION WeightPair<R> kou_weights(const PutPack<R>& put, R h, int
   return {cell(put.jump[0] * put.jump[1], put.jump[2]), cell(put.jump[0] * (1.0 - put.jump[1]), put.jump[3])};
 }
 
-/// The integral from z to infinity of what a normal density has above.
+/// Integral from z to infinity of the upper tail probability of a standard normal variable.
 template <class R>
 KOKKOS_INLINE_FUNCTION R normal_tail_integral(R z) {
   return 0.3989422804014327 * exponential(-0.5 * z * z) - z * normal_above(z);
 }
 
-/// The part of jumps of a normal density that goes to the node at d h, by a hat over the two steps beside it.
-/// Between two nodes a jump is shared so that its mean stays, however narrow the density is. Of the last node
-/// the hat ends where it is highest. One loop, whose length the compiler does not know: a GPU has no
-/// registers for three of its bodies.
+/// Part of normally distributed jumps that is assigned to the node d h by a hat function over the two
+/// adjacent intervals. Assigning a jump to its two neighbouring nodes preserves its mean for any standard
+/// deviation. At the last node the hat function ends at its maximum. One loop of a length unknown to the
+/// compiler: three unrolled bodies exceed the registers of a GPU.
 template <class R>
 KOKKOS_INLINE_FUNCTION R normal_hat_mass(R mean, R inverse_deviation, R h, int d, bool last) {
   const R centre = (double(d) * h - mean) * inverse_deviation, width = h * inverse_deviation;
-  // The second difference is the same for the mirrored density, whose tail does not cancel.
+  // The second difference equals that of the mirrored density, whose tail does not cancel.
   const R middle = last ? centre : device::absolute(centre);
   const int points = last ? 2 : 3;
   R sum = 0.0;
@@ -113,8 +113,8 @@ struct AngleCosines {
                                               0.99969881869620425,
                                               0.99984948021804443};
 
-  /// Calls f(k, cosine) for all of them, of which the compiler knows the numbers: an array of registers could
-  /// not be indexed.
+  /// Calls f(k, cosine) for all angles with compile-time indices, since registers cannot be indexed at run
+  /// time.
   template <class F>
   KOKKOS_INLINE_FUNCTION static void each(const F& f) {
     each(f, std::make_integer_sequence<int, symbol_count>());
@@ -132,25 +132,25 @@ struct AngleCosines {
   }
 };
 
-/// Scratch memory of `discretize_jumps`: that of the result, and sums.
+/// Scratch memory of `discretize_jumps`: arrays of the result and partial sums.
 template <class R>
 struct JumpsMemory {
   R *w, *exit_mass, *exit_price, *symbol;
-  R *even, *odd;  ///< (node_count), as the next
-  R* both;        ///< the sums of both weights of a distance
+  R *even, *odd;  ///< (node_count), as is `both`
+  R* both;        ///< sum of the upward and downward weights of a distance
   R* ratio;       ///< (Mixture::size)
   R* scratch;     ///< (2 max_lanes)
 };
 
-/// The weights of jumps by d nodes: a mixture's are nodal values of the density. On a grid of twice the steps
-/// they are those of the finer one; d h is the same there. `tilted` is e^{-2 |beta| d h}.
+/// Weights of jumps by d nodes, per year. A mixture has nodal values of the density. On the coarser grid
+/// these are taken from the finer one, since d h is the same there. `tilted` is e^{-2 |beta| d h}.
 template <class R>
 KOKKOS_INLINE_FUNCTION WeightPair<R> jump_weights(const PutPack<R>& put, const Grid<R>& grid, int d, R tilted,
                                                   const R* even, const R* odd, const R* finer) {
   if (put.model == Model::kou) return kou_weights(put, grid.h, d);
   if (put.model == Model::merton) return merton_weights(put, grid.h, d, d == grid.mesh);
   if (put.model != Model::generalized_hyperbolic) return {R(0.0), R(0.0)};
-  // Half of the first is what differences stand for; that of the last is among the tails.
+  // Half of the first weight is represented by finite differences; half of the last one belongs to the tails.
   if (finer != nullptr) {
     const WeightLayout<R> layout(2 * grid.mesh);
     const double part = d == 1 ? 1.0 : 2.0;
@@ -163,10 +163,11 @@ KOKKOS_INLINE_FUNCTION WeightPair<R> jump_weights(const PutPack<R>& put, const G
   return {device::select(upwards, heavy, light), device::select(upwards, light, heavy)};
 }
 
-/// Sets the weights up, if given from those of a grid of half the steps. A mixture's are nodal values: with
-/// what they leave of the variance as a difference the scheme is of second order for every density that x^2
-/// makes bounded (Cont and Voltchkova 2005 for the idea), and no quadrature is needed. Kou's are masses of
-/// cells, Merton's, whose density may be narrow, those of hats.
+/// Discretizes the jumps on `grid`. With `finer`, the weights of a grid of half the step, those of a mixture
+/// are taken from it. A mixture has nodal values of the density. With the remaining variance as a finite
+/// difference the scheme is of second order for every density that x^2 makes bounded (idea of Cont and
+/// Voltchkova 2005), without quadrature. The weights of Kou's jumps are masses of cells. Merton's, whose
+/// density may be narrow, are masses of hat functions.
 template <class ThreadGroup, class R>
 KOKKOS_INLINE_FUNCTION Jumps<R> discretize_jumps(const ThreadGroup& group, const PutPack<R>& put,
                                                  const LevyMeasure<R>& measure, const Tails<R>& tails,
@@ -233,7 +234,7 @@ KOKKOS_INLINE_FUNCTION Jumps<R> discretize_jumps(const ThreadGroup& group, const
       memory.exit_mass[mesh - 1] += tails.down;
       memory.exit_price[mesh - 1] += tails.down_price;
     }
-    // The odd d of all angles first, then the even ones.
+    // First the odd d of all angles, then the even ones.
     for (int task = thread; task < 2 * symbol_count; task += group.threads()) {
       double cosine = 0.0;
       AngleCosines::each([&](int k, double known) { cosine = k == task % symbol_count ? known : cosine; });

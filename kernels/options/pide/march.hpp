@@ -5,20 +5,21 @@
 
 namespace drogue::options {
 
-/// Values of the nodes, (node_count) each, and the rest that steps need; rows of the scratch memory.
+/// Node arrays of a march, (node_count) each, and the other work arrays of a step; rows of the scratch
+/// memory.
 template <class R>
 struct March {
-  R* value[3];  ///< of this step's end, its beginning, and of the step before
-  R* jump[2];   ///< the explicit part of the operator, of the beginning and of the step before
-  R* other;     ///< the other half of the sum over jumps; with `y` after it the memory of transforms
+  R* value[3];  ///< at the end of the step, at its beginning, and one step before
+  R* jump[2];   ///< explicit operator at the beginning of the step and one step before
+  R* other;     ///< second half of the sum over jumps; with the following `y` the memory of transforms
   R* y;
-  R* floor;       ///< payoff; `-unbounded` where early exercise is not looked for
-  R* multiplier;  ///< what exercise pushes with, of split puts
+  R* floor;       ///< payoff; `-unbounded` without early exercise
+  R* multiplier;  ///< Lagrange multiplier of split exercise, per year
   R* scratch;     ///< (9 max_lanes)
 };
 
-/// The sums over jumps w_{j-i} v_j, j = 0 .. mesh - 1, into `out` (j in the lower half) and `other`: 8 nodes
-/// and half of the j a task, so that a value read serves 8 of them.
+/// Sums over jumps w_{j-i} v_j, j = 0 .. mesh - 1, into `out` (lower half of the j) and `other` (upper half).
+/// A task computes 8 nodes for one half, so that a loaded value serves 8 sums.
 template <class ThreadGroup, class R>
 KOKKOS_INLINE_FUNCTION void convolve(const ThreadGroup& group, int mesh, const R* w, const R* v, R* out,
                                      R* other) {
@@ -55,22 +56,22 @@ KOKKOS_INLINE_FUNCTION void convolve(const ThreadGroup& group, int mesh, const R
   });
 }
 
-/// Time value, of the strike, that may be rounding alone.
+/// Time values up to this, as a fraction of the strike, may be rounding.
 inline constexpr double time_value_tolerance = 1e-13;
 
-/// Whether a put's value is its payoff `nodes` above the strike: what differs by less than rounding is
-/// exercised.
+/// Whether the value `nodes` nodes above the strike equals the payoff up to rounding, which means exercise.
 KOKKOS_INLINE_FUNCTION bool is_exercised(double value, int nodes, double h) {
   return !(value - (1.0 - exponential(nodes * h)) > time_value_tolerance);
 }
 
-/// What a march begins with at a node, and below what it never falls there.
+/// Initial value at a node, and the lower bound of its value during the march.
 template <class R>
 struct InitialNode {
   R value, floor;
 };
 
-/// The payoff, `strike_value` at the strike; no floor where early exercise is not looked for or split off.
+/// Payoff at a node; `strike_value` replaces it at the strike. No lower bound without early exercise or with
+/// split exercise.
 template <class R>
 KOKKOS_INLINE_FUNCTION InitialNode<R> initial_node(const PutPack<R>& put, const Grid<R>& grid, int i,
                                                    R strike_value) {
@@ -80,14 +81,14 @@ KOKKOS_INLINE_FUNCTION InitialNode<R> initial_node(const PutPack<R>& put, const 
           device::select(put.early * (1.0 - put.split) > R(0.0), payoff, R(-unbounded))};
 }
 
-/// The explicit part of the operator at a node: jumps to nodes, jumps away and -rV, jumps to below the grid.
+/// Explicit operator at a node: jumps to nodes, jumps away and -rV (`away`), and jumps to below the grid.
 template <class R>
 KOKKOS_INLINE_FUNCTION R explicit_part(const DiscountFactors<R>& discount, R jumps, R away, R exit_mass,
                                        R exit_price) {
   return jumps + (away + (discount.strike * exit_mass - discount.asset * exit_price));
 }
 
-/// The right side of a step's equations at a node, but for added diffusion and split exercise.
+/// Right-hand side of a step's equations at a node, without added diffusion and split exercise.
 template <class R>
 KOKKOS_INLINE_FUNCTION R right_side(const StepFactors<R>& f, R value, R before, R explicit_now,
                                     R explicit_before) {
@@ -95,7 +96,7 @@ KOKKOS_INLINE_FUNCTION R right_side(const StepFactors<R>& f, R value, R before, 
          f.explicit_before * explicit_before;
 }
 
-/// What exercise adds to a step of split puts.
+/// Projection step of split exercise (Ikonen and Toivanen 2004): updates the values and the multipliers.
 template <class ThreadGroup, class R>
 KOKKOS_INLINE_FUNCTION void apply_split_exercise(const ThreadGroup& group, const PutPack<R>& put,
                                                  const Grid<R>& grid, R diagonal, R* now, R* multiplier) {
@@ -109,11 +110,10 @@ KOKKOS_INLINE_FUNCTION void apply_split_exercise(const ThreadGroup& group, const
   });
 }
 
-/// One step: jumps and -r f explicit and extrapolated, diffusion and drift implicit. Exercise is the linear
-/// complementarity problem, solved exactly where it pays on a half line (Brennan and Schwartz 1977): the
-/// matrix is eliminated from above, where its factors are those of the whole line, and
-/// x_i = max(payoff_i, a x_{i-1} + y_i). Where exercise pays between two boundaries it is split off (Ikonen
-/// and Toivanen 2004).
+/// One time step: jumps and -r V explicit and extrapolated, diffusion and drift implicit. Exercise on a half
+/// line is a linear complementarity problem, which is solved exactly (Brennan and Schwartz 1977). The matrix
+/// is eliminated from above, with the factors of the infinite line, and x_i = max(payoff_i, a x_{i-1} + y_i).
+/// Exercise between two boundaries is split off (Ikonen and Toivanen 2004).
 template <class ThreadGroup, class R>
 KOKKOS_INLINE_FUNCTION void step(const ThreadGroup& group, const PutPack<R>& put, const Jumps<R>& jumps,
                                  const Grid<R>& grid, const JumpSpectrum<R>& spectrum, const March<R>& march,

@@ -4,32 +4,32 @@
 
 namespace drogue::options {
 
-/// Why a put has no price on a grid of steps h. `upper_bound`: what it can earn, in money; `variance`: of its
-/// measure, a year.
+/// Reason why a put has no price on a grid of step h. `upper_bound`: largest possible gain, money;
+/// `variance`: that of the process, per year.
 KOKKOS_INLINE_FUNCTION Failure failure_of(const NormalizedPut& put, double upper_bound, double variance,
                                           double h) {
   if (put.rate * put.maturity < -650.0 || !(upper_bound < 1e300)) return Failure::too_large;
   if (variance != variance) return Failure::overflow;
   if (!(h < 100.0)) return Failure::no_grid;
-  // Steps have the square of this.
+  // The steps contain the square of this.
   const double pull = device::absolute(put.rate) + device::absolute(put.dividend);
   const double largest = (pull + variance / h) / h;
   if (!(largest * largest < 1e300)) return Failure::overflow;
-  // From a million jumps until maturity on, or a discount e^{-1e10}, the most steps there are, 16384, rarely
-  // tell anything.
+  // With 1e6 jumps until maturity, or a discount factor e^{-1e10}, the maximum of 16384 steps is rarely
+  // sufficient.
   const bool counted = put.model == Model::merton || put.model == Model::kou;
   const bool stiff = (counted && put.jump[0] * put.maturity >= 1e6) || put.rate * put.maturity >= 1e10;
   return stiff ? Failure::stiff : Failure::grown;
 }
 
-/// The node next to the spot of a put.
+/// Node next to the spot of a put.
 KOKKOS_INLINE_FUNCTION int nearest_node(const NormalizedPut& put, double strike, double h, int mesh) {
   const double t = put.log_spot / h + strike + 0.5;
   return t > 0.0 ? t < mesh ? static_cast<int>(t) : mesh - 1 : 0;
 }
 
-/// The answer for a put of strike 1 on two grids, the coarser one with steps h, extrapolated to steps of
-/// length zero (the error of both is of second order), as the contract's price. `largest`: |V(fine) -
+/// Price of a contract from the solutions for a put of strike 1 on two grids, the coarser one with step h.
+/// Both have errors of second order and are extrapolated to zero step lengths. `largest`: |V(fine) -
 /// V(coarse)| near the spot.
 KOKKOS_INLINE_FUNCTION Price price_of(const Contract& contract, const NormalizedPut& put,
                                       const SolutionAtSpot& fine, const SolutionAtSpot& coarse,
@@ -47,8 +47,8 @@ KOKKOS_INLINE_FUNCTION Price price_of(const Contract& contract, const Normalized
   }
   const bool call = contract.type == Type::call;
   const double unit = call ? contract.spot : contract.strike, s = contract.spot;
-  // The extrapolation has 4/3 of what the fine grid misses and a third of what the coarse one does. Twice
-  // that, since beside a sharp kink the terms that follow are no smaller.
+  // The extrapolation has 4/3 of the interpolation error of the fine grid and a third of that of the coarse
+  // one. Doubled, since at a sharp kink the following terms are no smaller.
   const double interpolation_error =
       2.0 * (4.0 * fine.interpolation_error + coarse.interpolation_error) * (1.0 / 3);
   const double near_weight = boundary_weight(put, fine.boundary, 0.5 * h),
@@ -57,13 +57,13 @@ KOKKOS_INLINE_FUNCTION Price price_of(const Contract& contract, const Normalized
   const double contact_weight =
       near_weight > 0.0 ? device::maximum(near_weight, standing_boundary_weight(put, fine, estimate.variance))
                         : 0.0;
-  // Where the payoff is the price nothing is in doubt but whether the boundary lies above.
+  // If the price is the payoff, only the position of the exercise boundary is uncertain.
   const double stated =
       exercised && near_weight > 0.0
           ? near_weight * near_weight * (contact_error + hidden_error) + time_value_tolerance
           : estimate.factor * largest + contact_weight * contact_error + interpolation_error + hidden_error;
-  // Nobody pays more for a put than what it can earn at most, and no error is larger; nor less than what
-  // exercise now or at expiry, whatever happens, is worth. A value that is not a number stays one.
+  // The price is at most the largest possible gain and at least the value of exercise now or at expiry. The
+  // error is clamped likewise. NaN is kept.
   const double bond = exponential(-put.rate * put.maturity);
   const double upper_bound = put.rate < 0.0 ? bond : 1.0;
   const double late = bond - exponential(put.log_spot - put.dividend * put.maturity);
@@ -72,9 +72,10 @@ KOKKOS_INLINE_FUNCTION Price price_of(const Contract& contract, const Normalized
                       unit * upper_bound < 1e300 && put.rate * put.maturity >= -650.0 && h < 100.0;
   if (a.value < lower_bound) a.value = lower_bound;
   if (a.value > (put.early ? upper_bound : bond)) a.value = put.early ? upper_bound : bond;
-  // Grids that differ by a quarter of all there is to know say nothing of the error.
-  const bool applied = largest < 0.25 * upper_bound && estimate.factor < unreliable_factor;
-  const double error = stated < upper_bound && applied ? stated : upper_bound;
+  // If the grids differ by a quarter of the largest possible gain, their difference is no measure of the
+  // error.
+  const bool reliable = largest < 0.25 * upper_bound && estimate.factor < unreliable_factor;
+  const double error = stated < upper_bound && reliable ? stated : upper_bound;
   Price price;
   price.price = unit * a.value;
   price.error = unit * error;

@@ -7,13 +7,13 @@
 /// First-order recurrences along the nodes of an option, cut into blocks for lanes.
 namespace drogue::options {
 
-/// The nodes of each of two parts that a lane's block of nodes is cut into, so that no chain of operations is
-/// longer than need be; of a short block the only part.
+/// Nodes per part of a lane's block. Blocks of eight nodes or more have two parts, which shortens the chain
+/// of dependent operations.
 KOKKOS_INLINE_FUNCTION constexpr int part_length(int block) {
   return block >= 8 && block % 2 == 0 ? block / 2 : block;
 }
 
-/// The slope of what `count` nodes with this one compose_part to.
+/// Slope of the composition of `count` maps of equal slope: slope^count.
 template <class R>
 KOKKOS_INLINE_FUNCTION R composed_slope(R slope, int count) {
   R block_slope = slope;
@@ -21,7 +21,8 @@ KOKKOS_INLINE_FUNCTION R composed_slope(R slope, int count) {
   return block_slope;
 }
 
-/// y_i = a_i + g y_{i+1} of some nodes in place, from 0 beyond; returns the first.
+/// Solves y_i = a_i + g y_{i+1} in place for `count` nodes, with 0 beyond the last one. Returns the first
+/// value.
 template <class R>
 KOKKOS_INLINE_FUNCTION R sweep_backward(R* y, int count, R g) {
   R value = y[count - 1];
@@ -32,7 +33,7 @@ KOKKOS_INLINE_FUNCTION R sweep_backward(R* y, int count, R g) {
   return value;
 }
 
-/// Adds what flows into them from above.
+/// Adds to a solution of `sweep_backward` the contribution of `inflow`, the value beyond the last node.
 template <class R>
 KOKKOS_INLINE_FUNCTION void add_inflow_backward(R* y, int count, R g, R inflow) {
   for (int m = count - 1; m >= 0; --m) {
@@ -41,7 +42,8 @@ KOKKOS_INLINE_FUNCTION void add_inflow_backward(R* y, int count, R g, R inflow) 
   }
 }
 
-/// What a lane's block begins with, from 0 beyond it: each part by itself, then both block_slope.
+/// Solves the recurrence within a lane's block, part by part, with 0 beyond it. Returns the first value of
+/// the block.
 template <class R>
 KOKKOS_INLINE_FUNCTION R sweep_block_backward(R* own, int block, R g, R slope) {
   const int part = part_length(block);
@@ -49,7 +51,7 @@ KOKKOS_INLINE_FUNCTION R sweep_block_backward(R* own, int block, R g, R slope) {
   return part == block ? low : low + slope * sweep_backward(own + part, part, g);
 }
 
-/// The same once what flows into the block is known.
+/// Adds to a result of `sweep_block_backward` the contribution of `inflow`, the value beyond the block.
 template <class R>
 KOKKOS_INLINE_FUNCTION void add_inflow_to_block(R* own, int block, R g, R slope, R inflow) {
   const int part = part_length(block);
@@ -61,9 +63,9 @@ KOKKOS_INLINE_FUNCTION void add_inflow_to_block(R* own, int block, R g, R slope,
   add_inflow_backward(own, part, g, inflow);
 }
 
-/// y_i = a_i + g y_{i+1} for i = 0 .. lanes block - 1 in place, from 0 beyond, on n arrays: each lane runs
-/// through the parts of its block, then blocks are block_slope by doubling (Kogge and Stone). `scratch` holds
-/// 2 lanes values.
+/// Solves y_i = a_i + g y_{i+1}, i = 0 .. lanes block - 1, in place on n arrays, with 0 beyond the end. Each
+/// lane solves its block, then the blocks are combined by a parallel scan (Kogge and Stone 1973). `scratch`
+/// holds 2 lanes values.
 template <int n, class R>
 KOKKOS_INLINE_FUNCTION void recur_backward(const SerialThreadGroup<R>& group, R* const (&rows)[n], int block,
                                            R g, R* scratch) {
@@ -90,8 +92,8 @@ KOKKOS_INLINE_FUNCTION void recur_backward(const SerialThreadGroup<R>& group, R*
   }
 }
 
-/// Joins what the lanes' blocks begin with, n numbers each, to those of all blocks above; `block_slope` is
-/// the slope of a block. Of each `stride` threads the first counts.
+/// Inclusive scan of the first values of all blocks, n per lane, from above. `block_slope` is the slope of
+/// one block. Only the first of each `stride` threads holds a valid carry.
 template <int lanes, int stride = 1, int n>
 KOKKOS_INLINE_FUNCTION void scan_backward(int lane, double (&carry)[n], double block_slope) {
   for (int lane_offset = stride; lane_offset < lanes; lane_offset *= 2) {
@@ -103,13 +105,13 @@ KOKKOS_INLINE_FUNCTION void scan_backward(int lane, double (&carry)[n], double b
   }
 }
 
-/// The same by a warp, whose lanes ask one another for what joins their blocks.
+/// Version for a warp, whose lanes exchange the carries by shuffles.
 template <int n, int lanes, bool single>
 KOKKOS_INLINE_FUNCTION void recur_backward(const WarpThreadGroup<lanes, single>& group,
                                            double* const (&rows)[n], int block, double g,
                                            double* /*scratch*/) {
   const int lane = group.lane;
-  if constexpr (single && lanes < max_lanes) {  // rows are dealt out to groups of lanes
+  if constexpr (single && lanes < max_lanes) {  // each group of lanes solves one row
     static_assert(n == max_lanes / lanes);
     recur_backward(WarpThreadGroup<lanes>(lane), {rows[group.thread / lanes]}, block, g,
                    static_cast<double*>(nullptr));
@@ -127,7 +129,8 @@ KOKKOS_INLINE_FUNCTION void recur_backward(const WarpThreadGroup<lanes, single>&
   }
 }
 
-/// x -> max(lo, a x + b), a >= 0 known to all. Such maps compose_part to maps of their kind.
+/// Map x -> max(lo, a x + b), a >= 0 common to all maps. The set is closed under composition, so the maps are
+/// elements of a parallel scan.
 template <class R>
 struct MaxAffineMap {
   R b, lo;
@@ -136,18 +139,19 @@ struct MaxAffineMap {
   [[nodiscard]] KOKKOS_INLINE_FUNCTION R apply(R x, R a) const { return device::maximum(lo, a * x + b); }
 };
 
-/// `second` compose `first`; a2 is the slope of `second`.
+/// Composition of `second` after `first`; a2 is the slope of `second`.
 template <class R>
 KOKKOS_INLINE_FUNCTION MaxAffineMap<R> compose(const MaxAffineMap<R>& second, R a2,
                                                const MaxAffineMap<R>& first) {
   return {a2 * first.b + second.b, device::maximum(second.lo, a2 * first.lo + second.b)};
 }
 
-/// Stands for no bound; its products with a slope stay finite.
+/// Replaces infinity in bounds: products with a slope stay finite.
 inline constexpr double unbounded = 1e200;
 
-/// x -> min(hi, max(lo, a x + b)), a of any sign known to all. Such maps compose_part to maps of their kind.
-/// Where no a is negative `hi` stays without effect, and b and lo have the bits of a RisingMap.
+/// Map x -> min(hi, max(lo, a x + b)), a of either sign and common to all maps. The set is closed under
+/// composition. Without negative slopes `hi` has no effect, and b and lo equal those of a MaxAffineMap bit
+/// for bit.
 template <class R>
 struct ClampedMap {
   R b, lo, hi;
@@ -165,20 +169,20 @@ KOKKOS_INLINE_FUNCTION ClampedMap<R> compose(const ClampedMap<R>& second, R a2, 
   return {a2 * first.b + second.b, device::minimum(low, high), device::maximum(low, high)};
 }
 
-/// What the nodes of a part compose_part to, `map` being the first node's.
+/// Composition of the maps of a part; `map` is that of its first node.
 template <class Map, class R>
 KOKKOS_INLINE_FUNCTION Map compose_part(Map map, const R* y, const R* floor, int count, R a) {
   for (int m = 1; m < count; ++m) map = compose(Map::at_least(floor[m], y[m]), a, map);
   return map;
 }
 
-/// x_i = max(floor_i, a x_{i-1} + y_i) for the nodes 1, 2, ... of all blocks, x_0 given; 0 from node `end`
-/// on. The first block's map is a constant, so the bounds of what blocks compose_part to are the values.
-/// `scratch` holds 3 lanes maps.
+/// Solves x_i = max(floor_i, a x_{i-1} + y_i) for the nodes 1, 2, ... of all blocks; x_0 is given, and nodes
+/// from `end` on are set to 0. The map of the first block is constant, so the bounds of the scanned maps are
+/// the values. `scratch` holds 3 lanes maps.
 template <class Map, class ThreadGroup, class R>
 KOKKOS_INLINE_FUNCTION void recur_by_maps(const ThreadGroup& group, R* x, const R* y, const R* floor,
                                           int block, int end, R a, R x0, Map* scratch) {
-  static_assert(!ThreadGroup::is_single);  // `each` runs lanes here
+  static_assert(!ThreadGroup::is_single);  // `each` must run over lanes
   const int part = part_length(block);
   const R slope = composed_slope(a, part);
   R block_slope = part < block ? slope * slope : slope;
@@ -215,7 +219,7 @@ KOKKOS_INLINE_FUNCTION void recur_by_maps(const ThreadGroup& group, R* x, const 
   });
 }
 
-/// The same for a of any sign; `scratch` holds 3 lanes ClampedMaps.
+/// Version for a of either sign; `scratch` holds 3 lanes ClampedMaps.
 template <class ThreadGroup, class R>
 KOKKOS_INLINE_FUNCTION void recur_forward(const ThreadGroup& group, R* x, const R* y, const R* floor,
                                           int block, int end, R a, R x0, R* scratch) {
@@ -226,7 +230,8 @@ KOKKOS_INLINE_FUNCTION void recur_forward(const ThreadGroup& group, R* x, const 
   }
 }
 
-/// `recur_backward` on registers.
+/// `recur_backward` on nodes in registers. With `halved` two adjacent threads hold the two halves of a lane's
+/// block.
 template <int lanes, bool halved = false, int block>
 KOKKOS_INLINE_FUNCTION void recur_backward(int lane, LaneNodes<block>& nodes, double g) {
   if constexpr (halved) {
@@ -236,7 +241,7 @@ KOKKOS_INLINE_FUNCTION void recur_backward(int lane, LaneNodes<block>& nodes, do
     scan_backward<lanes, 2>(lane, carry, slope * slope);
     const int next = lane / 2 * 2 + 2;
     double inflow = device::shuffle(carry[0], next);
-    if (next == lanes) inflow = 0.0;  // not what the first one has
+    if (next == lanes) inflow = 0.0;  // discards the value that wraps around
     add_inflow_backward(nodes.node, block, g, lane % 2 == 0 ? high + slope * inflow : inflow);
   } else {
     constexpr int part = part_length(block);
@@ -248,7 +253,7 @@ KOKKOS_INLINE_FUNCTION void recur_backward(int lane, LaneNodes<block>& nodes, do
   }
 }
 
-/// The map of the lane `lane_offset` below.
+/// Map of the thread `lane_offset` lanes below.
 template <int lanes>
 KOKKOS_INLINE_FUNCTION MaxAffineMap<double> shuffle_up(const MaxAffineMap<double>& map, int lane_offset) {
   return {device::shuffle_up<lanes>(map.b, lane_offset), device::shuffle_up<lanes>(map.lo, lane_offset)};
@@ -259,8 +264,8 @@ KOKKOS_INLINE_FUNCTION ClampedMap<double> shuffle_up(const ClampedMap<double>& m
           device::shuffle_up<lanes>(map.hi, lane_offset)};
 }
 
-/// Joins the maps of lanes to those of all below; `block_slope` is the slope of one. Of each `stride` threads
-/// the last counts.
+/// Inclusive scan of the maps of all lanes from below; `block_slope` is the slope of one block. Only the last
+/// of each `stride` threads holds a valid map.
 template <int lanes, int stride = 1, class Map>
 KOKKOS_INLINE_FUNCTION void scan_forward(int lane, Map& map, double block_slope) {
   for (int lane_offset = stride; lane_offset < lanes; lane_offset *= 2) {
@@ -270,24 +275,25 @@ KOKKOS_INLINE_FUNCTION void scan_forward(int lane, Map& map, double block_slope)
   }
 }
 
-/// `recur_by_maps` on registers.
+/// `recur_by_maps` on nodes in registers.
 template <int lanes, class Map, bool halved = false, int block>
 KOKKOS_INLINE_FUNCTION LaneNodes<block> recur_by_maps(int lane, const LaneNodes<block>& y,
                                                       const LaneNodes<block>& floor, double a, double x0) {
   constexpr int part = halved ? block : part_length(block);
-  double slope = a;  // not by `composed_slope`: the kernel of 64 nodes would spill twice as much
+  double slope = a;  // not by `composed_slope`: NVIDIA's compiler would spill twice as many registers in the
+                     // kernel of 64 nodes
   for (int m = 1; m < part; ++m) slope *= a;
   const auto map_of = [&](int m) {
     const Map node = lane == 0 && m == 0 ? Map::constant(x0) : Map::at_least(floor.node[m], y.node[m]);
     return compose_part(node, y.node + m, floor.node + m, part, a);
   };
   const Map first = map_of(0);
-  double begin[2];  // what flows into the parts
+  double begin[2];  // values that flow into the parts
   if constexpr (halved) {
     const Map low = shuffle_up<lanes>(first, 1);
     Map map = compose(first, slope, low);
     scan_forward<lanes, 2>(lane, map, slope * slope);
-    const double inflow = device::shuffle(map.lo, lane / 2 * 2 - 1);  // of no use to the first two
+    const double inflow = device::shuffle(map.lo, lane / 2 * 2 - 1);  // not used by the first two threads
     begin[0] = lane % 2 == 0 ? inflow : lane == 1 ? low.lo : low.apply(inflow, slope);
   } else {
     Map map = first;

@@ -6,15 +6,14 @@
 #include "kernels/options/transforms/register_fourier.hpp"
 #include "kernels/options/transforms/shared_fourier.hpp"
 
-/// A march with the nodes of one option in the registers of a group of lanes, each of which has `block` nodes
-/// side by side; or `halved`: of two threads for each lane, which `lane` and `lanes` count then. It does what
-/// `step` does, number by number and in the same order. Shared memory holds what lanes read of one another in
-/// the sum over jumps.
+/// A march with the nodes of one option in the registers of its lanes, `block` adjacent nodes per lane. With
+/// `halved` two threads share a lane's nodes, and `lane` and `lanes` count threads. The arithmetic equals
+/// that of `step` in value and order. Shared memory exchanges values between lanes in the sum over jumps.
 namespace drogue::options {
 
-/// `convolve` for lanes x block intervals: a task of 2 block nodes and half of the values for every lane. The
-/// weights that a task needs are a window that slides through registers. Results lie `swizzled`. What does
-/// not change from step to step is found once.
+/// `convolve` for lanes x block intervals: each lane computes 2 block nodes for half of the values. Its
+/// weights form a window that slides through registers. The results are stored `swizzled`. Pointers that do
+/// not change between steps are computed once.
 template <int block, int lanes>
 class RegisterConvolution {
  public:
@@ -30,7 +29,7 @@ class RegisterConvolution {
   }
 
   KOKKOS_INLINE_FUNCTION void operator()() const {
-    constexpr int last = 8 / outs - 1;  // the row of the weights before the first lies under the last
+    constexpr int last = 8 / outs - 1;  // row of weights that overlaps the row before the first one
     double sum[outs], window[outs + 7];
     for (int m = 0; m < outs; ++m) sum[m] = 0.0;
     for (int m = 0; m < outs - 1; ++m) window[m] = _weights[last][(m + 1) * stride - 1];
@@ -56,8 +55,8 @@ class RegisterConvolution {
   NodePair* _sums[(outs + 1) / 2];
 };
 
-/// v_{i-1} - 2 v_i + v_{i+1} of a lane's nodes; beyond the grid v is the part `ghost` of the last one, and
-/// node 0 gets what is of no use.
+/// Second differences v_{i-1} - 2 v_i + v_{i+1} of a lane's nodes. The ghost value beyond the grid is `ghost`
+/// times the last value. The result at node 0 is not used.
 template <int lanes, int block>
 KOKKOS_INLINE_FUNCTION LaneNodes<block> second_differences(int lane, const LaneNodes<block>& value,
                                                            double ghost) {
@@ -73,12 +72,12 @@ KOKKOS_INLINE_FUNCTION LaneNodes<block> second_differences(int lane, const LaneN
 
 /// Shared memory of a march, (node_count) each.
 struct RegisterRows {
-  double* value;        ///< at maturity, in plain order when the march is over
-  double *out, *other;  ///< one compose the other: room for a transform; in the end dV/dtau in `other`
-  double* multiplier;   ///< of split puts
+  double* value;        ///< in plain order after the march: V at maturity
+  double *out, *other;  ///< contiguous: memory of a transform; after the march dV/dtau in `other`
+  double* multiplier;   ///< Lagrange multiplier of split exercise
 };
 
-/// The sum over jumps of a lane's nodes, by `RegisterConvolution`, `RegisterFourier` or `SharedFourier`.
+/// Sum over jumps at a lane's nodes, by `RegisterConvolution`, `RegisterFourier` or `SharedFourier`.
 template <int block, int lanes, bool transformed>
 class JumpSum {
  public:
@@ -102,7 +101,7 @@ class JumpSum {
   RegisterRows _rows;
   RegisterConvolution<block, lanes> _convolution;
 };
-template <>  // halved: 32 lanes of four nodes would sum as it stands there
+template <>  // for `halved`; 32 lanes of four nodes without transforms use the primary template
 class JumpSum<4, max_lanes, true> : public SharedFourier {
  public:
   KOKKOS_INLINE_FUNCTION JumpSum(int thread, const double* /*w*/, const JumpSpectrum<double>& spectrum,
@@ -118,7 +117,7 @@ class JumpSum<8, lanes, true> : public RegisterFourier<lanes> {
                                reinterpret_cast<ComplexNumber<double>*>(rows.out)) {}
 };
 
-/// Turns an array of nodes in plain order into a `swizzled` one.
+/// Converts a node array from plain to `swizzled` order.
 template <int block, class ThreadGroup>
 KOKKOS_INLINE_FUNCTION void swizzle(const ThreadGroup& group, double* nodes) {
   const auto own = LaneNodes<block>::load(group.lane, nodes);
@@ -126,8 +125,8 @@ KOKKOS_INLINE_FUNCTION void swizzle(const ThreadGroup& group, double* nodes) {
   if (group.is_writer()) own.store_swizzled(group.lane, nodes);
 }
 
-/// Marches from expiry to maturity; `jumps.exit_mass` and `exit_price` are left `swizzled`. Returns the last
-/// node below the strike that is exercised, -1 if none is.
+/// Marches from expiry to maturity; leaves `jumps.exit_mass` and `exit_price` `swizzled`. Returns the last
+/// exercised node below the strike, -1 if there is none.
 template <int block, bool halved = false, int lanes, bool single>
 KOKKOS_INLINE_FUNCTION int march_in_registers(const WarpThreadGroup<lanes, single>& group,
                                               const PutPack<double>& put, const Jumps<double>& jumps,
@@ -188,7 +187,7 @@ KOKKOS_INLINE_FUNCTION int march_in_registers(const WarpThreadGroup<lanes, singl
             ? recur_by_maps<lanes, MaxAffineMap<double>, halved>(lane, y, floor, f.from_left, f.left_value)
             : recur_by_maps<lanes, ClampedMap<double>, halved>(lane, y, floor, f.from_left, f.left_value);
     if (put.any_split) {
-      group.sync();  // swizzled, as sums over jumps store them, two halves of a lane share their places
+      group.sync();  // the swizzled stores of the sum over jumps place two halves of a lane together
       group.each_lane([&] { value.store(lane, rows.value); });
       apply_split_exercise(group, put, grid, f.diagonal, rows.value, rows.multiplier);
       value = Own::load(lane, rows.value);
@@ -209,7 +208,8 @@ KOKKOS_INLINE_FUNCTION int march_in_registers(const WarpThreadGroup<lanes, singl
   group.each_lane([&] {
     value.store(lane, rows.value);
     change.store(lane, rows.other);
-    if (lane == 0) rows.value[grid.mesh] = rows.other[grid.mesh] = 0.0;  // the upper end, which answers read
+    if (lane == 0)
+      rows.value[grid.mesh] = rows.other[grid.mesh] = 0.0;  // upper end, which the interpolation reads
   });
   return device::warp_max<lanes>(exercised);
 }

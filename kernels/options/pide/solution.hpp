@@ -4,37 +4,38 @@
 
 namespace drogue::options {
 
-/// What a solve says of a put of strike 1, at x = ln(spot/strike) and maturity.
+/// Solution for a put of strike 1 at x = ln(spot/strike) and maturity.
 struct SolutionAtSpot {
   double value, first_derivative, second_derivative;  ///< V, dV/dx, d2V/dx2
-  double time_derivative;                             ///< dV/dtau, a year
-  double boundary;             ///< x up to which exercise is right; not a number where there is none
-  double interpolation_error;  ///< how much of the value interpolation may miss
-  double time_value_step;      ///< what the second step above the boundary adds to the time value; 0: no such
-  double time_value_rate;      ///< dV/dtau at that step's end, a year; 0: no such
+  double time_derivative;                             ///< dV/dtau, per year
+  double boundary;                                    ///< x of the exercise boundary; NaN if there is none
+  double interpolation_error;                         ///< estimated error of the interpolated value
+  double time_value_step;  ///< increase of the time value over the second interval above the boundary; 0
+                           ///< without a boundary
+  double time_value_rate;  ///< dV/dtau at the end of that interval, per year; 0 without a boundary
 };
 
-/// One member's values on the nodes of a pack.
+/// Values of one member on the nodes of a pack.
 struct MemberValues {
   const double* values;
   int members;
   KOKKOS_INLINE_FUNCTION double operator()(int i) const { return values[i * members]; }
 };
 
-/// The last node below the strike that is exercised, -1 if none is.
+/// Last exercised node below the strike, -1 if there is none.
 KOKKOS_INLINE_FUNCTION int last_exercised(const MemberValues& value, int strike, double h) {
   int i = strike - 1;
   while (i >= 0 && !is_exercised(value(i), i - strike, h)) --i;
   return i;
 }
 
-/// What a put is worth at a node beyond exercise.
+/// Time value at node i: value minus exercise value.
 KOKKOS_INLINE_FUNCTION double time_value(const MemberValues& value, int i, int strike, double h) {
   return value(i) - (1.0 - exponential((i - strike) * h));
 }
 
-/// Where exercise ends, from the last node where it is right. Above it the time value grows with the square
-/// of the distance, so two nodes tell where it begins.
+/// Exercise boundary x from the last exercised node. Above the boundary the time value grows with the square
+/// of the distance, so two nodes determine where it starts. NaN if `exercised` is negative.
 KOKKOS_INLINE_FUNCTION double boundary_of(const MemberValues& value, int exercised, int strike, double h) {
   const int i = exercised;
   if (i < 0) return device::portable::not_a_number();
@@ -44,7 +45,7 @@ KOKKOS_INLINE_FUNCTION double boundary_of(const MemberValues& value, int exercis
   return (i - strike + device::maximum(0.0, device::minimum(1.0, within))) * h;
 }
 
-/// What the second node above the last exercised one has of time value beyond the first.
+/// Increase of the time value from the first to the second node above the last exercised one.
 KOKKOS_INLINE_FUNCTION double time_value_step(const MemberValues& value, int exercised, int strike,
                                               double h) {
   if (exercised < 0) return 0.0;
@@ -52,14 +53,14 @@ KOKKOS_INLINE_FUNCTION double time_value_step(const MemberValues& value, int exe
                           time_value(value, exercised + 1, strike, h));
 }
 
-/// The nodes of one member.
+/// Grid of one member.
 struct MemberGrid {
   int mesh, strike;
-  int exercised;  ///< last node below the strike that is; only read for puts that may be
+  int exercised;  ///< last exercised node below the strike; only read for puts with early exercise
   double h;
 };
 
-/// Cubic interpolation between four nodes, value and two derivatives.
+/// Cubic interpolation between four nodes: value and two derivatives with respect to x.
 KOKKOS_INLINE_FUNCTION void interpolate(const MemberValues& value, int first, double t, double h,
                                         double* result) {
   const double p = value(first), q = value(first + 1), r = value(first + 2), s = value(first + 3);
@@ -69,9 +70,9 @@ KOKKOS_INLINE_FUNCTION void interpolate(const MemberValues& value, int first, do
   result[2] = (d2 + (t - 1.0) * d3) / (h * h);
 }
 
-/// The first of the four nodes that a value at t, in steps from node 0, is read from. They are taken from the
-/// side of the strike and of the boundary that it is on: there the value has kinks that short maturities
-/// leave sharp.
+/// First of the four nodes from which a value at t, in steps from node 0, is interpolated. All four lie on
+/// the same side of the strike and of the boundary as t: the value has kinks there, which are sharp for short
+/// maturities.
 KOKKOS_INLINE_FUNCTION int first_stencil_node(const NormalizedPut& put, const MemberGrid& nodes, double t,
                                               double boundary) {
   const int mesh = nodes.mesh, strike = nodes.strike, cell = static_cast<int>(t);
@@ -88,9 +89,9 @@ KOKKOS_INLINE_FUNCTION int first_stencil_node(const NormalizedPut& put, const Me
   return first > mesh - 3 ? mesh - 3 : first < 0 ? 0 : first;
 }
 
-/// How much cubic interpolation at t from the nodes `first` to `first` + 3 may miss: the next term of
-/// Newton's form, from a fifth node on the same side of the strike and of the boundary; 0 where there is
-/// none.
+/// Estimated error of cubic interpolation at t from the nodes `first` .. `first` + 3: the next term of
+/// Newton's form, from a fifth node on the same side of the strike and of the boundary. 0 if there is no such
+/// node.
 KOKKOS_INLINE_FUNCTION double cubic_interpolation_error(const NormalizedPut& put, const MemberValues& value,
                                                         const MemberGrid& nodes, int first, double t,
                                                         double boundary) {
@@ -107,8 +108,8 @@ KOKKOS_INLINE_FUNCTION double cubic_interpolation_error(const NormalizedPut& put
   return device::absolute(fourth * u * (u - 1.0) * (u - 2.0) * (u - 3.0)) * (1.0 / 24);
 }
 
-/// The answer at an x below the grid, `asset` = e^x, where exercise or expiry is certain at the time that is
-/// best there (`Domain` says why).
+/// Solution at an x below the grid, `asset` = e^x. There exercise or expiry is certain at the best time for x
+/// (`domain_of`).
 KOKKOS_INLINE_FUNCTION SolutionAtSpot solution_below_grid(const NormalizedPut& put, double asset,
                                                           double boundary) {
   const PutPack<double> pack = pack_of<double>(&put);
@@ -120,7 +121,7 @@ KOKKOS_INLINE_FUNCTION SolutionAtSpot solution_below_grid(const NormalizedPut& p
   return {strike - price, -price, -price, decay, boundary, 0.0, 0.0, 0.0};
 }
 
-/// Reads the answer for one member. `change` holds dV/dtau.
+/// Interpolates the solution of one member. `change` holds dV/dtau.
 KOKKOS_INLINE_FUNCTION SolutionAtSpot solution_at_spot(const NormalizedPut& put, const MemberValues& value,
                                                        const MemberValues& change, const MemberGrid& nodes) {
   const int mesh = nodes.mesh, strike = nodes.strike;
@@ -137,7 +138,7 @@ KOKKOS_INLINE_FUNCTION SolutionAtSpot solution_at_spot(const NormalizedPut& put,
     solution.time_value_rate = nodes.exercised < 0 ? 0.0 : change(nodes.exercised + 2);
   }
   const double t = x / h + strike;
-  if (!(t == t)) {  // no cell has such a number
+  if (!(t == t)) {  // no cell contains NaN
     solution.value = device::portable::not_a_number();
     return solution;
   }
@@ -158,7 +159,7 @@ KOKKOS_INLINE_FUNCTION SolutionAtSpot solution_at_spot(const NormalizedPut& put,
   double result[3], rate[3];
   interpolate(value, first, t - first, h, result);
   interpolate(change, first, t - first, h, rate);
-  solution.value = put.early && result[0] < 1.0 - asset ? 1.0 - asset : result[0];  // a NaN stays one
+  solution.value = put.early && result[0] < 1.0 - asset ? 1.0 - asset : result[0];  // keeps NaN
   solution.first_derivative = result[1];
   solution.second_derivative = result[2];
   solution.time_derivative = rate[0];

@@ -6,20 +6,20 @@
 
 namespace drogue::options {
 
-/// Scratch memory of one option (or pack) for its two solves. For `fixed` see `solve`: with a fixed mesh
-/// there is little of it, so that many warps share a multiprocessor.
+/// Scratch memory of one option (or pack) for its two solves. For `fixed` see `solve`: a fixed mesh needs
+/// little memory, so that many warps share a multiprocessor.
 template <class R, int fixed>
 struct SolveMemory {
   static constexpr int members = device::Access<R>::lanes;
 
-  R* tables;   ///< what `law_of` leaves, then the step table, and last a doubt that another warp reads
-  R* scratch;  ///< (9 max_lanes); with a fixed mesh what `domain_of` takes, or force
-  R* w;        ///< of a WeightLayout
-  R* nodes;    ///< rows of `node_count`, and what the coarser solve has beyond its own, shorter ones
-  NormalizedPut* puts;        ///< of the members, as the next
-  SolutionAtSpot* solutions;  ///< on the grid and on the coarser one
+  R* tables;   ///< mixture of `law_of`, then the step table, finally an error estimate for another warp
+  R* scratch;  ///< (9 max_lanes); with a fixed mesh for `domain_of` or the multipliers
+  R* w;        ///< in the order of a WeightLayout
+  R* nodes;    ///< rows of `node_count`; the coarser solve has shorter rows and stores data beyond them
+  NormalizedPut* puts;        ///< (members)
+  SolutionAtSpot* solutions;  ///< (2, members): on the finer and on the coarser grid
   double*
-      european_values;  ///< (members): values beside the spots on the coarser grid, without early exercise
+      european_values;  ///< (members): values next to the spots on the coarser grid, without early exercise
 
   [[nodiscard]] KOKKOS_INLINE_FUNCTION static std::size_t bytes(int mesh) {
     const std::size_t all =
@@ -38,17 +38,17 @@ struct SolveMemory {
         european_values(reinterpret_cast<double*>(solutions + 2 * members)) {}
 
   [[nodiscard]] KOKKOS_INLINE_FUNCTION R* row(int k, int mesh) const { return nodes + k * node_count(mesh); }
-  /// What is left at last where the tables was.
+  /// Error estimate in the memory of the mixture, which is no longer needed.
   [[nodiscard]] KOKKOS_INLINE_FUNCTION ErrorEstimate<R>* estimate() const {
     return reinterpret_cast<ErrorEstimate<R>*>(tables);
   }
-  /// The spectrum of the weights of a mesh that is transformed, in its two last rows; of the mesh that lanes
-  /// keep it of in registers it only passes through.
+  /// Spectrum of the weights of a transformed mesh, in its last two rows. If lanes keep it in registers the
+  /// rows are only used for its computation.
   [[nodiscard]] KOKKOS_INLINE_FUNCTION ComplexNumber<R>* spectrum(int mesh) const {
     return reinterpret_cast<ComplexNumber<R>*>(row(passes_through ? 1 : rows(mesh) - 2, mesh));
   }
-  /// Weights of the coarser grid of a mesh, and every other value of the finer one, which does not reach into
-  /// the rows 0 to 2 of the finer solve that are read last.
+  /// Weights of the coarser grid, followed by every second value of the finer one (`fine_values`). They do
+  /// not overlap the rows 0 to 2 of the finer solve, which are read last.
   [[nodiscard]] KOKKOS_INLINE_FUNCTION R* coarse_weights(int mesh) const {
     return row(rows(mesh / 2), mesh / 2);
   }
@@ -84,16 +84,17 @@ struct SolveMemory {
   }
 };
 
-/// Where more of a solve's first member is left than its answer, in the memory of the backend; or nowhere.
+/// Optional output arrays for the first member of a solve, in the memory of the backend; null if nothing is
+/// recorded.
 struct MarchRecord {
-  double* time = nullptr;  ///< (steps): to expiry, years
-  double* boundary;        ///< (steps): x at these times
-  double* x;               ///< (mesh + 1): nodes, at maturity
-  double* value;           ///< (mesh + 1)
+  double* time = nullptr;  ///< (steps): time to expiry, years
+  double* boundary;        ///< (steps): x of the boundary at these times
+  double* x;               ///< (mesh + 1): nodes
+  double* value;           ///< (mesh + 1): values at maturity
 };
 
-/// Marches with the nodes in the memory, whose rows 0 to 8 it takes. Not inlined: of a kernel that both
-/// solves' code makes too large a GPU's compiler makes calls elsewhere.
+/// Marches with the nodes in rows 0 to 8 of the memory. Not inlined: if the code of both solves makes a
+/// kernel too large, a GPU compiler does not inline other functions.
 template <class ThreadGroup, class R>
 [[gnu::noinline]] KOKKOS_FUNCTION March<R> march_in_memory(const ThreadGroup& group, const PutPack<R>& put,
                                                            const Jumps<R>& jumps, const Grid<R>& grid,
@@ -146,11 +147,11 @@ template <class ThreadGroup, class R>
     march.jump[0] = march.jump[1];
     march.jump[1] = jump;
   }
-  // After the rotation value[0] is what value[2] was.
+  // After the rotation value[0] is the former value[2].
   const StepLength<R> last = step_length(put.maturity, steps, steps);
   group.each([=](int thread) {
     for (int i = thread; i <= mesh;
-         i += group.threads())  // the upper end too, where transforms leave numbers
+         i += group.threads())  // includes the upper end, where transforms leave other values
       march.y[i] = time_derivative(last, march.value[1][i], march.value[2][i], march.value[0][i]);
   });
   if (record.time != nullptr) {
@@ -164,11 +165,11 @@ template <class ThreadGroup, class R>
   return march;
 }
 
-/// What a march leaves on the nodes of a pack, in the memory until the next one.
+/// Result of a march on the nodes of a pack, valid in the memory until the next march.
 template <class R>
 struct MarchResult {
   const R *value, *change;  ///< V and dV/dtau at maturity
-  int exercised;            ///< last node below the strike that is, where lanes marched in registers
+  int exercised;            ///< last exercised node below the strike, for marches in registers
 };
 
 template <class R>
@@ -176,7 +177,7 @@ KOKKOS_INLINE_FUNCTION MemberValues member_values(const R* nodes, int member) {
   return {reinterpret_cast<const double*>(nodes) + member, device::Access<R>::lanes};
 }
 
-/// Where the nodes of member k lie.
+/// Grid of member k.
 template <int fixed, class R>
 KOKKOS_INLINE_FUNCTION MemberGrid member_grid(const MarchResult<R>& solution, const NormalizedPut& put,
                                               const Grid<R>& grid, int k) {
@@ -188,8 +189,8 @@ KOKKOS_INLINE_FUNCTION MemberGrid member_grid(const MarchResult<R>& solution, co
   return {grid.mesh, strike, last, h};
 }
 
-/// The jumps on `grid`, their weights in `weights`; if given from those of a grid of half the steps. For
-/// `fixed` see `march_nodes`.
+/// Jumps on `grid`, with the weights in `weights`; with `finer`, the weights of a grid of half the step,
+/// mixtures use these. For `fixed` see `march_nodes`.
 template <int fixed, class ThreadGroup, class R, class Scratch>
 KOKKOS_INLINE_FUNCTION Jumps<R> jumps_on_grid(const ThreadGroup& group, const PutPack<R>& put,
                                               const LevyMeasure<R>& measure, const Tails<R>& tails,
@@ -204,13 +205,13 @@ KOKKOS_INLINE_FUNCTION Jumps<R> jumps_on_grid(const ThreadGroup& group, const Pu
       finer);
 }
 
-/// The variance by which differences spread the payoff until maturity.
+/// Variance by which the finite differences spread the payoff until maturity.
 template <class R>
 KOKKOS_INLINE_FUNCTION R payoff_spread(const PutPack<R>& put, const Jumps<R>& jumps) {
   return 2.0 * jumps.diffusion * put.maturity;
 }
 
-/// What is in doubt of a solve on `grid`, which another one on the coarser grid is compared with.
+/// Error estimate of a solve on `grid` that is compared with one on the coarser grid.
 template <class R>
 KOKKOS_INLINE_FUNCTION ErrorEstimate<R> estimate_solve_error(const PutPack<R>& put,
                                                              const LevyMeasure<R>& measure,
@@ -223,16 +224,16 @@ KOKKOS_INLINE_FUNCTION ErrorEstimate<R> estimate_solve_error(const PutPack<R>& p
   return estimate;
 }
 
-/// Marches from expiry to the puts' maturities on `grid`. With a `fixed` > 0 that is the mesh and a group of
-/// lanes keeps its nodes in registers; then nothing is recorded.
+/// Marches from expiry to maturity on `grid`. With `fixed` > 0 the mesh is `fixed`, the nodes are kept in the
+/// registers of the lanes, and nothing is recorded.
 template <int fixed, class ThreadGroup, class R, class Scratch>
 KOKKOS_INLINE_FUNCTION MarchResult<R> march_nodes(const ThreadGroup& group, const PutPack<R>& put,
                                                   const Jumps<R>& jumps, const Grid<R>& grid, int steps,
                                                   const Scratch& memory, const FourierRoots& roots,
                                                   const MarchRecord& record = {}) {
   const int mesh = mesh_for<fixed>(grid.mesh);
-  // The kink of the payoff, as far as it gets smoothed out: h/12 is what the rule of trapezoids, which sums
-  // over nodes amount to, lacks there.
+  // Smoothed value of the payoff's kink: the trapezoidal rule, which sums over nodes represent, has the error
+  // h/12 there.
   const R spread = payoff_spread(put, jumps);
   const R strike_value = grid.h * (1.0 / 12) * spread / (spread + grid.h * grid.h);
   const Scheme<R> scheme = scheme_of(put, jumps, grid, steps);
@@ -258,7 +259,7 @@ KOKKOS_INLINE_FUNCTION MarchResult<R> march_nodes(const ThreadGroup& group, cons
   }
 }
 
-/// `march_nodes`; `solutions` gets one for each member.
+/// `march_nodes`, then `solutions` (members) are interpolated.
 template <int fixed, class ThreadGroup, class R, class Scratch>
 KOKKOS_INLINE_FUNCTION MarchResult<R> solve(const ThreadGroup& group, const PutPack<R>& put,
                                             const Jumps<R>& jumps, const Grid<R>& grid, int steps,

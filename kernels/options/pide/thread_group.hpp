@@ -3,15 +3,15 @@
 #include "kernels/device/pack.hpp"
 #include "kernels/device/warp.hpp"
 
-/// The threads that price one option, and what they do together. All arithmetic whose order matters is cut
-/// into 32 or 16 lanes, so that a warp or half of one and a host thread, which takes the lanes in turn, round
-/// alike.
+/// Threads that price one option, with reductions and synchronization. Arithmetic that depends on the order
+/// of operations is divided among 32 or 16 lanes. A warp, half a warp, and a host thread that processes the
+/// lanes in turn therefore round identically.
 namespace drogue::options {
 
-/// The most lanes that an option has.
+/// Maximum number of lanes per option.
 inline constexpr int max_lanes = 32;
 
-/// One host thread, which prices a pack of options, `R`.
+/// One host thread, which prices a pack `R` of options.
 template <class R>
 struct SerialThreadGroup {
   static constexpr bool is_single = false;
@@ -25,7 +25,7 @@ struct SerialThreadGroup {
     for (int lane = 0; lane < lanes; ++lane) f(lane);
   }
   KOKKOS_INLINE_FUNCTION void sync() const {}
-  /// Joins the arrays f(lane) of all lanes, element by element and by halves.
+  /// Reduces the arrays f(lane) of all lanes element by element in a binary tree.
   template <class F, class Join>
   KOKKOS_INLINE_FUNCTION auto reduce(const F& f, const Join& join) const {
     decltype(f(0)) part[max_lanes];
@@ -43,42 +43,43 @@ struct SerialThreadGroup {
   }
 };
 
-/// A warp that prices as many options as groups of `count` lanes make it up, side by side: what all of them
-/// ask of `all` they do together. Where the warp has one option `single`, its other threads do as the lanes
-/// do, and share what may be done in any order; but for its march, where they are lanes too.
+/// A warp that prices 32/`count` options side by side, `count` lanes each; `all` covers the options of the
+/// warp. With `single` the warp has one option: the remaining threads repeat the arithmetic of the lanes and
+/// share order-independent work. In the march all 32 threads are lanes.
 template <int count = max_lanes, bool single = false>
 struct WarpThreadGroup {
   static constexpr int lanes = count;
   static constexpr bool is_single = single;
 
-  int lane;    ///< within its group
-  int thread;  ///< of those that share what `each` does
+  int lane;    ///< index within the option
+  int thread;  ///< index among the threads that share the work of `each`
 
   KOKKOS_INLINE_FUNCTION explicit WarpThreadGroup(int rank)
       : lane(rank % count), thread(single ? rank % max_lanes : rank % count) {}
 
   [[nodiscard]] KOKKOS_INLINE_FUNCTION static constexpr int threads() { return single ? max_lanes : count; }
-  /// Whether the thread is_writer what its lane has to: not if it only does as another one does.
+  /// Whether the thread writes the results of its lane; false for threads that only repeat a lane.
   [[nodiscard]] KOKKOS_INLINE_FUNCTION bool is_writer() const { return !single || thread < count; }
-  /// Runs f(thread) on every thread; what they wrote is seen by all compose it.
+  /// Runs f(thread) on every thread, then synchronizes.
   template <class F>
   KOKKOS_INLINE_FUNCTION void each(const F& f) const {
     f(thread);
     sync();
   }
-  /// Runs f() once for each lane; what it wrote is seen by all compose it.
+  /// Runs f() once per lane, then synchronizes.
   template <class F>
   KOKKOS_INLINE_FUNCTION void each_lane(const F& f) const {
     if (is_writer()) f();
     sync();
   }
-  /// What all have read before it may be written compose it.
+  /// Warp barrier: orders memory accesses before and after it.
   KOKKOS_INLINE_FUNCTION void sync() const { device::warp_sync(); }
-  /// The same where lanes read but what they have written themselves: of threads that do alike one is_writer.
+  /// Barrier that is only needed if two threads repeat one lane: lanes read only their own writes, and one of
+  /// the two threads writes.
   KOKKOS_INLINE_FUNCTION void sync_duplicates() const {
     if constexpr (single) sync();
   }
-  /// Joins the arrays f(lane) of all lanes, element by element and by halves; every lane gets the result.
+  /// Reduces the arrays f(lane) of all lanes element by element in a binary tree; every lane gets the result.
   template <class F, class Join>
   KOKKOS_INLINE_FUNCTION auto reduce(const F& f, const Join& join) const {
     auto part = f(lane);
@@ -93,13 +94,13 @@ struct WarpThreadGroup {
   }
 };
 
-/// The sums of the arrays f(lane) of all lanes.
+/// Sums of the arrays f(lane) of all lanes, element by element.
 template <class ThreadGroup, class F>
 KOKKOS_INLINE_FUNCTION auto sums(const ThreadGroup& group, const F& f) {
   return group.reduce(f, [](const auto& a, const auto& b) { return a + b; });
 }
 
-/// The least of the arrays f(lane) of all lanes, number by number.
+/// Minima of the arrays f(lane) of all lanes, element by element.
 template <class ThreadGroup, class F>
 KOKKOS_INLINE_FUNCTION auto minima(const ThreadGroup& group, const F& f) {
   return group.reduce(f, [](const auto& a, const auto& b) { return device::minimum(a, b); });

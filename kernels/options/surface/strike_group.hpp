@@ -2,21 +2,22 @@
 
 #include "kernels/options/batch/price_batch.hpp"
 
-/// Prices of all strikes of one law and maturity, a smile, from one solve: V(c spot, c strike) = c V, so a
-/// solve for the strike 1 has them at x = ln(spot/strike).
+/// Prices for all strikes of one process and maturity, a strike group, from one solve. V(c spot, c strike) =
+/// c V, so a solve for strike 1 contains them at x = ln(spot/strike).
 namespace drogue::options {
 
-/// What a solve of a smile leaves beside the values of its nodes.
+/// Data of a solved strike group without its node values.
 struct StrikeGroup {
   MemberGrid fine, coarse;
   ErrorEstimate<double> estimate;
-  double window;  ///< about a strike in which the largest difference of both solves tells of its error
+  double window;  ///< half width in x of the interval around a strike whose largest difference of the two
+                  ///< solves estimates the error
 };
 
-/// The values of a smile's nodes: V and dV/dtau on the fine grid and on the coarse one, one after another.
+/// Node values of a strike group: V and dV/dtau on the finer grid, then on the coarser one.
 struct StrikeGroupNodes {
   double* first;
-  int mesh;  ///< of the fine grid
+  int mesh;  ///< of the finer grid
 
   [[nodiscard]] KOKKOS_INLINE_FUNCTION static std::size_t size(int mesh) {
     return static_cast<std::size_t>(2 * (mesh + 1) + 2 * (mesh / 2 + 1));
@@ -25,8 +26,8 @@ struct StrikeGroupNodes {
   [[nodiscard]] KOKKOS_INLINE_FUNCTION double* coarse() const { return first + 2 * (mesh + 1); }
 };
 
-/// Smiles of one model, solved on one mesh in one launch by a team for each, or on hosts for each pack of
-/// them: smile k is that of contract k of the batch, whose strike does not matter. For `fixed` see
+/// Solves strike groups of one model on one mesh in one launch: one per team on devices, a pack on hosts.
+/// Strike group k has the parameters of contract k of the batch, whose strike is not used. For `fixed` see
 /// `march_nodes`.
 template <class ExecutionSpace, int fixed, Laws laws>
 struct StrikeGroupFunctor {
@@ -36,10 +37,10 @@ struct StrikeGroupFunctor {
   using Scratch = SolveMemory<R, fixed>;
   static constexpr int members = Batch::members;
 
-  Batch batch;                                       ///< without prices
-  Kokkos::View<const double*, Space> strike_ranges;  ///< (smiles)
-  Kokkos::View<StrikeGroup*, Space> strike_groups;   ///< (smiles)
-  Kokkos::View<double*, Space> values;               ///< (smiles, SmileNodes::size)
+  Batch batch;                                       ///< its prices are not used
+  Kokkos::View<const double*, Space> strike_ranges;  ///< (strike groups): half widths in ln(spot/strike)
+  Kokkos::View<StrikeGroup*, Space> strike_groups;   ///< (strike groups)
+  Kokkos::View<double*, Space> values;               ///< (strike groups, StrikeGroupNodes::size)
 
   KOKKOS_FORCEINLINE_FUNCTION void operator()(const typename Batch::Member& team) const {
     batch.template price_pack<fixed>(*this, team);
@@ -80,7 +81,7 @@ struct StrikeGroupFunctor {
   }
 
  private:
-  /// Tells the smiles of the pack's members what readings need beside values.
+  /// Writes the error estimates of the pack's members.
   template <class ThreadGroup>
   KOKKOS_INLINE_FUNCTION void write_estimates(const ThreadGroup& group, const Scratch& memory, int pack,
                                               const ErrorEstimate<R>& estimate, const R& window) const {
@@ -94,7 +95,7 @@ struct StrikeGroupFunctor {
     });
   }
 
-  /// Copies what a solve has left to the smiles of the pack's members.
+  /// Copies the node values and the grid of a march to the strike groups of the pack's members.
   template <int solved, bool coarse, class ThreadGroup>
   KOKKOS_INLINE_FUNCTION void copy_solution(const ThreadGroup& group, const Scratch& memory, int pack,
                                             const Grid<R>& grid, const MarchResult<R>& solution) const {
@@ -122,12 +123,12 @@ struct StrikeGroupFunctor {
   }
 };
 
-/// Enqueues the solves of smiles of one model.
+/// Enqueues the solves of strike groups of one model; asynchronous.
 template <class ExecutionSpace>
 void solve_strike_groups(const ExecutionSpace& space, StrikeGroupFunctor<ExecutionSpace, 0, Laws::all> work) {
   static_assert(
       Kokkos::SpaceAccessibility<ExecutionSpace, typename decltype(work.values)::memory_space>::accessible);
-  // On a device the other meshes are solved in memory, by whole warps.
+  // On devices other meshes are solved in memory by whole warps.
   if (work.batch.mesh == 128) work.batch.lanes = lanes_of(work.batch.mesh);
   if constexpr (!device::is_host<ExecutionSpace>) {
     const auto launch = [&]<int fixed> {
@@ -143,22 +144,22 @@ void solve_strike_groups(const ExecutionSpace& space, StrikeGroupFunctor<Executi
   launch_batch<0>(space, "drogue::options::solve strike groups", work);
 }
 
-/// A price that is read from a smile.
+/// Request for the price of a strike of a solved strike group.
 struct StrikeQuery {
   int strike_group;
   double spot, strike;
 };
 
-/// Reads prices of strikes from solved smiles, a thread for each.
+/// Interpolates the prices of strikes from solved strike groups, one thread per price.
 template <class ExecutionSpace>
 struct InterpolationFunctor {
   using Space = typename ExecutionSpace::memory_space;
 
-  Kokkos::View<const Contract*, Space> contracts;         ///< (smiles)
-  Kokkos::View<const StrikeGroup*, Space> strike_groups;  ///< (smiles)
-  Kokkos::View<double*, Space> values;                    ///< (smiles, SmileNodes::size)
-  Kokkos::View<const StrikeQuery*, Space> queries;        ///< (readings)
-  Kokkos::View<Price*, Space> prices;                     ///< (readings)
+  Kokkos::View<const Contract*, Space> contracts;         ///< (strike groups)
+  Kokkos::View<const StrikeGroup*, Space> strike_groups;  ///< (strike groups)
+  Kokkos::View<double*, Space> values;                    ///< (strike groups, StrikeGroupNodes::size)
+  Kokkos::View<const StrikeQuery*, Space> queries;        ///< (queries)
+  Kokkos::View<Price*, Space> prices;                     ///< (queries)
   int mesh, steps;
   double tolerance;
 
@@ -182,7 +183,7 @@ struct InterpolationFunctor {
   }
 
  private:
-  /// The largest difference of both solves at their common nodes near x, as for a price of its own.
+  /// Largest difference of the two solves at their common nodes near x, as for a separate price.
   [[nodiscard]] KOKKOS_INLINE_FUNCTION double largest_change(const NormalizedPut& put,
                                                              const MemberValues& fine,
                                                              const MemberValues& coarse,
@@ -204,7 +205,7 @@ struct InterpolationFunctor {
   }
 };
 
-/// Enqueues the readings.
+/// Enqueues the interpolation of `count` prices; asynchronous.
 template <class ExecutionSpace>
 void interpolate_prices(const ExecutionSpace& space, const InterpolationFunctor<ExecutionSpace>& work,
                         int count) {

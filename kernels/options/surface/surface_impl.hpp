@@ -20,8 +20,9 @@
 
 namespace drogue::options {
 
-/// A pricer whose contracts share solves: those that follow one another and differ in the strike alone are
-/// one smile. What a strike gets does not depend on the others: docs/options.md, "Surfaces".
+/// Pricer whose contracts share solves. Consecutive contracts that differ only in the strike form runs, which
+/// are divided into strike groups. The price of a strike does not depend on the other strikes:
+/// docs/options.md, "Surfaces".
 template <class ExecutionSpace>
 class SurfaceImpl final : public Pricer {
   using Space = typename ExecutionSpace::memory_space;
@@ -31,7 +32,7 @@ class SurfaceImpl final : public Pricer {
   using Staged = std::pmr::vector<T>;
 
  public:
-  /// `single` answers what is asked of one contract.
+  /// `single` computes boundaries and profiles, which concern one contract.
   SurfaceImpl(const Settings& settings, std::unique_ptr<Pricer> single)
       : _settings(settings), _single(std::move(single)), _instance(1 << 20) {}
 
@@ -76,9 +77,10 @@ class SurfaceImpl final : public Pricer {
 
  private:
   static constexpr int first_mesh = 128, models = 4;
-  static constexpr std::size_t max_values = std::size_t{1} << 23U;  ///< of nodes in memory at a time
+  static constexpr std::size_t max_values = std::size_t{1}
+                                            << 23U;  ///< maximum number of node values in memory
 
-  /// Whose smile a contract belongs to, and which of its reaches it needs.
+  /// Run and range of strikes of a contract.
   struct Membership {
     int run;
     std::uint8_t range;
@@ -102,8 +104,8 @@ class SurfaceImpl final : public Pricer {
     return std::sqrt(_variance * c.maturity);
   }
 
-  /// Gathers what contracts from `begin` on ask for with this effort, as far as memory for smiles reaches.
-  /// Returns the contract that it ends before.
+  /// Gathers the queries of contracts from `begin` on with this resolution, as far as the memory for strike
+  /// groups suffices. Returns the first contract that is not gathered.
   std::size_t gather(std::span<const Contract> contracts, const Resolution& resolution, std::size_t begin) {
     const std::size_t capacity =
         std::max(max_values / StrikeGroupNodes::size(resolution.mesh), std::size_t{1});
@@ -112,7 +114,7 @@ class SurfaceImpl final : public Pricer {
     _staged_queries.clear();
     _query_contracts.clear();
     int run = -1;
-    std::vector<int> group_at;  // of the run's reaches
+    std::vector<int> group_at;  // per range of the run
     for (std::size_t k = begin; k < contracts.size(); ++k) {
       if (_rows[k].next != resolution) continue;
       if (_memberships[k].run != run) {
@@ -170,7 +172,7 @@ class SurfaceImpl final : public Pricer {
     times.d2h += copying_out.seconds();
   }
 
-  /// Enqueues the solves of the smiles begin .. end - 1 of the order, which have one model.
+  /// Enqueues the solves of the strike groups begin .. end - 1 of the order, which have one model.
   void launch(Model model, const Resolution& resolution, int begin, int end) {
     if (begin == end) return;
     StrikeGroupFunctor<ExecutionSpace, 0, Laws::all> work{};
@@ -195,7 +197,7 @@ class SurfaceImpl final : public Pricer {
     if (view.size() < count) view = View<T>(Kokkos::view_alloc(label, Kokkos::WithoutInitializing), count);
   }
 
-  /// Enqueues a copy; `from` must stay as it is until the next fence.
+  /// Enqueues a copy; `from` must not change until the next fence.
   template <class T>
   void copy_in(View<T>& to, const Staged<T>& from, const std::string& label) {
     reserve(to, from.size(), label);
@@ -207,11 +209,11 @@ class SurfaceImpl final : public Pricer {
   device::Instance<ExecutionSpace> _instance;
   HankelPanels<ExecutionSpace> _panels;
   FourierRootsTable<ExecutionSpace> _roots;
-  std::vector<Refinement> _rows;  ///< of each contract, as the next
+  std::vector<Refinement> _rows;  ///< (contracts), as are the memberships
   std::vector<Membership> _memberships;
-  std::vector<StrikeRanges> _ranges;          ///< of each smile
-  double _variance = 0.0;                     ///< a year, of the law asked for last
-  std::vector<std::size_t> _query_contracts;  ///< contracts of the readings
+  std::vector<StrikeRanges> _ranges;          ///< (runs)
+  double _variance = 0.0;                     ///< per year, of the latest process
+  std::vector<std::size_t> _query_contracts;  ///< contracts of the queries
   device::PinnedMemory<ExecutionSpace> _pinned;
   Staged<Contract> _staged_contracts{&_pinned};
   Staged<double> _staged_ranges{&_pinned};

@@ -4,7 +4,7 @@
 
 namespace drogue::options {
 
-/// A complex number, or one of each option of a pack; of doubles it is read and written at once.
+/// Complex number, or one per option of a pack; of doubles it is aligned for a single load or store.
 template <class R>
 struct alignas(alignof(R) > 16 ? alignof(R) : 16) ComplexNumber {
   R re, im;
@@ -22,7 +22,7 @@ KOKKOS_INLINE_FUNCTION ComplexNumber<R> product(const ComplexNumber<R>& a, const
   return {a.re * b.re - a.im * b.im, a.re * b.im + a.im * b.re};
 }
 
-/// a times the conjugate of b.
+/// a times the complex conjugate of b.
 template <class R, class S>
 KOKKOS_INLINE_FUNCTION ComplexNumber<R> times_conjugate(const ComplexNumber<R>& a,
                                                         const ComplexNumber<S>& b) {

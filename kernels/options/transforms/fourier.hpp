@@ -3,14 +3,16 @@
 #include "kernels/options/grid/grid.hpp"
 #include "kernels/options/transforms/fourier_roots.hpp"
 
-/// The sum over jumps y_i = sum_j w_{j-i} v_j by Fourier transforms. With V = sum v_k x^k and
-/// W = sum w_{n-k} x^k, k < 2n, the y_i are the coefficients n .. 2n - 1 of V W. Its remainder of division by
-/// x^n - i is P0 + i P1 - P2 for the three parts of n coefficients each. All are real, so P1 is the imaginary
-/// part, and n complex points are enough. The remainder falls into those by the eight factors of x^n - i, and
-/// so on to x - e^{2 pi i phi} (`FourierRoots`); products of these are taken back to the product of V and W.
+/// Sum over jumps y_i = sum_j w_{j-i} v_j by Fourier transforms. With V = sum v_k x^k and W = sum w_{n-k}
+/// x^k, k < 2n, the y_i are the coefficients n .. 2n - 1 of V W. Its remainder modulo x^n - i is P0 + i P1 -
+/// P2 for the three parts of n coefficients each. All parts are real, so P1 is the imaginary part, and n
+/// complex points are sufficient. The remainder is reduced modulo the eight factors of x^n - i, and
+/// recursively to x - e^{2 pi i phi} (`FourierRoots`). Products of these remainders are transformed back to
+/// the product of V and W.
 namespace drogue::options {
 
-/// sum_m z_m e^{sign 2 pi i q m/2}, q = 0, 1, in place; the next ones likewise.
+/// Discrete Fourier transforms of 2, 4 and 8 values in place: sum_m z_m e^{sign 2 pi i q m/size}, q = 0 ..
+/// size - 1.
 template <int sign, class R>
 KOKKOS_INLINE_FUNCTION void transform(ComplexNumber<R>& z0, ComplexNumber<R>& z1) {
   const ComplexNumber<R> first = z0;
@@ -34,7 +36,7 @@ KOKKOS_INLINE_FUNCTION void transform(ComplexNumber<R> (&z)[8]) {
     odd[m] = z[m] - z[m + 4];
   }
   transform<sign>(even[0], even[1], even[2], even[3]);
-  // odd[m] e^{sign 2 pi i m/8}, where the factor sqrt(1/2) of m = 1 and 3 comes last, and m = 3 negated.
+  // odd[m] e^{sign 2 pi i m/8}. The factor sqrt(1/2) of m = 1 and 3 is applied last, and m = 3 is negated.
   constexpr double diagonal = 0.70710678118654752440;
   const ComplexNumber<R> second = times_i<sign>(odd[2]), first = odd[1] + times_i<sign>(odd[1]),
                          third = odd[3] - times_i<sign>(odd[3]);
@@ -49,7 +51,7 @@ KOKKOS_INLINE_FUNCTION void transform(ComplexNumber<R> (&z)[8]) {
   z[7] = b - d;
 }
 
-/// cos(2 pi m/32), m = 0 .. 8; the sine is that of 8 - m.
+/// cos(2 pi m/32), m = 0 .. 8; the sine is the cosine of 8 - m.
 struct QuarterCosines {
   double cosine[9] = {1.0,
                       0.98078528040323044913,
@@ -62,7 +64,7 @@ struct QuarterCosines {
                       0.0};
 };
 
-/// Eight numbers of which one pass makes others in their places. `stride` of them lie between.
+/// Eight values that one pass transforms in place. They are `stride` elements apart in memory.
 template <class R>
 struct Octet {
   ComplexNumber<R> z[8];
@@ -73,7 +75,7 @@ struct Octet {
   KOKKOS_INLINE_FUNCTION void store(ComplexNumber<R>* to, int stride) const {
     for (int m = 0; m < 8; ++m) to[padded(m * stride)] = z[m];
   }
-  /// Remainders by the eight factors of a factor with these roots, and back.
+  /// Remainders modulo the eight factors of a factor with these roots (`forward`), and the inverse.
   KOKKOS_INLINE_FUNCTION void forward(const SevenRoots& roots) {
     for (int m = 1; m < 8; ++m) z[m] = product(z[m], roots.root[m - 1]);
     transform<1>(z);
@@ -82,7 +84,7 @@ struct Octet {
     transform<-1>(z);
     for (int m = 1; m < 8; ++m) z[m] = times_conjugate(z[m], roots.root[m - 1]);
   }
-  /// The same in a last pass, where `radix` neighbours are all that is left of a factor; octet `task`.
+  /// Last pass, in which a factor has only `radix` adjacent elements, of the octet `task`.
   template <int radix>
   KOKKOS_INLINE_FUNCTION void forward_last(const FourierRoots& roots, int level, int task) {
     if constexpr (radix == 8) {
@@ -108,8 +110,8 @@ struct Octet {
     }
   }
 
-  /// The first pass, of the real numbers read(m), and the last one back, of which write(m, y) gets the
-  /// imaginary parts. The roots of level 0 are e^{2 pi i m/32}.
+  /// First pass, for the real values read(m), and the last inverse pass, whose imaginary parts are passed to
+  /// write(m, y). The roots of level 0 are e^{2 pi i m/32}.
   template <class Read>
   KOKKOS_INLINE_FUNCTION void forward_real(const Read& read) {
     constexpr QuarterCosines turn;
@@ -128,7 +130,7 @@ struct Octet {
     for (int m = 1; m < 8; ++m) write(m, z[m].im * turn.cosine[m] - z[m].re * turn.cosine[8 - m]);
   }
 
-  /// The last pass forward, the product with the spectrum's eight numbers, and the first pass back.
+  /// Last forward pass, product with eight values of the spectrum, and first inverse pass.
   template <int radix>
   KOKKOS_INLINE_FUNCTION void multiply_last(const FourierRoots& roots, int level, int task,
                                             const ComplexNumber<R>* spectrum) {

@@ -5,14 +5,14 @@
 
 namespace drogue::options {
 
-/// What a sum over jumps by transforms reads; made once a solve.
+/// Input of a sum over jumps by transforms; computed once per solve.
 template <class R>
 struct JumpSpectrum {
   FourierRoots roots;
-  const ComplexNumber<R>* values;  ///< (padded(mesh)): the weights' transform, divided by the mesh
+  const ComplexNumber<R>* values;  ///< (padded(mesh)): transform of the weights, divided by the mesh
 };
 
-/// The passes of a transform of 2^log_size numbers: each of radix 8 but the last, of 2^last_log_radix.
+/// Passes of a transform of 2^log_size points: radix 8, but 2^last_log_radix in the last pass.
 struct Passes {
   int log_size, last, last_log_radix;
 
@@ -21,14 +21,14 @@ struct Passes {
     last = (log_size - 1) / 3;
     last_log_radix = log_size - 3 * last;
   }
-  /// Of the numbers that a task of a pass takes: the distance, in the last pass 1.
+  /// Logarithm of the distance between the elements of a task; 0 in the last pass.
   [[nodiscard]] KOKKOS_INLINE_FUNCTION constexpr int log_stride(int pass) const {
     return pass < last ? log_size - 3 * (pass + 1) : 0;
   }
 };
 
-/// Calls f(octet, factor) for all tasks of a pass on z, and leaves what f makes of their numbers. In the last
-/// pass `factor` counts octets.
+/// Calls f(octet, factor) for all tasks of a pass on z and stores the modified octets. In the last pass
+/// `factor` counts octets.
 template <class ThreadGroup, class R, class F>
 KOKKOS_INLINE_FUNCTION void for_each_octet(const ThreadGroup& group, const Passes& passes, int pass,
                                            ComplexNumber<R>* z, const F& f) {
@@ -45,7 +45,8 @@ KOKKOS_INLINE_FUNCTION void for_each_octet(const ThreadGroup& group, const Passe
   });
 }
 
-/// The same for the last pass, of which f is to know the radix: f.operator()<radix>(octet, task).
+/// `for_each_octet` for the last pass, with its radix as a template argument: f.operator()<radix>(octet,
+/// task).
 template <class ThreadGroup, class R, class F>
 KOKKOS_INLINE_FUNCTION void for_each_last_octet(const ThreadGroup& group, const Passes& passes,
                                                 ComplexNumber<R>* z, const F& f) {
@@ -58,7 +59,7 @@ KOKKOS_INLINE_FUNCTION void for_each_last_octet(const ThreadGroup& group, const 
   with.template operator()<8>();
 }
 
-/// The transform of the weights of jumps, divided by the mesh, into `z` (padded(mesh)).
+/// Transform of the weights of jumps, divided by the mesh, into `z` (padded(mesh)).
 template <class ThreadGroup, class R>
 KOKKOS_INLINE_FUNCTION JumpSpectrum<R> spectrum_of(const ThreadGroup& group, int mesh,
                                                    const FourierRoots& roots, const R* w,
@@ -79,7 +80,7 @@ KOKKOS_INLINE_FUNCTION JumpSpectrum<R> spectrum_of(const ThreadGroup& group, int
   return {roots, z};
 }
 
-/// The sums over jumps w_{j-i} v_j of `mesh` nodes; `z` (padded(mesh)) is spoiled.
+/// Sums over jumps w_{j-i} v_j at `mesh` nodes; overwrites `z` (padded(mesh)).
 template <class ThreadGroup, class R>
 KOKKOS_INLINE_FUNCTION void sum_by_transforms(const ThreadGroup& group, int mesh,
                                               const JumpSpectrum<R>& spectrum, const R* v, R* out,

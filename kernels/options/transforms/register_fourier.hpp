@@ -5,12 +5,12 @@
 
 namespace drogue::options {
 
-/// `sum_by_transforms` where every lane has one octet of each pass: 256 = 8 x 8 x 4 on 32 lanes, 128 = 8 x 8
-/// x 2 on 16.
+/// `sum_by_transforms` with one octet per lane in each pass: 256 = 8 x 8 x 4 on 32 lanes, 128 = 8 x 8 x 2 on
+/// 16.
 template <int lanes>
 class RegisterFourier {
  public:
-  /// `row` (mesh) and `z` (padded(mesh)) are shared memory for it alone from its first call on.
+  /// `row` (mesh) and `z` (padded(mesh)) are shared memory, used exclusively from the first call on.
   KOKKOS_INLINE_FUNCTION RegisterFourier(int lane, const JumpSpectrum<double>& spectrum, double* row,
                                          ComplexNumber<double>* z)
       : _lane(lane),
@@ -62,7 +62,7 @@ class RegisterFourier {
   static_assert(passes.last == 2);
   static constexpr bool in_registers = keeps_spectrum(lanes);
 
-  /// What every step reads.
+  /// Values that do not change between steps.
   struct StepInvariants {
     SevenRoots roots;
     Octet<double> spectrum;
@@ -73,20 +73,20 @@ class RegisterFourier {
     if constexpr (in_registers) return _invariants.roots;
     return _roots.seven(1, _lane / radix);
   }
-  /// Eight numbers.
+  /// The lane's eight values of the spectrum.
   [[nodiscard]] KOKKOS_INLINE_FUNCTION const ComplexNumber<double>* own_spectrum() const {
     if constexpr (in_registers) return _invariants.spectrum.z;
     return _spectrum;
   }
 
-  /// Where node lane + lanes m is in the row.
+  /// Index of node lane + lanes m in the row.
   [[nodiscard]] KOKKOS_INLINE_FUNCTION int place(int m) const {
     return 2 * swizzled(_lane / 2 + lanes / 2 * m) + _lane % 2;
   }
 
   int _lane;
   FourierRoots _roots;
-  const ComplexNumber<double>* _spectrum;  ///< the lane's part
+  const ComplexNumber<double>* _spectrum;  ///< part of the lane
   double* _row;
   ComplexNumber<double>*_first, *_second, *_third;
   std::conditional_t<in_registers, StepInvariants, Empty> _invariants;

@@ -5,8 +5,8 @@
 
 namespace drogue::options {
 
-/// Of what `transform` makes of eight numbers the even ones or the `odd` ones, number by number as it does:
-/// two threads that share an octet do alike.
+/// The even or the `odd` elements of `transform` of eight values, with the same operations. Two threads that
+/// share an octet compute one half each.
 template <int sign>
 KOKKOS_INLINE_FUNCTION void transform_half(const ComplexNumber<double> (&low)[4],
                                            const ComplexNumber<double> (&high)[4], bool odd,
@@ -30,13 +30,13 @@ KOKKOS_INLINE_FUNCTION void transform_half(const ComplexNumber<double> (&low)[4]
   half[3] = b - d;
 }
 
-/// `RegisterFourier` of 128 nodes by all threads of a warp, each of which has four nodes: thread t and t + 16
-/// share an octet, of which one makes the even numbers and the other one the odd. Whoever makes a number
-/// multiplies it with the root that the next pass would; by {1, 0}, where there is none, at most the sign of
-/// a zero changes.
+/// `RegisterFourier` of 128 nodes for all threads of a warp, four nodes each. The threads t and t + 16 share
+/// an octet: one computes the even elements, the other one the odd elements. The thread that computes an
+/// element also multiplies it by the root of the next pass. Where there is no root the factor is {1, 0},
+/// which can only change the sign of a zero.
 class SharedFourier {
  public:
-  /// `row` (mesh) and `z` (padded(mesh)) are shared memory for it alone from its first call on.
+  /// `row` (mesh) and `z` (padded(mesh)) are shared memory, used exclusively from the first call on.
   KOKKOS_INLINE_FUNCTION SharedFourier(int thread, const JumpSpectrum<double>& spectrum, double* row,
                                        ComplexNumber<double>* z)
       : _thread(thread),
@@ -46,7 +46,7 @@ class SharedFourier {
         _first(z + padded(_octet)),
         _second(z + padded(_octet / 2 * 16 + _octet % 2)),
         _third(z + padded(4 * thread)) {
-    const int m = _octet / 2;  // the number's place in its octet of the second pass
+    const int m = _octet / 2;  // index of the element in its octet of the second pass
     for (int j = 0; j < 4; ++j) {
       const int q = 2 * j + _odd;
       _forward_roots[j] = m > 0 ? spectrum.roots.at(1, m, q) : ComplexNumber<double>{1.0, 0.0};
@@ -104,7 +104,7 @@ class SharedFourier {
  private:
   static constexpr int octets = 16;
 
-  /// The first pass' numbers, of which the higher four are negated for odd results.
+  /// Values of the first pass; the upper four are negated for odd elements.
   KOKKOS_INLINE_FUNCTION void real_halves(ComplexNumber<double> (&low)[4],
                                           ComplexNumber<double> (&high)[4]) const {
     constexpr QuarterCosines turn;
@@ -118,7 +118,7 @@ class SharedFourier {
       high[m - 4] = {v * turn.cosine[m], v * turn.cosine[8 - m]};
     }
   }
-  /// The numbers of another pass, likewise.
+  /// Values of another pass, negated likewise.
   KOKKOS_INLINE_FUNCTION void load(const ComplexNumber<double>* from, int stride,
                                    ComplexNumber<double> (&low)[4], ComplexNumber<double> (&high)[4]) const {
     for (int m = 0; m < 4; ++m) {
@@ -127,7 +127,7 @@ class SharedFourier {
       high[m] = _odd != 0 ? ComplexNumber<double>{-other.re, -other.im} : other;
     }
   }
-  /// Where node octet + 16 m is in the row.
+  /// Index of node octet + 16 m in the row.
   [[nodiscard]] KOKKOS_INLINE_FUNCTION int place(int m) const {
     return 2 * swizzled(_octet / 2 + octets / 2 * m) + _octet % 2;
   }
