@@ -73,7 +73,7 @@ KOKKOS_INLINE_FUNCTION double boundary_weight(const NormalizedPut& put, double b
 /// time value is B (x - b)^2/2. `time_value_step` and `time_value_rate` yield the time t = 3/4 step/rate in
 /// which b moves by half a step. The probability of reaching b from x within t decreases with q = (x -
 /// b)^2/(variance t); 1/(1 + q + q^2/2) is an empirical fit, tested by
-/// `OptionsError.BoundaryThatHardlyMovesForDecades`.
+/// `OptionsError.CoversBoundariesThatHardlyMoveForDecades`.
 KOKKOS_INLINE_FUNCTION double standing_boundary_weight(const NormalizedPut& put,
                                                        const SolutionAtSpot& solution, double variance) {
   const double distance = put.log_spot - solution.boundary;
@@ -107,7 +107,7 @@ KOKKOS_INLINE_FUNCTION R drift_in_deviations(const PutPack<R>& put, const LevyMe
   if (put.model != Model::generalized_hyperbolic) return drift_ratio;
   // Asymmetric jumps (for beta = -1/2 they are symmetric up to e^y) increase the error once they act over
   // several deviations and years; with early exercise they have less time. The constants 0.4, 0.25 and 10 are
-  // empirical, tested by `OptionsError.AsymmetricJumpsOverDecades`.
+  // empirical, tested by `OptionsError.CoversAsymmetricJumpsOverDecades`.
   const R years = put.maturity * device::minimum(R(1.0), 0.25 * put.maturity);
   const R tilted = (1.0 - put.early) * device::absolute(put.jump[2] + 0.5) *
                    device::square_root(measure.variance * years + R(1e-100));
@@ -173,7 +173,7 @@ KOKKOS_INLINE_FUNCTION ErrorEstimate<R> estimate_error(const PutPack<R>& put, co
 /// up to a third of the difference of the grids remains. If the finer grid has far too little, the solved
 /// process is a different one. If the symbol of the shortest wave exceeds 40 per step, values may grow, and
 /// exercise may cut them so that both grids agree. The limits 0.8, 0.1 and 40 and the factor 0.5 are
-/// empirical, tested by `OptionsError.FrequentShortJumps`.
+/// empirical, tested by `OptionsError.CoversFrequentShortJumps`.
 template <class R>
 KOKKOS_INLINE_FUNCTION R frequent_jump_factor(const PutPack<R>& put, const LevyMeasure<R>& measure,
                                               const Jumps<R>& jumps, int steps) {

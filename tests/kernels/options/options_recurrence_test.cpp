@@ -9,7 +9,7 @@
 #include "kernels/options/pide/register_march.hpp"
 #include "tests/support/options_numbers.hpp"
 
-// Recurrences cut into lanes and parts of their blocks against plain ones, one node after the other.
+// Recurrences over lanes and parts of blocks against sequential recurrences.
 
 namespace drogue::options {
 namespace {
@@ -21,7 +21,7 @@ constexpr int members = device::Access<R>::lanes;
 
 enum class Way { in_memory, in_registers, halved };
 
-/// Both recurrences of one line, of as many nodes as lanes have; y is changed in place.
+/// Both recurrences of one line with `block` nodes per lane; changes y in place.
 struct RecurrenceFunctor {
   Way way;
   int block, end;
@@ -60,7 +60,8 @@ struct RecurrenceFunctor {
   }
 };
 
-/// Random right sides, and floors that hold some of the nodes; node 0 is given, nodes from `end` on are 0.
+/// Random right-hand sides, and lower bounds that are active at some nodes. Node 0 is given, nodes from `end`
+/// on are 0.
 void expect_plain_recurrences(Way way, int block, int end, double below, double above) {
   SCOPED_TRACE("block " + std::to_string(block) + ", end " + std::to_string(end) + ", slopes " +
                std::to_string(below) + " and " + std::to_string(above));
@@ -92,7 +93,7 @@ void expect_plain_recurrences(Way way, int block, int end, double below, double 
   EXPECT_LT(worst, 1e-13);
 }
 
-TEST(OptionsRecurrence, PartsOfBlocksEqualOneLine) {
+TEST(OptionsRecurrence, BlockedRecurrencesMatchSequentialOnes) {
   for (const double below : {0.9, 0.3, 0.0, -0.6})
     for (const double above : {0.8, 0.1}) {
       for (const int block : {1, 4, 7, 8, 9, 16}) {

@@ -9,7 +9,7 @@
 #include "kernels/options/transforms/shared_fourier.hpp"
 #include "tests/support/options_numbers.hpp"
 
-// Sums over jumps by Fourier transforms against plain sums.
+// Sums over jumps by Fourier transforms against direct sums.
 
 namespace drogue::options {
 namespace {
@@ -21,8 +21,8 @@ constexpr int members = device::Access<R>::lanes;
 
 enum class Way { in_memory, in_registers, shared };
 
-/// Two groups of 16 lanes share a warp; each sums in memory of its own, the first where it is looked at. Or
-/// all threads share octets.
+/// Two groups of 16 lanes share a warp and sum in separate memory; the result of the first one is checked.
+/// With `Way::shared` all threads of a warp share octets.
 struct SumFunctor {
   int mesh, lanes;
   Way way;
@@ -53,7 +53,7 @@ struct SumFunctor {
         const WarpThreadGroup<> threads(group.thread);
         const auto own = LaneNodes<4>::load(group.thread, v);
         const auto sum = SharedFourier(group.thread, made, to, z)(threads, own);
-        threads.sync();  // halves of a lane share their swizzled places
+        threads.sync();  // the two halves of a lane have swizzled places in common
         return sum.store(group.thread, to);
       } else if (way == Way::in_registers) {
         const auto own = LaneNodes<8>::load(group.lane, v);
@@ -64,7 +64,8 @@ struct SumFunctor {
   }
 };
 
-/// Random values, and weights like those of jumps; those of a pack's members are of other magnitudes.
+/// Random values, and weights that decay like those of jumps, with other magnitudes for each member of a
+/// pack.
 void expect_plain_sums(int mesh, int lanes, Way way) {
   const WeightLayout<R> layout(mesh);
   std::vector<double> w(static_cast<std::size_t>(layout.size() * members)),
@@ -75,7 +76,7 @@ void expect_plain_sums(int mesh, int lanes, Way way) {
   const auto value = [&](int i, int k) -> double& { return v[static_cast<std::size_t>(i * members + k)]; };
   std::mt19937 random(7);
   std::uniform_real_distribution<double> part(0.0, 1.0);
-  std::vector<double> all(members, 0.0);  // of the weights
+  std::vector<double> all(members, 0.0);  // sum of the weights
   for (int k = 0; k < members; ++k) {
     for (int d = 1 - mesh; d < mesh; ++d) {
       weight(d, k) = d == 0 ? 0.0 : std::pow(100.0, k) * part(random) / (double(d) * d);
@@ -109,7 +110,7 @@ void expect_plain_sums(int mesh, int lanes, Way way) {
   }
 }
 
-TEST(OptionsSum, TransformsEqualPlainSums) {
+TEST(OptionsSum, TransformsMatchDirectSums) {
   for (const int mesh : {256, 512, 1024, 2048, 4096}) {
     ASSERT_TRUE(is_transformed(mesh, max_lanes));
     expect_plain_sums(mesh, max_lanes, Way::in_memory);
