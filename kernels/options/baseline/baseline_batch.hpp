@@ -87,15 +87,15 @@ struct BaselineBatch {
     const Jumps<R> jumps =
         baseline_jumps(group, put, measure, grid, memory.w, memory.row(9, mesh), memory.row(10, mesh));
     R *now = memory.row(0, mesh), *value = memory.row(1, mesh);
-    R *sum = memory.row(2, mesh), *other = memory.row(3, mesh), *y = memory.row(4, mesh),
-      *payoff = memory.row(5, mesh), *none = memory.row(6, mesh), *change = memory.row(7, mesh);
+    R *sum = memory.row(2, mesh), *second_half = memory.row(3, mesh), *y = memory.row(4, mesh),
+      *payoff = memory.row(5, mesh), *no_floor = memory.row(6, mesh), *time_derivative = memory.row(7, mesh);
     group.each([=](int thread) {
       for (int i = thread; i < count; i += group.threads()) {
         const R paid = device::maximum(R(0.0), 1.0 - exponential((double(i) - grid.strike) * grid.h));
         payoff[i] = paid;
         value[i] = i < mesh ? paid : R(0.0);
-        now[i] = change[i] = 0.0;
-        none[i] = -unbounded;
+        now[i] = time_derivative[i] = 0.0;
+        no_floor[i] = -unbounded;
       }
     });
     const R h = grid.h, dt = put.maturity * (1.0 / steps), lowest = -baseline_half_width;
@@ -109,7 +109,7 @@ struct BaselineBatch {
                                 device::select(early > R(0.0), R(1.0), late.asset)};
     };
     for (int n = 1; n <= steps; ++n) {
-      convolve(group, mesh, jumps.w, value, sum, other);
+      convolve(group, mesh, jumps.w, value, sum, second_half);
       const DiscountFactors<R> discount = left_discount(double(n - 1) * dt),
                                ended = left_discount(double(n) * dt);
       group.each([=, &jumps](int lane) {
@@ -120,17 +120,17 @@ struct BaselineBatch {
           }
           const R outside = discount.strike * jumps.exit_mass[i] - discount.asset * jumps.exit_price[i];
           const R right = value[i] / dt + slope * (value[i + 1] - value[i - 1]) + reaction * value[i] +
-                          (sum[i] + other[i]) + outside;
+                          (sum[i] + second_half[i]) + outside;
           y[i] = right * inverse;
         }
       });
       recur_backward(group, {y}, block, implicit * inverse, memory.scratch);
       const R left_value = ended.strike - ended.asset * exponential(lowest);
-      recur_forward(group, now, y, none, block, mesh, implicit * inverse, left_value, memory.scratch);
+      recur_forward(group, now, y, no_floor, block, mesh, implicit * inverse, left_value, memory.scratch);
       group.each([=](int thread) {
         for (int i = 1 + thread; i < mesh; i += group.threads()) {
           now[i] = device::select(early > R(0.0), device::maximum(payoff[i], now[i]), now[i]);
-          change[i] = (now[i] - value[i]) / dt;
+          time_derivative[i] = (now[i] - value[i]) / dt;
         }
       });
       R* const swapped = now;
@@ -143,9 +143,9 @@ struct BaselineBatch {
         const int at = batch.contract_index(pack, k);
         const MemberValues values{reinterpret_cast<const double*>(value) + k, members};
         const double width = 2.0 * baseline_half_width / mesh;
-        const SolutionAtSpot solution =
-            solution_at_spot(memory.puts[k], values, {reinterpret_cast<const double*>(change) + k, members},
-                             {mesh, mesh / 2, last_exercised(values, mesh / 2, width), width});
+        const SolutionAtSpot solution = solution_at_spot(
+            memory.puts[k], values, {reinterpret_cast<const double*>(time_derivative) + k, members},
+            {mesh, mesh / 2, last_exercised(values, mesh / 2, width), width});
         Price price = price_of(batch.contracts(at), memory.puts[k], solution, solution, {}, 0.0, width, mesh,
                                steps, 1.0);
         price.error = device::portable::not_a_number();

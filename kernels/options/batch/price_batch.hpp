@@ -97,7 +97,7 @@ struct PriceBatch {
   [[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION PreparedPack<R> prepare(const ThreadGroup& group,
                                                                     const SolveMemory<R, fixed>& memory,
                                                                     int pack) const {
-    const int cells = mesh_for<fixed>(mesh);
+    const int intervals = mesh_for<fixed>(mesh);
     group.each([=, this](int thread) {
       for (int k = thread; k < members; k += group.threads()) {
         memory.puts[k] = put_of(contracts(contract_index(pack, k)));
@@ -111,8 +111,9 @@ struct PriceBatch {
     prepared.measure =
         law_of(group, put, memory.puts, panels.data(), panel_slot.data(), memory.measure_memory());
     const LevyMeasure<R>& measure = prepared.measure;
-    prepared.grid = grid_of(domain_of(group, put, measure, truncation_target(cells), memory.scratch), cells);
-    prepared.tails = tails_of(group, put, measure, prepared.grid.h * double(cells));
+    prepared.grid =
+        grid_of(domain_of(group, put, measure, truncation_target(intervals), memory.scratch), intervals);
+    prepared.tails = tails_of(group, put, measure, prepared.grid.h * double(intervals));
     prepared.jumps =
         jumps_on_grid<fixed>(group, put, measure, prepared.tails, prepared.grid, memory, memory.w);
     return prepared;
@@ -122,12 +123,12 @@ struct PriceBatch {
   template <int fixed, class ThreadGroup>
   KOKKOS_FORCEINLINE_FUNCTION void solve_fine(const ThreadGroup& group, const PreparedPack<R>& prepared,
                                               const SolveMemory<R, fixed>& memory) const {
-    const int cells = mesh_for<fixed>(prepared.grid.mesh);
+    const int intervals = mesh_for<fixed>(prepared.grid.mesh);
     const MarchResult<R> fine = solve<fixed>(group, prepared.put, prepared.jumps, prepared.grid, steps,
                                              memory, roots, memory.solutions, record);
-    R* const fine_values = memory.fine_values(cells);
+    R* const fine_values = memory.fine_values(intervals);
     group.each([=](int thread) {
-      for (int i = thread; i < cells / 2; i += group.threads()) fine_values[i] = fine.value[2 * i];
+      for (int i = thread; i < intervals / 2; i += group.threads()) fine_values[i] = fine.value[2 * i];
     });
   }
 
@@ -163,15 +164,15 @@ struct PriceBatch {
                                                 const SolveMemory<R, fixed>& memory, const R* coarse,
                                                 const SolveMemory<R, fixed>& other, int pack) const {
     const PutPack<R>& put = prepared.put;
-    const int cells = mesh_for<fixed>(prepared.grid.mesh);
+    const int intervals = mesh_for<fixed>(prepared.grid.mesh);
     const Grid<R> grid = coarser(prepared.grid);
-    const R* const fine_values = memory.fine_values(cells);
-    const SolutionAtSpot* const coarse_answers = one_grid ? memory.solutions : other.solutions + members;
+    const R* const fine_values = memory.fine_values(intervals);
+    const SolutionAtSpot* const coarse_solutions = one_grid ? memory.solutions : other.solutions + members;
     const R deviation = device::square_root((put.variance + prepared.measure.variance) * put.maturity);
     const R window = device::maximum(grid.h, deviation);
-    const auto largest_change = [=, &put](int lane) {
+    const auto largest_difference = [=, &put](int lane) {
       Kokkos::Array<R, 1> largest = {R(0.0)};
-      for (int i = lane; i < cells / 2; i += group.lanes) {
+      for (int i = lane; i < intervals / 2; i += group.lanes) {
         const auto near = device::absolute((double(i) - grid.strike) * grid.h - put.log_spot) <= window;
         largest[0] = maximum_or_nan(
             largest[0], device::select(near, device::absolute(fine_values[i] - coarse[i]), R(0.0)));
@@ -179,7 +180,7 @@ struct PriceBatch {
       return largest;
     };
     const R largest =
-        group.reduce(largest_change, [](const R& a, const R& b) { return maximum_or_nan(a, b); })[0];
+        group.reduce(largest_difference, [](const R& a, const R& b) { return maximum_or_nan(a, b); })[0];
     group.each([=, this, &memory, &other](int thread) {
       for (int k = thread; k < members; k += group.threads()) {
         if (pack * members + k >= count) continue;
@@ -190,11 +191,11 @@ struct PriceBatch {
         if (has_premium() && one.split) {
           const double premium = value_near_spot(one, grid, coarse, k) - other.european_values[k];
           applied = {own(estimate.factor),
-                     own(estimate.offset) + splitting_error(premium, cells, steps, own(largest)),
+                     own(estimate.offset) + splitting_error(premium, intervals, steps, own(largest)),
                      own(estimate.variance)};
         }
-        prices(at) = price_of(contracts(at), one, memory.solutions[k], coarse_answers[k], applied,
-                              own(largest), own(grid.h), cells, steps, tolerance);
+        prices(at) = price_of(contracts(at), one, memory.solutions[k], coarse_solutions[k], applied,
+                              own(largest), own(grid.h), intervals, steps, tolerance);
         if (one_grid) prices(at).error = device::portable::not_a_number();
       }
     });
@@ -215,9 +216,9 @@ struct PriceBatch {
 /// Kokkos scratch level of a team's memory: 0, shared memory, on devices if it is large enough, else 1.
 template <class ExecutionSpace>
 [[nodiscard]] int scratch_level(int mesh) {
-  const auto most_shared = static_cast<std::size_t>(Kokkos::TeamPolicy<ExecutionSpace>::scratch_size_max(0));
+  const auto shared_limit = static_cast<std::size_t>(Kokkos::TeamPolicy<ExecutionSpace>::scratch_size_max(0));
   const bool shared = !device::is_host<ExecutionSpace> &&
-                      SolveMemory<Number<ExecutionSpace>, 0>::bytes(mesh) + 64 <= most_shared;
+                      SolveMemory<Number<ExecutionSpace>, 0>::bytes(mesh) + 64 <= shared_limit;
   return shared ? 0 : 1;
 }
 

@@ -39,34 +39,35 @@ class PricerImpl final : public Pricer {
               "options pricer: the dissertation's scheme has generalized hyperbolic jumps");
     WallTimes times;
     if (contracts.empty()) return times;
-    const device::Stopwatch all;
+    const device::Stopwatch total;
     try {
       price_all(contracts, prices, times);
     } catch (...) {  // enqueued work may access memory of the caller
-      _instance.space().fence("drogue::options: a batch is given up");
+      _instance.space().fence("drogue::options: batch is abandoned");
       throw;
     }
-    if (!_settings.timed_apart) times = {0.0, all.seconds(), 0.0};
+    if (!_settings.timed_apart) times = {0.0, total.seconds(), 0.0};
     return times;
   }
 
   std::pmr::memory_resource& memory() override { return _pinned; }
 
   std::vector<BoundaryPoint> boundary_on(const Contract& contract, int mesh, int steps) override {
-    const RecordedSolve all = record(contract, mesh != 0 ? Resolution{mesh, steps} : recorded_resolution());
+    const RecordedSolve recorded =
+        record(contract, mesh != 0 ? Resolution{mesh, steps} : recorded_resolution());
     std::vector<BoundaryPoint> points;
-    for (std::size_t k = all.time.size(); k-- > 0;)
-      if (std::isfinite(all.boundary[k]))
-        points.push_back({contract.maturity - all.time[k], spot_at(contract, all.boundary[k])});
+    for (std::size_t k = recorded.time.size(); k-- > 0;)
+      if (std::isfinite(recorded.boundary[k]))
+        points.push_back({contract.maturity - recorded.time[k], spot_at(contract, recorded.boundary[k])});
     return points;
   }
 
   std::vector<ProfilePoint> profile(const Contract& contract) override {
-    const RecordedSolve all = record(contract, recorded_resolution());
+    const RecordedSolve recorded = record(contract, recorded_resolution());
     std::vector<ProfilePoint> points;
-    for (std::size_t k = 0; k < all.x.size(); ++k) {
-      const double spot = spot_at(contract, all.x[k]);
-      points.push_back({spot, all.value[k] * (contract.type == Type::call ? spot : contract.strike)});
+    for (std::size_t k = 0; k < recorded.x.size(); ++k) {
+      const double spot = spot_at(contract, recorded.x[k]);
+      points.push_back({spot, recorded.value[k] * (contract.type == Type::call ? spot : contract.strike)});
     }
     if (contract.type == Type::call) std::reverse(points.begin(), points.end());
     return points;
@@ -158,7 +159,7 @@ class PricerImpl final : public Pricer {
            {at, at + steps, at + 2 * steps, at + 2 * steps + nodes});
     std::vector<double> values(all.size());
     device::copy_out(_instance.space(), values.data(), all, values.size());
-    _instance.space().fence("drogue::options: record is there");
+    _instance.space().fence("drogue::options: record is copied");
     auto part = [begin = values.cbegin()](std::size_t count) mutable {
       const auto end = begin + static_cast<std::ptrdiff_t>(count);
       return std::vector<double>(std::exchange(begin, end), end);
@@ -208,7 +209,7 @@ class PricerImpl final : public Pricer {
 
   /// Waits for prices in `landed`, a result of `landing_buffer`, and copies them to `prices` if necessary.
   void wait_for_prices(const Price* landed, std::span<Price> prices) {
-    _instance.space().fence("drogue::options: prices are there");
+    _instance.space().fence("drogue::options: prices are copied");
     if (landed != prices.data()) std::copy_n(landed, prices.size(), prices.begin());
   }
 
@@ -222,9 +223,9 @@ class PricerImpl final : public Pricer {
 
   /// Enqueues the launches for the contracts k with `is_selected(k)`, one per model and `launch_capacity`
   /// contracts.
-  template <class Asked>
+  template <class Selection>
   void launch_models(const BatchViews& views, std::span<const Contract> contracts,
-                     const Resolution& resolution, const Asked& is_selected) {
+                     const Resolution& resolution, const Selection& is_selected) {
     std::vector<int> rows[models];
     std::size_t first = 0, gathered = 0;
     const auto launch_gathered = [&] {

@@ -99,9 +99,10 @@ KOKKOS_INLINE_FUNCTION R drift_in_deviations(const PutPack<R>& put, const LevyMe
   const R variance = device::maximum((put.variance + measure.variance) * put.maturity, R(1e-100));
   // The compensator e^y - 1 - y takes nearly half the variance from the drift, but much more if the mean of
   // Kou's upward jumps hardly exists.
-  R taken = 0.5 * measure.variance;
-  if (put.model == Model::merton || put.model == Model::kou) taken = jump_cumulant(put, measure, R(1.0));
-  const R drift = (put.rate - put.dividend - 0.5 * put.variance - taken) * put.maturity;
+  R compensator = 0.5 * measure.variance;
+  if (put.model == Model::merton || put.model == Model::kou)
+    compensator = jump_cumulant(put, measure, R(1.0));
+  const R drift = (put.rate - put.dividend - 0.5 * put.variance - compensator) * put.maturity;
   const R drift_ratio =
       device::maximum(R(1.0), device::absolute(drift) * device::reciprocal(device::square_root(variance)));
   if (put.model != Model::generalized_hyperbolic) return drift_ratio;

@@ -54,6 +54,7 @@ struct WeightPair {
   R up, down;
 };
 
+/// Weights of Kou's jumps by d nodes: masses of cells, per year.
 template <class R>
 KOKKOS_INLINE_FUNCTION WeightPair<R> kou_weights(const PutPack<R>& put, R h, int d) {
   const auto cell = [=](R mass, R decay) {
@@ -87,6 +88,7 @@ KOKKOS_INLINE_FUNCTION R normal_hat_mass(R mean, R inverse_deviation, R h, int d
   return last ? part - normal_above(centre) : part;
 }
 
+/// Weights of Merton's jumps by d nodes, per year; `last`: d is the largest distance.
 template <class R>
 KOKKOS_INLINE_FUNCTION WeightPair<R> merton_weights(const PutPack<R>& put, R h, int d, bool last) {
   const R inverse_deviation = 1.0 / merton_deviation(put), mean = put.jump[1];

@@ -12,13 +12,13 @@ KOKKOS_INLINE_FUNCTION Failure failure_of(const NormalizedPut& put, double upper
   if (variance != variance) return Failure::overflow;
   if (!(h < 100.0)) return Failure::no_grid;
   // The steps contain the square of this.
-  const double pull = device::absolute(put.rate) + device::absolute(put.dividend);
-  const double largest = (pull + variance / h) / h;
+  const double rate_scale = device::absolute(put.rate) + device::absolute(put.dividend);
+  const double largest = (rate_scale + variance / h) / h;
   if (!(largest * largest < 1e300)) return Failure::overflow;
   // With 1e6 jumps until maturity, or a discount factor e^{-1e10}, the maximum of 16384 steps is rarely
   // sufficient.
-  const bool counted = put.model == Model::merton || put.model == Model::kou;
-  const bool stiff = (counted && put.jump[0] * put.maturity >= 1e6) || put.rate * put.maturity >= 1e10;
+  const bool has_intensity = put.model == Model::merton || put.model == Model::kou;
+  const bool stiff = (has_intensity && put.jump[0] * put.maturity >= 1e6) || put.rate * put.maturity >= 1e10;
   return stiff ? Failure::stiff : Failure::grown;
 }
 
@@ -38,12 +38,12 @@ KOKKOS_INLINE_FUNCTION Price price_of(const Contract& contract, const Normalized
   const auto extrapolate = [](double f, double c) { return f + (f - c) * (1.0 / 3); };
   const double asset = exponential(put.log_spot);
   const bool exercised = put.early && fine.first_derivative == -asset && fine.time_derivative == 0.0;
-  SolutionAtSpot a = fine;
+  SolutionAtSpot limit = fine;
   if (!exercised) {
-    a.value = extrapolate(fine.value, coarse.value);
-    a.first_derivative = extrapolate(fine.first_derivative, coarse.first_derivative);
-    a.second_derivative = extrapolate(fine.second_derivative, coarse.second_derivative);
-    a.time_derivative = extrapolate(fine.time_derivative, coarse.time_derivative);
+    limit.value = extrapolate(fine.value, coarse.value);
+    limit.first_derivative = extrapolate(fine.first_derivative, coarse.first_derivative);
+    limit.second_derivative = extrapolate(fine.second_derivative, coarse.second_derivative);
+    limit.time_derivative = extrapolate(fine.time_derivative, coarse.time_derivative);
   }
   const bool call = contract.type == Type::call;
   const double unit = call ? contract.spot : contract.strike, s = contract.spot;
@@ -70,19 +70,19 @@ KOKKOS_INLINE_FUNCTION Price price_of(const Contract& contract, const Normalized
   const double lower_bound = device::maximum(put.early ? 1.0 - asset : 0.0, device::maximum(0.0, late));
   const bool finite = fine.value <= 1.001 * upper_bound && largest <= 4.0 * upper_bound &&
                       unit * upper_bound < 1e300 && put.rate * put.maturity >= -650.0 && h < 100.0;
-  if (a.value < lower_bound) a.value = lower_bound;
-  if (a.value > (put.early ? upper_bound : bond)) a.value = put.early ? upper_bound : bond;
+  if (limit.value < lower_bound) limit.value = lower_bound;
+  if (limit.value > (put.early ? upper_bound : bond)) limit.value = put.early ? upper_bound : bond;
   // If the grids differ by a quarter of the largest possible gain, their difference is no measure of the
   // error.
   const bool reliable = largest < 0.25 * upper_bound && estimate.factor < unreliable_factor;
   const double error = stated < upper_bound && reliable ? stated : upper_bound;
   Price price;
-  price.price = unit * a.value;
+  price.price = unit * limit.value;
   price.error = unit * error;
-  price.delta = call ? a.value - a.first_derivative : unit * a.first_derivative / s;
-  price.gamma = call ? (a.second_derivative - a.first_derivative) / s
-                     : unit * (a.second_derivative - a.first_derivative) / (s * s);
-  price.theta = -unit * a.time_derivative;
+  price.delta = call ? limit.value - limit.first_derivative : unit * limit.first_derivative / s;
+  price.gamma = call ? (limit.second_derivative - limit.first_derivative) / s
+                     : unit * (limit.second_derivative - limit.first_derivative) / (s * s);
+  price.theta = -unit * limit.time_derivative;
   price.exercise_boundary = contract.strike * exponential(call ? -fine.boundary : fine.boundary);
   if (!(fine.boundary == fine.boundary)) price.exercise_boundary = fine.boundary;
   price.mesh = mesh;

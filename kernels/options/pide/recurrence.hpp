@@ -16,9 +16,9 @@ KOKKOS_INLINE_FUNCTION constexpr int part_length(int block) {
 /// Slope of the composition of `count` maps of equal slope: slope^count.
 template <class R>
 KOKKOS_INLINE_FUNCTION R composed_slope(R slope, int count) {
-  R block_slope = slope;
-  for (int m = 1; m < count; ++m) block_slope = block_slope * slope;
-  return block_slope;
+  R product = slope;
+  for (int m = 1; m < count; ++m) product = product * slope;
+  return product;
 }
 
 /// Solves y_i = a_i + g y_{i+1} in place for `count` nodes, with 0 beyond the last one. Returns the first

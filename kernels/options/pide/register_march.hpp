@@ -197,17 +197,17 @@ KOKKOS_INLINE_FUNCTION int march_in_registers(const WarpThreadGroup<lanes, singl
   group.sync_duplicates();
   const Own oldest = Own::load_swizzled(lane, rows.out);
   const StepLength<double> last = step_length(put.maturity, scheme.steps, scheme.steps);
-  Own change;
+  Own time_derivative;
   int exercised = -1;
   for (int m = 0; m < block; ++m) {
     const int i = lane * block + m;
-    change.node[m] = time_derivative(last, value.node[m], before.node[m], oldest.node[m]);
+    time_derivative.node[m] = bdf_derivative(last, value.node[m], before.node[m], oldest.node[m]);
     if (i < strike && is_exercised(value.node[m], i - strike, h)) exercised = i;
   }
   group.sync();
   group.each_lane([&] {
     value.store(lane, rows.value);
-    change.store(lane, rows.other);
+    time_derivative.store(lane, rows.other);
     if (lane == 0)
       rows.value[grid.mesh] = rows.other[grid.mesh] = 0.0;  // upper end, which the interpolation reads
   });

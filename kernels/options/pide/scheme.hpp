@@ -25,6 +25,8 @@ KOKKOS_INLINE_FUNCTION R optimal_exercise_time(const PutPack<R>& put, R x) {
       R(0.0));
 }
 
+/// Discount factors of the boundary value at time to expiry `tau`, years, where e^x is `asset`. `best`:
+/// result of `optimal_exercise_time`, years.
 template <class R>
 KOKKOS_INLINE_FUNCTION DiscountFactors<R> boundary_discount(const PutPack<R>& put, R asset, R best, R tau) {
   const R late = exponential(-put.rate * tau), late_asset = exponential(-put.dividend * tau);
@@ -49,6 +51,7 @@ struct Scheme {
   int steps;
 };
 
+/// Coefficients of a march of `steps` steps on `grid`.
 template <class R>
 KOKKOS_INLINE_FUNCTION Scheme<R> scheme_of(const PutPack<R>& put, const Jumps<R>& jumps, const Grid<R>& grid,
                                            int steps) {
@@ -63,11 +66,11 @@ KOKKOS_INLINE_FUNCTION Scheme<R> scheme_of(const PutPack<R>& put, const Jumps<R>
 /// 4/dt + I.
 template <class R>
 KOKKOS_INLINE_FUNCTION R added_diffusion(const PutPack<R>& put, const Jumps<R>& jumps, R diffusion, R dt) {
-  const R most = 3.6 * device::reciprocal(dt);
+  const R bound = 3.6 * device::reciprocal(dt);
   R added[4] = {0.0, 0.0, 0.0, 0.0};  // independent maxima, for instruction-level parallelism
   AngleCosines::each([&](int k, double cosine) {
     const double form = 2.0 - 2.0 * cosine;
-    const R need = 3.0 * (jumps.symbol[k] + put.rate) - diffusion * form - most;
+    const R need = 3.0 * (jumps.symbol[k] + put.rate) - diffusion * form - bound;
     added[k % 4] = device::maximum(added[k % 4], need * (0.25 / form));
   });
   return device::maximum(device::maximum(added[0], added[1]), device::maximum(added[2], added[3]));
@@ -87,6 +90,7 @@ struct StepLength {
   R dt, ratio;
 };
 
+/// Length of step n of `steps` until `maturity`, years.
 template <class R>
 KOKKOS_INLINE_FUNCTION StepLength<R> step_length(R maturity, int n, int steps) {
   const R begin = step_end(maturity, n - 1, steps), dt = step_end(maturity, n, steps) - begin;
@@ -95,7 +99,7 @@ KOKKOS_INLINE_FUNCTION StepLength<R> step_length(R maturity, int n, int steps) {
 
 /// dV/dtau at the end of a step by the formula of the step, from the last three values; per year.
 template <class R>
-KOKKOS_INLINE_FUNCTION R time_derivative(const StepLength<R>& step, R value, R before, R oldest) {
+KOKKOS_INLINE_FUNCTION R bdf_derivative(const StepLength<R>& step, R value, R before, R oldest) {
   const R per = 1.0 / (step.dt * (1.0 + step.ratio));
   return (1.0 + 2.0 * step.ratio) * per * value - (1.0 + step.ratio) / step.dt * before +
          step.ratio * step.ratio * per * oldest;
@@ -119,7 +123,7 @@ struct StepFactors {
 /// The same ratio in the explicit part would leave too little diffusion to stabilize the jumps at the last
 /// node. A ghost value of 0 would subtract more diffusion than the implicit part adds, and the march would
 /// grow without bound. The ratio in between, from_left times 1 - 1.4 D/added, and 0 for added <= 1.4 D, is
-/// empirical; docs/options.md says for which processes it was found to be stable.
+/// empirical; docs/options.md lists the processes for which the march was found to be stable.
 template <class R>
 KOKKOS_INLINE_FUNCTION R ghost_factor(const StepFactors<R>& f) {
   constexpr double share = 1.4;
@@ -132,7 +136,7 @@ KOKKOS_INLINE_FUNCTION R ghost_factor(const StepFactors<R>& f) {
 /// Factors of 32 steps, which the lanes compute in parallel; in scratch memory.
 template <class R>
 struct StepTable {
-  R* place;  ///< (StepFactors::size, max_lanes)
+  R* factors;  ///< (StepFactors::size, max_lanes)
 
   KOKKOS_INLINE_FUNCTION void store(int n, const StepFactors<R>& f) const {
     const R row[] = {f.value,           f.before,          f.explicit_now,
@@ -140,10 +144,10 @@ struct StepTable {
                      f.inverse_pivot,   f.diagonal,        f.from_left,
                      f.from_right,      f.discount.strike, f.discount.asset,
                      f.left_value};
-    for (int k = 0; k < StepFactors<R>::size; ++k) place[k * max_lanes + (n - 1) % max_lanes] = row[k];
+    for (int k = 0; k < StepFactors<R>::size; ++k) factors[k * max_lanes + (n - 1) % max_lanes] = row[k];
   }
   [[nodiscard]] KOKKOS_INLINE_FUNCTION StepFactors<R> load(int n) const {
-    const R* at = place + (n - 1) % max_lanes;
+    const R* at = factors + (n - 1) % max_lanes;
     return {at[0],
             at[max_lanes],
             at[2 * max_lanes],

@@ -113,17 +113,18 @@ KOKKOS_INLINE_FUNCTION double cubic_interpolation_error(const NormalizedPut& put
 KOKKOS_INLINE_FUNCTION SolutionAtSpot solution_below_grid(const NormalizedPut& put, double asset,
                                                           double boundary) {
   const PutPack<double> pack = pack_of<double>(&put);
-  const DiscountFactors<double> sure =
+  const DiscountFactors<double> discount =
       boundary_discount(pack, asset, optimal_exercise_time(pack, put.log_spot), put.maturity);
-  const double strike = sure.strike, price = sure.asset * asset;
-  const bool at_once = put.early && strike == 1.0 && sure.asset == 1.0;
-  const double decay = at_once ? 0.0 : put.dividend * price - put.rate * strike;
-  return {strike - price, -price, -price, decay, boundary, 0.0, 0.0, 0.0};
+  const double strike = discount.strike, price = discount.asset * asset;
+  const bool immediate = put.early && strike == 1.0 && discount.asset == 1.0;
+  const double time_derivative = immediate ? 0.0 : put.dividend * price - put.rate * strike;
+  return {strike - price, -price, -price, time_derivative, boundary, 0.0, 0.0, 0.0};
 }
 
-/// Interpolates the solution of one member. `change` holds dV/dtau.
+/// Interpolates the solution of one member. `time_derivative` holds dV/dtau.
 KOKKOS_INLINE_FUNCTION SolutionAtSpot solution_at_spot(const NormalizedPut& put, const MemberValues& value,
-                                                       const MemberValues& change, const MemberGrid& nodes) {
+                                                       const MemberValues& time_derivative,
+                                                       const MemberGrid& nodes) {
   const int mesh = nodes.mesh, strike = nodes.strike;
   const double h = nodes.h;
   const double x = put.log_spot, asset = exponential(x);
@@ -135,7 +136,7 @@ KOKKOS_INLINE_FUNCTION SolutionAtSpot solution_at_spot(const NormalizedPut& put,
   if (put.early) {
     solution.boundary = boundary_of(value, nodes.exercised, strike, h);
     solution.time_value_step = time_value_step(value, nodes.exercised, strike, h);
-    solution.time_value_rate = nodes.exercised < 0 ? 0.0 : change(nodes.exercised + 2);
+    solution.time_value_rate = nodes.exercised < 0 ? 0.0 : time_derivative(nodes.exercised + 2);
   }
   const double t = x / h + strike;
   if (!(t == t)) {  // no cell contains NaN
@@ -158,7 +159,7 @@ KOKKOS_INLINE_FUNCTION SolutionAtSpot solution_at_spot(const NormalizedPut& put,
   const int first = first_stencil_node(put, nodes, t, solution.boundary);
   double result[3], rate[3];
   interpolate(value, first, t - first, h, result);
-  interpolate(change, first, t - first, h, rate);
+  interpolate(time_derivative, first, t - first, h, rate);
   solution.value = put.early && result[0] < 1.0 - asset ? 1.0 - asset : result[0];  // keeps NaN
   solution.first_derivative = result[1];
   solution.second_derivative = result[2];

@@ -152,7 +152,7 @@ template <class ThreadGroup, class R>
   group.each([=](int thread) {
     for (int i = thread; i <= mesh;
          i += group.threads())  // includes the upper end, where transforms leave other values
-      march.y[i] = time_derivative(last, march.value[1][i], march.value[2][i], march.value[0][i]);
+      march.y[i] = bdf_derivative(last, march.value[1][i], march.value[2][i], march.value[0][i]);
   });
   if (record.time != nullptr) {
     group.each([=](int thread) {
@@ -168,8 +168,8 @@ template <class ThreadGroup, class R>
 /// Result of a march on the nodes of a pack, valid in the memory until the next march.
 template <class R>
 struct MarchResult {
-  const R *value, *change;  ///< V and dV/dtau at maturity
-  int exercised;            ///< last exercised node below the strike, for marches in registers
+  const R *value, *time_derivative;  ///< V and dV/dtau at maturity
+  int exercised;                     ///< last exercised node below the strike, for marches in registers
 };
 
 template <class R>
@@ -270,7 +270,7 @@ KOKKOS_INLINE_FUNCTION MarchResult<R> solve(const ThreadGroup& group, const PutP
   group.each([=](int thread) {
     for (int k = thread; k < members; k += group.threads()) {
       solutions[k] = solution_at_spot(memory.puts[k], member_values(solution.value, k),
-                                      member_values(solution.change, k),
+                                      member_values(solution.time_derivative, k),
                                       member_grid<fixed>(solution, memory.puts[k], grid, k));
     }
   });

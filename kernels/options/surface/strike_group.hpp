@@ -67,17 +67,17 @@ struct StrikeGroupFunctor {
     const Grid<R> grid = grid_of(Domain<R>{below, above}, mesh);
     const Tails<R> tails = tails_of(group, put, measure, grid.h * double(mesh));
     const Jumps<R> jumps = jumps_on_grid<fixed>(group, put, measure, tails, grid, memory, memory.w);
-    const Grid<R> half = coarser(grid);
+    const Grid<R> coarse_grid = coarser(grid);
     write_estimates(group, memory, pack, estimate_solve_error(put, measure, jumps, grid, batch.steps),
-                    device::maximum(half.h, deviation));
+                    device::maximum(coarse_grid.h, deviation));
     copy_solution<fixed, false>(
         group, memory, pack, grid,
         march_nodes<fixed>(group, put, jumps, grid, batch.steps, memory, batch.roots));
-    const Jumps<R> wider = jumps_on_grid<fixed / 2>(group, put, measure, tails, half, memory,
-                                                    memory.coarse_weights(mesh), memory.w);
+    const Jumps<R> coarse_jumps = jumps_on_grid<fixed / 2>(group, put, measure, tails, coarse_grid, memory,
+                                                           memory.coarse_weights(mesh), memory.w);
     copy_solution<fixed / 2, true>(
-        group, memory, pack, half,
-        march_nodes<fixed / 2>(group, put, wider, half, batch.steps / 2, memory, batch.roots));
+        group, memory, pack, coarse_grid,
+        march_nodes<fixed / 2>(group, put, coarse_jumps, coarse_grid, batch.steps / 2, memory, batch.roots));
   }
 
  private:
@@ -108,7 +108,7 @@ struct StrikeGroupFunctor {
         double* const to = coarse ? nodes.coarse() : nodes.fine();
         for (int i = thread; i <= mesh; i += group.threads()) {
           to[i] = device::Access<R>::lane(solution.value[i], k);
-          to[mesh + 1 + i] = device::Access<R>::lane(solution.change[i], k);
+          to[mesh + 1 + i] = device::Access<R>::lane(solution.time_derivative[i], k);
         }
         if (thread == 0)
           (coarse ? strike_groups(at).coarse : strike_groups(at).fine) =
@@ -175,19 +175,19 @@ struct InterpolationFunctor {
     const MemberValues fine{nodes.fine(), 1}, coarse{nodes.coarse(), 1};
     const SolutionAtSpot solution =
         solution_at_spot(put, fine, {nodes.fine() + mesh + 1, 1}, strike_group.fine);
-    const SolutionAtSpot rough =
+    const SolutionAtSpot rough_solution =
         solution_at_spot(put, coarse, {nodes.coarse() + mesh / 2 + 1, 1}, strike_group.coarse);
-    const double largest = largest_change(put, fine, coarse, strike_group);
-    prices(k) = price_of(contract, put, solution, rough, strike_group.estimate, largest,
+    const double largest = largest_difference(put, fine, coarse, strike_group);
+    prices(k) = price_of(contract, put, solution, rough_solution, strike_group.estimate, largest,
                          strike_group.coarse.h, mesh, steps, tolerance);
   }
 
  private:
   /// Largest difference of the two solves at their common nodes near x, as for a separate price.
-  [[nodiscard]] KOKKOS_INLINE_FUNCTION double largest_change(const NormalizedPut& put,
-                                                             const MemberValues& fine,
-                                                             const MemberValues& coarse,
-                                                             const StrikeGroup& strike_group) const {
+  [[nodiscard]] KOKKOS_INLINE_FUNCTION double largest_difference(const NormalizedPut& put,
+                                                                 const MemberValues& fine,
+                                                                 const MemberValues& coarse,
+                                                                 const StrikeGroup& strike_group) const {
     const double h = strike_group.coarse.h, place = put.log_spot / h + strike_group.coarse.strike,
                  wide = strike_group.window / h;
     const double last = mesh / 2 - 1.0;

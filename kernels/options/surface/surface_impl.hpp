@@ -168,7 +168,7 @@ class SurfaceImpl final : public Pricer {
     const device::Stopwatch copying_out;
     _staged_prices.resize(_staged_queries.size());
     device::copy_out(space, _staged_prices.data(), _prices, _staged_prices.size());
-    space.fence("drogue::options: prices are there");
+    space.fence("drogue::options: prices are copied");
     times.d2h += copying_out.seconds();
   }
 
