@@ -23,11 +23,11 @@ std::vector<Price> priced_to(double tolerance, const std::vector<Contract>& cont
   return priced(settings, contracts);
 }
 
-constexpr std::array<std::array<double, 4>, 5> laws = {{{1.0, 8.15, -2.5, 0.767},
-                                                        {-0.5, 15.0, -5.0, 0.5},
-                                                        {2.0, 11.0, -5.0, 0.0},
-                                                        {-1.2, 3.0, -1.5, 0.4},
-                                                        {1.0, 30.0, -8.0, 0.2}}};
+constexpr std::array<std::array<double, 4>, 5> jump_parameters = {{{1.0, 8.15, -2.5, 0.767},
+                                                                   {-0.5, 15.0, -5.0, 0.5},
+                                                                   {2.0, 11.0, -5.0, 0.0},
+                                                                   {-1.2, 3.0, -1.5, 0.4},
+                                                                   {1.0, 30.0, -8.0, 0.2}}};
 
 Contract put(Style style, double spot, double maturity, double variance, const std::array<double, 4>& jump,
              Model model = Model::generalized_hyperbolic) {
@@ -65,11 +65,11 @@ void expect_covered(const std::vector<Price>& prices, const std::vector<Price>& 
 // With heavy tails the grid is so coarse that Brownian motion spreads the payoff over few intervals.
 TEST(OptionsError, CoversMaturitiesFromAnHourToAWeek) {
   std::vector<Contract> contracts;
-  for (const auto& law : laws)
+  for (const auto& jump : jump_parameters)
     for (const double hours : {1.0, 24.0, 168.0})
       for (const double spot : {1.0, 1.003, 1.02})
         for (const double variance : {0.01, 0.04})
-          contracts.push_back(put(Style::european, spot, hours / 8760.0, variance, law));
+          contracts.push_back(put(Style::european, spot, hours / 8760.0, variance, jump));
   const std::vector<Price> known = priced_by_fourier(contracts);
   expect_covered(priced(on_mesh(256, 64), contracts), known, "256 intervals");
   expect_covered(priced_to(1e-5, contracts), known, "tolerance 1e-5");
@@ -78,12 +78,12 @@ TEST(OptionsError, CoversMaturitiesFromAnHourToAWeek) {
 // Near the boundary the errors of the two grids are not proportional.
 TEST(OptionsError, CoversSpotsNearTheExerciseBoundary) {
   std::vector<Contract> contracts;
-  for (const auto& law : laws)
+  for (const auto& jump : jump_parameters)
     for (const double maturity : {0.25, 2.0}) {
-      const Contract at_the_money = put(Style::american, 1.0, maturity, 0.04, law);
+      const Contract at_the_money = put(Style::american, 1.0, maturity, 0.04, jump);
       const double boundary = priced(on_mesh(256, 64), {at_the_money}).front().exercise_boundary;
       for (const double above : {0.001, 0.004, 0.01, 0.02, 0.05})
-        contracts.push_back(put(Style::american, boundary * (1.0 + above), maturity, 0.04, law));
+        contracts.push_back(put(Style::american, boundary * (1.0 + above), maturity, 0.04, jump));
     }
   const std::vector<Price> known = priced(on_mesh(1024, 512), contracts);
   for (const int mesh : {128, 256})
@@ -108,11 +108,11 @@ TEST(OptionsError, CoversBoundariesThatHardlyMoveForDecades) {
 // Split exercise has an error of first order in time, which the difference of the grids does not contain.
 TEST(OptionsError, CoversExerciseBetweenTwoBoundaries) {
   std::vector<Contract> contracts;
-  for (const auto& law : laws)
+  for (const auto& jump : jump_parameters)
     for (const double years : {0.5, 3.0})
       for (const double spot : {0.8, 1.0, 1.25})
         for (const double rate : {-0.005, -0.03}) {
-          contracts.push_back(put(Style::american, spot, years, 0.03, law));
+          contracts.push_back(put(Style::american, spot, years, 0.03, jump));
           contracts.back().rate = rate;
           contracts.back().dividend = rate - 0.05;
         }
@@ -126,10 +126,10 @@ TEST(OptionsError, CoversExerciseBetweenTwoBoundaries) {
 // The kink of the payoff spreads over less than an interval.
 TEST(OptionsError, CoversMaturitiesOfHoursAtTheStrike) {
   std::vector<Contract> contracts;
-  for (const auto& law : laws)
+  for (const auto& jump : jump_parameters)
     for (const double hours : {1.0, 3.0})
       for (const double variance : {0.01, 0.02, 0.04})
-        contracts.push_back(put(Style::european, 1.0, hours / 8760.0, variance, law));
+        contracts.push_back(put(Style::european, 1.0, hours / 8760.0, variance, jump));
   const std::vector<Price> known = priced_by_fourier(contracts);
   expect_covered(priced(on_mesh(128, 32), contracts), known, "an hour at the strike");
   // The order is low, but meshes up to 1024 reach the tolerance.
@@ -141,12 +141,12 @@ TEST(OptionsError, CoversMaturitiesOfHoursAtTheStrike) {
 // Near a sharp kink the error of cubic interpolation exceeds its next term.
 TEST(OptionsError, CoversInterpolationNearASharpKink) {
   std::vector<Contract> contracts;
-  for (const auto& law : laws)
+  for (const auto& jump : jump_parameters)
     for (const double deviations : {-2.5, -2.0, -1.5, -1.0, 1.0, 1.5, 2.0, 2.5})
       for (const double days : {0.1, 0.3, 1.0}) {
         const double maturity = days / 365.0;
         contracts.push_back(
-            put(Style::european, std::exp(deviations * std::sqrt(0.02 * maturity)), maturity, 0.02, law));
+            put(Style::european, std::exp(deviations * std::sqrt(0.02 * maturity)), maturity, 0.02, jump));
       }
   const std::vector<Price> known = priced_by_fourier(contracts);
   expect_covered(priced(on_mesh(128, 32), contracts), known, "between nodes", 10.0, 0.02);
@@ -155,7 +155,7 @@ TEST(OptionsError, CoversInterpolationNearASharpKink) {
 // The boundary is reached with a small probability, so the error of exercise at nodes is small.
 TEST(OptionsError, CoversAndIsSmallFarAboveTheBoundary) {
   std::vector<Contract> contracts;
-  for (const auto& law : laws) contracts.push_back(put(Style::american, 2.0, 0.25, 0.04, law));
+  for (const auto& jump : jump_parameters) contracts.push_back(put(Style::american, 2.0, 0.25, 0.04, jump));
   const std::vector<Price> prices = priced(on_mesh(128, 128), contracts),
                            known = priced(on_mesh(1024, 1024), contracts);
   for (std::size_t k = 0; k < prices.size(); ++k) {
@@ -167,11 +167,11 @@ TEST(OptionsError, CoversAndIsSmallFarAboveTheBoundary) {
 /// European puts and calls of half a year and two years, with the given spots.
 std::vector<Contract> about_the_strike(const std::vector<double>& spots) {
   std::vector<Contract> contracts;
-  for (const auto& law : laws)
+  for (const auto& jump : jump_parameters)
     for (const double maturity : {0.5, 2.0})
       for (const double spot : spots)
         for (const Type type : {Type::put, Type::call}) {
-          contracts.push_back(put(Style::european, spot, maturity, 0.04, law));
+          contracts.push_back(put(Style::european, spot, maturity, 0.04, jump));
           contracts.back().type = type;
         }
   return contracts;
@@ -195,7 +195,7 @@ TEST(OptionsError, CoversFewStepsOnAFineMesh) {
 // Only the truncation error is left.
 TEST(OptionsError, EqualsTheTruncationErrorFarOutOfTheMoney) {
   std::vector<Contract> contracts;
-  for (const auto& law : laws) contracts.push_back(put(Style::european, 20.0, 0.02, 0.01, law));
+  for (const auto& jump : jump_parameters) contracts.push_back(put(Style::european, 20.0, 0.02, 0.01, jump));
   for (const int mesh : {128, 512}) {
     const std::vector<Price> prices = priced(on_mesh(mesh, mesh / 4), contracts),
                              known = priced_by_fourier(contracts);
@@ -210,7 +210,7 @@ TEST(OptionsError, EqualsTheTruncationErrorFarOutOfTheMoney) {
 // of the grid are irrelevant.
 TEST(OptionsError, IsNegligibleDeepInTheMoney) {
   std::vector<Contract> contracts;
-  for (const auto& law : laws) contracts.push_back(put(Style::american, 0.3, 0.5, 0.04, law));
+  for (const auto& jump : jump_parameters) contracts.push_back(put(Style::american, 0.3, 0.5, 0.04, jump));
   const std::vector<Price> prices = priced(on_mesh(128, 32), contracts);
   for (std::size_t k = 0; k < prices.size(); ++k) {
     EXPECT_DOUBLE_EQ(prices[k].price, 0.7) << k;
@@ -255,13 +255,13 @@ TEST(OptionsError, CoversDriftsAwayFromTheStrike) {
 // Asymmetric jumps act for decades.
 TEST(OptionsError, CoversAsymmetricJumpsOverDecades) {
   std::vector<Contract> contracts;
-  for (const std::array<double, 4>& law :
+  for (const std::array<double, 4>& jump :
        {std::array{-0.5, 12.0, -4.0, 0.3}, std::array{-1.4, 20.0, -13.6, 0.23},
         std::array{1.5, 25.0, 15.0, 0.2}, std::array{-2.8, 30.0, -19.0, 0.3}})
     for (const double maturity : {5.0, 10.0, 20.0})
       for (const double spot : {0.5, 0.8, 1.0, 1.3, 2.0})
         for (const double variance : {0.01, 0.03})
-          contracts.push_back(put(Style::european, spot, maturity, variance, law));
+          contracts.push_back(put(Style::european, spot, maturity, variance, jump));
   const std::vector<Price> known = priced_by_fourier(contracts);
   expect_covered(priced(on_mesh(128, 32), contracts), known, "tilted jumps of decades");
   expect_covered(priced_to(1e-5, contracts), known, "tilted jumps of decades, tolerance 1e-5");

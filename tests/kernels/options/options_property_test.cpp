@@ -45,15 +45,15 @@ TEST(OptionsProperty, SatisfiesPutCallParityAndBoundsOfEarlyExercise) {
     const Contract& c = contracts[k];
     const double forward =
         c.spot * std::exp(-c.dividend * c.maturity) - c.strike * std::exp(-c.rate * c.maturity);
-    const double room = put[k].error + call[k].error;
-    EXPECT_NEAR(call[k].price - put[k].price, forward, room) << k;
-    EXPECT_GE(early[k].price, put[k].price - room) << k;
-    EXPECT_GE(early_call[k].price, call[k].price - room) << k;
+    const double tolerance = put[k].error + call[k].error;
+    EXPECT_NEAR(call[k].price - put[k].price, forward, tolerance) << k;
+    EXPECT_GE(early[k].price, put[k].price - tolerance) << k;
+    EXPECT_GE(early_call[k].price, call[k].price - tolerance) << k;
     EXPECT_GE(early[k].price, std::max(0.0, c.strike - c.spot)) << k;
     EXPECT_LE(early[k].price, c.strike) << k;
     EXPECT_LE(early_call[k].price, c.spot) << k;
     if (c.dividend == 0.0) {
-      EXPECT_NEAR(early_call[k].price, call[k].price, room) << k;
+      EXPECT_NEAR(early_call[k].price, call[k].price, tolerance) << k;
     }
   }
 }
@@ -73,10 +73,10 @@ TEST(OptionsProperty, CallEqualsPutUnderTheDualMeasure) {
 
 TEST(OptionsProperty, PricesAreHomogeneousInSpotAndStrike) {
   const auto contracts = random_contracts(16, 3);
-  const auto dear = changed(contracts, [](Contract& c) { c.spot *= 37.0, c.strike *= 37.0; });
-  const auto one = priced(on_mesh(64, 16), contracts), other = priced(on_mesh(64, 16), dear);
+  const auto scaled = changed(contracts, [](Contract& c) { c.spot *= 37.0, c.strike *= 37.0; });
+  const auto one = priced(on_mesh(64, 16), contracts), other = priced(on_mesh(64, 16), scaled);
   for (std::size_t k = 0; k < one.size(); ++k) {
-    EXPECT_NEAR(37.0 * one[k].price, other[k].price, 1e-10 * dear[k].strike) << k;
+    EXPECT_NEAR(37.0 * one[k].price, other[k].price, 1e-10 * scaled[k].strike) << k;
     EXPECT_NEAR(one[k].delta, other[k].delta, 1e-8) << k;
   }
 }
@@ -86,26 +86,29 @@ TEST(OptionsProperty, BitsDoNotDependOnThePositionInTheBatch) {
   contracts[3].model = Model::black_scholes;
   Settings settings;
   settings.tolerance = 1e-4;
-  const auto together = priced(settings, contracts);
+  const auto whole_batch = priced(settings, contracts);
   std::reverse(contracts.begin(), contracts.end());
   contracts.resize(9);
-  const auto fewer = priced(settings, contracts);
-  for (std::size_t k = 0; k < fewer.size(); ++k)
-    EXPECT_EQ(std::memcmp(&fewer[k].price, &together[together.size() - 1 - k].price, sizeof(double)), 0) << k;
-  EXPECT_EQ(priced(settings, {contracts[4]})[0].price, fewer[4].price);
+  const auto part_of_batch = priced(settings, contracts);
+  for (std::size_t k = 0; k < part_of_batch.size(); ++k)
+    EXPECT_EQ(
+        std::memcmp(&part_of_batch[k].price, &whole_batch[whole_batch.size() - 1 - k].price, sizeof(double)),
+        0)
+        << k;
+  EXPECT_EQ(priced(settings, {contracts[4]})[0].price, part_of_batch[4].price);
 }
 
 // More contracts than one launch takes, of two models, by a pricer whose stored order is another one. The
 // last contract has an order that requires another table.
 TEST(OptionsProperty, BitsDoNotDependOnTheLaunchesOfABatch) {
-  constexpr std::size_t many = (1 << 17) + 5;
+  constexpr std::size_t size = (1 << 17) + 5;
   auto kinds = random_contracts(7, 5);
   kinds[3].model = Model::black_scholes;
   Contract late = kinds[0];
   const Settings settings = on_mesh(32, 8);
   const auto pricer = create_pricer(backend, settings);
   for (const std::size_t shift : {0U, 3U}) {
-    std::vector<Contract> contracts(many - shift);
+    std::vector<Contract> contracts(size - shift);
     for (std::size_t k = 0; k < contracts.size(); ++k) contracts[k] = kinds[(k + shift) % kinds.size()];
     late.jump[0] = 20.5 + static_cast<double>(shift);
     contracts.back() = late;
@@ -115,9 +118,9 @@ TEST(OptionsProperty, BitsDoNotDependOnTheLaunchesOfABatch) {
     prices.pop_back();
     std::size_t other = 0;
     for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
-      const double alone = priced(settings, {kinds[kind]})[0].price;
+      const double single_price = priced(settings, {kinds[kind]})[0].price;
       for (std::size_t k = (kind + kinds.size() - shift) % kinds.size(); k < prices.size(); k += kinds.size())
-        other += std::memcmp(&prices[k].price, &alone, sizeof alone) == 0 ? 0 : 1;
+        other += std::memcmp(&prices[k].price, &single_price, sizeof single_price) == 0 ? 0 : 1;
     }
     EXPECT_EQ(other, 0U) << shift;
   }
@@ -147,15 +150,16 @@ TEST(OptionsProperty, BitsDoNotDependOnTheSizeOfTheBatch) {
     if (k % 17 == 0 && k % 4 == 0) c.variance = 0.0;
   }
   const auto pricer = create_pricer(backend, on_mesh(128, 32));
-  std::vector<Price> together(contracts.size()), apart(contracts.size());
-  pricer->price(contracts, together);
+  std::vector<Price> whole_batch(contracts.size()), in_parts(contracts.size());
+  pricer->price(contracts, whole_batch);
   for (const std::size_t part : {300U, 65U, 64U, 7U, 1U}) {
     for (std::size_t k = 0; k < contracts.size(); k += part) {
       const std::size_t count = std::min(part, contracts.size() - k);
-      pricer->price(std::span(contracts).subspan(k, count), std::span(apart).subspan(k, count));
+      pricer->price(std::span(contracts).subspan(k, count), std::span(in_parts).subspan(k, count));
     }
     std::size_t other = 0;
-    for (std::size_t k = 0; k < contracts.size(); ++k) other += same_bits(together[k], apart[k]) ? 0 : 1;
+    for (std::size_t k = 0; k < contracts.size(); ++k)
+      other += same_bits(whole_batch[k], in_parts[k]) ? 0 : 1;
     EXPECT_EQ(other, 0U) << part;
   }
 }
@@ -165,14 +169,14 @@ TEST(OptionsProperty, SeparateTimesDoNotChangePrices) {
   const auto contracts = random_contracts(5, 10);
   Settings settings = on_mesh(128, 32);
   const auto expected = priced(settings, contracts);
-  for (const bool apart : {false, true}) {
-    settings.timed_apart = apart;
+  for (const bool separate : {false, true}) {
+    settings.timed_apart = separate;
     const auto pricer = create_pricer(backend, settings);
     const std::pmr::vector<Contract> from(contracts.begin(), contracts.end(), &pricer->memory());
     std::pmr::vector<Price> to(contracts.size(), &pricer->memory());
     const WallTimes timing = pricer->price(from, to);
     EXPECT_GT(timing.compute, 0.0);
-    EXPECT_EQ(timing.h2d > 0.0 && timing.d2h > 0.0, apart);
+    EXPECT_EQ(timing.h2d > 0.0 && timing.d2h > 0.0, separate);
     for (std::size_t k = 0; k < to.size(); ++k) EXPECT_TRUE(same_bits(to[k], expected[k])) << k;
   }
 }

@@ -19,11 +19,11 @@ using Numbers = NumbersOn<Space>;
 using R = Number<Space>;
 constexpr int members = device::Access<R>::lanes;
 
-enum class Way { in_memory, in_registers, halved };
+enum class Storage { in_memory, in_registers, halved };
 
 /// Both recurrences of one line with `block` nodes per lane; changes y in place.
 struct RecurrenceFunctor {
-  Way way;
+  Storage storage;
   int block, end;
   double below, above, x0;
   Numbers x, y, floor, scratch;
@@ -33,8 +33,8 @@ struct RecurrenceFunctor {
       recur_on(SerialThreadGroup<R>{});
     } else {
       const auto rank = static_cast<int>(team.team_rank());
-      if (way == Way::in_memory) return recur_on(WarpThreadGroup<>{rank});
-      if (way == Way::halved) return in_registers<max_lanes, 4, true>(rank);
+      if (storage == Storage::in_memory) return recur_on(WarpThreadGroup<>{rank});
+      if (storage == Storage::halved) return in_registers<max_lanes, 4, true>(rank);
       if (block == 8) return in_registers<max_lanes, 8, false>(rank);
       in_registers<max_lanes, 4, false>(rank);
     }
@@ -44,10 +44,10 @@ struct RecurrenceFunctor {
   template <class ThreadGroup>
   KOKKOS_FUNCTION void recur_on(const ThreadGroup& group) const {
     auto* const line = reinterpret_cast<R*>(y.data());
-    auto* const place = reinterpret_cast<R*>(scratch.data());
-    recur_backward(group, {line}, block, R(above), place);
+    auto* const work = reinterpret_cast<R*>(scratch.data());
+    recur_backward(group, {line}, block, R(above), work);
     recur_forward(group, reinterpret_cast<R*>(x.data()), line, reinterpret_cast<const R*>(floor.data()),
-                  block, end, R(below), R(x0), place);
+                  block, end, R(below), R(x0), work);
   }
   template <int lanes, int nodes, bool halved>
   KOKKOS_FUNCTION void in_registers(int lane) const {
@@ -62,7 +62,7 @@ struct RecurrenceFunctor {
 
 /// Random right-hand sides, and lower bounds that are active at some nodes. Node 0 is given, nodes from `end`
 /// on are 0.
-void expect_plain_recurrences(Way way, int block, int end, double below, double above) {
+void expect_plain_recurrences(Storage storage, int block, int end, double below, double above) {
   SCOPED_TRACE("block " + std::to_string(block) + ", end " + std::to_string(end) + ", slopes " +
                std::to_string(below) + " and " + std::to_string(above));
   const auto nodes = static_cast<std::size_t>(block * max_lanes);
@@ -79,7 +79,7 @@ void expect_plain_recurrences(Way way, int block, int end, double below, double 
   const Numbers x("x", nodes * members);
   Kokkos::parallel_for(
       "recurrence_test", Kokkos::TeamPolicy<Space>(1, device::is_host<Space> ? 1 : max_lanes),
-      RecurrenceFunctor{way, block, end, below, above, x0, x, on_backend<Space>(wide),
+      RecurrenceFunctor{storage, block, end, below, above, x0, x, on_backend<Space>(wide),
                         on_backend<Space>(wide_floor), Numbers("scratch", 9 * max_lanes * members)});
   for (std::size_t i = nodes - 1; i-- > 0;) y[i] += above * y[i + 1];
   std::vector<double> plain(nodes, x0);
@@ -97,13 +97,13 @@ TEST(OptionsRecurrence, BlockedRecurrencesMatchSequentialOnes) {
   for (const double below : {0.9, 0.3, 0.0, -0.6})
     for (const double above : {0.8, 0.1}) {
       for (const int block : {1, 4, 7, 8, 9, 16}) {
-        expect_plain_recurrences(Way::in_memory, block, block * max_lanes, below, above);
-        expect_plain_recurrences(Way::in_memory, block, block * max_lanes - 3, below, above);
+        expect_plain_recurrences(Storage::in_memory, block, block * max_lanes, below, above);
+        expect_plain_recurrences(Storage::in_memory, block, block * max_lanes - 3, below, above);
       }
       if (device::is_host<Space>) continue;
-      expect_plain_recurrences(Way::in_registers, 8, 8 * max_lanes, below, above);
-      expect_plain_recurrences(Way::in_registers, 4, 4 * max_lanes, below, above);
-      expect_plain_recurrences(Way::halved, 4, 4 * max_lanes, below, above);
+      expect_plain_recurrences(Storage::in_registers, 8, 8 * max_lanes, below, above);
+      expect_plain_recurrences(Storage::in_registers, 4, 4 * max_lanes, below, above);
+      expect_plain_recurrences(Storage::halved, 4, 4 * max_lanes, below, above);
     }
 }
 

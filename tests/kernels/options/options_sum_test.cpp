@@ -19,13 +19,13 @@ using Numbers = NumbersOn<Space>;
 using R = Number<Space>;
 constexpr int members = device::Access<R>::lanes;
 
-enum class Way { in_memory, in_registers, shared };
+enum class Storage { in_memory, in_registers, shared };
 
 /// Two groups of 16 lanes share a warp and sum in separate memory; the result of the first one is checked.
-/// With `Way::shared` all threads of a warp share octets.
+/// With `Storage::shared` all threads of a warp share octets.
 struct SumFunctor {
   int mesh, lanes;
-  Way way;
+  Storage storage;
   Numbers weights, values, sums, roots, spectrum, work;
 
   KOKKOS_FUNCTION void operator()(const Kokkos::TeamPolicy<Space>::member_type& team) const {
@@ -33,7 +33,7 @@ struct SumFunctor {
       sum_on(SerialThreadGroup<R>{lanes}, 0);
     } else {
       const auto rank = static_cast<int>(team.team_rank());
-      if (way == Way::shared) return sum_on(WarpThreadGroup<max_lanes / 2, true>{rank}, 0);
+      if (storage == Storage::shared) return sum_on(WarpThreadGroup<max_lanes / 2, true>{rank}, 0);
       if (lanes == max_lanes) return sum_on(WarpThreadGroup<>{rank}, 0);
       sum_on(WarpThreadGroup<max_lanes / 2>{rank % lanes}, rank / lanes);
     }
@@ -55,7 +55,7 @@ struct SumFunctor {
         const auto sum = SharedFourier(group.thread, made, to, z)(threads, own);
         threads.sync();  // the two halves of a lane have swizzled places in common
         return sum.store(group.thread, to);
-      } else if (way == Way::in_registers) {
+      } else if (storage == Storage::in_registers) {
         const auto own = LaneNodes<8>::load(group.lane, v);
         return RegisterFourier<ThreadGroup::lanes>(group.lane, made, to, z)(group, own).store(group.lane, to);
       }
@@ -66,7 +66,7 @@ struct SumFunctor {
 
 /// Random values, and weights that decay like those of jumps, with other magnitudes for each member of a
 /// pack.
-void expect_plain_sums(int mesh, int lanes, Way way) {
+void expect_plain_sums(int mesh, int lanes, Storage storage) {
   const WeightLayout<R> layout(mesh);
   std::vector<double> w(static_cast<std::size_t>(layout.size() * members)),
       v(static_cast<std::size_t>(mesh * members));
@@ -89,7 +89,7 @@ void expect_plain_sums(int mesh, int lanes, Way way) {
   const Numbers sums("sums", packs * v.size());
   const SumFunctor functor{mesh,
                            lanes,
-                           way,
+                           storage,
                            on_backend<Space>(w),
                            on_backend<Space>(v),
                            sums,
@@ -113,15 +113,15 @@ void expect_plain_sums(int mesh, int lanes, Way way) {
 TEST(OptionsSum, TransformsMatchDirectSums) {
   for (const int mesh : {256, 512, 1024, 2048, 4096}) {
     ASSERT_TRUE(is_transformed(mesh, max_lanes));
-    expect_plain_sums(mesh, max_lanes, Way::in_memory);
+    expect_plain_sums(mesh, max_lanes, Storage::in_memory);
   }
   EXPECT_FALSE(is_transformed(128, max_lanes) || is_transformed(384, 16));
   ASSERT_TRUE(is_transformed(128, lanes_of(128)));
-  expect_plain_sums(128, lanes_of(128), Way::in_memory);
+  expect_plain_sums(128, lanes_of(128), Storage::in_memory);
   if (device::is_host<Space>) return;
-  expect_plain_sums(256, max_lanes, Way::in_registers);
-  expect_plain_sums(128, lanes_of(128), Way::in_registers);
-  expect_plain_sums(128, lanes_of(128), Way::shared);
+  expect_plain_sums(256, max_lanes, Storage::in_registers);
+  expect_plain_sums(128, lanes_of(128), Storage::in_registers);
+  expect_plain_sums(128, lanes_of(128), Storage::shared);
 }
 
 }  // namespace

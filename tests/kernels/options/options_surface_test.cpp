@@ -100,29 +100,31 @@ TEST(OptionsSurface, ToleranceIsKept) {
 // Separate solves have other grids than the shared one.
 TEST(OptionsSurface, AgreesWithContractsPricedSeparately) {
   const std::vector<Contract> contracts = random_strikes(40, 12);
-  Settings alone = surface_on(256);
-  alone.surface = false;
+  Settings separate_settings = surface_on(256);
+  separate_settings.surface = false;
   const std::vector<Price> shared = testing::priced(surface_on(256), contracts),
-                           own = testing::priced(alone, contracts);
-  std::size_t apart = 0;
+                           separate = testing::priced(separate_settings, contracts);
+  std::size_t disagreements = 0;
   for (std::size_t k = 0; k < contracts.size(); ++k) {
     const Contract& c = contracts[k];
-    const double room = shared[k].error + own[k].error;
-    if (std::abs(shared[k].price - own[k].price) > room) ++apart;
-    EXPECT_NEAR(shared[k].price, own[k].price, 3.0 * room) << k;
+    const double tolerance = shared[k].error + separate[k].error;
+    if (std::abs(shared[k].price - separate[k].price) > tolerance) ++disagreements;
+    EXPECT_NEAR(shared[k].price, separate[k].price, 3.0 * tolerance) << k;
     // Gamma jumps at the exercise boundary, where both have inaccurate Greeks.
     const double payoff = c.type == Type::put ? c.strike - c.spot : c.spot - c.strike;
-    if (own[k].price - payoff > 0.01 * c.strike) {
-      EXPECT_NEAR(shared[k].delta, own[k].delta, 2e-3 * c.strike / c.spot) << k;
-      EXPECT_NEAR(shared[k].gamma, own[k].gamma, 0.02 * own[k].gamma + 1e-3 * c.strike / (c.spot * c.spot))
+    if (separate[k].price - payoff > 0.01 * c.strike) {
+      EXPECT_NEAR(shared[k].delta, separate[k].delta, 2e-3 * c.strike / c.spot) << k;
+      EXPECT_NEAR(shared[k].gamma, separate[k].gamma,
+                  0.02 * separate[k].gamma + 1e-3 * c.strike / (c.spot * c.spot))
           << k;
-      EXPECT_NEAR(shared[k].theta, own[k].theta, 0.02 * std::abs(own[k].theta) + 1e-3 * c.strike) << k;
+      EXPECT_NEAR(shared[k].theta, separate[k].theta, 0.02 * std::abs(separate[k].theta) + 1e-3 * c.strike)
+          << k;
     }
-    if (!std::isnan(own[k].exercise_boundary)) {
+    if (!std::isnan(separate[k].exercise_boundary)) {
       EXPECT_FALSE(std::isnan(shared[k].exercise_boundary)) << k;
     }
   }
-  EXPECT_LE(100 * apart, contracts.size());
+  EXPECT_LE(100 * disagreements, contracts.size());
 }
 
 // Reference: prices of a finer grid, which agree with separate prices
@@ -150,16 +152,16 @@ TEST(OptionsSurface, PricesAreMonotoneAndConvexInTheStrike) {
   const auto slope = [&](std::size_t k) {
     return (prices[k + 1].price - prices[k].price) / (contracts[k + 1].strike - contracts[k].strike);
   };
-  const auto room = [&](std::size_t k) {
+  const auto tolerance = [&](std::size_t k) {
     return (prices[k + 1].error + prices[k].error) / (contracts[k + 1].strike - contracts[k].strike);
   };
   for (std::size_t k = 0; k + 1 < contracts.size(); ++k) {
     if (k % strikes + 1 == strikes) continue;
     const double sign = contracts[k].type == Type::put ? 1.0 : -1.0;
-    EXPECT_GE(sign * slope(k), -room(k)) << k;
-    EXPECT_LE(sign * slope(k), 1.0 + room(k)) << k;
+    EXPECT_GE(sign * slope(k), -tolerance(k)) << k;
+    EXPECT_LE(sign * slope(k), 1.0 + tolerance(k)) << k;
     if (k % strikes + 2 == strikes) continue;
-    EXPECT_GE(slope(k + 1) - slope(k), -room(k + 1) - room(k)) << k;
+    EXPECT_GE(slope(k + 1) - slope(k), -tolerance(k + 1) - tolerance(k)) << k;
   }
 }
 
@@ -169,19 +171,20 @@ TEST(OptionsSurface, BitsDoNotDependOnOtherStrikes) {
   settings.tolerance = 3e-5;
   settings.surface = true;
   for (const Settings& used : {settings, surface_on(128)}) {
-    const std::vector<Price> together = testing::priced(used, contracts);
-    std::vector<Contract> some;
-    std::vector<std::size_t> place;
+    const std::vector<Price> all_prices = testing::priced(used, contracts);
+    std::vector<Contract> selected;
+    std::vector<std::size_t> position;
     for (std::size_t k = contracts.size(); k-- > 0;)
       if (k % 5 == 2) {
-        some.push_back(contracts[k]);
-        place.push_back(k);
+        selected.push_back(contracts[k]);
+        position.push_back(k);
       }
-    const std::vector<Price> fewer = testing::priced(used, some);
-    for (std::size_t k = 0; k < some.size(); ++k)
+    const std::vector<Price> selected_prices = testing::priced(used, selected);
+    for (std::size_t k = 0; k < selected.size(); ++k)
       for (const auto member : {&Price::price, &Price::error, &Price::delta, &Price::gamma, &Price::theta})
-        EXPECT_EQ(std::memcmp(&(fewer[k].*member), &(together[place[k]].*member), sizeof(double)), 0)
-            << place[k];
+        EXPECT_EQ(
+            std::memcmp(&(selected_prices[k].*member), &(all_prices[position[k]].*member), sizeof(double)), 0)
+            << position[k];
   }
 }
 
@@ -250,13 +253,13 @@ TEST(OptionsSurface, RejectsOtherMethods) {
 
 TEST(OptionsSurface, BoundaryEqualsThatOfTheContract) {
   const Contract contract = testing::contract_of(testing::option_sets()[0], 3, Style::american);
-  Settings alone = surface_on(128);
-  alone.surface = false;
+  Settings separate_settings = surface_on(128);
+  separate_settings.surface = false;
   const auto shared = create_pricer(backend, surface_on(128))->boundary(contract),
-             own = create_pricer(backend, alone)->boundary(contract);
-  ASSERT_EQ(shared.size(), own.size());
-  ASSERT_FALSE(own.empty());
-  EXPECT_EQ(shared.front().spot, own.front().spot);
+             separate = create_pricer(backend, separate_settings)->boundary(contract);
+  ASSERT_EQ(shared.size(), separate.size());
+  ASSERT_FALSE(separate.empty());
+  EXPECT_EQ(shared.front().spot, separate.front().spot);
 }
 
 }  // namespace
