@@ -55,12 +55,12 @@ class Records(unittest.TestCase):
         a, b, c = (self.folder / name for name in "abc")
         with h5py.File(c / "fields.h5", "r+") as h5:
             h5["steps/000001/position"][3, 0] = np.nextafter(h5["steps/000001/position"][3, 0], 1.0)
-        self.assertEqual([], recording.differing(a, b))
-        self.assertEqual(["000001/position"], recording.differing(a, c))
+        self.assertEqual([], recording.differing_results(a, b))
+        self.assertEqual(["000001/position"], recording.differing_results(a, c))
         for folder, text in ((a, "1\n"), (b, "1\n"), (c, "2\n")):
             (folder / "fields.h5").unlink()
             (folder / "history.csv").write_text(text)
-        self.assertEqual(([], ["history.csv"]), (recording.differing(a, b), recording.differing(a, c)))
+        self.assertEqual(([], ["history.csv"]), (recording.differing_results(a, b), recording.differing_results(a, c)))
 
 
 if __name__ == "__main__":
