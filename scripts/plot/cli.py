@@ -3,6 +3,7 @@
 import argparse
 import difflib
 import importlib.util
+import os
 import re
 import subprocess
 import sys
@@ -24,11 +25,15 @@ def _version() -> str:
     import h5py
     import matplotlib
 
-    project = (folder.parents[1] / "CMakeLists.txt").read_text()
-    number = re.search(r"project\(\s*\w+\s+VERSION\s+([\d.]+)", project)
+    # An installed package has no CMakeLists.txt: there the launcher sets DROGUE_VERSION.
+    number = os.environ.get("DROGUE_VERSION")
+    project = folder.parents[1] / "CMakeLists.txt"
+    if number is None and project.is_file():
+        match = re.search(r"project\(\s*\w+\s+VERSION\s+([\d.]+)", project.read_text())
+        number = match and match.group(1)
     revision = git.stdout.strip() or "unknown"
     return (
-        f"drogue-plot {number.group(1) if number else 'unknown'} (git {revision})\n"
+        f"drogue-plot {number or 'unknown'} (git {revision})\n"
         f"matplotlib {matplotlib.__version__}, h5py {h5py.__version__}, HDF5 {h5py.version.hdf5_version}"
     )
 

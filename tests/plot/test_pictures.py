@@ -211,6 +211,23 @@ class Pictures(unittest.TestCase):
         self.assertRegex(captions, r"max density off by 1\.2.* \(tolerance 0\.02\)")
 
 
+class Installed(unittest.TestCase):
+    def setUp(self):
+        self.folder = Path(tempfile.mkdtemp())
+        self.addCleanup(shutil.rmtree, self.folder)
+
+    def test_copy_of_package_prints_version_and_draws(self):
+        share = self.folder / "share" / "drogue"
+        shutil.copytree(packages.SOURCE / "scripts" / "plot", share / "plot")
+        synthetic.write_history(self.folder / "history.csv")
+        environment = os.environ | {"PYTHONPATH": str(share), "DROGUE_VERSION": "1.2.3"}
+        for words, output in (("--version", "drogue-plot 1.2.3 (git"), (str(self.folder), "history.png")):
+            command = [sys.executable, "-m", "plot", words]
+            done = subprocess.run(command, capture_output=True, text=True, env=environment, check=False)
+            self.assertEqual((done.returncode, done.stderr), (0, ""))
+            self.assertIn(output, done.stdout)
+
+
 class Refusals(unittest.TestCase):
     def setUp(self):
         self.folder = Path(tempfile.mkdtemp())
