@@ -119,7 +119,8 @@ def compare_speed(old, new, pattern, rounds):
         best = min(sides["new"]) / min(sides["old"])
         slower += after > SLOWDOWN_LIMIT * before
         print(
-            f"{case}: {before:.4g} s old, {after:.4g} s new, ratio of medians {after / before:.3f}, of minima {best:.3f}"
+            f"{case}: {before:.4g} s old, {after:.4g} s new, "
+            f"ratio of medians {after / before:.3f}, of minima {best:.3f}"
         )
     return slower
 

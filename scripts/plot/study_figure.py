@@ -14,13 +14,16 @@ from .style import plt
 TITLES = {
     "l1_density": "L1 error of density (kg/m$^2$)", "l1_velocity": "L1 error of velocity (m$^2$/s)",
     "l1_pressure": "L1 error of pressure (Pa m)",
-    "cauchy_length": "difference of length to the next mesh (m)", "cauchy_area": "difference of area to the next mesh (m$^2$)",
+    "cauchy_length": "difference of length to the next mesh (m)",
+    "cauchy_area": "difference of area to the next mesh (m$^2$)",
     "cauchy_kinetic": "difference of kinetic energy to the next mesh (J)",
     "cauchy_elastic": "difference of elastic energy to the next mesh (J)",
 }  # fmt: skip
 # Checks of invariants, which do not converge with the mesh.
-INVARIANTS = ("conservation", "equilibrium", "energy_drift", "energy_balance", "momentum", "angular_momentum", "intersections",
-        "penetration")  # fmt: skip
+INVARIANTS = (
+    "conservation", "equilibrium", "energy_drift", "energy_balance", "momentum", "angular_momentum",
+    "intersections", "penetration",
+)  # fmt: skip
 SCHEMES = {"js": "WENO-JS", "z": "WENO-Z", "z2": "WENO-Z (p = 2)", "m": "WENO-M", "teno5": "TENO5"}
 
 

@@ -134,6 +134,19 @@ def write_springs_study(file, order=2.0, checks=("frequency", "equilibrium")):
             vertices = 1 + 3 * rings * (rings + 1)
             error = 0.3 * vertices ** (-order / 2)
             cauchy = ["", "", ""] if rings == 32 else [error, 2 * error, 3 * error]
-            table.writerow(["biquadratic", "biquadratic", "area", "rk4", "serial", vertices, 100 * rings, 1e-3 * rings**3,
-                            *[error, 1e-9][: len(checks)], *cauchy, "ok"])
+            table.writerow(
+                [
+                    "biquadratic",
+                    "biquadratic",
+                    "area",
+                    "rk4",
+                    "serial",
+                    vertices,
+                    100 * rings,
+                    1e-3 * rings**3,
+                    *[error, 1e-9][: len(checks)],
+                    *cauchy,
+                    "ok",
+                ]
+            )
     return file

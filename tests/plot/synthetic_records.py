@@ -64,7 +64,9 @@ def solution(problem, backend, scheme, settings, cells, machine, **changes):
     return record(f"gas-solution/{problem}/{backend}/{label}/{cells}", seconds, machine, facts, **changes)
 
 
-def solutions(machine=H200, problems=tuple(PROBLEMS), backends=tuple(SPEEDS), meshes=(100, 200, 400, 800, 1600, 3200)):
+def solutions(
+    machine=H200, problems=tuple(PROBLEMS), backends=tuple(SPEEDS), meshes=(100, 200, 400, 800, 1600, 3200)
+):
     """All schemes with default settings, WENO-Z with all; MUSCL-Hancock on Serial only; TENO5 fails LeBlanc."""
     settings = list(itertools.product(SECOND_SETTINGS, ("ssprk3", "ssprk43"), ("double", "split")))
     found = []
@@ -75,7 +77,11 @@ def solutions(machine=H200, problems=tuple(PROBLEMS), backends=tuple(SPEEDS), me
             changes = {}
             if (problem, scheme) == ("leblanc", "teno5"):
                 message = "negative pressure in cell 41 at x = 2.3, step 12, t = 0.01"
-                changes = {"facts": {"status": "numerical-failure", "message": message}, "median": None, "error": None}
+                changes = {
+                    "facts": {"status": "numerical-failure", "message": message},
+                    "median": None,
+                    "error": None,
+                }
             found.append(solution(problem, backend, scheme, USUAL, cells, machine, **changes))
         for variant in settings:
             if variant != USUAL:

@@ -100,7 +100,8 @@ class Solutions(Folder):
         rows = page.tables["NVIDIA H200, Intel Xeon Processor", "LeBlanc: error against time"]
         self.assertNotIn("TENO5", [row[1] for row in rows])
         self.assertRegex(
-            page.words, r"TENO5, Serial, 100, 200 cells: numerical-failure \(negative pressure in cell 41 .*\)"
+            page.words,
+            r"TENO5, Serial, 100, 200 cells: numerical-failure \(negative pressure in cell 41 .*\)",
         )
         evidence = self.evidence(lines)
         found = curves(evidence.records)
@@ -221,11 +222,16 @@ class Devices(Folder):
     def test_labels_of_roofline_fit_and_do_not_overlap(self):
         evidence = self.evidence(records.ceilings() + records.steps_of_h200())
         machine = evidence.machines[0]
-        tops, found = ceilings(evidence.select(machine, "ceiling")), points(evidence.select(machine, "gas-step"))
+        tops, found = (
+            ceilings(evidence.select(machine, "ceiling")),
+            points(evidence.select(machine, "gas-step")),
+        )
         self.assertEqual([point.cells for point in found], [1024, 8192, 65536, 1 << 20, 1 << 24])
         figure = roofline_figure("Roofline", machine, tops, found)
         renderer = figure.canvas.get_renderer()
-        boxes = [text.get_window_extent(renderer) for text in figure.axes[0].texts if text.get_rotation() == 0]
+        boxes = [
+            text.get_window_extent(renderer) for text in figure.axes[0].texts if text.get_rotation() == 0
+        ]
         for index, box in enumerate(boxes):
             self.assertTrue(0 <= box.x0 and box.x1 <= figure.bbox.width)
             for other in boxes[:index]:
@@ -242,7 +248,8 @@ class Devices(Folder):
     def test_block_sizes_have_panel_per_form_and_curve_per_size(self):
         evidence = self.evidence(records.blocks())
         forms = {
-            form: times([line for line in evidence.records if line.facts["form"] == form]) for form in ("seed", "step")
+            form: times([line for line in evidence.records if line.facts["form"] == form])
+            for form in ("seed", "step")
         }
         figure = blocks_figure("Blocks", evidence.machines[0], forms, "step")
         self.assertEqual([len(axes.lines) for axes in figure.axes], [5, 5])
@@ -257,9 +264,13 @@ class Springs(Folder):
 
     def test_table_shows_times_to_fixed_errors(self):
         page, files = self.springs_page(records.springs_solutions())
-        self.assertEqual(files, [f"solution_{name}_amd-epyc.png" for name in ("catenary", "drum")] + ["springs.html"])
+        self.assertEqual(
+            files, [f"solution_{name}_amd-epyc.png" for name in ("catenary", "drum")] + ["springs.html"]
+        )
         rows = page.tables["AMD EPYC", "Drum: error against time"]
-        self.assertEqual(rows[0], ["backend", "scheme", "vertices", "order", "to 0.01", "to 1×10−3", "to 1×10−4"])
+        self.assertEqual(
+            rows[0], ["backend", "scheme", "vertices", "order", "to 0.01", "to 1×10−3", "to 1×10−4"]
+        )
         by_scheme = {row[1]: row for row in rows}
         # Error 1 / n of n vertices, a step of 1e-7 n s, 10 sqrt(n) steps: to 0.001 in 1e-6 n^1.5 s.
         seconds = 1e-6 * 1000**1.5
@@ -289,7 +300,9 @@ class Springs(Folder):
         quadratic = "CUDA, 1000000 vertices, quadratic, against cuda/1000000"
         self.assertEqual(verdicts[quadratic, "times as long"], "goal met")
         rows = page.tables["NVIDIA H200, Intel Xeon Processor", "A step in contact"]
-        self.assertEqual([row[-1] for row in rows if len(row) == 7], ["verdict", "stretch met", "missed by 50 %"])
+        self.assertEqual(
+            [row[-1] for row in rows if len(row) == 7], ["verdict", "stretch met", "missed by 50 %"]
+        )
 
     def test_transfers_show_panel_per_number_of_steps_and_no_ratio(self):
         page, files = self.springs_page(records.springs_transfers())

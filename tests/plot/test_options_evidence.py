@@ -45,14 +45,18 @@ class Solutions(Folder):
             return {text.get_text() for text in figure.axes[0].texts}
 
         core, gpu = labels(figure_of(self)), labels(figure_of(self, records.H200, "cuda"))
-        self.assertEqual({"dissertation, one option", "dissertation, 4096 options", "hand-written AVX-512", "PROJ"}, core)
+        self.assertEqual(
+            {"dissertation, one option", "dissertation, 4096 options", "hand-written AVX-512", "PROJ"}, core
+        )
         self.assertEqual(core | {"hand-written CUDA"}, gpu)
 
     def test_published_results_have_problem_backend_and_source(self):
         for result in PUBLISHED_RESULTS:
             self.assertIn(result.problem, FAMILY.problems)
             self.assertIn(result.backend, perf_record.BACKENDS)
-            self.assertTrue(result.source and all(seconds > 0 and error > 0 for seconds, error in result.points))
+            self.assertTrue(
+                result.source and all(seconds > 0 and error > 0 for seconds, error in result.points)
+            )
 
     def test_table_shows_times_to_target_errors(self):
         page, files = self.page(records.options_solutions(), "options")

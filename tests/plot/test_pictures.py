@@ -181,7 +181,9 @@ class Pictures(unittest.TestCase):
         rows = read_run(self.folder).study
         for norm, label in (("energy_balance", "biquadratic"), ("cauchy_area", "biquadratic  order 2.00")):
             with self.subTest(norm):
-                self.assertEqual([label], [text.get_text() for text in study_figure("cloth", rows, norm).axes[1].texts])
+                self.assertEqual(
+                    [label], [text.get_text() for text in study_figure("cloth", rows, norm).axes[1].texts]
+                )
 
     def test_many_long_labels_of_study_fit(self):
         axes = ("", " lf-global", " lf-single"), ("", " ssprk43"), ("", " split")
@@ -272,7 +274,11 @@ class Refusals(unittest.TestCase):
             environment.pop("DROGUE_PLOT_MOVED", None)
             # -S hides the packages of this interpreter.
             done = subprocess.run(
-                [sys.executable, "-S", "-m", "plot", "."], capture_output=True, text=True, env=environment, check=False
+                [sys.executable, "-S", "-m", "plot", "."],
+                capture_output=True,
+                text=True,
+                env=environment,
+                check=False,
             )
             self.assertEqual((done.returncode, done.stderr.count("\n")), (2, 1), done.stderr)
             self.assertIn("packages are missing", done.stderr)

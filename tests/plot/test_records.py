@@ -15,7 +15,9 @@ import recording
 def _write_strip(file, strain, poisson, columns=10, rows=4):
     """Writes a triangulated strip of 0.1 x 0.02 m that is stretched along x and free to contract."""
     place = {(i, j): j * (columns + 1) + i for j in range(rows + 1) for i in range(columns + 1)}
-    rest = np.array([(0.1 * i / columns, 0.02 * j / rows, 0.0) for j in range(rows + 1) for i in range(columns + 1)])
+    rest = np.array(
+        [(0.1 * i / columns, 0.02 * j / rows, 0.0) for j in range(rows + 1) for i in range(columns + 1)]
+    )
     corners = [(place[i, j], place[i + 1, j], place[i, j + 1], place[i + 1, j + 1])
                for i in range(columns) for j in range(rows)]  # fmt: skip
     triangles = [triangle for a, b, c, d in corners for triangle in ((a, b, d), (a, d, c))]
@@ -60,7 +62,9 @@ class Records(unittest.TestCase):
         for folder, text in ((a, "1\n"), (b, "1\n"), (c, "2\n")):
             (folder / "fields.h5").unlink()
             (folder / "history.csv").write_text(text)
-        self.assertEqual(([], ["history.csv"]), (recording.differing_results(a, b), recording.differing_results(a, c)))
+        self.assertEqual(
+            ([], ["history.csv"]), (recording.differing_results(a, b), recording.differing_results(a, c))
+        )
 
 
 if __name__ == "__main__":

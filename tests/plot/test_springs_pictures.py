@@ -19,7 +19,9 @@ from plot.springs.history_figure import springs_history_figure
 assert packages.SOURCE
 
 
-def write_run(folder, vertices, triangles, edges, moved, stress=None, directions=None, contact="", strings=None):
+def write_run(
+    folder, vertices, triangles, edges, moved, stress=None, directions=None, contact="", strings=None
+):
     """Writes a run directory whose snapshots have the positions `moved`; returns its path."""
     folder.mkdir()
     (folder / "scene.toml").write_text('app = "springs"\n' + contact)
@@ -55,12 +57,16 @@ class SpringsPictures(unittest.TestCase):
 
     def assert_drawn(self, run):
         self.assertEqual(0, cli.main([str(run), "--quiet"]))
-        self.assertEqual({"fields.png", "fields.gif", "history.png"},
-                         {file.name for file in run.iterdir() if file.suffix in (".png", ".gif")})
+        self.assertEqual(
+            {"fields.png", "fields.gif", "history.png"},
+            {file.name for file in run.iterdir() if file.suffix in (".png", ".gif")},
+        )
 
     def test_draws_cloth_in_space(self):
         raised = SQUARE + [[0, 0, 0], [0, 0, 0], [0, 0, 0.5], [0, 0, 0]]
-        run = write_run(self.folder / "run", SQUARE, TRIANGLES, EDGES, [SQUARE, raised], [[0.0, 0.0], [2.0, 1.0]])
+        run = write_run(
+            self.folder / "run", SQUARE, TRIANGLES, EDGES, [SQUARE, raised], [[0.0, 0.0], [2.0, 1.0]]
+        )
         self.assert_drawn(run)
         view = View(read_run(run))
         self.assertIsNone(view.labels)
@@ -97,7 +103,9 @@ class SpringsPictures(unittest.TestCase):
 
     def test_displacement_excludes_prestretch(self):
         moved = 1.5 * SQUARE + [0, 0, 1e-6]
-        run = write_run(self.folder / "run", SQUARE, TRIANGLES, EDGES, [moved], contact="[initial]\nprestretch = 0.5\n")
+        run = write_run(
+            self.folder / "run", SQUARE, TRIANGLES, EDGES, [moved], contact="[initial]\nprestretch = 0.5\n"
+        )
         view = View(read_run(run))
         np.testing.assert_allclose(view.values(view.run.snapshots[0]), 1e-6)
 
@@ -108,24 +116,32 @@ class SpringsPictures(unittest.TestCase):
         self.assert_drawn(run)
         self.assertEqual(("x", "z"), View(read_run(run)).labels)
 
-
     def test_strings_beside_cloth_are_visible(self):
-        """Strings that hang from a corner, and strings along an edge shared by two triangles, on a ridge or in a valley."""
+        """Strings hang from a corner, or lie along the common edge of two triangles, on a ridge or in a valley."""
         place = np.array([*SQUARE, [1.5, 0, -0.5], [2, 0, -1]], float)
         for name, height in (("valley", 0.4), ("ridge", -0.4), ("flat", 0)):
             folded = place * [1, 1, int(height != 0)] + np.outer([0, 1, 0, 1, 0, 0], [0, 0, height])
             for strings, least in (([], 0), ([[5, 4], [4, 1]], 200), ([[2, 0]], 200)):
                 for stress in (None, [[0.0, 2.0]]):
                     with self.subTest(name, strings=strings, stress=stress):
-                        run = write_run(self.folder / f"{name}-{len(strings)}-{stress is None}", place, TRIANGLES,
-                                        [*EDGES, [1, 4], [4, 5]], [folded], stress, strings=np.array(strings, int).reshape(-1, 2))
+                        run = write_run(
+                            self.folder / f"{name}-{len(strings)}-{stress is None}",
+                            place,
+                            TRIANGLES,
+                            [*EDGES, [1, 4], [4, 5]],
+                            [folded],
+                            stress,
+                            strings=np.array(strings, int).reshape(-1, 2),
+                        )
                         pixels = self.vermilion(run)
                         self.assertTrue(pixels > least if strings else pixels == 0, pixels)
 
     def test_strings_beside_cloth_move_in_movie(self):
         place = np.array([*SQUARE, [1.5, 0, -0.5]], float)
         moved = place + np.outer([0, 0, 0, 0, 1], [0, 0.5, 0.2])
-        run = write_run(self.folder / "run", place, TRIANGLES, [*EDGES, [1, 4]], [place, moved], strings=[[1, 4]])
+        run = write_run(
+            self.folder / "run", place, TRIANGLES, [*EDGES, [1, 4]], [place, moved], strings=[[1, 4]]
+        )
         self.assert_drawn(run)
         with Image.open(run / "fields.gif") as movie:
             frames = [np.asarray(frame.convert("RGB"), float) for frame in ImageSequence.Iterator(movie)]
@@ -161,10 +177,18 @@ class SpringsPictures(unittest.TestCase):
 
     def test_draws_directions_of_larger_stress(self):
         """Directions appear on flat cloth where the stress is large enough, and are shorter than the triangles."""
-        run = write_run(self.folder / "run", SQUARE, TRIANGLES, EDGES, [SQUARE, SQUARE], [[1.0, 0.01]] * 2, [[0.6, 0.8, 0], [1, 0, 0]])
+        run = write_run(
+            self.folder / "run",
+            SQUARE,
+            TRIANGLES,
+            EDGES,
+            [SQUARE, SQUARE],
+            [[1.0, 0.01]] * 2,
+            [[0.6, 0.8, 0], [1, 0, 0]],
+        )
         self.assert_drawn(run)
         view = View(read_run(run))
-        (start, end), = view.stress_directions(view.run.snapshots[0])
+        ((start, end),) = view.stress_directions(view.run.snapshots[0])
         np.testing.assert_allclose((start + end) / 2, [2 / 3, 1 / 3])
         np.testing.assert_allclose((end - start) / np.linalg.norm(end - start), [0.6, 0.8])
         self.assertLess(np.linalg.norm(end - start), 0.6)
@@ -184,11 +208,15 @@ class SpringsPictures(unittest.TestCase):
                       lambda x: (np.abs(x[..., 2] + 0.1), x[..., 0], 1.1)),
         }  # fmt: skip
         stress = [[0.0, 0.0], [2.0, 1.0]]
-        plain = self.greys(write_run(self.folder / "plain", SQUARE, TRIANGLES, EDGES, [SQUARE, raised], stress))
+        plain = self.greys(
+            write_run(self.folder / "plain", SQUARE, TRIANGLES, EDGES, [SQUARE, raised], stress)
+        )
         for kind, (words, of) in bodies.items():
             with self.subTest(kind):
                 contact = f'[contact]\nobjects = [{{ kind = "{kind}", {words} }}, {{ kind = "level-set", expression = "z+9" }}]\n'
-                run = write_run(self.folder / kind, SQUARE, TRIANGLES, EDGES, [SQUARE, raised], stress, contact=contact)
+                run = write_run(
+                    self.folder / kind, SQUARE, TRIANGLES, EDGES, [SQUARE, raised], stress, contact=contact
+                )
                 distance, coordinate, largest = of(View(read_run(run)).body_facets)
                 self.assertLess(distance.max(), 1e-12)
                 self.assertAlmostEqual(largest, coordinate.max())
@@ -197,10 +225,15 @@ class SpringsPictures(unittest.TestCase):
     def test_level_set_gives_closed_surface(self):
         """A level set that is not a number in parts of space gives facets where it is finite."""
         raised = SQUARE + [0, 0, 0.6]
-        for text, closed in (("(x-0.5)^2+(y-0.5)^2+(z-0.3)^2-0.16", True), ("sqrt((z+0.1)*(z+0.1))-0.2+0*sqrt(x)", False)):
+        for text, closed in (
+            ("(x-0.5)^2+(y-0.5)^2+(z-0.3)^2-0.16", True),
+            ("sqrt((z+0.1)*(z+0.1))-0.2+0*sqrt(x)", False),
+        ):
             with self.subTest(text):
                 contact = f'[contact]\nobjects = [{{ kind = "level-set", expression = "{text}" }}]\n'
-                run = write_run(self.folder / f"run{closed}", SQUARE, TRIANGLES, EDGES, [SQUARE, raised], contact=contact)
+                run = write_run(
+                    self.folder / f"run{closed}", SQUARE, TRIANGLES, EDGES, [SQUARE, raised], contact=contact
+                )
                 facets = View(read_run(run)).body_facets
                 self.assertTrue(np.isfinite(facets).all())
                 if closed:
@@ -208,7 +241,9 @@ class SpringsPictures(unittest.TestCase):
                     self.assertLess(distance.max(), (1.6 / 48) ** 2)  # the square of the cells
                     _, corners = np.unique(facets.reshape(-1, 3), axis=0, return_inverse=True)
                     loops = corners.reshape(-1, 4)
-                    edges = np.sort(np.stack((loops, np.roll(loops, 1, axis=1)), axis=-1).reshape(-1, 2), axis=1)
+                    edges = np.sort(
+                        np.stack((loops, np.roll(loops, 1, axis=1)), axis=-1).reshape(-1, 2), axis=1
+                    )
                     self.assertTrue((np.unique(edges, axis=0, return_counts=True)[1] == 2).all())
                 else:
                     inner = facets[(facets[..., 0] > 0.1).all(axis=1)]
@@ -242,8 +277,14 @@ class SpringsPictures(unittest.TestCase):
     def test_sphere_below_string_is_visible(self):
         line = np.array([[0, 0, 0], [1, 0, 0], [2, 0, 0]], float)
         sagging = line - [[0, 0, 0], [0, 0, 1], [0, 0, 0]]
-        run = write_run(self.folder / "run", line, [], [[0, 1], [1, 2]], [line, sagging],
-                        contact='[contact]\nobjects = [{ kind = "sphere", centre = [1, 0, -2], radius = 0.5 }]\n')
+        run = write_run(
+            self.folder / "run",
+            line,
+            [],
+            [[0, 1], [1, 2]],
+            [line, sagging],
+            contact='[contact]\nobjects = [{ kind = "sphere", centre = [1, 0, -2], radius = 0.5 }]\n',
+        )
         self.assertGreater(self.greys(run), 1000)
 
 

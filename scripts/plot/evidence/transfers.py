@@ -108,7 +108,8 @@ def transfers_figure(title: str, machine: Machine, records: list[Record]):
             base += values
         for index, top, row in zip(place, base, rows):
             panel.annotate(
-                style.format_number(row["total"]), (index, top), (0, 2), textcoords="offset points", ha="center", fontsize=6.5,
+                style.format_number(row["total"]), (index, top), (0, 2), textcoords="offset points", ha="center",
+                fontsize=6.5,
                 color=style.MUTED,
             )  # fmt: skip
         panel.set_title(source, pad=8)

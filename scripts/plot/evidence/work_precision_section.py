@@ -131,8 +131,8 @@ def _explanation(all_curves: list[Curve], best: str | None) -> str:
         )
     if best:
         words.append(
-            f"Of the schemes with other settings {family.scheme_names.get(best, best)}, which is drawn, is the first to reach "
-            f"the finest error of {reference} or, where none does, has the least error."
+            f"Of the schemes with other settings {family.scheme_names.get(best, best)}, which is drawn, is the first "
+            f"to reach the finest error of {reference} or, where none does, has the least error."
         )
     return " ".join(words)
 

@@ -117,7 +117,8 @@ def set_range(axes, name: str, arrays) -> None:
 def _format_checks(run: Run) -> str:
     """Values and tolerances of the checks, for a figure without an error panel."""
     return "".join(
-        f";  {style.check_label(check['name'])} {style.format_number(check['value'])} (tolerance {style.format_number(check['tolerance'])})"
+        f";  {style.check_label(check['name'])} {style.format_number(check['value'])} "
+        f"(tolerance {style.format_number(check['tolerance'])})"
         for check in run.result.get("checks", [])
         if check["name"] != "conservation" and check["value"] is not None
     )

@@ -10,7 +10,8 @@ from ..style import plt
 _PARTS = {"h2d": "host to device", "compute": "compute", "d2h": "device to host", "total": "total"}
 _CURVES = {
     "cpu": ("dissertation, CPU", style.MUTED, "--s"), "gpu": ("dissertation, GPU", style.INK, "--o"),
-    "seed": ("its scheme, here", style.PALETTE[1], "-o"), "pide": ("ours, two solves for an error", style.PALETTE[0], "-o"),
+    "seed": ("its scheme, here", style.PALETTE[1], "-o"),
+    "pide": ("ours, two solves for an error", style.PALETTE[0], "-o"),
 }  # fmt: skip
 _PANELS = {"one option": "intervals of the mesh", "128 intervals": "options"}
 
@@ -121,10 +122,10 @@ def sections(machine: Machine, records: list[Record]) -> list[Section]:
             f"{title}: time against the mesh of one option and against the number of options",
         )
         notes = [
-            "Parts and total are medians of their own: they need not add up. The dissertation's times are its own "
-            "machine's, a Quadro 6000; its first copy of a single option holds the start of CUDA. Its scheme takes as many "
-            "steps as intervals, ours a fourth of them, on two grids. Errors: the largest of five known prices over the "
-            "strike."
+            "Parts and total are medians of their own: they need not add up. The dissertation's times are "
+            "its own machine's, a Quadro 6000; its first copy of a single option holds the start of CUDA. Its "
+            "scheme takes as many steps as intervals, ours a fourth of them, on two grids. Errors: the largest of "
+            "five known prices over the strike."
         ]
         command = "drogue-perf table transfers --app options --out FILE.jsonl"
         found.append(Section(title, command, own, [picture], [transfers_table(own)], notes))
