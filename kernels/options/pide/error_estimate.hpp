@@ -10,7 +10,7 @@ namespace drogue::options {
 /// The numerical constants below are empirical unless a derivation is given. They were calibrated on random
 /// contracts, with maturities from an hour to thirty years, so that the estimate covers 95 % of the rows of
 /// each kind. The references were Fourier prices for European options and finer grids for others. The
-/// calibration script is not part of the repository; docs/options.md, "Price and stated error", lists the
+/// calibration script is not part of the repository; docs/options.md, "Stated error", lists the
 /// constants and the coverage, and the tests `OptionsError` assert nine rows of ten.
 template <class R>
 struct ErrorEstimate {

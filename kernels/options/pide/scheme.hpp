@@ -123,7 +123,7 @@ struct StepFactors {
 /// The same ratio in the explicit part would leave too little diffusion to stabilize the jumps at the last
 /// node. A ghost value of 0 would subtract more diffusion than the implicit part adds, and the march would
 /// grow without bound. The ratio in between, from_left times 1 - 1.4 D/added, and 0 for added <= 1.4 D, is
-/// empirical; docs/options.md lists the processes for which the march was found to be stable.
+/// empirical. Stability is not proven; `OptionsProperty.StaysBoundedForAHundredYearsOfPureJumps` tests it.
 template <class R>
 KOKKOS_INLINE_FUNCTION R ghost_factor(const StepFactors<R>& f) {
   constexpr double share = 1.4;
