@@ -15,7 +15,7 @@ namespace drogue::options {
 namespace {
 
 using Space = DROGUE_TEST_SPACE;
-using Numbers = NumbersOn<Space>;
+using Numbers = DeviceNumbers<Space>;
 using R = Number<Space>;
 constexpr int members = device::Access<R>::lanes;
 
