@@ -76,11 +76,11 @@ struct BaselineBatch {
               block = block_of(mesh, workers.lanes);
     workers.each([=, this](int thread) {
       for (int k = thread; k < members; k += workers.threads())
-        memory.puts[k] = put_of(batch.contracts(batch.place(group, k)));
+        memory.puts[k] = normalize(batch.contracts(batch.place(group, k)));
     });
-    const PutPack<R> put = pack_of<R>(memory.puts);
-    const LevyMeasure<R> law =
-        law_of(workers, put, memory.puts, batch.panels.data(), batch.panel_slot.data(), memory.law_memory());
+    const PutPack<R> put = pack_puts<R>(memory.puts);
+    const LevyMeasure<R> law = make_levy_measure(workers, put, memory.puts, batch.panels.data(),
+                                                 batch.panel_slot.data(), memory.law_memory());
     const Grid<R> grid{mesh, R(2.0 * seed_reach / mesh), R(0.5 * mesh)};
     const Jumps<R> jumps =
         seed_jumps(workers, put, law, grid, memory.w, memory.row(9, mesh), memory.row(10, mesh));

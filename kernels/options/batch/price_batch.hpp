@@ -46,9 +46,9 @@ struct PriceBatch {
   int count = 0, mesh = 0, steps = 0, level = 0;
   int lanes = most_lanes;  ///< of an option on hosts
   double tolerance = 0.0;
-  Model model{};          ///< of all contracts
-  bool split = false;     ///< exercise is, wherever it pays
-  bool one_grid = false;  ///< no second solve: the price is not extrapolated and has no error
+  Model model{};             ///< of all contracts
+  bool split = false;        ///< exercise is, wherever it pays
+  bool single_grid = false;  ///< no second solve: the price is not extrapolated and has no error
 
   /// Groups, of an option or of a pack of them, that a team prices side by side.
   static KOKKOS_INLINE_FUNCTION constexpr int groups(int fixed) {
@@ -79,37 +79,38 @@ struct PriceBatch {
   }
 
   /// Prices the contracts of a group. A call would keep all that it is told in memory.
-  template <Laws laws, int fixed, class ThreadGroup>
+  template <JumpClass jump_class, int fixed, class ThreadGroup>
   KOKKOS_FORCEINLINE_FUNCTION void price(const ThreadGroup& workers, const Memory<R, fixed>& memory,
                                          int group) const {
-    const Prepared<R> prepared = prepare<laws>(workers, memory, group);
+    const Prepared<R> prepared = prepare<jump_class>(workers, memory, group);
     const ErrorEstimate<R> doubt =
         doubt_of_solve(prepared.put, prepared.law, prepared.jumps, prepared.grid, steps);
     solve_fine(workers, prepared, memory);
-    const R* coarse = one_grid ? memory.kept(prepared.grid.mesh) : solve_coarse(workers, prepared, memory);
+    const R* coarse = single_grid ? memory.kept(prepared.grid.mesh) : solve_coarse(workers, prepared, memory);
     conclude(workers, prepared, doubt, memory, coarse, memory, group);
   }
 
   /// What both solves need, and the weights of the finer one.
-  template <Laws laws, int fixed, class ThreadGroup>
+  template <JumpClass jump_class, int fixed, class ThreadGroup>
   [[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION Prepared<R> prepare(const ThreadGroup& workers,
                                                                 const Memory<R, fixed>& memory,
                                                                 int group) const {
     const int cells = mesh_for<fixed>(mesh);
     workers.each([=, this](int thread) {
       for (int k = thread; k < members; k += workers.threads()) {
-        memory.puts[k] = put_of(contracts(place(group, k)));
+        memory.puts[k] = normalize(contracts(place(group, k)));
         if (split) memory.puts[k].split = memory.puts[k].early;
       }
     });
     Prepared<R> prepared;
-    prepared.put = pack_of<R, laws>(memory.puts);
+    prepared.put = pack_puts<R, jump_class>(memory.puts);
     PutPack<R>& put = prepared.put;
     put.any_split = !workers.all(!put.any_split);
-    prepared.law = law_of(workers, put, memory.puts, panels.data(), panel_slot.data(), memory.law_memory());
+    prepared.law =
+        make_levy_measure(workers, put, memory.puts, panels.data(), panel_slot.data(), memory.law_memory());
     const LevyMeasure<R>& law = prepared.law;
     prepared.grid = grid_of(domain_of(workers, put, law, cut_error(cells), memory.slot), cells);
-    prepared.tails = tails_of(workers, put, law, prepared.grid.h * double(cells));
+    prepared.tails = make_tails(workers, put, law, prepared.grid.h * double(cells));
     prepared.jumps = jumps_on<fixed>(workers, put, law, prepared.tails, prepared.grid, memory, memory.w);
     return prepared;
   }
@@ -160,7 +161,7 @@ struct PriceBatch {
     const int cells = mesh_for<fixed>(prepared.grid.mesh);
     const Grid<R> grid = coarser(prepared.grid);
     const R* const kept = memory.kept(cells);
-    const SolutionAtSpot* const coarse_answers = one_grid ? memory.answers : other.answers + members;
+    const SolutionAtSpot* const coarse_answers = single_grid ? memory.answers : other.answers + members;
     const R deviation = device::square_root((put.variance + prepared.law.variance) * put.maturity);
     const R window = device::maximum(grid.h, deviation);
     const auto largest_change = [=, &put](int lane) {
@@ -187,13 +188,13 @@ struct PriceBatch {
         }
         prices(at) = price_of(contracts(at), one, memory.answers[k], coarse_answers[k], known, own(largest),
                               own(grid.h), cells, steps, tolerance);
-        if (one_grid) prices(at).error = device::portable::not_a_number();
+        if (single_grid) prices(at).error = device::portable::not_a_number();
       }
     });
   }
 
  private:
-  [[nodiscard]] KOKKOS_INLINE_FUNCTION bool knows_premium() const { return !split && !one_grid; }
+  [[nodiscard]] KOKKOS_INLINE_FUNCTION bool knows_premium() const { return !split && !single_grid; }
 
   /// The value of member k at the node next to its spot.
   [[nodiscard]] static KOKKOS_INLINE_FUNCTION double beside_spot(const NormalizedPut& put,

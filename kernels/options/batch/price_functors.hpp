@@ -5,7 +5,7 @@
 namespace drogue::options {
 
 /// Prices a batch; for `fixed` see `solve`.
-template <class ExecutionSpace, int fixed, Laws laws>
+template <class ExecutionSpace, int fixed, JumpClass jump_class>
 struct PriceFunctor {
   using Batch = PriceBatch<ExecutionSpace>;
 
@@ -17,13 +17,13 @@ struct PriceFunctor {
   template <class ThreadGroup>
   KOKKOS_FORCEINLINE_FUNCTION void price(const ThreadGroup& workers,
                                          const Memory<typename Batch::R, fixed>& memory, int group) const {
-    batch.template price<laws>(workers, memory, group);
+    batch.template price<jump_class>(workers, memory, group);
   }
 };
 
 /// The same for a batch that leaves most of a GPU idle: a team of two warps for each option. Both prepare it,
 /// in memory of their own; then one marches on the finer grid and the other on the coarser one.
-template <class ExecutionSpace, int fixed, Laws laws>
+template <class ExecutionSpace, int fixed, JumpClass jump_class>
 struct PriceByTwoFunctor {
   using Batch = PriceBatch<ExecutionSpace>;
 
@@ -38,7 +38,7 @@ struct PriceByTwoFunctor {
     const Memory<double, fixed> memory(place + (finer ? 0 : bytes), batch.mesh),
         coarser_memory(place + bytes, batch.mesh);
     const WarpWorkers<lanes_of(fixed), true> workers(rank);
-    const Prepared<double> prepared = batch.template prepare<laws>(workers, memory, option);
+    const Prepared<double> prepared = batch.template prepare<jump_class>(workers, memory, option);
     if (finer) {
       batch.solve_fine(workers, prepared, memory);
     } else {
@@ -64,24 +64,24 @@ void price_batch(const ExecutionSpace& space, PriceBatch<ExecutionSpace> batch) 
   if (batch.record.time == nullptr) batch.lanes = lanes_of(batch.mesh);
   if constexpr (!device::is_host<ExecutionSpace>) {
     const auto launch = [&]<int fixed> {
-      return for_laws_of(batch.model, [&]<Laws laws> {
+      return dispatch_jump_class(batch.model, [&]<JumpClass jump_class> {
         launch_batch<fixed>(space, "drogue::options::price in registers",
-                            PriceFunctor<ExecutionSpace, fixed, laws>{batch});
+                            PriceFunctor<ExecutionSpace, fixed, jump_class>{batch});
       });
     };
     if (batch.record.time == nullptr) {
       // Two warps an option where half of one each would leave half of a GPU's schedulers idle.
-      if (batch.mesh == 128 && !batch.one_grid && batch.count <= space.concurrency() / (16 * most_lanes))
-        return for_laws_of(batch.model, [&]<Laws laws> {
+      if (batch.mesh == 128 && !batch.single_grid && batch.count <= space.concurrency() / (16 * most_lanes))
+        return dispatch_jump_class(batch.model, [&]<JumpClass jump_class> {
           launch_batch<128, 2>(space, "drogue::options::price by two",
-                               PriceByTwoFunctor<ExecutionSpace, 128, laws>{batch});
+                               PriceByTwoFunctor<ExecutionSpace, 128, jump_class>{batch});
         });
       if (batch.mesh == 64) return launch.template operator()<64>();
       if (batch.mesh == 128) return launch.template operator()<128>();
       if (batch.mesh == 256) return launch.template operator()<256>();
     }
   }
-  launch_batch<0>(space, "drogue::options::price", PriceFunctor<ExecutionSpace, 0, Laws::all>{batch});
+  launch_batch<0>(space, "drogue::options::price", PriceFunctor<ExecutionSpace, 0, JumpClass::any>{batch});
 }
 
 }  // namespace drogue::options

@@ -32,7 +32,7 @@ class PricerImpl final : public Pricer {
   WallTimes price(std::span<const Contract> contracts, std::span<Price> prices) override {
     if (contracts.size() != prices.size())
       throw std::invalid_argument("options pricer: as many prices as contracts are needed");
-    if (_settings.method == Method::seed)
+    if (_settings.method == Method::baseline)
       for (const Contract& contract : contracts)
         if (contract.model != Model::generalized_hyperbolic)
           throw std::invalid_argument(
@@ -46,7 +46,7 @@ class PricerImpl final : public Pricer {
       _instance.space().fence("drogue::options: a batch is given up");
       throw;
     }
-    if (!_settings.timed_apart) timing = {0.0, all.seconds(), 0.0};
+    if (!_settings.time_copies) timing = {0.0, all.seconds(), 0.0};
     return timing;
   }
 
@@ -95,13 +95,13 @@ class PricerImpl final : public Pricer {
   }
 
   void price_all(std::span<const Contract> contracts, std::span<Price> prices, WallTimes& timing) {
-    const int mesh = _settings.mesh == 0 && _settings.method == Method::seed ? seed_mesh : _settings.mesh;
+    const int mesh = _settings.mesh == 0 && _settings.method == Method::baseline ? seed_mesh : _settings.mesh;
     reserve(contracts.size());
     if (mesh != 0 && is_priced_in_place(contracts.size()))
       return price_in_place(contracts, prices, {mesh, steps_of(mesh)});
     const Stopwatch copying_in;
     device::copy_in(_instance.space(), _contracts, staged(contracts), contracts.size());
-    if (_settings.timed_apart) _instance.space().fence("drogue::options: contracts are copied");
+    if (_settings.time_copies) _instance.space().fence("drogue::options: contracts are copied");
     timing.h2d = copying_in.seconds();
     if (mesh == 0) return price_to_tolerance(contracts, prices, timing);
     const Stopwatch computing;
@@ -113,7 +113,7 @@ class PricerImpl final : public Pricer {
   /// Whether contracts are so few that a device rather reads and writes them in the host's memory than waits
   /// for two copies.
   [[nodiscard]] bool is_priced_in_place(std::size_t count) const {
-    return !device::is_host<ExecutionSpace> && !_settings.timed_apart && count <= 64;
+    return !device::is_host<ExecutionSpace> && !_settings.time_copies && count <= 64;
   }
 
   void price_in_place(std::span<const Contract> contracts, std::span<Price> prices,
@@ -176,8 +176,9 @@ class PricerImpl final : public Pricer {
   }
 
   [[nodiscard]] int steps_of(int mesh) const {
-    return _settings.method == Method::seed && _settings.steps == 0 ? mesh
-                                                                    : options::steps_of(_settings, mesh, 1);
+    return _settings.method == Method::baseline && _settings.steps == 0
+               ? mesh
+               : options::steps_of(_settings, mesh, 1);
   }
 
   void reserve(std::size_t count) {
@@ -242,7 +243,7 @@ class PricerImpl final : public Pricer {
       if (++gathered == slab) launch_gathered();
     }
     launch_gathered();
-    if (_settings.timed_apart) _instance.space().fence("drogue::options: priced");
+    if (_settings.time_copies) _instance.space().fence("drogue::options: priced");
   }
 
   /// Enqueues the launch for `rows`, which are put at `place` of the order.
@@ -270,9 +271,9 @@ class PricerImpl final : public Pricer {
     batch.steps = effort.steps;
     batch.tolerance = _settings.tolerance;
     batch.split = _settings.exercise == ExerciseRule::split;
-    batch.one_grid = _settings.one_grid;
+    batch.single_grid = _settings.single_grid;
     batch.level = scratch_level<ExecutionSpace>(effort.mesh);
-    if (_settings.method == Method::seed && record.time == nullptr) {
+    if (_settings.method == Method::baseline && record.time == nullptr) {
       seed_batch(_instance.space(), batch);
     } else {
       price_batch(_instance.space(), batch);

@@ -1,4 +1,4 @@
-#include "kernels/options/cos/exponent.hpp"
+#include "kernels/options/cos/characteristic_exponent.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +12,7 @@ namespace {
 using Complex = std::complex<double>;
 constexpr std::complex<double> imaginary{0.0, 1.0};
 
-/// How far from 0 the exponent is analytic; that of the dual process from -i.
+/// Radius of the largest disc about 0 in which the exponent is analytic.
 double radius_of(const Contract& c, bool is_dual) {
   const double shift = is_dual ? 1.0 : 0.0;
   switch (c.model) {
@@ -29,19 +29,21 @@ double radius_of(const Contract& c, bool is_dual) {
 
 }  // namespace
 
-Exponent::Exponent(const Contract& contract) : _contract(contract) {
+CharacteristicExponent::CharacteristicExponent(const Contract& contract) : _contract(contract) {
   const auto [lambda, alpha, beta, delta] = contract.jump;
   if (contract.model == Model::generalized_hyperbolic) {
     _log_gamma_squared = std::log(alpha - beta) + std::log(alpha + beta);
     const double z = delta * std::exp(0.5 * _log_gamma_squared);
     if (delta > 0.0) _log_k = std::real(log_bessel_k(lambda, z)) - z;
   }
-  _drift = contract.rate - contract.dividend - 0.5 * contract.variance - std::real(jumps(-imaginary));
+  _drift = contract.rate - contract.dividend - 0.5 * contract.variance - std::real(jump_exponent(-imaginary));
 }
 
-/// Barndorff-Nielsen (1977): (gamma^2 / w)^(lambda/2) K_lambda(delta sqrt w) / K_lambda(delta gamma), with
-/// w = alpha^2 - (beta + i u)^2 in two factors, each of which keeps to its branch.
-Complex Exponent::hyperbolic(Complex u) const {
+/// Logarithm of the characteristic function of the generalized hyperbolic distribution (Barndorff-Nielsen
+/// 1977),
+///   (gamma^2 / w)^(lambda/2) K_lambda(delta sqrt w) / K_lambda(delta gamma),  w = alpha^2 - (beta + i u)^2.
+/// w is split into two factors, whose logarithms stay on their branches.
+Complex CharacteristicExponent::generalized_hyperbolic(Complex u) const {
   const auto [lambda, alpha, beta, delta] = _contract.jump;
   const Complex log_w = std::log(alpha - beta - imaginary * u) + std::log(alpha + beta + imaginary * u);
   if (delta == 0.0) return lambda * (_log_gamma_squared - log_w);
@@ -49,11 +51,11 @@ Complex Exponent::hyperbolic(Complex u) const {
   return 0.5 * lambda * (_log_gamma_squared - log_w) + (log_bessel_k(lambda, z) - z) - _log_k;
 }
 
-Complex Exponent::jumps(Complex u) const {
+Complex CharacteristicExponent::jump_exponent(Complex u) const {
   const auto& jump = _contract.jump;
   switch (_contract.model) {
     case Model::generalized_hyperbolic:
-      return hyperbolic(u);
+      return generalized_hyperbolic(u);
     case Model::black_scholes:
       return 0.0;
     case Model::merton:
@@ -65,25 +67,25 @@ Complex Exponent::jumps(Complex u) const {
   return 0.0;
 }
 
-Complex Exponent::operator()(Complex u) const {
+Complex CharacteristicExponent::operator()(Complex u) const {
   return _is_dual ? primal(-u - imaginary) - (_contract.rate - _contract.dividend) : primal(u);
 }
 
-Exponent Exponent::dual() const {
-  Exponent dual = *this;
+CharacteristicExponent CharacteristicExponent::dual() const {
+  CharacteristicExponent dual = *this;
   dual._is_dual = !_is_dual;
   return dual;
 }
 
-Complex Exponent::primal(Complex u) const {
-  return imaginary * _drift * u - 0.5 * _contract.variance * u * u + jumps(u);
+Complex CharacteristicExponent::primal(Complex u) const {
+  return imaginary * _drift * u - 0.5 * _contract.variance * u * u + jump_exponent(u);
 }
 
-/// Cauchy's integrals of psi on a circle about 0.
-Exponent::Cumulants Exponent::cumulants() const {
+/// Derivatives of psi at 0 by Cauchy's integral formula on a circle.
+CharacteristicExponent::Cumulants CharacteristicExponent::cumulants() const {
   constexpr int points = 32;
   const double radius = 0.5 * std::min(1.0, radius_of(_contract, _is_dual));
-  Complex derivatives[3] = {};  // psi^(n) / n! of n = 1, 2, 4
+  Complex derivatives[3] = {};  // psi^(n)(0) / n! for n = 1, 2, 4
   const int orders[3] = {1, 2, 4};
   for (int k = 0; k < points; ++k) {
     const double angle = 2.0 * std::numbers::pi * (k + 0.5) / points;
@@ -94,28 +96,29 @@ Exponent::Cumulants Exponent::cumulants() const {
   return {std::imag(derivatives[0]), -2.0 * std::real(derivatives[1]), 24.0 * std::real(derivatives[2])};
 }
 
-/// The tails of the jumps fall as exponentials, or as a normal law.
-Exponent::Reach Exponent::reach() const {
+/// The jump densities decay exponentially, Merton's as a normal density.
+CharacteristicExponent::JumpRange CharacteristicExponent::jump_range() const {
   const auto& jump = _contract.jump;
-  Reach reach{0.0, 0.0};
+  JumpRange range{0.0, 0.0};
   const double shift = _is_dual ? 1.0 : 0.0;
   switch (_contract.model) {
     case Model::generalized_hyperbolic:
-      reach = {reach_digits / (jump[1] + jump[2] + shift), reach_digits / (jump[1] - jump[2] - shift)};
+      range = {jump_range_digits / (jump[1] + jump[2] + shift),
+               jump_range_digits / (jump[1] - jump[2] - shift)};
       break;
     case Model::kou:
-      reach = {reach_digits / (jump[3] + shift), reach_digits / (jump[2] - shift)};
+      range = {jump_range_digits / (jump[3] + shift), jump_range_digits / (jump[2] - shift)};
       break;
     case Model::merton: {
       const double mean = jump[1] + shift * jump[2] * jump[2];
-      const double deviations = std::sqrt(2.0 * reach_digits) * jump[2];
-      reach = {std::max(deviations - mean, 0.0), std::max(deviations + mean, 0.0)};
+      const double deviations = std::sqrt(2.0 * jump_range_digits) * jump[2];
+      range = {std::max(deviations - mean, 0.0), std::max(deviations + mean, 0.0)};
       break;
     }
     case Model::black_scholes:
       break;
   }
-  return _is_dual ? Reach{reach.up, reach.down} : reach;
+  return _is_dual ? JumpRange{range.up, range.down} : range;
 }
 
 }  // namespace drogue::options

@@ -6,42 +6,41 @@
 
 namespace drogue::options {
 
-/// The characteristic exponent of the logarithm X of the asset's price: E exp(i u (X_t - X_0)) = exp(t
-/// psi(u)), psi(-i) = rate - dividend. Analytic but for cuts on the imaginary axis outside the strip
-/// [-1, 0] of Im u.
-class Exponent {
+/// Characteristic exponent psi, 1/year, of the logarithm X of the asset price (time in years):
+/// E exp(i u (X_t - X_0)) = exp(t psi(u)), with psi(-i) = rate - dividend. Analytic except for cuts on the
+/// imaginary axis outside the strip -1 <= Im u <= 0. Does not throw.
+class CharacteristicExponent {
  public:
   /// The contract must satisfy `violated_condition`.
-  explicit Exponent(const Contract& contract);
+  explicit CharacteristicExponent(const Contract& contract);
 
   [[nodiscard]] std::complex<double> operator()(std::complex<double> u) const;
 
-  /// That of the process seen by who counts money in assets: psi(-u - i) - psi(-i). A call is a put on it,
-  /// with spot and strike, and rate and dividend, exchanged.
-  [[nodiscard]] Exponent dual() const;
+  /// Exponent under the dual measure, whose numeraire is the asset: psi(-u - i) - psi(-i). A call is a put on
+  /// the dual process with spot and strike, and rate and dividend, exchanged.
+  [[nodiscard]] CharacteristicExponent dual() const;
 
-  /// psi(u) - i drift() u is even for large real u, but for a bounded part.
+  /// Drift of X, 1/year. For large real u, psi(u) - i drift() u is even up to a bounded part.
   [[nodiscard]] double drift() const { return _drift; }
 
-  /// Of X_1: mean, variance and fourth cumulant.
+  /// Mean, variance and fourth cumulant of X_1 - X_0.
   struct Cumulants {
     double mean, second, fourth;
   };
   [[nodiscard]] Cumulants cumulants() const;
 
-  /// How far down and up a single jump may go whose probability, weighed with the asset's price, is not
-  /// negligible: exp(-reach_digits). At short maturities it is this and no deviation that says where the law
-  /// ends.
-  static constexpr double reach_digits = 23.0;
-  struct Reach {
+  /// Jumps of X at which the tails of the jump density have decayed by exp(-jump_range_digits). At short
+  /// maturities they determine the range of X, and not its standard deviation.
+  struct JumpRange {
     double down, up;
   };
-  [[nodiscard]] Reach reach() const;
+  static constexpr double jump_range_digits = 23.0;
+  [[nodiscard]] JumpRange jump_range() const;
 
  private:
   [[nodiscard]] std::complex<double> primal(std::complex<double> u) const;
-  [[nodiscard]] std::complex<double> jumps(std::complex<double> u) const;
-  [[nodiscard]] std::complex<double> hyperbolic(std::complex<double> u) const;
+  [[nodiscard]] std::complex<double> jump_exponent(std::complex<double> u) const;
+  [[nodiscard]] std::complex<double> generalized_hyperbolic(std::complex<double> u) const;
 
   Contract _contract;
   bool _is_dual = false;

@@ -63,7 +63,7 @@ KOKKOS_INLINE_FUNCTION WeightPair<R> kou_weights(const PutPack<R>& put, R h, int
 /// The integral from z to infinity of what a normal density has above.
 template <class R>
 KOKKOS_INLINE_FUNCTION R summed_above(R z) {
-  return 0.3989422804014327 * exponential(-0.5 * z * z) - z * normal_above(z);
+  return 0.3989422804014327 * exponential(-0.5 * z * z) - z * normal_upper_tail(z);
 }
 
 /// The part of jumps of a normal density that goes to the node at d h, by a hat over the two steps beside it.
@@ -82,7 +82,7 @@ KOKKOS_INLINE_FUNCTION R normal_part(R mean, R per, R h, int d, bool last) {
     sum += times * summed_above(middle + (k - 1.0) * reach);
   }
   const R part = sum * device::reciprocal(reach);
-  return last ? part - normal_above(centre) : part;
+  return last ? part - normal_upper_tail(centre) : part;
 }
 
 template <class R>

@@ -6,19 +6,20 @@ namespace drogue::options {
 
 /// Why a put has no price on a grid of steps h. `most`: what it can earn, in money; `variance`: of its law, a
 /// year.
-KOKKOS_INLINE_FUNCTION Failure failure_of(const NormalizedPut& put, double most, double variance, double h) {
-  if (put.rate * put.maturity < -650.0 || !(most < 1e300)) return Failure::too_large;
-  if (variance != variance) return Failure::overflow;
-  if (!(h < 100.0)) return Failure::no_grid;
+KOKKOS_INLINE_FUNCTION FailureReason failure_of(const NormalizedPut& put, double most, double variance,
+                                                double h) {
+  if (put.rate * put.maturity < -650.0 || !(most < 1e300)) return FailureReason::discount_overflow;
+  if (variance != variance) return FailureReason::coefficient_overflow;
+  if (!(h < 100.0)) return FailureReason::no_grid;
   // Steps have the square of this.
   const double pull = device::absolute(put.rate) + device::absolute(put.dividend);
   const double largest = (pull + variance / h) / h;
-  if (!(largest * largest < 1e300)) return Failure::overflow;
+  if (!(largest * largest < 1e300)) return FailureReason::coefficient_overflow;
   // From a million jumps until maturity on, or a discount e^{-1e10}, the most steps there are, 16384, rarely
   // tell anything.
   const bool counted = put.model == Model::merton || put.model == Model::kou;
   const bool stiff = (counted && put.jump[0] * put.maturity >= 1e6) || put.rate * put.maturity >= 1e10;
-  return stiff ? Failure::stiff : Failure::grown;
+  return stiff ? FailureReason::stiff : FailureReason::unstable;
 }
 
 /// The node next to the spot of a put.
@@ -80,9 +81,9 @@ KOKKOS_INLINE_FUNCTION Price price_of(const Contract& contract, const Normalized
   price.mesh = mesh;
   price.steps = steps;
   if (!finite) price.price = device::portable::not_a_number();
-  price.outcome = !finite                                     ? Outcome::failed
-                  : price.error > tolerance * contract.strike ? Outcome::coarse
-                                                              : Outcome::ok;
+  price.status = !finite                                     ? PriceStatus::failed
+                 : price.error > tolerance * contract.strike ? PriceStatus::coarse
+                                                             : PriceStatus::ok;
   if (!finite) price.failure = failure_of(put, unit * most, doubt.variance, h);
   return price;
 }

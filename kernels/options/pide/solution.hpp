@@ -107,7 +107,7 @@ KOKKOS_INLINE_FUNCTION double missed_by_cubic(const NormalizedPut& put, const Co
 /// The answer at an x below the grid, `asset` = e^x, where exercise or expiry is certain at the time that is
 /// best there (`Domain` says why).
 KOKKOS_INLINE_FUNCTION SolutionAtSpot answer_below(const NormalizedPut& put, double asset, double boundary) {
-  const PutPack<double> pack = pack_of<double>(&put);
+  const PutPack<double> pack = pack_puts<double>(&put);
   const Certain<double> sure = certain(pack, asset, best_time(pack, put.log_spot), put.maturity);
   const double strike = sure.strike, price = sure.asset * asset;
   const bool at_once = put.early && strike == 1.0 && sure.asset == 1.0;

@@ -12,11 +12,11 @@ template <class R, int fixed>
 struct Memory {
   static constexpr int members = device::Access<R>::lanes;
 
-  R* law;    ///< what `law_of` leaves, then the step table, and last a doubt that another warp reads
-  R* slot;   ///< (9 most_lanes); with a fixed mesh what `domain_of` takes, or force
-  R* w;      ///< of a WeightLayout
-  R* nodes;  ///< rows of `node_count`, and what the coarser solve has beyond its own, shorter ones
-  NormalizedPut* puts;      ///< of the members, as the next
+  R* law;  ///< what `make_levy_measure` leaves, then the step table, and last a doubt that another warp reads
+  R* slot;              ///< (9 most_lanes); with a fixed mesh what `domain_of` takes, or force
+  R* w;                 ///< of a WeightLayout
+  R* nodes;             ///< rows of `node_count`, and what the coarser solve has beyond its own, shorter ones
+  NormalizedPut* puts;  ///< of the members, as the next
   SolutionAtSpot* answers;  ///< on the grid and on the coarser one
   double* unexercised;  ///< (members): values beside the spots on the coarser grid, without early exercise
 

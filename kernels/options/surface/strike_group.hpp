@@ -28,7 +28,7 @@ struct SmileNodes {
 /// Smiles of one model, solved on one mesh in one launch by a team for each, or on hosts for each pack of
 /// them: smile k is that of contract k of the batch, whose strike does not matter. For `fixed` see
 /// `march_nodes`.
-template <class ExecutionSpace, int fixed, Laws laws>
+template <class ExecutionSpace, int fixed, JumpClass jump_class>
 struct SmileFunctor {
   using Batch = PriceBatch<ExecutionSpace>;
   using R = typename Batch::R;
@@ -51,20 +51,20 @@ struct SmileFunctor {
     workers.each([=, this](int thread) {
       for (int k = thread; k < members; k += workers.threads()) {
         const int at = batch.place(group, k);
-        memory.puts[k] = put_of(batch.contracts(at));
+        memory.puts[k] = normalize(batch.contracts(at));
         memory.puts[k].log_spot = reaches(at);
       }
     });
-    PutPack<R> put = pack_of<R, laws>(memory.puts);
+    PutPack<R> put = pack_puts<R, jump_class>(memory.puts);
     put.any_split = !workers.all(!put.any_split);
-    const LevyMeasure<R> law =
-        law_of(workers, put, memory.puts, batch.panels.data(), batch.panel_slot.data(), memory.law_memory());
+    const LevyMeasure<R> law = make_levy_measure(workers, put, memory.puts, batch.panels.data(),
+                                                 batch.panel_slot.data(), memory.law_memory());
     const R deviation = device::square_root((put.variance + law.variance) * put.maturity);
     const R above = domain_of(workers, put, law, cut_error(mesh), memory.slot).above;
     put.log_spot = -put.log_spot;
     const R below = domain_of(workers, put, law, cut_error(mesh), memory.slot).below;
     const Grid<R> grid = grid_of(Domain<R>{below, above}, mesh);
-    const Tails<R> tails = tails_of(workers, put, law, grid.h * double(mesh));
+    const Tails<R> tails = make_tails(workers, put, law, grid.h * double(mesh));
     const Jumps<R> jumps = jumps_on<fixed>(workers, put, law, tails, grid, memory, memory.w);
     const Grid<R> half = coarser(grid);
     note(workers, memory, group, doubt_of_solve(put, law, jumps, grid, batch.steps),
@@ -123,17 +123,17 @@ struct SmileFunctor {
 
 /// Enqueues the solves of smiles of one model.
 template <class ExecutionSpace>
-void solve_smiles(const ExecutionSpace& space, SmileFunctor<ExecutionSpace, 0, Laws::all> work) {
+void solve_smiles(const ExecutionSpace& space, SmileFunctor<ExecutionSpace, 0, JumpClass::any> work) {
   static_assert(
       Kokkos::SpaceAccessibility<ExecutionSpace, typename decltype(work.values)::memory_space>::accessible);
   // On a device the other meshes are solved in memory, by whole warps.
   if (work.batch.mesh == 128) work.batch.lanes = lanes_of(work.batch.mesh);
   if constexpr (!device::is_host<ExecutionSpace>) {
     const auto launch = [&]<int fixed> {
-      return for_laws_of(work.batch.model, [&]<Laws laws> {
-        launch_batch<fixed>(
-            space, "drogue::options::solve smiles in registers",
-            SmileFunctor<ExecutionSpace, fixed, laws>{work.batch, work.reaches, work.smiles, work.values});
+      return dispatch_jump_class(work.batch.model, [&]<JumpClass jump_class> {
+        launch_batch<fixed>(space, "drogue::options::solve smiles in registers",
+                            SmileFunctor<ExecutionSpace, fixed, jump_class>{work.batch, work.reaches,
+                                                                            work.smiles, work.values});
       });
     };
     if (work.batch.mesh == 128) return launch.template operator()<128>();
@@ -166,7 +166,7 @@ struct ReadSmiles {
     Contract contract = contracts(reading.smile);
     contract.spot = reading.spot;
     contract.strike = reading.strike;
-    const NormalizedPut put = put_of(contract);
+    const NormalizedPut put = normalize(contract);
     const Smile& smile = smiles(reading.smile);
     const SmileNodes nodes{values.data() + static_cast<std::size_t>(reading.smile) * SmileNodes::size(mesh),
                            mesh};

@@ -44,13 +44,13 @@ bool have_same_law(const Contract& a, const Contract& b) {
 }
 
 double variance_of(const Contract& contract, const double* panels, const int* panel_slot) {
-  const NormalizedPut put = put_of(contract);
+  const NormalizedPut put = normalize(contract);
   std::vector<double> memory(2 * Mixture::size + 2 * Mixture::low);
   double* const at = memory.data();
   const LevyMeasure<double> place{
       at, at + Mixture::size, at + 2 * Mixture::size, at + 2 * Mixture::size + Mixture::low, 0.0, 0.0};
   const LevyMeasure<double> law =
-      law_of(SerialWorkers<double>{}, pack_of<double>(&put), &put, panels, panel_slot, place);
+      make_levy_measure(SerialWorkers<double>{}, pack_puts<double>(&put), &put, panels, panel_slot, place);
   return put.variance + law.variance;
 }
 

@@ -171,7 +171,7 @@ class SurfaceImpl final : public Pricer {
   /// Enqueues the solves of the smiles begin .. end - 1 of the order, which have one model.
   void launch(Model model, const Resolution& effort, int begin, int end) {
     if (begin == end) return;
-    SmileFunctor<ExecutionSpace, 0, Laws::all> work{};
+    SmileFunctor<ExecutionSpace, 0, JumpClass::any> work{};
     work.batch.model = model;
     work.batch.contracts = _contracts;
     work.batch.order = Kokkos::View<const int*, Space>(_order.data() + begin, end - begin);

@@ -136,7 +136,7 @@ TEST(OptionsError, AnHourAtTheStrike) {
   // The order is low, but grids of 1024 do meet that.
   Contract heavy = put(Style::european, 1.0, 0.001, 0.002, {-3.0, 8.0, -4.5, 0.12});
   heavy.rate = 0.036;
-  EXPECT_EQ(priced_to(1e-4, {heavy}).front().outcome, Outcome::ok);
+  EXPECT_EQ(priced_to(1e-4, {heavy}).front().status, PriceStatus::ok);
 }
 
 // What cubic interpolation misses beside a sharp kink is more than its next term.
