@@ -3,51 +3,54 @@
 #include <string_view>
 #include <vector>
 
+#include "common/program/stopwatch.hpp"
 #include "kernels/options/pricer.hpp"
 #include "miniapps/options/command.hpp"
-#include "miniapps/options/desk.hpp"
-#include "miniapps/options/price_text.hpp"
-#include "miniapps/options/row_reader.hpp"
+#include "miniapps/options/input/row_reader.hpp"
+#include "miniapps/options/output/price_rows.hpp"
+#include "miniapps/options/parallel/work_queue.hpp"
 
 namespace drogue::options_app {
 
-/// Prices chunks of a batch on one rank: what comes in are lines, what goes out are lines.
-class BatchRun {
+/// Prices the chunks of a batch on one rank: parses their lines, prices the contracts, formats the output
+/// rows.
+class ChunkPricer {
  public:
-  /// `places` are those of the batch's BatchReader.
-  BatchRun(const Command& command, RowKind kind, const std::vector<int>& places, options::Pricer& pricer);
+  /// `columns`: column indices of the batch, from its `BatchReader`. Keeps references to `command` and
+  /// `pricer`.
+  ChunkPricer(const Command& command, RowKind kind, const std::vector<int>& columns, options::Pricer& pricer);
 
-  /// Prices what there is at the desk until that has no more or a signal comes, and tells it that it leaves,
-  /// also where it throws.
-  void work(Desk& desk);
+  /// Prices the chunks of `queue`. Blocks until the queue ends or a signal arrives. Reports the end of the
+  /// worker to the queue, also if it throws.
+  void run(WorkQueue& queue);
 
  private:
-  /// What a row of the prices is of.
-  struct Asked {
-    const Row* row;
+  /// Row of prices that is not written yet.
+  struct PendingRow {
+    const ContractRow* row;
     double strike, maturity;
-    std::string_view fault;  ///< a condition that these two break, of a surface; the row's own are in `row`
+    std::string_view point_error;  ///< condition that this strike or maturity of a surface violates, or empty
   };
 
-  void price(const Chunk& chunk, Desk& desk);
-  void add(const Row& row, const Chunk& chunk, Desk& desk);
-  void flush(Desk& desk);
+  void price_chunk(const Chunk& chunk, WorkQueue& queue);
+  void add_row(const ContractRow& row, const Chunk& chunk, WorkQueue& queue);
+  void price_pending(WorkQueue& queue);
   [[nodiscard]] std::vector<options::BoundaryPoint> boundary_of(const options::Contract& contract,
                                                                 const options::Price& price) const;
   void price_contracts();
-  void hand_in(Desk& desk, bool ends_chunk);
+  void submit(WorkQueue& queue, bool ends_chunk);
 
   const Command& _command;
-  Layout _layout;
+  RowLayout _layout;
   RowReader _reader;
   options::Pricer& _pricer;
-  std::vector<Row> _rows;
-  std::vector<Asked> _asked;                  ///< a row of the prices each
-  std::vector<options::Contract> _contracts;  ///< of those that are valid
+  std::vector<ContractRow> _rows;
+  std::vector<PendingRow> _pending;
+  std::vector<options::Contract> _contracts;  ///< the valid contracts of the pending rows, in order
   std::vector<options::Price> _prices;
-  Piece _piece;
-  Spent _spent;
-  double _begin = 0.0;  ///< of the chunk
+  ResultBatch _results;
+  WorkerUsage _usage;
+  Stopwatch _chunk_time;
   bool _is_stopped = false;
 };
 

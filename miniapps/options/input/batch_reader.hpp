@@ -5,40 +5,42 @@
 #include <vector>
 
 #include "common/csv/line_reader.hpp"
-#include "miniapps/options/chunk.hpp"
-#include "miniapps/options/row_reader.hpp"
+#include "miniapps/options/input/chunk.hpp"
+#include "miniapps/options/input/row_reader.hpp"
 
 namespace drogue::options_app {
 
-/// Reads the lines of a batch a chunk at a time.
+/// Reads the lines of a batch chunk by chunk.
 class BatchReader {
  public:
-  /// Reads the header. Throws Failure: usage for no file, invalid_scene for what is wrong with the header.
+  /// Reads the header. Throws `Failure`: usage for a missing file, invalid_scene for an invalid header.
   BatchReader(const std::filesystem::path& file, RowKind kind);
 
-  /// Replaces the lines of `chunk` by up to `most` more, fewer if they are long. False if there are none.
-  /// Throws Failure(io_error).
-  bool next(Chunk& chunk, std::size_t most);
+  /// Replaces the lines of `chunk` by at most `max_lines` further ones, fewer if they are long. Returns false
+  /// at the end of the file. Throws `Failure` (io_error).
+  bool next(Chunk& chunk, std::size_t max_lines);
 
-  /// Throws Failure(invalid_scene) if an id comes twice in the file; reads it from where it stands to the
-  /// end. A line that cannot be read has no say.
+  /// Reads the rest of the file. Throws `Failure` (invalid_scene) for a repeated id; lines that cannot be
+  /// read are not compared.
   void require_unique_ids();
 
-  /// Whether ids are given; if not, they are numbers of rows and need no check.
-  [[nodiscard]] bool has_ids() const { return _places.front() >= 0; }
+  /// False if the file has no column of ids: row numbers, which are unique, serve as ids.
+  [[nodiscard]] bool has_ids() const { return _columns.front() >= 0; }
 
-  /// Of each of the columns of its kind in a line, -1 for none.
-  [[nodiscard]] const std::vector<int>& places() const { return _places; }
+  /// Index in a line of each column of `columns_of(kind)`, -1 for an absent one.
+  [[nodiscard]] const std::vector<int>& columns() const { return _columns; }
 
-  /// What part of the file has been read, 0 .. 1.
+  /// Fraction of the file that has been read, 0 to 1.
   [[nodiscard]] double share() const { return _lines.share(); }
+
+  /// Number of rows read.
   [[nodiscard]] std::int64_t rows() const { return _rows; }
   [[nodiscard]] const std::filesystem::path& file() const { return _lines.file(); }
 
  private:
   csv::LineReader _lines;
   RowKind _kind;
-  std::vector<int> _places;
+  std::vector<int> _columns;
   csv::Line _line;
   std::int64_t _rows = 0, _chunks = 0;
 };

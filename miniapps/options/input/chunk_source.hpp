@@ -1,35 +1,36 @@
 #pragma once
 
-#include "miniapps/options/batch_reader.hpp"
 #include "miniapps/options/command.hpp"
+#include "miniapps/options/input/batch_reader.hpp"
 
 namespace drogue::options_app {
 
-/// Cuts a batch into chunks that take about a tenth of a second each: an answer to Ctrl-C, and work enough
-/// for a device. Towards the end of a batch that several ranks share they become smaller, so that no rank
-/// waits long for the last one.
+/// Divides a batch into chunks of about a tenth of a second each: short enough to respond to Ctrl-C, and
+/// large enough to occupy a device. Towards the end of a batch that several ranks share the chunks shrink,
+/// which balances the load.
 class ChunkSource {
  public:
+  /// `ranks`: number of ranks that share the batch. Keeps a reference to `reader`.
   ChunkSource(const Command& command, BatchReader& reader, int ranks);
 
-  /// False at the end of the batch. Throws Failure(io_error).
+  /// Reads the next chunk; false at the end of the batch. Throws `Failure` (io_error).
   bool next(Chunk& chunk);
 
-  /// Learns from a chunk of `rows` rows that took so long.
-  void learn(std::int64_t rows, double seconds);
+  /// Adapts the chunk size to the wall time, s, of a chunk of `rows` rows.
+  void adapt(std::int64_t rows, double seconds);
 
-  /// What part of the file has been read, 0 .. 1.
+  /// Fraction of the file that has been read, 0 to 1.
   [[nodiscard]] double share() const { return _reader.share(); }
 
  private:
-  [[nodiscard]] std::size_t rows_wanted() const;
+  [[nodiscard]] std::size_t next_row_count() const;
 
   BatchReader& _reader;
-  bool _is_fixed;
+  bool _is_fixed;  ///< `--chunk` sets the size
   int _ranks;
-  std::size_t _contracts_a_row;
-  std::size_t _least;      ///< strikes of a maturity share solves if they are in one chunk
-  std::size_t _contracts;  ///< of a chunk
+  std::size_t _contracts_per_row;
+  std::size_t _min_contracts;  ///< at least all strikes of a maturity, which share solves within a chunk
+  std::size_t _contracts;      ///< contracts per chunk
 };
 
 }  // namespace drogue::options_app

@@ -1,4 +1,4 @@
-#include "miniapps/options/columns.hpp"
+#include "miniapps/options/input/columns.hpp"
 
 #include <algorithm>
 

@@ -7,23 +7,23 @@
 
 namespace drogue::options_app {
 
-/// What a column of numbers sets.
+/// Column of a member of `Contract`.
 struct NumberColumn {
   const char* name;
-  double options::Contract::*member;  ///< null for a parameter of a model
+  double options::Contract::*member;
   bool required;
 };
 
-/// A parameter of a model: its column, and its place in `Contract::jump`.
+/// Column of a parameter of one model; models share a column by its name.
 struct ModelParameter {
   const char* name;
   options::Model model;
-  int place;
+  int index;  ///< in `Contract::jump`
 };
 
-/// A word that a column may hold, and what it means.
+/// Text of an enumerated column and its value.
 template <class Value>
-struct Word {
+struct Keyword {
   const char* text;
   Value value;
 };
@@ -48,15 +48,16 @@ inline constexpr ModelParameter model_parameters[] = {
     {"down_rate", options::Model::kou, 3},
 };
 
-inline constexpr Word<options::Style> styles[] = {{"american", options::Style::american},
-                                                  {"european", options::Style::european}};
-inline constexpr Word<options::Type> types[] = {{"put", options::Type::put}, {"call", options::Type::call}};
-inline constexpr Word<options::Model> models[] = {{"gh", options::Model::generalized_hyperbolic},
-                                                  {"black-scholes", options::Model::black_scholes},
-                                                  {"merton", options::Model::merton},
-                                                  {"kou", options::Model::kou}};
+inline constexpr Keyword<options::Style> styles[] = {{"american", options::Style::american},
+                                                     {"european", options::Style::european}};
+inline constexpr Keyword<options::Type> types[] = {{"put", options::Type::put},
+                                                   {"call", options::Type::call}};
+inline constexpr Keyword<options::Model> models[] = {{"gh", options::Model::generalized_hyperbolic},
+                                                     {"black-scholes", options::Model::black_scholes},
+                                                     {"merton", options::Model::merton},
+                                                     {"kou", options::Model::kou}};
 
-/// Every column that an input may have, in the order in which they are listed.
+/// Names of all valid input columns, without repetitions.
 [[nodiscard]] std::vector<std::string> input_columns();
 
 }  // namespace drogue::options_app

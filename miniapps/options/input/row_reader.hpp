@@ -12,54 +12,54 @@
 
 namespace drogue::options_app {
 
-/// One row of a batch; a row with a `fault` cannot be priced.
-struct Row {
-  std::string id;  ///< empty where the line or its id cannot be read
+/// Row of a batch.
+struct ContractRow {
+  std::string id;  ///< empty if the line or its id cannot be read
   options::Contract contract;
-  std::string fault;      ///< a sentence on what is wrong, or empty
-  std::int64_t line = 0;  ///< in the file
+  std::string error_message;  ///< reason for which the row is invalid, or empty
+  std::int64_t line = 0;      ///< line number in the file
 };
 
-/// What the rows of a file describe.
+/// Content of the rows of a file.
 enum class RowKind {
-  contract,       ///< an option: every column
-  parameter_set,  ///< of a surface: neither `strike` nor `maturity`
+  contract,       ///< an option: all columns
+  parameter_set,  ///< a parameter set of a surface: all columns but `strike` and `maturity`
 };
 
-/// Makes rows of the lines behind a header.
+/// Converts lines after the header to rows. Does not throw.
 class RowReader {
  public:
-  /// `places`: of each of `columns_of(kind)` in a line, -1 for none.
-  RowReader(RowKind kind, const std::vector<int>& places);
+  /// `columns`: index in a line of each of `columns_of(kind)`, -1 for an absent one.
+  RowReader(RowKind kind, const std::vector<int>& columns);
 
-  /// The row of a line, which is the `number`th of its batch.
-  void read(const csv::Line& line, std::int64_t number, Row& row);
+  /// Reads a line as row `number` of its batch, counted from 1. An invalid row has an error message.
+  void read(const csv::Line& line, std::int64_t number, ContractRow& row);
 
-  /// The id of that row alone, which no other row may have; valid until the next line is read. None of a
-  /// line that cannot be read: what seems to be its id refuses no other row.
-  [[nodiscard]] std::optional<std::string_view> own_id(const csv::Line& line, std::int64_t number);
+  /// Id of that row if the line can be read; valid until the next line is read. The id of an unreadable line
+  /// is excluded from the check for repeated ids.
+  [[nodiscard]] std::optional<std::string_view> unique_id(const csv::Line& line, std::int64_t number);
 
  private:
   void split(const csv::Line& line);
   std::string_view read_id(const csv::Line& line, std::int64_t number);
-  void read_contract(Row& row) const;
-  void read_words(Row& row) const;
-  void read_parameters(Row& row) const;
-  void read_number(Row& row, const char* name, int place, bool required, double& value) const;
-  [[nodiscard]] std::string_view field(int place) const;
+  void read_contract(ContractRow& row) const;
+  void read_keywords(ContractRow& row) const;
+  void read_parameters(ContractRow& row) const;
+  void read_number(ContractRow& row, const char* name, int column, bool required, double& value) const;
+  [[nodiscard]] std::string_view field(int column) const;
 
   RowKind _kind;
-  std::size_t _columns = 0;
-  int _id_place, _model, _style, _type;
-  std::vector<int> _numbers, _parameters;
+  std::size_t _column_count = 0;
+  int _id_column, _model_column, _style_column, _type_column;
+  std::vector<int> _number_columns, _parameter_columns;
   csv::Fields _fields;
-  std::string _id, _fault;
+  std::string _id, _line_error;
 };
 
-/// The names that a header of such a file may hold.
+/// Names of the valid columns of a file.
 [[nodiscard]] std::vector<std::string> columns_of(RowKind kind);
 
-/// The first column that every row of the file needs and that has no place; null if there is none.
-[[nodiscard]] const char* missing_column(RowKind kind, const std::vector<int>& places);
+/// First column that every row requires and that is absent (index -1 in `columns`); null if there is none.
+[[nodiscard]] const char* missing_column(RowKind kind, const std::vector<int>& columns);
 
 }  // namespace drogue::options_app

@@ -5,46 +5,50 @@
 
 #include "common/run/atomic_file.hpp"
 #include "miniapps/options/command.hpp"
-#include "miniapps/options/price_text.hpp"
+#include "miniapps/options/output/price_rows.hpp"
+#include "miniapps/options/output/result_batch.hpp"
 
 namespace drogue::options_app {
 
-/// What the rows of a run's prices hold.
-[[nodiscard]] Layout layout_of(const Command& command);
+/// Layout of the rows of prices that a command line requests.
+[[nodiscard]] RowLayout row_layout(const Command& command);
 
-/// Throws Failure(usage) where an output is the input, another output or a directory. Devices may be given
-/// twice.
+/// Throws `Failure` (usage) if an output is the input, another output or a directory. A device may serve
+/// several outputs.
 void check_outputs(const Command& command, const std::filesystem::path& input);
 
-/// The files of prices and, if asked for, of exercise boundaries; each appears under its name when all of it
-/// is on disk, but for a device or a pipe, which is written to as prices come. All functions throw
-/// Failure(io_error).
-class Outputs {
+/// Files of prices and, if requested, of exercise boundaries. Each appears complete under its name at the
+/// commit; a device or pipe is written directly. All functions throw `Failure` (io_error).
+class OutputFiles {
  public:
-  explicit Outputs(const Command& command);
+  /// Opens the files and writes their headers.
+  explicit OutputFiles(const Command& command);
 
-  /// Writes the rows of the next piece.
-  void write(const Piece& piece);
+  /// Appends the rows of a batch of results and adds its counts.
+  void write(const ResultBatch& batch);
+
+  /// Writes all rows to disk and gives the files their names.
   void commit();
 
-  /// Removes what has been written, which no commit() may follow.
+  /// Removes the unfinished files. No other function may follow.
   void discard();
 
-  [[nodiscard]] const Tally& tally() const { return _tally; }
+  /// Counts of all rows written.
+  [[nodiscard]] const RowCounts& counts() const { return _counts; }
 
  private:
-  /// Joins small pieces: a call of the system costs more than a row.
+  /// File behind a buffer: a system call costs more than formatting a row.
   struct File {
     explicit File(const std::filesystem::path& path) : file(path) {}
     void write(std::string_view rows);
     void commit();
 
     run::AtomicFile file;
-    std::string text;
+    std::string buffer;
   };
 
   std::optional<File> _prices, _boundaries;
-  Tally _tally;
+  RowCounts _counts;
 };
 
 }  // namespace drogue::options_app

@@ -1,4 +1,4 @@
-#include "miniapps/options/price_text.hpp"
+#include "miniapps/options/output/price_rows.hpp"
 
 #include <limits>
 
@@ -8,35 +8,36 @@
 namespace drogue::options_app {
 namespace {
 
-const char* status(const Layout& layout, const options::Price& price) {
-  switch (price.outcome) {
-    case options::Outcome::ok:
+/// Fields `status` and `message`, with the commas around them.
+const char* status_fields(const RowLayout& layout, const options::Price& price) {
+  switch (price.status) {
+    case options::PriceStatus::ok:
       return ",ok,";
-    case options::Outcome::coarse:
+    case options::PriceStatus::coarse:
       return ",coarse,";
-    case options::Outcome::failed:
+    case options::PriceStatus::failed:
       break;
   }
   switch (price.failure) {
-    case options::Failure::too_large:
+    case options::FailureReason::discount_overflow:
       return ",failed,e^(-rate maturity) (of a call -dividend maturity) is too large a number";
-    case options::Failure::no_grid:
+    case options::FailureReason::no_grid:
       return ",failed,no grid reaches as far as this law does until maturity";
-    case options::Failure::grown:
-      return layout.grid_given
+    case options::FailureReason::unstable:
+      return layout.grid_is_fixed
                  ? ",failed,the values grew without bound: more --steps or another --mesh or --method cos "
                    "may price it"
                  : ",failed,the values grew without bound on all grids that --tolerance tries: --mesh "
                    "and --steps together instead of it or --method cos may price it";
-    case options::Failure::stiff:
+    case options::FailureReason::stiff:
       return ",failed,the values grew without bound: more happens until maturity than steps can follow; "
              "--method cos may price it";
-    case options::Failure::overflow:
+    case options::FailureReason::coefficient_overflow:
       return ",failed,finite differences of this law and these rates need numbers beyond all range; "
              "--method cos may price it";
-    case options::Failure::series:
+    case options::FailureReason::fourier_not_finite:
       return ",failed,the Fourier integral or series of this law and maturity is not finite";
-    case options::Failure::none:
+    case options::FailureReason::none:
       break;
   }
   return ",failed,";
@@ -48,37 +49,37 @@ void append_next(std::string& text, Number value) {
   csv::append_number(text, value);
 }
 
-/// Ends a row that begins like those of the layout and has no price.
-void append_fault(Piece& piece, const Row& row, std::string_view fault) {
-  piece.prices += ",,,,,,,,,invalid,";
-  // Without an id the line is what tells which row it is.
-  csv::append_field(piece.prices, row.id.empty()
-                                      ? "line " + std::to_string(row.line) + ": " + std::string(fault)
-                                      : std::string(fault));
-  piece.prices += '\n';
-  Tally& tally = piece.tally;
-  ++tally.rows;
-  if (tally.invalid++ > 0) return;
-  tally.invalid_line = row.line;
-  tally.invalid_fault = fault;
+/// Completes a row without a price, whose id, strike and maturity are written, and counts it. A row without
+/// an id is identified by its line number in the message.
+void append_error(ResultBatch& batch, const ContractRow& row, std::string_view message) {
+  batch.prices += ",,,,,,,,,invalid,";
+  csv::append_field(batch.prices, row.id.empty()
+                                      ? "line " + std::to_string(row.line) + ": " + std::string(message)
+                                      : std::string(message));
+  batch.prices += '\n';
+  RowCounts& counts = batch.counts;
+  ++counts.rows;
+  if (counts.invalid++ > 0) return;
+  counts.invalid_line = row.line;
+  counts.invalid_message = message;
 }
 
 }  // namespace
 
-std::string price_header(const Layout& layout) {
+std::string price_header(const RowLayout& layout) {
   return std::string(layout.surface ? "id,strike,maturity," : "id,") +
          "price,error,delta,gamma,theta,exercise_boundary,mesh,steps,status,message\n";
 }
 
-void append_price(Piece& piece, const Layout& layout, const Row& row, const options::Contract& contract,
-                  const options::Price& price) {
-  std::string& text = piece.prices;
+void append_price(ResultBatch& batch, const RowLayout& layout, const ContractRow& row,
+                  const options::Contract& contract, const options::Price& price) {
+  std::string& text = batch.prices;
   csv::append_field(text, row.id);
   if (layout.surface) {
     append_next(text, contract.strike);
     append_next(text, contract.maturity);
   }
-  if (price.outcome == options::Outcome::failed) {
+  if (price.status == options::PriceStatus::failed) {
     text += ",,,,,,,,";
   } else {
     append_next(text, price.price);
@@ -89,35 +90,36 @@ void append_price(Piece& piece, const Layout& layout, const Row& row, const opti
     append_next(text, price.mesh);
     append_next(text, price.steps);
   }
-  text += status(layout, price);
+  text += status_fields(layout, price);
   text += '\n';
-  Tally& tally = piece.tally;
-  ++tally.rows;
-  if (price.outcome == options::Outcome::coarse) ++tally.coarse;
-  if (price.outcome == options::Outcome::failed && tally.failed++ == 0) tally.failed_line = row.line;
+  RowCounts& counts = batch.counts;
+  ++counts.rows;
+  if (price.status == options::PriceStatus::coarse) ++counts.coarse;
+  if (price.status == options::PriceStatus::failed && counts.failed++ == 0) counts.failed_line = row.line;
 }
 
-void append_invalid(Piece& piece, const Layout& layout, const Row& row) {
-  csv::append_field(piece.prices, row.id);
-  if (layout.surface) piece.prices += ",,";
-  append_fault(piece, row, row.fault);
+void append_invalid(ResultBatch& batch, const RowLayout& layout, const ContractRow& row) {
+  csv::append_field(batch.prices, row.id);
+  if (layout.surface) batch.prices += ",,";
+  append_error(batch, row, row.error_message);
 }
 
-void append_invalid_point(Piece& piece, const Row& row, double strike, double maturity,
-                          std::string_view fault) {
-  csv::append_field(piece.prices, row.id);
-  append_next(piece.prices, strike);
-  append_next(piece.prices, maturity);
-  append_fault(piece, row, fault);
-  ++piece.tally.invalid_points;
+void append_invalid_point(ResultBatch& batch, const ContractRow& row, double strike, double maturity,
+                          std::string_view message) {
+  csv::append_field(batch.prices, row.id);
+  append_next(batch.prices, strike);
+  append_next(batch.prices, maturity);
+  append_error(batch, row, message);
+  ++batch.counts.invalid_points;
 }
 
-void append_boundary(Piece& piece, const Row& row, std::span<const options::BoundaryPoint> points) {
+void append_boundary(ResultBatch& batch, const ContractRow& row,
+                     std::span<const options::BoundaryPoint> points) {
   for (const options::BoundaryPoint& point : points) {
-    csv::append_field(piece.boundaries, row.id);
-    append_next(piece.boundaries, point.time);
-    append_next(piece.boundaries, point.spot);
-    piece.boundaries += '\n';
+    csv::append_field(batch.boundaries, row.id);
+    append_next(batch.boundaries, point.time);
+    append_next(batch.boundaries, point.spot);
+    batch.boundaries += '\n';
   }
 }
 

@@ -6,37 +6,38 @@
 
 #include "kernels/options/contract.hpp"
 #include "kernels/options/pricer.hpp"
-#include "miniapps/options/chunk.hpp"
-#include "miniapps/options/row_reader.hpp"
+#include "miniapps/options/input/row_reader.hpp"
+#include "miniapps/options/output/result_batch.hpp"
 
 namespace drogue::options_app {
 
-/// What rows of prices hold beside prices.
-struct Layout {
-  bool surface = false;     ///< the strike and the maturity, behind the id
-  bool greeks = false;      ///< delta, gamma, theta; else their fields are empty
-  bool grid_given = false;  ///< by mesh and steps, which then may be advised; else the tolerance chooses
+/// Layout of the rows of prices.
+struct RowLayout {
+  bool surface = false;        ///< strike and maturity follow the id
+  bool greeks = false;         ///< delta, gamma and theta are filled in; else their fields are empty
+  bool grid_is_fixed = false;  ///< mesh and steps are options of the run; else the tolerance chooses them
 };
 
-/// The line that names the columns of the prices.
-[[nodiscard]] std::string price_header(const Layout& layout);
+/// Header line of the file of prices.
+[[nodiscard]] std::string price_header(const RowLayout& layout);
 
-/// Appends a row that was priced: a number that is none gives an empty field.
-void append_price(Piece& piece, const Layout& layout, const Row& row, const options::Contract& contract,
-                  const options::Price& price);
+/// Appends the row of a priced contract and counts it. NaN becomes an empty field.
+void append_price(ResultBatch& batch, const RowLayout& layout, const ContractRow& row,
+                  const options::Contract& contract, const options::Price& price);
 
-/// Appends a row with a fault.
-void append_invalid(Piece& piece, const Layout& layout, const Row& row);
+/// Appends and counts an invalid row, which has an error message.
+void append_invalid(ResultBatch& batch, const RowLayout& layout, const ContractRow& row);
 
-/// Appends a strike and maturity of a surface that the parameter set of `row`, which is valid, has no price
-/// for.
-void append_invalid_point(Piece& piece, const Row& row, double strike, double maturity,
-                          std::string_view fault);
+/// Appends and counts a point of a surface that is invalid although its parameter set `row` is valid.
+/// `strike` in money, `maturity` in years.
+void append_invalid_point(ResultBatch& batch, const ContractRow& row, double strike, double maturity,
+                          std::string_view message);
 
-/// The line that names the columns of exercise boundaries.
+/// Header line of the file of exercise boundaries.
 inline constexpr const char* boundary_header = "id,time,spot\n";
 
-/// Appends a row a point.
-void append_boundary(Piece& piece, const Row& row, std::span<const options::BoundaryPoint> points);
+/// Appends one line per point of an exercise boundary.
+void append_boundary(ResultBatch& batch, const ContractRow& row,
+                     std::span<const options::BoundaryPoint> points);
 
 }  // namespace drogue::options_app

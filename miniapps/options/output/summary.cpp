@@ -1,4 +1,4 @@
-#include "miniapps/options/summary.hpp"
+#include "miniapps/options/output/summary.hpp"
 
 #include <cstdio>
 #include <string>
@@ -9,79 +9,81 @@
 namespace drogue::options_app {
 namespace {
 
-std::int64_t priced_well(const Tally& tally) {
-  return tally.rows - tally.coarse - tally.invalid - tally.failed;
+std::int64_t ok_rows(const RowCounts& counts) {
+  return counts.rows - counts.coarse - counts.invalid - counts.failed;
 }
 
-std::string counted(std::int64_t number, const char* what) { return std::to_string(number) + what; }
+/// Text of a number and its noun: `3 rows`.
+std::string counted(std::int64_t number, const char* noun) { return std::to_string(number) + noun; }
 
-std::string share(std::int64_t number, std::int64_t all, const char* what) {
-  return counted(number, " of ") + counted(all, what);
+/// Text `1 of 3 rows`.
+std::string fraction(std::int64_t number, std::int64_t all, const char* noun) {
+  return counted(number, " of ") + counted(all, noun);
 }
 
-// What is invalid of a surface are parameter sets, rows of the input, or points of valid ones; what is priced
-// are points, rows of the output.
+// A surface may have invalid parameter sets, which are input rows, and invalid points of valid sets, which
+// are output rows. Each invalid set has one output row.
 
-std::int64_t invalid_sets(const Tally& tally) { return tally.invalid - tally.invalid_points; }
+std::int64_t invalid_sets(const RowCounts& counts) { return counts.invalid - counts.invalid_points; }
 
-std::int64_t points(const Tally& tally) { return tally.rows - invalid_sets(tally); }
+std::int64_t points(const RowCounts& counts) { return counts.rows - invalid_sets(counts); }
 
-std::string invalid_of_surface(const Tally& tally, std::int64_t sets) {
-  const std::string of_sets = share(invalid_sets(tally), sets, " parameter sets"),
-                    of_points = share(tally.invalid_points, points(tally), " prices");
-  return (tally.invalid_points == 0  ? of_sets
-          : invalid_sets(tally) == 0 ? of_points
-                                     : of_sets + " and " + of_points) +
+std::string invalid_part_of_surface(const RowCounts& counts, std::int64_t sets) {
+  const std::string of_sets = fraction(invalid_sets(counts), sets, " parameter sets"),
+                    of_points = fraction(counts.invalid_points, points(counts), " prices");
+  return (counts.invalid_points == 0  ? of_sets
+          : invalid_sets(counts) == 0 ? of_points
+                                      : of_sets + " and " + of_points) +
          " invalid";
 }
 
 }  // namespace
 
-void print_summary(const Command& command, const run::ResultDocument& result, const Tally& tally,
-                   std::int64_t read) {
+void print_summary(const Command& command, const run::ResultDocument& result, const RowCounts& counts,
+                   std::int64_t input_rows) {
   char time[32];
   std::snprintf(time, sizeof time, " in %.3g s: ", result.timing.wall_s);
   std::string text = result.scene + " on " + result.backend + ": ";
   if (command.action == Action::surface)
-    text += counted(read, " parameter sets") + time + counted(invalid_sets(tally), " invalid; ") +
-            counted(points(tally), " prices: ") + counted(priced_well(tally), " ok, ") +
-            counted(tally.coarse, " coarse, ") + counted(tally.invalid_points, " invalid, ");
+    text += counted(input_rows, " parameter sets") + time + counted(invalid_sets(counts), " invalid; ") +
+            counted(points(counts), " prices: ") + counted(ok_rows(counts), " ok, ") +
+            counted(counts.coarse, " coarse, ") + counted(counts.invalid_points, " invalid, ");
   else
-    text += counted(tally.rows, " rows") + time + counted(priced_well(tally), " ok, ") +
-            counted(tally.coarse, " coarse, ") + counted(tally.invalid, " invalid, ");
-  text += counted(tally.failed, " failed\n") + "prices in " + command.out.string() + "\n";
+    text += counted(counts.rows, " rows") + time + counted(ok_rows(counts), " ok, ") +
+            counted(counts.coarse, " coarse, ") + counted(counts.invalid, " invalid, ");
+  text += counted(counts.failed, " failed\n") + "prices in " + command.out.string() + "\n";
   if (!command.boundary.empty()) text += "boundaries in " + command.boundary.string() + "\n";
   std::fputs(text.c_str(), stdout);
 }
 
-void require_priced_rows(const Command& command, const Tally& tally, const BatchReader& reader) {
+void require_all_priced(const Command& command, const RowCounts& counts, const BatchReader& reader) {
   const bool surface = command.action == Action::surface;
-  const std::string rest = std::string(surface ? "; all others are" : "; every other row is") +
-                           " priced in '" + command.out.string() + "'";
-  const std::string invalid = surface ? invalid_of_surface(tally, reader.rows())
-                                      : share(tally.invalid, reader.rows(), " rows invalid");
-  if (tally.failed > 0) {
-    std::string told = (surface ? share(tally.failed, points(tally), " prices failed")
-                                : share(tally.failed, tally.rows, " rows failed")) +
-                       ", the first in line " + std::to_string(tally.failed_line);
-    if (tally.invalid > 0)
-      told += ", and " + invalid + ", the first in line " + std::to_string(tally.invalid_line);
-    throw Failure(ExitCode::numerical_failure, told + rest);
+  const std::string others = std::string(surface ? "; all others are" : "; every other row is") +
+                             " priced in '" + command.out.string() + "'";
+  const std::string invalid = surface ? invalid_part_of_surface(counts, reader.rows())
+                                      : fraction(counts.invalid, reader.rows(), " rows invalid");
+  if (counts.failed > 0) {
+    std::string sentence = (surface ? fraction(counts.failed, points(counts), " prices failed")
+                                    : fraction(counts.failed, counts.rows, " rows failed")) +
+                           ", the first in line " + std::to_string(counts.failed_line);
+    if (counts.invalid > 0)
+      sentence += ", and " + invalid + ", the first in line " + std::to_string(counts.invalid_line);
+    throw Failure(ExitCode::numerical_failure, sentence + others);
   }
-  if (tally.invalid > 0)
-    throw csv::invalid_at(reader.file(), tally.invalid_line,
-                          tally.invalid_fault + " (" + invalid + rest + ")");
+  if (counts.invalid > 0)
+    throw csv::invalid_at(reader.file(), counts.invalid_line,
+                          counts.invalid_message + " (" + invalid + others + ")");
 }
 
-void count_rows(const Tally& tally, run::ResultDocument& result) {
+void describe_counts(const RowCounts& counts, run::ResultDocument& result) {
   const auto set = [&result](const char* name, std::int64_t rows) {
     result.metrics.set("counts", name, rows);
   };
-  set("coarse", tally.coarse);
-  set("failed", tally.failed);
-  set("invalid", tally.invalid);
-  set("ok", priced_well(tally));
-  set("rows", tally.rows);
+  set("coarse", counts.coarse);
+  set("failed", counts.failed);
+  set("invalid", counts.invalid);
+  set("ok", ok_rows(counts));
+  set("rows", counts.rows);
 }
 
 }  // namespace drogue::options_app

@@ -3,21 +3,20 @@
 #include <cstdint>
 
 #include "common/run/result_document.hpp"
-#include "miniapps/options/batch_reader.hpp"
-#include "miniapps/options/chunk.hpp"
 #include "miniapps/options/command.hpp"
+#include "miniapps/options/input/batch_reader.hpp"
+#include "miniapps/options/output/result_batch.hpp"
 
 namespace drogue::options_app {
 
-/// Tells on standard output how many rows ended how, and where the prices are. `read`: rows of the input.
-void print_summary(const Command& command, const run::ResultDocument& result, const Tally& tally,
-                   std::int64_t read);
+/// Prints the numbers of rows by status and the names of the files. `input_rows`: rows of the input.
+void print_summary(const Command& command, const run::ResultDocument& result, const RowCounts& counts,
+                   std::int64_t input_rows);
 
-/// Throws Failure where rows did not end well: numerical_failure if one failed, else invalid_scene if one is
-/// invalid.
-void require_priced_rows(const Command& command, const Tally& tally, const BatchReader& reader);
+/// Throws `Failure`: numerical_failure if a row failed, else invalid_scene if a row is invalid.
+void require_all_priced(const Command& command, const RowCounts& counts, const BatchReader& reader);
 
-/// How many rows of the output ended how.
-void count_rows(const Tally& tally, run::ResultDocument& result);
+/// Sets the group `counts` of result.json.
+void describe_counts(const RowCounts& counts, run::ResultDocument& result);
 
 }  // namespace drogue::options_app

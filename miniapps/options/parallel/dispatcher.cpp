@@ -1,4 +1,4 @@
-#include "miniapps/options/dispatcher.hpp"
+#include "miniapps/options/parallel/dispatcher.hpp"
 
 #include <utility>
 
@@ -8,42 +8,42 @@
 namespace drogue::options_app {
 namespace {
 
-constexpr int chunks_a_helper = 2;  // one that is priced and one that waits
+constexpr int chunks_per_worker = 2;  // one in progress and one waiting
 
-std::size_t size_of(const Piece& piece) { return piece.prices.size() + piece.boundaries.size(); }
+std::size_t bytes_of(const ResultBatch& batch) { return batch.prices.size() + batch.boundaries.size(); }
 
 }  // namespace
 
-Dispatcher::Dispatcher(ChunkSource& source, Outputs& outputs, ProgressLine& progress,
-                       std::vector<Helper*> helpers, std::size_t most_held)
+Dispatcher::Dispatcher(ChunkSource& source, OutputFiles& outputs, ProgressLine& progress,
+                       std::vector<WorkerProxy*> workers, std::size_t max_pending_bytes)
     : _source(source),
       _outputs(outputs),
       _progress(progress),
-      _helpers(std::move(helpers)),
-      _most_held(most_held),
-      _given(_helpers.size(), 0),
-      _has_left(_helpers.size(), false) {}
+      _workers(std::move(workers)),
+      _max_pending_bytes(max_pending_bytes),
+      _assigned(_workers.size(), 0),
+      _is_finished(_workers.size(), false) {}
 
 bool Dispatcher::run() {
   try {
-    const bool is_complete = hand_out();
-    // Before others are waited for: a launcher that ends all of them does not wait long.
+    const bool is_complete = dispatch();
+    // Before the wait for the workers: a launcher that ends all ranks may not wait that long.
     if (!is_complete) _outputs.discard();
-    dismiss();
+    shut_down_workers();
     return is_complete;
   } catch (...) {
-    dismiss();
+    shut_down_workers();
     throw;
   }
 }
 
-bool Dispatcher::hand_out() {
+bool Dispatcher::dispatch() {
   Backoff pause;
-  while (!interrupted() && _helpers_left == 0) {
-    const bool gave = give();
-    const bool took = take();
-    if (_is_read && _open.empty()) return true;
-    if (gave || took) {
+  while (!interrupted() && _finished_workers == 0) {
+    const bool assigned = assign_chunks();
+    const bool received = receive_results();
+    if (_input_exhausted && _open.empty()) return true;
+    if (assigned || received) {
       pause.reset();
     } else {
       pause.wait();
@@ -52,79 +52,79 @@ bool Dispatcher::hand_out() {
   return false;
 }
 
-bool Dispatcher::give() {
-  bool gave = false;
-  for (std::size_t i = 0; i < _helpers.size(); ++i) {
-    if (_is_read || _given[i] == chunks_a_helper) continue;
+bool Dispatcher::assign_chunks() {
+  bool assigned = false;
+  for (std::size_t i = 0; i < _workers.size(); ++i) {
+    if (_input_exhausted || _assigned[i] == chunks_per_worker) continue;
     Chunk chunk;
     if (!_source.next(chunk)) {
-      _is_read = true;
-      return gave;
+      _input_exhausted = true;
+      return assigned;
     }
-    _helpers[i]->give(std::move(chunk));
-    ++_given[i];
+    _workers[i]->assign(std::move(chunk));
+    ++_assigned[i];
     _open.push_back({i, {}});
-    gave = true;
+    assigned = true;
   }
-  return gave;
+  return assigned;
 }
 
-bool Dispatcher::take() {
-  bool took = false;
-  for (std::size_t i = 0; i < _helpers.size(); ++i) {
-    const bool has_first = !_open.empty() && _open.front().helper == i;
-    if (!has_first && _held > _most_held) continue;
-    if (std::optional<Piece> piece = _helpers[i]->take()) {
-      accept(i, *std::move(piece));
-      took = true;
+bool Dispatcher::receive_results() {
+  bool received = false;
+  for (std::size_t i = 0; i < _workers.size(); ++i) {
+    const bool has_next_rows = !_open.empty() && _open.front().worker == i;
+    if (!has_next_rows && _pending_bytes > _max_pending_bytes) continue;
+    if (std::optional<ResultBatch> batch = _workers[i]->receive()) {
+      accept(i, *std::move(batch));
+      received = true;
     }
   }
-  return took;
+  return received;
 }
 
-void Dispatcher::accept(std::size_t helper, Piece piece) {
-  if (piece.leaves) return note_leaving(helper, piece);
-  Open& open = _open[static_cast<std::size_t>(piece.chunk - _first)];
-  open.rows += piece.tally.rows;
-  open.is_ended = piece.ends_chunk;
-  if (piece.ends_chunk) {
-    --_given[helper];
-    _source.learn(open.rows, piece.seconds);
+void Dispatcher::accept(std::size_t worker, ResultBatch batch) {
+  if (batch.worker_finished) return note_finished(worker, batch);
+  OpenChunk& open = _open[static_cast<std::size_t>(batch.chunk - _first_chunk)];
+  open.rows += batch.counts.rows;
+  open.is_complete = batch.ends_chunk;
+  if (batch.ends_chunk) {
+    --_assigned[worker];
+    _source.adapt(open.rows, batch.chunk_seconds);
   }
-  _held += size_of(piece);
-  open.pieces.push_back(std::move(piece));
-  write_first();
+  _pending_bytes += bytes_of(batch);
+  open.results.push_back(std::move(batch));
+  write_in_order();
 }
 
-/// Writes what stands in the order of the input from where the last row was written.
-void Dispatcher::write_first() {
+/// Writes all results that follow the last written row without a gap.
+void Dispatcher::write_in_order() {
   while (!_open.empty()) {
-    Open& open = _open.front();
-    for (; !open.pieces.empty(); open.pieces.pop_front()) {
-      _outputs.write(open.pieces.front());
-      _held -= size_of(open.pieces.front());
+    OpenChunk& open = _open.front();
+    for (; !open.results.empty(); open.results.pop_front()) {
+      _outputs.write(open.results.front());
+      _pending_bytes -= bytes_of(open.results.front());
     }
-    if (!open.is_ended) break;
+    if (!open.is_complete) break;
     _open.pop_front();
-    ++_first;
+    ++_first_chunk;
   }
-  _progress.update_rows(_outputs.tally().rows, _source.share());
+  _progress.update_rows(_outputs.counts().rows, _source.share());
 }
 
-void Dispatcher::note_leaving(std::size_t helper, const Piece& piece) {
-  _has_left[helper] = true;
-  ++_helpers_left;
-  _spent.add(piece.spent);
+void Dispatcher::note_finished(std::size_t worker, const ResultBatch& batch) {
+  _is_finished[worker] = true;
+  ++_finished_workers;
+  _usage.add(batch.usage);
 }
 
-void Dispatcher::dismiss() {
-  for (Helper* helper : _helpers) helper->dismiss();
+/// Requests that all workers stop, and blocks until they have. Drops results that are not written.
+void Dispatcher::shut_down_workers() {
+  for (WorkerProxy* worker : _workers) worker->shutdown();
   Backoff pause;
-  while (_helpers_left < _helpers.size()) {
-    for (std::size_t i = 0; i < _helpers.size(); ++i) {
-      // What is not written yet never will be.
-      const std::optional<Piece> piece = _has_left[i] ? std::nullopt : _helpers[i]->take();
-      if (piece && piece->leaves) note_leaving(i, *piece);
+  while (_finished_workers < _workers.size()) {
+    for (std::size_t i = 0; i < _workers.size(); ++i) {
+      const std::optional<ResultBatch> batch = _is_finished[i] ? std::nullopt : _workers[i]->receive();
+      if (batch && batch->worker_finished) note_finished(i, *batch);
     }
     pause.wait();
   }

@@ -4,59 +4,60 @@
 #include <vector>
 
 #include "common/program/progress.hpp"
-#include "miniapps/options/chunk_source.hpp"
-#include "miniapps/options/desk.hpp"
-#include "miniapps/options/outputs.hpp"
+#include "miniapps/options/input/chunk_source.hpp"
+#include "miniapps/options/output/output_files.hpp"
+#include "miniapps/options/parallel/work_queue.hpp"
 
 namespace drogue::options_app {
 
-/// Hands out the chunks of a batch and writes what comes back in the order of the input, in bounded memory:
-/// each helper has two chunks, and while much waits to be written only the helper that has the next rows is
-/// listened to.
+/// Assigns the chunks of a batch to workers and writes the results in the order of the input.
+///
+/// Memory is bounded: each worker has at most two chunks, and while many results wait to be written only the
+/// worker with the next rows is polled.
 class Dispatcher {
  public:
-  /// `most_held`: bytes that may wait to be written, but for what one helper hands in at a time.
-  Dispatcher(ChunkSource& source, Outputs& outputs, ProgressLine& progress, std::vector<Helper*> helpers,
-             std::size_t most_held = std::size_t{64} << 20);
+  /// `max_pending_bytes`: results that may wait to be written, beside one message of a worker. Keeps
+  /// references to the source, the outputs and the progress line.
+  Dispatcher(ChunkSource& source, OutputFiles& outputs, ProgressLine& progress,
+             std::vector<WorkerProxy*> workers, std::size_t max_pending_bytes = std::size_t{64} << 20);
 
-  /// Returns when all helpers have left: true if every row is written, false after a signal here or at a
-  /// helper, or if a helper left that had a chunk. Throws Failure(io_error) after it let all of them go.
+  /// Blocks until all workers have finished. Returns true if every row is written; false after a signal on
+  /// any rank, and if a worker finished early. Throws `Failure` (io_error) after it shut all workers down.
   bool run();
 
-  /// Lets all helpers leave and waits until they have.
-  void dismiss();
-
-  /// What the helpers spent together, after run().
-  [[nodiscard]] const Spent& spent() const { return _spent; }
+  /// Sum over all workers, after `run`.
+  [[nodiscard]] const WorkerUsage& usage() const { return _usage; }
 
  private:
-  struct Open {
-    std::size_t helper;
-    std::deque<Piece> pieces;
+  /// Chunk that is assigned but not completely written.
+  struct OpenChunk {
+    std::size_t worker;
+    std::deque<ResultBatch> results;
     std::int64_t rows = 0;
-    bool is_ended = false;
+    bool is_complete = false;
   };
 
-  bool hand_out();
-  bool give();
-  bool take();
-  void accept(std::size_t helper, Piece piece);
-  void write_first();
-  void note_leaving(std::size_t helper, const Piece& piece);
+  bool dispatch();
+  bool assign_chunks();
+  bool receive_results();
+  void accept(std::size_t worker, ResultBatch batch);
+  void write_in_order();
+  void note_finished(std::size_t worker, const ResultBatch& batch);
+  void shut_down_workers();
 
   ChunkSource& _source;
-  Outputs& _outputs;
+  OutputFiles& _outputs;
   ProgressLine& _progress;
-  std::vector<Helper*> _helpers;
-  std::size_t _most_held;
-  std::vector<int> _given;      ///< chunks that each helper has
-  std::vector<bool> _has_left;  ///< of each helper
-  std::size_t _helpers_left = 0;
-  std::deque<Open> _open;   ///< chunks that are not written, in order
-  std::int64_t _first = 0;  ///< number of the first of them
-  std::size_t _held = 0;    ///< bytes that wait to be written
-  bool _is_read = false;
-  Spent _spent;
+  std::vector<WorkerProxy*> _workers;
+  std::size_t _max_pending_bytes;
+  std::vector<int> _assigned;      ///< unfinished chunks of each worker
+  std::vector<bool> _is_finished;  ///< by worker
+  std::size_t _finished_workers = 0;
+  std::deque<OpenChunk> _open;    ///< in the order of the input
+  std::int64_t _first_chunk = 0;  ///< number of the first open chunk
+  std::size_t _pending_bytes = 0;
+  bool _input_exhausted = false;
+  WorkerUsage _usage;
 };
 
 }  // namespace drogue::options_app

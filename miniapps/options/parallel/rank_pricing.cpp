@@ -1,36 +1,39 @@
-#include "miniapps/options/distribution.hpp"
+#include "miniapps/options/parallel/rank_pricing.hpp"
 
 #include <exception>
 #include <thread>
 
-#include "miniapps/options/desks.hpp"
-#include "miniapps/options/dispatcher.hpp"
+#include "miniapps/options/parallel/dispatcher.hpp"
+#include "miniapps/options/parallel/local_work_queue.hpp"
+#include "miniapps/options/parallel/rank_work_queue.hpp"
+#include "miniapps/options/parallel/thread_work_queue.hpp"
 
 namespace drogue::options_app {
 namespace {
 
-Distribution price_alone(const Command& command, ChunkSource& source, Outputs& outputs, BatchRun& run) {
+PricingResult price_on_one_rank(const Command& command, ChunkSource& source, OutputFiles& outputs,
+                                ChunkPricer& pricer) {
   ProgressLine progress(command.quiet);
-  OwnDesk desk(source, outputs, progress);
-  run.work(desk);
-  return {desk.is_complete(), desk.spent()};
+  LocalWorkQueue queue(source, outputs, progress);
+  pricer.run(queue);
+  return {queue.is_complete(), queue.usage()};
 }
 
 }  // namespace
 
-Distribution distribute(Communicator& ranks, const Command& command, BatchReader& reader, Outputs& outputs,
-                        BatchRun& run) {
-  ChunkSource source(command, reader, ranks.size());
-  if (ranks.size() == 1) return price_alone(command, source, outputs, run);
-  SharedDesk own;
-  std::vector<RankHelper> others;
-  for (int rank = 1; rank < ranks.size(); ++rank) others.emplace_back(ranks, rank);
-  std::vector<Helper*> helpers = {&own};
-  for (RankHelper& other : others) helpers.push_back(&other);
+PricingResult price_on_all_ranks(Communicator& communicator, const Command& command, BatchReader& reader,
+                                 OutputFiles& outputs, ChunkPricer& pricer) {
+  ChunkSource source(command, reader, communicator.size());
+  if (communicator.size() == 1) return price_on_one_rank(command, source, outputs, pricer);
+  ThreadWorkQueue own;
+  std::vector<RankWorkerProxy> others;
+  for (int rank = 1; rank < communicator.size(); ++rank) others.emplace_back(communicator, rank);
+  std::vector<WorkerProxy*> workers = {&own};
+  for (RankWorkerProxy& other : others) workers.push_back(&other);
   ProgressLine progress(command.quiet);
-  Dispatcher dispatcher(source, outputs, progress, std::move(helpers));
-  // This rank prices as the others do, by the thread that started Kokkos; another one reads, writes and
-  // talks.
+  Dispatcher dispatcher(source, outputs, progress, std::move(workers));
+  // The thread that started Kokkos prices, as on every rank. A second thread does all reading, writing and
+  // communication.
   bool is_complete = false;
   std::exception_ptr failure;
   {
@@ -41,15 +44,15 @@ Distribution distribute(Communicator& ranks, const Command& command, BatchReader
         failure = std::current_exception();
       }
     });
-    run.work(own);
+    pricer.run(own);
   }
   if (failure) std::rethrow_exception(failure);
-  return {is_complete, dispatcher.spent()};
+  return {is_complete, dispatcher.usage()};
 }
 
-void assist(Communicator& ranks, BatchRun& run) {
-  RankDesk desk(ranks);
-  run.work(desk);
+void run_worker(Communicator& communicator, ChunkPricer& pricer) {
+  RankWorkQueue queue(communicator);
+  pricer.run(queue);
 }
 
 }  // namespace drogue::options_app

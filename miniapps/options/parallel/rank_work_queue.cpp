@@ -1,80 +1,20 @@
-#include "miniapps/options/desks.hpp"
-
-#include <utility>
+#include "miniapps/options/parallel/rank_work_queue.hpp"
 
 #include "common/program/signals.hpp"
 
 namespace drogue::options_app {
 namespace {
 
-enum Tag { chunk_tag = 1, dismissal_tag, piece_tag };
+enum Tag { chunk_tag = 1, shutdown_tag, result_tag };
 
-constexpr int first_rank = 0;
-constexpr std::size_t most_pieces = 4;  // that wait to be taken
+constexpr int root = 0;
 
 }  // namespace
 
-bool OwnDesk::next(Chunk& chunk) {
-  _is_complete = !_source.next(chunk);
-  return !_is_complete;
-}
-
-void OwnDesk::hand_in(Piece piece) {
-  if (piece.leaves) {
-    _spent = piece.spent;
-    return;
-  }
-  _outputs.write(piece);
-  _rows += piece.tally.rows;
-  if (piece.ends_chunk) _source.learn(std::exchange(_rows, 0), piece.seconds);
-  _progress.update_rows(_outputs.tally().rows, _source.share());
-}
-
-bool SharedDesk::next(Chunk& chunk) {
-  std::unique_lock lock(_mutex);
-  _changed.wait(lock, [this] { return _is_closed || !_chunks.empty(); });
-  if (_is_closed) return false;
-  chunk = std::move(_chunks.front());
-  _chunks.pop_front();
-  return true;
-}
-
-void SharedDesk::hand_in(Piece piece) {
-  std::unique_lock lock(_mutex);
-  _changed.wait(lock, [&] { return _is_closed || piece.leaves || _pieces.size() < most_pieces; });
-  _pieces.push_back(std::move(piece));
-}
-
-bool SharedDesk::is_closed() {
-  const std::lock_guard lock(_mutex);
-  return _is_closed;
-}
-
-void SharedDesk::give(Chunk chunk) {
-  const std::lock_guard lock(_mutex);
-  _chunks.push_back(std::move(chunk));
-  _changed.notify_all();
-}
-
-std::optional<Piece> SharedDesk::take() {
-  const std::lock_guard lock(_mutex);
-  if (_pieces.empty()) return std::nullopt;
-  std::optional<Piece> piece(std::move(_pieces.front()));
-  _pieces.pop_front();
-  _changed.notify_all();
-  return piece;
-}
-
-void SharedDesk::dismiss() {
-  const std::lock_guard lock(_mutex);
-  _is_closed = true;
-  _changed.notify_all();
-}
-
-bool RankDesk::next(Chunk& chunk) {
+bool RankWorkQueue::next(Chunk& chunk) {
   Backoff pause;
   while (!interrupted() && !is_closed()) {
-    if (const auto message = _ranks.receive(first_rank, chunk_tag)) {
+    if (const auto message = _communicator.receive(root, chunk_tag)) {
       chunk = chunk_from(*message);
       return true;
     }
@@ -83,35 +23,35 @@ bool RankDesk::next(Chunk& chunk) {
   return false;
 }
 
-void RankDesk::hand_in(Piece piece) {
-  _ranks.send(first_rank, piece_tag, to_message(piece));
-  _ranks.wait_until_sent();
-  if (piece.leaves) await_dismissal();
+void RankWorkQueue::submit(ResultBatch batch) {
+  _communicator.send(root, result_tag, to_message(batch));
+  _communicator.wait_until_sent();
+  if (batch.worker_finished) await_shutdown();
 }
 
-/// Chunks may come until the first rank has heard that this one leaves; they have to be taken, or MPI waits
-/// for it for ever.
-void RankDesk::await_dismissal() {
+/// Receives and drops the chunks that rank 0 sends before it learns that this worker has finished: MPI waits
+/// forever for a message that is not received.
+void RankWorkQueue::await_shutdown() {
   Backoff pause;
-  bool is_dismissed = false;
+  bool is_shut_down = false;
   for (;;) {
-    is_dismissed = is_dismissed || _ranks.receive(first_rank, dismissal_tag);
-    const bool took = _ranks.receive(first_rank, chunk_tag).has_value();
-    if (is_dismissed && !took && !_ranks.has_message(first_rank, chunk_tag)) return;
+    is_shut_down = is_shut_down || _communicator.receive(root, shutdown_tag);
+    const bool received = _communicator.receive(root, chunk_tag).has_value();
+    if (is_shut_down && !received && !_communicator.has_message(root, chunk_tag)) return;
     pause.wait();
   }
 }
 
-bool RankDesk::is_closed() { return _ranks.has_message(first_rank, dismissal_tag); }
+bool RankWorkQueue::is_closed() { return _communicator.has_message(root, shutdown_tag); }
 
-void RankHelper::give(Chunk chunk) { _ranks.send(_rank, chunk_tag, to_message(chunk)); }
+void RankWorkerProxy::assign(Chunk chunk) { _communicator.send(_rank, chunk_tag, to_message(chunk)); }
 
-std::optional<Piece> RankHelper::take() {
-  const auto message = _ranks.receive(_rank, piece_tag);
+std::optional<ResultBatch> RankWorkerProxy::receive() {
+  const auto message = _communicator.receive(_rank, result_tag);
   if (!message) return std::nullopt;
-  return piece_from(*message);
+  return result_batch_from(*message);
 }
 
-void RankHelper::dismiss() { _ranks.send(_rank, dismissal_tag, ""); }
+void RankWorkerProxy::shutdown() { _communicator.send(_rank, shutdown_tag, ""); }
 
 }  // namespace drogue::options_app

@@ -2,37 +2,39 @@
 
 #include <optional>
 
-#include "miniapps/options/chunk.hpp"
+#include "miniapps/options/input/chunk.hpp"
+#include "miniapps/options/output/result_batch.hpp"
 
 namespace drogue::options_app {
 
-/// Where a rank gets its chunks and hands in what became of them.
-class Desk {
+/// Source of the chunks of one worker and destination of its results.
+class WorkQueue {
  public:
-  virtual ~Desk() = default;
+  virtual ~WorkQueue() = default;
 
-  /// The next chunk, as soon as there is one; false if no more are to be priced.
+  /// Blocks until a chunk is available. Returns false if the worker shall price no further chunk.
   virtual bool next(Chunk& chunk) = 0;
 
-  /// Hands in the next part of the chunk that came last. May wait until there is room for it.
-  virtual void hand_in(Piece piece) = 0;
+  /// Submits the next results of the chunk that `next` returned last. May block until there is room.
+  virtual void submit(ResultBatch batch) = 0;
 
-  /// Whether the rest of the chunk is not wanted any more.
+  /// True if the rest of the current chunk need not be priced. Does not block.
   [[nodiscard]] virtual bool is_closed() = 0;
 };
 
-/// A rank as the one that distributes sees it. Nothing waits.
-class Helper {
+/// Dispatcher's side of a worker. No function blocks.
+class WorkerProxy {
  public:
-  virtual ~Helper() = default;
+  virtual ~WorkerProxy() = default;
 
-  virtual void give(Chunk chunk) = 0;
+  /// Appends a chunk to the worker's queue.
+  virtual void assign(Chunk chunk) = 0;
 
-  /// The next piece that it handed in, if there is one.
-  virtual std::optional<Piece> take() = 0;
+  /// Next results of the worker, if any have arrived.
+  virtual std::optional<ResultBatch> receive() = 0;
 
-  /// Lets it leave, at once, even if it has a chunk. Its last piece says that it leaves.
-  virtual void dismiss() = 0;
+  /// Requests that the worker stops at once, within a chunk too. Its last results have `worker_finished`.
+  virtual void shutdown() = 0;
 };
 
 }  // namespace drogue::options_app
