@@ -10,13 +10,12 @@ namespace portable = device::portable;
 
 /// Work arrays of one put with N = 2^log_terms cosines.
 struct CosWorkspace {
-  double* value;        ///< V_k, cosine coefficients of the value, shape (N)
-  ComplexArray growth;  ///< e^(dt (psi - rate)), shape (N)
-  ComplexArray
-      continuation;       ///< w_j, coefficients of the continuation value, or their transform, shape (2 N)
-  ComplexArray reversed;  ///< w_j in reversed order, or its transform, shape (2 N)
-  ComplexArray toeplitz;  ///< generator of the Toeplitz matrix, or its transform, shape (2 N)
-  ComplexArray hankel;    ///< generator of the Hankel matrix, or its transform, shape (2 N)
+  double* value;              ///< V_k, cosine coefficients of the value, shape (N)
+  ComplexArray growth;        ///< e^(dt (psi - rate)), shape (N)
+  ComplexArray continuation;  ///< w_j of the continuation value, or its transform, shape (2 N)
+  ComplexArray reversed;      ///< w_j in reversed order, or its transform, shape (2 N)
+  ComplexArray toeplitz;      ///< generator of the Toeplitz matrix, or its transform, shape (2 N)
+  ComplexArray hankel;        ///< generator of the Hankel matrix, or its transform, shape (2 N)
 
   /// Number of doubles of the work arrays.
   KOKKOS_INLINE_FUNCTION static constexpr int size(int log_terms) { return 19 << log_terms; }
@@ -156,14 +155,14 @@ class BackwardInduction {
     int first = 0, last = 0;
     Kokkos::parallel_reduce(
         Kokkos::TeamThreadRange(_team, _terms),
-        [&](int n, int& least) {
-          if (n < least && gain_at_node(n) > 0.0) least = n;
+        [&](int n, int& lowest) {
+          if (n < lowest && gain_at_node(n) > 0.0) lowest = n;
         },
         Kokkos::Min<int>(first));
     Kokkos::parallel_reduce(
         Kokkos::TeamThreadRange(_team, _terms),
-        [&](int n, int& most) {
-          if (n > most && gain_at_node(n) > 0.0) most = n;
+        [&](int n, int& highest) {
+          if (n > highest && gain_at_node(n) > 0.0) highest = n;
         },
         Kokkos::Max<int>(last));
     _team.team_barrier();

@@ -76,7 +76,7 @@ TEST(OptionsCos, ErrorStaysWithinTolerance) {
 }
 
 // A perpetual put of strike 1 is worth (1 - b) (S/b)^{-g}, g = 2 r/sigma^2, b = g/(1 + g) (Merton 1973). With
-// dates centuries apart all levels would miss most of the value.
+// dates centuries apart all levels would miss nearly the whole value.
 TEST(OptionsCos, LongMaturitiesApproachPerpetualPut) {
   for (const double rate : {0.02, 0.05, 0.1})
     for (const double years : {300.0, 1e4, 1e7}) {
