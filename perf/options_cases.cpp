@@ -21,7 +21,7 @@ Case surface_case(device::Backend backend, const puts::SurfaceSize& size, bool a
   const std::string variant = apart ? "apart" : "surface";
   Case surface =
       puts::surface("options-surface/" + name + "/" + variant + "/" + count, backend, size,
-                    {.mesh = 128, .steps = 32, .surface = !apart, .timed_apart = !apart}, puts::tolerance);
+                    {.mesh = 128, .steps = 32, .surface = !apart, .time_copies = !apart}, puts::tolerance);
   const auto prices = static_cast<std::int64_t>(size.sets * size.strikes * size.maturities);
   surface.facts = [=] { return Facts{name, prices, variant + " " + count}; };
   return surface;

@@ -28,18 +28,18 @@ std::vector<OptionsPoint> pide_points(bool quick) {
   std::vector<OptionsPoint> points;
   for (const int mesh : quick ? std::vector{64, 128} : std::vector{64, 128, 256, 512})
     for (const int intervals : {4, 2, 1})
-      for (const bool one_grid : {false, true})
+      for (const bool single_grid : {false, true})
         for (const char* exercise : {"exact", "split", "none"}) {
           const bool split = *exercise == 's', none = *exercise == 'n';
           if (quick && intervals != 4) continue;
           points.push_back({"pide",
                             exercise,
-                            one_grid ? "one" : "two",
+                            single_grid ? "one" : "two",
                             intervals,
                             {.mesh = mesh,
                              .steps = mesh / intervals,
                              .exercise = split ? options::ExerciseRule::split : options::ExerciseRule::exact,
-                             .one_grid = one_grid},
+                             .single_grid = single_grid},
                             none ? options::Style::european : options::Style::american});
         }
   return points;
@@ -49,7 +49,7 @@ std::vector<OptionsPoint> other_points(const KnownPuts& puts, bool quick) {
   std::vector<OptionsPoint> points;
   if (puts.contract.model == options::Model::generalized_hyperbolic)
     for (const int mesh : quick ? std::vector{64} : std::vector{64, 128, 256, 512})
-      points.push_back({"seed", "", "", 0, {.method = options::Method::seed, .mesh = mesh}});
+      points.push_back({"seed", "", "", 0, {.method = options::Method::baseline, .mesh = mesh}});
   for (const double tolerance : quick ? std::vector{1e-2} : std::vector{1e-2, 1e-4, 1e-5, 1e-6, 1e-7})
     points.push_back({"cos", "", "", 0, {.method = options::Method::cos, .tolerance = tolerance}});
   return points;
@@ -90,7 +90,7 @@ std::string label_of(const OptionsPoint& point) {
   std::string label = point.method;
   if (const std::string exercise = point.exercise; exercise == "split" || exercise == "none")
     label += " " + exercise;
-  if (point.settings.one_grid) label += " one-grid";
+  if (point.settings.single_grid) label += " one-grid";
   if (point.intervals_a_step == 2 || point.intervals_a_step == 1)
     label += " mesh/" + std::to_string(point.intervals_a_step);
   return label;

@@ -100,7 +100,7 @@ Case timed(const std::string& name, device::Backend backend,
                             now.timing = now.pricer->price(now.contracts, now.prices);
                             return 1L;
                           },
-                          settings.timed_apart ? parts : nullptr};
+                          settings.time_copies ? parts : nullptr};
           },
           [=] { return error(**run); },
           limit};

@@ -61,4 +61,18 @@ std::string parse_command_line(CLI::App& app, const std::vector<std::string>& wo
   return {};
 }
 
+void add_backend_option(CLI::App& app, std::string& backend) {
+  app.add_option("--backend", backend, "where to compute: auto takes the fastest present")
+      ->check(CLI::IsMember({"auto", "serial", "openmp", "cuda"}))
+      ->capture_default_str();
+}
+
+void require_nonempty_values(const CLI::App& app) {
+  for (const CLI::Option* option : app.get_options()) {
+    for (const std::string& value : option->results()) {
+      if (value.empty()) throw Failure(ExitCode::usage, option->get_name() + " is empty");
+    }
+  }
+}
+
 }  // namespace drogue

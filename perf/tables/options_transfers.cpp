@@ -25,22 +25,23 @@ std::vector<OptionsLine> options_lines(bool quick) {
   std::vector<OptionsLine> lines;
   const auto add = [&](const dissertation::OptionsRow& row) {
     if (quick && (row.mesh > 128 || row.options > 64)) return;
-    for (const auto method : {options::Method::seed, options::Method::pide}) lines.push_back({row, method});
+    for (const auto method : {options::Method::baseline, options::Method::pide})
+      lines.push_back({row, method});
   };
   for (const auto& row : dissertation::table_5_7) add(row);
   for (const auto& row : dissertation::table_5_8) add(row);
   return lines;
 }
 
-const char* word(options::Method method) { return method == options::Method::seed ? "seed" : "pide"; }
+const char* word(options::Method method) { return method == options::Method::baseline ? "seed" : "pide"; }
 
 Case case_of(device::Backend backend, const OptionsLine& line) {
   const std::string name = "options-transfers/" + std::string(device::name(backend)) + "/" +
                            word(line.method) + "/" + std::to_string(line.printed.options) + "/" +
                            std::to_string(line.printed.mesh);
   return puts::batch(name, backend, static_cast<std::size_t>(line.printed.options),
-                     {.method = line.method, .mesh = line.printed.mesh, .timed_apart = true},
-                     line.method == options::Method::seed ? seed_tolerance : puts::tolerance);
+                     {.method = line.method, .mesh = line.printed.mesh, .time_copies = true},
+                     line.method == options::Method::baseline ? seed_tolerance : puts::tolerance);
 }
 
 nlohmann::json facts_of(device::Backend backend, const OptionsLine& line, const Record& record) {

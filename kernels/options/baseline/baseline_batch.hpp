@@ -78,11 +78,11 @@ struct BaselineBatch {
               block = block_of(mesh, group.lanes);
     group.each([=, this](int thread) {
       for (int k = thread; k < members; k += group.threads())
-        memory.puts[k] = put_of(batch.contracts(batch.contract_index(pack, k)));
+        memory.puts[k] = normalize(batch.contracts(batch.contract_index(pack, k)));
     });
-    const PutPack<R> put = pack_of<R>(memory.puts);
-    const LevyMeasure<R> measure = law_of(group, put, memory.puts, batch.panels.data(),
-                                          batch.panel_slot.data(), memory.measure_memory());
+    const PutPack<R> put = pack_puts<R>(memory.puts);
+    const LevyMeasure<R> measure = make_levy_measure(group, put, memory.puts, batch.panels.data(),
+                                                     batch.panel_slot.data(), memory.measure_memory());
     const Grid<R> grid{mesh, R(2.0 * baseline_half_width / mesh), R(0.5 * mesh)};
     const Jumps<R> jumps =
         baseline_jumps(group, put, measure, grid, memory.w, memory.row(9, mesh), memory.row(10, mesh));

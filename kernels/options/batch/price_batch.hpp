@@ -46,9 +46,9 @@ struct PriceBatch {
   int count = 0, mesh = 0, steps = 0, level = 0;
   int lanes = max_lanes;  ///< per option on hosts
   double tolerance = 0.0;
-  Model model{};          ///< common model of the contracts
-  bool split = false;     ///< use split exercise wherever exercise may pay
-  bool one_grid = false;  ///< no second solve: no extrapolation and no error estimate
+  Model model{};             ///< common model of the contracts
+  bool split = false;        ///< use split exercise wherever exercise may pay
+  bool single_grid = false;  ///< no second solve: no extrapolation and no error estimate
 
   /// Packs, or single options on devices, that a team prices side by side.
   static KOKKOS_INLINE_FUNCTION constexpr int packs_per_team(int fixed) {
@@ -80,40 +80,40 @@ struct PriceBatch {
   }
 
   /// Prices the contracts of a pack. Force-inlined: a call would spill its arguments.
-  template <Laws laws, int fixed, class ThreadGroup>
+  template <JumpClass jump_class, int fixed, class ThreadGroup>
   KOKKOS_FORCEINLINE_FUNCTION void price(const ThreadGroup& group, const SolveMemory<R, fixed>& memory,
                                          int pack) const {
-    const PreparedPack<R> prepared = prepare<laws>(group, memory, pack);
+    const PreparedPack<R> prepared = prepare<jump_class>(group, memory, pack);
     const ErrorEstimate<R> estimate =
         estimate_solve_error(prepared.put, prepared.measure, prepared.jumps, prepared.grid, steps);
     solve_fine(group, prepared, memory);
     const R* coarse =
-        one_grid ? memory.fine_values(prepared.grid.mesh) : solve_coarse(group, prepared, memory);
+        single_grid ? memory.fine_values(prepared.grid.mesh) : solve_coarse(group, prepared, memory);
     write_prices(group, prepared, estimate, memory, coarse, memory, pack);
   }
 
   /// Computes the data of both solves and the weights of the finer grid.
-  template <Laws laws, int fixed, class ThreadGroup>
+  template <JumpClass jump_class, int fixed, class ThreadGroup>
   [[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION PreparedPack<R> prepare(const ThreadGroup& group,
                                                                     const SolveMemory<R, fixed>& memory,
                                                                     int pack) const {
     const int intervals = mesh_for<fixed>(mesh);
     group.each([=, this](int thread) {
       for (int k = thread; k < members; k += group.threads()) {
-        memory.puts[k] = put_of(contracts(contract_index(pack, k)));
+        memory.puts[k] = normalize(contracts(contract_index(pack, k)));
         if (split) memory.puts[k].split = memory.puts[k].early;
       }
     });
     PreparedPack<R> prepared;
-    prepared.put = pack_of<R, laws>(memory.puts);
+    prepared.put = pack_puts<R, jump_class>(memory.puts);
     PutPack<R>& put = prepared.put;
     put.any_split = !group.all(!put.any_split);
     prepared.measure =
-        law_of(group, put, memory.puts, panels.data(), panel_slot.data(), memory.measure_memory());
+        make_levy_measure(group, put, memory.puts, panels.data(), panel_slot.data(), memory.measure_memory());
     const LevyMeasure<R>& measure = prepared.measure;
     prepared.grid =
         grid_of(domain_of(group, put, measure, truncation_target(intervals), memory.scratch), intervals);
-    prepared.tails = tails_of(group, put, measure, prepared.grid.h * double(intervals));
+    prepared.tails = make_tails(group, put, measure, prepared.grid.h * double(intervals));
     prepared.jumps =
         jumps_on_grid<fixed>(group, put, measure, prepared.tails, prepared.grid, memory, memory.w);
     return prepared;
@@ -167,7 +167,7 @@ struct PriceBatch {
     const int intervals = mesh_for<fixed>(prepared.grid.mesh);
     const Grid<R> grid = coarser(prepared.grid);
     const R* const fine_values = memory.fine_values(intervals);
-    const SolutionAtSpot* const coarse_solutions = one_grid ? memory.solutions : other.solutions + members;
+    const SolutionAtSpot* const coarse_solutions = single_grid ? memory.solutions : other.solutions + members;
     const R deviation = device::square_root((put.variance + prepared.measure.variance) * put.maturity);
     const R window = device::maximum(grid.h, deviation);
     const auto largest_difference = [=, &put](int lane) {
@@ -196,13 +196,13 @@ struct PriceBatch {
         }
         prices(at) = price_of(contracts(at), one, memory.solutions[k], coarse_solutions[k], applied,
                               own(largest), own(grid.h), intervals, steps, tolerance);
-        if (one_grid) prices(at).error = device::portable::not_a_number();
+        if (single_grid) prices(at).error = device::portable::not_a_number();
       }
     });
   }
 
  private:
-  [[nodiscard]] KOKKOS_INLINE_FUNCTION bool has_premium() const { return !split && !one_grid; }
+  [[nodiscard]] KOKKOS_INLINE_FUNCTION bool has_premium() const { return !split && !single_grid; }
 
   /// Value of member k at the node next to its spot.
   [[nodiscard]] static KOKKOS_INLINE_FUNCTION double value_near_spot(const NormalizedPut& put,

@@ -5,7 +5,7 @@
 namespace drogue::options {
 
 /// Kernel that prices a batch; for `fixed` see `solve`.
-template <class ExecutionSpace, int fixed, Laws laws>
+template <class ExecutionSpace, int fixed, JumpClass jump_class>
 struct PriceFunctor {
   using Batch = PriceBatch<ExecutionSpace>;
 
@@ -18,14 +18,14 @@ struct PriceFunctor {
   KOKKOS_FORCEINLINE_FUNCTION void price(const ThreadGroup& group,
                                          const SolveMemory<typename Batch::R, fixed>& memory,
                                          int pack) const {
-    batch.template price<laws>(group, memory, pack);
+    batch.template price<jump_class>(group, memory, pack);
   }
 };
 
 /// Kernel for small batches, which would leave most of a GPU idle: a team of two warps per option. Both warps
 /// prepare the data in separate memory. One warp then marches on the finer grid, the other one on the coarser
 /// grid.
-template <class ExecutionSpace, int fixed, Laws laws>
+template <class ExecutionSpace, int fixed, JumpClass jump_class>
 struct TwoWarpPriceFunctor {
   using Batch = PriceBatch<ExecutionSpace>;
 
@@ -40,7 +40,7 @@ struct TwoWarpPriceFunctor {
     const SolveMemory<double, fixed> memory(place + (finer ? 0 : bytes), batch.mesh),
         coarser_memory(place + bytes, batch.mesh);
     const WarpThreadGroup<lanes_of(fixed), true> group(rank);
-    const PreparedPack<double> prepared = batch.template prepare<laws>(group, memory, option);
+    const PreparedPack<double> prepared = batch.template prepare<jump_class>(group, memory, option);
     if (finer) {
       batch.solve_fine(group, prepared, memory);
     } else {
@@ -66,24 +66,24 @@ void price_batch(const ExecutionSpace& space, PriceBatch<ExecutionSpace> batch) 
   if (batch.record.time == nullptr) batch.lanes = lanes_of(batch.mesh);
   if constexpr (!device::is_host<ExecutionSpace>) {
     const auto launch = [&]<int fixed> {
-      return for_laws_of(batch.model, [&]<Laws laws> {
+      return dispatch_jump_class(batch.model, [&]<JumpClass jump_class> {
         launch_batch<fixed>(space, "drogue::options::price in registers",
-                            PriceFunctor<ExecutionSpace, fixed, laws>{batch});
+                            PriceFunctor<ExecutionSpace, fixed, jump_class>{batch});
       });
     };
     if (batch.record.time == nullptr) {
       // Two warps per option if half a warp per option would leave half of the GPU's schedulers idle.
-      if (batch.mesh == 128 && !batch.one_grid && batch.count <= space.concurrency() / (16 * max_lanes))
-        return for_laws_of(batch.model, [&]<Laws laws> {
+      if (batch.mesh == 128 && !batch.single_grid && batch.count <= space.concurrency() / (16 * max_lanes))
+        return dispatch_jump_class(batch.model, [&]<JumpClass jump_class> {
           launch_batch<128, 2>(space, "drogue::options::price by two warps",
-                               TwoWarpPriceFunctor<ExecutionSpace, 128, laws>{batch});
+                               TwoWarpPriceFunctor<ExecutionSpace, 128, jump_class>{batch});
         });
       if (batch.mesh == 64) return launch.template operator()<64>();
       if (batch.mesh == 128) return launch.template operator()<128>();
       if (batch.mesh == 256) return launch.template operator()<256>();
     }
   }
-  launch_batch<0>(space, "drogue::options::price", PriceFunctor<ExecutionSpace, 0, Laws::all>{batch});
+  launch_batch<0>(space, "drogue::options::price", PriceFunctor<ExecutionSpace, 0, JumpClass::any>{batch});
 }
 
 }  // namespace drogue::options

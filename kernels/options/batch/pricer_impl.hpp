@@ -32,7 +32,7 @@ class PricerImpl final : public Pricer {
   WallTimes price(std::span<const Contract> contracts, std::span<Price> prices) override {
     if (contracts.size() != prices.size())
       throw std::invalid_argument("options pricer: as many prices as contracts are needed");
-    if (_settings.method == Method::seed)
+    if (_settings.method == Method::baseline)
       for (const Contract& contract : contracts)
         if (contract.model != Model::generalized_hyperbolic)
           throw std::invalid_argument(
@@ -46,7 +46,7 @@ class PricerImpl final : public Pricer {
       _instance.space().fence("drogue::options: batch is abandoned");
       throw;
     }
-    if (!_settings.timed_apart) times = {0.0, total.seconds(), 0.0};
+    if (!_settings.time_copies) times = {0.0, total.seconds(), 0.0};
     return times;
   }
 
@@ -96,13 +96,14 @@ class PricerImpl final : public Pricer {
   }
 
   void price_all(std::span<const Contract> contracts, std::span<Price> prices, WallTimes& times) {
-    const int mesh = _settings.mesh == 0 && _settings.method == Method::seed ? baseline_mesh : _settings.mesh;
+    const int mesh =
+        _settings.mesh == 0 && _settings.method == Method::baseline ? baseline_mesh : _settings.mesh;
     reserve(contracts.size());
     if (mesh != 0 && is_priced_in_place(contracts.size()))
       return price_in_place(contracts, prices, {mesh, steps_of(mesh)});
     const device::Stopwatch copying_in;
     device::copy_in(_instance.space(), _contracts, staging_buffer(contracts), contracts.size());
-    if (_settings.timed_apart) _instance.space().fence("drogue::options: contracts are copied");
+    if (_settings.time_copies) _instance.space().fence("drogue::options: contracts are copied");
     times.h2d = copying_in.seconds();
     if (mesh == 0) return price_to_tolerance(contracts, prices, times);
     const device::Stopwatch computing;
@@ -114,7 +115,7 @@ class PricerImpl final : public Pricer {
   /// Whether a batch is so small that direct access of the device to pinned host memory is faster than two
   /// copies.
   [[nodiscard]] bool is_priced_in_place(std::size_t count) const {
-    return !device::is_host<ExecutionSpace> && !_settings.timed_apart && count <= 64;
+    return !device::is_host<ExecutionSpace> && !_settings.time_copies && count <= 64;
   }
 
   void price_in_place(std::span<const Contract> contracts, std::span<Price> prices,
@@ -178,8 +179,9 @@ class PricerImpl final : public Pricer {
   }
 
   [[nodiscard]] int steps_of(int mesh) const {
-    return _settings.method == Method::seed && _settings.steps == 0 ? mesh
-                                                                    : options::steps_of(_settings, mesh, 1);
+    return _settings.method == Method::baseline && _settings.steps == 0
+               ? mesh
+               : options::steps_of(_settings, mesh, 1);
   }
 
   void reserve(std::size_t count) {
@@ -246,7 +248,7 @@ class PricerImpl final : public Pricer {
       if (++gathered == launch_capacity) launch_gathered();
     }
     launch_gathered();
-    if (_settings.timed_apart) _instance.space().fence("drogue::options: priced");
+    if (_settings.time_copies) _instance.space().fence("drogue::options: priced");
   }
 
   /// Enqueues the launch for `rows`, which are stored from `first` on in the order.
@@ -274,9 +276,9 @@ class PricerImpl final : public Pricer {
     batch.steps = resolution.steps;
     batch.tolerance = _settings.tolerance;
     batch.split = _settings.exercise == ExerciseRule::split;
-    batch.one_grid = _settings.one_grid;
+    batch.single_grid = _settings.single_grid;
     batch.level = scratch_level<ExecutionSpace>(resolution.mesh);
-    if (_settings.method == Method::seed && record.time == nullptr) {
+    if (_settings.method == Method::baseline && record.time == nullptr) {
       price_baseline(_instance.space(), batch);
     } else {
       price_batch(_instance.space(), batch);

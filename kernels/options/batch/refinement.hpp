@@ -48,21 +48,21 @@ inline void refine(Refinement& row, const Price& price, double tolerance, const 
   constexpr int last_mesh = 2048, stagnation_mesh = 512;
   const int mesh = row.next.mesh;
   row.next = {};
-  if (price.outcome == Outcome::ok) return;
-  const bool grew = price.failure == Failure::grown || price.failure == Failure::stiff;
-  if (price.failure != Failure::none && !grew) return;
+  if (price.status == PriceStatus::ok) return;
+  const bool grew = price.failure == FailureReason::unstable || price.failure == FailureReason::stiff;
+  if (price.failure != FailureReason::none && !grew) return;
   const int max_multiplier = grew ? 16 : 4;
   const bool stagnates =
-      price.outcome == Outcome::failed || (row.error > 0.0 && price.error > 0.7 * row.error);
+      price.status == PriceStatus::failed || (row.error > 0.0 && price.error > 0.7 * row.error);
   row.error = price.error;
   int next = mesh;
   if (stagnates && row.steps_multiplier < max_multiplier && settings.steps == 0) {
     row.steps_multiplier *= 4;
-  } else if (stagnates && mesh >= stagnation_mesh && price.outcome == Outcome::coarse) {
+  } else if (stagnates && mesh >= stagnation_mesh && price.status == PriceStatus::coarse) {
     return;
   } else {
     next *= 2;
-    if (price.outcome == Outcome::coarse)
+    if (price.status == PriceStatus::coarse)
       for (double error = price.error / 16.0; error > tolerance && next < last_mesh; error /= 4.0) next *= 2;
   }
   if (next <= last_mesh) row.next = {next, steps_of(settings, next, row.steps_multiplier)};

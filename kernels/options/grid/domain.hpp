@@ -77,7 +77,7 @@ KOKKOS_INLINE_FUNCTION Domain<R> wide_domain(const ThreadGroup& group, const Put
   const R up = decay_up(put), down = decay_down(put);
   group.each([=, &put, &measure](int thread) {
     for (int m = thread; m < 2 * n; m += group.threads()) {
-      const double t = 100.0 * power_of_two(rounder - 2 * (m % n));
+      const double t = 100.0 * power_of_two(rounding_shift - 2 * (m % n));
       const R theta = m < n ? tilt_upwards(R(t), up) : -tilt_upwards(R(t), down);
       tilt[m] = theta;
       growth[m] = device::maximum(
@@ -128,7 +128,7 @@ KOKKOS_INLINE_FUNCTION Domain<R> domain_of(const ThreadGroup& group, const PutPa
       if (m < 2 * n) {
         const int k = m % n;
         const R t =
-            2.0 * gaussian * ((k % 2 == 0 ? 1.0 : 0.7071067811865476) * power_of_two(rounder - k / 2));
+            2.0 * gaussian * ((k % 2 == 0 ? 1.0 : 0.7071067811865476) * power_of_two(rounding_shift - k / 2));
         theta = m < n ? tilt_upwards(t, up) : -tilt_upwards(t, down);
       }
       tilt[m] = theta;

@@ -17,7 +17,7 @@ struct Grid {
 template <class R>
 KOKKOS_INLINE_FUNCTION Grid<R> grid_of(const Domain<R>& domain, int mesh) {
   const R wished = (0.5 * mesh) * domain.below / (domain.below + domain.above);
-  const R whole = (wished + rounder) - rounder;
+  const R whole = (wished + rounding_shift) - rounding_shift;
   const R pairs = device::maximum(device::minimum(whole, R(0.5 * mesh - 2.0)), R(1.0));
   const R strike = 2.0 * pairs;
   return {mesh, device::maximum(domain.below / strike, domain.above / (double(mesh) - strike)), strike};

@@ -66,7 +66,7 @@ KOKKOS_INLINE_FUNCTION WeightPair<R> kou_weights(const PutPack<R>& put, R h, int
 /// Integral from z to infinity of the upper tail probability of a standard normal variable.
 template <class R>
 KOKKOS_INLINE_FUNCTION R normal_tail_integral(R z) {
-  return 0.3989422804014327 * exponential(-0.5 * z * z) - z * normal_above(z);
+  return 0.3989422804014327 * exponential(-0.5 * z * z) - z * normal_upper_tail(z);
 }
 
 /// Part of normally distributed jumps that is assigned to the node d h by a hat function over the two
@@ -85,7 +85,7 @@ KOKKOS_INLINE_FUNCTION R normal_hat_mass(R mean, R inverse_deviation, R h, int d
     sum += times * normal_tail_integral(middle + (k - 1.0) * width);
   }
   const R part = sum * device::reciprocal(width);
-  return last ? part - normal_above(centre) : part;
+  return last ? part - normal_upper_tail(centre) : part;
 }
 
 /// Weights of Merton's jumps by d nodes, per year; `last`: d is the largest distance.

@@ -6,20 +6,20 @@ namespace drogue::options {
 
 /// Reason why a put has no price on a grid of step h. `upper_bound`: largest possible gain, money;
 /// `variance`: that of the process, per year.
-KOKKOS_INLINE_FUNCTION Failure failure_of(const NormalizedPut& put, double upper_bound, double variance,
-                                          double h) {
-  if (put.rate * put.maturity < -650.0 || !(upper_bound < 1e300)) return Failure::too_large;
-  if (variance != variance) return Failure::overflow;
-  if (!(h < 100.0)) return Failure::no_grid;
+KOKKOS_INLINE_FUNCTION FailureReason failure_of(const NormalizedPut& put, double upper_bound, double variance,
+                                                double h) {
+  if (put.rate * put.maturity < -650.0 || !(upper_bound < 1e300)) return FailureReason::discount_overflow;
+  if (variance != variance) return FailureReason::coefficient_overflow;
+  if (!(h < 100.0)) return FailureReason::no_grid;
   // The steps contain the square of this.
   const double rate_scale = device::absolute(put.rate) + device::absolute(put.dividend);
   const double largest = (rate_scale + variance / h) / h;
-  if (!(largest * largest < 1e300)) return Failure::overflow;
+  if (!(largest * largest < 1e300)) return FailureReason::coefficient_overflow;
   // With 1e6 jumps until maturity, or a discount factor e^{-1e10}, the maximum of 16384 steps is rarely
   // sufficient.
   const bool has_intensity = put.model == Model::merton || put.model == Model::kou;
   const bool stiff = (has_intensity && put.jump[0] * put.maturity >= 1e6) || put.rate * put.maturity >= 1e10;
-  return stiff ? Failure::stiff : Failure::grown;
+  return stiff ? FailureReason::stiff : FailureReason::unstable;
 }
 
 /// Node next to the spot of a put.
@@ -88,9 +88,9 @@ KOKKOS_INLINE_FUNCTION Price price_of(const Contract& contract, const Normalized
   price.mesh = mesh;
   price.steps = steps;
   if (!finite) price.price = device::portable::not_a_number();
-  price.outcome = !finite                                     ? Outcome::failed
-                  : price.error > tolerance * contract.strike ? Outcome::coarse
-                                                              : Outcome::ok;
+  price.status = !finite                                     ? PriceStatus::failed
+                 : price.error > tolerance * contract.strike ? PriceStatus::coarse
+                                                             : PriceStatus::ok;
   if (!finite) price.failure = failure_of(put, unit * upper_bound, estimate.variance, h);
   return price;
 }

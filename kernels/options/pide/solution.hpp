@@ -112,7 +112,7 @@ KOKKOS_INLINE_FUNCTION double cubic_interpolation_error(const NormalizedPut& put
 /// (`domain_of`).
 KOKKOS_INLINE_FUNCTION SolutionAtSpot solution_below_grid(const NormalizedPut& put, double asset,
                                                           double boundary) {
-  const PutPack<double> pack = pack_of<double>(&put);
+  const PutPack<double> pack = pack_puts<double>(&put);
   const DiscountFactors<double> discount =
       boundary_discount(pack, asset, optimal_exercise_time(pack, put.log_spot), put.maturity);
   const double strike = discount.strike, price = discount.asset * asset;

@@ -12,7 +12,8 @@ template <class R, int fixed>
 struct SolveMemory {
   static constexpr int members = device::Access<R>::lanes;
 
-  R* tables;   ///< mixture of `law_of`, then the step table, finally an error estimate for another warp
+  R* tables;   ///< mixture of `make_levy_measure`, then the step table, finally an error estimate for another
+               ///< warp
   R* scratch;  ///< (9 max_lanes); with a fixed mesh for `domain_of` or the multipliers
   R* w;        ///< in the order of a WeightLayout
   R* nodes;    ///< rows of `node_count`; the coarser solve has shorter rows and stores data beyond them

@@ -29,7 +29,7 @@ struct StrikeGroupNodes {
 /// Solves strike groups of one model on one mesh in one launch: one per team on devices, a pack on hosts.
 /// Strike group k has the parameters of contract k of the batch, whose strike is not used. For `fixed` see
 /// `march_nodes`.
-template <class ExecutionSpace, int fixed, Laws laws>
+template <class ExecutionSpace, int fixed, JumpClass jump_class>
 struct StrikeGroupFunctor {
   using Batch = PriceBatch<ExecutionSpace>;
   using R = typename Batch::R;
@@ -52,20 +52,20 @@ struct StrikeGroupFunctor {
     group.each([=, this](int thread) {
       for (int k = thread; k < members; k += group.threads()) {
         const int at = batch.contract_index(pack, k);
-        memory.puts[k] = put_of(batch.contracts(at));
+        memory.puts[k] = normalize(batch.contracts(at));
         memory.puts[k].log_spot = strike_ranges(at);
       }
     });
-    PutPack<R> put = pack_of<R, laws>(memory.puts);
+    PutPack<R> put = pack_puts<R, jump_class>(memory.puts);
     put.any_split = !group.all(!put.any_split);
-    const LevyMeasure<R> measure = law_of(group, put, memory.puts, batch.panels.data(),
-                                          batch.panel_slot.data(), memory.measure_memory());
+    const LevyMeasure<R> measure = make_levy_measure(group, put, memory.puts, batch.panels.data(),
+                                                     batch.panel_slot.data(), memory.measure_memory());
     const R deviation = device::square_root((put.variance + measure.variance) * put.maturity);
     const R above = domain_of(group, put, measure, truncation_target(mesh), memory.scratch).above;
     put.log_spot = -put.log_spot;
     const R below = domain_of(group, put, measure, truncation_target(mesh), memory.scratch).below;
     const Grid<R> grid = grid_of(Domain<R>{below, above}, mesh);
-    const Tails<R> tails = tails_of(group, put, measure, grid.h * double(mesh));
+    const Tails<R> tails = make_tails(group, put, measure, grid.h * double(mesh));
     const Jumps<R> jumps = jumps_on_grid<fixed>(group, put, measure, tails, grid, memory, memory.w);
     const Grid<R> coarse_grid = coarser(grid);
     write_estimates(group, memory, pack, estimate_solve_error(put, measure, jumps, grid, batch.steps),
@@ -125,17 +125,18 @@ struct StrikeGroupFunctor {
 
 /// Enqueues the solves of strike groups of one model; asynchronous.
 template <class ExecutionSpace>
-void solve_strike_groups(const ExecutionSpace& space, StrikeGroupFunctor<ExecutionSpace, 0, Laws::all> work) {
+void solve_strike_groups(const ExecutionSpace& space,
+                         StrikeGroupFunctor<ExecutionSpace, 0, JumpClass::any> work) {
   static_assert(
       Kokkos::SpaceAccessibility<ExecutionSpace, typename decltype(work.values)::memory_space>::accessible);
   // On devices other meshes are solved in memory by whole warps.
   if (work.batch.mesh == 128) work.batch.lanes = lanes_of(work.batch.mesh);
   if constexpr (!device::is_host<ExecutionSpace>) {
     const auto launch = [&]<int fixed> {
-      return for_laws_of(work.batch.model, [&]<Laws laws> {
+      return dispatch_jump_class(work.batch.model, [&]<JumpClass jump_class> {
         launch_batch<fixed>(space, "drogue::options::solve strike groups in registers",
-                            StrikeGroupFunctor<ExecutionSpace, fixed, laws>{work.batch, work.strike_ranges,
-                                                                            work.strike_groups, work.values});
+                            StrikeGroupFunctor<ExecutionSpace, fixed, jump_class>{
+                                work.batch, work.strike_ranges, work.strike_groups, work.values});
       });
     };
     if (work.batch.mesh == 128) return launch.template operator()<128>();
@@ -168,7 +169,7 @@ struct InterpolationFunctor {
     Contract contract = contracts(query.strike_group);
     contract.spot = query.spot;
     contract.strike = query.strike;
-    const NormalizedPut put = put_of(contract);
+    const NormalizedPut put = normalize(contract);
     const StrikeGroup& strike_group = strike_groups(query.strike_group);
     const StrikeGroupNodes nodes{
         values.data() + static_cast<std::size_t>(query.strike_group) * StrikeGroupNodes::size(mesh), mesh};

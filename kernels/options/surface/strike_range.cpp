@@ -44,13 +44,13 @@ bool have_same_process(const Contract& a, const Contract& b) {
 }
 
 double annual_variance(const Contract& contract, const double* panels, const int* panel_slot) {
-  const NormalizedPut put = put_of(contract);
+  const NormalizedPut put = normalize(contract);
   std::vector<double> memory(2 * Mixture::size + 2 * Mixture::low);
   double* const at = memory.data();
   const LevyMeasure<double> place{
       at, at + Mixture::size, at + 2 * Mixture::size, at + 2 * Mixture::size + Mixture::low, 0.0, 0.0};
-  const LevyMeasure<double> measure =
-      law_of(SerialThreadGroup<double>{}, pack_of<double>(&put), &put, panels, panel_slot, place);
+  const LevyMeasure<double> measure = make_levy_measure(SerialThreadGroup<double>{}, pack_puts<double>(&put),
+                                                        &put, panels, panel_slot, place);
   return put.variance + measure.variance;
 }
 

@@ -175,7 +175,7 @@ class SurfaceImpl final : public Pricer {
   /// Enqueues the solves of the strike groups begin .. end - 1 of the order, which have one model.
   void launch(Model model, const Resolution& resolution, int begin, int end) {
     if (begin == end) return;
-    StrikeGroupFunctor<ExecutionSpace, 0, Laws::all> work{};
+    StrikeGroupFunctor<ExecutionSpace, 0, JumpClass::any> work{};
     work.batch.model = model;
     work.batch.contracts = _contracts;
     work.batch.order = Kokkos::View<const int*, Space>(_order.data() + begin, end - begin);

@@ -135,7 +135,7 @@ TEST(OptionsError, CoversMaturitiesOfHoursAtTheStrike) {
   // The order is low, but meshes up to 1024 reach the tolerance.
   Contract heavy = put(Style::european, 1.0, 0.001, 0.002, {-3.0, 8.0, -4.5, 0.12});
   heavy.rate = 0.036;
-  EXPECT_EQ(priced_to(1e-4, {heavy}).front().outcome, Outcome::ok);
+  EXPECT_EQ(priced_to(1e-4, {heavy}).front().status, PriceStatus::ok);
 }
 
 // Near a sharp kink the error of cubic interpolation exceeds its next term.

@@ -17,12 +17,13 @@ namespace {
 constexpr const auto& backend = testing::tested_backend;
 
 /// Jumps of a put on a grid, by adaptive quadrature of the density.
-reference::JumpTable table_of(const reference::Hyperbolic& measure, double variance, int mesh, double h) {
+reference::JumpTable table_of(const reference::GeneralizedHyperbolic& measure, double variance, int mesh,
+                              double h) {
   reference::JumpTable table;
   table.up.resize(static_cast<std::size_t>(mesh) + 1);
   table.down = table.up;
   const double length = mesh * h;
-  table.variance_left =
+  table.remaining_variance =
       variance + reference::levy_variance(measure) - reference::levy_tail_variance(measure, length);
   for (int d = 1; d <= mesh; ++d) {
     const double y = d * h, part = d == 1 || d == mesh ? 0.5 * h : h;
@@ -30,12 +31,12 @@ reference::JumpTable table_of(const reference::Hyperbolic& measure, double varia
                  down = part * reference::levy_density(measure, -y);
     table.up[static_cast<std::size_t>(d)] = up;
     table.down[static_cast<std::size_t>(d)] = down;
-    table.variance_left -= (up + down) * y * y;
+    table.remaining_variance -= (up + down) * y * y;
   }
-  table.beyond_up = reference::levy_tail(measure, length, 1, 0);
-  table.beyond_down = reference::levy_tail(measure, length, -1, 0);
-  table.beyond_up_price = reference::levy_tail(measure, length, 1, 1);
-  table.beyond_down_price = reference::levy_tail(measure, length, -1, 1);
+  table.tail_up = reference::levy_tail(measure, length, 1, 0);
+  table.tail_down = reference::levy_tail(measure, length, -1, 0);
+  table.tail_up_price = reference::levy_tail(measure, length, 1, 1);
+  table.tail_down_price = reference::levy_tail(measure, length, -1, 1);
   return table;
 }
 
@@ -57,7 +58,8 @@ double difference(const Contract& c, int mesh, int steps) {
   const auto x = [&](std::size_t k) { return std::log(profile[k].spot / c.strike) * (call ? -1.0 : 1.0); };
   problem.h = (x(static_cast<std::size_t>(mesh)) - x(0)) / mesh;
   problem.strike = static_cast<int>(std::lround(-x(0) / problem.h));
-  const reference::Hyperbolic measure{c.jump[0], c.jump[1], call ? -c.jump[2] - 1.0 : c.jump[2], c.jump[3]};
+  const reference::GeneralizedHyperbolic measure{c.jump[0], c.jump[1], call ? -c.jump[2] - 1.0 : c.jump[2],
+                                                 c.jump[3]};
   const std::vector<double> expected = solve_put(problem, table_of(measure, c.variance, mesh, problem.h));
   double worst = 0.0;
   for (std::size_t k = 0; k + 1 < profile.size(); ++k) {

@@ -130,7 +130,7 @@ bool same_bits(const Price& a, const Price& b) {
   for (double Price::*member :
        {&Price::price, &Price::error, &Price::delta, &Price::gamma, &Price::theta, &Price::exercise_boundary})
     if (std::memcmp(&(a.*member), &(b.*member), sizeof(double)) != 0) return false;
-  return a.outcome == b.outcome;
+  return a.status == b.status;
 }
 
 // A device uses other launches for small batches: one warp per grid, and for the smallest batches direct
@@ -170,7 +170,7 @@ TEST(OptionsProperty, SeparateTimesDoNotChangePrices) {
   Settings settings = on_mesh(128, 32);
   const auto expected = priced(settings, contracts);
   for (const bool separate : {false, true}) {
-    settings.timed_apart = separate;
+    settings.time_copies = separate;
     const auto pricer = create_pricer(backend, settings);
     const std::pmr::vector<Contract> from(contracts.begin(), contracts.end(), &pricer->memory());
     std::pmr::vector<Price> to(contracts.size(), &pricer->memory());
@@ -254,7 +254,7 @@ TEST(OptionsProperty, HardContractsDoNotFail) {
   const auto prices = priced(on_mesh(128, 32), contracts);
   std::size_t failed = 0;
   for (std::size_t k = 0; k < prices.size(); ++k) {
-    if (prices[k].outcome == Outcome::failed) {
+    if (prices[k].status == PriceStatus::failed) {
       ++failed;
       continue;
     }
@@ -271,7 +271,7 @@ TEST(OptionsProperty, FailsForOrdersBeyondTheTable) {
   contracts[2].jump[3] = 1.0;
   const auto prices = priced(on_mesh(64, 16), contracts);
   for (std::size_t k = 0; k < prices.size(); ++k)
-    EXPECT_EQ(prices[k].outcome == Outcome::failed, k == 2) << k;
+    EXPECT_EQ(prices[k].status == PriceStatus::failed, k == 2) << k;
   EXPECT_TRUE(std::isnan(prices[2].price));
 }
 
@@ -300,26 +300,26 @@ Price one_price(double rate, double maturity, double variance, double delta, con
 }
 
 TEST(OptionsProperty, ReportsTheReasonOfAFailure) {
-  EXPECT_EQ(one_price(-10.0, 100.0, 0.04, 0.5, Settings{}).failure, Failure::too_large);
+  EXPECT_EQ(one_price(-10.0, 100.0, 0.04, 0.5, Settings{}).failure, FailureReason::discount_overflow);
   Contract money{.style = Style::european, .spot = 1e99, .strike = 1e99, .rate = -5.0, .maturity = 100.0};
   std::ranges::copy(std::array{-0.5, 15.0, -5.0, 0.5}, money.jump);
-  EXPECT_EQ(priced(Settings{}, {money})[0].failure, Failure::too_large);
-  EXPECT_EQ(one_price(0.05, 1.0, 1e300, 0.5, Settings{}).failure, Failure::no_grid);
-  EXPECT_EQ(one_price(0.0, 100.0, 0.0, 20.0, on_mesh(512, 64)).failure, Failure::grown);
+  EXPECT_EQ(priced(Settings{}, {money})[0].failure, FailureReason::discount_overflow);
+  EXPECT_EQ(one_price(0.05, 1.0, 1e300, 0.5, Settings{}).failure, FailureReason::no_grid);
+  EXPECT_EQ(one_price(0.0, 100.0, 0.0, 20.0, on_mesh(512, 64)).failure, FailureReason::unstable);
   // More steps or another mesh would not help.
   for (const Settings& settings : {Settings{}, on_mesh(128, 32)}) {
-    EXPECT_EQ(one_price(0.05, 1.0, 0.04, 1e-300, settings).failure, Failure::overflow);
-    EXPECT_EQ(one_price(1e308, 1.0, 0.04, 0.5, settings).failure, Failure::overflow);
+    EXPECT_EQ(one_price(0.05, 1.0, 0.04, 1e-300, settings).failure, FailureReason::coefficient_overflow);
+    EXPECT_EQ(one_price(1e308, 1.0, 0.04, 0.5, settings).failure, FailureReason::coefficient_overflow);
   }
-  EXPECT_EQ(one_price(1e12, 1.0, 0.04, 0.5, on_mesh(128, 32)).failure, Failure::stiff);
+  EXPECT_EQ(one_price(1e12, 1.0, 0.04, 0.5, on_mesh(128, 32)).failure, FailureReason::stiff);
   Contract merton{.model = Model::merton, .style = Style::european, .rate = 0.05, .variance = 0.04};
   std::ranges::copy(std::array{1e12, -0.1, 0.2}, merton.jump);
-  EXPECT_EQ(priced(on_mesh(128, 32), {merton})[0].failure, Failure::stiff);
+  EXPECT_EQ(priced(on_mesh(128, 32), {merton})[0].failure, FailureReason::stiff);
   // The tolerance selects more steps.
   Settings loose;
   loose.tolerance = 1e-3;
   const Price price = one_price(0.0, 100.0, 0.0, 20.0, loose);
-  EXPECT_EQ(price.failure, Failure::none);
+  EXPECT_EQ(price.failure, FailureReason::none);
   EXPECT_NEAR(price.price, 1.0, price.error);
   EXPECT_GT(price.steps, price.mesh / 4);
 }
@@ -395,7 +395,7 @@ TEST(OptionsProperty, BaselineConvergesAtFirstOrder) {
   const testing::OptionSet& set = option_sets()[0];
   const auto error = [&](int mesh) {
     Settings settings = on_mesh(mesh, mesh);
-    settings.method = Method::seed;
+    settings.method = Method::baseline;
     const Price price = priced(settings, {contract_of(set, 3, Style::american)})[0];
     EXPECT_TRUE(std::isnan(price.error));
     return std::abs(price.price - set.american[3]);

@@ -153,7 +153,7 @@ TEST(OptionsReference, StatedErrorsCoverHardProcesses) {
     for (const Hard& one : hard) {
       const Price price = priced(settings, {one.contract}).front();
       EXPECT_NEAR(price.price, one.value, price.error + 1e-4) << one.value;
-      EXPECT_TRUE(price.outcome == Outcome::coarse || price.error <= tolerance * one.contract.strike);
+      EXPECT_TRUE(price.status == PriceStatus::coarse || price.error <= tolerance * one.contract.strike);
     }
   }
 }
@@ -179,7 +179,7 @@ TEST(OptionsReference, LargeOrdersHaveNoBias) {
   const std::vector<Price> known = priced(settings, contracts);
   std::size_t covered = 0;
   for (std::size_t k = 0; k < contracts.size(); ++k) {
-    EXPECT_EQ(prices[k].outcome, Outcome::ok) << contracts[k].jump[0];
+    EXPECT_EQ(prices[k].status, PriceStatus::ok) << contracts[k].jump[0];
     const double error = std::abs(prices[k].price - known[k].price);
     EXPECT_LT(error, 6e-6 * contracts[k].strike) << contracts[k].jump[0];
     if (error <= prices[k].error) ++covered;

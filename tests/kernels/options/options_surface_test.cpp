@@ -89,7 +89,7 @@ TEST(OptionsSurface, ToleranceIsKept) {
   const std::vector<Price> prices = testing::priced(settings, known.contracts);
   std::size_t kept = 0;
   for (std::size_t k = 0; k < prices.size(); ++k) {
-    EXPECT_EQ(prices[k].outcome, Outcome::ok) << k;
+    EXPECT_EQ(prices[k].status, PriceStatus::ok) << k;
     const double error = std::abs(prices[k].price / known.contracts[k].strike - known.values[k]);
     EXPECT_LT(error, 2e-5) << k;
     if (error <= settings.tolerance) ++kept;
@@ -245,7 +245,7 @@ TEST(OptionsSurface, PricesStrikesBeyondTheGrid) {
 
 TEST(OptionsSurface, RejectsOtherMethods) {
   Settings settings = surface_on(128);
-  for (const Method method : {Method::cos, Method::seed}) {
+  for (const Method method : {Method::cos, Method::baseline}) {
     settings.method = method;
     EXPECT_THROW(static_cast<void>(create_pricer(backend, settings)), std::invalid_argument);
   }

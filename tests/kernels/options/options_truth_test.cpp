@@ -86,7 +86,7 @@ TEST(OptionsTruth, TailsOfMertonAndKouMatchQuadrature) {
                                    NormalizedPut{.model = Model::kou, .jump = {2.0, 0.3, 2.5, 1.5}}}) {
     const double length = 1.1;
     const Tails<double> tails =
-        tails_of(SerialThreadGroup<double>{}, pack_of<double>(&put), LevyMeasure<double>{}, length);
+        make_tails(SerialThreadGroup<double>{}, pack_puts<double>(&put), LevyMeasure<double>{}, length);
     const auto one = [](double) { return 1.0; };
     const auto price = [](double y) { return std::exp(y); };
     const auto square = [](double y) { return y * y; };
@@ -116,7 +116,7 @@ TEST(OptionsTruth, StatedErrorsCoverTailsThatHardlyDecay) {
   const std::vector<Price> known = priced_by_fourier(contracts),
                            prices = priced(on_mesh(256, 256), contracts);
   for (std::size_t k = 0; k < contracts.size(); ++k) {
-    EXPECT_NE(prices[k].outcome, Outcome::failed) << k;
+    EXPECT_NE(prices[k].status, PriceStatus::failed) << k;
     EXPECT_NEAR(prices[k].price, known[k].price, prices[k].error) << k;
     EXPECT_LT(prices[k].error, 0.5) << k;
   }
@@ -135,7 +135,7 @@ TEST(OptionsTruth, StatedErrorsCoverSmallOrders) {
   const std::vector<Price> known = priced_by_fourier(contracts),
                            prices = priced(on_mesh(512, 512), contracts);
   for (std::size_t k = 0; k < contracts.size(); ++k) {
-    EXPECT_NE(prices[k].outcome, Outcome::failed) << k;
+    EXPECT_NE(prices[k].status, PriceStatus::failed) << k;
     EXPECT_NEAR(prices[k].price, known[k].price, prices[k].error + 5e-7) << k;
   }
 }
@@ -237,7 +237,7 @@ std::vector<Contract> of_three_years(Model model) {
 
 std::vector<Price> on_one_grid(const std::vector<Contract>& contracts, int mesh, int steps) {
   Settings settings = on_mesh(mesh, steps);
-  settings.one_grid = true;
+  settings.single_grid = true;
   return priced(settings, contracts);
 }
 
