@@ -3,10 +3,12 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 #include <algorithm>
+#include <sstream>
 #include <string_view>
 
 #include "common/program/failure.hpp"
 #include "common/scene/nearest.hpp"
+#include "common/version.hpp"
 
 namespace drogue {
 namespace {
@@ -59,6 +61,13 @@ std::string parse_command_line(CLI::App& app, const std::vector<std::string>& wo
   for (const CLI::App* subcommand : app.get_subcommands()) refuse_extras(*subcommand);
   refuse_extras(app);
   return {};
+}
+
+std::vector<std::string> backend_choices() {
+  std::vector<std::string> choices = {"auto"};
+  std::istringstream names{std::string(build_info().known_backends)};
+  for (std::string name; names >> name;) choices.push_back(name);
+  return choices;
 }
 
 }  // namespace drogue

@@ -20,4 +20,8 @@ Arguments split_arguments(int argc, const char* const* argv);
 /// surplus argument.
 std::string parse_command_line(CLI::App& app, const std::vector<std::string>& words);
 
+/// Values of the option --backend: auto and every backend that the sources support, whether or not this build
+/// contains it. Does not throw.
+std::vector<std::string> backend_choices();
+
 }  // namespace drogue

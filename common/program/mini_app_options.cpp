@@ -13,7 +13,7 @@ namespace {
 void declare(CLI::App& app, MiniAppOptions& options) {
   app.add_option("SCENE", options.scene, "TOML file, or name of a shipped scene");
   app.add_option("--backend", options.backend, "where to compute: auto takes the fastest present")
-      ->check(CLI::IsMember({"auto", "serial", "openmp", "cuda"}))
+      ->check(CLI::IsMember(backend_choices()))
       ->capture_default_str();
   app.add_option("--set", options.set, "change a value of the scene: key.path=value; may be repeated")
       ->type_name("KEY=VALUE")

@@ -22,7 +22,7 @@ struct Words {
 
 void declare_pricing(CLI::App& app, Words& words, Command& command) {
   app.add_option("--backend", command.backend, "where to compute: auto takes the fastest present")
-      ->check(CLI::IsMember({"auto", "serial", "openmp", "cuda"}))
+      ->check(CLI::IsMember(backend_choices()))
       ->capture_default_str();
   app.add_option("--method", words.method,
                  "pide: finite differences; cos: Fourier; seed: the dissertation's, which states no error")
