@@ -1,3 +1,4 @@
+# ctest-label: no-sanitizer
 """What drogue-options takes, prints, writes and answers."""
 
 import csv

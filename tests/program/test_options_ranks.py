@@ -1,3 +1,4 @@
+# ctest-label: no-sanitizer
 """drogue-options on several ranks: the files of one rank, and an end of all of them whatever happens to one."""
 
 import json

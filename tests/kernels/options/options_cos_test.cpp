@@ -51,6 +51,7 @@ TEST(OptionsBermudan, EqualsTheOracle) {
   }
 }
 
+// ctest-label: no-sanitizer
 TEST(OptionsCos, AmericanPricesEqualTheReference) {
   for (const auto& set : testing::option_sets()) {
     std::vector<Contract> contracts;

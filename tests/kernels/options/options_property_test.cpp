@@ -97,6 +97,7 @@ TEST(OptionsProperty, ThePlaceInABatchChangesNoBit) {
 
 // More contracts than a launch takes, of two models, by a pricer that knows another order of them; the last
 // ones have jumps of orders that need tables of their own.
+// ctest-label: no-sanitizer
 TEST(OptionsProperty, LaunchesOfABatchChangeNoBit) {
   constexpr std::size_t many = (1 << 17) + 5;
   auto kinds = random_contracts(7, 5);
@@ -202,6 +203,7 @@ GridError grid_error(const testing::OptionSet& set, int mesh, int steps) {
 }
 
 // Grids of four times the nodes reach a little farther, so their steps are not a fourth.
+// ctest-label: no-sanitizer
 TEST(OptionsProperty, SecondOrder) {
   for (const testing::OptionSet& set : option_sets()) {
     const GridError coarse = grid_error(set, 96, 48), fine = grid_error(set, 384, 192);
@@ -273,6 +275,7 @@ TEST(OptionsProperty, WhatHasNoTableFails) {
 
 // Stiff jumps: a hundred years of them in few steps on grids that are cut at the boundary of exercise, where
 // diffusion that is added and taken back grew without bound once.
+// ctest-label: no-sanitizer
 TEST(OptionsProperty, AHundredYearsOfPureJumps) {
   std::vector<Contract> contracts;
   for (const auto& jump : {std::array{-0.5, 15.0, -0.5, 0.5}, std::array{-0.5, 15.0, -5.0, 0.5},
@@ -295,6 +298,7 @@ Price one_price(double rate, double maturity, double variance, double delta, con
   return priced(settings, {c})[0];
 }
 
+// ctest-label: no-sanitizer
 TEST(OptionsProperty, WhatFailsSaysWhy) {
   EXPECT_EQ(one_price(-10.0, 100.0, 0.04, 0.5, Settings{}).failure, Failure::too_large);
   Contract money{.style = Style::european, .spot = 1e99, .strike = 1e99, .rate = -5.0, .maturity = 100.0};
@@ -358,6 +362,7 @@ GridError misfit(const testing::OptionSet& set, int mesh) {
 // The price leaves the payoff without a kink: its slope there differs from -1 by what falls with the step,
 // where there is diffusion to the first power. Within a step the boundary may lie anywhere, so meshes differ
 // by 16.
+// ctest-label: no-sanitizer
 TEST(OptionsProperty, SmoothFit) {
   for (const std::size_t k : {0U, 1U, 3U, 4U}) {
     const testing::OptionSet& set = option_sets()[k];
@@ -369,6 +374,7 @@ TEST(OptionsProperty, SmoothFit) {
 }
 
 // Exercised it is -1, and just above the boundary little more.
+// ctest-label: no-sanitizer
 TEST(OptionsProperty, DeltaIsContinuousAtTheBoundary) {
   for (const std::size_t k : {0U, 1U, 3U, 4U}) {
     Contract c = contract_of(option_sets()[k], 3, Style::american);
@@ -425,6 +431,7 @@ TEST(OptionsProperty, TheBoundaryRisesTowardsExpiry) {
 }
 
 // Differences of prices, as far as these are smooth in the spot.
+// ctest-label: no-sanitizer
 TEST(OptionsProperty, GreeksAreSlopes) {
   Contract c = contract_of(option_sets()[1], 3, Style::american);
   for (const Type type : {Type::put, Type::call}) {

@@ -59,6 +59,7 @@ TEST(OptionsReference, MeshOf128) {
   expect_known(settings, 7.5e-5);
 }
 
+// ctest-label: no-sanitizer
 TEST(OptionsReference, ToleranceIsKept) {
   Settings settings;
   settings.tolerance = 1e-5;
@@ -66,6 +67,7 @@ TEST(OptionsReference, ToleranceIsKept) {
 }
 
 // In nine rows of ten the true error is below the stated one, which is not ten times too large on the median.
+// ctest-label: no-sanitizer
 TEST(OptionsReference, StatedErrorsCoverAndDoNotExaggerate) {
   const auto contracts = testing::random_contracts(120, 12);
   Settings settings;
@@ -108,6 +110,7 @@ Contract merton_or_kou(const Literature& row) {
 }
 
 // d'Halluin, Forsyth and Labahn 2004 and Toivanen 2008, digits as their tables have them.
+// ctest-label: no-sanitizer
 TEST(OptionsReference, MertonAndKouOfTheLiterature) {
   const std::vector<Literature> rows = {{Model::merton, 90.0, 10.0038},  {Model::merton, 100.0, 3.24125},
                                         {Model::merton, 110.0, 1.41980}, {Model::kou, 90.0, 10.0051},
@@ -125,6 +128,7 @@ double normal_cdf(double x) { return 0.5 * std::erfc(-x / std::sqrt(2.0)); }
 // Laws that grids find hard: of large order, without a Brownian part for a few days, with the heaviest of
 // tails and with jumps that are all alike. Known are European prices, by a mixture of normal laws or Merton's
 // series.
+// ctest-label: no-sanitizer
 TEST(OptionsReference, StatedErrorsCoverLawsThatAreHard) {
   struct Hard {
     Contract contract;
@@ -161,6 +165,7 @@ TEST(OptionsReference, StatedErrorsCoverLawsThatAreHard) {
 
 // Orders beyond 5, whose Hankel function has a zero close to the real axis: against Fourier's integral, which
 // takes Bessel functions of the exponent, within the tolerance and in nine of ten within the stated errors.
+// ctest-label: no-sanitizer
 TEST(OptionsReference, LargeOrdersHaveNoBias) {
   std::vector<Contract> contracts;
   for (const double lambda : {-127.0, -50.0, -30.0, -12.0, -6.0, 6.0, 15.0, 50.0, 100.0})

@@ -81,6 +81,7 @@ TEST(OptionsSurface, KnownPrices) {
 }
 
 // Stated errors cover in nine cases of ten, and so tolerances are kept.
+// ctest-label: no-sanitizer
 TEST(OptionsSurface, ToleranceIsKept) {
   const KnownStrikes known = known_strikes();
   Settings settings;
@@ -98,6 +99,7 @@ TEST(OptionsSurface, ToleranceIsKept) {
 }
 
 // A grid of its own for each strike, which has the spot elsewhere, and one for all.
+// ctest-label: no-sanitizer
 TEST(OptionsSurface, AgreesWithContractsOnTheirOwn) {
   const std::vector<Contract> contracts = random_strikes(40, 12);
   Settings alone = surface_on(256);
@@ -126,6 +128,7 @@ TEST(OptionsSurface, AgreesWithContractsOnTheirOwn) {
 }
 
 // The prices of a finer grid, which the test above ties to those of contracts, stand for the true ones.
+// ctest-label: no-sanitizer
 TEST(OptionsSurface, StatedErrorsCoverAndDoNotExaggerate) {
   const std::vector<Contract> contracts = random_strikes(60, 5);
   const std::vector<Price> known = testing::priced(surface_on(512), contracts);
@@ -186,6 +189,7 @@ TEST(OptionsSurface, OtherStrikesChangeNoBit) {
 
 // Puts with q < r < 0 are exercised between two boundaries, where exercise is split off and the difference of
 // grids tells less.
+// ctest-label: no-sanitizer
 TEST(OptionsSurface, StatedErrorsCoverExerciseBetweenTwoBoundaries) {
   std::vector<Contract> contracts;
   std::size_t set = 0;
