@@ -17,6 +17,7 @@ WIDTH = 120
 # ----------------------------------------------------------------------------------------------------- comments
 
 REFUSED_OPENING = re.compile(r"(?:What|Of|That|Those|The same)\b")
+REFUSED_ELSEWHERE = re.compile(r"(?:What|Of|That|Those)\b")
 SUSPECT_OPENING = re.compile(r"(?:Whether|How|Where|Why|Who|Which|Nothing|None)\b")
 # Code does none of this.
 PERSONIFYING = r"tells?|told|knows?|hears?|heard|says|said|asks?|asked|wants?|wanted|learns?|learnt|thinks?|believes?"
@@ -98,8 +99,9 @@ def comments(path, text):
 
 
 def refused_openings(path, text):
-    """Lines `path:line: ...` for comments that open with What, Of, That, Those or The same."""
-    found = {number: words for number, words in comments(path, text) + doc_comments(path, text) if REFUSED_OPENING.match(words)}
+    """Lines `path:line: ...` for comments that open with What, Of, That or Those, doc comments also with The same."""
+    found = {number: words for number, words in comments(path, text) if REFUSED_ELSEWHERE.match(words)}
+    found |= {number: words for number, words in doc_comments(path, text) if REFUSED_OPENING.match(words)}
     return [f"{path}:{number}: opens with '{REFUSED_OPENING.match(words).group()}': {words[:70]}"
             for number, words in sorted(found.items())]
 
@@ -321,7 +323,7 @@ UNITS = re.compile(
     r"indices|index|SI|flop|cells?)\b|%|1/s|N/m|kg/m|m/s|epsilon|unitless|any unit", re.IGNORECASE)
 ERRORS = re.compile(r"[Tt]hrow|noexcept|[Aa]borts|[Nn]o errors|[Dd]oes not fail|[Nn]ever fails")
 SCOPE = re.compile(r"\b(namespace|class|struct|union|extern)\b")
-REAL = re.compile(r"\b(?:double|float|Real|R|T|Vector3?|Pair|span|View\w*|Kokkos::View|array)\b|Views?<|Vector")
+REAL = re.compile(r"\b(?:double|float|Real|R|T|Vector3?|Pair|span|View\w*|Kokkos::View)\b|Views?<|Vector|array<(?!int|bool|std::)")
 HEADERS = (".hpp",)
 
 
