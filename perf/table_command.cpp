@@ -2,6 +2,7 @@
 #include <CLI/Formatter.hpp>
 #include <memory>
 
+#include "common/program/command_line.hpp"
 #include "perf/command.hpp"
 #include "perf/record.hpp"
 #include "perf/tables/tables.hpp"
@@ -60,7 +61,7 @@ Command table_command(CLI::App& program) {
       ->required();
   app->add_option("--app", options->app, "Mini-app whose kernels are asked")->capture_default_str();
   app->add_option("--backend", options->backend, "Where to measure: auto takes the fastest present")
-      ->check(CLI::IsMember({"auto", "serial", "openmp", "cuda"}))
+      ->check(CLI::IsMember(backend_choices()))
       ->capture_default_str();
   app->add_option("--out", options->out, "File for the records, one JSON line a row");
   app->add_flag("--quick", options->quick, "Few rows and few samples");

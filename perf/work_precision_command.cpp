@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <memory>
 
+#include "common/program/command_line.hpp"
 #include "common/program/signals.hpp"
 #include "common/run/output_path.hpp"
 #include "common/run/result_document.hpp"
@@ -120,7 +121,7 @@ Command work_precision_command(CLI::App& program) {
       "options for known prices");
   app->add_option("--app", options->app, "Mini-app whose problems are run")->capture_default_str();
   app->add_option("--backend", options->backend, "auto takes all that are present")
-      ->check(CLI::IsMember({"auto", "serial", "openmp", "cuda"}))
+      ->check(CLI::IsMember(backend_choices()))
       ->capture_default_str();
   app->add_option("--filter", options->filter, "Regular expression for the names of the problems");
   app->add_option("--out", options->out, "File for the records, one JSON line a run to solution");

@@ -1,3 +1,4 @@
+# ctest-label: no-sanitizer
 """Settings nobody thought of: a run ends well or in a clear failure, and what it keeps is conserved and finite."""
 
 import math

@@ -1,3 +1,4 @@
+# ctest-label: no-sanitizer
 """Where a run writes, what it says meanwhile, and what it does to files that are there."""
 
 import os

@@ -1,3 +1,4 @@
+# ctest-label: no-sanitizer
 """What drogue-springs prints, writes and answers."""
 
 import json

@@ -1,3 +1,4 @@
+# ctest-label: no-sanitizer
 """--study: one table of errors and times over meshes and schemes."""
 
 import csv

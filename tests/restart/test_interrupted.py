@@ -1,3 +1,4 @@
+# ctest-label: no-sanitizer
 """Ctrl-C and SIGTERM end a run after a whole step; continued, it gives the bits of one that was not interrupted."""
 
 import os

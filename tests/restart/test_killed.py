@@ -1,3 +1,4 @@
+# ctest-label: no-sanitizer
 """A run that was killed and continued gives the bits of one that was not."""
 
 import os

@@ -1,3 +1,4 @@
+# ctest-label: no-sanitizer
 """A run of cloth that was killed or interrupted and continued gives the bits of one that was not."""
 
 import os

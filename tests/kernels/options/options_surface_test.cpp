@@ -80,6 +80,7 @@ TEST(OptionsSurface, MatchesKnownPrices) {
   EXPECT_GE(10 * covered, 9 * prices.size());
 }
 
+// ctest-label: no-sanitizer
 // Error estimates cover nine cases of ten, so the same share of prices is within the tolerance.
 TEST(OptionsSurface, ToleranceIsKept) {
   const KnownStrikes known = known_strikes();
@@ -98,6 +99,7 @@ TEST(OptionsSurface, ToleranceIsKept) {
 }
 
 // Separate solves have other grids than the shared one.
+// ctest-label: no-sanitizer
 TEST(OptionsSurface, AgreesWithContractsPricedSeparately) {
   const std::vector<Contract> contracts = random_strikes(40, 12);
   Settings separate_settings = surface_on(256);
@@ -127,6 +129,7 @@ TEST(OptionsSurface, AgreesWithContractsPricedSeparately) {
   EXPECT_LE(100 * disagreements, contracts.size());
 }
 
+// ctest-label: no-sanitizer
 // Reference: prices of a finer grid, which agree with separate prices
 // (`AgreesWithContractsPricedSeparately`).
 TEST(OptionsSurface, StatedErrorsCoverAndDoNotExaggerate) {
@@ -188,6 +191,7 @@ TEST(OptionsSurface, BitsDoNotDependOnOtherStrikes) {
   }
 }
 
+// ctest-label: no-sanitizer
 // Puts with q < r < 0 are exercised between two boundaries. Exercise is split there, and the difference of
 // the grids contains less of the error.
 TEST(OptionsSurface, StatedErrorsCoverExerciseBetweenTwoBoundaries) {

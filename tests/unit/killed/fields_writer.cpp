@@ -1,3 +1,4 @@
+// ctest-label: no-sanitizer
 // Kills a writer of fields.h5 at every system call that changes a file. This executable wraps those calls. A
 // write also has a kill point at the end of each page, where the system may stop a write of a killed process.
 

@@ -36,6 +36,7 @@ double wave_error(std::int64_t cells) {
   return l1_density(run, p, rho);
 }
 
+// ctest-label: no-sanitizer
 TEST(MusclHancock, IsOfSecondOrder) {
   // The limiter clips the two extrema, in ever fewer cells.
   const double order = std::log2(wave_error(40) / wave_error(320)) / 3.0;
