@@ -65,7 +65,7 @@ bool is_rectilinear(const std::vector<DatasetSpec>& mesh) {
   return x != nullptr && y != nullptr && x->centering == "face" && y->centering == "face";
 }
 
-/// One grid at one output time.
+/// Grid at one output time.
 class GridAtTime {
  public:
   GridAtTime(const GridDatasets& grid, const OutputStep& output)
@@ -91,7 +91,10 @@ class GridAtTime {
     std::string content = R"(        <Topology TopologyType="3DRectMesh" Dimensions=")" +
                           dimensions({faces[0], faces[1], faces[2]}) + "\"/>\n";
     content += geometry("VXVYVZ", mesh_item(x) + mesh_item(y) + (z != nullptr ? mesh_item(*z) : zero()));
-    for (const DatasetSpec& field : _grid.fields) content += structured_attribute(field, z == nullptr);
+    for (const DatasetSpec& field : _grid.fields) {
+      require_rectilinear_shape(field, faces, z == nullptr);
+      content += structured_attribute(field, z == nullptr);
+    }
     return grid(name, content);
   }
 
@@ -161,6 +164,20 @@ class GridAtTime {
     return attribute(field, type, field.centering == "vertex" ? "Node" : "Cell", dimensions(shape));
   }
 
+  /// `faces`: number of face coordinates along z, y and x.
+  static void require_rectilinear_shape(const DatasetSpec& field, const std::uint64_t (&faces)[3],
+                                        bool is_planar) {
+    const std::uint64_t at_cells = field.centering == "vertex" ? 0 : 1;
+    std::vector<std::uint64_t> expected;
+    for (int axis = is_planar ? 1 : 0; axis < 3; ++axis) expected.push_back(faces[axis] - at_cells);
+    if (field.shape.size() >= expected.size() &&
+        std::equal(expected.begin(), expected.end(), field.shape.begin()))
+      return;
+    throw std::invalid_argument("the field '" + field.name + "' has the shape " + dimensions(field.shape) +
+                                " on a rectilinear grid of " + dimensions(expected) +
+                                " with x fastest; add the mesh dataset 'points' for another order of axes");
+  }
+
   [[nodiscard]] std::string grid(const std::string& name, const std::string& content) const {
     return R"(      <Grid Name=")" + escaped(name) + "\" GridType=\"Uniform\">\n        <Time Value=\"" +
            shortest(_output.time) + "\"/>\n" + content + "      </Grid>\n";
@@ -171,7 +188,7 @@ class GridAtTime {
   std::string _group;
 };
 
-/// A grid at all output times. `at_time` writes it at one of them.
+/// Temporal collection of a grid; `at_time` writes the grid at one output time.
 template <class AtTime>
 std::string collection(const std::string& name, const GridDatasets& grid,
                        const std::vector<OutputStep>& outputs, const AtTime& at_time) {
@@ -196,7 +213,7 @@ std::string collections(const std::string& title, const GridDatasets& grid,
   };
   if (strings.shape.at(0) == 0) return of(name, triangles);
   if (triangles.shape.at(0) == 0) return of(name, strings);
-  return of(name + " cloth", triangles) + of(name + " strings", strings);
+  return of(name + " triangles", triangles) + of(name + " strings", strings);
 }
 
 }  // namespace
