@@ -17,7 +17,7 @@ def is_available():
     return subprocess.run([PROGRAM, "run", "--filter", "^$"], capture_output=True, check=False).returncode != 77
 
 
-@unittest.skipUnless(on_this_machine(), "drogue-perf is not built, or finds no device")
+@unittest.skipUnless(is_available(), "drogue-perf is not built, or finds no device")
 class Facts(unittest.TestCase):
     @classmethod
     def setUpClass(cls):

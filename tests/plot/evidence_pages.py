@@ -13,7 +13,7 @@ from plot import cli, evidence_records
 
 
 class Page(HTMLParser):
-    """Rows of the tables of a page by (machine, section), and all its words."""
+    """Rows of the tables of a page by (machine, section), and all words of the page."""
 
     def __init__(self, text):
         super().__init__()
@@ -51,7 +51,7 @@ class Page(HTMLParser):
 
 
 def plot(*words):
-    """Exit code, names of the files, standard error."""
+    """Runs drogue-plot; returns the exit code, the names of the files, and standard error."""
     out, err = io.StringIO(), io.StringIO()
     with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
         code = cli.main([str(word) for word in words])
@@ -64,7 +64,7 @@ class Folder(unittest.TestCase):
         self.addCleanup(shutil.rmtree, self.folder)
 
     def page(self, lines, app="gas"):
-        """A mini-app's page of these records, and the names of the files written."""
+        """Page of a mini-app from these records, and the names of the files written."""
         records.write(self.folder / "a.jsonl", lines)
         code, files, sentence = plot(self.folder, "--dpi", 60)
         self.assertEqual((code, sentence), (0, ""))

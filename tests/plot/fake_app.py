@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Stands for drogue-gas in the test of the demo: three scenes, one of which fails on demand."""
+"""Replacement of drogue-gas in the test of the demo: three scenes, one of which fails on demand."""
 
 import json
 import os

@@ -1,4 +1,4 @@
-"""Makes a test run where the packages of the pictures are: import this first."""
+"""Restarts a test with the interpreter that has the plotting packages; import this module first."""
 
 import importlib.util
 import os

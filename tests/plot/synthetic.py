@@ -1,4 +1,4 @@
-"""Run directories made of exact solutions plus a known disturbance, for the tests of the pictures."""
+"""Run directories of exact solutions plus a known disturbance, for the tests of the pictures."""
 
 import csv
 import itertools
@@ -57,7 +57,7 @@ def write_fields(file, x, times, values_at, reference=None):
 
 
 def smeared_sod(time, x):
-    """Sod's solution as a scheme would give it: jumps smeared over the cells, seeded noise of 1e-6."""
+    """Numerical solution of Sod's problem: jumps smeared over cells, and random noise of 1e-6."""
     rng = np.random.default_rng(4)
     dx = x[1] - x[0]
     offsets = np.linspace(-1.0, 1.0, 9) * 1.5 * dx
@@ -72,7 +72,7 @@ HISTORY_HEADER = (
 
 
 def write_history(file, rows=120):
-    """history.csv of a shock tube: momentum comes in through the ends, the rest drifts by round-off."""
+    """history.csv of a shock tube: momentum enters through the ends, other totals drift by round-off."""
     with file.open("w", newline="") as stream:
         stream.write(HISTORY_HEADER + "\n")
         for row in range(rows):
@@ -97,7 +97,7 @@ def write_sod(directory, cells=200, snapshots=20):
 
 
 def write_study(file, meshes=(100, 200, 400, 800), failed=0, settings=("",)):
-    """study.csv of three schemes that converge with order 0.9 in all settings, their last `failed` rows failures."""
+    """study.csv of three schemes that converge with order 0.9 in all settings; the last `failed` rows are failures."""
     header = (
         "label,weno,weno_power,splitting,time_scheme,precision,backend,cells,steps,compute_s,l1_density,l1_velocity,"
         "l1_pressure,conservation,status"
@@ -124,7 +124,7 @@ def write_study(file, meshes=(100, 200, 400, 800), failed=0, settings=("",)):
 
 
 def write_springs_study(file, order=2.0, checks=("frequency", "equilibrium")):
-    """study.csv of a disk on four meshes, of that order in the length of an edge; the finest has no next mesh."""
+    """study.csv of a disk on four meshes with a given order in the edge length; the finest mesh has no successor."""
     header = ["label", "model", "mass", "integrator", "backend", "vertices", "steps", "compute_s", *checks,
               "cauchy_area", "cauchy_elastic", "cauchy_kinetic", "status"]  # fmt: skip
     with file.open("w", newline="") as stream:

@@ -1,4 +1,4 @@
-"""Records of drogue-perf that obey known laws, for the tests of the evidence page."""
+"""Records of drogue-perf with known scaling laws, for the tests of the evidence page."""
 
 import itertools
 import json
@@ -8,7 +8,7 @@ EPYC = {"gpu": "", "cpu": "AMD EPYC", "threads": 2}
 
 
 def record(case, seconds, machine, facts=None, **changes):
-    """One record whose interval is 2 % wide each way; `changes` replace its keys, `run` its date."""
+    """Record with an interval of 2 % on either side; `changes` replace its keys, `run` its date."""
     provenance = {
         "version": "0.1.0", "git": "abcdef123456", "compiler": "GNU 12.2.0", "flags": "-O3 -march=x86-64-v3",
         "kokkos": "4.5.1", "driver": "13.0" if machine["gpu"] else "",
@@ -33,7 +33,7 @@ PROBLEMS = {
     "entropy-wave": (3e-4, 5.0, 2.0), "shu-osher": (0.5, 1.6, 1.1), "blast": (0.3, 0.9, 0.8),
     "leblanc": (0.05, 0.95, 0.85), "sod": (0.012, 0.9, 0.85),
 }  # fmt: skip
-# s of a step: a latency and s a cell
+# s per step: latency, and s per cell
 SPEEDS = {"serial": (0.0, 6e-8), "openmp": (4e-6, 4.5e-9), "cuda": (5e-6, 1.2e-10)}
 SECOND_SETTINGS = {"lf-stencil": 1.0, "lf-global": 1.15, "lf-single": 1.3}
 
@@ -65,7 +65,7 @@ def solution(problem, backend, scheme, settings, cells, machine, **changes):
 
 
 def solutions(machine=H200, problems=tuple(PROBLEMS), backends=tuple(SPEEDS), meshes=(100, 200, 400, 800, 1600, 3200)):
-    """All schemes with the usual settings, WENO-Z with all; MUSCL-Hancock on Serial alone; TENO5 loses LeBlanc."""
+    """All schemes with the standard settings, WENO-Z with all; MUSCL-Hancock on Serial only; TENO5 fails on LeBlanc."""
     settings = list(itertools.product(SECOND_SETTINGS, ("ssprk3", "ssprk43"), ("double", "split")))
     found = []
     for problem, backend, cells in itertools.product(problems, backends, meshes):
@@ -84,7 +84,7 @@ def solutions(machine=H200, problems=tuple(PROBLEMS), backends=tuple(SPEEDS), me
 
 
 def step(case, seconds, machine, cells, **changes):
-    """A step with its work: 1300 FLOP and 72 bytes a cell."""
+    """Step with its work: 1300 FLOP and 72 bytes per cell."""
     words = case.split("/")
     facts = {
         "backend": words[0],
@@ -97,7 +97,7 @@ def step(case, seconds, machine, cells, **changes):
 
 
 def steps_of_h200():
-    """Steps as measured once: some meet their goals, some miss them."""
+    """Steps that meet their goals and steps that miss them."""
     large = 1 << 24
     times = {
         "cuda/1024": 4.2e-6, "cuda/8192": 5.2e-6, "cuda/65536": 8.9e-6, "cuda/1048576": 138e-6,
@@ -109,7 +109,7 @@ def steps_of_h200():
 
 
 def steps_of_core(machine=EPYC):
-    """One core at 50 ns a cell-step, eight times the dense loop; two threads at 0.9 of two cores."""
+    """One core at 50 ns per cell and step, eight times as fast as the dense loop; two threads at 90 % of two cores."""
     one = 50e-9
     times = {
         "dense-loop/8192": 8 * one * 8192, "serial/8192": one * 8192, "serial/1048576": one * (1 << 20),
@@ -129,7 +129,7 @@ def ceilings(backend="cuda", machine=H200, fp64=33e12, memory=4.2e12, cache=5.3e
 
 
 def transfers(machine=H200):
-    """Pageable copies a third, pinned ones a twentieth of the dissertation's times (much like its Table 5.5)."""
+    """Copies in a third (pageable) and a twentieth (pinned) of the times of [Shi], Table 5.5."""
     found = []
     for index, cells in enumerate(range(1024, 8193, 1024)):
         thesis = {"h2d_us": 336 + 25 * index, "compute_us": 118 + 35 * index, "d2h_us": 272 + 15 * index}
@@ -156,7 +156,7 @@ def blocks(machine=H200):
 
 
 def springs_solutions(machine=EPYC):
-    """Errors 1 / n of n vertices with masses by area and 10 times their root with equal ones; of strings 1 / n^2."""
+    """Errors of n vertices: 1 / n with masses by area, 10 / sqrt(n) with equal masses, 1 / n^2 for strings."""
     found = []
     for mass, integrator, doubling in itertools.product(("area", "equal"), ("rk4", "verlet"), range(7)):
         label = " ".join(word for word in (mass, integrator) if word not in ("area", "rk4"))
@@ -175,7 +175,7 @@ def springs_solutions(machine=EPYC):
 
 
 def springs_steps(machine=H200):
-    """Steps alone, and in contact, as measured or imagined."""
+    """Steps without and with contact."""
     times = {
         "springs-step/cuda/2640": 4.07e-6, "springs-step/cuda/1000000": 350e-6,
         "springs-step/cuda/1000000/quadratic": 434e-6, "springs-step/scatter-loop/2640": 285e-6,
@@ -221,7 +221,7 @@ def options_solutions(machine=EPYC, backend="serial"):
 
 
 def options_batches(machine=H200):
-    """A batch that meets its goal and one that misses it; tridiagonal systems by two solvers."""
+    """Batch that meets its goal and one that misses it; tridiagonal systems by two solvers."""
     times = {
         "options/cuda/4096/128x32": 3e-4, "options/cuda/1/128x32": 2e-4, "tridiagonal/cuda/4096/pttrf/128": 4e-5,
         "tridiagonal/cuda/4096/scan/128": 1e-5,
@@ -230,7 +230,7 @@ def options_batches(machine=H200):
 
 
 def options_transfers(machine=H200):
-    """One option on two meshes and one batch, by both methods."""
+    """One option on two meshes, and one batch, by both methods."""
     found = []
     for options, mesh, method in itertools.product((1, 32), (128, 256), ("seed", "pide")):
         if options == 32 and mesh == 256:

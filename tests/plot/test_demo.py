@@ -1,4 +1,4 @@
-"""The demo with a program that stands for a mini-app: table, page, exit code."""
+"""The demo with a replacement of a mini-app: table, page and exit code."""
 
 import os
 import re
@@ -52,7 +52,7 @@ class Demo(unittest.TestCase):
             re.findall(r"(?:src|href)=\"(?!data:|#)[^\"]*", page), [], "the page needs no other file"
         )
 
-    def test_failed_scene_is_told_and_shown(self):
+    def test_failed_scene_is_reported_and_shown(self):
         done = self._demo("lax", failure="lax")
         self.assertEqual(done.returncode, 5)
         self.assertEqual(
@@ -63,7 +63,7 @@ class Demo(unittest.TestCase):
         self.assertIn("0 of 1 scenes verified", page)
         self.assertIn("above its tolerance 0.0065", page)
 
-    def test_unknown_scene(self):
+    def test_rejects_an_unknown_scene(self):
         done = self._demo("sood")
         self.assertEqual(done.returncode, 2)
         self.assertIn("sod, lax", done.stderr)

@@ -1,4 +1,4 @@
-"""drogue-plot on records of drogue-perf: what enters the page and what must not, machines apart, refusals."""
+"""drogue-plot on records of drogue-perf: contents of the page, separation of machines, and usage errors."""
 
 import json
 import re
@@ -11,7 +11,7 @@ from evidence_pages import Folder, plot
 
 
 class Contents(Folder):
-    def test_each_section_appears_only_if_asked(self):
+    def test_each_section_appears_only_with_its_records(self):
         kinds = {
             "Sod: error against time": records.solutions(problems=("sod",), backends=("serial",), meshes=(100, 200)),
             "A step": records.steps_of_h200(),
@@ -26,13 +26,13 @@ class Contents(Folder):
                 for source in ("2026-11-22", "commit abcdef123456", "GNU 12.2.0", "drogue-perf "):
                     self.assertIn(source, page.words)
 
-    def test_page_needs_no_other_file(self):
+    def test_page_is_self_contained(self):
         page, _ = self.page(records.transfers())
         self.assertTrue(all(source.startswith("data:image/png;base64,") for source in page.sources))
         text = (self.folder / "gas.html").read_text()
         self.assertEqual(re.findall(r"(?:src|href)=\"(?!data:)[^\"]*", text), [])
 
-    def test_failed_check_never_enters(self):
+    def test_failed_records_are_left_out(self):
         lines = records.solutions(problems=("sod",), backends=("serial",), meshes=(100, 200))
         for check, count in (("passed", 1), ("failed", 0)):
             step = records.step("cuda/2048", 654e-6, records.H200, 2048, check=check)
@@ -43,7 +43,7 @@ class Contents(Folder):
         self.assertIn("2 records are left out for a failed check: ", page.words)
         self.assertIn("gas-step/cuda/2048 on NVIDIA H200, Intel Xeon Processor (error 0.0001)", page.words)
 
-    def test_failed_check_may_lack_its_times(self):
+    def test_failed_records_may_lack_times(self):
         bad = records.solution("sod", "serial", "js", records.USUAL, 100, records.H200, check="failed")
         page, files = self.page([bad | {"median": None, "interval": None, "error": None}])
         self.assertEqual((files, page.tables), (["gas.html"], {}))
@@ -55,11 +55,11 @@ class Contents(Folder):
         self.assertNotIn("99 [", page.words)
         self.assertIn("1 record is left out, because a later one", page.words)
 
-    def test_unknown_kinds_are_named(self):
+    def test_unknown_kinds_are_listed(self):
         page, _ = self.page([*records.steps_of_h200(), records.record("ladder/weno/3", 1e-6, records.H200)])
         self.assertIn("1 record is ignored, of a kind that this page does not know: ladder.", page.words)
 
-    def test_machines_are_kept_apart(self):
+    def test_machines_have_separate_sections(self):
         other = records.H200 | {"cpu": "AMD EPYC"}
         lines = [records.step("cuda/8192", 5e-6, records.H200, 8192), records.step("cuda/8192", 7e-6, other, 8192)]
         page, _ = self.page([*lines, *records.steps_of_core()])
@@ -70,7 +70,7 @@ class Contents(Folder):
         _, files = self.page(records.ceilings() + records.ceilings(machine=other))
         self.assertEqual(files, ["gas.html", "roofline_cuda_nvidia-h200-2.png", "roofline_cuda_nvidia-h200.png"])
 
-    def test_format_out_and_a_study_beside_are_obeyed(self):
+    def test_format_and_out_apply_beside_a_study(self):
         records.write(self.folder / "in" / "a.jsonl", records.ceilings())
         synthetic.write_study(self.folder / "in" / "study.csv")
         code, files, _ = plot(self.folder / "in", "--out", self.folder / "out", "--format", "svg")
@@ -80,7 +80,7 @@ class Contents(Folder):
 
 
 class Refusals(Folder):
-    def test_lines_that_are_no_record_are_named_by_file_and_line(self):
+    def test_invalid_lines_are_reported_with_file_and_line(self):
         good = json.dumps(records.step("cuda/8192", 5e-6, records.H200, 8192))
         blocks = records.blocks()[0]
         cases = {
@@ -106,7 +106,7 @@ class Refusals(Folder):
                 self.assertIn(f"{self.folder / 'b.jsonl'}:3", sentence)
                 self.assertIn(words, sentence)
 
-    def test_files_without_records(self):
+    def test_rejects_files_without_records(self):
         (self.folder / "a.jsonl").write_text("\n")
         code, _, sentence = plot(self.folder)
         self.assertEqual((code, sentence.count("\n")), (6, 1))
@@ -114,7 +114,7 @@ class Refusals(Folder):
         (self.folder / "a.jsonl").write_bytes(b"\xff\xfe")
         self.assertEqual(plot(self.folder)[0], 6)
 
-    def test_norm_is_for_studies(self):
+    def test_rejects_a_norm_without_a_study(self):
         records.write(self.folder / "a.jsonl", records.ceilings())
         code, files, sentence = plot(self.folder, "--norm", "l1_density")
         self.assertEqual((code, files), (2, []))

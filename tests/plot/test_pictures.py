@@ -1,4 +1,4 @@
-"""drogue-plot on synthetic run directories: which files, what they hold, which exit codes."""
+"""drogue-plot on synthetic run directories: files, their contents, and exit codes."""
 
 import contextlib
 import io
@@ -28,7 +28,7 @@ _COLOURS = {"run": (0, 0x72, 0xB2), "error": (0xD5, 0x5E, 0)}
 
 
 def _plot(*words):
-    """Exit code, names of the pictures, standard error."""
+    """Runs drogue-plot; returns the exit code, the names of the pictures, and standard error."""
     out, err = io.StringIO(), io.StringIO()
     with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
         code = cli.main([str(word) for word in words])
@@ -36,7 +36,7 @@ def _plot(*words):
 
 
 def _pixels_of(file, colour):
-    """How many pixels of a picture are near a colour."""
+    """Number of pixels of a picture that are close to a colour."""
     with Image.open(file) as image:
         pixels = np.asarray(image.convert("RGB")).astype(int)
     return int((np.abs(pixels - colour).max(-1) < 40).sum())
@@ -64,7 +64,7 @@ class Pictures(unittest.TestCase):
         run = synthetic.write_sod(self.folder / "sod", cells=50, snapshots=1)
         self.assertEqual(_plot(run)[:2], (0, ["fields.png", "history.png"]))
 
-    def test_format_field_and_out_are_obeyed(self):
+    def test_format_field_and_out_apply(self):
         run = synthetic.write_sod(self.folder / "sod", cells=50, snapshots=2)
         before = sorted(run.iterdir())
         code, files, _ = _plot(
@@ -106,7 +106,7 @@ class Pictures(unittest.TestCase):
         self.assertLess(np.abs(error["rho"]).max(), 1e-14)
         self.assertEqual(_plot(run)[0], 0)
 
-    def test_reference_run_stands_for_the_solution_at_the_end_only(self):
+    def test_reference_run_is_the_solution_at_the_end_only(self):
         run = self.folder / "blast"
         run.mkdir()
         (run / "scene.toml").write_text('[verify]\nexact = "reference"\n')
@@ -125,7 +125,7 @@ class Pictures(unittest.TestCase):
         np.testing.assert_allclose(errors(loaded, loaded.snapshots[1], exact)["p"], 0.2)
         self.assertEqual(_plot(run)[:2], (0, ["fields.gif", "fields.png"]))
 
-    def test_history_tells_conservation_from_what_left_through_the_ends(self):
+    def test_history_separates_conservation_from_boundary_fluxes(self):
         synthetic.write_history(self.folder / "history.csv")
         change = conservation(read(self.folder))
         self.assertEqual(list(change), ["mass", "momentum", "energy"])
@@ -146,7 +146,7 @@ class Pictures(unittest.TestCase):
         self.assertIn("WENO-JS  order 0.90", words)
         self.assertTrue(any("1 of 12 runs failed" in text for text in words), words)
 
-    def test_study_of_cloth_gives_orders_in_the_length_of_an_edge(self):
+    def test_study_of_cloth_gives_orders_in_the_edge_length(self):
         synthetic.write_springs_study(self.folder / "study.csv")
         self.assertEqual(_plot(self.folder)[:2], (0, ["study.png"]))
         rows = read(self.folder).study
@@ -160,14 +160,14 @@ class Pictures(unittest.TestCase):
                 self.assertEqual(count, len(by_mesh.lines[0].get_xdata()))
         self.assertEqual(_plot(self.folder, "--norm", "cauchy_kinetic")[:2], (0, ["study.png"]))
 
-    def test_study_of_what_is_kept_shows_how_meshes_differ(self):
+    def test_study_of_conserved_quantities_shows_differences_of_meshes(self):
         synthetic.write_springs_study(self.folder / "study.csv", checks=("energy_drift",))
         rows = read(self.folder).study
         self.assertIn("area", study_figure("cone", rows).axes[0].get_ylabel())
-        # Of one mesh there is no difference.
+        # A single mesh has no difference.
         self.assertIn("energy drift", study_figure("cone", rows[-1:]).axes[0].get_ylabel())
 
-    def test_study_of_one_mesh_without_checks_says_what_it_lacks(self):
+    def test_study_of_one_mesh_without_checks_reports_the_missing_data(self):
         synthetic.write_springs_study(self.folder / "study.csv", checks=())
         (self.folder / "study.json").write_text('{"scene": "cone"}')
         rows = read(self.folder).study
@@ -176,7 +176,7 @@ class Pictures(unittest.TestCase):
         with self.assertRaisesRegex(Failure, "it is empty"):
             study_figure("cone", [])
 
-    def test_study_of_what_is_kept_tells_no_order(self):
+    def test_study_of_conserved_quantities_shows_no_order(self):
         synthetic.write_springs_study(self.folder / "study.csv", checks=("energy_balance",))
         rows = read(self.folder).study
         for norm, label in (("energy_balance", "biquadratic"), ("cauchy_area", "biquadratic  order 2.00")):
@@ -200,7 +200,7 @@ class Pictures(unittest.TestCase):
             self.assertLessEqual(box.y1, figure.axes[1].get_window_extent().y1 + box.height)
         self.assertEqual(_plot(self.folder, "--norm", "l1_pressure")[:2], (0, ["study.png"]))
 
-    def test_largest_density_is_told_as_a_deviation(self):
+    def test_largest_density_is_shown_as_a_deviation(self):
         run = synthetic.write_sod(self.folder / "sedov", cells=20, snapshots=1)
         check = {"name": "max_density", "value": 1.2e-3, "tolerance": 0.02, "passed": True}
         (run / "result.json").write_text(json.dumps({"checks": [check]}))
@@ -223,7 +223,7 @@ class Refusals(unittest.TestCase):
         for word in words:
             self.assertIn(word, sentence)
 
-    def test_usage(self):
+    def test_reports_usage_errors(self):
         self._refused(2, ["no such folder"], self.folder / "absent")
         self._refused(2, ["nothing to draw"], self.folder)
         self._refused(2, ["run directory is missing"])
@@ -235,32 +235,32 @@ class Refusals(unittest.TestCase):
         run = synthetic.write_sod(self.folder / "sod", cells=20, snapshots=1)
         self._refused(2, ["'rhoo'", "nearest is rho"], run, "--field", "rhoo")
 
-    def test_unknown_norm_names_the_columns(self):
+    def test_unknown_norm_lists_the_columns(self):
         synthetic.write_study(self.folder / "study.csv")
         self._refused(2, ["'l3_density'", "l1_density"], self.folder, "--norm", "l3_density")
         self._refused(2, ["no norm 'label'"], self.folder, "--norm", "label")
         synthetic.write_springs_study(self.folder / "study.csv")
         self._refused(2, ["'cauchy_aera'", "nearest is cauchy_area"], self.folder, "--norm", "cauchy_aera")
 
-    def test_norm_without_a_study(self):
+    def test_rejects_a_norm_without_a_study(self):
         run = synthetic.write_sod(self.folder / "sod", cells=20, snapshots=1)
         self._refused(2, ["no study"], run, "--norm", "l1_density")
 
-    def test_environment_that_cannot_be_read(self):
-        # A name too long and a file that is no program fail for every user, root too.
+    def test_reports_an_unreadable_environment(self):
+        # An overlong name and a file that is not executable fail for every user, including root.
         (self.folder / "bin").mkdir()
         (self.folder / "bin" / "python3").write_text("")
         for venv in ("x" * 300, str(self.folder)):
             environment = os.environ | {"DROGUE_VENV": venv, "PYTHONPATH": str(packages.SOURCE / "scripts")}
             environment.pop("DROGUE_PLOT_MOVED", None)
-            # -S: without the packages of this interpreter.
+            # -S: without installed packages.
             done = subprocess.run(
                 [sys.executable, "-S", "-m", "plot", "."], capture_output=True, text=True, env=environment, check=False
             )
             self.assertEqual((done.returncode, done.stderr.count("\n")), (2, 1), done.stderr)
             self.assertIn("packages are missing", done.stderr)
 
-    def test_damaged_files(self):
+    def test_reports_damaged_files(self):
         cases = {
             "fields.h5": b"\x89HDF\r\n\x1a\nnot really",
             "scene.toml": b"[mesh\n",
@@ -276,13 +276,13 @@ class Refusals(unittest.TestCase):
                 self.assertEqual(code, 6, sentence)
                 self.assertEqual(sentence.count("\n"), 1, sentence)
 
-    def test_truncated_fields(self):
+    def test_reports_truncated_fields(self):
         run = synthetic.write_sod(self.folder / "sod", cells=200, snapshots=4)
         content = (run / "fields.h5").read_bytes()
         (run / "fields.h5").write_bytes(content[: len(content) // 2])
         self._refused(6, ["fields.h5"], run)
 
-    def test_folder_that_cannot_be_written(self):
+    def test_reports_an_unwritable_folder(self):
         run = synthetic.write_sod(self.folder / "sod", cells=20, snapshots=1)
         (self.folder / "file").write_text("")
         self._refused(6, ["cannot be written"], run, "--out", self.folder / "file" / "pictures")

@@ -1,4 +1,4 @@
-"""The arithmetic of scripts/record_springs.py and recording.py on files whose answers are known."""
+"""Evaluation of scripts/record_springs.py and recording.py on files with known results."""
 
 import shutil
 import tempfile
@@ -13,7 +13,7 @@ import recording
 
 
 def _write_strip(file, strain, poisson, columns=10, rows=4):
-    """A strip of 0.1 x 0.02 in triangles, pulled along x and free to contract."""
+    """Strip of 0.1 m x 0.02 m in triangles, stretched along x and free to contract."""
     place = {(i, j): j * (columns + 1) + i for j in range(rows + 1) for i in range(columns + 1)}
     rest = np.array([(0.1 * i / columns, 0.02 * j / rows, 0.0) for j in range(rows + 1) for i in range(columns + 1)])
     corners = [(place[i, j], place[i + 1, j], place[i, j + 1], place[i + 1, j + 1])
@@ -30,13 +30,13 @@ class Records(unittest.TestCase):
         self.folder = Path(tempfile.mkdtemp())
         self.addCleanup(shutil.rmtree, self.folder)
 
-    def test_response_of_a_strip(self):
+    def test_response_of_a_strip_matches_the_closed_form(self):
         _write_strip(self.folder / "fields.h5", 1e-6, 0.3)
         found = record_springs.response(self.folder / "fields.h5", 5000.0, 0.3)
         self.assertAlmostEqual(found["modulus"], 1.0, delta=1e-5)
         self.assertAlmostEqual(found["poisson"], 0.3, delta=1e-6)
         self.assertAlmostEqual(found["largest_poisson"], 0.3, delta=1e-6)
-        # Four edges pull at the end, the corner has half of one.
+        # The end has the width of four edges; a corner carries half of one.
         self.assertAlmostEqual(found["modulus_without_a_corner"], 7 / 8, delta=1e-5)
         _, _, force = record_springs.end_forces(self.folder / "fields.h5", 5000.0, 0.3)
         self.assertLess(np.abs(force.sum(axis=0)).max(), 1e-12)
@@ -48,7 +48,7 @@ class Records(unittest.TestCase):
         self.assertAlmostEqual(record_springs.mean_difference(time, first, second), 7 / 4)
         self.assertAlmostEqual(record_springs.mean_difference(time, first, second, 2), np.sqrt(14 / 4))
 
-    def test_bits_that_differ_are_found(self):
+    def test_detects_differing_bits(self):
         for name, strain in (("a", 1e-6), ("b", 1e-6), ("c", 1e-6)):
             (self.folder / name).mkdir()
             _write_strip(self.folder / name / "fields.h5", strain, 0.3)

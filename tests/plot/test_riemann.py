@@ -1,4 +1,4 @@
-"""The exact Riemann solver against tabulated states, and against the laws its solution must obey."""
+"""Exact Riemann solver against tabulated states and conservation laws."""
 
 import unittest
 
@@ -62,7 +62,7 @@ class ExactRiemannSolver(unittest.TestCase):
         for values, other in zip((rho, u, p), mirrored * np.array([[1], [-1], [1]])):
             np.testing.assert_allclose(values, other, atol=1e-12)
 
-    def test_vacuum_opens_where_the_states_part_fast_enough(self):
+    def test_vacuum_forms_between_rapidly_separating_states(self):
         left, right = State(7, -1, 0.2), State(7, 1, 0.2)
         self.assertTrue(opens_vacuum(left, right, 1.4))
         self.assertFalse(opens_vacuum(left, State(7, 0.99, 0.2), 1.4))

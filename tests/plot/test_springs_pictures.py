@@ -1,4 +1,4 @@
-"""drogue-plot on a synthetic run of cloth and on one of a string."""
+"""drogue-plot on synthetic runs of cloth and of a string."""
 
 import contextlib
 import io
@@ -20,7 +20,7 @@ assert packages.SOURCE
 
 
 def write_run(folder, vertices, triangles, edges, moved, stress=None, directions=None, contact="", strings=None):
-    """A run directory whose snapshots are the positions `moved`."""
+    """Run directory with the positions `moved` as snapshots."""
     folder.mkdir()
     (folder / "scene.toml").write_text('app = "springs"\n' + contact)
     header = "time [s],step,kinetic [J],elastic [J],potential [J],energy [J],probe_0_x [m],probe_0_y [m],probe_0_z [m]"
@@ -58,7 +58,7 @@ class SpringsPictures(unittest.TestCase):
         self.assertEqual({"fields.png", "fields.gif", "history.png"},
                          {file.name for file in run.iterdir() if file.suffix in (".png", ".gif")})
 
-    def test_cloth_in_space(self):
+    def test_draws_cloth_in_space(self):
         raised = SQUARE + [[0, 0, 0], [0, 0, 0], [0, 0, 0.5], [0, 0, 0]]
         run = write_run(self.folder / "run", SQUARE, TRIANGLES, EDGES, [SQUARE, raised], [[0.0, 0.0], [2.0, 1.0]])
         self.assert_drawn(run)
@@ -76,32 +76,32 @@ class SpringsPictures(unittest.TestCase):
         self.assertEqual([], [file.name for file in run.iterdir() if file.suffix in (".png", ".gif")])
         return told.getvalue()
 
-    def test_unknown_field(self):
+    def test_unknown_field_suggests_the_nearest(self):
         run = write_run(self.folder / "run", SQUARE, TRIANGLES, EDGES, [SQUARE], [[1.0, 1.0]])
         self.assertIn("no field 'von_mise'; nearest is von_mises", self.refusal(run, "--field", "von_mise"))
         self.assertEqual(0, cli.main([str(run), "--quiet", "--field", "von_mises"]))
 
-    def test_a_run_that_failed_at_once(self):
+    def test_accepts_a_run_that_failed_at_once(self):
         run = write_run(self.folder / "run", SQUARE, TRIANGLES, EDGES, [])
         history = run / "history.csv"
         history.write_text("\n".join(history.read_text().splitlines()[:2]) + "\n")
         self.assertIn("nothing to draw", self.refusal(run))
         self.assertIn("no field 'position'; it has none", self.refusal(run, "--field", "position"))
 
-    def test_flat_cloth_lies_in_its_plane(self):
+    def test_flat_cloth_is_drawn_in_its_plane(self):
         run = write_run(self.folder / "run", SQUARE, TRIANGLES, EDGES, [SQUARE, 1.5 * SQUARE])
         self.assert_drawn(run)
         view = View(read(run))
         self.assertEqual(("x", "y"), view.labels)
         np.testing.assert_allclose(view.values(view.run.snapshots[1]), (0.5 + np.sqrt(0.5)) / 3)
 
-    def test_what_a_stretched_drum_does_is_not_hidden(self):
+    def test_small_deflections_of_a_drum_are_visible(self):
         moved = 1.5 * SQUARE + [0, 0, 1e-6]
         run = write_run(self.folder / "run", SQUARE, TRIANGLES, EDGES, [moved], contact="[initial]\nprestretch = 0.5\n")
         view = View(read(run))
         np.testing.assert_allclose(view.values(view.run.snapshots[0]), 1e-6)
 
-    def test_a_string(self):
+    def test_draws_a_string(self):
         line = np.array([[0, 0, 0], [1, 0, 0], [2, 0, 0]], float)
         sagging = line - [[0, 0, 0], [0, 0, 1], [0, 0, 0]]
         run = write_run(self.folder / "run", line, [], [[0, 1], [1, 2]], [line, sagging])
@@ -109,8 +109,8 @@ class SpringsPictures(unittest.TestCase):
         self.assertEqual(("x", "z"), View(read(run)).labels)
 
 
-    def test_strings_beside_cloth(self):
-        """One that hangs from a corner, and one along the edge that two triangles share, a ridge or a valley; edges of cloth are none."""
+    def test_draws_strings_beside_cloth(self):
+        """A string at a corner, and one along the common edge of two triangles, a ridge or a valley; cloth edges are no strings."""
         place = np.array([*SQUARE, [1.5, 0, -0.5], [2, 0, -1]], float)
         for name, height in (("valley", 0.4), ("ridge", -0.4), ("flat", 0)):
             folded = place * [1, 1, int(height != 0)] + np.outer([0, 1, 0, 1, 0, 0], [0, 0, height])
@@ -122,7 +122,7 @@ class SpringsPictures(unittest.TestCase):
                         pixels = self.vermilion(run)
                         self.assertTrue(pixels > least if strings else pixels == 0, pixels)
 
-    def test_strings_beside_cloth_move(self):
+    def test_strings_move_with_cloth(self):
         place = np.array([*SQUARE, [1.5, 0, -0.5]], float)
         moved = place + np.outer([0, 0, 0, 0, 1], [0, 0.5, 0.2])
         run = write_run(self.folder / "run", place, TRIANGLES, [*EDGES, [1, 4]], [place, moved], strings=[[1, 4]])
@@ -133,12 +133,12 @@ class SpringsPictures(unittest.TestCase):
         self.assertGreater(np.count_nonzero(first & ~last), 20)
         self.assertGreater(np.count_nonzero(last & ~first), 20)
 
-    def test_a_file_that_does_not_name_strings(self):
+    def test_accepts_files_without_strings(self):
         for triangles, count in ((TRIANGLES, 0), ([], 5)):
             run = write_run(self.folder / f"run{count}", SQUARE, triangles, EDGES, [SQUARE])
             self.assertEqual(count, len(View(read(run)).strings))
 
-    def test_history_takes_off_what_contact_and_friction_did(self):
+    def test_history_subtracts_work_of_contact_and_friction(self):
         run = write_run(self.folder / "run", SQUARE, TRIANGLES, EDGES, [SQUARE])
         rows = ["time [s],step,kinetic [J],elastic [J],potential [J],energy [J],contact_work [J],friction_work [J]",
                 "0,0,4,0,0,4,0,0", "1,1,2,0,0,2,-1.5,-0.5", "2,2,1,0,0,1,-2,-0.9"]  # fmt: skip
@@ -150,8 +150,8 @@ class SpringsPictures(unittest.TestCase):
         self.assertEqual(5, len(energies.lines))
         np.testing.assert_allclose(rest.lines[0].get_ydata(), [0, 0, -0.1 / 4], atol=1e-15)
 
-    def test_history_divides_by_what_the_check_divides_by(self):
-        """Kinetic energy that the elastic and potential energy given up between rows would make counts too."""
+    def test_history_uses_the_scale_of_the_check(self):
+        """The scale includes the kinetic energy that elastic and potential energy would give between rows."""
         run = write_run(self.folder / "run", SQUARE, TRIANGLES, EDGES, [SQUARE])
         rows = ["time [s],step,kinetic [J],elastic [J],potential [J],energy [J]",
                 "0,0,1,3,5,9", "1,1,4,0,5,9", "2,2,0,1,-2,-1"]  # fmt: skip
@@ -159,8 +159,8 @@ class SpringsPictures(unittest.TestCase):
         change = springs_history_figure(read(run)).axes[1].lines[0].get_ydata()
         np.testing.assert_allclose(change, [0, 0, -10 / (1 + 2 + 7)], atol=1e-15)
 
-    def test_directions_of_the_larger_stress(self):
-        """Of flat cloth, where there is stress to speak of, as far apart as triangles are."""
+    def test_draws_directions_of_the_larger_stress(self):
+        """Flat cloth shows directions where the stress is significant, at the distance of triangles."""
         run = write_run(self.folder / "run", SQUARE, TRIANGLES, EDGES, [SQUARE, SQUARE], [[1.0, 0.01]] * 2, [[0.6, 0.8, 0], [1, 0, 0]])
         self.assert_drawn(run)
         view = View(read(run))
@@ -172,8 +172,8 @@ class SpringsPictures(unittest.TestCase):
         view = View(read(without))
         self.assertEqual(0, len(view.directions(view.run.snapshots[0])))
 
-    def test_bodies(self):
-        """Facets lie on their bodies, which are seen."""
+    def test_draws_bodies(self):
+        """Facets lie on their bodies, and the bodies are visible."""
         raised = SQUARE + [[0, 0, 0], [0, 0, 0], [0, 0, 0.5], [0, 0, 0]]
         bodies = {
             "disk": ("centre = [0.0, -0.1, 0.2], normal = [0, -0.6, 0.8], radius = 0.3",
@@ -194,8 +194,8 @@ class SpringsPictures(unittest.TestCase):
                 self.assertAlmostEqual(most, reach.max())
                 self.assertGreater(self.greys(run), plain + 1000)
 
-    def test_a_level_set(self):
-        """Its facets are a closed surface; of one that is not a number everywhere those about its numbers are there."""
+    def test_draws_a_level_set(self):
+        """Facets form a closed surface; a level set that is NaN in places has facets where it is finite."""
         raised = SQUARE + [0, 0, 0.6]
         for text, closed in (("(x-0.5)^2+(y-0.5)^2+(z-0.3)^2-0.16", True), ("sqrt((z+0.1)*(z+0.1))-0.2+0*sqrt(x)", False)):
             with self.subTest(text):
@@ -205,7 +205,7 @@ class SpringsPictures(unittest.TestCase):
                 self.assertTrue(np.isfinite(facets).all())
                 if closed:
                     distance = np.abs(np.linalg.norm(facets - [0.5, 0.5, 0.3], axis=-1) - 0.4)
-                    self.assertLess(distance.max(), (1.6 / 48) ** 2)  # the square of the cells
+                    self.assertLess(distance.max(), (1.6 / 48) ** 2)  # square of the cell size
                     _, corners = np.unique(facets.reshape(-1, 3), axis=0, return_inverse=True)
                     loops = corners.reshape(-1, 4)
                     edges = np.sort(np.stack((loops, np.roll(loops, 1, axis=1)), axis=-1).reshape(-1, 2), axis=1)
@@ -217,7 +217,7 @@ class SpringsPictures(unittest.TestCase):
 
     @staticmethod
     def last_picture(run):
-        """Red, green and blue of its pixels."""
+        """Red, green and blue of the pixels of a picture."""
         view = View(read(run))
         drawn = figure(view, view.run.snapshots[-1])
         drawn.canvas.draw()
@@ -227,7 +227,7 @@ class SpringsPictures(unittest.TestCase):
 
     @staticmethod
     def vermilion_of(colours):
-        """Which pixels have the colour of strings."""
+        """Mask of the pixels with the colour of strings."""
         red, green, blue = colours
         return (red > 190) & (np.abs(green - 94) < 30) & (blue < 40)
 
@@ -235,11 +235,11 @@ class SpringsPictures(unittest.TestCase):
         return int(self.vermilion_of(self.last_picture(run)).sum())
 
     def greys(self, run):
-        """Pixels of the colour of bodies, lit or in the shade, in the last picture."""
+        """Number of pixels with the colour of bodies, lit or shaded, in the last picture."""
         red, green, blue = self.last_picture(run)
         return int(((red > green) & (green > blue) & (red - blue < 12) & (red > 90) & (red < 200)).sum())
 
-    def test_a_string_over_a_ball(self):
+    def test_draws_a_string_over_a_sphere(self):
         line = np.array([[0, 0, 0], [1, 0, 0], [2, 0, 0]], float)
         sagging = line - [[0, 0, 0], [0, 0, 1], [0, 0, 0]]
         run = write_run(self.folder / "run", line, [], [[0, 1], [1, 2]], [line, sagging],
