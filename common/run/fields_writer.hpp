@@ -47,7 +47,7 @@ class FieldsWriter {
   FieldsWriter& operator=(const FieldsWriter&) = delete;
 
   /// Adds a mesh dataset in pieces that `source` fills, so that the host need not hold all of it. Keeps the
-  /// dataset of a continued file. Throws std::invalid_argument if the fields do not fit the mesh.
+  /// dataset of a continued file.
   void add_mesh(const DatasetSpec& spec, const Source& source);
   void add_mesh(const DatasetSpec& spec, const IntegerSource& source);
   void add_mesh(const DatasetSpec& spec, const std::vector<double>& values);
@@ -60,7 +60,8 @@ class FieldsWriter {
   /// whole rows of the first dimension, in any order.
   void write(std::string_view field, std::uint64_t first, std::span<const double> values);
 
-  /// Completes the output: syncs it to disk and lists it in fields.xdmf.
+  /// Completes the output: syncs it to disk and lists it in fields.xdmf. Throws std::invalid_argument if the
+  /// fields do not fit the mesh.
   void end_step();
 
   /// Adds or replaces `/reference`, with the attributes `scheme` and `cells`.

@@ -25,14 +25,13 @@ void add_rectilinear_mesh(FieldsWriter& fields, const FaceCoordinates& faces, Ax
   if (faces.x.size() < 2 || faces.y.size() < 2 || faces.z.size() < 2)
     throw std::invalid_argument("a rectilinear grid needs at least two face coordinates along each axis");
   if (order == AxisOrder::xyz) add_points(fields, faces, grid);
-  // With x and y alone the grid would count as a plane: z comes first.
   const auto add = [&](const char* name, const std::vector<double>& values) {
     fields.add_mesh({name, {values.size()}, "m", "face", std::string("face coordinates along ") + name, grid},
                     values);
   };
-  add("z", faces.z);
-  add("y", faces.y);
   add("x", faces.x);
+  add("y", faces.y);
+  add("z", faces.z);
 }
 
 }  // namespace drogue::run

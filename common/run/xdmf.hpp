@@ -29,6 +29,10 @@ struct GridDatasets {
 /// True if `mesh` holds all datasets of a kind of grid. Does not throw.
 [[nodiscard]] bool is_complete(const std::vector<DatasetSpec>& mesh);
 
+/// False if a field has another shape than the cells or vertices of a rectilinear grid, say before z is added
+/// to the mesh; true for other grids. Does not throw.
+[[nodiscard]] bool fields_fit(const GridDatasets& grid);
+
 /// Content of fields.xdmf for ParaView: one temporal collection per grid, named `title` and the grid's name.
 ///
 /// Fields are at vertices or cells as their `centering` states; a trailing dimension 3 makes a vector, 6 a
