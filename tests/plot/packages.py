@@ -1,4 +1,4 @@
-"""Restarts a test with the interpreter that has the plotting packages; import this module first."""
+"""Re-executes a test in an interpreter that has the packages of the pictures. Import it before all others."""
 
 import importlib.util
 import os
