@@ -376,8 +376,8 @@ TEST(OptionsProperty, SatisfiesSmoothFit) {
   }
 }
 
-// ctest-label: no-sanitizer
 // Delta of an exercised put is -1, and close to it just above the boundary.
+// ctest-label: no-sanitizer
 TEST(OptionsProperty, DeltaIsContinuousAtTheBoundary) {
   for (const std::size_t k : {0U, 1U, 3U, 4U}) {
     Contract c = contract_of(option_sets()[k], 3, Style::american);

@@ -66,8 +66,8 @@ TEST(OptionsReference, ToleranceIsKept) {
   expect_known(settings, 1e-5);
 }
 
-// ctest-label: no-sanitizer
 // Nine of ten true errors are below their estimates; the median ratio of estimate and error is at most ten.
+// ctest-label: no-sanitizer
 TEST(OptionsReference, StatedErrorsCoverAndDoNotExaggerate) {
   const auto contracts = testing::random_contracts(120, 12);
   Settings settings;
@@ -162,10 +162,10 @@ TEST(OptionsReference, StatedErrorsCoverHardProcesses) {
   }
 }
 
-// ctest-label: no-sanitizer
 // For orders beyond 5 the Hankel function has a zero close to the real axis. Reference: Fourier integrals,
 // which use Bessel functions of the exponent. Errors are within the tolerance, and nine of ten within the
 // estimates.
+// ctest-label: no-sanitizer
 TEST(OptionsReference, LargeOrdersHaveNoBias) {
   std::vector<Contract> contracts;
   for (const double lambda : {-127.0, -50.0, -30.0, -12.0, -6.0, 6.0, 15.0, 50.0, 100.0})

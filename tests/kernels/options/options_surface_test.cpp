@@ -80,8 +80,8 @@ TEST(OptionsSurface, MatchesKnownPrices) {
   EXPECT_GE(10 * covered, 9 * prices.size());
 }
 
-// ctest-label: no-sanitizer
 // Error estimates cover nine cases of ten, so the same share of prices is within the tolerance.
+// ctest-label: no-sanitizer
 TEST(OptionsSurface, ToleranceIsKept) {
   const KnownStrikes known = known_strikes();
   Settings settings;
@@ -129,9 +129,9 @@ TEST(OptionsSurface, AgreesWithContractsPricedSeparately) {
   EXPECT_LE(100 * disagreements, contracts.size());
 }
 
-// ctest-label: no-sanitizer
 // Reference: prices of a finer grid, which agree with separate prices
 // (`AgreesWithContractsPricedSeparately`).
+// ctest-label: no-sanitizer
 TEST(OptionsSurface, StatedErrorsCoverAndDoNotExaggerate) {
   const std::vector<Contract> contracts = random_strikes(60, 5);
   const std::vector<Price> known = testing::priced(surface_on(512), contracts);
@@ -191,9 +191,9 @@ TEST(OptionsSurface, BitsDoNotDependOnOtherStrikes) {
   }
 }
 
-// ctest-label: no-sanitizer
 // Puts with q < r < 0 are exercised between two boundaries. Exercise is split there, and the difference of
 // the grids contains less of the error.
+// ctest-label: no-sanitizer
 TEST(OptionsSurface, StatedErrorsCoverExerciseBetweenTwoBoundaries) {
   std::vector<Contract> contracts;
   std::size_t set = 0;
