@@ -25,7 +25,7 @@ std::string price_bytes(device::Backend backend, const options::Settings& settin
   for (const options::Price& p : prices) {
     for (const double value : {p.price, p.error, p.delta, p.gamma, p.theta, p.exercise_boundary})
       bytes.append(reinterpret_cast<const char*>(&value), sizeof(value));  // NOLINT: bits are compared
-    bytes += std::to_string(p.mesh) + "," + std::to_string(static_cast<int>(p.outcome)) + ";";
+    bytes += std::to_string(p.mesh) + "," + std::to_string(static_cast<int>(p.status)) + ";";
   }
   return bytes;
 }
