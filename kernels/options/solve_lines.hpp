@@ -27,8 +27,8 @@ struct LineFunctor {
   View solution;      ///< (groups, nodes, members)
 
   [[nodiscard]] KOKKOS_INLINE_FUNCTION static std::size_t scratch_bytes(int nodes) {
-    const auto count = static_cast<std::size_t>(block_of(nodes, most_lanes) * most_lanes);
-    return block > 0 ? 0 : sizeof(R) * (rows * count + 9 * most_lanes) + 64;
+    const auto count = static_cast<std::size_t>(block_of(nodes, max_lanes) * max_lanes);
+    return block > 0 ? 0 : sizeof(R) * (rows * count + 9 * max_lanes) + 64;
   }
 
   KOKKOS_FUNCTION void operator()(const Member& team) const {
@@ -40,9 +40,9 @@ struct LineFunctor {
     if constexpr (block > 0) {
       in_registers(team.team_rank(), f, right.data() + first, solution.data() + first);
     } else if constexpr (device::is_host<ExecutionSpace>) {
-      in_scratch(SerialWorkers<R>{}, team, f, right.data() + first, solution.data() + first);
+      in_scratch(SerialThreadGroup<R>{}, team, f, right.data() + first, solution.data() + first);
     } else {
-      in_scratch(WarpWorkers<>{static_cast<int>(team.team_rank())}, team, f, right.data() + first,
+      in_scratch(WarpThreadGroup<>{static_cast<int>(team.team_rank())}, team, f, right.data() + first,
                  solution.data() + first);
     }
   }
@@ -54,11 +54,11 @@ struct LineFunctor {
       y.node[m] = f.inverse * y.node[m];
       floor.node[m] = -unbounded;
     }
-    recur_backward<most_lanes>(lane, y, f.from_right);
+    recur_backward<max_lanes>(lane, y, f.from_right);
     const LaneNodes<block> x =
         f.from_left >= 0.0
-            ? recur_by_maps<most_lanes, MaxAffineMap<double>>(lane, y, floor, f.from_left, f.edge)
-            : recur_by_maps<most_lanes, ClampedMap<double>>(lane, y, floor, f.from_left, f.edge);
+            ? recur_by_maps<max_lanes, MaxAffineMap<double>>(lane, y, floor, f.from_left, f.edge)
+            : recur_by_maps<max_lanes, ClampedMap<double>>(lane, y, floor, f.from_left, f.edge);
     x.store(lane, to);
   }
 
@@ -90,8 +90,7 @@ void solve_lines(const ExecutionSpace& space, int groups, int nodes, const Facto
   static_assert(Kokkos::SpaceAccessibility<ExecutionSpace, typename Solution::memory_space>::accessible);
   const auto launch = [&]<int block>() {
     using Functor = LineFunctor<ExecutionSpace, block>;
-    Kokkos::TeamPolicy<ExecutionSpace> policy(space, groups,
-                                              device::is_host<ExecutionSpace> ? 1 : most_lanes);
+    Kokkos::TeamPolicy<ExecutionSpace> policy(space, groups, device::is_host<ExecutionSpace> ? 1 : max_lanes);
     policy.set_scratch_size(1, Kokkos::PerTeam(Functor::scratch_bytes(nodes)));
     Kokkos::parallel_for("drogue::options::solve lines", policy, Functor{nodes, factors, right, solution});
   };

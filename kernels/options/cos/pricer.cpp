@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <thread>
 
-#include "kernels/options/batch/stopwatch.hpp"
+#include "kernels/device/stopwatch.hpp"
 #include "kernels/options/cos/american.hpp"
 #include "kernels/options/cos/european.hpp"
 
@@ -73,7 +73,7 @@ class CosPricer final : public Pricer {
   WallTimes price(std::span<const Contract> contracts, std::span<Price> prices) override {
     if (contracts.size() != prices.size())
       throw std::invalid_argument("cos: as many prices as contracts are needed");
-    const Stopwatch pricing;
+    const device::Stopwatch pricing;
     std::vector<std::size_t> american;
     for (std::size_t i = 0; i < contracts.size(); ++i)
       if (contracts[i].style == Style::american && !AmericanPut(contracts[i]).never_exercised())

@@ -107,13 +107,13 @@ KOKKOS_INLINE_FUNCTION LevyMeasure<R> law_of(const ThreadGroup& workers, const P
       for (int q = lane; q < Mixture::size; q += workers.lanes) {
         const R a = device::reciprocal(s[q] + up), b = device::reciprocal(s[q] + down);
         sum[q < Mixture::low ? 0 : 1] += c[q] * (a * a + b * b);
-        if (q >= Mixture::low || !workers.writes()) continue;
+        if (q >= Mixture::low || !workers.is_writer()) continue;
         ups[q] = a;
         downs[q] = b;
       }
       return sum;
     });
-    workers.meet();
+    workers.sync();
     law.high = variance[1];
     law.variance = variance[0] + variance[1];
   } else if (pack.model == Model::merton) {
