@@ -92,9 +92,12 @@ struct KernelFactors<DeltaKernel::ib4> {
 template <class Function>
 void dispatch_kernel(DeltaKernel kernel, const Function& function) {
   switch (kernel) {
-    case DeltaKernel::cbs43: return function.template operator()<DeltaKernel::cbs43>();
-    case DeltaKernel::cbs32: return function.template operator()<DeltaKernel::cbs32>();
-    case DeltaKernel::ib4: return function.template operator()<DeltaKernel::ib4>();
+    case DeltaKernel::cbs43:
+      return function.template operator()<DeltaKernel::cbs43>();
+    case DeltaKernel::cbs32:
+      return function.template operator()<DeltaKernel::cbs32>();
+    case DeltaKernel::ib4:
+      return function.template operator()<DeltaKernel::ib4>();
   }
 }
 

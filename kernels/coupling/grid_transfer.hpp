@@ -89,9 +89,8 @@ struct TransferKernel {
   template <class Value>
   KOKKOS_FUNCTION double weighted_sum(const Item& at, const Value& value) const {
     double sum = 0.0;
-    stencil(at).for_each_face([&](const FaceIndex& face, double weight, bool) {
-      sum += weight * value(at.component, face);
-    });
+    stencil(at).for_each_face(
+        [&](const FaceIndex& face, double weight, bool) { sum += weight * value(at.component, face); });
     return sum;
   }
 };

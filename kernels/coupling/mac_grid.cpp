@@ -11,8 +11,7 @@ void check(const MacGrid& grid) {
       throw std::invalid_argument("MAC grid: the number of cells of an axis must be 1 to 2^30");
     if (!(grid.spacing[axis] > 0.0) || !std::isfinite(grid.spacing[axis]))
       throw std::invalid_argument("MAC grid: the spacing of an axis must be positive and finite");
-    if (!std::isfinite(grid.origin[axis]))
-      throw std::invalid_argument("MAC grid: the origin must be finite");
+    if (!std::isfinite(grid.origin[axis])) throw std::invalid_argument("MAC grid: the origin must be finite");
   }
 }
 

@@ -128,9 +128,10 @@ void add_to_sums(const ExecutionSpace& space, const GridTransfer<ExecutionSpace>
     Kokkos::parallel_for("drogue::coupling::largest_force",
                          Kokkos::RangePolicy<ExecutionSpace>(space, 0, transfer.points),
                          LargestForceFunctor<ExecutionSpace, Forces>{transfer, force});
-  for_each_point_and_component(
-      space, "drogue::coupling::spread", transfer,
-      [&]<class Base>(const Base& base) { return SpreadFunctor<Base, Forces>{base, force, bound}; });
+  for_each_point_and_component(space, "drogue::coupling::spread", transfer,
+                               [&]<class Base>(const Base& base) {
+                                 return SpreadFunctor<Base, Forces>{base, force, bound};
+                               });
 }
 
 /// Spreads forces on the frozen positions, `force` (points, 3), N, and adds their densities, N/m^3, to
@@ -148,18 +149,17 @@ void spread(const ExecutionSpace& space, const GridTransfer<ExecutionSpace>& tra
   static_assert(spatial::accessible_from<ExecutionSpace, View>);
   const auto arrays = face_arrays(transfer.grid, density);
   add_to_sums(space, transfer, force, bound);
-  for_each_point_and_component(space, "drogue::coupling::add_densities", transfer,
-                               [&]<class Base>(const Base& base) {
-                                 using T = typename View::value_type;
-                                 return AddDensitiesFunctor<Base, T>{base, arrays,
-                                                                     1.0 / cell_volume(transfer.grid)};
-                               });
+  for_each_point_and_component(
+      space, "drogue::coupling::add_densities", transfer, [&]<class Base>(const Base& base) {
+        using T = typename View::value_type;
+        return AddDensitiesFunctor<Base, T>{base, arrays, 1.0 / cell_volume(transfer.grid)};
+      });
 }
 
-/// Row sums of interpolation after spreading, divided by the fluid density: `result` (points, 3), m^2/kg, from
-/// the areas of the points, m^2, and a density, kg/m^3. The inverse of a row sum is the fluid mass per area
-/// that moves with a point. Asynchronous, allocates nothing, and may be captured into a CUDA graph. Throws
-/// std::invalid_argument for Views of the wrong extents and a density that is not positive.
+/// Row sums of interpolation after spreading, divided by the fluid density: `result` (points, 3), m^2/kg,
+/// from the areas of the points, m^2, and a density, kg/m^3. The inverse of a row sum is the fluid mass per
+/// area that moves with a point. Asynchronous, allocates nothing, and may be captured into a CUDA graph.
+/// Throws std::invalid_argument for Views of the wrong extents and a density that is not positive.
 template <class ExecutionSpace, class Areas, class Results>
 void spread_row_sums(const ExecutionSpace& space, const GridTransfer<ExecutionSpace>& transfer,
                      const Areas& area, double density, const Results& result) {
@@ -167,11 +167,10 @@ void spread_row_sums(const ExecutionSpace& space, const GridTransfer<ExecutionSp
   require_points(transfer, result);
   if (!(density > 0.0)) throw std::invalid_argument("grid transfer: the density must be positive");
   add_to_sums(space, transfer, area, 0.0);
-  for_each_point_and_component(space, "drogue::coupling::row_sums", transfer,
-                               [&]<class Base>(const Base& base) {
-                                 return RowSumFunctor<Base, Results>{
-                                     base, 1.0 / (density * cell_volume(transfer.grid)), result};
-                               });
+  for_each_point_and_component(
+      space, "drogue::coupling::row_sums", transfer, [&]<class Base>(const Base& base) {
+        return RowSumFunctor<Base, Results>{base, 1.0 / (density * cell_volume(transfer.grid)), result};
+      });
   for_each_point_and_component(space, "drogue::coupling::reset_sums", transfer,
                                [&]<class Base>(const Base& base) { return ResetSumsFunctor<Base>{base}; });
 }

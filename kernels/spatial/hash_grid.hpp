@@ -42,7 +42,8 @@ struct HashGrid {
     spheres(k) = sphere;
   }
 
-  /// Calls `visit(k)` for every primitive whose centre lies in the cell of p (m) or in one of its 26 neighbours.
+  /// Calls `visit(k)` for every primitive whose centre lies in the cell of p (m) or in one of its 26
+  /// neighbours.
   template <class Heads, class Spheres, class Visit>
   KOKKOS_FUNCTION void for_each_candidate(const Point& p, const Heads& heads, const Spheres& spheres,
                                           const Visit& visit) const {

@@ -105,8 +105,8 @@ void require_rows(const View& view, int rows) {
     throw std::invalid_argument("fabric surface: View '" + view.label() + "' has too few rows");
 }
 
-/// Area, m^2, and unit normal of each triangle at positions x, m: `area` (triangles), `normal` (triangles, 3).
-/// A degenerate triangle has neither. Asynchronous. Throws std::invalid_argument for too few rows.
+/// Area, m^2, and unit normal of each triangle at positions x, m: `area` (triangles), `normal` (triangles,
+/// 3). A degenerate triangle has neither. Asynchronous. Throws std::invalid_argument for too few rows.
 template <class ExecutionSpace, class Positions, class Areas, class Normals>
 void triangle_geometry(const ExecutionSpace& space, const SurfaceViews<ExecutionSpace>& surface,
                        const Positions& x, const Areas& area, const Normals& normal) {
@@ -114,10 +114,9 @@ void triangle_geometry(const ExecutionSpace& space, const SurfaceViews<Execution
   require_rows(x, surface.vertices());
   require_rows(area, surface.triangles());
   require_rows(normal, surface.triangles());
-  Kokkos::parallel_for("drogue::fabric::triangle_geometry",
-                       Kokkos::RangePolicy<ExecutionSpace>(space, 0, surface.triangles()),
-                       TriangleGeometryFunctor<ExecutionSpace, Positions, Areas, Normals>{surface, x, area,
-                                                                                          normal});
+  Kokkos::parallel_for(
+      "drogue::fabric::triangle_geometry", Kokkos::RangePolicy<ExecutionSpace>(space, 0, surface.triangles()),
+      TriangleGeometryFunctor<ExecutionSpace, Positions, Areas, Normals>{surface, x, area, normal});
 }
 
 /// Velocity of the centroid of each triangle, m/s, from velocities v of the vertices, m/s: `velocity`
@@ -128,16 +127,16 @@ void triangle_velocities(const ExecutionSpace& space, const SurfaceViews<Executi
   static_assert(spatial::accessible_from<ExecutionSpace, Velocities, Results>);
   require_rows(v, surface.vertices());
   require_rows(velocity, surface.triangles());
-  Kokkos::parallel_for(
-      "drogue::fabric::triangle_velocities",
-      Kokkos::RangePolicy<ExecutionSpace>(space, 0, surface.triangles()),
-      TriangleVelocityFunctor<ExecutionSpace, Velocities, Results>{surface, v, velocity});
+  Kokkos::parallel_for("drogue::fabric::triangle_velocities",
+                       Kokkos::RangePolicy<ExecutionSpace>(space, 0, surface.triangles()),
+                       TriangleVelocityFunctor<ExecutionSpace, Velocities, Results>{surface, v, velocity});
 }
 
 /// Area of each vertex, a third of the triangles around it, m^2, and its unit normal, the mean of their
 /// normals weighted by area, at positions x, m: `area` (vertices), `normal` (vertices, 3). Both are zero at a
 /// vertex without triangles (a string or payload has no area); the normal is zero where a fold cancels it.
-/// The velocity of a vertex is that of the state. Asynchronous. Throws std::invalid_argument for too few rows.
+/// The velocity of a vertex is that of the state. Asynchronous. Throws std::invalid_argument for too few
+/// rows.
 template <class ExecutionSpace, class Positions, class Areas, class Normals>
 void vertex_geometry(const ExecutionSpace& space, const SurfaceViews<ExecutionSpace>& surface,
                      const Positions& x, const Areas& area, const Normals& normal) {
@@ -146,8 +145,7 @@ void vertex_geometry(const ExecutionSpace& space, const SurfaceViews<ExecutionSp
   require_rows(area, surface.vertices());
   require_rows(normal, surface.vertices());
   Kokkos::parallel_for(
-      "drogue::fabric::vertex_geometry",
-      Kokkos::RangePolicy<ExecutionSpace>(space, 0, surface.vertices()),
+      "drogue::fabric::vertex_geometry", Kokkos::RangePolicy<ExecutionSpace>(space, 0, surface.vertices()),
       VertexGeometryFunctor<ExecutionSpace, Positions, Areas, Normals>{surface, x, area, normal});
 }
 

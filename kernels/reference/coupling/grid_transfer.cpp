@@ -12,9 +12,12 @@ using coupling::MacGrid;
 
 double delta_factor(DeltaKernel kernel, bool along, double x) {
   switch (kernel) {
-    case DeltaKernel::cbs43: return b_spline(along ? 4 : 3, x);
-    case DeltaKernel::cbs32: return b_spline(along ? 3 : 2, x);
-    default: return peskin_four_point(x);
+    case DeltaKernel::cbs43:
+      return b_spline(along ? 4 : 3, x);
+    case DeltaKernel::cbs32:
+      return b_spline(along ? 3 : 2, x);
+    default:
+      return peskin_four_point(x);
   }
 }
 

@@ -9,7 +9,8 @@ namespace drogue::reference {
 
 using Vector = std::array<double, 3>;
 
-/// Cardinal B-spline of an order n >= 1 (degree n - 1), centred at zero, by the recurrence of Cox and de Boor.
+/// Cardinal B-spline of an order n >= 1 (degree n - 1), centred at zero, by the recurrence of Cox and de
+/// Boor.
 [[nodiscard]] double b_spline(int order, double x);
 
 /// Four-point function of Peskin (Acta Numerica 2002, eq. 6.27).
@@ -38,8 +39,7 @@ using FaceField = std::array<std::vector<double>, 3>;
                                const std::vector<Vector>& points, const std::vector<Vector>& forces);
 
 /// Row sums of interpolation after spreading over the fluid density (kg/m^3), from areas (m^2): m^2/kg.
-[[nodiscard]] std::vector<Vector> spread_row_sums(const coupling::MacGrid& grid,
-                                                  coupling::DeltaKernel kernel,
+[[nodiscard]] std::vector<Vector> spread_row_sums(const coupling::MacGrid& grid, coupling::DeltaKernel kernel,
                                                   const std::vector<Vector>& points,
                                                   const std::vector<double>& areas, double density);
 

@@ -151,7 +151,8 @@ TEST(FabricSurface, ReadsPaddedViewsWithoutFenceAllocationOrCopyAndReplaysFromAG
   const std::size_t vertices = x.size();
   x.resize(64), v.resize(64);
   const auto state = [&](const std::vector<Vector>& rows) {
-    return Kokkos::subview(points_view(space, rows), Kokkos::make_pair(std::size_t{0}, vertices), Kokkos::ALL);
+    return Kokkos::subview(points_view(space, rows), Kokkos::make_pair(std::size_t{0}, vertices),
+                           Kokkos::ALL);
   };
   const PointsView<Space> positions = state(x), velocities = state(v);
   x.resize(vertices);

@@ -293,9 +293,9 @@ TEST(GridTransfer, CountsPointsWhoseDeltaFunctionLeavesTheGrid) {
     const double near = 0.5 * (needed - 0.01), enough = 0.5 * (needed + 0.01);
     const Vectors complete{{enough, 0.0, 2.0}, {2.0, -50.0, 4.0 - enough}, {4.0 - enough, 3.9, enough}};
     EXPECT_EQ(Case<Space>(grid, kernel, complete).counts().incomplete_points, 0);
-    const Vectors incomplete{{near, 0.0, 2.0},      {2.0, 2.0, 4.0 - near}, {4.0 - near, 3.9, near},
-                             {-7.0, 2.0, 2.0},      {2.0, 2.0, 1e300},      {nan, 2.0, 2.0},
-                             {2.0, infinite, 2.0},  {2.0, 2.0, -infinite},  {2.0, nan, 2.0},
+    const Vectors incomplete{{near, 0.0, 2.0},     {2.0, 2.0, 4.0 - near}, {4.0 - near, 3.9, near},
+                             {-7.0, 2.0, 2.0},     {2.0, 2.0, 1e300},      {nan, 2.0, 2.0},
+                             {2.0, infinite, 2.0}, {2.0, 2.0, -infinite},  {2.0, nan, 2.0},
                              {2.0, 1e300, 2.0}};
     EXPECT_EQ(Case<Space>(grid, kernel, incomplete).counts().incomplete_points, 10);
   }
@@ -453,8 +453,8 @@ TEST(GridTransfer, RejectsForcesAboveTheBoundAndNonFiniteOnes) {
 
 TEST(GridTransfer, PositionsThatAreNotFiniteInterpolateToNaN) {
   const MacGrid grid = all_grids()[0];
-  const Vectors result = Case<Space>(grid, DeltaKernel::cbs43, {{0.0, 2.0, std::nan("")}})
-                             .interpolated(Random(15).field(grid));
+  const Vectors result =
+      Case<Space>(grid, DeltaKernel::cbs43, {{0.0, 2.0, std::nan("")}}).interpolated(Random(15).field(grid));
   for (const double value : result[0]) EXPECT_TRUE(std::isnan(value));
 }
 

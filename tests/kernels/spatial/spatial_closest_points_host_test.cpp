@@ -33,7 +33,9 @@ class Random {
 
 Point on_segment(const Point (&s)[2], double u) { return s[0] + u * (s[1] - s[0]); }
 
-Point on_triangle(const Point (&t)[3], const double (&w)[3]) { return w[0] * t[0] + w[1] * t[1] + w[2] * t[2]; }
+Point on_triangle(const Point (&t)[3], const double (&w)[3]) {
+  return w[0] * t[0] + w[1] * t[1] + w[2] * t[2];
+}
 
 double squared_distance(const Point& a, const Point& b) { return dot(a - b, a - b); }
 
@@ -157,7 +159,8 @@ TEST(ClosestPoints, LargeCoordinatesCostOnlyTheirOwnRoundOff) {
     for (int trial = 0; trial < 50; ++trial) {
       const Point t[3] = {random.point(size), random.point(size), random.point(size)};
       expect_closest(random.point(size), t, size);
-      const Point p[2] = {random.point(size), random.point(size)}, q[2] = {random.point(size), random.point(size)};
+      const Point p[2] = {random.point(size), random.point(size)},
+                  q[2] = {random.point(size), random.point(size)};
       expect_closest(p, q, size);
     }
   }

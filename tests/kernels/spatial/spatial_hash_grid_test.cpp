@@ -106,8 +106,8 @@ TEST(HashGrid, CoincidentPointsAreAllCandidates) {
 }
 
 TEST(HashGrid, NegativeZeroAndTinyCoordinatesLieInNeighbouringCells) {
-  expect_neighbours({{0.0, 0.0, 0.0}, {-0.0, -0.0, -0.0}, {-1e-300, 1e-300, 0.0}, {-1e-300, -1e-300, -1e-300}},
-                    1.0);
+  expect_neighbours(
+      {{0.0, 0.0, 0.0}, {-0.0, -0.0, -0.0}, {-1e-300, 1e-300, 0.0}, {-1e-300, -1e-300, -1e-300}}, 1.0);
 }
 
 TEST(HashGrid, FarPointsAreFoundAmongTheirNeighbours) {
