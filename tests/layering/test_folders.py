@@ -13,7 +13,6 @@ PAGE = ROOT / "docs/architecture.md"
 class Repository(unittest.TestCase):
     maxDiff = None
 
-    @unittest.skip("the page names folders that other changes of this series add")
     def test_page_names_the_folders_that_exist(self):
         files = [path.relative_to(ROOT).as_posix() for area in folders.AREAS for path in (ROOT / area).rglob("*") if path.is_file()]
         self.assertEqual(sorted(folders.existing(files)), sorted(folders.named(PAGE.read_text(encoding="utf-8"))))
