@@ -201,7 +201,7 @@ TEST(FabricPins, ViewsDoNotMoveFreeAxesAndAxesOfExpressions) {
   p.pinned[10] = 6;
   p.motions = {{0, {0}, postfix({"t"})}};
   FabricSolver<Space> solver(space, p);
-  start(solver, p);
+  start(solver, p, 0.0);
   set_motion(space, solver.prescribed_motion(), 5.0, 0.0, 0.0, 0.0);
   solver.enqueue_steps(10);
   const SheetState now = downloaded(solver);
