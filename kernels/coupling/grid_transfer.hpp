@@ -6,6 +6,7 @@
 
 #include "kernels/coupling/face_stencil.hpp"
 #include "kernels/coupling/fixed_point.hpp"
+#include "kernels/device/launch.hpp"
 
 namespace drogue::coupling {
 
@@ -104,8 +105,7 @@ void for_each_point_and_component(const ExecutionSpace& space, const char* label
     const TransferKernel<ExecutionSpace, kernel> base{transfer, grid_axes(transfer.grid),
                                                       face_arrays(transfer.grid, transfer.sums),
                                                       summand_bound(transfer.points)};
-    Kokkos::parallel_for(label, Kokkos::RangePolicy<ExecutionSpace>(space, 0, 3 * transfer.points),
-                         make(base));
+    device::launch_each(space, label, 3 * transfer.points, make(base));
   });
 }
 
@@ -138,10 +138,9 @@ void freeze_positions(const ExecutionSpace& space, const GridTransfer<ExecutionS
   require_points(transfer, x);
   require_points(transfer, v);
   dispatch_kernel(transfer.kernel, [&]<DeltaKernel kernel>() {
-    Kokkos::parallel_for("drogue::coupling::freeze_positions",
-                         Kokkos::RangePolicy<ExecutionSpace>(space, 0, transfer.points),
-                         FreezePositionsFunctor<ExecutionSpace, kernel, Positions, Velocities>{
-                             transfer, grid_axes(transfer.grid), x, v, time});
+    device::launch_each(space, "drogue::coupling::freeze_positions", transfer.points,
+                        FreezePositionsFunctor<ExecutionSpace, kernel, Positions, Velocities>{
+                            transfer, grid_axes(transfer.grid), x, v, time});
   });
 }
 

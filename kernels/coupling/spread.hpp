@@ -125,9 +125,8 @@ void add_to_sums(const ExecutionSpace& space, const GridTransfer<ExecutionSpace>
   if (!(bound >= 0.0) || std::isinf(bound))
     throw std::invalid_argument("grid transfer: the bound on forces must be finite and not negative");
   if (bound == 0.0)
-    Kokkos::parallel_for("drogue::coupling::largest_force",
-                         Kokkos::RangePolicy<ExecutionSpace>(space, 0, transfer.points),
-                         LargestForceFunctor<ExecutionSpace, Forces>{transfer, force});
+    device::launch_each(space, "drogue::coupling::largest_force", transfer.points,
+                        LargestForceFunctor<ExecutionSpace, Forces>{transfer, force});
   for_each_point_and_component(space, "drogue::coupling::spread", transfer,
                                [&]<class Base>(const Base& base) {
                                  return SpreadFunctor<Base, Forces>{base, force, bound};

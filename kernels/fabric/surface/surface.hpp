@@ -2,6 +2,7 @@
 
 #include <stdexcept>
 
+#include "kernels/device/launch.hpp"
 #include "kernels/fabric/surface/triangle_geometry.hpp"
 #include "kernels/fabric/views.hpp"
 #include "kernels/mesh/incidence.hpp"
@@ -114,8 +115,8 @@ void triangle_geometry(const ExecutionSpace& space, const SurfaceViews<Execution
   require_rows(x, surface.vertices());
   require_rows(area, surface.triangles());
   require_rows(normal, surface.triangles());
-  Kokkos::parallel_for(
-      "drogue::fabric::triangle_geometry", Kokkos::RangePolicy<ExecutionSpace>(space, 0, surface.triangles()),
+  device::launch_each(
+      space, "drogue::fabric::triangle_geometry", surface.triangles(),
       TriangleGeometryFunctor<ExecutionSpace, Positions, Areas, Normals>{surface, x, area, normal});
 }
 
@@ -127,9 +128,8 @@ void triangle_velocities(const ExecutionSpace& space, const SurfaceViews<Executi
   static_assert(spatial::accessible_from<ExecutionSpace, Velocities, Results>);
   require_rows(v, surface.vertices());
   require_rows(velocity, surface.triangles());
-  Kokkos::parallel_for("drogue::fabric::triangle_velocities",
-                       Kokkos::RangePolicy<ExecutionSpace>(space, 0, surface.triangles()),
-                       TriangleVelocityFunctor<ExecutionSpace, Velocities, Results>{surface, v, velocity});
+  device::launch_each(space, "drogue::fabric::triangle_velocities", surface.triangles(),
+                      TriangleVelocityFunctor<ExecutionSpace, Velocities, Results>{surface, v, velocity});
 }
 
 /// Area of each vertex, a third of the triangles around it, m^2, and its unit normal, the mean of their
@@ -144,8 +144,8 @@ void vertex_geometry(const ExecutionSpace& space, const SurfaceViews<ExecutionSp
   require_rows(x, surface.vertices());
   require_rows(area, surface.vertices());
   require_rows(normal, surface.vertices());
-  Kokkos::parallel_for(
-      "drogue::fabric::vertex_geometry", Kokkos::RangePolicy<ExecutionSpace>(space, 0, surface.vertices()),
+  device::launch_each(
+      space, "drogue::fabric::vertex_geometry", surface.vertices(),
       VertexGeometryFunctor<ExecutionSpace, Positions, Areas, Normals>{surface, x, area, normal});
 }
 
