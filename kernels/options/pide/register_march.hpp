@@ -17,6 +17,7 @@ namespace drogue::options {
 template <int block, int lanes>
 class RegisterConvolution {
  public:
+  /// Weights `w`, per year, in the order of a WeightLayout; values `v` as a fraction of the strike.
   KOKKOS_INLINE_FUNCTION RegisterConvolution(int lane, const double* w, const double* v, double* out,
                                              double* other) {
     const WeightLayout<double> layout(mesh);
@@ -81,6 +82,7 @@ struct RegisterRows {
 template <int block, int lanes, bool transformed>
 class JumpSum {
  public:
+  /// Weights `w`, per year, in the order of a WeightLayout; `rows`: shared memory of the march.
   KOKKOS_INLINE_FUNCTION JumpSum(int lane, const double* w, const JumpSpectrum<double>& /*spectrum*/,
                                  const RegisterRows& rows)
       : _lane(lane), _rows(rows), _convolution(lane, w, rows.value, rows.out, rows.other) {}
@@ -104,6 +106,7 @@ class JumpSum {
 template <>  // for `halved`; 32 lanes of four nodes without transforms use the primary template
 class JumpSum<4, max_lanes, true> : public SharedFourier {
  public:
+  /// Spectrum of the weights, per year; `rows`: shared memory of the march.
   KOKKOS_INLINE_FUNCTION JumpSum(int thread, const double* /*w*/, const JumpSpectrum<double>& spectrum,
                                  const RegisterRows& rows)
       : SharedFourier(thread, spectrum, rows.value, reinterpret_cast<ComplexNumber<double>*>(rows.out)) {}
@@ -111,6 +114,7 @@ class JumpSum<4, max_lanes, true> : public SharedFourier {
 template <int lanes>
 class JumpSum<8, lanes, true> : public RegisterFourier<lanes> {
  public:
+  /// Spectrum of the weights, per year; `rows`: shared memory of the march.
   KOKKOS_INLINE_FUNCTION JumpSum(int lane, const double* /*w*/, const JumpSpectrum<double>& spectrum,
                                  const RegisterRows& rows)
       : RegisterFourier<lanes>(lane, spectrum, rows.value,
