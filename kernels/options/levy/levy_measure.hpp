@@ -116,13 +116,13 @@ KOKKOS_INLINE_FUNCTION LevyMeasure<R> make_levy_measure(const ThreadGroup& group
       for (int q = lane; q < Mixture::size; q += group.lanes) {
         const R a = device::reciprocal(s[q] + up), b = device::reciprocal(s[q] + down);
         sum[q < Mixture::low ? 0 : 1] += c[q] * (a * a + b * b);
-        if (q >= Mixture::low || !group.writes()) continue;
+        if (q >= Mixture::low || !group.is_writer()) continue;
         up_lengths[q] = a;
         down_lengths[q] = b;
       }
       return sum;
     });
-    group.meet();
+    group.sync();
     measure.high = variance[1];
     measure.variance = variance[0] + variance[1];
   } else if (pack.model == Model::merton) {
