@@ -3,10 +3,12 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 #include <algorithm>
+#include <sstream>
 #include <string_view>
 
 #include "common/program/failure.hpp"
 #include "common/scene/nearest.hpp"
+#include "common/version.hpp"
 
 namespace drogue {
 namespace {
@@ -61,9 +63,16 @@ std::string parse_command_line(CLI::App& app, const std::vector<std::string>& wo
   return {};
 }
 
+std::vector<std::string> backend_choices() {
+  std::vector<std::string> choices = {"auto"};
+  std::istringstream names{std::string(build_info().known_backends)};
+  for (std::string name; names >> name;) choices.push_back(name);
+  return choices;
+}
+
 void add_backend_option(CLI::App& app, std::string& backend) {
   app.add_option("--backend", backend, "where to compute: auto takes the fastest present")
-      ->check(CLI::IsMember({"auto", "serial", "openmp", "cuda"}))
+      ->check(CLI::IsMember(backend_choices()))
       ->capture_default_str();
 }
 

@@ -27,4 +27,8 @@ void add_backend_option(CLI::App& app, std::string& backend);
 /// not count as absent.
 void require_nonempty_values(const CLI::App& app);
 
+/// Values of the option --backend: auto and every backend that the sources support, whether or not this build
+/// contains it. Does not throw.
+std::vector<std::string> backend_choices();
+
 }  // namespace drogue

@@ -12,7 +12,7 @@ namespace {
 struct Counters {
   std::atomic<std::int64_t> launches{0}, fences{0}, allocations{0}, h2d{0}, d2h{0}, copies{0};
   std::atomic<std::int64_t> bytes{0}, peak{0}, warm_allocations{0};
-  std::atomic<bool> warm{false};
+  std::atomic<bool> warm{false}, installed{false};
 };
 
 Counters counters;                           // NOLINT: callbacks are plain functions
@@ -71,6 +71,8 @@ void count_copy(Kokkos_Profiling_SpaceHandle to, const char* to_label, const voi
 void start_profiling() {
   using Kokkos::Tools::Experimental::EventSet;
   namespace tools = Kokkos::Tools::Experimental;
+  // A second installation would call itself as the tool that was there before.
+  if (counters.installed.exchange(true)) return;
   tool = tools::get_callbacks();
   tools::set_begin_parallel_for_callback(count_kernel<&EventSet::begin_parallel_for>);
   tools::set_begin_parallel_reduce_callback(count_kernel<&EventSet::begin_parallel_reduce>);

@@ -11,22 +11,24 @@ namespace drogue::fabric {
 
 using spatial::Vector3;
 
-/// One vector per vertex, (vertices, 3), with whole slices of vertices.
+/// One vector per vertex, (vertices, 3), padded to whole slices of vertices.
 template <class ExecutionSpace>
 using PointsView = Kokkos::View<double* [3], Kokkos::LayoutLeft, typename ExecutionSpace::memory_space>;
 
-/// A table of points: rows of three numbers.
+/// Table of points: rows of three numbers.
 template <class Points>
 concept Table = requires(const Points& points) {
   points(0, 2);
 };
 
+/// Rows i and those of the lanes after it.
 template <class R, Table Points>
 KOKKOS_INLINE_FUNCTION Vector3<R> load_points(const Points& points, int i) {
   using Lanes = device::Access<R>;
   return {Lanes::load(&points(i, 0)), Lanes::load(&points(i, 1)), Lanes::load(&points(i, 2))};
 }
 
+/// Stores rows i and those of the lanes after it.
 template <class R, class Points>
 KOKKOS_INLINE_FUNCTION void store_points(const Points& points, int i, const Vector3<R>& value) {
   using Lanes = device::Access<R>;
@@ -35,6 +37,7 @@ KOKKOS_INLINE_FUNCTION void store_points(const Points& points, int i, const Vect
   Lanes::store(&points(i, 2), value.z);
 }
 
+/// Rows with one index per lane.
 template <class R, Table Points>
 KOKKOS_INLINE_FUNCTION Vector3<R> gather_points(const Points& points,
                                                 typename device::Access<R>::Index index) {
@@ -59,14 +62,14 @@ KOKKOS_INLINE_FUNCTION Vector3<R> gather_points(const ExtrapolatedPoints<Points>
   return gather_points<R>(points.x, index) + points.time * gather_points<R>(points.v, index);
 }
 
-/// A triangle at rest: products of the edges from its first vertex, m^2, and 1/m^2.
+/// Triangle at rest: products of the edges from its first vertex, m^2, and inverse area, 1/m^2.
 template <class R>
 struct RestTriangle {
   GramMatrix<R> products;
   R inverse_area;
 };
 
-/// The edge from a vertex to a neighbour, m, and its squared length, m^2.
+/// Edge from a vertex to a neighbour, m, and its squared length, m^2.
 template <class R>
 struct EdgeVector {
   Vector3<R> to;
@@ -82,6 +85,7 @@ KOKKOS_INLINE_FUNCTION RestTriangle<R> stored_triangle(const Values& value, R be
   return {{before, Lanes::load(&value(slot, 1)), next}, Lanes::load(&value(slot, 2))};
 }
 
+/// Edge from the position `own`, m, to a neighbour.
 template <class R, class Points>
 KOKKOS_INLINE_FUNCTION EdgeVector<R> edge_to(const Points& points, const Vector3<R>& own,
                                              typename device::Access<R>::Index neighbour) {
@@ -93,9 +97,9 @@ KOKKOS_INLINE_FUNCTION EdgeVector<R> edge_to(const Points& points, const Vector3
 template <class ExecutionSpace>
 struct FabricViews {
   using Points = PointsView<ExecutionSpace>;
-  SlicedEllViews<ExecutionSpace, 3> triangles;  ///< a device, which waits for memory, stores no values
+  SlicedEllViews<ExecutionSpace, 3> triangles;  ///< without values on a device, which is memory-bound
   SlicedEllViews<ExecutionSpace, 2> springs;
-  Points rest;                                                                    ///< m; on the host empty
+  Points rest;                                                                    ///< m; empty on a host
   Kokkos::View<double*, typename ExecutionSpace::memory_space> inverse_mass;      ///< 1/kg
   Kokkos::View<std::uint8_t*, typename ExecutionSpace::memory_space> fixed_dofs;  ///< axes: 1 x, 2 y, 4 z
   Points load;  ///< dead force, N; may be empty
@@ -103,7 +107,7 @@ struct FabricViews {
   Vector3<double> gravity;
   double damping;
 
-  /// The edge to a neighbour of vertex i at rest, as much of it as `rest_triangle` needs.
+  /// Edge to a neighbour of vertex i at rest, as `rest_triangle` needs it.
   template <class R>
   KOKKOS_INLINE_FUNCTION auto rest_edge(int i, int slot, typename device::Access<R>::Index neighbour) const {
     if constexpr (device::is_host<ExecutionSpace>)
@@ -111,6 +115,7 @@ struct FabricViews {
     else
       return edge_to<R>(rest, load_points<R>(rest, i), neighbour);
   }
+  /// Triangle at rest from two edges that follow one another in a ring.
   template <class R, class RestEdge>
   KOKKOS_INLINE_FUNCTION RestTriangle<R> rest_triangle(const RestEdge& before, const RestEdge& next,
                                                        int slot) const {
@@ -131,11 +136,11 @@ KOKKOS_INLINE_FUNCTION Vector3<R> free_axes(const std::uint8_t* fixed_dofs) {
           Lanes::unless_set(fixed_dofs, 4U)};
 }
 template <class R, class ExecutionSpace>
-KOKKOS_INLINE_FUNCTION Vector3<R> free_axes(const FabricViews<ExecutionSpace>& cloth, int i) {
-  return free_axes<R>(&cloth.fixed_dofs(i));
+KOKKOS_INLINE_FUNCTION Vector3<R> free_axes(const FabricViews<ExecutionSpace>& fabric, int i) {
+  return free_axes<R>(&fabric.fixed_dofs(i));
 }
 
-/// The pull of a triangle on its first vertex, N.
+/// Force of a triangle on its first vertex, N.
 template <ConstitutiveModel law, class R>
 KOKKOS_INLINE_FUNCTION Vector3<R> triangle_pull(const Moduli& m, const EdgeVector<R>& j,
                                                 const EdgeVector<R>& k, const RestTriangle<R>& rest) {
@@ -144,56 +149,56 @@ KOKKOS_INLINE_FUNCTION Vector3<R> triangle_pull(const Moduli& m, const EdgeVecto
     const EdgePairTensions<R> tension = edge_pair_tensions(m, now, rest.products, rest.inverse_area);
     return tension.j * j.to + tension.k * k.to;
   } else {
-    // Edge j lies opposite vertex j: it leads to k.
+    // Edge j is opposite vertex j: it ends in k.
     const Edges<R> tension =
         membrane_tensions<law>(m, squared_edges(now), squared_edges(rest.products), rest.inverse_area);
     return tension.of[2] * j.to + tension.of[1] * k.to;
   }
 }
 
-/// The pull of a spring on the vertex from which `edge` leads, N.
+/// Force of a spring on the start of `edge`, N.
 template <ConstitutiveModel law, class R>
 KOKKOS_INLINE_FUNCTION Vector3<R> spring_pull(R stiffness, R rest, const Vector3<R>& edge) {
   return spring_tension<law>(stiffness, dot(edge, edge), rest) * edge;
 }
 
-/// Calls `take(j, k, rest)` for the triangles of vertex i and the lanes after it: what `read` gives of the
-/// neighbours at both their ends, and the triangle at rest.
-template <class R, class Fabric, class Read, class Take>
-KOKKOS_INLINE_FUNCTION void each_side_by_side(const Fabric& cloth, int i, const Read& read,
-                                              const Take& take) {
+/// Calls `visit(j, k, rest)` for the triangles of vertex i and the lanes after it, with the values of `read`
+/// for both neighbours and the triangle at rest.
+template <class R, class Fabric, class Read, class Visit>
+KOKKOS_INLINE_FUNCTION void each_side_by_side(const Fabric& fabric, int i, const Read& read,
+                                              const Visit& visit) {
   using Lanes = device::Access<R>;
   using Index = typename Lanes::Index;
   struct Side {
     decltype(read(Index{})) now;
-    decltype(cloth.template rest_edge<R>(0, 0, Index{})) rest;
+    decltype(fabric.template rest_edge<R>(0, 0, Index{})) rest;
   };
-  cloth.triangles.each_pair(
-      i, [&](int slot) { return Lanes::index(&cloth.triangles.neighbour(slot)); },
+  fabric.triangles.each_pair(
+      i, [&](int slot) { return Lanes::index(&fabric.triangles.neighbour(slot)); },
       [&](int slot, Index neighbour) {
-        return Side{read(neighbour), cloth.template rest_edge<R>(i, slot, neighbour)};
+        return Side{read(neighbour), fabric.template rest_edge<R>(i, slot, neighbour)};
       },
       [&](const Side& j, const Side& k, int slot) {
-        take(j.now, k.now, cloth.template rest_triangle<R>(j.rest, k.rest, slot));
+        visit(j.now, k.now, fabric.template rest_triangle<R>(j.rest, k.rest, slot));
       });
 }
 
-/// Calls `take(j, k, rest)` with their spokes.
-template <class R, class Fabric, class Points, class Take>
-KOKKOS_INLINE_FUNCTION void each_triangle(const Fabric& cloth, const Points& positions, int i,
-                                          const Take& take) {
+/// Calls `visit(j, k, rest)` for the triangles of vertex i and the lanes after it, with their edges.
+template <class R, class Fabric, class Points, class Visit>
+KOKKOS_INLINE_FUNCTION void each_triangle(const Fabric& fabric, const Points& positions, int i,
+                                          const Visit& visit) {
   const Vector3<R> own = load_points<R>(positions, i);
   using Index = typename device::Access<R>::Index;
   each_side_by_side<R>(
-      cloth, i, [&](Index neighbour) { return edge_to<R>(positions, own, neighbour); }, take);
+      fabric, i, [&](Index neighbour) { return edge_to<R>(positions, own, neighbour); }, visit);
 }
 
-/// `sum` and the pulls of the springs of vertex i and the lanes after it, N, in the order of their slots.
+/// `sum` plus the forces of the springs on vertex i and the lanes after it, N, in the order of their slots.
 template <ConstitutiveModel law, class R, class Fabric, class Points>
-KOKKOS_INLINE_FUNCTION Vector3<R> with_springs(const Fabric& cloth, const Points& positions, int i,
+KOKKOS_INLINE_FUNCTION Vector3<R> with_springs(const Fabric& fabric, const Points& positions, int i,
                                                Vector3<R> sum) {
   using Lanes = device::Access<R>;
-  const auto& springs = cloth.springs;
+  const auto& springs = fabric.springs;
   springs.each(i, [&](int slot) {
     sum = sum + spring_pull<law>(Lanes::load(&springs.value(slot, 0)), Lanes::load(&springs.value(slot, 1)),
                                  gather_points<R>(positions, Lanes::index(&springs.neighbour(slot))) -
@@ -202,72 +207,74 @@ KOKKOS_INLINE_FUNCTION Vector3<R> with_springs(const Fabric& cloth, const Points
   return sum;
 }
 
-/// The elastic forces on vertex i and the lanes after it, N, each vertex in the fixed order of its slots.
-/// Momentum is kept to round-off: both ends of an edge, and all corners of a triangle, compute the same
-/// tension. `Fabric` is a Cloth or what has its tables elsewhere.
+/// Elastic forces on vertex i and the lanes after it, N, summed in the fixed order of slots. Momentum is
+/// conserved to round-off: both ends of an edge, and all corners of a triangle, compute the same tension.
+/// `Fabric` is `FabricViews`, or has its members in other memory (`TeamFabric`).
 template <ConstitutiveModel law, class R, class Fabric, class Points>
-KOKKOS_INLINE_FUNCTION Vector3<R> elastic_force(const Fabric& cloth, const Points& positions, int i) {
+KOKKOS_INLINE_FUNCTION Vector3<R> elastic_force(const Fabric& fabric, const Points& positions, int i) {
   Vector3<R> sum{R(0.0), R(0.0), R(0.0)};
   if constexpr (whole_triangles<law>)
-    each_triangle<R>(cloth, positions, i,
+    each_triangle<R>(fabric, positions, i,
                      [&](const EdgeVector<R>& j, const EdgeVector<R>& k, const RestTriangle<R>& rest) {
-                       sum = sum + triangle_pull<law>(cloth.moduli, j, k, rest);
+                       sum = sum + triangle_pull<law>(fabric.moduli, j, k, rest);
                      });
-  return with_springs<law>(cloth, positions, i, sum);
+  return with_springs<law>(fabric, positions, i, sum);
 }
 
-/// Values of two states, whose neighbours and triangles at rest are read once.
+/// Values of two states.
 template <class T>
 struct StatePair {
   T first, second;
 };
+/// Elastic forces in two states, N, which read the neighbours and triangles at rest once.
 template <ConstitutiveModel law, class R, class Fabric, class First, class Second>
-KOKKOS_INLINE_FUNCTION StatePair<Vector3<R>> elastic_forces(const Fabric& cloth, const First& first,
+KOKKOS_INLINE_FUNCTION StatePair<Vector3<R>> elastic_forces(const Fabric& fabric, const First& first,
                                                             const Second& second, int i) {
   StatePair<Vector3<R>> sum{{R(0.0), R(0.0), R(0.0)}, {R(0.0), R(0.0), R(0.0)}};
   if constexpr (whole_triangles<law>) {
     using Spokes = StatePair<EdgeVector<R>>;
     const StatePair<Vector3<R>> own{load_points<R>(first, i), load_points<R>(second, i)};
     each_side_by_side<R>(
-        cloth, i,
+        fabric, i,
         [&](typename device::Access<R>::Index neighbour) {
           return Spokes{edge_to<R>(first, own.first, neighbour), edge_to<R>(second, own.second, neighbour)};
         },
         [&](const Spokes& j, const Spokes& k, const RestTriangle<R>& rest) {
-          sum.first = sum.first + triangle_pull<law>(cloth.moduli, j.first, k.first, rest);
-          sum.second = sum.second + triangle_pull<law>(cloth.moduli, j.second, k.second, rest);
+          sum.first = sum.first + triangle_pull<law>(fabric.moduli, j.first, k.first, rest);
+          sum.second = sum.second + triangle_pull<law>(fabric.moduli, j.second, k.second, rest);
         });
   }
-  return {with_springs<law>(cloth, first, i, sum.first), with_springs<law>(cloth, second, i, sum.second)};
+  return {with_springs<law>(fabric, first, i, sum.first), with_springs<law>(fabric, second, i, sum.second)};
 }
 
-/// `elastic` and the dead load on vertex i and the lanes after it, N.
+/// `elastic` plus the dead load on vertex i and the lanes after it, N.
 template <class R, class ExecutionSpace>
-KOKKOS_INLINE_FUNCTION Vector3<R> with_load(const FabricViews<ExecutionSpace>& cloth,
+KOKKOS_INLINE_FUNCTION Vector3<R> with_load(const FabricViews<ExecutionSpace>& fabric,
                                             const Vector3<R>& elastic, int i) {
-  return cloth.load.extent(0) > 0 ? elastic + load_points<R>(cloth.load, i) : elastic;
+  return fabric.load.extent(0) > 0 ? elastic + load_points<R>(fabric.load, i) : elastic;
 }
+/// Elastic force and dead load on vertex i and the lanes after it, N.
 template <ConstitutiveModel law, class R, class ExecutionSpace, class Points>
-KOKKOS_INLINE_FUNCTION Vector3<R> force(const FabricViews<ExecutionSpace>& cloth, const Points& positions,
+KOKKOS_INLINE_FUNCTION Vector3<R> force(const FabricViews<ExecutionSpace>& fabric, const Points& positions,
                                         int i) {
-  return with_load(cloth, elastic_force<law, R>(cloth, positions, i), i);
+  return with_load(fabric, elastic_force<law, R>(fabric, positions, i), i);
 }
 
-/// Acceleration, m/s^2; zero along pinned axes. `Fabric` as above.
+/// Acceleration, m/s^2; zero along pinned axes. `Fabric` as in `elastic_force`.
 template <class R, class Fabric>
-KOKKOS_INLINE_FUNCTION Vector3<R> acceleration(const Fabric& cloth, const Vector3<R>& force, R inverse_mass,
+KOKKOS_INLINE_FUNCTION Vector3<R> acceleration(const Fabric& fabric, const Vector3<R>& force, R inverse_mass,
                                                const Vector3<R>& velocity, const Vector3<R>& free) {
-  const Vector3<R> g{R(cloth.gravity.x), R(cloth.gravity.y), R(cloth.gravity.z)};
-  const Vector3<R> a = inverse_mass * force + g - cloth.damping * velocity;
+  const Vector3<R> g{R(fabric.gravity.x), R(fabric.gravity.y), R(fabric.gravity.z)};
+  const Vector3<R> a = inverse_mass * force + g - fabric.damping * velocity;
   return {free.x * a.x, free.y * a.y, free.z * a.z};
 }
 
 /// Acceleration of vertex i and the lanes after it, m/s^2.
 template <class R, class ExecutionSpace>
-KOKKOS_INLINE_FUNCTION Vector3<R> acceleration(const FabricViews<ExecutionSpace>& cloth,
+KOKKOS_INLINE_FUNCTION Vector3<R> acceleration(const FabricViews<ExecutionSpace>& fabric,
                                                const Vector3<R>& force, const Vector3<R>& velocity, int i) {
-  return acceleration(cloth, force, device::Access<R>::load(&cloth.inverse_mass(i)), velocity,
-                      free_axes<R>(cloth, i));
+  return acceleration(fabric, force, device::Access<R>::load(&fabric.inverse_mass(i)), velocity,
+                      free_axes<R>(fabric, i));
 }
 
 }  // namespace drogue::fabric

@@ -23,7 +23,7 @@ void check_contact(const Parameters& p, const Require& require) {
   const auto not_negative = [](double x) { return x >= 0.0 && std::isfinite(x); };
   require(contact.thickness > 0.0 && std::isfinite(contact.thickness), "contact needs a positive thickness");
   require(!contact.self || contact.thickness < shortest_altitude(p.mesh),
-          "contact of cloth with itself needs triangles that are higher than the thickness");
+          "contact of fabric with itself needs triangles that are higher than the thickness");
   require(not_negative(contact.friction), "friction must not be negative");
   for (const Body& body : contact.bodies) {
     const double size = std::hypot(body.normal[0], body.normal[1], body.normal[2]);

@@ -10,8 +10,8 @@
 
 namespace drogue::fabric {
 
-/// Stability limit of omega dt for undamped oscillations. For the classical Runge-Kutta method
-/// |G|^2 = 1 - z^6/72 + z^8/576 is 1 at z^2 = 8. Does not throw.
+/// Stability limit of omega dt, dimensionless, for undamped oscillations. For the classical Runge-Kutta
+/// method |G|^2 = 1 - z^6/72 + z^8/576 is 1 at z^2 = 8. Does not throw.
 [[nodiscard]] constexpr double stability_limit(Integrator integrator) {
   return integrator == Integrator::rk4 ? 2.8284271247461903 : 2.0;
 }
@@ -36,16 +36,19 @@ namespace drogue::fabric {
   const double z = frequency * dt;
   if (integrator == Integrator::rk4)
     return z > (absolute + relative > 0.0 ? 2.9602 : stability_limit(integrator));
-  const double half = 0.25 * absolute * dt, keep = (1.0 - half) / (1.0 + half), drag = 1.0 - relative * dt;
-  return drag > 0.0 && drag * z * z > 2.0 * (1.0 + drag * keep * keep) * (1.0 + half) * (1.0 + half);
+  const double half = 0.25 * absolute * dt, retained = (1.0 - half) / (1.0 + half),
+               dashpot_factor = 1.0 - relative * dt;
+  return dashpot_factor > 0.0 && dashpot_factor * z * z > 2.0 * (1.0 + dashpot_factor * retained * retained) *
+                                                              (1.0 + half) * (1.0 + half);
 }
 
 /// Cloth and strings on a backend that a program chooses at run time. Needs an initialised runtime. To couple
 /// other kernels on the device, use `FabricSolver`.
 ///
-/// Call `upload`, then `advance` as often as needed. A state is lost if a number in it is not finite or
-/// exceeds 1e100. The solver then returns to its last checkpoint: one of every 256 steps, or the state
-/// uploaded. All functions that read the state find the checkpoint, and `time_state` returns its step.
+/// Call `upload`, then `advance` as often as needed. A step fails if its state is not finite or exceeds
+/// 1e100, or if contact fails. The solver then returns to its last checkpoint: one of every 256 steps, or the
+/// uploaded state. All functions that read the state then refer to the checkpoint, and `time_state` returns
+/// its step.
 class Solver {
  public:
   virtual ~Solver() = default;
@@ -58,13 +61,13 @@ class Solver {
   /// length.
   virtual void download(std::span<Vector> positions, std::span<Vector> velocities) = 0;
 
-  /// Enqueues `steps` steps of `time_state().dt`. Asynchronous. Returns false once a lost state is known; no
-  /// steps follow until the next `upload`. The distribution of steps over calls changes no bit. Does not
-  /// throw.
+  /// Enqueues `steps` steps of `time_state().dt`. Asynchronous but for a bound on the steps in flight.
+  /// Returns false once a failure is known; no steps follow until the next `upload`. The distribution of
+  /// steps over calls changes no bit. Does not throw.
   virtual bool advance(std::int64_t steps) = 0;
 
-  /// Step and vertex of the first lost state, if any. Blocks until all steps are done. Does not throw.
-  [[nodiscard]] virtual std::optional<Failure> failure() = 0;
+  /// First failed step, if any. Blocks until all steps are done. Does not throw.
+  [[nodiscard]] virtual std::optional<StepFailure> failure() = 0;
 
   /// Step count, dt and time, s, after the steps enqueued; after a failure was reported, those of the
   /// checkpoint. The initial values are step 0, time 0 and `Parameters::dt`. Does not throw.
@@ -130,7 +133,7 @@ class Solver {
 /// Throws std::invalid_argument, with one sentence that names the fault, for parameters out of range.
 void check_parameters(const Parameters& parameters);
 
-/// Makes a solver on a backend, which must be available. Blocks. Throws std::invalid_argument for parameters
+/// Solver on a backend, which must be available. Blocks. Throws std::invalid_argument for parameters
 /// out of range.
 [[nodiscard]] std::unique_ptr<Solver> create_solver(device::Backend backend, const Parameters& parameters);
 

@@ -17,8 +17,8 @@ class SolverAdapter final : public Solver {
   void download(std::span<Vector> positions, std::span<Vector> velocities) override {
     _solver.download(positions, velocities);
   }
-  bool advance(std::int64_t steps) override { return _solver.advance(steps); }
-  std::optional<Failure> failure() override { return _solver.failure(); }
+  bool advance(std::int64_t steps) override { return _solver.enqueue_steps(steps); }
+  std::optional<StepFailure> failure() override { return _solver.failure(); }
   [[nodiscard]] TimeState time_state() const override { return _solver.time_state(); }
   void set_time_state(const TimeState& time) override { _solver.set_time_state(time); }
   void forces(std::span<Vector> forces) override { _solver.forces(forces); }

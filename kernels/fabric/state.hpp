@@ -4,41 +4,29 @@
 #include <cmath>
 #include <cstdint>
 
+#include "kernels/stepping/status.hpp"
+
 namespace drogue::fabric {
 
-/// Step count and time of a solver. A restart that restores all four numbers has the same times to the bit.
-struct TimeState {
-  std::int64_t step = 0;   ///< steps taken
-  double dt = 0.0;         ///< s, of the steps to come
-  std::int64_t since = 0;  ///< step since which dt holds
-  double start = 0.0;      ///< s, the time of that step
+using stepping::TimeState;
 
-  /// Time, s. Does not throw.
-  [[nodiscard]] double time() const { return start + static_cast<double>(step - since) * dt; }
-};
-
-/// Reason of a lost state.
+/// Reason of a failed step.
 enum class FailureReason {
   not_finite,
-  crossing,   ///< parts of cloth, or cloth and a body, that no zone keeps from crossing
-  too_fast,   ///< a vertex moved farther in a step than contact looks
-  too_dense,  ///< more parts near one another than there is room for
-  no_number,  ///< the expression of a level set, or its slope, is none where a vertex is
+  crossing,   ///< parts of cloth, or cloth and a body, cross in spite of rigid impact zones
+  too_fast,   ///< a vertex moved beyond the margin of the neighbour lists
+  too_dense,  ///< the neighbours or constraints of a part exceed the capacity
+  no_number,  ///< the expression of a level set, or its slope, is NaN at a vertex
 };
 
-/// First lost state.
-struct Failure {
-  std::int64_t vertex = -1;  ///< the first in the numbering that was lost in that step
-  std::int64_t step = 0;     ///< the first step, counted from 1, whose end is not finite
-  double time = 0.0;         ///< s, at its end
-  FailureReason reason = FailureReason::not_finite;
-};
+/// First failed step; `index` is the least vertex that failed in it.
+using StepFailure = stepping::StepFailure<FailureReason>;
 
-/// Work of contact on a vertex, negative for dissipation, and the velocity change that friction needs.
+/// Work of contact on a vertex, negative for dissipation, and the velocity change on which friction depends.
 struct ContactWork {
-  double normal = 0.0;    ///< J, of what keeps parts apart: impulses along normals, and zones
-  double friction = 0.0;  ///< J, of friction
-  double kick_x = 0.0, kick_y = 0.0, kick_z = 0.0;  ///< m/s, that forces gave in the last step
+  double normal = 0.0;                              ///< J, of normal impulses and rigid impact zones
+  double friction = 0.0;                            ///< J, of friction
+  double kick_x = 0.0, kick_y = 0.0, kick_z = 0.0;  ///< m/s, velocity change by forces in the last step
   bool operator==(const ContactWork&) const = default;
 };
 
@@ -47,32 +35,32 @@ struct Totals {
   double kinetic = 0.0;  ///< J
   double elastic = 0.0;  ///< J
   double gravity = 0.0;  ///< J, -sum of m g x
-  double load = 0.0;     ///< J, minus the work of dead loads from the origin to where the vertices are
+  double load = 0.0;     ///< J, minus the work of dead loads from the origin to the present positions
   std::array<double, 3> momentum{};          ///< kg m/s
   std::array<double, 3> angular_momentum{};  ///< kg m^2/s, about the origin
-  double contact = 0.0;   ///< J, work that contact has done since the solver was made, friction apart
-  double friction = 0.0;  ///< J, work that friction in contact has done
+  double contact = 0.0;   ///< J, work of contact without friction since the construction of the solver
+  double friction = 0.0;  ///< J, work of friction in contact
 
   /// Total energy, J, which is constant without damping, moving pins and loads that change. Does not throw.
   [[nodiscard]] double energy() const { return kinetic + elastic + gravity + load; }
 };
 
-/// Per length at rest, or per length as it is now.
+/// Force per length at rest (nominal) or per present length (Cauchy).
 enum class StressMeasure { nominal, cauchy };
 
 /// Stress of a membrane, force per length, N/m.
 struct Stress {
   double major = 0.0, minor = 0.0;    ///< principal values
-  std::array<double, 3> direction{};  ///< of the major one: a unit vector in the plane of the cloth now
-  std::array<double, 3> across{};     ///< of the minor one
+  std::array<double, 3> direction{};  ///< of the major one: unit vector in the present plane
+  std::array<double, 3> across{};     ///< of the minor one: unit vector
 
   /// Stress tensor, N/m: xx, xy, xz, yy, yz, zz. Does not throw.
   [[nodiscard]] std::array<double, 6> tensor() const {
     std::array<double, 6> sum{};
-    std::size_t place = 0;
+    std::size_t k = 0;
     for (std::size_t i = 0; i < 3; ++i)
       for (std::size_t j = i; j < 3; ++j)
-        sum[place++] = major * direction[i] * direction[j] + minor * across[i] * across[j];
+        sum[k++] = major * direction[i] * direction[j] + minor * across[i] * across[j];
     return sum;
   }
 

@@ -1,27 +1,32 @@
 #pragma once
 
+#include <vector>
+
+#include "kernels/device/copy.hpp"
+#include "kernels/fabric/elastic/dispatch_model.hpp"
 #include "kernels/fabric/fabric_views.hpp"
 #include "kernels/fabric/state.hpp"
 #include "kernels/fabric/views.hpp"
 
 namespace drogue::fabric {
 
-inline constexpr int sum_radix = 64;  ///< values that one thread adds
+/// Number of values that one thread sums.
+inline constexpr int sum_radix = 64;
 
-/// Kinetic, elastic, of gravity, of loads; momentum; angular momentum.
+/// Number of sums: kinetic, elastic, gravity and load energy; momentum; angular momentum.
 inline constexpr int total_count = 10;
 
 template <class ExecutionSpace>
 using TotalsView = TableView<ExecutionSpace, double, total_count>;
 
-/// Thread j adds the shares of vertices j, j + n_out, j + 2 n_out, ... in this order, so that sums have the
-/// same bits on every backend and with any number of threads. Corners of a triangle have a third of its
-/// energy, ends of a spring half.
+/// Index j sums the contributions of vertices j, j + n_out, j + 2 n_out, ... in this order, so that sums have
+/// the same bits on every backend and with any number of threads. Each corner of a triangle has a third of
+/// its energy, each end of a spring half.
 template <class ExecutionSpace, ConstitutiveModel law>
 struct TotalsFunctor {
-  FabricViews<ExecutionSpace> cloth;
+  FabricViews<ExecutionSpace> fabric;
   PointsView<ExecutionSpace> x, v;
-  PointsView<ExecutionSpace> pull;  ///< of springs of vectors, which `cloth.load` holds too; may be empty
+  PointsView<ExecutionSpace> pull;  ///< N, of Model::linear_vector, also part of `fabric.load`; may be empty
   SlicedEllViews<ExecutionSpace, 1> bending;  ///< may be empty
   TotalsView<ExecutionSpace> out;
   int vertices;
@@ -34,11 +39,11 @@ struct TotalsFunctor {
 
   KOKKOS_FUNCTION void add(int i, double (&sum)[total_count]) const {
     const Vector3<double> at = load_points<double>(x, i), velocity = load_points<double>(v, i);
-    const double mass = 1.0 / cloth.inverse_mass(i);
+    const double mass = 1.0 / fabric.inverse_mass(i);
     sum[0] += 0.5 * mass * dot(velocity, velocity);
     sum[1] += elastic(i, at);
-    sum[2] -= mass * dot(cloth.gravity, at);
-    if (cloth.load.extent(0) > 0) sum[3] -= dot(load_points<double>(cloth.load, i), at);
+    sum[2] -= mass * dot(fabric.gravity, at);
+    if (fabric.load.extent(0) > 0) sum[3] -= dot(load_points<double>(fabric.load, i), at);
     if (pull.extent(0) > 0) {
       const double work = dot(load_points<double>(pull, i), at);
       sum[1] -= work, sum[3] += work;
@@ -56,17 +61,17 @@ struct TotalsFunctor {
     const auto to = [&](int neighbour) { return load_points<double>(x, neighbour) - own; };
     if constexpr (whole_triangles<law>)
       each_triangle<double>(
-          cloth, x, i,
+          fabric, x, i,
           [&](const EdgeVector<double>& j, const EdgeVector<double>& k, const RestTriangle<double>& rest) {
             const GramMatrix<double> now{j.squared, dot(j.to, k.to), k.squared};
-            energy += membrane_energy<law>(cloth.moduli, squared_edges(now), squared_edges(rest.products),
+            energy += membrane_energy<law>(fabric.moduli, squared_edges(now), squared_edges(rest.products),
                                            rest.inverse_area) /
                       3.0;
           });
-    cloth.springs.each(i, [&](int slot) {
+    fabric.springs.each(i, [&](int slot) {
       energy +=
-          0.5 * spring_energy<law>(cloth.springs.value(slot, 0), squared(to(cloth.springs.neighbour(slot))),
-                                   cloth.springs.value(slot, 1));
+          0.5 * spring_energy<law>(fabric.springs.value(slot, 0), squared(to(fabric.springs.neighbour(slot))),
+                                   fabric.springs.value(slot, 1));
     });
     // Weights are minus the second derivatives, whose rows sum to zero: x Q x / 2 over pairs.
     if (bending.first.extent(0) > 0)
@@ -77,7 +82,7 @@ struct TotalsFunctor {
   }
 };
 
-/// Thread j adds rows j, j + n_out, ... of the level before.
+/// Index j sums rows j, j + n_out, ... of the previous level.
 template <class ExecutionSpace>
 struct SumFunctor {
   TotalsView<ExecutionSpace> in, out;
@@ -90,6 +95,48 @@ struct SumFunctor {
       out(j, k) = sum;
     }
   }
+};
+
+/// Sums over all vertices with memory that is allocated once: totals are evaluated often.
+template <class ExecutionSpace>
+class TotalsEvaluator {
+ public:
+  explicit TotalsEvaluator(int vertices) : _vertices(vertices) {
+    int rows = vertices;
+    do {
+      rows = (rows + sum_radix - 1) / sum_radix;
+      _levels.emplace_back("drogue::fabric::totals", static_cast<std::size_t>(rows));
+    } while (rows > 1);
+    _mirror = Kokkos::create_mirror_view(_levels.back());
+  }
+
+  /// Totals without contact and without the rest energy of springs of vectors. `fabric.load` holds the dead
+  /// loads alone; `pull` and `bending` may be empty. Blocks.
+  Totals evaluate(const ExecutionSpace& space, const Material& material,
+                  const FabricViews<ExecutionSpace>& fabric, const PointsView<ExecutionSpace>& x,
+                  const PointsView<ExecutionSpace>& v, const PointsView<ExecutionSpace>& pull,
+                  const SlicedEllViews<ExecutionSpace, 1>& bending) const {
+    dispatch_model(material, [&]<ConstitutiveModel law>() {
+      Kokkos::parallel_for(
+          "drogue::fabric::totals", Kokkos::RangePolicy<ExecutionSpace>(space, 0, _levels.front().extent(0)),
+          TotalsFunctor<ExecutionSpace, law>{fabric, x, v, pull, bending, _levels.front(), _vertices});
+    });
+    for (std::size_t level = 1; level < _levels.size(); ++level)
+      Kokkos::parallel_for("drogue::fabric::sum",
+                           Kokkos::RangePolicy<ExecutionSpace>(space, 0, _levels[level].extent(0)),
+                           SumFunctor<ExecutionSpace>{_levels[level - 1], _levels[level]});
+    device::copy(space, _mirror, _levels.back());
+    space.fence("drogue::fabric::totals");
+    Totals t{_mirror(0, 0), _mirror(0, 1), _mirror(0, 2), _mirror(0, 3), {}, {}, 0.0, 0.0};
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      t.momentum[axis] = _mirror(0, 4 + axis), t.angular_momentum[axis] = _mirror(0, 7 + axis);
+    return t;
+  }
+
+ private:
+  int _vertices;
+  std::vector<TotalsView<ExecutionSpace>> _levels;  ///< of the sum; the last one has one row
+  typename TotalsView<ExecutionSpace>::HostMirror _mirror;
 };
 
 }  // namespace drogue::fabric

@@ -4,7 +4,7 @@
 #include <type_traits>
 
 #include "kernels/fabric/fabric_views.hpp"
-#include "kernels/fabric/stepping/stage_time.hpp"
+#include "kernels/stepping/step_monitor.hpp"
 
 namespace drogue::fabric {
 
@@ -19,15 +19,15 @@ struct VertexStage {
   double dt;                 ///< s, of the whole step
 };
 
-/// Default of `FabricSolver`: no force of the caller. Kernels then contain nothing of it.
+/// Default of `FabricSolver`: no force of the caller. The kernels then contain no code for one.
 struct NoVertexForce {};
 
-/// A functor, copied into kernels, that adds a force, N, to a vertex in every evaluation of forces. Calls
+/// Functor, copied into kernels, that returns a force on a vertex, N, in every evaluation of forces. Calls
 /// must not write: they have no order within a stage.
 ///
 /// An optional `void end_step(const VertexStage&) const` updates state of its own for the vertex. The solver
 /// calls it once per step and vertex with the position, velocity and time at the end of the step and zero
-/// `force`. Runge and Kutta's method evaluates the force four times per step. Velocity Verlet's evaluates it
+/// `force`. The Runge-Kutta method evaluates the force four times per step. Velocity Verlet evaluates it
 /// twice per position: for the kick that ends a step, with the velocity before that kick, and for the kick
 /// that begins the next one.
 template <class Functor>
@@ -49,8 +49,8 @@ struct VertexForceTerm {
   };
 
   VertexForce functor;
-  TimeState clock;   ///< `step` is not used: kernels count steps on the device
-  int vertices = 0;  ///< of the mesh; vertices that only fill a slice have no force
+  stepping::TimeState origin;  ///< `step` is ignored: kernels count steps on the device
+  int vertices = 0;            ///< of the mesh; padding of the last slice has no force
 
   /// Force on vertex i and the lanes after it, N, `part` of a step after `steps` steps. `force` holds the
   /// elastic forces and loads, N; the result includes them.
@@ -88,8 +88,9 @@ struct VertexForceTerm {
       using Lanes = device::Access<R>;
       return Vector3<double>{Lanes::lane(v.x, lane), Lanes::lane(v.y, lane), Lanes::lane(v.z, lane)};
     };
-    return {one(position), one(velocity), one(force), inverse_mass, vertex, stage_time(clock, steps, part),
-            clock.dt};
+    return {one(position), one(velocity), one(force),
+            inverse_mass,  vertex,        stepping::stage_time(origin, steps, part),
+            origin.dt};
   }
 };
 

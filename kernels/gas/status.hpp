@@ -13,13 +13,7 @@ using stepping::Stop;
 /// Quantity that made a step inadmissible.
 enum class FailureReason : int { density, pressure, not_finite, time_step };
 
-struct StepFailure {
-  FailureReason reason = FailureReason::density;
-  std::int64_t cell = -1;  ///< -1: no single cell
-  std::int64_t step = 0;   ///< number of the failed step, counted from 1
-  double time = 0.0;       ///< s, start of the failed step
-  double dt = 0.0;         ///< s
-};
+using StepFailure = stepping::StepFailure<FailureReason>;
 
 /// Progress of a run and counters of its adaptive step control.
 struct Progress : stepping::AdaptiveTime {

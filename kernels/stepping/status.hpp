@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <functional>
 
@@ -7,6 +8,9 @@ namespace drogue::stepping {
 
 /// Maximum number of launches in flight. A ring of outputs on the device needs twice as many entries.
 inline constexpr std::int64_t max_launches_in_flight = 512;
+
+/// Default number of steps between checkpoints of a run with constant dt.
+inline constexpr std::int64_t checkpoint_interval = 256;
 
 /// Reason why an advance ended.
 enum class Stop : int { running, target, pause, max_steps, failed, interrupted };
@@ -27,6 +31,22 @@ struct TimeState {
 
   /// Time of the present step, s. Does not throw.
   [[nodiscard]] double time() const { return start + static_cast<double>(step - since) * dt; }
+
+  /// Number of steps to the time nearest to `target`, s; 0 if that time has passed. Does not throw.
+  [[nodiscard]] std::int64_t steps_to(double target) const {
+    const double steps = (target - time()) / dt;
+    return steps > 0.0 ? std::llround(steps) : 0;
+  }
+};
+
+/// First failed step of a run. `Reason` is an enumeration of the solver.
+template <class Reason>
+struct StepFailure {
+  Reason reason{};
+  std::int64_t index = -1;  ///< cell or vertex; -1: the whole step
+  std::int64_t step = 0;    ///< number of the failed step, counted from 1
+  double time = 0.0;        ///< s, start of the failed step
+  double dt = 0.0;          ///< s
 };
 
 /// Progress that kernels publish in pinned host memory. The host reads it without a copy or fence, each

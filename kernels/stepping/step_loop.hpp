@@ -6,6 +6,7 @@
 #include <concepts>
 #include <thread>
 
+#include "kernels/device/captured_graph.hpp"
 #include "kernels/device/instance.hpp"
 #include "kernels/stepping/step_control.hpp"
 #include "kernels/stepping/step_monitor.hpp"
@@ -34,8 +35,34 @@
 //
 // Members: device::Instance, StepLoop<ExecutionSpace> _loop{_instance}, StepLauncher<ExecutionSpace>
 // _launcher. A kernel that finds a bad cell calls StepMonitor::record_failure; the last kernel then sets
-// StepTrial::stop = Stop::failed, and the solver returns to its Checkpoint. A solver with a constant dt needs
-// no StepTrial: it calls StepLoop::enqueue_steps and keeps its time in TimeState.
+// StepTrial::stop = Stop::failed, and the solver returns to its Checkpoint.
+//
+// A new solver with a constant dt, which takes no decisions on the device:
+//
+//   struct Steps {                                     // adaptor that StepLoop::enqueue_steps calls
+//     FlowSolver& s;
+//     void enqueue(std::int64_t count) {                                   // asynchronous
+//       if (s._launcher.is_persistent()) return s.launch_persistent(count);
+//       for (std::int64_t k = 0; k < count; ++k)                           // the kernels of a step count it
+//       in
+//         s._launcher.launch(0, [this](const auto& space) { s.enqueue_step(space); });  // StepMonitor::steps
+//     }
+//     void checkpoint(std::int64_t launches) {
+//       s._checkpoint.save(s.space(), "save", s._monitor, 0, s.cells(), CopyFunctor{s._u, s._saved},
+//       launches);
+//     }
+//   };
+//
+//   bool FlowSolver::enqueue_steps(std::int64_t count) {                   // false after a failure
+//     return _loop.enqueue_steps(_time.step, count, checkpoint_interval, Steps{*this});
+//   }
+//   void FlowSolver::synchronize() {                                       // blocks
+//     const auto failure = _checkpoint.roll_back_after_failure(space(), _monitor, [&] { copy(_u, _saved); });
+//     if (failure) _time.step = failure->checkpoint_step;
+//   }
+//
+// Members: as above, StepMonitor<ExecutionSpace> _monitor = make_monitor(_loop.status_view()), Checkpoint
+// _checkpoint and TimeState _time. A kernel that finds a bad cell calls StepMonitor::record_failure.
 
 namespace drogue::stepping {
 
@@ -103,6 +130,12 @@ class StepLoop {
   /// Launches enqueued that publish a status. A solver that rewrites its control block stores this number in
   /// `StepTrial::launches`. Does not throw.
   [[nodiscard]] std::int64_t launches() const { return _launches; }
+
+  /// True in calls of `enqueue_steps` whose launches the caller captures. Does not throw.
+  [[nodiscard]] bool is_capturing() const { return _capturing; }
+
+  /// True once the caller has captured steps, so that only the device counts them. Does not throw.
+  [[nodiscard]] bool has_captured_steps() const { return _captured; }
 
   /// Counts a status-publishing launch outside of the loop. Does not throw.
   void count_launch() { ++_launches; }
@@ -194,9 +227,20 @@ class StepLoop {
   /// with a checkpoint. Asynchronous but for the bound on the batches in flight. Returns false after a
   /// recorded failure or if `poll` returns false; sets `step` to the number of steps enqueued. Throws only
   /// what `steps` and `poll` throw.
+  ///
+  /// It may be called while the caller captures the instance's stream into a graph. From then on only the
+  /// device counts steps (`completed_steps`), which `step` leaves out, and the loop takes no checkpoints.
   template <UniformSteps Steps>
   bool enqueue_steps(std::int64_t& step, std::int64_t count, std::int64_t checkpoint_every, Steps&& steps,
                      const Poll& poll = {}) {
+    _capturing = device::is_capturing(_instance->space());
+    _captured = _captured || _capturing;
+    if (_captured) {
+      if (!_capturing && status().failed != 0) return false;
+      for (std::int64_t left = count; left > 0; left -= checkpoint_every)
+        steps.enqueue(std::min(left, checkpoint_every));
+      return true;
+    }
     const std::int64_t first_step = status().step, end = step + count;
     const auto begin = SteadyTime::now();
     auto last_poll = begin;
@@ -246,6 +290,7 @@ class StepLoop {
   const device::Instance<ExecutionSpace>* _instance;
   StatusView _status;
   std::int64_t _launches = 0;
+  bool _capturing = false, _captured = false;
 };
 
 }  // namespace drogue::stepping

@@ -5,6 +5,7 @@
 
 #include <Kokkos_Core.hpp>
 
+#include "kernels/device/copy.hpp"
 #include "kernels/device/memory.hpp"
 #include "kernels/stepping/failure_code.hpp"
 #include "kernels/stepping/status.hpp"
@@ -55,6 +56,17 @@ void reset_monitor(const ExecutionSpace& space, const StepMonitor<ExecutionSpace
   space.fence("drogue::stepping::reset_monitor");
   monitor.status().step = step;
   monitor.status().failed = 0;
+}
+
+/// Number of completed steps as the device has counted them in entry `parity` of the counter. Blocks. Throws
+/// `std::runtime_error` after a failed kernel.
+template <class ExecutionSpace>
+[[nodiscard]] std::int64_t completed_steps(const ExecutionSpace& space,
+                                           const StepMonitor<ExecutionSpace>& monitor, int parity) {
+  std::int64_t steps[2] = {};
+  device::copy_out(space, steps, monitor.steps, 2);
+  space.fence("drogue::stepping::completed_steps");
+  return steps[parity];
 }
 
 /// Time, s, after `steps` steps and a `fraction` of the next one, in a run with constant dt. `origin.step` is
@@ -109,9 +121,8 @@ class Checkpoint {
   Checkpoint() : _saved_step("drogue::stepping::checkpoint_step") {}
 
   /// Enqueues one kernel over `count` indices that calls `copy(i)` for each, unless a failure has been
-  /// recorded. It publishes `launches`, unless that is negative: in a graph of the caller, whose replays
-  /// `StepLoop` does not count. Asynchronous; throws
-  /// `std::runtime_error` if the launch fails.
+  /// recorded. It publishes `launches` unless that is negative, for launches that `StepLoop` does not count.
+  /// Asynchronous; throws `std::runtime_error` if the launch fails.
   template <class Copy>
   void save(const ExecutionSpace& space, const std::string& label, const StepMonitor<ExecutionSpace>& monitor,
             int parity, int count, const Copy& copy, std::int64_t launches) const {
@@ -122,19 +133,24 @@ class Checkpoint {
         CheckpointFunctor<ExecutionSpace, Copy>{monitor, copy, _saved_step, parity, launches});
   }
 
-  /// Waits for all steps and returns the first failure, if any. The solver then restores the saved arrays and
-  /// calls `reset_monitor` with `checkpoint_step`. Throws `std::runtime_error` after a failed kernel.
-  [[nodiscard]] std::optional<FirstFailure> wait_for_failure(
-      const ExecutionSpace& space, const StepMonitor<ExecutionSpace>& monitor) const {
-    space.fence("drogue::stepping::wait_for_failure");
+  /// Waits for all steps. After a failure it calls `restore`, which enqueues the copies of the saved arrays,
+  /// and resets `monitor` to the step of the checkpoint. Returns the first failure, if any. Throws
+  /// `std::runtime_error` after a failed kernel.
+  template <class Restore>
+  std::optional<FirstFailure> roll_back_after_failure(const ExecutionSpace& space,
+                                                      const StepMonitor<ExecutionSpace>& monitor,
+                                                      const Restore& restore) const {
+    space.fence("drogue::stepping::roll_back_after_failure");
     if (monitor.status().failed == 0) return std::nullopt;
     std::uint64_t first = no_failure;
     Kokkos::deep_copy(space, first, monitor.first_failure);
     FirstFailure failure{};
     Kokkos::deep_copy(space, failure.checkpoint_step, _saved_step);
-    space.fence("drogue::stepping::wait_for_failure: copied");
+    space.fence("drogue::stepping::roll_back_after_failure: copied");
     failure.step = failure_order(first);
     failure.index = failure_index(first);
+    restore();
+    reset_monitor(space, monitor, failure.checkpoint_step);
     return failure;
   }
 

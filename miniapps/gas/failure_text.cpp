@@ -31,8 +31,8 @@ std::string failure_text(gas::Solver& solver, const gas::Parameters& parameters,
       text << "the time step collapsed to " << failed.dt << " s (CFL)";
       break;
   }
-  if (failed.cell >= 0)
-    text << " in cell " << failed.cell << " (x = " << cell_centre(parameters, failed.cell) << " m)";
+  if (failed.index >= 0)
+    text << " in cell " << failed.index << " (x = " << cell_centre(parameters, failed.index) << " m)";
   text << " at step " << failed.step << ", t = " << failed.time << " s";
   const bool has_limiter = std::string_view(solver.driver()) != "seed";
   if (has_limiter && parameters.positivity == gas::Positivity::off &&

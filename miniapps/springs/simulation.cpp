@@ -234,11 +234,11 @@ std::string Simulation::failure_text(bool restart_written) {
            (restart_written ? "; restart.h5 holds the state of step " + step : "");
   std::ostringstream text;
   text.precision(9);
-  const auto vertex = static_cast<std::size_t>(_problem.order.at(static_cast<std::size_t>(_failure->vertex)));
+  const auto vertex = static_cast<std::size_t>(_problem.order.at(static_cast<std::size_t>(_failure->index)));
   const Vector& rest = _scene.mesh.rest[vertex];
   text << failure_reason_text(_failure->reason) << " at vertex " << vertex << " (at rest at " << rest[0]
-       << ", " << rest[1] << ", " << rest[2] << " m) at step " << _failure->step << ", t = " << _failure->time
-       << " s";
+       << ", " << rest[1] << ", " << rest[2] << " m) at step " << _failure->step
+       << ", t = " << _failure->time + _failure->dt << " s";
   if (restart_written) text << "; restart.h5 holds the last good state, of step " << step;
   if (_failure->reason == fabric::FailureReason::not_finite)
     text << (_scene.time.dt

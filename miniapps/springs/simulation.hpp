@@ -77,7 +77,7 @@ class Simulation final : public framework::Simulation {
   double _stop_time = 0.0;
   double _dt_min = 0.0, _dt_max = 0.0;
   std::optional<std::string> _too_long;  ///< why the step is too long, empty if it is not; none: unchecked
-  std::optional<fabric::Failure> _failure;
+  std::optional<fabric::StepFailure> _failure;
   double _checked_frequency = 0.0;  ///< 1/s, bound of the frequencies at the last search for the largest
   std::int64_t _batch = 1;          ///< steps that one call of the solver takes
   double _compute_s = 0.0, _h2d_s = 0.0, _d2h_s = 0.0;

@@ -1,3 +1,4 @@
+# ctest-label: no-sanitizer
 """Command line, input, output files and exit codes of drogue-options."""
 
 import csv

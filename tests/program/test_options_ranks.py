@@ -1,3 +1,4 @@
+# ctest-label: no-sanitizer
 """drogue-options on several ranks: the same files as on one rank, and an orderly end of all ranks."""
 
 import json

@@ -5,10 +5,11 @@
 
 namespace drogue::fabric {
 
-// Lists of near parts, made again only when vertices have moved far enough (Verlet 1967): parts that are not
-// in them are farther apart than contact reaches, so what a step does depends on no list's age.
+// Neighbour lists, rebuilt only after vertices have moved far enough (Verlet 1967). Parts outside of the
+// lists are farther apart than the contact distance, so that the result of a step does not depend on the age
+// of a list.
 
-/// Measures how far and how fast vertices move, and prepares what a step counts. Of every vertex.
+/// Maximum displacement since the last build and maximum speed; initialises the data of a step per vertex.
 template <class ExecutionSpace>
 struct MotionBoundsFunctor {
   ContactViews<ExecutionSpace> views;
@@ -26,10 +27,10 @@ struct MotionBoundsFunctor {
   }
 };
 
-/// Decides whether the lists still hold: at the end of the step no vertex may be farther than half the skin
-/// from where they were made; forces and impulses may double the largest speed, and move what rests a little.
-/// A skin of 16 steps at the present speed: a wider one has more pairs to ask about, a narrower one is made
-/// again too often. One call.
+/// Decides whether the lists remain valid: at the end of the step no vertex may be farther than half the skin
+/// from its listed position. Forces and impulses may double the largest speed and move vertices at rest a
+/// little. The skin is 16 steps at the present speed: a wider one has more pairs to test, a narrower one is
+/// rebuilt too often. Launched for one index.
 template <class ExecutionSpace>
 struct RebuildDecisionFunctor {
   ContactViews<ExecutionSpace> views;
@@ -42,9 +43,8 @@ struct RebuildDecisionFunctor {
     progress.stale = !(farthest <= 0.5 * progress.skin) ? 1 : 0;
     if (progress.stale != 0) {
       const auto larger = [](double a, double b) { return a > b ? a : b; };
-      const double target_velocity = larger(2.0 * (little + 18.0 * stride), 4.0 * little);
-      progress.skin =
-          larger(target_velocity < views.widest_skin ? target_velocity : views.widest_skin, 8.0 * stride);
+      const double skin = larger(2.0 * (little + 18.0 * stride), 4.0 * little);
+      progress.skin = larger(skin < views.widest_skin ? skin : views.widest_skin, 8.0 * stride);
       progress.extent = 0;
     }
     progress.moved = progress.fastest = 0;
@@ -53,7 +53,7 @@ struct RebuildDecisionFunctor {
   }
 };
 
-/// Empties the cells and finds the largest extent. Of every bucket, triangle, edge and vertex.
+/// Clears the grid, stores the listed positions and computes the largest extent of an edge along an axis.
 template <class ExecutionSpace>
 struct ClearGridFunctor {
   ContactViews<ExecutionSpace> views;
@@ -68,7 +68,7 @@ struct ClearGridFunctor {
       const double most = x > y ? x : y;
       atomic_raise(views.progress(0).extent, most > z ? most : z);
     };
-    // The edges of a triangle are edges too: they span it.
+    // Edges include those of triangles, whose extent they bound.
     if (k < views.edges) {
       Point end[2];
       views.ends(k, views.start_x, end);
@@ -77,14 +77,14 @@ struct ClearGridFunctor {
   }
 };
 
-/// Grid whose cells are wide enough that near parts lie in neighbouring ones.
+/// Grid with cells so wide that near parts lie in adjacent cells.
 template <class ExecutionSpace>
 KOKKOS_INLINE_FUNCTION spatial::HashGrid search_grid(const ContactViews<ExecutionSpace>& views) {
   const double width = value_of_bits(views.progress(0).extent) + views.cutoff_distance();
   return spatial::HashGrid{width};
 }
 
-/// Puts every triangle and edge into the cell of its centre.
+/// Inserts every triangle and edge into the cell of its centre.
 template <class ExecutionSpace>
 struct FillGridFunctor {
   ContactViews<ExecutionSpace> views;
@@ -109,7 +109,7 @@ struct FillGridFunctor {
   }
 };
 
-/// Lists what is near: triangles of every vertex, then of every edge those that come after it.
+/// Lists the near triangles of every vertex and the near edges with larger numbers of every edge.
 template <class ExecutionSpace>
 struct NeighbourListFunctor {
   ContactViews<ExecutionSpace> views;
@@ -146,14 +146,13 @@ struct NeighbourListFunctor {
   KOKKOS_FUNCTION void list_edges(int e) const {
     Point own[2], other[2];
     views.ends(e, views.start_x, own);
-    const BoundingSphere vertex_constraint = views.edge_sphere(e);
+    const BoundingSphere own_sphere = views.edge_sphere(e);
     const double cutoff_distance = views.cutoff_distance(), squared = cutoff_distance * cutoff_distance;
     int count = 0;
     const spatial::HashGrid grid = search_grid(views);
     const int a = views.edge(e, 0), b = views.edge(e, 1);
-    grid.for_each_candidate(vertex_constraint.centre, views.edge_heads, views.edge_sphere, [&](int f) {
-      if (f <= e ||
-          !views.edge_sphere(f).is_near(vertex_constraint.centre, cutoff_distance + vertex_constraint.radius))
+    grid.for_each_candidate(own_sphere.centre, views.edge_heads, views.edge_sphere, [&](int f) {
+      if (f <= e || !views.edge_sphere(f).is_near(own_sphere.centre, cutoff_distance + own_sphere.radius))
         return;
       const int c = views.edge(f, 0), d = views.edge(f, 1);
       if (c == a || c == b || d == a || d == b) return;

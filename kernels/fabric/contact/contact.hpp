@@ -6,54 +6,61 @@
 #include "kernels/device/instance.hpp"
 #include "kernels/fabric/parameters.hpp"
 #include "kernels/fabric/state.hpp"
-#include "kernels/fabric/stepping/step_monitor.hpp"
+#include "kernels/fabric/stepping/divergence.hpp"
+#include "kernels/fabric/views.hpp"
 
 namespace drogue::fabric {
 
-/// What contact does about a step of a solver, whatever the law of its cloth. Nothing here waits but what is
-/// said to.
+/// Work of contact on every vertex, and its value at the last checkpoint.
+template <class ExecutionSpace>
+struct CheckpointedWork {
+  ListView<ExecutionSpace, ContactWork> now, saved;
+};
+
+/// Contact handling around the steps of a solver with any constitutive model. Asynchronous unless stated.
 template <class ExecutionSpace>
 class ContactHandler {
  public:
   using Points = PointsView<ExecutionSpace>;
   virtual ~ContactHandler() = default;
 
-  /// Before a step: changes velocities, so that parts that would meet do not.
-  virtual void begin(const Points& x, const Points& v) = 0;
+  /// Applies impulses to the velocities before a step, so that approaching parts do not meet.
+  virtual void begin_step(const Points& x, const Points& v) = 0;
 
-  /// After it: where parts have crossed all the same, puts them back as rigid zones; raises the monitor where
-  /// that does not help.
-  virtual void end(const Points& x, const Points& v) = 0;
+  /// Moves parts that have crossed all the same as rigid impact zones; records a failure in the monitor if
+  /// that is not enough.
+  virtual void end_step(const Points& x, const Points& v) = 0;
 
-  /// s, of the steps to come.
+  /// Sets dt, s, of the following steps.
   virtual void set_dt(double dt) = 0;
 
-  /// Forgets where vertices were and what went wrong, for they have been put elsewhere.
-  virtual void forget() = 0;
+  /// Discards neighbour lists and recorded failures after a change of the positions. Blocks.
+  virtual void reset() = 0;
 
-  /// Puts the work aside with a state, unless one before it was lost; goes back to it.
-  virtual void keep() = 0;
-  virtual void go_back() = 0;
+  /// Work on every vertex, J, which the checkpoints of the solver include. Does not throw.
+  [[nodiscard]] virtual CheckpointedWork<ExecutionSpace> checkpointed_work() const = 0;
 
-  /// Why step `step` was lost. Waits.
+  /// Reason of the failure of step `step`. Blocks.
   [[nodiscard]] virtual FailureReason reason(std::int64_t step) const = 0;
 
-  /// What contact has done on every vertex so far. Both wait.
+  /// Work on every vertex so far, J. Both block.
   virtual void work(std::span<ContactWork> of_vertices) const = 0;
   virtual void set_work(std::span<const ContactWork> of_vertices) = 0;
 };
 
-/// What a solver lends to contact.
+/// Inputs of contact, owned by the solver.
 template <class ExecutionSpace>
 struct ContactInputs {
   const device::Instance<ExecutionSpace>& instance;
   Kokkos::View<double*, typename ExecutionSpace::memory_space> inverse_mass;
-  Kokkos::View<std::uint8_t*, typename ExecutionSpace::memory_space> fixed_dofs;  ///< as of Cloth
+  Kokkos::View<std::uint8_t*, typename ExecutionSpace::memory_space> fixed_dofs;  ///< as in FabricViews
   StepMonitor<ExecutionSpace> monitor;
 };
 
+/// Contact handler for the bodies and the self-contact of `parameters`. Blocks. Throws std::runtime_error if
+/// memory runs out.
 template <class ExecutionSpace>
 [[nodiscard]] std::unique_ptr<ContactHandler<ExecutionSpace>> make_contact(
-    const Parameters& parameters, const ContactInputs<ExecutionSpace>& cloth);
+    const Parameters& parameters, const ContactInputs<ExecutionSpace>& inputs);
 
 }  // namespace drogue::fabric

@@ -17,25 +17,26 @@
 
 namespace drogue::fabric {
 
-/// Contact on one backend: owns what `ContactViews` lends to kernels, and knows their order.
+/// Contact on one backend. Owns the memory of `ContactViews` and enqueues the kernels.
 template <class ExecutionSpace>
 class ContactImpl final : public ContactHandler<ExecutionSpace> {
  public:
   using Points = PointsView<ExecutionSpace>;
 
-  ContactImpl(const Parameters& p, const ContactInputs<ExecutionSpace>& cloth);
-  ContactImpl(const ContactImpl&) = delete;  // recorded steps know where this one lies
+  ContactImpl(const Parameters& p, const ContactInputs<ExecutionSpace>& inputs);
+  ContactImpl(const ContactImpl&) = delete;  // captured graphs refer to this object
   ContactImpl& operator=(const ContactImpl&) = delete;
 
-  void begin(const Points& x, const Points& v) override { graphs(x, v).begin.launch(); }
-  void end(const Points& x, const Points& v) override { graphs(x, v).end.launch(); }
+  void begin_step(const Points& x, const Points& v) override { graphs(x, v).begin.launch(); }
+  void end_step(const Points& x, const Points& v) override { graphs(x, v).end.launch(); }
   void set_dt(double dt) override {
     _views.dt = dt;
     _graphs.clear();
   }
-  void forget() override;
-  void keep() override;
-  void go_back() override { device::copy(_instance.space(), _work, _kept_work); }
+  void reset() override;
+  [[nodiscard]] CheckpointedWork<ExecutionSpace> checkpointed_work() const override {
+    return {_work, _saved_work};
+  }
   [[nodiscard]] FailureReason reason(std::int64_t step) const override;
   void work(std::span<ContactWork> of_vertices) const override;
   void set_work(std::span<const ContactWork> of_vertices) override;
@@ -43,9 +44,9 @@ class ContactImpl final : public ContactHandler<ExecutionSpace> {
  private:
   using Points3 = UnmanagedTable<ExecutionSpace, double, 3>;
 
-  /// Both sequences of kernels, for places and velocities that lie where they do.
-  struct Recorded {
-    Recorded(ContactImpl& contact, const Points3& at, const Points3& velocity)
+  /// Kernels before and after a step for one pair of addresses of positions and velocities.
+  struct StepGraphs {
+    StepGraphs(ContactImpl& contact, const Points3& at, const Points3& velocity)
         : x(at),
           v(velocity),
           begin(contact._instance,
@@ -56,11 +57,12 @@ class ContactImpl final : public ContactHandler<ExecutionSpace> {
     device::CapturedGraph<ExecutionSpace> begin, end;
   };
 
-  template <class Lends, class... Sizes>
-  void allocate(Lends& to, const char* label, Sizes... sizes);
+  /// Allocates the memory of an unmanaged View.
+  template <class Unmanaged, class... Sizes>
+  void allocate(Unmanaged& to, const char* label, Sizes... sizes);
   template <class Functor>
   void launch(const char* label, int count, const Functor& functor) const;
-  Recorded& graphs(const Points& x, const Points& v);
+  StepGraphs& graphs(const Points& x, const Points& v);
   void enqueue_begin(const Points3& x, const Points3& v) const;
   void enqueue_end(const Points3& x, const Points3& v) const;
   [[nodiscard]] int parts() const { return _views.vertices + _views.edges + _views.triangles; }
@@ -69,24 +71,13 @@ class ContactImpl final : public ContactHandler<ExecutionSpace> {
   std::vector<std::shared_ptr<void>> _owned;
   Kokkos::View<double*, typename ExecutionSpace::memory_space> _inverse_mass;
   Kokkos::View<std::uint8_t*, typename ExecutionSpace::memory_space> _fixed_dofs;
-  ListView<ExecutionSpace, ContactWork> _work, _kept_work;
+  ListView<ExecutionSpace, ContactWork> _work, _saved_work;
   typename ListView<ExecutionSpace, ContactWork>::HostMirror _work_on_host;
   ContactViews<ExecutionSpace> _views;
-  std::list<Recorded> _graphs;
+  std::list<StepGraphs> _graphs;
 };
 
-/// Puts the work aside unless a state before was lost.
-template <class ExecutionSpace>
-struct CheckpointWorkFunctor {
-  StepMonitor<ExecutionSpace> monitor;
-  ListView<ExecutionSpace, ContactWork> work, kept;
-
-  KOKKOS_FUNCTION void operator()(const int i) const {
-    if (monitor.lost() == no_failure) kept(i) = work(i);
-  }
-};
-
-/// Forgets the kicks: of other velocities than those of now.
+/// Clears the velocity changes of the last step, which belong to replaced velocities.
 template <class ExecutionSpace>
 struct ResetKickFunctor {
   ListView<ExecutionSpace, ContactWork> work;
@@ -97,10 +88,10 @@ struct ResetKickFunctor {
 };
 
 template <class ExecutionSpace>
-template <class Lends, class... Sizes>
-void ContactImpl<ExecutionSpace>::allocate(Lends& to, const char* label, Sizes... sizes) {
-  using Owned =
-      Kokkos::View<typename Lends::data_type, typename Lends::array_layout, typename Lends::memory_space>;
+template <class Unmanaged, class... Sizes>
+void ContactImpl<ExecutionSpace>::allocate(Unmanaged& to, const char* label, Sizes... sizes) {
+  using Owned = Kokkos::View<typename Unmanaged::data_type, typename Unmanaged::array_layout,
+                             typename Unmanaged::memory_space>;
   const auto owned =
       std::make_shared<Owned>(std::string("drogue::fabric::") + label, static_cast<std::size_t>(sizes)...);
   _owned.push_back(owned);
@@ -108,8 +99,8 @@ void ContactImpl<ExecutionSpace>::allocate(Lends& to, const char* label, Sizes..
 }
 
 template <class ExecutionSpace>
-ContactImpl<ExecutionSpace>::ContactImpl(const Parameters& p, const ContactInputs<ExecutionSpace>& cloth)
-    : _instance(cloth.instance), _inverse_mass(cloth.inverse_mass), _fixed_dofs(cloth.fixed_dofs) {
+ContactImpl<ExecutionSpace>::ContactImpl(const Parameters& p, const ContactInputs<ExecutionSpace>& inputs)
+    : _instance(inputs.instance), _inverse_mass(inputs.inverse_mass), _fixed_dofs(inputs.fixed_dofs) {
   const CollisionEdges edges = collision_edges(p.mesh);
   const auto n = p.mesh.rest.size(), faces = p.mesh.triangles.size(), sides = edges.ends.size();
   auto& t = _views;
@@ -118,7 +109,7 @@ ContactImpl<ExecutionSpace>::ContactImpl(const Parameters& p, const ContactInput
   t.thickness = p.contact.thickness, t.self_friction = p.contact.friction, t.self = p.contact.self;
   t.widest_skin = std::max(p.contact.thickness, 0.5 * edges.mean_length);
   t.dt = p.dt;
-  t.inverse_mass = _inverse_mass, t.fixed_dofs = _fixed_dofs, t.monitor = cloth.monitor;
+  t.inverse_mass = _inverse_mass, t.fixed_dofs = _fixed_dofs, t.monitor = inputs.monitor;
   allocate(t.bodies, "bodies", p.contact.bodies.size());
   allocate(t.triangle, "contact_triangles", faces);
   allocate(t.edge, "collision_edges", sides);
@@ -145,21 +136,21 @@ ContactImpl<ExecutionSpace>::ContactImpl(const Parameters& p, const ContactInput
   const std::size_t layers = t.self ? 1 : 0, buckets = std::bit_ceil(std::max<std::size_t>(sides, 64));
   allocate(t.triangle_heads, "first_triangle", layers * buckets),
       allocate(t.edge_heads, "first_edge", layers * buckets);
-  allocate(t.triangle_sphere, "ball_of_triangle", layers * faces);
-  allocate(t.edge_sphere, "ball_of_edge", layers * sides);
+  allocate(t.triangle_sphere, "triangle_spheres", layers * faces);
+  allocate(t.edge_sphere, "edge_spheres", layers * sides);
   allocate(t.near_triangles, "near_triangles", layers * n),
       allocate(t.near_edges, "near_edges", layers * sides);
   allocate(t.near_triangle, "near_triangle", layers * n), allocate(t.near_edge, "near_edge", layers * sides);
-  allocate(t.constraint, "touch", 1024 + 8 * n);
-  allocate(t.constraints, "touches", n), allocate(t.vertex_constraint, "touches_of_vertex", n);
-  allocate(t.zone, "zone", n), allocate(t.label, "zone_label", n), allocate(t.zone_end, "zone_end", n);
+  allocate(t.constraint, "constraints", 1024 + 8 * n);
+  allocate(t.constraints, "constraint_counts", n), allocate(t.vertex_constraint, "vertex_constraints", n);
+  allocate(t.zone, "zone", n), allocate(t.label, "label_zones", n), allocate(t.zone_end, "zone_end", n);
   allocate(t.stuck, "stuck", n), allocate(t.motion, "zone_motion", n);
   allocate(t.progress, "contact_progress", 1);
   _work = ListView<ExecutionSpace, ContactWork>("drogue::fabric::contact_work", n);
-  _kept_work = ListView<ExecutionSpace, ContactWork>("drogue::fabric::kept_contact_work", n);
+  _saved_work = ListView<ExecutionSpace, ContactWork>("drogue::fabric::saved_contact_work", n);
   _work_on_host = Kokkos::create_mirror_view(_work);
   t.work = _work;
-  forget();
+  reset();
 }
 
 template <class ExecutionSpace>
@@ -175,8 +166,8 @@ void ContactImpl<ExecutionSpace>::launch(const char* label, int count, const Fun
 }
 
 template <class ExecutionSpace>
-auto ContactImpl<ExecutionSpace>::graphs(const Points& x, const Points& v) -> Recorded& {
-  for (Recorded& known : _graphs)
+auto ContactImpl<ExecutionSpace>::graphs(const Points& x, const Points& v) -> StepGraphs& {
+  for (StepGraphs& known : _graphs)
     if (known.x.data() == x.data() && known.v.data() == v.data()) return known;
   return _graphs.emplace_back(*this, x, v);
 }
@@ -185,22 +176,22 @@ template <class ExecutionSpace>
 void ContactImpl<ExecutionSpace>::enqueue_begin(const Points3& x, const Points3& v) const {
   using Space = ExecutionSpace;
   const int n = _views.vertices;
-  launch("drogue::fabric::contact_measure", n, MotionBoundsFunctor<Space>{_views, x, v});
-  launch("drogue::fabric::contact_decide", 1, RebuildDecisionFunctor<Space>{_views});
+  launch("drogue::fabric::motion_bounds", n, MotionBoundsFunctor<Space>{_views, x, v});
+  launch("drogue::fabric::rebuild_decision", 1, RebuildDecisionFunctor<Space>{_views});
   if (_views.self) {
     const int buckets = static_cast<int>(_views.triangle_heads.extent(0));
-    launch("drogue::fabric::contact_empty", std::max({buckets, n, _views.edges}),
+    launch("drogue::fabric::clear_grid", std::max({buckets, n, _views.edges}),
            ClearGridFunctor<Space>{_views});
-    launch("drogue::fabric::contact_fill", std::max(_views.triangles, _views.edges),
+    launch("drogue::fabric::fill_grid", std::max(_views.triangles, _views.edges),
            FillGridFunctor<Space>{_views});
-    launch("drogue::fabric::contact_list", n + _views.edges, NeighbourListFunctor<Space>{_views});
+    launch("drogue::fabric::neighbour_lists", n + _views.edges, NeighbourListFunctor<Space>{_views});
   }
-  launch("drogue::fabric::contact_touch", parts(), DetectConstraintsFunctor<Space>{_views});
+  launch("drogue::fabric::detect_constraints", parts(), DetectConstraintsFunctor<Space>{_views});
   const int items = device::is_host<Space> ? _instance.space().concurrency()
                                            : std::min(32768, static_cast<int>(_views.constraint.extent(0)));
   for (int round = 0; round < impulse_rounds; ++round) {
-    launch("drogue::fabric::contact_push", items, SolveImpulsesFunctor<Space>{_views, items});
-    launch("drogue::fabric::contact_gather", n, ApplyImpulsesFunctor<Space>{_views, v, round});
+    launch("drogue::fabric::solve_impulses", items, SolveImpulsesFunctor<Space>{_views, items});
+    launch("drogue::fabric::apply_impulses", n, ApplyImpulsesFunctor<Space>{_views, v, round});
   }
 }
 
@@ -208,31 +199,26 @@ template <class ExecutionSpace>
 void ContactImpl<ExecutionSpace>::enqueue_end(const Points3& x, const Points3& v) const {
   using Space = ExecutionSpace;
   const int n = _views.vertices;
-  launch("drogue::fabric::contact_check", parts(), CcdFunctor<Space>{_views, x, 0});
+  launch("drogue::fabric::continuous_detection", parts(), CcdFunctor<Space>{_views, x, 0});
   for (int round = 0; round < zone_rounds; ++round) {
-    launch("drogue::fabric::zone_label", n, LabelZonesFunctor<Space>{_views, round});
+    launch("drogue::fabric::label_zones", n, LabelZonesFunctor<Space>{_views, round});
     launch("drogue::fabric::zone_motion", n, ZoneMotionFunctor<Space>{_views, x, v, round});
-    launch("drogue::fabric::zone_follow", n, MoveZonesFunctor<Space>{_views, x, v, round});
-    launch("drogue::fabric::contact_check", parts(), CcdFunctor<Space>{_views, _views.end_x, round + 1});
+    launch("drogue::fabric::move_zones", n, MoveZonesFunctor<Space>{_views, x, v, round});
+    launch("drogue::fabric::continuous_detection", parts(),
+           CcdFunctor<Space>{_views, _views.end_x, round + 1});
   }
-  launch("drogue::fabric::zone_settle", n, CommitZonesFunctor<Space>{_views, x, v});
+  launch("drogue::fabric::commit_zones", n, CommitZonesFunctor<Space>{_views, x, v});
 }
 
 template <class ExecutionSpace>
-void ContactImpl<ExecutionSpace>::forget() {
+void ContactImpl<ExecutionSpace>::reset() {
   const auto progress = Kokkos::create_mirror_view(_views.progress);
   progress(0) = ContactStatus{};
-  progress(0).skin = -1.0;  // no list holds
-  progress(0).reason = no_failure;
+  progress(0).skin = -1.0;  // no list is valid
+  progress(0).reason = stepping::no_failure;
   device::copy(_instance.space(), _views.progress, progress);
-  launch("drogue::fabric::forget_kick", _views.vertices, ResetKickFunctor<ExecutionSpace>{_work});
-  _instance.space().fence("drogue::fabric::forget");
-}
-
-template <class ExecutionSpace>
-void ContactImpl<ExecutionSpace>::keep() {
-  launch("drogue::fabric::keep_contact", _views.vertices,
-         CheckpointWorkFunctor<ExecutionSpace>{_views.monitor, _work, _kept_work});
+  launch("drogue::fabric::reset_kick", _views.vertices, ResetKickFunctor<ExecutionSpace>{_work});
+  _instance.space().fence("drogue::fabric::reset_contact");
 }
 
 template <class ExecutionSpace>
@@ -240,9 +226,9 @@ FailureReason ContactImpl<ExecutionSpace>::reason(std::int64_t step) const {
   const auto progress = Kokkos::create_mirror_view(_views.progress);
   device::copy(_instance.space(), progress, _views.progress);
   _instance.space().fence("drogue::fabric::reason");
-  const std::uint64_t told = progress(0).reason;
-  return static_cast<std::int64_t>(told >> 4U) == step ? static_cast<FailureReason>(told & 15U)
-                                                       : FailureReason::not_finite;
+  const std::uint64_t recorded = progress(0).reason;
+  return static_cast<std::int64_t>(recorded >> 4U) == step ? static_cast<FailureReason>(recorded & 15U)
+                                                           : FailureReason::not_finite;
 }
 
 template <class ExecutionSpace>
@@ -259,13 +245,12 @@ void ContactImpl<ExecutionSpace>::set_work(std::span<const ContactWork> of_verti
   std::copy(of_vertices.begin(), of_vertices.end(), mirror.data());
   device::copy(_instance.space(), _work, mirror);
   _instance.space().fence("drogue::fabric::contact_work");
-  keep();
 }
 
 template <class ExecutionSpace>
 std::unique_ptr<ContactHandler<ExecutionSpace>> make_contact(const Parameters& parameters,
-                                                             const ContactInputs<ExecutionSpace>& cloth) {
-  return std::make_unique<ContactImpl<ExecutionSpace>>(parameters, cloth);
+                                                             const ContactInputs<ExecutionSpace>& inputs) {
+  return std::make_unique<ContactImpl<ExecutionSpace>>(parameters, inputs);
 }
 
 }  // namespace drogue::fabric

@@ -2,37 +2,38 @@
 
 #include "kernels/fabric/contact/obstacle.hpp"
 #include "kernels/fabric/state.hpp"
-#include "kernels/fabric/stepping/step_monitor.hpp"
+#include "kernels/fabric/stepping/divergence.hpp"
 #include "kernels/spatial/bounding_sphere.hpp"
 
 namespace drogue::fabric {
 
 using spatial::BoundingSphere;
 
-/// Rounds of impulses a step, and of zones that may grow where impulses did not keep parts from crossing.
+/// Rounds of impulses per step, and of rigid impact zones, which may grow where impulses were not enough.
 inline constexpr int impulse_rounds = 10, zone_rounds = 6;
 
-/// Parts near a vertex or edge, and touches of a vertex, that there is room for.
+/// Capacity: neighbours of a vertex or edge, and constraints of a vertex.
 inline constexpr int max_neighbours = 64, max_constraints = 64;
 
-/// Two parts that touch, or will within the step: a vertex and a triangle, two edges, or one of them and a
-/// body. The parts' relative velocity where they are nearest is the sum of share times velocity.
+/// Contact of two parts that touch or will touch within the step: a vertex and a triangle, two edges, or one
+/// of these and a body. The relative velocity at the closest points is the sum of weight times velocity.
 struct ContactConstraint {
-  std::uint64_t key;  ///< names the parts; orders the touches of a vertex
-  int vertex[4];      ///< those without a share or lever count for nothing
+  std::uint64_t key;  ///< identifies the parts; orders the constraints of a vertex
+  int vertex[4];      ///< unused without weight and lever
   double weight[4];
-  Point normal;             ///< unit vector along which the parts are to stay apart
-  Point lever[2];           ///< of the couple that friction needs, `lever_of`
-  double target_velocity;   ///< least relative velocity along the normal, m/s
-  double friction;          ///< Coulomb's coefficient
-  Point friction_target;    ///< relative velocity across, m/s, with which parts that friction holds stay
-  double normal_impulse;    ///< impulse so far along the normal, kg m/s
-  Point friction_impulse;   ///< and across
-  double normal_increment;  ///< of this round
+  Point normal;             ///< unit vector of the separation
+  Point lever[2];           ///< of the couple that balances friction, see `lever_of`
+  double target_velocity;   ///< lower bound of the normal relative velocity, m/s
+  double friction;          ///< Coulomb coefficient
+  Point friction_target;    ///< tangential relative velocity of sticking parts, m/s
+  double normal_impulse;    ///< accumulated normal impulse, kg m/s
+  Point friction_impulse;   ///< accumulated tangential impulse, kg m/s
+  double normal_increment;  ///< change in this round, kg m/s
   Point friction_increment;
 };
 
-/// The lever of a vertex of a touch: along the triangle's edges from its first corner, or along both edges.
+/// Lever of a vertex of a constraint, m: along the edges of the triangle from its first corner, or along both
+/// edges of an edge pair.
 KOKKOS_INLINE_FUNCTION Point lever_of(const ContactConstraint& constraint, bool is_edge_edge, int slot) {
   const Point &a = constraint.lever[0], &b = constraint.lever[1];
   if (is_edge_edge) return slot == 0 ? -1.0 * a : slot == 1 ? a : slot == 2 ? -1.0 * b : b;
@@ -41,7 +42,7 @@ KOKKOS_INLINE_FUNCTION Point lever_of(const ContactConstraint& constraint, bool 
 
 enum class ConstraintKind : std::uint64_t { vertex_face, edge_edge, vertex_body, edge_body, face_body };
 
-/// Numbers of parts below 2^30.
+/// Key of a constraint between parts with numbers below 2^30.
 KOKKOS_INLINE_FUNCTION std::uint64_t constraint_key(ConstraintKind kind, int first, int second) {
   return static_cast<std::uint64_t>(kind) << 60U | static_cast<std::uint64_t>(first) << 30U |
          static_cast<std::uint64_t>(second);
@@ -50,20 +51,20 @@ KOKKOS_INLINE_FUNCTION bool is_edge_edge(const ContactConstraint& constraint) {
   return constraint.key >> 60U == static_cast<std::uint64_t>(ConstraintKind::edge_edge);
 }
 
-/// What the kernels of a step tell one another.
+/// Data that the kernels of a contact step share.
 struct ContactStatus {
-  std::uint64_t moved;    ///< bits of the largest distance from where the lists of near parts were made, m
+  std::uint64_t moved;    ///< bits of the largest displacement since the neighbour lists were built, m
   std::uint64_t fastest;  ///< bits of the largest speed, m/s
   std::uint64_t extent;   ///< bits of the largest extent of a triangle or edge along an axis, m
-  double skin;            ///< m by which the lists see farther than contact reaches
-  double speed;           ///< the largest of this step, m/s
-  int stale;              ///< the lists are to be made again in this step
-  int constraints;        ///< found in this step
-  int crossing[zone_rounds + 1];  ///< whether parts would cross before and after each round of zones
-  std::uint64_t reason;           ///< the least of step and kind
+  double skin;            ///< m, margin of the neighbour lists beyond the contact distance
+  double speed;           ///< largest speed in this step, m/s
+  int stale;              ///< 1: the neighbour lists must be rebuilt in this step
+  int constraints;        ///< number of constraints found in this step
+  int crossing[zone_rounds + 1];  ///< 1 if parts would cross before and after each round of zones
+  std::uint64_t reason;           ///< minimum of 16 * step + FailureReason
 };
 
-/// Fixed memory, which belongs to `ContactHandler`; counting references at every launch would cost.
+/// Unmanaged View of memory of `ContactImpl`: reference counts at every launch would cost time.
 template <class ExecutionSpace, class T>
 using UnmanagedList =
     Kokkos::View<T*, typename ExecutionSpace::memory_space, Kokkos::MemoryTraits<Kokkos::Unmanaged>>;
@@ -71,14 +72,15 @@ template <class ExecutionSpace, class T, int columns>
 using UnmanagedTable = Kokkos::View<T* [columns], Kokkos::LayoutLeft, typename ExecutionSpace::memory_space,
                                     Kokkos::MemoryTraits<Kokkos::Unmanaged>>;
 
-/// How a zone moves.
+/// Motion of a rigid impact zone in a step.
 struct ZoneMotion {
-  int held;                          ///< 1: with its held vertices, by `shift` at `velocity`
-  Point from, to;                    ///< its centre at the beginning and at the end of the step
-  Point rotation;                    ///< Cayley's vector of its rotation
+  int fixed;                         ///< 1: translates with its fixed vertices by `to`, m, at `velocity`
+  Point from, to;                    ///< m, centre of mass at the beginning and at the end of the step
+  Point rotation;                    ///< Cayley vector of the rotation
   Point velocity, angular_velocity;  ///< m/s, 1/s
 };
 
+/// Data of contact in the memory of an execution space.
 template <class ExecutionSpace>
 struct ContactViews {
   template <class T>
@@ -86,7 +88,7 @@ struct ContactViews {
   using Points3 = UnmanagedTable<ExecutionSpace, double, 3>;
 
   int vertices, triangles, edges;
-  int first_line;  ///< edges from it on are of no triangle
+  int first_line;  ///< first edge that belongs to no triangle
   double thickness, self_friction, widest_skin, dt;
   bool self;
   List<Obstacle> bodies;
@@ -94,25 +96,25 @@ struct ContactViews {
   List<int> owned;  ///< `owned_features` of every triangle
   UnmanagedTable<ExecutionSpace, int, 2> edge;
   List<double> inverse_mass;
-  List<std::uint8_t> fixed_dofs;  ///< as of Cloth
+  List<std::uint8_t> fixed_dofs;  ///< as in FabricViews
   Points3 start_x, start_v;       ///< at the beginning of the step, impulses included
   Points3 end_x, end_v;           ///< with zones
-  Points3 listed_x;               ///< where the lists were made
-  List<ContactWork> work;         ///< of contact on every vertex so far
-  // A hashed grid of cells, each a chain.
+  Points3 listed_x;               ///< m, positions when the neighbour lists were built
+  List<ContactWork> work;         ///< of contact on every vertex
+  // Hash grid whose cells are linked lists.
   List<int> triangle_heads, edge_heads;
   List<BoundingSphere> triangle_sphere, edge_sphere;
-  List<int> near_triangles, near_edges;  ///< how many of each vertex, and of each edge
+  List<int> near_triangles, near_edges;  ///< numbers of neighbours of each vertex and of each edge
   UnmanagedTable<ExecutionSpace, int, max_neighbours> near_triangle, near_edge;
   List<ContactConstraint> constraint;
-  List<int> constraints;  ///< of every vertex
+  List<int> constraints;  ///< number of constraints of every vertex
   UnmanagedTable<ExecutionSpace, int, max_constraints>
-      vertex_constraint;    ///< 4 times the touch, and the slot in it
-  List<int> zone;           ///< while zones are joined, the way to the least vertex of each
-  List<int> label;          ///< that vertex, once they are
-  List<int> zone_end;       ///< the largest vertex of the zone of the least one
-  List<int> stuck;          ///< 1: would enter a body, and stays
-  List<ZoneMotion> motion;  ///< of the zone of a least vertex
+      vertex_constraint;    ///< 4 times the constraint, plus the slot of the vertex
+  List<int> zone;           ///< parents of the union-find forest of zones
+  List<int> label;          ///< least vertex of the zone of each vertex
+  List<int> zone_end;       ///< largest vertex of a zone, stored at its least vertex
+  List<int> stuck;          ///< 1: would enter a body and does not move
+  List<ZoneMotion> motion;  ///< of a zone, stored at its least vertex
   List<ContactStatus> progress;
   StepMonitor<ExecutionSpace> monitor;
 
@@ -131,24 +133,25 @@ struct ContactViews {
     return zone_end(label(i)) != label(i) || stuck(i) != 0;
   }
 
-  [[nodiscard]] KOKKOS_FUNCTION bool is_held(int i) const { return fixed_dofs(i) != 0; }
+  [[nodiscard]] KOKKOS_FUNCTION bool is_fixed(int i) const { return fixed_dofs(i) != 0; }
 
-  /// Steps taken when this is called between them; both words of the monitor agree on no less.
+  /// Number of completed steps, if called between steps: the larger entry of the double-buffered counter.
   [[nodiscard]] KOKKOS_FUNCTION std::int64_t steps() const {
     const std::int64_t a = monitor.steps(0), b = monitor.steps(1);
     return a > b ? a : b;
   }
 
   KOKKOS_FUNCTION void raise(std::int64_t step, FailureReason reason, int vertex) const {
-    monitor.raise(step, vertex);
+    monitor.record_failure(step, vertex);
     Kokkos::atomic_min(&progress(0).reason,
                        static_cast<std::uint64_t>(step) << 4U | static_cast<std::uint64_t>(reason));
   }
 };
 
+/// Double with the given bit pattern.
 KOKKOS_INLINE_FUNCTION double value_of_bits(std::uint64_t bits) { return Kokkos::bit_cast<double>(bits); }
 
-/// Non-negative doubles compare as their bits do: the largest is the same in any order.
+/// Maximum of non-negative doubles, which compare as their bit patterns do; independent of the order.
 KOKKOS_INLINE_FUNCTION void atomic_raise(std::uint64_t& slot, double value) {
   const auto bits = Kokkos::bit_cast<std::uint64_t>(value);
   if (bits > Kokkos::atomic_load(&slot)) Kokkos::atomic_max(&slot, bits);

@@ -6,21 +6,23 @@
 
 namespace drogue::fabric {
 
-/// The edges of a mesh, each once: those of triangles, then lines that are none of them.
+/// Edges of a mesh, each once: those of triangles, then lines that are not edges of triangles.
 struct CollisionEdges {
   std::vector<std::array<int, 2>> ends;
   int first_line = 0;
   double mean_length = 0.0;  ///< m, at rest
 };
 
+/// Edges that take part in contact. Throws only std::bad_alloc.
 [[nodiscard]] CollisionEdges collision_edges(const Mesh& mesh);
 
-/// Bit k of a triangle's word: of the triangles that share its corner k it is the first; bit 3 + k: of those
-/// that share the edge from corner k to the next. What is nearest to a shared part counts once.
+/// Bit sets of the features that each triangle owns, so that a contact at a shared feature counts once. Bit
+/// k: it is the first triangle with its corner k; bit 3 + k: the first with the edge from corner k to the
+/// next. Throws only std::bad_alloc.
 [[nodiscard]] std::vector<int> owned_features(const Mesh& mesh);
 
-/// The least distance at rest, m, of a vertex from the opposite edge of one of its triangles: layers cannot
-/// be kept farther apart than that where cloth folds.
+/// Least altitude of all triangles at rest, m, infinite without triangles. In a fold, layers cannot be
+/// farther apart than that. Does not throw.
 [[nodiscard]] double shortest_altitude(const Mesh& mesh);
 
 }  // namespace drogue::fabric

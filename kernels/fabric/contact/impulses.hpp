@@ -4,13 +4,13 @@
 
 namespace drogue::fabric {
 
-// Impulses at the beginning of a step: projected Jacobi rounds, in which a vertex of n touches lends each of
-// them a share 1/n of its mass (mass splitting, Tonge, Benevolenski and Voroshilov 2012). Impulses act
-// between the vertices of a touch by their shares, so momentum is kept. What they add to the energy is at
-// most what parts nearer than the thickness are given to part, each push times `wanted`, which has a bound
-// that does not depend on the step (`target_velocity`), and what friction gives back of a kick (`hold`).
+// Impulses at the beginning of a step: projected Jacobi rounds, in which each of the n constraints of a
+// vertex has 1/n of its mass (mass splitting, Tonge, Benevolenski and Voroshilov 2012). Impulses act between
+// the vertices of a constraint by their weights, so momentum is conserved. They add energy only by separating
+// parts nearer than the thickness, at most the normal impulse times `target_velocity`, whose bound does not
+// depend on dt, and by the friction that balances a kick (`set_friction_target`).
 
-/// The impulse of a touch on the vertex in a slot of it, kg m/s.
+/// Impulse of a constraint on the vertex in one of its slots, kg m/s.
 KOKKOS_INLINE_FUNCTION Point impulse_on(const ContactConstraint& constraint, int slot, double normal_impulse,
                                         const Point& friction_impulse) {
   const Point lever = lever_of(constraint, is_edge_edge(constraint), slot);
@@ -18,7 +18,7 @@ KOKKOS_INLINE_FUNCTION Point impulse_on(const ContactConstraint& constraint, int
          dot(lever, friction_impulse) * constraint.normal;
 }
 
-/// What each touch gives more in this round. Called for a fixed number of items that share the touches.
+/// Increments of all impulses in a round. A fixed number of work items share the constraints.
 template <class ExecutionSpace>
 struct SolveImpulsesFunctor {
   ContactViews<ExecutionSpace> views;
@@ -26,10 +26,10 @@ struct SolveImpulsesFunctor {
 
   KOKKOS_FUNCTION void operator()(const int item) const {
     const int room = static_cast<int>(views.constraint.extent(0)), found = views.progress(0).constraints;
-    for (int k = item; k < (found < room ? found : room); k += items) press(views.constraint(k));
+    for (int k = item; k < (found < room ? found : room); k += items) solve(views.constraint(k));
   }
 
-  KOKKOS_FUNCTION void press(ContactConstraint& constraint) const {
+  KOKKOS_FUNCTION void solve(ContactConstraint& constraint) const {
     Point relative{0.0, 0.0, 0.0}, rotated{0.0, 0.0, 0.0};
     double along = 0.0, across = 0.0;  // inverse masses, 1/kg
     const bool edges = is_edge_edge(constraint);
@@ -45,19 +45,19 @@ struct SolveImpulsesFunctor {
       along += split * weight * weight * (free.x * n.x * n.x + free.y * n.y * n.y + free.z * n.z * n.z);
       across += split * any * (weight * weight + dot(lever, lever));
     }
-    if (!(along > 0.0)) return;  // nothing of it can move
+    if (!(along > 0.0)) return;  // no part can move
     const double speed = dot(relative, constraint.normal),
                  normal_impulse = constraint.normal_impulse + (constraint.target_velocity - speed) / along;
-    const double pressed = normal_impulse > 0.0 ? normal_impulse : 0.0;
-    constraint.normal_increment = pressed - constraint.normal_impulse;
-    constraint.normal_impulse = pressed;
+    const double clamped = normal_impulse > 0.0 ? normal_impulse : 0.0;
+    constraint.normal_increment = clamped - constraint.normal_impulse;
+    constraint.normal_impulse = clamped;
     if (constraint.friction > 0.0) {
       const Point sliding = relative - speed * constraint.normal + rotated;
       Point friction_impulse =
           constraint.friction_impulse -
           (1.0 / across) *
               (sliding - dot(sliding, constraint.normal) * constraint.normal - constraint.friction_target);
-      const double size = length(friction_impulse), most = constraint.friction * pressed;
+      const double size = length(friction_impulse), most = constraint.friction * clamped;
       if (size > most) friction_impulse = (most / size) * friction_impulse;
       constraint.friction_increment = friction_impulse - constraint.friction_impulse;
       constraint.friction_impulse = friction_impulse;
@@ -65,10 +65,9 @@ struct SolveImpulsesFunctor {
   }
 };
 
-/// Gives every vertex what its touches have for it in this round, in their order, which the first round
-/// finds. After the last one the step gets the velocities, and what impulses did is counted: a kick changes
-/// the kinetic energy alone, each part of it by its impulse times the mean of the velocities before and
-/// after.
+/// Adds the increments of a round to the velocity of every vertex, in the sorted order of its constraints.
+/// The last round writes the velocities of the step and adds the work of the impulses: each impulse times the
+/// mean of the velocities before and after, since impulses change only the kinetic energy.
 template <class ExecutionSpace>
 struct ApplyImpulsesFunctor {
   ContactViews<ExecutionSpace> views;
@@ -92,14 +91,15 @@ struct ApplyImpulsesFunctor {
     store_points(views.start_v, i, after);
     if (round + 1 < impulse_rounds) return;
     const Point before = load_points<double>(v, i), mean = 0.5 * (after + before);
-    Point held{0.0, 0.0, 0.0};  // what friction gave in all rounds, kg m/s
+    Point friction_sum{0.0, 0.0, 0.0};  // friction impulse of all rounds, kg m/s
     for (int k = 0; k < count; ++k) {
       const int number = views.vertex_constraint(i, k);
       const ContactConstraint& constraint = views.constraint(number / 4);
       if (constraint.friction > 0.0)
-        held = held + impulse_on(constraint, number % 4, 0.0, constraint.friction_impulse);
+        friction_sum = friction_sum + impulse_on(constraint, number % 4, 0.0, constraint.friction_impulse);
     }
-    const double friction = dot(Point{free.x * held.x, free.y * held.y, free.z * held.z}, mean);
+    const double friction =
+        dot(Point{free.x * friction_sum.x, free.y * friction_sum.y, free.z * friction_sum.z}, mean);
     views.work(i).normal += 1.0 / views.inverse_mass(i) * dot(after - before, mean) - friction;
     views.work(i).friction += friction;
     store_points(v, i, after);

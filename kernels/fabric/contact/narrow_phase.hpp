@@ -4,30 +4,32 @@
 
 namespace drogue::fabric {
 
-/// What parts nearer than the thickness are given to part, m/s^2: a speed that would lift them by what they
-/// lack against it, no more. About gravity, by which most come too near. A share of the lack a step, as in
-/// Bridson, Fedkiw and Anderson 2002, 7.2 (0.1 h / dt), throws them apart faster the shorter the step is.
+/// Deceleration that limits the separation speed of parts nearer than the thickness, m/s^2: the speed that
+/// would lift them by their penetration against it. About gravity, which causes most penetrations. A fraction
+/// of the penetration per step, as in Bridson, Fedkiw and Anderson 2002, section 7.2 (0.1 h / dt), would give
+/// higher speeds for shorter steps.
 inline constexpr double recovery = 10.0;
 
-/// The most of their lack that parts win back in a step.
+/// Largest fraction of the penetration that is removed in a step.
 inline constexpr double max_recovery = 0.1;
 
-/// The least velocity, m/s, along the normal of parts `distance` apart whose velocity is `closing`, negative
-/// where they approach: they may come as near as the thickness, and part where they are nearer, at no more
-/// than sqrt(2 recovery thickness) and half of the speed of their approach. That half is what a force that
-/// presses them together all the time takes of the way in a step; it takes from the energy, whatever dt.
+/// Lower bound of the normal relative velocity, m/s, of parts at `distance`, m, with the normal relative
+/// velocity `closing`, m/s, which is negative for approaching parts. Parts may approach to the thickness.
+/// Nearer parts separate with at most sqrt(2 recovery thickness) and half of their speed of approach. That
+/// half balances the path per step under a constant force; it dissipates energy for every dt.
 KOKKOS_INLINE_FUNCTION double target_velocity(double distance, double thickness, double closing, double dt) {
-  const double lack = thickness - distance;
-  if (!(lack > 0.0)) return lack / dt;
-  const double back = Kokkos::sqrt(2.0 * recovery * lack) + (closing < 0.0 ? -0.5 * closing : 0.0),
-               most = max_recovery * lack / dt;
-  return back < most ? back : most;
+  const double penetration = thickness - distance;
+  if (!(penetration > 0.0)) return penetration / dt;
+  const double speed = Kokkos::sqrt(2.0 * recovery * penetration) + (closing < 0.0 ? -0.5 * closing : 0.0),
+               largest = max_recovery * penetration / dt;
+  return speed < largest ? speed : largest;
 }
 
-/// Vectors A and B such that k_i = a_i . t, with a_i = `lever_of` of them, is a couple along the normal n
-/// that cancels the torque of friction along t, which acts a distance h apart: sum k_i x_i = h t along a
-/// plane spanned by `along` and `across`, up to a part along n. Friction then does nothing to a rigid motion,
-/// and keeps angular momentum. Nothing where n leans far over, or the two are nearly parallel: false.
+/// Levers A and B, m, such that k_i = a_i . t, with a_i from `lever_of`, is a couple along the normal n that
+/// cancels the torque of friction along t, whose forces act at a distance h: sum k_i x_i = h t in the plane
+/// spanned by `along` and `across`, up to a component along n. Friction then does not change a rigid motion
+/// and conserves angular momentum. Returns false if n is far from the plane's normal or the two vectors are
+/// nearly parallel.
 KOKKOS_INLINE_FUNCTION bool friction_levers(const Point& along, const Point& across, const Point& n, double h,
                                             Point (&lever)[2]) {
   const Point normal = cross(along, across);
@@ -42,55 +44,56 @@ KOKKOS_INLINE_FUNCTION bool friction_levers(const Point& along, const Point& acr
   return true;
 }
 
-/// Finds what touches: of every vertex, edge and triangle.
+/// Detects the contacts of every vertex, edge and triangle.
 template <class ExecutionSpace>
 struct DetectConstraintsFunctor {
   ContactViews<ExecutionSpace> views;
 
   KOKKOS_FUNCTION void operator()(const int k) const {
     if (k < views.vertices)
-      of_vertex(k);
+      detect_at_vertex(k);
     else if (k < views.vertices + views.edges)
-      of_edge(k - views.vertices);
+      detect_at_edge(k - views.vertices);
     else
-      of_face(k - views.vertices - views.edges);
+      detect_at_face(k - views.vertices - views.edges);
   }
 
-  /// Keeps a touch of parts that are `r` apart unless they stay apart on their own.
-  KOKKOS_FUNCTION void keep(ContactConstraint& constraint, const Point& r, double distance) const {
-    if (!(distance > 0.0)) return;  // the check after the step sees it
+  /// Adds a constraint between parts at the separation `r`, m, unless they stay apart without it.
+  KOKKOS_FUNCTION void add_constraint(ContactConstraint& constraint, const Point& r, double distance) const {
+    if (!(distance > 0.0)) return;  // continuous detection after the step handles it
     constraint.normal = (1.0 / distance) * r;
-    keep(constraint, distance);
+    add_constraint(constraint, distance);
   }
 
-  KOKKOS_FUNCTION void keep(ContactConstraint& constraint, double distance) const {
+  KOKKOS_FUNCTION void add_constraint(ContactConstraint& constraint, double distance) const {
     double closing = 0.0;
     for (int slot = 0; slot < 4; ++slot)
       if (constraint.weight[slot] != 0.0)
         closing += constraint.weight[slot] *
                    dot(load_points<double>(views.start_v, constraint.vertex[slot]), constraint.normal);
     constraint.target_velocity = target_velocity(distance, views.thickness, closing, views.dt);
-    // Neighbours may yet drive them together.
+    // Neighbours may still push the parts together.
     if (distance > views.thickness && closing > 0.5 * constraint.target_velocity) return;
-    if (constraint.friction > 0.0) friction_target(constraint);
+    if (constraint.friction > 0.0) set_friction_target(constraint);
     const int number = Kokkos::atomic_fetch_add(&views.progress(0).constraints, 1);
     if (number >= static_cast<int>(views.constraint.extent(0)))
       return views.raise(views.steps() + 1, FailureReason::too_dense, constraint.vertex[0]);
     for (int slot = 0; slot < 4; ++slot)
       if (takes_part(constraint, slot)) {
-        const int i = constraint.vertex[slot], place = Kokkos::atomic_fetch_add(&views.constraints(i), 1);
-        if (place < max_constraints)
-          views.vertex_constraint(i, place) = 4 * number + slot;
+        const int i = constraint.vertex[slot], entry = Kokkos::atomic_fetch_add(&views.constraints(i), 1);
+        if (entry < max_constraints)
+          views.vertex_constraint(i, entry) = 4 * number + slot;
         else
           views.raise(views.steps() + 1, FailureReason::too_dense, i);
       }
     views.constraint(number) = constraint;
   }
 
-  /// Forces that do not change move parts in a step by half of what they kick them: held parts start against
-  /// it, or what sticks would creep. Where forces change, the ways of all steps sum to half of the last
-  /// kick's, and what friction gives is at most an eighth of the mass times the square of a kick.
-  KOKKOS_FUNCTION void friction_target(ContactConstraint& constraint) const {
+  /// Constant forces displace parts in a step by half of their velocity change (kick) times dt. Sticking
+  /// parts start with the opposite velocity; otherwise they would creep. Under changing forces the
+  /// displacements of all steps sum to half of that of the last kick, and friction adds at most an eighth of
+  /// the mass times the square of a kick to the energy.
+  KOKKOS_FUNCTION void set_friction_target(ContactConstraint& constraint) const {
     Point kick{0.0, 0.0, 0.0};
     for (int slot = 0; slot < 4; ++slot) {
       if (!takes_part(constraint, slot)) continue;
@@ -102,7 +105,7 @@ struct DetectConstraintsFunctor {
     constraint.friction_target = -0.5 * (kick - dot(kick, constraint.normal) * constraint.normal);
   }
 
-  /// Whether the triangle answers for its point that is nearest: of its inside always.
+  /// True if the triangle owns its closest point: always for points inside it.
   KOKKOS_FUNCTION static bool owns(int bits, const ClosestOnTriangle& nearest) {
     if (nearest.inside) return true;
     for (int k = 0; k < 3; ++k) {
@@ -126,18 +129,18 @@ struct DetectConstraintsFunctor {
     return constraint;
   }
 
-  KOKKOS_FUNCTION void of_vertex(int i) const {
+  KOKKOS_FUNCTION void detect_at_vertex(int i) const {
     const Point only[1] = {load_points<double>(views.start_x, i)}, &own = only[0];
     for (int b = 0; b < static_cast<int>(views.bodies.extent(0)); ++b) {
       const Obstacle& body = views.bodies(b);
       const SignedDistance gap = body.kind == BodyKind::level_set
                                      ? level_set_distance(body, own, 0.01 * views.thickness)
                                      : signed_distance(body, own);
-      // Not a number either: the check has told of it.
+      // Also false for NaN, which continuous detection reports.
       if (!(gap.distance <= views.thickness + step_cutoff())) continue;
       ContactConstraint constraint = make_constraint(ConstraintKind::vertex_body, i, b, body.friction);
       constraint.vertex[0] = i, constraint.weight[0] = 1.0, constraint.normal = gap.outward;
-      keep(constraint, gap.distance);
+      add_constraint(constraint, gap.distance);
     }
     if (!views.self) return;
     for (int k = 0; k < views.near_triangles(i); ++k) {
@@ -159,11 +162,11 @@ struct DetectConstraintsFunctor {
       if (constraint.friction > 0.0 && distance > 0.0 &&
           !friction_levers(at[1] - at[0], at[2] - at[0], (1.0 / distance) * r, distance, constraint.lever))
         constraint.friction = 0.0;
-      keep(constraint, r, distance);
+      add_constraint(constraint, r, distance);
     }
   }
 
-  KOKKOS_FUNCTION void of_edge(int e) const {
+  KOKKOS_FUNCTION void detect_at_edge(int e) const {
     Point own[2];
     views.ends(e, views.start_x, own);
     for (int b = 0; b < static_cast<int>(views.bodies.extent(0)); ++b) {
@@ -174,13 +177,13 @@ struct DetectConstraintsFunctor {
           views.thickness + step_cutoff() + 0.5 * length(own[1] - own[0]))
         continue;
       const double u = nearest_to_body(body, own[0], own[1]);
-      if (!(u > 1e-9 && u < 1.0 - 1e-9)) continue;  // its vertices see to that
+      if (!(u > 1e-9 && u < 1.0 - 1e-9)) continue;  // the vertices detect this contact
       const SignedDistance gap = signed_distance(body, own[0] + u * (own[1] - own[0]));
       if (gap.distance > views.thickness + step_cutoff()) continue;
       ContactConstraint constraint = make_constraint(ConstraintKind::edge_body, e, b, body.friction);
       for (int end = 0; end < 2; ++end) constraint.vertex[end] = views.edge(e, end);
       constraint.weight[0] = 1.0 - u, constraint.weight[1] = u, constraint.normal = gap.outward;
-      keep(constraint, gap.distance);
+      add_constraint(constraint, gap.distance);
     }
     if (!views.self) return;
     for (int k = 0; k < views.near_edges(e); ++k) {
@@ -190,7 +193,7 @@ struct DetectConstraintsFunctor {
       if (boxes_apart(own, other, views.thickness + step_cutoff())) continue;
       const ClosestOfSegments nearest = closest_of_segments(own, other);
       const double distance = Kokkos::sqrt(nearest.squared);
-      // At an end a vertex and a triangle are as near.
+      // At an end of an edge the contact of a vertex and a triangle is as near.
       if (!nearest.inside || distance > views.thickness + step_cutoff()) continue;
       ContactConstraint constraint = make_constraint(ConstraintKind::edge_edge, e, f, views.self_friction);
       for (int end = 0; end < 2; ++end)
@@ -203,12 +206,12 @@ struct DetectConstraintsFunctor {
           !friction_levers(own[1] - own[0], other[1] - other[0], (1.0 / distance) * r, distance,
                            constraint.lever))
         constraint.friction = 0.0;
-      keep(constraint, r, distance);
+      add_constraint(constraint, r, distance);
     }
   }
 
-  KOKKOS_FUNCTION void of_face(int t) const {
-    Point at[3], place;
+  KOKKOS_FUNCTION void detect_at_face(int t) const {
+    Point at[3], point;
     views.corners(t, views.start_x, at);
     const Point normal = cross(at[1] - at[0], at[2] - at[0]);
     for (int b = 0; b < static_cast<int>(views.bodies.extent(0)); ++b) {
@@ -216,33 +219,33 @@ struct DetectConstraintsFunctor {
       if (!between_vertices(body)) continue;
       const double size = body.kind == BodyKind::sphere ? body.radius : 0.0;
       for (int side = 0; side < 2; ++side) {
-        if (!facing_place(body, normal, side, place)) continue;
-        const Point only[1] = {place};
+        if (!facing_point(body, normal, side, point)) continue;
+        const Point only[1] = {point};
         if (boxes_apart(only, at, size + views.thickness + step_cutoff())) continue;
-        const ClosestOnTriangle nearest = closest_on_triangle(place, at);
+        const ClosestOnTriangle nearest = closest_on_triangle(point, at);
         const double out = Kokkos::sqrt(nearest.squared), distance = out - size;
         if (!nearest.inside || !(out > 0.0) || distance > views.thickness + step_cutoff()) continue;
         ContactConstraint constraint =
             make_constraint(ConstraintKind::face_body, t, 2 * b + side, body.friction);
-        Point r{-place.x, -place.y, -place.z};
+        Point r{-point.x, -point.y, -point.z};
         for (int corner = 0; corner < 3; ++corner) {
           constraint.vertex[corner] = views.triangle(t, corner);
           constraint.weight[corner] = nearest.weight[corner];
           r = r + nearest.weight[corner] * at[corner];
         }
         constraint.normal = (1.0 / out) * r;
-        keep(constraint, distance);
+        add_constraint(constraint, distance);
       }
     }
   }
 
-  /// What parts that use up half of what they have beyond the thickness in a step have at most, m.
+  /// Distance beyond the thickness, m, of which parts traverse at most half in a step.
   [[nodiscard]] KOKKOS_FUNCTION double step_cutoff() const {
     return 4.0 * views.dt * views.progress(0).speed;
   }
 };
 
-/// Orders the touches of vertex i by the parts that they are of.
+/// Sorts the constraints of vertex i by their keys, so that sums do not depend on the order of detection.
 template <class ExecutionSpace>
 KOKKOS_FUNCTION void sort_constraints(const ContactViews<ExecutionSpace>& views, int i) {
   const int count = views.constraints(i) < max_constraints ? views.constraints(i) : max_constraints;
@@ -250,10 +253,10 @@ KOKKOS_FUNCTION void sort_constraints(const ContactViews<ExecutionSpace>& views,
   for (int k = 1; k < count; ++k) {
     const int moved = views.vertex_constraint(i, k);
     const std::uint64_t key = views.constraint(moved / 4).key;
-    int place = k;
-    for (; place > 0 && views.constraint(views.vertex_constraint(i, place - 1) / 4).key > key; --place)
-      views.vertex_constraint(i, place) = views.vertex_constraint(i, place - 1);
-    views.vertex_constraint(i, place) = moved;
+    int slot = k;
+    for (; slot > 0 && views.constraint(views.vertex_constraint(i, slot - 1) / 4).key > key; --slot)
+      views.vertex_constraint(i, slot) = views.vertex_constraint(i, slot - 1);
+    views.vertex_constraint(i, slot) = moved;
   }
 }
 

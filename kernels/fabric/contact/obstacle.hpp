@@ -11,7 +11,7 @@ using spatial::ClosestOnTriangle;
 using spatial::Point;
 using spatial::Vector3;
 
-/// A body where kernels read it.
+/// Body in kernels.
 struct Obstacle {
   BodyKind kind;
   Point centre, normal;
@@ -24,21 +24,21 @@ struct Obstacle {
   return {body.kind, point(body.centre), point(body.normal), body.radius, body.friction, body.level_set};
 }
 
-/// How far from a body a place lies, m, negative within, and the unit vector that leads away.
+/// Distance of a point from a body, m, negative inside, and the outward unit vector.
 struct SignedDistance {
   double distance;
   Point outward;
 };
 
-/// The place of a disk that is nearest to x.
+/// Closest point of a disk to x, m.
 KOKKOS_INLINE_FUNCTION Point nearest_on_disk(const Obstacle& disk, const Point& x) {
   const Point centre = disk.centre, normal = disk.normal, from = x - centre;
-  const Point local_triangle = from - dot(from, normal) * normal;
-  const double out = length(local_triangle);
-  return centre + (out > disk.radius ? disk.radius / out : 1.0) * local_triangle;
+  const Point in_plane = from - dot(from, normal) * normal;
+  const double out = length(in_plane);
+  return centre + (out > disk.radius ? disk.radius / out : 1.0) * in_plane;
 }
 
-/// Of a disk, sphere or plane.
+/// Signed distance of a disk, sphere or plane.
 KOKKOS_INLINE_FUNCTION SignedDistance signed_distance(const Obstacle& body, const Point& x) {
   const Point normal = body.normal, from = x - body.centre;
   switch (body.kind) {
@@ -56,9 +56,9 @@ KOKKOS_INLINE_FUNCTION SignedDistance signed_distance(const Obstacle& body, cons
   }
 }
 
-/// Of a level set: the value over the slope, by central differences over `width`, m, which is the distance
-/// where both are smooth and it is small. One place of the program: compilers put all of it wherever it is
-/// called.
+/// Signed distance of a level set: the value divided by the slope, by central differences over `width`, m,
+/// which is the distance near a smooth surface. The expression is evaluated at one point of the code, since
+/// compilers inline it at each call.
 KOKKOS_INLINE_FUNCTION SignedDistance level_set_distance(const Obstacle& body, const Point& x, double width) {
   double value[7];
   for (int k = 0; k < 7; ++k) {
@@ -73,9 +73,8 @@ KOKKOS_INLINE_FUNCTION SignedDistance level_set_distance(const Obstacle& body, c
                      : SignedDistance{value[0], body.normal};
 }
 
-/// The share of the way along a segment at which it comes nearest to a sphere or disk. The distance to a
-/// convex set is convex along a line: its slope has one change of sign. Over the face of a disk, on one side
-/// of it, an end is nearest.
+/// Fraction of a segment at which it is nearest to a sphere or disk. The distance from a convex set is convex
+/// along a line: its slope has one change of sign. Above the face of a disk, on one side, an end is nearest.
 KOKKOS_INLINE_FUNCTION double nearest_to_body(const Obstacle& body, const Point& a, const Point& b) {
   if (body.kind == BodyKind::sphere) return closest_on_segment(body.centre, a, b);
   const Point along = b - a, centre = body.centre, normal = body.normal;
@@ -93,28 +92,27 @@ KOKKOS_INLINE_FUNCTION double nearest_to_body(const Obstacle& body, const Point&
   return 0.5 * (low + high);
 }
 
-/// How far from a sphere or disk an edge lies, m.
+/// Distance of an edge from a sphere or disk, m.
 KOKKOS_INLINE_FUNCTION double edge_distance(const Obstacle& body, const Point& a, const Point& b) {
   const double u = nearest_to_body(body, a, b);
   return signed_distance(body, a + u * (b - a)).distance;
 }
 
-/// The place of a body, of which two have to be asked for, that a face may touch with its inside: the centre
-/// of a sphere; of a disk's rim the places that lie farthest along the face's normal, ahead and behind. False
-/// if there is none.
-KOKKOS_INLINE_FUNCTION bool facing_place(const Obstacle& body, const Point& face_normal, int side,
-                                         Point& place) {
+/// Point of a body that the inside of a face may touch, for `side` 0 and 1: the centre of a sphere; the
+/// points of the rim of a disk that are farthest along the normal of the face. False if there is none.
+KOKKOS_INLINE_FUNCTION bool facing_point(const Obstacle& body, const Point& face_normal, int side,
+                                         Point& point) {
   const Point centre = body.centre, normal = body.normal;
-  place = centre;
+  point = centre;
   if (body.kind == BodyKind::sphere) return side == 0;
-  const Point local_triangle = face_normal - dot(face_normal, normal) * normal;
-  const double out = length(local_triangle);
-  if (!(out > 1e-12 * length(face_normal))) return false;  // edges see it
-  place = centre + ((side == 0 ? body.radius : -body.radius) / out) * local_triangle;
+  const Point in_plane = face_normal - dot(face_normal, normal) * normal;
+  const double out = length(in_plane);
+  if (!(out > 1e-12 * length(face_normal))) return false;  // edges detect the contact
+  point = centre + ((side == 0 ? body.radius : -body.radius) / out) * in_plane;
   return true;
 }
 
-/// Whether edges and faces can touch a body that no vertex touches, and this is looked for.
+/// True for bodies that edges and faces may touch between their vertices.
 KOKKOS_INLINE_FUNCTION bool between_vertices(const Obstacle& body) {
   return body.kind == BodyKind::sphere || body.kind == BodyKind::disk;
 }

@@ -4,10 +4,10 @@
 
 namespace drogue::fabric {
 
-// Rigid impact zones (Provot 1997, Bridson, Fedkiw and Anderson 2002): vertices whose parts would cross go
-// through the step as one rigid body with their momentum and angular momentum. Zones only grow.
+// Rigid impact zones (Provot 1997, Bridson, Fedkiw and Anderson 2002): vertices whose parts would cross move
+// in the step as one rigid body with their momentum and angular momentum. Zones only grow.
 
-/// Names every vertex's zone by its least vertex.
+/// Labels the zone of every vertex by its least vertex.
 template <class ExecutionSpace>
 struct LabelZonesFunctor {
   ContactViews<ExecutionSpace> views;
@@ -21,7 +21,7 @@ struct LabelZonesFunctor {
   }
 };
 
-/// Sums over some masses: moments of second degree about the origin they are taken from.
+/// Inertia tensor of point masses about the origin of their position vectors, kg m^2.
 struct Inertia {
   double xx = 0.0, yy = 0.0, zz = 0.0, xy = 0.0, yz = 0.0, zx = 0.0;
 
@@ -31,8 +31,8 @@ struct Inertia {
     xy -= mass * r.x * r.y, yz -= mass * r.y * r.z, zx -= mass * r.z * r.x;
   }
 
-  /// The spin that gives an angular momentum, 1/s. Masses on a line do not tell their spin about it: a little
-  /// is added to the moments, and what that costs is won back.
+  /// Angular velocity for an angular momentum, 1/s. Masses on a line do not determine the component along it:
+  /// a small multiple of the identity regularises the tensor, and iterative refinement removes its effect.
   [[nodiscard]] KOKKOS_FUNCTION Point angular_velocity(const Point& momentum) const {
     const double least = 1e-12 * (xx + yy + zz);
     const Point a{xx + least, xy, zx}, b{xy, yy + least, yz}, c{zx, yz, zz + least};
@@ -40,26 +40,25 @@ struct Inertia {
     Point angular_velocity{0.0, 0.0, 0.0};
     if (!(determinant > 0.0)) return angular_velocity;
     for (int refined = 0; refined < 3; ++refined) {
-      const Point has{xx * angular_velocity.x + xy * angular_velocity.y + zx * angular_velocity.z,
-                      xy * angular_velocity.x + yy * angular_velocity.y + yz * angular_velocity.z,
-                      zx * angular_velocity.x + yz * angular_velocity.y + zz * angular_velocity.z};
-      const Point lacks = momentum - has;
-      angular_velocity =
-          angular_velocity +
-          (1.0 / determinant) * (lacks.x * cross(b, c) + lacks.y * cross(c, a) + lacks.z * cross(a, b));
+      const Point present{xx * angular_velocity.x + xy * angular_velocity.y + zx * angular_velocity.z,
+                          xy * angular_velocity.x + yy * angular_velocity.y + yz * angular_velocity.z,
+                          zx * angular_velocity.x + yz * angular_velocity.y + zz * angular_velocity.z};
+      const Point residual = momentum - present;
+      angular_velocity = angular_velocity +
+                         (1.0 / determinant) *
+                             (residual.x * cross(b, c) + residual.y * cross(c, a) + residual.z * cross(a, b));
     }
     return angular_velocity;
   }
 };
 
-/// r turned by Cayley's rotation (1 - [c])^-1 (1 + [c]), by the angle 2 atan |c| about c.
+/// r after the Cayley rotation (1 - [c])^-1 (1 + [c]), whose angle is 2 atan |c| about c.
 KOKKOS_INLINE_FUNCTION Point rotated(const Point& c, const Point& r) {
   const Point across = cross(c, r);
   return r + (2.0 / (1.0 + dot(c, c))) * (across + cross(c, across));
 }
 
-/// Finds how each zone moves: called for every vertex, it works for the least of each zone, which adds its
-/// vertices in their order.
+/// Computes the motion of each zone. The work item of the least vertex of a zone adds its vertices in order.
 template <class ExecutionSpace>
 struct ZoneMotionFunctor {
   using Points3 = UnmanagedTable<ExecutionSpace, double, 3>;
@@ -72,39 +71,39 @@ struct ZoneMotionFunctor {
     if (views.progress(0).crossing[round] == 0 || views.label(i) != i) return;
     if (views.zone_end(i) == i && views.stuck(i) == 0) return;
     ZoneMotion motion{};
-    if (!friction_target(i, motion)) release(i, motion);
+    if (!follow_fixed_vertices(i, motion)) fit_rigid_motion(i, motion);
     views.motion(i) = motion;
   }
 
-  /// Calls `take(j)` for the vertices of zone i.
-  template <class Take>
-  KOKKOS_FUNCTION void each(int i, const Take& take) const {
+  /// Calls `visit(j)` for the vertices of zone i.
+  template <class Visit>
+  KOKKOS_FUNCTION void each(int i, const Visit& visit) const {
     for (int j = i; j <= views.zone_end(i); ++j)
-      if (views.label(j) == i) take(j);
+      if (views.label(j) == i) visit(j);
   }
 
-  /// A zone with vertices that are held, or stuck, goes where they go on the mean.
-  KOKKOS_FUNCTION bool friction_target(int i, ZoneMotion& motion) const {
-    double held = 0.0;
+  /// A zone with fixed or stuck vertices translates by the mean displacement of these. Returns false without.
+  KOKKOS_FUNCTION bool follow_fixed_vertices(int i, ZoneMotion& motion) const {
+    double fixed = 0.0;
     Point shift{0.0, 0.0, 0.0}, velocity{0.0, 0.0, 0.0};
     each(i, [&](int j) {
       const bool stuck = views.stuck(j) != 0;
-      if (!stuck && !views.is_held(j)) return;
-      held += 1.0;
+      if (!stuck && !views.is_fixed(j)) return;
+      fixed += 1.0;
       if (stuck) return;
       shift = shift + (load_points<double>(x, j) - load_points<double>(views.start_x, j));
       velocity = velocity + load_points<double>(v, j);
     });
-    if (held == 0.0) return false;
-    motion.held = 1;
-    motion.to = (1.0 / held) * shift;
-    motion.velocity = (1.0 / held) * velocity;
+    if (fixed == 0.0) return false;
+    motion.fixed = 1;
+    motion.to = (1.0 / fixed) * shift;
+    motion.velocity = (1.0 / fixed) * velocity;
     return true;
   }
 
-  /// A free one is a rigid body: its centre moves as that of its vertices, its rotation is that of the
-  /// least squares of their ways, and its spin has their angular momentum where it ends.
-  KOKKOS_FUNCTION void release(int i, ZoneMotion& motion) const {
+  /// A free zone is a rigid body: its centre moves as that of its vertices, its rotation is the least-squares
+  /// fit of their displacements, and its angular velocity has their angular momentum at the end of the step.
+  KOKKOS_FUNCTION void fit_rigid_motion(int i, ZoneMotion& motion) const {
     double mass = 0.0;
     Point from{0.0, 0.0, 0.0}, to = from, velocity = from;
     each(i, [&](int j) {
@@ -136,7 +135,8 @@ struct ZoneMotionFunctor {
   }
 };
 
-/// Moves the vertices of zones with them, from where the step began; the others end as they did.
+/// Moves the vertices of zones rigidly from their positions at the beginning of the step and copies the
+/// others.
 template <class ExecutionSpace>
 struct MoveZonesFunctor {
   using Points3 = UnmanagedTable<ExecutionSpace, double, 3>;
@@ -147,27 +147,27 @@ struct MoveZonesFunctor {
 
   KOKKOS_FUNCTION void operator()(const int i) const {
     if (views.progress(0).crossing[round] == 0) return;
-    Point place = load_points<double>(x, i), velocity = load_points<double>(v, i);
+    Point position = load_points<double>(x, i), velocity = load_points<double>(v, i);
     if (views.in_zone(i)) {
       const ZoneMotion& motion = views.motion(views.label(i));
       const Point from = load_points<double>(views.start_x, i);
-      if (motion.held == 0) {
+      if (motion.fixed == 0) {
         const Point arm = rotated(motion.rotation, from - motion.from);
-        place = motion.to + arm;
+        position = motion.to + arm;
         velocity = motion.velocity + cross(motion.angular_velocity, arm);
-      } else if (!views.is_held(i)) {
-        place = from + motion.to;
+      } else if (!views.is_fixed(i)) {
+        position = from + motion.to;
         velocity = motion.velocity;
       }
     }
-    store_points(views.end_x, i, place);
+    store_points(views.end_x, i, position);
     store_points(views.end_v, i, velocity);
   }
 };
 
-/// Puts the state where zones have brought it, and counts what that did; notes what forces alone gave. A zone
-/// keeps its elastic energy, so what its vertices gained in the step counts, less the work of the forces on
-/// where they went; velocities tell their mean.
+/// Writes the state of the zones and adds their work; stores the velocity change by forces alone. A zone
+/// conserves its elastic energy, so its work is the gain of kinetic energy less the work of the forces along
+/// the displacement.
 template <class ExecutionSpace>
 struct CommitZonesFunctor {
   using Points3 = UnmanagedTable<ExecutionSpace, double, 3>;
@@ -180,12 +180,13 @@ struct CommitZonesFunctor {
     ContactWork& work = views.work(i);
     work.kick_x = kick.x, work.kick_y = kick.y, work.kick_z = kick.z;
     if (views.progress(0).crossing[0] == 0 || !views.in_zone(i)) return;
-    const Point place = load_points<double>(views.end_x, i), velocity = load_points<double>(views.end_v, i);
-    const Point force = (1.0 / views.dt) * kick;  // over the mass
-    const Point moved = place - load_points<double>(views.start_x, i);
+    const Point position = load_points<double>(views.end_x, i),
+                velocity = load_points<double>(views.end_v, i);
+    const Point force = (1.0 / views.dt) * kick;  // per mass
+    const Point moved = position - load_points<double>(views.start_x, i);
     work.normal +=
         (0.5 * dot(velocity - start, velocity + start) - dot(force, moved)) / views.inverse_mass(i);
-    store_points(x, i, place);
+    store_points(x, i, position);
     store_points(v, i, velocity);
   }
 };

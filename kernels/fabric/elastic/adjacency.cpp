@@ -19,11 +19,11 @@ double squared_distance(const Mesh& mesh, int from, int to) {
   return dot(between, between);
 }
 
-/// Chains the triangles of a vertex, of which each is given by its other two vertices: neighbours one after
-/// the other, the first again at the end of a closed ring. Torn rings begin where no triangle ends.
+/// Chains the triangles of a vertex, each given by its other two vertices, to sequences of neighbours. A
+/// closed ring repeats its first neighbour at the end; open ones begin where no triangle ends.
 std::vector<std::vector<int>> rings_of(std::vector<std::array<int, 2>> triangles) {
   std::vector<std::vector<int>> rings;
-  const auto take = [&](const auto& fits) -> std::optional<std::array<int, 2>> {
+  const auto extract = [&](const auto& fits) -> std::optional<std::array<int, 2>> {
     const auto found = std::ranges::find_if(triangles, fits);
     if (found == triangles.end()) return std::nullopt;
     const std::array<int, 2> triangle = *found;
@@ -34,10 +34,10 @@ std::vector<std::vector<int>> rings_of(std::vector<std::array<int, 2>> triangles
     return std::ranges::none_of(triangles, [&](const auto& other) { return other[1] == triangle[0]; });
   };
   while (!triangles.empty()) {
-    auto triangle = take(begins);
-    if (!triangle) triangle = take([](const auto&) { return true; });
+    auto triangle = extract(begins);
+    if (!triangle) triangle = extract([](const auto&) { return true; });
     std::vector<int>& ring = rings.emplace_back(std::vector<int>{(*triangle)[0]});
-    for (; triangle; triangle = take([&](const auto& next) { return next[0] == ring.back(); }))
+    for (; triangle; triangle = extract([&](const auto& next) { return next[0] == ring.back(); }))
       ring.push_back((*triangle)[1]);
   }
   return rings;
@@ -102,7 +102,7 @@ SpringAdjacency spring_adjacency(const Mesh& mesh, const Material& material) {
 }
 
 BendingAdjacency bending_adjacency(const Mesh& mesh, double stiffness) {
-  const auto place = [&](int i) -> const Vector& { return mesh.rest[static_cast<std::size_t>(i)]; };
+  const auto position = [&](int i) -> const Vector& { return mesh.rest[static_cast<std::size_t>(i)]; };
   std::map<mesh::Edge, std::vector<int>> opposite;  // vertices across an edge
   for (const auto& t : mesh.triangles)
     for (std::size_t k = 0; k < 3; ++k) opposite[mesh::opposite_edge(t, k)].push_back(t[k]);
@@ -123,11 +123,11 @@ BendingAdjacency bending_adjacency(const Mesh& mesh, double stiffness) {
     double bent = 0.0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       double sum = 0.0;
-      for (std::size_t a = 0; a < 4; ++a) sum += k[a] * place(vertex[a])[axis];
+      for (std::size_t a = 0; a < 4; ++a) sum += k[a] * position(vertex[a])[axis];
       bent += sum * sum;
     }
     if (bent > 1e-12 * squared)
-      throw std::invalid_argument("fabric solver: cloth that resists bending must be flat at rest");
+      throw std::invalid_argument("fabric solver: fabric that resists bending must be flat at rest");
     for (std::size_t a = 0; a < 4; ++a)
       for (std::size_t b = 0; b < 4; ++b)
         if (a != b)

@@ -5,40 +5,44 @@
 
 namespace drogue::fabric {
 
-/// Triangles of every vertex as rings of neighbours: each neighbour and the one in the slot before it make a
-/// triangle with the vertex, in the triangle's order. L^2 of the edge to the neighbour and its product with
-/// the edge to the one before, m^2, and the inverse area, 1/m^2. Between two rings, or parts of a torn one,
-/// stands the vertex itself: triangles with a corner twice have no area, and neutral slots make no other.
+/// Triangles of every vertex as rings of neighbours: each neighbour and the previous one form a triangle with
+/// the vertex, in the order of the triangle. Values: squared length of the edge to the neighbour, m^2, its
+/// product with the edge to the previous neighbour, m^2, and the inverse area, 1/m^2. The vertex itself
+/// separates two rings, or parts of an open one: triangles with a repeated corner have no area, as those of
+/// neutral slots.
 using RingAdjacency = SlicedEll<3>;
 
-/// Springs of every vertex: the other end; stiffness, N/m, and length at rest, m.
+/// Springs of every vertex: neighbour; stiffness, N/m, and length at rest, m.
 using SpringAdjacency = SlicedEll<2>;
 
-/// Neighbours of every vertex: the other end of an edge or line, and the dashpot between, kg/s.
+/// Dashpots of every vertex: neighbour along an edge or line; damping coefficient, kg/s.
 using DashpotAdjacency = SlicedEll<1>;
 
-/// Whatever the model.
+/// Ring adjacency of the triangles of a mesh. Throws only std::bad_alloc.
 [[nodiscard]] RingAdjacency ring_adjacency(const Mesh& mesh);
 
-/// Lines, and in models made of springs the edges of triangles, an edge of two triangles once. A spring of a
-/// vector is one of length zero that a dead force stretches: `rest_pull`.
+/// Springs along lines and, in models without whole triangles, along the edges of triangles, each edge once.
+/// A spring of Model::linear_vector has length zero and a dead force, `rest_pull`. Throws only
+/// std::bad_alloc.
 [[nodiscard]] SpringAdjacency spring_adjacency(const Mesh& mesh, const Material& material);
 
-/// Edges of triangles and lines, each pair of vertices once: rate times the reduced mass of its two ends.
+/// Dashpots along edges of triangles and lines, each pair of vertices once, with coefficients of `rate`, 1/s,
+/// times the reduced mass of the two ends, kg. Throws only std::bad_alloc.
 [[nodiscard]] DashpotAdjacency dashpot_adjacency(const Mesh& mesh, const std::vector<double>& mass,
                                                  double rate);
 
-/// Bending of every vertex: another one, and the weight of the way to it in the force, N/m, of either sign.
+/// Bending of every vertex: neighbour; weight of the vector to it in the force, N/m, of either sign.
 using BendingAdjacency = SlicedEll<1>;
 
 /// Isometric bending across edges of two triangles (Bergou et al. 2006): with the cotangents K of a hinge's
-/// four vertices, which sum to zero, its energy is stiffness / (A_0 + A_1) * (sum K x)^2 / 2, whose force is
-/// linear and has no torque. Without their factor of 3 a cylinder of curvature c has stiffness c^2 / 2 per
-/// area, as on the equilateral mesh of Seung and Nelson 1988. Hinges that are not flat at rest throw
-/// std::invalid_argument.
+/// four vertices, which sum to zero, its energy is stiffness / (A_0 + A_1) * (sum K x)^2 / 2, J. The force is
+/// linear and has no torque. Without their factor of 3 a cylinder of curvature c has the energy
+/// stiffness c^2 / 2 per area, as on the equilateral mesh of Seung and Nelson 1988. Throws
+/// std::invalid_argument for hinges that are not flat at rest.
 [[nodiscard]] BendingAdjacency bending_adjacency(const Mesh& mesh, double stiffness);
 
-/// -sum k (X_j - X_i) of the springs of every vertex, N; empty but for Model::linear_vector.
+/// Dead force -sum k (X_j - X_i) of the springs of every vertex, N, for Model::linear_vector; empty for other
+/// models. Throws only std::bad_alloc.
 [[nodiscard]] std::vector<Vector> rest_pull(const Mesh& mesh, const Material& material);
 
 }  // namespace drogue::fabric

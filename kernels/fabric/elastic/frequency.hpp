@@ -1,11 +1,14 @@
 #pragma once
 
+#include <cmath>
+
+#include "kernels/fabric/elastic/dispatch_model.hpp"
 #include "kernels/fabric/fabric_views.hpp"
 #include "kernels/fabric/views.hpp"
 
 namespace drogue::fabric {
 
-/// An upper bound of the largest singular value of a 3 by 3 matrix B, at most 1.8 % above it: the trace of
+/// Upper bound of the largest singular value of a 3 by 3 matrix B, at most 1.8 % above it: the trace of
 /// (B^T B)^32 to the power of 1/64.
 KOKKOS_INLINE_FUNCTION double spectral_norm_bound(const double (&b)[3][3]) {
   double s[3][3], trace[6];
@@ -28,25 +31,25 @@ KOKKOS_INLINE_FUNCTION double spectral_norm_bound(const double (&b)[3][3]) {
 }
 
 /// Row i of the block norms of M^-1 K, 1/s^2; K is minus the derivative of the elastic forces at the
-/// positions x, geometric stiffness included, and pinned axes are struck out. By Gershgorin's theorem for
-/// blocks (Feingold and Varga 1962) no omega^2 exceeds the largest row.
+/// positions x, with geometric stiffness and without pinned axes. By Gershgorin's theorem for blocks
+/// (Feingold and Varga 1962) no omega^2 exceeds the largest row.
 template <class ExecutionSpace, ConstitutiveModel law>
 struct FrequencyFunctor {
   using Dual = device::Dual;
-  FabricViews<ExecutionSpace> cloth;
+  FabricViews<ExecutionSpace> fabric;
   PointsView<ExecutionSpace> x;
   ListView<ExecutionSpace, double> more;  ///< rows of other stiffness, N/m; may be empty
 
   KOKKOS_FUNCTION void operator()(const int i, double& largest) const {
-    const bool moves = cloth.fixed_dofs(i) != 7U;
+    const bool moves = fabric.fixed_dofs(i) != 7U;
     const double other = more.extent(0) > 0 && moves ? more(i) : 0.0;
-    const double row = cloth.inverse_mass(i) * (row_sum(i) + other);
-    // What is not a number is no bound.
+    const double row = fabric.inverse_mass(i) * (row_sum(i) + other);
+    // NaN is no bound.
     const double bound = row >= 0.0 ? row : Kokkos::Experimental::infinity_v<double>;
     if (bound > largest) largest = bound;
   }
 
-  /// A vector that one axis of it changes; none with axis -1.
+  /// Vector with the derivative 1 along `axis`; no derivative for axis -1.
   KOKKOS_FUNCTION static Vector3<Dual> along(const Vector3<double>& v, int axis) {
     return {Dual(v.x, axis == 0 ? 1.0 : 0.0), Dual(v.y, axis == 1 ? 1.0 : 0.0),
             Dual(v.z, axis == 2 ? 1.0 : 0.0)};
@@ -57,48 +60,48 @@ struct FrequencyFunctor {
   }
 
   KOKKOS_FUNCTION double is_free(int i, int axis) const {
-    return device::Access<double>::unless_set(&cloth.fixed_dofs(i), 1U << static_cast<unsigned>(axis));
+    return device::Access<double>::unless_set(&fabric.fixed_dofs(i), 1U << static_cast<unsigned>(axis));
   }
 
   KOKKOS_FUNCTION double row_sum(const int i) const {
     double diagonal[3][3] = {};
     double sum = 0.0;
-    // `pull(axis)` is the pull on i while vertex j moves along the axis.
+    // `pull(axis)` is the force on i while vertex j moves along the axis.
     const auto add = [&](int j, const auto& pull) {
       double block[3][3];
       for (int axis = 0; axis < 3; ++axis) {
         const Vector3<Dual> p = pull(axis);
         const double change[3] = {p.x.derivative, p.y.derivative, p.z.derivative};
         for (int r = 0; r < 3; ++r) {
-          // A force that all vertices together do not change: the diagonal block is minus the others' sum.
+          // Forces are invariant under translations: the diagonal block is minus the sum of the others.
           diagonal[r][axis] += is_free(i, r) * change[r] * is_free(i, axis);
           block[r][axis] = is_free(i, r) * change[r] * is_free(j, axis);
         }
       }
       sum += spectral_norm_bound(block);
     };
-    // A spring of no length pulls nowhere, though it will as soon as it has one: until then it counts with
-    // the stiffness of a softer law, which pulls everywhere.
+    // A spring of no length has no force, but has one as soon as it has a length: until then it counts with
+    // the stiffness of a softer model, which has forces at every length.
     if constexpr (whole_triangles<law>)
       each_triangle<double>(
-          cloth, x, i,
+          fabric, x, i,
           [&](const EdgeVector<double>& j, const EdgeVector<double>& k, const RestTriangle<double>& at_rest) {
             const GramMatrix<double>& products = at_rest.products;
             const RestTriangle<Dual> rest{{products.jj, products.jk, products.kk}, at_rest.inverse_area};
             const Vector3<double> third = k.to - j.to;
             const bool vanishes = j.squared == 0.0 || k.squared == 0.0 || dot(third, third) == 0.0;
             const auto pull = [&](const EdgeVector<Dual>& to_j, const EdgeVector<Dual>& to_k) {
-              return vanishes ? triangle_pull<ConstitutiveModel{Model::biquadratic}>(cloth.moduli, to_j, to_k,
-                                                                                     rest)
-                              : triangle_pull<law>(cloth.moduli, to_j, to_k, rest);
+              return vanishes ? triangle_pull<ConstitutiveModel{Model::biquadratic}>(fabric.moduli, to_j,
+                                                                                     to_k, rest)
+                              : triangle_pull<law>(fabric.moduli, to_j, to_k, rest);
             };
             add(j.neighbour, [&](int axis) { return pull(along(j, axis), along(k, -1)); });
             add(k.neighbour, [&](int axis) { return pull(along(j, -1), along(k, axis)); });
           });
-    cloth.springs.each(i, [&](int slot) {
-      const int j = cloth.springs.neighbour(slot);
+    fabric.springs.each(i, [&](int slot) {
+      const int j = fabric.springs.neighbour(slot);
       const Vector3<double> edge = load_points<double>(x, j) - load_points<double>(x, i);
-      const Dual stiffness = cloth.springs.value(slot, 0), rest = cloth.springs.value(slot, 1);
+      const Dual stiffness = fabric.springs.value(slot, 0), rest = fabric.springs.value(slot, 1);
       const bool vanishes = dot(edge, edge) == 0.0;
       add(j, [&](int axis) {
         return vanishes ? stiffness * along(edge, axis)
@@ -108,5 +111,34 @@ struct FrequencyFunctor {
     return sum + spectral_norm_bound(diagonal);
   }
 };
+
+/// Largest row of `FrequencyFunctor`, 1/s^2, over all vertices. Blocks.
+template <ConstitutiveModel law, class ExecutionSpace>
+[[nodiscard]] double largest_frequency_row(const ExecutionSpace& space,
+                                           const FabricViews<ExecutionSpace>& fabric,
+                                           const PointsView<ExecutionSpace>& x,
+                                           const ListView<ExecutionSpace, double>& more, int vertices) {
+  double largest = 0.0;
+  Kokkos::parallel_reduce(
+      "drogue::fabric::frequency", Kokkos::RangePolicy<ExecutionSpace>(space, 0, vertices),
+      FrequencyFunctor<ExecutionSpace, law>{fabric, x, more}, Kokkos::Max<double>(largest));
+  return largest;
+}
+
+/// Upper bound of the angular frequencies of small oscillations about the positions x, rad/s. Blocks.
+template <class ExecutionSpace>
+[[nodiscard]] double frequency_bound(const ExecutionSpace& space, const Material& material,
+                                     const FabricViews<ExecutionSpace>& fabric,
+                                     const PointsView<ExecutionSpace>& x,
+                                     const ListView<ExecutionSpace, double>& more, int vertices) {
+  return dispatch_model(material, [&]<ConstitutiveModel law>() {
+    double row = largest_frequency_row<law>(space, fabric, x, more, vertices);
+    // Elements that are slack now may be taut before the next call.
+    if constexpr (law.tension_only)
+      row = std::max(row,
+                     largest_frequency_row<ConstitutiveModel{law.model}>(space, fabric, x, more, vertices));
+    return std::sqrt(row);
+  });
+}
 
 }  // namespace drogue::fabric

@@ -15,8 +15,9 @@ double product(const std::vector<double>& a, const std::vector<double>& b) {
   return sum;
 }
 
-/// Of a symmetric tridiagonal matrix; `beside[k]` lies between rows k and k + 1. By halving: the pivots of
-/// the matrix less x are all negative exactly where x is above every eigenvalue (Sylvester's law of inertia).
+/// Largest eigenvalue of a symmetric tridiagonal matrix with `beside[k]` between rows k and k + 1, by
+/// bisection: the pivots of the matrix less x are all negative exactly if x is above every eigenvalue
+/// (Sylvester's law of inertia).
 double largest_eigenvalue(const std::vector<double>& diagonal, const std::vector<double>& beside) {
   const std::size_t n = diagonal.size();
   double low = diagonal[0], high = diagonal[0];
@@ -56,10 +57,32 @@ double largest_ritz_value(std::size_t size, int steps, const LinearOperator& app
     before.swap(now);
     now.swap(next);
     norm = std::sqrt(product(now, now));
-    // What is left of a space that is all found is round-off.
+    // The rest of an exhausted Krylov space is round-off.
     if (norm <= 1e-12 * std::abs(own)) break;
   }
   return diagonal.empty() ? 0.0 : largest_eigenvalue(diagonal, beside);
+}
+
+double lanczos_frequency(std::span<const double> root, const std::vector<mesh::Vector>& positions,
+                         double displacement, const ForceField& force_at) {
+  // M^-1/2 K M^-1/2 is symmetric; fixed degrees of freedom have no row in it.
+  std::vector<mesh::Vector> moved(positions.size()), ahead(positions.size()), behind(positions.size());
+  const auto force_after = [&](double factor, std::span<const double> move,
+                               std::vector<mesh::Vector>& force) {
+    for (std::size_t k = 0; k < root.size(); ++k)
+      moved[k / 3][k % 3] = positions[k / 3][k % 3] + factor * root[k] * move[k];
+    force_at(moved, force);
+  };
+  const auto apply = [&](std::span<const double> in, std::span<double> out) {
+    double most = 0.0;
+    for (std::size_t k = 0; k < root.size(); ++k) most = std::max(most, std::abs(root[k] * in[k]));
+    const double factor = most > 0.0 ? displacement / most : 0.0;
+    force_after(factor, in, ahead);
+    force_after(-factor, in, behind);
+    for (std::size_t k = 0; k < root.size(); ++k)
+      out[k] = most > 0.0 ? root[k] * (behind[k / 3][k % 3] - ahead[k / 3][k % 3]) / (2.0 * factor) : 0.0;
+  };
+  return std::sqrt(std::max(0.0, largest_ritz_value(root.size(), 64, apply)));
 }
 
 }  // namespace drogue::fabric

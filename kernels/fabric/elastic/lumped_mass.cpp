@@ -10,7 +10,7 @@ namespace drogue::fabric {
 
 namespace {
 
-Vector leads(const Vector& from, const Vector& to) {
+Vector vector_between(const Vector& from, const Vector& to) {
   return {to[0] - from[0], to[1] - from[1], to[2] - from[2]};
 }
 
@@ -32,16 +32,17 @@ std::vector<double> lumped_masses(const Mesh& mesh, double area_density, double 
   require(mesh.line_density.empty() || mesh.line_density.size() == mesh.lines.size(),
           "there must be a density for every line, or for none");
   std::vector<double> mass(mesh.rest.size(), 0.0);
-  const auto place = [&](int i) { return mesh.rest[static_cast<std::size_t>(i)]; };
+  const auto position = [&](int i) { return mesh.rest[static_cast<std::size_t>(i)]; };
   const auto share = [&](const auto& vertices, double whole) {
     for (const int i : vertices)
       mass[static_cast<std::size_t>(i)] += whole / static_cast<double>(vertices.size());
   };
   for (const auto& t : mesh.triangles)
-    share(t, area_density * spanned_area(leads(place(t[0]), place(t[1])), leads(place(t[0]), place(t[2]))));
+    share(t, area_density * spanned_area(vector_between(position(t[0]), position(t[1])),
+                                         vector_between(position(t[0]), position(t[2]))));
   for (std::size_t k = 0; k < mesh.lines.size(); ++k) {
     const auto& line = mesh.lines[k];
-    const Vector along = leads(place(line[0]), place(line[1]));
+    const Vector along = vector_between(position(line[0]), position(line[1]));
     share(line, (mesh.line_density.empty() ? line_density : mesh.line_density[k]) *
                     std::hypot(along[0], along[1], along[2]));
   }

@@ -6,16 +6,16 @@
 
 namespace drogue::fabric {
 
-/// How the mass of cloth and strings is given to their vertices.
+/// Distribution of the mass of cloth and strings to their vertices.
 enum class Lumping {
-  area,   ///< a third of each triangle and half of each line: of second order in the length of edges
-  equal,  ///< the same to every vertex, as the dissertation does: of first order
+  area,   ///< a third of each triangle and half of each line: second order in the edge length
+  equal,  ///< equal masses, as in [Shi]: first order
 };
 
-/// Mass of every vertex, kg; `area_density` kg/m^2 of the triangles, `line_density` kg/m of the lines unless
-/// the mesh has one for each. Their sum is the same for either way. With Lumping::area a vertex that is part
-/// of nothing has none. Densities that are negative or not finite, or not one a line, throw
-/// std::invalid_argument.
+/// Mass of every vertex, kg, for triangles of `area_density`, kg/m^2, and lines of `line_density`, kg/m, or
+/// of their own density in the mesh. The total does not depend on `lumping`. With Lumping::area a vertex
+/// without triangles and lines has no mass. Throws std::invalid_argument for densities that are negative or
+/// not finite and for a wrong number of densities.
 [[nodiscard]] std::vector<double> lumped_masses(const Mesh& mesh, double area_density, double line_density,
                                                 Lumping lumping);
 

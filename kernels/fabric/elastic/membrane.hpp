@@ -6,13 +6,14 @@
 
 namespace drogue::fabric {
 
-/// What a kernel is compiled for: a model, and whether it goes slack where it would be compressed.
+/// Constitutive model of a compiled kernel; `tension_only` elements become slack under compression.
 struct ConstitutiveModel {
   Model model;
   bool tension_only = false;
 };
 
-/// Whether triangles resist as a whole: a constant, for in device code nvcc wants no constexpr function.
+/// True if triangles have an energy of their own. A constant, since nvcc rejects the constexpr function in
+/// device code.
 template <ConstitutiveModel law>
 inline constexpr bool whole_triangles = has_triangles(law.model);
 
@@ -22,12 +23,13 @@ struct Moduli {
   double lambda, two_g, young;
 };
 
+/// Moduli of plane stress from Young's modulus times thickness, N/m, and Poisson's ratio. Does not throw.
 [[nodiscard]] constexpr Moduli moduli(double membrane_modulus, double poisson) {
   return {membrane_modulus * poisson / (1.0 - poisson * poisson), membrane_modulus / (1.0 + poisson),
           membrane_modulus};
 }
 
-/// A value an edge of a triangle; edge e lies opposite vertex e.
+/// One value per edge of a triangle; edge e is opposite vertex e.
 template <class R>
 struct Edges {
   R of[3];
@@ -39,14 +41,14 @@ struct GramMatrix {
   R jj, jk, kk;
 };
 
-/// Squared lengths of all edges, m^2; rounding makes none negative.
+/// Squared lengths of all edges, m^2, not negative in spite of rounding.
 template <class R>
 KOKKOS_INLINE_FUNCTION Edges<R> squared_edges(const GramMatrix<R>& of) {
   return {{device::maximum(of.jj + of.kk - 2.0 * of.jk, R(0.0)), of.kk, of.jj}};
 }
 
-/// 1/m^2; 0 of a triangle that has no area. Written once for all who compute it, so that they find the same
-/// bits where the build promises that.
+/// Inverse area of a triangle, 1/m^2; 0 without area. One function for all callers, so that they get the same
+/// bits in the `exact` build.
 template <class R>
 KOKKOS_INLINE_FUNCTION R inverse_area(const GramMatrix<R>& rest) {
   const R squared = rest.jj * rest.kk - rest.jk * rest.jk;
@@ -116,7 +118,7 @@ KOKKOS_INLINE_FUNCTION Edges<R> relaxed_tensions(const Moduli& m, const Edges<R>
            w * (2.0 * a * n[2] + b * (2.0 * q.of[2] - all))}};
 }
 
-/// Of either energy.
+/// Tensions of the relaxed or the plain energy, N/m.
 template <ConstitutiveModel law, class R>
 KOKKOS_INLINE_FUNCTION Edges<R> tensions_of_changes(const Moduli& m, const Edges<R>& q, const Edges<R>& rest,
                                                     R inverse_area) {
@@ -126,8 +128,8 @@ KOKKOS_INLINE_FUNCTION Edges<R> tensions_of_changes(const Moduli& m, const Edges
     return edge_tensions(m, q, rest, inverse_area);
 }
 
-/// What the energy is quadratic in, m^2: l^2 - L^2, or for Model::quadratic 2 L (l - L). `now` and `rest` are
-/// squared lengths.
+/// Strain measures of the edges in which the energy is quadratic, m^2: l^2 - L^2, or 2 L (l - L) for
+/// Model::quadratic. `now` and `rest` are squared lengths, m^2.
 template <ConstitutiveModel law, class R>
 KOKKOS_INLINE_FUNCTION Edges<R> changes(const Edges<R>& now, const Edges<R>& rest) {
   static_assert(whole_triangles<law>, "springs along edges have no triangles");
@@ -156,8 +158,8 @@ KOKKOS_INLINE_FUNCTION Edges<R> membrane_tensions(const Moduli& m, const Edges<R
   return s;
 }
 
-/// Energy of a triangle, J: what is of second degree is half of its derivative times its argument, the
-/// relaxed energy too.
+/// Energy of a triangle, J. The plain and the relaxed energy are homogeneous of degree two: half of the
+/// derivative times the argument.
 template <ConstitutiveModel law>
 KOKKOS_INLINE_FUNCTION double membrane_energy(const Moduli& m, const Edges<double>& now,
                                               const Edges<double>& rest, double inverse_area) {
@@ -166,7 +168,7 @@ KOKKOS_INLINE_FUNCTION double membrane_energy(const Moduli& m, const Edges<doubl
 }
 
 /// Tension of a spring of stiffness `k` (N/m) and length at rest `rest` (m), N/m; `now` is its squared
-/// length. None where it has no length, or no direction.
+/// length, m^2. Zero for a spring of no length, which has no direction.
 template <ConstitutiveModel law, class R>
 KOKKOS_INLINE_FUNCTION R spring_tension(R k, R now, R rest) {
   const R tension = device::select(now > R(0.0), k * (R(1.0) - rest / device::square_root(now)), R(0.0));

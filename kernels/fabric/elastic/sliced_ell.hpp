@@ -7,28 +7,29 @@
 
 namespace drogue::fabric {
 
-/// Vertices come in slices, and of a slice all the first neighbours lie side by side, then all the second
-/// ones (sliced ELLPACK, Monakov et al. 2010): threads of a warp, or lanes of a register, read consecutive
-/// numbers.
+/// Vertices per slice. The first neighbours of all vertices of a slice are adjacent in memory, then the
+/// second ones (sliced ELLPACK, Monakov et al. 2010), so that threads of a warp, or lanes of a register, read
+/// consecutive numbers.
 inline constexpr int slice = 32;
 
-/// What each vertex is part of, as its kernel gathers it. Slot k of vertex i lies at
-/// (first[i / slice] + k) * slice + i % slice. A vertex with fewer slots than its slice has neutral ones: its
-/// own number and no stiffness.
+/// Adjacency of the vertices in sliced ELLPACK format. Slot k of vertex i has the index
+/// (first[i / slice] + k) * slice + i % slice. Neutral slots, which name the vertex itself and have zero
+/// values, fill vertices with fewer slots than their slice.
 template <int values>
 struct SlicedEll {
-  std::vector<int> first;  ///< of every slice, and the end
+  std::vector<int> first;  ///< first row of slots of every slice, and the end
   std::vector<int> neighbour;
   std::array<std::vector<double>, values> value;
 };
 
-/// What a slot holds.
+/// Contents of a slot.
 template <int values>
 struct EllEntry {
   int neighbour;
   std::array<double, values> value;
 };
 
+/// Packs the entries of every vertex in their order. Throws only std::bad_alloc.
 template <int values>
 SlicedEll<values> sliced(const std::vector<std::vector<EllEntry<values>>>& of_vertex) {
   SlicedEll<values> slots;

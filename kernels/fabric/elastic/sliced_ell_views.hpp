@@ -8,19 +8,19 @@
 
 namespace drogue::fabric {
 
-/// Calls `take(slot)` for the slots of vertex i and the lanes after it, with `first` as in Slots.
-template <class First, class Take>
-KOKKOS_INLINE_FUNCTION void for_each_slot(const First& first, int i, const Take& take) {
+/// Calls `visit(slot)` for the slots of vertex i and the lanes after it, with `first` as in `SlicedEll`.
+template <class First, class Visit>
+KOKKOS_INLINE_FUNCTION void for_each_slot(const First& first, int i, const Visit& visit) {
   const int end = first(i / slice + 1);
-  for (int k = first(i / slice); k < end; ++k) take(k * slice + i % slice);
+  for (int k = first(i / slice); k < end; ++k) visit(k * slice + i % slice);
 }
 
-/// Calls `take(before, next, slot)` for the slots but the first, with the values of `read(slot, index(slot))`
-/// of the slot before and of the slot. Each slot is read once. Indices are read one slot ahead, so that two
-/// dependent memory latencies overlap.
-template <class First, class Index, class Read, class Take>
+/// Calls `visit(before, next, slot)` for the slots but the first, with the values of `read(slot,
+/// index(slot))` of the slot before and of the slot. Each slot is read once. Indices are read one slot ahead,
+/// so that two dependent memory latencies overlap.
+template <class First, class Index, class Read, class Visit>
 KOKKOS_INLINE_FUNCTION void for_each_slot_pair(const First& first, int i, const Index& index,
-                                               const Read& read, const Take& take) {
+                                               const Read& read, const Visit& visit) {
   const int begin = first(i / slice), end = first(i / slice + 1);
   if (begin == end) return;
   const int last = (end - 1) * slice + i % slice;
@@ -28,33 +28,34 @@ KOKKOS_INLINE_FUNCTION void for_each_slot_pair(const First& first, int i, const 
   auto before = read(slot, index(slot));
   auto ahead = index(device::minimum(slot + slice, last));
 #if defined(__CUDA_ARCH__)
-#pragma unroll 2  // else what is carried from slot to slot is moved
+#pragma unroll 2  // avoids moves of the values carried from slot to slot
 #endif
   for (slot += slice; slot <= last; slot += slice) {
     const auto next = read(slot, ahead);
     ahead = index(device::minimum(slot + slice, last));
-    take(before, next, slot);
+    visit(before, next, slot);
     before = next;
   }
 }
 
-/// `Slots` in the memory of an execution space.
+/// `SlicedEll` in the memory of an execution space.
 template <class ExecutionSpace, int values>
 struct SlicedEllViews {
   using Memory = typename ExecutionSpace::memory_space;
   Kokkos::View<int*, Memory> first, neighbour;
   Kokkos::View<double* [values], Kokkos::LayoutLeft, Memory> value;
 
-  /// Calls `take(slot)` for the slots of vertex i and the lanes after it.
-  template <class Take>
-  KOKKOS_INLINE_FUNCTION void each(int i, const Take& take) const {
-    for_each_slot(first, i, take);
+  /// Calls `visit(slot)` for the slots of vertex i and the lanes after it.
+  template <class Visit>
+  KOKKOS_INLINE_FUNCTION void each(int i, const Visit& visit) const {
+    for_each_slot(first, i, visit);
   }
 
-  /// Calls `take(before, next, slot)` for the slots of a ring but the first one (`for_each_slot_pair`).
-  template <class Index, class Read, class Take>
-  KOKKOS_INLINE_FUNCTION void each_pair(int i, const Index& index, const Read& read, const Take& take) const {
-    for_each_slot_pair(first, i, index, read, take);
+  /// Calls `visit(before, next, slot)` for the slots of a ring but the first one (`for_each_slot_pair`).
+  template <class Index, class Read, class Visit>
+  KOKKOS_INLINE_FUNCTION void each_pair(int i, const Index& index, const Read& read,
+                                        const Visit& visit) const {
+    for_each_slot_pair(first, i, index, read, visit);
   }
 };
 

@@ -7,25 +7,24 @@
 
 namespace drogue::fabric {
 
-/// A symmetric tensor in a plane.
+/// Symmetric tensor in a plane.
 struct PlaneTensor {
   double xx, yy, xy;
 };
 
-/// A triangle in a frame of its plane: vertex 0 lies at the origin, vertex 1 at (x1, 0), vertex 2 at (x2,
-/// y2).
+/// Triangle in a frame of its plane, m: vertex 0 is the origin, vertex 1 is (x1, 0), vertex 2 is (x2, y2).
 struct LocalTriangle {
   double x1, x2, y2;
 };
 
-/// From squared lengths of the edges opposite its vertices, m^2, and its inverse area, 1/m^2.
+/// Triangle with given squared lengths of the edges opposite its vertices, m^2, and inverse area, 1/m^2.
 KOKKOS_INLINE_FUNCTION LocalTriangle local_triangle(const Edges<double>& squared, double inverse_area) {
   const double x1 = device::square_root(squared.of[2]);
   return {x1, (squared.of[2] + squared.of[1] - squared.of[0]) / (2.0 * x1), 2.0 / (inverse_area * x1)};
 }
 
-/// Sum of tension times edge times edge over the area, N/m: of edges now the Cauchy stress, of edges at rest
-/// the second one of Piola and Kirchhoff. In place of eq. 2.14-2.16. Nothing where there is no area.
+/// Sum of tension times edge times edge divided by the area, N/m: the Cauchy stress for present edges, the
+/// second Piola-Kirchhoff stress for edges at rest, in place of [Shi], eq. (2.14)-(2.16). Zero without area.
 KOKKOS_INLINE_FUNCTION PlaneTensor edge_stress(const Edges<double>& tension, const LocalTriangle& f) {
   const double twice = f.x1 * f.y2, per_area = twice > 0.0 ? 2.0 / twice : 0.0, across = f.x2 - f.x1;
   const double t0 = per_area * tension.of[0], t1 = per_area * tension.of[1], t2 = per_area * tension.of[2];
@@ -33,8 +32,8 @@ KOKKOS_INLINE_FUNCTION PlaneTensor edge_stress(const Edges<double>& tension, con
           (t1 * f.x2 + t0 * across) * f.y2};
 }
 
-/// The symmetric part of R^T P (Biot 1965), force per length at rest, turned into the plane of now:
-/// P = F S is the first stress of Piola and Kirchhoff, R the rotation of F. U = (C + J) / sqrt(tr C + 2 J).
+/// Symmetric part of R^T P (Biot 1965), force per length at rest, N/m, rotated into the present plane.
+/// P = F S is the first Piola-Kirchhoff stress, R the rotation of F. U = (C + J) / sqrt(tr C + 2 J).
 KOKKOS_INLINE_FUNCTION PlaneTensor nominal_stress(const PlaneTensor& s, const LocalTriangle& rest,
                                                   const LocalTriangle& now) {
   const double f11 = now.x1 / rest.x1, f22 = now.y2 / rest.y2, f12 = (now.x2 - f11 * rest.x2) / rest.y2;
@@ -51,28 +50,29 @@ KOKKOS_INLINE_FUNCTION PlaneTensor nominal_stress(const PlaneTensor& s, const Lo
           cs * (biot.xx - biot.yy) + (cc - ss) * biot.xy};
 }
 
-/// Principal values and the direction (cosine, sine) of the major one; the first axis where all are alike.
+/// Principal values, N/m, and direction (cosine, sine) of the major one; the first axis for equal values.
 struct PrincipalValues {
   double major, minor, cosine, sine;
 };
 
+/// Principal values of a tensor.
 KOKKOS_INLINE_FUNCTION PrincipalValues principal(const PlaneTensor& s) {
   const double half = 0.5 * (s.xx - s.yy), mean = 0.5 * (s.xx + s.yy);
   const double radius = device::square_root(half * half + s.xy * s.xy);
-  // Of the two rows that give the direction the one without cancellation.
+  // The row of the eigenvector equation without cancellation.
   const double x = half >= 0.0 ? radius + half : s.xy, y = half >= 0.0 ? s.xy : radius - half;
   const double size = device::square_root(x * x + y * y);
   const bool alike = !(size > 0.0);
   return {mean + radius, mean - radius, alike ? 1.0 : x / size, alike ? 0.0 : y / size};
 }
 
-/// Of length one; a vector of no length stays.
+/// Unit vector; a vector of no length stays zero.
 KOKKOS_INLINE_FUNCTION Vector3<double> unit(const Vector3<double>& a) {
   const double size = device::square_root(dot(a, a));
   return (size > 0.0 ? 1.0 / size : 0.0) * a;
 }
 
-/// What the kernels of stress read: `TriangleList` where they run.
+/// `TriangleList` in the memory of an execution space.
 template <class ExecutionSpace>
 struct TriangleViews {
   TriangleViews(const ExecutionSpace& space, const TriangleList& list)
@@ -89,14 +89,15 @@ struct TriangleViews {
   ListView<ExecutionSpace, int> first, around;
 };
 
-/// `major`, `minor` and the directions of both, one row a triangle or a vertex.
+/// `major`, `minor` and both directions, one row per triangle or vertex.
 template <class ExecutionSpace>
 using StressView = TableView<ExecutionSpace, double, 8>;
 
-/// xx, yy and xy of a triangle's tensor, then both axes of the frame in which it is.
+/// Components xx, yy and xy of the tensor of a triangle, N/m, then both axes of its frame.
 template <class ExecutionSpace>
 using TensorView = TableView<ExecutionSpace, double, 9>;
 
+/// Stores principal values and directions in the frame e1, e2.
 template <class View>
 KOKKOS_INLINE_FUNCTION void store_stress(const View& view, int i, const PrincipalValues& p,
                                          const Vector3<double>& e1, const Vector3<double>& e2) {
@@ -106,7 +107,7 @@ KOKKOS_INLINE_FUNCTION void store_stress(const View& view, int i, const Principa
   view(i, 5) = across.x, view(i, 6) = across.y, view(i, 7) = across.z;
 }
 
-/// The stress of each triangle.
+/// Stress of each triangle.
 template <class ExecutionSpace, ConstitutiveModel law>
 struct StressFunctor {
   TriangleViews<ExecutionSpace> triangles;
@@ -145,10 +146,10 @@ struct StressFunctor {
   }
 };
 
-/// The stress at each vertex: the mean over its triangles, weighted by their areas at rest and in the order
-/// of the mesh, in the plane across their mean normal. Stress has no side, and in a mesh of a file neighbours
-/// may turn against one another: each normal counts on the side of those before it. So a fold by more than a
-/// right angle is laid flat, as it lies. Without triangles there is none.
+/// Stress at each vertex: the mean over its triangles in the order of the mesh, weighted by their areas at
+/// rest, in the plane normal to their mean normal. The triangles of a mesh file may have opposite
+/// orientations, so each normal is flipped to the side of the previous ones; a fold by more than a right
+/// angle counts as flat. Zero for vertices without triangles.
 template <class ExecutionSpace>
 struct VertexStressFunctor {
   TriangleViews<ExecutionSpace> triangles;
@@ -168,7 +169,7 @@ struct VertexStressFunctor {
       normal = normal + (dot(own, normal) < 0.0 ? -1.0 : 1.0) / triangles.inverse_area(t) * own;
     }
     normal = unit(normal);
-    // The first axis is the one of the first triangle, laid into the plane.
+    // The first axis is the one of the first triangle, projected to the plane.
     const Vector3<double> hint = begin < end ? axis(triangles.around(begin), 0) : normal;
     const Vector3<double> e1 = unit(hint - dot(hint, normal) * normal), e2 = cross(normal, e1);
     PlaneTensor sum{0.0, 0.0, 0.0};

@@ -2,15 +2,15 @@
 
 #include "kernels/device/expression.hpp"
 #include "kernels/fabric/elastic/stress.hpp"
-#include "kernels/fabric/stepping/stage_time.hpp"
 #include "kernels/fabric/views.hpp"
+#include "kernels/stepping/step_monitor.hpp"
 
 namespace drogue::fabric {
 
 template <class ExecutionSpace>
 using ProgramsView = ListView<ExecutionSpace, device::ExpressionProgram>;
 
-/// Loads beside elasticity and dead forces. Views of absent loads are empty.
+/// Loads other than elastic and dead forces. Views of absent loads are empty.
 template <class ExecutionSpace>
 struct External {
   using Memory = typename ExecutionSpace::memory_space;
@@ -27,28 +27,28 @@ struct External {
     return pressure.extent(0) > 0 || pressure_values.extent(0) > 0;
   }
 
-  /// `sum`, N, and the timed loads on vertex i, at rest at `place`, m, at time `t`, s.
+  /// `sum`, N, and the timed loads on vertex i, at rest at `at_rest`, m, at time `t`, s.
   KOKKOS_INLINE_FUNCTION Vector3<double> with_timed_loads(Vector3<double> sum, int i,
-                                                          const Vector3<double>& place, double t) const {
+                                                          const Vector3<double>& at_rest, double t) const {
     for (int k = 0; k < static_cast<int>(load.extent(0)); ++k) {
-      const double strength = device::evaluate(load(k), place.x, place.y, place.z, t);
+      const double strength = device::evaluate(load(k), at_rest.x, at_rest.y, at_rest.z, t);
       sum = sum + strength * Vector3<double>{direction(i, k, 0), direction(i, k, 1), direction(i, k, 2)};
     }
     return sum;
   }
 
   /// Pressure at vertex i, Pa.
-  KOKKOS_INLINE_FUNCTION double pressure_at(int i, const Vector3<double>& place, double t) const {
+  KOKKOS_INLINE_FUNCTION double pressure_at(int i, const Vector3<double>& at_rest, double t) const {
     double sum = 0.0;
     for (int k = 0; k < static_cast<int>(pressure.extent(0)); ++k)
-      sum += weight(i, k) * device::evaluate(pressure(k), place.x, place.y, place.z, t);
+      sum += weight(i, k) * device::evaluate(pressure(k), at_rest.x, at_rest.y, at_rest.z, t);
     if (pressure_values.extent(0) > 0) sum += pressure_values(i);
     return sum;
   }
 };
 
-/// Twice the area vector of the triangles of vertex i, m^2. `rings` are slots of triangles, `x` positions, m,
-/// by the numbers of the rings.
+/// Twice the area vector of the triangles of vertex i, m^2. `rings` holds the ring adjacency, `x` positions,
+/// m, indexed by its neighbour numbers.
 template <class Rings, class Points>
 KOKKOS_INLINE_FUNCTION Vector3<double> twice_area_vector(const Rings& rings, const Points& x, int i) {
   const Vector3<double> own = load_points<double>(x, i);
@@ -62,9 +62,8 @@ KOKKOS_INLINE_FUNCTION Vector3<double> twice_area_vector(const Rings& rings, con
   return twice_area;
 }
 
-/// Force of a dashpot, N, on the end from which `edge`, m, leads. It acts along the edge, so that the forces
-/// on both ends cancel and have no torque. `faster` is the velocity of the other end minus that of this end,
-/// m/s.
+/// Force of a dashpot, N, on the start of `edge`, m. It acts along the edge, so that the forces on both ends
+/// cancel and have no torque. `faster` is the velocity of the other end relative to this one, m/s.
 KOKKOS_INLINE_FUNCTION Vector3<double> dashpot_pull(double dashpot, const Vector3<double>& edge,
                                                     const Vector3<double>& faster) {
   const double squared = dot(edge, edge);
@@ -98,28 +97,29 @@ KOKKOS_INLINE_FUNCTION Vector3<double> bending_force(const SlicedEllViews<Execut
   return sum;
 }
 
-/// Loads on every vertex, N: dead forces, timed loads, pressures, bending and, if `damps`, dashpots.
+/// Sum of all loads on every vertex, N: dead forces, timed loads, pressures, bending and, if `with_dashpots`,
+/// dashpots.
 template <class ExecutionSpace>
 struct ExternalFunctor {
   External<ExecutionSpace> external;
   PointsView<ExecutionSpace> dead;  ///< may be empty
   PointsView<ExecutionSpace> x, v, out;
-  StageTime<ExecutionSpace> stage_time;
-  bool damps;
+  stepping::StageTime<ExecutionSpace> stage_time;
+  bool with_dashpots;
 
-  KOKKOS_FUNCTION double pressure_on(int i, const Vector3<double>& place) const {
-    return external.pressure_at(i, place, stage_time.time());
+  KOKKOS_FUNCTION double pressure_on(int i, const Vector3<double>& at_rest) const {
+    return external.pressure_at(i, at_rest, stage_time.time());
   }
 
   KOKKOS_FUNCTION void operator()(const int i) const {
-    const Vector3<double> place = load_points<double>(external.rest, i);
+    const Vector3<double> at_rest = load_points<double>(external.rest, i);
     Vector3<double> sum{0.0, 0.0, 0.0};
     if (dead.extent(0) > 0) sum = load_points<double>(dead, i);
-    sum = external.with_timed_loads(sum, i, place, stage_time.time());
+    sum = external.with_timed_loads(sum, i, at_rest, stage_time.time());
     if (external.has_pressure())
-      sum = sum + (pressure_on(i, place) / 6.0) * twice_area_vector(external.surface, x, i);
+      sum = sum + (pressure_on(i, at_rest) / 6.0) * twice_area_vector(external.surface, x, i);
     if (external.bending.first.extent(0) > 0) sum = sum + bending_force(external.bending, x, i);
-    if (damps) sum = sum + dashpot_force(external.dashpots, x, v, i);
+    if (with_dashpots) sum = sum + dashpot_force(external.dashpots, x, v, i);
     store_points(out, i, sum);
   }
 };
@@ -135,8 +135,8 @@ struct LoadStiffnessFunctor {
     const External<ExecutionSpace>& external = loads.external;
     double row = 0.0;
     if (external.has_pressure()) {
-      const Vector3<double> place = load_points<double>(external.rest, i);
-      row = Kokkos::fabs(loads.pressure_on(i, place)) / 6.0 * edges_about(i);
+      const Vector3<double> at_rest = load_points<double>(external.rest, i);
+      row = Kokkos::fabs(loads.pressure_on(i, at_rest)) / 6.0 * edge_lengths_at(i);
     }
     if (external.bending.first.extent(0) > 0) {
       double diagonal = 0.0;
@@ -150,7 +150,7 @@ struct LoadStiffnessFunctor {
   }
 
   /// Sum of the edge lengths of the triangles of vertex i, m, each edge once per triangle.
-  KOKKOS_FUNCTION double edges_about(const int i) const {
+  KOKKOS_FUNCTION double edge_lengths_at(const int i) const {
     const auto& surface = loads.external.surface;
     const Vector3<double> own = load_points<double>(loads.x, i);
     const auto length = [](const Vector3<double>& a) { return device::square_root(dot(a, a)); };
@@ -171,17 +171,17 @@ struct LoadStiffnessFunctor {
 /// and the drift follows. Stable if dt times the fastest decay is at most 1.
 template <class ExecutionSpace>
 struct DashpotDampingFunctor {
-  FabricViews<ExecutionSpace> cloth;
+  FabricViews<ExecutionSpace> fabric;
   SlicedEllViews<ExecutionSpace, 1> dashpots;
-  PointsView<ExecutionSpace> x, v, dragged, next;
+  PointsView<ExecutionSpace> x, v, damped_v, next;
   double dt;
 
   KOKKOS_FUNCTION void operator()(const int i) const {
-    const Vector3<double> drag = (dt * cloth.inverse_mass(i)) * dashpot_force(dashpots, x, v, i),
-                          free = free_axes<double>(cloth, i);
+    const Vector3<double> gained = (dt * fabric.inverse_mass(i)) * dashpot_force(dashpots, x, v, i),
+                          free = free_axes<double>(fabric, i);
     const Vector3<double> velocity =
-        load_points<double>(v, i) + Vector3<double>{free.x * drag.x, free.y * drag.y, free.z * drag.z};
-    store_points(dragged, i, velocity);
+        load_points<double>(v, i) + Vector3<double>{free.x * gained.x, free.y * gained.y, free.z * gained.z};
+    store_points(damped_v, i, velocity);
     store_points(next, i, load_points<double>(x, i) + dt * velocity);
   }
 };

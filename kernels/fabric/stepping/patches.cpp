@@ -13,7 +13,7 @@ std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 int whole_slices(int vertices) { return (vertices + slice - 1) / slice * slice; }
 
-/// What vertex i reads, without the neutral slots at the end.
+/// Entries of vertex i without the neutral slots at the end.
 template <int values>
 std::vector<EllEntry<values>> entries_of(const SlicedEll<values>& slots, int i) {
   std::vector<EllEntry<values>> entries;
@@ -38,7 +38,7 @@ void append(SlicedEll<values>& to, const SlicedEll<values>& more) {
     to.value[a].insert(to.value[a].end(), more.value[a].begin(), more.value[a].end());
 }
 
-/// The slots of a patch; `local` turns vertices of the mesh into the team's numbers.
+/// Slots of a patch; `local` maps vertices of the mesh to the numbers of the team.
 template <int values, class Local>
 SlicedEll<values> slots_of_patch(const SlicedEll<values>& slots, const std::vector<int>& vertices, int team,
                                  const Local& local) {
@@ -50,7 +50,7 @@ SlicedEll<values> slots_of_patch(const SlicedEll<values>& slots, const std::vect
   return sliced(of_rank);
 }
 
-/// Lists the rows of pairs of the last patch.
+/// Appends the rows of pairs of the last patch.
 void append_rows(Patches& patches) {
   const int slices = patches.team / slice;
   const auto begin = patches.triangles.first.size() - 1 - index(slices);
@@ -60,7 +60,7 @@ void append_rows(Patches& patches) {
       patches.row.push_back({s * slice, k * slice, std::min(2, end - k)});
   }
   const int rows = static_cast<int>(patches.row.size());
-  patches.most_rows = std::max(patches.most_rows, rows - patches.first_row.back());
+  patches.max_rows = std::max(patches.max_rows, rows - patches.first_row.back());
   patches.first_row.push_back(rows);
 }
 
@@ -77,12 +77,12 @@ Patches make_patches(const std::vector<Vector>& rest, const RingAdjacency& trian
   patches.first_halo.push_back(0);
   patches.first_row.push_back(0);
   std::vector<std::vector<int>> halo(own.size());
-  std::vector<int> place(rest.size(), -1);
+  std::vector<int> message(rest.size(), -1);
   std::size_t most_own = 0;
   for (std::size_t p = 0; p < own.size(); ++p) {
     most_own = std::max(most_own, own[p].size());
     const auto add = [&](int j) {
-      if (patch_of[index(j)] != static_cast<int>(p)) halo[p].push_back(j), place[index(j)] = 0;
+      if (patch_of[index(j)] != static_cast<int>(p)) halo[p].push_back(j), message[index(j)] = 0;
     };
     for (const int i : own[p]) {
       for (const auto& entry : entries_of(triangles, i)) add(entry.neighbour);
@@ -92,12 +92,12 @@ Patches make_patches(const std::vector<Vector>& rest, const RingAdjacency& trian
     const auto repeated = std::ranges::unique(halo[p]);
     halo[p].erase(repeated.begin(), repeated.end());
     patches.first_halo.push_back(patches.first_halo.back() + static_cast<int>(halo[p].size()));
-    patches.most_halo = std::max(patches.most_halo, static_cast<int>(halo[p].size()));
+    patches.max_halo = std::max(patches.max_halo, static_cast<int>(halo[p].size()));
   }
-  // Places of a patch lie side by side, so that its threads write and read whole lines.
+  // Messages of a patch are adjacent, so that its threads write and read whole cache lines.
   for (const auto& vertices : own)
     for (const int i : vertices)
-      if (place[index(i)] == 0) place[index(i)] = patches.places++;
+      if (message[index(i)] == 0) message[index(i)] = patches.messages++;
 
   patches.team = whole_slices(static_cast<int>(most_own));
   for (std::size_t p = 0; p < own.size(); ++p) {
@@ -105,13 +105,13 @@ Patches make_patches(const std::vector<Vector>& rest, const RingAdjacency& trian
     for (std::size_t rank = 0; rank < index(patches.team); ++rank) {
       const bool there = rank < own[p].size();
       patches.vertex.push_back(there ? own[p][rank] : -1);
-      patches.place.push_back(there ? place[index(own[p][rank])] : -1);
+      patches.message.push_back(there ? message[index(own[p][rank])] : -1);
       if (there) number[own[p][rank]] = static_cast<int>(rank);
     }
     for (const int j : halo[p]) {
       number[j] = patches.team + static_cast<int>(patches.halo_vertex.size()) - patches.first_halo[p];
       patches.halo_vertex.push_back(j);
-      patches.halo_place.push_back(place[index(j)]);
+      patches.halo_message.push_back(message[index(j)]);
     }
     const auto local = [&](int i) { return number.at(i); };
     append(patches.triangles, slots_of_patch(triangles, own[p], patches.team, local));
@@ -122,7 +122,7 @@ Patches make_patches(const std::vector<Vector>& rest, const RingAdjacency& trian
 }
 
 int team_threads(const Patches& patches, int rows, int most) {
-  return std::max(patches.team, std::min(whole_slices(std::max(patches.most_halo, rows * slice)), most));
+  return std::max(patches.team, std::min(whole_slices(std::max(patches.max_halo, rows * slice)), most));
 }
 
 }  // namespace drogue::fabric

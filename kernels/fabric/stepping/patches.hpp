@@ -7,47 +7,47 @@
 
 namespace drogue::fabric {
 
-/// Two triangles, or the last one, of each vertex of a slice that follow one another in the rings.
+/// Row of pairs: two consecutive triangles, or the last one, of each vertex of a slice.
 struct PairRow {
-  int vertex;     ///< first of the slice, of its team
-  int slot;       ///< first of the slice, of the first triangles
+  int vertex;     ///< first vertex of the slice in its team
+  int slot;       ///< first slot of the first triangles
   int triangles;  ///< 1 or 2
 };
 
-/// A mesh in patches, one for each team of a persistent kernel. Rank r of patch p stands at p * team + r. A
-/// team numbers what it holds: its ranks first, then its halo, the vertices of other patches that share a
-/// triangle or spring with its own. Who reads a vertex of another patch has one that is read there:
-/// neighbours wait for each other.
+/// Mesh partition with one patch per team of a persistent kernel. Rank r of patch p has the index
+/// p * team + r. A team numbers its ranks first, then its halo: the vertices of other patches that share a
+/// triangle or spring with its own. The relation is symmetric, so that neighbouring patches wait for each
+/// other.
 struct Patches {
-  int team = 0;             ///< ranks, whole slices
-  std::vector<int> vertex;  ///< (patches * team): of the mesh; -1 for ranks without
-  std::vector<int> place;   ///< (patches * team): of the board, where others read the vertex; -1 if none does
-  std::vector<int> first_halo;               ///< of every patch, and the end
-  std::vector<int> halo_vertex, halo_place;  ///< of the mesh, of the board
-  int places = 0;                            ///< of the board
-  int most_halo = 0;
-  RingAdjacency triangles;  ///< of (patches * team) vertices, neighbours by their teams' numbers
+  int team = 0;              ///< ranks per patch, whole slices
+  std::vector<int> vertex;   ///< (patches * team): vertex of the mesh; -1 for unused ranks
+  std::vector<int> message;  ///< (patches * team): halo message of the vertex; -1 if no other patch reads it
+  std::vector<int> first_halo;                 ///< first halo vertex of every patch, and the end
+  std::vector<int> halo_vertex, halo_message;  ///< vertices of the mesh and their halo messages
+  int messages = 0;                            ///< number of halo messages
+  int max_halo = 0;
+  RingAdjacency triangles;  ///< (patches * team) vertices with the neighbour numbers of their teams
   SpringAdjacency springs;
-  std::vector<PairRow> row;    ///< of all triangles, in the order of patches and slices
-  std::vector<int> first_row;  ///< of every patch, and the end
-  int most_rows = 0;
+  std::vector<PairRow> row;    ///< of all triangles in the order of patches and slices
+  std::vector<int> first_row;  ///< first row of every patch, and the end
+  int max_rows = 0;
 
   [[nodiscard]] int count() const { return static_cast<int>(first_halo.size()) - 1; }
 };
 
-/// Cuts a mesh by halves across its longest extent, again and again, into `count` patches (at most
-/// as many as there are vertices) that differ by one vertex at most. `triangles` and `springs` are the slots
-/// that forces read; a patch reads the same in the same order. Teams are as large as the largest patch.
+/// Partition by recursive bisection across the longest extent into `count` patches, at most one per vertex,
+/// whose sizes differ by one vertex at most. A patch has the slots of `triangles` and `springs` in the same
+/// order. Teams are as large as the largest patch. Throws only std::bad_alloc.
 [[nodiscard]] Patches make_patches(const std::vector<Vector>& rest, const RingAdjacency& triangles,
                                    const SpringAdjacency& springs, int count);
 
-/// Threads of a team: one a rank, at least, and up to `most` if it has as many vertices in its halo, or
-/// `rows`.
+/// Threads of a team: at least one per rank, and up to `most` for its halo vertices and `rows` of pairs. Does
+/// not throw.
 [[nodiscard]] int team_threads(const Patches& patches, int rows, int most);
 
-/// Slots of the patch that has the most.
+/// Largest number of slots of a patch. Does not throw.
 template <int values>
-[[nodiscard]] std::size_t most_slots(const Patches& patches, const SlicedEll<values>& slots) {
+[[nodiscard]] std::size_t max_slots(const Patches& patches, const SlicedEll<values>& slots) {
   const int slices = patches.team / slice;
   int most = 0;
   for (int p = 0; p < patches.count(); ++p)

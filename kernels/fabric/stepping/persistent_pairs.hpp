@@ -4,8 +4,8 @@
 
 namespace drogue::fabric {
 
-/// Vertices of a patch, at most, and threads of its team, with 128 registers each.
-inline constexpr int most_pair_vertices = 384, most_pair_threads = 512;
+/// Maximum number of vertices of a patch, and of threads of its team, with 128 registers each.
+inline constexpr int max_pair_vertices = 384, max_pair_threads = 512;
 
 /// `PersistentSteps` of patches of few vertices, which would leave a multiprocessor idle if a thread
 /// traversed the ring of its vertex. A warp computes the forces of a row of pairs of triangles and stores
@@ -17,13 +17,13 @@ struct PersistentPairsFunctor {
 
   [[nodiscard]] static std::size_t scratch_bytes(const PatchViews<ExecutionSpace>& patches) {
     return PersistentSteps<ExecutionSpace>::tables_bytes(patches, 3) +
-           2 * 3 * patches.most_triangle_slots * sizeof(double) +
-           TeamSlicedEll<2>::bytes(patches.team, patches.most_spring_slots) + 3 * alignof(double);
+           2 * 3 * patches.max_triangle_slots * sizeof(double) +
+           TeamSlicedEll<2>::bytes(patches.team, patches.max_spring_slots) + 3 * alignof(double);
   }
 
   /// Pair of triangles of a lane.
   struct Pair {
-    int vertex, pulls, triangles;  ///< `pulls` is the place of the first one in its table
+    int vertex, pulls, triangles;  ///< `pulls`: row of the first force in the table of forces
     int neighbour[3];
     RestTriangle<double> rest[2];
   };
@@ -46,10 +46,10 @@ struct PersistentPairsFunctor {
       const Vector3<double> own = load_points<double>(points, pair.vertex);
       const auto to = [&](int k) { return edge_to<double>(points, own, pair.neighbour[k]); };
       const EdgeVector<double> middle = to(1);
-      store_points(pulls, pair.pulls, triangle_pull<law>(of.cloth.moduli, to(0), middle, pair.rest[0]));
+      store_points(pulls, pair.pulls, triangle_pull<law>(of.fabric.moduli, to(0), middle, pair.rest[0]));
       if (pair.triangles == 2)
         store_points(pulls, pair.pulls + slice,
-                     triangle_pull<law>(of.cloth.moduli, middle, to(2), pair.rest[1]));
+                     triangle_pull<law>(of.fabric.moduli, middle, to(2), pair.rest[1]));
     }
   }
 
@@ -72,9 +72,9 @@ struct PersistentPairsFunctor {
     const auto halo = of.halo(member);
     const auto points = of.tables(member, halo, 3);
     const int rank = member.team_rank(), lane = rank % slice, team = of.patches.team, slices = team / slice,
-              slots = static_cast<int>(of.patches.most_triangle_slots);
+              slots = static_cast<int>(of.patches.max_triangle_slots);
     auto* const memory = static_cast<double*>(member.team_scratch(0).get_shmem_aligned(
-        2 * 3 * of.patches.most_triangle_slots * sizeof(double), alignof(double)));
+        2 * 3 * of.patches.max_triangle_slots * sizeof(double), alignof(double)));
     const struct { TeamSlicedEll<2> springs; } local{TeamSlicedEll<2>(member, slices, of.patches.springs)};
     OwnVertex own = of.begin(member, halo, points);
 
@@ -92,7 +92,7 @@ struct PersistentPairsFunctor {
     member.team_barrier();
     of.run(member, halo, points, own, of.patches.triangles,
            [&](const TeamTable& now, std::int64_t done, const auto& arrive) {
-             // Two tables: some threads still add those of the stage before.
+             // Two tables: some threads still sum the forces of the previous stage.
              const TeamTable pulls{memory + done % 2 * 3 * slots, slots};
              if (row < end) pull(mine, now, pulls);
              for (int more = row + stride; more < end; more += stride)

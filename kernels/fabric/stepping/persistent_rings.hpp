@@ -4,11 +4,11 @@
 
 namespace drogue::fabric {
 
-/// Threads of the largest team, with 80 registers each.
-inline constexpr int most_ring_threads = 768;
+/// Maximum number of threads of a team, with 80 registers each.
+inline constexpr int max_ring_threads = 768;
 
-/// Slots of a patch in the interface of FabricViews that `elastic_force` uses.
-struct TeamCloth {
+/// Tables of a patch with the interface of FabricViews that `elastic_force` uses.
+struct TeamFabric {
   TeamSlicedEll<3> triangles;
   TeamSlicedEll<2> springs;
   Moduli moduli;
@@ -31,8 +31,8 @@ struct PersistentRingsFunctor {
 
   [[nodiscard]] static std::size_t scratch_bytes(const PatchViews<ExecutionSpace>& patches) {
     return PersistentSteps<ExecutionSpace>::tables_bytes(patches, 2) +
-           TeamSlicedEll<3>::bytes(patches.team, patches.most_triangle_slots) +
-           TeamSlicedEll<2>::bytes(patches.team, patches.most_spring_slots) + 4 * alignof(double);
+           TeamSlicedEll<3>::bytes(patches.team, patches.max_triangle_slots) +
+           TeamSlicedEll<2>::bytes(patches.team, patches.max_spring_slots) + 4 * alignof(double);
   }
 
   template <class Member>
@@ -40,8 +40,8 @@ struct PersistentRingsFunctor {
     const auto halo = of.halo(member);
     const auto points = of.tables(member, halo, 2);
     const int slices = of.patches.team / slice;
-    const TeamCloth local{TeamSlicedEll<3>(member, slices, of.patches.triangles),
-                          TeamSlicedEll<2>(member, slices, of.patches.springs), of.cloth.moduli};
+    const TeamFabric local{TeamSlicedEll<3>(member, slices, of.patches.triangles),
+                           TeamSlicedEll<2>(member, slices, of.patches.springs), of.fabric.moduli};
     OwnVertex own = of.begin(member, halo, points);
     member.team_barrier();
     of.run(member, halo, points, own, local.triangles,

@@ -2,64 +2,56 @@
 
 #include "kernels/device/persistent_kernel.hpp"
 #include "kernels/fabric/loads/external.hpp"
+#include "kernels/fabric/state.hpp"
 #include "kernels/fabric/stepping/patches.hpp"
 #include "kernels/fabric/stepping/step.hpp"
-#include "kernels/fabric/stepping/team_slots.hpp"
+#include "kernels/fabric/stepping/team_sliced_ell.hpp"
 
 namespace drogue::fabric {
 
 /// `Patches` in the memory of an execution space.
 template <class ExecutionSpace>
 struct PatchViews {
-  ListView<ExecutionSpace, int> vertex, place, first_halo, halo_vertex, halo_place;
+  ListView<ExecutionSpace, int> vertex, message, first_halo, halo_vertex, halo_message;
   SlicedEllViews<ExecutionSpace, 3> triangles;
   SlicedEllViews<ExecutionSpace, 2> springs;
   ListView<ExecutionSpace, PairRow> row;
   ListView<ExecutionSpace, int> first_row;
-  int team, most_halo;
-  std::size_t most_triangle_slots, most_spring_slots;
+  int team, max_halo;
+  std::size_t max_triangle_slots, max_spring_slots;
 };
 
 template <class ExecutionSpace>
 [[nodiscard]] PatchViews<ExecutionSpace> patch_views(const ExecutionSpace& space, const Patches& from) {
   return {list_view(space, "drogue::fabric::patch_vertices", from.vertex),
-          list_view(space, "drogue::fabric::patch_places", from.place),
+          list_view(space, "drogue::fabric::patch_messages", from.message),
           list_view(space, "drogue::fabric::first_halo", from.first_halo),
           list_view(space, "drogue::fabric::halo_vertices", from.halo_vertex),
-          list_view(space, "drogue::fabric::halo_places", from.halo_place),
+          list_view(space, "drogue::fabric::halo_messages", from.halo_message),
           sliced_ell_views(space, from.triangles),
           sliced_ell_views(space, from.springs),
           list_view(space, "drogue::fabric::pair_rows", from.row),
           list_view(space, "drogue::fabric::first_row", from.first_row),
           from.team,
-          from.most_halo,
-          most_slots(from, from.triangles),
-          most_slots(from, from.springs)};
+          from.max_halo,
+          max_slots(from, from.triangles),
+          max_slots(from, from.springs)};
 }
-
-/// Launcher and mesh partition of the persistent driver.
-template <class ExecutionSpace>
-struct PersistentDriver {
-  device::PersistentKernel<ExecutionSpace> grid;
-  PatchViews<ExecutionSpace> patches;
-  bool pairs;               ///< runs PersistentPairsFunctor, else PersistentRingsFunctor
-  std::uint64_t epoch = 0;  ///< of the last stage launched
-};
 
 /// State of a thread's vertex, in registers.
 struct OwnVertex {
-  int vertex, place;
+  int vertex, message;
   Vector3<double> x, v, load;
-  Vector3<double> v2, v3, v_now;  ///< velocities of the stages after the first; of this one
+  Vector3<double> v2, v3, v_now;  ///< velocities of stages 2 and 3, and of the present stage
   double inverse_mass;
-  Vector3<double> free;  ///< axes: 1, or 0 of those that are pinned
+  Vector3<double> free;  ///< 1 for free axes, 0 for pinned ones
 };
 
 /// Loads that `PersistentSteps` evaluates in every stage; empty without.
 template <class ExecutionSpace, bool loads>
 struct PersistentLoads {
-  External<ExecutionSpace> external;  ///< its timed loads and pressures
-  TimeState clock;                    ///< `step` is not used
+  External<ExecutionSpace> external;  ///< only timed loads and pressures are evaluated
+  TimeState origin;                   ///< `step` is ignored
 };
 template <class ExecutionSpace>
 struct PersistentLoads<ExecutionSpace, false> {};
@@ -82,18 +74,20 @@ template <class ExecutionSpace, class VertexForce = NoVertexForce, bool loads = 
 struct PersistentSteps {
   using Points = PointsView<ExecutionSpace>;
   PatchViews<ExecutionSpace> patches;
-  FabricViews<ExecutionSpace> cloth;
+  FabricViews<ExecutionSpace> fabric;
   Points x, v;
   StepMonitor<ExecutionSpace> monitor;
   double dt;
-  std::int64_t begun;   ///< steps taken before; negative: their number is `monitor.steps(1)`
-  std::int64_t steps;   ///< to take, at least 1
-  std::uint64_t epoch;  ///< of the last stage of the launch before
+  std::int64_t previous_steps;  ///< completed before this launch; negative: read `monitor.steps(1)`
+  std::int64_t steps;           ///< of this launch, at least 1
+  std::uint64_t epoch;          ///< last stage of the previous launch
   VertexForceTerm<VertexForce> vertex_force;
   PersistentLoads<ExecutionSpace, loads> load;
 
-  /// Steps taken before this launch. A captured launch reads them on the device.
-  KOKKOS_FUNCTION std::int64_t steps_before() const { return begun >= 0 ? begun : monitor.steps(1); }
+  /// Steps completed before this launch. A captured launch reads them on the device.
+  KOKKOS_FUNCTION std::int64_t steps_before() const {
+    return previous_steps >= 0 ? previous_steps : monitor.steps(1);
+  }
 
   /// Tables of a team's positions in `count` stages.
   struct Tables {
@@ -102,20 +96,20 @@ struct PersistentSteps {
     KOKKOS_FUNCTION TeamTable operator()(int turn) const { return {memory + turn * 3 * rows, rows}; }
   };
   [[nodiscard]] static std::size_t tables_bytes(const PatchViews<ExecutionSpace>& patches, int count) {
-    return 3 * static_cast<std::size_t>(count * (patches.team + patches.most_halo)) * sizeof(double);
+    return 3 * static_cast<std::size_t>(count * (patches.team + patches.max_halo)) * sizeof(double);
   }
 
-  /// Halo of a team and the share of a thread: its first halo vertex and the place of that vertex' message.
+  /// Halo of a team and the share of a thread: its first halo vertex and the message of that vertex.
   struct Halo {
-    int first, count, rank, place;
+    int first, count, rank, message;
   };
 
   template <class Member>
   KOKKOS_FUNCTION Halo halo(const Member& member) const {
     const int first = patches.first_halo(member.league_rank()),
               count = patches.first_halo(member.league_rank() + 1) - first,
-              rank = member.team_size() - 1 - member.team_rank();  // the last threads have the least to do
-    return {first, count, rank, rank < count ? patches.halo_place(first + rank) : -1};
+              rank = member.team_size() - 1 - member.team_rank();  // the last threads have the least work
+    return {first, count, rank, rank < count ? patches.halo_message(first + rank) : -1};
   }
 
   template <class Member>
@@ -133,17 +127,17 @@ struct PersistentSteps {
     OwnVertex own{-1, -1, zero, zero, zero, zero, zero, zero, 0.0, zero};
     const auto store = [&](int number, const Vector3<double>& at, const Vector3<double>& velocity) {
       store_points(points(0), number, at);
-      const double part = share_after(0) * dt;
+      const double part = fraction_after_stage(0) * dt;
       store_points(points(1), number, at + part * velocity);
     };
     if (const int rank = member.team_rank(); rank < patches.team) {
       const int at = member.league_rank() * patches.team + rank;
-      own.vertex = patches.vertex(at), own.place = patches.place(at);
+      own.vertex = patches.vertex(at), own.message = patches.message(at);
       if (own.vertex >= 0) {
         own.x = load_points<double>(x, own.vertex), own.v_now = own.v = load_points<double>(v, own.vertex);
-        if (cloth.load.extent(0) > 0) own.load = load_points<double>(cloth.load, own.vertex);
-        own.free = free_axes<double>(cloth, own.vertex);
-        own.inverse_mass = cloth.inverse_mass(own.vertex);
+        if (fabric.load.extent(0) > 0) own.load = load_points<double>(fabric.load, own.vertex);
+        own.free = free_axes<double>(fabric, own.vertex);
+        own.inverse_mass = fabric.inverse_mass(own.vertex);
       } else {
         store_points(points(points.count - 1), rank, zero);  // neutral slots of its lane read it
       }
@@ -162,13 +156,13 @@ struct PersistentSteps {
                                            const TeamTable& now, int rank) const {
     Vector3<double> sum = own.load;
     if constexpr (loads) {
-      const Vector3<double> place = load_points<double>(load.external.rest, own.vertex);
-      const double t =
-          stage_time(load.clock, steps_before() + done / 4, share_before(static_cast<int>(done % 4)));
-      sum = load.external.with_timed_loads(sum, own.vertex, place, t);
+      const Vector3<double> rest = load_points<double>(load.external.rest, own.vertex);
+      const double t = stepping::stage_time(load.origin, steps_before() + done / 4,
+                                            fraction_before_stage(static_cast<int>(done % 4)));
+      sum = load.external.with_timed_loads(sum, own.vertex, rest, t);
       if (load.external.has_pressure())
         sum = sum +
-              (load.external.pressure_at(own.vertex, place, t) / 6.0) * twice_area_vector(rings, now, rank);
+              (load.external.pressure_at(own.vertex, rest, t) / 6.0) * twice_area_vector(rings, now, rank);
     }
     return sum;
   }
@@ -183,30 +177,30 @@ struct PersistentSteps {
     Vector3<double> force = elastic + loaded;
     if constexpr (has_vertex_force<VertexForce>)
       force = vertex_force.add_to(force, at, own.v_now, &own.inverse_mass, own.vertex,
-                                  steps_before() + done / 4, share_before(stage));
-    const Vector3<double> a = acceleration(cloth, force, own.inverse_mass, own.v_now, own.free);
+                                  steps_before() + done / 4, fraction_before_stage(stage));
+    const Vector3<double> a = acceleration(fabric, force, own.inverse_mass, own.v_now, own.free);
     Vector3<double> position;
     if (stage == 3) {
       own.v = own.v_now = end_velocity(dt, own.v, own.v2, own.v3, own.v_now, a);
-      position = own.x + (share_after(0) * dt) * own.v;
+      position = own.x + (fraction_after_stage(0) * dt) * own.v;
     } else {
-      const Vector3<double> velocity = own.v + (share_after(stage) * dt) * a;
+      const Vector3<double> velocity = own.v + (fraction_after_stage(stage) * dt) * a;
       if (stage == 2)
         position = own.x = end_position(dt, own.x, own.v, own.v2, own.v3, velocity);
       else
-        position = own.x + (share_after(stage + 1) * dt) * velocity;
+        position = own.x + (fraction_after_stage(stage + 1) * dt) * velocity;
       if (stage == 0) own.v2 = velocity;
       if (stage == 1) own.v3 = velocity;
       own.v_now = velocity;
     }
     // A message without readers would replace one that a neighbour may still have to read.
-    if (own.place >= 0 && done + 2 < 4 * steps)
-      member.put(epoch_after(done), static_cast<std::size_t>(own.place),
+    if (own.message >= 0 && done + 2 < 4 * steps)
+      member.put(epoch_after(done), static_cast<std::size_t>(own.message),
                  {{position.x, position.y, position.z}});
     store_points(points, member.team_rank(), position);
     // After the message, which other teams wait for.
     if (stage == 3) {
-      monitor.look(steps_before() + done / 4 + 1, own.vertex, own.x, own.v);
+      record_divergence(monitor, steps_before() + done / 4 + 1, own.vertex, own.x, own.v);
       if constexpr (has_vertex_force<VertexForce>)
         vertex_force.end_step(own.x, own.v, &own.inverse_mass, own.vertex, steps_before() + done / 4 + 1);
     }
@@ -217,10 +211,10 @@ struct PersistentSteps {
   template <class Member>
   KOKKOS_FUNCTION void get_halo(const Member& member, const Halo& halo, std::int64_t done,
                                 const TeamTable& points) const {
-    int place = halo.place;
+    int message = halo.message;
     for (int k = halo.rank; k < halo.count; k += member.team_size()) {
-      if (k > halo.rank) place = patches.halo_place(halo.first + k);
-      const device::HaloValue other = member.get(epoch_after(done), static_cast<std::size_t>(place));
+      if (k > halo.rank) message = patches.halo_message(halo.first + k);
+      const device::HaloValue other = member.get(epoch_after(done), static_cast<std::size_t>(message));
       store_points(points, patches.team + k, Vector3<double>{other.value[0], other.value[1], other.value[2]});
     }
   }

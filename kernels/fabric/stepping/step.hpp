@@ -1,18 +1,20 @@
 #pragma once
 
-#include "kernels/fabric/stepping/step_monitor.hpp"
+#include "kernels/fabric/stepping/divergence.hpp"
 #include "kernels/fabric/vertex_force.hpp"
 
 namespace drogue::fabric {
 
 /// Fraction of dt from the beginning of a step to the stage after this one.
-KOKKOS_INLINE_FUNCTION double share_after(int stage) { return stage == 2 ? 1.0 : 0.5; }
+KOKKOS_INLINE_FUNCTION double fraction_after_stage(int stage) { return stage == 2 ? 1.0 : 0.5; }
 
 /// Fraction of dt from the beginning of a step to this stage.
-KOKKOS_INLINE_FUNCTION double share_before(int stage) { return stage == 0 ? 0.0 : stage == 3 ? 1.0 : 0.5; }
+KOKKOS_INLINE_FUNCTION double fraction_before_stage(int stage) {
+  return stage == 0 ? 0.0 : stage == 3 ? 1.0 : 0.5;
+}
 
-/// Position at the end of a step, m, of the classical Runge-Kutta method (Kutta 1901) on x' = v, v' = a(x,
-/// v). It is computed from the velocities of the stages, which are in memory: running sums of accelerations
+/// Position at the end of a step, m, of the classical Runge-Kutta method (Kutta 1901) for x' = v, v' = a(x,
+/// v). Computed from the velocities of the stages, which are in memory anyway; running sums of accelerations
 /// would be read and written in every stage.
 template <class R>
 KOKKOS_INLINE_FUNCTION Vector3<R> end_position(double dt, const Vector3<R>& x, const Vector3<R>& v,
@@ -40,7 +42,7 @@ KOKKOS_INLINE_FUNCTION void store_end(const StepMonitor<ExecutionSpace>& monitor
   store_points(x, i, end_x);
   store_points(v, i, end_v);
   const std::int64_t step = monitor.steps(1) + 1;
-  monitor.look(step, i, end_x, end_v);
+  record_divergence(monitor, step, i, end_x, end_v);
   if (i == 0) monitor.steps(0) = step;
 }
 
@@ -52,9 +54,9 @@ struct RungeKuttaFunctor {
   using Bounds = Kokkos::LaunchBounds<128, 7>;
   static constexpr int lanes = device::Access<R>::lanes;
 
-  FabricViews<ExecutionSpace> cloth;
-  Points x, v;         ///< of step n; the last stage replaces them
-  Points at, next;     ///< positions of this stage and of the next one
+  FabricViews<ExecutionSpace> fabric;
+  Points x, v;         ///< of step n; overwritten by the last stage
+  Points at, next;     ///< positions of this and the next stage
   Points velocity[3];  ///< of the stages after the first
   StepMonitor<ExecutionSpace> monitor;
   double dt;
@@ -63,32 +65,32 @@ struct RungeKuttaFunctor {
 
   KOKKOS_FUNCTION void operator()(const int pack) const {
     const int i = pack * lanes;
-    // Registers limit the number of threads. Values that the sum over neighbours does not need are read
-    // after it.
-    Vector3<R> pull = force<law, R>(cloth, at, i);
+    // Registers limit the number of threads: values that the sum over neighbours does not need are read
+    // later.
+    Vector3<R> pull = force<law, R>(fabric, at, i);
     const Vector3<R> v_n = load_points<R>(v, i);
     const Vector3<R> v_now = stage == 0 ? v_n : load_points<R>(velocity[stage - 1], i);
     if constexpr (has_vertex_force<VertexForce>) pull = with_vertex_force(pull, v_now, i);
-    const Vector3<R> a = acceleration(cloth, pull, v_now, i), x_n = load_points<R>(x, i);
+    const Vector3<R> a = acceleration(fabric, pull, v_now, i), x_n = load_points<R>(x, i);
     if (stage == 3) {
       const Vector3<R> v2 = load_points<R>(velocity[0], i), v3 = load_points<R>(velocity[1], i);
       const Vector3<R> end_x = end_position(dt, x_n, v_n, v2, v3, v_now),
                        end_v = end_velocity(dt, v_n, v2, v3, v_now, a);
       store_end(monitor, x, v, i, end_x, end_v);
       if constexpr (has_vertex_force<VertexForce>)
-        vertex_force.end_step(end_x, end_v, &cloth.inverse_mass(i), i, monitor.steps(1) + 1);
+        vertex_force.end_step(end_x, end_v, &fabric.inverse_mass(i), i, monitor.steps(1) + 1);
       return;
     }
     if (stage == 1 && pack == 0) monitor.steps(1) = monitor.steps(0);
-    const double part = share_after(stage) * dt;
+    const double part = fraction_after_stage(stage) * dt;
     store_points(next, i, x_n + part * v_now);
     store_points(velocity[stage], i, v_n + part * a);
   }
 
   KOKKOS_FUNCTION Vector3<R> with_vertex_force(const Vector3<R>& pull, const Vector3<R>& now, int i) const {
     // The last stage writes one entry of the counter, the second stage the other.
-    return vertex_force.add_to(pull, load_points<R>(at, i), now, &cloth.inverse_mass(i), i,
-                               monitor.steps(stage == 3 ? 1 : 0), share_before(stage));
+    return vertex_force.add_to(pull, load_points<R>(at, i), now, &fabric.inverse_mass(i), i,
+                               monitor.steps(stage == 3 ? 1 : 0), fraction_before_stage(stage));
   }
 };
 
@@ -100,10 +102,10 @@ template <class ExecutionSpace, ConstitutiveModel law, bool last, class VertexFo
 struct RungeKuttaHalfFunctor {
   using Points = PointsView<ExecutionSpace>;
   using Vector = Vector3<double>;
-  using Bounds = Kokkos::LaunchBounds<128, 4>;  // two states need their registers
+  using Bounds = Kokkos::LaunchBounds<128, 4>;  // for the registers of two states
 
-  FabricViews<ExecutionSpace> cloth;
-  Points x, v;           ///< of step n; the last half replaces them
+  FabricViews<ExecutionSpace> fabric;
+  Points x, v;           ///< of step n; overwritten by the last half
   Points third, fourth;  ///< positions of these stages
   Points velocity[2];    ///< of the second and the third
   StepMonitor<ExecutionSpace> monitor;
@@ -121,34 +123,34 @@ struct RungeKuttaHalfFunctor {
   template <class Positions>
   KOKKOS_FUNCTION Vector acceleration_in(int stage, const Vector& elastic, const Positions& at,
                                          const Vector& now, int i) const {
-    Vector pull = with_load(cloth, elastic, i);
+    Vector pull = with_load(fabric, elastic, i);
     if constexpr (has_vertex_force<VertexForce>)
-      pull = vertex_force.add_to(pull, load_points<double>(at, i), now, &cloth.inverse_mass(i), i,
-                                 monitor.steps(last ? 1 : 0), share_before(stage));
-    return acceleration(cloth, pull, now, i);
+      pull = vertex_force.add_to(pull, load_points<double>(at, i), now, &fabric.inverse_mass(i), i,
+                                 monitor.steps(last ? 1 : 0), fraction_before_stage(stage));
+    return acceleration(fabric, pull, now, i);
   }
 
-  /// Velocity of the stage after `stage`; v_n begins the step.
+  /// Velocity of the stage after `stage`, m/s; v_n is the velocity at the beginning of the step.
   template <class Positions>
   KOKKOS_FUNCTION Vector next_velocity(int stage, const Vector& v_n, const Vector& elastic,
                                        const Positions& at, const Vector& now, int i) const {
-    return v_n + (share_after(stage) * dt) * acceleration_in(stage, elastic, at, now, i);
+    return v_n + (fraction_after_stage(stage) * dt) * acceleration_in(stage, elastic, at, now, i);
   }
 
   KOKKOS_FUNCTION void begin(int i) const {
-    const ExtrapolatedPoints<Points> second{x, v, share_after(0) * dt};
-    const StatePair<Vector> pull = elastic_forces<law, double>(cloth, x, second, i);
+    const ExtrapolatedPoints<Points> second{x, v, fraction_after_stage(0) * dt};
+    const StatePair<Vector> pull = elastic_forces<law, double>(fabric, x, second, i);
     const Vector v_n = load_points<double>(v, i), v2 = next_velocity(0, v_n, pull.first, x, v_n, i),
                  v3 = next_velocity(1, v_n, pull.second, second, v2, i), x_n = load_points<double>(x, i);
-    store_points(third, i, x_n + (share_after(1) * dt) * v2);
-    store_points(fourth, i, x_n + (share_after(2) * dt) * v3);
+    store_points(third, i, x_n + (fraction_after_stage(1) * dt) * v2);
+    store_points(fourth, i, x_n + (fraction_after_stage(2) * dt) * v3);
     store_points(velocity[0], i, v2);
     store_points(velocity[1], i, v3);
     if (i == 0) monitor.steps(1) = monitor.steps(0);
   }
 
   KOKKOS_FUNCTION void end(int i) const {
-    const StatePair<Vector> pull = elastic_forces<law, double>(cloth, third, fourth, i);
+    const StatePair<Vector> pull = elastic_forces<law, double>(fabric, third, fourth, i);
     const Vector v_n = load_points<double>(v, i), v2 = load_points<double>(velocity[0], i),
                  v3 = load_points<double>(velocity[1], i),
                  v4 = next_velocity(2, v_n, pull.first, third, v3, i),
@@ -157,13 +159,13 @@ struct RungeKuttaHalfFunctor {
                  end_v = end_velocity(dt, v_n, v2, v3, v4, a4);
     store_end(monitor, x, v, i, end_x, end_v);
     if constexpr (has_vertex_force<VertexForce>)
-      vertex_force.end_step(end_x, end_v, &cloth.inverse_mass(i), i, monitor.steps(1) + 1);
+      vertex_force.end_step(end_x, end_v, &fabric.inverse_mass(i), i, monitor.steps(1) + 1);
   }
 };
 
 /// Velocity Verlet (Swope et al. 1982) with one elastic force per step: half a kick that ends the step
-/// before, half a kick that begins the next, and its drift. Damping is taken at the middle of half a kick.
-/// The sequence of operations does not depend on how steps are distributed over launches.
+/// before, half a kick that begins the next, and its drift. Damping is evaluated at the middle of half a
+/// kick. The sequence of operations does not depend on how steps are distributed over launches.
 template <class ExecutionSpace, ConstitutiveModel law, class VertexForce = NoVertexForce>
 struct VerletFunctor {
   using R = std::conditional_t<device::is_host<ExecutionSpace>, device::HostPack<double>, double>;
@@ -171,13 +173,13 @@ struct VerletFunctor {
   using Bounds = Kokkos::LaunchBounds<128, 6>;
   static constexpr int lanes = device::Access<R>::lanes;
 
-  FabricViews<ExecutionSpace> cloth;  ///< its damping is zero
-  Points x, v, next;                  ///< `next` receives the positions
+  FabricViews<ExecutionSpace> fabric;  ///< its damping is zero
+  Points x, v, next;                   ///< `next` receives the positions
   StepMonitor<ExecutionSpace> monitor;
   double damping, dt;
-  int parity;         ///< entry of `monitor.steps` that counts the steps taken
-  bool ends, begins;  ///< a step
-  bool drifts;        ///< false if another kernel drifts
+  int parity;         ///< entry of `monitor.steps` that counts the completed steps
+  bool ends, begins;  ///< performs the half kick that ends, or begins, a step
+  bool drifts;        ///< false if another kernel performs the drift
   VertexForceTerm<VertexForce> vertex_force;
 
   KOKKOS_FUNCTION void operator()(const int pack) const {
@@ -187,13 +189,13 @@ struct VerletFunctor {
       with_vertex_force(pack, velocity);
       return;
     }
-    const Vector3<R> a = acceleration(cloth, force<law, R>(cloth, x, i), velocity, i),
-                     free = free_axes<R>(cloth, i);
+    const Vector3<R> a = acceleration(fabric, force<law, R>(fabric, x, i), velocity, i),
+                     free = free_axes<R>(fabric, i);
     const Vector3<R> position = load_points<R>(x, i);
     const std::int64_t step = monitor.steps(parity);
     if (ends) {
       velocity = kicked(velocity, a, free);
-      monitor.look(step, i, position, velocity);
+      record_divergence(monitor, step, i, position, velocity);
     }
     if (begins) {
       velocity = kicked(velocity, a, free);
@@ -203,21 +205,21 @@ struct VerletFunctor {
     store_points(v, i, velocity);
   }
 
-  /// As above. The force of the vertex is evaluated for each half kick, between which its state may change.
+  /// Both half kicks with a VertexForce, which is evaluated for each since `end_step` may change its state.
   KOKKOS_FUNCTION void with_vertex_force(int pack, Vector3<R> velocity) const {
     if constexpr (has_vertex_force<VertexForce>) {
       const int i = pack * lanes;
-      const Vector3<R> pull = force<law, R>(cloth, x, i), free = free_axes<R>(cloth, i),
+      const Vector3<R> pull = force<law, R>(fabric, x, i), free = free_axes<R>(fabric, i),
                        position = load_points<R>(x, i);
       const std::int64_t step = monitor.steps(parity);
-      const double* const inverse_mass = &cloth.inverse_mass(i);
+      const double* const inverse_mass = &fabric.inverse_mass(i);
       const auto kick = [&] {
         const Vector3<R> sum = vertex_force.add_to(pull, position, velocity, inverse_mass, i, step, 0.0);
-        velocity = kicked(velocity, acceleration(cloth, sum, velocity, i), free);
+        velocity = kicked(velocity, acceleration(fabric, sum, velocity, i), free);
       };
       if (ends) {
         kick();
-        monitor.look(step, i, position, velocity);
+        record_divergence(monitor, step, i, position, velocity);
         vertex_force.end_step(position, velocity, inverse_mass, i, step);
       }
       if (begins) {
@@ -229,13 +231,13 @@ struct VerletFunctor {
     }
   }
 
-  /// Velocity half a kick later; a pinned axis keeps its velocity.
+  /// Velocity after half a kick; unchanged along pinned axes.
   KOKKOS_FUNCTION Vector3<R> kicked(const Vector3<R>& now, const Vector3<R>& a,
                                     const Vector3<R>& free) const {
     const double kick = 0.5 * dt, half = 0.5 * damping * kick;
-    const double keep = (1.0 - half) / (1.0 + half), gain = kick / (1.0 + half);
+    const double retained = (1.0 - half) / (1.0 + half), gained = kick / (1.0 + half);
     const auto along = [&](R velocity, R acceleration, R is_free) {
-      return device::select(is_free > R(0.0), keep * velocity, velocity) + gain * acceleration;
+      return device::select(is_free > R(0.0), retained * velocity, velocity) + gained * acceleration;
     };
     return {along(now.x, a.x, free.x), along(now.y, a.y, free.y), along(now.z, a.z, free.z)};
   }

@@ -50,11 +50,11 @@ TEST(FabricFailure, NamesTheFirstStepAndItsFirstVertex) {
     EXPECT_TRUE(solver->advance(6));
     EXPECT_FALSE(solver->failure());
     solver->advance(20);
-    const std::optional<Failure> failure = solver->failure();
+    const std::optional<StepFailure> failure = solver->failure();
     ASSERT_TRUE(failure);
-    EXPECT_EQ(failure->vertex, 71);
+    EXPECT_EQ(failure->index, 71);
     EXPECT_EQ(failure->step, 7);
-    EXPECT_NEAR(failure->time, 0.7, 1e-15);
+    EXPECT_NEAR(failure->time + failure->dt, 0.7, 1e-15);
     EXPECT_EQ(solver->time_state().step, 0) << "the state uploaded is the last that was put aside";
   }
 }
@@ -96,10 +96,10 @@ TEST(FabricFailure, GoesBackToAStateThatWasPutAside) {
     const auto solver = started(p);
     solver->advance(700);
     solver->advance(1700);
-    const std::optional<Failure> failure = solver->failure();
+    const std::optional<StepFailure> failure = solver->failure();
     ASSERT_TRUE(failure);
     const TimeState clock = solver->time_state();
-    EXPECT_EQ(failure->vertex, 91);
+    EXPECT_EQ(failure->index, 91);
     EXPECT_NEAR(static_cast<double>(failure->step), 1000.0, 1.0);
     EXPECT_EQ(clock.step, 768) << "a multiple of 256";
     const State kept = state_of(*solver, p.mass.size());
@@ -113,7 +113,7 @@ TEST(FabricFailure, GoesBackToAStateThatWasPutAside) {
     EXPECT_TRUE(stopped->advance(failure->step - 1 - clock.step));
     EXPECT_FALSE(stopped->failure());
     EXPECT_FALSE(stopped->advance(1) && !stopped->failure());
-    EXPECT_EQ(stopped->failure()->vertex, failure->vertex);
+    EXPECT_EQ(stopped->failure()->index, failure->index);
     EXPECT_EQ(stopped->failure()->step, failure->step);
     // A solver that has failed stays where it is.
     EXPECT_FALSE(solver->advance(10));

@@ -1,3 +1,4 @@
+// ctest-label: no-sanitizer
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -20,7 +21,7 @@ using testing::shaken;
 
 constexpr const auto& backend = testing::tested_backend;
 
-Parameters cloth(Model model, double line_density = 0.3) {
+Parameters fabric(Model model, double line_density = 0.3) {
   Parameters p;
   p.mesh = random_patch(8, 7, 3);
   p.material.model = model;
@@ -65,7 +66,7 @@ void expect_tight(const Parameters& p, const std::vector<Vector>& now, const cha
 
 TEST(FabricFrequency, IsBoundedFromAboveAndNotFarFrom) {
   for (const Model model : {Model::edge, Model::quadratic, Model::biquadratic, Model::linear_vector}) {
-    Parameters p = cloth(model);
+    Parameters p = fabric(model);
     expect_tight(p, p.mesh.rest, "at rest");
     expect_tight(p, shaken(p.mesh.rest, 0.2, 5), "shaken");
     expect_tight(p, stretched(p.mesh.rest, 1.3, 1.2), "stretched");
@@ -83,7 +84,7 @@ TEST(FabricFrequency, IsBoundedFromAboveAndNotFarFrom) {
 }
 
 TEST(FabricFrequency, ALightStringCounts) {
-  Parameters p = cloth(Model::biquadratic);
+  Parameters p = fabric(Model::biquadratic);
   const double before = bound_of(p, p.mesh.rest);
   p.mass.back() = 1e-4;
   expect_tight(p, p.mesh.rest, "light end");
@@ -106,7 +107,7 @@ TEST(FabricFrequency, OfAChainIsExactUpToItsEnds) {
 }
 
 TEST(FabricFrequency, WhollyPinnedClothHasNone) {
-  Parameters p = cloth(Model::biquadratic);
+  Parameters p = fabric(Model::biquadratic);
   p.pinned.assign(p.mass.size(), 7);
   EXPECT_EQ(bound_of(p, p.mesh.rest), 0.0);
   EXPECT_EQ(found_of(p, p.mesh.rest), 0.0);
@@ -140,7 +141,7 @@ TEST(FabricFrequency, SpringsOfNoLengthCount) {
   p.material.tension_only = true;
   EXPECT_NEAR(bound_of(p, one_place), 5.0, 0.1);
   for (const Model model : {Model::edge, Model::quadratic, Model::biquadratic}) {
-    const Parameters folded = cloth(model);
+    const Parameters folded = fabric(model);
     const std::vector<Vector> nowhere(folded.mass.size(), Vector{});
     EXPECT_GT(bound_of(folded, nowhere), 0.3 * bound_of(folded, folded.mesh.rest)) << static_cast<int>(model);
   }
@@ -166,7 +167,7 @@ double growth(Parameters p, double dt) {
 TEST(FabricFrequency, StepsOfTheBoundHoldAndThoseBeyondTheTruthBlowUp) {
   for (const Model model : {Model::edge, Model::quadratic, Model::biquadratic})
     for (const Integrator integrator : {Integrator::rk4, Integrator::verlet}) {
-      Parameters p = cloth(model);
+      Parameters p = fabric(model);
       p.integrator = integrator;
       const double limit = stability_limit(integrator);
       EXPECT_LT(growth(p, limit / bound_of(p, p.mesh.rest)), 10.0) << static_cast<int>(model);
@@ -179,7 +180,7 @@ TEST(FabricFrequency, StepsOfTheBoundHoldAndThoseBeyondTheTruthBlowUp) {
 TEST(FabricFrequency, StepsThatAreToldToGrowDo) {
   for (const Integrator integrator : {Integrator::rk4, Integrator::verlet})
     for (const auto& [absolute, relative] : {std::pair{0.0, 0.0}, {30.0, 0.0}, {0.0, 2.0}, {30.0, 2.0}}) {
-      Parameters p = cloth(Model::biquadratic);
+      Parameters p = fabric(Model::biquadratic);
       p.integrator = integrator;
       p.damping = absolute, p.relative_damping = relative;
       const auto solver = create_solver(backend, p);
@@ -200,7 +201,7 @@ TEST(FabricFrequency, StepsThatAreToldToGrowDo) {
 }
 
 TEST(FabricFrequency, GrowsWithStrain) {
-  const Parameters p = cloth(Model::biquadratic);
+  const Parameters p = fabric(Model::biquadratic);
   const double at_rest = bound_of(p, p.mesh.rest), drawn = bound_of(p, stretched(p.mesh.rest, 1.5, 1.5));
   EXPECT_GT(drawn, 1.5 * at_rest);
   Parameters from_drawn = p;

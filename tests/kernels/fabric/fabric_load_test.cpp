@@ -35,7 +35,7 @@ State moved(const Parameters& p, State state, std::int64_t steps) {
 
 std::vector<Vector> still(std::size_t n) { return std::vector<Vector>(n, Vector{}); }
 
-Parameters cloth(Model model) {
+Parameters fabric(Model model) {
   Parameters p;
   p.mesh = random_patch(7, 6, 3);
   p.material.model = model;
@@ -62,20 +62,20 @@ void expect_near(const std::vector<Vector>& a, const std::vector<Vector>& b, dou
 
 TEST(FabricLoad, LinesMayEachHaveTheirStiffness) {
   for (const Model model : models) {
-    Parameters p = cloth(model);
+    Parameters p = fabric(model);
     p.mesh.line_stiffness = {100.0, 0.0, 700.0, 2000.0};
     const std::vector<Vector> x = shaken(p.mesh.rest, 0.2, 2);
     expect_near(forces_at(p, x, 0.0), reference::forces(p.material, p.mesh, x), 1e-9);
     p.mesh.line_stiffness[3] = 0.0;
     const std::vector<Vector> other = reference::forces(p.material, p.mesh, x);
-    EXPECT_GT(std::abs(forces_at(p, x, 0.0)[41][0] - forces_at(cloth(model), x, 0.0)[41][0]), 1.0);
+    EXPECT_GT(std::abs(forces_at(p, x, 0.0)[41][0] - forces_at(fabric(model), x, 0.0)[41][0]), 1.0);
     expect_near(forces_at(p, x, 0.0), other, 1e-9);
   }
 }
 
 TEST(FabricLoad, PressureFollowsTheNormalsOfNow) {
   for (const Model model : models) {
-    Parameters p = cloth(model);
+    Parameters p = fabric(model);
     std::vector<double> weight, felt;
     for (std::size_t i = 0; i < p.mass.size(); ++i) weight.push_back(i % 3 == 0 ? 0.0 : 0.5 * double(i % 5));
     p.follower_pressures = {{postfix({30.0, "x", "t", "*", "+"}), {}}, {postfix({-20.0, "y", "*"}), weight}};
@@ -155,7 +155,7 @@ TEST(FabricLoad, TimeGoesOnOverCallsAndChangesOfTheStep) {
 
 TEST(FabricDashpot, IsThatOfTheReference) {
   // Nothing but dashpots: the velocity that a step of almost no time gains.
-  Parameters p = cloth(Model::biquadratic);
+  Parameters p = fabric(Model::biquadratic);
   p.material.membrane_modulus = 0.0, p.material.axial_stiffness = 0.0;
   p.relative_damping = 35.0;
   p.dt = 1e-8;
@@ -192,9 +192,10 @@ TEST(FabricDashpot, SlowsAPairAtItsRate) {
               0.05);
 }
 
+// ctest-label: no-sanitizer
 TEST(FabricDashpot, KeepsMomentaAndTakesEnergy) {
   for (const Integrator integrator : integrators) {
-    Parameters p = cloth(Model::biquadratic);
+    Parameters p = fabric(Model::biquadratic);
     p.integrator = integrator;
     p.relative_damping = 50.0;
     const auto solver = create_solver(backend, p);
@@ -243,7 +244,7 @@ TEST(FabricDashpot, DecayAndFrequencyTogetherLimitTheStep) {
 }
 
 TEST(FabricLoad, PressureStiffnessRaisesTheBound) {
-  Parameters p = cloth(Model::biquadratic);
+  Parameters p = fabric(Model::biquadratic);
   const auto bound = [&] {
     const auto solver = create_solver(backend, p);
     solver->upload(p.mesh.rest, still(p.mass.size()));
@@ -258,7 +259,7 @@ TEST(FabricLoad, PressureStiffnessRaisesTheBound) {
 
 /// With everything that changes with time.
 Parameters busy(Integrator integrator) {
-  Parameters p = cloth(Model::biquadratic);
+  Parameters p = fabric(Model::biquadratic);
   p.integrator = integrator;
   p.damping = 3.0, p.relative_damping = 20.0;
   p.follower_pressures = {{postfix({30.0, "x", "t", "*", "+"}), {}}};
@@ -267,16 +268,16 @@ Parameters busy(Integrator integrator) {
   return p;
 }
 
-State begun(const Parameters& p) {
+State previous_steps(const Parameters& p) {
   return {shaken(p.mesh.rest, 0.1, 1), shaken(still(p.mass.size()), 1.0, 2)};
 }
 
 TEST(FabricLoad, StepsWithAllOfItMayBeCutIntoCallsAnyhow) {
   for (const Integrator integrator : integrators) {
     const Parameters p = busy(integrator);
-    const State once = moved(p, begun(p), 300);
+    const State once = moved(p, previous_steps(p), 300);
     const auto solver = create_solver(backend, p);
-    State cut = begun(p);
+    State cut = previous_steps(p);
     solver->upload(cut.x, cut.v);
     for (const std::int64_t steps : {1, 0, 5, 250, 44}) solver->advance(steps);
     solver->download(cut.x, cut.v);
@@ -289,7 +290,7 @@ TEST(FabricLoad, AStateAndItsClockAreAllThatARestartNeeds) {
   for (const Integrator integrator : integrators) {
     const Parameters p = busy(integrator);
     const auto first = create_solver(backend, p), second = create_solver(backend, p);
-    State state = begun(p);
+    State state = previous_steps(p);
     first->upload(state.x, state.v);
     first->advance(70);
     first->set_dt(0.9e-4);
@@ -308,7 +309,7 @@ TEST(FabricLoad, AStateAndItsClockAreAllThatARestartNeeds) {
 }
 
 TEST(FabricLoad, WhatCannotBeIsRefused) {
-  const Parameters good = cloth(Model::biquadratic);
+  const Parameters good = fabric(Model::biquadratic);
   const auto refused = [&](auto change) {
     Parameters p = good;
     change(p);

@@ -59,13 +59,13 @@ TEST(FabricPatches, HoldEveryVertexOnceAndAllThatItReads) {
     for (std::size_t at = 0; at < patches.vertex.size(); ++at) {
       if (patches.vertex[at] < 0) continue;
       EXPECT_TRUE(patch_of.emplace(patches.vertex[at], at / static_cast<std::size_t>(patches.team)).second);
-      if (patches.place[at] < 0) continue;
-      EXPECT_TRUE(places.insert(patches.place[at]).second);
-      place_of[patches.vertex[at]] = patches.place[at];
+      if (patches.message[at] < 0) continue;
+      EXPECT_TRUE(places.insert(patches.message[at]).second);
+      place_of[patches.vertex[at]] = patches.message[at];
     }
     EXPECT_EQ(patch_of.size(), mesh.rest.size());
-    EXPECT_EQ(static_cast<int>(places.size()), patches.places);
-    for (const int used : places) EXPECT_LT(used, patches.places);
+    EXPECT_EQ(static_cast<int>(places.size()), patches.messages);
+    for (const int used : places) EXPECT_LT(used, patches.messages);
     std::set<int> read;
     std::set<std::array<int, 2>> pairs;
     for (int p = 0; p < count; ++p) {
@@ -83,7 +83,7 @@ TEST(FabricPatches, HoldEveryVertexOnceAndAllThatItReads) {
       std::set<int> halo;
       for (std::size_t k = begin; k < end; ++k) {
         halo.insert(patches.halo_vertex[k]);
-        EXPECT_EQ(patches.halo_place[k], place_of.at(patches.halo_vertex[k]));
+        EXPECT_EQ(patches.halo_message[k], place_of.at(patches.halo_vertex[k]));
       }
       EXPECT_EQ(halo, wanted);
       EXPECT_EQ(halo.size(), end - begin);
@@ -156,45 +156,44 @@ void run_emulated(const Parameters& p, int count, const std::vector<std::int64_t
       make_patches(p.mesh.rest, ring_adjacency(cloth_mesh), spring_adjacency(p.mesh, material), count);
   const PatchViews<Space> views = patch_views(space, patches);
   const std::size_t n = p.mass.size();
-  FabricViews<Space> cloth;
-  cloth.inverse_mass = decltype(cloth.inverse_mass)("inverse mass", n);
-  cloth.fixed_dofs = decltype(cloth.fixed_dofs)("fixed_dofs", n);
-  cloth.load = PointsView<Space>("load", n);
-  cloth.moduli = moduli(material.membrane_modulus, material.poisson);
-  cloth.gravity = {p.gravity[0], p.gravity[1], p.gravity[2]};
-  cloth.damping = p.damping;
+  FabricViews<Space> fabric;
+  fabric.inverse_mass = decltype(fabric.inverse_mass)("inverse mass", n);
+  fabric.fixed_dofs = decltype(fabric.fixed_dofs)("fixed_dofs", n);
+  fabric.load = PointsView<Space>("load", n);
+  fabric.moduli = moduli(material.membrane_modulus, material.poisson);
+  fabric.gravity = {p.gravity[0], p.gravity[1], p.gravity[2]};
+  fabric.damping = p.damping;
   const PointsView<Space> at("x", n), velocity("v", n);
   for (std::size_t i = 0; i < n; ++i) {
-    cloth.inverse_mass(i) = 1.0 / p.mass[i];
-    cloth.fixed_dofs(i) = p.pinned[i];
+    fabric.inverse_mass(i) = 1.0 / p.mass[i];
+    fabric.fixed_dofs(i) = p.pinned[i];
     for (std::size_t axis = 0; axis < 3; ++axis)
-      cloth.load(i, axis) = p.load[i][axis], at(i, axis) = x[i][axis], velocity(i, axis) = v[i][axis];
+      fabric.load(i, axis) = p.load[i][axis], at(i, axis) = x[i][axis], velocity(i, axis) = v[i][axis];
   }
-  StepMonitor<Space> monitor{decltype(monitor.steps)("steps"), decltype(monitor.lost)("lost"),
-                             decltype(monitor.raised)("raised")};
-  monitor.lost() = no_failure;
-  testing::EmulatedGrid grid(count, team_threads(patches, patches.most_rows, most_threads),
-                             Functor::scratch_bytes(views), static_cast<std::size_t>(patches.places));
-  std::int64_t begun = 0;
+  const StepMonitor<Space> monitor = stepping::make_monitor<Space>(StepMonitor<Space>::StatusView("status"));
+  stepping::reset_monitor(space, monitor, 0);
+  testing::EmulatedGrid grid(count, team_threads(patches, patches.max_rows, most_threads),
+                             Functor::scratch_bytes(views), static_cast<std::size_t>(patches.messages));
+  std::int64_t previous_steps = 0;
   std::uint64_t epoch = 0;
   for (const std::int64_t steps : cuts) {
     grid.launch(Functor{{views,
-                         cloth,
+                         fabric,
                          at,
                          velocity,
                          monitor,
                          p.dt,
-                         begun,
+                         previous_steps,
                          steps,
                          epoch,
                          {vertex_force, {0, p.dt, 0, 0.0}, static_cast<int>(n)},
                          loads}});
-    begun += steps;
+    previous_steps += steps;
     epoch += 4 * static_cast<std::uint64_t>(steps);
-    EXPECT_EQ(monitor.steps(0), begun);
+    EXPECT_EQ(monitor.steps(0), previous_steps);
   }
   EXPECT_FALSE(grid.overwritten()) << "two boards are too few";
-  EXPECT_EQ(monitor.lost(), no_failure);
+  EXPECT_FALSE(monitor.has_failed());
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t axis = 0; axis < 3; ++axis) x[i][axis] = at(i, axis), v[i][axis] = velocity(i, axis);
 }

@@ -19,7 +19,7 @@ using testing::shaken;
 
 constexpr const auto& backend = testing::tested_backend;
 
-Parameters cloth(Model model, const Mesh& mesh) {
+Parameters fabric(Model model, const Mesh& mesh) {
   Parameters p;
   p.mesh = mesh;
   p.material.model = model;
@@ -85,7 +85,7 @@ TEST(FabricStress, IsThatOfTheContinuum) {
   const Mesh mesh = random_patch(7, 6, 4);
   const std::vector<Vector> now = shaken(mesh.rest, 0.25, 2);
   for (const Model model : {Model::quadratic, Model::biquadratic}) {
-    const Parameters p = cloth(model, mesh);
+    const Parameters p = fabric(model, mesh);
     const std::vector<Stress> cauchy = stress_of(p, now, StressMeasure::cauchy),
                               nominal = stress_of(p, now, StressMeasure::nominal);
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -109,7 +109,7 @@ TEST(FabricStress, IsThatOfTheContinuum) {
 }
 
 TEST(FabricStress, OfSpringsAlongEdgesHasTheVirialOfAllForces) {
-  Parameters p = cloth(Model::edge, random_patch(7, 6, 4));
+  Parameters p = fabric(Model::edge, random_patch(7, 6, 4));
   p.mesh.lines.clear();
   const std::vector<Vector> now = shaken(p.mesh.rest, 0.2, 2);
   const std::vector<Stress> stress = stress_of(p, now, StressMeasure::cauchy);
@@ -142,7 +142,7 @@ std::vector<Vector> drawn(const std::vector<Vector>& rest, double along, double 
 }
 
 TEST(FabricStress, OfUniformStretchIsTheSameEverywhere) {
-  Parameters p = cloth(Model::biquadratic, random_patch(9, 8, 6));
+  Parameters p = fabric(Model::biquadratic, random_patch(9, 8, 6));
   p.mesh.lines.clear();
   p.mesh.rest.resize(72);  // without what hangs from it
   p.mass.resize(72);
@@ -218,7 +218,7 @@ TEST(FabricStress, VonMisesOfPrincipalValues) {
 }
 
 TEST(FabricStress, WhatHasNoneIsToldOrRefused) {
-  Parameters p = cloth(Model::linear_vector, random_patch(3, 3, 1));
+  Parameters p = fabric(Model::linear_vector, random_patch(3, 3, 1));
   std::vector<Stress> triangles(p.mesh.triangles.size());
   EXPECT_THROW(at(p, p.mesh.rest)->stress(StressMeasure::cauchy, triangles), std::invalid_argument);
   p.material.model = Model::biquadratic;

@@ -17,7 +17,7 @@ using testing::shaken;
 
 constexpr const auto& backend = testing::tested_backend;
 
-Parameters cloth(Model model, int nx, int ny) {
+Parameters fabric(Model model, int nx, int ny) {
   Parameters p;
   p.mesh = random_patch(nx, ny, 4);
   p.material.model = model;
@@ -37,7 +37,7 @@ TEST(FabricTotals, AreThoseOfTheReference) {
   for (const Model model : {Model::linear_vector, Model::edge, Model::quadratic, Model::biquadratic})
     for (const auto& [nx, ny] : {std::pair{2, 2}, {9, 7}, {90, 71}})
       for (const bool loaded : {false, true}) {
-        Parameters p = cloth(model, nx, ny);
+        Parameters p = fabric(model, nx, ny);
         const std::size_t n = p.mass.size();
         if (loaded) p.load = random_vectors(n, 2.0, 9);
         const std::vector<Vector> x = shaken(p.mesh.rest, 0.2, 1), v = random_vectors(n, 3.0, 2);
@@ -66,7 +66,7 @@ TEST(FabricTotals, AreThoseOfTheReference) {
 
 TEST(FabricTotals, VerletKeepsTheEnergyOfAFallingLoadedPatch) {
   for (const Model model : {Model::edge, Model::quadratic, Model::biquadratic}) {
-    Parameters p = cloth(model, 9, 7);
+    Parameters p = fabric(model, 9, 7);
     p.integrator = Integrator::verlet;
     p.dt = 2e-5;
     p.gravity = {50.0, -100.0, -981.0};
@@ -84,7 +84,7 @@ TEST(FabricTotals, VerletKeepsTheEnergyOfAFallingLoadedPatch) {
 }
 
 TEST(FabricTotals, AsOftenAsAskedForTheyAreTheSameBits) {
-  const Parameters p = cloth(Model::biquadratic, 60, 41);
+  const Parameters p = fabric(Model::biquadratic, 60, 41);
   const auto solver = create_solver(backend, p);
   solver->upload(shaken(p.mesh.rest, 0.2, 1), random_vectors(p.mass.size(), 3.0, 2));
   const Totals once = solver->totals(), again = solver->totals();

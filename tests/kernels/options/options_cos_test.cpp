@@ -51,6 +51,7 @@ TEST(OptionsBermudan, MatchesReferenceImplementation) {
   }
 }
 
+// ctest-label: no-sanitizer
 TEST(OptionsCos, AmericanPricesMatchReferenceData) {
   for (const auto& set : testing::option_sets()) {
     std::vector<Contract> contracts;

@@ -77,6 +77,7 @@ TEST(OptionsOracle, NodeValuesOfRandomContractsMatchTheSerialSolve) {
 
 // For large orders the nodes of the mixture are denser in places. Maturities of a day: steps are dominated by
 // jumps.
+// ctest-label: no-sanitizer
 TEST(OptionsOracle, NodeValuesOfLargeOrdersMatchTheSerialSolve) {
   const double rows[6][4] = {{-2.5, 8.0, -2.0, 0.8},   {6.0, 18.0, -2.0, 0.8},   {-9.5, 12.0, 4.0, 1.5},
                              {-30.0, 20.0, -8.0, 3.0}, {50.0, 30.0, -2.5, 10.0}, {-127.0, 30.0, -2.5, 10.0}};

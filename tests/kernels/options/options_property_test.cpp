@@ -100,6 +100,7 @@ TEST(OptionsProperty, BitsDoNotDependOnThePositionInTheBatch) {
 
 // More contracts than one launch takes, of two models, by a pricer whose stored order is another one. The
 // last contract has an order that requires another table.
+// ctest-label: no-sanitizer
 TEST(OptionsProperty, BitsDoNotDependOnTheLaunchesOfABatch) {
   constexpr std::size_t size = (1 << 17) + 5;
   auto kinds = random_contracts(7, 5);
@@ -206,6 +207,7 @@ GridError grid_error(const testing::OptionSet& set, int mesh, int steps) {
 }
 
 // Grids with four times the nodes are slightly wider, so the ratio of the steps is less than four.
+// ctest-label: no-sanitizer
 TEST(OptionsProperty, ConvergesAtSecondOrder) {
   for (const testing::OptionSet& set : option_sets()) {
     const GridError coarse = grid_error(set, 96, 48), fine = grid_error(set, 384, 192);
@@ -277,6 +279,7 @@ TEST(OptionsProperty, FailsForOrdersBeyondTheTable) {
 
 // Stiff jumps: a hundred years in few steps on grids that are truncated at the exercise boundary. The added
 // diffusion once made these cases grow without bound.
+// ctest-label: no-sanitizer
 TEST(OptionsProperty, StaysBoundedForAHundredYearsOfPureJumps) {
   std::vector<Contract> contracts;
   for (const auto& jump : {std::array{-0.5, 15.0, -0.5, 0.5}, std::array{-0.5, 15.0, -5.0, 0.5},
@@ -299,6 +302,7 @@ Price one_price(double rate, double maturity, double variance, double delta, con
   return priced(settings, {c})[0];
 }
 
+// ctest-label: no-sanitizer
 TEST(OptionsProperty, ReportsTheReasonOfAFailure) {
   EXPECT_EQ(one_price(-10.0, 100.0, 0.04, 0.5, Settings{}).failure, FailureReason::discount_overflow);
   Contract money{.style = Style::european, .spot = 1e99, .strike = 1e99, .rate = -5.0, .maturity = 100.0};
@@ -361,6 +365,7 @@ GridError misfit(const testing::OptionSet& set, int mesh) {
 
 // Smooth fit: the slope at the boundary differs from -1 by an amount of first order in the step, with
 // diffusion. The boundary may lie anywhere within an interval, so the meshes differ by a factor of 16.
+// ctest-label: no-sanitizer
 TEST(OptionsProperty, SatisfiesSmoothFit) {
   for (const std::size_t k : {0U, 1U, 3U, 4U}) {
     const testing::OptionSet& set = option_sets()[k];
@@ -372,6 +377,7 @@ TEST(OptionsProperty, SatisfiesSmoothFit) {
 }
 
 // Delta of an exercised put is -1, and close to it just above the boundary.
+// ctest-label: no-sanitizer
 TEST(OptionsProperty, DeltaIsContinuousAtTheBoundary) {
   for (const std::size_t k : {0U, 1U, 3U, 4U}) {
     Contract c = contract_of(option_sets()[k], 3, Style::american);
@@ -428,6 +434,7 @@ TEST(OptionsProperty, BoundaryRisesTowardsExpiry) {
 }
 
 // Reference: difference quotients of prices at spots where these are smooth.
+// ctest-label: no-sanitizer
 TEST(OptionsProperty, GreeksMatchDifferenceQuotients) {
   Contract c = contract_of(option_sets()[1], 3, Style::american);
   for (const Type type : {Type::put, Type::call}) {

@@ -59,6 +59,7 @@ TEST(OptionsReference, MatchesKnownPricesOnAMeshOf128) {
   expect_known(settings, 7.5e-5);
 }
 
+// ctest-label: no-sanitizer
 TEST(OptionsReference, ToleranceIsKept) {
   Settings settings;
   settings.tolerance = 1e-5;
@@ -66,6 +67,7 @@ TEST(OptionsReference, ToleranceIsKept) {
 }
 
 // Nine of ten true errors are below their estimates; the median ratio of estimate and error is at most ten.
+// ctest-label: no-sanitizer
 TEST(OptionsReference, StatedErrorsCoverAndDoNotExaggerate) {
   const auto contracts = testing::random_contracts(120, 12);
   Settings settings;
@@ -108,6 +110,7 @@ Contract merton_or_kou(const Literature& row) {
 }
 
 // d'Halluin, Forsyth and Labahn (2004) and Toivanen (2008), with the digits of their tables.
+// ctest-label: no-sanitizer
 TEST(OptionsReference, MatchesMertonAndKouPricesOfTheLiterature) {
   const std::vector<Literature> rows = {{Model::merton, 90.0, 10.0038},  {Model::merton, 100.0, 3.24125},
                                         {Model::merton, 110.0, 1.41980}, {Model::kou, 90.0, 10.0051},
@@ -124,6 +127,7 @@ double normal_cdf(double x) { return 0.5 * std::erfc(-x / std::sqrt(2.0)); }
 
 // Difficult processes: large order, no Brownian part for a few days, the heaviest tails, and jumps of equal
 // size. Reference: European prices by a mixture of normal laws or Merton's series.
+// ctest-label: no-sanitizer
 TEST(OptionsReference, StatedErrorsCoverHardProcesses) {
   struct Hard {
     Contract contract;
@@ -161,6 +165,7 @@ TEST(OptionsReference, StatedErrorsCoverHardProcesses) {
 // For orders beyond 5 the Hankel function has a zero close to the real axis. Reference: Fourier integrals,
 // which use Bessel functions of the exponent. Errors are within the tolerance, and nine of ten within the
 // estimates.
+// ctest-label: no-sanitizer
 TEST(OptionsReference, LargeOrdersHaveNoBias) {
   std::vector<Contract> contracts;
   for (const double lambda : {-127.0, -50.0, -30.0, -12.0, -6.0, 6.0, 15.0, 50.0, 100.0})

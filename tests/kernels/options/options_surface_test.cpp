@@ -81,6 +81,7 @@ TEST(OptionsSurface, MatchesKnownPrices) {
 }
 
 // Error estimates cover nine cases of ten, so the same share of prices is within the tolerance.
+// ctest-label: no-sanitizer
 TEST(OptionsSurface, ToleranceIsKept) {
   const KnownStrikes known = known_strikes();
   Settings settings;
@@ -98,6 +99,7 @@ TEST(OptionsSurface, ToleranceIsKept) {
 }
 
 // Separate solves have other grids than the shared one.
+// ctest-label: no-sanitizer
 TEST(OptionsSurface, AgreesWithContractsPricedSeparately) {
   const std::vector<Contract> contracts = random_strikes(40, 12);
   Settings separate_settings = surface_on(256);
@@ -129,6 +131,7 @@ TEST(OptionsSurface, AgreesWithContractsPricedSeparately) {
 
 // Reference: prices of a finer grid, which agree with separate prices
 // (`AgreesWithContractsPricedSeparately`).
+// ctest-label: no-sanitizer
 TEST(OptionsSurface, StatedErrorsCoverAndDoNotExaggerate) {
   const std::vector<Contract> contracts = random_strikes(60, 5);
   const std::vector<Price> known = testing::priced(surface_on(512), contracts);
@@ -190,6 +193,7 @@ TEST(OptionsSurface, BitsDoNotDependOnOtherStrikes) {
 
 // Puts with q < r < 0 are exercised between two boundaries. Exercise is split there, and the difference of
 // the grids contains less of the error.
+// ctest-label: no-sanitizer
 TEST(OptionsSurface, StatedErrorsCoverExerciseBetweenTwoBoundaries) {
   std::vector<Contract> contracts;
   std::size_t set = 0;

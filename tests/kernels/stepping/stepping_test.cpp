@@ -284,11 +284,10 @@ class Growth {
   bool enqueue_steps(std::int64_t count) {
     return _loop.enqueue_steps(_step, count, checkpoint_every, Steps{*this});
   }
-  std::optional<FirstFailure> settle() {
-    const auto failure = _checkpoint.wait_for_failure(_instance.space(), _monitor);
+  std::optional<FirstFailure> synchronize() {
+    const auto failure = _checkpoint.roll_back_after_failure(
+        _instance.space(), _monitor, [this] { Kokkos::deep_copy(_instance.space(), _y, _saved); });
     if (failure) {
-      Kokkos::deep_copy(_instance.space(), _y, _saved);
-      reset_monitor(_instance.space(), _monitor, failure->checkpoint_step);
       _parity = 0;
       _step = failure->checkpoint_step;
     }
@@ -327,7 +326,7 @@ TEST(StepMonitor, CountsStepsWithoutFailure) {
   Growth growth;
   EXPECT_TRUE(growth.enqueue_steps(7));
   EXPECT_TRUE(growth.enqueue_steps(60));
-  EXPECT_FALSE(growth.settle().has_value());
+  EXPECT_FALSE(growth.synchronize().has_value());
   EXPECT_EQ(growth.step(), 67);
   EXPECT_EQ(growth.values()[7], std::ldexp(1.0, 67));
 }
@@ -336,7 +335,7 @@ TEST(StepMonitor, ReportsTheFirstFailureAndReturnsToTheLastCheckpoint) {
   Growth growth, whole;
   growth.enqueue_steps(90);
   growth.enqueue_steps(200);
-  const auto failure = growth.settle();
+  const auto failure = growth.synchronize();
   ASSERT_TRUE(failure.has_value());
   EXPECT_EQ(failure->step, 100);
   EXPECT_EQ(failure->index, 7);
@@ -344,7 +343,7 @@ TEST(StepMonitor, ReportsTheFirstFailureAndReturnsToTheLastCheckpoint) {
   EXPECT_EQ(growth.step(), 96);
   whole.enqueue_steps(96);
   EXPECT_EQ(growth.values(), whole.values());
-  EXPECT_FALSE(growth.settle().has_value());
+  EXPECT_FALSE(growth.synchronize().has_value());
 }
 
 TEST(StepMonitor, EnqueuesNothingAfterAFailure) {
@@ -363,6 +362,14 @@ TEST(StepMonitor, FailuresAreOrderedByStepThenIndex) {
   EXPECT_EQ(failure_order(failure), 123'456'789);
   EXPECT_EQ(failure_index(failure), 987'654);
   EXPECT_LT(failure, no_failure);
+}
+
+TEST(TimeState, CountsTheStepsToTheNearestTime) {
+  const TimeState time{1000, 0.1, 990, 7.5};  // at 8.5 s
+  EXPECT_EQ(time.steps_to(9.04), 5);
+  EXPECT_EQ(time.steps_to(9.06), 6);
+  EXPECT_EQ(time.steps_to(8.5), 0);
+  EXPECT_EQ(time.steps_to(8.0), 0);
 }
 
 TEST(TimeState, IsReproducedByARestart) {

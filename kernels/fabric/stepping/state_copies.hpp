@@ -1,0 +1,42 @@
+#pragma once
+
+#include "kernels/fabric/state.hpp"
+#include "kernels/fabric/stepping/divergence.hpp"
+#include "kernels/fabric/views.hpp"
+
+namespace drogue::fabric {
+
+/// Saved part of a run: positions, m, velocities, m/s, and the work of contact, which is empty without.
+template <class ExecutionSpace>
+struct SavedState {
+  PointsView<ExecutionSpace> x, v;
+  ListView<ExecutionSpace, ContactWork> work;
+};
+
+/// Copies the state of vertex i, for `stepping::Checkpoint`.
+template <class ExecutionSpace>
+struct CopyStateFunctor {
+  SavedState<ExecutionSpace> from, to;
+
+  KOKKOS_FUNCTION void operator()(const int i) const {
+    store_points(to.x, i, load_points<double>(from.x, i));
+    store_points(to.v, i, load_points<double>(from.v, i));
+    if (i < static_cast<int>(from.work.extent(0))) to.work(i) = from.work(i);
+  }
+};
+
+/// Copies the state after an odd number of Verlet steps, which alternate between two buffers, to the Views
+/// that the solver exposes.
+template <class ExecutionSpace>
+struct RestoreAddressesFunctor {
+  StepMonitor<ExecutionSpace> monitor;
+  PointsView<ExecutionSpace> from_x, from_v, x, v;  ///< `from_v` may be `v`
+
+  KOKKOS_FUNCTION void operator()(const int i) const {
+    store_points(x, i, load_points<double>(from_x, i));
+    store_points(v, i, load_points<double>(from_v, i));
+    if (i == 0) monitor.steps(0) = monitor.steps(1);
+  }
+};
+
+}  // namespace drogue::fabric

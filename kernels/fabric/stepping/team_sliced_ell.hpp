@@ -1,0 +1,70 @@
+#pragma once
+
+#include "kernels/fabric/elastic/sliced_ell_views.hpp"
+
+namespace drogue::fabric {
+
+/// Array in the scratch memory of a team.
+template <class T>
+struct TeamList {
+  T* data;
+  KOKKOS_FUNCTION T& operator()(int i) const { return data[i]; }
+};
+
+/// Column-major table in the scratch memory of a team.
+struct TeamTable {
+  double* data;
+  int rows;
+  KOKKOS_FUNCTION double& operator()(int row, int column) const { return data[column * rows + row]; }
+};
+
+/// `SlicedEll` of a patch in the scratch memory of its team.
+template <int values>
+struct TeamSlicedEll {
+  TeamList<int> first, neighbour;
+  TeamTable value;
+
+  [[nodiscard]] static std::size_t bytes(int team, std::size_t slots) {
+    return (static_cast<std::size_t>(team / slice) + 1 + slots) * sizeof(int) +
+           values * slots * sizeof(double);
+  }
+
+  /// Copies the slots of the patch of `member`. The team must synchronize before it reads them.
+  template <class Member, class Views>
+  KOKKOS_FUNCTION TeamSlicedEll(const Member& member, int slices, const Views& from) {
+    const int patch = member.league_rank() * slices;
+    const int begin = from.first(patch), slots = (from.first(patch + slices) - begin) * slice;
+    value = {doubles(member, values * slots), slots};
+    first.data = integers(member, slices + 1);
+    neighbour.data = integers(member, slots);
+    for (int s = member.team_rank(); s <= slices; s += member.team_size())
+      first(s) = from.first(patch + s) - begin;
+    for (int slot = member.team_rank(); slot < slots; slot += member.team_size()) {
+      neighbour(slot) = from.neighbour(begin * slice + slot);
+      for (int a = 0; a < values; ++a) value(slot, a) = from.value(begin * slice + slot, a);
+    }
+  }
+
+  template <class Visit>
+  KOKKOS_FUNCTION void each(int i, const Visit& visit) const {
+    for_each_slot(first, i, visit);
+  }
+  template <class Index, class Read, class Visit>
+  KOKKOS_FUNCTION void each_pair(int i, const Index& index, const Read& read, const Visit& visit) const {
+    for_each_slot_pair(first, i, index, read, visit);
+  }
+
+ private:
+  template <class Member>
+  KOKKOS_FUNCTION static double* doubles(const Member& member, int count) {
+    return static_cast<double*>(member.team_scratch(0).get_shmem_aligned(
+        static_cast<std::size_t>(count) * sizeof(double), alignof(double)));
+  }
+  template <class Member>
+  KOKKOS_FUNCTION static int* integers(const Member& member, int count) {
+    return static_cast<int*>(member.team_scratch(0).get_shmem_aligned(
+        static_cast<std::size_t>(count) * sizeof(int), alignof(int)));
+  }
+};
+
+}  // namespace drogue::fabric
