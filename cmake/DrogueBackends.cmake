@@ -4,15 +4,22 @@ option(DROGUE_SERIAL "The Serial backend" ON)
 option(DROGUE_OPENMP "The OpenMP backend, where Kokkos has it" ON)
 
 set(DROGUE_BACKENDS)
-# drogue_backend(<name> <Kokkos option> <execution space> <wanted>): an entry of the list, slowest first. The same names stand
-# in kernels/device/backend_list.hpp.
+set(DROGUE_DEVICE_BACKENDS)
+set(DROGUE_KNOWN_BACKENDS)
+# drogue_backend(<name> <Kokkos option> <execution space> <wanted> [DEVICE]): an entry of the list, slowest first. The same names
+# stand in kernels/device/backend_list.hpp. A backend of a DEVICE starts on no machine without one; its tests have the label gpu,
+# and a build that has it tests no other.
 macro(drogue_backend name option execution_space wanted)
+  list(APPEND DROGUE_KNOWN_BACKENDS ${name})
   if(${wanted})
     if(NOT Kokkos_ENABLE_${option})
       message(FATAL_ERROR "The backend ${name} needs a Kokkos with Kokkos_ENABLE_${option}=ON; Kokkos at ${Kokkos_DIR} lacks it.")
     endif()
     list(APPEND DROGUE_BACKENDS ${name})
     set(DROGUE_EXECUTION_SPACE_${name} ${execution_space})
+    if("${ARGN}" STREQUAL "DEVICE")
+      list(APPEND DROGUE_DEVICE_BACKENDS ${name})
+    endif()
   endif()
 endmacro()
 
@@ -22,7 +29,7 @@ if(NOT Kokkos_ENABLE_OPENMP)
 endif()
 drogue_backend(serial SERIAL Kokkos::Serial "${DROGUE_SERIAL}")
 drogue_backend(openmp OPENMP Kokkos::OpenMP "${_openmp}")
-drogue_backend(cuda CUDA Kokkos::Cuda "${DROGUE_CUDA}")
+drogue_backend(cuda CUDA Kokkos::Cuda "${DROGUE_CUDA}" DEVICE)
 if(NOT DROGUE_BACKENDS)
   message(FATAL_ERROR "No backend is left: turn DROGUE_SERIAL, DROGUE_OPENMP or DROGUE_CUDA on.")
 endif()
@@ -45,7 +52,7 @@ function(drogue_instantiate sources file)
   set(${sources} ${_instances} PARENT_SCOPE)
 endfunction()
 
-# drogue_includes_kokkos(result <file>): whether it does, itself or by our headers that it includes.
+# drogue_includes_kokkos(result <file>): YES if the file includes Kokkos, itself or through own headers.
 function(drogue_includes_kokkos result file)
   file(STRINGS "${file}" _lines REGEX "^#include [<\"](Kokkos_|[a-z]+/).*")
   set(${result} NO PARENT_SCOPE)
@@ -70,7 +77,7 @@ function(drogue_use_device_language)
 endfunction()
 
 # drogue_unite_device(sources name): replaces those of `sources` that nvcc compiles by one that includes them. A unity build of
-# CMake leaves CUDA out before version 3.31, and it is with nvcc that reading Kokkos costs most.
+# CMake leaves CUDA out before version 3.31, and nvcc takes longest to read Kokkos.
 function(drogue_unite_device sources name)
   set(_kept)
   set(_includes)

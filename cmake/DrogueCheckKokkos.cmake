@@ -1,4 +1,4 @@
-# Refuses a Kokkos that is known to be miscompiled or that does not fit the build asked for.
+# Refuses a Kokkos that is known to be miscompiled or that does not fit the build.
 
 if(DROGUE_CUDA AND NOT Kokkos_ENABLE_CUDA)
   message(FATAL_ERROR "DROGUE_CUDA=ON, but the Kokkos in ${Kokkos_DIR} has no CUDA: run scripts/setup.sh where nvcc is "

@@ -21,7 +21,7 @@ if(DROGUE_CUDA_ARCH_RESOLVED MATCHES "^(86|89)$")
 endif()
 set(CMAKE_CUDA_ARCHITECTURES "${DROGUE_CUDA_ARCH_RESOLVED}")
 
-# A folder outside PATH is where the toolkit's own installer puts nvcc.
+# The toolkit's installer puts nvcc into a folder outside PATH.
 find_program(CMAKE_CUDA_COMPILER nvcc HINTS ENV CUDA_HOME ENV CUDACXX PATHS /usr/local/cuda/bin /opt/cuda/bin)
 if(NOT CMAKE_CUDA_COMPILER)
   message(FATAL_ERROR "DROGUE_CUDA=ON needs nvcc: install the CUDA toolkit or put its bin folder in PATH.")

@@ -1,6 +1,6 @@
-# Finds every library, each with one sentence that says what goes missing without it.
+# Finds every library; a missing one stops CMake with a sentence that names the feature that needs it.
 #
-# What scripts/setup.sh built is looked at after the user's own CMAKE_PREFIX_PATH and <Package>_ROOT.
+# Installations of scripts/setup.sh are searched after the user's own CMAKE_PREFIX_PATH and <Package>_ROOT.
 
 if(NOT DROGUE_SYSTEM)
   if(DEFINED ENV{DROGUE_DEPS})

@@ -11,9 +11,7 @@ function(drogue_add_mini_app name)
   string(TOUPPER "${name}" _upper)
   target_compile_definitions(${_library} PRIVATE DROGUE_${_upper}_SCENES="${CMAKE_CURRENT_SOURCE_DIR}/scenes")
 
-  add_executable(drogue-${name} main.cpp)
-  target_link_libraries(drogue-${name} PRIVATE ${_library})
-  install(TARGETS drogue-${name} RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}")
+  drogue_add_program(drogue-${name} SOURCES main.cpp LIBRARIES ${_library})
   install(DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}/scenes/"
     DESTINATION "${CMAKE_INSTALL_DATADIR}/drogue/scenes/${name}" FILES_MATCHING PATTERN "*.toml")
 endfunction()

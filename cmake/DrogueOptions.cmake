@@ -1,5 +1,5 @@
 # Compiler settings of our own targets, as two interface targets:
-#   drogue_arithmetic  what decides rounding; exported, so that users of the kernels compile alike
+#   drogue_arithmetic  options that decide rounding; exported, so that users of the kernels compile alike
 #   drogue_private     warnings, include root, sanitizers; never exported
 
 option(DROGUE_EXACT "No fused multiply-add: all backends agree bit for bit" OFF)
@@ -13,7 +13,7 @@ set(CMAKE_CXX_STANDARD_REQUIRED ON)
 set(CMAKE_CXX_EXTENSIONS OFF)
 set(CMAKE_CUDA_STANDARD 20)
 set(CMAKE_CUDA_EXTENSIONS OFF)
-# CMake 3.25 does not know nvcc's option for C++20.
+# CMake 3.25 lacks nvcc's option for C++20.
 if(DROGUE_CUDA AND NOT CMAKE_CUDA20_STANDARD_COMPILE_OPTION)
   set(CMAKE_CUDA20_STANDARD_COMPILE_OPTION "-std=c++20")
   set(CMAKE_CUDA20_EXTENSION_COMPILE_OPTION "-std=c++20")
@@ -36,7 +36,7 @@ function(drogue_host_option target scope)
 endfunction()
 
 add_library(drogue_arithmetic INTERFACE)
-# Neither flag changes a rounding: they only say that nobody reads errno or traps, which lets loops vectorise.
+# Neither flag changes a rounding: without errno and traps loops vectorise.
 drogue_host_option(drogue_arithmetic INTERFACE -fno-math-errno -fno-trapping-math)
 if(DROGUE_EXACT)
   drogue_host_option(drogue_arithmetic INTERFACE -ffp-contract=off)
@@ -63,31 +63,31 @@ if(DROGUE_WARNINGS_AS_ERRORS)
   target_compile_options(drogue_private INTERFACE "$<$<COMPILE_LANGUAGE:CUDA>:--Werror=cross-execution-space-call>")
 endif()
 if(DROGUE_SANITIZE)
-  # Null pointers and ends of objects are what the address sanitizer sees too, and a quarter of the time to compile.
+  # The address sanitizer finds null pointers and ends of objects too; these checks take a quarter of the compile time.
   drogue_host_option(drogue_private INTERFACE -fsanitize=address,undefined
     -fno-sanitize=null,alignment,object-size -fno-sanitize-recover=all -fno-omit-frame-pointer)
-  # Checks name where they stand: a program at any address would fix as many pointers at each start.
+  # Each check holds a pointer to its source line; a position-independent program would relocate all of them at each start.
   target_link_options(drogue_private INTERFACE -fsanitize=address,undefined -no-pie)
-  # gcc 12 takes what it instruments for uninitialised.
+  # gcc 12 gives false warnings about instrumented variables.
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     drogue_host_option(drogue_private INTERFACE -Wno-maybe-uninitialized)
   endif()
 endif()
 
-# What computes is optimised under sanitizers too: compiling the rest so costs more than its tests gain.
+# Numerical code is optimised under sanitizers too: for the rest the compile time exceeds the time that its tests gain.
 function(drogue_optimise_sanitized target)
   if(DROGUE_SANITIZE)
     target_compile_options(${target} PRIVATE -O1)
   endif()
 endfunction()
 
-# What reads, writes and decides takes longer to optimise than it ever runs.
+# Code that reads, writes and decides takes longer to optimise than it runs.
 function(drogue_optimise_little target)
   target_compile_options(${target} PRIVATE $<$<AND:$<CONFIG:Release>,$<COMPILE_LANGUAGE:CXX>>:-O1>)
 endfunction()
 
-# Compiles sources with an optimisation of their own in a release, like -O2 for what runs once a row of a batch. Not in a
-# unity build, which would have to leave them out.
+# Compiles sources with an optimisation of their own in a release, such as -O2 for code that runs once per row of a batch. Not in
+# a unity build, which would have to leave them out.
 function(drogue_optimise_sources optimisation)
   if(NOT CMAKE_UNITY_BUILD)
     set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS "$<$<CONFIG:Release>:${optimisation}>")
@@ -99,6 +99,6 @@ if(DROGUE_CUDA)
   target_compile_options(drogue_arithmetic INTERFACE
     "$<BUILD_INTERFACE:$<$<COMPILE_LANGUAGE:CUDA>:SHELL:-include ${PROJECT_SOURCE_DIR}/cmake/cuda13_kokkos45.hpp>>")
   target_compile_options(drogue_arithmetic INTERFACE $<$<COMPILE_LANGUAGE:CUDA>:--extended-lambda>)
-  # Users of the kernels need the standard too, whatever their CMake knows of nvcc.
+  # Users of the kernels need the standard too, also with a CMake that lacks nvcc's option.
   target_compile_options(drogue_arithmetic INTERFACE "$<INSTALL_INTERFACE:$<$<COMPILE_LANGUAGE:CUDA>:-std=c++20>>")
 endif()

@@ -4,8 +4,10 @@ include(GoogleTest)
 
 # All tests that run on a backend; scripts/bundle.sh carries them to other machines.
 add_custom_target(drogue_kernel_tests)
+# The tests with the label exact: those of tests/exact, and on the first backend those that a marker names.
+add_custom_target(drogue_exact_tests)
 
-# drogue_share_headers(<test>): takes what tests include from headers that are compiled once for all of them, in a unity build.
+# drogue_share_headers(<test>): in a unity build the test takes Kokkos and GoogleTest from headers precompiled for all tests.
 function(drogue_share_headers target)
   if(NOT CMAKE_UNITY_BUILD)
     return()
@@ -20,40 +22,45 @@ function(drogue_test_headers)
   set(_source "${PROJECT_BINARY_DIR}/generated/test_headers.cpp")
   file(CONFIGURE OUTPUT "${_source}" CONTENT "int main() {}\n")
   drogue_use_device_language("${_source}")
-  # A program as the tests are: gcc takes no headers that were compiled for a library.
+  # A program, like the tests: gcc accepts no precompiled headers of a library.
   add_executable(drogue_test_headers EXCLUDE_FROM_ALL "${_source}")
   target_link_libraries(drogue_test_headers PRIVATE drogue_kernels drogue_private GTest::gtest)
   drogue_optimise_little(drogue_test_headers)
   target_precompile_headers(drogue_test_headers PRIVATE <Kokkos_Core.hpp> <gtest/gtest.h>)
 endfunction()
 
-# How tests of kernels are compiled, whatever they run on.
+# Options of all kernel tests, on any backend.
 function(drogue_kernel_test_options target)
-  # Helpers of these tests have the same names in many files: a unity build shares what they include instead.
+  # Helpers of these tests have the same names in many files: they share precompiled headers instead of a unity source.
   set_target_properties(${target} PROPERTIES UNITY_BUILD OFF)
-  # What they ask of the kernels is asked of the library, which is optimised as users have it.
+  # The library under test is optimised as users have it; the tests themselves need not be.
   drogue_optimise_little(${target})
   drogue_share_headers(${target})
 endfunction()
 
-# drogue_add_kernel_test_objects(<name> <sources>): those that name no execution space, compiled once for all backends. What
-# they run on they learn from tests/support/backend.hpp.
+# drogue_add_kernel_test_objects(<name> <sources>): test sources without an execution space, compiled once for all backends. They
+# run on the backend of tests/support/backend.hpp.
 function(drogue_add_kernel_test_objects name)
   add_library(${name} OBJECT ${ARGN})
   target_link_libraries(${name} PRIVATE drogue_kernels drogue_reference drogue_private GTest::gtest)
   drogue_use_device_language(${ARGN})
   drogue_kernel_test_options(${name})
-  # As a program is compiled: gcc takes no compiled headers of another kind.
+  # Compiled like a program: gcc accepts no precompiled headers of another kind.
   set_target_properties(${name} PROPERTIES POSITION_INDEPENDENT_CODE OFF)
   drogue_host_option(${name} PRIVATE -fPIE)
 endfunction()
 
-# drogue_add_test(NAME <name> SOURCES <files> LABEL <label> [OBJECTS <files>] [LIBRARIES <targets>] [BACKEND <backend>])
-# One GoogleTest executable; each of its cases becomes a ctest test `<label>.<Suite>.<Case>`.
-# With BACKEND the sources see DROGUE_TEST_SPACE (Kokkos::OpenMP), go through nvcc in a CUDA build, and a test of the cuda backend
+# drogue_add_test(NAME <name> SOURCES <files> LABEL <label> [OBJECTS <files>] [LIBRARIES <targets>] [BACKEND <backend>]
+#   [CASES <files>])
+# One GoogleTest executable; each of its cases becomes a ctest test `<label>.<Suite>.<Case>`. CASES are the sources whose markers
+# `// ctest-label: NAME...` give cases more labels (cmake/test_properties.cmake), by default SOURCES.
+# With BACKEND the sources see DROGUE_TEST_SPACE (Kokkos::OpenMP), go through nvcc in a CUDA build, and a test of a device backend
 # has the label gpu. A name that ends in _long has the label long.
 function(drogue_add_test)
-  cmake_parse_arguments(_test "" "NAME;LABEL;BACKEND" "SOURCES;OBJECTS;LIBRARIES" ${ARGN})
+  cmake_parse_arguments(_test "" "NAME;LABEL;BACKEND" "SOURCES;OBJECTS;LIBRARIES;CASES" ${ARGN})
+  if(NOT _test_CASES)
+    set(_test_CASES ${_test_SOURCES})
+  endif()
   add_executable(${_test_NAME} ${_test_SOURCES} ${_test_OBJECTS})
   set_target_properties(${_test_NAME} PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/tests")
   target_link_libraries(${_test_NAME} PRIVATE ${_test_LIBRARIES} drogue_private GTest::gtest)
@@ -67,7 +74,7 @@ function(drogue_add_test)
     drogue_kernel_test_options(${_test_NAME})
     target_compile_definitions(${_test_NAME} PRIVATE DROGUE_TEST_SPACE=${DROGUE_EXECUTION_SPACE_${_test_BACKEND}})
     string(APPEND _prefix "${_test_BACKEND}.")
-    if(_test_BACKEND STREQUAL "cuda")
+    if(_test_BACKEND IN_LIST DROGUE_DEVICE_BACKENDS)
       set(_label gpu)
     elseif(_test_BACKEND STREQUAL "openmp")
       set(_threads 2)
@@ -76,35 +83,60 @@ function(drogue_add_test)
   if(_test_BACKEND OR _test_LABEL STREQUAL "exact")
     add_dependencies(drogue_kernel_tests ${_test_NAME})
   endif()
+  set(_exact_cases)
+  if(NOT _test_BACKEND OR "${DROGUE_BACKENDS};" MATCHES "^${_test_BACKEND};")
+    foreach(_source IN LISTS _test_CASES)
+      file(STRINGS "${_source}" _marked REGEX "^// ctest-label: (.* )?exact( |$)")
+      list(APPEND _exact_cases ${_marked})
+    endforeach()
+  endif()
+  if(_exact_cases OR _test_LABEL STREQUAL "exact")
+    add_dependencies(drogue_exact_tests ${_test_NAME})
+  endif()
   if(_test_NAME MATCHES "_long(_[a-z]+)?$" AND NOT _label STREQUAL "gpu")
     set(_label long)
   endif()
-  # Listing the cases before a test run, not while building, lets a machine without a GPU build the CUDA tests. A test of
-  # two threads counts as work for one core: most of it is its oracle's, and threads that wait do so without turning.
+  # Listing the cases before a test run, not while building, lets a machine without a GPU build the CUDA tests.
   gtest_discover_tests(${_test_NAME} TEST_PREFIX "${_prefix}" DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60
-    PROPERTIES LABELS "${_label}" TIMEOUT 600 ENVIRONMENT "OMP_NUM_THREADS=${_threads};OMP_WAIT_POLICY=passive")
+    PROPERTIES LABELS "${_label}" TIMEOUT 600)
+  # A test of two threads counts as work for one core: most of it is its oracle's, and waiting threads yield the core.
+  set(_environment "OMP_NUM_THREADS=${_threads};OMP_WAIT_POLICY=passive")
+  set(_properties "${CMAKE_CURRENT_BINARY_DIR}/${_test_NAME}_properties.cmake")
+  file(CONFIGURE OUTPUT "${_properties}" @ONLY CONTENT [[
+if(@_test_NAME@_TESTS)
+  include("@PROJECT_SOURCE_DIR@/cmake/test_properties.cmake")
+  drogue_test_properties("@_prefix@" "@_label@" "@_environment@" TESTS ${@_test_NAME@_TESTS} SOURCES "@_test_CASES@")
+endif()
+]])
+  set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES "${_properties}")
 endfunction()
 
 # drogue_add_python_test(<file> <label>): a unittest module, run with the standard library's runner.
 # Its environment names the programs (DROGUE_BIN), the sources (DROGUE_SOURCE) and the build folder (DROGUE_BUILD).
+# A line `# ctest-label: NAME...` before its docstring adds labels.
 function(drogue_add_python_test file label)
   cmake_path(GET file PARENT_PATH _folder)
   cmake_path(GET file FILENAME _filename)
   cmake_path(GET file STEM _stem)
   if(_stem MATCHES "_long$")
     set(_labels long)
+    set(_timeout 3600)
   else()
     set(_labels "${label}")
+    set(_timeout 900)
   endif()
+  file(STRINGS "${file}" _marked REGEX "^# ctest-label: ")
+  string(REGEX REPLACE "# ctest-label: |[ ;]+" ";" _marked "${_marked}")
+  list(APPEND _labels ${_marked})
   set(_name "${label}.${_stem}")
   add_test(NAME "${_name}"
     COMMAND "${Python3_EXECUTABLE}" -B -m unittest discover -v -s "${_folder}" -t "${_folder}" -p "${_filename}")
-  # These are the long ones: first, so that none is left alone at the end. Threads that wait leave the cores to other tests.
-  set_tests_properties("${_name}" PROPERTIES LABELS "${_labels}" COST 100 TIMEOUT 900 ENVIRONMENT
+  # Python tests take longest: first, so that none runs alone at the end. Waiting threads yield their cores to other tests.
+  set_tests_properties("${_name}" PROPERTIES LABELS "${_labels}" COST 100 TIMEOUT ${_timeout} ENVIRONMENT
     "DROGUE_BIN=${CMAKE_RUNTIME_OUTPUT_DIRECTORY};DROGUE_SOURCE=${PROJECT_SOURCE_DIR};DROGUE_BUILD=${PROJECT_BINARY_DIR};OMP_NUM_THREADS=2;OMP_WAIT_POLICY=passive")
 endfunction()
 
-# drogue_first_include(result <header>): the header of ours with which it begins, or nothing.
+# drogue_first_include(result <header>): the own header that a header includes first, or nothing.
 function(drogue_first_include result header)
   file(STRINGS "${header}" _lines LIMIT_COUNT 2 REGEX "^[^/]")
   list(POP_BACK _lines _second)
@@ -114,9 +146,9 @@ function(drogue_first_include result header)
   endif()
 endfunction()
 
-# drogue_add_header_test(<headers>): compiles every header alone, twice in one source, as part of the build. A header that begins
-# with another shows that that one compiles alone, too: its source includes both. Those that include Kokkos find it compiled
-# already, which shows nothing of one that does not.
+# drogue_add_header_test(<headers>): compiles every header alone, twice in one source, as part of the build. A header whose first
+# include is another one tests both in one source. Headers that include Kokkos take it precompiled; the others are compiled
+# without it, so that a missing include is found.
 function(drogue_add_header_test)
   foreach(_header IN LISTS ARGN)
     cmake_path(RELATIVE_PATH _header BASE_DIRECTORY "${PROJECT_SOURCE_DIR}" OUTPUT_VARIABLE _name)
@@ -157,7 +189,7 @@ function(drogue_add_header_test)
   target_precompile_headers(drogue_kokkos_header_test PRIVATE <Kokkos_Core.hpp>)
   foreach(_test drogue_header_test drogue_kokkos_header_test)
     target_link_libraries(${_test} PRIVATE drogue_gas_app drogue_springs_app drogue_options_app drogue_private drogue_toml muparser::muparser)
-    # Each is to compile alone. Nothing runs: only whether it compiles is asked.
+    # Each header compiles alone; nothing runs.
     set_target_properties(${_test} PROPERTIES UNITY_BUILD OFF)
     target_compile_options(${_test} PRIVATE -O0)
   endforeach()

@@ -16,8 +16,9 @@ struct BuildInfo {
   std::string_view mpi;
   std::string_view hdf5;  ///< version and "serial" or "parallel"
   std::string_view hypre;
-  std::string_view backends;  ///< compiled in, separated by blanks: "serial openmp"
-  bool exact;                 ///< no fused multiply-add: backends agree bit for bit
+  std::string_view backends;        ///< compiled in, separated by blanks: "serial openmp"
+  std::string_view known_backends;  ///< that the sources support, likewise: "serial openmp cuda"
+  bool exact;                       ///< no fused multiply-add: backends agree bit for bit
 };
 
 [[nodiscard]] const BuildInfo& build_info() noexcept;

@@ -6,7 +6,7 @@
 #include "common/program/mpi_guard.hpp"
 #include "common/program/program.hpp"
 #include "common/program/provenance.hpp"
-#include "perf/command.hpp"
+#include "perf/command/command.hpp"
 
 namespace {
 

@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
-"""Compares two builds of the programs: the bits of their results, and their speed in alternating runs.
+"""Compares two builds of the programs: the bits of their results, or their speed in alternating runs.
 
-    scripts/compare_builds.py OLD NEW [--backend serial] [--only REGEX]        OLD, NEW: folders of programs, such as build/exact/bin
+    scripts/compare_builds.py OLD NEW [--backend serial] [--only REGEX]
     scripts/compare_builds.py OLD NEW --speed FILTER [--rounds 5]
 
-Without --speed every shipped scene and batch runs with both builds (preset `exact`, else fused operations differ with the
-compiler's choices) and datasets, histories and prices are compared byte for byte; needs h5py. With --speed `drogue-perf run
---filter FILTER` of both builds runs in turns, and the medians over all samples are compared. The exit code is 1 if a result
-differs, or a case is more than 2 % slower.
+OLD and NEW are folders of programs, such as build/exact/bin. Without --speed, both builds run every shipped scene and
+batch, and datasets, histories and prices are compared byte for byte; needs h5py and builds of the preset `exact`, since
+the compiler chooses fused operations differently. With --speed, both builds alternately run `drogue-perf run --filter
+FILTER`, and the medians over all samples are compared. The exit code is 1 if a result differs, or a case is more than
+2 % slower.
 """
 
 import argparse
@@ -19,7 +20,7 @@ import subprocess
 import sys
 import tempfile
 
-from recording import differing, run, scenes
+from recording import differing_results, list_scenes, run
 
 BATCHES = {
     "example": ["price", "example", "--greeks"],
@@ -30,34 +31,40 @@ BATCHES = {
     "hard_cases": ["price", "hard_cases"],
     "example_surface": ["surface", "example_surface", "--strikes", "60:140:9", "--maturities", "0.25,1"],
 }
-SLOWER = 1.02
+SLOWDOWN_LIMIT = 1.02
 
 
 def scene_difference(programs, scene, backend, work):
-    """Names of the datasets that differ between the runs of one scene, or why a run cannot be compared."""
+    """Names of the datasets that differ between the runs of one scene, or the reason why they cannot be compared."""
     folders = [work / f"{scene}-{side}" for side in ("old", "new")]
-    results = [run(program, scene, backend, folder) for program, folder in zip(programs, folders, strict=True)]
+    results = [
+        run(program, scene, backend, folder) for program, folder in zip(programs, folders, strict=True)
+    ]
     codes = [result["exit_code"] for result in results]
     if codes[0] != codes[1]:
         return [f"exit codes {codes}: {results[1]['message']}"]
-    different = differing(*folders) if (folders[0] / "fields.h5").exists() else []
-    histories = [(folder / "history.csv").read_bytes() for folder in folders if (folder / "history.csv").exists()]
+    different = differing_results(*folders) if (folders[0] / "fields.h5").exists() else []
+    histories = [
+        (folder / "history.csv").read_bytes() for folder in folders if (folder / "history.csv").exists()
+    ]
     return different + (["history.csv"] if len(set(histories)) > 1 else [])
 
 
 def batch_difference(programs, words, backend, work):
-    """As `scene_difference`, for a batch of options."""
+    """Like `scene_difference`, for a batch of options."""
     prices = []
     for side, program in zip(("old", "new"), programs, strict=True):
         file = work / f"{side}.csv"
         file.unlink(missing_ok=True)
-        subprocess.run([program, *words, "--backend", backend, "--out", file], capture_output=True, check=False)
+        subprocess.run(
+            [program, *words, "--backend", backend, "--out", file], capture_output=True, check=False
+        )
         prices.append(file.read_bytes() if file.exists() else None)
     return [] if prices[0] is not None and prices[0] == prices[1] else ["prices"]
 
 
 def compare_bits(old, new, backend, only):
-    """Prints a line for every scene and batch; the number of those that differ."""
+    """Prints a line per scene and batch; returns the number of those that differ."""
     count = 0
     with tempfile.TemporaryDirectory() as folder:
         work = pathlib.Path(folder)
@@ -66,30 +73,43 @@ def compare_bits(old, new, backend, only):
             if name == "drogue-options":
                 cases = {batch: (batch_difference, words) for batch, words in BATCHES.items()}
             else:
-                # The scenes that NAME-full repeats on a mesh for GPUs run as NAME.
-                cases = {s: (scene_difference, s) for s in scenes(programs[1]) if not s.endswith("-full")}
+                # NAME-full repeats the scene NAME on a fine mesh for GPUs and is skipped.
+                cases = {
+                    s: (scene_difference, s) for s in list_scenes(programs[1]) if not s.endswith("-full")
+                }
             for case, (difference, argument) in cases.items():
                 if not re.search(only, f"{name}/{case}"):
                     continue
                 different = difference(programs, argument, backend, work)
-                print(f"{name} {case}: {'different: ' + ', '.join(different[:5]) if different else 'the same bits'}", flush=True)
+                print(
+                    f"{name} {case}: {'different: ' + ', '.join(different[:5]) if different else 'the same bits'}",
+                    flush=True,
+                )
                 count += bool(different)
     return count
 
 
 def compare_speed(old, new, pattern, rounds):
-    """Prints old and new medians of every case; the number of cases that got slower by more than 2 %."""
+    """Prints old and new medians of each case; returns the number of cases that are more than 2 % slower."""
     samples = {}
     with tempfile.TemporaryDirectory() as folder:
         for turn in range(rounds):
-            for side, programs in (("old", old), ("new", new)) if turn % 2 == 0 else (("new", new), ("old", old)):
+            for side, programs in (
+                (("old", old), ("new", new)) if turn % 2 == 0 else (("new", new), ("old", old))
+            ):
                 file = pathlib.Path(folder) / "records.jsonl"
                 file.unlink(missing_ok=True)
-                subprocess.run([programs / "drogue-perf", "run", "--filter", pattern, "--out", file], check=True, capture_output=True)
+                subprocess.run(
+                    [programs / "drogue-perf", "run", "--filter", pattern, "--out", file],
+                    check=True,
+                    capture_output=True,
+                )
                 for line in file.read_text().splitlines():
                     record = json.loads(line)
                     if record["check"] == "passed":
-                        samples.setdefault(record["case"], {"old": [], "new": []})[side].extend(record["samples"])
+                        samples.setdefault(record["case"], {"old": [], "new": []})[side].extend(
+                            record["samples"]
+                        )
     slower = 0
     for case, sides in samples.items():
         if not sides["old"] or not sides["new"]:
@@ -97,18 +117,25 @@ def compare_speed(old, new, pattern, rounds):
             continue
         before, after = statistics.median(sides["old"]), statistics.median(sides["new"])
         best = min(sides["new"]) / min(sides["old"])
-        slower += after > SLOWER * before
-        print(f"{case}: {before:.4g} s old, {after:.4g} s new, ratio of medians {after / before:.3f}, of minima {best:.3f}")
+        slower += after > SLOWDOWN_LIMIT * before
+        print(
+            f"{case}: {before:.4g} s old, {after:.4g} s new, "
+            f"ratio of medians {after / before:.3f}, of minima {best:.3f}"
+        )
     return slower
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("old", type=pathlib.Path)
     parser.add_argument("new", type=pathlib.Path)
     parser.add_argument("--backend", default="serial")
     parser.add_argument("--only", default="", help="regular expression for PROGRAM/SCENE")
-    parser.add_argument("--speed", metavar="FILTER", help="compare the speed of these cases of drogue-perf instead")
+    parser.add_argument(
+        "--speed", metavar="FILTER", help="compare the speed of these cases of drogue-perf instead"
+    )
     parser.add_argument("--rounds", type=int, default=5)
     arguments = parser.parse_args()
     old, new = arguments.old.resolve(), arguments.new.resolve()

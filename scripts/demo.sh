@@ -3,7 +3,7 @@
 #
 #   scripts/demo.sh [--system] [SCENE...]
 #     --system   install nothing, use the libraries and the Python packages that are there
-#     SCENE      run these scenes only (default: all but those that want a GPU's time)
+#     SCENE      run these scenes only (default: all but those that need a GPU)
 #
 # Environment: DROGUE_DEMO_OUT (folder of the page, default out/demo), and that of scripts/setup.sh.
 . "$(dirname "${BASH_SOURCE[0]}")/lib/common.sh"

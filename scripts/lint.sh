@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Runs clang-tidy 14 on our host sources, as .clang-tidy says; needs the host build's compile commands.
+# Runs clang-tidy 14 on our host sources, by .clang-tidy; needs the host build's compile commands.
 #
 #   scripts/lint.sh [FILE...]      default: every .cpp of common/, kernels/reference/ and miniapps/
 . "$(dirname "${BASH_SOURCE[0]}")/lib/common.sh"

@@ -1,13 +1,19 @@
 #!/usr/bin/env python3
-"""Writes springs-<machine>.json: what drogue-springs does on this machine, from its own files.
+"""Writes docs/evidence/springs-<machine>.json, the record of drogue-springs on this machine, from its result files.
 
-    scripts/record_springs.py MACHINE --bin build/cuda/bin [--exact build/cuda-exact/bin] [--backends serial,openmp,cuda]
-                              [--tables serial] [--largest] [--work FOLDER] [--to FOLDER]
+    scripts/record_springs.py MACHINE --bin build/cuda/bin [--exact build/cuda-exact/bin]
+                              [--backends serial,openmp,cuda] [--tables serial] [--largest]
+                              [--work FOLDER] [--to FOLDER]
 
-Every shipped scene on every backend (error, tolerance, steps, time, ledger), with --exact the datasets of all scenes compared
-bit for bit between backends, and tables 5.1 to 5.4 of the dissertation beside its numbers, on the backend of --tables,
-the last unless given; table 5.3 with its finest mesh only with --largest. Needs numpy and h5py. Tables are printed as
-Markdown; the exit code is 1 if any run failed.
+The record holds every shipped scene on every backend (error, tolerance, steps, time, ledger), and tables 5.1 to 5.4 of
+the dissertation beside its numbers. Options:
+
+    --exact     bitwise comparison of the datasets of all scenes between backends
+    --tables    backend of the tables; default: the last one of --backends
+    --largest   table 5.3 with its finest mesh
+    --to        folder of the record; default: docs/evidence
+
+Needs numpy and h5py. Prints the tables as Markdown. The exit code is 1 if any run failed.
 """
 
 import csv
@@ -15,16 +21,16 @@ import json
 import subprocess
 import sys
 
-from recording import assignments, exact_rows, parser, run, scene_runs, write
+from recording import argument_parser, assignments, exact_rows, run, scene_runs, write_record
 
-# Number of points, stiffness of a spring (N/m), and the Cauchy errors of length (m), kinetic and spring energy
-# (J) to the next mesh: tables 5.1 and 5.2.
+# Tables 5.1 and 5.2: number of points, spring stiffness (N/m), and Cauchy errors to the next mesh of length (m),
+# kinetic and spring energy (J).
 CHORD = ((60, 5000, (0.00374, 0.01664, 0.03464)), (123, 10000, (0.00184, 0.00821, 0.01726)),
          (248, 20000, (0.000918, 0.00406, 0.008614)), (498, 40000, None))  # fmt: skip
-# Number of points, and the errors of area (m^2), kinetic and spring energy: tables 5.1 and 5.3.
+# Tables 5.1 and 5.3: number of points, and Cauchy errors of area (m^2), kinetic and spring energy (J).
 DRUM = ((266, (0.02528, 1.91810, 1.97967)), (990, (0.01507, 1.21784, 1.21772)), (3790, (0.00604, 0.53550, 0.52837)),
         (14841, None))  # fmt: skip
-# Poisson's ratio, and per Young's modulus (Pa) what the dissertation measures, in table 5.4.
+# Table 5.4: Poisson's ratio, then for each Young's modulus (Pa) the measured modulus and Poisson's ratio.
 STRIP = (
     (0.14, ((1e8, 0.0963016606e9, 0.141887), (2e8, 0.1926061554e9, 0.141920), (3e8, 0.2888656609e9, 0.141910),
             (4e8, 0.3852341348e9, 0.141913), (5e8, 0.4815205552e9, 0.141905))),
@@ -34,15 +40,26 @@ STRIP = (
             (4e8, 0.3814011184e9, 0.305359), (5e8, 0.4767297379e9, 0.305355))),
 )  # fmt: skip
 STRIP_VERTICES = 1300  # about 2468 triangles, one of the meshes of figure 5.5
-THICKNESS = 1e-4  # m; the dissertation gives none, and ratios do not depend on it
+THICKNESS = 1e-4  # m; not given in the dissertation, and without influence on the ratios
 GRIPS = 'pin=[{where="x==0"},{where="x>0.1-1e-9",motion={x=1e-6}},{where="1",axes="z"}]'
-END_TIME = 1.0  # s; of tables 5.2 and 5.3
+END_TIME = 1.0  # s, in tables 5.2 and 5.3
 TIMES = f"output.times={[round(0.005 * k, 6) for k in range(round(END_TIME / 0.005) + 1)]}"
 
 
 def study(program, scene, backend, folder, lists, *sets):
-    """Rows of a study, each with its series and the cells of its line in study.csv."""
-    command = [program, scene, "--backend", backend, "--overwrite", "--quiet", "--out", folder, "--study", lists]
+    """Rows of a study, each with its time series and its row of study.csv; empty if the study failed."""
+    command = [
+        program,
+        scene,
+        "--backend",
+        backend,
+        "--overwrite",
+        "--quiet",
+        "--out",
+        folder,
+        "--study",
+        lists,
+    ]
     words = [str(word) for word in [*command, *assignments(*sets)]]
     done = subprocess.run(words, capture_output=True, text=True, check=False)
     if done.returncode != 0:
@@ -53,61 +70,108 @@ def study(program, scene, backend, folder, lists, *sets):
 
 
 def mean_difference(time, first, second, power=1):
-    """Mean over time of |first - second| by the trapezoidal rule; of power 2 the root of the mean square."""
+    """Time average of |first - second| by the trapezoidal rule; for power 2, the root mean square."""
     apart = [abs(a - b) ** power for a, b in zip(first, second, strict=True)]
-    pieces = (0.5 * (apart[k - 1] + apart[k]) * (time[k] - time[k - 1]) for k in range(1, len(time)))
-    return (sum(pieces) / (time[-1] - time[0])) ** (1 / power)
+    integrals = (0.5 * (apart[k - 1] + apart[k]) * (time[k] - time[k - 1]) for k in range(1, len(time)))
+    return (sum(integrals) / (time[-1] - time[0])) ** (1 / power)
 
 
 def cauchy(coarse, fine, measure, power=1):
-    return [mean_difference(coarse["series"]["time"], coarse["series"][name], fine["series"][name], power)
-            for name in (measure, "kinetic", "elastic")]
+    """Cauchy errors of a measure and of the kinetic and elastic energies between two meshes."""
+    return [
+        mean_difference(coarse["series"]["time"], coarse["series"][name], fine["series"][name], power)
+        for name in (measure, "kinetic", "elastic")
+    ]
 
 
-def row_of(points, mass, printed, found, **more):
+def table_row(points, mass, printed, found, **more):
+    """Row of a table with the dissertation's printed values and the computed ones."""
     return {"points": points, "mass": mass} | more | {"dissertation": printed, "cauchy": found}
 
 
 def chord_table(program, backend, work):
-    """Table 5.2: the stiffness of the dissertation, whose E A is not quite the same on all meshes; and E A kept."""
+    """Table 5.2, with the dissertation's stiffnesses, whose E A varies slightly by mesh, and with fixed E A."""
     sets = [f"time.end_time={END_TIME}", TIMES, "output.history_every=2000"]
-    own = [study(program, "swing-chord", backend, work / f"chord-{points}", "masses=equal:area", *sets,
-                 f"mesh.string.vertices={points}", f"material.stiffness={stiffness}") for points, stiffness, _ in CHORD]
-    kept = study(program, "swing-chord", backend, work / "chord-kept",
-                 "meshes=" + ":".join(str(points) for points, *_ in CHORD) + ",masses=equal:area", *sets)
+    own = [
+        study(
+            program,
+            "swing-chord",
+            backend,
+            work / f"chord-{points}",
+            "masses=equal:area",
+            *sets,
+            f"mesh.string.vertices={points}",
+            f"material.stiffness={stiffness}",
+        )
+        for points, stiffness, _ in CHORD
+    ]
+    kept = study(
+        program,
+        "swing-chord",
+        backend,
+        work / "chord-kept",
+        "meshes=" + ":".join(str(points) for points, *_ in CHORD) + ",masses=equal:area",
+        *sets,
+    )
     if not all(own) or not kept:
         return None
     rows = []
     for turn, mass in enumerate(("equal", "area")):
         for k, (points, stiffness, printed) in enumerate(CHORD[:-1]):
             pair = own[k][turn], own[k + 1][turn], "length"
-            found = {"stiffness": cauchy(*pair), "stiffness_rms": cauchy(*pair, power=2),
-                     "axial_stiffness": cauchy(kept[4 * turn + k], kept[4 * turn + k + 1], "length")}
-            rows.append(row_of(points, mass, printed, found, stiffness=stiffness, average_mass_g=0.5 / points))
+            found = {
+                "stiffness": cauchy(*pair),
+                "stiffness_rms": cauchy(*pair, power=2),
+                "axial_stiffness": cauchy(kept[4 * turn + k], kept[4 * turn + k + 1], "length"),
+            }
+            rows.append(
+                table_row(points, mass, printed, found, stiffness=stiffness, average_mass_g=0.5 / points)
+            )
     return rows
 
 
 def drum_table(program, backend, work, largest):
-    """Table 5.3, by springs along edges as they are there and by a membrane."""
+    """Table 5.3, with springs along edges as in the dissertation, and with the biquadratic membrane."""
     meshes = DRUM if largest else DRUM[:-1]
-    lists = "meshes=" + ":".join(str(points) for points, _ in meshes) + ",models=edge:biquadratic,masses=equal:area"
-    found = study(program, "drum-cone", backend, work / "drum-cone-study", lists,
-                  f"time.end_time={END_TIME}", TIMES, "output.history_every=2000")
+    lists = (
+        "meshes="
+        + ":".join(str(points) for points, _ in meshes)
+        + ",models=edge:biquadratic,masses=equal:area"
+    )
+    found = study(
+        program,
+        "drum-cone",
+        backend,
+        work / "drum-cone-study",
+        lists,
+        f"time.end_time={END_TIME}",
+        TIMES,
+        "output.history_every=2000",
+    )
     if not found:
         return None
     rows = []
     for first in range(0, len(found), len(meshes)):
         for k, (points, printed) in enumerate(meshes[:-1]):
             row = found[first + k]
-            rows.append(row_of(points, row["mass"], printed, cauchy(row, found[first + k + 1], "area"),
-                               model=row["model"], vertices=row["vertices"], average_mass_g=380.0 / points,
-                               energy_at_start=row["series"]["elastic"][0],
-                               energy_drift=row["errors"]["energy_drift"]))
+            rows.append(
+                table_row(
+                    points,
+                    row["mass"],
+                    printed,
+                    cauchy(row, found[first + k + 1], "area"),
+                    model=row["model"],
+                    vertices=row["vertices"],
+                    average_mass_g=380.0 / points,
+                    energy_at_start=row["series"]["elastic"][0],
+                    energy_drift=row["errors"]["energy_drift"],
+                )
+            )
     return rows
 
 
 def end_forces(file, membrane, poisson):
-    """Positions at rest and at the end, and the forces on the vertices of St Venant-Kirchhoff triangles, all (n, 3)."""
+    """Rest positions, final positions (m), and vertex forces of St. Venant-Kirchhoff triangles (N), each (n, 3)."""
     import h5py
     import numpy as np
 
@@ -130,8 +194,12 @@ def end_forces(file, membrane, poisson):
 
 
 def response(file, membrane, poisson):
-    """Apparent modulus over the given one, of the whole reaction and without the node of a corner; contraction of the
-    width over strain, in the middle and where it is largest: of a clamped strip that is a width behind the grips."""
+    """Apparent moduli and Poisson's ratios of a stretched strip.
+
+    `modulus` is relative to the given one, from the whole reaction force; `modulus_without_a_corner` omits one corner
+    node. `poisson` is the contraction of the width over the strain in the middle, `largest_poisson` its maximum along
+    the strip, and `widths_from_a_grip` the distance of the maximum from a grip in widths: about 1 for a clamped strip.
+    """
     import numpy as np
 
     rest, now, force = end_forces(file, membrane, poisson)
@@ -147,22 +215,33 @@ def response(file, membrane, poisson):
         flank = flank[np.argsort(rest[flank, 0])]
         sides.append(np.interp(along, rest[flank, 0], moved[flank, 1]))
     contraction = (sides[0] - sides[1]) / (width * strain)
-    return {"modulus": pull.sum(), "modulus_without_a_corner": pull.sum() - pull[np.argmax(rest[end, 1])],
-            "poisson": contraction[100], "largest_poisson": contraction.max(),
-            "widths_from_a_grip": min(x := along[contraction.argmax()], length - x) / width}
+    return {
+        "modulus": pull.sum(),
+        "modulus_without_a_corner": pull.sum() - pull[np.argmax(rest[end, 1])],
+        "poisson": contraction[100],
+        "largest_poisson": contraction.max(),
+        "widths_from_a_grip": min(x := along[contraction.argmax()], length - x) / width,
+    }
 
 
 def strip_table(program, backend, work):
-    """Table 5.4: free to contract, which is right; and with clamped grips, as the dissertation has measured."""
+    """Table 5.4, for a strip that is free to contract (correct) and with clamped grips as in the dissertation."""
     rows = []
     for poisson, cases in STRIP:
         for modulus, printed_modulus, printed_poisson in cases:
             membrane = modulus * THICKNESS
-            # Statics do not depend on the mass: with it steps are as many as of the shipped scene.
-            sets = [f"material.poisson={poisson}", f"material.membrane_modulus={membrane!r}",
-                    f"material.area_density={1e-4 * membrane!r}", f"mesh.strip.vertices={STRIP_VERTICES}"]
-            row = {"poisson": poisson, "modulus": modulus,
-                   "dissertation": {"modulus": printed_modulus / modulus, "poisson": printed_poisson}}
+            # Statics do not depend on the mass, which is chosen such that the number of steps equals that of the scene.
+            sets = [
+                f"material.poisson={poisson}",
+                f"material.membrane_modulus={membrane!r}",
+                f"material.area_density={1e-4 * membrane!r}",
+                f"mesh.strip.vertices={STRIP_VERTICES}",
+            ]
+            row = {
+                "poisson": poisson,
+                "modulus": modulus,
+                "dissertation": {"modulus": printed_modulus / modulus, "poisson": printed_poisson},
+            }
             for name, more in (("free", []), ("clamped", [GRIPS, "verify={equilibrium=1e-6}"])):
                 folder = work / f"strip-{name}"
                 done = run(program, "strip", backend, folder, *assignments(*sets, *more))
@@ -173,52 +252,91 @@ def strip_table(program, backend, work):
     return rows
 
 
-def markdown(title, header, rows):
+def print_markdown(title, header, rows):
+    """Prints a Markdown table."""
     print(f"\n{title}\n\n| {' | '.join(header)} |\n|{'---:|' * len(header)}")
     for row in rows:
         print("| " + " | ".join(cell if isinstance(cell, str) else f"{cell:.4g}" for cell in row) + " |")
 
 
 def print_tables(record):
+    """Prints the tables of a record beside the dissertation's numbers."""
+
     def triple(values):
         return ", ".join(f"{value:.3g}" for value in values)
 
     if record["table_5_2"]:
-        markdown("Table 5.2", ("points", "mass", "dissertation", "its stiffness", "the same, RMS", "E A kept"),
-                 [(str(r["points"]), r["mass"], triple(r["dissertation"]), triple(r["cauchy"]["stiffness"]),
-                   triple(r["cauchy"]["stiffness_rms"]), triple(r["cauchy"]["axial_stiffness"])) for r in record["table_5_2"]])
+        print_markdown(
+            "Table 5.2",
+            ("points", "mass", "dissertation", "its stiffness", "the same, RMS", "E A kept"),
+            [
+                (
+                    str(r["points"]),
+                    r["mass"],
+                    triple(r["dissertation"]),
+                    triple(r["cauchy"]["stiffness"]),
+                    triple(r["cauchy"]["stiffness_rms"]),
+                    triple(r["cauchy"]["axial_stiffness"]),
+                )
+                for r in record["table_5_2"]
+            ],
+        )
     if record["table_5_3"]:
-        markdown("Table 5.3", ("points", "model", "mass", "dissertation", "here", "energy drift"),
-                 [(str(r["vertices"]), r["model"], r["mass"], triple(r["dissertation"]), triple(r["cauchy"]),
-                   r["energy_drift"]) for r in record["table_5_3"]])
+        print_markdown(
+            "Table 5.3",
+            ("points", "model", "mass", "dissertation", "here", "energy drift"),
+            [
+                (
+                    str(r["vertices"]),
+                    r["model"],
+                    r["mass"],
+                    triple(r["dissertation"]),
+                    triple(r["cauchy"]),
+                    r["energy_drift"],
+                )
+                for r in record["table_5_3"]
+            ],
+        )
     if record["table_5_4"]:
-        keys = (("dissertation", "modulus"), ("clamped", "modulus_without_a_corner"), ("clamped", "modulus"),
-                ("free", "modulus"), ("dissertation", "poisson"), ("clamped", "largest_poisson"),
-                ("clamped", "poisson"), ("free", "poisson"))
-        markdown("Table 5.4", ("nu", "E (GPa)", *(f"{a} {b.replace('_', ' ')}" for a, b in keys)),
-                 [(f"{r['poisson']:.2f}", f"{r['modulus'] / 1e9:.1f}", *(f"{r[a][b]:.5f}" for a, b in keys))
-                  for r in record["table_5_4"]])
+        keys = (
+            ("dissertation", "modulus"),
+            ("clamped", "modulus_without_a_corner"),
+            ("clamped", "modulus"),
+            ("free", "modulus"),
+            ("dissertation", "poisson"),
+            ("clamped", "largest_poisson"),
+            ("clamped", "poisson"),
+            ("free", "poisson"),
+        )
+        print_markdown(
+            "Table 5.4",
+            ("nu", "E (GPa)", *(f"{a} {b.replace('_', ' ')}" for a, b in keys)),
+            [
+                (f"{r['poisson']:.2f}", f"{r['modulus'] / 1e9:.1f}", *(f"{r[a][b]:.5f}" for a, b in keys))
+                for r in record["table_5_4"]
+            ],
+        )
 
 
 def main():
-    options = parser(__doc__)
+    options = argument_parser(__doc__)
     options.add_argument("--tables")
     options.add_argument("--largest", action="store_true")
     arguments = options.parse_args()
     program = arguments.bin / "drogue-springs"
     backends, work = arguments.backends.split(","), arguments.work
-    of_tables = arguments.tables or backends[-1]
+    tables_backend = arguments.tables or backends[-1]
     record = {"schema": "drogue.record/1", "machine": arguments.machine} | scene_runs(program, backends, work)
     failed = [r for r in record["runs"] if r["exit_code"] != 0]
     if arguments.exact:
         record["exact"] = exact_rows(arguments.exact / "drogue-springs", backends, work)
         failed += [row for row in record["exact"] if not row["identical"]]
-    record["table_5_2"] = chord_table(program, of_tables, work)
-    record["table_5_3"] = drum_table(program, of_tables, work, arguments.largest)
-    record["table_5_4"] = strip_table(program, of_tables, work)
+    record["table_5_2"] = chord_table(program, tables_backend, work)
+    record["table_5_3"] = drum_table(program, tables_backend, work, arguments.largest)
+    record["table_5_4"] = strip_table(program, tables_backend, work)
     failed += [{"table": name} for name in ("table_5_2", "table_5_3", "table_5_4") if record[name] is None]
     print_tables(record)
-    return write(record, arguments.to / f"springs-{arguments.machine}.json", failed, ("exact",))
+    return write_record(record, arguments.to / f"springs-{arguments.machine}.json", failed, ("exact",))
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""What the records of all programs have in common: runs, their summaries, bits compared between backends, the file."""
+"""Shared parts of the recording scripts: runs, summaries, bitwise comparison of backends, and the record file."""
 
 import argparse
 import json
@@ -7,39 +7,48 @@ import subprocess
 
 
 def run(program, scene, backend, folder, *more):
-    """Result of one run, with its exit code."""
+    """Runs a scene into `folder`; returns its result.json with the keys `exit_code` and `message`."""
     command = [program, scene, "--backend", backend, "--overwrite", "--quiet", "--out", folder, *more]
     done = subprocess.run([str(word) for word in command], capture_output=True, text=True, check=False)
     file = pathlib.Path(folder) / "result.json"
     result = json.loads(file.read_text()) if file.exists() else {}
-    return result | {"exit_code": done.returncode, "message": done.stderr.strip() or result.get("message", "")}
+    return result | {
+        "exit_code": done.returncode,
+        "message": done.stderr.strip() or result.get("message", ""),
+    }
 
 
 def assignments(*sets):
-    """The words `--set a --set b` of assignments."""
+    """Command-line arguments `--set a --set b ...`."""
     return [word for assignment in sets for word in ("--set", assignment)]
 
 
-def scenes(program):
+def list_scenes(program):
+    """Names of the shipped scenes of a program; raises CalledProcessError if it fails."""
     listed = subprocess.run([program, "--list-scenes"], capture_output=True, text=True, check=True).stdout
     return [line.split()[0] for line in listed.splitlines() if line.strip()]
 
 
 def summary(result):
+    """The part of a result that a record keeps; times in s."""
     keep = ("scene", "backend", "device", "threads", "steps", "exit_code", "message", "checks", "ledger")
-    short = {key: result.get(key) for key in keep} | {key: result[key] for key in ("limiter", "energy") if key in result}
+    short = {key: result.get(key) for key in keep} | {
+        key: result[key] for key in ("limiter", "energy") if key in result
+    }
     timing = result.get("timing", {})
     return short | {"compute_s": timing.get("compute_s"), "wall_s": timing.get("wall_s")}
 
 
-def identical(first, second):
-    """Datasets of two fields.h5 that differ in a bit."""
+def differing_datasets(first, second):
+    """Names of the datasets of two fields.h5 that are not bitwise equal; `no dataset` if there are none."""
     import h5py
 
     different = []
     with h5py.File(first) as a, h5py.File(second) as b:
         names = []
-        a["steps"].visititems(lambda name, item: names.append(name) if isinstance(item, h5py.Dataset) else None)
+        a["steps"].visititems(
+            lambda name, item: names.append(name) if isinstance(item, h5py.Dataset) else None
+        )
         for name in names:
             if a["steps"][name][...].tobytes() != b["steps"][name][...].tobytes():
                 different.append(name)
@@ -48,47 +57,66 @@ def identical(first, second):
     return different
 
 
-def differing(first, second):
-    """What of two run directories differs in a bit: datasets of fields.h5, or history.csv where there is none."""
+def differing_results(first, second):
+    """Names of the datasets of two run directories that are not bitwise equal; without fields.h5, `history.csv`."""
     if (first / "fields.h5").exists():
-        return identical(first / "fields.h5", second / "fields.h5")
+        return differing_datasets(first / "fields.h5", second / "fields.h5")
     same = (first / "history.csv").read_bytes() == (second / "history.csv").read_bytes()
     return [] if same else ["history.csv"]
 
 
 def exact_rows(program, backends, work):
+    """Rows on the bitwise equality of all scenes between the first backend and the others."""
     rows = []
-    for scene in scenes(program):
+    for scene in list_scenes(program):
         folders = {backend: work / f"exact-{scene}-{backend}" for backend in backends}
         codes = [run(program, scene, backend, folder)["exit_code"] for backend, folder in folders.items()]
         different = {}
         if not any(codes):
-            different = {b: differing(folders[backends[0]], folders[b]) for b in backends[1:]}
-        rows.append({"scene": scene, "exit_codes": codes, "identical": not any(codes) and not any(different.values()),
-                     "different": {b: len(names) for b, names in different.items()}})
+            different = {b: differing_results(folders[backends[0]], folders[b]) for b in backends[1:]}
+        rows.append(
+            {
+                "scene": scene,
+                "exit_codes": codes,
+                "identical": not any(codes) and not any(different.values()),
+                "different": {b: len(names) for b, names in different.items()},
+            }
+        )
     return rows
 
 
 def scene_runs(program, backends, work):
-    """Head of a record: every shipped scene on every backend."""
-    runs = [run(program, scene, backend, work / f"{scene}-{backend}") for scene in scenes(program) for backend in backends]
-    return {"provenance": runs[0].get("provenance"), "git": runs[0].get("git"), "runs": [summary(r) for r in runs]}
+    """Head of a record: provenance, and the summary of each shipped scene on each backend."""
+    runs = [
+        run(program, scene, backend, work / f"{scene}-{backend}")
+        for scene in list_scenes(program)
+        for backend in backends
+    ]
+    return {
+        "provenance": runs[0].get("provenance"),
+        "git": runs[0].get("git"),
+        "runs": [summary(r) for r in runs],
+    }
 
 
-def parser(description):
-    """The options that all records have."""
-    parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
+def argument_parser(description):
+    """Parser with the options that all recording scripts share."""
+    parser = argparse.ArgumentParser(
+        description=description, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("machine")
     parser.add_argument("--bin", type=pathlib.Path, required=True)
     parser.add_argument("--exact", type=pathlib.Path)
     parser.add_argument("--backends", default="serial,openmp")
     parser.add_argument("--work", type=pathlib.Path, default=pathlib.Path("out/record"))
-    parser.add_argument("--to", type=pathlib.Path, default=pathlib.Path(__file__).parent.parent / "docs/evidence")
+    parser.add_argument(
+        "--to", type=pathlib.Path, default=pathlib.Path(__file__).parent.parent / "docs/evidence"
+    )
     return parser
 
 
-def write(record, file, failed, shown):
-    """Writes the record and prints a summary; the exit code."""
+def write_record(record, file, failed, shown):
+    """Writes the record, prints a summary with the keys `shown`, and returns the exit code: 1 if a run failed."""
     file.parent.mkdir(parents=True, exist_ok=True)
     file.write_text(json.dumps(record, indent=1) + "\n")
     print(f"{len(record['runs'])} runs, {len(failed)} failed")

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs what Drogue needs; does nothing, in a second, when it is there. Never asks.
+# Installs what Drogue needs; does nothing, in a second, when it is there. Never prompts.
 #
 #   scripts/setup.sh [--system] [--no-cuda] [--developer] [--bundle]
 #     --system     install nothing: only check that the tools are there; libraries come from find_package

@@ -3,10 +3,12 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 #include <algorithm>
+#include <sstream>
 #include <string_view>
 
 #include "common/program/failure.hpp"
 #include "common/scene/nearest.hpp"
+#include "common/version.hpp"
 
 namespace drogue {
 namespace {
@@ -59,6 +61,27 @@ std::string parse_command_line(CLI::App& app, const std::vector<std::string>& wo
   for (const CLI::App* subcommand : app.get_subcommands()) refuse_extras(*subcommand);
   refuse_extras(app);
   return {};
+}
+
+std::vector<std::string> backend_choices() {
+  std::vector<std::string> choices = {"auto"};
+  std::istringstream names{std::string(build_info().known_backends)};
+  for (std::string name; names >> name;) choices.push_back(name);
+  return choices;
+}
+
+void add_backend_option(CLI::App& app, std::string& backend) {
+  app.add_option("--backend", backend, "where to compute: auto takes the fastest present")
+      ->check(CLI::IsMember(backend_choices()))
+      ->capture_default_str();
+}
+
+void require_nonempty_values(const CLI::App& app) {
+  for (const CLI::Option* option : app.get_options()) {
+    for (const std::string& value : option->results()) {
+      if (value.empty()) throw Failure(ExitCode::usage, option->get_name() + " is empty");
+    }
+  }
 }
 
 }  // namespace drogue

@@ -20,4 +20,15 @@ Arguments split_arguments(int argc, const char* const* argv);
 /// surplus argument.
 std::string parse_command_line(CLI::App& app, const std::vector<std::string>& words);
 
+/// Declares `--backend` with the names of all backends.
+void add_backend_option(CLI::App& app, std::string& backend);
+
+/// Throws `Failure` (usage) for an option with an empty value, say from an unset script variable, which must
+/// not count as absent.
+void require_nonempty_values(const CLI::App& app);
+
+/// Values of the option --backend: auto and every backend that the sources support, whether or not this build
+/// contains it. Does not throw.
+std::vector<std::string> backend_choices();
+
 }  // namespace drogue

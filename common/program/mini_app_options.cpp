@@ -12,9 +12,7 @@ namespace {
 
 void declare(CLI::App& app, MiniAppOptions& options) {
   app.add_option("SCENE", options.scene, "TOML file, or name of a shipped scene");
-  app.add_option("--backend", options.backend, "where to compute: auto takes the fastest present")
-      ->check(CLI::IsMember({"auto", "serial", "openmp", "cuda"}))
-      ->capture_default_str();
+  add_backend_option(app, options.backend);
   app.add_option("--set", options.set, "change a value of the scene: key.path=value; may be repeated")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
@@ -42,16 +40,6 @@ void declare(CLI::App& app, MiniAppOptions& options) {
   app.add_flag("--version", options.version, "print version, backends and libraries, and end");
 }
 
-/// Returns an option with an empty value, say from an unset script variable, which must not count as absent.
-const CLI::Option* empty_value(const CLI::App& app) {
-  for (const CLI::Option* option : app.get_options()) {
-    for (const std::string& value : option->results()) {
-      if (value.empty()) return option;
-    }
-  }
-  return nullptr;
-}
-
 void check_words(const CLI::App& app, const MiniAppOptions& options) {
   for (const std::string& assignment : options.set) {
     const std::size_t equals = assignment.find('=');
@@ -59,9 +47,7 @@ void check_words(const CLI::App& app, const MiniAppOptions& options) {
       throw Failure(ExitCode::usage, "--set needs key.path=value, not '" + assignment + "'");
     }
   }
-  if (const CLI::Option* option = empty_value(app)) {
-    throw Failure(ExitCode::usage, option->get_name() + " is empty");
-  }
+  require_nonempty_values(app);
   if (options.scene.empty() && !options.list_scenes && !options.version) {
     throw Failure(ExitCode::usage,
                   "no SCENE given; --list-scenes shows the shipped ones, --help the options");

@@ -13,10 +13,11 @@ struct DatasetSpec {
   std::string units;                 ///< `kg/m^3`; `1` for a pure number
   std::string centering;             ///< cell | vertex | face | edge
   std::string description;
-  std::string grid = {};  ///< name of the grid of a file with several, say canopy; empty: the main grid
+  std::string grid = {};  ///< name of the grid in a file with several; empty: the main grid
 };
 
-/// Path below `/mesh` or `/steps/N`: the name, behind the grid's name if it has one.
+/// Path below `/mesh` or `/steps/N`: the name of the dataset, after that of its grid if it has one. Does not
+/// throw.
 [[nodiscard]] inline std::string path_of(const DatasetSpec& spec) {
   return spec.grid.empty() ? spec.name : spec.grid + "/" + spec.name;
 }

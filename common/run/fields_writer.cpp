@@ -72,6 +72,7 @@ struct FieldsWriter::State {
   void resume(double time);
   void require_same_fields(const h5::Handle& output) const;
   [[nodiscard]] std::set<std::string> named_grids() const;
+  [[nodiscard]] std::vector<GridDatasets> grids() const;
   void write_xdmf() const;
   void abandon_step() noexcept;
   void publish(h5::Handle file, const std::string& group, const std::string& name,
@@ -142,21 +143,26 @@ std::set<std::string> FieldsWriter::State::named_grids() const {
   return names;
 }
 
-/// Writes fields.xdmf once the mesh of every grid is complete.
-void FieldsWriter::State::write_xdmf() const {
+std::vector<GridDatasets> FieldsWriter::State::grids() const {
   std::set<std::string> names = named_grids();
   for (const auto* specs : {&mesh, &fields})
     for (const DatasetSpec& spec : *specs) names.insert(spec.grid);
-  std::vector<GridDatasets> grids;
+  std::vector<GridDatasets> all;
   for (const std::string& name : names) {
-    GridDatasets& grid = grids.emplace_back();
+    GridDatasets& grid = all.emplace_back();
     grid.name = name;
     const auto belongs = [&](const DatasetSpec& spec) { return spec.grid == name; };
     std::ranges::copy_if(mesh, std::back_inserter(grid.mesh), belongs);
     std::ranges::copy_if(fields, std::back_inserter(grid.fields), belongs);
-    if (!is_complete(grid.mesh)) return;
   }
-  write_file_atomically(xdmf, xdmf_document(title, grids, outputs));
+  return all;
+}
+
+/// Writes fields.xdmf once the mesh of every grid is complete.
+void FieldsWriter::State::write_xdmf() const {
+  const std::vector<GridDatasets> all = grids();
+  if (std::ranges::all_of(all, [](const GridDatasets& grid) { return is_complete(grid.mesh); }))
+    write_file_atomically(xdmf, xdmf_document(title, all, outputs));
 }
 
 /// Closes the unnamed group of a step, which removes it from the file.
@@ -238,7 +244,8 @@ FieldsWriter::~FieldsWriter() { _state->abandon_step(); }
 
 void FieldsWriter::add_mesh(const DatasetSpec& spec, const Source& source) {
   _state->add_mesh<double>(spec, H5T_NATIVE_DOUBLE, source);
-  _state->write_xdmf();
+  // Coordinates of further axes may follow.
+  if (std::ranges::all_of(_state->grids(), fields_fit)) _state->write_xdmf();
 }
 
 void FieldsWriter::add_mesh(const DatasetSpec& spec, const IntegerSource& source) {

@@ -26,8 +26,8 @@ struct ReferenceSolution {
 };
 
 /// Writes fields.h5 and fields.xdmf of a run: `/mesh/<name>`, `/steps/000000/<field>`, and optionally
-/// `/reference/<field>`. Datasets of a named grid lie in a group of its name: `/mesh/canopy/vertices`,
-/// `/steps/000000/canopy/position`.
+/// `/reference/<field>`. Datasets of a named grid lie in a group of its name: `/mesh/<grid>/<name>`,
+/// `/steps/000000/<grid>/<field>`.
 ///
 /// Between steps the file is closed and on disk. A step is written unreachable and becomes visible by one
 /// write of one page in end_step(), so a kill leaves a file with whole steps; disk space is reserved in
@@ -46,8 +46,8 @@ class FieldsWriter {
   FieldsWriter(const FieldsWriter&) = delete;
   FieldsWriter& operator=(const FieldsWriter&) = delete;
 
-  /// Adds a mesh dataset, written in pieces that `source` fills, so that the host need not hold all of it. A
-  /// dataset that a continued file already has is kept.
+  /// Adds a mesh dataset in pieces that `source` fills, so that the host need not hold all of it. Keeps the
+  /// dataset of a continued file.
   void add_mesh(const DatasetSpec& spec, const Source& source);
   void add_mesh(const DatasetSpec& spec, const IntegerSource& source);
   void add_mesh(const DatasetSpec& spec, const std::vector<double>& values);
@@ -60,7 +60,8 @@ class FieldsWriter {
   /// whole rows of the first dimension, in any order.
   void write(std::string_view field, std::uint64_t first, std::span<const double> values);
 
-  /// Completes the output: syncs it to disk and lists it in fields.xdmf.
+  /// Completes the output: syncs it to disk and lists it in fields.xdmf. Throws std::invalid_argument if the
+  /// fields do not fit the mesh.
   void end_step();
 
   /// Adds or replaces `/reference`, with the attributes `scheme` and `cells`.

@@ -173,6 +173,16 @@ std::string to_json(const ResultDocument& result) {
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
+void record_failure(ResultDocument& result, const Failure& failure, const std::function<void()>& write) {
+  result.exit_code = failure.code();
+  result.message = failure.what();
+  try {
+    write();
+  } catch (const Failure& second) {
+    throw Failure(failure.code(), std::string(failure.what()) + "; and " + second.what());
+  }
+}
+
 void write_result(const std::filesystem::path& file, ResultDocument result) {
   result.peak_bytes.host = host_peak_bytes();
   write_file_atomically(file, to_json(result));

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <string>
 #include <utility>
@@ -111,6 +112,10 @@ ResultDocument new_result(const std::string& program, const std::string& scene);
 std::string status_name(ExitCode code);
 
 std::string to_json(const ResultDocument& result);
+
+/// Stores in `result` how a run failed, and calls `write`. Throws a `Failure` that names both failures if
+/// `write` throws one.
+void record_failure(ResultDocument& result, const Failure& failure, const std::function<void()>& write);
 
 /// Writes `file` atomically, with the peak of host memory. Throws `Failure` (io_error).
 void write_result(const std::filesystem::path& file, ResultDocument result);

@@ -65,7 +65,18 @@ bool is_rectilinear(const std::vector<DatasetSpec>& mesh) {
   return x != nullptr && y != nullptr && x->centering == "face" && y->centering == "face";
 }
 
-/// One grid at one output time.
+/// True if the leading dimensions of a field are the cells or vertices of a rectilinear grid along (z,) y and
+/// x.
+bool has_rectilinear_shape(const DatasetSpec& field, const std::vector<DatasetSpec>& mesh) {
+  const std::uint64_t at_cells = field.centering == "vertex" ? 0 : 1;
+  std::vector<std::uint64_t> expected;
+  for (const char* axis : {"z", "y", "x"})
+    if (const DatasetSpec* faces = find(mesh, axis)) expected.push_back(faces->shape.at(0) - at_cells);
+  return field.shape.size() >= expected.size() &&
+         std::equal(expected.begin(), expected.end(), field.shape.begin());
+}
+
+/// Grid at one output time.
 class GridAtTime {
  public:
   GridAtTime(const GridDatasets& grid, const OutputStep& output)
@@ -87,11 +98,19 @@ class GridAtTime {
   [[nodiscard]] std::string rectilinear(const std::string& name) const {
     const DatasetSpec &x = at(_grid.mesh, "x"), &y = at(_grid.mesh, "y");
     const DatasetSpec* z = find(_grid.mesh, "z");
-    const std::uint64_t faces[3] = {z != nullptr ? z->shape.at(0) : 1, y.shape.at(0), x.shape.at(0)};
-    std::string content = R"(        <Topology TopologyType="3DRectMesh" Dimensions=")" +
-                          dimensions({faces[0], faces[1], faces[2]}) + "\"/>\n";
+    std::vector<std::uint64_t> faces = {y.shape.at(0), x.shape.at(0)};
+    faces.insert(faces.begin(), z != nullptr ? z->shape.at(0) : 1);
+    std::string content =
+        R"(        <Topology TopologyType="3DRectMesh" Dimensions=")" + dimensions(faces) + "\"/>\n";
     content += geometry("VXVYVZ", mesh_item(x) + mesh_item(y) + (z != nullptr ? mesh_item(*z) : zero()));
-    for (const DatasetSpec& field : _grid.fields) content += structured_attribute(field, z == nullptr);
+    for (const DatasetSpec& field : _grid.fields) {
+      if (!has_rectilinear_shape(field, _grid.mesh))
+        throw std::invalid_argument("the field '" + field.name + "' of shape " + dimensions(field.shape) +
+                                    " does not fit a rectilinear grid of " + dimensions(faces) +
+                                    " faces along z, y and x; add the mesh dataset 'points' for fields with "
+                                    "another order of the axes");
+      content += structured_attribute(field, z == nullptr);
+    }
     return grid(name, content);
   }
 
@@ -171,7 +190,7 @@ class GridAtTime {
   std::string _group;
 };
 
-/// A grid at all output times. `at_time` writes it at one of them.
+/// Temporal collection of a grid; `at_time` writes the grid at one output time.
 template <class AtTime>
 std::string collection(const std::string& name, const GridDatasets& grid,
                        const std::vector<OutputStep>& outputs, const AtTime& at_time) {
@@ -196,7 +215,7 @@ std::string collections(const std::string& title, const GridDatasets& grid,
   };
   if (strings.shape.at(0) == 0) return of(name, triangles);
   if (triangles.shape.at(0) == 0) return of(name, strings);
-  return of(name + " cloth", triangles) + of(name + " strings", strings);
+  return of(name + " triangles", triangles) + of(name + " strings", strings);
 }
 
 }  // namespace
@@ -205,6 +224,12 @@ bool is_complete(const std::vector<DatasetSpec>& mesh) {
   const auto holds = [&](const char* name) { return find(mesh, name) != nullptr; };
   if (const DatasetSpec* x = find(mesh, "x"); x != nullptr && x->centering == "face") return holds("y");
   return holds("points") || holds("x") || (holds("vertices") && holds("triangles") && holds("strings"));
+}
+
+bool fields_fit(const GridDatasets& grid) {
+  if (find(grid.mesh, "points") != nullptr || !is_rectilinear(grid.mesh)) return true;
+  return std::ranges::all_of(
+      grid.fields, [&](const DatasetSpec& field) { return has_rectilinear_shape(field, grid.mesh); });
 }
 
 std::string xdmf_document(const std::string& title, const std::vector<GridDatasets>& grids,

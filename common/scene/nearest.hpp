@@ -9,7 +9,7 @@ namespace drogue::scene {
 /// Edit distance of two words: insertions, deletions, replacements, swaps of neighbours.
 int edit_distance(std::string_view a, std::string_view b);
 
-/// Text `did you mean "weno"?` for the nearest valid word, or all valid words if none is near.
+/// Text `did you mean "cells"?` for the nearest valid word, or all valid words if none is near.
 std::string suggestion(std::string_view word, const std::vector<std::string>& valid);
 
 }  // namespace drogue::scene

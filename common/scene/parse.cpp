@@ -158,7 +158,7 @@ std::vector<std::string> split_path(const std::string& path, const std::string& 
   return parts;
 }
 
-/// Parses a TOML value or a bare word: a shell removes the quotes of --set scheme.weno="js".
+/// Parses a TOML value or a bare word: a shell removes the quotes of --set mesh.kind="disk".
 Node parse_value(const std::string& text, const Place& place) {
   const auto first = text.find_first_not_of(" \t");
   if (first == std::string::npos || text.find('\n') != std::string::npos) {

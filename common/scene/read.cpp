@@ -14,28 +14,29 @@ class Reader {
   explicit Reader(Table& root) : _root(root) {}
 
   void run(const Node& document) {
-    take(_root, document);
+    bind(_root, document);
     drop_overridden(_root);
     check(_root);
-    const auto worst = std::min_element(_problems.begin(), _problems.end(),
-                                        [](const Problem& a, const Problem& b) { return a.rank < b.rank; });
-    if (worst != _problems.end()) throw Failure(ExitCode::invalid_scene, worst->text);
+    const auto worst =
+        std::min_element(_errors.begin(), _errors.end(),
+                         [](const SceneError& a, const SceneError& b) { return a.rank < b.rank; });
+    if (worst != _errors.end()) throw Failure(ExitCode::invalid_scene, worst->text);
   }
 
  private:
   /// Kinds of errors by descending importance.
   enum class Rank { decisive, unknown, value, missing, contradiction };
 
-  struct Problem {
+  struct SceneError {
     Rank rank;
     std::string text;
   };
 
   void report(Rank rank, const std::string& origin, const std::string& sentence) {
-    _problems.push_back({rank, origin + ": " + sentence});
+    _errors.push_back({rank, origin + ": " + sentence});
   }
 
-  void take(Table& table, const Node& node) {
+  void bind(Table& table, const Node& node) {
     table._origin = node.origin;
     for (const Member& member : *node.as<Node::Table>()) {
       const auto found = std::find_if(table._keys.begin(), table._keys.end(),
@@ -43,29 +44,29 @@ class Reader {
       if (found == table._keys.end()) {
         report(Rank::unknown, member.origin, unknown(table, member.name));
       } else {
-        take(**found, member, table.path_of(member.name));
+        bind(**found, member, table.path_of(member.name));
       }
     }
   }
 
-  void take(Key& key, const Member& member, const std::string& path) {
+  void bind(Key& key, const Member& member, const std::string& path) {
     key._origin = member.origin;
     if (key._kind == Key::Kind::value) {
-      const std::string complaint = key._codec.read(member.node, key._limits);
-      const std::string gap = complaint.starts_with('[') ? "" : " ";
+      const std::string fault = key._codec.read(member.node, key._limits);
+      const std::string gap = fault.starts_with('[') ? "" : " ";
       const Rank rank = key._decisive ? Rank::decisive : Rank::value;
-      if (!complaint.empty()) report(rank, member.origin, path + gap + complaint);
+      if (!fault.empty()) report(rank, member.origin, path + gap + fault);
     } else if (key._kind == Key::Kind::tables) {
-      take_tables(key, member, path);
+      bind_tables(key, member, path);
     } else if (member.node.as<Node::Table>() == nullptr) {
       report(Rank::value, member.origin, path + " must be a table, not " + describe(member.node));
     } else {
       if (key._kind == Key::Kind::optional_table) key._resize(1);
-      take(*key._tables.front(), member.node);
+      bind(*key._tables.front(), member.node);
     }
   }
 
-  void take_tables(Key& key, const Member& member, const std::string& path) {
+  void bind_tables(Key& key, const Member& member, const std::string& path) {
     const auto* array = member.node.as<Node::Array>();
     const bool all_tables =
         array != nullptr && std::all_of(array->begin(), array->end(), [](const Node& element) {
@@ -79,7 +80,7 @@ class Reader {
       return report(Rank::value, member.origin, path + " must be an array of tables, not " + what);
     }
     key._resize(array->size());
-    for (std::size_t i = 0; i < array->size(); ++i) take(*key._tables[i], (*array)[i]);
+    for (std::size_t i = 0; i < array->size(); ++i) bind(*key._tables[i], (*array)[i]);
   }
 
   std::string unknown(const Table& table, const std::string& name) const {
@@ -158,7 +159,7 @@ class Reader {
   }
 
   Table& _root;
-  std::vector<Problem> _problems;
+  std::vector<SceneError> _errors;
 };
 
 void read(Table& root, const Node& document) { Reader(root).run(document); }

@@ -26,7 +26,8 @@ class Key {
 
   Key& unit(std::string unit);
   Key& required();
-  /// Allows the key only where `applies` returns true; `condition` names the condition: `with weno = "z"`. A
+  /// Allows the key only where `applies` returns true; `condition` names the condition: `with kind = "disk"`.
+  /// A
   /// `--set` of the sibling key `decided_by` drops this key from the file where it no longer applies.
   Key& when(std::function<bool()> applies, std::string condition, std::string decided_by);
   Key& above(double low);

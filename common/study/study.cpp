@@ -32,14 +32,14 @@ void draw(const run::RunDirectory& directory, const std::string& program_name) {
 
 ExitCode run_points(const run::RunDirectory& directory, const run::ResultDocument& facts,
                     const Columns& columns, std::size_t count, const RunPoint& run_point, bool quiet) {
-  std::vector<Row> rows;
+  std::vector<StudyRow> rows;
   for (std::size_t i = 0; i < count; ++i) {
     if (!run_point(i, rows)) return ExitCode::interrupted;
     run::write_file_atomically(directory.file("study.csv"), csv(rows, columns, facts.backend));
     run::write_file_atomically(directory.file("study.json"), json(rows, columns, facts));
     if (!quiet) std::cout << line(rows.back(), columns) << std::flush;
   }
-  if (std::ranges::none_of(rows, [](const Row& row) { return row.code == ExitCode::ok; }))
+  if (std::ranges::none_of(rows, [](const StudyRow& row) { return row.code == ExitCode::ok; }))
     throw Failure(ExitCode::numerical_failure,
                   "every run of the study failed; '" + directory.file("study.json").string() + "' says how");
   draw(directory, facts.program);

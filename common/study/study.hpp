@@ -15,7 +15,7 @@
 namespace drogue::study {
 
 /// Result of one point of a study, from one or several runs.
-struct Row {
+struct StudyRow {
   std::string label;                                              ///< legend of its curve
   std::vector<std::variant<std::string, std::int64_t>> settings;  ///< as `Columns::settings` names them
   std::int64_t mesh = 0, steps = 0;
@@ -31,13 +31,14 @@ struct Row {
 /// errors, `status`.
 struct Columns {
   std::vector<std::string> settings;
-  std::string mesh;                 ///< say cells
-  std::vector<std::string> errors;  ///< of `Row::errors` or `Row::others`; empty where a row has none
-  std::string shown, shown_title;   ///< the error on the line of a run, and what it is called; may be empty
+  std::string mesh;  ///< say cells
+  std::vector<std::string>
+      errors;  ///< of `StudyRow::errors` or `StudyRow::others`; empty where a row has none
+  std::string shown, shown_title;  ///< the error on the line of a run, and what it is called; may be empty
 };
 
 /// Runs point `i`: appends its row, and may amend earlier rows. Returns false after a signal.
-using RunPoint = std::function<bool(std::size_t i, std::vector<Row>& rows)>;
+using RunPoint = std::function<bool(std::size_t i, std::vector<StudyRow>& rows)>;
 
 /// Runs `count` points. Writes study.csv and study.json after every point, so that an interrupted study keeps
 /// its results, then starts drogue-plot. `columns` may grow while points run. Returns `interrupted` or `ok`.

@@ -10,10 +10,10 @@
 namespace drogue::study {
 namespace {
 
-double time_of(const Row& row) { return row.samples.empty() ? NAN : run::median(row.samples); }
+double time_of(const StudyRow& row) { return row.samples.empty() ? NAN : run::median(row.samples); }
 
 /// Error of a row by name; NaN if the row lacks it.
-double error_of(const Row& row, const std::string& name) {
+double error_of(const StudyRow& row, const std::string& name) {
   for (const auto* values : {&row.errors, &row.others})
     if (const auto found = values->find(name); found != values->end()) return found->second;
   return NAN;
@@ -21,7 +21,7 @@ double error_of(const Row& row, const std::string& name) {
 
 }  // namespace
 
-std::string csv(const std::vector<Row>& rows, const Columns& columns, const std::string& backend) {
+std::string csv(const std::vector<StudyRow>& rows, const Columns& columns, const std::string& backend) {
   std::ostringstream text;
   text.precision(9);
   text << "label";
@@ -29,7 +29,7 @@ std::string csv(const std::vector<Row>& rows, const Columns& columns, const std:
   text << ",backend," << columns.mesh << ",steps,compute_s";
   for (const std::string& name : columns.errors) text << ',' << name;
   text << ",status\n";
-  for (const Row& row : rows) {
+  for (const StudyRow& row : rows) {
     text << row.label;
     for (const auto& setting : row.settings)
       std::visit([&text](const auto& value) { text << ',' << value; }, setting);
@@ -45,7 +45,8 @@ std::string csv(const std::vector<Row>& rows, const Columns& columns, const std:
   return text.str();
 }
 
-std::string json(const std::vector<Row>& rows, const Columns& columns, const run::ResultDocument& facts) {
+std::string json(const std::vector<StudyRow>& rows, const Columns& columns,
+                 const run::ResultDocument& facts) {
   nlohmann::json document = {{"schema", "drogue.study/1"},
                              {"program", facts.program},
                              {"version", facts.version},
@@ -56,7 +57,7 @@ std::string json(const std::vector<Row>& rows, const Columns& columns, const run
                              {"threads", facts.threads},
                              {"compiler", facts.provenance.compiler},
                              {"date", facts.provenance.date}};
-  for (const Row& row : rows) {
+  for (const StudyRow& row : rows) {
     nlohmann::json entry = {{"label", row.label},
                             {columns.mesh, row.mesh},
                             {"steps", row.steps},
@@ -76,7 +77,7 @@ std::string json(const std::vector<Row>& rows, const Columns& columns, const run
   return document.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 
-std::string line(const Row& row, const Columns& columns) {
+std::string line(const StudyRow& row, const Columns& columns) {
   char text[160];
   std::snprintf(text, sizeof text, "%-24s %8lld %s  ", row.label.c_str(), static_cast<long long>(row.mesh),
                 columns.mesh.c_str());

@@ -75,8 +75,11 @@ std::optional<std::string> why_unavailable(Backend backend) {
     return "the backend '" + text +
            "' finds no device; run on a machine with one, or build the preset 'host'";
   // Kokkos initialises every backend it was built with, and fails without a device.
-  if (is_compiled(Backend::cuda) && !is_present(Backend::cuda))
-    return "this build holds the backend 'cuda' and does not start without a device; build the preset 'host'";
+  for (const Backend compiled : compiled_backends()) {
+    if (!is_present(compiled))
+      return "this build holds the backend '" + std::string(name(compiled)) +
+             "' and does not start without a device; build the preset 'host'";
+  }
   return std::nullopt;
 }
 

@@ -15,14 +15,15 @@ namespace drogue::device {
 /// Backend of that name, compiled in or not. Empty for an unknown name. Does not throw.
 [[nodiscard]] std::optional<Backend> backend_from_name(std::string_view name);
 
-/// Backends that this build contains, slowest first.
+/// Backends that this build contains, slowest first. Does not throw.
 [[nodiscard]] std::vector<Backend> compiled_backends();
 
 /// Whether the backend is compiled in and has a device. Queries the driver without initialising Kokkos. A
 /// compiled host backend is always present. Does not throw.
 [[nodiscard]] bool is_present(Backend backend);
 
-/// Fastest backend that is compiled in and present; the slowest compiled one if none is present.
+/// Fastest backend that is compiled in and present; the slowest compiled one if none is present. Does not
+/// throw.
 [[nodiscard]] Backend fastest_backend();
 
 /// Backend of an option `--backend`: the fastest for "auto", else the backend of that name. Throws

@@ -6,7 +6,7 @@
 #include <tuple>
 #include <type_traits>
 
-// Declared here, so that code without Kokkos can name its execution spaces.
+// Forward declarations, which let code without Kokkos name the execution spaces.
 namespace Kokkos {
 class Serial;
 class OpenMP;

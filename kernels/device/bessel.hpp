@@ -4,8 +4,8 @@
 
 namespace drogue::device::portable {
 
-/// J_0 (order 0) or J_1 for x >= 30: Hankel's asymptotic expansion (Abramowitz and Stegun 9.2.5), cut where
-/// its terms are below 1e-18.
+/// J_0 (order 0) or J_1 (order 1) for x >= 30 by Hankel's asymptotic expansion (Abramowitz and
+/// Stegun, 9.2.5), truncated at terms below 1e-18.
 KOKKOS_INLINE_FUNCTION double bessel_far(int order, double x) {
   const double mu = 4.0 * order * order;
   double p = 1.0;
@@ -20,7 +20,7 @@ KOKKOS_INLINE_FUNCTION double bessel_far(int order, double x) {
       p += k % 4 == 0 ? term : -term;
     }
   }
-  // x - pi/4 (- pi/2) by the sum formulas: the difference itself would round
+  // cos and sin of x - pi/4 (- pi/2) by the addition theorems: computing the difference would round it.
   const double root = Kokkos::sqrt(0.5);
   const double c = (cos(x) + sin(x)) * root;
   const double s = (sin(x) - cos(x)) * root;
@@ -29,7 +29,7 @@ KOKKOS_INLINE_FUNCTION double bessel_far(int order, double x) {
   return Kokkos::sqrt(2.0 / (pi * x)) * (p * cosine - q * sine);
 }
 
-/// J_n for 0 <= x < n + 30 or so by Miller's backward recurrence, normalised by J_0 + 2 sum J_2k = 1.
+/// J_n for 0 <= x below about n + 30 by Miller's backward recurrence, normalised by J_0 + 2 sum J_2k = 1.
 KOKKOS_INLINE_FUNCTION double bessel_backward(int n, double x) {
   if (x == 0.0) return n == 0 ? 1.0 : 0.0;
   const int above = n > static_cast<int>(x) ? n : static_cast<int>(x);
@@ -37,10 +37,10 @@ KOKKOS_INLINE_FUNCTION double bessel_backward(int n, double x) {
   double next = 0.0;
   double value = 1e-300;  // J_k up to a factor
   double sum = 0.0;
-  double wanted = 0.0;
+  double unnormalized = 0.0;
   for (; k > 0; --k) {
     const double previous = 2.0 * k / x * value - next;
-    if (k == n) wanted = value;
+    if (k == n) unnormalized = value;
     if (k % 2 == 0) sum += 2.0 * value;
     next = value;
     value = previous;
@@ -49,14 +49,14 @@ KOKKOS_INLINE_FUNCTION double bessel_backward(int n, double x) {
       value *= scale;
       next *= scale;
       sum *= scale;
-      wanted *= scale;
+      unnormalized *= scale;
     }
   }
-  if (n == 0) wanted = value;
-  return wanted / (sum + value);
+  if (n == 0) unnormalized = value;
+  return unnormalized / (sum + value);
 }
 
-/// J_n(x) of whole order |n| <= 1000; NaN for another order.
+/// J_n(x) for integer orders |n| <= 1000 and |x| <= 1e6; NaN otherwise.
 KOKKOS_INLINE_FUNCTION double besselj(double order, double x) {
   if (order != Kokkos::floor(order) || !(magnitude(order) <= 1000.0)) return not_a_number();
   const int n = static_cast<int>(magnitude(order));
@@ -69,7 +69,7 @@ KOKKOS_INLINE_FUNCTION double besselj(double order, double x) {
   } else {
     double below = bessel_far(0, a);
     value = n == 0 ? below : bessel_far(1, a);
-    for (int k = 1; k < n; ++k) {  // upwards is stable while k < x
+    for (int k = 1; k < n; ++k) {  // forward recurrence is stable while k < x
       const double above = 2.0 * k / a * value - below;
       below = value;
       value = above;

@@ -8,15 +8,17 @@
 
 namespace drogue::device {
 
-/// A sequence of kernels that is recorded once and replayed. On the host it is called again.
+/// Sequence of kernels that is recorded once and launched repeatedly. On the host each launch calls it again.
 template <class ExecutionSpace>
 class CapturedGraph {
  public:
   using Enqueue = std::function<void(const ExecutionSpace&)>;
 
+  /// Stores `enqueue` without calling it. `instance` must outlive the graph. Does not throw.
   CapturedGraph(const Instance<ExecutionSpace>& instance, Enqueue enqueue)
       : _instance(&instance), _enqueue(std::move(enqueue)) {}
 
+  /// Enqueues the kernels; asynchronous where they are. Throws what `enqueue` throws.
   void launch() const { _enqueue(_instance->space()); }
 
   static constexpr const char* driver = "plain";
@@ -26,7 +28,7 @@ class CapturedGraph {
   Enqueue _enqueue;
 };
 
-/// Whether the caller captures the work of `space` into a CUDA graph.
+/// True while the work of `space` is captured into a CUDA graph. Throws std::runtime_error for a CUDA error.
 template <class ExecutionSpace>
 [[nodiscard]] bool is_capturing(const ExecutionSpace& space) {
 #if defined(KOKKOS_ENABLE_CUDA)
@@ -41,13 +43,15 @@ template <class ExecutionSpace>
 }
 
 #if defined(KOKKOS_ENABLE_CUDA)
-/// On CUDA the kernels are captured from the instance's stream, and a replay is one graph launch. What is
-/// enqueued must neither fence nor allocate.
+/// CUDA graph of the kernels, captured from the stream of the instance. The captured work must neither fence
+/// nor allocate.
 template <>
 class CapturedGraph<Kokkos::Cuda> {
  public:
   using Enqueue = std::function<void(const Kokkos::Cuda&)>;
 
+  /// Captures the kernels that `enqueue` launches, without running them. `instance` must outlive the graph.
+  /// Throws std::runtime_error for a CUDA error.
   CapturedGraph(const Instance<Kokkos::Cuda>& instance, const Enqueue& enqueue) : _stream(instance.stream()) {
     cudaGraph_t graph = nullptr;
     KOKKOS_IMPL_CUDA_SAFE_CALL(cudaStreamBeginCapture(_stream, cudaStreamCaptureModeThreadLocal));
@@ -60,6 +64,7 @@ class CapturedGraph<Kokkos::Cuda> {
   CapturedGraph(const CapturedGraph&) = delete;
   CapturedGraph& operator=(const CapturedGraph&) = delete;
 
+  /// Enqueues one launch of the graph. Asynchronous. Throws std::runtime_error for a CUDA error.
   void launch() const {
     count_launch();
     KOKKOS_IMPL_CUDA_SAFE_CALL(cudaGraphLaunch(_graph, _stream));

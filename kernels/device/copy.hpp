@@ -10,16 +10,16 @@
 
 namespace drogue::device {
 
-/// Where bytes go: from host memory, to it, to a report (see `HostPinnedSpace`), or within the memory of a
-/// backend.
+/// Source and destination of a copy: from host memory to the device, back to host memory or to
+/// `HostPinnedSpace`, or within device memory.
 enum class CopyKind { to_device, to_host, to_host_pinned, within };
 
-/// Kokkos::deep_copy of bytes, without waiting. Compiled once a backend: for two types of Views that it has
-/// not met before, Kokkos' copy brings some fifty kernels that serve Views of other layouts.
+/// Kokkos::deep_copy of `bytes` bytes. Asynchronous, does not throw. Compiled once per backend, because
+/// Kokkos::deep_copy instantiates about fifty kernels for each new pair of View types.
 template <class ExecutionSpace>
 void copy_bytes(const ExecutionSpace& space, CopyKind kind, void* to, const void* from, std::size_t bytes);
 
-/// The way from one memory space to another.
+/// Kind of a copy from memory space `From` to memory space `To`.
 template <class ExecutionSpace, class To, class From>
 [[nodiscard]] constexpr CopyKind copy_kind() {
   using Device = typename ExecutionSpace::memory_space;
@@ -34,8 +34,8 @@ template <class ExecutionSpace, class To, class From>
   }
 }
 
-/// Copies all of `from` to `to`, Views of one layout without gaps, without waiting. Throws
-/// std::invalid_argument if their sizes differ.
+/// Copies all values of `from` to `to`; both are contiguous Views of one layout. Asynchronous. Throws
+/// std::invalid_argument for Views of different sizes and for Views that are not contiguous.
 template <class ExecutionSpace, class To, class From>
 void copy(const ExecutionSpace& space, const To& to, const From& from) {
   static_assert(std::is_same_v<typename To::value_type, typename From::non_const_value_type>);
@@ -48,8 +48,8 @@ void copy(const ExecutionSpace& space, const To& to, const From& from) {
              to.data(), from.data(), to.size() * sizeof(typename To::value_type));
 }
 
-/// Copies `count` values in host memory to the first ones of a View without gaps, without waiting: they must
-/// stay as they are until the next fence.
+/// Copies `count` values from host memory to the beginning of a contiguous View. Asynchronous: the source
+/// must stay unchanged until the next fence. Does not throw.
 template <class ExecutionSpace, class To>
 void copy_in(const ExecutionSpace& space, const To& to, const typename To::value_type* from,
              std::size_t count) {
@@ -57,7 +57,7 @@ void copy_in(const ExecutionSpace& space, const To& to, const typename To::value
              from, count * sizeof *from);
 }
 
-/// Copies the first `count` values of a View without gaps to host memory, without waiting.
+/// Copies the first `count` values of a contiguous View to host memory. Asynchronous, does not throw.
 template <class ExecutionSpace, class From>
 void copy_out(const ExecutionSpace& space, typename From::non_const_value_type* to, const From& from,
               std::size_t count) {

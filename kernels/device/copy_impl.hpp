@@ -4,6 +4,7 @@
 
 namespace drogue::device {
 
+/// Copies bytes from memory space `From` to memory space `To`. Asynchronous.
 template <class To, class From, class ExecutionSpace>
 void copy_between(const ExecutionSpace& space, void* to, const void* from, std::size_t bytes) {
   using Bytes = Kokkos::View<char*, To, Kokkos::MemoryTraits<Kokkos::Unmanaged>>;

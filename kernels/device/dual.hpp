@@ -4,13 +4,15 @@
 
 namespace drogue::device {
 
-/// A number and its derivative in one direction (forward differentiation, Wengert 1964): a point function of
-/// it gives what the direction does to its value, exactly.
+/// Dual number: a value and its derivative along one direction (forward-mode differentiation, Wengert 1964).
+/// A point function of duals yields the exact directional derivative of its value.
 struct Dual {
   double value = 0.0, derivative = 0.0;
 
   Dual() = default;
+  /// Constant: the derivative is zero.
   KOKKOS_INLINE_FUNCTION Dual(double v) : value(v) {}  // NOLINT: numbers mix with duals as with numbers
+  /// Value and derivative.
   KOKKOS_INLINE_FUNCTION Dual(double v, double d) : value(v), derivative(d) {}
 
   friend KOKKOS_INLINE_FUNCTION Dual operator+(const Dual& a, const Dual& b) {
@@ -30,7 +32,7 @@ struct Dual {
   friend KOKKOS_INLINE_FUNCTION bool operator>=(const Dual& a, const Dual& b) { return a.value >= b.value; }
 };
 
-/// At zero its derivative is taken as zero, so that what is multiplied by it stays finite.
+/// Square root; its derivative at zero is defined as zero, to keep products with it finite.
 KOKKOS_INLINE_FUNCTION Dual square_root(const Dual& a) {
   const double root = square_root(a.value);
   return {root, root > 0.0 ? 0.5 * a.derivative / root : 0.0};

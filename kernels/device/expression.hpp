@@ -6,7 +6,7 @@
 
 namespace drogue::device {
 
-/// The value of a function of one argument; `a` for what is none.
+/// Value of an operation with one operand; `a` itself for any other operation.
 KOKKOS_INLINE_FUNCTION double apply(Operation operation, double a) {
   switch (operation) {
     case Operation::negate:
@@ -58,7 +58,7 @@ KOKKOS_INLINE_FUNCTION double apply(Operation operation, double a) {
   }
 }
 
-/// The value of an operator or function of two arguments; truth is 1, falsehood 0.
+/// Value of an operation with two operands; comparisons return 1 or 0.
 KOKKOS_INLINE_FUNCTION double apply(Operation operation, double a, double b) {
   switch (operation) {
     case Operation::logical_or:
@@ -98,7 +98,7 @@ KOKKOS_INLINE_FUNCTION double apply(Operation operation, double a, double b) {
   }
 }
 
-/// Number of operands an operation takes off the stack.
+/// Number of operands that an operation pops from the stack.
 KOKKOS_INLINE_FUNCTION int operands_of(Operation operation) {
   if (operation <= Operation::t) return 0;
   if (operation == Operation::select) return 3;
@@ -108,7 +108,7 @@ KOKKOS_INLINE_FUNCTION int operands_of(Operation operation) {
   return two ? 2 : 1;
 }
 
-/// The program's value at (x, y, z) and time t. Both sides of a `select` are computed.
+/// Value of a program at the point (x, y, z) and time t. Evaluates both branches of a `select`.
 KOKKOS_INLINE_FUNCTION double evaluate(const ExpressionProgram& program, double x, double y, double z,
                                        double t) {
   double stack[ExpressionProgram::max_depth + 1];

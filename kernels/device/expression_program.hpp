@@ -5,7 +5,7 @@
 
 namespace drogue::device {
 
-/// What one step of an expression program does to its stack of reals.
+/// Instruction of an expression program, which operates on a stack of reals.
 enum class Operation : std::uint8_t {
   constant,
   x,
@@ -54,7 +54,7 @@ enum class Operation : std::uint8_t {
   besselj,
 };
 
-/// An expression of x, y, z and t as a postfix program: no pointers, copied into kernels as it is.
+/// Expression of x, y, z and t as a postfix program. Trivially copyable, to be captured by kernels.
 struct ExpressionProgram {
   static constexpr int max_length = 96;
   static constexpr int max_constants = 32;
@@ -62,16 +62,18 @@ struct ExpressionProgram {
 
   int length = 0;
   Operation operations[max_length] = {};
-  double constants[max_constants] = {};  ///< in the order in which `operations` push them
+  double constants[max_constants] = {};  ///< in the order of the `constant` operations
 };
 
-/// Puts a program together from the names of its steps: "constant", a variable, an operator as it is written
-/// (`+`, `<=`), "negate", "select" or a function. Each call throws std::invalid_argument (one sentence) for
-/// an unknown name, a stack that does not fit, or a program that is too long.
+/// Builds a program from the names of its instructions: "constant", a variable, an operator (`+`, `<=`),
+/// "negate", "select" or a function. Each call throws std::invalid_argument (one sentence) for an unknown
+/// name, a stack underflow or overflow, or a program that is too long.
 class ExpressionBuilder {
  public:
+  /// Appends an instruction; `value` is the number of a "constant".
   void push(std::string_view name, double value = 0.0);
-  /// The finished program; it leaves one value on the stack.
+
+  /// Finished program. Throws if it does not leave exactly one value on the stack.
   [[nodiscard]] ExpressionProgram program() const;
 
  private:

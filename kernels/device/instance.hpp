@@ -4,13 +4,18 @@
 
 namespace drogue::device {
 
-/// An execution-space instance of its own: on CUDA a stream, with OpenMP a pool of at most `most_threads`
-/// threads, elsewhere the default instance. Constructed from an execution space it refers to that instance.
+/// Instance of an execution space: on CUDA a stream of its own, for OpenMP a pool of at most `most_threads`
+/// threads, elsewhere the default instance. An instance constructed from an execution space shares it.
 template <class ExecutionSpace>
 class Instance {
  public:
+  /// The default instance. Does not throw.
   explicit Instance(int /*most_threads*/) {}
+
+  /// Shares `space`. Does not throw.
   explicit Instance(const ExecutionSpace& space) : _space(space) {}
+
+  /// Execution space of all work of this instance. Does not throw.
   [[nodiscard]] const ExecutionSpace& space() const { return _space; }
 
  private:
@@ -21,10 +26,15 @@ class Instance {
 template <>
 class Instance<Kokkos::OpenMP> {
  public:
+  /// A pool of at most `most_threads` threads. Does not throw.
   explicit Instance(int most_threads)
       : _space(most_threads < Kokkos::OpenMP().concurrency() ? Kokkos::OpenMP(most_threads)
                                                              : Kokkos::OpenMP()) {}
+
+  /// Shares `space`. Does not throw.
   explicit Instance(const Kokkos::OpenMP& space) : _space(space) {}
+
+  /// Execution space of all work of this instance. Does not throw.
   [[nodiscard]] const Kokkos::OpenMP& space() const { return _space; }
 
  private:
@@ -36,7 +46,11 @@ class Instance<Kokkos::OpenMP> {
 template <>
 class Instance<Kokkos::Cuda> {
  public:
-  explicit Instance(int /*most_threads*/) : _stream(create()), _space(_stream), _owns_stream(true) {}
+  /// Creates a non-blocking stream, which the destructor fences and destroys. Throws std::runtime_error for a
+  /// CUDA error.
+  explicit Instance(int /*most_threads*/) : _stream(create_stream()), _space(_stream), _owns_stream(true) {}
+
+  /// Shares the stream of `space`, which must outlive the instance. Does not throw.
   explicit Instance(const Kokkos::Cuda& space)
       : _stream(space.cuda_stream()), _space(space), _owns_stream(false) {}
   ~Instance() {
@@ -48,11 +62,14 @@ class Instance<Kokkos::Cuda> {
   Instance(const Instance&) = delete;
   Instance& operator=(const Instance&) = delete;
 
+  /// Execution space of all work of this instance. Does not throw.
   [[nodiscard]] const Kokkos::Cuda& space() const { return _space; }
+
+  /// CUDA stream of the instance. Does not throw.
   [[nodiscard]] cudaStream_t stream() const { return _stream; }
 
  private:
-  static cudaStream_t create() {
+  static cudaStream_t create_stream() {
     cudaStream_t stream = nullptr;
     KOKKOS_IMPL_CUDA_SAFE_CALL(cudaStreamCreateWithFlags(&stream, cudaStreamNonBlocking));
     return stream;

@@ -4,13 +4,13 @@
 
 namespace drogue::device {
 
-/// True for Serial and OpenMP: one thread a team, packs of values a thread.
+/// True for Serial and OpenMP, where a team is one thread and a thread computes packs of values.
 template <class ExecutionSpace>
 inline constexpr bool is_host = Kokkos::SpaceAccessibility<Kokkos::DefaultHostExecutionSpace,
                                                            typename ExecutionSpace::memory_space>::accessible;
 
-/// Host memory that kernels of `ExecutionSpace` write without a copy, on CUDA page-locked; how a running
-/// device reports to the host.
+/// Host memory that kernels of `ExecutionSpace` write directly; page-locked on CUDA. Running kernels report
+/// their progress through it.
 #if defined(KOKKOS_ENABLE_CUDA)
 template <class ExecutionSpace>
 using HostPinnedSpace =

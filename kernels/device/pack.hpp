@@ -11,9 +11,9 @@
 #include <immintrin.h>
 #endif
 
-// Kokkos::Experimental::simd picks its width from KOKKOS_ARCH_AVX2/AVX512XEON, which Kokkos_ARCH_NATIVE does
-// not define, and it cannot convert double <-> float packs. GCC and Clang vector types do both, but nvcc's
-// front end rejects them, so CUDA builds run their host backends with one lane.
+// Kokkos::Experimental::simd derives its width from KOKKOS_ARCH_AVX2/AVX512XEON, which Kokkos_ARCH_NATIVE
+// does not define, and cannot convert packs between double and float. Vector types of GCC and Clang do both,
+// but nvcc rejects them, so host backends of CUDA builds use one lane.
 #if defined(__GNUC__) && !defined(__CUDACC__)
 #define DROGUE_HOST_VECTORS 1
 #else
@@ -22,13 +22,14 @@
 
 namespace drogue::device {
 
-// ---- the scalar side: the same names as for packs, so that a point function is one text for both ----
+// Scalar overloads: point functions are templates that take scalars or packs.
 
+/// Larger of two numbers; `b` if either is NaN.
 template <class T>
 KOKKOS_INLINE_FUNCTION T maximum(T a, T b) {
   return a > b ? a : b;
 }
-/// One instruction of a GPU, which a comparison that lets a NaN through is not.
+/// Larger of two numbers. On a GPU a single instruction, which ignores a NaN.
 KOKKOS_INLINE_FUNCTION float maximum(float a, float b) {
 #if defined(__CUDA_ARCH__)
   return fmaxf(a, b);
@@ -36,21 +37,29 @@ KOKKOS_INLINE_FUNCTION float maximum(float a, float b) {
   return a > b ? a : b;
 #endif
 }
+
+/// Smaller of two numbers; `b` if either is NaN.
 template <class T>
 KOKKOS_INLINE_FUNCTION T minimum(T a, T b) {
   return a < b ? a : b;
 }
+
+/// Absolute value.
 KOKKOS_INLINE_FUNCTION double absolute(double a) { return Kokkos::fabs(a); }
 KOKKOS_INLINE_FUNCTION float absolute(float a) { return Kokkos::fabs(a); }
+
+/// Square root, correctly rounded.
 KOKKOS_INLINE_FUNCTION double square_root(double a) { return Kokkos::sqrt(a); }
 KOKKOS_INLINE_FUNCTION float square_root(float a) { return Kokkos::sqrt(a); }
+
+/// `yes` where the condition holds, else `no`.
 template <class T>
 KOKKOS_INLINE_FUNCTION T select(bool condition, T yes, T no) {
   return condition ? yes : no;
 }
 
-/// 1/x. On CUDA the hardware's approximation and one cubic Newton step (within 1 ulp for normal x; a third of
-/// the instructions of an IEEE division); the exact build divides.
+/// 1/x. On CUDA a hardware approximation and one cubic Newton step: within 1 ulp for normal x, with a third
+/// of the instructions of an IEEE division. The exact build divides.
 KOKKOS_INLINE_FUNCTION double reciprocal(double x) {
 #if defined(__CUDA_ARCH__) && !defined(DROGUE_EXACT)
   double y;
@@ -61,6 +70,8 @@ KOKKOS_INLINE_FUNCTION double reciprocal(double x) {
   return 1.0 / x;
 #endif
 }
+
+/// 1/x in single precision; on CUDA the hardware approximation.
 KOKKOS_INLINE_FUNCTION float reciprocal(float x) {
 #if defined(__CUDA_ARCH__) && !defined(DROGUE_EXACT)
   float y;
@@ -71,26 +82,29 @@ KOKKOS_INLINE_FUNCTION float reciprocal(float x) {
 #endif
 }
 
-/// The power of two that brings a positive normal number into [1, 2): no product with it rounds. Of zero it
-/// is the largest there is.
+/// Power of two that scales a positive normal number into [1, 2); multiplication by it is exact. The largest
+/// power of two for zero.
 KOKKOS_INLINE_FUNCTION double binary_reciprocal(double x) {
   const std::uint64_t exponent = Kokkos::bit_cast<std::uint64_t>(x) & 0x7FF0'0000'0000'0000U;
   return Kokkos::bit_cast<double>(0x7FE0'0000'0000'0000U - exponent);
 }
+
+/// The scaling power of two in single precision.
 KOKKOS_INLINE_FUNCTION float binary_reciprocal(float x) {
   const std::uint32_t exponent = Kokkos::bit_cast<std::uint32_t>(x) & 0x7F80'0000U;
   return Kokkos::bit_cast<float>(0x7F00'0000U - exponent);
 }
 
-/// What has a square root in it.
+/// Square root of x and related values.
 template <class R>
 struct Root {
   R value, inverse, reciprocal;  ///< sqrt(x), 1/sqrt(x), 1/x
 };
 
-/// Of a positive normal number; of what else there is something is no finite number. On CUDA the hardware's
-/// approximation of 1/sqrt(x) and one cubic Newton step give all (the root within 2 ulp) with a third of the
-/// instructions of an IEEE root and division. Elsewhere these do not wait for one another.
+/// Square root, inverse square root and reciprocal of a positive normal number; not finite for any other x.
+/// On CUDA a hardware approximation of 1/sqrt(x) and one cubic Newton step give all three, the root within 2
+/// ulp, with a third of the instructions of an IEEE root and division. Elsewhere root and division are
+/// independent.
 KOKKOS_INLINE_FUNCTION Root<double> root(double x) {
 #if defined(__CUDA_ARCH__) && !defined(DROGUE_EXACT)
   double y;
@@ -103,6 +117,8 @@ KOKKOS_INLINE_FUNCTION Root<double> root(double x) {
   return {value, value * inverse, inverse};
 #endif
 }
+
+/// Roots in single precision; on CUDA from the hardware approximation of 1/sqrt(x).
 KOKKOS_INLINE_FUNCTION Root<float> root(float x) {
 #if defined(__CUDA_ARCH__) && !defined(DROGUE_EXACT)
   float y;
@@ -114,18 +130,20 @@ KOKKOS_INLINE_FUNCTION Root<float> root(float x) {
 #endif
 }
 
-/// Whether all lanes of a comparison, or of several combined by &, hold.
+/// True if a comparison, or several combined by &, hold in all lanes.
 KOKKOS_INLINE_FUNCTION bool all(bool condition) { return condition; }
 
+/// Conversion between precisions.
 template <class To>
 struct Convert {
+  /// `value` rounded to the precision of `To`.
   template <class From>
   KOKKOS_INLINE_FUNCTION static To from(From value) {
     return static_cast<To>(value);
   }
 };
 
-/// Single precision with as many lanes.
+/// Single-precision type with the same number of lanes.
 template <class R>
 struct SingleOf {
   using Type = R;
@@ -135,20 +153,24 @@ struct SingleOf<double> {
   using Type = float;
 };
 
-/// Reads one value, or `Pack::lanes` consecutive ones, from `pointer`.
+/// Memory access of a scalar or of a pack of `lanes` values.
 template <class R>
 struct Access {
   using Element = R;
   static constexpr int lanes = 1;
+  /// Value at `pointer`; a pack loads `lanes` consecutive values, of any alignment.
   KOKKOS_INLINE_FUNCTION static R load(const Element* pointer) { return *pointer; }
+  /// Stores one value, or the consecutive values of a pack.
   KOKKOS_INLINE_FUNCTION static void store(Element* pointer, R value) { *pointer = value; }
+  /// Value of one lane.
   KOKKOS_INLINE_FUNCTION static Element lane(R value, int) { return value; }
-  /// What names the values of all lanes: as an index is read ahead of them, its value.
+  /// Indices of the values of all lanes. A scalar index is held by value, so that it is loaded early.
   using Index = int;
+  /// Index of the values of all lanes; `of_lanes` holds one index per lane.
   KOKKOS_INLINE_FUNCTION static Index index(const int* of_lanes) { return *of_lanes; }
-  /// The values that it names.
+  /// Values at an index.
   KOKKOS_INLINE_FUNCTION static R gather(const Element* values, Index index) { return values[index]; }
-  /// 0 where a bit is set, else 1.
+  /// 0 for each lane whose byte of `sets` has the bit, else 1.
   KOKKOS_INLINE_FUNCTION static R unless_set(const std::uint8_t* sets, unsigned bit) {
     return (*sets & bit) != 0U ? R(0) : R(1);
   }
@@ -156,8 +178,8 @@ struct Access {
 
 #if DROGUE_HOST_VECTORS
 
-/// `Lanes` values that host arithmetic treats at once; element-wise IEEE semantics, so each lane has the bits
-/// that scalar code would have.
+/// SIMD pack of `Lanes` values with element-wise IEEE arithmetic: each lane is equal, bit for bit, to scalar
+/// code. No function of packs throws.
 template <class T, int Lanes>
 struct Pack {
   using Element = T;
@@ -168,9 +190,12 @@ struct Pack {
   Vector v;
 
   Pack() = default;
-  Pack(T scalar) : v(scalar - Vector{}) {}  // NOLINT: numbers mix with packs as they do with numbers
 
-  /// Not a constructor: inside a template GCC takes its parameter for a T.
+  /// Broadcast of a scalar. Does not throw.
+  Pack(T scalar) : v(scalar - Vector{}) {}  // NOLINT: implicit, to mix numbers and packs
+
+  /// Pack of a vector. Not a constructor, because GCC converts its argument to T inside templates. Does not
+  /// throw.
   static Pack of(Vector vector) {
     Pack pack;
     pack.v = vector;
@@ -196,38 +221,51 @@ struct Pack {
   friend auto operator<=(Pack a, Pack b) { return a.v <= b.v; }
 };
 
+/// Lane-wise maximum. Does not throw.
 template <class T, int L>
 Pack<T, L> maximum(Pack<T, L> a, Pack<T, L> b) {
   return Pack<T, L>::of(a.v > b.v ? a.v : b.v);
 }
+
+/// Lane-wise minimum. Does not throw.
 template <class T, int L>
 Pack<T, L> minimum(Pack<T, L> a, Pack<T, L> b) {
   return Pack<T, L>::of(a.v < b.v ? a.v : b.v);
 }
+
+/// Lane-wise absolute value. Does not throw.
 template <class T, int L>
 Pack<T, L> absolute(Pack<T, L> a) {
-  // Clears the sign bit; a comparison with zero would keep the sign of -0.
+  // Clears the sign bit; a comparison with zero would not change -0.
   using Bits = std::conditional_t<sizeof(T) == 8, std::int64_t, std::int32_t>;
   typedef Bits BitVector __attribute__((vector_size(L * sizeof(T))));  // NOLINT
   const BitVector magnitude = std::numeric_limits<Bits>::max() - BitVector{};
   return Pack<T, L>::of((typename Pack<T, L>::Vector)((BitVector)a.v & magnitude));
 }
+
+/// Lane-wise square root. Does not throw.
 template <class T, int L>
 Pack<T, L> square_root(Pack<T, L> a) {
   Pack<T, L> root;
   for (int k = 0; k < L; ++k) root.v[k] = std::sqrt(a.v[k]);
   return root;
 }
+
+/// `yes` in lanes where the condition holds, else `no`. Does not throw.
 template <class Mask, class T, int L>
 Pack<T, L> select(Mask condition, Pack<T, L> yes, Pack<T, L> no) {
   return Pack<T, L>::of(condition ? yes.v : no.v);
 }
+
+/// True if a comparison of packs holds in all lanes. Does not throw.
 template <class Mask>
 requires(!std::is_arithmetic_v<Mask>) bool all(Mask condition) {
   bool holds = true;
   for (std::size_t k = 0; k < sizeof(Mask) / sizeof(condition[0]); ++k) holds &= condition[k] != 0;
   return holds;
 }
+
+/// Lane-wise scaling power of two, as for scalars. Does not throw.
 template <class T, int L>
 Pack<T, L> binary_reciprocal(Pack<T, L> x) {
   using Bits = std::conditional_t<sizeof(T) == 8, std::int64_t, std::int32_t>;
@@ -236,10 +274,14 @@ Pack<T, L> binary_reciprocal(Pack<T, L> x) {
   const BitVector most = (sizeof(T) == 8 ? Bits(0x7FE0'0000'0000'0000) : Bits(0x7F00'0000)) - BitVector{};
   return Pack<T, L>::of((typename Pack<T, L>::Vector)(most - ((BitVector)x.v & mask)));
 }
+
+/// Lane-wise 1/x by division. Does not throw.
 template <class T, int L>
 Pack<T, L> reciprocal(Pack<T, L> x) {
   return Pack<T, L>(T(1)) / x;
 }
+
+/// Lane-wise roots, as for scalars. Does not throw.
 template <class T, int L>
 Root<Pack<T, L>> root(Pack<T, L> x) {
   const Pack<T, L> value = square_root(x), inverse = reciprocal(x);
@@ -248,24 +290,26 @@ Root<Pack<T, L>> root(Pack<T, L> x) {
 
 #if defined(__AVX512F__) && !defined(DROGUE_EXACT)
 
-// All lanes are taken; in the intrinsics without a mask GCC 12 warns of a value that it does not use.
+// Masked intrinsics with all lanes set: GCC 12 warns of an uninitialised value in those without a mask.
 
-/// 1 - a b with one rounding, where a compiler that fuses no operations would leave the error of a b, as
-/// large as that of 1.
+/// 1 - a b with a single rounding. Separate operations would add the rounding error of a b, which is about 1
+/// ulp. Does not throw.
 inline Pack<double, 8> one_less(Pack<double, 8> a, Pack<double, 8> b) {
   return Pack<double, 8>::of(_mm512_mask3_fnmadd_pd(a.v, b.v, Pack<double, 8>(1.0).v, 0xFF));
 }
 
-/// As on CUDA, for eight lanes: 14 bits from the hardware, and y (1 + e)(1 + e^2) with e = 1 - x y, whose
-/// error is e^4. A division of eight takes the time of sixteen such operations.
+/// 1/x in eight lanes: a 14-bit hardware approximation y, improved to y (1 + e)(1 + e^2) with e = 1 - x y,
+/// which has a relative error of e^4. A division of eight lanes takes as long as sixteen such operations.
+/// Does not throw.
 inline Pack<double, 8> reciprocal(Pack<double, 8> x) {
   const auto y = Pack<double, 8>::of(_mm512_mask_rcp14_pd(x.v, 0xFF, x.v));
   const Pack<double, 8> e = one_less(x, y), better = y + y * e;
   return better + better * (e * e);
 }
 
-/// With e = 1 - x y^2, 1/sqrt(x) is y (1 - e)^(-1/2), here its series to e^4. Of e half counts, so that the
-/// rounding of x y costs half a digit.
+/// Roots of eight lanes: 1/sqrt(x) = y (1 - e)^(-1/2) with e = 1 - x y^2 and a 14-bit hardware approximation
+/// y, as a series to e^4. Only e/2 enters to first order, which halves the rounding error of x y. Does not
+/// throw.
 inline Root<Pack<double, 8>> root(Pack<double, 8> x) {
   auto y = Pack<double, 8>::of(_mm512_mask_rsqrt14_pd(x.v, 0xFF, x.v));
   const Pack<double, 8> e = one_less(x * y, y);
@@ -275,8 +319,10 @@ inline Root<Pack<double, 8>> root(Pack<double, 8> x) {
 
 #endif
 
+/// Lane-wise conversion.
 template <class T, int L>
 struct Convert<Pack<T, L>> {
+  /// `value` rounded to the precision of T. Does not throw.
   template <class From>
   static Pack<T, L> from(Pack<From, L> value) {
     return Pack<T, L>::of(__builtin_convertvector(value.v, typename Pack<T, L>::Vector));
@@ -288,24 +334,39 @@ struct SingleOf<Pack<double, L>> {
   using Type = Pack<float, L>;
 };
 
+/// Memory access of a pack. No function throws.
 template <class T, int L>
 struct Access<Pack<T, L>> {
   using Element = T;
   static constexpr int lanes = L;
+
+  /// `L` consecutive values, of any alignment. Does not throw.
   static Pack<T, L> load(const T* pointer) {
     Pack<T, L> value;
     __builtin_memcpy(&value.v, pointer, sizeof(value.v));
     return value;
   }
+
+  /// Stores the lanes as consecutive values.
   static void store(T* pointer, Pack<T, L> value) { __builtin_memcpy(pointer, &value.v, sizeof(value.v)); }
+
+  /// Value of lane k.
   static T lane(Pack<T, L> value, int k) { return value.v[k]; }
+
+  /// Indices of the values of all lanes.
   using Index = const int*;
+
+  /// Index of the values of all lanes; `of_lanes` holds one index per lane.
   static Index index(const int* of_lanes) { return of_lanes; }
+
+  /// Values at an index.
   static Pack<T, L> gather(const T* values, Index index) {
     Pack<T, L> gathered;
     for (int k = 0; k < L; ++k) gathered.v[k] = values[index[k]];
     return gathered;
   }
+
+  /// 0 for each lane whose byte of `sets` has the bit, else 1.
   static Pack<T, L> unless_set(const std::uint8_t* sets, unsigned bit) {
     Pack<T, L> clear;
     for (int k = 0; k < L; ++k) clear.v[k] = (sets[k] & bit) != 0U ? T(0) : T(1);
@@ -313,7 +374,7 @@ struct Access<Pack<T, L>> {
   }
 };
 
-/// Doubles in the widest vector register of the target.
+/// Number of doubles in the widest vector register of the target.
 #if defined(__AVX512F__)
 inline constexpr int host_lanes = 8;
 #elif defined(__AVX__)
@@ -322,6 +383,7 @@ inline constexpr int host_lanes = 4;
 inline constexpr int host_lanes = 2;
 #endif
 
+/// Pack of the widest vector register of the target.
 template <class T>
 using HostPack = Pack<T, host_lanes>;
 

@@ -10,14 +10,14 @@
 
 namespace drogue::device {
 
-/// Page-locked host memory for containers whose values travel to a device and back: the device copies it
-/// without a detour. On host backends it is like any other.
+/// Page-locked host memory for containers that are copied to or from a device, which avoids a staging buffer.
+/// Ordinary memory on host backends. Allocation throws what Kokkos::kokkos_malloc throws.
 template <class ExecutionSpace>
 class PinnedMemory final : public std::pmr::memory_resource {
   using Space = HostPinnedSpace<ExecutionSpace>;
 
  public:
-  /// Whether an address lies in what has been allocated here.
+  /// True if the address lies in a live allocation of this resource. Does not throw.
   [[nodiscard]] bool holds(const void* address) const {
     return std::ranges::any_of(_blocks, [&](const Block& block) {
       return !std::less<>()(address, block.begin) && std::less<>()(address, block.end);

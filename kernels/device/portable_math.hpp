@@ -4,16 +4,22 @@
 #include <Kokkos_Core.hpp>
 #include <cstdint>
 
-/// Elementary functions that give the same bits on every backend: IEEE operations and square roots only, in a
-/// fixed order (built without fused multiply-add). Good to 1e-13 of max(1, |value|); tested against <cmath>.
+/// Elementary functions with bitwise equal results on every backend: IEEE operations and square roots in a
+/// fixed order, compiled without fused multiply-add. The error is below 1e-13 max(1, |value|), tested against
+/// <cmath>.
 namespace drogue::device::portable {
 
 constexpr double pi = 3.141592653589793;
 constexpr double ln2 = 0.6931471805599453;
 constexpr double ln10 = 2.302585092994046;
 
+/// Quiet NaN.
 KOKKOS_INLINE_FUNCTION double not_a_number() { return Kokkos::Experimental::quiet_NaN_v<double>; }
+
+/// Positive infinity.
 KOKKOS_INLINE_FUNCTION double infinity() { return Kokkos::Experimental::infinity_v<double>; }
+
+/// Absolute value; keeps the sign of -0.
 KOKKOS_INLINE_FUNCTION double magnitude(double x) { return x < 0.0 ? -x : x; }
 
 /// 2^n for a normal result, -1022 <= n <= 1023.
@@ -21,12 +27,12 @@ KOKKOS_INLINE_FUNCTION double power_of_two(int n) {
   return Kokkos::bit_cast<double>(static_cast<std::uint64_t>(n + 1023) << 52U);
 }
 
-/// x = n ln 2 + r, |r| <= ln 2 / 2; Taylor series of e^r to r^13 (remainder 4e-18).
+/// Exponential: x = n ln 2 + r with |r| <= ln 2 / 2, and the Taylor series of e^r to r^13 (remainder 4e-18).
 KOKKOS_INLINE_FUNCTION double exp(double x) {
   if (!(x == x)) return x;
   if (x > 709.8) return infinity();
   if (x < -745.2) return 0.0;
-  constexpr double ln2_high = 6.93147180369123816490e-01;  // 21 low bits are 0, so n ln2_high is exact
+  constexpr double ln2_high = 6.93147180369123816490e-01;  // 21 low bits are 0: n ln2_high is exact
   constexpr double ln2_low = 1.90821492927058770002e-10;
   const double n = Kokkos::floor(x / ln2 + 0.5);
   const double r = (x - n * ln2_high) - n * ln2_low;
@@ -36,7 +42,7 @@ KOKKOS_INLINE_FUNCTION double exp(double x) {
   return sum * power_of_two(half) * power_of_two(static_cast<int>(n) - half);
 }
 
-/// x = m 2^e with m in [sqrt(1/2), sqrt(2)); log m = 2 artanh s, s = (m-1)/(m+1).
+/// Natural logarithm: x = m 2^e with m in [sqrt(1/2), sqrt(2)), and log m = 2 artanh s with s = (m-1)/(m+1).
 KOKKOS_INLINE_FUNCTION double log(double x) {
   if (!(x > 0.0)) return x == 0.0 ? -infinity() : not_a_number();
   if (x == infinity()) return x;
@@ -59,8 +65,9 @@ KOKKOS_INLINE_FUNCTION double log(double x) {
   return e * 6.93147180369123816490e-01 + (e * 1.90821492927058770002e-10 + 2.0 * s * sum);
 }
 
-/// The part of x within [-pi/4, pi/4] about the nearest multiple of pi/2, whose number mod 4 is `quadrant`.
-/// pi/2 in three parts of 33 bits (Cody and Waite); NaN where |x| > 1e6, whose products would not be exact.
+/// Argument reduction (Cody and Waite): x minus the nearest multiple of pi/2, in [-pi/4, pi/4], with pi/2 in
+/// three parts of 33 bits. `quadrant` is the multiple modulo 4. NaN for |x| > 1e6, where products are not
+/// exact.
 KOKKOS_INLINE_FUNCTION double reduced_angle(double x, int& quadrant) {
   quadrant = 0;
   if (!(magnitude(x) <= 1e6)) return not_a_number();
@@ -70,6 +77,7 @@ KOKKOS_INLINE_FUNCTION double reduced_angle(double x, int& quadrant) {
   return r - q * 2.02226624879595063154e-21;
 }
 
+/// Taylor series of sin r for |r| <= pi/4.
 KOKKOS_INLINE_FUNCTION double sine_series(double r) {
   const double r2 = r * r;
   double sum = 1.0;
@@ -77,6 +85,7 @@ KOKKOS_INLINE_FUNCTION double sine_series(double r) {
   return r * sum;
 }
 
+/// Taylor series of cos r for |r| <= pi/4.
 KOKKOS_INLINE_FUNCTION double cosine_series(double r) {
   const double r2 = r * r;
   double sum = 1.0;
@@ -84,6 +93,7 @@ KOKKOS_INLINE_FUNCTION double cosine_series(double r) {
   return sum;
 }
 
+/// Sine of x (radians); NaN for |x| > 1e6.
 KOKKOS_INLINE_FUNCTION double sin(double x) {
   int quadrant = 0;
   const double r = reduced_angle(x, quadrant);
@@ -91,6 +101,7 @@ KOKKOS_INLINE_FUNCTION double sin(double x) {
   return (quadrant & 2) != 0 ? -value : value;
 }
 
+/// Cosine of x (radians); NaN for |x| > 1e6.
 KOKKOS_INLINE_FUNCTION double cos(double x) {
   int quadrant = 0;
   const double r = reduced_angle(x, quadrant);
@@ -98,7 +109,8 @@ KOKKOS_INLINE_FUNCTION double cos(double x) {
   return quadrant == 1 || quadrant == 2 ? -value : value;
 }
 
-/// Two half-angle steps bring |x| <= 1 below tan(pi/16), where the series converges in 12 terms.
+/// Arc tangent, radians. Two half-angle steps reduce |x| <= 1 below tan(pi/16), where the series converges in
+/// 12 terms.
 KOKKOS_INLINE_FUNCTION double atan(double x) {
   const double size = magnitude(x);
   double a = size > 1.0 ? 1.0 / size : size;
@@ -111,6 +123,7 @@ KOKKOS_INLINE_FUNCTION double atan(double x) {
   return x < 0.0 ? -value : value;
 }
 
+/// Angle of the point (x, y), radians, in [-pi, pi].
 KOKKOS_INLINE_FUNCTION double atan2(double y, double x) {
   if (x == 0.0) return y > 0.0 ? pi / 2.0 : y < 0.0 ? -pi / 2.0 : y;
   const double angle = atan(y / x);
@@ -118,10 +131,11 @@ KOKKOS_INLINE_FUNCTION double atan2(double y, double x) {
   return y < 0.0 ? angle - pi : angle + pi;
 }
 
+/// Arc sine and arc cosine, radians; NaN for |x| > 1.
 KOKKOS_INLINE_FUNCTION double asin(double x) { return atan2(x, Kokkos::sqrt((1.0 - x) * (1.0 + x))); }
 KOKKOS_INLINE_FUNCTION double acos(double x) { return atan2(Kokkos::sqrt((1.0 - x) * (1.0 + x)), x); }
 
-/// The series near 0, where the difference of exponentials would lose digits.
+/// Hyperbolic sine; near 0 a series, because the difference of exponentials cancels.
 KOKKOS_INLINE_FUNCTION double sinh(double x) {
   if (magnitude(x) < 0.5) {
     double sum = 1.0;
@@ -133,29 +147,35 @@ KOKKOS_INLINE_FUNCTION double sinh(double x) {
   return x < 0.0 ? -value : value;
 }
 
+/// Hyperbolic cosine.
 KOKKOS_INLINE_FUNCTION double cosh(double x) {
   const double half = 0.5 * exp(0.5 * magnitude(x));
   return 2.0 * half * half + 0.125 / (half * half);
 }
 
+/// Hyperbolic tangent.
 KOKKOS_INLINE_FUNCTION double tanh(double x) {
   if (magnitude(x) > 20.0) return x < 0.0 ? -1.0 : 1.0;
   return sinh(x) / cosh(x);
 }
 
+/// Inverse hyperbolic sine.
 KOKKOS_INLINE_FUNCTION double asinh(double x) {
   const double a = magnitude(x);
   const double value = a > 1e8 ? log(a) + ln2 : log(a + Kokkos::sqrt(a * a + 1.0));
   return x < 0.0 ? -value : value;
 }
 
+/// Inverse hyperbolic cosine; NaN for x < 1.
 KOKKOS_INLINE_FUNCTION double acosh(double x) {
   return x > 1e8 ? log(x) + ln2 : log(x + Kokkos::sqrt((x - 1.0) * (x + 1.0)));
 }
 
+/// Inverse hyperbolic tangent; NaN for |x| > 1.
 KOKKOS_INLINE_FUNCTION double atanh(double x) { return 0.5 * log((1.0 + x) / (1.0 - x)); }
 
-/// x^y: repeated squaring for a whole y, else exp(y log x), good to 1e-13 times |y log x| there.
+/// x^y: repeated squaring for integers |y| <= 1024, else exp(y log x) with a relative error of 1e-13 |y log
+/// x|.
 KOKKOS_INLINE_FUNCTION double pow(double x, double y) {
   if (y == Kokkos::floor(y) && magnitude(y) <= 1024.0) {
     double result = 1.0;

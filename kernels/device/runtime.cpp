@@ -16,7 +16,7 @@ void without_global_fences(const std::uint32_t, Kokkos_Tools_ToolSettings* setti
   settings->requires_global_fencing = false;
 }
 
-/// Kokkos keeps its OpenMP threads in a table of this length and does not look whether they fit.
+/// Length of the table of OpenMP threads in Kokkos, which does not check it.
 constexpr int most_threads = 512;
 
 void require_number(const std::string& name, std::string_view text, int least, int most) {
@@ -27,8 +27,8 @@ void require_number(const std::string& name, std::string_view text, int least, i
                               std::to_string(least) + " and " + std::to_string(most));
 }
 
-/// True if the option `--kokkos-NAME=` or the variable `variable` is given; its value is then a number in
-/// range.
+/// True if the option or the environment variable is given. Throws std::invalid_argument for a value that is
+/// not an integer in the range.
 bool checked_number(const std::vector<std::string>& arguments, const std::string& option,
                     const char* variable, int least, int most) {
   bool given = false;
@@ -44,7 +44,7 @@ bool checked_number(const std::vector<std::string>& arguments, const std::string
   return given;
 }
 
-int threads_by_default() {
+int default_threads() {
 #if defined(KOKKOS_ENABLE_OPENMP)
   return omp_get_max_threads();
 #else
@@ -59,13 +59,12 @@ Runtime::Runtime(const std::vector<std::string>& arguments) {
   checked_number(arguments, "--kokkos-device-id", "KOKKOS_DEVICE_ID", 0, 1023);
   std::vector<std::string> copies = {"drogue"};
   if (!checked_number(arguments, "--kokkos-num-threads", "KOKKOS_NUM_THREADS", 1, most_threads) &&
-      threads_by_default() > most_threads)
+      default_threads() > most_threads)
     copies.push_back("--kokkos-num-threads=" + std::to_string(most_threads));
   copies.insert(copies.end(), arguments.begin(), arguments.end());
   std::vector<char*> pointers;
   for (std::string& text : copies) pointers.push_back(text.data());
-  // A hint about thread binding before every run would drown the one line that matters; --kokkos-* options
-  // come later and may bring it back.
+  // Suppresses the hint about thread binding at every start; a later --kokkos-* option can re-enable it.
   char quiet[] = "--kokkos-disable-warnings";
   pointers.insert(pointers.begin() + 1, quiet);
   auto count = static_cast<int>(pointers.size());

@@ -7,7 +7,8 @@
 namespace drogue::device {
 
 #if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 800
-/// The largest of the lanes in `lanes`, by the integer unit, high words first.
+/// Largest value of the lanes in the mask `lanes`, by two integer reductions: high words, then low words.
+/// Does not throw.
 __device__ inline std::uint64_t warp_maximum(unsigned lanes, std::uint64_t own) {
   const auto own_high = static_cast<unsigned>(own >> 32U);
   const unsigned high = __reduce_max_sync(lanes, own_high);
@@ -16,28 +17,28 @@ __device__ inline std::uint64_t warp_maximum(unsigned lanes, std::uint64_t own) 
 }
 #endif
 
-/// Raises `slot` to the largest `mine` of the team's threads, all of which call this. Non-negative doubles
-/// compare as their bits do, so the result does not depend on the order in which teams arrive.
+/// Raises `slot` to the largest `mine` of a team, atomically. All threads of the team call it with
+/// non-negative values. The bits of non-negative doubles order like their values, so the result does not
+/// depend on the order of the teams.
 ///
-/// On CUDA each warp reduces and raises the slot itself: a team's
-/// reduction through shared memory costs a small kernel two microseconds.
+/// On CUDA each warp reduces and updates the slot: a reduction of the team through shared memory takes 2 us.
 template <class Member>
 KOKKOS_INLINE_FUNCTION void raise_to_team_maximum(const Member& member, std::uint64_t& slot, double mine) {
 #if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 800
-  // Named, not asked for: a warp that has parted on its way here need not have come together again.
+  // The lanes are computed and not read from __activemask: a diverged warp may not have reconverged here.
   const int after = member.team_size() - member.team_rank() / 32 * 32;
   const unsigned lanes = after >= 32 ? ~0U : (1U << static_cast<unsigned>(after)) - 1U;
   const std::uint64_t bits = warp_maximum(lanes, Kokkos::bit_cast<std::uint64_t>(mine));
   if (member.team_rank() % 32 != 0) return;
 #else
   double largest = mine;
-  // Nothing for a persistent kernel's teams: these lines are their host side, which never runs.
+  // Members of persistent kernels lack team_reduce; on the host they are compiled but never run.
   if constexpr (requires { member.team_reduce(Kokkos::Max<double>(largest)); })
     member.team_reduce(Kokkos::Max<double>(largest));
   if (member.team_rank() != 0) return;
   const auto bits = Kokkos::bit_cast<std::uint64_t>(largest);
 #endif
-  // Many teams ask first, a few would only wait for the answer.
+  // With many teams a load before the atomic reduces contention; with few it only adds latency.
   if (member.league_size() < 1024 || bits > Kokkos::atomic_load(&slot)) Kokkos::atomic_max(&slot, bits);
 }
 

@@ -2,68 +2,68 @@
 
 #include <Kokkos_Core.hpp>
 
-/// What the lanes of a warp, all of which call these functions together, tell one another without memory. On
-/// the host, where no warps are, a lane is alone.
+/// Warp-level operations without shared memory; all lanes of a warp call them together. On the host a warp
+/// has one lane, and the operations return its value.
 namespace drogue::device {
 
 inline constexpr int warp_lanes = 32;
 
-/// What any lane has written before is seen by all after it.
+/// Barrier and memory fence of a warp.
 KOKKOS_INLINE_FUNCTION void warp_sync() { KOKKOS_IF_ON_DEVICE((__syncwarp();)) }
 
-/// The value of the lane `reach` below in a group of `width` lanes; of the lowest lanes their own.
+/// Value of the lane `lane_offset` below in each group of `width` lanes; the lowest lanes keep their own.
 template <int width = warp_lanes>
-KOKKOS_INLINE_FUNCTION double shuffle_up(double value, int reach) {
-  KOKKOS_IF_ON_DEVICE((return __shfl_up_sync(~0U, value, static_cast<unsigned>(reach), width);))
-  KOKKOS_IF_ON_HOST(((void)reach; return value;))
+KOKKOS_INLINE_FUNCTION double shuffle_up(double value, int lane_offset) {
+  KOKKOS_IF_ON_DEVICE((return __shfl_up_sync(~0U, value, static_cast<unsigned>(lane_offset), width);))
+  KOKKOS_IF_ON_HOST(((void)lane_offset; return value;))
 }
 
-/// The value of the lane `reach` above in a group of `width` lanes; of the highest lanes their own.
+/// Value of the lane `lane_offset` above in each group of `width` lanes; the highest lanes keep their own.
 template <int width = warp_lanes>
-KOKKOS_INLINE_FUNCTION double shuffle_down(double value, int reach) {
-  KOKKOS_IF_ON_DEVICE((return __shfl_down_sync(~0U, value, static_cast<unsigned>(reach), width);))
-  KOKKOS_IF_ON_HOST(((void)reach; return value;))
+KOKKOS_INLINE_FUNCTION double shuffle_down(double value, int lane_offset) {
+  KOKKOS_IF_ON_DEVICE((return __shfl_down_sync(~0U, value, static_cast<unsigned>(lane_offset), width);))
+  KOKKOS_IF_ON_HOST(((void)lane_offset; return value;))
 }
 
-/// The value of a lane, whose number counts modulo those of a warp.
+/// Value of lane `lane`, modulo the size of a warp.
 KOKKOS_INLINE_FUNCTION double shuffle(double value, int lane) {
   KOKKOS_IF_ON_DEVICE((return __shfl_sync(~0U, value, lane);))
   KOKKOS_IF_ON_HOST(((void)lane; return value;))
 }
 
-/// The value of the lane whose number differs in the bit `reach`.
-KOKKOS_INLINE_FUNCTION double shuffle_xor(double value, int reach) {
-  KOKKOS_IF_ON_DEVICE((return __shfl_xor_sync(~0U, value, reach);))
-  KOKKOS_IF_ON_HOST(((void)reach; return value;))
+/// Value of the lane whose index differs in the bits of `lane_mask`.
+KOKKOS_INLINE_FUNCTION double shuffle_xor(double value, int lane_mask) {
+  KOKKOS_IF_ON_DEVICE((return __shfl_xor_sync(~0U, value, lane_mask);))
+  KOKKOS_IF_ON_HOST(((void)lane_mask; return value;))
 }
 
-/// Whether a condition holds on all lanes of a warp.
+/// True if the condition holds on all lanes of a warp.
 KOKKOS_INLINE_FUNCTION bool warp_all(bool condition) {
   KOKKOS_IF_ON_DEVICE((return __all_sync(~0U, condition ? 1 : 0) != 0;))
   KOKKOS_IF_ON_HOST((return condition;))
 }
 
-/// The largest of the numbers of a group of `width` lanes.
+/// Largest value of each group of `width` lanes.
 template <int width = warp_lanes>
 KOKKOS_INLINE_FUNCTION int warp_max(int value) {
-  KOKKOS_IF_ON_DEVICE((for (int reach = width / 2; reach > 0; reach /= 2) {
-    const int other = __shfl_xor_sync(~0U, value, reach);
+  KOKKOS_IF_ON_DEVICE((for (int lane_offset = width / 2; lane_offset > 0; lane_offset /= 2) {
+    const int other = __shfl_xor_sync(~0U, value, lane_offset);
     value = other > value ? other : value;
   }))
   return value;
 }
 
-/// Tells the compiler what holds.
+/// Lets the compiler assume `condition`; undefined behaviour if it does not hold.
 KOKKOS_INLINE_FUNCTION void assume(bool condition) {
   KOKKOS_IF_ON_DEVICE((__builtin_assume(condition);))
   KOKKOS_IF_ON_HOST(((void)condition;))
 }
 
-/// Tells the compiler that `place` is in shared memory, which Kokkos' scratch handles hide from it.
+/// Pointer that the compiler may assume to point to shared memory, which Kokkos scratch handles do not state.
 template <class T>
-KOKKOS_INLINE_FUNCTION T* in_shared_memory(T* place) {
-  KOKKOS_IF_ON_DEVICE((__builtin_assume(__isShared(place));))
-  return place;
+KOKKOS_INLINE_FUNCTION T* in_shared_memory(T* pointer) {
+  KOKKOS_IF_ON_DEVICE((__builtin_assume(__isShared(pointer));))
+  return pointer;
 }
 
 }  // namespace drogue::device

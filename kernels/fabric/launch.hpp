@@ -1,20 +1,11 @@
 #pragma once
 
+#include "kernels/device/launch.hpp"
 #include "kernels/fabric/fabric_views.hpp"
 
 namespace drogue::fabric {
 
-/// Calls `functor(i)` for i from 0 to `count` - 1. Asynchronous.
-template <class Bounds = Kokkos::LaunchBounds<>, class ExecutionSpace, class Functor>
-void launch_each(const ExecutionSpace& space, const char* label, int count, const Functor& functor) {
-  static_assert(Kokkos::SpaceAccessibility<ExecutionSpace,
-                                           typename PointsView<ExecutionSpace>::memory_space>::accessible);
-  const Kokkos::RangePolicy<ExecutionSpace, Bounds> each(space, 0, count);
-  // Light-weight functors are kernel arguments. Others are copied to a buffer that orders launches.
-  Kokkos::parallel_for(
-      label, Kokkos::Experimental::require(each, Kokkos::Experimental::WorkItemProperty::HintLightWeight),
-      functor);
-}
+using device::launch_each;
 
 /// Numbers that a kernel over packs of vertices works on: SIMD packs on a host, single values on a device.
 template <class ExecutionSpace>

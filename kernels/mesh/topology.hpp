@@ -15,8 +15,8 @@ namespace drogue::mesh {
 /// True if all triangles have parallel or antiparallel normals up to round-off. Does not throw.
 [[nodiscard]] bool is_planar(const Mesh& mesh);
 
-/// Two triangles that share an edge and have opposite orientations; empty for a consistently oriented mesh.
-/// Throws only std::bad_alloc.
+/// Indices of two triangles that share an edge and have opposite orientations; empty for a consistently
+/// oriented mesh. Throws only std::bad_alloc.
 [[nodiscard]] std::optional<std::array<int, 2>> inconsistent_triangles(const Mesh& mesh);
 
 /// Kinds of defects that make a mesh unusable for cloth, in the order in which `find_defect` looks for them.
@@ -29,6 +29,7 @@ enum class DefectKind {
   duplicate_line,       ///< line `part` has the ends of line `other`, `vertices`
 };
 
+/// Defect of a mesh.
 struct Defect {
   DefectKind kind;
   std::size_t part;               ///< index of the vertex, triangle or line
@@ -36,8 +37,9 @@ struct Defect {
   std::array<int, 2> vertices{};  ///< ends of the edge or line, if any, ascending
 };
 
-/// First defect of a mesh with indices in range, or empty. A triangle is degenerate if its height is below
-/// 1e-12 of its longest edge, the size of rounded coordinates. Throws only std::bad_alloc.
+/// First defect of a mesh with indices in range, or empty. Lengths at rest in m. A triangle is degenerate if
+/// its height is below 1e-12 of its longest edge, the size of rounded coordinates. Throws only
+/// std::bad_alloc.
 [[nodiscard]] std::optional<Defect> find_defect(const Mesh& mesh);
 
 }  // namespace drogue::mesh

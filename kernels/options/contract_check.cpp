@@ -11,15 +11,15 @@ struct Condition {
 };
 
 template <int count>
-std::string_view first_broken(const Condition (&conditions)[count]) {
+std::string_view first_violated(const Condition (&conditions)[count]) {
   for (const Condition& condition : conditions)
     if (!condition.holds) return condition.clause;
   return {};
 }
 
-std::string_view violated_by_hyperbolic(const Contract& c) {
+std::string_view violated_by_generalized_hyperbolic(const Contract& c) {
   const double lambda = c.jump[0], alpha = c.jump[1], beta = c.jump[2], delta = c.jump[3];
-  return first_broken({
+  return first_violated({
       {std::abs(lambda) < 128.0, "lambda must lie between -128 and 128"},
       {std::isfinite(alpha) && alpha > 0.0, "alpha must be finite and > 0"},
       {alpha <= 1e100, "alpha must not be above 1e100"},
@@ -33,7 +33,7 @@ std::string_view violated_by_hyperbolic(const Contract& c) {
 
 std::string_view violated_by_merton(const Contract& c) {
   const double intensity = c.jump[0], mean = c.jump[1], deviation = c.jump[2];
-  return first_broken({
+  return first_violated({
       {c.variance > 0.0, "variance must be > 0 for this model, whose jumps alone leave the price standing"},
       {std::isfinite(intensity) && intensity >= 0.0, "intensity must be finite and >= 0"},
       {std::isfinite(mean), "jump_mean must be finite"},
@@ -43,7 +43,7 @@ std::string_view violated_by_merton(const Contract& c) {
 
 std::string_view violated_by_kou(const Contract& c) {
   const double intensity = c.jump[0], up = c.jump[1], up_rate = c.jump[2], down_rate = c.jump[3];
-  return first_broken({
+  return first_violated({
       {c.variance > 0.0, "variance must be > 0 for this model, whose jumps alone leave the price standing"},
       {std::isfinite(intensity) && intensity >= 0.0, "intensity must be finite and >= 0"},
       {up >= 0.0 && up <= 1.0, "up_probability must lie in 0 .. 1"},
@@ -52,13 +52,13 @@ std::string_view violated_by_kou(const Contract& c) {
   });
 }
 
-/// So that no Greek leaves the range of numbers.
+/// True for amounts of money for which all Greeks stay within the range of double.
 bool is_money(double x) { return x >= 1e-100 && x <= 1e100; }
 
 }  // namespace
 
 std::string_view violated_condition(const Contract& c) {
-  const std::string_view common = first_broken({
+  const std::string_view common = first_violated({
       {std::isfinite(c.spot) && c.spot > 0.0, "spot must be finite and > 0"},
       {std::isfinite(c.strike) && c.strike > 0.0, "strike must be finite and > 0"},
       {is_money(c.spot), "spot must lie between 1e-100 and 1e100"},
@@ -72,9 +72,9 @@ std::string_view violated_condition(const Contract& c) {
   if (!common.empty()) return common;
   switch (c.model) {
     case Model::generalized_hyperbolic:
-      return violated_by_hyperbolic(c);
+      return violated_by_generalized_hyperbolic(c);
     case Model::black_scholes:
-      return first_broken({{c.variance > 0.0, "variance must be > 0 where there are no jumps"}});
+      return first_violated({{c.variance > 0.0, "variance must be > 0 where there are no jumps"}});
     case Model::merton:
       return violated_by_merton(c);
     case Model::kou:

@@ -6,8 +6,9 @@
 
 namespace drogue::options {
 
-/// The first condition that the contract breaks, as a clause like "|beta + 1| < alpha, else the asset has no
-/// mean"; empty if it can be priced. Only the parameters of its model are looked at.
+/// First validity condition that the contract violates, as a clause like "|beta + 1| < alpha, else the asset
+/// has no mean"; empty for a valid contract. Checks the jump parameters of the contract's model only. Does
+/// not throw.
 [[nodiscard]] std::string_view violated_condition(const Contract& contract);
 
 }  // namespace drogue::options

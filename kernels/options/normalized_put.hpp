@@ -5,21 +5,23 @@
 
 namespace drogue::options {
 
-/// A put of strike 1 on the logarithm of the asset's price: what every contract is solved as.
+/// Put of strike 1 as a function of the logarithm of the asset price. Every contract is solved in this form.
 ///
-/// A call is the put with spot and strike, and rate and dividend, exchanged under the measure whose jumps
-/// have the density e^{-y} g(-y) (Peskir and Shiryaev 2002; Fajardo and Mordecki 2006).
+/// A call equals the put with spot and strike, and rate and dividend, exchanged under the dual measure, whose
+/// jumps have the density e^{-y} g(-y) (Peskir and Shiryaev 2002; Fajardo and Mordecki 2006).
 struct NormalizedPut {
   Model model = Model::generalized_hyperbolic;
-  bool early = true;      ///< may be exercised early, and it may pay
-  bool split = false;     ///< where exercise pays is no half line: see `step`
+  bool early = true;      ///< early exercise is allowed and may pay
+  bool split = false;     ///< early exercise is imposed by operator splitting, as two boundaries require
   double log_spot = 0.0;  ///< ln(spot/strike)
-  double rate = 0.0, dividend = 0.0, maturity = 0.0, variance = 0.0;
+  double rate = 0.0, dividend = 0.0;  ///< per year
+  double maturity = 0.0;              ///< years
+  double variance = 0.0;              ///< of the Brownian part, per year
   double jump[4] = {0.0, 0.0, 0.0, 0.0};
 };
 
-/// Parameters of the jumps that have the density e^{-y} g(-y).
-KOKKOS_INLINE_FUNCTION void mirror(Model model, double* jump) {
+/// Replaces the parameters of a jump density g(y) by those of the dual density e^{-y} g(-y).
+KOKKOS_INLINE_FUNCTION void to_dual_measure(Model model, double* jump) {
   if (model == Model::generalized_hyperbolic) {
     jump[2] = -jump[2] - 1.0;
   } else if (model == Model::merton) {
@@ -36,14 +38,15 @@ KOKKOS_INLINE_FUNCTION void mirror(Model model, double* jump) {
   }
 }
 
-/// Whether early exercise of a put may pay: it gains r - q e^x a year while x < 0, which is positive
-/// somewhere.
+/// True if early exercise of a put may pay. Exercise at x < 0 gains r - q e^x per year, which must be
+/// positive for some x.
 KOKKOS_INLINE_FUNCTION bool early_may_pay(double rate, double dividend) {
   return rate > 0.0 || dividend < rate;
 }
 
-/// If r < 0 the region where exercise pays, if any, does not reach down to x = -inf.
-KOKKOS_INLINE_FUNCTION NormalizedPut put_of(const Contract& contract) {
+/// The normalized put of a contract. For r < 0 the exercise region, if any, is bounded below, so exercise is
+/// imposed by operator splitting.
+KOKKOS_INLINE_FUNCTION NormalizedPut normalize(const Contract& contract) {
   const bool call = contract.type == Type::call;
   NormalizedPut put;
   put.model = contract.model;
@@ -54,7 +57,7 @@ KOKKOS_INLINE_FUNCTION NormalizedPut put_of(const Contract& contract) {
   const double ratio = contract.spot / contract.strike;
   put.log_spot = device::portable::log(call ? 1.0 / ratio : ratio);
   for (int k = 0; k < 4; ++k) put.jump[k] = contract.jump[k];
-  if (call) mirror(put.model, put.jump);
+  if (call) to_dual_measure(put.model, put.jump);
   put.early = contract.style == Style::american && early_may_pay(put.rate, put.dividend);
   put.split = put.early && put.rate < 0.0;
   return put;

@@ -15,16 +15,16 @@ std::unique_ptr<Pricer> make_surface(const Settings& settings, std::unique_ptr<P
 
 namespace {
 
-void check(const Settings& s) {
-  const auto require = [](bool holds, const char* what) {
-    if (!holds) throw std::invalid_argument(std::string("options pricer: ") + what);
+void require_valid(const Settings& s) {
+  const auto require = [](bool holds, const char* condition) {
+    if (!holds) throw std::invalid_argument(std::string("options pricer: ") + condition);
   };
   require(s.mesh == 0 || (s.mesh >= 32 && s.mesh <= 4096 && s.mesh % 2 == 0),
           "mesh must be 0 or an even number from 32 to 4096");
   require(s.steps == 0 || (s.steps >= 8 && s.steps <= 16384 && s.steps % 2 == 0),
           "steps must be 0 or an even number from 8 to 16384");
   require(s.tolerance > 0.0, "the tolerance must be positive");
-  require(!s.one_grid || s.mesh != 0, "one grid states no error by which to choose a mesh");
+  require(!s.single_grid || s.mesh != 0, "one grid states no error by which to choose a mesh");
   require(!s.surface || s.method == Method::pide, "a surface needs the method pide");
 }
 
@@ -32,7 +32,7 @@ void check(const Settings& s) {
 
 std::unique_ptr<Pricer> create_pricer(device::Backend backend, const Settings& settings) {
   if (settings.method == Method::cos && !settings.surface) return create_cos_pricer(backend, settings);
-  check(settings);
+  require_valid(settings);
   return device::dispatch(backend, [&]<class ExecutionSpace>() {
     auto pide = make_pide<ExecutionSpace>(settings);
     return settings.surface ? make_surface<ExecutionSpace>(settings, std::move(pide)) : std::move(pide);

@@ -10,82 +10,87 @@
 
 namespace drogue::options {
 
+/// Numerical method.
 enum class Method : unsigned char {
-  pide,  ///< finite differences of the integro-differential equation
-  cos,   ///< Fourier cosine series
-  seed,  ///< the dissertation's scheme (Listing 4.6)
+  pide,      ///< finite differences of the partial integro-differential equation
+  cos,       ///< Fourier cosine series (American) and Fourier inversion (European)
+  baseline,  ///< scheme of [Shi], listing 4.6
 };
 
-/// How early exercise that pays on a half line is imposed; between two boundaries it is always split off.
+/// Treatment of early exercise that pays on a half line. Between two exercise boundaries `split` is always
+/// used.
 enum class ExerciseRule : unsigned char {
-  exact,  ///< in the solve of a step (Brennan and Schwartz 1977)
-  split,  ///< after it (Ikonen and Toivanen 2004), to compare
+  exact,  ///< within the solve of a step (Brennan and Schwartz 1977)
+  split,  ///< after the solve, by operator splitting (Ikonen and Toivanen 2004); for comparison
 };
 
-/// How to price. Either mesh and steps are given, or the tolerance chooses them.
+/// Settings of a pricer. Either mesh and steps are given, or the tolerance chooses them.
 struct Settings {
   Method method = Method::pide;
-  int mesh = 0;             ///< intervals in space; 0: chosen by `tolerance`
-  int steps = 0;            ///< steps in time; 0: chosen by `tolerance`
-  double tolerance = 1e-4;  ///< of |price - true price|, relative to the strike
+  int mesh = 0;             ///< spatial intervals; 0: chosen by `tolerance`
+  int steps = 0;            ///< time steps; 0: chosen by `tolerance`
+  double tolerance = 1e-4;  ///< bound of |price - true price|, relative to the strike
   bool greeks = false;      ///< `cos` computes delta, gamma and theta; the other methods always do
-  int host_threads = 0;     ///< by which `cos` makes its tables on the host; 0: as many as there are cores
-  bool surface = false;     ///< contracts in a row that differ in the strike alone share solves; for `pide`
-  ExerciseRule exercise = ExerciseRule::exact;  ///< `pide` alone, as the next
-  bool one_grid = false;  ///< with `mesh`: nothing is extrapolated and no error stated, to compare
-  bool timed_apart =
-      false;  ///< copies from the rest, which waits for each; `surface` always does, `cos` never
+  int host_threads = 0;     ///< host threads for the tables of `cos`; 0: one per core
+  bool surface = false;  ///< consecutive contracts that differ only in the strike share solves; `pide` only
+  ExerciseRule exercise = ExerciseRule::exact;  ///< `pide` only
+  bool single_grid = false;  ///< with `mesh`, `pide` only: no extrapolation and no error; for comparison
+  /// Times copies separately, with a fence after each. Surfaces always do, `cos` never does.
+  bool time_copies = false;
 };
 
-/// Wall time of a batch's parts, s; where they are not timed apart it is all in `compute`.
+/// Wall times of a batch, s. If copies are not timed separately, `compute` holds the total.
 struct WallTimes {
   double h2d = 0.0;
-  double compute = 0.0;  ///< with tables of Bessel functions and what else the host does for it
+  double compute = 0.0;  ///< includes work on the host, such as tables of Bessel functions
   double d2h = 0.0;
 };
 
-/// A point of an early exercise boundary.
+/// Point of an early exercise boundary.
 struct BoundaryPoint {
   double time;  ///< from now, years
-  double spot;  ///< money: at it and beyond exercise is right
+  double spot;  ///< critical spot, money: at and beyond it exercise is optimal
 };
 
-/// A price of an option at another spot, money both.
+/// Price of an option at another spot.
 struct ProfilePoint {
-  double spot, price;
+  double spot, price;  ///< money
 };
 
-/// Prices batches on a backend. Needs an initialised runtime.
+/// Prices batches of contracts on a backend. Requires an initialized runtime. All functions block until their
+/// results are on the host.
 class Pricer {
  public:
   virtual ~Pricer() = default;
 
-  /// Prices every contract; `prices` has the length of `contracts`, each of which must satisfy
-  /// `violated_condition` (std::invalid_argument for spans of different lengths). Returns when the prices
-  /// are there. A contract's bits do not depend on the others of the batch.
+  /// Prices every contract, all of which satisfy `violated_condition`; `prices` (money) has the length of
+  /// `contracts`. Returns wall times, s. The bits of a price do not depend on the other contracts. Throws
+  /// std::invalid_argument for spans of different lengths.
   virtual WallTimes price(std::span<const Contract> contracts, std::span<Price> prices) = 0;
 
-  /// Memory from which and to which a device copies without a detour: contracts and prices may lie there. It
-  /// lasts as long as the pricer.
+  /// Host memory that the device copies directly from and to, for contracts and prices. Valid for the life of
+  /// the pricer. Does not throw.
   [[nodiscard]] virtual std::pmr::memory_resource& memory() { return *std::pmr::new_delete_resource(); }
 
-  /// The early exercise boundary of an American contract from now on to its expiry, a point for each step of
-  /// the solve; empty where exercise is never right.
+  /// Early exercise boundary of an American contract from now to expiry, one point (years, money) per time
+  /// step; empty if exercise is never optimal. Throws std::invalid_argument for the method `cos`.
   [[nodiscard]] std::vector<BoundaryPoint> boundary(const Contract& contract) {
     return boundary_on(contract, 0, 0);
   }
 
-  /// The same on a mesh and with steps, say those of a price. A mesh of 0 intervals is that of the settings,
-  /// or 512.
+  /// As `boundary`, with `mesh` intervals and `steps` time steps, say those of a price. 0 intervals: those of
+  /// the settings, or 512. Throws std::invalid_argument for the method `cos`.
   virtual std::vector<BoundaryPoint> boundary_on(const Contract& contract, int mesh, int steps) = 0;
 
-  /// Prices now at the spots of the nodes of one solve, which rise; the contract's own spot only has a say in
-  /// how far they reach. Prices are as good as one grid makes them. Since V(c spot, c strike) = c V they are
-  /// those of other strikes as well.
+  /// Current prices (money) at the nodes of one solve, in ascending order of the spot (money). The contract's
+  /// spot only affects the extent of the grid. Prices have the error of a single grid. By homogeneity,
+  /// V(c spot, c strike) = c V, they are prices of other strikes as well. Throws std::invalid_argument for
+  /// the method `cos`.
   virtual std::vector<ProfilePoint> profile(const Contract& contract) = 0;
 };
 
-/// Throws std::invalid_argument for settings out of range; the backend must be available.
+/// Creates a pricer on `backend`, which must be available. Throws std::invalid_argument for settings out of
+/// range.
 [[nodiscard]] std::unique_ptr<Pricer> create_pricer(device::Backend backend, const Settings& settings);
 
 }  // namespace drogue::options

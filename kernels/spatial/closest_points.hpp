@@ -23,7 +23,8 @@ KOKKOS_INLINE_FUNCTION bool boxes_apart(const Point (&a)[m], const Point (&b)[n]
          apart([](const Point& p) { return p.z; });
 }
 
-/// Parameter in [0, 1] of the point of segment ab closest to p.
+/// Parameter, dimensionless in [0, 1], of the point of segment ab (m) closest to p (m); 0 for a segment of no
+/// length.
 KOKKOS_INLINE_FUNCTION double closest_on_segment(const Point& p, const Point& a, const Point& b) {
   const Point along = b - a;
   const double squared = dot(along, along), part = dot(p - a, along);
@@ -38,8 +39,8 @@ struct ClosestOnTriangle {
   bool inside;       ///< in the interior, not on an edge
 };
 
-/// Closest point of triangle t to p. Tests every edge, then the face if p projects into it; degenerate
-/// triangles cost no accuracy.
+/// Closest point of triangle t (m) to p (m). Tests every edge, then the face if p projects into it;
+/// degenerate triangles cost no accuracy.
 KOKKOS_INLINE_FUNCTION ClosestOnTriangle closest_on_triangle(const Point& p, const Point (&t)[3]) {
   ClosestOnTriangle best{{1.0, 0.0, 0.0}, 1e300, false};
   for (int k = 0; k < 3; ++k) {
@@ -76,8 +77,8 @@ struct ClosestOfSegments {
   bool inside;     ///< both points lie in the interior of their segment
 };
 
-/// Closest points of segments p and q: tests all four ends, then the common perpendicular if both feet lie
-/// inside.
+/// Closest points of segments p and q (m): tests all four ends, then the common perpendicular if both feet
+/// lie inside.
 KOKKOS_INLINE_FUNCTION ClosestOfSegments closest_of_segments(const Point (&p)[2], const Point (&q)[2]) {
   ClosestOfSegments best{0.0, 0.0, 1e300, false};
   for (int end = 0; end < 4; ++end) {

@@ -14,14 +14,16 @@ namespace drogue::spatial {
 struct HashGrid {
   double width;  ///< edge of a cell, m
 
+  /// Key of a cell from its integer coordinates, of which 21 bits per axis count.
   KOKKOS_FUNCTION static std::uint64_t key(std::int64_t x, std::int64_t y, std::int64_t z) {
     const auto bits = [](std::int64_t a) { return static_cast<std::uint64_t>(a) & 0x1fffffU; };
     return bits(x) << 42U | bits(y) << 21U | bits(z);
   }
+  /// Integer coordinate of the cell that holds coordinate x, m; |x / width| must be below 2^63.
   [[nodiscard]] KOKKOS_FUNCTION std::int64_t coordinate(double x) const {
     return static_cast<std::int64_t>(Kokkos::floor(x / width));
   }
-  /// Key of the cell that holds p.
+  /// Key of the cell that holds p, m.
   [[nodiscard]] KOKKOS_FUNCTION std::uint64_t cell_of(const Point& p) const {
     return key(coordinate(p.x), coordinate(p.y), coordinate(p.z));
   }
@@ -40,7 +42,8 @@ struct HashGrid {
     spheres(k) = sphere;
   }
 
-  /// Calls `visit(k)` for every primitive whose centre lies in the cell of p or in one of its 26 neighbours.
+  /// Calls `visit(k)` for every primitive whose centre lies in the cell of p (m) or in one of its 26
+  /// neighbours.
   template <class Heads, class Spheres, class Visit>
   KOKKOS_FUNCTION void for_each_candidate(const Point& p, const Heads& heads, const Spheres& spheres,
                                           const Visit& visit) const {

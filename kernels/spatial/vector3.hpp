@@ -4,7 +4,7 @@
 
 namespace drogue::spatial {
 
-/// Three components; R is a double, a dual number or a pack of lanes.
+/// Vector of three Cartesian components in any unit. R is a double, a dual number or a pack of lanes.
 template <class R>
 struct Vector3 {
   R x, y, z;
@@ -19,6 +19,7 @@ struct Vector3 {
   friend KOKKOS_INLINE_FUNCTION Vector3 operator*(S s, const Vector3& a) {
     return {s * a.x, s * a.y, s * a.z};
   }
+  /// Scalar product, in the product of the units of a and b.
   friend KOKKOS_INLINE_FUNCTION R dot(const Vector3& a, const Vector3& b) {
     return a.x * b.x + a.y * b.y + a.z * b.z;
   }
@@ -27,11 +28,13 @@ struct Vector3 {
 /// Position or difference of positions, m.
 using Point = Vector3<double>;
 
+/// Cross product, in the product of the units of a and b.
 template <class R>
 KOKKOS_INLINE_FUNCTION Vector3<R> cross(const Vector3<R>& a, const Vector3<R>& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
+/// Euclidean norm, m. Squares overflow beyond 1e154.
 KOKKOS_INLINE_FUNCTION double length(const Point& a) { return Kokkos::sqrt(dot(a, a)); }
 
 /// Inverse area of the triangle that two edges (m) span, 1/m^2; 0 for a degenerate triangle. The only

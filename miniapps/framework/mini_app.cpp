@@ -5,6 +5,7 @@
 #include "common/program/mpi_guard.hpp"
 #include "common/program/program.hpp"
 #include "common/program/provenance.hpp"
+#include "common/program/shipped_folder.hpp"
 #include "common/program/signals.hpp"
 #include "common/scene/library.hpp"
 #include "miniapps/framework/scene_run.hpp"
@@ -12,11 +13,7 @@
 namespace drogue::framework {
 
 std::filesystem::path find_scene_folder(const std::string& name, const std::filesystem::path& source_folder) {
-  std::error_code error;
-  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", error);
-  std::filesystem::path installed = program.parent_path().parent_path() / "share/drogue/scenes" / name;
-  if (!error && std::filesystem::is_directory(installed, error)) return installed;
-  return source_folder;
+  return find_shipped_folder("scenes/" + name, source_folder);
 }
 
 ExitCode run_command(const MiniApp& app, const MiniAppOptions& options) {

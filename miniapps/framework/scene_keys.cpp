@@ -19,7 +19,7 @@ bool is_output_time(const OutputRequest& output, double time) {
 
 void declare_app(scene::Table& root, const std::string& name, std::string& description) {
   root.value("app", scene::fixed_codec(name), "The program the scene is for").required().decisive();
-  root.value("description", scene::text_codec(description), "A sentence for --list-scenes");
+  root.value("description", scene::text_codec(description), "Sentence for --list-scenes");
 }
 
 void declare_output_times(scene::Table& table, OutputRequest& output, const scene::Key& fields) {

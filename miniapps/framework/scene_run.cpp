@@ -106,14 +106,10 @@ class SceneRun {
   /// Writes how the run failed. An error in the scene or the command line leaves the files of a former run
   /// untouched; a restart file that was refused is reported.
   void record(const Failure& failure) {
-    _result.exit_code = failure.code();
-    _result.message = failure.what();
     const bool refused_restart = !_restart.empty() && failure.code() == ExitCode::io_error;
-    try {
+    run::record_failure(_result, failure, [&] {
       if (_is_empty || _directory.begun() || refused_restart) write_result();
-    } catch (const Failure& second) {
-      throw Failure(failure.code(), std::string(failure.what()) + "; and " + second.what());
-    }
+    });
     if (failure.code() == ExitCode::verification_failed && !_options.quiet) print_summary();
   }
 

@@ -36,7 +36,7 @@ struct HistoryRow {
 enum class Stop {
   target,       ///< the target time is reached
   pause,        ///< the pause step is reached
-  interrupted,  ///< the poll asked for the end
+  interrupted,  ///< the poll requested the end
   failed        ///< the state is lost or the step limit is reached; `failure_text` explains
 };
 

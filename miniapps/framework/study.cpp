@@ -33,8 +33,8 @@ ExitCode StudySession::run(const study::Columns& columns, std::size_t count,
   return study::run_points(_directory, _facts, columns, count, run_point, _quiet);
 }
 
-study::Row study_row(RepeatedRun runs) {
-  study::Row row;
+study::StudyRow study_row(RepeatedRun runs) {
+  study::StudyRow row;
   row.samples = std::move(runs.samples);
   row.steps = runs.steps;
   row.errors = std::move(runs.errors);

@@ -57,6 +57,6 @@ class StudySession {
 };
 
 /// Row of study.csv from the timed runs of a point.
-[[nodiscard]] study::Row study_row(RepeatedRun runs);
+[[nodiscard]] study::StudyRow study_row(RepeatedRun runs);
 
 }  // namespace drogue::framework

@@ -60,7 +60,7 @@ void declare_weights(Table& table, gas::Parameters& scheme) {
   table.value("time", scene::choice_codec(scheme.time_scheme, time_choices),
               "Runge-Kutta scheme, of 3 or 4 stages");
   table.value("mean", scene::choice_codec(scheme.face_average, mean_choices),
-              "State at a face whose eigenvectors are used: mean of u and H, mean of U, or Roe's");
+              "Average at a face that gives the eigenvectors: mean of u and H, mean of U, or Roe's");
 }
 
 void declare_step(Table& table, gas::Parameters& scheme) {
@@ -102,7 +102,7 @@ void declare_initial(Table& table, Initial& initial) {
   table.optional_table(
       "riemann", initial.riemann,
       [](Table& riemann, Riemann& value) {
-        riemann.value("x0", scene::real_codec(value.x0), "Where the two states meet").unit("m");
+        riemann.value("x0", scene::real_codec(value.x0), "Position of the discontinuity").unit("m");
         riemann
             .table(
                 "left", [&](Table& state) { declare_state(state, value.left); }, "State left of x0")
@@ -146,9 +146,9 @@ void declare_output(Table& table, Output& output) {
 }
 
 void declare_verify(Table& table, Verify& verify) {
-  table.value("exact", scene::choice_codec(verify.exact, exact_choices),
-              "What the result is compared with: the exact Riemann solution, the initial state moved with u, "
-              "a finer run");
+  table.value(
+      "exact", scene::choice_codec(verify.exact, exact_choices),
+      "Reference of the errors: the exact Riemann solution, the initial state moved with u, a finer run");
   table
       .optional_table(
           "reference", verify.reference,
@@ -177,7 +177,7 @@ void declare_verify(Table& table, Verify& verify) {
   table.optional_table(
       "max_density", verify.max_density,
       [](Table& target, Target& value) {
-        target.value("value", scene::real_codec(value.value), "What it should be")
+        target.value("value", scene::real_codec(value.value), "Expected value")
             .unit("kg/m^3")
             .above(0.0)
             .required();
@@ -189,7 +189,8 @@ void declare_verify(Table& table, Verify& verify) {
       "The largest density at the end");
   table
       .value("conservation", scene::real_codec(verify.conservation),
-             "Largest relative change of mass, momentum and energy, less what crossed the ends, that passes")
+             "Largest relative change of mass, momentum and energy that passes, net of the fluxes through "
+             "the ends")
       .at_least(0.0);
 }
 
@@ -232,13 +233,13 @@ void declare_gas_scene(Table& root, GasScene& scene) {
   root.table(
           "run",
           [&](Table& table) {
-            table.value("end_time", scene::real_codec(scene.end_time), "Where the run ends")
+            table.value("end_time", scene::real_codec(scene.end_time), "End of the run")
                 .unit("s")
                 .above(0.0)
                 .required();
             table
                 .value("max_steps", scene::integer_codec(parameters.max_steps),
-                       "Steps after which the run is given up")
+                       "Limit of steps; a run that reaches it fails")
                 .range(1, 1e12);
           },
           "The length of the run")
@@ -246,7 +247,7 @@ void declare_gas_scene(Table& root, GasScene& scene) {
   root.table(
       "output", [&](Table& table) { declare_output(table, scene.output); }, "Files of the run directory");
   root.table(
-      "verify", [&](Table& table) { declare_verify(table, scene.verify); }, "What is checked at the end");
+      "verify", [&](Table& table) { declare_verify(table, scene.verify); }, "Checks at the end");
   root.table(
       "tuning",
       [&](Table& table) {
@@ -266,9 +267,9 @@ void declare_gas_scene(Table& root, GasScene& scene) {
               step.value("driver",
                          zero_is_unset(scene::choice_codec(parameters.driver, driver_choices),
                                        parameters.driver),
-                         "How steps reach a GPU: kernels one by one, a recorded graph a step, or many steps "
-                         "a launch where mesh and scheme allow that, else a graph; `stages` is a graph of a "
-                         "kernel a stage")
+                         "Launches of steps on a GPU: single kernels, one captured graph per step, or many "
+                         "steps per launch where mesh and scheme allow it, else a graph; `stages` is a graph "
+                         "with one kernel per stage")
                   .default_text("`\"auto\"`");
             },
             "The launch of a step");

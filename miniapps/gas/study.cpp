@@ -49,9 +49,9 @@ std::vector<std::vector<std::string>> assignments(const study::Axes& axes, const
   return points;
 }
 
-study::Row row_of(const gas::Parameters& p, framework::RepeatedRun run) {
+study::StudyRow row_of(const gas::Parameters& p, framework::RepeatedRun run) {
   const SchemeNames names = scheme_names(p);
-  study::Row row = framework::study_row(std::move(run));
+  study::StudyRow row = framework::study_row(std::move(run));
   row.label = names.label;
   row.settings = {names.weno, std::int64_t{p.weno_power}, names.splitting, names.time, names.precision};
   row.mesh = p.cells;
@@ -107,7 +107,7 @@ ExitCode run_study(const MiniAppOptions& options, const std::filesystem::path& f
     reference = run_reference(base, session.backend(), options.quiet);
   if (!reference) return ExitCode::interrupted;
   const ExactSolution exact = exact_solution(base, base.end_time, *reference);
-  const auto run_point = [&](std::size_t i, std::vector<study::Row>& rows) {
+  const auto run_point = [&](std::size_t i, std::vector<study::StudyRow>& rows) {
     framework::RepeatedRun run = run_repeatedly(scenes[i], session.backend(), exact, {5, 1.0});
     if (run.code == ExitCode::interrupted) return false;
     rows.push_back(row_of(scenes[i].parameters, std::move(run)));

@@ -5,8 +5,8 @@
 
 namespace drogue::options_app {
 
-/// Does what the command line asks for. Throws Failure: also when rows are invalid or failed, after every
-/// other row is priced and written.
-ExitCode run_app(const Command& command);
+/// Does what the command line requests. Throws `Failure`, also for invalid or failed rows, after all other
+/// rows are priced and written; returns the exit code otherwise, also of an interrupted run.
+ExitCode run_command(const Command& command);
 
 }  // namespace drogue::options_app

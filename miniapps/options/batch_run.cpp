@@ -1,139 +1,166 @@
 #include "miniapps/options/batch_run.hpp"
 
-#include <chrono>
-#include <utility>
+#include <algorithm>
+#include <optional>
+#include <thread>
 
-#include "common/program/signals.hpp"
-#include "kernels/options/contract_check.hpp"
-#include "miniapps/options/outputs.hpp"
+#include "common/program/message.hpp"
+#include "common/program/program.hpp"
+#include "common/program/stopwatch.hpp"
+#include "common/run/output_path.hpp"
+#include "common/run/result_document.hpp"
+#include "miniapps/framework/device_session.hpp"
+#include "miniapps/options/input/shipped_batches.hpp"
+#include "miniapps/options/output/summary.hpp"
+#include "miniapps/options/parallel/rank_pricing.hpp"
 
 namespace drogue::options_app {
 namespace {
 
-constexpr std::size_t most_of_piece = std::size_t{1} << 20;  // of a piece, but for one row's
-
-double now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+RowKind row_kind(const Command& command) {
+  return command.action == Action::price ? RowKind::contract : RowKind::parameter_set;
 }
+
+/// Input and output files, which rank 0 holds, and the facts about them that all ranks share.
+struct OpenBatch {
+  /// Opens the files and chooses the backend on rank 0. Collective.
+  OpenBatch(Communicator& communicator, const Command& command, const std::filesystem::path& input) {
+    communicator.run_collectively([&] {
+      if (!communicator.is_root()) return;
+      reader.emplace(input, row_kind(command));
+      if (reader->has_ids()) BatchReader(input, row_kind(command)).require_unique_ids();
+      backend = framework::choose_backend(command.backend);
+      outputs.emplace(command);
+    });
+    MessageWriter writer;
+    writer.put(backend);
+    writer.put_all(reader ? reader->columns() : std::vector<int>());
+    const std::string message = communicator.broadcast(writer.take());
+    MessageReader facts(message);
+    backend = facts.get<device::Backend>();
+    columns = facts.get_all<int>();
+  }
+
+  std::optional<BatchReader> reader;
+  std::optional<OutputFiles> outputs;
+  device::Backend backend{};  ///< the same on all ranks, since bits may differ between backends
+  std::vector<int> columns;   ///< as `BatchReader::columns`
+};
+
+/// Pricer of this rank, with its share of the host's cores.
+std::unique_ptr<options::Pricer> create_rank_pricer(device::Backend backend, options::Settings settings,
+                                                    const Communicator& communicator) {
+  const int cores = static_cast<int>(std::thread::hardware_concurrency());
+  settings.host_threads = std::max(1, cores / communicator.ranks_on_host());
+  return made_as_asked([&] { return options::create_pricer(backend, settings); });
+}
+
+/// One batch and its result document.
+class BatchRun {
+ public:
+  BatchRun(Communicator& communicator, const Command& command, const std::filesystem::path& input)
+      : _communicator(communicator),
+        _command(command),
+        _input(input),
+        _result(run::new_result("drogue-options", input.stem().string())) {
+    _result.metrics.add_group("counts");
+    // The schema of result.json has the counts of a flux limiter for every program.
+    for (const char* count : {"touches", "cells", "redone_steps"})
+      _result.metrics.set("limiter", count, std::int64_t{0});
+    _result.ranks = communicator.size();
+  }
+
+  ExitCode run() {
+    try {
+      _result.exit_code = execute();
+    } catch (...) {
+      const Failure failure = current_failure();
+      run::record_failure(_result, failure, [this] { write_result(); });
+      throw failure;
+    }
+    write_result();
+    return _result.exit_code;
+  }
+
+ private:
+  /// Returns `ok` or `interrupted`. All files are closed at the return, so that a full disk has room for the
+  /// result.
+  ExitCode execute() {
+    OpenBatch batch(_communicator, _command, _input);
+    std::optional<framework::DeviceSession> session;
+    std::unique_ptr<options::Pricer> pricer;
+    _communicator.run_collectively([&] {
+      session.emplace(framework::choose_backend(std::string(device::name(batch.backend))), _command.kokkos);
+      session->describe(_result);
+      pricer = create_rank_pricer(batch.backend, _command.settings, _communicator);
+    });
+    _result.timing.setup_s = _wall_time.seconds();
+    const Stopwatch run_time;
+    ChunkPricer chunk_pricer(_command, row_kind(_command), batch.columns, *pricer);
+    PricingResult priced;
+    _communicator.run_collectively([&] {
+      if (!_communicator.is_root()) return run_worker(_communicator, chunk_pricer);
+      priced = price_on_all_ranks(_communicator, _command, *batch.reader, *batch.outputs, chunk_pricer);
+      if (priced.is_complete) batch.outputs->commit();
+    });
+    if (!_communicator.is_root()) return ExitCode::ok;
+    describe(priced.usage, run_time.seconds());
+    return conclude(priced.is_complete, batch);
+  }
+
+  void describe(const WorkerUsage& usage, double seconds) {
+    _result.timing.h2d_s = usage.wall_times.h2d;
+    _result.timing.compute_s = usage.wall_times.compute;
+    _result.timing.d2h_s = usage.wall_times.d2h;
+    _result.timing.io_s = std::max(0.0, seconds - usage.pricing / _result.ranks);
+    _result.timing.wall_s = _wall_time.seconds();
+    _result.describe_ledger(usage.counters);
+  }
+
+  /// Describes the rows in the result and on standard output. Throws `Failure` for invalid or failed rows.
+  ExitCode conclude(bool is_complete, const OpenBatch& batch) {
+    const RowCounts& counts = batch.outputs->counts();
+    describe_counts(counts, _result);
+    if (!is_complete) {
+      const std::string written = run::is_replaced(_command.out) ? "nothing" : "not all";
+      _result.message =
+          "interrupted by a signal; " + written + " is written to '" + _command.out.string() + "'";
+      return ExitCode::interrupted;
+    }
+    if (!_command.quiet && !writes_to_standard_output())
+      print_summary(_command, _result, counts, batch.reader->rows());
+    require_all_priced(_command, counts, *batch.reader);
+    return ExitCode::ok;
+  }
+
+  /// True if a summary on standard output would mix with rows.
+  [[nodiscard]] bool writes_to_standard_output() const {
+    for (const std::filesystem::path* path : {&_command.out, &_command.result, &_command.boundary})
+      if (run::is_same_file(*path, "/proc/self/fd/1")) return true;
+    return false;
+  }
+
+  void write_result() const {
+    if (_communicator.is_root() && !_command.result.empty()) run::write_result(_command.result, _result);
+  }
+
+  Communicator& _communicator;
+  const Command& _command;
+  const std::filesystem::path& _input;
+  const Stopwatch _wall_time;
+  run::ResultDocument _result;
+};
 
 }  // namespace
 
-BatchRun::BatchRun(const Command& command, RowKind kind, const std::vector<int>& places,
-                   options::Pricer& pricer)
-    : _command(command), _layout(layout_of(command)), _reader(kind, places), _pricer(pricer) {}
-
-void BatchRun::work(Desk& desk) {
-  const auto leave = [&] {
-    Piece last;
-    last.leaves = true;
-    last.spent = _spent;
-    last.spent.ledger = device::profiling_counters();
-    desk.hand_in(std::move(last));
-  };
-  try {
-    Chunk chunk;
-    while (!interrupted() && desk.next(chunk)) price(chunk, desk);
-  } catch (...) {
-    leave();
-    throw;
-  }
-  leave();
-}
-
-void BatchRun::price(const Chunk& chunk, Desk& desk) {
-  _begin = now();
-  _piece.chunk = chunk.number;
-  _rows.resize(chunk.lines.size());
-  std::string_view rest = chunk.text;
-  for (std::size_t i = 0; i < _rows.size(); ++i) {
-    const ChunkLine& line = chunk.lines[i];
-    _reader.read({rest.substr(0, line.length), line.number, line.too_long},
-                 chunk.first_row + static_cast<std::int64_t>(i), _rows[i]);
-    rest.remove_prefix(line.length);
-  }
-  for (Row& row : _rows) {
-    if (row.fault.empty() && _command.settings.method == options::Method::seed &&
-        row.contract.model != options::Model::generalized_hyperbolic)
-      row.fault = "--method seed has generalized hyperbolic jumps alone";
-    add(row, chunk, desk);
-    if (_is_stopped) return;
-  }
-  flush(desk);
-  if (!_is_stopped) hand_in(desk, true);
-}
-
-void BatchRun::add(const Row& row, const Chunk& chunk, Desk& desk) {
-  const auto put = [&](const options::Contract& contract, std::string_view fault) {
-    if (_asked.size() >= chunk.together) flush(desk);
-    _asked.push_back({&row, contract.strike, contract.maturity, fault});
-    if (row.fault.empty() && fault.empty()) _contracts.push_back(contract);
-  };
-  if (!row.fault.empty() || _command.action == Action::price) return put(row.contract, {});
-  options::Contract contract = row.contract;
-  for (const double maturity : _command.maturities) {
-    if (_asked.size() + _command.strikes.size() > chunk.together) flush(desk);
-    for (const double strike : _command.strikes) {
-      contract.maturity = maturity;
-      contract.strike = strike;
-      // The row breaks none, so what is broken here its strike or maturity breaks.
-      put(contract, options::violated_condition(contract));
-      if (_is_stopped) return;
-    }
-  }
-}
-
-void BatchRun::flush(Desk& desk) {
-  _is_stopped = interrupted() || desk.is_closed();
-  if (_is_stopped) return;
-  _prices.assign(_contracts.size(), {});
-  if (!_contracts.empty()) price_contracts();
-  std::size_t priced = 0;
-  for (const Asked& asked : _asked) {
-    const Row* const row = asked.row;
-    if (!row->fault.empty()) {
-      append_invalid(_piece, _layout, *row);
-      continue;
-    }
-    if (!asked.fault.empty()) {
-      append_invalid_point(_piece, *row, asked.strike, asked.maturity, asked.fault);
-      continue;
-    }
-    const options::Contract& contract = _contracts[priced];
-    const options::Price& price = _prices[priced++];
-    append_price(_piece, _layout, *row, contract, price);
-    if (!_command.boundary.empty() && contract.style == options::Style::american &&
-        price.outcome != options::Outcome::failed)
-      append_boundary(_piece, *row, boundary_of(contract, price));
-    if (_piece.prices.size() + _piece.boundaries.size() >= most_of_piece) hand_in(desk, false);
-  }
-  _asked.clear();
-  _contracts.clear();
-}
-
-/// The boundary on the price's own grid. What it says of now is the price's, which another order of
-/// operations may have rounded otherwise.
-std::vector<options::BoundaryPoint> BatchRun::boundary_of(const options::Contract& contract,
-                                                          const options::Price& price) const {
-  std::vector<options::BoundaryPoint> points = _pricer.boundary_on(contract, price.mesh, price.steps);
-  if (!points.empty() && points.front().time == 0.0) points.front().spot = price.exercise_boundary;
-  return points;
-}
-
-void BatchRun::price_contracts() {
-  const double begin = now();
-  const options::WallTimes timing = _pricer.price(_contracts, _prices);
-  _spent.timing.h2d += timing.h2d;
-  _spent.timing.compute += timing.compute;
-  _spent.timing.d2h += timing.d2h;
-  _spent.pricing += now() - begin;
-}
-
-void BatchRun::hand_in(Desk& desk, bool ends_chunk) {
-  _piece.ends_chunk = ends_chunk;
-  if (ends_chunk) _piece.seconds = now() - _begin;
-  const std::int64_t chunk = _piece.chunk;
-  desk.hand_in(std::exchange(_piece, {}));
-  _piece.chunk = chunk;
+ExitCode run_batch(Communicator& communicator, const Command& command) {
+  std::filesystem::path input;
+  communicator.run_collectively([&] {
+    if (!communicator.is_root()) return;
+    input = find_batch(command.input);
+    check_outputs(command, input);
+  });
+  return BatchRun(communicator, command, input).run();
 }
 
 }  // namespace drogue::options_app

@@ -13,86 +13,78 @@
 namespace drogue::options_app {
 namespace {
 
-/// What the words of a subcommand are bound to before they are checked.
-struct Words {
+/// Option values of a subcommand, not checked yet.
+struct OptionValues {
   std::string input, out, result, boundary, method = "pide", tolerance, mesh, steps, strikes, maturities,
                                             chunk;
   bool greeks = false;
 };
 
-void declare_pricing(CLI::App& app, Words& words, Command& command) {
-  app.add_option("--backend", command.backend, "where to compute: auto takes the fastest present")
-      ->check(CLI::IsMember({"auto", "serial", "openmp", "cuda"}))
-      ->capture_default_str();
-  app.add_option("--method", words.method,
+void declare_pricing(CLI::App& app, OptionValues& values, Command& command) {
+  add_backend_option(app, command.backend);
+  app.add_option("--method", values.method,
                  "pide: finite differences; cos: Fourier; seed: the dissertation's, which states no error")
       ->check(CLI::IsMember({"pide", "cos", "seed"}))
       ->capture_default_str();
-  auto* tolerance = app.add_option("--tolerance", words.tolerance,
+  auto* tolerance = app.add_option("--tolerance", values.tolerance,
                                    "largest error, in strikes; chooses mesh and steps (1e-4)")
                         ->type_name("E");
-  auto* mesh = app.add_option("--mesh", words.mesh, "intervals in space, even, 32 .. 4096")
+  auto* mesh = app.add_option("--mesh", values.mesh, "intervals in space, even, 32 .. 4096")
                    ->type_name("N")
                    ->excludes(tolerance);
-  auto* steps = app.add_option("--steps", words.steps, "steps in time, even, 8 .. 16384")
+  auto* steps = app.add_option("--steps", values.steps, "steps in time, even, 8 .. 16384")
                     ->type_name("N")
                     ->excludes(tolerance);
   mesh->needs(steps);
   steps->needs(mesh);
-  app.add_flag("--greeks", words.greeks, "delta, gamma and theta too");
-  app.add_option("--result", words.result, "write timing and counts as JSON")->type_name("FILE");
-  app.add_option("--chunk", words.chunk, "rows priced at a time; changes no result (default: by speed)")
+  app.add_flag("--greeks", values.greeks, "delta, gamma and theta too");
+  app.add_option("--result", values.result, "write timing and counts as JSON")->type_name("FILE");
+  app.add_option("--chunk", values.chunk, "rows priced at a time; changes no result (default: by speed)")
       ->type_name("N");
   app.add_flag("--quiet", command.quiet, "show no progress and no summary");
 }
 
-/// An option given as "", say by a variable of a script that is not set: it must not pass for one not given.
-void refuse_empty_values(const CLI::App& app) {
-  for (const CLI::Option* option : app.get_options())
-    for (const std::string& value : option->results())
-      if (value.empty()) throw Failure(ExitCode::usage, option->get_name() + " is empty");
-}
-
-/// What a number may be a multiple of, as a sentence says it.
-struct Kind {
-  const char* what;
-  int multiple;  ///< 0: of nothing
+/// Divisibility of a number and its name in error messages.
+struct NumberKind {
+  const char* name;
+  int multiple;  ///< the number is a multiple of it; 0: no restriction
 };
-constexpr Kind any{"a number", 0}, whole{"a whole number", 1}, even{"an even whole number", 2};
+constexpr NumberKind any_number{"a number", 0}, whole_number{"a whole number", 1},
+    even_number{"an even whole number", 2};
 
-double number(const std::string& option, const std::string& text, double least, double most,
-              const Kind& kind = any) {
+double parse_number(const std::string& option, const std::string& text, double min, double max,
+                    const NumberKind& kind = any_number) {
   double value = 0.0;
   const bool valid = csv::parse_number(text, value) == csv::NumberError::none;
-  if (valid && value >= least && value <= most &&
-      (kind.multiple == 0 || std::fmod(value, kind.multiple) == 0.0))
+  if (valid && value >= min && value <= max && (kind.multiple == 0 || std::fmod(value, kind.multiple) == 0.0))
     return value;
-  std::string sentence = option + " = '" + text + "' is not " + kind.what + " in ";
-  csv::append_number(sentence, least);
+  std::string sentence = option + " = '" + text + "' is not " + kind.name + " in ";
+  csv::append_number(sentence, min);
   sentence += " .. ";
-  csv::append_number(sentence, most);
+  csv::append_number(sentence, max);
   throw Failure(ExitCode::usage, sentence);
 }
 
-int whole_number(const std::string& option, const std::string& text, int least, int most,
-                 const Kind& kind = whole) {
-  return static_cast<int>(number(option, text, least, most, kind));
+int parse_integer(const std::string& option, const std::string& text, int min, int max,
+                  const NumberKind& kind = whole_number) {
+  return static_cast<int>(parse_number(option, text, min, max, kind));
 }
 
-options::Settings settings(const Words& words) {
+options::Settings pricer_settings(const OptionValues& values) {
   options::Settings settings;
-  settings.method = words.method == "cos"    ? options::Method::cos
-                    : words.method == "seed" ? options::Method::seed
-                                             : options::Method::pide;
-  if (!words.tolerance.empty()) settings.tolerance = number("--tolerance", words.tolerance, 1e-12, 1.0);
-  // What options::create_pricer takes.
-  if (!words.mesh.empty()) settings.mesh = whole_number("--mesh", words.mesh, 32, 4096, even);
-  if (!words.steps.empty()) settings.steps = whole_number("--steps", words.steps, 8, 16384, even);
-  settings.greeks = words.greeks;
-  settings.timed_apart = true;  // result.json tells copies apart
+  settings.method = values.method == "cos"    ? options::Method::cos
+                    : values.method == "seed" ? options::Method::baseline
+                                              : options::Method::pide;
+  if (!values.tolerance.empty())
+    settings.tolerance = parse_number("--tolerance", values.tolerance, 1e-12, 1.0);
+  // The ranges of options::create_pricer.
+  if (!values.mesh.empty()) settings.mesh = parse_integer("--mesh", values.mesh, 32, 4096, even_number);
+  if (!values.steps.empty()) settings.steps = parse_integer("--steps", values.steps, 8, 16384, even_number);
+  settings.greeks = values.greeks;
+  settings.time_copies = true;  // for h2d_s and d2h_s of result.json
   if (settings.method == options::Method::cos && settings.mesh > 0)
     throw Failure(ExitCode::usage, "--method cos has no mesh: give it a --tolerance");
-  if (settings.method == options::Method::seed && settings.mesh == 0)
+  if (settings.method == options::Method::baseline && settings.mesh == 0)
     throw Failure(ExitCode::usage, "--method seed chooses nothing by itself: give it --mesh and --steps");
   return settings;
 }
@@ -100,8 +92,8 @@ options::Settings settings(const Words& words) {
 }  // namespace
 
 std::vector<double> parse_values(const std::string& option, const std::string& text) {
-  constexpr double least = 1e-300, most = 1e300;
-  constexpr int most_values = 10000;
+  constexpr double min = 1e-300, max = 1e300;
+  constexpr int max_values = 10000;
   const char separator = text.find(':') == std::string::npos ? ',' : ':';
   std::vector<std::string> parts(1);
   for (const char c : text) {
@@ -113,17 +105,17 @@ std::vector<double> parse_values(const std::string& option, const std::string& t
   }
   std::vector<double> values;
   if (separator == ',') {
-    if (parts.size() > most_values)
-      throw Failure(ExitCode::usage, option + " has more than " + std::to_string(most_values) + " values");
-    for (const std::string& part : parts) values.push_back(number(option, part, least, most));
+    if (parts.size() > max_values)
+      throw Failure(ExitCode::usage, option + " has more than " + std::to_string(max_values) + " values");
+    for (const std::string& part : parts) values.push_back(parse_number(option, part, min, max));
     return values;
   }
   if (parts.size() != 3)
     throw Failure(ExitCode::usage,
                   option + " needs first:last:count or a list with commas, not '" + text + "'");
-  const double first = number(option, parts[0], least, most);
-  const double last = number(option, parts[1], least, most);
-  const int count = whole_number(option, parts[2], 1, most_values);
+  const double first = parse_number(option, parts[0], min, max);
+  const double last = parse_number(option, parts[1], min, max);
+  const int count = parse_integer(option, parts[2], 1, max_values);
   for (int i = 0; i < count; ++i)
     values.push_back(i + 1 == count && count > 1 ? last
                                                  : first + (last - first) * i / std::max(count - 1, 1));
@@ -132,25 +124,26 @@ std::vector<double> parse_values(const std::string& option, const std::string& t
 
 Command parse_command(int argc, const char* const* argv) {
   Command command;
-  Words words;
+  OptionValues values;
   bool version = false, list = false;
   CLI::App app("Prices American and European options under jumps, each with its error.", "drogue-options");
   app.add_flag("--version", version, "print version, backends and libraries, and end");
   app.add_flag("--list-batches", list, "list the shipped batches, and end");
   app.footer("--kokkos-* options are passed to Kokkos.");
   CLI::App* price = app.add_subcommand("price", "price every contract of a CSV file");
-  price->add_option("BATCH", words.input, "CSV file, or name of a shipped batch")->required();
-  price->add_option("--out", words.out, "CSV file of the prices (prices.csv)")->type_name("FILE");
+  price->add_option("BATCH", values.input, "CSV file, or name of a shipped batch")->required();
+  price->add_option("--out", values.out, "CSV file of the prices (prices.csv)")->type_name("FILE");
   price
-      ->add_option("--boundary", words.boundary, "write the exercise boundaries of American contracts (pide)")
+      ->add_option("--boundary", values.boundary,
+                   "write the exercise boundaries of American contracts (pide)")
       ->type_name("FILE");
-  declare_pricing(*price, words, command);
+  declare_pricing(*price, values, command);
   CLI::App* surface = app.add_subcommand("surface", "price strikes x maturities for every parameter set");
-  surface->add_option("PARAMS", words.input, "CSV file without strike and maturity")->required();
-  surface->add_option("--strikes", words.strikes, "first:last:count, or a list, in money")->required();
-  surface->add_option("--maturities", words.maturities, "first:last:count, or a list, in years")->required();
-  surface->add_option("--out", words.out, "CSV file of the prices (surface.csv)")->type_name("FILE");
-  declare_pricing(*surface, words, command);
+  surface->add_option("PARAMS", values.input, "CSV file without strike and maturity")->required();
+  surface->add_option("--strikes", values.strikes, "first:last:count, or a list, in money")->required();
+  surface->add_option("--maturities", values.maturities, "first:last:count, or a list, in years")->required();
+  surface->add_option("--out", values.out, "CSV file of the prices (surface.csv)")->type_name("FILE");
+  declare_pricing(*surface, values, command);
 
   Arguments arguments = split_arguments(argc, argv);
   command.help = parse_command_line(app, arguments.program);
@@ -163,20 +156,20 @@ Command parse_command(int argc, const char* const* argv) {
   const bool prices = price->parsed();
   if (!prices && !surface->parsed())
     throw Failure(ExitCode::usage, "no command given: price or surface; --help shows what they take");
-  refuse_empty_values(prices ? *price : *surface);
+  require_nonempty_values(prices ? *price : *surface);
   command.action = prices ? Action::price : Action::surface;
-  command.input = words.input;
-  command.out = !words.out.empty() ? words.out : prices ? "prices.csv" : "surface.csv";
-  command.result = words.result;
-  command.boundary = words.boundary;
-  command.settings = settings(words);
-  if (!words.boundary.empty() && command.settings.method != options::Method::pide)
+  command.input = values.input;
+  command.out = !values.out.empty() ? values.out : prices ? "prices.csv" : "surface.csv";
+  command.result = values.result;
+  command.boundary = values.boundary;
+  command.settings = pricer_settings(values);
+  if (!values.boundary.empty() && command.settings.method != options::Method::pide)
     throw Failure(ExitCode::usage, "--boundary needs --method pide: the others give no curve");
-  if (!words.chunk.empty())
-    command.chunk = static_cast<std::size_t>(whole_number("--chunk", words.chunk, 1, 1 << 20));
+  if (!values.chunk.empty())
+    command.chunk = static_cast<std::size_t>(parse_integer("--chunk", values.chunk, 1, 1 << 20));
   if (!prices) {
-    command.strikes = parse_values("--strikes", words.strikes);
-    command.maturities = parse_values("--maturities", words.maturities);
+    command.strikes = parse_values("--strikes", values.strikes);
+    command.maturities = parse_values("--maturities", values.maturities);
     command.settings.surface = command.settings.method == options::Method::pide;
   }
   return command;

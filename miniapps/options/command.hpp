@@ -10,26 +10,27 @@ namespace drogue::options_app {
 
 enum class Action { help, version, list_batches, price, surface };
 
-/// What the command line asks for, checked.
+/// Command line, checked, with the defaults of absent options.
 struct Command {
   Action action = Action::help;
-  std::string help;
+  std::string help;                             ///< text of --help, else empty
   std::string input;                            ///< a CSV file, or the name of a shipped batch
-  std::filesystem::path out, result, boundary;  ///< an empty path: not asked for
-  std::string backend = "auto";
+  std::filesystem::path out, result, boundary;  ///< output files; empty: not requested
+  std::string backend = "auto";                 ///< auto | serial | openmp | cuda
   options::Settings settings;
-  std::vector<double> strikes, maturities;  ///< of a surface
-  std::size_t chunk = 0;                    ///< rows priced at a time; 0: as many as take a tenth of a second
+  std::vector<double> strikes;     ///< of a surface, money
+  std::vector<double> maturities;  ///< of a surface, years
+  std::size_t chunk = 0;           ///< rows per chunk; 0: chosen by the measured speed
   bool quiet = false;
   std::vector<std::string> kokkos;  ///< `--kokkos-*`, untouched
 };
 
-/// Throws Failure(usage): an unknown option with the nearest one, a value out of range, options that exclude
-/// each other.
+/// Parses the command line. Throws `Failure` (usage): unknown option, with the nearest name, a value out of
+/// range, mutually exclusive options.
 Command parse_command(int argc, const char* const* argv);
 
-/// Numbers as `a:b:n`, n of them from a to b, or as a list with commas. Throws Failure(usage): none, one that
-/// is not positive and finite, more than 10000.
+/// Parses the value of `option`: `first:last:count` for equally spaced numbers, or a list with commas. Throws
+/// `Failure` (usage) for no number, more than 10000, or one that is not positive and finite.
 std::vector<double> parse_values(const std::string& option, const std::string& text);
 
 }  // namespace drogue::options_app

@@ -3,6 +3,6 @@
 
 int main(int argc, char** argv) {
   return drogue::run_program("drogue-options", [&] {
-    return drogue::options_app::run_app(drogue::options_app::parse_command(argc, argv));
+    return drogue::options_app::run_command(drogue::options_app::parse_command(argc, argv));
   });
 }

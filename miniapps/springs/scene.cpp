@@ -74,8 +74,9 @@ std::string document_springs_scene() {
 Written from the declarations that also read, check and print a scene; do not edit. After a change of them:
 `DROGUE_UPDATE_DOCS=1 ctest --test-dir build/host -R SpringsSceneDocument`.
 
-A scene is a TOML file. Unknown keys are refused. Numbers are in SI units; an integer is accepted for a real. Expressions are
-those of muParser; x, y, z are coordinates at rest, t is the time. How a scene is verified: [springs](springs.md).
+A scene is a TOML file. Unknown keys are refused. Numbers are in SI units; an integer is accepted for a real.
+Expressions use the syntax of muParser; x, y, z are coordinates at rest, t is the time. How a scene is verified:
+[springs](springs.md).
 
 )" + scene::document(root);
 }

@@ -107,7 +107,7 @@ void declare_mesh(Table& table, MeshSource& source) {
         declare_length(t, "height", value.height, "Extent along y, from 0");
         declare_vertices(t, value.vertices, 4);
         t.value("distortion", scene::real_codec(value.distortion),
-                "Share of a cell by which inner vertices are moved at most, as if at random")
+                "Largest pseudo-random displacement of inner vertices, as a share of a cell")
             .range(0.0, 0.2);
       },
       "Nearly square cells with alternating diagonals in the plane z = 0");
@@ -117,7 +117,8 @@ void declare_mesh(Table& table, MeshSource& source) {
         declare_length(t, "radius", value.radius, "Radius about the origin");
         declare_vertices(t, value.vertices, 7);
       },
-      "Rings of triangles in the plane z = 0: 1 + 3 n (n + 1) vertices, the nearest to what is asked");
+      "Rings of triangles in the plane z = 0, with the nearest number of vertices of the form 1 + 3 n (n + "
+      "1)");
   table.optional_table(
       "strip", source.strip,
       [](Table& t, mesh::Strip& value) {
@@ -132,7 +133,8 @@ void declare_mesh(Table& table, MeshSource& source) {
         declare_length(t, "side", value.side, "Side, along x from the origin");
         declare_vertices(t, value.vertices, 3);
       },
-      "An equilateral triangle in the plane z = 0, divided into n^2: (n + 1)(n + 2)/2 vertices, the nearest");
+      "An equilateral triangle in the plane z = 0, divided into n^2, with the nearest (n + 1)(n + 2)/2 "
+      "vertices");
   table.optional_table(
       "string", source.string,
       [](Table& t, mesh::String& value) {
@@ -157,10 +159,9 @@ void declare_material(Table& table, SpringsScene& scene) {
   };
   Codec model = scene::choice_codec(f.material.model, model_choices);
   model.print = [print = model.print, cloth] { return cloth() ? print() : std::nullopt; };
-  table.value(
-      "model", model,
-      "How triangles resist: Models I and II have springs along edges, the others are membranes; strings "
-      "are springs whatever the model");
+  table.value("model", model,
+              "Constitutive model of triangles: Models I (linear-vector) and II (edge) of [Shi] have springs "
+              "along edges, the others are membranes; strings are springs in every model");
   table
       .value("membrane_modulus", scene::real_codec(f.material.membrane_modulus),
              "Young's modulus times thickness")
@@ -174,7 +175,7 @@ void declare_material(Table& table, SpringsScene& scene) {
             "model");
   table
       .value("stiffness", scene::real_codec(f.stiffness),
-             "Stiffness of an edge; of strings that have no axial_stiffness")
+             "Stiffness of an edge, and of strings without axial_stiffness")
       .unit("N/m")
       .above(0.0)
       .default_text("1000 for model edge")
@@ -185,7 +186,7 @@ void declare_material(Table& table, SpringsScene& scene) {
       .when(cloth, "with triangles", "");
   table
       .value("mass", scene::choice_codec(f.mass, mass_choices),
-             "A vertex has the mass of a third of its triangles and half of its lines, or all have the same")
+             "Mass of a vertex: a third of its triangles and half of its lines, or the same for all")
       .default_text("`\"area\"`");
   table.value("line_density", scene::real_codec(f.line_density), "Mass per length of strings at rest")
       .unit("kg/m")
@@ -205,7 +206,7 @@ void declare_material(Table& table, SpringsScene& scene) {
       .when(cloth, "with triangles", "");
   table
       .value("tension_only", scene::boolean_codec(f.material.tension_only),
-             "Cloth wrinkles and strings go slack at no cost in place of compression")
+             "No compression: cloth wrinkles and strings go slack without energy")
       .when([&f] { return f.material.model != Model::linear_vector; },
             "with another model than linear-vector", "model");
 }
@@ -216,13 +217,13 @@ void declare_load(Table& table, Load& load) {
       .unit("m/s^2")
       .default_text("none");
   table
-      .value(
-          "pressure", scene::real_or_expression_codec(load.pressure, of_place_and_time),
-          "Force per area at rest along the normal at rest, which a counter-clockwise triangle has upwards")
+      .value("pressure", scene::real_or_expression_codec(load.pressure, of_place_and_time),
+             "Force per area at rest along the normal at rest; the normal of a counter-clockwise triangle "
+             "points up")
       .unit("N/m^2");
   table
       .value("follower_pressure", scene::real_or_expression_codec(load.follower_pressure, of_place_and_time),
-             "Force per area along the normal, both as they are now")
+             "Force per present area along the present normal")
       .unit("N/m^2");
   table.optional_table(
       "force", load.force,
@@ -232,7 +233,7 @@ void declare_load(Table& table, Load& load) {
       "A force on vertices");
   table
       .value("where", scene::expression_codec(load.where, of_place),
-             "The vertices that the force acts on: those where this is not 0")
+             "Vertices that the force acts on: where this is not 0")
       .when([&load] { return load.force.has_value(); }, "with force", "force")
       .default_text("all");
 }
@@ -240,18 +241,17 @@ void declare_load(Table& table, Load& load) {
 void declare_output(Table& table, Output& output) {
   const Key& fields =
       table
-          .value(
-              "fields", fields_codec(output.fields),
-              "Fields written to fields.h5: position, velocity, and of every triangle stress, major_stress, "
-              "minor_stress, major_direction, minor_direction, von_mises; vertex_ before these for every "
-              "vertex, nominal_ before the last for the nominal stress in place of Cauchy's, as in "
-              "vertex_nominal_stress")
+          .value("fields", fields_codec(output.fields),
+                 "Fields written to fields.h5: position, velocity, and for every triangle stress, "
+                 "major_stress, minor_stress, major_direction, minor_direction, von_mises; with the prefix "
+                 "vertex_ for every vertex, with nominal_ before the name for nominal instead of Cauchy's "
+                 "stress, as in vertex_nominal_stress")
           .default_text("position where times are given, else none");
   framework::declare_output_times(table, output, fields);
   table.tables(
       "probes", output.probes,
       [](Table& t, Probe& probe) {
-        t.value("at", optional_vector_codec(probe.at), "Where the vertex lies at rest; the nearest is taken")
+        t.value("at", optional_vector_codec(probe.at), "Position at rest; the nearest vertex is used")
             .unit("m")
             .required();
       },
@@ -269,7 +269,7 @@ void declare_time(Table& table, Time& time) {
       .above(0.0)
       .at_most(1.0)
       .when([&time] { return !time.dt; }, "with dt = \"auto\"", "dt");
-  table.value("end_time", scene::real_codec(time.end_time), "Where the run ends")
+  table.value("end_time", scene::real_codec(time.end_time), "End of the run")
       .unit("s")
       .at_least(0.0)
       .required();
@@ -298,29 +298,28 @@ void declare_springs_scene(Table& root, SpringsScene& scene) {
           "mesh", [&](Table& table) { declare_mesh(table, scene.source); }, "Cloth and strings at rest")
       .required();
   root.table(
-      "material", [&](Table& table) { declare_material(table, scene); }, "What they are made of");
+      "material", [&](Table& table) { declare_material(table, scene); }, "Material of cloth and strings");
   root.tables(
       "reinforcement", scene.reinforcements,
       [](Table& table, Reinforcement& reinforcement) {
         table
-            .value(
-                "where", scene::expression_codec(reinforcement.where, of_place),
-                "The edges: those at both ends of which this is not 0; each is of one reinforcement at most")
+            .value("where", scene::expression_codec(reinforcement.where, of_place),
+                   "The edges at both ends of which this is not 0; an edge has at most one reinforcement")
             .required();
         table
             .value("axial_stiffness", scene::real_codec(reinforcement.axial_stiffness),
-                   "E A of each, which adds to what the cloth bears")
+                   "E A of each edge, added to the stiffness of the cloth")
             .unit("N")
             .above(0.0)
             .required();
         table
             .value("line_density", scene::real_codec(reinforcement.line_density),
-                   "Mass per length at rest, which adds to that of the cloth")
+                   "Mass per length at rest, added to that of the cloth")
             .unit("kg/m")
             .at_least(0.0);
       },
-      "Strings along edges of cloth, as seams and tapes are; lines of the mesh get this stiffness and "
-      "density in place of those of [material]");
+      "Strings along edges of cloth, such as seams. For lines of the mesh they replace the values of "
+      "[material]");
   root.table(
       "initial",
       [&](Table& table) {
@@ -345,24 +344,23 @@ void declare_springs_scene(Table& root, SpringsScene& scene) {
       [](Table& table, Pin& pin) {
         table
             .value("where", scene::expression_codec(pin.where, of_place),
-                   "The vertices that are held: those where this is not 0")
+                   "Vertices that are fixed: where this is not 0")
             .required();
-        table.value("axes", axes_codec(pin.axes), "The axes along which they are held");
+        table.value("axes", axes_codec(pin.axes), "Axes along which they are fixed");
         table.table(
             "motion",
             [&](Table& t) {
               declare_vector(t, pin.motion, of_place_and_time, "Displacement from rest", "m");
             },
-            "How they are moved; else they stay where they start");
+            "Prescribed motion; without it vertices keep their initial position");
       },
-      "Vertices that are held; several pins may hold one along different axes");
-  root.tables("load", scene.loads, declare_load, "What pulls; loads add up");
+      "Fixed vertices; several pins may fix a vertex along different axes");
+  root.tables("load", scene.loads, declare_load, "Loads, which add up");
   root.tables(
       "mass", scene.payloads,
       [](Table& table, Payload& payload) {
         table
-            .value("where", scene::expression_codec(payload.where, of_place),
-                   "The vertices: those where this is not 0")
+            .value("where", scene::expression_codec(payload.where, of_place), "Vertices: where this is not 0")
             .required();
         table.value("add", scene::real_codec(payload.add), "Mass added to each")
             .unit("kg")
@@ -373,39 +371,35 @@ void declare_springs_scene(Table& root, SpringsScene& scene) {
   root.table(
       "damping",
       [&](Table& table) {
-        table
-            .value("absolute", scene::real_codec(scene.damping.absolute),
-                   "Acceleration against the velocity, over it")
+        table.value("absolute", scene::real_codec(scene.damping.absolute), "Deceleration over the velocity")
             .unit("1/s")
             .at_least(0.0);
         table
             .value("relative", scene::real_codec(scene.damping.relative),
-                   "Rate at which two vertices of an edge, were they alone, would lose what their velocities "
-                   "differ along it")
+                   "Rate at which two isolated vertices of an edge lose their relative velocity along it")
             .unit("1/s")
             .at_least(0.0);
       },
       "Damping");
   root.table(
       "contact", [&](Table& table) { declare_contact(table, scene.contact); },
-      "What cloth and strings may meet");
+      "Contact of cloth and strings");
   root.table(
           "time", [&](Table& table) { declare_time(table, scene.time); }, "Steps and the length of the run")
       .required();
   root.table(
       "output", [&](Table& table) { declare_output(table, scene.output); }, "Files of the run directory");
   root.table(
-      "verify", [&](Table& table) { declare_verify(table, scene.verify); }, "What is checked at the end");
+      "verify", [&](Table& table) { declare_verify(table, scene.verify); }, "Checks at the end");
   root.table(
       "tuning",
       [&](Table& table) {
         table.table(
             "step",
             [&](Table& step) {
-              step.value(
-                  "driver", scene::choice_codec(scene.driver, driver_choices),
-                  "How steps of Runge and Kutta's method reach a GPU: kernels one by one, a recorded "
-                  "graph a step, or many steps a launch where mesh and loads allow that, else a graph");
+              step.value("driver", scene::choice_codec(scene.driver, driver_choices),
+                         "Launches of Runge-Kutta steps on a GPU: single kernels, one captured graph per "
+                         "step, or many steps per launch where mesh and loads allow it, else a graph");
             },
             "The launch of a step");
       },

@@ -16,14 +16,16 @@ void declare_object(Table& table, ContactObject& object) {
   const auto is = [&object](BodyKind kind) { return object.kind == kind; };
   table
       .value("kind", scene::choice_codec(object.kind, body_choices),
-             "A plate without thickness, a ball, all that lies behind a plane, or where an expression is "
-             "negative")
+             "A plate without thickness, a ball, the half space behind a plane, or the region where an "
+             "expression is negative")
       .required()
       .decisive();
-  table.value("centre", vector_codec(object.centre), "Centre; of a plane a point of it")
+  table.value("centre", vector_codec(object.centre), "Centre; for a plane one of its points")
       .unit("m")
       .when([=] { return !is(BodyKind::level_set); }, "with kind disk, sphere or plane", "kind");
-  table.value("normal", vector_codec(object.normal), "Across a disk; out of a plane; of any length")
+  table
+      .value("normal", vector_codec(object.normal),
+             "Normal of a disk; outward normal of a plane; of any length")
       .when([=] { return is(BodyKind::disk) || is(BodyKind::plane); }, "with kind disk or plane", "kind");
   table.value("radius", scene::real_codec(object.radius), "Radius")
       .unit("m")
@@ -32,7 +34,8 @@ void declare_object(Table& table, ContactObject& object) {
       .when([=] { return is(BodyKind::disk) || is(BodyKind::sphere); }, "with kind disk or sphere", "kind");
   table
       .value("expression", scene::expression_codec(object.expression, {"x", "y", "z"}),
-             "Negative within the body, of places now; near its surface its slope may not vanish")
+             "Negative inside the body; x, y, z are present positions; the gradient must not vanish near the "
+             "surface")
       .required()
       .when([=] { return is(BodyKind::level_set); }, "with kind level-set", "kind");
   table.value("friction", scene::real_codec(object.friction), "Coulomb's coefficient").at_least(0.0);
@@ -41,11 +44,11 @@ void declare_object(Table& table, ContactObject& object) {
 }  // namespace
 
 void declare_contact(Table& table, SpringsContact& contact) {
-  table.tables("objects", contact.objects, declare_object, "Bodies at rest that nothing enters");
+  table.tables("objects", contact.objects, declare_object, "Impenetrable bodies at rest");
   scene::Codec self = scene::boolean_codec(contact.self);
   // Without bodies and self-contact the table is absent.
   self.print = [print = self.print, &contact] { return contact.asked_for() ? print() : std::nullopt; };
-  table.value("self", self, "Whether cloth and strings meet themselves").default_text("`false`");
+  table.value("self", self, "Contact of cloth and strings with themselves").default_text("`false`");
   table
       .value(
           "thickness", scene::real_codec(contact.thickness),

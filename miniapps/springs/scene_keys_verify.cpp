@@ -15,32 +15,27 @@ void declare_verify(Table& table, Verify& verify) {
                                   const std::string& help) {
     table.value(name, scene::real_codec(place), help).at_least(0.0);
   };
-  tolerance(
-      "energy_drift", verify.energy_drift,
-      "Largest change of the energy, over the largest kinetic energy that rows have or released energy would "
-      "make, that passes");
-  tolerance(
-      "energy_balance", verify.energy_balance,
-      "The same after the work of contact and that of friction are taken off the energy; also what either "
-      "gives");
-  tolerance(
-      "intersections", verify.intersections,
-      "Largest number of parts of cloth that meet one another or a body, at rows of history.csv and at the "
-      "end, that passes: 0. Not with a level-set");
-  tolerance(
-      "penetration", verify.penetration,
-      "Largest part of contact.thickness that a vertex lacks of its distance from a body at the end that "
-      "passes");
+  tolerance("energy_drift", verify.energy_drift,
+            "Largest change of the energy that passes, over the largest kinetic energy of a row or of all "
+            "released energy");
+  tolerance("energy_balance", verify.energy_balance,
+            "The same after the works of contact and of friction are subtracted; also the largest work that "
+            "either returns");
+  tolerance("intersections", verify.intersections,
+            "Largest number of intersections of cloth with itself or a body that passes, at rows of "
+            "history.csv and at the end: 0. Not with a level-set");
+  tolerance("penetration", verify.penetration,
+            "Largest violation of contact.thickness by a vertex and a body at the end that passes, as a "
+            "share of it");
   tolerance("momentum", verify.momentum,
-            "Largest change of the momentum over the largest sqrt(2 M K) that passes; M mass, K that energy");
+            "Largest change of the momentum over the largest sqrt(2 M K) that passes; M mass, K kinetic "
+            "energy as in energy_drift");
   tolerance(
       "angular_momentum", verify.angular_momentum,
       "Largest change of the angular momentum over the largest R sqrt(2 M K) that passes; R extent of the "
       "mesh");
-  tolerance(
-      "equilibrium", verify.equilibrium,
-      "Largest force along a free axis at the end over the largest one along a held axis, or of a dead load, "
-      "that passes");
+  tolerance("equilibrium", verify.equilibrium,
+            "Largest force along a free axis at the end that passes, over the largest reaction or dead load");
   tolerance(
       "young", verify.young,
       "Largest relative error of the apparent modulus of a rectangle or strip pulled along x that passes");
@@ -73,11 +68,10 @@ void declare_verify(Table& table, Verify& verify) {
                return codec;
              }(),
              "[nodal diameters, circles] of a disk, [number] of the longitudinal mode of a string that is "
-             "held "
-             "at its first end")
+             "fixed at its first end")
             .range(0, 1000)
             .default_text("none");
-        t.value("value", scene::real_codec(value.value), "What it should be")
+        t.value("value", scene::real_codec(value.value), "Expected value")
             .unit("Hz")
             .above(0.0)
             .default_text("closed form of the mode");
@@ -91,19 +85,14 @@ void declare_verify(Table& table, Verify& verify) {
   table.optional_table(
       "front_speed", verify.front_speed,
       [](Table& t, FrontSpeed& value) {
-        t.value("value", scene::real_codec(value.value), "What it should be")
-            .unit("m/s")
-            .above(0.0)
-            .required();
+        t.value("value", scene::real_codec(value.value), "Expected value").unit("m/s").above(0.0).required();
         t.value("tolerance", scene::real_codec(value.tolerance), "Largest relative error that passes")
             .at_least(0.0)
             .required();
         t.value("axis", scene::choice_codec(value.axis, axis_choices),
                 "Axis along which the front displaces");
       },
-      "The speed of the front that displaces the first probe, then the second: between the times at which "
-      "each has "
-      "half its largest displacement");
+      "The speed of a front between the first two probes, timed at half of their largest displacements");
 }
 
 }  // namespace drogue::springs_app

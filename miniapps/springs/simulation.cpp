@@ -172,7 +172,7 @@ void Simulation::round_trip() {
 }
 
 /// Takes steps in batches that adapt to the poll interval. Returns false if the state was lost, or if the
-/// poll asked for the end before all steps were taken.
+/// poll requested the end before all steps were taken.
 bool Simulation::take_steps(std::int64_t steps, const framework::Poll& poll) {
   while (steps > 0) {
     const std::int64_t count = std::min(steps, _settings.baseline ? 1 : _batch);

@@ -25,7 +25,7 @@ SpringsScene silent(SpringsScene scene) {
 }
 
 /// Adds the distance of `coarse` from `fine`, the next finer mesh of its scheme.
-void add_cauchy(study::Row& coarse, const study::Row& fine) {
+void add_cauchy(study::StudyRow& coarse, const study::StudyRow& fine) {
   for (const auto& [name, values] : coarse.series)
     if (name != "time")
       coarse.errors["cauchy_" + name] =
@@ -99,18 +99,18 @@ ExitCode run_study(const MiniAppOptions& options, const std::filesystem::path& f
   framework::StudySession session(options, "drogue-springs", base.name, print_springs_scene(base));
   ScratchDirectory scratch(session.directory().path() / "point");
   study::Columns columns{{"model", "mass", "integrator"}, "vertices", {}, "", ""};
-  const auto run_point = [&](std::size_t i, std::vector<study::Row>& rows) {
+  const auto run_point = [&](std::size_t i, std::vector<study::StudyRow>& rows) {
     const StudyPoint& point = points[i];
     framework::RepeatedRun runs = run_repeatedly(silent(point.scene), session.backend(), repeats, scratch);
     if (runs.code == ExitCode::interrupted) return false;
     complete_columns(columns, runs);
-    study::Row row = framework::study_row(std::move(runs));
+    study::StudyRow row = framework::study_row(std::move(runs));
     row.label = point.label;
     row.settings = {point.model, point.mass, point.integrator};
     row.mesh = static_cast<std::int64_t>(point.scene.mesh.rest.size());
     rows.push_back(std::move(row));
     if (rows.size() < 2) return true;
-    study::Row &coarse = rows[rows.size() - 2], &fine = rows.back();
+    study::StudyRow &coarse = rows[rows.size() - 2], &fine = rows.back();
     if (coarse.label == fine.label && coarse.code == ExitCode::ok && fine.code == ExitCode::ok)
       add_cauchy(coarse, fine);
     return true;

@@ -2,16 +2,16 @@
 #include <memory>
 
 #include "common/run/statistics.hpp"
-#include "perf/dissertation.hpp"
-#include "perf/record.hpp"
-#include "perf/sod.hpp"
-#include "perf/tables/seed.hpp"
+#include "perf/measure/record.hpp"
+#include "perf/problems/sod.hpp"
+#include "perf/tables/baseline_case.hpp"
+#include "perf/tables/dissertation.hpp"
 #include "perf/tables/tables.hpp"
 
 namespace drogue::perf {
 namespace {
 
-/// Steps of a sample of the fused form: some milliseconds.
+/// Steps of a sample of some milliseconds.
 constexpr long fused_steps = 200;
 
 Case fused_case(const std::string& name, device::Backend backend, const gas::Parameters& p) {
@@ -27,10 +27,11 @@ Case fused_case(const std::string& name, device::Backend backend, const gas::Par
           sod::tolerance(p)};
 }
 
-enum class Form { seed, step };
-constexpr const char* name_of(Form form) { return form == Form::seed ? "seed" : "step"; }
+/// Baseline solver or fused step; records name them "seed" and "step".
+enum class Form { baseline, fused };
+constexpr const char* name_of(Form form) { return form == Form::baseline ? "seed" : "step"; }
 
-/// The table's rows and columns.
+/// Rows and columns of the table.
 struct Axes {
   std::vector<int> cells, blocks;
 };
@@ -43,27 +44,28 @@ Axes axes(bool quick) {
   return all;
 }
 
-/// Of the seed form the kernel alone, as the figure has it; of the fused one the whole step. A graph, because
-/// the persistent driver cuts a mesh by multiprocessors and not by blocks.
+/// Times the flux kernel alone for the baseline solver, as in the figure, and the whole fused step otherwise.
+/// The fused step runs as a graph, because the persistent driver divides the mesh by multiprocessors, not by
+/// blocks.
 Case case_of(device::Backend backend, Form form, int cells, int block) {
   gas::Parameters p = sod::parameters(cells);
   p.block = block;
   p.driver = gas::Driver::graph;
   const std::string name = "gas-block/" + std::string(device::name(backend)) + "/" + name_of(form) + "/" +
                            std::to_string(block) + "/" + std::to_string(cells);
-  if (form == Form::step) return fused_case(name, backend, p);
-  return seed_case(name, "launch latency, and blocks that wait for room", backend, p,
-                   [](const gas::PhaseTimes& spent) {
-                     return std::map<std::string, double>{{"compute", spent.compute}};
-                   });
+  if (form == Form::fused) return fused_case(name, backend, p);
+  return baseline_case(name, "launch latency, and blocks that wait for room", backend, p,
+                       [](const gas::PhaseTimes& spent) {
+                         return std::map<std::string, double>{{"compute", spent.compute}};
+                       });
 }
 
-/// `record` is the first of the form's, a mesh after the other.
+/// Prints the records of one form, mesh by mesh; `record` is the first.
 void print_form(Form form, const Axes& axes, const Record* record) {
-  std::printf(
-      "\n%s, microseconds a step (median); cells down, threads of a block across\n%8s",
-      form == Form::seed ? "The dissertation's flux kernel, three stages" : "The fused step, a graph a step",
-      "");
+  std::printf("\n%s, microseconds a step (median); cells down, threads of a block across\n%8s",
+              form == Form::baseline ? "The dissertation's flux kernel, three stages"
+                                     : "The fused step, a graph a step",
+              "");
   for (const int block : axes.blocks) std::printf("%10d", block);
   for (const int cells : axes.cells) {
     std::printf("\n%8d", cells);
@@ -79,7 +81,7 @@ Table print_block_sizes(device::Backend backend, bool quick, const nlohmann::jso
   const Axes all = axes(quick);
   std::vector<Case> cases;
   std::vector<nlohmann::json> facts;
-  for (const Form form : {Form::seed, Form::step})
+  for (const Form form : {Form::baseline, Form::fused})
     for (const int cells : all.cells)
       for (const int block : all.blocks) {
         cases.push_back(case_of(backend, form, cells, block));
@@ -93,8 +95,8 @@ Table print_block_sizes(device::Backend backend, bool quick, const nlohmann::jso
   for (std::size_t i = 0; i < records.size(); ++i) table.add(records[i], provenance, facts[i]);
   std::printf("Figure 4.4 on %s; ! marks a time whose result failed its check\n",
               std::string(device::name(backend)).c_str());
-  print_form(Form::seed, all, records.data());
-  print_form(Form::step, all, records.data() + records.size() / 2);
+  print_form(Form::baseline, all, records.data());
+  print_form(Form::fused, all, records.data() + records.size() / 2);
   return table;
 }
 

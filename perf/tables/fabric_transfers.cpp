@@ -3,22 +3,22 @@
 #include <memory>
 
 #include "common/run/statistics.hpp"
-#include "perf/dissertation.hpp"
-#include "perf/record.hpp"
-#include "perf/sheet.hpp"
+#include "perf/measure/record.hpp"
+#include "perf/problems/sheet.hpp"
+#include "perf/tables/dissertation.hpp"
 #include "perf/tables/tables.hpp"
 
 namespace drogue::perf {
 namespace {
 
-/// A line of the table: one mesh, one number of steps between two copies.
-struct FabricRow {
+/// Line of the table: one mesh, one number of steps between two copies.
+struct FabricTransfer {
   dissertation::FabricTransferRow printed;
   int substeps;
 };
 
-std::vector<FabricRow> fabric_rows(bool quick) {
-  std::vector<FabricRow> rows;
+std::vector<FabricTransfer> fabric_transfers_of(bool quick) {
+  std::vector<FabricTransfer> rows;
   for (const auto& printed : dissertation::table_5_6)
     for (const int substeps : dissertation::table_5_6_substeps)
       if (!quick || (printed.vertices == 2641 && substeps <= 10)) rows.push_back({printed, substeps});
@@ -31,7 +31,7 @@ double seconds_of(const std::function<void()>& work) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
-Case case_of(device::Backend backend, const FabricRow& row) {
+Case case_of(device::Backend backend, const FabricTransfer& row) {
   struct Run {
     fabric::Parameters p;
     std::unique_ptr<fabric::Solver> solver;
@@ -48,7 +48,7 @@ Case case_of(device::Backend backend, const FabricRow& row) {
           [=] {
             run->p = sheet::parameters(row.printed.vertices);
             run->solver = fabric::create_solver(backend, run->p);
-            run->solver->set_dt(sheet::usual_dt(run->p, *run->solver));
+            run->solver->set_dt(sheet::default_dt(run->p, *run->solver));
             return Sample{[=] { run->state = sheet::start(run->p); },
                           [=] {
                             fabric::Solver& solver = *run->solver;
@@ -56,7 +56,7 @@ Case case_of(device::Backend backend, const FabricRow& row) {
                             run->parts = {{"h2d", seconds_of([&] { solver.upload(state.x, state.v); })},
                                           {"compute", seconds_of([&] {
                                              solver.advance(substeps);
-                                             static_cast<void>(solver.failure());  // waits
+                                             static_cast<void>(solver.failure());  // blocks
                                            })},
                                           {"d2h", seconds_of([&] { solver.download(state.x, state.v); })}};
                             return 1L;
@@ -67,7 +67,7 @@ Case case_of(device::Backend backend, const FabricRow& row) {
           sheet::tolerance};
 }
 
-nlohmann::json facts_of(device::Backend backend, const FabricRow& row, const Record& record) {
+nlohmann::json facts_of(device::Backend backend, const FabricTransfer& row, const Record& record) {
   return {{"backend", device::name(backend)},
           {"cells", row.printed.vertices},
           {"substeps", row.substeps},
@@ -85,9 +85,9 @@ nlohmann::json facts_of(device::Backend backend, const FabricRow& row, const Rec
 }  // namespace
 
 Table print_fabric_transfers(device::Backend backend, bool quick, const nlohmann::json& provenance) {
-  const std::vector<FabricRow> rows = fabric_rows(quick);
+  const std::vector<FabricTransfer> rows = fabric_transfers_of(quick);
   std::vector<Case> cases;
-  for (const FabricRow& row : rows) cases.push_back(case_of(backend, row));
+  for (const FabricTransfer& row : rows) cases.push_back(case_of(backend, row));
   const std::vector<Record> records = measure(cases, warm_up_rounds, kept_rounds(quick));
   std::printf(
       "Table 5.6: a stretched sheet on %s, microseconds from host to host; in brackets the dissertation's "

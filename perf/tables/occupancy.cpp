@@ -1,4 +1,4 @@
-#include "perf/occupancy.hpp"
+#include "perf/models/occupancy.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "kernels/gas/tile/team_shape.hpp"
-#include "perf/dissertation.hpp"
+#include "perf/tables/dissertation.hpp"
 #include "perf/tables/tables.hpp"
 
 namespace drogue::perf {
@@ -28,13 +28,13 @@ nlohmann::json facts_of(const Architecture& on, const Block& block, const Occupa
           {"occupancy", o.occupancy}};
 }
 
-/// A record without samples: `wrong` things are not as they should be.
-Record untimed(const Architecture& on, const Block& block, const std::string& kernel, int wrong) {
+/// Record without samples; its error is the number of mismatches.
+Record untimed(const Architecture& on, const Block& block, const std::string& kernel, int mismatches) {
   Record record;
   record.name = "occupancy/" + on.name + "/" + std::to_string(block.threads) + kernel;
   record.unit_of_work = "step";
   record.bound = "what a multiprocessor holds";
-  record.error = wrong;
+  record.error = mismatches;
   return record;
 }
 
@@ -49,9 +49,9 @@ nlohmann::json printed_facts(const dissertation::OccupancyRow& row) {
           {"occupancy_percent", row.percent}};
 }
 
-/// Numbers of a printed row that the model does not give.
+/// Number of entries of a printed row that differ from the model.
 int differences(const dissertation::OccupancyRow& printed, const Block& block, const Occupancy& o) {
-  int wrong = 0;
+  int mismatches = 0;
   for (const auto& [ours, theirs] : {std::pair{block.shared_bytes, printed.shared_bytes},
                                      {o.by_registers, printed.by_registers},
                                      {o.by_shared_memory, printed.by_shared_memory},
@@ -59,8 +59,8 @@ int differences(const dissertation::OccupancyRow& printed, const Block& block, c
                                      {o.blocks, printed.blocks},
                                      {o.threads, printed.threads},
                                      {o.device_threads, printed.device_threads}})
-    wrong += ours == theirs ? 0 : 1;
-  return wrong + (std::round(1000.0 * o.occupancy) == std::round(10.0 * printed.percent) ? 0 : 1);
+    mismatches += ours == theirs ? 0 : 1;
+  return mismatches + (std::round(1000.0 * o.occupancy) == std::round(10.0 * printed.percent) ? 0 : 1);
 }
 
 void print_table_4_2(Table& table, const nlohmann::json& provenance) {
@@ -89,11 +89,11 @@ void print_table_4_2(Table& table, const nlohmann::json& provenance) {
   }
 }
 
-/// A kernel of a step as it is launched.
+/// Launch configuration of a step kernel.
 struct StepKernel {
   int team, slots;
-  int registers;    ///< the most that its launch bounds leave a thread
-  int least_teams;  ///< that they ask for
+  int registers;    ///< largest number per thread under the launch bounds
+  int least_teams;  ///< resident teams that the launch bounds require
   const char* name;
 };
 

@@ -1,6 +1,6 @@
 #include "perf/tables/tables.hpp"
 
-#include "perf/record.hpp"
+#include "perf/measure/record.hpp"
 
 namespace drogue::perf {
 

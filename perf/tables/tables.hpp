@@ -4,34 +4,39 @@
 #include <vector>
 
 #include "kernels/device/backend.hpp"
-#include "perf/measurement.hpp"
+#include "perf/measure/measurement.hpp"
 
 namespace drogue::perf {
 
-/// What a table leaves behind once it is printed.
+/// Records of a printed table.
 struct Table {
   std::vector<nlohmann::json> records;
-  bool passed = true;
+  bool passed = true;  ///< all records are within their tolerances
 
+  /// Appends a record as JSON. Does not throw.
   void add(const Record& record, const nlohmann::json& provenance, const nlohmann::json& facts);
 };
 
-/// Table 4.2 by our own model, and the same question for the step kernels of gas on an sm_90. Its records
-/// have no samples; their error counts what is not as it should be.
+// The functions below print to standard output and block until all samples are measured. They throw what the
+// solvers throw.
+
+/// Table 4.2 of [Shi] by the occupancy model, and the occupancy of the step kernels of gas on an sm_90. The
+/// records have no samples; their error is the number of mismatches.
 Table print_occupancy(const nlohmann::json& provenance);
 
-/// Table 5.5: host to device, compute, device to host in seed mode, from pageable and, where the backend has
-/// such, pinned memory.
-Table print_transfers(device::Backend backend, bool quick, const nlohmann::json& provenance);
+/// Table 5.5: copy to the device, compute and copy to the host by the baseline solver, from pageable memory
+/// and, on a GPU, pinned memory.
+Table print_gas_transfers(device::Backend backend, bool quick, const nlohmann::json& provenance);
 
-/// Table 5.6: the state to the device, some steps of Runge and Kutta, and back, for several numbers of steps.
+/// Table 5.6: copy of the state to the device, Runge-Kutta steps and copy to the host, for several numbers of
+/// steps.
 Table print_fabric_transfers(device::Backend backend, bool quick, const nlohmann::json& provenance);
 
-/// Tables 5.7 and 5.8: batches of American puts to the device, their prices, and back.
+/// Tables 5.7 and 5.8: copy of batches of American puts to the device, pricing and copy to the host.
 Table print_options_transfers(device::Backend backend, bool quick, const nlohmann::json& provenance);
 
-/// Figure 4.4: time a step for block sizes and meshes, of the seed kernel and of the fused step. `backend` is
-/// a device.
+/// Figure 4.4: time per step against block size and mesh, for the baseline solver and for the fused step.
+/// `backend` must be a GPU.
 Table print_block_sizes(device::Backend backend, bool quick, const nlohmann::json& provenance);
 
 }  // namespace drogue::perf

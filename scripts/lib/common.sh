@@ -1,23 +1,23 @@
-# Shared by the scripts: where things are, and how a failure is told. Read with `.`; sets -euo pipefail.
+# Shared by the scripts: paths, and the reports of failures. Read with `.`; sets -euo pipefail.
 set -euo pipefail
 
 root="$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)"
 deps="${DROGUE_DEPS:-$root/build/deps}"
 jobs="${DROGUE_JOBS:-$(nproc)}"
 
-# fail SENTENCE: says what to do, and stops.
+# fail SENTENCE: prints a sentence with the remedy, and stops.
 fail() {
   printf '%s: %s\n' "$(basename "$0")" "$*" >&2
   exit 1
 }
 
-# say SENTENCE: progress, on standard error so that output stays clean.
+# `say SENTENCE`: progress, on standard error so that output stays clean.
 say() { printf '== %s\n' "$*" >&2; }
 
 # at_least HAVE WANTED: true when version HAVE is not older than WANTED.
 at_least() { [ "$(printf '%s\n%s\n' "$2" "$1" | sort -V | head -n 1)" = "$2" ]; }
 
-# run_logged NAME COMMAND...: output goes to a log; on failure its tail is shown and explain_failure says why.
+# run_logged NAME COMMAND...: output goes to a log; on failure its tail is shown and explain_failure names the reason.
 run_logged() {
   local name="$1" log
   shift
@@ -44,8 +44,8 @@ explain_failure() {
   fail "$1 failed: the reason is in $log."
 }
 
-# in_background COMMAND...: starts it beside what follows; wait_for_background stops where one of them has failed and said
-# why. Each is a process group, so that what one has started ends with this script.
+# in_background COMMAND...: starts it beside the following commands; wait_for_background stops the script if one of them failed,
+# which has printed its reason. Each is a process group, so that its children end with this script.
 background=()
 in_background() {
   set -m
@@ -69,4 +69,9 @@ find_nvcc() {
       return
     fi
   done
+}
+
+# nvcc_compression: the option by which nvcc makes small files of machine code, which unpack when a program starts.
+nvcc_compression() {
+  if [[ "$("$(find_nvcc)" --help)" == *--compress-mode* ]]; then echo --compress-mode=size; else echo -Xfatbin=-compress-all; fi
 }

@@ -58,7 +58,7 @@ unpack_kokkos() {
   printf '%s\n' "$KOKKOS_SHA256" >"$source/.stamp"
 }
 
-# kokkos_architecture NUMBER: the name by which Kokkos knows it. Kokkos 4.5 has none for 100: see kokkos_cuda_flags.
+# kokkos_architecture NUMBER: its name in Kokkos. Kokkos 4.5 has none for 100: see kokkos_cuda_flags.
 kokkos_architecture() {
   case "$1" in
     80 | 86) echo "AMPERE$1" ;;
@@ -68,7 +68,8 @@ kokkos_architecture() {
   esac
 }
 
-# kokkos_cuda_flags NUMBER: CMake 3.25 does not know how to ask nvcc for C++20. For 100 Kokkos is told Hopper and the machine code for Blackwell is made beside it.
+# kokkos_cuda_flags NUMBER: CMake 3.25 lacks nvcc's option for C++20. For 100 Kokkos is configured as Hopper and the machine code
+# for Blackwell is made beside it.
 kokkos_cuda_flags() {
   printf -- '-std=c++20 -include %s/cmake/cuda13_kokkos45.hpp' "$root"
   [ "$1" != 100 ] || printf -- ' --generate-code=arch=compute_100,code=[compute_100,sm_100]'
@@ -107,7 +108,7 @@ build_kokkos() {
   say "building Kokkos and Kokkos Kernels $KOKKOS_VERSION ($variant)"
   local common=(-G Ninja -Wno-dev -DCMAKE_BUILD_TYPE=Release "-DCMAKE_INSTALL_PREFIX=$deps/$variant"
     -DCMAKE_CXX_STANDARD=20 -DCMAKE_CXX_EXTENSIONS=OFF -DCMAKE_POSITION_INDEPENDENT_CODE=ON -DBUILD_SHARED_LIBS=OFF)
-  # What nobody here uses and every source would read: views from mdspan, what is deprecated.
+  # Without views from mdspan and deprecated code, which every source would read and none uses.
   local kokkos=(-DKokkos_ENABLE_SERIAL=ON -DKokkos_ENABLE_OPENMP=ON -DKokkos_ENABLE_IMPL_MDSPAN=OFF
     -DKokkos_ENABLE_DEPRECATED_CODE_4=OFF "-DCMAKE_PROJECT_Kokkos_INCLUDE=$root/cmake/kokkos_in_one.cmake")
   local kernels=(-DKokkosKernels_ENABLE_ALL_COMPONENTS=OFF -DKokkosKernels_ENABLE_COMPONENT_BATCHED=ON

@@ -1,1 +1,1 @@
-"""Pictures of a Drogue run directory and the page of the demo."""
+"""Figures of run directories, pages of benchmark records, and the page of the demo."""

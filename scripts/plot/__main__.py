@@ -1,4 +1,4 @@
-"""Entry of `python -m plot`: moves to the interpreter that has the packages of the pictures, then runs."""
+"""Entry point of `python -m plot`: runs the program, in an interpreter that has the required packages."""
 
 import contextlib
 import importlib.util
@@ -17,8 +17,8 @@ def _run_with_packages() -> int:
     source = Path(__file__).resolve().parents[2]
     venv = Path(os.environ.get("DROGUE_VENV") or source / "build" / "venv")
     python = venv / "bin" / "python3"
-    # The mark stops an environment that lacks the packages from starting itself for ever.
-    # An environment of another user may not be readable: then it is as good as absent.
+    # DROGUE_PLOT_MOVED prevents an endless loop if that environment lacks the packages too.
+    # An environment of another user may be unreadable, which counts as absent.
     with contextlib.suppress(OSError):
         if python.is_file() and "DROGUE_PLOT_MOVED" not in os.environ:
             os.environ["DROGUE_PLOT_MOVED"] = "1"

@@ -1,8 +1,9 @@
-"""drogue-plot: pictures of a run directory, and the evidence page of a folder of records."""
+"""The program drogue-plot: figures of a run directory, and pages of a folder of benchmark records."""
 
 import argparse
 import difflib
 import importlib.util
+import os
 import re
 import subprocess
 import sys
@@ -10,7 +11,7 @@ from pathlib import Path
 
 from .failure import OK, USAGE, Failure
 
-SPACE_TIME_SNAPSHOTS = 8
+SPACE_TIME_SNAPSHOTS = 8  # smallest number of snapshots for a space-time map
 
 
 def _version() -> str:
@@ -24,11 +25,15 @@ def _version() -> str:
     import h5py
     import matplotlib
 
-    project = (folder.parents[1] / "CMakeLists.txt").read_text()
-    number = re.search(r"project\(\s*\w+\s+VERSION\s+([\d.]+)", project)
+    # An installed package has no CMakeLists.txt: there the launcher sets DROGUE_VERSION.
+    number = os.environ.get("DROGUE_VERSION")
+    project = folder.parents[1] / "CMakeLists.txt"
+    if number is None and project.is_file():
+        match = re.search(r"project\(\s*\w+\s+VERSION\s+([\d.]+)", project.read_text())
+        number = match and match.group(1)
     revision = git.stdout.strip() or "unknown"
     return (
-        f"drogue-plot {number.group(1) if number else 'unknown'} (git {revision})\n"
+        f"drogue-plot {number or 'unknown'} (git {revision})\n"
         f"matplotlib {matplotlib.__version__}, h5py {h5py.__version__}, HDF5 {h5py.version.hdf5_version}"
     )
 
@@ -39,9 +44,10 @@ class _Parser(argparse.ArgumentParser):
 
 
 def arguments(words: list[str]) -> argparse.Namespace:
-    """The options of drogue-plot, checked."""
+    """Parsed and validated command line; raises Failure (USAGE)."""
     parser = _Parser(
-        prog="drogue-plot", description="Draws the pictures of a run directory, or the evidence page of records."
+        prog="drogue-plot",
+        description="Draws the pictures of a run directory, or the evidence page of records.",
     )
     parser.add_argument(
         "directory", metavar="DIR", nargs="?", type=Path,
@@ -70,8 +76,8 @@ def arguments(words: list[str]) -> argparse.Namespace:
     return options
 
 
-def _named_fields(wanted: str, present: list[str]) -> list[str]:
-    """The fields that --field names, each one that the run has."""
+def _validated_fields(wanted: str, present: list[str]) -> list[str]:
+    """Names of the comma-separated list `wanted`; raises Failure (USAGE) if the run lacks one of them."""
     names = [name.strip() for name in wanted.split(",") if name.strip()]
     for name in names:
         if name not in present:
@@ -81,75 +87,81 @@ def _named_fields(wanted: str, present: list[str]) -> list[str]:
     return names
 
 
-def _chosen_fields(run, wanted: str) -> list[str]:
+def _selected_fields(run, wanted: str) -> list[str]:
+    """Cell fields to draw: the list of --field, else all of them with rho, u and p first."""
     import numpy as np
 
     size = np.size(run.mesh["x"].values)
     present = [name for name, item in run.snapshots[-1].fields.items() if item.values.shape == (size,)]
     usual = [name for name in ("rho", "u", "p") if name in present]
     ordered = usual + [name for name in present if name not in usual]
-    return _named_fields(wanted, ordered) if wanted else ordered
+    return _validated_fields(wanted, ordered) if wanted else ordered
 
 
 def _gas_pictures(run, options, out, save):
-    from . import gas_figures, gas_movie, movie
-    from .exact import exact_solution
+    from . import movie_file
+    from .gas import fields_figure, movie_frames
+    from .gas.exact_solution import exact_solution
 
-    view = gas_figures.View(run, _chosen_fields(run, options.field), exact_solution(run))
+    view = fields_figure.View(run, _selected_fields(run, options.field), exact_solution(run))
     if not view.fields:
         return
     snapshot = run.snapshots[-1]
     if options.time is not None:
         snapshot = min(run.snapshots, key=lambda candidate: abs(candidate.time - options.time))
-    yield save(gas_figures.fields_figure(view, snapshot), "fields")
+    yield save(fields_figure.fields_figure(view, snapshot), "fields")
     if len(run.snapshots) >= SPACE_TIME_SNAPSHOTS:
         mapped = options.field and view.fields or [view.fields[0]]
         for name in mapped:
-            yield save(gas_figures.space_time_figure(view, name), f"space_time_{name}")
+            yield save(fields_figure.space_time_figure(view, name), f"space_time_{name}")
     if len(run.snapshots) >= 2 and options.movie != "none":
-        yield movie.write(out / f"fields.{options.movie}", gas_movie.frames(view))
+        yield movie_file.write(out / f"fields.{options.movie}", movie_frames.frames(view))
 
 
 def _springs_pictures(run, options, out, save):
-    from . import movie, springs_figures
+    from . import movie_file
+    from .springs import fabric_figure
 
-    view = springs_figures.View(run)
+    view = fabric_figure.View(run)
     snapshot = run.snapshots[-1]
     if options.time is not None:
         snapshot = min(run.snapshots, key=lambda candidate: abs(candidate.time - options.time))
-    yield save(springs_figures.figure(view, snapshot), "fields")
+    yield save(fabric_figure.fabric_figure(view, snapshot), "fields")
     if len(run.snapshots) >= 2 and options.movie != "none":
-        yield movie.write(out / f"fields.{options.movie}", springs_figures.frames(view))
+        yield movie_file.write(out / f"fields.{options.movie}", fabric_figure.frames(view))
 
 
-def _evidence(options, evidence, out):
+def _evidence_pages(options, evidence, out):
     if importlib.util.find_spec("jinja2") is None:
-        raise Failure(USAGE, "a page of records needs the Python package jinja2: run scripts/setup.sh, or install it.")
-    from . import evidence_page
+        raise Failure(
+            USAGE, "a page of records needs the Python package jinja2: run scripts/setup.sh, or install it."
+        )
+    from .evidence import page
 
-    yield from evidence_page.write(evidence, out, options.format, options.dpi)
+    yield from page.write(evidence, out, options.format, options.dpi)
 
 
 def draw(options: argparse.Namespace):
-    """Yields the name of each picture once it is written."""
-    from . import evidence_records, style
-    from .history_figure import history_figure
-    from .options_figure import options_figure
-    from .run_directory import read
-    from .springs_history import springs_history_figure
+    """Generator of the paths of the written files; raises Failure (USAGE or IO_ERROR)."""
+    from . import style
+    from .evidence.records import read_records
+    from .gas.history_figure import history_figure
+    from .options.prices_figure import prices_figure
+    from .run_directory import read_run
+    from .springs.history_figure import springs_history_figure
     from .study_figure import check_norm, study_figure
 
-    run = read(options.directory)
-    # Before the first picture: a mistyped option must leave nothing behind.
+    run = read_run(options.directory)
+    # Validation precedes the first figure, so that a mistyped option leaves no files behind.
     if options.norm is not None:
         check_norm(run, options.norm)
     if options.field:
-        _named_fields(options.field, list(run.snapshots[-1].fields) if run.snapshots else [])
-    evidence = evidence_records.read(options.directory)
+        _validated_fields(options.field, list(run.snapshots[-1].fields) if run.snapshots else [])
+    evidence = read_records(options.directory)
     out = options.out or options.directory
 
     def save(figure, name):
-        return style.save(figure, out / f"{name}.{options.format}", options.dpi)
+        return style.save_figure(figure, out / f"{name}.{options.format}", options.dpi)
 
     if run.snapshots and "x" in run.mesh:
         yield from _gas_pictures(run, options, out, save)
@@ -158,16 +170,16 @@ def draw(options: argparse.Namespace):
     draw_history = springs_history_figure if "kinetic" in run.history else history_figure
     if (figure := draw_history(run)) is not None:
         yield save(figure, "history")
-    if (figure := options_figure(options.directory)) is not None:
+    if (figure := prices_figure(options.directory)) is not None:
         yield save(figure, "fields")
     if run.study:
         yield save(study_figure(run.scene_name, run.study, options.norm or ""), "study")
     if evidence:
-        yield from _evidence(options, evidence, out)
+        yield from _evidence_pages(options, evidence, out)
 
 
 def main(words: list[str] | None = None) -> int:
-    """Runs the program; returns its exit code (0 done, 2 usage, 6 unreadable or unwritable file)."""
+    """Runs the program. Returns its exit code: 0 success, 2 usage error, 6 unreadable or unwritable file."""
     try:
         options = arguments(sys.argv[1:] if words is None else words)
         if options.version:
@@ -179,7 +191,9 @@ def main(words: list[str] | None = None) -> int:
             if not options.quiet:
                 print(file)
         if drawn == 0:
-            raise Failure(USAGE, f"{options.directory} holds nothing to draw: no fields, and too short a history.")
+            raise Failure(
+                USAGE, f"{options.directory} holds nothing to draw: no fields, and too short a history."
+            )
     except Failure as failure:
         print(f"drogue-plot: {failure}", file=sys.stderr)
         return failure.code

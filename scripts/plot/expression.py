@@ -1,4 +1,4 @@
-"""Evaluates the expressions of a scene (muParser syntax) on numpy arrays."""
+"""Evaluation of scene expressions (muParser syntax) on numpy arrays."""
 
 import re
 
@@ -12,7 +12,7 @@ _TOKEN = re.compile(
 
 
 def _bessel_j(order, x):
-    # Bessel's integral; the trapezoidal rule on a period converges faster than any power of the spacing.
+    # Bessel's integral by the trapezoidal rule, which converges geometrically over a period.
     points = 64 + 2 * int(np.max(np.abs(x), initial=0.0) + np.max(np.abs(order)))
     angle = np.pi * (np.arange(points) + 0.5) / points
     return np.mean(np.cos(order * angle - np.multiply.outer(x, np.sin(angle))), axis=-1)
@@ -45,77 +45,79 @@ _BINARY = [
 
 
 class _Parser:
+    """Recursive-descent parser that evaluates while it reads."""
+
     def __init__(self, text: str, variables: dict):
         self._text = text
         self._tokens = [match.groups() for match in _TOKEN.finditer(text.strip())]
         self._names = {"pi": np.pi, "_pi": np.pi, "_e": np.e} | variables
 
-    def whole(self):
-        value = self._choice()
+    def evaluate(self):
+        value = self._ternary()
         if self._tokens:
-            self._refuse()
+            self._fail()
         return value
 
-    def _refuse(self):
+    def _fail(self):
         raise Failure(USAGE, f"The expression '{self._text}' of the scene cannot be read.")
 
-    def _take(self, *symbols):
+    def _accept(self, *symbols):
         if self._tokens and self._tokens[0][2] in symbols:
             return self._tokens.pop(0)[2]
         return None
 
     def _expect(self, symbol):
-        if not self._take(symbol):
-            self._refuse()
+        if not self._accept(symbol):
+            self._fail()
 
-    def _choice(self):
+    def _ternary(self):
         condition = self._binary(0)
-        if not self._take("?"):
+        if not self._accept("?"):
             return condition
-        yes = self._choice()
+        yes = self._ternary()
         self._expect(":")
-        return np.where(np.asarray(condition) != 0, yes, self._choice())
+        return np.where(np.asarray(condition) != 0, yes, self._ternary())
 
     def _binary(self, level):
         if level == len(_BINARY):
-            return self._signed()
+            return self._unary()
         value = self._binary(level + 1)
-        while symbol := self._take(*_BINARY[level]):
+        while symbol := self._accept(*_BINARY[level]):
             value = _BINARY[level][symbol](value, self._binary(level + 1))
         return value
 
-    def _signed(self):
-        if self._take("-"):
-            return -self._signed()
-        if self._take("+"):
-            return self._signed()
+    def _unary(self):
+        if self._accept("-"):
+            return -self._unary()
+        if self._accept("+"):
+            return self._unary()
         base = self._primary()
-        return np.power(base, self._signed()) if self._take("^") else base
+        return np.power(base, self._unary()) if self._accept("^") else base
 
     def _primary(self):
         if not self._tokens:
-            self._refuse()
-        if self._take("("):
-            value = self._choice()
+            self._fail()
+        if self._accept("("):
+            value = self._ternary()
             self._expect(")")
             return value
         number, name, _ = self._tokens.pop(0)
         if number:
             return float(number)
-        if name in _FUNCTIONS and self._take("("):
-            arguments = [self._choice()]
-            while self._take(","):
-                arguments.append(self._choice())
+        if name in _FUNCTIONS and self._accept("("):
+            arguments = [self._ternary()]
+            while self._accept(","):
+                arguments.append(self._ternary())
             self._expect(")")
             return _FUNCTIONS[name](*arguments)
         if name not in self._names:
-            self._refuse()
+            self._fail()
         return self._names[name]
 
 
 def evaluate(text, **variables) -> np.ndarray:
-    """Value of an expression, or of a number, at the given variables (arrays that broadcast)."""
+    """Values of an expression (text) or number on arrays that broadcast; raises Failure (USAGE) if invalid."""
     shape = np.broadcast_shapes(*(np.shape(value) for value in variables.values()))
     if not isinstance(text, str):
         return np.full(shape, float(text))
-    return np.broadcast_to(np.asarray(_Parser(text, variables).whole(), dtype=float), shape)
+    return np.broadcast_to(np.asarray(_Parser(text, variables).evaluate(), dtype=float), shape)

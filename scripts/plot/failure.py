@@ -1,4 +1,4 @@
-"""Failures that the user is told about in one sentence."""
+"""Exit codes, and the exception that carries one with a message for the user."""
 
 OK = 0
 USAGE = 2
@@ -6,7 +6,7 @@ IO_ERROR = 6
 
 
 class Failure(Exception):
-    """One sentence for the user and the exit code of the program (2 usage, 6 input or output)."""
+    """Error with a one-sentence message for the user and the exit code of the program (USAGE or IO_ERROR)."""
 
     def __init__(self, code: int, sentence: str):
         super().__init__(sentence)

@@ -1,4 +1,4 @@
-"""Reads a run directory: fields.h5, scene.toml, result.json, history.csv, study.csv, study.json."""
+"""Reader of run directories: fields.h5, scene.toml, result.json, history.csv, study.csv and study.json."""
 
 import csv
 import json
@@ -17,7 +17,7 @@ RECORDS = "*.jsonl"
 
 @dataclass(frozen=True)
 class Field:
-    """Values of one dataset with the words that describe it."""
+    """Values of one dataset with its unit and description."""
 
     name: str
     values: np.ndarray
@@ -27,13 +27,15 @@ class Field:
 
 @dataclass(frozen=True)
 class Snapshot:
+    """Fields at one time, s."""
+
     time: float
     fields: dict[str, Field]
 
 
 @dataclass(frozen=True)
 class Reference:
-    """A finer run that stands for the solution at the final time."""
+    """Reference solution at the final time, from a finer run."""
 
     x: np.ndarray
     fields: dict[str, Field]
@@ -43,7 +45,7 @@ class Reference:
 
 @dataclass
 class Run:
-    """What a run directory holds; what is absent is empty."""
+    """Contents of a run directory; missing files leave empty members."""
 
     path: Path
     scene: dict = field(default_factory=dict)
@@ -65,7 +67,7 @@ class Run:
 
     @property
     def scene_name(self) -> str:
-        """Of a study; the folder's name where there is no study.json."""
+        """Scene of the study, or the name of the folder if there is no study.json."""
         return str(self.study_facts.get("scene") or self.name)
 
 
@@ -130,15 +132,15 @@ def _read_object(file: Path) -> dict:
 
 
 def read_study(file: Path) -> list[dict[str, str]]:
-    """Rows of a study as text, keyed by the header."""
+    """Rows of study.csv as text, keyed by column."""
     with file.open(newline="") as stream:
         return list(csv.DictReader(stream))
 
 
-def read(path: Path) -> Run:
-    """Everything drawable in a run directory; exit code 2 where there is none, 6 where a file is damaged.
+def read_run(path: Path) -> Run:
+    """Contents of a run directory; raises Failure: USAGE if there is nothing to draw, IO_ERROR for a damaged file.
 
-    Of a folder of records alone an empty run: evidence_records reads those.
+    A folder that holds only benchmark records gives an empty Run; see evidence/records.py.
     """
     if path.is_file():
         names = f"{', '.join(READABLE)} or {RECORDS}"
@@ -150,7 +152,9 @@ def read(path: Path) -> Run:
         raise Failure(USAGE, f"{path} is not a run directory: no such folder.")
     run = Run(path)
     if not any((path / name).is_file() for name in READABLE) and not any(path.glob(RECORDS)):
-        raise Failure(USAGE, f"{path} holds nothing to draw: none of {', '.join(READABLE)}, {RECORDS} is there.")
+        raise Failure(
+            USAGE, f"{path} holds nothing to draw: none of {', '.join(READABLE)}, {RECORDS} is there."
+        )
     readers = {
         "scene.toml": lambda file: setattr(run, "scene", tomllib.loads(file.read_text())),
         "result.json": lambda file: setattr(run, "result", _read_object(file)),

@@ -1,4 +1,4 @@
-"""Picture of a study: error against time and against mesh, one curve a scheme."""
+"""Figure of a study: error against time and against mesh, one curve per scheme."""
 
 import difflib
 
@@ -9,40 +9,44 @@ from .failure import IO_ERROR, USAGE, Failure
 from .run_directory import Run
 from .style import plt
 
-# Sums of |error| dx, so of the field's unit times metres; differences to the next finer mesh, a mean over time.
+# L1 errors are sums of |error| dx (unit of the field times m); cauchy_* are time averages of the difference
+# between a mesh and the next finer one.
 TITLES = {
     "l1_density": "L1 error of density (kg/m$^2$)", "l1_velocity": "L1 error of velocity (m$^2$/s)",
     "l1_pressure": "L1 error of pressure (Pa m)",
-    "cauchy_length": "difference of length to the next mesh (m)", "cauchy_area": "difference of area to the next mesh (m$^2$)",
+    "cauchy_length": "difference of length to the next mesh (m)",
+    "cauchy_area": "difference of area to the next mesh (m$^2$)",
     "cauchy_kinetic": "difference of kinetic energy to the next mesh (J)",
     "cauchy_elastic": "difference of elastic energy to the next mesh (J)",
 }  # fmt: skip
-# What a run keeps, or not, on any mesh: no error that a finer one makes small.
-KEPT = ("conservation", "equilibrium", "energy_drift", "energy_balance", "momentum", "angular_momentum", "intersections",
-        "penetration")  # fmt: skip
+# Checks of invariants, which do not converge with the mesh.
+INVARIANTS = (
+    "conservation", "equilibrium", "energy_drift", "energy_balance", "momentum", "angular_momentum",
+    "intersections", "penetration",
+)  # fmt: skip
 SCHEMES = {"js": "WENO-JS", "z": "WENO-Z", "z2": "WENO-Z (p = 2)", "m": "WENO-M", "teno5": "TENO5"}
 
 
-def _words(label: str) -> str:
-    """`z2 lf-global` as the rest of the pictures writes it."""
+def _display_label(label: str) -> str:
+    """Label of a study row, such as `z2 lf-global`, with the display name of its scheme."""
     scheme, blank, settings = label.partition(" ")
     return SCHEMES.get(scheme, scheme) + blank + settings
 
 
 def _norms(rows: list[dict[str, str]]) -> list[str]:
-    """The error columns of a study: what stands between the time and the status."""
+    """Error columns of a study: those between `compute_s` and `status`."""
     columns = list(rows[0])
     return columns[columns.index("compute_s") + 1 : columns.index("status")]
 
 
 def default_norm(rows: list[dict[str, str]]) -> str:
-    """The first error that meshes make small, else the first; of those that a run has."""
+    """First non-empty error column that converges with the mesh, else the first non-empty one."""
     try:
         norms = _norms(rows)
     except ValueError:
         return ""
     norms = [norm for norm in norms if any(row[norm] for row in rows)] or norms
-    return next((norm for norm in norms if norm not in KEPT), norms[0] if norms else "")
+    return next((norm for norm in norms if norm not in INVARIANTS), norms[0] if norms else "")
 
 
 def _mesh_column(rows: list[dict[str, str]]) -> str:
@@ -50,12 +54,12 @@ def _mesh_column(rows: list[dict[str, str]]) -> str:
 
 
 def _dimension(rows: list[dict[str, str]]) -> int:
-    """Along how many axes a mesh is refined: the square of their edges' number is the number of vertices of cloth."""
+    """Number of axes of mesh refinement: 2 for cloth, whose vertex count is quadratic in the edges per axis."""
     return 2 if "cauchy_area" in rows[0] else 1
 
 
 def _curves(rows: list[dict[str, str]], norm: str) -> tuple[dict[str, np.ndarray], list[str]]:
-    """Per label an array of (mesh, seconds, error) by rising mesh, and what is left out in words."""
+    """Arrays of (mesh, seconds, error) by label, ordered by mesh, and descriptions of the omitted rows."""
     curves: dict[str, list[tuple[float, float, float]]] = {}
     failed = exact = finest = 0
     for row in rows:
@@ -67,18 +71,20 @@ def _curves(rows: list[dict[str, str]], norm: str) -> tuple[dict[str, np.ndarray
             continue
         point = tuple(float(row[column]) for column in (_mesh_column(rows), "compute_s", norm))
         if point[2] > 0:
-            curves.setdefault(_words(row["label"]), []).append(point)
+            curves.setdefault(_display_label(row["label"]), []).append(point)
         else:
             exact += 1
-    left_out = [f"{failed} of {len(rows)} runs failed"] if failed else []
-    left_out += [f"{exact} of {len(rows)} have error 0"] if exact else []
-    if finest and not curves:  # a curve does without its finest mesh
-        left_out.append(f"{finest} of {len(rows)} have no finer mesh to be compared with and nothing to verify")
-    return {label: np.array(sorted(points)) for label, points in curves.items()}, left_out
+    omitted = [f"{failed} of {len(rows)} runs failed"] if failed else []
+    omitted += [f"{exact} of {len(rows)} have error 0"] if exact else []
+    if finest and not curves:  # its finest mesh has no Cauchy error
+        omitted.append(
+            f"{finest} of {len(rows)} have no finer mesh to be compared with and nothing to verify"
+        )
+    return {label: np.array(sorted(points)) for label, points in curves.items()}, omitted
 
 
 def check_norm(run: Run, norm: str) -> None:
-    """Refuses a norm that the study of a folder, if it has one, does not give."""
+    """Raises Failure (USAGE) unless the run has a study with the error column `norm`."""
     if not run.study:
         raise Failure(USAGE, f"{run.path} holds no study, which --norm is for.")
     norms = _norms(run.study)
@@ -89,7 +95,7 @@ def check_norm(run: Run, norm: str) -> None:
 
 
 def observed_order(points: np.ndarray, dimension: int = 1) -> float | None:
-    """Least-squares slope of error against edges of (mesh, seconds, error); needs three meshes."""
+    """Least-squares order of (mesh, seconds, error) in the mesh width; None for fewer than three meshes."""
     if len(points) < 3:
         return None
     return -dimension * np.polyfit(np.log(points[:, 0]), np.log(points[:, 2]), 1)[0]
@@ -113,42 +119,52 @@ def _draw(axes, curves, column: int, labels: dict[str, str]) -> None:
             ends.append(((points[-1, column], points[-1, 2]), labels[label], colour))
     axes.set_xscale("log")
     axes.set_yscale("log")
-    style.mark_logarithm(axes.yaxis)
-    style.label_ends(axes, ends)
+    style.set_log_ticks(axes.yaxis)
+    style.label_curves(axes, ends)
 
 
-def _make_room(figure, labels: list[str]) -> None:
-    """Gives a figure of two axes the size that its labels need at the right of them."""
+def _fit_labels(figure, labels: list[str]) -> None:
+    """Sizes a figure of two axes such that the labels fit at its right."""
     left, axes_width, bottom, top = 0.82, 5.66, 0.5, 0.72
-    width = left + axes_width + 0.2 + max(style.text_width(figure, words, style.LABEL_SIZE) for words in labels)
+    width = (
+        left + axes_width + 0.2 + max(style.text_width(figure, words, style.LABEL_SIZE) for words in labels)
+    )
     axes_height = max(2.38, style.LABEL_STEP * len(labels))
     height = bottom + axes_height + top
     figure.set_size_inches(width, height)
     figure.subplots_adjust(
-        left=left / width, right=(left + axes_width) / width, bottom=bottom / height, top=1 - top / height, wspace=0.1
+        left=left / width,
+        right=(left + axes_width) / width,
+        bottom=bottom / height,
+        top=1 - top / height,
+        wspace=0.1,
     )
 
 
 def study_figure(name: str, rows: list[dict[str, str]], norm: str = ""):
-    """Error against time at the left, error against mesh with the observed order at the right."""
+    """Figure with error against time (left) and error against mesh with observed orders (right).
+
+    Raises Failure: USAGE for an unknown norm, IO_ERROR if no row can be drawn.
+    """
     norm = norm or (default_norm(rows) if rows else "")
     if rows and norm not in rows[0]:
         raise Failure(USAGE, f"The study of {name} has no column '{norm}'; it has {', '.join(rows[0])}.")
     try:
-        curves, left_out = _curves(rows, norm)
+        curves, omitted = _curves(rows, norm)
     except (KeyError, TypeError, ValueError) as error:
         raise Failure(IO_ERROR, f"The study of {name} has a row that cannot be read: {error}.") from None
     if not curves:
         raise Failure(
-            IO_ERROR, f"The study of {name} has nothing to draw: {' and '.join(left_out) or 'it is empty'}."
+            IO_ERROR, f"The study of {name} has nothing to draw: {' and '.join(omitted) or 'it is empty'}."
         )
     figure, (by_time, by_mesh) = plt.subplots(1, 2, sharey=True)
     labels = {
-        label: label if norm in KEPT else label + _order(points, _dimension(rows)) for label, points in curves.items()
+        label: label if norm in INVARIANTS else label + _order(points, _dimension(rows))
+        for label, points in curves.items()
     }
-    _make_room(figure, list(labels.values()))
+    _fit_labels(figure, list(labels.values()))
     _draw(by_time, curves, 1, {})
-    style.mark_logarithm(by_time.xaxis)
+    style.set_log_ticks(by_time.xaxis)
     _draw(by_mesh, curves, 0, labels)
     by_time.set_ylabel(TITLES.get(norm, "error of " + norm.replace("_", " ")))
     by_time.set_xlabel("time to solution (s)")
@@ -159,7 +175,7 @@ def study_figure(name: str, rows: list[dict[str, str]], norm: str = ""):
         by_mesh.minorticks_off()
     backends = sorted({row.get("backend", "") for row in rows} - {""})
     details = "error against time and mesh" + (f", {', '.join(backends)}" if backends else "")
-    if left_out:
-        details += f"; not drawn: {', '.join(left_out)}"
+    if omitted:
+        details += f"; not drawn: {', '.join(omitted)}"
     style.heading(figure, name, details)
     return figure

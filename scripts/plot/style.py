@@ -1,4 +1,4 @@
-"""Look of every picture: light, legible at one column of a paper, safe for colour-blind readers."""
+"""Style of all figures: light, legible at the width of one journal column, and colour-blind safe."""
 
 import contextlib
 import os
@@ -15,7 +15,7 @@ from PIL import Image  # noqa: E402
 
 from .failure import IO_ERROR, Failure  # noqa: E402
 
-# Okabe and Ito (2008), ordered so that neighbours differ in lightness too.
+# Okabe and Ito (2008), ordered such that neighbours also differ in lightness.
 PALETTE = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#5B4A9C", "#7A7A7A")
 INK = "#222222"
 MUTED = "#6B6B6B"
@@ -43,26 +43,27 @@ _SYMBOLS = {
 }  # fmt: skip
 
 
-def units_text(units: str) -> str:
-    """`kg/m^3` as a person writes it; empty for a pure number."""
+def format_units(units: str) -> str:
+    """Unit such as `kg/m^3` with superscripts; empty for a dimensionless quantity."""
     if units in ("", "1", "-"):
         return ""
     return re.sub(r"\^(-?\d+)", r"$^{\1}$", units.replace("*", " "))
 
 
 def axis_label(name: str, units: str) -> str:
+    """Display name of a field with its unit in parentheses."""
     text = _SYMBOLS.get(name, name.replace("_", " "))
-    return f"{text} ({units_text(units)})" if units_text(units) else text
+    return f"{text} ({format_units(units)})" if format_units(units) else text
 
 
 def check_label(name: str) -> str:
-    """What the value of a check of result.json is, in words."""
-    # Not the density itself: its relative deviation from the published one.
+    """Display name of a check of result.json."""
+    # Its value is the relative deviation from the published density.
     return "max density off by" if name == "max_density" else name.replace("_", " ")
 
 
-def number(value: float) -> str:
-    """Three digits, or the whole number from 1000 on; powers of ten as a paper prints them."""
+def format_number(value: float) -> str:
+    """Number with three significant digits, an integer from 1000 on; powers of ten as mathtext."""
     if value == 0 or not np.isfinite(value):
         return f"{value:g}"
     if 1e-2 <= abs(value) < 1e5:
@@ -72,66 +73,65 @@ def number(value: float) -> str:
     return rf"{mantissa}$\times$10$^{{{int(exponent)}}}$"
 
 
-def heading(figure, name: str, details: str, key: list[tuple[str, str, str]] = ()):
-    """Title at the left and what it shows under it, which is returned; `key` (marker, words, colour) names the curves."""
+def heading(figure, title: str, subtitle: str, legend: list[tuple[str, str, str]] = ()):
+    """Draws title, subtitle and a legend of (marker, label, colour); returns the text artist of the subtitle."""
     width, height = figure.get_size_inches()
     left, second_line = 0.1 / width, 1 - 0.28 / height
-    figure.text(left, 1 - 0.08 / height, name, fontsize=10.5, fontweight="bold", va="top")
-    caption = figure.text(left, second_line, details, fontsize=8.5, color=MUTED, va="top")
-    # Beside the title, whose words are few: the second line may be long.
-    curve_key(figure, 1 - 0.1 / height, key)
+    figure.text(left, 1 - 0.08 / height, title, fontsize=10.5, fontweight="bold", va="top")
+    caption = figure.text(left, second_line, subtitle, fontsize=8.5, color=MUTED, va="top")
+    # The legend stands beside the title, since the subtitle may be long.
+    draw_legend(figure, 1 - 0.1 / height, legend)
     return caption
 
 
-KEY_GAP = 0.16
+LEGEND_GAP = 0.16  # inches
 
 
-def curve_key(figure, y: float, key: list[tuple[str, str, str]]) -> None:
-    """Marker, words and colour of each curve in a line that ends at the right; y: its top as a share of the height."""
+def draw_legend(figure, y: float, legend: list[tuple[str, str, str]]) -> None:
+    """Draws (marker, label, colour) entries in one right-aligned line; y is its top as a fraction of the height."""
     width = figure.get_size_inches()[0]
     right = 1 - 0.1 / width
-    for marker, words, colour in reversed(key):
+    for marker, words, colour in reversed(legend):
         text = figure.text(right, y, f"{marker} {words}", color=colour, fontsize=8.5, ha="right", va="top")
         extent = text.get_window_extent(figure.canvas.get_renderer())
-        right -= (extent.width / figure.dpi + KEY_GAP) / width
+        right -= (extent.width / figure.dpi + LEGEND_GAP) / width
 
 
 def text_width(figure, words: str, size: float) -> float:
-    """Inches that a line of text takes."""
+    """Width of a line of text, inches."""
     text = figure.text(0, 0, words, fontsize=size)
     width = text.get_window_extent(figure.canvas.get_renderer()).width / figure.dpi
     text.remove()
     return width
 
 
-def titled_key_width(figure, title: str, key: list[tuple[str, str, str]]) -> float:
-    """Inches that a figure needs for a title in bold type and the key beside it."""
-    words = sum(text_width(figure, f"{marker} {name}", 8.5) + KEY_GAP for marker, name, _ in key)
+def heading_width(figure, title: str, legend: list[tuple[str, str, str]]) -> float:
+    """Figure width needed by a bold title and the legend beside it, inches."""
+    words = sum(text_width(figure, f"{marker} {name}", 8.5) + LEGEND_GAP for marker, name, _ in legend)
     return 0.5 + text_width(figure, title, 12) + words
 
 
-def mark_logarithm(axis) -> None:
-    """Ticks of a logarithmic axis: under two decades powers of ten alone leave it without a scale."""
+def set_log_ticks(axis) -> None:
+    """Sets the ticks of a logarithmic axis; below two decades it labels 1, 2 and 5 times the powers of ten."""
     low, high = axis.get_view_interval()
     if high < 100 * low:
         axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
-        axis.set_major_formatter(FuncFormatter(lambda value, _: number(value)))
+        axis.set_major_formatter(FuncFormatter(lambda value, _: format_number(value)))
         axis.set_minor_formatter(NullFormatter())
 
 
-def details_width(figure, details: str) -> float:
-    """Inches that a figure needs for the second line of its heading."""
-    return 0.2 + text_width(figure, details, 8.5)
+def subtitle_width(figure, subtitle: str) -> float:
+    """Figure width needed by a subtitle, inches."""
+    return 0.2 + text_width(figure, subtitle, 8.5)
 
 
 LABEL_SIZE = 8
-# Inches from one label to the next.
-LABEL_STEP = 11.5 / 72
+LABEL_STEP = 11.5 / 72  # inches between two labels
 
 
-def label_ends(axes, ends) -> None:
-    """Names curves beside their right ends in their own colours, no two on each other; ends: ((x, y), words, colour)."""
-    # Asking for the limits settles them; all else of a drawing moves nothing.
+def label_curves(axes, ends) -> None:
+    """Labels curves at the right of the axes without overlaps; `ends` holds ((x, y), label, colour) each."""
+    # Reading the limits fixes them; nothing that is drawn later changes the layout.
     axes.get_xlim(), axes.get_ylim()
     box = axes.get_window_extent()
     step = LABEL_STEP * axes.figure.dpi
@@ -140,7 +140,7 @@ def label_ends(axes, ends) -> None:
     )
     placed = -np.inf
     for index, (pixel, words, colour) in enumerate(levels):
-        # Low enough for those above it to end at the top of the axes.
+        # The remaining labels must fit below the top of the axes.
         highest = box.height - (len(levels) - 1 - index) * step
         placed = max(min(pixel, highest), placed + step)
         axes.annotate(
@@ -149,8 +149,8 @@ def label_ends(axes, ends) -> None:
         )  # fmt: skip
 
 
-def thin(x: np.ndarray, y: np.ndarray, buckets: int = 2000) -> tuple[np.ndarray, np.ndarray]:
-    """Lowest and highest point of each of `buckets` pieces of a long curve: looks the same, in a small file."""
+def decimate(x: np.ndarray, y: np.ndarray, buckets: int = 2000) -> tuple[np.ndarray, np.ndarray]:
+    """Min-max decimation: the lowest and the highest point in each of `buckets` parts of a long curve."""
     if len(x) <= 4 * buckets:
         return x, y
     size = len(x) // buckets
@@ -162,8 +162,8 @@ def thin(x: np.ndarray, y: np.ndarray, buckets: int = 2000) -> tuple[np.ndarray,
     return x[keep], y[keep]
 
 
-def replace_file(file: Path, write) -> Path:
-    """Calls write(temporary name) and renames: a reader never sees half a picture."""
+def write_atomically(file: Path, write) -> Path:
+    """Calls write(temporary file) and renames it to `file`, which is returned; raises Failure (IO_ERROR)."""
     temporary = file.with_name(f".{file.stem}.{os.getpid()}{file.suffix}")
     try:
         file.parent.mkdir(parents=True, exist_ok=True)
@@ -176,8 +176,8 @@ def replace_file(file: Path, write) -> Path:
     return file
 
 
-def save(figure, file: Path, dpi: int) -> Path:
-    """Writes and closes a figure; PNG in 256 colours, a third of the size with no visible change."""
+def save_figure(figure, file: Path, dpi: int) -> Path:
+    """Writes and closes a figure, a PNG with 256 colours (a third of the size); raises Failure (IO_ERROR)."""
 
     def write(temporary: Path) -> None:
         figure.savefig(temporary, dpi=dpi)
@@ -186,6 +186,6 @@ def save(figure, file: Path, dpi: int) -> Path:
                 small = image.convert("RGB").quantize(256, dither=Image.Dither.NONE)
             small.save(temporary, optimize=True)
 
-    replace_file(file, write)
+    write_atomically(file, write)
     plt.close(figure)
     return file

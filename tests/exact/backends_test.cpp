@@ -7,8 +7,8 @@
 #include "tests/support/gas_state.hpp"
 #include "tests/support/in_child.hpp"
 
-// Every backend and every number of threads gives the same bits, on meshes that keep four threads busy.
-// Kokkos starts once a process, so each run is a child of its own that leaves its bytes in a file.
+// Bitwise equality of all backends and numbers of threads, on meshes with work for four threads. Kokkos can
+// be initialised once per process, so each run is a child process that writes its bytes to a file.
 
 namespace drogue {
 namespace {
@@ -26,12 +26,12 @@ struct Runner {
 template <class T>
 void append(std::string& bytes, const T* values, std::size_t count) {
   bytes.append(reinterpret_cast<const char*>(values),
-               count * sizeof(T));  // NOLINT: bits are what is compared
+               count * sizeof(T));  // NOLINT: compares bits
 }
 
 enum class Count : std::size_t { stop, step, redone, limited_faces, cell };
 
-/// Everything a run leaves: counts, rows, totals, state, what a restart would carry, the limiter's marks.
+/// All results of a run: counters, rows, totals, state, restart state and marks of the limiter.
 std::string run_bytes(const Runner& runner, gas::Parameters p, const GasState& state, std::int64_t steps) {
   p.driver = runner.driver;
   const auto solver = testing::started(runner.backend, p, state);
@@ -78,7 +78,7 @@ std::int64_t count(const std::string& bytes, Count which) {
   return value;
 }
 
-/// Runs on everything there is; returns what the serial backend left.
+/// Runs on all backends; returns the bytes of the serial backend.
 std::string expect_same_bits(const gas::Parameters& p, const GasState& state, std::int64_t steps) {
   std::string serial;
   for (const Runner& runner : runners()) {
@@ -104,14 +104,14 @@ gas::Parameters parameters(std::int64_t cells, gas::Weno weno, gas::Splitting sp
   return p;
 }
 
-TEST(GasExact, ShockTube) {
+TEST(GasExact, BackendsAgreeOnAShockTube) {
   const auto p = parameters(10000, gas::Weno::z, gas::Splitting::lf_stencil, gas::Positivity::automatic);
   const std::string serial =
       expect_same_bits(p, testing::riemann_state(p, 0.0, {1, 0, 1}, {0.125, 0, 0.1}), 60);
   EXPECT_EQ(count(serial, Count::step), 60);
 }
 
-TEST(GasExact, GlobalSpeedsAndLimiter) {
+TEST(GasExact, BackendsAgreeWithGlobalSpeedsAndLimiter) {
   auto p = parameters(8199, gas::Weno::js, gas::Splitting::lf_global, gas::Positivity::on);
   p.face_average = gas::FaceAverage::roe;
   p.time_scheme = gas::TimeScheme::ssprk43;
@@ -119,8 +119,8 @@ TEST(GasExact, GlobalSpeedsAndLimiter) {
   EXPECT_GT(count(serial, Count::limited_faces), 0);
 }
 
-// Where a step shares its launch with others, the limiter is a reason to end the launch.
-TEST(GasExact, LimiterOnDemandBetweenStepsInOneKernel) {
+// If several steps share a launch, an active limiter ends the launch.
+TEST(GasExact, BackendsAgreeOnTheAutomaticLimiterWithinOneLaunch) {
   auto p = parameters(3000, gas::Weno::z, gas::Splitting::lf_stencil, gas::Positivity::automatic);
   p.left = gas::Boundary::reflecting;
   const std::string serial = expect_same_bits(p, testing::random_state(p, 6, testing::extreme), 240);
@@ -128,7 +128,7 @@ TEST(GasExact, LimiterOnDemandBetweenStepsInOneKernel) {
   EXPECT_EQ(count(serial, Count::step), 240);
 }
 
-TEST(GasExact, LimiterOnDemandAndRedoneSteps) {
+TEST(GasExact, BackendsAgreeOnStepsRepeatedByTheAutomaticLimiter) {
   auto p = parameters(6000, gas::Weno::teno5, gas::Splitting::lf_single, gas::Positivity::automatic);
   p.left = p.right = gas::Boundary::periodic;
   p.face_average = gas::FaceAverage::conserved;
@@ -137,7 +137,7 @@ TEST(GasExact, LimiterOnDemandAndRedoneSteps) {
   EXPECT_GT(count(serial, Count::limited_faces), 0);
 }
 
-TEST(GasExact, SplitPrecision) {
+TEST(GasExact, BackendsAgreeInSplitPrecision) {
   auto p = parameters(5001, gas::Weno::m, gas::Splitting::lf_global, gas::Positivity::automatic);
   p.precision = gas::Precision::split;
   p.left = gas::Boundary::reflecting;
@@ -145,7 +145,7 @@ TEST(GasExact, SplitPrecision) {
   EXPECT_EQ(count(serial, Count::step), 40);
 }
 
-TEST(GasExact, FailedRunFailsInTheSameCell) {
+TEST(GasExact, BackendsFailInTheSameCell) {
   auto p = parameters(7000, gas::Weno::z, gas::Splitting::lf_stencil, gas::Positivity::off);
   p.weno_power = 2;
   p.cfl = 3.0;
@@ -154,8 +154,8 @@ TEST(GasExact, FailedRunFailsInTheSameCell) {
   EXPECT_GE(count(serial, Count::cell), 0);
 }
 
-// A kernel a step and a kernel a stage are two forms of one method, with the limiter and without it.
-TEST(GasExact, AKernelAStepGivesTheBitsOfAKernelAStage) {
+// One kernel per step and one kernel per stage are the same method, with and without the limiter.
+TEST(GasExact, FusedStepEqualsSeparateStages) {
   using gas::Boundary;
   unsigned seed = 5;
   bool limited_cells = false;

@@ -10,7 +10,7 @@
 #include "tests/support/fabric_sheets.hpp"
 #include "tests/support/in_child.hpp"
 
-// Every backend and every number of threads moves cloth to the same bits, and measures the same.
+// Bitwise equality of states and measurements of fabric on all backends and numbers of threads.
 
 namespace drogue::fabric {
 namespace {
@@ -49,10 +49,10 @@ Parameters cloth(Model model, bool tension_only, Integrator integrator) {
 template <class T>
 void append(std::string& bytes, const std::vector<T>& values) {
   bytes.append(reinterpret_cast<const char*>(values.data()),
-               values.size() * sizeof(T));  // NOLINT: bits are what is compared
+               values.size() * sizeof(T));  // NOLINT: compares bits
 }
 
-/// What a persistent driver can take, too.
+/// Parameters that the persistent driver supports, too.
 Parameters plain_cloth(Model model, bool tension_only) {
   Parameters p = cloth(model, tension_only, Integrator::rk4);
   p.material.bending_stiffness = p.relative_damping = 0.0;
@@ -62,7 +62,7 @@ Parameters plain_cloth(Model model, bool tension_only) {
   return p;
 }
 
-/// Everything a solver can tell after 80 steps.
+/// All results of a solver after 80 steps.
 std::string run_bytes(device::Backend backend, int threads, const Parameters& p) {
   const device::Runtime runtime({"--kokkos-num-threads=" + std::to_string(threads)});
   const auto solver = create_solver(backend, p);
@@ -119,7 +119,7 @@ TEST(ExactFabric, DriversAgree) {
     }
 }
 
-/// State and work of sheets that meet.
+/// State and contact work of sheets in contact.
 std::string contact_bytes(device::Backend backend, int threads, testing::Sheets s) {
   const device::Runtime runtime({"--kokkos-num-threads=" + std::to_string(threads)});
   const auto solver = create_solver(backend, s.p);

@@ -8,15 +8,15 @@
 #include "tests/support/cuda_device.hpp"
 #include "tests/support/option_sets.hpp"
 
-// Every backend and every number of threads gives the same bits. Kokkos starts once a process, so each run is
-// a child of its own that leaves its bytes in a file.
+// All backends and numbers of threads yield the same bits. Kokkos starts once per process, so each run is a
+// child process that returns its bytes in a file.
 
 namespace drogue {
 namespace {
 
 using testing::in_child;
 
-/// What a pricer says of all contracts, without the padding between.
+/// Bytes of all prices without padding.
 std::string price_bytes(device::Backend backend, const options::Settings& settings,
                         const std::vector<options::Contract>& contracts) {
   std::vector<options::Price> prices(contracts.size());
@@ -25,7 +25,7 @@ std::string price_bytes(device::Backend backend, const options::Settings& settin
   for (const options::Price& p : prices) {
     for (const double value : {p.price, p.error, p.delta, p.gamma, p.theta, p.exercise_boundary})
       bytes.append(reinterpret_cast<const char*>(&value), sizeof(value));  // NOLINT: bits are compared
-    bytes += std::to_string(p.mesh) + "," + std::to_string(static_cast<int>(p.outcome)) + ";";
+    bytes += std::to_string(p.mesh) + "," + std::to_string(static_cast<int>(p.status)) + ";";
   }
   return bytes;
 }
@@ -62,15 +62,15 @@ std::vector<options::Contract> of_all_models() {
   return contracts;
 }
 
-TEST(OptionsExact, FixedMesh) {
+TEST(OptionsExact, BackendsAgreeOnAFixedMesh) {
   options::Settings settings;
   settings.mesh = 96;
   settings.steps = 24;
   expect_same_prices(settings, of_all_models());
 }
 
-// Spots in the last cells of their grids and beyond them, and below the grids.
-TEST(OptionsExact, BesideTheEnds) {
+// Spots in the last cells of the grids, beyond them, and below the grids.
+TEST(OptionsExact, BackendsAgreeAtTheEndsOfTheGrid) {
   std::vector<options::Contract> contracts;
   for (int k = -20; k < 60; ++k) {
     options::Contract c = testing::random_contracts(1, 8)[0];
@@ -88,9 +88,8 @@ TEST(OptionsExact, BesideTheEnds) {
   }
 }
 
-// Of mixtures and of closed forms each more than a GPU prices by two warps; there are fewer in the other
-// tests.
-TEST(OptionsExact, ManyAtOnce) {
+// More contracts per class of models than a GPU prices with two warps each; the other tests have fewer.
+TEST(OptionsExact, BackendsAgreeOnLargeBatches) {
   std::vector<options::Contract> contracts;
   for (int k = 0; k < 600; ++k)
     for (options::Contract c : of_all_models()) {
@@ -104,8 +103,8 @@ TEST(OptionsExact, ManyAtOnce) {
   expect_same_prices(settings, contracts);
 }
 
-// Sums over jumps by transforms; on CUDA in registers, and in memory.
-TEST(OptionsExact, TransformedMeshes) {
+// Sums over jumps by transforms, on CUDA in registers and in memory.
+TEST(OptionsExact, BackendsAgreeOnTransformedMeshes) {
   options::Settings settings;
   settings.steps = 16;
   for (const int mesh : {256, 1024}) {
@@ -114,13 +113,13 @@ TEST(OptionsExact, TransformedMeshes) {
   }
 }
 
-TEST(OptionsExact, MeshChosenByTolerance) {
+TEST(OptionsExact, BackendsAgreeOnAMeshChosenByTolerance) {
   options::Settings settings;
   settings.tolerance = 3e-5;
   expect_same_prices(settings, of_all_models());
 }
 
-/// Strikes of every contract, near and far.
+/// Near and far strikes of every contract.
 std::vector<options::Contract> strikes_of_all_models() {
   std::vector<options::Contract> contracts;
   for (options::Contract c : of_all_models())
@@ -131,7 +130,7 @@ std::vector<options::Contract> strikes_of_all_models() {
   return contracts;
 }
 
-TEST(OptionsExact, SurfaceOnAFixedMesh) {
+TEST(OptionsExact, BackendsAgreeOnSurfacesOnAFixedMesh) {
   options::Settings settings;
   settings.mesh = 96;
   settings.steps = 24;
@@ -139,7 +138,7 @@ TEST(OptionsExact, SurfaceOnAFixedMesh) {
   expect_same_prices(settings, strikes_of_all_models());
 }
 
-TEST(OptionsExact, SurfaceOnAMeshChosenByTolerance) {
+TEST(OptionsExact, BackendsAgreeOnSurfacesChosenByTolerance) {
   options::Settings settings;
   settings.tolerance = 3e-5;
   settings.surface = true;

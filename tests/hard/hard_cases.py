@@ -1,4 +1,4 @@
-"""The rows of tolerances.csv and failures.csv, and the assignments that make a shipped scene one of them."""
+"""Rows of tolerances.csv and failures.csv, and the scene assignments of each row."""
 
 import csv
 import pathlib
@@ -14,14 +14,14 @@ def rows(name):
 
 
 def scheme_sets(scheme):
-    """js, z1, z2, teno5 -> assignments; power belongs to Z alone."""
+    """Assignments of a scheme name: js, z1, z2, teno5. Only Z has a power."""
     if scheme.startswith("z"):
         return ['scheme.weno="z"', f"scheme.weno_power={scheme[1:]}"]
     return [f'scheme.weno="{scheme}"']
 
 
 def row_sets(row):
-    """The scheme and mesh of a row; verification is left to the test."""
+    """Assignments of the scheme and mesh of a row, without verification."""
     sets = scheme_sets(row["scheme"]) + [f"mesh.cells={row['N']}", f"scheme.cfl={row['cfl']}"]
     if "limiter" in row:
         sets += [f'scheme.positivity="{row["limiter"]}"', f'scheme.splitting="{row["splitting"]}"']
@@ -33,7 +33,7 @@ def label(row):
 
 
 def bar_sets(row):
-    """`row_sets` and the tolerance itself: 5 % above the error, or 2 % around the largest density."""
+    """`row_sets` and the tolerance: 5 % above the error, or 2 % around the largest density."""
     tolerance = float(row["tolerance"])
     if row["quantity"] == "max_density":
         return row_sets(row) + [f"verify.max_density.value={tolerance}", "verify.max_density.tolerance=0.02"]
@@ -41,7 +41,7 @@ def bar_sets(row):
 
 
 def unverified(test, case):
-    """The shipped scene without its [verify], whose reference would be run each time, and with one output at most."""
+    """Shipped scene without [verify], to avoid its reference run, and with at most one output."""
     text = (gas_program.SOURCE / f"miniapps/gas/scenes/{case}.toml").read_text(encoding="utf-8")
     scene = test.folder / f"{case}.toml"
     scene.write_text(text[:text.index("[output]")] + "[verify]\nconservation = 1e-12\n", encoding="utf-8")

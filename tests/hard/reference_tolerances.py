@@ -1,4 +1,4 @@
-"""Rows of tolerances.csv whose reference is a finer own run: it is made once, and compared with here."""
+"""Rows of tolerances.csv whose reference is a finer run, which is made once and compared here."""
 
 import bisect
 
@@ -11,7 +11,7 @@ def rows(wanted):
 
 
 def interpolate(xs, values, x):
-    """Linear between the cell centres."""
+    """Linear interpolation between cell centres."""
     right = min(max(bisect.bisect_right(xs, x), 1), len(xs) - 1)
     weight = (x - xs[right - 1]) / (xs[right] - xs[right - 1])
     return (1.0 - weight) * values[right - 1] + weight * values[right]
@@ -26,14 +26,14 @@ class ReferenceTest(gas_program.GasTest):
     references = {}
 
     def density(self, case, backend, sets):
-        """Centres and density at the end of a run that is compared with nothing by itself."""
+        """Cell centres and density at the end of a run without verification."""
         scene = hard_cases.unverified(self, case)
         self.expect(0, scene, "--quiet", "--overwrite", "--out", "run", "--backend", backend,
                     sets=[*sets, 'output.fields=["rho"]', "output.history_every=0"])
         return gas_program.final_values(self.folder / "run")
 
     def reference(self, row):
-        """Made once, whoever asks."""
+        """Reference solution, computed on first use."""
         key = row["case"], row["reference"]
         if key not in self.references:
             scheme, cells = row["reference"].split(":")
@@ -50,4 +50,4 @@ class ReferenceTest(gas_program.GasTest):
                 density = self.density(row["case"], backend, hard_cases.row_sets(row))
                 error = l1_difference(*density, self.reference(row))
                 self.assertLessEqual(error, 1.05 * float(row["tolerance"]))
-                self.assertGreater(error, 0.5 * float(row["tolerance"]))  # a reference that was not finer would give 0
+                self.assertGreater(error, 0.5 * float(row["tolerance"]))  # a reference on the same mesh would give 0

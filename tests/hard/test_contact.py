@@ -1,4 +1,4 @@
-"""A contact at rest is kept bit for bit: no scheme or limiter may move it."""
+"""A contact at rest is preserved bit for bit by every scheme and limiter."""
 
 import itertools
 import os
@@ -25,19 +25,19 @@ class StationaryContact(gas_program.GasTest):
         for field in ("rho", "u", "p"):
             self.assertEqual(file.datasets[f"/steps/{first}/{field}"], file.datasets[f"/steps/{last}/{field}"])
 
-    def test_schemes(self):
+    def test_every_scheme_preserves_the_contact(self):
         for scheme, limiter in itertools.product(("js", "z1", "z2", "teno5"), ("off", "on", "auto")):
             for backend in {"serial", gas_program.threaded()}:
                 with self.subTest(scheme=scheme, limiter=limiter, backend=backend):
                     self.assert_kept(backend, f'scheme.positivity="{limiter}"', *hard_cases.scheme_sets(scheme))
 
-    def test_contact_at_a_cell_centre(self):
-        """An odd mesh: initial state and exact solution agree on which side x0 belongs to."""
+    def test_preserves_a_contact_at_a_cell_centre(self):
+        """On an odd mesh the initial state and the exact solution assign x0 to the same side."""
         self.assert_kept("serial", "mesh.cells=101")
 
-    def test_other_choices(self):
+    def test_other_settings_preserve_the_contact(self):
         choices = [('scheme.weno="m"',), ('scheme.time="ssprk43"', "scheme.cfl=1.2")]
-        choices.append(('scheme.splitting="lf-global"',))  # lf-single smears it: alpha of the contact's field is c
+        choices.append(('scheme.splitting="lf-global"',))  # lf-single smears the contact: alpha of its field is c
         choices += [(f'scheme.mean="{mean}"',) for mean in ("conserved", "roe")]
         for sets in choices:
             with self.subTest(sets=sets):

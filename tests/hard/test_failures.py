@@ -1,4 +1,4 @@
-"""What a scheme cannot do without the limiter ends in a clear failure, and "auto" saves it."""
+"""Cases that fail without the limiter: each failure is reported, and positivity = "auto" completes the run."""
 
 import math
 import os
@@ -18,7 +18,7 @@ MESSAGE = re.compile(r"(density|pressure|the state) is not (positive|finite) in 
 
 class Failures(gas_program.GasTest):
     def fail(self, row, backend, *words):
-        # Verification would run a reference of its own; it is not reached by a run that fails.
+        # Verification would run a reference, which a failing run never reaches.
         sets = hard_cases.row_sets(row) + ['scheme.positivity="off"', gas_program.NO_FIELDS]
         return self.expect(4, row["case"], "--quiet", "--out", "run", "--backend", backend, *words, sets=sets).stderr
 
@@ -37,7 +37,7 @@ class Failures(gas_program.GasTest):
         self.assert_good_state(cells, told)
 
     def assert_good_state(self, cells, told):
-        """restart.h5 holds the state of the time that result.json names, and that state is a gas."""
+        """restart.h5 holds a physical state at the time in result.json."""
         file = gas_program.fields(self.folder / "run", "restart.h5")
         rho, momentum, energy = (file.values(f"/{name}") for name in ("rho", "momentum", "energy"))
         self.assertEqual(cells, len(rho))
@@ -51,28 +51,28 @@ class Failures(gas_program.GasTest):
         text = (gas_program.SOURCE / f"miniapps/gas/scenes/{case}.toml").read_text(encoding="utf-8")
         return map(float, re.search(r"^domain = \[(.*), (.*)\]", text, re.MULTILINE).groups())
 
-    def test_table(self):
+    def test_table_lists_every_scheme_and_case(self):
         self.assertGreaterEqual(len(ROWS), 28)
 
-    def test_off_fails_clearly(self):
+    def test_runs_without_the_limiter_report_their_failure(self):
         for index, row in enumerate(ROWS):
             with self.subTest(hard_cases.label(row)):
                 words = ["--overwrite"] if index else []
                 message = self.fail(row, gas_program.threaded() if row["N"] == "200" else "serial", *words)
                 self.assert_clear_failure(row, message, *self.domain(row["case"]))
 
-    def test_the_last_good_state_leads_to_the_same_failure(self):
+    def test_last_good_state_leads_to_the_same_failure(self):
         row = ROWS[0]
         message = self.fail(row, "serial")
         self.assertEqual(message, self.fail(row, "serial", "--restart", "auto"))
 
-    def test_seed_mode_promises_no_limiter(self):
+    def test_baseline_runs_without_the_limiter(self):
         message = self.expect(4, "sedov", "--seed-mode", "--backend", "serial", "--quiet").stderr
-        # Beside cold gas the eigenvectors see the hot cell's energy as 1e25 in density; split by the mesh's largest
-        # alpha, two terms of 1e37 cancel, and what rounding leaves decides which neighbour of cell 100 goes first.
+        # In the eigenvectors of the cold gas the hot cell's energy counts as 1e25 in density. With the largest alpha of
+        # the mesh two terms of 1e37 cancel, and rounding decides which neighbour of cell 100 fails first.
         self.assertRegex(message, "density is not positive in cell 9[89] .* at step 1, t = 0 s$")
 
-    def test_auto_saves(self):
+    def test_automatic_limiter_completes_the_runs(self):
         for row in ROWS:
             with self.subTest(hard_cases.label(row)):
                 sets = hard_cases.row_sets(row) + ['scheme.positivity="auto"', gas_program.NO_FIELDS]

@@ -1,4 +1,4 @@
-"""Every shipped scene meets its own tolerance, as it is shipped."""
+"""Every shipped gas scene meets its tolerances unchanged."""
 
 import os
 import sys
@@ -23,11 +23,11 @@ class Shipped(gas_program.GasTest):
                 outputs = gas_program.fields(self.folder / "out" / scene).children("/steps")
                 self.assertGreaterEqual(len(outputs), 2)
 
-    def test_serial(self):
+    def test_serial_meets_the_tolerances(self):
         self.assert_all_pass("serial")
 
     @gas_program.needs_openmp
-    def test_openmp(self):
+    def test_openmp_meets_the_tolerances(self):
         self.assert_all_pass("openmp")
 
 

@@ -1,4 +1,4 @@
-"""The finest rows of tolerances.csv: 800 cells and more, and the published references of 12800 cells."""
+"""Finest rows of tolerances.csv: 800 cells and more, and published references on 12800 cells."""
 
 import os
 import sys
@@ -13,8 +13,8 @@ import reference_tolerances
 ROWS = [row for row in hard_cases.rows("tolerances.csv") if row["reference"] in ("exact", "none") and int(row["N"]) >= 800]
 
 
-class FineBars(gas_program.GasTest):
-    def test_exact(self):
+class FineTolerances(gas_program.GasTest):
+    def test_exact_cases_meet_the_tolerances(self):
         self.assertGreaterEqual(len(ROWS), 40)
         for row in ROWS:
             with self.subTest(hard_cases.label(row)):
@@ -23,13 +23,13 @@ class FineBars(gas_program.GasTest):
                 self.assertEqual(0, run.returncode, run.stderr)
 
 
-class FineReferenceBars(reference_tolerances.ReferenceTest):
-    def test_800_cells(self):
+class FineReferenceTolerances(reference_tolerances.ReferenceTest):
+    def test_meets_the_tolerances_on_800_cells(self):
         rows = reference_tolerances.rows(lambda row: row["reference"] == "z1:3200" and row["N"] == "800")
         self.assertEqual(8, len(rows))
         self.assert_all_met(rows, "serial")
 
-    def test_published(self):
+    def test_matches_the_published_references(self):
         rows = reference_tolerances.rows(lambda row: row["source"] == "published")
         self.assertEqual(21, len(rows))
         self.assert_all_met(rows, "serial")

@@ -103,7 +103,7 @@ class Install(unittest.TestCase):
         self.assertFalse((include / "kernels/reference").exists())
 
     def test_arithmetic_is_handed_on(self):
-        """A consumer of an exact build compiles without fused multiply-add; no other learns of it."""
+        """A consumer of an exact build, and no other, compiles without fused multiply-add."""
         targets = (self.prefix / "lib/cmake/Drogue/DrogueTargets.cmake").read_text(encoding="utf-8")
         exact = cached("DROGUE_EXACT") == "ON"
         self.assertEqual(exact, "DROGUE_EXACT=1" in targets)

@@ -29,7 +29,7 @@ ExpressionProgram program_of(const std::vector<Step>& steps) {
   return builder.program();
 }
 
-/// The value at every point, from a kernel.
+/// Evaluates the program at every point, in a kernel.
 void evaluate_at(const ExpressionProgram& program, const Points& at, const Values& values) {
   Kokkos::parallel_for(
       "expression_test", Kokkos::RangePolicy<Space>(0, points),
@@ -78,7 +78,7 @@ double function_error(const std::string& name, double low, double high) {
   return worst;
 }
 
-TEST(PortableMath, IsGoodToThirteenDigits) {
+TEST(PortableMath, IsAccurateToThirteenDigits) {
   struct Range {
     const char* name;
     double low, high;
@@ -94,7 +94,7 @@ TEST(PortableMath, IsGoodToThirteenDigits) {
   }
 }
 
-TEST(PortableMath, KeepsSmallValuesRelativelyRight) {
+TEST(PortableMath, KeepsRelativeAccuracyOfSmallValues) {
   for (const std::string name : {"sin", "tan", "sinh", "tanh", "asin", "atan"}) {
     Sample sample(1e-12, 1e-3);
     const auto values = sample({{"x"}, {name}});
@@ -106,7 +106,7 @@ TEST(PortableMath, KeepsSmallValuesRelativelyRight) {
   }
 }
 
-TEST(PortableMath, PowersAreRight) {
+TEST(PortableMath, PowersMatchTheReference) {
   Sample sample(0.01, 8.0);
   const std::vector<Step> free = {{"x"}, {"y"}, {"^"}};
   const auto values = sample(free);
@@ -121,7 +121,7 @@ TEST(PortableMath, PowersAreRight) {
   }
 }
 
-TEST(PortableMath, BesselFunctionsAreRight) {
+TEST(PortableMath, BesselFunctionsMatchTheReference) {
   for (const double order : {0.0, 1.0, 2.0, 7.0, 40.0}) {
     for (const double high : {1.0, 29.0, 31.0, 60.0, 1000.0}) {
       Sample sample(-high, high);
@@ -134,14 +134,14 @@ TEST(PortableMath, BesselFunctionsAreRight) {
   }
 }
 
-/// The value of one function at one number, from a kernel.
+/// Value of one function, evaluated in a kernel.
 double value_at(const std::string& name, double x) {
   Sample sample(0.0, 1.0);
   sample.host(0, 0) = x;
   return sample({{"x"}, {name}})(0);
 }
 
-TEST(PortableMath, TreatsTheEdgesAsCmathDoes) {
+TEST(PortableMath, MatchesCmathAtSpecialValues) {
   const double inf = std::numeric_limits<double>::infinity();
   EXPECT_EQ(value_at("exp", 1000.0), inf);
   EXPECT_EQ(value_at("exp", -1000.0), 0.0);
@@ -158,12 +158,12 @@ TEST(PortableMath, TreatsTheEdgesAsCmathDoes) {
   EXPECT_EQ(value_at("acos", -1.0), std::acos(-1.0));
 }
 
-TEST(ExpressionProgram, AgreesWithItsOracleOnRandomExpressions) {
+TEST(ExpressionProgram, AgreesWithTheReferenceOnRandomExpressions) {
   Sample sample(-2.0, 3.0);
   int compared = 0;
   for (unsigned seed = 0; seed < 600; ++seed) {
     const testing::RandomExpression random(seed);
-    if (random.steps().size() > 60) continue;  // the generator's largest do not fit a program
+    if (random.steps().size() > 60) continue;  // longer than a program may be
     const auto values = sample(random.steps());
     for (int i = 0; i < points; ++i) {
       const double x = sample.host(i, 0), y = sample.host(i, 1), z = sample.host(i, 2), t = sample.host(i, 3);
@@ -177,7 +177,7 @@ TEST(ExpressionProgram, AgreesWithItsOracleOnRandomExpressions) {
   EXPECT_GT(compared, 400 * points);
 }
 
-TEST(ExpressionBuilder, RefusesWhatDoesNotFit) {
+TEST(ExpressionBuilder, RejectsInvalidPrograms) {
   const auto refused = [](const std::vector<Step>& steps) {
     try {
       program_of(steps);

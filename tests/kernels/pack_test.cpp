@@ -9,8 +9,8 @@
 
 #include "kernels/device/memory.hpp"
 
-// Reciprocals and roots are IEEE's, or the hardware's approximation made better: either way the digits are
-// there.
+// Reciprocals and roots are IEEE operations, or hardware approximations improved by Newton steps; both are
+// accurate.
 
 namespace drogue::device {
 namespace {
@@ -19,7 +19,7 @@ using Space = DROGUE_TEST_SPACE;
 using R = std::conditional_t<is_host<Space>, HostPack<double>, double>;
 using Values = Kokkos::View<double* [4], Kokkos::LayoutLeft, Space::memory_space>;
 
-/// Of x in column 0: 1/x in column 1, sqrt(x) and 1/sqrt(x) in columns 2 and 3.
+/// Column 0 holds x; writes 1/x, sqrt(x) and 1/sqrt(x) to columns 1 to 3.
 struct RootFunctor {
   Values values;
 
@@ -33,7 +33,7 @@ struct RootFunctor {
   }
 };
 
-TEST(Pack, ReciprocalAndRootHaveAllDigits) {
+TEST(Pack, ReciprocalAndRootsAreAccurateToTwoUlp) {
   constexpr int n = 4096;
   const Values values("values", n);
   const auto host = Kokkos::create_mirror_view(values);

@@ -23,7 +23,7 @@ class Repository(unittest.TestCase):
             if path.startswith(("miniapps/", "common/")):
                 self.assertEqual([], layers.reaches_kokkos(path, TEXTS))
 
-    def test_what_uses_kokkos_includes_it(self):
+    def test_sources_that_use_kokkos_include_it(self):
         self.assertEqual([], [path for path in TEXTS
                               if path.startswith("kernels/") and layers.uses_kokkos_unseen(path, TEXTS)])
 

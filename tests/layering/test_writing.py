@@ -4,7 +4,6 @@ import os
 import unittest
 
 import layers
-import repeats
 import writing
 
 ROOT = layers.repository(os.environ)
@@ -13,38 +12,48 @@ TEXTS = {path: text for path, text in writing.read_tree(
            "CHANGELOG.md")).items() if path not in writing.OWN}
 
 
+# Places that the rules do not hold for yet; the list only shrinks, until it is empty and goes.
+EXCLUDED = (
+    "kernels/device/profiling_counters.cpp", "kernels/fabric/", "kernels/options/", "kernels/reference/fabric/",
+    "miniapps/options/", "tests/hard/test_options.py", "tests/kernels/coupling/", "tests/kernels/fabric/",
+    "tests/kernels/options/", "tests/kernels/spatial/", "tests/program/test_options", "tests/support/options_program.py",
+)
+CHECKED = {path: text for path, text in TEXTS.items() if not path.startswith(EXCLUDED)}
+
+
 class Repository(unittest.TestCase):
     maxDiff = None
 
-    def breaches(self, rule, select):
-        return [line for path, text in TEXTS.items() if select(path) for line in rule(path, text)]
+    def breaches(self, rule):
+        return [line for path, text in CHECKED.items() for line in rule(path, text)]
 
     def test_sources_are_found(self):
-        for folder in ("common/", "kernels/", "miniapps/", "perf/", "tests/", "scripts/", "docs/"):
+        for folder in ("common/", "kernels/", "miniapps/", "perf/", "tests/", "scripts/", "docs/", "cmake/"):
             self.assertTrue(any(path.startswith(folder) for path in TEXTS), folder)
 
-    def test_doc_comments_open_with_a_noun_or_a_verb(self):
-        self.assertEqual([], self.breaches(writing.refused_openings, REWRITTEN))
+    def test_every_exclusion_excludes_a_file(self):
+        self.assertEqual([], [place for place in EXCLUDED if not any(path.startswith(place) for path in TEXTS)])
+
+    def test_comments_open_with_a_noun_or_a_verb(self):
+        self.assertEqual([], self.breaches(writing.refused_openings))
+
+    def test_comments_do_not_personify(self):
+        self.assertEqual([], self.breaches(writing.personified))
+
+    def test_names_of_tests_assert(self):
+        self.assertEqual([], self.breaches(writing.riddles))
 
     def test_prose_wraps(self):
-        self.assertEqual([], self.breaches(writing.wide_lines, lambda path: path.endswith(".md") and REWRITTEN(path)))
+        self.assertEqual([], self.breaches(writing.wide_lines))
 
     def test_no_replaced_name_is_left(self):
-        self.assertEqual([], self.breaches(writing.replaced_names, REWRITTEN))
+        self.assertEqual([], self.breaches(writing.replaced_names))
 
     def test_public_headers_state_units_and_errors(self):
         public = set(writing.public_headers(TEXTS))
         self.assertGreater(len(public), 10)
-        self.assertEqual([], self.breaches(writing.missing_contracts, lambda path: path in public and REWRITTEN(path)))
-
-    def test_mini_apps_share_the_framework(self):
-        found = repeats.repeated_lines({path: text for path, text in TEXTS.items() if REWRITTEN(path)})
-        self.assertEqual([], found)
-
-
-def REWRITTEN(path):
-    """Whether the rules hold for a file: the parts of the tree that are rewritten."""
-    return path.startswith(("tests/layering/", "tests/readme/")) or path == "CONTRIBUTING.md"
+        self.assertEqual([], [line for path in sorted(public & set(CHECKED))
+                              for line in writing.missing_contracts(path, CHECKED[path])])
 
 
 class EachRuleCatchesItsBreach(unittest.TestCase):
@@ -52,15 +61,50 @@ class EachRuleCatchesItsBreach(unittest.TestCase):
         for opening in ("What is slack", "Of what has none", "That which is", "Those of a put", "The same of a vertex"):
             for text in (f"/// {opening}.\nint f();\n", f"/** {opening}. */\nint f();\n", f"int a;  ///< {opening}\n"):
                 self.assertEqual(1, len(writing.refused_openings("kernels/a.hpp", text)), text)
-        good = "/// Position of a vertex, m.\n/// What follows is the second line of it.\nint f();\n// What is no doc comment.\n"
+        good = "/// Position of a vertex, m.\n/// What follows is the second line of it.\nint f();"
         self.assertEqual([], writing.refused_openings("kernels/a.hpp", good))
         self.assertEqual([], writing.refused_openings("kernels/a.hpp", "/// Whatever works, offset by one.\n"))
+
+    def test_openings_of_plain_comments(self):
+        self.assertEqual([], writing.refused_openings("a.hpp", "// The same order as in the oracle.\n"))
+        for path, text in (("a.hpp", "// What computes.\n"), ("a.hpp", "int a;  // Of what has none\n"), ("a.py", "# What computes.\n"),
+                           ("a.cmake", "# What computes.\n"), ("a.sh", "true\n# Those of a put.\n")):
+            self.assertEqual(1, len(writing.refused_openings(path, text)), text)
+
+    def test_personified_code(self):
+        for path, text in (
+            ("a.hpp", "/// Tells all teams the value.\n"),
+            ("a.hpp", "int a;  // the teams know it\n"),
+            ("a.hpp", "/* A grid\n * that says so. */\n"),
+            ("a.py", '"""The records say why."""\n'),
+            ("a.cmake", "# Each is\n# asked once.\n"),
+        ):
+            self.assertEqual(1, len(writing.personified(path, text)), text)
+        for path, text in (
+            ("a.hpp", "// The known length of `told`, \"as told\", say 3.\n"),
+            ("a.hpp", "int a;  // say 3\n"),
+            ("a.hpp", 'f("the user says // so");\n'),
+            ("a.cmake", "# f(<wanted> WANTED): an entry.\nset(asked)\n"),
+            ("a.md", "The README says why.\n"),
+        ):
+            self.assertEqual([], writing.personified(path, text), text)
+
+    def test_riddles_in_names_of_tests(self):
+        for path, name in (("a.cpp", "WhatCannotBeIsRefused"), ("a.cpp", "AStackOfThreeComesToRest"), ("a.cpp", "OfAChain"),
+                           ("a.cpp", "TheClockStays"), ("a.cpp", "BoundKnowsIt"), ("test_a.py", "a_string"),
+                           ("test_a.py", "failure_is_told_at_once")):
+            text = f"TEST(Suite, {name}) {{\n}}\n" if path == "a.cpp" else f"    def test_{name}(self):\n"
+            self.assertEqual(1, len(writing.riddles(path, text)), name)
+        for path, name in (("a.cpp", "RejectsNonFinitePositions"), ("a.cpp", "AddsUnknownTimes"), ("a.cpp", "TheoryHolds"),
+                           ("test_a.py", "rejects_unknown_keys"), ("test_a.py", "another_order")):
+            text = f"TYPED_TEST(Suite,\n     {name}) {{\n}}\n" if path == "a.cpp" else f"    def test_{name}(self):\n"
+            self.assertEqual([], writing.riddles(path, text), name)
 
     def test_openings_of_python(self):
         self.assertEqual(1, len(writing.refused_openings("a.py", 'def f():\n    """What it is."""\n')))
         self.assertEqual([], writing.refused_openings("a.py", 'def f():\n    """Return the sum."""\n    return "What"\n'))
 
-    def test_riddles_are_warnings(self):
+    def test_suspect_openings_are_warnings(self):
         self.assertIn("warning", writing.suspect_openings("a.hpp", "/// Whether it is so.\n")[0])
 
     def test_widths(self):
@@ -122,17 +166,10 @@ class EachRuleCatchesItsBreach(unittest.TestCase):
             " private:\n  void hidden(double x);\n};\n",
             "/// Reads and writes positions, m. Throws std::invalid_argument.\nvoid read(double* x);\nvoid write(double x);\n",
             "struct Cell {\n  double rho = f(1.0);  ///< kg/m^3\n  ~Cell();\n  Cell() = default;\n};\n",
+            "/// Two triangles of the mesh. Does not throw.\nstd::array<int, 2> triangles();\n",
             "/// Largest of both.\nconstexpr int largest(int a, int b) {\n  if (a < b) { return b; }\n  return a;\n}\n",
         ):
             self.assertEqual([], self.contracts("#pragma once\nnamespace drogue::gas {\n" + text + "}\n"), text)
-
-    def test_repeats(self):
-        lines = "".join(f"call({n});\n" for n in range(12))
-        changed = "\n// a comment\n".join(lines.split("\n"))
-        texts = {"miniapps/gas/a.cpp": lines, "miniapps/springs/b.cpp": "int a;\n" + changed}
-        self.assertEqual(1, len(repeats.repeated_lines(texts)))
-        self.assertEqual([], repeats.repeated_lines({"miniapps/gas/a.cpp": lines, "miniapps/gas/b.cpp": lines}))
-        self.assertEqual([], repeats.repeated_lines({**texts, "miniapps/springs/b.cpp": changed.replace("call(5)", "f()")}))
 
 
 if __name__ == "__main__":

@@ -1,4 +1,7 @@
-"""Rules of writing: openings of doc comments, widths of prose, replaced names, and contracts of public headers."""
+"""Rules of writing: openings and verbs of comments, names of tests, widths of prose, replaced names, and contracts of public headers.
+
+From the root of the repository, `python3 -B tests/layering/writing.py [PATH...] [--no-warnings]` lists the breaches.
+"""
 
 import ast
 import io
@@ -11,10 +14,15 @@ CODE = (".hpp", ".cpp", ".hpp.in", ".cpp.in", ".cuh", ".cu", ".h")
 SKIPPED_FOLDERS = {"build", ".git", "evidence", "node_modules", "__pycache__"}
 WIDTH = 120
 
-# ---------------------------------------------------------------------------------------------------- openings
+# ----------------------------------------------------------------------------------------------------- comments
 
 REFUSED_OPENING = re.compile(r"(?:What|Of|That|Those|The same)\b")
+REFUSED_ELSEWHERE = re.compile(r"(?:What|Of|That|Those)\b")
 SUSPECT_OPENING = re.compile(r"(?:Whether|How|Where|Why|Who|Which|Nothing|None)\b")
+# Code does none of this.
+PERSONIFYING = r"tells?|told|knows?|hears?|heard|says|said|asks?|asked|wants?|wanted|learns?|learnt|thinks?|believes?"
+# `of a few, say 4` is an example and no verb.
+PERSONIFIED = re.compile(rf"\b(?:{PERSONIFYING}|(?<=\w )say)\b", re.IGNORECASE)
 
 
 def doc_comments_of_code(text):
@@ -59,10 +67,54 @@ def doc_comments(path, text):
     return doc_comments_of_python(text) if path.endswith(".py") else []
 
 
+def joined(lines):
+    """Pairs (line, words) of comments, whose consecutive lines are one. `lines`: pairs (line, words)."""
+    found, previous = [], None
+    for number, words in lines:
+        if previous == number - 1:
+            found[-1][1] += " " + words
+        else:
+            found.append([number, words])
+        previous = number
+    return [(number, words.strip()) for number, words in found]
+
+
+def comments(path, text):
+    """Pairs (line, words) of all comments of a source, doc comments among them; those on consecutive lines are one."""
+    lines = text.split("\n")
+    if path.endswith(CODE):
+        split = [(number, without_strings(line).partition("//")) for number, line in enumerate(lines, 1)]
+        own = joined((number, words.lstrip("/!<")) for number, (code, _, words) in split if words and not code.strip())
+        beside = [(number, words.lstrip("/!< ")) for number, (code, _, words) in split if words and code.strip()]
+        blocks = [(text.count("\n", 0, match.start()) + 1, re.sub(r"\n\s*\*?", " ", match.group(1)).strip("* "))
+                  for match in re.finditer(r"/\*(.*?)\*/", text, re.DOTALL)]
+        return own + beside + blocks
+    if path.endswith(".py"):
+        tokens = tokenize.generate_tokens(io.StringIO(text).readline)
+        return joined((token.start[0], token.string.lstrip("# ")) for token in tokens
+                      if token.type == tokenize.COMMENT) + doc_comments_of_python(text)
+    if path.endswith((".txt", ".cmake", ".sh")):
+        return joined((number, line.lstrip("# ")) for number, line in enumerate(lines, 1) if re.match(r"\s*#", line))
+    return []
+
+
 def refused_openings(path, text):
-    """Lines `path:line: ...` for doc comments that open with What, Of, That, Those or The same."""
+    """Lines `path:line: ...` for comments that open with What, Of, That or Those, doc comments also with The same."""
+    found = {number: words for number, words in comments(path, text) if REFUSED_ELSEWHERE.match(words)}
+    found |= {number: words for number, words in doc_comments(path, text) if REFUSED_OPENING.match(words)}
     return [f"{path}:{number}: opens with '{REFUSED_OPENING.match(words).group()}': {words[:70]}"
-            for number, words in doc_comments(path, text) if REFUSED_OPENING.match(words)]
+            for number, words in sorted(found.items())]
+
+
+def personified(path, text):
+    """Lines `path:line: ...` for comments in which code tells, knows, hears, says or asks."""
+    found = {}
+    for number, words in comments(path, text):
+        # Neither code, nor quotations, nor the names of arguments.
+        match = PERSONIFIED.search(re.sub(r"`[^`]*`|\"[^\"]*\"|<\w+>|\b[A-Z]{2,}\b", "", words))
+        if match:
+            found[number] = f"{path}:{number}: '{match.group()}' is no deed of code: {words[:70]}"
+    return [found[number] for number in sorted(found)]
 
 
 def suspect_openings(path, text):
@@ -71,12 +123,37 @@ def suspect_openings(path, text):
             for number, words in doc_comments(path, text) if SUSPECT_OPENING.match(words)]
 
 
+# ------------------------------------------------------------------------------------------------------- tests
+
+RIDDLE = re.compile(r"(?:What|Of|That|Those|These|This|An?|The|Which|Who|Whose|How|Where|Whether)(?=[A-Z0-9]|$)")
+TOLD = re.compile(rf"(?<=[a-z0-9])(?:{'|'.join(verb.capitalize() for verb in re.findall('[a-z?]+', PERSONIFYING + '|say'))})(?=[A-Z0-9]|$)")
+
+
+def test_names(path, text):
+    """Pairs (line, name) of the test cases of a source; of a Python test the name in PascalCase, without `test_`."""
+    if path.endswith(".cpp"):
+        pattern, name = r"^(?:TYPED_)?TEST(?:_F|_P)?\(\s*\w+\s*,\s*(\w+)", str
+    elif path.endswith(".py"):
+        pattern, name = r"^    def test_(\w+)", lambda words: "".join(word[:1].upper() + word[1:] for word in words.split("_"))
+    else:
+        return []
+    return [(text.count("\n", 0, match.start(1)) + 1, name(match.group(1))) for match in re.finditer(pattern, text, re.MULTILINE)]
+
+
+def riddles(path, text):
+    """Lines `path:line: ...` for names of tests that open with an article or a pronoun, or in which code tells or knows."""
+    return [f"{path}:{number}: the test {name} does not assert a behaviour: write a verb and its object"
+            for number, name in test_names(path, text) if RIDDLE.match(name) or TOLD.search(name)]
+
+
 # ------------------------------------------------------------------------------------------------------- widths
 
 
 def wide_lines(path, text):
     """Lines of Markdown prose wider than WIDTH; tables, code blocks, and lines of one link or image may be wider."""
     found, fenced = [], False
+    if not path.endswith(".md"):
+        return found
     for number, line in enumerate(text.split("\n"), 1):
         if re.match(r"\s*(```|~~~)", line):
             fenced = not fenced
@@ -246,7 +323,7 @@ UNITS = re.compile(
     r"indices|index|SI|flop|cells?)\b|%|1/s|N/m|kg/m|m/s|epsilon|unitless|any unit", re.IGNORECASE)
 ERRORS = re.compile(r"[Tt]hrow|noexcept|[Aa]borts|[Nn]o errors|[Dd]oes not fail|[Nn]ever fails")
 SCOPE = re.compile(r"\b(namespace|class|struct|union|extern)\b")
-REAL = re.compile(r"\b(?:double|float|Real|R|T|Vector3?|Pair|span|View\w*|Kokkos::View|array)\b|Views?<|Vector")
+REAL = re.compile(r"\b(?:double|float|Real|R|T|Vector3?|Pair|span|View\w*|Kokkos::View)\b|Views?<|Vector|array<(?!int|bool|std::)")
 HEADERS = (".hpp",)
 
 
@@ -377,13 +454,17 @@ def read_tree(root, tops=None):
         name = path.relative_to(root)
         if SKIPPED_FOLDERS & set(name.parts) or not path.is_file() or (tops and name.parts[0] not in tops):
             continue
-        if name.as_posix().endswith((*CODE, ".py", ".md", ".cmake", ".txt", ".toml")):
+        if name.as_posix().endswith((*CODE, ".py", ".md", ".cmake", ".txt", ".toml", ".sh")):
             texts[name.as_posix()] = path.read_text(encoding="utf-8")
     return texts
 
 
 # This file holds the replaced names, and its test breaches every rule.
 OWN = ("tests/layering/writing.py", "tests/layering/test_writing.py")
+
+
+# Rules for one file each: its path and text -> lines `path:line: ...`.
+RULES = (refused_openings, personified, riddles, wide_lines, replaced_names)
 
 
 def main(arguments):
@@ -400,21 +481,11 @@ def main(arguments):
     for path, text in texts.items():
         if not shown(path):
             continue
-        found = refused_openings(path, text) + replaced_names(path, text)
-        found += wide_lines(path, text) if path.endswith(".md") else []
+        found = [line for rule in RULES for line in rule(path, text)]
         found += missing_contracts(path, text) if path in public else []
         count += len(found)
         found += suspect_openings(path, text) if warn else []
         print("".join(line + "\n" for line in found), end="")
-    sys.path.insert(0, str(root / "tests/layering"))
-    try:
-        import repeats
-
-        found = [line for line in repeats.repeated_lines(texts) if any(shown(place) for place in line.split()[:1])]
-        count += len(found)
-        print("\n".join(found))
-    except ImportError:
-        pass
     print(f"{count} breaches")
     return 1 if count else 0
 

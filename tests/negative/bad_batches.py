@@ -1,11 +1,11 @@
-"""A valid row of a batch, and the ways in which it and its file are spoiled."""
+"""A valid row of a batch, and invalid variants of it and of its file."""
 
 import options_program
 
 GOOD = options_program.row("good")
 HEADER = options_program.HEADER
 
-# Values of columns, words of the message that the row gets; every other row is priced.
+# Column values and expected words of the message; all other rows are priced.
 BAD_ROWS = [
     # the domain of the parameters
     ({"beta": 7.5}, ["|beta+1| < alpha"]),
@@ -26,7 +26,7 @@ BAD_ROWS = [
     ({"strike": -0.0}, ["strike", "> 0"]),
     ({"maturity": 0}, ["maturity", "> 0"]),
     ({"maturity": -1}, ["maturity", "> 0"]),
-    # no finite numbers
+    # numbers that are not finite
     ({"spot": "nan"}, ['spot = "nan"', "not finite"]),
     ({"spot": "-nan"}, ["spot", "not finite"]),
     ({"strike": "inf"}, ["strike", "not finite"]),
@@ -44,7 +44,7 @@ BAD_ROWS = [
     ({"spot": "1e25"}, ["spot/strike must lie between 1e-20 and 1e20"]),
     ({"strike": "1e25"}, ["spot/strike must lie between 1e-20 and 1e20"]),
     ({"alpha": "1e200"}, ["alpha must not be above 1e100"]),
-    # no numbers
+    # texts in place of numbers
     ({"spot": "abc"}, ['spot = "abc"', "not a number"]),
     ({"spot": "1.0.0"}, ["spot", "not a number"]),
     ({"strike": "0x10"}, ["strike", "not a number"]),
@@ -55,7 +55,7 @@ BAD_ROWS = [
     ({"beta": '"1,5"'}, ["beta", "not a number"]),
     ({"maturity": "1\0"}, ["maturity", "not a number"]),
     ({"variance": "\xa01"}, ["variance", "not a number"]),
-    # nothing
+    # empty fields
     ({"spot": ""}, ["spot is empty"]),
     ({"strike": "  "}, ["strike is empty"]),
     ({"rate": '""'}, ["rate is empty"]),
@@ -84,7 +84,7 @@ BAD_LINES = [
     ("x" * 70000, ["line is longer"]),
 ]
 
-# Lines that cannot be read, the id that each shows. Rows around them have the ids 0, 1, 2, ...
+# Unreadable lines and the id that each reports. Rows around them have the ids 0, 1, 2, ...
 BROKEN_LINES = [
     ("short,american,put,1,1", "short"),
     (options_program.row("long") + ",more", "long"),
@@ -101,7 +101,7 @@ BROKEN_LINES = [
     ("x" * 70000, ""),
 ]
 
-# Whole files, the line that is blamed, words of the message; nothing is priced.
+# Invalid files, the line in the error, and words of the message; nothing is priced.
 BAD_FILES = [
     (b"", 1, ["empty"]),
     (b"\n\n  \n", 1, ["empty"]),
@@ -126,7 +126,7 @@ BAD_FILES = [
     (f"{HEADER}\n2{GOOD[4:]}\n{GOOD[4:]}\n".encode(), 3, ['"2"', "line 2"]),
 ]
 
-# Rows with a column `model` behind the others, words of the message.
+# Rows with a last column `model`, and words of the message.
 BAD_MODELS = [
     ("kuo,,,,,,", ['model = "kuo"', 'did you mean "kou"?']),
     ("heston,,,,,,", ['model = "heston"', "valid names are gh, black-scholes, merton, kou"]),

@@ -1,13 +1,13 @@
-"""A valid gas scene and the ways in which it is spoiled: one line replaced, or an assignment added."""
+"""A valid gas scene and invalid variants of it: one line replaced, or an assignment added."""
 
 import pathlib
 
-# Every way a scene is written: expressions, regions and tables beside inline tables. DamagedGasScene reads them too.
+# Scenes with expressions, regions, tables and inline tables. DamagedGasScene reads them too.
 _FOLDER = pathlib.Path(__file__).parent / "sound_scenes"
 SOUND = [(_FOLDER / f"{name}.toml").read_text(encoding="utf-8") for name in ("riemann", "expressions", "regions")]
 GOOD = SOUND[0]
 
-# Replaced line, its new text, the line the error names, words the error holds.
+# Replaced line, its new text, the line in the error, and words of the message.
 BAD_LINES = [
     # unknown keys, and the nearest valid name
     (4, "gama = 1.4", 4, ['"gas.gama"', 'did you mean "gamma"?']),
@@ -20,7 +20,7 @@ BAD_LINES = [
     (33, "l1_densty = 0.1", 33, ['"verify.l1_densty"', '"l1_density"']),
     (33, "l3_density = 0.1", 33, ['"verify.l3_density"', "l1_density"]),
     (36, "stge = { block = 128 }", 36, ['"tuning.stge"', "stage"]),
-    # which app
+    # name of the app
     (1, 'app = "springs"', 1, ["app", '"gas"', "springs"]),
     (1, "app = 3", 1, ["app", '"gas"', "3"]),
     (1, "", 1, ['missing key "app"']),
@@ -112,7 +112,7 @@ BAD_LINES = [
     (2, 'description = "\\q"', 2, []),
 ]
 
-# Assignments, words the error holds besides the assignment itself.
+# Assignments, and words of the message besides the assignment itself.
 BAD_SETS = [
     (["gas.gamma=0.5"], ["gas.gamma = 0.5", "> 1"]),
     (["gas.gama=1.5"], ['did you mean "gamma"?']),

@@ -1,4 +1,4 @@
-"""A valid springs scene, its mesh, and the ways in which they are spoiled."""
+"""A valid springs scene, its mesh, and invalid variants of both."""
 
 MESH = """\
 # a square and a string that hangs from it
@@ -59,7 +59,7 @@ equilibrium = 1e9
 driver = "graph"
 """
 
-# Replaced line, its new text, the line the error names, words the error holds.
+# Replaced line, its new text, the line in the error, and words of the message.
 BAD_LINES = [
     # unknown keys, and the nearest valid name
     (3, "[mehs]", 3, ['"mehs"', 'did you mean "mesh"?']),
@@ -71,7 +71,7 @@ BAD_LINES = [
     (39, "contact = 1", 39, ['"output.contact"']),
     (40, "[contact]\nobject = []\n[verify]", 41, ['"contact.object"', '"objects"']),
     (41, "yuong = 1e-5", 41, ['"verify.yuong"', '"young"']),
-    # which app
+    # name of the app
     (1, 'app = "gas"', 1, ["app", '"springs"', "gas"]),
     (1, "", 1, ['missing key "app"']),
     # types
@@ -119,7 +119,7 @@ BAD_LINES = [
     (22, "", 21, ["load[0]", "exactly one of gravity, pressure, follower_pressure, force"]),
     (31, "dt = 1e-4", 32, ["time.safety", 'dt = "auto"']),
     (35, "fields = []", 36, ["output.times", "fields"]),
-    # what holds nowhere, or is no number
+    # conditions that hold nowhere, values that are not finite
     (18, 'where = "x > 5"', 18, ["pin[0].where", "no vertex"]),
     (24, 'where = "z < -9"', 24, ["mass[0].where", "no vertex"]),
     (20, 'motion = { z = "t" }', 20, ["pin[0].motion.z", "leaves free"]),
@@ -169,7 +169,7 @@ BAD_LINES = [
     (17, "[[pin]", 17, []),
 ]
 
-# Replaced line of the mesh, its new text, the line the error names, words the error holds.
+# Replaced line of the mesh, its new text, the line in the error, and words of the message.
 BAD_MESHES = [
     (2, "v 0 0", 2, ["vertex 1 of the file has 2 numbers"]),
     (2, "v 0 0 O", 2, ["vertex 1", '"O"', "finite number"]),

@@ -1,10 +1,10 @@
-"""Random damage to a file, the same for the same seed."""
+"""Random damage to a file, reproducible by its seed."""
 
 import random
 
 
 def mutate(content, seed):
-    """Returns `content` (bytes) after one to four small accidents."""
+    """Returns `content` (bytes) after one to four random changes."""
     rng = random.Random(seed)
     data = bytearray(content)
     for _ in range(rng.randint(1, 4)):

@@ -1,4 +1,4 @@
-"""Every wrong row of a batch gets `invalid` and a sentence, every other is priced; every wrong file ends with exit code 3."""
+"""Invalid rows of a batch are reported as `invalid`, all others are priced; an invalid file ends with exit code 3."""
 
 import os
 import sys
@@ -12,8 +12,8 @@ from options_program import FAST, HEADER, batch, row
 
 
 class BadBatches(options_program.OptionsTest):
-    def test_rows(self):
-        """All in one file, a good one before and behind each."""
+    def test_rejects_invalid_rows_and_prices_the_others(self):
+        """All invalid rows in one file, with a valid row before and after each."""
         self.assertGreaterEqual(len(bad_batches.BAD_ROWS) + len(bad_batches.BAD_LINES), 40)
         cases = [(row(f"bad{k}", **values), words) for k, (values, words) in enumerate(bad_batches.BAD_ROWS)]
         cases += bad_batches.BAD_LINES
@@ -34,8 +34,8 @@ class BadBatches(options_program.OptionsTest):
         for told in prices[::2]:
             self.assertEqual(("ok", prices[0]["price"]), (told["status"], told["price"]))
 
-    def test_ids_of_lines_that_cannot_be_read(self):
-        """Each shows its own id where there is one, and refuses no other row, whatever its number or its id."""
+    def test_unreadable_lines_report_their_id(self):
+        """Each reports its own id if it has one, and no other row is rejected."""
         broken = bad_batches.BROKEN_LINES
         lines = [row(k) for k in range(2 * len(broken))]
         for k, (line, _) in enumerate(broken):
@@ -53,8 +53,8 @@ class BadBatches(options_program.OptionsTest):
                 self.assertEqual(not identity, told["message"].startswith(f"line {3 * k + 3}: "), told["message"])
         self.assertEqual([(str(k), "ok") for k in range(2 * len(broken))], [(told["id"], told["status"]) for told in prices])
 
-    def test_lines_that_cannot_be_read_without_ids(self):
-        """Then a row is its number, whatever stands in it."""
+    def test_unreadable_lines_without_ids_report_their_row(self):
+        """Without ids a row is identified by its number."""
         def without(line):
             return line.split(",", 1)[1]
         lines = [without(row("x")), "1,2", without(row("x")), '"', without(row("x"))]
@@ -62,7 +62,7 @@ class BadBatches(options_program.OptionsTest):
         self.assertEqual([("1", "ok"), ("2", "invalid"), ("3", "ok"), ("4", "invalid"), ("5", "ok")],
                          [(told["id"], told["status"]) for told in self.prices()])
 
-    def test_ids_that_do_not_come_first(self):
+    def test_finds_ids_in_a_later_column(self):
         names = HEADER.split(",")
         head = ",".join([*names[1:3], "id", *names[3:]])
 
@@ -73,7 +73,7 @@ class BadBatches(options_program.OptionsTest):
         self.price(3, "\n".join([head, *lines]), *FAST)
         self.assertEqual(["a", "", "b", "", "c", "d"], [told["id"] for told in self.prices()])
 
-    def test_files(self):
+    def test_rejects_invalid_files(self):
         self.assertGreaterEqual(len(bad_batches.BAD_FILES), 20)
         for content, line, words in bad_batches.BAD_FILES:
             with self.subTest(content=content[:60]):
@@ -83,7 +83,7 @@ class BadBatches(options_program.OptionsTest):
                     self.assertIn(word, message)
                 self.assertEqual(["batch.csv"], self.names())
 
-    def test_models(self):
+    def test_rejects_invalid_models(self):
         names = "id,spot,strike,rate,maturity,variance,model,intensity,jump_mean,jump_deviation,up_probability"
         lines = [names + ",up_rate,down_rate", "good,1,1,0.05,1,0.04,merton,0.1,-0.9,0.45,,,"]
         for k, (line, _) in enumerate(bad_batches.BAD_MODELS):
@@ -97,8 +97,8 @@ class BadBatches(options_program.OptionsTest):
                 for word in words:
                     self.assertIn(word, told["message"])
 
-    def test_numbers_at_the_end_of_the_range(self):
-        """Finite, so they are priced; what comes of them is said, and is no number that looks like a price."""
+    def test_prices_extreme_numbers_without_false_results(self):
+        """Finite extreme values are priced or reported; every price is finite and not negative."""
         values = [{name: text} for name in ("spot", "strike", "maturity", "variance", "alpha", "delta", "rate", "lambda")
                   for text in ("1e308", "4.9e-324", "1e-308")]
         lines = [row(k, **each) for k, each in enumerate(values)]
@@ -112,8 +112,8 @@ class BadBatches(options_program.OptionsTest):
                         self.assertGreaterEqual(float(told["price"]), 0.0)
                         self.assertLess(float(told["price"]), float("inf"))
 
-    def test_money_of_any_size(self):
-        """A price with its Greeks, all finite, and those of the same contract in other money."""
+    def test_prices_scale_with_the_currency(self):
+        """Price and Greeks are finite, and scale with the unit of money."""
         lines = [row(k, style="american", spot=1.1 * unit, strike=unit, type=kind)
                  for k, (unit, kind) in enumerate((unit, kind) for kind in ("put", "call") for unit in (1e-99, 1.0, 1e99))]
         for method in ((), FAST):
@@ -124,12 +124,12 @@ class BadBatches(options_program.OptionsTest):
                 for name, power in (("price", 1), ("error", 1), ("delta", 0), ("gamma", -1), ("theta", 1)):
                     self.assertAlmostEqual(1, float(told[name]) / unit**power / float(one[name]), delta=1e-6, msg=name)
 
-    def test_a_surface_of_a_strike_that_no_spot_meets(self):
+    def test_rejects_a_surface_with_an_extreme_strike(self):
         head, line = "id,spot,rate,lambda,alpha,beta,delta,variance", "a,1,0.05,1,8.15,-2.5,0.767,0.04"
         message = self.expect(3, "surface", self.write(f"{head}\n{line}\n"), "--strikes", "1,1e30", "--maturities", "1").stderr
         self.assertIn("batch.csv:2: spot/strike must lie between 1e-20 and 1e20 (1 of 2 prices invalid; all others", message)
 
-    def test_a_parameter_set_has_no_strike(self):
+    def test_rejects_a_strike_in_a_parameter_set(self):
         message = self.expect(3, "surface", self.write(batch([row("a")])), "--strikes", "1", "--maturities", "1").stderr
         self.assertIn('unknown column "strike"', message)
 

@@ -1,4 +1,4 @@
-"""Every wrong scene ends with exit code 3 and a sentence that names file, line, key and what is allowed."""
+"""Invalid gas scenes end with exit code 3 and a sentence that names file, line, key and valid values."""
 
 import os
 import pathlib
@@ -39,12 +39,12 @@ class BadScenes(unittest.TestCase):
         self.assertEqual(len(message.splitlines()), 1, "one sentence on one line")
         self.assertEqual(result.stdout, b"")
 
-    def test_the_scene_that_is_spoiled_is_right(self):
+    def test_unchanged_scene_is_valid(self):
         self.write(bad_scenes.GOOD)
         result = check(self.scene)
         self.assertEqual(result.returncode, 0, result.stderr)
 
-    def test_lines(self):
+    def test_rejects_invalid_lines(self):
         self.assertGreaterEqual(len(bad_scenes.BAD_LINES), 45)
         for line, text, blamed, words in bad_scenes.BAD_LINES:
             with self.subTest(line=line, text=text):
@@ -53,7 +53,7 @@ class BadScenes(unittest.TestCase):
                 self.write("\n".join(lines) + "\n")
                 self.assert_refused(f"{self.scene}:{blamed}: ", words)
 
-    def test_assignments(self):
+    def test_rejects_invalid_assignments(self):
         self.write(bad_scenes.GOOD)
         for sets, words in bad_scenes.BAD_SETS:
             with self.subTest(sets=sets):
@@ -62,15 +62,15 @@ class BadScenes(unittest.TestCase):
                 self.assertTrue(any(message.startswith(f"--set {item}: ") for item in sets), message)
                 self.assert_refused("--set ", words, *sets)
 
-    def test_bytes_that_are_not_utf8(self):
+    def test_rejects_invalid_utf8(self):
         self.write(bad_scenes.GOOD.encode().replace(b"A shock", b"\xff\xfe"))
         self.assert_refused(f"{self.scene}:2: ", [])
 
-    def test_empty_file(self):
+    def test_rejects_an_empty_file(self):
         self.write("")
         self.assert_refused(f"{self.scene}:1: ", ['missing key "app"'])
 
-    def test_split_precision_names_its_bound(self):
+    def test_split_precision_error_names_its_bound(self):
         strong = "riemann = { left = { rho = 1.0, p = 1e12 }, right = { rho = 1.0, p = 1.0 } }"
         lines = bad_scenes.GOOD.splitlines()
         lines[8] = strong

@@ -1,4 +1,4 @@
-"""Every wrong scene of drogue-springs, and every wrong mesh, ends with exit code 3 and names file, line and culprit."""
+"""Invalid springs scenes and meshes end with exit code 3 and a sentence that names file, line and part."""
 
 import os
 import sys
@@ -30,26 +30,26 @@ class BadSprings(springs_program.SpringsTest):
         lines[line - 1] = replacement
         return "\n".join(lines) + "\n"
 
-    def test_the_scene_that_is_spoiled_is_right(self):
+    def test_unchanged_scene_is_valid(self):
         report = self.expect(0, self.scene, "--check").stdout
         for words in ("6 vertices, 2 triangles, 2 lines", "angle        45 .. 90", "area         0.5 .. 0.5"):
             self.assertIn(words, report)
 
-    def test_scenes(self):
+    def test_rejects_invalid_scenes(self):
         self.assertGreaterEqual(len(bad_springs.BAD_LINES), 25)
         for line, text, blamed, words in bad_springs.BAD_LINES:
             with self.subTest(line=line, text=text):
                 self.scene.write_text(self.spoiled(bad_springs.GOOD, line, text), encoding="utf-8")
                 self.assert_refused(f"{self.scene}:{blamed}: ", words)
 
-    def test_meshes(self):
+    def test_rejects_invalid_meshes(self):
         self.assertGreaterEqual(len(bad_springs.BAD_MESHES), 10)
         for line, text, blamed, words in bad_springs.BAD_MESHES:
             with self.subTest(line=line, text=text):
                 self.mesh.write_text(self.spoiled(bad_springs.MESH, line, text), encoding="utf-8")
                 self.assert_refused(f"{self.mesh}:{blamed}: ", words)
 
-    def test_meshes_that_are_none(self):
+    def test_rejects_files_that_are_no_mesh(self):
         for content in (b"", b"\0" * 100, b"\xff\xfe", b"solid stl\n", b"f 1 2 3\n"):
             with self.subTest(content[:10]):
                 self.mesh.write_bytes(content)
@@ -59,18 +59,18 @@ class BadSprings(springs_program.SpringsTest):
         self.mesh.mkdir()
         self.assert_refused(f"{self.scene}:4: ", ["mesh.file", "directory"])
 
-    def test_stress_without_triangles(self):
+    def test_rejects_stress_without_triangles(self):
         string = ["mesh={string={}}", "material={}", "pin=[{where='x==0'}]", "mass=[{where='x==1',add=1}]"]
         self.expect(0, self.scene, "--check", sets=string)
         self.assert_refused("--set output.fields", ["von_mises", "triangles"], *string,
                             'output.fields=["von_mises"]')
 
-    def test_model_one_in_a_scene_that_moves(self):
+    def test_rejects_the_linear_vector_model_with_motion(self):
         cloth = ["mesh={disk={}}", "material={model='linear-vector'}", "mass=[{where='x>0',add=1}]"]
         self.assert_refused("--set material", ["Model I", "moves"], *cloth)
 
-    def test_damaged_meshes(self):
-        """A damaged mesh is refused or read: the program never ends by a signal or with another code."""
+    def test_damaged_meshes_are_rejected_or_read(self):
+        """A damaged mesh is rejected or read; the program never ends by a signal or with another exit code."""
         for seed in range(60):
             with self.subTest(seed):
                 self.mesh.write_bytes(mutations.mutate(bad_springs.MESH.encode(), seed))

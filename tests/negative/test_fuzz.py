@@ -1,4 +1,4 @@
-"""A damaged scene is refused or run: it never ends the program by a signal or with an exit code that is not documented."""
+"""A damaged scene is rejected or run; the program never ends by a signal or with an undocumented exit code."""
 
 import os
 import pathlib
@@ -30,13 +30,13 @@ class Fuzz(unittest.TestCase):
         if result.returncode == 3:
             self.assertTrue(message.startswith((f"{self.scene}:", "--set ")), f"mutation {seed}: {message}")
 
-    def test_the_undamaged_scenes_are_right(self):
+    def test_undamaged_scenes_are_valid(self):
         for scene in SCENES:
             self.scene.write_bytes(scene)
             result = self.run_program("--check")
             self.assertEqual(result.returncode, 0, result.stderr)
 
-    def test_200_damaged_scenes_are_run(self):
+    def test_200_damaged_scenes_end_with_documented_codes(self):
         codes = set()
         for seed in range(1000, 1200):
             self.scene.write_bytes(mutations.mutate(SCENES[seed % 3], seed))

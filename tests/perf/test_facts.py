@@ -1,4 +1,4 @@
-"""What drogue-perf records beside its times, for a roofline."""
+"""Facts for a roofline diagram in the records of drogue-perf."""
 
 import json
 import os
@@ -10,14 +10,14 @@ import unittest
 PROGRAM = pathlib.Path(os.environ["DROGUE_BIN"]) / "drogue-perf"
 
 
-def on_this_machine():
-    """Whether the program is built (sanitizers leave it out), and starts here."""
+def is_available():
+    """True if the program is built (sanitizer builds omit it) and finds its device."""
     if not PROGRAM.exists():
         return False
     return subprocess.run([PROGRAM, "run", "--filter", "^$"], capture_output=True, check=False).returncode != 77
 
 
-@unittest.skipUnless(on_this_machine(), "drogue-perf is not built, or finds no device")
+@unittest.skipUnless(is_available(), "drogue-perf is not built, or finds no device")
 class Facts(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -32,24 +32,24 @@ class Facts(unittest.TestCase):
         self.assertEqual("passed", self.records[case]["check"])
         return self.records[case]["facts"]
 
-    def test_a_step(self):
+    def test_step_records_bytes_and_flops(self):
         facts = self.facts("gas-step/serial/1024")
         self.assertEqual(("serial", 1024, ""), (facts["backend"], facts["cells"], facts["variant"]))
-        # Four tiles of 256 cells, nine more on either side read, three numbers a cell.
+        # Four tiles of 256 cells, with nine halo cells read on either side, three numbers per cell.
         self.assertEqual(4 * (274 + 256) * 24, facts["bytes"])
-        # In three stages some 500 operations a cell, and a few per cent in the halo.
+        # Three stages with about 500 operations per cell, and a few per cent in the halo.
         self.assertAlmostEqual(1500, facts["flops"] / 1024, delta=150)
 
-    def test_what_is_not_counted_is_left_out(self):
+    def test_omits_unknown_flops_and_bytes(self):
         expected = {"backend": "serial", "cells": 1024, "variant": "dense-loop"}
         self.assertEqual(expected, self.facts("gas-step/dense-loop/1024"))
 
-    def test_ceilings(self):
+    def test_ceilings_record_bytes_and_flops(self):
         for case in ("ceiling/fp64/serial", "ceiling/cache/serial"):
             facts = self.facts(case)
             self.assertEqual({"backend", "flops", "bytes"}, set(facts))
             self.assertEqual("serial", facts["backend"])
-        # 24 bytes and two operations a value.
+        # 24 bytes and two operations per value.
         self.assertEqual(12 * self.facts("ceiling/cache/serial")["flops"], self.facts("ceiling/cache/serial")["bytes"])
 
 

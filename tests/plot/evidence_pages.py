@@ -1,4 +1,4 @@
-"""Reads the evidence page that drogue-plot makes of synthetic records."""
+"""Helpers that make pages of synthetic records by drogue-plot and parse them."""
 
 import contextlib
 import io
@@ -9,11 +9,12 @@ from html.parser import HTMLParser
 from pathlib import Path
 
 import synthetic_records as records
-from plot import cli, evidence_records
+from plot import cli
+from plot.evidence.records import read_records
 
 
 class Page(HTMLParser):
-    """Rows of the tables of a page by (machine, section), and all its words."""
+    """Parsed page: rows of the tables by (machine, section), text, and addresses of the images."""
 
     def __init__(self, text):
         super().__init__()
@@ -59,12 +60,14 @@ def plot(*words):
 
 
 class Folder(unittest.TestCase):
+    """Test case with a temporary folder of records."""
+
     def setUp(self):
         self.folder = Path(tempfile.mkdtemp())
         self.addCleanup(shutil.rmtree, self.folder)
 
     def page(self, lines, app="gas"):
-        """A mini-app's page of these records, and the names of the files written."""
+        """Parsed page of a mini-app, and names of the written files."""
         records.write(self.folder / "a.jsonl", lines)
         code, files, sentence = plot(self.folder, "--dpi", 60)
         self.assertEqual((code, sentence), (0, ""))
@@ -72,4 +75,4 @@ class Folder(unittest.TestCase):
 
     def evidence(self, lines):
         records.write(self.folder / "a.jsonl", lines)
-        return evidence_records.read(self.folder)
+        return read_records(self.folder)

@@ -1,15 +1,15 @@
 #!/usr/bin/env python3
-"""Stands for drogue-gas in the test of the demo: three scenes, one of which fails on demand."""
+"""Stub of drogue-gas for the test of the demo: three scenes, one of which fails on demand."""
 
 import json
 import os
 import sys
 from pathlib import Path
 
-import packages  # noqa: F401, before all that needs the packages  isort: skip
+import packages  # noqa: F401, before modules that need the packages  isort: skip
 import synthetic
 
-_BAR = 6.5e-3
+_TOLERANCE = 6.5e-3
 
 
 def main():
@@ -22,16 +22,16 @@ def main():
     name, directory = words[0], Path(words[words.index("--out") + 1])
     synthetic.write_sod(directory, cells=60, snapshots=9)
     fails = name == os.environ.get("FAKE_FAILURE")
-    value = 2 * _BAR if fails else 0.8 * _BAR
+    value = 2 * _TOLERANCE if fails else 0.8 * _TOLERANCE
     checks = [
         {"name": "conservation", "value": 3e-16, "tolerance": 1e-12, "passed": True},
-        {"name": "l1_density", "value": value, "tolerance": _BAR, "passed": not fails},
+        {"name": "l1_density", "value": value, "tolerance": _TOLERANCE, "passed": not fails},
     ]
     result = {
         "version": "0.1.0", "git": "abc", "backend": "openmp", "threads": 2, "steps": 1234, "checks": checks,
         "errors": {"l1_density": value}, "limiter": {"touches": 0}, "timing": {"compute_s": 0.0123},
         "provenance": {"cpu": "a processor", "gpu": "", "compiler": "gcc", "date": "today"},
-        "message": f"l1_density is {value:g}, above its tolerance {_BAR:g}." if fails else "",
+        "message": f"l1_density is {value:g}, above its tolerance {_TOLERANCE:g}." if fails else "",
     }  # fmt: skip
     (directory / "result.json").write_text(json.dumps(result))
     return 5 if fails else 0

@@ -1,4 +1,4 @@
-"""Makes a test run where the packages of the pictures are: import this first."""
+"""Re-executes a test in an interpreter that has the packages of the pictures. Import it before all others."""
 
 import importlib.util
 import os

@@ -1,4 +1,4 @@
-"""Run directories made of exact solutions plus a known disturbance, for the tests of the pictures."""
+"""Synthetic run directories for the tests of the pictures: exact solutions with a known disturbance."""
 
 import csv
 import itertools
@@ -7,7 +7,7 @@ import json
 import h5py
 import numpy as np
 
-from plot.riemann import State, sample
+from plot.gas.riemann import State, sample
 
 UNITS = {"rho": "kg/m^3", "u": "m/s", "p": "Pa"}
 SOD = (State(1.0, 0.0, 1.0), State(0.125, 0.0, 0.1))
@@ -57,7 +57,7 @@ def write_fields(file, x, times, values_at, reference=None):
 
 
 def smeared_sod(time, x):
-    """Sod's solution as a scheme would give it: jumps smeared over the cells, seeded noise of 1e-6."""
+    """Sod's solution like that of a scheme: jumps smeared over a few cells, and seeded noise of 1e-6."""
     rng = np.random.default_rng(4)
     dx = x[1] - x[0]
     offsets = np.linspace(-1.0, 1.0, 9) * 1.5 * dx
@@ -72,7 +72,7 @@ HISTORY_HEADER = (
 
 
 def write_history(file, rows=120):
-    """history.csv of a shock tube: momentum comes in through the ends, the rest drifts by round-off."""
+    """Writes history.csv of a shock tube: momentum enters through the ends, mass and energy drift by round-off."""
     with file.open("w", newline="") as stream:
         stream.write(HISTORY_HEADER + "\n")
         for row in range(rows):
@@ -97,7 +97,7 @@ def write_sod(directory, cells=200, snapshots=20):
 
 
 def write_study(file, meshes=(100, 200, 400, 800), failed=0, settings=("",)):
-    """study.csv of three schemes that converge with order 0.9 in all settings, their last `failed` rows failures."""
+    """Writes study.csv of three schemes of order 0.9 in all settings, whose last `failed` rows are failures."""
     header = (
         "label,weno,weno_power,splitting,time_scheme,precision,backend,cells,steps,compute_s,l1_density,l1_velocity,"
         "l1_pressure,conservation,status"
@@ -124,7 +124,7 @@ def write_study(file, meshes=(100, 200, 400, 800), failed=0, settings=("",)):
 
 
 def write_springs_study(file, order=2.0, checks=("frequency", "equilibrium")):
-    """study.csv of a disk on four meshes, of that order in the length of an edge; the finest has no next mesh."""
+    """Writes study.csv of a disk on four meshes with the given order in the edge length."""
     header = ["label", "model", "mass", "integrator", "backend", "vertices", "steps", "compute_s", *checks,
               "cauchy_area", "cauchy_elastic", "cauchy_kinetic", "status"]  # fmt: skip
     with file.open("w", newline="") as stream:
@@ -134,6 +134,19 @@ def write_springs_study(file, order=2.0, checks=("frequency", "equilibrium")):
             vertices = 1 + 3 * rings * (rings + 1)
             error = 0.3 * vertices ** (-order / 2)
             cauchy = ["", "", ""] if rings == 32 else [error, 2 * error, 3 * error]
-            table.writerow(["biquadratic", "biquadratic", "area", "rk4", "serial", vertices, 100 * rings, 1e-3 * rings**3,
-                            *[error, 1e-9][: len(checks)], *cauchy, "ok"])
+            table.writerow(
+                [
+                    "biquadratic",
+                    "biquadratic",
+                    "area",
+                    "rk4",
+                    "serial",
+                    vertices,
+                    100 * rings,
+                    1e-3 * rings**3,
+                    *[error, 1e-9][: len(checks)],
+                    *cauchy,
+                    "ok",
+                ]
+            )
     return file

@@ -1,4 +1,4 @@
-"""Records of drogue-perf that obey known laws, for the tests of the evidence page."""
+"""Synthetic records of drogue-perf that obey known power laws, for the tests of the evidence pages."""
 
 import itertools
 import json
@@ -39,7 +39,7 @@ SECOND_SETTINGS = {"lf-stencil": 1.0, "lf-global": 1.15, "lf-single": 1.3}
 
 
 def solution(problem, backend, scheme, settings, cells, machine, **changes):
-    """A run whose error and time are powers of the mesh (with a latency on OpenMP and CUDA)."""
+    """Run whose error and time are powers of the mesh, plus a latency on OpenMP and CUDA."""
     weno, power, factor, cost = SCHEMES[scheme]
     splitting, time_scheme, precision = settings if scheme != "muscl-hancock" else ("", "", "double")
     error, order, other_order = PROBLEMS[problem]
@@ -64,8 +64,10 @@ def solution(problem, backend, scheme, settings, cells, machine, **changes):
     return record(f"gas-solution/{problem}/{backend}/{label}/{cells}", seconds, machine, facts, **changes)
 
 
-def solutions(machine=H200, problems=tuple(PROBLEMS), backends=tuple(SPEEDS), meshes=(100, 200, 400, 800, 1600, 3200)):
-    """All schemes with the usual settings, WENO-Z with all; MUSCL-Hancock on Serial alone; TENO5 loses LeBlanc."""
+def solutions(
+    machine=H200, problems=tuple(PROBLEMS), backends=tuple(SPEEDS), meshes=(100, 200, 400, 800, 1600, 3200)
+):
+    """All schemes with default settings, WENO-Z with all; MUSCL-Hancock on Serial only; TENO5 fails LeBlanc."""
     settings = list(itertools.product(SECOND_SETTINGS, ("ssprk3", "ssprk43"), ("double", "split")))
     found = []
     for problem, backend, cells in itertools.product(problems, backends, meshes):
@@ -75,7 +77,11 @@ def solutions(machine=H200, problems=tuple(PROBLEMS), backends=tuple(SPEEDS), me
             changes = {}
             if (problem, scheme) == ("leblanc", "teno5"):
                 message = "negative pressure in cell 41 at x = 2.3, step 12, t = 0.01"
-                changes = {"facts": {"status": "numerical-failure", "message": message}, "median": None, "error": None}
+                changes = {
+                    "facts": {"status": "numerical-failure", "message": message},
+                    "median": None,
+                    "error": None,
+                }
             found.append(solution(problem, backend, scheme, USUAL, cells, machine, **changes))
         for variant in settings:
             if variant != USUAL:
@@ -97,7 +103,7 @@ def step(case, seconds, machine, cells, **changes):
 
 
 def steps_of_h200():
-    """Steps as measured once: some meet their goals, some miss them."""
+    """Steps of which some meet their goals and some miss them."""
     large = 1 << 24
     times = {
         "cuda/1024": 4.2e-6, "cuda/8192": 5.2e-6, "cuda/65536": 8.9e-6, "cuda/1048576": 138e-6,
@@ -109,7 +115,7 @@ def steps_of_h200():
 
 
 def steps_of_core(machine=EPYC):
-    """One core at 50 ns a cell-step, eight times the dense loop; two threads at 0.9 of two cores."""
+    """One core at 50 ns per cell and step, eight times as fast as the dense loop; two threads at 0.9 efficiency."""
     one = 50e-9
     times = {
         "dense-loop/8192": 8 * one * 8192, "serial/8192": one * 8192, "serial/1048576": one * (1 << 20),
@@ -129,7 +135,7 @@ def ceilings(backend="cuda", machine=H200, fp64=33e12, memory=4.2e12, cache=5.3e
 
 
 def transfers(machine=H200):
-    """Pageable copies a third, pinned ones a twentieth of the dissertation's times (much like its Table 5.5)."""
+    """Copies take a third (pageable) or a twentieth (pinned) of the dissertation's times, similar to its Table 5.5."""
     found = []
     for index, cells in enumerate(range(1024, 8193, 1024)):
         thesis = {"h2d_us": 336 + 25 * index, "compute_us": 118 + 35 * index, "d2h_us": 272 + 15 * index}
@@ -156,7 +162,7 @@ def blocks(machine=H200):
 
 
 def springs_solutions(machine=EPYC):
-    """Errors 1 / n of n vertices with masses by area and 10 times their root with equal ones; of strings 1 / n^2."""
+    """Errors n^-1 of n vertices with masses by area, n^-0.5 with equal masses; for strings the squares of these."""
     found = []
     for mass, integrator, doubling in itertools.product(("area", "equal"), ("rk4", "verlet"), range(7)):
         label = " ".join(word for word in (mass, integrator) if word not in ("area", "rk4"))
@@ -175,7 +181,7 @@ def springs_solutions(machine=EPYC):
 
 
 def springs_steps(machine=H200):
-    """Steps alone, and in contact, as measured or imagined."""
+    """Steps with and without contact."""
     times = {
         "springs-step/cuda/2640": 4.07e-6, "springs-step/cuda/1000000": 350e-6,
         "springs-step/cuda/1000000/quadratic": 434e-6, "springs-step/scatter-loop/2640": 285e-6,
@@ -197,8 +203,11 @@ def springs_transfers(machine=H200):
 
 
 def options_solutions(machine=EPYC, backend="serial"):
-    """Errors of finite differences are n^-2 of n intervals, four times that on one grid and ten times with exercise
-    split off; the dissertation's scheme is of first order, cosine series have one point and no settings."""
+    """Solutions of the three methods of options.
+
+    Finite differences with n intervals have the error n^-2, four times that on one grid, ten times with split
+    exercise. The dissertation's scheme is of first order. Cosine series have one point and no settings.
+    """
     found = []
 
     def add(method, n, seconds, error, **settings):
@@ -221,7 +230,7 @@ def options_solutions(machine=EPYC, backend="serial"):
 
 
 def options_batches(machine=H200):
-    """A batch that meets its goal and one that misses it; tridiagonal systems by two solvers."""
+    """A batch that meets its goal, one that misses it, and tridiagonal systems by two solvers."""
     times = {
         "options/cuda/4096/128x32": 3e-4, "options/cuda/1/128x32": 2e-4, "tridiagonal/cuda/4096/pttrf/128": 4e-5,
         "tridiagonal/cuda/4096/scan/128": 1e-5,

@@ -1,4 +1,4 @@
-"""The demo with a program that stands for a mini-app: table, page, exit code."""
+"""The demo with a stub mini-app: printed table, page and exit code."""
 
 import os
 import re
@@ -36,7 +36,7 @@ class Demo(unittest.TestCase):
         ]
         return subprocess.run(command, capture_output=True, text=True, env=environment, check=False)
 
-    def test_all_scenes_pass(self):
+    def test_prints_table_and_writes_page_of_passed_scenes(self):
         done = self._demo()
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         rows = [re.split(r"\s{2,}", line) for line in done.stdout.splitlines()[:3]]
@@ -49,10 +49,10 @@ class Demo(unittest.TestCase):
         self.assertEqual(page.count("data:image/gif"), 2)
         self.assertNotIn("sod-full", page)
         self.assertEqual(
-            re.findall(r"(?:src|href)=\"(?!data:|#)[^\"]*", page), [], "the page needs no other file"
+            re.findall(r"(?:src|href)=\"(?!data:|#)[^\"]*", page), [], "the page refers to another file"
         )
 
-    def test_failed_scene_is_told_and_shown(self):
+    def test_reports_failed_scene_in_message_table_and_page(self):
         done = self._demo("lax", failure="lax")
         self.assertEqual(done.returncode, 5)
         self.assertEqual(
@@ -63,7 +63,7 @@ class Demo(unittest.TestCase):
         self.assertIn("0 of 1 scenes verified", page)
         self.assertIn("above its tolerance 0.0065", page)
 
-    def test_unknown_scene(self):
+    def test_rejects_unknown_scene_with_list_of_scenes(self):
         done = self._demo("sood")
         self.assertEqual(done.returncode, 2)
         self.assertIn("sod, lax", done.stderr)

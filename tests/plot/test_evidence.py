@@ -1,19 +1,21 @@
-"""drogue-plot on records of drogue-perf: what enters the page and what must not, machines apart, refusals."""
+"""Pages of records: sections, omitted records, separation of machines, and rejection of invalid input."""
 
 import json
 import re
 import unittest
 
-import packages  # noqa: F401, before all that needs the packages  isort: skip
+import packages  # noqa: F401, before modules that need the packages  isort: skip
 import synthetic
 import synthetic_records as records
 from evidence_pages import Folder, plot
 
 
 class Contents(Folder):
-    def test_each_section_appears_only_if_asked(self):
+    def test_sections_appear_only_with_records_of_their_kind(self):
         kinds = {
-            "Sod: error against time": records.solutions(problems=("sod",), backends=("serial",), meshes=(100, 200)),
+            "Sod: error against time": records.solutions(
+                problems=("sod",), backends=("serial",), meshes=(100, 200)
+            ),
             "A step": records.steps_of_h200(),
             "Roofline, CUDA": records.ceilings(),
             "Transfers of a step, CUDA": records.transfers(),
@@ -26,13 +28,13 @@ class Contents(Folder):
                 for source in ("2026-11-22", "commit abcdef123456", "GNU 12.2.0", "drogue-perf "):
                     self.assertIn(source, page.words)
 
-    def test_page_needs_no_other_file(self):
+    def test_page_refers_to_no_other_file(self):
         page, _ = self.page(records.transfers())
         self.assertTrue(all(source.startswith("data:image/png;base64,") for source in page.sources))
         text = (self.folder / "gas.html").read_text()
         self.assertEqual(re.findall(r"(?:src|href)=\"(?!data:)[^\"]*", text), [])
 
-    def test_failed_check_never_enters(self):
+    def test_omits_and_names_records_with_failed_check(self):
         lines = records.solutions(problems=("sod",), backends=("serial",), meshes=(100, 200))
         for check, count in (("passed", 1), ("failed", 0)):
             step = records.step("cuda/2048", 654e-6, records.H200, 2048, check=check)
@@ -43,50 +45,63 @@ class Contents(Folder):
         self.assertIn("2 records are left out for a failed check: ", page.words)
         self.assertIn("gas-step/cuda/2048 on NVIDIA H200, Intel Xeon Processor (error 0.0001)", page.words)
 
-    def test_failed_check_may_lack_its_times(self):
+    def test_accepts_failed_check_without_times(self):
         bad = records.solution("sod", "serial", "js", records.USUAL, 100, records.H200, check="failed")
         page, files = self.page([bad | {"median": None, "interval": None, "error": None}])
         self.assertEqual((files, page.tables), (["gas.html"], {}))
         self.assertIn("1 record is left out for a failed check: ", page.words)
 
-    def test_newest_record_of_a_case_counts(self):
+    def test_uses_latest_record_of_a_case(self):
         old = records.step("cuda/8192", 99e-6, records.H200, 8192, run="2026-11-01T00:00:00Z")
         page, _ = self.page([*records.steps_of_h200(), old])
         self.assertNotIn("99 [", page.words)
         self.assertIn("1 record is left out, because a later one", page.words)
 
-    def test_unknown_kinds_are_named(self):
+    def test_names_unknown_kinds_of_records(self):
         page, _ = self.page([*records.steps_of_h200(), records.record("ladder/weno/3", 1e-6, records.H200)])
         self.assertIn("1 record is ignored, of a kind that this page does not know: ladder.", page.words)
 
-    def test_machines_are_kept_apart(self):
+    def test_machines_have_separate_sections_and_pictures(self):
         other = records.H200 | {"cpu": "AMD EPYC"}
-        lines = [records.step("cuda/8192", 5e-6, records.H200, 8192), records.step("cuda/8192", 7e-6, other, 8192)]
+        lines = [
+            records.step("cuda/8192", 5e-6, records.H200, 8192),
+            records.step("cuda/8192", 7e-6, other, 8192),
+        ]
         page, _ = self.page([*lines, *records.steps_of_core()])
-        steps = {machine: [row for row in rows if len(row) == 6][1:] for (machine, _), rows in page.tables.items()}
-        self.assertEqual(list(steps), ["NVIDIA H200, Intel Xeon Processor", "NVIDIA H200, AMD EPYC", "AMD EPYC"])
+        steps = {
+            machine: [row for row in rows if len(row) == 6][1:] for (machine, _), rows in page.tables.items()
+        }
+        self.assertEqual(
+            list(steps), ["NVIDIA H200, Intel Xeon Processor", "NVIDIA H200, AMD EPYC", "AMD EPYC"]
+        )
         self.assertEqual([rows[0][3].split()[0] for rows in steps.values()], ["5", "7", "410"])
         self.assertEqual([len(rows) for rows in steps.values()], [1, 1, 5])
         _, files = self.page(records.ceilings() + records.ceilings(machine=other))
-        self.assertEqual(files, ["gas.html", "roofline_cuda_nvidia-h200-2.png", "roofline_cuda_nvidia-h200.png"])
+        self.assertEqual(
+            files, ["gas.html", "roofline_cuda_nvidia-h200-2.png", "roofline_cuda_nvidia-h200.png"]
+        )
 
-    def test_format_out_and_a_study_beside_are_obeyed(self):
+    def test_obeys_format_and_out_and_draws_study_beside_records(self):
         records.write(self.folder / "in" / "a.jsonl", records.ceilings())
         synthetic.write_study(self.folder / "in" / "study.csv")
         code, files, _ = plot(self.folder / "in", "--out", self.folder / "out", "--format", "svg")
         roofline = "roofline_cuda_nvidia-h200"
         self.assertEqual((code, files), (0, ["gas.html", f"{roofline}.png", f"{roofline}.svg", "study.svg"]))
-        self.assertEqual(sorted(file.name for file in (self.folder / "in").iterdir()), ["a.jsonl", "study.csv"])
+        self.assertEqual(
+            sorted(file.name for file in (self.folder / "in").iterdir()), ["a.jsonl", "study.csv"]
+        )
 
 
 class Refusals(Folder):
-    def test_lines_that_are_no_record_are_named_by_file_and_line(self):
+    def test_rejects_invalid_record_with_file_and_line(self):
         good = json.dumps(records.step("cuda/8192", 5e-6, records.H200, 8192))
         blocks = records.blocks()[0]
         cases = {
             '{"schema": "drogue.perf/1", ': "no JSON",
             "[1, 2]": "no JSON object",
-            good.replace("drogue.perf/1", "drogue.perf/9"): "schema 'drogue.perf/9'; drogue-plot reads drogue.perf/1",
+            good.replace(
+                "drogue.perf/1", "drogue.perf/9"
+            ): "schema 'drogue.perf/9'; drogue-plot reads drogue.perf/1",
             good.replace('"passed"', '"perhaps"'): "neither passed nor failed",
             good.replace("gas-step/cuda/8192", "gas-step/cuda"): "is not gas-step/BACKEND/CELLS",
             good.replace('"median": 5e-06', '"median": NaN'): "the median of gas-step/cuda/8192 is no time",
@@ -106,7 +121,7 @@ class Refusals(Folder):
                 self.assertIn(f"{self.folder / 'b.jsonl'}:3", sentence)
                 self.assertIn(words, sentence)
 
-    def test_files_without_records(self):
+    def test_rejects_files_without_records(self):
         (self.folder / "a.jsonl").write_text("\n")
         code, _, sentence = plot(self.folder)
         self.assertEqual((code, sentence.count("\n")), (6, 1))
@@ -114,7 +129,7 @@ class Refusals(Folder):
         (self.folder / "a.jsonl").write_bytes(b"\xff\xfe")
         self.assertEqual(plot(self.folder)[0], 6)
 
-    def test_norm_is_for_studies(self):
+    def test_rejects_norm_without_study(self):
         records.write(self.folder / "a.jsonl", records.ceilings())
         code, files, sentence = plot(self.folder, "--norm", "l1_density")
         self.assertEqual((code, files), (2, []))

@@ -1,60 +1,70 @@
-"""Numbers and pictures of the evidence page on synthetic records that obey known laws."""
+"""Numbers and figures of pages of synthetic records that obey known power laws."""
 
 import unittest
 
-import packages  # noqa: F401, before all that needs the packages  isort: skip
+import packages  # noqa: F401, before modules that need the packages  isort: skip
 import numpy as np
 import synthetic_records as records
 from evidence_pages import Folder
-from plot import evidence_records, gas_goals
-from plot.evidence_blocks import blocks_figure, times
-from plot.evidence_roofline import ceilings, points, roofline_figure
-from plot.evidence_solution import Reach, asked_errors, best_scheme, curves, speed_up, time_to_error, wins_below
-from plot.evidence_solution_figure import solution_figure
-from plot.evidence_steps import measured, vector_bits, verdict
+from plot.evidence import goal as goals
+from plot.evidence.block_sizes import blocks_figure, times
+from plot.evidence.records import read_records
+from plot.evidence.roofline import ceilings, points, roofline_figure
+from plot.evidence.steps import measured, vector_bits, verdict
+from plot.evidence.work_precision import (
+    TimeToError,
+    best_scheme,
+    curves,
+    faster_range,
+    speed_up,
+    target_errors,
+    time_to_error,
+)
+from plot.evidence.work_precision_figure import solution_figure
+from plot.gas.goals import GOALS
 
 
 def law(cost, power, size, order, meshes=(100, 200, 400, 800)):
-    """Points of time = cost n^power, error = size n^-order."""
+    """Points (n, time, error) with time = cost n^power and error = size n^-order."""
     return np.array([(n, cost * n**power, size * n**-order) for n in meshes])
 
 
 class Numbers(unittest.TestCase):
-    def test_time_to_an_error_on_a_power_law(self):
+    def test_time_to_error_is_exact_on_power_law(self):
         points_ = law(2e-9, 2.0, 3.0, 1.5)
         for error in (2.9e-3, 1.1e-3, 2e-4):
             reach = time_to_error(points_, error)
             self.assertEqual(reach.bound, "")
             self.assertAlmostEqual(reach.seconds / (2e-9 * (3.0 / error) ** (2.0 / 1.5)), 1.0, delta=1e-12)
-        self.assertEqual(time_to_error(points_, 1e-5), Reach(points_[-1, 1], ">"))
-        self.assertEqual(time_to_error(points_, 0.1), Reach(points_[0, 1], "<"))
-        self.assertEqual(time_to_error(points_, points_[0, 2]), Reach(points_[0, 1]))
+        self.assertEqual(time_to_error(points_, 1e-5), TimeToError(points_[-1, 1], ">"))
+        self.assertEqual(time_to_error(points_, 0.1), TimeToError(points_[0, 1], "<"))
+        self.assertEqual(time_to_error(points_, points_[0, 2]), TimeToError(points_[0, 1]))
 
-    def test_first_crossing_of_an_error_that_rises_again(self):
+    def test_time_to_error_takes_first_crossing_of_nonmonotone_curve(self):
         points_ = np.array([(1, 1.0, 1e-1), (2, 2.0, 1e-3), (4, 4.0, 1e-2), (8, 8.0, 1e-4)])
         self.assertAlmostEqual(time_to_error(points_, 1e-2).seconds, 2**0.5, delta=1e-12)
 
-    def test_speed_up_of_bounds(self):
-        self.assertEqual(speed_up(Reach(6.0), Reach(2.0)), Reach(3.0))
-        self.assertEqual(speed_up(Reach(6.0, ">"), Reach(2.0)), Reach(3.0, ">"))
-        self.assertEqual(speed_up(Reach(6.0, ">"), Reach(2.0, "<")), Reach(3.0, ">"))
-        self.assertEqual(speed_up(Reach(6.0), Reach(2.0, ">")), Reach(3.0, "<"))
-        self.assertIsNone(speed_up(Reach(6.0, ">"), Reach(2.0, ">")))
-        self.assertIsNone(speed_up(Reach(6.0, "<"), Reach(2.0, "<")))
+    def test_speed_up_propagates_bounds(self):
+        self.assertEqual(speed_up(TimeToError(6.0), TimeToError(2.0)), TimeToError(3.0))
+        self.assertEqual(speed_up(TimeToError(6.0, ">"), TimeToError(2.0)), TimeToError(3.0, ">"))
+        self.assertEqual(speed_up(TimeToError(6.0, ">"), TimeToError(2.0, "<")), TimeToError(3.0, ">"))
+        self.assertEqual(speed_up(TimeToError(6.0), TimeToError(2.0, ">")), TimeToError(3.0, "<"))
+        self.assertIsNone(speed_up(TimeToError(6.0, ">"), TimeToError(2.0, ">")))
+        self.assertIsNone(speed_up(TimeToError(6.0, "<"), TimeToError(2.0, "<")))
 
-    def test_where_a_higher_order_begins_to_win(self):
+    def test_faster_range_finds_crossover_of_two_orders(self):
         cheap, high = law(1e-9, 2.0, 1.0, 1.0, (100, 12800)), law(8e-9, 2.0, 100.0, 2.0, (10, 3200))
         # t = 1e-9 / e^2 and t = 8e-7 / e meet at e = 1/800.
-        where, error = wins_below(cheap, high)
+        where, error = faster_range(cheap, high)
         self.assertEqual(where, "below")
         self.assertAlmostEqual(error / (1 / 800), 1.0, delta=0.02)
-        self.assertEqual(wins_below(law(1e-6, 2.0, 1.0, 1.0), high), ("everywhere", None))
-        self.assertEqual(wins_below(law(1e-12, 2.0, 1.0, 1.0), high), ("nowhere", None))
-        self.assertEqual(wins_below(cheap, law(1e-9, 2.0, 1e-9, 1.0)), ("", None))
+        self.assertEqual(faster_range(law(1e-6, 2.0, 1.0, 1.0), high), ("everywhere", None))
+        self.assertEqual(faster_range(law(1e-12, 2.0, 1.0, 1.0), high), ("nowhere", None))
+        self.assertEqual(faster_range(cheap, law(1e-9, 2.0, 1e-9, 1.0)), ("", None))
 
-    def test_verdicts_are_on_the_right_side_of_each_bar(self):
-        time = gas_goals.Goal("c", gas_goals.STEP_US, 5.0, 3.0)
-        rate = gas_goals.Goal("c", gas_goals.RATE, 8.5, 10.0)
+    def test_verdict_compares_median_with_goal_and_stretch(self):
+        time = goals.Goal("c", goals.STEP_US, 5.0, 3.0)
+        rate = goals.Goal("c", goals.RATE, 8.5, 10.0)
         cases = [
             (time, 5.0, "goal met"), (time, 3.0, "stretch met"), (time, 5.5, "missed by 10 %"),
             (time, 5.01, "missed by 0.2 %"), (rate, 8.5, "goal met"), (rate, 11.0, "stretch met"),
@@ -65,7 +75,7 @@ class Numbers(unittest.TestCase):
 
 
 class Solutions(Folder):
-    def test_table_holds_times_factors_and_orders_of_the_laws(self):
+    def test_table_reproduces_times_factors_and_orders_of_power_laws(self):
         page, files = self.page(records.solutions(problems=("sod",), backends=("serial", "cuda")))
         self.assertEqual(files, ["gas.html", "solution_sod_nvidia-h200.png"])
         rows = page.tables["NVIDIA H200, Intel Xeon Processor", "Sod: error against time"]
@@ -84,25 +94,26 @@ class Solutions(Folder):
         self.assertIn("Serial is compared with Serial", page.words)
         self.assertIn(("Serial", "WENO-Z, lf-global, ssprk43, split"), by_scheme)
 
-    def test_failed_runs_are_listed_and_not_drawn(self):
+    def test_lists_failed_runs_and_does_not_draw_them(self):
         lines = records.solutions(problems=("leblanc",), backends=("serial",), meshes=(100, 200))
         page, _ = self.page(lines)
         rows = page.tables["NVIDIA H200, Intel Xeon Processor", "LeBlanc: error against time"]
         self.assertNotIn("TENO5", [row[1] for row in rows])
         self.assertRegex(
-            page.words, r"TENO5, Serial, 100, 200 cells: numerical-failure \(negative pressure in cell 41 .*\)"
+            page.words,
+            r"TENO5, Serial, 100, 200 cells: numerical-failure \(negative pressure in cell 41 .*\)",
         )
         evidence = self.evidence(lines)
         found = curves(evidence.records)
-        self.assertNotIn("teno5", {curve.scheme.word for curve in found})
+        self.assertNotIn("teno5", {curve.scheme.key for curve in found})
 
-    def test_problem_that_no_scheme_solves_has_a_list_alone(self):
+    def test_problem_without_solution_shows_only_failures(self):
         lines = records.solutions(problems=("leblanc",), backends=("serial",), meshes=(100,))
         page, files = self.page([line for line in lines if line["facts"]["weno"] == "teno5"])
         self.assertEqual(files, ["gas.html"])
         self.assertIn("negative pressure in cell 41", page.words)
 
-    def test_without_the_competitor_there_are_no_factors(self):
+    def test_omits_factors_without_competitor(self):
         lines = records.solutions(problems=("sod",), backends=("openmp",), meshes=(100, 200, 400))
         page, _ = self.page(lines)
         heading = next(iter(page.tables.values()))[0]
@@ -110,16 +121,16 @@ class Solutions(Folder):
         self.assertEqual(sum(word.startswith("to ") for word in heading), 3)
         self.assertNotIn("MUSCL-Hancock", page.words)
 
-    def test_best_scheme_is_the_first_to_reach_the_competitors_error(self):
+    def test_best_scheme_reaches_error_of_competitor_first(self):
         found = curves(self.evidence(records.solutions(problems=("sod",), backends=("serial",))).records)
         self.assertEqual(best_scheme(found), "z")
-        errors = asked_errors(found)
+        errors = target_errors(found)
         self.assertEqual(errors, sorted(errors, reverse=True))
         self.assertAlmostEqual(errors[1], 2.5 * 0.012 * 32**-0.85, delta=1e-9)
 
-    def test_keys_and_titles_of_the_figure_do_not_collide(self):
+    def test_legends_and_titles_of_figure_do_not_overlap(self):
         found = curves(self.evidence(records.solutions(problems=("sod",), backends=("serial",))).records)
-        machine = evidence_records.read(self.folder).machines[0]
+        machine = read_records(self.folder).machines[0]
         figure = solution_figure("sod", machine, found, "z", "")
         self.assertEqual([len(axes.lines) for axes in figure.axes], [6, 6, 6])
         figure.canvas.draw()
@@ -134,7 +145,7 @@ class Solutions(Folder):
 
 
 class Steps(Folder):
-    def test_costs_and_verdicts_on_the_gpu(self):
+    def test_gpu_steps_show_costs_and_verdicts(self):
         page, _ = self.page(records.steps_of_h200())
         rows = page.tables["NVIDIA H200, Intel Xeon Processor", "A step"]
         self.assertIn(["CUDA", "", "8\u2009192", "5.2 [5.1 .. 5.3]", "0.635", "1.58"], rows)
@@ -148,7 +159,7 @@ class Steps(Folder):
         on = verdicts["CUDA, 16 M cells, on, against cuda/16777216", "times as long"]
         self.assertEqual(on, ["2.88 [2.77 .. 3]", "", "1.25", "1.1", "missed by 130 %"])
 
-    def test_verdicts_on_a_core_need_its_vectors_and_the_same_run(self):
+    def test_core_verdicts_require_vector_width_and_same_run(self):
         page, _ = self.page(records.steps_of_core())
         rows = [row for row in page.tables["AMD EPYC", "A step"] if len(row) == 7][1:]
         self.assertEqual([row[4] for row in rows], ["68", "6", "0.85"])
@@ -161,7 +172,7 @@ class Steps(Folder):
         page, _ = self.page(later)
         self.assertIn("dense-loop/8192 is not in the same run", page.words)
 
-    def test_width_of_vectors_from_facts_or_flags(self):
+    def test_reads_vector_width_from_facts_or_flags(self):
         lines = records.steps_of_core()[1:2]
         for flags, facts, wanted in (
             ("-O3 -march=x86-64-v4", {}, 512), ("-mavx512f -mprefer-vector-width=256", {}, 256), ("-O3", {}, None),
@@ -174,23 +185,23 @@ class Steps(Folder):
         page, _ = self.page(lines)
         self.assertIn("(if its vectors have 512 bits)", page.words)
 
-    def test_host_backends_of_a_cuda_build_have_no_goals(self):
+    def test_goals_do_not_apply_to_host_backends_of_cuda_build(self):
         lines = records.steps_of_core(records.H200)
         for line in lines:
             line["provenance"]["compiler"] = "GNU 12.2.0, nvcc 13.0.88 sm_90"
         page, _ = self.page(lines)
         self.assertNotIn("Against the goals", page.words)
 
-    def test_interval_of_a_ratio_holds_both_intervals(self):
+    def test_interval_of_ratio_contains_all_quotients(self):
         lines = self.evidence(records.steps_of_core()).records
         by_case = {line.case: line for line in lines}
-        goal = next(goal for goal in gas_goals.GOALS if goal.measure == gas_goals.SPEED_UP)
-        value, low, high = measured(goal, by_case[goal.case], by_case[goal.beside])
+        goal = next(goal for goal in GOALS if goal.measure == goals.SPEED_UP)
+        value, low, high = measured(goal, by_case[goal.case], by_case[goal.compared_case])
         self.assertAlmostEqual(value, 8.0, delta=1e-12)
         self.assertAlmostEqual(low, 8 * 0.98 / 1.02, delta=1e-12)
         self.assertAlmostEqual(high, 8 * 1.02 / 0.98, delta=1e-12)
 
-    def test_records_without_facts_are_read_by_their_names(self):
+    def test_derives_missing_facts_from_case_name(self):
         lines = records.steps_of_h200()
         for line in lines:
             del line["facts"]
@@ -199,7 +210,7 @@ class Steps(Folder):
 
 
 class Devices(Folder):
-    def test_ceilings_and_shares(self):
+    def test_roofline_shows_ceilings_and_shares(self):
         page, files = self.page(records.ceilings() + records.steps_of_h200())
         self.assertEqual(files, ["gas.html", "roofline_cuda_nvidia-h200.png"])
         rows = page.tables["NVIDIA H200, Intel Xeon Processor", "Roofline, CUDA"]
@@ -208,20 +219,25 @@ class Devices(Folder):
         shares = [f"{100 * rate / 33e12:.3g}", f"{100 * rate / (1300 / 72) / 4.2e12:.3g}"]
         self.assertEqual(next(row for row in rows if row[0] == "8\u2009192")[4:6], shares)
 
-    def test_labels_of_a_roofline_fit(self):
+    def test_labels_of_roofline_fit_and_do_not_overlap(self):
         evidence = self.evidence(records.ceilings() + records.steps_of_h200())
         machine = evidence.machines[0]
-        tops, found = ceilings(evidence.of(machine, "ceiling")), points(evidence.of(machine, "gas-step"))
+        tops, found = (
+            ceilings(evidence.select(machine, "ceiling")),
+            points(evidence.select(machine, "gas-step")),
+        )
         self.assertEqual([point.cells for point in found], [1024, 8192, 65536, 1 << 20, 1 << 24])
         figure = roofline_figure("Roofline", machine, tops, found)
         renderer = figure.canvas.get_renderer()
-        boxes = [text.get_window_extent(renderer) for text in figure.axes[0].texts if text.get_rotation() == 0]
+        boxes = [
+            text.get_window_extent(renderer) for text in figure.axes[0].texts if text.get_rotation() == 0
+        ]
         for index, box in enumerate(boxes):
             self.assertTrue(0 <= box.x0 and box.x1 <= figure.bbox.width)
             for other in boxes[:index]:
                 self.assertFalse(box.overlaps(other))
 
-    def test_transfers_stand_beside_the_dissertation(self):
+    def test_transfers_show_times_and_factors_of_dissertation(self):
         page, files = self.page(records.transfers())
         self.assertEqual(files, ["gas.html", "transfers_cuda_nvidia-h200.png"])
         rows = page.tables["NVIDIA H200, Intel Xeon Processor", "Transfers of a step, CUDA"]
@@ -229,10 +245,11 @@ class Devices(Folder):
         self.assertEqual(rows[1], ["1\u2009024", "dissertation", "336", "118", "272", "726", ""])
         self.assertEqual(rows[3], ["1\u2009024", "pinned", "16.8", "40", "13.6", "70.4", "10.3"])
 
-    def test_blocks_have_a_panel_a_form_and_a_curve_a_size(self):
+    def test_block_sizes_have_panel_per_form_and_curve_per_size(self):
         evidence = self.evidence(records.blocks())
         forms = {
-            form: times([line for line in evidence.records if line.facts["form"] == form]) for form in ("seed", "step")
+            form: times([line for line in evidence.records if line.facts["form"] == form])
+            for form in ("seed", "step")
         }
         figure = blocks_figure("Blocks", evidence.machines[0], forms, "step")
         self.assertEqual([len(axes.lines) for axes in figure.axes], [5, 5])
@@ -245,11 +262,15 @@ class Springs(Folder):
     def springs_page(self, lines):
         return self.page(lines, "springs")
 
-    def test_time_to_the_errors_of_the_issue(self):
+    def test_table_shows_times_to_fixed_errors(self):
         page, files = self.springs_page(records.springs_solutions())
-        self.assertEqual(files, [f"solution_{name}_amd-epyc.png" for name in ("catenary", "drum")] + ["springs.html"])
+        self.assertEqual(
+            files, [f"solution_{name}_amd-epyc.png" for name in ("catenary", "drum")] + ["springs.html"]
+        )
         rows = page.tables["AMD EPYC", "Drum: error against time"]
-        self.assertEqual(rows[0], ["backend", "scheme", "vertices", "order", "to 0.01", "to 1×10−3", "to 1×10−4"])
+        self.assertEqual(
+            rows[0], ["backend", "scheme", "vertices", "order", "to 0.01", "to 1×10−3", "to 1×10−4"]
+        )
         by_scheme = {row[1]: row for row in rows}
         # Error 1 / n of n vertices, a step of 1e-7 n s, 10 sqrt(n) steps: to 0.001 in 1e-6 n^1.5 s.
         seconds = 1e-6 * 1000**1.5
@@ -261,15 +282,15 @@ class Springs(Folder):
         self.assertEqual({row[1]: row[3] for row in rows[1:]}["string"], "2.00")
         self.assertNotIn("factor", rows[0])
 
-    def test_figure_has_models_above_and_settings_below(self):
+    def test_figure_shows_models_above_settings(self):
         found = curves(self.evidence(records.springs_solutions()).records[:28])
-        machine = evidence_records.read(self.folder).machines[0]
+        machine = read_records(self.folder).machines[0]
         self.assertEqual(best_scheme(found), "biquadratic")
         figure = solution_figure("drum", machine, found, "biquadratic", "")
         self.assertEqual([len(axes.lines) for axes in figure.axes], [1, 4])
         self.assertEqual(figure.axes[0].get_ylabel(), "relative error of the frequency")
 
-    def test_steps_and_contact_stand_against_their_goals(self):
+    def test_steps_and_contact_show_verdicts(self):
         page, _ = self.springs_page(records.springs_steps())
         rows = page.tables["NVIDIA H200, Intel Xeon Processor", "A step"]
         self.assertEqual(rows[0][2:], ["vertices", "µs a step", "ns a vertex-step", "G vertex-steps/s"])
@@ -279,9 +300,11 @@ class Springs(Folder):
         quadratic = "CUDA, 1000000 vertices, quadratic, against cuda/1000000"
         self.assertEqual(verdicts[quadratic, "times as long"], "goal met")
         rows = page.tables["NVIDIA H200, Intel Xeon Processor", "A step in contact"]
-        self.assertEqual([row[-1] for row in rows if len(row) == 7], ["verdict", "stretch met", "missed by 50 %"])
+        self.assertEqual(
+            [row[-1] for row in rows if len(row) == 7], ["verdict", "stretch met", "missed by 50 %"]
+        )
 
-    def test_transfers_have_a_panel_a_number_of_steps_and_no_ratio(self):
+    def test_transfers_show_panel_per_number_of_steps_and_no_ratio(self):
         page, files = self.springs_page(records.springs_transfers())
         self.assertEqual(files, ["springs-transfers_cuda_nvidia-h200.png", "springs.html"])
         rows = page.tables["NVIDIA H200, Intel Xeon Processor", "Transfers of a step, CUDA"]
@@ -290,7 +313,7 @@ class Springs(Folder):
         self.assertNotIn("times as fast", " ".join(rows[0]))
         self.assertIn("no ratio to it means anything", page.words)
 
-    def test_two_apps_have_a_page_each(self):
+    def test_each_app_has_its_own_page(self):
         lines = records.springs_transfers() + records.transfers()
         page, files = self.springs_page(lines)
         self.assertEqual([name for name in files if name.endswith("html")], ["gas.html", "springs.html"])

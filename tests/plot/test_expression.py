@@ -1,15 +1,15 @@
-"""Expressions of scenes: values as Python gives them, and refusal of what is not an expression."""
+"""Expressions of scenes: values against numpy, and rejection of invalid expressions."""
 
 import unittest
 
-import packages  # noqa: F401, before all that needs the packages  isort: skip
+import packages  # noqa: F401, before modules that need the packages  isort: skip
 import numpy as np
 from plot.expression import evaluate
 from plot.failure import Failure
 
 
 class Expressions(unittest.TestCase):
-    def test_values(self):
+    def test_evaluates_like_numpy(self):
         x = np.linspace(-1.5, 2.0, 8)
         cases = {
             "1 + 0.2*sin(pi*x)": 1 + 0.2 * np.sin(np.pi * x),
@@ -26,14 +26,14 @@ class Expressions(unittest.TestCase):
                 np.testing.assert_allclose(evaluate(text, x=x), expected, rtol=1e-14)
         np.testing.assert_array_equal(evaluate(2, x=x), np.full(8, 2.0))
 
-    def test_bessel_function(self):
+    def test_bessel_function_matches_table(self):
         # Abramowitz and Stegun, table 9.1
         for order, at, value in ((0, 1.0, 0.7651976866), (1, 5.0, -0.3275791376), (2, 17.5, 0.0844338303)):
             self.assertAlmostEqual(
                 float(evaluate(f"besselj({order}, x)", x=np.array(at))), value, delta=1e-10
             )
 
-    def test_what_is_no_expression_is_refused(self):
+    def test_rejects_invalid_expressions(self):
         for text in ("1 +", "sin(x", "q + 1", "x x", "x ? 1"):
             with self.subTest(text), self.assertRaises(Failure):
                 evaluate(text, x=np.zeros(2))

@@ -1,13 +1,15 @@
-"""drogue-plot on records of options: curves and their settings, marks of others, goals, the dissertation's tables."""
+"""Pages of records of options: curves and settings, published results, goals, and tables of the dissertation."""
 
 import unittest
 
-import packages  # noqa: F401, before all that needs the packages  isort: skip
+import packages  # noqa: F401, before modules that need the packages  isort: skip
 import synthetic_records as records
 from evidence_pages import Folder
-from plot import evidence_options, evidence_solution, perf_record, solution_family
-from plot.evidence_solution_figure import solution_figure
-from plot.options_marks import MARKS
+from plot.evidence import perf_record, work_precision
+from plot.evidence.work_precision_figure import solution_figure
+from plot.options import transfers
+from plot.options.published_results import PUBLISHED_RESULTS
+from plot.options.scheme_family import FAMILY
 
 MACHINE = "NVIDIA H200, Intel Xeon Processor"
 SOLUTION = "The dissertation's put: error against time"
@@ -15,20 +17,20 @@ SOLUTION = "The dissertation's put: error against time"
 
 def figure_of(folder, machine=records.EPYC, backend="serial"):
     evidence = folder.evidence(records.options_solutions(machine, backend))
-    found = evidence_solution.curves(evidence.records)
-    best = evidence_solution.best_scheme(found)
+    found = work_precision.curves(evidence.records)
+    best = work_precision.best_scheme(found)
     return solution_figure("thesis", evidence.machines[0], found, best, "")
 
 
 class Solutions(Folder):
-    def test_schemes_without_settings_stand_beside_the_usual_ones(self):
-        found = evidence_solution.curves(self.evidence(records.options_solutions()).records)
-        usual = [curve.scheme.word for curve in found if curve.scheme.is_usual]
+    def test_schemes_without_settings_count_as_default(self):
+        found = work_precision.curves(self.evidence(records.options_solutions()).records)
+        usual = [curve.scheme.key for curve in found if curve.scheme.has_default_settings]
         self.assertEqual(["pide", "cos", "seed"], usual)
-        self.assertEqual("pide", evidence_solution.best_scheme(found))
+        self.assertEqual("pide", work_precision.best_scheme(found))
         self.assertAlmostEqual(2.0, found[0].order)
 
-    def test_rows_are_those_of_the_steps(self):
+    def test_figure_has_row_per_number_of_steps(self):
         figure = figure_of(self)
         titles = {text.get_text() for text in figure.texts}
         self.assertIn("finite differences, a step for four intervals", titles)
@@ -38,21 +40,25 @@ class Solutions(Folder):
         self.assertEqual(four.get_xlim(), two.get_xlim())
         self.assertGreater(top.get_xlim()[1], four.get_xlim()[1])
 
-    def test_marks_stand_where_they_belong(self):
+    def test_published_results_appear_in_panel_of_their_backend(self):
         def labels(figure):
             return {text.get_text() for text in figure.axes[0].texts}
 
         core, gpu = labels(figure_of(self)), labels(figure_of(self, records.H200, "cuda"))
-        self.assertEqual({"dissertation, one option", "dissertation, 4096 options", "hand-written AVX-512", "PROJ"}, core)
+        self.assertEqual(
+            {"dissertation, one option", "dissertation, 4096 options", "hand-written AVX-512", "PROJ"}, core
+        )
         self.assertEqual(core | {"hand-written CUDA"}, gpu)
 
-    def test_every_mark_has_a_problem_and_a_source(self):
-        for mark in MARKS:
-            self.assertIn(mark.problem, solution_family.OPTIONS.problems)
-            self.assertIn(mark.on, perf_record.BACKENDS)
-            self.assertTrue(mark.source and all(seconds > 0 and error > 0 for seconds, error in mark.points))
+    def test_published_results_have_problem_backend_and_source(self):
+        for result in PUBLISHED_RESULTS:
+            self.assertIn(result.problem, FAMILY.problems)
+            self.assertIn(result.backend, perf_record.BACKENDS)
+            self.assertTrue(
+                result.source and all(seconds > 0 and error > 0 for seconds, error in result.points)
+            )
 
-    def test_times_to_the_errors_asked_for(self):
+    def test_table_shows_times_to_target_errors(self):
         page, files = self.page(records.options_solutions(), "options")
         self.assertEqual(["options.html", "solution_thesis_amd-epyc.png"], files)
         rows = page.tables["AMD EPYC", SOLUTION]
@@ -67,7 +73,7 @@ class Solutions(Folder):
 
 
 class Batches(Folder):
-    def test_goals_and_systems(self):
+    def test_batches_show_verdicts_and_systems_their_times(self):
         page, _ = self.page(records.options_batches(), "options")
         rows = page.tables[MACHINE, "A batch"]
         verdicts = {row[0]: row[-1] for row in rows if len(row) == 7}
@@ -77,7 +83,7 @@ class Batches(Folder):
         self.assertEqual(["CUDA", "scan/128", "4\u2009096"], systems["scan/128"][:3])
         self.assertTrue(systems["pttrf/128"][3].startswith("40 ["))
 
-    def test_tables_of_the_dissertation(self):
+    def test_transfers_table_shows_times_of_dissertation_and_ours(self):
         page, files = self.page(records.options_transfers(), "options")
         self.assertEqual(["options-transfers_cuda_nvidia-h200.png", "options.html"], files)
         rows = page.tables[MACHINE, "Tables 5.7 and 5.8, CUDA"]
@@ -86,12 +92,12 @@ class Batches(Folder):
         own = next(row for row in rows if row[:3] == ["32", "128", "ours, two solves for an error"])
         self.assertEqual(["20", "160", "20", "200", "19\u2009478", "1\u00d710\u22124"], own[3:])
 
-    def test_a_batch_without_printed_times(self):
+    def test_draws_transfers_without_times_of_dissertation(self):
         lines = [line | {"facts": line["facts"] | {"thesis": {}}} for line in records.options_transfers()]
         evidence = self.evidence(lines)
-        rows = evidence_options.rows_of(evidence.records)
+        rows = transfers.transfer_rows(evidence.records)
         self.assertEqual({"seed", "pide"}, {row.source for row in rows})
-        evidence_options.transfers_figure("title", evidence.machines[0], evidence.records)
+        transfers.transfers_figure("title", evidence.machines[0], evidence.records)
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""drogue-plot on the files of drogue-options, and what the demo makes of its prices."""
+"""Figures of the output of drogue-options, and the comparison of its prices in the demo."""
 
 import contextlib
 import io
@@ -7,10 +7,11 @@ import tempfile
 import unittest
 from pathlib import Path
 
-import packages  # before all that needs the packages  isort: skip
+import packages  # before modules that need the packages  isort: skip
 from PIL import Image
-from plot import cli, demo_options
-from plot.options_figure import options_figure
+from plot import cli
+from plot.demo.options import largest_difference
+from plot.options.prices_figure import prices_figure
 
 assert packages.SOURCE
 
@@ -27,43 +28,45 @@ class OptionsPictures(unittest.TestCase):
         for name, text in files.items():
             (self.folder / f"{name}.csv").write_text(text)
 
-    def test_surface_and_boundary(self):
+    def test_draws_surface_and_boundary(self):
         self.write(surface=SURFACE, boundary=BOUNDARY)
         self.assertEqual(0, cli.main([str(self.folder), "--quiet"]))
         with Image.open(self.folder / "fields.png") as picture:
             self.assertGreater(picture.size[1], 700)
-        first, second = options_figure(self.folder).axes
+        first, second = prices_figure(self.folder).axes
         self.assertEqual([[0.1, 1.1], [0.2, 1.2]], [list(line.get_ydata()) for line in first.lines])
         self.assertEqual([[0.8, 0.9]], [list(line.get_ydata()) for line in second.lines])
 
-    def test_equal_curves_are_counted(self):
-        """One drawn over another would be seen as one."""
+    def test_label_counts_equal_curves(self):
+        """Without the count, a curve drawn over an equal one would be invisible."""
         self.write(boundary=BOUNDARY + "b,0,0.8\nb,0.5,0.9\nc,0,0.7\nc,0.5,0.9\n")
-        (panel,) = options_figure(self.folder).axes
+        (panel,) = prices_figure(self.folder).axes
         self.assertEqual(2, len(panel.lines))
         self.assertEqual({"a (2 equal)", "c"}, {text.get_text() for text in panel.texts})
 
-    def test_a_file_is_no_run_directory(self):
+    def test_rejects_file_in_place_of_folder(self):
         self.write(prices="id,price\na,1\n", surface=SURFACE)
         for name, hint in (("prices", "surface.csv"), ("surface", str(self.folder))):
-            with contextlib.redirect_stderr(io.StringIO()) as said:
+            with contextlib.redirect_stderr(io.StringIO()) as errors:
                 self.assertEqual(2, cli.main([str(self.folder / f"{name}.csv")]))
-            self.assertIn("takes the folder", said.getvalue())
-            self.assertIn(hint, said.getvalue())
+            self.assertIn("takes the folder", errors.getvalue())
+            self.assertIn(hint, errors.getvalue())
 
-    def test_nothing_priced(self):
+    def test_draws_nothing_without_prices(self):
         self.write(surface="id,strike,maturity,price\nbad,,,\n")
-        self.assertIsNone(options_figure(self.folder))
+        self.assertIsNone(prices_figure(self.folder))
 
-    def test_damaged(self):
+    def test_rejects_damaged_surface(self):
         for text in ("id,strike\n1,2\n", "id,strike,maturity,price\na,1,1,x\n"):
             self.write(surface=text)
             self.assertEqual(6, cli.main([str(self.folder), "--quiet"]))
 
-    def test_the_demo_finds_the_largest_difference(self):
-        self.write(batch="id,strike\na,1\nb,100\n", one="id,price\na,0.1\nb,5\n", other="id,price\na,0.2\nb,6\n")
+    def test_demo_finds_largest_difference_of_prices(self):
+        self.write(
+            batch="id,strike\na,1\nb,100\n", one="id,price\na,0.1\nb,5\n", other="id,price\na,0.2\nb,6\n"
+        )
         files = [self.folder / f"{name}.csv" for name in ("one", "other", "batch")]
-        self.assertAlmostEqual(0.1, demo_options.largest_difference(*files))
+        self.assertAlmostEqual(0.1, largest_difference(*files))
 
 
 if __name__ == "__main__":

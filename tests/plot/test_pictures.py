@@ -1,4 +1,4 @@
-"""drogue-plot on synthetic run directories: which files, what they hold, which exit codes."""
+"""drogue-plot on synthetic run directories: written files, their content, and exit codes."""
 
 import contextlib
 import io
@@ -12,23 +12,23 @@ import tempfile
 import unittest
 from pathlib import Path
 
-import packages  # before all that needs the packages  isort: skip
+import packages  # before modules that need the packages  isort: skip
 import numpy as np
 import synthetic
 from PIL import Image
 from plot import cli
-from plot.exact import errors, exact_solution
 from plot.failure import Failure
-from plot.gas_figures import View, fields_figure
-from plot.history_figure import conservation
-from plot.run_directory import read
+from plot.gas.exact_solution import exact_solution, pointwise_errors
+from plot.gas.fields_figure import View, fields_figure
+from plot.gas.history_figure import conservation
+from plot.run_directory import read_run
 from plot.study_figure import study_figure
 
 _COLOURS = {"run": (0, 0x72, 0xB2), "error": (0xD5, 0x5E, 0)}
 
 
 def _plot(*words):
-    """Exit code, names of the pictures, standard error."""
+    """Exit code, names of the pictures, and standard error."""
     out, err = io.StringIO(), io.StringIO()
     with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
         code = cli.main([str(word) for word in words])
@@ -36,7 +36,7 @@ def _plot(*words):
 
 
 def _pixels_of(file, colour):
-    """How many pixels of a picture are near a colour."""
+    """Number of pixels of a picture that are close to a colour."""
     with Image.open(file) as image:
         pixels = np.asarray(image.convert("RGB")).astype(int)
     return int((np.abs(pixels - colour).max(-1) < 40).sum())
@@ -47,7 +47,7 @@ class Pictures(unittest.TestCase):
         self.folder = Path(tempfile.mkdtemp())
         self.addCleanup(shutil.rmtree, self.folder)
 
-    def test_run_with_many_snapshots_gives_all_pictures(self):
+    def test_many_snapshots_give_all_pictures(self):
         run = synthetic.write_sod(self.folder / "sod", cells=100, snapshots=8)
         code, files, _ = _plot(run)
         self.assertEqual(code, 0)
@@ -60,11 +60,11 @@ class Pictures(unittest.TestCase):
         for colour in _COLOURS.values():
             self.assertGreater(_pixels_of(run / "fields.png", colour), 300)
 
-    def test_one_snapshot_gives_no_movie_and_no_map(self):
+    def test_single_snapshot_gives_no_movie_and_no_map(self):
         run = synthetic.write_sod(self.folder / "sod", cells=50, snapshots=1)
         self.assertEqual(_plot(run)[:2], (0, ["fields.png", "history.png"]))
 
-    def test_format_field_and_out_are_obeyed(self):
+    def test_obeys_format_field_and_out(self):
         run = synthetic.write_sod(self.folder / "sod", cells=50, snapshots=2)
         before = sorted(run.iterdir())
         code, files, _ = _plot(
@@ -74,22 +74,22 @@ class Pictures(unittest.TestCase):
         self.assertEqual((self.folder / "deep/er/fields.pdf").read_bytes()[:4], b"%PDF")
         self.assertEqual(sorted(run.iterdir()), before)
 
-    def test_exact_values_have_zero_error_and_disturbed_ones_theirs(self):
+    def test_error_is_zero_for_exact_values_and_equals_disturbance(self):
         run = self.folder / "run"
         run.mkdir()
         x = np.linspace(-0.99, 0.99, 100)
         (run / "scene.toml").write_text(synthetic.SOD_SCENE.format(cells=100))
         synthetic.write_fields(run / "fields.h5", x, [0.2, 0.4], synthetic.sod)
-        loaded = read(run)
-        for error in errors(loaded, loaded.snapshots[0], exact_solution(loaded)).values():
+        loaded = read_run(run)
+        for error in pointwise_errors(loaded, loaded.snapshots[0], exact_solution(loaded)).values():
             np.testing.assert_array_equal(error, 0)
         self.assertEqual(_plot(run, "--movie", "none")[0], 0)
         self.assertEqual(_pixels_of(run / "fields.png", _COLOURS["error"]), 0)
         loaded.snapshots[1].fields["p"].values[7] += 0.25
-        error = errors(loaded, loaded.snapshots[1], exact_solution(loaded))["p"]
+        error = pointwise_errors(loaded, loaded.snapshots[1], exact_solution(loaded))["p"]
         self.assertEqual(error[7], 0.25)
 
-    def test_advected_wave_is_compared_with_its_shift(self):
+    def test_advected_wave_has_error_of_roundoff(self):
         run = self.folder / "wave"
         run.mkdir()
         x = -1 + (np.arange(40) + 0.5) / 20
@@ -101,12 +101,12 @@ class Pictures(unittest.TestCase):
         synthetic.write_fields(
             run / "fields.h5", x, [1.3], lambda t, x: (1 + 0.2 * np.sin(np.pi * (x - t)), one, one)
         )
-        loaded = read(run)
-        error = errors(loaded, loaded.snapshots[0], exact_solution(loaded))
+        loaded = read_run(run)
+        error = pointwise_errors(loaded, loaded.snapshots[0], exact_solution(loaded))
         self.assertLess(np.abs(error["rho"]).max(), 1e-14)
         self.assertEqual(_plot(run)[0], 0)
 
-    def test_reference_run_stands_for_the_solution_at_the_end_only(self):
+    def test_reference_run_applies_at_final_time_only(self):
         run = self.folder / "blast"
         run.mkdir()
         (run / "scene.toml").write_text('[verify]\nexact = "reference"\n')
@@ -118,16 +118,16 @@ class Pictures(unittest.TestCase):
         synthetic.write_fields(
             run / "fields.h5", x, [0.1, 0.2], lambda t, x: (1 + x**2, x, x + 2 + t), reference
         )
-        loaded = read(run)
+        loaded = read_run(run)
         exact = exact_solution(loaded)
         self.assertIn("2001 cells", exact.name)
-        self.assertEqual(errors(loaded, loaded.snapshots[0], exact), {})
-        np.testing.assert_allclose(errors(loaded, loaded.snapshots[1], exact)["p"], 0.2)
+        self.assertEqual(pointwise_errors(loaded, loaded.snapshots[0], exact), {})
+        np.testing.assert_allclose(pointwise_errors(loaded, loaded.snapshots[1], exact)["p"], 0.2)
         self.assertEqual(_plot(run)[:2], (0, ["fields.gif", "fields.png"]))
 
-    def test_history_tells_conservation_from_what_left_through_the_ends(self):
+    def test_conservation_accounts_for_outflow_at_ends(self):
         synthetic.write_history(self.folder / "history.csv")
-        change = conservation(read(self.folder))
+        change = conservation(read_run(self.folder))
         self.assertEqual(list(change), ["mass", "momentum", "energy"])
         for name, values in change.items():
             self.assertLess(np.abs(values).max(), 1e-14, name)
@@ -135,21 +135,21 @@ class Pictures(unittest.TestCase):
         cells = lost[-1].split(",")
         cells[3] = str(float(cells[3]) * 0.99)
         (self.folder / "history.csv").write_text("\n".join(lost[:-1] + [",".join(cells)]))
-        self.assertAlmostEqual(conservation(read(self.folder))["mass"][-1], -0.01, delta=1e-12)
+        self.assertAlmostEqual(conservation(read_run(self.folder))["mass"][-1], -0.01, delta=1e-12)
         self.assertEqual(_plot(self.folder)[:2], (0, ["history.png"]))
 
-    def test_study_gives_error_against_time_and_mesh(self):
+    def test_study_shows_observed_orders_and_failures(self):
         synthetic.write_study(self.folder / "study.csv", failed=1)
         self.assertEqual(_plot(self.folder)[:2], (0, ["study.png"]))
-        figure = study_figure("sod", read(self.folder).study)
+        figure = study_figure("sod", read_run(self.folder).study)
         words = [text.get_text() for text in figure.texts + figure.axes[1].texts]
         self.assertIn("WENO-JS  order 0.90", words)
         self.assertTrue(any("1 of 12 runs failed" in text for text in words), words)
 
-    def test_study_of_cloth_gives_orders_in_the_length_of_an_edge(self):
+    def test_study_of_cloth_measures_order_in_edge_length(self):
         synthetic.write_springs_study(self.folder / "study.csv")
         self.assertEqual(_plot(self.folder)[:2], (0, ["study.png"]))
-        rows = read(self.folder).study
+        rows = read_run(self.folder).study
         for norm, title, count in (("", "frequency", 4), ("cauchy_area", "next mesh (m$^2$)", 3)):
             with self.subTest(norm):
                 figure = study_figure("drum", rows, norm)
@@ -160,35 +160,37 @@ class Pictures(unittest.TestCase):
                 self.assertEqual(count, len(by_mesh.lines[0].get_xdata()))
         self.assertEqual(_plot(self.folder, "--norm", "cauchy_kinetic")[:2], (0, ["study.png"]))
 
-    def test_study_of_what_is_kept_shows_how_meshes_differ(self):
+    def test_study_of_invariants_shows_differences_of_meshes(self):
         synthetic.write_springs_study(self.folder / "study.csv", checks=("energy_drift",))
-        rows = read(self.folder).study
+        rows = read_run(self.folder).study
         self.assertIn("area", study_figure("cone", rows).axes[0].get_ylabel())
-        # Of one mesh there is no difference.
+        # A single mesh has no difference to another one.
         self.assertIn("energy drift", study_figure("cone", rows[-1:]).axes[0].get_ylabel())
 
-    def test_study_of_one_mesh_without_checks_says_what_it_lacks(self):
+    def test_study_without_drawable_rows_reports_reason(self):
         synthetic.write_springs_study(self.folder / "study.csv", checks=())
         (self.folder / "study.json").write_text('{"scene": "cone"}')
-        rows = read(self.folder).study
+        rows = read_run(self.folder).study
         with self.assertRaisesRegex(Failure, "cone has nothing to draw: 1 of 1 have no finer mesh"):
             study_figure("cone", rows[-1:])
         with self.assertRaisesRegex(Failure, "it is empty"):
             study_figure("cone", [])
 
-    def test_study_of_what_is_kept_tells_no_order(self):
+    def test_study_of_invariants_shows_no_order(self):
         synthetic.write_springs_study(self.folder / "study.csv", checks=("energy_balance",))
-        rows = read(self.folder).study
+        rows = read_run(self.folder).study
         for norm, label in (("energy_balance", "biquadratic"), ("cauchy_area", "biquadratic  order 2.00")):
             with self.subTest(norm):
-                self.assertEqual([label], [text.get_text() for text in study_figure("cloth", rows, norm).axes[1].texts])
+                self.assertEqual(
+                    [label], [text.get_text() for text in study_figure("cloth", rows, norm).axes[1].texts]
+                )
 
-    def test_labels_of_a_study_fit_however_long_and_many(self):
+    def test_many_long_labels_of_study_fit(self):
         axes = ("", " lf-global", " lf-single"), ("", " ssprk43"), ("", " split")
         settings = ["".join(words) for words in itertools.product(*axes)]
         synthetic.write_study(self.folder / "study.csv", settings=settings)
         (self.folder / "study.json").write_text('{"scene": "lax"}')
-        run = read(self.folder)
+        run = read_run(self.folder)
         figure = study_figure(run.scene_name, run.study)
         renderer = figure.canvas.get_renderer()
         self.assertIn("lax", [text.get_text() for text in figure.texts])
@@ -200,15 +202,32 @@ class Pictures(unittest.TestCase):
             self.assertLessEqual(box.y1, figure.axes[1].get_window_extent().y1 + box.height)
         self.assertEqual(_plot(self.folder, "--norm", "l1_pressure")[:2], (0, ["study.png"]))
 
-    def test_largest_density_is_told_as_a_deviation(self):
+    def test_labels_max_density_as_deviation(self):
         run = synthetic.write_sod(self.folder / "sedov", cells=20, snapshots=1)
         check = {"name": "max_density", "value": 1.2e-3, "tolerance": 0.02, "passed": True}
         (run / "result.json").write_text(json.dumps({"checks": [check]}))
         (run / "scene.toml").write_text("")
-        loaded = read(run)
+        loaded = read_run(run)
         figure = fields_figure(View(loaded, ["rho"], exact_solution(loaded)), loaded.snapshots[-1])
         captions = "".join(text.get_text() for text in figure.texts)
         self.assertRegex(captions, r"max density off by 1\.2.* \(tolerance 0\.02\)")
+
+
+class Installed(unittest.TestCase):
+    def setUp(self):
+        self.folder = Path(tempfile.mkdtemp())
+        self.addCleanup(shutil.rmtree, self.folder)
+
+    def test_copy_of_package_prints_version_and_draws(self):
+        share = self.folder / "share" / "drogue"
+        shutil.copytree(packages.SOURCE / "scripts" / "plot", share / "plot")
+        synthetic.write_history(self.folder / "history.csv")
+        environment = os.environ | {"PYTHONPATH": str(share), "DROGUE_VERSION": "1.2.3"}
+        for words, output in (("--version", "drogue-plot 1.2.3 (git"), (str(self.folder), "history.png")):
+            command = [sys.executable, "-m", "plot", words]
+            done = subprocess.run(command, capture_output=True, text=True, env=environment, check=False)
+            self.assertEqual((done.returncode, done.stderr), (0, ""))
+            self.assertIn(output, done.stdout)
 
 
 class Refusals(unittest.TestCase):
@@ -223,7 +242,7 @@ class Refusals(unittest.TestCase):
         for word in words:
             self.assertIn(word, sentence)
 
-    def test_usage(self):
+    def test_rejects_wrong_usage(self):
         self._refused(2, ["no such folder"], self.folder / "absent")
         self._refused(2, ["nothing to draw"], self.folder)
         self._refused(2, ["run directory is missing"])
@@ -231,36 +250,40 @@ class Refusals(unittest.TestCase):
         self._refused(2, ["jpeg"], self.folder, "--format", "jpeg")
         self._refused(2, ["20 to 1200"], self.folder, "--dpi", "5")
 
-    def test_unknown_field_names_the_nearest(self):
+    def test_rejects_unknown_field_with_nearest_name(self):
         run = synthetic.write_sod(self.folder / "sod", cells=20, snapshots=1)
         self._refused(2, ["'rhoo'", "nearest is rho"], run, "--field", "rhoo")
 
-    def test_unknown_norm_names_the_columns(self):
+    def test_rejects_unknown_norm_with_available_columns(self):
         synthetic.write_study(self.folder / "study.csv")
         self._refused(2, ["'l3_density'", "l1_density"], self.folder, "--norm", "l3_density")
         self._refused(2, ["no norm 'label'"], self.folder, "--norm", "label")
         synthetic.write_springs_study(self.folder / "study.csv")
         self._refused(2, ["'cauchy_aera'", "nearest is cauchy_area"], self.folder, "--norm", "cauchy_aera")
 
-    def test_norm_without_a_study(self):
+    def test_rejects_norm_without_study(self):
         run = synthetic.write_sod(self.folder / "sod", cells=20, snapshots=1)
         self._refused(2, ["no study"], run, "--norm", "l1_density")
 
-    def test_environment_that_cannot_be_read(self):
-        # A name too long and a file that is no program fail for every user, root too.
+    def test_unreadable_environment_counts_as_absent(self):
+        # A name that is too long and a file that is not executable fail for every user, even root.
         (self.folder / "bin").mkdir()
         (self.folder / "bin" / "python3").write_text("")
         for venv in ("x" * 300, str(self.folder)):
             environment = os.environ | {"DROGUE_VENV": venv, "PYTHONPATH": str(packages.SOURCE / "scripts")}
             environment.pop("DROGUE_PLOT_MOVED", None)
-            # -S: without the packages of this interpreter.
+            # -S hides the packages of this interpreter.
             done = subprocess.run(
-                [sys.executable, "-S", "-m", "plot", "."], capture_output=True, text=True, env=environment, check=False
+                [sys.executable, "-S", "-m", "plot", "."],
+                capture_output=True,
+                text=True,
+                env=environment,
+                check=False,
             )
             self.assertEqual((done.returncode, done.stderr.count("\n")), (2, 1), done.stderr)
             self.assertIn("packages are missing", done.stderr)
 
-    def test_damaged_files(self):
+    def test_rejects_damaged_files(self):
         cases = {
             "fields.h5": b"\x89HDF\r\n\x1a\nnot really",
             "scene.toml": b"[mesh\n",
@@ -276,13 +299,13 @@ class Refusals(unittest.TestCase):
                 self.assertEqual(code, 6, sentence)
                 self.assertEqual(sentence.count("\n"), 1, sentence)
 
-    def test_truncated_fields(self):
+    def test_rejects_truncated_fields(self):
         run = synthetic.write_sod(self.folder / "sod", cells=200, snapshots=4)
         content = (run / "fields.h5").read_bytes()
         (run / "fields.h5").write_bytes(content[: len(content) // 2])
         self._refused(6, ["fields.h5"], run)
 
-    def test_folder_that_cannot_be_written(self):
+    def test_reports_unwritable_folder(self):
         run = synthetic.write_sod(self.folder / "sod", cells=20, snapshots=1)
         (self.folder / "file").write_text("")
         self._refused(6, ["cannot be written"], run, "--out", self.folder / "file" / "pictures")

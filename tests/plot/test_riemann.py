@@ -1,10 +1,10 @@
-"""The exact Riemann solver against tabulated states, and against the laws its solution must obey."""
+"""The exact Riemann solver against tabulated states, conservation laws and symmetry."""
 
 import unittest
 
-import packages  # noqa: F401, before all that needs the packages  isort: skip
+import packages  # noqa: F401, before modules that need the packages  isort: skip
 import numpy as np
-from plot.riemann import State, opens_vacuum, sample, star_region
+from plot.gas.riemann import State, opens_vacuum, sample, star_region
 
 # left, right, gamma -> p*, u*, rho*L, rho*R; Toro (2009) table 4.3 and the literature, seven digits.
 _TABLE = {
@@ -31,7 +31,7 @@ def _flux(state, gamma):
 
 
 class ExactRiemannSolver(unittest.TestCase):
-    def test_star_states_match_the_tables(self):
+    def test_star_states_match_tables(self):
         for name, (left, right, gamma, expected) in _TABLE.items():
             with self.subTest(name):
                 left, right = State(*left), State(*right)
@@ -46,15 +46,15 @@ class ExactRiemannSolver(unittest.TestCase):
         for _ in range(25):
             gamma = rng.uniform(1.1, 1.9)
             left, right = (State(*rng.uniform((0.1, -3, 0.1), (4, 3, 9))) for _ in range(2))
-            reach = 12 + 2 * max(left.sound_speed(gamma), right.sound_speed(gamma))
-            edges = np.linspace(-reach, reach, 400_001)
+            half_width = 12 + 2 * max(left.sound_speed(gamma), right.sound_speed(gamma))
+            edges = np.linspace(-half_width, half_width, 400_001)
             xi = 0.5 * (edges[1:] + edges[:-1])
             total = _conserved(*sample(xi, left, right, gamma), gamma).sum(1) * (edges[1] - edges[0])
             start = [_conserved(side.rho, side.u, side.p, gamma) for side in (left, right)]
-            expected = reach * (start[0] + start[1]) + _flux(left, gamma) - _flux(right, gamma)
+            expected = half_width * (start[0] + start[1]) + _flux(left, gamma) - _flux(right, gamma)
             np.testing.assert_allclose(total, expected, rtol=2e-3, atol=2e-3)
 
-    def test_mirrored_problem_gives_the_mirrored_solution(self):
+    def test_mirrored_problem_has_mirrored_solution(self):
         left, right = State(1, 0.75, 1), State(0.125, -0.2, 0.1)
         xi = np.linspace(-3, 3, 601) + 1e-4
         rho, u, p = sample(xi, left, right, 1.4)
@@ -62,7 +62,7 @@ class ExactRiemannSolver(unittest.TestCase):
         for values, other in zip((rho, u, p), mirrored * np.array([[1], [-1], [1]])):
             np.testing.assert_allclose(values, other, atol=1e-12)
 
-    def test_vacuum_opens_where_the_states_part_fast_enough(self):
+    def test_vacuum_opens_between_fast_receding_states(self):
         left, right = State(7, -1, 0.2), State(7, 1, 0.2)
         self.assertTrue(opens_vacuum(left, right, 1.4))
         self.assertFalse(opens_vacuum(left, State(7, 0.99, 0.2), 1.4))

@@ -1,4 +1,4 @@
-"""drogue-plot on a synthetic run of cloth and on one of a string."""
+"""Figures of synthetic runs of cloth, strings and contact bodies."""
 
 import contextlib
 import io
@@ -7,20 +7,22 @@ import tempfile
 import unittest
 from pathlib import Path
 
-import packages  # before all that needs the packages  isort: skip
+import packages  # before modules that need the packages  isort: skip
 import h5py
 import numpy as np
 from PIL import Image, ImageSequence
 from plot import cli, style
-from plot.run_directory import read
-from plot.springs_figures import View, figure
-from plot.springs_history import springs_history_figure
+from plot.run_directory import read_run
+from plot.springs.fabric_figure import View, fabric_figure
+from plot.springs.history_figure import springs_history_figure
 
 assert packages.SOURCE
 
 
-def write_run(folder, vertices, triangles, edges, moved, stress=None, directions=None, contact="", strings=None):
-    """A run directory whose snapshots are the positions `moved`."""
+def write_run(
+    folder, vertices, triangles, edges, moved, stress=None, directions=None, contact="", strings=None
+):
+    """Writes a run directory whose snapshots have the positions `moved`; returns its path."""
     folder.mkdir()
     (folder / "scene.toml").write_text('app = "springs"\n' + contact)
     header = "time [s],step,kinetic [J],elastic [J],potential [J],energy [J],probe_0_x [m],probe_0_y [m],probe_0_z [m]"
@@ -55,77 +57,91 @@ class SpringsPictures(unittest.TestCase):
 
     def assert_drawn(self, run):
         self.assertEqual(0, cli.main([str(run), "--quiet"]))
-        self.assertEqual({"fields.png", "fields.gif", "history.png"},
-                         {file.name for file in run.iterdir() if file.suffix in (".png", ".gif")})
+        self.assertEqual(
+            {"fields.png", "fields.gif", "history.png"},
+            {file.name for file in run.iterdir() if file.suffix in (".png", ".gif")},
+        )
 
-    def test_cloth_in_space(self):
+    def test_draws_cloth_in_space(self):
         raised = SQUARE + [[0, 0, 0], [0, 0, 0], [0, 0, 0.5], [0, 0, 0]]
-        run = write_run(self.folder / "run", SQUARE, TRIANGLES, EDGES, [SQUARE, raised], [[0.0, 0.0], [2.0, 1.0]])
+        run = write_run(
+            self.folder / "run", SQUARE, TRIANGLES, EDGES, [SQUARE, raised], [[0.0, 0.0], [2.0, 1.0]]
+        )
         self.assert_drawn(run)
-        view = View(read(run))
+        view = View(read_run(run))
         self.assertIsNone(view.labels)
         self.assertEqual(("von Mises stress", "N/m"), view.quantity)
-        np.testing.assert_allclose(np.eye(3), view.across @ view.across.T, atol=1e-15)
-        self.assertGreater(view.across[1] @ [0, 0, 1], 0.5, "up is up")
+        np.testing.assert_allclose(np.eye(3), view.projection @ view.projection.T, atol=1e-15)
+        self.assertGreater(view.projection[1] @ [0, 0, 1], 0.5, "the vertical axis must point upwards")
         with Image.open(run / "fields.gif") as movie:
             self.assertEqual(2, movie.n_frames)
 
     def refusal(self, run, *words):
-        with contextlib.redirect_stderr(io.StringIO()) as told:
+        with contextlib.redirect_stderr(io.StringIO()) as errors:
             self.assertEqual(2, cli.main([str(run), *words]))
         self.assertEqual([], [file.name for file in run.iterdir() if file.suffix in (".png", ".gif")])
-        return told.getvalue()
+        return errors.getvalue()
 
-    def test_unknown_field(self):
+    def test_rejects_unknown_field_with_nearest_name(self):
         run = write_run(self.folder / "run", SQUARE, TRIANGLES, EDGES, [SQUARE], [[1.0, 1.0]])
         self.assertIn("no field 'von_mise'; nearest is von_mises", self.refusal(run, "--field", "von_mise"))
         self.assertEqual(0, cli.main([str(run), "--quiet", "--field", "von_mises"]))
 
-    def test_a_run_that_failed_at_once(self):
+    def test_rejects_run_without_snapshots(self):
         run = write_run(self.folder / "run", SQUARE, TRIANGLES, EDGES, [])
         history = run / "history.csv"
         history.write_text("\n".join(history.read_text().splitlines()[:2]) + "\n")
         self.assertIn("nothing to draw", self.refusal(run))
         self.assertIn("no field 'position'; it has none", self.refusal(run, "--field", "position"))
 
-    def test_flat_cloth_lies_in_its_plane(self):
+    def test_draws_flat_cloth_in_its_plane(self):
         run = write_run(self.folder / "run", SQUARE, TRIANGLES, EDGES, [SQUARE, 1.5 * SQUARE])
         self.assert_drawn(run)
-        view = View(read(run))
+        view = View(read_run(run))
         self.assertEqual(("x", "y"), view.labels)
         np.testing.assert_allclose(view.values(view.run.snapshots[1]), (0.5 + np.sqrt(0.5)) / 3)
 
-    def test_what_a_stretched_drum_does_is_not_hidden(self):
+    def test_displacement_excludes_prestretch(self):
         moved = 1.5 * SQUARE + [0, 0, 1e-6]
-        run = write_run(self.folder / "run", SQUARE, TRIANGLES, EDGES, [moved], contact="[initial]\nprestretch = 0.5\n")
-        view = View(read(run))
+        run = write_run(
+            self.folder / "run", SQUARE, TRIANGLES, EDGES, [moved], contact="[initial]\nprestretch = 0.5\n"
+        )
+        view = View(read_run(run))
         np.testing.assert_allclose(view.values(view.run.snapshots[0]), 1e-6)
 
-    def test_a_string(self):
+    def test_draws_string_in_its_plane(self):
         line = np.array([[0, 0, 0], [1, 0, 0], [2, 0, 0]], float)
         sagging = line - [[0, 0, 0], [0, 0, 1], [0, 0, 0]]
         run = write_run(self.folder / "run", line, [], [[0, 1], [1, 2]], [line, sagging])
         self.assert_drawn(run)
-        self.assertEqual(("x", "z"), View(read(run)).labels)
+        self.assertEqual(("x", "z"), View(read_run(run)).labels)
 
-
-    def test_strings_beside_cloth(self):
-        """One that hangs from a corner, and one along the edge that two triangles share, a ridge or a valley; edges of cloth are none."""
+    def test_strings_beside_cloth_are_visible(self):
+        """Strings hang from a corner, or lie along the common edge of two triangles, on a ridge or in a valley."""
         place = np.array([*SQUARE, [1.5, 0, -0.5], [2, 0, -1]], float)
         for name, height in (("valley", 0.4), ("ridge", -0.4), ("flat", 0)):
             folded = place * [1, 1, int(height != 0)] + np.outer([0, 1, 0, 1, 0, 0], [0, 0, height])
             for strings, least in (([], 0), ([[5, 4], [4, 1]], 200), ([[2, 0]], 200)):
                 for stress in (None, [[0.0, 2.0]]):
                     with self.subTest(name, strings=strings, stress=stress):
-                        run = write_run(self.folder / f"{name}-{len(strings)}-{stress is None}", place, TRIANGLES,
-                                        [*EDGES, [1, 4], [4, 5]], [folded], stress, strings=np.array(strings, int).reshape(-1, 2))
+                        run = write_run(
+                            self.folder / f"{name}-{len(strings)}-{stress is None}",
+                            place,
+                            TRIANGLES,
+                            [*EDGES, [1, 4], [4, 5]],
+                            [folded],
+                            stress,
+                            strings=np.array(strings, int).reshape(-1, 2),
+                        )
                         pixels = self.vermilion(run)
                         self.assertTrue(pixels > least if strings else pixels == 0, pixels)
 
-    def test_strings_beside_cloth_move(self):
+    def test_strings_beside_cloth_move_in_movie(self):
         place = np.array([*SQUARE, [1.5, 0, -0.5]], float)
         moved = place + np.outer([0, 0, 0, 0, 1], [0, 0.5, 0.2])
-        run = write_run(self.folder / "run", place, TRIANGLES, [*EDGES, [1, 4]], [place, moved], strings=[[1, 4]])
+        run = write_run(
+            self.folder / "run", place, TRIANGLES, [*EDGES, [1, 4]], [place, moved], strings=[[1, 4]]
+        )
         self.assert_drawn(run)
         with Image.open(run / "fields.gif") as movie:
             frames = [np.asarray(frame.convert("RGB"), float) for frame in ImageSequence.Iterator(movie)]
@@ -133,47 +149,55 @@ class SpringsPictures(unittest.TestCase):
         self.assertGreater(np.count_nonzero(first & ~last), 20)
         self.assertGreater(np.count_nonzero(last & ~first), 20)
 
-    def test_a_file_that_does_not_name_strings(self):
+    def test_edges_are_strings_only_without_cloth(self):
         for triangles, count in ((TRIANGLES, 0), ([], 5)):
             run = write_run(self.folder / f"run{count}", SQUARE, triangles, EDGES, [SQUARE])
-            self.assertEqual(count, len(View(read(run)).strings))
+            self.assertEqual(count, len(View(read_run(run)).segments))
 
-    def test_history_takes_off_what_contact_and_friction_did(self):
+    def test_history_subtracts_works_of_contact_and_friction(self):
         run = write_run(self.folder / "run", SQUARE, TRIANGLES, EDGES, [SQUARE])
         rows = ["time [s],step,kinetic [J],elastic [J],potential [J],energy [J],contact_work [J],friction_work [J]",
                 "0,0,4,0,0,4,0,0", "1,1,2,0,0,2,-1.5,-0.5", "2,2,1,0,0,1,-2,-0.9"]  # fmt: skip
         (run / "history.csv").write_text("\n".join(rows) + "\n")
-        figure = springs_history_figure(read(run))
+        figure = springs_history_figure(read_run(run))
         energies, rest = figure.axes
         title = rest._left_title.get_window_extent(figure.canvas.get_renderer())
         self.assertLess(title.x1, figure.bbox.width)
         self.assertEqual(5, len(energies.lines))
         np.testing.assert_allclose(rest.lines[0].get_ydata(), [0, 0, -0.1 / 4], atol=1e-15)
 
-    def test_history_divides_by_what_the_check_divides_by(self):
-        """Kinetic energy that the elastic and potential energy given up between rows would make counts too."""
+    def test_history_scales_like_energy_check(self):
+        """The scale includes the kinetic energy that the released elastic and potential energy could give."""
         run = write_run(self.folder / "run", SQUARE, TRIANGLES, EDGES, [SQUARE])
         rows = ["time [s],step,kinetic [J],elastic [J],potential [J],energy [J]",
                 "0,0,1,3,5,9", "1,1,4,0,5,9", "2,2,0,1,-2,-1"]  # fmt: skip
         (run / "history.csv").write_text("\n".join(rows) + "\n")
-        change = springs_history_figure(read(run)).axes[1].lines[0].get_ydata()
+        change = springs_history_figure(read_run(run)).axes[1].lines[0].get_ydata()
         np.testing.assert_allclose(change, [0, 0, -10 / (1 + 2 + 7)], atol=1e-15)
 
-    def test_directions_of_the_larger_stress(self):
-        """Of flat cloth, where there is stress to speak of, as far apart as triangles are."""
-        run = write_run(self.folder / "run", SQUARE, TRIANGLES, EDGES, [SQUARE, SQUARE], [[1.0, 0.01]] * 2, [[0.6, 0.8, 0], [1, 0, 0]])
+    def test_draws_directions_of_larger_stress(self):
+        """Directions appear on flat cloth where the stress is large enough, and are shorter than the triangles."""
+        run = write_run(
+            self.folder / "run",
+            SQUARE,
+            TRIANGLES,
+            EDGES,
+            [SQUARE, SQUARE],
+            [[1.0, 0.01]] * 2,
+            [[0.6, 0.8, 0], [1, 0, 0]],
+        )
         self.assert_drawn(run)
-        view = View(read(run))
-        (start, end), = view.directions(view.run.snapshots[0])
+        view = View(read_run(run))
+        ((start, end),) = view.stress_directions(view.run.snapshots[0])
         np.testing.assert_allclose((start + end) / 2, [2 / 3, 1 / 3])
         np.testing.assert_allclose((end - start) / np.linalg.norm(end - start), [0.6, 0.8])
         self.assertLess(np.linalg.norm(end - start), 0.6)
         without = write_run(self.folder / "without", SQUARE, TRIANGLES, EDGES, [SQUARE], [[1.0, 0.01]])
-        view = View(read(without))
-        self.assertEqual(0, len(view.directions(view.run.snapshots[0])))
+        view = View(read_run(without))
+        self.assertEqual(0, len(view.stress_directions(view.run.snapshots[0])))
 
-    def test_bodies(self):
-        """Facets lie on their bodies, which are seen."""
+    def test_facets_lie_on_bodies_and_are_visible(self):
+        """All facets lie on the body, cover its extent, and add grey pixels."""
         raised = SQUARE + [[0, 0, 0], [0, 0, 0], [0, 0, 0.5], [0, 0, 0]]
         bodies = {
             "disk": ("centre = [0.0, -0.1, 0.2], normal = [0, -0.6, 0.8], radius = 0.3",
@@ -184,31 +208,42 @@ class SpringsPictures(unittest.TestCase):
                       lambda x: (np.abs(x[..., 2] + 0.1), x[..., 0], 1.1)),
         }  # fmt: skip
         stress = [[0.0, 0.0], [2.0, 1.0]]
-        plain = self.greys(write_run(self.folder / "plain", SQUARE, TRIANGLES, EDGES, [SQUARE, raised], stress))
+        plain = self.greys(
+            write_run(self.folder / "plain", SQUARE, TRIANGLES, EDGES, [SQUARE, raised], stress)
+        )
         for kind, (words, of) in bodies.items():
             with self.subTest(kind):
                 contact = f'[contact]\nobjects = [{{ kind = "{kind}", {words} }}, {{ kind = "level-set", expression = "z+9" }}]\n'
-                run = write_run(self.folder / kind, SQUARE, TRIANGLES, EDGES, [SQUARE, raised], stress, contact=contact)
-                distance, reach, most = of(View(read(run)).bodies)
+                run = write_run(
+                    self.folder / kind, SQUARE, TRIANGLES, EDGES, [SQUARE, raised], stress, contact=contact
+                )
+                distance, coordinate, largest = of(View(read_run(run)).body_facets)
                 self.assertLess(distance.max(), 1e-12)
-                self.assertAlmostEqual(most, reach.max())
+                self.assertAlmostEqual(largest, coordinate.max())
                 self.assertGreater(self.greys(run), plain + 1000)
 
-    def test_a_level_set(self):
-        """Its facets are a closed surface; of one that is not a number everywhere those about its numbers are there."""
+    def test_level_set_gives_closed_surface(self):
+        """A level set that is not a number in parts of space gives facets where it is finite."""
         raised = SQUARE + [0, 0, 0.6]
-        for text, closed in (("(x-0.5)^2+(y-0.5)^2+(z-0.3)^2-0.16", True), ("sqrt((z+0.1)*(z+0.1))-0.2+0*sqrt(x)", False)):
+        for text, closed in (
+            ("(x-0.5)^2+(y-0.5)^2+(z-0.3)^2-0.16", True),
+            ("sqrt((z+0.1)*(z+0.1))-0.2+0*sqrt(x)", False),
+        ):
             with self.subTest(text):
                 contact = f'[contact]\nobjects = [{{ kind = "level-set", expression = "{text}" }}]\n'
-                run = write_run(self.folder / f"run{closed}", SQUARE, TRIANGLES, EDGES, [SQUARE, raised], contact=contact)
-                facets = View(read(run)).bodies
+                run = write_run(
+                    self.folder / f"run{closed}", SQUARE, TRIANGLES, EDGES, [SQUARE, raised], contact=contact
+                )
+                facets = View(read_run(run)).body_facets
                 self.assertTrue(np.isfinite(facets).all())
                 if closed:
                     distance = np.abs(np.linalg.norm(facets - [0.5, 0.5, 0.3], axis=-1) - 0.4)
                     self.assertLess(distance.max(), (1.6 / 48) ** 2)  # the square of the cells
                     _, corners = np.unique(facets.reshape(-1, 3), axis=0, return_inverse=True)
                     loops = corners.reshape(-1, 4)
-                    edges = np.sort(np.stack((loops, np.roll(loops, 1, axis=1)), axis=-1).reshape(-1, 2), axis=1)
+                    edges = np.sort(
+                        np.stack((loops, np.roll(loops, 1, axis=1)), axis=-1).reshape(-1, 2), axis=1
+                    )
                     self.assertTrue((np.unique(edges, axis=0, return_counts=True)[1] == 2).all())
                 else:
                     inner = facets[(facets[..., 0] > 0.1).all(axis=1)]
@@ -217,9 +252,9 @@ class SpringsPictures(unittest.TestCase):
 
     @staticmethod
     def last_picture(run):
-        """Red, green and blue of its pixels."""
-        view = View(read(run))
-        drawn = figure(view, view.run.snapshots[-1])
+        """Red, green and blue of the pixels of the last snapshot, (3, n)."""
+        view = View(read_run(run))
+        drawn = fabric_figure(view, view.run.snapshots[-1])
         drawn.canvas.draw()
         colours = np.asarray(drawn.canvas.buffer_rgba(), float)[..., :3].reshape(-1, 3).T
         style.plt.close(drawn)
@@ -227,7 +262,7 @@ class SpringsPictures(unittest.TestCase):
 
     @staticmethod
     def vermilion_of(colours):
-        """Which pixels have the colour of strings."""
+        """Mask of the pixels in the colour of strings."""
         red, green, blue = colours
         return (red > 190) & (np.abs(green - 94) < 30) & (blue < 40)
 
@@ -235,15 +270,21 @@ class SpringsPictures(unittest.TestCase):
         return int(self.vermilion_of(self.last_picture(run)).sum())
 
     def greys(self, run):
-        """Pixels of the colour of bodies, lit or in the shade, in the last picture."""
+        """Number of pixels of the last snapshot in the colour of bodies, lit or shaded."""
         red, green, blue = self.last_picture(run)
         return int(((red > green) & (green > blue) & (red - blue < 12) & (red > 90) & (red < 200)).sum())
 
-    def test_a_string_over_a_ball(self):
+    def test_sphere_below_string_is_visible(self):
         line = np.array([[0, 0, 0], [1, 0, 0], [2, 0, 0]], float)
         sagging = line - [[0, 0, 0], [0, 0, 1], [0, 0, 0]]
-        run = write_run(self.folder / "run", line, [], [[0, 1], [1, 2]], [line, sagging],
-                        contact='[contact]\nobjects = [{ kind = "sphere", centre = [1, 0, -2], radius = 0.5 }]\n')
+        run = write_run(
+            self.folder / "run",
+            line,
+            [],
+            [[0, 1], [1, 2]],
+            [line, sagging],
+            contact='[contact]\nobjects = [{ kind = "sphere", centre = [1, 0, -2], radius = 0.5 }]\n',
+        )
         self.assertGreater(self.greys(run), 1000)
 
 

@@ -1,4 +1,4 @@
-"""A full disk, a limit on file sizes and directories that cannot be written: one sentence, no half file, exit 6."""
+"""Full disks, file-size limits and unwritable directories: one sentence, no partial file, exit code 6."""
 
 import contextlib
 import os
@@ -15,7 +15,7 @@ import gas_program
 
 class DiskTest(gas_program.GasTest):
     def assert_no_half_files(self, directory):
-        """Nothing under a temporary name, and what has its own name can be read."""
+        """Expects no temporary files, and readable files under their final names."""
         names = {path.name for path in directory.iterdir()}
         self.assertEqual([], sorted(name for name in names if name.startswith(".")))
         if "result.json" in names:
@@ -27,7 +27,7 @@ class DiskTest(gas_program.GasTest):
                 self.assertTrue(content, path)
 
     def run_with_limit(self, bytes_allowed, *words, sets=()):
-        """A file-size limit stands for a full disk where no file system of our own can be mounted."""
+        """A file-size limit emulates a full disk without mounting a file system."""
         line = gas_program.arguments("sod", "--backend", "serial", "--quiet", "--out", "run", *words, sets=sets)
         limit = (bytes_allowed, resource.RLIM_INFINITY)
         return subprocess.run(line, cwd=self.folder, capture_output=True, text=True, check=False, timeout=300,
@@ -36,7 +36,7 @@ class DiskTest(gas_program.GasTest):
 
 
 class FileSizeLimit(DiskTest):
-    def test_every_limit_ends_with_a_sentence(self):
+    def test_every_limit_is_reported_in_one_sentence(self):
         sets = ["mesh.cells=400", "output.restart_every=20", "output.history_every=1"]
         ends = set()
         for limit in (0, 100, 600, 3000, 20_000, 60_000, 120_000, 400_000, 4_000_000):
@@ -51,7 +51,7 @@ class FileSizeLimit(DiskTest):
                     self.assert_no_half_files(self.folder / "run")
         self.assertEqual({0, 6}, ends)
 
-    def test_the_former_restart_file_stays(self):
+    def test_keeps_the_former_restart_file(self):
         sets = ["mesh.cells=400", "output.restart_every=20", gas_program.NO_FIELDS, "run.max_steps=40"]
         self.expect(4, "sod", "--backend", "serial", "--quiet", "--out", "run", sets=sets)
         before = (self.folder / "run/restart.h5").read_bytes()
@@ -63,7 +63,7 @@ class FileSizeLimit(DiskTest):
         sets[-1] = "run.max_steps=1000"
         self.expect(0, "sod", "--backend", "serial", "--quiet", "--out", "run", "--restart", "auto", sets=sets)
 
-    def test_output_into_a_full_device(self):
+    def test_reports_a_full_device(self):
         with open("/dev/full", "w", encoding="utf-8") as full:
             line = gas_program.arguments("sod", "--print-scene")
             run = subprocess.run(line, stdout=full, stderr=subprocess.PIPE, text=True, check=False)
@@ -83,8 +83,8 @@ class OwnFileSystem(DiskTest):
         finally:
             subprocess.run(["umount", place], check=True)
 
-    def test_full_disk(self):
-        """Full at the start, while the fields or the restart file are written, and just before the end."""
+    def test_reports_a_full_disk(self):
+        """The disk fills at the start, during writes of fields or restart file, and just before the end."""
         for size in ("4k", "16k", "64k", "200k", "400k"):
             with self.subTest(size):
                 shutil.rmtree(self.folder / "disk", ignore_errors=True)
@@ -97,8 +97,8 @@ class OwnFileSystem(DiskTest):
                     if (disk / "run").exists():
                         self.assert_no_half_files(disk / "run")
 
-    def test_space_again(self):
-        """The run goes on from its restart file once there is space."""
+    def test_continues_once_there_is_space(self):
+        """The run continues from its restart file once there is space."""
         sets = ["mesh.cells=800", "output.restart_every=20"]
         with self.mounted("size=500k") as disk:
             run = self.start("sod", "--backend", "serial", "--quiet", "--out", disk / "run", sets=sets)
@@ -109,7 +109,7 @@ class OwnFileSystem(DiskTest):
             self.assertEqual(gas_program.fields(self.folder / "whole").datasets,
                              gas_program.fields(disk / "run").datasets)
 
-    def test_read_only(self):
+    def test_reports_a_read_only_file_system(self):
         with self.mounted("size=1m") as disk:
             (disk / "there").mkdir()
             subprocess.run(["mount", "-o", "remount,ro", disk], check=True)
@@ -118,7 +118,7 @@ class OwnFileSystem(DiskTest):
 
 
 class Forbidden(DiskTest):
-    def test_no_permission(self):
+    def test_reports_missing_permission(self):
         locked = self.folder / "locked"
         locked.mkdir(mode=0o555)
         if os.access(locked, os.W_OK):
@@ -126,7 +126,7 @@ class Forbidden(DiskTest):
         self.assertIn("Permission denied", self.expect(6, "sod", "--quiet", "--out", "locked").stderr)
         self.assertIn("Permission denied", self.expect(6, "sod", "--quiet", "--out", "locked/run").stderr)
 
-    def test_where_nobody_may_create(self):
+    def test_reports_a_folder_without_write_access(self):
         self.assertIn("/proc", self.expect(6, "sod", "--quiet", "--out", "/proc/drogue").stderr)
 
 

@@ -1,4 +1,5 @@
-"""Settings nobody thought of: a run ends well or in a clear failure, and what it keeps is conserved and finite."""
+# ctest-label: no-sanitizer
+"""Extreme settings: a run succeeds or reports a failure; its state is finite and conserved quantities are conserved."""
 
 import math
 import os
@@ -23,7 +24,7 @@ def riemann(left, right):
 
 class Hostile(gas_program.GasTest):
     def try_run(self, codes, scene, *sets, backend="serial"):
-        """Runs without fields; returns the exit code and what result.json tells."""
+        """Runs without fields; returns the exit code and the content of result.json."""
         run = self.start(scene, "--quiet", "--overwrite", "--out", "run", "--backend", backend,
                          sets=[gas_program.NO_FIELDS, *LENIENT[scene], *sets])
         self.assertIn(run.returncode, codes, f"{run.args}\n{run.stderr}")
@@ -36,13 +37,13 @@ class Hostile(gas_program.GasTest):
             self.assertLess(conservation["value"], 1e-11)
         return run.returncode, told
 
-    def test_smallest_meshes(self):
+    def test_runs_on_the_smallest_meshes(self):
         for scene in gas_program.SCENES:
             for cells in (8, 9):
                 with self.subTest(scene=scene, cells=cells):
                     self.try_run({0}, scene, f"mesh.cells={cells}")
 
-    def test_random_settings(self):
+    def test_random_settings_end_well_or_report_failure(self):
         choose = random.Random(4).choice
         for number in range(60):
             scene = choose([name for name in gas_program.SCENES if name != "sedov"])
@@ -61,13 +62,13 @@ class Hostile(gas_program.GasTest):
             with self.subTest(number=number, scene=scene, sets=sets):
                 self.try_run({0, 4} if limiter == "off" else {0}, scene, *sets, backend=choose(("serial", gas_program.threaded())))
 
-    def test_gammas(self):
+    def test_runs_with_extreme_gammas(self):
         for gamma in (1.000001, 1.0001, 1.01, 3, 100):
             with self.subTest(gamma):
                 self.try_run({0}, "lax", f"gas.gamma={gamma}")
 
-    def test_units(self):
-        """Air, thin and dense, slow and fast."""
+    def test_runs_in_extreme_units(self):
+        """Air of low and high density, at low and high speed."""
         air, vacuum = (1.2, 0.0, 1013250.0), (1.2e-3, 0.0, 101.325)
         for left, right, end in ((air, (1.2, 0.0, 101325.0), 1e-3), (air, vacuum, 1e-4), (vacuum, air, 1e-4),
                                  ((1e-10, 0.0, 1e-10), (1e-11, 0.0, 1e-11), 0.4),
@@ -77,12 +78,12 @@ class Hostile(gas_program.GasTest):
             with self.subTest(left=left, right=right):
                 self.try_run({0}, "sod", riemann(left, right), f"run.end_time={end!r}")
 
-    def test_domains(self):
+    def test_runs_on_extreme_domains(self):
         for length in (1e-8, 1e8):
             self.try_run({0}, "sod", f"mesh.domain=[{-length!r}, {length!r}]", f"run.end_time={0.4 * length!r}")
 
-    def test_beyond_what_numbers_hold(self):
-        """A clear failure in the first step, not a wrong answer."""
+    def test_reports_overflow_in_the_first_step(self):
+        """Expects a reported failure in the first step instead of a wrong result."""
         for left, right in (((1.0, 0.0, 1e300), (1.0, 0.0, 1e299)), ((1.0, 0.0, 1e200), (1.0, 0.0, 1e-200)),
                             ((1.0, 1e150, 1.0), (1.0, -1e150, 1.0))):
             with self.subTest(left=left, right=right):
@@ -90,26 +91,26 @@ class Hostile(gas_program.GasTest):
                 self.assertIn("not finite in cell", told["message"])
                 self.assertEqual(0, told["steps"])
 
-    def test_shortest_and_longest_runs(self):
+    def test_runs_for_extreme_times(self):
         for end in ("5e-324", "1e-300", "1e-17"):
             self.assertEqual((1, float(end)), tuple(self.try_run({0}, "sod", f"run.end_time={end}")[1][key]
                                                     for key in ("steps", "time")))
         told = self.try_run({4}, "sod", "run.end_time=1e300", "run.max_steps=50")[1]
         self.assertIn("max_steps = 50 reached", told["message"])
 
-    def test_exactly_enough_steps(self):
+    def test_max_steps_may_equal_the_steps_needed(self):
         steps = self.try_run({0}, "sod")[1]["steps"]
         self.try_run({0}, "sod", f"run.max_steps={steps}")
         self.try_run({4}, "sod", f"run.max_steps={steps - 1}")
 
-    def test_a_step_too_long(self):
+    def test_reports_a_violated_time_step_limit(self):
         for step in ("0.01", "0.1", "1e10"):
             with self.subTest(step):
                 told = self.try_run({4}, "sod", f"scheme.fixed_dt={step}", 'scheme.positivity="off"')[1]
                 self.assertRegex(told["message"], r"(pressure|density) is not positive in cell \d+ \(x = .* m\) at step ")
         self.try_run({0}, "sod", "scheme.fixed_dt=0.1", 'scheme.positivity="auto"')
 
-    def test_long_reflections(self):
+    def test_long_runs_with_reflections_end_well(self):
         for left, right in (("reflecting", "outflow"), ("outflow", "reflecting"), ("reflecting", "reflecting"),
                             ("periodic", "periodic")):
             with self.subTest(left=left, right=right):
@@ -118,7 +119,7 @@ class Hostile(gas_program.GasTest):
 
 
 class DenseOutput(gas_program.GasTest):
-    def test_every_step_everything(self):
+    def test_writes_all_outputs_at_every_step(self):
         times = [0.4 * i / 100 for i in range(101)]
         self.expect(0, "sod", "--backend", "serial", "--quiet", "--out", "run", sets=[
             "mesh.cells=20", "verify.l1_density=1.0", "output.history_every=1", "output.restart_every=1",
@@ -128,7 +129,7 @@ class DenseOutput(gas_program.GasTest):
         self.assertEqual(times, [file.attributes[f"/steps/{group}"]["time"] for group in groups])
         self.assertGreaterEqual(self.result("run")["steps"], 100)
 
-    def test_outputs_a_rounding_apart(self):
+    def test_keeps_output_times_that_differ_by_rounding(self):
         times = [0.0, 0.2, math.nextafter(0.2, 1.0), math.nextafter(0.4, 0.0), 0.4]
         self.expect(0, "sod", "--backend", "serial", "--quiet", "--out", "run", sets=[
             "mesh.cells=50", "verify.l1_density=1.0", f"output.times={times}"])

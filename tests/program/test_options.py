@@ -1,4 +1,5 @@
-"""What drogue-options takes, prints, writes and answers."""
+# ctest-label: no-sanitizer
+"""Command line, input, output files and exit codes of drogue-options."""
 
 import csv
 import json
@@ -19,7 +20,7 @@ from options_program import FAST, HEADER, batch, row
 
 
 class CommandLine(options_program.OptionsTest):
-    def test_information(self):
+    def test_prints_version_help_and_shipped_batches(self):
         self.assertRegex(self.expect(0, "--version").stdout, r"^drogue-options \d+\.\d+\.\d+\n")
         self.assertIn("surface", self.expect(0, "--help").stdout)
         for word in ("--out", "--tolerance", "--mesh", "--greeks", "--boundary", "--method", "--result", "--backend"):
@@ -29,7 +30,7 @@ class CommandLine(options_program.OptionsTest):
         self.assertEqual(names, [line.split()[0] for line in self.expect(0, "--list-batches").stdout.splitlines()])
         self.assertEqual([], self.names())
 
-    def test_usage(self):
+    def test_rejects_invalid_command_lines(self):
         cases = {
             (): "no command",
             ("prize", "example"): "prize",
@@ -62,28 +63,28 @@ class CommandLine(options_program.OptionsTest):
             ("price", "example", "extra"): "extra",
             ("price", "example", "--kokkos-num-threads=0"): "0",
         }
-        for words, told in cases.items():
+        for words, message in cases.items():
             with self.subTest(words):
-                self.assertIn(told, self.expect(2, *(words or ("--kokkos-tune-internals",))).stderr)
+                self.assertIn(message, self.expect(2, *(words or ("--kokkos-tune-internals",))).stderr)
         self.assertEqual([], self.names())
 
-    def test_backend_that_is_not_there(self):
+    def test_reports_a_missing_backend(self):
         if "cuda" in gas_program.backends():
-            self.skipTest("a CUDA build has that backend")
+            self.skipTest("a CUDA build has the backend")
         self.assertRegex(self.expect(77, "price", "example", "--backend", "cuda", "--result", "r.json").stderr, "cuda.*preset")
-        told = json.loads((self.folder / "r.json").read_text())
-        self.assertEqual(("no-backend", 77), (told["status"], told["exit_code"]))
+        written = json.loads((self.folder / "r.json").read_text())
+        self.assertEqual(("no-backend", 77), (written["status"], written["exit_code"]))
         self.assertEqual(["r.json"], self.names())
 
-    def test_what_is_no_input(self):
+    def test_rejects_input_that_is_no_regular_file(self):
         (self.folder / "folder").mkdir()
         os.mkfifo(self.folder / "pipe")
-        for name, told in (("folder", "directory"), ("pipe", "regular"), ("/dev/null", "regular"), ("none.csv", "no file")):
+        for name, message in (("folder", "directory"), ("pipe", "regular"), ("/dev/null", "regular"), ("none.csv", "no file")):
             with self.subTest(name):
-                self.assertIn(told, self.expect(2, "price", name).stderr)
+                self.assertIn(message, self.expect(2, "price", name).stderr)
         self.assertEqual(["folder", "pipe"], self.names())
 
-    def test_files_that_would_be_overwritten(self):
+    def test_rejects_outputs_that_overwrite_another_file(self):
         file = self.write(batch([row("a")]))
         (self.folder / "link.csv").symlink_to(file)
         os.link(file, self.folder / "hard.csv")
@@ -99,42 +100,41 @@ class CommandLine(options_program.OptionsTest):
 
 
 class Prices(options_program.OptionsTest):
-    def test_every_way_to_write_a_batch(self):
-        """Order of columns, defaults, quotes, ends of lines, a byte-order mark: all the same contracts."""
+    def test_all_spellings_of_a_batch_give_the_same_prices(self):
+        """Spellings: order of columns, defaults, quotes, line ends, a byte-order mark."""
         self.price(0, batch([row("a"), row("b", style="american")]), *FAST)
         expected = self.prices()
         plain = HEADER + "\n" + row("a") + "\n" + row("b", style="american")
         order = list(reversed(range(13)))
-        turned = "\n".join(",".join(line.split(",")[k] for k in order) for line in plain.splitlines())
+        reordered = "\n".join(",".join(line.split(",")[k] for k in order) for line in plain.splitlines())
         quoted = "\n".join(",".join(f' "{field}"\t' for field in line.split(",")) for line in plain.splitlines())
-        for content in (plain, turned, quoted, plain.replace("\n", "\r\n") + "\r\n", "\ufeff" + plain,
+        for content in (plain, reordered, quoted, plain.replace("\n", "\r\n") + "\r\n", "\ufeff" + plain,
                         "\n \n" + plain.replace("\n", "\n\n") + "\n\t\n", plain.replace(",0,1,", ",,1,").replace("put", "")):
             with self.subTest(content[:30]):
                 self.price(0, content, *FAST)
                 self.assertEqual(expected, self.prices())
 
-    def test_ids(self):
+    def test_keeps_ids_and_numbers_rows_without_one(self):
         for given in ('comma, "quote"', "0007", " inner blank", "ünï"):
             quoted = '"' + given.replace('"', '""') + '"'
             self.price(0, batch([row(quoted)]), *FAST)
             self.assertEqual(given, self.prices()[0]["id"])
         without = batch([row("")] * 3)
         self.price(0, without, *FAST)
-        self.assertEqual(["1", "2", "3"], [told["id"] for told in self.prices()])
+        self.assertEqual(["1", "2", "3"], [price["id"] for price in self.prices()])
         self.price(0, "\n".join(line.split(",", 1)[1] for line in without.splitlines()), *FAST)
-        self.assertEqual(["1", "2", "3"], [told["id"] for told in self.prices()])
+        self.assertEqual(["1", "2", "3"], [price["id"] for price in self.prices()])
 
-    def test_no_rows(self):
-        """No contract, no price, nothing wrong."""
+    def test_a_batch_without_rows_has_no_prices(self):
         self.price(0, HEADER + "\n")
         self.assertEqual([], self.prices())
 
-    def test_ends_of_the_ranges_of_meshes_and_steps(self):
+    def test_accepts_the_limits_of_mesh_and_steps(self):
         for mesh, steps in ((32, 8), (4096, 8), (32, 16384)):
             self.price(0, batch([row("a")]), "--mesh", mesh, "--steps", steps)
             self.assertEqual((str(mesh), str(steps)), tuple(self.prices()[0][name] for name in ("mesh", "steps")))
 
-    def test_greeks_when_asked_for(self):
+    def test_writes_greeks_on_request(self):
         content = batch([row("a", style="american")])
         self.price(0, content)
         self.assertEqual(("", "", ""), tuple(self.prices()[0][name] for name in ("delta", "gamma", "theta")))
@@ -144,15 +144,14 @@ class Prices(options_program.OptionsTest):
         for name, value in greeks.items():
             self.assertAlmostEqual(value, float(self.prices()[0][name]), delta=2e-3, msg=name)
 
-    def test_methods_agree(self):
-        """Two methods that share nothing."""
+    def test_methods_agree_within_their_errors(self):
         self.expect(0, "price", "example", "--quiet", "--out", "pide.csv")
         self.expect(0, "price", "example", "--quiet", "--out", "cos.csv", *FAST)
         for one, other in zip(self.prices("pide.csv"), self.prices("cos.csv"), strict=True):
             tolerance = float(one["error"]) + float(other["error"])
             self.assertAlmostEqual(float(one["price"]), float(other["price"]), delta=tolerance, msg=one["id"])
 
-    def test_the_dissertations_scheme(self):
+    def test_baseline_gives_a_price_without_error(self):
         self.price(0, batch([row("a", style="american")]), "--method", "seed", "--mesh", "128", "--steps", "128")
         self.assertAlmostEqual(0.239004005, float(self.prices()[0]["price"]), delta=5e-3)
         self.assertEqual("", self.prices()[0]["error"])
@@ -160,7 +159,7 @@ class Prices(options_program.OptionsTest):
         self.price(3, other, "--method", "seed", "--mesh", "128", "--steps", "32")
         self.assertEqual(["ok", "invalid"], [price["status"] for price in self.prices()])
 
-    def test_boundary(self):
+    def test_writes_the_exercise_boundary(self):
         lines = [row("put", style="american"), row("europe"), row("wait", style="american", type="call")]
         self.price(0, batch(lines), "--boundary", "b.csv")
         with (self.folder / "b.csv").open(encoding="utf-8", newline="") as file:
@@ -173,67 +172,67 @@ class Prices(options_program.OptionsTest):
         self.assertTrue(all(0.3 < spot < 1.0 for spot in spots))
         self.assertLess(spots[0], spots[-1])
 
-    def test_boundary_of_now_is_that_of_the_price(self):
+    def test_boundary_at_time_zero_equals_that_of_the_price(self):
         self.expect(0, "price", "example", "--quiet", "--backend", "serial", "--boundary", "b.csv")
         with (self.folder / "b.csv").open(encoding="utf-8", newline="") as file:
             now = {point["id"]: point["spot"] for point in csv.DictReader(file) if point["time"] == "0"}
-        self.assertEqual({told["id"]: told["exercise_boundary"] for told in self.prices() if told["exercise_boundary"]}, now)
+        self.assertEqual({price["id"]: price["exercise_boundary"] for price in self.prices() if price["exercise_boundary"]}, now)
 
-    def test_surface(self):
+    def test_surface_has_all_strikes_and_maturities(self):
         header = ",".join(name for name in HEADER.split(",") if name not in ("strike", "maturity"))
         sets = f"{header}\nset,european,put,1.0,0.1,0,1,8.15,-2.5,0.767,0.4\nbad,european,put,1.0,0.1,0,1,8.15,9,0.767,0.4\n"
         self.expect(3, "surface", self.write(sets), "--strikes", "0.8:1.2:5", "--maturities", "0.25,1", "--quiet", *FAST)
         with (self.folder / "surface.csv").open(encoding="utf-8", newline="") as file:
-            told = list(csv.DictReader(file))
-        self.assertEqual(11, len(told))
-        self.assertEqual(["0.8", "0.9", "1", "1.1", "1.2"], [f"{float(point['strike']):g}" for point in told[:5]])
-        self.assertEqual({"0.25", "1"}, {point["maturity"] for point in told[:10]})
-        self.assertEqual(("bad", "invalid", ""), (told[10]["id"], told[10]["status"], told[10]["strike"]))
+            written = list(csv.DictReader(file))
+        self.assertEqual(11, len(written))
+        self.assertEqual(["0.8", "0.9", "1", "1.1", "1.2"], [f"{float(point['strike']):g}" for point in written[:5]])
+        self.assertEqual({"0.25", "1"}, {point["maturity"] for point in written[:10]})
+        self.assertEqual(("bad", "invalid", ""), (written[10]["id"], written[10]["status"], written[10]["strike"]))
         self.price(0, batch([row("one", strike=1.2)]), *FAST)
-        self.assertEqual(self.prices()[0]["price"], told[9]["price"])
+        self.assertEqual(self.prices()[0]["price"], written[9]["price"])
 
-    def test_surface_by_finite_differences(self):
-        """Strikes share solves, and are within the errors of contracts that do not."""
+    def test_surface_agrees_with_single_contracts(self):
+        """Strikes of a surface share solves."""
         header = ",".join(name for name in HEADER.split(",") if name not in ("strike", "maturity"))
         sets = self.write(f"{header}\nset,american,put,1.0,0.1,0,1,8.15,-2.5,0.767,0.4\n", "sets.csv")
         words = ("--maturities", "0.25,1", "--mesh", "128", "--steps", "32", "--greeks", "--backend", "serial", "--quiet")
-        told = {}
+        written = {}
         for name, strikes in (("all", "0.5:2:7"), ("one", "1.25"), ("pieces", "0.5:2:7")):
             chunk = ("--chunk", "3") if name == "pieces" else ()
             self.expect(0, "surface", sets, "--strikes", strikes, *words, *chunk, "--out", f"{name}.csv", "--result", "r.json")
             with (self.folder / f"{name}.csv").open(encoding="utf-8", newline="") as file:
-                told[name] = list(csv.DictReader(file))
+                written[name] = list(csv.DictReader(file))
         self.assertEqual({"rows": 14, "ok": 14, "coarse": 0, "invalid": 0, "failed": 0},
                          json.loads((self.folder / "r.json").read_text())["counts"])
-        self.assertEqual(told["all"], told["pieces"])
-        self.assertEqual(told["one"], [told["all"][3], told["all"][10]])
-        contracts = [row(k, style="american", strike=point["strike"], maturity=point["maturity"]) for k, point in enumerate(told["all"])]
+        self.assertEqual(written["all"], written["pieces"])
+        self.assertEqual(written["one"], [written["all"][3], written["all"][10]])
+        contracts = [row(k, style="american", strike=point["strike"], maturity=point["maturity"]) for k, point in enumerate(written["all"])]
         self.price(0, batch(contracts), "--mesh", "128", "--steps", "32", "--greeks")
-        for point, own in zip(told["all"], self.prices(), strict=True):
+        for point, own in zip(written["all"], self.prices(), strict=True):
             room = float(point["error"]) + float(own["error"])
             self.assertAlmostEqual(float(point["price"]), float(own["price"]), delta=room, msg=point["strike"])
             self.assertAlmostEqual(float(point["delta"]), float(own["delta"]), delta=5e-3, msg=point["strike"])
-        boundary = [float(point["exercise_boundary"]) / float(point["strike"]) for point in told["all"][:7]]
+        boundary = [float(point["exercise_boundary"]) / float(point["strike"]) for point in written["all"][:7]]
         self.assertLess(max(boundary) - min(boundary), 1e-12)
 
-    def test_result(self):
+    def test_result_describes_the_run(self):
         content = batch([row("a"), row("b", beta=9), row("c", style="american")])
         message = self.price(3, content, "--result", "r.json").stderr.strip()
-        told = json.loads((self.folder / "r.json").read_text())
+        written = json.loads((self.folder / "r.json").read_text())
         self.assertEqual(("drogue.result/1", "drogue-options", "batch", "serial", "invalid", 3, message),
-                         tuple(told[key] for key in ("schema", "program", "scene", "backend", "status", "exit_code", "message")))
-        self.assertEqual({"rows": 3, "ok": 2, "coarse": 0, "invalid": 1, "failed": 0}, told["counts"])
-        self.assertGreater(told["timing"]["compute_s"], 0.0)
-        self.assertGreater(told["ledger"]["kernel_launches"], 0)
+                         tuple(written[key] for key in ("schema", "program", "scene", "backend", "status", "exit_code", "message")))
+        self.assertEqual({"rows": 3, "ok": 2, "coarse": 0, "invalid": 1, "failed": 0}, written["counts"])
+        self.assertGreater(written["timing"]["compute_s"], 0.0)
+        self.assertGreater(written["ledger"]["kernel_launches"], 0)
 
-    def test_failed_and_invalid_rows_are_both_told(self):
+    def test_reports_failed_and_invalid_rows(self):
         content = batch([row("a"), row("b", beta=9), row("c", rate=-400, maturity=2)])
         self.assertEqual("drogue-options: 1 of 3 rows failed, the first in line 4, and 1 of 3 rows invalid, the first in line 3; "
                          "every other row is priced in 'prices.csv'", self.price(4, content).stderr.strip())
         self.assertEqual(["ok", "invalid", "failed"], [price["status"] for price in self.prices()])
 
-    def test_failed_rows_are_advised_what_helps(self):
-        """Steps where steps may help, and what is an option of the run; prices by the advice where it is one."""
+    def test_message_of_a_failed_row_names_a_remedy(self):
+        """The remedy is an option of the run, and the row is priced with it."""
         header = HEADER + ",model,intensity,jump_mean,jump_deviation"
         gh = {"delta": row("delta", delta="1e-300"), "rate": row("rate", rate="1e308")}
         lines = [line + ",,,," for line in gh.values()]
@@ -242,43 +241,42 @@ class Prices(options_program.OptionsTest):
         grid = ("--mesh", "128", "--steps", "32")
         for words in (grid, ()):
             self.price(4, content, *words)
-            told = {price["id"]: price["message"] for price in self.prices()}
+            written = {price["id"]: price["message"] for price in self.prices()}
             for name in ("delta", "rate"):
-                self.assertIn("need numbers beyond all range", told[name])
-            self.assertIn("more happens until maturity than steps can follow", told["1e12"])
-            self.assertFalse([name for name in told if name != "1e4" and "--steps" in told[name]])
+                self.assertIn("need numbers beyond all range", written[name])
+            self.assertIn("more happens until maturity than steps can follow", written["1e12"])
+            self.assertFalse([name for name in written if name != "1e4" and "--steps" in written[name]])
             advice = "more --steps or another --mesh or" if words else "--mesh and --steps together instead of it or"
-            self.assertIn(advice, told["1e4"])
-            self.assertEqual(not words, "--tolerance" in told["1e4"])
-            self.assertTrue(all("--method cos may price it" in message for message in told.values()))
+            self.assertIn(advice, written["1e4"])
+            self.assertEqual(not words, "--tolerance" in written["1e4"])
+            self.assertTrue(all("--method cos may price it" in message for message in written.values()))
         self.price(4, content, "--mesh", "128", "--steps", "16384")
         self.assertEqual(["failed", "failed", "coarse", "failed"], [price["status"] for price in self.prices()])
         self.price(4, content, *FAST)
         self.assertEqual(["ok", "failed", "ok", "ok"], [price["status"] for price in self.prices()])
 
-    def test_summary(self):
+    def test_summary_counts_rows_by_status(self):
         run = self.expect(0, "price", "example", *FAST, "--tolerance", "1e-3")
         self.assertRegex(run.stdout, r"^example on \w+: 11 rows in \S+ s: 11 ok, 0 coarse, 0 invalid, 0 failed\n")
 
-    def test_summary_of_a_surface(self):
-        """Parameter sets are invalid, prices are ok: what is counted is said."""
+    def test_summary_of_a_surface_counts_parameter_sets_and_prices(self):
         sets = "spot,rate,lambda,alpha,beta,delta,style\n" + "".join(f"1,0.1,1,8,{beta},0.7,european\n" for beta in (-2, 9, -3))
         run = self.expect(3, "surface", self.write(sets), "--strikes", "0.9,1,1.1", "--maturities", "1,2", *FAST)
         self.assertRegex(run.stdout, r"^batch on \w+: 3 parameter sets in \S+ s: 1 invalid; 12 prices: 12 ok, 0 coarse, 0 invalid, 0 failed\n")
         self.assertIn("(1 of 3 parameter sets invalid; all others are priced in 'surface.csv')", run.stderr)
 
-    def test_a_strike_beyond_reason_is_one_point_of_a_surface(self):
-        """The others have the same bits whatever it is, and whatever chunks they are in."""
+    def test_an_invalid_strike_affects_only_its_points_of_a_surface(self):
+        """The other points have the same bits for any such strike and any size of chunks."""
         head = "id,style,spot,rate,lambda,alpha,beta,delta,variance"
         good = ["low,american,100,0.05,-0.5,15,-5,0.5,0.04", "high,european,1e25,0.05,-0.5,15,-5,0.5,0.04"]
         sets = self.write("\n".join([head, *good, "bad,european,100,0.05,-0.5,15,19,0.5,0.04"]))
-        told = {}
+        written = {}
         for strikes, chunk in (("100,1e25", ()), ("100,1e23", ()), ("1e101,100,1e25", ()), ("1e101,100,1e25", ("--chunk", "1")),
                                ("100", ()), ("1e25", ())):
             run = self.expect(3, "surface", sets, "--strikes", strikes, "--maturities", "0.5,1", "--mesh", "64", "--steps", "16",
                               "--result", "r.json", "--backend", "serial", *chunk)
             with (self.folder / "surface.csv").open(encoding="utf-8", newline="") as file:
-                told[strikes, chunk] = list(csv.DictReader(file))
+                written[strikes, chunk] = list(csv.DictReader(file))
             points = 4 * len(strikes.split(","))
             wrong = points - (2 if strikes in ("100", "1e25") else 4)
             self.assertRegex(run.stdout, rf": 3 parameter sets in \S+ s: 1 invalid; {points} prices: \d+ ok, \d+ coarse, {wrong} invalid, 0 failed")
@@ -286,16 +284,16 @@ class Prices(options_program.OptionsTest):
             self.assertIn(f"(1 of 3 parameter sets and {wrong} of {points} prices invalid; all others are priced", run.stderr)
             counts = json.loads((self.folder / "r.json").read_text())["counts"]
             self.assertEqual((points + 1, wrong + 1, points - wrong), (counts["rows"], counts["invalid"], counts["ok"] + counts["coarse"]))
-        mixed = told["100,1e25", ()]
+        mixed = written["100,1e25", ()]
         self.assertEqual(["low"] * 4 + ["high"] * 4 + ["bad"], [point["id"] for point in mixed])
         self.assertEqual(["100", "1e+25"] * 4, [point["strike"] for point in mixed[:8]])
         self.assertEqual(["0.5", "0.5", "1", "1"] * 2, [point["maturity"] for point in mixed[:8]])
         self.assertEqual({("spot/strike must lie between 1e-20 and 1e20", "", "")},
                          {(p["message"], p["price"], p["steps"]) for p in mixed[:8] if p["status"] == "invalid"})
         self.assertEqual(("|beta| < alpha", ""), (mixed[8]["message"][:14], mixed[8]["strike"]))
-        self.assertIn("strike must lie between 1e-100 and 1e100", {point["message"] for point in told["1e101,100,1e25", ()]})
-        self.assertEqual(told["1e101,100,1e25", ()], told["1e101,100,1e25", ("--chunk", "1")])
-        priced = {strikes: [point for point in points if point["price"]] for (strikes, _), points in told.items()}
+        self.assertIn("strike must lie between 1e-100 and 1e100", {point["message"] for point in written["1e101,100,1e25", ()]})
+        self.assertEqual(written["1e101,100,1e25", ()], written["1e101,100,1e25", ("--chunk", "1")])
+        priced = {strikes: [point for point in points if point["price"]] for (strikes, _), points in written.items()}
         self.assertEqual(4, len(priced["100,1e25"]))
         self.assertEqual(priced["100,1e25"], priced["1e101,100,1e25"])
         self.assertEqual(priced["100,1e25"], priced["100"] + priced["1e25"])
@@ -306,7 +304,7 @@ class SameBits(options_program.OptionsTest):
     BATCH = batch([row(k, style="american" if k % 2 else "european", spot=0.7 + 0.02 * k, maturity=0.1 + 0.05 * k,
                        beta=9 if k % 11 == 5 else -2.5) for k in range(40)])
 
-    def test_chunks(self):
+    def test_prices_are_independent_of_chunks(self):
         written = set()
         for chunk in (["--chunk", "1"], ["--chunk", "7"], ["--chunk", "1000"], []):
             self.price(3, self.BATCH, *chunk)
@@ -314,7 +312,7 @@ class SameBits(options_program.OptionsTest):
         self.assertEqual(1, len(written))
 
     @gas_program.needs_openmp
-    def test_backends(self):
+    def test_prices_are_independent_of_the_backend(self):
         for method in ([], [*FAST, "--tolerance", "1e-3"]):
             written = set()
             for backend in ("serial", "openmp"):
@@ -324,8 +322,8 @@ class SameBits(options_program.OptionsTest):
 
 
 class Files(options_program.OptionsTest):
-    def test_disk_full(self):
-        """A limit on file sizes stands for a full disk."""
+    def test_a_full_disk_leaves_the_former_file(self):
+        """A limit of the file size simulates a full disk."""
         file = self.write(batch([row(k) for k in range(300)]))
         self.write("former", "prices.csv")
         for limit in (0, 100, 5000):
@@ -337,7 +335,7 @@ class Files(options_program.OptionsTest):
                 self.assertEqual(["batch.csv", "prices.csv"], self.names())
                 self.assertEqual("former", (self.folder / "prices.csv").read_text())
 
-    def test_devices(self):
+    def test_writes_to_devices_and_reports_a_full_one(self):
         file = self.write(batch([row("a", style="american")]))
         for words in (("--out", "/dev/full"), ("--boundary", "/dev/full"), ("--result", "/dev/full")):
             run = self.expect(6, "price", file, "--quiet", *words)
@@ -347,9 +345,8 @@ class Files(options_program.OptionsTest):
         sets = self.write(f"{head}\n{line}\n", "sets.csv")
         self.expect(6, "surface", sets, "--strikes", "1", "--maturities", "1", "--out", "/dev/full")
 
-    def test_standard_output(self):
-        """What stood there stays, the link to it too, and no summary is among the rows. A link of our own: should this fail,
-        the system's stays."""
+    def test_appends_to_standard_output_without_a_summary(self):
+        """Uses a symbolic link of its own, so that a failure does not replace that of the system."""
         file = self.write(batch([row("a")]))
         (self.folder / "out").symlink_to("/proc/self/fd/1")
         self.expect(0, "price", file, *FAST)
@@ -362,8 +359,8 @@ class Files(options_program.OptionsTest):
         self.assertEqual("title\n" + expected, (self.folder / "all").read_text())
         self.assertTrue((self.folder / "out").is_symlink())
 
-    def test_a_pipe_whose_reader_leaves(self):
-        """The prices do not fit into the pipe, so the program cannot have ended before."""
+    def test_reports_a_pipe_whose_reader_closes(self):
+        """The prices do not fit into the buffer of the pipe, so that the program is still running."""
         file = self.write(batch([row(f"a{k:0100}") for k in range(2000)]))
         os.mkfifo(self.folder / "pipe")
         reader = os.open(self.folder / "pipe", os.O_RDONLY | os.O_NONBLOCK)
@@ -378,11 +375,11 @@ class Files(options_program.OptionsTest):
         self.assertEqual("drogue-options: cannot write 'pipe': Broken pipe\n", process.communicate(timeout=60)[1])
         self.assertEqual(6, process.returncode)
 
-    def test_folder_that_is_not_there(self):
+    def test_reports_a_missing_output_folder(self):
         self.assertIn("no/prices.csv", self.price(6, batch([row("a")]), "--out", "no/prices.csv").stderr)
 
     def start_long_run(self, *words, method=FAST):
-        """A run that has begun to price, and goes on for long."""
+        """Starts a run of minutes and returns its process once it is pricing."""
         file = self.write(batch([row(k, style="american", spot=0.5 + 1e-4 * k) for k in range(3000)]))
         command = [options_program.PROGRAM, "price", file, "--backend", "serial", *method, "--result", "r.json", *words]
         process = subprocess.Popen(command, cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
@@ -394,20 +391,20 @@ class Files(options_program.OptionsTest):
         process.kill()
         self.fail("the run has not begun")
 
-    def test_killed(self):
+    def test_a_killed_run_leaves_no_output(self):
         process = self.start_long_run()
         process.kill()
         process.communicate()
         self.assertFalse((self.folder / "prices.csv").exists())
 
-    def test_interrupted_with_an_output_that_is_no_file(self):
+    def test_reports_partial_output_to_a_device_after_an_interrupt(self):
         process = self.start_long_run("--out", "/dev/null", "--boundary", "b.csv", "--mesh", "512", "--steps", "512", method=())
         process.send_signal(signal.SIGINT)
         process.communicate(timeout=60)
         self.assertEqual((130, ["batch.csv", "r.json"]), (process.returncode, self.names()))
         self.assertIn("not all is written to '/dev/null'", json.loads((self.folder / "r.json").read_text())["message"])
 
-    def test_interrupted(self):
+    def test_an_interrupted_run_leaves_only_its_result(self):
         process = self.start_long_run()
         time.sleep(0.5)
         process.send_signal(signal.SIGINT)
@@ -416,21 +413,21 @@ class Files(options_program.OptionsTest):
         self.assertEqual(["batch.csv", "r.json"], self.names())
         self.assertEqual("interrupted", json.loads((self.folder / "r.json").read_text())["status"])
 
-    def test_memory_does_not_grow_with_the_batch(self):
+    def test_memory_is_independent_of_the_batch_size(self):
         peaks = []
         for rows in (1000, 10000):
             self.price(0, batch([row(k) for k in range(rows)]), *FAST, "--chunk", "500", "--result", "r.json")
             peaks.append(json.loads((self.folder / "r.json").read_text())["peak_bytes"]["host"])
         self.assertLess(peaks[1], peaks[0] + 2 * 2**20)
 
-    def test_a_line_of_a_gigabyte(self):
-        """A hole in the file, which takes no space on the disk."""
+    def test_reports_a_line_of_a_gigabyte_in_little_memory(self):
+        """The line is a hole in a sparse file."""
         file = self.write(batch([row("a")]))
         with file.open("r+b") as stream:
             stream.seek(2**30)
             stream.write(f"\n{row('b')}\n".encode())
         self.expect(3, "price", file, "--backend", "serial", "--quiet", *FAST, "--result", "r.json")
-        self.assertEqual(["ok", "invalid", "ok"], [told["status"] for told in self.prices()])
+        self.assertEqual(["ok", "invalid", "ok"], [written["status"] for written in self.prices()])
         self.assertLess(json.loads((self.folder / "r.json").read_text())["peak_bytes"]["host"], 200 * 2**20)
 
 

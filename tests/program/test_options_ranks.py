@@ -1,4 +1,5 @@
-"""drogue-options on several ranks: the files of one rank, and an end of all of them whatever happens to one."""
+# ctest-label: no-sanitizer
+"""drogue-options on several ranks: the same files as on one rank, and an orderly end of all ranks."""
 
 import json
 import os
@@ -17,32 +18,32 @@ from gas_program import ENVIRONMENT
 from options_program import FAST, HEADER, batch, row
 
 LAUNCHER = shutil.which("mpirun")
-# One thread a rank: ranks share the cores with each other and with other tests. Root may test, too. Open MPI keeps some
-# memory to its end, which a sanitizer would take for a leak.
-ALLOWED = {**ENVIRONMENT, "OMP_NUM_THREADS": "1", "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+# One thread per rank, since ranks and tests share the cores. Open MPI refuses to run as root by default, and leaks memory
+# at its end, which a sanitizer would report.
+RANK_ENVIRONMENT = {**ENVIRONMENT, "OMP_NUM_THREADS": "1", "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
            "ASAN_OPTIONS": os.environ.get("ASAN_OPTIONS", "") + ":detect_leaks=0"}
 
 
 @unittest.skipIf(LAUNCHER is None, "there is no mpirun")
 class RanksTest(options_program.OptionsTest):
     def begin(self, ranks, *words, first=(), last=(), seconds="1"):
-        """Starts ranks, the first and the last of which by other words before the program. The launcher waits
-        some seconds between asking ranks to end and killing them, even where none is left."""
+        """Starts ranks; `first` and `last` are words before the program of the first and the last rank. The launcher
+        waits `seconds` between terminating and killing ranks, even if none is left."""
         program = [*words, "--backend", "serial"]
         line = [LAUNCHER, "--oversubscribe", "--mca", "odls_base_sigkill_timeout", seconds]
         for rank in range(ranks):
             before = first if rank == 0 else last if rank == ranks - 1 else ()
             line += [*([":"] if rank else []), "-n", "1", *before, options_program.PROGRAM, *program]
         process = subprocess.Popen(list(map(str, line)), cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                                   stdin=subprocess.DEVNULL, text=True, env=ALLOWED)
+                                   stdin=subprocess.DEVNULL, text=True, env=RANK_ENVIRONMENT)
         self.addCleanup(process.kill)
         return process
 
     def end(self, process):
-        """The exit code and the program's own lines on stderr: mpirun adds some of its own where it is not 0."""
-        said, told = process.communicate(timeout=60)
-        own = [line for line in told.splitlines() if line.startswith("drogue-options:") or ".csv:" in line]
-        return process.returncode, own, said
+        """Exit code, the lines of the program on stderr (mpirun adds others after a failure), and stdout."""
+        output, errors = process.communicate(timeout=60)
+        own = [line for line in errors.splitlines() if line.startswith("drogue-options:") or ".csv:" in line]
+        return process.returncode, own, output
 
     def expect_ranks(self, code, ranks, *words, **settings):
         ended = self.end(self.begin(ranks, *words, seconds="0", **settings))
@@ -50,7 +51,7 @@ class RanksTest(options_program.OptionsTest):
         return ended[1][0] if code else ended[2]
 
     def begin_long_run(self):
-        """Three ranks that price for long; the process of each."""
+        """Starts a run of minutes on three ranks; returns the launcher and the process of each rank."""
         lines = [row(k, style="american", spot=0.5 + 1e-4 * k) for k in range(5000)]
         launcher = self.begin(3, "price", self.write(batch(lines)), "--mesh", "512", "--steps", "128", "--result", "r.json")
         for _ in range(400):
@@ -63,7 +64,7 @@ class RanksTest(options_program.OptionsTest):
 
     @staticmethod
     def processes_of(launcher):
-        """Ranks by their number."""
+        """Process of each rank, by its number."""
         found = {}
         for folder in pathlib.Path("/proc").glob("[0-9]*"):
             try:
@@ -73,26 +74,26 @@ class RanksTest(options_program.OptionsTest):
                     found.update({int(word.split(b"=")[1]): int(folder.name) for word in words
                                   if word.startswith(b"OMPI_COMM_WORLD_RANK=")})
             except (OSError, ValueError):
-                continue  # it has ended
+                continue  # the process has ended
         return found
 
 
-class SameFiles(RanksTest):
+class Results(RanksTest):
     LINES = [row(k, style="american" if k % 2 else "european", spot=0.7 + 0.02 * k, maturity=0.1 + 0.05 * k,
                  beta=9 if k % 11 == 5 else -2.5) for k in range(40)]
 
-    def test_prices_and_boundaries(self):
-        """More ranks than rows in the last: two chunks of 20 for three ranks."""
+    def test_prices_and_boundaries_are_independent_of_ranks_and_chunks(self):
+        """The last case has fewer chunks than ranks."""
         file = self.write(batch(self.LINES))
         words = ("--mesh", "64", "--steps", "16", "--boundary", "b.csv", "--greeks", "--quiet", "--result", "r.json")
         written = []
         for ranks, chunk in ((1, "40"), (2, "1"), (3, "7"), (3, "20")):
-            told = self.expect_ranks(3, ranks, "price", file, *words, "--chunk", chunk)
-            self.assertIn(f"{file}:7: |beta| < alpha", told)
-            self.assertIn("4 of 40 rows invalid", told)
+            sentence = self.expect_ranks(3, ranks, "price", file, *words, "--chunk", chunk)
+            self.assertIn(f"{file}:7: |beta| < alpha", sentence)
+            self.assertIn("4 of 40 rows invalid", sentence)
             written.append([(self.folder / name).read_bytes() for name in ("prices.csv", "b.csv")])
             result = json.loads((self.folder / "r.json").read_text())
-            self.assertEqual((ranks, "invalid", 3, told), tuple(result[key] for key in ("ranks", "status", "exit_code", "message")))
+            self.assertEqual((ranks, "invalid", 3, sentence), tuple(result[key] for key in ("ranks", "status", "exit_code", "message")))
             self.assertEqual({"rows": 40, "ok": result["counts"]["ok"], "coarse": 36 - result["counts"]["ok"], "invalid": 4,
                               "failed": 0}, result["counts"])
             self.assertGreater(result["timing"]["compute_s"], 0.0)
@@ -101,8 +102,8 @@ class SameFiles(RanksTest):
             self.assertEqual(written[0], other)
         self.assertEqual(["b.csv", "batch.csv", "prices.csv", "r.json"], self.names())
 
-    def test_a_surface_in_pieces(self):
-        """Its only row is more than a piece of the outputs holds."""
+    def test_surface_larger_than_one_message_is_independent_of_ranks(self):
+        """Its only row has more results than one message holds."""
         header = ",".join(name for name in HEADER.split(",") if name not in ("strike", "maturity"))
         file = self.write(f"{header}\nset,european,put,1.0,0.1,0,1,8.15,-2.5,0.767,0.4\n")
         words = ("surface", file, "--strikes", "0.8:1.2:150", "--maturities", "0.1:2:100", "--mesh", "32", "--steps", "8", "--quiet")
@@ -111,32 +112,32 @@ class SameFiles(RanksTest):
         self.assertGreater((self.folder / "1.csv").stat().st_size, 1_000_000)
         self.assertEqual((self.folder / "1.csv").read_bytes(), (self.folder / "2.csv").read_bytes())
 
-    def test_more_ranks_than_rows(self):
+    def test_prices_fewer_rows_than_ranks(self):
         for rows in (0, 2):
-            said = self.expect_ranks(0, 4, "price", self.write(batch(self.LINES[:rows])), *FAST, "--tolerance", "1e-3")
-            self.assertRegex(said, rf"^batch on serial: {rows} rows in ")
-            self.assertEqual(2, len(said.splitlines()))
+            output = self.expect_ranks(0, 4, "price", self.write(batch(self.LINES[:rows])), *FAST, "--tolerance", "1e-3")
+            self.assertRegex(output, rf"^batch on serial: {rows} rows in ")
+            self.assertEqual(2, len(output.splitlines()))
             self.assertEqual(rows, len(self.prices()))
 
 
-class Ends(RanksTest):
-    def test_what_every_rank_sees(self):
+class Failures(RanksTest):
+    def test_prints_errors_of_all_ranks_once(self):
         self.assertEqual(1, self.expect_ranks(0, 2, "price", "--help").count("--boundary"))
         self.assertIn("--tolerance", self.expect_ranks(2, 2, "price", "example", "--tolerance", "0"))
 
-    def test_what_the_first_rank_sees(self):
+    def test_reports_failure_of_the_first_rank(self):
         self.assertIn("no file", self.expect_ranks(2, 2, "price", "none.csv"))
         self.assertIn("is that of line 2", self.expect_ranks(3, 2, "price", self.write(batch([row("a"), row("a")]))))
         self.assertEqual(["batch.csv"], self.names())
 
-    def test_what_another_rank_sees(self):
-        told = self.expect_ranks(2, 3, "price", "example", "--result", "r.json", last=("env", "KOKKOS_NUM_THREADS=0"))
-        self.assertRegex(told, r"KOKKOS_NUM_THREADS = 0 .* \(on rank 2\)$")
+    def test_reports_failure_of_another_rank(self):
+        sentence = self.expect_ranks(2, 3, "price", "example", "--result", "r.json", last=("env", "KOKKOS_NUM_THREADS=0"))
+        self.assertRegex(sentence, r"KOKKOS_NUM_THREADS = 0 .* \(on rank 2\)$")
         self.assertEqual(["r.json"], self.names())
-        self.assertEqual(told, "drogue-options: " + json.loads((self.folder / "r.json").read_text())["message"])
+        self.assertEqual(sentence, "drogue-options: " + json.loads((self.folder / "r.json").read_text())["message"])
 
-    def test_disk_full(self):
-        """A limit on file sizes stands for it, one that leaves MPI the files it needs."""
+    def test_a_full_disk_leaves_the_former_file(self):
+        """A limit of the file size simulates a full disk; it is large enough for the files of MPI."""
         file = self.write(batch([row(k, strike=-1) for k in range(200_000)]))
         self.write("former", "prices.csv")
         limit = ("sh", "-c", 'ulimit -f 16384; exec "$0" "$@"')
@@ -144,7 +145,7 @@ class Ends(RanksTest):
         self.assertEqual(["batch.csv", "prices.csv"], self.names())
         self.assertEqual("former", (self.folder / "prices.csv").read_text())
 
-    def test_a_rank_that_is_killed(self):
+    def test_a_killed_rank_leaves_no_output(self):
         for victim in (0, 2):
             with self.subTest(victim):
                 launcher, ranks = self.begin_long_run()
@@ -156,7 +157,7 @@ class Ends(RanksTest):
                     self.assertEqual(0, victim)
                     left.unlink()
 
-    def test_a_rank_that_is_asked_to_end(self):
+    def test_a_terminated_rank_interrupts_all_ranks(self):
         for victim in (0, 1):
             with self.subTest(victim):
                 launcher, ranks = self.begin_long_run()
@@ -166,9 +167,9 @@ class Ends(RanksTest):
                 self.assertEqual("interrupted", json.loads((self.folder / "r.json").read_text())["status"])
                 (self.folder / "r.json").unlink()
 
-    def test_ranks_of_another_launcher(self):
-        told = self.expect(2, "price", "example", environment={**ALLOWED, "PMI_SIZE": "2", "PMI_RANK": "0"}).stderr
-        self.assertIn("started 2 processes, of which MPI finds 1", told)
+    def test_rejects_ranks_of_another_launcher(self):
+        sentence = self.expect(2, "price", "example", environment={**RANK_ENVIRONMENT, "PMI_SIZE": "2", "PMI_RANK": "0"}).stderr
+        self.assertIn("started 2 processes, of which MPI finds 1", sentence)
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""drogue-perf: its subcommands, the records they write, and what they refuse."""
+"""drogue-perf: subcommands, records and usage errors."""
 
 import os
 import re
@@ -26,14 +26,14 @@ class Record(perf_program.PerfTest):
         self.assertEqual("passed", record["check"])
         self.assertGreater(record["error"], 0.0)
 
-    def test_of_a_run(self):
+    def test_run_prints_and_records_a_case(self):
         text = self.expect(0, "run", "--quick", "--filter", "dense-loop/1024$", "--out", "run.jsonl").stdout
         self.assertRegex(text, r"^gas-step/dense-loop/1024 +\d+\.\d+ us a step  \[.*\]  error \S+  passed\n$")
         record, = self.records("run.jsonl")
         self.assertEqual(FIELDS | {"facts"}, set(record))
         self.assert_timed(record, 7)
 
-    def test_of_transfers(self):
+    def test_gas_transfers_record_their_parts(self):
         text = self.expect(0, "table", "transfers", "--quick", "--backend", "serial", "--out", "rows.jsonl").stdout
         self.assertIn("no pinned memory", text)
         records = self.records("rows.jsonl")
@@ -49,23 +49,23 @@ class Record(perf_program.PerfTest):
             self.assertEqual(thesis, facts["thesis"])
             parts = [facts["h2d_s"], facts["compute_s"], facts["d2h_s"]]
             self.assertTrue(all(0.0 < part < max(record["samples"]) for part in parts), facts)
-            # A sample is the sum of its parts, but a median of sums is no sum of medians.
+            # A sample is the sum of its parts; the median of sums differs from the sum of medians.
             self.assertTrue(min(record["samples"]) / 2 < sum(parts) < 2 * max(record["samples"]), facts)
 
 
-    def test_of_fabric(self):
+    def test_records_fabric_steps(self):
         self.expect(0, "run", "--quick", "--filter", "^springs-step/(serial|scatter-loop)/2640$", "--out", "run.jsonl")
         for record in self.records("run.jsonl"):
             self.assert_timed(record, 7)
             self.assertAlmostEqual(2640, record["facts"]["cells"], delta=60)
 
-    def test_of_contact(self):
+    def test_records_contact_steps(self):
         self.expect(0, "run", "--quick", "--filter", "^springs-contact/serial/", "--out", "run.jsonl")
         record, = self.records("run.jsonl")
         self.assert_timed(record, 7)
         self.assertEqual("springs-contact/serial/640", record["case"])
 
-    def test_of_transfers_of_fabric(self):
+    def test_fabric_transfers_record_each_number_of_substeps(self):
         text = self.expect(0, "table", "transfers", "--app", "springs", "--quick", "--backend", "serial", "--out",
                            "rows.jsonl").stdout
         self.assertIn("number of substeps that is not recorded", text)
@@ -78,7 +78,7 @@ class Record(perf_program.PerfTest):
                              record["facts"]["thesis"])
         self.assertLess(3 * records[0]["facts"]["compute_s"], records[1]["facts"]["compute_s"])
 
-    def test_of_transfers_of_options(self):
+    def test_options_transfers_compare_both_schemes(self):
         text = self.expect(0, "table", "transfers", "--app", "options", "--quick", "--backend", "serial", "--out",
                            "rows.jsonl").stdout
         self.assertIn("Tables 5.7 and 5.8", text)
@@ -99,7 +99,7 @@ class Occupancy(perf_program.PerfTest):
         self.text = self.expect(0, "table", "occupancy", "--out", "rows.jsonl").stdout
         self.rows = {record["case"]: record for record in self.records("rows.jsonl")}
 
-    def test_text_has_every_number_twice(self):
+    def test_text_shows_computed_beside_printed_numbers(self):
         lines = re.findall(r"^ *(\d+)((?: +[\d.]+ *\( *[\d.]+\))+)$", self.text, re.MULTILINE)
         self.assertEqual(["32", "64", "128", "192", "256", "384", "512", "544"], [block for block, _ in lines])
         for block, numbers in lines:
@@ -115,12 +115,12 @@ class Occupancy(perf_program.PerfTest):
             self.assertEqual(([], None, None), (record["samples"], record["median"], record["interval"]))
             self.assertEqual(("passed", 0.0), (record["check"], record["error"]))
 
-    def test_the_row_that_does_not_fit(self):
+    def test_block_that_does_not_fit_has_no_occupancy(self):
         facts = self.rows["occupancy/sm_20/544"]["facts"]
         self.assertEqual((0, 1, 0, 0.0), (facts["blocks_by_registers"], facts["blocks_by_shared_memory"],
                                           facts["blocks"], facts["occupancy"]))
 
-    def test_launch_bounds_are_met(self):
+    def test_step_kernels_meet_their_launch_bounds(self):
         for name, blocks, registers in (("128", 3, 168), ("128/large-mesh", 4, 128), ("512", 1, 128)):
             facts = self.rows["occupancy/sm_90/" + name]["facts"]
             self.assertEqual((blocks, registers), (facts["blocks"], facts["registers"]), name)
@@ -129,7 +129,7 @@ class Occupancy(perf_program.PerfTest):
 
 
 class WorkPrecision(perf_program.PerfTest):
-    def test_records(self):
+    def test_records_are_valid(self):
         text = self.expect(0, "work-precision", "--quick", "--backend", "serial", "--out", "runs.jsonl").stdout
         records = self.records("runs.jsonl")
         self.assertEqual(len(records), len(text.splitlines()))
@@ -143,7 +143,7 @@ class WorkPrecision(perf_program.PerfTest):
             self.assertGreater(facts["steps"], 10)
             errors[facts["problem"], facts["weno"], facts["precision"], facts["cells"]] = record["error"]
         self.assertEqual({"js", "z", "m", "teno5", "muscl-hancock"}, {scheme for _, scheme, *_ in errors})
-        # Smooth flow is where fifth order pays, and single precision costs nothing of it.
+        # In smooth flow fifth order is far more accurate, and single precision keeps its accuracy.
         fifth, second = (errors["entropy-wave", scheme, "double", 40] for scheme in ("z", "muscl-hancock"))
         self.assertLess(30 * fifth, second)
         for (problem, scheme, precision, cells), error in errors.items():
@@ -152,7 +152,7 @@ class WorkPrecision(perf_program.PerfTest):
 
 
 class WorkPrecisionOfSprings(perf_program.PerfTest):
-    def test_records(self):
+    def test_records_are_valid(self):
         self.expect(0, "work-precision", "--app", "springs", "--quick", "--backend", "serial", "--out", "runs.jsonl")
         runs = {}
         for record in self.records("runs.jsonl"):
@@ -168,22 +168,22 @@ class WorkPrecisionOfSprings(perf_program.PerfTest):
         for scheme, ((coarse, large), (fine, small)) in runs.items():
             self.assertLess(coarse, fine)
             self.assertLess(small, 0.8 * large, scheme)
-        # First order against second.
+        # First against second order of convergence.
         for model in ("quadratic", "biquadratic"):
             equal, area = (runs["drum", model, mass, "rk4"][1][1] for mass in ("equal", "area"))
             self.assertGreater(equal, 5 * area)
-        # At rest it does not matter how a string came there.
+        # The equilibrium of a string does not depend on the integrator.
         self.assertAlmostEqual(1.0, runs["catenary", "string", "area", "rk4"][1][1] /
                                runs["catenary", "string", "area", "verlet"][1][1], places=3)
 
 
 class WorkPrecisionOfOptions(perf_program.PerfTest):
-    def test_only_what_is_asked_for(self):
+    def test_filter_selects_problems(self):
         self.expect(0, "work-precision", "--app", "options", "--quick", "--backend", "serial", "--filter", "^mer",
                     "--out", "runs.jsonl")
         self.assertEqual({"merton"}, {record["facts"]["problem"] for record in self.records("runs.jsonl")})
 
-    def test_records(self):
+    def test_records_are_valid(self):
         self.expect(0, "work-precision", "--app", "options", "--quick", "--backend", "serial", "--out", "runs.jsonl")
         errors = {}
         for record in self.records("runs.jsonl"):
@@ -201,14 +201,14 @@ class WorkPrecisionOfOptions(perf_program.PerfTest):
             if scheme[1] == "pide":
                 coarse, fine = of_meshes
                 self.assertLess(fine, 0.8 * coarse, scheme)
-        # Exercise in the solve, and two grids, are there for their errors.
+        # Exercise within the solve and two grids reduce the error.
         of_thesis = {scheme[2:]: of_meshes[1] for scheme, of_meshes in errors.items() if scheme[:2] == ("thesis", "pide")}
         self.assertLess(5 * of_thesis["exact", "two"], of_thesis["split", "two"])
         self.assertLess(3 * of_thesis["exact", "two"], of_thesis["exact", "one"])
 
 
 class Tridiagonal(perf_program.PerfTest):
-    def test_records(self):
+    def test_records_are_valid(self):
         self.expect(0, "run", "--quick", "--filter", "^tridiagonal/serial", "--out", "run.jsonl")
         records = self.records("run.jsonl")
         self.assertEqual(["pttrf/64", "scan/64"], [record["facts"]["variant"] for record in records])
@@ -218,7 +218,7 @@ class Tridiagonal(perf_program.PerfTest):
 
 
 class Refusals(perf_program.PerfTest):
-    def test_usage(self):
+    def test_reports_usage_errors(self):
         for words, hint in ((["table"], "TABLE"), (["table", "occupancey"], 'did you mean "occupancy"?'),
                             (["table", "occupancy", "--app", "option"], 'did you mean "options"?'),
                             (["table", "occupancy", "--app", "springs"], "the only valid name is transfers"),
@@ -239,17 +239,17 @@ class Refusals(perf_program.PerfTest):
                 self.assertIn(hint, self.expect(2, *words).stderr)
         self.assertEqual([], list(self.folder.iterdir()))
 
-    def test_block_size_means_nothing_to_a_host(self):
+    def test_rejects_block_sizes_on_a_host_backend(self):
         self.assertIn("means nothing to the host backend 'serial'",
                       self.expect(2, "table", "block-size", "--backend", "serial").stderr)
 
-    def test_backend_that_is_not_there(self):
+    def test_reports_an_absent_backend(self):
         if "DROGUE_CUDA:BOOL=ON" in perf_program.CACHE:
             self.skipTest("a CUDA build has that backend")
         for table in ("block-size", "transfers"):
             self.assertRegex(self.expect(77, "table", table, "--backend", "cuda").stderr, "cuda.*not compiled in")
 
-    def test_records_that_cannot_be_written(self):
+    def test_reports_an_unwritable_record_file(self):
         self.assertIn("no/such/folder", self.expect(6, "table", "occupancy", "--out", "no/such/folder/x").stderr)
 
 

@@ -1,4 +1,4 @@
-"""result.json, history.csv, fields.h5 and fields.xdmf hold what they promise, whatever became of the run."""
+"""Contents of result.json, history.csv, fields.h5 and fields.xdmf after successful and failed runs."""
 
 import math
 import os
@@ -29,7 +29,7 @@ HISTORY = ["time [s]", "step", "dt [s]", "mass [kg/m^2]", "momentum [kg/(m s)]",
 
 class Result(gas_program.GasTest):
     def ended(self, code, status, *words, sets=COARSE, directory="out/sod", **settings):
-        """Runs sod and returns result.json, which has every field and tells the code and its name."""
+        """Runs sod and returns result.json; expects every field, the exit code and its status."""
         run = self.expect(code, "sod", "--backend", "serial", *words, sets=sets, **settings)
         told = self.result(directory)
         self.assertLessEqual(set(KEYS), set(told))
@@ -44,7 +44,7 @@ class Result(gas_program.GasTest):
         self.assertEqual(1, told["ranks"])
         return told
 
-    def test_ok(self):
+    def test_successful_run_holds_every_field(self):
         told = self.ended(0, "ok")
         self.assertEqual(("serial", "double", 1, 0.4), tuple(told[key] for key in
                                                              ("backend", "precision", "threads", "time")))
@@ -55,7 +55,7 @@ class Result(gas_program.GasTest):
         self.assertTrue(0.0 < told["dt_min"] <= told["dt_max"] < 0.4)
         self.assertEqual({"touches": 0, "cells": 0, "redone_steps": 0}, told["limiter"])
         self.assertTrue(0.0 < told["timing"]["compute_s"] < told["timing"]["wall_s"])
-        # Three stages and what ends a step.
+        # Three stages and the end of a step.
         self.assertGreaterEqual(told["ledger"]["kernel_launches"], 2 * told["steps"])
         self.assertEqual(0, told["ledger"]["device_allocations_after_warmup"])
         for key in ("compiler", "kokkos", "cpu"):
@@ -63,7 +63,7 @@ class Result(gas_program.GasTest):
         # 50 cells of at most 80 bytes, and 64 MB.
         self.assertTrue(50 * 24 < told["peak_bytes"]["device"] < 64 << 20, told["peak_bytes"])
 
-    def test_without_verify_nothing_is_verified(self):
+    def test_without_verify_there_are_no_checks(self):
         scene = self.folder / "sod.toml"
         text = (gas_program.SOURCE / "miniapps/gas/scenes/sod.toml").read_text(encoding="utf-8")
         scene.write_text(text[:text.index("[verify]")], encoding="utf-8")
@@ -71,7 +71,7 @@ class Result(gas_program.GasTest):
         told = self.result("out/sod")
         self.assertEqual(([], {}), (told["checks"], told["errors"]))
 
-    def test_failures(self):
+    def test_failures_state_code_and_status(self):
         self.ended(3, "invalid", sets=["mesh.cells=7"])
         told = self.ended(4, "numerical-failure", "--overwrite", sets=[*COARSE, "run.max_steps=5"])
         self.assertEqual(5, told["steps"])
@@ -81,24 +81,24 @@ class Result(gas_program.GasTest):
         (self.folder / "out/sod/restart.h5").write_bytes(b"no restart file")
         self.ended(6, "io-error", "--restart", "auto")
 
-    def test_split_precision(self):
+    def test_records_split_precision(self):
         self.assertEqual("split", self.ended(0, "ok", sets=[*COARSE, 'scheme.precision="split"'])["precision"])
 
     @gas_program.needs_openmp
-    def test_openmp_counts_its_threads(self):
+    def test_openmp_records_its_threads(self):
         self.expect(0, "sod", "--backend", "openmp", sets=COARSE, environment={"OMP_NUM_THREADS": "2"})
         told = self.result("out/sod")
         self.assertEqual(("openmp", 2, "plain"), (told["backend"], told["threads"], told["driver"]))
 
-    def test_a_step_costs_no_fence_and_no_copy(self):
-        """The ledger of a run of twice the steps shows more launches and nothing else."""
+    def test_steps_need_no_fence_and_no_copy(self):
+        """Twice the steps add kernel launches to the counters and nothing else."""
         told = [self.ended(0, "ok", "--overwrite", sets=[f"mesh.cells={cells}", "verify.l1_density=1.0",
                                                          gas_program.NO_FIELDS, "output.history_every=0"])["ledger"]
                 for cells in (50, 100)]
         self.assertGreater(told[1]["kernel_launches"], 1.5 * told[0]["kernel_launches"])
         self.assertEqual(told[0]["fences"], told[1]["fences"])
 
-    def test_seed_mode_times_its_copies(self):
+    def test_baseline_times_its_copies(self):
         told = self.ended(0, "ok", "--seed-mode")
         for key in ("h2d_s", "compute_s", "d2h_s"):
             self.assertGreater(told["timing"][key], 0.0, key)
@@ -110,7 +110,7 @@ class Files(gas_program.GasTest):
         self.assertEqual(HISTORY, lines[0].split(","))
         return [[float(word) for word in line.split(",")] for line in lines[1:]]
 
-    def test_history(self):
+    def test_history_lists_rows_with_units(self):
         self.expect(0, "sod", "--backend", "serial", sets=[*COARSE, "output.history_every=1"])
         rows = self.rows()
         told = self.result("out/sod")
@@ -124,13 +124,13 @@ class Files(gas_program.GasTest):
                 self.assertAlmostEqual(start, total + left, places=13)
             self.assertTrue(0.0 < row[9] < 10.0)
 
-    def test_history_is_sparse_unless_asked(self):
+    def test_history_is_sparse_by_default(self):
         self.expect(0, "sod", "--backend", "serial", sets=[*COARSE, "output.history_every=10"])
         steps = [row[1] for row in self.rows()]
         self.assertEqual([0.0, 10.0, 20.0], steps[:3])
         self.assertEqual(self.result("out/sod")["steps"], steps[-1])
 
-    def test_fields(self):
+    def test_fields_hold_the_documented_layout(self):
         times = [0.0, 0.1, 0.25, 0.4]
         self.expect(0, "sod", "--backend", "serial", sets=[*COARSE, f"output.times={times}"])
         file = gas_program.fields(self.folder / "out/sod")
@@ -150,12 +150,12 @@ class Files(gas_program.GasTest):
         self.assertEqual([1.0] * 25 + [0.125] * 25, list(file.values("/steps/000000/rho")))
         self.assertTrue(all(math.isfinite(value) for path in file.datasets for value in file.values(path)))
 
-    def test_only_the_fields_that_are_asked_for(self):
+    def test_writes_only_requested_fields(self):
         self.expect(0, "sod", "--backend", "serial", sets=[*COARSE, 'output.fields=["p"]', "output.times=[0.4]"])
         file = gas_program.fields(self.folder / "out/sod")
         self.assertEqual({"/mesh/x", "/steps/000000/p"}, set(file.datasets))
 
-    def test_xdmf(self):
+    def test_xdmf_names_every_output(self):
         self.expect(0, "sod", "--backend", "serial", sets=[*COARSE, "output.times=[0.0, 0.1, 0.4]"])
         folder = self.folder / "out/sod"
         root = xml.etree.ElementTree.parse(folder / "fields.xdmf").getroot()
@@ -172,7 +172,7 @@ class Files(gas_program.GasTest):
                 named.add(path)
         self.assertEqual(set(datasets), named)
 
-    def test_block_size_changes_rounding_at_most(self):
+    def test_block_size_changes_rounding_only(self):
         finals = []
         for block in ("32", "64", "256", "512"):
             self.expect(0, "sod", "--backend", gas_program.threaded(), "--overwrite",

@@ -1,4 +1,5 @@
-"""Where a run writes, what it says meanwhile, and what it does to files that are there."""
+# ctest-label: no-sanitizer
+"""Run directories: their files, treatment of former runs, and terminal output."""
 
 import os
 import pty
@@ -23,20 +24,20 @@ class Directory(gas_program.GasTest):
     def names(self, directory="out/sod"):
         return sorted(path.name for path in (self.folder / directory).iterdir())
 
-    def test_default(self):
+    def test_default_directory_has_the_name_of_the_scene(self):
         self.coarse()
         self.assertEqual(FILES, self.names())
         self.assertEqual(["out"], [path.name for path in self.folder.iterdir()])
 
-    def test_no_fields_no_history(self):
+    def test_writes_no_fields_and_history_unless_requested(self):
         self.expect(0, "sod", "--backend", "serial", sets=[gas_program.NO_FIELDS, "output.history_every=0"])
         self.assertEqual(["result.json", "scene.toml"], self.names())
 
-    def test_restart_file_if_asked_for(self):
+    def test_writes_a_restart_file_if_requested(self):
         self.coarse(sets=["output.restart_every=20"])
         self.assertEqual(sorted([*FILES, "restart.h5"]), self.names())
 
-    def test_scene_toml_is_what_ran(self):
+    def test_scene_toml_reproduces_the_run(self):
         self.coarse()
         again = self.expect(0, self.folder / "out/sod/scene.toml", "--print-scene").stdout
         self.assertEqual((self.folder / "out/sod/scene.toml").read_text(), again)
@@ -44,13 +45,13 @@ class Directory(gas_program.GasTest):
         self.assertEqual(gas_program.fields(self.folder / "out/sod").datasets,
                          gas_program.fields(self.folder / "again").datasets)
 
-    def test_existing_run_is_refused(self):
+    def test_rejects_an_existing_run(self):
         self.coarse()
         before = {name: (self.folder / "out/sod" / name).read_bytes() for name in FILES}
         self.assertIn("--overwrite", self.coarse(code=2).stderr)
         self.assertEqual(before, {name: (self.folder / "out/sod" / name).read_bytes() for name in FILES})
 
-    def test_a_slip_costs_no_former_run(self):
+    def test_invalid_arguments_keep_the_former_run(self):
         self.coarse()
         before = {name: (self.folder / "out/sod" / name).read_bytes() for name in FILES}
         for words, code, sets in ((["--overwrite"], 3, ["mesh.cell=3"]), (["--restart", "auto"], 3, ["run.endtime=3"]),
@@ -61,32 +62,32 @@ class Directory(gas_program.GasTest):
                 self.expect(code, "sod", *words, sets=[*COARSE, *sets])
                 self.assertEqual(before, {name: (self.folder / "out/sod" / name).read_bytes() for name in FILES})
 
-    def test_restart_auto_goes_on_with_no_other_scene(self):
+    def test_restart_auto_rejects_another_scene(self):
         self.coarse()
         before = {name: (self.folder / "out/sod" / name).read_bytes() for name in FILES}
         text = self.expect(2, "lax", "--backend", "serial", "--restart", "auto", "--out", "out/sod").stderr
         self.assertIn("another scene", text)
         self.assertEqual(before, {name: (self.folder / "out/sod" / name).read_bytes() for name in FILES})
 
-    def test_overwrite_takes_the_former_run_away_and_nothing_else(self):
+    def test_overwrite_removes_only_the_former_run(self):
         self.coarse(sets=["output.restart_every=20"])
         (self.folder / "out/sod/notes.txt").write_text("mine")
         self.expect(0, "sod", "--backend", "serial", "--overwrite", sets=[gas_program.NO_FIELDS])
         self.assertEqual(["history.csv", "notes.txt", "result.json", "scene.toml"], self.names())
 
-    def test_directory_with_other_files(self):
+    def test_accepts_a_directory_with_foreign_files(self):
         (self.folder / "there").mkdir()
         (self.folder / "there/notes.txt").write_text("mine")
         self.coarse("--out", "there")
         self.assertEqual(sorted([*FILES, "notes.txt"]), self.names("there"))
 
-    def test_invalid_scene_leaves_its_result_and_is_no_obstacle(self):
+    def test_invalid_scene_writes_a_result_that_may_be_replaced(self):
         self.coarse(code=3, sets=["mesh.cells=7"])
         self.assertEqual(["result.json"], self.names())
         self.assertEqual(("invalid", 3), (self.result("out/sod")["status"], self.result("out/sod")["exit_code"]))
         self.coarse()
 
-    def test_paths(self):
+    def test_accepts_unusual_paths(self):
         (self.folder / "real").mkdir()
         (self.folder / "link").symlink_to(self.folder / "real", target_is_directory=True)
         spaces = self.folder / "my scenes (1)"
@@ -102,23 +103,23 @@ class Directory(gas_program.GasTest):
         self.coarse(scene=scene)
         self.assertEqual(FILES, self.names("out/shock tube é"))
 
-    def test_from_another_folder(self):
+    def test_runs_from_another_folder(self):
         elsewhere = self.folder / "elsewhere"
         elsewhere.mkdir()
         run = gas_program.run("sod", "--backend", "serial", "--out", ".", sets=COARSE, cwd=elsewhere)
         self.assertEqual(0, run.returncode, run.stderr)
         self.assertEqual(FILES, self.names("elsewhere"))
 
-    def test_fields_xdmf_moves_with_its_folder(self):
+    def test_fields_xdmf_uses_relative_paths(self):
         self.coarse()
         self.assertNotIn(str(self.folder), (self.folder / "out/sod/fields.xdmf").read_text())
 
-    def test_out_that_is_a_file(self):
+    def test_reports_a_file_in_place_of_the_directory(self):
         (self.folder / "file").write_text("")
         self.assertIn("file", self.coarse("--out", "file", code=6).stderr)
         self.assertIn("file", self.coarse("--out", "file/below", code=6).stderr)
 
-    def test_two_runs_at_once(self):
+    def test_rejects_a_directory_in_use(self):
         slow = ["mesh.cells=6400", gas_program.NO_FIELDS]
         line = gas_program.arguments("sod", "--backend", "serial", "--quiet", "--out", "run", sets=slow)
         first = subprocess.Popen(line, cwd=self.folder, env=gas_program.ENVIRONMENT)
@@ -132,17 +133,17 @@ class Directory(gas_program.GasTest):
         self.assertEqual("interrupted", self.result("run")["status"])
 
 
-class Words(gas_program.GasTest):
-    def test_summary(self):
+class Output(gas_program.GasTest):
+    def test_prints_a_summary(self):
         text = self.expect(0, "sod", "--backend", "serial", sets=COARSE).stdout
         for word in ("sod on serial", "steps", "l1_density", "tolerance 1", "passed", "conservation", "out/sod"):
             self.assertIn(word, text)
 
-    def test_quiet(self):
+    def test_quiet_prints_nothing(self):
         run = self.expect(0, "sod", "--quiet", sets=COARSE)
         self.assertEqual(("", ""), (run.stdout, run.stderr))
 
-    def test_failure_is_said_even_if_quiet(self):
+    def test_quiet_runs_report_failures(self):
         self.expect(3, "sod", "--quiet", sets=["mesh.cells=7"])
 
     def test_pipe_shows_no_progress(self):
@@ -151,7 +152,7 @@ class Words(gas_program.GasTest):
         self.assertNotIn("ETA", run.stdout + run.stderr)
 
     def terminal(self, *words):
-        """What a terminal shows of a run of some tenths of a second."""
+        """Terminal output of a short run."""
         master, slave = pty.openpty()
         line = gas_program.arguments("sod", "--backend", "serial", "--out", "run", "--overwrite", *words,
                                      sets=["mesh.cells=1600", gas_program.NO_FIELDS])
@@ -161,7 +162,7 @@ class Words(gas_program.GasTest):
         while True:
             try:
                 part = os.read(master, 4096)
-            except OSError:  # how Linux says that nobody writes any more
+            except OSError:  # Linux reports the closed terminal as an error
                 break
             if not part:
                 break
@@ -170,7 +171,7 @@ class Words(gas_program.GasTest):
         self.assertEqual(0, process.wait(), shown)
         return shown.decode()
 
-    def test_terminal_shows_one_line(self):
+    def test_terminal_shows_one_progress_line(self):
         shown = self.terminal()
         self.assertIn("ETA", shown)
         self.assertIn("steps/s", shown)
@@ -178,7 +179,7 @@ class Words(gas_program.GasTest):
         self.assertEqual(1, len(progress), "progress stays on one line")
         self.assertIn("\r", progress[0])
 
-    def test_quiet_terminal(self):
+    def test_quiet_terminal_shows_nothing(self):
         self.assertEqual("", self.terminal("--quiet"))
 
 

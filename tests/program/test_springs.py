@@ -1,4 +1,5 @@
-"""What drogue-springs prints, writes and answers."""
+# ctest-label: no-sanitizer
+"""drogue-springs: command line, run directory, failures and verification."""
 
 import json
 import math
@@ -17,7 +18,7 @@ from springs_program import DRUM
 
 
 class CommandLine(springs_program.SpringsTest):
-    def test_information(self):
+    def test_information_needs_no_scene(self):
         self.assertRegex(self.expect(0, "--version").stdout, r"^drogue-springs \d+\.\d+\.\d+\n")
         self.assertIn("--restart", self.expect(0, "--help").stdout)
         lines = self.expect(0, "--list-scenes").stdout.splitlines()
@@ -27,7 +28,7 @@ class CommandLine(springs_program.SpringsTest):
         self.assertEqual([], list(self.folder.iterdir()))
 
     def test_only_the_first_rank_prints(self):
-        """What needs no solver is answered by one of many ranks; what does is refused by all."""
+        """On several ranks information is printed once, and runs are rejected."""
         of_rank = {"OMPI_COMM_WORLD_SIZE": "2"}
         programs = {name: gas_program.BIN / name for name in ("drogue-springs", "drogue-gas", "drogue-options", "drogue-perf")}
         for name, program in programs.items():
@@ -49,21 +50,21 @@ class CommandLine(springs_program.SpringsTest):
                 again = self.write(printed, "printed.toml")
                 self.assertEqual(printed, self.expect(0, again, "--print-scene").stdout)
 
-    def test_usage(self):
+    def test_reports_usage_errors(self):
         for words in (["drumm"], ["drum", "extra"], ["drum", "--backend", "gpu"], ["drum", "--study", "meshes=1:2"], []):
             with self.subTest(words):
                 self.expect(2, *(words or ["--quiet"]))
         self.assertEqual([], list(self.folder.iterdir()))
 
-    def test_backend_that_is_not_there(self):
+    def test_reports_an_absent_backend(self):
         if "cuda" in gas_program.backends():
             self.skipTest("a CUDA build has that backend")
         self.assertIn("cuda", self.expect(77, self.write(DRUM), "--backend", "cuda").stderr)
 
 
-    def test_a_fine_mesh_is_looked_through_in_a_moment(self):
-        """Flat cloth, whose parts near one another lie in a plane, so that numbers that round cannot tell on which
-        side of one another they are."""
+    def test_checks_fine_meshes_for_intersections_quickly(self):
+        """Flat cloth is the worst case of the intersection check: nearby triangles are coplanar, so that rounded
+        determinants cannot decide and exact arithmetic is needed."""
         before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
         self.expect(0, self.write(springs_program.FALLING), "--check", sets=[
             "mesh.rectangle.vertices=90000", "contact={self=true,thickness=1e-4}"])
@@ -71,7 +72,7 @@ class CommandLine(springs_program.SpringsTest):
 
 
 class RunDirectory(springs_program.SpringsTest):
-    def test_files(self):
+    def test_files_hold_the_documented_layout(self):
         scene = self.write(DRUM)
         self.expect(0, scene, "--backend", "serial", "--out", "out")
         told = self.result("out")
@@ -93,7 +94,7 @@ class RunDirectory(springs_program.SpringsTest):
         printed = self.expect(0, scene, "--print-scene").stdout
         self.assertEqual(printed, (self.folder / "out/scene.toml").read_text(encoding="utf-8"))
 
-    def test_history(self):
+    def test_history_lists_energies_and_probes(self):
         self.expect(0, self.write(DRUM), "--backend", "serial", "--out", "out")
         header = (self.folder / "out/history.csv").read_text(encoding="utf-8").splitlines()[0]
         for name in ("time [s]", "kinetic [J]", "elastic [J]", "potential [J]", "energy [J]", "momentum_x [kg m/s]",
@@ -102,16 +103,16 @@ class RunDirectory(springs_program.SpringsTest):
         rows = self.history("out")
         self.assertEqual((0.0, 0.3), (rows["time"][0], rows["time"][-1]))
         self.assertTrue(all(step % 7 == 0 for step in rows["step"][:-1]))
-        # The drum falls by gravity, swings, and keeps its energy.
+        # The drum oscillates under gravity and conserves its energy.
         self.assertLess(min(rows["probe_0_z"]), 0.0)
         self.assertAlmostEqual(0.01, rows["probe_0_z"][0])
         spread = max(rows["energy"]) - min(rows["energy"])
         self.assertLess(spread, 1e-3 * max(rows["kinetic"]))
-        # However many rows there are, memory for them is asked for once.
+        # Memory for the rows is allocated once, whatever their number.
         self.assertGreater(len(rows["time"]), 20)
         self.assertEqual(0, self.result("out")["ledger"]["device_allocations_after_warmup"])
 
-    def test_a_run_is_not_replaced_unasked(self):
+    def test_rejects_an_existing_run(self):
         scene = self.write(DRUM)
         words = ["--quiet", "--backend", "serial", "--out", "out"]
         self.expect(0, scene, *words)
@@ -120,13 +121,13 @@ class RunDirectory(springs_program.SpringsTest):
         self.expect(3, scene, *words, "--overwrite", sets=["time.end_time=-1"])
         self.assertEqual("ok", self.result("out")["status"])
 
-    def test_only_what_is_asked_for(self):
+    def test_writes_only_requested_files(self):
         self.expect(0, self.write(DRUM), "--quiet", "--out", "out", sets=["output={history_every=0}"])
         self.assertEqual({"scene.toml", "result.json"}, {file.name for file in (self.folder / "out").iterdir()})
         self.assertEqual(0, self.result("out")["ledger"]["device_allocations_after_warmup"])
 
-    def test_von_mises_of_an_even_tension(self):
-        """Of equal principal stresses it is their value: E / (1 - nu) (e + e^2/2), the second stress, over 1."""
+    def test_von_mises_stress_of_uniform_tension(self):
+        """Equal principal stresses are the von Mises stress: E / (1 - nu) (e + e^2/2), second Piola-Kirchhoff."""
         self.expect(0, self.write(DRUM), "--quiet", "--out", "out", sets=[
             "initial={prestretch=0.05}", "time.end_time=1e-6", "load=[{gravity=[0,0,0]}]",
             "output={fields=['von_mises'],times=[0]}"])
@@ -137,15 +138,15 @@ class RunDirectory(springs_program.SpringsTest):
 
     STRESSES = ("stress", "major_stress", "minor_stress", "major_direction", "minor_direction", "von_mises")
 
-    def test_stresses_of_a_sheet_drawn_along_x(self):
-        """Cauchy and nominal stress of St Venant-Kirchhoff's cloth, of triangles and vertices: F = diag(1.1, 1)."""
+    def test_stresses_of_a_uniaxially_stretched_sheet(self):
+        """Cauchy and nominal stress of St Venant-Kirchhoff cloth at triangles and vertices for F = diag(1.1, 1)."""
         names = [centre + measure + name for centre in ("", "vertex_") for measure in ("", "nominal_") for name in self.STRESSES]
         scene = self.write('app = "springs"\n[mesh]\nrectangle = { vertices = 30, distortion = 0.2 }\n'
                            '[initial]\ndisplacement = { x = "0.1*x" }\n[time]\nend_time = 0\n')
         self.expect(0, scene, "--quiet", "--out", "out", sets=[f"output.fields={names}"])
         file = self.fields("out")
         along = 1000.0 / (1 - 0.3**2) * 0.5 * (1.1**2 - 1)
-        across = 0.3 * along  # second stresses of Piola and Kirchhoff
+        across = 0.3 * along  # second Piola-Kirchhoff stresses
         rows = {"": len(list(file.values("/mesh/triangles"))) // 3, "vertex_": len(list(file.values("/mesh/vertices"))) // 3}
         for centre, count in rows.items():
             for measure, (s, t) in {"": (1.1 * along, across / 1.1), "nominal_": (1.1 * along, across)}.items():
@@ -162,8 +163,8 @@ class RunDirectory(springs_program.SpringsTest):
         xdmf = (self.folder / "out/fields.xdmf").read_text(encoding="utf-8")
         self.assertEqual([4, 8], [xdmf.count(f'AttributeType="{kind}"') for kind in ("Tensor6", "Vector")])
 
-    def test_stress_is_computed_where_it_is_asked_for(self):
-        """Launches tell: none for no stress, and as many for all of a kind as for one."""
+    def test_stress_is_computed_only_if_requested(self):
+        """Counts launches: none without stress fields, and equally many for one and for all fields of a kind."""
         scene = self.write(DRUM)
 
         def launches(*fields):
@@ -179,7 +180,7 @@ class RunDirectory(springs_program.SpringsTest):
         self.assertGreater(launches("von_mises", "nominal_von_mises"), one)
         self.assertGreater(launches("vertex_stress"), one)
 
-    def test_seed_mode_copies_the_state_and_gives_the_same_result(self):
+    def test_baseline_copies_the_state_and_gives_the_same_result(self):
         scene = self.write(DRUM)
         for words in (["--out", "a"], ["--out", "b", "--seed-mode"]):
             self.expect(0, scene, "--quiet", "--backend", "serial", *words)
@@ -187,8 +188,8 @@ class RunDirectory(springs_program.SpringsTest):
         self.assertGreater(self.result("b")["timing"]["d2h_s"], 0.0)
         self.assertEqual(["plain", "seed"], [self.result(run)["driver"] for run in "ab"])
 
-    def test_outputs_are_in_the_numbering_of_the_file(self):
-        """Vertices that lie far from their neighbours in the file are where the file says."""
+    def test_outputs_keep_the_vertex_order_of_the_file(self):
+        """Renumbering for locality does not change the order of the outputs."""
         count = 12
         order = [(5 * k) % count for k in range(count)]
         place = {number: k for k, number in enumerate(order)}
@@ -231,18 +232,18 @@ verify.energy_drift = 1e-2
 
 
 class Failures(springs_program.SpringsTest):
-    def test_an_end_that_no_step_reaches(self):
-        """The time is told as a scene would have it, not with all of its digits."""
+    def test_reports_an_unreachable_end_time(self):
+        """The message prints the time in its shortest form."""
         message = self.expect(4, self.write(DRUM), "--quiet", "--out", "out", sets=["time.end_time=1e300", "output.times=[1e300]"]).stderr
         self.assertRegex(message, r"more than 1e15 to t = 1e\+300 s")
 
-    def test_parts_that_meet_are_told_by_numbers_from_0(self):
-        """A triangle through another: its vertices are 3 to 5 of fields.h5, and the first face is 0."""
+    def test_intersections_are_reported_by_indices_from_0(self):
+        """Two intersecting triangles; indices of vertices and faces are those of fields.h5."""
         self.write("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0.2 0.2 -1\nv 0.3 0.2 -1\nv 0.2 0.2 1\nf 1 2 3\nf 4 5 6\n", "m.obj")
         scene = self.write('app = "springs"\n[mesh]\nfile = "m.obj"\n[contact]\nself = true\n[time]\nend_time = 1\n')
         self.assertRegex(self.expect(3, scene, "--check").stderr, "the edge of vertices [34] and 5 meets face 0")
 
-    def test_a_state_that_is_lost(self):
+    def test_reports_a_state_that_is_not_finite(self):
         message = self.expect(4, self.write(DRUM), "--quiet", "--out", "out", sets=['load=[{force={z="sqrt(0.05-t)"}}]']).stderr
         self.assertRegex(message, r"not finite at vertex \d+ \(at rest at .* m\) at step \d+, t = 0\.05.* s")
         self.assertIn("restart.h5 holds the last good state", message)
@@ -251,8 +252,8 @@ class Failures(springs_program.SpringsTest):
         self.assertIn(told["message"], message)
         self.assertTrue((self.folder / "out/restart.h5").exists())
 
-    def test_a_step_that_is_too_long(self):
-        """Two masses of 1 kg on a spring swing with omega^2 = 200/s^2. In few steps no number overflows."""
+    def test_reports_a_time_step_beyond_the_stability_limit(self):
+        """Two masses of 1 kg on a spring oscillate with omega^2 = 200/s^2. A few unstable steps do not overflow."""
         for integrator, limit in (("rk4", 8**0.5), ("verlet", 2.0)):
             for share, code in ((1.02, 4), (0.999, 0)):
                 with self.subTest(integrator, share=share):
@@ -265,16 +266,16 @@ class Failures(springs_program.SpringsTest):
                     self.assertIn("restart.h5 holds the state of step 0", message)
                     self.assertTrue((self.folder / "out/restart.h5").exists())
 
-    def test_a_step_that_is_too_long_for_a_mesh(self):
-        """The step that a bound of the frequencies allows is below the longest stable one, and is not refused."""
+    def test_reports_an_unstable_time_step_on_a_mesh(self):
+        """The time step from the frequency bound is stable and accepted; the exact limit is larger."""
         sets = ['time.integrator="verlet"', "time.end_time=0.01", "output.times=[0.01]"]
         self.expect(0, self.write(DRUM), "--quiet", "--out", "auto", sets=[*sets, "time.safety=1.0"])
         dt = self.result("auto")["dt_max"]
         for share, code in ((1.0, 0), (1.5, 4)):
             self.expect(code, self.write(DRUM), "--quiet", "--out", f"{code}", sets=[*sets, f"time.dt={share * dt!r}"])
 
-    def test_a_step_that_becomes_too_long(self):
-        """A sheet that flies apart grows stiffer."""
+    def test_reports_a_time_step_that_becomes_unstable(self):
+        """A sheet that is stretched becomes stiffer."""
         scene = self.write(SHEET.replace('pin = [{ where = "x==0" }]\n', 'initial.velocity = { x = "100*x", y = "100*y" }\n'))
         self.expect(0, scene, "--quiet", "--out", "auto", sets=["time.safety=1.0"])
         dt = self.result("auto")["dt_max"]
@@ -283,22 +284,22 @@ class Failures(springs_program.SpringsTest):
         self.assertRegex(told["message"], f"grow in it at step {told['steps']}, t = ")
         self.assertGreater(told["steps"], 0)
 
-    def test_damping_that_is_too_fast_for_a_step(self):
-        """It doubles what it should slow."""
+    def test_reports_damping_too_strong_for_the_time_step(self):
+        """Damping beyond the stability limit amplifies the motion."""
         message = self.expect(4, self.write(SHEET), "--quiet", "--out", "out", sets=[
             "time.dt=1e-4", "damping.absolute=5e4", "time.end_time=0.002"]).stderr
         self.assertRegex(message, r"a step of 0\.0001 s is too long: cloth moves .* m in it on average, farther than the whole mesh reaches")
 
-    def test_what_flies_fast_is_not_too_long_a_step(self):
-        """Cloth that flies farther in a stable step than it reaches."""
+    def test_fast_motion_is_no_unstable_time_step(self):
+        """Cloth that moves farther in a stable step than its own size."""
         self.expect(0, self.write(SHEET.replace('pin = [{ where = "x==0" }]\n', "")), "--quiet", "--out", "out",
                     sets=["initial.velocity.z=1e6", "time.dt=1e-4", "time.end_time=0.003"])
 
-    def test_a_string_that_starts_with_no_length(self):
+    def test_accepts_a_string_of_zero_initial_length(self):
         self.expect(0, self.write(BUNGEE), "--quiet", "--out", "out", sets=["material.tension_only=true"])
         self.assertGreater(self.result("out")["steps"], 100)
 
-    def test_numbers_beyond_all_cloth(self):
+    def test_rejects_values_out_of_range(self):
         for key, value, message in (
             ("initial.velocity.z", "1e200", r"initial\.velocity\.z gives 1e\+?200 .*; it must be less than 1e99"),
             ("initial.displacement.z", "1e150", r"initial\.displacement\.z gives 1e\+?150 .*; it must be less than 1e99"),
@@ -309,8 +310,8 @@ class Failures(springs_program.SpringsTest):
             with self.subTest(key, value=value):
                 self.assertRegex(self.expect(3, self.write(SHEET), "--check", sets=[f"{key}={value}"]).stderr, message)
 
-    def test_loads_that_stiffen_cloth_at_once(self):
-        """The step follows within the first few: a pressure that blows a flat membrane up, a sheet torn apart."""
+    def test_time_step_follows_suddenly_stiffening_cloth(self):
+        """The time step adapts within a few steps: a flat membrane under pressure, a sheet that is torn apart."""
         blown = DRUM.replace("gravity = [0, 0, -9.81]", 'follower_pressure = "5000"').replace("prestretch = 0.05\n", "")
         torn = DRUM.replace('displacement = { z = "0.01*(1-(x^2+y^2)/0.16)" }', 'velocity = { x = "100*x", y = "100*y" }')
         for name, text in (("blown", blown), ("torn", torn)):
@@ -319,13 +320,13 @@ class Failures(springs_program.SpringsTest):
                 told = self.result(name)
                 self.assertLess(told["dt_min"], 0.7 * told["dt_max"])
 
-    def test_fifty_times_the_load(self):
-        """Cloth under 50 g, which stretches it to several times its size, ends well."""
+    def test_stable_under_fifty_times_the_load(self):
+        """A run of cloth under 50 g, which stretches it to several times its size, succeeds."""
         self.expect(0, self.write(DRUM), "--quiet", "--out", "out", sets=["load=[{gravity=[0,0,-490.5]}]"])
         self.assertGreater(self.result("out")["steps"], 100)
 
-    def test_a_force_that_becomes_no_number(self):
-        """The last good state is of a step before it, wherever in the cloth it begins."""
+    def test_reports_a_force_that_is_not_finite(self):
+        """The last good state precedes the first value that is not finite, at any vertex."""
         force = 'load=[{where="x>0.2",force={z="sqrt(0.1-t)"}}]'
         for dt in ("auto", 1e-4):
             with self.subTest(dt):
@@ -337,23 +338,23 @@ class Failures(springs_program.SpringsTest):
                 self.assertLessEqual(told["time"], 0.1)
                 self.assertTrue(all(map(math.isfinite, self.history("out")["kinetic"])))
 
-    def test_a_motion_need_not_outlive_the_scene(self):
+    def test_motion_may_end_with_the_scene(self):
         ends = DRUM.replace('0.4-1e-9"', '0.4-1e-9"\nmotion = { z = "0.01*sqrt(0.4-t)" }')
         self.expect(0, self.write(ends), "--quiet", "--out", "out")
 
-    def test_a_level_set_that_is_no_number(self):
-        """Cloth that falls where it is none neither passes nor freezes."""
+    def test_reports_a_level_set_that_is_not_finite(self):
+        """A level set that is NaN below some height is reported when cloth gets there."""
         message = self.expect(4, self.write(springs_program.FALLING), "--quiet", "--backend", "serial", "--out", "out", sets=[
             'contact={objects=[{kind="level-set",expression="z+0.06+0*sqrt(z+0.03)"}]}', "verify={}"]).stderr
         self.assertRegex(message, r"level-set of contact.objects, or its slope, is not a number at vertex \d+ .* at step \d+")
 
-    def test_moduli_of_what_nothing_pulls(self):
+    def test_moduli_require_a_pulling_pin(self):
         for check in ("young", "poisson"):
             message = self.expect(3, self.write(SHEET), sets=[f"verify.{check}=1"]).stderr
             self.assertIn(f"verify.{check} needs a pin with motion.x, which pulls", message)
 
-    def test_strong_damping(self):
-        """What is thrown against it comes to rest after v/K; no method turns it round."""
+    def test_strong_damping_does_not_reverse_motion(self):
+        """A moving sheet comes to rest after a distance v/K; no integrator reverses its motion."""
         scene = self.write(SHEET.replace('pin = [{ where = "x==0" }]\nload = [{ gravity = [0, 0, -9.81] }]\n',
                                          'initial.velocity.z = "1"\n'))
         for integrator in ("verlet", "rk4"):
@@ -365,22 +366,22 @@ class Failures(springs_program.SpringsTest):
                     height = self.fields("out").values("/steps/000000/position")[2]
                     self.assertLess(abs(height * damping - 1), 0.1)
 
-    def test_damping_that_turns_velocities_round(self):
+    def test_rejects_damping_that_reverses_velocities(self):
         words = ["--quiet", "--overwrite", "--out", "out"]
         for share, code in ((0.99, 0), (1.01, 4)):
             message = self.expect(code, self.write(SHEET), *words, sets=[
                 'time.integrator="verlet"', "time.dt=1e-4", f"damping.absolute={4e4 * share}"]).stderr
         self.assertIn("a step of 0.0001 s is too long: damping.absolute = 40400 1/s turns velocities round in it", message)
 
-    def test_the_last_good_state(self):
-        """It is that before the step that failed, whatever the solver had put aside, to the bit."""
+    def test_restart_file_holds_the_last_good_state(self):
+        """restart.h5 equals the state before the failed step bit for bit."""
         drum = [(["time.integrator=verlet"], 0.06), ([], 0.06), (["mesh.disk.vertices=271"], 0.6)]
         for scene, cases in ((DRUM, drum), (springs_program.FALLING, [(["verify={}"], 0.1)])):
             for sets, end in cases:
                 with self.subTest(sets, end=end):
-                    self.compare_with_a_run_that_goes_on(scene, sets, end)
+                    self.compare_with_a_continuing_run(scene, sets, end)
 
-    def compare_with_a_run_that_goes_on(self, scene, sets, end):
+    def compare_with_a_continuing_run(self, scene, sets, end):
         words = ["--quiet", "--backend", "serial", "--overwrite", "--out"]
         sets = [*sets, f"time.end_time={1.5 * end}", f"output.times=[{1.5 * end}]", "output.history_every=1"]
         gravity, force = "{gravity=[0,0,-9.81]}", f"1e-6*sqrt({end}-t)"
@@ -388,7 +389,7 @@ class Failures(springs_program.SpringsTest):
         lost = int(re.search(r"at step (\d+)", message)[1])
         self.assertIn(f"restart.h5 holds the last good state, of step {lost - 1}", message)
         self.assertEqual(lost - 1, self.history("out")["step"][-1])
-        # The same until then, and one restart file in all of its steps.
+        # The same run up to that step, with one restart file.
         longer = f"t <= {end} ? {force} : 0"
         self.expect(0, self.write(scene), *words, "whole", sets=[
             *sets, f'load=[{gravity},{{force={{z="{longer}"}}}}]', f"output.restart_every={lost - 1}"])
@@ -396,8 +397,8 @@ class Failures(springs_program.SpringsTest):
         self.assertIn("/position", found.datasets)
         self.assertEqual(known.datasets, found.datasets)
 
-    def test_verification_fails_where_it_must(self):
-        """A fault in what is computed or in what is expected is found by each check."""
+    def test_every_check_detects_a_fault(self):
+        """Each check fails for a fault in the computation or in the expected value."""
         faults = {
             "drum": ["material.area_density=0.757", "verify.frequency.value=9.0"],
             "strip": ["verify.young=1e-9", "verify.poisson=1e-9"],
@@ -421,13 +422,13 @@ class Failures(springs_program.SpringsTest):
                 self.assertTrue(any(not check["passed"] for check in checks))
 
     def assert_fails_alone(self, names, scene, *sets):
-        """All checks but the named ones pass; the history of the run."""
+        """Expects exactly the named checks to fail; returns the history of the run."""
         self.expect(5, scene, "--quiet", "--backend", "serial", "--overwrite", "--out", "out", sets=sets)
         self.assertEqual(names, {check["name"] for check in self.result("out")["checks"] if not check["passed"]})
         return self.history("out")
 
-    def test_contact_that_gives_energy_is_told_and_is_bounded_whatever_the_step(self):
-        """Cloth starts nearer to a table than the thickness: it is lifted by no more than it lacks."""
+    def test_contact_energy_gain_is_reported_and_bounded(self):
+        """Cloth that starts closer to a table than the thickness is lifted to the thickness and not farther."""
         for dt in (3e-4, 3e-5):
             with self.subTest(dt):
                 rows = self.assert_fails_alone(
@@ -437,14 +438,14 @@ class Failures(springs_program.SpringsTest):
                 self.assertGreater(rows["contact_work"][-1], 0.0)
                 self.assertLess(max(rows["kinetic"]), 0.2 * 0.5**2 * 10.0 * 0.0025)
 
-    def test_cloth_that_is_driven_through_a_body_is_told(self):
+    def test_reports_cloth_driven_through_a_body(self):
         rows = self.assert_fails_alone(
             {"intersections"}, self.write(springs_program.FALLING), "output={history_every=7}",
             'pin=[{where="x<1",motion={z="-t"}}]', "verify.penetration=0.5")
         self.assertEqual((0, 0), (rows["intersections"][0], rows["intersections"][-1]))
 
-    def test_a_check_of_energy_does_not_depend_on_the_rows(self):
-        """Cloth that fell, and lies still at the end: the energy that it had is not in the last row."""
+    def test_energy_check_does_not_depend_on_history_rows(self):
+        """Cloth that fell and rests at the end: the last row does not show the initial energy."""
         scene = self.write(springs_program.FALLING)
         values = []
         for every in (20, 100000):
@@ -454,8 +455,8 @@ class Failures(springs_program.SpringsTest):
             values.append(self.result("out")["errors"]["energy_balance"])
         self.assertLess(values[1], 1.01 * values[0])
 
-    def test_what_friction_holds_stays(self):
-        """Cloth on a plane, gravity leaning by 20 degrees, of which tan 27 degrees of friction holds all."""
+    def test_static_friction_holds_a_sheet(self):
+        """Cloth on a plane with gravity inclined by 20 degrees, below the friction angle of 27 degrees."""
         for integrator in ("rk4", "verlet"):
             with self.subTest(integrator):
                 self.expect(0, self.write(springs_program.FALLING), "--quiet", "--backend", "serial", "--overwrite", "--out", "out", sets=[
@@ -464,11 +465,11 @@ class Failures(springs_program.SpringsTest):
                     'contact={thickness=0.003,objects=[{kind="plane",centre=[0,0,0],friction=0.5}]}'])
                 file = self.fields("out")
                 rest, now = file.values("/mesh/vertices")[::3], file.values("/steps/000000/position")[::3]
-                # Half of a kick a step would be 0.4 mm.
+                # A drift of half an impulse per step would give 0.4 mm.
                 self.assertLess(max(abs(a - b) for a, b in zip(rest, now)), 5e-6)
                 self.assertLess(abs(self.result("out")["energy"]["friction_work"]), 1e-7)
 
-    def test_work_of_friction_is_part_of_the_balance(self):
+    def test_energy_balance_includes_friction_work(self):
         scene = self.write(springs_program.FALLING)
         self.expect(0, scene, "--quiet", "--backend", "serial", "--out", "out", sets=["verify={energy_balance=2e-2}"])
         rows = self.history("out")
@@ -484,8 +485,8 @@ class Failures(springs_program.SpringsTest):
             "contact.friction=0", "contact.objects.0.friction=0"])
         self.assertEqual({0.0}, set(self.history("none")["friction_work"]))
 
-    def test_errors_of_second_order(self):
-        """Frequencies of the drum, and of one with equal masses, which is of first order only."""
+    def test_frequency_converges_with_second_order(self):
+        """Frequency of the drum; with equal masses the order is one."""
         def error(vertices, mass):
             self.expect(0, "drum", "--quiet", "--backend", "serial", "--overwrite", sets=[
                 f"mesh.disk.vertices={vertices}", f"material.mass={mass}", "verify.frequency.tolerance=1",

@@ -1,4 +1,4 @@
-"""What fields.h5 and fields.xdmf of drogue-springs tell of strings, beside cloth and alone."""
+"""Strings in fields.h5 and fields.xdmf of drogue-springs, beside cloth and alone."""
 
 import array
 import math
@@ -37,14 +37,14 @@ class Strings(springs_program.SpringsTest):
         return list(zip(numbers[::2], numbers[1::2], strict=True))
 
     def meshes(self):
-        """Of every mesh of fields.xdmf its name, kind, where its cells are, what fields it has where, and its times."""
+        """Tuples (name, kind, path of the cells, centering of fields by name, times) of all grids of fields.xdmf."""
         datasets = self.fields("out").datasets
         root = xml.etree.ElementTree.parse(self.folder / "out/fields.xdmf").getroot()
         for item in root.iter("DataItem"):
             name, path = item.text.strip().split(":")
             self.assertEqual("fields.h5", name)
             self.assertEqual(8 * math.prod(map(int, item.get("Dimensions").split())), len(datasets[path]), path)
-        told = []
+        found = []
         for series in root.findall("Domain/Grid"):
             self.assertEqual(("Collection", "Temporal"), (series.get("GridType"), series.get("CollectionType")))
             times = {}
@@ -55,24 +55,24 @@ class Strings(springs_program.SpringsTest):
                 mesh = (grid.get("Name"), cells.get("TopologyType"), cells.find("DataItem").text.split(":")[1], fields)
                 times[float(grid.find("Time").get("Value"))] = mesh
             self.assertTrue(all(mesh == times[0.0] for mesh in times.values()))
-            told.append((*times[0.0], list(times)))
-        return told
+            found.append((*times[0.0], list(times)))
+        return found
 
-    def test_beside_cloth(self):
+    def test_strings_beside_cloth_form_their_own_grid(self):
         self.assertEqual([(1, 4), (4, 5), (2, 0)], self.strings_of(SQUARE + STRINGS))
         at_vertices = {"velocity": "Node", "vertex_stress": "Node"}
-        self.assertEqual([("scene cloth", "Triangle", "/mesh/triangles", {**at_vertices, "von_mises": "Cell"}, [0.0, 0.002]),
+        self.assertEqual([("scene triangles", "Triangle", "/mesh/triangles", {**at_vertices, "von_mises": "Cell"}, [0.0, 0.002]),
                           ("scene strings", "Polyline", "/mesh/strings", at_vertices, [0.0, 0.002])], self.meshes())
 
     def test_reinforcements_come_last(self):
         self.assertEqual([(1, 4), (4, 5), (2, 0), (0, 1)], self.strings_of(SQUARE + STRINGS, SCENE + TAPE))
         self.assertEqual([(0, 1)], self.strings_of(SQUARE, SCENE + TAPE))
 
-    def test_cloth_alone(self):
+    def test_cloth_alone_forms_one_grid(self):
         self.assertEqual([], self.strings_of(SQUARE))
         self.assertEqual([("scene", "Triangle", "/mesh/triangles")], [mesh[:3] for mesh in self.meshes()])
 
-    def test_strings_alone(self):
+    def test_strings_alone_form_one_grid(self):
         scene = SCENE.replace(', "von_mises", "vertex_stress"', "")
         self.assertEqual([(2, 1), (1, 0)], self.strings_of("v 0 0 0\nv 1 0 0\nv 2 0 0\nl 3 2 1\n", scene))
         self.assertEqual([("scene", "Polyline", "/mesh/strings")], [mesh[:3] for mesh in self.meshes()])

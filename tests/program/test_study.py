@@ -1,4 +1,5 @@
-"""--study: one table of errors and times over meshes and schemes."""
+# ctest-label: no-sanitizer
+"""Option --study: tables of errors and times over meshes and schemes."""
 
 import csv
 import json
@@ -17,7 +18,7 @@ import springs_program
 
 class StudyTest(gas_program.GasTest):
     def study(self, code, scene, lists, *words, sets=()):
-        """Runs a study where no interpreter starts: that there is nothing to draw pictures with is no failure."""
+        """Runs a study without a Python interpreter for its pictures, which is no failure."""
         run = self.start(scene, "--backend", "serial", "--study", lists, *words, sets=sets,
                          environment={"PYTHONHOME": os.devnull})
         self.assertEqual(code, run.returncode, run.stderr)
@@ -41,7 +42,7 @@ class StudyTest(gas_program.GasTest):
 
 
 class GasStudy(StudyTest):
-    def test_tables(self):
+    def test_writes_one_row_per_point(self):
         text = self.study(0, "sod", "meshes=50:100,schemes=js:z").stdout
         rows, document = self.tables("out/sod-study")
         self.assertEqual(4, len([line for line in text.splitlines() if "L1 density" in line]))
@@ -59,7 +60,7 @@ class GasStudy(StudyTest):
         self.assertLess(errors["z", "100"], errors["js", "100"])
         self.assertEqual("drogue.study/1", document["schema"])
 
-    def test_a_row_is_the_run_it_stands_for(self):
+    def test_row_equals_the_single_run(self):
         self.study(0, "sod", "meshes=100,schemes=js,splittings=lf-global,times=ssprk43", "--quiet")
         row, = self.tables("out/sod-study")[0]
         self.expect(0, "sod", "--backend", "serial", sets=[
@@ -69,11 +70,11 @@ class GasStudy(StudyTest):
         self.assertEqual(told["steps"], int(row["steps"]))
         self.assertAlmostEqual(told["errors"]["l1_density"], float(row["l1_density"]), places=8)
 
-    def test_meshes_double(self):
+    def test_two_meshes_make_a_doubling_sequence(self):
         self.study(0, "toro-1", "meshes=20:100", "--quiet")
         self.assertEqual(["20", "40", "80", "100"], [row["cells"] for row in self.tables("out/toro-1-study")[0]])
 
-    def test_a_scheme_that_fails_is_a_row(self):
+    def test_failed_scheme_is_listed_as_a_row(self):
         self.study(0, "mach-2000", "schemes=js:teno5", "--out", "study", "--quiet",
                    sets=['scheme.positivity="off"', "scheme.cfl=0.6", "mesh.cells=100"])
         rows, document = self.tables("study")
@@ -81,30 +82,30 @@ class GasStudy(StudyTest):
         self.assertEqual("", rows[1]["l1_density"])
         self.assertIn("not positive", document["rows"][1]["message"])
 
-    def test_what_cannot_be_run_is_found_first(self):
+    def test_rejects_invalid_points_before_the_first_run(self):
         message = self.study(3, "shu-osher", "meshes=100:12800", "--out", "study").stderr
         self.assertIn("verify.reference.cells", message)
         self.assertFalse((self.folder / "study").exists())
 
-    def test_a_scene_without_errors(self):
+    def test_rejects_a_scene_without_exact_solution(self):
         self.assertIn("[verify] exact", self.study(2, "sedov", "meshes=101:201").stderr)
 
-    def test_existing_study_is_refused(self):
+    def test_rejects_an_existing_study(self):
         self.study(0, "sod", "meshes=50", "--quiet")
         self.study(2, "sod", "meshes=50", "--quiet")
         self.study(0, "sod", "meshes=50", "--quiet", "--overwrite")
 
-    def test_seed_mode_has_no_study(self):
+    def test_rejects_a_study_of_the_baseline(self):
         self.study(2, "sod", "meshes=50", "--seed-mode")
 
-    def test_ctrl_c_keeps_the_rows_that_are_done(self):
+    def test_ctrl_c_keeps_finished_rows(self):
         self.assert_interrupted("sod", "meshes=50:6400", ["verify.l1_density=1.0"],
                                 lambda process: process.stdout.readline())
         rows = self.tables("study")[0]
         self.assertTrue(1 <= len(rows) < 8, rows)
         self.assertTrue(all(row["status"] == "ok" for row in rows))
 
-    def test_ctrl_c_in_the_reference(self):
+    def test_ctrl_c_stops_the_reference_run(self):
         def begun(process):
             while process.poll() is None and not (self.folder / "study/scene.toml").exists():
                 time.sleep(0.002)
@@ -112,13 +113,13 @@ class GasStudy(StudyTest):
 
         self.assert_interrupted("blast", "meshes=50", [], begun)
 
-    def test_nothing_succeeds(self):
+    def test_reports_a_study_without_successful_runs(self):
         text = self.study(4, "blast", "meshes=100,schemes=z:teno5",
                           sets=['scheme.positivity="off"', "verify.reference.cells=400"]).stderr
         self.assertIn("every run of the study failed", text)
         self.assertEqual(2, len(self.tables("out/blast-study")[0]))
 
-    def test_an_axis_named_twice(self):
+    def test_rejects_a_repeated_axis(self):
         self.assertIn("twice", self.study(2, "sod", "meshes=50,meshes=100").stderr)
 
 
@@ -127,13 +128,13 @@ class SpringsStudy(springs_program.SpringsTest, StudyTest):
     LEVEL = "load=[{gravity=[0,0,0]}]"
 
     def difference(self, coarse, fine, name):
-        """The mean over time that a table has as an error, from the series of two rows."""
+        """Mean over time of the difference of two series, as in the table."""
         time, first, second = coarse["series"]["time"], coarse["series"][name], fine["series"][name]
         self.assertEqual(time, fine["series"]["time"])
         apart = [abs(a - b) for a, b in zip(first, second, strict=True)]
         return sum((apart[k - 1] + apart[k]) / 2 * (time[k] - time[k - 1]) for k in range(1, len(time))) / (time[-1] - time[0])
 
-    def test_tables(self):
+    def test_writes_one_row_per_point(self):
         scene = self.write(springs_program.DRUM)
         lists = "meshes=61:244,models=quadratic,masses=area:equal,integrators=verlet"
         text = self.study(0, scene, lists, sets=[self.VERIFY, self.LEVEL]).stdout
@@ -171,7 +172,7 @@ class SpringsStudy(springs_program.SpringsTest, StudyTest):
         self.assertEqual([0.1, 0.3], row["series"]["time"])
         self.assertEqual(self.history("run")["kinetic"][-1], row["series"]["kinetic"][-1])
 
-    def test_without_closed_form_or_times(self):
+    def test_accepts_a_scene_without_closed_form_or_times(self):
         self.study(0, self.write('app = "springs"\n[mesh]\nstring = { vertices = 5 }\n[initial]\nvelocity = { y = "sin(pi*x)" }\n'
                                  '[[pin]]\nwhere = "x == 0 || x == 1"\n[time]\nend_time = 0.001\n'), "meshes=5:20", "--quiet")
         rows, document = self.tables("out/scene-study")
@@ -180,8 +181,8 @@ class SpringsStudy(springs_program.SpringsTest, StudyTest):
         self.assertEqual(101, len(document["rows"][0]["series"]["length"]))
         self.assertNotIn("cauchy_area", rows[0])
 
-    def test_strings_beside_cloth_are_the_same_in_every_model(self):
-        """The string has the shortest step, so that a string of another mass or stiffness would take others."""
+    def test_strings_beside_cloth_are_equal_in_every_model(self):
+        """The string limits the time step, so that a change of its mass or stiffness would change the number of steps."""
         self.write("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0.5 0.5 0\nv 0 0 -0.01\nv 0 0 -0.02\n"
                    "f 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\nl 1 6 7\n", "m.obj")
         scene = self.write('app = "springs"\n[mesh]\nfile = "m.obj"\n[material]\nmembrane_modulus = 20\npoisson = 0\n'
@@ -193,7 +194,7 @@ class SpringsStudy(springs_program.SpringsTest, StudyTest):
         self.assertGreater(steps[0], 1000)
         self.assertNotIn("it is empty", text)
 
-    def test_a_mesh_that_fails_is_a_row(self):
+    def test_failed_mesh_is_listed_as_a_row(self):
         scene = self.write(springs_program.DRUM)
         self.study(0, scene, "meshes=61:817", "--out", "study", "--quiet", sets=["time.dt=0.0008"])
         rows, document = self.tables("study")
@@ -205,7 +206,7 @@ class SpringsStudy(springs_program.SpringsTest, StudyTest):
         self.assertIn("every run of the study failed", text)
         self.assertEqual(2, len(self.tables("none")[0]))
 
-    def test_usage(self):
+    def test_reports_usage_errors(self):
         scene = self.write(springs_program.DRUM)
         for lists in ("meshes=1", "meshes=a", "models=weno", "cells=10", "meshes=", "masses", "integrators=rk5", "",
                       "meshes=61,meshes=217"):
@@ -216,12 +217,12 @@ class SpringsStudy(springs_program.SpringsTest, StudyTest):
         self.assertIn("m.obj", self.study(2, scene, "meshes=61:217").stderr)
         self.assertFalse((self.folder / "out").exists())
 
-    def test_what_cannot_be_run_is_found_first(self):
+    def test_rejects_invalid_points_before_the_first_run(self):
         message = self.study(3, "drum", "models=quadratic:edge").stderr
         self.assertIn("verify.frequency.mode", message)
         self.assertFalse((self.folder / "out").exists())
 
-    def test_ctrl_c_keeps_the_rows_that_are_done(self):
+    def test_ctrl_c_keeps_finished_rows(self):
         self.assert_interrupted(self.write(springs_program.DRUM), "meshes=61:15616", ["time.end_time=2"],
                                 lambda process: process.stdout.readline())
         rows = self.tables("study")[0]
@@ -231,8 +232,8 @@ class SpringsStudy(springs_program.SpringsTest, StudyTest):
 
 
 class ReferenceOfARun(gas_program.GasTest):
-    def test_ctrl_c(self):
-        """The run itself is done; continued, it is verified."""
+    def test_ctrl_c_stops_the_reference_of_a_run(self):
+        """The interrupted reference leaves a complete run; its continuation verifies it."""
         sets = ["mesh.cells=50", "verify.l1_density=10.0"]
         line = gas_program.arguments("blast", "--backend", "serial", "--quiet", "--out", "run", sets=sets)
         process = subprocess.Popen(line, cwd=self.folder, env=gas_program.ENVIRONMENT)

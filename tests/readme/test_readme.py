@@ -1,4 +1,4 @@
-"""Runs the commands that README.md shows, in their order and in one folder, as a reader would."""
+"""Runs the commands of README.md in their order and in one folder."""
 
 import os
 import pathlib
@@ -12,7 +12,7 @@ SOURCE = pathlib.Path(os.environ["DROGUE_SOURCE"])
 
 
 def shown_commands():
-    """Lines of README's code blocks that start a built program."""
+    """Lines in code blocks of README.md that start a built program."""
     blocks = re.findall(r"^```\n(.*?)^```", (SOURCE / "README.md").read_text(), re.MULTILINE | re.DOTALL)
     return [line.split() for block in blocks for line in block.splitlines() if line.startswith("build/host/bin/")]
 
@@ -31,7 +31,7 @@ class Readme(unittest.TestCase):
         for script in re.findall(r"^(scripts/\S+)", (SOURCE / "README.md").read_text(), re.MULTILINE):
             self.assertTrue(os.access(SOURCE / script, os.X_OK), script)
 
-    def test_links_lead_somewhere(self):
+    def test_links_have_targets(self):
         for page in [SOURCE / "README.md", *sorted((SOURCE / "docs").glob("*.md"))]:
             for target in re.findall(r"\]\(([^)#:]+)(?:#[^)]*)?\)", page.read_text()):
                 self.assertTrue((page.parent / target).exists(), f"{page.name}: {target}")

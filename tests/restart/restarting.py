@@ -1,4 +1,4 @@
-"""What tests of restarts share: a run, its twin without interruption, and their comparison."""
+"""Base class of restart tests: an interrupted run, an uninterrupted one, and their comparison."""
 
 import random
 import shutil
@@ -7,10 +7,10 @@ import time
 
 import gas_program
 
-# Outputs, rows and restarts at steps that have nothing to do with each other.
+# Outputs, rows and restart files at unrelated steps.
 CASES = {
     "sod": ["mesh.cells=800", "output.restart_every=25", "output.history_every=7"],
-    # Redone steps and limited ones: their counters and the marks of touched cells are state too.
+    # Repeated and limited steps: their counters and the marks of limited cells are part of the state.
     "blast": ["mesh.cells=400", "output.restart_every=30", "output.history_every=11", 'scheme.positivity="auto"',
               "scheme.cfl=0.6", "verify.reference.cells=401", "verify.l1_density=1.0"],
     "entropy-wave": ["mesh.cells=160", "output.restart_every=40", "output.history_every=13"],
@@ -23,11 +23,11 @@ class RestartTest(gas_program.GasTest):
         self.random = random.Random(self.id())
 
     def whole(self, scene, backend, *words, sets=None):
-        """The run without interruption."""
+        """Runs without interruption."""
         self.expect(0, scene, "--quiet", "--backend", backend, "--out", "whole", *words, sets=sets or CASES[scene])
 
     def begin(self, scene, backend, *words, sets=None):
-        """Starts a run in the folder `part`; returns once it listens to signals and there is a restart file."""
+        """Starts a run in the folder `part`; returns once it handles signals and has a restart file."""
         line = gas_program.arguments(scene, "--quiet", "--backend", backend, "--out", "part", *words,
                                      sets=sets or CASES[scene])
         process = subprocess.Popen(line, cwd=self.folder, env=gas_program.ENVIRONMENT, stderr=subprocess.PIPE)
@@ -38,7 +38,7 @@ class RestartTest(gas_program.GasTest):
         return process
 
     def kill_and_continue(self, scene, backend, kills, *words, sets=None):
-        """Kills a run at random times and continues it, until it was killed `kills` times; then lets it end."""
+        """Kills a run at random times and continues it, `kills` times; then lets it finish."""
         killed, patience = 0, 0.08
         while killed < kills:
             process = self.begin(scene, backend, *words, *(["--restart", "auto"] if killed else []), sets=sets)
@@ -46,8 +46,8 @@ class RestartTest(gas_program.GasTest):
             process.kill()
             if process.wait() == -9:
                 killed += 1
-                (self.folder / "part/.lock").unlink(missing_ok=True)  # else the next one seems to listen already
-            else:  # it was faster: once more from the start
+                (self.folder / "part/.lock").unlink(missing_ok=True)  # otherwise the next run seems to handle signals already
+            else:  # the run had finished: start again
                 shutil.rmtree(self.folder / "part")
                 killed, patience = 0, patience / 2
                 self.assertGreater(patience, 1e-4, "the run cannot be killed in time")

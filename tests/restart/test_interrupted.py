@@ -1,4 +1,5 @@
-"""Ctrl-C and SIGTERM end a run after a whole step; continued, it gives the bits of one that was not interrupted."""
+# ctest-label: no-sanitizer
+"""Runs that are interrupted after a whole step and continued equal uninterrupted runs bit for bit."""
 
 import os
 import signal
@@ -37,21 +38,21 @@ class Interrupted(restarting.RestartTest):
                     sets=restarting.CASES[scene])
         self.assert_same_runs()
 
-    def test_ctrl_c(self):
+    def test_ctrl_c_ends_after_a_whole_step(self):
         self.assert_continues(signal.SIGINT)
 
-    def test_sigterm(self):
+    def test_sigterm_ends_after_a_whole_step(self):
         self.assert_continues(signal.SIGTERM, scene="entropy-wave", backend=gas_program.threaded())
 
-    def test_stretches_shorter_than_a_look_at_the_clock(self):
+    def test_continues_after_very_short_stretches(self):
         sets = ["mesh.cells=3000", "output.restart_every=1", "output.times=[0.4]"]
         for words in ((), ("--seed-mode",)):
             with self.subTest(words):
                 self.interrupt(signal.SIGINT, "--overwrite", *words, sets=sets)
                 (self.folder / "part/restart.h5").unlink()
 
-    def test_finished_run_is_not_begun_again(self):
-        """A job script that is submitted once too often changes nothing."""
+    def test_finished_run_is_not_repeated(self):
+        """Resubmission of the job script of a finished run changes nothing."""
         self.whole("sod", "serial")
         before = (self.folder / "whole/history.csv").read_text()
         self.expect(0, "sod", "--quiet", "--backend", "serial", "--out", "whole", "--restart", "auto",

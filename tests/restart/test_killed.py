@@ -1,4 +1,5 @@
-"""A run that was killed and continued gives the bits of one that was not."""
+# ctest-label: no-sanitizer
+"""Runs that are killed and continued equal uninterrupted runs bit for bit."""
 
 import os
 import sys
@@ -11,7 +12,7 @@ import restarting
 
 
 class Killed(restarting.RestartTest):
-    def test_same_bits(self):
+    def test_continued_run_equals_uninterrupted_run(self):
         for scene, backend in (("sod", "serial"), ("blast", gas_program.threaded()), ("entropy-wave", "serial")):
             with self.subTest(scene):
                 self.folder = self.fresh_folder(scene)
@@ -19,20 +20,20 @@ class Killed(restarting.RestartTest):
                 self.kill_and_continue(scene, backend, 3)
                 self.assert_same_runs()
 
-    def test_the_limiter_was_in_it(self):
-        """Else the blast above would not test what it is there for."""
+    def test_run_uses_the_limiter(self):
+        """Precondition of the tests above: the limiter acts in the blast."""
         self.whole("blast", "serial")
         told = self.result("whole")["limiter"]
         self.assertTrue(told["redone_steps"] > 0 and told["touches"] > 0 and told["cells"] > 0, told)
 
-    def test_seed_mode(self):
+    def test_continued_baseline_run_equals_uninterrupted_run(self):
         sets = ["mesh.cells=400", "output.restart_every=20", "output.history_every=7", "verify.l1_density=1.0"]
         self.whole("sod", "serial", "--seed-mode", sets=sets)
         self.kill_and_continue("sod", "serial", 2, "--seed-mode", sets=sets)
         self.assert_same_runs()
 
-    def test_killed_before_its_first_restart_file(self):
-        """One job script serves every submission: `auto` begins anew where there is nothing to continue."""
+    def test_restarts_from_the_beginning_without_a_restart_file(self):
+        """`--restart auto` starts from the beginning if there is no restart file, so one job script suffices."""
         self.whole("sod", "serial")
         for name in ("history.csv", "fields.h5", "scene.toml", "fields.xdmf"):
             (self.folder / "part").mkdir(exist_ok=True)

@@ -1,4 +1,4 @@
-"""Which restart files are refused, and how; what may change between a run and its continuation."""
+"""Rejected restart files, and permitted changes between a run and its continuation."""
 
 import os
 import sys
@@ -34,20 +34,20 @@ class RestartFiles(gas_program.GasTest):
         for name, content in kept.items():
             self.assertEqual(content, (self.folder / "run" / name).read_bytes(), f"{name} was touched")
 
-    def test_truncated(self):
+    def test_rejects_truncated_files(self):
         for length in (len(self.bytes) - 1, len(self.bytes) // 2, 600, 512):
             with self.subTest(length):
                 self.file.write_bytes(self.bytes[:length])
                 self.assert_refused("truncated")
 
-    def test_no_restart_file(self):
+    def test_rejects_files_that_are_no_restart_file(self):
         for content in (b"", b"x", b"time [s]\n0\n" * 100, bytes(range(256)) * 64, self.bytes[:100],
                         (self.folder / "run/fields.h5").read_bytes()):
             with self.subTest(length=len(content)):
                 self.file.write_bytes(content)
                 self.assert_refused("restart file")
 
-    def test_damaged(self):
+    def test_rejects_damaged_files(self):
         for place in (513, 2048, len(self.bytes) - 1):
             with self.subTest(place):
                 damaged = bytearray(self.bytes)
@@ -55,15 +55,15 @@ class RestartFiles(gas_program.GasTest):
                 self.file.write_bytes(damaged)
                 self.assert_refused("damaged")
 
-    def test_later_format(self):
+    def test_rejects_a_later_format(self):
         self.file.write_bytes(self.bytes.replace(b"drogue.restart/1", b"drogue.restart/2", 1))
         self.assert_refused("drogue.restart/2")
 
-    def test_another_scene(self):
+    def test_rejects_another_scene(self):
         self.assert_refused("another scene", scene="toro-1",
                             sets=["run.end_time=0.1", "output.times=[0.1]", "verify.l1_density=1.0"])
 
-    def test_a_folder_of_another_run(self):
+    def test_rejects_the_folder_of_another_run(self):
         words = ["--quiet", "--backend", "serial", "--out", "other"]
         self.expect(0, "sod", *words, sets=[*SETS, "mesh.cells=100"])
         names = ("history.csv", "fields.h5", "scene.toml", "result.json")
@@ -75,22 +75,22 @@ class RestartFiles(gas_program.GasTest):
         self.expect(0, "sod", "--quiet", "--backend", "serial", "--out", "new", "--restart", "run/restart.h5", sets=later)
         self.expect(0, "sod", "--quiet", "--backend", "serial", "--out", "new", "--restart", "run/restart.h5", sets=later)
 
-    def test_another_scheme_or_mesh(self):
+    def test_rejects_another_scheme_or_mesh(self):
         for change in ("mesh.cells=100", 'scheme.weno="js"', "scheme.cfl=0.5", "gas.gamma=1.3",
                        'boundary.left="reflecting"'):
             with self.subTest(change):
                 self.assert_refused("another scene", sets=[*SETS, change])
 
-    def test_an_end_that_is_over(self):
+    def test_rejects_an_end_time_that_has_passed(self):
         self.assert_refused(" s, later than run.end_time = 0.1", sets=[*SETS, "run.end_time=0.1", "output.times=[0.1]"])
 
-    def test_missing(self):
+    def test_reports_a_missing_file(self):
         self.assertIn("no/such.h5", self.resume(2, "--restart", "no/such.h5"))
 
-    def test_folder_instead_of_a_file(self):
+    def test_reports_a_folder_instead_of_a_file(self):
         self.assertIn("'run'", self.resume(6, "--restart", "run"))
 
-    def test_named_file_into_a_new_directory(self):
+    def test_continues_a_named_file_in_a_new_directory(self):
         self.expect(0, "sod", "--quiet", "--backend", "serial", "--out", "new", "--restart", str(self.file), sets=SETS)
         old, new = self.folder / "run", self.folder / "new"
         last = gas_program.fields(old), gas_program.fields(new)
@@ -98,7 +98,7 @@ class RestartFiles(gas_program.GasTest):
             one, other = (file.datasets[f"/steps/{file.children('/steps')[-1]}/{field}"] for file in last)
             self.assertEqual(one, other)
 
-    def test_later_end_time(self):
+    def test_continues_to_a_later_end_time(self):
         longer = [*SETS, "run.end_time=0.4", "output.times=[0.1, 0.2, 0.4]", "run.max_steps=5000"]
         self.resume(0, sets=longer)
         self.expect(0, "sod", "--quiet", "--backend", "serial", "--out", "whole", sets=longer)
@@ -107,11 +107,11 @@ class RestartFiles(gas_program.GasTest):
         self.assertEqual((whole / "history.csv").read_text(), (part / "history.csv").read_text())
         self.assertEqual(0.4, self.result("run")["time"])
 
-    def test_other_backend(self):
+    def test_continues_on_another_backend(self):
         self.expect(0, "sod", "--quiet", "--backend", gas_program.threaded(), "--out", "run", "--restart", "auto", sets=SETS)
 
-    def test_other_fields(self):
-        """fields.xdmf could not name what some outputs have and others have not."""
+    def test_rejects_other_fields(self):
+        """fields.xdmf lists the same fields for all outputs."""
         for fields in ('["rho"]', '["rho", "u"]'):
             with self.subTest(fields):
                 message = self.resume(6, sets=[*SETS, f"output.fields={fields}"])

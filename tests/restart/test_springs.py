@@ -1,4 +1,5 @@
-"""A run of cloth that was killed or interrupted and continued gives the bits of one that was not."""
+# ctest-label: no-sanitizer
+"""Springs runs that are killed or interrupted and continued equal uninterrupted runs bit for bit."""
 
 import os
 import random
@@ -27,7 +28,7 @@ class Restart(springs_program.SpringsTest):
         return self.begin_with(SETS, "--quiet", "--backend", backend, "--out", "part", *words)
 
     def begin_with(self, sets, *words):
-        """Starts a run in the folder `part`; returns once it runs and there is a restart file."""
+        """Starts a run in the folder `part`; returns once it has a restart file."""
         line = gas_program.arguments(self.scene, *words, sets=sets, program=self.program)
         process = subprocess.Popen(line, cwd=self.folder, env=gas_program.ENVIRONMENT, stderr=subprocess.PIPE)
         self.addCleanup(process.stderr.close)
@@ -49,7 +50,7 @@ class Restart(springs_program.SpringsTest):
         for key in ("steps", "time", "dt_min", "dt_max", "status"):
             self.assertEqual(one[key], other[key], key)
 
-    def test_killed(self):
+    def test_killed_run_equals_uninterrupted_run(self):
         for backend in ("serial", gas_program.threaded()):
             with self.subTest(backend):
                 self.finish(backend, "whole", "--overwrite")
@@ -63,7 +64,7 @@ class Restart(springs_program.SpringsTest):
                 self.finish(backend, "part", "--restart", "auto")
                 self.assert_same_runs()
 
-    def test_interrupted(self):
+    def test_interrupted_run_equals_uninterrupted_run(self):
         self.finish("serial", "whole")
         for number in (signal.SIGINT, signal.SIGTERM):
             again = ["--restart", "auto"] if (self.folder / "part").exists() else []
@@ -76,7 +77,7 @@ class Restart(springs_program.SpringsTest):
         self.finish("serial", "part", "--restart", "auto")
         self.assert_same_runs()
 
-    def test_refused(self):
+    def test_rejects_invalid_restarts(self):
         self.finish("serial", "part")
         words = ["--quiet", "--backend", "serial", "--out", "part", "--restart", "auto"]
         for change in ("mesh.disk.vertices=61", "material.poisson=0.2", "pin.0.axes=xy"):
@@ -87,8 +88,8 @@ class Restart(springs_program.SpringsTest):
         file.write_bytes(file.read_bytes()[:-100])
         self.assertIn("truncated", self.expect(6, self.scene, *words, sets=SETS).stderr)
 
-    def test_contact(self):
-        """Lists of what is near are as old as the run, the work of contact grows over all of it."""
+    def test_continued_contact_equals_uninterrupted_contact(self):
+        """Contact lists and accumulated contact work are part of the state."""
         self.scene = self.write(springs_program.FALLING)
         words = ["--quiet", "--backend", "serial", "--out"]
         self.expect(0, self.scene, *words, "whole")
@@ -101,8 +102,8 @@ class Restart(springs_program.SpringsTest):
         work = self.history("whole")["contact_work"]
         self.assertLess(work[-1], work[0])
 
-    def test_a_run_that_is_done(self):
-        """Its last step may end an ulp after the end, in a sum of steps."""
+    def test_finished_run_is_not_repeated(self):
+        """The accumulated time of the last step may exceed the end time by 1 ulp."""
         words = ["--quiet", "--backend", "serial", "--out"]
         for end in (0.06, 0.07, 0.11, 0.12, 0.23, 0.29):
             sets = ["output.restart_every=1", f"time.end_time={end}", f"output.times=[{end}]"]
@@ -111,7 +112,7 @@ class Restart(springs_program.SpringsTest):
             self.expect(0, self.scene, *words, f"{end}", "--restart", "auto", sets=sets)
             self.assertEqual((rows, end), (self.history(f"{end}"), self.result(f"{end}")["time"]))
 
-    def test_a_folder_of_another_run(self):
+    def test_rejects_the_folder_of_another_run(self):
         self.finish("serial", "part")
         words = ["--quiet", "--backend", "serial", "--out", "other"]
         self.expect(0, self.scene, *words, sets=[*SETS, "material.poisson=0.2"])
@@ -120,8 +121,8 @@ class Restart(springs_program.SpringsTest):
         self.assertIn("'other' holds a run of another scene; choose another --out", message)
         self.assertEqual(before, (self.folder / "other/history.csv").read_text())
 
-    def test_rows_that_are_lost(self):
-        """Then they begin at the restart."""
+    def test_history_starts_at_the_restart_if_rows_are_lost(self):
+        """Rows lost from history.csv stay lost: new rows begin at the restart."""
         self.finish("serial", "part")
         history = self.folder / "part/history.csv"
         history.write_text(history.read_text().splitlines()[0] + "\n")
@@ -130,14 +131,14 @@ class Restart(springs_program.SpringsTest):
         self.assertEqual(0, first % 50)
         self.assertGreater(first, 0)
 
-    def test_an_end_that_is_over(self):
+    def test_rejects_an_end_time_that_has_passed(self):
         self.finish("serial", "part")
         sets = [*SETS, "time.end_time=1.5", "output.times=[0.6]"]
         message = self.expect(6, self.scene, "--out", "new", "--restart", "part/restart.h5", sets=sets).stderr
         self.assertRegex(message, r"cannot continue from restart file 'part/restart.h5': it is of t = 2\.\S+ s, later than time.end_time = 1.5\n$")
 
-    def test_shorter_steps(self):
-        """What ends since a step is too long goes on with a shorter one."""
+    def test_failed_run_continues_with_shorter_steps(self):
+        """A run that failed because of a long time step continues with a shorter one."""
         words = ["--quiet", "--backend", "serial", "--out", "part"]
         message = self.expect(4, self.scene, *words, sets=[*SETS, "time.dt=0.03"]).stderr
         self.assertIn("restart.h5 holds", message)
@@ -148,8 +149,8 @@ class Restart(springs_program.SpringsTest):
                 shutil.rmtree(self.folder / "part")
                 self.expect(4, self.scene, *words, sets=[*SETS, "time.dt=0.03"])
 
-    def test_a_run_that_is_continued_elsewhere_is_checked_as_a_whole(self):
-        """Its rows go with it, but not past other columns."""
+    def test_run_continued_in_another_folder_is_verified_as_a_whole(self):
+        """The rows of the former folder are copied unless the columns differ."""
         sets = ["time.integrator=rk4", "output.restart_every=500", "verify.energy_drift=1e-3"]
         words = ["--quiet", "--backend", "serial", "--out"]
         self.expect(5, "free-patch", *words, "whole", sets=sets)
@@ -161,7 +162,7 @@ class Restart(springs_program.SpringsTest):
         time = self.history("other")["time"]
         self.assertGreater(time[0], 0.0)
 
-    def test_later_end(self):
+    def test_continues_to_a_later_end_time(self):
         self.finish("serial", "part")
         longer = [*SETS, "time.end_time=3", "output.times=[0.6, 1.3, 2.5, 3]"]
         self.expect(0, self.scene, "--quiet", "--backend", "serial", "--out", "part", "--restart", "auto", sets=longer)

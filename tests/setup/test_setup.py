@@ -1,4 +1,4 @@
-"""Every failure of scripts/setup.sh is one sentence that says what to do. The system around it is played by fakes."""
+"""Every failure of scripts/setup.sh is one sentence with the remedy. Fakes stand in for the tools of the system."""
 
 import os
 import subprocess

@@ -4,8 +4,7 @@
 
 namespace drogue::testing {
 
-/// What a test program of kernels runs on. Programs for several backends share the objects of tests that ask
-/// no more.
+/// Backend of a test program of kernels. Tests that only need this value are compiled once for all backends.
 extern const device::Backend tested_backend;
 
 }  // namespace drogue::testing

@@ -10,12 +10,12 @@
 #include "kernels/device/pack.hpp"
 #include "kernels/gas/step_work.hpp"
 
-// A double that counts what is done with it, for the point functions of kernels/. Include it before them:
-// they call `device::root` and the like by their full names, and see what is declared by then.
+// A number type that records its operations, for the point functions of kernels/. Include this header before
+// them: they call `device::root` and other functions by qualified names, which only earlier overloads match.
 
 namespace drogue::testing {
 
-/// Those up to `input` have no operands, those up to `root` one, the others two but for `select`.
+/// Operations up to `input` have no operands, up to `root` one, then two; `select` has three.
 enum class Operation {
   constant,
   input,
@@ -34,8 +34,8 @@ enum class Operation {
   select
 };
 
-/// An evaluation as a graph: the same operation on the same operands is one node, and what leads to no result
-/// is not counted.
+/// Expression graph of an evaluation. Equal operations on equal operands share a node, and only nodes that a
+/// result depends on are counted.
 class Trace {
  public:
   using Operands = std::array<std::int64_t, 3>;
@@ -49,7 +49,7 @@ class Trace {
   std::int64_t input() { return node(Operation::input, {_inputs++, 0, 0}); }
   void keep(std::int64_t result) { _results.push_back(result); }
 
-  /// What lies at `address` is one input, however often it is read.
+  /// Value at `address`; repeated reads are the same input.
   std::int64_t load(const double* address) {
     read.insert(address);
     const auto place = _memory.find(address);
@@ -61,7 +61,7 @@ class Trace {
     keep(result);
   }
 
-  /// Begins another evaluation; values of the last one must not be used in it.
+  /// Starts a new evaluation, which must not use values of the previous one.
   void clear() { _nodes.clear(), _known.clear(), _memory.clear(), _results.clear(); }
 
   [[nodiscard]] gas::Arithmetic arithmetic() const {
@@ -80,7 +80,7 @@ class Trace {
     return sum;
   }
 
-  std::set<const double*> read, written;  ///< addresses, until somebody clears them
+  std::set<const double*> read, written;  ///< addresses since the last clear of the sets
 
  private:
   using Node = std::pair<Operation, Operands>;
@@ -106,7 +106,7 @@ class Trace {
 
 inline Trace trace;
 
-/// What `evaluate` costs: all that its stores and what it keeps depend on.
+/// Number of operations on which the stores and kept results of `evaluate` depend.
 template <class Evaluate>
 gas::Arithmetic arithmetic_of(const Evaluate& evaluate) {
   trace.clear();
@@ -114,12 +114,13 @@ gas::Arithmetic arithmetic_of(const Evaluate& evaluate) {
   return trace.arithmetic();
 }
 
+/// Number that records its operations in `trace`.
 class Counted {
  public:
   Counted() = default;
-  Counted(double constant) : value(constant) {}  // NOLINT: numbers mix with it as they do with packs
+  Counted(double constant) : value(constant) {}  // NOLINT: implicit, to mix numbers and counted numbers
 
-  /// A value that no compiler knows.
+  /// Value that is not a compile-time constant.
   static Counted input(double number) { return Counted(number, trace.input()); }
   static Counted load(const double* address) { return Counted(*address, trace.load(address)); }
 
@@ -129,7 +130,7 @@ class Counted {
   }
   void keep() const { trace.keep(node()); }
 
-  /// The result of an operation; of constants alone it is a constant.
+  /// Result of an operation; a constant if all operands are constants.
   template <class... Operand>
   static Counted of(Operation operation, double result, const Operand&... operand) {
     if ((operand.is_constant() && ...)) return Counted(result);
@@ -152,7 +153,7 @@ class Counted {
   }
   friend Counted operator-(const Counted& a) { return of(Operation::negate, -a.value, a); }
 
-  /// One or zero; `device::select` asks.
+  /// Comparisons return one or zero, a condition of `device::select`.
   friend Counted operator<(const Counted& a, const Counted& b) {
     return of(Operation::less, a.value < b.value ? 1.0 : 0.0, a, b);
   }

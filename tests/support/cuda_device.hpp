@@ -5,14 +5,14 @@
 
 namespace drogue::testing {
 
-/// Asked in a child: a process that has looked for a device leaves its children a CUDA that does not start.
+/// Queries the device in a child process: CUDA does not start in children of a process that has queried it.
 inline bool has_cuda_device() {
   static const bool present =
       in_child([] { return std::string(device::is_present(device::Backend::cuda) ? "yes" : "no"); }) == "yes";
   return present;
 }
 
-/// Whether a child of this process can run on a backend that is compiled in.
+/// True if a child of this process can run on a backend that is compiled in.
 inline bool runs_in_child(device::Backend backend) {
   return backend != device::Backend::cuda || has_cuda_device();
 }

@@ -6,7 +6,7 @@
 
 namespace drogue::testing {
 
-/// `text` after one to four small accidents, which follow from `seed`.
+/// `text` after one to four random changes, reproducible by `seed`.
 inline std::string damaged(std::string text, unsigned seed) {
   std::mt19937 random(seed);
   const auto below = [&](std::size_t n) { return static_cast<std::size_t>(random()) % n; };

@@ -11,8 +11,8 @@
 
 namespace drogue::testing {
 
-/// A persistent kernel of host threads: what device::PersistentMember promises, and a watch over its two
-/// boards.
+/// Persistent kernel emulated by host threads: the interface of device::PersistentMember, and detection of
+/// values that are overwritten before all readers have read them.
 class EmulatedGrid {
  public:
   EmulatedGrid(int teams, int team_size, std::size_t scratch_bytes, std::size_t places)
@@ -62,7 +62,7 @@ class EmulatedGrid {
     mutable std::size_t _used = 0;
   };
 
-  /// Runs `functor(member)` in every thread, and waits.
+  /// Runs `functor(member)` in every thread. Blocking.
   template <class Functor>
   void launch(const Functor& functor) {
     std::vector<std::jthread> threads;
@@ -71,7 +71,7 @@ class EmulatedGrid {
         threads.emplace_back([this, &functor, team, rank] { functor(Member(*this, team, rank)); });
   }
 
-  /// Whether a number was replaced by one of a later epoch before all had read it.
+  /// True if a value was overwritten by one of a later epoch before all readers had read it.
   [[nodiscard]] bool overwritten() const { return _overwritten; }
 
  private:

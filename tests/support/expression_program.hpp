@@ -8,7 +8,7 @@
 
 namespace drogue::testing {
 
-/// A program from its steps in postfix order: numbers, variables, operators, functions.
+/// Program from its instructions in postfix order: numbers, variables, operators, functions.
 inline device::ExpressionProgram postfix(std::initializer_list<std::variant<double, const char*>> steps) {
   device::ExpressionBuilder builder;
   for (const auto& step : steps) {

@@ -8,9 +8,8 @@ namespace drogue::testing {
 
 using fabric::Vector;
 
-/// A patch of nx by ny vertices displaced at random, its diagonals drawn by lot, so that inner vertices have
-/// four to eight triangles; with it a string of three pieces that hangs from its first vertex, and one that
-/// reinforces an edge.
+/// Patch of nx by ny randomly displaced vertices with random diagonals, so that inner vertices have four to
+/// eight triangles; plus a string of three pieces at its first vertex, and a line that reinforces an edge.
 inline fabric::Mesh random_patch(int nx, int ny, unsigned seed) {
   std::mt19937 engine(seed);
   const auto uniform = [&](double low, double high) {
@@ -41,7 +40,7 @@ inline fabric::Mesh random_patch(int nx, int ny, unsigned seed) {
   return mesh;
 }
 
-/// Every vertex moved by up to `size` along each axis.
+/// Displaces every vertex by up to `size`, m, along each axis.
 inline std::vector<Vector> shaken(const std::vector<Vector>& points, double size, unsigned seed) {
   std::mt19937 engine(seed);
   std::vector<Vector> moved = points;

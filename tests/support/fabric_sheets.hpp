@@ -10,12 +10,12 @@ namespace drogue::testing {
 
 using fabric::Vector;
 
-/// Sheets that may meet, where they start.
+/// Sheets with contact, in their initial state.
 struct Sheets {
   fabric::Parameters p;
   std::vector<Vector> x, v;
 
-  /// What of the cloth does not depend on a test: 0.2 kg/m^2, velocity Verlet, contact of cloth with itself.
+  /// Common parameters of all tests: 0.2 kg/m^2, velocity Verlet, self-contact.
   Sheets() {
     p.integrator = fabric::Integrator::verlet;
     p.contact.self = true;
@@ -23,7 +23,8 @@ struct Sheets {
     p.dt = 5e-5;
   }
 
-  /// A sheet of n by n vertices and `side` m, alternating diagonals; `place` puts it where it starts.
+  /// Adds a sheet of n by n vertices with side length `side`, m, and alternating diagonals. `place` maps
+  /// coordinates in the sheet to initial positions, m.
   void add(int n, double side, const std::function<Vector(double, double)>& place, const Vector& velocity) {
     const int first = static_cast<int>(p.mesh.rest.size());
     for (int j = 0; j < n; ++j)

@@ -45,7 +45,7 @@ def arguments(scene, *words, sets=(), program=PROGRAM):
 
 
 def run(scene, *words, sets=(), cwd=None, timeout=3600, environment=None, program=PROGRAM):
-    """Runs the program and waits; stdout and stderr are text."""
+    """Runs the program to its end; stdout and stderr are text."""
     return subprocess.run(arguments(scene, *words, sets=sets, program=program), cwd=cwd, capture_output=True, text=True, errors="replace",
                           timeout=timeout, check=False, env={**ENVIRONMENT, **(environment or {})})
 

@@ -1,4 +1,4 @@
-"""Reads the HDF5 files of a run through the library that drogue-gas itself is linked with: plain Python has no reader."""
+"""Reads HDF5 files of a run through the HDF5 library of drogue-gas, because plain Python has no reader."""
 
 import array
 import ctypes
@@ -18,7 +18,7 @@ class GroupInfo(ctypes.Structure):
 
 @functools.cache
 def library(program):
-    """The HDF5 library of `program`, as the loader finds it."""
+    """HDF5 library that the loader finds for `program`."""
     lines = subprocess.run(["ldd", str(program)], capture_output=True, text=True, check=True).stdout.splitlines()
     path = next(line.split()[2] for line in lines if "libhdf5" in line and "=>" in line)
     hdf5 = ctypes.CDLL(path, mode=ctypes.RTLD_GLOBAL)
@@ -30,12 +30,12 @@ def library(program):
     hdf5.H5Sget_simple_extent_npoints.restype = ctypes.c_int64
     hdf5.H5Tget_size.restype = ctypes.c_size_t
     hdf5.H5open()
-    hdf5.H5Eset_auto2(ID(0), None, None)  # no error stacks on stderr: a failed call raises here
+    hdf5.H5Eset_auto2(ID(0), None, None)  # suppresses error stacks on stderr: a failed call raises here
     return hdf5
 
 
 class Hdf5File:
-    """The whole content of a small file: `datasets` maps a path to the bytes of its values, `attributes` a path (of a
+    """Content of a small file: `datasets` maps a path to the bytes of its values, `attributes` a path (of a
     group or a dataset) to {name: str or float or int}."""
 
     def __init__(self, program, path):
@@ -54,11 +54,11 @@ class Hdf5File:
             self._library.H5Fclose(ID(file))
 
     def values(self, path):
-        """The FP64 numbers of a dataset."""
+        """FP64 numbers of a dataset."""
         return array.array("d", self.datasets[path])
 
     def children(self, group):
-        """Names below a group, sorted."""
+        """Sorted names of the members of a group."""
         start = group.rstrip("/") + "/"
         paths = [*self.datasets, *self.attributes]
         return sorted({path[len(start):].split("/")[0] for path in paths if path.startswith(start)})

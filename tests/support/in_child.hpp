@@ -14,7 +14,7 @@
 
 namespace drogue::testing {
 
-/// The result of `work` in a child process: Kokkos starts once a process, and two of its starts are compared.
+/// Result of `work` in a child process, because Kokkos can be initialised only once per process.
 inline std::string in_child(const std::function<std::string()>& work) {
   std::string file = ::testing::TempDir() + "drogue_exact_XXXXXX";
   const int descriptor = mkstemp(file.data());

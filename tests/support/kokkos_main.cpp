@@ -5,8 +5,8 @@
 
 #include "kernels/device/runtime.hpp"
 
-/// Main of the tests that use Kokkos, which starts as the programs do. Listing the cases starts no backend,
-/// so it works without a device.
+/// Main function of tests that use Kokkos, which is initialised as in the programs. Listing the cases starts
+/// no backend, so it works without a device.
 int main(int argc, char** argv) {
   ::testing::InitGoogleTest(&argc, argv);
   if (::testing::FLAGS_gtest_list_tests) return RUN_ALL_TESTS();

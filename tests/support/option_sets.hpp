@@ -12,9 +12,9 @@
 
 namespace drogue::testing {
 
-/// Puts of strike 1 without dividends whose prices are known: European by two Fourier methods that agree to
-/// 1e-12, American by Bermudan cosine series with Romberg's extrapolation, whose difference to independent
-/// finite differences is below 1e-7.
+/// Puts of strike 1 without dividends with known prices. European prices: two Fourier methods that agree to
+/// 1e-12. American prices: Bermudan cosine series with Romberg extrapolation, which agree with independent
+/// finite differences to 1e-7.
 struct OptionSet {
   std::string name;
   double lambda, alpha, beta, delta, variance, rate, maturity;
@@ -123,7 +123,7 @@ inline const std::vector<OptionSet>& option_sets() {
   return sets;
 }
 
-/// Number k of a set.
+/// Contract with spot k of a set.
 inline options::Contract contract_of(const OptionSet& set, std::size_t k, options::Style style) {
   options::Contract c;
   c.style = style;
@@ -138,8 +138,8 @@ inline options::Contract contract_of(const OptionSet& set, std::size_t k, option
   return c;
 }
 
-/// Contracts of generalized hyperbolic jumps as they come: both styles and types, a tenth of a year to three
-/// years, one in seven of variance gamma.
+/// Random contracts with generalized hyperbolic jumps: both styles and types, maturities of 0.1 to 3 years,
+/// about one in seven with variance gamma jumps.
 inline std::vector<options::Contract> random_contracts(std::size_t count, std::uint64_t seed) {
   std::mt19937_64 bits(seed);
   const auto in = [&](double a, double b) {

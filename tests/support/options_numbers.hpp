@@ -7,12 +7,12 @@
 namespace drogue::options {
 
 template <class ExecutionSpace>
-using NumbersOn = Kokkos::View<double*, typename ExecutionSpace::memory_space>;
+using DeviceNumbers = Kokkos::View<double*, typename ExecutionSpace::memory_space>;
 
-/// Numbers where a test's kernel reads them.
+/// Copy of numbers in the memory of `ExecutionSpace`.
 template <class ExecutionSpace>
-[[nodiscard]] NumbersOn<ExecutionSpace> on_backend(const std::vector<double>& numbers) {
-  const NumbersOn<ExecutionSpace> view("numbers", numbers.size());
+[[nodiscard]] DeviceNumbers<ExecutionSpace> on_backend(const std::vector<double>& numbers) {
+  const DeviceNumbers<ExecutionSpace> view("numbers", numbers.size());
   Kokkos::deep_copy(view, Kokkos::View<const double*, Kokkos::HostSpace>(numbers.data(), numbers.size()));
   return view;
 }

@@ -1,4 +1,4 @@
-"""Runs drogue-perf for tests of its interface; found by them below tests/support."""
+"""Runs drogue-perf for tests of its interface."""
 
 import json
 import os
@@ -11,9 +11,9 @@ PROGRAM = pathlib.Path(os.environ["DROGUE_BIN"]) / "drogue-perf"
 CACHE = (pathlib.Path(os.environ["DROGUE_BUILD"]) / "CMakeCache.txt").read_text(encoding="utf-8")
 
 
-@unittest.skipIf("DROGUE_SANITIZE:BOOL=ON" in CACHE, "a build with sanitizers measures nothing")
+@unittest.skipIf("DROGUE_SANITIZE:BOOL=ON" in CACHE, "builds with sanitizers are not measured")
 class PerfTest(unittest.TestCase):
-    """A test with an empty folder, in which its programs run."""
+    """Test case whose programs run in an empty temporary folder."""
 
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
@@ -21,7 +21,7 @@ class PerfTest(unittest.TestCase):
         self.folder = pathlib.Path(folder.name)
 
     def expect(self, code, *words):
-        """Runs to the end, asserts the exit code and that a failure is one sentence; returns what the run said."""
+        """Runs in the folder, asserts the exit code and that a failure prints one line; returns the process."""
         process = subprocess.run([PROGRAM, *words], cwd=self.folder, capture_output=True, text=True, timeout=600,
                                  check=False, env={**os.environ, "OMP_WAIT_POLICY": "passive"})
         self.assertEqual(code, process.returncode, f"{process.args}\n{process.stdout}{process.stderr}")

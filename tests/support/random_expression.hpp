@@ -8,14 +8,14 @@
 
 namespace drogue::testing {
 
-/// One step of a postfix program, by name; `value` is that of a "constant".
+/// Instruction of a postfix program, by name; `value` is the number of a "constant".
 struct Step {
   std::string name;
   double value = 0.0;
   bool operator==(const Step&) const = default;
 };
 
-/// The value of a postfix program, from <cmath>: shares nothing with the evaluators under test.
+/// Value of a postfix program by <cmath>, independent of the evaluators under test.
 template <class Real>
 Real reference_value(const std::vector<Step>& steps, Real x, Real y, Real z, Real t) {
   std::vector<Real> stack;
@@ -86,8 +86,8 @@ Real reference_value(const std::vector<Step>& steps, Real x, Real y, Real z, Rea
   return stack.back();
 }
 
-/// A random expression as text, with no more parentheses than it needs (and a few more), and as the postfix
-/// program that the text means.
+/// Random expression as text, with necessary and a few redundant parentheses, and as the equivalent postfix
+/// program.
 class RandomExpression {
  public:
   explicit RandomExpression(unsigned seed) : _random(seed) { _root = make(4); }
@@ -132,7 +132,7 @@ class RandomExpression {
     return join(symbol, strength, operand(strength, depth), operand(strength, depth));
   }
 
-  /// && and || get comparisons: muParser cuts constants to integers before it joins them.
+  /// Operands of && and || are comparisons, because muParser truncates constant operands to integers.
   Part operand(int strength, int depth) {
     if (strength > 2) return make(depth - 1);
     return join("<", 3, make(depth - 1), make(depth - 1));
@@ -175,7 +175,7 @@ class RandomExpression {
     return part;
   }
 
-  /// Arguments are kept where the function is defined and well conditioned.
+  /// Restricts arguments to ranges where the function is defined and well conditioned.
   Part function(int depth) {
     static const char* const any[] = {"sin", "cos", "atan", "tanh", "abs", "sign", "asinh", "rint", "floor"};
     static const char* const small[] = {"exp", "sinh", "cosh", "asin", "acos", "tan"};
@@ -231,8 +231,8 @@ class RandomExpression {
   Part _root;
 };
 
-/// Whether rounding of the arguments moves the value by less than `tolerance`: false next to poles and jumps,
-/// where two right evaluations may differ.
+/// True if rounding of the arguments changes the value by less than `tolerance`. False near poles and jumps,
+/// where two correct evaluations may differ.
 inline bool well_conditioned(const std::vector<Step>& steps, double x, double y, double z, double t,
                              double tolerance) {
   const long double exact = reference_value<long double>(steps, x, y, z, t);

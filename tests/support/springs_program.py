@@ -8,7 +8,7 @@ from hdf5_file import Hdf5File
 PROGRAM = gas_program.BIN / "drogue-springs"
 SCENES = sorted(path.stem for path in (gas_program.SOURCE / "miniapps/springs/scenes").glob("*.toml"))
 
-# A drum of a few vertices that is over in a moment, and swings.
+# A short run of an oscillating drum with few vertices.
 DRUM = """\
 app = "springs"
 [mesh]
@@ -30,7 +30,7 @@ history_every = 7
 """
 
 
-# A sheet that falls on a ball and folds about it.
+# A sheet that falls on a sphere and folds around it.
 FALLING = """\
 app = "springs"
 [mesh]
@@ -59,7 +59,7 @@ intersections = 0
 
 
 class SpringsTest(gas_program.GasTest):
-    """A test with an empty folder, in which drogue-springs runs."""
+    """Test case whose programs run in an empty temporary folder."""
 
     program = PROGRAM
 
@@ -72,7 +72,7 @@ class SpringsTest(gas_program.GasTest):
         return Hdf5File(PROGRAM, self.folder / directory / "fields.h5")
 
     def history(self, directory):
-        """The columns of history.csv, units left away."""
+        """Columns of history.csv by name without units."""
         with (self.folder / directory / "history.csv").open(encoding="utf-8", newline="") as file:
             header, *rows = csv.reader(file)
         return {name.split(" [")[0]: [float(row[k]) for row in rows] for k, name in enumerate(header)}

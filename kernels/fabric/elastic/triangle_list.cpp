@@ -2,21 +2,20 @@
 
 #include <cmath>
 #include <map>
+#include <utility>
 
 #include "kernels/mesh/edge_vector.hpp"
 #include "kernels/mesh/edges.hpp"
+#include "kernels/mesh/incidence.hpp"
 
 namespace drogue::fabric {
 
 TriangleList triangle_list(const Mesh& mesh, const Material& material) {
   TriangleList list;
   std::map<mesh::Edge, int> sharing;
-  std::vector<std::vector<int>> around(mesh.rest.size());
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-    for (std::size_t k = 0; k < 3; ++k) {
-      if (material.model == Model::edge) ++sharing[mesh::opposite_edge(mesh.triangles[t], k)];
-      around[static_cast<std::size_t>(mesh.triangles[t][k])].push_back(static_cast<int>(t));
-    }
+  if (material.model == Model::edge)
+    for (const auto& t : mesh.triangles)
+      for (std::size_t k = 0; k < 3; ++k) ++sharing[mesh::opposite_edge(t, k)];
   for (const auto& t : mesh.triangles) {
     spatial::Vector3<double> edge[3];
     for (std::size_t k = 0; k < 3; ++k) {
@@ -29,11 +28,9 @@ TriangleList triangle_list(const Mesh& mesh, const Material& material) {
     const spatial::Vector3<double> normal = cross(edge[0], edge[1]);
     list.inverse_area.push_back(2.0 / std::sqrt(dot(normal, normal)));
   }
-  list.first.push_back(0);
-  for (const auto& triangles : around) {
-    list.around.insert(list.around.end(), triangles.begin(), triangles.end());
-    list.first.push_back(static_cast<int>(list.around.size()));
-  }
+  mesh::VertexTriangles incidence = mesh::vertex_triangles(mesh);
+  list.first = std::move(incidence.first);
+  list.around = std::move(incidence.triangle);
   return list;
 }
 

@@ -64,7 +64,7 @@ void launch_persistent_steps(const ExecutionSpace& space, PersistentDriver<Execu
                              const PersistentInputs<ExecutionSpace, VertexForce>& in, std::int64_t steps,
                              bool captured) {
   if (captured) {
-    device::copy_bytes(space, device::CopyKind::within, &in.monitor.steps(1), &in.monitor.steps(0),
+    device::copy_bytes(space, device::CopyKind::within, in.monitor.steps.data() + 1, in.monitor.steps.data(),
                        sizeof(std::int64_t));
     driver.grid.clear_messages();
     driver.epoch = 0;

@@ -1,13 +1,13 @@
 #pragma once
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <memory_resource>
 #include <vector>
 
 #include "kernels/device/instance.hpp"
 #include "kernels/device/pinned_memory.hpp"
+#include "kernels/device/stopwatch.hpp"
 #include "kernels/gas/solver.hpp"
 #include "kernels/gas/solver_impl.hpp"
 #include "kernels/gas/tile/tile_update.hpp"
@@ -144,9 +144,9 @@ class BaselineSolver final : public Solver {
   /// m/s.
   void fluxes(const std::array<double, 4>& fastest_speeds) {
     const auto timed = [](double& total, auto&& work) {
-      const auto begin = std::chrono::steady_clock::now();
+      const device::Stopwatch stopwatch;
       work();
-      total += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+      total += stopwatch.seconds();
     };
     const ExecutionSpace& space = _instance.space();
     timed(_phase_times.h2d, [&] {

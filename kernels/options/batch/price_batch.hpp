@@ -7,28 +7,28 @@
 
 namespace drogue::options {
 
-/// The larger of two; not a number if one of them is none.
+/// Maximum of two values; NaN if one of them is NaN.
 template <class R>
-KOKKOS_INLINE_FUNCTION R larger(R a, R b) {
+KOKKOS_INLINE_FUNCTION R maximum_or_nan(R a, R b) {
   return device::select(b >= b, device::select(b > a, b, a), b);
 }
 
-/// What is known of the puts of a group before the first step.
+/// Data of a pack before the first step.
 template <class R>
-struct Prepared {
+struct PreparedPack {
   PutPack<R> put;
-  LevyMeasure<R> law;
-  Grid<R> grid;  ///< the finer one
+  LevyMeasure<R> measure;
+  Grid<R> grid;  ///< finer grid
   Tails<R> tails;
-  Jumps<R> jumps;  ///< on it
+  Jumps<R> jumps;  ///< on `grid`
 };
 
-/// The number that a thread of `ExecutionSpace` computes with: one option's, or on hosts several options'.
+/// Arithmetic type of a thread of `ExecutionSpace`: one option on devices, a pack of options on hosts.
 template <class ExecutionSpace>
 using Number = std::conditional_t<device::is_host<ExecutionSpace>, device::HostPack<double>, double>;
 
-/// Contracts order(0), order(1), ... of one model, priced on one mesh in one launch by a team for one or two
-/// of them, or on hosts for each pack of them.
+/// Contracts order(0), order(1), ... of one model, priced on one mesh in one launch. On devices a team prices
+/// one or two contracts, on hosts a pack.
 template <class ExecutionSpace>
 struct PriceBatch {
   using Space = typename ExecutionSpace::memory_space;
@@ -36,201 +36,209 @@ struct PriceBatch {
   using Member = typename Kokkos::TeamPolicy<ExecutionSpace>::member_type;
   static constexpr int members = device::Access<R>::lanes;
 
-  Kokkos::View<const Contract*, Space> contracts;  ///< (batch)
+  Kokkos::View<const Contract*, Space> contracts;  ///< (batch): all contracts of the caller
   Kokkos::View<Price*, Space> prices;              ///< (batch)
-  Kokkos::View<const int*, Space> order;           ///< (count)
+  Kokkos::View<const int*, Space> order;           ///< (count): indices of the contracts to price
   Kokkos::View<const double*, Space> panels;       ///< (panels, HankelGrid::panel_size)
   Kokkos::View<const int*, Space> panel_slot;      ///< (HankelGrid::panels)
   FourierRoots roots{};                            ///< in the memory of the backend
-  Record record{};                                 ///< of the only contract, if at all
+  MarchRecord record{};                            ///< only for batches of one contract
   int count = 0, mesh = 0, steps = 0, level = 0;
-  int lanes = most_lanes;  ///< of an option on hosts
+  int lanes = max_lanes;  ///< per option on hosts
   double tolerance = 0.0;
-  Model model{};          ///< of all contracts
-  bool split = false;     ///< exercise is, wherever it pays
-  bool one_grid = false;  ///< no second solve: the price is not extrapolated and has no error
+  Model model{};             ///< common model of the contracts
+  bool split = false;        ///< use split exercise wherever exercise may pay
+  bool single_grid = false;  ///< no second solve: no extrapolation and no error estimate
 
-  /// Groups, of an option or of a pack of them, that a team prices side by side.
-  static KOKKOS_INLINE_FUNCTION constexpr int groups(int fixed) {
-    return device::is_host<ExecutionSpace> ? 1 : most_lanes / lanes_of(fixed);
+  /// Packs, or single options on devices, that a team prices side by side.
+  static KOKKOS_INLINE_FUNCTION constexpr int packs_per_team(int fixed) {
+    return device::is_host<ExecutionSpace> ? 1 : max_lanes / lanes_of(fixed);
   }
 
-  /// Calls `functor.price` with the workers and the memory of a group. For `fixed` see `solve`.
+  /// Calls `functor.price` with a thread group, its memory and the index of its pack. For `fixed` see
+  /// `solve`.
   template <int fixed, class Functor>
-  KOKKOS_FORCEINLINE_FUNCTION void price_group(const Functor& functor, const Member& team) const {
-    using Scratch = Memory<R, fixed>;
+  KOKKOS_FORCEINLINE_FUNCTION void price_pack(const Functor& functor, const Member& team) const {
+    using Scratch = SolveMemory<R, fixed>;
     const std::size_t bytes = Scratch::bytes(mesh);
-    void* place = team.team_scratch(level).get_shmem_aligned(groups(fixed) * bytes, 64);
+    void* place = team.team_scratch(level).get_shmem_aligned(packs_per_team(fixed) * bytes, 64);
     if constexpr (fixed > 0) place = device::in_shared_memory(place);
     if constexpr (members == 1 && !device::is_host<ExecutionSpace>) {
       constexpr int width = lanes_of(fixed);
       const int rank = static_cast<int>(team.team_rank()), own = rank / width;
-      functor.price(WarpWorkers<width>(rank), Scratch(static_cast<std::byte*>(place) + own * bytes, mesh),
-                    team.league_rank() * groups(fixed) + own);
+      functor.price(WarpThreadGroup<width>(rank), Scratch(static_cast<std::byte*>(place) + own * bytes, mesh),
+                    team.league_rank() * packs_per_team(fixed) + own);
     } else {
-      functor.price(SerialWorkers<R>{lanes}, Scratch(place, mesh), team.league_rank());
+      functor.price(SerialThreadGroup<R>{lanes}, Scratch(place, mesh), team.league_rank());
     }
   }
 
-  /// The contract of member k of a group; the last group repeats the last contract.
-  [[nodiscard]] KOKKOS_INLINE_FUNCTION int place(int group, int k) const {
-    const int at = group * members + k;
+  /// Index of the contract of member k of a pack; the last pack is filled up with the last contract.
+  [[nodiscard]] KOKKOS_INLINE_FUNCTION int contract_index(int pack, int k) const {
+    const int at = pack * members + k;
     return order(at < count ? at : count - 1);
   }
 
-  /// Prices the contracts of a group. A call would keep all that it is told in memory.
-  template <Laws laws, int fixed, class ThreadGroup>
-  KOKKOS_FORCEINLINE_FUNCTION void price(const ThreadGroup& workers, const Memory<R, fixed>& memory,
-                                         int group) const {
-    const Prepared<R> prepared = prepare<laws>(workers, memory, group);
-    const ErrorEstimate<R> doubt =
-        doubt_of_solve(prepared.put, prepared.law, prepared.jumps, prepared.grid, steps);
-    solve_fine(workers, prepared, memory);
-    const R* coarse = one_grid ? memory.kept(prepared.grid.mesh) : solve_coarse(workers, prepared, memory);
-    conclude(workers, prepared, doubt, memory, coarse, memory, group);
+  /// Prices the contracts of a pack. Force-inlined: a call would spill its arguments.
+  template <JumpClass jump_class, int fixed, class ThreadGroup>
+  KOKKOS_FORCEINLINE_FUNCTION void price(const ThreadGroup& group, const SolveMemory<R, fixed>& memory,
+                                         int pack) const {
+    const PreparedPack<R> prepared = prepare<jump_class>(group, memory, pack);
+    const ErrorEstimate<R> estimate =
+        estimate_solve_error(prepared.put, prepared.measure, prepared.jumps, prepared.grid, steps);
+    solve_fine(group, prepared, memory);
+    const R* coarse =
+        single_grid ? memory.fine_values(prepared.grid.mesh) : solve_coarse(group, prepared, memory);
+    write_prices(group, prepared, estimate, memory, coarse, memory, pack);
   }
 
-  /// What both solves need, and the weights of the finer one.
-  template <Laws laws, int fixed, class ThreadGroup>
-  [[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION Prepared<R> prepare(const ThreadGroup& workers,
-                                                                const Memory<R, fixed>& memory,
-                                                                int group) const {
-    const int cells = mesh_for<fixed>(mesh);
-    workers.each([=, this](int thread) {
-      for (int k = thread; k < members; k += workers.threads()) {
-        memory.puts[k] = put_of(contracts(place(group, k)));
+  /// Computes the data of both solves and the weights of the finer grid.
+  template <JumpClass jump_class, int fixed, class ThreadGroup>
+  [[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION PreparedPack<R> prepare(const ThreadGroup& group,
+                                                                    const SolveMemory<R, fixed>& memory,
+                                                                    int pack) const {
+    const int intervals = mesh_for<fixed>(mesh);
+    group.each([=, this](int thread) {
+      for (int k = thread; k < members; k += group.threads()) {
+        memory.puts[k] = normalize(contracts(contract_index(pack, k)));
         if (split) memory.puts[k].split = memory.puts[k].early;
       }
     });
-    Prepared<R> prepared;
-    prepared.put = pack_of<R, laws>(memory.puts);
+    PreparedPack<R> prepared;
+    prepared.put = pack_puts<R, jump_class>(memory.puts);
     PutPack<R>& put = prepared.put;
-    put.any_split = !workers.all(!put.any_split);
-    prepared.law = law_of(workers, put, memory.puts, panels.data(), panel_slot.data(), memory.law_memory());
-    const LevyMeasure<R>& law = prepared.law;
-    prepared.grid = grid_of(domain_of(workers, put, law, cut_error(cells), memory.slot), cells);
-    prepared.tails = tails_of(workers, put, law, prepared.grid.h * double(cells));
-    prepared.jumps = jumps_on<fixed>(workers, put, law, prepared.tails, prepared.grid, memory, memory.w);
+    put.any_split = !group.all(!put.any_split);
+    prepared.measure =
+        make_levy_measure(group, put, memory.puts, panels.data(), panel_slot.data(), memory.measure_memory());
+    const LevyMeasure<R>& measure = prepared.measure;
+    prepared.grid =
+        grid_of(domain_of(group, put, measure, truncation_target(intervals), memory.scratch), intervals);
+    prepared.tails = make_tails(group, put, measure, prepared.grid.h * double(intervals));
+    prepared.jumps =
+        jumps_on_grid<fixed>(group, put, measure, prepared.tails, prepared.grid, memory, memory.w);
     return prepared;
   }
 
-  /// Leaves answers and every other value in the memory.
+  /// Solves on the finer grid; leaves the solutions at the spots and every second value in the memory.
   template <int fixed, class ThreadGroup>
-  KOKKOS_FORCEINLINE_FUNCTION void solve_fine(const ThreadGroup& workers, const Prepared<R>& prepared,
-                                              const Memory<R, fixed>& memory) const {
-    const int cells = mesh_for<fixed>(prepared.grid.mesh);
-    const Solution<R> fine = solve<fixed>(workers, prepared.put, prepared.jumps, prepared.grid, steps, memory,
-                                          roots, memory.answers, record);
-    R* const kept = memory.kept(cells);
-    workers.each([=](int thread) {
-      for (int i = thread; i < cells / 2; i += workers.threads()) kept[i] = fine.value[2 * i];
+  KOKKOS_FORCEINLINE_FUNCTION void solve_fine(const ThreadGroup& group, const PreparedPack<R>& prepared,
+                                              const SolveMemory<R, fixed>& memory) const {
+    const int intervals = mesh_for<fixed>(prepared.grid.mesh);
+    const MarchResult<R> fine = solve<fixed>(group, prepared.put, prepared.jumps, prepared.grid, steps,
+                                             memory, roots, memory.solutions, record);
+    R* const fine_values = memory.fine_values(intervals);
+    group.each([=](int thread) {
+      for (int i = thread; i < intervals / 2; i += group.threads()) fine_values[i] = fine.value[2 * i];
     });
   }
 
-  /// Returns the values; leaves answers in the memory.
+  /// Solves on the coarser grid; leaves the solutions at the spots in the memory. Returns the values at the
+  /// nodes.
   template <int fixed, class ThreadGroup>
-  KOKKOS_FORCEINLINE_FUNCTION const R* solve_coarse(const ThreadGroup& workers, const Prepared<R>& prepared,
-                                                    const Memory<R, fixed>& memory) const {
+  KOKKOS_FORCEINLINE_FUNCTION const R* solve_coarse(const ThreadGroup& group, const PreparedPack<R>& prepared,
+                                                    const SolveMemory<R, fixed>& memory) const {
     const Grid<R> grid = coarser(prepared.grid);
     const R* value = nullptr;
-    // Where exercise has to be split off, once more without it before: the premium tells what that misses.
-    for (int exercise = prepared.put.any_split && knows_premium() ? 0 : 1; exercise < 2; ++exercise) {
+    // For split exercise the coarser grid is first solved without exercise, since the premium bounds the
+    // splitting error.
+    for (int exercise = prepared.put.any_split && has_premium() ? 0 : 1; exercise < 2; ++exercise) {
       const PutPack<R> put = with_exercise(prepared.put, exercise != 0);
       const Jumps<R> jumps =
-          jumps_on<fixed / 2>(workers, put, prepared.law, prepared.tails, grid, memory,
-                              memory.coarse_weights(mesh_for<fixed>(prepared.grid.mesh)), memory.w);
-      value = solve<fixed / 2>(workers, put, jumps, grid, steps / 2, memory, roots, memory.answers + members)
+          jumps_on_grid<fixed / 2>(group, put, prepared.measure, prepared.tails, grid, memory,
+                                   memory.coarse_weights(mesh_for<fixed>(prepared.grid.mesh)), memory.w);
+      value = solve<fixed / 2>(group, put, jumps, grid, steps / 2, memory, roots, memory.solutions + members)
                   .value;
       if (exercise == 0)
-        workers.each([=, &memory](int thread) {
-          for (int k = thread; k < members; k += workers.threads())
-            memory.unexercised[k] = beside_spot(memory.puts[k], grid, value, k);
+        group.each([=, &memory](int thread) {
+          for (int k = thread; k < members; k += group.threads())
+            memory.european_values[k] = value_near_spot(memory.puts[k], grid, value, k);
         });
     }
     return value;
   }
 
-  /// Puts the prices together. `coarse` are the values that `solve_coarse` has returned, whose memory was
-  /// `other`.
+  /// Writes the prices. `coarse` is the result of `solve_coarse`, and `other` its memory.
   template <int fixed, class ThreadGroup>
-  KOKKOS_FORCEINLINE_FUNCTION void conclude(const ThreadGroup& workers, const Prepared<R>& prepared,
-                                            const ErrorEstimate<R>& doubt, const Memory<R, fixed>& memory,
-                                            const R* coarse, const Memory<R, fixed>& other, int group) const {
+  KOKKOS_FORCEINLINE_FUNCTION void write_prices(const ThreadGroup& group, const PreparedPack<R>& prepared,
+                                                const ErrorEstimate<R>& estimate,
+                                                const SolveMemory<R, fixed>& memory, const R* coarse,
+                                                const SolveMemory<R, fixed>& other, int pack) const {
     const PutPack<R>& put = prepared.put;
-    const int cells = mesh_for<fixed>(prepared.grid.mesh);
+    const int intervals = mesh_for<fixed>(prepared.grid.mesh);
     const Grid<R> grid = coarser(prepared.grid);
-    const R* const kept = memory.kept(cells);
-    const SolutionAtSpot* const coarse_answers = one_grid ? memory.answers : other.answers + members;
-    const R deviation = device::square_root((put.variance + prepared.law.variance) * put.maturity);
+    const R* const fine_values = memory.fine_values(intervals);
+    const SolutionAtSpot* const coarse_solutions = single_grid ? memory.solutions : other.solutions + members;
+    const R deviation = device::square_root((put.variance + prepared.measure.variance) * put.maturity);
     const R window = device::maximum(grid.h, deviation);
-    const auto largest_change = [=, &put](int lane) {
+    const auto largest_difference = [=, &put](int lane) {
       Kokkos::Array<R, 1> largest = {R(0.0)};
-      for (int i = lane; i < cells / 2; i += workers.lanes) {
+      for (int i = lane; i < intervals / 2; i += group.lanes) {
         const auto near = device::absolute((double(i) - grid.strike) * grid.h - put.log_spot) <= window;
-        largest[0] = larger(largest[0], device::select(near, device::absolute(kept[i] - coarse[i]), R(0.0)));
+        largest[0] = maximum_or_nan(
+            largest[0], device::select(near, device::absolute(fine_values[i] - coarse[i]), R(0.0)));
       }
       return largest;
     };
-    const R largest = workers.reduce(largest_change, [](const R& a, const R& b) { return larger(a, b); })[0];
-    workers.each([=, this, &memory, &other](int thread) {
-      for (int k = thread; k < members; k += workers.threads()) {
-        if (group * members + k >= count) continue;
-        const int at = place(group, k);
+    const R largest =
+        group.reduce(largest_difference, [](const R& a, const R& b) { return maximum_or_nan(a, b); })[0];
+    group.each([=, this, &memory, &other](int thread) {
+      for (int k = thread; k < members; k += group.threads()) {
+        if (pack * members + k >= count) continue;
+        const int at = contract_index(pack, k);
         const auto own = [k](const R& number) { return device::Access<R>::lane(number, k); };
         const NormalizedPut& one = memory.puts[k];
-        ErrorEstimate<double> known = doubt_without_premium(doubt, one, k);
-        if (knows_premium() && one.split) {
-          const double premium = beside_spot(one, grid, coarse, k) - other.unexercised[k];
-          known = {own(doubt.factor),
-                   own(doubt.gap) + doubt_of_splitting(premium, cells, steps, own(largest)),
-                   own(doubt.variance)};
+        ErrorEstimate<double> applied = estimate_without_premium(estimate, one, k);
+        if (has_premium() && one.split) {
+          const double premium = value_near_spot(one, grid, coarse, k) - other.european_values[k];
+          applied = {own(estimate.factor),
+                     own(estimate.offset) + splitting_error(premium, intervals, steps, own(largest)),
+                     own(estimate.variance)};
         }
-        prices(at) = price_of(contracts(at), one, memory.answers[k], coarse_answers[k], known, own(largest),
-                              own(grid.h), cells, steps, tolerance);
-        if (one_grid) prices(at).error = device::portable::not_a_number();
+        prices(at) = price_of(contracts(at), one, memory.solutions[k], coarse_solutions[k], applied,
+                              own(largest), own(grid.h), intervals, steps, tolerance);
+        if (single_grid) prices(at).error = device::portable::not_a_number();
       }
     });
   }
 
  private:
-  [[nodiscard]] KOKKOS_INLINE_FUNCTION bool knows_premium() const { return !split && !one_grid; }
+  [[nodiscard]] KOKKOS_INLINE_FUNCTION bool has_premium() const { return !split && !single_grid; }
 
-  /// The value of member k at the node next to its spot.
-  [[nodiscard]] static KOKKOS_INLINE_FUNCTION double beside_spot(const NormalizedPut& put,
-                                                                 const Grid<R>& grid, const R* nodes, int k) {
+  /// Value of member k at the node next to its spot.
+  [[nodiscard]] static KOKKOS_INLINE_FUNCTION double value_near_spot(const NormalizedPut& put,
+                                                                     const Grid<R>& grid, const R* nodes,
+                                                                     int k) {
     const auto own = [k](const R& number) { return device::Access<R>::lane(number, k); };
-    return column_of(nodes, k)(node_beside(put, own(grid.strike), own(grid.h), grid.mesh));
+    return member_values(nodes, k)(nearest_node(put, own(grid.strike), own(grid.h), grid.mesh));
   }
 };
 
-/// Where a team's memory is: in that of its multiprocessor, if Kokkos has so much for a team, else (and on
-/// hosts) beside.
+/// Kokkos scratch level of a team's memory: 0, shared memory, on devices if it is large enough, else 1.
 template <class ExecutionSpace>
 [[nodiscard]] int scratch_level(int mesh) {
-  const auto most_shared = static_cast<std::size_t>(Kokkos::TeamPolicy<ExecutionSpace>::scratch_size_max(0));
-  const bool shared =
-      !device::is_host<ExecutionSpace> && Memory<Number<ExecutionSpace>, 0>::bytes(mesh) + 64 <= most_shared;
+  const auto shared_limit = static_cast<std::size_t>(Kokkos::TeamPolicy<ExecutionSpace>::scratch_size_max(0));
+  const bool shared = !device::is_host<ExecutionSpace> &&
+                      SolveMemory<Number<ExecutionSpace>, 0>::bytes(mesh) + 64 <= shared_limit;
   return shared ? 0 : 1;
 }
 
-/// Enqueues `functor`, which prices its batch by teams of a warp each, or of several for an option.
+/// Enqueues `functor` for its batch, with teams of a warp, or of `warps` warps per option.
 template <int fixed, int warps = 1, class ExecutionSpace, class Functor>
 void launch_batch(const ExecutionSpace& space, const char* label, const Functor& functor) {
   using Batch = PriceBatch<ExecutionSpace>;
   const Batch& batch = functor.batch;
   if (batch.count == 0) return;
-  // Teams that share a multiprocessor: of their warps as many as registers for the nodes allow without
-  // spilling.
+  // Teams per multiprocessor: as many warps as fit into the registers without spilling.
   constexpr unsigned teams = fixed == 0 ? 1 : (fixed < 128 ? 12 : 8) / warps;
   using Bounds =
-      std::conditional_t<fixed == 0, Kokkos::LaunchBounds<>, Kokkos::LaunchBounds<warps * most_lanes, teams>>;
-  constexpr int groups = warps > 1 ? 1 : Batch::groups(fixed), options = Batch::members * groups;
+      std::conditional_t<fixed == 0, Kokkos::LaunchBounds<>, Kokkos::LaunchBounds<warps * max_lanes, teams>>;
+  constexpr int packs = warps > 1 ? 1 : Batch::packs_per_team(fixed), options = Batch::members * packs;
   const int league = (batch.count + options - 1) / options;
   Kokkos::TeamPolicy<ExecutionSpace, Bounds> policy(space, league,
-                                                    device::is_host<ExecutionSpace> ? 1 : warps * most_lanes);
+                                                    device::is_host<ExecutionSpace> ? 1 : warps * max_lanes);
   policy.set_scratch_size(
       batch.level,
-      Kokkos::PerTeam(warps * groups * Memory<typename Batch::R, fixed>::bytes(batch.mesh) + 64));
+      Kokkos::PerTeam(warps * packs * SolveMemory<typename Batch::R, fixed>::bytes(batch.mesh) + 64));
   Kokkos::parallel_for(label, policy, functor);
 }
 

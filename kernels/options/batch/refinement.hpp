@@ -5,10 +5,10 @@
 
 #include "kernels/options/pricer.hpp"
 
-/// How prices get to finer grids until their stated errors are small enough.
+/// Adaptive choice of meshes and steps until the error estimates of prices are within the tolerance.
 namespace drogue::options {
 
-/// What a launch spends on each price.
+/// Intervals in space and steps in time of a launch.
 struct Resolution {
   int mesh = 0, steps = 0;
 
@@ -20,51 +20,52 @@ struct Resolution {
   }
 };
 
-/// How far a price has come whose tolerance decides.
+/// State of the adaptive choice for one price.
 struct Refinement {
-  Resolution next;     ///< no mesh: it is there
-  int often = 1;       ///< steps, of a fourth of the mesh
-  double error = 0.0;  ///< stated last
+  Resolution next;           ///< mesh 0: finished
+  int steps_multiplier = 1;  ///< steps per four intervals
+  double error = 0.0;        ///< previous estimate, money
 };
 
-/// Steps on a mesh: those that are given, or `often` for each four intervals.
-[[nodiscard]] inline int steps_of(const Settings& settings, int mesh, int often) {
-  return settings.steps != 0 ? settings.steps : mesh / 4 * often;
+/// Number of steps on a mesh: that of the settings, or `steps_multiplier` for each four intervals.
+[[nodiscard]] inline int steps_of(const Settings& settings, int mesh, int steps_multiplier) {
+  return settings.steps != 0 ? settings.steps : mesh / 4 * steps_multiplier;
 }
 
-/// The next effort, the least of those that are missing; none if all prices are there.
-[[nodiscard]] inline std::optional<Resolution> least_effort(const std::vector<Refinement>& rows) {
+/// Smallest resolution of the unfinished prices; none if all are finished.
+[[nodiscard]] inline std::optional<Resolution> lowest_resolution(const std::vector<Refinement>& rows) {
   std::optional<Resolution> least;
   for (const Refinement& row : rows)
     if (row.next.mesh != 0 && (!least || row.next < *least)) least = row.next;
   return least;
 }
 
-/// Goes on from a price. The error falls by at least 4 where mesh and steps double. Where it does not fall,
-/// more steps are tried first, and still more where the values grew: jumps of long maturities are stiff. It
-/// does where it falls as of an order of a half, as at a kink that hardly spreads. Where that does not help
-/// on a fine mesh either, nothing will. `tolerance`: money.
+/// Selects the next resolution from a price. The error decreases at least by a factor of 4 if mesh and steps
+/// double. If it stagnates, more steps are tried first, and still more if the values grew: jumps of long
+/// maturities are stiff. A decrease as for order 1/2 (a kink that hardly spreads) counts as progress. A price
+/// that stagnates on a fine mesh with more steps is finished. `tolerance`: money.
 inline void refine(Refinement& row, const Price& price, double tolerance, const Settings& settings) {
-  constexpr int last_mesh = 2048, hopeless_mesh = 512;
+  constexpr int last_mesh = 2048, stagnation_mesh = 512;
   const int mesh = row.next.mesh;
   row.next = {};
-  if (price.outcome == Outcome::ok) return;
-  const bool grew = price.failure == Failure::grown || price.failure == Failure::stiff;
-  if (price.failure != Failure::none && !grew) return;
-  const int most_often = grew ? 16 : 4;
-  const bool stuck = price.outcome == Outcome::failed || (row.error > 0.0 && price.error > 0.7 * row.error);
+  if (price.status == PriceStatus::ok) return;
+  const bool grew = price.failure == FailureReason::unstable || price.failure == FailureReason::stiff;
+  if (price.failure != FailureReason::none && !grew) return;
+  const int max_multiplier = grew ? 16 : 4;
+  const bool stagnates =
+      price.status == PriceStatus::failed || (row.error > 0.0 && price.error > 0.7 * row.error);
   row.error = price.error;
   int next = mesh;
-  if (stuck && row.often < most_often && settings.steps == 0) {
-    row.often *= 4;
-  } else if (stuck && mesh >= hopeless_mesh && price.outcome == Outcome::coarse) {
+  if (stagnates && row.steps_multiplier < max_multiplier && settings.steps == 0) {
+    row.steps_multiplier *= 4;
+  } else if (stagnates && mesh >= stagnation_mesh && price.status == PriceStatus::coarse) {
     return;
   } else {
     next *= 2;
-    if (price.outcome == Outcome::coarse)
+    if (price.status == PriceStatus::coarse)
       for (double error = price.error / 16.0; error > tolerance && next < last_mesh; error /= 4.0) next *= 2;
   }
-  if (next <= last_mesh) row.next = {next, steps_of(settings, next, row.often)};
+  if (next <= last_mesh) row.next = {next, steps_of(settings, next, row.steps_multiplier)};
 }
 
 }  // namespace drogue::options

@@ -8,9 +8,9 @@
 namespace drogue::options {
 namespace {
 
-/// Extrapolations of a quantity over the levels: with all four, the three finest, the two finest.
+/// Richardson extrapolations of a quantity over all four levels, the three finest, and the two finest.
 struct Extrapolated {
-  double best, second, third;
+  double four_levels, three_levels, two_levels;
 };
 
 template <class Member>
@@ -25,32 +25,34 @@ AmericanPut::AmericanPut(const Contract& c)
     : x(std::log(c.type == Type::put ? c.spot / c.strike : c.strike / c.spot)),
       rate(c.type == Type::put ? c.rate : c.dividend),
       dividend(c.type == Type::put ? c.dividend : c.rate),
-      psi(c.type == Type::put ? Exponent(c) : Exponent(c).dual()) {}
+      psi(c.type == Type::put ? CharacteristicExponent(c) : CharacteristicExponent(c).dual()) {}
 
 void AmericanPut::prepare(double expiry, int dates, double tolerance) {
-  const double enough = std::log(10.0 + 10.0 / tolerance);
-  const double maturity = rate * expiry > enough ? enough / rate : expiry;
-  beyond = maturity < expiry ? std::exp(-enough) : 0.0;
-  const Exponent::Cumulants c = psi.cumulants();
-  // A year's wait costs at most what exercise earns in it. Where that is all there is to earn between two
-  // dates of the coarsest level, or the drift carries the spot by more than a deviation from one to the
-  // next, values of all levels may agree that hardly anything is exercised.
+  const double max_discount = std::log(10.0 + 10.0 / tolerance);
+  const double maturity = rate * expiry > max_discount ? max_discount / rate : expiry;
+  truncation_error = maturity < expiry ? std::exp(-max_discount) : 0.0;
+  const CharacteristicExponent::Cumulants c = psi.cumulants();
+  // The loss from a delayed exercise is at most the carry that exercise earns in the meantime. If that
+  // exceeds the strike between two dates of the coarsest level, or the drift moves the spot by more than a
+  // standard deviation, all levels may miss the exercise region and agree with each other.
   const double interval = maturity / dates, earned = std::max(rate, rate - dividend) * interval;
   const bool too_few = earned > 1.0 || c.mean * c.mean * interval > c.second;
-  between =
+  date_error =
       too_few ? -std::expm1(-earned / (1 << (levels - 1))) * std::exp(std::max(-rate * maturity, 0.0)) : 0.0;
-  const Exponent::Reach reach = psi.reach();
+  const CharacteristicExponent::JumpRange range = psi.jump_range();
   constexpr double deviations = 12.0;
-  // Heavier tails than this leaves room for are folded back by the cosines.
-  constexpr double deepest = 100.0;
+  // The cosine series folds back (aliases) the probability beyond this distance.
+  constexpr double max_distance = 100.0;
   const double spread =
       deviations * std::sqrt(c.second * maturity + std::sqrt(std::abs(c.fourth) * maturity));
   const double shift = c.mean * maturity;
   const double low =
-      std::min(x, 0.0) - std::min(std::max(spread, reach.down) + std::max(-shift, 0.0), deepest);
-  const double high = std::max(x, 0.0) + std::min(std::max(spread, reach.up) + std::max(shift, 0.0), deepest);
+      std::min(x, 0.0) - std::min(std::max(spread, range.down) + std::max(-shift, 0.0), max_distance);
+  const double high =
+      std::max(x, 0.0) + std::min(std::max(spread, range.up) + std::max(shift, 0.0), max_distance);
   const double width = high - low;
-  folded = std::exp(-Exponent::reach_digits * deepest / std::max(reach.down, 1.0));
+  aliasing_error =
+      std::exp(-CharacteristicExponent::jump_range_digits * max_distance / std::max(range.down, 1.0));
 
   const double dt = maturity / (dates << (levels - 1));
   const auto decay = [&](int log_terms) {
@@ -58,7 +60,7 @@ void AmericanPut::prepare(double expiry, int dates, double tolerance) {
   };
   constexpr double negligible = 1e-10;
   int log_terms = 6;
-  while (log_terms < most_log_terms && decay(log_terms) > negligible) ++log_terms;
+  while (log_terms < max_log_terms && decay(log_terms) > negligible) ++log_terms;
 
   const int terms = 1 << log_terms;
   psi_re.resize(terms);
@@ -79,29 +81,32 @@ void AmericanPut::prepare(double expiry, int dates, double tolerance) {
 
 Price american_price(const Contract& c, const AmericanPut& put, const BermudanValue* values) {
   const Extrapolated value = extrapolate(values, &BermudanValue::value);
-  // The boundary at maturity is no power of dt: what extrapolation gains is less than its last step. That may
-  // change its sign between the levels, hence a fiftieth of what the last level has added.
-  double error = 2.0 * (std::abs(value.best - value.second) + std::abs(value.second - value.third)) +
+  // Near maturity the exercise boundary is not smooth in dt, so the last extrapolation gains less than the
+  // one before. Their differences may change sign between levels, hence the fiftieth of the last difference.
+  double error = 2.0 * (std::abs(value.four_levels - value.three_levels) +
+                        std::abs(value.three_levels - value.two_levels)) +
                  0.02 * std::abs(values[3].value - values[2].value);
-  // Half the cosines are further off than all.
+  // Halving the number of cosines bounds the truncation error of the full series.
   if (put.puts.size() > AmericanPut::levels)
     error += std::abs(values[AmericanPut::levels].value - values[AmericanPut::levels - 1].value);
-  error += put.folded + put.beyond + put.between;
+  error += put.aliasing_error + put.truncation_error + put.date_error;
   const double payoff = std::max(-std::expm1(put.x), 0.0);
-  const bool exercised = payoff > 0.0 && payoff >= value.best;
+  const bool exercised = payoff > 0.0 && payoff >= value.four_levels;
 
-  // The put's strike is the unit: the strike of a put, the spot of a call.
+  // The unit of money is the strike of the put, which is the spot of a call.
   const bool is_put = c.type == Type::put;
   const double unit = is_put ? c.strike : c.spot;
-  const double slope = exercised ? -std::exp(put.x) : extrapolate(values, &BermudanValue::slope).best;
-  const double curvature = exercised ? slope : extrapolate(values, &BermudanValue::curvature).best;
+  const double slope =
+      exercised ? -std::exp(put.x) : extrapolate(values, &BermudanValue::first_derivative).four_levels;
+  const double curvature =
+      exercised ? slope : extrapolate(values, &BermudanValue::second_derivative).four_levels;
   Price price;
-  price.price = unit * std::max(value.best, payoff);
-  // Where exercise is right by more than the error, the payoff is the price.
-  price.error = unit * std::max(error - std::max(payoff - value.best, 0.0), 1e-14);
+  price.price = unit * std::max(value.four_levels, payoff);
+  // If exercise is optimal by more than the error, the payoff is the exact price.
+  price.error = unit * std::max(error - std::max(payoff - value.four_levels, 0.0), 1e-14);
   price.delta = is_put ? unit * slope / c.spot : price.price / c.spot - slope;
   price.gamma = unit * (curvature - slope) / (c.spot * c.spot);
-  price.theta = exercised ? 0.0 : unit * extrapolate(values, &BermudanValue::theta).best;
+  price.theta = exercised ? 0.0 : unit * extrapolate(values, &BermudanValue::theta).four_levels;
   price.exercise_boundary = std::numeric_limits<double>::quiet_NaN();
   price.mesh = static_cast<int>(put.psi_re.size());
   price.steps = put.puts[AmericanPut::levels - 1].dates;

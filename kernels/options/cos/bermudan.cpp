@@ -2,7 +2,7 @@
 
 namespace drogue::options {
 
-// Defined in cos_bermudan_on.hpp, instantiated for each backend in instances/.
+// Defined in bermudan_impl.hpp, instantiated for each backend in instances/.
 template <class ExecutionSpace>
 std::unique_ptr<BermudanSolver> make_bermudan_solver();
 

@@ -7,42 +7,42 @@
 
 namespace drogue::options {
 
-/// A put that may be exercised at `dates` equally spaced times after now, the last its maturity. Money is
-/// counted in strikes; x is the logarithm of spot / strike.
+/// Put with `dates` equally spaced exercise dates after now, the last at maturity. Unit of money: the strike.
 struct BermudanPut {
-  double x = 0.0;
-  double rate = 0.0;
+  double x = 0.0;         ///< log(spot / strike)
+  double rate = 0.0;      ///< per year
   double maturity = 1.0;  ///< years
-  double low = -1.0;      ///< the interval of x that cosines are taken on
-  double width = 2.0;
+  double low = -1.0;      ///< lower end of the interval of the cosine series, in x
+  double width = 2.0;     ///< length of the interval
   int dates = 4;
-  int log_terms = 6;  ///< of the number of cosines
-  int table = 0;      ///< where its values of psi(pi k / width), k = 0 .. terms - 1, begin
+  int log_terms = 6;  ///< binary logarithm of the number of cosines
+  int table = 0;      ///< index of psi(0) in the tables of psi(pi k / width), k = 0 .. number of cosines - 1
 };
 
-/// The value of waiting now, and its derivatives by x and time (at fixed x, a year).
+/// Continuation value now, in strikes, and its derivatives.
 struct BermudanValue {
   double value = 0.0;
-  double slope = 0.0;
-  double curvature = 0.0;
-  double theta = 0.0;
+  double first_derivative = 0.0;   ///< by x
+  double second_derivative = 0.0;  ///< by x, twice
+  double theta = 0.0;              ///< by time at fixed x, 1/year
 };
 
-/// Values Bermudan puts by the COS method (Fang and Oosterlee 2009): the same bits on every backend of an
-/// exact build and for any composition of the span.
+/// Prices Bermudan puts by the COS method (Fang and Oosterlee 2009). In an exact build all backends give the
+/// same bits. The bits of a value do not depend on the other puts of the span.
 class BermudanSolver {
  public:
   virtual ~BermudanSolver() = default;
 
-  /// `psi_re`, `psi_im` hold the characteristic exponents that the puts refer to.
+  /// Computes `values`, of the length of `puts`, which are sorted by their number of cosines. `psi_re` and
+  /// `psi_im` are the tables of characteristic exponents, 1/year, to which the puts refer. Blocking.
   virtual void solve(std::span<const BermudanPut> puts, std::span<const double> psi_re,
                      std::span<const double> psi_im, std::span<BermudanValue> values) = 0;
 };
 
-/// Most cosines a put may have, as a power of two.
-inline constexpr int most_log_terms = 12;
+/// Binary logarithm of the largest number of cosines.
+inline constexpr int max_log_terms = 12;
 
-/// The backend must be compiled in and available.
+/// Creates a solver on `backend`, which must be compiled in and available.
 std::unique_ptr<BermudanSolver> create_bermudan_solver(device::Backend backend);
 
 }  // namespace drogue::options

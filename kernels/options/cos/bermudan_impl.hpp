@@ -8,13 +8,13 @@
 
 #include "kernels/device/copy.hpp"
 #include "kernels/device/instance.hpp"
-#include "kernels/options/cos/backward.hpp"
+#include "kernels/options/cos/backward_induction.hpp"
 
 namespace drogue::options {
 
-/// One team a put.
+/// Prices Bermudan puts with the same number of cosines, one team per put.
 template <class ExecutionSpace>
-struct ValueBermudans {
+struct PriceBermudansFunctor {
   using Memory = typename ExecutionSpace::memory_space;
   using Team = typename Kokkos::TeamPolicy<ExecutionSpace>::member_type;
   static_assert(Kokkos::SpaceAccessibility<ExecutionSpace, Memory>::accessible);
@@ -29,13 +29,14 @@ struct ValueBermudans {
     const BermudanPut put = puts(first + team.league_rank());
     double* const memory =
         workspace.data() + static_cast<std::size_t>(team.league_rank()) * CosWorkspace::size(log_terms);
-    const CosBackward<Team> backward(team, put, {psi_re.data() + put.table, psi_im.data() + put.table},
-                                     {roots_re.data(), roots_im.data()}, most_log_terms + 1, memory);
-    const BermudanValue value = backward.solve();
+    const BackwardInduction<Team> induction(team, put, {psi_re.data() + put.table, psi_im.data() + put.table},
+                                            {roots_re.data(), roots_im.data()}, max_log_terms + 1, memory);
+    const BermudanValue value = induction.solve();
     Kokkos::single(Kokkos::PerTeam(team), [&] { values(first + team.league_rank()) = value; });
   }
 };
 
+/// `BermudanSolver` on an execution space.
 template <class ExecutionSpace>
 class BermudanSolverImpl final : public BermudanSolver {
   using Memory = typename ExecutionSpace::memory_space;
@@ -46,7 +47,7 @@ class BermudanSolverImpl final : public BermudanSolver {
 
  public:
   BermudanSolverImpl() : _instance(ExecutionSpace().concurrency()) {
-    constexpr int count = 1 << most_log_terms;  // half of a circle is all that is asked for
+    constexpr int count = 1 << max_log_terms;  // the transforms use half of the roots
     std::vector<double> re(count), im(count);
     for (int k = 0; k < count; ++k) {
       re[k] = std::cos(std::numbers::pi * k / count);
@@ -61,31 +62,32 @@ class BermudanSolverImpl final : public BermudanSolver {
              std::span<const double> psi_im, std::span<BermudanValue> values) override {
     if (puts.empty()) return;
     const auto& space = _instance.space();
-    ValueBermudans<ExecutionSpace> kernel{to_device("drogue::options::puts", puts),
-                                          to_device("drogue::options::psi_re", psi_re),
-                                          to_device("drogue::options::psi_im", psi_im),
-                                          _roots_re,
-                                          _roots_im,
-                                          {},
-                                          View<BermudanValue>("drogue::options::bermudans", puts.size()),
-                                          0,
-                                          0};
+    PriceBermudansFunctor<ExecutionSpace> kernel{
+        to_device("drogue::options::puts", puts),
+        to_device("drogue::options::psi_re", psi_re),
+        to_device("drogue::options::psi_im", psi_im),
+        _roots_re,
+        _roots_im,
+        {},
+        View<BermudanValue>("drogue::options::bermudans", puts.size()),
+        0,
+        0};
     const int count = static_cast<int>(puts.size());
     for (kernel.first = 0; kernel.first < count;) {
       kernel.log_terms = puts[kernel.first].log_terms;
       int last = kernel.first;
       while (last < count && puts[last].log_terms == kernel.log_terms) ++last;
-      launch(kernel, std::min(last - kernel.first, most_at_once(kernel.log_terms)));
+      launch(kernel, std::min(last - kernel.first, max_puts_per_launch(kernel.log_terms)));
     }
     device::copy(space, HostView<BermudanValue>(values.data(), values.size()), kernel.values);
     space.fence("drogue::options::cos: values");
   }
 
  private:
-  /// A put needs memory of its own: of all that is taken at most.
-  static int most_at_once(int log_terms) { return (1 << 25) / CosWorkspace::size(log_terms); }
+  /// Bounds the workspace to 2^25 doubles.
+  static int max_puts_per_launch(int log_terms) { return (1 << 25) / CosWorkspace::size(log_terms); }
 
-  void launch(ValueBermudans<ExecutionSpace>& kernel, int count) {
+  void launch(PriceBermudansFunctor<ExecutionSpace>& kernel, int count) {
     const std::size_t size = static_cast<std::size_t>(count) * CosWorkspace::size(kernel.log_terms);
     if (_workspace.size() < size) {
       _instance.space().fence("drogue::options::cos: workspace");

@@ -15,7 +15,7 @@ struct LowOrder {
   Complex ratio;
 };
 
-/// Coefficients of 1 / Gamma(1 + x) (Abramowitz and Stegun 6.1.34).
+/// Taylor coefficients of 1 / Gamma(1 + x) (Abramowitz and Stegun, eq. (6.1.34)).
 constexpr double reciprocal_gamma[] = {
     1.0,
     0.5772156649015329,
@@ -44,9 +44,9 @@ constexpr double reciprocal_gamma[] = {
     0.0000000000000014,
 };
 
-/// Temme's series, for |z| < 2.
+/// Temme's series for |z| < 2 (Temme 1975).
 LowOrder temme_series(double mu, Complex z) {
-  double gamma1 = 0.0, gamma2 = 0.0;  // odd and even part of 1 / Gamma(1 - mu)
+  double gamma1 = 0.0, gamma2 = 0.0;  // odd and even parts of 1 / Gamma(1 - mu)
   double power = 1.0;
   for (int k = 0; k < 25; k += 2) {
     gamma2 += reciprocal_gamma[k] * power;
@@ -75,7 +75,7 @@ LowOrder temme_series(double mu, Complex z) {
   return {std::log(sum) + z, sum1 * 2.0 / (z * sum)};
 }
 
-/// Steed's evaluation of Temme's continued fraction, for |z| >= 2.
+/// Temme's continued fraction for |z| >= 2 by Steed's method (Press et al. 2007, section 6.6).
 LowOrder continued_fraction(double mu, Complex z) {
   const double a1 = 0.25 - mu * mu;
   Complex b = 2.0 * (1.0 + z);

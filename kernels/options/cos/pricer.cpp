@@ -8,41 +8,41 @@
 #include <stdexcept>
 #include <thread>
 
-#include "kernels/options/batch/stopwatch.hpp"
+#include "kernels/device/stopwatch.hpp"
 #include "kernels/options/cos/american.hpp"
 #include "kernels/options/cos/european.hpp"
 
 namespace drogue::options {
 namespace {
 
-/// Calls `work(i)` for i in [0, count) by so many threads.
+/// Calls `work(i)` for i in [0, count) on `threads` threads.
 template <class Work>
-void for_each(std::size_t threads, std::size_t count, const Work& work) {
+void parallel_for_host(std::size_t threads, std::size_t count, const Work& work) {
   std::atomic<std::size_t> next{0};
-  const auto take = [&] {
+  const auto run = [&] {
     for (std::size_t i = next++; i < count; i = next++) work(i);
   };
   std::vector<std::jthread> others;
-  for (std::size_t k = 1; k < std::min(threads, count); ++k) others.emplace_back(take);
-  take();
+  for (std::size_t k = 1; k < std::min(threads, count); ++k) others.emplace_back(run);
+  run();
 }
 
-/// One on the serial backend.
+/// Number of host threads: one on the serial backend.
 std::size_t host_threads(device::Backend backend, const Settings& settings) {
   if (backend == device::Backend::serial) return 1;
   return settings.host_threads > 0 ? static_cast<std::size_t>(settings.host_threads)
                                    : std::thread::hardware_concurrency();
 }
 
-/// Puts of many contracts, those with the same number of cosines side by side, as one call takes them.
-struct Bundle {
+/// Puts of many contracts, sorted by their number of cosines, for one call of the solver.
+struct SortedPuts {
   std::vector<BermudanPut> puts;
-  std::vector<std::size_t> places;  ///< of each put's value, in the order of the contracts
+  std::vector<std::size_t> order;  ///< index of each put in the order of the contracts
   std::vector<double> psi_re, psi_im;
 };
 
-Bundle bundle(const std::vector<AmericanPut>& contracts) {
-  Bundle all;
+SortedPuts sort_puts(const std::vector<AmericanPut>& contracts) {
+  SortedPuts all;
   for (const AmericanPut& contract : contracts) {
     const int table = static_cast<int>(all.psi_re.size());
     for (BermudanPut put : contract.puts) {
@@ -52,17 +52,18 @@ Bundle bundle(const std::vector<AmericanPut>& contracts) {
     all.psi_re.insert(all.psi_re.end(), contract.psi_re.begin(), contract.psi_re.end());
     all.psi_im.insert(all.psi_im.end(), contract.psi_im.begin(), contract.psi_im.end());
   }
-  all.places.resize(all.puts.size());
-  std::iota(all.places.begin(), all.places.end(), std::size_t{0});
-  std::stable_sort(all.places.begin(), all.places.end(), [&](std::size_t a, std::size_t b) {
+  all.order.resize(all.puts.size());
+  std::iota(all.order.begin(), all.order.end(), std::size_t{0});
+  std::stable_sort(all.order.begin(), all.order.end(), [&](std::size_t a, std::size_t b) {
     return all.puts[a].log_terms < all.puts[b].log_terms;
   });
   std::vector<BermudanPut> sorted;
-  for (const std::size_t place : all.places) sorted.push_back(all.puts[place]);
+  for (const std::size_t index : all.order) sorted.push_back(all.puts[index]);
   all.puts = std::move(sorted);
   return all;
 }
 
+/// Pricer for the method `cos`.
 class CosPricer final : public Pricer {
  public:
   CosPricer(device::Backend backend, const Settings& settings)
@@ -73,23 +74,23 @@ class CosPricer final : public Pricer {
   WallTimes price(std::span<const Contract> contracts, std::span<Price> prices) override {
     if (contracts.size() != prices.size())
       throw std::invalid_argument("cos: as many prices as contracts are needed");
-    const Stopwatch pricing;
+    const device::Stopwatch pricing;
     std::vector<std::size_t> american;
     for (std::size_t i = 0; i < contracts.size(); ++i)
       if (contracts[i].style == Style::american && !AmericanPut(contracts[i]).never_exercised())
         american.push_back(i);
-    for_each(_threads, contracts.size(), [&](std::size_t i) {
+    parallel_for_host(_threads, contracts.size(), [&](std::size_t i) {
       if (!std::binary_search(american.begin(), american.end(), i))
-        prices[i] = european_price(contracts[i], Exponent(contracts[i]));
+        prices[i] = european_price(contracts[i], CharacteristicExponent(contracts[i]));
     });
-    for (std::size_t first = 0; first < american.size(); first += most_together) {
-      const std::size_t count = std::min(most_together, american.size() - first);
+    for (std::size_t first = 0; first < american.size(); first += max_contracts) {
+      const std::size_t count = std::min(max_contracts, american.size() - first);
       price_american(contracts, std::span(american).subspan(first, count), prices);
     }
-    for (std::size_t i = 0; i < contracts.size(); ++i) finish(contracts[i], prices[i]);
-    WallTimes timing;
-    timing.compute = pricing.seconds();
-    return timing;
+    for (std::size_t i = 0; i < contracts.size(); ++i) set_status(contracts[i], prices[i]);
+    WallTimes times;
+    times.compute = pricing.seconds();
+    return times;
   }
 
   std::vector<BoundaryPoint> boundary_on(const Contract& /*contract*/, int /*mesh*/, int /*steps*/) override {
@@ -101,45 +102,46 @@ class CosPricer final : public Pricer {
   }
 
  private:
-  static constexpr std::size_t most_together = 1024;       ///< so that their tables take some 60 MB at most
-  static constexpr int fewest_dates = 4, most_dates = 32;  ///< of the coarsest level
+  static constexpr std::size_t max_contracts = 1024;   ///< per call of the solver; bounds the tables to 60 MB
+  static constexpr int min_dates = 4, max_dates = 32;  ///< of the coarsest level
 
-  /// Doubles the dates of those that have not reached the tolerance.
+  /// Prices American contracts, doubling the number of dates of those that exceed the tolerance.
   void price_american(std::span<const Contract> contracts, std::span<const std::size_t> american,
                       std::span<Price> prices) {
-    std::vector<std::size_t> open(american.begin(), american.end());
-    for (int dates = fewest_dates; !open.empty() && dates <= most_dates; dates *= 2) {
+    std::vector<std::size_t> unconverged(american.begin(), american.end());
+    for (int dates = min_dates; !unconverged.empty() && dates <= max_dates; dates *= 2) {
       std::vector<AmericanPut> puts;
-      for (const std::size_t i : open) puts.emplace_back(contracts[i]);
-      for_each(_threads, open.size(), [&](std::size_t k) {
-        const Contract& c = contracts[open[k]];
+      for (const std::size_t i : unconverged) puts.emplace_back(contracts[i]);
+      parallel_for_host(_threads, unconverged.size(), [&](std::size_t k) {
+        const Contract& c = contracts[unconverged[k]];
         const double unit = c.type == Type::put ? c.strike : c.spot;
         puts[k].prepare(c.maturity, dates, _settings.tolerance * c.strike / unit);
       });
-      const Bundle all = bundle(puts);
+      const SortedPuts all = sort_puts(puts);
       std::vector<BermudanValue> sorted(all.puts.size()), values(all.puts.size());
       _solver->solve(all.puts, all.psi_re, all.psi_im, sorted);
-      for (std::size_t k = 0; k < sorted.size(); ++k) values[all.places[k]] = sorted[k];
-      std::vector<std::size_t> still_open;
-      const BermudanValue* mine = values.data();
-      for (std::size_t k = 0; k < open.size(); ++k) {
-        const std::size_t i = open[k];
-        prices[i] = american_price(contracts[i], puts[k], mine);
-        mine += puts[k].puts.size();
-        const bool can_be_reached = puts[k].folded < _settings.tolerance;
-        if (can_be_reached && !(prices[i].error <= _settings.tolerance * contracts[i].strike))
-          still_open.push_back(i);
+      for (std::size_t k = 0; k < sorted.size(); ++k) values[all.order[k]] = sorted[k];
+      std::vector<std::size_t> remaining;
+      const BermudanValue* own_values = values.data();
+      for (std::size_t k = 0; k < unconverged.size(); ++k) {
+        const std::size_t i = unconverged[k];
+        prices[i] = american_price(contracts[i], puts[k], own_values);
+        own_values += puts[k].puts.size();
+        const bool is_reachable = puts[k].aliasing_error < _settings.tolerance;
+        if (is_reachable && !(prices[i].error <= _settings.tolerance * contracts[i].strike))
+          remaining.push_back(i);
       }
-      open = std::move(still_open);
+      unconverged = std::move(remaining);
     }
   }
 
-  void finish(const Contract& contract, Price& price) const {
+  /// Sets the status, and removes the Greeks unless requested.
+  void set_status(const Contract& contract, Price& price) const {
     if (!std::isfinite(price.price) || !std::isfinite(price.error)) {
-      price.outcome = Outcome::failed;
-      price.failure = Failure::series;
+      price.status = PriceStatus::failed;
+      price.failure = FailureReason::fourier_not_finite;
     } else if (price.error > _settings.tolerance * contract.strike) {
-      price.outcome = Outcome::coarse;
+      price.status = PriceStatus::coarse;
     }
     if (_settings.greeks) return;
     price.delta = price.gamma = price.theta = std::numeric_limits<double>::quiet_NaN();

@@ -4,10 +4,12 @@
 
 namespace drogue::options {
 
-/// European options by Fourier's integral, American ones by Richardson extrapolation of Bermudan ones. An
-/// exercise boundary is not given, for that of Bermudan options converges too slowly, nor a profile: both
-/// functions throw std::invalid_argument. Throws std::invalid_argument for settings with a mesh or steps; the
-/// backend must be available.
+/// Creates a pricer for the method `cos`: European options by Fourier inversion, American ones by Richardson
+/// extrapolation of Bermudan ones. `backend` must be available. Throws std::invalid_argument for settings
+/// with a mesh or steps.
+///
+/// `boundary` and `profile` of the pricer throw std::invalid_argument: boundaries of Bermudan options
+/// converge too slowly, and every spot of a profile would be a solve of its own.
 std::unique_ptr<Pricer> create_cos_pricer(device::Backend backend, const Settings& settings);
 
 }  // namespace drogue::options

@@ -10,13 +10,14 @@
 
 namespace drogue::options {
 
-/// The series of those panels of orders that contracts have asked for, on the host and on `ExecutionSpace`.
+/// Chebyshev tables of the panels of orders that contracts need, on the host and on `ExecutionSpace`. Tables
+/// are built once per panel.
 template <class ExecutionSpace>
 class HankelPanels {
   using Space = typename ExecutionSpace::memory_space;
 
  public:
-  /// Builds the series of the panels that are new.
+  /// Builds the missing tables on the host.
   void build(std::span<const Contract> contracts) {
     for (const Contract& contract : contracts) {
       if (contract.model != Model::generalized_hyperbolic || contract.jump[3] == 0.0) continue;
@@ -31,22 +32,24 @@ class HankelPanels {
     }
   }
 
-  /// Copies what the backend does not have.
+  /// Copies new tables to the backend. Blocks until they are there.
   void copy_in(const ExecutionSpace& space) {
     if (_copied) return;
     _series = Kokkos::View<double*, Space>("drogue::options::panels", _host_series.size());
     _slots = Kokkos::View<int*, Space>("drogue::options::panel slots", _host_slots.size());
     device::copy_in(space, _series, _host_series.data(), _host_series.size());
     device::copy_in(space, _slots, _host_slots.data(), _host_slots.size());
-    space.fence("drogue::options: panels are copied");  // `build` may change them next
+    space.fence("drogue::options: panels are copied");  // the next `build` may change the sources
     _copied = true;
   }
 
-  /// (panels, HankelGrid::panel_size)
+  /// Tables, shape (number of built panels, HankelGrid::panel_size).
   [[nodiscard]] const Kokkos::View<double*, Space>& series() const { return _series; }
-  /// (HankelGrid::panels): which of them a panel is, -1 for none
+  /// Index of each panel's table, -1 for none; shape (HankelGrid::panels).
   [[nodiscard]] const Kokkos::View<int*, Space>& slots() const { return _slots; }
+  /// As `series`, on the host.
   [[nodiscard]] const std::vector<double>& host_series() const { return _host_series; }
+  /// As `slots`, on the host.
   [[nodiscard]] const std::vector<int>& host_slots() const { return _host_slots; }
 
  private:

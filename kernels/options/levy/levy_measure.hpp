@@ -5,34 +5,40 @@
 
 namespace drogue::options {
 
-/// The puts of a pack (one for R = double), member by member; all have the same model.
+/// Puts of a pack (one for R = double) as a structure of packs. All have the same model.
 template <class R>
 struct PutPack {
   Model model;
-  bool any_split;
-  R early;  ///< 1 or 0, as the next
-  R split;
+  bool any_split;  ///< `split` holds for at least one member
+  R early;         ///< `NormalizedPut::early` as 1 or 0
+  R split;         ///< `NormalizedPut::split` as 1 or 0
   R log_spot, rate, dividend, maturity, variance;
   R jump[4];
 };
 
-/// The laws that a kernel is compiled for. All contracts of a launch have one model, and without the others'
-/// code a GPU's compiler inlines all of a solve: of what is too much for that it makes calls, which keep
-/// everything in memory.
-enum class Laws : unsigned char { all, mixtures, closed_forms };
+/// Class of models that a kernel is compiled for. All contracts of a launch have one model. With the code of
+/// one class only, a GPU compiler inlines the whole solve; otherwise it emits calls, which spill registers to
+/// memory.
+enum class JumpClass : unsigned char {
+  any,          ///< all models
+  mixture,      ///< generalized hyperbolic jumps, a mixture of exponentials
+  closed_form,  ///< all other models
+};
 
-/// Calls f.operator()<laws>() for the laws that a model belongs to.
+/// Calls f.operator()<jump_class>() with the class of `model`.
 template <class F>
-void for_laws_of(Model model, const F& f) {
-  if (model == Model::generalized_hyperbolic) return f.template operator()<Laws::mixtures>();
-  f.template operator()<Laws::closed_forms>();
+void dispatch_jump_class(Model model, const F& f) {
+  if (model == Model::generalized_hyperbolic) return f.template operator()<JumpClass::mixture>();
+  f.template operator()<JumpClass::closed_form>();
 }
 
-template <class R, Laws laws = Laws::all>
-KOKKOS_INLINE_FUNCTION PutPack<R> pack_of(const NormalizedPut* puts) {
+/// Packs as many puts as R has lanes.
+template <class R, JumpClass jump_class = JumpClass::any>
+KOKKOS_INLINE_FUNCTION PutPack<R> pack_puts(const NormalizedPut* puts) {
   PutPack<R> pack{};
-  pack.model = laws == Laws::mixtures ? Model::generalized_hyperbolic : puts[0].model;
-  if constexpr (laws == Laws::closed_forms) device::assume(pack.model != Model::generalized_hyperbolic);
+  pack.model = jump_class == JumpClass::mixture ? Model::generalized_hyperbolic : puts[0].model;
+  if constexpr (jump_class == JumpClass::closed_form)
+    device::assume(pack.model != Model::generalized_hyperbolic);
   for (int k = 0; k < device::Access<R>::lanes; ++k) {
     const auto set = [k](R& number, double value) { reinterpret_cast<double*>(&number)[k] = value; };
     const NormalizedPut& put = puts[k];
@@ -49,7 +55,7 @@ KOKKOS_INLINE_FUNCTION PutPack<R> pack_of(const NormalizedPut* puts) {
   return pack;
 }
 
-/// The puts, or the same without early exercise.
+/// The puts, without early exercise unless `allowed`.
 template <class R>
 KOKKOS_INLINE_FUNCTION PutPack<R> with_exercise(PutPack<R> put, bool allowed) {
   if (!allowed) {
@@ -59,81 +65,84 @@ KOKKOS_INLINE_FUNCTION PutPack<R> with_exercise(PutPack<R> put, bool allowed) {
   return put;
 }
 
-/// What a pack's jumps are made of. Terms of a mixture are in scratch memory; the other models have none.
+/// Jumps of a pack of puts. The terms of a mixture are in scratch memory; other models have no terms.
 template <class R>
 struct LevyMeasure {
-  R* s;        ///< (Mixture::size): rates
-  R* c;        ///< (Mixture::size): weights
-  R* up;       ///< (Mixture::low): 1/(s - beta), the length at which a term decays upwards
-  R* down;     ///< (Mixture::low): 1/(s + beta), downwards
-  R variance;  ///< of the jumps, a year
-  R high;      ///< what terms from Mixture::low on contribute to it
+  R* s;        ///< decay rates, shape (Mixture::size)
+  R* c;        ///< weights, 1/year, shape (Mixture::size)
+  R* up;       ///< decay lengths of upward jumps, 1/(s - beta), shape (Mixture::low)
+  R* down;     ///< decay lengths of downward jumps, 1/(s + beta), shape (Mixture::low)
+  R variance;  ///< variance of the jumps per year
+  R high;      ///< the part of `variance` due to the terms from Mixture::low on
 };
 
-/// Rates at which the density of the jumps decays upwards and downwards; of Merton's none limits a tilt.
+/// Exponential decay rate of the density of upward jumps. Merton's density decays faster than any
+/// exponential; its value limits no Esscher tilt.
 template <class R>
 KOKKOS_INLINE_FUNCTION R decay_up(const PutPack<R>& put) {
   if (put.model == Model::generalized_hyperbolic) return put.jump[1] - put.jump[2];
   return put.model == Model::kou ? put.jump[2] : R(1e4);
 }
+/// As `decay_up`, for downward jumps.
 template <class R>
 KOKKOS_INLINE_FUNCTION R decay_down(const PutPack<R>& put) {
   if (put.model == Model::generalized_hyperbolic) return put.jump[1] + put.jump[2];
   return put.model == Model::kou ? put.jump[3] : R(1e4);
 }
 
-/// Puts the terms of all members of a pack into `memory`, scratch memory, and sums the variance.
+/// Computes the mixture terms of all puts of a pack into `memory`, which is scratch memory, and the variance
+/// of their jumps. Collective over the thread group.
 template <class ThreadGroup, class R>
-KOKKOS_INLINE_FUNCTION LevyMeasure<R> law_of(const ThreadGroup& workers, const PutPack<R>& pack,
-                                             const NormalizedPut* puts, const double* panels,
-                                             const int* panel_slot, const LevyMeasure<R>& memory) {
+KOKKOS_INLINE_FUNCTION LevyMeasure<R> make_levy_measure(const ThreadGroup& group, const PutPack<R>& pack,
+                                                        const NormalizedPut* puts, const double* panels,
+                                                        const int* panel_slot, const LevyMeasure<R>& memory) {
   constexpr int members = device::Access<R>::lanes;
-  LevyMeasure<R> law = memory;
-  R *s = law.s, *c = law.c, *ups = law.up, *downs = law.down;
+  LevyMeasure<R> measure = memory;
+  R *s = measure.s, *c = measure.c, *up_lengths = measure.up, *down_lengths = measure.down;
   if (pack.model == Model::generalized_hyperbolic) {
-    workers.each([=](int thread) {
+    group.each([=](int thread) {
       for (int k = 0; k < members; ++k) {
         const MixtureGrid grid = mixture_grid(puts[k], panels, panel_slot);
-        for (int q = thread; q < Mixture::size; q += workers.threads()) {
-          const Term term = mixture_term(puts[k], grid, q);
+        for (int q = thread; q < Mixture::size; q += group.threads()) {
+          const MixtureTerm term = mixture_term(puts[k], grid, q);
           reinterpret_cast<double*>(s + q)[k] = term.rate;
           reinterpret_cast<double*>(c + q)[k] = term.weight;
         }
       }
     });
     const R up = -pack.jump[2], down = pack.jump[2];
-    const Kokkos::Array<R, 2> variance = sums(workers, [=](int lane) {
+    const Kokkos::Array<R, 2> variance = sums(group, [=](int lane) {
       Kokkos::Array<R, 2> sum = {R(0.0), R(0.0)};
-      for (int q = lane; q < Mixture::size; q += workers.lanes) {
+      for (int q = lane; q < Mixture::size; q += group.lanes) {
         const R a = device::reciprocal(s[q] + up), b = device::reciprocal(s[q] + down);
         sum[q < Mixture::low ? 0 : 1] += c[q] * (a * a + b * b);
-        if (q >= Mixture::low || !workers.writes()) continue;
-        ups[q] = a;
-        downs[q] = b;
+        if (q >= Mixture::low || !group.is_writer()) continue;
+        up_lengths[q] = a;
+        down_lengths[q] = b;
       }
       return sum;
     });
-    workers.meet();
-    law.high = variance[1];
-    law.variance = variance[0] + variance[1];
+    group.sync();
+    measure.high = variance[1];
+    measure.variance = variance[0] + variance[1];
   } else if (pack.model == Model::merton) {
-    law.variance = pack.jump[0] * (pack.jump[1] * pack.jump[1] + pack.jump[2] * pack.jump[2]);
+    measure.variance = pack.jump[0] * (pack.jump[1] * pack.jump[1] + pack.jump[2] * pack.jump[2]);
   } else if (pack.model == Model::kou) {
     const R p = pack.jump[1], a = 1.0 / pack.jump[2], b = 1.0 / pack.jump[3];
-    law.variance = 2.0 * pack.jump[0] * (p * a * a + (1.0 - p) * b * b);
+    measure.variance = 2.0 * pack.jump[0] * (p * a * a + (1.0 - p) * b * b);
   }
-  return law;
+  return measure;
 }
 
-/// The deviation of Merton's jumps; they may all be alike.
+/// Standard deviation of Merton's jumps, bounded away from 0.
 template <class R>
 KOKKOS_INLINE_FUNCTION R merton_deviation(const PutPack<R>& put) {
   return device::maximum(put.jump[2], R(1e-9));
 }
 
-/// The integral of (e^{theta y} - 1 - theta y) g(y) dy, a year; a mixture's to 1e-8.
+/// Integral of (e^{theta y} - 1 - theta y) g(y) dy, 1/year; relative error 1e-8 for a mixture.
 template <class R>
-KOKKOS_INLINE_FUNCTION R jump_cumulant(const PutPack<R>& put, const LevyMeasure<R>& law, R theta) {
+KOKKOS_INLINE_FUNCTION R jump_cumulant(const PutPack<R>& put, const LevyMeasure<R>& measure, R theta) {
   if (put.model == Model::merton) {
     const R m = put.jump[1], d = put.jump[2];
     return put.jump[0] * (exponential(theta * (m + 0.5 * theta * d * d)) - 1.0 - theta * m);
@@ -144,16 +153,16 @@ KOKKOS_INLINE_FUNCTION R jump_cumulant(const PutPack<R>& put, const LevyMeasure<
     return put.jump[0] * (p * (a - theta / up) - (1.0 - p) * (b - theta / down));
   }
   if (put.model == Model::black_scholes) return R(0.0);
-  R sum = 0.5 * theta * theta * law.high;
-  constexpr int at_once = 4;  // terms that do not wait for one another
-  static_assert(Mixture::low % at_once == 0);
-  for (int q = 0; q < Mixture::low; q += at_once) {
-    R term[at_once];
-    for (int i = 0; i < at_once; ++i) {
-      const R a = theta * law.up[q + i], b = theta * law.down[q + i];
-      term[i] = law.c[q + i] * (b - a - rough_logarithm((1.0 - a) * (1.0 + b)));
+  R sum = 0.5 * theta * theta * measure.high;
+  constexpr int chains = 4;  // independent chains hide latency
+  static_assert(Mixture::low % chains == 0);
+  for (int q = 0; q < Mixture::low; q += chains) {
+    R term[chains];
+    for (int i = 0; i < chains; ++i) {
+      const R a = theta * measure.up[q + i], b = theta * measure.down[q + i];
+      term[i] = measure.c[q + i] * (b - a - rough_logarithm((1.0 - a) * (1.0 + b)));
     }
-    for (int i = 0; i < at_once; ++i) sum += term[i];
+    for (int i = 0; i < chains; ++i) sum += term[i];
   }
   return sum;
 }

@@ -4,17 +4,21 @@
 
 namespace drogue::options {
 
-/// Jumps longer than the grid: masses, a year, of those downwards and upwards, the same of e^y, and the
-/// integral of y^2.
+/// Moments of the Levy measure over jumps longer than the grid, 1/year.
 template <class R>
 struct Tails {
-  R down, down_price, up, up_price, variance;
+  R down;        ///< integral of g over downward jumps
+  R down_price;  ///< integral of e^y g over downward jumps
+  R up;          ///< integral of g over upward jumps
+  R up_price;    ///< integral of e^y g over upward jumps
+  R variance;    ///< integral of y^2 g over both
 };
 
-/// Of a mixture they are exponential integrals, of the others closed forms. `length` is that of the grid.
+/// Tails beyond a grid of `length` in ln(spot): exponential integrals for a mixture, closed forms for the
+/// other models. Collective over the thread group.
 template <class ThreadGroup, class R>
-KOKKOS_INLINE_FUNCTION Tails<R> tails_of(const ThreadGroup& workers, const PutPack<R>& put,
-                                         const LevyMeasure<R>& law, R length) {
+KOKKOS_INLINE_FUNCTION Tails<R> make_tails(const ThreadGroup& group, const PutPack<R>& put,
+                                           const LevyMeasure<R>& measure, R length) {
   if (put.model == Model::kou) {
     const R p = put.jump[1], up = put.jump[2], down = put.jump[3];
     const R a = put.jump[0] * p * exponential(-up * length),
@@ -27,26 +31,26 @@ KOKKOS_INLINE_FUNCTION Tails<R> tails_of(const ThreadGroup& workers, const PutPa
     const R rate = put.jump[0], m = put.jump[1], s = merton_deviation(put);
     const R price = rate * exponential(m + 0.5 * s * s), square = m * m + s * s;
     const R z_up = (length - m) / s, z_down = (length + m) / s;
-    const R up = normal_above(z_up), down = normal_above(z_down);
+    const R up = normal_upper_tail(z_up), down = normal_upper_tail(z_down);
     const auto density = [](R z) { return 0.3989422804014327 * exponential(-0.5 * z * z); };
     return {
-        rate * down, price * normal_above(z_down + s), rate * up, price * normal_above(z_up - s),
+        rate * down, price * normal_upper_tail(z_down + s), rate * up, price * normal_upper_tail(z_up - s),
         rate * (square * (up + down) + s * ((length + m) * density(z_up) + (length - m) * density(z_down)))};
   }
   if (put.model != Model::generalized_hyperbolic) return {R(0.0), R(0.0), R(0.0), R(0.0), R(0.0)};
   const R shrink = exponential(-length);
-  const Kokkos::Array<R, 5> tails = sums(workers, [&](int lane) {
+  const Kokkos::Array<R, 5> tails = sums(group, [&](int lane) {
     Kokkos::Array<R, 5> sum = {R(0.0), R(0.0), R(0.0), R(0.0), R(0.0)};
-    for (int q = lane; q < Mixture::low; q += workers.lanes) {
-      const R a = law.s[q] - put.jump[2], b = law.s[q] + put.jump[2], c = law.c[q];
+    for (int q = lane; q < Mixture::low; q += group.lanes) {
+      const R a = measure.s[q] - put.jump[2], b = measure.s[q] + put.jump[2], c = measure.c[q];
       const R rate[4] = {b * length, (b + 1.0) * length, a * length, (a - 1.0) * length};
       const R down = exponential(-rate[0]), up = exponential(-rate[2]);
       const R decay[4] = {down, down * shrink, up, exponential(-rate[3])};
       R tail[4];
       exponential_integrals(rate, decay, tail);
       for (int k = 0; k < 4; ++k) sum[k] += c * tail[k];
-      const R far_up = law.up[q], far_down = law.down[q];
-      sum[4] += c * ((length + far_down) * far_down * down + (length + far_up) * far_up * up);
+      const R up_length = measure.up[q], down_length = measure.down[q];
+      sum[4] += c * ((length + down_length) * down_length * down + (length + up_length) * up_length * up);
     }
     return sum;
   });

@@ -2,20 +2,20 @@
 
 #include "kernels/options/pide/jumps.hpp"
 
-/// What the steps of a march multiply with, which does not depend on its values.
+/// Coefficients of the time steps. They do not depend on the solution.
 namespace drogue::options {
 
-/// The value e^{-r t} - e^{x - q t} of a put that will certainly be exercised, at the time t <= tau that is
-/// best at some x (for European ones tau), where e^x is `asset`. A march takes that of node 0 for all x
-/// below.
+/// Discount factors of the boundary value e^{-r t} - e^{x - q t} of a put whose exercise is certain. t <= tau
+/// is the best exercise time at the x where e^x is `asset`; for European puts it is tau. A march uses the
+/// factors of node 0 for all x below.
 template <class R>
-struct Certain {
+struct DiscountFactors {
   R strike, asset;  ///< e^{-r t}, e^{-q t}
 };
 
-/// The time at which e^{-r t} - e^{x - q t} is stationary, r/q = e^{x + (r - q) t}; 0 where there is none.
+/// Time at which e^{-r t} - e^{x - q t} is stationary, years: r/q = e^{x + (r - q) t}. 0 if there is none.
 template <class R>
-KOKKOS_INLINE_FUNCTION R best_time(const PutPack<R>& put, R x) {
+KOKKOS_INLINE_FUNCTION R optimal_exercise_time(const PutPack<R>& put, R x) {
   const R quotient = put.rate / put.dividend;
   const auto stationary = quotient > R(1e-300);
   return device::select(
@@ -25,8 +25,10 @@ KOKKOS_INLINE_FUNCTION R best_time(const PutPack<R>& put, R x) {
       R(0.0));
 }
 
+/// Discount factors of the boundary value at time to expiry `tau`, years, where e^x is `asset`. `best`:
+/// result of `optimal_exercise_time`, years.
 template <class R>
-KOKKOS_INLINE_FUNCTION Certain<R> certain(const PutPack<R>& put, R asset, R best, R tau) {
+KOKKOS_INLINE_FUNCTION DiscountFactors<R> boundary_discount(const PutPack<R>& put, R asset, R best, R tau) {
   const R late = exponential(-put.rate * tau), late_asset = exponential(-put.dividend * tau);
   R between = 1.0, between_asset = 1.0;
   if (!device::all(best <= R(0.0))) {
@@ -40,122 +42,128 @@ KOKKOS_INLINE_FUNCTION Certain<R> certain(const PutPack<R>& put, R asset, R best
   return {device::select(now, R(1.0), strike), device::select(now, R(1.0), price)};
 }
 
-/// What is the same in every step of a march.
+/// Coefficients that are the same in every step of a march.
 template <class R>
 struct Scheme {
-  R lower, upper;  ///< l, u: D/h^2 -+ b/2h
-  R best;          ///< time at which exercise of node 0 would be best: `Certain`
-  R lowest;        ///< e^x at node 0
+  R lower, upper;   ///< l, u: D/h^2 -+ b/2h
+  R exercise_time;  ///< best exercise time at node 0, years: `DiscountFactors`
+  R lowest_asset;   ///< e^x at node 0
   int steps;
 };
 
+/// Coefficients of a march of `steps` steps on `grid`.
 template <class R>
 KOKKOS_INLINE_FUNCTION Scheme<R> scheme_of(const PutPack<R>& put, const Jumps<R>& jumps, const Grid<R>& grid,
                                            int steps) {
   const R h = grid.h, lowest = -grid.strike * h;
   const R advection = 0.5 * jumps.drift / h, diffusion = jumps.diffusion / (h * h);
-  return {diffusion - advection, diffusion + advection, best_time(put, lowest), exponential(lowest), steps};
+  return {diffusion - advection, diffusion + advection, optimal_exercise_time(put, lowest),
+          exponential(lowest), steps};
 }
 
-/// Implicit diffusion beyond D that the explicit jumps need, of which as much is taken back explicitly:
-/// IMEX-BDF2 damps the highest mode of a symbol I implicit, E explicit while 3E <= 4/dt + I.
+/// Implicit diffusion beyond D that the explicit jumps require for stability; the same amount is subtracted
+/// explicitly. IMEX-BDF2 damps the highest mode of an implicit symbol I and an explicit symbol E while 3E <=
+/// 4/dt + I.
 template <class R>
 KOKKOS_INLINE_FUNCTION R added_diffusion(const PutPack<R>& put, const Jumps<R>& jumps, R diffusion, R dt) {
-  const R most = 3.6 * device::reciprocal(dt);
-  R added[4] = {0.0, 0.0, 0.0, 0.0};  // that do not wait for one another
+  const R bound = 3.6 * device::reciprocal(dt);
+  R added[4] = {0.0, 0.0, 0.0, 0.0};  // independent maxima, for instruction-level parallelism
   AngleCosines::each([&](int k, double cosine) {
     const double form = 2.0 - 2.0 * cosine;
-    const R need = 3.0 * (jumps.symbol[k] + put.rate) - diffusion * form - most;
+    const R need = 3.0 * (jumps.symbol[k] + put.rate) - diffusion * form - bound;
     added[k % 4] = device::maximum(added[k % 4], need * (0.25 / form));
   });
   return device::maximum(device::maximum(added[0], added[1]), device::maximum(added[2], added[3]));
 }
 
-/// The end of step n of `steps`, years: steps grow with the cube root of time, as the solution's changes
-/// shrink.
+/// End of step n of `steps`, years. Step lengths grow with the cube root of time, since the changes of the
+/// solution decrease.
 template <class R>
 KOKKOS_INLINE_FUNCTION R step_end(R maturity, int n, int steps) {
   const double part = double(n) / steps;
   return maturity * (part * Kokkos::sqrt(part));
 }
 
-/// Length of step n, and its ratio to the one before; 0 while steps are IMEX-Euler's.
+/// Length of step n, years, and its ratio to the previous one; a ratio of 0 selects IMEX-Euler.
 template <class R>
 struct StepLength {
   R dt, ratio;
 };
 
+/// Length of step n of `steps` until `maturity`, years.
 template <class R>
 KOKKOS_INLINE_FUNCTION StepLength<R> step_length(R maturity, int n, int steps) {
   const R begin = step_end(maturity, n - 1, steps), dt = step_end(maturity, n, steps) - begin;
   return {dt, n <= 2 ? R(0.0) : dt * device::reciprocal(begin - step_end(maturity, n - 2, steps))};
 }
 
-/// dV/dtau at the end of a step by its formula, from the last three values.
+/// dV/dtau at the end of a step by the formula of the step, from the last three values; per year.
 template <class R>
-KOKKOS_INLINE_FUNCTION R rate_of_change(const StepLength<R>& step, R value, R before, R oldest) {
+KOKKOS_INLINE_FUNCTION R bdf_derivative(const StepLength<R>& step, R value, R before, R oldest) {
   const R per = 1.0 / (step.dt * (1.0 + step.ratio));
   return (1.0 + 2.0 * step.ratio) * per * value - (1.0 + step.ratio) / step.dt * before +
          step.ratio * step.ratio * per * oldest;
 }
 
-/// What a step multiplies with, divided by the pivot of its matrix.
+/// Factors of a step, divided by the pivot of its matrix.
 template <class R>
 struct StepFactors {
   static constexpr int size = 13;
-  R value, before;          ///< of the values at the step's beginning, and a step before
-  R fresh, stale;           ///< of the explicit part, likewise
-  R bend, bend_before;      ///< of what is taken back of added diffusion, likewise
-  R inverse, diagonal;      ///< 1/pivot; of the derivative
-  R from_left, from_right;  ///< slopes of the recurrences
-  Certain<R> certain;       ///< at the step's end
-  R edge;                   ///< value of node 0 at its end
+  R value, before;                      ///< of the values at the beginning of the step and one step before
+  R explicit_now, explicit_before;      ///< of the explicit operator at these times
+  R compensation, compensation_before;  ///< of the explicit subtraction of the added diffusion at these times
+  R inverse_pivot, diagonal;            ///< 1/pivot; coefficient of the derivative, per year
+  R from_left, from_right;              ///< slopes of the recurrences
+  DiscountFactors<R> discount;          ///< at the end of the step
+  R left_value;                         ///< value of node 0 at the end of the step
 };
 
-/// What the value beyond the last node is of that at it where added diffusion is taken back. The implicit
-/// part takes from_left, being that of a line without an end, and all of it would leave the explicit part too
-/// little of that diffusion to bear the jumps at the last node, and none, a value of 0, would give it more
-/// than the implicit part has: there the march would grow without bound where most of the diffusion is added.
-/// The part 1 - 1.4 D/added, and 0 up to 1.4 D, is in between; that the march is bounded with it is found,
-/// not proven (docs/options.md).
+/// Ratio of the value beyond the last node (ghost node) to the value at the last node, where the added
+/// diffusion is subtracted explicitly. The implicit part has the ratio from_left, that of an infinite line.
+/// The same ratio in the explicit part would leave too little diffusion to stabilize the jumps at the last
+/// node. A ghost value of 0 would subtract more diffusion than the implicit part adds, and the march would
+/// grow without bound. The ratio in between, from_left times 1 - 1.4 D/added, and 0 for added <= 1.4 D, is
+/// empirical. Stability is not proven; `OptionsProperty.StaysBoundedForAHundredYearsOfPureJumps` tests it.
 template <class R>
-KOKKOS_INLINE_FUNCTION R taken_beyond(const StepFactors<R>& f) {
+KOKKOS_INLINE_FUNCTION R ghost_factor(const StepFactors<R>& f) {
   constexpr double share = 1.4;
-  const R added = f.bend * f.inverse * device::reciprocal(f.fresh),
+  const R added = f.compensation * f.inverse_pivot * device::reciprocal(f.explicit_now),
           whole = 0.5 * (f.from_left + f.from_right);
   const R per = device::reciprocal(device::maximum(added, R(1e-100)));
   return f.from_left * device::maximum(R(0.0), ((1.0 + share) * added - share * whole) * per);
 }
 
-/// The factors of 32 steps, which lanes compute side by side; in scratch memory.
+/// Factors of 32 steps, which the lanes compute in parallel; in scratch memory.
 template <class R>
 struct StepTable {
-  R* place;  ///< (StepFactors::size, most_lanes)
+  R* factors;  ///< (StepFactors::size, max_lanes)
 
   KOKKOS_INLINE_FUNCTION void store(int n, const StepFactors<R>& f) const {
-    const R row[] = {f.value,          f.before,        f.fresh,    f.stale,     f.bend,
-                     f.bend_before,    f.inverse,       f.diagonal, f.from_left, f.from_right,
-                     f.certain.strike, f.certain.asset, f.edge};
-    for (int k = 0; k < StepFactors<R>::size; ++k) place[k * most_lanes + (n - 1) % most_lanes] = row[k];
+    const R row[] = {f.value,           f.before,          f.explicit_now,
+                     f.explicit_before, f.compensation,    f.compensation_before,
+                     f.inverse_pivot,   f.diagonal,        f.from_left,
+                     f.from_right,      f.discount.strike, f.discount.asset,
+                     f.left_value};
+    for (int k = 0; k < StepFactors<R>::size; ++k) factors[k * max_lanes + (n - 1) % max_lanes] = row[k];
   }
   [[nodiscard]] KOKKOS_INLINE_FUNCTION StepFactors<R> load(int n) const {
-    const R* at = place + (n - 1) % most_lanes;
+    const R* at = factors + (n - 1) % max_lanes;
     return {at[0],
-            at[most_lanes],
-            at[2 * most_lanes],
-            at[3 * most_lanes],
-            at[4 * most_lanes],
-            at[5 * most_lanes],
-            at[6 * most_lanes],
-            at[7 * most_lanes],
-            at[8 * most_lanes],
-            at[9 * most_lanes],
-            {at[10 * most_lanes], at[11 * most_lanes]},
-            at[12 * most_lanes]};
+            at[max_lanes],
+            at[2 * max_lanes],
+            at[3 * max_lanes],
+            at[4 * max_lanes],
+            at[5 * max_lanes],
+            at[6 * max_lanes],
+            at[7 * max_lanes],
+            at[8 * max_lanes],
+            at[9 * max_lanes],
+            {at[10 * max_lanes], at[11 * max_lanes]},
+            at[12 * max_lanes]};
   }
 };
 
-/// The factors of step n of IMEX-BDF2, or of IMEX-Euler at first.
+/// Factors of step n of IMEX-BDF2, or of IMEX-Euler for the first steps.
 template <class R>
 KOKKOS_INLINE_FUNCTION StepFactors<R> step_factors(const PutPack<R>& put, const Jumps<R>& jumps,
                                                    const Scheme<R>& scheme, int n) {
@@ -170,26 +178,26 @@ KOKKOS_INLINE_FUNCTION StepFactors<R> step_factors(const PutPack<R>& put, const 
   StepFactors<R> f;
   f.value = (1.0 + step.ratio) * device::reciprocal(step.dt) * inverse;
   f.before = step.ratio * step.ratio * per * inverse;
-  f.fresh = (1.0 + step.ratio) * inverse;
-  f.stale = step.ratio * inverse;
-  f.bend = added * f.fresh;
-  f.bend_before = added * f.stale;
-  f.inverse = inverse;
+  f.explicit_now = (1.0 + step.ratio) * inverse;
+  f.explicit_before = step.ratio * inverse;
+  f.compensation = added * f.explicit_now;
+  f.compensation_before = added * f.explicit_before;
+  f.inverse_pivot = inverse;
   f.diagonal = c0;
   f.from_left = lower * inverse;
   f.from_right = upper * inverse;
-  f.certain = certain(put, scheme.lowest, scheme.best, step_end(put.maturity, n, scheme.steps));
-  f.edge = device::maximum(R(0.0), f.certain.strike - f.certain.asset * scheme.lowest);
+  f.discount = boundary_discount(put, scheme.lowest_asset, scheme.exercise_time,
+                                 step_end(put.maturity, n, scheme.steps));
+  f.left_value = device::maximum(R(0.0), f.discount.strike - f.discount.asset * scheme.lowest_asset);
   return f;
 }
 
-/// Fills the table with the factors of the steps from n on.
+/// Computes the factors of the steps n .. n + max_lanes - 1.
 template <class ThreadGroup, class R>
-KOKKOS_INLINE_FUNCTION void fill_table(const ThreadGroup& workers, const PutPack<R>& put,
-                                       const Jumps<R>& jumps, const Scheme<R>& scheme,
-                                       const StepTable<R>& table, int n) {
-  workers.each([=, &put, &jumps, &scheme](int thread) {
-    for (int k = n + thread; k < n + most_lanes && k <= scheme.steps; k += workers.threads())
+KOKKOS_INLINE_FUNCTION void fill_table(const ThreadGroup& group, const PutPack<R>& put, const Jumps<R>& jumps,
+                                       const Scheme<R>& scheme, const StepTable<R>& table, int n) {
+  group.each([=, &put, &jumps, &scheme](int thread) {
+    for (int k = n + thread; k < n + max_lanes && k <= scheme.steps; k += group.threads())
       table.store(k, step_factors(put, jumps, scheme, k));
   });
 }

@@ -4,38 +4,39 @@
 
 namespace drogue::options {
 
-/// What a solve says of a put of strike 1, at x = ln(spot/strike) and maturity.
+/// Solution for a put of strike 1 at x = ln(spot/strike) and maturity.
 struct SolutionAtSpot {
-  double value, slope, bend;  ///< V, dV/dx, d2V/dx2
-  double decay;               ///< dV/dtau, a year
-  double boundary;            ///< x up to which exercise is right; not a number where there is none
-  double missed;              ///< how much of the value interpolation may miss
-  double contact;             ///< what the second step above the boundary adds to the time value; 0: no such
-  double parting;             ///< dV/dtau at that step's end, a year; 0: no such
+  double value, first_derivative, second_derivative;  ///< V, dV/dx, d2V/dx2
+  double time_derivative;                             ///< dV/dtau, per year
+  double boundary;                                    ///< x of the exercise boundary; NaN if there is none
+  double interpolation_error;                         ///< estimated error of the interpolated value
+  double time_value_step;  ///< increase of the time value over the second interval above the boundary; 0
+                           ///< without a boundary
+  double time_value_rate;  ///< dV/dtau at the end of that interval, per year; 0 without a boundary
 };
 
-/// One member's values on the nodes of a pack.
-struct Column {
+/// Values of one member on the nodes of a pack.
+struct MemberValues {
   const double* values;
   int members;
   KOKKOS_INLINE_FUNCTION double operator()(int i) const { return values[i * members]; }
 };
 
-/// The last node below the strike that is exercised, -1 if none is.
-KOKKOS_INLINE_FUNCTION int last_exercised(const Column& value, int strike, double h) {
+/// Last exercised node below the strike, -1 if there is none.
+KOKKOS_INLINE_FUNCTION int last_exercised(const MemberValues& value, int strike, double h) {
   int i = strike - 1;
   while (i >= 0 && !is_exercised(value(i), i - strike, h)) --i;
   return i;
 }
 
-/// What a put is worth at a node beyond exercise.
-KOKKOS_INLINE_FUNCTION double time_value(const Column& value, int i, int strike, double h) {
+/// Time value at node i: value minus exercise value.
+KOKKOS_INLINE_FUNCTION double time_value(const MemberValues& value, int i, int strike, double h) {
   return value(i) - (1.0 - exponential((i - strike) * h));
 }
 
-/// Where exercise ends, from the last node where it is right. Above it the time value grows with the square
-/// of the distance, so two nodes tell where it begins.
-KOKKOS_INLINE_FUNCTION double boundary_of(const Column& value, int exercised, int strike, double h) {
+/// Exercise boundary x from the last exercised node. Above the boundary the time value grows with the square
+/// of the distance, so two nodes determine where it starts. NaN if `exercised` is negative.
+KOKKOS_INLINE_FUNCTION double boundary_of(const MemberValues& value, int exercised, int strike, double h) {
   const int i = exercised;
   if (i < 0) return device::portable::not_a_number();
   const double first = Kokkos::sqrt(device::maximum(0.0, time_value(value, i + 1, strike, h))),
@@ -44,22 +45,24 @@ KOKKOS_INLINE_FUNCTION double boundary_of(const Column& value, int exercised, in
   return (i - strike + device::maximum(0.0, device::minimum(1.0, within))) * h;
 }
 
-/// What the second node above the last exercised one has of time value beyond the first.
-KOKKOS_INLINE_FUNCTION double contact_of(const Column& value, int exercised, int strike, double h) {
+/// Increase of the time value from the first to the second node above the last exercised one.
+KOKKOS_INLINE_FUNCTION double time_value_step(const MemberValues& value, int exercised, int strike,
+                                              double h) {
   if (exercised < 0) return 0.0;
   return device::absolute(time_value(value, exercised + 2, strike, h) -
                           time_value(value, exercised + 1, strike, h));
 }
 
-/// The nodes of one member.
-struct Nodes {
+/// Grid of one member.
+struct MemberGrid {
   int mesh, strike;
-  int exercised;  ///< last node below the strike that is; only read for puts that may be
+  int exercised;  ///< last exercised node below the strike; only read for puts with early exercise
   double h;
 };
 
-/// Cubic interpolation between four nodes, value and two derivatives.
-KOKKOS_INLINE_FUNCTION void interpolate(const Column& value, int first, double t, double h, double* result) {
+/// Cubic interpolation between four nodes: value and two derivatives with respect to x.
+KOKKOS_INLINE_FUNCTION void interpolate(const MemberValues& value, int first, double t, double h,
+                                        double* result) {
   const double p = value(first), q = value(first + 1), r = value(first + 2), s = value(first + 3);
   const double d1 = q - p, d2 = r - 2.0 * q + p, d3 = s - 3.0 * r + 3.0 * q - p;  // Newton's form
   result[0] = p + t * (d1 + (t - 1.0) * (0.5 * d2 + (t - 2.0) * (1.0 / 6) * d3));
@@ -67,11 +70,11 @@ KOKKOS_INLINE_FUNCTION void interpolate(const Column& value, int first, double t
   result[2] = (d2 + (t - 1.0) * d3) / (h * h);
 }
 
-/// The first of the four nodes that a value at t, in steps from node 0, is read from. They are taken from the
-/// side of the strike and of the boundary that it is on: there the value has kinks that short maturities
-/// leave sharp.
-KOKKOS_INLINE_FUNCTION int stencil_of(const NormalizedPut& put, const Nodes& nodes, double t,
-                                      double boundary) {
+/// First of the four nodes from which a value at t, in steps from node 0, is interpolated. All four lie on
+/// the same side of the strike and of the boundary as t: the value has kinks there, which are sharp for short
+/// maturities.
+KOKKOS_INLINE_FUNCTION int first_stencil_node(const NormalizedPut& put, const MemberGrid& nodes, double t,
+                                              double boundary) {
   const int mesh = nodes.mesh, strike = nodes.strike, cell = static_cast<int>(t);
   int first = cell - 1;
   if (cell >= strike) {
@@ -86,11 +89,12 @@ KOKKOS_INLINE_FUNCTION int stencil_of(const NormalizedPut& put, const Nodes& nod
   return first > mesh - 3 ? mesh - 3 : first < 0 ? 0 : first;
 }
 
-/// How much cubic interpolation at t from the nodes `first` to `first` + 3 may miss: the next term of
-/// Newton's form, from a fifth node on the same side of the strike and of the boundary; 0 where there is
-/// none.
-KOKKOS_INLINE_FUNCTION double missed_by_cubic(const NormalizedPut& put, const Column& value,
-                                              const Nodes& nodes, int first, double t, double boundary) {
+/// Estimated error of cubic interpolation at t from the nodes `first` .. `first` + 3: the next term of
+/// Newton's form, from a fifth node on the same side of the strike and of the boundary. 0 if there is no such
+/// node.
+KOKKOS_INLINE_FUNCTION double cubic_interpolation_error(const NormalizedPut& put, const MemberValues& value,
+                                                        const MemberGrid& nodes, int first, double t,
+                                                        double boundary) {
   const int strike = nodes.strike;
   const bool bounded = !put.split && boundary == boundary;
   const bool crosses_above = first + 4 > nodes.mesh || (first < strike && first + 4 > strike);
@@ -104,54 +108,64 @@ KOKKOS_INLINE_FUNCTION double missed_by_cubic(const NormalizedPut& put, const Co
   return device::absolute(fourth * u * (u - 1.0) * (u - 2.0) * (u - 3.0)) * (1.0 / 24);
 }
 
-/// The answer at an x below the grid, `asset` = e^x, where exercise or expiry is certain at the time that is
-/// best there (`Domain` says why).
-KOKKOS_INLINE_FUNCTION SolutionAtSpot answer_below(const NormalizedPut& put, double asset, double boundary) {
-  const PutPack<double> pack = pack_of<double>(&put);
-  const Certain<double> sure = certain(pack, asset, best_time(pack, put.log_spot), put.maturity);
-  const double strike = sure.strike, price = sure.asset * asset;
-  const bool at_once = put.early && strike == 1.0 && sure.asset == 1.0;
-  const double decay = at_once ? 0.0 : put.dividend * price - put.rate * strike;
-  return {strike - price, -price, -price, decay, boundary, 0.0, 0.0, 0.0};
+/// Solution at an x below the grid, `asset` = e^x. There exercise or expiry is certain at the best time for x
+/// (`domain_of`).
+KOKKOS_INLINE_FUNCTION SolutionAtSpot solution_below_grid(const NormalizedPut& put, double asset,
+                                                          double boundary) {
+  const PutPack<double> pack = pack_puts<double>(&put);
+  const DiscountFactors<double> discount =
+      boundary_discount(pack, asset, optimal_exercise_time(pack, put.log_spot), put.maturity);
+  const double strike = discount.strike, price = discount.asset * asset;
+  const bool immediate = put.early && strike == 1.0 && discount.asset == 1.0;
+  const double time_derivative = immediate ? 0.0 : put.dividend * price - put.rate * strike;
+  return {strike - price, -price, -price, time_derivative, boundary, 0.0, 0.0, 0.0};
 }
 
-/// Reads the answer for one member. `change` holds dV/dtau.
-KOKKOS_INLINE_FUNCTION SolutionAtSpot answer_of(const NormalizedPut& put, const Column& value,
-                                                const Column& change, const Nodes& nodes) {
+/// Interpolates the solution of one member. `time_derivative` holds dV/dtau.
+KOKKOS_INLINE_FUNCTION SolutionAtSpot solution_at_spot(const NormalizedPut& put, const MemberValues& value,
+                                                       const MemberValues& time_derivative,
+                                                       const MemberGrid& nodes) {
   const int mesh = nodes.mesh, strike = nodes.strike;
   const double h = nodes.h;
   const double x = put.log_spot, asset = exponential(x);
-  SolutionAtSpot answer{0.0, 0.0, 0.0, 0.0, device::portable::not_a_number(), 0.0, 0.0, 0.0};
+  SolutionAtSpot solution{0.0, 0.0, 0.0, 0.0, device::portable::not_a_number(), 0.0, 0.0, 0.0};
   if (!(h < 1e30)) {
-    answer.value = device::portable::not_a_number();
-    return answer;
+    solution.value = device::portable::not_a_number();
+    return solution;
   }
   if (put.early) {
-    answer.boundary = boundary_of(value, nodes.exercised, strike, h);
-    answer.contact = contact_of(value, nodes.exercised, strike, h);
-    answer.parting = nodes.exercised < 0 ? 0.0 : change(nodes.exercised + 2);
+    solution.boundary = boundary_of(value, nodes.exercised, strike, h);
+    solution.time_value_step = time_value_step(value, nodes.exercised, strike, h);
+    solution.time_value_rate = nodes.exercised < 0 ? 0.0 : time_derivative(nodes.exercised + 2);
   }
   const double t = x / h + strike;
-  if (!(t == t)) {  // no cell has such a number
-    answer.value = device::portable::not_a_number();
-    return answer;
+  if (!(t == t)) {  // no cell contains NaN
+    solution.value = device::portable::not_a_number();
+    return solution;
   }
-  if (put.early && (x <= answer.boundary) && !(put.split && t < 1.0)) {
+  if (put.early && (x <= solution.boundary) && !(put.split && t < 1.0)) {
     if (!put.split || is_exercised(value(static_cast<int>(t)), static_cast<int>(t) - strike, h))
-      return {1.0 - asset, -asset, -asset, 0.0, answer.boundary, 0.0, answer.contact, answer.parting};
+      return {1.0 - asset,
+              -asset,
+              -asset,
+              0.0,
+              solution.boundary,
+              0.0,
+              solution.time_value_step,
+              solution.time_value_rate};
   }
-  if (t <= 0.0) return answer_below(put, asset, answer.boundary);
-  if (t >= mesh) return answer;
-  const int first = stencil_of(put, nodes, t, answer.boundary);
+  if (t <= 0.0) return solution_below_grid(put, asset, solution.boundary);
+  if (t >= mesh) return solution;
+  const int first = first_stencil_node(put, nodes, t, solution.boundary);
   double result[3], rate[3];
   interpolate(value, first, t - first, h, result);
-  interpolate(change, first, t - first, h, rate);
-  answer.value = put.early && result[0] < 1.0 - asset ? 1.0 - asset : result[0];  // a NaN stays one
-  answer.slope = result[1];
-  answer.bend = result[2];
-  answer.decay = rate[0];
-  answer.missed = missed_by_cubic(put, value, nodes, first, t, answer.boundary);
-  return answer;
+  interpolate(time_derivative, first, t - first, h, rate);
+  solution.value = put.early && result[0] < 1.0 - asset ? 1.0 - asset : result[0];  // keeps NaN
+  solution.first_derivative = result[1];
+  solution.second_derivative = result[2];
+  solution.time_derivative = rate[0];
+  solution.interpolation_error = cubic_interpolation_error(put, value, nodes, first, t, solution.boundary);
+  return solution;
 }
 
 }  // namespace drogue::options

@@ -5,38 +5,40 @@
 
 #include "kernels/options/contract.hpp"
 
-/// Which strikes share a solve.
+/// Partition of strikes into ranges that share a solve.
 namespace drogue::options {
 
-/// Strikes of |ln(spot/strike)| up to three standard deviations of the law until maturity share a solve,
-/// those up to four times as far another, and so on: near strikes get a fine grid, and the solve of a strike
-/// does not depend on what other strikes there are.
-class Reaches {
+/// Ranges of |ln(spot/strike)|. The first one ends at min(3 s, max(s, 1)), s the standard deviation at
+/// maturity; each other one ends at four times the previous end. Near strikes thus have a fine grid, and the
+/// solve of a strike does not depend on the other strikes.
+class StrikeRanges {
  public:
-  static constexpr int most = 20;
+  static constexpr int count = 20;
 
-  explicit Reaches(double deviation);
+  explicit StrikeRanges(double deviation);
 
-  /// The least reach that spot/strike = `ratio` is within; the last one for what none reaches.
-  [[nodiscard]] std::uint8_t find(double ratio);
+  /// Index of the smallest range that contains the ratio spot/strike; the last one for ratios beyond all
+  /// ranges. Does not throw.
+  [[nodiscard]] std::uint8_t index_of(double ratio);
 
-  /// Of ln(spot/strike).
-  [[nodiscard]] double reach(int k) const;
+  /// End of range k in |ln(spot/strike)|, dimensionless. Does not throw.
+  [[nodiscard]] double half_width(int k) const;
 
  private:
   double _first;
   int _known = 0;
-  double _ratio[most];  ///< of spot and strike at the reaches; as far as strikes were
+  double _ratio[count];  ///< ratios spot/strike at the ends; computed on demand
 };
 
-/// Whether a solve for one contract holds the price of the other.
-[[nodiscard]] bool differ_in_strike_alone(const Contract& a, const Contract& b);
+/// Whether two contracts differ at most in their strike, so that one solve prices both. Does not throw.
+[[nodiscard]] bool differ_only_in_strike(const Contract& a, const Contract& b);
 
-/// Whether the logarithm of the asset has the same variance in the measures that both are priced in.
-[[nodiscard]] bool have_same_law(const Contract& a, const Contract& b);
+/// Whether the logarithm of the asset has the same annual variance under the pricing measures of both
+/// contracts, because all parameters of the process agree. Does not throw.
+[[nodiscard]] bool have_same_process(const Contract& a, const Contract& b);
 
-/// The variance of the asset's logarithm, a year, in the measure that the contract is priced in; with the
-/// series of `HankelPanels`.
-[[nodiscard]] double variance_of(const Contract& contract, const double* panels, const int* panel_slot);
+/// Annual variance of the asset's logarithm under the pricing measure of a contract, per year. `panels` and
+/// `panel_slot` are the series of `HankelPanels`. Does not throw except `std::bad_alloc`.
+[[nodiscard]] double annual_variance(const Contract& contract, const double* panels, const int* panel_slot);
 
 }  // namespace drogue::options

@@ -7,7 +7,7 @@ namespace drogue::options {
 
 std::vector<double> fourier_roots() {
   std::vector<double> roots;
-  std::vector<long double> parts{0.25L};  // of a turn; exact
+  std::vector<long double> parts{0.25L};  // fractions of a full circle; exact
   for (int level = 0; level < FourierRoots::levels; ++level) {
     for (int m = 1; m < 8; ++m)
       for (const long double part : parts) {

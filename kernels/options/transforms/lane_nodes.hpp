@@ -4,28 +4,28 @@
 
 namespace drogue::options {
 
-/// Two neighbours of an array in shared memory, which are read and written at once.
+/// Two adjacent elements of an array in shared memory, for a single load or store.
 struct alignas(16) NodePair {
   double first, second;
 };
 
-/// Place of a pair of nodes in an array of results. Lanes that write eight nodes each, and lanes that read
-/// `block` nodes each, then find them in different banks.
+/// Permuted index of a pair of nodes. It avoids bank conflicts for lanes that write eight nodes each and for
+/// lanes that read `block` nodes each.
 KOKKOS_INLINE_FUNCTION int swizzled(int pair) { return (pair & ~3) | ((pair & 3) ^ ((pair >> 3) & 3)); }
 
-/// A lane's nodes of an array, read and written by pairs where it has pairs.
+/// Nodes of a lane, loaded and stored by pairs if `block` > 1.
 template <int block>
 struct LaneNodes {
   double node[block];
 
-  /// From an array in plain order.
+  /// For arrays in plain order.
   KOKKOS_INLINE_FUNCTION static LaneNodes load(int lane, const double* from) {
     return load(lane, from, [](int pair) { return pair; });
   }
   KOKKOS_INLINE_FUNCTION void store(int lane, double* to) const {
     store(lane, to, [](int pair) { return pair; });
   }
-  /// From an array whose pairs lie `swizzled`.
+  /// For arrays whose pairs are `swizzled`.
   KOKKOS_INLINE_FUNCTION static LaneNodes load_swizzled(int lane, const double* from) {
     return load(lane, from, [](int pair) { return swizzled(pair); });
   }

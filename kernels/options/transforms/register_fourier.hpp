@@ -5,54 +5,53 @@
 
 namespace drogue::options {
 
-/// `sum_by_transforms` where every lane has one octet of each pass: 256 = 8 x 8 x 4 on 32 lanes, 128 = 8 x 8
-/// x 2 on 16.
+/// `sum_by_transforms` with one octet per lane in each pass: 256 = 8 x 8 x 4 on 32 lanes, 128 = 8 x 8 x 2 on
+/// 16.
 template <int lanes>
 class RegisterFourier {
  public:
-  /// `row` (mesh) and `z` (padded(mesh)) are shared memory for it alone from its first call on.
+  /// `row` (mesh) and `z` (padded(mesh)) are shared memory, used exclusively from the first call on.
   KOKKOS_INLINE_FUNCTION RegisterFourier(int lane, const JumpSpectrum<double>& spectrum, double* row,
                                          ComplexNumber<double>* z)
       : _lane(lane),
         _roots(spectrum.roots),
-        _spectrum(spectrum.place + padded(8 * lane)),
+        _spectrum(spectrum.values + padded(8 * lane)),
         _row(row),
         _first(z + padded(lane)),
         _second(z + padded(lane / radix * (8 * radix) + lane % radix)),
         _third(z + padded(8 * lane)) {
-    if constexpr (keeps) {
-      _kept.roots = spectrum.roots.seven(1, lane / radix);
-      _kept.spectrum.load(_spectrum, 1);
+    if constexpr (in_registers) {
+      _invariants.roots = spectrum.roots.seven(1, lane / radix);
+      _invariants.spectrum.load(_spectrum, 1);
     }
   }
 
   template <class ThreadGroup>
-  KOKKOS_INLINE_FUNCTION LaneNodes<8> operator()(const ThreadGroup& workers,
-                                                 const LaneNodes<8>& value) const {
+  KOKKOS_INLINE_FUNCTION LaneNodes<8> operator()(const ThreadGroup& group, const LaneNodes<8>& value) const {
     Octet<double> octet;
-    workers.each_lane([&] { value.store_swizzled(_lane, _row); });
-    workers.each_lane([&] {
-      octet.split_real([this](int m) { return _row[place(m)]; });
+    group.each_lane([&] { value.store_swizzled(_lane, _row); });
+    group.each_lane([&] {
+      octet.forward_real([this](int m) { return _row[place(m)]; });
       octet.store(_first, lanes);
     });
-    workers.each_lane([&] {
+    group.each_lane([&] {
       octet.load(_second, radix);
-      octet.split(second_roots());
+      octet.forward(second_roots());
       octet.store(_second, radix);
     });
-    workers.each_lane([&] {
+    group.each_lane([&] {
       octet.load(_third, 1);
       octet.multiply_last<radix>(_roots, 2, _lane, own_spectrum());
       octet.store(_third, 1);
     });
-    workers.each_lane([&] {
+    group.each_lane([&] {
       octet.load(_second, radix);
-      octet.join(second_roots());
+      octet.inverse(second_roots());
       octet.store(_second, radix);
     });
-    workers.each_lane([&] {
+    group.each_lane([&] {
       octet.load(_first, lanes);
-      octet.join_imaginary([this](int m, double y) { _row[place(m)] = y; });
+      octet.inverse_imaginary([this](int m, double y) { _row[place(m)] = y; });
     });
     return LaneNodes<8>::load_swizzled(_lane, _row);
   }
@@ -61,36 +60,36 @@ class RegisterFourier {
   static constexpr Passes passes{8 * lanes};
   static constexpr int radix = 1 << passes.last_log_radix;
   static_assert(passes.last == 2);
-  static constexpr bool keeps = keeps_spectrum(lanes);
+  static constexpr bool in_registers = keeps_spectrum(lanes);
 
-  /// What every step reads.
-  struct Kept {
+  /// Values that do not change between steps.
+  struct StepInvariants {
     SevenRoots roots;
     Octet<double> spectrum;
   };
-  struct Nothing {};
+  struct Empty {};
 
   [[nodiscard]] KOKKOS_INLINE_FUNCTION SevenRoots second_roots() const {
-    if constexpr (keeps) return _kept.roots;
+    if constexpr (in_registers) return _invariants.roots;
     return _roots.seven(1, _lane / radix);
   }
-  /// Eight numbers.
+  /// The lane's eight values of the spectrum.
   [[nodiscard]] KOKKOS_INLINE_FUNCTION const ComplexNumber<double>* own_spectrum() const {
-    if constexpr (keeps) return _kept.spectrum.z;
+    if constexpr (in_registers) return _invariants.spectrum.z;
     return _spectrum;
   }
 
-  /// Where node lane + lanes m is in the row.
+  /// Index of node lane + lanes m in the row.
   [[nodiscard]] KOKKOS_INLINE_FUNCTION int place(int m) const {
     return 2 * swizzled(_lane / 2 + lanes / 2 * m) + _lane % 2;
   }
 
   int _lane;
   FourierRoots _roots;
-  const ComplexNumber<double>* _spectrum;  ///< the lane's part
+  const ComplexNumber<double>* _spectrum;  ///< part of the lane
   double* _row;
   ComplexNumber<double>*_first, *_second, *_third;
-  std::conditional_t<keeps, Kept, Nothing> _kept;
+  std::conditional_t<in_registers, StepInvariants, Empty> _invariants;
 };
 
 }  // namespace drogue::options

@@ -9,11 +9,11 @@ namespace drogue::reference {
 std::vector<double> solve_tridiagonal(const std::vector<double>& below, const std::vector<double>& diagonal,
                                       const std::vector<double>& above, const std::vector<double>& right) {
   const std::size_t n = diagonal.size();
-  // Columns i, i + 1, i + 2 of row i, and its right side: where rows are exchanged a third one fills.
+  // Columns i, i + 1, i + 2 of row i and its right side. An exchange of rows fills the third column.
   using Row = std::array<long double, 4>;
-  const auto row = [&](std::size_t i, bool shuffle_up) {
+  const auto row = [&](std::size_t i, bool with_below) {
     const long double after = i + 1 < n ? above[i] : 0.0L;
-    return shuffle_up ? Row{below[i], diagonal[i], after, right[i]} : Row{diagonal[i], after, 0.0L, right[i]};
+    return with_below ? Row{below[i], diagonal[i], after, right[i]} : Row{diagonal[i], after, 0.0L, right[i]};
   };
   std::vector<Row> rows(n);
   if (n > 0) rows[0] = row(0, false);

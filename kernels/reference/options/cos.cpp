@@ -9,8 +9,9 @@ namespace {
 
 using Long = long double;
 using LongComplex = std::complex<Long>;
-constexpr Long half_turn = std::numbers::pi_v<Long>;
+constexpr Long long_pi = std::numbers::pi_v<Long>;
 
+/// Logarithm of the characteristic function of the jumps of a year, with w = alpha^2 - (beta + i u)^2.
 LongComplex jump_exponent(const LevyAsset& a, LongComplex u) {
   const LongComplex shifted = Long(a.beta) + LongComplex(0, 1) * u;
   const LongComplex w = Long(a.alpha) * a.alpha - shifted * shifted;
@@ -46,19 +47,18 @@ std::vector<double> bermudan_put(const LevyAsset& asset, double maturity, int da
   const Long dt = Long(maturity) / dates;
   std::vector<LongComplex> growth;
   for (int k = 0; k < terms; ++k)
-    growth.push_back(
-        std::exp(dt * (characteristic_exponent(asset, half_turn * k / width) - Long(asset.rate))));
+    growth.push_back(std::exp(dt * (characteristic_exponent(asset, long_pi * k / width) - Long(asset.rate))));
   std::vector<Long> cosine(4 * static_cast<std::size_t>(nodes));
   for (std::size_t k = 0; k < cosine.size(); ++k)
-    cosine[k] = std::cos(half_turn * static_cast<Long>(k) / (2 * nodes));
+    cosine[k] = std::cos(long_pi * static_cast<Long>(k) / (2 * nodes));
   const auto cos_at = [&](int k, int m) {  // cos(k pi (m + 1/2) / nodes)
     return cosine[static_cast<std::size_t>(k) * (2 * static_cast<std::size_t>(m) + 1) % cosine.size()];
   };
-  const auto sin_at = [&](int k, int m) {  // a quarter of a turn behind
-    const std::size_t turn = cosine.size();
-    return cosine[(static_cast<std::size_t>(k) * (2 * static_cast<std::size_t>(m) + 1) + turn -
+  const auto sin_at = [&](int k, int m) {  // sin(k pi (m + 1/2) / nodes)
+    const std::size_t period = cosine.size();
+    return cosine[(static_cast<std::size_t>(k) * (2 * static_cast<std::size_t>(m) + 1) + period -
                    static_cast<std::size_t>(nodes)) %
-                  turn];
+                  period];
   };
   std::vector<Long> value(static_cast<std::size_t>(nodes));
   const auto payoff = [&](int m) {
@@ -74,12 +74,12 @@ std::vector<double> bermudan_put(const LevyAsset& asset, double maturity, int da
     }
     if (date == 1) break;
     for (int m = 0; m < nodes; ++m) {
-      Long wait = 0;
+      Long continuation = 0;
       for (int k = 0; k < terms; ++k)
-        wait += coefficient[static_cast<std::size_t>(k)] *
-                (std::real(growth[static_cast<std::size_t>(k)]) * cos_at(k, m) -
-                 std::imag(growth[static_cast<std::size_t>(k)]) * sin_at(k, m));
-      value[static_cast<std::size_t>(m)] = std::max(wait, payoff(m));
+        continuation += coefficient[static_cast<std::size_t>(k)] *
+                        (std::real(growth[static_cast<std::size_t>(k)]) * cos_at(k, m) -
+                         std::imag(growth[static_cast<std::size_t>(k)]) * sin_at(k, m));
+      value[static_cast<std::size_t>(m)] = std::max(continuation, payoff(m));
     }
   }
   std::vector<double> values;
@@ -88,7 +88,7 @@ std::vector<double> bermudan_put(const LevyAsset& asset, double maturity, int da
     for (int k = 0; k < terms; ++k)
       sum += coefficient[static_cast<std::size_t>(k)] *
              std::real(growth[static_cast<std::size_t>(k)] *
-                       std::exp(LongComplex(0, half_turn * k * (Long(at) - low) / width)));
+                       std::exp(LongComplex(0, long_pi * k * (Long(at) - low) / width)));
     values.push_back(static_cast<double>(sum));
   }
   return values;

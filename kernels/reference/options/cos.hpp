@@ -5,24 +5,28 @@
 
 namespace drogue::reference {
 
-/// An asset under a Brownian motion and generalized hyperbolic jumps (delta = 0: variance gamma).
+/// Asset with a Brownian part of `variance` per year and generalized hyperbolic jumps (delta = 0: variance
+/// gamma). Rates per year.
 struct LevyAsset {
   double rate, dividend, variance;
   double lambda, alpha, beta, delta;
 };
 
-/// e^z K_nu(z), Re z > 0, by the trapezoid rule on integral exp(-z (cosh t - 1)) cosh(nu t) dt (Watson 1944,
-/// 6.22).
+/// e^z K_nu(z), Re z > 0: the integral of exp(-z (cosh t - 1)) cosh(nu t) over t > 0 by the trapezoidal rule
+/// (Watson 1944, section 6.22).
 [[nodiscard]] std::complex<long double> scaled_bessel_k(long double nu, std::complex<long double> z);
 
-/// log E exp(i u (X_1 - X_0)) of the logarithm of the asset's price.
+/// Characteristic exponent log E exp(i u (X_1 - X_0)), 1/year, of the logarithm X of the asset price, from
+/// the characteristic function of the generalized hyperbolic distribution (Barndorff-Nielsen 1977).
 [[nodiscard]] std::complex<long double> characteristic_exponent(const LevyAsset& asset,
                                                                 std::complex<long double> u);
 
-/// Values at x = log(spot / strike), counted in strikes, of a put that may be exercised at `dates` equal
-/// times, the last its maturity; now it may not. Each date's value max(payoff, waiting) is projected on
-/// `terms` cosines of [low, low + width] by the midpoint rule on `nodes`: slow, plain, and of no structure
-/// that could be got wrong. One date is the European put.
+/// Continuation values now of a Bermudan put, in strikes, at the points x = log(spot / strike). The put has
+/// `dates` equally spaced exercise dates, the last at `maturity` (years); one date is the European put.
+///
+/// Direct form of the COS method (Fang and Oosterlee 2009): at each date max(payoff, continuation value) is
+/// projected on `terms` cosines of [low, low + width] by the midpoint rule on `nodes` points. Slow, without
+/// transforms or closed-form coefficients.
 [[nodiscard]] std::vector<double> bermudan_put(const LevyAsset& asset, double maturity, int dates, double low,
                                                double width, int terms, int nodes,
                                                const std::vector<double>& x);

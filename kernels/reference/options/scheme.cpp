@@ -9,51 +9,51 @@ namespace {
 using Real = long double;
 using Values = std::vector<Real>;
 
-/// What is constant in time.
-struct Operators {
-  Real diffusion, drift, mass;
+/// Coefficients that are constant in time, 1/year. The drift makes the scheme exact for e^x.
+struct Coefficients {
+  Real diffusion, drift, jump_rate;
 };
 
-Operators operators(const PutProblem& p, const JumpTable& jumps) {
+Coefficients coefficients(const PutProblem& p, const JumpTable& jumps) {
   const Real h = p.h;
-  Real mass = jumps.beyond_up + jumps.beyond_down;
-  Real price = jumps.beyond_up_price + jumps.beyond_down_price - mass;
+  Real jump_rate = jumps.tail_up + jumps.tail_down;
+  Real price = jumps.tail_up_price + jumps.tail_down_price - jump_rate;
   for (std::size_t d = 1; d < jumps.up.size(); ++d) {
     const Real y = static_cast<Real>(d) * h;
-    mass += jumps.up[d] + jumps.down[d];
+    jump_rate += jumps.up[d] + jumps.down[d];
     price += jumps.up[d] * std::expm1(y) + jumps.down[d] * std::expm1(-y);
   }
-  const Real diffusion = std::max<Real>(0.0L, jumps.variance_left) / 2;
+  const Real diffusion = std::max<Real>(0.0L, jumps.remaining_variance) / 2;
   const Real drift =
       (p.rate - p.dividend - price - diffusion * (2 * std::cosh(h) - 2) / (h * h)) * h / std::sinh(h);
-  return {diffusion, drift, mass};
+  return {diffusion, drift, jump_rate};
 }
 
-/// Time at which exercise of a put so deep that it is certain is best; the value is strike - asset e^x.
-struct Sure {
-  Real strike, asset;
+/// Value strike - asset e^x of a put so deep in the money that it is exercised with certainty.
+struct CertainPut {
+  Real strike, asset;  ///< discount factors to the optimal exercise time
 };
 
-Sure sure(const PutProblem& p, Real tau) {
+CertainPut certain_put(const PutProblem& p, Real tau) {
   const Real r = p.rate, q = p.dividend, x = -p.strike * static_cast<Real>(p.h);
-  const auto worth = [&](Real t) { return std::exp(-r * t) - std::exp(x - q * t); };
+  const auto value = [&](Real t) { return std::exp(-r * t) - std::exp(x - q * t); };
   Real best = tau;
   if (p.american) {
     Values times = {0.0L};
     if (r * q > 0.0L && r != q) times.push_back(std::clamp((std::log(r / q) - x) / (r - q), 0.0L, tau));
     for (const Real t : times)
-      if (worth(t) > worth(best)) best = t;
+      if (value(t) > value(best)) best = t;
   }
   return {std::exp(-r * best), std::exp(-q * best)};
 }
 
-/// Jumps and discount of all inner nodes at time tau to expiry.
-Values explicit_part(const PutProblem& p, const JumpTable& jumps, const Operators& op, const Values& v,
+/// Jump integral and discounting at all inner nodes, at time `tau` to expiry.
+Values explicit_part(const PutProblem& p, const JumpTable& jumps, const Coefficients& op, const Values& v,
                      Real tau) {
-  const Sure deep = sure(p, tau);
+  const CertainPut deep = certain_put(p, tau);
   Values out(v.size(), 0.0L);
   for (int i = 1; i < p.mesh; ++i) {
-    Real sum = -(op.mass + p.rate) * v[static_cast<std::size_t>(i)];
+    Real sum = -(op.jump_rate + p.rate) * v[static_cast<std::size_t>(i)];
     const Real x = (i - p.strike) * static_cast<Real>(p.h);
     for (int d = 1; d <= p.mesh; ++d) {
       const auto k = static_cast<std::size_t>(d);
@@ -62,18 +62,19 @@ Values explicit_part(const PutProblem& p, const JumpTable& jumps, const Operator
           jumps.down[k] * (i - d >= 0 ? v[static_cast<std::size_t>(i - d)]
                                       : deep.strike - deep.asset * std::exp(x - d * static_cast<Real>(p.h)));
     }
-    sum += jumps.beyond_down * deep.strike - jumps.beyond_down_price * deep.asset * std::exp(x);
+    sum += jumps.tail_down * deep.strike - jumps.tail_down_price * deep.asset * std::exp(x);
     out[static_cast<std::size_t>(i)] = sum;
   }
   return out;
 }
 
-/// The implicit diffusion that the explicit jumps need beside D/h^2: 3E <= 3.6/dt + I at sixteen angles.
-Real extra_diffusion(const PutProblem& p, const JumpTable& jumps, const Operators& op, Real dt) {
+/// Implicit diffusion, in addition to D/h^2, that stabilizes the explicit jumps: 3 E <= 3.6/dt + I at sixteen
+/// wave numbers, E and I the explicit and implicit symbols.
+Real extra_diffusion(const PutProblem& p, const JumpTable& jumps, const Coefficients& op, Real dt) {
   Real extra = 0.0L;
   for (int k = 0; k < 16; ++k) {
     const Real angle = std::acos(-1.0L) * std::pow(2.0L, -k / 2.0L), form = 2 - 2 * std::cos(angle);
-    Real symbol = jumps.beyond_up + jumps.beyond_down + p.rate;
+    Real symbol = jumps.tail_up + jumps.tail_down + p.rate;
     for (std::size_t d = 1; d < jumps.up.size(); ++d)
       symbol += (jumps.up[d] + jumps.down[d]) * (1 - std::cos(static_cast<Real>(d) * angle));
     extra = std::max(extra, (3 * symbol - op.diffusion / p.h / p.h * form - 3.6L / dt) / (4 * form));
@@ -84,7 +85,7 @@ Real extra_diffusion(const PutProblem& p, const JumpTable& jumps, const Operator
 }  // namespace
 
 std::vector<double> solve_put(const PutProblem& p, const JumpTable& jumps) {
-  const Operators op = operators(p, jumps);
+  const Coefficients op = coefficients(p, jumps);
   const auto n = static_cast<std::size_t>(p.mesh);
   const Real h = p.h;
   Values payoff(n + 1, 0.0L), v, before, jump_before(n + 1, 0.0L);
@@ -103,24 +104,25 @@ std::vector<double> solve_put(const PutProblem& p, const JumpTable& jumps) {
     const Real lower = op.diffusion / h / h - op.drift / 2 / h + extra,
                upper = op.diffusion / h / h + op.drift / 2 / h + extra;
     const Real diagonal = (1 + 2 * w) / (1 + w) / dt + lower + upper;
-    // Elimination from above on the line without an end, on which the factors are constant.
+    // Elimination from above on an unbounded line, for which the factors are constant.
     const Real pivot = (diagonal + std::sqrt(diagonal * diagonal - 4 * lower * upper)) / 2;
     Values y(n + 1, 0.0L);
-    // Of the value beyond the last node, lower/pivot of it in the implicit part, the explicit one sees a
-    // part.
+    // The implicit part continues the solution beyond the last node with the factor lower/pivot. The explicit
+    // part uses a fraction of it.
     const Real beyond =
         extra > 0 ? lower / pivot * std::max(0.0L, 1 - 1.4L * op.diffusion / h / h / extra) : 0.0L;
     for (std::size_t i = n - 1; i >= 1; --i) {
-      const auto bend = [&](const Values& f) {
+      const auto second_difference = [&](const Values& f) {
         return f[i - 1] - 2 * f[i] + (i + 1 == n ? beyond * f[i] : f[i + 1]);
       };
       const Real right = ((1 + w) * v[i] - w * w / (1 + w) * before[i]) / dt + (1 + w) * jump[i] -
-                         w * jump_before[i] - extra * ((1 + w) * bend(v) - w * bend(before));
+                         w * jump_before[i] -
+                         extra * ((1 + w) * second_difference(v) - w * second_difference(before));
       y[i] = (right + upper * y[i + 1]) / pivot;
     }
     before = v;
     jump_before = jump;
-    const Sure deep = sure(p, end);
+    const CertainPut deep = certain_put(p, end);
     v[0] = std::max(0.0L, deep.strike - deep.asset * std::exp(-p.strike * h));
     for (std::size_t i = 1; i < n; ++i) {
       v[i] = lower / pivot * v[i - 1] + y[i];

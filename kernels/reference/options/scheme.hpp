@@ -1,18 +1,20 @@
 #pragma once
 
-#include <functional>
 #include <vector>
 
 namespace drogue::reference {
 
-/// What jumps do on a grid: nodal weights and what goes beyond it.
+/// Jumps on a grid, all weights and tails 1/year.
 struct JumpTable {
-  std::vector<double> up, down;  ///< [d]: weight of a jump by d nodes, d = 1 .. mesh
-  double beyond_up = 0.0, beyond_down = 0.0, beyond_up_price = 0.0, beyond_down_price = 0.0;
-  double variance_left = 0.0;  ///< sigma^2 and the jumps' variance, less that of all above
+  std::vector<double> up, down;                       ///< weights of jumps by d nodes at index d = 1 .. mesh
+  double tail_up = 0.0, tail_down = 0.0;              ///< integral of g over longer jumps
+  double tail_up_price = 0.0, tail_down_price = 0.0;  ///< integral of e^y g over longer jumps
+  /// sigma^2 and the variance of the jumps, less the variance of the weights and tails above.
+  double remaining_variance = 0.0;
 };
 
-/// A put of strike 1 in x = ln(spot/strike), nodes x_i = (i - strike) h.
+/// Put of strike 1 in x = ln(spot/strike) on the nodes x_i = (i - strike) h. Rates per year, maturity in
+/// years.
 struct PutProblem {
   double rate, dividend, maturity;
   bool american;
@@ -20,9 +22,11 @@ struct PutProblem {
   double h;
 };
 
-/// Values at maturity on all nodes: IMEX-BDF2 on steps that end at maturity (n/steps)^1.5, early exercise by
-/// Brennan and Schwartz, as docs/options.md derives it; dense sums and one pass of Gauss for each step.
-/// Valid where exercise pays on a half line and nodes beyond the last have no value.
+/// Current values, in strikes, on all nodes: the scheme of docs/options.md for the equation of [Shi], section
+/// 4.6.1, in long double, with sums over all jumps and one sequential elimination per step.
+///
+/// IMEX-BDF2 with time levels T (n/steps)^1.5; early exercise as Brennan and Schwartz (1977). Valid if the
+/// exercise region is a half line and values beyond the last node vanish.
 [[nodiscard]] std::vector<double> solve_put(const PutProblem& problem, const JumpTable& jumps);
 
 }  // namespace drogue::reference

@@ -88,6 +88,7 @@ TEST(FabricContact, AtAHundredMetresASecondNothingCrosses) {
   EXPECT_LT(o.work, -0.1 * o.start_kinetic);
 }
 
+// ctest-label: no-sanitizer
 TEST(FabricContact, AStackOfThreeComesToRest) {
   Sheets s = stack();
   s.p.dt = 1e-4;
@@ -144,6 +145,7 @@ std::array<double, 2> slid(double angle, double friction, double speed, int step
   return {c * (s.x[12][0] - from[12][0]) - d * (s.x[12][2] - from[12][2]), c * s.v[12][0] - d * s.v[12][2]};
 }
 
+// ctest-label: no-sanitizer
 TEST(FabricContact, SlidingObeysCoulomb) {
   const double g = 9.81, angle = 0.3, dt = 5e-5;
   const int steps = 2000;  // 0.1 s
@@ -160,12 +162,14 @@ TEST(FabricContact, SlidingObeysCoulomb) {
   EXPECT_NEAR(stopped[1], 0.0, g * dt);
 }
 
+// ctest-label: no-sanitizer
 TEST(FabricContact, WhatFrictionHoldsStays) {
   // Ways of single steps cancel: after any number of them no more is left than a kick makes of one.
   const double g = 9.81, angle = 0.3, dt = 5e-5, most = g * dt * dt;
   for (const int steps : {1000, 4000}) EXPECT_LT(std::abs(slid(angle, 0.5, 0.0, steps)[0]), most) << steps;
 }
 
+// ctest-label: no-sanitizer
 TEST(FabricContact, WhatFrictionHoldsOnClothStays) {
   // On a sheet that is held a smaller one, gravity leaning by an angle that friction holds.
   const double g = 9.81, angle = 0.2;

@@ -192,6 +192,7 @@ TEST(FabricDashpot, SlowsAPairAtItsRate) {
               0.05);
 }
 
+// ctest-label: no-sanitizer
 TEST(FabricDashpot, KeepsMomentaAndTakesEnergy) {
   for (const Integrator integrator : integrators) {
     Parameters p = fabric(Model::biquadratic);

@@ -61,6 +61,7 @@ double moment_error(int n, Lumping lumping) {
   return std::abs(moment - 18.0);
 }
 
+// ctest-label: no-sanitizer
 TEST(FabricMass, AreaIsOfSecondOrderAndEqualOfFirst) {
   const auto order = [](Lumping lumping) {
     return std::log2(moment_error(16, lumping) / moment_error(64, lumping)) / 2.0;

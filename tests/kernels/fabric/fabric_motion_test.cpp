@@ -86,6 +86,7 @@ double order(Integrator integrator) {
 
 TEST(FabricMotion, RungeKuttaIsOfFourthOrder) { EXPECT_NEAR(order(Integrator::rk4), 4.0, 0.1); }
 
+// ctest-label: no-sanitizer
 TEST(FabricMotion, VerletIsOfSecondOrder) { EXPECT_NEAR(order(Integrator::verlet), 2.0, 0.05); }
 
 double energy_of(const Parameters& p, const State& s) {
@@ -95,6 +96,7 @@ double energy_of(const Parameters& p, const State& s) {
   return sum;
 }
 
+// ctest-label: no-sanitizer
 TEST(FabricMotion, RungeKuttaLosesTheEnergyThatItsAmplificationSays) {
   // |G|^2 = 1 - z^6/72 + z^8/576 with z = omega dt.
   const State start{{{-0.1, 0, 0}, {1.1, 0, 0}}, {{0, 0, 0}, {0, 0, 0}}};
@@ -107,6 +109,7 @@ TEST(FabricMotion, RungeKuttaLosesTheEnergyThatItsAmplificationSays) {
   }
 }
 
+// ctest-label: no-sanitizer
 TEST(FabricMotion, VerletKeepsItsEnergyBounded) {
   const State start{{{-0.1, 0, 0}, {1.1, 0, 0}}, {{0, 0, 0}, {0, 0, 0}}};
   const Parameters p = oscillator(Integrator::verlet, 0.2 / 5.0);
@@ -169,6 +172,7 @@ std::pair<double, double> momenta_gained(Parameters p, std::int64_t steps) {
   return gained;
 }
 
+// ctest-label: no-sanitizer
 TEST(FabricMotion, AFreePatchKeepsItsMomenta) {
   for (const Model model : {Model::edge, Model::quadratic, Model::biquadratic}) {
     const auto [momentum, angular] = momenta_gained(patch(model, Integrator::verlet), 500);

@@ -91,23 +91,28 @@ void set_motion(const Space& space, const PrescribedMotion<Space>& motion, doubl
                        SetMotionFunctor{motion, displacement, velocity, acceleration, time});
 }
 
-/// State after `steps` steps in which an expression moves the pins along x.
-SheetState moved_by_expression(const Space& space, Parameters p,
-                               const device::ExpressionProgram& displacement, std::int64_t steps) {
-  for (const std::size_t i : pinned_vertices) p.motions.push_back({0, {static_cast<int>(i)}, displacement});
+/// Initial state in which the pins are at rest positions and move along x at `velocity`, m/s.
+SheetState with_moving_pins(const Parameters& p, double velocity) {
   SheetState state = initial_state(p);
-  for (const std::size_t i : pinned_vertices) state.x[i] = p.mesh.rest[i];
+  for (const std::size_t i : pinned_vertices) state.x[i] = p.mesh.rest[i], state.v[i] = {velocity, 0.0, 0.0};
+  return state;
+}
+
+/// State after `steps` steps in which an expression moves the pins along x, first at `velocity`, m/s.
+SheetState moved_by_expression(const Space& space, Parameters p,
+                               const device::ExpressionProgram& displacement, double velocity,
+                               std::int64_t steps) {
+  for (const std::size_t i : pinned_vertices) p.motions.push_back({0, {static_cast<int>(i)}, displacement});
+  const SheetState state = with_moving_pins(p, velocity);
   FabricSolver<Space> solver(space, p);
   solver.upload(state.x, state.v);
   EXPECT_TRUE(solver.enqueue_steps(steps));
   return downloaded(solver);
 }
 
-FabricSolver<Space>& start(FabricSolver<Space>& solver, const Parameters& p) {
-  SheetState state = initial_state(p);
-  for (const std::size_t i : pinned_vertices) state.x[i] = p.mesh.rest[i];
+void start(FabricSolver<Space>& solver, const Parameters& p, double velocity) {
+  const SheetState state = with_moving_pins(p, velocity);
   solver.upload(state.x, state.v);
-  return solver;
 }
 
 TEST(FabricPins, MoveByViewsAsByAnExpressionInEveryDriver) {
@@ -116,7 +121,7 @@ TEST(FabricPins, MoveByViewsAsByAnExpressionInEveryDriver) {
   for (const Method& method : methods) {
     const Parameters p = pinned_sheet(method);
     FabricSolver<Space> solver(space, p);
-    start(solver, p);
+    start(solver, p, 0.3);
     set_motion(space, solver.prescribed_motion(), 0.0, 0.3, 4.0, 0.0);
     const ProfilingCounters before = testing::profiled();
     EXPECT_TRUE(solver.enqueue_steps(200));
@@ -125,7 +130,7 @@ TEST(FabricPins, MoveByViewsAsByAnExpressionInEveryDriver) {
     EXPECT_EQ(after.copies, before.copies);
     const SheetState by_views = downloaded(solver);
     const SheetState expected =
-        moved_by_expression(space, p, postfix({"t", 0.3, "*", "t", "t", "*", 2.0, "*", "+"}), 200);
+        moved_by_expression(space, p, postfix({"t", 0.3, "*", "t", "t", "*", 2.0, "*", "+"}), 0.3, 200);
     // The expression's velocities are differences over dt.
     EXPECT_LT(largest_difference(by_views.x, expected.x), 1e-12) << solver.driver();
     EXPECT_LT(largest_difference(by_views.v, expected.v), 1e-9) << solver.driver();
@@ -145,7 +150,7 @@ TEST(FabricPins, FollowViewsThatAKernelWritesBeforeEachStep) {
   for (const Method& method : methods) {
     const Parameters p = pinned_sheet(method);
     FabricSolver<Space> solver(space, p);
-    start(solver, p);
+    start(solver, p, amplitude * omega);
     const PrescribedMotion<Space> motion = solver.prescribed_motion();
     const int steps = 300;
     for (int k = 0; k < steps; ++k) {
@@ -156,8 +161,8 @@ TEST(FabricPins, FollowViewsThatAKernelWritesBeforeEachStep) {
     }
     EXPECT_FALSE(solver.failure());
     const SheetState by_views = downloaded(solver);
-    const SheetState expected =
-        moved_by_expression(space, p, postfix({amplitude, omega, "t", "*", "sin", "*"}), steps);
+    const SheetState expected = moved_by_expression(
+        space, p, postfix({amplitude, omega, "t", "*", "sin", "*"}), amplitude * omega, steps);
     // The third derivative of the motion is missing within a step.
     const double jerk = amplitude * omega * omega * omega;
     EXPECT_LT(largest_difference(by_views.x, expected.x), jerk * std::pow(p.dt, 3)) << solver.driver();
@@ -196,7 +201,7 @@ TEST(FabricPins, ViewsDoNotMoveFreeAxesAndAxesOfExpressions) {
   p.pinned[10] = 6;
   p.motions = {{0, {0}, postfix({"t"})}};
   FabricSolver<Space> solver(space, p);
-  start(solver, p);
+  start(solver, p, 0.0);
   set_motion(space, solver.prescribed_motion(), 5.0, 0.0, 0.0, 0.0);
   solver.enqueue_steps(10);
   const SheetState now = downloaded(solver);

@@ -118,6 +118,7 @@ TEST(FabricSlack, AcrossItsWrinklesAStripHasNoStress) {
   for (const Stress& s : cauchy) EXPECT_GT(s.minor, -0.02 * most);
 }
 
+// ctest-label: no-sanitizer
 TEST(FabricSlack, VerletKeepsItsEnergy) {
   for (const Model model : models) {
     Parameters p = slack_cloth(model);

@@ -58,6 +58,7 @@ double drift(Kept kept) {
   return largest;
 }
 
+// ctest-label: no-sanitizer
 TEST(FabricStorage, SinglePrecisionLosesTheEnergyThatStepsKeep) {
   EXPECT_LT(drift(Kept::as_is), 2e-8);
   // What rounding brings in is noise.

@@ -135,6 +135,7 @@ TEST(GasLaunches, HistoryRowsAddLaunchesButNoFencesAndKeepTheBits) {
   }
 }
 
+// ctest-label: no-sanitizer
 TEST(GasLaunches, UsesAtMostEightyBytesPerCell) {
   constexpr std::int64_t cells = 1 << 20;
   const ProfilingCounters before = counted();

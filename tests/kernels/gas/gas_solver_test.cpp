@@ -1,3 +1,4 @@
+// ctest-label: exact
 #include <gtest/gtest.h>
 
 #include <string>

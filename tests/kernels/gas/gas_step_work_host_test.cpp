@@ -1,3 +1,4 @@
+// ctest-label: exact
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -177,7 +178,7 @@ TEST(GasWork, BytesWithoutHaloEqualTheStates) {
   EXPECT_EQ(step_work(p, {50, 0, false}).bytes, 192 * p.cells);
 }
 
-// Tiles of 384 slots, those of a large mesh on a device; docs/gas.md quotes these numbers.
+// Tiles of 384 slots, those of a large mesh on a device; docs/gas-notebook.md quotes these numbers.
 TEST(GasWork, OperationsPerCellAndStageMatchTheDocumentation) {
   const auto operations = [](Weno weno, int power) {
     Parameters p;

@@ -52,7 +52,7 @@ def complaints(counts, register):
 
 @unittest.skipIf(reason_to_skip(), reason_to_skip())
 class Step(unittest.TestCase):
-    def test_is_packed(self):
+    def test_step_is_packed(self):
         object_file, words = disassembly.compilation(BUILD, "/step_serial.cpp")
         text = disassembly.disassembled(disassembly.cache(BUILD)["CMAKE_OBJDUMP"], object_file)
         counts = disassembly.arithmetic(text, (FUNCTOR, CHUNK))

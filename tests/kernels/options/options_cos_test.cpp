@@ -10,7 +10,7 @@
 #include "tests/support/backend.hpp"
 #include "tests/support/option_sets.hpp"
 
-// The Bermudan solver against a plain oracle, and American prices against the reference.
+// Bermudan solver against the reference implementation, and American prices against reference data.
 
 namespace drogue::options {
 namespace {
@@ -27,8 +27,8 @@ std::vector<Price> cos_prices(const std::vector<Contract>& contracts, double tol
   return prices;
 }
 
-/// Values of waiting by the kernel and by the oracle, on the same interval with the same dates.
-TEST(OptionsBermudan, EqualsTheOracle) {
+/// Continuation values on the same interval with the same dates.
+TEST(OptionsBermudan, MatchesReferenceImplementation) {
   const int dates = 4;
   const auto solver = create_bermudan_solver(backend);
   for (const std::size_t which : {0, 5}) {
@@ -41,17 +41,18 @@ TEST(OptionsBermudan, EqualsTheOracle) {
       std::vector<BermudanPut> puts = {put.puts[0]};
       std::vector<BermudanValue> values(1);
       solver->solve(puts, put.psi_re, put.psi_im, values);
-      const std::vector<double> truth = reference::bermudan_put(
+      const std::vector<double> expected = reference::bermudan_put(
           {c.rate, 0.0, c.variance, set.lambda, set.alpha, set.beta, set.delta}, c.maturity, dates,
           puts[0].low, puts[0].width, 160, 12000, {puts[0].x, puts[0].x + 1e-3, puts[0].x - 1e-3});
-      EXPECT_NEAR(values[0].value, truth[0], 1e-6) << set.name << ' ' << spot;
-      EXPECT_NEAR(values[0].slope, (truth[1] - truth[2]) / 2e-3, 1e-5);
-      EXPECT_NEAR(values[0].curvature, (truth[1] - 2.0 * truth[0] + truth[2]) / 1e-6, 1e-4);
+      EXPECT_NEAR(values[0].value, expected[0], 1e-6) << set.name << ' ' << spot;
+      EXPECT_NEAR(values[0].first_derivative, (expected[1] - expected[2]) / 2e-3, 1e-5);
+      EXPECT_NEAR(values[0].second_derivative, (expected[1] - 2.0 * expected[0] + expected[2]) / 1e-6, 1e-4);
     }
   }
 }
 
-TEST(OptionsCos, AmericanPricesEqualTheReference) {
+// ctest-label: no-sanitizer
+TEST(OptionsCos, AmericanPricesMatchReferenceData) {
   for (const auto& set : testing::option_sets()) {
     std::vector<Contract> contracts;
     for (std::size_t spot = 0; spot < 7; spot += 3)
@@ -65,8 +66,8 @@ TEST(OptionsCos, AmericanPricesEqualTheReference) {
   }
 }
 
-/// More dates where they are asked for, less error.
-TEST(OptionsCos, ReachesItsTolerance) {
+/// A smaller tolerance requires more dates.
+TEST(OptionsCos, ErrorStaysWithinTolerance) {
   const auto& set = testing::option_sets()[0];
   const std::vector<Contract> contracts = {testing::contract_of(set, 3, Style::american)};
   const Price coarse = cos_prices(contracts, 1e-3)[0], fine = cos_prices(contracts, 1e-5)[0];
@@ -75,9 +76,9 @@ TEST(OptionsCos, ReachesItsTolerance) {
   EXPECT_NEAR(fine.price, set.american[3], 1e-5);
 }
 
-// A put that never expires is worth (1 - b) (S/b)^{-g}, g = 2 r/sigma^2, b = g/(1 + g) (Merton 1973). Dates
-// that are centuries apart would miss nearly all of it, on every level.
-TEST(OptionsCos, PutsOfThousandsOfYearsArePerpetual) {
+// A perpetual put of strike 1 is worth (1 - b) (S/b)^{-g}, g = 2 r/sigma^2, b = g/(1 + g) (Merton 1973). With
+// dates centuries apart all levels would miss nearly the whole value.
+TEST(OptionsCos, LongMaturitiesApproachPerpetualPut) {
   for (const double rate : {0.02, 0.05, 0.1})
     for (const double years : {300.0, 1e4, 1e7}) {
       const Contract c{.model = Model::black_scholes,
@@ -95,9 +96,8 @@ TEST(OptionsCos, PutsOfThousandsOfYearsArePerpetual) {
     }
 }
 
-// Without enough dates to tell, what is stated says so: exercise would pay within a small part of an
-// interval.
-TEST(OptionsCos, DatesThatAreTooFewStateNoSmallError) {
+// Exercise pays within a small part of an interval between dates, which no level resolves.
+TEST(OptionsCos, StatesLargeErrorForTooFewDates) {
   Contract c{.model = Model::black_scholes,
              .style = Style::american,
              .spot = 1.0,
@@ -106,11 +106,11 @@ TEST(OptionsCos, DatesThatAreTooFewStateNoSmallError) {
              .dividend = -0.05,
              .maturity = 4000.0,
              .variance = 0.04};
-  const Price centuries = cos_prices({c}, 1e-3)[0];
-  EXPECT_EQ(centuries.outcome, Outcome::coarse);
-  EXPECT_GT(centuries.error, 0.5);
+  const Price sparse_dates = cos_prices({c}, 1e-3)[0];
+  EXPECT_EQ(sparse_dates.status, PriceStatus::coarse);
+  EXPECT_GT(sparse_dates.error, 0.5);
 
-  // A put at the strike that never expires, with g and b as above; drift is all that moves it.
+  // A perpetual put at the strike, with g and b as above, whose drift dominates its diffusion.
   c.dividend = 0.0;
   c.rate = 0.05;
   c.maturity = 30.0;
@@ -121,8 +121,8 @@ TEST(OptionsCos, DatesThatAreTooFewStateNoSmallError) {
   EXPECT_LT(drifting.error, 0.02);
 }
 
-/// C(S, K, r, q, beta) = P(K, S, q, r, -beta - 1), Greeks included.
-TEST(OptionsCos, CallsArePutsOfTheOtherSide) {
+/// C(S, K, r, q, beta) = P(K, S, q, r, -beta - 1), including the Greeks.
+TEST(OptionsCos, CallEqualsDualPut) {
   Contract call;
   call.type = Type::call;
   call.spot = 0.9, call.strike = 1.1, call.rate = 0.03, call.dividend = 0.06, call.variance = 0.03;
@@ -141,29 +141,29 @@ TEST(OptionsCos, CallsArePutsOfTheOtherSide) {
   EXPECT_NEAR(prices[0].gamma, (prices[2].price - 2.0 * prices[0].price + prices[3].price) / (h * h), 1e-2);
 }
 
-TEST(OptionsCos, WaitsWhereWaitingIsRight) {
+TEST(OptionsCos, EqualsEuropeanPriceIfExerciseNeverPays) {
   Contract american = testing::contract_of(testing::option_sets()[0], 3, Style::american);
   american.type = Type::call;
   Contract european = american;
   european.style = Style::european;
   Contract negative = american;
   negative.type = Type::put, negative.rate = -0.02;
-  Contract both = negative;
-  both.style = Style::european;
-  const std::vector<Price> prices = cos_prices({american, european, negative, both}, 1e-4);
+  Contract negative_european = negative;
+  negative_european.style = Style::european;
+  const std::vector<Price> prices = cos_prices({american, european, negative, negative_european}, 1e-4);
   EXPECT_EQ(prices[0].price, prices[1].price);
   EXPECT_EQ(prices[2].price, prices[3].price);
 }
 
-TEST(OptionsCos, IsNotExercisedForNothing) {
+TEST(OptionsCos, FarOutOfTheMoneyPutIsNotExercised) {
   Contract far = testing::contract_of(testing::option_sets()[0], 3, Style::american);
   far.maturity = 1.0 / 365.0;
   far.spot = 3.0 * far.strike;
   EXPECT_GT(cos_prices({far}, 1e-4)[0].delta, -0.01);
 }
 
-/// With q < r < 0 exercise is right between two spots; beyond both one waits.
-TEST(OptionsCos, KnowsABoundaryOnBothSides) {
+/// For q < r < 0 exercise is optimal between two critical spots only.
+TEST(OptionsCos, HandlesTwoExerciseBoundaries) {
   Contract c = testing::contract_of(testing::option_sets()[1], 3, Style::american);
   c.rate = -0.02, c.dividend = -0.08, c.variance = 0.02;
   std::vector<Contract> contracts;
@@ -178,30 +178,29 @@ TEST(OptionsCos, KnowsABoundaryOnBothSides) {
     EXPECT_GE(prices[k + 1].price, prices[k].price - 1e-9);
     EXPECT_GE(prices[k + 1].price, 1.0 - contracts[k].spot - 1e-12);
   }
-  EXPECT_GT(prices[1].price, 1.0 - 0.02 + 1e-3);  // deep in the money one waits
+  EXPECT_GT(prices[1].price, 1.0 - 0.02 + 1e-3);  // not exercised deep in the money
 }
 
-TEST(OptionsCos, SaysWhatItDoesNotReach) {
-  // The left tail of these jumps falls as e^(-0.001 |x|): no interval holds it.
+TEST(OptionsCos, ReportsCoarseForTailsBeyondTheInterval) {
+  // The left tail of the jump density decays as e^(-0.001 |x|), too slowly for any interval.
   Contract heavy = testing::contract_of(testing::option_sets()[0], 3, Style::american);
   heavy.jump[2] = 0.001 - heavy.jump[1];
   const Price price = cos_prices({heavy}, 1e-4)[0];
-  EXPECT_EQ(price.outcome, Outcome::coarse);
+  EXPECT_EQ(price.status, PriceStatus::coarse);
   EXPECT_GT(price.error, 0.05);
 }
 
-/// A contract's bits do not depend on its neighbours.
-TEST(OptionsCos, BatchesAreNoMoreThanTheirContracts) {
+TEST(OptionsCos, PriceHasSameBitsInAnyBatch) {
   std::vector<Contract> contracts;
   for (std::size_t spot = 0; spot < 7; spot += 2)
     for (const std::size_t set : {0, 3})
       contracts.push_back(testing::contract_of(testing::option_sets()[set], spot, Style::american));
-  const std::vector<Price> together = cos_prices(contracts, 1e-3);
+  const std::vector<Price> batch_prices = cos_prices(contracts, 1e-3);
   for (std::size_t k = 0; k < contracts.size(); k += 3)
-    EXPECT_EQ(together[k].price, cos_prices({contracts[k]}, 1e-3)[0].price);
+    EXPECT_EQ(batch_prices[k].price, cos_prices({contracts[k]}, 1e-3)[0].price);
 }
 
-TEST(OptionsCos, RefusesAMesh) {
+TEST(OptionsCos, RejectsMeshAndNonPositiveTolerance) {
   Settings settings;
   settings.mesh = 128;
   EXPECT_THROW((void)create_cos_pricer(backend, settings), std::invalid_argument);

@@ -1,3 +1,4 @@
+// ctest-label: no-sanitizer
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -32,9 +33,10 @@ struct DeepPut {
   double value;
 };
 
-/// American puts that wait. The first three wait until expiry; the others are a tree's, extrapolated from
-/// 2000 and 4000 steps: exercise pays above a boundary that the first has below the strike's own grid, and
-/// below one that lies deep in the second.
+/// American puts that are not exercised at once. The first three wait until expiry. The values of the other
+/// two are those of a binomial tree, extrapolated from 2000 and 4000 steps. Exercise of the fourth put pays
+/// above a boundary, which lies below a grid around the strike. Exercise of the fifth one pays below a
+/// boundary deep in the grid.
 std::vector<DeepPut> deep_puts() {
   return {{plain_put(0.4, -0.01, -0.02, 2.0, 0.0025), 0.603877},
           {plain_put(0.03, -0.02, -0.1, 10.0, 0.0025), 1.139854},
@@ -43,7 +45,7 @@ std::vector<DeepPut> deep_puts() {
           {plain_put(0.05, 0.001, 0.1, 30.0, 0.0025), 0.974236}};
 }
 
-TEST(OptionsDeep, PutsThatWait) {
+TEST(OptionsDeep, PricesPutsBelowTheGrid) {
   std::vector<Contract> contracts;
   for (const DeepPut& put : deep_puts()) contracts.push_back(put.contract);
   for (const bool surface : {false, true}) {
@@ -53,8 +55,8 @@ TEST(OptionsDeep, PutsThatWait) {
   }
 }
 
-// Below the grid nothing moves but the certain value e^{-r T} - e^{x - q T}.
-TEST(OptionsDeep, GreeksOfPutsThatWaitUntilExpiry) {
+// Below the grid the value is the certain e^{-r T} - e^{x - q T}.
+TEST(OptionsDeep, GreeksBelowTheGridFollowFromCertainExercise) {
   for (std::size_t k = 0; k < 3; ++k) {
     const Contract c = deep_puts()[k].contract;
     const Price price = on_mesh(128, false, {c})[0];
@@ -64,8 +66,8 @@ TEST(OptionsDeep, GreeksOfPutsThatWaitUntilExpiry) {
   }
 }
 
-// A put is worth no less than the European one, whatever the signs of the rates, and so is a call.
-TEST(OptionsDeep, AmericansAreWorthNoLessThanEuropeans) {
+// Holds for any signs of the rates.
+TEST(OptionsDeep, AmericanPricesAreNotBelowEuropeanOnes) {
   std::vector<Contract> early, late;
   for (const auto& [rate, dividend] : {std::pair{-0.01, -0.03}, {-0.05, -0.2}, {0.002, 0.06}, {0.03, 0.04}})
     for (const double maturity : {0.3, 3.0, 20.0})
@@ -88,9 +90,8 @@ TEST(OptionsDeep, AmericansAreWorthNoLessThanEuropeans) {
         << early[k].rate << ' ' << early[k].dividend << ' ' << early[k].maturity << ' ' << early[k].spot;
 }
 
-// The last cells of a grid end at a node whose value is 0 and stays so. Meshes whose jumps are summed by
-// transforms and one whose jumps are not.
-TEST(OptionsDeep, ThetaFadesTowardsTheUpperEnd) {
+// The value at the upper end of the grid is 0. Two meshes sum over jumps by transforms, one directly.
+TEST(OptionsDeep, ThetaVanishesTowardsTheUpperEnd) {
   for (const int mesh : {64, 128, 256}) {
     std::vector<Contract> contracts;
     for (int k = 0; k < 150; ++k) {

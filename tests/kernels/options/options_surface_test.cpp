@@ -10,7 +10,7 @@
 #include "tests/support/option_sets.hpp"
 #include "tests/support/priced.hpp"
 
-// Strikes that share a solve, against known prices and against those of solves of their own.
+// Strikes that share a solve, against known prices and against separate solves.
 
 namespace drogue::options {
 namespace {
@@ -23,10 +23,10 @@ Settings surface_on(int mesh) {
   return settings;
 }
 
-/// Of every set, the spots it is known at as strikes of the spot 1: V(c spot, c strike) = c V.
+/// The known spots of every set as strikes of the spot 1: V(c spot, c strike) = c V.
 struct KnownStrikes {
   std::vector<Contract> contracts;
-  std::vector<double> values;  ///< of the strike
+  std::vector<double> values;  ///< as a fraction of the strike
 };
 
 KnownStrikes known_strikes() {
@@ -42,8 +42,8 @@ KnownStrikes known_strikes() {
   return known;
 }
 
-/// `count` sets of all kinds, some of days and of years, some of negative rates, with strikes from a half to
-/// twice the spot.
+/// `count` sets with `strikes` strikes each, from half the spot to twice the spot. Some have maturities of
+/// days or years, or negative rates.
 constexpr int strikes = 13;
 std::vector<Contract> random_strikes(std::size_t count, std::uint64_t seed) {
   std::vector<Contract> contracts;
@@ -65,7 +65,7 @@ std::vector<Contract> random_strikes(std::size_t count, std::uint64_t seed) {
   return contracts;
 }
 
-TEST(OptionsSurface, KnownPrices) {
+TEST(OptionsSurface, MatchesKnownPrices) {
   const KnownStrikes known = known_strikes();
   const std::vector<Price> prices = testing::priced(surface_on(128), known.contracts);
   std::size_t covered = 0;
@@ -80,7 +80,8 @@ TEST(OptionsSurface, KnownPrices) {
   EXPECT_GE(10 * covered, 9 * prices.size());
 }
 
-// Stated errors cover in nine cases of ten, and so tolerances are kept.
+// Error estimates cover nine cases of ten, so the same share of prices is within the tolerance.
+// ctest-label: no-sanitizer
 TEST(OptionsSurface, ToleranceIsKept) {
   const KnownStrikes known = known_strikes();
   Settings settings;
@@ -89,7 +90,7 @@ TEST(OptionsSurface, ToleranceIsKept) {
   const std::vector<Price> prices = testing::priced(settings, known.contracts);
   std::size_t kept = 0;
   for (std::size_t k = 0; k < prices.size(); ++k) {
-    EXPECT_EQ(prices[k].outcome, Outcome::ok) << k;
+    EXPECT_EQ(prices[k].status, PriceStatus::ok) << k;
     const double error = std::abs(prices[k].price / known.contracts[k].strike - known.values[k]);
     EXPECT_LT(error, 2e-5) << k;
     if (error <= settings.tolerance) ++kept;
@@ -97,35 +98,40 @@ TEST(OptionsSurface, ToleranceIsKept) {
   EXPECT_GE(10 * kept, 9 * prices.size());
 }
 
-// A grid of its own for each strike, which has the spot elsewhere, and one for all.
-TEST(OptionsSurface, AgreesWithContractsOnTheirOwn) {
+// Separate solves have other grids than the shared one.
+// ctest-label: no-sanitizer
+TEST(OptionsSurface, AgreesWithContractsPricedSeparately) {
   const std::vector<Contract> contracts = random_strikes(40, 12);
-  Settings alone = surface_on(256);
-  alone.surface = false;
+  Settings separate_settings = surface_on(256);
+  separate_settings.surface = false;
   const std::vector<Price> shared = testing::priced(surface_on(256), contracts),
-                           own = testing::priced(alone, contracts);
-  std::size_t apart = 0;
+                           separate = testing::priced(separate_settings, contracts);
+  std::size_t disagreements = 0;
   for (std::size_t k = 0; k < contracts.size(); ++k) {
     const Contract& c = contracts[k];
-    const double room = shared[k].error + own[k].error;
-    if (std::abs(shared[k].price - own[k].price) > room) ++apart;
-    EXPECT_NEAR(shared[k].price, own[k].price, 3.0 * room) << k;
-    // Next to the boundary gamma jumps, and Greeks of both are rough.
+    const double tolerance = shared[k].error + separate[k].error;
+    if (std::abs(shared[k].price - separate[k].price) > tolerance) ++disagreements;
+    EXPECT_NEAR(shared[k].price, separate[k].price, 3.0 * tolerance) << k;
+    // Gamma jumps at the exercise boundary, where both have inaccurate Greeks.
     const double payoff = c.type == Type::put ? c.strike - c.spot : c.spot - c.strike;
-    if (own[k].price - payoff > 0.01 * c.strike) {
-      EXPECT_NEAR(shared[k].delta, own[k].delta, 2e-3 * c.strike / c.spot) << k;
-      EXPECT_NEAR(shared[k].gamma, own[k].gamma, 0.02 * own[k].gamma + 1e-3 * c.strike / (c.spot * c.spot))
+    if (separate[k].price - payoff > 0.01 * c.strike) {
+      EXPECT_NEAR(shared[k].delta, separate[k].delta, 2e-3 * c.strike / c.spot) << k;
+      EXPECT_NEAR(shared[k].gamma, separate[k].gamma,
+                  0.02 * separate[k].gamma + 1e-3 * c.strike / (c.spot * c.spot))
           << k;
-      EXPECT_NEAR(shared[k].theta, own[k].theta, 0.02 * std::abs(own[k].theta) + 1e-3 * c.strike) << k;
+      EXPECT_NEAR(shared[k].theta, separate[k].theta, 0.02 * std::abs(separate[k].theta) + 1e-3 * c.strike)
+          << k;
     }
-    if (!std::isnan(own[k].exercise_boundary)) {
+    if (!std::isnan(separate[k].exercise_boundary)) {
       EXPECT_FALSE(std::isnan(shared[k].exercise_boundary)) << k;
     }
   }
-  EXPECT_LE(100 * apart, contracts.size());
+  EXPECT_LE(100 * disagreements, contracts.size());
 }
 
-// The prices of a finer grid, which the test above ties to those of contracts, stand for the true ones.
+// Reference: prices of a finer grid, which agree with separate prices
+// (`AgreesWithContractsPricedSeparately`).
+// ctest-label: no-sanitizer
 TEST(OptionsSurface, StatedErrorsCoverAndDoNotExaggerate) {
   const std::vector<Contract> contracts = random_strikes(60, 5);
   const std::vector<Price> known = testing::priced(surface_on(512), contracts);
@@ -143,49 +149,51 @@ TEST(OptionsSurface, StatedErrorsCoverAndDoNotExaggerate) {
   }
 }
 
-TEST(OptionsSurface, MonotoneAndConvexInTheStrike) {
+TEST(OptionsSurface, PricesAreMonotoneAndConvexInTheStrike) {
   const std::vector<Contract> contracts = random_strikes(40, 3);
   const std::vector<Price> prices = testing::priced(surface_on(128), contracts);
   const auto slope = [&](std::size_t k) {
     return (prices[k + 1].price - prices[k].price) / (contracts[k + 1].strike - contracts[k].strike);
   };
-  const auto room = [&](std::size_t k) {
+  const auto tolerance = [&](std::size_t k) {
     return (prices[k + 1].error + prices[k].error) / (contracts[k + 1].strike - contracts[k].strike);
   };
   for (std::size_t k = 0; k + 1 < contracts.size(); ++k) {
     if (k % strikes + 1 == strikes) continue;
     const double sign = contracts[k].type == Type::put ? 1.0 : -1.0;
-    EXPECT_GE(sign * slope(k), -room(k)) << k;
-    EXPECT_LE(sign * slope(k), 1.0 + room(k)) << k;
+    EXPECT_GE(sign * slope(k), -tolerance(k)) << k;
+    EXPECT_LE(sign * slope(k), 1.0 + tolerance(k)) << k;
     if (k % strikes + 2 == strikes) continue;
-    EXPECT_GE(slope(k + 1) - slope(k), -room(k + 1) - room(k)) << k;
+    EXPECT_GE(slope(k + 1) - slope(k), -tolerance(k + 1) - tolerance(k)) << k;
   }
 }
 
-TEST(OptionsSurface, OtherStrikesChangeNoBit) {
+TEST(OptionsSurface, BitsDoNotDependOnOtherStrikes) {
   const std::vector<Contract> contracts = random_strikes(12, 8);
   Settings settings;
   settings.tolerance = 3e-5;
   settings.surface = true;
   for (const Settings& used : {settings, surface_on(128)}) {
-    const std::vector<Price> together = testing::priced(used, contracts);
-    std::vector<Contract> some;
-    std::vector<std::size_t> place;
+    const std::vector<Price> all_prices = testing::priced(used, contracts);
+    std::vector<Contract> selected;
+    std::vector<std::size_t> position;
     for (std::size_t k = contracts.size(); k-- > 0;)
       if (k % 5 == 2) {
-        some.push_back(contracts[k]);
-        place.push_back(k);
+        selected.push_back(contracts[k]);
+        position.push_back(k);
       }
-    const std::vector<Price> fewer = testing::priced(used, some);
-    for (std::size_t k = 0; k < some.size(); ++k)
+    const std::vector<Price> selected_prices = testing::priced(used, selected);
+    for (std::size_t k = 0; k < selected.size(); ++k)
       for (const auto member : {&Price::price, &Price::error, &Price::delta, &Price::gamma, &Price::theta})
-        EXPECT_EQ(std::memcmp(&(fewer[k].*member), &(together[place[k]].*member), sizeof(double)), 0)
-            << place[k];
+        EXPECT_EQ(
+            std::memcmp(&(selected_prices[k].*member), &(all_prices[position[k]].*member), sizeof(double)), 0)
+            << position[k];
   }
 }
 
-// Puts with q < r < 0 are exercised between two boundaries, where exercise is split off and the difference of
-// grids tells less.
+// Puts with q < r < 0 are exercised between two boundaries. Exercise is split there, and the difference of
+// the grids contains less of the error.
+// ctest-label: no-sanitizer
 TEST(OptionsSurface, StatedErrorsCoverExerciseBetweenTwoBoundaries) {
   std::vector<Contract> contracts;
   std::size_t set = 0;
@@ -215,8 +223,8 @@ TEST(OptionsSurface, StatedErrorsCoverExerciseBetweenTwoBoundaries) {
   }
 }
 
-// Beyond the grid a value is known: what exercise or expiry is certain to bring, or 0.
-TEST(OptionsSurface, StrikesFarAway) {
+// Beyond the grid the value is known: certain exercise or expiry, or 0.
+TEST(OptionsSurface, PricesStrikesBeyondTheGrid) {
   std::vector<Contract> contracts;
   for (const Style style : {Style::american, Style::european})
     for (const Type type : {Type::put, Type::call})
@@ -239,23 +247,23 @@ TEST(OptionsSurface, StrikesFarAway) {
   }
 }
 
-TEST(OptionsSurface, IsOneOfFiniteDifferences) {
+TEST(OptionsSurface, RejectsOtherMethods) {
   Settings settings = surface_on(128);
-  for (const Method method : {Method::cos, Method::seed}) {
+  for (const Method method : {Method::cos, Method::baseline}) {
     settings.method = method;
     EXPECT_THROW(static_cast<void>(create_pricer(backend, settings)), std::invalid_argument);
   }
 }
 
-TEST(OptionsSurface, BoundaryIsThatOfTheContract) {
+TEST(OptionsSurface, BoundaryEqualsThatOfTheContract) {
   const Contract contract = testing::contract_of(testing::option_sets()[0], 3, Style::american);
-  Settings alone = surface_on(128);
-  alone.surface = false;
+  Settings separate_settings = surface_on(128);
+  separate_settings.surface = false;
   const auto shared = create_pricer(backend, surface_on(128))->boundary(contract),
-             own = create_pricer(backend, alone)->boundary(contract);
-  ASSERT_EQ(shared.size(), own.size());
-  ASSERT_FALSE(own.empty());
-  EXPECT_EQ(shared.front().spot, own.front().spot);
+             separate = create_pricer(backend, separate_settings)->boundary(contract);
+  ASSERT_EQ(shared.size(), separate.size());
+  ASSERT_FALSE(separate.empty());
+  EXPECT_EQ(shared.front().spot, separate.front().spot);
 }
 
 }  // namespace

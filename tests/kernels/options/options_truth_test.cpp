@@ -1,3 +1,4 @@
+// ctest-label: no-sanitizer
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,8 +10,8 @@
 #include "tests/support/option_sets.hpp"
 #include "tests/support/priced.hpp"
 
-// Finite differences against Fourier's integral, closed forms and the literature: calls and tails of every
-// law, boundaries of calls, Greeks, and the orders in space and in time.
+// Finite differences against Fourier integrals, closed forms and the literature: calls and tails of all
+// models, exercise boundaries of calls, Greeks, and orders of convergence in space and time.
 
 namespace drogue::options {
 namespace {
@@ -32,10 +33,10 @@ Contract european(Model model, Type type, std::array<double, 4> jump) {
   return c;
 }
 
-// Calls are solved as puts under other jumps. The integral prices both without that. The first laws have
-// jumps of one sign in the main. The others have a few days, and so short grids that many of their jumps go
-// beyond them.
-TEST(OptionsTruth, JumpsOfMertonAndKou) {
+// Calls are solved as puts under the dual measure, but the Fourier integral prices both directly. The first
+// four processes have jumps mainly of one sign. The others have maturities of a few days, hence short grids,
+// which many jumps leave.
+TEST(OptionsTruth, MertonAndKouPricesMatchFourierIntegrals) {
   std::vector<Contract> puts = {european(Model::merton, Type::put, {0.8, -0.25, 0.1}),
                                 european(Model::merton, Type::put, {0.5, 0.3, 0.15}),
                                 european(Model::kou, Type::put, {1.2, 0.2, 9.0, 4.0}),
@@ -60,7 +61,7 @@ TEST(OptionsTruth, JumpsOfMertonAndKou) {
   }
 }
 
-/// A jump's density, a year.
+/// Density of the jumps, per year.
 double density(const NormalizedPut& put, double y) {
   const double* const j = put.jump;
   if (put.model == Model::merton) {
@@ -70,7 +71,8 @@ double density(const NormalizedPut& put, double y) {
   return j[0] * (y > 0.0 ? j[1] * j[2] * std::exp(-j[2] * y) : (1.0 - j[1]) * j[3] * std::exp(j[3] * y));
 }
 
-/// The sum of f(y) over the jumps beyond `length` upwards (1) or downwards (-1), by trapezoids.
+/// Integral of f(y) over the jumps beyond `length` upwards (1) or downwards (-1) by the trapezoidal rule, per
+/// year.
 template <class F>
 double sum_beyond(const NormalizedPut& put, double length, double side, const F& f) {
   constexpr double step = 2e-3, end = 60.0;
@@ -79,13 +81,13 @@ double sum_beyond(const NormalizedPut& put, double length, double side, const F&
   return step * sum;
 }
 
-TEST(OptionsTruth, TailsOfMertonAndKou) {
+TEST(OptionsTruth, TailsOfMertonAndKouMatchQuadrature) {
   for (const NormalizedPut& put : {NormalizedPut{.model = Model::merton, .jump = {0.8, -0.3, 0.9}},
                                    NormalizedPut{.model = Model::merton, .jump = {1.5, 0.4, 1.2}},
                                    NormalizedPut{.model = Model::kou, .jump = {2.0, 0.3, 2.5, 1.5}}}) {
     const double length = 1.1;
     const Tails<double> tails =
-        tails_of(SerialWorkers<double>{}, pack_of<double>(&put), LevyMeasure<double>{}, length);
+        make_tails(SerialThreadGroup<double>{}, pack_puts<double>(&put), LevyMeasure<double>{}, length);
     const auto one = [](double) { return 1.0; };
     const auto price = [](double y) { return std::exp(y); };
     const auto square = [](double y) { return y * y; };
@@ -99,8 +101,8 @@ TEST(OptionsTruth, TailsOfMertonAndKou) {
   }
 }
 
-// Where one side of the law hardly decays: prices that are coarse at worst, and errors that cover.
-TEST(OptionsTruth, LimitsOfTheDomain) {
+// One tail hardly decays: prices may be inaccurate, but the error estimates cover.
+TEST(OptionsTruth, StatedErrorsCoverTailsThatHardlyDecay) {
   std::vector<Contract> contracts;
   for (const Type type : {Type::put, Type::call})
     for (const double gap : {1e-1, 1e-3, 1e-5})
@@ -115,15 +117,16 @@ TEST(OptionsTruth, LimitsOfTheDomain) {
   const std::vector<Price> known = priced_by_fourier(contracts),
                            prices = priced(on_mesh(256, 256), contracts);
   for (std::size_t k = 0; k < contracts.size(); ++k) {
-    EXPECT_NE(prices[k].outcome, Outcome::failed) << k;
+    EXPECT_NE(prices[k].status, PriceStatus::failed) << k;
     EXPECT_NEAR(prices[k].price, known[k].price, prices[k].error) << k;
     EXPECT_LT(prices[k].error, 0.5) << k;
   }
 }
 
-// Small orders have much of their mixture near its slowest rate, and a tail that hardly decays tells those
-// rates apart. What the mixture leaves, 5e-7 of the strike, no difference of grids knows.
-TEST(OptionsTruth, LimitsOfSmallOrders) {
+// The mixture of a small order has much of its weight near the slowest rate, and a tail that hardly decays is
+// sensitive to it. The truncated mixture has an error of 5e-7 of the strike, which no difference of grids
+// contains.
+TEST(OptionsTruth, StatedErrorsCoverSmallOrders) {
   std::vector<Contract> contracts;
   for (const Type type : {Type::put, Type::call})
     for (const double order : {-1.0, -0.5, 0.01, 0.2})
@@ -133,14 +136,14 @@ TEST(OptionsTruth, LimitsOfSmallOrders) {
   const std::vector<Price> known = priced_by_fourier(contracts),
                            prices = priced(on_mesh(512, 512), contracts);
   for (std::size_t k = 0; k < contracts.size(); ++k) {
-    EXPECT_NE(prices[k].outcome, Outcome::failed) << k;
+    EXPECT_NE(prices[k].status, PriceStatus::failed) << k;
     EXPECT_NEAR(prices[k].price, known[k].price, prices[k].error + 5e-7) << k;
   }
 }
 
-// Hirsa and Madan 2004, table 1: 35.5301. Ours, 35.4928 on finer and finer grids, differs by 3e-5 of the
+// Hirsa and Madan (2004), table 1: 35.5301. Our limit on refined grids, 35.4928, differs by 3e-5 of the
 // strike.
-TEST(OptionsTruth, HirsaAndMadansVarianceGamma) {
+TEST(OptionsTruth, MatchesThePutOfHirsaAndMadan) {
   const double sigma = 0.20722, nu = 0.50215, theta = -0.22898;
   Contract c{.spot = 1369.41, .strike = 1200.0, .rate = 0.0541, .dividend = 0.012, .maturity = 0.56164};
   const double squared = sigma * sigma, beta = theta / squared;
@@ -150,9 +153,9 @@ TEST(OptionsTruth, HirsaAndMadansVarianceGamma) {
   EXPECT_NEAR(price.price, 35.5301, 3.5e-5 * c.strike);
 }
 
-// Merton's perpetual call (Black and Scholes' law): exercise from K g/(g - 1) on, g the larger root of
+// Merton's perpetual call under Black and Scholes' model: exercise from K g/(g - 1) on, g the larger root of
 // v g (g - 1)/2 + (r - q) g = r.
-TEST(OptionsTruth, BoundaryOfACall) {
+TEST(OptionsTruth, BoundaryOfALongCallMatchesThePerpetualOne) {
   Contract c{.model = Model::black_scholes,
              .type = Type::call,
              .strike = 2.0,
@@ -171,8 +174,8 @@ TEST(OptionsTruth, BoundaryOfACall) {
   }
 }
 
-// B_call B_put = K_call K_put for the put with the rates exchanged and the jumps mirrored.
-TEST(OptionsTruth, BoundariesOfACallAndItsPut) {
+// B_call B_put = K_call K_put for the put with exchanged rates and mirrored jumps.
+TEST(OptionsTruth, BoundariesOfDualOptionsMatch) {
   for (const Model model : {Model::generalized_hyperbolic, Model::merton, Model::kou}) {
     Contract call{.model = model, .type = Type::call, .rate = 0.03, .dividend = 0.07, .variance = 0.03};
     Contract put{
@@ -196,8 +199,8 @@ TEST(OptionsTruth, BoundariesOfACallAndItsPut) {
   }
 }
 
-// Differences of known prices.
-TEST(OptionsTruth, GreeksOfEuropeans) {
+// Reference: difference quotients of Fourier prices.
+TEST(OptionsTruth, EuropeanGreeksMatchDifferenceQuotients) {
   for (const Type type : {Type::put, Type::call})
     for (Contract c : {european(Model::generalized_hyperbolic, type, {1.0, 8.15, -2.5, 0.5}),
                        european(Model::kou, type, {1.2, 0.2, 9.0, 4.0}),
@@ -221,7 +224,7 @@ TEST(OptionsTruth, GreeksOfEuropeans) {
     }
 }
 
-/// A European put of three years about the strike, of one law with jumps and one without.
+/// European puts of three years near the strike, for a model with jumps or without.
 std::vector<Contract> of_three_years(Model model) {
   std::vector<Contract> contracts;
   for (const double x : {-0.2, -0.1, -0.05, 0.05, 0.1, 0.2}) {
@@ -235,7 +238,7 @@ std::vector<Contract> of_three_years(Model model) {
 
 std::vector<Price> on_one_grid(const std::vector<Contract>& contracts, int mesh, int steps) {
   Settings settings = on_mesh(mesh, steps);
-  settings.one_grid = true;
+  settings.single_grid = true;
   return priced(settings, contracts);
 }
 
@@ -246,8 +249,9 @@ double largest_difference(const std::vector<Price>& one, const std::vector<Price
   return largest;
 }
 
-// Steps that make the error of time small. Finer grids reach a little farther, so the order is a little less.
-TEST(OptionsTruth, SecondOrderInSpace) {
+// The number of steps makes the error in time negligible. Finer grids are slightly wider, so the observed
+// order is slightly less.
+TEST(OptionsTruth, ConvergesAtSecondOrderInSpace) {
   for (const Model model : {Model::generalized_hyperbolic, Model::black_scholes}) {
     const std::vector<Contract> contracts = of_three_years(model);
     const std::vector<Price> known = priced_by_fourier(contracts);
@@ -257,8 +261,8 @@ TEST(OptionsTruth, SecondOrderInSpace) {
   }
 }
 
-// Steps alone are changed, so the errors of space are alike in all three.
-TEST(OptionsTruth, SecondOrderInTime) {
+// Only the number of steps changes, so the errors in space agree.
+TEST(OptionsTruth, ConvergesAtSecondOrderInTime) {
   for (const Model model : {Model::generalized_hyperbolic, Model::black_scholes}) {
     const std::vector<Contract> contracts = of_three_years(model);
     const auto few = on_one_grid(contracts, 128, 64), some = on_one_grid(contracts, 128, 128),

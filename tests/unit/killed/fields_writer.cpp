@@ -1,3 +1,4 @@
+// ctest-label: no-sanitizer
 // Kills a writer of fields.h5 at every system call that changes a file. This executable wraps those calls. A
 // write also has a kill point at the end of each page, where the system may stop a write of a killed process.
 
@@ -203,7 +204,7 @@ long kill_everywhere(const std::function<void(const std::filesystem::path&)>& pr
 
 void nothing(const std::filesystem::path&) {}
 
-TEST(FieldsWriterKilled, WhileItBegins) {
+TEST(FieldsWriterKilled, FileStaysReadableWhileItIsCreated) {
   const auto work = [](const std::filesystem::path& directory) {
     SodRun run(directory);
     for (const double time : {0.0, 1.0, 2.0}) run.step(time);
@@ -211,7 +212,7 @@ TEST(FieldsWriterKilled, WhileItBegins) {
   EXPECT_GT(kill_everywhere(nothing, work, {{}, {0.0}, {0.0, 1.0}, {0.0, 1.0, 2.0}}), 60);
 }
 
-TEST(FieldsWriterKilled, WhileItDropsLaterSteps) {
+TEST(FieldsWriterKilled, FileStaysReadableWhileLaterStepsAreDropped) {
   const auto preparation = [](const std::filesystem::path& directory) {
     SodRun run(directory);
     for (const double time : {0.0, 1.0, 2.0, 3.0}) run.step(time);
@@ -220,7 +221,7 @@ TEST(FieldsWriterKilled, WhileItDropsLaterSteps) {
   EXPECT_GT(kill_everywhere(preparation, work, {{0.0, 1.0, 2.0, 3.0}, {0.0, 1.0}, {0.0, 1.0, 1.5}}), 20);
 }
 
-TEST(FieldsWriterKilled, AfterAFailedStep) {
+TEST(FieldsWriterKilled, FileStaysReadableAfterAFailedStep) {
   const auto work = [](const std::filesystem::path& directory) {
     SodRun run(directory);
     run.step(0.0);
@@ -232,7 +233,7 @@ TEST(FieldsWriterKilled, AfterAFailedStep) {
   EXPECT_GT(kill_everywhere(nothing, work, {{}, {0.0}, {0.0, 2.0}}), 50);
 }
 
-TEST(FieldsWriterKilled, WhileAReferenceJoinsOrIsReplaced) {
+TEST(FieldsWriterKilled, FileStaysReadableWhileAReferenceIsWritten) {
   const auto work = [](const std::filesystem::path& directory) {
     SodRun run(directory);
     run.step(0.0);
@@ -247,7 +248,7 @@ TEST(FieldsWriterKilled, WhileAReferenceJoinsOrIsReplaced) {
 }
 
 // The 191st output moves the index into a block of more than one page.
-TEST(FieldsWriterKilled, WhileTheIndexGrows) {
+TEST(FieldsWriterKilled, FileStaysReadableWhileTheIndexGrows) {
   cells = 2;
   const auto preparation = [](const std::filesystem::path& directory) {
     SodRun run(directory);

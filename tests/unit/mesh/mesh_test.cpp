@@ -43,7 +43,7 @@ double largest_edge(const Mesh& mesh) {
   return largest;
 }
 
-TEST(Mesh, EdgesAreTakenOnceWhicheverWayTheyAreNamed) {
+TEST(Mesh, EdgesAreUniqueInBothDirections) {
   Mesh mesh;
   mesh.rest = {{0.0, 0.0, 0.0}, {3.0, 0.0, 0.0}, {0.0, 4.0, 0.0}, {3.0, 4.0, 0.0}, {0.0, 0.0, 7.0}};
   mesh.triangles = {{0, 1, 2}, {3, 2, 1}};
@@ -73,7 +73,7 @@ TEST(Mesh, RectangleCoversItsArea) {
   }
 }
 
-TEST(Mesh, ADistortedRectangleKeepsItsSidesAndSenses) {
+TEST(Mesh, DistortedRectangleKeepsBoundaryAndOrientation) {
   const Mesh even = generate(Rectangle{2.0, 0.5, 500}), mesh = generate(Rectangle{2.0, 0.5, 500, 0.2});
   EXPECT_EQ(mesh.triangles, even.triangles);
   EXPECT_NEAR(flat_area(mesh), 1.0, 1e-12);
@@ -90,7 +90,7 @@ TEST(Mesh, ADistortedRectangleKeepsItsSidesAndSenses) {
   EXPECT_GT(*moved.rbegin() - *moved.begin(), 0.3 * 0.045);
 }
 
-TEST(Mesh, DiskTakesTheNearestNumberOfRings) {
+TEST(Mesh, DiskUsesTheNearestNumberOfRings) {
   for (const auto& [asked, got] :
        {std::pair{7, 7U}, {12, 7U}, {14, 19U}, {266, 271U}, {3169, 3169U}, {3790, 3781U}}) {
     const Mesh mesh = generate(Disk{0.4, asked});
@@ -121,7 +121,7 @@ TEST(Mesh, StripHasNearlyEquilateralTrianglesAndStraightEnds) {
   }
 }
 
-TEST(Mesh, TriangleIsDividedIntoEqualOnes) {
+TEST(Mesh, TriangleIsDividedIntoEqualTriangles) {
   for (const int vertices : {3, 6, 1123}) {
     const Mesh mesh = generate(Triangle{2.0, vertices});
     EXPECT_NEAR(flat_area(mesh), std::sqrt(3.0), 1e-12);
@@ -132,7 +132,7 @@ TEST(Mesh, TriangleIsDividedIntoEqualOnes) {
   EXPECT_EQ(generate(Triangle{1.0, 1123}).rest.size(), 1128U);
 }
 
-TEST(Mesh, StringIsEquallyDivided) {
+TEST(Mesh, StringHasEqualSegments) {
   const Mesh mesh = generate(String{{0.5, 0.85, 0.0}, {0.8, 0.35, 0.0}, 60});
   EXPECT_EQ(mesh.rest.size(), 60U);
   EXPECT_EQ(mesh.lines.size(), 59U);
@@ -140,16 +140,16 @@ TEST(Mesh, StringIsEquallyDivided) {
   EXPECT_NEAR(largest_edge(mesh), std::hypot(0.3, 0.5) / 59, 1e-15);
 }
 
-/// Largest difference of the numbers of two neighbours.
+/// Bandwidth: largest difference of the indices of two neighbours.
 int bandwidth(const Mesh& mesh) {
   int widest = 0;
   for (const auto& [i, j] : edges_of(mesh)) widest = std::max(widest, j - i);
   return widest;
 }
 
-TEST(Mesh, RenumberingBringsNeighboursTogether) {
+TEST(Mesh, RenumberingReducesTheBandwidth) {
   const Mesh disk = generate(Disk{1.0, 3169});
-  // Numbers that have nothing to do with places.
+  // Random vertex numbers.
   std::vector<int> shuffled(disk.rest.size());
   for (std::size_t k = 0; k < shuffled.size(); ++k)
     shuffled[k] = static_cast<int>((k * 1013) % shuffled.size());
@@ -164,7 +164,7 @@ TEST(Mesh, RenumberingBringsNeighboursTogether) {
     EXPECT_EQ(local.rest[k], mesh.rest[static_cast<std::size_t>(order[k])]);
 }
 
-TEST(Mesh, ReportNamesAnglesAndAreas) {
+TEST(Mesh, ReportListsAnglesAndAreas) {
   const std::string text = quality_report(generate(Triangle{1.0, 3}));
   EXPECT_NE(text.find("3 vertices, 1 triangles, 0 lines"), std::string::npos) << text;
   EXPECT_NE(text.find("60 .. 60, mean 60 degrees"), std::string::npos) << text;

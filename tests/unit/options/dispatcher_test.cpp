@@ -1,7 +1,6 @@
-#include "miniapps/options/dispatcher.hpp"
+#include "miniapps/options/parallel/dispatcher.hpp"
 
 #include <gtest/gtest.h>
-
 #include <unistd.h>
 
 #include <algorithm>
@@ -13,46 +12,46 @@
 namespace drogue::options_app {
 namespace {
 
-/// Answers to chunks with their lines, a piece a line, as late as the test wants.
-class SlowHelper final : public Helper {
+/// Returns one batch of results per line of its chunks, at every `delay`-th call of `receive`.
+class FakeWorker final : public WorkerProxy {
  public:
-  SlowHelper(std::vector<int>& asked, int own, int patience)
-      : _asked(asked), _own(own), _patience(patience) {}
+  /// Appends `index` to `calls` at every call of `receive`.
+  FakeWorker(std::vector<int>& calls, int index, int delay) : _calls(calls), _index(index), _delay(delay) {}
 
-  void give(Chunk chunk) override { _chunks.push_back(std::move(chunk)); }
-  void dismiss() override { _is_dismissed = true; }
+  void assign(Chunk chunk) override { _chunks.push_back(std::move(chunk)); }
+  void shutdown() override { _is_shut_down = true; }
 
-  std::optional<Piece> take() override {
-    _asked.push_back(_own);
-    Piece piece;
-    if (_is_dismissed || (_leaves_early && _line == 2)) {
-      piece.leaves = true;
-      piece.spent.pricing = 1.0;
-      return piece;
+  std::optional<ResultBatch> receive() override {
+    _calls.push_back(_index);
+    ResultBatch batch;
+    if (_is_shut_down || (_finishes_early && _line == 2)) {
+      batch.worker_finished = true;
+      batch.usage.pricing = 1.0;
+      return batch;
     }
-    if (_chunks.empty() || ++_waited % _patience != 0) return std::nullopt;
+    if (_chunks.empty() || ++_polls % _delay != 0) return std::nullopt;
     const Chunk& chunk = _chunks.front();
-    piece.chunk = chunk.number;
-    piece.tally.rows = 1;
-    piece.prices = std::to_string(chunk.first_row + _line) + std::string(_bytes_more, ' ') + "\n";
-    piece.ends_chunk = ++_line == static_cast<std::int64_t>(chunk.lines.size());
-    if (piece.ends_chunk) {
+    batch.chunk = chunk.number;
+    batch.counts.rows = 1;
+    batch.prices = std::to_string(chunk.first_row + _line) + std::string(_extra_bytes, ' ') + "\n";
+    batch.ends_chunk = ++_line == static_cast<std::int64_t>(chunk.lines.size());
+    if (batch.ends_chunk) {
       _line = 0;
       _chunks.pop_front();
     }
-    return piece;
+    return batch;
   }
 
-  void leave_early() { _leaves_early = true; }
-  void be_verbose(std::size_t bytes) { _bytes_more = bytes; }
+  void finish_early() { _finishes_early = true; }
+  void lengthen_rows(std::size_t bytes) { _extra_bytes = bytes; }
 
  private:
-  std::vector<int>& _asked;
-  int _own, _patience, _waited = 0;
+  std::vector<int>& _calls;
+  int _index, _delay, _polls = 0;
   std::deque<Chunk> _chunks;
   std::int64_t _line = 0;
-  std::size_t _bytes_more = 0;
-  bool _is_dismissed = false, _leaves_early = false;
+  std::size_t _extra_bytes = 0;
+  bool _is_shut_down = false, _finishes_early = false;
 };
 
 class OptionsDispatcher : public ::testing::Test {
@@ -70,14 +69,14 @@ class OptionsDispatcher : public ::testing::Test {
   }
   void TearDown() override { std::filesystem::remove_all(_folder); }
 
-  bool run(std::vector<Helper*> helpers) {
+  bool run(std::vector<WorkerProxy*> workers) {
     BatchReader reader(_folder / "batch.csv", RowKind::contract);
     ChunkSource source(_command, reader, 3);
-    Outputs outputs(_command);
+    OutputFiles outputs(_command);
     ProgressLine progress(true);
-    Dispatcher dispatcher(source, outputs, progress, helpers, 350);
+    Dispatcher dispatcher(source, outputs, progress, workers, 350);
     const bool is_complete = dispatcher.run();
-    EXPECT_EQ(dispatcher.spent().pricing, static_cast<double>(helpers.size()));
+    EXPECT_EQ(dispatcher.usage().pricing, static_cast<double>(workers.size()));
     if (is_complete) outputs.commit();
     return is_complete;
   }
@@ -93,40 +92,40 @@ class OptionsDispatcher : public ::testing::Test {
 
   std::filesystem::path _folder;
   Command _command;
-  std::vector<int> _asked;
+  std::vector<int> _calls;
 };
 
-TEST_F(OptionsDispatcher, WritesInTheOrderOfTheInput) {
+TEST_F(OptionsDispatcher, WritesInInputOrder) {
   std::vector<int> expected(30);
   for (int row = 0; row < 30; ++row) expected[static_cast<std::size_t>(row)] = row + 1;
-  for (const int patience : {1, 2, 7, 40}) {
-    SlowHelper a(_asked, 0, patience), b(_asked, 1, 1), c(_asked, 2, 3);
+  for (const int delay : {1, 2, 7, 40}) {
+    FakeWorker a(_calls, 0, delay), b(_calls, 1, 1), c(_calls, 2, 3);
     EXPECT_TRUE(run({&a, &b, &c}));
-    EXPECT_EQ(rows_written(), expected) << patience;
+    EXPECT_EQ(rows_written(), expected) << delay;
     std::filesystem::remove(_command.out);
   }
 }
 
-TEST_F(OptionsDispatcher, LeavesNothingWhereAHelperLeavesEarly) {
-  SlowHelper a(_asked, 0, 1), b(_asked, 1, 2);
-  b.leave_early();
+TEST_F(OptionsDispatcher, RemovesOutputsIfWorkerFinishesEarly) {
+  FakeWorker a(_calls, 0, 1), b(_calls, 1, 2);
+  b.finish_early();
   EXPECT_FALSE(run({&a, &b}));
   std::size_t files = 0;
   for (const auto& entry : std::filesystem::directory_iterator(_folder)) files += entry.exists() ? 1 : 0;
   EXPECT_EQ(files, 1U);
 }
 
-/// The first helper is slow. What the others have done must not pile up while its rows are missing.
-TEST_F(OptionsDispatcher, HearsOnlyTheNextOneWhileMuchWaits) {
-  constexpr int patience = 50;
-  SlowHelper a(_asked, 0, patience), b(_asked, 1, 1);
-  b.be_verbose(100);
+/// The first worker is slow. The results of the other must not accumulate without bound.
+TEST_F(OptionsDispatcher, PollsOnlyWorkerWithNextRowsAtMemoryLimit) {
+  constexpr int delay = 50;
+  FakeWorker a(_calls, 0, delay), b(_calls, 1, 1);
+  b.lengthen_rows(100);
   EXPECT_TRUE(run({&a, &b}));
   const auto first_row = static_cast<std::ptrdiff_t>(
-      std::find_if(_asked.begin(), _asked.end(),
-                   [count = 0](int helper) mutable { return helper == 0 && ++count == patience; }) -
-      _asked.begin());
-  EXPECT_EQ(std::count(_asked.begin(), _asked.begin() + first_row, 1), 4);
+      std::find_if(_calls.begin(), _calls.end(),
+                   [count = 0](int worker) mutable { return worker == 0 && ++count == delay; }) -
+      _calls.begin());
+  EXPECT_EQ(std::count(_calls.begin(), _calls.begin() + first_row, 1), 4);
 }
 
 }  // namespace

@@ -1,10 +1,10 @@
-#include "perf/occupancy.hpp"
+#include "perf/models/occupancy.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "perf/dissertation.hpp"
+#include "perf/tables/dissertation.hpp"
 
 namespace drogue::perf {
 namespace {
@@ -13,7 +13,7 @@ Occupancy flux_kernel(int block) {
   return occupancy(fermi(), {block, dissertation::flux_registers, dissertation::flux_shared_bytes(block)});
 }
 
-TEST(Occupancy, IsTheDissertationsTable) {
+TEST(Occupancy, EqualsTable42OfTheDissertation) {
   for (const dissertation::OccupancyRow& printed : dissertation::table_4_2) {
     const Occupancy got = flux_kernel(printed.block);
     EXPECT_EQ(dissertation::flux_shared_bytes(printed.block), printed.shared_bytes);
@@ -27,8 +27,8 @@ TEST(Occupancy, IsTheDissertationsTable) {
   }
 }
 
-// Shared memory has room for a block of 544 threads, and so have the threads; its registers do not fit.
-TEST(Occupancy, OfABlockThatDoesNotFitIsZero) {
+// A block of 544 threads fits into shared memory and the thread limit, but not into the registers.
+TEST(Occupancy, IsZeroForABlockThatDoesNotFit) {
   const Occupancy got = flux_kernel(544);
   EXPECT_EQ(got.by_registers, 0);
   EXPECT_EQ(got.by_shared_memory, 1);
@@ -37,19 +37,19 @@ TEST(Occupancy, OfABlockThatDoesNotFitIsZero) {
   EXPECT_EQ(got.occupancy, 0.0);
 }
 
-// Blocks that cudaOccMaxActiveBlocksPerMultiprocessor of CUDA 13.0's cuda_occupancy.h gives for an sm_90.
-TEST(Occupancy, OnHopperIsWhatCudasOwnHeaderGives) {
+// Results of cudaOccMaxActiveBlocksPerMultiprocessor in cuda_occupancy.h of CUDA 13.0 for an sm_90.
+TEST(Occupancy, EqualsTheOccupancyCalculatorOfCudaForHopper) {
   const struct {
     Block block;
     int blocks;
   } cases[] = {
       {{128, 168, 16'464}, 3},  // registers
       {{128, 128, 47'184}, 4},  // both
-      {{128, 128, 57'344}, 4},  // shared memory and the kilobyte kept, to the last byte
+      {{128, 128, 57'344}, 4},  // shared memory with the reserved kilobyte, exactly full
       {{128, 128, 57'345}, 3}, {{96, 168, 12'000}, 4},  // three warps: partitions are filled unevenly
-      {{512, 128, 49'000}, 1},                          // registers, to the last
-      {{512, 129, 49'000}, 0},                          // a warp gets 256 at a time
-      {{416, 152, 1'000}, 0},                           // 13 warps count as 16
+      {{512, 128, 49'000}, 1},                          // registers, exactly full
+      {{512, 129, 49'000}, 0},                          // registers are allocated in units of 256 per warp
+      {{416, 152, 1'000}, 0},                           // 13 warps are rounded up to 16
       {{384, 168, 60'000}, 1}, {{32, 32, 64}, 32},      // the limit
       {{1024, 32, 64}, 2},                              // threads
       {{128, 16, 232'448}, 1}, {{128, 16, 232'449}, 0}};

@@ -15,19 +15,19 @@
 namespace drogue {
 namespace {
 
-struct Outcome {
+struct ChildResult {
   int code;
   std::string error;
 };
 
-Outcome run(const std::function<ExitCode()>& body) {
+ChildResult run(const std::function<ExitCode()>& body) {
   testing::internal::CaptureStderr();
   const int code = run_program("drogue-gas", body);
   return {code, testing::internal::GetCapturedStderr()};
 }
 
 TEST(RunProgram, PrintsNothingOnSuccess) {
-  const Outcome outcome = run([] { return ExitCode::ok; });
+  const ChildResult outcome = run([] { return ExitCode::ok; });
   EXPECT_EQ(outcome.code, 0);
   EXPECT_EQ(outcome.error, "");
   EXPECT_EQ(run([] { return ExitCode::interrupted; }).code, 130);
@@ -36,30 +36,30 @@ TEST(RunProgram, PrintsNothingOnSuccess) {
 TEST(RunProgram, PrintsAFailureAsOneSentence) {
   for (const ExitCode code : {ExitCode::usage, ExitCode::numerical_failure, ExitCode::verification_failed,
                               ExitCode::io_error, ExitCode::no_backend}) {
-    const Outcome outcome = run([code]() -> ExitCode { throw Failure(code, "it went wrong"); });
+    const ChildResult outcome = run([code]() -> ExitCode { throw Failure(code, "it went wrong"); });
     EXPECT_EQ(outcome.code, static_cast<int>(code));
     EXPECT_EQ(outcome.error, "drogue-gas: it went wrong\n");
   }
 }
 
 TEST(RunProgram, StartsSceneErrorsWithFileAndLine) {
-  const Outcome outcome =
+  const ChildResult outcome =
       run([]() -> ExitCode { throw Failure(ExitCode::invalid_scene, "sod.toml:7: unknown key"); });
   EXPECT_EQ(outcome.code, 3);
   EXPECT_EQ(outcome.error, "sod.toml:7: unknown key\n");
 }
 
 TEST(RunProgram, MapsCommandLineErrorsToUsage) {
-  const Outcome outcome = run([]() -> ExitCode { throw CLI::ExtrasError({"--x"}); });
+  const ChildResult outcome = run([]() -> ExitCode { throw CLI::ExtrasError({"--x"}); });
   EXPECT_EQ(outcome.code, 2);
   EXPECT_EQ(outcome.error.rfind("drogue-gas: ", 0), 0U) << outcome.error;
 }
 
 TEST(RunProgram, MapsUnexpectedExceptionsToADocumentedCode) {
-  const Outcome memory = run([]() -> ExitCode { throw std::bad_alloc(); });
+  const ChildResult memory = run([]() -> ExitCode { throw std::bad_alloc(); });
   EXPECT_EQ(memory.code, 6);
   EXPECT_NE(memory.error.find("out of memory"), std::string::npos) << memory.error;
-  const Outcome traced =
+  const ChildResult traced =
       run([]() -> ExitCode { throw std::runtime_error("\nbad index\n#0 main()\n#1 start"); });
   EXPECT_EQ(traced.code, 6);
   EXPECT_EQ(traced.error, "drogue-gas: unexpected error: bad index\n");
@@ -69,10 +69,10 @@ TEST(RunProgram, MapsUnexpectedExceptionsToADocumentedCode) {
 TEST(RunProgram, PrintsOnRankZeroOnly) {
   setenv("OMPI_COMM_WORLD_RANK", "1", 1);
   setenv("OMPI_COMM_WORLD_SIZE", "2", 1);
-  const Outcome outcome = run([]() -> ExitCode { throw Failure(ExitCode::usage, "too many ranks"); });
+  const ChildResult outcome = run([]() -> ExitCode { throw Failure(ExitCode::usage, "too many ranks"); });
   ::testing::internal::CaptureStdout();
   std::puts("before");
-  const Outcome printed = run([] {
+  const ChildResult printed = run([] {
     std::puts("a scene");
     std::cout << "another\n";
     return ExitCode::ok;

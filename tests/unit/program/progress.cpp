@@ -75,14 +75,14 @@ TEST(Progress, UpdatesOneTerminalLineAFewTimesPerSecond) {
   EXPECT_EQ(terminal.text(), "\r\x1b[K") << "the line must be removed at the end";
 }
 
-TEST(Progress, QuietShowsNothing) {
+TEST(Progress, ShowsNothingIfQuiet) {
   const Terminal terminal;
   if (terminal.stream == nullptr) GTEST_SKIP() << "needs pseudo terminals";
   ProgressLine(true, terminal.stream).update(1, 0.1, 1.0);
   EXPECT_EQ(terminal.text(), "");
 }
 
-TEST(Progress, APipeShowsNothing) {
+TEST(Progress, ShowsNothingInAPipe) {
   std::FILE* file = std::tmpfile();
   ASSERT_NE(file, nullptr);
   ProgressLine(false, file).update(1, 0.1, 1.0);

@@ -8,7 +8,7 @@
 namespace drogue::reference {
 namespace {
 
-TEST(DenseStep, IsTheStepOfTheOracle) {
+TEST(DenseStep, EqualsTheReferenceStep) {
   gas::Parameters p;
   p.cells = 200;
   p.weno = gas::Weno::js;
@@ -19,7 +19,7 @@ TEST(DenseStep, IsTheStepOfTheOracle) {
   DenseWorkspace workspace;
   double time = 0.0;
   for (int step = 0; step < 50; ++step) time += dense_step(state, workspace, p.gamma, 0.01, p.cfl);
-  // A hair early: the sums of dt differ in the last digits, and a 51st step must not be needed.
+  // Slightly early: the sums of dt differ in their last digits, which must not lead to a 51st step.
   const GasRun run = reference_run(p, tube, time * (1.0 - 1e-13));
   EXPECT_EQ(run.steps, 50);
   for (std::size_t i = 0; i < 200; ++i)

@@ -24,7 +24,7 @@ INSTANTIATE_TEST_SUITE_P(Means, Eigenvectors,
                          ::testing::Values(gas::FaceAverage::arithmetic, gas::FaceAverage::conserved,
                                            gas::FaceAverage::roe));
 
-TEST_P(Eigenvectors, LeftTimesRightIsOne) {
+TEST_P(Eigenvectors, LeftTimesRightIsTheIdentity) {
   for (int trial = 0; trial < 200; ++trial) {
     const double gamma = trial % 2 == 0 ? 1.4 : 5.0 / 3.0;
     const Conserved a = to_conserved(random_state(), gamma);
@@ -65,7 +65,7 @@ TEST_P(Eigenvectors, DiagonaliseTheJacobianOfAUniformState) {
   }
 }
 
-TEST(RoeMean, LinearisesTheJumpOfTheFlux) {
+TEST(RoeAverage, LinearisesTheJumpOfTheFlux) {
   const double gamma = 1.4;
   const Conserved a = to_conserved({1.0, 0.3, 2.0}, gamma);
   const Conserved b = to_conserved({0.2, -1.1, 0.7}, gamma);
@@ -80,7 +80,7 @@ TEST(RoeMean, LinearisesTheJumpOfTheFlux) {
   for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(jump[k], fb[k] - fa[k], 1e-13);
 }
 
-TEST(SplittingAlpha, IsWhatItsNameSays) {
+TEST(SplittingAlpha, IsTheLargestWaveSpeedOfItsScope) {
   const double gamma = 1.4;
   std::array<Conserved, 6> stencil{};
   for (std::size_t k = 0; k < 6; ++k)

@@ -49,13 +49,13 @@ std::vector<StarCase> star_cases() {
   };
 }
 
-/// Half a unit of the last digit of a decimal number, and a little for its own rounding.
+/// Half a unit of the last digit of a decimal number, plus a margin for its rounding to double.
 double half_unit(const std::string& digits) {
   const std::size_t decimals = digits.size() - digits.find('.') - 1;
   return 0.501 * std::pow(10.0, -static_cast<double>(decimals));
 }
 
-TEST(ExactRiemann, MeetsEveryPrintedDigitOfTheStarTable) {
+TEST(ExactRiemann, MatchesTheTabulatedStarStates) {
   for (const StarCase& c : star_cases()) {
     const ExactRiemann solution(c.left, c.right, c.gamma);
     const std::vector<double> star = {solution.star_pressure(), solution.star_velocity(),
@@ -65,7 +65,7 @@ TEST(ExactRiemann, MeetsEveryPrintedDigitOfTheStarTable) {
   }
 }
 
-TEST(ExactRiemann, JumpsOfASampledSolutionSatisfyTheIntegralBalance) {
+TEST(ExactRiemann, SampledSolutionSatisfiesTheIntegralConservationLaws) {
   // Over [-1, 1] and unit time the mean state differs from the initial one by the difference of the end
   // fluxes.
   std::mt19937 random(1);
@@ -98,7 +98,7 @@ TEST(ExactRiemann, JumpsOfASampledSolutionSatisfyTheIntegralBalance) {
   }
 }
 
-TEST(ExactRiemann, IsTheMirrorImageOfTheMirroredProblem) {
+TEST(ExactRiemann, IsSymmetricUnderReflection) {
   for (const StarCase& c : star_cases()) {
     const ExactRiemann solution(c.left, c.right, c.gamma);
     const ExactRiemann image({c.right.rho, -c.right.u, c.right.p}, {c.left.rho, -c.left.u, c.left.p},
@@ -112,7 +112,7 @@ TEST(ExactRiemann, IsTheMirrorImageOfTheMirroredProblem) {
   }
 }
 
-TEST(ExactRiemann, OpensAVacuumWhenTheStatesPartFastEnough) {
+TEST(ExactRiemann, FormsAVacuumBetweenRapidlySeparatingStates) {
   const ExactRiemann limit({7, -1, .2}, {7, 1, .2}, 1.4);
   EXPECT_NEAR(limit.star_pressure(), 0.0, 1e-30);
   const ExactRiemann solution({1, -10, .4}, {1, 10, .4}, 1.4);
@@ -141,7 +141,7 @@ TEST(ExactRiemann, ExpandsIntoAnInitialVacuum) {
   EXPECT_EQ(to_left.sample(1.01 * c).rho, 1.0);
 }
 
-TEST(ExactRiemann, FindsThePressureOverSixteenDecades) {
+TEST(ExactRiemann, SolvesForPressuresOverSixteenDecades) {
   for (const double ratio : {1e-16, 1e-8, 1e-2, 1e2, 1e8, 1e16}) {
     for (const double gamma : {1.05, 1.4, 5.0 / 3.0, 3.0}) {
       const ExactRiemann solution({1, 0, ratio}, {1, 0, 1}, gamma);
@@ -156,7 +156,7 @@ TEST(ExactRiemann, FindsThePressureOverSixteenDecades) {
   }
 }
 
-TEST(ExactRiemann, RefusesStatesThatAreNeitherGasNorVacuum) {
+TEST(ExactRiemann, RejectsUnphysicalStates) {
   EXPECT_THROW(ExactRiemann({1, 0, -1}, {1, 0, 1}, 1.4), std::invalid_argument);
   EXPECT_THROW(ExactRiemann({1, 0, 1}, {0, 0, 1}, 1.4), std::invalid_argument);
   EXPECT_THROW(ExactRiemann({1, std::nan(""), 1}, {1, 0, 1}, 1.4), std::invalid_argument);

@@ -10,12 +10,12 @@
 #include "kernels/reference/fabric/stress.hpp"
 #include "kernels/reference/fabric/totals.hpp"
 
-// Closed forms that hold the oracles of fabric to what they say.
+// Reference functions of fabric against closed forms.
 
 namespace drogue::reference {
 namespace {
 
-TEST(ReferenceFrequency, OfAChainIsThatOfTheBooks) {
+TEST(ReferenceFrequency, ChainHasTheAnalyticFrequency) {
   // A free chain of N masses: 2 sqrt(k / m) cos(pi / (2 N)).
   Mesh mesh;
   for (int i = 0; i < 6; ++i) mesh.rest.push_back({0.5 * i, 0, 0});
@@ -25,7 +25,7 @@ TEST(ReferenceFrequency, OfAChainIsThatOfTheBooks) {
   const double expected = 2.0 * std::sqrt(80.0 / 0.2) * std::cos(std::numbers::pi / 12.0);
   EXPECT_NEAR(largest_frequency(material, mesh, std::vector<double>(6, 0.2), {}, mesh.rest), expected,
               1e-4 * expected);
-  // Both ends held: 2 sqrt(k / m) cos(pi / (2 (N + 1))) of the four between.
+  // Both ends fixed: 2 sqrt(k / m) cos(pi / (2 (N + 1))) with N = 4 free masses.
   const double held = 2.0 * std::sqrt(80.0 / 0.2) * std::cos(std::numbers::pi / 10.0);
   EXPECT_NEAR(largest_frequency(material, mesh, std::vector<double>(6, 0.2), {7, 0, 0, 0, 0, 7}, mesh.rest),
               held, 1e-4 * held);
@@ -33,7 +33,7 @@ TEST(ReferenceFrequency, OfAChainIsThatOfTheBooks) {
 
 const std::array<Vector, 3> unit_triangle = {Vector{0, 0, 0}, Vector{1, 0, 0}, Vector{0, 1, 0}};
 
-TEST(ReferenceStress, OfUniaxialTensionIsThatOfTheBooks) {
+TEST(ReferenceStress, MatchesUniaxialTension) {
   fabric::Material material;
   material.membrane_modulus = 500.0, material.poisson = 0.25;
   const double l = 1.1, strain = 0.5 * (l * l - 1.0), w = std::sqrt(1.0 - 2.0 * 0.25 * strain);
@@ -42,13 +42,13 @@ TEST(ReferenceStress, OfUniaxialTensionIsThatOfTheBooks) {
   EXPECT_NEAR(cauchy[2][2], 500.0 * strain * l / w, 1e-11);
   EXPECT_NEAR(cauchy[1][1], 0.0, 1e-11);
   EXPECT_NEAR(nominal_stress(cauchy, unit_triangle, now)[2][2], 500.0 * strain * l, 1e-11);
-  // Forces that hold the triangle at this stress.
+  // Forces in equilibrium with this stress.
   const double half = 0.5 * 500.0 * strain * l;
   const Tensor virial = virial_stress({Vector{0, 0, half}, Vector{0, 0, -half}, Vector{}}, now);
   EXPECT_NEAR(virial[2][2], cauchy[2][2], 1e-11);
 }
 
-TEST(ReferenceMembrane, RelaxedEnergyKnowsTautWrinkledAndSlack) {
+TEST(ReferenceMembrane, RelaxedEnergyCoversTautWrinkledAndSlackStates) {
   fabric::Material material;
   material.membrane_modulus = 800.0, material.poisson = 0.3, material.tension_only = true;
   const auto energy = [&](double x, double y) {
@@ -64,7 +64,7 @@ TEST(ReferenceMembrane, RelaxedEnergyKnowsTautWrinkledAndSlack) {
   EXPECT_EQ(energy(1.1, 1.05), full);
 }
 
-TEST(ReferenceLoads, VolumeAndAreasOfATetrahedron) {
+TEST(ReferenceLoads, ComputesVolumeAndAreasOfATetrahedron) {
   Mesh mesh;
   mesh.rest = {{0, 0, 0}, {1, 0, 0}, {0, 2, 0}, {0, 0, 3}};
   mesh.triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
@@ -75,7 +75,7 @@ TEST(ReferenceLoads, VolumeAndAreasOfATetrahedron) {
   EXPECT_NEAR(f[0][0] + f[1][0] + f[2][0] + f[3][0], 0.0, 1e-14);
 }
 
-TEST(ReferenceLoads, ADashpotPullsAlongItsEdge) {
+TEST(ReferenceLoads, DashpotActsAlongItsEdge) {
   Mesh mesh;
   mesh.rest = {{0, 0, 0}, {3, 4, 0}};
   mesh.lines = {{0, 1}};
@@ -87,7 +87,7 @@ TEST(ReferenceLoads, ADashpotPullsAlongItsEdge) {
   EXPECT_EQ(f[1][0], -f[0][0]);
 }
 
-TEST(ReferenceBending, OfAFoldIsThatOfItsAngle) {
+TEST(ReferenceBending, FoldHasTheEnergyOfItsAngle) {
   Mesh mesh;
   mesh.rest = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, -1, 0}};
   mesh.triangles = {{0, 1, 2}, {1, 0, 3}};
@@ -99,7 +99,7 @@ TEST(ReferenceBending, OfAFoldIsThatOfItsAngle) {
   EXPECT_NEAR(f[2][2], -7.0, 1e-12);
 }
 
-TEST(ReferenceTotals, OfOneMass) {
+TEST(ReferenceTotals, SumsEnergyAndMomentumOfOneMass) {
   const Sums s = sums({2.0}, {0, 0, -10}, {Vector{1, 0, 0}}, {Vector{1, 2, 3}}, {Vector{4, 5, 6}});
   EXPECT_EQ(static_cast<double>(s.kinetic), 77.0);
   EXPECT_EQ(static_cast<double>(s.gravity), 60.0);
@@ -108,7 +108,7 @@ TEST(ReferenceTotals, OfOneMass) {
   EXPECT_EQ(static_cast<double>(s.momentum[1]), 10.0);
 }
 
-TEST(ReferenceMass, OfATriangleAndALine) {
+TEST(ReferenceMass, LumpsTheMassOfATriangleAndALine) {
   Mesh mesh;
   mesh.rest = {unit_triangle[0], unit_triangle[1], unit_triangle[2], {0, 4, 0}};
   mesh.triangles = {{0, 1, 2}};

@@ -7,7 +7,7 @@
 #include "kernels/reference/fabric/bodies.hpp"
 #include "kernels/reference/fabric/intersections.hpp"
 
-// The oracles of contact against cases whose answer is known.
+// Reference functions of contact against cases with known results.
 
 namespace drogue::reference {
 namespace {
@@ -16,10 +16,10 @@ using Place = std::array<double, 3>;
 
 const std::array<Place, 3> half_square = {Place{0, 0, 0}, Place{1, 0, 0}, Place{0, 1, 0}};
 
-TEST(ReferenceIntersections, SidesAreThoseOfTheDeterminantAlsoWhereItRounds) {
+TEST(ReferenceIntersections, OrientationIsExactWhereTheDeterminantRounds) {
   EXPECT_EQ(side_of_plane(half_square[0], half_square[1], half_square[2], {0.2, 0.2, 1.0}),
             -side_of_plane(half_square[0], half_square[1], half_square[2], {0.2, 0.2, -1.0}));
-  // Points of the plane x + y + z = 1 in numbers that doubles hold, then one moved by the last bit.
+  // Points of the plane x + y + z = 1 with exactly representable coordinates, then one moved by 1 ulp.
   const Place a = {0.5, 0.25, 0.25}, b = {-0.125, 1.0, 0.125}, c = {3.0, -2.5, 0.5}, d = {0.75, 0.125, 0.125};
   EXPECT_EQ(side_of_plane(a, b, c, d), 0);
   const int above = side_of_plane(a, b, c, {0.75, 0.125, std::nextafter(0.125, 1.0)});
@@ -27,7 +27,7 @@ TEST(ReferenceIntersections, SidesAreThoseOfTheDeterminantAlsoWhereItRounds) {
   EXPECT_EQ(side_of_plane(a, b, c, {0.75, 0.125, std::nextafter(0.125, 0.0)}), -above);
 }
 
-TEST(ReferenceIntersections, SegmentsAndTriangles) {
+TEST(ReferenceIntersections, FindSegmentsThatCrossTriangles) {
   const auto pierced = [](const Place& p, const Place& q) { return meet({p, q}, half_square); };
   EXPECT_TRUE(pierced({0.2, 0.2, -1}, {0.3, 0.3, 1}));
   EXPECT_FALSE(pierced({0.2, 0.2, 1e-300}, {0.3, 0.3, 1}));
@@ -42,7 +42,7 @@ TEST(ReferenceIntersections, SegmentsAndTriangles) {
   EXPECT_TRUE(pierced({1, 0, 0}, {3, 0, 0}));
 }
 
-TEST(ReferenceIntersections, OfAMeshLeaveOutWhatSharesAVertex) {
+TEST(ReferenceIntersections, ExcludeTrianglesThatShareAVertex) {
   std::vector<Place> x = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0.0}, {0.3, 0.3, -1}, {0.3, 0.3, 1}};
   const std::vector<std::array<int, 3>> triangles = {{0, 1, 2}, {1, 3, 2}};
   EXPECT_TRUE(intersections(x, triangles, {}).empty());
@@ -51,12 +51,12 @@ TEST(ReferenceIntersections, OfAMeshLeaveOutWhatSharesAVertex) {
   ASSERT_EQ(found.size(), 1U);
   EXPECT_EQ(found[0].triangle, 0U);
   EXPECT_EQ(found[0].segment, (std::array<int, 2>{4, 5}));
-  // Two triangles with one vertex in common are told by the edges that do not have it.
+  // For two triangles with a common vertex only the edges without that vertex count.
   x[3] = {0.5, 0.2, -0.5}, x[4] = {0.2, 0.5, 0.5};
   EXPECT_EQ(intersections(x, std::vector<std::array<int, 3>>{{0, 1, 2}, {0, 3, 4}}, {}).size(), 1U);
 }
 
-/// Whether the boxes about some corners overlap.
+/// True if the bounding boxes of two sets of corners overlap.
 bool boxes_overlap(const std::vector<Place>& a, const std::vector<Place>& b) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const auto of = [axis](const Place& p) { return p[axis]; };
@@ -67,8 +67,8 @@ bool boxes_overlap(const std::vector<Place>& a, const std::vector<Place>& b) {
   return true;
 }
 
-TEST(ReferenceIntersections, AreThoseOfAllPairs) {
-  // Triangles and lines of all sizes; in space, in a plane, and on whole numbers, where they touch.
+TEST(ReferenceIntersections, EqualTheIntersectionsOfAllPairs) {
+  // Triangles and lines of all sizes: in space, in a plane, and with integer coordinates, where they touch.
   std::mt19937 engine(7);
   const auto random = [&] { return std::generate_canonical<double, 53>(engine); };
   std::size_t met = 0;
@@ -95,7 +95,7 @@ TEST(ReferenceIntersections, AreThoseOfAllPairs) {
     std::vector<std::array<int, 2>> lines, segments;
     while (triangles.size() < 25) {
       const int t = part(3), line = part(2);
-      // Whether a triangle without area meets anything is not asked.
+      // Degenerate triangles are skipped.
       if (side_of_plane(at(t), at(t + 1), at(t + 2), {0.7, 0.3, 99.9}) == 0) continue;
       triangles.push_back({t, t + 1, t + 2}), lines.push_back({line, line + 1});
       segments.insert(segments.end(), {{line, line + 1}, {t, t + 1}, {t + 1, t + 2}, {t + 2, t}});
@@ -112,7 +112,7 @@ TEST(ReferenceIntersections, AreThoseOfAllPairs) {
   EXPECT_GT(met, 1000U);
 }
 
-/// Whether a triangle enters a body, by many of its points.
+/// True if one of many points of a triangle lies in a body.
 bool sampled(const fabric::Body& body, const std::array<Place, 3>& t) {
   constexpr int n = 60;
   double before = 0.0;
@@ -122,7 +122,7 @@ bool sampled(const fabric::Body& body, const std::array<Place, 3>& t) {
       for (std::size_t axis = 0; axis < 3; ++axis)
         p[axis] = (i * t[0][axis] + j * t[1][axis] + (n - i - j) * t[2][axis]) / n;
       if (body.kind != fabric::BodyKind::disk && distance_from(body, p) < 0.0) return true;
-      // A disk has no inside: the triangle passes from one side to the other over it.
+      // A disk has no interior: the triangle crosses its plane within the disk.
       const double beside = std::hypot(p[0], p[1]);
       if (body.kind == fabric::BodyKind::disk && j > 0 && before * p[2] < 0.0 && beside < body.radius - 0.1)
         return true;
@@ -131,7 +131,7 @@ bool sampled(const fabric::Body& body, const std::array<Place, 3>& t) {
   return false;
 }
 
-TEST(ReferenceBodies, TrianglesEnterWhereTheirPointsDo) {
+TEST(ReferenceBodies, TrianglesPenetrateBodiesWhereTheirPointsDo) {
   std::mt19937 engine(4);
   const auto random = [&] { return 4.0 * std::generate_canonical<double, 53>(engine) - 2.0; };
   for (const auto kind : {fabric::BodyKind::sphere, fabric::BodyKind::disk, fabric::BodyKind::plane}) {
@@ -144,7 +144,7 @@ TEST(ReferenceBodies, TrianglesEnterWhereTheirPointsDo) {
       const bool in = enters(body, t);
       EXPECT_TRUE(in || !sampled(body, t));
       ++(in ? entered : missed);
-      // Smaller bodies are entered less.
+      // Fewer triangles penetrate smaller bodies.
       fabric::Body smaller = body;
       smaller.radius = 0.35;
       EXPECT_TRUE(in || !enters(smaller, t));

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double gamma_air = 1.4;
 
-/// Neighbours that differ by up to eight decades in density and pressure and part or collide at Mach 30.
+/// Neighbouring states whose densities and pressures differ by up to eight orders of magnitude, at Mach 30.
 std::vector<Conserved> near_vacuum_cells(std::mt19937& random, std::size_t n) {
   std::uniform_real_distribution<double> exponent(-8.0, 0.0);
   std::uniform_real_distribution<double> mach(-30.0, 30.0);
@@ -39,7 +39,7 @@ TEST(Limiter, KeepsEveryStageOfANearVacuumPositive) {
       limited_faces += fluxes.limited_faces;
       for (const Conserved& U : stage_update(cells, cells, fluxes.flux, 0.0, lambda)) {
         EXPECT_GT(U[0], 0.0);
-        // p = (gamma-1)(E - m^2/(2 rho)) loses what the difference of two energies rounds off.
+        // p = (gamma-1)(E - m^2/(2 rho)) suffers from cancellation.
         EXPECT_GT(pressure(U, gamma_air), -1e-14 * U[2]);
       }
     }
@@ -61,7 +61,7 @@ TEST(Limiter, UnlimitedStagesOfTheSameDataFail) {
   EXPECT_GT(failures, 40);
 }
 
-TEST(Limiter, LeavesASafeFluxUntouched) {
+TEST(Limiter, LeavesASafeFluxUnchanged) {
   const Conserved a = to_conserved({1.0, 0.1, 1.0}, gamma_air);
   const Conserved b = to_conserved({0.9, 0.0, 0.8}, gamma_air);
   const Conserved high = physical_flux(a, gamma_air);
@@ -71,18 +71,18 @@ TEST(Limiter, LeavesASafeFluxUntouched) {
   EXPECT_EQ(limited.flux, high);
 }
 
-TEST(Limiter, LeavesTheDensityAtTheFloorWhereItMustAct) {
+TEST(Limiter, LimitsTheDensityToItsFloor) {
   const Conserved a = to_conserved({1e-3, 0.0, 1e3}, gamma_air);
   const Conserved& b = a;
   const double lambda = 1e-4;
   const Conserved low = {0.0, 0.0, 0.0};
-  const Conserved high = {10.0, 0.0, 0.0};  // takes twice the mass that cell a holds
+  const Conserved high = {10.0, 0.0, 0.0};  // removes twice the mass of cell a
   const LimitedFlux limited = limit_flux(high, low, a, b, lambda, gamma_air);
   EXPECT_TRUE(limited.limited);
   EXPECT_NEAR(a[0] - 2.0 * lambda * limited.flux[0], positivity_floor, 1e-17);
 }
 
-TEST(Limiter, BoundsAnAbsurdFlux) {
+TEST(Limiter, BoundsAnExtremeFlux) {
   const Conserved a = to_conserved({1.0, 0.0, 1.0}, gamma_air);
   const Conserved low = lax_friedrichs_flux(a, a, 1.2, gamma_air);
   const double lambda = 0.2;

@@ -21,7 +21,7 @@ Material cloth(Model model) {
   return m;
 }
 
-TEST(ReferenceMembrane, ForcesAreDifferencesOfTheEnergy) {
+TEST(ReferenceMembrane, ForcesAreGradientsOfTheEnergy) {
   const Mesh mesh = random_patch(3, 3, 1);
   for (const Model model : {Model::linear_vector, Model::edge, Model::quadratic, Model::biquadratic}) {
     const std::vector<Vector> now = shaken(mesh.rest, 0.2, 2), f = forces(cloth(model), mesh, now);
@@ -41,7 +41,7 @@ std::pair<double, double> moduli_of(double young, double nu) {
 }
 
 /// Delingette's biquadratic springs: k_i d_i^2 / 2 and gamma_i d_j d_k with d = (l^2 - L^2) / (2 L); `g` is
-/// what stands for twice the shear modulus.
+/// the value in place of twice the shear modulus.
 double biquadratic_springs(double lambda, double g, const std::array<Vector, 3>& rest,
                            const std::array<Vector, 3>& now) {
   const auto squared = [](const Vector& a, const Vector& b) {
@@ -67,7 +67,7 @@ double biquadratic_springs(double lambda, double g, const std::array<Vector, 3>&
   return sum;
 }
 
-TEST(ReferenceMembrane, BiquadraticSpringsAreStVenantKirchhoff) {
+TEST(ReferenceMembrane, BiquadraticSpringsEqualStVenantKirchhoff) {
   const Material m = cloth(Model::biquadratic);
   const auto [lambda, two_g] = moduli_of(m.membrane_modulus, m.poisson);
   const Mesh mesh = random_patch(6, 6, 4);
@@ -86,7 +86,7 @@ struct Apparent {
   double modulus, poisson;
 };
 
-/// Young's modulus and Poisson's ratio of a free strip under small strain, from the energy a unit area of a
+/// Young's modulus and Poisson's ratio of a free strip under small strain, from the energy per area of a
 /// triangle that stretches by a along x and b along y.
 template <class Energy>
 Apparent apparent(const Energy& of) {
@@ -102,7 +102,7 @@ Apparent apparent(const Energy& of) {
   return {c11 - c12 * c12 / c22, c12 / c22};
 }
 
-TEST(ReferenceMembrane, MaterialHasTheModulusAndRatioItIsGiven) {
+TEST(ReferenceMembrane, MaterialReproducesModulusAndPoissonRatio) {
   for (const double poisson : {0.0, 0.14, 0.3, 0.45})
     for (const Model model : {Model::quadratic, Model::biquadratic}) {
       Material m = cloth(model);
@@ -114,8 +114,8 @@ TEST(ReferenceMembrane, MaterialHasTheModulusAndRatioItIsGiven) {
     }
 }
 
-TEST(ReferenceMembrane, TheOrdinaryShearModulusInItsPlaceMakesAnotherMaterial) {
-  // What the dissertation calls mu is twice the shear modulus.
+TEST(ReferenceMembrane, OrdinaryShearModulusGivesAnotherMaterial) {
+  // mu of [Shi] is twice the shear modulus.
   for (const double nu : {0.14, 0.3}) {
     const auto [lambda, two_g] = moduli_of(1000.0, nu);
     const auto [modulus, ratio] = apparent([&](const auto& rest, const auto& now) {

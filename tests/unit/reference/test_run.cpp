@@ -43,15 +43,15 @@ TEST(ReferenceRun, RampsTheFirstTwentySteps) {
   gas::Parameters p = sod_parameters();
   GasRun run = start_run(p, [](double) {
     return Primitive{1.4, 0.0, 1.0};
-  });  // speed 1 for ever, dt = ramp * 0.012
+  });  // constant wave speed 1, dt = ramp * 0.012
   double expected = 0.0;
   for (int k = 0; k < 25; ++k) expected += 0.012 * (k < 20 ? 0.1 + 0.045 * k : 1.0);
   advance(run, p, expected);
   EXPECT_EQ(run.steps, 25);
 }
 
-TEST(ReferenceRun, SoundWavesPassPeriodicEndsAndReflectFromWalls) {
-  // A small right-going sound pulse: back after one period; after one reflection mirrored with u reversed.
+TEST(ReferenceRun, SoundWavesCrossPeriodicEndsAndReflectFromWalls) {
+  // A small right-going sound pulse: unchanged after one period, mirrored with -u after one reflection.
   gas::Parameters p = sod_parameters();
   p.x_min = 0.0;
   p.x_max = 1.0;
@@ -71,7 +71,7 @@ TEST(ReferenceRun, SoundWavesPassPeriodicEndsAndReflectFromWalls) {
   }
 }
 
-TEST(ReferenceRun, SodErrorsAreThePublishedOnes) {
+TEST(ReferenceRun, SodErrorsMatchPublishedValues) {
   gas::Parameters p = sod_parameters();
   const auto near = [](double error, double published) { EXPECT_NEAR(error, published, 0.01 * published); };
   p.weno = gas::Weno::js;
@@ -89,7 +89,7 @@ TEST(ReferenceRun, SodErrorsAreThePublishedOnes) {
   near(sod_error(p), 6.94e-3);
 }
 
-TEST(ReferenceRun, FourStageSchemeTakesTwiceTheStepForTheSameError) {
+TEST(ReferenceRun, FourStageSchemeKeepsTheErrorWithTwiceTheStep) {
   gas::Parameters p = sod_parameters();
   const double three_stages = sod_error(p);
   p.time_scheme = gas::TimeScheme::ssprk43;
@@ -97,7 +97,7 @@ TEST(ReferenceRun, FourStageSchemeTakesTwiceTheStepForTheSameError) {
   EXPECT_NEAR(sod_error(p), three_stages, 0.06 * three_stages);
 }
 
-TEST(ReferenceRun, AutomaticPositivitySavesWhatFailsWithout) {
+TEST(ReferenceRun, AutomaticPositivityCompletesRunsThatFailWithoutIt) {
   gas::Parameters p = sod_parameters();
   p.x_min = 0.0;
   p.x_max = 9.0;
@@ -117,7 +117,7 @@ TEST(ReferenceRun, AutomaticPositivitySavesWhatFailsWithout) {
   EXPECT_GT(saved.limited_faces, 0);
 }
 
-TEST(ReferenceRun, AutomaticPositivityIsOffWhereNothingFails) {
+TEST(ReferenceRun, AutomaticPositivityStaysOffWithoutFailures) {
   gas::Parameters p = sod_parameters();
   const GasRun off = reference_run(p, sod, 0.4);
   p.positivity = gas::Positivity::automatic;

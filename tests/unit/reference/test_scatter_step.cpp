@@ -19,7 +19,7 @@ fabric::Parameters patch_of_cloth() {
   return p;
 }
 
-TEST(ReferenceScatter, ForcesAreThoseOfTheEnergy) {
+TEST(ReferenceScatter, ForcesAreGradientsOfTheEnergy) {
   const fabric::Parameters p = patch_of_cloth();
   const std::vector<fabric::Vector> now = testing::shaken(p.mesh.rest, 0.2, 2),
                                     expected = forces(p.material, p.mesh, now);
@@ -29,7 +29,7 @@ TEST(ReferenceScatter, ForcesAreThoseOfTheEnergy) {
     for (std::size_t axis = 0; axis < 3; ++axis) EXPECT_NEAR(f[i][axis], expected[i][axis], 1e-9);
 }
 
-TEST(ReferenceScatter, StepsAreOfFourthOrder) {
+TEST(ReferenceScatter, ConvergesWithFourthOrder) {
   fabric::Parameters p = patch_of_cloth();
   p.gravity = {0.0, 0.0, -9.81}, p.damping = 0.4, p.pinned.assign(p.mass.size(), 0), p.pinned[0] = 7;
   const auto end = [&](int steps) {

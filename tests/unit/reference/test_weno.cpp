@@ -23,7 +23,7 @@ INSTANTIATE_TEST_SUITE_P(Schemes, Weno,
                                            Scheme{gas::Weno::teno5, 1, "teno5"}),
                          [](const auto& instance) { return instance.param.name; });
 
-TEST_P(Weno, WeightsSumToOneAndAreNotNegative) {
+TEST_P(Weno, WeightsSumToOneAndAreNonNegative) {
   std::mt19937 random(2);
   std::uniform_real_distribution<double> value(-1.0, 1.0);
   for (int trial = 0; trial < 2000; ++trial) {
@@ -36,7 +36,7 @@ TEST_P(Weno, WeightsSumToOneAndAreNotNegative) {
   }
 }
 
-TEST_P(Weno, WeightsAreIdealOnALine) {
+TEST_P(Weno, WeightsAreIdealForLinearData) {
   const std::array<double, 3> w =
       weno_weights({1.0, 1.25, 1.5, 1.75, 2.0}, GetParam().weno, GetParam().power);
   EXPECT_NEAR(w[0], 0.1, 1e-14);
@@ -44,7 +44,7 @@ TEST_P(Weno, WeightsAreIdealOnALine) {
   EXPECT_NEAR(w[2], 0.3, 1e-14);
 }
 
-TEST_P(Weno, IgnoresTheSideBeyondAJump) {
+TEST_P(Weno, ReconstructsFromTheSmoothSideOfAJump) {
   // The jump lies between i+1 and i+2: only the first two stencils are smooth.
   const std::array<double, 3> w = weno_weights({1.0, 1.0, 1.0, 1.0, 9.0}, GetParam().weno, GetParam().power);
   EXPECT_LT(w[2], 1e-5);
@@ -52,7 +52,7 @@ TEST_P(Weno, IgnoresTheSideBeyondAJump) {
   EXPECT_NEAR(value, 1.0, 1e-4);
 }
 
-TEST_P(Weno, ConstantDataIsKeptAndFinite) {
+TEST_P(Weno, PreservesConstantData) {
   for (const double value : {0.0, 1.0, -3.0, 1e-30, 1e12}) {
     const double face =
         weno_face_value({value, value, value, value, value}, GetParam().weno, GetParam().power);

@@ -39,6 +39,7 @@ TEST(AtomicFile, AbandonedWriteKeepsTheFormerFile) {
   EXPECT_EQ(directory.entries(), 1U);
 }
 
+// ctest-label: no-sanitizer
 TEST(AtomicFile, KilledWriterKeepsTheFormerFile) {
   const TemporaryDirectory directory;
   write_file_atomically(directory / "a.txt", "old");

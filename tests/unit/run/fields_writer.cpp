@@ -121,6 +121,7 @@ TEST(FieldsWriter, WritesRowsOfVectorsAndIntegers) {
   EXPECT_EQ(row, (std::vector<double>{9, 10, 11}));
 }
 
+// ctest-label: no-sanitizer
 TEST(FieldsWriter, LosesNothingIfKilledBetweenSteps) {
   const TemporaryDirectory directory;
   const int status = test::in_child([&directory] {
@@ -136,6 +137,7 @@ TEST(FieldsWriter, LosesNothingIfKilledBetweenSteps) {
 }
 
 // Enough groups and data that HDF5 would by default write some metadata within the step.
+// ctest-label: no-sanitizer
 TEST(FieldsWriter, KeepsFormerStepsIfKilledWithinAStep) {
   const TemporaryDirectory directory;
   std::vector<DatasetSpec> many;
@@ -160,6 +162,7 @@ TEST(FieldsWriter, KeepsFormerStepsIfKilledWithinAStep) {
   EXPECT_EQ(step_groups(directory / "fields.h5").size(), 2U);
 }
 
+// ctest-label: no-sanitizer
 TEST(FieldsWriter, LeavesAReadableFileIfKilledAtAnyMoment) {
   for (int round = 0; round < 10; ++round) {
     const TemporaryDirectory directory;

@@ -43,7 +43,7 @@ TEST(Xdmf, ListsEveryStepOfALine) {
   EXPECT_EQ(xdmf_document("a<b", {{"", {x}, {rho}}}, {{"000000", 0.1}}), expected);
 }
 
-TEST(Xdmf, MovesClothWithItsPositions) {
+TEST(Xdmf, PlacesTrianglesAtTheFieldPosition) {
   const std::vector<DatasetSpec> mesh = {{"vertices", {4, 3}, "m", "vertex", ""},
                                          {"triangles", {2, 3}, "1", "face", ""},
                                          {"edges", {5, 2}, "1", "edge", ""},
@@ -77,7 +77,7 @@ TEST(Xdmf, MovesClothWithItsPositions) {
   EXPECT_EQ(xdmf_document("c", {{"", mesh, {velocity, position, stress}}}, {{"000000", 0.5}}), expected);
 }
 
-TEST(Xdmf, GivesStringsBesideClothTheirOwnGrid) {
+TEST(Xdmf, GivesStringsBesideTrianglesTheirOwnGrid) {
   const std::vector<DatasetSpec> mesh = {{"vertices", {5, 3}, "m", "vertex", ""},
                                          {"triangles", {2, 3}, "1", "face", ""},
                                          {"edges", {6, 2}, "1", "edge", ""},
@@ -87,8 +87,8 @@ TEST(Xdmf, GivesStringsBesideClothTheirOwnGrid) {
   const std::string expected = R"(<?xml version="1.0" encoding="UTF-8"?>
 <Xdmf Version="3.0">
   <Domain>
-    <Grid Name="c cloth" GridType="Collection" CollectionType="Temporal">
-      <Grid Name="c cloth" GridType="Uniform">
+    <Grid Name="c triangles" GridType="Collection" CollectionType="Temporal">
+      <Grid Name="c triangles" GridType="Uniform">
         <Time Value="0.5"/>
         <Topology TopologyType="Triangle" NumberOfElements="2">
           <DataItem Dimensions="2 3" NumberType="Int" Precision="8" Format="HDF">fields.h5:/mesh/triangles</DataItem>
@@ -206,10 +206,18 @@ TEST(Xdmf, NamesSeveralGridsAndTheirGroups) {
     EXPECT_NE(text.find(part), std::string::npos) << part << text;
 }
 
-TEST(Xdmf, RefusesAnIncompleteMesh) {
+TEST(Xdmf, RejectsAnIncompleteMesh) {
   const std::vector<DatasetSpec> mesh = {{"vertices", {4, 3}, "m", "vertex", ""}};
   EXPECT_FALSE(is_complete(mesh));
   EXPECT_THROW(static_cast<void>(xdmf_document("p", {{"", mesh, {}}}, {})), std::invalid_argument);
+}
+
+TEST(Xdmf, RejectsFieldsOfARectilinearGridWithZFastest) {
+  const std::vector<DatasetSpec> mesh = {
+      {"x", {5}, "m", "face", ""}, {"y", {4}, "m", "face", ""}, {"z", {3}, "m", "face", ""}};
+  const DatasetSpec velocity = {"velocity", {4, 3, 2, 3}, "m/s", "cell", ""};
+  EXPECT_THROW(static_cast<void>(xdmf_document("f", {{"", mesh, {velocity}}}, {{"000000", 0.0}})),
+               std::invalid_argument);
 }
 
 }  // namespace

@@ -49,7 +49,7 @@ class DamagedGasScene : public ::testing::Test {
       std::filesystem::temp_directory_path() / ("drogue-damaged-" + std::to_string(::getpid()) + ".toml");
 };
 
-TEST_F(DamagedGasScene, IsRefusedWithFileAndLineOrValid) {
+TEST_F(DamagedGasScene, IsRejectedWithFileAndLineUnlessStillValid) {
   constexpr unsigned mutations = 2000;
   const std::vector<std::string> sound = sound_scenes();
   unsigned refused = 0;
@@ -59,7 +59,7 @@ TEST_F(DamagedGasScene, IsRefusedWithFileAndLineOrValid) {
   EXPECT_LT(refused, mutations);
 }
 
-TEST_F(DamagedGasScene, IsValidBeforeTheDamage) {
+TEST_F(DamagedGasScene, UndamagedSceneIsValid) {
   for (const std::string& text : sound_scenes()) EXPECT_FALSE(is_refused(text)) << text;
 }
 

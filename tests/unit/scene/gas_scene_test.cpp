@@ -133,7 +133,7 @@ TEST(GasScene, CompletesTimesFromFieldsAndFieldsFromTimes) {
   EXPECT_TRUE(holds(error_of({"output.fields=[\"u\",\"u\"]"}), "twice"));
 }
 
-TEST(GasScene, SeedModeSelectsTheSchemeOfShi) {
+TEST(GasScene, BaselineSelectsTheSchemeOfShi) {
   const GasScene scene = read_text(least, {"scheme.weno_power=2"}, SchemeSource::baseline);
   EXPECT_EQ(scene.parameters.weno, gas::Weno::js);
   EXPECT_EQ(scene.parameters.splitting, gas::Splitting::lf_global);

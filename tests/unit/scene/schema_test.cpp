@@ -23,7 +23,7 @@ struct Disk {
 };
 
 /// Scene of another program: arrays of tables, alternatives, numbers that may be expressions.
-struct Cloth {
+struct Fabric {
   bool tension_only = false;
   int count = 3;
   std::int64_t seed = 1;
@@ -37,7 +37,7 @@ struct Cloth {
   double high = 1.0;
 };
 
-void declare(Table& root, Cloth& cloth) {
+void declare(Table& root, Fabric& cloth) {
   root.value("app", fixed_codec("cloth"), "Program").required().decisive();
   root.table(
           "mesh",
@@ -80,17 +80,17 @@ void declare(Table& root, Cloth& cloth) {
 
 const std::string head = "app = \"cloth\"\n[mesh]\ndisk = { radius = 1 }\n";
 
-Cloth read_cloth(const std::string& text, const std::vector<std::string>& sets = {}) {
+Fabric read_cloth(const std::string& text, const std::vector<std::string>& sets = {}) {
   Node document = parse_text(text, "c.toml");
   for (const auto& set : sets) apply_set(document, set);
-  Cloth cloth;
+  Fabric cloth;
   Table root;
   declare(root, cloth);
   read(root, document);
   return cloth;
 }
 
-std::string print_cloth(Cloth cloth) {
+std::string print_cloth(Fabric cloth) {
   Table root;
   declare(root, cloth);
   return print(root);
@@ -107,7 +107,7 @@ std::string error_of(const std::string& text, const std::vector<std::string>& se
 }
 
 TEST(Schema, ReadsEveryType) {
-  const Cloth cloth =
+  const Fabric cloth =
       read_cloth(head +
                  "[material]\nshape = \"string\"\ntension_only = true\nstiffness = 2\ncount = 7\nseed = -5\n"
                  "pressure = \"x*t\"\ninterval = [-1, 2.5]\n"
@@ -194,7 +194,7 @@ TEST(Schema, AssignmentDropsKeysThatItMakesInapplicable) {
   EXPECT_FALSE(read_cloth(text, {"material.shape=disk"}).tension_only);
   EXPECT_EQ(error_of(text, {"material.shape=disk", "material.tension_only=true"}),
             "--set material.tension_only=true: material.tension_only applies only with shape = \"string\"");
-  const Cloth cloth = read_cloth(text, {"mesh.ring={radius=3}"});
+  const Fabric cloth = read_cloth(text, {"mesh.ring={radius=3}"});
   EXPECT_FALSE(cloth.disk.has_value());
   EXPECT_EQ(cloth.ring->radius, 3.0);
   EXPECT_EQ(error_of(text, {"mesh.ring={radius=3}", "mesh.disk={radius=3}"}),
@@ -202,7 +202,7 @@ TEST(Schema, AssignmentDropsKeysThatItMakesInapplicable) {
 }
 
 TEST(Schema, DocumentsEveryKey) {
-  Cloth cloth;
+  Fabric cloth;
   Table root;
   declare(root, cloth);
   const std::string text = document(root);

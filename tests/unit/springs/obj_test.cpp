@@ -36,18 +36,18 @@ TEST(ObjFile, ReadsVerticesFacesAndLines) {
   EXPECT_EQ(contents.triangle_line, (std::vector<int>{10, 11}));
 }
 
-TEST(ObjFile, ReadsWindowsLinesAndNumbersOfAllForms) {
+TEST(ObjFile, ReadsCrLfAndAllNumberFormats) {
   const ObjContents contents = read_mesh("v +0.5 -1e-3 .25\r\nv 1 0 0\r\nv 0 2 0\r\nf -3 -2 -1");
   EXPECT_EQ(contents.mesh.rest[0], (fabric::Vector{0.5, -1e-3, 0.25}));
   EXPECT_EQ(contents.mesh.triangles[0], (std::array{0, 1, 2}));
 }
 
-TEST(ObjFile, TakesAWeightOfOneAndColours) {
+TEST(ObjFile, AcceptsUnitWeightsAndColours) {
   const ObjContents contents = read_mesh("v 1 0 0 1.0\nv 0 1 0 0.5 0.25 1\nv 0 0 1\nf 1 2 3\n");
   EXPECT_EQ(contents.mesh.rest, (std::vector<fabric::Vector>{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}));
 }
 
-TEST(ObjFile, NamesFileLineAndPart) {
+TEST(ObjFile, ErrorsNameFileLineAndPart) {
   const std::string three = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
   const std::vector<std::array<std::string, 3>> cases = {
       {"", "m.obj:1: ", "no vertex"},
@@ -86,7 +86,7 @@ TEST(ObjFile, NamesFileLineAndPart) {
   }
 }
 
-TEST(ObjFile, AStrutAlongAnEdgeIsNoRepetition) { EXPECT_EQ(mesh_error(square + "l 1 2\n"), ""); }
+TEST(ObjFile, AcceptsALineAlongATriangleEdge) { EXPECT_EQ(mesh_error(square + "l 1 2\n"), ""); }
 
 }  // namespace
 }  // namespace drogue::springs_app

@@ -1,0 +1,42 @@
+# Programs: one executable each, or all of them in one, which a bundle holds once per backend.
+
+option(DROGUE_ONE_PROGRAM "Link all programs as one, drogue, which runs the one that its own file name says" OFF)
+
+# drogue_add_program(<name> SOURCES <files> LIBRARIES <targets>): an executable; with DROGUE_ONE_PROGRAM objects for drogue, whose
+# `main` has a name of its own.
+function(drogue_add_program name)
+  cmake_parse_arguments(_program "" "" "SOURCES;LIBRARIES" ${ARGN})
+  if(DROGUE_ONE_PROGRAM)
+    add_library(${name} OBJECT ${_program_SOURCES})
+    string(MAKE_C_IDENTIFIER "main_of_${name}" _main)
+    list(FILTER _program_SOURCES INCLUDE REGEX "(^|/)main\\.cpp$")
+    set_source_files_properties(${_program_SOURCES} PROPERTIES COMPILE_DEFINITIONS main=${_main})
+    set_property(GLOBAL APPEND PROPERTY DROGUE_PROGRAMS ${name})
+  else()
+    add_executable(${name} ${_program_SOURCES})
+    install(TARGETS ${name} RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}")
+  endif()
+  target_link_libraries(${name} PRIVATE ${_program_LIBRARIES})
+endfunction()
+
+# drogue_link_programs(): links the program drogue of all those added before.
+function(drogue_link_programs)
+  get_property(_programs GLOBAL PROPERTY DROGUE_PROGRAMS)
+  if(NOT _programs)
+    return()
+  endif()
+  set(DROGUE_DECLARATIONS)
+  set(DROGUE_ENTRIES)
+  set(_libraries)
+  foreach(_name IN LISTS _programs)
+    string(MAKE_C_IDENTIFIER "main_of_${_name}" _main)
+    string(APPEND DROGUE_DECLARATIONS "int ${_main}(int, char**);\n")
+    string(APPEND DROGUE_ENTRIES "    {\"${_name}\", ${_main}},\n")
+    get_target_property(_of_program ${_name} LINK_LIBRARIES)
+    list(APPEND _libraries ${_of_program})
+  endforeach()
+  configure_file("${PROJECT_SOURCE_DIR}/cmake/one_program.cpp.in" "${PROJECT_BINARY_DIR}/generated/one_program.cpp" @ONLY)
+  add_executable(drogue "${PROJECT_BINARY_DIR}/generated/one_program.cpp")
+  list(REMOVE_DUPLICATES _libraries)
+  target_link_libraries(drogue PRIVATE ${_programs} ${_libraries})
+endfunction()

@@ -1,0 +1,46 @@
+# Read by ctest, after the cases of a test program are listed and before any runs.
+#
+# A line `// ctest-label: NAME...` in front of a TEST gives the case these labels; in front of the first #include of a source, all
+# cases of it. The list of properties that gtest_discover_tests takes cannot hold a property with two values.
+
+# drogue_test_properties(<prefix> <label> <environment> TESTS <test>... SOURCES <file>...): sets LABELS and ENVIRONMENT of the tests,
+# whose names start with the prefix. Stops at a marker that belongs to no test.
+function(drogue_test_properties prefix label environment)
+  cmake_parse_arguments(_of "" "" "TESTS;SOURCES" ${ARGN})
+  foreach(_test IN LISTS _of_TESTS)
+    set("_labels_${_test}" "${label}")
+  endforeach()
+  string(REPLACE "." "\\." _prefix "${prefix}")
+  set(_case "TEST[_FP]*\\([A-Za-z0-9_, \n]*\\)")
+  foreach(_source IN LISTS _of_SOURCES)
+    file(READ "${_source}" _text)
+    set(_marked)
+    string(FIND "${_text}" "#include" _end)
+    string(SUBSTRING "${_text}" 0 "${_end}" _head)
+    if(_head MATCHES "(^|\n)// ctest-label: ([a-z -]+)\n")
+      set(_of_all "${CMAKE_MATCH_2}")
+      string(REGEX MATCHALL "\n(TYPED_)?${_case}" _cases "${_text}")
+      list(TRANSFORM _cases PREPEND "// ctest-label: ${_of_all}")
+      list(APPEND _marked ${_cases})
+    endif()
+    string(REGEX MATCHALL "// ctest-label: [a-z -]+\n(TYPED_)?${_case}" _cases "${_text}")
+    list(APPEND _marked ${_cases})
+    foreach(_entry IN LISTS _marked)
+      string(REGEX MATCH "label: ([a-z -]+)\n[A-Z_]+\\([ \n]*([A-Za-z0-9_]+),[ \n]*([A-Za-z0-9_]+)" _matched "${_entry}")
+      string(REPLACE " " ";" _added "${CMAKE_MATCH_1}")
+      set(_name "${CMAKE_MATCH_2}.${CMAKE_MATCH_3}")
+      # INSTANCE/Suite/0.Case/PARAMETER or Suite.Case<TYPE>
+      set(_found "${_of_TESTS}")
+      list(FILTER _found INCLUDE REGEX "^${_prefix}(.*/)?${CMAKE_MATCH_2}(/[^.]*)?\\.${CMAKE_MATCH_3}([/<].*)?$")
+      if(NOT _found)
+        message(FATAL_ERROR "${_source} gives ${_name} the label ${_added}, and the program has no such test.")
+      endif()
+      foreach(_test IN LISTS _found)
+        list(APPEND "_labels_${_test}" ${_added})
+      endforeach()
+    endforeach()
+  endforeach()
+  foreach(_test IN LISTS _of_TESTS)
+    set_tests_properties("${_test}" PROPERTIES LABELS "${_labels_${_test}}" ENVIRONMENT "${environment}")
+  endforeach()
+endfunction()

@@ -1,0 +1,157 @@
+#pragma once
+
+#include <Kokkos_Core.hpp>
+#include <stdexcept>
+#include <string>
+
+#include "kernels/coupling/face_stencil.hpp"
+#include "kernels/coupling/fixed_point.hpp"
+#include "kernels/device/launch.hpp"
+
+namespace drogue::coupling {
+
+/// Events since the construction of a transfer.
+struct TransferCounts {
+  /// Positions frozen whose delta function extends beyond a bounded side of the grid, or not finite.
+  long long incomplete_points = 0;
+  /// Force components that were not spread: larger than the given bound or 1e270 N, not finite, or at a
+  /// position that is not finite.
+  long long rejected_forces = 0;
+};
+
+/// Transfer between points and the faces of a staggered grid. Holds the frozen positions at which both
+/// directions take their weights, and the fixed-point sums of `spread`. Constructed once; copies share the
+/// Views. Functions of one transfer belong on one instance of the execution space.
+template <class ExecutionSpace>
+struct GridTransfer {
+  using Memory = typename ExecutionSpace::memory_space;
+  using Sums = Kokkos::View<FixedPoint***, Kokkos::LayoutLeft, Memory>;
+
+  /// Allocates for a number of points; blocks. Memory: 24 bytes per point and 24 per cell. Throws
+  /// std::invalid_argument for an invalid grid and unless 0 <= points <= 2^29.
+  GridTransfer(const ExecutionSpace& space, const MacGrid& mac_grid, DeltaKernel delta_kernel,
+               int number_of_points)
+      : grid(mac_grid), kernel(delta_kernel), points(number_of_points) {
+    check(grid);
+    if (points < 0 || points > 1 << 29)
+      throw std::invalid_argument("grid transfer: the number of points must be 0 to 2^29");
+    positions = decltype(positions)("drogue::coupling::positions", static_cast<std::size_t>(points));
+    largest = decltype(largest)("drogue::coupling::largest");
+    counts = decltype(counts)("drogue::coupling::counts");
+    for (int d = 0; d < 3; ++d) {
+      const auto extent = [&](int axis) { return static_cast<std::size_t>(faces_along(grid, d, axis)); };
+      sums.component[d] = Sums("drogue::coupling::sums", extent(0), extent(1), extent(2));
+    }
+    space.fence("drogue::coupling::grid_transfer");
+  }
+
+  MacGrid grid;
+  DeltaKernel kernel;
+  int points;
+  Kokkos::View<double* [3], Kokkos::LayoutLeft, Memory> positions;  ///< frozen, m
+  FaceViews<Sums> sums;                                             ///< all zero between calls
+  /// Bits of the largest magnitude to be spread and of the one in use. The first is zero between calls.
+  Kokkos::View<FixedPoint[2], Memory> largest;
+  Kokkos::View<TransferCounts, Memory> counts;
+};
+
+/// Throws std::invalid_argument unless a View has at least one row per point of the transfer.
+template <class ExecutionSpace, class View>
+void require_points(const GridTransfer<ExecutionSpace>& transfer, const View& view) {
+  if (view.extent(0) < static_cast<std::size_t>(transfer.points))
+    throw std::invalid_argument("grid transfer: View '" + view.label() + "' has fewer rows than points");
+}
+
+/// Base of kernels with one thread per point and component.
+template <class ExecutionSpace, DeltaKernel kernel>
+struct TransferKernel {
+  static constexpr DeltaKernel delta_kernel = kernel;
+
+  GridTransfer<ExecutionSpace> transfer;
+  GridAxes axes;
+  FaceArrays<FixedPoint> sums;
+  double summands;  ///< bound on the number of points, a power of two
+
+  struct Item {
+    int component, point;
+    spatial::Point x;  ///< frozen, m
+  };
+
+  KOKKOS_FUNCTION Item item(int n) const {
+    const int component = n / transfer.points, point = n - component * transfer.points;
+    return {component, point, spatial::load_vector(transfer.positions, point)};
+  }
+  KOKKOS_FUNCTION FaceStencil<kernel> stencil(const Item& at) const { return {axes, at.x, at.component}; }
+  /// Scale of the sums in use.
+  KOKKOS_FUNCTION FixedPointScale scale() const {
+    return fixed_point_scale(Kokkos::bit_cast<double>(transfer.largest(1)), summands);
+  }
+  /// Weighted sum of `value(component, face)` around a point, in the unit of the values.
+  template <class Value>
+  KOKKOS_FUNCTION double weighted_sum(const Item& at, const Value& value) const {
+    double sum = 0.0;
+    stencil(at).for_each_face(
+        [&](const FaceIndex& face, double weight, bool) { sum += weight * value(at.component, face); });
+    return sum;
+  }
+};
+
+/// Calls `make.operator()<Kernel>(base)` with the TransferKernel of a transfer, and runs the functor that it
+/// returns once for each point and component. Asynchronous.
+template <class ExecutionSpace, class Make>
+void for_each_point_and_component(const ExecutionSpace& space, const char* label,
+                                  const GridTransfer<ExecutionSpace>& transfer, const Make& make) {
+  dispatch_kernel(transfer.kernel, [&]<DeltaKernel kernel>() {
+    const TransferKernel<ExecutionSpace, kernel> base{transfer, grid_axes(transfer.grid),
+                                                      face_arrays(transfer.grid, transfer.sums),
+                                                      summand_bound(transfer.points)};
+    device::launch_each(space, label, 3 * transfer.points, make(base));
+  });
+}
+
+template <class ExecutionSpace, DeltaKernel kernel, class Positions, class Velocities>
+struct FreezePositionsFunctor {
+  GridTransfer<ExecutionSpace> transfer;
+  GridAxes axes;
+  Positions x;
+  Velocities v;
+  double time;
+
+  KOKKOS_FUNCTION void operator()(const int i) const {
+    const spatial::Point frozen = spatial::load_vector(x, i) + time * spatial::load_vector(v, i);
+    spatial::store_vector(transfer.positions, i, frozen);
+    for (int component = 0; component < 3; ++component)
+      if (!FaceStencil<kernel>(axes, frozen, component).is_complete()) {
+        Kokkos::atomic_add(&transfer.counts().incomplete_points, 1LL);
+        return;
+      }
+  }
+};
+
+/// Freezes the positions x + time v (m, m/s, s) of all points. They determine the weights of `interpolate`,
+/// `spread` and `spread_row_sums` until the next call. Asynchronous; may be captured into a CUDA graph.
+/// Throws std::invalid_argument for too few rows.
+template <class ExecutionSpace, class Positions, class Velocities>
+void freeze_positions(const ExecutionSpace& space, const GridTransfer<ExecutionSpace>& transfer,
+                      const Positions& x, const Velocities& v, double time) {
+  static_assert(spatial::accessible_from<ExecutionSpace, Positions, Velocities>);
+  require_points(transfer, x);
+  require_points(transfer, v);
+  dispatch_kernel(transfer.kernel, [&]<DeltaKernel kernel>() {
+    device::launch_each(space, "drogue::coupling::freeze_positions", transfer.points,
+                        FreezePositionsFunctor<ExecutionSpace, kernel, Positions, Velocities>{
+                            transfer, grid_axes(transfer.grid), x, v, time});
+  });
+}
+
+/// Copies the counts of a transfer to the host. Blocks; not for captured graphs. Does not throw.
+template <class ExecutionSpace>
+[[nodiscard]] TransferCounts transfer_counts(const ExecutionSpace& space,
+                                             const GridTransfer<ExecutionSpace>& transfer) {
+  TransferCounts counts;
+  Kokkos::deep_copy(space, counts, transfer.counts);
+  space.fence("drogue::coupling::transfer_counts");
+  return counts;
+}
+
+}  // namespace drogue::coupling

@@ -1,0 +1,69 @@
+#include "kernels/reference/coupling/surface.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace drogue::reference {
+
+namespace {
+
+using Real = long double;
+using Extended = std::array<Real, 3>;
+
+Extended difference(const Vector& a, const Vector& b) {
+  return {Real(a[0]) - b[0], Real(a[1]) - b[1], Real(a[2]) - b[2]};
+}
+
+Real norm(const Extended& a) { return std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]); }
+
+/// Heron's formula in the stable order of Kahan.
+Real heron(Extended sides) {
+  std::ranges::sort(sides);
+  const auto& [c, b, a] = sides;
+  return 0.25L * std::sqrt((a + (b + c)) * std::max(0.0L, c - (a - b)) * (c + (a - b)) * (a + (b - c)));
+}
+
+/// Unit vector of the right-hand rule; zero for parallel edges.
+Extended unit_normal(const Extended& u, const Extended& v) {
+  Extended n{};
+  for (std::size_t k = 0; k < 3; ++k)
+    n[k] = u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3];
+  const Real size = norm(n);
+  for (Real& value : n) value = size > 0.0L ? value / size : 0.0L;
+  return n;
+}
+
+Vector rounded(const Extended& a) {
+  return {static_cast<double>(a[0]), static_cast<double>(a[1]), static_cast<double>(a[2])};
+}
+
+}  // namespace
+
+SurfaceGeometry surface_geometry(const Mesh& mesh, const std::vector<Vector>& x) {
+  SurfaceGeometry result;
+  std::vector<Real> area(x.size(), 0.0L);
+  std::vector<Extended> weighted(x.size(), Extended{});
+  for (const auto& triangle : mesh.triangles) {
+    const Vector &a = x[static_cast<std::size_t>(triangle[0])], &b = x[static_cast<std::size_t>(triangle[1])],
+                 &c = x[static_cast<std::size_t>(triangle[2])];
+    const Extended ab = difference(b, a), ac = difference(c, a), bc = difference(c, b);
+    const Real size = heron({norm(ab), norm(ac), norm(bc)});
+    const Extended normal = unit_normal(ab, ac);
+    result.triangle_area.push_back(static_cast<double>(size));
+    result.triangle_normal.push_back(rounded(normal));
+    for (const int corner : triangle) {
+      const auto i = static_cast<std::size_t>(corner);
+      area[i] += size / 3.0L;
+      for (std::size_t k = 0; k < 3; ++k) weighted[i][k] += size * normal[k];
+    }
+  }
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    result.vertex_area.push_back(static_cast<double>(area[i]));
+    const Real size = norm(weighted[i]);
+    for (Real& value : weighted[i]) value = size > 0.0L ? value / size : 0.0L;
+    result.vertex_normal.push_back(rounded(weighted[i]));
+  }
+  return result;
+}
+
+}  // namespace drogue::reference

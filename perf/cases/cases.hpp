@@ -1,0 +1,20 @@
+#pragma once
+
+#include <vector>
+
+#include "perf/measure/measurement.hpp"
+
+/// Benchmark cases that this build and machine can run; `quick` selects small ones. No function throws.
+namespace drogue::perf {
+
+std::vector<Case> gas_cases(bool quick);
+std::vector<Case> fabric_cases(bool quick);
+std::vector<Case> contact_cases(bool quick);
+std::vector<Case> options_cases(bool quick);
+std::vector<Case> tridiagonal_cases(bool quick);
+std::vector<Case> ceiling_cases();
+
+/// All of them, in this order.
+std::vector<Case> all_cases(bool quick);
+
+}  // namespace drogue::perf

@@ -1,0 +1,14 @@
+#include "perf/ceilings/ceilings.hpp"
+
+namespace drogue::perf {
+
+// Defined in ceilings_impl.hpp, instantiated for each backend in instances/.
+template <class ExecutionSpace>
+std::unique_ptr<CeilingKernel> make_ceiling(Ceiling ceiling);
+
+std::unique_ptr<CeilingKernel> create_ceiling(device::Backend backend, Ceiling ceiling) {
+  return device::dispatch(backend,
+                          [&]<class ExecutionSpace>() { return make_ceiling<ExecutionSpace>(ceiling); });
+}
+
+}  // namespace drogue::perf

@@ -1,0 +1,7 @@
+#include "perf/ceilings/ceilings_impl.hpp"
+
+namespace drogue::perf {
+
+template std::unique_ptr<CeilingKernel> make_ceiling<DROGUE_INSTANCE_SPACE>(Ceiling);
+
+}  // namespace drogue::perf

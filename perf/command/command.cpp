@@ -1,0 +1,18 @@
+#include "perf/command/command.hpp"
+
+#include "common/scene/nearest.hpp"
+
+namespace drogue::perf {
+
+void require(device::Backend backend) {
+  if (const auto reason = device::why_unavailable(backend)) throw Failure(ExitCode::no_backend, *reason);
+}
+
+void require_name(const std::string& kind, const std::string& name, const std::vector<std::string>& valid) {
+  for (const std::string& known : valid)
+    if (name == known) return;
+  throw Failure(ExitCode::usage,
+                "there is no " + kind + " '" + name + "'; " + scene::suggestion(name, valid));
+}
+
+}  // namespace drogue::perf

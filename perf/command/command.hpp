@@ -1,0 +1,32 @@
+#pragma once
+
+#include <CLI/App.hpp>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "common/program/failure.hpp"
+#include "kernels/device/backend.hpp"
+
+namespace drogue::perf {
+
+/// Subcommand of drogue-perf. Its maker declares the options; `execute` uses their parsed values.
+struct Command {
+  const CLI::App* app;                                               ///< its parser
+  std::function<ExitCode(const std::vector<std::string>&)> execute;  ///< argument: --kokkos-* options
+};
+
+/// Subcommands; each registers itself with `program`. Throws CLI::Error if its name is taken.
+Command list_command(CLI::App& program);
+Command run_command(CLI::App& program);
+Command table_command(CLI::App& program);
+Command work_precision_command(CLI::App& program);
+
+/// Throws Failure(no_backend) with the reason if `backend` cannot run here. Call it before Kokkos is
+/// initialised.
+void require(device::Backend backend);
+
+/// Throws Failure(usage) with the nearest valid name if `name`, the name of a `kind`, is not in `valid`.
+void require_name(const std::string& kind, const std::string& name, const std::vector<std::string>& valid);
+
+}  // namespace drogue::perf

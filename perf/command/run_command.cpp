@@ -1,0 +1,89 @@
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <cstdio>
+#include <memory>
+#include <regex>
+
+#include "common/run/statistics.hpp"
+#include "perf/cases/cases.hpp"
+#include "perf/command/command.hpp"
+#include "perf/command/filter.hpp"
+#include "perf/measure/record.hpp"
+
+namespace drogue::perf {
+namespace {
+
+struct RunOptions {
+  std::string filter, out;
+  bool quick = false;
+};
+
+/// Omits unknown facts.
+nlohmann::json to_json(const Facts& facts) {
+  nlohmann::json json = {{"backend", facts.backend}};
+  if (facts.cells > 0) json.update({{"cells", facts.cells}, {"variant", facts.variant}});
+  if (facts.flops > 0.0) json["flops"] = facts.flops;
+  if (facts.bytes > 0.0) json["bytes"] = facts.bytes;
+  return json;
+}
+
+std::vector<Case> matching_cases(const std::regex& filter, bool quick) {
+  std::vector<Case> cases = all_cases(quick);
+  std::erase_if(cases, [&](const Case& c) { return !std::regex_search(c.name, filter); });
+  return cases;
+}
+
+Failure no_case(const RunOptions& options, const std::regex& filter) {
+  const std::string list = options.quick ? "drogue-perf list --quick" : "drogue-perf list";
+  const auto left_out = options.quick ? matching_cases(filter, false).size() : 0;
+  return {ExitCode::usage,
+          "no case matches '" + options.filter + "'" +
+              (left_out > 0 ? " but " + std::to_string(left_out) + " that --quick leaves out" : "") +
+              "; see " + list};
+}
+
+ExitCode run_cases(const RunOptions& options, const std::regex& filter) {
+  const std::vector<Case> cases = matching_cases(filter, options.quick);
+  if (cases.empty()) throw no_case(options, filter);
+  const nlohmann::json here = provenance(device::device_facts());
+  std::vector<nlohmann::json> lines;
+  bool passed = true;
+  for (const Record& record : measure(cases, warm_up_rounds, kept_rounds(options.quick))) {
+    lines.push_back(to_json(record, here, to_json(record.facts)));
+    passed = passed && record.passed();
+    const run::MedianInterval time = run::median_interval(record.samples);
+    std::printf("%-32s %12.3f us a %s  [%.3f .. %.3f]  error %.3g  %s\n", record.name.c_str(),
+                1e6 * time.median, record.unit_of_work.c_str(), 1e6 * time.low, 1e6 * time.high, record.error,
+                verdict(record));
+  }
+  write_records(options.out, lines);
+  return passed ? ExitCode::ok : ExitCode::verification_failed;
+}
+
+}  // namespace
+
+Command list_command(CLI::App& program) {
+  const auto quick = std::make_shared<bool>(false);
+  CLI::App* app = program.add_subcommand("list", "Print the cases that this build and machine can run");
+  app->add_flag("--quick", *quick, "Those of run --quick");
+  return {app, [quick](const std::vector<std::string>&) {
+            for (const Case& c : all_cases(*quick)) std::printf("%s\n", c.name.c_str());
+            return ExitCode::ok;
+          }};
+}
+
+Command run_command(CLI::App& program) {
+  const auto options = std::make_shared<RunOptions>();
+  CLI::App* app = program.add_subcommand("run", "Measure, in interleaved rounds after a warm-up");
+  app->add_option("--filter", options->filter, "Regular expression for the names of the cases");
+  app->add_option("--out", options->out, "File for the records, one JSON line a case");
+  app->add_flag("--quick", options->quick, "Small cases and few samples");
+  return {app, [options](const std::vector<std::string>& kokkos) {
+            const std::regex filter = filter_of(options->filter);
+            require(device::fastest_backend());
+            const device::Runtime runtime(kokkos);
+            return run_cases(*options, filter);
+          }};
+}
+
+}  // namespace drogue::perf

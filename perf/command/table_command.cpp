@@ -1,0 +1,71 @@
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <memory>
+
+#include "common/program/command_line.hpp"
+#include "perf/command/command.hpp"
+#include "perf/measure/record.hpp"
+#include "perf/tables/tables.hpp"
+
+namespace drogue::perf {
+namespace {
+
+struct TableOptions {
+  std::string table, out;
+  std::string app = "gas", backend = "auto";
+  bool quick = false;
+};
+
+/// Tables of block sizes and transfers, which need a backend and Kokkos.
+Table timed_table(const TableOptions& options, const std::vector<std::string>& kokkos) {
+  const device::Backend backend = device::wanted_backend(options.backend);
+  require(backend);
+  const bool block_size = options.table == "block-size";
+  if (block_size && backend != device::Backend::cuda)
+    throw Failure(ExitCode::usage, "a block size means nothing to the host backend '" +
+                                       std::string(device::name(backend)) +
+                                       "', whose teams are single threads; give --backend cuda");
+  const device::Runtime runtime(kokkos);
+  const nlohmann::json here = provenance(device::device_facts());
+  if (block_size) return print_block_sizes(backend, options.quick, here);
+  const auto print = options.app == "gas"       ? print_gas_transfers
+                     : options.app == "springs" ? print_fabric_transfers
+                                                : print_options_transfers;
+  return print(backend, options.quick, here);
+}
+
+ExitCode print_table(const TableOptions& options, const std::vector<std::string>& kokkos) {
+  require_name("table", options.table, {"occupancy", "block-size", "transfers"});
+  require_name("app", options.app, {"gas", "springs", "options"});
+  if (options.app == "springs" && options.table == "block-size")
+    throw Failure(ExitCode::usage,
+                  "kernels of springs are compiled for one block size; what can be chosen is the size of a "
+                  "patch, which drogue-perf run --filter springs-step/cuda/.*/patch times");
+  if (options.app != "gas") require_name("table of " + options.app, options.table, {"transfers"});
+  Table table;
+  if (options.table == "occupancy")
+    table =
+        print_occupancy(provenance({.kokkos_version = device::kokkos_version(), .gpu = "", .driver = ""}));
+  else
+    table = timed_table(options, kokkos);
+  write_records(options.out, table.records);
+  return table.passed ? ExitCode::ok : ExitCode::verification_failed;
+}
+
+}  // namespace
+
+Command table_command(CLI::App& program) {
+  const auto options = std::make_shared<TableOptions>();
+  CLI::App* app = program.add_subcommand("table", "Print a table of the dissertation beside our own numbers");
+  app->add_option("TABLE", options->table, "occupancy (computed), block-size or transfers (measured)")
+      ->required();
+  app->add_option("--app", options->app, "Mini-app whose kernels are asked")->capture_default_str();
+  app->add_option("--backend", options->backend, "Where to measure: auto takes the fastest present")
+      ->check(CLI::IsMember(backend_choices()))
+      ->capture_default_str();
+  app->add_option("--out", options->out, "File for the records, one JSON line a row");
+  app->add_flag("--quick", options->quick, "Few rows and few samples");
+  return {app, [options](const std::vector<std::string>& kokkos) { return print_table(*options, kokkos); }};
+}
+
+}  // namespace drogue::perf

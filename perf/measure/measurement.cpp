@@ -1,0 +1,37 @@
+#include "perf/measure/measurement.hpp"
+
+#include <chrono>
+
+namespace drogue::perf {
+
+std::vector<Record> measure(const std::vector<Case>& cases, int warm_up, int rounds) {
+  std::vector<Record> records;
+  std::vector<Sample> samples;
+  for (const Case& c : cases) {
+    records.push_back({c.name, c.unit_of_work, c.bound, {}, 0.0, c.tolerance, {}, {}});
+    samples.push_back(c.prepare());
+  }
+  for (int round = -warm_up; round < rounds; ++round)
+    for (std::size_t i = 0; i < cases.size(); ++i) {
+      samples[i].reset();
+      const auto begin = std::chrono::steady_clock::now();
+      const long units = samples[i].work();
+      double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+      if (round < 0) continue;
+      if (samples[i].parts) {
+        seconds = 0.0;
+        for (const auto& [name, part] : samples[i].parts()) {
+          records[i].parts[name].push_back(part / static_cast<double>(units));
+          seconds += part;
+        }
+      }
+      records[i].samples.push_back(seconds / static_cast<double>(units));
+    }
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    records[i].error = cases[i].error();
+    if (cases[i].facts) records[i].facts = cases[i].facts();
+  }
+  return records;
+}
+
+}  // namespace drogue::perf

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace drogue::perf {
+
+/// One timed sample: preparation and work.
+struct Sample {
+  std::function<void()> reset;  ///< restores the initial state; not timed
+  std::function<long()> work;   ///< returns the number of units of work done
+  /// Seconds of the named parts of the last work. If present, their sum replaces the wall time.
+  std::function<std::map<std::string, double>()> parts = {};
+};
+
+/// Facts of a case for a roofline diagram. Zero or empty: unknown.
+struct Facts {
+  std::string backend;
+  std::int64_t cells = 0;
+  std::string variant;  ///< difference from the standard case of this backend and size
+  double flops = 0.0;   ///< per unit of work
+  double bytes = 0.0;   ///< per unit of work, between kernels and memory
+};
+
+/// Benchmark case.
+struct Case {
+  std::string name;          ///< work/variant/size, as `drogue-perf list` prints it
+  std::string unit_of_work;  ///< divisor of the seconds of a sample, for example "step"
+  std::string bound;         ///< the limiting resource, in words
+  std::function<Sample()> prepare;
+  /// Error of the final state against the reference or an exact solution; called after the last sample.
+  std::function<double()> error;
+  double tolerance;                   ///< largest error of a valid timing
+  std::function<Facts()> facts = {};  ///< called after the last sample, if present
+};
+
+/// Measured case.
+struct Record {
+  std::string name, unit_of_work, bound;
+  std::vector<double> samples;  ///< seconds per unit of work
+  double error = 0.0;
+  double tolerance = 0.0;
+  std::map<std::string, std::vector<double>> parts;  ///< of `samples`, for cases with named parts
+  Facts facts;
+
+  /// True if the error is within the tolerance. Does not throw.
+  [[nodiscard]] bool passed() const { return error <= tolerance; }
+};
+
+/// Numbers of discarded and of recorded rounds.
+inline constexpr int warm_up_rounds = 3;
+constexpr int kept_rounds(bool quick) { return quick ? 7 : 25; }
+
+/// Times `cases` in interleaved rounds of one sample each, so that a disturbance affects all of them.
+/// Discards the first `warm_up` rounds. Blocking; passes on exceptions of the cases.
+std::vector<Record> measure(const std::vector<Case>& cases, int warm_up, int rounds);
+
+}  // namespace drogue::perf

@@ -1,0 +1,52 @@
+#include "perf/measure/record.hpp"
+
+#include "common/run/atomic_file.hpp"
+#include "common/run/result_document.hpp"
+#include "common/run/statistics.hpp"
+
+namespace drogue::perf {
+
+nlohmann::json provenance(const device::DeviceFacts& device) {
+  const run::ResultDocument facts = run::new_result("drogue-perf", "");
+  return {{"version", facts.version},
+          {"git", facts.git},
+          {"compiler", facts.provenance.compiler},
+          {"flags", facts.provenance.flags},
+          {"kokkos", device.kokkos_version},
+          {"cpu", facts.provenance.cpu},
+          {"gpu", device.gpu},
+          {"driver", device.driver},
+          {"threads", device.threads},
+          {"date", facts.provenance.date}};
+}
+
+nlohmann::json to_json(const Record& record, const nlohmann::json& provenance, const nlohmann::json& facts) {
+  nlohmann::json json = {{"schema", "drogue.perf/1"},
+                         {"case", record.name},
+                         {"unit", "s per " + record.unit_of_work},
+                         {"bound", record.bound},
+                         {"samples", record.samples},
+                         {"median", nullptr},
+                         {"interval", nullptr},
+                         {"error", record.error},
+                         {"check", record.passed() ? "passed" : "failed"},
+                         {"provenance", provenance}};
+  if (!record.samples.empty()) {
+    const run::MedianInterval time = run::median_interval(record.samples);
+    json["median"] = time.median;
+    json["interval"] = {time.low, time.high};
+  }
+  if (!facts.is_null()) json["facts"] = facts;
+  return json;
+}
+
+void write_records(const std::string& file, const std::vector<nlohmann::json>& records) {
+  if (file.empty()) return;
+  std::string lines;
+  for (const nlohmann::json& record : records) lines += record.dump() + "\n";
+  run::write_file_atomically(file, lines);
+}
+
+const char* verdict(const Record& record) { return record.passed() ? "passed" : "FAILED"; }
+
+}  // namespace drogue::perf

@@ -1,0 +1,123 @@
+#include "perf/problems/puts.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <memory_resource>
+#include <optional>
+#include <random>
+#include <span>
+#include <vector>
+
+#include "perf/problems/known_puts.hpp"
+
+namespace drogue::perf::puts {
+namespace {
+
+struct Run {
+  std::unique_ptr<options::Pricer> pricer;
+  std::pmr::vector<options::Contract> contracts;
+  std::pmr::vector<options::Price> prices;
+  options::WallTimes timing;
+};
+
+std::vector<options::Contract> distinct(std::size_t count) {
+  std::mt19937 random(7);
+  const auto between = [&](double low, double high) {
+    return low + (high - low) * (static_cast<double>(random()) / 4294967296.0);
+  };
+  const KnownPuts& known = thesis_puts();
+  std::vector<options::Contract> contracts(count, known.contract);
+  for (std::size_t i = 0; i < count; ++i) {
+    options::Contract& c = contracts[i];
+    if (i < known.spots.size()) {
+      c.spot = known.spots[i];
+      continue;
+    }
+    c.spot = between(0.8, 1.2), c.rate = between(0.01, 0.1), c.maturity = between(0.25, 2.0);
+    c.variance = between(0.0, 0.4);
+    const double levy[] = {between(-2.0, 2.0), between(6.0, 15.0), between(-4.0, 0.0), between(0.2, 1.0)};
+    std::ranges::copy(levy, c.jump);
+  }
+  return contracts;
+}
+
+/// Known puts first. V(c spot, c strike) = c V turns their spots into strikes at spot 1.
+std::vector<options::Contract> surfaces(const SurfaceSize& size) {
+  const KnownPuts& known = thesis_puts();
+  const auto known_count = static_cast<std::ptrdiff_t>(known.spots.size());
+  std::vector<options::Contract> contracts, sets = distinct(known.spots.size() + size.sets);
+  sets.erase(sets.begin(), sets.begin() + known_count);
+  sets.front() = known.contract;
+  for (options::Contract c : sets) {
+    c.spot = 1.0;
+    for (std::size_t m = 0; m < size.maturities; ++m) {
+      // One year first, because the known prices have that maturity; then cyclically.
+      c.maturity = 0.25 * static_cast<double>((m + 3) % 8 + 1);
+      for (std::size_t k = 0; k < size.strikes; ++k) {
+        c.strike = k < known.spots.size()
+                       ? 1.0 / known.spots[k]
+                       : 0.5 * std::exp2(2.0 * static_cast<double>(k) / static_cast<double>(size.strikes));
+        contracts.push_back(c);
+      }
+    }
+  }
+  return contracts;
+}
+
+double error(const Run& run) {
+  const std::vector<double>& known = thesis_puts().prices;
+  double largest = 0.0;
+  for (std::size_t i = 0; i < std::min(run.prices.size(), known.size()); ++i)
+    largest = std::max(largest, std::abs(run.prices[i].price / run.contracts[i].strike - known[i]));
+  return largest;
+}
+
+Case timed(const std::string& name, device::Backend backend,
+           const std::function<std::vector<options::Contract>()>& contracts,
+           const options::Settings& settings, double limit) {
+  const auto run = std::make_shared<std::optional<Run>>();
+  const std::function<std::map<std::string, double>()> parts = [=] {
+    const options::WallTimes& timing = (*run)->timing;
+    return std::map<std::string, double>{
+        {"h2d", timing.h2d}, {"compute", timing.compute}, {"d2h", timing.d2h}};
+  };
+  return {name,
+          "batch",
+          "arithmetic of the convolution",
+          [=] {
+            std::unique_ptr<options::Pricer> pricer = options::create_pricer(backend, settings);
+            std::pmr::memory_resource& memory = pricer->memory();
+            const std::vector<options::Contract> asked = contracts();
+            run->emplace(Run{std::move(pricer),
+                             {asked.begin(), asked.end(), &memory},
+                             std::pmr::vector<options::Price>(asked.size(), &memory),
+                             {}});
+            return Sample{[] {},
+                          [=] {
+                            Run& now = **run;
+                            now.timing = now.pricer->price(now.contracts, now.prices);
+                            return 1L;
+                          },
+                          settings.time_copies ? parts : nullptr};
+          },
+          [=] { return error(**run); },
+          limit};
+}
+
+}  // namespace
+
+Case batch(const std::string& name, device::Backend backend, std::size_t count,
+           const options::Settings& settings, double limit) {
+  return timed(
+      name, backend, [=] { return distinct(count); }, settings, limit);
+}
+
+Case surface(const std::string& name, device::Backend backend, const SurfaceSize& size,
+             const options::Settings& settings, double limit) {
+  return timed(
+      name, backend, [=] { return surfaces(size); }, settings, limit);
+}
+
+}  // namespace drogue::perf::puts

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <string>
+
+#include "kernels/options/pricer.hpp"
+#include "perf/measure/measurement.hpp"
+
+/// Batches and surfaces of American puts, some of which have known prices. No function throws before a case
+/// runs.
+namespace drogue::perf::puts {
+
+/// Error of the scheme of [Shi] at mesh 128, relative to the strike.
+inline constexpr double tolerance = 4.4e-4;
+
+/// Prices `count` distinct puts of strike 1: first those of `thesis_puts`, then random ones with similar
+/// parameters. A sample is the sum of copies and compute; the error is the largest of the known prices.
+Case batch(const std::string& name, device::Backend backend, std::size_t count,
+           const options::Settings& settings, double limit);
+
+/// Numbers of parameter sets, of strikes from half to twice the spot, and of maturities from a quarter to two
+/// years.
+struct SurfaceSize {
+  std::size_t sets, strikes, maturities;
+};
+
+/// Prices surfaces of puts, ordered by set, maturity and strike: first the parameter set of `thesis_puts`,
+/// then random similar ones. A sample is the sum of copies and compute; the error is that of the known
+/// prices.
+Case surface(const std::string& name, device::Backend backend, const SurfaceSize& size,
+             const options::Settings& settings, double limit);
+
+}  // namespace drogue::perf::puts

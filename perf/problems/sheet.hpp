@@ -1,0 +1,40 @@
+#pragma once
+
+#include <vector>
+
+#include "kernels/fabric/solver.hpp"
+#include "perf/measure/measurement.hpp"
+
+/// Benchmark problem of fabric steps: a square sheet of nearly equilateral triangles, 1 m long, stretched by
+/// 2 % and pinned along its edges. It oscillates under gravity like a drum.
+namespace drogue::perf::sheet {
+
+/// Mesh of about `vertices` vertices in the order of the mini-app, with material, loads and pins. Throws
+/// std::invalid_argument for too few vertices.
+fabric::Parameters parameters(int vertices);
+
+/// State of all vertices.
+struct State {
+  std::vector<fabric::Vector> x, v;  ///< positions, m; velocities, m/s
+};
+
+/// Initial state. Does not throw.
+State start(const fabric::Parameters& p);
+
+/// Half of the largest stable time step in the initial state, s. Overwrites the state of `solver`. Blocking.
+double default_dt(const fabric::Parameters& p, fabric::Solver& solver);
+
+/// Sample of `count` steps from the initial state. `solver`, made for `p`, must outlive the sample. Blocking.
+Sample steps(const fabric::Parameters& p, fabric::Solver& solver, long count);
+
+/// Change of the total energy since the initial state, relative to the initial kinetic energy. Undamped
+/// motion conserves energy. Blocking.
+double energy_drift(const fabric::Parameters& p, fabric::Solver& solver);
+
+/// Energy drift of a state on the host.
+double energy_drift(const fabric::Parameters& p, const State& state);
+
+/// Tolerance of the energy drift; a wrong step exceeds it by orders of magnitude.
+inline constexpr double tolerance = 1e-4;
+
+}  // namespace drogue::perf::sheet

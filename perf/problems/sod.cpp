@@ -1,0 +1,63 @@
+#include "perf/problems/sod.hpp"
+
+#include <cmath>
+
+#include "kernels/reference/gas/exact_riemann.hpp"
+
+namespace drogue::perf::sod {
+
+gas::Parameters parameters(std::int64_t cells) {
+  gas::Parameters p;
+  p.cells = cells;
+  p.weno = gas::Weno::js;
+  p.positivity = gas::Positivity::off;
+  p.ramp_steps = 0;
+  return p;
+}
+
+reference::Primitive initial(double x) {
+  return x < 0.0 ? reference::Primitive{1.0, 0.0, 1.0} : reference::Primitive{0.125, 0.0, 0.1};
+}
+
+double centre(const gas::Parameters& p, std::size_t i) {
+  return p.x_min + (static_cast<double>(i) + 0.5) * (p.x_max - p.x_min) / static_cast<double>(p.cells);
+}
+
+Fields start(const gas::Parameters& p) {
+  Fields fields;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(p.cells); ++i) {
+    const reference::Conserved u = reference::to_conserved(initial(centre(p, i)), p.gamma);
+    for (std::size_t k = 0; k < 3; ++k) fields[k].push_back(u[k]);
+  }
+  return fields;
+}
+
+Sample steps(const gas::Parameters& p, gas::Solver& solver, long count) {
+  return {[&solver, from = start(p)] {
+            solver.upload(0, {from[0], from[1], from[2]});
+            solver.start();
+          },
+          [&solver, count] {
+            solver.advance(1.0, count, 0, {}, {});
+            return count;
+          }};
+}
+
+double l1_error(const gas::Parameters& p, const std::vector<double>& rho, double time) {
+  const reference::ExactRiemann exact({1.0, 0.0, 1.0}, {0.125, 0.0, 0.1}, p.gamma);
+  double sum = 0.0;
+  for (std::size_t i = 0; i < rho.size(); ++i)
+    sum += std::abs(rho[i] - exact.sample(centre(p, i) / time).rho);
+  return sum / static_cast<double>(rho.size());
+}
+
+double l1_error(const gas::Parameters& p, gas::Solver& solver) {
+  Fields now;
+  for (auto& values : now) values.resize(static_cast<std::size_t>(p.cells));
+  solver.download(0, {now[0], now[1], now[2]});
+  return l1_error(p, now[0], solver.restart_state().time);
+}
+
+double tolerance(const gas::Parameters& p) { return 1.0 / static_cast<double>(p.cells); }
+
+}  // namespace drogue::perf::sod

@@ -1,0 +1,42 @@
+#include "perf/tables/baseline_case.hpp"
+
+#include <memory>
+
+#include "perf/problems/sod.hpp"
+
+namespace drogue::perf {
+
+/// Steps of a sample of some milliseconds; the waves stay away from the ends.
+constexpr long baseline_steps = 20;
+
+Case baseline_case(const std::string& name, const std::string& bound, device::Backend backend,
+                   const gas::Parameters& p,
+                   const std::function<std::map<std::string, double>(const gas::PhaseTimes&)>& parts) {
+  const auto solver = std::make_shared<std::unique_ptr<gas::Solver>>();
+  const auto before = std::make_shared<gas::PhaseTimes>();
+  return {name,
+          "step",
+          bound,
+          [=] {
+            *solver = gas::create_baseline_solver(backend, p);
+            const sod::Fields start = sod::start(p);
+            return Sample{
+                [=] {
+                  (*solver)->upload(0, {start[0], start[1], start[2]});
+                  (*solver)->start();
+                  *before = (*solver)->phase_times();
+                },
+                [=] {
+                  (*solver)->advance(1.0, baseline_steps, 0, {}, {});
+                  return baseline_steps;
+                },
+                [=] {
+                  const gas::PhaseTimes now = (*solver)->phase_times();
+                  return parts({now.h2d - before->h2d, now.compute - before->compute, now.d2h - before->d2h});
+                }};
+          },
+          [=] { return sod::l1_error(p, **solver); },
+          sod::tolerance(p)};
+}
+
+}  // namespace drogue::perf

@@ -1,0 +1,14 @@
+#pragma once
+
+#include "kernels/gas/solver.hpp"
+#include "perf/measure/measurement.hpp"
+
+namespace drogue::perf {
+
+/// Case of some steps of Sod's problem by the baseline solver. `parts` selects the timed phases of a sample,
+/// s. Does not throw.
+Case baseline_case(const std::string& name, const std::string& bound, device::Backend backend,
+                   const gas::Parameters& parameters,
+                   const std::function<std::map<std::string, double>(const gas::PhaseTimes&)>& parts);
+
+}  // namespace drogue::perf

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "common/program/failure.hpp"
+#include "kernels/device/backend.hpp"
+
+namespace drogue::perf {
+
+/// One run to solution: a point of a work-precision diagram (error against time).
+struct Solution {
+  std::string problem;           ///< name of a shipped scene, or of a set of options
+  device::Backend backend;       ///< serial for the comparison scheme
+  std::string label;             ///< label of the scheme
+  nlohmann::json scheme;         ///< settings of the scheme, as facts of a record
+  std::int64_t cells = 0;        ///< number of cells, of vertices, or of intervals of an option's mesh
+  std::vector<double> samples;   ///< s; for options the time of a batch over its size
+  std::int64_t steps = 0;        ///< time steps of a run
+  double error = 0.0;            ///< against the exact solution; unset after a numerical failure
+  bool sound = false;            ///< the error is finite, and conserved quantities are conserved
+  ExitCode code = ExitCode::ok;  ///< numerical_failure comes with a `message`
+  std::string message;
+};
+
+/// Receives each solution as soon as it is measured.
+using SolutionSink = std::function<void(const Solution&)>;
+
+/// Selection of backends and problems.
+struct Selection {
+  std::vector<device::Backend> backends;
+  bool quick = false;
+  std::function<bool(const std::string&)> wants;  ///< selects problems; called once for each name
+};
+
+// The functions below block until all solutions are measured, or return false after a signal. They throw
+// Failure for a scene that cannot be read.
+
+/// Runs the entropy wave, Shu-Osher, the blast waves, LeBlanc and Sod on doubling meshes on each backend. The
+/// schemes are all combinations of WENO-JS, -Z, -M and TENO5, splitting, time scheme (CFL 0.6 and 1.2, equal
+/// work) and precision. The MUSCL-Hancock scheme of `kernels/reference` is the comparison. `quick` selects
+/// two small meshes of the wave and of Sod.
+bool gas_work_precision(const Selection& selection, const SolutionSink& sink);
+
+/// Prices the puts of `known_puts`, repeated to fill a batch, on each backend. Method `pide` runs in all
+/// combinations of mesh, steps per interval, one or two grids, and exercise (in the solve, split off,
+/// European); the baseline scheme on the same meshes where it supports the jumps; `cos` with decreasing
+/// tolerances. The error is the largest of the batch, in units of the strike; the truth of European prices is
+/// the COS price. `quick` selects two small meshes of the contract of [Shi] and of Merton jumps.
+bool options_work_precision(const Selection& selection, const SolutionSink& sink);
+
+/// Runs the drum, Hencky's membrane and the catenary on meshes with successively halved edges on each
+/// backend, in all combinations of material model (cloth only), masses and integrator. The relative error is
+/// that of the frequency, of the deflection at the centre, and of the farthest vertex over the span. `quick`
+/// selects two small meshes of the drum and of the catenary.
+bool springs_work_precision(const Selection& selection, const SolutionSink& sink);
+
+}  // namespace drogue::perf

@@ -1,0 +1,1 @@
+"""Demo page: every shipped scene with its result and figures."""

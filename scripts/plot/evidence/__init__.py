@@ -1,0 +1,1 @@
+"""Pages of benchmark records: reading, evaluation and rendering."""

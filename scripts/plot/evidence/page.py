@@ -1,0 +1,117 @@
+"""Page of the benchmark records of a mini-app: a group of sections per machine, and notes on omitted records."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+from PIL import Image
+
+from .. import html_page, style
+from ..options import transfers as options_transfers
+from . import block_sizes, roofline, steps, transfers, work_precision_section
+from .perf_record import Machine, Record
+from .records import Evidence
+from .section import Cell, Section
+
+
+def _gas_sections(evidence: Evidence, machine: Machine) -> list[Section]:
+    """Sections for which the machine has records."""
+    solved, step_records = evidence.select(machine, "gas-solution"), evidence.select(machine, "gas-step")
+    found = work_precision_section.sections(machine, solved, evidence.failed_runs_on(machine))
+    found += steps.sections(step_records)
+    found += roofline.sections(machine, evidence.select(machine, "ceiling"), step_records)
+    found += transfers.sections(machine, evidence.select(machine, "gas-transfers"))
+    return found + block_sizes.sections(machine, evidence.select(machine, "gas-block"))
+
+
+def _springs_sections(evidence: Evidence, machine: Machine) -> list[Section]:
+    solved = evidence.select(machine, "springs-solution")
+    found = work_precision_section.sections(machine, solved, evidence.failed_runs_on(machine))
+    found += steps.sections(evidence.select(machine, "springs-step"))
+    found += steps.sections(evidence.select(machine, "springs-contact"))
+    return found + transfers.sections(machine, evidence.select(machine, "springs-transfers"))
+
+
+def _options_sections(evidence: Evidence, machine: Machine) -> list[Section]:
+    solved = evidence.select(machine, "options-solution")
+    found = work_precision_section.sections(machine, solved, evidence.failed_runs_on(machine))
+    found += steps.sections(evidence.select(machine, "options"))
+    found += steps.sections(evidence.select(machine, "tridiagonal"))
+    return found + options_transfers.sections(machine, evidence.select(machine, "options-transfers"))
+
+
+_SECTIONS = {"gas": _gas_sections, "springs": _springs_sections, "options": _options_sections}
+
+
+def _counted(count: int, words: str, plural: str) -> str:
+    return f"{count} {words if count == 1 else plural}"
+
+
+def _cases(records: list[Record]) -> str:
+    """Case, machine and error of each record."""
+    errors = [
+        f"error {record.error:.3g}" if record.error is not None else "no error known" for record in records
+    ]
+    return "; ".join(f"{line.case} on {line.machine.name} ({error})" for line, error in zip(records, errors))
+
+
+def notes(evidence: Evidence) -> list[str]:
+    """Sentences about the records that the page omits, with the reason."""
+    found = []
+    if evidence.failed_checks:
+        count = _counted(len(evidence.failed_checks), "record is", "records are")
+        found.append(f"{count} left out for a failed check: {_cases(evidence.failed_checks)}.")
+    if evidence.superseded:
+        count = _counted(len(evidence.superseded), "record is", "records are")
+        found.append(f"{count} left out, because a later one of the same case and machine exists.")
+    if evidence.unknown_kinds:
+        count = _counted(sum(evidence.unknown_kinds.values()), "record is", "records are")
+        found.append(
+            f"{count} ignored, of a kind that this page does not know: {', '.join(sorted(evidence.unknown_kinds))}."
+        )
+    return found
+
+
+def _cell(value: Cell | str) -> Cell:
+    return value if isinstance(value, Cell) else Cell(value)
+
+
+def _width(file: Path, dpi: int) -> int:
+    """Width of an image on the page in CSS pixels, 110 per inch at any resolution."""
+    with Image.open(file) as image:
+        return round(110 * image.width / dpi)
+
+
+def write(evidence: Evidence, out: Path, form: str, dpi: int) -> Iterator[Path]:
+    """Writes a page per mini-app and its pictures; yields the path of each written file.
+
+    The pages embed PNG. If `form` is another format, the pictures are written in that format too. Raises Failure
+    (IO_ERROR) if a file cannot be written.
+    """
+    for app in evidence.apps or ["gas"]:
+        yield from _write_app(app, evidence.for_app(app), out, form, dpi)
+
+
+def _write_app(app: str, evidence: Evidence, out: Path, form: str, dpi: int) -> Iterator[Path]:
+    machines = [(machine, _SECTIONS[app](evidence, machine)) for machine in evidence.machines]
+    files: dict[int, Path] = {}
+    names: dict[str, int] = {}
+    for _, found in machines:
+        for section in found:
+            for picture in section.pictures:
+                # Two machines may have the same GPU name.
+                names[picture.name] = names.get(picture.name, 0) + 1
+                name = picture.name if names[picture.name] == 1 else f"{picture.name}-{names[picture.name]}"
+                figure = picture.draw()
+                files[id(picture)] = style.save_figure(figure, out / f"{name}.png", dpi)
+                yield files[id(picture)]
+                if form != "png":
+                    yield style.save_figure(figure, out / f"{name}.{form}", dpi)
+    filters = {
+        "cell": _cell,
+        "file_of": lambda picture: files[id(picture)],
+        "width": lambda file: _width(file, dpi),
+    }
+    yield html_page.write(
+        out / f"{app}.html", "evidence/page.html.j2", filters, app=app, machines=machines, notes=notes(evidence),
+        count=len(evidence.records),
+    )  # fmt: skip

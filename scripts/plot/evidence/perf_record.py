@@ -1,0 +1,187 @@
+"""Validated record of drogue-perf, one line of a *.jsonl file, with its machine."""
+
+import json
+import math
+import re
+from dataclasses import dataclass
+
+from ..failure import IO_ERROR, Failure
+
+SCHEMA = "drogue.perf/1"
+BACKENDS = {"serial": "Serial", "openmp": "OpenMP", "cuda": "CUDA"}
+
+# Required facts of each kind of record; _OPTIONAL lists the others.
+_FACTS = {
+    "gas-solution": {"problem": str, "backend": str, "weno": str, "cells": int},
+    "gas-step": {},
+    "ceiling": {"backend": str},
+    "gas-transfers": {"backend": str, "memory": str, "cells": int, "h2d_s": float, "compute_s": float, "d2h_s": float},
+    "gas-block": {"backend": str, "form": str, "block": int, "cells": int},
+    "springs-solution": {"problem": str, "backend": str, "model": str, "mass": str, "integrator": str, "cells": int},
+    "springs-step": {},
+    "springs-contact": {},
+    "springs-transfers": {
+        "backend": str, "substeps": int, "cells": int, "h2d_s": float, "compute_s": float, "d2h_s": float,
+    },
+    "options": {},
+    "options-solution": {"problem": str, "backend": str, "method": str, "cells": int},
+    "options-transfers": {
+        "backend": str, "method": str, "mesh": int, "cells": int, "h2d_s": float, "compute_s": float, "d2h_s": float,
+    },
+    "tridiagonal": {},
+}  # fmt: skip
+_NAMED_BY_CASE = (
+    "gas-step",
+    "springs-step",
+    "springs-contact",
+    "options",
+    "tridiagonal",
+)  # facts in the case name
+_OPTIONAL = {
+    "gas-solution": {
+        "weno_power": float, "splitting": str, "time_scheme": str, "precision": str, "status": str, "message": str,
+    },
+    "gas-step": {"flops": float, "bytes": float, "vector_bits": int},
+    "ceiling": {"flops": float, "bytes": float},
+    "gas-transfers": {"thesis": dict},
+    "springs-solution": {"status": str, "message": str},
+    "springs-transfers": {"thesis": dict},
+    "options-solution": {"exercise": str, "grids": str, "intervals_a_step": str, "status": str, "message": str},
+    "options-transfers": {"thesis": dict},
+}  # fmt: skip
+KINDS = frozenset(_FACTS)
+_TYPES = {str: "text", int: "positive whole number", float: "number", dict: "JSON object"}
+
+
+@dataclass(frozen=True)
+class Machine:
+    """Machine of a record; records of different machines are never combined."""
+
+    gpu: str
+    cpu: str
+
+    @property
+    def name(self) -> str:
+        """Display name."""
+        return re.sub(r"\((R|TM)\)", "", ", ".join(filter(None, (self.gpu, self.cpu)))) or "unknown machine"
+
+    @property
+    def slug(self) -> str:
+        """Name for use in file names."""
+        words = re.sub(r"\((r|tm)\)", "", (self.gpu or self.cpu or "unknown machine").lower())
+        return re.sub(r"[^a-z0-9]+", "-", words).strip("-")
+
+
+@dataclass(frozen=True)
+class Record:
+    """One timed case; `median` and `interval` are in s per unit of work, None if not measured."""
+
+    case: str
+    unit: str
+    check: str
+    median: float | None
+    interval: tuple[float, float] | None
+    error: float | None
+    facts: dict
+    provenance: dict
+
+    @property
+    def kind(self) -> str:
+        """First component of the case name."""
+        return self.case.partition("/")[0]
+
+    @property
+    def app(self) -> str:
+        """Mini-app whose page shows the record; ceilings belong to gas, tridiagonal systems to options."""
+        app = self.kind.partition("-")[0]
+        return {"ceiling": "gas", "tridiagonal": "options"}.get(app, app)
+
+    @property
+    def machine(self) -> Machine:
+        return Machine(str(self.provenance.get("gpu") or ""), str(self.provenance.get("cpu") or ""))
+
+    @property
+    def run_id(self) -> tuple[str, str]:
+        """Date and commit; equal for all records of one run of drogue-perf."""
+        return str(self.provenance.get("date", "")), str(self.provenance.get("git", ""))
+
+    @property
+    def threads(self) -> int:
+        return int(self.provenance.get("threads") or 1)
+
+    @property
+    def succeeded(self) -> bool:
+        """Whether the scheme solved the problem; failed runs are listed, not drawn."""
+        return self.facts.get("status", "ok") == "ok"
+
+
+def _has_type(value, kind: type) -> bool:
+    """Whether a value is of the kind; numbers must be finite, integers positive."""
+    if kind in (str, dict) or isinstance(value, bool):
+        return kind in (str, dict) and isinstance(value, kind)
+    if kind is int:
+        return isinstance(value, int) and value > 0
+    return isinstance(value, int | float) and math.isfinite(value)
+
+
+def _checked_facts(case: str, facts: dict, place: str) -> dict:
+    """Validated facts, completed by those in the case name; raises Failure (IO_ERROR)."""
+    kind, *words = case.split("/")
+    if kind in _NAMED_BY_CASE:
+        if len(words) < 2 or not words[1].isdecimal():
+            raise Failure(IO_ERROR, f"{place}: '{case}' is not {kind}/BACKEND/CELLS[/VARIANT].")
+        facts = facts | {"backend": words[0], "cells": int(words[1]), "variant": "/".join(words[2:])}
+    for name, wanted in _FACTS[kind].items():
+        if not _has_type(facts.get(name), wanted):
+            raise Failure(IO_ERROR, f"{place}: fact '{name}' of {case} is no {_TYPES[wanted]}.")
+    for name, wanted in _OPTIONAL.get(kind, {}).items():
+        if facts.get(name) is not None and not _has_type(facts[name], wanted):
+            raise Failure(IO_ERROR, f"{place}: fact '{name}' of {case} is no {_TYPES[wanted]}.")
+    return {name: value for name, value in facts.items() if value is not None}
+
+
+def _times(document: dict, place: str) -> tuple[float, tuple[float, float]]:
+    """Median and confidence interval, s; raises Failure (IO_ERROR)."""
+    median, interval = document.get("median"), document.get("interval")
+    if not _has_type(median, float) or median <= 0:
+        raise Failure(IO_ERROR, f"{place}: the median of {document['case']} is no time.")
+    if (
+        not isinstance(interval, list)
+        or len(interval) != 2
+        or not all(_has_type(end, float) and end > 0 for end in interval)
+    ):
+        raise Failure(IO_ERROR, f"{place}: the interval of {document['case']} is not two times.")
+    return median, (interval[0], interval[1])
+
+
+def parse(line: str, place: str) -> Record:
+    """Record of a line of JSON; raises Failure (IO_ERROR) that names `place` (FILE:LINE) if it is invalid."""
+    try:
+        document = json.loads(line)
+    except ValueError as error:
+        raise Failure(IO_ERROR, f"{place} is no JSON: {str(error).partition(': line')[0]}.") from None
+    if not isinstance(document, dict):
+        raise Failure(IO_ERROR, f"{place} holds no JSON object.")
+    if document.get("schema") != SCHEMA:
+        raise Failure(
+            IO_ERROR, f"{place} has schema '{document.get('schema', '')}'; drogue-plot reads {SCHEMA}."
+        )
+    case, check = document.get("case"), document.get("check")
+    facts, provenance = document.get("facts", {}), document.get("provenance", {})
+    if not isinstance(case, str) or not case:
+        raise Failure(IO_ERROR, f"{place} names no case.")
+    if check not in ("passed", "failed"):
+        raise Failure(IO_ERROR, f"{place}: the check of {case} is neither passed nor failed.")
+    if not isinstance(facts, dict) or not isinstance(provenance, dict):
+        raise Failure(IO_ERROR, f"{place}: facts or provenance of {case} is no JSON object.")
+    if not _has_type(provenance.get("threads", 1), int):
+        raise Failure(IO_ERROR, f"{place}: threads of {case} is no positive whole number.")
+    median, interval, error = None, None, document.get("error")
+    if case.partition("/")[0] in _FACTS:
+        facts = _checked_facts(case, facts, place)
+        if check == "passed" and facts.get("status", "ok") == "ok":
+            median, interval = _times(document, place)
+            if case.partition("/")[0].endswith("-solution") and not _has_type(error, float):
+                raise Failure(IO_ERROR, f"{place}: the error of {case} is no number.")
+    unit, error = str(document.get("unit", "")), error if _has_type(error, float) else None
+    return Record(case, unit, check, median, interval, error, facts, provenance)

@@ -1,0 +1,99 @@
+"""Reader of the benchmark records of a folder, which sorts out failed and superseded ones."""
+
+from collections import Counter
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from ..failure import IO_ERROR, Failure
+from ..run_directory import RECORDS
+from .perf_record import KINDS, Machine, Record, parse
+
+
+@dataclass
+class Evidence:
+    """Records of a folder: valid ones, failed runs, failed checks, and superseded ones."""
+
+    folder: Path
+    records: list[Record] = field(default_factory=list)
+    failed_runs: list[Record] = field(default_factory=list)
+    failed_checks: list[Record] = field(default_factory=list)
+    unknown_kinds: Counter = field(default_factory=Counter)
+    superseded: list[Record] = field(default_factory=list)
+
+    @property
+    def apps(self) -> list[str]:
+        """Mini-apps that have records."""
+        every = self.records + self.failed_runs + self.failed_checks
+        return sorted({record.app for record in every})
+
+    def for_app(self, app: str) -> "Evidence":
+        """Records of one mini-app."""
+
+        def own(records: list[Record]) -> list[Record]:
+            return [record for record in records if record.app == app]
+
+        return Evidence(
+            self.folder,
+            own(self.records),
+            own(self.failed_runs),
+            own(self.failed_checks),
+            self.unknown_kinds,
+            own(self.superseded),
+        )
+
+    @property
+    def machines(self) -> list[Machine]:
+        """Machines in the order of their first record."""
+        return list(dict.fromkeys(record.machine for record in self.records + self.failed_runs))
+
+    def failed_runs_on(self, machine: Machine) -> list[Record]:
+        """Failed runs of one machine."""
+        return [record for record in self.failed_runs if record.machine == machine]
+
+    def select(self, machine: Machine, kind: str) -> list[Record]:
+        """Valid records of one machine and kind."""
+        return [record for record in self.records if record.machine == machine and record.kind == kind]
+
+
+def _latest(records: list[Record]) -> list[Record]:
+    """Latest record of each case and machine, in the order of first appearance."""
+    kept: dict[tuple[Machine, str], Record] = {}
+    for record in records:
+        key = record.machine, record.case
+        if key not in kept or record.run_id >= kept[key].run_id:
+            kept[key] = record
+    return list(kept.values())
+
+
+def read_records(folder: Path) -> Evidence | None:
+    """Records of all *.jsonl files of a folder, None without files; raises Failure (IO_ERROR) on an invalid line."""
+    files = sorted(folder.glob(RECORDS))
+    if not files:
+        return None
+    evidence, known = Evidence(folder), []
+    for file in files:
+        try:
+            lines = file.read_text(encoding="utf-8").split("\n")
+        except (OSError, UnicodeDecodeError) as error:
+            raise Failure(IO_ERROR, f"{file} cannot be read: {error}.") from None
+        for number, line in enumerate(lines, 1):
+            if not line.strip():
+                continue
+            record = parse(line, f"{file}:{number}")
+            if record.kind in KINDS:
+                known.append(record)
+            else:
+                evidence.unknown_kinds[record.kind] += 1
+    if not known and not evidence.unknown_kinds:
+        raise Failure(IO_ERROR, f"{folder} holds no record: its {RECORDS} are empty.")
+    latest = _latest(known)
+    kept = {id(record) for record in latest}
+    evidence.superseded = [record for record in known if id(record) not in kept]
+    for record in latest:
+        if not record.succeeded:
+            evidence.failed_runs.append(record)
+        elif record.check == "failed":
+            evidence.failed_checks.append(record)
+        else:
+            evidence.records.append(record)
+    return evidence

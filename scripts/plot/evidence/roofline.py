@@ -1,0 +1,173 @@
+"""Roofline sections: measured ceilings of a device, and the share of them that a step of drogue-gas attains."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .. import html_page, style
+from ..style import plt
+from .perf_record import BACKENDS, Machine, Record
+from .section import Picture, Section, Table, format_cells
+
+_COMMAND = "drogue-perf run --filter '^(ceiling|gas-step)' --out FILE.jsonl"
+_BYTES = {"memory": ("#7A7A7A", "memory"), "cache": ("#B9B9B9", "cache")}
+
+
+@dataclass(frozen=True)
+class Point:
+    """A step: arithmetic intensity, FLOP per byte, and rate, FLOP/s."""
+
+    cells: int
+    intensity: float
+    rate: float
+
+
+def ceilings(records: list[Record]) -> dict[str, float]:
+    """Measured ceilings: `fp64` in FLOP/s, `memory` and `cache` in B/s."""
+    found = {}
+    for record in records:
+        name = record.case.split("/")[1] if "/" in record.case else ""
+        work = record.facts.get("flops" if name == "fp64" else "bytes", 0)
+        if name in ("fp64", *_BYTES) and work > 0:
+            found[name] = work / record.median
+    return found
+
+
+def points(steps: list[Record]) -> list[Point]:
+    """Steps in the default variant whose work is known, by increasing mesh."""
+    found = []
+    for record in steps:
+        flops, moved = (record.facts.get(name, 0) for name in ("flops", "bytes"))
+        if flops > 0 and moved > 0 and not record.facts["variant"]:
+            found.append(Point(record.facts["cells"], flops / moved, flops / record.median))
+    return sorted(found, key=lambda point: point.cells)
+
+
+def _scaled(value: float, unit: str) -> str:
+    prefix, factor = ("T", 1e12) if value >= 1e12 else ("G", 1e9)
+    return f"{value / factor:.3g} {prefix}{unit}"
+
+
+def _draw_ceilings(axes, tops: dict[str, float], low: float, high: float) -> None:
+    peak = tops.get("fp64", np.inf)
+    at = np.geomspace(low, high, 200)
+    for name, (colour, _) in _BYTES.items():
+        if name in tops:
+            axes.plot(at, np.minimum(peak, tops[name] * at), color=colour, linewidth=1.2)
+    if "fp64" in tops:
+        first = peak / max((tops[name] for name in _BYTES if name in tops), default=np.inf)
+        axes.plot([max(first, low), high], [peak, peak], color=style.INK, linewidth=1.2)
+        axes.annotate(
+            f"FP64 {_scaled(peak, 'FLOP/s')}",
+            (high, peak),
+            (0, 4),
+            textcoords="offset points",
+            ha="right",
+            fontsize=8,
+        )
+
+
+def _label_slopes(axes, tops: dict[str, float], low: float) -> None:
+    """Labels the bandwidth slopes, above the upper one and below the lower one."""
+    slopes = sorted((name for name in _BYTES if name in tops), key=tops.get)
+    for name in slopes:
+        start, end = (axes.transData.transform((x, tops[name] * x)) for x in (low, 2 * low))
+        angle = np.degrees(np.arctan2(*(end - start)[::-1]))
+        above = name == slopes[-1]
+        axes.annotate(
+            f"{_BYTES[name][1]} {_scaled(tops[name], 'B/s')}", (1.15 * low, tops[name] * 1.15 * low),
+            (-3, 3) if above else (3, -3), textcoords="offset points", rotation=angle, rotation_mode="anchor",
+            va="bottom" if above else "top", fontsize=8, color=style.MUTED,
+        )  # fmt: skip
+
+
+def roofline_figure(title: str, machine: Machine, tops: dict[str, float], found: list[Point]):
+    """Roofline plot: FLOP/s against FLOP per byte on logarithmic axes, with the measured ceilings."""
+    left, right, bottom, top = 0.75, 2.1 if found else 0.2, 0.5, 0.62
+    details = f"{'a step of WENO-JS under ' if found else ''}measured ceilings; {machine.name}"
+    figure, axes = plt.subplots()
+    width, height = max(left + 3.7 + right, style.subtitle_width(figure, details)), bottom + 2.5 + top
+    figure.set_size_inches(width, height)
+    figure.subplots_adjust(
+        left=left / width, right=1 - right / width, bottom=bottom / height, top=1 - top / height
+    )
+    speed = max((tops[name] for name in _BYTES if name in tops), default=None)
+    ridge = [tops["fp64"] / speed] if speed and "fp64" in tops else []
+    middle = ridge + [point.intensity for point in found] or [1.0]
+    low, high = min(middle) / 16, max(middle) * 8
+    rates = [point.rate for point in found] + [tops[name] * low for name in _BYTES if name in tops]
+    rates += [tops["fp64"]] if "fp64" in tops else [speed * high]
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    axes.set_xlim(low, high)
+    axes.set_ylim(min(rates) / 2, max(rates) * 3)
+    _draw_ceilings(axes, tops, low, high)
+    ends = []
+    for index, point in enumerate(found):
+        colour = style.PALETTE[index % len(style.PALETTE)]
+        axes.plot(point.intensity, point.rate, "o", color=colour, markersize=6, zorder=3)
+        share = f": {100 * point.rate / tops['fp64']:.2g} % of FP64" if "fp64" in tops else ""
+        ends.append(((point.intensity, point.rate), f"{format_cells(point.cells)} cells{share}", colour))
+    axes.set_xlabel("FLOP a byte of memory")
+    axes.set_ylabel("FLOP/s")
+    style.set_log_ticks(axes.xaxis)
+    style.set_log_ticks(axes.yaxis)
+    _label_slopes(axes, tops, low)
+    style.label_curves(axes, ends)
+    style.heading(figure, title, details)
+    return figure
+
+
+def _ceiling_table(tops: dict[str, float]) -> Table:
+    words = {
+        "fp64": "FP64 arithmetic",
+        "memory": "memory, read and written",
+        "cache": "cache, read and written",
+    }
+    rows = [
+        [words[name], _scaled(tops[name], "FLOP/s" if name == "fp64" else "B/s")]
+        for name in words
+        if name in tops
+    ]
+    return Table([("ceiling", False), ("measured", True)], rows)
+
+
+def _share_table(tops: dict[str, float], found: list[Point]) -> Table:
+    columns = [("cells", True), ("FLOP a byte", True), ("FLOP/s", True), ("B/s", True)]
+    columns += [(f"% of {name}", True) for name in ("fp64", *_BYTES) if name in tops]
+    rows = []
+    for point in found:
+        moved = point.rate / point.intensity
+        row = [
+            html_page.format_grouped(point.cells),
+            html_page.format_number(point.intensity),
+            _scaled(point.rate, "FLOP/s"),
+            _scaled(moved, "B/s"),
+        ]
+        shares = [point.rate / tops["fp64"]] if "fp64" in tops else []
+        shares += [moved / tops[name] for name in _BYTES if name in tops]
+        rows.append(row + [html_page.format_number(100 * share) for share in shares])
+    return Table(columns, rows, "A step beside the ceilings")
+
+
+def sections(machine: Machine, records: list[Record], steps: list[Record]) -> list[Section]:
+    """One section per backend that has a measured ceiling."""
+    found = []
+    for backend in dict.fromkeys(record.facts["backend"] for record in records):
+        own = [record for record in records if record.facts["backend"] == backend]
+        beside = [record for record in steps if record.facts["backend"] == backend]
+        tops, shown = ceilings(own), points(beside)
+        if not tops:
+            continue
+        title = f"Roofline, {BACKENDS.get(backend, backend)}"
+        picture = Picture(
+            f"roofline_{backend}_{machine.slug}",
+            lambda title=title, tops=tops, shown=shown: roofline_figure(title, machine, tops, shown),
+            f"{title}: FLOP/s of a step against FLOP a byte under the measured ceilings",
+        )
+        tables = [_ceiling_table(tops)] + ([_share_table(tops, shown)] if shown else [])
+        used = own + [
+            record for record in beside if record.facts.get("flops") and not record.facts["variant"]
+        ]
+        found.append(Section(title, _COMMAND, used, [picture], tables))
+    return found

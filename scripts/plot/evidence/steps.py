@@ -1,0 +1,240 @@
+"""Sections on the cost of a step or batch, compared with goals and hand-written programs."""
+
+import re
+from dataclasses import dataclass
+
+from markupsafe import Markup
+
+from .. import html_page
+from ..gas import goals as gas_goals
+from ..options import goals as options_goals
+from ..springs import goals as springs_goals
+from .goal import (
+    BATCH_US,
+    CELL_NS,
+    EFFICIENCY,
+    HIGHER_IS_BETTER,
+    OPTION_RATE,
+    OPTION_US,
+    RATE,
+    SPEED_UP,
+    STEP_US,
+    TIME_RATIO,
+    VERTEX_NS,
+    Goal,
+)
+from .perf_record import BACKENDS, Record
+from .section import Cell, Section, Table, format_cells
+
+_NAMES = BACKENDS | {"dense-loop": "dense loop, one core", "scatter-loop": "loop that scatters, one core"}
+
+
+@dataclass(frozen=True)
+class _Kind:
+    """Labels, units and goals of a kind of record."""
+
+    title: str
+    mesh: str
+    per_mesh: tuple[str, str]  # time and rate
+    goals: tuple[Goal, ...] = ()
+    time: str = STEP_US
+    scales: tuple[float, float] = (1e9, 1e-9)  # of time and rate
+    errors: bool = False  # whether the table has a column of errors
+
+
+_SPRINGS = "vertices", (VERTEX_NS, "G vertex-steps/s"), springs_goals.GOALS
+_BATCH = {"time": BATCH_US, "scales": (1e6, 1.0), "errors": True}
+_KINDS = {
+    "gas-step": _Kind("A step", "cells", (CELL_NS, RATE), gas_goals.GOALS),
+    "springs-step": _Kind("A step", *_SPRINGS),
+    "springs-contact": _Kind("A step in contact", *_SPRINGS),
+    "options": _Kind("A batch", "options", (OPTION_US, OPTION_RATE), options_goals.GOALS, **_BATCH),
+    "tridiagonal": _Kind("Tridiagonal systems", "systems", ("\u00b5s a system", "systems/s"), **_BATCH),
+}
+_Estimate = tuple[float, float, float]  # median, lower and upper end of the 95 % interval
+
+
+def _seconds(record: Record) -> _Estimate:
+    return record.median, *record.interval
+
+
+def _scale(values: _Estimate, factor: float) -> _Estimate:
+    return tuple(factor * value for value in values)
+
+
+def _ratio(numerator: _Estimate, denominator: _Estimate) -> _Estimate:
+    """Quotient of two estimates; its interval contains all quotients of values in both intervals."""
+    return numerator[0] / denominator[0], numerator[1] / denominator[2], numerator[2] / denominator[1]
+
+
+def vector_bits(record: Record) -> int | None:
+    """Width of the vector registers of a host build, from its facts or compiler flags; None if unknown."""
+    if isinstance(record.facts.get("vector_bits"), int):
+        return record.facts["vector_bits"]
+    flags = str(record.provenance.get("flags", ""))
+    width = re.search(r"prefer-vector-width=(\d+)", flags)
+    if width:
+        return int(width[1])
+    if re.search(r"x86-64-v4|avx512", flags):
+        return 512
+    return 256 if re.search(r"x86-64-v3|avx2", flags) else None
+
+
+def measured(goal: Goal, record: Record, compared: Record | None) -> _Estimate | None:
+    """Value of the measure of a goal; `compared` is the record of its compared case in the same run.
+
+    Returns None if the goal compares with a case that the run lacks.
+    """
+    seconds, cells = _seconds(record), record.facts["cells"]
+    if goal.measure in (STEP_US, BATCH_US):
+        return _scale(seconds, 1e6)
+    if goal.measure in (CELL_NS, VERTEX_NS):
+        return _scale(seconds, 1e9 / cells)
+    if goal.measure in (RATE, OPTION_RATE):
+        return _ratio(((1e-9 if goal.measure == RATE else 1.0) * cells,) * 3, seconds)
+    if compared is None:
+        return None
+    if goal.measure == TIME_RATIO:
+        return _ratio(seconds, _seconds(compared))
+    faster = _ratio(_seconds(compared), seconds)
+    if goal.measure == SPEED_UP:
+        return faster
+    return _scale(faster, 1.0 / record.threads)
+
+
+def verdict(goal: Goal, value: float) -> str:
+    """Verdict on a median: `goal met`, `stretch met` or `missed by N %`."""
+
+    def meets(limit: float) -> bool:
+        return value >= limit if goal.measure in HIGHER_IS_BETTER else value <= limit
+
+    if goal.stretch is not None and meets(goal.stretch):
+        return "stretch met"
+    if meets(goal.goal):
+        return "goal met"
+    miss = 100 * abs(value / goal.goal - 1)
+    return f"missed by {miss:.0f} %" if miss >= 1 else f"missed by {miss:.1g} %"
+
+
+def _applies_to(goal: Goal, record: Record) -> bool:
+    """Whether a goal applies to the machine and build of a record.
+
+    Goals for host cores do not apply to CUDA builds, whose host backends are not vectorised.
+    """
+    if goal.case != record.case or goal.gpu not in record.machine.gpu:
+        return False
+    if goal.gpu:
+        return True
+    if "nvcc" in str(record.provenance.get("compiler", "")):
+        return False
+    return goal.vector_bits in (0, vector_bits(record) or goal.vector_bits)
+
+
+def _case_label(goal: Goal, record: Record) -> str:
+    mesh = f"{format_cells(record.facts['cells'])} {_KINDS[record.kind].mesh}"
+    words = f"{_NAMES.get(record.facts['backend'], record.facts['backend'])}, {mesh}"
+    if record.facts["variant"]:
+        words += f", {record.facts['variant']}"
+    if goal.vector_bits and vector_bits(record) is None:
+        words += f" (if its vectors have {goal.vector_bits} bits)"
+    if goal.measure == EFFICIENCY:
+        return f"{words}, against {record.threads} times one core"
+    return f"{words}, against {_short(goal.compared_case)}" if goal.compared_case else words
+
+
+def _short(case: str) -> str:
+    """Case name without its kind."""
+    return case.partition("/")[2]
+
+
+def _format_interval(values: _Estimate) -> str:
+    return Markup("{} [{} .. {}]").format(*(html_page.format_number(value) for value in values))
+
+
+def _goal_row(goal: Goal, record: Record, by_case: dict[tuple, Record]) -> list[Cell | str]:
+    limits = [
+        "" if limit is None else html_page.format_number(limit)
+        for limit in (goal.probe, goal.goal, goal.stretch)
+    ]
+    values = measured(goal, record, by_case.get((goal.compared_case, *record.run_id)))
+    if values is None:
+        return [
+            _case_label(goal, record),
+            goal.measure,
+            "",
+            *limits,
+            f"{_short(goal.compared_case)} is not in the same run",
+        ]
+    words = verdict(goal, values[0])
+    return [
+        _case_label(goal, record), goal.measure, _format_interval(values), *limits,
+        Cell(words, "bad" if words.startswith("missed") else "good"),
+    ]  # fmt: skip
+
+
+def goal_table(records: list[Record]) -> Table | None:
+    """Table of all goals that apply to the records, which are of one kind; None if there is none."""
+    by_case = {(record.case, *record.run_id): record for record in records}
+    goals = _KINDS[records[0].kind].goals
+    rows = [
+        _goal_row(goal, record, by_case) for goal in goals for record in records if _applies_to(goal, record)
+    ]
+    columns = ["what", "measure", "measured", "probe", "goal", "stretch", "verdict"]
+    note = (
+        "Measured: median and its 95 % interval. Probe: a small hand-written CUDA program, which is no part of this "
+        "project. The verdict is that of the median."
+    )
+    numeric = {"measured", "probe", "goal", "stretch"}
+    return (
+        Table([(name, name in numeric) for name in columns], rows, "Against the goals", note)
+        if rows
+        else None
+    )
+
+
+def step_table(records: list[Record]) -> Table:
+    """Table of times and rates; records are of one kind."""
+    kind, rows = _KINDS[records[0].kind], []
+    for record in records:
+        seconds, cells = _seconds(record), record.facts["cells"]
+        rows.append(
+            [
+                _NAMES.get(record.facts["backend"], record.facts["backend"]),
+                record.facts["variant"],
+                html_page.format_grouped(cells),
+                _format_interval(_scale(seconds, 1e6)),
+                html_page.format_number(kind.scales[0] * seconds[0] / cells),
+                html_page.format_number(kind.scales[1] * cells / seconds[0]),
+                *([html_page.format_number(record.error)] if kind.errors else []),
+            ]  # fmt: skip
+        )
+    columns = [("backend", False), ("variant", False), (kind.mesh, True)]
+    columns += [(name, True) for name in (kind.time, *kind.per_mesh, *(["error"] if kind.errors else []))]
+    return Table(
+        columns,
+        rows,
+        f"What {kind.title[0].lower()}{kind.title[1:]} cost{'s' if kind.title[:2] == 'A ' else ''}",
+    )
+
+
+def sections(records: list[Record]) -> list[Section]:
+    """One section on records of one kind, none without records."""
+    if not records:
+        return []
+    order = list(_NAMES)
+    ordered = sorted(
+        records,
+        key=lambda record: (
+            order.index(record.facts["backend"]) if record.facts["backend"] in order else len(order),
+            record.facts["cells"],
+            record.facts["variant"],
+        ),
+    )
+    goals = goal_table(ordered)
+    kind = records[0].kind
+    command = f"drogue-perf run --filter ^{kind}/ --out FILE.jsonl"
+    return [
+        Section(
+            _KINDS[kind].title, command, ordered, tables=[step_table(ordered)] + ([goals] if goals else [])
+        )
+    ]

@@ -1,0 +1,169 @@
+"""Sections on transfers: times of copies and computation, in the dissertation and on this machine."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .. import html_page, style
+from ..style import plt
+from .perf_record import BACKENDS, Machine, Record
+from .section import Picture, Section, Table
+
+_THESIS = "dissertation"
+_PARTS = {"h2d": "host to device", "compute": "compute", "d2h": "device to host"}
+_NAMES = _PARTS | {"total": "total"}
+_COLOURS = dict(zip(_PARTS, (style.PALETTE[5], style.PALETTE[0], style.PALETTE[4])))
+
+
+@dataclass(frozen=True)
+class _Kind:
+    """Labels of the transfers of a mini-app; `prefix` makes the file names of pictures unique."""
+
+    app: str
+    prefix: str
+    mesh: str
+    source: str
+    panels: str
+    table: str
+    note: str
+    unit: str
+    compared: bool  # whether a step of the dissertation does the same work
+
+
+_KINDS = {
+    "gas-transfers": _Kind(
+        app="gas",
+        prefix="transfers",
+        mesh="cells",
+        source="memory",
+        panels="the dissertation, with pageable and with pinned memory",
+        table="5.5",
+        note="",
+        unit="\u00b5s a step",
+        compared=True,
+    ),
+    "springs-transfers": _Kind(
+        app="springs",
+        prefix="springs-transfers",
+        mesh="vertices",
+        source="between two copies",
+        panels="the dissertation, and of each number of steps between two copies",
+        table="5.6",
+        note="Its steps took a number of substeps that is not recorded, so that no ratio to it means anything. Every "
+        "panel has a scale of its own.",
+        unit="\u00b5s from host to host",
+        compared=False,
+    ),
+}
+
+
+def _source(record: Record) -> str:
+    """Kind of host memory, or number of steps between two copies."""
+    steps = record.facts.get("substeps")
+    return record.facts["memory"] if steps is None else f"{steps} step" + ("s" if steps > 1 else "")
+
+
+def sources(records: list[Record]) -> list[str]:
+    """Sources in the order of panels: the dissertation, pageable before pinned memory, few steps before many."""
+    ordered = sorted(
+        records, key=lambda record: (record.facts.get("substeps", 0), record.facts.get("memory", ""))
+    )
+    return [_THESIS, *dict.fromkeys(_source(record) for record in ordered)]
+
+
+def times(records: list[Record]) -> dict[tuple[int, str], dict[str, float]]:
+    """Parts and total of the time per step, us, by (mesh, source) with increasing mesh."""
+    found = {}
+    for record in records:
+        facts = record.facts
+        parts = {part: 1e6 * facts[f"{part}_s"] for part in _PARTS}
+        found[facts["cells"], _source(record)] = parts | {"total": 1e6 * record.median}
+        thesis = facts.get("thesis") or {}
+        if all(isinstance(thesis.get(f"{part}_us"), int | float) for part in _NAMES):
+            found[facts["cells"], _THESIS] = {part: float(thesis[f"{part}_us"]) for part in _NAMES}
+    order = {name: index for index, name in enumerate(sources(records))}
+    return dict(sorted(found.items(), key=lambda item: (item[0][0], order[item[0][1]])))
+
+
+def transfers_figure(title: str, machine: Machine, records: list[Record]):
+    """Stacked bar charts by mesh, one panel per source; on a common scale if the sources are comparable."""
+    found, kind = times(records), _KINDS[records[0].kind]
+    panels = [name for name in sources(records) if any(source == name for _, source in found)]
+    meshes = sorted({cells for cells, _ in found})
+    height, details = 3.3, f"total above each bar; {machine.name}"
+    figure, axes = plt.subplots(1, len(panels), sharey=kind.compared, squeeze=False)
+    legend = [("\u25a0", words, _COLOURS[part]) for part, words in _PARTS.items()]
+    chart_width = 0.7 + (0.5 + 0.33 * len(meshes)) * len(panels)
+    width = max(
+        chart_width, style.heading_width(figure, title, legend), style.subtitle_width(figure, details)
+    )
+    figure.set_size_inches(width, height)
+    for panel, source in zip(axes[0], panels):
+        place = [index for index, cells in enumerate(meshes) if (cells, source) in found]
+        rows = [found[meshes[index], source] for index in place]
+        base = np.zeros(len(rows))
+        for part, colour in _COLOURS.items():
+            values = np.array([row[part] for row in rows])
+            panel.bar(place, values, 0.72, bottom=base, color=colour)
+            base += values
+        for index, top, row in zip(place, base, rows):
+            panel.annotate(
+                style.format_number(row["total"]), (index, top), (0, 2), textcoords="offset points", ha="center",
+                fontsize=6.5,
+                color=style.MUTED,
+            )  # fmt: skip
+        panel.set_title(source, pad=8)
+        panel.set_xticks(range(len(meshes)), [str(cells) for cells in meshes], rotation=60)
+        panel.set_xlim(-0.6, len(meshes) - 0.4)
+        panel.grid(axis="x", visible=False)
+        panel.set_xlabel(kind.mesh)
+    axes[0, 0].set_ylabel(kind.unit)
+    figure.tight_layout(rect=(0, 0, 1, 1 - 0.5 / height), w_pad=1.2)
+    style.heading(figure, title, details, legend)
+    return figure
+
+
+def transfers_table(records: list[Record]) -> Table:
+    """Parts and total by mesh and source, us."""
+    found, kind = times(records), _KINDS[records[0].kind]
+    columns = [(kind.mesh, True), (kind.source, False)] + [
+        (f"{words} (\u00b5s)", True) for words in _NAMES.values()
+    ]
+    columns += [("times as fast as the dissertation", True)] if kind.compared else []
+    rows = []
+    for (cells, source), parts in found.items():
+        row = [
+            html_page.format_grouped(cells),
+            source,
+            *(html_page.format_number(parts[part]) for part in _NAMES),
+        ]
+        thesis = found.get((cells, _THESIS))
+        if kind.compared:
+            row.append(
+                ""
+                if source == _THESIS or not thesis
+                else html_page.format_number(thesis["total"] / parts["total"])
+            )
+        rows.append(row)
+    return Table(columns, rows)
+
+
+def sections(machine: Machine, records: list[Record]) -> list[Section]:
+    """One section per backend; `records` are of one kind."""
+    found = []
+    for backend in dict.fromkeys(record.facts["backend"] for record in records):
+        own = [record for record in records if record.facts["backend"] == backend]
+        kind = _KINDS[own[0].kind]
+        title = f"Transfers of a step, {BACKENDS.get(backend, backend)}"
+        picture = Picture(
+            f"{kind.prefix}_{backend}_{machine.slug}",
+            lambda title=title, own=own: transfers_figure(title, machine, own),
+            f"{title}: copies and computation of {kind.panels}",
+        )
+        notes = ["Parts and total are medians of their own: they need not add up."]
+        if any(source == _THESIS for _, source in times(own)):
+            words = f"The dissertation's times are those of its Table {kind.table}, on its own machine."
+            notes.append(" ".join(filter(None, [words, kind.note])))
+        command = f"drogue-perf table transfers --app {kind.app} --out FILE.jsonl"
+        found.append(Section(title, command, own, [picture], [transfers_table(own)], notes))
+    return found

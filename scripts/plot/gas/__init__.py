@@ -1,0 +1,1 @@
+"""Figures, exact solutions and benchmark goals of drogue-gas."""

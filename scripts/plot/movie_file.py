@@ -1,0 +1,76 @@
+"""Animations: GIF by Pillow, MP4 by the ffmpeg binary of the package imageio-ffmpeg."""
+
+import subprocess
+from collections import Counter
+from pathlib import Path
+
+import numpy as np
+from PIL import Image
+
+from . import style
+from .failure import IO_ERROR, Failure
+
+
+def _pack_rgb(pixels: np.ndarray) -> np.ndarray:
+    """Pixels (height, width, 3) as integers 0xRRGGBB (height, width)."""
+    return pixels.astype(np.int64) @ np.array([1 << 16, 1 << 8, 1])
+
+
+def _unpack_rgb(colours: np.ndarray) -> np.ndarray:
+    """Inverse of `_pack_rgb`."""
+    return np.stack([colours >> 16, colours >> 8 & 255, colours & 255], axis=-1)
+
+
+def _common_palette(frames) -> np.ndarray:
+    """The 256 most frequent colours of all frames; one common palette avoids flicker and keeps white exact."""
+    counts = Counter()
+    for pixels in frames:
+        counts.update(
+            dict(zip(*(part.tolist() for part in np.unique(_pack_rgb(pixels), return_counts=True))))
+        )
+    return np.array([colour for colour, _ in counts.most_common(256)])
+
+
+def _quantize(pixels: np.ndarray, palette: np.ndarray) -> Image.Image:
+    """Frame with each colour replaced by the nearest one of the palette (Pillow's own search is approximate)."""
+    colours, index = np.unique(_pack_rgb(pixels), return_inverse=True)
+    distance = ((_unpack_rgb(colours)[:, None, :] - _unpack_rgb(palette)[None, :, :]) ** 2).sum(-1)
+    nearest = distance.argmin(1).astype(np.uint8)[index].reshape(pixels.shape[:2])
+    image = Image.fromarray(nearest, "P")
+    image.putpalette(_unpack_rgb(palette).astype(np.uint8).tobytes())
+    return image
+
+
+def _write_gif(file: Path, frames: list[np.ndarray]) -> None:
+    palette = _common_palette(frames)
+    images = [_quantize(pixels, palette) for pixels in frames]
+    frame_ms = int(np.clip(4000 / len(images), 50, 700))
+    durations = [frame_ms] * (len(images) - 1) + [1500]
+    images[0].save(file, save_all=True, append_images=images[1:], duration=durations, loop=0, optimize=False)
+
+
+def _write_mp4(file: Path, frames: list[np.ndarray]) -> None:
+    import imageio_ffmpeg
+
+    height, width = frames[0].shape[:2]
+    rate = max(2.0, len(frames) / 4)
+    command = [
+        imageio_ffmpeg.get_ffmpeg_exe(), "-y", "-loglevel", "error", "-f", "rawvideo", "-pix_fmt", "rgb24",
+        "-s", f"{width}x{height}", "-r", str(rate), "-i", "-", "-pix_fmt", "yuv420p", str(file),
+    ]  # fmt: skip
+    stream = b"".join(pixels.tobytes() for pixels in frames)
+    done = subprocess.run(command, input=stream, capture_output=True, check=False)
+    if done.returncode != 0:
+        raise Failure(
+            IO_ERROR, f"ffmpeg could not write {file}: {done.stderr.decode().strip().splitlines()[-1]}."
+        )
+
+
+def write(file: Path, frames) -> Path:
+    """Writes frames of equal size, (height, width, 3) bytes each, to a .gif or .mp4 file; returns `file`.
+
+    Raises Failure (IO_ERROR) if the file cannot be written.
+    """
+    frames = list(frames)
+    writer = _write_gif if file.suffix == ".gif" else _write_mp4
+    return style.write_atomically(file, lambda temporary: writer(temporary, frames))

@@ -1,0 +1,1 @@
+"""Figures, benchmark goals and published results for drogue-options."""

@@ -1,0 +1,1 @@
+"""Figures and benchmark goals of drogue-springs."""

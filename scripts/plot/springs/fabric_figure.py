@@ -1,0 +1,241 @@
+"""Figures of a drogue-springs run: cloth coloured by stress or displacement, strings, and contact bodies."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.colors import Normalize, to_rgba
+
+from .. import style
+from ..run_directory import Run, Snapshot
+from ..style import plt
+from . import bodies, strings
+
+MAX_FRAMES = 60
+_SIZE = (5.2, 4.0)
+_DPI = 100
+_AXES = "xyz"
+_FLAT = 0.02  # ratio of extents below which the mesh is drawn in its plane
+_BRIGHT = 99.5  # percentile of all values at the upper end of the colour scale
+_AZIMUTH, _ELEVATION = np.radians(-65), np.radians(28)
+_LIGHT = np.array([-0.4, -0.5, 0.77])
+_BODY_MARGIN = 0.3  # distance from the cloth up to which bodies are shown, relative to its extent
+_MAX_DIRECTIONS = 1500  # largest number of principal directions that are drawn
+_LEAST_STRESS = 0.02  # relative to the largest stress; below it principal directions are not drawn
+
+
+@dataclass
+class View:
+    """A run and its projection: along an axis for flat meshes, else oblique from above."""
+
+    run: Run
+    projection: np.ndarray = field(init=False)  # rows: unit vectors to the right, up, and towards the viewer
+    labels: tuple[str, str] | None = field(init=False)
+    body_facets: np.ndarray = field(init=False)  # (n, 4, 3), m
+
+    def __post_init__(self):
+        every = np.concatenate([self.positions(snapshot) for snapshot in self.run.snapshots])
+        extent = np.ptp(every, axis=0)
+        self.body_facets = bodies.facets(self.run.scene, every)
+        thin = int(extent.argmin())
+        self.labels = None
+        if extent[thin] < _FLAT * extent.max():
+            # x or y points to the right, z or y upwards.
+            shown = [axis for axis in range(3) if axis != thin]
+            self.projection = np.eye(3)[[*shown, thin]]
+            self.labels = tuple(_AXES[axis] for axis in shown)
+        else:
+            right = np.array([-np.sin(_AZIMUTH), np.cos(_AZIMUTH), 0])
+            eye = np.array(
+                [
+                    np.cos(_AZIMUTH) * np.cos(_ELEVATION),
+                    np.sin(_AZIMUTH) * np.cos(_ELEVATION),
+                    np.sin(_ELEVATION),
+                ]
+            )
+            self.projection = np.array([right, np.cross(eye, right), eye])
+
+    @property
+    def triangles(self) -> np.ndarray:
+        return self.run.mesh["triangles"].values
+
+    @property
+    def segments(self) -> np.ndarray:
+        """Vertex pairs (n, 2) of the string segments."""
+        return strings.segments(self.run.mesh)
+
+    @property
+    def quantity(self) -> tuple[str, str]:
+        """Name and unit of the quantity shown by colour."""
+        if "von_mises" in self.run.snapshots[-1].fields:
+            return "von Mises stress", "N/m"
+        return "displacement", "m"
+
+    def positions(self, snapshot: Snapshot) -> np.ndarray:
+        """Vertex positions (n, 3), m."""
+        moved = snapshot.fields.get("position")
+        return self.run.mesh["vertices"].values if moved is None else moved.values
+
+    def values(self, snapshot: Snapshot) -> np.ndarray:
+        """Values of the coloured quantity, one per triangle, or per string segment if there is no cloth."""
+        if "von_mises" in snapshot.fields:
+            return snapshot.fields["von_mises"].values
+        # Displacements are relative to the prestretched mesh, whose stretch would hide small deflections.
+        stretched = 1 + self.run.scene.get("initial", {}).get("prestretch", 0.0)
+        moved = np.linalg.norm(
+            self.positions(snapshot) - stretched * self.run.mesh["vertices"].values, axis=1
+        )
+        parts = self.triangles if len(self.triangles) else self.segments
+        return moved[parts].mean(axis=1)
+
+    def projected(self, snapshot: Snapshot) -> np.ndarray:
+        """View coordinates (n, 3): to the right, up, and towards the viewer, m."""
+        return self.positions(snapshot) @ self.projection.T
+
+    def stress_directions(self, snapshot: Snapshot) -> np.ndarray:
+        """Segments (n, 2, 2) along the larger principal stress; none for cloth that is not flat."""
+        major = snapshot.fields.get("major_direction")
+        if major is None or self.labels is None:
+            return np.empty((0, 2, 2))
+        every = -(-len(self.triangles) // _MAX_DIRECTIONS)
+        corners = self.positions(snapshot)[self.triangles]
+        areas = (
+            np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1) / 2
+        )
+        half = 0.35 * np.sqrt(every * areas.mean()) * major.values
+        values = self.values(snapshot)
+        shown = (np.arange(len(half)) % every == 0) & (values > _LEAST_STRESS * np.nanmax(values))
+        middle = corners.mean(axis=1)
+        return (np.stack((middle - half, middle + half), axis=1)[shown] @ self.projection.T)[:, :, :2]
+
+
+def _shades(view: View, corners: np.ndarray, colours: np.ndarray) -> np.ndarray:
+    """Lambertian shading of RGBA colours, equal for both sides of a facet; none for flat meshes."""
+    if view.labels is not None:
+        return colours
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    lengths = np.linalg.norm(normals, axis=1)
+    facing = np.abs(normals @ _LIGHT) / np.where(lengths > 0, lengths, 1)
+    shaded = colours.copy()
+    shaded[:, :3] *= (0.55 + 0.45 * np.minimum(1, facing))[:, None]
+    return shaded
+
+
+class FabricFigure:
+    """Figure that shows one snapshot at a time on fixed axes and a fixed colour scale."""
+
+    def __init__(self, view: View):
+        self._view = view
+        snapshots = view.run.snapshots
+        self.figure, axes = plt.subplots(figsize=_SIZE, dpi=_DPI)
+        values = np.concatenate([view.values(snapshot) for snapshot in snapshots])
+        # A percentile, since a few highly stressed triangles would leave all others dark.
+        low, high = float(np.nanmin(values)), float(np.nanpercentile(values, _BRIGHT))
+        self._map = plt.cm.ScalarMappable(Normalize(low, high if high > low else low + 1), "viridis")
+        if len(view.triangles):
+            self._parts = PolyCollection([], joinstyle="round")
+            self._seams = strings.lie_along_cloth(view.segments, view.triangles)
+        else:
+            self._parts = LineCollection([], linewidth=2.2)
+        colours = _shades(view, view.body_facets, np.tile(bodies.COLOUR, (len(view.body_facets), 1)))
+        self._bodies = (view.body_facets @ view.projection.T, colours)
+        if not len(view.triangles):
+            axes.add_collection(
+                PolyCollection(
+                    self._bodies[0][..., :2], facecolors=colours, edgecolors=colours, linewidth=0.4
+                )
+            )
+        axes.add_collection(self._parts)
+        self._directions = LineCollection([], linewidth=0.6, color="white")
+        axes.add_collection(self._directions)
+        low, high = self._range(np.concatenate([view.projected(snapshot)[:, :2] for snapshot in snapshots]))
+        axes.set_xlim(low[0], high[0])
+        axes.set_ylim(low[1], high[1])
+        axes.set_aspect("equal")
+        if view.labels is None:
+            axes.axis("off")
+        else:
+            axes.set_xlabel(style.axis_label(view.labels[0], "m"))
+            axes.set_ylabel(style.axis_label(view.labels[1], "m"))
+        extend = "max" if np.nanmax(values) > self._map.norm.vmax else "neither"
+        colorbar = self.figure.colorbar(self._map, ax=axes, shrink=0.8, pad=0.03, extend=extend)
+        colorbar.set_label(style.axis_label(*view.quantity))
+        colorbar.outline.set_visible(False)
+        self.figure.subplots_adjust(left=0.14, right=0.94, top=0.86, bottom=0.12)
+        self._caption = style.heading(self.figure, view.run.name, "")
+
+    def _range(self, projected: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Lower and upper corner of the shown region: all cloth, and the bodies near it."""
+        low, high = projected.min(axis=0), projected.max(axis=0)
+        near = _BODY_MARGIN * np.max(high - low)
+        if len(self._bodies[0]):
+            corners = self._bodies[0][..., :2].reshape(-1, 2)
+            lowest, highest = (
+                np.maximum(corners.min(axis=0), low - near),
+                np.minimum(corners.max(axis=0), high + near),
+            )
+            low, high = np.minimum(low, lowest), np.maximum(high, highest)
+        margin = 0.04 * np.max(high - low)
+        return low - margin, high + margin
+
+    def show(self, snapshot: Snapshot) -> None:
+        """Replaces the drawn data by those of a snapshot."""
+        view = self._view
+        projected, colours = view.projected(snapshot), self._map.to_rgba(view.values(snapshot))
+        if len(view.triangles):
+            facets, body_colours = self._bodies
+            # Painter's algorithm. Cloth that lies on a body is nearer by less than the depth of a facet. So the depth
+            # of a body facet is that of its farthest corner, less the depth of a triangle behind its centroid.
+            corners = projected[view.triangles]
+            depths = corners[..., 2].mean(axis=1)
+            back = np.max(depths - corners[..., 2].min(axis=1))
+            ends = projected[view.segments]
+            string_depths = strings.depths(projected, view.segments, self._seams, view.triangles, depths)
+            # A stable sort, so that strings are drawn after cloth of equal depth.
+            order = np.concatenate((depths, facets[..., 2].min(axis=1) - back, string_depths)).argsort(
+                kind="stable"
+            )
+            parts = [*corners[..., :2], *facets[..., :2], *ends[..., :2]]
+            shades = _shades(view, view.positions(snapshot)[view.triangles], colours)
+            string_colours = np.tile(to_rgba(strings.COLOUR), (len(ends), 1))
+            colours = np.concatenate((shades, body_colours, string_colours))[order]
+            self._parts.set_verts([parts[k] for k in order])
+            self._parts.set_facecolor(colours)
+            self._parts.set_edgecolor(colours)
+            self._parts.set_linewidth(np.where(order < len(parts) - len(ends), 0.2, strings.WIDTH))
+            self._directions.set_segments(view.stress_directions(snapshot))
+        else:
+            self._parts.set_segments(projected[view.segments, :2])
+            self._parts.set_color(colours)
+        count = len(view.run.mesh["vertices"].values)
+        self._caption.set_text(f"{count} vertices, t = {snapshot.time:.4g} s{_first_check(view.run)}")
+
+
+def _first_check(run: Run) -> str:
+    """Value and tolerance of the first check, for the subtitle."""
+    checks = run.result.get("checks", [])
+    if not checks or checks[0]["value"] is None:
+        return ""
+    check = checks[0]
+    return f", {style.check_label(check['name'])} {check['value']:.2g} (tolerance {check['tolerance']:.2g})"
+
+
+def fabric_figure(view: View, snapshot: Snapshot):
+    """Figure of one snapshot."""
+    drawing = FabricFigure(view)
+    drawing.show(snapshot)
+    return drawing.figure
+
+
+def frames(view: View):
+    """Generator of frames, (height, width, 3) bytes each, of at most MAX_FRAMES evenly spaced snapshots."""
+    snapshots = view.run.snapshots
+    count = min(len(snapshots), MAX_FRAMES)
+    drawing = FabricFigure(view)
+    for k in np.linspace(0, len(snapshots) - 1, count).round().astype(int):
+        drawing.show(snapshots[k])
+        drawing.figure.canvas.draw()
+        pixels = np.asarray(drawing.figure.canvas.buffer_rgba())[..., :3]
+        # Many MP4 players require even sizes.
+        yield pixels[: pixels.shape[0] // 2 * 2, : pixels.shape[1] // 2 * 2].copy()
+    plt.close(drawing.figure)
