@@ -234,7 +234,7 @@ class Prices(options_program.OptionsTest):
     def test_message_of_a_failed_row_names_a_remedy(self):
         """The remedy is an option of the run, and the row is priced with it."""
         header = HEADER + ",model,intensity,jump_mean,jump_deviation"
-        gh = {"delta": row("delta", delta="1e-300"), "rate": row("rate", rate="1e308")}
+        gh = {"dividend": row("dividend", dividend="1e308"), "rate": row("rate", rate="1e308")}
         lines = [line + ",,,," for line in gh.values()]
         lines += [f"{k},european,put,1,1,0.05,0,1,,,,,0.04,merton,{k},-0.1,0.2" for k in ("1e4", "1e12")]
         content = header + "\n" + "\n".join(lines) + "\n"
@@ -242,7 +242,7 @@ class Prices(options_program.OptionsTest):
         for words in (grid, ()):
             self.price(4, content, *words)
             written = {price["id"]: price["message"] for price in self.prices()}
-            for name in ("delta", "rate"):
+            for name in ("dividend", "rate"):
                 self.assertIn("need numbers beyond all range", written[name])
             self.assertIn("more happens until maturity than steps can follow", written["1e12"])
             self.assertFalse([name for name in written if name != "1e4" and "--steps" in written[name]])
