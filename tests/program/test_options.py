@@ -125,7 +125,7 @@ class Prices(options_program.OptionsTest):
         self.price(0, "\n".join(line.split(",", 1)[1] for line in without.splitlines()), *FAST)
         self.assertEqual(["1", "2", "3"], [price["id"] for price in self.prices()])
 
-    def test_a_batch_without_rows_has_no_prices(self):
+    def test_writes_no_prices_for_a_batch_without_rows(self):
         self.price(0, HEADER + "\n")
         self.assertEqual([], self.prices())
 
@@ -234,7 +234,7 @@ class Prices(options_program.OptionsTest):
     def test_message_of_a_failed_row_names_a_remedy(self):
         """The remedy is an option of the run, and the row is priced with it."""
         header = HEADER + ",model,intensity,jump_mean,jump_deviation"
-        gh = {"delta": row("delta", delta="1e-300"), "rate": row("rate", rate="1e308")}
+        gh = {"dividend": row("dividend", dividend="1e308"), "rate": row("rate", rate="1e308")}
         lines = [line + ",,,," for line in gh.values()]
         lines += [f"{k},european,put,1,1,0.05,0,1,,,,,0.04,merton,{k},-0.1,0.2" for k in ("1e4", "1e12")]
         content = header + "\n" + "\n".join(lines) + "\n"
@@ -242,7 +242,7 @@ class Prices(options_program.OptionsTest):
         for words in (grid, ()):
             self.price(4, content, *words)
             written = {price["id"]: price["message"] for price in self.prices()}
-            for name in ("delta", "rate"):
+            for name in ("dividend", "rate"):
                 self.assertIn("need numbers beyond all range", written[name])
             self.assertIn("more happens until maturity than steps can follow", written["1e12"])
             self.assertFalse([name for name in written if name != "1e4" and "--steps" in written[name]])
@@ -265,7 +265,7 @@ class Prices(options_program.OptionsTest):
         self.assertRegex(run.stdout, r"^batch on \w+: 3 parameter sets in \S+ s: 1 invalid; 12 prices: 12 ok, 0 coarse, 0 invalid, 0 failed\n")
         self.assertIn("(1 of 3 parameter sets invalid; all others are priced in 'surface.csv')", run.stderr)
 
-    def test_an_invalid_strike_affects_only_its_points_of_a_surface(self):
+    def test_invalidates_only_the_surface_points_of_an_invalid_strike(self):
         """The other points have the same bits for any such strike and any size of chunks."""
         head = "id,style,spot,rate,lambda,alpha,beta,delta,variance"
         good = ["low,american,100,0.05,-0.5,15,-5,0.5,0.04", "high,european,1e25,0.05,-0.5,15,-5,0.5,0.04"]
@@ -322,7 +322,7 @@ class SameBits(options_program.OptionsTest):
 
 
 class Files(options_program.OptionsTest):
-    def test_a_full_disk_leaves_the_former_file(self):
+    def test_keeps_the_former_file_on_a_full_disk(self):
         """A limit of the file size simulates a full disk."""
         file = self.write(batch([row(k) for k in range(300)]))
         self.write("former", "prices.csv")
@@ -391,7 +391,7 @@ class Files(options_program.OptionsTest):
         process.kill()
         self.fail("the run has not begun")
 
-    def test_a_killed_run_leaves_no_output(self):
+    def test_leaves_no_output_of_a_killed_run(self):
         process = self.start_long_run()
         process.kill()
         process.communicate()
@@ -404,7 +404,7 @@ class Files(options_program.OptionsTest):
         self.assertEqual((130, ["batch.csv", "r.json"]), (process.returncode, self.names()))
         self.assertIn("not all is written to '/dev/null'", json.loads((self.folder / "r.json").read_text())["message"])
 
-    def test_an_interrupted_run_leaves_only_its_result(self):
+    def test_leaves_only_the_result_of_an_interrupted_run(self):
         process = self.start_long_run()
         time.sleep(0.5)
         process.send_signal(signal.SIGINT)

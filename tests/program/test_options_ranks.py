@@ -136,7 +136,7 @@ class Failures(RanksTest):
         self.assertEqual(["r.json"], self.names())
         self.assertEqual(sentence, "drogue-options: " + json.loads((self.folder / "r.json").read_text())["message"])
 
-    def test_a_full_disk_leaves_the_former_file(self):
+    def test_keeps_the_former_file_on_a_full_disk(self):
         """A limit of the file size simulates a full disk; it is large enough for the files of MPI."""
         file = self.write(batch([row(k, strike=-1) for k in range(200_000)]))
         self.write("former", "prices.csv")
@@ -145,7 +145,7 @@ class Failures(RanksTest):
         self.assertEqual(["batch.csv", "prices.csv"], self.names())
         self.assertEqual("former", (self.folder / "prices.csv").read_text())
 
-    def test_a_killed_rank_leaves_no_output(self):
+    def test_leaves_no_output_after_a_rank_is_killed(self):
         for victim in (0, 2):
             with self.subTest(victim):
                 launcher, ranks = self.begin_long_run()
@@ -157,7 +157,7 @@ class Failures(RanksTest):
                     self.assertEqual(0, victim)
                     left.unlink()
 
-    def test_a_terminated_rank_interrupts_all_ranks(self):
+    def test_interrupts_all_ranks_if_one_is_terminated(self):
         for victim in (0, 1):
             with self.subTest(victim):
                 launcher, ranks = self.begin_long_run()

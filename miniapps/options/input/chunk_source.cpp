@@ -6,7 +6,7 @@ namespace drogue::options_app {
 namespace {
 
 constexpr std::size_t min_chunk = 16, first_surface_chunk = 4096, max_chunk = 65536;  // contracts
-constexpr std::size_t min_last_chunk = 1024;  // contracts; smallest chunk that load balancing asks for
+constexpr std::size_t min_last_chunk = 1024;  // contracts; lower bound for load balancing
 constexpr double target_chunk_time = 0.1;     // s
 
 }  // namespace

@@ -29,7 +29,7 @@ void RankWorkQueue::submit(ResultBatch batch) {
   if (batch.worker_finished) await_shutdown();
 }
 
-/// Receives and drops the chunks that rank 0 sends before it learns that this worker has finished: MPI waits
+/// Receives and drops the chunks that rank 0 sends before it receives the end of this worker: MPI waits
 /// forever for a message that is not received.
 void RankWorkQueue::await_shutdown() {
   Backoff pause;
