@@ -35,7 +35,7 @@ void count_fence(const char* label, const std::uint32_t device, std::uint64_t* i
 
 void count_allocation(Kokkos_Profiling_SpaceHandle space, const char* label, const void* pointer,
                       const std::uint64_t size) {
-  // Kokkos 4.5 asks for no bytes of team scratch at every launch of a team policy; nothing is allocated then.
+  // Kokkos 4.5 requests zero bytes of team scratch at every launch of a team policy, which allocates nothing.
   if (size > 0) {
     ++counters.allocations;
     if (counters.warm) ++counters.warm_allocations;

@@ -44,7 +44,7 @@ struct State {
 ///
 /// All work is enqueued on the instance given to the constructor. Kernels of the same instance run in order
 /// with it; other streams need events. On CUDA the instance must have a stream of its own, since steps are
-/// captured from it. Member functions are asynchronous unless they say that they block.
+/// captured from it. Member functions are asynchronous unless stated otherwise.
 ///
 /// `VertexForce` is evaluated with the elastic forces in every stage, fused into the kernels of every driver
 /// (`IsVertexForce`). `forces`, `totals`, `fastest_frequency` and `frequency_at_least` do not include it, and

@@ -104,8 +104,8 @@ void check_parameters(const Parameters& p) {
 }
 
 bool has_area(const Mesh& mesh, const std::array<int, 3>& t) {
-  // Heron's formula without its cancellation (Kahan 2014); rounding of the coordinates is what is asked
-  // about.
+  // Heron's formula in the order without cancellation (Kahan 2014), since the area is compared with the
+  // rounding of the coordinates.
   double side[3] = {rest_distance(mesh, t[0], t[1]), rest_distance(mesh, t[1], t[2]),
                     rest_distance(mesh, t[2], t[0])};
   std::ranges::sort(side);

@@ -26,7 +26,7 @@ class HardCases(options_program.OptionsTest):
     def setUp(self):
         super().setUp()
         self.expect(0, "price", "hard_cases", "--backend", "serial", "--quiet")
-        self.told = {told["id"]: told for told in self.prices()}
+        self.priced = {row["id"]: row for row in self.prices()}
 
     def test_table(self):
         self.assertEqual(list(EXPECTED), list(CONTRACTS))
@@ -37,34 +37,34 @@ class HardCases(options_program.OptionsTest):
             if expected["price"]:
                 with self.subTest(name):
                     tolerance = float(expected["tolerance"]) + float(expected["uncertainty"])
-                    self.assertAlmostEqual(float(expected["price"]), float(self.told[name]["price"]), delta=tolerance)
+                    self.assertAlmostEqual(float(expected["price"]), float(self.priced[name]["price"]), delta=tolerance)
 
-    def test_errors_cover_the_truth(self):
-        """In nine of ten rows."""
+    def test_error_estimates_cover_the_reference(self):
+        """The estimates of nine in ten rows cover the deviation from the reference."""
         kept = [name for name, expected in EXPECTED.items() if expected["price"]]
-        covered = [name for name in kept if abs(float(EXPECTED[name]["price"]) - float(self.told[name]["price"]))
-                   <= float(self.told[name]["error"]) + float(EXPECTED[name]["uncertainty"])]
+        covered = [name for name in kept if abs(float(EXPECTED[name]["price"]) - float(self.priced[name]["price"]))
+                   <= float(self.priced[name]["error"]) + float(EXPECTED[name]["uncertainty"])]
         self.assertGreaterEqual(len(covered), 0.9 * len(kept), set(kept) - set(covered))
 
-    def test_where_no_price_is_kept(self):
-        """Within what no law allows to leave: the European price and the strike."""
+    def test_bounds_american_price_without_reference(self):
+        """Bounds of an American put by arbitrage: the European price and the strike."""
         lines = [",".join({**CONTRACTS[name], "style": "european"}.values()) for name, expected in EXPECTED.items()
                  if not expected["price"]]
         self.assertEqual(1, len(lines))
         self.expect(0, "price", self.write(options_program.batch(lines)), "--quiet", "--out", "e.csv", *options_program.FAST)
         for european in self.prices("e.csv"):
             name = european["id"]
-            price, error = float(self.told[name]["price"]), float(self.told[name]["error"])
+            price, error = float(self.priced[name]["price"]), float(self.priced[name]["error"])
             self.assertGreaterEqual(price, float(european["price"]) - error)
             self.assertLessEqual(price, float(CONTRACTS[name]["strike"]))
 
-    def test_kept_prices(self):
-        """Those that the Fourier integral gives in no time, anew."""
+    def test_reproduces_european_prices(self):
+        """European prices, which the Fourier integral computes quickly, against the table."""
         kept = [name for name, contract in CONTRACTS.items() if contract["style"] == "european"]
         lines = [",".join(CONTRACTS[name].values()) for name in kept]
         self.expect(0, "price", self.write(options_program.batch(lines)), "--quiet", "--out", "e.csv", *options_program.FAST)
-        for told in self.prices("e.csv"):
-            self.assertAlmostEqual(float(EXPECTED[told["id"]]["price"]), float(told["price"]), delta=1e-12)
+        for row in self.prices("e.csv"):
+            self.assertAlmostEqual(float(EXPECTED[row["id"]]["price"]), float(row["price"]), delta=1e-12)
 
 
 if __name__ == "__main__":

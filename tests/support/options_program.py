@@ -37,7 +37,7 @@ class OptionsTest(gas_program.GasTest):
         return file
 
     def price(self, code, content, *words, **settings):
-        """Prices a batch given by its content; returns what the run said."""
+        """Prices a batch given by its content; returns the output of the run."""
         return self.expect(code, "price", self.write(content), "--backend", "serial", "--quiet", *words, **settings)
 
     def prices(self, name="prices.csv"):

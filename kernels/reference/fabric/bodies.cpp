@@ -20,20 +20,21 @@ long double inner(const LongVector& a, const LongVector& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/// The least distance of the origin from a segment, by its parameter.
+/// Distance of the origin from a segment, m.
 long double from_segment(const LongVector& a, const LongVector& b) {
-  const LongVector way = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
-  const long double squared = inner(way, way);
-  const long double u = squared > 0 ? std::clamp(-inner(a, way) / squared, 0.0L, 1.0L) : 0.0L;
-  return std::hypot(a[0] + u * way[0], a[1] + u * way[1], a[2] + u * way[2]);
+  const LongVector direction = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
+  const long double squared = inner(direction, direction);
+  const long double u = squared > 0 ? std::clamp(-inner(a, direction) / squared, 0.0L, 1.0L) : 0.0L;
+  return std::hypot(a[0] + u * direction[0], a[1] + u * direction[1], a[2] + u * direction[2]);
 }
 
-/// Whether the origin lies above the inside of a triangle, and how high.
+/// Returns whether the origin projects into a triangle, and its distance `height` from the plane, m.
 bool above(const std::array<LongVector, 3>& t, long double& height) {
   const auto cross = [](const LongVector& a, const LongVector& b) {
     return LongVector{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
   };
-  // Of the origin's pyramid the three flanks turn the same way as the base where its foot is inside.
+  // The projection is inside if the vector areas of the three triangles with the origin point to the side of
+  // the normal.
   LongVector normal{};
   std::array<LongVector, 3> flank;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -67,7 +68,7 @@ double distance_from(const fabric::Body& body, const std::array<double, 3>& plac
 
 namespace {
 
-/// Of a segment or a triangle.
+/// `enters` for a segment or a triangle.
 template <std::size_t size>
 bool part_enters(const fabric::Body& body, const std::array<std::array<double, 3>, size>& corners) {
   std::array<LongVector, size> t;
@@ -82,8 +83,8 @@ bool part_enters(const fabric::Body& body, const std::array<std::array<double, 3
     if constexpr (size == 3) return above(t, height) && height < body.radius;
     return false;
   }
-  // Where it passes through the plane of the disk: a place or a piece of a line, which meets the disk if its
-  // nearest point to the centre does.
+  // The intersection with the plane of the disk is a point or a segment. It meets the disk if its point
+  // closest to the centre does.
   const LongVector n = {body.normal[0], body.normal[1], body.normal[2]};
   std::vector<LongVector> passing;
   for (std::size_t k = 0; k < size; ++k) {

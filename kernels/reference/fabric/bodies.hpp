@@ -6,14 +6,15 @@
 
 namespace drogue::reference {
 
-/// Signed distance of a place from a disk, sphere or plane, m; never negative from a disk. By the angle at
-/// which the place is seen, in extended precision. std::invalid_argument for a level set.
+/// Signed distance of a point from a disk, sphere or plane, m, in extended precision; not negative for a
+/// disk. Throws std::invalid_argument for a level set.
 [[nodiscard]] double distance_from(const fabric::Body& body, const std::array<double, 3>& place);
 
-/// Whether some point of a triangle, not only a corner, lies within a sphere, in a disk, or behind a plane.
+/// Returns whether any point of a triangle, m, lies inside a sphere, on a disk, or behind a plane. Throws
+/// std::invalid_argument for a level set.
 [[nodiscard]] bool enters(const fabric::Body& body, const std::array<std::array<double, 3>, 3>& triangle);
 
-/// The same of a segment.
+/// Returns whether any point of a segment does, as above.
 [[nodiscard]] bool enters(const fabric::Body& body, const std::array<std::array<double, 3>, 2>& segment);
 
 }  // namespace drogue::reference

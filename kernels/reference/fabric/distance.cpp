@@ -16,7 +16,8 @@ Long3 minus(const Long3& a, const Long3& b) { return {a[0] - b[0], a[1] - b[1], 
 Real product(const Long3& a, const Long3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 Long3 wide(const Place3& a) { return {a[0], a[1], a[2]}; }
 
-/// Solves a symmetric system of up to three unknowns by elimination with pivots; false if it is singular.
+/// Solves a symmetric system of up to three unknowns by Gaussian elimination with partial pivoting. Returns
+/// false if it is singular.
 bool solve(std::vector<std::vector<Real>> m, std::vector<Real> right, std::vector<Real>& x) {
   const std::size_t n = right.size();
   for (std::size_t k = 0; k < n; ++k) {
@@ -40,29 +41,29 @@ bool solve(std::vector<std::vector<Real>> m, std::vector<Real> right, std::vecto
   return true;
 }
 
-/// Distance of the flats through two faces if their nearest points are in the faces, else infinity.
+/// Distance of the affine hulls of two faces, m, if their closest points lie in the faces; else infinity.
 Real face_distance(const std::vector<Long3>& a, const std::vector<Long3>& b) {
   const Long3 between = minus(b[0], a[0]);
-  std::vector<Long3> ways;  // from a[0] along a, and against those along b
-  for (std::size_t k = 1; k < a.size(); ++k) ways.push_back(minus(a[k], a[0]));
-  for (std::size_t k = 1; k < b.size(); ++k) ways.push_back(minus(b[0], b[k]));
+  std::vector<Long3> edges;  // edges of a from a[0], and reversed edges of b from b[0]
+  for (std::size_t k = 1; k < a.size(); ++k) edges.push_back(minus(a[k], a[0]));
+  for (std::size_t k = 1; k < b.size(); ++k) edges.push_back(minus(b[0], b[k]));
   std::vector<Real> share;
-  if (!ways.empty()) {
+  if (!edges.empty()) {
     std::vector<std::vector<Real>> m;
     std::vector<Real> right;
-    for (const Long3& row : ways) {
+    for (const Long3& row : edges) {
       m.emplace_back();
-      for (const Long3& column : ways) m.back().push_back(product(row, column));
+      for (const Long3& column : edges) m.back().push_back(product(row, column));
       right.push_back(product(row, between));
     }
     if (!solve(m, right, share)) return std::numeric_limits<Real>::infinity();
   }
   Real first_a = 1.0L, first_b = 1.0L;
   Long3 rest = between;
-  for (std::size_t k = 0; k < ways.size(); ++k) {
+  for (std::size_t k = 0; k < edges.size(); ++k) {
     if (!(share[k] >= 0.0L)) return std::numeric_limits<Real>::infinity();
     (k + 1 < a.size() ? first_a : first_b) -= share[k];
-    for (std::size_t axis = 0; axis < 3; ++axis) rest[axis] -= share[k] * ways[k][axis];
+    for (std::size_t axis = 0; axis < 3; ++axis) rest[axis] -= share[k] * edges[k][axis];
   }
   if (first_a < 0.0L || first_b < 0.0L) return std::numeric_limits<Real>::infinity();
   return std::sqrt(product(rest, rest));
@@ -85,7 +86,7 @@ Four places_at(const std::array<Place3, 4>& from, const std::array<Place3, 4>& t
   return at;
 }
 
-/// Six times the volume of the tetrahedron.
+/// Six times the signed volume of a tetrahedron, m^3.
 Real volume(const Four& p) {
   const Long3 a = minus(p[1], p[0]), b = minus(p[2], p[0]), c = minus(p[3], p[0]);
   return a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) +
@@ -105,12 +106,12 @@ double hull_distance(std::span<const Place3> a, std::span<const Place3> b) {
 std::optional<double> first_meeting(const std::array<Place3, 4>& from, const std::array<Place3, 4>& to,
                                     std::size_t split, double touching) {
   const auto at = [&](Real part) { return volume(places_at(from, to, part)); };
-  // The cubic through four of its values.
+  // Coefficients of the cubic from four of its values.
   const Real f0 = at(0.0L), f1 = at(1.0L / 3.0L), f2 = at(2.0L / 3.0L), f3 = at(1.0L);
   const Real c = 0.5L * (-11.0L * f0 + 18.0L * f1 - 9.0L * f2 + 2.0L * f3),
              b = 4.5L * (2.0L * f0 - 5.0L * f1 + 4.0L * f2 - f3),
              a = 4.5L * (f3 - 3.0L * f2 + 3.0L * f1 - f0);
-  // Between the places where it turns it has one root at most.
+  // The cubic has at most one root between neighbouring extrema.
   std::vector<Real> ends = {0.0L};
   if (const Real inner = b * b - 3.0L * a * c; inner > 0.0L) {
     const Real q = -(b + std::copysign(std::sqrt(inner), b));

@@ -13,7 +13,7 @@ double largest_frequency(const fabric::Material& material, const Mesh& mesh, con
     return pinned.empty() || (pinned[i] >> axis & 1U) == 0U;
   };
   std::mt19937 engine(1);
-  std::vector<Vector> u(n);  // of M^-1/2 K M^-1/2, which is symmetric
+  std::vector<Vector> u(n);  // eigenvector estimate of the symmetric matrix M^-1/2 K M^-1/2
   for (Vector& x : u)
     for (double& value : x) value = static_cast<double>(engine()) / 4294967296.0 - 0.5;
   double squared = 0.0;

@@ -16,7 +16,7 @@ using Place = std::array<double, 3>;
 
 int sign(const Exact& value) { return value.sign(); }
 
-/// The determinant of three rows of three numbers.
+/// Determinant of a 3 x 3 matrix.
 template <class Number>
 Number determinant(const std::array<std::array<Number, 3>, 3>& m) {
   return m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
@@ -36,7 +36,7 @@ std::array<std::array<Number, 3>, 3> rows_from(const Place& d, const Place& a, c
   return rows;
 }
 
-/// Which way a, b, c turn in the plane of two axes.
+/// Orientation of a, b, c in the coordinate plane (u, v): 1 if counterclockwise, -1 if clockwise, else 0.
 int turn(const Place& a, const Place& b, const Place& c, std::size_t u, std::size_t v) {
   using Long = long double;
   const Long bu = Long(b[u]) - a[u], bv = Long(b[v]) - a[v], cu = Long(c[u]) - a[u], cv = Long(c[v]) - a[v];
@@ -46,14 +46,14 @@ int turn(const Place& a, const Place& b, const Place& c, std::size_t u, std::siz
               (Exact(b[v]) - Exact(a[v])) * (Exact(c[u]) - Exact(a[u])));
 }
 
-/// Segments of a plane.
+/// Returns whether the segments (p, q) and (a, b) intersect in the coordinate plane (u, v).
 bool segments_meet(const Place& p, const Place& q, const Place& a, const Place& b, std::size_t u,
                    std::size_t v) {
   const int p_side = turn(a, b, p, u, v), q_side = turn(a, b, q, u, v);
   const int a_side = turn(p, q, a, u, v), b_side = turn(p, q, b, u, v);
   if (p_side * q_side > 0 || a_side * b_side > 0) return false;
   if (p_side != 0 || q_side != 0 || a_side != 0 || b_side != 0) return true;
-  // Of one line: their boxes tell.
+  // Collinear segments intersect if their boxes overlap.
   const auto overlap = [&](std::size_t axis) {
     return std::max(std::min(p[axis], q[axis]), std::min(a[axis], b[axis])) <=
            std::min(std::max(p[axis], q[axis]), std::max(a[axis], b[axis]));
@@ -65,14 +65,14 @@ bool meet_in_plane(const std::array<Place, 2>& s, const std::array<Place, 3>& t)
   for (std::size_t drop = 0; drop < 3; ++drop) {
     const std::size_t u = (drop + 1) % 3, v = (drop + 2) % 3;
     const int whole = turn(t[0], t[1], t[2], u, v);
-    if (whole == 0) continue;  // seen edgewise
+    if (whole == 0) continue;  // the projection has no area
     const auto within = [&](std::size_t k) { return turn(t[k], t[(k + 1) % 3], s[0], u, v) * whole >= 0; };
     if (within(0) && within(1) && within(2)) return true;
     for (std::size_t k = 0; k < 3; ++k)
       if (segments_meet(s[0], s[1], t[k], t[(k + 1) % 3], u, v)) return true;
     return false;
   }
-  return true;  // a triangle without area: it says nothing else than that something is wrong
+  return true;  // a degenerate triangle in a coplanar pair counts as intersected
 }
 
 struct Box {
@@ -90,11 +90,11 @@ Box box_of(std::span<const Place> positions, const Vertices& vertices) {
   return box;
 }
 
-/// Whether some points lie beyond others along a direction by more than sums of products of differences, each
-/// rounded, can be wrong.
+/// Returns whether the projections of two point sets on the direction `along` are disjoint by more than the
+/// bound of their rounding errors.
 template <std::size_t m, std::size_t n>
-bool beyond(const std::array<long double, 3>& along, const std::array<Place, m>& p,
-            const std::array<Place, n>& q) {
+bool has_disjoint_projections(const std::array<long double, 3>& along, const std::array<Place, m>& p,
+                              const std::array<Place, n>& q) {
   long double size = 0.0L;
   const auto height = [&](const Place& x) {
     long double sum = 0.0L;
@@ -111,25 +111,26 @@ bool beyond(const std::array<long double, 3>& along, const std::array<Place, m>&
          64.0L * std::numeric_limits<long double>::epsilon() * size;
 }
 
-/// Whether a plane is seen to lie between a segment and a triangle. Any would do; those along the triangle,
-/// across it through a side or along the segment are tried. Spares the rational numbers most pairs of a sheet
-/// that is flat.
-bool seen_apart(const std::array<Place, 2>& segment, const std::array<Place, 3>& triangle) {
+/// Separating-axis test of a segment and a triangle: true only if they are disjoint. Tests the normal of the
+/// triangle, and cross products of it, of the sides and of the segment. Avoids rational arithmetic for most
+/// pairs of a flat sheet.
+bool has_separating_axis(const std::array<Place, 2>& segment, const std::array<Place, 3>& triangle) {
   using Long = std::array<long double, 3>;
-  const auto way = [](const Place& from, const Place& to) {
+  const auto edge_vector = [](const Place& from, const Place& to) {
     return Long{static_cast<long double>(to[0]) - from[0], static_cast<long double>(to[1]) - from[1],
                 static_cast<long double>(to[2]) - from[2]};
   };
   const auto cross = [](const Long& a, const Long& b) {
     return Long{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
   };
-  const Long normal = cross(way(triangle[0], triangle[1]), way(triangle[0], triangle[2]));
-  if (beyond(normal, segment, triangle)) return true;
-  const Long along = way(segment[0], segment[1]);
-  if (beyond(cross(normal, along), segment, triangle)) return true;
+  const Long normal = cross(edge_vector(triangle[0], triangle[1]), edge_vector(triangle[0], triangle[2]));
+  if (has_disjoint_projections(normal, segment, triangle)) return true;
+  const Long along = edge_vector(segment[0], segment[1]);
+  if (has_disjoint_projections(cross(normal, along), segment, triangle)) return true;
   for (std::size_t k = 0; k < 3; ++k) {
-    const Long side = way(triangle[k], triangle[(k + 1) % 3]);
-    if (beyond(cross(normal, side), segment, triangle) || beyond(cross(along, side), segment, triangle))
+    const Long side = edge_vector(triangle[k], triangle[(k + 1) % 3]);
+    if (has_disjoint_projections(cross(normal, side), segment, triangle) ||
+        has_disjoint_projections(cross(along, side), segment, triangle))
       return true;
   }
   return false;
@@ -141,12 +142,13 @@ bool overlap(const Box& a, const Box& b) {
   return true;
 }
 
-/// Boxes in the cells of a grid by their lowest corners. A cell is wider than the widest box by more than
-/// round-off, so what overlaps a box begins in one of its cells or one lower.
+/// Uniform grid of boxes, sorted by the cells of their lower corners. A cell is wider than the widest box by
+/// more than round-off. Boxes that overlap a given box thus start in one of its cells or in the next lower
+/// ones.
 class BoxGrid {
  public:
-  /// `asked` is the widest box that will be asked about, m: it spans few cells.
-  BoxGrid(std::span<const Box> boxes, double asked) : _width(asked) {
+  /// `widest_query`: largest width of the boxes given to `each_near`, m, which limits the cells they span.
+  BoxGrid(std::span<const Box> boxes, double widest_query) : _width(widest_query) {
     if (boxes.empty()) return;
     _low = boxes[0].low;
     Place high = _low;
@@ -164,7 +166,7 @@ class BoxGrid {
     std::ranges::sort(_places);
   }
 
-  /// Calls `take(number)` at least for every box that overlaps another.
+  /// Calls `take(number)` for every box that overlaps `box`, and possibly for others.
   template <class Take>
   void each_near(const Box& box, const Take& take) const {
     const auto first = [&](std::size_t axis) {
@@ -181,9 +183,9 @@ class BoxGrid {
   }
 
  private:
-  static constexpr double most = 1 << 20;  ///< cells along an axis, 21 bits of a key
+  static constexpr double most = 1 << 20;  ///< cells along an axis; 21 bits of a key
 
-  /// Rounding is monotone: of two places the higher one has no lower cell.
+  /// Cell of a coordinate. Monotone, since rounding is monotone.
   [[nodiscard]] std::int64_t cell(std::size_t axis, double x) const {
     const double from_low = (x - _low[axis]) / _width;
     return from_low > 0.0 ? static_cast<std::int64_t>(std::min(from_low, most)) : 0;
@@ -194,7 +196,7 @@ class BoxGrid {
   }
 
   Place _low{};
-  double _width;  ///< of a cell, m
+  double _width;  ///< width of a cell, m
   std::vector<std::pair<std::uint64_t, std::size_t>> _places;
 };
 
@@ -205,7 +207,7 @@ int side_of_plane(const Place& a, const Place& b, const Place& c, const Place& d
   long double size = 1.0L;
   for (const auto& row : rows) size *= std::abs(row[0]) + std::abs(row[1]) + std::abs(row[2]);
   const long double value = determinant(rows);
-  // Products of three differences, each rounded once, and five more operations: below 16 units of the size.
+  // Products of three rounded differences and five further operations: error below 16 epsilon times `size`.
   if (std::abs(value) > 32.0L * std::numeric_limits<long double>::epsilon() * size) return value > 0 ? 1 : -1;
   return sign(determinant(rows_from<Exact>(d, a, b, c)));
 }
@@ -249,7 +251,7 @@ std::vector<Intersection> intersections(std::span<const Place> positions,
       const bool shares = std::ranges::any_of(t, [&](int i) { return i == segment[0] || i == segment[1]; });
       if (shares || !overlap(box, boxes[number])) return;
       const std::array<Place, 3> corners = {place(t[0]), place(t[1]), place(t[2])};
-      if (!seen_apart(ends, corners) && meet(ends, corners)) found.push_back({segment, number});
+      if (!has_separating_axis(ends, corners) && meet(ends, corners)) found.push_back({segment, number});
     });
   }
   return found;

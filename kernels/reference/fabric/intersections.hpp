@@ -7,24 +7,24 @@
 
 namespace drogue::reference {
 
-/// -1, 0 or 1: on which side of the plane through a, b, c the point d lies; 1 where a, b, c turn clockwise
-/// seen from d. Exact for any finite doubles: in rational numbers where extended precision cannot tell.
+/// Side of the plane through a, b, c, m, on which d lies: 1 if a, b, c appear clockwise from d, -1 if
+/// counterclockwise, 0 if coplanar. Exact for finite coordinates; falls back to rational arithmetic where
+/// extended precision does not decide.
 [[nodiscard]] int side_of_plane(const std::array<double, 3>& a, const std::array<double, 3>& b,
                                 const std::array<double, 3>& c, const std::array<double, 3>& d);
 
-/// Whether a segment and a triangle have a point in common, touching included.
+/// Returns whether a segment and a triangle, m, have a common point, boundaries included. Exact.
 [[nodiscard]] bool meet(const std::array<std::array<double, 3>, 2>& segment,
                         const std::array<std::array<double, 3>, 3>& triangle);
 
-/// A segment, as two vertices, that meets a triangle of which it shares no vertex.
+/// Intersection of a segment, given by two vertices, with a triangle that shares no vertex with it.
 struct Intersection {
   std::array<int, 2> segment;
   std::size_t triangle;
 };
 
-/// All of them among the edges of the triangles, the lines, and the triangles; every pair whose boxes overlap
-/// is decided exactly. Two triangles of a mesh without common vertex intersect exactly if an edge of one
-/// meets the other.
+/// All intersections of the edges of the triangles and of the lines with the triangles, by exact predicates.
+/// Two triangles without a common vertex intersect if and only if an edge of one meets the other.
 [[nodiscard]] std::vector<Intersection> intersections(std::span<const std::array<double, 3>> positions,
                                                       std::span<const std::array<int, 3>> triangles,
                                                       std::span<const std::array<int, 2>> lines);

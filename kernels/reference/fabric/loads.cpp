@@ -14,11 +14,12 @@ std::vector<Vector> pressure_forces(const Mesh& mesh, const std::vector<double>&
                  &c = now[static_cast<std::size_t>(t[2])];
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const std::size_t y = (axis + 1) % 3, z = (axis + 2) % 3;
-      // The area seen along the axis, by the shoelace formula.
-      const double seen =
+      // Signed area projected along the axis, by the shoelace formula.
+      const double projected_area =
           0.5 * (a[y] * b[z] - b[y] * a[z] + b[y] * c[z] - c[y] * b[z] + c[y] * a[z] - a[y] * c[z]);
       for (const int i : t)
-        force[static_cast<std::size_t>(i)][axis] += pressure[static_cast<std::size_t>(i)] * seen / 3.0;
+        force[static_cast<std::size_t>(i)][axis] +=
+            pressure[static_cast<std::size_t>(i)] * projected_area / 3.0;
     }
   }
   return force;

@@ -10,7 +10,7 @@ std::vector<double> row_sum_masses(const Mesh& mesh, double area_density, double
     std::array<Vector, 3> x;
     for (std::size_t k = 0; k < 3; ++k) x[k] = mesh.rest[static_cast<std::size_t>(t[k])];
     const double whole = area_density * area(x[0], x[1], x[2]);
-    // At the three midpoints, each of weight 1/3, N_i N_j is 1/4 where both ends are meant, and else 0.
+    // Quadrature at the midpoints of the edges, with weights of 1/3.
     for (std::size_t i = 0; i < 3; ++i)
       for (std::size_t j = 0; j < 3; ++j)
         for (std::size_t point = 0; point < 3; ++point) {
@@ -27,7 +27,7 @@ std::vector<double> row_sum_masses(const Mesh& mesh, double area_density, double
                        mesh.rest[static_cast<std::size_t>(line[0])][axis];
       squared += d * d;
     }
-    // 1/3 on the diagonal and 1/6 beside it.
+    // Diagonal entry 1/3 plus off-diagonal entry 1/6.
     for (const int i : line)
       mass[static_cast<std::size_t>(i)] += density * std::sqrt(squared) * (1.0 / 3.0 + 1.0 / 6.0);
   }

@@ -27,7 +27,7 @@ T length(const Point<T>& a) {
   return sqrt(dot(a, a));
 }
 
-/// Of plane stress, N/m: lambda and twice the shear modulus G = E / (2 (1 + nu)).
+/// Moduli of plane stress, N/m: lambda, and twice the shear modulus G = E / (2 (1 + nu)).
 struct Moduli {
   double lambda, two_g;
 };
@@ -40,13 +40,13 @@ Moduli plane_stress(double young, double nu) {
 double real_part(double a) { return a; }
 double real_part(const std::complex<double>& a) { return a.real(); }
 
-/// A strain in the plane of a triangle at rest.
+/// Strain in the plane of a triangle at rest.
 template <class T>
 struct Strain {
   T e11, e22, e12;
 };
 
-/// D_m: the edges from vertex 0 at rest in an orthonormal basis whose first axis is the first edge.
+/// D_m: edges from vertex 0 at rest, m, in an orthonormal basis whose first axis is the first edge.
 struct RestShape {
   double x1, x2, y2;
 };
@@ -57,7 +57,7 @@ RestShape rest_shape(const std::array<Vector, 3>& rest) {
   return {x1, x2, std::sqrt(dot(e2, e2) - x2 * x2)};
 }
 
-/// Green's, E = (F^T F - 1) / 2 with F = D_s D_m^-1.
+/// Green's strain E = (F^T F - 1) / 2, with F = D_s D_m^-1.
 template <class T>
 Strain<T> green_strain(const std::array<Vector, 3>& rest, const std::array<Point<T>, 3>& now) {
   const RestShape m = rest_shape(rest);
@@ -71,8 +71,8 @@ Strain<T> green_strain(const std::array<Vector, 3>& rest, const std::array<Point
   return {0.5 * (dot(f1, f1) - 1.0), 0.5 * (dot(f2, f2) - 1.0), 0.5 * dot(f1, f2)};
 }
 
-/// The strain whose squared edges change by 2 L (l - L), in place of l^2 - L^2: that of Delingette's
-/// quadratic springs. From D^T E D = L (l - L) of the three edges.
+/// Strain of Delingette's quadratic springs: squared edge lengths change by 2 L (l - L) instead of l^2 - L^2.
+/// Solves d^T E d = L (l - L) for the three edges d.
 template <class T>
 Strain<T> strain_of_lengths(const std::array<Vector, 3>& rest, const std::array<Point<T>, 3>& now) {
   const RestShape m = rest_shape(rest);
@@ -83,13 +83,13 @@ Strain<T> strain_of_lengths(const std::array<Vector, 3>& rest, const std::array<
   const T first = change(0, 1), second = change(0, 2), third = change(1, 2);
   const double across = m.x2 - m.x1;
   const T e11 = first / (m.x1 * m.x1);
-  // The edges (x2, y2) and (x2 - x1, y2), less what e11 gives them: two equations for y2 e12 and y2^2 e22.
+  // Edges (x2, y2) and (x2 - x1, y2), with the terms of e11 subtracted, give two equations for e12 and e22.
   const T u = second - e11 * m.x2 * m.x2, v = third - e11 * across * across;
   const T e12 = (u - v) / (2.0 * m.y2 * m.x1);
   return {e11, (u - 2.0 * m.x2 * m.y2 * e12) / (m.y2 * m.y2), e12};
 }
 
-/// St Venant and Kirchhoff's energy of a strain per area at rest.
+/// St Venant-Kirchhoff energy per rest area, J/m^2.
 template <class T>
 T strain_energy(const Moduli& m, const Strain<T>& e) {
   const T trace = e.e11 + e.e22;
@@ -97,8 +97,8 @@ T strain_energy(const Moduli& m, const Strain<T>& e) {
          0.5 * m.two_g * (e.e11 * e.e11 + e.e22 * e.e22 + 2.0 * e.e12 * e.e12);
 }
 
-/// Its quasiconvex hull (Pipkin 1986) by cases of the principal strains: nothing where both shorten; the
-/// energy of uniaxial tension where the minor one is below what Poisson's ratio makes of the major one.
+/// Quasiconvex hull of `strain_energy` (Pipkin 1986), J/m^2, by cases of the principal strains: zero if both
+/// are negative; uniaxial tension if the minor one is below -nu times the major one; else unchanged.
 template <class T>
 T relaxed_energy(const fabric::Material& material, const Strain<T>& e) {
   using std::sqrt;
@@ -111,7 +111,7 @@ T relaxed_energy(const fabric::Material& material, const Strain<T>& e) {
   return 0.0;
 }
 
-/// Sums of k_i dl_i^2 / 2 and gamma_i dl_j dl_k.
+/// Energy of tensile and angular springs, J: sum of k_i dl_i^2 / 2 + gamma_i dl_j dl_k.
 template <class T>
 T delingette_energy(const Moduli& m, const std::array<Vector, 3>& rest, const std::array<Point<T>, 3>& now) {
   double rest_length[3], cotangent[3];
@@ -186,7 +186,7 @@ std::vector<std::array<int, 2>> triangle_edges(const Mesh& mesh) {
 
 namespace {
 
-/// Calls `visit(vertices, energy)` for everything that stores energy; `energy` takes their coordinates.
+/// Calls `visit(vertices, energy)` for every element; `energy` maps the positions of its vertices to J.
 template <class Visit>
 void for_elements(const fabric::Material& material, const Mesh& mesh, const Visit& visit) {
   const auto at_rest = [&](int i) { return mesh.rest[static_cast<std::size_t>(i)]; };

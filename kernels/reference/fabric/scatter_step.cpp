@@ -25,7 +25,7 @@ ScatterSheet::ScatterSheet(const fabric::Parameters& p)
       s.rest[e] = squared(edge_between(p.mesh.rest[static_cast<std::size_t>(t[(e + 1) % 3])],
                                        p.mesh.rest[static_cast<std::size_t>(t[(e + 2) % 3])]));
     }
-    // Heron.
+    // Heron's formula.
     const double all = s.rest[0] + s.rest[1] + s.rest[2];
     const double area =
         0.25 *

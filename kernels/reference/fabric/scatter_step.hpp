@@ -7,19 +7,19 @@
 
 namespace drogue::reference {
 
-/// The yardstick of speed: biquadratic cloth as the dissertation computes it (section 4.5) and one would
-/// write it first. A loop over the triangles adds the forces of their stored tensile and angular stiffnesses
-/// (Delingette 2008, section 3.2, with twice the shear modulus for mu) to their vertices; the classical
-/// Runge-Kutta method keeps four slopes.
+/// Baseline of the performance comparison: serial steps of biquadratic springs ([Shi], section 4.5). A loop
+/// over the triangles adds the forces of stored tensile and angular stiffnesses (Delingette 2008,
+/// section 3.2, with twice the shear modulus for mu) to the vertices. The classical Runge-Kutta method stores
+/// four slopes.
 class ScatterSheet {
  public:
-  /// Of triangles alone, with gravity, absolute damping and pins.
+  /// Uses the triangles, gravity, absolute damping and pins of `p`; ignores all else.
   explicit ScatterSheet(const fabric::Parameters& p);
 
-  /// Takes a step of dt, s, in place; vectors of all vertices, m and m/s.
+  /// Advances positions x, m, and velocities v, m/s, of all vertices by one step of dt, s, in place.
   void step(double dt, std::vector<fabric::Vector>& x, std::vector<fabric::Vector>& v);
 
-  /// Elastic forces, N.
+  /// Elastic forces f, N, at positions x, m.
   void forces(const std::vector<fabric::Vector>& x, std::vector<fabric::Vector>& f) const;
 
  private:

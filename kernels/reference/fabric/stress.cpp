@@ -12,8 +12,8 @@ Vector minus(const Vector& a, const Vector& b) { return {a[0] - b[0], a[1] - b[1
 
 using Square = std::array<std::array<double, 2>, 2>;
 
-/// sum over a, b of F_ia S_ab F_jb.
-Tensor pushed(const std::array<Vector, 2>& f, const Square& s, double scale) {
+/// Push-forward of S, times `scale`: sum over a, b of F_ia S_ab F_jb.
+Tensor push_forward(const std::array<Vector, 2>& f, const Square& s, double scale) {
   Tensor t{};
   for (std::size_t i = 0; i < 3; ++i)
     for (std::size_t j = 0; j < 3; ++j)
@@ -40,7 +40,7 @@ Square inverse(const Square& c) {
   return {{{c[1][1] / d, -c[0][1] / d}, {-c[1][0] / d, c[0][0] / d}}};
 }
 
-/// The square root of a symmetric positive matrix by its eigenvectors.
+/// Square root of a symmetric positive definite matrix by its eigenvectors.
 Square root(const Square& c) {
   const double angle = 0.5 * std::atan2(2.0 * c[0][1], c[0][0] - c[1][1]), x = std::cos(angle),
                y = std::sin(angle);
@@ -74,7 +74,7 @@ Tensor cauchy_stress(const fabric::Material& material, const std::array<Vector, 
   const double plane = young / (1.0 - nu * nu);
   const Square s = {{{plane * (e11 + nu * e22), plane * (1.0 - nu) * e12},
                      {plane * (1.0 - nu) * e12, plane * (e22 + nu * e11)}}};
-  return pushed(f, s, 1.0 / std::sqrt(determinant(c)));
+  return push_forward(f, s, 1.0 / std::sqrt(determinant(c)));
 }
 
 Tensor virial_stress(const std::array<Vector, 3>& forces, const std::array<Vector, 3>& now) {
@@ -90,7 +90,7 @@ Tensor nominal_stress(const Tensor& cauchy, const std::array<Vector, 3>& rest,
                       const std::array<Vector, 3>& now) {
   const std::array<Vector, 2> f = deformation(rest, now);
   const Square c = right_cauchy_green(f), u = root(c), back = inverse(u), c_back = inverse(c);
-  // S = J F^+ sigma F^+T with F^+ = C^-1 F^T.
+  // S = J F^+ sigma F^+T, with the pseudoinverse F^+ = C^-1 F^T.
   Square inner{};
   for (std::size_t a = 0; a < 2; ++a)
     for (std::size_t b = 0; b < 2; ++b)
@@ -105,7 +105,7 @@ Tensor nominal_stress(const Tensor& cauchy, const std::array<Vector, 3>& rest,
   std::array<Vector, 2> r{};
   for (std::size_t k = 0; k < 3; ++k)
     for (std::size_t a = 0; a < 2; ++a) r[a][k] = f[0][k] * back[0][a] + f[1][k] * back[1][a];
-  return pushed(r, biot, 1.0);
+  return push_forward(r, biot, 1.0);
 }
 
 }  // namespace drogue::reference

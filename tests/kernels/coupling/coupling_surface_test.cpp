@@ -116,7 +116,7 @@ TEST(FabricSurface, StringsAndDegenerateTrianglesHaveNoAreaAndNoNormal) {
   EXPECT_EQ(now.vertex_normal, std::vector<Vector>(5, Vector{}));
 }
 
-TEST(FabricSurface, AFoldCancelsTheNormalAndKeepsTheArea) {
+TEST(FabricSurface, FoldCancelsTheNormalAndKeepsTheArea) {
   Mesh mesh;
   mesh.rest = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 1, 0}};
   mesh.triangles = {{0, 1, 2}, {1, 0, 3}};

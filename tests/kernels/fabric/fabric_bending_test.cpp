@@ -7,7 +7,7 @@
 #include "tests/support/backend.hpp"
 #include "tests/support/fabric_mesh.hpp"
 
-// Resistance to bending against the reference, folds and cylinders.
+// Bending forces and energies against the reference, and against closed forms for folds and cylinders.
 
 namespace drogue::fabric {
 namespace {
@@ -17,7 +17,7 @@ using testing::shaken;
 
 constexpr const auto& backend = testing::tested_backend;
 
-/// Nothing but bending.
+/// Fabric with bending stiffness only, N m: no membrane stiffness.
 Parameters sheet(const Mesh& mesh, double stiffness) {
   Parameters p;
   p.mesh = mesh;
@@ -47,7 +47,7 @@ std::vector<Vector> forces_at(const Parameters& p, const std::vector<Vector>& no
   return forces;
 }
 
-TEST(FabricBending, ForceAndEnergyAreThoseOfTheReference) {
+TEST(FabricBending, MatchesForcesAndEnergyOfTheReference) {
   const Mesh mesh = patch();
   const std::vector<Vector> now = shaken(mesh.rest, 0.4, 2);
   const std::vector<Vector> mine = forces_at(sheet(mesh, 0.7), now),
@@ -62,7 +62,7 @@ TEST(FabricBending, ForceAndEnergyAreThoseOfTheReference) {
   EXPECT_NEAR(at(sheet(mesh, 0.7), now)->totals().elastic, reference::bending_energy(0.7, mesh, now), 1e-11);
 }
 
-TEST(FabricBending, FlatClothHasNoneAndItHasNoTorque) {
+TEST(FabricBending, VanishesForFlatFabricAndExertsNoNetForceOrTorque) {
   const Mesh mesh = patch();
   std::vector<Vector> turned;
   for (const Vector& x : mesh.rest)
@@ -81,8 +81,8 @@ TEST(FabricBending, FlatClothHasNoneAndItHasNoTorque) {
   }
 }
 
-TEST(FabricBending, OfAFoldIsThatOfItsAngle) {
-  // Two triangles over an edge of length 2 and of heights 1 and 3: areas 1 and 3.
+TEST(FabricBending, MatchesTheClosedFormOfAFold) {
+  // Two triangles share an edge of length 2; their heights and areas are 1 and 3.
   Mesh mesh;
   mesh.rest = {{0, 0, 0}, {2, 0, 0}, {0.5, 1, 0}, {1.5, -3, 0}};
   mesh.triangles = {{0, 1, 2}, {1, 0, 3}};
@@ -94,8 +94,8 @@ TEST(FabricBending, OfAFoldIsThatOfItsAngle) {
   }
 }
 
-/// Rows of triangles, rolled to a cylinder: its energy over k A / (2 R^2). Of squares with diagonals both
-/// ways, or equilateral.
+/// Bending energy of a sheet rolled to a cylinder, over the energy k A / (2 R^2) of the continuum. The mesh
+/// consists of equilateral triangles, or of squares with alternating diagonals.
 double rolled(int n, bool equilateral) {
   Mesh mesh;
   std::vector<Vector> now;
@@ -116,30 +116,30 @@ double rolled(int n, bool equilateral) {
   return at(sheet(mesh, 0.8), now)->totals().elastic / (0.5 * 0.8 * 2.0 * height * n / (radius * radius));
 }
 
-TEST(FabricBending, OfACylinderIsItsStiffnessTimesSquaredCurvature) {
+TEST(FabricBending, ConvergesToTheEnergyOfACylinder) {
   for (const bool equilateral : {false, true}) {
-    // What is missing are the hinges of the rim, of first order.
+    // First-order error: edges of the boundary have no hinge.
     EXPECT_NEAR(rolled(64, equilateral), 1.0, 0.03);
     EXPECT_NEAR(rolled(32, equilateral) - 1.0, 2.0 * (rolled(64, equilateral) - 1.0), 0.004);
   }
 }
 
-TEST(FabricBending, TheBoundKnowsIt) {
-  // Stiff in bending alone: the step that the bound gives holds, a longer one does not.
+TEST(FabricBending, EntersTheFrequencyBound) {
+  // Without membrane stiffness, the step at the bound is stable and twice that step is not.
   Parameters p = sheet(patch(), 5.0);
   const std::vector<Vector> start = shaken(p.mesh.rest, 1e-6, 3);
   const double bound = at(p, start)->fastest_frequency();
-  const auto holds = [&](double dt) {
+  const auto is_stable = [&](double dt) {
     p.dt = dt;
     const auto solver = at(p, start);
     const double before = solver->totals().elastic;
     return solver->advance(2000) && !solver->failure() && solver->totals().elastic < 100.0 * before;
   };
-  EXPECT_TRUE(holds(stability_limit(Integrator::rk4) / bound));
-  EXPECT_FALSE(holds(2.0 * stability_limit(Integrator::rk4) / bound));
+  EXPECT_TRUE(is_stable(stability_limit(Integrator::rk4) / bound));
+  EXPECT_FALSE(is_stable(2.0 * stability_limit(Integrator::rk4) / bound));
 }
 
-TEST(FabricBending, ClothThatIsNotFlatAtRestIsRefused) {
+TEST(FabricBending, RejectsCurvedRestShapesAndNegativeStiffness) {
   Mesh mesh = patch();
   mesh.rest[14][2] = 0.1;
   EXPECT_THROW(static_cast<void>(create_solver(backend, sheet(mesh, 1.0))), std::invalid_argument);

@@ -10,7 +10,7 @@
 #include "tests/support/expression_program.hpp"
 #include "tests/support/fabric_sheets.hpp"
 
-// Cloth that meets bodies and itself: the hard cases, what they keep, and what they cost.
+// Contact of fabric with itself and with bodies: crossings by the exact reference, conservation, friction.
 
 namespace drogue::fabric {
 namespace {
@@ -19,80 +19,82 @@ using namespace testing;
 
 constexpr const auto& backend = testing::tested_backend;
 
-struct Outcome {
+struct ContactRun {
   std::size_t crossings = 0;
-  double momentum = 0.0, angular_momentum = 0.0, imbalance = 0.0;  ///< largest changes
+  double momentum = 0.0, angular_momentum = 0.0, imbalance = 0.0;  ///< largest deviations from the start
   double start_kinetic = 0.0, work = 0.0;
   std::optional<StepFailure> failure;
 };
 
-/// Takes steps and counts, after every `every` of them, what meets by the exact oracle.
-Outcome watched(Sheets& s, int steps, int every) {
+/// Takes `steps` steps. After every `every` steps, counts the intersections by the exact reference.
+ContactRun run_with_contact(Sheets& s, int steps, int every) {
   const auto solver = create_solver(backend, s.p);
   solver->upload(s.x, s.v);
   const Totals start = solver->totals();
-  Outcome outcome;
-  outcome.start_kinetic = start.kinetic;
+  ContactRun run;
+  run.start_kinetic = start.kinetic;
   for (int step = 0; step < steps; step += every) {
     solver->advance(every);
-    outcome.failure = solver->failure();
-    if (outcome.failure) break;
+    run.failure = solver->failure();
+    if (run.failure) break;
     solver->download(s.x, s.v);
-    outcome.crossings += reference::intersections(s.x, s.p.mesh.triangles, s.p.mesh.lines).size();
+    run.crossings += reference::intersections(s.x, s.p.mesh.triangles, s.p.mesh.lines).size();
     const Totals now = solver->totals();
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      outcome.momentum = std::max(outcome.momentum, std::abs(now.momentum[axis] - start.momentum[axis]));
-      outcome.angular_momentum = std::max(
-          outcome.angular_momentum, std::abs(now.angular_momentum[axis] - start.angular_momentum[axis]));
+      run.momentum = std::max(run.momentum, std::abs(now.momentum[axis] - start.momentum[axis]));
+      run.angular_momentum =
+          std::max(run.angular_momentum, std::abs(now.angular_momentum[axis] - start.angular_momentum[axis]));
     }
-    outcome.imbalance =
-        std::max(outcome.imbalance, std::abs(now.energy() - now.contact - now.friction - start.energy()));
-    outcome.work = now.contact + now.friction;
+    run.imbalance =
+        std::max(run.imbalance, std::abs(now.energy() - now.contact - now.friction - start.energy()));
+    run.work = now.contact + now.friction;
   }
-  return outcome;
+  return run;
 }
 
-/// Nothing crosses, both momenta are kept to round-off, and the energy is accounted for.
-void expect_kept(const char* name, Sheets s, int steps, double energy_bar) {
-  const Outcome o = watched(s, steps, 5);
+/// Expects no crossing, conservation of both momenta to round-off, and an energy balance with the contact
+/// work to `energy_tolerance` times the initial kinetic energy.
+void expect_conservation(const char* name, Sheets s, int steps, double energy_tolerance) {
+  const ContactRun o = run_with_contact(s, steps, 5);
   EXPECT_FALSE(o.failure) << name;
   EXPECT_EQ(o.crossings, 0U) << name;
   double impulse = 0.0;
   for (std::size_t i = 0; i < s.v.size(); ++i) impulse += s.p.mass[i] * std::sqrt(2.0 * o.start_kinetic);
   EXPECT_LT(o.momentum, 1e-13 * impulse) << name;
   EXPECT_LT(o.angular_momentum, 1e-13 * impulse) << name;
-  EXPECT_LT(o.imbalance, energy_bar * o.start_kinetic) << name;
-  EXPECT_LT(o.work, -0.01 * o.start_kinetic) << name << ": contact took nothing, so nothing met";
+  EXPECT_LT(o.imbalance, energy_tolerance * o.start_kinetic) << name;
+  EXPECT_LT(o.work, -0.01 * o.start_kinetic)
+      << name << ": no energy lost in contact, so the sheets never touched";
 }
 
-TEST(FabricContact, SheetsThatMeetDoNotCrossAndKeepMomentum) {
-  expect_kept("impact", impact(3.0), 300, 5e-3);
-  expect_kept("edge on", edge_on(3.0), 300, 2e-2);
-  expect_kept("corners", corner_on(3.0), 300, 5e-2);
-  expect_kept("fold", folded(3.0), 300, 5e-2);
+TEST(FabricContact, PreventsCrossingsAndConservesMomentum) {
+  expect_conservation("impact", impact(3.0), 300, 5e-3);
+  expect_conservation("edge on", edge_on(3.0), 300, 2e-2);
+  expect_conservation("corners", corner_on(3.0), 300, 5e-2);
+  expect_conservation("fold", folded(3.0), 300, 5e-2);
 }
 
-TEST(FabricContact, WithoutItTheSameSheetsCross) {
+TEST(FabricContact, SheetsCrossWithoutContact) {
   Sheets s = edge_on(3.0);
   s.p.contact = {};
-  EXPECT_GT(watched(s, 100, 10).crossings, 0U);
+  EXPECT_GT(run_with_contact(s, 100, 10).crossings, 0U);
 }
 
-TEST(FabricContact, AtAHundredMetresASecondNothingCrosses) {
+TEST(FabricContact, PreventsCrossingsAtAHundredMetresPerSecond) {
   Sheets s = impact(100.0);
   s.p.material.membrane_modulus = 1e5;
   s.p.dt = 5e-6;
-  const Outcome o = watched(s, 300, 3);
+  const ContactRun o = run_with_contact(s, 300, 3);
   EXPECT_FALSE(o.failure);
   EXPECT_EQ(o.crossings, 0U);
   EXPECT_LT(o.work, -0.1 * o.start_kinetic);
 }
 
 // ctest-label: no-sanitizer
-TEST(FabricContact, AStackOfThreeComesToRest) {
+TEST(FabricContact, ComesToRestInAStackOfThreeSheets) {
   Sheets s = stack();
   s.p.dt = 1e-4;
-  const Outcome o = watched(s, 1500, 100);
+  const ContactRun o = run_with_contact(s, 1500, 100);
   EXPECT_FALSE(o.failure);
   EXPECT_EQ(o.crossings, 0U);
   double fastest = 0.0, lowest = 1.0;
@@ -105,7 +107,7 @@ TEST(FabricContact, AStackOfThreeComesToRest) {
   EXPECT_LT(lowest, 1.1 * s.p.contact.thickness);
 }
 
-TEST(FabricContact, PartsThatStartTooNearPartSlowlyWhateverTheStep) {
+TEST(FabricContact, SeparatesInitialOverlapSlowlyForAnyTimeStep) {
   for (const double dt : {5e-5, 5e-6}) {
     Sheets s;
     s.add(6, 0.06, level(0.0, 0.0, 0.0), {0.0, 0.0, 0.0});
@@ -113,15 +115,15 @@ TEST(FabricContact, PartsThatStartTooNearPartSlowlyWhateverTheStep) {
     s.p.dt = dt;
     double mass = 0.0;
     for (const double m : s.p.mass) mass += m;
-    const Outcome o = watched(s, 100, 100);
+    const ContactRun o = run_with_contact(s, 100, 100);
     ASSERT_FALSE(o.failure);
     EXPECT_GT(o.work, 0.0) << dt;
-    EXPECT_LT(o.work, mass * 10.0 * 0.0015) << dt;  // as if lifted by what they lack, 1.5 mm
+    EXPECT_LT(o.work, mass * 10.0 * 0.0015) << dt;  // work to lift all mass by the missing 1.5 mm
   }
 }
 
-/// A sheet that lies on a plane leaning by an angle, released at `speed` downhill; its way and speed.
-std::array<double, 2> slid(double angle, double friction, double speed, int steps) {
+/// Sliding distance, m, and velocity, m/s, of a sheet after release at `speed` downhill on an inclined plane.
+std::array<double, 2> slide_on_incline(double angle, double friction, double speed, int steps) {
   const double c = std::cos(angle), d = std::sin(angle);
   Sheets s;
   s.p.contact.self = false;
@@ -146,32 +148,34 @@ std::array<double, 2> slid(double angle, double friction, double speed, int step
 }
 
 // ctest-label: no-sanitizer
-TEST(FabricContact, SlidingObeysCoulomb) {
+TEST(FabricContact, SlidesByCoulombsLaw) {
   const double g = 9.81, angle = 0.3, dt = 5e-5;
   const int steps = 2000;  // 0.1 s
   const double t = steps * dt;
-  // Faster downhill by g (sin - mu cos), whatever it began with; on the level slower by mu g.
+  // The acceleration is g (sin - mu cos) on the incline and -mu g on the horizontal plane.
   for (const double friction : {0.0, 0.2}) {
     const double a = g * (std::sin(angle) - friction * std::cos(angle));
-    EXPECT_NEAR(slid(angle, friction, 0.1, steps)[1], 0.1 + a * t, 2e-3 * g * t) << friction;
+    EXPECT_NEAR(slide_on_incline(angle, friction, 0.1, steps)[1], 0.1 + a * t, 2e-3 * g * t) << friction;
   }
-  EXPECT_NEAR(slid(0.0, 0.2, 0.5, steps)[1], 0.5 - 0.2 * g * t, 2e-3 * g * t);
-  // It stops where mu g says, and stays.
-  const auto stopped = slid(0.0, 0.4, 0.2, steps);
+  EXPECT_NEAR(slide_on_incline(0.0, 0.2, 0.5, steps)[1], 0.5 - 0.2 * g * t, 2e-3 * g * t);
+  // It stops after v^2 / (2 mu g) and remains at rest.
+  const auto stopped = slide_on_incline(0.0, 0.4, 0.2, steps);
   EXPECT_NEAR(stopped[0], 0.2 * 0.2 / (2.0 * 0.4 * g), 1e-4);
   EXPECT_NEAR(stopped[1], 0.0, g * dt);
 }
 
 // ctest-label: no-sanitizer
-TEST(FabricContact, WhatFrictionHoldsStays) {
-  // Ways of single steps cancel: after any number of them no more is left than a kick makes of one.
+TEST(FabricContact, HoldsByFrictionOnAnIncline) {
+  // Displacements of single steps cancel: after any number of steps the sheet has moved by less than
+  // g dt^2, the displacement by one kick.
   const double g = 9.81, angle = 0.3, dt = 5e-5, most = g * dt * dt;
-  for (const int steps : {1000, 4000}) EXPECT_LT(std::abs(slid(angle, 0.5, 0.0, steps)[0]), most) << steps;
+  for (const int steps : {1000, 4000})
+    EXPECT_LT(std::abs(slide_on_incline(angle, 0.5, 0.0, steps)[0]), most) << steps;
 }
 
 // ctest-label: no-sanitizer
-TEST(FabricContact, WhatFrictionHoldsOnClothStays) {
-  // On a sheet that is held a smaller one, gravity leaning by an angle that friction holds.
+TEST(FabricContact, HoldsByFrictionOnAPinnedSheet) {
+  // A small sheet lies on a pinned one. Gravity is inclined by less than the angle of friction.
   const double g = 9.81, angle = 0.2;
   Sheets s;
   s.add(8, 0.07, level(0.0, 0.0, 0.0), {0.0, 0.0, 0.0});
@@ -192,12 +196,12 @@ TEST(FabricContact, WhatFrictionHoldsOnClothStays) {
   EXPECT_TRUE(solver->advance(2000));
   const double before = mean();
   EXPECT_TRUE(solver->advance(2000));
-  // Half of a kick a step would be 4.9e-6 m.
+  // Without cancellation, half a kick per step would move the sheet by 4.9e-6 m in 2000 steps.
   EXPECT_NEAR(mean(), before, 5e-7);
 }
 
-TEST(FabricContact, WorkOfFrictionIsItsForceTimesTheWay) {
-  // A block of cloth slides over the level plane, pressed down by its weight N: friction takes mu N s.
+TEST(FabricContact, FrictionWorkEqualsForceTimesSlidingDistance) {
+  // A sheet of weight N slides over the horizontal plane: the work over a distance s is -mu N s.
   const double mu = 0.3, g = 9.81;
   Sheets s;
   s.p.contact.self = false;
@@ -213,35 +217,35 @@ TEST(FabricContact, WorkOfFrictionIsItsForceTimesTheWay) {
   const Vector from = s.x[12];
   const Totals start = solver->totals();
   Totals before = start;
-  double way_before = 0.0;
+  double distance_before = 0.0;
   for (int part = 0; part < 5; ++part) {
     ASSERT_TRUE(solver->advance(200) && !solver->failure());
     solver->download(s.x, s.v);
-    const double way = std::hypot(s.x[12][0] - from[0], s.x[12][1] - from[1]);
+    const double distance = std::hypot(s.x[12][0] - from[0], s.x[12][1] - from[1]);
     const Totals now = solver->totals();
-    EXPECT_NEAR(now.friction, -mu * weight * way, 1e-3 * start.kinetic);
+    EXPECT_NEAR(now.friction, -mu * weight * distance, 1e-3 * start.kinetic);
     EXPECT_NEAR(now.kinetic - start.kinetic, now.friction, 1e-4 * start.kinetic);
-    // The first step has but half of gravity's impulse. From then on it is exact: work counts the mean of the
-    // velocities before and after an impulse, the way is that of the one after.
+    // The first step contains only half of gravity's impulse. Afterwards the balance is exact: work uses the
+    // mean of the velocities before and after an impulse, the sliding distance the velocity after it.
     if (part > 0) {
       const double more = 0.5 * mu * g * s.p.dt * (200.0 * s.p.dt);
-      EXPECT_NEAR(now.friction - before.friction, -mu * weight * (way - way_before + more),
+      EXPECT_NEAR(now.friction - before.friction, -mu * weight * (distance - distance_before + more),
                   1e-9 * start.kinetic);
       EXPECT_NEAR(now.kinetic - before.kinetic, now.friction - before.friction, 1e-9 * start.kinetic);
       EXPECT_NEAR(now.contact, before.contact, 1e-9 * start.kinetic);
     }
-    before = now, way_before = way;
+    before = now, distance_before = distance;
   }
   std::vector<ContactWork> work(s.x.size());
   solver->contact_work(work);
   for (const ContactWork& of_vertex : work) EXPECT_LT(of_vertex.friction, 0.0);
 }
 
-TEST(FabricContact, FrictionBetweenLayersTakesAndFrictionlessTakesNone) {
+TEST(FabricContact, FrictionBetweenLayersDissipatesEnergy) {
   for (const double friction : {0.0, 0.3}) {
     Sheets s = impact(3.0);
     for (std::size_t i = 0; i < s.v.size(); ++i)
-      if (s.x[i][2] > 0.0) s.v[i][0] += 2.0;  // one slides over the other
+      if (s.x[i][2] > 0.0) s.v[i][0] += 2.0;  // the upper sheet slides over the lower one
     s.p.contact.friction = friction;
     const auto solver = create_solver(backend, s.p);
     solver->upload(s.x, s.v);
@@ -262,7 +266,7 @@ TEST(FabricContact, FrictionBetweenLayersTakesAndFrictionlessTakesNone) {
   }
 }
 
-TEST(FabricContact, BodiesStayOutside) {
+TEST(FabricContact, KeepsFabricOutsideBodies) {
   Body disk;
   disk.kind = BodyKind::disk, disk.radius = 0.031, disk.normal = {0.6, 0.0, 0.8};
   Body sphere;
@@ -289,11 +293,11 @@ TEST(FabricContact, BodiesStayOutside) {
       }
       EXPECT_EQ(inside, 0);
       EXPECT_GT(least, 0.0);
-      EXPECT_LT(least, 1.1 * s.p.contact.thickness) << "it never came near";
+      EXPECT_LT(least, 1.1 * s.p.contact.thickness) << "the sheet never touched the body";
     }
 }
 
-TEST(FabricContact, ALevelSetIsTheBodyItDescribes) {
+TEST(FabricContact, LevelSetOfASphereMatchesTheSphere) {
   Body sphere;
   sphere.kind = BodyKind::sphere, sphere.radius = 0.025;
   Body level_set;
@@ -315,25 +319,26 @@ TEST(FabricContact, ALevelSetIsTheBodyItDescribes) {
   for (std::size_t i = 0; i < ends[0].size(); ++i)
     for (std::size_t axis = 0; axis < 3; ++axis)
       apart = std::max(apart, std::abs(ends[0][i][axis] - ends[1][i][axis]));
-  // The sphere keeps edges and faces out too, a level set vertices alone.
+  // A sphere excludes edges and faces as well, a level set only vertices.
   EXPECT_LT(apart, 2e-3);
 }
 
-TEST(FabricContact, ALevelSetThatIsNoNumberIsTold) {
+TEST(FabricContact, ReportsNonFiniteLevelSets) {
   Body body;
   body.kind = BodyKind::level_set;
-  body.level_set = postfix({"z", 1.0, "+", 0.0, "z", "sqrt", "*", "+"});  // far away, and none below z = 0
+  body.level_set =
+      postfix({"z", 1.0, "+", 0.0, "z", "sqrt", "*", "+"});  // positive above z = 0, not a number below
   Sheets s;
   s.p.contact.self = false;
   s.add(4, 0.03, level(0.0, 0.0, 0.01), {0.0, 0.0, -1.0});
   s.p.contact.bodies = {body};
-  const Outcome o = watched(s, 300, 10);
+  const ContactRun o = run_with_contact(s, 300, 10);
   ASSERT_TRUE(o.failure);
   EXPECT_EQ(o.failure->reason, FailureReason::no_number);
   EXPECT_NEAR(static_cast<double>(o.failure->step), 200.0, 2.0);  // 10 mm at 1 m/s in steps of 50 us
 }
 
-TEST(FabricContact, ASolverThatGoesOnFromAStateHasTheSameBits) {
+TEST(FabricContact, RestartsWithIdenticalBits) {
   Sheets s = folded(3.0);
   const auto whole = create_solver(backend, s.p);
   whole->upload(s.x, s.v);
@@ -355,8 +360,8 @@ TEST(FabricContact, ASolverThatGoesOnFromAStateHasTheSameBits) {
   EXPECT_NE(end_work, work);
 }
 
-TEST(FabricContact, WhatCannotBeKeptApartIsTold) {
-  // Two sheets, all of whose vertices are driven through each other.
+TEST(FabricContact, ReportsCrossingsOfPrescribedMotions) {
+  // All vertices of two sheets have prescribed motions that cross.
   Sheets s;
   s.add(4, 0.03, level(0.0, 0.0, 0.0), {0.0, 0.0, 0.0});
   s.add(4, 0.03, level(0.003, 0.004, 0.01), {0.0, 0.0, 0.0});
@@ -364,35 +369,35 @@ TEST(FabricContact, WhatCannotBeKeptApartIsTold) {
   for (int i = 0; i < 16; ++i)
     s.p.motions[0].vertices.push_back(i), s.p.motions[1].vertices.push_back(16 + i);
   s.p.pinned.assign(32, 7);
-  const Outcome o = watched(s, 60, 1);
+  const ContactRun o = run_with_contact(s, 60, 1);
   ASSERT_TRUE(o.failure);
   EXPECT_EQ(o.failure->reason, FailureReason::crossing);
   EXPECT_EQ(o.failure->step, 20);  // 10 mm at 10 m/s in steps of 50 us
   EXPECT_EQ(o.crossings, 0U);
 }
 
-TEST(FabricContact, AStepThatLeapsIsTold) {
+TEST(FabricContact, ReportsStepsTooLongForTheVelocity) {
   Sheets s = impact(2000.0);
-  const Outcome o = watched(s, 10, 1);
+  const ContactRun o = run_with_contact(s, 10, 1);
   ASSERT_TRUE(o.failure);
   EXPECT_NE(o.failure->reason, FailureReason::not_finite);
 }
 
-TEST(FabricContact, WhatIsNoContactIsRefused) {
-  const auto refused = [](auto change) {
+TEST(FabricContact, RejectsInvalidContactParameters) {
+  const auto expect_rejected = [](auto change) {
     Sheets s = impact(1.0);
     change(s.p.contact);
     EXPECT_THROW(static_cast<void>(create_solver(backend, s.p)), std::invalid_argument);
   };
-  refused([](Contact& c) { c.thickness = 0.0; });
-  refused([](Contact& c) { c.thickness = 0.02; });  // triangles are 8 mm high
-  refused([](Contact& c) { c.friction = -1.0; });
-  refused([](Contact& c) { c.bodies.resize(1); });  // a sphere without radius
-  refused([](Contact& c) {
+  expect_rejected([](Contact& c) { c.thickness = 0.0; });
+  expect_rejected([](Contact& c) { c.thickness = 0.02; });  // triangles are 8 mm high
+  expect_rejected([](Contact& c) { c.friction = -1.0; });
+  expect_rejected([](Contact& c) { c.bodies.resize(1); });  // a sphere without radius
+  expect_rejected([](Contact& c) {
     c.bodies.resize(1);
     c.bodies[0].kind = BodyKind::plane, c.bodies[0].normal = {0.0, 0.0, 2.0};
   });
-  refused([](Contact& c) {
+  expect_rejected([](Contact& c) {
     c.bodies.resize(1);
     c.bodies[0].kind = BodyKind::level_set;
   });

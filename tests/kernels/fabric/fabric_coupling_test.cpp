@@ -23,7 +23,7 @@ using Space = DROGUE_TEST_SPACE;
 using Points = PointsView<Space>;
 constexpr bool on_device = !device::is_host<Space>;
 
-/// Without fused multiply-add all drivers have the same bits.
+/// Without fused multiply-add, all drivers give the same bits.
 #if defined(DROGUE_EXACT)
 constexpr double rounding = 0.0;
 #else
@@ -43,7 +43,7 @@ double distance(const Motions& a, const Motions& b) {
   return largest;
 }
 
-/// A sheet whose corners hang in springs from pinned anchors.
+/// Sheet whose corners hang on springs from pinned anchors.
 Parameters mounted_sheet(Integrator integrator, Driver driver, Model model = Model::biquadratic) {
   Parameters p;
   p.mesh = random_patch(11, 9, 3);
@@ -77,7 +77,7 @@ Points on_device_points(const Space& space, const std::vector<Vector>& from) {
   return to;
 }
 
-/// Strength times direction, as a timed load.
+/// Vertex force equal to a timed load: strength(x, y, z, t) times direction, N.
 struct Push {
   Points rest, direction;
   device::ExpressionProgram strength;
@@ -89,7 +89,7 @@ struct Push {
   }
 };
 
-/// A damped spring to the place at rest, and a force that grows by `push` times dt in every step.
+/// Vertex force of a damped spring to the rest position, plus a force that grows by `push` times dt per step.
 struct Mount {
   Points rest;
   Kokkos::View<double*, Space::memory_space> force;
@@ -116,7 +116,8 @@ Mount mount(const Space& space, const Parameters& p, double stiffness, double da
           push};
 }
 
-/// Takes 256 steps, then 1000 that are counted: returns their launches and leaves the state in `end`.
+/// Kernel launches of 1000 steps after 256 steps to warm up. `end`: the initial state, overwritten with the
+/// final one. Also expects no fence, allocation or copy.
 template <class Solver>
 std::int64_t launches_of(Solver& solver, Motions& end) {
   solver.upload(end.x, end.v);
@@ -147,7 +148,7 @@ void expect_force_like_load(Integrator integrator, Driver driver, Model model, d
   const device::ExpressionProgram strength = postfix({"x", "t", 60.0, "*", "+", "sin", "y", 0.1, "*", "+"});
   Parameters p = mounted_sheet(integrator, driver, model);
   std::vector<Vector> direction;
-  // Products with powers of two are exact: fused multiply-add does not change them.
+  // Products with powers of two are exact, so fused multiply-add does not change them.
   for (std::size_t i = 0; i < p.mass.size(); ++i) direction.push_back({0.125, i % 2 == 0 ? 0.25 : 0.0, -0.5});
   const Motions start{shaken(p.mesh.rest, 0.05, 1),
                       shaken(std::vector<Vector>(p.mass.size(), Vector{}), 0.1, 2)};
@@ -171,14 +172,14 @@ void expect_force_like_load(Integrator integrator, Driver driver, Model model, d
   EXPECT_LE(distance(by_force, by_load), tolerance);
 }
 
-TEST(FabricCoupling, VertexForceHasTheBitsOfALoadAndNoLaunchOfItsOwn) {
+TEST(FabricCoupling, VertexForceMatchesALoadWithoutExtraLaunches) {
   for (const Driver driver : {Driver::plain, Driver::graph, Driver::persistent})
     expect_force_like_load(Integrator::rk4, driver, Model::biquadratic, rounding * 1e-9);
   expect_force_like_load(Integrator::verlet, Driver::plain, Model::biquadratic, rounding * 1e-9);
   expect_force_like_load(Integrator::rk4, Driver::automatic, Model::edge, rounding * 1e-9);
 }
 
-/// Motions after the sums of `cuts` steps.
+/// Final state after one call per entry of `cuts`, which is the number of steps of the call.
 Motions mounted_motions(Integrator integrator, Driver driver, const std::vector<std::int64_t>& cuts) {
   const device::Instance<Space> instance(1);
   const Parameters p = mounted_sheet(integrator, driver);
@@ -229,10 +230,11 @@ TEST(FabricCoupling, MassInAVertexForceSpringOscillates) {
 /// Moves all vertices by a vector and gives them a velocity.
 struct Shift {
   State<Space> state;
-  Vector3<double> way, velocity;
+  Vector3<double> displacement, velocity;
 
   KOKKOS_FUNCTION void operator()(const int i) const {
-    state.positions(i, 0) += way.x, state.positions(i, 1) += way.y, state.positions(i, 2) += way.z;
+    state.positions(i, 0) += displacement.x, state.positions(i, 1) += displacement.y,
+        state.positions(i, 2) += displacement.z;
     state.velocities(i, 0) = velocity.x, state.velocities(i, 1) = velocity.y,
                         state.velocities(i, 2) = velocity.z;
   }
@@ -243,7 +245,7 @@ TEST(FabricCoupling, AnotherKernelWritesTheStateWithoutACopy) {
   const Space& space = instance.space();
   for (const Integrator integrator : {Integrator::rk4, Integrator::verlet}) {
     Parameters p = mounted_sheet(integrator, Driver::automatic);
-    p.relative_damping = 0.5;  // Verlet's method alternates between buffers of velocities, too
+    p.relative_damping = 0.5;  // with dashpots, Verlet's method alternates between two buffers of velocities
     FabricSolver<Space> solver(space, p), other(space, p);
     Motions now{shaken(p.mesh.rest, 0.05, 1), std::vector<Vector>(p.mass.size(), Vector{})};
     solver.upload(now.x, now.v);
@@ -269,7 +271,7 @@ TEST(FabricCoupling, AnotherKernelWritesTheStateWithoutACopy) {
       EXPECT_EQ(shifted.x[i], (Vector{now.x[i][0] + 0.5, now.x[i][1] + 0.25, now.x[i][2] - 1.0}));
       EXPECT_EQ(shifted.v[i], (Vector{0.1, 0.2, 0.3}));
     }
-    // The steps go on from the state written.
+    // Further steps start from the written state.
     solver.enqueue_steps(4);
     other.upload(shifted.x, shifted.v);
     other.enqueue_steps(4);
@@ -279,7 +281,7 @@ TEST(FabricCoupling, AnotherKernelWritesTheStateWithoutACopy) {
   }
 }
 
-TEST(FabricCoupling, APayloadMovesFreelyAndPinsFollowTheVelocityWritten) {
+TEST(FabricCoupling, MovesPayloadsFreelyAndPinsAtTheWrittenVelocity) {
   const device::Instance<Space> instance(1);
   const Space& space = instance.space();
   for (const Integrator integrator : {Integrator::rk4, Integrator::verlet}) {
@@ -306,14 +308,14 @@ TEST(FabricCoupling, APayloadMovesFreelyAndPinsFollowTheVelocityWritten) {
       EXPECT_NEAR(now.x[i][0], p.mesh.rest[i][0] + 2.0 * t, 1e-12);
       EXPECT_EQ(now.v[i][0], 2.0);
     }
-    // The lines are nearly slack so far: the payload falls.
+    // The lines are still nearly slack, so the payload falls freely.
     const auto i = static_cast<std::size_t>(payload);
     EXPECT_NEAR(now.x[i][2], -12.0 - 0.5 * 9.81 * t * t, 1e-6);
     EXPECT_NEAR(now.v[i][2], -9.81 * t, 1e-3);
   }
 }
 
-/// Sets loads as time goes on.
+/// Sets the loads along z, N, and pressures, Pa, of all vertices.
 struct SetLoads {
   Points load;
   ListView<Space, double> pressure;

@@ -6,7 +6,8 @@
 #include "kernels/fabric/contact/continuous_detection.hpp"
 #include "kernels/reference/fabric/distance.hpp"
 
-// What contact knows of distances, on random data where it runs, against the oracle.
+// Distances and continuous collision detection in the tested memory space, on random data, against the
+// reference in extended precision.
 
 namespace drogue::fabric {
 namespace {
@@ -23,7 +24,8 @@ KOKKOS_INLINE_FUNCTION Point place_of(const FourPlaces& at, int k, int i) {
   return {at(k, i, 0), at(k, i, 1), at(k, i, 2)};
 }
 
-/// Shares of the nearest points, and their distance squared: of a vertex and a triangle, then of two edges.
+/// Barycentric coordinates and squared distance, m^2, of the closest points: first of a vertex and a
+/// triangle, then of two edges.
 struct NearestFunctor {
   FourPlaces at;
   Kokkos::View<double* [7], Memory> out;
@@ -40,21 +42,21 @@ struct NearestFunctor {
   }
 };
 
-/// Whether a vertex and a triangle, and two edges, stay apart on their way.
+/// Continuous collision detection for a vertex and a triangle, and for two edges, in linear motion.
 struct ApartFunctor {
   FourPlaces from, to;
   double thickness;
-  Kokkos::View<int* [2], Memory> apart;
+  Kokkos::View<int* [2], Memory> separated;
 
   KOKKOS_FUNCTION void operator()(const int k) const {
-    Point begin[4], way[4];
+    Point begin[4], displacement[4];
     double longest[4];
     for (int i = 0; i < 4; ++i) {
       begin[i] = place_of(from, k, i);
-      way[i] = place_of(to, k, i) - begin[i];
-      longest[i] = length(way[i]);
+      displacement[i] = place_of(to, k, i) - begin[i];
+      longest[i] = length(displacement[i]);
     }
-    const auto at = [&](int i, double part) { return begin[i] + part * way[i]; };
+    const auto at = [&](int i, double part) { return begin[i] + part * displacement[i]; };
     const auto larger = [](double a, double b) { return a > b ? a : b; };
     const auto of_face = [&](double part) {
       const Point triangle[3] = {at(1, part), at(2, part), at(3, part)};
@@ -65,8 +67,8 @@ struct ApartFunctor {
       return Kokkos::sqrt(closest_of_segments(first, second).squared);
     };
     const double others = larger(longest[2], longest[3]);
-    apart(k, 0) = ccd_keeps_distance(of_face, longest[0] + larger(longest[1], others), thickness);
-    apart(k, 1) = ccd_keeps_distance(of_edges, larger(longest[0], longest[1]) + others, thickness);
+    separated(k, 0) = ccd_keeps_distance(of_face, longest[0] + larger(longest[1], others), thickness);
+    separated(k, 1) = ccd_keeps_distance(of_edges, larger(longest[0], longest[1]) + others, thickness);
   }
 };
 
@@ -85,7 +87,7 @@ auto to_host(const View& view) {
   return Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), view);
 }
 
-/// Four places of a cube of 2 m: at random, or flattened in ways that contact sees.
+/// Four random points in a cube of 2 m, or a degenerate configuration of `kind` 1 to 4.
 class Random {
  public:
   explicit Random(unsigned seed) : _generator(seed) {}
@@ -113,7 +115,7 @@ class Random {
 
 constexpr int pairs = 1000;
 
-TEST(FabricDistance, NearestPointsAreThoseOfTheOracle) {
+TEST(FabricDistance, MatchesClosestPointsOfTheReference) {
   Random random(1);
   std::vector<Four> places;
   for (int k = 0; k < pairs; ++k) places.push_back(random.four(k % 5));
@@ -139,36 +141,38 @@ TEST(FabricDistance, NearestPointsAreThoseOfTheOracle) {
       const double d = (1.0 - s) * p[0][axis] + s * p[1][axis] - (1.0 - u) * p[2][axis] - u * p[3][axis];
       between += d * d;
     }
-    EXPECT_NEAR(std::sqrt(on_face), std::sqrt(found(k, 3)), 1e-14) << "the shares name the point";
+    EXPECT_NEAR(std::sqrt(on_face), std::sqrt(found(k, 3)), 1e-14)
+        << "the barycentric coordinates define the closest point";
     EXPECT_NEAR(std::sqrt(between), std::sqrt(found(k, 6)), 1e-14);
   }
 }
 
-/// Distances on a way, at its start and the least of those looked at; by how much the least of all may lie
-/// below it: what both sides go in half of the time between two looks.
-struct Way {
-  double start, least, grain;
+/// Distances, m, in linear motion: at its start, the least sampled one, and the bound of the sampling error,
+/// which is the relative displacement in half of a sampling interval.
+struct SampledDistances {
+  double start, least, sampling_error;
 };
-Way looked_at(const Four& from, const Four& to, std::size_t split) {
-  constexpr int looks = 100;
-  Way way{0.0, 1e300, 0.0};
+SampledDistances sample_distances(const Four& from, const Four& to, std::size_t split) {
+  constexpr int samples = 100;
+  SampledDistances sampled{0.0, 1e300, 0.0};
   for (std::size_t i = 0; i < 4; ++i)
-    way.grain = std::max(
-        way.grain, std::hypot(to[i][0] - from[i][0], to[i][1] - from[i][1], to[i][2] - from[i][2]) / looks);
-  for (int look = 0; look <= looks; ++look) {
+    sampled.sampling_error =
+        std::max(sampled.sampling_error,
+                 std::hypot(to[i][0] - from[i][0], to[i][1] - from[i][1], to[i][2] - from[i][2]) / samples);
+  for (int sample = 0; sample <= samples; ++sample) {
     Four at;
     for (std::size_t i = 0; i < 4; ++i)
       for (std::size_t axis = 0; axis < 3; ++axis)
-        at[i][axis] = from[i][axis] + look * (to[i][axis] - from[i][axis]) / looks;
+        at[i][axis] = from[i][axis] + sample * (to[i][axis] - from[i][axis]) / samples;
     const std::span<const Place3> all(at);
     const double distance = hull_distance(all.first(split), all.subspan(split));
-    if (look == 0) way.start = distance;
-    way.least = std::min(way.least, distance);
+    if (sample == 0) sampled.start = distance;
+    sampled.least = std::min(sampled.least, distance);
   }
-  return way;
+  return sampled;
 }
 
-TEST(FabricDistance, WhatMeetsOnItsWayIsNeverLetThrough) {
+TEST(FabricDistance, DetectsEveryCollisionInLinearMotion) {
   constexpr double thickness = 0.01;
   Random random(2);
   std::vector<Four> from, to;
@@ -178,25 +182,25 @@ TEST(FabricDistance, WhatMeetsOnItsWayIsNeverLetThrough) {
     for (Place3& p : to.back())
       for (double& c : p) c += random.number();
   }
-  const Kokkos::View<int* [2], Memory> apart("apart", from.size());
-  Kokkos::parallel_for("way_test", Kokkos::RangePolicy<Space>(0, pairs),
-                       ApartFunctor{to_device(from), to_device(to), thickness, apart});
-  const auto found = to_host(apart);
+  const Kokkos::View<int* [2], Memory> separated("separated", from.size());
+  Kokkos::parallel_for("motion_test", Kokkos::RangePolicy<Space>(0, pairs),
+                       ApartFunctor{to_device(from), to_device(to), thickness, separated});
+  const auto found = to_host(separated);
   int meetings = 0, free = 0;
   for (std::size_t k = 0; k < from.size(); ++k)
     for (std::size_t split = 1; split <= 2; ++split) {
-      const bool stays = found(k, split - 1) != 0;
-      const Way way = looked_at(from[k], to[k], split);
+      const bool accepted = found(k, split - 1) != 0;
+      const SampledDistances sampled = sample_distances(from[k], to[k], split);
       if (first_meeting(from[k], to[k], split, 1e-12)) {
         ++meetings;
-        EXPECT_FALSE(stays) << "pair " << k << ", " << split << " against the others";
+        EXPECT_FALSE(accepted) << "pair " << k << ", " << split << " against the others";
       }
-      if (stays) {
-        EXPECT_GT(way.least, 0.9 * least_distance(way.start, thickness)) << "pair " << k;
+      if (accepted) {
+        EXPECT_GT(sampled.least, 0.9 * least_distance(sampled.start, thickness)) << "pair " << k;
       }
-      if (way.least - way.grain > 2.0 * thickness) {
+      if (sampled.least - sampled.sampling_error > 2.0 * thickness) {
         ++free;
-        EXPECT_TRUE(stays) << "pair " << k << " has nothing to fear";
+        EXPECT_TRUE(accepted) << "pair " << k << " is rejected although its distance suffices";
       }
     }
   EXPECT_GT(meetings, pairs / 20);

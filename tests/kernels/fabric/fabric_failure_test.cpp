@@ -7,7 +7,7 @@
 #include "tests/support/backend.hpp"
 #include "tests/support/fabric_mesh.hpp"
 
-// A state that is lost: what is told of it, and where the solver goes back to.
+// Failure of a state: its report and the restored checkpoint.
 
 namespace drogue::fabric {
 namespace {
@@ -16,35 +16,34 @@ using testing::random_patch;
 using testing::shaken;
 
 constexpr const auto& backend = testing::tested_backend;
-/// How steps are taken.
-struct Way {
+struct StepMethod {
   Integrator integrator;
   Driver driver = Driver::automatic;
 };
-constexpr Way all_ways[] = {{Integrator::rk4},
-                            {Integrator::verlet},
-                            {Integrator::rk4, Driver::graph},
-                            {Integrator::rk4, Driver::plain}};
-/// Hosts have one driver.
-const std::span<const Way> ways(all_ways, backend == device::Backend::cuda ? 4 : 2);
+constexpr StepMethod all_methods[] = {{Integrator::rk4},
+                                      {Integrator::verlet},
+                                      {Integrator::rk4, Driver::graph},
+                                      {Integrator::rk4, Driver::plain}};
+/// The drivers differ on CUDA only.
+const std::span<const StepMethod> methods(all_methods, backend == device::Backend::cuda ? 4 : 2);
 
-/// A hundred vertices of which each goes its own way.
-Parameters dust(const Way& way) {
+/// A hundred vertices without elements.
+Parameters free_vertices(const StepMethod& method) {
   Parameters p;
   p.mesh.rest.assign(100, Vector{});
   p.mass.assign(100, 1.0);
-  p.integrator = way.integrator;
-  p.driver = way.driver;
+  p.integrator = method.integrator;
+  p.driver = method.driver;
   p.dt = 0.1;
   return p;
 }
 
-TEST(FabricFailure, NamesTheFirstStepAndItsFirstVertex) {
-  for (const Way& way : ways) {
-    const auto solver = create_solver(backend, dust(way));
+TEST(FabricFailure, ReportsTheFirstFailedStepAndItsLowestVertex) {
+  for (const StepMethod& method : methods) {
+    const auto solver = create_solver(backend, free_vertices(method));
     const std::vector<Vector> x(100, Vector{});
     std::vector<Vector> v = x;
-    v[20] = {0.0, -0.5e100, 0.0};         // lost when 0.5 + 0.05 n reaches 1: at step 10
+    v[20] = {0.0, -0.5e100, 0.0};         // overflows when 0.5 + 0.05 n reaches 1: at step 10
     v[83] = v[71] = {0.6e100, 0.0, 0.0};  // 0.6 + 0.06 n: at step 7
     solver->upload(x, v);
     EXPECT_TRUE(solver->advance(6));
@@ -55,19 +54,19 @@ TEST(FabricFailure, NamesTheFirstStepAndItsFirstVertex) {
     EXPECT_EQ(failure->index, 71);
     EXPECT_EQ(failure->step, 7);
     EXPECT_NEAR(failure->time + failure->dt, 0.7, 1e-15);
-    EXPECT_EQ(solver->time_state().step, 0) << "the state uploaded is the last that was put aside";
+    EXPECT_EQ(solver->time_state().step, 0) << "the uploaded state is the last checkpoint";
   }
 }
 
-/// A patch, and beside it a vertex that leaves: it is lost after about a thousand steps.
-Parameters leaving(const Way& way) {
+/// A patch and a separate vertex whose position overflows after about a thousand steps.
+Parameters patch_and_escaping_vertex(const StepMethod& method) {
   Parameters p;
   p.mesh = random_patch(11, 8, 3);
   p.mesh.rest.push_back({0.0, 0.0, 5.0});
   p.material.axial_stiffness = 500.0;
   p.mass.assign(p.mesh.rest.size(), 0.01);
-  p.integrator = way.integrator;
-  p.driver = way.driver;
+  p.integrator = method.integrator;
+  p.driver = method.driver;
   p.dt = 1e-3;
   return p;
 }
@@ -90,9 +89,9 @@ std::unique_ptr<Solver> started(const Parameters& p) {
   return solver;
 }
 
-TEST(FabricFailure, GoesBackToAStateThatWasPutAside) {
-  for (const Way& way : ways) {
-    const Parameters p = leaving(way);
+TEST(FabricFailure, RestoresTheLastCheckpoint) {
+  for (const StepMethod& method : methods) {
+    const Parameters p = patch_and_escaping_vertex(method);
     const auto solver = started(p);
     solver->advance(700);
     solver->advance(1700);
@@ -103,27 +102,27 @@ TEST(FabricFailure, GoesBackToAStateThatWasPutAside) {
     EXPECT_NEAR(static_cast<double>(failure->step), 1000.0, 1.0);
     EXPECT_EQ(clock.step, 768) << "a multiple of 256";
     const State kept = state_of(*solver, p.mass.size());
-    // The same as that of a solver that was stopped there.
+    // A solver that stops at the checkpoint has the same bits.
     const auto stopped = started(p);
     EXPECT_TRUE(stopped->advance(clock.step));
     const State there = state_of(*stopped, p.mass.size());
     EXPECT_EQ(kept.x, there.x);
     EXPECT_EQ(kept.v, there.v);
-    // One step before it was lost all is there yet.
+    // The step before the failure still succeeds.
     EXPECT_TRUE(stopped->advance(failure->step - 1 - clock.step));
     EXPECT_FALSE(stopped->failure());
     EXPECT_FALSE(stopped->advance(1) && !stopped->failure());
     EXPECT_EQ(stopped->failure()->index, failure->index);
     EXPECT_EQ(stopped->failure()->step, failure->step);
-    // A solver that has failed stays where it is.
+    // A failed solver takes no further steps.
     EXPECT_FALSE(solver->advance(10));
     EXPECT_EQ(solver->time_state().step, clock.step);
     EXPECT_EQ(state_of(*solver, p.mass.size()).x, kept.x);
   }
 }
 
-TEST(FabricFailure, IsForgottenWithANewState) {
-  const Parameters p = dust({Integrator::verlet});
+TEST(FabricFailure, UploadClearsTheFailure) {
+  const Parameters p = free_vertices({Integrator::verlet});
   const auto solver = create_solver(backend, p);
   std::vector<Vector> x(100, Vector{}), v = x;
   v[3] = {0.9e100, 0.0, 0.0};
@@ -138,8 +137,8 @@ TEST(FabricFailure, IsForgottenWithANewState) {
   EXPECT_NEAR(x[3][0], 0.5, 1e-15);
 }
 
-TEST(FabricFailure, TheClockStaysWithTheStateGoneBackTo) {
-  const Parameters p = leaving({Integrator::rk4});
+TEST(FabricFailure, KeepsTheTimeOfTheRestoredCheckpoint) {
+  const Parameters p = patch_and_escaping_vertex({Integrator::rk4});
   const auto solver = started(p);
   solver->advance(2400);
   solver->set_dt(2e-3);
@@ -148,8 +147,8 @@ TEST(FabricFailure, TheClockStaysWithTheStateGoneBackTo) {
   EXPECT_FALSE(solver->advance(1));
 }
 
-TEST(FabricFailure, WhatIsNoStateIsRefused) {
-  const auto solver = create_solver(backend, dust({Integrator::rk4}));
+TEST(FabricFailure, RejectsNonFiniteAndOverflowingStates) {
+  const auto solver = create_solver(backend, free_vertices({Integrator::rk4}));
   const std::vector<Vector> good(100, Vector{});
   for (const double wrong : {std::nan(""), static_cast<double>(INFINITY), -1e101}) {
     std::vector<Vector> bad = good;
@@ -159,10 +158,10 @@ TEST(FabricFailure, WhatIsNoStateIsRefused) {
   }
 }
 
-// ---- the clock ----
+// ---- time ----
 
-TEST(FabricClock, CountsStepsAndKeepsTimeWhenTheStepChanges) {
-  const auto solver = create_solver(backend, dust({Integrator::rk4}));
+TEST(FabricTimeState, CountsStepsAndKeepsTimeWhenTheStepChanges) {
+  const auto solver = create_solver(backend, free_vertices({Integrator::rk4}));
   std::vector<Vector> x(100, Vector{}), v(100, Vector{1.0, 0.0, 0.0});
   solver->upload(x, v);
   solver->advance(5);

@@ -7,7 +7,7 @@
 #include "tests/support/backend.hpp"
 #include "tests/support/fabric_mesh.hpp"
 
-// Forces of the kernels against derivatives of energies that the reference writes down.
+// Forces of the kernels against derivatives of the reference energies by complex steps.
 
 namespace drogue::fabric {
 namespace {
@@ -43,7 +43,7 @@ double largest(const std::vector<Vector>& vectors) {
   return most;
 }
 
-TEST(FabricForce, IsTheDerivativeOfTheEnergy) {
+TEST(FabricForce, IsTheDerivativeOfTheReferenceEnergy) {
   for (const Model model : models)
     for (const auto& [nx, ny] : {std::pair{2, 2}, {5, 4}, {9, 13}, {33, 7}, {41, 60}})
       for (const double size : {1e-6, 0.05, 0.4}) {
@@ -52,7 +52,7 @@ TEST(FabricForce, IsTheDerivativeOfTheEnergy) {
         const std::vector<Vector> now = shaken(mesh.rest, size, 3);
         const std::vector<Vector> mine = kernel_forces(p, now),
                                   exact = reference::forces(p.material, mesh, now);
-        // What is rounded are tensions and squared lengths of order one beside changes of order `size`.
+        // Rounding acts on tensions and squared lengths of order one, also where strains are of order `size`.
         const double tolerance = 1e-13 * (largest(exact) + p.material.membrane_modulus);
         for (std::size_t i = 0; i < now.size(); ++i)
           for (std::size_t axis = 0; axis < 3; ++axis)
@@ -74,7 +74,7 @@ TEST(FabricForce, SumAndTorqueVanish) {
         torque[axis] += now[i][next] * f[i][after] - now[i][after] * f[i][next];
       }
     EXPECT_LT(largest({sum}), 1e-13 * largest(f) * static_cast<double>(f.size()));
-    // Model I resists turning: that is its fault.
+    // Model I is not invariant under rotation and exerts a torque.
     if (model == Model::linear_vector)
       EXPECT_GT(largest({torque}), 1e-3 * largest(f));
     else
@@ -82,7 +82,7 @@ TEST(FabricForce, SumAndTorqueVanish) {
   }
 }
 
-TEST(FabricForce, RigidMotionCostsNothing) {
+TEST(FabricForce, VanishesUnderRigidMotionOfInvariantModels) {
   const Mesh mesh = random_patch(12, 9, 5);
   std::vector<Vector> turned;
   const double c = std::cos(1.0), s = std::sin(1.0);
@@ -93,7 +93,7 @@ TEST(FabricForce, RigidMotionCostsNothing) {
   EXPECT_GT(largest(kernel_forces(cloth_of(Model::linear_vector, mesh), turned)), 100.0);
 }
 
-TEST(FabricForce, DeadLoadsAddUp) {
+TEST(FabricForce, AddsDeadLoads) {
   const Mesh mesh = random_patch(4, 4, 2);
   for (const Model model : models) {
     Parameters p = cloth_of(model, mesh);
@@ -106,31 +106,31 @@ TEST(FabricForce, DeadLoadsAddUp) {
   }
 }
 
-TEST(FabricForce, WhatCannotBeIsRefused) {
+TEST(FabricForce, RejectsInvalidParameters) {
   const Parameters good = cloth_of(Model::biquadratic, random_patch(3, 3, 1));
-  const auto refused = [&](auto change) {
+  const auto expect_rejected = [&](auto change) {
     Parameters p = good;
     change(p);
     EXPECT_THROW(static_cast<void>(create_solver(backend, p)), std::invalid_argument);
   };
-  refused([](Parameters& p) { p.mesh.triangles[0][1] = 99; });
-  refused([](Parameters& p) { p.mesh.lines[0][1] = -1; });
-  refused([](Parameters& p) { p.mass[2] = 0.0; });
-  refused([](Parameters& p) { p.mass.pop_back(); });
-  refused([](Parameters& p) { p.pinned.assign(2, 7); });
-  refused([](Parameters& p) { p.load.assign(2, Vector{}); });
-  refused([](Parameters& p) { p.dt = 0.0; });
-  refused([](Parameters& p) { p.material.poisson = 0.6; });
-  refused([](Parameters& p) { p.mesh.triangles[0][1] = p.mesh.triangles[0][0]; });
-  refused([](Parameters& p) { p.mesh.rest[4] = {1.0, std::nan(""), 0.0}; });
-  refused([](Parameters& p) {
+  expect_rejected([](Parameters& p) { p.mesh.triangles[0][1] = 99; });
+  expect_rejected([](Parameters& p) { p.mesh.lines[0][1] = -1; });
+  expect_rejected([](Parameters& p) { p.mass[2] = 0.0; });
+  expect_rejected([](Parameters& p) { p.mass.pop_back(); });
+  expect_rejected([](Parameters& p) { p.pinned.assign(2, 7); });
+  expect_rejected([](Parameters& p) { p.load.assign(2, Vector{}); });
+  expect_rejected([](Parameters& p) { p.dt = 0.0; });
+  expect_rejected([](Parameters& p) { p.material.poisson = 0.6; });
+  expect_rejected([](Parameters& p) { p.mesh.triangles[0][1] = p.mesh.triangles[0][0]; });
+  expect_rejected([](Parameters& p) { p.mesh.rest[4] = {1.0, std::nan(""), 0.0}; });
+  expect_rejected([](Parameters& p) {
     for (Vector& x : p.mesh.rest) x[1] = 0.0;
   });
-  refused([](Parameters& p) { p.mesh.lines[0] = {3, 3}; });
-  refused([](Parameters& p) { p.damping = -1.0; });
-  refused([](Parameters& p) { p.dt = INFINITY; });
-  refused([](Parameters& p) { p.gravity[2] = NAN; });
-  refused([](Parameters& p) { p.material.membrane_modulus = -1.0; });
+  expect_rejected([](Parameters& p) { p.mesh.lines[0] = {3, 3}; });
+  expect_rejected([](Parameters& p) { p.damping = -1.0; });
+  expect_rejected([](Parameters& p) { p.dt = INFINITY; });
+  expect_rejected([](Parameters& p) { p.gravity[2] = NAN; });
+  expect_rejected([](Parameters& p) { p.material.membrane_modulus = -1.0; });
   const auto solver = create_solver(backend, good);
   std::vector<Vector> vectors(good.mass.size() + 1);
   EXPECT_THROW(solver->upload(vectors, vectors), std::invalid_argument);

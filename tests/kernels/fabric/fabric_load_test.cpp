@@ -8,7 +8,7 @@
 #include "tests/support/expression_program.hpp"
 #include "tests/support/fabric_mesh.hpp"
 
-// Loads that change, pressures that follow, dashpots and stiffness of lines.
+// Timed loads, follower pressures, dashpots, and stiffness per line.
 
 namespace drogue::fabric {
 namespace {
@@ -60,7 +60,7 @@ void expect_near(const std::vector<Vector>& a, const std::vector<Vector>& b, dou
     for (std::size_t axis = 0; axis < 3; ++axis) ASSERT_NEAR(a[i][axis], b[i][axis], tolerance) << i;
 }
 
-TEST(FabricLoad, LinesMayEachHaveTheirStiffness) {
+TEST(FabricLoad, UsesTheStiffnessOfEachLine) {
   for (const Model model : models) {
     Parameters p = fabric(model);
     p.mesh.line_stiffness = {100.0, 0.0, 700.0, 2000.0};
@@ -73,26 +73,26 @@ TEST(FabricLoad, LinesMayEachHaveTheirStiffness) {
   }
 }
 
-TEST(FabricLoad, PressureFollowsTheNormalsOfNow) {
+TEST(FabricLoad, PressureFollowsCurrentNormals) {
   for (const Model model : models) {
     Parameters p = fabric(model);
-    std::vector<double> weight, felt;
+    std::vector<double> weight, total;
     for (std::size_t i = 0; i < p.mass.size(); ++i) weight.push_back(i % 3 == 0 ? 0.0 : 0.5 * double(i % 5));
     p.follower_pressures = {{postfix({30.0, "x", "t", "*", "+"}), {}}, {postfix({-20.0, "y", "*"}), weight}};
     p.load = shaken(still(p.mass.size()), 2.0, 9);
     const double time = 1.5;
     for (std::size_t i = 0; i < p.mass.size(); ++i)
-      felt.push_back(30.0 + p.mesh.rest[i][0] * time - 20.0 * p.mesh.rest[i][1] * weight[i]);
+      total.push_back(30.0 + p.mesh.rest[i][0] * time - 20.0 * p.mesh.rest[i][1] * weight[i]);
     const std::vector<Vector> x = shaken(p.mesh.rest, 0.3, 2);
     std::vector<Vector> expected = reference::forces(p.material, p.mesh, x);
-    const std::vector<Vector> pressure = reference::pressure_forces(p.mesh, felt, x);
+    const std::vector<Vector> pressure = reference::pressure_forces(p.mesh, total, x);
     for (std::size_t i = 0; i < x.size(); ++i)
       for (std::size_t axis = 0; axis < 3; ++axis) expected[i][axis] += pressure[i][axis] + p.load[i][axis];
     expect_near(forces_at(p, x, time), expected, 1e-9);
   }
 }
 
-TEST(FabricLoad, PressureInAClosedSurfaceIsTheDerivativeOfItsVolume) {
+TEST(FabricLoad, PressureInAClosedSurfaceEqualsTheVolumeGradient) {
   Parameters p;
   p.mesh.rest = {{1, 0, 0}, {-1, 0, 0}, {0, 1.2, 0}, {0, -0.8, 0}, {0.1, 0, 1}, {0, 0.3, -1.1}};
   p.mesh.triangles = {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
@@ -112,7 +112,8 @@ TEST(FabricLoad, PressureInAClosedSurfaceIsTheDerivativeOfItsVolume) {
     }
 }
 
-/// Of a particle at (0, 2, 0) and rest: 0.5 x'' = y cos(3 t), x = y (1 - cos(3 t)) / 4.5.
+/// Error, m, at 1.7 s of a particle that starts at rest in (0, 2, 0): 0.5 x'' = y cos(3 t), with the exact
+/// solution x = y (1 - cos(3 t)) / 4.5.
 double driven_error(Integrator integrator, int steps) {
   Parameters p;
   p.mesh.rest = {{0, 2, 0}, {1, 3, 0}};
@@ -125,15 +126,15 @@ double driven_error(Integrator integrator, int steps) {
   return std::abs(end.x[0][0] - 2.0 * (1.0 - std::cos(3.0 * 1.7)) / 4.5);
 }
 
-TEST(FabricLoad, ThatChangesIsTakenAtTheTimesOfTheMethod) {
-  // The method's own order: with the load at a wrong time it would be the first.
+TEST(FabricLoad, TimedLoadsPreserveTheOrderOfTheMethod) {
+  // A load at a wrong time of the stages would reduce the order to one.
   EXPECT_NEAR(std::log2(driven_error(Integrator::rk4, 10) / driven_error(Integrator::rk4, 160)) / 4.0, 4.0,
               0.15);
   EXPECT_NEAR(std::log2(driven_error(Integrator::verlet, 20) / driven_error(Integrator::verlet, 320)) / 4.0,
               2.0, 0.05);
 }
 
-TEST(FabricLoad, TimeGoesOnOverCallsAndChangesOfTheStep) {
+TEST(FabricLoad, TimeContinuesAcrossCallsAndStepChanges) {
   Parameters p;
   p.mesh.rest = {{0, 0, 0}};
   p.mass = {1.0};
@@ -153,8 +154,8 @@ TEST(FabricLoad, TimeGoesOnOverCallsAndChangesOfTheStep) {
 
 // ---- dashpots ----
 
-TEST(FabricDashpot, IsThatOfTheReference) {
-  // Nothing but dashpots: the velocity that a step of almost no time gains.
+TEST(FabricDashpot, MatchesForcesOfTheReference) {
+  // Without elastic forces, the velocity gained in a step of 1e-8 s gives the force of the dashpots.
   Parameters p = fabric(Model::biquadratic);
   p.material.membrane_modulus = 0.0, p.material.axial_stiffness = 0.0;
   p.relative_damping = 35.0;
@@ -171,7 +172,8 @@ TEST(FabricDashpot, IsThatOfTheReference) {
   }
 }
 
-/// Velocity left after 0.4 s of what was 1 m/s along an edge; 3 m/s across it stay.
+/// Error, m/s, of the relative velocity along an edge after 0.4 s, exp(-2) of the initial 1 m/s. Also expects
+/// that the relative velocity of 3 m/s across the edge is unchanged.
 double pair_error(Integrator integrator, int steps) {
   Parameters p;
   p.mesh.rest = {{0, 0, 0}, {1e6, 0, 0}};
@@ -185,7 +187,7 @@ double pair_error(Integrator integrator, int steps) {
   return std::abs(end.v[1][0] - end.v[0][0] - std::exp(-2.0));
 }
 
-TEST(FabricDashpot, SlowsAPairAtItsRate) {
+TEST(FabricDashpot, DampsRelativeVelocityAtItsRate) {
   EXPECT_LT(pair_error(Integrator::rk4, 40), 1e-5);
   EXPECT_LT(pair_error(Integrator::verlet, 4000), 1e-4);
   EXPECT_NEAR(std::log2(pair_error(Integrator::verlet, 40) / pair_error(Integrator::verlet, 320)) / 3.0, 1.0,
@@ -193,7 +195,7 @@ TEST(FabricDashpot, SlowsAPairAtItsRate) {
 }
 
 // ctest-label: no-sanitizer
-TEST(FabricDashpot, KeepsMomentaAndTakesEnergy) {
+TEST(FabricDashpot, ConservesMomentaAndDissipatesEnergy) {
   for (const Integrator integrator : integrators) {
     Parameters p = fabric(Model::biquadratic);
     p.integrator = integrator;
@@ -206,21 +208,21 @@ TEST(FabricDashpot, KeepsMomentaAndTakesEnergy) {
     EXPECT_LT(after.energy(), 0.5 * before.energy());
     for (std::size_t axis = 0; axis < 3; ++axis) {
       EXPECT_NEAR(after.momentum[axis], before.momentum[axis], 1e-12);
-      // Verlet applies both ends of a dashpot along one line and drifts after it.
+      // Verlet applies both forces of a dashpot along one line, before it moves the vertices.
       EXPECT_NEAR(after.angular_momentum[axis], before.angular_momentum[axis],
                   integrator == Integrator::verlet ? 1e-11 : 1e-6);
     }
   }
 }
 
-TEST(FabricDashpot, DecayAndFrequencyTogetherLimitTheStep) {
+TEST(FabricDashpot, DecayAndFrequencyLimitTheStableStep) {
   Parameters p;
   p.mesh.rest = {{0, 0, 0}, {1, 0, 0}};
   p.mesh.lines = {{0, 1}};
   p.mass = {0.5, 0.5};
   p.relative_damping = 200.0;
   p.dt = 1.0;
-  const auto slowed = [&](double dt) {
+  const auto decays = [&](double dt) {
     p.dt = dt;
     const auto solver = create_solver(backend, p);
     solver->upload(p.mesh.rest, std::vector<Vector>{{0, 0, 0}, {1e-9, 0, 0}});
@@ -231,11 +233,11 @@ TEST(FabricDashpot, DecayAndFrequencyTogetherLimitTheStep) {
   };
   const auto decay = [&] { return create_solver(backend, p)->fastest_decay(); };
   EXPECT_NEAR(decay(), 200.0, 1e-12) << "exact for equal masses";
-  EXPECT_TRUE(slowed(stable_dt(p.integrator, 0.0, decay())));
-  EXPECT_FALSE(slowed(2.85 / 200.0));
+  EXPECT_TRUE(decays(stable_dt(p.integrator, 0.0, decay())));
+  EXPECT_FALSE(decays(2.85 / 200.0));
   p.integrator = Integrator::verlet;
-  EXPECT_TRUE(slowed(stable_dt(p.integrator, 0.0, decay())));
-  EXPECT_FALSE(slowed(2.05 / 200.0));
+  EXPECT_TRUE(decays(stable_dt(p.integrator, 0.0, decay())));
+  EXPECT_FALSE(decays(2.05 / 200.0));
   EXPECT_EQ(stable_dt(Integrator::verlet, 10.0, 0.0), 0.2);
   EXPECT_EQ(stable_dt(Integrator::verlet, 10.0, 20.0), 0.05);
   EXPECT_EQ(stable_dt(Integrator::rk4, 10.0, 0.0), stability_limit(Integrator::rk4) / 10.0);
@@ -243,7 +245,7 @@ TEST(FabricDashpot, DecayAndFrequencyTogetherLimitTheStep) {
   EXPECT_EQ(stable_dt(Integrator::verlet, 0.0, 0.0), INFINITY);
 }
 
-TEST(FabricLoad, PressureStiffnessRaisesTheBound) {
+TEST(FabricLoad, PressureStiffnessRaisesTheFrequencyBound) {
   Parameters p = fabric(Model::biquadratic);
   const auto bound = [&] {
     const auto solver = create_solver(backend, p);
@@ -257,8 +259,8 @@ TEST(FabricLoad, PressureStiffnessRaisesTheBound) {
   EXPECT_NEAR(bound(), without, 1e-6 * without);
 }
 
-/// With everything that changes with time.
-Parameters busy(Integrator integrator) {
+/// Fabric with damping, dashpots, and all quantities that depend on time: loads, pressures, motions.
+Parameters fully_loaded(Integrator integrator) {
   Parameters p = fabric(Model::biquadratic);
   p.integrator = integrator;
   p.damping = 3.0, p.relative_damping = 20.0;
@@ -268,16 +270,16 @@ Parameters busy(Integrator integrator) {
   return p;
 }
 
-State previous_steps(const Parameters& p) {
+State initial_state(const Parameters& p) {
   return {shaken(p.mesh.rest, 0.1, 1), shaken(still(p.mass.size()), 1.0, 2)};
 }
 
-TEST(FabricLoad, StepsWithAllOfItMayBeCutIntoCallsAnyhow) {
+TEST(FabricLoad, SplitCallsGiveIdenticalBits) {
   for (const Integrator integrator : integrators) {
-    const Parameters p = busy(integrator);
-    const State once = moved(p, previous_steps(p), 300);
+    const Parameters p = fully_loaded(integrator);
+    const State once = moved(p, initial_state(p), 300);
     const auto solver = create_solver(backend, p);
-    State cut = previous_steps(p);
+    State cut = initial_state(p);
     solver->upload(cut.x, cut.v);
     for (const std::int64_t steps : {1, 0, 5, 250, 44}) solver->advance(steps);
     solver->download(cut.x, cut.v);
@@ -286,11 +288,11 @@ TEST(FabricLoad, StepsWithAllOfItMayBeCutIntoCallsAnyhow) {
   }
 }
 
-TEST(FabricLoad, AStateAndItsClockAreAllThatARestartNeeds) {
+TEST(FabricLoad, RestartsFromStateAndTimeWithIdenticalBits) {
   for (const Integrator integrator : integrators) {
-    const Parameters p = busy(integrator);
+    const Parameters p = fully_loaded(integrator);
     const auto first = create_solver(backend, p), second = create_solver(backend, p);
-    State state = previous_steps(p);
+    State state = initial_state(p);
     first->upload(state.x, state.v);
     first->advance(70);
     first->set_dt(0.9e-4);
@@ -308,20 +310,20 @@ TEST(FabricLoad, AStateAndItsClockAreAllThatARestartNeeds) {
   }
 }
 
-TEST(FabricLoad, WhatCannotBeIsRefused) {
+TEST(FabricLoad, RejectsInvalidLoads) {
   const Parameters good = fabric(Model::biquadratic);
-  const auto refused = [&](auto change) {
+  const auto expect_rejected = [&](auto change) {
     Parameters p = good;
     change(p);
     EXPECT_THROW(static_cast<void>(create_solver(backend, p)), std::invalid_argument);
   };
-  refused([](Parameters& p) { p.mesh.line_stiffness = {1.0}; });
-  refused([](Parameters& p) { p.mesh.line_stiffness = {1.0, -1.0, 1.0, 1.0}; });
-  refused([](Parameters& p) { p.relative_damping = -1.0; });
-  refused([](Parameters& p) { p.timed_loads = {{postfix({"t"}), {Vector{}}}}; });
-  refused([](Parameters& p) { p.timed_loads = {{{}, still(p.mass.size())}}; });
-  refused([](Parameters& p) { p.follower_pressures = {{postfix({"t"}), {1.0}}}; });
-  refused([](Parameters& p) { p.follower_pressures = {{{}, {}}}; });
+  expect_rejected([](Parameters& p) { p.mesh.line_stiffness = {1.0}; });
+  expect_rejected([](Parameters& p) { p.mesh.line_stiffness = {1.0, -1.0, 1.0, 1.0}; });
+  expect_rejected([](Parameters& p) { p.relative_damping = -1.0; });
+  expect_rejected([](Parameters& p) { p.timed_loads = {{postfix({"t"}), {Vector{}}}}; });
+  expect_rejected([](Parameters& p) { p.timed_loads = {{{}, still(p.mass.size())}}; });
+  expect_rejected([](Parameters& p) { p.follower_pressures = {{postfix({"t"}), {1.0}}}; });
+  expect_rejected([](Parameters& p) { p.follower_pressures = {{{}, {}}}; });
 }
 
 }  // namespace

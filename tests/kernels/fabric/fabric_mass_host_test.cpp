@@ -7,7 +7,7 @@
 #include "kernels/reference/fabric/mass.hpp"
 #include "tests/support/fabric_mesh.hpp"
 
-// Masses of vertices against integrals of shape functions, and how fast a sum over them converges.
+// Lumped masses against integrals of shape functions, and the convergence order of a second moment.
 
 namespace drogue::fabric {
 namespace {
@@ -16,15 +16,15 @@ double sum_of(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0);
 }
 
-TEST(FabricMass, IsTheRowSumOfTheConsistentMatrix) {
+TEST(FabricMass, EqualsRowSumsOfTheConsistentMassMatrix) {
   const Mesh mesh = testing::random_patch(9, 6, 2);
   const std::vector<double> mine = lumped_masses(mesh, 0.756, 0.2, Lumping::area),
                             exact = reference::row_sum_masses(mesh, 0.756, 0.2);
   for (std::size_t i = 0; i < mine.size(); ++i) EXPECT_NEAR(mine[i], exact[i], 1e-15) << i;
-  EXPECT_NEAR(mine.back(), 0.5 * 0.5 * 0.2, 1e-15) << "the end of a string has half a piece";
+  EXPECT_NEAR(mine.back(), 0.5 * 0.5 * 0.2, 1e-15) << "the end of a line has half the mass of its segment";
 }
 
-TEST(FabricMass, LinesMayHaveTheirOwnDensities) {
+TEST(FabricMass, UsesTheDensityOfEachLine) {
   Mesh mesh = testing::random_patch(9, 6, 2);
   mesh.line_density = {0.1, 0.0, 0.3, 0.7};
   const std::vector<double> mine = lumped_masses(mesh, 0.756, 0.2, Lumping::area),
@@ -37,14 +37,15 @@ TEST(FabricMass, LinesMayHaveTheirOwnDensities) {
   EXPECT_THROW(static_cast<void>(lumped_masses(mesh, 1.0, 0.2, Lumping::area)), std::invalid_argument);
 }
 
-TEST(FabricMass, EqualMassesHaveTheSameSum) {
+TEST(FabricMass, EqualLumpingPreservesTheTotalMass) {
   const Mesh mesh = testing::random_patch(9, 6, 2);
   const std::vector<double> equal = lumped_masses(mesh, 0.756, 0.2, Lumping::equal);
   EXPECT_NEAR(sum_of(equal), sum_of(lumped_masses(mesh, 0.756, 0.2, Lumping::area)), 1e-13);
   for (const double m : equal) EXPECT_EQ(m, equal[0]);
 }
 
-/// What is wrong with the second moment of a rectangle of n by n cells about its lower edge, 2 * 3^3 / 3.
+/// Error, kg m^2, of the second moment of a rectangle of n by n cells about its lower edge; exact is
+/// 2 * 3^3 / 3.
 double moment_error(int n, Lumping lumping) {
   Mesh mesh;
   for (int j = 0; j <= n; ++j)
@@ -62,7 +63,7 @@ double moment_error(int n, Lumping lumping) {
 }
 
 // ctest-label: no-sanitizer
-TEST(FabricMass, AreaIsOfSecondOrderAndEqualOfFirst) {
+TEST(FabricMass, AreaLumpingIsSecondOrderAndEqualLumpingFirstOrder) {
   const auto order = [](Lumping lumping) {
     return std::log2(moment_error(16, lumping) / moment_error(64, lumping)) / 2.0;
   };
@@ -70,7 +71,7 @@ TEST(FabricMass, AreaIsOfSecondOrderAndEqualOfFirst) {
   EXPECT_NEAR(order(Lumping::equal), 1.0, 0.05);
 }
 
-TEST(FabricMass, DensitiesThatCannotBeAreRefused) {
+TEST(FabricMass, RejectsInvalidDensities) {
   const Mesh mesh = testing::random_patch(2, 2, 1);
   for (const double wrong : {-1.0, std::nan(""), static_cast<double>(INFINITY)}) {
     EXPECT_THROW(static_cast<void>(lumped_masses(mesh, wrong, 0.0, Lumping::area)), std::invalid_argument);

@@ -9,7 +9,7 @@
 #include "tests/support/expression_program.hpp"
 #include "tests/support/fabric_mesh.hpp"
 
-// How vertices move: orders of accuracy, what is kept, what is held.
+// Motion of vertices: orders of accuracy, conservation, stability limits, pins, and damping.
 
 namespace drogue::fabric {
 namespace {
@@ -43,7 +43,7 @@ Parameters oscillator(Integrator integrator, double dt) {
   return p;
 }
 
-/// Of the stretch 0.2 cos(5 t) at t = 4 pi / 5 + 0.1.
+/// Error of the elongation 0.2 cos(5 t), m, at t = 4 pi / 5 + 0.1 s.
 double oscillator_error(Integrator integrator, int steps) {
   const double end = 0.8 * std::numbers::pi + 0.1;
   const State start{{{-0.1, 0, 0}, {1.1, 0, 0}}, {{0, 0, 0}, {0, 0, 0}}};
@@ -51,7 +51,7 @@ double oscillator_error(Integrator integrator, int steps) {
   return std::abs(now.x[1][0] - now.x[0][0] - 1.0 - 0.2 * std::cos(5.0 * end));
 }
 
-TEST(FabricMotion, DriversTakeTheSameSteps) {
+TEST(FabricMotion, DriversAgree) {
   if (backend != device::Backend::cuda) GTEST_SKIP() << "hosts have one driver";
   Parameters p;
   p.mesh = random_patch(70, 60, 3);
@@ -70,7 +70,7 @@ TEST(FabricMotion, DriversTakeTheSameSteps) {
       for (std::size_t axis = 0; axis < 3; ++axis) EXPECT_NEAR(now.x[i][axis], expected.x[i][axis], 1e-9);
   };
   expect_same(Driver::graph, 0, "graph");
-  // A load, though it is zero, is asked for in every stage.
+  // Every stage evaluates a timed load, even if it is zero.
   p.timed_loads = {{testing::postfix({0.0}), std::vector<Vector>(p.mass.size(), Vector{})}};
   expect_same(Driver::plain, 0, "plain");
   p.timed_loads.clear();
@@ -97,20 +97,20 @@ double energy_of(const Parameters& p, const State& s) {
 }
 
 // ctest-label: no-sanitizer
-TEST(FabricMotion, RungeKuttaLosesTheEnergyThatItsAmplificationSays) {
+TEST(FabricMotion, RungeKuttaDissipatesEnergyByItsAmplificationFactor) {
   // |G|^2 = 1 - z^6/72 + z^8/576 with z = omega dt.
   const State start{{{-0.1, 0, 0}, {1.1, 0, 0}}, {{0, 0, 0}, {0, 0, 0}}};
   for (const double z : {0.2, 0.5, 1.0}) {
     const Parameters p = oscillator(Integrator::rk4, z / 5.0);
     const int steps = 200;
-    const double kept = energy_of(p, moved(p, start, steps)) / energy_of(p, start);
+    const double energy_ratio = energy_of(p, moved(p, start, steps)) / energy_of(p, start);
     const double expected = std::pow(1.0 - std::pow(z, 6) / 72.0 + std::pow(z, 8) / 576.0, steps);
-    EXPECT_NEAR(kept, expected, 1e-10);
+    EXPECT_NEAR(energy_ratio, expected, 1e-10);
   }
 }
 
 // ctest-label: no-sanitizer
-TEST(FabricMotion, VerletKeepsItsEnergyBounded) {
+TEST(FabricMotion, VerletBoundsTheEnergyError) {
   const State start{{{-0.1, 0, 0}, {1.1, 0, 0}}, {{0, 0, 0}, {0, 0, 0}}};
   const Parameters p = oscillator(Integrator::verlet, 0.2 / 5.0);
   const auto solver = create_solver(backend, p);
@@ -120,14 +120,14 @@ TEST(FabricMotion, VerletKeepsItsEnergyBounded) {
     solver->advance(1000);
     State now = start;
     solver->download(now.x, now.v);
-    const double kept = energy_of(p, now) / energy_of(p, start);
-    least = std::min(least, kept), most = std::max(most, kept);
+    const double energy_ratio = energy_of(p, now) / energy_of(p, start);
+    least = std::min(least, energy_ratio), most = std::max(most, energy_ratio);
   }
   EXPECT_GT(least, 1.0 - 0.2 * 0.2 / 4.0);
   EXPECT_LT(most, 1.0 + 0.2 * 0.2 / 4.0);
 }
 
-TEST(FabricMotion, AStepBeyondTheStabilityLimitGrows) {
+TEST(FabricMotion, EnergyGrowsBeyondTheStabilityLimit) {
   const State start{{{-0.1, 0, 0}, {1.1, 0, 0}}, {{0, 0, 0}, {0, 0, 0}}};
   const auto grows = [&](Integrator integrator, double z) {
     const Parameters p = oscillator(integrator, z / 5.0);
@@ -151,7 +151,8 @@ Parameters patch(Model model, Integrator integrator) {
   return p;
 }
 
-/// What a free patch gains of linear and of angular momentum in 0.1 s, the largest over the axes.
+/// Change of the linear momentum, kg m/s, and of the angular momentum, kg m^2/s, of a free patch in 0.1 s:
+/// the largest components.
 std::pair<double, double> momenta_gained(Parameters p, std::int64_t steps) {
   p.dt = 0.1 / static_cast<double>(steps);
   const State start{shaken(p.mesh.rest, 0.1, 1),
@@ -173,12 +174,12 @@ std::pair<double, double> momenta_gained(Parameters p, std::int64_t steps) {
 }
 
 // ctest-label: no-sanitizer
-TEST(FabricMotion, AFreePatchKeepsItsMomenta) {
+TEST(FabricMotion, ConservesMomentaOfAFreePatch) {
   for (const Model model : {Model::edge, Model::quadratic, Model::biquadratic}) {
     const auto [momentum, angular] = momenta_gained(patch(model, Integrator::verlet), 500);
     EXPECT_LT(momentum, 1e-12);
     EXPECT_LT(angular, 1e-11);
-    // Runge and Kutta keep angular momentum to the order of their method.
+    // The Runge-Kutta method conserves angular momentum to its order of accuracy.
     const auto coarse = momenta_gained(patch(model, Integrator::rk4), 1000);
     const auto fine = momenta_gained(patch(model, Integrator::rk4), 2000);
     EXPECT_LT(coarse.first, 1e-12);
@@ -186,7 +187,7 @@ TEST(FabricMotion, AFreePatchKeepsItsMomenta) {
   }
 }
 
-TEST(FabricMotion, StepsMayBeCutIntoCallsAnyhow) {
+TEST(FabricMotion, SplitCallsGiveIdenticalBits) {
   for (const Integrator integrator : {Integrator::rk4, Integrator::verlet}) {
     Parameters p = patch(Model::biquadratic, integrator);
     p.damping = 40.0;
@@ -213,7 +214,7 @@ TEST(FabricMotion, PinnedAxesKeepTheirVelocityAndOthersFall) {
     const State end = moved(p, start, 100);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       EXPECT_EQ(end.v[5][axis], start.v[5][axis]);
-      // A hundred sums, each rounded.
+      // Rounding of a hundred sums.
       EXPECT_NEAR(end.x[5][axis], start.x[5][axis] + 0.02 * start.v[5][axis], 100 * 2.2e-16 * 8.0);
     }
     EXPECT_EQ(end.x[9][1], start.x[9][1]);
@@ -222,7 +223,7 @@ TEST(FabricMotion, PinnedAxesKeepTheirVelocityAndOthersFall) {
   }
 }
 
-TEST(FabricMotion, DampedFallIsThatOfTheFormula) {
+TEST(FabricMotion, DampedFallMatchesTheClosedForm) {
   for (const Integrator integrator : {Integrator::rk4, Integrator::verlet}) {
     Parameters p;
     p.mesh.rest = {{0, 0, 0}};

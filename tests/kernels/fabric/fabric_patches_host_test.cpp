@@ -10,7 +10,7 @@
 #include "tests/support/expression_program.hpp"
 #include "tests/support/fabric_mesh.hpp"
 
-// Patches of a mesh, and steps of them all in one launch, on threads of the host.
+// Patches of a mesh, and persistent kernels that step all patches in one launch, emulated by host threads.
 
 namespace drogue::fabric {
 namespace {
@@ -20,7 +20,7 @@ using testing::shaken;
 
 constexpr int most_threads = 64;
 
-/// Without fused multiply-add all drivers have the same bits.
+/// Without fused multiply-add, all drivers give the same bits.
 #if defined(DROGUE_EXACT)
 constexpr double rounding = 0.0;
 #else
@@ -37,7 +37,7 @@ Patches cut(const Mesh& mesh, int count) {
   return make_patches(mesh.rest, ring_adjacency(mesh), spring_adjacency(mesh, {}), count);
 }
 
-/// Those who share a triangle or a line with vertex i.
+/// Vertices that share a triangle or a line with each vertex.
 std::vector<std::set<int>> neighbours(const Mesh& mesh) {
   std::vector<std::set<int>> of(mesh.rest.size());
   const auto add = [&](int i, int j) { of[static_cast<std::size_t>(i)].insert(j); };
@@ -47,7 +47,7 @@ std::vector<std::set<int>> neighbours(const Mesh& mesh) {
   return of;
 }
 
-TEST(FabricPatches, HoldEveryVertexOnceAndAllThatItReads) {
+TEST(FabricPatches, ContainEveryVertexOnceAndItsNeighbours) {
   const Mesh mesh = mesh_of(13, 9);
   const auto of = neighbours(mesh);
   for (const int count : {1, 2, 5, 16}) {
@@ -69,12 +69,12 @@ TEST(FabricPatches, HoldEveryVertexOnceAndAllThatItReads) {
     std::set<int> read;
     std::set<std::array<int, 2>> pairs;
     for (int p = 0; p < count; ++p) {
-      std::set<int> wanted, own;
+      std::set<int> expected_halo, own;
       for (const auto& [i, patch] : patch_of) {
         if (patch != p) continue;
         own.insert(i);
         for (const int j : of[static_cast<std::size_t>(i)])
-          if (patch_of[j] != p) wanted.insert(j), read.insert(j), pairs.insert({p, patch_of[j]});
+          if (patch_of[j] != p) expected_halo.insert(j), read.insert(j), pairs.insert({p, patch_of[j]});
       }
       EXPECT_LT(std::abs(static_cast<double>(own.size()) - static_cast<double>(mesh.rest.size()) / count),
                 1.0);
@@ -85,15 +85,16 @@ TEST(FabricPatches, HoldEveryVertexOnceAndAllThatItReads) {
         halo.insert(patches.halo_vertex[k]);
         EXPECT_EQ(patches.halo_message[k], place_of.at(patches.halo_vertex[k]));
       }
-      EXPECT_EQ(halo, wanted);
+      EXPECT_EQ(halo, expected_halo);
       EXPECT_EQ(halo.size(), end - begin);
     }
-    EXPECT_EQ(read.size(), place_of.size()) << "who is posted is read";
-    for (const auto& [p, q] : pairs) EXPECT_EQ(pairs.count({q, p}), 1U) << "neighbours wait for each other";
+    EXPECT_EQ(read.size(), place_of.size()) << "each message is read";
+    for (const auto& [p, q] : pairs)
+      EXPECT_EQ(pairs.count({q, p}), 1U) << "neighbourhood of patches is symmetric";
   }
 }
 
-TEST(FabricPatches, KeepTheOrderOfSlots) {
+TEST(FabricPatches, KeepTheOrderOfNeighbours) {
   const Mesh mesh = mesh_of(13, 9);
   const RingAdjacency rings = ring_adjacency(mesh);
   const Patches patches = cut(mesh, 4);
@@ -114,7 +115,7 @@ TEST(FabricPatches, KeepTheOrderOfSlots) {
     for (int k = 0; k < here; ++k) {
       const std::size_t mine = slot(patches.triangles, at, k);
       if (rings.first[i / slice] + k >= rings.first[i / slice + 1]) {
-        EXPECT_EQ(patches.triangles.value[2][mine], 0.0) << "neutral";
+        EXPECT_EQ(patches.triangles.value[2][mine], 0.0) << "padding has no stiffness";
         continue;
       }
       const std::size_t original = slot(rings, i, k);
@@ -141,7 +142,7 @@ Parameters cloth_of(const Mesh& mesh) {
 
 using Space = Kokkos::Serial;
 
-/// Steps of the persistent driver in launches of `cuts` steps.
+/// Takes steps with the persistent driver; each entry of `cuts` is the number of steps of one launch.
 template <ConstitutiveModel law, class Functor, class VertexForce = NoVertexForce,
           class Loads = PersistentLoads<Space, false>>
 void run_emulated(const Parameters& p, int count, const std::vector<std::int64_t>& cuts,
@@ -192,7 +193,7 @@ void run_emulated(const Parameters& p, int count, const std::vector<std::int64_t
     epoch += 4 * static_cast<std::uint64_t>(steps);
     EXPECT_EQ(monitor.steps(0), previous_steps);
   }
-  EXPECT_FALSE(grid.overwritten()) << "two boards are too few";
+  EXPECT_FALSE(grid.overwritten()) << "two message buffers are too few";
   EXPECT_FALSE(monitor.has_failed());
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t axis = 0; axis < 3; ++axis) x[i][axis] = at(i, axis), v[i][axis] = velocity(i, axis);
@@ -230,14 +231,14 @@ void expect_the_same_steps() {
   }
 }
 
-TEST(FabricPatches, TakeTheStepsOfTheOtherDrivers) {
+TEST(FabricPatches, MatchTheStepsOfTheOtherDrivers) {
   expect_the_same_steps<ConstitutiveModel{Model::biquadratic}, Rings>();
   expect_the_same_steps<ConstitutiveModel{Model::biquadratic}, Pairs>();
   expect_the_same_steps<ConstitutiveModel{Model::edge}, Rings>();
   expect_the_same_steps<ConstitutiveModel{Model::edge}, Pairs>();
 }
 
-/// Loads of `p` where the persistent driver reads them.
+/// Timed loads and follower pressures of `p` in the Views of the persistent driver.
 PersistentLoads<Space, true> loads_of(const Parameters& p) {
   PersistentLoads<Space, true> loads{{}, {0, p.dt, 0, 0.0}};
   External<Space>& external = loads.external;
@@ -284,12 +285,12 @@ void expect_the_same_steps_under_loads() {
   }
 }
 
-TEST(FabricPatches, PersistentStepsTakeTimedLoadsAndPressures) {
+TEST(FabricPatches, ApplyTimedLoadsAndPressures) {
   expect_the_same_steps_under_loads<ConstitutiveModel{Model::biquadratic}>();
   expect_the_same_steps_under_loads<ConstitutiveModel{Model::edge}>();
 }
 
-/// A force of place, velocity and time that grows in every step.
+/// Force that depends on position, velocity and time, with a term that grows in every step.
 struct Spring {
   PointsView<Space> rest;
   ListView<Space, double> grown;
@@ -330,7 +331,7 @@ void expect_the_same_steps_under_a_vertex_force() {
 template <class ExecutionSpace, ConstitutiveModel law, class VertexForce>
 using ForcedRings = PersistentRingsFunctor<ExecutionSpace, law, VertexForce>;
 
-TEST(FabricPatches, PersistentStepsTakeAVertexForce) {
+TEST(FabricPatches, ApplyAVertexForce) {
   expect_the_same_steps_under_a_vertex_force<ForcedRings>();
   expect_the_same_steps_under_a_vertex_force<PersistentPairsFunctor>();
 }

@@ -70,7 +70,7 @@ TEST(FabricPayload, OscillatesOnItsLinesWithTheFrequencyOfTheClosedForm) {
     const auto i = static_cast<std::size_t>(hung.vertex);
     const auto solver = create_solver(backend, hung.parameters);
     std::vector<Vector> x = hung.parameters.mesh.rest, v(x.size());
-    // From rest without tension: the amplitude is the static elongation.
+    // A start at rest without tension gives an amplitude equal to the static elongation.
     solver->upload(x, v);
     ASSERT_TRUE(solver->advance(1700) && !solver->failure());
     solver->download(x, v);
@@ -122,7 +122,7 @@ MomentumChange momentum_change(Integrator integrator, int steps) {
 }
 
 // Central forces conserve both momenta. Verlet's kicks act along the springs and conserve the angular
-// momentum to round-off; the step of Runge and Kutta loses it with the fourth power of dt.
+// momentum to round-off; the error of the Runge-Kutta method is of fourth order in dt.
 TEST(FabricPayload, ExchangesMomentumWithAFreeSheetWithoutLoss) {
   const MomentumChange verlet = momentum_change(Integrator::verlet, 2000),
                        rk4 = momentum_change(Integrator::rk4, 2000),

@@ -9,7 +9,7 @@
 #include "tests/support/fabric_mesh.hpp"
 #include "tests/support/profiled.hpp"
 
-// Pins whose motion kernels prescribe in device Views.
+// Pins whose motion is prescribed by kernels that write device Views.
 
 namespace drogue::fabric {
 namespace {
@@ -115,7 +115,7 @@ void start(FabricSolver<Space>& solver, const Parameters& p, double velocity) {
   solver.upload(state.x, state.v);
 }
 
-TEST(FabricPins, MoveByViewsAsByAnExpressionInEveryDriver) {
+TEST(FabricPins, MatchAnExpressionInEveryDriver) {
   const device::Instance<Space> instance(1);
   const Space& space = instance.space();
   for (const Method& method : methods) {
@@ -131,7 +131,7 @@ TEST(FabricPins, MoveByViewsAsByAnExpressionInEveryDriver) {
     const SheetState by_views = downloaded(solver);
     const SheetState expected =
         moved_by_expression(space, p, postfix({"t", 0.3, "*", "t", "t", "*", 2.0, "*", "+"}), 0.3, 200);
-    // The expression's velocities are differences over dt.
+    // The solver differentiates expressions numerically, hence the wider tolerance of velocities.
     EXPECT_LT(largest_difference(by_views.x, expected.x), 1e-12) << solver.driver();
     EXPECT_LT(largest_difference(by_views.v, expected.v), 1e-9) << solver.driver();
     const double t = 200 * p.dt;
@@ -163,7 +163,7 @@ TEST(FabricPins, FollowViewsThatAKernelWritesBeforeEachStep) {
     const SheetState by_views = downloaded(solver);
     const SheetState expected = moved_by_expression(
         space, p, postfix({amplitude, omega, "t", "*", "sin", "*"}), amplitude * omega, steps);
-    // The third derivative of the motion is missing within a step.
+    // Views omit the third derivative of the motion within a step.
     const double jerk = amplitude * omega * omega * omega;
     EXPECT_LT(largest_difference(by_views.x, expected.x), jerk * std::pow(p.dt, 3)) << solver.driver();
     EXPECT_LT(largest_difference(by_views.v, expected.v), 10.0 * jerk * p.dt * p.dt) << solver.driver();
@@ -171,7 +171,7 @@ TEST(FabricPins, FollowViewsThatAKernelWritesBeforeEachStep) {
   }
 }
 
-TEST(FabricPins, GoOnWithTheirVelocityUntilViewsAreWritten) {
+TEST(FabricPins, KeepTheirVelocityUntilViewsAreWritten) {
   const device::Instance<Space> instance(1);
   const Space& space = instance.space();
   for (const Method& method : methods) {
@@ -194,7 +194,7 @@ TEST(FabricPins, GoOnWithTheirVelocityUntilViewsAreWritten) {
   }
 }
 
-TEST(FabricPins, ViewsDoNotMoveFreeAxesAndAxesOfExpressions) {
+TEST(FabricPins, DoNotMoveFreeAxesOrAxesOfExpressions) {
   const device::Instance<Space> instance(1);
   const Space& space = instance.space();
   Parameters p = pinned_sheet({Integrator::rk4, Driver::automatic});
@@ -209,7 +209,7 @@ TEST(FabricPins, ViewsDoNotMoveFreeAxesAndAxesOfExpressions) {
   EXPECT_NEAR(now.x[10][0], p.mesh.rest[10][0], 0.1);
 }
 
-TEST(FabricPins, PrescribedMotionNeedsAPin) {
+TEST(FabricPins, RejectPrescribedMotionWithoutPins) {
   const device::Instance<Space> instance(1);
   Parameters p = pinned_sheet({Integrator::rk4, Driver::automatic});
   p.pinned.assign(p.mass.size(), 0);

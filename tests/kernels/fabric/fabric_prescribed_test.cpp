@@ -7,7 +7,7 @@
 #include "tests/support/expression_program.hpp"
 #include "tests/support/fabric_mesh.hpp"
 
-// Pins that move as an expression says.
+// Pins whose motion an expression prescribes.
 
 namespace drogue::fabric {
 namespace {
@@ -17,7 +17,7 @@ using testing::postfix;
 constexpr const auto& backend = testing::tested_backend;
 constexpr Integrator integrators[] = {Integrator::rk4, Integrator::verlet};
 
-/// A mass of 1 kg on a spring of 16 N/m whose other end moves by 0.1 sin(3 t): omega = 4 rad/s.
+/// A mass of 1 kg on a spring of 16 N/m (omega = 4 rad/s), whose other end moves by 0.1 sin(3 t) m.
 Parameters shaken_spring(Integrator integrator, double dt) {
   Parameters p;
   p.mesh.rest = {{0, 0, 0}, {1, 0, 0}};
@@ -32,10 +32,12 @@ Parameters shaken_spring(Integrator integrator, double dt) {
 }
 
 struct Errors {
-  double free, held, velocity;
+  double free, prescribed;  ///< positions of the free and of the prescribed end, m
+  double velocity;          ///< of the prescribed end, m/s
 };
 
-/// After 1.3 s from rest: the free end is at 0.1 16 / (16 - 9) (sin(3 t) - 3/4 sin(4 t)).
+/// Errors at 1.3 s after a start from rest. Exact displacement of the free end, m:
+/// 0.1 * 16 / (16 - 9) * (sin(3 t) - 3/4 sin(4 t)).
 Errors errors(Integrator integrator, int steps) {
   const double end = 1.3;
   const Parameters p = shaken_spring(integrator, end / steps);
@@ -49,18 +51,18 @@ Errors errors(Integrator integrator, int steps) {
           std::abs(v[0][0] - 0.3 * std::cos(3.0 * end))};
 }
 
-TEST(FabricPrescribed, MotionIsTakenAtTheTimesOfTheMethod) {
+TEST(FabricPrescribed, MotionPreservesTheOrderOfTheMethod) {
   for (const Integrator integrator : integrators) {
     const double order = integrator == Integrator::rk4 ? 4.0 : 2.0;
     const Errors coarse = errors(integrator, 20), fine = errors(integrator, 160);
     EXPECT_NEAR(std::log2(coarse.free / fine.free) / 3.0, order, 0.15);
-    EXPECT_LT(coarse.held, 1e-15);
-    EXPECT_LT(fine.held, 1e-15);
+    EXPECT_LT(coarse.prescribed, 1e-15);
+    EXPECT_LT(fine.prescribed, 1e-15);
     EXPECT_NEAR(std::log2(coarse.velocity / fine.velocity) / 3.0, 4.0, 0.15);
   }
 }
 
-TEST(FabricPrescribed, UploadPutsItWhereItIsAtThatTime) {
+TEST(FabricPrescribed, UploadAppliesTheMotionAtTheCurrentTime) {
   const Parameters p = shaken_spring(Integrator::rk4, 0.01);
   const auto solver = create_solver(backend, p);
   std::vector<Vector> x = {{7, 0, 0}, {1, 0, 0}}, v(2, Vector{9, 0, 0});
@@ -75,8 +77,8 @@ TEST(FabricPrescribed, UploadPutsItWhereItIsAtThatTime) {
   EXPECT_NEAR(v[0][0], 0.3 * std::cos(1.5), 1e-7);
 }
 
-TEST(FabricPrescribed, AxesMoveEachByTheirOwn) {
-  // Motion depends on the place at rest; z stays free and falls.
+TEST(FabricPrescribed, PrescribesAxesIndependently) {
+  // The motion depends on the rest position; z is free, so the vertices fall.
   for (const Integrator integrator : integrators) {
     Parameters p;
     p.mesh = testing::random_patch(6, 5, 2);
@@ -103,7 +105,7 @@ TEST(FabricPrescribed, AxesMoveEachByTheirOwn) {
   }
 }
 
-TEST(FabricPrescribed, AMotionThatIsNoNumberIsToldWithItsVertex) {
+TEST(FabricPrescribed, ReportsTheVertexOfANonFiniteMotion) {
   for (const Integrator integrator : integrators) {
     Parameters p = shaken_spring(integrator, 0.01);
     std::swap(p.mesh.lines[0][0], p.mesh.lines[0][1]);
@@ -121,17 +123,17 @@ TEST(FabricPrescribed, AMotionThatIsNoNumberIsToldWithItsVertex) {
   }
 }
 
-TEST(FabricPrescribed, WhatCannotBeIsRefused) {
+TEST(FabricPrescribed, RejectsInvalidMotions) {
   const Parameters good = shaken_spring(Integrator::rk4, 0.01);
-  const auto refused = [&](Motion motion) {
+  const auto expect_rejected = [&](Motion motion) {
     Parameters p = good;
     p.motions.push_back(std::move(motion));
     EXPECT_THROW(static_cast<void>(create_solver(backend, p)), std::invalid_argument);
   };
-  refused({3, {1}, postfix({"t"})});
-  refused({0, {2}, postfix({"t"})});
-  refused({0, {1}, {}});
-  refused({0, {0}, postfix({"t"})});  // it has one already
+  expect_rejected({3, {1}, postfix({"t"})});
+  expect_rejected({0, {2}, postfix({"t"})});
+  expect_rejected({0, {1}, {}});
+  expect_rejected({0, {0}, postfix({"t"})});  // the axis has a motion already
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 #include "tests/support/fabric_sheets.hpp"
 #include "tests/support/profiled.hpp"
 
-// What stepping asks of the device and of the host: nothing but its kernels.
+// Launches, fences, copies and allocations of steps: steps launch kernels and do nothing else.
 
 namespace drogue::fabric {
 namespace {
@@ -30,7 +30,8 @@ Parameters patch(Integrator integrator) {
   return p;
 }
 
-/// What 1024 steps ask for, the first ones excepted; copies are put aside four times. Returns launches.
+/// Kernel launches of 1024 steps, after 256 steps to warm up. They include four checkpoints. Also expects no
+/// fence, allocation or copy.
 std::int64_t launches_of(const Parameters& p) {
   const auto solver = create_solver(backend, p);
   solver->upload(shaken(p.mesh.rest, 0.1, 1), std::vector<Vector>(p.mass.size(), Vector{}));
@@ -46,26 +47,26 @@ std::int64_t launches_of(const Parameters& p) {
   return after.kernel_launches - before.kernel_launches;
 }
 
-TEST(FabricLedger, StepsAreTheirKernelsAlone) {
+TEST(FabricProfiling, StepsOnlyLaunchKernels) {
   Parameters p = patch(Integrator::rk4);
-  // All steps between two copies are one launch.
+  // On a device, one launch takes all steps between two checkpoints.
   EXPECT_EQ(launches_of(p), (on_device ? 4 : 4 * 1024) + 4);
   p.driver = Driver::graph;
   EXPECT_EQ(launches_of(p), (on_device ? 1 : 4) * 1024 + 4);
   p.driver = Driver::plain;
-  // On a device a kernel does two stages.
+  // On a device, one kernel computes two stages.
   EXPECT_EQ(launches_of(p), (on_device ? 2 : 4) * 1024 + 4);
-  // Where a state is put aside, a half kick ends the step and another begins the next.
+  // At a checkpoint, a half kick completes the step and another one begins the next step.
   EXPECT_EQ(launches_of(patch(Integrator::verlet)), 1024 + 4 + 4);
 }
 
-TEST(FabricLedger, AskingAgainAllocatesNothing) {
+TEST(FabricProfiling, RepeatedQueriesDoNotAllocate) {
   testing::Sheets s = testing::folded(3.0);
   s.p.follower_pressures = {{testing::postfix({1.0}), {}}};
   const auto solver = create_solver(backend, s.p);
   solver->upload(s.x, s.v);
   std::vector<ContactWork> work(s.x.size());
-  const auto ask = [&] {
+  const auto query = [&] {
     EXPECT_TRUE(solver->advance(2));
     EXPECT_GT(solver->totals().kinetic, 0.0);
     EXPECT_GT(solver->fastest_frequency(), 0.0);
@@ -73,11 +74,11 @@ TEST(FabricLedger, AskingAgainAllocatesNothing) {
     solver->contact_work(work);
     return testing::profiled().allocations;
   };
-  const std::int64_t before = ask();
-  EXPECT_EQ(ask(), before);
+  const std::int64_t before = query();
+  EXPECT_EQ(query(), before);
 }
 
-TEST(FabricLedger, AVertexNeedsLittleMemory) {
+TEST(FabricProfiling, BoundsTheMemoryPerVertex) {
   testing::profiled();
   const auto bytes_of = [](int rows) {
     Parameters p = patch(Integrator::rk4);
@@ -88,17 +89,17 @@ TEST(FabricLedger, AVertexNeedsLittleMemory) {
     const auto solver = create_solver(backend, p);
     return testing::profiled().device_bytes - before;
   };
-  // A host keeps the values of triangles at rest, a device computes them.
+  // Host backends store the rest values of triangles, devices recompute them.
   EXPECT_LT(static_cast<double>(bytes_of(60) - bytes_of(20)) / 4000.0, on_device ? 400.0 : 550.0);
 }
 
-TEST(FabricLedger, WhatASceneAsksForIsOneKernelAStage) {
+TEST(FabricProfiling, BoundsTheLaunchesOfLoadsAndMotions) {
   using testing::postfix;
   const auto kernels = [](Integrator integrator, auto change) {
     Parameters p = patch(integrator);
     p.driver = Driver::graph;
     change(p);
-    // Of a step; copies that are put aside, and the half kicks around them, are the same.
+    // Additional launches per step; checkpoints and their half kicks cancel in the difference.
     Parameters without = patch(integrator);
     without.driver = Driver::graph;
     return (launches_of(p) - launches_of(without)) / 1024;
@@ -122,7 +123,7 @@ TEST(FabricLedger, WhatASceneAsksForIsOneKernelAStage) {
   EXPECT_EQ(kernels(Integrator::verlet, all), 3);
 }
 
-TEST(FabricLedger, ContactIsKernelsAlone) {
+TEST(FabricProfiling, ContactOnlyLaunchesKernels) {
   testing::Sheets s = testing::folded(3.0);
   const auto solver = create_solver(backend, s.p);
   solver->upload(s.x, s.v);
@@ -133,12 +134,12 @@ TEST(FabricLedger, ContactIsKernelsAlone) {
   EXPECT_EQ(after.fences, before.fences);
   EXPECT_EQ(after.allocations, before.allocations);
   EXPECT_EQ(after.copies, before.copies);
-  // Before and after the two half steps of Verlet's method, on a device one graph each.
+  // Contact before and after the two half steps of Verlet's method; on a device, each is one graph.
   EXPECT_EQ(after.kernel_launches - before.kernel_launches, (on_device ? 1 + 2 + 1 : 26 + 2 + 26) * 100);
   EXPECT_FALSE(solver->failure());
 }
 
-TEST(FabricLedger, ASceneWithoutContactHoldsNothingOfIt) {
+TEST(FabricProfiling, AllocatesNoContactDataWithoutContact) {
   const auto bytes = [](bool self) {
     testing::Sheets s = testing::folded(3.0);
     s.p.contact.self = self;

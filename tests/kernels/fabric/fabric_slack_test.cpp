@@ -7,7 +7,7 @@
 #include "tests/support/backend.hpp"
 #include "tests/support/fabric_mesh.hpp"
 
-// Materials that bear tension only: the relaxed energy, its forces, its stress.
+// Tension-only materials: relaxed energy (Pipkin 1986), forces, stress, and frequency bound.
 
 namespace drogue::fabric {
 namespace {
@@ -53,7 +53,7 @@ double largest(const std::vector<Vector>& vectors) {
   return most;
 }
 
-TEST(FabricSlack, ForcesAndEnergyAreThoseOfTheRelaxedEnergy) {
+TEST(FabricSlack, MatchesForcesAndRelaxedEnergyOfTheReference) {
   for (const Model model : models)
     for (const double size : {1e-6, 0.05, 0.4})
       for (const double poisson : {0.3, 0.0, -0.4, 0.5}) {
@@ -73,7 +73,7 @@ TEST(FabricSlack, ForcesAndEnergyAreThoseOfTheRelaxedEnergy) {
       }
 }
 
-TEST(FabricSlack, TautClothIsAsItWas) {
+TEST(FabricSlack, TautFabricMatchesTheFullModel) {
   for (const Model model : models) {
     Parameters p = slack_cloth(model);
     const std::vector<Vector> now = scaled(p.mesh.rest, 1.2, 1.15);
@@ -86,7 +86,7 @@ TEST(FabricSlack, TautClothIsAsItWas) {
   }
 }
 
-TEST(FabricSlack, CompressionCostsNothing) {
+TEST(FabricSlack, CompressionStoresNoEnergy) {
   for (const Model model : models) {
     Parameters p = slack_cloth(model);
     const std::vector<Vector> now = scaled(p.mesh.rest, 0.7, 0.9);
@@ -96,8 +96,8 @@ TEST(FabricSlack, CompressionCostsNothing) {
   }
 }
 
-TEST(FabricSlack, AcrossItsWrinklesAStripHasNoStress) {
-  // Drawn by 20 % and narrowed by half: the stress is that of free contraction.
+TEST(FabricSlack, StressVanishesAcrossWrinkles) {
+  // Stretched by 20 % and narrowed by half: uniaxial stress, as for free lateral contraction.
   Parameters p = slack_cloth(Model::biquadratic);
   const std::vector<Vector> now = scaled(p.mesh.rest, 1.2, 0.5);
   std::vector<Stress> nominal(p.mesh.triangles.size());
@@ -110,7 +110,7 @@ TEST(FabricSlack, AcrossItsWrinklesAStripHasNoStress) {
   std::vector<Stress> cauchy(p.mesh.triangles.size());
   at(p, shaken(p.mesh.rest, 0.3, 6))->stress(StressMeasure::cauchy, cauchy);
   for (const Stress& s : cauchy) EXPECT_GT(s.minor, -1e-9);
-  // Quadratic springs relax what is their strain, which is the continuum's while it is small.
+  // Quadratic springs relax the strain of their lengths, which equals Green's strain to first order.
   p.material.model = Model::quadratic;
   double most = 0.0;
   at(p, shaken(p.mesh.rest, 0.01, 6))->stress(StressMeasure::cauchy, cauchy);
@@ -119,7 +119,7 @@ TEST(FabricSlack, AcrossItsWrinklesAStripHasNoStress) {
 }
 
 // ctest-label: no-sanitizer
-TEST(FabricSlack, VerletKeepsItsEnergy) {
+TEST(FabricSlack, VerletConservesEnergy) {
   for (const Model model : models) {
     Parameters p = slack_cloth(model);
     p.integrator = Integrator::verlet;
@@ -133,7 +133,7 @@ TEST(FabricSlack, VerletKeepsItsEnergy) {
   }
 }
 
-TEST(FabricSlack, TheBoundKnowsWhatMayGetTaut) {
+TEST(FabricSlack, FrequencyBoundIncludesSlackElements) {
   for (const Model model : models) {
     Parameters p = slack_cloth(model), full = p;
     full.material.tension_only = false;
@@ -149,7 +149,7 @@ TEST(FabricSlack, TheBoundKnowsWhatMayGetTaut) {
   }
 }
 
-TEST(FabricSlack, SpringsOfVectorsAreRefused) {
+TEST(FabricSlack, RejectsLinearVectorSprings) {
   EXPECT_THROW(static_cast<void>(create_solver(backend, slack_cloth(Model::linear_vector))),
                std::invalid_argument);
 }

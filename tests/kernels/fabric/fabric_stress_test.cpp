@@ -8,7 +8,7 @@
 #include "tests/support/backend.hpp"
 #include "tests/support/fabric_mesh.hpp"
 
-// Stress against the continuum's, and against the virial of the forces.
+// Stress against continuum formulas, and against the virial of the forces.
 
 namespace drogue::fabric {
 namespace {
@@ -55,7 +55,7 @@ Vector normal_of(const std::array<Vector, 3>& x) {
   return n;
 }
 
-/// The tensor of principal values in the plane across `n`.
+/// Tensor with the principal values of `s` in the plane with unit normal `n`.
 Tensor tensor_of(const Stress& s, const Vector& n) {
   const Vector& d = s.direction;
   const Vector e = {n[1] * d[2] - n[2] * d[1], n[2] * d[0] - n[0] * d[2], n[0] * d[1] - n[1] * d[0]};
@@ -70,7 +70,7 @@ void expect_same(const Tensor& a, const Tensor& b, double tolerance) {
     for (std::size_t j = 0; j < 3; ++j) ASSERT_NEAR(a[i][j], b[i][j], tolerance) << i << j;
 }
 
-/// Each triangle of a patch alone: its forces know of no neighbour.
+/// Forces of triangle `t` on its three vertices, N, without those of its neighbours.
 std::array<Vector, 3> forces_of_one(const Parameters& p, const std::vector<Vector>& now,
                                     const std::array<int, 3>& t) {
   Mesh one;
@@ -81,7 +81,7 @@ std::array<Vector, 3> forces_of_one(const Parameters& p, const std::vector<Vecto
   return {f[0], f[1], f[2]};
 }
 
-TEST(FabricStress, IsThatOfTheContinuum) {
+TEST(FabricStress, MatchesTheReference) {
   const Mesh mesh = random_patch(7, 6, 4);
   const std::vector<Vector> now = shaken(mesh.rest, 0.25, 2);
   for (const Model model : {Model::quadratic, Model::biquadratic}) {
@@ -108,7 +108,7 @@ TEST(FabricStress, IsThatOfTheContinuum) {
   }
 }
 
-TEST(FabricStress, OfSpringsAlongEdgesHasTheVirialOfAllForces) {
+TEST(FabricStress, StressOfEdgeSpringsSumsToTheVirial) {
   Parameters p = fabric(Model::edge, random_patch(7, 6, 4));
   p.mesh.lines.clear();
   const std::vector<Vector> now = shaken(p.mesh.rest, 0.2, 2);
@@ -129,7 +129,8 @@ TEST(FabricStress, OfSpringsAlongEdgesHasTheVirialOfAllForces) {
   EXPECT_GT(std::abs(virial[0][0]), 1.0);
 }
 
-/// Stretched along the direction at 30 degrees, narrowed by Poisson's ratio across, then turned in space.
+/// Positions stretched by `along` in the direction at 0.5 rad to x and by `across` perpendicular to it, then
+/// rotated about x and shifted.
 std::vector<Vector> drawn(const std::vector<Vector>& rest, double along, double across) {
   const double c = std::cos(0.5), s = std::sin(0.5), ct = std::cos(1.1), st = std::sin(1.1);
   std::vector<Vector> now;
@@ -141,17 +142,17 @@ std::vector<Vector> drawn(const std::vector<Vector>& rest, double along, double 
   return now;
 }
 
-TEST(FabricStress, OfUniformStretchIsTheSameEverywhere) {
+TEST(FabricStress, IsUniformUnderUniformStretch) {
   Parameters p = fabric(Model::biquadratic, random_patch(9, 8, 6));
   p.mesh.lines.clear();
-  p.mesh.rest.resize(72);  // without what hangs from it
+  p.mesh.rest.resize(72);  // without the line that hangs from the patch
   p.mass.resize(72);
-  // Stress has no side: neighbours may turn against one another.
+  // Stress does not depend on the orientation of triangles.
   for (std::size_t t = 0; t < p.mesh.triangles.size(); t += 3)
     std::swap(p.mesh.triangles[t][1], p.mesh.triangles[t][2]);
   const double e = 1000.0, nu = 0.3, l = 1.2, e1 = 0.5 * (l * l - 1.0), w = std::sqrt(1.0 - 2.0 * nu * e1);
   const std::vector<Vector> now = drawn(p.mesh.rest, l, w);
-  // Uniaxial: S = E e1, P = l S, sigma = l S / w.
+  // Uniaxial stress: S = E e1, P = l S, sigma = l S / w.
   const Vector direction = {std::cos(0.5), std::sin(0.5) * std::cos(1.1), std::sin(0.5) * std::sin(1.1)};
   const auto solver = at(p, now);
   for (const StressMeasure measure : {StressMeasure::nominal, StressMeasure::cauchy}) {
@@ -171,8 +172,8 @@ TEST(FabricStress, OfUniformStretchIsTheSameEverywhere) {
   }
 }
 
-TEST(FabricStress, AtAVertexIsTheMeanByAreas) {
-  // Two triangles in one plane, of areas 1/2 and 1, each drawn by itself: the shared edge keeps its length.
+TEST(FabricStress, IsTheAreaWeightedMeanAtAVertex) {
+  // Two coplanar triangles of areas 1/2 and 1, stretched independently: the shared edge keeps its length.
   Parameters p;
   p.mesh.rest = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, -2, 0}};
   p.mesh.triangles = {{0, 1, 2}, {0, 3, 1}};
@@ -189,13 +190,13 @@ TEST(FabricStress, AtAVertexIsTheMeanByAreas) {
   EXPECT_NEAR(vertices[0].major, (first + 2.0 * second) / 3.0, 1e-10);
   EXPECT_NEAR(vertices[2].major, first, 1e-10);
   EXPECT_NEAR(vertices[3].major, second, 1e-10);
-  // Both pull along y: the mean tensor, and the direction of nothing across.
+  // Both stresses act along y: component yy of the mean tensor, and the minor principal direction along x.
   EXPECT_NEAR(vertices[0].tensor()[3], (first + 2.0 * second) / 3.0, 1e-10);
   EXPECT_NEAR(std::abs(vertices[0].across[0]), 1.0, 1e-12);
 }
 
-TEST(FabricStress, AtASharpFoldIsThatOfItsLayers) {
-  // Drawn across the fold, which leaves 10 degrees between the layers.
+TEST(FabricStress, AveragesTheStressOfBothLayersAtASharpFold) {
+  // Stretched across the fold, with 10 degrees between the layers.
   Parameters p;
   p.mesh.rest = {{0, 0, 0}, {0, 1, 0}, {1, 0, 0}, {-1, 0, 0}};
   p.mesh.triangles = {{0, 2, 1}, {0, 1, 3}};
@@ -211,13 +212,13 @@ TEST(FabricStress, AtASharpFoldIsThatOfItsLayers) {
     EXPECT_NEAR(vertices[shared].major, expected * leaning * leaning, 1e-10);
 }
 
-TEST(FabricStress, VonMisesOfPrincipalValues) {
+TEST(FabricStress, VonMisesStressMatchesClosedForms) {
   EXPECT_NEAR((Stress{3.0, 0.0, {}, {}}.von_mises()), 3.0, 1e-15);
   EXPECT_NEAR((Stress{2.0, 2.0, {}, {}}.von_mises()), 2.0, 1e-15);
   EXPECT_NEAR((Stress{1.0, -1.0, {}, {}}.von_mises()), std::sqrt(3.0), 1e-15);
 }
 
-TEST(FabricStress, WhatHasNoneIsToldOrRefused) {
+TEST(FabricStress, RejectsUndefinedStressAndStaysFiniteForCollapsedTriangles) {
   Parameters p = fabric(Model::linear_vector, random_patch(3, 3, 1));
   std::vector<Stress> triangles(p.mesh.triangles.size());
   EXPECT_THROW(at(p, p.mesh.rest)->stress(StressMeasure::cauchy, triangles), std::invalid_argument);
@@ -226,7 +227,7 @@ TEST(FabricStress, WhatHasNoneIsToldOrRefused) {
   triangles.pop_back();
   EXPECT_THROW(solver->stress(StressMeasure::cauchy, triangles), std::invalid_argument);
   EXPECT_THROW(solver->vertex_stress(StressMeasure::cauchy, triangles), std::invalid_argument);
-  // A collapsed triangle, and the end of a string.
+  // Finite values at a collapsed triangle, and zero at the end of a line.
   std::vector<Stress> vertices(p.mass.size());
   std::vector<Vector> now = p.mesh.rest;
   now[0] = now[1] = now[3];

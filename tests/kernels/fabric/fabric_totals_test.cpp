@@ -7,7 +7,7 @@
 #include "tests/support/backend.hpp"
 #include "tests/support/fabric_mesh.hpp"
 
-// Energies and momenta against the reference, and what steps keep of them.
+// Energies and momenta against the reference, and their conservation by steps.
 
 namespace drogue::fabric {
 namespace {
@@ -33,7 +33,7 @@ std::vector<Vector> random_vectors(std::size_t n, double size, unsigned seed) {
   return shaken(std::vector<Vector>(n, Vector{}), size, seed);
 }
 
-TEST(FabricTotals, AreThoseOfTheReference) {
+TEST(FabricTotals, MatchTheReference) {
   for (const Model model : {Model::linear_vector, Model::edge, Model::quadratic, Model::biquadratic})
     for (const auto& [nx, ny] : {std::pair{2, 2}, {9, 7}, {90, 71}})
       for (const bool loaded : {false, true}) {
@@ -50,7 +50,7 @@ TEST(FabricTotals, AreThoseOfTheReference) {
               << "model " << static_cast<int>(model) << " vertices " << n;
         };
         expect(mine.kinetic, exact.kinetic);
-        // Springs of vectors: the differences of squares of coordinates far from the origin.
+        // Wider for linear vector springs: cancellation of squares of coordinates far from the origin.
         EXPECT_NEAR(mine.elastic, reference::energy(p.material, p.mesh, x),
                     (model == Model::linear_vector ? 1e-10 : 1e-13) * static_cast<double>(n) * 1000.0);
         expect(mine.gravity, exact.gravity);
@@ -64,7 +64,7 @@ TEST(FabricTotals, AreThoseOfTheReference) {
       }
 }
 
-TEST(FabricTotals, VerletKeepsTheEnergyOfAFallingLoadedPatch) {
+TEST(FabricTotals, VerletConservesTheEnergyOfAFallingLoadedPatch) {
   for (const Model model : {Model::edge, Model::quadratic, Model::biquadratic}) {
     Parameters p = fabric(model, 9, 7);
     p.integrator = Integrator::verlet;
@@ -77,13 +77,13 @@ TEST(FabricTotals, VerletKeepsTheEnergyOfAFallingLoadedPatch) {
     EXPECT_TRUE(solver->advance(5000));
     const Totals after = solver->totals();
     EXPECT_NEAR(after.energy(), before.energy(), 1e-3 * before.elastic) << static_cast<int>(model);
-    // Each of the parts has moved far more.
+    // Single terms of the energy change far more than its sum.
     EXPECT_GT(std::abs(after.gravity - before.gravity), 0.1 * before.elastic);
     EXPECT_GT(std::abs(after.load - before.load), 0.1 * before.elastic);
   }
 }
 
-TEST(FabricTotals, AsOftenAsAskedForTheyAreTheSameBits) {
+TEST(FabricTotals, RepeatedQueriesGiveIdenticalBits) {
   const Parameters p = fabric(Model::biquadratic, 60, 41);
   const auto solver = create_solver(backend, p);
   solver->upload(shaken(p.mesh.rest, 0.2, 1), random_vectors(p.mass.size(), 3.0, 2));

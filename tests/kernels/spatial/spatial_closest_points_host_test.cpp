@@ -170,7 +170,7 @@ TEST(ClosestPoints, LargeCoordinatesCostOnlyTheirOwnRoundOff) {
   EXPECT_NEAR(closest_on_triangle(far + Point{0.25, 0.25, 2.0}, t).squared, 4.0, 1e-9);
 }
 
-TEST(ClosestPoints, OfSegmentsBeatAllSamples) {
+TEST(ClosestPoints, AreCloserThanAllSamplesOfSegments) {
   Random random(5);
   for (int trial = 0; trial < 300; ++trial) {
     const Point p[2] = {random.point(1.0), random.point(1.0)}, q[2] = {random.point(1.0), random.point(1.0)};
@@ -178,7 +178,7 @@ TEST(ClosestPoints, OfSegmentsBeatAllSamples) {
   }
 }
 
-TEST(ClosestPoints, OfSegmentsWithTheFeetInsideAreConnectedByTheCommonPerpendicular) {
+TEST(ClosestPoints, LieOnTheCommonPerpendicularOfSegments) {
   Random random(6);
   int inside = 0;
   for (int trial = 0; trial < 300; ++trial) {
@@ -193,7 +193,7 @@ TEST(ClosestPoints, OfSegmentsWithTheFeetInsideAreConnectedByTheCommonPerpendicu
   EXPECT_GT(inside, 50);
 }
 
-TEST(ClosestPoints, OfParallelDegenerateAndCoincidentSegments) {
+TEST(ClosestPoints, HandleParallelDegenerateAndCoincidentSegments) {
   Random random(7);
   for (int trial = 0; trial < 100; ++trial) {
     const Point a = random.point(1.0), d = random.point(1.0);
