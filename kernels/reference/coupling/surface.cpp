@@ -10,7 +10,7 @@ namespace {
 using Real = long double;
 using Extended = std::array<Real, 3>;
 
-Extended difference(const Vector& a, const Vector& b) {
+Extended extended_difference(const Vector& a, const Vector& b) {
   return {Real(a[0]) - b[0], Real(a[1]) - b[1], Real(a[2]) - b[2]};
 }
 
@@ -46,7 +46,8 @@ SurfaceGeometry surface_geometry(const Mesh& mesh, const std::vector<Vector>& x)
   for (const auto& triangle : mesh.triangles) {
     const Vector &a = x[static_cast<std::size_t>(triangle[0])], &b = x[static_cast<std::size_t>(triangle[1])],
                  &c = x[static_cast<std::size_t>(triangle[2])];
-    const Extended ab = difference(b, a), ac = difference(c, a), bc = difference(c, b);
+    const Extended ab = extended_difference(b, a), ac = extended_difference(c, a),
+                   bc = extended_difference(c, b);
     const Real size = heron({norm(ab), norm(ac), norm(bc)});
     const Extended normal = unit_normal(ab, ac);
     result.triangle_area.push_back(static_cast<double>(size));

@@ -17,8 +17,12 @@ namespace drogue::fabric {
 namespace {
 
 using Space = DROGUE_TEST_SPACE;
-using OtherSpace = std::conditional_t<std::is_same_v<Space, Kokkos::Serial>,
-                                      Kokkos::DefaultHostExecutionSpace, Kokkos::Serial>;
+#if defined(DROGUE_HAVE_OPENMP)
+using OtherHost = Kokkos::OpenMP;
+#else
+using OtherHost = Kokkos::Serial;
+#endif
+using OtherSpace = std::conditional_t<std::is_same_v<Space, Kokkos::Serial>, OtherHost, Kokkos::Serial>;
 using drogue::testing::random_patch;
 using drogue::testing::shaken;
 

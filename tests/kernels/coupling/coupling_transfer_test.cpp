@@ -18,9 +18,13 @@ namespace drogue::coupling {
 namespace {
 
 using Space = DROGUE_TEST_SPACE;
+#if defined(DROGUE_HAVE_OPENMP)
+using OtherHost = Kokkos::OpenMP;
+#else
+using OtherHost = Kokkos::Serial;
+#endif
 /// Another backend, for comparison.
-using OtherSpace = std::conditional_t<std::is_same_v<Space, Kokkos::Serial>,
-                                      Kokkos::DefaultHostExecutionSpace, Kokkos::Serial>;
+using OtherSpace = std::conditional_t<std::is_same_v<Space, Kokkos::Serial>, OtherHost, Kokkos::Serial>;
 using reference::FaceField;
 using Vector = std::array<double, 3>;
 using Vectors = std::vector<Vector>;
