@@ -298,6 +298,9 @@ class Growth {
     return {host.data(), host.data() + cells};
   }
   [[nodiscard]] std::int64_t step() const { return _step; }
+  [[nodiscard]] std::int64_t device_step() const {
+    return completed_steps(_instance.space(), _monitor, _parity);
+  }
 
  private:
   struct Steps {
@@ -328,6 +331,7 @@ TEST(StepMonitor, CountsStepsWithoutFailure) {
   EXPECT_TRUE(growth.enqueue_steps(60));
   EXPECT_FALSE(growth.synchronize().has_value());
   EXPECT_EQ(growth.step(), 67);
+  EXPECT_EQ(growth.device_step(), 67);
   EXPECT_EQ(growth.values()[7], std::ldexp(1.0, 67));
 }
 
@@ -344,6 +348,12 @@ TEST(StepMonitor, ReportsTheFirstFailureAndReturnsToTheLastCheckpoint) {
   whole.enqueue_steps(96);
   EXPECT_EQ(growth.values(), whole.values());
   EXPECT_FALSE(growth.synchronize().has_value());
+  // The steps before the failed one can be repeated.
+  EXPECT_EQ(growth.device_step(), 96);
+  EXPECT_TRUE(growth.enqueue_steps(3));
+  EXPECT_FALSE(growth.synchronize().has_value());
+  whole.enqueue_steps(3);
+  EXPECT_EQ(growth.values(), whole.values());
 }
 
 TEST(StepMonitor, EnqueuesNothingAfterAFailure) {
