@@ -1,0 +1,127 @@
+#pragma once
+
+#include "kernels/device/memory.hpp"
+#include "kernels/flow/views.hpp"
+
+namespace drogue::flow {
+
+/// Conditions of the sides on a device.
+struct BoundaryConditions {
+  BoundaryKind kind[6];
+  double velocity[6][3];  ///< m/s
+};
+
+/// Ghost value of a component: `constant` + `factor` times the value at cell `index`.
+struct GhostValue {
+  int index;
+  double constant, factor;
+};
+
+/// Ghost value along one axis. `index` lies outside of [0, n) or on a boundary face; `normal`: the component is that of
+/// the axis, whose values lie on the faces, else between them.
+///
+/// Walls and inflows: linear extrapolation through the prescribed velocity at the side. Slip: even extension of
+/// tangential, odd extension of normal components. Outflow: constant extension.
+KOKKOS_INLINE_FUNCTION GhostValue ghost_value(const MacGrid& g, const BoundaryConditions& b, int axis, int component,
+                                              int index) {
+  const int n = g.n[axis];
+  const bool normal = axis == component;
+  if (n == 1) return {0, 0.0, 1.0};
+  if (g.periodic[axis]) {
+    const int inside = index < 0 ? index + n : index >= n ? index - n : index;
+    return {inside, 0.0, 1.0};
+  }
+  const bool low = index <= 0 && (normal || index < 0);
+  const bool high = index >= n;
+  if (!low && !high) return {index, 0.0, 1.0};
+  const int side = 2 * axis + (high ? 1 : 0);
+  // Mirror image across the face at 0 or n.
+  const int face = high ? n : 0;
+  const int mirror = normal ? 2 * face - index : 2 * face - 1 - index;
+  switch (b.kind[side]) {
+    case BoundaryKind::slip:
+      if (!normal) return {mirror, 0.0, 1.0};
+      return index == face ? GhostValue{index, 0.0, 0.0} : GhostValue{mirror, 0.0, -1.0};
+    case BoundaryKind::outflow:
+      // Normal component: the value on the face is an unknown.
+      if (normal && index == face) return {index, 0.0, 1.0};
+      return {high ? (normal ? n : n - 1) : 0, 0.0, 1.0};
+    default: {
+      const double value = b.velocity[side][component];
+      if (normal && index == face) return {index, value, 0.0};
+      return {mirror, 2.0 * value, -1.0};
+    }
+  }
+}
+
+/// Fills ghost cells and boundary faces of all components. Corners follow from the conditions of their axes in turn.
+template <class ExecutionSpace>
+struct GhostFunctor {
+  MacGrid grid;
+  BoundaryConditions boundary;
+  List<ExecutionSpace> velocity;
+  int slab[3];                  ///< boundary layers at each side, with the boundary faces; see `launch_ghosts`
+  std::int64_t slab_cells[3];   ///< cells of the slabs normal to each axis
+
+  KOKKOS_FUNCTION void operator()(std::int64_t cell) const {
+    const MacGrid& g = grid;
+    int axis = 2;
+    while (axis > 0 && cell >= slab_cells[axis]) cell -= slab_cells[axis--];
+    // The slabs normal to z span all cells with ghosts, those normal to y the inner planes, and so on.
+    int index[3], extent[3];
+    for (int a = 0; a < 3; ++a) extent[a] = a < axis ? g.n[a] + 2 * g.ghost[a] : a == axis ? 2 * slab[a] - 1 : inner(a);
+    index[0] = static_cast<int>(cell % extent[0]);
+    index[1] = static_cast<int>(cell / extent[0] % extent[1]);
+    index[2] = static_cast<int>(cell / extent[0] / extent[1]);
+    for (int a = 0; a < 3; ++a) {
+      if (a < axis)
+        index[a] -= g.ghost[a];
+      else if (a == axis)
+        index[a] = index[a] < slab[a] ? index[a] - g.ghost[a] : g.n[a] + index[a] - slab[a];
+      else
+        index[a] += slab[a] - g.ghost[a];
+    }
+    for (int c = 0; c < 3; ++c) {
+      double constant = 0.0, factor = 1.0;
+      int from[3];
+      for (int a = 0; a < 3; ++a) {
+        const GhostValue value = ghost_value(g, boundary, a, c, index[a]);
+        from[a] = value.index;
+        constant += factor * value.constant;
+        factor *= value.factor;
+      }
+      const std::int64_t base = c * g.component;
+      const double source = factor != 0.0 ? velocity(base + g.offset(from[0], from[1], from[2])) : 0.0;
+      velocity(base + g.offset(index[0], index[1], index[2])) = constant + factor * source;
+    }
+  }
+
+ private:
+  /// Cells along an axis between its slabs.
+  [[nodiscard]] KOKKOS_FUNCTION int inner(int axis) const {
+    return grid.ghost[axis] > 0 ? grid.n[axis] - 1 : grid.n[axis];
+  }
+};
+
+/// Enqueues the fill of the ghost cells and boundary faces of a velocity field. Asynchronous.
+template <class ExecutionSpace>
+void launch_ghosts(const ExecutionSpace& space, const MacGrid& g, const BoundaryConditions& boundary,
+                   const List<ExecutionSpace>& velocity) {
+  GhostFunctor<ExecutionSpace> functor{g, boundary, velocity, {}, {}};
+  std::int64_t total = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    // Layers -ghost .. 0 and n .. n + ghost - 1: the low boundary face belongs to the slab.
+    functor.slab[axis] = g.ghost[axis] > 0 ? g.ghost[axis] + 1 : 0;
+    if (g.ghost[axis] == 0) continue;
+    std::int64_t cells = 2 * functor.slab[axis] - 1;
+    for (int a = 0; a < 3; ++a) {
+      if (a < axis) cells *= g.n[a] + 2 * g.ghost[a];
+      if (a > axis) cells *= g.ghost[a] > 0 ? g.n[a] - 1 : g.n[a];
+    }
+    functor.slab_cells[axis] = cells;
+    total += cells;
+  }
+  Kokkos::parallel_for("drogue::flow::ghosts", Kokkos::RangePolicy<ExecutionSpace>(space, 0, total), functor);
+}
+
+}  // namespace drogue::flow

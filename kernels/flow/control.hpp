@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+
+#include <Kokkos_Core.hpp>
+
+#include "kernels/stepping/failure_code.hpp"
+#include "kernels/stepping/step_control.hpp"
+
+namespace drogue::flow {
+
+using stepping::no_failure;
+
+/// Progress of a run; a restart restores it.
+struct Progress : stepping::AdaptiveTime {
+  double last_dt = 0.0;     ///< s, of the last step; 0: the next step has no predecessor
+  double dt_min = 0.0, dt_max = 0.0;  ///< s, over all steps
+  std::uint64_t rate = 0;   ///< bits of the maximum over the cells of |u|/hx + |v|/hy + |w|/hz, 1/s
+};
+
+/// Device-resident control block of a step. Only kernels write it during a run.
+struct Control {
+  Progress now;
+  stepping::StepTrial trial;
+  std::uint64_t next_rate;      ///< reduction of the state after the step, as `Progress::rate`
+  std::uint64_t first_failure;  ///< least cell whose predicted velocity is not finite, or `no_failure`
+};
+
+/// Constants that determine dt.
+struct StepConstants {
+  double cfl, fixed_dt, max_dt;
+  double diffusive_dt;  ///< s, bound of explicit diffusion; infinite without viscosity
+  std::int64_t max_steps;
+};
+
+/// Admissible dt of the next step, s. NaN or zero if there is none.
+KOKKOS_INLINE_FUNCTION double admissible_dt(const Progress& now, const StepConstants& k) {
+  if (k.fixed_dt > 0.0) return k.fixed_dt;
+  const double rate = Kokkos::bit_cast<double>(now.rate);
+  double dt = rate > 0.0 ? k.cfl / rate : k.diffusive_dt;
+  dt = dt < k.diffusive_dt ? dt : k.diffusive_dt;
+  return k.max_dt > 0.0 && !(dt < k.max_dt) ? k.max_dt : dt;
+}
+
+/// Prepares the next step, or stops the run if there is no admissible dt.
+KOKKOS_INLINE_FUNCTION void prepare_step(const Progress& now, stepping::StepTrial& next, const StepConstants& k) {
+  if (!stepping::set_dt(now, next, admissible_dt(now, k), 1.0)) next.stop = stepping::Stop::failed;
+}
+
+}  // namespace drogue::flow

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "kernels/linear/dense_product.hpp"
+#include "kernels/linear/poisson/spectral_scaling.hpp"
+
+namespace drogue::linear {
+
+/// Direct solver by diagonalization of the second differences along each axis (Lynch, Rice and Thomas 1964):
+/// six products with dense matrices of eigenvectors, 4 (nx + ny + nz) floating-point operations per cell, for any
+/// combination of boundary conditions and any size.
+template <class ExecutionSpace>
+class DiagonalizationSolver {
+ public:
+  using List = Kokkos::View<double*, typename ExecutionSpace::memory_space>;
+
+  /// Allocates the matrices and one work array; blocks. Throws std::runtime_error if memory runs out.
+  DiagonalizationSolver(const ExecutionSpace& space, const PoissonProblem& problem)
+      : _space(space), _problem(problem), _product(space) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const int n = problem.cells[axis];
+      _eigenvalues[axis] = to_device(space, "drogue::linear::eigenvalues", axis_eigenvalues(problem, axis));
+      if (n == 1) continue;
+      // Column k holds eigenvector k.
+      std::vector<double> basis(static_cast<std::size_t>(n) * static_cast<std::size_t>(n));
+      for (int k = 0; k < n; ++k)
+        for (int i = 0; i < n; ++i)
+          basis[static_cast<std::size_t>(k) * static_cast<std::size_t>(n) + static_cast<std::size_t>(i)] =
+              axis_eigenvector(problem.axes[axis], n, k, i);
+      _basis[axis] = to_device(space, "drogue::linear::eigenvectors", basis);
+    }
+    _work = List(Kokkos::view_alloc(space, Kokkos::WithoutInitializing, "drogue::linear::work"), cells());
+  }
+
+  /// Replaces the right-hand side, 1/m^2 times the unit of the solution, by the solution. Asynchronous;
+  /// neither fences nor allocates. Throws std::invalid_argument for an array of the wrong size.
+  void enqueue_solve(const List& values) const {
+    if (values.extent(0) != cells())
+      throw std::invalid_argument("Poisson solver: the array must hold one value per cell");
+    List from = values, to = _work;
+    const auto transform = [&](std::size_t axis, bool forward) {
+      if (_problem.cells[axis] == 1) return;
+      _product.along_axis(_problem.cells, axis, _basis[axis], forward, from, to);
+      std::swap(from, to);
+    };
+    for (std::size_t axis = 0; axis < 3; ++axis) transform(axis, true);
+    scale_spectrum(_space, SpectralScalingFunctor<ExecutionSpace>{from.data(), _eigenvalues[0], _eigenvalues[1],
+                                                                  _eigenvalues[2], 1, 1.0});
+    for (std::size_t axis = 0; axis < 3; ++axis) transform(axis, false);
+  }
+
+ private:
+  [[nodiscard]] std::size_t cells() const {
+    return static_cast<std::size_t>(_problem.cells[0]) * static_cast<std::size_t>(_problem.cells[1]) *
+           static_cast<std::size_t>(_problem.cells[2]);
+  }
+
+  ExecutionSpace _space;
+  PoissonProblem _problem;
+  DenseProduct<ExecutionSpace> _product;
+  List _basis[3], _eigenvalues[3], _work;
+};
+
+}  // namespace drogue::linear

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <Kokkos_Core.hpp>
+
+#include "kernels/device/copy.hpp"
+#include "kernels/device/memory.hpp"
+#include "kernels/linear/poisson/problem.hpp"
+
+namespace drogue::linear {
+
+/// Copies a host vector to a new View; blocks.
+template <class ExecutionSpace>
+Kokkos::View<double*, typename ExecutionSpace::memory_space> to_device(const ExecutionSpace& space,
+                                                                       const std::string& label,
+                                                                       const std::vector<double>& values) {
+  Kokkos::View<double*, typename ExecutionSpace::memory_space> view(
+      Kokkos::view_alloc(space, Kokkos::WithoutInitializing, label), values.size());
+  device::copy_in(space, view, values.data(), values.size());
+  space.fence("drogue::linear::to_device");
+  return view;
+}
+
+/// Divides spectral coefficients by the eigenvalues of the Laplacian, and by the normalisation of a pair of
+/// transforms; sets the coefficient of a zero eigenvalue to zero. `parts` consecutive numbers belong to one
+/// mode: 2 for complex coefficients, else 1.
+template <class ExecutionSpace>
+struct SpectralScalingFunctor {
+  using List = Kokkos::View<double*, typename ExecutionSpace::memory_space>;
+  double* coefficients;
+  List x, y, z;  ///< eigenvalues along the axes, 1/m^2
+  int parts;
+  double normalisation;
+
+  KOKKOS_FUNCTION void operator()(const int i, const int j, const int k) const {
+    const double eigenvalue = x(i) + y(j) + z(k);
+    const double factor = eigenvalue < 0.0 ? normalisation / eigenvalue : 0.0;
+    const std::int64_t at =
+        ((static_cast<std::int64_t>(k) * y.extent_int(0) + j) * x.extent_int(0) + i) * parts;
+    for (int part = 0; part < parts; ++part) coefficients[at + part] *= factor;
+  }
+};
+
+template <class ExecutionSpace>
+void scale_spectrum(const ExecutionSpace& space, const SpectralScalingFunctor<ExecutionSpace>& functor) {
+  using Policy = Kokkos::MDRangePolicy<ExecutionSpace, Kokkos::Rank<3, Kokkos::Iterate::Left, Kokkos::Iterate::Left>>;
+  Kokkos::parallel_for(
+      "drogue::linear::scale_spectrum",
+      Policy(space, {0, 0, 0}, {functor.x.extent_int(0), functor.y.extent_int(0), functor.z.extent_int(0)}),
+      functor);
+}
+
+}  // namespace drogue::linear
