@@ -4,19 +4,13 @@
 
 #include <Kokkos_Core.hpp>
 
+#include "kernels/flow/state.hpp"
 #include "kernels/stepping/failure_code.hpp"
 #include "kernels/stepping/step_control.hpp"
 
 namespace drogue::flow {
 
 using stepping::no_failure;
-
-/// Progress of a run; a restart restores it.
-struct Progress : stepping::AdaptiveTime {
-  double last_dt = 0.0;     ///< s, of the last step; 0: the next step has no predecessor
-  double dt_min = 0.0, dt_max = 0.0;  ///< s, over all steps
-  std::uint64_t rate = 0;   ///< bits of the maximum over the cells of |u|/hx + |v|/hy + |w|/hz, 1/s
-};
 
 /// Device-resident control block of a step. Only kernels write it during a run.
 struct Control {

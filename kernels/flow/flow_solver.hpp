@@ -22,9 +22,6 @@
 
 namespace drogue::flow {
 
-using stepping::Poll;
-using stepping::Stop;
-
 /// First kernel of an advance.
 template <class ExecutionSpace>
 struct BeginAdvanceFunctor {
@@ -125,6 +122,10 @@ class FlowSolver {
       _poisson.emplace(std::in_place_type<linear::FourierSolver<ExecutionSpace>>, space, problem);
     else
       _poisson.emplace(std::in_place_type<linear::DiagonalizationSolver<ExecutionSpace>>, space, problem);
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      _acceleration[axis] = (parameters.body_force[axis] +
+                             parameters.pressure_drop[axis] / (parameters.high[axis] - parameters.low[axis])) /
+                            parameters.density;
     const double nu = parameters.viscosity / parameters.density;
     _constants = {parameters.cfl, parameters.fixed_dt, parameters.max_dt,
                   nu > 0.0 ? 1.0 / (nu * diffusive_rate) : std::numeric_limits<double>::infinity(),
@@ -161,7 +162,7 @@ class FlowSolver {
     const double nu = _parameters.viscosity / _parameters.density;
     MomentumSetup<ExecutionSpace> setup{
         _grid, _velocity, _velocity, _predicted, _rate, _control, nu,
-        {_parameters.acceleration[0], _parameters.acceleration[1], _parameters.acceleration[2]}, 1e-40, {}};
+        {_acceleration[0], _acceleration[1], _acceleration[2]}, 1e-40, {}};
     if (_parameters.time_scheme == TimeScheme::ab2) {
       setup.weights = {0.0, 1.0, 1.0, true};
       stage<true>(space, setup, _velocity, 1.0);
@@ -221,6 +222,7 @@ class FlowSolver {
   MacGrid _grid;
   BoundaryConditions _boundary{};
   StepConstants _constants{};
+  std::array<double, 3> _acceleration{};  ///< m/s^2
   Views _velocity, _predicted, _rate, _pressure;
   ControlView<ExecutionSpace> _control;
   std::optional<Poisson> _poisson;

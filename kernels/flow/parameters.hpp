@@ -22,6 +22,27 @@ enum class TimeScheme {
   rk3,  ///< third-order strong-stability-preserving Runge-Kutta (Shu and Osher 1988); three projections
 };
 
+/// Time integration of viscous stresses.
+enum class Diffusion {
+  explicit_,       ///< as advection; limits dt to h^2 / (2 d nu)
+  crank_nicolson,  ///< unconditionally stable; three Helmholtz solves per step, AB2 only
+};
+
+/// Model of unresolved scales.
+enum class Turbulence {
+  none,         ///< implicit large-eddy simulation by the dissipation of the upwind-biased fluxes
+  smagorinsky,  ///< Smagorinsky 1963, eq. (4.30): nu_t = (C delta)^2 |S|
+  vreman,       ///< Vreman 2004, eq. (5): vanishes in laminar shear
+};
+
+/// Solver of the pressure equation.
+enum class PressureSolver {
+  automatic,        ///< the faster direct solver of the backend
+  fft,              ///< by fast transforms along all axes
+  diagonalization,  ///< by products with the matrices of eigenvectors, Lynch, Rice and Thomas 1964
+  hypre_pfmg,       ///< conjugate gradients of hypre, preconditioned by its semicoarsening multigrid
+};
+
 /// Type of a side of the domain.
 enum class BoundaryKind {
   periodic,
@@ -50,9 +71,16 @@ struct Parameters {
   double viscosity = 0.0;                        ///< dynamic viscosity, Pa s
   /// Sides x low, x high, y low, y high, z low, z high.
   std::array<Boundary, 6> boundary;
-  std::array<double, 3> acceleration = {0.0, 0.0, 0.0};  ///< body force per mass, m/s^2
+  std::array<double, 3> body_force = {0.0, 0.0, 0.0};     ///< per volume, N/m^3
+  std::array<double, 3> pressure_drop = {0.0, 0.0, 0.0};  ///< along periodic axes, from low to high side, Pa
   Advection advection = Advection::weno_z;
   TimeScheme time_scheme = TimeScheme::ab2;
+  Diffusion diffusion = Diffusion::explicit_;
+  Turbulence turbulence = Turbulence::none;
+  double turbulence_constant = 0.0;  ///< C of the model; 0: 0.17 for Smagorinsky, 0.07 for Vreman
+  PressureSolver pressure_solver = PressureSolver::automatic;
+  double pressure_tolerance = 1e-10;  ///< of an iterative solver: relative residual
+  bool external_force = false;  ///< the solver has a force field that other kernels add to before each step
   double cfl = 0.5;       ///< dt = cfl / max(|u|/hx + |v|/hy + |w|/hz), also limited by explicit diffusion
   double fixed_dt = 0.0;  ///< s; a positive value replaces the CFL condition
   double max_dt = 0.0;    ///< s; a positive value is an upper bound of dt, needed if the fluid is at rest
