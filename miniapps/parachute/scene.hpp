@@ -82,11 +82,19 @@ struct Verify {
   std::vector<Profile> profiles;
 };
 
+/// Solver parameters for air at 15 degrees Celsius: 1.225 kg/m^3, 1.8e-5 Pa s. Does not throw.
+inline flow::Parameters air_parameters() {
+  flow::Parameters parameters;
+  parameters.density = 1.225;
+  parameters.viscosity = 1.8e-5;
+  return parameters;
+}
+
 struct FlowScene {
   std::filesystem::path file;
   std::string name;  ///< the file's name without folder and extension
   std::string description;
-  flow::Parameters parameters;  ///< complete once the scene has been read
+  flow::Parameters parameters = air_parameters();  ///< complete once the scene has been read
   AdvectionScheme advection = AdvectionScheme::weno5;
   Weights weights = Weights::z;
   VectorExpression velocity = {"0.0", "0.0", "0.0"};  ///< inflow, and initial velocity without `initial`, m/s

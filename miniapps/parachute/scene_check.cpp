@@ -32,6 +32,11 @@ std::string place_text(const std::array<double, 3>& place) {
 void check_grid(const Table& root, const flow::Parameters& p) {
   double cells = 1.0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
+    constexpr int least_cells = 4;
+    if (p.cells[axis] > 1 && p.cells[axis] < least_cells)
+      contradict(root, "grid.cells",
+                 "grid.cells[" + std::to_string(axis) + "] = " + std::to_string(p.cells[axis]) +
+                     " is out of range: an axis has 1 cell, or at least 4");
     cells *= p.cells[axis];
     const double length = p.high[axis] - p.low[axis], h = length / p.cells[axis];
     const double rounding =
@@ -57,8 +62,11 @@ void complete_sides(const Table& root, FlowScene& scene) {
                  "missing key \"" + key + "\" (needed with more than one cell along " + axis_names[axis] +
                      "): the sides normal to this axis");
     if (!sides) sides = SidePair{BoundaryKind::periodic, BoundaryKind::periodic};
-    if (single && (*sides)[0] != BoundaryKind::periodic)
-      contradict(root, key, key + ": the only cell along " + axis_names[axis] + " has periodic sides");
+    const auto is_refused = [](BoundaryKind kind) {
+      return kind != BoundaryKind::periodic && kind != BoundaryKind::slip;
+    };
+    if (single && std::ranges::any_of(*sides, is_refused))
+      contradict(root, key, key + ": with one cell along " + axis_names[axis] + ", its sides are periodic or slip");
     for (std::size_t end = 0; end < 2; ++end) scene.parameters.boundary[2 * axis + end].kind = (*sides)[end];
   }
 }
@@ -159,7 +167,7 @@ void check_solver(const Table& root, const flow::Parameters& p) {
   try {
     flow::check_parameters(p);
   } catch (const std::invalid_argument& refused) {
-    contradict(root, root.given("flow") ? "flow" : "grid", std::string("the flow solver: ") + refused.what());
+    contradict(root, root.given("flow") ? "flow" : "grid", refused.what());
   }
 }
 

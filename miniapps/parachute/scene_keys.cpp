@@ -8,7 +8,7 @@ namespace {
 using scene::Choices;
 using scene::Table;
 
-constexpr double most_cells_per_axis = 65536;
+constexpr double most_cells_per_axis = 16384;
 
 const Choices<AdvectionScheme> advection_choices = {{"central", AdvectionScheme::central},
                                                     {"weno5", AdvectionScheme::weno5}};

@@ -109,9 +109,8 @@ void add_orders(const study::StudyRow& coarser, study::StudyRow& row) {
   if (coarser.label != row.label || coarser.mesh >= row.mesh) return;
   const double refinement = static_cast<double>(row.mesh) / static_cast<double>(coarser.mesh);
   for (const char* name : {"l2_velocity", "l2_pressure"}) {
-    const auto before = coarser.errors.find(name), after = row.errors.find(name);
-    if (before == coarser.errors.end() || after == row.errors.end()) continue;
-    const double order = std::log(before->second / after->second) / std::log(refinement);
+    if (!coarser.errors.contains(name) || !row.errors.contains(name)) continue;
+    const double order = std::log(coarser.errors.at(name) / row.errors.at(name)) / std::log(refinement);
     if (std::isfinite(order)) row.others[std::string("order_") + name] = order;
   }
 }
