@@ -1,233 +1,406 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <limits>
-#include <memory>
 #include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
-#include <utility>
 #include <variant>
 
 #include "kernels/device/copy.hpp"
 #include "kernels/flow/advection/momentum.hpp"
+#include "kernels/flow/boundary/faces.hpp"
+#include "kernels/flow/boundary/ghosts.hpp"
+#include "kernels/flow/observables/sample.hpp"
+#include "kernels/flow/observables/totals.hpp"
 #include "kernels/flow/projection/projection.hpp"
+#include "kernels/flow/solver.hpp"
+#include "kernels/flow/step_control.hpp"
 #include "kernels/linear/poisson/diagonalization.hpp"
 #include "kernels/linear/poisson/fourier.hpp"
 #include "kernels/stepping/step_launcher.hpp"
-#include "kernels/stepping/step_loop.hpp"
 
 namespace drogue::flow {
 
-/// First kernel of an advance.
-template <class ExecutionSpace>
-struct BeginAdvanceFunctor {
-  ControlView<ExecutionSpace> control;
-  typename stepping::StepLoop<ExecutionSpace>::StatusView status;
-  StepConstants constants;
-  stepping::AdvanceRequest request;
-  std::int64_t output_step;
-
-  KOKKOS_FUNCTION void operator()(int) const {
-    Control& c = control();
-    Progress now = c.now;
-    stepping::StepTrial trial = c.trial;
-    if (stepping::begin_advance(now, trial, request, output_step, constants.max_steps))
-      prepare_step(now, trial, constants);
-    c.next_rate = 0;
-    c.first_failure = no_failure;
-    stepping::publish_status(now, trial, 0, status());
-    c.trial = trial;
+/// Pressure equation of a flow: zero normal derivative of the pressure on sides with a prescribed normal velocity, zero
+/// pressure on outflows. Does not throw.
+inline linear::PoissonProblem pressure_problem(const Parameters& parameters) {
+  linear::PoissonProblem problem;
+  problem.cells = parameters.cells;
+  const auto end = [&](std::size_t side) {
+    return parameters.boundary[side].kind == BoundaryKind::outflow ? linear::EndCondition::dirichlet
+                                                                   : linear::EndCondition::neumann;
+  };
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    problem.spacing[axis] = (parameters.high[axis] - parameters.low[axis]) / parameters.cells[axis];
+    problem.axes[axis] = {parameters.boundary[2 * axis].kind == BoundaryKind::periodic, end(2 * axis),
+                          end(2 * axis + 1)};
   }
-};
-
-/// Last kernel of a step: accepts it or stops the run.
-template <class ExecutionSpace>
-struct FinishStepFunctor {
-  ControlView<ExecutionSpace> control;
-  typename stepping::StepLoop<ExecutionSpace>::StatusView status;
-  StepConstants constants;
-
-  KOKKOS_FUNCTION void operator()(int) const {
-    Control& c = control();
-    Progress now = c.now;
-    stepping::StepTrial trial = c.trial;
-    if (trial.stop == Stop::running) {
-      if (c.first_failure != no_failure) {
-        trial.stop = Stop::failed;
-      } else {
-        now.last_dt = trial.dt;
-        now.dt_min = now.step == 0 || trial.dt < now.dt_min ? trial.dt : now.dt_min;
-        now.dt_max = trial.dt > now.dt_max ? trial.dt : now.dt_max;
-        now.rate = c.next_rate;
-        stepping::advance_time(now, trial);
-        if (stepping::continues(now, trial, constants.max_steps)) prepare_step(now, trial, constants);
-        c.next_rate = 0;
-      }
-    }
-    stepping::publish_status(now, trial, 0, status());
-    c.now = now;
-    c.trial = trial;
-  }
-};
+  return problem;
+}
 
 /// Incompressible flow on a staggered grid, on the caller's instance of an execution space, for coupling to other
-/// kernels. Second order in space and time (Chorin 1968; Kim and Moin 1985 for the staggered projection).
+/// kernels. Second order in space and time. The projection is exact to round-off (Chorin 1968; Kim and Moin 1985 for the
+/// staggered grid), so that with explicit diffusion a pressure increment would give the same velocity.
 ///
-/// All work is enqueued on the instance given to the constructor. On CUDA the instance must have a stream of its own.
+/// Functions block unless stated otherwise. All work is enqueued on the instance given to the constructor, which must
+/// outlive the solver; on CUDA it must have a stream of its own. After a failed step the state is that before the step.
 template <class ExecutionSpace>
 class FlowSolver {
  public:
-  using Views = List<ExecutionSpace>;
-  using Poisson = std::variant<linear::FourierSolver<ExecutionSpace>, linear::DiagonalizationSolver<ExecutionSpace>>;
+  using Values = List<ExecutionSpace>;
 
-  FlowSolver(const device::Instance<ExecutionSpace>& instance, const Parameters& parameters, bool diagonalize = false)
-      : _instance(&instance),
-        _parameters(parameters),
-        _grid(make_grid(parameters)),
-        _loop(instance),
-        _launcher(instance, parameters.driver) {
-    const ExecutionSpace& space = instance.space();
-    const auto field = [&](const std::string& label) {
-      // Packs may load beyond the last cell.
-      return Views(label, static_cast<std::size_t>(3 * _grid.component + 64));
-    };
-    _velocity = field("drogue::flow::velocity");
-    _predicted = field("drogue::flow::predicted_velocity");
-    _rate = field("drogue::flow::rate");
-    _pressure = Views("drogue::flow::pressure", static_cast<std::size_t>(_grid.cells()));
-    _control = ControlView<ExecutionSpace>("drogue::flow::control");
-    linear::PoissonProblem problem;
-    double diffusive_rate = 0.0;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      problem.cells[axis] = parameters.cells[axis];
-      problem.spacing[axis] = _grid.h[axis];
-      for (std::size_t end = 0; end < 2; ++end) {
-        const Boundary& side = parameters.boundary[2 * axis + end];
-        _boundary.kind[2 * axis + end] = side.kind;
-        for (std::size_t c = 0; c < 3; ++c) _boundary.velocity[2 * axis + end][c] = side.velocity[c];
-      }
-      const auto end = [&](std::size_t side) {
-        return parameters.boundary[side].kind == BoundaryKind::outflow ? linear::EndCondition::dirichlet
-                                                                       : linear::EndCondition::neumann;
-      };
-      problem.axes[axis] = {parameters.boundary[2 * axis].kind == BoundaryKind::periodic, end(2 * axis),
-                            end(2 * axis + 1)};
-      if (_grid.n[axis] > 1) diffusive_rate += 4.0 * _grid.inverse_h[axis] * _grid.inverse_h[axis];
-    }
-    if (linear::FourierSolver<ExecutionSpace>::supports(problem) && !diagonalize)
-      _poisson.emplace(std::in_place_type<linear::FourierSolver<ExecutionSpace>>, space, problem);
-    else
-      _poisson.emplace(std::in_place_type<linear::DiagonalizationSolver<ExecutionSpace>>, space, problem);
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      _acceleration[axis] = (parameters.body_force[axis] +
-                             parameters.pressure_drop[axis] / (parameters.high[axis] - parameters.low[axis])) /
-                            parameters.density;
-    const double nu = parameters.viscosity / parameters.density;
-    _constants = {parameters.cfl, parameters.fixed_dt, parameters.max_dt,
-                  nu > 0.0 ? 1.0 / (nu * diffusive_rate) : std::numeric_limits<double>::infinity(),
-                  parameters.max_steps};
-    space.fence("drogue::flow::solver: allocated");
-  }
+  /// Throws std::invalid_argument as `check_parameters` does, and std::runtime_error if memory runs out.
+  FlowSolver(const device::Instance<ExecutionSpace>& instance, const Parameters& parameters);
 
+  /// Grid of the arrays. Does not throw.
   [[nodiscard]] const MacGrid& grid() const { return _grid; }
-  [[nodiscard]] const Views& velocity() const { return _velocity; }
-  [[nodiscard]] const Views& pressure() const { return _pressure; }
+  /// Velocity with ghost cells, m/s; valid after the kernels enqueued so far. Does not throw.
+  [[nodiscard]] const Values& velocity() const { return _velocity; }
+  /// Kinematic pressure at the cells, x fastest, m^2/s^2. Does not throw.
+  [[nodiscard]] const Values& pressure() const { return _pressure; }
+  /// Force per volume on the faces, N/m^3, in the layout of `velocity`; empty unless `Parameters::external_force`. Other
+  /// kernels may write it between steps; it keeps its values. Does not throw.
+  [[nodiscard]] const Values& force() const { return _force; }
+
+  /// As the functions of `Solver`.
+  void upload(StateField field, std::span<const double> values);
+  void download(StateField field, std::span<double> values);
+  void start();
+  void restore(const Progress& progress);
+  Stop advance(double target, std::int64_t pause_step, const Poll& poll);
+  [[nodiscard]] Progress progress() { return read_control().now; }
+  [[nodiscard]] StepFailure failure();
+  [[nodiscard]] Totals totals();
+  void sample(CellField field, std::span<double> values);
   [[nodiscard]] const char* driver() const { return stepping::driver_name(_launcher.driver()); }
-
-  /// Makes the field in `velocity` (boundary faces and ghost cells are set) the initial state at time 0. Blocks.
-  void start(double rate) {
-    const ExecutionSpace& space = _instance->space();
-    launch_ghosts(space, _grid, _boundary, _velocity);
-    auto mirror = Kokkos::create_mirror_view(_control);
-    mirror() = Control{};
-    mirror().trial.stop = Stop::pause;
-    mirror().trial.launches = _loop.launches();
-    mirror().first_failure = no_failure;
-    mirror().now.rate = Kokkos::bit_cast<std::uint64_t>(rate);
-    Kokkos::deep_copy(space, _control, mirror);
-    space.fence("drogue::flow::start");
-    _loop.status_view()().step = 0;
-  }
-
-  Stop advance(double target, std::int64_t pause_step, const Poll& poll) {
-    return _loop.advance({target, pause_step}, Steps{*this}, poll);
-  }
-
-  /// Enqueues the kernels of one step. Asynchronous.
-  void enqueue_step(const ExecutionSpace& space) const {
-    const double nu = _parameters.viscosity / _parameters.density;
-    MomentumSetup<ExecutionSpace> setup{
-        _grid, _velocity, _velocity, _predicted, _rate, _control, nu,
-        {_acceleration[0], _acceleration[1], _acceleration[2]}, 1e-40, {}};
-    if (_parameters.time_scheme == TimeScheme::ab2) {
-      setup.weights = {0.0, 1.0, 1.0, true};
-      stage<true>(space, setup, _velocity, 1.0);
-    } else {
-      setup.weights = {0.0, 1.0, 1.0, false};
-      stage<false>(space, setup, _rate, 1.0);
-      setup.stage = _rate;
-      setup.weights = {0.75, 0.25, 0.25, false};
-      stage<false>(space, setup, _rate, 0.25);
-      setup.weights = {1.0 / 3.0, 2.0 / 3.0, 2.0 / 3.0, false};
-      stage<false>(space, setup, _velocity, 2.0 / 3.0);
-    }
-    Kokkos::parallel_for("drogue::flow::finish_step", one(space),
-                         FinishStepFunctor<ExecutionSpace>{_control, _loop.status_view(), _constants});
-  }
+  [[nodiscard]] const char* pressure_solver() const;
 
  private:
-  struct Steps {
-    FlowSolver& solver;
-    void begin(const stepping::AdvanceRequest& request, std::int64_t output_step) {
-      Kokkos::parallel_for("drogue::flow::begin_advance", one(solver._instance->space()),
-                           BeginAdvanceFunctor<ExecutionSpace>{solver._control, solver._loop.status_view(),
-                                                               solver._constants, request, output_step});
-    }
-    [[nodiscard]] bool holds_many_steps(int) const { return false; }
-    void enqueue(int variant, std::int64_t) {
-      solver._launcher.launch(variant, [this](const ExecutionSpace& space) { solver.enqueue_step(space); });
-    }
-  };
+  using Poisson = std::variant<linear::FourierSolver<ExecutionSpace>, linear::DiagonalizationSolver<ExecutionSpace>>;
+  struct Steps;
 
-  static auto one(const ExecutionSpace& space) { return Kokkos::RangePolicy<ExecutionSpace>(space, 0, 1); }
-
-  template <bool adams_bashforth>
-  void stage(const ExecutionSpace& space, const MomentumSetup<ExecutionSpace>& setup, const Views& result,
-             double fraction) const {
-    switch (_parameters.advection) {
-      case Advection::central:
-        launch_momentum<Advection::central, adams_bashforth>(space, setup);
-        break;
-      case Advection::weno_js:
-        launch_momentum<Advection::weno_js, adams_bashforth>(space, setup);
-        break;
-      case Advection::weno_z:
-        launch_momentum<Advection::weno_z, adams_bashforth>(space, setup);
-        break;
-    }
-    const ProjectionSetup<ExecutionSpace> projection{_grid, _boundary, _predicted, result, _pressure, _control,
-                                                     fraction};
-    launch_divergence(space, projection);
-    std::visit([&](const auto& poisson) { poisson.enqueue_solve(_pressure); }, *_poisson);
-    launch_correction(space, projection);
-    launch_ghosts(space, _grid, _boundary, result);
+  [[nodiscard]] static auto one_thread(const ExecutionSpace& space) {
+    return Kokkos::RangePolicy<ExecutionSpace>(space, 0, 1);
   }
+  [[nodiscard]] const ExecutionSpace& space() const { return _instance->space(); }
+  [[nodiscard]] Control read_control() const;
+  void write_control(Control control);
+  [[nodiscard]] PackFunctor<ExecutionSpace> packing(StateField field, std::size_t size, bool to_field) const;
+  void enqueue_step(const ExecutionSpace& space) const;
+  void enqueue_stage(const ExecutionSpace& space, const MomentumSetup<ExecutionSpace>& setup, const Values& result,
+                     double fraction, double time_fraction) const;
+  void enqueue_projection(const ExecutionSpace& space, const Values& result, double fraction) const;
 
   const device::Instance<ExecutionSpace>* _instance;
   Parameters _parameters;
   MacGrid _grid;
-  BoundaryConditions _boundary{};
+  BoundaryTables<ExecutionSpace> _boundary;
   StepConstants _constants{};
   std::array<double, 3> _acceleration{};  ///< m/s^2
-  Views _velocity, _predicted, _rate, _pressure;
+  Values _velocity, _predicted, _rate, _force;
+  Values _divergence;  ///< right-hand side of the pressure equation, 1/s^2
+  Values _pressure;
   ControlView<ExecutionSpace> _control;
   std::optional<Poisson> _poisson;
   stepping::StepLoop<ExecutionSpace> _loop;
   stepping::StepLauncher<ExecutionSpace> _launcher;
 };
+
+/// True if the pressure equation of a flow is solved by fast transforms, and not by diagonalization.
+template <class ExecutionSpace>
+bool uses_transforms(const Parameters& parameters) {
+  const bool can = linear::FourierSolver<ExecutionSpace>::supports(pressure_problem(parameters));
+  if (parameters.pressure_solver == PressureSolver::fft && !can)
+    throw std::invalid_argument("flow solver: this backend has fast transforms for periodic axes only");
+  return can && parameters.pressure_solver != PressureSolver::diagonalization;
+}
+
+template <class ExecutionSpace>
+FlowSolver<ExecutionSpace>::FlowSolver(const device::Instance<ExecutionSpace>& instance, const Parameters& parameters)
+    : _instance(&instance),
+      _parameters(parameters),
+      _grid((check_parameters(parameters), make_grid(parameters))),
+      _boundary(instance.space(), _grid, parameters.boundary),
+      _loop(instance),
+      _launcher(instance, parameters.driver) {
+  const auto field = [&](const std::string& label) {
+    // Packs may load beyond the last cell.
+    return Values(label, static_cast<std::size_t>(3 * _grid.component + 64));
+  };
+  const auto cells = static_cast<std::size_t>(_grid.cells());
+  _velocity = field("drogue::flow::velocity");
+  _predicted = field("drogue::flow::predicted_velocity");
+  _rate = field("drogue::flow::rate");
+  if (parameters.external_force) _force = field("drogue::flow::force");
+  _divergence = Values("drogue::flow::divergence", cells);
+  _pressure = Values("drogue::flow::pressure", cells);
+  _control = ControlView<ExecutionSpace>("drogue::flow::control");
+  const linear::PoissonProblem problem = pressure_problem(parameters);
+  if (uses_transforms<ExecutionSpace>(parameters))
+    _poisson.emplace(std::in_place_type<linear::FourierSolver<ExecutionSpace>>, space(), problem);
+  else
+    _poisson.emplace(std::in_place_type<linear::DiagonalizationSolver<ExecutionSpace>>, space(), problem);
+  double squares = 0.0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double length = parameters.high[axis] - parameters.low[axis];
+    _acceleration[axis] =
+        (parameters.body_force[axis] + parameters.pressure_drop[axis] / length) / parameters.density;
+    if (_grid.n[axis] > 1) squares += _grid.inverse_h[axis] * _grid.inverse_h[axis];
+  }
+  const double nu = parameters.viscosity / parameters.density;
+  // The second-order Adams-Bashforth method is stable for z in [-1, 0] of the negative real axis; the largest
+  // eigenvalue of the viscous term is 4 nu times the sum of the squares.
+  _constants = {parameters.cfl, parameters.fixed_dt, parameters.max_dt,
+                nu > 0.0 && squares > 0.0 ? 1.0 / (4.0 * nu * squares) : std::numeric_limits<double>::infinity(),
+                parameters.max_steps};
+  space().fence("drogue::flow::solver: allocated");
+}
+
+template <class ExecutionSpace>
+const char* FlowSolver<ExecutionSpace>::pressure_solver() const {
+  return std::holds_alternative<linear::FourierSolver<ExecutionSpace>>(*_poisson) ? "fft" : "diagonalization";
+}
+
+template <class ExecutionSpace>
+Control FlowSolver<ExecutionSpace>::read_control() const {
+  Control control;
+  device::copy_out(space(), &control, _control, 1);
+  space().fence("drogue::flow::solver: read control");
+  return control;
+}
+
+template <class ExecutionSpace>
+void FlowSolver<ExecutionSpace>::write_control(Control control) {
+  control.trial.launches = _loop.launches();
+  device::copy_in(space(), _control, &control, 1);
+  space().fence("drogue::flow::solver: write control");
+}
+
+/// Copy of a component of the state to or from the beginning of the predicted velocity, which is free between steps.
+template <class ExecutionSpace>
+PackFunctor<ExecutionSpace> FlowSolver<ExecutionSpace>::packing(StateField field, std::size_t size,
+                                                                bool to_field) const {
+  const int index = static_cast<int>(field);
+  const bool is_rate = index >= static_cast<int>(StateField::rate_x);
+  if (is_rate && _parameters.time_scheme != TimeScheme::ab2)
+    throw std::invalid_argument("flow solver: only the scheme AB2 has rates of the previous step");
+  const std::array<int, 3> shape = extents(_parameters, field);
+  if (size != static_cast<std::size_t>(shape[0]) * static_cast<std::size_t>(shape[1]) * static_cast<std::size_t>(shape[2]))
+    throw std::invalid_argument("flow solver: an array of the state has the wrong length");
+  return {_grid,    is_rate ? _rate : _velocity,        _predicted, (index % 3) * _grid.component,
+          {shape[0], shape[1], shape[2]}, to_field};
+}
+
+template <class ExecutionSpace>
+void FlowSolver<ExecutionSpace>::upload(StateField field, std::span<const double> values) {
+  if (field == StateField::pressure) {
+    if (values.size() != _pressure.extent(0))
+      throw std::invalid_argument("flow solver: an array of the state has the wrong length");
+    device::copy_in(space(), _pressure, values.data(), values.size());
+  } else {
+    const auto pack = packing(field, values.size(), true);
+    device::copy_in(space(), _predicted, values.data(), values.size());
+    launch_cells(space(), "drogue::flow::upload", pack.extent, pack);
+  }
+  space().fence("drogue::flow::upload");
+}
+
+template <class ExecutionSpace>
+void FlowSolver<ExecutionSpace>::download(StateField field, std::span<double> values) {
+  if (field == StateField::pressure) {
+    if (values.size() != _pressure.extent(0))
+      throw std::invalid_argument("flow solver: an array of the state has the wrong length");
+    device::copy_out(space(), values.data(), _pressure, values.size());
+  } else {
+    const auto pack = packing(field, values.size(), false);
+    launch_cells(space(), "drogue::flow::download", pack.extent, pack);
+    device::copy_out(space(), values.data(), _predicted, values.size());
+  }
+  space().fence("drogue::flow::download");
+}
+
+template <class ExecutionSpace>
+void FlowSolver<ExecutionSpace>::sample(CellField field, std::span<double> values) {
+  if (values.size() != static_cast<std::size_t>(_grid.cells()) * static_cast<std::size_t>(components(field)))
+    throw std::invalid_argument("flow solver: a field has the wrong length");
+  launch_cells(space(), "drogue::flow::sample", _grid.n,
+               SampleFunctor<ExecutionSpace>{_grid, _velocity, _pressure, _predicted, _parameters.density, field});
+  device::copy_out(space(), values.data(), _predicted, values.size());
+  space().fence("drogue::flow::sample");
+}
+
+template <class ExecutionSpace>
+Totals FlowSolver<ExecutionSpace>::totals() {
+  const int nx = _grid.n[0], ny = _grid.n[1], nz = _grid.n[2];
+  const TotalsView<ExecutionSpace> columns(_predicted.data(), static_cast<std::size_t>(nx) * static_cast<std::size_t>(ny));
+  const TotalsView<ExecutionSpace> planes("drogue::flow::totals", static_cast<std::size_t>(nx));
+  // The columns stand in the predicted velocity, which is free between steps and large enough from 3 cells along z on.
+  const auto of_columns = 3 * _grid.component >= static_cast<std::int64_t>(total_count) * nx * ny
+                              ? columns
+                              : TotalsView<ExecutionSpace>("drogue::flow::column_totals",
+                                                           static_cast<std::size_t>(nx) * static_cast<std::size_t>(ny));
+  device::launch_each(space(), "drogue::flow::column_totals", nx * ny,
+                      ColumnTotalsFunctor<ExecutionSpace>{_grid, _velocity, of_columns});
+  device::launch_each(space(), "drogue::flow::plane_totals", nx,
+                      PlaneTotalsFunctor<ExecutionSpace>{nx, ny, of_columns, planes});
+  const int longest = std::max(ny, nz);
+  const Values rows("drogue::flow::outflow_rows", 6 * static_cast<std::size_t>(longest));
+  device::launch_each(space(), "drogue::flow::outflow_rows", 6 * longest,
+                      OutflowRowsFunctor<ExecutionSpace>{_grid, _velocity, rows, longest});
+  const auto on_host = Kokkos::create_mirror_view(planes);
+  const auto rows_on_host = Kokkos::create_mirror_view(rows);
+  device::copy_out(space(), on_host.data(), planes, planes.size());
+  device::copy_out(space(), rows_on_host.data(), rows, rows.size());
+  const Control control = read_control();
+  double sum[total_count] = {};
+  for (std::size_t i = 0; i < static_cast<std::size_t>(nx); ++i) {
+    double own[total_count];
+    for (std::size_t q = 0; q < total_count; ++q) own[q] = on_host(i, q);
+    combine_totals(sum, own);
+  }
+  const double volume = _grid.h[0] * _grid.h[1] * _grid.h[2], mass = _parameters.density * volume;
+  Totals totals;
+  totals.step = control.now.step;
+  totals.time = control.now.time;
+  totals.dt = control.trial.dt;
+  totals.kinetic_energy = mass * sum[total_energy];
+  totals.enstrophy = volume * sum[total_enstrophy];
+  totals.dissipation = _parameters.viscosity * volume * sum[total_dissipation];
+  for (int c = 0; c < 3; ++c) totals.momentum[c] = mass * sum[total_momentum_x + c];
+  totals.max_speed = std::sqrt(sum[total_squared_speed]);
+  totals.divergence_rms = std::sqrt(sum[total_squared_divergence] / static_cast<double>(_grid.cells()));
+  totals.divergence_max = sum[total_divergence];
+  for (int side = 0; side < 6; ++side) {
+    const int axis = side / 2;
+    double faces = 0.0;
+    for (int row = 0; row < longest; ++row) faces += rows_on_host(static_cast<std::size_t>(side * longest + row));
+    totals.outflow[side] = faces * volume / _grid.h[axis];
+  }
+  return totals;
+}
+
+template <class ExecutionSpace>
+void FlowSolver<ExecutionSpace>::start() {
+  Control control{};
+  control.trial.dt = 1.0;  // the initial projection has no time step; any dt gives the same velocity
+  control.trial.stop = Stop::running;
+  control.first_failure = no_failure;
+  write_control(control);
+  _boundary.enqueue_evaluation(space(), _control, {0.0, true});
+  launch_ghosts(space(), _grid, _boundary.conditions(), _velocity);
+  device::copy(space(), _predicted, _velocity);
+  enqueue_projection(space(), _velocity, 1.0);
+  control = read_control();
+  control.now.rate = control.first_failure == no_failure
+                         ? control.next_rate
+                         : Kokkos::bit_cast<std::uint64_t>(std::numeric_limits<double>::quiet_NaN());
+  control.next_rate = 0;
+  control.trial.dt = 0.0;
+  control.trial.stop = Stop::pause;
+  write_control(control);
+  _loop.status_view()().step = 0;
+}
+
+template <class ExecutionSpace>
+void FlowSolver<ExecutionSpace>::restore(const Progress& progress) {
+  Control control{};
+  control.now = progress;
+  control.first_failure = no_failure;
+  control.trial.stop = Stop::pause;
+  write_control(control);
+  _boundary.enqueue_evaluation(space(), _control, {0.0, true});
+  launch_ghosts(space(), _grid, _boundary.conditions(), _velocity);
+  space().fence("drogue::flow::restore");
+  _loop.status_view()().step = progress.step;
+}
+
+template <class ExecutionSpace>
+StepFailure FlowSolver<ExecutionSpace>::failure() {
+  const Control control = read_control();
+  const bool in_cell = control.first_failure != no_failure;
+  return {in_cell ? FailureReason::not_finite : FailureReason::time_step,
+          in_cell ? static_cast<std::int64_t>(control.first_failure) : -1, control.now.step + 1, control.now.time,
+          control.trial.dt};
+}
+
+/// Steps of the solver, as `StepLoop` enqueues them.
+template <class ExecutionSpace>
+struct FlowSolver<ExecutionSpace>::Steps {
+  FlowSolver& solver;
+
+  void begin(const stepping::AdvanceRequest& request, std::int64_t output_step) {
+    Kokkos::parallel_for("drogue::flow::begin_advance", one_thread(solver.space()),
+                         BeginAdvanceFunctor<ExecutionSpace>{solver._control, solver._loop.status_view(),
+                                                             solver._constants, request, output_step});
+  }
+  [[nodiscard]] bool holds_many_steps(int /*variant*/) const { return false; }
+  void enqueue(int variant, std::int64_t /*max_steps*/) {
+    solver._launcher.launch(variant, [this](const ExecutionSpace& on) { solver.enqueue_step(on); });
+  }
+};
+
+template <class ExecutionSpace>
+Stop FlowSolver<ExecutionSpace>::advance(double target, std::int64_t pause_step, const Poll& poll) {
+  return _loop.advance({target, pause_step}, Steps{*this}, poll);
+}
+
+template <class ExecutionSpace>
+void FlowSolver<ExecutionSpace>::enqueue_step(const ExecutionSpace& space) const {
+  // The linear weights are recovered where all differences are far below this velocity squared, m^2/s^2.
+  constexpr double smoothness_floor = 1e-40;
+  MomentumSetup<ExecutionSpace> setup{_grid,
+                                      _velocity,
+                                      _velocity,
+                                      _predicted,
+                                      _rate,
+                                      _force,
+                                      _control,
+                                      _parameters.viscosity / _parameters.density,
+                                      {_acceleration[0], _acceleration[1], _acceleration[2]},
+                                      1.0 / _parameters.density,
+                                      smoothness_floor,
+                                      {}};
+  if (_parameters.time_scheme == TimeScheme::ab2) {
+    setup.weights = {0.0, 1.0, 1.0, true};
+    enqueue_stage(space, setup, _velocity, 1.0, 1.0);
+  } else {
+    // Shu and Osher 1988, eq. (2.18). The first two stages are projected into the array of rates.
+    setup.weights = {0.0, 1.0, 1.0, false};
+    enqueue_stage(space, setup, _rate, 1.0, 1.0);
+    setup.stage = _rate;
+    setup.weights = {0.75, 0.25, 0.25, false};
+    enqueue_stage(space, setup, _rate, 0.25, 0.5);
+    setup.weights = {1.0 / 3.0, 2.0 / 3.0, 2.0 / 3.0, false};
+    enqueue_stage(space, setup, _velocity, 2.0 / 3.0, 1.0);
+  }
+  Kokkos::parallel_for("drogue::flow::finish_step", one_thread(space),
+                       FinishStepFunctor<ExecutionSpace>{_control, _loop.status_view(), _constants});
+}
+
+/// Momentum stage and projection. `fraction`: of dt that the pressure of the stage acts; `time_fraction`: of dt at which
+/// the result of the stage approximates the velocity.
+template <class ExecutionSpace>
+void FlowSolver<ExecutionSpace>::enqueue_stage(const ExecutionSpace& space, const MomentumSetup<ExecutionSpace>& setup,
+                                               const Values& result, double fraction, double time_fraction) const {
+  dispatch_momentum(space, setup, _parameters.advection);
+  if (_boundary.changes()) _boundary.enqueue_evaluation(space, _control, {time_fraction, false});
+  launch_boundary_faces(space, setup, _boundary.conditions());
+  enqueue_projection(space, result, fraction);
+}
+
+template <class ExecutionSpace>
+void FlowSolver<ExecutionSpace>::enqueue_projection(const ExecutionSpace& space, const Values& result,
+                                                    double fraction) const {
+  const ProjectionSetup<ExecutionSpace> setup{_grid,     _boundary.conditions(), _predicted, result, _divergence,
+                                              _pressure, _control,               fraction,   _boundary.has_outflow()};
+  launch_divergence(space, setup);
+  std::visit([&](const auto& poisson) { poisson.enqueue_solve(_divergence, _pressure); }, *_poisson);
+  launch_correction(space, setup);
+  launch_ghosts(space, _grid, _boundary.conditions(), result);
+}
 
 }  // namespace drogue::flow

@@ -4,7 +4,7 @@
 
 #include "kernels/device/memory.hpp"
 #include "kernels/device/team_maximum.hpp"
-#include "kernels/flow/boundary.hpp"
+#include "kernels/flow/boundary/conditions.hpp"
 #include "kernels/flow/views.hpp"
 
 namespace drogue::flow {
@@ -13,17 +13,25 @@ namespace drogue::flow {
 template <class ExecutionSpace>
 struct ProjectionSetup {
   MacGrid grid;
-  BoundaryConditions boundary;
+  BoundaryConditions<ExecutionSpace> boundary;
   List<ExecutionSpace> predicted;  ///< m/s, with ghost cells
   List<ExecutionSpace> velocity;   ///< result, m/s, with ghost cells
-  List<ExecutionSpace> pressure;   ///< cells: divergence / dt before, kinematic pressure, m^2/s^2, after the solve
+  List<ExecutionSpace> divergence;  ///< right-hand side of the pressure equation at the cells, 1/s^2
+  List<ExecutionSpace> pressure;    ///< kinematic, at the cells, m^2/s^2
   ControlView<ExecutionSpace> control;
   double step_fraction;  ///< of dt that the projection covers
+  bool has_outflow;
+
+  /// True if the face on a side is an unknown of the projection.
+  [[nodiscard]] KOKKOS_FUNCTION bool is_outflow(int side) const {
+    return boundary.kind[side] == BoundaryKind::outflow;
+  }
 };
 
-/// True if the high face of an axis is an unknown of the projection.
-KOKKOS_INLINE_FUNCTION bool is_outflow(const BoundaryConditions& b, int side) {
-  return b.kind[side] == BoundaryKind::outflow;
+/// Kinematic pressure on the face of an outflow, m^2/s^2, for the outward velocity: zero, and minus the dynamic pressure
+/// where fluid flows back, which so enters with a total pressure of zero and cannot gain energy. Does not throw.
+KOKKOS_INLINE_FUNCTION double outflow_pressure(double outward) {
+  return outward < 0.0 ? -0.5 * outward * outward : 0.0;
 }
 
 /// Cells of a team of the projection's kernels.
@@ -40,22 +48,28 @@ struct DivergenceFunctor {
     if (control.trial.stop != stepping::Stop::running) return;
     const double* u = setup.predicted.data() + g.offset(i, j, k);
     const int index[3] = {i, j, k};
-    double divergence = 0.0;
+    double divergence = 0.0, outside = 0.0;
     for (int axis = 0; axis < 3; ++axis) {
       if (g.n[axis] == 1) continue;
       const double* low = u + axis * g.component;
       const std::int64_t next =
           g.periodic[axis] && index[axis] + 1 == g.n[axis] ? (1 - g.n[axis]) * g.stride[axis] : g.stride[axis];
       divergence += g.inverse_h[axis] * (low[next] - low[0]);
+      if (setup.has_outflow) {
+        const double twice_inverse = 2.0 * g.inverse_h[axis] * g.inverse_h[axis];
+        if (index[axis] == 0 && setup.is_outflow(2 * axis))
+          outside += twice_inverse * outflow_pressure(-low[0]);
+        if (index[axis] + 1 == g.n[axis] && setup.is_outflow(2 * axis + 1))
+          outside += twice_inverse * outflow_pressure(low[next]);
+      }
     }
     const std::int64_t cell = i + g.n[0] * (j + static_cast<std::int64_t>(g.n[1]) * k);
     if (!(Kokkos::fabs(divergence) < 1e100))
       Kokkos::atomic_min(&control.first_failure, static_cast<std::uint64_t>(cell));
-    setup.pressure(cell) = divergence / (setup.step_fraction * control.trial.dt);
+    setup.divergence(cell) = divergence / (setup.step_fraction * control.trial.dt) - outside;
   }
 };
 
-/// Boundary faces of the predicted velocity: prescribed values, and a convective condition at outflows.
 /// Subtracts the pressure gradient; reduces the maximum of |u|/hx + |v|/hy + |w|/hz.
 template <class ExecutionSpace>
 struct CorrectionFunctor {
@@ -100,13 +114,13 @@ struct CorrectionFunctor {
           below = setup.pressure(cell - stride);
         else if (g.periodic[axis])
           below = setup.pressure(cell + (g.n[axis] - 1) * stride);
-        else if (is_outflow(setup.boundary, 2 * axis))
-          below = -p;  // zero on the face
+        else if (setup.is_outflow(2 * axis))
+          below = 2.0 * outflow_pressure(-value) - p;
         value -= dt * g.inverse_h[axis] * (p - below);
         if (index[axis] + 1 == g.n[axis] && !g.periodic[axis]) {
           const std::int64_t high = place + g.stride[axis];
           double last = setup.predicted(high);
-          if (is_outflow(setup.boundary, 2 * axis + 1)) last += dt * g.inverse_h[axis] * (2.0 * p);
+          if (setup.is_outflow(2 * axis + 1)) last += 2.0 * dt * g.inverse_h[axis] * (p - outflow_pressure(last));
           setup.velocity(high) = last;
         }
       }

@@ -36,16 +36,18 @@ class DiagonalizationSolver {
     _work = List(Kokkos::view_alloc(space, Kokkos::WithoutInitializing, "drogue::linear::work"), cells());
   }
 
-  /// Replaces the right-hand side, 1/m^2 times the unit of the solution, by the solution. Asynchronous;
+  /// Solves for `solution`, in its unit, with the right-hand side in that unit per m^2, which it keeps. Asynchronous;
   /// neither fences nor allocates. Throws std::invalid_argument for an array of the wrong size.
-  void enqueue_solve(const List& values) const {
-    if (values.extent(0) != cells())
-      throw std::invalid_argument("Poisson solver: the array must hold one value per cell");
-    List from = values, to = _work;
+  void enqueue_solve(const List& right_hand_side, const List& solution) const {
+    if (right_hand_side.extent(0) != cells() || solution.extent(0) != cells())
+      throw std::invalid_argument("Poisson solver: the arrays must hold one value per cell");
+    // An even number of products leaves the result in the solution.
+    List from = right_hand_side, to = _work, other = solution;
     const auto transform = [&](std::size_t axis, bool forward) {
       if (_problem.cells[axis] == 1) return;
       _product.along_axis(_problem.cells, axis, _basis[axis], forward, from, to);
-      std::swap(from, to);
+      from = to;
+      std::swap(to, other);
     };
     for (std::size_t axis = 0; axis < 3; ++axis) transform(axis, true);
     scale_spectrum(_space, SpectralScalingFunctor<ExecutionSpace>{from.data(), _eigenvalues[0], _eigenvalues[1],

@@ -71,17 +71,23 @@ class FourierSolver {
     }
   }
 
-  /// Replaces the right-hand side by the solution. Asynchronous where the execution space is. Throws
-  /// std::invalid_argument for an array of the wrong size.
-  void enqueue_solve(const List& values) const {
-    if (values.extent(0) != static_cast<std::size_t>(_problem.cells[0]) *
-                                static_cast<std::size_t>(_problem.cells[1]) *
-                                static_cast<std::size_t>(_problem.cells[2]))
-      throw std::invalid_argument("Poisson solver: the array must hold one value per cell");
-    for (std::size_t axis = 0; axis < 3; ++axis) transform(axis, 0, values.data());
-    scale_spectrum(_space, SpectralScalingFunctor<ExecutionSpace>{values.data(), _eigenvalues[0], _eigenvalues[1],
+  /// Solves for `solution`, in its unit, with the right-hand side in that unit per m^2, which it keeps. Asynchronous
+  /// where the execution space is. Throws std::invalid_argument for an array of the wrong size.
+  void enqueue_solve(const List& right_hand_side, const List& solution) const {
+    const std::size_t cells = static_cast<std::size_t>(_problem.cells[0]) *
+                              static_cast<std::size_t>(_problem.cells[1]) * static_cast<std::size_t>(_problem.cells[2]);
+    if (right_hand_side.extent(0) != cells || solution.extent(0) != cells)
+      throw std::invalid_argument("Poisson solver: the arrays must hold one value per cell");
+    const double* from = right_hand_side.data();
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      if (_plans[axis][0]) {
+        transform(axis, 0, from, solution.data());
+        from = solution.data();
+      }
+    scale_spectrum(_space, SpectralScalingFunctor<ExecutionSpace>{solution.data(), _eigenvalues[0], _eigenvalues[1],
                                                                   _eigenvalues[2], 1, _normalisation});
-    for (std::size_t axis = 0; axis < 3; ++axis) transform(axis, 1, values.data());
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      if (_plans[axis][1]) transform(axis, 1, solution.data(), solution.data());
   }
 
  private:
@@ -101,17 +107,21 @@ class FourierSolver {
     return {ny, nx, nx, 1, nx * ny};
   }
 
+  /// Plans of an axis. The forward plan of the first axis with more than one cell reads the right-hand side.
   void make_plans(std::size_t axis, const AxisTransform& transform) {
     const Planes p = planes(axis);
     const int n = _problem.cells[axis];
-    std::vector<double> scratch(static_cast<std::size_t>(_problem.cells[0]) *
-                                static_cast<std::size_t>(_problem.cells[1]) *
-                                static_cast<std::size_t>(_problem.cells[2]));
+    bool is_first = true;
+    for (std::size_t a = 0; a < axis; ++a) is_first = is_first && _problem.cells[a] == 1;
+    const std::size_t size = static_cast<std::size_t>(_problem.cells[0]) * static_cast<std::size_t>(_problem.cells[1]) *
+                             static_cast<std::size_t>(_problem.cells[2]);
+    std::vector<double> scratch(size), other(is_first ? size : 0);
     const fftw_r2r_kind kinds[2] = {transform.forward, transform.backward};
     for (std::size_t direction = 0; direction < 2; ++direction) {
-      const fftw_plan plan = fftw_plan_many_r2r(1, &n, p.lines, scratch.data(), nullptr, p.stride, p.line_distance,
-                                                scratch.data(), nullptr, p.stride, p.line_distance,
-                                                &kinds[direction], FFTW_ESTIMATE | FFTW_UNALIGNED);
+      double* from = is_first && direction == 0 ? other.data() : scratch.data();
+      const fftw_plan plan =
+          fftw_plan_many_r2r(1, &n, p.lines, from, nullptr, p.stride, p.line_distance, scratch.data(), nullptr,
+                             p.stride, p.line_distance, &kinds[direction], FFTW_ESTIMATE | FFTW_UNALIGNED);
       if (plan == nullptr) throw std::runtime_error("FFTW cannot plan a transform of length " + std::to_string(n));
       _plans[axis][direction] = Plan(plan, fftw_destroy_plan);
     }
@@ -119,19 +129,19 @@ class FourierSolver {
 
   struct TransformFunctor {
     fftw_plan plan;
-    double* values;
+    const double* from;
+    double* to;
     std::int64_t distance;
     void operator()(const int plane) const {
-      double* first = values + plane * distance;
-      fftw_execute_r2r(plan, first, first);
+      // FFTW's interface lacks const; plans of one dimension and this kind keep their input.
+      fftw_execute_r2r(plan, const_cast<double*>(from + plane * distance), to + plane * distance);
     }
   };
 
-  void transform(std::size_t axis, std::size_t direction, double* values) const {
-    if (!_plans[axis][direction]) return;
+  void transform(std::size_t axis, std::size_t direction, const double* from, double* to) const {
     const Planes p = planes(axis);
     Kokkos::parallel_for("drogue::linear::transform", Kokkos::RangePolicy<ExecutionSpace>(_space, 0, p.count),
-                         TransformFunctor{_plans[axis][direction].get(), values, p.distance});
+                         TransformFunctor{_plans[axis][direction].get(), from, to, p.distance});
   }
 
   ExecutionSpace _space;
@@ -183,16 +193,17 @@ class FourierSolver<Kokkos::Cuda> {
     _backward = make_plan(lengths, CUFFT_Z2D);
   }
 
-  /// Replaces the right-hand side, 1/m^2 times the unit of the solution, by the solution. Asynchronous; neither fences
-  /// nor allocates. Throws std::invalid_argument for an array of the wrong size.
-  void enqueue_solve(const List& values) const {
-    if (values.extent(0) != _cells)
-      throw std::invalid_argument("Poisson solver: the array must hold one value per cell");
+  /// Solves for `solution`, in its unit, with the right-hand side in that unit per m^2, which it keeps. Asynchronous;
+  /// neither fences nor allocates. Throws std::invalid_argument for an array of the wrong size.
+  void enqueue_solve(const List& right_hand_side, const List& solution) const {
+    if (right_hand_side.extent(0) != _cells || solution.extent(0) != _cells)
+      throw std::invalid_argument("Poisson solver: the arrays must hold one value per cell");
     auto* spectrum = reinterpret_cast<cufftDoubleComplex*>(_spectrum.data());
-    check(cufftExecD2Z(*_forward, values.data(), spectrum));
+    // cuFFT keeps the input of an out-of-place forward transform, though its interface lacks const.
+    check(cufftExecD2Z(*_forward, right_hand_side.data(), spectrum));
     scale_spectrum(_space, SpectralScalingFunctor<Kokkos::Cuda>{_spectrum.data(), _eigenvalues[0], _eigenvalues[1],
                                                                 _eigenvalues[2], 2, _normalisation});
-    check(cufftExecZ2D(*_backward, spectrum, values.data()));
+    check(cufftExecZ2D(*_backward, spectrum, solution.data()));
   }
 
  private:

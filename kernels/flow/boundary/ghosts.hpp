@@ -1,15 +1,8 @@
 #pragma once
 
-#include "kernels/device/memory.hpp"
-#include "kernels/flow/views.hpp"
+#include "kernels/flow/boundary/conditions.hpp"
 
 namespace drogue::flow {
-
-/// Conditions of the sides on a device.
-struct BoundaryConditions {
-  BoundaryKind kind[6];
-  double velocity[6][3];  ///< m/s
-};
 
 /// Ghost value of a component: `constant` + `factor` times the value at cell `index`.
 struct GhostValue {
@@ -17,38 +10,43 @@ struct GhostValue {
   double constant, factor;
 };
 
-/// Ghost value along one axis. `index` lies outside of [0, n) or on a boundary face; `normal`: the component is that of
-/// the axis, whose values lie on the faces, else between them.
+/// Ghost value along one axis. `index[axis]` lies outside of [0, n), on a boundary face or inside. A component normal
+/// to the axis lies on its faces, the others between them.
 ///
 /// Walls and inflows: linear extrapolation through the prescribed velocity at the side. Slip: even extension of
-/// tangential, odd extension of normal components. Outflow: constant extension.
-KOKKOS_INLINE_FUNCTION GhostValue ghost_value(const MacGrid& g, const BoundaryConditions& b, int axis, int component,
-                                              int index) {
-  const int n = g.n[axis];
+/// tangential, odd extension of normal components. Outflow: constant extension; fluid that flows back has no tangential
+/// velocity.
+template <class ExecutionSpace>
+KOKKOS_INLINE_FUNCTION GhostValue ghost_value(const MacGrid& g, const BoundaryConditions<ExecutionSpace>& b,
+                                              const List<ExecutionSpace>& velocity, int axis, int component,
+                                              const int index[3]) {
+  const int n = g.n[axis], i = index[axis];
   const bool normal = axis == component;
   if (n == 1) return {0, 0.0, 1.0};
-  if (g.periodic[axis]) {
-    const int inside = index < 0 ? index + n : index >= n ? index - n : index;
-    return {inside, 0.0, 1.0};
-  }
-  const bool low = index <= 0 && (normal || index < 0);
-  const bool high = index >= n;
-  if (!low && !high) return {index, 0.0, 1.0};
+  if (g.periodic[axis]) return {i < 0 ? i + n : i >= n ? i - n : i, 0.0, 1.0};
+  const bool low = i <= 0 && (normal || i < 0);
+  const bool high = i >= n;
+  if (!low && !high) return {i, 0.0, 1.0};
   const int side = 2 * axis + (high ? 1 : 0);
   // Mirror image across the face at 0 or n.
   const int face = high ? n : 0;
-  const int mirror = normal ? 2 * face - index : 2 * face - 1 - index;
+  const int mirror = normal ? 2 * face - i : 2 * face - 1 - i;
   switch (b.kind[side]) {
     case BoundaryKind::slip:
       if (!normal) return {mirror, 0.0, 1.0};
-      return index == face ? GhostValue{index, 0.0, 0.0} : GhostValue{mirror, 0.0, -1.0};
-    case BoundaryKind::outflow:
-      // Normal component: the value on the face is an unknown.
-      if (normal && index == face) return {index, 0.0, 1.0};
-      return {high ? (normal ? n : n - 1) : 0, 0.0, 1.0};
+      return i == face ? GhostValue{i, 0.0, 0.0} : GhostValue{mirror, 0.0, -1.0};
+    case BoundaryKind::outflow: {
+      // The normal velocity on the face is an unknown of the projection.
+      if (normal) return {face, 0.0, 1.0};
+      int at[3] = {index[0], index[1], index[2]};
+      for (int a = 0; a < 3; ++a) at[a] = at[a] < 0 ? 0 : at[a] >= g.n[a] ? g.n[a] - 1 : at[a];
+      at[axis] = face;
+      const double outward = velocity(axis * g.component + g.offset(at[0], at[1], at[2])) * (high ? 1.0 : -1.0);
+      return {high ? n - 1 : 0, 0.0, outward < 0.0 ? 0.0 : 1.0};
+    }
     default: {
-      const double value = b.velocity[side][component];
-      if (normal && index == face) return {index, value, 0.0};
+      const double value = b.value(g, side, component, index);
+      if (normal && i == face) return {i, value, 0.0};
       return {mirror, 2.0 * value, -1.0};
     }
   }
@@ -58,7 +56,7 @@ KOKKOS_INLINE_FUNCTION GhostValue ghost_value(const MacGrid& g, const BoundaryCo
 template <class ExecutionSpace>
 struct GhostFunctor {
   MacGrid grid;
-  BoundaryConditions boundary;
+  BoundaryConditions<ExecutionSpace> boundary;
   List<ExecutionSpace> velocity;
   int slab[3];                  ///< boundary layers at each side, with the boundary faces; see `launch_ghosts`
   std::int64_t slab_cells[3];   ///< cells of the slabs normal to each axis
@@ -83,9 +81,9 @@ struct GhostFunctor {
     }
     for (int c = 0; c < 3; ++c) {
       double constant = 0.0, factor = 1.0;
-      int from[3];
+      int from[3] = {index[0], index[1], index[2]};
       for (int a = 0; a < 3; ++a) {
-        const GhostValue value = ghost_value(g, boundary, a, c, index[a]);
+        const GhostValue value = ghost_value(g, boundary, velocity, a, c, from);
         from[a] = value.index;
         constant += factor * value.constant;
         factor *= value.factor;
@@ -105,10 +103,10 @@ struct GhostFunctor {
 
 /// Enqueues the fill of the ghost cells and boundary faces of a velocity field. Asynchronous.
 template <class ExecutionSpace>
-void launch_ghosts(const ExecutionSpace& space, const MacGrid& g, const BoundaryConditions& boundary,
+void launch_ghosts(const ExecutionSpace& space, const MacGrid& g, const BoundaryConditions<ExecutionSpace>& boundary,
                    const List<ExecutionSpace>& velocity) {
   GhostFunctor<ExecutionSpace> functor{g, boundary, velocity, {}, {}};
-  std::int64_t total = 0;
+  std::int64_t total = 0;  // below 2^31 for any grid that fits a device
   for (int axis = 0; axis < 3; ++axis) {
     // Layers -ghost .. 0 and n .. n + ghost - 1: the low boundary face belongs to the slab.
     functor.slab[axis] = g.ghost[axis] > 0 ? g.ghost[axis] + 1 : 0;
@@ -121,7 +119,7 @@ void launch_ghosts(const ExecutionSpace& space, const MacGrid& g, const Boundary
     functor.slab_cells[axis] = cells;
     total += cells;
   }
-  Kokkos::parallel_for("drogue::flow::ghosts", Kokkos::RangePolicy<ExecutionSpace>(space, 0, total), functor);
+  device::launch_each(space, "drogue::flow::ghosts", static_cast<int>(total), functor);
 }
 
 }  // namespace drogue::flow

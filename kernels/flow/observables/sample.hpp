@@ -1,0 +1,87 @@
+#pragma once
+
+#include "kernels/device/launch.hpp"
+#include "kernels/flow/observables/gradient.hpp"
+#include "kernels/flow/views.hpp"
+
+namespace drogue::flow {
+
+/// Number of components of a field at the cell centres.
+[[nodiscard]] constexpr int components(CellField field) {
+  return field == CellField::velocity || field == CellField::vorticity ? 3 : 1;
+}
+
+/// Evaluates a field at the cell centres, in the order of an array (nx, ny, nz, components), last index fastest.
+template <class ExecutionSpace>
+struct SampleFunctor {
+  MacGrid grid;
+  List<ExecutionSpace> velocity;  ///< m/s, with ghost cells
+  List<ExecutionSpace> pressure;  ///< kinematic, m^2/s^2
+  List<ExecutionSpace> samples;
+  double density;  ///< kg/m^3
+  CellField field;
+
+  KOKKOS_FUNCTION void operator()(const int i, const int j, const int k) const {
+    const MacGrid& g = grid;
+    const double* u = velocity.data() + g.offset(i, j, k);
+    const std::int64_t cell = (static_cast<std::int64_t>(i) * g.n[1] + j) * g.n[2] + k;
+    double* out = samples.data() + cell * components(field);
+    switch (field) {
+      case CellField::velocity:
+        for (int c = 0; c < 3; ++c) {
+          const double* q = u + c * g.component;
+          out[c] = 0.5 * (q[0] + q[edge_step(g, c)]);
+        }
+        break;
+      case CellField::vorticity: {
+        double d[3][3];
+        centred_gradient(g, u, d);
+        for (int c = 0; c < 3; ++c) out[c] = d[(c + 2) % 3][(c + 1) % 3] - d[(c + 1) % 3][(c + 2) % 3];
+        break;
+      }
+      case CellField::pressure:
+        out[0] = density * pressure(static_cast<std::size_t>(i + g.n[0] * (j + static_cast<std::int64_t>(g.n[1]) * k)));
+        break;
+      case CellField::q_criterion: {
+        double d[3][3], sum = 0.0;
+        centred_gradient(g, u, d);
+        for (int a = 0; a < 3; ++a)
+          for (int b = 0; b < 3; ++b) sum -= 0.5 * d[a][b] * d[b][a];
+        out[0] = sum;
+        break;
+      }
+    }
+  }
+};
+
+/// Copies a component between an array with ghost cells and a contiguous one, x fastest.
+template <class ExecutionSpace>
+struct PackFunctor {
+  MacGrid grid;
+  List<ExecutionSpace> field, contiguous;
+  std::int64_t first;  ///< of the component
+  int extent[3];
+  bool to_field;
+
+  KOKKOS_FUNCTION void operator()(const int i, const int j, const int k) const {
+    const auto place = static_cast<std::size_t>(first + grid.offset(i, j, k));
+    const auto at = static_cast<std::size_t>(i + extent[0] * (j + static_cast<std::int64_t>(extent[1]) * k));
+    if (to_field)
+      field(place) = contiguous(at);
+    else
+      contiguous(at) = field(place);
+  }
+};
+
+/// Calls `functor(i, j, k)` for all indices below `extent`, i fastest. Asynchronous.
+template <class ExecutionSpace, class Functor>
+void launch_cells(const ExecutionSpace& space, const char* label, const int extent[3], const Functor& functor) {
+  using Policy = Kokkos::MDRangePolicy<ExecutionSpace, Kokkos::Rank<3, Kokkos::Iterate::Left, Kokkos::Iterate::Left>>;
+  Kokkos::parallel_for(
+      label,
+      Kokkos::Experimental::require(Policy(space, {0, 0, 0}, {extent[0], extent[1], extent[2]}),
+                                    Kokkos::Experimental::WorkItemProperty::HintLightWeight),
+      functor);
+}
+
+}  // namespace drogue::flow
