@@ -25,7 +25,8 @@ struct AxisTransform {
   double normalisation;
 };
 
-/// Transform whose basis diagonalises the second difference with the given conditions, for n cells.
+/// Transform whose basis diagonalises the second difference with the given conditions, for n cells. Does not
+/// throw.
 inline AxisTransform axis_transform(const AxisConditions& axis, int n) {
   if (axis.periodic) return {FFTW_R2HC, FFTW_HC2R, 1.0 / n};
   const bool low = axis.low == EndCondition::neumann, high = axis.high == EndCondition::neumann;
@@ -47,7 +48,7 @@ class FourierSolver {
  public:
   using List = Kokkos::View<double*, typename ExecutionSpace::memory_space>;
 
-  /// Whether the solver can treat the problem: always on a host.
+  /// Whether the solver can treat the problem: always on a host. Does not throw.
   static bool supports(const PoissonProblem& /*problem*/) { return true; }
 
   /// Makes the plans; blocks. Throws std::runtime_error if FFTW cannot plan.
@@ -157,15 +158,18 @@ class FourierSolver<Kokkos::Cuda> {
  public:
   using List = Kokkos::View<double*, Kokkos::CudaSpace>;
 
+  /// Whether all axes are periodic or have one cell. Does not throw.
   static bool supports(const PoissonProblem& problem) {
     for (std::size_t axis = 0; axis < 3; ++axis)
       if (problem.cells[axis] > 1 && !problem.axes[axis].periodic) return false;
     return true;
   }
 
+  /// Makes the plans; blocks. Throws std::invalid_argument for an unsupported problem and std::runtime_error if
+  /// cuFFT cannot plan.
   FourierSolver(const Kokkos::Cuda& space, const PoissonProblem& problem) : _space(space) {
     if (!supports(problem)) throw std::invalid_argument("the Fourier solver on CUDA needs periodic axes");
-    // cuFFT wants the slowest axis first; axes of one cell have no transform.
+    // The order of cuFFT is the slowest axis first; axes of one cell have no transform.
     std::vector<int> lengths;
     std::size_t modes = 1;
     bool halved = false;
@@ -189,6 +193,8 @@ class FourierSolver<Kokkos::Cuda> {
     _backward = make_plan(lengths, CUFFT_Z2D);
   }
 
+  /// Solves for `solution`, in its unit, with the right-hand side in that unit per m^2, which it keeps. Asynchronous;
+  /// neither fences nor allocates. Throws std::invalid_argument for an array of the wrong size.
   void enqueue_solve(const List& right_hand_side, const List& solution) const {
     if (right_hand_side.extent(0) != _cells || solution.extent(0) != _cells)
       throw std::invalid_argument("Poisson solver: the arrays must hold one value per cell");
