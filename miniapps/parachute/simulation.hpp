@@ -41,6 +41,8 @@ class Simulation final : public framework::Simulation {
   /// Root-mean-square divergence of the present state, 1/s.
   [[nodiscard]] double divergence() { return _solver->totals().divergence_rms; }
 
+  [[nodiscard]] flow::Solver& solver() { return *_solver; }
+
  private:
   /// Values of the fields of one output, in the order of the scene.
   using Snapshot = std::vector<std::vector<double>>;

@@ -4,13 +4,6 @@
 #include <string>
 
 namespace drogue::parachute_app {
-namespace {
-
-/// True if `value` exceeds `largest` or is NaN, and false once `largest` is NaN: no check passes on an
-/// invalid state.
-bool exceeds(double value, double largest) { return value > largest || std::isnan(value); }
-
-}  // namespace
 
 template <class Self, class Number>
 void RunStatistics::visit(Self& self, const Number& number) {

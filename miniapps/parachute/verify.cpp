@@ -4,6 +4,7 @@
 #include "miniapps/parachute/functions.hpp"
 #include "miniapps/parachute/profile.hpp"
 #include "miniapps/parachute/simulation.hpp"
+#include "miniapps/parachute/statistics.hpp"
 
 namespace drogue::parachute_app {
 namespace {
@@ -16,7 +17,7 @@ struct ErrorSums {
     volume += weight;
     absolute += weight * std::abs(error);
     square += weight * error * error;
-    if (!(std::abs(error) <= largest)) largest = std::abs(error);
+    if (exceeds(std::abs(error), largest)) largest = std::abs(error);
   }
 };
 
@@ -76,7 +77,7 @@ std::map<std::string, double> Simulation::error_norms() {
     norms["l1_velocity"] += sums.absolute / sums.volume;
     norms["l2_velocity"] += sums.square / sums.volume;
     double& largest = norms["linf_velocity"];
-    if (!(sums.largest <= largest)) largest = sums.largest;
+    if (exceeds(sums.largest, largest)) largest = sums.largest;
   }
   norms["l2_velocity"] = std::sqrt(norms["l2_velocity"]);
   if (exact.pressure.empty()) return norms;
@@ -130,7 +131,7 @@ void Simulation::check_profiles(run::ResultDocument& result) {
       double largest = 0.0;
       for (const auto& [where, value] : profile.points) {
         const double deviation = std::abs(line(where) - value);
-        if (!(deviation <= largest)) largest = deviation;
+        if (exceeds(deviation, largest)) largest = deviation;
       }
       result.add_check(name, largest, profile.tolerance);
     }

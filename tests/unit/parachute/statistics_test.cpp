@@ -57,6 +57,8 @@ TEST(RunStatistics, NonFiniteEnergyFailsEveryTolerance) {
   RunStatistics statistics;
   statistics.begin(at(0, 0.0, 2.0, 1.0));
   statistics.add(at(1, 0.1, std::numeric_limits<double>::quiet_NaN(), 1.0));
+  statistics.add(at(2, 0.2, 1.9, 1.0));
+  statistics.add(at(3, 0.3, 1.8, 1.0));
   EXPECT_FALSE(std::abs(statistics.energy_growth()) <= 1e300);
   EXPECT_FALSE(std::abs(statistics.peak_dissipation()) <= 1e300);
 }
