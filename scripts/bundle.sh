@@ -74,7 +74,7 @@ find "$out" -type f -perm -u+x -exec ldd {} + | awk '/=> \// { print $3 }' | sor
 done
 python3 -B scripts/lib/drop_runpath.py "$out"/lib/*
 
-for app in gas springs options perf; do
+for app in gas springs options parachute perf; do
   launcher="$out/bin/drogue-$app"
   for kind in host cuda; do
     [ ! -e "$out/bin/drogue.$kind" ] || ln -s "drogue.$kind" "$launcher.$kind"

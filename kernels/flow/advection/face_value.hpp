@@ -1,10 +1,20 @@
 #pragma once
 
+#include "kernels/device/memory.hpp"
 #include "kernels/device/pack.hpp"
 #include "kernels/flow/parameters.hpp"
 #include "kernels/gas/flux/weno.hpp"
 
 namespace drogue::flow {
+
+/// Value or pack of consecutive values of a field that the kernel does not write.
+template <class R>
+KOKKOS_INLINE_FUNCTION R load_field(const double* pointer) {
+  if constexpr (std::is_same_v<R, double>)
+    return device::load_constant(pointer);
+  else
+    return device::Access<R>::load(pointer);
+}
 
 /// Value at the face between q0 and p1 from the cells m2, m1, q0 on the upwind side and p1, p2 on the other,
 /// fifth order in smooth flow. Jiang and Shu 1996, eq. (2.17), in difference form with one division:
@@ -26,13 +36,12 @@ KOKKOS_INLINE_FUNCTION R upwind_face_value(R m2, R m1, R q0, R p1, R p2, R epsil
 /// cell behind the face, `stride` numbers apart), m^2/s^2 if q is a velocity.
 template <Advection scheme, class R>
 KOKKOS_INLINE_FUNCTION R advective_flux(R speed, const double* q, std::int64_t stride, R epsilon) {
-  using Access = device::Access<R>;
-  const R q_m1 = Access::load(q - stride), q_0 = Access::load(q);
+  const R q_m1 = load_field<R>(q - stride), q_0 = load_field<R>(q);
   if constexpr (scheme == Advection::central) {
     return speed * (0.5 * (q_m1 + q_0));
   } else {
-    const R q_m3 = Access::load(q - 3 * stride), q_m2 = Access::load(q - 2 * stride),
-            q_1 = Access::load(q + stride), q_2 = Access::load(q + 2 * stride);
+    const R q_m3 = load_field<R>(q - 3 * stride), q_m2 = load_field<R>(q - 2 * stride),
+            q_1 = load_field<R>(q + stride), q_2 = load_field<R>(q + 2 * stride);
     const auto forward = speed > R(0.0);
     return speed * upwind_face_value<scheme>(device::select(forward, q_m3, q_2), device::select(forward, q_m2, q_1),
                                              device::select(forward, q_m1, q_0), device::select(forward, q_0, q_m1),

@@ -3,6 +3,7 @@
 #include "kernels/device/memory.hpp"
 #include "kernels/flow/advection/face_value.hpp"
 #include "kernels/flow/advection/momentum.hpp"
+#include "kernels/flow/launch.hpp"
 
 namespace drogue::flow {
 
@@ -12,19 +13,15 @@ namespace drogue::flow {
 template <Advection scheme, class R>
 KOKKOS_INLINE_FUNCTION R momentum_flux(const double* carried, const double* carrier, std::int64_t stride_c,
                                        std::int64_t stride_d, double nu_over_h, R epsilon) {
-  using Access = device::Access<R>;
-  const R speed = 0.5 * (Access::load(carrier - stride_c) + Access::load(carrier));
+  const R speed = 0.5 * (load_field<R>(carrier - stride_c) + load_field<R>(carrier));
   return advective_flux<scheme, R>(speed, carried, stride_d, epsilon) -
-         nu_over_h * (Access::load(carried) - Access::load(carried - stride_d));
+         nu_over_h * (load_field<R>(carried) - load_field<R>(carried - stride_d));
 }
-
-/// Threads of a team on a device, as columns of a tile of 32 x 4 cells.
-inline constexpr int tile_x = 32, tile_y = 4;
 
 /// Momentum stage on a device. A thread marches along z and keeps the fluxes through the face between two planes.
 template <class ExecutionSpace, Advection scheme, bool adams_bashforth>
 struct MomentumFunctor {
-  using Policy = Kokkos::TeamPolicy<ExecutionSpace, Kokkos::LaunchBounds<tile_x * tile_y, 3>>;
+  using Policy = Kokkos::TeamPolicy<ExecutionSpace, Kokkos::LaunchBounds<tile_x * tile_y, 4>>;
   using Member = typename Policy::member_type;
 
   MomentumSetup<ExecutionSpace> setup;
@@ -45,7 +42,10 @@ struct MomentumFunctor {
     if (g.n[2] > 1)
       for (int c = 0; c < 3; ++c) below[c] = flux(c, 2, at);
     for (int k = k_begin; k < k_end; ++k, at += g.stride[2]) {
-#pragma unroll
+      double value[3];
+#if defined(__CUDA_ARCH__)
+#pragma unroll 1  // code for three components would not fit the instruction cache: up to five times slower
+#endif
       for (int c = 0; c < 3; ++c) {
         double rate = setup.acceleration[c];
         if (g.n[0] > 1) rate -= g.inverse_h[0] * (flux(c, 0, at + g.stride[0]) - flux(c, 0, at));
@@ -56,15 +56,18 @@ struct MomentumFunctor {
           below[c] = above;
         }
         const std::int64_t place = c * g.component + at;
-        double value = factors.stage * setup.stage(place) + factors.rate * rate;
+        value[c] = factors.stage * device::load_constant(setup.stage.data() + place) + factors.rate * rate;
         if constexpr (adams_bashforth) {
-          value += factors.old_rate * setup.old_rate(place);
+          value[c] += factors.old_rate * setup.old_rate(place);
           setup.old_rate(place) = rate;
         } else {
-          value += factors.state * setup.state(place);
+          value[c] += factors.state * device::load_constant(setup.state.data() + place);
         }
-        if (setup.force.data() != nullptr) value += factors.force * setup.force(place);
-        setup.out(place) = value;
+      }
+      for (int c = 0; c < 3; ++c) {
+        const std::int64_t place = c * g.component + at;
+        if (setup.force.data() != nullptr) value[c] += factors.force * setup.force(place);
+        setup.out(place) = value[c];
       }
     }
   }
@@ -202,8 +205,7 @@ void launch_momentum(const ExecutionSpace& space, const MomentumSetup<ExecutionS
     using Functor = MomentumFunctor<ExecutionSpace, scheme, adams_bashforth>;
     const int tiles_x = parts(g.n[0], tile_x), tiles_y = parts(g.n[1], tile_y);
     // Long marches evaluate fewer fluxes twice; short ones occupy the device with a small grid.
-    int planes = 64;
-    while (planes > 4 && tiles_x * tiles_y * parts(g.n[2], planes) < 132 * 6) planes /= 2;
+    const int planes = march_planes(tiles_x * tiles_y, g.n[2], 16);
     typename Functor::Policy policy(space, tiles_x * tiles_y * parts(g.n[2], planes), tile_x * tile_y);
     Kokkos::parallel_for("drogue::flow::momentum",
                          Kokkos::Experimental::require(policy, Kokkos::Experimental::WorkItemProperty::HintLightWeight),

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "kernels/device/launch.hpp"
+#include "kernels/flow/launch.hpp"
 #include "kernels/flow/observables/gradient.hpp"
 #include "kernels/flow/views.hpp"
 
@@ -72,16 +72,5 @@ struct PackFunctor {
       contiguous(at) = field(place);
   }
 };
-
-/// Calls `functor(i, j, k)` for all indices below `extent`, i fastest. Asynchronous.
-template <class ExecutionSpace, class Functor>
-void launch_cells(const ExecutionSpace& space, const char* label, const int extent[3], const Functor& functor) {
-  using Policy = Kokkos::MDRangePolicy<ExecutionSpace, Kokkos::Rank<3, Kokkos::Iterate::Left, Kokkos::Iterate::Left>>;
-  Kokkos::parallel_for(
-      label,
-      Kokkos::Experimental::require(Policy(space, {0, 0, 0}, {extent[0], extent[1], extent[2]}),
-                                    Kokkos::Experimental::WorkItemProperty::HintLightWeight),
-      functor);
-}
 
 }  // namespace drogue::flow

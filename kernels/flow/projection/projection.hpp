@@ -5,6 +5,7 @@
 #include "kernels/device/memory.hpp"
 #include "kernels/device/team_maximum.hpp"
 #include "kernels/flow/boundary/conditions.hpp"
+#include "kernels/flow/launch.hpp"
 #include "kernels/flow/views.hpp"
 
 namespace drogue::flow {
@@ -33,9 +34,6 @@ struct ProjectionSetup {
 KOKKOS_INLINE_FUNCTION double outflow_pressure(double outward) {
   return outward < 0.0 ? -0.5 * outward * outward : 0.0;
 }
-
-/// Cells of a team of the projection's kernels.
-inline constexpr int projection_team = 128;
 
 /// Right-hand side of the pressure equation, div u / dt, 1/s^2, and check that the predicted velocity is finite.
 template <class ExecutionSpace>
@@ -76,23 +74,26 @@ struct CorrectionFunctor {
   using Policy = Kokkos::TeamPolicy<ExecutionSpace>;
   using Member = typename Policy::member_type;
   ProjectionSetup<ExecutionSpace> setup;
-  int segments;     ///< teams of a row
-  int team_cells;   ///< cells of a team
+  int tile_width, tile_height;  ///< columns of a team
+  int tiles_x, tiles_y, planes;  ///< planes that a thread treats
 
   KOKKOS_FUNCTION void operator()(const Member& member) const {
     const MacGrid& g = setup.grid;
     Control& control = setup.control();
     if (control.trial.stop != stepping::Stop::running || control.first_failure != no_failure) return;
     const double dt = setup.step_fraction * control.trial.dt;
-    const int row = member.league_rank() / segments;
-    const int j = row % g.n[1], k = row / g.n[1];
-    const int begin = member.league_rank() % segments * team_cells;
-    const int end = begin + team_cells < g.n[0] ? begin + team_cells : g.n[0];
+    const int tile = member.league_rank();
+    const int i_begin = tile % tiles_x * tile_width, j_begin = tile / tiles_x % tiles_y * tile_height;
+    const int k_begin = tile / (tiles_x * tiles_y) * planes;
+    const int k_end = k_begin + planes < g.n[2] ? k_begin + planes : g.n[2];
     double largest = 0.0;
-    for (int i = begin + member.team_rank(); i < end; i += member.team_size()) {
-      const double rate = correct(i, j, k, dt);
-      largest = rate > largest || !(rate == rate) ? rate : largest;
-    }
+    for (int k = k_begin; k < k_end; ++k)
+      for (int column = member.team_rank(); column < tile_width * tile_height; column += member.team_size()) {
+        const int i = i_begin + column % tile_width, j = j_begin + column / tile_width;
+        if (i >= g.n[0] || j >= g.n[1]) continue;
+        const double rate = correct(i, j, k, dt);
+        largest = rate > largest || !(rate == rate) ? rate : largest;
+      }
     device::raise_to_team_maximum(member, control.next_rate, largest);
   }
 
@@ -134,10 +135,7 @@ struct CorrectionFunctor {
 /// Enqueues the right-hand side of the pressure equation. Asynchronous.
 template <class ExecutionSpace>
 void launch_divergence(const ExecutionSpace& space, const ProjectionSetup<ExecutionSpace>& setup) {
-  using Policy = Kokkos::MDRangePolicy<ExecutionSpace, Kokkos::Rank<3, Kokkos::Iterate::Left, Kokkos::Iterate::Left>>;
-  const int* n = setup.grid.n;
-  Kokkos::parallel_for("drogue::flow::divergence", Policy(space, {0, 0, 0}, {n[0], n[1], n[2]}),
-                       DivergenceFunctor<ExecutionSpace>{setup});
+  launch_cells(space, "drogue::flow::divergence", setup.grid.n, DivergenceFunctor<ExecutionSpace>{setup});
 }
 
 /// Enqueues the subtraction of the pressure gradient. Asynchronous.
@@ -145,11 +143,16 @@ template <class ExecutionSpace>
 void launch_correction(const ExecutionSpace& space, const ProjectionSetup<ExecutionSpace>& setup) {
   using Functor = CorrectionFunctor<ExecutionSpace>;
   const int* n = setup.grid.n;
+  const auto parts = [](int count, int size) { return (count + size - 1) / size; };
   const bool on_host = device::is_host<ExecutionSpace>;
-  const int cells = on_host ? n[0] : projection_team;
-  const int segments = (n[0] + cells - 1) / cells;
-  typename Functor::Policy policy(space, segments * n[1] * n[2], on_host ? 1 : projection_team);
-  Kokkos::parallel_for("drogue::flow::correction", policy, Functor{setup, segments, cells});
+  // A team of a host treats rows. A tile of a device marches along z, so that few teams update the maximum.
+  const int width = on_host ? n[0] : tile_x, height = on_host ? 1 : tile_y;
+  const int tiles_x = parts(n[0], width), tiles_y = parts(n[1], height);
+  const int planes = on_host ? 1 : march_planes(tiles_x * tiles_y, n[2], 16);
+  typename Functor::Policy policy(space, tiles_x * tiles_y * parts(n[2], planes), on_host ? 1 : tile_x * tile_y);
+  Kokkos::parallel_for("drogue::flow::correction",
+                       Kokkos::Experimental::require(policy, Kokkos::Experimental::WorkItemProperty::HintLightWeight),
+                       Functor{setup, width, height, tiles_x, tiles_y, planes});
 }
 
 }  // namespace drogue::flow
