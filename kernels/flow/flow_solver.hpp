@@ -192,7 +192,7 @@ PackFunctor<ExecutionSpace> FlowSolver<ExecutionSpace>::packing(StateField field
   if (size != static_cast<std::size_t>(shape[0]) * static_cast<std::size_t>(shape[1]) * static_cast<std::size_t>(shape[2]))
     throw std::invalid_argument("flow solver: an array of the state has the wrong length");
   return {_grid,    is_rate ? _rate : _velocity,        _predicted, (index % 3) * _grid.component,
-          {shape[0], shape[1], shape[2]}, to_field};
+          {shape[0], shape[1], shape[2]}, to_field, is_rate && shape != _parameters.cells ? index % 3 : -1};
 }
 
 template <class ExecutionSpace>

@@ -42,9 +42,9 @@ void check_net_inflow(const Parameters& p) {
 
 std::array<int, 3> extents(const Parameters& p, StateField field) {
   std::array<int, 3> shape = p.cells;
-  const auto index = static_cast<std::size_t>(field);
-  if (field <= StateField::velocity_z && p.cells[index] > 1 && p.boundary[2 * index].kind != BoundaryKind::periodic)
-    ++shape[index];
+  if (field == StateField::pressure) return shape;
+  const std::size_t axis = static_cast<std::size_t>(field) % 3;
+  if (p.cells[axis] > 1 && p.boundary[2 * axis].kind != BoundaryKind::periodic) ++shape[axis];
   return shape;
 }
 

@@ -58,8 +58,8 @@ class Solver {
   [[nodiscard]] virtual const char* pressure_solver() const = 0;
 };
 
-/// Shape of an array of the state, x first: the cells, with one more along axis c for component c of the velocity if
-/// axis c is not periodic and has more than one cell. Rates have the shape of the cells. Does not throw.
+/// Shape of an array of the state, x first: the cells, with one more along axis c for component c of the velocity or rate
+/// if axis c is not periodic and has more than one cell. Does not throw.
 [[nodiscard]] std::array<int, 3> extents(const Parameters& parameters, StateField field);
 
 /// Throws std::invalid_argument, with one sentence that names the fault, for parameters out of range or boundary
