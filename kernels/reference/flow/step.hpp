@@ -17,8 +17,8 @@ struct FlowState {
 
 /// Subtracts dt times the pressure gradient that makes `u` free of divergence, by conjugate gradients to round-off. Returns
 /// the kinematic pressure, m^2/s^2, of mean zero if it is determined up to a constant. On outflows the pressure is zero,
-/// and minus half the squared normal velocity where fluid enters.
-std::vector<double> project(const FlowDomain& domain, StaggeredField& u, double dt);
+/// and, if it `resists_backflow`, minus half the squared normal velocity where fluid enters.
+std::vector<double> project(const FlowDomain& domain, StaggeredField& u, double dt, bool resists_backflow = true);
 
 /// Step of Adams-Bashforth of second order from `time`, with a variable dt (s); the first step is Euler's.
 [[nodiscard]] FlowState adams_bashforth_step(const FlowDomain& domain, const FlowState& state, double time, double dt);
