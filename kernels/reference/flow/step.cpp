@@ -11,7 +11,8 @@ using flow::BoundaryKind;
 namespace {
 
 /// Linear combination of fields.
-StaggeredField combine(const FlowDomain& domain, std::initializer_list<std::pair<double, const StaggeredField*>> terms) {
+StaggeredField combine(const FlowDomain& domain,
+                       std::initializer_list<std::pair<double, const StaggeredField*>> terms) {
   StaggeredField sum = domain.zero_field();
   for (const auto& [factor, field] : terms)
     for (std::size_t c = 0; c < 3; ++c)
@@ -105,7 +106,8 @@ FlowState adams_bashforth_step(const FlowDomain& domain, const FlowState& state,
 }
 
 FlowState runge_kutta_step(const FlowDomain& domain, const FlowState& state, double time, double dt) {
-  /// Stage: result = a U + b (S + dt L(S)), an approximation at the time fraction `end`; S at the fraction `begin`.
+  /// Stage: result = a U + b (S + dt L(S)), an approximation at the time fraction `end`; S at the fraction
+  /// `begin`.
   struct Stage {
     double a, b, begin, end;
   };

@@ -18,7 +18,8 @@ constexpr Advection schemes[] = {Advection::central, Advection::weno_js, Advecti
 
 constexpr double drift[3] = {0.8, -0.5, 0.0};
 
-/// Two-dimensional vortices of Taylor and Green, m/s, that drift with a uniform flow, s and kinematic viscosity given.
+/// Two-dimensional vortices of Taylor and Green, m/s, that drift with a uniform flow, s and kinematic
+/// viscosity given.
 StaggeredField taylor_green(const FlowDomain& domain, double time) {
   const double decay = std::exp(-2.0 * domain.parameters().viscosity * time);
   return sampled_field(domain, [&](std::size_t c, const reference::Point& point) {
@@ -59,7 +60,8 @@ TEST(FlowConvergence, IsOfSecondOrderInSpaceForDriftingVortices) {
         Parameters p = taylor_green_parameters(n, scheme, time);
         p.cfl = 0.3;
         const FlowDomain domain(p);
-        errors.push_back(rms_difference(solution(p, taylor_green(domain, 0.0), 1.0), taylor_green(domain, 1.0)));
+        errors.push_back(
+            rms_difference(solution(p, taylor_green(domain, 0.0), 1.0), taylor_green(domain, 1.0)));
       }
       // The errors of upwind-biased advection, of fifth order, and of the rest partly cancel on coarse grids.
       EXPECT_GE(orders(errors).back(), 1.9) << static_cast<int>(scheme);
@@ -88,7 +90,8 @@ TEST(FlowConvergence, AdamsBashforthIsOfSecondOrderInTime) {
 }
 
 TEST(FlowConvergence, RungeKuttaIsOfThirdOrderInTimeWithSmoothFluxes) {
-  for (const double order : orders(time_errors(taylor_green_parameters(24, Advection::central, TimeScheme::rk3))))
+  for (const double order :
+       orders(time_errors(taylor_green_parameters(24, Advection::central, TimeScheme::rk3))))
     EXPECT_GE(order, 2.8);
 }
 
