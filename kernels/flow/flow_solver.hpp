@@ -93,7 +93,7 @@ class FlowSolver {
   void enqueue_step(const ExecutionSpace& space) const;
   void enqueue_stage(const ExecutionSpace& space, const MomentumSetup<ExecutionSpace>& setup, const Values& result,
                      double fraction, double time_fraction) const;
-  void enqueue_projection(const ExecutionSpace& space, const Values& result, double fraction) const;
+  void enqueue_projection(const ExecutionSpace& space, const Values& result, double fraction, bool resists_backflow) const;
 
   const device::Instance<ExecutionSpace>* _instance;
   Parameters _parameters;
@@ -192,7 +192,7 @@ PackFunctor<ExecutionSpace> FlowSolver<ExecutionSpace>::packing(StateField field
   if (size != static_cast<std::size_t>(shape[0]) * static_cast<std::size_t>(shape[1]) * static_cast<std::size_t>(shape[2]))
     throw std::invalid_argument("flow solver: an array of the state has the wrong length");
   return {_grid,    is_rate ? _rate : _velocity,        _predicted, (index % 3) * _grid.component,
-          {shape[0], shape[1], shape[2]}, to_field};
+          {shape[0], shape[1], shape[2]}, to_field, is_rate && shape != _parameters.cells ? index % 3 : -1};
 }
 
 template <class ExecutionSpace>
@@ -286,14 +286,14 @@ Totals FlowSolver<ExecutionSpace>::totals() {
 template <class ExecutionSpace>
 void FlowSolver<ExecutionSpace>::start() {
   Control control{};
-  control.trial.dt = 1.0;  // the initial projection has no time step; any dt gives the same velocity
+  control.trial.dt = 1.0;  // the initial projection has no time step; without a pressure on outflows, any dt gives the same velocity
   control.trial.stop = Stop::running;
   control.first_failure = no_failure;
   write_control(control);
   _boundary.enqueue_evaluation(space(), _control, {0.0, true});
   launch_ghosts(space(), _grid, _boundary.conditions(), _velocity);
   device::copy(space(), _predicted, _velocity);
-  enqueue_projection(space(), _velocity, 1.0);
+  enqueue_projection(space(), _velocity, 1.0, false);
   control = read_control();
   control.now.rate = control.first_failure == no_failure
                          ? control.next_rate
@@ -389,14 +389,14 @@ void FlowSolver<ExecutionSpace>::enqueue_stage(const ExecutionSpace& space, cons
   dispatch_momentum(space, setup, _parameters.advection);
   if (_boundary.changes()) _boundary.enqueue_evaluation(space, _control, {time_fraction, false});
   launch_boundary_faces(space, setup, _boundary.conditions());
-  enqueue_projection(space, result, fraction);
+  enqueue_projection(space, result, fraction, _boundary.has_outflow());
 }
 
 template <class ExecutionSpace>
 void FlowSolver<ExecutionSpace>::enqueue_projection(const ExecutionSpace& space, const Values& result,
-                                                    double fraction) const {
+                                                    double fraction, bool resists_backflow) const {
   const ProjectionSetup<ExecutionSpace> setup{_grid,     _boundary.conditions(), _predicted, result, _divergence,
-                                              _pressure, _control,               fraction,   _boundary.has_outflow()};
+                                              _pressure, _control,               fraction,   resists_backflow};
   launch_divergence(space, setup);
   std::visit([&](const auto& poisson) { poisson.enqueue_solve(_divergence, _pressure); }, *_poisson);
   launch_correction(space, setup);

@@ -81,7 +81,7 @@ struct Parameters {
   PressureSolver pressure_solver = PressureSolver::automatic;
   double pressure_tolerance = 1e-10;  ///< of an iterative solver: relative residual
   bool external_force = false;  ///< the solver has a force field that other kernels add to before each step
-  double cfl = 0.5;       ///< dt = cfl / max(|u|/hx + |v|/hy + |w|/hz), also limited by explicit diffusion
+  double cfl = 0.5;       ///< 1/dt = max(|u|/hx + |v|/hy + |w|/hz) / cfl + 1/dt of explicit diffusion
   double fixed_dt = 0.0;  ///< s; a positive value replaces the CFL condition
   double max_dt = 0.0;    ///< s; a positive value is an upper bound of dt, needed if the fluid is at rest
   std::int64_t max_steps = 1'000'000'000;

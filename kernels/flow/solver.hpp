@@ -20,11 +20,12 @@ class Solver {
  public:
   virtual ~Solver() = default;
 
-  /// Sets an array of the state. Its shape is that of `extents`, x fastest. Throws std::invalid_argument for a span of
-  /// the wrong length or an array that the time scheme does not have.
+  /// Sets an array of the state, in the unit of `StateField` (m/s, m/s^2 or m^2/s^2). Its shape is that of
+  /// `extents`, x fastest. Throws std::invalid_argument for a span of the wrong length or an array that the time scheme does
+  /// not have.
   virtual void upload(StateField field, std::span<const double> values) = 0;
 
-  /// Copies an array of the state. Throws as `upload` does.
+  /// Copies an array of the state, in the unit of `StateField` (m/s, m/s^2 or m^2/s^2). Throws as `upload` does.
   virtual void download(StateField field, std::span<double> values) = 0;
 
   /// Makes the uploaded velocity the initial state at time 0 s and step 0: sets the prescribed values on the sides and
@@ -58,8 +59,8 @@ class Solver {
   [[nodiscard]] virtual const char* pressure_solver() const = 0;
 };
 
-/// Shape of an array of the state, x first: the cells, with one more along axis c for component c of the velocity and its
-/// rate if axis c is not periodic and has more than one cell. Does not throw.
+/// Shape of an array of the state, x first: the cells, with one more along axis c for component c of the velocity or rate
+/// if axis c is not periodic and has more than one cell. Does not throw.
 [[nodiscard]] std::array<int, 3> extents(const Parameters& parameters, StateField field);
 
 /// Throws std::invalid_argument, with one sentence that names the fault, for parameters out of range or boundary

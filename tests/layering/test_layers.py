@@ -69,8 +69,19 @@ class EachRuleCatchesItsBreach(unittest.TestCase):
         self.assert_caught("kernels/gas/x.hpp", '"common/program/failure.hpp"', "may only use")
         self.assert_caught("kernels/gas/x.hpp", '"kernels/reference/gas/weno.hpp"', "independent")
 
+    def test_hypre_alone_needs_mpi(self):
+        self.assertEqual([], layers.violations("kernels/linear/poisson/hypre_x.cpp", "#include <mpi.h>\n"))
+        self.assert_caught("kernels/linear/poisson/x.cpp", "<mpi.h>", "does without")
+        self.assert_caught("kernels/linear/poisson/hypre_x.cpp", "<fstream>", "does without")
+
     def test_layer_without_folder(self):
-        files = ["common/a.hpp", "kernels/gas/a.hpp", "kernels/reference/gas/a.hpp", "miniapps/framework/a.hpp"]
+        files = [
+            "common/a.hpp",
+            "kernels/gas/a.hpp",
+            "kernels/linear/poisson/hypre_a.cpp",
+            "kernels/reference/gas/a.hpp",
+            "miniapps/framework/a.hpp",
+        ]
         self.assertEqual(["perf/"], layers.without_folder(files))
 
     def test_miniapps(self):

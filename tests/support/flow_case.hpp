@@ -37,7 +37,8 @@ StaggeredField sampled_field(const FlowDomain& domain, const Function& function)
   domain.for_each_face([&](std::size_t c, const reference::GridIndex& face) {
     reference::Point point{};
     for (std::size_t axis = 0; axis < 3; ++axis)
-      point[axis] = domain.parameters().low[axis] + (face[axis] + (axis == c ? 0.0 : 0.5)) * domain.spacing(axis);
+      point[axis] =
+          domain.parameters().low[axis] + (face[axis] + (axis == c ? 0.0 : 0.5)) * domain.spacing(axis);
     field[c][domain.at(c, face)] = function(c, point);
   });
   return field;
@@ -52,7 +53,8 @@ inline std::vector<double> download(flow::Solver& solver, const flow::Parameters
 }
 
 inline StaggeredField velocity(flow::Solver& solver, const flow::Parameters& p) {
-  return {download(solver, p, flow::StateField::velocity_x), download(solver, p, flow::StateField::velocity_y),
+  return {download(solver, p, flow::StateField::velocity_x),
+          download(solver, p, flow::StateField::velocity_y),
           download(solver, p, flow::StateField::velocity_z)};
 }
 
@@ -78,7 +80,8 @@ inline double largest_difference(std::vector<double> a, const std::vector<double
 }
 
 inline double largest_difference(const StaggeredField& a, const StaggeredField& b) {
-  return std::max({largest_difference(a[0], b[0]), largest_difference(a[1], b[1]), largest_difference(a[2], b[2])});
+  return std::max(
+      {largest_difference(a[0], b[0]), largest_difference(a[1], b[1]), largest_difference(a[2], b[2])});
 }
 
 /// Root mean square of the difference over all faces.

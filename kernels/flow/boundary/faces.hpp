@@ -7,7 +7,8 @@ namespace drogue::flow {
 
 /// Normal components of the predicted velocity on the sides: prescribed values, and at outflows the momentum equation
 /// with advection by the outward velocity, first order and upwind, so that vortices leave with the flow. The projection
-/// adds the pressure. Advances with the factors of the momentum stage.
+/// adds the pressure. Advances with the factors of the momentum stage. The rate of a low face is kept in the ghost cell
+/// below it, because the momentum stage overwrites the rate at the face itself.
 template <class ExecutionSpace>
 struct BoundaryFacesFunctor {
   MomentumSetup<ExecutionSpace> setup;
@@ -37,8 +38,9 @@ struct BoundaryFacesFunctor {
       const StageFactors f = stage_factors(setup, control);
       double next = f.stage * value + f.rate * rate;
       if (setup.weights.adams_bashforth) {
-        next += f.old_rate * setup.old_rate(place);
-        setup.old_rate(place) = rate;
+        const std::int64_t kept = high ? place : place - g.stride[axis];
+        next += f.old_rate * setup.old_rate(kept);
+        setup.old_rate(kept) = rate;
       } else {
         next += f.state * setup.state(place);
       }

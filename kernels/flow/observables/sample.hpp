@@ -62,9 +62,12 @@ struct PackFunctor {
   std::int64_t first;  ///< of the component
   int extent[3];
   bool to_field;
+  int bounded_axis;  ///< axis whose low faces have their values in the ghost cells below them; -1: none
 
   KOKKOS_FUNCTION void operator()(const int i, const int j, const int k) const {
-    const auto place = static_cast<std::size_t>(first + grid.offset(i, j, k));
+    int index[3] = {i, j, k};
+    if (bounded_axis >= 0 && index[bounded_axis] == 0) index[bounded_axis] = -1;
+    const auto place = static_cast<std::size_t>(first + grid.offset(index[0], index[1], index[2]));
     const auto at = static_cast<std::size_t>(i + extent[0] * (j + static_cast<std::int64_t>(extent[1]) * k));
     if (to_field)
       field(place) = contiguous(at);

@@ -10,6 +10,12 @@
 
 namespace drogue::flow {
 
+/// Kinematic pressure on the face of an outflow, m^2/s^2, for the outward velocity: zero, and minus the dynamic pressure
+/// where fluid flows back, which so enters with a total pressure of zero and cannot gain energy. Does not throw.
+KOKKOS_INLINE_FUNCTION double outflow_pressure(double outward) {
+  return outward < 0.0 ? -0.5 * outward * outward : 0.0;
+}
+
 /// Data of a projection.
 template <class ExecutionSpace>
 struct ProjectionSetup {
@@ -21,19 +27,17 @@ struct ProjectionSetup {
   List<ExecutionSpace> pressure;    ///< kinematic, at the cells, m^2/s^2
   ControlView<ExecutionSpace> control;
   double step_fraction;  ///< of dt that the projection covers
-  bool has_outflow;
+  bool resists_backflow;  ///< false: the pressure on outflows is zero
 
+  /// Kinematic pressure on the face of an outflow, m^2/s^2.
+  [[nodiscard]] KOKKOS_FUNCTION double outside_pressure(double outward) const {
+    return resists_backflow ? outflow_pressure(outward) : 0.0;
+  }
   /// True if the face on a side is an unknown of the projection.
   [[nodiscard]] KOKKOS_FUNCTION bool is_outflow(int side) const {
     return boundary.kind[side] == BoundaryKind::outflow;
   }
 };
-
-/// Kinematic pressure on the face of an outflow, m^2/s^2, for the outward velocity: zero, and minus the dynamic pressure
-/// where fluid flows back, which so enters with a total pressure of zero and cannot gain energy. Does not throw.
-KOKKOS_INLINE_FUNCTION double outflow_pressure(double outward) {
-  return outward < 0.0 ? -0.5 * outward * outward : 0.0;
-}
 
 /// Right-hand side of the pressure equation, div u / dt, 1/s^2, and check that the predicted velocity is finite.
 template <class ExecutionSpace>
@@ -53,7 +57,7 @@ struct DivergenceFunctor {
       const std::int64_t next =
           g.periodic[axis] && index[axis] + 1 == g.n[axis] ? (1 - g.n[axis]) * g.stride[axis] : g.stride[axis];
       divergence += g.inverse_h[axis] * (low[next] - low[0]);
-      if (setup.has_outflow) {
+      if (setup.resists_backflow) {
         const double twice_inverse = 2.0 * g.inverse_h[axis] * g.inverse_h[axis];
         if (index[axis] == 0 && setup.is_outflow(2 * axis))
           outside += twice_inverse * outflow_pressure(-low[0]);
@@ -116,12 +120,12 @@ struct CorrectionFunctor {
         else if (g.periodic[axis])
           below = setup.pressure(cell + (g.n[axis] - 1) * stride);
         else if (setup.is_outflow(2 * axis))
-          below = 2.0 * outflow_pressure(-value) - p;
+          below = 2.0 * setup.outside_pressure(-value) - p;
         value -= dt * g.inverse_h[axis] * (p - below);
         if (index[axis] + 1 == g.n[axis] && !g.periodic[axis]) {
           const std::int64_t high = place + g.stride[axis];
           double last = setup.predicted(high);
-          if (setup.is_outflow(2 * axis + 1)) last += 2.0 * dt * g.inverse_h[axis] * (p - outflow_pressure(last));
+          if (setup.is_outflow(2 * axis + 1)) last += 2.0 * dt * g.inverse_h[axis] * (p - setup.outside_pressure(last));
           setup.velocity(high) = last;
         }
       }

@@ -10,9 +10,8 @@ using flow::BoundaryKind;
 FlowDomain::FlowDomain(flow::Parameters parameters, SideVelocity side_velocity)
     : _parameters(std::move(parameters)), _side_velocity(std::move(side_velocity)) {
   if (!_side_velocity)
-    _side_velocity = [sides = _parameters.boundary](std::size_t side, std::size_t component, const Point&, double) {
-      return sides[side].velocity[component];
-    };
+    _side_velocity = [sides = _parameters.boundary](std::size_t side, std::size_t component, const Point&,
+                                                    double) { return sides[side].velocity[component]; };
 }
 
 double FlowDomain::spacing(std::size_t axis) const {

@@ -11,14 +11,17 @@ namespace drogue::reference {
 using Point = std::array<double, 3>;
 using GridIndex = std::array<int, 3>;
 
-/// Velocity components at the faces normal to their axes, m/s, or another quantity there. Axis 0 varies fastest.
+/// Velocity components at the faces normal to their axes, m/s, or another quantity there. Axis 0 varies
+/// fastest.
 using StaggeredField = std::array<std::vector<double>, 3>;
 
-/// Velocity component on a side at a point (m) and a time (s), m/s. Sides: x low, x high, y low, y high, z low, z high.
-using SideVelocity = std::function<double(std::size_t side, std::size_t component, const Point& point, double time)>;
+/// Velocity component on a side at a point (m) and a time (s), m/s. Sides: x low, x high, y low, y high, z
+/// low, z high.
+using SideVelocity =
+    std::function<double(std::size_t side, std::size_t component, const Point& point, double time)>;
 
-/// Box of cells with a staggered grid (Harlow and Welch 1965) and the conditions of its sides. Component c has one face
-/// more than cells along its own axis if that is bounded.
+/// Box of cells with a staggered grid (Harlow and Welch 1965) and the conditions of its sides. Component c
+/// has one face more than cells along its own axis if that is bounded.
 class FlowDomain {
  public:
   /// Without `side_velocity` the velocities are those of the parameters.
@@ -62,8 +65,8 @@ class FlowDomain {
 /// Divergence at the cells, 1/s.
 [[nodiscard]] std::vector<double> divergence(const FlowDomain& domain, const StaggeredField& u);
 
-/// Gradient of a kinematic pressure at the faces, m/s^2: zero on sides with a prescribed normal velocity. `outside`: values
-/// on the faces of outflows, m^2/s^2.
+/// Gradient of a kinematic pressure at the faces, m/s^2: zero on sides with a prescribed normal velocity.
+/// `outside`: values on the faces of outflows, m^2/s^2.
 [[nodiscard]] StaggeredField pressure_gradient(const FlowDomain& domain, const std::vector<double>& pressure,
                                                const StaggeredField& outside);
 

@@ -38,8 +38,8 @@ double momentum_flux(const FlowDomain& domain, const StaggeredField& u, std::siz
   GridIndex before = face;
   before[c] -= 1;
   const double speed = 0.5 * (domain.velocity(u, d, before, time) + domain.velocity(u, d, face, time));
-  const double viscous = domain.parameters().viscosity / domain.parameters().density * (carried(0) - carried(-1)) /
-                         domain.spacing(d);
+  const double viscous = domain.parameters().viscosity / domain.parameters().density *
+                         (carried(0) - carried(-1)) / domain.spacing(d);
   if (domain.parameters().advection == Advection::central)
     return speed * 0.5 * (carried(-1) + carried(0)) - viscous;
   std::array<double, 5> q{};

@@ -11,7 +11,8 @@ using flow::BoundaryKind;
 namespace {
 
 /// Linear combination of fields.
-StaggeredField combine(const FlowDomain& domain, std::initializer_list<std::pair<double, const StaggeredField*>> terms) {
+StaggeredField combine(const FlowDomain& domain,
+                       std::initializer_list<std::pair<double, const StaggeredField*>> terms) {
   StaggeredField sum = domain.zero_field();
   for (const auto& [factor, field] : terms)
     for (std::size_t c = 0; c < 3; ++c)
@@ -72,13 +73,13 @@ StaggeredField with_side_velocity(const FlowDomain& domain, StaggeredField u, do
   return u;
 }
 
-std::vector<double> project(const FlowDomain& domain, StaggeredField& u, double dt) {
+std::vector<double> project(const FlowDomain& domain, StaggeredField& u, double dt, bool resists_backflow) {
   StaggeredField outside = domain.zero_field();
   domain.for_each_face([&](std::size_t c, const GridIndex& face) {
     const int side = domain.side_of(c, face);
     if (side < 0 || domain.kind(static_cast<std::size_t>(side)) != BoundaryKind::outflow) return;
     const double own = u[c][domain.at(c, face)], inward = side % 2 == 0 ? own : -own;
-    if (inward > 0.0) outside[c][domain.at(c, face)] = -0.5 * inward * inward;
+    if (resists_backflow && inward > 0.0) outside[c][domain.at(c, face)] = -0.5 * inward * inward;
   });
   std::vector<double> f = divergence(domain, u);
   const std::vector<double> zero(f.size(), 0.0);
@@ -105,7 +106,8 @@ FlowState adams_bashforth_step(const FlowDomain& domain, const FlowState& state,
 }
 
 FlowState runge_kutta_step(const FlowDomain& domain, const FlowState& state, double time, double dt) {
-  /// Stage: result = a U + b (S + dt L(S)), an approximation at the time fraction `end`; S at the fraction `begin`.
+  /// Stage: result = a U + b (S + dt L(S)), an approximation at the time fraction `end`; S at the fraction
+  /// `begin`.
   struct Stage {
     double a, b, begin, end;
   };

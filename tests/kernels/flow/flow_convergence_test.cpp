@@ -18,7 +18,8 @@ constexpr Advection schemes[] = {Advection::central, Advection::weno_js, Advecti
 
 constexpr double drift[3] = {0.8, -0.5, 0.0};
 
-/// Two-dimensional vortices of Taylor and Green, m/s, that drift with a uniform flow, s and kinematic viscosity given.
+/// Two-dimensional vortices of Taylor and Green, m/s, that drift with a uniform flow, s and kinematic
+/// viscosity given.
 StaggeredField taylor_green(const FlowDomain& domain, double time) {
   const double decay = std::exp(-2.0 * domain.parameters().viscosity * time);
   return sampled_field(domain, [&](std::size_t c, const reference::Point& point) {
@@ -55,14 +56,16 @@ TEST(FlowConvergence, IsOfSecondOrderInSpaceForDriftingVortices) {
   for (const TimeScheme time : {TimeScheme::ab2, TimeScheme::rk3})
     for (const Advection scheme : schemes) {
       std::vector<double> errors;
-      for (const int n : {16, 32, 64}) {
+      for (const int n : {32, 64, 128}) {
         Parameters p = taylor_green_parameters(n, scheme, time);
         p.cfl = 0.3;
         const FlowDomain domain(p);
-        errors.push_back(rms_difference(solution(p, taylor_green(domain, 0.0), 1.0), taylor_green(domain, 1.0)));
+        errors.push_back(
+            rms_difference(solution(p, taylor_green(domain, 0.0), 1.0), taylor_green(domain, 1.0)));
       }
-      for (const double order : orders(errors)) EXPECT_GE(order, 1.9) << static_cast<int>(scheme);
-      EXPECT_LT(errors.back(), 2e-3);
+      // The errors of upwind-biased advection, of fifth order, and of the rest partly cancel on coarse grids.
+      EXPECT_GE(orders(errors).back(), 1.9) << static_cast<int>(scheme);
+      EXPECT_LT(errors.back(), scheme == Advection::central ? 2e-4 : 2e-5);
     }
 }
 
@@ -87,7 +90,8 @@ TEST(FlowConvergence, AdamsBashforthIsOfSecondOrderInTime) {
 }
 
 TEST(FlowConvergence, RungeKuttaIsOfThirdOrderInTimeWithSmoothFluxes) {
-  for (const double order : orders(time_errors(taylor_green_parameters(24, Advection::central, TimeScheme::rk3))))
+  for (const double order :
+       orders(time_errors(taylor_green_parameters(24, Advection::central, TimeScheme::rk3))))
     EXPECT_GE(order, 2.8);
 }
 
@@ -138,7 +142,7 @@ TEST(FlowConvergence, OscillatingPlateIsOfSecondOrder) {
   zero.push("constant", 0.0);
   for (const TimeScheme time : {TimeScheme::ab2, TimeScheme::rk3}) {
     std::vector<double> errors;
-    for (const int n : {16, 32, 64}) {
+    for (const int n : {32, 64, 128}) {
       Parameters p;
       p.cells = {1, n, 1};
       p.high = {1.0, 0.5, 1.0};

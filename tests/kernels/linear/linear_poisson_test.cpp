@@ -30,7 +30,9 @@ PoissonProblem problem_of(const reference::CellBox& box) {
   PoissonProblem problem;
   problem.cells = box.cells;
   problem.spacing = box.spacing;
-  const auto condition = [](End end) { return end == End::dirichlet ? EndCondition::dirichlet : EndCondition::neumann; };
+  const auto condition = [](End end) {
+    return end == End::dirichlet ? EndCondition::dirichlet : EndCondition::neumann;
+  };
   for (std::size_t axis = 0; axis < 3; ++axis)
     problem.axes[axis] = {box.ends[axis][0] == End::periodic, condition(box.ends[axis][0]),
                           condition(box.ends[axis][1])};
@@ -140,7 +142,8 @@ TYPED_TEST(Poisson, SolvesGridsThatAreOneCellThick) {
 
 TYPED_TEST(Poisson, SolvesPrimeSizesAndStretchedCells) {
   for (const auto& x : {end_pairs[0], end_pairs[2]}) {
-    const reference::CellBox box{{61, 59, 127}, {1.0, 0.1, 0.5}, {x, end_pairs[x == end_pairs[0] ? 0 : 1], end_pairs[0]}};
+    const reference::CellBox box{
+        {61, 59, 127}, {1.0, 0.1, 0.5}, {x, end_pairs[x == end_pairs[0] ? 0 : 1], end_pairs[0]}};
     if (!supports<TypeParam>(box)) continue;
     const std::vector<double> f = random_values(size_of(box), 3);
     EXPECT_LT(relative_residual(box, f, solve<TypeParam>(box, f)), 1e-13);
@@ -172,9 +175,9 @@ TYPED_TEST(Poisson, SolvesWithFewLaunchesAndWithoutAllocations) {
   const auto before = testing::profiled();
   solver.enqueue_solve(rhs, solution);
   const auto after = testing::profiled();
-  // Of Kokkos: at most three transforms each way and the scaling. cuFFT and cuBLAS launch kernels of their own.
-  EXPECT_EQ(after.kernel_launches - before.kernel_launches,
-            device::is_host<Space> ? 7 : 1);
+  // Launches of Kokkos: at most three transforms each way and the scaling. cuFFT and cuBLAS launch kernels of their
+  // own.
+  EXPECT_EQ(after.kernel_launches - before.kernel_launches, device::is_host<Space> ? 7 : 1);
   EXPECT_EQ(after.allocations - before.allocations, 0);
   EXPECT_EQ(after.copies - before.copies, 0);
   EXPECT_EQ(after.fences - before.fences, 0);
@@ -187,7 +190,8 @@ TEST(PoissonSolvers, FourierAndDiagonalizationAgree) {
       if (!supports<FourierSolver<Space>>(box)) continue;
       const std::vector<double> f = random_values(size_of(box), 5);
       const std::vector<double> fourier = solve<FourierSolver<Space>>(box, f);
-      EXPECT_LT(largest(difference(fourier, solve<DiagonalizationSolver<Space>>(box, f))), 1e-13 * largest(fourier));
+      EXPECT_LT(largest(difference(fourier, solve<DiagonalizationSolver<Space>>(box, f))),
+                1e-13 * largest(fourier));
     }
 }
 
