@@ -104,6 +104,9 @@ class FlowSolver {
   Values _velocity, _predicted, _rate, _force;
   Values _divergence;  ///< right-hand side of the pressure equation, 1/s^2
   Values _pressure;
+  /// Scratch of `totals`. The columns stand in the predicted velocity, which is free between steps, if that is large enough.
+  TotalsView<ExecutionSpace> _column_totals, _plane_totals;
+  Values _outflow_rows;
   ControlView<ExecutionSpace> _control;
   std::optional<Poisson> _poisson;
   stepping::StepLoop<ExecutionSpace> _loop;
@@ -138,6 +141,13 @@ FlowSolver<ExecutionSpace>::FlowSolver(const device::Instance<ExecutionSpace>& i
   if (parameters.external_force) _force = field("drogue::flow::force");
   _divergence = Values("drogue::flow::divergence", cells);
   _pressure = Values("drogue::flow::pressure", cells);
+  const auto nx = static_cast<std::size_t>(_grid.n[0]), columns = nx * static_cast<std::size_t>(_grid.n[1]);
+  if (_predicted.size() >= total_count * columns)
+    _column_totals = TotalsView<ExecutionSpace>(_predicted.data(), columns);
+  else
+    _column_totals = TotalsView<ExecutionSpace>("drogue::flow::column_totals", columns);
+  _plane_totals = TotalsView<ExecutionSpace>("drogue::flow::plane_totals", nx);
+  _outflow_rows = Values("drogue::flow::outflow_rows", 6 * static_cast<std::size_t>(std::max(_grid.n[1], _grid.n[2])));
   _control = ControlView<ExecutionSpace>("drogue::flow::control");
   const linear::PoissonProblem problem = pressure_problem(parameters);
   if (uses_transforms<ExecutionSpace>(parameters))
@@ -236,25 +246,17 @@ void FlowSolver<ExecutionSpace>::sample(CellField field, std::span<double> value
 template <class ExecutionSpace>
 Totals FlowSolver<ExecutionSpace>::totals() {
   const int nx = _grid.n[0], ny = _grid.n[1], nz = _grid.n[2];
-  const TotalsView<ExecutionSpace> columns(_predicted.data(), static_cast<std::size_t>(nx) * static_cast<std::size_t>(ny));
-  const TotalsView<ExecutionSpace> planes("drogue::flow::totals", static_cast<std::size_t>(nx));
-  // The columns stand in the predicted velocity, which is free between steps and large enough from 3 cells along z on.
-  const auto of_columns = 3 * _grid.component >= static_cast<std::int64_t>(total_count) * nx * ny
-                              ? columns
-                              : TotalsView<ExecutionSpace>("drogue::flow::column_totals",
-                                                           static_cast<std::size_t>(nx) * static_cast<std::size_t>(ny));
   device::launch_each(space(), "drogue::flow::column_totals", nx * ny,
-                      ColumnTotalsFunctor<ExecutionSpace>{_grid, _velocity, of_columns});
+                      ColumnTotalsFunctor<ExecutionSpace>{_grid, _velocity, _column_totals});
   device::launch_each(space(), "drogue::flow::plane_totals", nx,
-                      PlaneTotalsFunctor<ExecutionSpace>{nx, ny, of_columns, planes});
+                      PlaneTotalsFunctor<ExecutionSpace>{nx, ny, _column_totals, _plane_totals});
   const int longest = std::max(ny, nz);
-  const Values rows("drogue::flow::outflow_rows", 6 * static_cast<std::size_t>(longest));
   device::launch_each(space(), "drogue::flow::outflow_rows", 6 * longest,
-                      OutflowRowsFunctor<ExecutionSpace>{_grid, _velocity, rows, longest});
-  const auto on_host = Kokkos::create_mirror_view(planes);
-  const auto rows_on_host = Kokkos::create_mirror_view(rows);
-  device::copy_out(space(), on_host.data(), planes, planes.size());
-  device::copy_out(space(), rows_on_host.data(), rows, rows.size());
+                      OutflowRowsFunctor<ExecutionSpace>{_grid, _velocity, _outflow_rows, longest});
+  const auto on_host = Kokkos::create_mirror_view(_plane_totals);
+  const auto rows_on_host = Kokkos::create_mirror_view(_outflow_rows);
+  device::copy_out(space(), on_host.data(), _plane_totals, _plane_totals.size());
+  device::copy_out(space(), rows_on_host.data(), _outflow_rows, _outflow_rows.size());
   const Control control = read_control();
   double sum[total_count] = {};
   for (std::size_t i = 0; i < static_cast<std::size_t>(nx); ++i) {

@@ -110,57 +110,72 @@ Lattice side_lattice(const flow::Parameters& p, std::size_t side) {
   return lattice;
 }
 
-/// Checks a prescribed velocity at time 0 and returns the flow rate into the domain, m^3/s, and its
-/// magnitude.
-std::array<double, 2> check_velocity(const Table& root, const FlowScene& scene, const std::string& key,
-                                     const VectorExpression& text, std::size_t side) {
+/// Checks a prescribed velocity at time 0, and that walls move along themselves.
+void check_velocity(const Table& root, const FlowScene& scene, const std::string& key,
+                    const VectorExpression& text, std::size_t side) {
   const Lattice lattice = side_lattice(scene.parameters, side);
-  double area = 1.0;
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    if (axis != side / 2) area *= lattice.spacing[axis];
-  std::array<double, 2> rates{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const std::vector<double> values = evaluate(SpaceTimeFunction(text[axis]), lattice, 0.0);
-    for (std::size_t entry = 0; entry < values.size(); ++entry) {
-      const auto refuse = [&](const std::string& fault) {
-        contradict(root, key,
-                   key + "[" + std::to_string(axis) + "] = " + text[axis] + " is " + fault + " at " +
-                       place_text(lattice.place(entry)) + " on the side " + side_names[side] + " at t = 0");
-      };
-      const double value = values[entry];
-      if (!std::isfinite(value)) refuse("not finite");
-      if (axis != side / 2) continue;
-      const bool is_wall = scene.parameters.boundary[side].kind == BoundaryKind::wall;
-      if (is_wall && value != 0.0) refuse("not 0, yet normal to the wall,");
-      rates[0] += (side % 2 == 0 ? value : -value) * area;
-      rates[1] += std::abs(value) * area;
-    }
+    const SpaceTimeFunction velocity(text[axis]);
+    const std::string component = key + "[" + std::to_string(axis) + "] = " + text[axis];
+    const bool is_wall = scene.parameters.boundary[side].kind == BoundaryKind::wall;
+    if (is_wall && axis == side / 2 && velocity.constant() != 0.0)
+      contradict(root, key, component + " is normal to the wall: it must be 0");
+    const std::vector<double> values = evaluate(velocity, lattice, 0.0);
+    const auto bad = std::ranges::find_if(values, [](double value) { return !std::isfinite(value); });
+    if (bad != values.end())
+      contradict(root, key,
+                 component + " is not finite at " +
+                     place_text(lattice.place(static_cast<std::size_t>(bad - values.begin()))) +
+                     " on the side " + side_names[side] + " at t = 0");
   }
-  return rates;
 }
 
 void complete_velocities(const Table& root, FlowScene& scene) {
   flow::Parameters& p = scene.parameters;
-  std::array<double, 2> inflow{};
   for (std::size_t side = 0; side < 6; ++side) {
     const BoundaryKind kind = p.boundary[side].kind;
     const VectorExpression& wall = scene.wall_velocity[side];
     if (!wall[0].empty() && kind != BoundaryKind::wall)
       contradict(root, key_of_wall(side), key_of_wall(side) + ": this side is no wall");
-    const bool prescribed = kind == BoundaryKind::inflow || !wall[0].empty();
-    if (!prescribed) continue;
-    const std::string key = kind == BoundaryKind::inflow ? "fluid.velocity" : key_of_wall(side);
-    const VectorExpression& text = kind == BoundaryKind::inflow ? scene.velocity : wall;
-    const auto rates = check_velocity(root, scene, key, text, side);
-    for (std::size_t i = 0; i < 2; ++i) inflow[i] += rates[i];
+    const bool is_inflow = kind == BoundaryKind::inflow;
+    if (!is_inflow && wall[0].empty()) continue;
+    const std::string key = is_inflow ? "fluid.velocity" : key_of_wall(side);
+    const VectorExpression& text = is_inflow ? scene.velocity : wall;
+    check_velocity(root, scene, key, text, side);
     set_velocity(root, key, text, p.boundary[side]);
   }
-  const bool open = std::ranges::any_of(
-      p.boundary, [](const flow::Boundary& side) { return side.kind == BoundaryKind::outflow; });
-  if (!open && std::abs(inflow[0]) > flux_tolerance * inflow[1])
-    contradict(root, "fluid.velocity",
-               "fluid.velocity: at t = 0, " + real_text(inflow[0]) +
-                   " m^3/s flow into a domain without an outflow; grid.boundary needs an \"outflow\" side");
+}
+
+/// Net flow rate through all inflow sides into the domain, m^3/s, and the sum of its parts' magnitudes.
+std::array<double, 2> inflow_at(const FlowScene& scene, double time) {
+  std::array<double, 2> rates{};
+  for (std::size_t side = 0; side < 6; ++side) {
+    if (scene.parameters.boundary[side].kind != BoundaryKind::inflow) continue;
+    const Lattice lattice = side_lattice(scene.parameters, side);
+    const double area = lattice.spacing[(side / 2 + 1) % 3] * lattice.spacing[(side / 2 + 2) % 3] *
+                        (side % 2 == 0 ? 1.0 : -1.0);
+    for (const double value : evaluate(SpaceTimeFunction(scene.velocity[side / 2]), lattice, time)) {
+      rates[0] += value * area;
+      rates[1] += std::abs(value * area);
+    }
+  }
+  return rates;
+}
+
+/// Without an outflow, what flows in must flow out through other inflow sides: checked at several times of
+/// the run.
+void check_net_inflow(const Table& root, const FlowScene& scene) {
+  for (const flow::Boundary& side : scene.parameters.boundary)
+    if (side.kind == BoundaryKind::outflow) return;
+  constexpr int intervals = 17;
+  for (int i = 0; i <= intervals; ++i) {
+    const double time = scene.end_time * i / intervals;
+    const auto [net, magnitude] = inflow_at(scene, time);
+    if (std::abs(net) > flux_tolerance * magnitude)
+      contradict(root, "fluid.velocity",
+                 "fluid.velocity: at t = " + real_text(time) + " s, " + real_text(net) +
+                     " m^3/s flow into a domain without an outflow; grid.boundary needs an \"outflow\" side");
+  }
 }
 
 /// Lets the solver check what remains; its sentence becomes that of the scene.
@@ -199,6 +214,7 @@ void complete_and_check(const Table& root, FlowScene& scene) {
                                                : flow::Advection::weno_z;
   check_scheme(root, p);
   complete_velocities(root, scene);
+  check_net_inflow(root, scene);
   check_solver(root, p);
   framework::complete_output(root, scene.output, {"velocity", "pressure", "vorticity"},
                              {scene.end_time, "run.end_time"});

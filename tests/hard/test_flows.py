@@ -79,7 +79,7 @@ class HardCases(parachute_program.FlowTest):
         self.run_box([31, 29, 37], end=0.1, sets=[SOUND])
 
     def test_planes_normal_to_every_axis_are_alike(self):
-        """The same flow in three planes has the same energies."""
+        """Rotating a flow from plane to plane keeps its energy."""
         in_plane = {
             "[1, 20, 24]": '[0, "sin(2*pi*y)*cos(2*pi*z)", "-cos(2*pi*y)*sin(2*pi*z)"]',
             "[24, 1, 20]": '["-cos(2*pi*z)*sin(2*pi*x)", 0, "sin(2*pi*z)*cos(2*pi*x)"]',

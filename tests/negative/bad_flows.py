@@ -92,6 +92,7 @@ BAD_LINES = [
     (10, 'boundary = { x = "inflow", y = "slip", z = "outflw" }', 10, ["grid.boundary.z", 'did you mean "outflow"?']),
     (11, "wall_velocity = { y_high = [1, 0, 0] }", 11, ["grid.wall_velocity.y_high", "no wall"]),
     (11, "wall_velocity = { y_low = [1, 0.1, 0] }", 11, ["grid.wall_velocity.y_low[1]", "normal to the wall"]),
+    (11, 'wall_velocity = { y_low = [0, "sin(t)", 0] }', 11, ["grid.wall_velocity.y_low[1]", "normal to the wall"]),
     (10, 'boundary = { x = ["inflow", "wall"], y = ["wall", "slip"], z = "periodic" }', 6,
      ["fluid.velocity", "without an outflow"]),
     # values that are not finite
@@ -133,6 +134,8 @@ BAD_LINES = [
 # Assignments, and words of the message, which names the one at fault.
 BAD_SETS = [
     (["flow.diffusion=crank-nicolson", "flow.time=rk3"], "flow.diffusion", ["ab2"]),
+    (["fluid.velocity=[1, 'sin(t)', 0]", "grid.boundary={x='inflow',y=['slip','inflow'],z='periodic'}", "grid.wall_velocity={}"],
+     "fluid.velocity", ["at t = 0.0588", "without an outflow"]),
     (["output.history_every=0", "verify.energy_growth=1e-9"], "verify.energy_growth", ["output.history_every"]),
     (["output.history_every=0", "verify.dissipation_peak={value=1,tolerance=1}"], "verify.dissipation_peak",
      ["output.history_every"]),
