@@ -66,7 +66,8 @@ void complete_sides(const Table& root, FlowScene& scene) {
       return kind != BoundaryKind::periodic && kind != BoundaryKind::slip;
     };
     if (single && std::ranges::any_of(*sides, is_refused))
-      contradict(root, key, key + ": with one cell along " + axis_names[axis] + ", its sides are periodic or slip");
+      contradict(root, key,
+                 key + ": with one cell along " + axis_names[axis] + ", its sides are periodic or slip");
     for (std::size_t end = 0; end < 2; ++end) scene.parameters.boundary[2 * axis + end].kind = (*sides)[end];
   }
 }

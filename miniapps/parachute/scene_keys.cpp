@@ -129,7 +129,7 @@ void declare_run(Table& table, FlowScene& scene) {
       .above(0.0);
   table
       .value("cfl", scene::real_codec(parameters.cfl),
-             "Courant number: dt times the largest |u|/hx + |v|/hy + |w|/hz")
+             "Courant number: dt times the largest sum of speeds over cell widths along the axes")
       .above(0.0)
       .at_most(2.0)
       .when(free_step, "with dt = \"auto\"", "dt");

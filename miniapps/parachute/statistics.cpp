@@ -6,7 +6,8 @@
 namespace drogue::parachute_app {
 namespace {
 
-/// True if `value` exceeds `largest` or is NaN, and false once `largest` is NaN: no check passes on an invalid state.
+/// True if `value` exceeds `largest` or is NaN, and false once `largest` is NaN: no check passes on an
+/// invalid state.
 bool exceeds(double value, double largest) { return value > largest || std::isnan(value); }
 
 }  // namespace

@@ -50,7 +50,7 @@ BAD_LINES = [
     (10, 'boundary = { x = ["inflow", "outflow"], w = "slip", y = "slip", z = "periodic" }', 10, ['"grid.boundary.w"']),
     (11, "wall_velocity = { y_lo = [1, 0, 0] }", 11, ['"grid.wall_velocity.y_lo"', "y_low"]),
     (16, 'wenno = "z"', 16, ['"flow.wenno"', "weno"]),
-    (25, "cfl_number = 0.1", 25, ['"run.cfl_number"', '"cfl"']),
+    (25, "cfl_number = 0.1", 25, ['"run.cfl_number"', "cfl, max_dt"]),
     (34, "l2_velocty = 10", 34, ['"verify.l2_velocty"', "l2_velocity"]),
     (14, '[[canopy]]\nkind = "disk"\n[flow]', 14, ['"canopy"']),
     # name of the app

@@ -28,8 +28,9 @@ end_time = 1
 
 FlowScene read_text(const std::string& text, const std::vector<std::string>& sets = {}) {
   const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-  const std::filesystem::path file = std::filesystem::temp_directory_path() /
-                                     ("flow-" + std::string(test->name()) + std::to_string(::getpid()) + ".toml");
+  const std::filesystem::path file =
+      std::filesystem::temp_directory_path() /
+      ("flow-" + std::string(test->name()) + std::to_string(::getpid()) + ".toml");
   std::ofstream(file) << text;
   try {
     FlowScene scene = read_flow_scene(file, sets);
@@ -51,7 +52,9 @@ std::string error_of(const std::vector<std::string>& sets) {
   return {};
 }
 
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
 
 TEST(FlowScene, MinimalSceneHasTheDocumentedDefaults) {
   const FlowScene scene = read_text(least);
@@ -73,8 +76,9 @@ TEST(FlowScene, MinimalSceneHasTheDocumentedDefaults) {
 
 TEST(FlowScene, SidesTakeTheVelocityOfTheFluidOrTheirWall) {
   using enum flow::BoundaryKind;
-  const FlowScene scene = read_text(least, {"fluid.velocity=[2, 0.5, 0]", "grid.boundary.y=[\"wall\", \"slip\"]",
-                                            "grid.wall_velocity.y_low=[\"sin(t)\", 0, 1]"});
+  const FlowScene scene =
+      read_text(least, {"fluid.velocity=[2, 0.5, 0]", "grid.boundary.y=[\"wall\", \"slip\"]",
+                        "grid.wall_velocity.y_low=[\"sin(t)\", 0, 1]"});
   const auto& sides = scene.parameters.boundary;
   const flow::BoundaryKind kinds[] = {inflow, outflow, wall, slip, periodic, periodic};
   for (std::size_t side = 0; side < 6; ++side) EXPECT_EQ(sides[side].kind, kinds[side]) << side_names[side];
@@ -127,8 +131,8 @@ TEST(FlowScene, FingerprintIgnoresOutputAndSteps) {
   for (const char* set : {"run.end_time=2", "run.cfl=0.2", "run.dt=0.01", "output.history_every=3",
                           "verify.divergence=1", "tuning.step.driver=plain"})
     EXPECT_EQ(scene_fingerprint(read_text(least, {set})), base) << set;
-  for (const char* set : {"fluid.viscosity=1", "grid.cells=[8, 6, 8]", "flow.weno=js", "fluid.velocity=[1, 0, 0]",
-                          "flow.body_force=[1, 0, 0]"})
+  for (const char* set : {"fluid.viscosity=1", "grid.cells=[8, 6, 8]", "flow.weno=js",
+                          "fluid.velocity=[1, 0, 0]", "flow.body_force=[1, 0, 0]"})
     EXPECT_NE(scene_fingerprint(read_text(least, {set})), base) << set;
 }
 

@@ -25,7 +25,8 @@ TEST(Lattice, ComponentsLieOnTheFacesNormalToTheirAxis) {
   EXPECT_EQ(y.n, (std::array<int, 3>{4, 6, 1}));
   EXPECT_EQ(y.place(0), (std::array<double, 3>{1.25, -1.0, 0.25}));
   EXPECT_EQ(y.place(23), (std::array<double, 3>{2.75, 1.0, 0.25}));
-  EXPECT_EQ(lattice_of(channel(), flow::StateField::velocity_z).place(0), (std::array<double, 3>{1.25, -0.8, 0.25}));
+  EXPECT_EQ(lattice_of(channel(), flow::StateField::velocity_z).place(0),
+            (std::array<double, 3>{1.25, -0.8, 0.25}));
 }
 
 TEST(Evaluate, ThreadsFillEveryPoint) {

@@ -17,7 +17,8 @@ std::vector<double> sampled(double first, double spacing, int count, double (*fu
 TEST(SampledLine, ReproducesCubicPolynomials) {
   const auto cubic = [](double x) { return 2.0 - x + 3.0 * x * x - 0.5 * x * x * x; };
   const SampledLine line(-1.0, 0.25, sampled(-1.0, 0.25, 9, cubic));
-  for (const double x : {-1.1, -1.0, -0.9, 0.0, 0.13, 0.6, 0.99, 1.2}) EXPECT_NEAR(line(x), cubic(x), 1e-12) << x;
+  for (const double x : {-1.1, -1.0, -0.9, 0.0, 0.13, 0.6, 0.99, 1.2})
+    EXPECT_NEAR(line(x), cubic(x), 1e-12) << x;
 }
 
 TEST(SampledLine, FindsVerticesOfParabolas) {
