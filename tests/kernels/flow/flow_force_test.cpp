@@ -34,8 +34,8 @@ struct TypedCase {
     const MacGrid& g = solver.grid();
     std::vector<double> values(solver.force().extent(0), 0.0);
     domain.for_each_face([&](std::size_t c, const GridIndex& face) {
-      values[static_cast<std::size_t>(static_cast<std::int64_t>(c) * g.component + g.offset(face[0], face[1], face[2]))] =
-          force[c][domain.at(c, face)];
+      values[static_cast<std::size_t>(static_cast<std::int64_t>(c) * g.component +
+                                      g.offset(face[0], face[1], face[2]))] = force[c][domain.at(c, face)];
     });
     device::copy_in(instance.space(), solver.force(), values.data(), values.size());
     instance.space().fence();
