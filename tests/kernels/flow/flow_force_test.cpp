@@ -11,6 +11,10 @@
 // Force field of other kernels: its effect on a step, and failures that it causes.
 
 namespace drogue::flow {
+
+// In the library: the tested code is that of the programs.
+extern template class FlowSolver<DROGUE_TEST_SPACE>;
+
 namespace {
 
 using namespace drogue::testing;  // NOLINT: helpers of these tests
