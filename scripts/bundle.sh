@@ -89,7 +89,7 @@ if [ -z "$build" ]; then
   if [ -x "$program.cuda" ] && [ -e /dev/nvidiactl ]; then build=cuda; fi
 fi
 if [ "$build" = cuda ]; then
-  export LD_LIBRARY_PATH="${LD_LIBRARY_PATH:+$LD_LIBRARY_PATH:}${CUDA_HOME:-/usr/local/cuda}/lib64"
+  export LD_LIBRARY_PATH="${LD_LIBRARY_PATH:+$LD_LIBRARY_PATH:}${CUDA_HOME:-/usr/local/cuda}/lib64:${CUDA_HOME:-/usr/local/cuda}/lib"
 fi
 exec "$program.$build" "$@"
 LAUNCHER

@@ -11,6 +11,10 @@
 // Force field of other kernels: its effect on a step, and failures that it causes.
 
 namespace drogue::flow {
+
+// In the library: the tested code is that of the programs.
+extern template class FlowSolver<DROGUE_TEST_SPACE>;
+
 namespace {
 
 using namespace drogue::testing;  // NOLINT: helpers of these tests
@@ -34,8 +38,8 @@ struct TypedCase {
     const MacGrid& g = solver.grid();
     std::vector<double> values(solver.force().extent(0), 0.0);
     domain.for_each_face([&](std::size_t c, const GridIndex& face) {
-      values[static_cast<std::size_t>(static_cast<std::int64_t>(c) * g.component + g.offset(face[0], face[1], face[2]))] =
-          force[c][domain.at(c, face)];
+      values[static_cast<std::size_t>(static_cast<std::int64_t>(c) * g.component +
+                                      g.offset(face[0], face[1], face[2]))] = force[c][domain.at(c, face)];
     });
     device::copy_in(instance.space(), solver.force(), values.data(), values.size());
     instance.space().fence();

@@ -175,8 +175,8 @@ TYPED_TEST(Poisson, SolvesWithFewLaunchesAndWithoutAllocations) {
   const auto before = testing::profiled();
   solver.enqueue_solve(rhs, solution);
   const auto after = testing::profiled();
-  // Launches of Kokkos: at most three transforms each way and the scaling. cuFFT and cuBLAS launch kernels of their
-  // own.
+  // Launches of Kokkos: at most three transforms each way and the scaling. cuFFT and cuBLAS launch kernels of
+  // their own.
   EXPECT_EQ(after.kernel_launches - before.kernel_launches, device::is_host<Space> ? 7 : 1);
   EXPECT_EQ(after.allocations - before.allocations, 0);
   EXPECT_EQ(after.copies - before.copies, 0);
