@@ -38,9 +38,16 @@ KOKKOS_INLINE_FUNCTION double admissible_dt(const Progress& now, const StepConst
   return k.max_dt > 0.0 && !(dt < k.max_dt) ? k.max_dt : dt;
 }
 
-/// Prepares the next step, or stops the run if there is no admissible dt.
+/// Prepares the next step, or stops the run if there is no admissible dt. Two equal steps reach a target that is between
+/// one and two steps away, so that no step is much shorter than its neighbours; a fixed dt may grow by a billionth.
 KOKKOS_INLINE_FUNCTION void prepare_step(const Progress& now, stepping::StepTrial& next, const StepConstants& k) {
-  if (!stepping::set_dt(now, next, admissible_dt(now, k), 1.0)) next.stop = stepping::Stop::failed;
+  const double admissible = admissible_dt(now, k), left = next.target - now.time;
+  double dt = admissible;
+  if (left > admissible && left < (1.0 + 1e-9) * admissible)
+    dt = left;
+  else if (left > admissible && left < 2.0 * admissible && !(k.fixed_dt > 0.0))
+    dt = 0.5 * left;
+  if (!stepping::set_dt(now, next, dt, 1.0)) next.stop = Stop::failed;
 }
 
 }  // namespace drogue::flow

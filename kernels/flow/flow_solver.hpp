@@ -19,6 +19,7 @@
 #include "kernels/flow/projection/projection.hpp"
 #include "kernels/flow/solver.hpp"
 #include "kernels/flow/step_control.hpp"
+#include "kernels/flow/turbulence/eddy_viscosity.hpp"
 #include "kernels/linear/poisson/diagonalization.hpp"
 #include "kernels/linear/poisson/fourier.hpp"
 #include "kernels/stepping/step_launcher.hpp"
@@ -101,9 +102,11 @@ class FlowSolver {
   BoundaryTables<ExecutionSpace> _boundary;
   StepConstants _constants{};
   std::array<double, 3> _acceleration{};  ///< m/s^2
+  EddyModel _eddy_model{};
   Values _velocity, _predicted, _rate, _force;
   Values _divergence;  ///< right-hand side of the pressure equation, 1/s^2
   Values _pressure;
+  Values _eddy_viscosity, _eddy_acceleration;  ///< empty without a turbulence model
   /// Scratch of `totals`. The columns stand in the predicted velocity, which is free between steps, if that is large enough.
   TotalsView<ExecutionSpace> _column_totals, _plane_totals;
   Values _outflow_rows;
@@ -148,6 +151,11 @@ FlowSolver<ExecutionSpace>::FlowSolver(const device::Instance<ExecutionSpace>& i
     _column_totals = TotalsView<ExecutionSpace>("drogue::flow::column_totals", columns);
   _plane_totals = TotalsView<ExecutionSpace>("drogue::flow::plane_totals", nx);
   _outflow_rows = Values("drogue::flow::outflow_rows", 6 * static_cast<std::size_t>(std::max(_grid.n[1], _grid.n[2])));
+  if (parameters.turbulence != Turbulence::none) {
+    _eddy_model = make_eddy_model(parameters, _grid);
+    _eddy_viscosity = Values("drogue::flow::eddy_viscosity", cells);
+    _eddy_acceleration = field("drogue::flow::eddy_acceleration");
+  }
   _control = ControlView<ExecutionSpace>("drogue::flow::control");
   const linear::PoissonProblem problem = pressure_problem(parameters);
   if (uses_transforms<ExecutionSpace>(parameters))
@@ -360,6 +368,7 @@ void FlowSolver<ExecutionSpace>::enqueue_step(const ExecutionSpace& space) const
                                       _predicted,
                                       _rate,
                                       _force,
+                                      _eddy_acceleration,
                                       _control,
                                       _parameters.viscosity / _parameters.density,
                                       {_acceleration[0], _acceleration[1], _acceleration[2]},
@@ -388,6 +397,12 @@ void FlowSolver<ExecutionSpace>::enqueue_step(const ExecutionSpace& space) const
 template <class ExecutionSpace>
 void FlowSolver<ExecutionSpace>::enqueue_stage(const ExecutionSpace& space, const MomentumSetup<ExecutionSpace>& setup,
                                                const Values& result, double fraction, double time_fraction) const {
+  if (_parameters.turbulence != Turbulence::none) {
+    launch_cells(space, "drogue::flow::eddy_viscosity", _grid.n,
+                 EddyViscosityFunctor<ExecutionSpace>{_grid, _eddy_model, setup.stage, _eddy_viscosity, _control});
+    launch_cells(space, "drogue::flow::eddy_stress", _grid.n,
+                 EddyStressFunctor<ExecutionSpace>{_grid, setup.stage, _eddy_viscosity, _eddy_acceleration, _control});
+  }
   dispatch_momentum(space, setup, _parameters.advection);
   if (_boundary.changes()) _boundary.enqueue_evaluation(space, _control, {time_fraction, false});
   launch_boundary_faces(space, setup, _boundary.conditions());

@@ -20,6 +20,7 @@ struct MomentumSetup {
   List<ExecutionSpace> out;      ///< W, m/s
   List<ExecutionSpace> old_rate;  ///< A, m/s^2
   List<ExecutionSpace> force;     ///< per volume, N/m^3; may be empty
+  List<ExecutionSpace> eddy;      ///< acceleration by an eddy viscosity, m/s^2; may be empty
   ControlView<ExecutionSpace> control;
   double nu;               ///< kinematic viscosity, m^2/s
   double acceleration[3];  ///< m/s^2

@@ -56,6 +56,7 @@ struct MomentumFunctor {
           below[c] = above;
         }
         const std::int64_t place = c * g.component + at;
+        if (setup.eddy.data() != nullptr) rate += setup.eddy(place);
         value[c] = factors.stage * device::load_constant(setup.stage.data() + place) + factors.rate * rate;
         if constexpr (adams_bashforth) {
           value[c] += factors.old_rate * setup.old_rate(place);
@@ -169,11 +170,14 @@ struct MomentumRowsFunctor {
       }
   }
 
-  void finish_row(std::int64_t place, const double* rates, const StageFactors& factors) const {
+  void finish_row(std::int64_t place, double* rates, const StageFactors& factors) const {
     const int n = setup.grid.n[0];
     const double *state = setup.state.data() + place, *stage = setup.stage.data() + place;
+    const double* eddy = setup.eddy.data() != nullptr ? setup.eddy.data() + place : nullptr;
     double *out = setup.out.data() + place, *old = adams_bashforth ? setup.old_rate.data() + place : nullptr;
     const double* force = setup.force.data() != nullptr ? setup.force.data() + place : nullptr;
+    if (eddy != nullptr)
+      for (int i = 0; i < n; ++i) rates[i] += eddy[i];
     for (int i = 0; i < n; ++i) {
       double value = factors.stage * stage[i] + factors.rate * rates[i];
       if constexpr (adams_bashforth) {
