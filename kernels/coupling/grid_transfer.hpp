@@ -144,7 +144,8 @@ void freeze_positions(const ExecutionSpace& space, const GridTransfer<ExecutionS
   });
 }
 
-/// Copies the counts of a transfer to the host. Blocks; not for captured graphs. Does not throw.
+/// Copies the counts of a transfer to the host. Blocks; not for captured graphs. Throws std::runtime_error after
+/// a failed kernel.
 template <class ExecutionSpace>
 [[nodiscard]] TransferCounts transfer_counts(const ExecutionSpace& space,
                                              const GridTransfer<ExecutionSpace>& transfer) {

@@ -43,7 +43,9 @@ struct SpreadFunctor : Base {
   double bound;  ///< N; zero: the largest force found
 
   KOKKOS_FUNCTION void operator()(const int n) const {
-    const double largest = bound > 0.0 ? bound : Kokkos::bit_cast<double>(this->transfer.largest(0));
+    // Forces above 1e270 N are rejected: the scale of the fixed-point sums would not be a normal number.
+    const double limit = bound > 0.0 ? bound : Kokkos::bit_cast<double>(this->transfer.largest(0));
+    const double largest = limit < 1e270 ? limit : 1e270;
     if (n == 0) this->transfer.largest(1) = Kokkos::bit_cast<FixedPoint>(largest);
     const auto at = this->item(n);
     const double value = force_component(force, at.point, at.component);

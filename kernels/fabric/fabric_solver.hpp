@@ -92,6 +92,7 @@ class FabricSolver {
   /// Enqueues `steps` steps of `time_state().dt` and a checkpoint after every 256th step. Asynchronous but
   /// for a bound on the steps in flight of some 0.1 s, and at least 2048 steps. Returns false, and enqueues
   /// nothing more, once a failure is known on the host. The distribution of steps over calls changes no bit.
+  /// Throws std::invalid_argument for a negative number.
   ///
   /// It may be called while the caller captures the instance's stream into a CUDA graph, except with contact
   /// (std::logic_error). Each launch of that graph takes `steps` steps. From the first capture on, the solver
@@ -101,7 +102,8 @@ class FabricSolver {
   bool enqueue_steps(std::int64_t steps);
 
   /// Enqueues the number of steps that ends nearest to `time`, s; none if that time has passed. Returns as
-  /// `enqueue_steps`.
+  /// `enqueue_steps`. After steps were captured, call `synchronize` first: until then the present time is not
+  /// known on the host. Throws std::invalid_argument for a time that is not finite.
   bool advance_to(double time) { return enqueue_steps(_time.steps_to(time)); }
 
   /// Enqueues a copy of the state to the checkpoint, which has no effect after a failure.
@@ -125,7 +127,7 @@ class FabricSolver {
   /// restored state.
   [[nodiscard]] TimeState time_state() const { return _time; }
 
-  /// Blocks. Throws std::invalid_argument unless dt is positive and the time finite.
+  /// Blocks. Throws std::invalid_argument unless dt is positive, the time finite and 0 <= since <= step.
   void set_time_state(const TimeState& time);
 
   /// The functions below block and are those of `Solver`.
@@ -170,7 +172,21 @@ class FabricSolver {
     return {_monitor, _time, _parity, fraction};
   }
   [[nodiscard]] VertexForceTerm<VertexForce> vertex_force_term() const {
-    return {_vertex_force, _time, _vertices};
+    return {_vertex_force, _time, _vertices, !ends_vertex_forces_apart()};
+  }
+  /// True if other kernels change the state after the kernel that ends a step. Velocity Verlet moves pins
+  /// before that kernel.
+  [[nodiscard]] bool ends_vertex_forces_apart() const {
+    return VertexForceTerm<VertexForce>::ends_steps &&
+           (_contact || (moves_pins() && _parameters.integrator == Integrator::rk4));
+  }
+  /// Enqueues `end_step` of the VertexForce where the kernels of a step do not call it.
+  void end_vertex_forces() const {
+    if constexpr (VertexForceTerm<VertexForce>::ends_steps)
+      if (ends_vertex_forces_apart())
+        launch_each(space(), "drogue::fabric::end_vertex_forces", _vertices,
+                    EndVertexForcesFunctor<ExecutionSpace, VertexForce>{vertex_force_term(), _x, _v,
+                                                                        _fabric.inverse_mass, _monitor, _parity});
   }
   [[nodiscard]] ExternalFunctor<ExecutionSpace> external_functor(const Points& x, const Points& v,
                                                                  double fraction, bool with_dashpots) const {
@@ -286,6 +302,7 @@ FabricSolver<ExecutionSpace, VertexForce>::FabricSolver(const ExecutionSpace& sp
   _next = points("drogue::fabric::next");
   _saved_x = points("drogue::fabric::saved_positions");
   _saved_v = points("drogue::fabric::saved_velocities");
+  copy_to_points(space, p.mesh.rest, _x);
   reset_monitor();
   if (p.contact.asked_for())
     _contact =
@@ -510,6 +527,7 @@ void FabricSolver<ExecutionSpace, VertexForce>::enqueue_runge_kutta_stages() con
     if (moves_pins())
       apply_dirichlet(next[stage], stage == 3 ? _v : _stage_velocity[stage], after[stage], stage == 3);
   }
+  if (!_contact) end_vertex_forces();
 }
 
 template <class ExecutionSpace, class VertexForce>
@@ -558,6 +576,7 @@ struct FabricSolver<ExecutionSpace, VertexForce>::UniformSteps {
 
 template <class ExecutionSpace, class VertexForce>
 bool FabricSolver<ExecutionSpace, VertexForce>::enqueue_steps(std::int64_t steps) {
+  if (steps < 0) throw std::invalid_argument("fabric solver: the number of steps must not be negative");
   if (_failure) return false;
   if (_contact && device::is_capturing(space()))
     throw std::logic_error("fabric solver: steps with contact cannot be captured");
@@ -594,6 +613,7 @@ void FabricSolver<ExecutionSpace, VertexForce>::enqueue_contact_step() {
     launch_runge_kutta_step<law>();
   }
   _contact->end_step(_x, _v);
+  end_vertex_forces();
 }
 
 /// Moves the state back to its stable addresses after an odd number of Verlet steps, which alternate between
@@ -655,6 +675,8 @@ template <class ExecutionSpace, class VertexForce>
 void FabricSolver<ExecutionSpace, VertexForce>::set_time_state(const TimeState& time) {
   if (!(time.dt > 0.0 && std::isfinite(time.dt) && std::isfinite(time.start)))
     throw std::invalid_argument("fabric solver: dt must be positive, and time finite");
+  if (time.since < 0 || time.step < time.since)
+    throw std::invalid_argument("fabric solver: the step must not precede the first step with its dt");
   synchronize();
   _time = time;
   reset_monitor();
@@ -755,14 +777,6 @@ void FabricSolver<ExecutionSpace, VertexForce>::set_contact_work(std::span<const
 }
 
 // One translation unit per backend compiles the solver without a VertexForce.
-#if defined(DROGUE_HAVE_SERIAL)
-extern template class FabricSolver<Kokkos::Serial>;
-#endif
-#if defined(DROGUE_HAVE_OPENMP)
-extern template class FabricSolver<Kokkos::OpenMP>;
-#endif
-#if defined(DROGUE_HAVE_CUDA)
-extern template class FabricSolver<Kokkos::Cuda>;
-#endif
+DROGUE_EXTERN_INSTANCES(class FabricSolver)
 
 }  // namespace drogue::fabric

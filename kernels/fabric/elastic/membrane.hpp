@@ -137,7 +137,7 @@ KOKKOS_INLINE_FUNCTION Edges<R> changes(const Edges<R>& now, const Edges<R>& res
   for (int e = 0; e < 3; ++e)
     if constexpr (law.model == Model::biquadratic)
       q.of[e] = now.of[e] - rest.of[e];
-    else
+    else if constexpr (law.model == Model::quadratic)
       q.of[e] = 2.0 * (device::square_root(rest.of[e] * now.of[e]) - rest.of[e]);
   return q;
 }

@@ -15,31 +15,61 @@
 
 namespace drogue::gas {
 
-/// Gas solver on one execution space. It owns three field buffers, a device-resident control block and two
-/// captured steps, with and without the flux limiter; the control block decides which of the two has an
-/// effect.
+/// Device state of a gas solver.
 template <class ExecutionSpace>
-class SolverImpl final : public Solver {
- public:
-  explicit SolverImpl(const Parameters& parameters);
+struct GasState {
+  /// Conserved fields of the cells, shape (cells, 3): kg/m^3, kg/(m^2 s), J/m^3. Steps rotate the buffers.
+  FieldsView<ExecutionSpace> buffer[3];
+  Kokkos::View<const Control, typename ExecutionSpace::memory_space> control;
 
-  void upload(std::int64_t first, const ConstConservedFields& fields) override;
-  void download(std::int64_t first, const ConservedFields& fields) override;
-  void start() override;
-  void restore(const RestartState& state) override;
-  Stop advance(double target, std::int64_t pause_step, int row_every, const RowSink& rows,
-               const Poll& poll) override;
-  HistoryRow totals() override;
-  RestartState restart_state() override { return read_control().restart; }
-  StepFailure failure() override { return read_control().failure; }
-  std::int64_t limited_cells() override;
-  void download_limited_cells(std::int64_t first, std::span<std::uint8_t> cells) override;
-  void upload_limited_cells(std::int64_t first, std::span<const std::uint8_t> cells) override;
-  void begin_snapshot() override;
-  ConstConservedFields finish_snapshot() override;
-  [[nodiscard]] PhaseTimes phase_times() const override { return {}; }
-  [[nodiscard]] const char* driver() const override;
-  [[nodiscard]] Tiling tiling() const override;
+  /// Fields of the last accepted step; to be called in kernels. Does not throw.
+  [[nodiscard]] KOKKOS_FUNCTION const FieldsView<ExecutionSpace>& now() const {
+    return buffer[control().restart.current];
+  }
+};
+
+/// Gas solver on the caller's instance of an execution space, for coupling to other kernels. It owns three
+/// field buffers, a device-resident control block and two captured steps, with and without the flux limiter;
+/// the control block decides which of the two has an effect.
+///
+/// All work is enqueued on the instance, which must outlive the solver; on CUDA it must have a stream of its
+/// own. Functions that `Solver` declares are documented there.
+template <class ExecutionSpace>
+class GasSolver {
+ public:
+  /// Throws std::runtime_error if memory runs out.
+  GasSolver(const device::Instance<ExecutionSpace>& instance, const Parameters& parameters);
+
+  /// Views of the state, which kernels on the same instance may read between steps without a copy or fence.
+  /// Does not throw.
+  [[nodiscard]] GasState<ExecutionSpace> state() const {
+    return {{_setup.buffer[0], _setup.buffer[1], _setup.buffer[2]}, _setup.control};
+  }
+
+  /// Enqueues the begin of an advance to `target`, s, after `start` or `restore`. Asynchronous. Throws
+  /// std::runtime_error if a launch fails.
+  void enqueue_begin(double target);
+
+  /// Enqueues one launch: one step with dt from the device, or none after the target. With
+  /// Positivity::automatic a step that must be repeated with the limiter is taken by a later launch.
+  /// Asynchronous; the caller bounds the launches in flight. Throws std::runtime_error if a launch fails.
+  void enqueue_step();
+
+  void upload(std::int64_t first, const ConstConservedFields& fields);
+  void download(std::int64_t first, const ConservedFields& fields);
+  void start();
+  void restore(const RestartState& state);
+  Stop advance(double target, std::int64_t pause_step, int row_every, const RowSink& rows, const Poll& poll);
+  HistoryRow totals();
+  RestartState restart_state() { return read_control().restart; }
+  StepFailure failure() { return read_control().failure; }
+  std::int64_t limited_cells();
+  void download_limited_cells(std::int64_t first, std::span<std::uint8_t> cells);
+  void upload_limited_cells(std::int64_t first, std::span<const std::uint8_t> cells);
+  void begin_snapshot();
+  ConstConservedFields finish_snapshot();
+  [[nodiscard]] const char* driver() const;
+  [[nodiscard]] Tiling tiling() const;
 
  private:
   using Memory = typename ExecutionSpace::memory_space;
@@ -61,7 +91,7 @@ class SolverImpl final : public Solver {
   void read_rows(const RowSink& rows);
   struct DeviceSteps;
 
-  device::Instance<ExecutionSpace> _instance;
+  const device::Instance<ExecutionSpace>& _instance;
   device::Instance<ExecutionSpace> _copy_instance;
   Parameters _parameters;
   StepConstants _constants;
@@ -91,14 +121,9 @@ TileShape tile_shape(int block, int halo, int slots) {
   }
 }
 
-/// Number of host threads for a mesh. A thread with fewer than four tiles costs more than it saves.
-inline int host_threads(std::int64_t cells) {
-  return static_cast<int>(1 + std::min<std::int64_t>(cells / 1024, 4096));
-}
-
 template <class ExecutionSpace>
-SolverImpl<ExecutionSpace>::SolverImpl(const Parameters& p)
-    : _instance(host_threads(p.cells)),
+GasSolver<ExecutionSpace>::GasSolver(const device::Instance<ExecutionSpace>& instance, const Parameters& p)
+    : _instance(instance),
       _copy_instance(1),
       _parameters(p),
       _loop(_instance),
@@ -150,7 +175,7 @@ SolverImpl<ExecutionSpace>::SolverImpl(const Parameters& p)
 /// Selects the persistent driver if the mesh fits the shared memory of all multiprocessors and alpha is
 /// local.
 template <class ExecutionSpace>
-void SolverImpl<ExecutionSpace>::make_persistent() {
+void GasSolver<ExecutionSpace>::make_persistent() {
   if constexpr (device::PersistentKernel<ExecutionSpace>::available) {
     using Grid = device::PersistentKernel<ExecutionSpace>;
     const Parameters& p = _parameters;
@@ -180,12 +205,12 @@ void SolverImpl<ExecutionSpace>::make_persistent() {
 }
 
 template <class ExecutionSpace>
-const char* SolverImpl<ExecutionSpace>::driver() const {
+const char* GasSolver<ExecutionSpace>::driver() const {
   return stepping::driver_name(_launcher.driver());
 }
 
 template <class ExecutionSpace>
-Tiling SolverImpl<ExecutionSpace>::tiling() const {
+Tiling GasSolver<ExecutionSpace>::tiling() const {
   const TileShape& shape = !is_fused()   ? _setup.stage_shape
                            : _persistent ? _persistent->shape
                                          : _setup.step_shape;
@@ -193,7 +218,7 @@ Tiling SolverImpl<ExecutionSpace>::tiling() const {
 }
 
 template <class ExecutionSpace>
-Control SolverImpl<ExecutionSpace>::read_control() const {
+Control GasSolver<ExecutionSpace>::read_control() const {
   auto mirror = Kokkos::create_mirror_view(_setup.control);
   Kokkos::deep_copy(_instance.space(), mirror, _setup.control);
   _instance.space().fence("drogue::gas::solver: read control");
@@ -201,7 +226,7 @@ Control SolverImpl<ExecutionSpace>::read_control() const {
 }
 
 template <class ExecutionSpace>
-void SolverImpl<ExecutionSpace>::write_control(const Control& control) {
+void GasSolver<ExecutionSpace>::write_control(const Control& control) {
   auto mirror = Kokkos::create_mirror_view(_setup.control);
   mirror() = control;
   mirror().trial.launches = _loop.launches();
@@ -210,14 +235,14 @@ void SolverImpl<ExecutionSpace>::write_control(const Control& control) {
 }
 
 template <class ExecutionSpace>
-void SolverImpl<ExecutionSpace>::upload(std::int64_t first, const ConstConservedFields& fields) {
+void GasSolver<ExecutionSpace>::upload(std::int64_t first, const ConstConservedFields& fields) {
   const Fields& now = _setup.buffer[read_control().restart.current];
   const std::span<const double> part[3] = {fields.rho, fields.momentum, fields.energy};
   for (int k = 0; k < 3; ++k) copy_range(_instance.space(), field(now, k), first, part[k], true);
 }
 
 template <class ExecutionSpace>
-void SolverImpl<ExecutionSpace>::download(std::int64_t first, const ConservedFields& fields) {
+void GasSolver<ExecutionSpace>::download(std::int64_t first, const ConservedFields& fields) {
   const Fields& now = _setup.buffer[read_control().restart.current];
   const std::span<double> part[3] = {fields.rho, fields.momentum, fields.energy};
   for (int k = 0; k < 3; ++k) copy_range(_instance.space(), field(now, k), first, part[k], false);
@@ -245,7 +270,7 @@ struct InitialWaveSpeedFunctor {
 /// Initialises the control block from `c.restart`. Row numbers continue over the life of the solver.
 /// `advance` reads the step number before a kernel publishes it.
 template <class ExecutionSpace>
-void SolverImpl<ExecutionSpace>::initialise_control(Control& c) {
+void GasSolver<ExecutionSpace>::initialise_control(Control& c) {
   c.trial.stop = Stop::pause;
   c.reduction.first_inadmissible = no_failure;
   c.trial.outputs = _rows_read;
@@ -256,7 +281,7 @@ void SolverImpl<ExecutionSpace>::initialise_control(Control& c) {
 }
 
 template <class ExecutionSpace>
-void SolverImpl<ExecutionSpace>::start() {
+void GasSolver<ExecutionSpace>::start() {
   Control c{};
   c.restart.current = read_control().restart.current;  // buffer that `upload` filled
   c.restart.limited = _parameters.positivity == Positivity::on;
@@ -270,7 +295,7 @@ void SolverImpl<ExecutionSpace>::start() {
 }
 
 template <class ExecutionSpace>
-void SolverImpl<ExecutionSpace>::restore(const RestartState& state) {
+void GasSolver<ExecutionSpace>::restore(const RestartState& state) {
   Control c{};
   c.restart = state;
   c.restart.current = read_control().restart.current;  // buffer that `upload` filled
@@ -284,7 +309,7 @@ struct CountLimitedCellsFunctor {
 };
 
 template <class ExecutionSpace>
-std::int64_t SolverImpl<ExecutionSpace>::limited_cells() {
+std::int64_t GasSolver<ExecutionSpace>::limited_cells() {
   std::int64_t sum = 0;
   Kokkos::parallel_reduce(
       "drogue::gas::count_limited_cells",
@@ -295,18 +320,18 @@ std::int64_t SolverImpl<ExecutionSpace>::limited_cells() {
 }
 
 template <class ExecutionSpace>
-void SolverImpl<ExecutionSpace>::download_limited_cells(std::int64_t first, std::span<std::uint8_t> cells) {
+void GasSolver<ExecutionSpace>::download_limited_cells(std::int64_t first, std::span<std::uint8_t> cells) {
   copy_range(_instance.space(), _setup.limited_cells, first, cells, false);
 }
 
 template <class ExecutionSpace>
-void SolverImpl<ExecutionSpace>::upload_limited_cells(std::int64_t first,
+void GasSolver<ExecutionSpace>::upload_limited_cells(std::int64_t first,
                                                       std::span<const std::uint8_t> cells) {
   copy_range(_instance.space(), _setup.limited_cells, first, cells, true);
 }
 
 template <class ExecutionSpace>
-void SolverImpl<ExecutionSpace>::begin_snapshot() {
+void GasSolver<ExecutionSpace>::begin_snapshot() {
   const ExecutionSpace& space = _instance.space();
   const int current = read_control().restart.current;
   const auto n = static_cast<std::size_t>(_parameters.cells);
@@ -329,7 +354,7 @@ void SolverImpl<ExecutionSpace>::begin_snapshot() {
 }
 
 template <class ExecutionSpace>
-ConstConservedFields SolverImpl<ExecutionSpace>::finish_snapshot() {
+ConstConservedFields GasSolver<ExecutionSpace>::finish_snapshot() {
   _copy_instance.space().fence("drogue::gas::snapshot: copied");
   const auto n = static_cast<std::size_t>(_parameters.cells);
   const double* data = _host_snapshot.data();
@@ -354,7 +379,7 @@ void dispatch_reconstruction(const Parameters& p, const Launch& launch) {
 }
 
 template <class ExecutionSpace>
-void SolverImpl<ExecutionSpace>::enqueue_step(const ExecutionSpace& space, bool limited) const {
+void GasSolver<ExecutionSpace>::enqueue_step(const ExecutionSpace& space, bool limited) const {
   dispatch_reconstruction(_parameters, [&](auto scheme) {
     if (is_fused()) return launch_step<scheme.value>(space, _setup, _parameters.precision, limited);
     for (int stage = 0; stage < _setup.table.stages; ++stage)
@@ -368,7 +393,7 @@ void SolverImpl<ExecutionSpace>::enqueue_step(const ExecutionSpace& space, bool 
 }
 
 template <class ExecutionSpace>
-void SolverImpl<ExecutionSpace>::enqueue_sums(const ExecutionSpace& space, int row_every, bool always) const {
+void GasSolver<ExecutionSpace>::enqueue_sums(const ExecutionSpace& space, int row_every, bool always) const {
   std::int64_t n = _parameters.cells;
   int level = 0;
   for (; level == 0 || n > sum_radix; ++level) {
@@ -391,7 +416,7 @@ void SolverImpl<ExecutionSpace>::enqueue_sums(const ExecutionSpace& space, int r
 }
 
 template <class ExecutionSpace>
-void SolverImpl<ExecutionSpace>::read_rows(const RowSink& rows) {
+void GasSolver<ExecutionSpace>::read_rows(const RowSink& rows) {
   for (const std::int64_t written = _loop.status().outputs; _rows_read < written; ++_rows_read) {
     _last_row = _ring(static_cast<std::size_t>(_rows_read % row_capacity));
     if (rows) rows(*_last_row);
@@ -399,7 +424,7 @@ void SolverImpl<ExecutionSpace>::read_rows(const RowSink& rows) {
 }
 
 template <class ExecutionSpace>
-HistoryRow SolverImpl<ExecutionSpace>::totals() {
+HistoryRow GasSolver<ExecutionSpace>::totals() {
   enqueue_sums(_instance.space(), 0, true);
   _loop.count_launch();
   _instance.space().fence("drogue::gas::totals");
@@ -409,12 +434,12 @@ HistoryRow SolverImpl<ExecutionSpace>::totals() {
 
 /// Steps and history rows of the solver, as `StepLoop` enqueues them.
 template <class ExecutionSpace>
-struct SolverImpl<ExecutionSpace>::DeviceSteps {
-  SolverImpl& solver;
+struct GasSolver<ExecutionSpace>::DeviceSteps {
+  GasSolver& solver;
   const RowSink& rows;
 
   void begin(const stepping::AdvanceRequest& request, std::int64_t row_step) {
-    SolverImpl& s = solver;
+    GasSolver& s = solver;
     if (const int every = request.output_every; every > 0 && every != s._row_every) {
       s._row = std::make_unique<device::CapturedGraph<ExecutionSpace>>(
           s._instance, [&s, every](const ExecutionSpace& on) { s.enqueue_sums(on, every, false); });
@@ -427,7 +452,7 @@ struct SolverImpl<ExecutionSpace>::DeviceSteps {
   }
   bool holds_many_steps(int limited) const { return solver._persistent && limited == 0; }
   void enqueue(int limited, std::int64_t max_steps) {
-    SolverImpl& s = solver;
+    GasSolver& s = solver;
     if (holds_many_steps(limited))
       return dispatch_reconstruction(s._parameters, [&](auto scheme) {
         launch_persistent_steps<scheme.value>(s._setup, *s._persistent, s._parameters.precision, max_steps);
@@ -445,15 +470,25 @@ struct SolverImpl<ExecutionSpace>::DeviceSteps {
 };
 
 template <class ExecutionSpace>
-Stop SolverImpl<ExecutionSpace>::advance(double target, std::int64_t pause_step, int row_every,
+Stop GasSolver<ExecutionSpace>::advance(double target, std::int64_t pause_step, int row_every,
                                          const RowSink& rows, const Poll& poll) {
   return _loop.advance({target, pause_step, row_every}, DeviceSteps{*this, rows}, poll);
 }
 
-/// Solver on `ExecutionSpace`. Throws as the constructor of SolverImpl does.
 template <class ExecutionSpace>
-std::unique_ptr<Solver> make_solver(const Parameters& parameters) {
-  return std::make_unique<SolverImpl<ExecutionSpace>>(parameters);
+void GasSolver<ExecutionSpace>::enqueue_begin(double target) {
+  const RowSink no_rows;
+  DeviceSteps{*this, no_rows}.begin({target}, -1);
+  _loop.count_launch();
 }
+
+template <class ExecutionSpace>
+void GasSolver<ExecutionSpace>::enqueue_step() {
+  const RowSink no_rows;
+  DeviceSteps{*this, no_rows}.enqueue(_loop.status().variant, 1);
+  _loop.count_launch();
+}
+
+DROGUE_EXTERN_INSTANCES(class GasSolver)
 
 }  // namespace drogue::gas

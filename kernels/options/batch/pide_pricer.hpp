@@ -19,17 +19,25 @@
 
 namespace drogue::options {
 
-/// Finite-difference pricer on `ExecutionSpace`.
+/// Finite-difference pricer on the caller's instance of an execution space, which must outlive it. Contracts come
+/// from host memory, since tables of their jump measures are computed there; prices stay on the device as well.
+/// Functions that `Pricer` declares are documented there.
 template <class ExecutionSpace>
-class PricerImpl final : public Pricer {
+class PidePricer {
   using Space = typename ExecutionSpace::memory_space;
   template <class T>
   using View = Kokkos::View<T*, Space>;
 
  public:
-  explicit PricerImpl(const Settings& settings) : _settings(settings), _instance(1 << 20) {}
+  /// Allocates nothing. Does not throw.
+  PidePricer(const device::Instance<ExecutionSpace>& instance, const Settings& settings)
+      : _settings(settings), _instance(instance) {}
 
-  WallTimes price(std::span<const Contract> contracts, std::span<Price> prices) override {
+  /// Prices of the last batch, money, one per contract in its order; a View of at least that many rows, valid
+  /// until the next batch. Does not throw.
+  [[nodiscard]] const View<Price>& prices() const { return _prices; }
+
+  WallTimes price(std::span<const Contract> contracts, std::span<Price> prices) {
     if (contracts.size() != prices.size())
       throw std::invalid_argument("options pricer: as many prices as contracts are needed");
     if (_settings.method == Method::baseline)
@@ -50,9 +58,9 @@ class PricerImpl final : public Pricer {
     return times;
   }
 
-  std::pmr::memory_resource& memory() override { return _pinned; }
+  std::pmr::memory_resource& memory() { return _pinned; }
 
-  std::vector<BoundaryPoint> boundary_on(const Contract& contract, int mesh, int steps) override {
+  std::vector<BoundaryPoint> boundary_on(const Contract& contract, int mesh, int steps) {
     const RecordedSolve recorded =
         record(contract, mesh != 0 ? Resolution{mesh, steps} : recorded_resolution());
     std::vector<BoundaryPoint> points;
@@ -62,7 +70,7 @@ class PricerImpl final : public Pricer {
     return points;
   }
 
-  std::vector<ProfilePoint> profile(const Contract& contract) override {
+  std::vector<ProfilePoint> profile(const Contract& contract) {
     const RecordedSolve recorded = record(contract, recorded_resolution());
     std::vector<ProfilePoint> points;
     for (std::size_t k = 0; k < recorded.x.size(); ++k) {
@@ -286,7 +294,7 @@ class PricerImpl final : public Pricer {
   }
 
   Settings _settings;
-  device::Instance<ExecutionSpace> _instance;
+  const device::Instance<ExecutionSpace>& _instance;
   View<Contract> _contracts;
   View<Price> _prices;
   View<int> _order;
@@ -298,9 +306,6 @@ class PricerImpl final : public Pricer {
   FourierRootsTable<ExecutionSpace> _roots;
 };
 
-template <class ExecutionSpace>
-std::unique_ptr<Pricer> make_pide(const Settings& settings) {
-  return std::make_unique<PricerImpl<ExecutionSpace>>(settings);
-}
+DROGUE_EXTERN_INSTANCES(class PidePricer)
 
 }  // namespace drogue::options
