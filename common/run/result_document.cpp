@@ -122,11 +122,13 @@ std::string ResultDocument::failed_check() const {
   if (failed == checks.end()) return {};
   char text[256];
   if (std::isnan(failed->value))
-    std::snprintf(text, sizeof text, "%s could not be measured in this run, perhaps because it is too short; its tolerance is %.6g",
-                  failed->name.c_str(), failed->tolerance);
+    std::snprintf(
+        text, sizeof text,
+        "%s could not be measured in this run, perhaps because it is too short; its tolerance is %.6g",
+        failed->name.c_str(), failed->tolerance);
   else
-    std::snprintf(text, sizeof text, "%s is %.6g, above its tolerance %.6g", failed->name.c_str(), failed->value,
-                  failed->tolerance);
+    std::snprintf(text, sizeof text, "%s is %.6g, above its tolerance %.6g", failed->name.c_str(),
+                  failed->value, failed->tolerance);
   return text;
 }
 

@@ -185,8 +185,8 @@ class FabricSolver {
     if constexpr (VertexForceTerm<VertexForce>::ends_steps)
       if (ends_vertex_forces_apart())
         launch_each(space(), "drogue::fabric::end_vertex_forces", _vertices,
-                    EndVertexForcesFunctor<ExecutionSpace, VertexForce>{vertex_force_term(), _x, _v,
-                                                                        _fabric.inverse_mass, _monitor, _parity});
+                    EndVertexForcesFunctor<ExecutionSpace, VertexForce>{
+                        vertex_force_term(), _x, _v, _fabric.inverse_mass, _monitor, _parity});
   }
   [[nodiscard]] ExternalFunctor<ExecutionSpace> external_functor(const Points& x, const Points& v,
                                                                  double fraction, bool with_dashpots) const {

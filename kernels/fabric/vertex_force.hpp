@@ -72,7 +72,8 @@ struct VertexForceTerm {
     return force + Vector3<R>{Lanes::load(of[0]), Lanes::load(of[1]), Lanes::load(of[2])};
   }
 
-  /// Ends step `steps` of vertex i and the lanes after it, in a kernel of steps.
+  /// Ends step `steps` of vertex i and the lanes after it, in a kernel of steps; position in m, velocity in
+  /// m/s.
   template <class R>
   KOKKOS_INLINE_FUNCTION void end_step(const Vector3<R>& position, const Vector3<R>& velocity,
                                        const double* inverse_mass, int i, std::int64_t steps) const {
@@ -84,9 +85,10 @@ struct VertexForceTerm {
     }
   }
 
-  /// State of vertex i after `steps` steps.
-  KOKKOS_INLINE_FUNCTION VertexStage end_of_step(const Vector3<double>& position, const Vector3<double>& velocity,
-                                                 double inverse_mass, int i, std::int64_t steps) const {
+  /// State of vertex i after `steps` steps; position in m, velocity in m/s, inverse mass in 1/kg.
+  KOKKOS_INLINE_FUNCTION VertexStage end_of_step(const Vector3<double>& position,
+                                                 const Vector3<double>& velocity, double inverse_mass, int i,
+                                                 std::int64_t steps) const {
     return of_lane(0, position, velocity, Vector3<double>{0.0, 0.0, 0.0}, inverse_mass, i, steps, 0.0);
   }
 
@@ -105,8 +107,8 @@ struct VertexForceTerm {
   }
 };
 
-/// Calls `end_step` of a VertexForce for all vertices, after prescribed motion and contact have changed the state at the
-/// end of a step.
+/// Calls `end_step` of a VertexForce for all vertices, after prescribed motion and contact have changed the
+/// state at the end of a step.
 template <class ExecutionSpace, class VertexForce>
 struct EndVertexForcesFunctor {
   VertexForceTerm<VertexForce> term;
@@ -116,8 +118,8 @@ struct EndVertexForcesFunctor {
   int parity;  ///< entry of the step counter
 
   KOKKOS_FUNCTION void operator()(const int i) const {
-    term.functor.end_step(term.end_of_step(load_points<double>(x, i), load_points<double>(v, i), inverse_mass(i), i,
-                                           monitor.steps(parity)));
+    term.functor.end_step(term.end_of_step(load_points<double>(x, i), load_points<double>(v, i),
+                                           inverse_mass(i), i, monitor.steps(parity)));
   }
 };
 

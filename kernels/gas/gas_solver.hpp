@@ -326,7 +326,7 @@ void GasSolver<ExecutionSpace>::download_limited_cells(std::int64_t first, std::
 
 template <class ExecutionSpace>
 void GasSolver<ExecutionSpace>::upload_limited_cells(std::int64_t first,
-                                                      std::span<const std::uint8_t> cells) {
+                                                     std::span<const std::uint8_t> cells) {
   copy_range(_instance.space(), _setup.limited_cells, first, cells, true);
 }
 
@@ -471,7 +471,7 @@ struct GasSolver<ExecutionSpace>::DeviceSteps {
 
 template <class ExecutionSpace>
 Stop GasSolver<ExecutionSpace>::advance(double target, std::int64_t pause_step, int row_every,
-                                         const RowSink& rows, const Poll& poll) {
+                                        const RowSink& rows, const Poll& poll) {
   return _loop.advance({target, pause_step, row_every}, DeviceSteps{*this, rows}, poll);
 }
 

@@ -15,8 +15,12 @@ class SolverAdapter final : public Solver {
  public:
   explicit SolverAdapter(const Parameters& p) : _instance(host_threads(p.cells)), _solver(_instance, p) {}
 
-  void upload(std::int64_t first, const ConstConservedFields& fields) override { _solver.upload(first, fields); }
-  void download(std::int64_t first, const ConservedFields& fields) override { _solver.download(first, fields); }
+  void upload(std::int64_t first, const ConstConservedFields& fields) override {
+    _solver.upload(first, fields);
+  }
+  void download(std::int64_t first, const ConservedFields& fields) override {
+    _solver.download(first, fields);
+  }
   void start() override { _solver.start(); }
   void restore(const RestartState& state) override { _solver.restore(state); }
   Stop advance(double target, std::int64_t pause_step, int row_every, const RowSink& rows,

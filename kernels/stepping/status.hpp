@@ -37,7 +37,8 @@ struct TimeState {
   /// std::invalid_argument if it is not finite or 1e15 steps away.
   [[nodiscard]] std::int64_t steps_to(double target) const {
     const double steps = (target - time()) / dt;
-    if (!(steps < 1e15)) throw std::invalid_argument("time stepping: the target time is not finite, or too far");
+    if (!(steps < 1e15))
+      throw std::invalid_argument("time stepping: the target time is not finite, or too far");
     return steps > 0.0 ? std::llround(steps) : 0;
   }
 };

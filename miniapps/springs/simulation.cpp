@@ -123,7 +123,8 @@ std::string Simulation::too_long_step() {
   if (dt == *requested.dt)
     text << "a step of " << dt << " s is too long: ";
   else
-    text << "time.dt = " << *requested.dt << " s, shortened to " << dt << " s to meet an output, is too long: ";
+    text << "time.dt = " << *requested.dt << " s, shortened to " << dt
+         << " s to meet an output, is too long: ";
   if (requested.integrator == fabric::Integrator::verlet && _scene.damping.absolute * dt > turning_damping) {
     text << "damping.absolute = " << _scene.damping.absolute << " 1/s turns velocities round in it";
     return text.str();
