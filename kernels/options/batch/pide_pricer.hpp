@@ -33,9 +33,10 @@ class PidePricer {
   PidePricer(const device::Instance<ExecutionSpace>& instance, const Settings& settings)
       : _settings(settings), _instance(instance) {}
 
-  /// Prices of the last batch, money, one per contract in its order; a View of at least that many rows, valid
-  /// until the next batch. Does not throw.
-  [[nodiscard]] const View<Price>& prices() const { return _prices; }
+  /// Prices of the last batch, money, one per contract in its order, for kernels; a View of at least that
+  /// many rows, in device memory or, for a small batch, in pinned host memory. Valid until the next batch,
+  /// and as long as the span that received the prices. Does not throw.
+  [[nodiscard]] const View<Price>& prices() const { return _last_prices; }
 
   WallTimes price(std::span<const Contract> contracts, std::span<Price> prices) {
     if (contracts.size() != prices.size())
@@ -107,6 +108,7 @@ class PidePricer {
     const int mesh =
         _settings.mesh == 0 && _settings.method == Method::baseline ? baseline_mesh : _settings.mesh;
     reserve(contracts.size());
+    _last_prices = _prices;
     if (mesh != 0 && is_priced_in_place(contracts.size()))
       return price_in_place(contracts, prices, {mesh, steps_of(mesh)});
     const device::Stopwatch copying_in;
@@ -129,9 +131,10 @@ class PidePricer {
   void price_in_place(std::span<const Contract> contracts, std::span<Price> prices,
                       const Resolution& resolution) {
     Price* const to = landing_buffer(prices);
-    launch_all({Kokkos::View<const Contract*, Space>(staging_buffer(contracts), contracts.size()),
-                View<Price>(to, prices.size())},
-               contracts, resolution);
+    _last_prices = View<Price>(to, prices.size());
+    launch_all(
+        {Kokkos::View<const Contract*, Space>(staging_buffer(contracts), contracts.size()), _last_prices},
+        contracts, resolution);
     wait_for_prices(to, prices);
   }
 
@@ -296,7 +299,7 @@ class PidePricer {
   Settings _settings;
   const device::Instance<ExecutionSpace>& _instance;
   View<Contract> _contracts;
-  View<Price> _prices;
+  View<Price> _prices, _last_prices;
   View<int> _order;
   device::PinnedMemory<ExecutionSpace> _pinned;
   std::pmr::vector<int> _host_order{&_pinned};  ///< contents of _order
