@@ -87,8 +87,8 @@ KOKKOS_INLINE_FUNCTION RestTriangle<R> stored_triangle(const Values& value, R be
 
 /// Edge from the position `own`, m, to a neighbour.
 template <class R, class Points>
-KOKKOS_INLINE_FUNCTION EdgeVector<R> edge_to(const Points& points, const Vector3<R>& own,
-                                             typename device::Access<R>::Index neighbour) {
+KOKKOS_FORCEINLINE_FUNCTION EdgeVector<R> edge_to(const Points& points, const Vector3<R>& own,
+                                                  typename device::Access<R>::Index neighbour) {
   const Vector3<R> to = gather_points<R>(points, neighbour) - own;
   return {to, dot(to, to), neighbour};
 }
