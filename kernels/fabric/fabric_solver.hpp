@@ -151,7 +151,7 @@ class FabricSolver {
   }
   void require_vertices(std::size_t count) const;
 
-  /// Calls `function.operator()<law>()` with the constitutive model of the fabric.
+  /// Calls `function.operator()<model>()` with the constitutive model of the fabric.
   template <class Function>
   decltype(auto) with_model(const Function& function) const {
     return dispatch_model(_parameters.material, function);
@@ -205,30 +205,30 @@ class FabricSolver {
            _launcher.driver() == Driver::stages;
   }
   void enqueue(std::int64_t steps) {
-    with_model([&]<ConstitutiveModel law>() { this->template enqueue_model_steps<law>(steps); });
+    with_model([&]<ConstitutiveModel model>() { this->template enqueue_model_steps<model>(steps); });
   }
-  template <ConstitutiveModel law>
+  template <ConstitutiveModel model>
   void enqueue_model_steps(std::int64_t steps);
-  template <ConstitutiveModel law>
+  template <ConstitutiveModel model>
   void enqueue_persistent_steps(std::int64_t steps);
-  template <ConstitutiveModel law>
+  template <ConstitutiveModel model>
   void enqueue_contact_step();
   /// Enqueues a step by the plain or graph driver. A capture of the caller receives the kernels themselves.
-  template <ConstitutiveModel law>
+  template <ConstitutiveModel model>
   void launch_runge_kutta_step() {
-    const auto enqueue_step = [this](const ExecutionSpace&) { enqueue_runge_kutta_step<law>(); };
+    const auto enqueue_step = [this](const ExecutionSpace&) { enqueue_runge_kutta_step<model>(); };
     if (_loop.is_capturing())
       enqueue_step(space());
     else
       _launcher.launch(0, enqueue_step);
   }
-  template <ConstitutiveModel law>
+  template <ConstitutiveModel model>
   void enqueue_runge_kutta_step() const;
-  template <ConstitutiveModel law>
+  template <ConstitutiveModel model>
   void enqueue_runge_kutta_stages() const;
-  template <ConstitutiveModel law, bool last>
+  template <ConstitutiveModel model, bool last>
   void enqueue_runge_kutta_half(const char* label) const;
-  template <ConstitutiveModel law>
+  template <ConstitutiveModel model>
   void enqueue_verlet(bool ends, bool begins);
   void restore_addresses();
   void save_checkpoint(std::int64_t launches);
@@ -237,9 +237,9 @@ class FabricSolver {
   // ---- evaluation ----
   void forces_at(const Points& x, std::span<Vector> forces) {
     if (_has_load_kernel) evaluate_loads(x, _v, 0.0, false);
-    with_model([&]<ConstitutiveModel law>() {
+    with_model([&]<ConstitutiveModel model>() {
       launch_packs(space(), "drogue::fabric::force", _padded,
-                   ForceFunctor<ExecutionSpace, law>{_fabric, x, _next});
+                   ForceFunctor<ExecutionSpace, model>{_fabric, x, _next});
     });
     _reader.read(space(), _next, forces);
   }
@@ -478,33 +478,33 @@ void FabricSolver<ExecutionSpace, VertexForce>::apply_dirichlet(const Points& x,
 }
 
 template <class ExecutionSpace, class VertexForce>
-template <ConstitutiveModel law, bool last>
+template <ConstitutiveModel model, bool last>
 void FabricSolver<ExecutionSpace, VertexForce>::enqueue_runge_kutta_half(const char* label) const {
-  launch_packs(
-      space(), label, _padded,
-      RungeKuttaHalfFunctor<ExecutionSpace, law, last, VertexForce>{_fabric,
-                                                                    _x,
-                                                                    _v,
-                                                                    _next,
-                                                                    _other,
-                                                                    {_stage_velocity[0], _stage_velocity[1]},
-                                                                    _monitor,
-                                                                    _time.dt,
-                                                                    vertex_force_term()});
+  launch_packs(space(), label, _padded,
+               RungeKuttaHalfFunctor<ExecutionSpace, model, last, VertexForce>{
+                   _fabric,
+                   _x,
+                   _v,
+                   _next,
+                   _other,
+                   {_stage_velocity[0], _stage_velocity[1]},
+                   _monitor,
+                   _time.dt,
+                   vertex_force_term()});
 }
 
 template <class ExecutionSpace, class VertexForce>
-template <ConstitutiveModel law>
+template <ConstitutiveModel model>
 void FabricSolver<ExecutionSpace, VertexForce>::enqueue_runge_kutta_step() const {
-  if (has_stage_kernels()) return enqueue_runge_kutta_stages<law>();
+  if (has_stage_kernels()) return enqueue_runge_kutta_stages<model>();
   if constexpr (!device::is_host<ExecutionSpace>) {
-    enqueue_runge_kutta_half<law, false>("drogue::fabric::rk4_begin");
-    enqueue_runge_kutta_half<law, true>("drogue::fabric::rk4_end");
+    enqueue_runge_kutta_half<model, false>("drogue::fabric::rk4_begin");
+    enqueue_runge_kutta_half<model, true>("drogue::fabric::rk4_end");
   }
 }
 
 template <class ExecutionSpace, class VertexForce>
-template <ConstitutiveModel law>
+template <ConstitutiveModel model>
 void FabricSolver<ExecutionSpace, VertexForce>::enqueue_runge_kutta_stages() const {
   const Points at[] = {_x, _next, _other, _next}, next[] = {_next, _other, _next, _x};
   // Fractions of the step before and after each stage; the last stage has counted the step.
@@ -513,7 +513,7 @@ void FabricSolver<ExecutionSpace, VertexForce>::enqueue_runge_kutta_stages() con
     if (_has_load_kernel)
       evaluate_loads(at[stage], stage == 0 ? _v : _stage_velocity[stage - 1], before[stage], _has_dashpots);
     launch_packs(space(), "drogue::fabric::rk4_stage", _padded,
-                 RungeKuttaFunctor<ExecutionSpace, law, VertexForce>{
+                 RungeKuttaFunctor<ExecutionSpace, model, VertexForce>{
                      _fabric,
                      _x,
                      _v,
@@ -531,13 +531,13 @@ void FabricSolver<ExecutionSpace, VertexForce>::enqueue_runge_kutta_stages() con
 }
 
 template <class ExecutionSpace, class VertexForce>
-template <ConstitutiveModel law>
+template <ConstitutiveModel model>
 void FabricSolver<ExecutionSpace, VertexForce>::enqueue_verlet(bool ends, bool begins) {
   if (_has_load_kernel) evaluate_loads(_x, _v, 0.0, false);
   launch_packs(space(), "drogue::fabric::verlet", _padded,
-               VerletFunctor<ExecutionSpace, law, VertexForce>{_fabric, _x, _v, _next, _monitor,
-                                                               _parameters.damping, _time.dt, _parity, ends,
-                                                               begins, !_has_dashpots, vertex_force_term()});
+               VerletFunctor<ExecutionSpace, model, VertexForce>{
+                   _fabric, _x, _v, _next, _monitor, _parameters.damping, _time.dt, _parity, ends, begins,
+                   !_has_dashpots, vertex_force_term()});
   if (!begins) return;
   if (_has_dashpots) {
     launch_each(space(), "drogue::fabric::dashpot_damping", _vertices,
@@ -553,12 +553,12 @@ void FabricSolver<ExecutionSpace, VertexForce>::enqueue_verlet(bool ends, bool b
 /// Enqueues one launch. Checkpoints end launches, so that none has more than `checkpoint_interval` steps,
 /// which take a few milliseconds.
 template <class ExecutionSpace, class VertexForce>
-template <ConstitutiveModel law>
+template <ConstitutiveModel model>
 void FabricSolver<ExecutionSpace, VertexForce>::enqueue_persistent_steps(std::int64_t steps) {
   if constexpr (device::PersistentKernel<ExecutionSpace>::available) {
     FabricViews<ExecutionSpace> fabric = _fabric;
     fabric.load = _dead.total;
-    launch_persistent_steps<law>(
+    launch_persistent_steps<model>(
         space(), *_persistent,
         PersistentInputs<ExecutionSpace, VertexForce>{fabric, _x, _v, _monitor, _time, vertex_force_term(),
                                                       _external, _has_load_kernel},
@@ -587,30 +587,30 @@ bool FabricSolver<ExecutionSpace, VertexForce>::enqueue_steps(std::int64_t steps
 }
 
 template <class ExecutionSpace, class VertexForce>
-template <ConstitutiveModel law>
+template <ConstitutiveModel model>
 void FabricSolver<ExecutionSpace, VertexForce>::enqueue_model_steps(std::int64_t steps) {
   if (_contact) {
-    for (std::int64_t k = 0; k < steps; ++k) enqueue_contact_step<law>();
+    for (std::int64_t k = 0; k < steps; ++k) enqueue_contact_step<model>();
   } else if (_parameters.integrator == Integrator::verlet) {
-    enqueue_verlet<law>(false, true);
-    for (std::int64_t k = 1; k < steps; ++k) enqueue_verlet<law>(true, true);
-    enqueue_verlet<law>(true, false);
+    enqueue_verlet<model>(false, true);
+    for (std::int64_t k = 1; k < steps; ++k) enqueue_verlet<model>(true, true);
+    enqueue_verlet<model>(true, false);
   } else if (_launcher.is_persistent()) {
-    enqueue_persistent_steps<law>(steps);
+    enqueue_persistent_steps<model>(steps);
   } else {
-    for (std::int64_t k = 0; k < steps; ++k) launch_runge_kutta_step<law>();
+    for (std::int64_t k = 0; k < steps; ++k) launch_runge_kutta_step<model>();
   }
 }
 
 template <class ExecutionSpace, class VertexForce>
-template <ConstitutiveModel law>
+template <ConstitutiveModel model>
 void FabricSolver<ExecutionSpace, VertexForce>::enqueue_contact_step() {
   _contact->begin_step(_x, _v);
   if (_parameters.integrator == Integrator::verlet) {
-    enqueue_verlet<law>(false, true);
-    enqueue_verlet<law>(true, false);
+    enqueue_verlet<model>(false, true);
+    enqueue_verlet<model>(true, false);
   } else {
-    launch_runge_kutta_step<law>();
+    launch_runge_kutta_step<model>();
   }
   _contact->end_step(_x, _v);
   end_vertex_forces();
