@@ -1,7 +1,7 @@
 # drogue_add_mini_app(<name>): the scene-driven program drogue-<name> from the sources of the current folder. Everything but
 # main.cpp becomes the library drogue_<name>_app, which tests link. scenes/ is installed beside the program.
 function(drogue_add_mini_app name)
-  file(GLOB _sources CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/*.cpp")
+  file(GLOB_RECURSE _sources CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/*.cpp")
   list(REMOVE_ITEM _sources "${CMAKE_CURRENT_SOURCE_DIR}/main.cpp")
   set(_library drogue_${name}_app)
   add_library(${_library} STATIC ${_sources})

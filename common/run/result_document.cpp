@@ -129,8 +129,14 @@ std::string ResultDocument::failed_check() const {
       std::find_if(checks.begin(), checks.end(), [](const Check& check) { return !check.passed; });
   if (failed == checks.end()) return {};
   char text[256];
-  std::snprintf(text, sizeof text, "%s is %.6g, above its tolerance %.6g", failed->name.c_str(),
-                failed->value, failed->tolerance);
+  if (std::isnan(failed->value))
+    std::snprintf(
+        text, sizeof text,
+        "%s could not be measured in this run, perhaps because it is too short; its tolerance is %.6g",
+        failed->name.c_str(), failed->tolerance);
+  else
+    std::snprintf(text, sizeof text, "%s is %.6g, above its tolerance %.6g", failed->name.c_str(),
+                  failed->value, failed->tolerance);
   return text;
 }
 

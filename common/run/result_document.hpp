@@ -83,7 +83,8 @@ struct ResultDocument {
   void describe_device(const std::string& name_of_backend, const Facts& facts) {
     backend = name_of_backend;
     threads = backend == "openmp" ? facts.threads : 1;
-    device = backend == "cuda" ? facts.gpu : provenance.cpu;
+    const bool on_host = backend == "serial" || backend == "openmp";
+    device = on_host ? provenance.cpu : facts.gpu;
     provenance.kokkos = facts.kokkos_version;
     provenance.gpu = facts.gpu;
     provenance.driver = facts.driver;

@@ -83,6 +83,9 @@ class Reader {
     for (std::size_t i = 0; i < array->size(); ++i) bind(*key._tables[i], (*array)[i]);
   }
 
+  /// Former names of keys, and the present ones.
+  static constexpr std::pair<std::string_view, std::string_view> renamed_keys[] = {{"bar", "tolerance"}};
+
   std::string unknown(const Table& table, const std::string& name) const {
     std::string text = "unknown key " + toml_string(table.path_of(name)) + "; ";
     for (const std::string& path : all_paths(_root)) {
@@ -90,6 +93,9 @@ class Reader {
     }
     std::vector<std::string> valid;
     for (const auto& key : table._keys) valid.push_back(key->_name);
+    for (const auto& [old_name, new_name] : renamed_keys)
+      if (name == old_name && std::ranges::find(valid, new_name) != valid.end())
+        return text + "it is called " + toml_string(std::string(new_name)) + " now";
     return text + suggestion(name, valid);
   }
 

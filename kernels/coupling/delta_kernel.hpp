@@ -14,6 +14,7 @@ struct LinearSpline {
   static constexpr int points = 2, lead = 0;
   static constexpr bool centred = false;
 
+  /// Weights of the sample points, dimensionless, for r in spacings. Does not throw.
   template <class R>
   KOKKOS_INLINE_FUNCTION static void weights(const R& r, R (&w)[points]) {
     w[0] = 1.0 - r;
@@ -26,6 +27,7 @@ struct QuadraticSpline {
   static constexpr int points = 3, lead = 1;
   static constexpr bool centred = true;
 
+  /// Weights of the sample points, dimensionless, for r in spacings. Does not throw.
   template <class R>
   KOKKOS_INLINE_FUNCTION static void weights(const R& r, R (&w)[points]) {
     const R low = 0.5 - r, high = 0.5 + r;
@@ -40,6 +42,7 @@ struct CubicSpline {
   static constexpr int points = 4, lead = 1;
   static constexpr bool centred = false;
 
+  /// Weights of the sample points, dimensionless, for r in spacings. Does not throw.
   template <class R>
   KOKKOS_INLINE_FUNCTION static void weights(const R& r, R (&w)[points]) {
     constexpr double sixth = 1.0 / 6.0, two_thirds = 2.0 / 3.0;
@@ -56,6 +59,7 @@ struct PeskinFourPoint {
   static constexpr int points = 4, lead = 1;
   static constexpr bool centred = false;
 
+  /// Weights of the sample points, dimensionless, for r in spacings. Does not throw.
   template <class R>
   KOKKOS_INLINE_FUNCTION static void weights(const R& r, R (&w)[points]) {
     using device::square_root;
@@ -88,7 +92,7 @@ struct KernelFactors<DeltaKernel::ib4> {
   using Across = PeskinFourPoint;
 };
 
-/// Calls `function.operator()<kernel>()` with a kernel chosen at run time.
+/// Calls `function.operator()<kernel>()` with a kernel chosen at run time. Throws what the function throws.
 template <class Function>
 void dispatch_kernel(DeltaKernel kernel, const Function& function) {
   switch (kernel) {

@@ -33,13 +33,15 @@ struct FaceArrays {
   T* data[3];
   std::ptrdiff_t stride[3][3];  ///< by component, in the order of FaceIndex
 
+  /// Value at a face, in the unit of the Views. Does not throw.
   KOKKOS_FUNCTION T& at(int component, const FaceIndex& face) const {
     const std::ptrdiff_t(&step)[3] = stride[component];
     return data[component][face.along * step[0] + face.across * step[1] + face.last * step[2]];
   }
 };
 
-/// Addresses of Views. Throws std::invalid_argument unless every View has the faces of the grid.
+/// Addresses of the values of Views, of any unit. Throws std::invalid_argument unless every View has the
+/// faces of the grid.
 template <class View>
 [[nodiscard]] FaceArrays<typename View::value_type> face_arrays(const MacGrid& grid,
                                                                 const FaceViews<View>& faces) {
@@ -113,6 +115,7 @@ struct FaceStencil {
   AxisStencil<Along::points> along;
   AxisStencil<Across::points> across, last;
 
+  /// Faces around `x`, m, for the component of that number. Does not throw.
   KOKKOS_FUNCTION FaceStencil(const GridAxes& grid, const spatial::Point& x, int component) {
     const double coordinate[3] = {x.x, x.y, x.z};
     const int next = cyclic_axis(component, 1), other = cyclic_axis(component, 2);

@@ -55,7 +55,8 @@ struct GridTransfer {
   Kokkos::View<TransferCounts, Memory> counts;
 };
 
-/// Throws std::invalid_argument unless a View has at least one row per point of the transfer.
+/// Throws std::invalid_argument unless the number of rows of a View is at least that of points of the
+/// transfer.
 template <class ExecutionSpace, class View>
 void require_points(const GridTransfer<ExecutionSpace>& transfer, const View& view) {
   if (view.extent(0) < static_cast<std::size_t>(transfer.points))
@@ -77,10 +78,12 @@ struct TransferKernel {
     spatial::Point x;  ///< frozen, m
   };
 
+  /// Point and component of thread n, with the position in m. Does not throw.
   KOKKOS_FUNCTION Item item(int n) const {
     const int component = n / transfer.points, point = n - component * transfer.points;
     return {component, point, spatial::load_vector(transfer.positions, point)};
   }
+  /// Faces around a point, with dimensionless weights. Does not throw.
   KOKKOS_FUNCTION FaceStencil<kernel> stencil(const Item& at) const { return {axes, at.x, at.component}; }
   /// Scale of the sums in use.
   KOKKOS_FUNCTION FixedPointScale scale() const {
@@ -97,7 +100,7 @@ struct TransferKernel {
 };
 
 /// Calls `make.operator()<Kernel>(base)` with the TransferKernel of a transfer, and runs the functor that it
-/// returns once for each point and component. Asynchronous.
+/// returns once for each point and component. Asynchronous. Throws std::runtime_error if the launch fails.
 template <class ExecutionSpace, class Make>
 void for_each_point_and_component(const ExecutionSpace& space, const char* label,
                                   const GridTransfer<ExecutionSpace>& transfer, const Make& make) {
@@ -144,7 +147,8 @@ void freeze_positions(const ExecutionSpace& space, const GridTransfer<ExecutionS
   });
 }
 
-/// Copies the counts of a transfer to the host. Blocks; not for captured graphs. Does not throw.
+/// Copies the counts of a transfer to the host. Blocks; not for captured graphs. Throws std::runtime_error
+/// after a failed kernel.
 template <class ExecutionSpace>
 [[nodiscard]] TransferCounts transfer_counts(const ExecutionSpace& space,
                                              const GridTransfer<ExecutionSpace>& transfer) {

@@ -10,7 +10,7 @@ namespace drogue::coupling {
 // the sum over all faces of a component is exactly the sum of the forces rounded to units. With n points and
 // the largest force component M, a unit is below M n / 2^60; no sum overflows even if all points coincide.
 
-/// Component of the force on a point; a View of rank 1 has one value for all components.
+/// Component of the force on a point, N; a View of rank 1 has one value for all components.
 template <class Forces>
 KOKKOS_INLINE_FUNCTION double force_component(const Forces& force, int i, int component) {
   if constexpr (Forces::rank() == 1)
@@ -43,7 +43,9 @@ struct SpreadFunctor : Base {
   double bound;  ///< N; zero: the largest force found
 
   KOKKOS_FUNCTION void operator()(const int n) const {
-    const double largest = bound > 0.0 ? bound : Kokkos::bit_cast<double>(this->transfer.largest(0));
+    // Forces above 1e270 N are rejected: the scale of the fixed-point sums would not be a normal number.
+    const double limit = bound > 0.0 ? bound : Kokkos::bit_cast<double>(this->transfer.largest(0));
+    const double largest = limit < 1e270 ? limit : 1e270;
     if (n == 0) this->transfer.largest(1) = Kokkos::bit_cast<FixedPoint>(largest);
     const auto at = this->item(n);
     const double value = force_component(force, at.point, at.component);
@@ -116,7 +118,8 @@ struct ResetSumsFunctor : Base {
   }
 };
 
-/// Adds forces to the fixed-point sums of faces. `bound` (N) as for `spread`.
+/// Adds forces to the fixed-point sums of faces. `bound` (N) and errors are those of `spread`, which throws
+/// std::invalid_argument for a bound that is not finite or negative.
 template <class ExecutionSpace, class Forces>
 void add_to_sums(const ExecutionSpace& space, const GridTransfer<ExecutionSpace>& transfer,
                  const Forces& force, double bound) {

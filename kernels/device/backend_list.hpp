@@ -16,19 +16,31 @@ class Cuda;
 // CMake defines DROGUE_HAVE_NAME for each backend in DROGUE_BACKENDS (cmake/DrogueBackends.cmake).
 #if defined(DROGUE_HAVE_SERIAL)
 #define DROGUE_COMPILED_SERIAL true
+#define DROGUE_EXTERN_SERIAL(...) extern template __VA_ARGS__<Kokkos::Serial>;
 #else
 #define DROGUE_COMPILED_SERIAL false
+#define DROGUE_EXTERN_SERIAL(...)
 #endif
 #if defined(DROGUE_HAVE_OPENMP)
 #define DROGUE_COMPILED_OPENMP true
+#define DROGUE_EXTERN_OPENMP(...) extern template __VA_ARGS__<Kokkos::OpenMP>;
 #else
 #define DROGUE_COMPILED_OPENMP false
+#define DROGUE_EXTERN_OPENMP(...)
 #endif
 #if defined(DROGUE_HAVE_CUDA)
 #define DROGUE_COMPILED_CUDA true
+#define DROGUE_EXTERN_CUDA(...) extern template __VA_ARGS__<Kokkos::Cuda>;
 #else
 #define DROGUE_COMPILED_CUDA false
+#define DROGUE_EXTERN_CUDA(...)
 #endif
+
+// Declares the instances of a class template that a source of a folder instances/ compiles for each backend.
+#define DROGUE_EXTERN_INSTANCES(...) \
+  DROGUE_EXTERN_SERIAL(__VA_ARGS__)  \
+  DROGUE_EXTERN_OPENMP(__VA_ARGS__)  \
+  DROGUE_EXTERN_CUDA(__VA_ARGS__)
 
 namespace drogue::device {
 

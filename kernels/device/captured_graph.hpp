@@ -51,14 +51,21 @@ class CapturedGraph<Kokkos::Cuda> {
   using Enqueue = std::function<void(const Kokkos::Cuda&)>;
 
   /// Captures the kernels that `enqueue` launches, without running them. `instance` must outlive the graph.
-  /// Throws std::runtime_error for a CUDA error.
+  /// Throws std::runtime_error for a CUDA error, and what `enqueue` throws.
   CapturedGraph(const Instance<Kokkos::Cuda>& instance, const Enqueue& enqueue) : _stream(instance.stream()) {
     cudaGraph_t graph = nullptr;
     KOKKOS_IMPL_CUDA_SAFE_CALL(cudaStreamBeginCapture(_stream, cudaStreamCaptureModeThreadLocal));
-    enqueue(instance.space());
+    try {
+      enqueue(instance.space());
+    } catch (...) {
+      // Leaves the stream usable for the caller that handles the error.
+      if (cudaStreamEndCapture(_stream, &graph) == cudaSuccess) cudaGraphDestroy(graph);
+      throw;
+    }
     KOKKOS_IMPL_CUDA_SAFE_CALL(cudaStreamEndCapture(_stream, &graph));
-    KOKKOS_IMPL_CUDA_SAFE_CALL(cudaGraphInstantiate(&_graph, graph, 0));
+    const cudaError_t status = cudaGraphInstantiate(&_graph, graph, 0);
     cudaGraphDestroy(graph);
+    KOKKOS_IMPL_CUDA_SAFE_CALL(status);
   }
   ~CapturedGraph() { cudaGraphExecDestroy(_graph); }
   CapturedGraph(const CapturedGraph&) = delete;

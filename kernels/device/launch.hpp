@@ -8,6 +8,8 @@ namespace drogue::device {
 /// graph. `Bounds`: launch bounds of the kernel. Throws std::runtime_error if the launch fails.
 template <class Bounds = Kokkos::LaunchBounds<>, class ExecutionSpace, class Functor>
 void launch_each(const ExecutionSpace& space, const char* label, int count, const Functor& functor) {
+  // Larger functors are no kernel arguments of CUDA, whatever the hint.
+  static_assert(sizeof(Functor) <= 4000, "a functor of launch_each must fit the arguments of a kernel");
   const Kokkos::RangePolicy<ExecutionSpace, Bounds> each(space, 0, count);
   // Light-weight functors are kernel arguments. Others are copied to a buffer that orders launches and that a
   // captured graph cannot hold.

@@ -92,6 +92,7 @@ class FabricSolver {
   /// Enqueues `steps` steps of `time_state().dt` and a checkpoint after every 256th step. Asynchronous but
   /// for a bound on the steps in flight of some 0.1 s, and at least 2048 steps. Returns false, and enqueues
   /// nothing more, once a failure is known on the host. The distribution of steps over calls changes no bit.
+  /// Throws std::invalid_argument for a negative number.
   ///
   /// It may be called while the caller captures the instance's stream into a CUDA graph, except with contact
   /// (std::logic_error). Each launch of that graph takes `steps` steps. From the first capture on, the solver
@@ -101,7 +102,8 @@ class FabricSolver {
   bool enqueue_steps(std::int64_t steps);
 
   /// Enqueues the number of steps that ends nearest to `time`, s; none if that time has passed. Returns as
-  /// `enqueue_steps`.
+  /// `enqueue_steps`. After steps were captured, call `synchronize` first: until then the present time is not
+  /// known on the host. Throws std::invalid_argument for a time that is not finite.
   bool advance_to(double time) { return enqueue_steps(_time.steps_to(time)); }
 
   /// Enqueues a copy of the state to the checkpoint, which has no effect after a failure.
@@ -125,7 +127,7 @@ class FabricSolver {
   /// restored state.
   [[nodiscard]] TimeState time_state() const { return _time; }
 
-  /// Blocks. Throws std::invalid_argument unless dt is positive and the time finite.
+  /// Blocks. Throws std::invalid_argument unless dt is positive, the time finite and 0 <= since <= step.
   void set_time_state(const TimeState& time);
 
   /// The functions below block and are those of `Solver`.
@@ -149,7 +151,7 @@ class FabricSolver {
   }
   void require_vertices(std::size_t count) const;
 
-  /// Calls `function.operator()<law>()` with the constitutive model of the fabric.
+  /// Calls `function.operator()<model>()` with the constitutive model of the fabric.
   template <class Function>
   decltype(auto) with_model(const Function& function) const {
     return dispatch_model(_parameters.material, function);
@@ -170,7 +172,21 @@ class FabricSolver {
     return {_monitor, _time, _parity, fraction};
   }
   [[nodiscard]] VertexForceTerm<VertexForce> vertex_force_term() const {
-    return {_vertex_force, _time, _vertices};
+    return {_vertex_force, _time, _vertices, !ends_vertex_forces_apart()};
+  }
+  /// True if other kernels change the state after the kernel that ends a step. Velocity Verlet moves pins
+  /// before that kernel.
+  [[nodiscard]] bool ends_vertex_forces_apart() const {
+    return VertexForceTerm<VertexForce>::ends_steps &&
+           (_contact || (moves_pins() && _parameters.integrator == Integrator::rk4));
+  }
+  /// Enqueues `end_step` of the VertexForce where the kernels of a step do not call it.
+  void end_vertex_forces() const {
+    if constexpr (VertexForceTerm<VertexForce>::ends_steps)
+      if (ends_vertex_forces_apart())
+        launch_each(space(), "drogue::fabric::end_vertex_forces", _vertices,
+                    EndVertexForcesFunctor<ExecutionSpace, VertexForce>{
+                        vertex_force_term(), _x, _v, _fabric.inverse_mass, _monitor, _parity});
   }
   [[nodiscard]] ExternalFunctor<ExecutionSpace> external_functor(const Points& x, const Points& v,
                                                                  double fraction, bool with_dashpots) const {
@@ -189,30 +205,30 @@ class FabricSolver {
            _launcher.driver() == Driver::stages;
   }
   void enqueue(std::int64_t steps) {
-    with_model([&]<ConstitutiveModel law>() { this->template enqueue_model_steps<law>(steps); });
+    with_model([&]<ConstitutiveModel model>() { this->template enqueue_model_steps<model>(steps); });
   }
-  template <ConstitutiveModel law>
+  template <ConstitutiveModel model>
   void enqueue_model_steps(std::int64_t steps);
-  template <ConstitutiveModel law>
+  template <ConstitutiveModel model>
   void enqueue_persistent_steps(std::int64_t steps);
-  template <ConstitutiveModel law>
+  template <ConstitutiveModel model>
   void enqueue_contact_step();
   /// Enqueues a step by the plain or graph driver. A capture of the caller receives the kernels themselves.
-  template <ConstitutiveModel law>
+  template <ConstitutiveModel model>
   void launch_runge_kutta_step() {
-    const auto enqueue_step = [this](const ExecutionSpace&) { enqueue_runge_kutta_step<law>(); };
+    const auto enqueue_step = [this](const ExecutionSpace&) { enqueue_runge_kutta_step<model>(); };
     if (_loop.is_capturing())
       enqueue_step(space());
     else
       _launcher.launch(0, enqueue_step);
   }
-  template <ConstitutiveModel law>
+  template <ConstitutiveModel model>
   void enqueue_runge_kutta_step() const;
-  template <ConstitutiveModel law>
+  template <ConstitutiveModel model>
   void enqueue_runge_kutta_stages() const;
-  template <ConstitutiveModel law, bool last>
+  template <ConstitutiveModel model, bool last>
   void enqueue_runge_kutta_half(const char* label) const;
-  template <ConstitutiveModel law>
+  template <ConstitutiveModel model>
   void enqueue_verlet(bool ends, bool begins);
   void restore_addresses();
   void save_checkpoint(std::int64_t launches);
@@ -221,9 +237,9 @@ class FabricSolver {
   // ---- evaluation ----
   void forces_at(const Points& x, std::span<Vector> forces) {
     if (_has_load_kernel) evaluate_loads(x, _v, 0.0, false);
-    with_model([&]<ConstitutiveModel law>() {
+    with_model([&]<ConstitutiveModel model>() {
       launch_packs(space(), "drogue::fabric::force", _padded,
-                   ForceFunctor<ExecutionSpace, law>{_fabric, x, _next});
+                   ForceFunctor<ExecutionSpace, model>{_fabric, x, _next});
     });
     _reader.read(space(), _next, forces);
   }
@@ -286,6 +302,7 @@ FabricSolver<ExecutionSpace, VertexForce>::FabricSolver(const ExecutionSpace& sp
   _next = points("drogue::fabric::next");
   _saved_x = points("drogue::fabric::saved_positions");
   _saved_v = points("drogue::fabric::saved_velocities");
+  copy_to_points(space, p.mesh.rest, _x);
   reset_monitor();
   if (p.contact.asked_for())
     _contact =
@@ -461,33 +478,33 @@ void FabricSolver<ExecutionSpace, VertexForce>::apply_dirichlet(const Points& x,
 }
 
 template <class ExecutionSpace, class VertexForce>
-template <ConstitutiveModel law, bool last>
+template <ConstitutiveModel model, bool last>
 void FabricSolver<ExecutionSpace, VertexForce>::enqueue_runge_kutta_half(const char* label) const {
-  launch_packs(
-      space(), label, _padded,
-      RungeKuttaHalfFunctor<ExecutionSpace, law, last, VertexForce>{_fabric,
-                                                                    _x,
-                                                                    _v,
-                                                                    _next,
-                                                                    _other,
-                                                                    {_stage_velocity[0], _stage_velocity[1]},
-                                                                    _monitor,
-                                                                    _time.dt,
-                                                                    vertex_force_term()});
+  launch_packs(space(), label, _padded,
+               RungeKuttaHalfFunctor<ExecutionSpace, model, last, VertexForce>{
+                   _fabric,
+                   _x,
+                   _v,
+                   _next,
+                   _other,
+                   {_stage_velocity[0], _stage_velocity[1]},
+                   _monitor,
+                   _time.dt,
+                   vertex_force_term()});
 }
 
 template <class ExecutionSpace, class VertexForce>
-template <ConstitutiveModel law>
+template <ConstitutiveModel model>
 void FabricSolver<ExecutionSpace, VertexForce>::enqueue_runge_kutta_step() const {
-  if (has_stage_kernels()) return enqueue_runge_kutta_stages<law>();
+  if (has_stage_kernels()) return enqueue_runge_kutta_stages<model>();
   if constexpr (!device::is_host<ExecutionSpace>) {
-    enqueue_runge_kutta_half<law, false>("drogue::fabric::rk4_begin");
-    enqueue_runge_kutta_half<law, true>("drogue::fabric::rk4_end");
+    enqueue_runge_kutta_half<model, false>("drogue::fabric::rk4_begin");
+    enqueue_runge_kutta_half<model, true>("drogue::fabric::rk4_end");
   }
 }
 
 template <class ExecutionSpace, class VertexForce>
-template <ConstitutiveModel law>
+template <ConstitutiveModel model>
 void FabricSolver<ExecutionSpace, VertexForce>::enqueue_runge_kutta_stages() const {
   const Points at[] = {_x, _next, _other, _next}, next[] = {_next, _other, _next, _x};
   // Fractions of the step before and after each stage; the last stage has counted the step.
@@ -496,7 +513,7 @@ void FabricSolver<ExecutionSpace, VertexForce>::enqueue_runge_kutta_stages() con
     if (_has_load_kernel)
       evaluate_loads(at[stage], stage == 0 ? _v : _stage_velocity[stage - 1], before[stage], _has_dashpots);
     launch_packs(space(), "drogue::fabric::rk4_stage", _padded,
-                 RungeKuttaFunctor<ExecutionSpace, law, VertexForce>{
+                 RungeKuttaFunctor<ExecutionSpace, model, VertexForce>{
                      _fabric,
                      _x,
                      _v,
@@ -510,16 +527,17 @@ void FabricSolver<ExecutionSpace, VertexForce>::enqueue_runge_kutta_stages() con
     if (moves_pins())
       apply_dirichlet(next[stage], stage == 3 ? _v : _stage_velocity[stage], after[stage], stage == 3);
   }
+  if (!_contact) end_vertex_forces();
 }
 
 template <class ExecutionSpace, class VertexForce>
-template <ConstitutiveModel law>
+template <ConstitutiveModel model>
 void FabricSolver<ExecutionSpace, VertexForce>::enqueue_verlet(bool ends, bool begins) {
   if (_has_load_kernel) evaluate_loads(_x, _v, 0.0, false);
   launch_packs(space(), "drogue::fabric::verlet", _padded,
-               VerletFunctor<ExecutionSpace, law, VertexForce>{_fabric, _x, _v, _next, _monitor,
-                                                               _parameters.damping, _time.dt, _parity, ends,
-                                                               begins, !_has_dashpots, vertex_force_term()});
+               VerletFunctor<ExecutionSpace, model, VertexForce>{
+                   _fabric, _x, _v, _next, _monitor, _parameters.damping, _time.dt, _parity, ends, begins,
+                   !_has_dashpots, vertex_force_term()});
   if (!begins) return;
   if (_has_dashpots) {
     launch_each(space(), "drogue::fabric::dashpot_damping", _vertices,
@@ -535,12 +553,12 @@ void FabricSolver<ExecutionSpace, VertexForce>::enqueue_verlet(bool ends, bool b
 /// Enqueues one launch. Checkpoints end launches, so that none has more than `checkpoint_interval` steps,
 /// which take a few milliseconds.
 template <class ExecutionSpace, class VertexForce>
-template <ConstitutiveModel law>
+template <ConstitutiveModel model>
 void FabricSolver<ExecutionSpace, VertexForce>::enqueue_persistent_steps(std::int64_t steps) {
   if constexpr (device::PersistentKernel<ExecutionSpace>::available) {
     FabricViews<ExecutionSpace> fabric = _fabric;
     fabric.load = _dead.total;
-    launch_persistent_steps<law>(
+    launch_persistent_steps<model>(
         space(), *_persistent,
         PersistentInputs<ExecutionSpace, VertexForce>{fabric, _x, _v, _monitor, _time, vertex_force_term(),
                                                       _external, _has_load_kernel},
@@ -558,6 +576,7 @@ struct FabricSolver<ExecutionSpace, VertexForce>::UniformSteps {
 
 template <class ExecutionSpace, class VertexForce>
 bool FabricSolver<ExecutionSpace, VertexForce>::enqueue_steps(std::int64_t steps) {
+  if (steps < 0) throw std::invalid_argument("fabric solver: the number of steps must not be negative");
   if (_failure) return false;
   if (_contact && device::is_capturing(space()))
     throw std::logic_error("fabric solver: steps with contact cannot be captured");
@@ -568,32 +587,33 @@ bool FabricSolver<ExecutionSpace, VertexForce>::enqueue_steps(std::int64_t steps
 }
 
 template <class ExecutionSpace, class VertexForce>
-template <ConstitutiveModel law>
+template <ConstitutiveModel model>
 void FabricSolver<ExecutionSpace, VertexForce>::enqueue_model_steps(std::int64_t steps) {
   if (_contact) {
-    for (std::int64_t k = 0; k < steps; ++k) enqueue_contact_step<law>();
+    for (std::int64_t k = 0; k < steps; ++k) enqueue_contact_step<model>();
   } else if (_parameters.integrator == Integrator::verlet) {
-    enqueue_verlet<law>(false, true);
-    for (std::int64_t k = 1; k < steps; ++k) enqueue_verlet<law>(true, true);
-    enqueue_verlet<law>(true, false);
+    enqueue_verlet<model>(false, true);
+    for (std::int64_t k = 1; k < steps; ++k) enqueue_verlet<model>(true, true);
+    enqueue_verlet<model>(true, false);
   } else if (_launcher.is_persistent()) {
-    enqueue_persistent_steps<law>(steps);
+    enqueue_persistent_steps<model>(steps);
   } else {
-    for (std::int64_t k = 0; k < steps; ++k) launch_runge_kutta_step<law>();
+    for (std::int64_t k = 0; k < steps; ++k) launch_runge_kutta_step<model>();
   }
 }
 
 template <class ExecutionSpace, class VertexForce>
-template <ConstitutiveModel law>
+template <ConstitutiveModel model>
 void FabricSolver<ExecutionSpace, VertexForce>::enqueue_contact_step() {
   _contact->begin_step(_x, _v);
   if (_parameters.integrator == Integrator::verlet) {
-    enqueue_verlet<law>(false, true);
-    enqueue_verlet<law>(true, false);
+    enqueue_verlet<model>(false, true);
+    enqueue_verlet<model>(true, false);
   } else {
-    launch_runge_kutta_step<law>();
+    launch_runge_kutta_step<model>();
   }
   _contact->end_step(_x, _v);
+  end_vertex_forces();
 }
 
 /// Moves the state back to its stable addresses after an odd number of Verlet steps, which alternate between
@@ -655,6 +675,8 @@ template <class ExecutionSpace, class VertexForce>
 void FabricSolver<ExecutionSpace, VertexForce>::set_time_state(const TimeState& time) {
   if (!(time.dt > 0.0 && std::isfinite(time.dt) && std::isfinite(time.start)))
     throw std::invalid_argument("fabric solver: dt must be positive, and time finite");
+  if (time.since < 0 || time.step < time.since)
+    throw std::invalid_argument("fabric solver: the step must not precede the first step with its dt");
   synchronize();
   _time = time;
   reset_monitor();
@@ -755,14 +777,6 @@ void FabricSolver<ExecutionSpace, VertexForce>::set_contact_work(std::span<const
 }
 
 // One translation unit per backend compiles the solver without a VertexForce.
-#if defined(DROGUE_HAVE_SERIAL)
-extern template class FabricSolver<Kokkos::Serial>;
-#endif
-#if defined(DROGUE_HAVE_OPENMP)
-extern template class FabricSolver<Kokkos::OpenMP>;
-#endif
-#if defined(DROGUE_HAVE_CUDA)
-extern template class FabricSolver<Kokkos::Cuda>;
-#endif
+DROGUE_EXTERN_INSTANCES(class FabricSolver)
 
 }  // namespace drogue::fabric

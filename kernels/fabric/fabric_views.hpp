@@ -87,8 +87,8 @@ KOKKOS_INLINE_FUNCTION RestTriangle<R> stored_triangle(const Values& value, R be
 
 /// Edge from the position `own`, m, to a neighbour.
 template <class R, class Points>
-KOKKOS_INLINE_FUNCTION EdgeVector<R> edge_to(const Points& points, const Vector3<R>& own,
-                                             typename device::Access<R>::Index neighbour) {
+KOKKOS_FORCEINLINE_FUNCTION EdgeVector<R> edge_to(const Points& points, const Vector3<R>& own,
+                                                  typename device::Access<R>::Index neighbour) {
   const Vector3<R> to = gather_points<R>(points, neighbour) - own;
   return {to, dot(to, to), neighbour};
 }
@@ -141,25 +141,25 @@ KOKKOS_INLINE_FUNCTION Vector3<R> free_axes(const FabricViews<ExecutionSpace>& f
 }
 
 /// Force of a triangle on its first vertex, N.
-template <ConstitutiveModel law, class R>
+template <ConstitutiveModel model, class R>
 KOKKOS_INLINE_FUNCTION Vector3<R> triangle_pull(const Moduli& m, const EdgeVector<R>& j,
                                                 const EdgeVector<R>& k, const RestTriangle<R>& rest) {
   const GramMatrix<R> now{j.squared, dot(j.to, k.to), k.squared};
-  if constexpr (law.model == Model::biquadratic && !law.tension_only) {
+  if constexpr (model.model == Model::biquadratic && !model.tension_only) {
     const EdgePairTensions<R> tension = edge_pair_tensions(m, now, rest.products, rest.inverse_area);
     return tension.j * j.to + tension.k * k.to;
   } else {
     // Edge j is opposite vertex j: it ends in k.
     const Edges<R> tension =
-        membrane_tensions<law>(m, squared_edges(now), squared_edges(rest.products), rest.inverse_area);
+        membrane_tensions<model>(m, squared_edges(now), squared_edges(rest.products), rest.inverse_area);
     return tension.of[2] * j.to + tension.of[1] * k.to;
   }
 }
 
 /// Force of a spring on the start of `edge`, N.
-template <ConstitutiveModel law, class R>
+template <ConstitutiveModel model, class R>
 KOKKOS_INLINE_FUNCTION Vector3<R> spring_pull(R stiffness, R rest, const Vector3<R>& edge) {
-  return spring_tension<law>(stiffness, dot(edge, edge), rest) * edge;
+  return spring_tension<model>(stiffness, dot(edge, edge), rest) * edge;
 }
 
 /// Calls `visit(j, k, rest)` for the triangles of vertex i and the lanes after it, with the values of `read`
@@ -194,15 +194,15 @@ KOKKOS_INLINE_FUNCTION void each_triangle(const Fabric& fabric, const Points& po
 }
 
 /// `sum` plus the forces of the springs on vertex i and the lanes after it, N, in the order of their slots.
-template <ConstitutiveModel law, class R, class Fabric, class Points>
+template <ConstitutiveModel model, class R, class Fabric, class Points>
 KOKKOS_INLINE_FUNCTION Vector3<R> with_springs(const Fabric& fabric, const Points& positions, int i,
                                                Vector3<R> sum) {
   using Lanes = device::Access<R>;
   const auto& springs = fabric.springs;
   springs.each(i, [&](int slot) {
-    sum = sum + spring_pull<law>(Lanes::load(&springs.value(slot, 0)), Lanes::load(&springs.value(slot, 1)),
-                                 gather_points<R>(positions, Lanes::index(&springs.neighbour(slot))) -
-                                     load_points<R>(positions, i));
+    sum = sum + spring_pull<model>(Lanes::load(&springs.value(slot, 0)), Lanes::load(&springs.value(slot, 1)),
+                                   gather_points<R>(positions, Lanes::index(&springs.neighbour(slot))) -
+                                       load_points<R>(positions, i));
   });
   return sum;
 }
@@ -210,15 +210,15 @@ KOKKOS_INLINE_FUNCTION Vector3<R> with_springs(const Fabric& fabric, const Point
 /// Elastic forces on vertex i and the lanes after it, N, summed in the fixed order of slots. Momentum is
 /// conserved to round-off: both ends of an edge, and all corners of a triangle, compute the same tension.
 /// `Fabric` is `FabricViews`, or has its members in other memory (`TeamFabric`).
-template <ConstitutiveModel law, class R, class Fabric, class Points>
+template <ConstitutiveModel model, class R, class Fabric, class Points>
 KOKKOS_INLINE_FUNCTION Vector3<R> elastic_force(const Fabric& fabric, const Points& positions, int i) {
   Vector3<R> sum{R(0.0), R(0.0), R(0.0)};
-  if constexpr (whole_triangles<law>)
+  if constexpr (whole_triangles<model>)
     each_triangle<R>(fabric, positions, i,
                      [&](const EdgeVector<R>& j, const EdgeVector<R>& k, const RestTriangle<R>& rest) {
-                       sum = sum + triangle_pull<law>(fabric.moduli, j, k, rest);
+                       sum = sum + triangle_pull<model>(fabric.moduli, j, k, rest);
                      });
-  return with_springs<law>(fabric, positions, i, sum);
+  return with_springs<model>(fabric, positions, i, sum);
 }
 
 /// Values of two states.
@@ -227,11 +227,11 @@ struct StatePair {
   T first, second;
 };
 /// Elastic forces in two states, N, which read the neighbours and triangles at rest once.
-template <ConstitutiveModel law, class R, class Fabric, class First, class Second>
+template <ConstitutiveModel model, class R, class Fabric, class First, class Second>
 KOKKOS_INLINE_FUNCTION StatePair<Vector3<R>> elastic_forces(const Fabric& fabric, const First& first,
                                                             const Second& second, int i) {
   StatePair<Vector3<R>> sum{{R(0.0), R(0.0), R(0.0)}, {R(0.0), R(0.0), R(0.0)}};
-  if constexpr (whole_triangles<law>) {
+  if constexpr (whole_triangles<model>) {
     using Spokes = StatePair<EdgeVector<R>>;
     const StatePair<Vector3<R>> own{load_points<R>(first, i), load_points<R>(second, i)};
     each_side_by_side<R>(
@@ -240,11 +240,12 @@ KOKKOS_INLINE_FUNCTION StatePair<Vector3<R>> elastic_forces(const Fabric& fabric
           return Spokes{edge_to<R>(first, own.first, neighbour), edge_to<R>(second, own.second, neighbour)};
         },
         [&](const Spokes& j, const Spokes& k, const RestTriangle<R>& rest) {
-          sum.first = sum.first + triangle_pull<law>(fabric.moduli, j.first, k.first, rest);
-          sum.second = sum.second + triangle_pull<law>(fabric.moduli, j.second, k.second, rest);
+          sum.first = sum.first + triangle_pull<model>(fabric.moduli, j.first, k.first, rest);
+          sum.second = sum.second + triangle_pull<model>(fabric.moduli, j.second, k.second, rest);
         });
   }
-  return {with_springs<law>(fabric, first, i, sum.first), with_springs<law>(fabric, second, i, sum.second)};
+  return {with_springs<model>(fabric, first, i, sum.first),
+          with_springs<model>(fabric, second, i, sum.second)};
 }
 
 /// `elastic` plus the dead load on vertex i and the lanes after it, N.
@@ -254,10 +255,10 @@ KOKKOS_INLINE_FUNCTION Vector3<R> with_load(const FabricViews<ExecutionSpace>& f
   return fabric.load.extent(0) > 0 ? elastic + load_points<R>(fabric.load, i) : elastic;
 }
 /// Elastic force and dead load on vertex i and the lanes after it, N.
-template <ConstitutiveModel law, class R, class ExecutionSpace, class Points>
+template <ConstitutiveModel model, class R, class ExecutionSpace, class Points>
 KOKKOS_INLINE_FUNCTION Vector3<R> force(const FabricViews<ExecutionSpace>& fabric, const Points& positions,
                                         int i) {
-  return with_load(fabric, elastic_force<law, R>(fabric, positions, i), i);
+  return with_load(fabric, elastic_force<model, R>(fabric, positions, i), i);
 }
 
 /// Acceleration, m/s^2; zero along pinned axes. `Fabric` as in `elastic_force`.

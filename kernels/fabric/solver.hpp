@@ -63,10 +63,10 @@ class Solver {
 
   /// Enqueues `steps` steps of `time_state().dt`. Asynchronous but for a bound on the steps in flight.
   /// Returns false once a failure is known; no steps follow until the next `upload`. The distribution of
-  /// steps over calls changes no bit. Does not throw.
+  /// steps over calls changes no bit. Throws only after a failed kernel.
   virtual bool advance(std::int64_t steps) = 0;
 
-  /// First failed step, if any. Blocks until all steps are done. Does not throw.
+  /// First failed step, if any. Blocks until all steps are done. Throws only after a failed kernel.
   [[nodiscard]] virtual std::optional<StepFailure> failure() = 0;
 
   /// Step count, dt and time, s, after the steps enqueued; after a failure was reported, those of the
@@ -90,12 +90,12 @@ class Solver {
 
   /// Upper bound of the angular frequencies of small oscillations about the present positions, rad/s, at the
   /// present pressure. Slack elements count as taut. Pass the result to `stable_dt`. Stiffness grows with
-  /// strain: compute it again after the cloth has stretched. Blocks. Does not throw.
+  /// strain: compute it again after the cloth has stretched. Blocks. Throws only after a failed kernel.
   [[nodiscard]] virtual double fastest_frequency() = 0;
 
   /// Lower bound of the largest angular frequency, rad/s, mostly within 1 % of it, from Lanczos' method on
   /// differences of forces. Use it with `grows` to detect unstable steps. It evaluates and copies forces
-  /// about a hundred times. Blocks. Does not throw.
+  /// about a hundred times. Blocks. Throws only after a failed kernel.
   [[nodiscard]] virtual double frequency_at_least() = 0;
 
   /// Upper bound of the rates of damping, 1/s. It excludes absolute damping in Verlet's method, which is
@@ -111,7 +111,7 @@ class Solver {
   virtual void vertex_stress(StressMeasure measure, std::span<Stress> of_vertices) = 0;
 
   /// Energies, J, and momenta, kg m/s and kg m^2/s, of the present state. The order of summation is the same
-  /// on every backend. Blocks. Does not throw.
+  /// on every backend. Blocks. Throws only after a failed kernel.
   [[nodiscard]] virtual Totals totals() = 0;
 
   /// Name of the driver of steps: "persistent", "graph" or "plain". Does not throw.

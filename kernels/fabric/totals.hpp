@@ -22,7 +22,7 @@ using TotalsView = TableView<ExecutionSpace, double, total_count>;
 /// Index j sums the contributions of vertices j, j + n_out, j + 2 n_out, ... in this order, so that sums have
 /// the same bits on every backend and with any number of threads. Each corner of a triangle has a third of
 /// its energy, each end of a spring half.
-template <class ExecutionSpace, ConstitutiveModel law>
+template <class ExecutionSpace, ConstitutiveModel model>
 struct TotalsFunctor {
   FabricViews<ExecutionSpace> fabric;
   PointsView<ExecutionSpace> x, v;
@@ -59,19 +59,19 @@ struct TotalsFunctor {
     double energy = 0.0;
     const auto squared = [](const Vector3<double>& a) { return dot(a, a); };
     const auto to = [&](int neighbour) { return load_points<double>(x, neighbour) - own; };
-    if constexpr (whole_triangles<law>)
+    if constexpr (whole_triangles<model>)
       each_triangle<double>(
           fabric, x, i,
           [&](const EdgeVector<double>& j, const EdgeVector<double>& k, const RestTriangle<double>& rest) {
             const GramMatrix<double> now{j.squared, dot(j.to, k.to), k.squared};
-            energy += membrane_energy<law>(fabric.moduli, squared_edges(now), squared_edges(rest.products),
-                                           rest.inverse_area) /
+            energy += membrane_energy<model>(fabric.moduli, squared_edges(now), squared_edges(rest.products),
+                                             rest.inverse_area) /
                       3.0;
           });
     fabric.springs.each(i, [&](int slot) {
-      energy +=
-          0.5 * spring_energy<law>(fabric.springs.value(slot, 0), squared(to(fabric.springs.neighbour(slot))),
-                                   fabric.springs.value(slot, 1));
+      energy += 0.5 * spring_energy<model>(fabric.springs.value(slot, 0),
+                                           squared(to(fabric.springs.neighbour(slot))),
+                                           fabric.springs.value(slot, 1));
     });
     // Weights are minus the second derivatives, whose rows sum to zero: x Q x / 2 over pairs.
     if (bending.first.extent(0) > 0)
@@ -116,10 +116,10 @@ class TotalsEvaluator {
                   const FabricViews<ExecutionSpace>& fabric, const PointsView<ExecutionSpace>& x,
                   const PointsView<ExecutionSpace>& v, const PointsView<ExecutionSpace>& pull,
                   const SlicedEllViews<ExecutionSpace, 1>& bending) const {
-    dispatch_model(material, [&]<ConstitutiveModel law>() {
+    dispatch_model(material, [&]<ConstitutiveModel model>() {
       Kokkos::parallel_for(
           "drogue::fabric::totals", Kokkos::RangePolicy<ExecutionSpace>(space, 0, _levels.front().extent(0)),
-          TotalsFunctor<ExecutionSpace, law>{fabric, x, v, pull, bending, _levels.front(), _vertices});
+          TotalsFunctor<ExecutionSpace, model>{fabric, x, v, pull, bending, _levels.front(), _vertices});
     });
     for (std::size_t level = 1; level < _levels.size(); ++level)
       Kokkos::parallel_for("drogue::fabric::sum",

@@ -32,15 +32,17 @@ KOKKOS_INLINE_FUNCTION double admissible_dt(const Progress& now, const StepConst
   if (k.fixed_dt > 0.0) return k.fixed_dt;
   const double rate = Kokkos::bit_cast<double>(now.rate);
   if (!(rate >= 0.0)) return rate;  // NaN
-  // Advection and diffusion share the stability region: the sum of their rates limits dt. A tenth is kept in reserve for
-  // the dissipation of upwind-biased fluxes.
+  // Advection and diffusion share the stability region: the sum of their rates limits dt. A tenth is kept in
+  // reserve for the dissipation of upwind-biased fluxes.
   const double dt = 1.0 / (rate / k.cfl + 1.0 / (0.9 * k.diffusive_dt));
   return k.max_dt > 0.0 && !(dt < k.max_dt) ? k.max_dt : dt;
 }
 
-/// Prepares the next step, or stops the run if there is no admissible dt. Two equal steps reach a target that is between
-/// one and two steps away, so that no step is much shorter than its neighbours; a fixed dt may grow by a billionth.
-KOKKOS_INLINE_FUNCTION void prepare_step(const Progress& now, stepping::StepTrial& next, const StepConstants& k) {
+/// Prepares the next step, or stops the run if there is no admissible dt. Two equal steps reach a target that
+/// is between one and two steps away, so that no step is much shorter than its neighbours; a fixed dt may
+/// grow by a billionth.
+KOKKOS_INLINE_FUNCTION void prepare_step(const Progress& now, stepping::StepTrial& next,
+                                         const StepConstants& k) {
   const double admissible = admissible_dt(now, k), left = next.target - now.time;
   double dt = admissible;
   if (left > admissible && left < (1.0 + 1e-9) * admissible)

@@ -26,8 +26,8 @@
 
 namespace drogue::flow {
 
-/// Pressure equation of a flow: zero normal derivative of the pressure on sides with a prescribed normal velocity, zero
-/// pressure on outflows. Does not throw.
+/// Pressure equation of a flow: zero normal derivative of the pressure on sides with a prescribed normal
+/// velocity, zero pressure on outflows. Does not throw.
 inline linear::PoissonProblem pressure_problem(const Parameters& parameters) {
   linear::PoissonProblem problem;
   problem.cells = parameters.cells;
@@ -43,12 +43,14 @@ inline linear::PoissonProblem pressure_problem(const Parameters& parameters) {
   return problem;
 }
 
-/// Incompressible flow on a staggered grid, on the caller's instance of an execution space, for coupling to other
-/// kernels. Second order in space and time. The projection is exact to round-off (Chorin 1968; Kim and Moin 1985 for the
-/// staggered grid), so that with explicit diffusion a pressure increment would give the same velocity.
+/// Incompressible flow on a staggered grid, on the caller's instance of an execution space, for coupling to
+/// other kernels. Second order in space and time. The projection is exact to round-off (Chorin 1968; Kim and
+/// Moin 1985 for the staggered grid), so that with explicit diffusion a pressure increment would give the
+/// same velocity.
 ///
-/// Functions block unless stated otherwise. All work is enqueued on the instance given to the constructor, which must
-/// outlive the solver; on CUDA it must have a stream of its own. After a failed step the state is that before the step.
+/// Functions block unless stated otherwise. All work is enqueued on the instance given to the constructor,
+/// which must outlive the solver; on CUDA it must have a stream of its own. After a failed step the state is
+/// that before the step.
 template <class ExecutionSpace>
 class FlowSolver {
  public:
@@ -63,8 +65,9 @@ class FlowSolver {
   [[nodiscard]] const Values& velocity() const { return _velocity; }
   /// Kinematic pressure at the cells, x fastest, m^2/s^2. Does not throw.
   [[nodiscard]] const Values& pressure() const { return _pressure; }
-  /// Force per volume on the faces, N/m^3, in the layout of `velocity`; empty unless `Parameters::external_force`. Other
-  /// kernels may write it between steps; it keeps its values. Does not throw.
+  /// Force per volume on the faces, N/m^3, in the layout of `velocity`; empty unless
+  /// `Parameters::external_force`. Other kernels may write it between steps; it keeps its values. Does not
+  /// throw.
   [[nodiscard]] const Values& force() const { return _force; }
 
   /// As the functions of `Solver`.
@@ -81,7 +84,8 @@ class FlowSolver {
   [[nodiscard]] const char* pressure_solver() const;
 
  private:
-  using Poisson = std::variant<linear::FourierSolver<ExecutionSpace>, linear::DiagonalizationSolver<ExecutionSpace>>;
+  using Poisson =
+      std::variant<linear::FourierSolver<ExecutionSpace>, linear::DiagonalizationSolver<ExecutionSpace>>;
   struct Steps;
 
   [[nodiscard]] static auto one_thread(const ExecutionSpace& space) {
@@ -92,9 +96,10 @@ class FlowSolver {
   void write_control(Control control);
   [[nodiscard]] PackFunctor<ExecutionSpace> packing(StateField field, std::size_t size, bool to_field) const;
   void enqueue_step(const ExecutionSpace& space) const;
-  void enqueue_stage(const ExecutionSpace& space, const MomentumSetup<ExecutionSpace>& setup, const Values& result,
-                     double fraction, double time_fraction) const;
-  void enqueue_projection(const ExecutionSpace& space, const Values& result, double fraction, bool resists_backflow) const;
+  void enqueue_stage(const ExecutionSpace& space, const MomentumSetup<ExecutionSpace>& setup,
+                     const Values& result, double fraction, double time_fraction) const;
+  void enqueue_projection(const ExecutionSpace& space, const Values& result, double fraction,
+                          bool resists_backflow) const;
 
   const device::Instance<ExecutionSpace>* _instance;
   Parameters _parameters;
@@ -107,7 +112,8 @@ class FlowSolver {
   Values _divergence;  ///< right-hand side of the pressure equation, 1/s^2
   Values _pressure;
   Values _eddy_viscosity, _eddy_acceleration;  ///< empty without a turbulence model
-  /// Scratch of `totals`. The columns stand in the predicted velocity, which is free between steps, if that is large enough.
+  /// Scratch of `totals`. The columns stand in the predicted velocity, which is free between steps, if that
+  /// is large enough.
   TotalsView<ExecutionSpace> _column_totals, _plane_totals;
   Values _outflow_rows;
   ControlView<ExecutionSpace> _control;
@@ -126,7 +132,8 @@ bool uses_transforms(const Parameters& parameters) {
 }
 
 template <class ExecutionSpace>
-FlowSolver<ExecutionSpace>::FlowSolver(const device::Instance<ExecutionSpace>& instance, const Parameters& parameters)
+FlowSolver<ExecutionSpace>::FlowSolver(const device::Instance<ExecutionSpace>& instance,
+                                       const Parameters& parameters)
     : _instance(&instance),
       _parameters(parameters),
       _grid((check_parameters(parameters), make_grid(parameters))),
@@ -150,7 +157,8 @@ FlowSolver<ExecutionSpace>::FlowSolver(const device::Instance<ExecutionSpace>& i
   else
     _column_totals = TotalsView<ExecutionSpace>("drogue::flow::column_totals", columns);
   _plane_totals = TotalsView<ExecutionSpace>("drogue::flow::plane_totals", nx);
-  _outflow_rows = Values("drogue::flow::outflow_rows", 6 * static_cast<std::size_t>(std::max(_grid.n[1], _grid.n[2])));
+  _outflow_rows =
+      Values("drogue::flow::outflow_rows", 6 * static_cast<std::size_t>(std::max(_grid.n[1], _grid.n[2])));
   if (parameters.turbulence != Turbulence::none) {
     _eddy_model = make_eddy_model(parameters, _grid);
     _eddy_viscosity = Values("drogue::flow::eddy_viscosity", cells);
@@ -172,9 +180,10 @@ FlowSolver<ExecutionSpace>::FlowSolver(const device::Instance<ExecutionSpace>& i
   const double nu = parameters.viscosity / parameters.density;
   // The second-order Adams-Bashforth method is stable for z in [-1, 0] of the negative real axis; the largest
   // eigenvalue of the viscous term is 4 nu times the sum of the squares.
-  _constants = {parameters.cfl, parameters.fixed_dt, parameters.max_dt,
-                nu > 0.0 && squares > 0.0 ? 1.0 / (4.0 * nu * squares) : std::numeric_limits<double>::infinity(),
-                parameters.max_steps};
+  _constants = {
+      parameters.cfl, parameters.fixed_dt, parameters.max_dt,
+      nu > 0.0 && squares > 0.0 ? 1.0 / (4.0 * nu * squares) : std::numeric_limits<double>::infinity(),
+      parameters.max_steps};
   space().fence("drogue::flow::solver: allocated");
 }
 
@@ -198,7 +207,8 @@ void FlowSolver<ExecutionSpace>::write_control(Control control) {
   space().fence("drogue::flow::solver: write control");
 }
 
-/// Copy of a component of the state to or from the beginning of the predicted velocity, which is free between steps.
+/// Copy of a component of the state to or from the beginning of the predicted velocity, which is free between
+/// steps.
 template <class ExecutionSpace>
 PackFunctor<ExecutionSpace> FlowSolver<ExecutionSpace>::packing(StateField field, std::size_t size,
                                                                 bool to_field) const {
@@ -207,10 +217,16 @@ PackFunctor<ExecutionSpace> FlowSolver<ExecutionSpace>::packing(StateField field
   if (is_rate && _parameters.time_scheme != TimeScheme::ab2)
     throw std::invalid_argument("flow solver: only the scheme AB2 has rates of the previous step");
   const std::array<int, 3> shape = extents(_parameters, field);
-  if (size != static_cast<std::size_t>(shape[0]) * static_cast<std::size_t>(shape[1]) * static_cast<std::size_t>(shape[2]))
+  if (size != static_cast<std::size_t>(shape[0]) * static_cast<std::size_t>(shape[1]) *
+                  static_cast<std::size_t>(shape[2]))
     throw std::invalid_argument("flow solver: an array of the state has the wrong length");
-  return {_grid,    is_rate ? _rate : _velocity,        _predicted, (index % 3) * _grid.component,
-          {shape[0], shape[1], shape[2]}, to_field, is_rate && shape != _parameters.cells ? index % 3 : -1};
+  return {_grid,
+          is_rate ? _rate : _velocity,
+          _predicted,
+          (index % 3) * _grid.component,
+          {shape[0], shape[1], shape[2]},
+          to_field,
+          is_rate && shape != _parameters.cells ? index % 3 : -1};
 }
 
 template <class ExecutionSpace>
@@ -245,8 +261,9 @@ template <class ExecutionSpace>
 void FlowSolver<ExecutionSpace>::sample(CellField field, std::span<double> values) {
   if (values.size() != static_cast<std::size_t>(_grid.cells()) * static_cast<std::size_t>(components(field)))
     throw std::invalid_argument("flow solver: a field has the wrong length");
-  launch_cells(space(), "drogue::flow::sample", _grid.n,
-               SampleFunctor<ExecutionSpace>{_grid, _velocity, _pressure, _predicted, _parameters.density, field});
+  launch_cells(
+      space(), "drogue::flow::sample", _grid.n,
+      SampleFunctor<ExecutionSpace>{_grid, _velocity, _pressure, _predicted, _parameters.density, field});
   device::copy_out(space(), values.data(), _predicted, values.size());
   space().fence("drogue::flow::sample");
 }
@@ -287,7 +304,8 @@ Totals FlowSolver<ExecutionSpace>::totals() {
   for (int side = 0; side < 6; ++side) {
     const int axis = side / 2;
     double faces = 0.0;
-    for (int row = 0; row < longest; ++row) faces += rows_on_host(static_cast<std::size_t>(side * longest + row));
+    for (int row = 0; row < longest; ++row)
+      faces += rows_on_host(static_cast<std::size_t>(side * longest + row));
     totals.outflow[side] = faces * volume / _grid.h[axis];
   }
   return totals;
@@ -296,7 +314,8 @@ Totals FlowSolver<ExecutionSpace>::totals() {
 template <class ExecutionSpace>
 void FlowSolver<ExecutionSpace>::start() {
   Control control{};
-  control.trial.dt = 1.0;  // the initial projection has no time step; without a pressure on outflows, any dt gives the same velocity
+  control.trial.dt = 1.0;  // the initial projection has no time step; without a pressure on outflows, any dt
+                           // gives the same velocity
   control.trial.stop = Stop::running;
   control.first_failure = no_failure;
   write_control(control);
@@ -333,8 +352,8 @@ StepFailure FlowSolver<ExecutionSpace>::failure() {
   const Control control = read_control();
   const bool in_cell = control.first_failure != no_failure;
   return {in_cell ? FailureReason::not_finite : FailureReason::time_step,
-          in_cell ? static_cast<std::int64_t>(control.first_failure) : -1, control.now.step + 1, control.now.time,
-          control.trial.dt};
+          in_cell ? static_cast<std::int64_t>(control.first_failure) : -1, control.now.step + 1,
+          control.now.time, control.trial.dt};
 }
 
 /// Steps of the solver, as `StepLoop` enqueues them.
@@ -392,16 +411,20 @@ void FlowSolver<ExecutionSpace>::enqueue_step(const ExecutionSpace& space) const
                        FinishStepFunctor<ExecutionSpace>{_control, _loop.status_view(), _constants});
 }
 
-/// Momentum stage and projection. `fraction`: of dt that the pressure of the stage acts; `time_fraction`: of dt at which
-/// the result of the stage approximates the velocity.
+/// Momentum stage and projection. `fraction`: of dt that the pressure of the stage acts; `time_fraction`: of
+/// dt at which the result of the stage approximates the velocity.
 template <class ExecutionSpace>
-void FlowSolver<ExecutionSpace>::enqueue_stage(const ExecutionSpace& space, const MomentumSetup<ExecutionSpace>& setup,
-                                               const Values& result, double fraction, double time_fraction) const {
+void FlowSolver<ExecutionSpace>::enqueue_stage(const ExecutionSpace& space,
+                                               const MomentumSetup<ExecutionSpace>& setup,
+                                               const Values& result, double fraction,
+                                               double time_fraction) const {
   if (_parameters.turbulence != Turbulence::none) {
-    launch_cells(space, "drogue::flow::eddy_viscosity", _grid.n,
-                 EddyViscosityFunctor<ExecutionSpace>{_grid, _eddy_model, setup.stage, _eddy_viscosity, _control});
-    launch_cells(space, "drogue::flow::eddy_stress", _grid.n,
-                 EddyStressFunctor<ExecutionSpace>{_grid, setup.stage, _eddy_viscosity, _eddy_acceleration, _control});
+    launch_cells(
+        space, "drogue::flow::eddy_viscosity", _grid.n,
+        EddyViscosityFunctor<ExecutionSpace>{_grid, _eddy_model, setup.stage, _eddy_viscosity, _control});
+    launch_cells(
+        space, "drogue::flow::eddy_stress", _grid.n,
+        EddyStressFunctor<ExecutionSpace>{_grid, setup.stage, _eddy_viscosity, _eddy_acceleration, _control});
   }
   dispatch_momentum(space, setup, _parameters.advection);
   if (_boundary.changes()) _boundary.enqueue_evaluation(space, _control, {time_fraction, false});
@@ -412,8 +435,9 @@ void FlowSolver<ExecutionSpace>::enqueue_stage(const ExecutionSpace& space, cons
 template <class ExecutionSpace>
 void FlowSolver<ExecutionSpace>::enqueue_projection(const ExecutionSpace& space, const Values& result,
                                                     double fraction, bool resists_backflow) const {
-  const ProjectionSetup<ExecutionSpace> setup{_grid,     _boundary.conditions(), _predicted, result, _divergence,
-                                              _pressure, _control,               fraction,   resists_backflow};
+  const ProjectionSetup<ExecutionSpace> setup{
+      _grid,    _boundary.conditions(), _predicted, result, _divergence, _pressure, _control,
+      fraction, resists_backflow};
   launch_divergence(space, setup);
   std::visit([&](const auto& poisson) { poisson.enqueue_solve(_divergence, _pressure); }, *_poisson);
   launch_correction(space, setup);

@@ -4,10 +4,13 @@
 
 namespace drogue::flow {
 
-/// Calls `functor(i, j, k)` for all indices below `extent`, i fastest. Asynchronous; may be captured into a CUDA graph.
+/// Calls `functor(i, j, k)` for all indices below `extent`, i fastest. Asynchronous; may be captured into a
+/// CUDA graph.
 template <class ExecutionSpace, class Functor>
-void launch_cells(const ExecutionSpace& space, const char* label, const int extent[3], const Functor& functor) {
-  using Policy = Kokkos::MDRangePolicy<ExecutionSpace, Kokkos::Rank<3, Kokkos::Iterate::Left, Kokkos::Iterate::Left>>;
+void launch_cells(const ExecutionSpace& space, const char* label, const int extent[3],
+                  const Functor& functor) {
+  using Policy =
+      Kokkos::MDRangePolicy<ExecutionSpace, Kokkos::Rank<3, Kokkos::Iterate::Left, Kokkos::Iterate::Left>>;
   Kokkos::parallel_for(
       label,
       Kokkos::Experimental::require(Policy(space, {0, 0, 0}, {extent[0], extent[1], extent[2]}),
@@ -15,8 +18,8 @@ void launch_cells(const ExecutionSpace& space, const char* label, const int exte
       functor);
 }
 
-/// Planes of a march along z of a tile of columns on a device: at most `longest`, a power of two, and fewer if that would
-/// leave multiprocessors without work. Does not throw.
+/// Planes of a march along z of a tile of columns on a device: at most `longest`, a power of two, and fewer
+/// if that would leave multiprocessors without work. Does not throw.
 inline int march_planes(int tiles, int nz, int longest) {
   constexpr int enough_teams = 1024;  // about two waves of a large device
   int planes = longest;

@@ -16,15 +16,15 @@ inline constexpr int ghost_width = 3;
 /// x fastest. Along a bounded axis of n cells, component c of axis c has n + 1 faces; the last one is stored
 /// in the first ghost cell.
 struct MacGrid {
-  int n[3];              ///< cells per axis
-  int ghost[3];          ///< ghost cells at each side; 0 along axes with one cell
+  int n[3];      ///< cells per axis
+  int ghost[3];  ///< ghost cells at each side; 0 along axes with one cell
   bool periodic[3];
-  double low[3];         ///< lower corner, m
-  double h[3];           ///< spacing, m
-  double inverse_h[3];   ///< 1/m
-  std::int64_t stride[3];      ///< of an array with ghost cells, in numbers
-  std::int64_t component;      ///< numbers of one component with its ghost cells
-  std::int64_t first;          ///< offset of cell (0, 0, 0) in a component
+  double low[3];           ///< lower corner, m
+  double h[3];             ///< spacing, m
+  double inverse_h[3];     ///< 1/m
+  std::int64_t stride[3];  ///< of an array with ghost cells, in numbers
+  std::int64_t component;  ///< numbers of one component with its ghost cells
+  std::int64_t first;      ///< offset of cell (0, 0, 0) in a component
 
   /// Offset of cell (i, j, k) within a component; ghost cells have indices below 0 or from n on.
   [[nodiscard]] KOKKOS_FUNCTION std::int64_t offset(int i, int j, int k) const {

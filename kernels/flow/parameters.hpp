@@ -64,8 +64,8 @@ using stepping::Driver;
 
 /// Parameters of a flow solver, apart from the initial state. The fluid has constant density.
 struct Parameters {
-  std::array<int, 3> cells = {64, 64, 64};       ///< number of cells per axis; 1: no variation along this axis
-  std::array<double, 3> low = {0.0, 0.0, 0.0};   ///< lower corner of the domain, m
+  std::array<int, 3> cells = {64, 64, 64};      ///< number of cells per axis; 1: no variation along this axis
+  std::array<double, 3> low = {0.0, 0.0, 0.0};  ///< lower corner of the domain, m
   std::array<double, 3> high = {1.0, 1.0, 1.0};  ///< upper corner of the domain, m
   double density = 1.0;                          ///< kg/m^3
   double viscosity = 0.0;                        ///< dynamic viscosity, Pa s
@@ -81,9 +81,9 @@ struct Parameters {
   PressureSolver pressure_solver = PressureSolver::automatic;
   double pressure_tolerance = 1e-10;  ///< of an iterative solver: relative residual
   bool external_force = false;  ///< the solver has a force field that other kernels add to before each step
-  double cfl = 0.5;       ///< 1/dt = max(|u|/hx + |v|/hy + |w|/hz) / cfl + 1/dt of explicit diffusion
-  double fixed_dt = 0.0;  ///< s; a positive value replaces the CFL condition
-  double max_dt = 0.0;    ///< s; a positive value is an upper bound of dt, needed if the fluid is at rest
+  double cfl = 0.5;             ///< 1/dt = max(|u|/hx + |v|/hy + |w|/hz) / cfl + 1/dt of explicit diffusion
+  double fixed_dt = 0.0;        ///< s; a positive value replaces the CFL condition
+  double max_dt = 0.0;  ///< s; a positive value is an upper bound of dt, needed if the fluid is at rest
   std::int64_t max_steps = 1'000'000'000;
   Driver driver = Driver::automatic;
 };

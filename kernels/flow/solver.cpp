@@ -35,7 +35,8 @@ void check_net_inflow(const Parameters& p) {
     inflow += flow;
     magnitude += std::abs(flow);
   }
-  require(std::abs(inflow) <= 1e-12 * magnitude, "the prescribed velocities have a net inflow, but no side is an outflow");
+  require(std::abs(inflow) <= 1e-12 * magnitude,
+          "the prescribed velocities have a net inflow, but no side is an outflow");
 }
 
 }  // namespace
@@ -71,7 +72,8 @@ void check_parameters(const Parameters& p) {
   require(p.fixed_dt > 0.0 || (p.cfl > 0.0 && std::isfinite(p.cfl)), "cfl must be positive");
   require(p.pressure_solver != PressureSolver::hypre_pfmg, "the solver hypre-pfmg is not built in");
   for (const Boundary& side : p.boundary) {
-    require(side.velocity_expressions.empty() || (side.velocity_expressions.size() == 3 && is_prescribed(side.kind)),
+    require(side.velocity_expressions.empty() ||
+                (side.velocity_expressions.size() == 3 && is_prescribed(side.kind)),
             "a wall or inflow has three velocity expressions, or none; other sides have none");
     for (const double v : side.velocity) require(std::isfinite(v), "the velocity of a side must be finite");
   }
@@ -85,7 +87,8 @@ std::unique_ptr<Solver> create_solver(device::Backend backend, const Parameters&
                             [&]<class ExecutionSpace>() { return make_solver<ExecutionSpace>(parameters); });
   } catch (const std::runtime_error& error) {
     // Kokkos throws this for a failed allocation.
-    if (std::string_view(error.what()).find("failed to allocate") != std::string_view::npos) throw std::bad_alloc();
+    if (std::string_view(error.what()).find("failed to allocate") != std::string_view::npos)
+      throw std::bad_alloc();
     throw;
   }
 }

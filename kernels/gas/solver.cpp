@@ -7,7 +7,8 @@
 
 namespace drogue::gas {
 
-// Defined in solver_impl.hpp and baseline/baseline_solver.hpp, instantiated for each backend in instances/.
+// Defined in solver_adapter.hpp and baseline/baseline_solver.hpp, instantiated for each backend in
+// instances/.
 template <class ExecutionSpace>
 std::unique_ptr<Solver> make_solver(const Parameters& parameters);
 template <class ExecutionSpace>

@@ -18,9 +18,9 @@ namespace drogue::linear {
 /// result, all of its entries along the faster axes.
 template <class ExecutionSpace>
 struct DenseProductFunctor {
-  int n;                ///< cells along the axis of the product
-  std::int64_t inner;   ///< numbers between neighbours along this axis
-  bool transposed;      ///< multiplies by the transpose: forward transform
+  int n;               ///< cells along the axis of the product
+  std::int64_t inner;  ///< numbers between neighbours along this axis
+  bool transposed;     ///< multiplies by the transpose: forward transform
   const double *matrix, *from;
   double* to;
 
@@ -52,9 +52,10 @@ class DenseProduct {
                   const List& from, const List& to) const {
     std::int64_t inner = 1, lines = 1;
     for (std::size_t a = 0; a < 3; ++a) (a < axis ? inner : lines) *= cells[a];
-    Kokkos::parallel_for(
-        "drogue::linear::dense_product", Kokkos::RangePolicy<ExecutionSpace>(_space, 0, lines),
-        DenseProductFunctor<ExecutionSpace>{cells[axis], inner, transposed, matrix.data(), from.data(), to.data()});
+    Kokkos::parallel_for("drogue::linear::dense_product",
+                         Kokkos::RangePolicy<ExecutionSpace>(_space, 0, lines),
+                         DenseProductFunctor<ExecutionSpace>{cells[axis], inner, transposed, matrix.data(),
+                                                             from.data(), to.data()});
   }
 
  private:
@@ -86,15 +87,15 @@ class DenseProduct<Kokkos::Cuda> {
     const cublasOperation_t left = transposed ? CUBLAS_OP_T : CUBLAS_OP_N;
     const cublasOperation_t right = transposed ? CUBLAS_OP_N : CUBLAS_OP_T;
     if (axis == 0)
-      check(cublasDgemm(_handle.get(), left, CUBLAS_OP_N, nx, ny * nz, nx, &one, matrix.data(), nx, from.data(), nx,
-                        &zero, to.data(), nx));
+      check(cublasDgemm(_handle.get(), left, CUBLAS_OP_N, nx, ny * nz, nx, &one, matrix.data(), nx,
+                        from.data(), nx, &zero, to.data(), nx));
     else if (axis == 1)
       check(cublasDgemmStridedBatched(_handle.get(), CUBLAS_OP_N, right, nx, ny, ny, &one, from.data(), nx,
-                                      static_cast<long long>(nx) * ny, matrix.data(), ny, 0, &zero, to.data(), nx,
-                                      static_cast<long long>(nx) * ny, nz));
+                                      static_cast<long long>(nx) * ny, matrix.data(), ny, 0, &zero, to.data(),
+                                      nx, static_cast<long long>(nx) * ny, nz));
     else
-      check(cublasDgemm(_handle.get(), CUBLAS_OP_N, right, nx * ny, nz, nz, &one, from.data(), nx * ny, matrix.data(),
-                        nz, &zero, to.data(), nx * ny));
+      check(cublasDgemm(_handle.get(), CUBLAS_OP_N, right, nx * ny, nz, nz, &one, from.data(), nx * ny,
+                        matrix.data(), nz, &zero, to.data(), nx * ny));
   }
 
  private:

@@ -7,7 +7,8 @@
 
 namespace drogue::options {
 
-// Defined in batch/pricer_impl.hpp and surface/surface_impl.hpp, instantiated for each backend in instances/.
+// Defined in batch/pricer_adapter.hpp and surface/surface_impl.hpp, instantiated for each backend in
+// instances/.
 template <class ExecutionSpace>
 std::unique_ptr<Pricer> make_pide(const Settings& settings);
 template <class ExecutionSpace>

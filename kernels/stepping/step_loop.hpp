@@ -43,13 +43,13 @@
 //     FlowSolver& s;
 //     void enqueue(std::int64_t count) {                                   // asynchronous
 //       if (s._launcher.is_persistent()) return s.launch_persistent(count);
-//       for (std::int64_t k = 0; k < count; ++k)                           // the kernels of a step count it
-//       in
-//         s._launcher.launch(0, [this](const auto& space) { s.enqueue_step(space); });  // StepMonitor::steps
+//       // The kernels of a step count it in StepMonitor::steps.
+//       for (std::int64_t k = 0; k < count; ++k)
+//         s._launcher.launch(0, [this](const auto& space) { s.enqueue_step(space); });
 //     }
 //     void checkpoint(std::int64_t launches) {
-//       s._checkpoint.save(s.space(), "save", s._monitor, 0, s.cells(), CopyFunctor{s._u, s._saved},
-//       launches);
+//       const CopyFunctor copy{s._u, s._saved};
+//       s._checkpoint.save(s.space(), "save", s._monitor, 0, s.cells(), copy, launches);
 //     }
 //   };
 //
@@ -229,7 +229,8 @@ class StepLoop {
   /// what `steps` and `poll` throw.
   ///
   /// It may be called while the caller captures the instance's stream into a graph. From then on only the
-  /// device counts steps (`completed_steps`), which `step` leaves out, and the loop takes no checkpoints.
+  /// device counts steps (`completed_steps`), which `step` leaves out, and the loop neither takes checkpoints
+  /// nor bounds the steps in flight: the caller does, with a fence.
   template <UniformSteps Steps>
   bool enqueue_steps(std::int64_t& step, std::int64_t count, std::int64_t checkpoint_every, Steps&& steps,
                      const Poll& poll = {}) {

@@ -3,8 +3,8 @@
 #include <utility>
 
 #include "kernels/mesh/quality.hpp"
-#include "miniapps/springs/simulation.hpp"
-#include "miniapps/springs/study.hpp"
+#include "miniapps/springs/simulation/simulation.hpp"
+#include "miniapps/springs/verify/study.hpp"
 
 namespace drogue::springs_app {
 namespace {

@@ -66,23 +66,23 @@ struct ToeplitzFunctor {
   }
 
   template <class ThreadGroup>
-  KOKKOS_INLINE_FUNCTION void in_scratch(const ThreadGroup& workers, const Member& team,
+  KOKKOS_INLINE_FUNCTION void in_scratch(const ThreadGroup& group, const Member& team,
                                          const RecurrenceFactors<R>& f, const double* from,
                                          double* to) const {
-    const int block_nodes = options::block_of(nodes, workers.lanes), count = block_nodes * workers.lanes,
+    const int block_nodes = options::block_of(nodes, group.lanes), count = block_nodes * group.lanes,
               last = nodes;
     R* const y = static_cast<R*>(team.team_scratch(1).get_shmem_aligned(scratch_bytes(nodes) - 64, 64));
     R *const x = y + count, *const floor = x + count, *const slot = floor + count;
-    workers.each([=](int thread) {
-      for (int i = thread; i < count; i += workers.threads()) {
+    group.each([=](int thread) {
+      for (int i = thread; i < count; i += group.threads()) {
         y[i] = i < last ? f.inverse * device::Access<R>::load(from + i * members) : R(0.0);
         floor[i] = -options::unbounded;
       }
     });
-    options::recur_backward(workers, {y}, block_nodes, f.from_right, slot);
-    options::recur_forward(workers, x, y, floor, block_nodes, last, f.from_left, f.boundary_value, slot);
-    workers.each([=](int thread) {
-      for (int i = thread; i < last; i += workers.threads()) device::Access<R>::store(to + i * members, x[i]);
+    options::recur_backward(group, {y}, block_nodes, f.from_right, slot);
+    options::recur_forward(group, x, y, floor, block_nodes, last, f.from_left, f.boundary_value, slot);
+    group.each([=](int thread) {
+      for (int i = thread; i < last; i += group.threads()) device::Access<R>::store(to + i * members, x[i]);
     });
   }
 };

@@ -4,8 +4,8 @@
 #include <filesystem>
 
 #include "common/program/signals.hpp"
-#include "miniapps/springs/study.hpp"
-#include "miniapps/springs/study_points.hpp"
+#include "miniapps/springs/verify/study.hpp"
+#include "miniapps/springs/verify/study_points.hpp"
 #include "perf/work_precision/solution.hpp"
 
 namespace drogue::perf {

@@ -85,7 +85,7 @@ class EachRuleCatchesItsBreach(unittest.TestCase):
         self.assertEqual(["perf/"], layers.without_folder(files))
 
     def test_miniapps(self):
-        self.assert_caught("miniapps/gas/x.cpp", '"miniapps/springs/scene.hpp"', "may only use")
+        self.assert_caught("miniapps/gas/x.cpp", '"miniapps/springs/scene/scene.hpp"', "may only use")
         self.assert_caught("miniapps/gas/x.cpp", "<Kokkos_Core.hpp>", "does without")
 
     def test_framework(self):

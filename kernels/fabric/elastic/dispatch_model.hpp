@@ -14,9 +14,11 @@ decltype(auto) dispatch_model(const Material& material, const Function& function
         return function.template operator()<ConstitutiveModel{Model::quadratic, tension_only}>();
       case Model::biquadratic:
         return function.template operator()<ConstitutiveModel{Model::biquadratic, tension_only}>();
-      default:
-        return function.template operator()<ConstitutiveModel{Model::edge, tension_only}>();
+      case Model::linear_vector:
+      case Model::edge:
+        break;
     }
+    return function.template operator()<ConstitutiveModel{Model::edge, tension_only}>();
   };
   return material.tension_only ? with.template operator()<true>() : with.template operator()<false>();
 }

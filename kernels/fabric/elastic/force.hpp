@@ -5,7 +5,7 @@
 namespace drogue::fabric {
 
 /// Elastic forces and loads, N, at given positions.
-template <class ExecutionSpace, ConstitutiveModel law>
+template <class ExecutionSpace, ConstitutiveModel model>
 struct ForceFunctor {
   using R = PackedReal<ExecutionSpace>;
   using Bounds = Kokkos::LaunchBounds<>;
@@ -14,7 +14,7 @@ struct ForceFunctor {
 
   KOKKOS_FUNCTION void operator()(const int pack) const {
     const int i = pack * device::Access<R>::lanes;
-    store_points(out, i, force<law, R>(fabric, x, i));
+    store_points(out, i, force<model, R>(fabric, x, i));
   }
 };
 

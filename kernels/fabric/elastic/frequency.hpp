@@ -33,7 +33,7 @@ KOKKOS_INLINE_FUNCTION double spectral_norm_bound(const double (&b)[3][3]) {
 /// Row i of the block norms of M^-1 K, 1/s^2; K is minus the derivative of the elastic forces at the
 /// positions x, with geometric stiffness and without pinned axes. By Gershgorin's theorem for blocks
 /// (Feingold and Varga 1962) no omega^2 exceeds the largest row.
-template <class ExecutionSpace, ConstitutiveModel law>
+template <class ExecutionSpace, ConstitutiveModel model>
 struct FrequencyFunctor {
   using Dual = device::Dual;
   FabricViews<ExecutionSpace> fabric;
@@ -82,7 +82,7 @@ struct FrequencyFunctor {
     };
     // A spring of no length has no force, but has one as soon as it has a length: until then it counts with
     // the stiffness of a softer model, which has forces at every length.
-    if constexpr (whole_triangles<law>)
+    if constexpr (whole_triangles<model>)
       each_triangle<double>(
           fabric, x, i,
           [&](const EdgeVector<double>& j, const EdgeVector<double>& k, const RestTriangle<double>& at_rest) {
@@ -93,7 +93,7 @@ struct FrequencyFunctor {
             const auto pull = [&](const EdgeVector<Dual>& to_j, const EdgeVector<Dual>& to_k) {
               return vanishes ? triangle_pull<ConstitutiveModel{Model::biquadratic}>(fabric.moduli, to_j,
                                                                                      to_k, rest)
-                              : triangle_pull<law>(fabric.moduli, to_j, to_k, rest);
+                              : triangle_pull<model>(fabric.moduli, to_j, to_k, rest);
             };
             add(j.neighbour, [&](int axis) { return pull(along(j, axis), along(k, -1)); });
             add(k.neighbour, [&](int axis) { return pull(along(j, -1), along(k, axis)); });
@@ -105,7 +105,7 @@ struct FrequencyFunctor {
       const bool vanishes = dot(edge, edge) == 0.0;
       add(j, [&](int axis) {
         return vanishes ? stiffness * along(edge, axis)
-                        : spring_pull<law>(stiffness, rest, along(edge, axis));
+                        : spring_pull<model>(stiffness, rest, along(edge, axis));
       });
     });
     return sum + spectral_norm_bound(diagonal);
@@ -113,7 +113,7 @@ struct FrequencyFunctor {
 };
 
 /// Largest row of `FrequencyFunctor`, 1/s^2, over all vertices. Blocks.
-template <ConstitutiveModel law, class ExecutionSpace>
+template <ConstitutiveModel model, class ExecutionSpace>
 [[nodiscard]] double largest_frequency_row(const ExecutionSpace& space,
                                            const FabricViews<ExecutionSpace>& fabric,
                                            const PointsView<ExecutionSpace>& x,
@@ -121,7 +121,7 @@ template <ConstitutiveModel law, class ExecutionSpace>
   double largest = 0.0;
   Kokkos::parallel_reduce(
       "drogue::fabric::frequency", Kokkos::RangePolicy<ExecutionSpace>(space, 0, vertices),
-      FrequencyFunctor<ExecutionSpace, law>{fabric, x, more}, Kokkos::Max<double>(largest));
+      FrequencyFunctor<ExecutionSpace, model>{fabric, x, more}, Kokkos::Max<double>(largest));
   return largest;
 }
 
@@ -131,12 +131,12 @@ template <class ExecutionSpace>
                                      const FabricViews<ExecutionSpace>& fabric,
                                      const PointsView<ExecutionSpace>& x,
                                      const ListView<ExecutionSpace, double>& more, int vertices) {
-  return dispatch_model(material, [&]<ConstitutiveModel law>() {
-    double row = largest_frequency_row<law>(space, fabric, x, more, vertices);
+  return dispatch_model(material, [&]<ConstitutiveModel model>() {
+    double row = largest_frequency_row<model>(space, fabric, x, more, vertices);
     // Elements that are slack now may be taut before the next call.
-    if constexpr (law.tension_only)
+    if constexpr (model.tension_only)
       row = std::max(row,
-                     largest_frequency_row<ConstitutiveModel{law.model}>(space, fabric, x, more, vertices));
+                     largest_frequency_row<ConstitutiveModel{model.model}>(space, fabric, x, more, vertices));
     return std::sqrt(row);
   });
 }

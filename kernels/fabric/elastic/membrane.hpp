@@ -14,8 +14,8 @@ struct ConstitutiveModel {
 
 /// True if triangles have an energy of their own. A constant, since nvcc rejects the constexpr function in
 /// device code.
-template <ConstitutiveModel law>
-inline constexpr bool whole_triangles = has_triangles(law.model);
+template <ConstitutiveModel model>
+inline constexpr bool whole_triangles = has_triangles(model.model);
 
 /// Lame's first constant and twice the shear modulus of plane stress, and Young's modulus, N/m. The
 /// dissertation's "mu" is the second.
@@ -119,10 +119,10 @@ KOKKOS_INLINE_FUNCTION Edges<R> relaxed_tensions(const Moduli& m, const Edges<R>
 }
 
 /// Tensions of the relaxed or the plain energy, N/m.
-template <ConstitutiveModel law, class R>
+template <ConstitutiveModel model, class R>
 KOKKOS_INLINE_FUNCTION Edges<R> tensions_of_changes(const Moduli& m, const Edges<R>& q, const Edges<R>& rest,
                                                     R inverse_area) {
-  if constexpr (law.tension_only)
+  if constexpr (model.tension_only)
     return relaxed_tensions(m, q, rest, inverse_area);
   else
     return edge_tensions(m, q, rest, inverse_area);
@@ -130,26 +130,26 @@ KOKKOS_INLINE_FUNCTION Edges<R> tensions_of_changes(const Moduli& m, const Edges
 
 /// Strain measures of the edges in which the energy is quadratic, m^2: l^2 - L^2, or 2 L (l - L) for
 /// Model::quadratic. `now` and `rest` are squared lengths, m^2.
-template <ConstitutiveModel law, class R>
+template <ConstitutiveModel model, class R>
 KOKKOS_INLINE_FUNCTION Edges<R> changes(const Edges<R>& now, const Edges<R>& rest) {
-  static_assert(whole_triangles<law>, "springs along edges have no triangles");
+  static_assert(whole_triangles<model>, "springs along edges have no triangles");
   Edges<R> q;
   for (int e = 0; e < 3; ++e)
-    if constexpr (law.model == Model::biquadratic)
+    if constexpr (model.model == Model::biquadratic)
       q.of[e] = now.of[e] - rest.of[e];
-    else
+    else if constexpr (model.model == Model::quadratic)
       q.of[e] = 2.0 * (device::square_root(rest.of[e] * now.of[e]) - rest.of[e]);
   return q;
 }
 
 /// Tension of each edge, N/m: the force on a vertex is that of an edge times the vector to its other vertex.
 /// `now` and `rest` are squared lengths.
-template <ConstitutiveModel law, class R>
+template <ConstitutiveModel model, class R>
 KOKKOS_INLINE_FUNCTION Edges<R> membrane_tensions(const Moduli& m, const Edges<R>& now, const Edges<R>& rest,
                                                   R inverse_area) {
-  const Edges<R> q = changes<law>(now, rest);
-  Edges<R> s = tensions_of_changes<law>(m, q, rest, inverse_area);
-  if constexpr (law.model == Model::quadratic) {
+  const Edges<R> q = changes<model>(now, rest);
+  Edges<R> s = tensions_of_changes<model>(m, q, rest, inverse_area);
+  if constexpr (model.model == Model::quadratic) {
     // dW/dl = dW/dq 2 L, and the edge vector is l long: times L / l = (q / 2 + L^2) / l^2.
     for (int e = 0; e < 3; ++e)
       s.of[e] =
@@ -160,29 +160,29 @@ KOKKOS_INLINE_FUNCTION Edges<R> membrane_tensions(const Moduli& m, const Edges<R
 
 /// Energy of a triangle, J. The plain and the relaxed energy are homogeneous of degree two: half of the
 /// derivative times the argument.
-template <ConstitutiveModel law>
+template <ConstitutiveModel model>
 KOKKOS_INLINE_FUNCTION double membrane_energy(const Moduli& m, const Edges<double>& now,
                                               const Edges<double>& rest, double inverse_area) {
-  const Edges<double> q = changes<law>(now, rest), s = tensions_of_changes<law>(m, q, rest, inverse_area);
+  const Edges<double> q = changes<model>(now, rest), s = tensions_of_changes<model>(m, q, rest, inverse_area);
   return 0.25 * (s.of[0] * q.of[0] + s.of[1] * q.of[1] + s.of[2] * q.of[2]);
 }
 
 /// Tension of a spring of stiffness `k` (N/m) and length at rest `rest` (m), N/m; `now` is its squared
 /// length, m^2. Zero for a spring of no length, which has no direction.
-template <ConstitutiveModel law, class R>
+template <ConstitutiveModel model, class R>
 KOKKOS_INLINE_FUNCTION R spring_tension(R k, R now, R rest) {
   const R tension = device::select(now > R(0.0), k * (R(1.0) - rest / device::square_root(now)), R(0.0));
-  if constexpr (law.tension_only)
+  if constexpr (model.tension_only)
     return device::maximum(tension, R(0.0));
   else
     return tension;
 }
 
 /// Energy of a spring, J; `now` is its squared length.
-template <ConstitutiveModel law>
+template <ConstitutiveModel model>
 KOKKOS_INLINE_FUNCTION double spring_energy(double k, double now, double rest) {
   const double change = device::square_root(now) - rest;
-  return law.tension_only && change < 0.0 ? 0.0 : 0.5 * k * change * change;
+  return model.tension_only && change < 0.0 ? 0.0 : 0.5 * k * change * change;
 }
 
 }  // namespace drogue::fabric

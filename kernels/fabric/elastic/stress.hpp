@@ -108,7 +108,7 @@ KOKKOS_INLINE_FUNCTION void store_stress(const View& view, int i, const Principa
 }
 
 /// Stress of each triangle.
-template <class ExecutionSpace, ConstitutiveModel law>
+template <class ExecutionSpace, ConstitutiveModel model>
 struct StressFunctor {
   TriangleViews<ExecutionSpace> triangles;
   PointsView<ExecutionSpace> x;
@@ -129,12 +129,12 @@ struct StressFunctor {
     const Edges<double> rest{{triangles.rest(t, 0), triangles.rest(t, 1), triangles.rest(t, 2)}};
     const double inverse_area = triangles.inverse_area(t);
     Edges<double> tension;
-    if constexpr (whole_triangles<law>)
-      tension = membrane_tensions<law>(moduli, squared, rest, inverse_area);
+    if constexpr (whole_triangles<model>)
+      tension = membrane_tensions<model>(moduli, squared, rest, inverse_area);
     else
       for (int e = 0; e < 3; ++e)
         tension.of[e] =
-            spring_tension<law>(triangles.stiffness(t, e), squared.of[e], device::square_root(rest.of[e]));
+            spring_tension<model>(triangles.stiffness(t, e), squared.of[e], device::square_root(rest.of[e]));
     const LocalTriangle at_rest = local_triangle(rest, inverse_area);
     const PlaneTensor stress = measure == StressMeasure::cauchy
                                    ? edge_stress(tension, now)

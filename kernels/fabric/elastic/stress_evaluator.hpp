@@ -46,11 +46,11 @@ class StressEvaluator {
     if (p.material.model == Model::linear_vector)
       throw std::invalid_argument("fabric solver: springs of vectors (Model I) have no stress");
     if (!_triangles) _triangles.emplace(space, triangle_list(p.mesh, p.material));
-    dispatch_model(p.material, [&]<ConstitutiveModel law>() {
+    dispatch_model(p.material, [&]<ConstitutiveModel model>() {
       Kokkos::parallel_for(
           "drogue::fabric::stress",
           Kokkos::RangePolicy<ExecutionSpace>(space, 0, static_cast<int>(p.mesh.triangles.size())),
-          StressFunctor<ExecutionSpace, law>{*_triangles, x, moduli, measure, to, tensor});
+          StressFunctor<ExecutionSpace, model>{*_triangles, x, moduli, measure, to, tensor});
     });
   }
 

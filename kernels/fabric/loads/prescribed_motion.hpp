@@ -22,6 +22,7 @@ struct PrescribedMotion {
   Kokkos::View<double, typename ExecutionSpace::memory_space> time;  ///< s, to which the vectors refer
 
   PrescribedMotion() = default;
+  /// Zero vectors, m, m/s and m/s^2, for all vertices. Throws std::runtime_error if memory runs out.
   explicit PrescribedMotion(std::size_t vertices)
       : displacement("drogue::fabric::pin_displacements", vertices),
         velocity("drogue::fabric::pin_velocities", vertices),
@@ -36,8 +37,8 @@ struct PinnedAxes {
   ListView<ExecutionSpace, int> vertex, axis;
 };
 
-/// Axes that `Parameters::pinned` pins and no motion expression moves. Blocks. Throws std::logic_error if
-/// there are none.
+/// Axes that `Parameters::pinned` pins and no motion expression moves; `rest` in m. Blocks. Throws
+/// std::logic_error if there are none.
 template <class ExecutionSpace>
 [[nodiscard]] PinnedAxes<ExecutionSpace> make_pinned_axes(const ExecutionSpace& space, const Parameters& p,
                                                           const PointsView<ExecutionSpace>& rest) {

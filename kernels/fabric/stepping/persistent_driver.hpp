@@ -59,7 +59,7 @@ struct PersistentInputs {
 
 /// Enqueues `steps` steps as one launch. `captured`: the launch may be replayed, so that it reads its step
 /// count on the device and clears the messages. Asynchronous.
-template <ConstitutiveModel law, class ExecutionSpace, class VertexForce>
+template <ConstitutiveModel model, class ExecutionSpace, class VertexForce>
 void launch_persistent_steps(const ExecutionSpace& space, PersistentDriver<ExecutionSpace>& driver,
                              const PersistentInputs<ExecutionSpace, VertexForce>& in, std::int64_t steps,
                              bool captured) {
@@ -77,14 +77,16 @@ void launch_persistent_steps(const ExecutionSpace& space, PersistentDriver<Execu
   };
   if (in.has_loads)
     driver.grid.template launch<max_ring_threads, 1>(
-        PersistentRingsFunctor<ExecutionSpace, law, VertexForce, true>{
+        PersistentRingsFunctor<ExecutionSpace, model, VertexForce, true>{
             with(PersistentLoads<ExecutionSpace, true>{in.external, in.time})});
   else if (driver.pairs)
-    driver.grid.template launch<max_pair_threads, 1>(PersistentPairsFunctor<ExecutionSpace, law, VertexForce>{
-        with(PersistentLoads<ExecutionSpace, false>{})});
+    driver.grid.template launch<max_pair_threads, 1>(
+        PersistentPairsFunctor<ExecutionSpace, model, VertexForce>{
+            with(PersistentLoads<ExecutionSpace, false>{})});
   else
-    driver.grid.template launch<max_ring_threads, 1>(PersistentRingsFunctor<ExecutionSpace, law, VertexForce>{
-        with(PersistentLoads<ExecutionSpace, false>{})});
+    driver.grid.template launch<max_ring_threads, 1>(
+        PersistentRingsFunctor<ExecutionSpace, model, VertexForce>{
+            with(PersistentLoads<ExecutionSpace, false>{})});
   driver.epoch += 4 * static_cast<std::uint64_t>(steps);
 }
 

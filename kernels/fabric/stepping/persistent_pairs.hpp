@@ -11,7 +11,7 @@ inline constexpr int max_pair_vertices = 384, max_pair_threads = 512;
 /// traversed the ring of its vertex. A warp computes the forces of a row of pairs of triangles and stores
 /// them in the team's scratch memory, where the thread of the vertex adds them in the order of the ring. The
 /// triangles at rest of a warp's first row stay in registers.
-template <class ExecutionSpace, ConstitutiveModel law, class VertexForce = NoVertexForce>
+template <class ExecutionSpace, ConstitutiveModel model, class VertexForce = NoVertexForce>
 struct PersistentPairsFunctor {
   PersistentSteps<ExecutionSpace, VertexForce> of;
 
@@ -42,14 +42,14 @@ struct PersistentPairsFunctor {
   }
 
   KOKKOS_FUNCTION void pull(const Pair& pair, const TeamTable& points, const TeamTable& pulls) const {
-    if constexpr (whole_triangles<law>) {
+    if constexpr (whole_triangles<model>) {
       const Vector3<double> own = load_points<double>(points, pair.vertex);
       const auto to = [&](int k) { return edge_to<double>(points, own, pair.neighbour[k]); };
       const EdgeVector<double> middle = to(1);
-      store_points(pulls, pair.pulls, triangle_pull<law>(of.fabric.moduli, to(0), middle, pair.rest[0]));
+      store_points(pulls, pair.pulls, triangle_pull<model>(of.fabric.moduli, to(0), middle, pair.rest[0]));
       if (pair.triangles == 2)
         store_points(pulls, pair.pulls + slice,
-                     triangle_pull<law>(of.fabric.moduli, middle, to(2), pair.rest[1]));
+                     triangle_pull<model>(of.fabric.moduli, middle, to(2), pair.rest[1]));
     }
   }
 
@@ -100,7 +100,7 @@ struct PersistentPairsFunctor {
              arrive();
              Vector3<double> elastic{0.0, 0.0, 0.0};
              if (own.vertex >= 0)
-               elastic = with_springs<law>(local, now, rank, sum_of(pulls, first_pull, pulls_end));
+               elastic = with_springs<model>(local, now, rank, sum_of(pulls, first_pull, pulls_end));
              return elastic;
            });
   }

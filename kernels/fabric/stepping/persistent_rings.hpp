@@ -25,7 +25,8 @@ struct TeamFabric {
 
 /// `PersistentSteps` of patches of many vertices: a thread traverses the ring of its vertex. Triangles and
 /// springs at rest are in the team's scratch memory.
-template <class ExecutionSpace, ConstitutiveModel law, class VertexForce = NoVertexForce, bool loads = false>
+template <class ExecutionSpace, ConstitutiveModel model, class VertexForce = NoVertexForce,
+          bool loads = false>
 struct PersistentRingsFunctor {
   PersistentSteps<ExecutionSpace, VertexForce, loads> of;
 
@@ -47,7 +48,7 @@ struct PersistentRingsFunctor {
     of.run(member, halo, points, own, local.triangles,
            [&](const TeamTable& now, std::int64_t, const auto& arrive) {
              Vector3<double> elastic{0.0, 0.0, 0.0};
-             if (own.vertex >= 0) elastic = elastic_force<law, double>(local, now, member.team_rank());
+             if (own.vertex >= 0) elastic = elastic_force<model, double>(local, now, member.team_rank());
              arrive();
              return elastic;
            });

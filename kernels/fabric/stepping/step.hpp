@@ -47,7 +47,7 @@ KOKKOS_INLINE_FUNCTION void store_end(const StepMonitor<ExecutionSpace>& monitor
 }
 
 /// One stage of a step of the classical Runge-Kutta method.
-template <class ExecutionSpace, ConstitutiveModel law, class VertexForce = NoVertexForce>
+template <class ExecutionSpace, ConstitutiveModel model, class VertexForce = NoVertexForce>
 struct RungeKuttaFunctor {
   using R = std::conditional_t<device::is_host<ExecutionSpace>, device::HostPack<double>, double>;
   using Points = PointsView<ExecutionSpace>;
@@ -67,7 +67,7 @@ struct RungeKuttaFunctor {
     const int i = pack * lanes;
     // Registers limit the number of threads: values that the sum over neighbours does not need are read
     // later.
-    Vector3<R> pull = force<law, R>(fabric, at, i);
+    Vector3<R> pull = force<model, R>(fabric, at, i);
     const Vector3<R> v_n = load_points<R>(v, i);
     const Vector3<R> v_now = stage == 0 ? v_n : load_points<R>(velocity[stage - 1], i);
     if constexpr (has_vertex_force<VertexForce>) pull = with_vertex_force(pull, v_now, i);
@@ -98,7 +98,7 @@ struct RungeKuttaFunctor {
 /// positions of the stage and the vertex' own velocity: positions of a stage follow from the velocities of
 /// the stage before, so both positions are known before either force. Both stages share the reads of
 /// neighbour numbers and triangles at rest.
-template <class ExecutionSpace, ConstitutiveModel law, bool last, class VertexForce = NoVertexForce>
+template <class ExecutionSpace, ConstitutiveModel model, bool last, class VertexForce = NoVertexForce>
 struct RungeKuttaHalfFunctor {
   using Points = PointsView<ExecutionSpace>;
   using Vector = Vector3<double>;
@@ -139,7 +139,7 @@ struct RungeKuttaHalfFunctor {
 
   KOKKOS_FUNCTION void begin(int i) const {
     const ExtrapolatedPoints<Points> second{x, v, fraction_after_stage(0) * dt};
-    const StatePair<Vector> pull = elastic_forces<law, double>(fabric, x, second, i);
+    const StatePair<Vector> pull = elastic_forces<model, double>(fabric, x, second, i);
     const Vector v_n = load_points<double>(v, i), v2 = next_velocity(0, v_n, pull.first, x, v_n, i),
                  v3 = next_velocity(1, v_n, pull.second, second, v2, i), x_n = load_points<double>(x, i);
     store_points(third, i, x_n + (fraction_after_stage(1) * dt) * v2);
@@ -150,7 +150,7 @@ struct RungeKuttaHalfFunctor {
   }
 
   KOKKOS_FUNCTION void end(int i) const {
-    const StatePair<Vector> pull = elastic_forces<law, double>(fabric, third, fourth, i);
+    const StatePair<Vector> pull = elastic_forces<model, double>(fabric, third, fourth, i);
     const Vector v_n = load_points<double>(v, i), v2 = load_points<double>(velocity[0], i),
                  v3 = load_points<double>(velocity[1], i),
                  v4 = next_velocity(2, v_n, pull.first, third, v3, i),
@@ -166,7 +166,7 @@ struct RungeKuttaHalfFunctor {
 /// Velocity Verlet (Swope et al. 1982) with one elastic force per step: half a kick that ends the step
 /// before, half a kick that begins the next, and its drift. Damping is evaluated at the middle of half a
 /// kick. The sequence of operations does not depend on how steps are distributed over launches.
-template <class ExecutionSpace, ConstitutiveModel law, class VertexForce = NoVertexForce>
+template <class ExecutionSpace, ConstitutiveModel model, class VertexForce = NoVertexForce>
 struct VerletFunctor {
   using R = std::conditional_t<device::is_host<ExecutionSpace>, device::HostPack<double>, double>;
   using Points = PointsView<ExecutionSpace>;
@@ -189,7 +189,7 @@ struct VerletFunctor {
       with_vertex_force(pack, velocity);
       return;
     }
-    const Vector3<R> a = acceleration(fabric, force<law, R>(fabric, x, i), velocity, i),
+    const Vector3<R> a = acceleration(fabric, force<model, R>(fabric, x, i), velocity, i),
                      free = free_axes<R>(fabric, i);
     const Vector3<R> position = load_points<R>(x, i);
     const std::int64_t step = monitor.steps(parity);
@@ -209,7 +209,7 @@ struct VerletFunctor {
   KOKKOS_FUNCTION void with_vertex_force(int pack, Vector3<R> velocity) const {
     if constexpr (has_vertex_force<VertexForce>) {
       const int i = pack * lanes;
-      const Vector3<R> pull = force<law, R>(fabric, x, i), free = free_axes<R>(fabric, i),
+      const Vector3<R> pull = force<model, R>(fabric, x, i), free = free_axes<R>(fabric, i),
                        position = load_points<R>(x, i);
       const std::int64_t step = monitor.steps(parity);
       const double* const inverse_mass = &fabric.inverse_mass(i);

@@ -99,7 +99,7 @@ struct VertexGeometryFunctor {
   }
 };
 
-/// Throws std::invalid_argument unless a View has at least `rows` rows.
+/// Throws std::invalid_argument unless the number of rows of a View is at least `rows`.
 template <class View>
 void require_rows(const View& view, int rows) {
   if (view.extent(0) < static_cast<std::size_t>(rows))

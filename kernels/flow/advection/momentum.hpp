@@ -4,8 +4,8 @@
 
 namespace drogue::flow {
 
-/// Weights of a stage: W = state U + stage S + dt (rate L(S) + old_rate A), where A is the rate of the previous
-/// step (Adams-Bashforth), or is not read.
+/// Weights of a stage: W = state U + stage S + dt (rate L(S) + old_rate A), where A is the rate of the
+/// previous step (Adams-Bashforth), or is not read.
 struct StageWeights {
   double state, stage, rate;
   bool adams_bashforth;  ///< replaces `rate` by 1 + r/2 and adds -r/2 A, r = dt / last dt; stores L(S) in A
@@ -15,9 +15,9 @@ struct StageWeights {
 template <class ExecutionSpace>
 struct MomentumSetup {
   MacGrid grid;
-  List<ExecutionSpace> state;    ///< U, m/s, with ghost cells
-  List<ExecutionSpace> stage;    ///< S, m/s, with ghost cells filled
-  List<ExecutionSpace> out;      ///< W, m/s
+  List<ExecutionSpace> state;     ///< U, m/s, with ghost cells
+  List<ExecutionSpace> stage;     ///< S, m/s, with ghost cells filled
+  List<ExecutionSpace> out;       ///< W, m/s
   List<ExecutionSpace> old_rate;  ///< A, m/s^2
   List<ExecutionSpace> force;     ///< per volume, N/m^3; may be empty
   List<ExecutionSpace> eddy;      ///< acceleration by an eddy viscosity, m/s^2; may be empty
@@ -36,7 +36,8 @@ struct StageFactors {
 };
 
 template <class ExecutionSpace>
-KOKKOS_INLINE_FUNCTION StageFactors stage_factors(const MomentumSetup<ExecutionSpace>& setup, const Control& control) {
+KOKKOS_INLINE_FUNCTION StageFactors stage_factors(const MomentumSetup<ExecutionSpace>& setup,
+                                                  const Control& control) {
   const double dt = control.trial.dt;
   const StageWeights& w = setup.weights;
   // Forces of other kernels hold for the whole step and are not extrapolated.
@@ -48,6 +49,7 @@ KOKKOS_INLINE_FUNCTION StageFactors stage_factors(const MomentumSetup<ExecutionS
 
 /// Enqueues a momentum stage. Asynchronous. Compiled once for each backend.
 template <class ExecutionSpace>
-void dispatch_momentum(const ExecutionSpace& space, const MomentumSetup<ExecutionSpace>& setup, Advection advection);
+void dispatch_momentum(const ExecutionSpace& space, const MomentumSetup<ExecutionSpace>& setup,
+                       Advection advection);
 
 }  // namespace drogue::flow

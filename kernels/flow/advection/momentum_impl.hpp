@@ -7,9 +7,9 @@
 
 namespace drogue::flow {
 
-/// Flux of momentum component c through a face normal to axis d, per density, m^2/s^2: advection minus diffusion. The
-/// face is the low face along d of the control volume of the component. `carried` points at component c at the
-/// control volume, `carrier` at component d of the same cell.
+/// Flux of momentum component c through a face normal to axis d, per density, m^2/s^2: advection minus
+/// diffusion. The face is the low face along d of the control volume of the component. `carried` points at
+/// component c at the control volume, `carrier` at component d of the same cell.
 template <Advection scheme, class R>
 KOKKOS_INLINE_FUNCTION R momentum_flux(const double* carried, const double* carrier, std::int64_t stride_c,
                                        std::int64_t stride_d, double nu_over_h, R epsilon) {
@@ -18,7 +18,8 @@ KOKKOS_INLINE_FUNCTION R momentum_flux(const double* carried, const double* carr
          nu_over_h * (load_field<R>(carried) - load_field<R>(carried - stride_d));
 }
 
-/// Momentum stage on a device. A thread marches along z and keeps the fluxes through the face between two planes.
+/// Momentum stage on a device. A thread marches along z and keeps the fluxes through the face between two
+/// planes.
 template <class ExecutionSpace, Advection scheme, bool adams_bashforth>
 struct MomentumFunctor {
   using Policy = Kokkos::TeamPolicy<ExecutionSpace, Kokkos::LaunchBounds<tile_x * tile_y, 4>>;
@@ -82,8 +83,8 @@ struct MomentumFunctor {
   }
 };
 
-/// Momentum stage on a host: packs of cells along x, rows in turn. A row keeps the fluxes that the next row and the next
-/// plane need, so that each is evaluated once.
+/// Momentum stage on a host: packs of cells along x, rows in turn. A row keeps the fluxes that the next row
+/// and the next plane need, so that each is evaluated once.
 template <class ExecutionSpace, Advection scheme, bool adams_bashforth>
 struct MomentumRowsFunctor {
   using Policy = Kokkos::TeamPolicy<ExecutionSpace>;
@@ -96,9 +97,12 @@ struct MomentumRowsFunctor {
   int slabs, planes;  ///< teams, and planes of a team
 
   /// Numbers of a row of fluxes: one face more than cells, in whole packs.
-  [[nodiscard]] static int row_length(const MacGrid& g) { return (g.n[0] + 1 + lanes - 1) / lanes * lanes + lanes; }
+  [[nodiscard]] static int row_length(const MacGrid& g) {
+    return (g.n[0] + 1 + lanes - 1) / lanes * lanes + lanes;
+  }
   [[nodiscard]] static std::size_t scratch_bytes(const MacGrid& g) {
-    return static_cast<std::size_t>(3 * row_length(g)) * (static_cast<std::size_t>(g.n[1]) + 3) * sizeof(double);
+    return static_cast<std::size_t>(3 * row_length(g)) * (static_cast<std::size_t>(g.n[1]) + 3) *
+           sizeof(double);
   }
 
   KOKKOS_FUNCTION void operator()(const Member& member) const {
@@ -106,21 +110,24 @@ struct MomentumRowsFunctor {
     if (setup.control().trial.stop != stepping::Stop::running) return;
     const StageFactors factors = stage_factors(setup, setup.control());
     const int length = row_length(g);
-    auto* below = static_cast<double*>(member.team_scratch(1).get_shmem(scratch_bytes(g)));  // of each row of a plane
+    auto* below =
+        static_cast<double*>(member.team_scratch(1).get_shmem(scratch_bytes(g)));  // of each row of a plane
     double* south = below + static_cast<std::int64_t>(3 * length) * g.n[1];
     double* west = south + 3 * length;
     double* next = west + 3 * length;
     const int k_begin = member.league_rank() * planes;
     const int k_end = k_begin + planes < g.n[2] ? k_begin + planes : g.n[2];
     if (g.n[2] > 1)
-      for (int j = 0; j < g.n[1]; ++j) fluxes(2, j, k_begin, g.n[0], below + static_cast<std::int64_t>(3 * length) * j);
+      for (int j = 0; j < g.n[1]; ++j)
+        fluxes(2, j, k_begin, g.n[0], below + static_cast<std::int64_t>(3 * length) * j);
     for (int k = k_begin; k < k_end; ++k) {
       if (g.n[1] > 1) fluxes(1, 0, k, g.n[0], south);
       for (int j = 0; j < g.n[1]; ++j) {
         const std::int64_t at = g.offset(0, j, k);
         double* under = below + static_cast<std::int64_t>(3 * length) * j;
         for (int c = 0; c < 3; ++c)
-          for (int i = 0; i < g.n[0]; i += lanes) Access::store(rate_row(next, c, length) + i, R(setup.acceleration[c]));
+          for (int i = 0; i < g.n[0]; i += lanes)
+            Access::store(rate_row(next, c, length) + i, R(setup.acceleration[c]));
         if (g.n[0] > 1) {
           fluxes(0, j, k, g.n[0] + 1, west);
           for (int c = 0; c < 3; ++c)
@@ -157,7 +164,8 @@ struct MomentumRowsFunctor {
     }
   }
 
-  /// Subtracts the difference of the fluxes at the row (j, k) and those kept in `kept`, and keeps the new ones.
+  /// Subtracts the difference of the fluxes at the row (j, k) and those kept in `kept`, and keeps the new
+  /// ones.
   void add_difference(int d, int j, int k, double inverse_h, int length, double* kept, double* work,
                       double* rates) const {
     const MacGrid& g = setup.grid;
@@ -211,14 +219,16 @@ void launch_momentum(const ExecutionSpace& space, const MomentumSetup<ExecutionS
     // Long marches evaluate fewer fluxes twice; short ones occupy the device with a small grid.
     const int planes = march_planes(tiles_x * tiles_y, g.n[2], 16);
     typename Functor::Policy policy(space, tiles_x * tiles_y * parts(g.n[2], planes), tile_x * tile_y);
-    Kokkos::parallel_for("drogue::flow::momentum",
-                         Kokkos::Experimental::require(policy, Kokkos::Experimental::WorkItemProperty::HintLightWeight),
-                         Functor{setup, tiles_x, tiles_y, planes});
+    Kokkos::parallel_for(
+        "drogue::flow::momentum",
+        Kokkos::Experimental::require(policy, Kokkos::Experimental::WorkItemProperty::HintLightWeight),
+        Functor{setup, tiles_x, tiles_y, planes});
   }
 }
 
 template <class ExecutionSpace>
-void dispatch_momentum(const ExecutionSpace& space, const MomentumSetup<ExecutionSpace>& setup, Advection advection) {
+void dispatch_momentum(const ExecutionSpace& space, const MomentumSetup<ExecutionSpace>& setup,
+                       Advection advection) {
   const auto launch = [&]<bool adams_bashforth>() {
     switch (advection) {
       case Advection::central:

@@ -11,13 +11,13 @@
 
 namespace drogue::flow {
 
-/// Conditions of the sides on a device. Values of a side whose velocity is an expression stand in a table with an entry
-/// for every point of the side, ghost cells included.
+/// Conditions of the sides on a device. Values of a side whose velocity is an expression stand in a table
+/// with an entry for every point of the side, ghost cells included.
 template <class ExecutionSpace>
 struct BoundaryConditions {
   BoundaryKind kind[6];
-  double velocity[6][3];     ///< m/s
-  std::int64_t first[6];     ///< first entry of a side in `table`; -1: no table
+  double velocity[6][3];       ///< m/s
+  std::int64_t first[6];       ///< first entry of a side in `table`; -1: no table
   List<ExecutionSpace> table;  ///< m/s
 
   /// Axes of the table of a side: the two other than its own, in ascending order.
@@ -25,12 +25,13 @@ struct BoundaryConditions {
   [[nodiscard]] KOKKOS_FUNCTION static int second_axis(int axis) { return axis == 2 ? 1 : 2; }
 
   /// Prescribed velocity component at the point of a side next to cell `index`, m/s.
-  [[nodiscard]] KOKKOS_FUNCTION double value(const MacGrid& g, int side, int component, const int index[3]) const {
+  [[nodiscard]] KOKKOS_FUNCTION double value(const MacGrid& g, int side, int component,
+                                             const int index[3]) const {
     if (first[side] < 0) return velocity[side][component];
     const int axis = side / 2, a = first_axis(axis), b = second_axis(axis);
     const std::int64_t row = g.n[a] + 2 * g.ghost[a], rows = g.n[b] + 2 * g.ghost[b];
-    return table(static_cast<std::size_t>(first[side] + component * row * rows + (index[b] + g.ghost[b]) * row +
-                                          index[a] + g.ghost[a]));
+    return table(static_cast<std::size_t>(first[side] + component * row * rows +
+                                          (index[b] + g.ghost[b]) * row + index[a] + g.ghost[a]));
   }
 };
 
@@ -88,13 +89,15 @@ class BoundaryTables {
       if (sides[side].velocity_expressions.empty()) continue;
       _conditions.first[side] = entries;
       entries += entries_of(static_cast<int>(side));
-      _programs[side] = Programs(Kokkos::view_alloc(space, Kokkos::WithoutInitializing, "drogue::flow::boundary_programs"), 3);
+      _programs[side] = Programs(
+          Kokkos::view_alloc(space, Kokkos::WithoutInitializing, "drogue::flow::boundary_programs"), 3);
       device::copy_in(space, _programs[side], sides[side].velocity_expressions.data(), 3);
       for (const device::ExpressionProgram& program : sides[side].velocity_expressions)
         for (int i = 0; i < program.length; ++i)
           _changes = _changes || program.operations[i] == device::Operation::t;
     }
-    _conditions.table = List<ExecutionSpace>("drogue::flow::boundary_table", static_cast<std::size_t>(entries));
+    _conditions.table =
+        List<ExecutionSpace>("drogue::flow::boundary_table", static_cast<std::size_t>(entries));
     space.fence("drogue::flow::boundary: allocated");
   }
 
@@ -112,9 +115,10 @@ class BoundaryTables {
                           const StageTime& stage) const {
     for (int side = 0; side < 6; ++side) {
       if (_conditions.first[side] < 0) continue;
-      device::launch_each(space, "drogue::flow::boundary_table", static_cast<int>(entries_of(side)),
-                          BoundaryTableFunctor<ExecutionSpace>{_grid, _conditions.table, _programs[side], control,
-                                                               stage, side, _conditions.first[side]});
+      device::launch_each(
+          space, "drogue::flow::boundary_table", static_cast<int>(entries_of(side)),
+          BoundaryTableFunctor<ExecutionSpace>{_grid, _conditions.table, _programs[side], control, stage,
+                                               side, _conditions.first[side]});
     }
   }
 

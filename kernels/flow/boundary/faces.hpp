@@ -5,10 +5,11 @@
 
 namespace drogue::flow {
 
-/// Normal components of the predicted velocity on the sides: prescribed values, and at outflows the momentum equation
-/// with advection by the outward velocity, first order and upwind, so that vortices leave with the flow. The projection
-/// adds the pressure. Advances with the factors of the momentum stage. The rate of a low face is kept in the ghost cell
-/// below it, because the momentum stage overwrites the rate at the face itself.
+/// Normal components of the predicted velocity on the sides: prescribed values, and at outflows the momentum
+/// equation with advection by the outward velocity, first order and upwind, so that vortices leave with the
+/// flow. The projection adds the pressure. Advances with the factors of the momentum stage. The rate of a low
+/// face is kept in the ghost cell below it, because the momentum stage overwrites the rate at the face
+/// itself.
 template <class ExecutionSpace>
 struct BoundaryFacesFunctor {
   MomentumSetup<ExecutionSpace> setup;

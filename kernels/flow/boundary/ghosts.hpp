@@ -10,12 +10,12 @@ struct GhostValue {
   double constant, factor;
 };
 
-/// Ghost value along one axis. `index[axis]` lies outside of [0, n), on a boundary face or inside. A component normal
-/// to the axis lies on its faces, the others between them.
+/// Ghost value along one axis. `index[axis]` lies outside of [0, n), on a boundary face or inside. A
+/// component normal to the axis lies on its faces, the others between them.
 ///
-/// Walls and inflows: linear extrapolation through the prescribed velocity at the side. Slip: even extension of
-/// tangential, odd extension of normal components. Outflow: constant extension; fluid that flows back has no tangential
-/// velocity.
+/// Walls and inflows: linear extrapolation through the prescribed velocity at the side. Slip: even extension
+/// of tangential, odd extension of normal components. Outflow: constant extension; fluid that flows back has
+/// no tangential velocity.
 template <class ExecutionSpace>
 KOKKOS_INLINE_FUNCTION GhostValue ghost_value(const MacGrid& g, const BoundaryConditions<ExecutionSpace>& b,
                                               const List<ExecutionSpace>& velocity, int axis, int component,
@@ -41,7 +41,8 @@ KOKKOS_INLINE_FUNCTION GhostValue ghost_value(const MacGrid& g, const BoundaryCo
       int at[3] = {index[0], index[1], index[2]};
       for (int a = 0; a < 3; ++a) at[a] = at[a] < 0 ? 0 : at[a] >= g.n[a] ? g.n[a] - 1 : at[a];
       at[axis] = face;
-      const double outward = velocity(axis * g.component + g.offset(at[0], at[1], at[2])) * (high ? 1.0 : -1.0);
+      const double outward =
+          velocity(axis * g.component + g.offset(at[0], at[1], at[2])) * (high ? 1.0 : -1.0);
       return {high ? n - 1 : 0, 0.0, outward < 0.0 ? 0.0 : 1.0};
     }
     default: {
@@ -52,14 +53,15 @@ KOKKOS_INLINE_FUNCTION GhostValue ghost_value(const MacGrid& g, const BoundaryCo
   }
 }
 
-/// Fills ghost cells and boundary faces of all components. Corners follow from the conditions of their axes in turn.
+/// Fills ghost cells and boundary faces of all components. Corners follow from the conditions of their axes
+/// in turn.
 template <class ExecutionSpace>
 struct GhostFunctor {
   MacGrid grid;
   BoundaryConditions<ExecutionSpace> boundary;
   List<ExecutionSpace> velocity;
-  int slab[3];                  ///< boundary layers at each side, with the boundary faces; see `launch_ghosts`
-  std::int64_t slab_cells[3];   ///< cells of the slabs normal to each axis
+  int slab[3];                 ///< boundary layers at each side, with the boundary faces; see `launch_ghosts`
+  std::int64_t slab_cells[3];  ///< cells of the slabs normal to each axis
 
   KOKKOS_FUNCTION void operator()(std::int64_t cell) const {
     const MacGrid& g = grid;
@@ -67,7 +69,8 @@ struct GhostFunctor {
     while (axis > 0 && cell >= slab_cells[axis]) cell -= slab_cells[axis--];
     // The slabs normal to z span all cells with ghosts, those normal to y the inner planes, and so on.
     int index[3], extent[3];
-    for (int a = 0; a < 3; ++a) extent[a] = a < axis ? g.n[a] + 2 * g.ghost[a] : a == axis ? 2 * slab[a] - 1 : inner(a);
+    for (int a = 0; a < 3; ++a)
+      extent[a] = a < axis ? g.n[a] + 2 * g.ghost[a] : a == axis ? 2 * slab[a] - 1 : inner(a);
     index[0] = static_cast<int>(cell % extent[0]);
     index[1] = static_cast<int>(cell / extent[0] % extent[1]);
     index[2] = static_cast<int>(cell / extent[0] / extent[1]);
@@ -103,8 +106,8 @@ struct GhostFunctor {
 
 /// Enqueues the fill of the ghost cells and boundary faces of a velocity field. Asynchronous.
 template <class ExecutionSpace>
-void launch_ghosts(const ExecutionSpace& space, const MacGrid& g, const BoundaryConditions<ExecutionSpace>& boundary,
-                   const List<ExecutionSpace>& velocity) {
+void launch_ghosts(const ExecutionSpace& space, const MacGrid& g,
+                   const BoundaryConditions<ExecutionSpace>& boundary, const List<ExecutionSpace>& velocity) {
   GhostFunctor<ExecutionSpace> functor{g, boundary, velocity, {}, {}};
   std::int64_t total = 0;  // below 2^31 for any grid that fits a device
   for (int axis = 0; axis < 3; ++axis) {

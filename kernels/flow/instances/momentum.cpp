@@ -2,6 +2,7 @@
 
 namespace drogue::flow {
 
-template void dispatch_momentum(const DROGUE_INSTANCE_SPACE&, const MomentumSetup<DROGUE_INSTANCE_SPACE>&, Advection);
+template void dispatch_momentum(const DROGUE_INSTANCE_SPACE&, const MomentumSetup<DROGUE_INSTANCE_SPACE>&,
+                                Advection);
 
 }  // namespace drogue::flow

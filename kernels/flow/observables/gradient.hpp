@@ -4,9 +4,9 @@
 
 namespace drogue::flow {
 
-/// Derivative of velocity component i along axis j around a cell of a staggered field with ghost cells, 1/s: at the
-/// centre for i == j, else at the edge at the low sides along i and j. Zero along axes with one cell. `u` points at
-/// component 0 of the cell.
+/// Derivative of velocity component i along axis j around a cell of a staggered field with ghost cells, 1/s:
+/// at the centre for i == j, else at the edge at the low sides along i and j. Zero along axes with one cell.
+/// `u` points at component 0 of the cell.
 KOKKOS_INLINE_FUNCTION double staggered_derivative(const MacGrid& g, const double* u, int i, int j) {
   if (g.n[j] == 1) return 0.0;
   const double* q = u + i * g.component;
@@ -18,8 +18,8 @@ KOKKOS_INLINE_FUNCTION std::int64_t edge_step(const MacGrid& g, int axis) {
   return g.n[axis] > 1 ? g.stride[axis] : 0;
 }
 
-/// Velocity gradient at the centre of a cell, 1/s, second order: `gradient[i][j]` is the derivative of component i along
-/// axis j, a mean over the four edges parallel to the third axis for i != j.
+/// Velocity gradient at the centre of a cell, 1/s, second order: `gradient[i][j]` is the derivative of
+/// component i along axis j, a mean over the four edges parallel to the third axis for i != j.
 KOKKOS_INLINE_FUNCTION void centred_gradient(const MacGrid& g, const double* u, double gradient[3][3]) {
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) {
@@ -28,8 +28,9 @@ KOKKOS_INLINE_FUNCTION void centred_gradient(const MacGrid& g, const double* u, 
         continue;
       }
       const std::int64_t a = edge_step(g, i), b = edge_step(g, j);
-      gradient[i][j] = 0.25 * (staggered_derivative(g, u, i, j) + staggered_derivative(g, u + a, i, j) +
-                               staggered_derivative(g, u + b, i, j) + staggered_derivative(g, u + a + b, i, j));
+      gradient[i][j] =
+          0.25 * (staggered_derivative(g, u, i, j) + staggered_derivative(g, u + a, i, j) +
+                  staggered_derivative(g, u + b, i, j) + staggered_derivative(g, u + a + b, i, j));
     }
 }
 

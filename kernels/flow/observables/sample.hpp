@@ -11,7 +11,8 @@ namespace drogue::flow {
   return field == CellField::velocity || field == CellField::vorticity ? 3 : 1;
 }
 
-/// Evaluates a field at the cell centres, in the order of an array (nx, ny, nz, components), last index fastest.
+/// Evaluates a field at the cell centres, in the order of an array (nx, ny, nz, components), last index
+/// fastest.
 template <class ExecutionSpace>
 struct SampleFunctor {
   MacGrid grid;
@@ -40,7 +41,8 @@ struct SampleFunctor {
         break;
       }
       case CellField::pressure:
-        out[0] = density * pressure(static_cast<std::size_t>(i + g.n[0] * (j + static_cast<std::int64_t>(g.n[1]) * k)));
+        out[0] = density *
+                 pressure(static_cast<std::size_t>(i + g.n[0] * (j + static_cast<std::int64_t>(g.n[1]) * k)));
         break;
       case CellField::q_criterion: {
         double d[3][3], sum = 0.0;

@@ -8,13 +8,22 @@ namespace drogue::flow {
 
 /// Contributions to `Totals`: sums first, then maxima.
 enum TotalIndex : int {
-  total_energy, total_enstrophy, total_dissipation, total_momentum_x, total_momentum_y, total_momentum_z,
-  total_squared_divergence, total_sums,
-  total_squared_speed = total_sums, total_divergence, total_count,
+  total_energy,
+  total_enstrophy,
+  total_dissipation,
+  total_momentum_x,
+  total_momentum_y,
+  total_momentum_z,
+  total_squared_divergence,
+  total_sums,
+  total_squared_speed = total_sums,
+  total_divergence,
+  total_count,
 };
 
 template <class ExecutionSpace>
-using TotalsView = Kokkos::View<double* [total_count], Kokkos::LayoutLeft, typename ExecutionSpace::memory_space>;
+using TotalsView =
+    Kokkos::View<double* [total_count], Kokkos::LayoutLeft, typename ExecutionSpace::memory_space>;
 
 /// Combines contributions: adds the sums, keeps the larger maxima. A NaN stays.
 KOKKOS_INLINE_FUNCTION void combine_totals(double into[total_count], const double from[total_count]) {
@@ -37,7 +46,8 @@ struct ColumnTotalsFunctor {
       of_cell(velocity.data() + g.offset(column % g.n[0], column / g.n[0], k), own);
       combine_totals(sum, own);
     }
-    for (int q = 0; q < total_count; ++q) columns(static_cast<std::size_t>(column), static_cast<std::size_t>(q)) = sum[q];
+    for (int q = 0; q < total_count; ++q)
+      columns(static_cast<std::size_t>(column), static_cast<std::size_t>(q)) = sum[q];
   }
 
  private:
@@ -45,7 +55,8 @@ struct ColumnTotalsFunctor {
     const MacGrid& g = grid;
     double energy = 0.0, squared_speed = 0.0, squared_vorticity = 0.0, squared_strain = 0.0, divergence = 0.0;
     for (int c = 0; c < 3; ++c) {
-      const double low = u[c * g.component], high = u[c * g.component + edge_step(g, c)], mean = 0.5 * (low + high);
+      const double low = u[c * g.component], high = u[c * g.component + edge_step(g, c)],
+                   mean = 0.5 * (low + high);
       energy += 0.25 * (low * low + high * high);
       squared_speed += mean * mean;
       own[total_momentum_x + c] = mean;
@@ -84,7 +95,8 @@ struct PlaneTotalsFunctor {
         own[q] = columns(static_cast<std::size_t>(i + nx * j), static_cast<std::size_t>(q));
       combine_totals(sum, own);
     }
-    for (int q = 0; q < total_count; ++q) planes(static_cast<std::size_t>(i), static_cast<std::size_t>(q)) = sum[q];
+    for (int q = 0; q < total_count; ++q)
+      planes(static_cast<std::size_t>(i), static_cast<std::size_t>(q)) = sum[q];
   }
 };
 
@@ -107,7 +119,8 @@ struct OutflowRowsFunctor {
       index[b] = row;
       for (int i = 0; i < g.n[a]; ++i) {
         index[a] = i;
-        sum += velocity(static_cast<std::size_t>(axis * g.component + g.offset(index[0], index[1], index[2])));
+        sum +=
+            velocity(static_cast<std::size_t>(axis * g.component + g.offset(index[0], index[1], index[2])));
       }
     }
     rows(static_cast<std::size_t>(entry)) = side % 2 == 1 ? sum : -sum;

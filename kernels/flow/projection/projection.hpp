@@ -10,8 +10,9 @@
 
 namespace drogue::flow {
 
-/// Kinematic pressure on the face of an outflow, m^2/s^2, for the outward velocity: zero, and minus the dynamic pressure
-/// where fluid flows back, which so enters with a total pressure of zero and cannot gain energy. Does not throw.
+/// Kinematic pressure on the face of an outflow, m^2/s^2, for the outward velocity: zero, and minus the
+/// dynamic pressure where fluid flows back, which so enters with a total pressure of zero and cannot gain
+/// energy. Does not throw.
 KOKKOS_INLINE_FUNCTION double outflow_pressure(double outward) {
   return outward < 0.0 ? -0.5 * outward * outward : 0.0;
 }
@@ -21,12 +22,12 @@ template <class ExecutionSpace>
 struct ProjectionSetup {
   MacGrid grid;
   BoundaryConditions<ExecutionSpace> boundary;
-  List<ExecutionSpace> predicted;  ///< m/s, with ghost cells
-  List<ExecutionSpace> velocity;   ///< result, m/s, with ghost cells
+  List<ExecutionSpace> predicted;   ///< m/s, with ghost cells
+  List<ExecutionSpace> velocity;    ///< result, m/s, with ghost cells
   List<ExecutionSpace> divergence;  ///< right-hand side of the pressure equation at the cells, 1/s^2
   List<ExecutionSpace> pressure;    ///< kinematic, at the cells, m^2/s^2
   ControlView<ExecutionSpace> control;
-  double step_fraction;  ///< of dt that the projection covers
+  double step_fraction;   ///< of dt that the projection covers
   bool resists_backflow;  ///< false: the pressure on outflows is zero
 
   /// Kinematic pressure on the face of an outflow, m^2/s^2.
@@ -39,7 +40,8 @@ struct ProjectionSetup {
   }
 };
 
-/// Right-hand side of the pressure equation, div u / dt, 1/s^2, and check that the predicted velocity is finite.
+/// Right-hand side of the pressure equation, div u / dt, 1/s^2, and check that the predicted velocity is
+/// finite.
 template <class ExecutionSpace>
 struct DivergenceFunctor {
   ProjectionSetup<ExecutionSpace> setup;
@@ -54,8 +56,9 @@ struct DivergenceFunctor {
     for (int axis = 0; axis < 3; ++axis) {
       if (g.n[axis] == 1) continue;
       const double* low = u + axis * g.component;
-      const std::int64_t next =
-          g.periodic[axis] && index[axis] + 1 == g.n[axis] ? (1 - g.n[axis]) * g.stride[axis] : g.stride[axis];
+      const std::int64_t next = g.periodic[axis] && index[axis] + 1 == g.n[axis]
+                                    ? (1 - g.n[axis]) * g.stride[axis]
+                                    : g.stride[axis];
       divergence += g.inverse_h[axis] * (low[next] - low[0]);
       if (setup.resists_backflow) {
         const double twice_inverse = 2.0 * g.inverse_h[axis] * g.inverse_h[axis];
@@ -78,7 +81,7 @@ struct CorrectionFunctor {
   using Policy = Kokkos::TeamPolicy<ExecutionSpace>;
   using Member = typename Policy::member_type;
   ProjectionSetup<ExecutionSpace> setup;
-  int tile_width, tile_height;  ///< columns of a team
+  int tile_width, tile_height;   ///< columns of a team
   int tiles_x, tiles_y, planes;  ///< planes that a thread treats
 
   KOKKOS_FUNCTION void operator()(const Member& member) const {
@@ -125,7 +128,8 @@ struct CorrectionFunctor {
         if (index[axis] + 1 == g.n[axis] && !g.periodic[axis]) {
           const std::int64_t high = place + g.stride[axis];
           double last = setup.predicted(high);
-          if (setup.is_outflow(2 * axis + 1)) last += 2.0 * dt * g.inverse_h[axis] * (p - setup.outside_pressure(last));
+          if (setup.is_outflow(2 * axis + 1))
+            last += 2.0 * dt * g.inverse_h[axis] * (p - setup.outside_pressure(last));
           setup.velocity(high) = last;
         }
       }
@@ -153,10 +157,12 @@ void launch_correction(const ExecutionSpace& space, const ProjectionSetup<Execut
   const int width = on_host ? n[0] : tile_x, height = on_host ? 1 : tile_y;
   const int tiles_x = parts(n[0], width), tiles_y = parts(n[1], height);
   const int planes = on_host ? 1 : march_planes(tiles_x * tiles_y, n[2], 16);
-  typename Functor::Policy policy(space, tiles_x * tiles_y * parts(n[2], planes), on_host ? 1 : tile_x * tile_y);
-  Kokkos::parallel_for("drogue::flow::correction",
-                       Kokkos::Experimental::require(policy, Kokkos::Experimental::WorkItemProperty::HintLightWeight),
-                       Functor{setup, width, height, tiles_x, tiles_y, planes});
+  typename Functor::Policy policy(space, tiles_x * tiles_y * parts(n[2], planes),
+                                  on_host ? 1 : tile_x * tile_y);
+  Kokkos::parallel_for(
+      "drogue::flow::correction",
+      Kokkos::Experimental::require(policy, Kokkos::Experimental::WorkItemProperty::HintLightWeight),
+      Functor{setup, width, height, tiles_x, tiles_y, planes});
 }
 
 }  // namespace drogue::flow

@@ -7,8 +7,8 @@
 
 namespace drogue::flow {
 
-/// Model of unresolved scales and its constant C, with the width of the filter along each axis, m; zero along axes with
-/// one cell.
+/// Model of unresolved scales and its constant C, with the width of the filter along each axis, m; zero along
+/// axes with one cell.
 struct EddyModel {
   Turbulence model;
   double constant;
@@ -35,8 +35,8 @@ inline EddyModel make_eddy_model(const Parameters& parameters, const MacGrid& gr
   return model;
 }
 
-/// Eddy viscosity for a velocity gradient, 1/s, `gradient[i][j]` the derivative of component i along axis j, m^2/s.
-/// Smagorinsky 1963: (C delta)^2 sqrt(2 S:S). Vreman 2004, eq. (5): C sqrt(B / (alpha:alpha)).
+/// Eddy viscosity for a velocity gradient, 1/s, `gradient[i][j]` the derivative of component i along axis j,
+/// m^2/s. Smagorinsky 1963: (C delta)^2 sqrt(2 S:S). Vreman 2004, eq. (5): C sqrt(B / (alpha:alpha)).
 KOKKOS_INLINE_FUNCTION double eddy_viscosity(const EddyModel& m, const double gradient[3][3]) {
   if (m.model == Turbulence::smagorinsky) {
     double squared = 0.0;
@@ -78,8 +78,8 @@ struct EddyViscosityFunctor {
   }
 };
 
-/// Acceleration by the eddy viscosity, div(2 nu_t S), at the low faces of each cell, m/s^2. The eddy viscosity outside
-/// of a side is that of the cell inside.
+/// Acceleration by the eddy viscosity, div(2 nu_t S), at the low faces of each cell, m/s^2. The eddy
+/// viscosity outside of a side is that of the cell inside.
 template <class ExecutionSpace>
 struct EddyStressFunctor {
   MacGrid grid;
@@ -103,7 +103,8 @@ struct EddyStressFunctor {
   }
 
  private:
-  /// Stress 2 nu_t S_cd, m^2/s^2, on the low (0) or high (1) face along d of the control volume of component c.
+  /// Stress 2 nu_t S_cd, m^2/s^2, on the low (0) or high (1) face along d of the control volume of component
+  /// c.
   KOKKOS_FUNCTION double stress(const int cell[3], const double* u, int c, int d, int high) const {
     const MacGrid& g = grid;
     int at[3] = {cell[0], cell[1], cell[2]};
@@ -137,7 +138,8 @@ struct EddyStressFunctor {
       else
         at[axis] = i < 0 ? 0 : i >= n ? n - 1 : i;
     }
-    return viscosity(static_cast<std::size_t>(at[0] + g.n[0] * (at[1] + static_cast<std::int64_t>(g.n[1]) * at[2])));
+    return viscosity(
+        static_cast<std::size_t>(at[0] + g.n[0] * (at[1] + static_cast<std::int64_t>(g.n[1]) * at[2])));
   }
 };
 

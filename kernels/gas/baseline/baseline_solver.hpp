@@ -9,7 +9,7 @@
 #include "kernels/device/pinned_memory.hpp"
 #include "kernels/device/stopwatch.hpp"
 #include "kernels/gas/solver.hpp"
-#include "kernels/gas/solver_impl.hpp"
+#include "kernels/gas/solver_adapter.hpp"
 #include "kernels/gas/tile/tile_update.hpp"
 
 namespace drogue::gas {

@@ -36,8 +36,8 @@ inline double axis_eigenvalue(const AxisConditions& axis, int n, double h, int k
   return -root * root;
 }
 
-/// Component i of the normalised eigenvector k of `axis_eigenvalue`. Periodic: the Hartley basis, whose matrix
-/// is symmetric. Does not throw.
+/// Component i of the normalised eigenvector k of `axis_eigenvalue`. Periodic: the Hartley basis, whose
+/// matrix is symmetric. Does not throw.
 inline double axis_eigenvector(const AxisConditions& axis, int n, int k, int i) {
   const double pi = std::numbers::pi, x = i + 0.5;
   const double scale = std::sqrt(2.0 / n);

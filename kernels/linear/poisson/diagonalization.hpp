@@ -11,8 +11,8 @@
 namespace drogue::linear {
 
 /// Direct solver by diagonalization of the second differences along each axis (Lynch, Rice and Thomas 1964):
-/// six products with dense matrices of eigenvectors, 4 (nx + ny + nz) floating-point operations per cell, for any
-/// combination of boundary conditions and any size.
+/// six products with dense matrices of eigenvectors, 4 (nx + ny + nz) floating-point operations per cell, for
+/// any combination of boundary conditions and any size.
 template <class ExecutionSpace>
 class DiagonalizationSolver {
  public:
@@ -36,8 +36,8 @@ class DiagonalizationSolver {
     _work = List(Kokkos::view_alloc(space, Kokkos::WithoutInitializing, "drogue::linear::work"), cells());
   }
 
-  /// Solves for `solution`, in its unit, with the right-hand side in that unit per m^2, which it keeps. Asynchronous;
-  /// neither fences nor allocates. Throws std::invalid_argument for an array of the wrong size.
+  /// Solves for `solution`, in its unit, with the right-hand side in that unit per m^2, which it keeps.
+  /// Asynchronous; neither fences nor allocates. Throws std::invalid_argument for an array of the wrong size.
   void enqueue_solve(const List& right_hand_side, const List& solution) const {
     if (right_hand_side.extent(0) != cells() || solution.extent(0) != cells())
       throw std::invalid_argument("Poisson solver: the arrays must hold one value per cell");
@@ -50,8 +50,8 @@ class DiagonalizationSolver {
       std::swap(to, other);
     };
     for (std::size_t axis = 0; axis < 3; ++axis) transform(axis, true);
-    scale_spectrum(_space, SpectralScalingFunctor<ExecutionSpace>{from.data(), _eigenvalues[0], _eigenvalues[1],
-                                                                  _eigenvalues[2], 1, 1.0});
+    scale_spectrum(_space, SpectralScalingFunctor<ExecutionSpace>{from.data(), _eigenvalues[0],
+                                                                  _eigenvalues[1], _eigenvalues[2], 1, 1.0});
     for (std::size_t axis = 0; axis < 3; ++axis) transform(axis, false);
   }
 

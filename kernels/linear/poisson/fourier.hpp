@@ -52,7 +52,8 @@ class FourierSolver {
   static bool supports(const PoissonProblem& /*problem*/) { return true; }
 
   /// Makes the plans; blocks. Throws std::runtime_error if FFTW cannot plan.
-  FourierSolver(const ExecutionSpace& space, const PoissonProblem& problem) : _space(space), _problem(problem) {
+  FourierSolver(const ExecutionSpace& space, const PoissonProblem& problem)
+      : _space(space), _problem(problem) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const int n = problem.cells[axis];
       std::vector<double> values(static_cast<std::size_t>(n), 0.0);
@@ -71,11 +72,12 @@ class FourierSolver {
     }
   }
 
-  /// Solves for `solution`, in its unit, with the right-hand side in that unit per m^2, which it keeps. Asynchronous
-  /// where the execution space is. Throws std::invalid_argument for an array of the wrong size.
+  /// Solves for `solution`, in its unit, with the right-hand side in that unit per m^2, which it keeps.
+  /// Asynchronous where the execution space is. Throws std::invalid_argument for an array of the wrong size.
   void enqueue_solve(const List& right_hand_side, const List& solution) const {
     const std::size_t cells = static_cast<std::size_t>(_problem.cells[0]) *
-                              static_cast<std::size_t>(_problem.cells[1]) * static_cast<std::size_t>(_problem.cells[2]);
+                              static_cast<std::size_t>(_problem.cells[1]) *
+                              static_cast<std::size_t>(_problem.cells[2]);
     if (right_hand_side.extent(0) != cells || solution.extent(0) != cells)
       throw std::invalid_argument("Poisson solver: the arrays must hold one value per cell");
     const double* from = right_hand_side.data();
@@ -84,8 +86,9 @@ class FourierSolver {
         transform(axis, 0, from, solution.data());
         from = solution.data();
       }
-    scale_spectrum(_space, SpectralScalingFunctor<ExecutionSpace>{solution.data(), _eigenvalues[0], _eigenvalues[1],
-                                                                  _eigenvalues[2], 1, _normalisation});
+    scale_spectrum(_space,
+                   SpectralScalingFunctor<ExecutionSpace>{solution.data(), _eigenvalues[0], _eigenvalues[1],
+                                                          _eigenvalues[2], 1, _normalisation});
     for (std::size_t axis = 0; axis < 3; ++axis)
       if (_plans[axis][1]) transform(axis, 1, solution.data(), solution.data());
   }
@@ -113,16 +116,18 @@ class FourierSolver {
     const int n = _problem.cells[axis];
     bool is_first = true;
     for (std::size_t a = 0; a < axis; ++a) is_first = is_first && _problem.cells[a] == 1;
-    const std::size_t size = static_cast<std::size_t>(_problem.cells[0]) * static_cast<std::size_t>(_problem.cells[1]) *
+    const std::size_t size = static_cast<std::size_t>(_problem.cells[0]) *
+                             static_cast<std::size_t>(_problem.cells[1]) *
                              static_cast<std::size_t>(_problem.cells[2]);
     std::vector<double> scratch(size), other(is_first ? size : 0);
     const fftw_r2r_kind kinds[2] = {transform.forward, transform.backward};
     for (std::size_t direction = 0; direction < 2; ++direction) {
       double* from = is_first && direction == 0 ? other.data() : scratch.data();
-      const fftw_plan plan =
-          fftw_plan_many_r2r(1, &n, p.lines, from, nullptr, p.stride, p.line_distance, scratch.data(), nullptr,
-                             p.stride, p.line_distance, &kinds[direction], FFTW_ESTIMATE | FFTW_UNALIGNED);
-      if (plan == nullptr) throw std::runtime_error("FFTW cannot plan a transform of length " + std::to_string(n));
+      const fftw_plan plan = fftw_plan_many_r2r(1, &n, p.lines, from, nullptr, p.stride, p.line_distance,
+                                                scratch.data(), nullptr, p.stride, p.line_distance,
+                                                &kinds[direction], FFTW_ESTIMATE | FFTW_UNALIGNED);
+      if (plan == nullptr)
+        throw std::runtime_error("FFTW cannot plan a transform of length " + std::to_string(n));
       _plans[axis][direction] = Plan(plan, fftw_destroy_plan);
     }
   }
@@ -165,8 +170,8 @@ class FourierSolver<Kokkos::Cuda> {
     return true;
   }
 
-  /// Makes the plans; blocks. Throws std::invalid_argument for an unsupported problem and std::runtime_error if
-  /// cuFFT cannot plan.
+  /// Makes the plans; blocks. Throws std::invalid_argument for an unsupported problem and std::runtime_error
+  /// if cuFFT cannot plan.
   FourierSolver(const Kokkos::Cuda& space, const PoissonProblem& problem) : _space(space) {
     if (!supports(problem)) throw std::invalid_argument("the Fourier solver on CUDA needs periodic axes");
     // The order of cuFFT is the slowest axis first; axes of one cell have no transform.
@@ -188,21 +193,23 @@ class FourierSolver<Kokkos::Cuda> {
     _cells = static_cast<std::size_t>(problem.cells[0]) * static_cast<std::size_t>(problem.cells[1]) *
              static_cast<std::size_t>(problem.cells[2]);
     if (lengths.empty()) lengths.push_back(1);
-    _spectrum = List(Kokkos::view_alloc(space, Kokkos::WithoutInitializing, "drogue::linear::spectrum"), 2 * modes);
+    _spectrum =
+        List(Kokkos::view_alloc(space, Kokkos::WithoutInitializing, "drogue::linear::spectrum"), 2 * modes);
     _forward = make_plan(lengths, CUFFT_D2Z);
     _backward = make_plan(lengths, CUFFT_Z2D);
   }
 
-  /// Solves for `solution`, in its unit, with the right-hand side in that unit per m^2, which it keeps. Asynchronous;
-  /// neither fences nor allocates. Throws std::invalid_argument for an array of the wrong size.
+  /// Solves for `solution`, in its unit, with the right-hand side in that unit per m^2, which it keeps.
+  /// Asynchronous; neither fences nor allocates. Throws std::invalid_argument for an array of the wrong size.
   void enqueue_solve(const List& right_hand_side, const List& solution) const {
     if (right_hand_side.extent(0) != _cells || solution.extent(0) != _cells)
       throw std::invalid_argument("Poisson solver: the arrays must hold one value per cell");
     auto* spectrum = reinterpret_cast<cufftDoubleComplex*>(_spectrum.data());
     // cuFFT keeps the input of an out-of-place forward transform, though its interface lacks const.
     check(cufftExecD2Z(*_forward, right_hand_side.data(), spectrum));
-    scale_spectrum(_space, SpectralScalingFunctor<Kokkos::Cuda>{_spectrum.data(), _eigenvalues[0], _eigenvalues[1],
-                                                                _eigenvalues[2], 2, _normalisation});
+    scale_spectrum(_space,
+                   SpectralScalingFunctor<Kokkos::Cuda>{_spectrum.data(), _eigenvalues[0], _eigenvalues[1],
+                                                        _eigenvalues[2], 2, _normalisation});
     check(cufftExecZ2D(*_backward, spectrum, solution.data()));
   }
 
@@ -214,8 +221,8 @@ class FourierSolver<Kokkos::Cuda> {
   }
   [[nodiscard]] Plan make_plan(std::vector<int>& lengths, cufftType type) const {
     cufftHandle handle = 0;
-    check(cufftPlanMany(&handle, static_cast<int>(lengths.size()), lengths.data(), nullptr, 1, 0, nullptr, 1, 0, type,
-                        1));
+    check(cufftPlanMany(&handle, static_cast<int>(lengths.size()), lengths.data(), nullptr, 1, 0, nullptr, 1,
+                        0, type, 1));
     check(cufftSetStream(handle, _space.cuda_stream()));
     return {new cufftHandle(handle), [](cufftHandle* owned) {
               cufftDestroy(*owned);

@@ -46,13 +46,14 @@ struct SpectralScalingFunctor {
 
 template <class ExecutionSpace>
 void scale_spectrum(const ExecutionSpace& space, const SpectralScalingFunctor<ExecutionSpace>& functor) {
-  using Policy = Kokkos::MDRangePolicy<ExecutionSpace, Kokkos::Rank<3, Kokkos::Iterate::Left, Kokkos::Iterate::Left>>;
-  Kokkos::parallel_for(
-      "drogue::linear::scale_spectrum",
-      Kokkos::Experimental::require(
-          Policy(space, {0, 0, 0}, {functor.x.extent_int(0), functor.y.extent_int(0), functor.z.extent_int(0)}),
-          Kokkos::Experimental::WorkItemProperty::HintLightWeight),
-      functor);
+  using Policy =
+      Kokkos::MDRangePolicy<ExecutionSpace, Kokkos::Rank<3, Kokkos::Iterate::Left, Kokkos::Iterate::Left>>;
+  Kokkos::parallel_for("drogue::linear::scale_spectrum",
+                       Kokkos::Experimental::require(Policy(space, {0, 0, 0},
+                                                            {functor.x.extent_int(0), functor.y.extent_int(0),
+                                                             functor.z.extent_int(0)}),
+                                                     Kokkos::Experimental::WorkItemProperty::HintLightWeight),
+                       functor);
 }
 
 }  // namespace drogue::linear

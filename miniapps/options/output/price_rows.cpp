@@ -22,7 +22,7 @@ const char* status_fields(const RowLayout& layout, const options::Price& price) 
     case options::FailureReason::discount_overflow:
       return ",failed,e^(-rate maturity) (of a call -dividend maturity) is too large a number";
     case options::FailureReason::no_grid:
-      return ",failed,no grid reaches as far as this law does until maturity";
+      return ",failed,no grid covers the distribution of the asset until maturity";
     case options::FailureReason::unstable:
       return layout.grid_is_fixed
                  ? ",failed,the values grew without bound: more --steps or another --mesh or --method cos "

@@ -455,6 +455,17 @@ TEST(GridTransfer, RejectsForcesAboveTheBoundAndNonFiniteOnes) {
   EXPECT_EQ(unbounded.counts().rejected_forces, 6);
 }
 
+TEST(GridTransfer, RejectsForcesThatFixedPointCannotScaleWhateverTheBound) {
+  const MacGrid grid = all_grids()[0];
+  Random random(15);
+  const Vectors points = random.points(grid, 2, 1.5);
+  const Case<Space> bounded(grid, DeltaKernel::cbs43, points);
+  const FaceField result = bounded.densities({{1e290, 0.0, 0.0}, {1.0, 0.0, 0.0}}, 1e300);
+  EXPECT_EQ(bounded.counts().rejected_forces, 1);
+  for (const auto& values : result)
+    for (const double value : values) EXPECT_LT(std::abs(value), 1e270);
+}
+
 TEST(GridTransfer, PositionsThatAreNotFiniteInterpolateToNaN) {
   const MacGrid grid = all_grids()[0];
   const Vectors result =

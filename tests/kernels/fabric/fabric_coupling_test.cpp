@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
+#include <stdexcept>
 
 #include "kernels/fabric/fabric_solver.hpp"
 #include "tests/support/backend.hpp"
@@ -207,6 +209,76 @@ TEST(FabricCoupling, StateOfAVertexForceAdvancesOncePerStepInEveryDriver) {
     const Motions whole = mounted_motions(integrator, Driver::automatic, {20});
     EXPECT_EQ(distance(whole, mounted_motions(integrator, Driver::automatic, {7, 1, 12})), 0.0);
   }
+}
+
+/// Vertex force that is zero and records the state at the end of the last step.
+struct Recorder {
+  Points position, velocity;
+  Kokkos::View<double*, Space::memory_space> time;
+
+  KOKKOS_FUNCTION Vector3<double> operator()(const VertexStage&) const { return {0.0, 0.0, 0.0}; }
+  KOKKOS_FUNCTION void end_step(const VertexStage& at) const {
+    store_points(position, at.vertex, at.position);
+    store_points(velocity, at.vertex, at.velocity);
+    time(at.vertex) = at.time;
+  }
+};
+
+/// Expects that `end_step` receives the state that a download gives, after each of three steps.
+void expect_end_of_step(const Parameters& p) {
+  const device::Instance<Space> instance(1);
+  const Recorder recorder{on_device_points(instance.space(), p.mesh.rest),
+                          on_device_points(instance.space(), p.mesh.rest),
+                          decltype(Recorder::time)("time", p.mass.size())};
+  FabricSolver<Space, Recorder> solver(instance.space(), p, recorder);
+  Motions now{shaken(p.mesh.rest, 0.05, 1), std::vector<Vector>(p.mass.size())};
+  solver.upload(now.x, now.v);
+  for (int step = 1; step <= 3; ++step) {
+    solver.enqueue_steps(1);
+    solver.download(now.x, now.v);
+    const auto x = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), recorder.position);
+    const auto v = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), recorder.velocity);
+    const auto t = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), recorder.time);
+    for (std::size_t i = 0; i < p.mass.size(); ++i) {
+      EXPECT_DOUBLE_EQ(t(i), step * p.dt);
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        EXPECT_EQ(x(i, axis), now.x[i][axis]) << solver.driver() << " vertex " << i;
+        EXPECT_EQ(v(i, axis), now.v[i][axis]) << solver.driver() << " vertex " << i;
+      }
+    }
+  }
+}
+
+TEST(FabricCoupling, EndOfAStepIsThatOfTheStateInEveryDriver) {
+  for (const Driver driver : {Driver::plain, Driver::graph, Driver::stages, Driver::persistent})
+    expect_end_of_step(mounted_sheet(Integrator::rk4, driver));
+  expect_end_of_step(mounted_sheet(Integrator::verlet, Driver::plain));
+}
+
+TEST(FabricCoupling, EndOfAStepFollowsPrescribedMotionAndContact) {
+  for (const Integrator integrator : {Integrator::rk4, Integrator::verlet}) {
+    Parameters p = mounted_sheet(integrator, Driver::automatic);
+    p.motions.push_back({0, {static_cast<int>(p.mass.size()) - 1}, postfix({500.0, "t", "t", "*", "*"})});
+    expect_end_of_step(p);
+    Parameters touching = mounted_sheet(integrator, Driver::automatic);
+    touching.contact.self = true;
+    touching.contact.thickness = 0.05;
+    expect_end_of_step(touching);
+  }
+}
+
+TEST(FabricCoupling, RejectsStepsAndTimesThatDoNotExist) {
+  const device::Instance<Space> instance(1);
+  const Parameters p = mounted_sheet(Integrator::rk4, Driver::automatic);
+  FabricSolver<Space> solver(instance.space(), p);
+  solver.upload(p.mesh.rest, std::vector<Vector>(p.mass.size()));
+  EXPECT_THROW(solver.advance_to(std::numeric_limits<double>::infinity()), std::invalid_argument);
+  EXPECT_THROW(solver.advance_to(std::nan("")), std::invalid_argument);
+  EXPECT_THROW(solver.enqueue_steps(-5), std::invalid_argument);
+  EXPECT_THROW(solver.set_time_state({-5, p.dt, 10, 0.0}), std::invalid_argument);
+  EXPECT_THROW(solver.set_time_state({5, p.dt, 10, 0.0}), std::invalid_argument);
+  EXPECT_TRUE(solver.enqueue_steps(0));
+  EXPECT_EQ(solver.time_state().step, 0);
 }
 
 TEST(FabricCoupling, MassInAVertexForceSpringOscillates) {

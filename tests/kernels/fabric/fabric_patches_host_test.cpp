@@ -143,15 +143,15 @@ Parameters cloth_of(const Mesh& mesh) {
 using Space = Kokkos::Serial;
 
 /// Takes steps with the persistent driver; each entry of `cuts` is the number of steps of one launch.
-template <ConstitutiveModel law, class Functor, class VertexForce = NoVertexForce,
+template <ConstitutiveModel model, class Functor, class VertexForce = NoVertexForce,
           class Loads = PersistentLoads<Space, false>>
 void run_emulated(const Parameters& p, int count, const std::vector<std::int64_t>& cuts,
                   std::vector<Vector>& x, std::vector<Vector>& v, const VertexForce& vertex_force = {},
                   const Loads& loads = {}) {
   const Space space;
   Material material = p.material;
-  material.model = law.model;
-  const bool rings = has_triangles(law.model) || !p.follower_pressures.empty();
+  material.model = model.model;
+  const bool rings = has_triangles(model.model) || !p.follower_pressures.empty();
   const Mesh cloth_mesh = rings ? p.mesh : Mesh{p.mesh.rest, {}, {}, {}, {}};
   const Patches patches =
       make_patches(p.mesh.rest, ring_adjacency(cloth_mesh), spring_adjacency(p.mesh, material), count);
@@ -207,15 +207,15 @@ double distance(const std::vector<Vector>& a, const std::vector<Vector>& b) {
   return largest;
 }
 
-template <class ExecutionSpace, ConstitutiveModel law>
-using Rings = PersistentRingsFunctor<ExecutionSpace, law>;
-template <class ExecutionSpace, ConstitutiveModel law>
-using Pairs = PersistentPairsFunctor<ExecutionSpace, law>;
+template <class ExecutionSpace, ConstitutiveModel model>
+using Rings = PersistentRingsFunctor<ExecutionSpace, model>;
+template <class ExecutionSpace, ConstitutiveModel model>
+using Pairs = PersistentPairsFunctor<ExecutionSpace, model>;
 
-template <ConstitutiveModel law, template <class, ConstitutiveModel> class Functor>
+template <ConstitutiveModel model, template <class, ConstitutiveModel> class Functor>
 void expect_the_same_steps() {
   Parameters p = cloth_of(mesh_of(11, 8));
-  p.material.model = law.model;
+  p.material.model = model.model;
   const std::vector<Vector> start = shaken(p.mesh.rest, 0.1, 1), still(p.mass.size(), Vector{});
   std::vector<Vector> x = start, v = still, other_x = start, other_v = still;
   const auto solver = create_solver(device::Backend::serial, p);
@@ -225,7 +225,7 @@ void expect_the_same_steps() {
   EXPECT_GT(distance(x, start), 1e-5);
   for (const int count : {1, 3}) {
     other_x = start, other_v = still;
-    run_emulated<law, Functor<Space, law>>(p, count, {2, 1, 4}, other_x, other_v);
+    run_emulated<model, Functor<Space, model>>(p, count, {2, 1, 4}, other_x, other_v);
     EXPECT_LE(distance(x, other_x), rounding * 1e-13) << count << " patches";
     EXPECT_LE(distance(v, other_v), rounding * 1e-11) << count << " patches";
   }
@@ -262,11 +262,11 @@ PersistentLoads<Space, true> loads_of(const Parameters& p) {
   return loads;
 }
 
-template <ConstitutiveModel law>
+template <ConstitutiveModel model>
 void expect_the_same_steps_under_loads() {
   using testing::postfix;
   Parameters p = cloth_of(mesh_of(11, 8));
-  p.material.model = law.model;
+  p.material.model = model.model;
   p.timed_loads = {{postfix({"x", "t", 900.0, "*", "+", "sin"}),
                     shaken(std::vector<Vector>(p.mass.size(), Vector{}), 0.5, 5)}};
   p.follower_pressures = {{postfix({"t", 2e3, "*", 1.0, "+"}), {}}};
@@ -278,7 +278,7 @@ void expect_the_same_steps_under_loads() {
   solver->download(x, v);
   for (const int count : {1, 3}) {
     std::vector<Vector> other_x = start, other_v = still;
-    run_emulated<law, PersistentRingsFunctor<Space, law, NoVertexForce, true>>(
+    run_emulated<model, PersistentRingsFunctor<Space, model, NoVertexForce, true>>(
         p, count, {2, 1, 4}, other_x, other_v, NoVertexForce{}, loads_of(p));
     EXPECT_LE(distance(x, other_x), rounding * 1e-13) << count << " patches";
     EXPECT_LE(distance(v, other_v), rounding * 1e-11) << count << " patches";
@@ -307,7 +307,7 @@ struct Spring {
 
 template <template <class, ConstitutiveModel, class> class Functor>
 void expect_the_same_steps_under_a_vertex_force() {
-  constexpr ConstitutiveModel law{Model::biquadratic};
+  constexpr ConstitutiveModel model{Model::biquadratic};
   Parameters p = cloth_of(mesh_of(11, 8));
   const std::size_t n = p.mass.size();
   const std::vector<Vector> start = shaken(p.mesh.rest, 0.1, 1), still(n, Vector{});
@@ -321,15 +321,15 @@ void expect_the_same_steps_under_a_vertex_force() {
   for (const int count : {1, 3}) {
     const Spring other = spring();
     std::vector<Vector> other_x = start, other_v = still;
-    run_emulated<law, Functor<Space, law, Spring>>(p, count, {2, 1, 4}, other_x, other_v, other);
+    run_emulated<model, Functor<Space, model, Spring>>(p, count, {2, 1, 4}, other_x, other_v, other);
     EXPECT_LE(distance(x, other_x), rounding * 1e-13) << count << " patches";
     EXPECT_LE(distance(v, other_v), rounding * 1e-11) << count << " patches";
     for (std::size_t i = 0; i < n; ++i) EXPECT_NEAR(used.grown(i), other.grown(i), rounding * 1e-13);
   }
 }
 
-template <class ExecutionSpace, ConstitutiveModel law, class VertexForce>
-using ForcedRings = PersistentRingsFunctor<ExecutionSpace, law, VertexForce>;
+template <class ExecutionSpace, ConstitutiveModel model, class VertexForce>
+using ForcedRings = PersistentRingsFunctor<ExecutionSpace, model, VertexForce>;
 
 TEST(FabricPatches, ApplyAVertexForce) {
   expect_the_same_steps_under_a_vertex_force<ForcedRings>();

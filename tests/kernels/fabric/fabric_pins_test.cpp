@@ -209,6 +209,19 @@ TEST(FabricPins, DoNotMoveFreeAxesOrAxesOfExpressions) {
   EXPECT_NEAR(now.x[10][0], p.mesh.rest[10][0], 0.1);
 }
 
+TEST(FabricPins, AreAtRestIfViewsAreRequestedBeforeTheFirstUpload) {
+  const device::Instance<Space> instance(1);
+  for (const Method& method : methods) {
+    const Parameters p = pinned_sheet(method);
+    FabricSolver<Space> solver(instance.space(), p);
+    static_cast<void>(solver.prescribed_motion());
+    const SheetState state = initial_state(p);
+    solver.upload(state.x, state.v);
+    const SheetState now = downloaded(solver);
+    for (const std::size_t i : pinned_vertices) EXPECT_EQ(now.x[i], p.mesh.rest[i]);
+  }
+}
+
 TEST(FabricPins, RejectPrescribedMotionWithoutPins) {
   const device::Instance<Space> instance(1);
   Parameters p = pinned_sheet({Integrator::rk4, Driver::automatic});

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "miniapps/springs/closed_forms.hpp"
-#include "miniapps/springs/sinusoid.hpp"
+#include "miniapps/springs/verify/closed_forms.hpp"
+#include "miniapps/springs/verify/sinusoid.hpp"
 
 namespace drogue::springs_app {
 namespace {

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "common/program/failure.hpp"
-#include "miniapps/springs/obj_file.hpp"
+#include "miniapps/springs/scene/obj_file.hpp"
 
 namespace drogue::springs_app {
 namespace {

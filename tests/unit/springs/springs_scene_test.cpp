@@ -8,7 +8,7 @@
 
 #include "common/program/failure.hpp"
 #include "common/scene/library.hpp"
-#include "miniapps/springs/scene.hpp"
+#include "miniapps/springs/scene/scene.hpp"
 
 namespace drogue::springs_app {
 namespace {

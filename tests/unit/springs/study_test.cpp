@@ -7,8 +7,8 @@
 #include <numbers>
 
 #include "common/program/failure.hpp"
-#include "miniapps/springs/samples.hpp"
-#include "miniapps/springs/study_points.hpp"
+#include "miniapps/springs/verify/samples.hpp"
+#include "miniapps/springs/verify/study_points.hpp"
 
 namespace drogue::springs_app {
 namespace {

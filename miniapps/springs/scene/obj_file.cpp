@@ -1,0 +1,173 @@
+#include "miniapps/springs/scene/obj_file.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <sstream>
+
+#include "common/program/failure.hpp"
+#include "common/scene/nearest.hpp"
+#include "common/scene/node.hpp"
+
+namespace drogue::springs_app {
+namespace {
+
+/// Statements that cloth has no use for.
+const std::vector<std::string> skipped = {"vn", "vt", "vp", "o", "g", "s", "usemtl", "mtllib"};
+
+constexpr std::size_t most_file_vertices = std::size_t{1} << 26U;
+
+class ObjParser {
+ public:
+  ObjParser(std::string_view text, const std::string& name) : _text(text), _name(name) {}
+
+  ObjContents run() {
+    while (!_text.empty()) {
+      ++_line;
+      const std::size_t end = _text.find('\n');
+      statement(words_of(_text.substr(0, end)));
+      _text.remove_prefix(end == std::string_view::npos ? _text.size() : end + 1);
+    }
+    _line = std::max(_line, 1);
+    if (_contents.mesh.rest.empty()) refuse("the file has no vertex (v x y z)");
+    check_range(_contents.mesh.triangles, _contents.triangle_line);
+    check_range(_contents.mesh.lines, _contents.line_line);
+    return std::move(_contents);
+  }
+
+ private:
+  [[noreturn]] void refuse(const std::string& sentence) const { refuse_at(_line, sentence); }
+  [[noreturn]] void refuse_at(int line, const std::string& sentence) const {
+    throw Failure(ExitCode::invalid_scene, _name + ":" + std::to_string(line) + ": " + sentence);
+  }
+
+  static std::vector<std::string_view> words_of(std::string_view line) {
+    line = line.substr(0, line.find('#'));
+    std::vector<std::string_view> words;
+    constexpr std::string_view blanks = " \t\r\f\v";
+    for (std::size_t begin = line.find_first_not_of(blanks); begin != std::string_view::npos;) {
+      const std::size_t end = line.find_first_of(blanks, begin);
+      words.push_back(line.substr(begin, end - begin));
+      begin = end == std::string_view::npos ? end : line.find_first_not_of(blanks, end);
+    }
+    return words;
+  }
+
+  void statement(const std::vector<std::string_view>& words) {
+    if (words.empty()) return;
+    const std::string kind(words[0]);
+    if (kind == "v") return vertex(words);
+    if (kind == "f") return face(words);
+    if (kind == "l") return polyline(words);
+    for (const std::string& known : skipped)
+      if (kind == known) return;
+    std::vector<std::string> valid = skipped;
+    valid.insert(valid.end(), {"v", "f", "l"});
+    refuse("unknown statement " + scene::toml_string(kind) + "; valid are v, f, l");
+  }
+
+  void vertex(const std::vector<std::string_view>& words) {
+    const std::string which = part_of_file("vertex", _contents.mesh.rest.size());
+    const bool weighted = words.size() == 5, coloured = words.size() == 7;
+    if (words.size() != 4 && !weighted && !coloured)
+      refuse(which + " has " + std::to_string(words.size() - 1) +
+             " numbers; it must have 3 coordinates, and after them nothing, a weight of 1 or a colour of 3");
+    fabric::Vector point;
+    for (std::size_t axis = 0; axis < 3; ++axis) point[axis] = real(words[axis + 1], which);
+    for (std::size_t k = 4; k < words.size(); ++k)
+      if (real(words[k], which) != 1.0 && weighted)
+        refuse(which + " has the weight " + std::string(words[k]) +
+               "; only 1 is taken, which weights of curves and surfaces are not");
+    if (_contents.mesh.rest.size() == most_file_vertices) refuse("the file has more than 67108864 vertices");
+    _contents.mesh.rest.push_back(point);
+    _contents.vertex_line.push_back(_line);
+  }
+
+  double real(std::string_view word, const std::string& which) const {
+    if (word.starts_with('+')) word.remove_prefix(1);
+    double value = 0.0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value))
+      refuse(which + ": " + scene::toml_string(word) + " is not a finite number");
+    return value;
+  }
+
+  void face(const std::vector<std::string_view>& words) {
+    const std::string which = part_of_file("face", _contents.mesh.triangles.size());
+    if (words.size() != 4)
+      refuse(which + " has " + std::to_string(words.size() - 1) +
+             " vertices; it must have 3: divide larger faces into triangles");
+    std::array<int, 3> triangle{};
+    for (std::size_t k = 0; k < 3; ++k) triangle[k] = index(words[k + 1], which);
+    for (std::size_t k = 0; k < 3; ++k)
+      if (triangle[k] == triangle[(k + 1) % 3])
+        refuse(which + " names vertex " + std::to_string(triangle[k] + 1) + " twice");
+    _contents.mesh.triangles.push_back(triangle);
+    _contents.triangle_line.push_back(_line);
+  }
+
+  void polyline(const std::vector<std::string_view>& words) {
+    if (words.size() < 3) refuse("a line needs two vertices or more");
+    int before = index(words[1], "line");
+    for (std::size_t k = 2; k < words.size(); ++k) {
+      const int here = index(words[k], "line");
+      if (here == before)
+        refuse("a line leads from " + part_of_file("vertex", static_cast<std::size_t>(here)) + " to itself");
+      _contents.mesh.lines.push_back({before, here});
+      _contents.line_line.push_back(_line);
+      before = here;
+    }
+  }
+
+  /// `7`, `7/1`, `7/1/2`, `7//2`, or `-1` for the vertex given last. Vertices may be given later in the file.
+  int index(std::string_view word, const std::string& which) const {
+    const std::string_view digits = word.substr(0, word.find('/'));
+    std::int64_t number = 0;
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+    if (error != std::errc() || end != digits.data() + digits.size() || digits.empty())
+      refuse(which + ": " + scene::toml_string(word) + " is not the number of a vertex");
+    const auto given = static_cast<std::int64_t>(_contents.mesh.rest.size());
+    const std::int64_t place = number < 0 ? given + number : number - 1;
+    if (number == 0 || place < 0 || place > std::numeric_limits<int>::max())
+      refuse(which + " names vertex " + std::to_string(number) + ", which does not exist; they count from 1");
+    return static_cast<int>(place);
+  }
+
+  template <std::size_t n>
+  void check_range(const std::vector<std::array<int, n>>& parts, const std::vector<int>& lines) const {
+    for (std::size_t k = 0; k < parts.size(); ++k)
+      for (const int i : parts[k])
+        if (static_cast<std::size_t>(i) >= _contents.mesh.rest.size())
+          refuse_at(lines[k], (n == 3 ? part_of_file("face", k) : "line") + " names vertex " +
+                                  std::to_string(i + 1) + "; the file has " +
+                                  std::to_string(_contents.mesh.rest.size()));
+  }
+
+  std::string_view _text;
+  const std::string& _name;
+  int _line = 0;
+  ObjContents _contents;
+};
+
+}  // namespace
+
+std::string part_of_file(const std::string& kind, std::size_t k) {
+  return kind + " " + std::to_string(k + 1) + " of the file";
+}
+
+ObjContents parse_obj(std::string_view text, const std::string& name) { return ObjParser(text, name).run(); }
+
+fabric::Mesh read_obj(const std::filesystem::path& file) {
+  const std::string name = file.string();
+  std::ifstream stream(file, std::ios::binary);
+  std::ostringstream text;
+  if (!std::filesystem::is_regular_file(file) || !stream || !(text << stream.rdbuf()))
+    throw Failure(ExitCode::invalid_scene, name + ":1: the mesh file is empty or cannot be read");
+  const ObjContents contents = parse_obj(text.str(), name);
+  check_obj(contents, name);
+  return contents.mesh;
+}
+
+}  // namespace drogue::springs_app

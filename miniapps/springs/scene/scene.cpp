@@ -1,0 +1,84 @@
+#include "miniapps/springs/scene/scene.hpp"
+
+#include <span>
+
+#include "common/run/restart_file.hpp"
+#include "common/scene/document.hpp"
+#include "common/scene/print.hpp"
+#include "common/scene/read.hpp"
+#include "miniapps/framework/mini_app.hpp"
+#include "miniapps/springs/scene/scene_check.hpp"
+#include "miniapps/springs/scene/scene_keys.hpp"
+#include "miniapps/springs/vectors.hpp"
+
+namespace drogue::springs_app {
+
+bool SpringsScene::has_triangles() const {
+  return mesh.rest.empty() ? !source.string : !mesh.triangles.empty();
+}
+
+bool SpringsScene::has_lines() const {
+  return mesh.rest.empty() ? source.string || !source.file.empty() : lines > 0;
+}
+
+SpringsScene read_springs_scene(const std::filesystem::path& file, const std::vector<std::string>& sets) {
+  SpringsScene result;
+  result.file = file;
+  result.name = file.stem().string();
+  scene::Table root;
+  declare_springs_scene(root, result);
+  scene::read_file(root, file, sets);
+  complete_and_check(root, result);
+  return result;
+}
+
+std::string print_springs_scene(const SpringsScene& scene) {
+  SpringsScene copy = scene;
+  scene::Table root;
+  declare_springs_scene(root, copy);
+  return scene::print(root);
+}
+
+std::string scene_fingerprint(SpringsScene scene) {
+  scene.description.clear();
+  scene.output = {};
+  scene.verify = {};
+  scene.driver = fabric::Driver::automatic;
+  scene.time.end_time = 0.0;
+  scene.time.dt.reset();
+  scene.time.safety = Time{}.safety;
+  // The content of a mesh file counts, not its path.
+  std::string contents;
+  if (!scene.source.file.empty()) {
+    const auto bytes = std::as_bytes(numbers(scene.mesh.rest));
+    contents.assign(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    for (const auto& triangle : scene.mesh.triangles)
+      for (const int i : triangle) contents += std::to_string(i) + " ";
+    for (const auto& line : scene.mesh.lines)
+      for (const int i : line) contents += std::to_string(i) + " ";
+    scene.source.file = "mesh.obj";
+  }
+  return run::fingerprint(print_springs_scene(scene) + contents);
+}
+
+std::filesystem::path scene_folder() {
+  return framework::find_scene_folder("springs", DROGUE_SPRINGS_SCENES);
+}
+
+std::string document_springs_scene() {
+  SpringsScene defaults;
+  scene::Table root;
+  declare_springs_scene(root, defaults);
+  return R"(# Springs scenes: all keys
+
+Written from the declarations that also read, check and print a scene; do not edit. After a change of them:
+`DROGUE_UPDATE_DOCS=1 ctest --test-dir build/host -R SpringsSceneDocument`.
+
+A scene is a TOML file. Unknown keys are refused. Numbers are in SI units; an integer is accepted for a real.
+Expressions use the syntax of muParser; x, y, z are coordinates at rest, t is the time. How a scene is verified:
+[springs](springs.md).
+
+)" + scene::document(root);
+}
+
+}  // namespace drogue::springs_app

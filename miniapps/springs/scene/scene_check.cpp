@@ -1,0 +1,229 @@
+#include "miniapps/springs/scene/scene_check.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/scene/node.hpp"
+#include "common/scene/read.hpp"
+#include "kernels/fabric/solver.hpp"
+#include "kernels/mesh/edges.hpp"
+#include "kernels/mesh/topology.hpp"
+#include "miniapps/springs/scene/expressions.hpp"
+#include "miniapps/springs/scene/obj_file.hpp"
+#include "miniapps/springs/simulation/stress_fields.hpp"
+
+namespace drogue::springs_app {
+namespace {
+
+using scene::contradict;
+using scene::real_text;
+using scene::Table;
+
+constexpr const char* axis_names = "xyz";
+
+std::string element(const std::string& name, std::size_t i) { return name + "[" + std::to_string(i) + "]"; }
+
+fabric::Mesh make_mesh(const Table& root, SpringsScene& scene) {
+  MeshSource& source = scene.source;
+  if (source.rectangle) return generate(*source.rectangle);
+  if (source.disk) return generate(*source.disk);
+  if (source.strip) return generate(*source.strip);
+  if (source.triangle) return generate(*source.triangle);
+  if (source.string) {
+    if (source.string->from == source.string->to)
+      contradict(root, "mesh.string", "mesh.string: from and to are the same point");
+    return generate(*source.string);
+  }
+  // Absolute path, so that the resolved scene is valid in any folder.
+  const std::filesystem::path file =
+      std::filesystem::absolute(scene.file.parent_path() / source.file).lexically_normal();
+  source.file = file.string();
+  std::error_code unreadable;
+  if (!std::filesystem::is_regular_file(file, unreadable))
+    contradict(root, "mesh.file",
+               "mesh.file: " + (std::filesystem::exists(file, unreadable)
+                                    ? file.string() + " is no file but a directory or device"
+                                    : "there is no file " + file.string()));
+  return read_obj(file);
+}
+
+/// Checks an expression at every vertex and time 0: finite, and below the limit of a lost state. An
+/// expression that a kernel evaluates must also fit its device program.
+void require_finite(const Table& root, const SpringsScene& scene, const std::string& path,
+                    const std::string& expression, bool for_device = false) {
+  try {
+    if (for_device && !expression.empty()) device_program(expression);
+  } catch (const std::invalid_argument& refused) {
+    contradict(root, path, path + ": " + refused.what());
+  }
+  const std::vector<double> values = values_at(expression, scene.mesh);
+  const auto bad = std::ranges::find_if(values, [](double value) { return !(std::abs(value) < 1e99); });
+  if (bad != values.end())
+    contradict(root, path,
+               path + " gives " + real_text(*bad) + " " +
+                   place_text(scene, static_cast<std::size_t>(bad - values.begin())) +
+                   (std::isfinite(*bad) ? "; it must be less than 1e99" : "; it must be finite"));
+}
+
+void require_finite(const Table& root, const SpringsScene& scene, const std::string& path,
+                    const ExpressionVector& vector) {
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    require_finite(root, scene, path + "." + axis_names[axis], vector.of(axis),
+                   depends_on_time(vector.of(axis)));
+}
+
+void complete_material(const Table& root, SpringsScene& scene) {
+  Fabric& f = scene.fabric;
+  const bool cloth = scene.has_triangles(), lines = scene.has_lines();
+  const bool springs = cloth && !fabric::has_triangles(f.material.model);
+  if (cloth && f.material.model == fabric::Model::linear_vector && scene.time.end_time > 0.0)
+    contradict(
+        root, "material.model",
+        "material.model = \"linear-vector\" (Model I) stores energy in a rigid rotation and is refused in a "
+        "scene that moves; take \"edge\", \"quadratic\" or \"biquadratic\"");
+  // The content of a mesh file is known only now.
+  const auto needless = [&](const std::string& key, bool applies, const char* needs) {
+    if (root.given("material." + key) && !applies)
+      contradict(root, "material." + key,
+                 "material." + key + " applies only with " + needs + ", and the mesh has none");
+  };
+  for (const char* key : {"membrane_modulus", "poisson", "area_density", "bending_stiffness"})
+    needless(key, cloth, "triangles");
+  for (const char* key : {"line_density", "axial_stiffness"}) needless(key, lines, "lines");
+  needless("stiffness", lines || springs, "lines or model edge");
+  if (f.stiffness && f.axial_stiffness && !springs)
+    contradict(root, "material.axial_stiffness",
+               "material.axial_stiffness and material.stiffness are both of strings, and the mesh has no "
+               "triangles: give one");
+  if (f.material.bending_stiffness > 0.0 && !is_planar(scene.mesh))
+    contradict(root, "material.bending_stiffness",
+               "material.bending_stiffness needs cloth that is flat at rest, and this mesh is not");
+  if (springs && !f.stiffness) f.stiffness = f.material.stiffness;
+  if (f.stiffness) f.material.stiffness = *f.stiffness;
+  if (lines && !f.stiffness && !f.axial_stiffness) f.axial_stiffness = 5000.0;
+  f.material.axial_stiffness = f.axial_stiffness.value_or(0.0);
+  if (!lines || f.axial_stiffness) return;
+  scene.mesh.line_stiffness.clear();
+  for (const auto& [i, j] : scene.mesh.lines)
+    scene.mesh.line_stiffness.push_back(*f.stiffness * mesh::rest_distance(scene.mesh, i, j));
+  f.material.axial_stiffness = scene.mesh.line_stiffness.front();
+}
+
+void check_pins(const Table& root, const SpringsScene& scene) {
+  // Number of the pin that prescribes an axis of a vertex, from 1; 0: none.
+  std::vector<std::array<std::size_t, 3>> holder(scene.mesh.rest.size(), {0, 0, 0});
+  for (std::size_t k = 0; k < scene.pins.size(); ++k) {
+    const Pin& pin = scene.pins[k];
+    const std::string path = element("pin", k);
+    require_finite(root, scene, path + ".motion", pin.motion);
+    const auto vertices = require_some(root, scene, path + ".where", pin.where, "the pin holds nothing");
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const bool held = pin.axes.find(axis_names[axis]) != std::string::npos;
+      const std::string moved = path + ".motion." + axis_names[axis];
+      if (!held && !pin.motion.of(axis).empty())
+        contradict(root, moved,
+                   moved + " moves an axis that " + path + ".axes = \"" + pin.axes + "\" leaves free");
+      if (!held) continue;
+      for (const int i : vertices) {
+        std::size_t& other = holder[static_cast<std::size_t>(i)][axis];
+        if (other > 0 && scene.pins[other - 1].motion.of(axis) != pin.motion.of(axis))
+          contradict(root, path + ".where",
+                     path + " and " + element("pin", other - 1) + " hold the " + axis_names[axis] +
+                         " axis in different ways " + place_text(scene, static_cast<std::size_t>(i)));
+        other = k + 1;
+      }
+    }
+  }
+}
+
+void check_loads(const Table& root, const SpringsScene& scene) {
+  for (std::size_t k = 0; k < scene.loads.size(); ++k) {
+    const Load& load = scene.loads[k];
+    const std::string path = element("load", k);
+    for (const auto& [name, text] :
+         {std::pair{"pressure", load.pressure}, std::pair{"follower_pressure", load.follower_pressure}}) {
+      if (text.empty()) continue;
+      if (!scene.has_triangles())
+        contradict(root, path + "." + name, path + "." + name + " needs triangles, and the mesh has none");
+      if (const auto opposed = inconsistent_triangles(scene.mesh))
+        contradict(root, path + "." + name,
+                   path + "." + name + " has no side to act on: faces " + std::to_string((*opposed)[0]) +
+                       " and " + std::to_string((*opposed)[1]) + " of the mesh turn in opposite senses");
+      require_finite(root, scene, path + "." + name, text,
+                     name != std::string("pressure") || depends_on_time(text));
+    }
+    if (!load.force) continue;
+    require_finite(root, scene, path + ".force", *load.force);
+    if (!load.force->given()) contradict(root, path + ".force", path + ".force needs one of x, y, z");
+    if (!load.where.empty())
+      require_some(root, scene, path + ".where", load.where, "the force acts on nothing");
+  }
+  for (std::size_t k = 0; k < scene.payloads.size(); ++k)
+    require_some(root, scene, element("mass", k) + ".where", scene.payloads[k].where,
+                 "the mass is added to nothing");
+}
+
+void complete_output(const Table& root, SpringsScene& scene) {
+  Output& output = scene.output;
+  framework::complete_output(root, output, {"position"}, {scene.time.end_time, "time.end_time"});
+  for (const std::string& field : output.fields) {
+    if (!stress_kind(field)) continue;
+    if (!scene.has_triangles())
+      contradict(root, "output.fields",
+                 "output.fields: " + field + " is a stress of triangles, and the mesh has none");
+    if (scene.fabric.material.model == fabric::Model::linear_vector)
+      contradict(
+          root, "output.fields",
+          "output.fields: model \"linear-vector\" has no " + field + ", its forces are not along edges");
+  }
+}
+
+void check_time(const Table& root, const Time& time) {
+  if (time.dt && time.end_time / *time.dt > most_steps)
+    contradict(root, "time.dt",
+               "time.dt = " + real_text(*time.dt) +
+                   " takes more than 1e15 steps to time.end_time = " + real_text(time.end_time));
+}
+
+void check_initial(const Table& root, const SpringsScene& scene) {
+  require_finite(root, scene, "initial.displacement", scene.initial.displacement);
+  require_finite(root, scene, "initial.velocity", scene.initial.velocity);
+}
+
+}  // namespace
+
+std::string place_text(const SpringsScene& scene, std::size_t vertex) {
+  const fabric::Vector& x = scene.mesh.rest[vertex];
+  return "at vertex " + std::to_string(vertex) + " (" + real_text(x[0]) + ", " + real_text(x[1]) + ", " +
+         real_text(x[2]) + ")";
+}
+
+std::vector<int> require_some(const Table& root, const SpringsScene& scene, const std::string& path,
+                              const std::string& where, const std::string& what) {
+  require_finite(root, scene, path, where);
+  std::vector<int> vertices = selected(where, scene.mesh);
+  if (vertices.empty())
+    contradict(root, path, path + " = " + scene::toml_string(where) + " holds at no vertex: " + what);
+  return vertices;
+}
+
+void complete_and_check(const Table& root, SpringsScene& scene) {
+  scene.mesh = make_mesh(root, scene);
+  for (const auto& triangle : scene.mesh.triangles)
+    if (!fabric::has_area(scene.mesh, triangle))
+      contradict(root, "mesh",
+                 "mesh: the triangle " + place_text(scene, static_cast<std::size_t>(triangle[0])) +
+                     " has no area: it is too thin, or not between 1e-70 and 1e70 m long");
+  scene.lines = scene.mesh.lines.size();
+  complete_material(root, scene);
+  add_reinforcements(root, scene);
+  check_time(root, scene.time);
+  check_initial(root, scene);
+  check_pins(root, scene);
+  check_loads(root, scene);
+  check_contact(root, scene);
+  complete_output(root, scene);
+  check_verify(root, scene);
+}
+
+}  // namespace drogue::springs_app

@@ -1,0 +1,409 @@
+#include "miniapps/springs/scene/scene_keys.hpp"
+
+#include <algorithm>
+
+#include "common/scene/codec.hpp"
+#include "miniapps/springs/simulation/stress_fields.hpp"
+
+namespace drogue::springs_app {
+namespace {
+
+using fabric::Integrator;
+using fabric::Model;
+using scene::Choices;
+using scene::Codec;
+using scene::Key;
+using scene::Table;
+
+constexpr double most_vertices = 16777216;  // 2^24
+
+const Choices<Model> model_choices = {{"linear-vector", Model::linear_vector},
+                                      {"edge", Model::edge},
+                                      {"quadratic", Model::quadratic},
+                                      {"biquadratic", Model::biquadratic}};
+const Choices<fabric::Lumping> mass_choices = {{"area", fabric::Lumping::area},
+                                               {"equal", fabric::Lumping::equal}};
+const Choices<fabric::Driver> driver_choices = {{"auto", fabric::Driver::automatic},
+                                                {"plain", fabric::Driver::plain},
+                                                {"graph", fabric::Driver::graph},
+                                                {"persistent", fabric::Driver::persistent}};
+const Choices<Integrator> integrator_choices = {{"rk4", Integrator::rk4}, {"verlet", Integrator::verlet}};
+const Choices<std::string> axes_choices = {{"x", "x"},   {"y", "y"},   {"z", "z"},    {"xy", "xy"},
+                                           {"xz", "xz"}, {"yz", "yz"}, {"xyz", "xyz"}};
+const std::vector<std::string> of_place = {"x", "y", "z"}, of_place_and_time = {"x", "y", "z", "t"};
+
+/// Three numbers; an empty vector is an absent value.
+Codec optional_vector_codec(std::vector<double>& value) {
+  Codec codec = scene::reals_codec(value, 3, false);
+  codec.type = "[real, real, real]";
+  codec.print = [print = codec.print, &value] { return value.empty() ? std::nullopt : print(); };
+  return codec;
+}
+
+/// Subset of x, y and z in any order; stored in ascending order.
+Codec axes_codec(std::string& axes) {
+  Codec codec = scene::choice_codec(axes, axes_choices);
+  codec.type += ", in any order";
+  codec.read = [read = codec.read, &axes](const scene::Node& node, const scene::Limits& limits) {
+    if (const auto* text = node.as<std::string>()) {
+      std::string sorted = *text;
+      std::ranges::sort(sorted);
+      if (std::ranges::any_of(axes_choices, [&](const auto& choice) { return choice.first == sorted; })) {
+        axes = sorted;
+        return std::string();
+      }
+    }
+    return read(node, limits);
+  };
+  return codec;
+}
+
+/// "auto", which stands for no value, or a number.
+Codec real_or_auto_codec(std::optional<double>& value) {
+  return {"\"auto\" | real",
+          [&value](const scene::Node& node, const scene::Limits& limits) -> std::string {
+            const auto* text = node.as<std::string>();
+            if (text != nullptr && *text == "auto") {
+              value.reset();
+              return {};
+            }
+            if (text != nullptr) return "must be \"auto\" or a number, not " + scene::describe(node);
+            return scene::real_codec(value).read(node, limits);
+          },
+          [&value] { return std::optional(value ? scene::toml_text(*value) : "\"auto\""); },
+          scene::back_to_default(value)};
+}
+
+Codec fields_codec(std::vector<std::string>& fields) {
+  std::vector<std::string> names = stress_field_names();
+  names.insert(names.begin(), {"position", "velocity"});
+  Codec codec = scene::names_codec(fields, names);
+  codec.type = "array of names";
+  return codec;
+}
+
+void declare_vector(Table& table, ExpressionVector& value, const std::vector<std::string>& variables,
+                    const std::string& what, const std::string& unit) {
+  table.value("x", scene::real_or_expression_codec(value.x, variables), what + " along x").unit(unit);
+  table.value("y", scene::real_or_expression_codec(value.y, variables), what + " along y").unit(unit);
+  table.value("z", scene::real_or_expression_codec(value.z, variables), what + " along z").unit(unit);
+}
+
+void declare_vertices(Table& table, int& vertices, double least) {
+  table.value("vertices", scene::integer_codec(vertices), "Number of vertices, about")
+      .range(least, most_vertices);
+}
+
+void declare_length(Table& table, const std::string& name, double& value, const std::string& help) {
+  table.value(name, scene::real_codec(value), help).unit("m").above(0.0);
+}
+
+void declare_mesh(Table& table, MeshSource& source) {
+  table.exactly_one_of({"rectangle", "disk", "strip", "triangle", "string", "file"});
+  table.optional_table(
+      "rectangle", source.rectangle,
+      [](Table& t, mesh::Rectangle& value) {
+        declare_length(t, "width", value.width, "Extent along x, from 0");
+        declare_length(t, "height", value.height, "Extent along y, from 0");
+        declare_vertices(t, value.vertices, 4);
+        t.value("distortion", scene::real_codec(value.distortion),
+                "Largest pseudo-random displacement of inner vertices, as a share of a cell")
+            .range(0.0, 0.2);
+      },
+      "Nearly square cells with alternating diagonals in the plane z = 0");
+  table.optional_table(
+      "disk", source.disk,
+      [](Table& t, mesh::Disk& value) {
+        declare_length(t, "radius", value.radius, "Radius about the origin");
+        declare_vertices(t, value.vertices, 7);
+      },
+      "Rings of triangles in the plane z = 0, with the nearest number of vertices of the form 1 + 3 n (n + "
+      "1)");
+  table.optional_table(
+      "strip", source.strip,
+      [](Table& t, mesh::Strip& value) {
+        declare_length(t, "length", value.length, "Extent along x, from 0");
+        declare_length(t, "width", value.width, "Extent along y, from 0");
+        declare_vertices(t, value.vertices, 4);
+      },
+      "Rows of nearly equilateral triangles in the plane z = 0");
+  table.optional_table(
+      "triangle", source.triangle,
+      [](Table& t, mesh::Triangle& value) {
+        declare_length(t, "side", value.side, "Side, along x from the origin");
+        declare_vertices(t, value.vertices, 3);
+      },
+      "An equilateral triangle in the plane z = 0, divided into n^2, with the nearest (n + 1)(n + 2)/2 "
+      "vertices");
+  table.optional_table(
+      "string", source.string,
+      [](Table& t, mesh::String& value) {
+        t.value("from", vector_codec(value.from), "First end").unit("m");
+        t.value("to", vector_codec(value.to), "Last end").unit("m");
+        t.value("vertices", scene::integer_codec(value.vertices), "Number of vertices")
+            .range(2, most_vertices);
+      },
+      "A string of equal pieces");
+  table
+      .value("file", scene::text_codec(source.file),
+             "A Wavefront OBJ file (v, f with three vertices, l for strings), relative to the scene")
+      .default_text("none");
+}
+
+void declare_material(Table& table, SpringsScene& scene) {
+  Fabric& f = scene.fabric;
+  const auto cloth = [&scene] { return scene.has_triangles(); };
+  const auto lines = [&scene] { return scene.has_lines(); };
+  const auto springs = [&f] {
+    return f.material.model == Model::edge || f.material.model == Model::linear_vector;
+  };
+  Codec model = scene::choice_codec(f.material.model, model_choices);
+  model.print = [print = model.print, cloth] { return cloth() ? print() : std::nullopt; };
+  table.value("model", model,
+              "Constitutive model of triangles: Models I (linear-vector) and II (edge) of [Shi] have springs "
+              "along edges, the others are membranes; strings are springs in every model");
+  table
+      .value("membrane_modulus", scene::real_codec(f.material.membrane_modulus),
+             "Young's modulus times thickness")
+      .unit("N/m")
+      .above(0.0)
+      .when([=] { return cloth() && !springs(); }, "with triangles and model quadratic or biquadratic",
+            "model");
+  table.value("poisson", scene::real_codec(f.material.poisson), "Poisson's ratio")
+      .range(-0.99, 0.5)
+      .when([=] { return cloth() && !springs(); }, "with triangles and model quadratic or biquadratic",
+            "model");
+  table
+      .value("stiffness", scene::real_codec(f.stiffness),
+             "Stiffness of an edge, and of strings without axial_stiffness")
+      .unit("N/m")
+      .above(0.0)
+      .default_text("1000 for model edge")
+      .when([=] { return lines() || springs(); }, "with lines, or model edge", "model");
+  table.value("area_density", scene::real_codec(f.area_density), "Mass per area of cloth at rest")
+      .unit("kg/m^2")
+      .above(0.0)
+      .when(cloth, "with triangles", "");
+  table
+      .value("mass", scene::choice_codec(f.mass, mass_choices),
+             "Mass of a vertex: a third of its triangles and half of its lines, or the same for all")
+      .default_text("`\"area\"`");
+  table.value("line_density", scene::real_codec(f.line_density), "Mass per length of strings at rest")
+      .unit("kg/m")
+      .above(0.0)
+      .when(lines, "with lines", "");
+  table.value("axial_stiffness", scene::real_codec(f.axial_stiffness), "E A of strings")
+      .unit("N")
+      .above(0.0)
+      .default_text("5000 without stiffness")
+      .when([=, &f] { return lines() && (!f.stiffness || (cloth() && springs())); },
+            "with lines and without stiffness, or with model edge", "stiffness");
+  table
+      .value("bending_stiffness", scene::real_codec(f.material.bending_stiffness),
+             "Bending stiffness of cloth that is flat at rest")
+      .unit("N m")
+      .at_least(0.0)
+      .when(cloth, "with triangles", "");
+  table
+      .value("tension_only", scene::boolean_codec(f.material.tension_only),
+             "No compression: cloth wrinkles and strings go slack without energy")
+      .when([&f] { return f.material.model != Model::linear_vector; },
+            "with another model than linear-vector", "model");
+}
+
+void declare_load(Table& table, Load& load) {
+  table.exactly_one_of({"gravity", "pressure", "follower_pressure", "force"});
+  table.value("gravity", optional_vector_codec(load.gravity), "Acceleration of all masses")
+      .unit("m/s^2")
+      .default_text("none");
+  table
+      .value("pressure", scene::real_or_expression_codec(load.pressure, of_place_and_time),
+             "Force per area at rest along the normal at rest; the normal of a counter-clockwise triangle "
+             "points up")
+      .unit("N/m^2");
+  table
+      .value("follower_pressure", scene::real_or_expression_codec(load.follower_pressure, of_place_and_time),
+             "Force per present area along the present normal")
+      .unit("N/m^2");
+  table.optional_table(
+      "force", load.force,
+      [](Table& t, ExpressionVector& value) {
+        declare_vector(t, value, of_place_and_time, "Force on each vertex", "N");
+      },
+      "A force on vertices");
+  table
+      .value("where", scene::expression_codec(load.where, of_place),
+             "Vertices that the force acts on: where this is not 0")
+      .when([&load] { return load.force.has_value(); }, "with force", "force")
+      .default_text("all");
+}
+
+void declare_output(Table& table, Output& output) {
+  const Key& fields =
+      table
+          .value("fields", fields_codec(output.fields),
+                 "Fields written to fields.h5: position, velocity, and for every triangle stress, "
+                 "major_stress, minor_stress, major_direction, minor_direction, von_mises; with the prefix "
+                 "vertex_ for every vertex, with nominal_ before the name for nominal instead of Cauchy's "
+                 "stress, as in vertex_nominal_stress")
+          .default_text("position where times are given, else none");
+  framework::declare_output_times(table, output, fields);
+  table.tables(
+      "probes", output.probes,
+      [](Table& t, Probe& probe) {
+        t.value("at", optional_vector_codec(probe.at), "Position at rest; the nearest vertex is used")
+            .unit("m")
+            .required();
+      },
+      "Vertices whose positions are columns of history.csv");
+  framework::declare_output_intervals(table, output);
+}
+
+void declare_time(Table& table, Time& time) {
+  table.value("integrator", scene::choice_codec(time.integrator, integrator_choices),
+              "Classical Runge-Kutta, or velocity Verlet");
+  table.value("dt", real_or_auto_codec(time.dt), "Step; auto: from the fastest frequency")
+      .unit("s")
+      .above(0.0);
+  table.value("safety", scene::real_codec(time.safety), "Share of the largest stable step")
+      .above(0.0)
+      .at_most(1.0)
+      .when([&time] { return !time.dt; }, "with dt = \"auto\"", "dt");
+  table.value("end_time", scene::real_codec(time.end_time), "End of the run")
+      .unit("s")
+      .at_least(0.0)
+      .required();
+}
+
+}  // namespace
+
+scene::Codec vector_codec(fabric::Vector& value) {
+  return {"[real, real, real]",
+          [&value](const scene::Node& node, const scene::Limits& limits) {
+            std::vector<double> numbers;
+            std::string complaint = scene::reals_codec(numbers, 3, false).read(node, limits);
+            if (complaint.empty()) std::copy(numbers.begin(), numbers.end(), value.begin());
+            return complaint;
+          },
+          [&value] {
+            std::vector<double> numbers(value.begin(), value.end());
+            return scene::reals_codec(numbers, 3, false).print();
+          },
+          scene::back_to_default(value)};
+}
+
+void declare_springs_scene(Table& root, SpringsScene& scene) {
+  framework::declare_app(root, "springs", scene.description);
+  root.table(
+          "mesh", [&](Table& table) { declare_mesh(table, scene.source); }, "Cloth and strings at rest")
+      .required();
+  root.table(
+      "material", [&](Table& table) { declare_material(table, scene); }, "Material of cloth and strings");
+  root.tables(
+      "reinforcement", scene.reinforcements,
+      [](Table& table, Reinforcement& reinforcement) {
+        table
+            .value("where", scene::expression_codec(reinforcement.where, of_place),
+                   "The edges at both ends of which this is not 0; an edge has at most one reinforcement")
+            .required();
+        table
+            .value("axial_stiffness", scene::real_codec(reinforcement.axial_stiffness),
+                   "E A of each edge, added to the stiffness of the cloth")
+            .unit("N")
+            .above(0.0)
+            .required();
+        table
+            .value("line_density", scene::real_codec(reinforcement.line_density),
+                   "Mass per length at rest, added to that of the cloth")
+            .unit("kg/m")
+            .at_least(0.0);
+      },
+      "Strings along edges of cloth, such as seams. For lines of the mesh they replace the values of "
+      "[material]");
+  root.table(
+      "initial",
+      [&](Table& table) {
+        table.table(
+            "displacement",
+            [&](Table& t) { declare_vector(t, scene.initial.displacement, of_place, "Displacement", "m"); },
+            "Displacement from rest");
+        table.table(
+            "velocity",
+            [&](Table& t) { declare_vector(t, scene.initial.velocity, of_place, "Velocity", "m/s"); },
+            "Velocity");
+        table
+            .value(
+                "prestretch", scene::real_codec(scene.initial.prestretch),
+                "Strain by which all coordinates at rest are stretched before they are displaced; lengths at "
+                "rest stay those of the mesh")
+            .range(-0.5, 10.0);
+      },
+      "The state at the start");
+  root.tables(
+      "pin", scene.pins,
+      [](Table& table, Pin& pin) {
+        table
+            .value("where", scene::expression_codec(pin.where, of_place),
+                   "Vertices that are fixed: where this is not 0")
+            .required();
+        table.value("axes", axes_codec(pin.axes), "Axes along which they are fixed");
+        table.table(
+            "motion",
+            [&](Table& t) {
+              declare_vector(t, pin.motion, of_place_and_time, "Displacement from rest", "m");
+            },
+            "Prescribed motion; without it vertices keep their initial position");
+      },
+      "Fixed vertices; several pins may fix a vertex along different axes");
+  root.tables("load", scene.loads, declare_load, "Loads, which add up");
+  root.tables(
+      "mass", scene.payloads,
+      [](Table& table, Payload& payload) {
+        table
+            .value("where", scene::expression_codec(payload.where, of_place), "Vertices: where this is not 0")
+            .required();
+        table.value("add", scene::real_codec(payload.add), "Mass added to each")
+            .unit("kg")
+            .above(0.0)
+            .required();
+      },
+      "Payloads");
+  root.table(
+      "damping",
+      [&](Table& table) {
+        table.value("absolute", scene::real_codec(scene.damping.absolute), "Deceleration over the velocity")
+            .unit("1/s")
+            .at_least(0.0);
+        table
+            .value("relative", scene::real_codec(scene.damping.relative),
+                   "Rate at which two isolated vertices of an edge lose their relative velocity along it")
+            .unit("1/s")
+            .at_least(0.0);
+      },
+      "Damping");
+  root.table(
+      "contact", [&](Table& table) { declare_contact(table, scene.contact); },
+      "Contact of cloth and strings");
+  root.table(
+          "time", [&](Table& table) { declare_time(table, scene.time); }, "Steps and the length of the run")
+      .required();
+  root.table(
+      "output", [&](Table& table) { declare_output(table, scene.output); }, "Files of the run directory");
+  root.table(
+      "verify", [&](Table& table) { declare_verify(table, scene.verify); }, "Checks at the end");
+  root.table(
+      "tuning",
+      [&](Table& table) {
+        table.table(
+            "step",
+            [&](Table& step) {
+              step.value("driver", scene::choice_codec(scene.driver, driver_choices),
+                         "Launches of Runge-Kutta steps on a GPU: single kernels, one captured graph per "
+                         "step, or many steps per launch where mesh and loads allow it, else a graph");
+            },
+            "The launch of a step");
+      },
+      "Launches of kernels; they change speed, not results");
+}
+
+}  // namespace drogue::springs_app

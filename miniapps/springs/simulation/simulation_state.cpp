@@ -1,0 +1,184 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "kernels/mesh/edges.hpp"
+#include "miniapps/springs/simulation/contact_state.hpp"
+#include "miniapps/springs/simulation/history.hpp"
+#include "miniapps/springs/simulation/simulation.hpp"
+#include "miniapps/springs/vectors.hpp"
+
+// Reads the state of a solver back, in the numbering of the scene.
+
+namespace drogue::springs_app {
+
+using fabric::Vector;
+
+namespace {
+
+run::DatasetSpec field_spec(const std::string& name, const fabric::Mesh& mesh) {
+  const std::uint64_t vertices = mesh.rest.size();
+  if (name == "position") return {name, {vertices, 3}, "m", "vertex", "positions of the vertices"};
+  if (name == "velocity") return {name, {vertices, 3}, "m/s", "vertex", "velocities of the vertices"};
+  return stress_spec(name, mesh);
+}
+
+/// Vertex numbers of edges or triangles as a dataset, row by row.
+template <std::size_t n>
+run::IntegerSource source_of(const std::vector<std::array<int, n>>& parts) {
+  return [&parts](std::uint64_t first, std::span<std::int64_t> values) {
+    for (std::size_t k = 0; k < values.size(); ++k) values[k] = parts[(first + k) / n][(first + k) % n];
+  };
+}
+
+/// Fields of one output, in the scene's numbering; empty where the scene does not request them.
+struct FieldValues {
+  std::vector<Vector> position, velocity;
+  std::map<std::string, std::vector<double>> stress;  ///< by field name
+
+  [[nodiscard]] std::span<const double> of(const std::string& field) const {
+    if (field == "position") return numbers(position);
+    return field == "velocity" ? numbers(velocity) : std::span<const double>(stress.at(field));
+  }
+};
+
+}  // namespace
+
+double Simulation::time() const {
+  const fabric::TimeState now = _solver->time_state();
+  // At a stop the time equals that stop bit for bit.
+  return now.step == _stop_step ? _stop_time : now.time();
+}
+
+framework::TimeState Simulation::now() { return {_solver->time_state().step, time()}; }
+
+std::vector<Vector> Simulation::positions() {
+  std::vector<Vector> x(_problem.x.size()), v(x.size());
+  _solver->download(x, v);
+  return _problem.to_scene(x);
+}
+
+StateTotals Simulation::totals() {
+  const fabric::Totals sum = _solver->totals();
+  StateTotals totals{sum.kinetic,  sum.elastic,          sum.gravity + sum.load,
+                     sum.momentum, sum.angular_momentum, {},
+                     sum.contact,  sum.friction,         0};
+  const bool counts = _scene.verify.intersections.has_value();
+  if (_scene.output.probes.empty() && !counts) return totals;
+  std::vector<Vector> x(_problem.x.size()), v(x.size());
+  _solver->download(x, v);
+  if (counts) totals.intersections = contact_state(_scene, _problem.to_scene(x)).intersections;
+  for (const int vertex : _problem.probes) totals.probes.push_back(x[static_cast<std::size_t>(vertex)]);
+  return totals;
+}
+
+std::vector<run::Column> Simulation::history_columns() const { return springs_app::history_columns(_scene); }
+
+framework::HistoryRow Simulation::row() {
+  const StateTotals totals = this->totals();
+  const framework::TimeState now = this->now();
+  framework::HistoryRow row{now.time,
+                            {static_cast<double>(now.step), totals.kinetic, totals.elastic, totals.potential,
+                             totals.kinetic + totals.elastic + totals.potential}};
+  std::vector<double>& values = row.values;
+  const auto append = [&values](const Vector& v) { values.insert(values.end(), v.begin(), v.end()); };
+  append(totals.momentum);
+  append(totals.angular_momentum);
+  if (_scene.contact.asked_for()) values.insert(values.end(), {totals.contact_work, totals.friction_work});
+  if (_scene.verify.intersections) values.push_back(totals.intersections);
+  std::ranges::for_each(totals.probes, append);
+  return row;
+}
+
+std::vector<run::DatasetSpec> Simulation::field_specs() const {
+  std::vector<run::DatasetSpec> specs;
+  for (const std::string& name : _scene.output.fields) specs.push_back(field_spec(name, _scene.mesh));
+  return specs;
+}
+
+void Simulation::write_mesh(run::FieldsWriter& fields) const {
+  const fabric::Mesh& mesh = _scene.mesh;
+  const auto edges = edges_of(mesh);
+  fields.add_mesh({"triangles", {mesh.triangles.size(), 3}, "1", "face", "vertices of every triangle"},
+                  source_of(mesh.triangles));
+  fields.add_mesh({"edges", {edges.size(), 2}, "1", "edge", "vertices of every edge and line"},
+                  source_of(edges));
+  // The dataset `edges` does not distinguish strings.
+  fields.add_mesh({"strings",
+                   {mesh.lines.size(), 2},
+                   "1",
+                   "edge",
+                   "vertices of every piece of a string, those that reinforce edges of cloth alone last"},
+                  source_of(mesh.lines));
+  // Add `vertices` last: it completes fields.xdmf.
+  fields.add_mesh({"vertices", {mesh.rest.size(), 3}, "m", "vertex", "vertices at rest"},
+                  [&mesh](std::uint64_t first, std::span<double> values) {
+                    const auto from = numbers(mesh.rest).subspan(first, values.size());
+                    std::ranges::copy(from, values.begin());
+                  });
+}
+
+framework::FieldsTask Simulation::snapshot() {
+  std::vector<Vector> x(_problem.x.size()), v(x.size());
+  _solver->download(x, v);
+  FieldValues values;
+  const auto wanted = [&](const char* field) { return std::ranges::count(_scene.output.fields, field) > 0; };
+  if (wanted("position")) values.position = _problem.to_scene(x);
+  if (wanted("velocity")) values.velocity = _problem.to_scene(v);
+  std::map<StressKind, std::vector<fabric::Stress>> computed;
+  for (const std::string& field : _scene.output.fields) {
+    const auto kind = stress_kind(field);
+    if (!kind) continue;
+    if (!computed.contains(*kind)) computed[*kind] = stress_of(*kind);
+    values.stress[field] = stress_values(field, computed[*kind]);
+  }
+  return [this, values = std::move(values)](run::FieldsWriter& fields) {
+    for (const std::string& name : _scene.output.fields) fields.write(name, 0, values.of(name));
+  };
+}
+
+std::vector<fabric::Stress> Simulation::stress_of(const StressKind& kind) {
+  std::vector<fabric::Stress> stress(kind.at_vertices ? _problem.x.size() : _scene.mesh.triangles.size());
+  if (!kind.at_vertices) {
+    _solver->stress(kind.measure, stress);
+    return stress;
+  }
+  _solver->vertex_stress(kind.measure, stress);
+  return _problem.to_scene(stress);
+}
+
+FinalState Simulation::final_state() {
+  const fabric::Parameters& p = _problem.parameters;
+  FinalState state;
+  state.mass = _problem.mass;
+  state.payload = _problem.payload;
+  std::vector<Vector> x(_problem.x.size()), v(x.size()), force(x.size());
+  _solver->download(x, v);
+  _solver->forces(force);
+  for (std::size_t i = 0; i < force.size(); ++i)
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      force[i][axis] += p.mass[i] * p.gravity[axis];
+      state.largest_load = std::max(state.largest_load, std::abs(p.load[i][axis]));
+    }
+  state.x = _problem.to_scene(x);
+  state.force = _problem.to_scene(force);
+  state.pinned.resize(p.pinned.size());
+  for (std::size_t k = 0; k < p.pinned.size(); ++k)
+    state.pinned[static_cast<std::size_t>(_problem.order[k])] = p.pinned[k];
+  return state;
+}
+
+ExitCode Simulation::verify(const run::RunDirectory* directory, run::ResultDocument& result) {
+  const StateTotals now = totals();
+  const auto set = [&result](const char* name, double value) { result.metrics.set("energy", name, value); };
+  const bool contact = _scene.contact.asked_for();
+  if (contact) set("contact_work", now.contact_work);
+  set("elastic", now.elastic);
+  if (contact) set("friction_work", now.friction_work);
+  set("kinetic", now.kinetic);
+  set("potential", now.potential);
+  springs_app::verify(_scene, final_state(), directory->file("history.csv"), result);
+  return ExitCode::ok;
+}
+
+}  // namespace drogue::springs_app

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+#include "common/run/result_document.hpp"
+#include "miniapps/springs/scene/scene.hpp"
+
+namespace drogue::springs_app {
+
+/// Final state of a run, in the numbering of the scene.
+struct FinalState {
+  std::vector<fabric::Vector> x;      ///< m
+  std::vector<fabric::Vector> force;  ///< on every vertex, with gravity, without damping, N
+  std::vector<std::uint8_t> pinned;   ///< 1 for x, 2 for y, 4 for z
+  double largest_load = 0.0;          ///< largest dead load on a vertex without gravity, N
+  double mass = 0.0;                  ///< total, kg
+  double payload = 0.0;               ///< part of the mass, kg
+};
+
+/// Adds errors and checks of the scene's [verify]; `history` is the history.csv of the run. Throws `Failure`
+/// (io_error).
+void verify(const SpringsScene& scene, const FinalState& state, const std::filesystem::path& history,
+            run::ResultDocument& result);
+
+/// Young's modulus (N/m) and Poisson's ratio of a rectangle pulled along x by its last column.
+struct Response {
+  double young = 0.0, poisson = 0.0, strain = 0.0;
+  double width = 0.0;  ///< m, at rest
+};
+Response pulled_response(const fabric::Mesh& mesh, const FinalState& state);
+
+/// Force over strain, N, that all lines add to a mesh pulled along x, provided that uniform strain leaves
+/// them in equilibrium: lines along x with equal stiffness on both sides of every inner vertex. Requires
+/// line_stiffness.
+std::optional<double> even_line_stiffness(const fabric::Mesh& mesh);
+
+/// Largest force on a free axis over the largest on a prescribed axis or dead load.
+double imbalance(const FinalState& state);
+
+}  // namespace drogue::springs_app
