@@ -18,6 +18,7 @@ struct Control {
   stepping::StepTrial trial;
   std::uint64_t next_rate;      ///< reduction of the state after the step, as `Progress::rate`
   std::uint64_t first_failure;  ///< least cell whose predicted velocity is not finite, or `no_failure`
+  int pressure_failed;          ///< 1 after an iterative pressure solver did not converge
 };
 
 /// Constants that determine dt.

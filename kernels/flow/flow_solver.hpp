@@ -22,6 +22,9 @@
 #include "kernels/flow/turbulence/eddy_viscosity.hpp"
 #include "kernels/linear/poisson/diagonalization.hpp"
 #include "kernels/linear/poisson/fourier.hpp"
+#if defined(DROGUE_HAVE_HYPRE)
+#include "kernels/linear/poisson/hypre_pfmg.hpp"
+#endif
 #include "kernels/stepping/step_launcher.hpp"
 
 namespace drogue::flow {
@@ -84,8 +87,14 @@ class FlowSolver {
   [[nodiscard]] const char* pressure_solver() const;
 
  private:
+#if defined(DROGUE_HAVE_HYPRE)
+  using Poisson =
+      std::variant<linear::FourierSolver<ExecutionSpace>, linear::DiagonalizationSolver<ExecutionSpace>,
+                   linear::HyprePfmgSolver<ExecutionSpace>>;
+#else
   using Poisson =
       std::variant<linear::FourierSolver<ExecutionSpace>, linear::DiagonalizationSolver<ExecutionSpace>>;
+#endif
   struct Steps;
 
   [[nodiscard]] static auto one_thread(const ExecutionSpace& space) {
@@ -117,7 +126,7 @@ class FlowSolver {
   TotalsView<ExecutionSpace> _column_totals, _plane_totals;
   Values _outflow_rows;
   ControlView<ExecutionSpace> _control;
-  std::optional<Poisson> _poisson;
+  mutable std::optional<Poisson> _poisson;  ///< an iterative solver keeps its last solution and residual
   stepping::StepLoop<ExecutionSpace> _loop;
   stepping::StepLauncher<ExecutionSpace> _launcher;
 };
@@ -139,7 +148,9 @@ FlowSolver<ExecutionSpace>::FlowSolver(const device::Instance<ExecutionSpace>& i
       _grid((check_parameters(parameters), make_grid(parameters))),
       _boundary(instance.space(), _grid, parameters.boundary),
       _loop(instance),
-      _launcher(instance, parameters.driver) {
+      // An iterative solver waits for the host in every step, which a graph cannot hold.
+      _launcher(instance, parameters.pressure_solver == PressureSolver::hypre_pfmg ? Driver::plain
+                                                                                   : parameters.driver) {
   const auto field = [&](const std::string& label) {
     // Packs may load beyond the last cell.
     return Values(label, static_cast<std::size_t>(3 * _grid.component + 64));
@@ -166,9 +177,14 @@ FlowSolver<ExecutionSpace>::FlowSolver(const device::Instance<ExecutionSpace>& i
   }
   _control = ControlView<ExecutionSpace>("drogue::flow::control");
   const linear::PoissonProblem problem = pressure_problem(parameters);
-  if (uses_transforms<ExecutionSpace>(parameters))
+#if defined(DROGUE_HAVE_HYPRE)
+  if (parameters.pressure_solver == PressureSolver::hypre_pfmg)
+    _poisson.emplace(std::in_place_type<linear::HyprePfmgSolver<ExecutionSpace>>, space(), problem,
+                     parameters.pressure_tolerance);
+#endif
+  if (!_poisson && uses_transforms<ExecutionSpace>(parameters))
     _poisson.emplace(std::in_place_type<linear::FourierSolver<ExecutionSpace>>, space(), problem);
-  else
+  if (!_poisson)
     _poisson.emplace(std::in_place_type<linear::DiagonalizationSolver<ExecutionSpace>>, space(), problem);
   double squares = 0.0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -189,6 +205,7 @@ FlowSolver<ExecutionSpace>::FlowSolver(const device::Instance<ExecutionSpace>& i
 
 template <class ExecutionSpace>
 const char* FlowSolver<ExecutionSpace>::pressure_solver() const {
+  if (_parameters.pressure_solver == PressureSolver::hypre_pfmg) return "hypre-pfmg";
   return std::holds_alternative<linear::FourierSolver<ExecutionSpace>>(*_poisson) ? "fft" : "diagonalization";
 }
 
@@ -324,7 +341,7 @@ void FlowSolver<ExecutionSpace>::start() {
   device::copy(space(), _predicted, _velocity);
   enqueue_projection(space(), _velocity, 1.0, false);
   control = read_control();
-  control.now.rate = control.first_failure == no_failure
+  control.now.rate = control.first_failure == no_failure && control.pressure_failed == 0
                          ? control.next_rate
                          : Kokkos::bit_cast<std::uint64_t>(std::numeric_limits<double>::quiet_NaN());
   control.next_rate = 0;
@@ -351,8 +368,10 @@ template <class ExecutionSpace>
 StepFailure FlowSolver<ExecutionSpace>::failure() {
   const Control control = read_control();
   const bool in_cell = control.first_failure != no_failure;
-  return {in_cell ? FailureReason::not_finite : FailureReason::time_step,
-          in_cell ? static_cast<std::int64_t>(control.first_failure) : -1, control.now.step + 1,
+  const FailureReason reason = in_cell                        ? FailureReason::not_finite
+                               : control.pressure_failed != 0 ? FailureReason::pressure_solver
+                                                              : FailureReason::time_step;
+  return {reason, in_cell ? static_cast<std::int64_t>(control.first_failure) : -1, control.now.step + 1,
           control.now.time, control.trial.dt};
 }
 
@@ -439,7 +458,15 @@ void FlowSolver<ExecutionSpace>::enqueue_projection(const ExecutionSpace& space,
       _grid,    _boundary.conditions(), _predicted, result, _divergence, _pressure, _control,
       fraction, resists_backflow};
   launch_divergence(space, setup);
-  std::visit([&](const auto& poisson) { poisson.enqueue_solve(_divergence, _pressure); }, *_poisson);
+  std::visit(
+      [&](auto& poisson) {
+        poisson.enqueue_solve(_divergence, _pressure);
+        if constexpr (requires { poisson.converged(); })
+          if (!poisson.converged())
+            device::launch_each(space, "drogue::flow::pressure_failure", 1,
+                                PressureFailureFunctor<ExecutionSpace>{_control});
+      },
+      *_poisson);
   launch_correction(space, setup);
   launch_ghosts(space, _grid, _boundary.conditions(), result);
 }

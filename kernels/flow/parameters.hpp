@@ -24,8 +24,7 @@ enum class TimeScheme {
 
 /// Time integration of viscous stresses.
 enum class Diffusion {
-  explicit_,       ///< as advection; limits dt to h^2 / (2 d nu)
-  crank_nicolson,  ///< unconditionally stable; three Helmholtz solves per step, AB2 only
+  explicit_,  ///< as advection; limits dt to h^2 / (4 d nu) in d dimensions
 };
 
 /// Model of unresolved scales.

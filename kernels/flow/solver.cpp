@@ -70,7 +70,11 @@ void check_parameters(const Parameters& p) {
   require(std::isfinite(p.density) && p.density > 0.0, "the density must be positive");
   require(std::isfinite(p.viscosity) && p.viscosity >= 0.0, "the viscosity must not be negative");
   require(p.fixed_dt > 0.0 || (p.cfl > 0.0 && std::isfinite(p.cfl)), "cfl must be positive");
-  require(p.pressure_solver != PressureSolver::hypre_pfmg, "the solver hypre-pfmg is not built in");
+#if !defined(DROGUE_HAVE_HYPRE)
+  require(p.pressure_solver != PressureSolver::hypre_pfmg, "this build lacks hypre");
+#endif
+  require(p.pressure_tolerance > 0.0 && p.pressure_tolerance < 1.0,
+          "pressure_tolerance must lie between 0 and 1");
   for (const Boundary& side : p.boundary) {
     require(side.velocity_expressions.empty() ||
                 (side.velocity_expressions.size() == 3 && is_prescribed(side.kind)),

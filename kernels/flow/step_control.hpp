@@ -25,6 +25,13 @@ struct BeginAdvanceFunctor {
   }
 };
 
+/// Records that the pressure solver did not converge.
+template <class ExecutionSpace>
+struct PressureFailureFunctor {
+  ControlView<ExecutionSpace> control;
+  KOKKOS_FUNCTION void operator()(int) const { control().pressure_failed = 1; }
+};
+
 /// Last kernel of a step: accepts it or stops the run.
 template <class ExecutionSpace>
 struct FinishStepFunctor {
@@ -37,7 +44,7 @@ struct FinishStepFunctor {
     Progress now = c.now;
     stepping::StepTrial trial = c.trial;
     if (trial.stop == Stop::running) {
-      if (c.first_failure != no_failure) {
+      if (c.first_failure != no_failure || c.pressure_failed != 0) {
         trial.stop = Stop::failed;
         now.last_dt = 0.0;  // the rates of the failed step must not enter another one
       } else {

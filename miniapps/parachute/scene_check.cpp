@@ -73,8 +73,6 @@ void complete_sides(const Table& root, FlowScene& scene) {
 }
 
 void check_scheme(const Table& root, const flow::Parameters& p) {
-  if (p.diffusion == flow::Diffusion::crank_nicolson && p.time_scheme != flow::TimeScheme::ab2)
-    contradict(root, "flow.diffusion", "flow.diffusion = \"crank-nicolson\" needs flow.time = \"ab2\"");
   for (std::size_t axis = 0; axis < 3; ++axis)
     if (p.pressure_drop[axis] != 0.0 && p.boundary[2 * axis].kind != BoundaryKind::periodic)
       contradict(root, "flow.pressure_drop",

@@ -13,8 +13,7 @@ constexpr double most_cells_per_axis = 16384;
 const Choices<AdvectionScheme> advection_choices = {{"central", AdvectionScheme::central},
                                                     {"weno5", AdvectionScheme::weno5}};
 const Choices<Weights> weights_choices = {{"js", Weights::js}, {"z", Weights::z}};
-const Choices<flow::Diffusion> diffusion_choices = {{"explicit", flow::Diffusion::explicit_},
-                                                    {"crank-nicolson", flow::Diffusion::crank_nicolson}};
+const Choices<flow::Diffusion> diffusion_choices = {{"explicit", flow::Diffusion::explicit_}};
 const Choices<flow::TimeScheme> time_choices = {{"ab2", flow::TimeScheme::ab2},
                                                 {"rk3", flow::TimeScheme::rk3}};
 const Choices<flow::PressureSolver> pressure_choices = {

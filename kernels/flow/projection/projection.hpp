@@ -87,7 +87,9 @@ struct CorrectionFunctor {
   KOKKOS_FUNCTION void operator()(const Member& member) const {
     const MacGrid& g = setup.grid;
     Control& control = setup.control();
-    if (control.trial.stop != stepping::Stop::running || control.first_failure != no_failure) return;
+    if (control.trial.stop != stepping::Stop::running || control.first_failure != no_failure ||
+        control.pressure_failed != 0)
+      return;
     const double dt = setup.step_fraction * control.trial.dt;
     const int tile = member.league_rank();
     const int i_begin = tile % tiles_x * tile_width, j_begin = tile / tiles_x % tiles_y * tile_height;
