@@ -121,6 +121,33 @@ TEST(FlowControl, StopsAtTheLargestNumberOfStepsAndOnInterrupt) {
   EXPECT_EQ(interrupted->advance(endless, -1, [](const Status&) { return false; }), Stop::interrupted);
 }
 
+#if defined(DROGUE_HAVE_HYPRE)
+TEST(FlowControl, IterativePressureSolverGivesTheVelocityOfTheDirectOne) {
+  Parameters p = mixed_box();
+  const FlowDomain domain(p);
+  const StaggeredField initial = random_field(domain, 7);
+  const auto direct = started(backend, p, initial);
+  p.pressure_solver = PressureSolver::hypre_pfmg;
+  p.pressure_tolerance = 1e-12;
+  const auto iterative = started(backend, p, initial);
+  EXPECT_STREQ(iterative->pressure_solver(), "hypre-pfmg");
+  EXPECT_STREQ(iterative->driver(), "plain");
+  ASSERT_EQ(direct->advance(endless, 5, {}), Stop::pause);
+  ASSERT_EQ(iterative->advance(endless, 5, {}), Stop::pause);
+  EXPECT_LT(largest_difference(velocity(*iterative, p), velocity(*direct, p)), 1e-9);
+}
+
+TEST(FlowControl, ReportsAPressureSolverThatDoesNotConverge) {
+  Parameters p = periodic_box({12, 10, 9});
+  p.pressure_solver = PressureSolver::hypre_pfmg;
+  p.pressure_tolerance = 1e-300;
+  const FlowDomain domain(p);
+  const auto solver = started(backend, p, random_field(domain, 8));
+  EXPECT_EQ(solver->advance(endless, 3, {}), Stop::failed);
+  EXPECT_EQ(solver->failure().reason, FailureReason::pressure_solver);
+}
+#endif
+
 TEST(FlowControl, ReportsTheFirstCellOfAnInitialVelocityThatIsNotFinite) {
   const Parameters p = periodic_box({8, 7, 5});
   for (const double bad : {std::nan(""), HUGE_VAL}) {
