@@ -18,7 +18,8 @@ class HyprePfmgSolver {
  public:
   using List = Kokkos::View<double*, typename ExecutionSpace::memory_space>;
 
-  /// As the constructor of `HypreStructSolver`.
+  /// Sets up the multigrid levels. `tolerance`: ratio of the norms of residual and right-hand side. Throws
+  /// std::runtime_error if hypre fails.
   HyprePfmgSolver(const ExecutionSpace& space, const PoissonProblem& problem, double tolerance,
                   int max_iterations = 200)
       : _space(space),
@@ -51,7 +52,7 @@ class HyprePfmgSolver {
 
   /// Iterations of the last solve. Does not throw.
   [[nodiscard]] int iterations() const { return _solver->iterations(); }
-  /// 2-norm of the residual of the last solve relative to that of the right-hand side. Does not throw.
+  /// Ratio of the 2-norms of the residual of the last solve and its right-hand side. Does not throw.
   [[nodiscard]] double residual() const { return _solver->residual(); }
   /// True unless the last solve ended above the tolerance. Does not throw.
   [[nodiscard]] bool converged() const { return _solver->converged(); }
