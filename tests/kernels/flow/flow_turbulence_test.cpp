@@ -120,7 +120,7 @@ TEST(FlowTurbulence, ModelsTakeEnergyFromRandomFlowAndKeepItsMomentum) {
   }
 }
 
-TEST(FlowTurbulence, AddsTwoKernelsPerStageOnlyWhereAsked) {
+TEST(FlowTurbulence, LaunchTwoKernelsPerStage) {
   std::int64_t launches[2] = {};
   for (const bool asked : {false, true}) {
     Parameters p = box({12, 10, 9}, asked ? Turbulence::vreman : Turbulence::none);
