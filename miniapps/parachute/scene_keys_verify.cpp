@@ -7,7 +7,7 @@ namespace {
 using scene::Choices;
 using scene::Table;
 
-const std::vector<std::string> place_and_time = {"x", "y", "z", "t"};
+const std::vector<std::string> verified_place_and_time = {"x", "y", "z", "t"};
 
 const Choices<int> axis_choices = {{"x", 0}, {"y", 1}, {"z", 2}};
 const Choices<int> side_choices = {{"x_low", 0},  {"x_high", 1}, {"y_low", 2},
@@ -21,12 +21,13 @@ void declare_target(Table& table, Target& target, const std::string& unit, const
 void declare_exact(Table& table, ExactSolution& exact) {
   for (std::size_t axis = 0; axis < 3; ++axis)
     table
-        .value(axis_names[axis], scene::real_or_expression_codec(exact.velocity[axis], place_and_time),
+        .value(axis_names[axis],
+               scene::real_or_expression_codec(exact.velocity[axis], verified_place_and_time),
                std::string("Velocity along ") + axis_names[axis])
         .unit("m/s")
         .required();
   table
-      .value("pressure", scene::real_or_expression_codec(exact.pressure, place_and_time),
+      .value("pressure", scene::real_or_expression_codec(exact.pressure, verified_place_and_time),
              "Pressure, up to a constant unless a side is an outflow")
       .unit("Pa");
 }
