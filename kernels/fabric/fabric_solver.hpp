@@ -57,7 +57,8 @@ class FabricSolver {
   using Points = PointsView<ExecutionSpace>;
   using PressureView = ListView<ExecutionSpace, double>;
 
-  /// Allocates all memory of steps; blocks. Throws std::invalid_argument for parameters out of range.
+  /// Allocates all memory of steps, and places the vertices at rest; blocks. Throws std::invalid_argument for
+  /// parameters out of range.
   FabricSolver(const ExecutionSpace& space, const Parameters& parameters, VertexForce vertex_force = {});
   FabricSolver(const FabricSolver&) = delete;  // captured steps refer to this object
   FabricSolver& operator=(const FabricSolver&) = delete;
@@ -315,6 +316,7 @@ template <class ExecutionSpace, class VertexForce>
 PointsView<ExecutionSpace> FabricSolver<ExecutionSpace, VertexForce>::rest_positions() const {
   if (_fabric.rest.extent(0) > 0) return _fabric.rest;
   if (_external.rest.extent(0) > 0) return _external.rest;
+  device::copy(space, _saved_x, _x);
   return make_rest_positions(space(), _parameters.mesh);
 }
 

@@ -222,7 +222,22 @@ TEST(FabricPins, AreAtRestIfViewsAreRequestedBeforeTheFirstUpload) {
   }
 }
 
-TEST(FabricPins, RejectPrescribedMotionWithoutPins) {
+TEST(FabricPins, FailureBeforeTheFirstUploadReturnsToRest) {
+  const device::Instance<Space> instance(1);
+  for (const Method& method : methods) {
+    Parameters p = pinned_sheet(method);
+    p.motions = {{0, {40}, postfix({-1.0, "sqrt"})}};
+    FabricSolver<Space> solver(instance.space(), p);
+    solver.enqueue_steps(3);
+    const auto failure = solver.failure();
+    ASSERT_TRUE(failure);
+    EXPECT_EQ(failure->step, 1);
+    EXPECT_EQ(solver.time_state().step, 0);
+    EXPECT_EQ(largest_difference(downloaded(solver).x, p.mesh.rest), 0.0);
+  }
+}
+
+TEST(FabricPins, RejectsPrescribedMotionWithoutPins) {
   const device::Instance<Space> instance(1);
   Parameters p = pinned_sheet({Integrator::rk4, Driver::automatic});
   p.pinned.assign(p.mass.size(), 0);
