@@ -93,7 +93,7 @@ class FabricSolver {
   /// Enqueues `steps` steps of `time_state().dt` and a checkpoint after every 256th step. Asynchronous but
   /// for a bound on the steps in flight of some 0.1 s, and at least 2048 steps. Returns false, and enqueues
   /// nothing more, once a failure is known on the host. The distribution of steps over calls changes no bit.
-  /// Throws std::invalid_argument for a negative number.
+  /// Throws std::invalid_argument for a negative number, and one that ends beyond step 2^53.
   ///
   /// It may be called while the caller captures the instance's stream into a CUDA graph, except with contact
   /// (std::logic_error). Each launch of that graph takes `steps` steps. From the first capture on, the solver
@@ -578,7 +578,10 @@ struct FabricSolver<ExecutionSpace, VertexForce>::UniformSteps {
 
 template <class ExecutionSpace, class VertexForce>
 bool FabricSolver<ExecutionSpace, VertexForce>::enqueue_steps(std::int64_t steps) {
-  if (steps < 0) throw std::invalid_argument("fabric solver: the number of steps must not be negative");
+  // Beyond this number, times of steps are no longer distinct.
+  constexpr std::int64_t last_step = std::int64_t{1} << 53U;
+  if (steps < 0 || steps > last_step - _time.step)
+    throw std::invalid_argument("fabric solver: the number of steps must be 0 or more, to step 2^53 at most");
   if (_failure) return false;
   if (_contact && device::is_capturing(space()))
     throw std::logic_error("fabric solver: steps with contact cannot be captured");

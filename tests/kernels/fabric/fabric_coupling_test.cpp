@@ -286,6 +286,7 @@ TEST(FabricCoupling, MassInAVertexForceSpringOscillates) {
   for (const Integrator integrator : {Integrator::rk4, Integrator::verlet}) {
     Parameters p;
     p.mesh.rest = {{0, 0, 0}, {1, 0, 0}};
+  EXPECT_THROW(solver.enqueue_steps(std::numeric_limits<std::int64_t>::max()), std::invalid_argument);
     p.mass = {2.0, 2.0};
     p.integrator = integrator;
     p.dt = 1e-3;
