@@ -294,6 +294,17 @@ class Growth {
     return failure;
   }
   [[nodiscard]] std::vector<double> values() const {
+  /// Captures two steps into a graph that is not launched.
+  void capture() {
+    const device::CapturedGraph<Space> unused(_instance, [this](const Space&) { enqueue_steps(2); });
+  }
+  /// Ends the effect of captures on the loop.
+  void forget_captures() {
+    _loop.forget_captures();
+    _step = device_step();
+  }
+  [[nodiscard]] std::int64_t enqueued_launches() const { return _loop.launches(); }
+  [[nodiscard]] std::int64_t published_launches() const { return _loop.status().launches; }
     const auto host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace{}, _y);
     return {host.data(), host.data() + cells};
   }
@@ -366,6 +377,30 @@ TEST(StepMonitor, EnqueuesNothingAfterAFailure) {
 }
 
 TEST(StepMonitor, FailuresAreOrderedByStepThenIndex) {
+TEST(StepMonitor, PublishesBatchesAfterACapture) {
+  Growth growth;
+  growth.capture();
+  EXPECT_TRUE(growth.enqueue_steps(50));
+  EXPECT_TRUE(growth.enqueue_steps(14));
+  EXPECT_FALSE(growth.synchronize());
+  EXPECT_EQ(growth.device_step(), 64);
+  EXPECT_EQ(growth.enqueued_launches(), 64 / checkpoint_every);
+  EXPECT_EQ(growth.published_launches(), growth.enqueued_launches());
+}
+
+TEST(StepMonitor, TakesCheckpointsAgainAfterCapturesAreForgotten) {
+  Growth growth;
+  growth.capture();
+  growth.enqueue_steps(20);
+  growth.forget_captures();
+  EXPECT_EQ(growth.step(), 20);
+  growth.enqueue_steps(100);
+  const auto failure = growth.synchronize();
+  ASSERT_TRUE(failure);
+  EXPECT_EQ(failure->step, 100);
+  EXPECT_EQ(failure->checkpoint_step, 96);
+}
+
   EXPECT_LT(encode_failure(3, 500), encode_failure(4, 0));
   EXPECT_LT(encode_failure(4, 0), encode_failure(4, 1));
   const std::uint64_t failure = encode_failure(123'456'789, 987'654);
