@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <stdexcept>
 #include <vector>
 
 #include "kernels/device/copy.hpp"
@@ -293,7 +294,6 @@ class Growth {
     }
     return failure;
   }
-  [[nodiscard]] std::vector<double> values() const {
   /// Captures two steps into a graph that is not launched.
   void capture() {
     const device::CapturedGraph<Space> unused(_instance, [this](const Space&) { enqueue_steps(2); });
@@ -305,6 +305,7 @@ class Growth {
   }
   [[nodiscard]] std::int64_t enqueued_launches() const { return _loop.launches(); }
   [[nodiscard]] std::int64_t published_launches() const { return _loop.status().launches; }
+  [[nodiscard]] std::vector<double> values() const {
     const auto host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace{}, _y);
     return {host.data(), host.data() + cells};
   }
@@ -376,7 +377,6 @@ TEST(StepMonitor, EnqueuesNothingAfterAFailure) {
   EXPECT_EQ(growth.step(), step);
 }
 
-TEST(StepMonitor, FailuresAreOrderedByStepThenIndex) {
 TEST(StepMonitor, PublishesBatchesAfterACapture) {
   Growth growth;
   growth.capture();
@@ -401,6 +401,7 @@ TEST(StepMonitor, TakesCheckpointsAgainAfterCapturesAreForgotten) {
   EXPECT_EQ(failure->checkpoint_step, 96);
 }
 
+TEST(StepMonitor, FailuresAreOrderedByStepThenIndex) {
   EXPECT_LT(encode_failure(3, 500), encode_failure(4, 0));
   EXPECT_LT(encode_failure(4, 0), encode_failure(4, 1));
   const std::uint64_t failure = encode_failure(123'456'789, 987'654);
@@ -433,6 +434,29 @@ TEST(Driver, FallsBackFromPersistentToGraphToPlain) {
   EXPECT_EQ(select_driver(Driver::graph, true, false), Driver::plain);
   EXPECT_EQ(select_driver(Driver::plain, true, true), Driver::plain);
   EXPECT_EQ(select_driver(Driver::stages, true, true), Driver::stages);
+}
+
+struct AddOneFunctor {
+  Values y;
+  KOKKOS_FUNCTION void operator()(int i) const { y(i) += 1.0; }
+};
+
+TEST(CapturedGraph, LeavesItsInstanceUsableAfterAnError) {
+  const device::Instance<Space> instance(1);
+  const Values y("y", cells);
+  const auto add_one = [&](const Space& space) {
+    device::launch_each(space, "add one", cells, AddOneFunctor{y});
+  };
+  const auto launch_throwing = [&] {
+    const device::CapturedGraph<Space> graph(instance, [](const Space&) { throw std::logic_error("test"); });
+    graph.launch();
+  };
+  EXPECT_THROW(launch_throwing(), std::logic_error);
+  add_one(instance.space());
+  const device::CapturedGraph<Space> graph(instance, add_one);
+  graph.launch();
+  instance.space().fence();
+  EXPECT_EQ(Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace{}, y)(cells - 1), 2.0);
 }
 
 TEST(Driver, DriversGiveTheSameBits) {
