@@ -182,6 +182,15 @@ TEST(FabricSurface, ReadsPaddedViewsWithoutFenceAllocationOrCopyAndReplaysFromAG
   expect_near(numbers(area), compact.vertex_area, 0.0);
 }
 
+TEST(FabricSurface, RejectsTrianglesOfVerticesThatDoNotExist) {
+  const Mesh valid = random_patch(4, 3, 2);
+  for (const int vertex : {-1, static_cast<int>(valid.rest.size())}) {
+    Mesh mesh = valid;
+    mesh.triangles[1][2] = vertex;
+    EXPECT_THROW((SurfaceViews<Space>(Space(), mesh)), std::invalid_argument);
+  }
+}
+
 TEST(FabricSurface, RejectsViewsWithTooFewRows) {
   const Space space;
   const Mesh mesh = random_patch(4, 3, 2);
