@@ -115,7 +115,7 @@ void start(FabricSolver<Space>& solver, const Parameters& p, double velocity) {
   solver.upload(state.x, state.v);
 }
 
-TEST(FabricPins, MatchAnExpressionInEveryDriver) {
+TEST(FabricPins, PinsMatchAnExpressionInEveryDriver) {
   const device::Instance<Space> instance(1);
   const Space& space = instance.space();
   for (const Method& method : methods) {
@@ -143,7 +143,7 @@ TEST(FabricPins, MatchAnExpressionInEveryDriver) {
   }
 }
 
-TEST(FabricPins, FollowViewsThatAKernelWritesBeforeEachStep) {
+TEST(FabricPins, PinsFollowViewsThatAKernelWritesBeforeEachStep) {
   const device::Instance<Space> instance(1);
   const Space& space = instance.space();
   const double amplitude = 0.1, omega = 40.0;
@@ -171,7 +171,7 @@ TEST(FabricPins, FollowViewsThatAKernelWritesBeforeEachStep) {
   }
 }
 
-TEST(FabricPins, KeepTheirVelocityUntilViewsAreWritten) {
+TEST(FabricPins, PinsKeepTheirVelocityUntilViewsAreWritten) {
   const device::Instance<Space> instance(1);
   const Space& space = instance.space();
   for (const Method& method : methods) {
@@ -194,7 +194,7 @@ TEST(FabricPins, KeepTheirVelocityUntilViewsAreWritten) {
   }
 }
 
-TEST(FabricPins, DoNotMoveFreeAxesOrAxesOfExpressions) {
+TEST(FabricPins, PinsDoNotMoveFreeAxesOrAxesOfExpressions) {
   const device::Instance<Space> instance(1);
   const Space& space = instance.space();
   Parameters p = pinned_sheet({Integrator::rk4, Driver::automatic});
@@ -209,7 +209,7 @@ TEST(FabricPins, DoNotMoveFreeAxesOrAxesOfExpressions) {
   EXPECT_NEAR(now.x[10][0], p.mesh.rest[10][0], 0.1);
 }
 
-TEST(FabricPins, AreAtRestIfViewsAreRequestedBeforeTheFirstUpload) {
+TEST(FabricPins, PinsAreAtRestIfViewsAreRequestedBeforeTheFirstUpload) {
   const device::Instance<Space> instance(1);
   for (const Method& method : methods) {
     const Parameters p = pinned_sheet(method);
