@@ -57,7 +57,8 @@ class FabricSolver {
   using Points = PointsView<ExecutionSpace>;
   using PressureView = ListView<ExecutionSpace, double>;
 
-  /// Allocates all memory of steps; blocks. Throws std::invalid_argument for parameters out of range.
+  /// Allocates all memory of steps, and places the vertices at rest; blocks. Throws std::invalid_argument for
+  /// parameters out of range.
   FabricSolver(const ExecutionSpace& space, const Parameters& parameters, VertexForce vertex_force = {});
   FabricSolver(const FabricSolver&) = delete;  // captured steps refer to this object
   FabricSolver& operator=(const FabricSolver&) = delete;
@@ -92,19 +93,21 @@ class FabricSolver {
   /// Enqueues `steps` steps of `time_state().dt` and a checkpoint after every 256th step. Asynchronous but
   /// for a bound on the steps in flight of some 0.1 s, and at least 2048 steps. Returns false, and enqueues
   /// nothing more, once a failure is known on the host. The distribution of steps over calls changes no bit.
-  /// Throws std::invalid_argument for a negative number.
+  /// Throws std::invalid_argument for a negative number, and one that ends beyond step 2^53.
   ///
   /// It may be called while the caller captures the instance's stream into a CUDA graph, except with contact
-  /// (std::logic_error). Each launch of that graph takes `steps` steps. From the first capture on, the solver
-  /// takes no checkpoints of its own, and `time_state` is valid after `synchronize`. A captured graph is
-  /// invalid after `set_time_state`, `set_vertex_force`, and the first calls of `loads`, `pressures` and
-  /// `prescribed_motion`.
+  /// (std::logic_error). Each launch of that graph takes `steps` steps; the caller bounds the launches in
+  /// flight. From the first capture on, the solver takes no checkpoints of its own, and `time_state` is valid
+  /// after `synchronize`; `upload` does not change that, and the graph remains valid. A captured graph is
+  /// invalid after `set_vertex_force`, `set_time_state`, and the first calls of `loads`, `pressures` and
+  /// `prescribed_motion`. After `set_time_state` the solver takes checkpoints again.
   bool enqueue_steps(std::int64_t steps);
 
   /// Enqueues the number of steps that ends nearest to `time`, s; none if that time has passed. Returns as
-  /// `enqueue_steps`. After steps were captured, call `synchronize` first: until then the present time is not
-  /// known on the host. Throws std::invalid_argument for a time that is not finite.
-  bool advance_to(double time) { return enqueue_steps(_time.steps_to(time)); }
+  /// `enqueue_steps`. Once steps have been captured, it blocks until all steps are done, since only the
+  /// device counts them. Throws std::invalid_argument for a time that is not finite or 1e15 steps away, and
+  /// std::logic_error in a capture, whose graph may be launched at any time.
+  bool advance_to(double time);
 
   /// Enqueues a copy of the state to the checkpoint, which has no effect after a failure.
   void enqueue_checkpoint() { save_checkpoint(-1); }
@@ -231,6 +234,16 @@ class FabricSolver {
   template <ConstitutiveModel model>
   void enqueue_verlet(bool ends, bool begins);
   void restore_addresses();
+  /// Returns to steps that the host counts; captured graphs are invalid. Replays have left messages in the
+  /// persistent driver that it must not take for those of its next launch.
+  void forget_captures() {
+    _loop.forget_captures();
+    if constexpr (device::PersistentKernel<ExecutionSpace>::available) {
+      if (!_persistent) return;
+      _persistent->grid.clear_messages();
+      _persistent->epoch = 0;
+    }
+  }
   void save_checkpoint(std::int64_t launches);
   void reset_monitor();
 
@@ -303,6 +316,7 @@ FabricSolver<ExecutionSpace, VertexForce>::FabricSolver(const ExecutionSpace& sp
   _saved_x = points("drogue::fabric::saved_positions");
   _saved_v = points("drogue::fabric::saved_velocities");
   copy_to_points(space, p.mesh.rest, _x);
+  device::copy(space, _saved_x, _x);
   reset_monitor();
   if (p.contact.asked_for())
     _contact =
@@ -576,7 +590,10 @@ struct FabricSolver<ExecutionSpace, VertexForce>::UniformSteps {
 
 template <class ExecutionSpace, class VertexForce>
 bool FabricSolver<ExecutionSpace, VertexForce>::enqueue_steps(std::int64_t steps) {
-  if (steps < 0) throw std::invalid_argument("fabric solver: the number of steps must not be negative");
+  // Beyond this number, times of steps are no longer distinct.
+  constexpr std::int64_t last_step = std::int64_t{1} << 53U;
+  if (steps < 0 || steps > last_step - _time.step)
+    throw std::invalid_argument("fabric solver: the number of steps must be 0 or more, to step 2^53 at most");
   if (_failure) return false;
   if (_contact && device::is_capturing(space()))
     throw std::logic_error("fabric solver: steps with contact cannot be captured");
@@ -584,6 +601,14 @@ bool FabricSolver<ExecutionSpace, VertexForce>::enqueue_steps(std::int64_t steps
       _loop.enqueue_steps(_time.step, steps, stepping::checkpoint_interval, UniformSteps{*this});
   restore_addresses();
   return sound;
+}
+
+template <class ExecutionSpace, class VertexForce>
+bool FabricSolver<ExecutionSpace, VertexForce>::advance_to(double time) {
+  if (device::is_capturing(space()))
+    throw std::logic_error("fabric solver: a captured graph takes a fixed number of steps, not a time");
+  if (_loop.has_captured_steps()) synchronize();
+  return enqueue_steps(_time.steps_to(time));
 }
 
 template <class ExecutionSpace, class VertexForce>
@@ -679,6 +704,7 @@ void FabricSolver<ExecutionSpace, VertexForce>::set_time_state(const TimeState& 
     throw std::invalid_argument("fabric solver: the step must not precede the first step with its dt");
   synchronize();
   _time = time;
+  if (_loop.has_captured_steps()) forget_captures();
   reset_monitor();
   if (moves_pins() && !_failure) apply_dirichlet(_x, _v, 0.0, true);
   enqueue_checkpoint();

@@ -63,7 +63,8 @@ class Solver {
 
   /// Enqueues `steps` steps of `time_state().dt`. Asynchronous but for a bound on the steps in flight.
   /// Returns false once a failure is known; no steps follow until the next `upload`. The distribution of
-  /// steps over calls changes no bit. Throws only after a failed kernel.
+  /// steps over calls changes no bit. Throws std::invalid_argument for a negative number of steps, and
+  /// std::runtime_error after a failed kernel.
   virtual bool advance(std::int64_t steps) = 0;
 
   /// First failed step, if any. Blocks until all steps are done. Throws only after a failed kernel.
@@ -73,8 +74,8 @@ class Solver {
   /// checkpoint. The initial values are step 0, time 0 and `Parameters::dt`. Does not throw.
   [[nodiscard]] virtual TimeState time_state() const = 0;
 
-  /// Sets step count, time and dt, s. Blocks. Throws std::invalid_argument unless dt is positive and time
-  /// finite.
+  /// Sets step count, time and dt, s. Blocks. Throws std::invalid_argument unless dt is positive, time
+  /// finite, and 0 <= since <= step.
   virtual void set_time_state(const TimeState& time) = 0;
 
   /// Sets dt, s, of the following steps. Blocks. Throws std::invalid_argument unless dt is positive.

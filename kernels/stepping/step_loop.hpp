@@ -8,6 +8,7 @@
 
 #include "kernels/device/captured_graph.hpp"
 #include "kernels/device/instance.hpp"
+#include "kernels/device/launch.hpp"
 #include "kernels/stepping/step_control.hpp"
 #include "kernels/stepping/step_monitor.hpp"
 
@@ -97,6 +98,15 @@ concept UniformSteps = requires(T steps, std::int64_t count) {
   steps.checkpoint(count);
 };
 
+/// Kernel of one thread that publishes the number of launches, for batches without a checkpoint.
+template <class StatusView>
+struct PublishLaunchesFunctor {
+  StatusView status;
+  std::int64_t launches;
+
+  KOKKOS_FUNCTION void operator()(int /*i*/) const { status().launches = launches; }
+};
+
 /// Host loop over the steps of one solver on its execution-space instance.
 template <class ExecutionSpace>
 class StepLoop {
@@ -136,6 +146,13 @@ class StepLoop {
 
   /// True once the caller has captured steps, so that only the device counts them. Does not throw.
   [[nodiscard]] bool has_captured_steps() const { return _captured; }
+
+  /// Declares that no captured steps will be launched again, and that the caller has set its number of steps
+  /// to that of the device. Does not throw.
+  void forget_captures() {
+    _captured = false;
+    _steps_since_capture = 0;
+  }
 
   /// Counts a status-publishing launch outside of the loop. Does not throw.
   void count_launch() { ++_launches; }
@@ -181,7 +198,7 @@ class StepLoop {
           interrupted = true;
           break;
         }
-        const double rate = steps_per_second(now.step - first_step, clock - begin);
+        const double rate = per_second(now.step - first_step, clock - begin);
         if (!on_host)
           window = std::clamp<std::int64_t>(static_cast<std::int64_t>(seconds_in_flight * rate), 8,
                                             max_launches_in_flight);
@@ -226,26 +243,26 @@ class StepLoop {
   /// Enqueues `count` steps from step `step` on in batches that end at multiples of `checkpoint_every`, each
   /// with a checkpoint. Asynchronous but for the bound on the batches in flight. Returns false after a
   /// recorded failure or if `poll` returns false; sets `step` to the number of steps enqueued. Throws only
-  /// what `steps` and `poll` throw.
+  /// what `steps`, `poll` or a failed launch throw.
   ///
   /// It may be called while the caller captures the instance's stream into a graph. From then on only the
-  /// device counts steps (`completed_steps`), which `step` leaves out, and the loop neither takes checkpoints
-  /// nor bounds the steps in flight: the caller does, with a fence.
+  /// device counts steps (`completed_steps`), which `step` leaves out, and the loop takes no checkpoints; see
+  /// `forget_captures`. Batches that are not captured stay bounded. Launches of the graph are not.
   template <UniformSteps Steps>
   bool enqueue_steps(std::int64_t& step, std::int64_t count, std::int64_t checkpoint_every, Steps&& steps,
                      const Poll& poll = {}) {
     _capturing = device::is_capturing(_instance->space());
     _captured = _captured || _capturing;
-    if (_captured) {
-      if (!_capturing && status().failed != 0) return false;
+    if (_capturing) {
       for (std::int64_t left = count; left > 0; left -= checkpoint_every)
         steps.enqueue(std::min(left, checkpoint_every));
       return true;
     }
-    const std::int64_t first_step = status().step, end = step + count;
+    std::int64_t& enqueued = _captured ? _steps_since_capture : step;
+    const std::int64_t first_launch = status().launches, end = enqueued + count;
     const auto begin = SteadyTime::now();
     auto last_poll = begin;
-    while (step < end) {
+    while (enqueued < end) {
       const Status now = status();
       if (now.failed != 0) return false;
       const auto clock = SteadyTime::now();
@@ -253,20 +270,24 @@ class StepLoop {
         last_poll = clock;
         if (poll && !poll(now)) return false;
       }
-      const double rate = steps_per_second(now.step - first_step, clock - begin);
-      const double batches = seconds_in_flight * rate / static_cast<double>(checkpoint_every);
+      // Each batch publishes one launch. Steps of a captured graph do not count.
+      const double batches = seconds_in_flight * per_second(now.launches - first_launch, clock - begin);
       const auto window =
           static_cast<std::int64_t>(std::clamp(batches, 8.0, static_cast<double>(max_launches_in_flight)));
       if (_launches - now.launches >= window) {
         std::this_thread::yield();
         continue;
       }
-      const std::int64_t batch = std::min(end - step, checkpoint_every - step % checkpoint_every);
+      const std::int64_t batch = std::min(end - enqueued, checkpoint_every - enqueued % checkpoint_every);
       steps.enqueue(batch);
-      step += batch;
-      if (step % checkpoint_every != 0) continue;
+      enqueued += batch;
+      if (enqueued % checkpoint_every != 0) continue;
       count_launch();
-      steps.checkpoint(_launches);
+      if (_captured)
+        device::launch_each(_instance->space(), "drogue::stepping::publish_launches", 1,
+                            PublishLaunchesFunctor<StatusView>{_status, _launches});
+      else
+        steps.checkpoint(_launches);
     }
     return status().failed == 0;
   }
@@ -274,8 +295,8 @@ class StepLoop {
  private:
   using SteadyTime = std::chrono::steady_clock;
   static double seconds(SteadyTime::duration span) { return std::chrono::duration<double>(span).count(); }
-  static double steps_per_second(std::int64_t steps, SteadyTime::duration span) {
-    return span.count() > 0 ? static_cast<double>(steps) / seconds(span) : 0.0;
+  static double per_second(std::int64_t count, SteadyTime::duration span) {
+    return span.count() > 0 ? static_cast<double>(count) / seconds(span) : 0.0;
   }
 
   /// Estimated number of steps, at least one, to the end of the request. Launches beyond it would find no
@@ -292,6 +313,7 @@ class StepLoop {
   StatusView _status;
   std::int64_t _launches = 0;
   bool _capturing = false, _captured = false;
+  std::int64_t _steps_since_capture = 0;  ///< enqueued outside of captures
 };
 
 }  // namespace drogue::stepping

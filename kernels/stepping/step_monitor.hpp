@@ -1,11 +1,11 @@
 #pragma once
 
 #include <optional>
-#include <string>
 
 #include <Kokkos_Core.hpp>
 
 #include "kernels/device/copy.hpp"
+#include "kernels/device/launch.hpp"
 #include "kernels/device/memory.hpp"
 #include "kernels/stepping/failure_code.hpp"
 #include "kernels/stepping/status.hpp"
@@ -124,12 +124,10 @@ class Checkpoint {
   /// recorded. It publishes `launches` unless that is negative, for launches that `StepLoop` does not count.
   /// Asynchronous; throws `std::runtime_error` if the launch fails.
   template <class Copy>
-  void save(const ExecutionSpace& space, const std::string& label, const StepMonitor<ExecutionSpace>& monitor,
+  void save(const ExecutionSpace& space, const char* label, const StepMonitor<ExecutionSpace>& monitor,
             int parity, int count, const Copy& copy, std::int64_t launches) const {
-    Kokkos::parallel_for(
-        label,
-        Kokkos::Experimental::require(Kokkos::RangePolicy<ExecutionSpace>(space, 0, count),
-                                      Kokkos::Experimental::WorkItemProperty::HintLightWeight),
+    device::launch_each(
+        space, label, count,
         CheckpointFunctor<ExecutionSpace, Copy>{monitor, copy, _saved_step, parity, launches});
   }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "kernels/fabric/launch.hpp"
 #include "kernels/fabric/stepping/divergence.hpp"
 #include "kernels/fabric/vertex_force.hpp"
 
@@ -49,7 +50,7 @@ KOKKOS_INLINE_FUNCTION void store_end(const StepMonitor<ExecutionSpace>& monitor
 /// One stage of a step of the classical Runge-Kutta method.
 template <class ExecutionSpace, ConstitutiveModel model, class VertexForce = NoVertexForce>
 struct RungeKuttaFunctor {
-  using R = std::conditional_t<device::is_host<ExecutionSpace>, device::HostPack<double>, double>;
+  using R = PackedReal<ExecutionSpace>;
   using Points = PointsView<ExecutionSpace>;
   using Bounds = Kokkos::LaunchBounds<128, 7>;
   static constexpr int lanes = device::Access<R>::lanes;
@@ -168,7 +169,7 @@ struct RungeKuttaHalfFunctor {
 /// kick. The sequence of operations does not depend on how steps are distributed over launches.
 template <class ExecutionSpace, ConstitutiveModel model, class VertexForce = NoVertexForce>
 struct VerletFunctor {
-  using R = std::conditional_t<device::is_host<ExecutionSpace>, device::HostPack<double>, double>;
+  using R = PackedReal<ExecutionSpace>;
   using Points = PointsView<ExecutionSpace>;
   using Bounds = Kokkos::LaunchBounds<128, 6>;
   static constexpr int lanes = device::Access<R>::lanes;

@@ -18,9 +18,10 @@ namespace drogue::fabric {
 /// Connectivity of a surface on a device. Constructed once; copies share the Views.
 template <class ExecutionSpace>
 struct SurfaceViews {
-  /// Copies the connectivity of a mesh to the device. Blocks. Throws only for lack of memory.
+  /// Copies the connectivity of a mesh to the device. Blocks. Throws std::invalid_argument for a triangle of
+  /// a vertex that the mesh lacks, and std::runtime_error if memory runs out.
   SurfaceViews(const ExecutionSpace& space, const mesh::Mesh& mesh)
-      : SurfaceViews(space, mesh, mesh::vertex_triangles(mesh)) {}
+      : SurfaceViews(space, mesh, mesh::vertex_triangles(with_valid_triangles(mesh))) {}
 
   /// Numbers of triangles and vertices. Does not throw.
   [[nodiscard]] int triangles() const { return static_cast<int>(corner.extent(0)); }
@@ -34,6 +35,15 @@ struct SurfaceViews {
       : corner(table_view(space, "drogue::fabric::surface_corners", columns(mesh))),
         first(list_view(space, "drogue::fabric::surface_first", incidence.first)),
         around(list_view(space, "drogue::fabric::surface_around", incidence.triangle)) {}
+
+  static const mesh::Mesh& with_valid_triangles(const mesh::Mesh& mesh) {
+    const auto vertices = static_cast<int>(mesh.rest.size());
+    for (const auto& corners : mesh.triangles)
+      for (const int i : corners)
+        if (i < 0 || i >= vertices)
+          throw std::invalid_argument("fabric surface: a triangle has a vertex that the mesh lacks");
+    return mesh;
+  }
 
   static std::array<std::vector<int>, 3> columns(const mesh::Mesh& mesh) {
     std::array<std::vector<int>, 3> result;

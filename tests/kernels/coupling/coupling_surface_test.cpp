@@ -9,6 +9,7 @@
 #include "kernels/mesh/generators.hpp"
 #include "kernels/reference/coupling/surface.hpp"
 #include "tests/support/fabric_mesh.hpp"
+#include "tests/support/other_space.hpp"
 #include "tests/support/profiled.hpp"
 
 // Areas, normals and velocities of a surface against the oracle.
@@ -17,12 +18,7 @@ namespace drogue::fabric {
 namespace {
 
 using Space = DROGUE_TEST_SPACE;
-#if defined(DROGUE_HAVE_OPENMP)
-using OtherHost = Kokkos::OpenMP;
-#else
-using OtherHost = Kokkos::Serial;
-#endif
-using OtherSpace = std::conditional_t<std::is_same_v<Space, Kokkos::Serial>, OtherHost, Kokkos::Serial>;
+using OtherSpace = drogue::testing::OtherHostSpace<Space>;
 using drogue::testing::random_patch;
 using drogue::testing::shaken;
 
@@ -184,6 +180,15 @@ TEST(FabricSurface, ReadsPaddedViewsWithoutFenceAllocationOrCopyAndReplaysFromAG
   Kokkos::deep_copy(space, area, 0.0);
   graph.launch();
   expect_near(numbers(area), compact.vertex_area, 0.0);
+}
+
+TEST(FabricSurface, RejectsTrianglesOfVerticesThatDoNotExist) {
+  const Mesh valid = random_patch(4, 3, 2);
+  for (const int vertex : {-1, static_cast<int>(valid.rest.size())}) {
+    Mesh mesh = valid;
+    mesh.triangles[1][2] = vertex;
+    EXPECT_THROW((SurfaceViews<Space>(Space(), mesh)), std::invalid_argument);
+  }
 }
 
 TEST(FabricSurface, RejectsViewsWithTooFewRows) {

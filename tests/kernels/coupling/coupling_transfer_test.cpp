@@ -10,6 +10,7 @@
 #include "kernels/coupling/spread.hpp"
 #include "kernels/device/captured_graph.hpp"
 #include "kernels/reference/coupling/grid_transfer.hpp"
+#include "tests/support/other_space.hpp"
 #include "tests/support/profiled.hpp"
 
 // Interpolation and spreading against the oracle, and their conservation, adjointness and reproducibility.
@@ -18,13 +19,7 @@ namespace drogue::coupling {
 namespace {
 
 using Space = DROGUE_TEST_SPACE;
-#if defined(DROGUE_HAVE_OPENMP)
-using OtherHost = Kokkos::OpenMP;
-#else
-using OtherHost = Kokkos::Serial;
-#endif
-/// Another backend, for comparison.
-using OtherSpace = std::conditional_t<std::is_same_v<Space, Kokkos::Serial>, OtherHost, Kokkos::Serial>;
+using OtherSpace = testing::OtherHostSpace<Space>;
 using reference::FaceField;
 using Vector = std::array<double, 3>;
 using Vectors = std::vector<Vector>;

@@ -115,7 +115,7 @@ void start(FabricSolver<Space>& solver, const Parameters& p, double velocity) {
   solver.upload(state.x, state.v);
 }
 
-TEST(FabricPins, MatchAnExpressionInEveryDriver) {
+TEST(FabricPins, PinsMatchAnExpressionInEveryDriver) {
   const device::Instance<Space> instance(1);
   const Space& space = instance.space();
   for (const Method& method : methods) {
@@ -143,7 +143,7 @@ TEST(FabricPins, MatchAnExpressionInEveryDriver) {
   }
 }
 
-TEST(FabricPins, FollowViewsThatAKernelWritesBeforeEachStep) {
+TEST(FabricPins, PinsFollowViewsThatAKernelWritesBeforeEachStep) {
   const device::Instance<Space> instance(1);
   const Space& space = instance.space();
   const double amplitude = 0.1, omega = 40.0;
@@ -171,7 +171,7 @@ TEST(FabricPins, FollowViewsThatAKernelWritesBeforeEachStep) {
   }
 }
 
-TEST(FabricPins, KeepTheirVelocityUntilViewsAreWritten) {
+TEST(FabricPins, PinsKeepTheirVelocityUntilViewsAreWritten) {
   const device::Instance<Space> instance(1);
   const Space& space = instance.space();
   for (const Method& method : methods) {
@@ -194,7 +194,7 @@ TEST(FabricPins, KeepTheirVelocityUntilViewsAreWritten) {
   }
 }
 
-TEST(FabricPins, DoNotMoveFreeAxesOrAxesOfExpressions) {
+TEST(FabricPins, PinsDoNotMoveFreeAxesOrAxesOfExpressions) {
   const device::Instance<Space> instance(1);
   const Space& space = instance.space();
   Parameters p = pinned_sheet({Integrator::rk4, Driver::automatic});
@@ -209,7 +209,7 @@ TEST(FabricPins, DoNotMoveFreeAxesOrAxesOfExpressions) {
   EXPECT_NEAR(now.x[10][0], p.mesh.rest[10][0], 0.1);
 }
 
-TEST(FabricPins, AreAtRestIfViewsAreRequestedBeforeTheFirstUpload) {
+TEST(FabricPins, PinsAreAtRestIfViewsAreRequestedBeforeTheFirstUpload) {
   const device::Instance<Space> instance(1);
   for (const Method& method : methods) {
     const Parameters p = pinned_sheet(method);
@@ -222,7 +222,22 @@ TEST(FabricPins, AreAtRestIfViewsAreRequestedBeforeTheFirstUpload) {
   }
 }
 
-TEST(FabricPins, RejectPrescribedMotionWithoutPins) {
+TEST(FabricPins, FailureBeforeTheFirstUploadReturnsToRest) {
+  const device::Instance<Space> instance(1);
+  for (const Method& method : methods) {
+    Parameters p = pinned_sheet(method);
+    p.motions = {{0, {40}, postfix({-1.0, "sqrt"})}};
+    FabricSolver<Space> solver(instance.space(), p);
+    solver.enqueue_steps(3);
+    const auto failure = solver.failure();
+    ASSERT_TRUE(failure);
+    EXPECT_EQ(failure->step, 1);
+    EXPECT_EQ(solver.time_state().step, 0);
+    EXPECT_EQ(largest_difference(downloaded(solver).x, p.mesh.rest), 0.0);
+  }
+}
+
+TEST(FabricPins, RejectsPrescribedMotionWithoutPins) {
   const device::Instance<Space> instance(1);
   Parameters p = pinned_sheet({Integrator::rk4, Driver::automatic});
   p.pinned.assign(p.mass.size(), 0);

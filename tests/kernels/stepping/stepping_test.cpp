@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <stdexcept>
 #include <vector>
 
 #include "kernels/device/copy.hpp"
@@ -293,6 +294,17 @@ class Growth {
     }
     return failure;
   }
+  /// Captures two steps into a graph that is not launched.
+  void capture() {
+    const device::CapturedGraph<Space> unused(_instance, [this](const Space&) { enqueue_steps(2); });
+  }
+  /// Ends the effect of captures on the loop.
+  void forget_captures() {
+    _loop.forget_captures();
+    _step = device_step();
+  }
+  [[nodiscard]] std::int64_t enqueued_launches() const { return _loop.launches(); }
+  [[nodiscard]] std::int64_t published_launches() const { return _loop.status().launches; }
   [[nodiscard]] std::vector<double> values() const {
     const auto host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace{}, _y);
     return {host.data(), host.data() + cells};
@@ -365,6 +377,30 @@ TEST(StepMonitor, EnqueuesNothingAfterAFailure) {
   EXPECT_EQ(growth.step(), step);
 }
 
+TEST(StepMonitor, PublishesBatchesAfterACapture) {
+  Growth growth;
+  growth.capture();
+  EXPECT_TRUE(growth.enqueue_steps(50));
+  EXPECT_TRUE(growth.enqueue_steps(14));
+  EXPECT_FALSE(growth.synchronize());
+  EXPECT_EQ(growth.device_step(), 64);
+  EXPECT_EQ(growth.enqueued_launches(), 64 / checkpoint_every);
+  EXPECT_EQ(growth.published_launches(), growth.enqueued_launches());
+}
+
+TEST(StepMonitor, TakesCheckpointsAgainAfterCapturesAreForgotten) {
+  Growth growth;
+  growth.capture();
+  growth.enqueue_steps(20);
+  growth.forget_captures();
+  EXPECT_EQ(growth.step(), 20);
+  growth.enqueue_steps(100);
+  const auto failure = growth.synchronize();
+  ASSERT_TRUE(failure);
+  EXPECT_EQ(failure->step, 100);
+  EXPECT_EQ(failure->checkpoint_step, 96);
+}
+
 TEST(StepMonitor, FailuresAreOrderedByStepThenIndex) {
   EXPECT_LT(encode_failure(3, 500), encode_failure(4, 0));
   EXPECT_LT(encode_failure(4, 0), encode_failure(4, 1));
@@ -398,6 +434,29 @@ TEST(Driver, FallsBackFromPersistentToGraphToPlain) {
   EXPECT_EQ(select_driver(Driver::graph, true, false), Driver::plain);
   EXPECT_EQ(select_driver(Driver::plain, true, true), Driver::plain);
   EXPECT_EQ(select_driver(Driver::stages, true, true), Driver::stages);
+}
+
+struct AddOneFunctor {
+  Values y;
+  KOKKOS_FUNCTION void operator()(int i) const { y(i) += 1.0; }
+};
+
+TEST(CapturedGraph, LeavesItsInstanceUsableAfterAnError) {
+  const device::Instance<Space> instance(1);
+  const Values y("y", cells);
+  const auto add_one = [&](const Space& space) {
+    device::launch_each(space, "add one", cells, AddOneFunctor{y});
+  };
+  const auto launch_throwing = [&] {
+    const device::CapturedGraph<Space> graph(instance, [](const Space&) { throw std::logic_error("test"); });
+    graph.launch();
+  };
+  EXPECT_THROW(launch_throwing(), std::logic_error);
+  add_one(instance.space());
+  const device::CapturedGraph<Space> graph(instance, add_one);
+  graph.launch();
+  instance.space().fence();
+  EXPECT_EQ(Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace{}, y)(cells - 1), 2.0);
 }
 
 TEST(Driver, DriversGiveTheSameBits) {
