@@ -14,6 +14,7 @@
 #include "kernels/flow/advection/momentum.hpp"
 #include "kernels/flow/boundary/faces.hpp"
 #include "kernels/flow/boundary/ghosts.hpp"
+#include "kernels/flow/diffusion/implicit_diffusion.hpp"
 #include "kernels/flow/observables/sample.hpp"
 #include "kernels/flow/observables/totals.hpp"
 #include "kernels/flow/projection/projection.hpp"
@@ -49,7 +50,7 @@ inline linear::PoissonProblem pressure_problem(const Parameters& parameters) {
 /// Incompressible flow on a staggered grid, on the caller's instance of an execution space, for coupling to
 /// other kernels. Second order in space and time. The projection is exact to round-off (Chorin 1968; Kim and
 /// Moin 1985 for the staggered grid), so that with explicit diffusion a pressure increment would give the
-/// same velocity.
+/// same velocity; Crank-Nicolson diffusion needs one.
 ///
 /// Functions block unless stated otherwise. All work is enqueued on the instance given to the constructor,
 /// which must outlive the solver; on CUDA it must have a stream of its own. After a failed step the state is
@@ -108,7 +109,8 @@ class FlowSolver {
   void enqueue_stage(const ExecutionSpace& space, const MomentumSetup<ExecutionSpace>& setup,
                      const Values& result, double fraction, double time_fraction) const;
   void enqueue_projection(const ExecutionSpace& space, const Values& result, double fraction,
-                          bool resists_backflow) const;
+                          bool is_initial) const;
+  [[nodiscard]] double kinematic_viscosity() const { return _parameters.viscosity / _parameters.density; }
 
   const device::Instance<ExecutionSpace>* _instance;
   Parameters _parameters;
@@ -120,12 +122,14 @@ class FlowSolver {
   Values _velocity, _predicted, _rate, _force;
   Values _divergence;  ///< right-hand side of the pressure equation, 1/s^2
   Values _pressure;
+  Values _pressure_increment;                  ///< empty with explicit diffusion, which needs no increments
   Values _eddy_viscosity, _eddy_acceleration;  ///< empty without a turbulence model
   /// Scratch of `totals`. The columns stand in the predicted velocity, which is free between steps, if that
   /// is large enough.
   TotalsView<ExecutionSpace> _column_totals, _plane_totals;
   Values _outflow_rows;
   ControlView<ExecutionSpace> _control;
+  std::optional<ImplicitDiffusion<ExecutionSpace>> _diffusion;  ///< Crank-Nicolson only
   mutable std::optional<Poisson> _poisson;  ///< an iterative solver keeps its last solution and residual
   stepping::StepLoop<ExecutionSpace> _loop;
   stepping::StepLauncher<ExecutionSpace> _launcher;
@@ -162,6 +166,11 @@ FlowSolver<ExecutionSpace>::FlowSolver(const device::Instance<ExecutionSpace>& i
   if (parameters.external_force) _force = field("drogue::flow::force");
   _divergence = Values("drogue::flow::divergence", cells);
   _pressure = Values("drogue::flow::pressure", cells);
+  const bool is_implicit = parameters.diffusion == Diffusion::crank_nicolson;
+  if (is_implicit) {
+    _pressure_increment = Values("drogue::flow::pressure_increment", cells);
+    _diffusion.emplace(space(), parameters);
+  }
   const auto nx = static_cast<std::size_t>(_grid.n[0]), columns = nx * static_cast<std::size_t>(_grid.n[1]);
   if (_predicted.size() >= total_count * columns)
     _column_totals = TotalsView<ExecutionSpace>(_predicted.data(), columns);
@@ -193,7 +202,7 @@ FlowSolver<ExecutionSpace>::FlowSolver(const device::Instance<ExecutionSpace>& i
         (parameters.body_force[axis] + parameters.pressure_drop[axis] / length) / parameters.density;
     if (_grid.n[axis] > 1) squares += _grid.inverse_h[axis] * _grid.inverse_h[axis];
   }
-  const double nu = parameters.viscosity / parameters.density;
+  const double nu = is_implicit ? 0.0 : kinematic_viscosity();
   // The second-order Adams-Bashforth method is stable for z in [-1, 0] of the negative real axis; the largest
   // eigenvalue of the viscous term is 4 nu times the sum of the squares.
   _constants = {
@@ -339,7 +348,9 @@ void FlowSolver<ExecutionSpace>::start() {
   _boundary.enqueue_evaluation(space(), _control, {0.0, true});
   launch_ghosts(space(), _grid, _boundary.conditions(), _velocity);
   device::copy(space(), _predicted, _velocity);
-  enqueue_projection(space(), _velocity, 1.0, false);
+  enqueue_projection(space(), _velocity, 1.0, true);
+  // The first step has no pressure of a previous one.
+  if (_diffusion) Kokkos::deep_copy(space(), _pressure, 0.0);
   control = read_control();
   control.now.rate = control.first_failure == no_failure && control.pressure_failed == 0
                          ? control.next_rate
@@ -408,7 +419,7 @@ void FlowSolver<ExecutionSpace>::enqueue_step(const ExecutionSpace& space) const
                                       _force,
                                       _eddy_acceleration,
                                       _control,
-                                      _parameters.viscosity / _parameters.density,
+                                      _diffusion ? 0.0 : kinematic_viscosity(),
                                       {_acceleration[0], _acceleration[1], _acceleration[2]},
                                       1.0 / _parameters.density,
                                       smoothness_floor,
@@ -448,19 +459,33 @@ void FlowSolver<ExecutionSpace>::enqueue_stage(const ExecutionSpace& space,
   dispatch_momentum(space, setup, _parameters.advection);
   if (_boundary.changes()) _boundary.enqueue_evaluation(space, _control, {time_fraction, false});
   launch_boundary_faces(space, setup, _boundary.conditions());
-  enqueue_projection(space, result, fraction, _boundary.has_outflow());
+  if (_diffusion)
+    _diffusion->enqueue(
+        space,
+        {_grid, _boundary.conditions(), _velocity, _predicted, _pressure, _control, kinematic_viscosity()},
+        _divergence, _pressure_increment);
+  enqueue_projection(space, result, fraction, false);
 }
 
 template <class ExecutionSpace>
 void FlowSolver<ExecutionSpace>::enqueue_projection(const ExecutionSpace& space, const Values& result,
-                                                    double fraction, bool resists_backflow) const {
-  const ProjectionSetup<ExecutionSpace> setup{
-      _grid,    _boundary.conditions(), _predicted, result, _divergence, _pressure, _control,
-      fraction, resists_backflow};
+                                                    double fraction, bool is_initial) const {
+  const Values& unknown = _diffusion ? _pressure_increment : _pressure;
+  const ProjectionSetup<ExecutionSpace> setup{_grid,
+                                              _boundary.conditions(),
+                                              _predicted,
+                                              result,
+                                              _divergence,
+                                              unknown,
+                                              _diffusion && !is_initial ? _pressure : Values(),
+                                              _control,
+                                              kinematic_viscosity(),
+                                              fraction,
+                                              !is_initial && _boundary.has_outflow()};
   launch_divergence(space, setup);
   std::visit(
       [&](auto& poisson) {
-        poisson.enqueue_solve(_divergence, _pressure);
+        poisson.enqueue_solve(_divergence, unknown);
         if constexpr (requires { poisson.converged(); })
           if (!poisson.converged())
             device::launch_each(space, "drogue::flow::pressure_failure", 1,

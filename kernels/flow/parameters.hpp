@@ -24,7 +24,8 @@ enum class TimeScheme {
 
 /// Time integration of viscous stresses.
 enum class Diffusion {
-  explicit_,  ///< as advection; limits dt to h^2 / (4 d nu) in d dimensions
+  explicit_,       ///< as advection; limits dt to h^2 / (4 d nu) in d dimensions
+  crank_nicolson,  ///< implicit, second order; needs AB2. Does not limit dt
 };
 
 /// Model of unresolved scales.

@@ -22,11 +22,13 @@ template <class ExecutionSpace>
 struct ProjectionSetup {
   MacGrid grid;
   BoundaryConditions<ExecutionSpace> boundary;
-  List<ExecutionSpace> predicted;   ///< m/s, with ghost cells
-  List<ExecutionSpace> velocity;    ///< result, m/s, with ghost cells
-  List<ExecutionSpace> divergence;  ///< right-hand side of the pressure equation at the cells, 1/s^2
-  List<ExecutionSpace> pressure;    ///< kinematic, at the cells, m^2/s^2
+  List<ExecutionSpace> predicted;       ///< m/s, with ghost cells
+  List<ExecutionSpace> velocity;        ///< result, m/s, with ghost cells
+  List<ExecutionSpace> divergence;      ///< right-hand side of the pressure equation at the cells, 1/s^2
+  List<ExecutionSpace> pressure;        ///< kinematic, at the cells, m^2/s^2; or its increment
+  List<ExecutionSpace> total_pressure;  ///< sum of the increments, m^2/s^2; empty without increments
   ControlView<ExecutionSpace> control;
+  double nu;              ///< kinematic viscosity of implicit diffusion, m^2/s
   double step_fraction;   ///< of dt that the projection covers
   bool resists_backflow;  ///< false: the pressure on outflows is zero
 
@@ -114,6 +116,10 @@ struct CorrectionFunctor {
     std::int64_t stride = 1;
     const std::int64_t cell = i + g.n[0] * (j + static_cast<std::int64_t>(g.n[1]) * k);
     const double p = setup.pressure(cell);
+    // The viscous term makes the pressure of second order up to the sides: Brown, Cortez and Minion 2001, eq.
+    // (10).
+    if (setup.total_pressure.data() != nullptr)
+      setup.total_pressure(cell) += p - 0.5 * setup.nu * dt * setup.divergence(cell);
     double rate = 0.0;
     for (int axis = 0; axis < 3; stride *= g.n[axis], ++axis) {
       const std::int64_t place = axis * g.component + at;

@@ -24,7 +24,7 @@ class DiagonalizationSolver {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const int n = problem.cells[axis];
       _eigenvalues[axis] = to_device(space, "drogue::linear::eigenvalues", axis_eigenvalues(problem, axis));
-      if (n == 1) continue;
+      if (!problem.varies_along(axis)) continue;
       // Column k holds eigenvector k.
       std::vector<double> basis(static_cast<std::size_t>(n) * static_cast<std::size_t>(n));
       for (int k = 0; k < n; ++k)
@@ -33,34 +33,33 @@ class DiagonalizationSolver {
               axis_eigenvector(problem.axes[axis], n, k, i);
       _basis[axis] = to_device(space, "drogue::linear::eigenvectors", basis);
     }
-    _work = List(Kokkos::view_alloc(space, Kokkos::WithoutInitializing, "drogue::linear::work"), cells());
+    _work =
+        List(Kokkos::view_alloc(space, Kokkos::WithoutInitializing, "drogue::linear::work"), _problem.size());
   }
 
-  /// Solves for `solution`, in its unit, with the right-hand side in that unit per m^2, which it keeps.
-  /// Asynchronous; neither fences nor allocates. Throws std::invalid_argument for an array of the wrong size.
-  void enqueue_solve(const List& right_hand_side, const List& solution) const {
-    if (right_hand_side.extent(0) != cells() || solution.extent(0) != cells())
+  /// Applies the inverse of the operator to the right-hand side, which it keeps. For the Laplacian that is in
+  /// the unit of the solution per m^2. Asynchronous; neither fences nor allocates. Throws
+  /// std::invalid_argument for an array of the wrong size.
+  void enqueue_solve(const List& right_hand_side, const List& solution,
+                     const SpectralOperator& spectral_operator = {}) const {
+    if (right_hand_side.extent(0) != _problem.size() || solution.extent(0) != _problem.size())
       throw std::invalid_argument("Poisson solver: the arrays must hold one value per cell");
     // An even number of products leaves the result in the solution.
     List from = right_hand_side, to = _work, other = solution;
     const auto transform = [&](std::size_t axis, bool forward) {
-      if (_problem.cells[axis] == 1) return;
+      if (!_problem.varies_along(axis)) return;
       _product.along_axis(_problem.cells, axis, _basis[axis], forward, from, to);
       from = to;
       std::swap(to, other);
     };
     for (std::size_t axis = 0; axis < 3; ++axis) transform(axis, true);
-    scale_spectrum(_space, SpectralScalingFunctor<ExecutionSpace>{from.data(), _eigenvalues[0],
-                                                                  _eigenvalues[1], _eigenvalues[2], 1, 1.0});
+    scale_spectrum(_space,
+                   SpectralScalingFunctor<ExecutionSpace>{from.data(), _eigenvalues[0], _eigenvalues[1],
+                                                          _eigenvalues[2], 1, 1.0, spectral_operator});
     for (std::size_t axis = 0; axis < 3; ++axis) transform(axis, false);
   }
 
  private:
-  [[nodiscard]] std::size_t cells() const {
-    return static_cast<std::size_t>(_problem.cells[0]) * static_cast<std::size_t>(_problem.cells[1]) *
-           static_cast<std::size_t>(_problem.cells[2]);
-  }
-
   ExecutionSpace _space;
   PoissonProblem _problem;
   DenseProduct<ExecutionSpace> _product;

@@ -25,10 +25,11 @@ struct AxisTransform {
   double normalisation;
 };
 
-/// Transform whose basis diagonalises the second difference with the given conditions, for n cells. Does not
-/// throw.
+/// Transform whose basis diagonalises the second difference with the given conditions, for n unknowns. Does
+/// not throw.
 inline AxisTransform axis_transform(const AxisConditions& axis, int n) {
   if (axis.periodic) return {FFTW_R2HC, FFTW_HC2R, 1.0 / n};
+  if (axis.on_faces) return {FFTW_RODFT00, FFTW_RODFT00, 0.5 / (n + 1)};
   const bool low = axis.low == EndCondition::neumann, high = axis.high == EndCondition::neumann;
   if (low && high) return {FFTW_REDFT10, FFTW_REDFT01, 0.5 / n};
   if (low) return {FFTW_REDFT11, FFTW_REDFT11, 0.5 / n};
@@ -57,7 +58,7 @@ class FourierSolver {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const int n = problem.cells[axis];
       std::vector<double> values(static_cast<std::size_t>(n), 0.0);
-      if (n > 1) {
+      if (problem.varies_along(axis)) {
         const AxisTransform transform = axis_transform(problem.axes[axis], n);
         _normalisation *= transform.normalisation;
         for (int k = 0; k < n; ++k) {
@@ -72,13 +73,12 @@ class FourierSolver {
     }
   }
 
-  /// Solves for `solution`, in its unit, with the right-hand side in that unit per m^2, which it keeps.
-  /// Asynchronous where the execution space is. Throws std::invalid_argument for an array of the wrong size.
-  void enqueue_solve(const List& right_hand_side, const List& solution) const {
-    const std::size_t cells = static_cast<std::size_t>(_problem.cells[0]) *
-                              static_cast<std::size_t>(_problem.cells[1]) *
-                              static_cast<std::size_t>(_problem.cells[2]);
-    if (right_hand_side.extent(0) != cells || solution.extent(0) != cells)
+  /// Applies the inverse of the operator to the right-hand side, which it keeps. For the Laplacian that is in
+  /// the unit of the solution per m^2. Asynchronous where the execution space is. Throws
+  /// std::invalid_argument for an array of the wrong size.
+  void enqueue_solve(const List& right_hand_side, const List& solution,
+                     const SpectralOperator& spectral_operator = {}) const {
+    if (right_hand_side.extent(0) != _problem.size() || solution.extent(0) != _problem.size())
       throw std::invalid_argument("Poisson solver: the arrays must hold one value per cell");
     const double* from = right_hand_side.data();
     for (std::size_t axis = 0; axis < 3; ++axis)
@@ -86,9 +86,9 @@ class FourierSolver {
         transform(axis, 0, from, solution.data());
         from = solution.data();
       }
-    scale_spectrum(_space,
-                   SpectralScalingFunctor<ExecutionSpace>{solution.data(), _eigenvalues[0], _eigenvalues[1],
-                                                          _eigenvalues[2], 1, _normalisation});
+    scale_spectrum(_space, SpectralScalingFunctor<ExecutionSpace>{solution.data(), _eigenvalues[0],
+                                                                  _eigenvalues[1], _eigenvalues[2], 1,
+                                                                  _normalisation, spectral_operator});
     for (std::size_t axis = 0; axis < 3; ++axis)
       if (_plans[axis][1]) transform(axis, 1, solution.data(), solution.data());
   }
@@ -115,11 +115,8 @@ class FourierSolver {
     const Planes p = planes(axis);
     const int n = _problem.cells[axis];
     bool is_first = true;
-    for (std::size_t a = 0; a < axis; ++a) is_first = is_first && _problem.cells[a] == 1;
-    const std::size_t size = static_cast<std::size_t>(_problem.cells[0]) *
-                             static_cast<std::size_t>(_problem.cells[1]) *
-                             static_cast<std::size_t>(_problem.cells[2]);
-    std::vector<double> scratch(size), other(is_first ? size : 0);
+    for (std::size_t a = 0; a < axis; ++a) is_first = is_first && !_problem.varies_along(a);
+    std::vector<double> scratch(_problem.size()), other(is_first ? _problem.size() : 0);
     const fftw_r2r_kind kinds[2] = {transform.forward, transform.backward};
     for (std::size_t direction = 0; direction < 2; ++direction) {
       double* from = is_first && direction == 0 ? other.data() : scratch.data();
@@ -166,7 +163,7 @@ class FourierSolver<Kokkos::Cuda> {
   /// Whether all axes are periodic or have one cell. Does not throw.
   static bool supports(const PoissonProblem& problem) {
     for (std::size_t axis = 0; axis < 3; ++axis)
-      if (problem.cells[axis] > 1 && !problem.axes[axis].periodic) return false;
+      if (problem.varies_along(axis) && !problem.axes[axis].periodic) return false;
     return true;
   }
 
@@ -190,8 +187,7 @@ class FourierSolver<Kokkos::Cuda> {
       modes *= values.size();
       _eigenvalues[axis] = to_device(space, "drogue::linear::eigenvalues", values);
     }
-    _cells = static_cast<std::size_t>(problem.cells[0]) * static_cast<std::size_t>(problem.cells[1]) *
-             static_cast<std::size_t>(problem.cells[2]);
+    _cells = problem.size();
     if (lengths.empty()) lengths.push_back(1);
     _spectrum =
         List(Kokkos::view_alloc(space, Kokkos::WithoutInitializing, "drogue::linear::spectrum"), 2 * modes);
@@ -199,17 +195,19 @@ class FourierSolver<Kokkos::Cuda> {
     _backward = make_plan(lengths, CUFFT_Z2D);
   }
 
-  /// Solves for `solution`, in its unit, with the right-hand side in that unit per m^2, which it keeps.
-  /// Asynchronous; neither fences nor allocates. Throws std::invalid_argument for an array of the wrong size.
-  void enqueue_solve(const List& right_hand_side, const List& solution) const {
+  /// Applies the inverse of the operator to the right-hand side, which it keeps. For the Laplacian that is in
+  /// the unit of the solution per m^2. Asynchronous; neither fences nor allocates. Throws
+  /// std::invalid_argument for an array of the wrong size.
+  void enqueue_solve(const List& right_hand_side, const List& solution,
+                     const SpectralOperator& spectral_operator = {}) const {
     if (right_hand_side.extent(0) != _cells || solution.extent(0) != _cells)
       throw std::invalid_argument("Poisson solver: the arrays must hold one value per cell");
     auto* spectrum = reinterpret_cast<cufftDoubleComplex*>(_spectrum.data());
     // cuFFT keeps the input of an out-of-place forward transform, though its interface lacks const.
     check(cufftExecD2Z(*_forward, right_hand_side.data(), spectrum));
-    scale_spectrum(_space,
-                   SpectralScalingFunctor<Kokkos::Cuda>{_spectrum.data(), _eigenvalues[0], _eigenvalues[1],
-                                                        _eigenvalues[2], 2, _normalisation});
+    scale_spectrum(
+        _space, SpectralScalingFunctor<Kokkos::Cuda>{_spectrum.data(), _eigenvalues[0], _eigenvalues[1],
+                                                     _eigenvalues[2], 2, _normalisation, spectral_operator});
     check(cufftExecZ2D(*_backward, spectrum, solution.data()));
   }
 

@@ -24,9 +24,22 @@ Kokkos::View<double*, typename ExecutionSpace::memory_space> to_device(const Exe
   return view;
 }
 
-/// Divides spectral coefficients by the eigenvalues of the Laplacian, and by the normalisation of a pair of
-/// transforms; sets the coefficient of a zero eigenvalue to zero. `parts` consecutive numbers belong to one
-/// mode: 2 for complex coefficients, else 1.
+/// Operator whose inverse a direct solver applies: the Laplacian, or 1 - diffusivity dt lap, the operator of
+/// an implicit step of diffusion.
+struct SpectralOperator {
+  const double* dt =
+      nullptr;  ///< s, in device memory, so that it may change from step to step; null: Laplacian
+  double diffusivity = 0.0;  ///< m^2/s
+
+  /// Factor of the inverse for an eigenvalue (1/m^2) of the Laplacian. Zero if the inverse does not exist.
+  [[nodiscard]] KOKKOS_FUNCTION double inverse(double eigenvalue) const {
+    if (dt != nullptr) return 1.0 / (1.0 - diffusivity * *dt * eigenvalue);
+    return eigenvalue < 0.0 ? 1.0 / eigenvalue : 0.0;
+  }
+};
+
+/// Multiplies spectral coefficients by the inverse of an operator and by the normalisation of a pair of
+/// transforms. `parts` consecutive numbers belong to one mode: 2 for complex coefficients, else 1.
 template <class ExecutionSpace>
 struct SpectralScalingFunctor {
   using List = Kokkos::View<double*, typename ExecutionSpace::memory_space>;
@@ -34,10 +47,10 @@ struct SpectralScalingFunctor {
   List x, y, z;  ///< eigenvalues along the axes, 1/m^2
   int parts;
   double normalisation;
+  SpectralOperator spectral_operator;
 
   KOKKOS_FUNCTION void operator()(const int i, const int j, const int k) const {
-    const double eigenvalue = x(i) + y(j) + z(k);
-    const double factor = eigenvalue < 0.0 ? normalisation / eigenvalue : 0.0;
+    const double factor = normalisation * spectral_operator.inverse(x(i) + y(j) + z(k));
     const std::int64_t at =
         ((static_cast<std::int64_t>(k) * y.extent_int(0) + j) * x.extent_int(0) + i) * parts;
     for (int part = 0; part < parts; ++part) coefficients[at + part] *= factor;

@@ -74,4 +74,23 @@ StaggeredField momentum_rate(const FlowDomain& domain, const StaggeredField& u, 
   return rate;
 }
 
+StaggeredField viscous_rate(const FlowDomain& domain, const StaggeredField& u, double time) {
+  const double nu = domain.parameters().viscosity / domain.parameters().density;
+  StaggeredField rate = domain.zero_field();
+  domain.for_each_face([&](std::size_t c, const GridIndex& face) {
+    if (domain.side_of(c, face) >= 0) return;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (domain.cells(axis) == 1) continue;
+      GridIndex low = face, high = face;
+      --low[axis];
+      ++high[axis];
+      rate[c][domain.at(c, face)] += nu *
+                                     (domain.velocity(u, c, low, time) - 2.0 * u[c][domain.at(c, face)] +
+                                      domain.velocity(u, c, high, time)) /
+                                     (domain.spacing(axis) * domain.spacing(axis));
+    }
+  });
+  return rate;
+}
+
 }  // namespace drogue::reference

@@ -18,4 +18,7 @@ namespace drogue::reference {
 /// advection by the outward velocity, first order. Zero on sides with a prescribed normal velocity.
 [[nodiscard]] StaggeredField momentum_rate(const FlowDomain& domain, const StaggeredField& u, double time);
 
+/// Viscous part of `momentum_rate`, m/s^2: kinematic viscosity times the Laplacian; zero on all sides.
+[[nodiscard]] StaggeredField viscous_rate(const FlowDomain& domain, const StaggeredField& u, double time);
+
 }  // namespace drogue::reference

@@ -1,6 +1,7 @@
 #include "kernels/reference/flow/step.hpp"
 
 #include <cmath>
+#include <functional>
 
 #include "kernels/reference/flow/momentum.hpp"
 
@@ -62,6 +63,70 @@ std::vector<double> solve_pressure(const FlowDomain& domain, std::vector<double>
   return p;
 }
 
+/// Laplacian of the change of a velocity component in a step at the faces inside the domain; zero on its
+/// sides. Changes on walls and inflows are known: `on_wall(side, face beyond it)`.
+std::vector<double> change_laplacian(const FlowDomain& domain, const StaggeredField& change, std::size_t c,
+                                     const std::function<double(std::size_t, const GridIndex&)>& on_wall) {
+  std::vector<double> laplacian(change[c].size(), 0.0);
+  domain.for_each_face([&](std::size_t component, const GridIndex& face) {
+    if (component != c || domain.side_of(c, face) >= 0) return;
+    const double own = change[c][domain.at(c, face)];
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (domain.cells(axis) == 1) continue;
+      for (const int direction : {-1, 1}) {
+        GridIndex next = face;
+        next[axis] += direction;
+        const int n = domain.cells(axis);
+        double value = own;  // beyond slip sides and outflows
+        if (!domain.is_bounded(axis) || axis == c || (next[axis] >= 0 && next[axis] < n)) {
+          if (!domain.is_bounded(axis)) next[axis] = (next[axis] + n) % n;
+          value = change[c][domain.at(c, next)];
+        } else {
+          const std::size_t side = 2 * axis + (direction > 0 ? 1 : 0);
+          if (domain.kind(side) == BoundaryKind::wall || domain.kind(side) == BoundaryKind::inflow)
+            value = 2.0 * on_wall(side, next) - own;
+        }
+        laplacian[domain.at(c, face)] += (value - own) / (domain.spacing(axis) * domain.spacing(axis));
+      }
+    }
+  });
+  return laplacian;
+}
+
+/// Solves (1 - a lap) x = source inside the domain by conjugate gradients, for component c of a change whose
+/// values on the sides are known.
+void solve_change(const FlowDomain& domain, StaggeredField& change, std::size_t c, double a,
+                  const std::vector<double>& source,
+                  const std::function<double(std::size_t, const GridIndex&)>& on_wall) {
+  std::vector<bool> inside(change[c].size(), false);
+  domain.for_each_face([&](std::size_t component, const GridIndex& face) {
+    if (component == c) inside[domain.at(c, face)] = domain.side_of(c, face) < 0;
+  });
+  const auto at_rest = [](std::size_t, const GridIndex&) { return 0.0; };
+  const std::vector<double> known = change_laplacian(domain, change, c, on_wall);
+  std::vector<double> residual(source.size(), 0.0);
+  for (std::size_t i = 0; i < source.size(); ++i)
+    if (inside[i]) residual[i] = source[i] + a * known[i] - change[c][i];
+  StaggeredField direction = domain.zero_field();
+  direction[c] = residual;
+  double norm = dot(residual, residual);
+  const double target = 1e-31 * norm;
+  for (std::size_t iteration = 0; iteration < 20 * source.size() && norm > target; ++iteration) {
+    const std::vector<double> laplacian = change_laplacian(domain, direction, c, at_rest);
+    std::vector<double> image = direction[c];
+    for (std::size_t i = 0; i < image.size(); ++i) image[i] -= a * laplacian[i];
+    const double alpha = norm / dot(direction[c], image);
+    for (std::size_t i = 0; i < image.size(); ++i) {
+      change[c][i] += alpha * direction[c][i];
+      residual[i] -= alpha * image[i];
+    }
+    const double next = dot(residual, residual);
+    for (std::size_t i = 0; i < image.size(); ++i)
+      direction[c][i] = residual[i] + next / norm * direction[c][i];
+    norm = next;
+  }
+}
+
 }  // namespace
 
 StaggeredField with_side_velocity(const FlowDomain& domain, StaggeredField u, double time) {
@@ -102,6 +167,37 @@ FlowState adams_bashforth_step(const FlowDomain& domain, const FlowState& state,
                                    {-0.5 * dt * r, r > 0.0 ? &state.old_rate : &zero}});
   next.velocity = with_side_velocity(domain, next.velocity, time + dt);
   next.pressure = project(domain, next.velocity, dt);
+  return next;
+}
+
+FlowState crank_nicolson_step(const FlowDomain& domain, const FlowState& state, double time, double dt) {
+  const double nu = domain.parameters().viscosity / domain.parameters().density;
+  const StaggeredField zero = domain.zero_field();
+  const StaggeredField& u = state.velocity;
+  const StaggeredField viscous = viscous_rate(domain, u, time);
+  FlowState next;
+  next.last_dt = dt;
+  const StaggeredField rate = momentum_rate(domain, u, time);
+  next.old_rate = combine(domain, {{1.0, &rate}, {-1.0, &viscous}});
+  const double r = state.last_dt > 0.0 ? dt / state.last_dt : 0.0;
+  const StaggeredField gradient = pressure_gradient(domain, state.pressure, zero);
+  const StaggeredField source = combine(domain, {{dt * (1.0 + 0.5 * r), &next.old_rate},
+                                                 {-0.5 * dt * r, r > 0.0 ? &state.old_rate : &zero},
+                                                 {dt, &viscous},
+                                                 {-dt, &gradient}});
+  const StaggeredField explicit_velocity = combine(domain, {{1.0, &u}, {1.0, &source}});
+  const StaggeredField with_sides = with_side_velocity(domain, explicit_velocity, time + dt);
+  StaggeredField change = combine(domain, {{1.0, &with_sides}, {-1.0, &u}});
+  for (std::size_t c = 0; c < 3; ++c)
+    solve_change(domain, change, c, 0.5 * nu * dt, source[c], [&](std::size_t, const GridIndex& beyond) {
+      // Beyond a wall, the velocity is twice that of the wall less the one inside, here zero.
+      return 0.5 * (domain.velocity(zero, c, beyond, time + dt) - domain.velocity(zero, c, beyond, time));
+    });
+  next.velocity = combine(domain, {{1.0, &u}, {1.0, &change}});
+  next.pressure = project(domain, next.velocity, dt);
+  const std::vector<double> laplacian = divergence(domain, pressure_gradient(domain, next.pressure, zero));
+  for (std::size_t i = 0; i < laplacian.size(); ++i)
+    next.pressure[i] += state.pressure[i] - 0.5 * nu * dt * laplacian[i];
   return next;
 }
 

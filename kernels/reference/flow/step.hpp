@@ -26,6 +26,12 @@ std::vector<double> project(const FlowDomain& domain, StaggeredField& u, double 
 [[nodiscard]] FlowState adams_bashforth_step(const FlowDomain& domain, const FlowState& state, double time,
                                              double dt);
 
+/// Step with Adams-Bashforth advection and Crank-Nicolson diffusion from `time`, with a variable dt (s): the
+/// pressure of the previous step acts in the implicit equation, the projection adds an increment phi, and the
+/// pressure is p + phi - nu dt/2 lap phi (Brown, Cortez and Minion 2001). The first step is Euler's.
+[[nodiscard]] FlowState crank_nicolson_step(const FlowDomain& domain, const FlowState& state, double time,
+                                            double dt);
+
 /// Step of the third-order strong-stability-preserving Runge-Kutta method (Shu and Osher 1988), each stage
 /// projected.
 [[nodiscard]] FlowState runge_kutta_step(const FlowDomain& domain, const FlowState& state, double time,

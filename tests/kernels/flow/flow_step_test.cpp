@@ -122,17 +122,20 @@ void expect_equal_steps(const Parameters& p, unsigned seed,
   const FlowDomain domain(p, side_velocity);
   const StaggeredField initial = random_field(domain, seed);
   const auto solver = started(backend, p, initial);
+  const bool is_implicit = p.diffusion == Diffusion::crank_nicolson;
   FlowState state;
   state.velocity = reference::with_side_velocity(domain, initial, 0.0);
   state.pressure = reference::project(domain, state.velocity, 1.0, false);
+  if (is_implicit) state.pressure.assign(state.pressure.size(), 0.0);
   ASSERT_LT(largest_difference(velocity(*solver, p), state.velocity), tolerance)
       << text(p) << ": initial projection";
   double time = 0.0;
   // The first step is shortened by its target.
   for (const double dt : {0.7 * p.fixed_dt, p.fixed_dt}) {
     ASSERT_EQ(solver->advance(time + dt, -1, {}), Stop::target) << text(p);
-    state = p.time_scheme == TimeScheme::ab2 ? reference::adams_bashforth_step(domain, state, time, dt)
-                                             : reference::runge_kutta_step(domain, state, time, dt);
+    state = is_implicit                        ? reference::crank_nicolson_step(domain, state, time, dt)
+            : p.time_scheme == TimeScheme::ab2 ? reference::adams_bashforth_step(domain, state, time, dt)
+                                               : reference::runge_kutta_step(domain, state, time, dt);
     time += dt;
     ASSERT_EQ(solver->progress().time, time);
     ASSERT_LT(largest_difference(velocity(*solver, p), state.velocity), tolerance)
@@ -180,12 +183,47 @@ TEST(FlowStep, EqualsTheReferenceByDiagonalization) {
   }
 }
 
+TEST(FlowStep, EqualsTheReferenceWithImplicitDiffusionForAllPairsOfSides) {
+  const Sides periodic{BoundaryKind::periodic, BoundaryKind::periodic};
+  unsigned seed = 4000;
+  for (const Sides& x : all_sides())
+    for (const Sides& y : all_sides()) {
+      Parameters p = parameters_of({6, 5, 1}, {x, y, periodic}, schemes[seed % 3]);
+      p.diffusion = Diffusion::crank_nicolson;
+      p.viscosity = 2.0;  // nu dt / h^2 is 0.4
+      if (seed % 2 == 0) p.pressure_solver = PressureSolver::diagonalization;
+      expect_equal_steps(p, ++seed);
+      if (HasFatalFailure()) return;
+    }
+}
+
+TEST(FlowStep, EqualsTheReferenceWithImplicitDiffusionInThreeDimensions) {
+  const std::vector<Sides> sides = all_sides();
+  unsigned seed = 5000;
+  for (std::size_t i = 0; i < sides.size(); ++i) {
+    Parameters p =
+        parameters_of({5, 4, 6}, {sides[i], sides[(i + 5) % 17], sides[(i + 11) % 17]}, schemes[seed % 3]);
+    p.diffusion = Diffusion::crank_nicolson;
+    p.viscosity = 2.0;
+    expect_equal_steps(p, ++seed);
+    if (HasFatalFailure()) return;
+  }
+}
+
 TEST(FlowStep, EvaluatesExpressionsOfSidesAtTheTimesOfTheStages) {
   const Sides through{BoundaryKind::inflow, BoundaryKind::outflow},
       walls{BoundaryKind::wall, BoundaryKind::slip};
-  for (const TimeScheme time : {TimeScheme::ab2, TimeScheme::rk3}) {
+  /// Time integration of advection and diffusion.
+  struct Scheme {
+    TimeScheme time;
+    Diffusion diffusion;
+  };
+  for (const Scheme& scheme :
+       {Scheme{TimeScheme::ab2, Diffusion::explicit_}, Scheme{TimeScheme::rk3, Diffusion::explicit_},
+        Scheme{TimeScheme::ab2, Diffusion::crank_nicolson}}) {
     Parameters p = parameters_of({6, 5, 4}, {through, walls, walls}, Advection::weno_z);
-    p.time_scheme = time;
+    p.time_scheme = scheme.time;
+    p.diffusion = scheme.diffusion;
     // Component c is 1 + 40 t y + (c + 1) z.
     for (int c = 0; c < 3; ++c) {
       device::ExpressionBuilder builder;
