@@ -77,6 +77,8 @@ void check_scheme(const Table& root, const flow::Parameters& p) {
     if (p.pressure_drop[axis] != 0.0 && p.boundary[2 * axis].kind != BoundaryKind::periodic)
       contradict(root, "flow.pressure_drop",
                  std::string("flow.pressure_drop: the axis ") + axis_names[axis] + " has no periodic sides");
+  if (p.diffusion == flow::Diffusion::crank_nicolson && p.time_scheme != flow::TimeScheme::ab2)
+    contradict(root, "flow.diffusion", "flow.diffusion = \"crank-nicolson\" needs flow.time = \"ab2\"");
 }
 
 /// Sets the velocity of a side: three numbers, or three programs.

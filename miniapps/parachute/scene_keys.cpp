@@ -13,7 +13,8 @@ constexpr double most_cells_per_axis = 16384;
 const Choices<AdvectionScheme> advection_choices = {{"central", AdvectionScheme::central},
                                                     {"weno5", AdvectionScheme::weno5}};
 const Choices<Weights> weights_choices = {{"js", Weights::js}, {"z", Weights::z}};
-const Choices<flow::Diffusion> diffusion_choices = {{"explicit", flow::Diffusion::explicit_}};
+const Choices<flow::Diffusion> diffusion_choices = {{"explicit", flow::Diffusion::explicit_},
+                                                    {"crank-nicolson", flow::Diffusion::crank_nicolson}};
 const Choices<flow::TimeScheme> time_choices = {{"ab2", flow::TimeScheme::ab2},
                                                 {"rk3", flow::TimeScheme::rk3}};
 const Choices<flow::PressureSolver> pressure_choices = {
@@ -85,7 +86,7 @@ void declare_flow(Table& table, FlowScene& scene) {
       .when([&scene] { return scene.advection == AdvectionScheme::weno5; }, "with advection = \"weno5\"",
             "advection");
   table.value("diffusion", scene::choice_codec(parameters.diffusion, diffusion_choices),
-              "Time integration of viscous stresses; explicit diffusion limits dt");
+              "Time integration of viscous stresses: explicit, which limits dt, or implicit");
   table.value("time", scene::choice_codec(parameters.time_scheme, time_choices),
               "Time integration: Adams-Bashforth of second order, or Runge-Kutta with three projections");
   table.value("pressure", scene::choice_codec(parameters.pressure_solver, pressure_choices),

@@ -133,7 +133,8 @@ BAD_LINES = [
 
 # Assignments, and words of the message, which names the one at fault.
 BAD_SETS = [
-    (["flow.diffusion=crank-nicolson"], "flow.diffusion", ["explicit"]),
+    (["flow.diffusion=implicit"], "flow.diffusion", ["explicit", "crank-nicolson"]),
+    (["flow.diffusion=crank-nicolson", "flow.time=rk3"], "flow.diffusion", ["ab2"]),
     (["fluid.velocity=[1, 'sin(t)', 0]", "grid.boundary={x='inflow',y=['slip','inflow'],z='periodic'}", "grid.wall_velocity={}"],
      "fluid.velocity", ["at t = 0.0588", "without an outflow"]),
     (["output.history_every=0", "verify.energy_growth=1e-9"], "verify.energy_growth", ["output.history_every"]),

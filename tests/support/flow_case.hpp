@@ -93,6 +93,21 @@ inline double rms_difference(const StaggeredField& a, const StaggeredField& b) {
   return std::sqrt(sum / static_cast<double>(count));
 }
 
+/// Time integration of advection and of diffusion.
+struct TimeIntegration {
+  flow::TimeScheme time;
+  flow::Diffusion diffusion;
+
+  void set(flow::Parameters& p) const {
+    p.time_scheme = time;
+    p.diffusion = diffusion;
+  }
+};
+inline constexpr TimeIntegration time_integrations[] = {
+    {flow::TimeScheme::ab2, flow::Diffusion::explicit_},
+    {flow::TimeScheme::rk3, flow::Diffusion::explicit_},
+    {flow::TimeScheme::ab2, flow::Diffusion::crank_nicolson}};
+
 /// Unit cube of the given cells with periodic sides.
 inline flow::Parameters periodic_box(const std::array<int, 3>& cells) {
   flow::Parameters p;

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "tests/support/flow_case.hpp"
@@ -63,6 +64,41 @@ TEST(FlowControl, RatesOfAdvectionAndDiffusionAddUp) {
   const double expected = 1.0 / (rate(domain, velocity(*solver, p)) / p.cfl + diffusion);
   ASSERT_EQ(solver->advance(endless, 1, {}), Stop::pause);
   EXPECT_NEAR(solver->progress().last_dt, expected, 1e-13 * expected);
+}
+
+TEST(FlowControl, ImplicitDiffusionDoesNotLimitTheStepSize) {
+  // Noise in a box with walls; the bound of explicit diffusion is a hundredth of the step at first, and less
+  // later.
+  Parameters p = mixed_box();
+  for (Boundary& side : p.boundary) side = {BoundaryKind::wall, {0.0, 0.0, 0.0}, {}};
+  p.viscosity = 2.0;
+  p.diffusion = Diffusion::crank_nicolson;
+  const FlowDomain domain(p);
+  const auto solver = started(backend, p, random_field(domain, 1));
+  double energy = solver->totals().kinetic_energy;
+  for (int step = 1; step <= 20; ++step) {
+    const double expected = p.cfl / rate(domain, velocity(*solver, p));
+    ASSERT_EQ(solver->advance(endless, step, {}), Stop::pause);
+    EXPECT_NEAR(solver->progress().last_dt, expected, 1e-13 * expected);
+    EXPECT_LT(solver->totals().kinetic_energy, energy);
+    energy = solver->totals().kinetic_energy;
+  }
+}
+
+TEST(FlowControl, FailedImplicitStepKeepsThePressureBeforeTheStep) {
+  Parameters p = periodic_box({8, 7, 1});
+  p.viscosity = 0.1;
+  p.diffusion = Diffusion::crank_nicolson;
+  p.fixed_dt = 0.01;
+  const auto solver = started(backend, p, random_field(FlowDomain(p), 2));
+  ASSERT_EQ(solver->advance(endless, 3, {}), Stop::pause);
+  const std::vector<double> before = download(*solver, p, StateField::pressure);
+  EXPECT_GT(largest(before), 0.01);
+  std::vector<double> rate = download(*solver, p, StateField::rate_x);
+  rate[5] = std::numeric_limits<double>::quiet_NaN();
+  solver->upload(StateField::rate_x, rate);
+  ASSERT_EQ(solver->advance(endless, 4, {}), Stop::failed);
+  EXPECT_EQ(download(*solver, p, StateField::pressure), before);
 }
 
 TEST(FlowControl, ViscousNoiseDecays) {
@@ -207,13 +243,14 @@ TEST(FlowControl, StartKeepsAVelocityFreeOfDivergence) {
 }
 
 TEST(FlowControl, RestartContinuesBitForBit) {
-  for (const TimeScheme time : {TimeScheme::ab2, TimeScheme::rk3})
+  for (const TimeIntegration& integration : time_integrations)
     for (Parameters p : {periodic_box({9, 8, 7}), mixed_box()}) {
-      p.time_scheme = time;
+      integration.set(p);
+      p.viscosity = 0.5;
       const auto solver = started(backend, p, random_field(FlowDomain(p), 4));
       ASSERT_EQ(solver->advance(endless, 3, {}), Stop::pause);
       const auto restarted = create_solver(backend, p);
-      const int fields = time == TimeScheme::ab2 ? 7 : 4;
+      const int fields = p.time_scheme == TimeScheme::ab2 ? 7 : 4;
       for (int i = 0; i < fields; ++i) {
         const StateField field = i + 1 == fields ? StateField::pressure : static_cast<StateField>(i);
         restarted->upload(field, download(*solver, p, field));
@@ -266,13 +303,17 @@ TEST(FlowControl, RejectsParametersWithoutASolution) {
     p.cells[2] = 1;
     p.boundary[4].kind = p.boundary[5].kind = BoundaryKind::wall;
   });
+  rejects([](Parameters& p) {
+    p.time_scheme = TimeScheme::rk3;
+    p.diffusion = Diffusion::crank_nicolson;
+  });
   EXPECT_NO_THROW(check_parameters(periodic_box({8, 7, 6})));
 }
 
 TEST(FlowLaunches, StepsDoNotFenceAllocateOrCopy) {
-  for (const TimeScheme time : {TimeScheme::ab2, TimeScheme::rk3})
+  for (const TimeIntegration& integration : time_integrations)
     for (Parameters p : {periodic_box({9, 8, 7}), mixed_box()}) {
-      p.time_scheme = time;
+      integration.set(p);
       const auto solver = started(backend, p, random_field(FlowDomain(p), 4));
       ASSERT_EQ(solver->advance(endless, 1, {}), Stop::pause);
       const auto cost = [&](std::int64_t steps) {
@@ -287,9 +328,11 @@ TEST(FlowLaunches, StepsDoNotFenceAllocateOrCopy) {
       const auto few = cost(10), many = cost(60);
       EXPECT_EQ(many.second, few.second);
       // Momentum, divergence, six transforms, scaling, correction and ghost cells a stage; boundary faces
-      // where the box is bounded. A captured step is one launch.
-      const std::int64_t stages = time == TimeScheme::ab2 ? 1 : 3;
-      const std::int64_t a_stage = 11 + (p.boundary[0].kind == BoundaryKind::periodic ? 0 : 1);
+      // where the box is bounded. Implicit diffusion: source, six transforms, scaling and update of each
+      // component. A captured step is one launch.
+      const std::int64_t stages = p.time_scheme == TimeScheme::ab2 ? 1 : 3;
+      const std::int64_t a_stage = 11 + (p.boundary[0].kind == BoundaryKind::periodic ? 0 : 1) +
+                                   (p.diffusion == Diffusion::crank_nicolson ? 3 * 9 : 0);
       const bool captured = backend == device::Backend::cuda;
       EXPECT_EQ(many.first - few.first, 50 * (captured ? 1 : stages * a_stage + 1));
     }

@@ -1,14 +1,21 @@
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <random>
 #include <vector>
 
+#include "kernels/coupling/interpolate.hpp"
+#include "kernels/coupling/spread.hpp"
 #include "kernels/device/copy.hpp"
+#include "kernels/flow/face_views.hpp"
 #include "kernels/flow/flow_solver.hpp"
+#include "kernels/reference/coupling/grid_transfer.hpp"
 #include "kernels/reference/flow/momentum.hpp"
 #include "tests/support/flow_case.hpp"
 
-// Force field of other kernels: its effect on a step, and failures that it causes.
+// Coupling with other kernels: the force field and its effect on a step, failures that it causes, transfer to
+// and from points.
 
 namespace drogue::flow {
 
@@ -115,6 +122,77 @@ TEST(FlowForce, NonFiniteForceFailsAtItsFirstCellAndKeepsTheState) {
       EXPECT_EQ(flow.velocity(), before);
       EXPECT_EQ(flow.solver.advance(endless, 10, {}), Stop::failed);
     }
+}
+
+/// Channel with all kinds of sides but walls.
+Parameters forced_channel() {
+  Parameters p = forced_box({9, 8, 7});
+  const BoundaryKind kinds[] = {BoundaryKind::inflow, BoundaryKind::outflow,  BoundaryKind::slip,
+                                BoundaryKind::slip,   BoundaryKind::periodic, BoundaryKind::periodic};
+  for (std::size_t side = 0; side < 6; ++side) p.boundary[side].kind = kinds[side];
+  p.boundary[0].velocity = {0.6, 0.1, 0.0};
+  return p;
+}
+
+/// Points away from the sides, so that no delta function is cut off, and forces on them, N.
+constexpr int number_of_points = 40;
+using PointViews = Kokkos::View<double* [3], Kokkos::LayoutLeft, Space::memory_space>;
+using HostPoints = std::vector<std::array<double, 3>>;
+
+HostPoints random_points(double low, double high, unsigned seed) {
+  std::mt19937 engine(seed);
+  HostPoints points(number_of_points);
+  for (auto& point : points)
+    for (double& value : point) value = low + (high - low) * std::generate_canonical<double, 53>(engine);
+  return points;
+}
+
+PointViews on_device(const Space& space, const HostPoints& points) {
+  std::vector<double> values;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    for (const auto& point : points) values.push_back(point[axis]);
+  PointViews view("points", points.size());
+  device::copy_in(space, view, values.data(), values.size());
+  space.fence();
+  return view;
+}
+
+TEST(FlowCoupling, InterpolatesTheVelocityWhereTheSolverKeepsIt) {
+  for (const Parameters& p : {forced_box({7, 6, 5}), forced_box({12, 9, 1}), forced_channel()}) {
+    TypedCase flow(p);
+    const Space& space = flow.instance.space();
+    const coupling::MacGrid grid = coupling_grid(flow.solver.grid());
+    const HostPoints points = random_points(0.2, 0.8, 5);
+    const coupling::GridTransfer<Space> transfer(space, grid, coupling::DeltaKernel::cbs43, number_of_points);
+    const PointViews x = on_device(space, points), zero("zero", number_of_points), u("u", number_of_points);
+    coupling::freeze_positions(space, transfer, x, zero, 0.0);
+    coupling::interpolate(space, transfer, face_views<Space>(flow.solver.grid(), flow.solver.velocity()), u);
+    std::vector<double> values(3U * number_of_points);
+    device::copy_out(space, values.data(), u, values.size());
+    space.fence();
+    const auto expected = reference::interpolate(grid, coupling::DeltaKernel::cbs43, flow.velocity(), points);
+    for (std::size_t i = 0; i < expected.size(); ++i)
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        EXPECT_NEAR(values[axis * number_of_points + i], expected[i][axis], 1e-14);
+  }
+}
+
+TEST(FlowCoupling, SpreadForcesActInTheNextStep) {
+  for (const Parameters& p : {forced_box({7, 6, 5}), forced_channel()}) {
+    TypedCase forced(p), copied(p);
+    const Space& space = forced.instance.space();
+    const coupling::MacGrid grid = coupling_grid(forced.solver.grid());
+    const HostPoints points = random_points(0.3, 0.7, 6), forces = random_points(-1.0, 1.0, 7);
+    const coupling::GridTransfer<Space> transfer(space, grid, coupling::DeltaKernel::cbs43, number_of_points);
+    const PointViews x = on_device(space, points), zero("zero", number_of_points);
+    coupling::freeze_positions(space, transfer, x, zero, 0.0);
+    coupling::spread(space, transfer, on_device(space, forces),
+                     face_views<Space>(forced.solver.grid(), forced.solver.force()));
+    copied.set_force(reference::spread(grid, coupling::DeltaKernel::cbs43, points, forces));
+    ASSERT_EQ(forced.solver.advance(endless, 2, {}), Stop::pause);
+    ASSERT_EQ(copied.solver.advance(endless, 2, {}), Stop::pause);
+    EXPECT_LT(largest_difference(forced.velocity(), copied.velocity()), 1e-13);
+  }
 }
 
 TEST(FlowForce, IsEmptyUnlessRequested) {

@@ -32,10 +32,10 @@ Parameters channel(const std::array<int, 3>& cells) {
 
 TEST(FlowProperties, StepsLeaveNoDivergence) {
   for (const Advection scheme : schemes)
-    for (const TimeScheme time : time_schemes)
+    for (const TimeIntegration& integration : time_integrations)
       for (Parameters p : {periodic_box({13, 12, 11}), periodic_box({61, 59, 1}), channel({24, 11, 10})}) {
         p.advection = scheme;
-        p.time_scheme = time;
+        integration.set(p);
         const FlowDomain domain(p);
         const auto solver = started(backend, p, random_field(domain, 5));
         ASSERT_EQ(solver->advance(endless, 5, {}), Stop::pause);
@@ -48,10 +48,10 @@ TEST(FlowProperties, StepsLeaveNoDivergence) {
 
 TEST(FlowProperties, PeriodicBoxesConserveMomentumToRoundOff) {
   for (const Advection scheme : schemes)
-    for (const TimeScheme time : time_schemes)
+    for (const TimeIntegration& integration : time_integrations)
       for (Parameters p : {periodic_box({13, 12, 11}), periodic_box({37, 1, 14})}) {
         p.advection = scheme;
-        p.time_scheme = time;
+        integration.set(p);
         p.viscosity = 0.01;
         const auto solver = started(backend, p, random_field(FlowDomain(p), 6));
         const Totals before = solver->totals();

@@ -213,17 +213,9 @@ TEST(FlowStep, EqualsTheReferenceWithImplicitDiffusionInThreeDimensions) {
 TEST(FlowStep, EvaluatesExpressionsOfSidesAtTheTimesOfTheStages) {
   const Sides through{BoundaryKind::inflow, BoundaryKind::outflow},
       walls{BoundaryKind::wall, BoundaryKind::slip};
-  /// Time integration of advection and diffusion.
-  struct Scheme {
-    TimeScheme time;
-    Diffusion diffusion;
-  };
-  for (const Scheme& scheme :
-       {Scheme{TimeScheme::ab2, Diffusion::explicit_}, Scheme{TimeScheme::rk3, Diffusion::explicit_},
-        Scheme{TimeScheme::ab2, Diffusion::crank_nicolson}}) {
+  for (const TimeIntegration& integration : time_integrations) {
     Parameters p = parameters_of({6, 5, 4}, {through, walls, walls}, Advection::weno_z);
-    p.time_scheme = scheme.time;
-    p.diffusion = scheme.diffusion;
+    integration.set(p);
     // Component c is 1 + 40 t y + (c + 1) z.
     for (int c = 0; c < 3; ++c) {
       device::ExpressionBuilder builder;

@@ -183,6 +183,64 @@ TYPED_TEST(Poisson, SolvesWithFewLaunchesAndWithoutAllocations) {
   EXPECT_EQ(after.fences - before.fences, 0);
 }
 
+TYPED_TEST(Poisson, InvertsTheOperatorOfImplicitDiffusion) {
+  constexpr double diffusivity = 0.7, dt = 0.3;
+  const Space space;
+  for (const auto& x : end_pairs)
+    for (const auto& y : end_pairs) {
+      const reference::CellBox box{{6, 5, 7}, {0.3, 0.2, 0.25}, {x, y, y}};
+      if (!supports<TypeParam>(box)) continue;
+      const std::vector<double> expected = random_values(size_of(box), 7);
+      std::vector<double> f = reference::laplacian(box, expected);
+      for (std::size_t i = 0; i < f.size(); ++i) f[i] = expected[i] - diffusivity * dt * f[i];
+      const TypeParam solver(space, problem_of(box));
+      const Values step = to_device(space, "step", {dt});
+      const Values rhs = to_device(space, "rhs", f), solution("solution", f.size());
+      solver.enqueue_solve(rhs, solution, {step.data(), diffusivity});
+      std::vector<double> result(f.size());
+      device::copy_out(space, result.data(), solution, result.size());
+      space.fence();
+      EXPECT_LT(largest(difference(result, expected)), 1e-13);
+    }
+}
+
+/// Conditions of unknowns on the inner faces of an axis.
+constexpr AxisConditions on_faces{false, EndCondition::dirichlet, EndCondition::dirichlet, true};
+
+TYPED_TEST(Poisson, SolvesForUnknownsOnFaces) {
+  // A line of n unknowns with zeros at both ends is one period of 2 (n + 1) odd values.
+  const Space space;
+  for (const int n : {1, 2, 5, 12}) {
+    PoissonProblem problem;
+    problem.cells = {n, 1, 3};
+    problem.spacing = {0.3, 1.0, 0.2};
+    problem.axes[0] = on_faces;
+    problem.axes[2] = {false, EndCondition::neumann, EndCondition::neumann, false};
+    if constexpr (std::is_same_v<TypeParam, FourierSolver<Space>>)
+      if (!TypeParam::supports(problem)) return;
+    const std::vector<double> f = random_values(problem.size(), 8);
+    const TypeParam solver(space, problem);
+    const Values rhs = to_device(space, "rhs", f), solution("solution", f.size());
+    solver.enqueue_solve(rhs, solution);
+    std::vector<double> half(f.size());
+    device::copy_out(space, half.data(), solution, half.size());
+    space.fence();
+    const int period = 2 * (n + 1);
+    const reference::CellBox box{{period, 1, 3}, {0.3, 1.0, 0.2}, {end_pairs[0], end_pairs[0], end_pairs[1]}};
+    const auto odd = [&](const std::vector<double>& values) {
+      std::vector<double> all(size_of(box), 0.0);
+      for (int k = 0; k < 3; ++k)
+        for (int i = 0; i < n; ++i) {
+          const double value = values[static_cast<std::size_t>(k * n + i)];
+          all[static_cast<std::size_t>(k * period + 1 + i)] = value;
+          all[static_cast<std::size_t>(k * period + period - 1 - i)] = -value;
+        }
+      return all;
+    };
+    EXPECT_LT(largest(difference(reference::laplacian(box, odd(half)), odd(f))), 1e-12) << n;
+  }
+}
+
 TEST(PoissonSolvers, FourierAndDiagonalizationAgree) {
   for (const auto& x : end_pairs)
     for (const auto& y : end_pairs) {
