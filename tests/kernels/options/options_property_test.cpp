@@ -136,6 +136,7 @@ bool same_bits(const Price& a, const Price& b) {
 
 // A device uses other launches for small batches: one warp per grid, and for the smallest batches direct
 // access to host memory.
+// ctest-label: no-sanitizer
 TEST(OptionsProperty, BitsDoNotDependOnTheSizeOfTheBatch) {
   auto contracts = random_contracts(2400, 9);
   for (std::size_t k = 0; k < contracts.size(); ++k) {
