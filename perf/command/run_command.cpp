@@ -48,7 +48,7 @@ ExitCode run_cases(const RunOptions& options, const std::regex& filter) {
   const nlohmann::json here = provenance(device::device_facts());
   std::vector<nlohmann::json> lines;
   bool passed = true;
-  for (const Record& record : measure(cases, warm_up_rounds, kept_rounds(options.quick))) {
+  for (const Record& record : measure(cases, warm_up(options.quick), kept_rounds(options.quick))) {
     lines.push_back(to_json(record, here, to_json(record.facts)));
     passed = passed && record.passed();
     const run::MedianInterval time = run::median_interval(record.samples);

@@ -50,12 +50,20 @@ struct Record {
   [[nodiscard]] bool passed() const { return error <= tolerance; }
 };
 
-/// Numbers of discarded and of recorded rounds.
-inline constexpr int warm_up_rounds = 3;
+/// Discarded rounds before the recorded ones: at least `rounds`, and as many as take `seconds` of timed work.
+struct WarmUp {
+  int rounds;
+  double seconds;
+};
+
+/// Warm-up of most measurements. An idle H200 has a clock of 345 MHz and needs work to raise it. Does not
+/// throw.
+constexpr WarmUp warm_up(bool quick, int rounds = 3) { return {rounds, quick ? 0.0 : 1.0}; }
+/// Number of recorded rounds. Does not throw.
 constexpr int kept_rounds(bool quick) { return quick ? 7 : 25; }
 
 /// Times `cases` in interleaved rounds of one sample each, so that a disturbance affects all of them.
-/// Discards the first `warm_up` rounds. Blocking; passes on exceptions of the cases.
-std::vector<Record> measure(const std::vector<Case>& cases, int warm_up, int rounds);
+/// Blocking; passes on exceptions of the cases.
+std::vector<Record> measure(const std::vector<Case>& cases, const WarmUp& discarded, int rounds);
 
 }  // namespace drogue::perf
