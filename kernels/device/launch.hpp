@@ -7,7 +7,8 @@
 namespace drogue::device {
 
 /// Calls `functor(i)` for i from 0 to `count` - 1 on `space`. Asynchronous; may be captured into a CUDA
-/// graph. `Bounds`: launch bounds of the kernel. Throws std::runtime_error if the launch fails.
+/// graph. `Bounds`: launch bounds of the kernel. Does not throw: the next copy reports a launch that CUDA
+/// rejects (`copy_bytes`).
 template <class Bounds = Kokkos::LaunchBounds<>, class ExecutionSpace, class Functor>
 void launch_each(const ExecutionSpace& space, const char* label, int count, const Functor& functor) {
   // Larger functors are no kernel arguments of CUDA, whatever the hint.
@@ -21,7 +22,7 @@ void launch_each(const ExecutionSpace& space, const char* label, int count, cons
 }
 
 /// Calls `functor(i, j, k)` for all indices below `extent`, i fastest. Asynchronous; may be captured into a
-/// CUDA graph.
+/// CUDA graph. Does not throw, as `launch_each`.
 template <class ExecutionSpace, class Functor>
 void launch_cells(const ExecutionSpace& space, const char* label, const int extent[3],
                   const Functor& functor) {
