@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "kernels/device/copy.hpp"
 #include "kernels/flow/advection/momentum.hpp"
@@ -123,7 +124,9 @@ class FlowSolver {
   [[nodiscard]] PackFunctor<ExecutionSpace> packing(StateField field, std::size_t size, bool to_field) const;
   void make_poisson();
   Stop advance_together(const stepping::AdvanceRequest& request, const Poll& poll);
-  void fill_ghosts(const ExecutionSpace& space, const Values& velocity) const;
+  void begin_ghosts(const ExecutionSpace& space, const Values& velocity) const;
+  void finish_ghosts(const ExecutionSpace& space, const Values& velocity) const;
+  void enqueue_momentum(const ExecutionSpace& space, const MomentumSetup<ExecutionSpace>& setup) const;
   void enqueue_step(const ExecutionSpace& space) const;
   void enqueue_stage(const ExecutionSpace& space, const MomentumSetup<ExecutionSpace>& setup,
                      const Values& result, double fraction, double time_fraction) const;
@@ -134,7 +137,7 @@ class FlowSolver {
   Parameters _parameters;
   linear::PencilRanks _ranks;
   MacGrid _grid;
-  std::optional<Halo<ExecutionSpace>> _halo;  ///< only on several ranks
+  mutable std::optional<Halo<ExecutionSpace>> _halo;  ///< only on several ranks
   BoundaryTables<ExecutionSpace> _boundary;
   StepConstants _constants{};
   std::array<double, 3> _acceleration{};  ///< m/s^2
@@ -384,9 +387,11 @@ void FlowSolver<ExecutionSpace>::start() {
   control.first_failure = no_failure;
   write_control(control);
   _boundary.enqueue_evaluation(space(), _control, {0.0, true});
-  fill_ghosts(space(), _velocity);
+  begin_ghosts(space(), _velocity);
+  finish_ghosts(space(), _velocity);
   device::copy(space(), _predicted, _velocity);
   enqueue_projection(space(), _velocity, 1.0, false);
+  finish_ghosts(space(), _velocity);
   if (_halo) _halo->agree(space(), _control);
   control = read_control();
   control.now.rate = control.first_failure == no_failure && control.pressure_failed == 0
@@ -407,7 +412,8 @@ void FlowSolver<ExecutionSpace>::restore(const Progress& progress) {
   control.trial.stop = Stop::pause;
   write_control(control);
   _boundary.enqueue_evaluation(space(), _control, {0.0, true});
-  fill_ghosts(space(), _velocity);
+  begin_ghosts(space(), _velocity);
+  finish_ghosts(space(), _velocity);
   space().fence("drogue::flow::restore");
   _loop.status_view()().step = progress.step;
 }
@@ -454,20 +460,49 @@ Stop FlowSolver<ExecutionSpace>::advance_together(const stepping::AdvanceRequest
   steps.begin(request, -1);
   _loop.count_launch();
   space().fence("drogue::flow::advance_together: begun");
-  while (_loop.status().stop == Stop::running) {
+  bool interrupted = false;
+  while (_loop.status().stop == Stop::running && !interrupted) {
     steps.enqueue(0, 1);
     _loop.count_launch();
     space().fence("drogue::flow::advance_together: stepped");
-    if (_loop.status().stop == Stop::running && !goes_on()) return Stop::interrupted;
+    interrupted = _loop.status().stop == Stop::running && !goes_on();
   }
-  return _loop.status().stop;
+  finish_ghosts(space(), _velocity);
+  space().fence("drogue::flow::advance_together: stopped");
+  return interrupted ? Stop::interrupted : _loop.status().stop;
 }
 
-/// Enqueues the fill of all ghost cells of a velocity field.
+/// Enqueues the fill of the ghost cells of a velocity field; on several ranks it only begins.
 template <class ExecutionSpace>
-void FlowSolver<ExecutionSpace>::fill_ghosts(const ExecutionSpace& space, const Values& velocity) const {
-  if (_halo) _halo->exchange_velocity(space, velocity);
-  launch_ghosts(space, _grid, _boundary.conditions(), velocity);
+void FlowSolver<ExecutionSpace>::begin_ghosts(const ExecutionSpace& space, const Values& velocity) const {
+  if (_halo)
+    _halo->begin_velocity(space, velocity);
+  else
+    launch_ghosts(space, _grid, _boundary.conditions(), velocity);
+}
+
+/// Completes what `begin_ghosts` began for the same field.
+template <class ExecutionSpace>
+void FlowSolver<ExecutionSpace>::finish_ghosts(const ExecutionSpace& space, const Values& velocity) const {
+  if (_halo && _halo->finish_velocity(space, velocity))
+    launch_ghosts(space, _grid, _boundary.conditions(), velocity);
+}
+
+/// Momentum stage. On several ranks, cells that need no other rank come first, while the messages are under
+/// way.
+template <class ExecutionSpace>
+void FlowSolver<ExecutionSpace>::enqueue_momentum(const ExecutionSpace& space,
+                                                  const MomentumSetup<ExecutionSpace>& setup) const {
+  if (!_halo) return dispatch_momentum(space, setup, _parameters.advection);
+  MomentumSetup<ExecutionSpace> part = setup;
+  const std::vector<MacGrid> parts = _halo->parts();
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    // The cells inside need the ghost cells at the sides of the domain.
+    if (i == 0 && parts.size() > 1) launch_ghosts(space, _grid, _boundary.conditions(), setup.stage);
+    if (i == 1 || parts.size() == 1) finish_ghosts(space, setup.stage);
+    part.grid = parts[i];
+    dispatch_momentum(space, part, _parameters.advection);
+  }
 }
 
 template <class ExecutionSpace>
@@ -513,6 +548,7 @@ void FlowSolver<ExecutionSpace>::enqueue_stage(const ExecutionSpace& space,
                                                const Values& result, double fraction,
                                                double time_fraction) const {
   if (_parameters.turbulence != Turbulence::none) {
+    finish_ghosts(space, setup.stage);
     launch_cells(
         space, "drogue::flow::eddy_viscosity", _eddy_cells.extent,
         EddyViscosityFunctor<ExecutionSpace>{_grid, _eddy_model, setup.stage, _eddy_cells, _eddy_viscosity,
@@ -522,7 +558,7 @@ void FlowSolver<ExecutionSpace>::enqueue_stage(const ExecutionSpace& space,
         EddyStressFunctor<ExecutionSpace>{_grid, setup.stage, _eddy_cells, _eddy_viscosity,
                                           _eddy_acceleration, _control});
   }
-  dispatch_momentum(space, setup, _parameters.advection);
+  enqueue_momentum(space, setup);
   if (_boundary.changes()) _boundary.enqueue_evaluation(space, _control, {time_fraction, false});
   launch_boundary_faces(space, setup, _boundary.conditions());
   enqueue_projection(space, result, fraction, _boundary.has_outflow());
@@ -552,7 +588,7 @@ void FlowSolver<ExecutionSpace>::enqueue_projection(const ExecutionSpace& space,
     _halo->exchange_pressure(space, _pressure);
   }
   launch_correction(space, setup);
-  fill_ghosts(space, result);
+  begin_ghosts(space, result);
 }
 
 }  // namespace drogue::flow

@@ -12,15 +12,12 @@ import unittest
 sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
 import parachute_program
-from gas_program import ENVIRONMENT
 from parachute_program import GUST, PROGRAM, VORTICES
+from rank_processes import LAUNCHER, RANK_ENVIRONMENT, processes_of
 
-LAUNCHER = shutil.which("mpirun")
-# One thread per rank, since ranks and tests share the cores. Open MPI refuses to run as root by default.
-RANK_ENVIRONMENT = {**ENVIRONMENT, "OMP_NUM_THREADS": "1", "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
 QUIET = ("--quiet", "--backend", "serial")
 TOLERANCE = 1e-10
-FIELDS = ("velocity", "pressure", "vorticity", "q_criterion")
+LONG_GUST = GUST.replace("end_time = 0.5", "end_time = 1e4").split("[output]")[0]
 
 
 @unittest.skipIf(LAUNCHER is None, "there is no mpirun")
@@ -99,7 +96,7 @@ class Results(RanksTest):
 
 class Failures(RanksTest):
     def test_prints_errors_of_all_ranks_once(self):
-        self.assertEqual(1, self.run_on(0, 2, "--help").count("--study"))
+        self.assertEqual(1, self.run_on(0, 2, "--help").count("--study LISTS"))
         self.assertIn("cavitty", self.run_on(2, 2, "cavitty"))
         self.assertIn(".toml:2", self.run_on(3, 2, self.write('app = "parachute"\nwrong = 1\n'), *QUIET))
         self.assertIn("one rank", self.run_on(2, 2, self.write(VORTICES), *QUIET, "--study", "meshes=8:16"))
@@ -109,20 +106,25 @@ class Failures(RanksTest):
         self.assertIn("4 ranks cannot share 8 x 1 cells", sentence)
 
     def test_reports_a_numerical_failure_once(self):
-        sentence = self.run_on(4, 4, self.write(GUST), *QUIET, "--out", "out", sets=["run.dt=10", "run.end_time=1e6", "output.times=[]", "output.fields=[]"])
+        sentence = self.run_on(4, 4, self.write(LONG_GUST), *QUIET, "--out", "out", sets=["run.dt=10"])
         self.assertIn("not finite in cell", sentence)
         self.assertEqual("numerical-failure", self.result("out")["status"])
 
-    def test_interrupts_all_ranks(self):
-        sets = ["run.end_time=1e4", "output.times=[]", "output.fields=[]", "output.restart_every=5"]
-        process = self.begin(2, self.write(GUST), *QUIET, "--out", "out", sets=sets)
+    def test_interrupts_all_ranks_if_one_is_terminated(self):
+        for victim in (0, 1):
+            with self.subTest(victim):
+                self.interrupt(victim)
+
+    def interrupt(self, victim):
+        out = f"out{victim}"
+        process = self.begin(2, self.write(LONG_GUST), *QUIET, "--out", out, sets=["output.restart_every=5"])
         for _ in range(400):
-            if (self.folder / "out/restart.h5").exists():
-                break
             time.sleep(0.05)
-        process.send_signal(signal.SIGTERM)
+            if (self.folder / out / "restart.h5").exists():
+                break
+        os.kill(processes_of(process)[victim], signal.SIGTERM)
         self.assertEqual((130, []), self.end(process)[:2])
-        self.assertEqual("interrupted", self.result("out")["status"])
+        self.assertEqual("interrupted", self.result(out)["status"])
 
 
 if __name__ == "__main__":

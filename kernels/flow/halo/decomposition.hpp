@@ -55,13 +55,13 @@ inline linear::PencilRanks decompose(const std::array<int, 3>& cells, int ranks,
   return side % 2 == 0 ? ranks.place[axis] > 0 : ranks.place[axis] + 1 < ranks.parts[axis];
 }
 
-/// Rank beyond a side for which `borders_rank` is true. Does not throw.
-[[nodiscard]] constexpr int rank_beyond(const linear::PencilRanks& ranks, std::size_t side) {
+/// Place of the rank beyond a side for which `borders_rank` is true. Does not throw.
+[[nodiscard]] constexpr std::array<int, 3> place_beyond(const linear::PencilRanks& ranks, std::size_t side) {
   const std::size_t axis = side / 2;
   std::array<int, 3> place = ranks.place;
   const int parts = ranks.parts[axis];
   place[axis] = (place[axis] + (side % 2 == 0 ? parts - 1 : 1)) % parts;
-  return ranks.rank_at(place);
+  return place;
 }
 
 /// Part of an array of the state that a rank holds: its cells, and on the ranks at a bounded high side the

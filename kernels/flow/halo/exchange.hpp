@@ -63,9 +63,9 @@ class Exchange {
     return _received.back().buffer.data();
   }
 
-  /// Sends and receives all messages, from and to `array`. Blocks until they are complete, but not for the
-  /// kernels that fill `array`.
-  void run(const ExecutionSpace& space, const linear::RankGroup& group, double* array) const {
+  /// Begins to send and receive all messages, from `array`. Blocks until the kernels before are complete.
+  [[nodiscard]] linear::Transfers begin(const ExecutionSpace& space, const linear::RankGroup& group,
+                                        double* array) const {
     std::vector<linear::Message> messages;
     for (const Port& port : _sent) {
       copy(space, port, array, true);
@@ -75,9 +75,20 @@ class Exchange {
     space.fence("drogue::flow::exchange: packed");
     for (const Port& port : _received)
       messages.push_back({port.peer, 0, port.tag, {}, {port.buffer.data(), port.buffer.size()}});
-    group.exchange(messages);
+    return group.begin(messages);
+  }
+
+  /// Blocks until the messages are complete, but not for the kernels that fill `array` from them.
+  void finish(const ExecutionSpace& space, linear::Transfers& transfers, double* array) const {
+    transfers.wait();
     for (const Port& port : _received)
       if (port.box.size() > 0) copy(space, port, array, false);
+  }
+
+  /// Sends and receives all messages.
+  void run(const ExecutionSpace& space, const linear::RankGroup& group, double* array) const {
+    linear::Transfers transfers = begin(space, group, array);
+    finish(space, transfers, array);
   }
 
  private:

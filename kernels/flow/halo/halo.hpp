@@ -14,8 +14,8 @@
 
 namespace drogue::flow {
 
-/// Everything that a solver on one of several ranks needs from the others. All functions are collective and
-/// block until the messages are complete.
+/// Everything that a solver on one of several ranks needs from the others. Functions are collective, except
+/// those that only return values, and block until their messages are complete, except `begin_velocity`.
 template <class ExecutionSpace>
 class Halo {
  public:
@@ -23,18 +23,44 @@ class Halo {
   Halo(const linear::RankGroup& group, const linear::PencilRanks& ranks, const Parameters& parameters,
        const MacGrid& grid)
       : _group(group), _ranks(ranks), _grid(grid) {
-    for (std::size_t side = 2; side < 6; ++side)
-      if (borders_rank(parameters, ranks, side)) add_side(side);
+    for (std::size_t side = 0; side < 6; ++side) _borders[side] = borders_rank(parameters, ranks, side);
+    for (const int y : {-1, 0, 1})
+      for (const int z : {-1, 0, 1}) add_direction({0, y, z});
+    for (const std::size_t axis : {1U, 2U}) add_axis(axis);
   }
 
   [[nodiscard]] const linear::RankGroup& group() const { return _group; }
-  [[nodiscard]] const linear::PencilRanks& ranks() const { return _ranks; }
 
-  /// Fills the ghost cells of a velocity field at the sides towards other ranks. Ghost cells at the sides of
-  /// the domain must be filled afterwards.
-  void exchange_velocity(const ExecutionSpace& space, const List<ExecutionSpace>& velocity) const {
-    // The second exchange passes on what the first one received, and so fills the corners.
-    for (const Exchange<ExecutionSpace>& exchange : _velocity) exchange.run(space, _group, velocity.data());
+  /// Begins the exchange of the ghost cells of a velocity field towards other ranks. Blocks until the kernels
+  /// before are complete.
+  void begin_velocity(const ExecutionSpace& space, const List<ExecutionSpace>& velocity) {
+    _transfers = _velocity.begin(space, _group, velocity.data());
+  }
+
+  /// Fills the ghost cells of the velocity field of the last `begin_velocity`, if that exchange is under way,
+  /// and returns whether it was. Ghost cells at the sides of the domain must be filled afterwards.
+  bool finish_velocity(const ExecutionSpace& space, const List<ExecutionSpace>& velocity) {
+    if (!_transfers) return false;
+    _velocity.finish(space, _transfers, velocity.data());
+    return true;
+  }
+
+  /// Parts of the cells: first those whose momentum needs no ghost cells towards other ranks, then the others.
+  /// All cells in one part if these are too few to be divided.
+  [[nodiscard]] std::vector<MacGrid> parts() const {
+    std::vector<MacGrid> parts;
+    MacGrid rest = _grid;
+    for (int side = 5; side >= 2; --side) {
+      if (!_borders[static_cast<std::size_t>(side)]) continue;
+      const int axis = side / 2, n = rest.n[axis];
+      if (n < ghost_width + 2) return {_grid};
+      const bool high = side % 2 == 1;
+      parts.push_back(rest);
+      cut(parts.back(), axis, high ? n - ghost_width : 0, ghost_width);
+      cut(rest, axis, high ? 0 : ghost_width, n - ghost_width);
+    }
+    parts.insert(parts.begin(), rest);
+    return parts;
   }
 
   /// Fills the normal components on the high faces that belong to other ranks.
@@ -91,24 +117,17 @@ class Halo {
   }
 
  private:
-  /// Layers of cells or ghost cells along an axis.
-  struct Layers {
-    std::size_t axis;
-    int begin, count;
-  };
+  /// Restricts a grid to cells `begin` to `begin + count - 1` along an axis.
+  static void cut(MacGrid& grid, int axis, int begin, int count) {
+    grid.first += begin * grid.stride[axis];
+    grid.origin[axis] += begin;
+    grid.n[axis] = count;
+  }
 
-  /// Velocity components `first` to `first + components - 1` in layers of cells. Other axes: all cells and the
-  /// high boundary faces, or with `ghosts` all ghost cells along y, too.
-  [[nodiscard]] ArrayBox velocity_box(const Layers& layers, int first, int components, bool ghosts) const {
+  /// Velocity components `first` to `first + components - 1` in a box of cells.
+  [[nodiscard]] ArrayBox velocity_box(const std::array<int, 3>& begin, const std::array<int, 3>& extent,
+                                      int first, int components) const {
     const MacGrid& g = _grid;
-    int begin[3] = {0, 0, 0}, extent[3];
-    for (int axis = 0; axis < 3; ++axis) extent[axis] = g.n[axis] + (g.ghost[axis] > 0 ? 1 : 0);
-    if (ghosts) {
-      begin[1] = -g.ghost[1];
-      extent[1] = g.n[1] + 2 * g.ghost[1];
-    }
-    begin[layers.axis] = layers.begin;
-    extent[layers.axis] = layers.count;
     return {first * g.component + g.offset(begin[0], begin[1], begin[2]),
             {g.stride[0], g.stride[1], g.stride[2]},
             g.component,
@@ -124,30 +143,60 @@ class Halo {
     return box;
   }
 
-  void add_side(std::size_t side) {
-    const std::size_t axis = side / 2;
-    const int peer = rank_beyond(_ranks, side), n = _grid.n[axis];
-    // Two ranks of a periodic axis share both sides.
-    const int upwards = static_cast<int>(2 * axis), downwards = upwards + 1;
-    const bool high = side % 2 == 1, ghosts = axis == 2;
-    const Layers inner{axis, high ? n - ghost_width : 0, ghost_width};
-    const Layers outer{axis, high ? n : -ghost_width, ghost_width};
-    _velocity[axis - 1].add_send(peer, high ? upwards : downwards, velocity_box(inner, 0, 3, ghosts));
-    _velocity[axis - 1].add_receive(peer, high ? downwards : upwards, velocity_box(outer, 0, 3, ghosts));
-    if (high) {
-      _faces.add_receive(peer, downwards, velocity_box({axis, n, 1}, static_cast<int>(axis), 1, false));
-      _pressure.add_send(peer, upwards, pressure_box(axis, n - 1));
-    } else {
-      _faces.add_send(peer, downwards, velocity_box({axis, 0, 1}, static_cast<int>(axis), 1, false));
-      _below[axis] = _pressure.add_receive(peer, upwards, pressure_box(axis, 0).size());
+  /// Messages of the velocity to and from the rank beyond a side, or beyond the edge between two sides.
+  void add_direction(const std::array<int, 3>& direction) {
+    std::array<int, 3> inner{}, outer{}, extent{}, opposite{};
+    linear::PencilRanks beyond = _ranks;
+    bool is_self = true;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const int n = _grid.n[axis], towards = direction[axis];
+      const std::size_t low = 2 * axis, high = low + 1;
+      opposite[axis] = -towards;
+      if (towards == 0) {
+        // With the faces on a high side of the domain.
+        extent[axis] = n + (_grid.ghost[axis] > 0 && !_borders[high] ? 1 : 0);
+        continue;
+      }
+      const std::size_t side = towards > 0 ? high : low;
+      if (!_borders[side]) return;
+      is_self = false;
+      beyond.place = place_beyond(beyond, side);
+      inner[axis] = towards > 0 ? n - ghost_width : 0;
+      outer[axis] = towards > 0 ? n : -ghost_width;
+      extent[axis] = ghost_width;
+    }
+    if (is_self) return;
+    const auto tag = [](const std::array<int, 3>& to) { return 3 * to[1] + to[2] + 4; };
+    const int peer = _ranks.rank_at(beyond.place);
+    _velocity.add_send(peer, tag(direction), velocity_box(inner, extent, 0, 3));
+    _velocity.add_receive(peer, tag(opposite), velocity_box(outer, extent, 0, 3));
+  }
+
+  /// Messages of single layers along an axis.
+  void add_axis(std::size_t axis) {
+    const std::size_t low = 2 * axis, high = low + 1;
+    const int n = _grid.n[axis], component = static_cast<int>(axis), tag = static_cast<int>(axis);
+    std::array<int, 3> begin{}, extent{_grid.n[0], _grid.n[1], _grid.n[2]};
+    extent[axis] = 1;
+    if (_borders[low]) {
+      const int peer = _ranks.rank_at(place_beyond(_ranks, low));
+      _faces.add_send(peer, tag, velocity_box(begin, extent, component, 1));
+      _below[axis] = _pressure.add_receive(peer, tag, pressure_box(axis, 0).size());
+    }
+    if (_borders[high]) {
+      const int peer = _ranks.rank_at(place_beyond(_ranks, high));
+      begin[axis] = n;
+      _faces.add_receive(peer, tag, velocity_box(begin, extent, component, 1));
+      _pressure.add_send(peer, tag, pressure_box(axis, n - 1));
     }
   }
 
   linear::RankGroup _group;
   linear::PencilRanks _ranks;
   MacGrid _grid;
-  std::array<Exchange<ExecutionSpace>, 2> _velocity;  ///< along y, then z
-  Exchange<ExecutionSpace> _faces, _pressure;
+  std::array<bool, 6> _borders{};  ///< sides towards other ranks
+  Exchange<ExecutionSpace> _velocity, _faces, _pressure;
+  linear::Transfers _transfers;  ///< of the velocity
   std::array<const double*, 3> _below{};
 };
 

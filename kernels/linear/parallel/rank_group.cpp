@@ -49,6 +49,26 @@ struct RankGroup::Communicator {
   }
 };
 
+struct Transfers::Requests {
+  std::vector<MPI_Request> all;
+};
+
+Transfers::Transfers() = default;
+Transfers::~Transfers() { wait(); }
+Transfers::Transfers(Transfers&& other) noexcept = default;
+
+Transfers& Transfers::operator=(Transfers&& other) noexcept {
+  wait();
+  _requests = std::move(other._requests);
+  return *this;
+}
+
+void Transfers::wait() {
+  if (!_requests) return;
+  MPI_Waitall(length(_requests->all.size()), _requests->all.data(), MPI_STATUSES_IGNORE);
+  _requests.reset();
+}
+
 RankGroup::RankGroup() = default;
 
 RankGroup::RankGroup(std::shared_ptr<const Communicator> communicator)
@@ -100,8 +120,10 @@ std::vector<double> RankGroup::gather(std::span<const double> values) const {
   return all;
 }
 
-void RankGroup::exchange(std::span<const Message> messages) const {
-  std::vector<MPI_Request> requests;
+Transfers RankGroup::begin(std::span<const Message> messages) const {
+  Transfers transfers;
+  transfers._requests = std::make_unique<Transfers::Requests>();
+  std::vector<MPI_Request>& requests = transfers._requests->all;
   for (const Message& message : messages)
     if (!message.receive.empty())
       MPI_Irecv(message.receive.data(), length(message.receive.size()), MPI_DOUBLE, message.peer,
@@ -110,7 +132,7 @@ void RankGroup::exchange(std::span<const Message> messages) const {
     if (!message.send.empty())
       MPI_Isend(message.send.data(), length(message.send.size()), MPI_DOUBLE, message.peer, message.send_tag,
                 _communicator->handle, &requests.emplace_back());
-  MPI_Waitall(length(requests.size()), requests.data(), MPI_STATUSES_IGNORE);
+  return transfers;
 }
 
 void RankGroup::redistribute(const double* send, const std::vector<int>& send_counts, double* receive,

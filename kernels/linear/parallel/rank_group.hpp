@@ -15,6 +15,27 @@ struct Message {
   std::span<double> receive;
 };
 
+/// Messages under way. The destructor waits for them.
+class Transfers {
+ public:
+  /// No messages. Does not throw.
+  Transfers();
+  ~Transfers();
+  Transfers(Transfers&& other) noexcept;
+  Transfers& operator=(Transfers&& other) noexcept;
+
+  /// Blocks until all messages are complete. Does not throw.
+  void wait();
+
+  /// True until `wait`. Does not throw.
+  explicit operator bool() const { return _requests != nullptr; }
+
+ private:
+  friend class RankGroup;
+  struct Requests;
+  std::unique_ptr<Requests> _requests;
+};
+
 /// Group of MPI processes, or one process alone without MPI. Copies share the communicator.
 ///
 /// Member functions are collective and block, unless stated otherwise. They end the program, as MPI does, if
@@ -47,9 +68,13 @@ class RankGroup {
   /// Values of all ranks, in the order of the ranks. Each rank gives equally many.
   [[nodiscard]] std::vector<double> gather(std::span<const double> values) const;
 
-  /// Sends and receives the messages. Both ends of a message must agree on its length; the tags of messages
-  /// between two ranks must differ. Not collective: blocks until these messages are complete.
-  void exchange(std::span<const Message> messages) const;
+  /// Begins to send and receive the messages, whose numbers must stay in place until they are complete. Both
+  /// ends of a message must agree on its length; the tags of messages from one rank to another must differ. Not
+  /// collective; does not block.
+  [[nodiscard]] Transfers begin(std::span<const Message> messages) const;
+
+  /// Sends and receives the messages. Not collective: blocks until these messages are complete.
+  void exchange(std::span<const Message> messages) const { begin(messages).wait(); }
 
   /// Sends `send_counts[r]` numbers to each rank r and receives `receive_counts[r]` from it. The numbers stand
   /// in the order of the ranks, without gaps.

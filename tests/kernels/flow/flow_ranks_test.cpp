@@ -155,6 +155,13 @@ std::vector<Case> cases() {
   add("y and z", {1, 8, 6});
   set_sides(all.back().parameters, 1, slip, wall);
   set_sides(add("thin ranks", {5, 4, 12}), 2, outflow, inflow);
+  // Large enough for cells that need no other rank.
+  Parameters& large = add("large, sides", {6, 11, 11});
+  set_sides(large, 1, outflow, wall);
+  set_sides(large, 2, wall, outflow);
+  large.time_scheme = TimeScheme::rk3;
+  large.external_force = true;
+  add("large, periodic", {6, 5, 17});
   return all;
 }
 
