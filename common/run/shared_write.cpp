@@ -43,11 +43,11 @@ void write_parts(const std::filesystem::path& file, std::uint64_t offset, const 
                            as_integers(part.extent).data(), as_integers(part.begin).data(), MPI_ORDER_C,
                            MPI_DOUBLE, &place);
   MPI_Type_commit(&place);
-  int error = MPI_File_set_view(handle, static_cast<MPI_Offset>(offset), MPI_DOUBLE, place, "native",
-                                MPI_INFO_NULL);
+  int error =
+      MPI_File_set_view(handle, static_cast<MPI_Offset>(offset), MPI_DOUBLE, place, "native", MPI_INFO_NULL);
   MPI_Status status;
-  const int written = MPI_File_write_all(handle, values.data(), static_cast<int>(values.size()), MPI_DOUBLE,
-                                         &status);
+  const int written =
+      MPI_File_write_all(handle, values.data(), static_cast<int>(values.size()), MPI_DOUBLE, &status);
   if (error == MPI_SUCCESS) error = written;
   int count = 0;
   if (error == MPI_SUCCESS && MPI_Get_count(&status, MPI_DOUBLE, &count) == MPI_SUCCESS &&

@@ -12,9 +12,9 @@ struct ArrayPart {
   std::vector<std::uint64_t> whole, begin, extent;
 };
 
-/// Writes the parts that all ranks hold of one array of doubles to an existing file, from byte `offset` on, by
-/// MPI-IO. Collective on all processes of the program; blocks until the system has the data. Throws `Failure`
-/// (io_error) on all ranks if one fails.
+/// Writes the parts that all ranks hold of one array of doubles to an existing file, from byte `offset` on,
+/// by MPI-IO. Collective on all processes of the program; blocks until the system has the data. Throws
+/// `Failure` (io_error) on all ranks if one fails.
 void write_parts(const std::filesystem::path& file, std::uint64_t offset, const ArrayPart& part,
                  std::span<const double> values);
 

@@ -66,16 +66,16 @@ inline std::array<Boundary, 6> sides_of(const Parameters& parameters, const line
 /// which must outlive the solver; on CUDA it must have a stream of its own. After a failed step the state is
 /// that before the step.
 ///
-/// On a group of several ranks each holds a box of the cells (`decompose`). All functions are then collective,
-/// every step waits for the host, and arrays are those of the rank (`part_of`).
+/// On a group of several ranks each holds a box of the cells (`decompose`). All functions are then
+/// collective, every step waits for the host, and arrays are those of the rank (`part_of`).
 template <class ExecutionSpace>
 class FlowSolver {
  public:
   using Values = List<ExecutionSpace>;
 
   /// Throws std::invalid_argument as `check_parameters` does, and std::runtime_error if memory runs out. Each
-  /// rank gives the same parameters. Throws std::invalid_argument also for fast transforms on CUDA and several
-  /// ranks.
+  /// rank gives the same parameters. Throws std::invalid_argument also for fast transforms on CUDA and
+  /// several ranks.
   FlowSolver(const device::Instance<ExecutionSpace>& instance, const Parameters& parameters,
              const linear::RankGroup& group = {});
 
@@ -239,8 +239,8 @@ void FlowSolver<ExecutionSpace>::make_poisson() {
 #endif
   const bool transforms = uses_transforms<ExecutionSpace>(_parameters, group.size());
   if (group.size() > 1)
-    _poisson.emplace(std::in_place_type<linear::PencilSolver<ExecutionSpace>>, space(), problem, group, _ranks,
-                     transforms ? linear::AxisMethod::fourier : linear::AxisMethod::diagonalization);
+    _poisson.emplace(std::in_place_type<linear::PencilSolver<ExecutionSpace>>, space(), problem, group,
+                     _ranks, transforms ? linear::AxisMethod::fourier : linear::AxisMethod::diagonalization);
   else if (transforms)
     _poisson.emplace(std::in_place_type<linear::FourierSolver<ExecutionSpace>>, space(), problem);
   else
@@ -549,14 +549,12 @@ void FlowSolver<ExecutionSpace>::enqueue_stage(const ExecutionSpace& space,
                                                double time_fraction) const {
   if (_parameters.turbulence != Turbulence::none) {
     finish_ghosts(space, setup.stage);
-    launch_cells(
-        space, "drogue::flow::eddy_viscosity", _eddy_cells.extent,
-        EddyViscosityFunctor<ExecutionSpace>{_grid, _eddy_model, setup.stage, _eddy_cells, _eddy_viscosity,
-                                             _control});
-    launch_cells(
-        space, "drogue::flow::eddy_stress", _grid.n,
-        EddyStressFunctor<ExecutionSpace>{_grid, setup.stage, _eddy_cells, _eddy_viscosity,
-                                          _eddy_acceleration, _control});
+    launch_cells(space, "drogue::flow::eddy_viscosity", _eddy_cells.extent,
+                 EddyViscosityFunctor<ExecutionSpace>{_grid, _eddy_model, setup.stage, _eddy_cells,
+                                                      _eddy_viscosity, _control});
+    launch_cells(space, "drogue::flow::eddy_stress", _grid.n,
+                 EddyStressFunctor<ExecutionSpace>{_grid, setup.stage, _eddy_cells, _eddy_viscosity,
+                                                   _eddy_acceleration, _control});
   }
   enqueue_momentum(space, setup);
   if (_boundary.changes()) _boundary.enqueue_evaluation(space, _control, {time_fraction, false});
@@ -567,8 +565,9 @@ void FlowSolver<ExecutionSpace>::enqueue_stage(const ExecutionSpace& space,
 template <class ExecutionSpace>
 void FlowSolver<ExecutionSpace>::enqueue_projection(const ExecutionSpace& space, const Values& result,
                                                     double fraction, bool resists_backflow) const {
-  ProjectionSetup<ExecutionSpace> setup{_grid,     _boundary.conditions(), _predicted, result,
-                                        _divergence, _pressure, _control, fraction, resists_backflow, {}};
+  ProjectionSetup<ExecutionSpace> setup{
+      _grid,    _boundary.conditions(), _predicted, result, _divergence, _pressure, _control,
+      fraction, resists_backflow,       {}};
   if (_halo) {
     for (std::size_t axis = 0; axis < 3; ++axis) setup.pressure_below[axis] = _halo->pressure_below(axis);
     _halo->exchange_high_faces(space, _predicted);

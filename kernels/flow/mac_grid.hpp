@@ -20,11 +20,11 @@ inline constexpr int ghost_width = 3;
 /// On one of several ranks it is the part of a whole grid that the rank holds. Sides towards other ranks are
 /// `BoundaryKind::neighbour`; along such an axis, face n belongs to the neighbour.
 struct MacGrid {
-  int n[3];       ///< cells per axis
-  int ghost[3];   ///< ghost cells at each side; 0 along axes with one cell
-  int whole[3];   ///< cells of the whole grid per axis
-  int origin[3];  ///< index of cell (0, 0, 0) in the whole grid
-  bool periodic[3];  ///< with both sides on this rank
+  int n[3];                ///< cells per axis
+  int ghost[3];            ///< ghost cells at each side; 0 along axes with one cell
+  int whole[3];            ///< cells of the whole grid per axis
+  int origin[3];           ///< index of cell (0, 0, 0) in the whole grid
+  bool periodic[3];        ///< with both sides on this rank
   double low[3];           ///< lower corner of the whole grid, m
   double h[3];             ///< spacing, m
   double inverse_h[3];     ///< 1/m

@@ -45,9 +45,9 @@ enum class PressureSolver {
 /// Type of a side of the domain.
 enum class BoundaryKind {
   periodic,
-  slip,     ///< no flow through the side, no shear stress
-  wall,     ///< velocity of the wall, no slip
-  inflow,   ///< prescribed velocity
+  slip,       ///< no flow through the side, no shear stress
+  wall,       ///< velocity of the wall, no slip
+  inflow,     ///< prescribed velocity
   outflow,    ///< zero normal gradient of the velocity, zero pressure
   neighbour,  ///< other ranks hold the cells beyond; only inside a solver, no side of a domain
 };

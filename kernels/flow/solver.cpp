@@ -90,9 +90,8 @@ std::unique_ptr<Solver> create_solver(device::Backend backend, const Parameters&
                                       const linear::RankGroup& group) {
   check_parameters(parameters);
   try {
-    return device::dispatch(backend, [&]<class ExecutionSpace>() {
-      return make_solver<ExecutionSpace>(parameters, group);
-    });
+    return device::dispatch(
+        backend, [&]<class ExecutionSpace>() { return make_solver<ExecutionSpace>(parameters, group); });
   } catch (const std::runtime_error& error) {
     // Kokkos throws this for a failed allocation.
     if (std::string_view(error.what()).find("failed to allocate") != std::string_view::npos)

@@ -73,8 +73,8 @@ void check_parameters(const Parameters& parameters);
 /// std::bad_alloc if memory runs out.
 ///
 /// On a group of several ranks each holds a part of the cells: arrays are those of `part_of`
-/// (kernels/flow/halo/decomposition.hpp), and all functions but those that do not throw are collective. Throws
-/// std::invalid_argument also if the ranks cannot share the grid.
+/// (kernels/flow/halo/decomposition.hpp), and all functions but those that do not throw are collective.
+/// Throws std::invalid_argument also if the ranks cannot share the grid.
 [[nodiscard]] std::unique_ptr<Solver> create_solver(device::Backend backend, const Parameters& parameters,
                                                     const linear::RankGroup& group = {});
 

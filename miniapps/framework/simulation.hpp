@@ -128,8 +128,8 @@ class Simulation {
 /// Settings of a simulation that stand on the command line.
 struct SimulationSettings {
   device::Backend backend = device::Backend::serial;
-  bool baseline = false;  ///< algorithm of [Shi], with its host-device copies
-  bool quiet = false;     ///< no progress line
+  bool baseline = false;                 ///< algorithm of [Shi], with its host-device copies
+  bool quiet = false;                    ///< no progress line
   Communicator* communicator = nullptr;  ///< of several ranks; null: one rank
 };
 

@@ -35,8 +35,8 @@ class SpaceTimeFunction {
 /// Program of an expression for kernels. Throws std::invalid_argument if it is too long.
 [[nodiscard]] device::ExpressionProgram device_program(const std::string& text);
 
-/// Points of an array of the state, or of a part of it: `n` along each axis. Point (0, 0, 0) of the whole array
-/// is at `first`, m; points are `spacing`, m, apart. Entry i + n[0] (j + n[1] k) is at point `origin` +
+/// Points of an array of the state, or of a part of it: `n` along each axis. Point (0, 0, 0) of the whole
+/// array is at `first`, m; points are `spacing`, m, apart. Entry i + n[0] (j + n[1] k) is at point `origin` +
 /// (i, j, k).
 struct Lattice {
   std::array<int, 3> n;

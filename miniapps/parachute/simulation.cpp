@@ -59,8 +59,7 @@ const char* reason_text(flow::FailureReason reason) {
 Simulation::Simulation(const FlowScene& scene, const framework::SimulationSettings& settings)
     : _scene(scene) {
   if (settings.communicator != nullptr) {
-    auto shared =
-        std::make_unique<SharedSolver>(*settings.communicator, settings.backend, scene.parameters);
+    auto shared = std::make_unique<SharedSolver>(*settings.communicator, settings.backend, scene.parameters);
     _shared = shared.get();
     _solver = std::move(shared);
   } else {
@@ -80,8 +79,7 @@ void Simulation::start() {
       continue;
     }
     const flow::StateField field = velocity_field(axis);
-    _solver->upload(field,
-                    evaluate(SpaceTimeFunction(velocity), lattice_of(_scene.parameters, field), 0.0));
+    _solver->upload(field, evaluate(SpaceTimeFunction(velocity), lattice_of(_scene.parameters, field), 0.0));
   }
   _solver->start();
   _statistics.begin(_solver->totals());

@@ -16,8 +16,8 @@ inline linear::RankGroup first_ranks(int size) {
 }
 inline bool belongs_to_first(int size) { return linear::RankGroup::world().rank() < size; }
 
-/// Calls `visit(entry, part entry)` for the entries of a part of a whole array, x fastest, with `size` numbers
-/// per entry.
+/// Calls `visit(entry, part entry)` for the entries of a part of a whole array, x fastest, with `size`
+/// numbers per entry.
 template <class Visit>
 void for_each_entry(const std::array<int, 3>& whole, const linear::CellBox& part, const Visit& visit) {
   std::size_t at = 0;

@@ -13,10 +13,11 @@ namespace drogue::flow {
 /// Fewest cells of a rank along a divided axis: a neighbour needs that many ghost cells from it.
 inline constexpr int least_cells_of_rank = 3;
 
-/// Numbers that a rank sends in a step of one projection, per cell along x: ghost cells, and transpositions of
-/// a direct pressure solver. Does not throw.
+/// Numbers that a rank sends in a step of one projection, per cell along x: ghost cells, and transpositions
+/// of a direct pressure solver. Does not throw.
 inline double numbers_sent(const std::array<int, 3>& cells, int parts_y, int parts_z) {
-  const double own_y = static_cast<double>(cells[1]) / parts_y, own_z = static_cast<double>(cells[2]) / parts_z;
+  const double own_y = static_cast<double>(cells[1]) / parts_y,
+               own_z = static_cast<double>(cells[2]) / parts_z;
   constexpr double ghosts = 2.0 * 3.0 * 3.0;  // sides, components, layers
   const auto along = [&](int parts, double across) {
     return parts > 1 ? ghosts * across + 2.0 * own_y * own_z * (1.0 - 1.0 / parts) : 0.0;
@@ -24,8 +25,8 @@ inline double numbers_sent(const std::array<int, 3>& cells, int parts_y, int par
   return along(parts_y, own_z) + along(parts_z, own_y);
 }
 
-/// Division of a grid of cells among ranks along y and z, with the fewest numbers sent. Axes with one cell and x
-/// are not divided. Throws std::invalid_argument if a rank would have too few cells.
+/// Division of a grid of cells among ranks along y and z, with the fewest numbers sent. Axes with one cell
+/// and x are not divided. Throws std::invalid_argument if a rank would have too few cells.
 inline linear::PencilRanks decompose(const std::array<int, 3>& cells, int ranks, int rank) {
   linear::PencilRanks best;
   double least = 0.0;

@@ -44,7 +44,7 @@ struct BoxCopyFunctor {
 };
 
 /// Exchange of parts of an array with other ranks. Buffers are in host memory that the kernels access
-/// directly, so that MPI need not know of devices.
+/// directly; MPI without support of devices suffices.
 template <class ExecutionSpace>
 class Exchange {
  public:
@@ -98,9 +98,7 @@ class Exchange {
     Buffer buffer;
   };
 
-  static Port port(int peer, int tag, const ArrayBox& box) {
-    return {peer, tag, box, buffer(box.size())};
-  }
+  static Port port(int peer, int tag, const ArrayBox& box) { return {peer, tag, box, buffer(box.size())}; }
   static Buffer buffer(int size) { return Buffer("drogue::flow::message", static_cast<std::size_t>(size)); }
   static void copy(const ExecutionSpace& space, const Port& port, double* array, bool to_buffer) {
     device::launch_each(space, to_buffer ? "drogue::flow::pack" : "drogue::flow::unpack", port.box.size(),

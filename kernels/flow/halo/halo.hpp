@@ -45,8 +45,8 @@ class Halo {
     return true;
   }
 
-  /// Parts of the cells: first those whose momentum needs no ghost cells towards other ranks, then the others.
-  /// All cells in one part if these are too few to be divided.
+  /// Parts of the cells: first those whose momentum needs no ghost cells towards other ranks, then the
+  /// others. All cells in one part if these are too few to be divided.
   [[nodiscard]] std::vector<MacGrid> parts() const {
     std::vector<MacGrid> parts;
     MacGrid rest = _grid;

@@ -69,8 +69,8 @@ struct EddyCells {
   [[nodiscard]] KOKKOS_FUNCTION std::size_t nearest(const int cell[3]) const {
     std::int64_t place = 0;
     for (int axis = 2; axis >= 0; --axis) {
-      const int from_first = cell[axis] - first[axis], last = extent[axis] - 1;
-      place = place * extent[axis] + (from_first < 0 ? 0 : from_first > last ? last : from_first);
+      const int along = cell[axis] - first[axis], last = extent[axis] - 1;
+      place = place * extent[axis] + (along < 0 ? 0 : along > last ? last : along);
     }
     return static_cast<std::size_t>(place);
   }
@@ -97,7 +97,7 @@ template <class ExecutionSpace>
 struct EddyViscosityFunctor {
   MacGrid grid;
   EddyModel model;
-  List<ExecutionSpace> velocity;   ///< m/s, with ghost cells
+  List<ExecutionSpace> velocity;  ///< m/s, with ghost cells
   EddyCells cells;
   List<ExecutionSpace> viscosity;  ///< m^2/s, x fastest
   ControlView<ExecutionSpace> control;
@@ -116,7 +116,7 @@ struct EddyViscosityFunctor {
 template <class ExecutionSpace>
 struct EddyStressFunctor {
   MacGrid grid;
-  List<ExecutionSpace> velocity;      ///< m/s, with ghost cells
+  List<ExecutionSpace> velocity;  ///< m/s, with ghost cells
   EddyCells cells;
   List<ExecutionSpace> viscosity;     ///< m^2/s, x fastest
   List<ExecutionSpace> acceleration;  ///< m/s^2, in the layout of `velocity`

@@ -23,9 +23,7 @@ struct PencilRanks {
   std::array<int, 3> place = {0, 0, 0};  ///< of this rank
 
   /// Rank at a place. Does not throw.
-  [[nodiscard]] constexpr int rank_at(const std::array<int, 3>& at) const {
-    return at[1] + parts[1] * at[2];
-  }
+  [[nodiscard]] constexpr int rank_at(const std::array<int, 3>& at) const { return at[1] + parts[1] * at[2]; }
 };
 
 /// Cells of a rank within a whole grid.
@@ -33,6 +31,7 @@ struct CellBox {
   std::array<int, 3> begin = {0, 0, 0};
   std::array<int, 3> cells = {1, 1, 1};
 
+  /// Number of cells. Does not throw.
   [[nodiscard]] constexpr std::size_t size() const {
     return static_cast<std::size_t>(cells[0]) * static_cast<std::size_t>(cells[1]) *
            static_cast<std::size_t>(cells[2]);

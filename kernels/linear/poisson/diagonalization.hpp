@@ -12,9 +12,11 @@
 namespace drogue::linear {
 
 /// Matrix of the eigenvectors along an axis, on a device. Column k holds eigenvector k. Blocks.
+/// Throws std::runtime_error if memory runs out.
 template <class ExecutionSpace>
-Kokkos::View<double*, typename ExecutionSpace::memory_space> eigenvector_matrix(
-    const ExecutionSpace& space, const PoissonProblem& problem, std::size_t axis) {
+Kokkos::View<double*, typename ExecutionSpace::memory_space> eigenvector_matrix(const ExecutionSpace& space,
+                                                                                const PoissonProblem& problem,
+                                                                                std::size_t axis) {
   const int n = problem.cells[axis];
   std::vector<double> basis(static_cast<std::size_t>(n) * static_cast<std::size_t>(n));
   for (int k = 0; k < n; ++k)

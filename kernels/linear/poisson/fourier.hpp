@@ -51,8 +51,8 @@ inline std::vector<double> transform_eigenvalues(const PoissonProblem& problem, 
   return values;
 }
 
-/// Transforms of all lines of an array along one axis, on a host by FFTW: sine and cosine transforms serve all
-/// boundary conditions.
+/// Transforms of all lines of an array along one axis, on a host by FFTW: sine and cosine transforms serve
+/// all boundary conditions.
 ///
 /// Each line is transformed by a serial plan, so that the result does not depend on the number of threads.
 /// Plans are estimated: measured ones could differ from run to run, and with them the last bits.
@@ -95,7 +95,7 @@ class AxisTransforms {
   void forward(const ExecutionSpace& space, const double* from, double* to) const {
     transform(space, 0, from, to);
   }
-  /// Backward transform in place, as `forward`.
+  /// Backward transform in place, as `forward`. Does not throw.
   void backward(const ExecutionSpace& space, double* values) const { transform(space, 1, values, values); }
 
   /// False for an object without plans. Does not throw.
@@ -156,8 +156,7 @@ class FourierSolver {
     bool is_first = true;  // of the axes with more than one cell: its transform reads the right-hand side
     for (std::size_t axis = 0; axis < 3; ++axis) {
       if (problem.cells[axis] > 1) {
-        _transforms[axis] =
-            AxisTransforms<ExecutionSpace>(problem.cells, axis, problem.axes[axis], is_first);
+        _transforms[axis] = AxisTransforms<ExecutionSpace>(problem.cells, axis, problem.axes[axis], is_first);
         _normalisation *= _transforms[axis].normalisation();
         is_first = false;
       }

@@ -19,8 +19,9 @@ enum class AxisMethod {
   diagonalization,  ///< products with the matrices of eigenvectors
 };
 
-/// Direct solver on several ranks: transforms along x, y and z in turn, with transpositions between boxes that
-/// hold whole lines along each axis (pencils). Each rank holds the cells of `box_of(ranks, problem.cells)`.
+/// Direct solver on several ranks: transforms along x, y and z in turn, with transpositions between boxes
+/// that hold whole lines along each axis (pencils). Each rank holds the cells of `box_of(ranks,
+/// problem.cells)`.
 template <class ExecutionSpace>
 class PencilSolver {
  public:
@@ -50,8 +51,8 @@ class PencilSolver {
     space.fence("drogue::linear::pencil_solver: allocated");
   }
 
-  /// Solves for `solution`, in its unit, with the right-hand side in that unit per m^2, which it keeps; arrays
-  /// of the cells of this rank, x fastest. Collective; blocks until the last transposition. Throws
+  /// Solves for `solution`, in its unit, with the right-hand side in that unit per m^2, which it keeps;
+  /// arrays of the cells of this rank, x fastest. Collective; blocks until the last transposition. Throws
   /// std::invalid_argument for an array of the wrong size.
   void enqueue_solve(const List& right_hand_side, const List& solution) {
     const std::size_t cells = _boxes[0].size();
@@ -66,10 +67,9 @@ class PencilSolver {
       }
     }
     if (_boxes[2].size() > 0)
-      scale_spectrum(_space,
-                     SpectralScalingFunctor<ExecutionSpace>{_arrays[0].data(), _eigenvalues[0],
-                                                            _eigenvalues[1], _eigenvalues[2], 1,
-                                                            _normalisation});
+      scale_spectrum(
+          _space, SpectralScalingFunctor<ExecutionSpace>{_arrays[0].data(), _eigenvalues[0], _eigenvalues[1],
+                                                         _eigenvalues[2], 1, _normalisation});
     for (std::size_t axis = 3; axis-- > 0;) {
       transform(axis, false);
       if (axis > 0 && _turns[axis - 1]) {
@@ -105,8 +105,7 @@ class PencilSolver {
     if (_method == AxisMethod::diagonalization) {
       _basis[axis] = eigenvector_matrix(_space, problem, axis);
     } else if constexpr (device::is_host<ExecutionSpace>) {
-      _transforms[axis] =
-          AxisTransforms<ExecutionSpace>(_boxes[axis].cells, axis, problem.axes[axis], false);
+      _transforms[axis] = AxisTransforms<ExecutionSpace>(_boxes[axis].cells, axis, problem.axes[axis], false);
       _normalisation *= _transforms[axis].normalisation();
     }
   }
@@ -126,7 +125,8 @@ class PencilSolver {
 
   /// Transforms of hosts; nothing on a device.
   struct NoTransforms {};
-  using Transforms = std::conditional_t<device::is_host<ExecutionSpace>, AxisTransforms<ExecutionSpace>, NoTransforms>;
+  using Transforms =
+      std::conditional_t<device::is_host<ExecutionSpace>, AxisTransforms<ExecutionSpace>, NoTransforms>;
 
   ExecutionSpace _space;
   AxisMethod _method;

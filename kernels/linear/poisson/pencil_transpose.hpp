@@ -31,8 +31,7 @@ struct BlockCopyFunctor {
     index[axis] -= begin;
     const std::int64_t others = static_cast<std::int64_t>(cells[(axis + 1) % 3]) * cells[(axis + 2) % 3];
     const std::int64_t place =
-        others * begin + index[0] +
-        extent[0] * (index[1] + static_cast<std::int64_t>(extent[1]) * index[2]);
+        others * begin + index[0] + extent[0] * (index[1] + static_cast<std::int64_t>(extent[1]) * index[2]);
     if (to_blocks)
       blocks[place] = array[at];
     else
@@ -72,8 +71,9 @@ class PencilTranspose {
   /// Cells of this rank after the transposition. Does not throw.
   [[nodiscard]] const CellBox& after() const { return _after; }
 
-  /// Transposes `from`, the cells before, to `to`, the cells after. Both buffers have at least as many entries
-  /// as either. Collective; blocks until the messages are complete, but not for the kernel that fills `to`.
+  /// Transposes `from`, the cells before, to `to`, the cells after. Both buffers have at least as many
+  /// entries as either. Collective; blocks until the messages are complete, but not for the kernel that fills
+  /// `to`.
   void forward(const ExecutionSpace& space, const List& from, const List& to, const Buffer& send,
                const Buffer& receive) const {
     move(space, from, to, send, receive, true);

@@ -12,9 +12,9 @@ void visit_members(Parameters& parameters, const Visit& visit) {
          diffusion, turbulence, turbulence_constant, pressure_solver, pressure_tolerance, external_force, cfl,
          fixed_dt, max_dt, max_steps, driver] = parameters;
   const auto visit_all = [&](auto&... members) { (visit(members), ...); };
-  visit_all(cells, low, high, density, viscosity, body_force, pressure_drop, advection, time_scheme, diffusion,
-            turbulence, turbulence_constant, pressure_solver, pressure_tolerance, external_force, cfl, fixed_dt,
-            max_dt, max_steps, driver);
+  visit_all(cells, low, high, density, viscosity, body_force, pressure_drop, advection, time_scheme,
+            diffusion, turbulence, turbulence_constant, pressure_solver, pressure_tolerance, external_force,
+            cfl, fixed_dt, max_dt, max_steps, driver);
   for (auto& side : boundary) {
     auto& [kind, velocity, velocity_expressions] = side;
     visit_all(kind, velocity, velocity_expressions);

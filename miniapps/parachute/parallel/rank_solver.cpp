@@ -27,9 +27,8 @@ void for_each_row(const Shape& whole, const Part& part, const Copy& copy) {
   std::size_t at = 0;
   for (std::size_t k = 0; k < part.extent[3]; ++k)
     for (std::size_t j = 0; j < part.extent[2]; ++j, at += row)
-      copy(whole.extent[0] *
-               (part.begin[1] +
-                whole.extent[1] * (part.begin[2] + j + whole.extent[2] * (part.begin[3] + k))),
+      copy(whole.extent[0] * (part.begin[1] +
+                              whole.extent[1] * (part.begin[2] + j + whole.extent[2] * (part.begin[3] + k))),
            at, row);
 }
 

@@ -20,17 +20,17 @@ enum class Request : int {
   upload,           ///< field: rank 0 sends the parts of an array of the state
   upload_function,  ///< axis, text: a component of the velocity, evaluated by each rank
   start,
-  restore,   ///< progress
-  advance,   ///< target time, pause step
+  restore,  ///< progress
+  advance,  ///< target time, pause step
   totals,
   download,  ///< field: rank 0 receives the parts
   sample,    ///< field: rank 0 receives the parts
   write,     ///< field, offset, file: all ranks write a field
 };
 
-/// The solver on one of several ranks, with the transfer of arrays between rank 0 and the others. All functions
-/// are collective and block. An exception from a kernel or from lack of memory ends all ranks, because the
-/// others wait within a step.
+/// The solver on one of several ranks, with the transfer of arrays between rank 0 and the others. All
+/// functions are collective and block. An exception from a kernel or from lack of memory ends all ranks,
+/// because the others wait within a step.
 class RankSolver {
  public:
   /// Calls `prepare` first. Throws `Failure` on all ranks if something fails on one.
@@ -47,8 +47,8 @@ class RankSolver {
   void download(flow::StateField field, std::span<double> whole);
   /// As `download`, in the order of `flow::Solver::sample`.
   void sample(flow::CellField field, std::span<double> whole);
-  /// Writes a field in that order from byte `offset` of a file on. Throws `Failure` (io_error) on all ranks if
-  /// one fails.
+  /// Writes a field in that order from byte `offset` of a file on. Throws `Failure` (io_error) on all ranks
+  /// if one fails.
   void write(flow::CellField field, std::uint64_t offset, const std::string& file);
 
   /// Runs an action of the solver; ends all ranks if it throws.
