@@ -18,7 +18,7 @@ inline void start_hypre() {
 #endif
   linear::PoissonProblem problem;
   problem.cells = {4, 4, 4};
-  const linear::HypreStructSolver solver(problem, 1e-6, 1);
+  const linear::HypreStructSolver solver(problem, {}, {{0, 0, 0}, problem.cells}, 1e-6, 1);
 #if defined(__SANITIZE_ADDRESS__)
   // Runs before the handler that the solver registered, which ends MPI.
   std::atexit(__lsan_disable);
