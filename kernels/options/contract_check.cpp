@@ -71,13 +71,13 @@ std::string_view violated_condition(const Contract& c) {
   });
   if (!common.empty()) return common;
   switch (c.model) {
-    case Model::generalized_hyperbolic:
+    case JumpModel::generalized_hyperbolic:
       return violated_by_generalized_hyperbolic(c);
-    case Model::black_scholes:
+    case JumpModel::black_scholes:
       return first_violated({{c.variance > 0.0, "variance must be > 0 where there are no jumps"}});
-    case Model::merton:
+    case JumpModel::merton:
       return violated_by_merton(c);
-    case Model::kou:
+    case JumpModel::kou:
       return violated_by_kou(c);
   }
   return "model must be one that is known";

@@ -100,12 +100,12 @@ KOKKOS_INLINE_FUNCTION R drift_in_deviations(const PutPack<R>& put, const LevyMe
   // The compensator e^y - 1 - y takes nearly half the variance from the drift, but much more if the mean of
   // Kou's upward jumps hardly exists.
   R compensator = 0.5 * measure.variance;
-  if (put.model == Model::merton || put.model == Model::kou)
+  if (put.model == JumpModel::merton || put.model == JumpModel::kou)
     compensator = jump_cumulant(put, measure, R(1.0));
   const R drift = (put.rate - put.dividend - 0.5 * put.variance - compensator) * put.maturity;
   const R drift_ratio =
       device::maximum(R(1.0), device::absolute(drift) * device::reciprocal(device::square_root(variance)));
-  if (put.model != Model::generalized_hyperbolic) return drift_ratio;
+  if (put.model != JumpModel::generalized_hyperbolic) return drift_ratio;
   // Asymmetric jumps (for beta = -1/2 they are symmetric up to e^y) increase the error once they act over
   // several deviations and years; with early exercise they have less time. The constants 0.4, 0.25 and 10 are
   // empirical, tested by `OptionsError.CoversAsymmetricJumpsOverDecades`.
@@ -162,8 +162,8 @@ KOKKOS_INLINE_FUNCTION ErrorEstimate<R> estimate_error(const PutPack<R>& put, co
   const R resolved = device::minimum(h, R(2.0)), squared = resolved * resolved;
   ErrorEstimate<R> estimate{error_factor(h, steps, spread, drift_in_deviations(put, measure)),
                             0.05 * squared * squared, put.variance + measure.variance};
-  if (put.model == Model::kou) estimate.offset += kou_skewness_error(put, measure, h);
-  if (put.model == Model::generalized_hyperbolic)
+  if (put.model == JumpModel::kou) estimate.offset += kou_skewness_error(put, measure, h);
+  if (put.model == JumpModel::generalized_hyperbolic)
     estimate.offset += hyperbolic_skewness_error(put, h, spread);
   return estimate;
 }
