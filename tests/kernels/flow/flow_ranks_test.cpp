@@ -187,30 +187,30 @@ void expect_same_totals(const Totals& a, const Totals& b, const std::string& wha
   for (int side = 0; side < 6; ++side) near(a.outflow[side], b.outflow[side], "outflow");
 }
 
-/// Runs a case from random data on `ranks` ranks and on this one alone, and compares everything.
+/// Runs a case from random data on `ranks` ranks and on this one single, and compares everything.
 void expect_steps_of_one_rank(const Case& each, int ranks) {
   const Parameters& p = each.parameters;
   const linear::RankGroup group = first_ranks(ranks);
   if (!belongs_to_first(ranks)) return;
   const std::string what = each.name + " on " + std::to_string(ranks) + " ranks";
   const StaggeredField initial = random_field(FlowDomain(p), 77);
-  SharedSolver alone(p, {}), shared(p, group);
-  EXPECT_EQ(std::string(ranks == 1 ? alone->driver() : "plain"), shared->driver());
-  alone.start(initial);
+  SharedSolver single(p, {}), shared(p, group);
+  EXPECT_EQ(std::string(ranks == 1 ? single->driver() : "plain"), shared->driver());
+  single.start(initial);
   shared.start(initial);
   for (const int step : {0, 1, 5}) {
     if (step > 0) {
-      EXPECT_EQ(Stop::pause, alone->advance(endless, step, {})) << what;
+      EXPECT_EQ(Stop::pause, single->advance(endless, step, {})) << what;
       EXPECT_EQ(Stop::pause, shared->advance(endless, step, {})) << what;
     }
-    const auto expected = alone.state(), found = shared.state();
+    const auto expected = single.state(), found = shared.state();
     for (std::size_t i = 0; i < expected.size(); ++i)
       if (i < 4 || step > 0) expect_near(expected[i], found[i], what + ", array " + std::to_string(i));
-    expect_same_totals(alone->totals(), shared->totals(), what);
+    expect_same_totals(single->totals(), shared->totals(), what);
     for (const std::size_t c : {0U, 1U, 2U})
-      expect_near(alone.sample(CellField::vorticity, c, 3), shared.sample(CellField::vorticity, c, 3),
+      expect_near(single.sample(CellField::vorticity, c, 3), shared.sample(CellField::vorticity, c, 3),
                   what + ", vorticity");
-    expect_near(alone.sample(CellField::q_criterion, 0, 1), shared.sample(CellField::q_criterion, 0, 1),
+    expect_near(single.sample(CellField::q_criterion, 0, 1), shared.sample(CellField::q_criterion, 0, 1),
                 what + ", Q-criterion");
   }
 }
@@ -297,11 +297,11 @@ TEST_F(FlowRanks, FailTogetherAtTheFirstCellAndKeepTheState) {
     p.boundary[5].velocity_expressions = {builder.program(), builder.program(), zero.program()};
     p.boundary[4].velocity_expressions.clear();
     const StaggeredField initial = random_field(FlowDomain(p), 3);
-    SharedSolver alone(p, {}), shared(p, linear::RankGroup::world());
-    alone.start(initial);
+    SharedSolver single(p, {}), shared(p, linear::RankGroup::world());
+    single.start(initial);
     shared.start(initial);
-    EXPECT_EQ(Stop::failed, alone->advance(endless, -1, {}));
-    const StepFailure expected = alone->failure();
+    EXPECT_EQ(Stop::failed, single->advance(endless, -1, {}));
+    const StepFailure expected = single->failure();
     const int first_of_upper_ranks = p.cells[0] * p.cells[1] * linear::part_begin(p.cells[2], 2, 1);
     EXPECT_GE(expected.index, first_of_upper_ranks);
     EXPECT_EQ(Stop::pause, shared->advance(endless, expected.step - 1, {}));

@@ -112,14 +112,14 @@ void expect_solutions_of_one_rank(double tolerance, const Solve& solve) {
     if (!belongs_to_first(size)) continue;
     const PoissonProblem problem{each.cells, {0.3, 0.2, 0.5}, each.axes};
     const std::vector<double> right = random_values(CellBox{{0, 0, 0}, each.cells}.size());
-    const List alone("alone", right.size());
+    const List single("single", right.size());
     const DiagonalizationSolver<ExecutionSpace> reference(space, problem);
-    reference.enqueue_solve(on_device(right), alone);
+    reference.enqueue_solve(on_device(right), single);
     space.fence();
     const PencilRanks ranks{each.parts, {0, group.rank() % each.parts[1], group.rank() / each.parts[1]}};
     const CellBox box = box_of(ranks, each.cells);
     const std::vector<double> own = solve(problem, group, ranks, testing::cut(right, each.cells, box));
-    EXPECT_LT(largest_difference(on_host(alone), testing::joined(group, own, each.cells, box)), tolerance)
+    EXPECT_LT(largest_difference(on_host(single), testing::joined(group, own, each.cells, box)), tolerance)
         << each.cells[0] << " x " << each.cells[1] << " x " << each.cells[2];
   }
 }
