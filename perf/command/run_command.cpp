@@ -48,7 +48,7 @@ ExitCode run_cases(const RunOptions& options, const std::regex& filter) {
   const nlohmann::json here = provenance(device::device_facts());
   std::vector<nlohmann::json> lines;
   bool passed = true;
-  for (const Record& record : measure(cases, warm_up(options.quick), kept_rounds(options.quick))) {
+  for (const Record& record : measure(cases, warm_up_rounds, kept_rounds(options.quick))) {
     lines.push_back(to_json(record, here, to_json(record.facts)));
     passed = passed && record.passed();
     const run::MedianInterval time = run::median_interval(record.samples);
@@ -65,7 +65,7 @@ ExitCode run_cases(const RunOptions& options, const std::regex& filter) {
 Command list_command(CLI::App& program) {
   const auto quick = std::make_shared<bool>(false);
   CLI::App* app = program.add_subcommand("list", "Print the cases that this build and machine can run");
-  app->add_flag("--quick", *quick, "Those of run --quick");
+  app->add_flag("--quick", *quick, "Only the cases of run --quick");
   return {app, [quick](const std::vector<std::string>&) {
             for (const Case& c : all_cases(*quick)) std::printf("%s\n", c.name.c_str());
             return ExitCode::ok;

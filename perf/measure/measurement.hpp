@@ -50,20 +50,15 @@ struct Record {
   [[nodiscard]] bool passed() const { return error <= tolerance; }
 };
 
-/// Discarded rounds before the recorded ones: at least `rounds`, and as many as take `seconds` of timed work.
-struct WarmUp {
-  int rounds;
-  double seconds;
-};
-
-/// Warm-up of most measurements. An idle H200 has a clock of 345 MHz and needs work to raise it. Does not
-/// throw.
-constexpr WarmUp warm_up(bool quick, int rounds = 3) { return {rounds, quick ? 0.0 : 1.0}; }
-/// Number of recorded rounds. Does not throw.
+/// Numbers of discarded and of recorded rounds. Warm-up lasts `warm_up_seconds` at least: a GPU that idled
+/// runs at a fraction of its clock for some tenths of a second.
+inline constexpr int warm_up_rounds = 3;
+inline constexpr double warm_up_seconds = 1.0;
 constexpr int kept_rounds(bool quick) { return quick ? 7 : 25; }
 
 /// Times `cases` in interleaved rounds of one sample each, so that a disturbance affects all of them.
-/// Blocking; passes on exceptions of the cases.
-std::vector<Record> measure(const std::vector<Case>& cases, const WarmUp& discarded, int rounds);
+/// Discards the first `warm_up` rounds, or as many as take `warm_up_seconds` unless `warm_up` is 0. Blocking;
+/// passes on exceptions of the cases.
+std::vector<Record> measure(const std::vector<Case>& cases, int warm_up, int rounds);
 
 }  // namespace drogue::perf

@@ -20,8 +20,9 @@ double solve_bytes(const flow::Parameters& p) {
 double flow_step_bytes(const flow::Parameters& p) {
   const double divergence = vector + scalar, correction = scalar + 2.0 * vector;
   const double projection = divergence + solve_bytes(p) + correction;
+  const bool two_steps = p.time_scheme == flow::TimeScheme::ab2;
   double cell = 0.0;
-  if (p.time_scheme == flow::TimeScheme::ab2) {
+  if (two_steps) {
     cell = 4.0 * vector + projection;  // velocity and old rate to new rate and predicted velocity
   } else {
     // The state of the first stage is its own velocity.
@@ -34,6 +35,9 @@ double flow_step_bytes(const flow::Parameters& p) {
     // The correction also reads the divergence and adds to the pressure.
     cell += 3.0 * scalar;
   }
+  // A stage: velocity to eddy viscosity, both to an acceleration, which the momentum reads.
+  if (p.turbulence != flow::Turbulence::none)
+    cell += (two_steps ? 1.0 : 3.0) * (vector + scalar + vector + scalar + vector + vector);
   return cell * p.cells[0] * p.cells[1] * p.cells[2];
 }
 

@@ -90,7 +90,7 @@ Table print_block_sizes(device::Backend backend, bool quick, const nlohmann::jso
                          {"block", block},
                          {"cells", cells}});
       }
-  const std::vector<Record> records = measure(cases, warm_up(quick), kept_rounds(quick));
+  const std::vector<Record> records = measure(cases, warm_up_rounds, kept_rounds(quick));
   Table table;
   for (std::size_t i = 0; i < records.size(); ++i) table.add(records[i], provenance, facts[i]);
   std::printf("Figure 4.4 on %s; ! marks a time whose result failed its check\n",

@@ -88,7 +88,7 @@ Table print_fabric_transfers(device::Backend backend, bool quick, const nlohmann
   const std::vector<FabricTransfer> rows = fabric_transfers_of(quick);
   std::vector<Case> cases;
   for (const FabricTransfer& row : rows) cases.push_back(case_of(backend, row));
-  const std::vector<Record> records = measure(cases, warm_up(quick), kept_rounds(quick));
+  const std::vector<Record> records = measure(cases, warm_up_rounds, kept_rounds(quick));
   std::printf(
       "Table 5.6: a stretched sheet on %s, microseconds from host to host; in brackets the dissertation's "
       "Quadro "

@@ -23,6 +23,9 @@ TEST(FlowStepBytes, CountEachArrayOfEachKernelOnce) {
   p.time_scheme = flow::TimeScheme::ab2;
   p.diffusion = flow::Diffusion::crank_nicolson;
   EXPECT_EQ(bytes(p, {64, 32, 16}), 296.0 + 3 * (32.0 + 112.0 + 24.0) + 24.0);
+  p.diffusion = flow::Diffusion::explicit_;
+  p.turbulence = flow::Turbulence::vreman;
+  EXPECT_EQ(bytes(p, {64, 32, 16}), 296.0 + 112.0);
 }
 
 }  // namespace
