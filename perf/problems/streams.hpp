@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <string>
 
 #include "kernels/flow/solver.hpp"
 #include "kernels/linear/poisson/problem.hpp"
@@ -13,8 +14,15 @@ namespace drogue::perf::streams {
 /// Sides of the domain.
 enum class Sides {
   periodic,  ///< vortices of Taylor and Green in a cube of 2 pi m at a Reynolds number of 1600
+  walls,     ///< the same vortices between walls
   tunnel,    ///< inflow and outflow along z at 1 m/s, slip sides, with vortices in the stream
 };
+
+/// "periodic", "walls" or "tunnel". Does not throw.
+const char* name(Sides sides);
+
+/// Cells per axis as in "64x64x64".
+std::string text(const std::array<int, 3>& cells);
 
 /// Parameters with WENO-Z and AB2.
 flow::Parameters parameters(const std::array<int, 3>& cells, Sides sides);
