@@ -58,7 +58,7 @@ Case flow_case(device::Backend backend, const Cells& cells, const FlowVariant& v
 }
 
 void add_pressure_cases(std::vector<Case>& cases, device::Backend backend, const Cells& grid) {
-  for (const PressureSolve& solve : pressure_solves(backend, grid, {Sides::periodic, Sides::tunnel}))
+  for (const PressureSolve& solve : pressure_solves(backend, grid, {Sides::periodic, Sides::tunnel}, 1 << 19))
     cases.push_back(pressure_case(solve, std::make_shared<std::unique_ptr<pressure::Solver>>()));
 }
 

@@ -36,12 +36,13 @@ double relative_residual(const PressureSolve& solve, const pressure::Solver& sol
 }
 
 std::vector<PressureSolve> pressure_solves(device::Backend backend, const std::array<int, 3>& cells,
-                                           const std::vector<streams::Sides>& sides) {
+                                           const std::vector<streams::Sides>& sides,
+                                           std::int64_t most_iterated_cells) {
   std::vector<PressureSolve> solves;
   for (const streams::Sides of_box : sides)
     for (const PressureMethod& method : pressure_methods) {
       const PressureSolve solve{backend, cells, of_box, method};
-      const bool slow = method.iterates() && solve.cell_count() > 1 << 22;
+      const bool slow = method.iterates() && solve.cell_count() > most_iterated_cells;
       if (!slow && pressure::is_available(backend, streams::pressure_problem(cells, of_box), method.solver))
         solves.push_back(solve);
     }

@@ -40,9 +40,10 @@ struct PressureSolve {
 /// Largest residual over the largest term of the equation, by the Laplacian of the reference. Blocking.
 double relative_residual(const PressureSolve& solve, const pressure::Solver& solver);
 
-/// All solves of a grid that this build can do in reasonable time, by the sides and methods given.
+/// All solves of a grid with the given sides that this build can do; iterative ones up to a number of cells.
 std::vector<PressureSolve> pressure_solves(device::Backend backend, const std::array<int, 3>& cells,
-                                           const std::vector<streams::Sides>& sides);
+                                           const std::vector<streams::Sides>& sides,
+                                           std::int64_t most_iterated_cells);
 
 /// Case of repeated solves. `solver` receives the solver in `prepare`.
 Case pressure_case(const PressureSolve& solve,
