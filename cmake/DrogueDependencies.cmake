@@ -35,15 +35,30 @@ include(DrogueCheckKokkos)
 find_package(KokkosKernels 4.5 CONFIG QUIET)
 drogue_require(KokkosKernels_FOUND "Kokkos Kernels" "batched linear algebra" "${_setup}")
 
+find_package(FFTW QUIET)
+drogue_require(FFTW_FOUND "FFTW 3" "the pressure solver of flows" "Install libfftw3-dev or load an FFTW module.")
+if(DROGUE_CUDA)
+  find_package(CUDAToolkit QUIET)
+  foreach(_library IN ITEMS cufft cublas)
+    if(NOT TARGET CUDA::${_library})
+      message(FATAL_ERROR "The CUDA toolkit lacks ${_library}; the pressure solver of flows needs it. Install the whole toolkit.")
+    endif()
+  endforeach()
+endif()
+
 find_package(MPI QUIET COMPONENTS C)
 drogue_require(MPI_C_FOUND "MPI" "options on several ranks and parallel output"
   "Install libopenmpi-dev or load an MPI module.")
 set(HDF5_PREFER_PARALLEL TRUE)
 find_package(HDF5 QUIET COMPONENTS C)
 drogue_require(HDF5_FOUND "HDF5" "output of fields and restarts" "Install libhdf5-openmpi-dev or load an HDF5 module.")
-# Optional: no solver uses hypre yet. `--version` prints "none" without it.
+# Optional: an iterative pressure solver of flows. `--version` prints "none" without it.
 find_package(HYPRE QUIET)
-if(NOT HYPRE_FOUND)
+if(HYPRE_FOUND AND HYPRE_PARALLEL)
+  set(DROGUE_HYPRE ON)
+else()
+  # A hypre without MPI defines types of MPI, differently.
+  set(DROGUE_HYPRE OFF)
   set(HYPRE_VERSION none)
 endif()
 find_package(muparser CONFIG QUIET)
@@ -82,4 +97,4 @@ else()
 endif()
 
 message(STATUS "Kokkos ${Kokkos_VERSION} (${Kokkos_DEVICES}), Kokkos Kernels ${KokkosKernels_VERSION}, MPI ${MPI_C_VERSION}, "
-               "HDF5 ${HDF5_VERSION} ${DROGUE_HDF5_KIND}, hypre ${HYPRE_VERSION}")
+               "HDF5 ${HDF5_VERSION} ${DROGUE_HDF5_KIND}, FFTW ${FFTW_VERSION}, hypre ${HYPRE_VERSION}")

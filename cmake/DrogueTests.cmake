@@ -188,7 +188,7 @@ function(drogue_add_header_test)
   add_library(drogue_kokkos_header_test OBJECT ${_kokkos})
   target_precompile_headers(drogue_kokkos_header_test PRIVATE <Kokkos_Core.hpp>)
   foreach(_test drogue_header_test drogue_kokkos_header_test)
-    target_link_libraries(${_test} PRIVATE drogue_gas_app drogue_springs_app drogue_options_app drogue_private drogue_toml muparser::muparser)
+    target_link_libraries(${_test} PRIVATE drogue_gas_app drogue_springs_app drogue_options_app drogue_parachute_app drogue_private drogue_toml muparser::muparser)
     # Each header compiles alone; nothing runs.
     set_target_properties(${_test} PROPERTIES UNITY_BUILD OFF)
     target_compile_options(${_test} PRIVATE -O0)

@@ -52,6 +52,7 @@ std::string version_text(const std::string& program) {
   line("backends", build.backends);
   line("MPI", build.mpi);
   line("HDF5", build.hdf5);
+  line("FFTW", build.fftw);
   line("hypre", build.hypre);
   line("compiler", build.compiler);
   line("flags", build.flags);

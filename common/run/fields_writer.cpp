@@ -292,6 +292,12 @@ void FieldsWriter::write(std::string_view field, std::uint64_t first, std::span<
   }
 }
 
+std::uint64_t FieldsWriter::offset(std::string_view field) const {
+  return h5::offset(_state->datasets.find(field)->second);
+}
+
+const std::filesystem::path& FieldsWriter::file() const noexcept { return _state->file; }
+
 void FieldsWriter::end_step() {
   _state->datasets.clear();
   _state->publish(std::move(_state->open), "steps", _state->current.group, _state->step);

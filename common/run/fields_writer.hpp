@@ -60,6 +60,13 @@ class FieldsWriter {
   /// whole rows of the first dimension, in any order.
   void write(std::string_view field, std::uint64_t first, std::span<const double> values);
 
+  /// Place of a field of the step in `file`, bytes, for `write_parts`; its array is row-major. Between
+  /// begin_step() and end_step() only.
+  [[nodiscard]] std::uint64_t offset(std::string_view field) const;
+
+  /// Path of fields.h5. Does not throw.
+  [[nodiscard]] const std::filesystem::path& file() const noexcept;
+
   /// Completes the output: syncs it to disk and lists it in fields.xdmf. Throws std::invalid_argument if the
   /// fields do not fit the mesh.
   void end_step();

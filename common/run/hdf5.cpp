@@ -209,6 +209,13 @@ Handle open_dataset(const Handle& parent, const std::string& name) {
   return checked(H5Dopen2(parent.id(), name.c_str(), H5P_DEFAULT), H5Dclose, "read", parent.id());
 }
 
+std::uint64_t offset(const Handle& dataset) {
+  const Lock lock;
+  const haddr_t place = H5Dget_offset(dataset.id());
+  if (place == HADDR_UNDEF) fail("write", dataset.id());
+  return place;
+}
+
 std::vector<std::uint64_t> shape(const Handle& dataset) {
   const Lock lock;
   const Handle space = checked(H5Dget_space(dataset.id()), H5Sclose, "read", dataset.id());

@@ -77,6 +77,9 @@ Handle create_dataset(const Handle& parent, const std::string& name, hid_t type,
 Handle open_dataset(const Handle& parent, const std::string& name);
 std::vector<std::uint64_t> shape(const Handle& dataset);
 
+/// Place of the numbers of a dataset in its file, bytes.
+std::uint64_t offset(const Handle& dataset);
+
 /// Entries [first, first + values.size()) in row-major order, whole rows of the first dimension.
 void write(const Handle& dataset, std::uint64_t first, std::span<const double> values);
 void write(const Handle& dataset, std::uint64_t first, std::span<const std::int64_t> values);

@@ -37,8 +37,12 @@ Json checks_json(const std::vector<Check>& checks) {
 Json group_json(const Metrics::Group& group) {
   Json json = Json::object();
   for (const auto& [name, value] : group.values) {
-    const auto* count = std::get_if<std::int64_t>(&value);
-    json[name] = count != nullptr ? Json(*count) : number(std::get<double>(value));
+    if (const auto* count = std::get_if<std::int64_t>(&value))
+      json[name] = *count;
+    else if (const auto* real = std::get_if<double>(&value))
+      json[name] = number(*real);
+    else
+      json[name] = std::get<std::string>(value);
   }
   return json;
 }
@@ -97,16 +101,20 @@ void Metrics::set(const std::string& group, const std::string& name, Value value
   auto& values = at(group).values;
   const auto found = std::ranges::find(values, name, &std::pair<std::string, Value>::first);
   if (found == values.end())
-    values.emplace_back(name, value);
+    values.emplace_back(name, std::move(value));
   else
-    found->second = value;
+    found->second = std::move(value);
 }
 
 std::int64_t Metrics::integer(const std::string& group, const std::string& name) const {
   for (const Group& each : _groups)
     if (each.name == group)
       for (const auto& [key, value] : each.values)
-        if (key == name) return std::visit([](auto v) { return static_cast<std::int64_t>(v); }, value);
+        if (key == name) {
+          if (const auto* real = std::get_if<double>(&value)) return static_cast<std::int64_t>(*real);
+          const auto* count = std::get_if<std::int64_t>(&value);
+          return count != nullptr ? *count : 0;
+        }
   return 0;
 }
 

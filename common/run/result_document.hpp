@@ -21,11 +21,11 @@ struct Check {
   bool passed = false;
 };
 
-/// Named numbers of a run, in groups. Each group becomes an object of result.json, in the order in which the
-/// groups were added; empty groups are left out.
+/// Named numbers and names of a run, in groups. Each group becomes an object of result.json, in the order in
+/// which the groups were added; empty groups are left out.
 class Metrics {
  public:
-  using Value = std::variant<std::int64_t, double>;
+  using Value = std::variant<std::int64_t, double, std::string>;
   struct Group {
     std::string name;
     std::vector<std::pair<std::string, Value>> values;
@@ -34,10 +34,10 @@ class Metrics {
   /// Appends an empty group unless it exists.
   void add_group(const std::string& group);
 
-  /// Sets a number, and adds its group and its name if they are new.
+  /// Sets a value, and adds its group and its name if they are new.
   void set(const std::string& group, const std::string& name, Value value);
 
-  /// A number as integer; 0 if it does not exist.
+  /// A number as integer; 0 if it does not exist or is a text.
   [[nodiscard]] std::int64_t integer(const std::string& group, const std::string& name) const;
 
   [[nodiscard]] const std::vector<Group>& groups() const { return _groups; }

@@ -20,4 +20,14 @@ template <class ExecutionSpace>
 using HostPinnedSpace = Kokkos::HostSpace;
 #endif
 
+/// Value at `pointer` in memory that no thread writes while the kernel runs. On CUDA the load may then
+/// precede stores before it. Does not throw.
+KOKKOS_INLINE_FUNCTION double load_constant(const double* pointer) {
+#if defined(__CUDA_ARCH__)
+  return __ldg(pointer);
+#else
+  return *pointer;
+#endif
+}
+
 }  // namespace drogue::device

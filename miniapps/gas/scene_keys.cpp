@@ -275,8 +275,9 @@ void declare_gas_scene(Table& root, GasScene& scene) {
             "The launch of a step");
         table.table(
             "seed",
-            [&](Table& seed) {
-              seed.value("pinned", zero_is_unset(scene::boolean_codec(parameters.pinned), parameters.pinned),
+            [&](Table& baseline) {
+              baseline
+                  .value("pinned", zero_is_unset(scene::boolean_codec(parameters.pinned), parameters.pinned),
                          "State and fluxes lie in page-locked memory of the host, from which a GPU copies "
                          "faster")
                   .default_text("`false`");

@@ -59,7 +59,7 @@ Command table_command(CLI::App& program) {
   CLI::App* app = program.add_subcommand("table", "Print a table of the dissertation beside our own numbers");
   app->add_option("TABLE", options->table, "occupancy (computed), block-size or transfers (measured)")
       ->required();
-  app->add_option("--app", options->app, "Mini-app whose kernels are asked")->capture_default_str();
+  app->add_option("--app", options->app, "Mini-app whose kernels are measured")->capture_default_str();
   app->add_option("--backend", options->backend, "Where to measure: auto takes the fastest present")
       ->check(CLI::IsMember(backend_choices()))
       ->capture_default_str();

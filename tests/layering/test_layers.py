@@ -69,8 +69,23 @@ class EachRuleCatchesItsBreach(unittest.TestCase):
         self.assert_caught("kernels/gas/x.hpp", '"common/program/failure.hpp"', "may only use")
         self.assert_caught("kernels/gas/x.hpp", '"kernels/reference/gas/weno.hpp"', "independent")
 
+    def test_mpi_stands_behind_one_class_and_hypre(self):
+        for path in ("kernels/linear/poisson/hypre_x.cpp", "kernels/linear/parallel/x.cpp"):
+            self.assertEqual([], layers.violations(path, "#include <mpi.h>\n"))
+        for path in ("kernels/linear/poisson/x.cpp", "kernels/flow/halo/x.hpp"):
+            self.assert_caught(path, "<mpi.h>", "does without")
+        self.assert_caught("kernels/linear/parallel/x.cpp", "<Kokkos_Core.hpp>", "does without")
+        self.assert_caught("kernels/linear/poisson/hypre_x.cpp", "<fstream>", "does without")
+
     def test_layer_without_folder(self):
-        files = ["common/a.hpp", "kernels/gas/a.hpp", "kernels/reference/gas/a.hpp", "miniapps/framework/a.hpp"]
+        files = [
+            "common/a.hpp",
+            "kernels/gas/a.hpp",
+            "kernels/linear/parallel/a.cpp",
+            "kernels/linear/poisson/hypre_a.cpp",
+            "kernels/reference/gas/a.hpp",
+            "miniapps/framework/a.hpp",
+        ]
         self.assertEqual(["perf/"], layers.without_folder(files))
 
     def test_miniapps(self):

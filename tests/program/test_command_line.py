@@ -39,7 +39,7 @@ class Information(gas_program.GasTest):
         self.assertRegex(text, r"^drogue-gas \d+\.\d+\.\d+\n")
         cache = (pathlib.Path(os.environ["DROGUE_BUILD"]) / "CMakeCache.txt").read_text(encoding="utf-8")
         backends = "serial openmp" if "DROGUE_OPENMP:BOOL=ON" in cache else "serial\n"
-        for word in ("git: ", "Kokkos: 4.5.1", "backends: " + backends, "MPI: ", "HDF5: ", "hypre: "):
+        for word in ("git: ", "Kokkos: 4.5.1", "backends: " + backends, "MPI: ", "HDF5: ", "FFTW: ", "hypre: "):
             self.assertIn(word, text)
 
     def test_list_names_every_scene(self):

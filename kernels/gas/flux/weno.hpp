@@ -82,7 +82,8 @@ KOKKOS_INLINE_FUNCTION Indicators<R> weight_ratios(Indicators<R> indicators) {
   }
 }
 
-/// Mapped weight of Henrick, Aslam and Powers 2005, eq. (24).
+/// Mapped weight of Henrick, Aslam and Powers 2005, eq. (24), for the linear weight `d`; dimensionless. Does
+/// not throw.
 template <class R, class S>
 KOKKOS_INLINE_FUNCTION R mapped(R w, S d) {
   return w * (S(d + d * d) + w * (w - S(3) * d)) / (S(d * d) + w * S(S(1) - S(2) * d));

@@ -9,20 +9,20 @@ namespace drogue::reference {
 namespace {
 
 template <class T>
-using Point = std::array<T, 3>;
+using Coordinates = std::array<T, 3>;
 
 template <class T>
-Point<T> difference(const Point<T>& a, const Point<T>& b) {
+Coordinates<T> difference(const Coordinates<T>& a, const Coordinates<T>& b) {
   return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
 }
 
 template <class T>
-T dot(const Point<T>& a, const Point<T>& b) {
+T dot(const Coordinates<T>& a, const Coordinates<T>& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
 template <class T>
-T length(const Point<T>& a) {
+T length(const Coordinates<T>& a) {
   using std::sqrt;
   return sqrt(dot(a, a));
 }
@@ -59,11 +59,11 @@ RestShape rest_shape(const std::array<Vector, 3>& rest) {
 
 /// Green's strain E = (F^T F - 1) / 2, with F = D_s D_m^-1.
 template <class T>
-Strain<T> green_strain(const std::array<Vector, 3>& rest, const std::array<Point<T>, 3>& now) {
+Strain<T> green_strain(const std::array<Vector, 3>& rest, const std::array<Coordinates<T>, 3>& now) {
   const RestShape m = rest_shape(rest);
-  const Point<T> d1 = difference(now[1], now[0]), d2 = difference(now[2], now[0]);
+  const Coordinates<T> d1 = difference(now[1], now[0]), d2 = difference(now[2], now[0]);
   // Columns of F.
-  Point<T> f1, f2;
+  Coordinates<T> f1, f2;
   for (std::size_t k = 0; k < 3; ++k) {
     f1[k] = d1[k] / m.x1;
     f2[k] = (d2[k] - f1[k] * m.x2) / m.y2;
@@ -74,7 +74,7 @@ Strain<T> green_strain(const std::array<Vector, 3>& rest, const std::array<Point
 /// Strain of Delingette's quadratic springs: squared edge lengths change by 2 L (l - L) instead of l^2 - L^2.
 /// Solves d^T E d = L (l - L) for the three edges d.
 template <class T>
-Strain<T> strain_of_lengths(const std::array<Vector, 3>& rest, const std::array<Point<T>, 3>& now) {
+Strain<T> strain_of_lengths(const std::array<Vector, 3>& rest, const std::array<Coordinates<T>, 3>& now) {
   const RestShape m = rest_shape(rest);
   const auto change = [&](std::size_t i, std::size_t j) {
     const double at_rest = length(difference(rest[j], rest[i]));
@@ -113,7 +113,8 @@ T relaxed_energy(const fabric::Material& material, const Strain<T>& e) {
 
 /// Energy of tensile and angular springs, J: sum of k_i dl_i^2 / 2 + gamma_i dl_j dl_k.
 template <class T>
-T delingette_energy(const Moduli& m, const std::array<Vector, 3>& rest, const std::array<Point<T>, 3>& now) {
+T delingette_energy(const Moduli& m, const std::array<Vector, 3>& rest,
+                    const std::array<Coordinates<T>, 3>& now) {
   double rest_length[3], cotangent[3];
   T change[3];
   const double eight_areas = 8.0 * area(rest[0], rest[1], rest[2]);
@@ -148,7 +149,7 @@ double area(const Vector& a, const Vector& b, const Vector& c) {
 
 template <class T>
 T triangle_energy(const fabric::Material& material, const std::array<Vector, 3>& rest,
-                  const std::array<Point<T>, 3>& now) {
+                  const std::array<Coordinates<T>, 3>& now) {
   const Moduli m = plane_stress(material.membrane_modulus, material.poisson);
   const bool of_lengths = material.model == fabric::Model::quadratic;
   const double at_rest = area(rest[0], rest[1], rest[2]);
@@ -160,11 +161,11 @@ T triangle_energy(const fabric::Material& material, const std::array<Vector, 3>&
 
 template <class T>
 T spring_energy(fabric::Model model, bool tension_only, double k, const std::array<Vector, 2>& rest,
-                const std::array<Point<T>, 2>& now) {
+                const std::array<Coordinates<T>, 2>& now) {
   const Vector at_rest = difference(rest[1], rest[0]);
-  const Point<T> edge = difference(now[1], now[0]);
+  const Coordinates<T> edge = difference(now[1], now[0]);
   if (model == fabric::Model::linear_vector) {
-    const Point<T> change = {edge[0] - at_rest[0], edge[1] - at_rest[1], edge[2] - at_rest[2]};
+    const Coordinates<T> change = {edge[0] - at_rest[0], edge[1] - at_rest[1], edge[2] - at_rest[2]};
     return 0.5 * k * dot(change, change);
   }
   const T change = length(edge) - length(at_rest);
@@ -173,9 +174,9 @@ T spring_energy(fabric::Model model, bool tension_only, double k, const std::arr
 }
 
 template double triangle_energy(const fabric::Material&, const std::array<Vector, 3>&,
-                                const std::array<Point<double>, 3>&);
+                                const std::array<Coordinates<double>, 3>&);
 template double spring_energy(fabric::Model, bool, double, const std::array<Vector, 2>&,
-                              const std::array<Point<double>, 2>&);
+                              const std::array<Coordinates<double>, 2>&);
 
 std::vector<std::array<int, 2>> triangle_edges(const Mesh& mesh) {
   std::set<std::array<int, 2>> edges;
@@ -217,7 +218,7 @@ void for_elements(const fabric::Material& material, const Mesh& mesh, const Visi
 double energy(const fabric::Material& material, const Mesh& mesh, const std::vector<Vector>& now) {
   double sum = 0.0;
   for_elements(material, mesh, [&](const auto& vertices, const auto& of) {
-    std::array<Point<double>, std::tuple_size_v<std::decay_t<decltype(vertices)>>> x;
+    std::array<Coordinates<double>, std::tuple_size_v<std::decay_t<decltype(vertices)>>> x;
     for (std::size_t k = 0; k < x.size(); ++k) x[k] = now[static_cast<std::size_t>(vertices[k])];
     sum += of(x);
   });
@@ -229,7 +230,7 @@ std::vector<Vector> forces(const fabric::Material& material, const Mesh& mesh,
   constexpr double step = 1e-100;
   std::vector<Vector> force(now.size(), Vector{});
   for_elements(material, mesh, [&](const auto& vertices, const auto& of) {
-    std::array<Point<std::complex<double>>, std::tuple_size_v<std::decay_t<decltype(vertices)>>> x;
+    std::array<Coordinates<std::complex<double>>, std::tuple_size_v<std::decay_t<decltype(vertices)>>> x;
     for (std::size_t k = 0; k < x.size(); ++k)
       for (std::size_t axis = 0; axis < 3; ++axis)
         x[k][axis] = now[static_cast<std::size_t>(vertices[k])][axis];

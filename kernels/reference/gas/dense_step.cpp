@@ -8,16 +8,16 @@ namespace {
 
 constexpr std::size_t ghosts = 3;
 
-double square(double x) { return x * x; }
+double squared(double x) { return x * x; }
 
 /// WENO-JS value at i+1/2 from f[i-2..i+2].
 double js_value(double a, double b, double c, double d, double e) {
-  const double b0 = 13.0 / 12.0 * square(a - 2.0 * b + c) + 0.25 * square(a - 4.0 * b + 3.0 * c);
-  const double b1 = 13.0 / 12.0 * square(b - 2.0 * c + d) + 0.25 * square(b - d);
-  const double b2 = 13.0 / 12.0 * square(c - 2.0 * d + e) + 0.25 * square(3.0 * c - 4.0 * d + e);
-  const double w0 = 0.1 / square(1e-6 + b0);
-  const double w1 = 0.6 / square(1e-6 + b1);
-  const double w2 = 0.3 / square(1e-6 + b2);
+  const double b0 = 13.0 / 12.0 * squared(a - 2.0 * b + c) + 0.25 * squared(a - 4.0 * b + 3.0 * c);
+  const double b1 = 13.0 / 12.0 * squared(b - 2.0 * c + d) + 0.25 * squared(b - d);
+  const double b2 = 13.0 / 12.0 * squared(c - 2.0 * d + e) + 0.25 * squared(3.0 * c - 4.0 * d + e);
+  const double w0 = 0.1 / squared(1e-6 + b0);
+  const double w1 = 0.6 / squared(1e-6 + b1);
+  const double w2 = 0.3 / squared(1e-6 + b2);
   return (w0 * (2.0 * a - 7.0 * b + 11.0 * c) + w1 * (-b + 5.0 * c + 2.0 * d) +
           w2 * (2.0 * c + 5.0 * d - e)) /
          (6.0 * (w0 + w1 + w2));

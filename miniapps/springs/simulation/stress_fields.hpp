@@ -6,7 +6,7 @@
 
 #include "common/run/dataset_spec.hpp"
 #include "kernels/fabric/parameters.hpp"
-#include "kernels/fabric/state.hpp"
+#include "kernels/fabric/results.hpp"
 
 namespace drogue::springs_app {
 

@@ -266,6 +266,7 @@ TEST(FabricContact, FrictionBetweenLayersDissipatesEnergy) {
   }
 }
 
+// ctest-label: no-sanitizer
 TEST(FabricContact, KeepsFabricOutsideBodies) {
   Body disk;
   disk.kind = BodyKind::disk, disk.radius = 0.031, disk.normal = {0.6, 0.0, 0.8};

@@ -179,6 +179,7 @@ void expect_force_like_load(Integrator integrator, Driver driver, Model model, d
   EXPECT_LE(distance(by_force, by_load), tolerance);
 }
 
+// ctest-label: no-sanitizer
 TEST(FabricCoupling, VertexForceMatchesALoadWithoutExtraLaunches) {
   for (const Driver driver : {Driver::plain, Driver::graph, Driver::stages, Driver::persistent})
     expect_force_like_load(Integrator::rk4, driver, Model::biquadratic, rounding * 1e-9);

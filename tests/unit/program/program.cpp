@@ -99,7 +99,8 @@ TEST(CurrentFailure, KeepsCodeAndMessage) {
 TEST(Provenance, VersionTextNamesEveryPart) {
   const std::string text = version_text("drogue-gas");
   EXPECT_EQ(text.rfind("drogue-gas " + std::string(build_info().version) + "\n", 0), 0U) << text;
-  for (const char* name : {"git: ", "Kokkos: ", "backends: ", "MPI: ", "HDF5: ", "hypre: ", "compiler: "}) {
+  for (const char* name :
+       {"git: ", "Kokkos: ", "backends: ", "MPI: ", "HDF5: ", "FFTW: ", "hypre: ", "compiler: "}) {
     EXPECT_NE(text.find(name), std::string::npos) << name;
   }
 }

@@ -57,15 +57,18 @@ TEST(ResultDocument, WritesMetricGroupsInOrderBetweenChecksAndTiming) {
   result.metrics.set("first", "a", std::int64_t{2});
   result.metrics.set("second_later", "c", std::nan(""));
   result.metrics.set("first", "b", 4.0);
+  result.metrics.set("first", "solver", std::string("fft"));
   const auto json = nlohmann::ordered_json::parse(to_json(result));
   std::vector<std::string> names;
   for (const auto& [name, value] : json.items()) names.push_back(name);
   const auto checks = std::ranges::find(names, "checks");
   EXPECT_EQ(std::vector<std::string>(checks, checks + 4),
             (std::vector<std::string>{"checks", "second_later", "first", "timing"}));
-  EXPECT_EQ(json["first"].dump(), R"({"b":4.0,"a":2})");
+  EXPECT_EQ(json["first"].dump(), R"({"b":4.0,"a":2,"solver":"fft"})");
   EXPECT_TRUE(json["second_later"]["c"].is_null());
   EXPECT_EQ(result.metrics.integer("first", "a"), 2);
+  EXPECT_EQ(result.metrics.integer("first", "b"), 4);
+  EXPECT_EQ(result.metrics.integer("first", "solver"), 0);
   EXPECT_EQ(result.metrics.integer("first", "absent"), 0);
 }
 

@@ -1,0 +1,247 @@
+#pragma once
+
+#include "kernels/device/memory.hpp"
+#include "kernels/flow/advection/face_value.hpp"
+#include "kernels/flow/advection/momentum.hpp"
+#include "kernels/flow/launch.hpp"
+
+namespace drogue::flow {
+
+/// Flux of momentum component c through a face normal to axis d, per density, m^2/s^2: advection minus
+/// diffusion. The face is the low face along d of the control volume of the component. `carried` points at
+/// component c at the control volume, `carrier` at component d of the same cell.
+template <Advection scheme, class R>
+KOKKOS_INLINE_FUNCTION R momentum_flux(const double* carried, const double* carrier, std::int64_t stride_c,
+                                       std::int64_t stride_d, double nu_over_h, R epsilon) {
+  const R speed = 0.5 * (load_field<R>(carrier - stride_c) + load_field<R>(carrier));
+  return advective_flux<scheme, R>(speed, carried, stride_d, epsilon) -
+         nu_over_h * (load_field<R>(carried) - load_field<R>(carried - stride_d));
+}
+
+/// Momentum stage on a device. A thread marches along z and keeps the fluxes through the face between two
+/// planes.
+template <class ExecutionSpace, Advection scheme, bool adams_bashforth>
+struct MomentumFunctor {
+  using Policy = Kokkos::TeamPolicy<ExecutionSpace, Kokkos::LaunchBounds<tile_x * tile_y, 4>>;
+  using Member = typename Policy::member_type;
+
+  MomentumSetup<ExecutionSpace> setup;
+  int tiles_x, tiles_y, planes;  ///< planes that a thread treats
+
+  KOKKOS_FUNCTION void operator()(const Member& member) const {
+    const MacGrid& g = setup.grid;
+    if (setup.control().trial.stop != stepping::Stop::running) return;
+    const StageFactors factors = stage_factors(setup, setup.control());
+    const int tile = member.league_rank();
+    const int i = tile % tiles_x * tile_x + member.team_rank() % tile_x;
+    const int j = tile / tiles_x % tiles_y * tile_y + member.team_rank() / tile_x;
+    const int k_begin = tile / (tiles_x * tiles_y) * planes;
+    if (i >= g.n[0] || j >= g.n[1]) return;
+    const int k_end = k_begin + planes < g.n[2] ? k_begin + planes : g.n[2];
+    std::int64_t at = g.offset(i, j, k_begin);
+    double below[3] = {0.0, 0.0, 0.0};
+    if (g.n[2] > 1)
+      for (int c = 0; c < 3; ++c) below[c] = flux(c, 2, at);
+    for (int k = k_begin; k < k_end; ++k, at += g.stride[2]) {
+      double value[3], rates[3];
+#if defined(__CUDA_ARCH__)
+#pragma unroll 1  // code for three components would not fit the instruction cache: up to five times slower
+#endif
+      for (int c = 0; c < 3; ++c) {
+        const std::int64_t place = c * g.component + at;
+        // Loaded first, so that its latency is hidden by the fluxes.
+        const double other = adams_bashforth
+                                 ? factors.old_rate * setup.old_rate(place)
+                                 : factors.state * device::load_constant(setup.state.data() + place);
+        double rate = setup.acceleration[c];
+        if (g.n[0] > 1) rate -= g.inverse_h[0] * (flux(c, 0, at + g.stride[0]) - flux(c, 0, at));
+        if (g.n[1] > 1) rate -= g.inverse_h[1] * (flux(c, 1, at + g.stride[1]) - flux(c, 1, at));
+        if (g.n[2] > 1) {
+          const double above = flux(c, 2, at + g.stride[2]);
+          rate -= g.inverse_h[2] * (above - below[c]);
+          below[c] = above;
+        }
+        if (setup.eddy.data() != nullptr) rate += setup.eddy(place);
+        value[c] = factors.stage * device::load_constant(setup.stage.data() + place) + factors.rate * rate;
+        // A store here would hold back the loads of the next component: five times slower.
+        rates[c] = rate;
+        value[c] += other;
+      }
+      for (int c = 0; c < 3; ++c) {
+        const std::int64_t place = c * g.component + at;
+        if (setup.force.data() != nullptr) value[c] += factors.force * setup.force(place);
+        if constexpr (adams_bashforth) setup.old_rate(place) = rates[c];
+        setup.out(place) = value[c];
+      }
+    }
+  }
+
+  KOKKOS_FUNCTION double flux(int c, int d, std::int64_t at) const {
+    const MacGrid& g = setup.grid;
+    const double* u = setup.stage.data();
+    return momentum_flux<scheme, double>(u + c * g.component + at, u + d * g.component + at,
+                                         g.n[c] > 1 ? g.stride[c] : 0, g.stride[d], setup.nu * g.inverse_h[d],
+                                         setup.epsilon);
+  }
+};
+
+/// Momentum stage on a host: packs of cells along x, rows in turn. A row keeps the fluxes that the next row
+/// and the next plane need, so that each is evaluated once.
+template <class ExecutionSpace, Advection scheme, bool adams_bashforth>
+struct MomentumRowsFunctor {
+  using Policy = Kokkos::TeamPolicy<ExecutionSpace>;
+  using Member = typename Policy::member_type;
+  using R = device::HostPack<double>;
+  using Access = device::Access<R>;
+  static constexpr int lanes = Access::lanes;
+
+  MomentumSetup<ExecutionSpace> setup;
+  int slabs, planes;  ///< teams, and planes of a team
+
+  /// Numbers of a row of fluxes: one face more than cells, in whole packs.
+  [[nodiscard]] static int row_length(const MacGrid& g) {
+    return (g.n[0] + 1 + lanes - 1) / lanes * lanes + lanes;
+  }
+  [[nodiscard]] static std::size_t scratch_bytes(const MacGrid& g) {
+    return static_cast<std::size_t>(3 * row_length(g)) * (static_cast<std::size_t>(g.n[1]) + 3) *
+           sizeof(double);
+  }
+
+  KOKKOS_FUNCTION void operator()(const Member& member) const {
+    const MacGrid& g = setup.grid;
+    if (setup.control().trial.stop != stepping::Stop::running) return;
+    const StageFactors factors = stage_factors(setup, setup.control());
+    const int length = row_length(g);
+    auto* below =
+        static_cast<double*>(member.team_scratch(1).get_shmem(scratch_bytes(g)));  // of each row of a plane
+    double* south = below + static_cast<std::int64_t>(3 * length) * g.n[1];
+    double* west = south + 3 * length;
+    double* next = west + 3 * length;
+    const int k_begin = member.league_rank() * planes;
+    const int k_end = k_begin + planes < g.n[2] ? k_begin + planes : g.n[2];
+    if (g.n[2] > 1)
+      for (int j = 0; j < g.n[1]; ++j)
+        fluxes(2, j, k_begin, g.n[0], below + static_cast<std::int64_t>(3 * length) * j);
+    for (int k = k_begin; k < k_end; ++k) {
+      if (g.n[1] > 1) fluxes(1, 0, k, g.n[0], south);
+      for (int j = 0; j < g.n[1]; ++j) {
+        const std::int64_t at = g.offset(0, j, k);
+        double* under = below + static_cast<std::int64_t>(3 * length) * j;
+        for (int c = 0; c < 3; ++c)
+          for (int i = 0; i < g.n[0]; i += lanes)
+            Access::store(rate_row(next, c, length) + i, R(setup.acceleration[c]));
+        if (g.n[0] > 1) {
+          fluxes(0, j, k, g.n[0] + 1, west);
+          for (int c = 0; c < 3; ++c)
+            for (int i = 0; i < g.n[0]; i += lanes)
+              subtract(next + c * length + i, g.inverse_h[0],
+                       Access::load(west + c * length + i + 1) - Access::load(west + c * length + i));
+        }
+        if (g.n[1] > 1) add_difference(1, j + 1, k, g.inverse_h[1], length, south, west, next);
+        if (g.n[2] > 1) add_difference(2, j, k + 1, g.inverse_h[2], length, under, west, next);
+        for (int c = 0; c < 3; ++c) finish_row(c * g.component + at, next + c * length, factors);
+      }
+    }
+  }
+
+ private:
+  static double* rate_row(double* rows, int c, int length) { return rows + c * length; }
+  static void subtract(double* place, double factor, R difference) {
+    Access::store(place, Access::load(place) - factor * difference);
+  }
+
+  /// Fluxes of all components through the low faces along d of `count` control volumes of a row.
+  void fluxes(int d, int j, int k, int count, double* rows) const {
+    const MacGrid& g = setup.grid;
+    const double* u = setup.stage.data();
+    const std::int64_t at = g.offset(0, j, k);
+    const int length = row_length(g);
+    for (int c = 0; c < 3; ++c) {
+      const double *carried = u + c * g.component + at, *carrier = u + d * g.component + at;
+      const std::int64_t stride_c = g.n[c] > 1 ? g.stride[c] : 0;
+      for (int i = 0; i < count; i += lanes)
+        Access::store(rows + c * length + i,
+                      momentum_flux<scheme, R>(carried + i, carrier + i, stride_c, g.stride[d],
+                                               setup.nu * g.inverse_h[d], R(setup.epsilon)));
+    }
+  }
+
+  /// Subtracts the difference of the fluxes at the row (j, k) and those kept in `kept`, and keeps the new
+  /// ones.
+  void add_difference(int d, int j, int k, double inverse_h, int length, double* kept, double* work,
+                      double* rates) const {
+    const MacGrid& g = setup.grid;
+    fluxes(d, j, k, g.n[0], work);
+    for (int c = 0; c < 3; ++c)
+      for (int i = 0; i < g.n[0]; i += lanes) {
+        const R high = Access::load(work + c * length + i);
+        subtract(rates + c * length + i, inverse_h, high - Access::load(kept + c * length + i));
+        Access::store(kept + c * length + i, high);
+      }
+  }
+
+  void finish_row(std::int64_t place, double* rates, const StageFactors& factors) const {
+    const int n = setup.grid.n[0];
+    const double *state = setup.state.data() + place, *stage = setup.stage.data() + place;
+    const double* eddy = setup.eddy.data() != nullptr ? setup.eddy.data() + place : nullptr;
+    double *out = setup.out.data() + place, *old = adams_bashforth ? setup.old_rate.data() + place : nullptr;
+    const double* force = setup.force.data() != nullptr ? setup.force.data() + place : nullptr;
+    if (eddy != nullptr)
+      for (int i = 0; i < n; ++i) rates[i] += eddy[i];
+    for (int i = 0; i < n; ++i) {
+      double value = factors.stage * stage[i] + factors.rate * rates[i];
+      if constexpr (adams_bashforth) {
+        value += factors.old_rate * old[i];
+        old[i] = rates[i];
+      } else {
+        value += factors.state * state[i];
+      }
+      out[i] = value;
+    }
+    if (force == nullptr) return;
+    for (int i = 0; i < n; ++i) out[i] += factors.force * force[i];
+  }
+};
+
+/// Enqueues a momentum stage. Asynchronous.
+template <Advection scheme, bool adams_bashforth, class ExecutionSpace>
+void launch_momentum(const ExecutionSpace& space, const MomentumSetup<ExecutionSpace>& setup) {
+  const MacGrid& g = setup.grid;
+  const auto parts = [](int n, int size) { return (n + size - 1) / size; };
+  if constexpr (device::is_host<ExecutionSpace>) {
+    using Functor = MomentumRowsFunctor<ExecutionSpace, scheme, adams_bashforth>;
+    const int planes = parts(g.n[2], space.concurrency());
+    const int slabs = parts(g.n[2], planes);
+    auto policy = typename Functor::Policy(space, slabs, 1)
+                      .set_scratch_size(1, Kokkos::PerTeam(Functor::scratch_bytes(g)));
+    Kokkos::parallel_for("drogue::flow::momentum", policy, Functor{setup, slabs, planes});
+  } else {
+    using Functor = MomentumFunctor<ExecutionSpace, scheme, adams_bashforth>;
+    const int tiles_x = parts(g.n[0], tile_x), tiles_y = parts(g.n[1], tile_y);
+    // Long marches evaluate fewer fluxes twice; short ones occupy the device with a small grid.
+    const int planes = march_planes(tiles_x * tiles_y, g.n[2], 16);
+    typename Functor::Policy policy(space, tiles_x * tiles_y * parts(g.n[2], planes), tile_x * tile_y);
+    Kokkos::parallel_for(
+        "drogue::flow::momentum",
+        Kokkos::Experimental::require(policy, Kokkos::Experimental::WorkItemProperty::HintLightWeight),
+        Functor{setup, tiles_x, tiles_y, planes});
+  }
+}
+
+template <class ExecutionSpace>
+void dispatch_momentum(const ExecutionSpace& space, const MomentumSetup<ExecutionSpace>& setup,
+                       Advection advection) {
+  const auto launch = [&]<bool adams_bashforth>() {
+    switch (advection) {
+      case Advection::central:
+        return launch_momentum<Advection::central, adams_bashforth>(space, setup);
+      case Advection::weno_js:
+        return launch_momentum<Advection::weno_js, adams_bashforth>(space, setup);
+      case Advection::weno_z:
+        return launch_momentum<Advection::weno_z, adams_bashforth>(space, setup);
+    }
+  };
+  setup.weights.adams_bashforth ? launch.template operator()<true>() : launch.template operator()<false>();
+}
+
+}  // namespace drogue::flow

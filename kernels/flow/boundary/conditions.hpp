@@ -1,0 +1,140 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "kernels/device/copy.hpp"
+#include "kernels/device/expression.hpp"
+#include "kernels/device/launch.hpp"
+#include "kernels/device/memory.hpp"
+#include "kernels/flow/views.hpp"
+
+namespace drogue::flow {
+
+/// Conditions of the sides on a device. Values of a side whose velocity is an expression stand in a table
+/// with an entry for every point of the side, ghost cells included.
+template <class ExecutionSpace>
+struct BoundaryConditions {
+  BoundaryKind kind[6];
+  double velocity[6][3];       ///< m/s
+  std::int64_t first[6];       ///< first entry of a side in `table`; -1: no table
+  List<ExecutionSpace> table;  ///< m/s
+
+  /// Axes of the table of a side: the two other than its own, in ascending order.
+  [[nodiscard]] KOKKOS_FUNCTION static int first_axis(int axis) { return axis == 0 ? 1 : 0; }
+  [[nodiscard]] KOKKOS_FUNCTION static int second_axis(int axis) { return axis == 2 ? 1 : 2; }
+
+  /// Prescribed velocity component at the point of a side next to cell `index`, m/s.
+  [[nodiscard]] KOKKOS_FUNCTION double value(const MacGrid& g, int side, int component,
+                                             const int index[3]) const {
+    if (first[side] < 0) return velocity[side][component];
+    const int axis = side / 2, a = first_axis(axis), b = second_axis(axis);
+    const std::int64_t row = g.n[a] + 2 * g.ghost[a], rows = g.n[b] + 2 * g.ghost[b];
+    return table(static_cast<std::size_t>(first[side] + component * row * rows +
+                                          (index[b] + g.ghost[b]) * row + index[a] + g.ghost[a]));
+  }
+};
+
+/// Time at which a stage needs the boundary values: that of the step's beginning plus this part of dt.
+struct StageTime {
+  double fraction;
+  bool initial;  ///< true before the first step: dt is not known
+};
+
+/// Evaluates the expressions of a side at the points of its table.
+template <class ExecutionSpace>
+struct BoundaryTableFunctor {
+  MacGrid grid;
+  List<ExecutionSpace> table;
+  Kokkos::View<device::ExpressionProgram*, typename ExecutionSpace::memory_space> programs;  ///< three
+  ControlView<ExecutionSpace> control;
+  StageTime stage;
+  int side;
+  std::int64_t first;
+
+  KOKKOS_FUNCTION void operator()(const int entry) const {
+    const Control& c = control();
+    if (!stage.initial && c.trial.stop != stepping::Stop::running) return;
+    const double t = stage.initial ? c.now.time : c.now.time + stage.fraction * c.trial.dt;
+    const MacGrid& g = grid;
+    using Conditions = BoundaryConditions<ExecutionSpace>;
+    const int axis = side / 2, a = Conditions::first_axis(axis), b = Conditions::second_axis(axis);
+    const int row = g.n[a] + 2 * g.ghost[a], rows = g.n[b] + 2 * g.ghost[b];
+    const int component = entry / (row * rows);
+    const int index[2] = {g.origin[a] + entry % row - g.ghost[a],
+                          g.origin[b] + entry / row % rows - g.ghost[b]};
+    double point[3];
+    point[axis] = g.low[axis] + (side % 2) * g.whole[axis] * g.h[axis];
+    // A component lies on the faces of its own axis.
+    point[a] = g.low[a] + (index[0] + (component == a ? 0.0 : 0.5)) * g.h[a];
+    point[b] = g.low[b] + (index[1] + (component == b ? 0.0 : 0.5)) * g.h[b];
+    table(static_cast<std::size_t>(first + entry)) =
+        device::evaluate(programs(static_cast<std::size_t>(component)), point[0], point[1], point[2], t);
+  }
+};
+
+/// Boundary conditions with the programs that fill their tables.
+template <class ExecutionSpace>
+class BoundaryTables {
+ public:
+  using Programs = Kokkos::View<device::ExpressionProgram*, typename ExecutionSpace::memory_space>;
+
+  /// Allocates the tables; blocks. Throws std::runtime_error if memory runs out.
+  BoundaryTables(const ExecutionSpace& space, const MacGrid& grid, const std::array<Boundary, 6>& sides)
+      : _grid(grid) {
+    std::int64_t entries = 0;
+    for (std::size_t side = 0; side < 6; ++side) {
+      _conditions.kind[side] = sides[side].kind;
+      for (std::size_t c = 0; c < 3; ++c) _conditions.velocity[side][c] = sides[side].velocity[c];
+      _conditions.first[side] = -1;
+      if (sides[side].velocity_expressions.empty()) continue;
+      _conditions.first[side] = entries;
+      entries += entries_of(static_cast<int>(side));
+      _programs[side] = Programs(
+          Kokkos::view_alloc(space, Kokkos::WithoutInitializing, "drogue::flow::boundary_programs"), 3);
+      device::copy_in(space, _programs[side], sides[side].velocity_expressions.data(), 3);
+      for (const device::ExpressionProgram& program : sides[side].velocity_expressions)
+        for (int i = 0; i < program.length; ++i)
+          _changes = _changes || program.operations[i] == device::Operation::t;
+    }
+    _conditions.table =
+        List<ExecutionSpace>("drogue::flow::boundary_table", static_cast<std::size_t>(entries));
+    space.fence("drogue::flow::boundary: allocated");
+  }
+
+  [[nodiscard]] const BoundaryConditions<ExecutionSpace>& conditions() const { return _conditions; }
+  [[nodiscard]] bool has_outflow() const {
+    for (const BoundaryKind kind : _conditions.kind)
+      if (kind == BoundaryKind::outflow) return true;
+    return false;
+  }
+  /// True if a prescribed velocity is an expression of t.
+  [[nodiscard]] bool changes() const { return _changes; }
+
+  /// Enqueues the evaluation of all tables. Asynchronous.
+  void enqueue_evaluation(const ExecutionSpace& space, const ControlView<ExecutionSpace>& control,
+                          const StageTime& stage) const {
+    for (int side = 0; side < 6; ++side) {
+      if (_conditions.first[side] < 0) continue;
+      device::launch_each(
+          space, "drogue::flow::boundary_table", static_cast<int>(entries_of(side)),
+          BoundaryTableFunctor<ExecutionSpace>{_grid, _conditions.table, _programs[side], control, stage,
+                                               side, _conditions.first[side]});
+    }
+  }
+
+ private:
+  [[nodiscard]] std::int64_t entries_of(int side) const {
+    std::int64_t entries = 3;
+    for (int a = 0; a < 3; ++a)
+      if (a != side / 2) entries *= _grid.n[a] + 2 * _grid.ghost[a];
+    return entries;
+  }
+
+  MacGrid _grid;
+  BoundaryConditions<ExecutionSpace> _conditions{};
+  Programs _programs[6];
+  bool _changes = false;
+};
+
+}  // namespace drogue::flow

@@ -1,0 +1,209 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <variant>
+#include <vector>
+
+#include "kernels/flow/boundary/conditions.hpp"
+#include "kernels/flow/launch.hpp"
+#include "kernels/flow/views.hpp"
+#include "kernels/linear/poisson/diagonalization.hpp"
+#include "kernels/linear/poisson/fourier.hpp"
+
+namespace drogue::flow {
+
+/// Laplacian of the change of a velocity component in a step, at the faces inside the domain. The change is
+/// zero on sides with a prescribed velocity, after known changes have moved to the right-hand side; its
+/// normal derivative is zero on slip sides and outflows. Does not throw.
+inline linear::PoissonProblem diffusion_problem(const Parameters& parameters, std::size_t component) {
+  linear::PoissonProblem problem;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const bool periodic = parameters.boundary[2 * axis].kind == BoundaryKind::periodic;
+    const bool on_faces = axis == component && !periodic && parameters.cells[axis] > 1;
+    const auto end = [&](std::size_t side) {
+      const BoundaryKind kind = parameters.boundary[side].kind;
+      return kind == BoundaryKind::wall || kind == BoundaryKind::inflow ? linear::EndCondition::dirichlet
+                                                                        : linear::EndCondition::neumann;
+    };
+    problem.cells[axis] = parameters.cells[axis] - (on_faces ? 1 : 0);
+    problem.spacing[axis] = (parameters.high[axis] - parameters.low[axis]) / parameters.cells[axis];
+    problem.axes[axis] = {periodic, end(2 * axis), end(2 * axis + 1), on_faces};
+  }
+  return problem;
+}
+
+/// Data of an implicit step of diffusion.
+template <class ExecutionSpace>
+struct DiffusionSetup {
+  MacGrid grid;
+  BoundaryConditions<ExecutionSpace> boundary;  ///< at the end of the step
+  List<ExecutionSpace> velocity;                ///< at the beginning of the step, m/s, ghost cells filled
+  List<ExecutionSpace> predicted;               ///< m/s
+  List<ExecutionSpace> pressure;                ///< kinematic, of the previous step, m^2/s^2
+  ControlView<ExecutionSpace> control;
+  double nu;  ///< kinematic viscosity, m^2/s
+
+  /// Whether the faces of a component on the sides of its own axis are no unknowns.
+  [[nodiscard]] KOKKOS_FUNCTION bool is_bounded(int axis) const {
+    return grid.n[axis] > 1 && !grid.periodic[axis];
+  }
+};
+
+/// Right-hand side of the equation for the change of one velocity component, m/s: the explicit terms,
+/// viscosity and pressure gradient at the beginning of the step, and the known changes on the sides. Adds the
+/// pressure gradient to the predicted velocity on outflows.
+template <class ExecutionSpace>
+struct DiffusionSourceFunctor {
+  DiffusionSetup<ExecutionSpace> setup;
+  int component;
+  int extent[3];  ///< unknowns per axis
+  double* source;
+
+  KOKKOS_FUNCTION void operator()(const int i, const int j, const int k) const {
+    const MacGrid& g = setup.grid;
+    const Control& control = setup.control();
+    if (control.trial.stop != stepping::Stop::running) return;
+    const double dt = control.trial.dt;
+    int index[3] = {i, j, k};
+    if (setup.is_bounded(component)) ++index[component];
+    const std::int64_t place = component * g.component + g.offset(index[0], index[1], index[2]);
+    const double* u = setup.velocity.data() + place;
+    double laplacian = 0.0, change = 0.0;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (g.n[axis] == 1) continue;
+      const std::int64_t stride = g.stride[axis];
+      const double w = g.inverse_h[axis] * g.inverse_h[axis];
+      laplacian += w * ((u[stride] - u[0]) - (u[0] - u[-stride]));
+      if (g.periodic[axis]) continue;
+      if (axis == component) {
+        if (index[axis] == 1) change += w * normal_change(2 * axis, index, place - stride, dt);
+        if (index[axis] + 1 == g.n[axis])
+          change += w * normal_change(2 * axis + 1, index, place + stride, dt);
+      } else {
+        if (index[axis] == 0) change += 2.0 * w * tangential_change(2 * axis, index, place, -stride);
+        if (index[axis] + 1 == g.n[axis])
+          change += 2.0 * w * tangential_change(2 * axis + 1, index, place, stride);
+      }
+    }
+    const std::int64_t at = i + extent[0] * (j + static_cast<std::int64_t>(extent[1]) * k);
+    source[at] = setup.predicted(place) - u[0] + dt * (setup.nu * laplacian - pressure_gradient(index)) +
+                 0.5 * setup.nu * dt * change;
+  }
+
+ private:
+  [[nodiscard]] KOKKOS_FUNCTION double pressure_at(int i, int j, int k) const {
+    const MacGrid& g = setup.grid;
+    return setup.pressure(static_cast<std::size_t>(i + g.n[0] * (j + static_cast<std::int64_t>(g.n[1]) * k)));
+  }
+  [[nodiscard]] KOKKOS_FUNCTION double pressure_gradient(const int index[3]) const {
+    const MacGrid& g = setup.grid;
+    if (g.n[component] == 1) return 0.0;
+    int below[3] = {index[0], index[1], index[2]};
+    below[component] = (index[component] == 0 ? g.n[component] : index[component]) - 1;
+    return g.inverse_h[component] *
+           (pressure_at(index[0], index[1], index[2]) - pressure_at(below[0], below[1], below[2]));
+  }
+  /// Change of the normal velocity on a side in this step, m/s, next to the unknown `index`.
+  [[nodiscard]] KOKKOS_FUNCTION double normal_change(int side, const int index[3], std::int64_t face,
+                                                     double dt) const {
+    if (setup.boundary.kind[side] == BoundaryKind::outflow) {
+      int cell[3] = {index[0], index[1], index[2]};
+      if (side % 2 == 0) --cell[component];
+      // The pressure on the side is zero until the projection.
+      const double gradient = 2.0 * setup.grid.inverse_h[component] * pressure_at(cell[0], cell[1], cell[2]);
+      setup.predicted(face) -= dt * (side % 2 == 0 ? gradient : -gradient);
+    }
+    return setup.predicted(face) - setup.velocity(face);
+  }
+  /// Change of a velocity prescribed by an expression in this step, m/s. The old one follows from the ghost
+  /// value.
+  [[nodiscard]] KOKKOS_FUNCTION double tangential_change(int side, const int index[3], std::int64_t place,
+                                                         std::int64_t outward) const {
+    if (setup.boundary.first[side] < 0) return 0.0;
+    return setup.boundary.value(setup.grid, side, component, index) -
+           0.5 * (setup.velocity(place) + setup.velocity(place + outward));
+  }
+};
+
+/// Adds the change of a component to the velocity at the beginning of the step.
+template <class ExecutionSpace>
+struct DiffusionUpdateFunctor {
+  DiffusionSetup<ExecutionSpace> setup;
+  int component;
+  int extent[3];
+  const double* change;  ///< m/s
+
+  KOKKOS_FUNCTION void operator()(const int i, const int j, const int k) const {
+    if (setup.control().trial.stop != stepping::Stop::running) return;
+    int index[3] = {i, j, k};
+    if (setup.is_bounded(component)) ++index[component];
+    const std::int64_t place =
+        component * setup.grid.component + setup.grid.offset(index[0], index[1], index[2]);
+    const std::int64_t at = i + extent[0] * (j + static_cast<std::int64_t>(extent[1]) * k);
+    setup.predicted(place) = setup.velocity(place) + change[at];
+  }
+};
+
+/// Crank-Nicolson diffusion: (1 - nu dt/2 lap) (u* - u) = dt (explicit terms + nu lap u - grad p), solved
+/// directly for each component by transforms or matrix products, without a splitting error. p is the pressure
+/// of the previous step (incremental projection, Van Kan 1986), so that u* satisfies the conditions of the
+/// sides to second order.
+template <class ExecutionSpace>
+class ImplicitDiffusion {
+ public:
+  using Values = List<ExecutionSpace>;
+
+  /// Allocates; blocks. Throws std::runtime_error if memory runs out.
+  ImplicitDiffusion(const ExecutionSpace& space, const Parameters& parameters) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      const linear::PoissonProblem problem = diffusion_problem(parameters, c);
+      std::size_t same = 0;
+      while (same < _problems.size() && !(_problems[same] == problem)) ++same;
+      _solver_of[c] = same;
+      if (same < _problems.size()) continue;
+      _problems.push_back(problem);
+      if (linear::FourierSolver<ExecutionSpace>::supports(problem) &&
+          parameters.pressure_solver != PressureSolver::diagonalization)
+        _solvers.emplace_back(std::in_place_type<linear::FourierSolver<ExecutionSpace>>, space, problem);
+      else
+        _solvers.emplace_back(std::in_place_type<linear::DiagonalizationSolver<ExecutionSpace>>, space,
+                              problem);
+    }
+  }
+
+  /// Enqueues the implicit part of a step: replaces the predicted velocity, which holds the explicit part.
+  /// The work arrays hold at least one number per cell. Asynchronous; neither fences nor allocates.
+  void enqueue(const ExecutionSpace& space, const DiffusionSetup<ExecutionSpace>& setup, const Values& source,
+               const Values& change) const {
+    // The step size is read on the device, where it changes from step to step.
+    const double* dt = &setup.control.data()->trial.dt;
+    for (int c = 0; c < 3; ++c) {
+      const std::size_t which = _solver_of[static_cast<std::size_t>(c)];
+      const linear::PoissonProblem& problem = _problems[which];
+      const int extent[3] = {problem.cells[0], problem.cells[1], problem.cells[2]};
+      const Values from(source.data(), problem.size()), to(change.data(), problem.size());
+      launch_cells(
+          space, "drogue::flow::diffusion_source", extent,
+          DiffusionSourceFunctor<ExecutionSpace>{setup, c, {extent[0], extent[1], extent[2]}, from.data()});
+      std::visit(
+          [&](const auto& solver) {
+            solver.enqueue_solve(from, to, {dt, 0.5 * setup.nu});
+          },
+          _solvers[which]);
+      launch_cells(
+          space, "drogue::flow::diffusion_update", extent,
+          DiffusionUpdateFunctor<ExecutionSpace>{setup, c, {extent[0], extent[1], extent[2]}, to.data()});
+    }
+  }
+
+ private:
+  using Solver =
+      std::variant<linear::FourierSolver<ExecutionSpace>, linear::DiagonalizationSolver<ExecutionSpace>>;
+  std::vector<linear::PoissonProblem> _problems;  ///< without repetitions
+  std::vector<Solver> _solvers;                   ///< of each problem
+  std::array<std::size_t, 3> _solver_of{};        ///< by component
+};
+
+}  // namespace drogue::flow

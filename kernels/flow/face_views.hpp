@@ -1,0 +1,46 @@
+#pragma once
+
+#include "kernels/coupling/face_stencil.hpp"
+#include "kernels/coupling/mac_grid.hpp"
+#include "kernels/flow/mac_grid.hpp"
+#include "kernels/flow/views.hpp"
+
+namespace drogue::flow {
+
+/// Values at the faces of one component, by the indices of the faces, where the solver keeps them.
+template <class ExecutionSpace>
+using FaceView = Kokkos::View<double***, Kokkos::LayoutStride, typename ExecutionSpace::memory_space,
+                              Kokkos::MemoryUnmanaged>;
+
+/// Grid in the form that transfers between points and faces take; lengths in m. Axes with one cell are
+/// periodic. Does not throw.
+[[nodiscard]] inline coupling::MacGrid coupling_grid(const MacGrid& g) {
+  coupling::MacGrid grid;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    grid.cells[axis] = g.n[axis];
+    grid.origin[axis] = g.low[axis];
+    grid.spacing[axis] = g.h[axis];
+    grid.periodic[axis] = g.periodic[axis] || g.n[axis] == 1;
+  }
+  return grid;
+}
+
+/// Faces of the three components without ghost cells in an array of the solver, which must outlive the Views;
+/// in the unit of the array. For `coupling::interpolate` and `coupling::spread`, which read and write there
+/// without a copy. Does not throw.
+template <class ExecutionSpace>
+[[nodiscard]] coupling::FaceViews<FaceView<ExecutionSpace>> face_views(const MacGrid& g,
+                                                                       const List<ExecutionSpace>& values) {
+  const coupling::MacGrid grid = coupling_grid(g);
+  const auto stride = [&](int axis) { return static_cast<std::size_t>(g.stride[axis]); };
+  coupling::FaceViews<FaceView<ExecutionSpace>> views;
+  for (int c = 0; c < 3; ++c) {
+    const auto extent = [&](int axis) { return static_cast<std::size_t>(faces_along(grid, c, axis)); };
+    views.component[c] = FaceView<ExecutionSpace>(
+        values.data() + c * g.component + g.first,
+        Kokkos::LayoutStride(extent(0), stride(0), extent(1), stride(1), extent(2), stride(2)));
+  }
+  return views;
+}
+
+}  // namespace drogue::flow

@@ -1,0 +1,619 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "kernels/device/copy.hpp"
+#include "kernels/flow/advection/momentum.hpp"
+#include "kernels/flow/boundary/faces.hpp"
+#include "kernels/flow/boundary/ghosts.hpp"
+#include "kernels/flow/diffusion/implicit_diffusion.hpp"
+#include "kernels/flow/halo/halo.hpp"
+#include "kernels/flow/observables/sample.hpp"
+#include "kernels/flow/observables/totals.hpp"
+#include "kernels/flow/projection/projection.hpp"
+#include "kernels/flow/solver.hpp"
+#include "kernels/flow/step_control.hpp"
+#include "kernels/flow/turbulence/eddy_viscosity.hpp"
+#include "kernels/linear/poisson/diagonalization.hpp"
+#include "kernels/linear/poisson/fourier.hpp"
+#include "kernels/linear/poisson/pencil_solver.hpp"
+#if defined(DROGUE_HAVE_HYPRE)
+#include "kernels/linear/poisson/hypre_pfmg.hpp"
+#endif
+#include "kernels/stepping/step_launcher.hpp"
+
+namespace drogue::flow {
+
+/// Pressure equation of a flow: zero normal derivative of the pressure on sides with a prescribed normal
+/// velocity, zero pressure on outflows. Does not throw.
+inline linear::PoissonProblem pressure_problem(const Parameters& parameters) {
+  linear::PoissonProblem problem;
+  problem.cells = parameters.cells;
+  const auto end = [&](std::size_t side) {
+    return parameters.boundary[side].kind == BoundaryKind::outflow ? linear::EndCondition::dirichlet
+                                                                   : linear::EndCondition::neumann;
+  };
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    problem.spacing[axis] = (parameters.high[axis] - parameters.low[axis]) / parameters.cells[axis];
+    problem.axes[axis] = {parameters.boundary[2 * axis].kind == BoundaryKind::periodic, end(2 * axis),
+                          end(2 * axis + 1)};
+  }
+  return problem;
+}
+
+/// Sides of the cells of a rank: those of the domain, or towards other ranks.
+inline std::array<Boundary, 6> sides_of(const Parameters& parameters, const linear::PencilRanks& ranks) {
+  std::array<Boundary, 6> sides = parameters.boundary;
+  for (std::size_t side = 0; side < 6; ++side)
+    if (borders_rank(parameters, ranks, side)) sides[side] = {BoundaryKind::neighbour, {}, {}};
+  return sides;
+}
+
+/// Incompressible flow on a staggered grid, on the caller's instance of an execution space, for coupling to
+/// other kernels. Second order in space and time. The projection is exact to round-off (Chorin 1968; Kim and
+/// Moin 1985 for the staggered grid), so that with explicit diffusion a pressure increment would give the
+/// same velocity; Crank-Nicolson diffusion needs one.
+///
+/// Functions block unless stated otherwise. All work is enqueued on the instance given to the constructor,
+/// which must outlive the solver; on CUDA it must have a stream of its own. After a failed step the state is
+/// that before the step.
+///
+/// On a group of several ranks each holds a box of the cells (`decompose`). All functions are then
+/// collective, every step waits for the host, and arrays are those of the rank (`part_of`).
+template <class ExecutionSpace>
+class FlowSolver {
+ public:
+  using Values = List<ExecutionSpace>;
+
+  /// Throws std::invalid_argument as `check_parameters` does, and std::runtime_error if memory runs out. Each
+  /// rank gives the same parameters. Throws std::invalid_argument also for fast transforms on CUDA and
+  /// several ranks.
+  FlowSolver(const device::Instance<ExecutionSpace>& instance, const Parameters& parameters,
+             const linear::RankGroup& group = {});
+
+  /// Grid of the arrays. Does not throw.
+  [[nodiscard]] const MacGrid& grid() const { return _grid; }
+  /// Velocity with ghost cells, m/s; valid after the kernels enqueued so far. Does not throw.
+  [[nodiscard]] const Values& velocity() const { return _velocity; }
+  /// Kinematic pressure at the cells, x fastest, m^2/s^2. Does not throw.
+  [[nodiscard]] const Values& pressure() const { return _pressure; }
+  /// Force per volume on the faces, N/m^3, in the layout of `velocity`; empty unless
+  /// `Parameters::external_force`. Other kernels may write it between steps; it keeps its values. Does not
+  /// throw.
+  [[nodiscard]] const Values& force() const { return _force; }
+
+  /// As the functions of `Solver`.
+  void upload(StateField field, std::span<const double> values);
+  void download(StateField field, std::span<double> values);
+  void start();
+  void restore(const Progress& progress);
+  Stop advance(double target, std::int64_t pause_step, const Poll& poll);
+  [[nodiscard]] Progress progress() { return read_control().now; }
+  [[nodiscard]] StepFailure failure();
+  [[nodiscard]] Totals totals();
+  void sample(CellField field, std::span<double> values);
+  [[nodiscard]] const char* driver() const { return stepping::driver_name(_launcher.driver()); }
+  [[nodiscard]] const char* pressure_solver() const;
+
+ private:
+#if defined(DROGUE_HAVE_HYPRE)
+  using Poisson =
+      std::variant<linear::FourierSolver<ExecutionSpace>, linear::DiagonalizationSolver<ExecutionSpace>,
+                   linear::PencilSolver<ExecutionSpace>, linear::HyprePfmgSolver<ExecutionSpace>>;
+#else
+  using Poisson =
+      std::variant<linear::FourierSolver<ExecutionSpace>, linear::DiagonalizationSolver<ExecutionSpace>,
+                   linear::PencilSolver<ExecutionSpace>>;
+#endif
+  struct Steps;
+
+  [[nodiscard]] static auto one_thread(const ExecutionSpace& space) {
+    return Kokkos::RangePolicy<ExecutionSpace>(space, 0, 1);
+  }
+  [[nodiscard]] const ExecutionSpace& space() const { return _instance->space(); }
+  [[nodiscard]] Control read_control() const;
+  void write_control(Control control);
+  [[nodiscard]] PackFunctor<ExecutionSpace> packing(StateField field, std::size_t size, bool to_field) const;
+  void make_poisson();
+  Stop advance_together(const stepping::AdvanceRequest& request, const Poll& poll);
+  void begin_ghosts(const ExecutionSpace& space, const Values& velocity) const;
+  void finish_ghosts(const ExecutionSpace& space, const Values& velocity) const;
+  void enqueue_momentum(const ExecutionSpace& space, const MomentumSetup<ExecutionSpace>& setup) const;
+  void enqueue_step(const ExecutionSpace& space) const;
+  void enqueue_stage(const ExecutionSpace& space, const MomentumSetup<ExecutionSpace>& setup,
+                     const Values& result, double fraction, double time_fraction) const;
+  void enqueue_projection(const ExecutionSpace& space, const Values& result, double fraction,
+                          bool is_initial) const;
+  [[nodiscard]] double kinematic_viscosity() const { return _parameters.viscosity / _parameters.density; }
+
+  const device::Instance<ExecutionSpace>* _instance;
+  Parameters _parameters;
+  linear::PencilRanks _ranks;
+  MacGrid _grid;
+  mutable std::optional<Halo<ExecutionSpace>> _halo;  ///< only on several ranks
+  BoundaryTables<ExecutionSpace> _boundary;
+  StepConstants _constants{};
+  std::array<double, 3> _acceleration{};  ///< m/s^2
+  EddyModel _eddy_model{};
+  EddyCells _eddy_cells{};
+  Values _velocity, _predicted, _rate, _force;
+  Values _divergence;  ///< right-hand side of the pressure equation, 1/s^2
+  Values _pressure;
+  Values _pressure_increment;                  ///< empty with explicit diffusion, which needs no increments
+  Values _eddy_viscosity, _eddy_acceleration;  ///< empty without a turbulence model
+  /// Scratch of `totals`. The columns stand in the predicted velocity, which is free between steps, if that
+  /// is large enough.
+  TotalsView<ExecutionSpace> _column_totals, _plane_totals;
+  Values _outflow_rows;
+  ControlView<ExecutionSpace> _control;
+  std::optional<ImplicitDiffusion<ExecutionSpace>> _diffusion;  ///< Crank-Nicolson only
+  mutable std::optional<Poisson> _poisson;  ///< an iterative solver keeps its last solution and residual
+  stepping::StepLoop<ExecutionSpace> _loop;
+  stepping::StepLauncher<ExecutionSpace> _launcher;
+};
+
+/// True if the pressure equation of a flow is solved by fast transforms, and not by diagonalization.
+template <class ExecutionSpace>
+bool uses_transforms(const Parameters& parameters, int ranks) {
+  const bool can = linear::FourierSolver<ExecutionSpace>::supports(pressure_problem(parameters)) &&
+                   (device::is_host<ExecutionSpace> || ranks == 1);
+  if (parameters.pressure_solver == PressureSolver::fft && !can)
+    throw std::invalid_argument(
+        "flow solver: this backend has fast transforms for periodic axes on one rank only");
+  return can && parameters.pressure_solver != PressureSolver::diagonalization;
+}
+
+template <class ExecutionSpace>
+FlowSolver<ExecutionSpace>::FlowSolver(const device::Instance<ExecutionSpace>& instance,
+                                       const Parameters& parameters, const linear::RankGroup& group)
+    : _instance(&instance),
+      _parameters(parameters),
+      _ranks((check_parameters(parameters), ranks_of(parameters, group.size(), group.rank()))),
+      _grid(make_grid(parameters, _ranks)),
+      _boundary(instance.space(), _grid, sides_of(parameters, _ranks)),
+      _loop(instance),
+      // Messages and an iterative solver wait for the host in every step, which a graph cannot hold.
+      _launcher(instance, parameters.pressure_solver == PressureSolver::hypre_pfmg || group.size() > 1
+                              ? Driver::plain
+                              : parameters.driver) {
+  if (group.size() > 1) _halo.emplace(group, _ranks, parameters, _grid);
+  const auto field = [&](const std::string& label) {
+    // Packs may load beyond the last cell.
+    return Values(label, static_cast<std::size_t>(3 * _grid.component + 64));
+  };
+  const auto cells = static_cast<std::size_t>(_grid.cells());
+  _velocity = field("drogue::flow::velocity");
+  _predicted = field("drogue::flow::predicted_velocity");
+  _rate = field("drogue::flow::rate");
+  if (parameters.external_force) _force = field("drogue::flow::force");
+  _divergence = Values("drogue::flow::divergence", cells);
+  _pressure = Values("drogue::flow::pressure", cells);
+  const bool is_implicit = parameters.diffusion == Diffusion::crank_nicolson;
+  if (is_implicit) {
+    _pressure_increment = Values("drogue::flow::pressure_increment", cells);
+    _diffusion.emplace(space(), parameters);
+  }
+  const auto nx = static_cast<std::size_t>(_grid.n[0]), columns = nx * static_cast<std::size_t>(_grid.n[1]);
+  if (_predicted.size() >= total_count * columns)
+    _column_totals = TotalsView<ExecutionSpace>(_predicted.data(), columns);
+  else
+    _column_totals = TotalsView<ExecutionSpace>("drogue::flow::column_totals", columns);
+  _plane_totals = TotalsView<ExecutionSpace>("drogue::flow::plane_totals", nx);
+  _outflow_rows =
+      Values("drogue::flow::outflow_rows", 6 * static_cast<std::size_t>(std::max(_grid.n[1], _grid.n[2])));
+  if (parameters.turbulence != Turbulence::none) {
+    _eddy_model = make_eddy_model(parameters, _grid);
+    _eddy_cells = make_eddy_cells(_grid, _boundary.conditions().kind);
+    _eddy_viscosity = Values("drogue::flow::eddy_viscosity", _eddy_cells.size());
+    _eddy_acceleration = field("drogue::flow::eddy_acceleration");
+  }
+  _control = ControlView<ExecutionSpace>("drogue::flow::control");
+  make_poisson();
+  double squares = 0.0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double length = parameters.high[axis] - parameters.low[axis];
+    _acceleration[axis] =
+        (parameters.body_force[axis] + parameters.pressure_drop[axis] / length) / parameters.density;
+    if (_grid.n[axis] > 1) squares += _grid.inverse_h[axis] * _grid.inverse_h[axis];
+  }
+  const double nu = is_implicit ? 0.0 : kinematic_viscosity();
+  // The second-order Adams-Bashforth method is stable for z in [-1, 0] of the negative real axis; the largest
+  // eigenvalue of the viscous term is 4 nu times the sum of the squares.
+  _constants = {
+      parameters.cfl, parameters.fixed_dt, parameters.max_dt,
+      nu > 0.0 && squares > 0.0 ? 1.0 / (4.0 * nu * squares) : std::numeric_limits<double>::infinity(),
+      parameters.max_steps};
+  space().fence("drogue::flow::solver: allocated");
+}
+
+template <class ExecutionSpace>
+void FlowSolver<ExecutionSpace>::make_poisson() {
+  const linear::PoissonProblem problem = pressure_problem(_parameters);
+  const linear::RankGroup group = _halo ? _halo->group() : linear::RankGroup();
+#if defined(DROGUE_HAVE_HYPRE)
+  if (_parameters.pressure_solver == PressureSolver::hypre_pfmg) {
+    _poisson.emplace(std::in_place_type<linear::HyprePfmgSolver<ExecutionSpace>>, space(), problem, group,
+                     _ranks, _parameters.pressure_tolerance);
+    return;
+  }
+#endif
+  const bool transforms = uses_transforms<ExecutionSpace>(_parameters, group.size());
+  if (group.size() > 1)
+    _poisson.emplace(std::in_place_type<linear::PencilSolver<ExecutionSpace>>, space(), problem, group,
+                     _ranks, transforms ? linear::AxisMethod::fourier : linear::AxisMethod::diagonalization);
+  else if (transforms)
+    _poisson.emplace(std::in_place_type<linear::FourierSolver<ExecutionSpace>>, space(), problem);
+  else
+    _poisson.emplace(std::in_place_type<linear::DiagonalizationSolver<ExecutionSpace>>, space(), problem);
+}
+
+template <class ExecutionSpace>
+const char* FlowSolver<ExecutionSpace>::pressure_solver() const {
+  if (_parameters.pressure_solver == PressureSolver::hypre_pfmg) return "hypre-pfmg";
+  return uses_transforms<ExecutionSpace>(_parameters, _halo ? _halo->group().size() : 1) ? "fft"
+                                                                                         : "diagonalization";
+}
+
+template <class ExecutionSpace>
+Control FlowSolver<ExecutionSpace>::read_control() const {
+  Control control;
+  device::copy_out(space(), &control, _control, 1);
+  space().fence("drogue::flow::solver: read control");
+  return control;
+}
+
+template <class ExecutionSpace>
+void FlowSolver<ExecutionSpace>::write_control(Control control) {
+  control.trial.launches = _loop.launches();
+  device::copy_in(space(), _control, &control, 1);
+  space().fence("drogue::flow::solver: write control");
+}
+
+/// Copy of a component of the state to or from the beginning of the predicted velocity, which is free between
+/// steps.
+template <class ExecutionSpace>
+PackFunctor<ExecutionSpace> FlowSolver<ExecutionSpace>::packing(StateField field, std::size_t size,
+                                                                bool to_field) const {
+  const int index = static_cast<int>(field);
+  const bool is_rate = index >= static_cast<int>(StateField::rate_x);
+  if (is_rate && _parameters.time_scheme != TimeScheme::ab2)
+    throw std::invalid_argument("flow solver: only the scheme AB2 has rates of the previous step");
+  const std::array<int, 3> shape = part_of(_parameters, _ranks, field).cells;
+  if (size != static_cast<std::size_t>(shape[0]) * static_cast<std::size_t>(shape[1]) *
+                  static_cast<std::size_t>(shape[2]))
+    throw std::invalid_argument("flow solver: an array of the state has the wrong length");
+  const auto axis = static_cast<std::size_t>(index % 3);
+  const bool has_low_side = extents(_parameters, field) != _parameters.cells && _ranks.place[axis] == 0;
+  return {_grid,
+          is_rate ? _rate : _velocity,
+          _predicted,
+          (index % 3) * _grid.component,
+          {shape[0], shape[1], shape[2]},
+          to_field,
+          is_rate && has_low_side ? index % 3 : -1};
+}
+
+template <class ExecutionSpace>
+void FlowSolver<ExecutionSpace>::upload(StateField field, std::span<const double> values) {
+  if (field == StateField::pressure) {
+    if (values.size() != _pressure.extent(0))
+      throw std::invalid_argument("flow solver: an array of the state has the wrong length");
+    device::copy_in(space(), _pressure, values.data(), values.size());
+  } else {
+    const auto pack = packing(field, values.size(), true);
+    device::copy_in(space(), _predicted, values.data(), values.size());
+    launch_cells(space(), "drogue::flow::upload", pack.extent, pack);
+  }
+  space().fence("drogue::flow::upload");
+}
+
+template <class ExecutionSpace>
+void FlowSolver<ExecutionSpace>::download(StateField field, std::span<double> values) {
+  if (field == StateField::pressure) {
+    if (values.size() != _pressure.extent(0))
+      throw std::invalid_argument("flow solver: an array of the state has the wrong length");
+    device::copy_out(space(), values.data(), _pressure, values.size());
+  } else {
+    const auto pack = packing(field, values.size(), false);
+    launch_cells(space(), "drogue::flow::download", pack.extent, pack);
+    device::copy_out(space(), values.data(), _predicted, values.size());
+  }
+  space().fence("drogue::flow::download");
+}
+
+template <class ExecutionSpace>
+void FlowSolver<ExecutionSpace>::sample(CellField field, std::span<double> values) {
+  if (values.size() != static_cast<std::size_t>(_grid.cells()) * static_cast<std::size_t>(components(field)))
+    throw std::invalid_argument("flow solver: a field has the wrong length");
+  launch_cells(
+      space(), "drogue::flow::sample", _grid.n,
+      SampleFunctor<ExecutionSpace>{_grid, _velocity, _pressure, _predicted, _parameters.density, field});
+  device::copy_out(space(), values.data(), _predicted, values.size());
+  space().fence("drogue::flow::sample");
+}
+
+template <class ExecutionSpace>
+Totals FlowSolver<ExecutionSpace>::totals() {
+  const int nx = _grid.n[0], ny = _grid.n[1], nz = _grid.n[2];
+  device::launch_each(space(), "drogue::flow::column_totals", nx * ny,
+                      ColumnTotalsFunctor<ExecutionSpace>{_grid, _velocity, _column_totals});
+  device::launch_each(space(), "drogue::flow::plane_totals", nx,
+                      PlaneTotalsFunctor<ExecutionSpace>{nx, ny, _column_totals, _plane_totals});
+  const int longest = std::max(ny, nz);
+  device::launch_each(space(), "drogue::flow::outflow_rows", 6 * longest,
+                      OutflowRowsFunctor<ExecutionSpace>{_grid, _velocity, _outflow_rows, longest});
+  const auto on_host = Kokkos::create_mirror_view(_plane_totals);
+  const auto rows_on_host = Kokkos::create_mirror_view(_outflow_rows);
+  device::copy_out(space(), on_host.data(), _plane_totals, _plane_totals.size());
+  device::copy_out(space(), rows_on_host.data(), _outflow_rows, _outflow_rows.size());
+  const Control control = read_control();
+  double sum[total_count] = {};
+  for (std::size_t i = 0; i < static_cast<std::size_t>(nx); ++i) {
+    double own[total_count];
+    for (std::size_t q = 0; q < total_count; ++q) own[q] = on_host(i, q);
+    combine_totals(sum, own);
+  }
+  double outflow[6];
+  for (int side = 0; side < 6; ++side) {
+    outflow[side] = 0.0;
+    if (_boundary.conditions().kind[side] == BoundaryKind::neighbour) continue;
+    for (int row = 0; row < longest; ++row)
+      outflow[side] += rows_on_host(static_cast<std::size_t>(side * longest + row));
+  }
+  if (_halo) _halo->combine(sum, outflow);
+  const double volume = _grid.h[0] * _grid.h[1] * _grid.h[2], mass = _parameters.density * volume;
+  const double cells = static_cast<double>(_grid.whole[0]) * _grid.whole[1] * _grid.whole[2];
+  Totals totals;
+  totals.step = control.now.step;
+  totals.time = control.now.time;
+  totals.dt = control.trial.dt;
+  totals.kinetic_energy = mass * sum[total_energy];
+  totals.enstrophy = volume * sum[total_enstrophy];
+  totals.dissipation = _parameters.viscosity * volume * sum[total_dissipation];
+  for (int c = 0; c < 3; ++c) totals.momentum[c] = mass * sum[total_momentum_x + c];
+  totals.max_speed = std::sqrt(sum[total_squared_speed]);
+  totals.divergence_rms = std::sqrt(sum[total_squared_divergence] / cells);
+  totals.divergence_max = sum[total_divergence];
+  for (int side = 0; side < 6; ++side) totals.outflow[side] = outflow[side] * volume / _grid.h[side / 2];
+  return totals;
+}
+
+template <class ExecutionSpace>
+void FlowSolver<ExecutionSpace>::start() {
+  Control control{};
+  control.trial.dt = 1.0;  // the initial projection has no time step; without a pressure on outflows, any dt
+                           // gives the same velocity
+  control.trial.stop = Stop::running;
+  control.first_failure = no_failure;
+  write_control(control);
+  _boundary.enqueue_evaluation(space(), _control, {0.0, true});
+  begin_ghosts(space(), _velocity);
+  finish_ghosts(space(), _velocity);
+  device::copy(space(), _predicted, _velocity);
+  enqueue_projection(space(), _velocity, 1.0, true);
+  finish_ghosts(space(), _velocity);
+  if (_halo) _halo->agree(space(), _control);
+  // The first step has no pressure of a previous one.
+  if (_diffusion) Kokkos::deep_copy(space(), _pressure, 0.0);
+  control = read_control();
+  control.now.rate = control.first_failure == no_failure && control.pressure_failed == 0
+                         ? control.next_rate
+                         : Kokkos::bit_cast<std::uint64_t>(std::numeric_limits<double>::quiet_NaN());
+  control.next_rate = 0;
+  control.trial.dt = 0.0;
+  control.trial.stop = Stop::pause;
+  write_control(control);
+  _loop.status_view()().step = 0;
+}
+
+template <class ExecutionSpace>
+void FlowSolver<ExecutionSpace>::restore(const Progress& progress) {
+  Control control{};
+  control.now = progress;
+  control.first_failure = no_failure;
+  control.trial.stop = Stop::pause;
+  write_control(control);
+  _boundary.enqueue_evaluation(space(), _control, {0.0, true});
+  begin_ghosts(space(), _velocity);
+  finish_ghosts(space(), _velocity);
+  space().fence("drogue::flow::restore");
+  _loop.status_view()().step = progress.step;
+}
+
+template <class ExecutionSpace>
+StepFailure FlowSolver<ExecutionSpace>::failure() {
+  const Control control = read_control();
+  const bool in_cell = control.first_failure != no_failure;
+  const FailureReason reason = in_cell                        ? FailureReason::not_finite
+                               : control.pressure_failed != 0 ? FailureReason::pressure_solver
+                                                              : FailureReason::time_step;
+  return {reason, in_cell ? static_cast<std::int64_t>(control.first_failure) : -1, control.now.step + 1,
+          control.now.time, control.trial.dt};
+}
+
+/// Steps of the solver, as `StepLoop` enqueues them.
+template <class ExecutionSpace>
+struct FlowSolver<ExecutionSpace>::Steps {
+  FlowSolver& solver;
+
+  void begin(const stepping::AdvanceRequest& request, std::int64_t output_step) {
+    Kokkos::parallel_for("drogue::flow::begin_advance", one_thread(solver.space()),
+                         BeginAdvanceFunctor<ExecutionSpace>{solver._control, solver._loop.status_view(),
+                                                             solver._constants, request, output_step});
+  }
+  [[nodiscard]] bool holds_many_steps(int /*variant*/) const { return false; }
+  void enqueue(int variant, std::int64_t /*max_steps*/) {
+    solver._launcher.launch(variant, [this](const ExecutionSpace& on) { solver.enqueue_step(on); });
+  }
+};
+
+template <class ExecutionSpace>
+Stop FlowSolver<ExecutionSpace>::advance(double target, std::int64_t pause_step, const Poll& poll) {
+  if (_halo) return advance_together({target, pause_step}, poll);
+  return _loop.advance({target, pause_step}, Steps{*this}, poll);
+}
+
+/// Step loop of several ranks: step by step, so that all take the same steps.
+template <class ExecutionSpace>
+Stop FlowSolver<ExecutionSpace>::advance_together(const stepping::AdvanceRequest& request, const Poll& poll) {
+  const auto goes_on = [&] { return _halo->all(!poll || poll(_loop.status())); };
+  if (!goes_on()) return Stop::interrupted;
+  Steps steps{*this};
+  steps.begin(request, -1);
+  _loop.count_launch();
+  space().fence("drogue::flow::advance_together: begun");
+  bool interrupted = false;
+  while (_loop.status().stop == Stop::running && !interrupted) {
+    steps.enqueue(0, 1);
+    _loop.count_launch();
+    space().fence("drogue::flow::advance_together: stepped");
+    interrupted = _loop.status().stop == Stop::running && !goes_on();
+  }
+  finish_ghosts(space(), _velocity);
+  space().fence("drogue::flow::advance_together: stopped");
+  return interrupted ? Stop::interrupted : _loop.status().stop;
+}
+
+/// Enqueues the fill of the ghost cells of a velocity field; on several ranks it only begins.
+template <class ExecutionSpace>
+void FlowSolver<ExecutionSpace>::begin_ghosts(const ExecutionSpace& space, const Values& velocity) const {
+  if (_halo)
+    _halo->begin_velocity(space, velocity);
+  else
+    launch_ghosts(space, _grid, _boundary.conditions(), velocity);
+}
+
+/// Completes what `begin_ghosts` began for the same field.
+template <class ExecutionSpace>
+void FlowSolver<ExecutionSpace>::finish_ghosts(const ExecutionSpace& space, const Values& velocity) const {
+  if (_halo && _halo->finish_velocity(space, velocity))
+    launch_ghosts(space, _grid, _boundary.conditions(), velocity);
+}
+
+/// Momentum stage. On several ranks, cells that need no other rank come first, while the messages are under
+/// way.
+template <class ExecutionSpace>
+void FlowSolver<ExecutionSpace>::enqueue_momentum(const ExecutionSpace& space,
+                                                  const MomentumSetup<ExecutionSpace>& setup) const {
+  if (!_halo) return dispatch_momentum(space, setup, _parameters.advection);
+  MomentumSetup<ExecutionSpace> part = setup;
+  const std::vector<MacGrid> parts = _halo->parts();
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    // The cells inside need the ghost cells at the sides of the domain.
+    if (i == 0 && parts.size() > 1) launch_ghosts(space, _grid, _boundary.conditions(), setup.stage);
+    if (i == 1 || parts.size() == 1) finish_ghosts(space, setup.stage);
+    part.grid = parts[i];
+    dispatch_momentum(space, part, _parameters.advection);
+  }
+}
+
+template <class ExecutionSpace>
+void FlowSolver<ExecutionSpace>::enqueue_step(const ExecutionSpace& space) const {
+  // The linear weights are recovered where all differences are far below this velocity squared, m^2/s^2.
+  constexpr double smoothness_floor = 1e-40;
+  MomentumSetup<ExecutionSpace> setup{_grid,
+                                      _velocity,
+                                      _velocity,
+                                      _predicted,
+                                      _rate,
+                                      _force,
+                                      _eddy_acceleration,
+                                      _control,
+                                      _diffusion ? 0.0 : kinematic_viscosity(),
+                                      {_acceleration[0], _acceleration[1], _acceleration[2]},
+                                      1.0 / _parameters.density,
+                                      smoothness_floor,
+                                      {}};
+  if (_parameters.time_scheme == TimeScheme::ab2) {
+    setup.weights = {0.0, 1.0, 1.0, true};
+    enqueue_stage(space, setup, _velocity, 1.0, 1.0);
+  } else {
+    // Shu and Osher 1988, eq. (2.18). The first two stages are projected into the array of rates.
+    setup.weights = {0.0, 1.0, 1.0, false};
+    enqueue_stage(space, setup, _rate, 1.0, 1.0);
+    setup.stage = _rate;
+    setup.weights = {0.75, 0.25, 0.25, false};
+    enqueue_stage(space, setup, _rate, 0.25, 0.5);
+    setup.weights = {1.0 / 3.0, 2.0 / 3.0, 2.0 / 3.0, false};
+    enqueue_stage(space, setup, _velocity, 2.0 / 3.0, 1.0);
+  }
+  if (_halo) _halo->agree(space, _control);
+  Kokkos::parallel_for("drogue::flow::finish_step", one_thread(space),
+                       FinishStepFunctor<ExecutionSpace>{_control, _loop.status_view(), _constants});
+}
+
+/// Momentum stage and projection. `fraction`: of dt that the pressure of the stage acts; `time_fraction`: of
+/// dt at which the result of the stage approximates the velocity.
+template <class ExecutionSpace>
+void FlowSolver<ExecutionSpace>::enqueue_stage(const ExecutionSpace& space,
+                                               const MomentumSetup<ExecutionSpace>& setup,
+                                               const Values& result, double fraction,
+                                               double time_fraction) const {
+  if (_parameters.turbulence != Turbulence::none) {
+    finish_ghosts(space, setup.stage);
+    launch_cells(space, "drogue::flow::eddy_viscosity", _eddy_cells.extent,
+                 EddyViscosityFunctor<ExecutionSpace>{_grid, _eddy_model, setup.stage, _eddy_cells,
+                                                      _eddy_viscosity, _control});
+    launch_cells(space, "drogue::flow::eddy_stress", _grid.n,
+                 EddyStressFunctor<ExecutionSpace>{_grid, setup.stage, _eddy_cells, _eddy_viscosity,
+                                                   _eddy_acceleration, _control});
+  }
+  enqueue_momentum(space, setup);
+  if (_boundary.changes()) _boundary.enqueue_evaluation(space, _control, {time_fraction, false});
+  launch_boundary_faces(space, setup, _boundary.conditions());
+  if (_diffusion)
+    _diffusion->enqueue(
+        space,
+        {_grid, _boundary.conditions(), _velocity, _predicted, _pressure, _control, kinematic_viscosity()},
+        _divergence, _pressure_increment);
+  enqueue_projection(space, result, fraction, false);
+}
+
+template <class ExecutionSpace>
+void FlowSolver<ExecutionSpace>::enqueue_projection(const ExecutionSpace& space, const Values& result,
+                                                    double fraction, bool is_initial) const {
+  const Values& unknown = _diffusion ? _pressure_increment : _pressure;
+  ProjectionSetup<ExecutionSpace> setup{_grid,
+                                        _boundary.conditions(),
+                                        _predicted,
+                                        result,
+                                        _divergence,
+                                        unknown,
+                                        _diffusion && !is_initial ? _pressure : Values(),
+                                        _control,
+                                        kinematic_viscosity(),
+                                        fraction,
+                                        !is_initial && _boundary.has_outflow(),
+                                        {}};
+  if (_halo) {
+    for (std::size_t axis = 0; axis < 3; ++axis) setup.pressure_below[axis] = _halo->pressure_below(axis);
+    _halo->exchange_high_faces(space, _predicted);
+  }
+  launch_divergence(space, setup);
+  std::visit(
+      [&](auto& poisson) {
+        poisson.enqueue_solve(_divergence, unknown);
+        if constexpr (requires { poisson.converged(); })
+          if (!poisson.converged())
+            device::launch_each(space, "drogue::flow::pressure_failure", 1,
+                                PressureFailureFunctor<ExecutionSpace>{_control});
+      },
+      *_poisson);
+  if (_halo) {
+    _halo->agree(space, _control);  // no rank may overwrite the state if another one has failed
+    _halo->exchange_pressure(space, _pressure);
+  }
+  launch_correction(space, setup);
+  begin_ghosts(space, result);
+}
+
+}  // namespace drogue::flow

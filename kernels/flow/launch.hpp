@@ -1,0 +1,21 @@
+#pragma once
+
+#include "kernels/device/launch.hpp"
+
+namespace drogue::flow {
+
+/// Threads of a team on a device, as columns of a tile of 32 x 4 cells.
+inline constexpr int tile_x = 32, tile_y = 4;
+
+using device::launch_cells;
+
+/// Planes of a march along z of a tile of columns on a device: at most `longest`, a power of two, and fewer
+/// if that would leave multiprocessors without work. Does not throw.
+inline int march_planes(int tiles, int nz, int longest) {
+  constexpr int enough_teams = 1024;  // about two waves of a large device
+  int planes = longest;
+  while (planes > 2 && tiles * ((nz + planes - 1) / planes) < enough_teams) planes /= 2;
+  return planes;
+}
+
+}  // namespace drogue::flow

@@ -1,0 +1,43 @@
+#pragma once
+
+#include "kernels/flow/mac_grid.hpp"
+
+namespace drogue::flow {
+
+/// Derivative of velocity component i along axis j around a cell of a staggered field with ghost cells, 1/s:
+/// at the centre for i == j, else at the edge at the low sides along i and j. Zero along axes with one cell.
+/// `u` points at component 0 of the cell.
+KOKKOS_INLINE_FUNCTION double staggered_derivative(const MacGrid& g, const double* u, int i, int j) {
+  if (g.n[j] == 1) return 0.0;
+  const double* q = u + i * g.component;
+  return g.inverse_h[j] * (i == j ? q[g.stride[j]] - q[0] : q[0] - q[-g.stride[j]]);
+}
+
+/// Step to the next edge along an axis; zero along axes with one cell, whose ghost cells do not exist.
+KOKKOS_INLINE_FUNCTION std::int64_t edge_step(const MacGrid& g, int axis) {
+  return g.n[axis] > 1 ? g.stride[axis] : 0;
+}
+
+/// Velocity gradient at the centre of a cell, 1/s, second order: `gradient[i][j]` is the derivative of
+/// component i along axis j, a mean over the four edges parallel to the third axis for i != j.
+KOKKOS_INLINE_FUNCTION void centred_gradient(const MacGrid& g, const double* u, double gradient[3][3]) {
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      if (i == j) {
+        gradient[i][j] = staggered_derivative(g, u, i, j);
+        continue;
+      }
+      const std::int64_t a = edge_step(g, i), b = edge_step(g, j);
+      gradient[i][j] =
+          0.25 * (staggered_derivative(g, u, i, j) + staggered_derivative(g, u + a, i, j) +
+                  staggered_derivative(g, u + b, i, j) + staggered_derivative(g, u + a + b, i, j));
+    }
+}
+
+/// Component k of the vorticity at the edge of a cell at its low sides along the other two axes, 1/s.
+KOKKOS_INLINE_FUNCTION double edge_vorticity(const MacGrid& g, const double* u, int k) {
+  const int i = (k + 1) % 3, j = (k + 2) % 3;
+  return staggered_derivative(g, u, j, i) - staggered_derivative(g, u, i, j);
+}
+
+}  // namespace drogue::flow

@@ -1,0 +1,92 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "kernels/device/expression_program.hpp"
+#include "kernels/stepping/driver.hpp"
+
+namespace drogue::flow {
+
+/// Discretisation of the advective fluxes.
+enum class Advection {
+  central,  ///< second-order central, conserves kinetic energy in space
+  weno_js,  ///< fifth-order upwind-biased, weights of Jiang and Shu 1996
+  weno_z,   ///< fifth-order upwind-biased, weights of Borges, Carmona, Costa and Don 2008
+};
+
+/// Explicit time integration of advection, and of diffusion if that is explicit.
+enum class TimeScheme {
+  ab2,  ///< Adams-Bashforth of second order with variable dt; one projection per step
+  rk3,  ///< third-order strong-stability-preserving Runge-Kutta (Shu and Osher 1988); three projections
+};
+
+/// Time integration of viscous stresses.
+enum class Diffusion {
+  explicit_,       ///< as advection; limits dt to h^2 / (4 d nu) in d dimensions
+  crank_nicolson,  ///< implicit, second order; needs AB2. Does not limit dt
+};
+
+/// Model of unresolved scales.
+enum class Turbulence {
+  none,         ///< implicit large-eddy simulation by the dissipation of the upwind-biased fluxes
+  smagorinsky,  ///< Smagorinsky 1963, eq. (4.30): nu_t = (C delta)^2 |S|
+  vreman,       ///< Vreman 2004, eq. (5): vanishes in laminar shear
+};
+
+/// Solver of the pressure equation.
+enum class PressureSolver {
+  automatic,        ///< the faster direct solver of the backend
+  fft,              ///< by fast transforms along all axes
+  diagonalization,  ///< by products with the matrices of eigenvectors, Lynch, Rice and Thomas 1964
+  hypre_pfmg,       ///< conjugate gradients of hypre, preconditioned by its semicoarsening multigrid
+};
+
+/// Type of a side of the domain.
+enum class BoundaryKind {
+  periodic,
+  slip,       ///< no flow through the side, no shear stress
+  wall,       ///< velocity of the wall, no slip
+  inflow,     ///< prescribed velocity
+  outflow,    ///< zero normal gradient of the velocity, zero pressure
+  neighbour,  ///< other ranks hold the cells beyond; only inside a solver, no side of a domain
+};
+
+/// Side of the domain: its type, and the velocity of a wall or an inflow, m/s.
+struct Boundary {
+  BoundaryKind kind = BoundaryKind::periodic;
+  std::array<double, 3> velocity = {0.0, 0.0, 0.0};
+  /// Expressions of x, y, z, t for the velocity components, m/s; none, or three. They replace `velocity`.
+  std::vector<device::ExpressionProgram> velocity_expressions;
+};
+
+using stepping::Driver;
+
+/// Parameters of a flow solver, apart from the initial state. The fluid has constant density.
+struct Parameters {
+  std::array<int, 3> cells = {64, 64, 64};      ///< number of cells per axis; 1: no variation along this axis
+  std::array<double, 3> low = {0.0, 0.0, 0.0};  ///< lower corner of the domain, m
+  std::array<double, 3> high = {1.0, 1.0, 1.0};  ///< upper corner of the domain, m
+  double density = 1.0;                          ///< kg/m^3
+  double viscosity = 0.0;                        ///< dynamic viscosity, Pa s
+  /// Sides x low, x high, y low, y high, z low, z high.
+  std::array<Boundary, 6> boundary;
+  std::array<double, 3> body_force = {0.0, 0.0, 0.0};     ///< per volume, N/m^3
+  std::array<double, 3> pressure_drop = {0.0, 0.0, 0.0};  ///< along periodic axes, from low to high side, Pa
+  Advection advection = Advection::weno_z;
+  TimeScheme time_scheme = TimeScheme::ab2;
+  Diffusion diffusion = Diffusion::explicit_;
+  Turbulence turbulence = Turbulence::none;
+  double turbulence_constant = 0.0;  ///< C of the model; 0: 0.17 for Smagorinsky, 0.07 for Vreman
+  PressureSolver pressure_solver = PressureSolver::automatic;
+  double pressure_tolerance = 1e-10;  ///< of an iterative solver: relative residual
+  bool external_force = false;  ///< the solver has a force field that other kernels add to before each step
+  double cfl = 0.5;             ///< 1/dt = max(|u|/hx + |v|/hy + |w|/hz) / cfl + 1/dt of explicit diffusion
+  double fixed_dt = 0.0;        ///< s; a positive value replaces the CFL condition
+  double max_dt = 0.0;  ///< s; a positive value is an upper bound of dt, needed if the fluid is at rest
+  std::int64_t max_steps = 1'000'000'000;
+  Driver driver = Driver::automatic;
+};
+
+}  // namespace drogue::flow

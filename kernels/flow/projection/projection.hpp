@@ -1,0 +1,181 @@
+#pragma once
+
+#include <cstdint>
+
+#include "kernels/device/memory.hpp"
+#include "kernels/device/team_maximum.hpp"
+#include "kernels/flow/boundary/conditions.hpp"
+#include "kernels/flow/launch.hpp"
+#include "kernels/flow/views.hpp"
+
+namespace drogue::flow {
+
+/// Kinematic pressure on the face of an outflow, m^2/s^2, for the outward velocity: zero, and minus the
+/// dynamic pressure where fluid flows back, which so enters with a total pressure of zero and cannot gain
+/// energy. Does not throw.
+KOKKOS_INLINE_FUNCTION double outflow_pressure(double outward) {
+  return outward < 0.0 ? -0.5 * outward * outward : 0.0;
+}
+
+/// Data of a projection.
+template <class ExecutionSpace>
+struct ProjectionSetup {
+  MacGrid grid;
+  BoundaryConditions<ExecutionSpace> boundary;
+  List<ExecutionSpace> predicted;       ///< m/s, with ghost cells
+  List<ExecutionSpace> velocity;        ///< result, m/s, with ghost cells
+  List<ExecutionSpace> divergence;      ///< right-hand side of the pressure equation at the cells, 1/s^2
+  List<ExecutionSpace> pressure;        ///< kinematic, at the cells, m^2/s^2; or its increment
+  List<ExecutionSpace> total_pressure;  ///< sum of the increments, m^2/s^2; empty without increments
+  ControlView<ExecutionSpace> control;
+  double nu;              ///< kinematic viscosity of implicit diffusion, m^2/s
+  double step_fraction;   ///< of dt that the projection covers
+  bool resists_backflow;  ///< false: the pressure on outflows is zero
+  /// Pressure of the layer of cells below the low side along each axis, m^2/s^2; null unless another rank
+  /// holds it.
+  const double* pressure_below[3];
+
+  /// Kinematic pressure on the face of an outflow, m^2/s^2.
+  [[nodiscard]] KOKKOS_FUNCTION double outside_pressure(double outward) const {
+    return resists_backflow ? outflow_pressure(outward) : 0.0;
+  }
+  /// True if the face on a side is an unknown of the projection.
+  [[nodiscard]] KOKKOS_FUNCTION bool is_outflow(int side) const {
+    return boundary.kind[side] == BoundaryKind::outflow;
+  }
+};
+
+/// Right-hand side of the pressure equation, div u / dt, 1/s^2, and check that the predicted velocity is
+/// finite.
+template <class ExecutionSpace>
+struct DivergenceFunctor {
+  ProjectionSetup<ExecutionSpace> setup;
+
+  KOKKOS_FUNCTION void operator()(const int i, const int j, const int k) const {
+    const MacGrid& g = setup.grid;
+    Control& control = setup.control();
+    if (control.trial.stop != stepping::Stop::running) return;
+    const double* u = setup.predicted.data() + g.offset(i, j, k);
+    const int index[3] = {i, j, k};
+    double divergence = 0.0, outside = 0.0;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (g.n[axis] == 1) continue;
+      const double* low = u + axis * g.component;
+      const std::int64_t next = g.periodic[axis] && index[axis] + 1 == g.n[axis]
+                                    ? (1 - g.n[axis]) * g.stride[axis]
+                                    : g.stride[axis];
+      divergence += g.inverse_h[axis] * (low[next] - low[0]);
+      if (setup.resists_backflow) {
+        const double twice_inverse = 2.0 * g.inverse_h[axis] * g.inverse_h[axis];
+        if (index[axis] == 0 && setup.is_outflow(2 * axis))
+          outside += twice_inverse * outflow_pressure(-low[0]);
+        if (index[axis] + 1 == g.n[axis] && setup.is_outflow(2 * axis + 1))
+          outside += twice_inverse * outflow_pressure(low[next]);
+      }
+    }
+    const std::int64_t cell = i + g.n[0] * (j + static_cast<std::int64_t>(g.n[1]) * k);
+    if (!(Kokkos::fabs(divergence) < 1e100))
+      Kokkos::atomic_min(&control.first_failure, static_cast<std::uint64_t>(g.number(i, j, k)));
+    setup.divergence(cell) = divergence / (setup.step_fraction * control.trial.dt) - outside;
+  }
+};
+
+/// Subtracts the pressure gradient; reduces the maximum of |u|/hx + |v|/hy + |w|/hz.
+template <class ExecutionSpace>
+struct CorrectionFunctor {
+  using Policy = Kokkos::TeamPolicy<ExecutionSpace>;
+  using Member = typename Policy::member_type;
+  ProjectionSetup<ExecutionSpace> setup;
+  int tile_width, tile_height;   ///< columns of a team
+  int tiles_x, tiles_y, planes;  ///< planes that a thread treats
+
+  KOKKOS_FUNCTION void operator()(const Member& member) const {
+    const MacGrid& g = setup.grid;
+    Control& control = setup.control();
+    if (control.trial.stop != stepping::Stop::running || control.first_failure != no_failure ||
+        control.pressure_failed != 0)
+      return;
+    const double dt = setup.step_fraction * control.trial.dt;
+    const int tile = member.league_rank();
+    const int i_begin = tile % tiles_x * tile_width, j_begin = tile / tiles_x % tiles_y * tile_height;
+    const int k_begin = tile / (tiles_x * tiles_y) * planes;
+    const int k_end = k_begin + planes < g.n[2] ? k_begin + planes : g.n[2];
+    double largest = 0.0;
+    for (int k = k_begin; k < k_end; ++k)
+      for (int column = member.team_rank(); column < tile_width * tile_height; column += member.team_size()) {
+        const int i = i_begin + column % tile_width, j = j_begin + column / tile_width;
+        if (i >= g.n[0] || j >= g.n[1]) continue;
+        const double rate = correct(i, j, k, dt);
+        largest = rate > largest || !(rate == rate) ? rate : largest;
+      }
+    device::raise_to_team_maximum(member, control.next_rate, largest);
+  }
+
+ private:
+  KOKKOS_FUNCTION double correct(int i, int j, int k, double dt) const {
+    const MacGrid& g = setup.grid;
+    const int index[3] = {i, j, k};
+    const std::int64_t at = g.offset(i, j, k);
+    std::int64_t stride = 1;
+    const std::int64_t cell = i + g.n[0] * (j + static_cast<std::int64_t>(g.n[1]) * k);
+    const double p = setup.pressure(cell);
+    // The viscous term makes the pressure of second order up to the sides: Brown, Cortez and Minion 2001, eq.
+    // (10).
+    if (setup.total_pressure.data() != nullptr)
+      setup.total_pressure(cell) += p - 0.5 * setup.nu * dt * setup.divergence(cell);
+    double rate = 0.0;
+    for (int axis = 0; axis < 3; stride *= g.n[axis], ++axis) {
+      const std::int64_t place = axis * g.component + at;
+      double value = setup.predicted(place);
+      if (g.n[axis] > 1) {
+        double below = p;  // no gradient across a boundary with a prescribed velocity
+        if (index[axis] > 0)
+          below = setup.pressure(cell - stride);
+        else if (g.periodic[axis])
+          below = setup.pressure(cell + (g.n[axis] - 1) * stride);
+        else if (setup.pressure_below[axis] != nullptr)
+          below = setup.pressure_below[axis][axis == 1 ? i + g.n[0] * k : i + g.n[0] * j];
+        else if (setup.is_outflow(2 * axis))
+          below = 2.0 * setup.outside_pressure(-value) - p;
+        value -= dt * g.inverse_h[axis] * (p - below);
+        if (index[axis] + 1 == g.n[axis] && !g.periodic[axis]) {
+          const std::int64_t high = place + g.stride[axis];
+          double last = setup.predicted(high);
+          if (setup.is_outflow(2 * axis + 1))
+            last += 2.0 * dt * g.inverse_h[axis] * (p - setup.outside_pressure(last));
+          setup.velocity(high) = last;
+        }
+      }
+      setup.velocity(place) = value;
+      rate += g.inverse_h[axis] * Kokkos::fabs(value);
+    }
+    return rate;
+  }
+};
+
+/// Enqueues the right-hand side of the pressure equation. Asynchronous.
+template <class ExecutionSpace>
+void launch_divergence(const ExecutionSpace& space, const ProjectionSetup<ExecutionSpace>& setup) {
+  launch_cells(space, "drogue::flow::divergence", setup.grid.n, DivergenceFunctor<ExecutionSpace>{setup});
+}
+
+/// Enqueues the subtraction of the pressure gradient. Asynchronous.
+template <class ExecutionSpace>
+void launch_correction(const ExecutionSpace& space, const ProjectionSetup<ExecutionSpace>& setup) {
+  using Functor = CorrectionFunctor<ExecutionSpace>;
+  const int* n = setup.grid.n;
+  const auto parts = [](int count, int size) { return (count + size - 1) / size; };
+  const bool on_host = device::is_host<ExecutionSpace>;
+  // A team of a host treats rows. A tile of a device marches along z, so that few teams update the maximum.
+  const int width = on_host ? n[0] : tile_x, height = on_host ? 1 : tile_y;
+  const int tiles_x = parts(n[0], width), tiles_y = parts(n[1], height);
+  const int planes = on_host ? 1 : march_planes(tiles_x * tiles_y, n[2], 16);
+  typename Functor::Policy policy(space, tiles_x * tiles_y * parts(n[2], planes),
+                                  on_host ? 1 : tile_x * tile_y);
+  Kokkos::parallel_for(
+      "drogue::flow::correction",
+      Kokkos::Experimental::require(policy, Kokkos::Experimental::WorkItemProperty::HintLightWeight),
+      Functor{setup, width, height, tiles_x, tiles_y, planes});
+}
+
+}  // namespace drogue::flow

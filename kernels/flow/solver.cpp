@@ -1,0 +1,105 @@
+#include "kernels/flow/solver.hpp"
+
+#include <cmath>
+#include <new>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+namespace drogue::flow {
+
+// Defined in solver_adapter.hpp, instantiated for each backend in instances/.
+template <class ExecutionSpace>
+std::unique_ptr<Solver> make_solver(const Parameters& parameters, const linear::RankGroup& group);
+
+namespace {
+
+void require(bool holds, const std::string& condition) {
+  if (!holds) throw std::invalid_argument("flow solver: " + condition);
+}
+
+bool is_prescribed(BoundaryKind kind) { return kind == BoundaryKind::wall || kind == BoundaryKind::inflow; }
+
+/// Checks that the prescribed inflow can leave. Expressions are not evaluated.
+void check_net_inflow(const Parameters& p) {
+  double inflow = 0.0, magnitude = 0.0;
+  for (std::size_t side = 0; side < 6; ++side) {
+    const Boundary& boundary = p.boundary[side];
+    if (boundary.kind == BoundaryKind::outflow || !boundary.velocity_expressions.empty()) return;
+    if (!is_prescribed(boundary.kind)) continue;
+    const std::size_t axis = side / 2;
+    double area = 1.0;
+    for (std::size_t a = 0; a < 3; ++a)
+      if (a != axis) area *= p.high[a] - p.low[a];
+    const double flow = (side % 2 == 0 ? 1.0 : -1.0) * boundary.velocity[axis] * area;
+    inflow += flow;
+    magnitude += std::abs(flow);
+  }
+  require(std::abs(inflow) <= 1e-12 * magnitude,
+          "the prescribed velocities have a net inflow, but no side is an outflow");
+}
+
+}  // namespace
+
+std::array<int, 3> extents(const Parameters& p, StateField field) {
+  std::array<int, 3> shape = p.cells;
+  if (field == StateField::pressure) return shape;
+  const std::size_t axis = static_cast<std::size_t>(field) % 3;
+  if (p.cells[axis] > 1 && p.boundary[2 * axis].kind != BoundaryKind::periodic) ++shape[axis];
+  return shape;
+}
+
+void check_parameters(const Parameters& p) {
+  constexpr int most_cells = 1 << 14;
+  double cells = 1.0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const int n = p.cells[axis];
+    require(n == 1 || (n >= 4 && n <= most_cells), "an axis must have 1 cell, or 4 to 16384");
+    require(std::isfinite(p.low[axis]) && std::isfinite(p.high[axis]) && p.low[axis] < p.high[axis],
+            "the domain must not be empty");
+    const BoundaryKind low = p.boundary[2 * axis].kind, high = p.boundary[2 * axis + 1].kind;
+    require((low == BoundaryKind::periodic) == (high == BoundaryKind::periodic),
+            "both sides of an axis must be periodic, or none");
+    require(low != BoundaryKind::neighbour && high != BoundaryKind::neighbour,
+            "a side of the domain has no neighbour");
+    require(n > 1 || low == BoundaryKind::periodic || low == BoundaryKind::slip,
+            "an axis with one cell must be periodic or have slip sides");
+    require(p.pressure_drop[axis] == 0.0 || low == BoundaryKind::periodic,
+            "a pressure drop needs a periodic axis");
+    cells *= n;
+  }
+  require(cells > 1.0 && cells < 2e9, "the grid must have more than 1 cell, and fewer than 2 billion");
+  require(std::isfinite(p.density) && p.density > 0.0, "the density must be positive");
+  require(std::isfinite(p.viscosity) && p.viscosity >= 0.0, "the viscosity must not be negative");
+  require(p.fixed_dt > 0.0 || (p.cfl > 0.0 && std::isfinite(p.cfl)), "cfl must be positive");
+  require(p.diffusion == Diffusion::explicit_ || p.time_scheme == TimeScheme::ab2,
+          "Crank-Nicolson diffusion needs the time scheme AB2");
+#if !defined(DROGUE_HAVE_HYPRE)
+  require(p.pressure_solver != PressureSolver::hypre_pfmg, "this build lacks hypre");
+#endif
+  require(p.pressure_tolerance > 0.0 && p.pressure_tolerance < 1.0,
+          "pressure_tolerance must lie between 0 and 1");
+  for (const Boundary& side : p.boundary) {
+    require(side.velocity_expressions.empty() ||
+                (side.velocity_expressions.size() == 3 && is_prescribed(side.kind)),
+            "a wall or inflow has three velocity expressions, or none; other sides have none");
+    for (const double v : side.velocity) require(std::isfinite(v), "the velocity of a side must be finite");
+  }
+  check_net_inflow(p);
+}
+
+std::unique_ptr<Solver> create_solver(device::Backend backend, const Parameters& parameters,
+                                      const linear::RankGroup& group) {
+  check_parameters(parameters);
+  try {
+    return device::dispatch(
+        backend, [&]<class ExecutionSpace>() { return make_solver<ExecutionSpace>(parameters, group); });
+  } catch (const std::runtime_error& error) {
+    // Kokkos throws this for a failed allocation.
+    if (std::string_view(error.what()).find("failed to allocate") != std::string_view::npos)
+      throw std::bad_alloc();
+    throw;
+  }
+}
+
+}  // namespace drogue::flow

@@ -1,0 +1,81 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <span>
+
+#include "kernels/device/backend.hpp"
+#include "kernels/flow/parameters.hpp"
+#include "kernels/flow/state.hpp"
+#include "kernels/linear/parallel/rank_group.hpp"
+
+namespace drogue::flow {
+
+/// Incompressible flow on a backend that a program chooses at run time. Needs an initialised runtime. To
+/// couple other kernels on the device, use `FlowSolver`.
+///
+/// Call `upload` for the three velocity components, then `start`; or `upload` for all arrays of the state,
+/// then `restore`; then `advance` as often as needed. Functions block and are not thread-safe. A failed
+/// kernel throws `std::runtime_error`. After a failed step, the state is that before the step.
+class Solver {
+ public:
+  virtual ~Solver() = default;
+
+  /// Sets an array of the state, in the unit of `StateField` (m/s, m/s^2 or m^2/s^2). Its shape is that of
+  /// `extents`, x fastest. Throws std::invalid_argument for a span of the wrong length or an array that the
+  /// time scheme does not have.
+  virtual void upload(StateField field, std::span<const double> values) = 0;
+
+  /// Copies an array of the state, in the unit of `StateField` (m/s, m/s^2 or m^2/s^2). Throws as `upload`
+  /// does.
+  virtual void download(StateField field, std::span<double> values) = 0;
+
+  /// Makes the uploaded velocity the initial state at time 0 s and step 0: sets the prescribed values on the
+  /// sides and subtracts the gradient that makes the velocity free of divergence.
+  virtual void start() = 0;
+
+  /// Continues from uploaded arrays with the progress of an equal solver.
+  virtual void restore(const Progress& progress) = 0;
+
+  /// Steps until the time reaches `target` (s), the number of steps equals `pause_step` (-1: no pause), or
+  /// the run stops. `poll` may be empty. Reports failures by the returned `Stop` and does not throw for them.
+  virtual Stop advance(double target, std::int64_t pause_step, const Poll& poll) = 0;
+
+  /// Progress after the last step.
+  [[nodiscard]] virtual Progress progress() = 0;
+
+  /// Failure that ended the last `advance` with `Stop::failed`.
+  [[nodiscard]] virtual StepFailure failure() = 0;
+
+  /// Sums over the present state. The order of summation does not depend on the backend.
+  [[nodiscard]] virtual Totals totals() = 0;
+
+  /// Field at the cell centres, in the order of an array of shape (nx, ny, nz) or (nx, ny, nz, 3) whose last
+  /// index varies fastest. Throws std::invalid_argument for a span of the wrong length.
+  virtual void sample(CellField field, std::span<double> values) = 0;
+
+  /// Launch strategy: "graph" or "plain". Does not throw.
+  [[nodiscard]] virtual const char* driver() const = 0;
+
+  /// Name of the pressure solver: "fft" or "diagonalization" or "hypre-pfmg". Does not throw.
+  [[nodiscard]] virtual const char* pressure_solver() const = 0;
+};
+
+/// Shape of an array of the state, x first: the cells, with one more along axis c for component c of the
+/// velocity or rate if axis c is not periodic and has more than one cell. Does not throw.
+[[nodiscard]] std::array<int, 3> extents(const Parameters& parameters, StateField field);
+
+/// Throws std::invalid_argument, with one sentence that names the fault, for parameters out of range or
+/// boundary conditions that admit no solution.
+void check_parameters(const Parameters& parameters);
+
+/// Solver on a backend, which must be available. Throws std::invalid_argument as `check_parameters` does, and
+/// std::bad_alloc if memory runs out.
+///
+/// On a group of several ranks each holds a part of the cells: arrays are those of `part_of`
+/// (kernels/flow/halo/decomposition.hpp), and all functions but those that do not throw are collective.
+/// Throws std::invalid_argument also if the ranks cannot share the grid.
+[[nodiscard]] std::unique_ptr<Solver> create_solver(device::Backend backend, const Parameters& parameters,
+                                                    const linear::RankGroup& group = {});
+
+}  // namespace drogue::flow

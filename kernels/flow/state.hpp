@@ -1,0 +1,63 @@
+#pragma once
+
+#include <cstdint>
+
+#include "kernels/stepping/status.hpp"
+
+namespace drogue::flow {
+
+using stepping::Poll;
+using stepping::Status;
+using stepping::Stop;
+
+/// Reason why a step failed.
+enum class FailureReason : int {
+  not_finite,       ///< the divergence of the predicted velocity is not finite, or exceeds 1e100 per second
+  time_step,        ///< no admissible dt: the velocity is not finite, or dt would not change the time
+  pressure_solver,  ///< an iterative pressure solver did not converge
+};
+
+using StepFailure = stepping::StepFailure<FailureReason>;
+
+/// Progress of a run. A restart that restores it and all `state_fields` continues bit for bit.
+struct Progress : stepping::AdaptiveTime {
+  double last_dt = 0.0;               ///< s, of the last step; 0: the next step has no predecessor
+  double dt_min = 0.0, dt_max = 0.0;  ///< s, over all steps
+  std::uint64_t rate = 0;             ///< bits of the maximum over the cells of |u|/hx + |v|/hy + |w|/hz, 1/s
+};
+
+/// Array of the state. Component c of the velocity lies on the faces normal to axis c.
+enum class StateField : int {
+  velocity_x,
+  velocity_y,
+  velocity_z,  ///< m/s
+  rate_x,
+  rate_y,
+  rate_z,    ///< m/s^2, rate of change without pressure of the previous step; AB2 only
+  pressure,  ///< kinematic: pressure per density, m^2/s^2, at the cell centres
+};
+
+/// Field at the cell centres that is computed from the state.
+enum class CellField : int {
+  velocity,     ///< 3 components, m/s, mean of the two faces
+  vorticity,    ///< 3 components, 1/s, second order
+  pressure,     ///< physical pressure, Pa: density times kinematic pressure, mean zero if undetermined
+  q_criterion,  ///< 1/s^2, half of (|rotation|^2 - |strain rate|^2), second order
+};
+
+/// Sums over the domain. Along an axis with one cell, the domain has its given length.
+struct Totals {
+  std::int64_t step = 0;
+  double time = 0.0, dt = 0.0;                        ///< s; dt of the next step
+  double kinetic_energy = 0.0;                        ///< J
+  double enstrophy = 0.0;                             ///< half the integral of the squared vorticity, m^3/s^2
+  double dissipation = 0.0;                           ///< viscous dissipation, W
+  double momentum[3] = {};                            ///< kg m/s
+  double max_speed = 0.0;                             ///< m/s, at cell centres
+  double divergence_rms = 0.0, divergence_max = 0.0;  ///< 1/s
+  /// Flow rate out of the domain through each side, m^3/s: x low, x high, y low, y high, z low, z high; 0 on
+  /// periodic sides.
+  double outflow[6] = {};
+};
+
+}  // namespace drogue::flow

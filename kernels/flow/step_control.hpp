@@ -1,0 +1,66 @@
+#pragma once
+
+#include "kernels/flow/views.hpp"
+#include "kernels/stepping/step_loop.hpp"
+
+namespace drogue::flow {
+
+/// First kernel of an advance.
+template <class ExecutionSpace>
+struct BeginAdvanceFunctor {
+  ControlView<ExecutionSpace> control;
+  typename stepping::StepLoop<ExecutionSpace>::StatusView status;
+  StepConstants constants;
+  stepping::AdvanceRequest request;
+  std::int64_t output_step;
+
+  KOKKOS_FUNCTION void operator()(int) const {
+    Control& c = control();
+    Progress now = c.now;
+    stepping::StepTrial trial = c.trial;
+    if (stepping::begin_advance(now, trial, request, output_step, constants.max_steps))
+      prepare_step(now, trial, constants);
+    stepping::publish_status(now, trial, 0, status());
+    c.trial = trial;
+  }
+};
+
+/// Records that the pressure solver did not converge.
+template <class ExecutionSpace>
+struct PressureFailureFunctor {
+  ControlView<ExecutionSpace> control;
+  KOKKOS_FUNCTION void operator()(int) const { control().pressure_failed = 1; }
+};
+
+/// Last kernel of a step: accepts it or stops the run.
+template <class ExecutionSpace>
+struct FinishStepFunctor {
+  ControlView<ExecutionSpace> control;
+  typename stepping::StepLoop<ExecutionSpace>::StatusView status;
+  StepConstants constants;
+
+  KOKKOS_FUNCTION void operator()(int) const {
+    Control& c = control();
+    Progress now = c.now;
+    stepping::StepTrial trial = c.trial;
+    if (trial.stop == Stop::running) {
+      if (c.first_failure != no_failure || c.pressure_failed != 0) {
+        trial.stop = Stop::failed;
+        now.last_dt = 0.0;  // the rates of the failed step must not enter another one
+      } else {
+        now.last_dt = trial.dt;
+        now.dt_min = now.step == 0 || trial.dt < now.dt_min ? trial.dt : now.dt_min;
+        now.dt_max = trial.dt > now.dt_max ? trial.dt : now.dt_max;
+        now.rate = c.next_rate;
+        stepping::advance_time(now, trial);
+        if (stepping::continues(now, trial, constants.max_steps)) prepare_step(now, trial, constants);
+        c.next_rate = 0;
+      }
+    }
+    stepping::publish_status(now, trial, 0, status());
+    c.now = now;
+    c.trial = trial;
+  }
+};
+
+}  // namespace drogue::flow

@@ -1,0 +1,113 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <stdexcept>
+#include <string>
+
+#include <Kokkos_Core.hpp>
+
+#if defined(KOKKOS_ENABLE_CUDA)
+#include <cublas_v2.h>
+#endif
+
+namespace drogue::linear {
+
+/// One line of the product of a three-dimensional array with a square matrix along an axis: row `line` of the
+/// result, all of its entries along the faster axes.
+template <class ExecutionSpace>
+struct DenseProductFunctor {
+  int n;               ///< cells along the axis of the product
+  std::int64_t inner;  ///< numbers between neighbours along this axis
+  bool transposed;     ///< multiplies by the transpose: forward transform
+  const double *matrix, *from;
+  double* to;
+
+  KOKKOS_FUNCTION void operator()(const std::int64_t line) const {
+    const std::int64_t outer = line / n;
+    const int row = static_cast<int>(line % n);
+    const double* source = from + outer * n * inner;
+    double* target = to + line * inner;
+    for (std::int64_t x = 0; x < inner; ++x) target[x] = 0.0;
+    for (int k = 0; k < n; ++k) {
+      const double factor = transposed ? matrix[static_cast<std::int64_t>(row) * n + k]
+                                       : matrix[static_cast<std::int64_t>(k) * n + row];
+      for (std::int64_t x = 0; x < inner; ++x) target[x] += factor * source[k * inner + x];
+    }
+  }
+};
+
+/// Products of three-dimensional arrays, x fastest, with square matrices along one axis.
+template <class ExecutionSpace>
+class DenseProduct {
+ public:
+  using List = Kokkos::View<double*, typename ExecutionSpace::memory_space>;
+
+  explicit DenseProduct(const ExecutionSpace& space) : _space(space) {}
+
+  /// to = M^T from (`transposed`) or M from along `axis`, with the n x n matrix M, column after column.
+  /// Asynchronous; `from` and `to` must not overlap. Does not throw.
+  void along_axis(const std::array<int, 3>& cells, std::size_t axis, const List& matrix, bool transposed,
+                  const List& from, const List& to) const {
+    std::int64_t inner = 1, lines = 1;
+    for (std::size_t a = 0; a < 3; ++a) (a < axis ? inner : lines) *= cells[a];
+    Kokkos::parallel_for("drogue::linear::dense_product",
+                         Kokkos::RangePolicy<ExecutionSpace>(_space, 0, lines),
+                         DenseProductFunctor<ExecutionSpace>{cells[axis], inner, transposed, matrix.data(),
+                                                             from.data(), to.data()});
+  }
+
+ private:
+  ExecutionSpace _space;
+};
+
+#if defined(KOKKOS_ENABLE_CUDA)
+/// By cuBLAS, which uses the FP64 tensor cores.
+template <>
+class DenseProduct<Kokkos::Cuda> {
+ public:
+  using List = Kokkos::View<double*, Kokkos::CudaSpace>;
+
+  explicit DenseProduct(const Kokkos::Cuda& space)
+      : _workspace(Kokkos::view_alloc(space, Kokkos::WithoutInitializing, "drogue::linear::cublas_workspace"),
+                   workspace_bytes) {
+    cublasHandle_t handle = nullptr;
+    check(cublasCreate(&handle));
+    _handle = std::shared_ptr<cublasContext>(handle, [](cublasHandle_t h) { cublasDestroy(h); });
+    check(cublasSetStream(handle, space.cuda_stream()));
+    // A workspace of its own: cuBLAS would allocate inside a captured step.
+    check(cublasSetWorkspace(handle, _workspace.data(), workspace_bytes));
+  }
+
+  void along_axis(const std::array<int, 3>& cells, std::size_t axis, const List& matrix, bool transposed,
+                  const List& from, const List& to) const {
+    const int nx = cells[0], ny = cells[1], nz = cells[2];
+    const double one = 1.0, zero = 0.0;
+    const cublasOperation_t left = transposed ? CUBLAS_OP_T : CUBLAS_OP_N;
+    const cublasOperation_t right = transposed ? CUBLAS_OP_N : CUBLAS_OP_T;
+    if (axis == 0)
+      check(cublasDgemm(_handle.get(), left, CUBLAS_OP_N, nx, ny * nz, nx, &one, matrix.data(), nx,
+                        from.data(), nx, &zero, to.data(), nx));
+    else if (axis == 1)
+      check(cublasDgemmStridedBatched(_handle.get(), CUBLAS_OP_N, right, nx, ny, ny, &one, from.data(), nx,
+                                      static_cast<long long>(nx) * ny, matrix.data(), ny, 0, &zero, to.data(),
+                                      nx, static_cast<long long>(nx) * ny, nz));
+    else
+      check(cublasDgemm(_handle.get(), CUBLAS_OP_N, right, nx * ny, nz, nz, &one, from.data(), nx * ny,
+                        matrix.data(), nz, &zero, to.data(), nx * ny));
+  }
+
+ private:
+  static constexpr std::size_t workspace_bytes = std::size_t{32} << 20U;
+  static void check(cublasStatus_t status) {
+    if (status != CUBLAS_STATUS_SUCCESS)
+      throw std::runtime_error(std::string("cuBLAS: ") + cublasGetStatusString(status));
+  }
+
+  Kokkos::View<char*, Kokkos::CudaSpace> _workspace;
+  std::shared_ptr<cublasContext> _handle;
+};
+#endif
+
+}  // namespace drogue::linear

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "kernels/linear/dense_product.hpp"
+#include "kernels/linear/poisson/spectral_scaling.hpp"
+
+namespace drogue::linear {
+
+/// Matrix of the eigenvectors along an axis, on a device. Column k holds eigenvector k. Blocks.
+/// Throws std::runtime_error if memory runs out.
+template <class ExecutionSpace>
+Kokkos::View<double*, typename ExecutionSpace::memory_space> eigenvector_matrix(const ExecutionSpace& space,
+                                                                                const PoissonProblem& problem,
+                                                                                std::size_t axis) {
+  const int n = problem.cells[axis];
+  std::vector<double> basis(static_cast<std::size_t>(n) * static_cast<std::size_t>(n));
+  for (int k = 0; k < n; ++k)
+    for (int i = 0; i < n; ++i)
+      basis[static_cast<std::size_t>(k) * static_cast<std::size_t>(n) + static_cast<std::size_t>(i)] =
+          axis_eigenvector(problem.axes[axis], n, k, i);
+  return to_device(space, "drogue::linear::eigenvectors", basis);
+}
+
+/// Direct solver by diagonalization of the second differences along each axis (Lynch, Rice and Thomas 1964):
+/// six products with dense matrices of eigenvectors, 4 (nx + ny + nz) floating-point operations per cell, for
+/// any combination of boundary conditions and any size.
+template <class ExecutionSpace>
+class DiagonalizationSolver {
+ public:
+  using List = Kokkos::View<double*, typename ExecutionSpace::memory_space>;
+
+  /// Allocates the matrices and one work array; blocks. Throws std::runtime_error if memory runs out.
+  DiagonalizationSolver(const ExecutionSpace& space, const PoissonProblem& problem)
+      : _space(space), _problem(problem), _product(space) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      _eigenvalues[axis] = to_device(space, "drogue::linear::eigenvalues", axis_eigenvalues(problem, axis));
+      if (problem.varies_along(axis)) _basis[axis] = eigenvector_matrix(space, problem, axis);
+    }
+    _work =
+        List(Kokkos::view_alloc(space, Kokkos::WithoutInitializing, "drogue::linear::work"), _problem.size());
+  }
+
+  /// Applies the inverse of the operator to the right-hand side, which it keeps. For the Laplacian that is in
+  /// the unit of the solution per m^2. Asynchronous; neither fences nor allocates. Throws
+  /// std::invalid_argument for an array of the wrong size.
+  void enqueue_solve(const List& right_hand_side, const List& solution,
+                     const SpectralOperator& spectral_operator = {}) const {
+    if (right_hand_side.extent(0) != _problem.size() || solution.extent(0) != _problem.size())
+      throw std::invalid_argument("Poisson solver: the arrays must hold one value per cell");
+    // An even number of products leaves the result in the solution.
+    List from = right_hand_side, to = _work, other = solution;
+    const auto transform = [&](std::size_t axis, bool forward) {
+      if (!_problem.varies_along(axis)) return;
+      _product.along_axis(_problem.cells, axis, _basis[axis], forward, from, to);
+      from = to;
+      std::swap(to, other);
+    };
+    for (std::size_t axis = 0; axis < 3; ++axis) transform(axis, true);
+    scale_spectrum(_space,
+                   SpectralScalingFunctor<ExecutionSpace>{from.data(), _eigenvalues[0], _eigenvalues[1],
+                                                          _eigenvalues[2], 1, 1.0, spectral_operator});
+    for (std::size_t axis = 0; axis < 3; ++axis) transform(axis, false);
+  }
+
+ private:
+  ExecutionSpace _space;
+  PoissonProblem _problem;
+  DenseProduct<ExecutionSpace> _product;
+  List _basis[3], _eigenvalues[3], _work;
+};
+
+}  // namespace drogue::linear

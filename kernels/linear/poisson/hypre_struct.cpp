@@ -1,0 +1,234 @@
+#include "kernels/linear/poisson/hypre_struct.hpp"
+
+#if defined(DROGUE_HAVE_HYPRE)
+
+#include <HYPRE.h>
+#include <HYPRE_struct_ls.h>
+#include <mpi.h>
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace drogue::linear {
+
+namespace {
+
+void check(HYPRE_Int error) {
+  if (error == 0) return;
+  char text[256] = {};
+  HYPRE_DescribeError(error, text);
+  HYPRE_ClearAllErrors();
+  throw std::runtime_error(std::string("hypre: ") + text);
+}
+
+/// hypre, from the first solver to the last.
+struct Library {
+  Library() { HYPRE_Init(); }
+  ~Library() { HYPRE_Finalize(); }
+  Library(const Library&) = delete;
+  Library& operator=(const Library&) = delete;
+};
+
+std::shared_ptr<Library> library() {
+  static std::weak_ptr<Library> present;
+  std::shared_ptr<Library> shared = present.lock();
+  if (!shared) present = shared = std::make_shared<Library>();
+  return shared;
+}
+
+}  // namespace
+
+struct HypreStructSolver::Objects {
+  RankGroup group;
+  MPI_Comm communicator;  ///< made first: its handle initialises MPI
+  std::shared_ptr<Library> hypre = library();
+  HYPRE_StructGrid grid = nullptr;
+  HYPRE_StructStencil stencil = nullptr;
+  HYPRE_StructMatrix matrix = nullptr;
+  HYPRE_StructVector right_hand_side = nullptr, solution = nullptr;
+  HYPRE_StructSolver pcg = nullptr, pfmg = nullptr;
+  HYPRE_Int low[3] = {0, 0, 0}, high[3] = {0, 0, 0};
+  std::vector<double> values;
+  double cells = 0.0;  ///< of all ranks
+  bool singular = false;
+  double tolerance = 0.0;
+  int max_iterations = 0;
+  int iterations = 0;
+  double residual = 0.0;
+
+  explicit Objects(const RankGroup& ranks) : group(ranks), communicator(MPI_Comm_f2c(group.handle())) {}
+  Objects(const Objects&) = delete;
+  Objects& operator=(const Objects&) = delete;
+  ~Objects() {
+    if (pcg != nullptr) HYPRE_StructPCGDestroy(pcg);
+    if (pfmg != nullptr) HYPRE_StructPFMGDestroy(pfmg);
+    if (solution != nullptr) HYPRE_StructVectorDestroy(solution);
+    if (right_hand_side != nullptr) HYPRE_StructVectorDestroy(right_hand_side);
+    if (matrix != nullptr) HYPRE_StructMatrixDestroy(matrix);
+    if (stencil != nullptr) HYPRE_StructStencilDestroy(stencil);
+    if (grid != nullptr) HYPRE_StructGridDestroy(grid);
+  }
+
+  void make_matrix(const PoissonProblem& problem);
+  void subtract_mean();
+  void make_vector(HYPRE_StructVector& vector);
+  void make_solver();
+};
+
+/// Minus the Laplacian, which is positive. All of the seven entries that PFMG expects; those along an axis
+/// with one cell are zero.
+void HypreStructSolver::Objects::make_matrix(const PoissonProblem& problem) {
+  HYPRE_Int periods[3] = {0, 0, 0};
+  std::vector<std::array<HYPRE_Int, 3>> offsets{{0, 0, 0}};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (problem.cells[axis] > 1 && problem.axes[axis].periodic) periods[axis] = problem.cells[axis];
+    for (const HYPRE_Int step : {-1, 1}) {
+      offsets.push_back({0, 0, 0});
+      offsets.back()[axis] = step;
+    }
+  }
+  check(HYPRE_StructGridCreate(communicator, 3, &grid));
+  check(HYPRE_StructGridSetExtents(grid, low, high));
+  check(HYPRE_StructGridSetPeriodic(grid, periods));
+  check(HYPRE_StructGridAssemble(grid));
+  check(HYPRE_StructStencilCreate(3, static_cast<HYPRE_Int>(offsets.size()), &stencil));
+  for (std::size_t entry = 0; entry < offsets.size(); ++entry)
+    check(HYPRE_StructStencilSetElement(stencil, static_cast<HYPRE_Int>(entry), offsets[entry].data()));
+  check(HYPRE_StructMatrixCreate(communicator, grid, stencil, &matrix));
+  check(HYPRE_StructMatrixInitialize(matrix));
+
+  std::vector<double> entries;
+  for (int k = low[2]; k <= high[2]; ++k)
+    for (int j = low[1]; j <= high[1]; ++j)
+      for (int i = low[0]; i <= high[0]; ++i) {
+        const std::array<int, 3> cell{i, j, k};
+        const std::size_t diagonal = entries.size();
+        entries.push_back(0.0);
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          const int n = problem.cells[axis];
+          const double coefficient = n == 1 ? 0.0 : 1.0 / (problem.spacing[axis] * problem.spacing[axis]);
+          const AxisConditions& conditions = problem.axes[axis];
+          for (const bool upper : {false, true}) {
+            const bool inside =
+                (conditions.periodic && n > 1) || (upper ? cell[axis] + 1 < n : cell[axis] > 0);
+            const EndCondition end = upper ? conditions.high : conditions.low;
+            // The face of a Dirichlet end is half a cell away.
+            entries[diagonal] += inside                           ? coefficient
+                                 : end == EndCondition::dirichlet ? 2.0 * coefficient
+                                                                  : 0.0;
+            entries.push_back(inside ? -coefficient : 0.0);
+          }
+        }
+      }
+  std::vector<HYPRE_Int> numbers(offsets.size());
+  for (std::size_t entry = 0; entry < numbers.size(); ++entry) numbers[entry] = static_cast<HYPRE_Int>(entry);
+  check(HYPRE_StructMatrixSetBoxValues(matrix, low, high, static_cast<HYPRE_Int>(numbers.size()),
+                                       numbers.data(), entries.data()));
+  check(HYPRE_StructMatrixAssemble(matrix));
+}
+
+void HypreStructSolver::Objects::subtract_mean() {
+  double sum = 0.0;
+  for (const double value : values) sum += value;
+  group.sum({&sum, 1});
+  const double mean = sum / cells;
+  for (double& value : values) value -= mean;
+}
+
+void HypreStructSolver::Objects::make_vector(HYPRE_StructVector& vector) {
+  check(HYPRE_StructVectorCreate(communicator, grid, &vector));
+  check(HYPRE_StructVectorInitialize(vector));
+  check(HYPRE_StructVectorSetBoxValues(vector, low, high, values.data()));
+  check(HYPRE_StructVectorAssemble(vector));
+}
+
+void HypreStructSolver::Objects::make_solver() {
+  check(HYPRE_StructPFMGCreate(communicator, &pfmg));
+  check(HYPRE_StructPFMGSetMaxIter(pfmg, 1));
+  check(HYPRE_StructPFMGSetTol(pfmg, 0.0));
+  check(HYPRE_StructPFMGSetZeroGuess(pfmg));
+  // Weighted Jacobi: conjugate gradients need a symmetric preconditioner, and periodic axes with an odd
+  // number of cells have no red-black order.
+  check(HYPRE_StructPFMGSetRelaxType(pfmg, 1));
+  check(HYPRE_StructPFMGSetNumPreRelax(pfmg, 1));
+  check(HYPRE_StructPFMGSetNumPostRelax(pfmg, 1));
+  check(HYPRE_StructPCGCreate(communicator, &pcg));
+  check(HYPRE_StructPCGSetTol(pcg, tolerance));
+  check(HYPRE_StructPCGSetTwoNorm(pcg, 1));
+  check(HYPRE_StructPCGSetPrecond(pcg, HYPRE_StructPFMGSolve, HYPRE_StructPFMGSetup, pfmg));
+  check(HYPRE_StructPCGSetup(pcg, matrix, right_hand_side, solution));
+}
+
+HypreStructSolver::HypreStructSolver(const PoissonProblem& problem, const RankGroup& group,
+                                     const CellBox& box, double tolerance, int max_iterations)
+    : _objects(std::make_unique<Objects>(group)) {
+  Objects& o = *_objects;
+  o.singular = problem.is_singular();
+  o.tolerance = tolerance;
+  o.max_iterations = max_iterations;
+  o.cells = 1.0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    o.low[axis] = box.begin[axis];
+    o.high[axis] = box.begin[axis] + box.cells[axis] - 1;
+    o.cells *= problem.cells[axis];
+  }
+  o.values.assign(box.size(), 0.0);
+  o.make_matrix(problem);
+  o.make_vector(o.right_hand_side);
+  o.make_vector(o.solution);
+  o.make_solver();
+}
+
+HypreStructSolver::~HypreStructSolver() = default;
+
+void HypreStructSolver::solve(const double* right_hand_side, double* solution) {
+  Objects& o = *_objects;
+  for (std::size_t i = 0; i < o.values.size(); ++i) o.values[i] = -right_hand_side[i];
+  if (o.singular) o.subtract_mean();
+  double sum = 0.0;
+  for (const double value : o.values) sum += std::abs(value);
+  o.group.sum({&sum, 1});
+  if (!(sum > 0.0) || std::isinf(sum)) {
+    // hypre divides by the norm of the right-hand side, and iterates on values that are not finite.
+    const double result = sum == 0.0 ? 0.0 : std::numeric_limits<double>::quiet_NaN();
+    for (std::size_t i = 0; i < o.values.size(); ++i) solution[i] = result;
+    o.iterations = 0;
+    o.residual = result;
+    return;
+  }
+  check(HYPRE_StructVectorSetBoxValues(o.right_hand_side, o.low, o.high, o.values.data()));
+  check(HYPRE_StructVectorAssemble(o.right_hand_side));
+  o.iterations = 0;
+  // On a singular problem the preconditioner adds constants, which end the iteration early: it goes on
+  // without them.
+  do {
+    check(HYPRE_StructPCGSetMaxIter(o.pcg, o.max_iterations - o.iterations));
+    const HYPRE_Int error = HYPRE_StructPCGSolve(o.pcg, o.matrix, o.right_hand_side, o.solution);
+    if (HYPRE_CheckError(error, HYPRE_ERROR_CONV) != 0)
+      HYPRE_ClearAllErrors();
+    else
+      check(error);
+    HYPRE_Int iterations = 0;
+    check(HYPRE_StructPCGGetNumIterations(o.pcg, &iterations));
+    check(HYPRE_StructPCGGetFinalRelativeResidualNorm(o.pcg, &o.residual));
+    check(HYPRE_StructVectorGetBoxValues(o.solution, o.low, o.high, o.values.data()));
+    o.iterations += iterations > 0 ? iterations : 1;
+    if (o.singular) {
+      o.subtract_mean();
+      check(HYPRE_StructVectorSetBoxValues(o.solution, o.low, o.high, o.values.data()));
+      check(HYPRE_StructVectorAssemble(o.solution));
+    }
+  } while (o.singular && o.residual > o.tolerance && o.iterations < o.max_iterations);
+  for (std::size_t i = 0; i < o.values.size(); ++i) solution[i] = o.values[i];
+}
+
+int HypreStructSolver::iterations() const { return _objects->iterations; }
+double HypreStructSolver::residual() const { return _objects->residual; }
+bool HypreStructSolver::converged() const { return _objects->residual <= _objects->tolerance; }
+
+}  // namespace drogue::linear
+
+#endif

@@ -1,0 +1,153 @@
+#include "kernels/reference/flow/domain.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace drogue::reference {
+
+using flow::BoundaryKind;
+
+FlowDomain::FlowDomain(flow::Parameters parameters, SideVelocity side_velocity)
+    : _parameters(std::move(parameters)), _side_velocity(std::move(side_velocity)) {
+  if (!_side_velocity)
+    _side_velocity = [sides = _parameters.boundary](std::size_t side, std::size_t component, const Point&,
+                                                    double) { return sides[side].velocity[component]; };
+}
+
+double FlowDomain::spacing(std::size_t axis) const {
+  return (_parameters.high[axis] - _parameters.low[axis]) / _parameters.cells[axis];
+}
+
+bool FlowDomain::is_bounded(std::size_t axis) const {
+  return cells(axis) > 1 && kind(2 * axis) != BoundaryKind::periodic;
+}
+
+int FlowDomain::faces(std::size_t component, std::size_t axis) const {
+  return cells(axis) + (component == axis && is_bounded(axis) ? 1 : 0);
+}
+
+std::size_t FlowDomain::at(std::size_t component, const GridIndex& face) const {
+  return static_cast<std::size_t>((face[2] * faces(component, 1) + face[1]) * faces(component, 0) + face[0]);
+}
+
+std::size_t FlowDomain::cell_at(const GridIndex& cell) const {
+  return static_cast<std::size_t>((cell[2] * cells(1) + cell[1]) * cells(0) + cell[0]);
+}
+
+StaggeredField FlowDomain::zero_field() const {
+  StaggeredField field;
+  for (std::size_t c = 0; c < 3; ++c)
+    field[c].assign(static_cast<std::size_t>(faces(c, 0) * faces(c, 1) * faces(c, 2)), 0.0);
+  return field;
+}
+
+void FlowDomain::for_each_face(const std::function<void(std::size_t, const GridIndex&)>& visit) const {
+  for (std::size_t c = 0; c < 3; ++c)
+    for (int k = 0; k < faces(c, 2); ++k)
+      for (int j = 0; j < faces(c, 1); ++j)
+        for (int i = 0; i < faces(c, 0); ++i) visit(c, {i, j, k});
+}
+
+void FlowDomain::for_each_cell(const std::function<void(const GridIndex&)>& visit) const {
+  for (int k = 0; k < cells(2); ++k)
+    for (int j = 0; j < cells(1); ++j)
+      for (int i = 0; i < cells(0); ++i) visit({i, j, k});
+}
+
+int FlowDomain::side_of(std::size_t component, const GridIndex& face) const {
+  if (!is_bounded(component)) return -1;
+  if (face[component] == 0) return static_cast<int>(2 * component);
+  return face[component] == cells(component) ? static_cast<int>(2 * component + 1) : -1;
+}
+
+double FlowDomain::side_velocity(std::size_t side, std::size_t component, const GridIndex& face,
+                                 double time) const {
+  Point point{};
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    point[axis] = _parameters.low[axis] + (face[axis] + (axis == component ? 0.0 : 0.5)) * spacing(axis);
+  point[side / 2] = side % 2 == 0 ? _parameters.low[side / 2] : _parameters.high[side / 2];
+  return _side_velocity(side, component, point, time);
+}
+
+double FlowDomain::normal_velocity(std::size_t side, const GridIndex& face, double time) const {
+  return kind(side) == BoundaryKind::slip ? 0.0 : side_velocity(side, side / 2, face, time);
+}
+
+double FlowDomain::velocity(const StaggeredField& u, std::size_t component, const GridIndex& face,
+                            double time) const {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const int n = cells(axis), i = face[axis];
+    GridIndex inside = face;
+    if (!is_bounded(axis)) {
+      inside[axis] = ((i % n) + n) % n;
+      if (inside[axis] != i) return velocity(u, component, inside, time);
+      continue;
+    }
+    const bool normal = axis == component;
+    const int last = normal ? n : n - 1;
+    if (i >= 0 && i <= last && !(normal && (i == 0 || i == n))) continue;
+    const bool high = i >= n;
+    const std::size_t side = 2 * axis + (high ? 1 : 0);
+    const bool on_side = normal && i == (high ? n : 0);
+    if (kind(side) == BoundaryKind::outflow) {
+      if (on_side) continue;
+      inside[axis] = high ? last : 0;
+      // Fluid that enters through an outflow has no tangential velocity.
+      if (!normal) {
+        GridIndex normal_face = inside;
+        for (std::size_t a = 0; a < 3; ++a)
+          normal_face[a] = is_bounded(a) ? std::clamp(normal_face[a], 0, cells(a) - 1)
+                                         : (normal_face[a] % cells(a) + cells(a)) % cells(a);
+        normal_face[axis] = high ? n : 0;
+        const double inward = u[axis][at(axis, normal_face)] * (high ? -1.0 : 1.0);
+        if (inward > 0.0) return 0.0;
+      }
+      return velocity(u, component, inside, time);
+    }
+    if (on_side) return normal_velocity(side, face, time);
+    // Mirror image: about a face for normal, between two cells for tangential components.
+    inside[axis] = (high ? 2 * n : 0) - i - (normal ? 0 : 1);
+    const double image = velocity(u, component, inside, time);
+    if (kind(side) == BoundaryKind::slip) return normal ? -image : image;
+    return 2.0 * side_velocity(side, component, face, time) - image;
+  }
+  return u[component][at(component, face)];
+}
+
+std::vector<double> divergence(const FlowDomain& domain, const StaggeredField& u) {
+  std::vector<double> result;
+  domain.for_each_cell([&](const GridIndex& cell) {
+    double sum = 0.0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (domain.cells(axis) == 1) continue;
+      GridIndex next = cell;
+      next[axis] = (cell[axis] + 1) % domain.faces(axis, axis);
+      sum += (u[axis][domain.at(axis, next)] - u[axis][domain.at(axis, cell)]) / domain.spacing(axis);
+    }
+    result.push_back(sum);
+  });
+  return result;
+}
+
+StaggeredField pressure_gradient(const FlowDomain& domain, const std::vector<double>& pressure,
+                                 const StaggeredField& outside) {
+  StaggeredField gradient = domain.zero_field();
+  domain.for_each_face([&](std::size_t c, const GridIndex& face) {
+    if (domain.cells(c) == 1) return;
+    const double h = domain.spacing(c);
+    const std::size_t place = domain.at(c, face);
+    const int side = domain.side_of(c, face);
+    GridIndex below = face;
+    below[c] -= 1;
+    if (side < 0) {
+      below[c] = (below[c] + domain.cells(c)) % domain.cells(c);
+      gradient[c][place] = (pressure[domain.cell_at(face)] - pressure[domain.cell_at(below)]) / h;
+    } else if (domain.kind(static_cast<std::size_t>(side)) == BoundaryKind::outflow) {
+      gradient[c][place] = side % 2 == 0 ? (pressure[domain.cell_at(face)] - outside[c][place]) / (0.5 * h)
+                                         : (outside[c][place] - pressure[domain.cell_at(below)]) / (0.5 * h);
+    }
+  });
+  return gradient;
+}
+
+}  // namespace drogue::reference

@@ -1,0 +1,120 @@
+# ctest-label: no-sanitizer
+"""Every shipped small scene of drogue-parachute meets its tolerances, and flows in hard conditions stay sound."""
+
+import math
+import os
+import sys
+import unittest
+
+sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
+
+import gas_program
+import parachute_program
+
+# Small grids with thousands of steps: threads cost more than they save.
+MANY_SMALL_STEPS = {"cavity", "cavity-1000", "channel", "oscillating-plate"}
+
+
+class Shipped(parachute_program.FlowTest):
+    def assert_all_pass(self, backend, scenes):
+        self.assertGreaterEqual(len(scenes), 7)
+        for scene in scenes:
+            with self.subTest(scene):
+                self.expect(0, scene, "--backend", backend)
+                told = self.result(f"out/{scene}")
+                self.assertEqual(("ok", backend, scene), (told["status"], told["backend"], told["scene"]))
+                self.assertGreaterEqual(len(told["checks"]), 1)
+
+    def test_serial_meets_the_tolerances(self):
+        self.assert_all_pass("serial", [name for name in parachute_program.SMALL_SCENES if name != "taylor-green-3d"])
+
+    @gas_program.needs_openmp
+    def test_openmp_meets_the_tolerances(self):
+        self.assert_all_pass("openmp", [name for name in parachute_program.SMALL_SCENES if name not in MANY_SMALL_STEPS])
+
+    def test_full_scenes_are_valid(self):
+        for name in set(parachute_program.SCENES) - set(parachute_program.SMALL_SCENES):
+            self.assertIn(name.removesuffix("-full"), parachute_program.SMALL_SCENES)
+            self.expect(0, name, "--print-scene")
+
+
+BOX = """\
+app = "parachute"
+[fluid]
+density = 1
+viscosity = {viscosity}
+[grid]
+cells = {cells}
+domain = [[0, {x}], [0, {y}], [0, {z}]]
+boundary = {{ x = "periodic", y = "periodic", z = "periodic" }}
+[initial]
+velocity = {velocity}
+[run]
+end_time = {end}
+cfl = {cfl}
+"""
+
+VORTICES = '["sin(2*pi*x/{x})*cos(2*pi*y/{y})*cos(2*pi*z/{z})", "-{y}/{x}*cos(2*pi*x/{x})*sin(2*pi*y/{y})*cos(2*pi*z/{z})", 0]'
+
+SOUND = "verify={divergence=1e-10,momentum=1e-12,energy_growth=1e-12}"
+
+
+class HardCases(parachute_program.FlowTest):
+    def run_box(self, cells, sides=(1, 1, 1), *, velocity=VORTICES, viscosity=1e-3, end=1.0, cfl=0.5, sets=()):
+        x, y, z = sides
+        text = BOX.format(cells=cells, x=x, y=y, z=z, velocity=velocity.format(x=x, y=y, z=z), viscosity=viscosity, end=end, cfl=cfl)
+        self.expect(0, self.write(text), "--quiet", "--backend", "serial", "--out", "out", "--overwrite", sets=sets)
+        return self.result("out")
+
+    def test_cells_of_aspect_ratio_ten(self):
+        self.run_box([40, 4, 40], (1, 1, 1), sets=[SOUND])
+
+    def test_courant_number_one(self):
+        self.run_box([24, 24, 24], cfl=1.0, sets=["flow.time=rk3", SOUND])
+
+    def test_reynolds_number_of_a_million_on_a_coarse_grid(self):
+        self.run_box([32, 32, 32], viscosity=1e-6, end=5.0, sets=["flow.time=rk3", SOUND])
+
+    def test_prime_numbers_of_cells(self):
+        self.run_box([31, 29, 37], end=0.1, sets=[SOUND])
+
+    def test_planes_normal_to_every_axis_are_alike(self):
+        """Rotating a flow from plane to plane keeps its energy."""
+        in_plane = {
+            "[1, 20, 24]": '[0, "sin(2*pi*y)*cos(2*pi*z)", "-cos(2*pi*y)*sin(2*pi*z)"]',
+            "[24, 1, 20]": '["-cos(2*pi*z)*sin(2*pi*x)", 0, "sin(2*pi*z)*cos(2*pi*x)"]',
+            "[20, 24, 1]": '["sin(2*pi*x)*cos(2*pi*y)", "-cos(2*pi*x)*sin(2*pi*y)", 0]'}
+        energies = []
+        for cells, velocity in in_plane.items():
+            self.run_box(cells, velocity=velocity, end=0.3, sets=[SOUND])
+            energies.append(self.history("out")["kinetic_energy"][-1])
+        for energy in energies[1:]:
+            self.assertAlmostEqual(1.0, energy / energies[0], delta=1e-10)
+
+    def test_many_steps_keep_the_mean_velocity(self):
+        """1e5 steps of vortices in a stream."""
+        told = self.run_box([8, 8, 1], velocity='["1+0.5*sin(2*pi*y)", "0.5*sin(2*pi*x)", 0]', viscosity=0.0, end=1e9,
+                            sets=["run.end_time=100", "run.dt=0.001", "flow.advection=weno5", "verify={momentum=1e-12}"])
+        self.assertGreaterEqual(told["steps"], 100_000)
+
+    def test_backflow_at_an_outflow_stays_bounded(self):
+        """A strong vortex crosses the outflow, which draws fluid in over half of its height."""
+        self.expect(0, "vortex-outflow", "--quiet", "--backend", "serial", "--out", "out", sets=[
+            'initial.velocity=["1 - 10*y*exp(0.5-((x-2)^2+y^2)/0.32)", "10*(x-2)*exp(0.5-((x-2)^2+y^2)/0.32)", 0]',
+            "run.end_time=8", "output={}", "verify={speed_growth=0.1,divergence=1e-10}"])
+        speeds = self.history("out")["max_speed"]
+        self.assertGreater(speeds[0], 3.0)
+        self.assertLess(speeds[-1], 1.5)
+        self.assertTrue(all(math.isfinite(speed) for speed in speeds))
+
+    def test_turbulence_models_dissipate(self):
+        energies = {}
+        for model in ("none", "smagorinsky", "vreman"):
+            self.run_box([24, 24, 24], viscosity=1e-5, end=1.0, sets=[f"flow.turbulence={model}", "flow.advection=central", "flow.time=rk3"])
+            energies[model] = self.history("out")["kinetic_energy"][-1]
+        self.assertLess(energies["smagorinsky"], 0.99 * energies["none"])
+        self.assertLess(energies["vreman"], 0.999 * energies["none"])
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,347 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "tests/support/flow_case.hpp"
+#if defined(DROGUE_HAVE_HYPRE)
+#include "tests/support/hypre_session.hpp"
+#endif
+#include "tests/support/profiled.hpp"
+
+// Step size, stopping criteria, costs of a step, restarts, and rejected parameters.
+
+namespace drogue::flow {
+namespace {
+
+using namespace drogue::testing;  // NOLINT: helpers of these tests
+
+constexpr const auto& backend = testing::tested_backend;
+
+/// Maximum over the cells of |u|/hx + |v|/hy + |w|/hz at their low faces, 1/s.
+double rate(const FlowDomain& domain, const StaggeredField& u) {
+  double most = 0.0;
+  domain.for_each_cell([&](const reference::GridIndex& cell) {
+    double sum = 0.0;
+    for (std::size_t c = 0; c < 3; ++c) sum += std::abs(u[c][domain.at(c, cell)]) / domain.spacing(c);
+    most = std::max(most, sum);
+  });
+  return most;
+}
+
+/// Box with an outflow at each low side, an inflow, and slip sides.
+Parameters mixed_box() {
+  Parameters p = periodic_box({9, 8, 7});
+  p.viscosity = 0.01;
+  const BoundaryKind kinds[] = {BoundaryKind::outflow, BoundaryKind::outflow, BoundaryKind::outflow,
+                                BoundaryKind::slip,    BoundaryKind::inflow,  BoundaryKind::outflow};
+  for (std::size_t side = 0; side < 6; ++side) p.boundary[side].kind = kinds[side];
+  p.boundary[4].velocity = {0.0, 0.1, 0.6};
+  return p;
+}
+
+TEST(FlowControl, StepSizeFollowsTheVelocity) {
+  for (const double cfl : {0.5, 0.1}) {
+    Parameters p = periodic_box({12, 10, 9});
+    p.cfl = cfl;
+    const FlowDomain domain(p);
+    const auto solver = started(backend, p, random_field(domain, 1));
+    for (std::int64_t step = 1; step <= 3; ++step) {
+      const double expected = cfl / rate(domain, velocity(*solver, p));
+      ASSERT_EQ(solver->advance(endless, step, {}), Stop::pause);
+      EXPECT_NEAR(solver->progress().last_dt, expected, 1e-14 * expected);
+    }
+    EXPECT_LE(solver->progress().dt_min, solver->progress().last_dt);
+    EXPECT_GE(solver->progress().dt_max, solver->progress().last_dt);
+  }
+}
+
+TEST(FlowControl, RatesOfAdvectionAndDiffusionAddUp) {
+  Parameters p = periodic_box({12, 10, 9});
+  p.density = 2.0;
+  p.viscosity = 0.2;
+  const FlowDomain domain(p);
+  const auto solver = started(backend, p, random_field(domain, 1));
+  const double diffusion = 4.0 * 0.1 * (144.0 + 100.0 + 81.0) / 0.9;  // a tenth in reserve
+  const double expected = 1.0 / (rate(domain, velocity(*solver, p)) / p.cfl + diffusion);
+  ASSERT_EQ(solver->advance(endless, 1, {}), Stop::pause);
+  EXPECT_NEAR(solver->progress().last_dt, expected, 1e-13 * expected);
+}
+
+TEST(FlowControl, ImplicitDiffusionDoesNotLimitTheStepSize) {
+  // Noise in a box with walls; the bound of explicit diffusion is a hundredth of the step at first, and less
+  // later.
+  Parameters p = mixed_box();
+  for (Boundary& side : p.boundary) side = {BoundaryKind::wall, {0.0, 0.0, 0.0}, {}};
+  p.viscosity = 2.0;
+  p.diffusion = Diffusion::crank_nicolson;
+  const FlowDomain domain(p);
+  const auto solver = started(backend, p, random_field(domain, 1));
+  double energy = solver->totals().kinetic_energy;
+  for (int step = 1; step <= 20; ++step) {
+    const double expected = p.cfl / rate(domain, velocity(*solver, p));
+    ASSERT_EQ(solver->advance(endless, step, {}), Stop::pause);
+    EXPECT_NEAR(solver->progress().last_dt, expected, 1e-13 * expected);
+    EXPECT_LT(solver->totals().kinetic_energy, energy);
+    energy = solver->totals().kinetic_energy;
+  }
+}
+
+TEST(FlowControl, FailedImplicitStepKeepsThePressureBeforeTheStep) {
+  Parameters p = periodic_box({8, 7, 1});
+  p.viscosity = 0.1;
+  p.diffusion = Diffusion::crank_nicolson;
+  p.fixed_dt = 0.01;
+  const auto solver = started(backend, p, random_field(FlowDomain(p), 2));
+  ASSERT_EQ(solver->advance(endless, 3, {}), Stop::pause);
+  const std::vector<double> before = download(*solver, p, StateField::pressure);
+  EXPECT_GT(largest(before), 0.01);
+  std::vector<double> rate = download(*solver, p, StateField::rate_x);
+  rate[5] = std::numeric_limits<double>::quiet_NaN();
+  solver->upload(StateField::rate_x, rate);
+  ASSERT_EQ(solver->advance(endless, 4, {}), Stop::failed);
+  EXPECT_EQ(download(*solver, p, StateField::pressure), before);
+}
+
+TEST(FlowControl, ViscousNoiseDecays) {
+  for (const Advection scheme : {Advection::central, Advection::weno_js, Advection::weno_z})
+    for (const double viscosity : {0.003, 0.01, 0.03, 0.1}) {
+      Parameters p = periodic_box({37, 1, 14});
+      p.advection = scheme;
+      p.viscosity = viscosity;
+      const auto solver = started(backend, p, random_field(FlowDomain(p), 6));
+      double before = solver->totals().kinetic_energy;
+      for (int steps = 20; steps <= 100; steps += 20) {
+        ASSERT_EQ(solver->advance(endless, steps, {}), Stop::pause);
+        const double after = solver->totals().kinetic_energy;
+        EXPECT_LT(after, before) << static_cast<int>(scheme) << " viscosity " << viscosity;
+        before = after;
+      }
+    }
+}
+
+TEST(FlowControl, FixedAndLargestStepSizesHold) {
+  Parameters p = periodic_box({8, 8, 1});
+  p.fixed_dt = 3e-3;
+  const auto fixed = started(backend, p, random_field(FlowDomain(p), 1));
+  ASSERT_EQ(fixed->advance(endless, 4, {}), Stop::pause);
+  EXPECT_EQ(fixed->progress().dt_min, 3e-3);
+  EXPECT_EQ(fixed->progress().dt_max, 3e-3);
+  p.fixed_dt = 0.0;
+  p.max_dt = 2e-4;
+  const auto limited = started(backend, p, FlowDomain(p).zero_field());
+  ASSERT_EQ(limited->advance(endless, 4, {}), Stop::pause);
+  EXPECT_EQ(limited->progress().last_dt, 2e-4);
+}
+
+TEST(FlowControl, MeetsTargetsAndPausesExactly) {
+  Parameters p = periodic_box({8, 7, 6});
+  const auto solver = started(backend, p, random_field(FlowDomain(p), 2));
+  for (const double target : {0.1, 0.1000001, 0.37}) {
+    ASSERT_EQ(solver->advance(target, -1, {}), Stop::target);
+    EXPECT_EQ(solver->progress().time, target);
+  }
+  const std::int64_t step = solver->progress().step;
+  EXPECT_EQ(solver->advance(0.37, -1, {}), Stop::target);
+  EXPECT_EQ(solver->progress().step, step);
+  ASSERT_EQ(solver->advance(endless, step + 3, {}), Stop::pause);
+  EXPECT_EQ(solver->progress().step, step + 3);
+}
+
+TEST(FlowControl, StopsAtTheLargestNumberOfStepsAndOnInterrupt) {
+  Parameters p = periodic_box({8, 7, 6});
+  p.max_steps = 5;
+  const auto solver = started(backend, p, random_field(FlowDomain(p), 2));
+  EXPECT_EQ(solver->advance(endless, -1, {}), Stop::max_steps);
+  EXPECT_EQ(solver->progress().step, 5);
+  p.max_steps = 1'000'000'000;
+  const auto interrupted = started(backend, p, random_field(FlowDomain(p), 2));
+  EXPECT_EQ(interrupted->advance(endless, -1, [](const Status&) { return false; }), Stop::interrupted);
+}
+
+#if defined(DROGUE_HAVE_HYPRE)
+TEST(FlowControl, IterativePressureSolverGivesTheVelocityOfTheDirectOne) {
+  testing::start_hypre();
+  Parameters p = mixed_box();
+  const FlowDomain domain(p);
+  const StaggeredField initial = random_field(domain, 7);
+  const auto direct = started(backend, p, initial);
+  p.pressure_solver = PressureSolver::hypre_pfmg;
+  p.pressure_tolerance = 1e-12;
+  const auto iterative = started(backend, p, initial);
+  EXPECT_STREQ(iterative->pressure_solver(), "hypre-pfmg");
+  EXPECT_STREQ(iterative->driver(), "plain");
+  ASSERT_EQ(direct->advance(endless, 5, {}), Stop::pause);
+  ASSERT_EQ(iterative->advance(endless, 5, {}), Stop::pause);
+  EXPECT_LT(largest_difference(velocity(*iterative, p), velocity(*direct, p)), 1e-9);
+}
+
+TEST(FlowControl, ReportsAPressureSolverThatDoesNotConverge) {
+  testing::start_hypre();
+  Parameters p = periodic_box({12, 10, 9});
+  p.pressure_solver = PressureSolver::hypre_pfmg;
+  p.pressure_tolerance = 1e-300;
+  const FlowDomain domain(p);
+  const auto solver = started(backend, p, random_field(domain, 8));
+  EXPECT_EQ(solver->advance(endless, 3, {}), Stop::failed);
+  EXPECT_EQ(solver->failure().reason, FailureReason::pressure_solver);
+}
+#endif
+
+TEST(FlowControl, ReportsTheFirstCellOfAnInitialVelocityThatIsNotFinite) {
+  const Parameters p = periodic_box({8, 7, 5});
+  for (const double bad : {std::nan(""), HUGE_VAL}) {
+    StaggeredField u = random_field(FlowDomain(p), 2);
+    u[1][58] = bad;  // the face below cell (2, 0, 1), and above the last one of the row
+    const auto solver = started(backend, p, u);
+    EXPECT_EQ(solver->advance(1.0, -1, {}), Stop::failed);
+    EXPECT_EQ(solver->failure().reason, FailureReason::not_finite);
+    EXPECT_EQ(solver->failure().step, 1);
+    EXPECT_EQ(solver->failure().index, 58);
+  }
+}
+
+TEST(FlowControl, FailsWhereTheStepSizeDoesNotChangeTheTime) {
+  const Parameters p = periodic_box({8, 7, 1});
+  const auto solver = started(backend, p, random_field(FlowDomain(p), 2));
+  Progress progress = solver->progress();
+  progress.time = 1e20;
+  solver->restore(progress);
+  EXPECT_EQ(solver->advance(2e20, -1, {}), Stop::failed);
+  EXPECT_EQ(solver->failure().reason, FailureReason::time_step);
+  EXPECT_EQ(solver->failure().index, -1);
+}
+
+TEST(FlowControl, FluidAtRestMeetsAnyTarget) {
+  const Parameters p = periodic_box({8, 7, 1});
+  const auto solver = started(backend, p, FlowDomain(p).zero_field());
+  EXPECT_EQ(solver->advance(1.0, -1, {}), Stop::target);
+  EXPECT_EQ(velocity(*solver, p), FlowDomain(p).zero_field());
+}
+
+TEST(FlowControl, InstabilityFailsAndKeepsTheVelocityBeforeTheStep) {
+  Parameters p = periodic_box({8, 7, 1});
+  p.advection = Advection::central;
+  p.fixed_dt = 1e30;
+  const FlowDomain domain(p);
+  const auto solver = started(backend, p, random_field(domain, 2));
+  StaggeredField before = velocity(*solver, p);
+  std::int64_t steps = 0;
+  while (solver->advance(endless, steps + 1, {}) == Stop::pause) {
+    ++steps;
+    ASSERT_LT(steps, 10);
+    before = velocity(*solver, p);
+  }
+  EXPECT_EQ(solver->failure().reason, FailureReason::not_finite);
+  EXPECT_EQ(solver->failure().step, steps + 1);
+  EXPECT_GE(solver->failure().index, 0);
+  EXPECT_EQ(velocity(*solver, p), before);
+}
+
+TEST(FlowControl, StartKeepsAVelocityFreeOfDivergence) {
+  for (const Parameters& p : {periodic_box({9, 8, 7}), mixed_box()}) {
+    const auto first = started(backend, p, random_field(FlowDomain(p), 3));
+    const StaggeredField u = velocity(*first, p);
+    EXPECT_LT(largest_difference(velocity(*started(backend, p, u), p), u), 1e-13);
+  }
+}
+
+TEST(FlowControl, RestartContinuesBitForBit) {
+  for (const TimeIntegration& integration : time_integrations)
+    for (Parameters p : {periodic_box({9, 8, 7}), mixed_box()}) {
+      integration.set(p);
+      p.viscosity = 0.5;
+      const auto solver = started(backend, p, random_field(FlowDomain(p), 4));
+      ASSERT_EQ(solver->advance(endless, 3, {}), Stop::pause);
+      const auto restarted = create_solver(backend, p);
+      const int fields = p.time_scheme == TimeScheme::ab2 ? 7 : 4;
+      for (int i = 0; i < fields; ++i) {
+        const StateField field = i + 1 == fields ? StateField::pressure : static_cast<StateField>(i);
+        restarted->upload(field, download(*solver, p, field));
+      }
+      restarted->restore(solver->progress());
+      ASSERT_EQ(solver->advance(endless, 6, {}), Stop::pause);
+      ASSERT_EQ(restarted->advance(endless, 6, {}), Stop::pause);
+      EXPECT_EQ(velocity(*restarted, p), velocity(*solver, p));
+      EXPECT_EQ(download(*restarted, p, StateField::pressure), download(*solver, p, StateField::pressure));
+      EXPECT_EQ(restarted->progress().time, solver->progress().time);
+    }
+}
+
+TEST(FlowControl, RejectsArraysThatTheStateLacks) {
+  Parameters p = periodic_box({8, 7, 1});
+  p.time_scheme = TimeScheme::rk3;
+  const auto solver = create_solver(backend, p);
+  std::vector<double> cells(56), wrong(57);
+  EXPECT_THROW(solver->upload(StateField::velocity_x, wrong), std::invalid_argument);
+  EXPECT_THROW(solver->download(StateField::pressure, wrong), std::invalid_argument);
+  EXPECT_THROW(solver->upload(StateField::rate_x, cells), std::invalid_argument);
+  EXPECT_THROW(solver->sample(CellField::velocity, wrong), std::invalid_argument);
+}
+
+TEST(FlowControl, RejectsParametersWithoutASolution) {
+  const auto rejects = [](const auto& change) {
+    Parameters p = periodic_box({8, 7, 6});
+    change(p);
+    EXPECT_THROW(check_parameters(p), std::invalid_argument);
+  };
+  rejects([](Parameters& p) { p.cells = {1, 1, 1}; });
+  rejects([](Parameters& p) { p.cells[0] = 3; });
+  rejects([](Parameters& p) { p.cells[2] = -4; });
+  rejects([](Parameters& p) { p.high[1] = p.low[1]; });
+  rejects([](Parameters& p) { p.density = 0.0; });
+  rejects([](Parameters& p) { p.viscosity = -1.0; });
+  rejects([](Parameters& p) { p.viscosity = std::nan(""); });
+  rejects([](Parameters& p) { p.cfl = 0.0; });
+  rejects([](Parameters& p) { p.boundary[0].kind = BoundaryKind::wall; });
+  rejects([](Parameters& p) {
+    p.boundary[0].kind = p.boundary[1].kind = BoundaryKind::slip;
+    p.pressure_drop[0] = 1.0;
+  });
+  rejects([](Parameters& p) {
+    p.boundary[0].kind = BoundaryKind::inflow;
+    p.boundary[1].kind = BoundaryKind::wall;
+    p.boundary[0].velocity = {1.0, 0.0, 0.0};
+  });
+  rejects([](Parameters& p) {
+    p.cells[2] = 1;
+    p.boundary[4].kind = p.boundary[5].kind = BoundaryKind::wall;
+  });
+  rejects([](Parameters& p) {
+    p.time_scheme = TimeScheme::rk3;
+    p.diffusion = Diffusion::crank_nicolson;
+  });
+  EXPECT_NO_THROW(check_parameters(periodic_box({8, 7, 6})));
+}
+
+TEST(FlowLaunches, StepsDoNotFenceAllocateOrCopy) {
+  for (const TimeIntegration& integration : time_integrations)
+    for (Parameters p : {periodic_box({9, 8, 7}), mixed_box()}) {
+      integration.set(p);
+      const auto solver = started(backend, p, random_field(FlowDomain(p), 4));
+      ASSERT_EQ(solver->advance(endless, 1, {}), Stop::pause);
+      const auto cost = [&](std::int64_t steps) {
+        const std::int64_t now = solver->progress().step;
+        const auto before = profiled();
+        EXPECT_EQ(solver->advance(endless, now + steps, {}), Stop::pause);
+        const auto after = profiled();
+        EXPECT_EQ(after.allocations - before.allocations, 0);
+        EXPECT_EQ(after.copies - before.copies, 0);
+        return std::pair{after.kernel_launches - before.kernel_launches, after.fences - before.fences};
+      };
+      const auto few = cost(10), many = cost(60);
+      EXPECT_EQ(many.second, few.second);
+      // Momentum, divergence, six transforms, scaling, correction and ghost cells a stage; boundary faces
+      // where the box is bounded. Implicit diffusion: source, six transforms, scaling and update of each
+      // component. A captured step is one launch.
+      const std::int64_t stages = p.time_scheme == TimeScheme::ab2 ? 1 : 3;
+      const std::int64_t a_stage = 11 + (p.boundary[0].kind == BoundaryKind::periodic ? 0 : 1) +
+                                   (p.diffusion == Diffusion::crank_nicolson ? 3 * 9 : 0);
+      const bool captured = backend == device::Backend::cuda;
+      EXPECT_EQ(many.first - few.first, 50 * (captured ? 1 : stages * a_stage + 1));
+    }
+}
+
+}  // namespace
+}  // namespace drogue::flow

@@ -1,0 +1,64 @@
+"""Invalid scenes of drogue-parachute end with exit code 3 and a sentence that names file, line and key."""
+
+import os
+import sys
+import unittest
+
+sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
+
+import bad_flows
+import mutations
+import parachute_program
+
+
+class BadFlows(parachute_program.FlowTest):
+    def setUp(self):
+        super().setUp()
+        self.scene = self.write(bad_flows.GOOD)
+
+    def refusal(self, *sets):
+        process = self.expect(3, self.scene, "--check", sets=sets)
+        self.assertEqual("", process.stdout)
+        return process.stderr
+
+    def test_unchanged_scene_is_valid(self):
+        self.expect(0, self.scene, "--check")
+
+    def test_rejects_invalid_lines(self):
+        self.assertGreaterEqual(len(bad_flows.BAD_LINES), 60)
+        for number, text, blamed, words in bad_flows.BAD_LINES:
+            with self.subTest(line=number, text=text):
+                lines = bad_flows.GOOD.splitlines(keepends=True)
+                lines[number - 1] = text + "\n"
+                self.scene.write_text("".join(lines), encoding="utf-8")
+                message = self.refusal()
+                self.assertTrue(message.startswith(f"{self.scene}:{blamed}: "), message)
+                for word in words:
+                    self.assertIn(word, message)
+
+    def test_rejects_contradicting_assignments(self):
+        for sets, blamed, words in bad_flows.BAD_SETS:
+            with self.subTest(sets=sets):
+                message = self.refusal(*sets)
+                self.assertTrue(message.startswith("--set " + blamed), message)
+                for word in words:
+                    self.assertIn(word, message)
+
+    def test_rejects_forces_where_momentum_is_conserved(self):
+        self.scene.write_text(bad_flows.GOOD.replace(bad_flows.GOOD.splitlines(keepends=True)[9], bad_flows.PERIODIC)
+                              .replace("wall_velocity = { y_low = [1, 0, 0] }\n", ""), encoding="utf-8")
+        self.expect(0, self.scene, "--check", sets=["verify.momentum=1"])
+        self.assertIn("body_force", self.refusal("verify.momentum=1", "flow.body_force=[0, 1, 0]"))
+
+    def test_damaged_scenes_are_rejected_or_read(self):
+        """The program never ends by a signal or with another exit code."""
+        for seed in range(60):
+            with self.subTest(seed):
+                self.scene.write_bytes(mutations.mutate(bad_flows.GOOD.encode(), seed))
+                process = self.start(self.scene, "--check")
+                self.assertIn(process.returncode, (0, 3), process.stderr)
+                self.assertEqual(1 if process.returncode else 0, len(process.stderr.splitlines()))
+
+
+if __name__ == "__main__":
+    unittest.main()

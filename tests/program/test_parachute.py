@@ -1,0 +1,303 @@
+# ctest-label: no-sanitizer
+"""drogue-parachute: command line, run directory, failures, verification and studies."""
+
+import csv
+import json
+import math
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+import unittest
+
+sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
+
+import gas_program
+import parachute_program
+from parachute_program import GUST, VORTICES
+
+QUIET = ("--quiet", "--backend", "serial", "--out", "out")
+
+
+class CommandLine(parachute_program.FlowTest):
+    def test_information_needs_no_scene(self):
+        self.assertRegex(self.expect(0, "--version").stdout, r"^drogue-parachute \d+\.\d+\.\d+\n")
+        self.assertIn("--study", self.expect(0, "--help").stdout)
+        lines = self.expect(0, "--list-scenes").stdout.splitlines()
+        self.assertEqual(parachute_program.SCENES, [line.split()[0] for line in lines])
+        for line in lines:
+            self.assertRegex(line, r"^\S+  +\S.*\.( \[gpu\])?$")
+            self.assertEqual(line.split()[0].endswith("-full"), line.endswith("[gpu]"), line)
+
+    def test_printed_scenes_resolve_to_themselves(self):
+        for text in (GUST, VORTICES, *parachute_program.SMALL_SCENES):
+            with self.subTest(text.splitlines()[0]):
+                scene = self.write(text) if "\n" in text else text
+                printed = self.expect(0, scene, "--print-scene").stdout
+                again = self.write(printed, "printed.toml")
+                self.assertEqual(printed, self.expect(0, again, "--print-scene").stdout)
+
+    def test_reports_usage_errors(self):
+        for words in (["cavitty"], ["cavity", "extra"], ["cavity", "--study", "meshes=1:2"],
+                      ["jet", "--study", "meshes=16:32"]):
+            with self.subTest(words):
+                self.expect(2, *words)
+        self.assertEqual([], list(self.folder.iterdir()))
+        self.assertIn("no --seed-mode", self.expect(2, "cavity", "--seed-mode").stderr)
+
+
+class RunDirectory(parachute_program.FlowTest):
+    def test_files_hold_the_documented_layout(self):
+        scene = self.write(GUST)
+        self.expect(0, scene, *QUIET)
+        told = self.result("out")
+        self.assertEqual(("drogue.result/1", "drogue-parachute", "ok", 0, 0.5),
+                         tuple(told[key] for key in ("schema", "program", "status", "exit_code", "time")))
+        self.assertIn(told["pressure"]["solver"], ("fft", "diagonalization"))
+        self.assertLess(told["pressure"]["divergence_rms"], 1e-12)
+        self.assertGreater(told["dt_min"], 0.0)
+        file = self.fields("out")
+        for path, count in (("/mesh/x", 13), ("/mesh/y", 11), ("/mesh/z", 9), ("/steps/000000/velocity", 3 * 960),
+                            ("/steps/000001/vorticity", 3 * 960), ("/steps/000001/pressure", 960),
+                            ("/steps/000001/q_criterion", 960)):
+            self.assertEqual(8 * count, len(file.datasets[path]), path)
+            self.assertEqual({"units", "centering", "description"}, set(file.attributes[path]))
+        self.assertEqual([0.0, 2.0], [list(file.values("/mesh/x"))[k] for k in (0, -1)])
+        self.assertEqual([0.2, 0.5], [file.attributes[f"/steps/{k}"]["time"] for k in file.children("/steps")])
+        xdmf = (self.folder / "out/fields.xdmf").read_text(encoding="utf-8")
+        for word in ("/steps/000001/velocity", 'AttributeType="Vector"', 'Dimensions="12 10 8 3"', 'Value="0.5"'):
+            self.assertIn(word, xdmf)
+        printed = self.expect(0, scene, "--print-scene").stdout
+        self.assertEqual(printed, (self.folder / "out/scene.toml").read_text(encoding="utf-8"))
+
+    def test_history_lists_energies_and_flow_rates(self):
+        self.expect(0, self.write(GUST), *QUIET)
+        header = (self.folder / "out/history.csv").read_text(encoding="utf-8").splitlines()[0].split(",")
+        for name in ("time [s]", "kinetic_energy [J]", "dissipation [W]", "momentum_z [kg m/s]", "divergence_max [1/s]",
+                     "outflow_x_low [m^3/s]", "outflow_z_high [m^3/s]"):
+            self.assertIn(name, header)
+        rows = self.history("out")
+        self.assertEqual((0.0, 0.5), (rows["time"][0], rows["time"][-1]))
+        self.assertTrue(all(step % 3 == 0 for step in rows["step"][:-1]))
+        for now, entering, leaving in zip(rows["time"], rows["outflow_x_low"], rows["outflow_x_high"], strict=True):
+            # Midpoint sum of the inflow expression over ten cells.
+            means = [0.2 * y * (1 - y) for y in ((j + 0.5) / 10 for j in range(10))]
+            self.assertAlmostEqual(-(1 + 0.3 * math.sin(5 * now) + sum(means) / 10), entering, delta=1e-12)
+            self.assertAlmostEqual(-entering, leaving, delta=1e-12)
+        self.assertEqual(0, self.result("out")["ledger"]["device_allocations_after_warmup"])
+
+    def test_periodic_sides_have_no_flow_rates(self):
+        self.expect(0, self.write(VORTICES), *QUIET)
+        self.assertNotIn("outflow", (self.folder / "out/history.csv").read_text(encoding="utf-8"))
+
+    def test_fields_hold_the_solution_at_cell_centres(self):
+        self.expect(0, self.write(VORTICES), *QUIET, sets=[
+            'output.fields=["velocity","vorticity","pressure"]', "output.times=[0]", "grid.cells=[64, 64, 1]"])
+        file = self.fields("out")
+        velocity, vorticity = (list(file.values(f"/steps/000000/{name}")) for name in ("velocity", "vorticity"))
+        h = 2 * math.pi / 64
+        for i in range(0, 64, 5):
+            for j in range(0, 64, 7):
+                x, y, cell = (i + 0.5) * h, (j + 0.5) * h, 3 * (64 * i + j)
+                self.assertAlmostEqual(math.sin(x) * math.cos(y), velocity[cell], delta=3e-3)
+                self.assertAlmostEqual(-math.cos(x) * math.sin(y), velocity[cell + 1], delta=3e-3)
+                self.assertAlmostEqual(2 * math.sin(x) * math.sin(y), vorticity[cell + 2], delta=1e-2)
+
+    def test_writes_only_requested_files(self):
+        self.expect(0, self.write(VORTICES), *QUIET, sets=["output={history_every=0}"])
+        self.assertEqual({"scene.toml", "result.json"}, {file.name for file in (self.folder / "out").iterdir()})
+
+    def launches(self, *sets):
+        self.expect(0, self.write(VORTICES), *QUIET, "--overwrite", sets=["verify={}", "output={history_every=0}", *sets])
+        return self.result("out")["ledger"]["kernel_launches"]
+
+    def test_parts_that_are_not_requested_do_not_run(self):
+        base = self.launches()
+        for requested in ("output.history_every=1", "output={history_every=0,fields=['vorticity'],times=[0.5]}",
+                          "flow.time=rk3"):
+            self.assertGreater(self.launches(requested), base, requested)
+        steps = 10
+        self.assertEqual(base + steps * (base - self.launches("run.end_time=0.45")), self.launches("run.end_time=1"))
+
+    def test_rejects_an_existing_run(self):
+        scene = self.write(VORTICES)
+        self.expect(0, scene, *QUIET)
+        self.assertIn("--overwrite", self.expect(2, scene, *QUIET).stderr)
+        self.expect(3, scene, *QUIET, "--overwrite", sets=["run.end_time=-1"])
+        self.assertEqual("ok", self.result("out")["status"])
+
+
+class Failures(parachute_program.FlowTest):
+    def test_unstable_step_ends_with_the_last_good_state(self):
+        message = self.expect(4, self.write(GUST), *QUIET, sets=["run.dt=0.4", "run.end_time=400", "output={restart_every=0}"]).stderr
+        self.assertRegex(message, r"not finite.* at step \d+, t = \S+ s, dt = 0.4 s; a smaller run.dt may save the run\n$")
+        told = self.result("out")
+        self.assertEqual(("numerical-failure", 4), (told["status"], told["exit_code"]))
+        self.assertTrue((self.folder / "out/restart.h5").exists())
+        self.assertTrue(all(math.isfinite(value) for value in self.history("out")["kinetic_energy"]))
+
+    def test_inflow_that_becomes_undefined_is_a_failure(self):
+        message = self.expect(4, self.write(GUST), *QUIET, sets=['fluid.velocity=["sqrt(0.2-t)+1", 0, 0]']).stderr
+        self.assertRegex(message, r"not finite in cell \(\d+, \d+, \d+\) at \(\S+, \S+, \S+\) m at step \d+")
+        self.assertLessEqual(self.result("out")["time"], 0.2)
+
+    def test_step_limit_is_a_failure(self):
+        message = self.expect(4, self.write(VORTICES), *QUIET, sets=["run.max_steps=4"]).stderr
+        self.assertIn("run.max_steps = 4 reached at t = 0.2 s", message)
+        self.assertEqual(4, self.result("out")["steps"])
+
+
+class Verification(parachute_program.FlowTest):
+    def check(self, code, check, scene=VORTICES, sets=()):
+        self.expect(code, self.write(scene), *QUIET, "--overwrite", sets=[f"verify={check}", *sets])
+        return {each["name"]: each["value"] for each in self.result("out")["checks"]}
+
+    EXACT = ("exact={{x='sin(x)*cos(y)*exp({0}*t)',y='-cos(x)*sin(y)*exp({0}*t)',z=0,"
+             "pressure='0.25*(cos(2*x)+cos(2*y))*exp(2*{0}*t)'}}")
+
+    def test_errors_are_measured_against_the_exact_solution(self):
+        right = "{" + self.EXACT.format(-0.02) + ",l2_velocity=3e-3,linf_velocity=1e-2,l2_pressure=0.02}"
+        values = self.check(0, right)
+        self.assertEqual({"l2_velocity", "linf_velocity", "l2_pressure"}, set(values))
+        self.assertEqual({f"{norm}_{field}" for norm in ("l1", "l2", "linf") for field in ("velocity", "pressure")},
+                         set(self.result("out")["errors"]))
+        # Without decay the difference is 1 - exp(-0.01) times the initial root mean square of sqrt(1/2).
+        wrong = self.check(5, "{" + self.EXACT.format(0) + ",l2_velocity=3e-3}")
+        self.assertAlmostEqual((1 - math.exp(-0.01)) * math.sqrt(0.5), wrong["l2_velocity"], delta=2e-3)
+
+    def test_kinetic_energy_of_vortices(self):
+        """Half of the density times the volume times the mean square of 1/2, with its decay."""
+        energy = 0.25 * (2 * math.pi)**2 * math.exp(-0.02)
+        self.check(0, f"{{kinetic_energy={{value={energy},tolerance=1e-3}}}}")
+        self.check(5, f"{{kinetic_energy={{value={2 * energy},tolerance=1e-3}}}}")
+
+    def test_dissipation_peak_of_decaying_vortices(self):
+        """The energy falls fastest at the start: 4 nu E."""
+        rate = 0.04 * 0.25 * (2 * math.pi)**2
+        sets = ["output.history_every=1"]
+        self.check(0, f"{{dissipation_peak={{value={rate},tolerance=0.02,time=0.025,time_tolerance=1e-9}}}}", sets=sets)
+        self.check(5, f"{{dissipation_peak={{value={rate},tolerance=0.02,time=0.2,time_tolerance=0.1}}}}", sets=sets)
+
+    def test_momentum_is_conserved_and_forces_change_it(self):
+        self.assertLess(self.check(0, "{momentum=1e-13,energy_growth=0,speed_growth=0}")["momentum"], 1e-13)
+        growth = self.check(5, "{energy_growth=0}", sets=["flow.body_force=[0, 0, 1]"])
+        self.assertGreater(growth["energy_growth"], 0.01)
+
+    def test_flow_rates_through_sides(self):
+        rate = 1 + 0.3 * math.sin(2.5) + 0.2 * (1 / 6 + 1 / 1200)  # midpoint sum over ten cells
+        checks = "flow_rate=[{{side='x_low',value={0},tolerance=1e-12}},{{side='x_high',value={1},tolerance=1e-12}}]"
+        self.check(0, "{" + checks.format(-rate, rate) + "}", GUST)
+        self.check(5, "{" + checks.format(rate, rate) + "}", GUST)
+
+    def test_profiles_along_lines(self):
+        line = "profile=[{{component='x',along='x',through=[0,0.3,0],points=[[1.57,{0}]],tolerance=0.01,maximum={{value={0},tolerance=0.01,at=1.5708,at_tolerance=0.02}}}}]"
+        top = math.cos(0.3) * math.exp(-0.01)
+        sets = ["grid.cells=[64, 64, 1]", "run.dt='auto'"]
+        self.assertEqual({"profile_0", "profile_0_maximum", "profile_0_maximum_at"},
+                         set(self.check(0, "{" + line.format(top) + "}", sets=sets)))
+        self.check(5, "{" + line.format(top + 0.02) + "}", sets=sets)
+
+    def test_uniform_stream_stays_bit_for_bit(self):
+        for backend in {"serial", gas_program.threaded()}:
+            self.expect(0, "uniform", "--quiet", "--backend", backend, "--out", backend)
+            self.assertEqual([0.0, 0.0], [check["value"] for check in self.result(backend)["checks"]])
+
+    def test_gust_moves_a_plug_of_fluid_at_once(self):
+        """A uniform inflow between slip sides fills the channel: exact to round-off at any time."""
+        plug = GUST.replace('["1 + 0.3*sin(5*t) + 0.2*y*(1-y)", 0, "0.1*y"]', '["1 + 0.3*sin(5*t)", 0, 0]').replace(
+            'y = ["wall", "slip"], z = "wall"', 'y = "slip", z = "slip"').replace(
+            "wall_velocity = { y_low = [\"0.5*cos(t)\", 0, 0] }\n", "").replace(
+            'velocity = ["1 + 0.1*sin(3*y)*z", "0.1*sin(pi*y)", 0]', "velocity = [1, 0, 0]")
+        self.check(0, "{exact={x='1+0.3*sin(5*t)',y=0,z=0},linf_velocity=1e-12}", plug)
+
+
+class Orders(parachute_program.FlowTest):
+    def energy(self, scheme, dt):
+        """Kinetic energy at the end, which depends on dt alone."""
+        self.expect(0, self.write(VORTICES), *QUIET, "--overwrite", sets=[
+            "verify={}", f"run.dt={dt}", "run.end_time=0.8", 'initial.velocity=["1+sin(x)*cos(y)+0.3*cos(2*y)", "0.5-cos(x)*sin(y)", 0]',
+            *scheme])
+        return self.history("out")["kinetic_energy"][-1]
+
+    def test_time_schemes_have_their_orders(self):
+        for scheme, least in ((["flow.time=ab2"], 1.9), (["flow.time=rk3"], 2.7)):
+            with self.subTest(scheme):
+                coarse, middle, fine = (self.energy([*scheme, "flow.advection=central"], dt) for dt in (0.04, 0.02, 0.01))
+                self.assertGreater(math.log2((coarse - middle) / (middle - fine)), least)
+
+    def test_study_lists_second_order_in_space(self):
+        run = self.start("taylor-green-2d", "--backend", "serial", "--quiet", "--study",
+                         "meshes=16:64,advections=central:weno-z,times=ab2,diffusions=explicit:crank-nicolson", sets=["run.end_time=0.5", "output={}"],
+                         environment={"PYTHONHOME": os.devnull})
+        self.assertEqual(0, run.returncode, run.stderr)
+        with (self.folder / "out/taylor-green-2d-study/study.csv").open(encoding="utf-8", newline="") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual([(advection, "ab2", diffusion, cells) for advection in ("central", "weno-z")
+                          for diffusion in ("explicit", "crank-nicolson") for cells in ("16", "32", "64")],
+                         [(row["advection"], row["time_scheme"], row["diffusion"], row["cells"]) for row in rows])
+        for row in rows:
+            self.assertEqual(("ok", row["cells"] == "16"), (row["status"], row["order_l2_velocity"] == ""))
+            if row["cells"] == "64":
+                self.assertGreater(float(row["order_l2_velocity"]), 1.9, row)
+        document = json.loads((self.folder / "out/taylor-green-2d-study/study.json").read_text(encoding="utf-8"))
+        self.assertEqual(("drogue.study/1", "drogue-parachute", 12),
+                         (document["schema"], document["program"], len(document["rows"])))
+
+
+class Restart(parachute_program.FlowTest):
+    SETS = ("run.end_time=1.5", "output.times=[0.3, 0.9, 1.5]", "output.restart_every=4", "grid.cells=[24, 20, 16]",
+            "verify={energy_growth=1e9}")
+
+    def begin(self, *words):
+        """Starts a run in the folder `part`; returns once it has a restart file."""
+        line = gas_program.arguments(self.scene, "--quiet", "--out", "part", *words, sets=self.sets, program=self.program)
+        process = subprocess.Popen(line, cwd=self.folder, env=gas_program.ENVIRONMENT, stderr=subprocess.PIPE)
+        self.addCleanup(process.stderr.close)
+        while process.poll() is None and not (self.folder / "part/restart.h5").exists():
+            time.sleep(0.001)
+        return process
+
+    def assert_same_runs(self):
+        whole, part = self.fields("whole"), self.fields("part")
+        self.assertEqual(whole.attributes, part.attributes)
+        self.assertEqual([], [path for path in whole.datasets if whole.datasets[path] != part.datasets[path]])
+        for name in ("history.csv", "fields.xdmf", "scene.toml"):
+            self.assertEqual((self.folder / "whole" / name).read_text(), (self.folder / "part" / name).read_text())
+        one, other = self.result("whole"), self.result("part")
+        for key in ("steps", "time", "dt_min", "dt_max", "status", "checks"):
+            self.assertEqual(one[key], other[key], key)
+
+    def compare(self, backend, scheme, stop, code):
+        self.scene, self.sets = self.write(GUST), [*self.SETS, *scheme]
+        shutil.rmtree(self.folder / "part", ignore_errors=True)
+        words = ["--backend", backend]
+        self.expect(0, self.scene, "--quiet", "--out", "whole", "--overwrite", *words, sets=self.sets)
+        process = self.begin(*words)
+        stop(process)
+        self.assertEqual(code, process.wait(timeout=60), process.stderr.read())
+        (self.folder / "part/.lock").unlink(missing_ok=True)
+        self.expect(0, self.scene, "--quiet", "--out", "part", "--restart", "auto", *words, sets=self.sets)
+        self.assert_same_runs()
+
+    def test_interrupted_run_equals_uninterrupted_run(self):
+        for scheme in (["flow.time=ab2"], ["flow.time=rk3"]):
+            with self.subTest(scheme):
+                self.compare("serial", scheme, lambda process: process.send_signal(signal.SIGINT), 130)
+
+    def test_killed_run_equals_uninterrupted_run(self):
+        self.compare(gas_program.threaded(), [], lambda process: process.kill(), -signal.SIGKILL)
+
+    def test_rejects_restarts_of_other_scenes(self):
+        self.scene = self.write(GUST)
+        sets = ["output.restart_every=5", "output.fields=[]"]
+        self.expect(0, self.scene, *QUIET, sets=sets)
+        for change in ("fluid.viscosity=0.02", "grid.cells=[12, 10, 10]", "flow.time=rk3"):
+            with self.subTest(change):
+                self.assertIn("another scene", self.expect(6, self.scene, *QUIET, "--restart", "auto", sets=[*sets, change]).stderr)
+        self.expect(0, self.scene, *QUIET, "--restart", "auto", sets=[*sets, "run.cfl=0.2", "run.end_time=0.6"])
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,72 @@
+"""Runs drogue-parachute for tests of its interface."""
+
+import csv
+
+import gas_program
+from hdf5_file import Hdf5File
+
+PROGRAM = gas_program.BIN / "drogue-parachute"
+SCENES = sorted(path.stem for path in (gas_program.SOURCE / "miniapps/parachute/scenes").glob("*.toml"))
+SMALL_SCENES = [name for name in SCENES if not name.endswith("-full")]
+
+# A gust through a short channel with a moving wall: every type of side but periodic ones, in three dimensions.
+GUST = """\
+app = "parachute"
+[fluid]
+density = 1.2
+viscosity = 0.01
+velocity = ["1 + 0.3*sin(5*t) + 0.2*y*(1-y)", 0, "0.1*y"]
+[grid]
+cells = [12, 10, 8]
+domain = [[0, 2], [0, 1], [0, 1]]
+boundary = { x = ["inflow", "outflow"], y = ["wall", "slip"], z = "wall" }
+wall_velocity = { y_low = ["0.5*cos(t)", 0, 0] }
+[initial]
+velocity = ["1 + 0.1*sin(3*y)*z", "0.1*sin(pi*y)", 0]
+[run]
+end_time = 0.5
+[output]
+fields = ["velocity", "pressure", "vorticity", "q_criterion"]
+times = [0.2, 0.5]
+history_every = 3
+"""
+
+# A few vortices on a periodic grid.
+VORTICES = """\
+app = "parachute"
+[fluid]
+density = 1
+viscosity = 0.01
+[grid]
+cells = [16, 16, 1]
+domain = [[0, 6.283185307179586], [0, 6.283185307179586], [0, 1]]
+boundary = { x = "periodic", y = "periodic" }
+[initial]
+velocity = ["sin(x)*cos(y)", "-cos(x)*sin(y)", 0]
+[run]
+end_time = 0.5
+dt = 0.05
+[verify]
+exact = { x = "sin(x)*cos(y)*exp(-0.02*t)", y = "-cos(x)*sin(y)*exp(-0.02*t)", z = 0, pressure = "0.25*(cos(2*x)+cos(2*y))*exp(-0.04*t)" }
+l2_velocity = 0.01
+"""
+
+
+class FlowTest(gas_program.GasTest):
+    """Test case whose programs run in an empty temporary folder."""
+
+    program = PROGRAM
+
+    def write(self, text, name="scene.toml"):
+        path = self.folder / name
+        path.write_text(text, encoding="utf-8")
+        return path
+
+    def fields(self, directory):
+        return Hdf5File(PROGRAM, self.folder / directory / "fields.h5")
+
+    def history(self, directory):
+        """Columns of history.csv by name without units."""
+        with (self.folder / directory / "history.csv").open(encoding="utf-8", newline="") as file:
+            header, *rows = csv.reader(file)
+        return {name.split(" [")[0]: [float(row[k]) for row in rows] for k, name in enumerate(header)}

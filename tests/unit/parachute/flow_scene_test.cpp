@@ -1,0 +1,149 @@
+#include <gtest/gtest.h>
+
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "common/program/failure.hpp"
+#include "common/scene/library.hpp"
+#include "miniapps/parachute/scene.hpp"
+
+namespace drogue::parachute_app {
+namespace {
+
+const std::filesystem::path source = DROGUE_SOURCE_DIR;
+
+const char* const least = R"(app = "parachute"
+[fluid]
+[grid]
+cells = [8, 6, 4]
+domain = [[0, 2], [0, 1], [0, 1]]
+boundary = { x = ["inflow", "outflow"], y = "slip", z = "periodic" }
+[run]
+end_time = 1
+)";
+
+FlowScene read_text(const std::string& text, const std::vector<std::string>& sets = {}) {
+  const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
+  const std::filesystem::path file =
+      std::filesystem::temp_directory_path() /
+      ("flow-" + std::string(test->name()) + std::to_string(::getpid()) + ".toml");
+  std::ofstream(file) << text;
+  try {
+    FlowScene scene = read_flow_scene(file, sets);
+    std::filesystem::remove(file);
+    return scene;
+  } catch (const Failure&) {
+    std::filesystem::remove(file);
+    throw;
+  }
+}
+
+std::string error_of(const std::vector<std::string>& sets) {
+  try {
+    read_text(least, sets);
+  } catch (const Failure& failure) {
+    EXPECT_EQ(failure.code(), ExitCode::invalid_scene);
+    return failure.what();
+  }
+  return {};
+}
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+TEST(FlowScene, MinimalSceneHasTheDocumentedDefaults) {
+  const FlowScene scene = read_text(least);
+  const flow::Parameters& p = scene.parameters;
+  EXPECT_EQ(p.cells, (std::array<int, 3>{8, 6, 4}));
+  EXPECT_EQ(p.high, (std::array<double, 3>{2.0, 1.0, 1.0}));
+  EXPECT_EQ(p.density, 1.225);
+  EXPECT_EQ(p.viscosity, 1.8e-5);
+  EXPECT_EQ(p.advection, flow::Advection::weno_z);
+  EXPECT_EQ(p.time_scheme, flow::TimeScheme::ab2);
+  EXPECT_EQ(p.diffusion, flow::Diffusion::explicit_);
+  EXPECT_EQ(p.turbulence, flow::Turbulence::none);
+  EXPECT_EQ(p.pressure_solver, flow::PressureSolver::automatic);
+  EXPECT_EQ(p.fixed_dt, 0.0);
+  EXPECT_EQ(p.cfl, 0.5);
+  EXPECT_EQ(p.max_dt, 0.0);
+  EXPECT_TRUE(scene.output.fields.empty());
+}
+
+TEST(FlowScene, SidesTakeTheVelocityOfTheFluidOrTheirWall) {
+  using enum flow::BoundaryKind;
+  const FlowScene scene =
+      read_text(least, {"fluid.velocity=[2, 0.5, 0]", "grid.boundary.y=[\"wall\", \"slip\"]",
+                        "grid.wall_velocity.y_low=[\"sin(t)\", 0, 1]"});
+  const auto& sides = scene.parameters.boundary;
+  const flow::BoundaryKind kinds[] = {inflow, outflow, wall, slip, periodic, periodic};
+  for (std::size_t side = 0; side < 6; ++side) EXPECT_EQ(sides[side].kind, kinds[side]) << side_names[side];
+  EXPECT_EQ(sides[0].velocity, (std::array<double, 3>{2.0, 0.5, 0.0}));
+  EXPECT_TRUE(sides[0].velocity_expressions.empty());
+  EXPECT_EQ(sides[2].velocity_expressions.size(), 3U);
+  EXPECT_EQ(sides[3].velocity, (std::array<double, 3>{}));
+}
+
+TEST(FlowScene, InitialVelocityReplacesThatOfTheFluid) {
+  const FlowScene scene = read_text(least, {"fluid.velocity=[1, 0, 0]", "initial.velocity=[0, \"x\", 0]"});
+  EXPECT_EQ(scene.initial_velocity()[1], "x");
+  EXPECT_EQ(read_text(least, {"fluid.velocity=[1, 0, 0]"}).initial_velocity()[0], "1.0");
+}
+
+TEST(FlowScene, AxisWithOneCellIsPeriodicByDefault) {
+  const std::string sides = "grid.boundary={x=\"slip\",y=\"wall\"}";
+  const FlowScene scene = read_text(least, {"grid.cells=[8, 6, 1]", sides});
+  EXPECT_EQ(scene.parameters.boundary[5].kind, flow::BoundaryKind::periodic);
+  EXPECT_TRUE(contains(error_of({sides}), "missing key \"grid.boundary.z\""));
+  EXPECT_TRUE(contains(error_of({"grid.cells=[8, 6, 1]", "grid.boundary.z=\"wall\""}), "periodic or slip"));
+}
+
+TEST(FlowScene, EveryShippedSceneResolvesToItself) {
+  const auto scenes = scene::list_scenes(source / "miniapps/parachute/scenes");
+  ASSERT_GE(scenes.size(), 12U);
+  for (const auto& entry : scenes) {
+    EXPECT_FALSE(entry.description.empty()) << entry.name;
+    // Full scenes differ from small ones in numbers only, and take long to check.
+    if (entry.name.ends_with("-full")) continue;
+    const std::string printed = print_flow_scene(read_flow_scene(entry.file));
+    EXPECT_EQ(print_flow_scene(read_text(printed)), printed) << entry.name;
+  }
+}
+
+TEST(FlowScene, OmitsInapplicableKeys) {
+  const std::string printed = print_flow_scene(read_text(least));
+  for (const char* key : {"wall_velocity", "pressure_tolerance", "turbulence_constant", "max_dt", "[verify]",
+                          "[tuning]", "[initial]"})
+    EXPECT_FALSE(contains(printed, key)) << key;
+  EXPECT_TRUE(contains(printed, "weno = \"z\"\n"));
+  EXPECT_TRUE(contains(printed, "dt = \"auto\"\ncfl = 0.5\n"));
+  const std::string central = print_flow_scene(read_text(least, {"flow.advection=central", "run.dt=0.01"}));
+  EXPECT_FALSE(contains(central, "weno"));
+  EXPECT_FALSE(contains(central, "cfl"));
+}
+
+TEST(FlowScene, FingerprintIgnoresOutputAndSteps) {
+  const std::string base = scene_fingerprint(read_text(least));
+  for (const char* set : {"run.end_time=2", "run.cfl=0.2", "run.dt=0.01", "output.history_every=3",
+                          "verify.divergence=1", "tuning.step.driver=plain"})
+    EXPECT_EQ(scene_fingerprint(read_text(least, {set})), base) << set;
+  for (const char* set : {"fluid.viscosity=1", "grid.cells=[8, 6, 8]", "flow.weno=js",
+                          "fluid.velocity=[1, 0, 0]", "flow.body_force=[1, 0, 0]"})
+    EXPECT_NE(scene_fingerprint(read_text(least, {set})), base) << set;
+}
+
+TEST(FlowSceneDocument, MatchesTheDeclarations) {
+  const std::filesystem::path page = source / "docs/scenes-parachute.md";
+  if (std::getenv("DROGUE_UPDATE_DOCS") != nullptr) std::ofstream(page) << document_flow_scene();
+  std::ostringstream written;
+  written << std::ifstream(page).rdbuf();
+  EXPECT_EQ(written.str(), document_flow_scene())
+      << "after a change of the keys: DROGUE_UPDATE_DOCS=1 ctest -R FlowSceneDocument";
+}
+
+}  // namespace
+}  // namespace drogue::parachute_app

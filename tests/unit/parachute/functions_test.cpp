@@ -1,0 +1,55 @@
+#include "miniapps/parachute/functions.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <stdexcept>
+
+namespace drogue::parachute_app {
+namespace {
+
+flow::Parameters channel() {
+  flow::Parameters p;
+  p.cells = {4, 5, 1};
+  p.low = {1.0, -1.0, 0.0};
+  p.high = {3.0, 1.0, 0.5};
+  p.boundary[2].kind = p.boundary[3].kind = flow::BoundaryKind::wall;
+  return p;
+}
+
+TEST(Lattice, ComponentsLieOnTheFacesNormalToTheirAxis) {
+  const Lattice x = lattice_of(channel(), flow::StateField::velocity_x);
+  EXPECT_EQ(x.n, (std::array<int, 3>{4, 5, 1}));
+  EXPECT_EQ(x.place(0), (std::array<double, 3>{1.0, -0.8, 0.25}));
+  const Lattice y = lattice_of(channel(), flow::StateField::velocity_y);
+  EXPECT_EQ(y.n, (std::array<int, 3>{4, 6, 1}));
+  EXPECT_EQ(y.place(0), (std::array<double, 3>{1.25, -1.0, 0.25}));
+  EXPECT_EQ(y.place(23), (std::array<double, 3>{2.75, 1.0, 0.25}));
+  EXPECT_EQ(lattice_of(channel(), flow::StateField::velocity_z).place(0),
+            (std::array<double, 3>{1.25, -0.8, 0.25}));
+}
+
+TEST(Evaluate, ThreadsFillEveryPoint) {
+  const Lattice lattice{{97, 61, 41}, {0.0, 1.0, 2.0}, {0.1, 0.2, 0.3}};
+  const std::vector<double> values = evaluate(SpaceTimeFunction("x + 10*y*z + t"), lattice, 3.0);
+  ASSERT_EQ(values.size(), lattice.size());
+  for (std::size_t entry = 0; entry < values.size(); ++entry) {
+    const auto [x, y, z] = lattice.place(entry);
+    ASSERT_DOUBLE_EQ(values[entry], x + 10.0 * y * z + 3.0) << entry;
+  }
+}
+
+TEST(SpaceTimeFunction, RecognisesConstants) {
+  EXPECT_EQ(SpaceTimeFunction("2*pi").constant(), 2.0 * M_PI);
+  EXPECT_FALSE(SpaceTimeFunction("0*t").constant().has_value());
+}
+
+TEST(DeviceProgram, RejectsLongExpressions) {
+  std::string text = "x";
+  for (int i = 0; i < 100; ++i) text += "+x";
+  EXPECT_THROW(static_cast<void>(device_program(text)), std::invalid_argument);
+  EXPECT_EQ(device_program("x+t").length, 3);
+}
+
+}  // namespace
+}  // namespace drogue::parachute_app
