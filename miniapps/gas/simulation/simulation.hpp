@@ -4,7 +4,7 @@
 
 #include "kernels/gas/solver.hpp"
 #include "miniapps/framework/simulation.hpp"
-#include "miniapps/gas/scene.hpp"
+#include "miniapps/gas/scene/scene.hpp"
 
 namespace drogue::gas_app {
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "common/scene/table.hpp"
-#include "miniapps/gas/scene.hpp"
+#include "miniapps/gas/scene/scene.hpp"
 
 namespace drogue::gas_app {
 

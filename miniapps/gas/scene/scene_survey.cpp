@@ -1,4 +1,4 @@
-#include "miniapps/gas/scene_survey.hpp"
+#include "miniapps/gas/scene/scene_survey.hpp"
 
 #include <algorithm>
 #include <cmath>

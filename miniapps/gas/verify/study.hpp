@@ -5,7 +5,7 @@
 
 #include "common/program/mini_app_options.hpp"
 #include "miniapps/framework/study.hpp"
-#include "miniapps/gas/exact.hpp"
+#include "miniapps/gas/verify/exact.hpp"
 
 namespace drogue::gas_app {
 

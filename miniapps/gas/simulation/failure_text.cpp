@@ -1,9 +1,9 @@
-#include "miniapps/gas/failure_text.hpp"
+#include "miniapps/gas/simulation/failure_text.hpp"
 
 #include <sstream>
 #include <string_view>
 
-#include "miniapps/gas/scene.hpp"
+#include "miniapps/gas/scene/scene.hpp"
 
 namespace drogue::gas_app {
 

@@ -1,4 +1,4 @@
-#include "miniapps/gas/scene_check.hpp"
+#include "miniapps/gas/scene/scene_check.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 
 #include "common/scene/node.hpp"
 #include "common/scene/read.hpp"
-#include "miniapps/gas/scene_survey.hpp"
+#include "miniapps/gas/scene/scene_survey.hpp"
 
 namespace drogue::gas_app {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "kernels/gas/solver.hpp"
-#include "miniapps/gas/scene.hpp"
+#include "miniapps/gas/scene/scene.hpp"
 
 namespace drogue::gas_app {
 

@@ -1,4 +1,4 @@
-#include "miniapps/gas/fields.hpp"
+#include "miniapps/gas/simulation/fields.hpp"
 
 #include <algorithm>
 

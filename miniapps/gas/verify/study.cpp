@@ -1,10 +1,10 @@
-#include "miniapps/gas/study.hpp"
+#include "miniapps/gas/verify/study.hpp"
 
 #include <utility>
 
 #include "common/study/axes.hpp"
 #include "miniapps/framework/run_loop.hpp"
-#include "miniapps/gas/simulation.hpp"
+#include "miniapps/gas/simulation/simulation.hpp"
 
 namespace drogue::gas_app {
 

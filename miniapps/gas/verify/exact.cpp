@@ -1,4 +1,4 @@
-#include "miniapps/gas/exact.hpp"
+#include "miniapps/gas/verify/exact.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,8 @@
 #include "common/program/progress.hpp"
 #include "common/program/signals.hpp"
 #include "kernels/reference/gas/exact_riemann.hpp"
-#include "miniapps/gas/failure_text.hpp"
-#include "miniapps/gas/fields.hpp"
+#include "miniapps/gas/simulation/failure_text.hpp"
+#include "miniapps/gas/simulation/fields.hpp"
 
 namespace drogue::gas_app {
 

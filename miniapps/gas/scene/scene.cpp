@@ -1,12 +1,12 @@
-#include "miniapps/gas/scene.hpp"
+#include "miniapps/gas/scene/scene.hpp"
 
 #include "common/run/restart_file.hpp"
 #include "common/scene/document.hpp"
 #include "common/scene/print.hpp"
 #include "common/scene/read.hpp"
 #include "miniapps/framework/mini_app.hpp"
-#include "miniapps/gas/scene_check.hpp"
-#include "miniapps/gas/scene_keys.hpp"
+#include "miniapps/gas/scene/scene_check.hpp"
+#include "miniapps/gas/scene/scene_keys.hpp"
 
 namespace drogue::gas_app {
 namespace {

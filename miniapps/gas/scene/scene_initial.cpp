@@ -3,7 +3,7 @@
 #include <variant>
 
 #include "common/expression/expression.hpp"
-#include "miniapps/gas/scene.hpp"
+#include "miniapps/gas/scene/scene.hpp"
 
 namespace drogue::gas_app {
 namespace {

@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "common/program/stopwatch.hpp"
-#include "miniapps/gas/fields.hpp"
-#include "miniapps/gas/simulation.hpp"
+#include "miniapps/gas/simulation/fields.hpp"
+#include "miniapps/gas/simulation/simulation.hpp"
 
 namespace drogue::gas_app {
 

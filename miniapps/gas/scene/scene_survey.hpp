@@ -4,7 +4,7 @@
 #include <limits>
 #include <string>
 
-#include "miniapps/gas/scene.hpp"
+#include "miniapps/gas/scene/scene.hpp"
 
 namespace drogue::gas_app {
 

@@ -1,8 +1,8 @@
-#include "miniapps/gas/simulation.hpp"
+#include "miniapps/gas/simulation/simulation.hpp"
 
 #include "common/program/stopwatch.hpp"
-#include "miniapps/gas/failure_text.hpp"
-#include "miniapps/gas/fields.hpp"
+#include "miniapps/gas/simulation/failure_text.hpp"
+#include "miniapps/gas/simulation/fields.hpp"
 
 namespace drogue::gas_app {
 namespace {

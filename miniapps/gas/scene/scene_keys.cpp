@@ -1,4 +1,4 @@
-#include "miniapps/gas/scene_keys.hpp"
+#include "miniapps/gas/scene/scene_keys.hpp"
 
 #include <algorithm>
 

@@ -1,9 +1,9 @@
 #include <cmath>
 #include <limits>
 
-#include "miniapps/gas/exact.hpp"
-#include "miniapps/gas/fields.hpp"
-#include "miniapps/gas/simulation.hpp"
+#include "miniapps/gas/simulation/fields.hpp"
+#include "miniapps/gas/simulation/simulation.hpp"
+#include "miniapps/gas/verify/exact.hpp"
 
 namespace drogue::gas_app {
 
