@@ -1,8 +1,8 @@
-#include "common/run/hdf5_call.hpp"
+#include "common/run/hdf5/hdf5_call.hpp"
 
 #include <cstdlib>
 
-#include "common/run/io_error.hpp"
+#include "common/run/files/io_error.hpp"
 
 namespace drogue::run::h5 {
 namespace {

@@ -1,4 +1,4 @@
-#include "common/run/output_path.hpp"
+#include "common/run/files/output_path.hpp"
 
 #include <sys/stat.h>
 

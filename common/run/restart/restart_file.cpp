@@ -1,4 +1,4 @@
-#include "common/run/restart_file.hpp"
+#include "common/run/restart/restart_file.hpp"
 
 #include <unistd.h>
 
@@ -6,10 +6,10 @@
 #include <utility>
 
 #include "common/program/failure.hpp"
-#include "common/run/atomic_file.hpp"
-#include "common/run/checksum.hpp"
-#include "common/run/hdf5.hpp"
-#include "common/run/restart_seal.hpp"
+#include "common/run/files/atomic_file.hpp"
+#include "common/run/hdf5/hdf5.hpp"
+#include "common/run/restart/checksum.hpp"
+#include "common/run/restart/restart_seal.hpp"
 #include "common/scene/node.hpp"
 
 namespace drogue::run {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "common/run/fields_writer.hpp"
+#include "common/run/fields/fields_writer.hpp"
 
 namespace drogue::run {
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "common/run/dataset_spec.hpp"
+#include "common/run/fields/dataset_spec.hpp"
 
 namespace drogue::run {
 

@@ -1,4 +1,4 @@
-#include "common/run/checksum.hpp"
+#include "common/run/restart/checksum.hpp"
 
 #include <bit>
 #include <cstdio>

@@ -1,10 +1,10 @@
-#include "common/run/hdf5.hpp"
+#include "common/run/hdf5/hdf5.hpp"
 
 #include <algorithm>
 #include <utility>
 
-#include "common/run/hdf5_call.hpp"
-#include "common/run/io_error.hpp"
+#include "common/run/files/io_error.hpp"
+#include "common/run/hdf5/hdf5_call.hpp"
 
 namespace drogue::run::h5 {
 namespace {

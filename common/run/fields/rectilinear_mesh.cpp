@@ -1,4 +1,4 @@
-#include "common/run/rectilinear_mesh.hpp"
+#include "common/run/fields/rectilinear_mesh.hpp"
 
 #include <stdexcept>
 

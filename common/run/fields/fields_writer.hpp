@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "common/run/dataset_spec.hpp"
+#include "common/run/fields/dataset_spec.hpp"
 
 namespace drogue::run {
 

@@ -1,4 +1,4 @@
-#include "common/run/fields_writer.hpp"
+#include "common/run/fields/fields_writer.hpp"
 
 #include <fcntl.h>
 #include <sys/resource.h>
@@ -12,10 +12,10 @@
 #include <set>
 #include <utility>
 
-#include "common/run/atomic_file.hpp"
-#include "common/run/hdf5.hpp"
-#include "common/run/io_error.hpp"
-#include "common/run/xdmf.hpp"
+#include "common/run/fields/xdmf.hpp"
+#include "common/run/files/atomic_file.hpp"
+#include "common/run/files/io_error.hpp"
+#include "common/run/hdf5/hdf5.hpp"
 
 namespace drogue::run {
 namespace {

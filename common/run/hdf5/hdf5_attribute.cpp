@@ -1,5 +1,5 @@
-#include "common/run/hdf5.hpp"
-#include "common/run/hdf5_call.hpp"
+#include "common/run/hdf5/hdf5.hpp"
+#include "common/run/hdf5/hdf5_call.hpp"
 
 namespace drogue::run::h5 {
 namespace {

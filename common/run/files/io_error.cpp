@@ -1,4 +1,4 @@
-#include "common/run/io_error.hpp"
+#include "common/run/files/io_error.hpp"
 
 #include <system_error>
 

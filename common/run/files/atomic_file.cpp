@@ -1,4 +1,4 @@
-#include "common/run/atomic_file.hpp"
+#include "common/run/files/atomic_file.hpp"
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -9,8 +9,8 @@
 #include <system_error>
 #include <utility>
 
-#include "common/run/io_error.hpp"
-#include "common/run/output_path.hpp"
+#include "common/run/files/io_error.hpp"
+#include "common/run/files/output_path.hpp"
 
 namespace drogue::run {
 

@@ -1,12 +1,12 @@
-#include "common/run/restart_seal.hpp"
+#include "common/run/restart/restart_seal.hpp"
 
 #include <cerrno>
 #include <fstream>
 #include <sstream>
 #include <vector>
 
-#include "common/run/checksum.hpp"
-#include "common/run/io_error.hpp"
+#include "common/run/files/io_error.hpp"
+#include "common/run/restart/checksum.hpp"
 
 namespace drogue::run {
 namespace {
