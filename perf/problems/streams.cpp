@@ -6,6 +6,8 @@
 #include <numbers>
 #include <vector>
 
+#include "common/program/failure.hpp"
+
 namespace drogue::perf::streams {
 
 namespace {
@@ -13,7 +15,7 @@ namespace {
 /// Initial velocity component at a point, m/s.
 double initial_velocity(Sides sides, std::size_t component, const std::array<double, 3>& x) {
   const double pi = std::numbers::pi;
-  if (sides == Sides::periodic) {
+  if (sides != Sides::tunnel) {
     if (component == 2) return 0.0;
     return component == 0 ? std::sin(x[0]) * std::cos(x[1]) * std::cos(x[2])
                           : -std::cos(x[0]) * std::sin(x[1]) * std::cos(x[2]);
@@ -24,7 +26,14 @@ double initial_velocity(Sides sides, std::size_t component, const std::array<dou
 }
 
 Sides sides_of(const flow::Parameters& p) {
-  return p.boundary[0].kind == flow::BoundaryKind::periodic ? Sides::periodic : Sides::tunnel;
+  switch (p.boundary[0].kind) {
+    case flow::BoundaryKind::periodic:
+      return Sides::periodic;
+    case flow::BoundaryKind::wall:
+      return Sides::walls;
+    default:
+      return Sides::tunnel;
+  }
 }
 
 void upload_initial_velocity(const flow::Parameters& p, flow::Solver& solver) {
@@ -48,12 +57,22 @@ void upload_initial_velocity(const flow::Parameters& p, flow::Solver& solver) {
 
 }  // namespace
 
+const char* name(Sides sides) {
+  return sides == Sides::periodic ? "periodic" : sides == Sides::walls ? "walls" : "tunnel";
+}
+
+std::string text(const std::array<int, 3>& cells) {
+  return std::to_string(cells[0]) + "x" + std::to_string(cells[1]) + "x" + std::to_string(cells[2]);
+}
+
 flow::Parameters parameters(const std::array<int, 3>& cells, Sides sides) {
   flow::Parameters p;
   p.cells = cells;
-  if (sides == Sides::periodic) {
+  if (sides != Sides::tunnel) {
     p.high.fill(2.0 * std::numbers::pi);
     p.viscosity = 1.0 / 1600.0;
+    if (sides == Sides::walls)
+      for (flow::Boundary& side : p.boundary) side.kind = flow::BoundaryKind::wall;
     return p;
   }
   // Cubes as cells; one metre along x.
@@ -70,10 +89,8 @@ flow::Parameters parameters(const std::array<int, 3>& cells, Sides sides) {
 linear::PoissonProblem pressure_problem(const std::array<int, 3>& cells, Sides sides) {
   linear::PoissonProblem problem;
   problem.cells = cells;
-  if (sides == Sides::tunnel) {
-    for (linear::AxisConditions& axis : problem.axes) axis.periodic = false;
-    problem.axes[2].high = linear::EndCondition::dirichlet;
-  }
+  for (linear::AxisConditions& axis : problem.axes) axis.periodic = sides == Sides::periodic;
+  if (sides == Sides::tunnel) problem.axes[2].high = linear::EndCondition::dirichlet;
   return problem;
 }
 
@@ -86,7 +103,9 @@ Sample steps(const flow::Parameters& p, flow::Solver& solver, long count) {
             *started = true;
           },
           [=, &solver] {
-            solver.advance(std::numeric_limits<double>::max(), solver.progress().step + count, {});
+            const std::int64_t last = solver.progress().step + count;
+            if (solver.advance(std::numeric_limits<double>::max(), last, {}) != flow::Stop::pause)
+              throw Failure(ExitCode::numerical_failure, "a step of the flow benchmark failed");
             return count;
           }};
 }
