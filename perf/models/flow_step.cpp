@@ -29,8 +29,8 @@ double flow_step_bytes(const flow::Parameters& p) {
     cell = 2.0 * vector + 2.0 * 3.0 * vector + 3.0 * projection;
   }
   if (p.diffusion == flow::Diffusion::crank_nicolson) {
-    // Of each component: predicted velocity, velocity and pressure to the source; solve; velocity and change
-    // to the predicted velocity.
+    // Each component: predicted velocity, velocity and pressure to the source; solve; velocity and change to
+    // the predicted velocity.
     cell += 3.0 * (4.0 * scalar + solve_bytes(p) + 3.0 * scalar);
     // The correction also reads the divergence and adds to the pressure.
     cell += 3.0 * scalar;
