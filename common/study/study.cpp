@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <iostream>
 
-#include "common/run/atomic_file.hpp"
+#include "common/run/files/atomic_file.hpp"
 #include "common/study/tables.hpp"
 
 namespace drogue::study {

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "common/program/stopwatch.hpp"
-#include "common/run/io_error.hpp"
+#include "common/run/files/io_error.hpp"
 
 namespace drogue::framework {
 namespace {

@@ -8,10 +8,10 @@
 
 #include "common/program/communicator.hpp"
 #include "common/program/failure.hpp"
-#include "common/run/dataset_spec.hpp"
-#include "common/run/fields_writer.hpp"
+#include "common/run/fields/dataset_spec.hpp"
+#include "common/run/fields/fields_writer.hpp"
 #include "common/run/history_writer.hpp"
-#include "common/run/restart_file.hpp"
+#include "common/run/restart/restart_file.hpp"
 #include "common/run/result_document.hpp"
 #include "common/run/run_directory.hpp"
 #include "kernels/device/backend.hpp"

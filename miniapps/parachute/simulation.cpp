@@ -3,7 +3,7 @@
 #include <sstream>
 
 #include "common/program/stopwatch.hpp"
-#include "common/run/rectilinear_mesh.hpp"
+#include "common/run/fields/rectilinear_mesh.hpp"
 #include "miniapps/parachute/functions.hpp"
 
 namespace drogue::parachute_app {

@@ -6,7 +6,7 @@
 
 #include "common/program/command_line.hpp"
 #include "common/program/signals.hpp"
-#include "common/run/output_path.hpp"
+#include "common/run/files/output_path.hpp"
 #include "common/run/result_document.hpp"
 #include "common/run/statistics.hpp"
 #include "perf/command/command.hpp"

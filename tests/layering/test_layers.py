@@ -95,7 +95,7 @@ class EachRuleCatchesItsBreach(unittest.TestCase):
     def test_framework(self):
         path = "miniapps/framework/x.cpp"
         self.assert_caught(path, '"kernels/gas/solver.hpp"', "may only use")
-        self.assert_caught(path, '"miniapps/gas/scene.hpp"', "may only use")
+        self.assert_caught(path, '"miniapps/gas/scene/scene.hpp"', "may only use")
         self.assert_caught(path, "<Kokkos_Core.hpp>", "does without")
         for app in ("gas", "springs"):
             self.assertEqual([], layers.violations(f"miniapps/{app}/x.cpp", '#include "miniapps/framework/simulation.hpp"\n'))

@@ -338,7 +338,7 @@ SHOWN_PATTERNS = tuple((re.compile(rf"(?<![\w-])(?:{words})(?![\w-])", re.IGNORE
 KEPT = {
     "seed": CPP_ONLY,  # --method seed, [tuning.seed], the driver and the records of measurements
     "touches": ("miniapps/",),  # limiter.touches of result.json and in the line at the end of a run
-    "touched": ("miniapps/gas/simulation_restart",),  # dataset of restart files
+    "touched": ("miniapps/gas/simulation/simulation_restart",),  # dataset of restart files
     "bar": ("common/scene/read.cpp",),  # the former name, for the hint
 }
 

@@ -4,7 +4,7 @@
 
 #include "common/program/failure.hpp"
 #include "common/program/message.hpp"
-#include "common/run/shared_write.hpp"
+#include "common/run/hdf5/shared_write.hpp"
 #include "miniapps/parachute/functions.hpp"
 #include "miniapps/parachute/parallel/parameters_message.hpp"
 

@@ -187,7 +187,7 @@ void expect_same_totals(const Totals& a, const Totals& b, const std::string& wha
   for (int side = 0; side < 6; ++side) near(a.outflow[side], b.outflow[side], "outflow");
 }
 
-/// Runs a case from random data on `ranks` ranks and on this one single, and compares everything.
+/// Runs a case from random data on `ranks` ranks and on this one only, and compares everything.
 void expect_steps_of_one_rank(const Case& each, int ranks) {
   const Parameters& p = each.parameters;
   const linear::RankGroup group = first_ranks(ranks);

@@ -5,7 +5,7 @@
 #include <array>
 #include <cstdlib>
 
-#include "common/run/atomic_file.hpp"
+#include "common/run/files/atomic_file.hpp"
 #include "tests/unit/run/temporary_directory.hpp"
 
 namespace drogue::run {
