@@ -1,0 +1,199 @@
+"""Figures of synthetic runs of drogue-parachute."""
+
+import contextlib
+import io
+import shutil
+import tempfile
+import unittest
+from pathlib import Path
+
+import packages  # before modules that need the packages  isort: skip
+import numpy as np
+from matplotlib.text import Text
+from PIL import Image
+from plot import cli, style
+from plot.parachute.history_figure import flow_history_figure, keeps_energy
+from plot.parachute.plane import plane_of
+from plot.parachute.quantities import Quantity, default_names, quantities
+from plot.parachute.slices_figure import SlicesFigure, View, colour_scale, slices_figure
+from plot.run_directory import read_run
+from synthetic_flow import write_flow
+
+assert packages.SOURCE
+
+
+def vectors(*components):
+    """Vector field (nx, ny, nz, 3) of three scalar fields."""
+    return np.stack(np.broadcast_arrays(*components), axis=-1)
+
+
+def shear(time, x, y, z):
+    """Shear u = (y, time, 2 z) with its vorticity, and a pressure that numbers the places."""
+    zero = 0 * x
+    return {
+        "velocity": vectors(y, zero + time, 2 * z),
+        "vorticity": vectors(zero, 3 + zero, -1 - time + zero),
+        "pressure": 100 * x + 10 * y + z,
+    }
+
+
+class FlowPictures(unittest.TestCase):
+    def setUp(self):
+        self.folder = Path(tempfile.mkdtemp())
+        self.addCleanup(shutil.rmtree, self.folder)
+        self.addCleanup(style.plt.close, "all")
+
+    def pictures(self, run):
+        return {file.name for file in run.iterdir() if file.suffix in (".png", ".gif")}
+
+    def refusal(self, run, *words):
+        with contextlib.redirect_stderr(io.StringIO()) as errors:
+            self.assertEqual(2, cli.main([str(run), *words]))
+        self.assertEqual(set(), self.pictures(run))
+        return errors.getvalue()
+
+    def test_draws_two_dimensional_run_whole(self):
+        """The plane is normal to the axis with one cell, whichever it is."""
+        for normal, right, up in ((0, 1, 2), (1, 0, 2), (2, 0, 1)):
+            with self.subTest(normal=normal):
+                cells = [1 if axis == normal else 4 + axis for axis in range(3)]
+                run = read_run(write_flow(self.folder / f"run{normal}", cells, (1.0, 2.0, 3.0), shear))
+                plane = plane_of(run)
+                self.assertEqual((right, up), plane.across)
+                self.assertEqual((0, 1.0 + right, 0, 1.0 + up), plane.extent)
+                pressure = plane.cut(run.snapshots[0].fields["pressure"].values)
+                self.assertEqual((cells[up], cells[right]), pressure.shape)
+                self.assertGreater(pressure[0, 1], pressure[0, 0])
+                self.assertGreater(pressure[1, 0], pressure[0, 0])
+                self.assertEqual(normal, quantities(run)["vorticity"].component)
+
+    def test_draws_pictures_of_run(self):
+        run = write_flow(self.folder / "run", (6, 4, 1), (3.0, 2.0, 1.0), shear, (0.0, 1.0))
+        self.assertEqual(0, cli.main([str(run), "--quiet"]))
+        self.assertLessEqual({"fields.png", "fields.gif", "history.png"}, self.pictures(run))
+        with Image.open(run / "fields.gif") as movie:
+            self.assertEqual(2, movie.n_frames)
+
+    def test_slices_run_at_axis_and_place(self):
+        run = read_run(write_flow(self.folder / "run", (4, 6, 8), (1.0, 1.0, 1.0), shear))
+        self.assertEqual((2, 4), (plane_of(run).normal, plane_of(run).index))
+        for words, normal, index in (("x", 0, 2), ("y=0", 1, 0), ("y=0.49", 1, 2), ("z=1", 2, 7), ("z=0.25", 2, 2)):
+            with self.subTest(words):
+                plane = plane_of(run, words)
+                self.assertEqual((normal, index), (plane.normal, plane.index))
+        self.assertIn("x = 0.875 m", plane_of(run, "x=0.9").description)
+
+    def test_rejects_slices_that_do_not_exist(self):
+        flat = write_flow(self.folder / "flat", (4, 4, 1), (1.0, 1.0, 1.0), shear)
+        solid = write_flow(self.folder / "solid", (4, 4, 4), (1.0, 1.0, 1.0), shear)
+        self.assertIn("is a line: its plane is z", self.refusal(flat, "--slice", "x"))
+        self.assertIn("outside the domain, y = 0 to 1 m", self.refusal(solid, "--slice", "y=1.5"))
+        self.assertIn("outside the domain", self.refusal(solid, "--slice", "y=nan"))
+        self.assertIn("'middle' is no number", self.refusal(solid, "--slice", "z=middle"))
+        self.assertIn("names no axis", self.refusal(solid, "--slice", "w=0.5"))
+        (flat / "fields.h5").unlink()
+        self.assertIn("no fields of a flow", self.refusal(flat, "--slice", "z"))
+
+    def test_rejects_unknown_field_with_nearest_name(self):
+        run = write_flow(self.folder / "run", (4, 4, 1), (1.0, 1.0, 1.0), shear)
+        self.assertIn("no field 'velocity_w'; nearest is velocity_", self.refusal(run, "--field", "velocity_w"))
+
+    def test_quantities_are_components_and_magnitudes(self):
+        run = read_run(write_flow(self.folder / "run", (4, 4, 4), (1.0, 1.0, 1.0), shear, (2.0,)))
+        self.assertEqual(["speed", "pressure", "vorticity"], default_names(run))
+        known, snapshot = quantities(run), run.snapshots[0]
+        x, y, z = 0.625, 0.375, 0.875
+        expected = {"speed": np.sqrt(y * y + 4 + 4 * z * z), "velocity_y": 2.0, "velocity_z": 2 * z,
+                    "pressure": 100 * x + 10 * y + z, "vorticity": np.sqrt(18), "vorticity_z": -3.0}  # fmt: skip
+        for name, value in expected.items():
+            self.assertAlmostEqual(value, known[name].values(snapshot)[2, 1, 3], msg=name)
+
+    def test_panels_have_true_proportion(self):
+        for lengths in ((8.0, 1.0, 1.0), (1.0, 5.0, 1.0), (1.0, 1.0, 1.0)):
+            run = read_run(write_flow(self.folder / f"{lengths}", (8, 8, 1), lengths, shear))
+            view = View(plane_of(run), [quantities(run)[name] for name in ("speed", "vorticity")])
+            figure = slices_figure(view, run.snapshots[0])
+            panels = [axes for axes in figure.axes if axes.images]
+            self.assertEqual(2, len(panels))
+            for panel in panels:
+                box = panel.get_window_extent()
+                self.assertAlmostEqual(lengths[0] / lengths[1], box.width / box.height, delta=1e-6)
+                self.assertEqual((0, lengths[0], 0, lengths[1]), (*panel.get_xlim(), *panel.get_ylim()))
+
+    def test_no_text_overlaps_or_leaves_figure(self):
+        run = read_run(write_flow(self.folder / "run", (8, 8, 1), (1.0, 1.0, 1.0), shear))
+        view = View(plane_of(run), list(quantities(run).values()))
+        figure = slices_figure(view, run.snapshots[0])
+        figure.canvas.draw()
+        texts = [text for text in figure.findobj(Text) if text.get_visible() and text.get_text()]
+        boxes = [text.get_window_extent() for text in texts]
+        self.assertGreater(len(boxes), 50)
+        for k, box in enumerate(boxes):
+            self.assertTrue(box.x0 >= 0 and box.y0 >= 0 and box.x1 <= figure.bbox.x1 and box.y1 <= figure.bbox.y1)
+            for other in boxes[:k]:
+                self.assertFalse(box.overlaps(other), (box, other))
+
+    def test_signed_values_get_symmetric_diverging_colours(self):
+        signed = np.linspace(-1, 3, 101)
+        speed, vorticity = (Quantity(name, "", name, "", 2) for name in ("velocity", "vorticity"))
+        for quantity, values in ((speed, signed), (vorticity, signed), (vorticity, signed + 2)):
+            norm, name, _ = colour_scale(quantity, values)
+            self.assertEqual("RdBu_r", name)
+            self.assertEqual(-norm.vmin, norm.vmax)
+            self.assertGreaterEqual(norm.vmax, 3)
+        norm, name, ends = colour_scale(speed, signed + 2)
+        self.assertEqual(("viridis", "neither", 1, 5), (name, ends, norm.vmin, norm.vmax))
+
+    def test_few_extreme_values_exceed_colour_scale(self):
+        values = np.concatenate([np.linspace(-1, 1, 1000), [50]])
+        norm, _, ends = colour_scale(Quantity("vorticity", "", "vorticity", "", 2), values)
+        self.assertEqual("max", ends)
+        self.assertLess(norm.vmax, 2)
+
+    def test_round_off_does_not_look_like_variation(self):
+        norm, _, _ = colour_scale(Quantity("speed", "", "velocity", ""), 1 + 1e-15 * np.arange(4))
+        self.assertGreater(norm.vmax - norm.vmin, 0.1)
+        norm, _, _ = colour_scale(Quantity("speed", "", "velocity", ""), np.zeros(4))
+        self.assertLess(norm.vmin, norm.vmax)
+
+    def test_movie_keeps_one_colour_scale(self):
+        run = read_run(write_flow(self.folder / "run", (4, 4, 1), (1.0, 1.0, 1.0), shear, (0.0, 4.0)))
+        drawing = SlicesFigure(View(plane_of(run), [quantities(run)["vorticity"]]), run.snapshots)
+        (image,) = drawing.figure.axes[0].images
+        for snapshot, value in zip(run.snapshots, (-1, -5)):
+            drawing.show(snapshot)
+            np.testing.assert_array_equal(value, image.get_array())
+            self.assertEqual(5, image.norm.vmax)
+
+    def test_streamlines_follow_velocity(self):
+        run = read_run(
+            write_flow(self.folder / "run", (8, 8, 1), (1.0, 1.0, 1.0),
+                       lambda time, x, y, z: {"velocity": vectors(0 * x, 1 + 0 * x, 0 * x)})
+        )  # fmt: skip
+        figure = slices_figure(View(plane_of(run), [quantities(run)["speed"]]), run.snapshots[0])
+        lines = figure.axes[0].collections[0].get_segments()
+        self.assertGreater(np.ptp(np.concatenate(lines)[:, 1]), 0.5)
+        self.assertLess(max(np.ptp(np.asarray(line)[:, 0]) for line in lines), 1e-12)
+
+    def test_history_shows_energy_fall_of_closed_flow(self):
+        closed, opened = (
+            read_run(write_flow(self.folder / f"{is_open}", (4, 4, 1), (1.0, 1.0, 1.0), shear, is_open=is_open))
+            for is_open in (False, True)
+        )
+        self.assertEqual((True, False), (keeps_energy(closed), keeps_energy(opened)))
+        dissipation = flow_history_figure(closed).axes[1]
+        np.testing.assert_allclose(dissipation.lines[0].get_ydata(), [1, 2, 3])
+        np.testing.assert_allclose(dissipation.lines[1].get_xydata(), [[0.25, 2], [0.75, 6]])
+        figure = flow_history_figure(opened)
+        self.assertEqual(1, len(figure.axes[1].lines))
+        np.testing.assert_allclose([line.get_ydata()[0] for line in figure.axes[-1].lines], [-1, 1])
+
+    def test_history_without_second_row_is_not_drawn(self):
+        run = write_flow(self.folder / "run", (4, 4, 1), (1.0, 1.0, 1.0), shear)
+        history = run / "history.csv"
+        history.write_text("\n".join(history.read_text().splitlines()[:2]) + "\n")
+        self.assertIsNone(flow_history_figure(read_run(run)))
+
+
+if __name__ == "__main__":
+    unittest.main()
