@@ -139,19 +139,22 @@ def _springs_pictures(run, options, out, save):
 
 def _flow_pictures(run, options, out, save):
     from . import movie_file
-    from .parachute import quantities, slices_figure
+    from .parachute import quantities, slices_figure, spectrum
     from .parachute.plane import plane_of
 
     known = quantities.quantities(run)
     names = _validated_fields(options.field, list(known)) or quantities.default_names(run)
     plane = plane_of(run, options.slice)
+    snapshot = _chosen_snapshot(run, options)
     if names:
         view = slices_figure.View(plane, [known[name] for name in names])
-        figure = slices_figure.slices_figure(view, _chosen_snapshot(run, options))
+        figure = slices_figure.slices_figure(view, snapshot)
         yield save(figure, "fields", few_colours=False)
     if names and len(run.snapshots) >= 2 and options.movie != "none":
         moving = slices_figure.View(plane, [known[quantities.movie_name(names)]])
         yield movie_file.write(out / f"fields.{options.movie}", slices_figure.frames(moving))
+    if spectrum.is_periodic(run) and (figure := spectrum.spectrum_figure(run, snapshot)) is not None:
+        yield save(figure, "spectrum")
 
 
 def _evidence_pages(options, evidence, out):

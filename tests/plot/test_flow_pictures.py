@@ -16,8 +16,9 @@ from plot.parachute.history_figure import flow_history_figure, keeps_energy
 from plot.parachute.plane import plane_of
 from plot.parachute.quantities import Quantity, default_names, quantities
 from plot.parachute.slices_figure import SlicesFigure, View, colour_scale, slices_figure
+from plot.parachute.spectrum import energy_spectrum, is_periodic, spectrum_figure
 from plot.run_directory import read_run
-from synthetic_flow import write_flow
+from synthetic_flow import centres, write_flow
 
 assert packages.SOURCE
 
@@ -68,9 +69,9 @@ class FlowPictures(unittest.TestCase):
                 self.assertEqual(normal, quantities(run)["vorticity"].component)
 
     def test_draws_pictures_of_run(self):
-        run = write_flow(self.folder / "run", (6, 4, 1), (3.0, 2.0, 1.0), shear, (0.0, 1.0))
+        run = write_flow(self.folder / "run", (12, 8, 1), (3.0, 2.0, 1.0), shear, (0.0, 1.0))
         self.assertEqual(0, cli.main([str(run), "--quiet"]))
-        self.assertLessEqual({"fields.png", "fields.gif", "history.png"}, self.pictures(run))
+        self.assertEqual({"fields.png", "fields.gif", "history.png", "spectrum.png"}, self.pictures(run))
         with Image.open(run / "fields.gif") as movie:
             self.assertEqual(2, movie.n_frames)
 
@@ -174,6 +175,80 @@ class FlowPictures(unittest.TestCase):
         lines = figure.axes[0].collections[0].get_segments()
         self.assertGreater(np.ptp(np.concatenate(lines)[:, 1]), 0.5)
         self.assertLess(max(np.ptp(np.asarray(line)[:, 0]) for line in lines), 1e-12)
+
+    def test_single_mode_lands_in_its_shell_with_its_energy(self):
+        """A mode of amplitude A adds the energy A^2 / 4 per mass to the shell nearest to its wave vector's size."""
+        cases = (((16, 16, 16), (1.0, 1.0, 1.0), (3, 0, 0), 3), ((16, 18, 20), (1.0, 1.0, 1.0), (2, 3, 4), 5),
+                 ((16, 12, 1), (1.0, 1.0, 5.0), (3, -4, 0), 5), ((1, 15, 16), (1.0, 2.0, 1.0), (0, 4, 1), 4),
+                 ((16, 1, 8), (4.0, 1.0, 2.0), (1, 0, 1), 2), ((9, 9, 9), (1.0, 1.0, 1.0), (0, 0, -4), 4))  # fmt: skip
+        for cells, lengths, mode, shell in cases:
+            with self.subTest(cells=cells, mode=mode):
+                phase = sum(
+                    2 * np.pi * number * place / length
+                    for number, place, length in zip(mode, centres(cells, lengths), lengths)
+                )
+                velocity = vectors(3 * np.cos(phase), 4 * np.sin(phase), 7 + 0 * phase)
+                spectrum = energy_spectrum(velocity, lengths)
+                width = spectrum.k[0]
+                self.assertAlmostEqual(
+                    2 * np.pi / max(length for length, count in zip(lengths, cells) if count > 1), width
+                )
+                expected = np.where(np.arange(1, len(spectrum.k) + 1) == shell, 25 / 4, 0)
+                np.testing.assert_allclose(spectrum.energy * width, expected, atol=1e-12)
+
+    def test_shells_hold_energy_of_resolved_velocity(self):
+        """Parseval: the shells of a velocity without its smallest scales hold its whole energy."""
+        x, y, z = centres((16, 16, 16), (1.0, 1.0, 1.0))
+        random, velocity = np.random.default_rng(7), np.zeros((16, 16, 16, 3))
+        for _ in range(40):
+            wave, phase = random.integers(-4, 5, 3), random.uniform(0, 7)
+            velocity += random.normal(size=3) * np.cos(
+                2 * np.pi * (wave[0] * x + wave[1] * y + wave[2] * z) + phase
+            )[..., None]
+        velocity -= velocity.mean(axis=(0, 1, 2))
+        spectrum = energy_spectrum(velocity, (1.0, 1.0, 1.0))
+        self.assertEqual(8, len(spectrum.k))
+        energy = 0.5 * np.mean(np.sum(velocity**2, axis=-1))
+        self.assertAlmostEqual(energy, np.sum(spectrum.energy) * spectrum.k[0])
+
+    def test_spectrum_of_periodic_flow_has_marks(self):
+        """Curves of energy k^-2, and dashed marks of their slopes above all of them."""
+        random = np.random.default_rng(3)
+
+        def decaying(time, x, y, z):
+            phases = random.uniform(0, 7, (5, 3))
+            waves = [
+                np.stack([np.cos(2 * np.pi * n * y + p[0]), np.cos(2 * np.pi * n * x + p[1]), 0 * x], axis=-1) / n
+                for n, p in enumerate(phases, 1)
+            ]
+            return {"velocity": sum(waves)}
+
+        for cells, slopes in (((12, 12, 1), [-5 / 3, -3]), ((12, 12, 12), [-5 / 3])):
+            run = read_run(write_flow(self.folder / f"{cells}", cells, (1.0, 1.0, 1.0), decaying, (0.0, 1.0)))
+            self.assertTrue(is_periodic(run))
+            (axes,) = spectrum_figure(run, run.snapshots[1]).axes
+            marks = [line.get_xydata() for line in axes.lines if line.get_linestyle() == "--"]
+            curves = [line.get_xydata() for line in axes.lines if line.get_linestyle() == "-"]
+            self.assertEqual(2, len(curves))
+            self.assertEqual(len(slopes), len(marks))
+            for mark, slope in zip(marks, slopes):
+                (ratio_k, ratio_energy) = mark[-1] / mark[0]
+                self.assertAlmostEqual(slope, np.log(ratio_energy) / np.log(ratio_k))
+                for k, energy in mark:
+                    self.assertGreater(energy, max(curve[curve[:, 0] == k, 1][0] for curve in curves))
+            self.assertEqual(1, len(spectrum_figure(run, run.snapshots[0]).axes[0].texts) - len(marks))
+
+    def test_spectrum_needs_periodic_sides_and_several_modes(self):
+        opened = read_run(
+            write_flow(self.folder / "opened", (8, 8, 1), (1.0, 1.0, 1.0), shear, is_open=True)
+        )
+        self.assertFalse(is_periodic(opened))
+        still = read_run(
+            write_flow(self.folder / "still", (8, 8, 1), (1.0, 1.0, 1.0),
+                       lambda time, x, y, z: {"velocity": vectors(np.sin(2 * np.pi * y), 0 * x, 0 * x)})
+        )  # fmt: skip
+        self.assertTrue(is_periodic(still))
+        self.assertIsNone(spectrum_figure(still, still.snapshots[0]))
 
     def test_history_shows_energy_fall_of_closed_flow(self):
         closed, opened = (
