@@ -60,6 +60,8 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     target_compile_options(drogue_private INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Wno-subobject-linkage>)
   endif()
 endif()
+# nvcc only warns of a host function that a kernel calls, and the kernel then does nothing.
+target_compile_options(drogue_private INTERFACE "$<$<COMPILE_LANGUAGE:CUDA>:--diag-error=20011,20013,20014,20015>")
 if(DROGUE_WARNINGS_AS_ERRORS)
   drogue_host_option(drogue_private INTERFACE -Werror)
   target_compile_options(drogue_private INTERFACE "$<$<COMPILE_LANGUAGE:CUDA>:--Werror=cross-execution-space-call>")

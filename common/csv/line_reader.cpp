@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "common/program/failure.hpp"
-#include "common/run/io_error.hpp"
+#include "common/run/files/io_error.hpp"
 
 namespace drogue::csv {
 namespace {

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdio>
+#include <cstdlib>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -152,6 +154,13 @@ void Communicator::run_collectively(const std::function<void()>& action) {
     sentence = *words;
   }
   throw Failure(static_cast<ExitCode>(*failed), of_rank(sentence, rank));
+}
+
+void Communicator::abort() {
+  const Failure failure = current_failure();
+  std::fprintf(stderr, "%s\n", of_rank(failure.what(), _rank).c_str());
+  if (_size > 1) MPI_Abort(MPI_COMM_WORLD, static_cast<int>(failure.code()));
+  std::exit(static_cast<int>(failure.code()));
 }
 
 void Backoff::wait() {

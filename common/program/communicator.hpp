@@ -48,6 +48,10 @@ class Communicator {
   /// all ranks throw the `Failure` of the lowest one, so that no rank waits for one that has given up.
   void run_collectively(const std::function<void()>& action);
 
+  /// Prints the exception that is being handled and ends all ranks with its exit code, where other ranks wait
+  /// for this one. Call it in a catch block only.
+  [[noreturn]] void abort();
+
  private:
   struct Transfer;
   void release_sent();

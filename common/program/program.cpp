@@ -57,7 +57,7 @@ Failure current_failure() {
   } catch (const CLI::Error& error) {
     return {ExitCode::usage, first_line(error.what())};
   } catch (const std::bad_alloc&) {
-    return {ExitCode::io_error, "out of memory: ask for fewer cells, or run where there is more memory"};
+    return {ExitCode::io_error, "out of memory: use fewer cells, or run where there is more memory"};
   } catch (const std::exception& error) {
     return {ExitCode::io_error, "unexpected error: " + first_line(error.what())};
   } catch (...) {

@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "common/run/io_error.hpp"
+#include "common/run/files/io_error.hpp"
 
 namespace drogue::run {
 namespace {

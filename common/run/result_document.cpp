@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/program/provenance.hpp"
-#include "common/run/atomic_file.hpp"
+#include "common/run/files/atomic_file.hpp"
 #include "common/version.hpp"
 
 namespace drogue::run {

@@ -10,8 +10,8 @@
 #include <system_error>
 #include <utility>
 
-#include "common/run/atomic_file.hpp"
-#include "common/run/io_error.hpp"
+#include "common/run/files/atomic_file.hpp"
+#include "common/run/files/io_error.hpp"
 
 namespace drogue::run {
 namespace {

@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <iostream>
 
-#include "common/run/atomic_file.hpp"
+#include "common/run/files/atomic_file.hpp"
 #include "common/study/tables.hpp"
 
 namespace drogue::study {
@@ -40,8 +40,9 @@ ExitCode run_points(const run::RunDirectory& directory, const run::ResultDocumen
     if (!quiet) std::cout << line(rows.back(), columns) << std::flush;
   }
   if (std::ranges::none_of(rows, [](const StudyRow& row) { return row.code == ExitCode::ok; }))
-    throw Failure(ExitCode::numerical_failure,
-                  "every run of the study failed; '" + directory.file("study.json").string() + "' says how");
+    throw Failure(
+        ExitCode::numerical_failure,
+        "every run of the study failed; '" + directory.file("study.json").string() + "' has the reasons");
   draw(directory, facts.program);
   return ExitCode::ok;
 }

@@ -14,8 +14,9 @@ namespace drogue::device {
 /// `HostPinnedSpace`, or within device memory.
 enum class CopyKind { to_device, to_host, to_host_pinned, within };
 
-/// Kokkos::deep_copy of `bytes` bytes. Asynchronous, does not throw. Compiled once per backend, because
-/// Kokkos::deep_copy instantiates about fifty kernels for each new pair of View types.
+/// Kokkos::deep_copy of `bytes` bytes. Asynchronous. Compiled once per backend, because Kokkos::deep_copy
+/// instantiates about fifty kernels for each new pair of View types. Throws std::runtime_error if CUDA
+/// rejected the launch of an earlier kernel, which Kokkos does not report.
 template <class ExecutionSpace>
 void copy_bytes(const ExecutionSpace& space, CopyKind kind, void* to, const void* from, std::size_t bytes);
 
@@ -49,7 +50,7 @@ void copy(const ExecutionSpace& space, const To& to, const From& from) {
 }
 
 /// Copies `count` values from host memory to the beginning of a contiguous View. Asynchronous: the source
-/// must stay unchanged until the next fence. Does not throw.
+/// must stay unchanged until the next fence. Throws as `copy_bytes` does.
 template <class ExecutionSpace, class To>
 void copy_in(const ExecutionSpace& space, const To& to, const typename To::value_type* from,
              std::size_t count) {
@@ -57,7 +58,8 @@ void copy_in(const ExecutionSpace& space, const To& to, const typename To::value
              from, count * sizeof *from);
 }
 
-/// Copies the first `count` values of a contiguous View to host memory. Asynchronous, does not throw.
+/// Copies the first `count` values of a contiguous View to host memory. Asynchronous. Throws as `copy_bytes`
+/// does.
 template <class ExecutionSpace, class From>
 void copy_out(const ExecutionSpace& space, typename From::non_const_value_type* to, const From& from,
               std::size_t count) {

@@ -1,8 +1,22 @@
 #pragma once
 
+#include <stdexcept>
+#include <string>
+
 #include "kernels/device/copy.hpp"
+#include "kernels/device/memory.hpp"
 
 namespace drogue::device {
+
+/// Throws std::runtime_error if CUDA rejected a kernel since the last call: Kokkos does not report that, and
+/// the arrays would keep their old values.
+inline void check_launches() {
+#if defined(KOKKOS_ENABLE_CUDA)
+  const cudaError_t error = cudaGetLastError();
+  if (error != cudaSuccess)
+    throw std::runtime_error(std::string("CUDA could not launch a kernel: ") + cudaGetErrorString(error));
+#endif
+}
 
 /// Copies bytes from memory space `From` to memory space `To`. Asynchronous.
 template <class To, class From, class ExecutionSpace>
@@ -17,6 +31,7 @@ template <class ExecutionSpace>
 void copy_bytes(const ExecutionSpace& space, CopyKind kind, void* to, const void* from, std::size_t bytes) {
   using Host = Kokkos::HostSpace;
   using Device = typename ExecutionSpace::memory_space;
+  if constexpr (!is_host<ExecutionSpace>) check_launches();
   switch (kind) {
     case CopyKind::to_device:
       return copy_between<Device, Host>(space, to, from, bytes);

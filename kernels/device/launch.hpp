@@ -2,10 +2,13 @@
 
 #include <Kokkos_Core.hpp>
 
+#include "kernels/device/memory.hpp"
+
 namespace drogue::device {
 
 /// Calls `functor(i)` for i from 0 to `count` - 1 on `space`. Asynchronous; may be captured into a CUDA
-/// graph. `Bounds`: launch bounds of the kernel. Throws std::runtime_error if the launch fails.
+/// graph. `Bounds`: launch bounds of the kernel. Does not throw: the next copy reports a launch that CUDA
+/// rejects (`copy_bytes`).
 template <class Bounds = Kokkos::LaunchBounds<>, class ExecutionSpace, class Functor>
 void launch_each(const ExecutionSpace& space, const char* label, int count, const Functor& functor) {
   // Larger functors are no kernel arguments of CUDA, whatever the hint.
@@ -15,6 +18,26 @@ void launch_each(const ExecutionSpace& space, const char* label, int count, cons
   // captured graph cannot hold.
   Kokkos::parallel_for(
       label, Kokkos::Experimental::require(each, Kokkos::Experimental::WorkItemProperty::HintLightWeight),
+      functor);
+}
+
+/// Calls `functor(i, j, k)` for all indices below `extent`, i fastest. Asynchronous; may be captured into a
+/// CUDA graph. Does not throw, as `launch_each`.
+template <class ExecutionSpace, class Functor>
+void launch_cells(const ExecutionSpace& space, const char* label, const int extent[3],
+                  const Functor& functor) {
+  static_assert(sizeof(Functor) <= 3900, "a functor of launch_cells must fit the arguments of a kernel");
+  // 32-bit indices are much cheaper on a device.
+  using Policy =
+      Kokkos::MDRangePolicy<ExecutionSpace, Kokkos::Rank<3, Kokkos::Iterate::Left, Kokkos::Iterate::Left>,
+                            Kokkos::IndexType<int>>;
+  using Indices = Kokkos::Array<int, 3>;
+  // Warps along i on a device; the defaults of a host are rows.
+  const Indices tile = is_host<ExecutionSpace> ? Indices{} : Indices{32, 4, 1};
+  Kokkos::parallel_for(
+      label,
+      Kokkos::Experimental::require(Policy(space, Indices{}, Indices{extent[0], extent[1], extent[2]}, tile),
+                                    Kokkos::Experimental::WorkItemProperty::HintLightWeight),
       functor);
 }
 

@@ -18,6 +18,7 @@
 #include "kernels/fabric/loads/make_loads.hpp"
 #include "kernels/fabric/loads/prescribed_motion.hpp"
 #include "kernels/fabric/solver.hpp"
+#include "kernels/fabric/state.hpp"
 #include "kernels/fabric/stepping/persistent_driver.hpp"
 #include "kernels/fabric/stepping/state_copies.hpp"
 #include "kernels/fabric/stepping/step.hpp"
@@ -28,16 +29,6 @@
 #include "kernels/stepping/step_loop.hpp"
 
 namespace drogue::fabric {
-
-/// Device-resident state of a fabric. The addresses are stable for the life of the solver.
-///
-/// Both Views have the shape (vertices, 3) in layout left. Components are `positions.stride(1)` numbers
-/// apart, which is the number of vertices padded to a multiple of `slice`; the padding belongs to the solver.
-template <class ExecutionSpace>
-struct State {
-  PointsView<ExecutionSpace> positions;   ///< m
-  PointsView<ExecutionSpace> velocities;  ///< m/s; a pinned axis moves at its velocity
-};
 
 /// Fabric of any constitutive model on the caller's instance of an execution space, for coupling to other
 /// kernels. `Solver` is the facade over it for programs that choose the backend at run time.

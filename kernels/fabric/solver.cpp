@@ -98,7 +98,7 @@ void check_parameters(const Parameters& p) {
               not_negative(m.bending_stiffness),
           "no stiffness may be negative");
   require(!m.tension_only || m.model != Model::linear_vector,
-          "springs of vectors (Model I) know no compression: they cannot bear tension only");
+          "springs of vectors (Model I) have no compressed state: tension_only does not apply to them");
   if (has_triangles(m.model))
     require(m.poisson > -1.0 && m.poisson <= 0.5, "Poisson's ratio must lie between -1 and 1/2");
 }

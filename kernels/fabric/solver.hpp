@@ -6,7 +6,7 @@
 
 #include "kernels/device/backend.hpp"
 #include "kernels/fabric/parameters.hpp"
-#include "kernels/fabric/state.hpp"
+#include "kernels/fabric/results.hpp"
 
 namespace drogue::fabric {
 

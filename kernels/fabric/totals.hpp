@@ -5,7 +5,7 @@
 #include "kernels/device/copy.hpp"
 #include "kernels/fabric/elastic/dispatch_model.hpp"
 #include "kernels/fabric/fabric_views.hpp"
-#include "kernels/fabric/state.hpp"
+#include "kernels/fabric/results.hpp"
 #include "kernels/fabric/views.hpp"
 
 namespace drogue::fabric {

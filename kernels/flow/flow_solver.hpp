@@ -9,12 +9,14 @@
 #include <stdexcept>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "kernels/device/copy.hpp"
 #include "kernels/flow/advection/momentum.hpp"
 #include "kernels/flow/boundary/faces.hpp"
 #include "kernels/flow/boundary/ghosts.hpp"
 #include "kernels/flow/diffusion/implicit_diffusion.hpp"
+#include "kernels/flow/halo/halo.hpp"
 #include "kernels/flow/observables/sample.hpp"
 #include "kernels/flow/observables/totals.hpp"
 #include "kernels/flow/projection/projection.hpp"
@@ -23,6 +25,7 @@
 #include "kernels/flow/turbulence/eddy_viscosity.hpp"
 #include "kernels/linear/poisson/diagonalization.hpp"
 #include "kernels/linear/poisson/fourier.hpp"
+#include "kernels/linear/poisson/pencil_solver.hpp"
 #if defined(DROGUE_HAVE_HYPRE)
 #include "kernels/linear/poisson/hypre_pfmg.hpp"
 #endif
@@ -47,6 +50,14 @@ inline linear::PoissonProblem pressure_problem(const Parameters& parameters) {
   return problem;
 }
 
+/// Sides of the cells of a rank: those of the domain, or towards other ranks.
+inline std::array<Boundary, 6> sides_of(const Parameters& parameters, const linear::PencilRanks& ranks) {
+  std::array<Boundary, 6> sides = parameters.boundary;
+  for (std::size_t side = 0; side < 6; ++side)
+    if (borders_rank(parameters, ranks, side)) sides[side] = {BoundaryKind::neighbour, {}, {}};
+  return sides;
+}
+
 /// Incompressible flow on a staggered grid, on the caller's instance of an execution space, for coupling to
 /// other kernels. Second order in space and time. The projection is exact to round-off (Chorin 1968; Kim and
 /// Moin 1985 for the staggered grid), so that with explicit diffusion a pressure increment would give the
@@ -55,13 +66,19 @@ inline linear::PoissonProblem pressure_problem(const Parameters& parameters) {
 /// Functions block unless stated otherwise. All work is enqueued on the instance given to the constructor,
 /// which must outlive the solver; on CUDA it must have a stream of its own. After a failed step the state is
 /// that before the step.
+///
+/// On a group of several ranks each holds a box of the cells (`decompose`). All functions are then
+/// collective, every step waits for the host, and arrays are those of the rank (`part_of`).
 template <class ExecutionSpace>
 class FlowSolver {
  public:
   using Values = List<ExecutionSpace>;
 
-  /// Throws std::invalid_argument as `check_parameters` does, and std::runtime_error if memory runs out.
-  FlowSolver(const device::Instance<ExecutionSpace>& instance, const Parameters& parameters);
+  /// Throws std::invalid_argument as `check_parameters` does, and std::runtime_error if memory runs out. Each
+  /// rank gives the same parameters. Throws std::invalid_argument also for fast transforms on CUDA and
+  /// several ranks.
+  FlowSolver(const device::Instance<ExecutionSpace>& instance, const Parameters& parameters,
+             const linear::RankGroup& group = {});
 
   /// Grid of the arrays. Does not throw.
   [[nodiscard]] const MacGrid& grid() const { return _grid; }
@@ -91,10 +108,11 @@ class FlowSolver {
 #if defined(DROGUE_HAVE_HYPRE)
   using Poisson =
       std::variant<linear::FourierSolver<ExecutionSpace>, linear::DiagonalizationSolver<ExecutionSpace>,
-                   linear::HyprePfmgSolver<ExecutionSpace>>;
+                   linear::PencilSolver<ExecutionSpace>, linear::HyprePfmgSolver<ExecutionSpace>>;
 #else
   using Poisson =
-      std::variant<linear::FourierSolver<ExecutionSpace>, linear::DiagonalizationSolver<ExecutionSpace>>;
+      std::variant<linear::FourierSolver<ExecutionSpace>, linear::DiagonalizationSolver<ExecutionSpace>,
+                   linear::PencilSolver<ExecutionSpace>>;
 #endif
   struct Steps;
 
@@ -105,6 +123,11 @@ class FlowSolver {
   [[nodiscard]] Control read_control() const;
   void write_control(Control control);
   [[nodiscard]] PackFunctor<ExecutionSpace> packing(StateField field, std::size_t size, bool to_field) const;
+  void make_poisson();
+  Stop advance_together(const stepping::AdvanceRequest& request, const Poll& poll);
+  void begin_ghosts(const ExecutionSpace& space, const Values& velocity) const;
+  void finish_ghosts(const ExecutionSpace& space, const Values& velocity) const;
+  void enqueue_momentum(const ExecutionSpace& space, const MomentumSetup<ExecutionSpace>& setup) const;
   void enqueue_step(const ExecutionSpace& space) const;
   void enqueue_stage(const ExecutionSpace& space, const MomentumSetup<ExecutionSpace>& setup,
                      const Values& result, double fraction, double time_fraction) const;
@@ -114,11 +137,14 @@ class FlowSolver {
 
   const device::Instance<ExecutionSpace>* _instance;
   Parameters _parameters;
+  linear::PencilRanks _ranks;
   MacGrid _grid;
+  mutable std::optional<Halo<ExecutionSpace>> _halo;  ///< only on several ranks
   BoundaryTables<ExecutionSpace> _boundary;
   StepConstants _constants{};
   std::array<double, 3> _acceleration{};  ///< m/s^2
   EddyModel _eddy_model{};
+  EddyCells _eddy_cells{};
   Values _velocity, _predicted, _rate, _force;
   Values _divergence;  ///< right-hand side of the pressure equation, 1/s^2
   Values _pressure;
@@ -137,24 +163,29 @@ class FlowSolver {
 
 /// True if the pressure equation of a flow is solved by fast transforms, and not by diagonalization.
 template <class ExecutionSpace>
-bool uses_transforms(const Parameters& parameters) {
-  const bool can = linear::FourierSolver<ExecutionSpace>::supports(pressure_problem(parameters));
+bool uses_transforms(const Parameters& parameters, int ranks) {
+  const bool can = linear::FourierSolver<ExecutionSpace>::supports(pressure_problem(parameters)) &&
+                   (device::is_host<ExecutionSpace> || ranks == 1);
   if (parameters.pressure_solver == PressureSolver::fft && !can)
-    throw std::invalid_argument("flow solver: this backend has fast transforms for periodic axes only");
+    throw std::invalid_argument(
+        "flow solver: this backend has fast transforms for periodic axes on one rank only");
   return can && parameters.pressure_solver != PressureSolver::diagonalization;
 }
 
 template <class ExecutionSpace>
 FlowSolver<ExecutionSpace>::FlowSolver(const device::Instance<ExecutionSpace>& instance,
-                                       const Parameters& parameters)
+                                       const Parameters& parameters, const linear::RankGroup& group)
     : _instance(&instance),
       _parameters(parameters),
-      _grid((check_parameters(parameters), make_grid(parameters))),
-      _boundary(instance.space(), _grid, parameters.boundary),
+      _ranks((check_parameters(parameters), ranks_of(parameters, group.size(), group.rank()))),
+      _grid(make_grid(parameters, _ranks)),
+      _boundary(instance.space(), _grid, sides_of(parameters, _ranks)),
       _loop(instance),
-      // An iterative solver waits for the host in every step, which a graph cannot hold.
-      _launcher(instance, parameters.pressure_solver == PressureSolver::hypre_pfmg ? Driver::plain
-                                                                                   : parameters.driver) {
+      // Messages and an iterative solver wait for the host in every step, which a graph cannot hold.
+      _launcher(instance, parameters.pressure_solver == PressureSolver::hypre_pfmg || group.size() > 1
+                              ? Driver::plain
+                              : parameters.driver) {
+  if (group.size() > 1) _halo.emplace(group, _ranks, parameters, _grid);
   const auto field = [&](const std::string& label) {
     // Packs may load beyond the last cell.
     return Values(label, static_cast<std::size_t>(3 * _grid.component + 64));
@@ -181,20 +212,12 @@ FlowSolver<ExecutionSpace>::FlowSolver(const device::Instance<ExecutionSpace>& i
       Values("drogue::flow::outflow_rows", 6 * static_cast<std::size_t>(std::max(_grid.n[1], _grid.n[2])));
   if (parameters.turbulence != Turbulence::none) {
     _eddy_model = make_eddy_model(parameters, _grid);
-    _eddy_viscosity = Values("drogue::flow::eddy_viscosity", cells);
+    _eddy_cells = make_eddy_cells(_grid, _boundary.conditions().kind);
+    _eddy_viscosity = Values("drogue::flow::eddy_viscosity", _eddy_cells.size());
     _eddy_acceleration = field("drogue::flow::eddy_acceleration");
   }
   _control = ControlView<ExecutionSpace>("drogue::flow::control");
-  const linear::PoissonProblem problem = pressure_problem(parameters);
-#if defined(DROGUE_HAVE_HYPRE)
-  if (parameters.pressure_solver == PressureSolver::hypre_pfmg)
-    _poisson.emplace(std::in_place_type<linear::HyprePfmgSolver<ExecutionSpace>>, space(), problem,
-                     parameters.pressure_tolerance);
-#endif
-  if (!_poisson && uses_transforms<ExecutionSpace>(parameters))
-    _poisson.emplace(std::in_place_type<linear::FourierSolver<ExecutionSpace>>, space(), problem);
-  if (!_poisson)
-    _poisson.emplace(std::in_place_type<linear::DiagonalizationSolver<ExecutionSpace>>, space(), problem);
+  make_poisson();
   double squares = 0.0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const double length = parameters.high[axis] - parameters.low[axis];
@@ -213,9 +236,31 @@ FlowSolver<ExecutionSpace>::FlowSolver(const device::Instance<ExecutionSpace>& i
 }
 
 template <class ExecutionSpace>
+void FlowSolver<ExecutionSpace>::make_poisson() {
+  const linear::PoissonProblem problem = pressure_problem(_parameters);
+  const linear::RankGroup group = _halo ? _halo->group() : linear::RankGroup();
+#if defined(DROGUE_HAVE_HYPRE)
+  if (_parameters.pressure_solver == PressureSolver::hypre_pfmg) {
+    _poisson.emplace(std::in_place_type<linear::HyprePfmgSolver<ExecutionSpace>>, space(), problem, group,
+                     _ranks, _parameters.pressure_tolerance);
+    return;
+  }
+#endif
+  const bool transforms = uses_transforms<ExecutionSpace>(_parameters, group.size());
+  if (group.size() > 1)
+    _poisson.emplace(std::in_place_type<linear::PencilSolver<ExecutionSpace>>, space(), problem, group,
+                     _ranks, transforms ? linear::AxisMethod::fourier : linear::AxisMethod::diagonalization);
+  else if (transforms)
+    _poisson.emplace(std::in_place_type<linear::FourierSolver<ExecutionSpace>>, space(), problem);
+  else
+    _poisson.emplace(std::in_place_type<linear::DiagonalizationSolver<ExecutionSpace>>, space(), problem);
+}
+
+template <class ExecutionSpace>
 const char* FlowSolver<ExecutionSpace>::pressure_solver() const {
   if (_parameters.pressure_solver == PressureSolver::hypre_pfmg) return "hypre-pfmg";
-  return std::holds_alternative<linear::FourierSolver<ExecutionSpace>>(*_poisson) ? "fft" : "diagonalization";
+  return uses_transforms<ExecutionSpace>(_parameters, _halo ? _halo->group().size() : 1) ? "fft"
+                                                                                         : "diagonalization";
 }
 
 template <class ExecutionSpace>
@@ -242,17 +287,19 @@ PackFunctor<ExecutionSpace> FlowSolver<ExecutionSpace>::packing(StateField field
   const bool is_rate = index >= static_cast<int>(StateField::rate_x);
   if (is_rate && _parameters.time_scheme != TimeScheme::ab2)
     throw std::invalid_argument("flow solver: only the scheme AB2 has rates of the previous step");
-  const std::array<int, 3> shape = extents(_parameters, field);
+  const std::array<int, 3> shape = part_of(_parameters, _ranks, field).cells;
   if (size != static_cast<std::size_t>(shape[0]) * static_cast<std::size_t>(shape[1]) *
                   static_cast<std::size_t>(shape[2]))
     throw std::invalid_argument("flow solver: an array of the state has the wrong length");
+  const auto axis = static_cast<std::size_t>(index % 3);
+  const bool has_low_side = extents(_parameters, field) != _parameters.cells && _ranks.place[axis] == 0;
   return {_grid,
           is_rate ? _rate : _velocity,
           _predicted,
           (index % 3) * _grid.component,
           {shape[0], shape[1], shape[2]},
           to_field,
-          is_rate && shape != _parameters.cells ? index % 3 : -1};
+          is_rate && has_low_side ? index % 3 : -1};
 }
 
 template <class ExecutionSpace>
@@ -315,7 +362,16 @@ Totals FlowSolver<ExecutionSpace>::totals() {
     for (std::size_t q = 0; q < total_count; ++q) own[q] = on_host(i, q);
     combine_totals(sum, own);
   }
+  double outflow[6];
+  for (int side = 0; side < 6; ++side) {
+    outflow[side] = 0.0;
+    if (_boundary.conditions().kind[side] == BoundaryKind::neighbour) continue;
+    for (int row = 0; row < longest; ++row)
+      outflow[side] += rows_on_host(static_cast<std::size_t>(side * longest + row));
+  }
+  if (_halo) _halo->combine(sum, outflow);
   const double volume = _grid.h[0] * _grid.h[1] * _grid.h[2], mass = _parameters.density * volume;
+  const double cells = static_cast<double>(_grid.whole[0]) * _grid.whole[1] * _grid.whole[2];
   Totals totals;
   totals.step = control.now.step;
   totals.time = control.now.time;
@@ -325,15 +381,9 @@ Totals FlowSolver<ExecutionSpace>::totals() {
   totals.dissipation = _parameters.viscosity * volume * sum[total_dissipation];
   for (int c = 0; c < 3; ++c) totals.momentum[c] = mass * sum[total_momentum_x + c];
   totals.max_speed = std::sqrt(sum[total_squared_speed]);
-  totals.divergence_rms = std::sqrt(sum[total_squared_divergence] / static_cast<double>(_grid.cells()));
+  totals.divergence_rms = std::sqrt(sum[total_squared_divergence] / cells);
   totals.divergence_max = sum[total_divergence];
-  for (int side = 0; side < 6; ++side) {
-    const int axis = side / 2;
-    double faces = 0.0;
-    for (int row = 0; row < longest; ++row)
-      faces += rows_on_host(static_cast<std::size_t>(side * longest + row));
-    totals.outflow[side] = faces * volume / _grid.h[axis];
-  }
+  for (int side = 0; side < 6; ++side) totals.outflow[side] = outflow[side] * volume / _grid.h[side / 2];
   return totals;
 }
 
@@ -346,9 +396,12 @@ void FlowSolver<ExecutionSpace>::start() {
   control.first_failure = no_failure;
   write_control(control);
   _boundary.enqueue_evaluation(space(), _control, {0.0, true});
-  launch_ghosts(space(), _grid, _boundary.conditions(), _velocity);
+  begin_ghosts(space(), _velocity);
+  finish_ghosts(space(), _velocity);
   device::copy(space(), _predicted, _velocity);
   enqueue_projection(space(), _velocity, 1.0, true);
+  finish_ghosts(space(), _velocity);
+  if (_halo) _halo->agree(space(), _control);
   // The first step has no pressure of a previous one.
   if (_diffusion) Kokkos::deep_copy(space(), _pressure, 0.0);
   control = read_control();
@@ -370,7 +423,8 @@ void FlowSolver<ExecutionSpace>::restore(const Progress& progress) {
   control.trial.stop = Stop::pause;
   write_control(control);
   _boundary.enqueue_evaluation(space(), _control, {0.0, true});
-  launch_ghosts(space(), _grid, _boundary.conditions(), _velocity);
+  begin_ghosts(space(), _velocity);
+  finish_ghosts(space(), _velocity);
   space().fence("drogue::flow::restore");
   _loop.status_view()().step = progress.step;
 }
@@ -404,7 +458,62 @@ struct FlowSolver<ExecutionSpace>::Steps {
 
 template <class ExecutionSpace>
 Stop FlowSolver<ExecutionSpace>::advance(double target, std::int64_t pause_step, const Poll& poll) {
+  if (_halo) return advance_together({target, pause_step}, poll);
   return _loop.advance({target, pause_step}, Steps{*this}, poll);
+}
+
+/// Step loop of several ranks: step by step, so that all take the same steps.
+template <class ExecutionSpace>
+Stop FlowSolver<ExecutionSpace>::advance_together(const stepping::AdvanceRequest& request, const Poll& poll) {
+  const auto goes_on = [&] { return _halo->all(!poll || poll(_loop.status())); };
+  if (!goes_on()) return Stop::interrupted;
+  Steps steps{*this};
+  steps.begin(request, -1);
+  _loop.count_launch();
+  space().fence("drogue::flow::advance_together: begun");
+  bool interrupted = false;
+  while (_loop.status().stop == Stop::running && !interrupted) {
+    steps.enqueue(0, 1);
+    _loop.count_launch();
+    space().fence("drogue::flow::advance_together: stepped");
+    interrupted = _loop.status().stop == Stop::running && !goes_on();
+  }
+  finish_ghosts(space(), _velocity);
+  space().fence("drogue::flow::advance_together: stopped");
+  return interrupted ? Stop::interrupted : _loop.status().stop;
+}
+
+/// Enqueues the fill of the ghost cells of a velocity field; on several ranks it only begins.
+template <class ExecutionSpace>
+void FlowSolver<ExecutionSpace>::begin_ghosts(const ExecutionSpace& space, const Values& velocity) const {
+  if (_halo)
+    _halo->begin_velocity(space, velocity);
+  else
+    launch_ghosts(space, _grid, _boundary.conditions(), velocity);
+}
+
+/// Completes what `begin_ghosts` began for the same field.
+template <class ExecutionSpace>
+void FlowSolver<ExecutionSpace>::finish_ghosts(const ExecutionSpace& space, const Values& velocity) const {
+  if (_halo && _halo->finish_velocity(space, velocity))
+    launch_ghosts(space, _grid, _boundary.conditions(), velocity);
+}
+
+/// Momentum stage. On several ranks, cells that need no other rank come first, while the messages are under
+/// way.
+template <class ExecutionSpace>
+void FlowSolver<ExecutionSpace>::enqueue_momentum(const ExecutionSpace& space,
+                                                  const MomentumSetup<ExecutionSpace>& setup) const {
+  if (!_halo) return dispatch_momentum(space, setup, _parameters.advection);
+  MomentumSetup<ExecutionSpace> part = setup;
+  const std::vector<MacGrid> parts = _halo->parts();
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    // The cells inside need the ghost cells at the sides of the domain.
+    if (i == 0 && parts.size() > 1) launch_ghosts(space, _grid, _boundary.conditions(), setup.stage);
+    if (i == 1 || parts.size() == 1) finish_ghosts(space, setup.stage);
+    part.grid = parts[i];
+    dispatch_momentum(space, part, _parameters.advection);
+  }
 }
 
 template <class ExecutionSpace>
@@ -437,6 +546,7 @@ void FlowSolver<ExecutionSpace>::enqueue_step(const ExecutionSpace& space) const
     setup.weights = {1.0 / 3.0, 2.0 / 3.0, 2.0 / 3.0, false};
     enqueue_stage(space, setup, _velocity, 2.0 / 3.0, 1.0);
   }
+  if (_halo) _halo->agree(space, _control);
   Kokkos::parallel_for("drogue::flow::finish_step", one_thread(space),
                        FinishStepFunctor<ExecutionSpace>{_control, _loop.status_view(), _constants});
 }
@@ -449,14 +559,15 @@ void FlowSolver<ExecutionSpace>::enqueue_stage(const ExecutionSpace& space,
                                                const Values& result, double fraction,
                                                double time_fraction) const {
   if (_parameters.turbulence != Turbulence::none) {
-    launch_cells(
-        space, "drogue::flow::eddy_viscosity", _grid.n,
-        EddyViscosityFunctor<ExecutionSpace>{_grid, _eddy_model, setup.stage, _eddy_viscosity, _control});
-    launch_cells(
-        space, "drogue::flow::eddy_stress", _grid.n,
-        EddyStressFunctor<ExecutionSpace>{_grid, setup.stage, _eddy_viscosity, _eddy_acceleration, _control});
+    finish_ghosts(space, setup.stage);
+    launch_cells(space, "drogue::flow::eddy_viscosity", _eddy_cells.extent,
+                 EddyViscosityFunctor<ExecutionSpace>{_grid, _eddy_model, setup.stage, _eddy_cells,
+                                                      _eddy_viscosity, _control});
+    launch_cells(space, "drogue::flow::eddy_stress", _grid.n,
+                 EddyStressFunctor<ExecutionSpace>{_grid, setup.stage, _eddy_cells, _eddy_viscosity,
+                                                   _eddy_acceleration, _control});
   }
-  dispatch_momentum(space, setup, _parameters.advection);
+  enqueue_momentum(space, setup);
   if (_boundary.changes()) _boundary.enqueue_evaluation(space, _control, {time_fraction, false});
   launch_boundary_faces(space, setup, _boundary.conditions());
   if (_diffusion)
@@ -471,17 +582,22 @@ template <class ExecutionSpace>
 void FlowSolver<ExecutionSpace>::enqueue_projection(const ExecutionSpace& space, const Values& result,
                                                     double fraction, bool is_initial) const {
   const Values& unknown = _diffusion ? _pressure_increment : _pressure;
-  const ProjectionSetup<ExecutionSpace> setup{_grid,
-                                              _boundary.conditions(),
-                                              _predicted,
-                                              result,
-                                              _divergence,
-                                              unknown,
-                                              _diffusion && !is_initial ? _pressure : Values(),
-                                              _control,
-                                              kinematic_viscosity(),
-                                              fraction,
-                                              !is_initial && _boundary.has_outflow()};
+  ProjectionSetup<ExecutionSpace> setup{_grid,
+                                        _boundary.conditions(),
+                                        _predicted,
+                                        result,
+                                        _divergence,
+                                        unknown,
+                                        _diffusion && !is_initial ? _pressure : Values(),
+                                        _control,
+                                        kinematic_viscosity(),
+                                        fraction,
+                                        !is_initial && _boundary.has_outflow(),
+                                        {}};
+  if (_halo) {
+    for (std::size_t axis = 0; axis < 3; ++axis) setup.pressure_below[axis] = _halo->pressure_below(axis);
+    _halo->exchange_high_faces(space, _predicted);
+  }
   launch_divergence(space, setup);
   std::visit(
       [&](auto& poisson) {
@@ -492,8 +608,12 @@ void FlowSolver<ExecutionSpace>::enqueue_projection(const ExecutionSpace& space,
                                 PressureFailureFunctor<ExecutionSpace>{_control});
       },
       *_poisson);
+  if (_halo) {
+    _halo->agree(space, _control);  // no rank may overwrite the state if another one has failed
+    _halo->exchange_pressure(space, _pressure);
+  }
   launch_correction(space, setup);
-  launch_ghosts(space, _grid, _boundary.conditions(), result);
+  begin_ghosts(space, result);
 }
 
 }  // namespace drogue::flow

@@ -1,22 +1,13 @@
 #pragma once
 
-#include <Kokkos_Core.hpp>
+#include "kernels/device/launch.hpp"
 
 namespace drogue::flow {
 
-/// Calls `functor(i, j, k)` for all indices below `extent`, i fastest. Asynchronous; may be captured into a
-/// CUDA graph.
-template <class ExecutionSpace, class Functor>
-void launch_cells(const ExecutionSpace& space, const char* label, const int extent[3],
-                  const Functor& functor) {
-  using Policy =
-      Kokkos::MDRangePolicy<ExecutionSpace, Kokkos::Rank<3, Kokkos::Iterate::Left, Kokkos::Iterate::Left>>;
-  Kokkos::parallel_for(
-      label,
-      Kokkos::Experimental::require(Policy(space, {0, 0, 0}, {extent[0], extent[1], extent[2]}),
-                                    Kokkos::Experimental::WorkItemProperty::HintLightWeight),
-      functor);
-}
+/// Threads of a team on a device, as columns of a tile of 32 x 4 cells.
+inline constexpr int tile_x = 32, tile_y = 4;
+
+using device::launch_cells;
 
 /// Planes of a march along z of a tile of columns on a device: at most `longest`, a power of two, and fewer
 /// if that would leave multiprocessors without work. Does not throw.
@@ -26,8 +17,5 @@ inline int march_planes(int tiles, int nz, int longest) {
   while (planes > 2 && tiles * ((nz + planes - 1) / planes) < enough_teams) planes /= 2;
   return planes;
 }
-
-/// Threads of a team on a device, as columns of a tile of 32 x 4 cells.
-inline constexpr int tile_x = 32, tile_y = 4;
 
 }  // namespace drogue::flow

@@ -4,6 +4,7 @@
 
 #include <Kokkos_Core.hpp>
 
+#include "kernels/flow/halo/decomposition.hpp"
 #include "kernels/flow/parameters.hpp"
 
 namespace drogue::flow {
@@ -15,11 +16,16 @@ inline constexpr int ghost_width = 3;
 /// the velocity lies on its low face along axis c. Arrays with ghost cells hold component after component,
 /// x fastest. Along a bounded axis of n cells, component c of axis c has n + 1 faces; the last one is stored
 /// in the first ghost cell.
+///
+/// On one of several ranks it is the part of a whole grid that the rank holds. Sides towards other ranks are
+/// `BoundaryKind::neighbour`; along such an axis, face n belongs to the neighbour.
 struct MacGrid {
-  int n[3];      ///< cells per axis
-  int ghost[3];  ///< ghost cells at each side; 0 along axes with one cell
-  bool periodic[3];
-  double low[3];           ///< lower corner, m
+  int n[3];                ///< cells per axis
+  int ghost[3];            ///< ghost cells at each side; 0 along axes with one cell
+  int whole[3];            ///< cells of the whole grid per axis
+  int origin[3];           ///< index of cell (0, 0, 0) in the whole grid
+  bool periodic[3];        ///< with both sides on this rank
+  double low[3];           ///< lower corner of the whole grid, m
   double h[3];             ///< spacing, m
   double inverse_h[3];     ///< 1/m
   std::int64_t stride[3];  ///< of an array with ghost cells, in numbers
@@ -34,19 +40,28 @@ struct MacGrid {
   [[nodiscard]] KOKKOS_FUNCTION std::int64_t cells() const {
     return static_cast<std::int64_t>(n[0]) * n[1] * n[2];
   }
+  /// Number of cell (i, j, k) in the whole grid, x fastest.
+  [[nodiscard]] KOKKOS_FUNCTION std::int64_t number(int i, int j, int k) const {
+    return origin[0] + i +
+           static_cast<std::int64_t>(whole[0]) *
+               (origin[1] + j + static_cast<std::int64_t>(whole[1]) * (origin[2] + k));
+  }
 };
 
-/// Grid of a solver. Rows start at multiples of 64 bytes. Does not throw.
-inline MacGrid make_grid(const Parameters& p) {
+/// Grid of a solver, on one of several ranks its part. Rows start at multiples of 64 bytes. Does not throw.
+inline MacGrid make_grid(const Parameters& p, const linear::PencilRanks& ranks = {}) {
   MacGrid grid{};
   // Eight ghost cells before a row keep its first cell at a multiple of 64 bytes.
   constexpr int row_alignment = 8;
+  const linear::CellBox box = linear::box_of(ranks, p.cells);
   int extent[3];
   for (int axis = 0; axis < 3; ++axis) {
     const auto a = static_cast<std::size_t>(axis);
-    grid.n[axis] = p.cells[a];
+    grid.n[axis] = box.cells[a];
     grid.ghost[axis] = p.cells[a] > 1 ? ghost_width : 0;
-    grid.periodic[axis] = p.boundary[2 * a].kind == BoundaryKind::periodic;
+    grid.whole[axis] = p.cells[a];
+    grid.origin[axis] = box.begin[a];
+    grid.periodic[axis] = p.boundary[2 * a].kind == BoundaryKind::periodic && ranks.parts[a] == 1;
     grid.low[axis] = p.low[a];
     grid.h[axis] = (p.high[a] - p.low[a]) / p.cells[a];
     grid.inverse_h[axis] = 1.0 / grid.h[axis];

@@ -46,10 +46,11 @@ enum class PressureSolver {
 /// Type of a side of the domain.
 enum class BoundaryKind {
   periodic,
-  slip,     ///< no flow through the side, no shear stress
-  wall,     ///< velocity of the wall, no slip
-  inflow,   ///< prescribed velocity
-  outflow,  ///< zero normal gradient of the velocity, zero pressure
+  slip,       ///< no flow through the side, no shear stress
+  wall,       ///< velocity of the wall, no slip
+  inflow,     ///< prescribed velocity
+  outflow,    ///< zero normal gradient of the velocity, zero pressure
+  neighbour,  ///< other ranks hold the cells beyond; only inside a solver, no side of a domain
 };
 
 /// Side of the domain: its type, and the velocity of a wall or an inflow, m/s.

@@ -10,7 +10,7 @@ namespace drogue::flow {
 
 // Defined in solver_adapter.hpp, instantiated for each backend in instances/.
 template <class ExecutionSpace>
-std::unique_ptr<Solver> make_solver(const Parameters& parameters);
+std::unique_ptr<Solver> make_solver(const Parameters& parameters, const linear::RankGroup& group);
 
 namespace {
 
@@ -60,6 +60,8 @@ void check_parameters(const Parameters& p) {
     const BoundaryKind low = p.boundary[2 * axis].kind, high = p.boundary[2 * axis + 1].kind;
     require((low == BoundaryKind::periodic) == (high == BoundaryKind::periodic),
             "both sides of an axis must be periodic, or none");
+    require(low != BoundaryKind::neighbour && high != BoundaryKind::neighbour,
+            "a side of the domain has no neighbour");
     require(n > 1 || low == BoundaryKind::periodic || low == BoundaryKind::slip,
             "an axis with one cell must be periodic or have slip sides");
     require(p.pressure_drop[axis] == 0.0 || low == BoundaryKind::periodic,
@@ -86,11 +88,12 @@ void check_parameters(const Parameters& p) {
   check_net_inflow(p);
 }
 
-std::unique_ptr<Solver> create_solver(device::Backend backend, const Parameters& parameters) {
+std::unique_ptr<Solver> create_solver(device::Backend backend, const Parameters& parameters,
+                                      const linear::RankGroup& group) {
   check_parameters(parameters);
   try {
-    return device::dispatch(backend,
-                            [&]<class ExecutionSpace>() { return make_solver<ExecutionSpace>(parameters); });
+    return device::dispatch(
+        backend, [&]<class ExecutionSpace>() { return make_solver<ExecutionSpace>(parameters, group); });
   } catch (const std::runtime_error& error) {
     // Kokkos throws this for a failed allocation.
     if (std::string_view(error.what()).find("failed to allocate") != std::string_view::npos)

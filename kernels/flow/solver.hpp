@@ -7,6 +7,7 @@
 #include "kernels/device/backend.hpp"
 #include "kernels/flow/parameters.hpp"
 #include "kernels/flow/state.hpp"
+#include "kernels/linear/parallel/rank_group.hpp"
 
 namespace drogue::flow {
 
@@ -70,6 +71,11 @@ void check_parameters(const Parameters& parameters);
 
 /// Solver on a backend, which must be available. Throws std::invalid_argument as `check_parameters` does, and
 /// std::bad_alloc if memory runs out.
-[[nodiscard]] std::unique_ptr<Solver> create_solver(device::Backend backend, const Parameters& parameters);
+///
+/// On a group of several ranks each holds a part of the cells: arrays are those of `part_of`
+/// (kernels/flow/halo/decomposition.hpp), and all functions but those that do not throw are collective.
+/// Throws std::invalid_argument also if the ranks cannot share the grid.
+[[nodiscard]] std::unique_ptr<Solver> create_solver(device::Backend backend, const Parameters& parameters,
+                                                    const linear::RankGroup& group = {});
 
 }  // namespace drogue::flow

@@ -4,17 +4,22 @@
 
 namespace drogue::flow {
 
-/// Number of host threads for a grid: a thread with fewer cells costs more than it saves.
-inline int host_threads(const Parameters& p) {
-  const std::int64_t cells = static_cast<std::int64_t>(p.cells[0]) * p.cells[1] * p.cells[2];
-  return static_cast<int>(1 + std::min<std::int64_t>(cells / 2048, 4096));
+/// Number of host threads for a rank: a thread with fewer cells costs more than it saves, and ranks share the
+/// cores of a host.
+template <class ExecutionSpace>
+int host_threads(const Parameters& p, const linear::RankGroup& group) {
+  const std::int64_t cells = static_cast<std::int64_t>(p.cells[0]) * p.cells[1] * p.cells[2] / group.size();
+  const int useful = static_cast<int>(1 + std::min<std::int64_t>(cells / 2048, 4096));
+  if (group.ranks_on_host() == 1) return useful;
+  return std::clamp(ExecutionSpace().concurrency() / group.ranks_on_host(), 1, useful);
 }
 
 /// `FlowSolver` behind the virtual interface, on an execution-space instance of its own.
 template <class ExecutionSpace>
 class SolverAdapter final : public Solver {
  public:
-  explicit SolverAdapter(const Parameters& p) : _instance(host_threads(p)), _solver(_instance, p) {}
+  SolverAdapter(const Parameters& p, const linear::RankGroup& group)
+      : _instance(host_threads<ExecutionSpace>(p, group)), _solver(_instance, p, group) {}
 
   void upload(StateField field, std::span<const double> values) override { _solver.upload(field, values); }
   void download(StateField field, std::span<double> values) override { _solver.download(field, values); }
@@ -37,8 +42,8 @@ class SolverAdapter final : public Solver {
 
 /// Facade of a solver on `ExecutionSpace`. Throws as the constructor of FlowSolver does.
 template <class ExecutionSpace>
-std::unique_ptr<Solver> make_solver(const Parameters& parameters) {
-  return std::make_unique<SolverAdapter<ExecutionSpace>>(parameters);
+std::unique_ptr<Solver> make_solver(const Parameters& parameters, const linear::RankGroup& group) {
+  return std::make_unique<SolverAdapter<ExecutionSpace>>(parameters, group);
 }
 
 }  // namespace drogue::flow

@@ -7,7 +7,7 @@ enum class Style : unsigned char { american, european };
 enum class Type : unsigned char { put, call };
 
 /// Jump distribution of the logarithm of the asset price. `Contract::jump` holds its parameters.
-enum class Model : unsigned char {
+enum class JumpModel : unsigned char {
   generalized_hyperbolic,  ///< lambda, alpha, beta, delta (Barndorff-Nielsen 1977)
   black_scholes,           ///< no jumps, no parameters
   merton,                  ///< intensity (1/year), mean and standard deviation of a jump (Merton 1976)
@@ -18,7 +18,7 @@ enum class Model : unsigned char {
 /// One option and the exponential Levy process of its asset. Times in years, rates per year and continuously
 /// compounded, prices in money.
 struct Contract {
-  Model model = Model::generalized_hyperbolic;
+  JumpModel model = JumpModel::generalized_hyperbolic;
   Style style = Style::american;
   Type type = Type::put;
   double spot = 1.0;

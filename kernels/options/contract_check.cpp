@@ -34,7 +34,8 @@ std::string_view violated_by_generalized_hyperbolic(const Contract& c) {
 std::string_view violated_by_merton(const Contract& c) {
   const double intensity = c.jump[0], mean = c.jump[1], deviation = c.jump[2];
   return first_violated({
-      {c.variance > 0.0, "variance must be > 0 for this model, whose jumps alone leave the price standing"},
+      {c.variance > 0.0,
+       "variance must be > 0 for this model, whose jumps alone leave the price unchanged between them"},
       {std::isfinite(intensity) && intensity >= 0.0, "intensity must be finite and >= 0"},
       {std::isfinite(mean), "jump_mean must be finite"},
       {std::isfinite(deviation) && deviation >= 0.0, "jump_deviation must be finite and >= 0"},
@@ -44,7 +45,8 @@ std::string_view violated_by_merton(const Contract& c) {
 std::string_view violated_by_kou(const Contract& c) {
   const double intensity = c.jump[0], up = c.jump[1], up_rate = c.jump[2], down_rate = c.jump[3];
   return first_violated({
-      {c.variance > 0.0, "variance must be > 0 for this model, whose jumps alone leave the price standing"},
+      {c.variance > 0.0,
+       "variance must be > 0 for this model, whose jumps alone leave the price unchanged between them"},
       {std::isfinite(intensity) && intensity >= 0.0, "intensity must be finite and >= 0"},
       {up >= 0.0 && up <= 1.0, "up_probability must lie in 0 .. 1"},
       {std::isfinite(up_rate) && up_rate > 1.0, "up_rate must be finite and > 1, else the asset has no mean"},
@@ -71,13 +73,13 @@ std::string_view violated_condition(const Contract& c) {
   });
   if (!common.empty()) return common;
   switch (c.model) {
-    case Model::generalized_hyperbolic:
+    case JumpModel::generalized_hyperbolic:
       return violated_by_generalized_hyperbolic(c);
-    case Model::black_scholes:
+    case JumpModel::black_scholes:
       return first_violated({{c.variance > 0.0, "variance must be > 0 where there are no jumps"}});
-    case Model::merton:
+    case JumpModel::merton:
       return violated_by_merton(c);
-    case Model::kou:
+    case JumpModel::kou:
       return violated_by_kou(c);
   }
   return "model must be one that is known";

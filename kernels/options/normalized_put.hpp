@@ -10,7 +10,7 @@ namespace drogue::options {
 /// A call equals the put with spot and strike, and rate and dividend, exchanged under the dual measure, whose
 /// jumps have the density e^{-y} g(-y) (Peskir and Shiryaev 2002; Fajardo and Mordecki 2006).
 struct NormalizedPut {
-  Model model = Model::generalized_hyperbolic;
+  JumpModel model = JumpModel::generalized_hyperbolic;
   bool early = true;      ///< early exercise is allowed and may pay
   bool split = false;     ///< early exercise is imposed by operator splitting, as two boundaries require
   double log_spot = 0.0;  ///< ln(spot/strike)
@@ -21,14 +21,14 @@ struct NormalizedPut {
 };
 
 /// Replaces the parameters of a jump density g(y) by those of the dual density e^{-y} g(-y).
-KOKKOS_INLINE_FUNCTION void to_dual_measure(Model model, double* jump) {
-  if (model == Model::generalized_hyperbolic) {
+KOKKOS_INLINE_FUNCTION void to_dual_measure(JumpModel model, double* jump) {
+  if (model == JumpModel::generalized_hyperbolic) {
     jump[2] = -jump[2] - 1.0;
-  } else if (model == Model::merton) {
+  } else if (model == JumpModel::merton) {
     const double variance = jump[2] * jump[2];
     jump[0] *= device::portable::exp(jump[1] + 0.5 * variance);
     jump[1] = -jump[1] - variance;
-  } else if (model == Model::kou) {
+  } else if (model == JumpModel::kou) {
     const double up = jump[1] * jump[2] / (jump[2] - 1.0), down = (1.0 - jump[1]) * jump[3] / (jump[3] + 1.0);
     const double rate_up = jump[2];
     jump[0] *= up + down;

@@ -2,6 +2,7 @@
 
 #include <iostream>
 
+#include "common/program/communicator.hpp"
 #include "common/program/mpi_guard.hpp"
 #include "common/program/program.hpp"
 #include "common/program/provenance.hpp"
@@ -11,6 +12,37 @@
 #include "miniapps/framework/scene_run.hpp"
 
 namespace drogue::framework {
+namespace {
+
+/// Ends the work of the other ranks with rank 0, however that ends.
+class EndOfRanks {
+ public:
+  explicit EndOfRanks(Communicator& communicator) : _communicator(communicator) {}
+  ~EndOfRanks() { static_cast<void>(_communicator.broadcast({})); }
+  EndOfRanks(const EndOfRanks&) = delete;
+  EndOfRanks& operator=(const EndOfRanks&) = delete;
+
+ private:
+  Communicator& _communicator;
+};
+
+ExitCode run_on_ranks(const MiniApp& app, const MiniAppOptions& options,
+                      const std::filesystem::path& folder) {
+  Communicator communicator;
+  install_signal_handlers();
+  if (!communicator.is_root()) {
+    try {
+      app.serve(communicator, options);
+    } catch (...) {
+      communicator.abort();
+    }
+    return ExitCode::ok;  // rank 0 has the code of the run
+  }
+  const EndOfRanks end(communicator);
+  return run_scene(app, options, scene::find_scene(options.scene, folder), &communicator);
+}
+
+}  // namespace
 
 std::filesystem::path find_scene_folder(const std::string& name, const std::filesystem::path& source_folder) {
   return find_shipped_folder("scenes/" + name, source_folder);
@@ -30,7 +62,11 @@ ExitCode run_command(const MiniApp& app, const MiniAppOptions& options) {
     std::cout << scene::list_text(scene::list_scenes(folder));
     return ExitCode::ok;
   }
-  require_one_rank(app.program());
+  const bool on_ranks = launched_rank().ranks > 1;
+  if (!app.serve) require_one_rank(app.program());
+  if (on_ranks && !options.study.empty())
+    throw Failure(ExitCode::usage, "--study runs on one rank, not " + std::to_string(launched_rank().ranks));
+  if (on_ranks && !options.check && !options.print_scene) return run_on_ranks(app, options, folder);
   const std::filesystem::path file = scene::find_scene(options.scene, folder);
   if (options.check || options.print_scene) {
     const std::unique_ptr<Scene> scene = app.read(file, options.set, options.baseline);
@@ -38,7 +74,7 @@ ExitCode run_command(const MiniApp& app, const MiniAppOptions& options) {
     return ExitCode::ok;
   }
   install_signal_handlers();
-  if (options.study.empty()) return run_scene(app, options, file);
+  if (options.study.empty()) return run_scene(app, options, file, nullptr);
   if (!app.study) throw Failure(ExitCode::usage, app.program() + " has no --study");
   return app.study(options, file);
 }

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "common/program/stopwatch.hpp"
-#include "common/run/io_error.hpp"
+#include "common/run/files/io_error.hpp"
 
 namespace drogue::framework {
 namespace {
@@ -64,11 +64,14 @@ void RunOutput::write_fields() {
     const ScopedStopwatch stopwatch(_waited);
     _writer.wait_for_slot();
   }
-  _writer.submit([this, now, write = _simulation.snapshot()] {
+  const auto task = [this, now, write = _simulation.snapshot()] {
     _fields->begin_step(now.time, now.step);
     write(*_fields);
     _fields->end_step();
-  });
+  };
+  if (!_simulation.writes_on_calling_thread()) return _writer.submit(task);
+  const ScopedStopwatch stopwatch(_waited);
+  task();
 }
 
 void RunOutput::write_restart() {

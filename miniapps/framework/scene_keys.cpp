@@ -56,7 +56,7 @@ void complete_output(const scene::Table& root, OutputRequest& output,
   if (!output.times.empty() && output.fields.empty()) output.fields = default_fields;
   if (!output.fields.empty() && !root.given("output.times")) output.times = {end.time};
   if (!output.fields.empty() && output.times.empty())
-    scene::contradict(root, "output.times", "output.times is empty, yet output.fields asks for fields");
+    scene::contradict(root, "output.times", "output.times is empty, yet output.fields names fields");
   if (!output.times.empty() && output.times.back() > end.time)
     scene::contradict(root, "output.times",
                       "output.times: " + scene::real_text(output.times.back()) + " is later than " + end.key +

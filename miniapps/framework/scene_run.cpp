@@ -30,10 +30,12 @@ run::ExistingRun existing_run(const MiniAppOptions& options, bool is_empty,
 /// One run of a scene in its directory.
 class SceneRun {
  public:
-  SceneRun(const MiniApp& app, const MiniAppOptions& options, const std::filesystem::path& file)
+  SceneRun(const MiniApp& app, const MiniAppOptions& options, const std::filesystem::path& file,
+           Communicator* communicator)
       : _app(app),
         _options(options),
         _file(file),
+        _communicator(communicator),
         _out(options.out.empty() ? std::filesystem::path("out") / file.stem() : options.out),
         _restart(options.restart.empty() ? std::filesystem::path()
                                          : run::restart_source(options.restart, _out)),
@@ -41,6 +43,7 @@ class SceneRun {
         _directory(_out, existing_run(options, _is_empty, _restart)),
         _result(run::new_result(app.program(), file.stem().string())) {
     _result.metrics = app.metrics;
+    if (communicator != nullptr) _result.ranks = communicator->size();
   }
 
   ExitCode run() {
@@ -70,7 +73,7 @@ class SceneRun {
     _result.precision = scene->precision();
     const Stopwatch setup;
     const std::unique_ptr<Simulation> simulation =
-        scene->create({backend, _options.baseline, _options.quiet});
+        scene->create({backend, _options.baseline, _options.quiet, _communicator});
     set_up(*simulation, files);
     _result.timing.setup_s = setup.seconds();
     _directory.begin();
@@ -131,6 +134,7 @@ class SceneRun {
   const MiniApp& _app;
   const MiniAppOptions& _options;
   const std::filesystem::path& _file;
+  Communicator* _communicator;
   const Stopwatch _stopwatch;
   const std::filesystem::path _out, _restart;
   const bool _is_empty;
@@ -140,8 +144,9 @@ class SceneRun {
 
 }  // namespace
 
-ExitCode run_scene(const MiniApp& app, const MiniAppOptions& options, const std::filesystem::path& file) {
-  return SceneRun(app, options, file).run();
+ExitCode run_scene(const MiniApp& app, const MiniAppOptions& options, const std::filesystem::path& file,
+                   Communicator* communicator) {
+  return SceneRun(app, options, file, communicator).run();
 }
 
 }  // namespace drogue::framework

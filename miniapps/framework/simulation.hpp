@@ -6,11 +6,12 @@
 #include <string>
 #include <vector>
 
+#include "common/program/communicator.hpp"
 #include "common/program/failure.hpp"
-#include "common/run/dataset_spec.hpp"
-#include "common/run/fields_writer.hpp"
+#include "common/run/fields/dataset_spec.hpp"
+#include "common/run/fields/fields_writer.hpp"
 #include "common/run/history_writer.hpp"
-#include "common/run/restart_file.hpp"
+#include "common/run/restart/restart_file.hpp"
 #include "common/run/result_document.hpp"
 #include "common/run/run_directory.hpp"
 #include "kernels/device/backend.hpp"
@@ -53,7 +54,7 @@ using RowSink = std::function<void(const HistoryRow&)>;
 using Poll = std::function<bool(const TimeState&)>;
 
 /// Writes the fields of one output between `begin_step` and `end_step` of the writer. It runs on the writer's
-/// thread while the simulation takes further steps.
+/// thread while the simulation takes further steps, unless `Simulation::writes_on_calling_thread`.
 using FieldsTask = std::function<void(run::FieldsWriter&)>;
 
 /// One run of a scene, from its start or a restart file to its end. Every function blocks until its result is
@@ -105,6 +106,9 @@ class Simulation {
   /// Number of snapshots that may exist at once.
   [[nodiscard]] virtual std::size_t snapshot_buffers() const { return 2; }
 
+  /// True if the tasks of `snapshot` must run on the thread that calls it, before further steps.
+  [[nodiscard]] virtual bool writes_on_calling_thread() const { return false; }
+
   /// Copies the fields of the current state, and returns the task that writes the copy.
   [[nodiscard]] virtual FieldsTask snapshot() {
     return [](run::FieldsWriter&) {};
@@ -124,8 +128,9 @@ class Simulation {
 /// Settings of a simulation that stand on the command line.
 struct SimulationSettings {
   device::Backend backend = device::Backend::serial;
-  bool baseline = false;  ///< algorithm of [Shi], with its host-device copies
-  bool quiet = false;     ///< no progress line
+  bool baseline = false;                 ///< algorithm of [Shi], with its host-device copies
+  bool quiet = false;                    ///< no progress line
+  Communicator* communicator = nullptr;  ///< of several ranks; null: one rank
 };
 
 /// A scene that was read and checked, with every default filled in.

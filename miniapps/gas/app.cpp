@@ -2,8 +2,8 @@
 
 #include <utility>
 
-#include "miniapps/gas/simulation.hpp"
-#include "miniapps/gas/study.hpp"
+#include "miniapps/gas/simulation/simulation.hpp"
+#include "miniapps/gas/verify/study.hpp"
 
 namespace drogue::gas_app {
 namespace {

@@ -7,7 +7,7 @@
 #include "common/program/message.hpp"
 #include "common/program/program.hpp"
 #include "common/program/stopwatch.hpp"
-#include "common/run/output_path.hpp"
+#include "common/run/files/output_path.hpp"
 #include "common/run/result_document.hpp"
 #include "miniapps/framework/device_session.hpp"
 #include "miniapps/options/input/shipped_batches.hpp"

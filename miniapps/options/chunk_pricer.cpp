@@ -49,8 +49,8 @@ void ChunkPricer::price_chunk(const Chunk& chunk, WorkQueue& queue) {
   }
   for (ContractRow& row : _rows) {
     if (row.error_message.empty() && _command.settings.method == options::Method::baseline &&
-        row.contract.model != options::Model::generalized_hyperbolic)
-      row.error_message = "--method seed has generalized hyperbolic jumps alone";
+        row.contract.model != options::JumpModel::generalized_hyperbolic)
+      row.error_message = "--method seed supports only generalized hyperbolic jumps";
     add_row(row, chunk, queue);
     if (_is_stopped) return;
   }

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "miniapps/parachute/parallel/serve.hpp"
 #include "miniapps/parachute/simulation.hpp"
 #include "miniapps/parachute/study.hpp"
 
@@ -40,6 +41,7 @@ framework::MiniApp mini_app() {
   app.scene_folder = scene_folder();
   app.read = read;
   app.study = run_study;
+  app.serve = serve;
   // The schema of result.json holds the counts of a flux limiter for every program.
   for (const char* count : {"touches", "cells", "redone_steps"})
     app.metrics.set("limiter", count, std::int64_t{0});

@@ -37,7 +37,7 @@ std::array<double, 3> Lattice::place(std::size_t entry) const {
 }
 
 Lattice lattice_of(const flow::Parameters& parameters, flow::StateField field) {
-  Lattice lattice{flow::extents(parameters, field), {}, {}};
+  Lattice lattice{flow::extents(parameters, field), {}, {}, {0, 0, 0}};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const int cells = parameters.cells[axis];
     const double h = (parameters.high[axis] - parameters.low[axis]) / cells;

@@ -35,17 +35,19 @@ class SpaceTimeFunction {
 /// Program of an expression for kernels. Throws std::invalid_argument if it is too long.
 [[nodiscard]] device::ExpressionProgram device_program(const std::string& text);
 
-/// Points of an array of the state: `n` along each axis, the first at `first`, m, and `spacing`, m, apart.
-/// Entry i + n[0] (j + n[1] k) is at point (i, j, k).
+/// Points of an array of the state, or of a part of it: `n` along each axis. Point (0, 0, 0) of the whole
+/// array is at `first`, m; points are `spacing`, m, apart. Entry i + n[0] (j + n[1] k) is at point `origin` +
+/// (i, j, k).
 struct Lattice {
   std::array<int, 3> n;
   std::array<double, 3> first, spacing;
+  std::array<int, 3> origin = {0, 0, 0};
 
   [[nodiscard]] std::size_t size() const {
     return static_cast<std::size_t>(n[0]) * static_cast<std::size_t>(n[1]) * static_cast<std::size_t>(n[2]);
   }
   [[nodiscard]] double coordinate(std::size_t axis, int index) const {
-    return first[axis] + index * spacing[axis];
+    return first[axis] + (origin[axis] + index) * spacing[axis];
   }
   [[nodiscard]] std::array<double, 3> place(std::size_t entry) const;
 };

@@ -1,6 +1,6 @@
 #include "miniapps/parachute/scene.hpp"
 
-#include "common/run/restart_file.hpp"
+#include "common/run/restart/restart_file.hpp"
 #include "common/scene/document.hpp"
 #include "common/scene/print.hpp"
 #include "common/scene/read.hpp"

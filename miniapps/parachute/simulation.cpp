@@ -3,7 +3,7 @@
 #include <sstream>
 
 #include "common/program/stopwatch.hpp"
-#include "common/run/rectilinear_mesh.hpp"
+#include "common/run/fields/rectilinear_mesh.hpp"
 #include "miniapps/parachute/functions.hpp"
 
 namespace drogue::parachute_app {
@@ -57,7 +57,15 @@ const char* reason_text(flow::FailureReason reason) {
 }  // namespace
 
 Simulation::Simulation(const FlowScene& scene, const framework::SimulationSettings& settings)
-    : _scene(scene), _solver(flow::create_solver(settings.backend, scene.parameters)) {
+    : _scene(scene) {
+  if (settings.communicator != nullptr) {
+    auto shared = std::make_unique<SharedSolver>(*settings.communicator, settings.backend, scene.parameters);
+    _shared = shared.get();
+    _solver = std::move(shared);
+  } else {
+    _solver = flow::create_solver(settings.backend, scene.parameters);
+  }
+  if (_shared != nullptr) return;
   for (Snapshot& snapshot : _snapshots)
     for (const run::DatasetSpec& spec : field_specs()) snapshot.emplace_back(run::entries(spec));
 }
@@ -65,9 +73,13 @@ Simulation::Simulation(const FlowScene& scene, const framework::SimulationSettin
 void Simulation::start() {
   const ScopedStopwatch stopwatch(_h2d_s);
   for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::string& velocity = _scene.initial_velocity()[axis];
+    if (_shared != nullptr) {
+      _shared->upload(axis, velocity);
+      continue;
+    }
     const flow::StateField field = velocity_field(axis);
-    const SpaceTimeFunction velocity(_scene.initial_velocity()[axis]);
-    _solver->upload(field, evaluate(velocity, lattice_of(_scene.parameters, field), 0.0));
+    _solver->upload(field, evaluate(SpaceTimeFunction(velocity), lattice_of(_scene.parameters, field), 0.0));
   }
   _solver->start();
   _statistics.begin(_solver->totals());
@@ -159,6 +171,12 @@ void Simulation::sample_fields(Snapshot& snapshot) {
 }
 
 framework::FieldsTask Simulation::snapshot() {
+  if (_shared != nullptr)
+    return [this](run::FieldsWriter& fields) {
+      const std::string file = std::filesystem::absolute(fields.file()).string();
+      for (const std::string& name : _scene.output.fields)
+        _shared->write(cell_field(name), fields.offset(name), file);
+    };
   const Snapshot& filled = _snapshots[_next_snapshot];
   sample_fields(_snapshots[_next_snapshot]);
   _next_snapshot = (_next_snapshot + 1) % _snapshots.size();

@@ -5,6 +5,7 @@
 
 #include "kernels/flow/solver.hpp"
 #include "miniapps/framework/simulation.hpp"
+#include "miniapps/parachute/parallel/rank_solver.hpp"
 #include "miniapps/parachute/scene.hpp"
 #include "miniapps/parachute/statistics.hpp"
 
@@ -29,6 +30,7 @@ class Simulation final : public framework::Simulation {
   [[nodiscard]] std::vector<run::DatasetSpec> field_specs() const override;
   void write_mesh(run::FieldsWriter& fields) const override;
   [[nodiscard]] std::size_t snapshot_buffers() const override { return _snapshots.size(); }
+  [[nodiscard]] bool writes_on_calling_thread() const override { return _shared != nullptr; }
   [[nodiscard]] framework::FieldsTask snapshot() override;
   [[nodiscard]] std::string failure_text(bool restart_written) override;
   void describe(run::ResultDocument& result) override;
@@ -53,9 +55,11 @@ class Simulation final : public framework::Simulation {
   void check_totals(run::ResultDocument& result);
 
   const FlowScene& _scene;
+  SharedSolver* _shared = nullptr;  ///< `_solver` on several ranks
   std::unique_ptr<flow::Solver> _solver;
   RunStatistics _statistics;
-  std::array<Snapshot, 2> _snapshots;  ///< used in turn: one is written while the other is filled
+  /// Used in turn: one is written while the other is filled. Empty on several ranks.
+  std::array<Snapshot, 2> _snapshots;
   std::size_t _next_snapshot = 0;
   flow::Stop _stop = flow::Stop::target;
   double _compute_s = 0.0, _h2d_s = 0.0;

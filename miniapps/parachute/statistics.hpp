@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "common/run/restart_file.hpp"
+#include "common/run/restart/restart_file.hpp"
 #include "kernels/flow/state.hpp"
 
 namespace drogue::parachute_app {

@@ -95,8 +95,10 @@ study::StudyRow row_of(const FlowScene& scene, framework::RepeatedRun runs) {
   const std::string time = p.time_scheme == flow::TimeScheme::ab2 ? "ab2" : "rk3";
   const std::string& pressure = pressures[static_cast<std::size_t>(p.pressure_solver)];
   study::StudyRow row = framework::study_row(std::move(runs));
-  row.settings = {advection, time, pressure};
+  const bool is_implicit = p.diffusion == flow::Diffusion::crank_nicolson;
+  row.settings = {advection, time, std::string(is_implicit ? "crank-nicolson" : "explicit"), pressure};
   row.label = advection + " " + time;
+  if (is_implicit) row.label += " crank-nicolson";
   if (pressure != "auto") row.label += " " + pressure;
   row.mesh = longest(p);
   return row;
@@ -120,6 +122,7 @@ ExitCode run_study(const MiniAppOptions& options, const std::filesystem::path& f
       study::parse_axes(options.study, {"cells", 4, 12},
                         {{"advections", {"central", "weno-js", "weno-z"}},
                          {"times", {"ab2", "rk3"}},
+                         {"diffusions", {"explicit", "crank-nicolson"}},
                          {"pressures", {"auto", "fft", "diagonalization", "hypre-pfmg"}}});
   const FlowScene base = read_flow_scene(file, options.set);
   if (!base.verify.exact) throw Failure(ExitCode::usage, "--study needs verify.exact to compute errors");

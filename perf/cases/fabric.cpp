@@ -20,7 +20,7 @@ Case scatter_case(int vertices, long steps) {
   const auto run = std::make_shared<Run>();
   return {"springs-step/scatter-loop/" + std::to_string(vertices),
           "step",
-          "one core; no vectorisation is asked for",
+          "one core; no vectorisation requested",
           [=] {
             run->p = sheet::parameters(vertices);
             run->loop = std::make_unique<reference::ScatterSheet>(run->p);

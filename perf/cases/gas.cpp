@@ -21,7 +21,7 @@ Case dense_case(std::int64_t cells, long steps) {
   const double dx = (p.x_max - p.x_min) / static_cast<double>(cells);
   return {"gas-step/dense-loop/" + std::to_string(cells),
           "step",
-          "one core; no vectorisation is asked for",
+          "one core; no vectorisation requested",
           [=] {
             return Sample{
                 [=] {

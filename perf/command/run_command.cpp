@@ -65,7 +65,7 @@ ExitCode run_cases(const RunOptions& options, const std::regex& filter) {
 Command list_command(CLI::App& program) {
   const auto quick = std::make_shared<bool>(false);
   CLI::App* app = program.add_subcommand("list", "Print the cases that this build and machine can run");
-  app->add_flag("--quick", *quick, "Those of run --quick");
+  app->add_flag("--quick", *quick, "Only the cases of run --quick");
   return {app, [quick](const std::vector<std::string>&) {
             for (const Case& c : all_cases(*quick)) std::printf("%s\n", c.name.c_str());
             return ExitCode::ok;

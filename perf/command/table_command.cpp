@@ -12,11 +12,19 @@ namespace {
 
 struct TableOptions {
   std::string table, out;
-  std::string app = "gas", backend = "auto";
+  std::string app;  ///< empty: that of the table
+  std::string backend = "auto";
   bool quick = false;
 };
 
-/// Tables of block sizes and transfers, which need a backend and Kokkos.
+/// Tables of a mini-app.
+std::vector<std::string> tables_of(const std::string& app) {
+  if (app == "gas") return {"occupancy", "block-size", "transfers"};
+  if (app == "flow") return {"pressure", "memory"};
+  return {"transfers"};
+}
+
+/// Tables that need a backend and Kokkos.
 Table timed_table(const TableOptions& options, const std::vector<std::string>& kokkos) {
   const device::Backend backend = device::wanted_backend(options.backend);
   require(backend);
@@ -28,20 +36,24 @@ Table timed_table(const TableOptions& options, const std::vector<std::string>& k
   const device::Runtime runtime(kokkos);
   const nlohmann::json here = provenance(device::device_facts());
   if (block_size) return print_block_sizes(backend, options.quick, here);
-  const auto print = options.app == "gas"       ? print_gas_transfers
-                     : options.app == "springs" ? print_fabric_transfers
-                                                : print_options_transfers;
+  const auto print = options.table == "pressure" ? print_flow_pressure
+                     : options.table == "memory" ? print_flow_memory
+                     : options.app == "gas"      ? print_gas_transfers
+                     : options.app == "springs"  ? print_fabric_transfers
+                                                 : print_options_transfers;
   return print(backend, options.quick, here);
 }
 
-ExitCode print_table(const TableOptions& options, const std::vector<std::string>& kokkos) {
-  require_name("table", options.table, {"occupancy", "block-size", "transfers"});
-  require_name("app", options.app, {"gas", "springs", "options"});
+ExitCode print_table(TableOptions options, const std::vector<std::string>& kokkos) {
+  require_name("table", options.table, {"occupancy", "block-size", "transfers", "pressure", "memory"});
+  if (options.app.empty())
+    options.app = options.table == "pressure" || options.table == "memory" ? "flow" : "gas";
+  require_name("app", options.app, {"gas", "springs", "options", "flow"});
   if (options.app == "springs" && options.table == "block-size")
     throw Failure(ExitCode::usage,
                   "kernels of springs are compiled for one block size; what can be chosen is the size of a "
                   "patch, which drogue-perf run --filter springs-step/cuda/.*/patch times");
-  if (options.app != "gas") require_name("table of " + options.app, options.table, {"transfers"});
+  require_name("table of " + options.app, options.table, tables_of(options.app));
   Table table;
   if (options.table == "occupancy")
     table =
@@ -56,10 +68,12 @@ ExitCode print_table(const TableOptions& options, const std::vector<std::string>
 
 Command table_command(CLI::App& program) {
   const auto options = std::make_shared<TableOptions>();
-  CLI::App* app = program.add_subcommand("table", "Print a table of the dissertation beside our own numbers");
-  app->add_option("TABLE", options->table, "occupancy (computed), block-size or transfers (measured)")
+  CLI::App* app = program.add_subcommand(
+      "table", "Print a table, most of them of the dissertation beside our own numbers");
+  app->add_option("TABLE", options->table,
+                  "occupancy (computed); block-size or transfers; pressure or memory of flow")
       ->required();
-  app->add_option("--app", options->app, "Mini-app whose kernels are asked")->capture_default_str();
+  app->add_option("--app", options->app, "Mini-app whose kernels are measured")->capture_default_str();
   app->add_option("--backend", options->backend, "Where to measure: auto takes the fastest present")
       ->check(CLI::IsMember(backend_choices()))
       ->capture_default_str();

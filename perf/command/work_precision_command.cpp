@@ -6,7 +6,7 @@
 
 #include "common/program/command_line.hpp"
 #include "common/program/signals.hpp"
-#include "common/run/output_path.hpp"
+#include "common/run/files/output_path.hpp"
 #include "common/run/result_document.hpp"
 #include "common/run/statistics.hpp"
 #include "perf/command/command.hpp"
@@ -42,6 +42,7 @@ struct WorkPrecision {
 constexpr WorkPrecision apps[] = {
     {"gas", gas_work_precision, "solution", "time to the end of the run"},
     {"springs", springs_work_precision, "solution", "time to the end of the run"},
+    {"flow", flow_work_precision, "solution", "time to the end of the run"},
     {"options", options_work_precision, "option", "time of a batch, by option"}};
 
 const WorkPrecision& work_precision_of(const std::string& name) {
@@ -118,7 +119,7 @@ Command work_precision_command(CLI::App& program) {
   CLI::App* app = program.add_subcommand(
       "work-precision",
       "Time to solution and error over meshes, schemes and backends; of gas beside a second-order scheme, of "
-      "options for known prices");
+      "options for known prices, of flow for vortices of Taylor and Green");
   app->add_option("--app", options->app, "Mini-app whose problems are run")->capture_default_str();
   app->add_option("--backend", options->backend, "auto takes all that are present")
       ->check(CLI::IsMember(backend_choices()))

@@ -11,12 +11,17 @@ std::vector<Record> measure(const std::vector<Case>& cases, int warm_up, int rou
     records.push_back({c.name, c.unit_of_work, c.bound, {}, 0.0, c.tolerance, {}, {}});
     samples.push_back(c.prepare());
   }
-  for (int round = -warm_up; round < rounds; ++round)
+  const auto since = [](std::chrono::steady_clock::time_point begin) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  };
+  const auto start = std::chrono::steady_clock::now();
+  for (int round = -warm_up; round < rounds; ++round) {
+    if (round == 0 && warm_up > 0 && since(start) < warm_up_seconds) round = -1;
     for (std::size_t i = 0; i < cases.size(); ++i) {
       samples[i].reset();
       const auto begin = std::chrono::steady_clock::now();
       const long units = samples[i].work();
-      double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+      double seconds = since(begin);
       if (round < 0) continue;
       if (samples[i].parts) {
         seconds = 0.0;
@@ -27,6 +32,7 @@ std::vector<Record> measure(const std::vector<Case>& cases, int warm_up, int rou
       }
       records[i].samples.push_back(seconds / static_cast<double>(units));
     }
+  }
   for (std::size_t i = 0; i < cases.size(); ++i) {
     records[i].error = cases[i].error();
     if (cases[i].facts) records[i].facts = cases[i].facts();

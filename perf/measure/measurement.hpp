@@ -50,12 +50,15 @@ struct Record {
   [[nodiscard]] bool passed() const { return error <= tolerance; }
 };
 
-/// Numbers of discarded and of recorded rounds.
+/// Numbers of discarded and of recorded rounds. Warm-up lasts `warm_up_seconds` at least: a GPU that idled
+/// runs at a fraction of its clock for some tenths of a second.
 inline constexpr int warm_up_rounds = 3;
+inline constexpr double warm_up_seconds = 1.0;
 constexpr int kept_rounds(bool quick) { return quick ? 7 : 25; }
 
 /// Times `cases` in interleaved rounds of one sample each, so that a disturbance affects all of them.
-/// Discards the first `warm_up` rounds. Blocking; passes on exceptions of the cases.
+/// Discards the first `warm_up` rounds, or as many as take `warm_up_seconds` unless `warm_up` is 0. Blocking;
+/// passes on exceptions of the cases.
 std::vector<Record> measure(const std::vector<Case>& cases, int warm_up, int rounds);
 
 }  // namespace drogue::perf

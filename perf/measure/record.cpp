@@ -1,6 +1,6 @@
 #include "perf/measure/record.hpp"
 
-#include "common/run/atomic_file.hpp"
+#include "common/run/files/atomic_file.hpp"
 #include "common/run/result_document.hpp"
 #include "common/run/statistics.hpp"
 

@@ -32,7 +32,7 @@ const std::vector<KnownPuts>& known_puts() {
        {0.95, 0.98, 1.0, 1.02, 1.05},
        {0.05, 0.020285823, 0.004904692, 0.000657209, 0.000216626}},
       {"merton",
-       {.model = options::Model::merton,
+       {.model = options::JumpModel::merton,
         .rate = 0.05,
         .maturity = 0.25,
         .variance = 0.0225,
@@ -40,7 +40,7 @@ const std::vector<KnownPuts>& known_puts() {
        {0.9, 1.0, 1.1},
        {0.1000379, 0.03241251, 0.01419803}},
       {"black-scholes",
-       {.model = options::Model::black_scholes, .rate = 0.05, .variance = 0.04},
+       {.model = options::JumpModel::black_scholes, .rate = 0.05, .variance = 0.04},
        {1.0},
        {0.06090371}}};
   return all;

@@ -35,6 +35,14 @@ Table print_fabric_transfers(device::Backend backend, bool quick, const nlohmann
 /// Tables 5.7 and 5.8: copy of batches of American puts to the device, pricing and copy to the host.
 Table print_options_transfers(device::Backend backend, bool quick, const nlohmann::json& provenance);
 
+/// Pressure solvers of flow: time, iterations and residual for each solver and tolerance, kind of sides and
+/// grid.
+Table print_flow_pressure(device::Backend backend, bool quick, const nlohmann::json& provenance);
+
+/// Memory of flow solvers by grid: bytes of all Views, and, on a GPU, by the count of the driver. The records
+/// have no samples.
+Table print_flow_memory(device::Backend backend, bool quick, const nlohmann::json& provenance);
+
 /// Figure 4.4: time per step against block size and mesh, for the baseline solver and for the fused step.
 /// `backend` must be a GPU.
 Table print_block_sizes(device::Backend backend, bool quick, const nlohmann::json& provenance);

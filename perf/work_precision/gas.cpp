@@ -4,7 +4,7 @@
 
 #include "common/program/signals.hpp"
 #include "kernels/reference/gas/muscl_hancock.hpp"
-#include "miniapps/gas/study.hpp"
+#include "miniapps/gas/verify/study.hpp"
 #include "perf/work_precision/solution.hpp"
 
 namespace drogue::perf {

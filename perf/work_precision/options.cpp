@@ -47,7 +47,7 @@ std::vector<OptionsPoint> pide_points(bool quick) {
 
 std::vector<OptionsPoint> other_points(const KnownPuts& puts, bool quick) {
   std::vector<OptionsPoint> points;
-  if (puts.contract.model == options::Model::generalized_hyperbolic)
+  if (puts.contract.model == options::JumpModel::generalized_hyperbolic)
     for (const int mesh : quick ? std::vector{64} : std::vector{64, 128, 256, 512})
       points.push_back({"seed", "", "", 0, {.method = options::Method::baseline, .mesh = mesh}});
   for (const double tolerance : quick ? std::vector{1e-2} : std::vector{1e-2, 1e-4, 1e-5, 1e-6, 1e-7})

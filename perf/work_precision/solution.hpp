@@ -17,7 +17,7 @@ struct Solution {
   device::Backend backend;       ///< serial for the comparison scheme
   std::string label;             ///< label of the scheme
   nlohmann::json scheme;         ///< settings of the scheme, as facts of a record
-  std::int64_t cells = 0;        ///< number of cells, of vertices, or of intervals of an option's mesh
+  std::int64_t cells = 0;        ///< number of cells (flow: per axis), of vertices, or of intervals
   std::vector<double> samples;   ///< s; for options the time of a batch over its size
   std::int64_t steps = 0;        ///< time steps of a run
   double error = 0.0;            ///< against the exact solution; unset after a numerical failure
@@ -44,6 +44,12 @@ struct Selection {
 /// work) and precision. The MUSCL-Hancock scheme of `kernels/reference` is the comparison. `quick` selects
 /// two small meshes of the wave and of Sod.
 bool gas_work_precision(const Selection& selection, const SolutionSink& sink);
+
+/// Runs two-dimensional vortices of Taylor and Green in a periodic cube, drifting and at rest, for 1 s on
+/// successively halved cells on each backend, in all combinations of advection, time scheme (AB2 at CFL 0.5,
+/// RK3 at 1) and pressure solver, and with implicit diffusion. The error is the largest of the velocity along
+/// x, m/s. `quick` selects two small grids, WENO-Z, the central scheme and transforms.
+bool flow_work_precision(const Selection& selection, const SolutionSink& sink);
 
 /// Prices the puts of `known_puts`, repeated to fill a batch, on each backend. Method `pide` runs in all
 /// combinations of mesh, steps per interval, one or two grids, and exercise (in the solve, split off,

@@ -51,7 +51,9 @@ std::vector<options::Contract> of_all_models() {
   auto contracts = testing::random_contracts(25, 8);
   for (std::size_t k = 0; k < 6; ++k) {
     options::Contract& c = contracts[4 * k];
-    c.model = k < 2 ? options::Model::kou : k < 4 ? options::Model::merton : options::Model::black_scholes;
+    c.model = k < 2   ? options::JumpModel::kou
+              : k < 4 ? options::JumpModel::merton
+                      : options::JumpModel::black_scholes;
     const double jump[4] = {0.4, 0.3, k < 2 ? 6.0 : 0.2, 4.0};
     for (int m = 0; m < 4; ++m) c.jump[m] = jump[m];
   }
@@ -93,7 +95,7 @@ TEST(OptionsExact, BackendsAgreeOnLargeBatches) {
   std::vector<options::Contract> contracts;
   for (int k = 0; k < 600; ++k)
     for (options::Contract c : of_all_models()) {
-      if (c.model == options::Model::generalized_hyperbolic && k % 10 != 0) continue;
+      if (c.model == options::JumpModel::generalized_hyperbolic && k % 10 != 0) continue;
       c.spot *= 1.0 + 0.0001 * k;
       contracts.push_back(c);
     }

@@ -39,5 +39,5 @@ def named(document):
         found.update(folders)
         if "rooms" in content:
             rooms = re.sub(r"\([^)]*\)", "", content.split("rooms", 1)[1])
-            found.update(f"{folders[0]}/{room}" for room in re.findall(r"`([a-z_]+)`", rooms))
+            found.update(f"{folders[0]}/{room}" for room in re.findall(r"`([a-z0-9_]+)`", rooms))
     return {folder for folder in found if any(folder.startswith(area + "/") for area in AREAS)}

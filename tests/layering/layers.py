@@ -29,7 +29,8 @@ SHARED = re.compile(r"kernels/[a-z]+/parameters\.hpp$")
 LAYERS = (
     Layer("common/", ("common/",), (KOKKOS, r"cuda")),
     Layer("kernels/reference/", ("kernels/reference/",), (KOKKOS, r"cuda", FRONT_END, FILES, MPI)),
-    # hypre needs a communicator.
+    # Communication of ranks stands behind one class; hypre needs its communicator.
+    Layer("kernels/linear/parallel/", ("kernels/linear/parallel/",), (KOKKOS, FRONT_END, FILES)),
     Layer("kernels/linear/poisson/hypre", ("kernels/",), (FRONT_END, FILES)),
     Layer("kernels/", ("kernels/",), (FRONT_END, FILES, MPI)),
     Layer("miniapps/framework/", ("miniapps/framework/", "kernels/device/", "common/"), (KOKKOS, r"cuda", FRONT_END)),

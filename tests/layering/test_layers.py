@@ -69,15 +69,19 @@ class EachRuleCatchesItsBreach(unittest.TestCase):
         self.assert_caught("kernels/gas/x.hpp", '"common/program/failure.hpp"', "may only use")
         self.assert_caught("kernels/gas/x.hpp", '"kernels/reference/gas/weno.hpp"', "independent")
 
-    def test_hypre_alone_needs_mpi(self):
-        self.assertEqual([], layers.violations("kernels/linear/poisson/hypre_x.cpp", "#include <mpi.h>\n"))
-        self.assert_caught("kernels/linear/poisson/x.cpp", "<mpi.h>", "does without")
+    def test_mpi_stands_behind_one_class_and_hypre(self):
+        for path in ("kernels/linear/poisson/hypre_x.cpp", "kernels/linear/parallel/x.cpp"):
+            self.assertEqual([], layers.violations(path, "#include <mpi.h>\n"))
+        for path in ("kernels/linear/poisson/x.cpp", "kernels/flow/halo/x.hpp"):
+            self.assert_caught(path, "<mpi.h>", "does without")
+        self.assert_caught("kernels/linear/parallel/x.cpp", "<Kokkos_Core.hpp>", "does without")
         self.assert_caught("kernels/linear/poisson/hypre_x.cpp", "<fstream>", "does without")
 
     def test_layer_without_folder(self):
         files = [
             "common/a.hpp",
             "kernels/gas/a.hpp",
+            "kernels/linear/parallel/a.cpp",
             "kernels/linear/poisson/hypre_a.cpp",
             "kernels/reference/gas/a.hpp",
             "miniapps/framework/a.hpp",
@@ -91,7 +95,7 @@ class EachRuleCatchesItsBreach(unittest.TestCase):
     def test_framework(self):
         path = "miniapps/framework/x.cpp"
         self.assert_caught(path, '"kernels/gas/solver.hpp"', "may only use")
-        self.assert_caught(path, '"miniapps/gas/scene.hpp"', "may only use")
+        self.assert_caught(path, '"miniapps/gas/scene/scene.hpp"', "may only use")
         self.assert_caught(path, "<Kokkos_Core.hpp>", "does without")
         for app in ("gas", "springs"):
             self.assertEqual([], layers.violations(f"miniapps/{app}/x.cpp", '#include "miniapps/framework/simulation.hpp"\n'))

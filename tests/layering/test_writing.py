@@ -1,6 +1,7 @@
 """The tree keeps the rules of writing, and each rule is shown to catch a breach. One test per rule."""
 
 import os
+import re
 import unittest
 
 import layers
@@ -36,6 +37,17 @@ class Repository(unittest.TestCase):
 
     def test_no_replaced_name_is_left(self):
         self.assertEqual([], self.breaches(writing.replaced_names))
+
+    def test_messages_are_clear(self):
+        self.assertEqual([], self.breaches(writing.unclear_strings))
+
+    def test_kept_keys_are_used_and_explained(self):
+        glossary = TEXTS["docs/glossary.md"]
+        for word, places in writing.KEPT.items():
+            used = [path for path, text in TEXTS.items() if path.startswith(places) and not path.startswith("tests/")
+                    and path.endswith(writing.CODE) and word in [words for _, words in writing.strings(text)]]
+            self.assertTrue(used, word)
+            self.assertTrue(re.search(rf"\b{word}\b", glossary), word)
 
     def test_public_headers_state_units_and_errors(self):
         public = set(writing.public_headers(TEXTS))
@@ -109,6 +121,9 @@ class EachRuleCatchesItsBreach(unittest.TestCase):
             ("docs/a.md", "`kernels/fabric`: `Cloth`\n"),
             ("kernels/fabric/a.hpp", "void settle();\n"),
             ("kernels/gas/solver_on.hpp", ""),
+            ("tests/unit/a.cpp", "double reach = 1.0;\n"),
+            ("miniapps/springs/a.cpp", "bool held = true;\n"),
+            ("kernels/fabric/a.hpp", "int alone = 1;\n"),
         ):
             self.assertEqual(1, len(writing.replaced_names(path, text)), text)
         for path, text in (
@@ -116,10 +131,40 @@ class EachRuleCatchesItsBreach(unittest.TestCase):
             ("miniapps/a.cpp", 'say("Cloth and bar");\n'),
             ("scripts/a.py", '", ".join(held)\n'),
             ("docs/a.md", "Cloth, `--seed-mode`\n"),
-            ("kernels/gas/a.hpp", "int keep = place(held);\n"),
+            ("kernels/gas/a.hpp", "int keep = place(fixed);\n"),
             ("CHANGELOG.md", "`bar` is now `tolerance`\n"),
         ):
             self.assertEqual([], writing.replaced_names(path, text), text)
+
+    def test_strings_are_read(self):
+        text = """#include "law"
+// a "law"
+f("of this "
+  "law", 'a', 1'000, "\\"", R"(raw "law")");  /* "law" */
+"""
+        self.assertEqual([(3, "of this law"), (4, '\\"'), (4, 'raw "law"')], writing.strings(text))
+
+    def test_unclear_strings(self):
+        for path, text in (
+            ("kernels/a.cpp", 'f("no grid covers this law");\n'),
+            ("miniapps/a.cpp", 'f("as far as the "\n  "reach of it");\n'),
+            ("common/a.cpp", 'key("bar");\n'),
+            ("common/a.cpp", 'f("above the bar");\n'),
+            ("perf/a.cpp", 'f("in seed mode");\n'),
+            ("kernels/a.cpp", 'key("check.touches");\n'),
+            ("perf/a.cpp", 'f("Those of the run");\n'),
+            ("common/a.cpp", 'f("the springs know it");\n'),
+        ):
+            self.assertEqual(1, len(writing.unclear_strings(path, text)), text)
+        for path, text in (
+            ("tests/a.cpp", 'f("no grid covers this law");\n'),
+            ("miniapps/a.cpp", 'f("a run cannot reach the target time alone");\n'),
+            ("miniapps/a.cpp", 'f("give --method seed its --mesh, or --seed-mode; seed: the baseline");\n'),
+            ("miniapps/a.cpp", 'key("tuning.seed.pinned", "limiter.touches");\n'),
+            ("common/scene/read.cpp", 'renamed("bar", "tolerance");\n'),
+            ("common/a.cpp", '// above the "bar law"\n'),
+        ):
+            self.assertEqual([], writing.unclear_strings(path, text), text)
 
     def test_public_headers(self):
         texts = {

@@ -165,16 +165,17 @@ def wide_lines(path, text):
 
 # -------------------------------------------------------------------------------------------------------- names
 # Left column of the vocabulary -> its standard term, and the folders where the name is refused; () stands for all.
-# Words of everyday use are refused only where they were names. Strings of C++ (keys of files, output) are not read.
+# Words of everyday use are refused only where they were names. Strings of C++ have rules of their own, below.
 
 EVERYWHERE = ()
 CPP_ONLY = ("common/", "kernels/", "miniapps/", "perf/", "tests/")
-FABRIC, OPTIONS, GAS, KERNELS = ("kernels/fabric/",), ("kernels/options/",), ("kernels/gas/",), ("kernels/",)
+FABRIC, OPTIONS, KERNELS = ("kernels/fabric/",), ("kernels/options/",), ("kernels/",)
 
 NAMES = (
     (r"SolverOn|PricerOn|[A-Z]\w*On(?=<)", "SolverImpl<ExecutionSpace>", EVERYWHERE),
     (r"bar", "tolerance", EVERYWHERE),
-    (r"Seed[A-Z]\w*|seed_(?:solver|batch|mode|step|price|march|rates)\w*", "baseline", EVERYWHERE),
+    # A `seed` by itself starts random numbers.
+    (r"Seed[A-Z]\w*|seed_\w+", "baseline", EVERYWHERE),
     (r"Replay", "CapturedGraph", EVERYWHERE),
     (r"ReportSpace", "HostPinnedSpace", EVERYWHERE),
     (r"ResidentGrid|[Rr]esident_\w+", "PersistentKernel, persistent_*", EVERYWHERE),
@@ -184,7 +185,7 @@ NAMES = (
     (r"meet_warp", "warp_sync", EVERYWHERE),
     (r"from_below", "shuffle_up", EVERYWHERE),
     (r"from_across", "shuffle_xor", EVERYWHERE),
-    (r"reach", "lane_offset, cutoff_distance, strike_range", OPTIONS),
+    (r"reach", "lane_offset, cutoff_distance, strike_range", EVERYWHERE),
     (r"Ledger", "ProfilingCounters", CPP_ONLY),
     (r"Way", "CopyKind, edge_vector", EVERYWHERE),
     (r"Ends", "BoundaryConditions", EVERYWHERE),
@@ -197,7 +198,7 @@ NAMES = (
     (r"Findings", "StepResult", EVERYWHERE),
     (r"outgrown", "violates_cfl", EVERYWHERE),
     (r"Resume", "RestartState", EVERYWHERE),
-    (r"touches|touched", "limited_faces, limited_cells", ("kernels/gas/", "miniapps/gas/")),
+    (r"touches|touched", "limited_faces, limited_cells", CPP_ONLY),
     (r"Law", "ConstitutiveModel, LevyMeasure", EVERYWHERE),
     (r"Cloth", "FabricViews", EVERYWHERE),
     (r"Lent", "unmanaged View", EVERYWHERE),
@@ -205,8 +206,8 @@ NAMES = (
     (r"Products", "GramMatrix", EVERYWHERE),
     (r"Slots", "SlicedEll", EVERYWHERE),
     (r"Watch", "StepMonitor", EVERYWHERE),
-    (r"hand", "parity", FABRIC),
-    (r"held", "fixed_dofs", FABRIC),
+    (r"hand", "parity", CPP_ONLY),
+    (r"held", "fixed_dofs", CPP_ONLY),
     (r"act(?=\()", "compute_external_forces", FABRIC),
     (r"place(?=\()", "apply_dirichlet", FABRIC),
     (r"take(?=\()", "step", FABRIC),
@@ -214,7 +215,8 @@ NAMES = (
     (r"keep(?=\()", "checkpoint", FABRIC),
     (r"DragFunctor", "DashpotDampingFunctor", EVERYWHERE),
     (r"Touch", "ContactConstraint", EVERYWHERE),
-    (r"push(?=\()|grip|wanted", "normal impulse, friction impulse, target_velocity", FABRIC),
+    (r"grip", "friction impulse", CPP_ONLY),
+    (r"push(?=\()|wanted", "normal impulse, target_velocity", FABRIC),
     (r"Ball", "BoundingSphere", EVERYWHERE),
     (r"Clearance", "SignedDistance", EVERYWHERE),
     (r"stay_apart", "ccd_*", EVERYWHERE),
@@ -226,11 +228,11 @@ NAMES = (
     (r"Timing", "StageTime, WallTimes", EVERYWHERE),
     (r"Doubt|doubt_of\w*", "ErrorEstimate, estimate_error", EVERYWHERE),
     (r"Answer", "derivatives of the price", EVERYWHERE),
-    (r"bend", "second_derivative", OPTIONS),
+    (r"bend", "second_derivative", CPP_ONLY),
     (r"Put", "NormalizedPut", CPP_ONLY),
     (r"Effort", "Resolution", EVERYWHERE),
     (r"Workers", "ThreadGroup", EVERYWHERE),
-    (r"alone", "single", OPTIONS),
+    (r"alone", "single", CPP_ONLY),
     (r"RisingMap", "MaxAffineMap", EVERYWHERE),
     (r"smile", "StrikeGroup", ("kernels/", "miniapps/", "perf/")),
     (r"Desk", "WorkQueue", EVERYWHERE),
@@ -305,6 +307,78 @@ def replaced_names(path, text):
         for pattern, term in patterns:
             for match in pattern.finditer(words):
                 found.append(f"{path}:{number}: {match.group()} is {term} in the vocabulary")
+    return found
+
+
+# ----------------------------------------------------------------------------------------------------- messages
+# Strings of the programs in C++, not of tests. One with a space between words is a message, a description or a heading: it
+# does not open with What, Of, That or Those, and code does not tell or know in it. One without is a key or a value.
+
+SHOWN = (
+    (r"laws?", "model, process"),
+    (r"(?:(?<=the )|(?<=its )|(?<=their )|(?<=of )|(?<=no ))reach", "cutoff distance, strike range, extent"),
+    (r"bars?", "tolerance"),
+    (r"doubts?", "error estimate"),
+    (r"smiles?", "strike group"),
+    (r"tall(?:y|ies)", "counts"),
+    (r"rendezvous", "grid synchronization"),
+    (r"spokes?", "edge vector"),
+    (r"outgrown", "violates the CFL condition"),
+    (r"resident", "persistent"),
+    (r"desks?", "work queue"),
+    (r"trouble", "failure, reason"),
+    (r"(?<!limiter )touches|touched", "limited faces, contact"),
+    (r"judgements?", "team control"),
+    (r"(?<!--method )(?<!method )seed(?!:)", "baseline, or method seed, --seed-mode"),
+)
+SHOWN_PATTERNS = tuple((re.compile(rf"(?<![\w-])(?:{words})(?![\w-])", re.IGNORECASE), term) for words, term in SHOWN)
+
+# Keys and values that files and command lines of users contain, and the folders where they stand. Code says the standard
+# term: `baseline` for seed, `limited_faces` and `limited_cells` for touches and touched. docs/glossary.md has them.
+KEPT = {
+    "seed": CPP_ONLY,  # --method seed, [tuning.seed], the driver and the records of measurements
+    "touches": ("miniapps/",),  # limiter.touches of result.json and in the line at the end of a run
+    "touched": ("miniapps/gas/simulation/simulation_restart",),  # dataset of restart files
+    "bar": ("common/scene/read.cpp",),  # the former name, for the hint
+}
+
+
+def strings(text):
+    """Pairs (line, words) of the string literals of C++ source; adjacent ones are one. Those of #include are left out."""
+    found, end = [], None
+    token = re.compile(r"^\s*#\s*include[^\n]*|//[^\n]*|/\*.*?\*/|(?<!\w)'(?:[^'\\\n]|\\.)+'"
+                       r'|R"(?P<mark>\w*)\((?P<raw>.*?)\)(?P=mark)"|"(?P<plain>(?:[^"\\\n]|\\.)*)"', re.DOTALL | re.MULTILINE)
+    for match in token.finditer(text):
+        words = match["plain"] if match["raw"] is None else match["raw"]
+        if words is None:
+            continue
+        if end is not None and not text[end:match.start()].strip():
+            found[-1][1] += words
+        else:
+            found.append([text.count("\n", 0, match.start()) + 1, words])
+        end = match.end()
+    return [(line, re.sub(r"\\n", " ", words)) for line, words in found]
+
+
+def unclear_strings(path, text):
+    """Lines `path:line: ...` for strings of programs that hold a replaced name, open as a riddle, or personify code."""
+    if not path.endswith(CODE) or not path.startswith(CPP_ONLY) or path.startswith("tests/"):
+        return []
+    found = []
+    for line, words in strings(text):
+        message = " " in words.strip()
+        kept = {word for word, where in KEPT.items() if path.startswith(where)}
+        for pattern, term in SHOWN_PATTERNS:
+            # A key is a path of names, as in tuning.seed.pinned.
+            for part in [words] if message else words.split("."):
+                match = pattern.search(part) if message else pattern.fullmatch(part)
+                if match and (message or part not in kept):
+                    found.append(f"{path}:{line}: {match.group()} in a string is {term} in the vocabulary: {words[:70]}")
+        personified_word = PERSONIFIED.search(re.sub(r"`[^`]*`|\"[^\"]*\"|<\w+>|\b[A-Z]{2,}\b", "", words))
+        if message and personified_word:
+            found.append(f"{path}:{line}: '{personified_word.group()}' is no deed of code: {words[:70]}")
+        if message and REFUSED_ELSEWHERE.match(words):
+            found.append(f"{path}:{line}: opens with '{REFUSED_ELSEWHERE.match(words).group()}': {words[:70]}")
     return found
 
 
@@ -471,7 +545,7 @@ OWN = ("tests/layering/writing.py", "tests/layering/test_writing.py")
 
 
 # Rules for one file each: its path and text -> lines `path:line: ...`.
-RULES = (refused_openings, personified, riddles, wide_lines, replaced_names)
+RULES = (refused_openings, personified, riddles, wide_lines, replaced_names, unclear_strings)
 
 
 def main(arguments):

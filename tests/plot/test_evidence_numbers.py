@@ -33,9 +33,9 @@ class Numbers(unittest.TestCase):
     def test_time_to_error_is_exact_on_power_law(self):
         points_ = law(2e-9, 2.0, 3.0, 1.5)
         for error in (2.9e-3, 1.1e-3, 2e-4):
-            reach = time_to_error(points_, error)
-            self.assertEqual(reach.bound, "")
-            self.assertAlmostEqual(reach.seconds / (2e-9 * (3.0 / error) ** (2.0 / 1.5)), 1.0, delta=1e-12)
+            time = time_to_error(points_, error)
+            self.assertEqual(time.bound, "")
+            self.assertAlmostEqual(time.seconds / (2e-9 * (3.0 / error) ** (2.0 / 1.5)), 1.0, delta=1e-12)
         self.assertEqual(time_to_error(points_, 1e-5), TimeToError(points_[-1, 1], ">"))
         self.assertEqual(time_to_error(points_, 0.1), TimeToError(points_[0, 1], "<"))
         self.assertEqual(time_to_error(points_, points_[0, 2]), TimeToError(points_[0, 1]))

@@ -216,7 +216,7 @@ class FlowPictures(unittest.TestCase):
         random = np.random.default_rng(3)
 
         def decaying(time, x, y, z):
-            phases = random.uniform(0, 7, (5, 3))
+            phases = random.uniform(0, 7, (6, 3))
             waves = [
                 np.stack([np.cos(2 * np.pi * n * y + p[0]), np.cos(2 * np.pi * n * x + p[1]), 0 * x], axis=-1) / n
                 for n, p in enumerate(phases, 1)

@@ -243,7 +243,7 @@ class Prices(options_program.OptionsTest):
             self.price(4, content, *words)
             written = {price["id"]: price["message"] for price in self.prices()}
             for name in ("dividend", "rate"):
-                self.assertIn("need numbers beyond all range", written[name])
+                self.assertIn("exceed the range of double", written[name])
             self.assertIn("more happens until maturity than steps can follow", written["1e12"])
             self.assertFalse([name for name in written if name != "1e4" and "--steps" in written[name]])
             advice = "more --steps or another --mesh or" if words else "--mesh and --steps together instead of it or"

@@ -3,8 +3,6 @@
 
 import json
 import os
-import pathlib
-import shutil
 import signal
 import subprocess
 import sys
@@ -14,14 +12,8 @@ import unittest
 sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
 import options_program
-from gas_program import ENVIRONMENT
 from options_program import FAST, HEADER, batch, row
-
-LAUNCHER = shutil.which("mpirun")
-# One thread per rank, since ranks and tests share the cores. Open MPI refuses to run as root by default, and leaks memory
-# at its end, which a sanitizer would report.
-RANK_ENVIRONMENT = {**ENVIRONMENT, "OMP_NUM_THREADS": "1", "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
-           "ASAN_OPTIONS": os.environ.get("ASAN_OPTIONS", "") + ":detect_leaks=0"}
+from rank_processes import LAUNCHER, RANK_ENVIRONMENT, processes_of
 
 
 @unittest.skipIf(LAUNCHER is None, "there is no mpirun")
@@ -55,27 +47,12 @@ class RanksTest(options_program.OptionsTest):
         lines = [row(k, style="american", spot=0.5 + 1e-4 * k) for k in range(5000)]
         launcher = self.begin(3, "price", self.write(batch(lines)), "--mesh", "512", "--steps", "128", "--result", "r.json")
         for _ in range(400):
-            ranks = self.processes_of(launcher)
+            ranks = processes_of(launcher)
             if len(ranks) == 3 and any(name.startswith(".prices.csv") for name in self.names()):
                 time.sleep(0.5)
                 return launcher, ranks
             time.sleep(0.05)
         self.fail("the run has not begun")
-
-    @staticmethod
-    def processes_of(launcher):
-        """Process of each rank, by its number."""
-        found = {}
-        for folder in pathlib.Path("/proc").glob("[0-9]*"):
-            try:
-                parent = int((folder / "stat").read_text().rsplit(")", 1)[1].split()[1])
-                if parent == launcher.pid:
-                    words = (folder / "environ").read_bytes().split(b"\0")
-                    found.update({int(word.split(b"=")[1]): int(folder.name) for word in words
-                                  if word.startswith(b"OMPI_COMM_WORLD_RANK=")})
-            except (OSError, ValueError):
-                continue  # the process has ended
-        return found
 
 
 class Results(RanksTest):

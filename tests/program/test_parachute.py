@@ -229,19 +229,20 @@ class Orders(parachute_program.FlowTest):
 
     def test_study_lists_second_order_in_space(self):
         run = self.start("taylor-green-2d", "--backend", "serial", "--quiet", "--study",
-                         "meshes=16:64,advections=central:weno-z,times=ab2", sets=["run.end_time=0.5", "output={}"],
+                         "meshes=16:64,advections=central:weno-z,times=ab2,diffusions=explicit:crank-nicolson", sets=["run.end_time=0.5", "output={}"],
                          environment={"PYTHONHOME": os.devnull})
         self.assertEqual(0, run.returncode, run.stderr)
         with (self.folder / "out/taylor-green-2d-study/study.csv").open(encoding="utf-8", newline="") as file:
             rows = list(csv.DictReader(file))
-        self.assertEqual([(advection, "ab2", cells) for advection in ("central", "weno-z") for cells in ("16", "32", "64")],
-                         [(row["advection"], row["time_scheme"], row["cells"]) for row in rows])
+        self.assertEqual([(advection, "ab2", diffusion, cells) for advection in ("central", "weno-z")
+                          for diffusion in ("explicit", "crank-nicolson") for cells in ("16", "32", "64")],
+                         [(row["advection"], row["time_scheme"], row["diffusion"], row["cells"]) for row in rows])
         for row in rows:
             self.assertEqual(("ok", row["cells"] == "16"), (row["status"], row["order_l2_velocity"] == ""))
             if row["cells"] == "64":
                 self.assertGreater(float(row["order_l2_velocity"]), 1.9, row)
         document = json.loads((self.folder / "out/taylor-green-2d-study/study.json").read_text(encoding="utf-8"))
-        self.assertEqual(("drogue.study/1", "drogue-parachute", 6),
+        self.assertEqual(("drogue.study/1", "drogue-parachute", 12),
                          (document["schema"], document["program"], len(document["rows"])))
 
 

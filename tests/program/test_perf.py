@@ -177,6 +177,44 @@ class WorkPrecisionOfSprings(perf_program.PerfTest):
                                runs["catenary", "string", "area", "verlet"][1][1], places=3)
 
 
+class PressureTable(perf_program.PerfTest):
+    def test_records_are_valid(self):
+        text = self.expect(0, "table", "pressure", "--quick", "--backend", "serial", "--out", "rows.jsonl").stdout
+        records = self.records("rows.jsonl")
+        self.assertEqual(len(records) + 2, len(text.splitlines()))
+        self.assertEqual({"periodic", "walls", "tunnel"}, {record["facts"]["sides"] for record in records})
+        for record in records:
+            facts = record["facts"]
+            self.assertEqual(("passed", "s per solve", 7), (record["check"], record["unit"], len(record["samples"])))
+            self.assertTrue(record["case"].startswith(f"flow-pressure/serial/16x16x16/{facts['solver']}/{facts['sides']}"))
+            if facts["solver"] == "hypre-pfmg":
+                self.assertGreater(facts["iterations"], 1)
+            else:
+                self.assertLess(record["error"], 1e-14)
+        iterations = {record["facts"]["tolerance"]: record["facts"]["iterations"] for record in records
+                      if record["facts"]["solver"] == "hypre-pfmg"}
+        if iterations:
+            self.assertLess(iterations[1e-6], iterations[1e-10])
+
+
+class WorkPrecisionOfFlow(perf_program.PerfTest):
+    def test_records_are_valid(self):
+        self.expect(0, "work-precision", "--app", "flow", "--quick", "--backend", "serial", "--out", "runs.jsonl")
+        errors = {}
+        for record in self.records("runs.jsonl"):
+            facts = record["facts"]
+            self.assertEqual(("passed", "ok", "s per solution"), (record["check"], facts["status"], record["unit"]))
+            self.assertEqual(f"flow-solution/{facts['problem']}/serial", record["case"].rsplit("/", 2)[0])
+            scheme = facts["problem"], facts["advection"], facts["time_scheme"], facts["diffusion"]
+            errors.setdefault(scheme, {})[facts["cells"]] = record["error"]
+        self.assertEqual(12, len(errors))
+        for scheme, of_grids in errors.items():
+            # Second order at the least.
+            self.assertLess(3.5 * of_grids[32], of_grids[16], scheme)
+        drifting = errors["drifting-vortices", "weno-z", "rk3", "explicit"][32]
+        self.assertLess(10 * drifting, errors["drifting-vortices", "central", "rk3", "explicit"][32])
+
+
 class WorkPrecisionOfOptions(perf_program.PerfTest):
     def test_filter_selects_problems(self):
         self.expect(0, "work-precision", "--app", "options", "--quick", "--backend", "serial", "--filter", "^mer",
@@ -223,7 +261,9 @@ class Refusals(perf_program.PerfTest):
                             (["table", "occupancy", "--app", "option"], 'did you mean "options"?'),
                             (["table", "occupancy", "--app", "springs"], "the only valid name is transfers"),
                             (["table", "block-size", "--app", "springs"], "compiled for one block size"),
-                            (["work-precision", "--app", "parachute"], "valid names are gas, springs, options"),
+                            (["work-precision", "--app", "parachute"], "valid names are gas, springs, flow, options"),
+                            (["table", "pressure", "--app", "gas"], "valid names are occupancy, block-size, transfers"),
+                            (["table", "occupancy", "--app", "flow"], "valid names are pressure, memory"),
                             (["work-precision", "--quick", "--app", "options", "--filter", "day$"],
                              "no problem matches 'day$'; with --quick there are thesis, merton"),
                             (["work-precision", "--app", "options", "--filter", "("], "is no regular expression"),

@@ -5,7 +5,7 @@
 
 #include "kernels/device/instance.hpp"
 #include "kernels/fabric/parameters.hpp"
-#include "kernels/fabric/state.hpp"
+#include "kernels/fabric/results.hpp"
 #include "kernels/fabric/stepping/divergence.hpp"
 #include "kernels/fabric/views.hpp"
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "kernels/fabric/contact/obstacle.hpp"
-#include "kernels/fabric/state.hpp"
+#include "kernels/fabric/results.hpp"
 #include "kernels/fabric/stepping/divergence.hpp"
 #include "kernels/spatial/bounding_sphere.hpp"
 

@@ -2,7 +2,7 @@
 
 #include "kernels/fabric/elastic/triangle_list.hpp"
 #include "kernels/fabric/fabric_views.hpp"
-#include "kernels/fabric/state.hpp"
+#include "kernels/fabric/results.hpp"
 #include "kernels/fabric/views.hpp"
 
 namespace drogue::fabric {

@@ -2,7 +2,7 @@
 
 #include "kernels/device/persistent_kernel.hpp"
 #include "kernels/fabric/loads/external.hpp"
-#include "kernels/fabric/state.hpp"
+#include "kernels/fabric/results.hpp"
 #include "kernels/fabric/stepping/patches.hpp"
 #include "kernels/fabric/stepping/step.hpp"
 #include "kernels/fabric/stepping/team_sliced_ell.hpp"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "kernels/fabric/state.hpp"
+#include "kernels/fabric/results.hpp"
 #include "kernels/fabric/stepping/divergence.hpp"
 #include "kernels/fabric/views.hpp"
 

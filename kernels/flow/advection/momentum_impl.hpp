@@ -43,11 +43,16 @@ struct MomentumFunctor {
     if (g.n[2] > 1)
       for (int c = 0; c < 3; ++c) below[c] = flux(c, 2, at);
     for (int k = k_begin; k < k_end; ++k, at += g.stride[2]) {
-      double value[3];
+      double value[3], rates[3];
 #if defined(__CUDA_ARCH__)
 #pragma unroll 1  // code for three components would not fit the instruction cache: up to five times slower
 #endif
       for (int c = 0; c < 3; ++c) {
+        const std::int64_t place = c * g.component + at;
+        // Loaded first, so that its latency is hidden by the fluxes.
+        const double other = adams_bashforth
+                                 ? factors.old_rate * setup.old_rate(place)
+                                 : factors.state * device::load_constant(setup.state.data() + place);
         double rate = setup.acceleration[c];
         if (g.n[0] > 1) rate -= g.inverse_h[0] * (flux(c, 0, at + g.stride[0]) - flux(c, 0, at));
         if (g.n[1] > 1) rate -= g.inverse_h[1] * (flux(c, 1, at + g.stride[1]) - flux(c, 1, at));
@@ -56,19 +61,16 @@ struct MomentumFunctor {
           rate -= g.inverse_h[2] * (above - below[c]);
           below[c] = above;
         }
-        const std::int64_t place = c * g.component + at;
         if (setup.eddy.data() != nullptr) rate += setup.eddy(place);
         value[c] = factors.stage * device::load_constant(setup.stage.data() + place) + factors.rate * rate;
-        if constexpr (adams_bashforth) {
-          value[c] += factors.old_rate * setup.old_rate(place);
-          setup.old_rate(place) = rate;
-        } else {
-          value[c] += factors.state * device::load_constant(setup.state.data() + place);
-        }
+        // A store here would hold back the loads of the next component: five times slower.
+        rates[c] = rate;
+        value[c] += other;
       }
       for (int c = 0; c < 3; ++c) {
         const std::int64_t place = c * g.component + at;
         if (setup.force.data() != nullptr) value[c] += factors.force * setup.force(place);
+        if constexpr (adams_bashforth) setup.old_rate(place) = rates[c];
         setup.out(place) = value[c];
       }
     }

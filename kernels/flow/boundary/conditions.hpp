@@ -61,9 +61,10 @@ struct BoundaryTableFunctor {
     const int axis = side / 2, a = Conditions::first_axis(axis), b = Conditions::second_axis(axis);
     const int row = g.n[a] + 2 * g.ghost[a], rows = g.n[b] + 2 * g.ghost[b];
     const int component = entry / (row * rows);
-    const int index[2] = {entry % row - g.ghost[a], entry / row % rows - g.ghost[b]};
+    const int index[2] = {g.origin[a] + entry % row - g.ghost[a],
+                          g.origin[b] + entry / row % rows - g.ghost[b]};
     double point[3];
-    point[axis] = g.low[axis] + (side % 2) * g.n[axis] * g.h[axis];
+    point[axis] = g.low[axis] + (side % 2) * g.whole[axis] * g.h[axis];
     // A component lies on the faces of its own axis.
     point[a] = g.low[a] + (index[0] + (component == a ? 0.0 : 0.5)) * g.h[a];
     point[b] = g.low[b] + (index[1] + (component == b ? 0.0 : 0.5)) * g.h[b];

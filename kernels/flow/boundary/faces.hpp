@@ -14,7 +14,7 @@ template <class ExecutionSpace>
 struct BoundaryFacesFunctor {
   MomentumSetup<ExecutionSpace> setup;
   BoundaryConditions<ExecutionSpace> boundary;
-  int side_faces[6];  ///< 0 for periodic sides
+  int side_faces[6];  ///< 0 for periodic sides and neighbours
 
   KOKKOS_FUNCTION void operator()(int face) const {
     const Control& control = setup.control();
@@ -62,7 +62,7 @@ void launch_boundary_faces(const ExecutionSpace& space, const MomentumSetup<Exec
   int total = 0;
   for (int side = 0; side < 6; ++side) {
     const int axis = side / 2;
-    if (g.periodic[axis] || g.n[axis] == 1) continue;
+    if (g.periodic[axis] || g.n[axis] == 1 || boundary.kind[side] == BoundaryKind::neighbour) continue;
     functor.side_faces[side] = g.n[(axis + 1) % 3] * g.n[(axis + 2) % 3];
     total += functor.side_faces[side];
   }

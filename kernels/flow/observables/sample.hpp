@@ -6,8 +6,8 @@
 
 namespace drogue::flow {
 
-/// Number of components of a field at the cell centres.
-[[nodiscard]] constexpr int components(CellField field) {
+/// Number of components of a field at the cell centres. Does not throw.
+[[nodiscard]] KOKKOS_INLINE_FUNCTION constexpr int components(CellField field) {
   return field == CellField::velocity || field == CellField::vorticity ? 3 : 1;
 }
 

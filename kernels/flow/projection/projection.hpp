@@ -31,6 +31,9 @@ struct ProjectionSetup {
   double nu;              ///< kinematic viscosity of implicit diffusion, m^2/s
   double step_fraction;   ///< of dt that the projection covers
   bool resists_backflow;  ///< false: the pressure on outflows is zero
+  /// Pressure of the layer of cells below the low side along each axis, m^2/s^2; null unless another rank
+  /// holds it.
+  const double* pressure_below[3];
 
   /// Kinematic pressure on the face of an outflow, m^2/s^2.
   [[nodiscard]] KOKKOS_FUNCTION double outside_pressure(double outward) const {
@@ -72,7 +75,7 @@ struct DivergenceFunctor {
     }
     const std::int64_t cell = i + g.n[0] * (j + static_cast<std::int64_t>(g.n[1]) * k);
     if (!(Kokkos::fabs(divergence) < 1e100))
-      Kokkos::atomic_min(&control.first_failure, static_cast<std::uint64_t>(cell));
+      Kokkos::atomic_min(&control.first_failure, static_cast<std::uint64_t>(g.number(i, j, k)));
     setup.divergence(cell) = divergence / (setup.step_fraction * control.trial.dt) - outside;
   }
 };
@@ -130,6 +133,8 @@ struct CorrectionFunctor {
           below = setup.pressure(cell - stride);
         else if (g.periodic[axis])
           below = setup.pressure(cell + (g.n[axis] - 1) * stride);
+        else if (setup.pressure_below[axis] != nullptr)
+          below = setup.pressure_below[axis][axis == 1 ? i + g.n[0] * k : i + g.n[0] * j];
         else if (setup.is_outflow(2 * axis))
           below = 2.0 * setup.outside_pressure(-value) - p;
         value -= dt * g.inverse_h[axis] * (p - below);

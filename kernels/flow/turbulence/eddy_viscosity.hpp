@@ -60,21 +60,54 @@ KOKKOS_INLINE_FUNCTION double eddy_viscosity(const EddyModel& m, const double gr
   return norm > 0.0 && minors > 0.0 ? m.constant * Kokkos::sqrt(minors / norm) : 0.0;
 }
 
-/// Evaluates the eddy viscosity at the cell centres.
+/// Cells with an eddy viscosity: those of the grid, and one layer of ghost cells towards other ranks.
+struct EddyCells {
+  int first[3];   ///< -1 with a layer below the low side, else 0
+  int extent[3];  ///< number along each axis
+
+  /// Place in an array, x fastest, of the cell nearest to an index.
+  [[nodiscard]] KOKKOS_FUNCTION std::size_t nearest(const int cell[3]) const {
+    std::int64_t place = 0;
+    for (int axis = 2; axis >= 0; --axis) {
+      const int along = cell[axis] - first[axis], last = extent[axis] - 1;
+      place = place * extent[axis] + (along < 0 ? 0 : along > last ? last : along);
+    }
+    return static_cast<std::size_t>(place);
+  }
+  [[nodiscard]] std::size_t size() const {
+    return static_cast<std::size_t>(extent[0]) * static_cast<std::size_t>(extent[1]) *
+           static_cast<std::size_t>(extent[2]);
+  }
+};
+
+/// Cells with an eddy viscosity of a grid with sides of these kinds. Does not throw.
+inline EddyCells make_eddy_cells(const MacGrid& grid, const BoundaryKind kind[6]) {
+  EddyCells cells{};
+  for (int axis = 0; axis < 3; ++axis) {
+    const int low = kind[2 * axis] == BoundaryKind::neighbour ? 1 : 0;
+    const int high = kind[2 * axis + 1] == BoundaryKind::neighbour ? 1 : 0;
+    cells.first[axis] = -low;
+    cells.extent[axis] = low + grid.n[axis] + high;
+  }
+  return cells;
+}
+
+/// Evaluates the eddy viscosity at the centres of `cells`.
 template <class ExecutionSpace>
 struct EddyViscosityFunctor {
   MacGrid grid;
   EddyModel model;
-  List<ExecutionSpace> velocity;   ///< m/s, with ghost cells
-  List<ExecutionSpace> viscosity;  ///< m^2/s, cells, x fastest
+  List<ExecutionSpace> velocity;  ///< m/s, with ghost cells
+  EddyCells cells;
+  List<ExecutionSpace> viscosity;  ///< m^2/s, x fastest
   ControlView<ExecutionSpace> control;
 
   KOKKOS_FUNCTION void operator()(const int i, const int j, const int k) const {
     if (control().trial.stop != stepping::Stop::running) return;
+    const int cell[3] = {i + cells.first[0], j + cells.first[1], k + cells.first[2]};
     double gradient[3][3];
-    centred_gradient(grid, velocity.data() + grid.offset(i, j, k), gradient);
-    viscosity(static_cast<std::size_t>(i + grid.n[0] * (j + static_cast<std::int64_t>(grid.n[1]) * k))) =
-        eddy_viscosity(model, gradient);
+    centred_gradient(grid, velocity.data() + grid.offset(cell[0], cell[1], cell[2]), gradient);
+    viscosity(cells.nearest(cell)) = eddy_viscosity(model, gradient);
   }
 };
 
@@ -83,8 +116,9 @@ struct EddyViscosityFunctor {
 template <class ExecutionSpace>
 struct EddyStressFunctor {
   MacGrid grid;
-  List<ExecutionSpace> velocity;      ///< m/s, with ghost cells
-  List<ExecutionSpace> viscosity;     ///< m^2/s, cells, x fastest
+  List<ExecutionSpace> velocity;  ///< m/s, with ghost cells
+  EddyCells cells;
+  List<ExecutionSpace> viscosity;     ///< m^2/s, x fastest
   List<ExecutionSpace> acceleration;  ///< m/s^2, in the layout of `velocity`
   ControlView<ExecutionSpace> control;
 
@@ -129,17 +163,12 @@ struct EddyStressFunctor {
   }
 
   KOKKOS_FUNCTION double at_cell(const int cell[3]) const {
-    const MacGrid& g = grid;
     int at[3];
     for (int axis = 0; axis < 3; ++axis) {
-      const int n = g.n[axis], i = cell[axis];
-      if (g.periodic[axis])
-        at[axis] = i < 0 ? i + n : i >= n ? i - n : i;
-      else
-        at[axis] = i < 0 ? 0 : i >= n ? n - 1 : i;
+      const int n = grid.n[axis], i = cell[axis];
+      at[axis] = !grid.periodic[axis] ? i : i < 0 ? i + n : i >= n ? i - n : i;
     }
-    return viscosity(
-        static_cast<std::size_t>(at[0] + g.n[0] * (at[1] + static_cast<std::int64_t>(g.n[1]) * at[2])));
+    return viscosity(cells.nearest(at));
   }
 };
 

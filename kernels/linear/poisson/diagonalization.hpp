@@ -4,11 +4,27 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "kernels/linear/dense_product.hpp"
 #include "kernels/linear/poisson/spectral_scaling.hpp"
 
 namespace drogue::linear {
+
+/// Matrix of the eigenvectors along an axis, on a device. Column k holds eigenvector k. Blocks.
+/// Throws std::runtime_error if memory runs out.
+template <class ExecutionSpace>
+Kokkos::View<double*, typename ExecutionSpace::memory_space> eigenvector_matrix(const ExecutionSpace& space,
+                                                                                const PoissonProblem& problem,
+                                                                                std::size_t axis) {
+  const int n = problem.cells[axis];
+  std::vector<double> basis(static_cast<std::size_t>(n) * static_cast<std::size_t>(n));
+  for (int k = 0; k < n; ++k)
+    for (int i = 0; i < n; ++i)
+      basis[static_cast<std::size_t>(k) * static_cast<std::size_t>(n) + static_cast<std::size_t>(i)] =
+          axis_eigenvector(problem.axes[axis], n, k, i);
+  return to_device(space, "drogue::linear::eigenvectors", basis);
+}
 
 /// Direct solver by diagonalization of the second differences along each axis (Lynch, Rice and Thomas 1964):
 /// six products with dense matrices of eigenvectors, 4 (nx + ny + nz) floating-point operations per cell, for
@@ -22,16 +38,8 @@ class DiagonalizationSolver {
   DiagonalizationSolver(const ExecutionSpace& space, const PoissonProblem& problem)
       : _space(space), _problem(problem), _product(space) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const int n = problem.cells[axis];
       _eigenvalues[axis] = to_device(space, "drogue::linear::eigenvalues", axis_eigenvalues(problem, axis));
-      if (!problem.varies_along(axis)) continue;
-      // Column k holds eigenvector k.
-      std::vector<double> basis(static_cast<std::size_t>(n) * static_cast<std::size_t>(n));
-      for (int k = 0; k < n; ++k)
-        for (int i = 0; i < n; ++i)
-          basis[static_cast<std::size_t>(k) * static_cast<std::size_t>(n) + static_cast<std::size_t>(i)] =
-              axis_eigenvector(problem.axes[axis], n, k, i);
-      _basis[axis] = to_device(space, "drogue::linear::eigenvectors", basis);
+      if (problem.varies_along(axis)) _basis[axis] = eigenvector_matrix(space, problem, axis);
     }
     _work =
         List(Kokkos::view_alloc(space, Kokkos::WithoutInitializing, "drogue::linear::work"), _problem.size());

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -37,61 +38,69 @@ inline AxisTransform axis_transform(const AxisConditions& axis, int n) {
   return {FFTW_RODFT10, FFTW_RODFT01, 0.5 / n};
 }
 
-/// Direct solver by fast transforms, on a host by FFTW: sine and cosine transforms serve all boundary
-/// conditions.
+/// Eigenvalues along an axis, 1/m^2, in the order of the coefficients of `axis_transform`. Does not throw but
+/// std::bad_alloc.
+inline std::vector<double> transform_eigenvalues(const PoissonProblem& problem, std::size_t axis) {
+  const int n = problem.cells[axis];
+  std::vector<double> values(static_cast<std::size_t>(n), 0.0);
+  if (!problem.varies_along(axis)) return values;
+  for (int k = 0; k < n; ++k) {
+    // Half-complex order: real parts of the wave numbers 0 .. n/2, then imaginary parts downwards.
+    const int wave = problem.axes[axis].periodic ? std::min(k, n - k) : k;
+    values[static_cast<std::size_t>(k)] = axis_eigenvalue(problem.axes[axis], n, problem.spacing[axis], wave);
+  }
+  return values;
+}
+
+/// Transforms of all lines of an array along one axis, on a host by FFTW: sine and cosine transforms serve
+/// all boundary conditions.
 ///
 /// Each line is transformed by a serial plan, so that the result does not depend on the number of threads.
 /// Plans are estimated: measured ones could differ from run to run, and with them the last bits.
 template <class ExecutionSpace>
-class FourierSolver {
+class AxisTransforms {
   static_assert(device::is_host<ExecutionSpace>);
 
  public:
-  using List = Kokkos::View<double*, typename ExecutionSpace::memory_space>;
+  AxisTransforms() = default;
 
-  /// Whether the solver can treat the problem: always on a host. Does not throw.
-  static bool supports(const PoissonProblem& /*problem*/) { return true; }
-
-  /// Makes the plans; blocks. Throws std::runtime_error if FFTW cannot plan.
-  FourierSolver(const ExecutionSpace& space, const PoissonProblem& problem)
-      : _space(space), _problem(problem) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const int n = problem.cells[axis];
-      std::vector<double> values(static_cast<std::size_t>(n), 0.0);
-      if (problem.varies_along(axis)) {
-        const AxisTransform transform = axis_transform(problem.axes[axis], n);
-        _normalisation *= transform.normalisation;
-        for (int k = 0; k < n; ++k) {
-          // Half-complex order: real parts of the wave numbers 0 .. n/2, then imaginary parts downwards.
-          const int wave = problem.axes[axis].periodic ? std::min(k, n - k) : k;
-          values[static_cast<std::size_t>(k)] =
-              axis_eigenvalue(problem.axes[axis], n, problem.spacing[axis], wave);
-        }
-        make_plans(axis, transform);
-      }
-      _eigenvalues[axis] = to_device(space, "drogue::linear::eigenvalues", values);
+  /// Makes the plans for an array of `cells`, x fastest. The forward transform works out of place if
+  /// `keeps_input`; otherwise both work in place. Throws std::runtime_error if FFTW cannot plan.
+  AxisTransforms(const std::array<int, 3>& cells, std::size_t axis, const AxisConditions& conditions,
+                 bool keeps_input)
+      : _planes(planes(cells, axis)) {
+    const int n = cells[axis];
+    const AxisTransform transform = axis_transform(conditions, n);
+    _normalisation = transform.normalisation;
+    const std::size_t size = static_cast<std::size_t>(cells[0]) * static_cast<std::size_t>(cells[1]) *
+                             static_cast<std::size_t>(cells[2]);
+    if (size == 0) return;
+    std::vector<double> scratch(size), other(keeps_input ? size : 0);
+    const fftw_r2r_kind kinds[2] = {transform.forward, transform.backward};
+    for (std::size_t direction = 0; direction < 2; ++direction) {
+      double* from = keeps_input && direction == 0 ? other.data() : scratch.data();
+      const fftw_plan plan = fftw_plan_many_r2r(
+          1, &n, _planes.lines, from, nullptr, _planes.stride, _planes.line_distance, scratch.data(), nullptr,
+          _planes.stride, _planes.line_distance, &kinds[direction], FFTW_ESTIMATE | FFTW_UNALIGNED);
+      if (plan == nullptr)
+        throw std::runtime_error("FFTW cannot plan a transform of length " + std::to_string(n));
+      _plans[direction] = Plan(plan, fftw_destroy_plan);
     }
   }
 
-  /// Applies the inverse of the operator to the right-hand side, which it keeps. For the Laplacian that is in
-  /// the unit of the solution per m^2. Asynchronous where the execution space is. Throws
-  /// std::invalid_argument for an array of the wrong size.
-  void enqueue_solve(const List& right_hand_side, const List& solution,
-                     const SpectralOperator& spectral_operator = {}) const {
-    if (right_hand_side.extent(0) != _problem.size() || solution.extent(0) != _problem.size())
-      throw std::invalid_argument("Poisson solver: the arrays must hold one value per cell");
-    const double* from = right_hand_side.data();
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      if (_plans[axis][0]) {
-        transform(axis, 0, from, solution.data());
-        from = solution.data();
-      }
-    scale_spectrum(_space, SpectralScalingFunctor<ExecutionSpace>{solution.data(), _eigenvalues[0],
-                                                                  _eigenvalues[1], _eigenvalues[2], 1,
-                                                                  _normalisation, spectral_operator});
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      if (_plans[axis][1]) transform(axis, 1, solution.data(), solution.data());
+  /// Factor that undoes the growth by a forward and a backward transform. Does not throw.
+  [[nodiscard]] double normalisation() const { return _normalisation; }
+
+  /// Forward transform; `from` equals `to` unless the input is kept. Asynchronous where the execution space
+  /// is. Does nothing for an object or array without cells. Does not throw.
+  void forward(const ExecutionSpace& space, const double* from, double* to) const {
+    transform(space, 0, from, to);
   }
+  /// Backward transform in place, as `forward`. Does not throw.
+  void backward(const ExecutionSpace& space, double* values) const { transform(space, 1, values, values); }
+
+  /// False for an object without plans. Does not throw.
+  explicit operator bool() const { return _plans[0] != nullptr; }
 
  private:
   using Plan = std::shared_ptr<fftw_plan_s>;
@@ -103,30 +112,11 @@ class FourierSolver {
     int lines = 0, line_distance = 0, stride = 0;
   };
 
-  [[nodiscard]] Planes planes(std::size_t axis) const {
-    const int nx = _problem.cells[0], ny = _problem.cells[1], nz = _problem.cells[2];
+  [[nodiscard]] static Planes planes(const std::array<int, 3>& cells, std::size_t axis) {
+    const int nx = cells[0], ny = cells[1], nz = cells[2];
     if (axis == 0) return {nz, static_cast<std::int64_t>(nx) * ny, ny, nx, 1};
     if (axis == 1) return {nz, static_cast<std::int64_t>(nx) * ny, nx, 1, nx};
     return {ny, nx, nx, 1, nx * ny};
-  }
-
-  /// Plans of an axis. The forward plan of the first axis with more than one cell reads the right-hand side.
-  void make_plans(std::size_t axis, const AxisTransform& transform) {
-    const Planes p = planes(axis);
-    const int n = _problem.cells[axis];
-    bool is_first = true;
-    for (std::size_t a = 0; a < axis; ++a) is_first = is_first && !_problem.varies_along(a);
-    std::vector<double> scratch(_problem.size()), other(is_first ? _problem.size() : 0);
-    const fftw_r2r_kind kinds[2] = {transform.forward, transform.backward};
-    for (std::size_t direction = 0; direction < 2; ++direction) {
-      double* from = is_first && direction == 0 ? other.data() : scratch.data();
-      const fftw_plan plan = fftw_plan_many_r2r(1, &n, p.lines, from, nullptr, p.stride, p.line_distance,
-                                                scratch.data(), nullptr, p.stride, p.line_distance,
-                                                &kinds[direction], FFTW_ESTIMATE | FFTW_UNALIGNED);
-      if (plan == nullptr)
-        throw std::runtime_error("FFTW cannot plan a transform of length " + std::to_string(n));
-      _plans[axis][direction] = Plan(plan, fftw_destroy_plan);
-    }
   }
 
   struct TransformFunctor {
@@ -140,16 +130,67 @@ class FourierSolver {
     }
   };
 
-  void transform(std::size_t axis, std::size_t direction, const double* from, double* to) const {
-    const Planes p = planes(axis);
-    Kokkos::parallel_for("drogue::linear::transform", Kokkos::RangePolicy<ExecutionSpace>(_space, 0, p.count),
-                         TransformFunctor{_plans[axis][direction].get(), from, to, p.distance});
+  void transform(const ExecutionSpace& space, std::size_t direction, const double* from, double* to) const {
+    if (!_plans[direction]) return;
+    Kokkos::parallel_for("drogue::linear::transform",
+                         Kokkos::RangePolicy<ExecutionSpace>(space, 0, _planes.count),
+                         TransformFunctor{_plans[direction].get(), from, to, _planes.distance});
   }
 
+  Planes _planes;
+  double _normalisation = 1.0;
+  Plan _plans[2];
+};
+
+/// Direct solver by fast transforms, on a host by `AxisTransforms`.
+template <class ExecutionSpace>
+class FourierSolver {
+ public:
+  using List = Kokkos::View<double*, typename ExecutionSpace::memory_space>;
+
+  /// Whether the solver can treat the problem: always on a host. Does not throw.
+  static bool supports(const PoissonProblem& /*problem*/) { return true; }
+
+  /// Makes the plans; blocks. Throws std::runtime_error if FFTW cannot plan.
+  FourierSolver(const ExecutionSpace& space, const PoissonProblem& problem)
+      : _space(space), _problem(problem) {
+    bool is_first = true;  // of the axes with more than one cell: its transform reads the right-hand side
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (problem.varies_along(axis)) {
+        _transforms[axis] = AxisTransforms<ExecutionSpace>(problem.cells, axis, problem.axes[axis], is_first);
+        _normalisation *= _transforms[axis].normalisation();
+        is_first = false;
+      }
+      _eigenvalues[axis] =
+          to_device(space, "drogue::linear::eigenvalues", transform_eigenvalues(problem, axis));
+    }
+  }
+
+  /// Applies the inverse of the operator to the right-hand side, which it keeps. For the Laplacian that is in
+  /// the unit of the solution per m^2. Asynchronous where the execution space is. Throws
+  /// std::invalid_argument for an array of the wrong size.
+  void enqueue_solve(const List& right_hand_side, const List& solution,
+                     const SpectralOperator& spectral_operator = {}) const {
+    if (right_hand_side.extent(0) != _problem.size() || solution.extent(0) != _problem.size())
+      throw std::invalid_argument("Poisson solver: the arrays must hold one value per cell");
+    const double* from = right_hand_side.data();
+    for (const AxisTransforms<ExecutionSpace>& transforms : _transforms)
+      if (transforms) {
+        transforms.forward(_space, from, solution.data());
+        from = solution.data();
+      }
+    scale_spectrum(_space, SpectralScalingFunctor<ExecutionSpace>{solution.data(), _eigenvalues[0],
+                                                                  _eigenvalues[1], _eigenvalues[2], 1,
+                                                                  _normalisation, spectral_operator});
+    for (const AxisTransforms<ExecutionSpace>& transforms : _transforms)
+      transforms.backward(_space, solution.data());
+  }
+
+ private:
   ExecutionSpace _space;
   PoissonProblem _problem;
   double _normalisation = 1.0;
-  Plan _plans[3][2];
+  AxisTransforms<ExecutionSpace> _transforms[3];
   List _eigenvalues[3];
 };
 

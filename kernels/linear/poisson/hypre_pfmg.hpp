@@ -18,14 +18,20 @@ class HyprePfmgSolver {
  public:
   using List = Kokkos::View<double*, typename ExecutionSpace::memory_space>;
 
-  /// Sets up the multigrid levels. `tolerance`: ratio of the norms of residual and right-hand side. Throws
-  /// std::runtime_error if hypre fails.
+  /// Sets up the multigrid levels on this rank alone. `tolerance`: ratio of the norms of residual and
+  /// right-hand side. Throws std::runtime_error if hypre fails.
   HyprePfmgSolver(const ExecutionSpace& space, const PoissonProblem& problem, double tolerance,
                   int max_iterations = 200)
+      : HyprePfmgSolver(space, problem, {}, {}, tolerance, max_iterations) {}
+
+  /// Sets up the levels on the ranks of a group, of which each holds the cells of `box_of`. The constructor
+  /// and the solves are collective. Throws std::runtime_error if hypre fails.
+  HyprePfmgSolver(const ExecutionSpace& space, const PoissonProblem& problem, const RankGroup& group,
+                  const PencilRanks& ranks, double tolerance, int max_iterations = 200)
       : _space(space),
-        _cells(static_cast<std::size_t>(problem.cells[0]) * static_cast<std::size_t>(problem.cells[1]) *
-               static_cast<std::size_t>(problem.cells[2])),
-        _solver(std::make_unique<HypreStructSolver>(problem, tolerance, max_iterations)) {
+        _cells(box_of(ranks, problem.cells).size()),
+        _solver(std::make_unique<HypreStructSolver>(problem, group, box_of(ranks, problem.cells), tolerance,
+                                                    max_iterations)) {
     if constexpr (!device::is_host<ExecutionSpace>) {
       _right_hand_side.resize(_cells);
       _solution.resize(_cells);

@@ -7,7 +7,6 @@
 #include <mpi.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <limits>
 #include <stdexcept>
 #include <string>
@@ -25,25 +24,9 @@ void check(HYPRE_Int error) {
   throw std::runtime_error(std::string("hypre: ") + text);
 }
 
-void initialise_mpi() {
-  int initialised = 0;
-  MPI_Initialized(&initialised);
-  if (initialised != 0) return;
-  int threads = MPI_THREAD_SINGLE;
-  MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &threads);
-  std::atexit([] {
-    int finalised = 0;
-    MPI_Finalized(&finalised);
-    if (finalised == 0) MPI_Finalize();
-  });
-}
-
 /// hypre, from the first solver to the last.
 struct Library {
-  Library() {
-    initialise_mpi();
-    HYPRE_Init();
-  }
+  Library() { HYPRE_Init(); }
   ~Library() { HYPRE_Finalize(); }
   Library(const Library&) = delete;
   Library& operator=(const Library&) = delete;
@@ -56,16 +39,11 @@ std::shared_ptr<Library> library() {
   return shared;
 }
 
-void subtract_mean(std::vector<double>& values) {
-  double sum = 0.0;
-  for (const double value : values) sum += value;
-  const double mean = sum / static_cast<double>(values.size());
-  for (double& value : values) value -= mean;
-}
-
 }  // namespace
 
 struct HypreStructSolver::Objects {
+  RankGroup group;
+  MPI_Comm communicator;  ///< made first: its handle initialises MPI
   std::shared_ptr<Library> hypre = library();
   HYPRE_StructGrid grid = nullptr;
   HYPRE_StructStencil stencil = nullptr;
@@ -74,13 +52,14 @@ struct HypreStructSolver::Objects {
   HYPRE_StructSolver pcg = nullptr, pfmg = nullptr;
   HYPRE_Int low[3] = {0, 0, 0}, high[3] = {0, 0, 0};
   std::vector<double> values;
+  double cells = 0.0;  ///< of all ranks
   bool singular = false;
   double tolerance = 0.0;
   int max_iterations = 0;
   int iterations = 0;
   double residual = 0.0;
 
-  Objects() = default;
+  explicit Objects(const RankGroup& ranks) : group(ranks), communicator(MPI_Comm_f2c(group.handle())) {}
   Objects(const Objects&) = delete;
   Objects& operator=(const Objects&) = delete;
   ~Objects() {
@@ -94,6 +73,7 @@ struct HypreStructSolver::Objects {
   }
 
   void make_matrix(const PoissonProblem& problem);
+  void subtract_mean();
   void make_vector(HYPRE_StructVector& vector);
   void make_solver();
 };
@@ -104,27 +84,26 @@ void HypreStructSolver::Objects::make_matrix(const PoissonProblem& problem) {
   HYPRE_Int periods[3] = {0, 0, 0};
   std::vector<std::array<HYPRE_Int, 3>> offsets{{0, 0, 0}};
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    high[axis] = problem.cells[axis] - 1;
     if (problem.cells[axis] > 1 && problem.axes[axis].periodic) periods[axis] = problem.cells[axis];
     for (const HYPRE_Int step : {-1, 1}) {
       offsets.push_back({0, 0, 0});
       offsets.back()[axis] = step;
     }
   }
-  check(HYPRE_StructGridCreate(MPI_COMM_SELF, 3, &grid));
+  check(HYPRE_StructGridCreate(communicator, 3, &grid));
   check(HYPRE_StructGridSetExtents(grid, low, high));
   check(HYPRE_StructGridSetPeriodic(grid, periods));
   check(HYPRE_StructGridAssemble(grid));
   check(HYPRE_StructStencilCreate(3, static_cast<HYPRE_Int>(offsets.size()), &stencil));
   for (std::size_t entry = 0; entry < offsets.size(); ++entry)
     check(HYPRE_StructStencilSetElement(stencil, static_cast<HYPRE_Int>(entry), offsets[entry].data()));
-  check(HYPRE_StructMatrixCreate(MPI_COMM_SELF, grid, stencil, &matrix));
+  check(HYPRE_StructMatrixCreate(communicator, grid, stencil, &matrix));
   check(HYPRE_StructMatrixInitialize(matrix));
 
   std::vector<double> entries;
-  for (int k = 0; k < problem.cells[2]; ++k)
-    for (int j = 0; j < problem.cells[1]; ++j)
-      for (int i = 0; i < problem.cells[0]; ++i) {
+  for (int k = low[2]; k <= high[2]; ++k)
+    for (int j = low[1]; j <= high[1]; ++j)
+      for (int i = low[0]; i <= high[0]; ++i) {
         const std::array<int, 3> cell{i, j, k};
         const std::size_t diagonal = entries.size();
         entries.push_back(0.0);
@@ -151,15 +130,23 @@ void HypreStructSolver::Objects::make_matrix(const PoissonProblem& problem) {
   check(HYPRE_StructMatrixAssemble(matrix));
 }
 
+void HypreStructSolver::Objects::subtract_mean() {
+  double sum = 0.0;
+  for (const double value : values) sum += value;
+  group.sum({&sum, 1});
+  const double mean = sum / cells;
+  for (double& value : values) value -= mean;
+}
+
 void HypreStructSolver::Objects::make_vector(HYPRE_StructVector& vector) {
-  check(HYPRE_StructVectorCreate(MPI_COMM_SELF, grid, &vector));
+  check(HYPRE_StructVectorCreate(communicator, grid, &vector));
   check(HYPRE_StructVectorInitialize(vector));
   check(HYPRE_StructVectorSetBoxValues(vector, low, high, values.data()));
   check(HYPRE_StructVectorAssemble(vector));
 }
 
 void HypreStructSolver::Objects::make_solver() {
-  check(HYPRE_StructPFMGCreate(MPI_COMM_SELF, &pfmg));
+  check(HYPRE_StructPFMGCreate(communicator, &pfmg));
   check(HYPRE_StructPFMGSetMaxIter(pfmg, 1));
   check(HYPRE_StructPFMGSetTol(pfmg, 0.0));
   check(HYPRE_StructPFMGSetZeroGuess(pfmg));
@@ -168,22 +155,27 @@ void HypreStructSolver::Objects::make_solver() {
   check(HYPRE_StructPFMGSetRelaxType(pfmg, 1));
   check(HYPRE_StructPFMGSetNumPreRelax(pfmg, 1));
   check(HYPRE_StructPFMGSetNumPostRelax(pfmg, 1));
-  check(HYPRE_StructPCGCreate(MPI_COMM_SELF, &pcg));
+  check(HYPRE_StructPCGCreate(communicator, &pcg));
   check(HYPRE_StructPCGSetTol(pcg, tolerance));
   check(HYPRE_StructPCGSetTwoNorm(pcg, 1));
   check(HYPRE_StructPCGSetPrecond(pcg, HYPRE_StructPFMGSolve, HYPRE_StructPFMGSetup, pfmg));
   check(HYPRE_StructPCGSetup(pcg, matrix, right_hand_side, solution));
 }
 
-HypreStructSolver::HypreStructSolver(const PoissonProblem& problem, double tolerance, int max_iterations)
-    : _objects(std::make_unique<Objects>()) {
+HypreStructSolver::HypreStructSolver(const PoissonProblem& problem, const RankGroup& group,
+                                     const CellBox& box, double tolerance, int max_iterations)
+    : _objects(std::make_unique<Objects>(group)) {
   Objects& o = *_objects;
   o.singular = problem.is_singular();
   o.tolerance = tolerance;
   o.max_iterations = max_iterations;
-  o.values.assign(static_cast<std::size_t>(problem.cells[0]) * static_cast<std::size_t>(problem.cells[1]) *
-                      static_cast<std::size_t>(problem.cells[2]),
-                  0.0);
+  o.cells = 1.0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    o.low[axis] = box.begin[axis];
+    o.high[axis] = box.begin[axis] + box.cells[axis] - 1;
+    o.cells *= problem.cells[axis];
+  }
+  o.values.assign(box.size(), 0.0);
   o.make_matrix(problem);
   o.make_vector(o.right_hand_side);
   o.make_vector(o.solution);
@@ -195,9 +187,10 @@ HypreStructSolver::~HypreStructSolver() = default;
 void HypreStructSolver::solve(const double* right_hand_side, double* solution) {
   Objects& o = *_objects;
   for (std::size_t i = 0; i < o.values.size(); ++i) o.values[i] = -right_hand_side[i];
-  if (o.singular) subtract_mean(o.values);
+  if (o.singular) o.subtract_mean();
   double sum = 0.0;
   for (const double value : o.values) sum += std::abs(value);
+  o.group.sum({&sum, 1});
   if (!(sum > 0.0) || std::isinf(sum)) {
     // hypre divides by the norm of the right-hand side, and iterates on values that are not finite.
     const double result = sum == 0.0 ? 0.0 : std::numeric_limits<double>::quiet_NaN();
@@ -224,7 +217,7 @@ void HypreStructSolver::solve(const double* right_hand_side, double* solution) {
     check(HYPRE_StructVectorGetBoxValues(o.solution, o.low, o.high, o.values.data()));
     o.iterations += iterations > 0 ? iterations : 1;
     if (o.singular) {
-      subtract_mean(o.values);
+      o.subtract_mean();
       check(HYPRE_StructVectorSetBoxValues(o.solution, o.low, o.high, o.values.data()));
       check(HYPRE_StructVectorAssemble(o.solution));
     }

@@ -2,25 +2,28 @@
 
 #include <memory>
 
+#include "kernels/linear/parallel/cell_box.hpp"
+#include "kernels/linear/parallel/rank_group.hpp"
 #include "kernels/linear/poisson/problem.hpp"
 
 namespace drogue::linear {
 
 /// Conjugate gradients preconditioned by the semicoarsening multigrid PFMG of hypre (Ashby and Falgout 1996),
-/// on the host and on this rank alone. Only in builds with DROGUE_HAVE_HYPRE.
+/// on the hosts of a group of ranks, each with a box of cells. Only in builds with DROGUE_HAVE_HYPRE.
 class HypreStructSolver {
  public:
-  /// Sets up the hierarchy of grids; blocks. Initialises MPI if that was not done, until the program ends.
-  /// `tolerance`: of the 2-norm of the residual relative to that of the right-hand side. Throws
-  /// std::runtime_error if hypre fails.
-  HypreStructSolver(const PoissonProblem& problem, double tolerance, int max_iterations);
+  /// Sets up the hierarchy of grids; collective, blocks. Initialises MPI if that was not done, until the
+  /// program ends. `box`: cells of this rank. `tolerance`: of the 2-norm of the residual relative to that of
+  /// the right-hand side. Throws std::runtime_error if hypre fails.
+  HypreStructSolver(const PoissonProblem& problem, const RankGroup& group, const CellBox& box,
+                    double tolerance, int max_iterations);
   ~HypreStructSolver();
   HypreStructSolver(const HypreStructSolver&) = delete;
   HypreStructSolver& operator=(const HypreStructSolver&) = delete;
 
   /// Solves for `solution`, in its unit, with the right-hand side in that unit per m^2; arrays with one value
-  /// per cell, x fastest. Begins with the previous solution. Blocks. Throws std::runtime_error if hypre
-  /// fails, but not for a solve that does not converge.
+  /// per cell of this rank, x fastest. Begins with the previous solution. Collective; blocks. Throws
+  /// std::runtime_error if hypre fails, but not for a solve that does not converge.
   void solve(const double* right_hand_side, double* solution);
 
   /// Iterations of the last solve. Does not throw.

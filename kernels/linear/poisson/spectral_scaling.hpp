@@ -7,7 +7,7 @@
 #include <Kokkos_Core.hpp>
 
 #include "kernels/device/copy.hpp"
-#include "kernels/device/memory.hpp"
+#include "kernels/device/launch.hpp"
 #include "kernels/linear/poisson/problem.hpp"
 
 namespace drogue::linear {
@@ -59,14 +59,8 @@ struct SpectralScalingFunctor {
 
 template <class ExecutionSpace>
 void scale_spectrum(const ExecutionSpace& space, const SpectralScalingFunctor<ExecutionSpace>& functor) {
-  using Policy =
-      Kokkos::MDRangePolicy<ExecutionSpace, Kokkos::Rank<3, Kokkos::Iterate::Left, Kokkos::Iterate::Left>>;
-  Kokkos::parallel_for("drogue::linear::scale_spectrum",
-                       Kokkos::Experimental::require(Policy(space, {0, 0, 0},
-                                                            {functor.x.extent_int(0), functor.y.extent_int(0),
-                                                             functor.z.extent_int(0)}),
-                                                     Kokkos::Experimental::WorkItemProperty::HintLightWeight),
-                       functor);
+  const int modes[3] = {functor.x.extent_int(0), functor.y.extent_int(0), functor.z.extent_int(0)};
+  device::launch_cells(space, "drogue::linear::scale_spectrum", modes, functor);
 }
 
 }  // namespace drogue::linear

@@ -43,7 +43,7 @@ class PidePricer {
       throw std::invalid_argument("options pricer: as many prices as contracts are needed");
     if (_settings.method == Method::baseline)
       for (const Contract& contract : contracts)
-        if (contract.model != Model::generalized_hyperbolic)
+        if (contract.model != JumpModel::generalized_hyperbolic)
           throw std::invalid_argument(
               "options pricer: the dissertation's scheme has generalized hyperbolic jumps");
     WallTimes times;
@@ -244,7 +244,7 @@ class PidePricer {
     const auto launch_gathered = [&] {
       for (int model = 0; model < models; ++model) {
         std::vector<int>& of_model = rows[model];
-        launch(views, of_model, static_cast<Model>(model), first, resolution, MarchRecord{});
+        launch(views, of_model, static_cast<JumpModel>(model), first, resolution, MarchRecord{});
         first += of_model.size();
         of_model.clear();
       }
@@ -263,7 +263,7 @@ class PidePricer {
   }
 
   /// Enqueues the launch for `rows`, which are stored from `first` on in the order.
-  void launch(const BatchViews& views, std::span<const int> rows, Model model, std::size_t first,
+  void launch(const BatchViews& views, std::span<const int> rows, JumpModel model, std::size_t first,
               const Resolution& resolution, const MarchRecord& record) {
     if (rows.empty()) return;
     const auto order = Kokkos::subview(_order, std::pair(first, first + rows.size()));

@@ -46,7 +46,7 @@ struct PriceBatch {
   int count = 0, mesh = 0, steps = 0, level = 0;
   int lanes = max_lanes;  ///< per option on hosts
   double tolerance = 0.0;
-  Model model{};             ///< common model of the contracts
+  JumpModel model{};         ///< common model of the contracts
   bool split = false;        ///< use split exercise wherever exercise may pay
   bool single_grid = false;  ///< no second solve: no extrapolation and no error estimate
 

@@ -16,12 +16,12 @@ constexpr std::complex<double> imaginary{0.0, 1.0};
 double radius_of(const Contract& c, bool is_dual) {
   const double shift = is_dual ? 1.0 : 0.0;
   switch (c.model) {
-    case Model::generalized_hyperbolic:
+    case JumpModel::generalized_hyperbolic:
       return c.jump[1] - std::abs(c.jump[2] + shift);
-    case Model::kou:
+    case JumpModel::kou:
       return std::min(c.jump[2] - shift, c.jump[3] + shift);
-    case Model::black_scholes:
-    case Model::merton:
+    case JumpModel::black_scholes:
+    case JumpModel::merton:
       break;
   }
   return 1.0;
@@ -31,7 +31,7 @@ double radius_of(const Contract& c, bool is_dual) {
 
 CharacteristicExponent::CharacteristicExponent(const Contract& contract) : _contract(contract) {
   const auto [lambda, alpha, beta, delta] = contract.jump;
-  if (contract.model == Model::generalized_hyperbolic) {
+  if (contract.model == JumpModel::generalized_hyperbolic) {
     _log_gamma_squared = std::log(alpha - beta) + std::log(alpha + beta);
     const double z = delta * std::exp(0.5 * _log_gamma_squared);
     if (delta > 0.0) _log_k = std::real(log_bessel_k(lambda, z)) - z;
@@ -54,13 +54,13 @@ Complex CharacteristicExponent::generalized_hyperbolic(Complex u) const {
 Complex CharacteristicExponent::jump_exponent(Complex u) const {
   const auto& jump = _contract.jump;
   switch (_contract.model) {
-    case Model::generalized_hyperbolic:
+    case JumpModel::generalized_hyperbolic:
       return generalized_hyperbolic(u);
-    case Model::black_scholes:
+    case JumpModel::black_scholes:
       return 0.0;
-    case Model::merton:
+    case JumpModel::merton:
       return jump[0] * (std::exp(imaginary * u * jump[1] - 0.5 * jump[2] * jump[2] * u * u) - 1.0);
-    case Model::kou:
+    case JumpModel::kou:
       return jump[0] * (jump[1] * imaginary * u / (jump[2] - imaginary * u) -
                         (1.0 - jump[1]) * imaginary * u / (jump[3] + imaginary * u));
   }
@@ -102,20 +102,20 @@ CharacteristicExponent::JumpRange CharacteristicExponent::jump_range() const {
   JumpRange range{0.0, 0.0};
   const double shift = _is_dual ? 1.0 : 0.0;
   switch (_contract.model) {
-    case Model::generalized_hyperbolic:
+    case JumpModel::generalized_hyperbolic:
       range = {jump_range_digits / (jump[1] + jump[2] + shift),
                jump_range_digits / (jump[1] - jump[2] - shift)};
       break;
-    case Model::kou:
+    case JumpModel::kou:
       range = {jump_range_digits / (jump[3] + shift), jump_range_digits / (jump[2] - shift)};
       break;
-    case Model::merton: {
+    case JumpModel::merton: {
       const double mean = jump[1] + shift * jump[2] * jump[2];
       const double deviations = std::sqrt(2.0 * jump_range_digits) * jump[2];
       range = {std::max(deviations - mean, 0.0), std::max(deviations + mean, 0.0)};
       break;
     }
-    case Model::black_scholes:
+    case JumpModel::black_scholes:
       break;
   }
   return _is_dual ? JumpRange{range.up, range.down} : range;

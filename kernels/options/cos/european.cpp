@@ -47,7 +47,7 @@ constexpr double digits = 40.0;  // errors of step and truncation are exp(-digit
 /// grow too fast off the real axis, so their contour does not bend.
 Contour choose_contour(const Contract& c, double log_moneyness) {
   using std::numbers::pi;
-  if (c.model == Model::merton) return {false, 0.0, 0.0, 0.0, pi / digits};
+  if (c.model == JumpModel::merton) return {false, 0.0, 0.0, 0.0, pi / digits};
   const double half_width = 0.95 * (c.variance > 0.0 ? pi / 8.0 : pi / 4.0);
   const double tilt = log_moneyness >= 0.0 ? half_width : -half_width;
   const double low = std::sin(tilt - half_width), high = std::sin(tilt + half_width);

@@ -20,7 +20,7 @@ class HankelPanels {
   /// Builds the missing tables on the host.
   void build(std::span<const Contract> contracts) {
     for (const Contract& contract : contracts) {
-      if (contract.model != Model::generalized_hyperbolic || contract.jump[3] == 0.0) continue;
+      if (contract.model != JumpModel::generalized_hyperbolic || contract.jump[3] == 0.0) continue;
       const double order = std::fabs(contract.jump[0]);
       if (!(order < HankelGrid::largest_order)) continue;
       int& slot = _host_slots[static_cast<std::size_t>(panel_of(order))];

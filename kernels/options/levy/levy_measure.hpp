@@ -8,7 +8,7 @@ namespace drogue::options {
 /// Puts of a pack (one for R = double) as a structure of packs. All have the same model.
 template <class R>
 struct PutPack {
-  Model model;
+  JumpModel model;
   bool any_split;  ///< `split` holds for at least one member
   R early;         ///< `NormalizedPut::early` as 1 or 0
   R split;         ///< `NormalizedPut::split` as 1 or 0
@@ -27,8 +27,8 @@ enum class JumpClass : unsigned char {
 
 /// Calls f.operator()<jump_class>() with the class of `model`.
 template <class F>
-void dispatch_jump_class(Model model, const F& f) {
-  if (model == Model::generalized_hyperbolic) return f.template operator()<JumpClass::mixture>();
+void dispatch_jump_class(JumpModel model, const F& f) {
+  if (model == JumpModel::generalized_hyperbolic) return f.template operator()<JumpClass::mixture>();
   f.template operator()<JumpClass::closed_form>();
 }
 
@@ -36,9 +36,9 @@ void dispatch_jump_class(Model model, const F& f) {
 template <class R, JumpClass jump_class = JumpClass::any>
 KOKKOS_INLINE_FUNCTION PutPack<R> pack_puts(const NormalizedPut* puts) {
   PutPack<R> pack{};
-  pack.model = jump_class == JumpClass::mixture ? Model::generalized_hyperbolic : puts[0].model;
+  pack.model = jump_class == JumpClass::mixture ? JumpModel::generalized_hyperbolic : puts[0].model;
   if constexpr (jump_class == JumpClass::closed_form)
-    device::assume(pack.model != Model::generalized_hyperbolic);
+    device::assume(pack.model != JumpModel::generalized_hyperbolic);
   for (int k = 0; k < device::Access<R>::lanes; ++k) {
     const auto set = [k](R& number, double value) { reinterpret_cast<double*>(&number)[k] = value; };
     const NormalizedPut& put = puts[k];
@@ -80,14 +80,14 @@ struct LevyMeasure {
 /// exponential; its value limits no Esscher tilt.
 template <class R>
 KOKKOS_INLINE_FUNCTION R decay_up(const PutPack<R>& put) {
-  if (put.model == Model::generalized_hyperbolic) return put.jump[1] - put.jump[2];
-  return put.model == Model::kou ? put.jump[2] : R(1e4);
+  if (put.model == JumpModel::generalized_hyperbolic) return put.jump[1] - put.jump[2];
+  return put.model == JumpModel::kou ? put.jump[2] : R(1e4);
 }
 /// As `decay_up`, for downward jumps.
 template <class R>
 KOKKOS_INLINE_FUNCTION R decay_down(const PutPack<R>& put) {
-  if (put.model == Model::generalized_hyperbolic) return put.jump[1] + put.jump[2];
-  return put.model == Model::kou ? put.jump[3] : R(1e4);
+  if (put.model == JumpModel::generalized_hyperbolic) return put.jump[1] + put.jump[2];
+  return put.model == JumpModel::kou ? put.jump[3] : R(1e4);
 }
 
 /// Computes the mixture terms of all puts of a pack into `memory`, which is scratch memory, and the variance
@@ -99,7 +99,7 @@ KOKKOS_INLINE_FUNCTION LevyMeasure<R> make_levy_measure(const ThreadGroup& group
   constexpr int members = device::Access<R>::lanes;
   LevyMeasure<R> measure = memory;
   R *s = measure.s, *c = measure.c, *up_lengths = measure.up, *down_lengths = measure.down;
-  if (pack.model == Model::generalized_hyperbolic) {
+  if (pack.model == JumpModel::generalized_hyperbolic) {
     group.each([=](int thread) {
       for (int k = 0; k < members; ++k) {
         const MixtureGrid grid = mixture_grid(puts[k], panels, panel_slot);
@@ -125,9 +125,9 @@ KOKKOS_INLINE_FUNCTION LevyMeasure<R> make_levy_measure(const ThreadGroup& group
     group.sync();
     measure.high = variance[1];
     measure.variance = variance[0] + variance[1];
-  } else if (pack.model == Model::merton) {
+  } else if (pack.model == JumpModel::merton) {
     measure.variance = pack.jump[0] * (pack.jump[1] * pack.jump[1] + pack.jump[2] * pack.jump[2]);
-  } else if (pack.model == Model::kou) {
+  } else if (pack.model == JumpModel::kou) {
     const R p = pack.jump[1], a = 1.0 / pack.jump[2], b = 1.0 / pack.jump[3];
     measure.variance = 2.0 * pack.jump[0] * (p * a * a + (1.0 - p) * b * b);
   }
@@ -143,16 +143,16 @@ KOKKOS_INLINE_FUNCTION R merton_deviation(const PutPack<R>& put) {
 /// Integral of (e^{theta y} - 1 - theta y) g(y) dy, 1/year; relative error 1e-8 for a mixture.
 template <class R>
 KOKKOS_INLINE_FUNCTION R jump_cumulant(const PutPack<R>& put, const LevyMeasure<R>& measure, R theta) {
-  if (put.model == Model::merton) {
+  if (put.model == JumpModel::merton) {
     const R m = put.jump[1], d = put.jump[2];
     return put.jump[0] * (exponential(theta * (m + 0.5 * theta * d * d)) - 1.0 - theta * m);
   }
-  if (put.model == Model::kou) {
+  if (put.model == JumpModel::kou) {
     const R p = put.jump[1], up = put.jump[2], down = put.jump[3];
     const R a = theta / (up - theta), b = theta / (down + theta);
     return put.jump[0] * (p * (a - theta / up) - (1.0 - p) * (b - theta / down));
   }
-  if (put.model == Model::black_scholes) return R(0.0);
+  if (put.model == JumpModel::black_scholes) return R(0.0);
   R sum = 0.5 * theta * theta * measure.high;
   constexpr int chains = 4;  // independent chains hide latency
   static_assert(Mixture::low % chains == 0);

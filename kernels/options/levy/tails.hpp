@@ -19,7 +19,7 @@ struct Tails {
 template <class ThreadGroup, class R>
 KOKKOS_INLINE_FUNCTION Tails<R> make_tails(const ThreadGroup& group, const PutPack<R>& put,
                                            const LevyMeasure<R>& measure, R length) {
-  if (put.model == Model::kou) {
+  if (put.model == JumpModel::kou) {
     const R p = put.jump[1], up = put.jump[2], down = put.jump[3];
     const R a = put.jump[0] * p * exponential(-up * length),
             b = put.jump[0] * (1.0 - p) * exponential(-down * length);
@@ -27,7 +27,7 @@ KOKKOS_INLINE_FUNCTION Tails<R> make_tails(const ThreadGroup& group, const PutPa
     return {b, b * down / (down + 1.0) * exponential(-length), a, a * up / (up - 1.0) * exponential(length),
             a * (length * length + 2.0 * i * (length + i)) + b * (length * length + 2.0 * j * (length + j))};
   }
-  if (put.model == Model::merton) {
+  if (put.model == JumpModel::merton) {
     const R rate = put.jump[0], m = put.jump[1], s = merton_deviation(put);
     const R price = rate * exponential(m + 0.5 * s * s), square = m * m + s * s;
     const R z_up = (length - m) / s, z_down = (length + m) / s;
@@ -37,7 +37,7 @@ KOKKOS_INLINE_FUNCTION Tails<R> make_tails(const ThreadGroup& group, const PutPa
         rate * down, price * normal_upper_tail(z_down + s), rate * up, price * normal_upper_tail(z_up - s),
         rate * (square * (up + down) + s * ((length + m) * density(z_up) + (length - m) * density(z_down)))};
   }
-  if (put.model != Model::generalized_hyperbolic) return {R(0.0), R(0.0), R(0.0), R(0.0), R(0.0)};
+  if (put.model != JumpModel::generalized_hyperbolic) return {R(0.0), R(0.0), R(0.0), R(0.0), R(0.0)};
   const R shrink = exponential(-length);
   const Kokkos::Array<R, 5> tails = sums(group, [&](int lane) {
     Kokkos::Array<R, 5> sum = {R(0.0), R(0.0), R(0.0), R(0.0), R(0.0)};

@@ -9,9 +9,10 @@ namespace drogue::options {
 ///
 /// The numerical constants below are empirical unless a derivation is given. They were calibrated on random
 /// contracts, with maturities from an hour to thirty years, so that the estimate covers 95 % of the rows of
-/// each kind. The references were Fourier prices for European options and finer grids for others. The
-/// calibration script is not part of the repository; docs/options.md, "Stated error", lists the
-/// constants and the coverage, and the tests `OptionsError` assert nine rows of ten.
+/// each kind. The references were Fourier prices for European options and finer grids for others.
+/// docs/options.md, "Stated error", lists the constants. The script of that calibration is not preserved;
+/// `scripts/measure_coverage.py` measures the coverage on random contracts against such references, for the
+/// next fit. The tests `OptionsError` assert nine rows of ten.
 template <class R>
 struct ErrorEstimate {
   R factor;    ///< of the largest difference of the two grids near the spot
@@ -100,12 +101,12 @@ KOKKOS_INLINE_FUNCTION R drift_in_deviations(const PutPack<R>& put, const LevyMe
   // The compensator e^y - 1 - y takes nearly half the variance from the drift, but much more if the mean of
   // Kou's upward jumps hardly exists.
   R compensator = 0.5 * measure.variance;
-  if (put.model == Model::merton || put.model == Model::kou)
+  if (put.model == JumpModel::merton || put.model == JumpModel::kou)
     compensator = jump_cumulant(put, measure, R(1.0));
   const R drift = (put.rate - put.dividend - 0.5 * put.variance - compensator) * put.maturity;
   const R drift_ratio =
       device::maximum(R(1.0), device::absolute(drift) * device::reciprocal(device::square_root(variance)));
-  if (put.model != Model::generalized_hyperbolic) return drift_ratio;
+  if (put.model != JumpModel::generalized_hyperbolic) return drift_ratio;
   // Asymmetric jumps (for beta = -1/2 they are symmetric up to e^y) increase the error once they act over
   // several deviations and years; with early exercise they have less time. The constants 0.4, 0.25 and 10 are
   // empirical, tested by `OptionsError.CoversAsymmetricJumpsOverDecades`.
@@ -162,8 +163,8 @@ KOKKOS_INLINE_FUNCTION ErrorEstimate<R> estimate_error(const PutPack<R>& put, co
   const R resolved = device::minimum(h, R(2.0)), squared = resolved * resolved;
   ErrorEstimate<R> estimate{error_factor(h, steps, spread, drift_in_deviations(put, measure)),
                             0.05 * squared * squared, put.variance + measure.variance};
-  if (put.model == Model::kou) estimate.offset += kou_skewness_error(put, measure, h);
-  if (put.model == Model::generalized_hyperbolic)
+  if (put.model == JumpModel::kou) estimate.offset += kou_skewness_error(put, measure, h);
+  if (put.model == JumpModel::generalized_hyperbolic)
     estimate.offset += hyperbolic_skewness_error(put, h, spread);
   return estimate;
 }

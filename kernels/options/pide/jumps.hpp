@@ -149,9 +149,9 @@ struct JumpsMemory {
 template <class R>
 KOKKOS_INLINE_FUNCTION WeightPair<R> jump_weights(const PutPack<R>& put, const Grid<R>& grid, int d, R tilted,
                                                   const R* even, const R* odd, const R* finer) {
-  if (put.model == Model::kou) return kou_weights(put, grid.h, d);
-  if (put.model == Model::merton) return merton_weights(put, grid.h, d, d == grid.mesh);
-  if (put.model != Model::generalized_hyperbolic) return {R(0.0), R(0.0)};
+  if (put.model == JumpModel::kou) return kou_weights(put, grid.h, d);
+  if (put.model == JumpModel::merton) return merton_weights(put, grid.h, d, d == grid.mesh);
+  if (put.model != JumpModel::generalized_hyperbolic) return {R(0.0), R(0.0)};
   // Half of the first weight is represented by finite differences; half of the last one belongs to the tails.
   if (finer != nullptr) {
     const WeightLayout<R> layout(2 * grid.mesh);
@@ -178,7 +178,7 @@ KOKKOS_INLINE_FUNCTION Jumps<R> discretize_jumps(const ThreadGroup& group, const
   const int mesh = grid.mesh, nodes = node_count(mesh);
   const R h = grid.h;
   const WeightLayout<R> layout(mesh);
-  const bool mixed = put.model == Model::generalized_hyperbolic;
+  const bool mixed = put.model == JumpModel::generalized_hyperbolic;
   group.each([=](int thread) {
     for (int k = thread; k < layout.size(); k += group.threads()) memory.w[k] = 0.0;
     for (int k = thread; k < nodes; k += group.threads()) memory.exit_mass[k] = memory.exit_price[k] = 0.0;
@@ -192,7 +192,7 @@ KOKKOS_INLINE_FUNCTION Jumps<R> discretize_jumps(const ThreadGroup& group, const
     R rate = 0.0, variance = 0.0, price = 0.0;
     R growth = exponential((lane + 1.0) * h), tilted = exponential((lane + 1.0) * tilt);
     for (int d = 1 + lane; d <= mesh; d += group.lanes) {
-      const double part = put.model == Model::kou && d == mesh ? 0.5 : 1.0;
+      const double part = put.model == JumpModel::kou && d == mesh ? 0.5 : 1.0;
       const WeightPair<R> pair = jump_weights(put, grid, d, tilted, memory.even, memory.odd, finer);
       const R up = part * pair.up, down = part * pair.down, both = up + down;
       const R y = double(d) * h, down_price = down * device::reciprocal(growth);

@@ -17,7 +17,7 @@ KOKKOS_INLINE_FUNCTION FailureReason failure_of(const NormalizedPut& put, double
   if (!(largest * largest < 1e300)) return FailureReason::coefficient_overflow;
   // With 1e6 jumps until maturity, or a discount factor e^{-1e10}, the maximum of 16384 steps is rarely
   // sufficient.
-  const bool has_intensity = put.model == Model::merton || put.model == Model::kou;
+  const bool has_intensity = put.model == JumpModel::merton || put.model == JumpModel::kou;
   const bool stiff = (has_intensity && put.jump[0] * put.maturity >= 1e6) || put.rate * put.maturity >= 1e10;
   return stiff ? FailureReason::stiff : FailureReason::unstable;
 }

@@ -157,7 +157,7 @@ class SurfaceImpl final : public Pricer {
     times.h2d += copying_in.seconds();
     const device::Stopwatch computing;
     for (int model = 0, begin = 0; model < models; begin = end[model++])
-      launch(static_cast<Model>(model), resolution, begin, end[model]);
+      launch(static_cast<JumpModel>(model), resolution, begin, end[model]);
     const int count = static_cast<int>(_staged_queries.size());
     interpolate_prices(space,
                        {_contracts, _strike_groups, _values, _queries, _prices, resolution.mesh,
@@ -173,7 +173,7 @@ class SurfaceImpl final : public Pricer {
   }
 
   /// Enqueues the solves of the strike groups begin .. end - 1 of the order, which have one model.
-  void launch(Model model, const Resolution& resolution, int begin, int end) {
+  void launch(JumpModel model, const Resolution& resolution, int begin, int end) {
     if (begin == end) return;
     StrikeGroupFunctor<ExecutionSpace, 0, JumpClass::any> work{};
     work.batch.model = model;

@@ -95,7 +95,9 @@ double FlowDomain::velocity(const StaggeredField& u, std::size_t component, cons
       // Fluid that enters through an outflow has no tangential velocity.
       if (!normal) {
         GridIndex normal_face = inside;
-        for (std::size_t a = 0; a < 3; ++a) normal_face[a] = std::clamp(normal_face[a], 0, cells(a) - 1);
+        for (std::size_t a = 0; a < 3; ++a)
+          normal_face[a] = is_bounded(a) ? std::clamp(normal_face[a], 0, cells(a) - 1)
+                                         : (normal_face[a] % cells(a) + cells(a)) % cells(a);
         normal_face[axis] = high ? n : 0;
         const double inward = u[axis][at(axis, normal_face)] * (high ? -1.0 : 1.0);
         if (inward > 0.0) return 0.0;

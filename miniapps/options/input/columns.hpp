@@ -17,7 +17,7 @@ struct NumberColumn {
 /// Column of a parameter of one model; models share a column by its name.
 struct ModelParameter {
   const char* name;
-  options::Model model;
+  options::JumpModel model;
   int index;  ///< in `Contract::jump`
 };
 
@@ -35,27 +35,27 @@ inline constexpr NumberColumn number_columns[] = {
 };
 
 inline constexpr ModelParameter model_parameters[] = {
-    {"lambda", options::Model::generalized_hyperbolic, 0},
-    {"alpha", options::Model::generalized_hyperbolic, 1},
-    {"beta", options::Model::generalized_hyperbolic, 2},
-    {"delta", options::Model::generalized_hyperbolic, 3},
-    {"intensity", options::Model::merton, 0},
-    {"jump_mean", options::Model::merton, 1},
-    {"jump_deviation", options::Model::merton, 2},
-    {"intensity", options::Model::kou, 0},
-    {"up_probability", options::Model::kou, 1},
-    {"up_rate", options::Model::kou, 2},
-    {"down_rate", options::Model::kou, 3},
+    {"lambda", options::JumpModel::generalized_hyperbolic, 0},
+    {"alpha", options::JumpModel::generalized_hyperbolic, 1},
+    {"beta", options::JumpModel::generalized_hyperbolic, 2},
+    {"delta", options::JumpModel::generalized_hyperbolic, 3},
+    {"intensity", options::JumpModel::merton, 0},
+    {"jump_mean", options::JumpModel::merton, 1},
+    {"jump_deviation", options::JumpModel::merton, 2},
+    {"intensity", options::JumpModel::kou, 0},
+    {"up_probability", options::JumpModel::kou, 1},
+    {"up_rate", options::JumpModel::kou, 2},
+    {"down_rate", options::JumpModel::kou, 3},
 };
 
 inline constexpr Keyword<options::Style> styles[] = {{"american", options::Style::american},
                                                      {"european", options::Style::european}};
 inline constexpr Keyword<options::Type> types[] = {{"put", options::Type::put},
                                                    {"call", options::Type::call}};
-inline constexpr Keyword<options::Model> models[] = {{"gh", options::Model::generalized_hyperbolic},
-                                                     {"black-scholes", options::Model::black_scholes},
-                                                     {"merton", options::Model::merton},
-                                                     {"kou", options::Model::kou}};
+inline constexpr Keyword<options::JumpModel> models[] = {{"gh", options::JumpModel::generalized_hyperbolic},
+                                                         {"black-scholes", options::JumpModel::black_scholes},
+                                                         {"merton", options::JumpModel::merton},
+                                                         {"kou", options::JumpModel::kou}};
 
 /// Names of all valid input columns, without repetitions.
 [[nodiscard]] std::vector<std::string> input_columns();

@@ -65,7 +65,7 @@ const char* missing_column(RowKind kind, const std::vector<int>& columns) {
     if (column.required && belongs_to(column, kind) && column_index(column.name) < 0) return column.name;
   if (column_index("model") >= 0) return nullptr;  // the model of each row decides
   for (const ModelParameter& parameter : model_parameters)
-    if (parameter.model == options::Model::generalized_hyperbolic && column_index(parameter.name) < 0)
+    if (parameter.model == options::JumpModel::generalized_hyperbolic && column_index(parameter.name) < 0)
       return parameter.name;
   return nullptr;
 }

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "common/program/failure.hpp"
-#include "common/run/output_path.hpp"
+#include "common/run/files/output_path.hpp"
 
 namespace drogue::options_app {
 namespace {

@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "common/run/atomic_file.hpp"
+#include "common/run/files/atomic_file.hpp"
 #include "miniapps/options/command.hpp"
 #include "miniapps/options/output/price_rows.hpp"
 #include "miniapps/options/output/result_batch.hpp"

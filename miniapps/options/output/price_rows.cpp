@@ -30,13 +30,13 @@ const char* status_fields(const RowLayout& layout, const options::Price& price) 
                  : ",failed,the values grew without bound on all grids that --tolerance tries: --mesh "
                    "and --steps together instead of it or --method cos may price it";
     case options::FailureReason::stiff:
-      return ",failed,the values grew without bound: more happens until maturity than steps can follow; "
+      return ",failed,the values grew without bound: too many jumps until maturity for any number of steps; "
              "--method cos may price it";
     case options::FailureReason::coefficient_overflow:
-      return ",failed,finite differences of this law and these rates need numbers beyond all range; "
+      return ",failed,coefficients of the finite differences exceed the range of double; "
              "--method cos may price it";
     case options::FailureReason::fourier_not_finite:
-      return ",failed,the Fourier integral or series of this law and maturity is not finite";
+      return ",failed,the Fourier integral or series is not finite";
     case options::FailureReason::none:
       break;
   }

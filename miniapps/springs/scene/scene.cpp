@@ -2,7 +2,7 @@
 
 #include <span>
 
-#include "common/run/restart_file.hpp"
+#include "common/run/restart/restart_file.hpp"
 #include "common/scene/document.hpp"
 #include "common/scene/print.hpp"
 #include "common/scene/read.hpp"

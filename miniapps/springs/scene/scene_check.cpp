@@ -118,12 +118,12 @@ void check_pins(const Table& root, const SpringsScene& scene) {
     require_finite(root, scene, path + ".motion", pin.motion);
     const auto vertices = require_some(root, scene, path + ".where", pin.where, "the pin holds nothing");
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const bool held = pin.axes.find(axis_names[axis]) != std::string::npos;
+      const bool fixed = pin.axes.find(axis_names[axis]) != std::string::npos;
       const std::string moved = path + ".motion." + axis_names[axis];
-      if (!held && !pin.motion.of(axis).empty())
+      if (!fixed && !pin.motion.of(axis).empty())
         contradict(root, moved,
                    moved + " moves an axis that " + path + ".axes = \"" + pin.axes + "\" leaves free");
-      if (!held) continue;
+      if (!fixed) continue;
       for (const int i : vertices) {
         std::size_t& other = holder[static_cast<std::size_t>(i)][axis];
         if (other > 0 && scene.pins[other - 1].motion.of(axis) != pin.motion.of(axis))

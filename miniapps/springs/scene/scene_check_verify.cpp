@@ -72,7 +72,7 @@ void check_verify(const Table& root, const SpringsScene& scene) {
   if (verify.intersections) {
     require(root, has_rows, "verify.intersections", rows);
     require(root, !has_level_set, "verify.intersections",
-            "contact.objects without a level-set, which keeps out vertices alone");
+            "contact.objects without a level-set, which keeps out only vertices");
   }
   if (verify.penetration)
     require(root, !scene.contact.objects.empty() && !has_level_set, "verify.penetration",

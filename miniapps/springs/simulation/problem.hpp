@@ -2,7 +2,7 @@
 
 #include <span>
 
-#include "kernels/fabric/state.hpp"
+#include "kernels/fabric/results.hpp"
 #include "miniapps/springs/scene/scene.hpp"
 
 namespace drogue::springs_app {

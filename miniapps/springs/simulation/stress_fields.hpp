@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "common/run/dataset_spec.hpp"
+#include "common/run/fields/dataset_spec.hpp"
 #include "kernels/fabric/parameters.hpp"
-#include "kernels/fabric/state.hpp"
+#include "kernels/fabric/results.hpp"
 
 namespace drogue::springs_app {
 

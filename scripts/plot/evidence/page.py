@@ -6,6 +6,7 @@ from pathlib import Path
 from PIL import Image
 
 from .. import html_page, style
+from ..flow import solver_tables
 from ..options import transfers as options_transfers
 from . import block_sizes, roofline, steps, transfers, work_precision_section
 from .perf_record import Machine, Record
@@ -39,7 +40,16 @@ def _options_sections(evidence: Evidence, machine: Machine) -> list[Section]:
     return found + options_transfers.sections(machine, evidence.select(machine, "options-transfers"))
 
 
-_SECTIONS = {"gas": _gas_sections, "springs": _springs_sections, "options": _options_sections}
+def _flow_sections(evidence: Evidence, machine: Machine) -> list[Section]:
+    solved = evidence.select(machine, "flow-solution")
+    found = work_precision_section.sections(machine, solved, evidence.failed_runs_on(machine))
+    ceilings = [record for record in evidence.ceilings if record.machine == machine]
+    found += steps.sections(evidence.select(machine, "flow-step"), roofline.bandwidths(ceilings))
+    found += solver_tables.pressure_sections(evidence.select(machine, "flow-pressure"))
+    return found + solver_tables.memory_sections(evidence.select(machine, "flow-memory"))
+
+
+_SECTIONS = {"gas": _gas_sections, "springs": _springs_sections, "options": _options_sections, "flow": _flow_sections}
 
 
 def _counted(count: int, words: str, plural: str) -> str:

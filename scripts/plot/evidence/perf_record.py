@@ -14,6 +14,13 @@ BACKENDS = {"serial": "Serial", "openmp": "OpenMP", "cuda": "CUDA"}
 _FACTS = {
     "gas-solution": {"problem": str, "backend": str, "weno": str, "cells": int},
     "gas-step": {},
+    "flow-step": {"backend": str, "cells": int, "variant": str},
+    "flow-pressure": {"backend": str, "cells": int, "variant": str},
+    "flow-memory": {"backend": str, "cells": int, "variant": str, "array_bytes": int},
+    "flow-solution": {
+        "problem": str, "backend": str, "advection": str, "time_scheme": str, "pressure": str, "diffusion": str,
+        "cells": int,
+    },
     "ceiling": {"backend": str},
     "gas-transfers": {"backend": str, "memory": str, "cells": int, "h2d_s": float, "compute_s": float, "d2h_s": float},
     "gas-block": {"backend": str, "form": str, "block": int, "cells": int},
@@ -37,7 +44,12 @@ _NAMED_BY_CASE = (
     "options",
     "tridiagonal",
 )  # facts in the case name
+_UNTIMED = ("flow-memory",)
 _OPTIONAL = {
+    "flow-step": {"bytes": float},
+    "flow-pressure": {"tolerance": float, "iterations": int},
+    "flow-memory": {"driver_bytes": int},
+    "flow-solution": {"status": str, "message": str},
     "gas-solution": {
         "weno_power": float, "splitting": str, "time_scheme": str, "precision": str, "status": str, "message": str,
     },
@@ -177,11 +189,12 @@ def parse(line: str, place: str) -> Record:
     if not _has_type(provenance.get("threads", 1), int):
         raise Failure(IO_ERROR, f"{place}: threads of {case} is no positive whole number.")
     median, interval, error = None, None, document.get("error")
-    if case.partition("/")[0] in _FACTS:
+    kind = case.partition("/")[0]
+    if kind in _FACTS:
         facts = _checked_facts(case, facts, place)
-        if check == "passed" and facts.get("status", "ok") == "ok":
+        if kind not in _UNTIMED and check == "passed" and facts.get("status", "ok") == "ok":
             median, interval = _times(document, place)
-            if case.partition("/")[0].endswith("-solution") and not _has_type(error, float):
+            if kind.endswith("-solution") and not _has_type(error, float):
                 raise Failure(IO_ERROR, f"{place}: the error of {case} is no number.")
     unit, error = str(document.get("unit", "")), error if _has_type(error, float) else None
     return Record(case, unit, check, median, interval, error, facts, provenance)

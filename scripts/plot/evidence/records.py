@@ -19,6 +19,7 @@ class Evidence:
     failed_checks: list[Record] = field(default_factory=list)
     unknown_kinds: Counter = field(default_factory=Counter)
     superseded: list[Record] = field(default_factory=list)
+    ceilings: list[Record] = field(default_factory=list)  # valid ones, which concern all mini-apps
 
     @property
     def apps(self) -> list[str]:
@@ -39,6 +40,7 @@ class Evidence:
             own(self.failed_checks),
             self.unknown_kinds,
             own(self.superseded),
+            self.ceilings or [record for record in self.records if record.kind == "ceiling"],
         )
 
     @property

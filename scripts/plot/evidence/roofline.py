@@ -33,6 +33,13 @@ def ceilings(records: list[Record]) -> dict[str, float]:
     return found
 
 
+def bandwidths(records: list[Record]) -> dict[str, float]:
+    """Measured bandwidth of the memory, B/s, by backend."""
+    names = dict.fromkeys(record.facts["backend"] for record in records)
+    found = {name: ceilings([r for r in records if r.facts["backend"] == name]).get("memory") for name in names}
+    return {name: speed for name, speed in found.items() if speed}
+
+
 def points(steps: list[Record]) -> list[Point]:
     """Steps in the default variant whose work is known, by increasing mesh."""
     found = []

@@ -1,12 +1,13 @@
 """Lookup of the scheme family of a work-precision record."""
 
+from ..flow import scheme_family as flow
 from ..gas import scheme_family as gas
 from ..options import scheme_family as options
 from ..springs import scheme_family as springs
 from .perf_record import Record
 from .scheme_family import SchemeFamily
 
-_BY_KIND = {"springs-solution": springs.FAMILY, "options-solution": options.FAMILY}
+_BY_KIND = {"springs-solution": springs.FAMILY, "options-solution": options.FAMILY, "flow-solution": flow.FAMILY}
 
 
 def family_of(record: Record) -> SchemeFamily:

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 @dataclass(frozen=True)
 class PublishedResult:
-    """Points (s per option, error over the strike) of another program on one problem."""
+    """Points (time, error) of another program on one problem, in the units of its diagram."""
 
     problem: str
     label: str

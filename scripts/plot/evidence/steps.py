@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from markupsafe import Markup
 
 from .. import html_page
+from ..flow import goals as flow_goals
 from ..gas import goals as gas_goals
 from ..options import goals as options_goals
 from ..springs import goals as springs_goals
@@ -46,6 +47,7 @@ _SPRINGS = "vertices", (VERTEX_NS, "G vertex-steps/s"), springs_goals.GOALS
 _BATCH = {"time": BATCH_US, "scales": (1e6, 1.0), "errors": True}
 _KINDS = {
     "gas-step": _Kind("A step", "cells", (CELL_NS, RATE), gas_goals.GOALS),
+    "flow-step": _Kind("A step", "cells", (CELL_NS, RATE), flow_goals.GOALS, errors=True),
     "springs-step": _Kind("A step", *_SPRINGS),
     "springs-contact": _Kind("A step in contact", *_SPRINGS),
     "options": _Kind("A batch", "options", (OPTION_US, OPTION_RATE), options_goals.GOALS, **_BATCH),
@@ -192,8 +194,16 @@ def goal_table(records: list[Record]) -> Table | None:
     )
 
 
-def step_table(records: list[Record]) -> Table:
-    """Table of times and rates; records are of one kind."""
+def _traffic_bound(record: Record, bandwidths: dict[str, float]) -> str:
+    """Time per unit of the mesh that the bytes of a step need at the bandwidth of the memory; empty if unknown."""
+    speed, moved = bandwidths.get(record.facts["backend"]), record.facts.get("bytes")
+    if speed is None or moved is None:
+        return ""
+    return html_page.format_number(_KINDS[record.kind].scales[0] * moved / speed / record.facts["cells"])
+
+
+def step_table(records: list[Record], bandwidths: dict[str, float] | None = None) -> Table:
+    """Table of times and rates; records are of one kind. `bandwidths`: of the memory, B/s, by backend."""
     kind, rows = _KINDS[records[0].kind], []
     for record in records:
         seconds, cells = _seconds(record), record.facts["cells"]
@@ -206,10 +216,12 @@ def step_table(records: list[Record]) -> Table:
                 html_page.format_number(kind.scales[0] * seconds[0] / cells),
                 html_page.format_number(kind.scales[1] * cells / seconds[0]),
                 *([html_page.format_number(record.error)] if kind.errors else []),
+                *([_traffic_bound(record, bandwidths)] if bandwidths else []),
             ]  # fmt: skip
         )
     columns = [("backend", False), ("variant", False), (kind.mesh, True)]
     columns += [(name, True) for name in (kind.time, *kind.per_mesh, *(["error"] if kind.errors else []))]
+    columns += [("memory traffic alone", True)] if bandwidths else []
     return Table(
         columns,
         rows,
@@ -217,8 +229,8 @@ def step_table(records: list[Record]) -> Table:
     )
 
 
-def sections(records: list[Record]) -> list[Section]:
-    """One section on records of one kind, none without records."""
+def sections(records: list[Record], bandwidths: dict[str, float] | None = None) -> list[Section]:
+    """One section on records of one kind, none without records. `bandwidths` as for `step_table`."""
     if not records:
         return []
     order = list(_NAMES)
@@ -235,6 +247,6 @@ def sections(records: list[Record]) -> list[Section]:
     command = f"drogue-perf run --filter ^{kind}/ --out FILE.jsonl"
     return [
         Section(
-            _KINDS[kind].title, command, ordered, tables=[step_table(ordered)] + ([goals] if goals else [])
+            _KINDS[kind].title, command, ordered, tables=[step_table(ordered, bandwidths)] + ([goals] if goals else [])
         )
     ]

@@ -5,6 +5,9 @@
 #include <vector>
 
 #include "tests/support/flow_case.hpp"
+#if defined(DROGUE_HAVE_HYPRE)
+#include "tests/support/hypre_session.hpp"
+#endif
 #include "tests/support/profiled.hpp"
 
 // Step size, stopping criteria, costs of a step, restarts, and rejected parameters.
@@ -159,6 +162,7 @@ TEST(FlowControl, StopsAtTheLargestNumberOfStepsAndOnInterrupt) {
 
 #if defined(DROGUE_HAVE_HYPRE)
 TEST(FlowControl, IterativePressureSolverGivesTheVelocityOfTheDirectOne) {
+  testing::start_hypre();
   Parameters p = mixed_box();
   const FlowDomain domain(p);
   const StaggeredField initial = random_field(domain, 7);
@@ -174,6 +178,7 @@ TEST(FlowControl, IterativePressureSolverGivesTheVelocityOfTheDirectOne) {
 }
 
 TEST(FlowControl, ReportsAPressureSolverThatDoesNotConverge) {
+  testing::start_hypre();
   Parameters p = periodic_box({12, 10, 9});
   p.pressure_solver = PressureSolver::hypre_pfmg;
   p.pressure_tolerance = 1e-300;

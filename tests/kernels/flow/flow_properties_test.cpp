@@ -122,11 +122,10 @@ TEST(FlowProperties, CentralAdvectionConservesEnergyOfInviscidFlow) {
 
 // ctest-label: exact
 TEST(FlowProperties, BackendsAgree) {
+  // cuFFT and cuBLAS sum in another order than FFTW; five steps let the differences of noise grow.
+  double tolerance = backend == device::Backend::cuda ? 1e-11 : 1e-12;
 #if defined(DROGUE_EXACT)
-  const double tolerance =
-      backend == device::Backend::cuda ? 1e-12 : 0.0;  // cuFFT sums in another order than FFTW
-#else
-  const double tolerance = 1e-12;
+  if (backend != device::Backend::cuda) tolerance = 0.0;
 #endif
   const device::Backend other = device::compiled_backends().front();
   for (const TimeScheme time : time_schemes)

@@ -8,6 +8,7 @@
 
 #include "kernels/linear/poisson/diagonalization.hpp"
 #include "kernels/linear/poisson/hypre_pfmg.hpp"
+#include "tests/support/hypre_session.hpp"
 
 // The iterative solver against diagonalization, which linear_poisson_test compares with the oracle.
 
@@ -57,7 +58,12 @@ constexpr AxisConditions conditions[] = {periodic,
                                          {false, EndCondition::dirichlet, EndCondition::neumann},
                                          {false, EndCondition::dirichlet, EndCondition::dirichlet}};
 
-TEST(Hypre, AgreesWithDiagonalizationForAllEndConditions) {
+class Hypre : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() { testing::start_hypre(); }
+};
+
+TEST_F(Hypre, AgreesWithDiagonalizationForAllEndConditions) {
   const Space space;
   for (const AxisConditions& x : conditions)
     for (const AxisConditions& y : conditions)
@@ -74,7 +80,7 @@ TEST(Hypre, AgreesWithDiagonalizationForAllEndConditions) {
       }
 }
 
-TEST(Hypre, SolvesThinGridsPrimeSizesAndStretchedCells) {
+TEST_F(Hypre, SolvesThinGridsPrimeSizesAndStretchedCells) {
   const Space space;
   for (const std::array<int, 3>& cells :
        {std::array<int, 3>{16, 1, 12}, {1, 17, 12}, {20, 9, 1}, {31, 29, 37}})
@@ -88,7 +94,7 @@ TEST(Hypre, SolvesThinGridsPrimeSizesAndStretchedCells) {
     }
 }
 
-TEST(Hypre, BeginsWithThePreviousSolution) {
+TEST_F(Hypre, BeginsWithThePreviousSolution) {
   const Space space;
   const PoissonProblem problem{{16, 16, 16}, {1.0, 1.0, 1.0}, {conditions[2], conditions[1], periodic}};
   HyprePfmgSolver<Space> solver(space, problem, 1e-8);
@@ -103,7 +109,7 @@ TEST(Hypre, BeginsWithThePreviousSolution) {
   EXPECT_LT(solver.iterations(), cold);
 }
 
-TEST(Hypre, ReportsSolvesThatDoNotConverge) {
+TEST_F(Hypre, ReportsSolvesThatDoNotConverge) {
   const Space space;
   const PoissonProblem problem{{16, 16, 16}, {1.0, 0.1, 1.0}, {conditions[2], conditions[1], conditions[4]}};
   HyprePfmgSolver<Space> solver(space, problem, tolerance, 1);
@@ -118,7 +124,7 @@ TEST(Hypre, ReportsSolvesThatDoNotConverge) {
   EXPECT_TRUE(next.converged());
 }
 
-TEST(Hypre, HandlesZeroAndNonFiniteRightHandSides) {
+TEST_F(Hypre, HandlesZeroAndNonFiniteRightHandSides) {
   const Space space;
   const PoissonProblem problem{{8, 8, 8}, {1.0, 1.0, 1.0}, {periodic, periodic, periodic}};
   HyprePfmgSolver<Space> solver(space, problem, tolerance);
@@ -134,7 +140,7 @@ TEST(Hypre, HandlesZeroAndNonFiniteRightHandSides) {
   EXPECT_TRUE(solver.converged());
 }
 
-TEST(Hypre, RejectsArraysOfTheWrongSize) {
+TEST_F(Hypre, RejectsArraysOfTheWrongSize) {
   const Space space;
   const PoissonProblem problem{{8, 8, 8}, {1.0, 1.0, 1.0}, {periodic, periodic, periodic}};
   HyprePfmgSolver<Space> solver(space, problem, tolerance);

@@ -99,7 +99,7 @@ TEST(CosEuropean, MatchesBlackScholesFormula) {
   for (const double maturity : {1.0 / 365.0, 1.0, 30.0})
     for (const double spot : {0.7, 1.0, 1.3}) {
       Contract c = european(Type::call);
-      c.model = Model::black_scholes;
+      c.model = JumpModel::black_scholes;
       c.spot = spot, c.maturity = maturity, c.variance = 0.04, c.dividend = 0.02;
       const auto normal = [](double x) { return 0.5 * std::erfc(-x / std::sqrt(2.0)); };
       const double width = 0.2 * std::sqrt(maturity);
@@ -122,13 +122,13 @@ TEST(CosEuropean, MatchesMertonSeries) {
   double expected = 0.0, weight = std::exp(-intensity * (1.0 + growth) * c.maturity);
   for (int n = 0; n < 40; ++n) {
     Contract each = c;
-    each.model = Model::black_scholes;
+    each.model = JumpModel::black_scholes;
     each.variance = c.variance + n * deviation * deviation / c.maturity;
     each.rate = c.rate - intensity * growth + n * std::log1p(growth) / c.maturity;
     expected += weight * european_price(each, CharacteristicExponent(each)).price;
     weight *= intensity * (1.0 + growth) * c.maturity / (n + 1);
   }
-  c.model = Model::merton;
+  c.model = JumpModel::merton;
   c.jump[0] = intensity, c.jump[1] = mean, c.jump[2] = deviation;
   EXPECT_NEAR(european_price(c, CharacteristicExponent(c)).price, expected, 1e-12);
 }
@@ -136,7 +136,7 @@ TEST(CosEuropean, MatchesMertonSeries) {
 /// Kou's model without jumps, and generalized hyperbolic jumps with a small delta.
 TEST(CosEuropean, ApproachesBlackScholesAndVarianceGammaLimits) {
   Contract kou = european(), plain = european(), tiny = european(), gamma = european();
-  kou.model = Model::kou, plain.model = Model::black_scholes;
+  kou.model = JumpModel::kou, plain.model = JumpModel::black_scholes;
   kou.variance = plain.variance = 0.04;
   kou.jump[0] = 0.0, kou.jump[1] = 0.4, kou.jump[2] = 3.0, kou.jump[3] = 3.0;
   EXPECT_NEAR(european_price(kou, CharacteristicExponent(kou)).price,

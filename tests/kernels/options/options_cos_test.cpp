@@ -81,7 +81,7 @@ TEST(OptionsCos, ErrorStaysWithinTolerance) {
 TEST(OptionsCos, LongMaturitiesApproachPerpetualPut) {
   for (const double rate : {0.02, 0.05, 0.1})
     for (const double years : {300.0, 1e4, 1e7}) {
-      const Contract c{.model = Model::black_scholes,
+      const Contract c{.model = JumpModel::black_scholes,
                        .style = Style::american,
                        .spot = 100.0,
                        .strike = 95.0,
@@ -98,7 +98,7 @@ TEST(OptionsCos, LongMaturitiesApproachPerpetualPut) {
 
 // Exercise pays within a small part of an interval between dates, which no level resolves.
 TEST(OptionsCos, StatesLargeErrorForTooFewDates) {
-  Contract c{.model = Model::black_scholes,
+  Contract c{.model = JumpModel::black_scholes,
              .style = Style::american,
              .spot = 1.0,
              .strike = 1.0,

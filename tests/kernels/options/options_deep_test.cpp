@@ -14,7 +14,7 @@ namespace drogue::options {
 namespace {
 
 Contract plain_put(double spot, double rate, double dividend, double maturity, double variance) {
-  return {.model = Model::black_scholes,
+  return {.model = JumpModel::black_scholes,
           .spot = spot,
           .rate = rate,
           .dividend = dividend,
@@ -97,7 +97,7 @@ TEST(OptionsDeep, ThetaVanishesTowardsTheUpperEnd) {
     for (int k = 0; k < 150; ++k) {
       Contract c = plain_put(std::exp(0.01 * k), 0.03, 0.01, 0.25, 0.04);
       c.style = Style::european;
-      c.model = Model::generalized_hyperbolic;
+      c.model = JumpModel::generalized_hyperbolic;
       std::ranges::copy(std::array{1.0, 30.0, -2.5, 0.1}, c.jump);
       contracts.push_back(c);
     }

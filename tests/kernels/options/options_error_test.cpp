@@ -31,7 +31,7 @@ constexpr std::array<std::array<double, 4>, 5> jump_parameters = {{{1.0, 8.15, -
                                                                    {1.0, 30.0, -8.0, 0.2}}};
 
 Contract put(Style style, double spot, double maturity, double variance, const std::array<double, 4>& jump,
-             Model model = Model::generalized_hyperbolic) {
+             JumpModel model = JumpModel::generalized_hyperbolic) {
   Contract c{.model = model,
              .style = style,
              .spot = spot,
@@ -99,7 +99,7 @@ TEST(OptionsError, CoversBoundariesThatHardlyMoveForDecades) {
     for (const double rate : {0.04, 0.06, 0.09})
       for (const double maturity : {15.0, 30.0})
         for (const double spot : {0.95, 1.3}) {
-          contracts.push_back(put(Style::american, spot, maturity, variance, {}, Model::black_scholes));
+          contracts.push_back(put(Style::american, spot, maturity, variance, {}, JumpModel::black_scholes));
           contracts.back().rate = rate;
         }
   const std::vector<Price> known = priced(on_mesh(2048, 1024), contracts);
@@ -227,7 +227,7 @@ TEST(OptionsError, CoversDriftsOverManyDeviations) {
     for (const double spot : {0.85, 1.0, 1.2})
       for (const double maturity : {10.0, 20.0, 30.0})
         for (const Type type : {Type::put, Type::call}) {
-          Contract c = put(Style::european, 1.0, maturity, 0.0009, {}, Model::black_scholes);
+          Contract c = put(Style::european, 1.0, maturity, 0.0009, {}, JumpModel::black_scholes);
           c.rate = rate;
           c.dividend = 0.0;
           c.spot = spot * std::exp(-rate * maturity);
@@ -244,7 +244,7 @@ TEST(OptionsError, CoversDriftsAwayFromTheStrike) {
   for (const double rate : {0.07, 0.09})
     for (const double spot : {0.55, 0.7, 1.0})
       for (const double maturity : {15.0, 24.0}) {
-        contracts.push_back(put(Style::european, spot, maturity, 0.018, {}, Model::black_scholes));
+        contracts.push_back(put(Style::european, spot, maturity, 0.018, {}, JumpModel::black_scholes));
         contracts.back().rate = rate;
         contracts.back().dividend = 0.0;
       }
@@ -275,13 +275,13 @@ TEST(OptionsError, CoversFrequentShortJumps) {
     for (const double maturity : {0.25, 1.0})
       for (const double spot : {0.4, 0.8, 1.0, 1.3}) {
         contracts.push_back(put(Style::european, spot, maturity, 0.04,
-                                {rate, 0.0, std::sqrt(0.3 / rate), 0.0}, Model::merton));
+                                {rate, 0.0, std::sqrt(0.3 / rate), 0.0}, JumpModel::merton));
       }
   const std::vector<Price> known = priced_by_fourier(contracts);
   expect_covered(priced_to(1e-3, contracts), known, "many short jumps", 100.0, 0.2);
 
   // Exercise limits values that grow: both grids agree on the payoff, but the price of this put is 0.7686.
-  Contract american = put(Style::american, 0.6, 1.0, 0.04, {10000.0, -0.01, 0.02, 0.0}, Model::merton);
+  Contract american = put(Style::american, 0.6, 1.0, 0.04, {10000.0, -0.01, 0.02, 0.0}, JumpModel::merton);
   for (const int mesh : {256, 512})
     EXPECT_GT(priced(on_mesh(mesh, mesh / 4), {american}).front().error, 0.36);
 }
@@ -294,7 +294,7 @@ TEST(OptionsError, CoversKouJumpsShorterThanACell) {
     for (const double maturity : {1.0, 7.0, 20.0})
       for (const double spot : {0.7, 1.0, 1.5}) {
         contracts.push_back(
-            put(Style::european, spot, maturity, 0.02, {rate, 0.3, 170.0, 140.0}, Model::kou));
+            put(Style::european, spot, maturity, 0.02, {rate, 0.3, 170.0, 140.0}, JumpModel::kou));
       }
   const std::vector<Price> known = priced_by_fourier(contracts);
   expect_covered(priced(on_mesh(128, 128), contracts), known, "Kou's jumps shorter than a cell");
@@ -306,7 +306,7 @@ TEST(OptionsError, CoversKouJumpsShorterThanACell) {
 TEST(OptionsError, CoversKouJumpsWithAlmostNoMean) {
   std::vector<Contract> contracts;
   for (const double up : {1.01, 1.02, 1.05}) {
-    contracts.push_back(put(Style::american, 1.0, 3.0, 0.04, {1.0, 0.4, up, 5.0}, Model::kou));
+    contracts.push_back(put(Style::american, 1.0, 3.0, 0.04, {1.0, 0.4, up, 5.0}, JumpModel::kou));
   }
   const std::vector<Price> prices = priced_to(1e-4, contracts),
                            known = priced(on_mesh(1024, 4096), contracts);
@@ -322,7 +322,7 @@ TEST(OptionsError, CoversJumpsOfEqualSize) {
     for (const double deviation : {0.0, 1e-6, 1e-2})
       for (const double spot : {0.8, 1.0, 1.25}) {
         contracts.push_back(
-            put(Style::european, spot, 1.0, 0.02, {0.4, jump, deviation, 0.0}, Model::merton));
+            put(Style::european, spot, 1.0, 0.02, {0.4, jump, deviation, 0.0}, JumpModel::merton));
       }
   const std::vector<Price> known = priced_by_fourier(contracts);
   const auto largest = [&](int mesh) {

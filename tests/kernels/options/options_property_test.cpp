@@ -83,7 +83,7 @@ TEST(OptionsProperty, PricesAreHomogeneousInSpotAndStrike) {
 
 TEST(OptionsProperty, BitsDoNotDependOnThePositionInTheBatch) {
   auto contracts = random_contracts(11, 4);
-  contracts[3].model = Model::black_scholes;
+  contracts[3].model = JumpModel::black_scholes;
   Settings settings;
   settings.tolerance = 1e-4;
   const auto whole_batch = priced(settings, contracts);
@@ -104,7 +104,7 @@ TEST(OptionsProperty, BitsDoNotDependOnThePositionInTheBatch) {
 TEST(OptionsProperty, BitsDoNotDependOnTheLaunchesOfABatch) {
   constexpr std::size_t size = (1 << 17) + 5;
   auto kinds = random_contracts(7, 5);
-  kinds[3].model = Model::black_scholes;
+  kinds[3].model = JumpModel::black_scholes;
   Contract late = kinds[0];
   const Settings settings = on_mesh(32, 8);
   const auto pricer = create_pricer(backend, settings);
@@ -142,8 +142,8 @@ TEST(OptionsProperty, BitsDoNotDependOnTheSizeOfTheBatch) {
   for (std::size_t k = 0; k < contracts.size(); ++k) {
     Contract& c = contracts[k];
     if (k % 4 != 0) {
-      c.model = k % 4 == 1 ? Model::black_scholes : k % 4 == 2 ? Model::merton : Model::kou;
-      const double jump[4] = {0.4, 0.3, c.model == Model::merton ? 0.2 : 6.0, 4.0};
+      c.model = k % 4 == 1 ? JumpModel::black_scholes : k % 4 == 2 ? JumpModel::merton : JumpModel::kou;
+      const double jump[4] = {0.4, 0.3, c.model == JumpModel::merton ? 0.2 : 6.0, 4.0};
       std::copy_n(jump, 4, c.jump);
       c.variance += 0.01;
     }
@@ -316,7 +316,7 @@ TEST(OptionsProperty, ReportsTheReasonOfAFailure) {
     EXPECT_EQ(one_price(1e308, 1.0, 0.04, 0.5, settings).failure, FailureReason::coefficient_overflow);
   }
   EXPECT_EQ(one_price(1e12, 1.0, 0.04, 0.5, on_mesh(128, 32)).failure, FailureReason::stiff);
-  Contract merton{.model = Model::merton, .style = Style::european, .rate = 0.05, .variance = 0.04};
+  Contract merton{.model = JumpModel::merton, .style = Style::european, .rate = 0.05, .variance = 0.04};
   std::ranges::copy(std::array{1e12, -0.1, 0.2}, merton.jump);
   EXPECT_EQ(priced(on_mesh(128, 32), {merton})[0].failure, FailureReason::stiff);
   // The tolerance selects more steps.

@@ -91,7 +91,7 @@ TEST(OptionsReference, StatedErrorsCoverAndDoNotExaggerate) {
 }
 
 struct Literature {
-  Model model;
+  JumpModel model;
   double spot, price;
 };
 
@@ -105,16 +105,17 @@ Contract merton_or_kou(const Literature& row) {
   c.maturity = 0.25;
   c.variance = 0.15 * 0.15;
   const double merton[4] = {0.1, -0.9, 0.45, 0.0}, kou[4] = {0.1, 0.3445, 3.0465, 3.0775};
-  for (int k = 0; k < 4; ++k) c.jump[k] = row.model == Model::merton ? merton[k] : kou[k];
+  for (int k = 0; k < 4; ++k) c.jump[k] = row.model == JumpModel::merton ? merton[k] : kou[k];
   return c;
 }
 
 // d'Halluin, Forsyth and Labahn (2004) and Toivanen (2008), with the digits of their tables.
 // ctest-label: no-sanitizer
 TEST(OptionsReference, MatchesMertonAndKouPricesOfTheLiterature) {
-  const std::vector<Literature> rows = {{Model::merton, 90.0, 10.0038},  {Model::merton, 100.0, 3.24125},
-                                        {Model::merton, 110.0, 1.41980}, {Model::kou, 90.0, 10.0051},
-                                        {Model::kou, 100.0, 2.80788},    {Model::kou, 110.0, 0.561877}};
+  const std::vector<Literature> rows = {
+      {JumpModel::merton, 90.0, 10.0038},  {JumpModel::merton, 100.0, 3.24125},
+      {JumpModel::merton, 110.0, 1.41980}, {JumpModel::kou, 90.0, 10.0051},
+      {JumpModel::kou, 100.0, 2.80788},    {JumpModel::kou, 110.0, 0.561877}};
   std::vector<Contract> contracts;
   for (const Literature& row : rows) contracts.push_back(merton_or_kou(row));
   Settings settings;
@@ -150,7 +151,7 @@ TEST(OptionsReference, StatedErrorsCoverHardProcesses) {
                             {put(100.0, 0.05, 0.0, 0.01, 0.0, {2.0, 11.0, -5.0, 0.0}), 0.28357},
                             {put(90.0, 0.05, 0.02, 1.0, 0.04, {1.0, 8.15, -8.149, 0.767}), 85.1442},
                             {put(100.0, 0.03, 0.01, 1.0, 1e-4, {5.0, 0.3, 1e-4, 0.0}), 26.7213}};
-  hard.back().contract.model = Model::merton;
+  hard.back().contract.model = JumpModel::merton;
   for (const double tolerance : {1e-4, 1e-5}) {
     Settings settings;
     settings.tolerance = tolerance;
@@ -197,7 +198,7 @@ TEST(OptionsReference, MatchesBlackAndScholesWithoutJumps) {
   std::vector<Contract> contracts(6);
   for (std::size_t k = 0; k < contracts.size(); ++k) {
     Contract& c = contracts[k];
-    c.model = k < 2 ? Model::black_scholes : k < 4 ? Model::merton : Model::kou;
+    c.model = k < 2 ? JumpModel::black_scholes : k < 4 ? JumpModel::merton : JumpModel::kou;
     c.style = Style::european;
     c.type = k % 2 == 0 ? Type::put : Type::call;
     c.spot = 95.0;
@@ -205,7 +206,7 @@ TEST(OptionsReference, MatchesBlackAndScholesWithoutJumps) {
     c.rate = 0.03;
     c.dividend = 0.01;
     c.variance = 0.09;
-    c.jump[1] = c.model == Model::kou ? 0.4 : -0.1;
+    c.jump[1] = c.model == JumpModel::kou ? 0.4 : -0.1;
     c.jump[2] = c.jump[3] = 5.0;
   }
   Settings settings;

@@ -20,7 +20,7 @@ using testing::on_mesh;
 using testing::priced;
 using testing::priced_by_fourier;
 
-Contract european(Model model, Type type, std::array<double, 4> jump) {
+Contract european(JumpModel model, Type type, std::array<double, 4> jump) {
   Contract c{.model = model,
              .style = Style::european,
              .type = type,
@@ -37,14 +37,14 @@ Contract european(Model model, Type type, std::array<double, 4> jump) {
 // four processes have jumps mainly of one sign. The others have maturities of a few days, hence short grids,
 // which many jumps leave.
 TEST(OptionsTruth, MertonAndKouPricesMatchFourierIntegrals) {
-  std::vector<Contract> puts = {european(Model::merton, Type::put, {0.8, -0.25, 0.1}),
-                                european(Model::merton, Type::put, {0.5, 0.3, 0.15}),
-                                european(Model::kou, Type::put, {1.2, 0.2, 9.0, 4.0}),
-                                european(Model::kou, Type::put, {0.9, 0.8, 5.0, 12.0}),
-                                european(Model::merton, Type::put, {0.3, -0.5, 0.5}),
-                                european(Model::merton, Type::put, {0.3, 0.5, 0.5}),
-                                european(Model::kou, Type::put, {3.0, 0.9, 2.0, 6.0}),
-                                european(Model::kou, Type::put, {3.0, 0.1, 8.0, 0.8})};
+  std::vector<Contract> puts = {european(JumpModel::merton, Type::put, {0.8, -0.25, 0.1}),
+                                european(JumpModel::merton, Type::put, {0.5, 0.3, 0.15}),
+                                european(JumpModel::kou, Type::put, {1.2, 0.2, 9.0, 4.0}),
+                                european(JumpModel::kou, Type::put, {0.9, 0.8, 5.0, 12.0}),
+                                european(JumpModel::merton, Type::put, {0.3, -0.5, 0.5}),
+                                european(JumpModel::merton, Type::put, {0.3, 0.5, 0.5}),
+                                european(JumpModel::kou, Type::put, {3.0, 0.9, 2.0, 6.0}),
+                                european(JumpModel::kou, Type::put, {3.0, 0.1, 8.0, 0.8})};
   for (std::size_t k = 4; k < puts.size(); ++k) puts[k].maturity = 0.01;
   std::vector<Contract> contracts = puts;
   for (Contract c : puts) {
@@ -64,7 +64,7 @@ TEST(OptionsTruth, MertonAndKouPricesMatchFourierIntegrals) {
 /// Density of the jumps, per year.
 double density(const NormalizedPut& put, double y) {
   const double* const j = put.jump;
-  if (put.model == Model::merton) {
+  if (put.model == JumpModel::merton) {
     const double z = (y - j[1]) / j[2];
     return j[0] * std::exp(-0.5 * z * z) / (j[2] * std::sqrt(2.0 * M_PI));
   }
@@ -82,9 +82,9 @@ double sum_beyond(const NormalizedPut& put, double length, double side, const F&
 }
 
 TEST(OptionsTruth, TailsOfMertonAndKouMatchQuadrature) {
-  for (const NormalizedPut& put : {NormalizedPut{.model = Model::merton, .jump = {0.8, -0.3, 0.9}},
-                                   NormalizedPut{.model = Model::merton, .jump = {1.5, 0.4, 1.2}},
-                                   NormalizedPut{.model = Model::kou, .jump = {2.0, 0.3, 2.5, 1.5}}}) {
+  for (const NormalizedPut& put : {NormalizedPut{.model = JumpModel::merton, .jump = {0.8, -0.3, 0.9}},
+                                   NormalizedPut{.model = JumpModel::merton, .jump = {1.5, 0.4, 1.2}},
+                                   NormalizedPut{.model = JumpModel::kou, .jump = {2.0, 0.3, 2.5, 1.5}}}) {
     const double length = 1.1;
     const Tails<double> tails =
         make_tails(SerialThreadGroup<double>{}, pack_puts<double>(&put), LevyMeasure<double>{}, length);
@@ -108,10 +108,10 @@ TEST(OptionsTruth, StatedErrorsCoverTailsThatHardlyDecay) {
     for (const double gap : {1e-1, 1e-3, 1e-5})
       for (const double maturity : {0.1, 1.0}) {
         for (const double beta : {-8.0 + gap, 7.0 - gap}) {
-          contracts.push_back(european(Model::generalized_hyperbolic, type, {1.0, 8.0, beta, 0.7}));
+          contracts.push_back(european(JumpModel::generalized_hyperbolic, type, {1.0, 8.0, beta, 0.7}));
           contracts.back().maturity = maturity;
         }
-        contracts.push_back(european(Model::kou, type, {5.0, 0.5, 1.0 + std::max(gap, 1e-3), 40.0}));
+        contracts.push_back(european(JumpModel::kou, type, {5.0, 0.5, 1.0 + std::max(gap, 1e-3), 40.0}));
         contracts.back().maturity = 1e-4 * maturity;
       }
   const std::vector<Price> known = priced_by_fourier(contracts),
@@ -132,7 +132,7 @@ TEST(OptionsTruth, StatedErrorsCoverSmallOrders) {
     for (const double order : {-1.0, -0.5, 0.01, 0.2})
       for (const double gap : {1e-1, 1e-3, 1e-5})
         for (const double beta : {-8.0 + gap, 7.0 - gap})
-          contracts.push_back(european(Model::generalized_hyperbolic, type, {order, 8.0, beta, 0.7}));
+          contracts.push_back(european(JumpModel::generalized_hyperbolic, type, {order, 8.0, beta, 0.7}));
   const std::vector<Price> known = priced_by_fourier(contracts),
                            prices = priced(on_mesh(512, 512), contracts);
   for (std::size_t k = 0; k < contracts.size(); ++k) {
@@ -156,7 +156,7 @@ TEST(OptionsTruth, MatchesThePutOfHirsaAndMadan) {
 // Merton's perpetual call under Black and Scholes' model: exercise from K g/(g - 1) on, g the larger root of
 // v g (g - 1)/2 + (r - q) g = r.
 TEST(OptionsTruth, BoundaryOfALongCallMatchesThePerpetualOne) {
-  Contract c{.model = Model::black_scholes,
+  Contract c{.model = JumpModel::black_scholes,
              .type = Type::call,
              .strike = 2.0,
              .rate = 0.06,
@@ -176,14 +176,14 @@ TEST(OptionsTruth, BoundaryOfALongCallMatchesThePerpetualOne) {
 
 // B_call B_put = K_call K_put for the put with exchanged rates and mirrored jumps.
 TEST(OptionsTruth, BoundariesOfDualOptionsMatch) {
-  for (const Model model : {Model::generalized_hyperbolic, Model::merton, Model::kou}) {
+  for (const JumpModel model : {JumpModel::generalized_hyperbolic, JumpModel::merton, JumpModel::kou}) {
     Contract call{.model = model, .type = Type::call, .rate = 0.03, .dividend = 0.07, .variance = 0.03};
     Contract put{
         .model = model, .type = Type::put, .strike = 1.3, .rate = 0.07, .dividend = 0.03, .variance = 0.03};
-    if (model == Model::generalized_hyperbolic) {
+    if (model == JumpModel::generalized_hyperbolic) {
       std::ranges::copy(std::array{-0.5, 9.0, -3.0, 0.3}, call.jump);
       std::ranges::copy(std::array{-0.5, 9.0, 2.0, 0.3}, put.jump);
-    } else if (model == Model::merton) {
+    } else if (model == JumpModel::merton) {
       std::ranges::copy(std::array{0.8, -0.2, 0.1, 0.0}, call.jump);
       std::ranges::copy(std::array{0.8 * std::exp(-0.195), 0.19, 0.1, 0.0}, put.jump);
     } else {  // e^{-y} g(-y): rates 3 + 1 upwards and 6 - 1 downwards
@@ -202,9 +202,9 @@ TEST(OptionsTruth, BoundariesOfDualOptionsMatch) {
 // Reference: difference quotients of Fourier prices.
 TEST(OptionsTruth, EuropeanGreeksMatchDifferenceQuotients) {
   for (const Type type : {Type::put, Type::call})
-    for (Contract c : {european(Model::generalized_hyperbolic, type, {1.0, 8.15, -2.5, 0.5}),
-                       european(Model::kou, type, {1.2, 0.2, 9.0, 4.0}),
-                       european(Model::merton, type, {0.8, -0.25, 0.1})}) {
+    for (Contract c : {european(JumpModel::generalized_hyperbolic, type, {1.0, 8.15, -2.5, 0.5}),
+                       european(JumpModel::kou, type, {1.2, 0.2, 9.0, 4.0}),
+                       european(JumpModel::merton, type, {0.8, -0.25, 0.1})}) {
       const auto moved = [&](double spot, double maturity) {
         Contract other = c;
         other.spot += spot;
@@ -225,7 +225,7 @@ TEST(OptionsTruth, EuropeanGreeksMatchDifferenceQuotients) {
 }
 
 /// European puts of three years near the strike, for a model with jumps or without.
-std::vector<Contract> of_three_years(Model model) {
+std::vector<Contract> of_three_years(JumpModel model) {
   std::vector<Contract> contracts;
   for (const double x : {-0.2, -0.1, -0.05, 0.05, 0.1, 0.2}) {
     contracts.push_back(european(model, Type::put, {1.0, 8.15, -2.5, 0.5}));
@@ -252,7 +252,7 @@ double largest_difference(const std::vector<Price>& one, const std::vector<Price
 // The number of steps makes the error in time negligible. Finer grids are slightly wider, so the observed
 // order is slightly less.
 TEST(OptionsTruth, ConvergesAtSecondOrderInSpace) {
-  for (const Model model : {Model::generalized_hyperbolic, Model::black_scholes}) {
+  for (const JumpModel model : {JumpModel::generalized_hyperbolic, JumpModel::black_scholes}) {
     const std::vector<Contract> contracts = of_three_years(model);
     const std::vector<Price> known = priced_by_fourier(contracts);
     const double coarse = largest_difference(on_one_grid(contracts, 64, 256), known),
@@ -263,7 +263,7 @@ TEST(OptionsTruth, ConvergesAtSecondOrderInSpace) {
 
 // Only the number of steps changes, so the errors in space agree.
 TEST(OptionsTruth, ConvergesAtSecondOrderInTime) {
-  for (const Model model : {Model::generalized_hyperbolic, Model::black_scholes}) {
+  for (const JumpModel model : {JumpModel::generalized_hyperbolic, JumpModel::black_scholes}) {
     const std::vector<Contract> contracts = of_three_years(model);
     const auto few = on_one_grid(contracts, 128, 64), some = on_one_grid(contracts, 128, 128),
                many = on_one_grid(contracts, 128, 256);

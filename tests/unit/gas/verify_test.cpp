@@ -7,7 +7,7 @@
 
 #include "kernels/device/runtime.hpp"
 #include "miniapps/framework/run_loop.hpp"
-#include "miniapps/gas/simulation.hpp"
+#include "miniapps/gas/simulation/simulation.hpp"
 
 // Every check of a scene must fail for an invalid state: the tests change one cell of a finished run.
 

@@ -12,8 +12,8 @@
 #include <optional>
 #include <utility>
 
-#include "common/run/fields_writer.hpp"
-#include "common/run/hdf5.hpp"
+#include "common/run/fields/fields_writer.hpp"
+#include "common/run/hdf5/hdf5.hpp"
 #include "tests/unit/run/temporary_directory.hpp"
 
 namespace {

@@ -78,20 +78,20 @@ TEST(ExactRiemann, SampledSolutionSatisfiesTheIntegralConservationLaws) {
     const Primitive right = {std::pow(10.0, exponent(random)), velocity(random),
                              std::pow(10.0, exponent(random))};
     const ExactRiemann solution(left, right, gamma);
-    const double reach = 20.0;
+    const double half_width = 20.0;
     const int cells = 40000;
     Conserved sum{};
     for (int i = 0; i < cells; ++i) {
-      const double speed = -reach + 2.0 * reach * (i + 0.5) / cells;
+      const double speed = -half_width + 2.0 * half_width * (i + 0.5) / cells;
       const Conserved U = to_conserved(solution.sample(speed), gamma);
-      for (std::size_t s = 0; s < 3; ++s) sum[s] += U[s] * 2.0 * reach / cells;
+      for (std::size_t s = 0; s < 3; ++s) sum[s] += U[s] * 2.0 * half_width / cells;
     }
     const Conserved UL = to_conserved(left, gamma);
     const Conserved UR = to_conserved(right, gamma);
     const Conserved FL = physical_flux(UL, gamma);
     const Conserved FR = physical_flux(UR, gamma);
     for (std::size_t s = 0; s < 3; ++s) {
-      const double expected = reach * (UL[s] + UR[s]) - (FR[s] - FL[s]);
+      const double expected = half_width * (UL[s] + UR[s]) - (FR[s] - FL[s]);
       EXPECT_NEAR(sum[s], expected, 4e-3 * (UL[2] + UR[2] + UL[0] + UR[0]))
           << "trial " << trial << " of " << s;
     }

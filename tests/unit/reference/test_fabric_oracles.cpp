@@ -26,9 +26,9 @@ TEST(ReferenceFrequency, ChainHasTheAnalyticFrequency) {
   EXPECT_NEAR(largest_frequency(material, mesh, std::vector<double>(6, 0.2), {}, mesh.rest), expected,
               1e-4 * expected);
   // Both ends fixed: 2 sqrt(k / m) cos(pi / (2 (N + 1))) with N = 4 free masses.
-  const double held = 2.0 * std::sqrt(80.0 / 0.2) * std::cos(std::numbers::pi / 10.0);
+  const double fixed = 2.0 * std::sqrt(80.0 / 0.2) * std::cos(std::numbers::pi / 10.0);
   EXPECT_NEAR(largest_frequency(material, mesh, std::vector<double>(6, 0.2), {7, 0, 0, 0, 0, 7}, mesh.rest),
-              held, 1e-4 * held);
+              fixed, 1e-4 * fixed);
 }
 
 const std::array<Vector, 3> unit_triangle = {Vector{0, 0, 0}, Vector{1, 0, 0}, Vector{0, 1, 0}};

@@ -1,4 +1,4 @@
-#include "common/run/atomic_file.hpp"
+#include "common/run/files/atomic_file.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "common/run/fields_writer.hpp"
+#include "common/run/fields/fields_writer.hpp"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -8,8 +8,8 @@
 #include <cmath>
 #include <thread>
 
-#include "common/run/atomic_file.hpp"
-#include "common/run/hdf5.hpp"
+#include "common/run/files/atomic_file.hpp"
+#include "common/run/hdf5/hdf5.hpp"
 #include "tests/unit/run/temporary_directory.hpp"
 
 namespace drogue::run {

@@ -5,7 +5,7 @@
 #include <array>
 #include <cstdlib>
 
-#include "common/run/atomic_file.hpp"
+#include "common/run/files/atomic_file.hpp"
 #include "tests/unit/run/temporary_directory.hpp"
 
 namespace drogue::run {
@@ -15,10 +15,10 @@ using test::content;
 using test::failure_of;
 using test::TemporaryDirectory;
 
-const std::vector<Column> columns = {{"energy", "J"}, {"touches", ""}};
+const std::vector<Column> columns = {{"energy", "J"}, {"contacts", ""}};
 
-void append(HistoryWriter& history, double time, double energy, double touches) {
-  history.append(time, std::array{energy, touches});
+void append(HistoryWriter& history, double time, double energy, double contacts) {
+  history.append(time, std::array{energy, contacts});
 }
 
 TEST(HistoryWriter, WritesHeaderWithUnitsAndRowsThatReadBackEqual) {
@@ -27,7 +27,7 @@ TEST(HistoryWriter, WritesHeaderWithUnitsAndRowsThatReadBackEqual) {
   append(history, 0.1, 1.0 / 3.0, 2.0);
   history.finish();
   const std::string text = content(directory / "history.csv");
-  EXPECT_EQ(text, "time [s],energy [J],touches\n0.1,0.3333333333333333,2\n");
+  EXPECT_EQ(text, "time [s],energy [J],contacts\n0.1,0.3333333333333333,2\n");
   EXPECT_EQ(std::strtod(text.c_str() + text.find("0.333"), nullptr), 1.0 / 3.0);
 }
 
@@ -40,7 +40,7 @@ TEST(HistoryWriter, KeepsRowsWhenAnExceptionUnwinds) {
         throw Failure(ExitCode::numerical_failure, "negative density");
       },
       Failure);
-  EXPECT_EQ(content(directory / "history.csv"), "time [s],energy [J],touches\n0.5,1,0\n");
+  EXPECT_EQ(content(directory / "history.csv"), "time [s],energy [J],contacts\n0.5,1,0\n");
 }
 
 TEST(HistoryWriter, KeepsFlushedRowsAfterAKill) {
@@ -52,30 +52,30 @@ TEST(HistoryWriter, KeepsFlushedRowsAfterAKill) {
     return raise(SIGKILL);
   });
   ASSERT_TRUE(WIFSIGNALED(status));
-  EXPECT_EQ(content(directory / "history.csv"), "time [s],energy [J],touches\n0.5,1,0\n");
+  EXPECT_EQ(content(directory / "history.csv"), "time [s],energy [J],contacts\n0.5,1,0\n");
 }
 
 TEST(HistoryWriter, ContinuesWithoutLaterAndTornRows) {
   const TemporaryDirectory directory;
   write_file_atomically(directory / "history.csv",
-                        "time [s],energy [J],touches\n0.1,1,0\n0.2,2,0\n0.3,3,0\n0.4,4");
+                        "time [s],energy [J],contacts\n0.1,1,0\n0.2,2,0\n0.3,3,0\n0.4,4");
   HistoryWriter history(directory / "history.csv", columns, 0.2);
   append(history, 0.25, 9.0, 1.0);
   history.finish();
-  EXPECT_EQ(content(directory / "history.csv"), "time [s],energy [J],touches\n0.1,1,0\n0.2,2,0\n0.25,9,1\n");
+  EXPECT_EQ(content(directory / "history.csv"), "time [s],energy [J],contacts\n0.1,1,0\n0.2,2,0\n0.25,9,1\n");
 }
 
 TEST(HistoryWriter, DropsATornRowThatLooksWhole) {
   const TemporaryDirectory directory;
-  write_file_atomically(directory / "history.csv", "time [s],energy [J],touches\n0.1,1,0\n0.2,2");
+  write_file_atomically(directory / "history.csv", "time [s],energy [J],contacts\n0.1,1,0\n0.2,2");
   HistoryWriter(directory / "history.csv", columns, 0.2).finish();
-  EXPECT_EQ(content(directory / "history.csv"), "time [s],energy [J],touches\n0.1,1,0\n");
+  EXPECT_EQ(content(directory / "history.csv"), "time [s],energy [J],contacts\n0.1,1,0\n");
 }
 
 TEST(HistoryWriter, BeginsAFileIfARestartFindsNone) {
   const TemporaryDirectory directory;
   HistoryWriter(directory / "history.csv", columns, 0.2).finish();
-  EXPECT_EQ(content(directory / "history.csv"), "time [s],energy [J],touches\n");
+  EXPECT_EQ(content(directory / "history.csv"), "time [s],energy [J],contacts\n");
 }
 
 TEST(HistoryWriter, RefusesToContinueOtherColumns) {
@@ -92,7 +92,7 @@ TEST(HistoryWriter, ReplacesTheRowsOfAFormerRun) {
   const TemporaryDirectory directory;
   write_file_atomically(directory / "history.csv", "time [s],mass [kg]\n0.1,1\n");
   HistoryWriter(directory / "history.csv", columns).finish();
-  EXPECT_EQ(content(directory / "history.csv"), "time [s],energy [J],touches\n");
+  EXPECT_EQ(content(directory / "history.csv"), "time [s],energy [J],contacts\n");
 }
 
 TEST(HistoryWriter, ThrowsOnAFullDisk) {

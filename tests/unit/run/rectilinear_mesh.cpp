@@ -1,11 +1,11 @@
-#include "common/run/rectilinear_mesh.hpp"
+#include "common/run/fields/rectilinear_mesh.hpp"
 
 #include <gtest/gtest.h>
 
 #include <array>
 #include <regex>
 
-#include "common/run/hdf5.hpp"
+#include "common/run/hdf5/hdf5.hpp"
 #include "tests/unit/run/temporary_directory.hpp"
 
 // Reads fields.xdmf back as ParaView does: the last dimension of a DataItem varies fastest, and the fastest

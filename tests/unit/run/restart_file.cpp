@@ -1,10 +1,10 @@
-#include "common/run/restart_file.hpp"
+#include "common/run/restart/restart_file.hpp"
 
 #include <gtest/gtest.h>
 
 #include <numeric>
 
-#include "common/run/atomic_file.hpp"
+#include "common/run/files/atomic_file.hpp"
 #include "tests/unit/run/temporary_directory.hpp"
 
 namespace drogue::run {

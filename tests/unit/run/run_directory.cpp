@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "common/run/atomic_file.hpp"
+#include "common/run/files/atomic_file.hpp"
 #include "tests/unit/run/temporary_directory.hpp"
 
 namespace drogue::run {

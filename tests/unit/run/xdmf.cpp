@@ -1,4 +1,4 @@
-#include "common/run/xdmf.hpp"
+#include "common/run/fields/xdmf.hpp"
 
 #include <gtest/gtest.h>
 

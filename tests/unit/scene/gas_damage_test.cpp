@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "common/program/failure.hpp"
-#include "miniapps/gas/scene.hpp"
+#include "miniapps/gas/scene/scene.hpp"
 #include "tests/support/damaged.hpp"
 
 namespace drogue::gas_app {

@@ -9,7 +9,7 @@
 
 #include "common/program/failure.hpp"
 #include "common/scene/library.hpp"
-#include "miniapps/gas/scene.hpp"
+#include "miniapps/gas/scene/scene.hpp"
 
 namespace drogue::gas_app {
 namespace {

@@ -1,0 +1,88 @@
+#pragma once
+
+#include <array>
+#include <stdexcept>
+#include <string>
+
+#include "kernels/flow/parameters.hpp"
+#include "kernels/flow/state.hpp"
+#include "kernels/linear/parallel/cell_box.hpp"
+
+namespace drogue::flow {
+
+/// Fewest cells of a rank along a divided axis: a neighbour needs that many ghost cells from it.
+inline constexpr int least_cells_of_rank = 3;
+
+/// Numbers that a rank sends in a step of one projection, per cell along x: ghost cells, and transpositions
+/// of a direct pressure solver. Does not throw.
+inline double numbers_sent(const std::array<int, 3>& cells, int parts_y, int parts_z) {
+  const double own_y = static_cast<double>(cells[1]) / parts_y,
+               own_z = static_cast<double>(cells[2]) / parts_z;
+  constexpr double ghosts = 2.0 * 3.0 * 3.0;  // sides, components, layers
+  const auto along = [&](int parts, double across) {
+    return parts > 1 ? ghosts * across + 2.0 * own_y * own_z * (1.0 - 1.0 / parts) : 0.0;
+  };
+  return along(parts_y, own_z) + along(parts_z, own_y);
+}
+
+/// Division of a grid of cells among ranks along y and z, with the fewest numbers sent. Axes with one cell
+/// and x are not divided. Throws std::invalid_argument if a rank would have too few cells.
+inline linear::PencilRanks decompose(const std::array<int, 3>& cells, int ranks, int rank) {
+  linear::PencilRanks best;
+  double least = 0.0;
+  for (int parts_y = 1; parts_y <= ranks; ++parts_y) {
+    const int parts_z = ranks / parts_y;
+    const auto fits = [](int n, int parts) { return parts == 1 || n / parts >= least_cells_of_rank; };
+    if (parts_y * parts_z != ranks || !fits(cells[1], parts_y) || !fits(cells[2], parts_z)) continue;
+    const double sent = numbers_sent(cells, parts_y, parts_z);
+    if (best.parts[1] * best.parts[2] == ranks && sent >= least) continue;
+    least = sent;
+    best = {{1, parts_y, parts_z}, {0, rank % parts_y, rank / parts_y}};
+  }
+  if (best.parts[1] * best.parts[2] != ranks)
+    throw std::invalid_argument("flow solver: " + std::to_string(ranks) + " ranks cannot share " +
+                                std::to_string(cells[1]) + " x " + std::to_string(cells[2]) +
+                                " cells along y and z: each needs at least " +
+                                std::to_string(least_cells_of_rank) + " along a divided axis");
+  return best;
+}
+
+/// Place of a rank in the division of a flow. Throws std::invalid_argument, with one sentence, if the flow
+/// cannot be divided among so many ranks.
+inline linear::PencilRanks ranks_of(const Parameters& p, int ranks, int rank) {
+  if (ranks > 1 && p.diffusion == Diffusion::crank_nicolson)
+    throw std::invalid_argument("flow solver: Crank-Nicolson diffusion works on one rank");
+  return decompose(p.cells, ranks, rank);
+}
+
+/// True if the side of this rank's cells borders another rank. Does not throw.
+[[nodiscard]] constexpr bool borders_rank(const Parameters& p, const linear::PencilRanks& ranks,
+                                          std::size_t side) {
+  const std::size_t axis = side / 2;
+  if (ranks.parts[axis] == 1) return false;
+  if (p.boundary[side].kind == BoundaryKind::periodic) return true;
+  return side % 2 == 0 ? ranks.place[axis] > 0 : ranks.place[axis] + 1 < ranks.parts[axis];
+}
+
+/// Place of the rank beyond a side for which `borders_rank` is true. Does not throw.
+[[nodiscard]] constexpr std::array<int, 3> place_beyond(const linear::PencilRanks& ranks, std::size_t side) {
+  const std::size_t axis = side / 2;
+  std::array<int, 3> place = ranks.place;
+  const int parts = ranks.parts[axis];
+  place[axis] = (place[axis] + (side % 2 == 0 ? parts - 1 : 1)) % parts;
+  return place;
+}
+
+/// Part of an array of the state that a rank holds: its cells, and on the ranks at a bounded high side the
+/// faces of that side. Does not throw.
+[[nodiscard]] constexpr linear::CellBox part_of(const Parameters& p, const linear::PencilRanks& ranks,
+                                                StateField field) {
+  linear::CellBox box = linear::box_of(ranks, p.cells);
+  if (field == StateField::pressure) return box;
+  const std::size_t axis = static_cast<std::size_t>(field) % 3, high = 2 * axis + 1;
+  if (p.cells[axis] > 1 && p.boundary[high].kind != BoundaryKind::periodic && !borders_rank(p, ranks, high))
+    ++box.cells[axis];
+  return box;
+}
+
+}  // namespace drogue::flow

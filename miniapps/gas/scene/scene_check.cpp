@@ -1,0 +1,155 @@
+#include "miniapps/gas/scene/scene_check.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "common/scene/node.hpp"
+#include "common/scene/read.hpp"
+#include "miniapps/gas/scene/scene_survey.hpp"
+
+namespace drogue::gas_app {
+namespace {
+
+using scene::contradict;
+using scene::real_text;
+using scene::Table;
+
+/// Largest ratio of initial pressures that the FP32 part of the split precision resolves.
+constexpr double split_pressure_ratio = 1e11;
+
+std::string domain_text(const gas::Parameters& parameters) {
+  return "the domain [" + real_text(parameters.x_min) + ", " + real_text(parameters.x_max) + "]";
+}
+
+bool inside(const gas::Parameters& parameters, double x) {
+  return x > parameters.x_min && x < parameters.x_max;
+}
+
+void check_mesh(const Table& root, const GasScene& scene) {
+  const gas::Parameters& parameters = scene.parameters;
+  const double length = parameters.x_max - parameters.x_min;
+  const double largest = std::max(std::abs(parameters.x_min), std::abs(parameters.x_max));
+  const double spacing = std::numeric_limits<double>::epsilon() * largest;
+  if (!std::isfinite(length) || length / static_cast<double>(parameters.cells) < 16.0 * spacing) {
+    contradict(root, "mesh.domain",
+               "mesh.domain: " + domain_text(parameters) + " cannot be divided into " +
+                   std::to_string(parameters.cells) + " cells whose centres differ in FP64");
+  }
+}
+
+void check_boundary(const Table& root, const gas::Parameters& parameters) {
+  const bool left = parameters.left == gas::Boundary::periodic;
+  const bool right = parameters.right == gas::Boundary::periodic;
+  if (left == right) return;
+  const std::string here = left ? "boundary.left" : "boundary.right";
+  const std::string other = left ? "boundary.right" : "boundary.left";
+  contradict(root, here, here + " = \"periodic\" needs " + other + " = \"periodic\" too");
+}
+
+void check_tuning(const Table& root, const gas::Parameters& parameters) {
+  if (parameters.block % 32 == 0) return;
+  contradict(root, "tuning.stage.block",
+             "tuning.stage.block = " + std::to_string(parameters.block) + " is not a multiple of 32");
+}
+
+void check_riemann(const Table& root, const GasScene& scene) {
+  const double x0 = scene.initial.riemann->x0;
+  if (!inside(scene.parameters, x0)) {
+    contradict(root, "initial.riemann.x0",
+               "initial.riemann.x0 = " + real_text(x0) + " is not inside " + domain_text(scene.parameters));
+  }
+}
+
+void check_regions(const Table& root, const GasScene& scene) {
+  const std::vector<Region>& regions = scene.initial.regions;
+  for (std::size_t i = 0; i < regions.size(); ++i) {
+    const std::string path = "initial.regions[" + std::to_string(i) + "]";
+    const bool last = i + 1 == regions.size();
+    if (!regions[i].until && !last)
+      contradict(root, path + ".rho", path + " needs \"until\": only the last region has none");
+    if (!regions[i].until) continue;
+    const double until = *regions[i].until;
+    const std::string shown = path + ".until = " + real_text(until);
+    if (last)
+      contradict(root, path + ".until",
+                 shown + ": the last region reaches the end of the domain and has none");
+    if (!inside(scene.parameters, until)) {
+      contradict(root, path + ".until", shown + " is not inside " + domain_text(scene.parameters));
+    }
+    if (i > 0 && until <= *regions[i - 1].until) {
+      contradict(root, path + ".until",
+                 shown + " is not greater than the one before it, " + real_text(*regions[i - 1].until));
+    }
+  }
+}
+
+void complete_verify(const Table& root, GasScene& scene) {
+  Verify& verify = scene.verify;
+  if (verify.exact == Exact::riemann && !scene.initial.riemann) {
+    contradict(root, "verify.exact", "verify.exact = \"riemann\" needs initial.riemann");
+  }
+  if (verify.exact == Exact::advection &&
+      (!scene.initial.expression || scene.parameters.left != gas::Boundary::periodic)) {
+    contradict(root, "verify.exact",
+               "verify.exact = \"advection\" needs initial.expression and periodic boundaries");
+  }
+  if (!verify.reference) return;
+  gas::Parameters& reference = *verify.reference;
+  if (reference.cells <= scene.parameters.cells) {
+    contradict(root, "verify.reference.cells",
+               "verify.reference.cells = " + std::to_string(reference.cells) +
+                   " is not finer than mesh.cells = " + std::to_string(scene.parameters.cells));
+  }
+  reference.gamma = scene.parameters.gamma;
+  reference.x_min = scene.parameters.x_min;
+  reference.x_max = scene.parameters.x_max;
+  reference.left = scene.parameters.left;
+  reference.right = scene.parameters.right;
+  reference.block = scene.parameters.block;
+}
+
+/// Surveys the initial state at every cell centre. Throws `Failure` for the first invalid one.
+Survey require_gas(const Table& root, const GasScene& scene) {
+  const Survey seen = survey_initial_state(scene);
+  if (seen.first_bad < scene.parameters.cells) {
+    const BadCell bad = describe_bad_cell(scene, seen.first_bad);
+    contradict(root, bad.path, bad.sentence);
+  }
+  return seen;
+}
+
+void check_initial(const Table& root, const GasScene& scene) {
+  const Survey seen = require_gas(root, scene);
+  if (scene.verify.reference) {
+    GasScene finer = scene;
+    finer.parameters = *scene.verify.reference;
+    require_gas(root, finer);
+  }
+  const double ratio = seen.p_max / seen.p_min;
+  if (scene.parameters.precision == gas::Precision::split && ratio > split_pressure_ratio) {
+    contradict(root, "scheme.precision",
+               "scheme.precision = \"split\" does its nonlinear part in FP32, which does not carry the ratio "
+               "of initial pressures " +
+                   real_text(ratio) + " of this scene; at most 1e11 is allowed");
+  }
+  if (scene.verify.exact == Exact::advection && !seen.uniform_flow()) {
+    contradict(root, "verify.exact", "verify.exact = \"advection\" needs initial u and p that do not vary");
+  }
+}
+
+}  // namespace
+
+void complete_and_check(const Table& root, GasScene& scene) {
+  check_mesh(root, scene);
+  check_boundary(root, scene.parameters);
+  check_tuning(root, scene.parameters);
+  if (scene.initial.riemann) check_riemann(root, scene);
+  check_regions(root, scene);
+  framework::complete_output(root, scene.output, {"rho", "u", "p"}, {scene.end_time, "run.end_time"});
+  complete_verify(root, scene);
+  check_initial(root, scene);
+}
+
+}  // namespace drogue::gas_app

@@ -1,0 +1,88 @@
+#include "miniapps/gas/scene/scene_survey.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <thread>
+#include <vector>
+
+#include "common/scene/node.hpp"
+
+namespace drogue::gas_app {
+namespace {
+
+double total_energy(const Primitive& state, double gamma) {
+  return state.p / (gamma - 1.0) + 0.5 * state.rho * state.u * state.u;
+}
+
+bool is_gas(const Primitive& state, double gamma) {
+  return state.rho > 0.0 && state.p > 0.0 && std::isfinite(state.rho) &&
+         std::isfinite(total_energy(state, gamma)) && std::isfinite(gamma * state.p / state.rho);
+}
+
+Survey survey_cells(const InitialState& state, const gas::Parameters& parameters, std::int64_t begin,
+                    std::int64_t end) {
+  Survey seen;
+  for (std::int64_t i = begin; i < end; ++i) {
+    const Primitive cell = state(cell_centre(parameters, i));
+    if (!is_gas(cell, parameters.gamma)) {
+      seen.first_bad = i;
+      return seen;
+    }
+    seen.merge({cell.p, cell.p, cell.u, cell.u});
+  }
+  return seen;
+}
+
+}  // namespace
+
+bool Survey::uniform_flow() const {
+  return u_max - u_min <= 1e-12 * std::abs(u_max) && p_max - p_min <= 1e-12 * p_max;
+}
+
+void Survey::merge(const Survey& other) {
+  p_min = std::min(p_min, other.p_min);
+  p_max = std::max(p_max, other.p_max);
+  u_min = std::min(u_min, other.u_min);
+  u_max = std::max(u_max, other.u_max);
+  first_bad = std::min(first_bad, other.first_bad);
+}
+
+Survey survey_initial_state(const GasScene& scene) {
+  constexpr std::int64_t cells_a_thread = 100'000;
+  const std::int64_t cells = scene.parameters.cells;
+  const std::int64_t cores = std::max(1U, std::thread::hardware_concurrency());
+  const std::int64_t parts = std::clamp(cells / cells_a_thread, std::int64_t{1}, cores);
+  const InitialState state(scene);
+  std::vector<Survey> seen(static_cast<std::size_t>(parts));
+  std::vector<std::thread> threads;
+  const auto work = [&](const InitialState& own, std::int64_t part) {
+    const std::int64_t end = (part + 1) * cells / parts;
+    seen[static_cast<std::size_t>(part)] = survey_cells(own, scene.parameters, part * cells / parts, end);
+  };
+  for (std::int64_t part = 1; part < parts; ++part) threads.emplace_back(work, state, part);
+  work(state, 0);
+  for (std::thread& thread : threads) thread.join();
+  for (const Survey& part : seen) seen.front().merge(part);
+  return seen.front();
+}
+
+BadCell describe_bad_cell(const GasScene& scene, std::int64_t cell) {
+  const double x = cell_centre(scene.parameters, cell);
+  const Primitive state = InitialState(scene)(x);
+  const bool by_expression = scene.initial.expression.has_value();
+  const std::string table = by_expression           ? "initial.expression"
+                            : scene.initial.riemann ? "initial.riemann"
+                                                    : "initial.regions";
+  const std::string place = " at x = " + scene::real_text(x) + " (cell " + std::to_string(cell) + ")";
+  const auto bad = [&](const std::string& name, double value, const std::string& must) {
+    const std::string path = by_expression ? table + "." + name : table;
+    return BadCell{
+        path, path + " gives " + name + " = " + scene::real_text(value) + place + "; it must be " + must};
+  };
+  if (!(state.rho > 0.0) || !std::isfinite(state.rho)) return bad("rho", state.rho, "> 0 and finite");
+  if (!std::isfinite(state.u)) return bad("u", state.u, "finite");
+  if (!(state.p > 0.0) || !std::isfinite(state.p)) return bad("p", state.p, "> 0 and finite");
+  return {table, table + " gives an energy or a speed of sound that FP64 does not hold" + place};
+}
+
+}  // namespace drogue::gas_app

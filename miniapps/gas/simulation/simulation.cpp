@@ -1,0 +1,165 @@
+#include "miniapps/gas/simulation/simulation.hpp"
+
+#include "common/program/stopwatch.hpp"
+#include "miniapps/gas/simulation/failure_text.hpp"
+#include "miniapps/gas/simulation/fields.hpp"
+
+namespace drogue::gas_app {
+namespace {
+
+framework::HistoryRow history_row(const gas::HistoryRow& row) {
+  return {row.time,
+          {static_cast<double>(row.step), row.dt, row.mass, row.momentum, row.energy, row.boundary[0],
+           row.boundary[1], row.boundary[2], row.max_speed, static_cast<double>(row.limited_faces),
+           static_cast<double>(row.redone)}};
+}
+
+double value_of(const Primitive& state, const std::string& field) {
+  return field == "rho" ? state.rho : field == "u" ? state.u : state.p;
+}
+
+framework::Stop framework_stop(gas::Stop stop) {
+  switch (stop) {
+    case gas::Stop::target:
+      return framework::Stop::target;
+    case gas::Stop::pause:
+      return framework::Stop::pause;
+    case gas::Stop::interrupted:
+      return framework::Stop::interrupted;
+    default:
+      return framework::Stop::failed;
+  }
+}
+
+}  // namespace
+
+void set_limiter_metrics(const LimiterCounts& counts, run::Metrics& metrics) {
+  metrics.set("limiter", "touches", counts.limited_faces);
+  metrics.set("limiter", "cells", counts.limited_cells);
+  metrics.set("limiter", "redone_steps", counts.redone_steps);
+}
+
+std::string precision_name(const gas::Parameters& parameters) {
+  return parameters.precision == gas::Precision::split ? "split" : "double";
+}
+
+run::DatasetSpec field_spec(const std::string& name, std::int64_t cells) {
+  const std::vector<std::uint64_t> shape = {static_cast<std::uint64_t>(cells)};
+  if (name == "rho") return {name, shape, "kg/m^3", "cell", "density"};
+  if (name == "u") return {name, shape, "m/s", "cell", "velocity"};
+  return {name, shape, "Pa", "cell", "pressure"};
+}
+
+run::DatasetSpec cell_centre_spec(std::int64_t cells) {
+  return {"x", {static_cast<std::uint64_t>(cells)}, "m", "cell", "cell centres"};
+}
+
+Simulation::Simulation(const GasScene& scene, const framework::SimulationSettings& settings)
+    : _scene(scene), _settings(settings) {
+  _solver = settings.baseline ? gas::create_baseline_solver(settings.backend, scene.parameters)
+                              : gas::create_solver(settings.backend, scene.parameters);
+}
+
+void Simulation::start() {
+  {
+    const ScopedStopwatch stopwatch(_h2d_s);
+    upload_initial_state(*_solver, _scene);
+    _solver->start();
+    _initial = _solver->totals();
+  }
+  allocate_snapshot();
+}
+
+/// The first snapshot allocates the memory that all of them use.
+void Simulation::allocate_snapshot() {
+  if (_scene.output.fields.empty() && _scene.output.restart_every == 0) return;
+  _solver->begin_snapshot();
+  _solver->finish_snapshot();
+}
+
+framework::TimeState Simulation::now() {
+  const gas::RestartState now = _solver->restart_state();
+  return {now.step, now.time};
+}
+
+framework::Stop Simulation::advance(const framework::AdvanceLimits& limits, const framework::RowSink& rows,
+                                    const framework::Poll& poll) {
+  const ScopedStopwatch stopwatch(_compute_s);
+  _stop = _solver->advance(
+      limits.target_time, limits.pause_step, limits.row_every,
+      [&](const gas::HistoryRow& row) { rows(history_row(row)); },
+      [&](const gas::Status& status) {
+        return poll({status.step, status.time});
+      });
+  const framework::Stop stop = framework_stop(_stop);
+  // The last good state of a failed run ends its history.
+  if (stop == framework::Stop::failed && limits.row_every > 0) rows(history_row(_solver->totals()));
+  return stop;
+}
+
+std::vector<run::Column> Simulation::history_columns() const {
+  return {{"step", ""},
+          {"dt", "s"},
+          {"mass", "kg/m^2"},
+          {"momentum", "kg/(m s)"},
+          {"energy", "J/m^2"},
+          {"mass_outflow", "kg/m^2"},
+          {"momentum_outflow", "kg/(m s)"},
+          {"energy_outflow", "J/m^2"},
+          {"max_speed", "m/s"},
+          {"limiter_touches", ""},
+          {"redone_steps", ""}};
+}
+
+framework::HistoryRow Simulation::row() {
+  const bool at_start = _solver->restart_state().step == _initial.step;
+  return history_row(at_start ? _initial : _solver->totals());
+}
+
+std::vector<run::DatasetSpec> Simulation::field_specs() const {
+  std::vector<run::DatasetSpec> specs;
+  for (const std::string& name : _scene.output.fields)
+    specs.push_back(field_spec(name, _scene.parameters.cells));
+  return specs;
+}
+
+void Simulation::write_mesh(run::FieldsWriter& fields) const {
+  fields.add_mesh(cell_centre_spec(_scene.parameters.cells), [&](std::uint64_t first, std::span<double> x) {
+    for (std::size_t i = 0; i < x.size(); ++i)
+      x[i] = cell_centre(_scene.parameters, static_cast<std::int64_t>(first + i));
+  });
+}
+
+framework::FieldsTask Simulation::snapshot() {
+  _solver->begin_snapshot();
+  return [this](run::FieldsWriter& fields) {
+    const gas::ConstConservedFields u = _solver->finish_snapshot();
+    std::vector<double> values;
+    for (const std::string& name : _scene.output.fields)
+      for_chunks(_scene.parameters.cells, [&](std::int64_t first, std::size_t count) {
+        values.resize(count);
+        for (std::size_t i = 0; i < count; ++i)
+          values[i] =
+              value_of(primitive(u, static_cast<std::size_t>(first) + i, _scene.parameters.gamma), name);
+        fields.write(name, static_cast<std::uint64_t>(first), values);
+      });
+  };
+}
+
+std::string Simulation::failure_text(bool) {
+  return gas_app::failure_text(*_solver, _scene.parameters, _stop);
+}
+
+void Simulation::describe(run::ResultDocument& result) {
+  const gas::RestartState now = _solver->restart_state();
+  const gas::PhaseTimes phases = _solver->phase_times();
+  result.driver = _solver->driver();
+  result.dt_min = now.dt_min;
+  result.dt_max = now.dt_max;
+  set_limiter_metrics({now.limited_faces, _solver->limited_cells(), now.redone}, result.metrics);
+  result.timing.compute_s = _settings.baseline ? phases.compute : _compute_s;
+  result.timing.h2d_s = _settings.baseline ? phases.h2d : _h2d_s;
+  result.timing.d2h_s = _settings.baseline ? phases.d2h : 0.0;
+}
+
+}  // namespace drogue::gas_app

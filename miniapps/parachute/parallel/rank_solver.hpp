@@ -1,0 +1,118 @@
+#pragma once
+
+#include <array>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "common/program/communicator.hpp"
+#include "kernels/flow/halo/decomposition.hpp"
+#include "kernels/flow/solver.hpp"
+
+namespace drogue::parachute_app {
+
+/// Requests of rank 0 to the other ranks. An empty message ends them.
+enum class Request : int {
+  create,           ///< backend and parameters: a solver on all ranks
+  destroy,          ///< the solver
+  upload,           ///< field: rank 0 sends the parts of an array of the state
+  upload_function,  ///< axis, text: a component of the velocity, evaluated by each rank
+  start,
+  restore,  ///< progress
+  advance,  ///< target time, pause step
+  totals,
+  download,  ///< field: rank 0 receives the parts
+  sample,    ///< field: rank 0 receives the parts
+  write,     ///< field, offset, file: all ranks write a field
+};
+
+/// The solver on one of several ranks, with the transfer of arrays between rank 0 and the others. All
+/// functions are collective and block. An exception from a kernel or from lack of memory ends all ranks,
+/// because the others wait within a step.
+class RankSolver {
+ public:
+  /// Calls `prepare` first. Throws `Failure` on all ranks if something fails on one.
+  RankSolver(Communicator& communicator, device::Backend backend, const flow::Parameters& parameters,
+             const std::function<void()>& prepare);
+
+  [[nodiscard]] flow::Solver& solver() { return *_solver; }
+
+  /// Rank 0 gives the whole array; the span is not used elsewhere.
+  void upload(flow::StateField field, std::span<const double> whole);
+  /// Each rank evaluates the expression at its own points at time 0 s.
+  void upload_function(std::size_t axis, const std::string& text);
+  /// Rank 0 receives the whole array; the span is not used elsewhere.
+  void download(flow::StateField field, std::span<double> whole);
+  /// As `download`, in the order of `flow::Solver::sample`.
+  void sample(flow::CellField field, std::span<double> whole);
+  /// Writes a field in that order from byte `offset` of a file on. Throws `Failure` (io_error) on all ranks
+  /// if one fails.
+  void write(flow::CellField field, std::uint64_t offset, const std::string& file);
+
+  /// Runs an action of the solver; ends all ranks if it throws.
+  template <class Action>
+  auto run(const Action& action) {
+    try {
+      return action();
+    } catch (...) {
+      _communicator.abort();
+    }
+  }
+
+ private:
+  /// Extents and begin of the part of a rank, fastest axis first.
+  struct Part {
+    std::array<std::size_t, 4> begin, extent;
+    [[nodiscard]] std::size_t size() const { return extent[0] * extent[1] * extent[2] * extent[3]; }
+  };
+  [[nodiscard]] linear::CellBox box(flow::StateField field, int rank) const;
+  [[nodiscard]] Part state_part(flow::StateField field, int rank) const;
+  [[nodiscard]] Part sample_part(flow::CellField field, int rank) const;
+  template <class PartOf>
+  void collect(const std::vector<double>& own, std::span<double> whole, const Part& shape,
+               const PartOf& part_of) const;
+
+  Communicator& _communicator;
+  flow::Parameters _parameters;
+  linear::RankGroup _group;
+  std::unique_ptr<flow::Solver> _solver;
+};
+
+/// Solver whose cells all ranks share, as rank 0 uses it: arrays are those of the whole grid. Functions as of
+/// `flow::Solver`.
+class SharedSolver final : public flow::Solver {
+ public:
+  /// Throws `Failure`: usage if the ranks cannot share the grid; otherwise as `RankSolver`.
+  SharedSolver(Communicator& communicator, device::Backend backend, const flow::Parameters& parameters);
+  ~SharedSolver() override;
+
+  /// Sets a component of the velocity, m/s, to an expression of x, y, z and t at time 0 s.
+  void upload(std::size_t axis, const std::string& text);
+
+  /// Writes a field, in the order of `sample`, from byte `offset` of a file on: each rank its part. Throws
+  /// `Failure` (io_error).
+  void write(flow::CellField field, std::uint64_t offset, const std::string& file);
+
+  void upload(flow::StateField field, std::span<const double> values) override;
+  void download(flow::StateField field, std::span<double> values) override;
+  void start() override;
+  void restore(const flow::Progress& progress) override;
+  flow::Stop advance(double target, std::int64_t pause_step, const flow::Poll& poll) override;
+  [[nodiscard]] flow::Progress progress() override { return _own->solver().progress(); }
+  [[nodiscard]] flow::StepFailure failure() override { return _own->solver().failure(); }
+  [[nodiscard]] flow::Totals totals() override;
+  void sample(flow::CellField field, std::span<double> values) override;
+  [[nodiscard]] const char* driver() const override { return _own->solver().driver(); }
+  [[nodiscard]] const char* pressure_solver() const override { return _own->solver().pressure_solver(); }
+
+ private:
+  template <class... Values>
+  void request(Request request, const Values&... values);
+
+  Communicator& _communicator;
+  std::unique_ptr<RankSolver> _own;
+};
+
+}  // namespace drogue::parachute_app

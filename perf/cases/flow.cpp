@@ -1,0 +1,98 @@
+#include <array>
+#include <memory>
+#include <string>
+
+#include "kernels/flow/solver.hpp"
+#include "perf/cases/cases.hpp"
+#include "perf/models/flow_step.hpp"
+#include "perf/problems/pressure_solves.hpp"
+#include "perf/problems/streams.hpp"
+
+namespace drogue::perf {
+
+namespace {
+
+using Cells = std::array<int, 3>;
+using streams::Sides;
+
+/// Change of the standard parameters.
+struct FlowVariant {
+  const char* name;  ///< last part of the case's name
+  Sides sides;
+  void (*apply)(flow::Parameters&);
+};
+
+const FlowVariant usual_periodic = {"periodic", Sides::periodic, [](flow::Parameters&) {}};
+const FlowVariant usual_tunnel = {"tunnel", Sides::tunnel, [](flow::Parameters&) {}};
+const std::vector<FlowVariant> flow_variants = {
+    {"periodic/rk3", Sides::periodic, [](flow::Parameters& p) { p.time_scheme = flow::TimeScheme::rk3; }},
+    {"periodic/central", Sides::periodic,
+     [](flow::Parameters& p) { p.advection = flow::Advection::central; }},
+    {"periodic/weno-js", Sides::periodic,
+     [](flow::Parameters& p) { p.advection = flow::Advection::weno_js; }},
+    {"periodic/crank-nicolson", Sides::periodic,
+     [](flow::Parameters& p) { p.diffusion = flow::Diffusion::crank_nicolson; }},
+    {"periodic/diagonalization", Sides::periodic,
+     [](flow::Parameters& p) { p.pressure_solver = flow::PressureSolver::diagonalization; }},
+    {"tunnel/vreman", Sides::tunnel, [](flow::Parameters& p) { p.turbulence = flow::Turbulence::vreman; }}};
+
+Case flow_case(device::Backend backend, const Cells& cells, const FlowVariant& variant, long steps) {
+  const std::int64_t count = static_cast<std::int64_t>(cells[0]) * cells[1] * cells[2];
+  flow::Parameters p = streams::parameters(cells, variant.sides);
+  variant.apply(p);
+  const auto solver = std::make_shared<std::unique_ptr<flow::Solver>>();
+  const std::string name(device::name(backend));
+  return {"flow-step/" + name + "/" + streams::text(cells) + "/" + variant.name,
+          "step",
+          backend == device::Backend::cuda ? "FP64 issue of the momentum stage, memory of the rest"
+                                           : "FP64 issue of the cores",
+          [=] {
+            *solver = flow::create_solver(backend, p);
+            return streams::steps(p, **solver, steps);
+          },
+          [=] { return streams::relative_divergence(p, **solver); },
+          1e-12,  // a wrong projection leaves a divergence of order one
+          [=] {
+            return Facts{name, count, variant.name, 0.0, flow_step_bytes(p)};
+          }};
+}
+
+void add_pressure_cases(std::vector<Case>& cases, device::Backend backend, const Cells& grid) {
+  for (const PressureSolve& solve : pressure_solves(backend, grid, {Sides::periodic, Sides::tunnel}))
+    cases.push_back(pressure_case(solve, std::make_shared<std::unique_ptr<pressure::Solver>>()));
+}
+
+}  // namespace
+
+std::vector<Case> flow_cases(bool quick) {
+  std::vector<Case> cases;
+  for (const device::Backend backend : device::compiled_backends()) {
+    if (!device::is_present(backend)) continue;
+    if (quick) {
+      cases.push_back(flow_case(backend, {32, 32, 32}, usual_periodic, 4));
+      cases.push_back(flow_case(backend, {20, 20, 40}, usual_tunnel, 4));
+      add_pressure_cases(cases, backend, {16, 16, 16});
+      continue;
+    }
+    const bool gpu = backend == device::Backend::cuda;
+    const Cells large = gpu ? Cells{256, 256, 256} : Cells{64, 64, 64};
+    const long steps = gpu ? 20 : 4;
+    cases.push_back(flow_case(backend, large, usual_periodic, steps));
+    cases.push_back(flow_case(backend, large, usual_tunnel, steps));
+    for (const FlowVariant& variant : flow_variants)
+      cases.push_back(flow_case(backend, large, variant, steps));
+    // The grid of a parachute, and small ones, where launches dominate.
+    cases.push_back(flow_case(backend, {60, 60, 120}, usual_tunnel, gpu ? 200 : 2));
+    if (gpu) {
+      cases.push_back(flow_case(backend, {64, 64, 64}, usual_periodic, 500));
+      cases.push_back(flow_case(backend, {128, 128, 128}, usual_periodic, 100));
+      cases.push_back(flow_case(backend, {128, 128, 128}, usual_tunnel, 100));
+    }
+    for (const Cells& cells : {Cells{64, 64, 64}, Cells{60, 60, 120}, Cells{128, 128, 128}})
+      add_pressure_cases(cases, backend, cells);
+    if (gpu) add_pressure_cases(cases, backend, {256, 256, 256});
+  }
+  return cases;
+}
+
+}  // namespace drogue::perf

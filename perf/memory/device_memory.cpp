@@ -1,0 +1,19 @@
+#include "perf/memory/device_memory.hpp"
+
+#include <Kokkos_Core.hpp>
+#include <stdexcept>
+
+namespace drogue::perf {
+
+std::int64_t used_device_memory() {
+#if defined(KOKKOS_ENABLE_CUDA)
+  std::size_t free = 0, total = 0;
+  if (const cudaError_t error = cudaMemGetInfo(&free, &total); error != cudaSuccess)
+    throw std::runtime_error(cudaGetErrorString(error));
+  return static_cast<std::int64_t>(total - free);
+#else
+  return 0;
+#endif
+}
+
+}  // namespace drogue::perf

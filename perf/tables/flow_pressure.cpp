@@ -1,0 +1,65 @@
+#include <cstdio>
+#include <memory>
+
+#include "common/run/statistics.hpp"
+#include "perf/measure/record.hpp"
+#include "perf/problems/pressure_solves.hpp"
+#include "perf/tables/tables.hpp"
+
+namespace drogue::perf {
+namespace {
+
+/// Grids per axis. Conjugate gradients on the host take seconds on larger ones.
+std::vector<std::array<int, 3>> pressure_grids(bool gpu, bool quick) {
+  if (quick) return {{16, 16, 16}};
+  std::vector<std::array<int, 3>> grids = {{32, 32, 32}, {64, 64, 64}, {60, 60, 120}, {128, 128, 128}};
+  if (gpu) grids.push_back({256, 256, 256});
+  return grids;
+}
+
+}  // namespace
+
+Table print_flow_pressure(device::Backend backend, bool quick, const nlohmann::json& provenance) {
+  const std::string name(device::name(backend));
+  std::printf(
+      "Pressure solvers on %s\n"
+      "grid         sides     solver           tolerance          ms     95 %% interval    iterations  "
+      "residual\n",
+      name.c_str());
+  Table table;
+  for (const std::array<int, 3>& grid : pressure_grids(backend == device::Backend::cuda, quick)) {
+    const std::vector<PressureSolve> solves = pressure_solves(
+        backend, grid, {streams::Sides::periodic, streams::Sides::walls, streams::Sides::tunnel});
+    std::vector<Case> cases;
+    std::vector<std::shared_ptr<std::unique_ptr<pressure::Solver>>> solvers;
+    for (const PressureSolve& solve : solves) {
+      solvers.push_back(std::make_shared<std::unique_ptr<pressure::Solver>>());
+      cases.push_back(pressure_case(solve, solvers.back()));
+    }
+    const std::vector<Record> records = measure(cases, warm_up_rounds, kept_rounds(quick));
+    for (std::size_t i = 0; i < solves.size(); ++i) {
+      const PressureSolve& solve = solves[i];
+      const run::MedianInterval time = run::median_interval(records[i].samples);
+      const int iterations = (*solvers[i])->iterations();
+      const std::string iterated = iterations > 0 ? std::to_string(iterations) : "direct";
+      char tolerance[16] = "round-off";
+      if (solve.method.iterates()) std::snprintf(tolerance, sizeof tolerance, "%g", solve.method.tolerance);
+      std::printf("%-11s  %-8s  %-15s  %-9s  %10.4f  [%.4f .. %.4f]  %10s  %.2g  %s\n",
+                  streams::text(grid).c_str(), streams::name(solve.sides), solve.method.name, tolerance,
+                  1e3 * time.median, 1e3 * time.low, 1e3 * time.high, iterated.c_str(), records[i].error,
+                  verdict(records[i]));
+      nlohmann::json facts = {{"backend", name},
+                              {"cells", solve.cell_count()},
+                              {"variant", records[i].facts.variant},
+                              {"grid", streams::text(grid)},
+                              {"sides", streams::name(solve.sides)},
+                              {"solver", solve.method.name}};
+      if (solve.method.iterates())
+        facts.update({{"tolerance", solve.method.tolerance}, {"iterations", iterations}});
+      table.add(records[i], provenance, facts);
+    }
+  }
+  return table;
+}
+
+}  // namespace drogue::perf

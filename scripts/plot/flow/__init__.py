@@ -1,0 +1,1 @@
+"""Goals, schemes and tables of the records of flow."""

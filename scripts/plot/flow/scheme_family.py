@@ -1,0 +1,30 @@
+"""Schemes and problems of the work-precision records of flow."""
+
+from ..evidence.scheme_family import SchemeFamily
+from .published_results import PUBLISHED_RESULTS
+
+_PROBLEMS = {
+    "drifting-vortices": "Drifting vortices of Taylor and Green",
+    "resting-vortices": "Vortices of Taylor and Green at rest",
+}
+FAMILY = SchemeFamily(
+    app="flow",
+    scheme_fact="advection",
+    scheme_names={"weno-z": "WENO-Z", "weno-js": "WENO-JS", "central": "central"},
+    settings=("time_scheme", "pressure", "diffusion"),
+    default_settings=("ab2", "fft", "explicit"),
+    default_label="AB2, transforms, explicit diffusion",
+    colour_settings=("ab2", "rk3"),
+    line_settings={"fft": "transforms", "diagonalization": "matrix products"},
+    problems=_PROBLEMS,
+    error_titles=dict.fromkeys(_PROBLEMS, "largest error of the velocity (m/s)"),
+    mesh_unit="cells per axis",
+    setting_labels={
+        "ab2": "AB2", "rk3": "RK3", "fft": "transforms", "diagonalization": "matrix products",
+        "hypre-pfmg": "hypre PFMG", "explicit": "explicit diffusion", "crank-nicolson": "Crank-Nicolson",
+    },
+    published=PUBLISHED_RESULTS,
+    note="A periodic cube of 2 pi m, nu = 0.01 m^2/s, to t = 1 s; AB2 at CFL 0.5, RK3 at 1. Vortices at rest hide errors "
+    "of time integration, because the pressure balances their advection.",
+    target_errors=(1e-2, 1e-3, 1e-4),
+)  # fmt: skip

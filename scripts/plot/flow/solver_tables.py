@@ -1,0 +1,76 @@
+"""Sections on pressure solvers and on the memory of flow solvers."""
+
+from .. import html_page
+from ..evidence.perf_record import BACKENDS, Record
+from ..evidence.section import Cell, Section, Table
+from .goals import BYTES_PER_CELL
+
+_NAMES = {"fft": "transforms", "diagonalization": "matrix products", "hypre-pfmg": "hypre PFMG"}
+
+
+def _axes(record: Record) -> list[int]:
+    """Cells per axis, from the case name."""
+    return [int(word) for word in record.case.split("/")[2].split("x")]
+
+
+def _pressure_row(record: Record) -> list[str]:
+    _, backend, grid, solver, sides, *_ = record.case.split("/")
+    iterations = record.facts.get("iterations")
+    tolerance = record.facts.get("tolerance")
+    return [
+        BACKENDS.get(backend, backend),
+        grid,
+        sides,
+        _NAMES.get(solver, solver),
+        "round-off" if tolerance is None else f"{tolerance:g}",
+        html_page.format_number(1e3 * record.median),
+        html_page.format_number(1e9 * record.median / record.facts["cells"]),
+        "" if iterations is None else str(iterations),
+        html_page.format_number(record.error),
+    ]
+
+
+def pressure_sections(records: list[Record]) -> list[Section]:
+    """One section on the times of pressure solvers, none without records."""
+    if not records:
+        return []
+    ordered = sorted(records, key=lambda record: (list(BACKENDS).index(record.facts["backend"]), record.facts["cells"],
+                                                  record.case.split("/")[4], record.median))  # fmt: skip
+    columns = [("backend", False), ("grid", False), ("sides", False), ("solver", False), ("tolerance", True),
+               ("ms a solve", True), ("ns a cell", True), ("iterations", True), ("residual", True)]  # fmt: skip
+    note = "Residual: the largest of a random right-hand side, over the largest term of the equation. hypre computes on the host."
+    return [
+        Section(
+            "Pressure solvers", "drogue-perf table pressure --out FILE.jsonl", ordered,
+            tables=[Table(columns, [_pressure_row(record) for record in ordered], "Time of a solve", note)],
+        )
+    ]  # fmt: skip
+
+
+def _memory_row(record: Record) -> list[Cell | str]:
+    cells = record.facts["cells"]
+    found = [record.facts["backend"], "x".join(map(str, _axes(record))), record.facts["variant"]]
+    for name in ("array_bytes", "driver_bytes"):
+        value = record.facts.get(name)
+        found.append("" if value is None else html_page.format_number(value / cells))
+    return found
+
+
+def memory_sections(records: list[Record]) -> list[Section]:
+    """One section on the memory of flow solvers, none without records."""
+    if not records:
+        return []
+    ordered = sorted(records, key=lambda record: (list(BACKENDS).index(record.facts["backend"]), record.facts["variant"],
+                                                  record.facts["cells"]))  # fmt: skip
+    columns = [("backend", False), ("grid", False), ("case", False), ("arrays", True), ("driver", True)]
+    goal, stretch = BYTES_PER_CELL
+    note = (
+        "Arrays: all Views, with ghost cells. Driver: what the GPU's driver counts, with the work areas of libraries. "
+        f"Goal on 512x512x512 cells: {goal:g}, stretch {stretch:g}."
+    )
+    return [
+        Section(
+            "Memory", "drogue-perf table memory --out FILE.jsonl", ordered,
+            tables=[Table(columns, [_memory_row(record) for record in ordered], "Bytes per cell", note)],
+        )
+    ]  # fmt: skip

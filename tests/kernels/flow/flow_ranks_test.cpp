@@ -1,0 +1,351 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "kernels/flow/halo/decomposition.hpp"
+#include "tests/support/flow_case.hpp"
+#include "tests/support/ranks.hpp"
+
+// The flow solver on several ranks against itself on one.
+
+namespace drogue::flow {
+namespace {
+
+using namespace drogue::testing;  // NOLINT: helpers of these tests
+
+constexpr const auto& backend = testing::tested_backend;
+constexpr double tolerance = 1e-10;
+
+std::vector<StateField> state_fields(const Parameters& p) {
+  using enum StateField;
+  std::vector<StateField> fields = {velocity_x, velocity_y, velocity_z, pressure};
+  if (p.time_scheme == TimeScheme::ab2) fields.insert(fields.end(), {rate_x, rate_y, rate_z});
+  return fields;
+}
+
+/// A solver on the ranks of a group, with whole arrays.
+class SharedSolver {
+ public:
+  SharedSolver(const Parameters& p, const linear::RankGroup& group)
+      : _p(p),
+        _group(group),
+        _ranks(decompose(p.cells, group.size(), group.rank())),
+        _solver(create_solver(backend, p, group)) {}
+
+  Solver* operator->() { return _solver.get(); }
+
+  void upload(StateField field, const std::vector<double>& values) {
+    _solver->upload(field, cut(values, extents(_p, field), part_of(_p, _ranks, field)));
+  }
+  void start(const StaggeredField& u) {
+    for (std::size_t c = 0; c < 3; ++c) upload(static_cast<StateField>(c), u[c]);
+    _solver->start();
+  }
+  std::vector<double> download(StateField field) {
+    const linear::CellBox part = part_of(_p, _ranks, field);
+    std::vector<double> own(part.size());
+    _solver->download(field, own);
+    return joined(_group, own, extents(_p, field), part);
+  }
+  std::vector<std::vector<double>> state() {
+    std::vector<std::vector<double>> arrays;
+    for (const StateField field : state_fields(_p)) arrays.push_back(download(field));
+    return arrays;
+  }
+  /// Component of the vorticity, and the Q-criterion, at the cell centres.
+  std::vector<double> sample(CellField field, std::size_t component, std::size_t components) {
+    const linear::CellBox part = linear::box_of(_ranks, _p.cells);
+    std::vector<double> samples(part.size() * components), own(part.size());
+    _solver->sample(field, samples);
+    // The order of samples is z fastest.
+    std::size_t at = 0;
+    const auto [nx, ny, nz] = part.cells;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(nx); ++i)
+      for (std::size_t j = 0; j < static_cast<std::size_t>(ny); ++j)
+        for (std::size_t k = 0; k < static_cast<std::size_t>(nz); ++k, at += components)
+          own[i + static_cast<std::size_t>(nx) * (j + static_cast<std::size_t>(ny) * k)] =
+              samples[at + component];
+    return joined(_group, own, _p.cells, part);
+  }
+
+ private:
+  Parameters _p;
+  linear::RankGroup _group;
+  linear::PencilRanks _ranks;
+  std::unique_ptr<Solver> _solver;
+};
+
+struct Case {
+  std::string name;
+  Parameters parameters;
+};
+
+void set_sides(Parameters& p, std::size_t axis, BoundaryKind low, BoundaryKind high) {
+  for (const std::size_t side : {2 * axis, 2 * axis + 1}) {
+    Boundary& boundary = p.boundary[side];
+    boundary.kind = side % 2 == 0 ? low : high;
+    if (boundary.kind != BoundaryKind::wall && boundary.kind != BoundaryKind::inflow) continue;
+    boundary.velocity = {0.5, -0.4, 0.3};
+    boundary.velocity[axis] = boundary.kind == BoundaryKind::inflow ? 0.6 : 0.0;
+  }
+}
+
+/// Component c is 0.2 + t y + (c + 1) z / 10.
+void set_expressions(Boundary& boundary) {
+  for (int c = 0; c < 3; ++c) {
+    device::ExpressionBuilder builder;
+    builder.push("t");
+    builder.push("y");
+    builder.push("*");
+    builder.push("constant", 0.1 * (c + 1));
+    builder.push("z");
+    builder.push("*");
+    builder.push("+");
+    builder.push("constant", 0.2);
+    builder.push("+");
+    boundary.velocity_expressions.push_back(builder.program());
+  }
+}
+
+/// Periodic and bounded boxes that four ranks divide along y and z, along y, and along z.
+std::vector<Case> cases() {
+  constexpr auto slip = BoundaryKind::slip, wall = BoundaryKind::wall, inflow = BoundaryKind::inflow,
+                 outflow = BoundaryKind::outflow;
+  Parameters base;
+  base.low = {-0.3, 0.2, 1.0};
+  base.high = {0.9, 1.1, 2.5};
+  base.density = 1.3;
+  base.viscosity = 0.02;
+  base.body_force = {0.4, -0.3, 0.7};
+  base.cfl = 0.4;
+  std::vector<Case> all;
+  const auto add = [&](const std::string& name, const std::array<int, 3>& cells) -> Parameters& {
+    all.push_back({name, base});
+    all.back().parameters.cells = cells;
+    return all.back().parameters;
+  };
+  add("periodic", {8, 7, 9});
+  add("periodic, Vreman, RK3", {6, 8, 8}).turbulence = Turbulence::vreman;
+  all.back().parameters.time_scheme = TimeScheme::rk3;
+  Parameters& channel = add("channel along x, outflow also at z", {7, 9, 6});
+  set_sides(channel, 0, inflow, outflow);
+  set_sides(channel, 1, wall, slip);
+  set_sides(channel, 2, slip, outflow);
+  channel.turbulence = Turbulence::smagorinsky;
+  Parameters& across = add("channel along y, RK3", {6, 8, 7});
+  set_sides(across, 1, outflow, outflow);
+  set_sides(across, 2, wall, wall);
+  across.time_scheme = TimeScheme::rk3;
+  across.advection = Advection::weno_js;
+  set_expressions(across.boundary[4]);
+  Parameters& backflow = add("outflows at x beside periodic axes, Vreman", {7, 8, 9});
+  set_sides(backflow, 0, outflow, outflow);
+  backflow.turbulence = Turbulence::vreman;
+  Parameters& flat = add("x and y", {10, 13, 1});
+  set_sides(flat, 0, wall, wall);
+  set_sides(flat, 1, inflow, outflow);
+  set_expressions(flat.boundary[0]);
+  add("x and z", {9, 1, 12}).advection = Advection::central;
+  set_sides(all.back().parameters, 2, outflow, slip);
+  add("y and z", {1, 8, 6});
+  set_sides(all.back().parameters, 1, slip, wall);
+  set_sides(add("thin ranks", {5, 4, 12}), 2, outflow, inflow);
+  // Large enough for cells that need no other rank.
+  Parameters& large = add("large, sides", {6, 11, 11});
+  set_sides(large, 1, outflow, wall);
+  set_sides(large, 2, wall, outflow);
+  large.time_scheme = TimeScheme::rk3;
+  large.external_force = true;
+  add("large, periodic", {6, 5, 17});
+  return all;
+}
+
+/// Whether two arrays agree within `tolerance`, relative to the larger of their values and 1.
+void expect_near(const std::vector<double>& expected, const std::vector<double>& found,
+                 const std::string& what) {
+  EXPECT_LT(largest_difference(expected, found), tolerance * std::max(1.0, largest(expected))) << what;
+}
+
+void expect_same_totals(const Totals& a, const Totals& b, const std::string& what) {
+  EXPECT_EQ(a.step, b.step) << what;
+  const auto near = [&](double expected, double found, const char* name) {
+    EXPECT_NEAR(expected, found, tolerance * std::max(1.0, std::abs(expected))) << what << ": " << name;
+  };
+  near(a.time, b.time, "time");
+  near(a.dt, b.dt, "dt");
+  near(a.kinetic_energy, b.kinetic_energy, "energy");
+  near(a.enstrophy, b.enstrophy, "enstrophy");
+  near(a.dissipation, b.dissipation, "dissipation");
+  near(a.max_speed, b.max_speed, "speed");
+  near(a.divergence_rms, b.divergence_rms, "divergence");
+  for (int c = 0; c < 3; ++c) near(a.momentum[c], b.momentum[c], "momentum");
+  for (int side = 0; side < 6; ++side) near(a.outflow[side], b.outflow[side], "outflow");
+}
+
+/// Runs a case from random data on `ranks` ranks and on this one only, and compares everything.
+void expect_steps_of_one_rank(const Case& each, int ranks) {
+  const Parameters& p = each.parameters;
+  const linear::RankGroup group = first_ranks(ranks);
+  if (!belongs_to_first(ranks)) return;
+  const std::string what = each.name + " on " + std::to_string(ranks) + " ranks";
+  const StaggeredField initial = random_field(FlowDomain(p), 77);
+  SharedSolver single(p, {}), shared(p, group);
+  EXPECT_EQ(std::string(ranks == 1 ? single->driver() : "plain"), shared->driver());
+  single.start(initial);
+  shared.start(initial);
+  for (const int step : {0, 1, 5}) {
+    if (step > 0) {
+      EXPECT_EQ(Stop::pause, single->advance(endless, step, {})) << what;
+      EXPECT_EQ(Stop::pause, shared->advance(endless, step, {})) << what;
+    }
+    const auto expected = single.state(), found = shared.state();
+    for (std::size_t i = 0; i < expected.size(); ++i)
+      if (i < 4 || step > 0) expect_near(expected[i], found[i], what + ", array " + std::to_string(i));
+    expect_same_totals(single->totals(), shared->totals(), what);
+    for (const std::size_t c : {0U, 1U, 2U})
+      expect_near(single.sample(CellField::vorticity, c, 3), shared.sample(CellField::vorticity, c, 3),
+                  what + ", vorticity");
+    expect_near(single.sample(CellField::q_criterion, 0, 1), shared.sample(CellField::q_criterion, 0, 1),
+                what + ", Q-criterion");
+  }
+}
+
+class FlowRanks : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (linear::RankGroup::world().size() != 4) GTEST_SKIP() << "needs mpirun with four ranks";
+  }
+};
+
+TEST_F(FlowRanks, TakeTheStepsOfOneRank) {
+  for (const Case& each : cases())
+    for (const int ranks : {1, 2, 4}) expect_steps_of_one_rank(each, ranks);
+}
+
+TEST_F(FlowRanks, TakeTheStepsOfOneRankByDiagonalization) {
+  for (Case each : cases()) {
+    each.parameters.pressure_solver = PressureSolver::diagonalization;
+    expect_steps_of_one_rank(each, 4);
+  }
+}
+
+#if defined(DROGUE_HAVE_HYPRE)
+TEST_F(FlowRanks, TakeTheStepsOfOneRankByMultigrid) {
+  for (const std::size_t which : {0U, 2U, 5U}) {
+    Case each = cases()[which];
+    each.parameters.pressure_solver = PressureSolver::hypre_pfmg;
+    each.parameters.pressure_tolerance = 1e-13;
+    expect_steps_of_one_rank(each, 4);
+  }
+}
+#endif
+
+TEST_F(FlowRanks, ThreeRanksTakeTheStepsOfOneRank) { expect_steps_of_one_rank(cases()[0], 3); }
+
+TEST_F(FlowRanks, ContinueBitForBitOnAsManyRanksAndNearlyOnOthers) {
+  for (const std::size_t which : {0U, 2U, 3U}) {
+    const Case each = cases()[which];
+    const Parameters& p = each.parameters;
+    const StaggeredField initial = random_field(FlowDomain(p), 5);
+    SharedSolver first(p, linear::RankGroup::world());
+    first.start(initial);
+    EXPECT_EQ(Stop::pause, first->advance(endless, 3, {}));
+    const auto saved = first.state();
+    const Progress progress = first->progress();
+    EXPECT_EQ(Stop::pause, first->advance(endless, 6, {}));
+    for (const int ranks : {4, 2, 1}) {
+      const linear::RankGroup group = first_ranks(ranks);
+      const auto expected = first.state();
+      const Progress end = first->progress();
+      if (!belongs_to_first(ranks)) continue;
+      SharedSolver next(p, group);
+      for (std::size_t i = 0; i < saved.size(); ++i) next.upload(state_fields(p)[i], saved[i]);
+      next->restore(progress);
+      EXPECT_EQ(Stop::pause, next->advance(endless, 6, {}));
+      const auto found = next.state();
+      for (std::size_t i = 0; i < expected.size(); ++i) {
+        if (ranks == 4)
+          EXPECT_EQ(expected[i], found[i]) << each.name;
+        else
+          expect_near(expected[i], found[i], each.name);
+      }
+      if (ranks == 4) {
+        EXPECT_EQ(end.time, next->progress().time);
+        EXPECT_EQ(end.rate, next->progress().rate);
+      }
+    }
+  }
+}
+
+TEST_F(FlowRanks, FailTogetherAtTheFirstCellAndKeepTheState) {
+  for (const TimeScheme scheme : {TimeScheme::ab2, TimeScheme::rk3}) {
+    Parameters p = cases()[3].parameters;
+    p.time_scheme = scheme;
+    p.fixed_dt = 0.004;
+    // The tangential velocity of the wall at high z becomes undefined, which the ranks at low z do not see.
+    device::ExpressionBuilder builder, zero;
+    zero.push("constant", 0.0);
+    builder.push("constant", 0.01);
+    builder.push("t");
+    builder.push("-");
+    builder.push("sqrt");
+    p.boundary[5].velocity_expressions = {builder.program(), builder.program(), zero.program()};
+    p.boundary[4].velocity_expressions.clear();
+    const StaggeredField initial = random_field(FlowDomain(p), 3);
+    SharedSolver single(p, {}), shared(p, linear::RankGroup::world());
+    single.start(initial);
+    shared.start(initial);
+    EXPECT_EQ(Stop::failed, single->advance(endless, -1, {}));
+    const StepFailure expected = single->failure();
+    const int first_of_upper_ranks = p.cells[0] * p.cells[1] * linear::part_begin(p.cells[2], 2, 1);
+    EXPECT_GE(expected.index, first_of_upper_ranks);
+    EXPECT_EQ(Stop::pause, shared->advance(endless, expected.step - 1, {}));
+    const auto before = shared.state();
+    EXPECT_EQ(Stop::failed, shared->advance(endless, -1, {}));
+    const StepFailure found = shared->failure();
+    EXPECT_EQ(FailureReason::not_finite, found.reason);
+    EXPECT_EQ(expected.index, found.index);
+    EXPECT_EQ(expected.step, found.step);
+    const auto after = shared.state();
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(before[i], after[i]);
+    EXPECT_EQ(Stop::failed, shared->advance(endless, -1, {}));
+  }
+}
+
+TEST_F(FlowRanks, KeepsTheStepsEqualIfOneRankIsInterrupted) {
+  const linear::RankGroup world = linear::RankGroup::world();
+  const Parameters& p = cases()[2].parameters;
+  SharedSolver shared(p, world);
+  shared.start(random_field(FlowDomain(p), 9));
+  EXPECT_EQ(Stop::interrupted, shared->advance(endless, -1, [&](const Status& now) {
+    return world.rank() != 3 || now.step < 4;
+  }));
+  EXPECT_EQ(4, shared->progress().step);
+  EXPECT_EQ(Stop::interrupted,
+            shared->advance(endless, -1, [&](const Status&) { return world.rank() != 1; }));
+  EXPECT_EQ(4, shared->progress().step);
+  EXPECT_EQ(Stop::pause, shared->advance(endless, 5, [](const Status&) { return true; }));
+}
+
+TEST(FlowDecomposition, DividesAxesWithTheFewestNumbersSent) {
+  EXPECT_EQ((std::array<int, 3>{1, 1, 4}), decompose({64, 64, 64}, 4, 0).parts);
+  EXPECT_EQ((std::array<int, 3>{1, 8, 8}), decompose({64, 64, 64}, 64, 0).parts);
+  EXPECT_EQ((std::array<int, 3>{1, 4, 1}), decompose({64, 64, 16}, 4, 0).parts);
+  EXPECT_EQ((std::array<int, 3>{1, 2, 2}), decompose({64, 11, 11}, 4, 0).parts);
+  EXPECT_EQ((std::array<int, 3>{1, 4, 1}), decompose({64, 12, 1}, 4, 0).parts);
+  EXPECT_EQ((std::array<int, 3>{0, 1, 1}), decompose({64, 11, 11}, 4, 3).place);
+  EXPECT_EQ((std::array<int, 3>{1, 1, 1}), decompose({4, 1, 1}, 1, 0).parts);
+}
+
+TEST(FlowDecomposition, RejectsMoreRanksThanTheGridHasRoomFor) {
+  for (const std::array<int, 3>& cells : {std::array<int, 3>{64, 11, 1}, {64, 1, 1}, {64, 5, 8}})
+    EXPECT_THROW(static_cast<void>(decompose(cells, 4, 0)), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace drogue::flow

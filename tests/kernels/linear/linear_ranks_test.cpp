@@ -1,0 +1,155 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+#include <vector>
+
+#include "kernels/device/copy.hpp"
+#include "kernels/linear/poisson/pencil_solver.hpp"
+#include "tests/support/ranks.hpp"
+#if defined(DROGUE_HAVE_HYPRE)
+#include "kernels/linear/poisson/hypre_pfmg.hpp"
+#endif
+
+// Poisson solvers on several ranks against those on one.
+
+namespace drogue::linear {
+namespace {
+
+using ExecutionSpace = DROGUE_TEST_SPACE;
+using List = Kokkos::View<double*, ExecutionSpace::memory_space>;
+using testing::belongs_to_first;
+using testing::first_ranks;
+
+List on_device(const std::vector<double>& values) { return to_device(ExecutionSpace(), "test", values); }
+
+std::vector<double> on_host(const List& list) {
+  std::vector<double> values(list.size());
+  device::copy_out(ExecutionSpace(), values.data(), list, values.size());
+  ExecutionSpace().fence();
+  return values;
+}
+
+std::vector<double> random_values(std::size_t size) {
+  std::mt19937 engine(7);
+  std::vector<double> values(size);
+  for (double& value : values) value = 2.0 * std::generate_canonical<double, 53>(engine) - 1.0;
+  return values;
+}
+
+double largest_difference(const std::vector<double>& a, const std::vector<double>& b) {
+  double largest = a.size() == b.size() ? 0.0 : 1e300;
+  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
+    largest = std::max(largest, std::abs(a[i] - b[i]));
+  return largest;
+}
+
+class LinearRanks : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (RankGroup::world().size() != 4) GTEST_SKIP() << "needs mpirun with four ranks";
+  }
+};
+
+TEST_F(LinearRanks, TransposesEveryEntryToItsPlaceAndBack) {
+  const ExecutionSpace space;
+  for (const int ranks : {2, 3, 4}) {
+    const RankGroup group = first_ranks(ranks);
+    if (!belongs_to_first(ranks)) continue;
+    for (const std::array<int, 3>& whole :
+         {std::array<int, 3>{7, 9, 5}, {4, 4, 4}, {1, 8, 6}, {2, 13, 1}, {12, 4, 3}})
+      for (std::size_t gathered = 0; gathered < 3; ++gathered)
+        for (std::size_t split = 0; split < 3; ++split) {
+          if (gathered == split) continue;
+          std::vector<double> numbers(CellBox{{0, 0, 0}, whole}.size());
+          for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = static_cast<double>(i);
+          CellBox before{{0, 0, 0}, whole};
+          before.begin[gathered] = part_begin(whole[gathered], ranks, group.rank());
+          before.cells[gathered] = part_size(whole[gathered], ranks, group.rank());
+          const PencilTranspose<ExecutionSpace> transpose(group, before, gathered, whole[gathered], split);
+          const CellBox after = transpose.after();
+          EXPECT_EQ(whole[gathered], after.cells[gathered]);
+          EXPECT_EQ(part_size(whole[split], ranks, group.rank()), after.cells[split]);
+          const std::size_t most = std::max({before.size(), after.size(), std::size_t{1}});
+          const HostBuffer<ExecutionSpace> send("send", most), receive("receive", most);
+          const List from = on_device(testing::cut(numbers, whole, before)), to("to", after.size());
+          transpose.forward(space, from, to, send, receive);
+          EXPECT_EQ(testing::cut(numbers, whole, after), on_host(to));
+          const List back("back", before.size());
+          transpose.backward(space, to, back, send, receive);
+          EXPECT_EQ(on_host(from), on_host(back));
+        }
+  }
+}
+
+struct Case {
+  std::array<int, 3> cells;
+  std::array<int, 3> parts;
+  std::array<AxisConditions, 3> axes;
+};
+
+std::vector<Case> cases() {
+  constexpr EndCondition n = EndCondition::neumann, d = EndCondition::dirichlet;
+  const AxisConditions periodic, walls{false, n, n}, low{false, d, n}, high{false, n, d}, both{false, d, d};
+  return {{{8, 7, 9}, {1, 2, 2}, {periodic, periodic, periodic}},
+          {{5, 9, 8}, {1, 4, 1}, {walls, high, periodic}},
+          {{6, 8, 13}, {1, 1, 4}, {low, walls, both}},
+          {{9, 14, 1}, {1, 4, 1}, {walls, both, periodic}},
+          {{10, 1, 12}, {1, 1, 4}, {periodic, periodic, high}},
+          {{1, 8, 6}, {1, 2, 2}, {periodic, walls, walls}},
+          {{3, 16, 4}, {1, 4, 1}, {walls, periodic, walls}},
+          {{7, 6, 6}, {1, 1, 2}, {walls, walls, walls}}};
+}
+
+/// Expects `solve(problem, group, ranks, right-hand side)`, which returns the solution of a rank's cells, to
+/// give the solution on one rank.
+template <class Solve>
+void expect_solutions_of_one_rank(double tolerance, const Solve& solve) {
+  const ExecutionSpace space;
+  for (const Case& each : cases()) {
+    const int size = each.parts[1] * each.parts[2];
+    const RankGroup group = first_ranks(size);
+    if (!belongs_to_first(size)) continue;
+    const PoissonProblem problem{each.cells, {0.3, 0.2, 0.5}, each.axes};
+    const std::vector<double> right = random_values(CellBox{{0, 0, 0}, each.cells}.size());
+    const List single("single", right.size());
+    const DiagonalizationSolver<ExecutionSpace> reference(space, problem);
+    reference.enqueue_solve(on_device(right), single);
+    space.fence();
+    const PencilRanks ranks{each.parts, {0, group.rank() % each.parts[1], group.rank() / each.parts[1]}};
+    const CellBox box = box_of(ranks, each.cells);
+    const std::vector<double> own = solve(problem, group, ranks, testing::cut(right, each.cells, box));
+    EXPECT_LT(largest_difference(on_host(single), testing::joined(group, own, each.cells, box)), tolerance)
+        << each.cells[0] << " x " << each.cells[1] << " x " << each.cells[2];
+  }
+}
+
+TEST_F(LinearRanks, PencilsSolveAsOneRank) {
+  for (const AxisMethod method : {AxisMethod::fourier, AxisMethod::diagonalization}) {
+    if (method == AxisMethod::fourier && !device::is_host<ExecutionSpace>) continue;
+    expect_solutions_of_one_rank(1e-13, [&](const PoissonProblem& problem, const RankGroup& group,
+                                            const PencilRanks& ranks, const std::vector<double>& right) {
+      PencilSolver<ExecutionSpace> solver(ExecutionSpace(), problem, group, ranks, method);
+      const List given = on_device(right), solution("solution", right.size());
+      solver.enqueue_solve(given, solution);
+      EXPECT_EQ(right, on_host(given));
+      return on_host(solution);
+    });
+  }
+}
+
+#if defined(DROGUE_HAVE_HYPRE)
+TEST_F(LinearRanks, HypreSolvesAsOneRank) {
+  expect_solutions_of_one_rank(1e-10, [](const PoissonProblem& problem, const RankGroup& group,
+                                         const PencilRanks& ranks, const std::vector<double>& right) {
+    HyprePfmgSolver<ExecutionSpace> solver(ExecutionSpace(), problem, group, ranks, 1e-13);
+    const List solution("solution", right.size());
+    solver.enqueue_solve(on_device(right), solution);
+    EXPECT_TRUE(solver.converged());
+    return on_host(solution);
+  });
+}
+#endif
+
+}  // namespace
+}  // namespace drogue::linear

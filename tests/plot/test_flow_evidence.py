@@ -1,0 +1,58 @@
+"""Page of synthetic records of flow."""
+
+import unittest
+
+import packages  # before modules that need the packages  isort: skip
+import synthetic_records as records
+from evidence_pages import Folder
+from plot.flow.published_results import PUBLISHED_RESULTS
+
+H200 = "NVIDIA H200, Intel Xeon Processor"
+
+
+class Page(Folder):
+    def test_steps_have_goals_and_the_time_of_their_traffic(self):
+        page, _ = self.page(records.flow_steps() + records.ceilings(memory=4e12), app="flow")
+        rows = page.tables[H200, "A step"]
+        large = next(row for row in rows if row[1] == "periodic")
+        # 296 bytes at 4 TB/s are 0.074 ns.
+        self.assertEqual(("0.16", "0.074"), (large[4], large[-1]))
+        verdicts = {row[0]: row[-1] for row in rows if "goal met" in row[-1] or "missed" in row[-1]}
+        self.assertEqual(
+            {"CUDA, 16 M cells, periodic": "goal met", "CUDA, 432000 cells, tunnel": "missed by 100 %"}, verdicts
+        )
+
+    def test_without_ceilings_there_is_no_time_of_traffic(self):
+        page, _ = self.page(records.flow_steps(), app="flow")
+        self.assertNotIn("memory traffic alone", page.words)
+
+    def test_pressure_solvers_have_tolerances_and_iterations(self):
+        page, _ = self.page(records.flow_solvers(), app="flow")
+        rows = page.tables[H200, "Pressure solvers"][1:]
+        self.assertEqual(
+            [["transforms", "round-off", "0.02", ""], ["hypre PFMG", "1e-06", "250", "9"]],
+            sorted(([row[3], row[4], row[5], row[7]] for row in rows), key=lambda row: float(row[2])),
+        )
+
+    def test_memory_is_given_per_cell(self):
+        page, _ = self.page(records.flow_solvers(), app="flow")
+        self.assertEqual(["124", "140"], page.tables[H200, "Memory"][1][3:])
+
+    def test_solutions_are_drawn_with_the_published_results(self):
+        page, files = self.page(records.flow_solutions(), app="flow")
+        pictures = [f"solution_{problem}_nvidia-h200.png" for problem in ("drifting-vortices", "resting-vortices")]
+        self.assertEqual(["flow.html", *pictures], files)
+        rows = page.tables[H200, "Drifting vortices of Taylor and Green: error against time"]
+        defaults = [row for row in rows if row[:2] == ["CUDA", "WENO-Z"]]
+        self.assertEqual("2.00", defaults[0][3])
+        self.assertIn("peclet-flow", page.words)
+
+    def test_published_times_are_those_of_their_cost_per_cell_and_step(self):
+        # 128^3 cells, 82 steps of 0.25 h to 1 s, 5.22 ns per cell and step.
+        seconds, error = PUBLISHED_RESULTS[0].points[0]
+        self.assertAlmostEqual(5.22e-9 * 128**3 * 81.5, seconds, delta=0.01 * seconds)
+        self.assertEqual(1.7e-5, error)
+
+
+if __name__ == "__main__":
+    unittest.main()

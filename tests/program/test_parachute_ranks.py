@@ -1,0 +1,135 @@
+# ctest-label: no-sanitizer
+"""drogue-parachute on several ranks: the results of one rank, restarts on any number of ranks, an orderly end of all ranks."""
+
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+import unittest
+
+sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
+
+import parachute_program
+from parachute_program import GUST, PROGRAM, VORTICES
+from rank_processes import LAUNCHER, RANK_ENVIRONMENT, processes_of
+
+QUIET = ("--quiet", "--backend", "serial")
+TOLERANCE = 1e-10
+LONG_GUST = GUST.replace("end_time = 0.5", "end_time = 1e4").split("[output]")[0]
+
+
+@unittest.skipIf(LAUNCHER is None, "there is no mpirun")
+class RanksTest(parachute_program.FlowTest):
+    def begin(self, ranks, *words, sets=()):
+        options = [word for value in sets for word in ("--set", value)]
+        line = [LAUNCHER, "--oversubscribe", "-n", ranks, PROGRAM, *words, *options]
+        process = subprocess.Popen(list(map(str, line)), cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                   stdin=subprocess.DEVNULL, text=True, env=RANK_ENVIRONMENT)
+        self.addCleanup(process.kill)
+        return process
+
+    def end(self, process):
+        """Exit code, the lines of the program on stderr (mpirun adds others after a failure), and stdout."""
+        output, errors = process.communicate(timeout=120)
+        own = [line for line in errors.splitlines() if line.startswith("drogue-parachute:") or ".toml:" in line]
+        return process.returncode, own, output
+
+    def run_on(self, code, ranks, *words, **settings):
+        ended = self.end(self.begin(ranks, *words, **settings))
+        self.assertEqual((code, 1 if code else 0), (ended[0], len(ended[1])), ended)
+        return ended[1][0] if code else ended[2]
+
+    def assert_near(self, one, other, what):
+        self.assertEqual(len(one), len(other), what)
+        bound = TOLERANCE * max(1.0, *map(abs, one))
+        self.assertLess(max(abs(a - b) for a, b in zip(one, other)), bound, what)
+
+    def assert_same_runs(self, one, other):
+        """Fields and history agree within the tolerance."""
+        files = self.fields(one), self.fields(other)
+        self.assertEqual(set(files[0].datasets), set(files[1].datasets))
+        for path in files[0].datasets:
+            if path.startswith("/steps/"):
+                self.assert_near(*(list(file.values(path)) for file in files), path)
+        rows = self.history(one), self.history(other)
+        self.assertEqual(list(rows[0]), list(rows[1]))
+        for name in rows[0]:
+            self.assert_near(rows[0][name], rows[1][name], name)
+
+
+class Results(RanksTest):
+    def test_fields_and_history_are_those_of_one_rank(self):
+        scene = self.write(GUST)
+        for ranks in (1, 2, 4):
+            self.run_on(0, ranks, scene, *QUIET, "--out", ranks)
+            told = self.result(str(ranks))
+            self.assertEqual((ranks, "ok", 0.5), (told["ranks"], told["status"], told["time"]))
+        self.assertEqual("plain", self.result("4")["driver"])
+        for ranks in (2, 4):
+            self.assert_same_runs("1", str(ranks))
+
+    def test_verifies_against_the_exact_solution(self):
+        output = self.run_on(0, 4, self.write(VORTICES), "--backend", "serial", "--out", "out")
+        self.assertEqual(1, output.count("l2_velocity"), output)
+        one = self.run_on(0, 1, self.write(VORTICES), "--backend", "serial", "--out", "one")
+        self.assertIn("passed", one)
+        errors = [self.result(name)["errors"] for name in ("one", "out")]
+        for name, value in errors[0].items():
+            self.assertAlmostEqual(value, errors[1][name], delta=TOLERANCE, msg=name)
+
+    def test_ranks_may_differ_after_a_restart(self):
+        """The state after steps on two ranks, continued on two, four and one; on two bit for bit."""
+        scene = self.write(GUST)
+        self.run_on(0, 2, scene, *QUIET, "--out", "whole", sets=["output.restart_every=4"])
+        self.run_on(4, 2, scene, *QUIET, "--out", "part", sets=["output.restart_every=4", "run.max_steps=6"])
+        for ranks in (2, 4, 1):
+            name = f"on{ranks}"
+            shutil.copytree(self.folder / "part", self.folder / name)
+            self.run_on(0, ranks, scene, *QUIET, "--out", name, "--restart", "auto", sets=["output.restart_every=4"])
+            self.assert_same_runs("whole", name)
+        whole, same = self.fields("whole"), self.fields("on2")
+        self.assertEqual([], [path for path in whole.datasets if whole.datasets[path] != same.datasets[path]])
+        self.assertEqual(*((self.folder / name / "history.csv").read_text() for name in ("whole", "on2")))
+
+
+class Failures(RanksTest):
+    def test_prints_errors_of_all_ranks_once(self):
+        self.assertEqual(1, self.run_on(0, 2, "--help").count("--study LISTS"))
+        self.assertIn("cavitty", self.run_on(2, 2, "cavitty"))
+        self.assertIn(".toml:2", self.run_on(3, 2, self.write('app = "parachute"\nwrong = 1\n'), *QUIET))
+        self.assertIn("one rank", self.run_on(2, 2, self.write(VORTICES), *QUIET, "--study", "meshes=8:16"))
+
+    def test_refuses_more_ranks_than_the_grid_has_room_for(self):
+        sentence = self.run_on(2, 4, self.write(VORTICES), *QUIET, "--out", "out", sets=["grid.cells=[16, 8, 1]"])
+        self.assertIn("4 ranks cannot share 8 x 1 cells", sentence)
+
+    def test_refuses_implicit_diffusion(self):
+        sentence = self.run_on(2, 2, self.write(VORTICES), *QUIET, "--out", "out", sets=["flow.diffusion=crank-nicolson"])
+        self.assertIn("one rank", sentence)
+
+    def test_reports_a_numerical_failure_once(self):
+        sentence = self.run_on(4, 4, self.write(LONG_GUST), *QUIET, "--out", "out", sets=["run.dt=10"])
+        self.assertIn("not finite in cell", sentence)
+        self.assertEqual("numerical-failure", self.result("out")["status"])
+
+    def test_interrupts_all_ranks_if_one_is_terminated(self):
+        for victim in (0, 1):
+            with self.subTest(victim):
+                self.interrupt(victim)
+
+    def interrupt(self, victim):
+        out = f"out{victim}"
+        process = self.begin(2, self.write(LONG_GUST), *QUIET, "--out", out, sets=["output.restart_every=5"])
+        for _ in range(400):
+            time.sleep(0.05)
+            if (self.folder / out / "restart.h5").exists():
+                break
+        os.kill(processes_of(process)[victim], signal.SIGTERM)
+        self.assertEqual((130, []), self.end(process)[:2])
+        self.assertEqual("interrupted", self.result(out)["status"])
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,32 @@
+#include "perf/models/flow_step.hpp"
+
+#include <gtest/gtest.h>
+
+namespace drogue::perf {
+namespace {
+
+/// Bytes per cell.
+double bytes(flow::Parameters p, const std::array<int, 3>& cells) {
+  p.cells = cells;
+  return flow_step_bytes(p) / (static_cast<double>(cells[0]) * cells[1] * cells[2]);
+}
+
+TEST(FlowStepBytes, CountEachArrayOfEachKernelOnce) {
+  flow::Parameters p;
+  // Momentum 96, divergence 32, transforms and scaling 7 x 16, correction 56.
+  EXPECT_EQ(bytes(p, {64, 32, 16}), 296.0);
+  // In two dimensions five passes of transforms and scaling.
+  EXPECT_EQ(bytes(p, {64, 64, 1}), 264.0);
+  p.time_scheme = flow::TimeScheme::rk3;
+  // Momentum 48 + 2 x 72.
+  EXPECT_EQ(bytes(p, {64, 32, 16}), 192.0 + 3 * 200.0);
+  p.time_scheme = flow::TimeScheme::ab2;
+  p.diffusion = flow::Diffusion::crank_nicolson;
+  EXPECT_EQ(bytes(p, {64, 32, 16}), 296.0 + 3 * (32.0 + 112.0 + 24.0) + 24.0);
+  p.diffusion = flow::Diffusion::explicit_;
+  p.turbulence = flow::Turbulence::vreman;
+  EXPECT_EQ(bytes(p, {64, 32, 16}), 296.0 + 112.0);
+}
+
+}  // namespace
+}  // namespace drogue::perf
