@@ -139,8 +139,8 @@ def _springs_pictures(run, options, out, save):
 
 def _flow_pictures(run, options, out, save):
     from . import movie_file
-    from .parachute import quantities, slices_figure, spectrum
-    from .parachute.plane import plane_of
+    from .flow import quantities, slices_figure, spectrum
+    from .flow.plane import plane_of
 
     known = quantities.quantities(run)
     names = _validated_fields(options.field, list(known)) or quantities.default_names(run)
@@ -173,9 +173,9 @@ def draw(options: argparse.Namespace):
     from .evidence.records import read_records
     from .gas.history_figure import history_figure
     from .options.prices_figure import prices_figure
-    from .parachute.history_figure import flow_history_figure
-    from .parachute.plane import is_flow, plane_of
-    from .parachute.quantities import quantities
+    from .flow.history_figure import flow_history_figure
+    from .flow.plane import is_flow, plane_of
+    from .flow.quantities import quantities
     from .run_directory import read_run
     from .springs.history_figure import springs_history_figure
     from .study_figure import check_norm, study_figure

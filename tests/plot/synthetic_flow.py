@@ -1,5 +1,7 @@
 """Synthetic run directories of drogue-parachute."""
 
+import csv
+
 import h5py
 import numpy as np
 
@@ -47,3 +49,21 @@ def write_flow(folder, cells, lengths, fields_at, times=(0.0,), is_open=False):
                 group[name] = values
                 group[name].attrs["units"] = UNITS[name]
     return folder
+
+
+def write_flow_study(file):
+    """Writes study.csv of two schemes on three meshes, with errors of order 2 and 3; returns its path."""
+    header = ["label", "advection", "time_scheme", "pressure", "backend", "cells", "steps", "compute_s", "l1_velocity",
+              "l2_velocity", "linf_velocity", "l2_pressure", "order_l2_velocity", "order_l2_pressure", "divergence",
+              "status"]  # fmt: skip
+    with file.open("w", newline="") as stream:
+        table = csv.writer(stream)
+        table.writerow(header)
+        for advection, time, order in (("central", "ab2", 2), ("weno-z", "rk3", 3)):
+            for cells in (16, 32, 64):
+                error = cells**-order
+                table.writerow(
+                    [f"{advection} {time}", advection, time, "auto", "serial", cells, cells, 1e-6 * cells**3, 2 * error,
+                     error, 3 * error, "", order, "", 1e-15, "ok"]
+                )  # fmt: skip
+    return file

@@ -12,13 +12,14 @@ import numpy as np
 from matplotlib.text import Text
 from PIL import Image
 from plot import cli, style
-from plot.parachute.history_figure import flow_history_figure, keeps_energy
-from plot.parachute.plane import plane_of
-from plot.parachute.quantities import Quantity, default_names, quantities
-from plot.parachute.slices_figure import SlicesFigure, View, colour_scale, slices_figure
-from plot.parachute.spectrum import energy_spectrum, is_periodic, spectrum_figure
+from plot.flow.history_figure import flow_history_figure, keeps_energy
+from plot.flow.plane import plane_of
+from plot.flow.quantities import Quantity, default_names, quantities
+from plot.flow.slices_figure import SlicesFigure, View, colour_scale, slices_figure
+from plot.flow.spectrum import energy_spectrum, is_periodic, spectrum_figure
 from plot.run_directory import read_run
-from synthetic_flow import centres, write_flow
+from plot.study_figure import default_norm, study_figure
+from synthetic_flow import centres, write_flow, write_flow_study
 
 assert packages.SOURCE
 
@@ -171,8 +172,13 @@ class FlowPictures(unittest.TestCase):
             write_flow(self.folder / "run", (8, 8, 1), (1.0, 1.0, 1.0),
                        lambda time, x, y, z: {"velocity": vectors(0 * x, 1 + 0 * x, 0 * x)})
         )  # fmt: skip
-        figure = slices_figure(View(plane_of(run), [quantities(run)["speed"]]), run.snapshots[0])
-        lines = figure.axes[0].collections[0].get_segments()
+        known = quantities(run)
+        without = slices_figure(View(plane_of(run), [known["velocity_x"]]), run.snapshots[0])
+        self.assertEqual(0, len(without.axes[0].collections))
+        figure = slices_figure(View(plane_of(run), [known["velocity_x"], known["speed"]]), run.snapshots[0])
+        (panel,) = [axes for axes in figure.axes if axes.images and axes.collections]
+        self.assertIn("speed", panel.get_title(loc="left"))
+        lines = panel.collections[0].get_segments()
         self.assertGreater(np.ptp(np.concatenate(lines)[:, 1]), 0.5)
         self.assertLess(max(np.ptp(np.asarray(line)[:, 0]) for line in lines), 1e-12)
 
@@ -249,6 +255,23 @@ class FlowPictures(unittest.TestCase):
         )  # fmt: skip
         self.assertTrue(is_periodic(still))
         self.assertIsNone(spectrum_figure(still, still.snapshots[0]))
+
+    def test_study_shows_rms_error_with_orders(self):
+        write_flow_study(self.folder / "study.csv")
+        rows = read_run(self.folder).study
+        self.assertEqual("l2_velocity", default_norm(rows))
+        by_time, by_mesh = study_figure("taylor-green-2d", rows).axes
+        self.assertEqual("rms error of velocity (m/s)", by_time.get_ylabel())
+        self.assertEqual("cells along the longest axis", by_mesh.get_xlabel())
+        self.assertEqual(
+            ["WENO-Z RK3  order 3.00", "central AB2  order 2.00"], [text.get_text() for text in by_mesh.texts]
+        )
+        self.assertEqual(0, cli.main([str(self.folder), "--quiet", "--norm", "linf_velocity"]))
+        (self.folder / "study.png").unlink()
+        # Observed orders are no errors, and the divergence does not converge with the mesh.
+        self.assertIn("no norm 'order_l2_velocity'", self.refusal(self.folder, "--norm", "order_l2_velocity"))
+        (label, _) = study_figure("taylor-green-2d", rows, "divergence").axes[1].texts
+        self.assertNotIn("order", label.get_text())
 
     def test_history_shows_energy_fall_of_closed_flow(self):
         closed, opened = (

@@ -141,22 +141,22 @@ class SlicesFigure:
         self._caption.set_text(self._view.caption(snapshot))
 
     def add_streamlines(self, snapshot: Snapshot) -> None:
-        """Draws streamlines of the velocity in the plane on the first panel, if the run has a velocity there."""
+        """Draws streamlines of the velocity in the plane on the panel of the speed, if there is one."""
         plane = self._view.plane
-        velocity = snapshot.fields.get("velocity")
         x, y = plane.centres
-        if velocity is None or min(len(x), len(y)) < 2:
+        panel = next((image.axes for quantity, image in self._images if quantity.name == "speed"), None)
+        if panel is None or min(len(x), len(y)) < 2:
             return
-        u, v = (plane.cut(velocity.values[..., axis]) for axis in plane.across)
+        velocity = snapshot.fields["velocity"].values
+        u, v = (plane.cut(velocity[..., axis]) for axis in plane.across)
         if not (np.isfinite(u).all() and np.isfinite(v).all()) or not np.any(u) and not np.any(v):
             return
-        axes = self._images[0][1].axes
         width, height = _panel_size(plane.extent)
-        axes.streamplot(
-            x, y, u, v, color="white", linewidth=0.55, arrowsize=0.6, density=(0.3 * width, 0.3 * height),
-        )  # fmt: skip
-        axes.set_xlim(*plane.extent[:2])
-        axes.set_ylim(*plane.extent[2:])
+        panel.streamplot(
+            x, y, u, v, color="white", linewidth=0.55, arrowsize=0.6, density=(0.3 * width, 0.3 * height)
+        )
+        panel.set_xlim(*plane.extent[:2])
+        panel.set_ylim(*plane.extent[2:])
 
 
 def slices_figure(view: View, snapshot: Snapshot):
