@@ -139,7 +139,7 @@ def _springs_pictures(run, options, out, save):
 
 def _flow_pictures(run, options, out, save):
     from . import movie_file
-    from .flow import quantities, slices_figure, spectrum
+    from .flow import profiles_figure, quantities, slices_figure, spectrum
     from .flow.plane import plane_of
 
     known = quantities.quantities(run)
@@ -153,6 +153,8 @@ def _flow_pictures(run, options, out, save):
     if names and len(run.snapshots) >= 2 and options.movie != "none":
         moving = slices_figure.View(plane, [known[quantities.movie_name(names)]])
         yield movie_file.write(out / f"fields.{options.movie}", slices_figure.frames(moving))
+    if (figure := profiles_figure.profiles_figure(run, snapshot)) is not None:
+        yield save(figure, "profiles")
     if spectrum.is_periodic(run) and (figure := spectrum.spectrum_figure(run, snapshot)) is not None:
         yield save(figure, "spectrum")
 

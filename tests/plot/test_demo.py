@@ -66,10 +66,11 @@ class Demo(unittest.TestCase):
         self.assertIn("above its tolerance 0.0065", page)
 
     def test_history_stands_for_missing_fields(self):
-        files = [Path(name) for name in ("fields.png", "fields.gif", "spectrum.png", "history.png")]
+        names = ("fields.png", "fields.gif", "spectrum.png", "history.png", "profiles.png")
+        files = [Path(name) for name in names]
         roles = pictures_by_role(SimpleNamespace(pictures=files))
-        self.assertEqual({"still": files[0], "movie": files[1], "map": files[2]}, roles)
-        self.assertEqual({"still": files[3]}, pictures_by_role(SimpleNamespace(pictures=files[3:])))
+        self.assertEqual({"still": files[0], "movie": files[1], "map": files[2], "profiles": files[4]}, roles)
+        self.assertEqual({"still": files[3]}, pictures_by_role(SimpleNamespace(pictures=files[3:4])))
 
     def test_rejects_unknown_scene_with_list_of_scenes(self):
         done = self._demo("sood")

@@ -1,0 +1,171 @@
+"""Velocities of a flow along lines, beside those that its scene expects there at the end of the run."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ..expression import evaluate
+from ..run_directory import Run, Snapshot
+from .plane import AXES, cell_counts
+
+_POINTS = 2001  # of a curve
+_VARIES = 1e-9  # variation relative to the largest velocity below which an exact velocity is constant
+
+
+class SampledLine:
+    """Velocities at equidistant places, m, interpolated by cubic polynomials; needs four values."""
+
+    def __init__(self, places: np.ndarray, values: np.ndarray):
+        self._places, self._values = places, values
+
+    def __call__(self, at: np.ndarray) -> np.ndarray:
+        """Values at places `at`; the outermost polynomials hold beyond the ends."""
+        position = (np.asarray(at, dtype=float) - self._places[0]) / (self._places[1] - self._places[0])
+        start = np.clip(np.floor(position) - 1, 0, len(self._values) - 4).astype(int)
+        s = position - start
+        v = [self._values[start + k] for k in range(4)]
+        return (
+            -v[0] * (s - 1) * (s - 2) * (s - 3) / 6 + v[1] * s * (s - 2) * (s - 3) / 2
+            - v[2] * s * (s - 1) * (s - 3) / 2 + v[3] * s * (s - 1) * (s - 2) / 6
+        )  # fmt: skip
+
+    @property
+    def places(self) -> np.ndarray:
+        """Places of the values."""
+        return self._places
+
+    @property
+    def curve(self) -> tuple[np.ndarray, np.ndarray]:
+        """Places that resolve the line, and the values there."""
+        places = np.linspace(self._places[0], self._places[-1], _POINTS)
+        return places, self(places)
+
+    def extremum(self, sign: int) -> tuple[float, float]:
+        """Place and value of the largest (sign 1) or the least (sign -1) velocity."""
+        places, values = self.curve
+        top = int(np.argmax(sign * values))
+        return float(places[top]), float(values[top])
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """One velocity component along a line, and the expected one: points and extremes, or an exact solution.
+
+    `points` holds (place, velocity); `extremes` holds (sign, place or None, velocity, tolerance).
+    """
+
+    line: SampledLine
+    component: int
+    along: int
+    through: tuple[float, float, float]  # a point of the line, m
+    points: np.ndarray = field(default_factory=lambda: np.empty((0, 2)))
+    extremes: tuple[tuple[int, float | None, float, float], ...] = ()
+    exact: Callable[[np.ndarray], np.ndarray] | None = None
+    tolerance: float | None = None  # of the points, or of the largest error, m/s
+
+    def deviations(self) -> tuple[np.ndarray, np.ndarray]:
+        """Places of the expected points, else of the cells, and there the velocity less the expected one."""
+        if self.exact is not None:
+            places = self.line.places
+            return places, self.line(places) - self.exact(places)
+        return self.points[:, 0], self.line(self.points[:, 0]) - self.points[:, 1]
+
+
+def _neighbours(faces: np.ndarray, place: float, is_periodic: bool) -> list[tuple[int, float]]:
+    """Cells whose centres enclose a place, with their weights of linear interpolation."""
+    count, width = len(faces) - 1, faces[1] - faces[0]
+    position = (place - faces[0]) / width - 0.5
+    lower = int(np.floor(position))
+    if count == 1:
+        return [(0, 1.0)]
+    if is_periodic:
+        weight = position - lower
+        return [(lower % count, 1 - weight), ((lower + 1) % count, weight)]
+    lower = min(max(lower, 0), count - 2)
+    weight = min(max(position - lower, 0.0), 1.0)
+    return [(lower, 1 - weight), (lower + 1, weight)]
+
+
+def sample(run: Run, snapshot: Snapshot, component: int, along: int, through) -> SampledLine | None:
+    """Velocity component on the line through a point; None for fewer than four cells or undefined values."""
+    values = snapshot.fields["velocity"].values[..., component]
+    boundary = run.scene.get("grid", {}).get("boundary", {})
+    for axis in range(3):
+        if axis == along:
+            continue
+        faces = run.mesh[AXES[axis]].values
+        is_periodic = boundary.get(AXES[axis]) in ("periodic", ["periodic", "periodic"])
+        # The axis stays, with one cell, so that the others keep their numbers.
+        values = sum(
+            weight * values.take([cell], axis=axis)
+            for cell, weight in _neighbours(faces, through[axis], is_periodic)
+        )
+    faces = run.mesh[AXES[along]].values
+    values = values.ravel()
+    if len(values) < 4 or not np.isfinite(values).all():
+        return None
+    return SampledLine((faces[1:] + faces[:-1]) / 2, values)
+
+
+def _published(run: Run, snapshot: Snapshot) -> list[Comparison]:
+    """Comparisons with the points and extremes of verify.profile."""
+    found = []
+    for profile in run.scene.get("verify", {}).get("profile", []):
+        component, along = AXES.index(profile["component"]), AXES.index(profile["along"])
+        line = sample(run, snapshot, component, along, profile["through"])
+        if line is None:
+            continue
+        extremes = tuple(
+            (sign, profile[name].get("at"), profile[name]["value"], profile[name]["tolerance"])
+            for name, sign in (("minimum", -1), ("maximum", 1))
+            if name in profile
+        )
+        points = np.array(profile.get("points", []), dtype=float).reshape(-1, 2)
+        tolerance = profile.get("tolerance") if len(points) else None
+        found.append(
+            Comparison(
+                line, component, along, tuple(profile["through"]), points, extremes, tolerance=tolerance
+            )
+        )
+    return found
+
+
+def _exact(run: Run, snapshot: Snapshot) -> list[Comparison]:
+    """Comparisons with verify.exact along the middle cells, where the exact velocity varies."""
+    verify = run.scene.get("verify", {})
+    if not verify.get("exact"):
+        return []
+    counts = cell_counts(run)
+    centres = [(faces[1:] + faces[:-1]) / 2 for faces in (run.mesh[axis].values for axis in AXES)]
+    # A line through cell centres needs no interpolation across it.
+    middle = tuple(float(places[count // 2]) for places, count in zip(centres, counts))
+
+    def velocity(component, along):
+        text = verify["exact"][AXES[component]]
+
+        def at(places):
+            point = {axis: np.full(np.shape(places), middle[k]) for k, axis in enumerate(AXES)}
+            return evaluate(text, t=snapshot.time, **(point | {AXES[along]: places}))
+
+        return at
+
+    candidates = [(component, along) for along in range(3) if counts[along] > 1 for component in range(3)]
+    values = {pair: velocity(*pair)(centres[pair[1]]) for pair in candidates}
+    largest = max(float(np.abs(item).max()) for item in values.values())
+    found = []
+    for component, along in candidates:
+        line = sample(run, snapshot, component, along, middle)
+        if line is not None and np.ptp(values[component, along]) > _VARIES * largest:
+            tolerance = verify.get("linf_velocity")
+            exact = velocity(component, along)
+            found.append(Comparison(line, component, along, middle, exact=exact, tolerance=tolerance))
+    return found
+
+
+def comparisons(run: Run, snapshot: Snapshot) -> list[Comparison]:
+    """Lines of [verify]; none before the end of the run, for which their velocities are stated."""
+    end = run.scene.get("run", {}).get("end_time")
+    if "velocity" not in snapshot.fields or end is None or abs(snapshot.time - end) > 1e-9 * end:
+        return []
+    return _published(run, snapshot) + _exact(run, snapshot)

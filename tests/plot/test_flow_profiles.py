@@ -1,0 +1,178 @@
+"""Velocities of synthetic flows along lines, compared with those that their scenes expect."""
+
+import contextlib
+import io
+import shutil
+import tempfile
+import unittest
+from pathlib import Path
+
+import packages  # before modules that need the packages  isort: skip
+import numpy as np
+from matplotlib.text import Text
+from plot import cli, style
+from plot.flow.profiles import SampledLine, comparisons, sample
+from plot.flow.profiles_figure import profiles_figure
+from plot.run_directory import read_run
+from synthetic_flow import write_flow
+
+assert packages.SOURCE
+
+LENGTHS = (2.0, 1.0, 1.0)
+END = "[run]\nend_time = 2.0\n"
+POINTS = """[[verify.profile]]
+component = "x"
+along = "y"
+through = [1.0, 0.0, 0.5]
+points = [[0.05, 0.05], [0.5, 0.4]]
+tolerance = 0.2
+minimum = { value = 0.0, tolerance = 0.1, at = 0.1 }
+[[verify.profile]]
+component = "y"
+along = "x"
+through = [0.0, 0.5, 0.5]
+maximum = { value = 2.0, tolerance = 0.1 }
+"""
+EXACT = """[verify]
+linf_velocity = 0.5
+[verify.exact]
+x = "y*t"
+y = 3
+z = "sin(pi*x)"
+"""
+
+
+def linear(time, x, y, z):
+    """Velocity that is linear in each direction, u = y + 10 x + 100 z and v = x, the same at all times."""
+    return {"velocity": np.stack([y + 10 * x + 100 * z, x, 0 * x], axis=-1)}
+
+
+def exact(time, x, y, z):
+    """Velocity of EXACT with 0.25 added to u in the upper half."""
+    return {"velocity": np.stack([y * time + 0.25 * (y > 0.5), 3 + 0 * x, np.sin(np.pi * x)], axis=-1)}
+
+
+class FlowProfiles(unittest.TestCase):
+    def setUp(self):
+        self.folder = Path(tempfile.mkdtemp())
+        self.addCleanup(shutil.rmtree, self.folder)
+        self.addCleanup(style.plt.close, "all")
+
+    def run_of(self, fields_at, verify, cells=(16, 8, 1), times=(2.0,), **options):
+        """Path of a run directory whose scene ends in END and `verify`."""
+        folder = write_flow(self.folder / "run", cells, LENGTHS, fields_at, times, **options)
+        with (folder / "scene.toml").open("a") as scene:
+            scene.write(END + verify)
+        return folder
+
+    def comparisons_of(self, *arguments, **options):
+        run = read_run(self.run_of(*arguments, **options))
+        return comparisons(run, run.snapshots[-1])
+
+    def test_interpolates_cubic_polynomials_exactly(self):
+        """Up to half a cell beyond the outermost centres, where walls are."""
+        places = (np.arange(6) + 0.5) / 6
+
+        def cubic(x):
+            return 1 - 2 * x + 3 * x**2 - 4 * x**3
+
+        at = np.array([0.0, 0.1, 0.25, 0.3, 0.77, 1.0])
+        np.testing.assert_allclose(SampledLine(places, cubic(places))(at), cubic(at), atol=1e-13)
+
+    def test_finds_extremes_between_cells(self):
+        places = (np.arange(20) + 0.5) / 20
+        line = SampledLine(places, -((places - 0.487) ** 2))
+        np.testing.assert_allclose(line.extremum(1), (0.487, 0), atol=1e-3)
+        np.testing.assert_allclose(line.extremum(-1), (places[-1], -((places[-1] - 0.487) ** 2)))
+
+    def test_line_passes_through_point(self):
+        """Values between cells are linear across the line; the outermost ones hold up to an open side."""
+        run = read_run(self.run_of(linear, "", cells=(16, 8, 4), is_open=True))
+        for through, x, z in (((1.03, 0.0, 0.4), 1.03, 0.4), ((0.0, 0.0, 0.5), 0.0625, 0.5)):
+            with self.subTest(through=through):
+                line = sample(run, run.snapshots[0], 0, 1, through)
+                np.testing.assert_allclose(line([0.2, 0.7]), np.array([0.2, 0.7]) + 10 * x + 100 * z)
+
+    def test_line_at_periodic_side_uses_both_sides(self):
+        run = read_run(self.run_of(linear, ""))
+        line = sample(run, run.snapshots[0], 0, 1, (0.0, 0.0, 0.5))
+        np.testing.assert_allclose(line([0.2]), 0.2 + 10 * (0.0625 + 1.9375) / 2 + 50)
+        # A place outside the domain is that of its periodic image.
+        np.testing.assert_allclose(sample(run, run.snapshots[0], 0, 1, (2.3, 0.0, 0.5))([0.2]), 0.2 + 3 + 50)
+
+    def test_deviation_is_that_of_points(self):
+        first, second = self.comparisons_of(linear, POINTS)
+        np.testing.assert_allclose(first.deviations(), [[0.05, 0.5], [60.0, 60.1]])
+        self.assertEqual((0.2, ((-1, 0.1, 0.0, 0.1),)), (first.tolerance, first.extremes))
+        self.assertEqual((0, ((1, None, 2.0, 0.1),)), (len(second.points), second.extremes))
+
+    def test_exact_velocity_is_compared_where_it_varies(self):
+        found = self.comparisons_of(exact, EXACT)
+        self.assertEqual([(2, 0), (0, 1)], [(item.component, item.along) for item in found])
+        np.testing.assert_allclose(found[0].deviations()[1], 0, atol=1e-14)
+        places, deviation = found[1].deviations()
+        np.testing.assert_allclose(deviation, np.where(places > 0.5, 0.25, 0), atol=1e-14)
+        self.assertEqual(0.5, found[1].tolerance)
+
+    def test_velocities_are_expected_at_end_only(self):
+        run = read_run(self.run_of(exact, EXACT + POINTS, times=(1.0, 2.0)))
+        self.assertEqual([0, 4], [len(comparisons(run, snapshot)) for snapshot in run.snapshots])
+        self.assertIsNone(profiles_figure(run, run.snapshots[0]))
+
+    def test_lines_of_few_or_undefined_values_are_left_out(self):
+        def undefined(time, x, y, z):
+            return {"velocity": np.where(y[..., None] > 0.5, np.nan, linear(time, x, y, z)["velocity"])}
+
+        self.assertEqual([], self.comparisons_of(linear, POINTS, cells=(3, 3, 1)))
+        self.assertEqual([], self.comparisons_of(undefined, POINTS))
+        self.assertEqual([], self.comparisons_of(lambda time, x, y, z: {"pressure": x}, POINTS))
+
+    def test_program_draws_profiles_at_end(self):
+        folder = self.run_of(linear, POINTS, times=(0.0, 2.0))
+        for words, expected in ((("--time", "0"), False), ((), True)):
+            with contextlib.redirect_stdout(io.StringIO()) as printed:
+                self.assertEqual(0, cli.main([str(folder), "--movie", "none", *words]))
+            self.assertEqual(expected, "profiles.png" in printed.getvalue())
+
+    def test_shows_deviation_with_tolerance(self):
+        run = read_run(self.run_of(exact, EXACT))
+        deviation, values = profiles_figure(run, run.snapshots[0]).axes[2:]
+        self.assertEqual("velocity along x (m/s)", values.get_title(loc="left"))
+        self.assertEqual("y (m) at x = 1.062 m", deviation.get_xlabel())
+        self.assertEqual("off by up to 0.25 m/s (tolerance 0.5)", deviation.get_title(loc="left"))
+        levels = [line.get_ydata()[0] for line in deviation.lines if line.get_linestyle() == "--"]
+        self.assertEqual([-0.5, 0.5], levels)
+
+    def test_round_off_does_not_look_like_deviation(self):
+        run = read_run(self.run_of(exact, EXACT))
+        deviation = profiles_figure(run, run.snapshots[0]).axes[0]
+        self.assertEqual([], list(deviation.lines))
+        self.assertEqual("off by round-off (tolerance 0.5)", deviation.get_title(loc="left"))
+
+    def test_no_text_overlaps_or_leaves_figure(self):
+        run = read_run(self.run_of(exact, EXACT + POINTS))
+        figure = profiles_figure(run, run.snapshots[0])
+        figure.canvas.draw()
+        # Matplotlib keeps the labels of ticks beyond the limits, and does not draw them.
+        hidden = [
+            tick.label1
+            for axes in figure.axes
+            for axis in (axes.xaxis, axes.yaxis)
+            for tick in axis.get_major_ticks()
+            if not min(axis.get_view_interval()) <= tick.get_loc() <= max(axis.get_view_interval())
+        ]
+        shown = [text for text in figure.findobj(Text) if text.get_visible() and text not in hidden]
+        texts = [text for text in shown if text.get_text()]
+        boxes = [text.get_window_extent() for text in texts]
+        self.assertGreater(len(boxes), 40)
+        for k, box in enumerate(boxes):
+            self.assertTrue(
+                box.x0 >= 0 and box.y0 >= 0 and box.x1 <= figure.bbox.x1 and box.y1 <= figure.bbox.y1,
+                texts[k].get_text(),
+            )
+            for other, text in zip(boxes[:k], texts):
+                self.assertFalse(box.overlaps(other), (texts[k].get_text(), text.get_text()))
+
+
+if __name__ == "__main__":
+    unittest.main()
