@@ -244,6 +244,23 @@ class FlowPictures(unittest.TestCase):
                     self.assertGreater(energy, max(curve[curve[:, 0] == k, 1][0] for curve in curves))
             self.assertEqual(1, len(spectrum_figure(run, run.snapshots[0]).axes[0].texts) - len(marks))
 
+    def test_label_of_spectrum_stands_at_end_of_drawn_curve(self):
+        """Shells with energy of round-off are not drawn, so their energy places no label."""
+
+        def smooth(time, x, y, z):
+            waves = [10.0 ** (-n) * np.cos(2 * np.pi * n * y) for n in range(1, 6)]
+            return {"velocity": vectors(sum(waves), 0 * x, 0 * x)}
+
+        run = read_run(write_flow(self.folder / "run", (16, 16, 16), (1.0, 1.0, 1.0), smooth))
+        figure = spectrum_figure(run, run.snapshots[0])
+        figure.canvas.draw()
+        (axes,) = figure.axes
+        (label,) = [text for text in axes.texts if text.get_text().startswith("t =")]
+        (curve,) = [line.get_xydata() for line in axes.lines if line.get_linestyle() == "-"]
+        end = curve[np.isfinite(curve[:, 1])][-1]
+        box = label.get_window_extent()
+        self.assertAlmostEqual(axes.transData.transform(end)[1], (box.y0 + box.y1) / 2, delta=2)
+
     def test_spectrum_needs_periodic_sides_and_several_modes(self):
         opened = read_run(
             write_flow(self.folder / "opened", (8, 8, 1), (1.0, 1.0, 1.0), shear, is_open=True)

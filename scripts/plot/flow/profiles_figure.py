@@ -1,7 +1,7 @@
 """Figure of velocities along lines beside the expected ones, with their deviation below."""
 
 import numpy as np
-from matplotlib.ticker import MaxNLocator
+from matplotlib.ticker import FuncFormatter, MaxNLocator
 
 from .. import style
 from ..run_directory import Run, Snapshot
@@ -11,8 +11,8 @@ from .profiles import Comparison, comparisons
 
 _MAX_COLUMNS = 4
 # Inches.
-_WIDTH, _VALUES, _DEVIATION = 2.4, 1.9, 0.95  # width and heights of the panels of a comparison
-_LEFT, _RIGHT, _HEADING, _ABOVE, _BETWEEN, _BELOW = 0.62, 0.2, 0.5, 0.3, 0.34, 0.5
+_WIDTH, _VALUES, _DEVIATION = 2.6, 1.9, 0.95  # width and heights of the panels of a comparison
+_LEFT, _RIGHT, _HEADING, _ABOVE, _BETWEEN, _BELOW = 0.7, 0.2, 0.5, 0.3, 0.34, 0.5
 _ROUND_OFF = 1e-12  # relative to the largest velocity; smaller deviations are not drawn
 _EXTREME = "D"
 
@@ -58,7 +58,7 @@ def _draw_deviation(axes, comparison: Comparison) -> None:
     ]
     largest = max([*np.abs(deviation), *(abs(size) for _, size, _ in extremes)], default=0.0)
     is_round_off = largest <= _ROUND_OFF * top
-    words = "off by round-off" if is_round_off else f"off by up to {style.format_number(largest)} m/s"
+    words = "off by round-off" if is_round_off else f"off by {style.format_number(largest)} m/s"
     if comparison.tolerance is not None:
         words += f" (tolerance {style.format_number(comparison.tolerance)})"
     axes.set_title(words, fontsize=8, pad=4)
@@ -80,6 +80,10 @@ def _draw_deviation(axes, comparison: Comparison) -> None:
             axes.axhline(sign * comparison.tolerance, color=style.MUTED, linewidth=0.8, linestyle="--")
     axes.set_ylim(-limit, limit)
     axes.yaxis.set_major_locator(MaxNLocator(4, symmetric=True))
+    # A common factor above the axis would push the title into the panel above.
+    axes.yaxis.set_major_formatter(
+        FuncFormatter(lambda value, _: ("\u2212" if value < 0 else "") + style.format_number(abs(value)))
+    )
 
 
 def _legend(found: list[Comparison]) -> list[tuple[str, str, str]]:

@@ -97,10 +97,12 @@ def spectrum_figure(run: Run, last: Snapshot):
     colours = plt.get_cmap("viridis_r")(np.linspace(0.15, 1, len(curves)))
     ends = []
     for colour, (snapshot, spectrum) in zip(colours, curves):
-        shown = np.where(spectrum.energy > floor, spectrum.energy, np.nan)
-        axes.plot(spectrum.k, shown, "o-", color=colour, linewidth=1.2, markersize=2)
-        end = (spectrum.k[-1], max(spectrum.energy[-1], floor))
-        ends.append((end, f"t = {snapshot.time:.4g} s", colour))
+        is_shown = spectrum.energy > floor
+        axes.plot(spectrum.k, np.where(is_shown, spectrum.energy, np.nan), "o-", color=colour, linewidth=1.2,
+                  markersize=2)  # fmt: skip
+        if np.any(is_shown):
+            end = np.flatnonzero(is_shown)[-1]
+            ends.append(((spectrum.k[end], spectrum.energy[end]), f"t = {snapshot.time:.4g} s", colour))
     axes.set_xscale("log")
     axes.set_yscale("log")
     marks = [(-5 / 3, "$k^{-5/3}$", 0.08, 0.5)]
