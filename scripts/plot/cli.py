@@ -65,6 +65,9 @@ def arguments(words: list[str]) -> argparse.Namespace:
         "--movie", choices=("gif", "mp4", "none"), default="gif", help="kind of the moving picture"
     )
     parser.add_argument("--dpi", type=int, default=160, help="pixels an inch of a PNG (default: 160)")
+    parser.add_argument(
+        "--slice", metavar="AXIS[=PLACE]", default="", help="plane of a flow, such as y=0.5 (default: z, its middle)"
+    )
     parser.add_argument("--norm", help="error column of a study (default: the first that meshes make small)")
     parser.add_argument("--quiet", action="store_true", help="do not print the names of the pictures")
     parser.add_argument("--version", action="store_true", help="print the versions and stop")
@@ -98,6 +101,13 @@ def _selected_fields(run, wanted: str) -> list[str]:
     return _validated_fields(wanted, ordered) if wanted else ordered
 
 
+def _chosen_snapshot(run, options):
+    """Snapshot nearest to --time, by default the last."""
+    if options.time is None:
+        return run.snapshots[-1]
+    return min(run.snapshots, key=lambda candidate: abs(candidate.time - options.time))
+
+
 def _gas_pictures(run, options, out, save):
     from . import movie_file
     from .gas import fields_figure, movie_frames
@@ -106,9 +116,7 @@ def _gas_pictures(run, options, out, save):
     view = fields_figure.View(run, _selected_fields(run, options.field), exact_solution(run))
     if not view.fields:
         return
-    snapshot = run.snapshots[-1]
-    if options.time is not None:
-        snapshot = min(run.snapshots, key=lambda candidate: abs(candidate.time - options.time))
+    snapshot = _chosen_snapshot(run, options)
     yield save(fields_figure.fields_figure(view, snapshot), "fields")
     if len(run.snapshots) >= SPACE_TIME_SNAPSHOTS:
         mapped = options.field and view.fields or [view.fields[0]]
@@ -123,12 +131,30 @@ def _springs_pictures(run, options, out, save):
     from .springs import fabric_figure
 
     view = fabric_figure.View(run)
-    snapshot = run.snapshots[-1]
-    if options.time is not None:
-        snapshot = min(run.snapshots, key=lambda candidate: abs(candidate.time - options.time))
+    snapshot = _chosen_snapshot(run, options)
     yield save(fabric_figure.fabric_figure(view, snapshot), "fields")
     if len(run.snapshots) >= 2 and options.movie != "none":
         yield movie_file.write(out / f"fields.{options.movie}", fabric_figure.frames(view))
+
+
+def _flow_pictures(run, options, out, save):
+    from . import movie_file
+    from .flow import quantities, slices_figure, spectrum
+    from .flow.plane import plane_of
+
+    known = quantities.quantities(run)
+    names = _validated_fields(options.field, list(known)) or quantities.default_names(run)
+    plane = plane_of(run, options.slice)
+    snapshot = _chosen_snapshot(run, options)
+    if names:
+        view = slices_figure.View(plane, [known[name] for name in names])
+        figure = slices_figure.slices_figure(view, snapshot)
+        yield save(figure, "fields", few_colours=False)
+    if names and len(run.snapshots) >= 2 and options.movie != "none":
+        moving = slices_figure.View(plane, [known[quantities.movie_name(names)]])
+        yield movie_file.write(out / f"fields.{options.movie}", slices_figure.frames(moving))
+    if spectrum.is_periodic(run) and (figure := spectrum.spectrum_figure(run, snapshot)) is not None:
+        yield save(figure, "spectrum")
 
 
 def _evidence_pages(options, evidence, out):
@@ -147,6 +173,9 @@ def draw(options: argparse.Namespace):
     from .evidence.records import read_records
     from .gas.history_figure import history_figure
     from .options.prices_figure import prices_figure
+    from .flow.history_figure import flow_history_figure
+    from .flow.plane import is_flow, plane_of
+    from .flow.quantities import quantities
     from .run_directory import read_run
     from .springs.history_figure import springs_history_figure
     from .study_figure import check_norm, study_figure
@@ -155,19 +184,27 @@ def draw(options: argparse.Namespace):
     # Validation precedes the first figure, so that a mistyped option leaves no files behind.
     if options.norm is not None:
         check_norm(run, options.norm)
-    if options.field:
+    if is_flow(run):
+        plane_of(run, options.slice)
+        _validated_fields(options.field, list(quantities(run)))
+    elif options.slice:
+        raise Failure(USAGE, f"{options.directory} holds no fields of a flow, which --slice is for.")
+    elif options.field:
         _validated_fields(options.field, list(run.snapshots[-1].fields) if run.snapshots else [])
     evidence = read_records(options.directory)
     out = options.out or options.directory
 
-    def save(figure, name):
-        return style.save_figure(figure, out / f"{name}.{options.format}", options.dpi)
+    def save(figure, name, few_colours=True):
+        return style.save_figure(figure, out / f"{name}.{options.format}", options.dpi, few_colours)
 
-    if run.snapshots and "x" in run.mesh:
+    if is_flow(run):
+        yield from _flow_pictures(run, options, out, save)
+    elif run.snapshots and "x" in run.mesh:
         yield from _gas_pictures(run, options, out, save)
     if run.snapshots and "vertices" in run.mesh:
         yield from _springs_pictures(run, options, out, save)
-    draw_history = springs_history_figure if "kinetic" in run.history else history_figure
+    by_column = {"kinetic": springs_history_figure, "kinetic_energy": flow_history_figure}
+    draw_history = next((draw for name, draw in by_column.items() if name in run.history), history_figure)
     if (figure := draw_history(run)) is not None:
         yield save(figure, "history")
     if (figure := prices_figure(options.directory)) is not None:

@@ -19,33 +19,56 @@ TITLES = {
     "cauchy_kinetic": "difference of kinetic energy to the next mesh (J)",
     "cauchy_elastic": "difference of elastic energy to the next mesh (J)",
 }  # fmt: skip
+# Errors of flow are means over faces or cells, with the unit of the field.
+_FLOW_TITLES = {
+    "l1_velocity": "mean error of velocity (m/s)", "l2_velocity": "rms error of velocity (m/s)",
+    "linf_velocity": "largest error of velocity (m/s)", "l2_pressure": "rms error of pressure (Pa)",
+}  # fmt: skip
 # Checks of invariants, which do not converge with the mesh.
 INVARIANTS = (
     "conservation", "equilibrium", "energy_drift", "energy_balance", "momentum", "angular_momentum",
-    "intersections", "penetration",
+    "intersections", "penetration", "divergence",
 )  # fmt: skip
+_FLOW_WORDS = {"weno-js": "WENO-JS", "weno-z": "WENO-Z", "ab2": "AB2", "rk3": "RK3"}
 SCHEMES = {"js": "WENO-JS", "z": "WENO-Z", "z2": "WENO-Z (p = 2)", "m": "WENO-M", "teno5": "TENO5"}
 
 
 def _display_label(label: str) -> str:
-    """Label of a study row, such as `z2 lf-global`, with the display name of its scheme."""
-    scheme, blank, settings = label.partition(" ")
-    return SCHEMES.get(scheme, scheme) + blank + settings
+    """Label of a study row, such as `z2 lf-global` or `weno-z ab2`, with the display names of its schemes."""
+    scheme, *settings = label.split(" ")
+    words = [SCHEMES.get(scheme, scheme), *settings]
+    return " ".join(_FLOW_WORDS.get(word, word) for word in words)
+
+
+def _is_flow(rows: list[dict[str, str]]) -> bool:
+    return "advection" in rows[0]
+
+
+def _title(rows: list[dict[str, str]], norm: str) -> str:
+    """Axis label of an error column."""
+    titles = TITLES | (_FLOW_TITLES if _is_flow(rows) else {})
+    return titles.get(norm, "error of " + norm.replace("_", " "))
 
 
 def _norms(rows: list[dict[str, str]]) -> list[str]:
-    """Error columns of a study: those between `compute_s` and `status`."""
+    """Error columns of a study: those between `compute_s` and `status`, less observed orders."""
     columns = list(rows[0])
-    return columns[columns.index("compute_s") + 1 : columns.index("status")]
+    columns = columns[columns.index("compute_s") + 1 : columns.index("status")]
+    return [column for column in columns if not column.startswith("order_")]
 
 
 def default_norm(rows: list[dict[str, str]]) -> str:
-    """First non-empty error column that converges with the mesh, else the first non-empty one."""
+    """First non-empty error column that converges with the mesh, for flow the rms of the velocity if it is not empty.
+
+    If no column converges, the first non-empty one.
+    """
     try:
         norms = _norms(rows)
     except ValueError:
         return ""
     norms = [norm for norm in norms if any(row[norm] for row in rows)] or norms
+    if _is_flow(rows) and "l2_velocity" in norms:
+        return "l2_velocity"
     return next((norm for norm in norms if norm not in INVARIANTS), norms[0] if norms else "")
 
 
@@ -166,9 +189,9 @@ def study_figure(name: str, rows: list[dict[str, str]], norm: str = ""):
     _draw(by_time, curves, 1, {})
     style.set_log_ticks(by_time.xaxis)
     _draw(by_mesh, curves, 0, labels)
-    by_time.set_ylabel(TITLES.get(norm, "error of " + norm.replace("_", " ")))
+    by_time.set_ylabel(_title(rows, norm))
     by_time.set_xlabel("time to solution (s)")
-    by_mesh.set_xlabel(_mesh_column(rows))
+    by_mesh.set_xlabel("cells along the longest axis" if _is_flow(rows) else _mesh_column(rows))
     meshes = np.unique(np.concatenate([points[:, 0] for points in curves.values()]))
     if len(meshes) <= 8:
         by_mesh.set_xticks(meshes, [f"{int(mesh)}" for mesh in meshes])

@@ -58,8 +58,18 @@ def axis_label(name: str, units: str) -> str:
 
 def check_label(name: str) -> str:
     """Display name of a check of result.json."""
-    # Its value is the relative deviation from the published density.
-    return "max density off by" if name == "max_density" else name.replace("_", " ")
+    # Their values are deviations from a published density and from published points.
+    words = "max density" if name == "max_density" else name.replace("_", " ")
+    return f"{words} off by" if re.fullmatch(r"max_density|profile_\d+", name) else words
+
+
+def first_check(result: dict) -> str:
+    """Value and tolerance of the first check of result.json, as the end of a subtitle; empty without a value."""
+    checks = result.get("checks", [])
+    if not checks or checks[0]["value"] is None:
+        return ""
+    check = checks[0]
+    return f", {check_label(check['name'])} {check['value']:.2g} (tolerance {check['tolerance']:.2g})"
 
 
 def format_number(value: float) -> str:
@@ -176,12 +186,15 @@ def write_atomically(file: Path, write) -> Path:
     return file
 
 
-def save_figure(figure, file: Path, dpi: int) -> Path:
-    """Writes and closes a figure, a PNG with 256 colours (a third of the size); raises Failure (IO_ERROR)."""
+def save_figure(figure, file: Path, dpi: int, few_colours: bool = True) -> Path:
+    """Writes and closes a figure; raises Failure (IO_ERROR).
+
+    A PNG has 256 colours (a third of the size) unless `few_colours` is false, for figures of several colour maps.
+    """
 
     def write(temporary: Path) -> None:
         figure.savefig(temporary, dpi=dpi)
-        if file.suffix == ".png":
+        if file.suffix == ".png" and few_colours:
             with Image.open(temporary) as image:
                 small = image.convert("RGB").quantize(256, dither=Image.Dither.NONE)
             small.save(temporary, optimize=True)

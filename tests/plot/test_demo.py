@@ -8,8 +8,10 @@ import sys
 import tempfile
 import unittest
 from pathlib import Path
+from types import SimpleNamespace
 
-import packages  # isort: skip
+import packages  # before modules that need the packages  isort: skip
+from plot.demo.page import pictures_by_role
 
 
 class Demo(unittest.TestCase):
@@ -62,6 +64,12 @@ class Demo(unittest.TestCase):
         page = (self.folder / "out/index.html").read_text()
         self.assertIn("0 of 1 scenes verified", page)
         self.assertIn("above its tolerance 0.0065", page)
+
+    def test_history_stands_for_missing_fields(self):
+        files = [Path(name) for name in ("fields.png", "fields.gif", "spectrum.png", "history.png")]
+        roles = pictures_by_role(SimpleNamespace(pictures=files))
+        self.assertEqual({"still": files[0], "movie": files[1], "map": files[2]}, roles)
+        self.assertEqual({"still": files[3]}, pictures_by_role(SimpleNamespace(pictures=files[3:])))
 
     def test_rejects_unknown_scene_with_list_of_scenes(self):
         done = self._demo("sood")

@@ -23,7 +23,11 @@ class App:
     title: str
 
 
-APPS = (App("drogue-gas", "Gas dynamics"), App("drogue-springs", "Cloth and strings"))
+APPS = (
+    App("drogue-gas", "Gas dynamics"),
+    App("drogue-springs", "Cloth and strings"),
+    App("drogue-parachute", "Incompressible flow"),
+)
 OPTIONS = App("drogue-options", "Options")
 INTERRUPTED = 130
 

@@ -6,9 +6,14 @@ from .. import html_page
 from ..style import check_label
 
 
-def _by_role(run) -> dict[str, Path]:
-    """Pictures of a run by role: `still`, `map` (space-time) and `movie`, where they exist."""
-    roles = {"fields.png": "still", "fields.gif": "movie"}
+def pictures_by_role(run) -> dict[str, Path]:
+    """Pictures of a run by role: `still`, `map` (space-time or spectrum) and `movie`, where they exist.
+
+    The history is the still of a run without fields.
+    """
+    roles = {"fields.png": "still", "fields.gif": "movie", "spectrum.png": "map"}
+    if not any(file.name == "fields.png" for file in run.pictures):
+        roles["history.png"] = "still"
     found = {}
     for file in run.pictures:
         role = "map" if file.name.startswith("space_time") else roles.get(file.name)
@@ -20,6 +25,6 @@ def _by_role(run) -> dict[str, Path]:
 def write_page(file: Path, runs) -> Path:
     """Writes the page of all scene runs and returns its path."""
     return html_page.write(
-        file, "demo/page.html.j2", {"pictures": _by_role, "check_label": check_label}, runs=runs,
+        file, "demo/page.html.j2", {"pictures": pictures_by_role, "check_label": check_label}, runs=runs,
         first=next((run.result for run in runs if run.result), {}), apps=list(dict.fromkeys(run.app for run in runs)),
     )  # fmt: skip

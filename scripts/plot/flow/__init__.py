@@ -1,1 +1,1 @@
-"""Goals, schemes and tables of the records of flow."""
+"""Figures, benchmark goals, and evidence tables of flow."""

@@ -208,16 +208,7 @@ class FabricFigure:
             self._parts.set_segments(projected[view.segments, :2])
             self._parts.set_color(colours)
         count = len(view.run.mesh["vertices"].values)
-        self._caption.set_text(f"{count} vertices, t = {snapshot.time:.4g} s{_first_check(view.run)}")
-
-
-def _first_check(run: Run) -> str:
-    """Value and tolerance of the first check, for the subtitle."""
-    checks = run.result.get("checks", [])
-    if not checks or checks[0]["value"] is None:
-        return ""
-    check = checks[0]
-    return f", {style.check_label(check['name'])} {check['value']:.2g} (tolerance {check['tolerance']:.2g})"
+        self._caption.set_text(f"{count} vertices, t = {snapshot.time:.4g} s{style.first_check(view.run.result)}")
 
 
 def fabric_figure(view: View, snapshot: Snapshot):

@@ -319,7 +319,7 @@ TEST_F(FlowRanks, FailTogetherAtTheFirstCellAndKeepTheState) {
 
 TEST_F(FlowRanks, KeepsTheStepsEqualIfOneRankIsInterrupted) {
   const linear::RankGroup world = linear::RankGroup::world();
-  const Parameters& p = cases()[2].parameters;
+  const Parameters p = cases()[2].parameters;
   SharedSolver shared(p, world);
   shared.start(random_field(FlowDomain(p), 9));
   EXPECT_EQ(Stop::interrupted, shared->advance(endless, -1, [&](const Status& now) {

@@ -1,0 +1,98 @@
+"""Plane through the cells of a flow: the whole of a two-dimensional run, or a slice of a three-dimensional one."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..failure import USAGE, Failure
+from ..run_directory import Run
+
+AXES = "xyz"
+
+
+def is_flow(run: Run) -> bool:
+    """Whether the run has fields on the cells of a flow grid."""
+    return bool(run.snapshots) and all(axis in run.mesh for axis in AXES)
+
+
+def cell_counts(run: Run) -> tuple[int, int, int]:
+    """Cells along x, y and z."""
+    return tuple(len(run.mesh[axis].values) - 1 for axis in AXES)
+
+
+def dimension(run: Run) -> int:
+    """Number of axes with more than one cell."""
+    return sum(count > 1 for count in cell_counts(run))
+
+
+@dataclass(frozen=True)
+class Plane:
+    """Layer `index` of the cells along axis `normal` (0, 1 or 2); x or y points right, y or z upwards."""
+
+    run: Run
+    normal: int
+    index: int
+
+    @property
+    def across(self) -> tuple[int, int]:
+        """Axes that point right and upwards."""
+        return tuple(axis for axis in range(3) if axis != self.normal)
+
+    @property
+    def extent(self) -> tuple[float, float, float, float]:
+        """Left, right, lower and upper end of the domain in the plane, m."""
+        right, up = (self.run.mesh[AXES[axis]].values for axis in self.across)
+        return right[0], right[-1], up[0], up[-1]
+
+    @property
+    def centres(self) -> tuple[np.ndarray, np.ndarray]:
+        """Cell centres along the axes that point right and upwards, m."""
+        faces = (self.run.mesh[AXES[axis]].values for axis in self.across)
+        return tuple((f[1:] + f[:-1]) / 2 for f in faces)
+
+    @property
+    def description(self) -> str:
+        """Number of cells, and the place of the slice (m) in a three-dimensional run."""
+        counts = cell_counts(self.run)
+        if dimension(self.run) < 3:
+            return f"{' x '.join(str(counts[axis]) for axis in self.across)} cells"
+        faces = self.run.mesh[AXES[self.normal]].values
+        place = (faces[self.index] + faces[self.index + 1]) / 2
+        return f"{' x '.join(map(str, counts))} cells, {AXES[self.normal]} = {place:.4g} m"
+
+    def cut(self, values: np.ndarray) -> np.ndarray:
+        """Values (nx, ny, nz) in the plane, as rows from bottom to top."""
+        return np.take(values, self.index, axis=self.normal).T
+
+
+def _default_normal(counts: tuple[int, int, int]) -> int:
+    """Last axis with one cell, else z."""
+    return next((axis for axis in (2, 1, 0) if counts[axis] == 1), 2)
+
+
+def plane_of(run: Run, wanted: str = "") -> Plane:
+    """Plane named `AXIS` (through the middle) or `AXIS=PLACE`; by default normal to z or to an axis with one cell.
+
+    Raises Failure (USAGE) for another form, a place outside the domain, or a slice that would be a line.
+    """
+    counts = cell_counts(run)
+    axis, equals, place = (part.strip() for part in (wanted or AXES[_default_normal(counts)]).partition("="))
+    if axis not in AXES or len(axis) != 1:
+        raise Failure(USAGE, f"--slice {wanted} names no axis: it is x, y or z, or one with a place, z=0.5.")
+    normal = AXES.index(axis)
+    if dimension(run) < 3 and counts[normal] > 1:
+        flat = AXES[_default_normal(counts)]
+        raise Failure(USAGE, f"--slice {wanted} of a two-dimensional run is a line: its plane is {flat}.")
+    if not equals:
+        return Plane(run, normal, counts[normal] // 2)
+    faces = run.mesh[axis].values
+    try:
+        value = float(place)
+    except ValueError:
+        raise Failure(USAGE, f"--slice {wanted}: '{place}' is no number.") from None
+    if not faces[0] <= value <= faces[-1]:
+        raise Failure(
+            USAGE, f"--slice {wanted} is outside the domain, {axis} = {faces[0]:g} to {faces[-1]:g} m."
+        )
+    # The upper end of the domain belongs to the last cell.
+    return Plane(run, normal, min(int(np.searchsorted(faces, value, side="right")) - 1, counts[normal] - 1))
