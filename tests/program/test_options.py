@@ -244,7 +244,7 @@ class Prices(options_program.OptionsTest):
             written = {price["id"]: price["message"] for price in self.prices()}
             for name in ("dividend", "rate"):
                 self.assertIn("exceed the range of double", written[name])
-            self.assertIn("more happens until maturity than steps can follow", written["1e12"])
+            self.assertIn("too many jumps until maturity for any number of steps", written["1e12"])
             self.assertFalse([name for name in written if name != "1e4" and "--steps" in written[name]])
             advice = "more --steps or another --mesh or" if words else "--mesh and --steps together instead of it or"
             self.assertIn(advice, written["1e4"])
