@@ -27,7 +27,9 @@ class WarmUp {
     [[nodiscard]] bool has_reached(double wanted) const { return !present || seconds >= wanted; }
   };
 
-  static bool is_on_device(const std::string& name) { return (name + "/").find("/cuda/") != std::string::npos; }
+  static bool is_on_device(const std::string& name) {
+    return (name + "/").find("/cuda/") != std::string::npos;
+  }
 
   Kind _device, _host;
 };

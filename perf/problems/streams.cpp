@@ -182,8 +182,7 @@ double exact_error(const flow::Parameters& p, flow::Solver& solver, long count) 
   advance_by(solver, count);
   const VelocityArrays last = exact(solver.progress().time);
   VelocityArrays computed = last;
-  for (std::size_t c = 0; c < 3; ++c)
-    solver.download(static_cast<flow::StateField>(c), computed[c]);
+  for (std::size_t c = 0; c < 3; ++c) solver.download(static_cast<flow::StateField>(c), computed[c]);
   return std::sqrt(squared_distance(computed, last) / squared_distance(last, first));
 }
 

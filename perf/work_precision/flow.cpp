@@ -135,8 +135,7 @@ class FlowRuns {
   std::array<std::vector<double>, 3> _start;
 };
 
-Solution flow_solution(const FlowProblem& problem, device::Backend backend, const FlowScheme& scheme,
-                       int n) {
+Solution flow_solution(const FlowProblem& problem, device::Backend backend, const FlowScheme& scheme, int n) {
   Solution s;
   s.problem = problem.name;
   s.backend = backend;
