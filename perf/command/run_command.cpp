@@ -24,6 +24,7 @@ nlohmann::json to_json(const Facts& facts) {
   if (facts.cells > 0) json.update({{"cells", facts.cells}, {"variant", facts.variant}});
   if (facts.flops > 0.0) json["flops"] = facts.flops;
   if (facts.bytes > 0.0) json["bytes"] = facts.bytes;
+  if (facts.solution_error > 0.0) json["solution_error"] = facts.solution_error;
   return json;
 }
 

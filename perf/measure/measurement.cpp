@@ -2,6 +2,8 @@
 
 #include <chrono>
 
+#include "perf/measure/warm_up.hpp"
+
 namespace drogue::perf {
 
 std::vector<Record> measure(const std::vector<Case>& cases, int warm_up, int rounds) {
@@ -14,15 +16,18 @@ std::vector<Record> measure(const std::vector<Case>& cases, int warm_up, int rou
   const auto since = [](std::chrono::steady_clock::time_point begin) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   };
-  const auto start = std::chrono::steady_clock::now();
+  WarmUp warmth;
   for (int round = -warm_up; round < rounds; ++round) {
-    if (round == 0 && warm_up > 0 && since(start) < warm_up_seconds) round = -1;
+    if (round == 0 && warm_up > 0 && !warmth.has_reached(warm_up_seconds)) round = -1;
     for (std::size_t i = 0; i < cases.size(); ++i) {
       samples[i].reset();
       const auto begin = std::chrono::steady_clock::now();
       const long units = samples[i].work();
       double seconds = since(begin);
-      if (round < 0) continue;
+      if (round < 0) {
+        warmth.add(cases[i].name, seconds);
+        continue;
+      }
       if (samples[i].parts) {
         seconds = 0.0;
         for (const auto& [name, part] : samples[i].parts()) {

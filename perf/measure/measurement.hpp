@@ -23,6 +23,8 @@ struct Facts {
   std::string variant;  ///< difference from the standard case of this backend and size
   double flops = 0.0;   ///< per unit of work
   double bytes = 0.0;   ///< per unit of work, between kernels and memory
+  /// Relative error of a separate run of the solver against an exact solution; 0 without one.
+  double solution_error = 0.0;
 };
 
 /// Benchmark case.
@@ -57,8 +59,8 @@ inline constexpr double warm_up_seconds = 1.0;
 constexpr int kept_rounds(bool quick) { return quick ? 7 : 25; }
 
 /// Times `cases` in interleaved rounds of one sample each, so that a disturbance affects all of them.
-/// Discards the first `warm_up` rounds, or as many as take `warm_up_seconds` unless `warm_up` is 0. Blocking;
-/// passes on exceptions of the cases.
+/// Discards the first `warm_up` rounds, and more until cases on a device and those on a host have each worked
+/// for `warm_up_seconds`, unless `warm_up` is 0. Blocking; passes on exceptions of the cases.
 std::vector<Record> measure(const std::vector<Case>& cases, int warm_up, int rounds);
 
 }  // namespace drogue::perf

@@ -12,6 +12,9 @@ namespace drogue::perf::streams {
 
 namespace {
 
+/// Velocity on the faces, component by component, m/s.
+using VelocityArrays = std::array<std::vector<double>, 3>;
+
 /// Initial velocity component at a point, m/s.
 double initial_velocity(Sides sides, std::size_t component, const std::array<double, 3>& x) {
   const double pi = std::numbers::pi;
@@ -36,23 +39,77 @@ Sides sides_of(const flow::Parameters& p) {
   }
 }
 
-void upload_initial_velocity(const flow::Parameters& p, flow::Solver& solver) {
+/// Values of a function (component, point) on the faces of each component, x fastest. Along the axis
+/// `uniform`, if it is 1 or 2, the first plane is repeated: large grids take seconds otherwise.
+template <class Function>
+VelocityArrays sampled(const flow::Parameters& p, const Function& function, std::size_t uniform = 3) {
+  VelocityArrays arrays;
   for (std::size_t c = 0; c < 3; ++c) {
-    const auto field = static_cast<flow::StateField>(c);
-    const std::array<int, 3> n = flow::extents(p, field);
-    std::vector<double> values;
+    const std::array<int, 3> n = flow::extents(p, static_cast<flow::StateField>(c));
+    const auto stride = static_cast<std::size_t>(n[0]) * static_cast<std::size_t>(uniform == 2 ? n[1] : 1);
     for (int k = 0; k < n[2]; ++k)
       for (int j = 0; j < n[1]; ++j)
         for (int i = 0; i < n[0]; ++i) {
           const std::array<int, 3> index = {i, j, k};
+          if (uniform < 3 && index[uniform] > 0) {
+            arrays[c].push_back(arrays[c][arrays[c].size() - stride]);
+            continue;
+          }
           std::array<double, 3> x{};
           for (std::size_t axis = 0; axis < 3; ++axis)
             x[axis] = p.low[axis] +
                       (index[axis] + (axis == c ? 0.0 : 0.5)) * (p.high[axis] - p.low[axis]) / p.cells[axis];
-          values.push_back(initial_velocity(sides_of(p), c, x));
+          arrays[c].push_back(function(c, x));
         }
-    solver.upload(field, values);
   }
+  return arrays;
+}
+
+void start_from(flow::Solver& solver, const VelocityArrays& arrays) {
+  for (std::size_t c = 0; c < 3; ++c) solver.upload(static_cast<flow::StateField>(c), arrays[c]);
+  solver.start();
+}
+
+void advance_by(flow::Solver& solver, long count) {
+  const std::int64_t last = solver.progress().step + count;
+  if (solver.advance(std::numeric_limits<double>::max(), last, {}) != flow::Stop::pause)
+    throw Failure(ExitCode::numerical_failure, "a step of the flow benchmark failed");
+}
+
+/// Velocity component of vortices of Taylor and Green that drift and decay, m/s.
+double drifting_vortices(double nu, std::size_t component, const std::array<double, 3>& x, double time) {
+  constexpr double drift[] = {1.0, 0.5, 0.25};  // m/s
+  const double a = x[0] - drift[0] * time, b = x[1] - drift[1] * time, decay = std::exp(-2.0 * nu * time);
+  if (component == 2) return drift[2];
+  return drift[component] + decay * (component == 0 ? std::sin(a) * std::cos(b) : -std::cos(a) * std::sin(b));
+}
+
+/// Velocity component of a vortex that the stream of the tunnel carries and viscosity spreads, m/s: Taylor
+/// 1918, with its axis along y. Its circulation is zero, so that its velocity vanishes at the sides.
+double carried_vortex(const flow::Parameters& p, std::size_t component, const std::array<double, 3>& x,
+                      double time) {
+  if (component == 1) return 0.0;
+  constexpr double radius = 0.1, speed = 0.5;  // m and m/s, at the largest speed about the axis
+  const double stream = p.boundary[4].velocity[2], nu = p.viscosity / p.density;
+  const double a = x[0] - 0.5, b = x[2] - 0.5 * p.high[2] - stream * time;
+  const double first = 2.0 * radius * radius, spread = first + 4.0 * nu * time;
+  const double rotation =
+      speed / radius * (first / spread) * (first / spread) * std::exp(0.5 - (a * a + b * b) / spread);
+  return component == 0 ? -rotation * b : stream + rotation * a;
+}
+
+double exact_velocity(const flow::Parameters& p, std::size_t component, const std::array<double, 3>& x,
+                      double time) {
+  return sides_of(p) == Sides::periodic ? drifting_vortices(p.viscosity / p.density, component, x, time)
+                                        : carried_vortex(p, component, x, time);
+}
+
+/// Sum of the squared differences of all values.
+double squared_distance(const VelocityArrays& a, const VelocityArrays& b) {
+  double sum = 0.0;
+  for (std::size_t c = 0; c < 3; ++c)
+    for (std::size_t i = 0; i < a[c].size(); ++i) sum += (a[c][i] - b[c][i]) * (a[c][i] - b[c][i]);
+  return sum;
 }
 
 }  // namespace
@@ -98,14 +155,13 @@ Sample steps(const flow::Parameters& p, flow::Solver& solver, long count) {
   const auto started = std::make_shared<bool>(false);
   return {[=, &solver] {
             if (*started) return;
-            upload_initial_velocity(p, solver);
-            solver.start();
+            start_from(solver, sampled(p, [&](std::size_t c, const std::array<double, 3>& x) {
+                         return initial_velocity(sides_of(p), c, x);
+                       }));
             *started = true;
           },
           [=, &solver] {
-            const std::int64_t last = solver.progress().step + count;
-            if (solver.advance(std::numeric_limits<double>::max(), last, {}) != flow::Stop::pause)
-              throw Failure(ExitCode::numerical_failure, "a step of the flow benchmark failed");
+            advance_by(solver, count);
             return count;
           }};
 }
@@ -113,6 +169,21 @@ Sample steps(const flow::Parameters& p, flow::Solver& solver, long count) {
 double relative_divergence(const flow::Parameters& p, flow::Solver& solver) {
   const flow::Totals totals = solver.totals();
   return totals.divergence_rms * (p.high[0] - p.low[0]) / p.cells[0] / totals.max_speed;
+}
+
+double exact_error(const flow::Parameters& p, flow::Solver& solver, long count) {
+  const auto exact = [&](double time) {
+    return sampled(
+        p, [&](std::size_t c, const std::array<double, 3>& x) { return exact_velocity(p, c, x, time); },
+        sides_of(p) == Sides::periodic ? 2 : 1);
+  };
+  const VelocityArrays first = exact(0.0);
+  start_from(solver, first);
+  advance_by(solver, count);
+  const VelocityArrays last = exact(solver.progress().time);
+  VelocityArrays computed = last;
+  for (std::size_t c = 0; c < 3; ++c) solver.download(static_cast<flow::StateField>(c), computed[c]);
+  return std::sqrt(squared_distance(computed, last) / squared_distance(last, first));
 }
 
 }  // namespace drogue::perf::streams

@@ -38,4 +38,10 @@ Sample steps(const flow::Parameters& p, flow::Solver& solver, long count);
 /// Root-mean-square divergence of the present state times spacing over the largest speed.
 double relative_divergence(const flow::Parameters& p, flow::Solver& solver);
 
+/// Root-mean-square error of the velocity after `count` steps, over that of its change, of a flow with an
+/// exact solution: drifting vortices of Taylor and Green in the periodic cube, a vortex that the stream
+/// carries in the tunnel. Overwrites the state of `solver`, which is made for `p` without walls and without a
+/// turbulence model. Throws Failure(numerical_failure) after a failed step. Blocking.
+double exact_error(const flow::Parameters& p, flow::Solver& solver, long count);
+
 }  // namespace drogue::perf::streams

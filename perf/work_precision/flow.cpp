@@ -2,15 +2,14 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <set>
 
 #include "common/program/signals.hpp"
 #include "common/study/repeats.hpp"
 #include "kernels/flow/solver.hpp"
-#include "perf/measure/measurement.hpp"
 #include "perf/pressure/pressure.hpp"
 #include "perf/problems/streams.hpp"
-#include "perf/work_precision/solution.hpp"
+#include "perf/work_precision/cavity.hpp"
+#include "perf/work_precision/flow_scheme.hpp"
 
 namespace drogue::perf {
 
@@ -60,56 +59,10 @@ std::vector<double> exact_field(const FlowProblem& problem, int n, int component
   return values;
 }
 
-/// Point of a curve, without its resolution.
-struct FlowScheme {
-  flow::Advection advection;
-  flow::TimeScheme time;
-  flow::PressureSolver pressure;
-  flow::Diffusion diffusion;
-
-  [[nodiscard]] const char* advection_name() const {
-    return advection == flow::Advection::central   ? "central"
-           : advection == flow::Advection::weno_js ? "weno-js"
-                                                   : "weno-z";
-  }
-  [[nodiscard]] const char* time_name() const { return time == flow::TimeScheme::ab2 ? "ab2" : "rk3"; }
-  [[nodiscard]] const char* pressure_name() const {
-    return pressure == flow::PressureSolver::fft               ? "fft"
-           : pressure == flow::PressureSolver::diagonalization ? "diagonalization"
-                                                               : "hypre-pfmg";
-  }
-  [[nodiscard]] const char* diffusion_name() const {
-    return diffusion == flow::Diffusion::explicit_ ? "explicit" : "crank-nicolson";
-  }
-};
-
-std::vector<FlowScheme> flow_schemes(bool quick) {
-  using enum flow::PressureSolver;
-  std::vector<FlowScheme> schemes;
-  for (const flow::Advection advection :
-       {flow::Advection::weno_z, flow::Advection::weno_js, flow::Advection::central})
-    for (const flow::PressureSolver pressure : {fft, diagonalization, hypre_pfmg}) {
-      if (quick && (advection == flow::Advection::weno_js || pressure != fft)) continue;
-      // Slow, and its errors are those of the others.
-      if (pressure == hypre_pfmg && advection != flow::Advection::weno_z) continue;
-      for (const flow::TimeScheme time : {flow::TimeScheme::ab2, flow::TimeScheme::rk3})
-        schemes.push_back({advection, time, pressure, flow::Diffusion::explicit_});
-      // Implicit diffusion never takes an iterative solver.
-      if (pressure != hypre_pfmg)
-        schemes.push_back({advection, flow::TimeScheme::ab2, pressure, flow::Diffusion::crank_nicolson});
-    }
-  return schemes;
-}
-
 flow::Parameters flow_parameters(const FlowScheme& scheme, int n) {
   flow::Parameters p = streams::parameters({n, n, n}, streams::Sides::periodic);
   p.viscosity = flow_viscosity;
-  p.advection = scheme.advection;
-  p.time_scheme = scheme.time;
-  p.pressure_solver = scheme.pressure;
-  p.diffusion = scheme.diffusion;
-  // RK3 is stable with longer steps.
-  p.cfl = scheme.time == flow::TimeScheme::ab2 ? 0.5 : 1.0;
+  scheme.apply(p);
   return p;
 }
 
@@ -182,25 +135,17 @@ class FlowRuns {
   std::array<std::vector<double>, 3> _start;
 };
 
-Solution flow_solution(const FlowProblem& problem, device::Backend backend, const FlowScheme& scheme, int n,
-                       double warm_up) {
+Solution flow_solution(const FlowProblem& problem, device::Backend backend, const FlowScheme& scheme, int n) {
   Solution s;
   s.problem = problem.name;
   s.backend = backend;
-  s.label = std::string(scheme.advection_name()) + " " + scheme.time_name() + " " + scheme.pressure_name() +
-            (scheme.diffusion == flow::Diffusion::explicit_ ? "" : " crank-nicolson");
-  s.scheme = {{"advection", scheme.advection_name()},
-              {"time_scheme", scheme.time_name()},
-              {"pressure", scheme.pressure_name()},
-              {"diffusion", scheme.diffusion_name()}};
+  scheme.describe(s);
   s.cells = n;
   FlowRuns runs(problem, backend, flow_parameters(scheme, n));
   // The first run on a GPU captures the step.
   const bool captures =
       backend == device::Backend::cuda && scheme.pressure != flow::PressureSolver::hypre_pfmg;
-  double worked = 0.0, seconds = 0.0;
-  for (int run = 0; captures && seconds >= 0.0 && (run == 0 || worked < warm_up); ++run)
-    worked += seconds = runs.run();
+  double seconds = captures ? runs.run() : 0.0;
   while (seconds >= 0.0 && !flow_repeats.reached(s.samples))
     if (seconds = runs.run(); seconds >= 0.0) s.samples.push_back(seconds);
   s.steps = runs.steps();
@@ -218,7 +163,6 @@ Solution flow_solution(const FlowProblem& problem, device::Backend backend, cons
 }  // namespace
 
 bool flow_work_precision(const Selection& selection, const SolutionSink& sink) {
-  std::set<device::Backend> warm;
   for (const FlowProblem& problem : flow_problems) {
     if (!selection.wants(problem.name)) continue;
     for (const FlowScheme& scheme : flow_schemes(selection.quick))
@@ -227,13 +171,12 @@ bool flow_work_precision(const Selection& selection, const SolutionSink& sink) {
           const linear::PoissonProblem pressure =
               streams::pressure_problem({n, n, n}, streams::Sides::periodic);
           if (!pressure::is_available(backend, pressure, scheme.pressure)) continue;
-          const Solution solution =
-              flow_solution(problem, backend, scheme, n, warm.insert(backend).second ? warm_up_seconds : 0.0);
+          const Solution solution = flow_solution(problem, backend, scheme, n);
           if (interrupted()) return false;
           sink(solution);
         }
   }
-  return true;
+  return !selection.wants(cavity_problem) || cavity_work_precision(selection, sink);
 }
 
 }  // namespace drogue::perf

@@ -48,8 +48,8 @@ bool gas_work_precision(const Selection& selection, const SolutionSink& sink);
 /// Runs two-dimensional vortices of Taylor and Green in a periodic cube, drifting and at rest, for 1 s on
 /// successively halved cells on each backend, in all combinations of advection, time scheme (AB2 at CFL 0.5,
 /// RK3 at 1) and direct pressure solver, and with implicit diffusion; by hypre with WENO-Z. The error is the
-/// largest of the velocity along x, m/s. `quick` selects two small grids, WENO-Z, the central scheme and
-/// transforms.
+/// largest of the velocity along x, m/s. Then runs the lid-driven cavity (cavity.hpp). `quick` selects two
+/// small grids, WENO-Z, the central scheme and transforms.
 bool flow_work_precision(const Selection& selection, const SolutionSink& sink);
 
 /// Prices the puts of `known_puts`, repeated to fill a batch, on each backend. Method `pide` runs in all

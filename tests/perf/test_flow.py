@@ -54,12 +54,14 @@ class Memory(unittest.TestCase):
 
 @unittest.skipUnless(PROGRAM.exists(), "builds with sanitizers omit drogue-perf")
 class Steps(unittest.TestCase):
-    def test_record_the_bytes_of_their_kernels(self):
+    def test_record_the_bytes_of_their_kernels_and_the_error_of_their_solver(self):
         found = records("run", "--filter", "^flow-step/serial")
         for case, cells in (("32x32x32/periodic", 32**3), ("20x20x40/tunnel", 20 * 20 * 40)):
             record = found[f"flow-step/serial/{case}"]
             self.assertEqual("passed", record["check"])
             self.assertEqual((cells, 296 * cells), (record["facts"]["cells"], record["facts"]["bytes"]))
+            # A wrong flux gives an error of order one.
+            self.assertTrue(0 < record["facts"]["solution_error"] < 1 / int(case.split("x")[0]))
 
 
 if __name__ == "__main__":

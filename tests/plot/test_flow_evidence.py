@@ -47,6 +47,17 @@ class Page(Folder):
         self.assertEqual("2.00", defaults[0][3])
         self.assertIn("peclet-flow", page.words)
 
+    def test_cavity_on_cuda_has_matrix_products_as_its_default(self):
+        page, files = self.page(records.cavity_solutions(), app="flow")
+        self.assertIn("solution_cavity_nvidia-h200.png", files)
+        rows = page.tables[H200, "Lid-driven cavity: error against time"]
+        names = [row[1] for row in rows if row[0] == "CUDA"]
+        # Only the time scheme differs from the default.
+        self.assertEqual({"WENO-Z", "WENO-Z, RK3"}, set(names))
+        # 0.01 is met by 31.6 cells per axis, in 0.1 s.
+        default = next(row for row in rows if row[:2] == ["CUDA", "WENO-Z"])
+        self.assertEqual("100 ms", default[rows[0].index("to 0.01")])
+
     def test_published_times_are_those_of_their_cost_per_cell_and_step(self):
         # 128^3 cells, 82 steps of 0.25 h to 1 s, 5.22 ns per cell and step.
         seconds, error = PUBLISHED_RESULTS[0].points[0]

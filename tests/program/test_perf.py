@@ -208,12 +208,21 @@ class WorkPrecisionOfFlow(perf_program.PerfTest):
             self.assertEqual(f"flow-solution/{facts['problem']}/serial", record["case"].rsplit("/", 2)[0])
             scheme = facts["problem"], facts["advection"], facts["time_scheme"], facts["diffusion"]
             errors.setdefault(scheme, {})[facts["cells"]] = record["error"]
-        self.assertEqual(12, len(errors))
+        self.assertEqual(18, len(errors))
+        self.check_cavity({scheme[1:]: errors.pop(scheme) for scheme in list(errors) if scheme[0] == "cavity"})
         for scheme, of_grids in errors.items():
             # Second order; at rest, errors of WENO on coarse grids partly cancel.
             self.assertLess((3.5 if scheme[0] == "drifting-vortices" else 2.0) * of_grids[32], of_grids[16], scheme)
         drifting = errors["drifting-vortices", "weno-z", "rk3", "explicit"][32]
         self.assertLess(10 * drifting, errors["drifting-vortices", "central", "rk3", "explicit"][32])
+
+    def check_cavity(self, errors):
+        """The steady cavity converges, and its error is that of space: time schemes agree."""
+        self.assertEqual(6, len(errors))
+        for (advection, *_), of_grids in errors.items():
+            self.assertLess(2.0 * of_grids[32], of_grids[16], advection)
+            for n, error in of_grids.items():
+                self.assertAlmostEqual(1.0, error / errors[advection, "ab2", "explicit"][n], delta=0.05)
 
 
 class WorkPrecisionOfOptions(perf_program.PerfTest):

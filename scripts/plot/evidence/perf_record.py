@@ -46,7 +46,7 @@ _NAMED_BY_CASE = (
 )  # facts in the case name
 _UNTIMED = ("flow-memory",)
 _OPTIONAL = {
-    "flow-step": {"bytes": float},
+    "flow-step": {"bytes": float, "solution_error": float},
     "flow-pressure": {"tolerance": float, "iterations": int},
     "flow-memory": {"driver_bytes": int},
     "flow-solution": {"status": str, "message": str},

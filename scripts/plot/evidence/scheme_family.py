@@ -46,6 +46,12 @@ class SchemeFamily:
         str, ...
     ] = ()  # schemes whose mesh size grows with the square of the edges per axis
     target_errors: tuple[float, ...] = ()  # empty: derived from the competitor's errors
+    # Default settings by (problem, backend), where the usual ones do not exist.
+    other_defaults: Mapping[tuple[str, str], tuple[str, ...]] = field(default_factory=dict)
+
+    def defaults_for(self, problem: str, backend: str) -> tuple[str, ...]:
+        """Default settings of a problem on a backend."""
+        return self.other_defaults.get((problem, backend), self.default_settings)
 
     @property
     def command(self) -> str:

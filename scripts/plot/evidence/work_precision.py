@@ -18,6 +18,7 @@ class Scheme:
     backend: str
     key: str
     settings: tuple[str, ...]
+    default_settings: tuple[str, ...]
 
     @property
     def is_competitor(self) -> bool:
@@ -25,7 +26,7 @@ class Scheme:
 
     @property
     def has_default_settings(self) -> bool:
-        return self.is_competitor or not any(self.settings) or self.settings == self.family.default_settings
+        return self.is_competitor or not any(self.settings) or self.settings == self.default_settings
 
     @property
     def row_setting(self) -> str:
@@ -36,7 +37,7 @@ class Scheme:
     def name(self) -> str:
         """Display name with the settings that differ from the default ones."""
         labels = self.family.setting_labels
-        pairs = zip(self.settings, self.family.default_settings)
+        pairs = zip(self.settings, self.default_settings)
         changed = [
             labels.get(value, value)
             for value, default in pairs
@@ -78,7 +79,7 @@ def scheme_of(record: Record) -> Scheme:
         else facts[family.scheme_fact]
     )
     settings = tuple(facts.get(name) or ("double" if name == "precision" else "") for name in family.settings)
-    return Scheme(family, facts["backend"], key, settings)
+    return Scheme(family, facts["backend"], key, settings, family.defaults_for(facts["problem"], facts["backend"]))
 
 
 def curves(records: list[Record]) -> list[Curve]:
