@@ -97,6 +97,10 @@ class FlowSolver {
   void start();
   void restore(const Progress& progress);
   Stop advance(double target, std::int64_t pause_step, const Poll& poll);
+  /// Enqueues `count` steps towards the time `target`, s; those after it, or after a failed step, do nothing.
+  /// Asynchronous, without a bound on the steps in flight. For a coupling that enqueues other kernels between
+  /// steps. Throws std::logic_error on several ranks.
+  void enqueue_steps(double target, std::int64_t count);
   [[nodiscard]] Progress progress() { return read_control().now; }
   [[nodiscard]] StepFailure failure();
   [[nodiscard]] Totals totals();
@@ -460,6 +464,18 @@ template <class ExecutionSpace>
 Stop FlowSolver<ExecutionSpace>::advance(double target, std::int64_t pause_step, const Poll& poll) {
   if (_halo) return advance_together({target, pause_step}, poll);
   return _loop.advance({target, pause_step}, Steps{*this}, poll);
+}
+
+template <class ExecutionSpace>
+void FlowSolver<ExecutionSpace>::enqueue_steps(double target, std::int64_t count) {
+  if (_halo) throw std::logic_error("flow solver: steps on several ranks wait for the host");
+  Steps steps{*this};
+  steps.begin({target}, -1);
+  _loop.count_launch();
+  for (std::int64_t k = 0; k < count; ++k) {
+    steps.enqueue(0, 1);
+    _loop.count_launch();
+  }
 }
 
 /// Step loop of several ranks: step by step, so that all take the same steps.
