@@ -109,6 +109,9 @@ class FabricSolver {
   /// First failure, if any. Blocks.
   [[nodiscard]] std::optional<StepFailure> failure();
 
+  /// Record of failures for other kernels, which may read `has_failed`. Does not throw.
+  [[nodiscard]] const StepMonitor<ExecutionSpace>& monitor() const { return _monitor; }
+
   /// Sets positions, m, and velocities, m/s, and forgets a failure. Blocks. Throws std::invalid_argument for
   /// values that are not finite and spans of the wrong length.
   void upload(std::span<const Vector> positions, std::span<const Vector> velocities);

@@ -97,10 +97,28 @@ class FlowSolver {
   void start();
   void restore(const Progress& progress);
   Stop advance(double target, std::int64_t pause_step, const Poll& poll);
-  /// Enqueues `count` steps towards the time `target`, s; those after it, or after a failed step, do nothing.
-  /// Asynchronous, without a bound on the steps in flight. For a coupling that enqueues other kernels between
-  /// steps. Throws std::logic_error on several ranks.
-  void enqueue_steps(double target, std::int64_t count);
+
+  // For a coupling that enqueues other kernels between steps. Asynchronous, without a bound on the steps in
+  // flight, and on one rank alone.
+
+  /// Enqueues the beginning of an advance to the time `target`, s. Throws std::logic_error on several ranks.
+  void enqueue_begin(double target);
+  /// Enqueues a step, which does nothing if the last advance has reached its target or failed. Throws only
+  /// after a failed launch.
+  void enqueue_step();
+  /// Sets a constant dt, s, > 0, from the next `enqueue_begin` on. Does not throw.
+  void set_fixed_dt(double dt);
+  /// Largest dt, s, that the CFL condition and `Parameters::max_dt` admit at this progress; infinite without
+  /// a bound, NaN without a finite velocity. Does not throw.
+  [[nodiscard]] double admissible_dt(const Progress& now) const;
+  /// True if a step has failed. Blocks. Throws std::runtime_error after a failed kernel.
+  [[nodiscard]] bool has_failed() const { return read_control().trial.stop == Stop::failed; }
+  /// Status as last published. Does not throw.
+  [[nodiscard]] Status status() const { return _loop.status(); }
+  /// Control block. Other kernels may set `trial.stop` to `Stop::failed`: the next step is not taken, and
+  /// `advance` ends. Does not throw.
+  [[nodiscard]] const ControlView<ExecutionSpace>& control() const { return _control; }
+
   [[nodiscard]] Progress progress() { return read_control().now; }
   [[nodiscard]] StepFailure failure();
   [[nodiscard]] Totals totals();
@@ -467,15 +485,30 @@ Stop FlowSolver<ExecutionSpace>::advance(double target, std::int64_t pause_step,
 }
 
 template <class ExecutionSpace>
-void FlowSolver<ExecutionSpace>::enqueue_steps(double target, std::int64_t count) {
+void FlowSolver<ExecutionSpace>::enqueue_begin(double target) {
   if (_halo) throw std::logic_error("flow solver: steps on several ranks wait for the host");
-  Steps steps{*this};
-  steps.begin({target}, -1);
+  Steps{*this}.begin({target}, -1);
   _loop.count_launch();
-  for (std::int64_t k = 0; k < count; ++k) {
-    steps.enqueue(0, 1);
-    _loop.count_launch();
-  }
+}
+
+template <class ExecutionSpace>
+void FlowSolver<ExecutionSpace>::enqueue_step() {
+  Steps{*this}.enqueue(0, 1);
+  _loop.count_launch();
+}
+
+template <class ExecutionSpace>
+double FlowSolver<ExecutionSpace>::admissible_dt(const Progress& now) const {
+  StepConstants constants = _constants;
+  constants.fixed_dt = 0.0;
+  return flow::admissible_dt(now, constants);
+}
+
+template <class ExecutionSpace>
+void FlowSolver<ExecutionSpace>::set_fixed_dt(double dt) {
+  if (dt == _constants.fixed_dt) return;
+  _constants.fixed_dt = dt;
+  _launcher.discard_graphs();  // they hold the constants
 }
 
 /// Step loop of several ranks: step by step, so that all take the same steps.
@@ -631,5 +664,8 @@ void FlowSolver<ExecutionSpace>::enqueue_projection(const ExecutionSpace& space,
   launch_correction(space, setup);
   begin_ghosts(space, result);
 }
+
+// One translation unit per backend compiles the solver.
+DROGUE_EXTERN_INSTANCES(class FlowSolver)
 
 }  // namespace drogue::flow

@@ -1,27 +1,28 @@
 #pragma once
 
 #include <cmath>
+#include <memory>
 #include <vector>
 
-#include "kernels/coupling/sheet/coupled_solver.hpp"
+#include "kernels/coupling/sheet/solver.hpp"
 #include "kernels/fabric/elastic/lumped_mass.hpp"
+#include "tests/support/backend.hpp"
 
 namespace drogue::testing {
 
 /// Cloth in a box of air that is one cell thick along z, periodic along all axes; strips of cloth across it.
 struct CoupledCase {
   static constexpr double alpha = 254.4, beta = 37.6;  ///< MIL-C-7020 type III
-  coupling::CoupledParameters p;
+  coupling::Parameters p;
   std::vector<fabric::Vector> x, v;
 
-  /// Box of nx by ny cells of h, m.
+  /// Box of nx by ny cells of h, m, and steps of dt, s.
   CoupledCase(int nx, int ny, double h, double dt) {
     p.flow.cells = {nx, ny, 1};
     p.flow.high = {nx * h, ny * h, h};
     p.flow.density = 1.2;
     p.flow.viscosity = 1.8e-5;
     p.flow.time_scheme = flow::TimeScheme::ab2;
-    p.flow.external_force = true;
     p.flow.fixed_dt = dt;
     p.sheet.law = {alpha, beta, false};
   }
@@ -44,10 +45,11 @@ struct CoupledCase {
       const int a = first + 2 * k;
       // Alternating diagonals, so that inner vertices have equal areas but for round-off.
       if (k % 2 == 0) {
-        cloth.mesh.triangles.push_back({a, a + 2, a + 1}),
-            cloth.mesh.triangles.push_back({a + 2, a + 3, a + 1});
+        cloth.mesh.triangles.push_back({a, a + 2, a + 1});
+        cloth.mesh.triangles.push_back({a + 2, a + 3, a + 1});
       } else {
-        cloth.mesh.triangles.push_back({a, a + 2, a + 3}), cloth.mesh.triangles.push_back({a, a + 3, a + 1});
+        cloth.mesh.triangles.push_back({a, a + 2, a + 3});
+        cloth.mesh.triangles.push_back({a, a + 3, a + 1});
       }
     }
     set_mass(0.0373);
@@ -64,34 +66,38 @@ struct CoupledCase {
   [[nodiscard]] static double law_velocity(double dp) {
     return (-alpha + std::sqrt(alpha * alpha + 4.0 * beta * dp)) / (2.0 * beta);
   }
+
+  /// Solver on a backend at the start of the case.
+  [[nodiscard]] std::unique_ptr<coupling::Solver> solver(device::Backend backend) const {
+    auto solver = coupling::create_solver(backend, p);
+    solver->upload_cloth(x, v);
+    solver->start();
+    return solver;
+  }
 };
 
-/// A case with its solver on an execution space.
-template <class Space>
+/// A case on the backend of the test program.
 struct CoupledRun {
-  explicit CoupledRun(const CoupledCase& of) : instance(4), solver(instance, of.p) {
-    solver.fabric().upload(of.x, of.v);
-    solver.flow().start();
-  }
+  explicit CoupledRun(const CoupledCase& of) : vertices(of.x.size()), solver(of.solver(tested_backend)) {}
 
-  /// Takes steps; false after a failure of the cloth or the flow.
+  /// Takes steps of the flow; false after a failure.
   bool advance(std::int64_t steps) {
-    const bool enqueued = solver.enqueue_steps(steps);
-    return enqueued && !solver.fabric().failure() && solver.flow().progress().step == (taken += steps);
+    const std::int64_t end = solver->progress().step + steps;
+    return solver->advance(1e9, end, {}) == flow::Stop::pause && solver->progress().step == end;
   }
 
   /// Sum of the forces of the sheet on the air in the last step, N.
-  fabric::Vector force() {
-    const auto each = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace{}, solver.sheet().force());
+  [[nodiscard]] fabric::Vector force() const {
+    std::vector<fabric::Vector> each(vertices);
+    solver->forces(each);
     fabric::Vector sum{};
-    for (std::size_t i = 0; i < each.extent(0); ++i)
-      for (std::size_t axis = 0; axis < 3; ++axis) sum[axis] += each(i, axis);
+    for (const fabric::Vector& of_vertex : each)
+      for (std::size_t axis = 0; axis < 3; ++axis) sum[axis] += of_vertex[axis];
     return sum;
   }
 
-  device::Instance<Space> instance;
-  coupling::CoupledSolver<Space> solver;
-  std::int64_t taken = 0;
+  std::size_t vertices;
+  std::unique_ptr<coupling::Solver> solver;
 };
 
 }  // namespace drogue::testing

@@ -5,21 +5,12 @@
 
 #include "kernels/coupling/interpolate.hpp"
 #include "kernels/coupling/sheet/local_air.hpp"
+#include "kernels/coupling/sheet/parameters.hpp"
 #include "kernels/coupling/spread.hpp"
 #include "kernels/fabric/state.hpp"
 #include "kernels/fabric/surface/surface.hpp"
 
 namespace drogue::coupling {
-
-/// Parameters of an immersed sheet.
-struct SheetParameters {
-  DeltaKernel kernel = DeltaKernel::cbs43;
-  PorousLaw law;
-  double density = 1.225;  ///< of the air, kg/m^3, > 0
-  /// Weight of the present step in the running mean of the acceleration of the air, 0 to 1. With 0 the energy
-  /// cannot grow, but the sheet leaks; nearly impermeable sheets need 0.2 or less.
-  double filter = 0.5;
-};
 
 template <class ExecutionSpace>
 struct BeginSheetStepFunctor {
@@ -80,10 +71,12 @@ class ImmersedSheet {
   using Scalars = typename LocalAir<ExecutionSpace>::Scalars;
 
   /// Sheet of the triangles of `cloth`; its other vertices, such as those of suspension lines, exchange no
-  /// force with the air. Blocks. Throws std::invalid_argument for parameters out of range.
+  /// force with the air, whose density is in kg/m^3. Blocks. Throws std::invalid_argument for parameters out
+  /// of range.
   ImmersedSheet(const ExecutionSpace& space, const MacGrid& grid, const fabric::Parameters& cloth,
-                const SheetParameters& parameters)
-      : _parameters((check_parameters(parameters), parameters)),
+                const SheetParameters& parameters, double density)
+      : _parameters((check_parameters(parameters, density), parameters)),
+        _density(density),
         _surface(space, cloth.mesh),
         _transfer(space, grid, parameters.kernel, _surface.vertices()),
         _air{scalars("drogue::coupling::area"),           vectors("drogue::coupling::normal"),
@@ -113,7 +106,7 @@ class ImmersedSheet {
                   const FaceViews<View>& velocity, double dt) const {
     freeze_positions(space, _transfer, cloth.positions, cloth.velocities, 0.5 * dt);
     fabric::vertex_geometry(space, _surface, _transfer.positions, _air.area, _air.normal);
-    spread_row_sums(space, _transfer, _air.area, _parameters.density, _air.compliance);
+    spread_row_sums(space, _transfer, _air.area, _density, _air.compliance);
     interpolate(space, _transfer, velocity, _air.before);
     device::launch_each(space, "drogue::coupling::begin_sheet_step", _transfer.points,
                         BeginSheetStepFunctor<ExecutionSpace>{_air});
@@ -136,17 +129,17 @@ class ImmersedSheet {
     interpolate(space, _transfer, velocity, _after);
     interpolate(space, _transfer, density, _push);
     const double filter = is_first && _parameters.filter > 0.0 ? 1.0 : _parameters.filter;
-    device::launch_each(space, "drogue::coupling::end_sheet_step", _transfer.points,
-                        EndSheetStepFunctor<ExecutionSpace>{_air, _after, _push, 1.0 / dt,
-                                                            1.0 / _parameters.density, filter});
+    device::launch_each(
+        space, "drogue::coupling::end_sheet_step", _transfer.points,
+        EndSheetStepFunctor<ExecutionSpace>{_air, _after, _push, 1.0 / dt, 1.0 / _density, filter});
   }
 
  private:
-  static void check_parameters(const SheetParameters& p) {
+  static void check_parameters(const SheetParameters& p, double density) {
     const auto is_valid = [](double value) { return value >= 0.0 && value <= 1e100; };
     if (!is_valid(p.law.alpha) || !is_valid(p.law.beta))
       throw std::invalid_argument("immersed sheet: alpha and beta must be finite and not negative");
-    if (!(p.density > 0.0) || !is_valid(p.density))
+    if (!(density > 0.0) || !is_valid(density))
       throw std::invalid_argument("immersed sheet: the density must be positive");
     if (!(p.filter >= 0.0 && p.filter <= 1.0))
       throw std::invalid_argument("immersed sheet: the weight of the filter must be 0 to 1");
@@ -170,6 +163,7 @@ class ImmersedSheet {
   }
 
   SheetParameters _parameters;
+  double _density;  ///< kg/m^3
   fabric::SurfaceViews<ExecutionSpace> _surface;
   GridTransfer<ExecutionSpace> _transfer;
   LocalAir<ExecutionSpace> _air;

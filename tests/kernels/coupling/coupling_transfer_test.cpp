@@ -396,6 +396,26 @@ TEST(GridTransfer, SpreadingAddsToTheDensities) {
   expect_near(on_host(grid, density), expected, 1e-10);
 }
 
+TEST(GridTransfer, ClearsTheFacesAroundPointsAndNoOthers) {
+  for (const MacGrid& grid : all_grids())
+    for (const DeltaKernel kernel : kernels) {
+      Random random(5);
+      const Case<Space> run(grid, kernel, random.points(grid, 2, 0.0));
+      FaceField ones = reference::zero_field(grid);
+      for (auto& values : ones) values.assign(values.size(), 1.0);
+      const auto field = on_device(run.space, grid, ones);
+      clear_spread(run.space, run.transfer, field);
+      const FaceField cleared = on_host(grid, field), spread = run.densities(Vectors(2, {1.0, 1.0, 1.0}));
+      for (std::size_t d = 0; d < 3; ++d)
+        for (std::size_t n = 0; n < ones[d].size(); ++n)
+          EXPECT_TRUE(cleared[d][n] == 0.0 || (cleared[d][n] == 1.0 && spread[d][n] == 0.0)) << d << ' ' << n;
+      // Two delta functions cover 128 of 567 faces at most.
+      if (grid.cells[0] == 9) {
+        EXPECT_GE(std::ranges::count(cleared[0], 1.0), 400);
+      }
+    }
+}
+
 TEST(GridTransfer, CoincidentPointsWithTheLargestForceDoNotOverflow) {
   const MacGrid grid{{5, 5, 5}, {0.0, 0.0, 0.0}, {1.0, 1.0, 1.0}, {false, false, false}};
   // 4097 is just above a power of two. Of component 0 one face receives three quarters.
