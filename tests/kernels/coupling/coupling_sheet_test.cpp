@@ -189,6 +189,25 @@ TEST(FreeSheet, EnergyNeverGrowsWithoutTheFilteredAcceleration) {
   }
 }
 
+TEST(FreeSheet, NoiseDecaysWithTheFilteredAcceleration) {
+  for (const double mass : {0.00373, 0.0373, 0.373})
+    for (const bool impermeable : {false, true}) {
+      CoupledCase c = taut_strip(16, 16, h, 0.004, 32);
+      c.set_mass(1.1 * mass);
+      c.p.substeps = 0;
+      c.p.sheet.law.impermeable = impermeable;
+      std::mt19937 engine(11);
+      std::uniform_real_distribution<double> noise(-0.3, 0.3);
+      for (std::size_t i = 0; i < c.v.size(); ++i)
+        if (c.p.fabric.pinned[i] == 6) c.v[i][0] = noise(engine);
+      CoupledRun run(c);
+      ASSERT_TRUE(run.advance(200));
+      std::vector<Vector> x(c.x.size()), v(c.x.size());
+      run.solver->download_cloth(x, v);
+      for (const Vector& of_vertex : v) EXPECT_LT(std::abs(of_vertex[0]), 0.03) << mass << ' ' << impermeable;
+    }
+}
+
 /// Angular frequency of the free oscillation of a strip of one period of 2 pi / k, rad/s, from its zero
 /// crossings.
 double frequency(const CoupledCase& c) {

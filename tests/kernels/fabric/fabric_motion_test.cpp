@@ -137,7 +137,8 @@ TEST(FabricMotion, EnergyGrowsBeyondTheStabilityLimit) {
   EXPECT_TRUE(grows(Integrator::rk4, 2.86));
   EXPECT_FALSE(grows(Integrator::verlet, 1.99));
   EXPECT_TRUE(grows(Integrator::verlet, 2.01));
-  EXPECT_FALSE(grows(Integrator::symplectic_euler, 1.99));
+  // Near the limit, the energy of the symplectic Euler method oscillates by a factor of 1 / (1 - z^2 / 4).
+  EXPECT_FALSE(grows(Integrator::symplectic_euler, 1.8));
   EXPECT_TRUE(grows(Integrator::symplectic_euler, 2.01));
 }
 
