@@ -73,7 +73,7 @@ class ImmersedSheet {
   /// Sheet of the triangles of `cloth`; its other vertices, such as those of suspension lines, exchange no
   /// force with the air, whose density is in kg/m^3. Blocks. Throws std::invalid_argument for parameters out
   /// of range.
-  ImmersedSheet(const ExecutionSpace& space, const MacGrid& grid, const fabric::Parameters& cloth,
+  ImmersedSheet(const ExecutionSpace& space, const StaggeredGrid& grid, const fabric::Parameters& cloth,
                 const SheetParameters& parameters, double density)
       : _parameters((check_parameters(parameters, density), parameters)),
         _density(density),

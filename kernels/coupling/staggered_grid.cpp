@@ -1,11 +1,11 @@
-#include "kernels/coupling/mac_grid.hpp"
+#include "kernels/coupling/staggered_grid.hpp"
 
 #include <cmath>
 #include <stdexcept>
 
 namespace drogue::coupling {
 
-void check(const MacGrid& grid) {
+void check(const StaggeredGrid& grid) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (grid.cells[axis] < 1 || grid.cells[axis] > 1 << 30)
       throw std::invalid_argument("MAC grid: the number of cells of an axis must be 1 to 2^30");
@@ -15,18 +15,18 @@ void check(const MacGrid& grid) {
   }
 }
 
-GridAxes grid_axes(const MacGrid& grid) {
+GridAxes grid_axes(const StaggeredGrid& grid) {
   GridAxes axes{};
   for (std::size_t axis = 0; axis < 3; ++axis)
     axes.axis[axis] = {grid.origin[axis], 1.0 / grid.spacing[axis], grid.cells[axis], grid.periodic[axis]};
   return axes;
 }
 
-int faces_along(const MacGrid& grid, int component, int axis) {
+int faces_along(const StaggeredGrid& grid, int component, int axis) {
   const auto k = static_cast<std::size_t>(axis);
   return grid.cells[k] + (component == axis && !grid.periodic[k] ? 1 : 0);
 }
 
-double cell_volume(const MacGrid& grid) { return grid.spacing[0] * grid.spacing[1] * grid.spacing[2]; }
+double cell_volume(const StaggeredGrid& grid) { return grid.spacing[0] * grid.spacing[1] * grid.spacing[2]; }
 
 }  // namespace drogue::coupling

@@ -19,15 +19,15 @@ struct GridAxes {
 
 /// Throws std::invalid_argument for cell counts outside 1 to 2^30, spacings (m) that are not positive, and
 /// origins that are not finite.
-void check(const MacGrid& grid);
+void check(const StaggeredGrid& grid);
 
 /// Axes of a checked grid; lengths in m. Does not throw.
-[[nodiscard]] GridAxes grid_axes(const MacGrid& grid);
+[[nodiscard]] GridAxes grid_axes(const StaggeredGrid& grid);
 
 /// Number of faces of velocity component `component` along `axis`. Does not throw.
-[[nodiscard]] int faces_along(const MacGrid& grid, int component, int axis);
+[[nodiscard]] int faces_along(const StaggeredGrid& grid, int component, int axis);
 
 /// Volume of a cell, m^3. Does not throw.
-[[nodiscard]] double cell_volume(const MacGrid& grid);
+[[nodiscard]] double cell_volume(const StaggeredGrid& grid);
 
 }  // namespace drogue::coupling
