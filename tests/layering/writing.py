@@ -417,16 +417,24 @@ def area(path):
     return parts[1] if parts[0] == "kernels" and len(parts) > 2 and parts[1] != "reference" else None
 
 
-# Interfaces for coupling, which programs outside of this project include. The typed solvers are left out: their
-# functions are those of the facades, which are checked.
+# Interfaces for coupling, which programs outside of this project include.
 COUPLING_HEADERS = re.compile(
-    r"kernels/(?:coupling/\w+|fabric/surface/\w+|fabric/(?:payload|vertex_force|loads/prescribed_motion))\.hpp"
+    r"kernels/(?:coupling/\w+|fabric/surface/\w+|fabric/(?:payload|state|vertex_force|loads/prescribed_motion))\.hpp"
 )
+# Header of a typed solver -> header of its facade. A function that the facade declares too may refer to it by the words
+# "documented in `Solver`" in its own comment or in that of its class.
+FACADES = {
+    "kernels/fabric/fabric_solver.hpp": "kernels/fabric/solver.hpp",
+    "kernels/flow/flow_solver.hpp": "kernels/flow/solver.hpp",
+    "kernels/gas/gas_solver.hpp": "kernels/gas/solver.hpp",
+    "kernels/options/batch/pide_pricer.hpp": "kernels/options/pricer.hpp",
+}
+IN_FACADE = re.compile(r"documented in\s+`(?:Solver|Pricer)`")
 
 
 def public_headers(texts):
     """Headers of kernels/ for coupling, and those that an app, perf, the install test or another area includes."""
-    found = {path for path in texts if COUPLING_HEADERS.fullmatch(path)}
+    found = {path for path in texts if COUPLING_HEADERS.fullmatch(path) or path in FACADES}
     for path, text in texts.items():
         outside = path.startswith(("miniapps/", "perf/", "tests/install/"))
         for name in re.findall(r'^\s*#\s*include\s*"([^"]+)"', text, re.MULTILINE):
@@ -440,13 +448,16 @@ def is_function(statement):
     plain = re.sub(r"\[\[.*?\]\]|\balignas\s*\(.*?\)|\bnoexcept\s*\(.*?\)|\brequires\s*\(.*?\)", " ", statement)
     while re.search(r"<[^<>()]*>", plain):
         plain = re.sub(r"<[^<>()]*>", " ", plain)
-    if re.search(r"^\s*(?:using|typedef|static_assert|friend|#|return|extern template|template class|enum)\b", plain):
+    # A comma: an initializer of a constructor after one in braces.
+    if re.search(r"^\s*(?:,|(?:using|typedef|static_assert|friend|#|return|extern template|template class|enum)\b)", plain):
         return False
     if re.search(r"=\s*(?:default|delete)\s*$|\boperator\b|~\w+\s*\(|\boverride\b|\bfinal\s*$", plain):
         return False
     head = re.split(r"=(?!=)(?!\s*0\s*$)", plain)[0]
     match = re.search(r"(\w+)\s*\(([^)]*)", head)
     if not match or match.group(1).isupper() or match.group(1) in ("decltype", "if", "for", "while", "sizeof"):
+        return False
+    if re.search(r"::\s*$", head[:match.start()]):  # definition of a member, whose declaration has the contract
         return False
     constructor = not re.search(r"[\w>&*\]]\s+[&*]*\w+\s*\(", head) or re.match(r"\s*explicit\b", head)
     return not (constructor and not match.group(2).strip())
@@ -481,10 +492,12 @@ def declarations(text):
                     statement, comment = "", ""
                 continue
             if sign == "{" and not parens:
-                kind = SCOPE.search(re.sub(r"template\s*<[^{]*?>\s*(?=class|struct|\[|\w)", "", statement))
+                head = re.sub(r"template\s*<[^{]*?>\s*(?=class|struct|\[|\w)", "", statement)
+                kind = SCOPE.search(head)
                 function = "(" in re.sub(r"alignas\s*\([^)]*\)|\brequires\b.*|\[\[.*?\]\]", "", statement)
-                if kind and not function and "=" not in statement and "enum" not in statement:
-                    public = kind.group(1) != "class"
+                if kind and not function and "=" not in head and "enum" not in head:
+                    # A nested class that is defined outside of its own may be private.
+                    public = kind.group(1) != "class" and not re.search(r"\bstruct\s+\w+(?:\s*<[^{]*>)?::\w", statement)
                     scopes.append([kind.group(1), comment, public])
                     statement, comment, shared = "", "", ""
                 else:
@@ -519,15 +532,26 @@ def declarations(text):
     return found
 
 
-def missing_contracts(path, text):
-    """Lines `path:line: ...` for functions of a public header without a doc comment, a unit, or a word on errors."""
+def name_of(statement):
+    """Name of the function that a declaration declares."""
+    return re.search(r"(\w+)\s*\(", re.sub(r"\[\[.*?\]\]|alignas\(.*?\)", "", statement)).group(1)
+
+
+def missing_contracts(path, text, facade=""):
+    """Lines `path:line: ...` for functions of a public header without a doc comment, a unit, or a word on errors.
+
+    `facade`: text of the header whose functions document those of the same names here.
+    """
     found = []
+    of_facade = {name_of(statement) for _, _, _, statement in declarations(facade)}
     for line, comment, inherited, statement in declarations(text):
-        name = re.search(r"(\w+)\s*\(", re.sub(r"\[\[.*?\]\]|alignas\(.*?\)", "", statement)).group(1)
+        name = name_of(statement)
+        both = comment + " " + inherited
+        if name in of_facade and IN_FACADE.search(both):
+            continue
         if not comment.strip():
             found.append(f"{path}:{line}: {name} has no doc comment")
             continue
-        both = comment + " " + inherited
         if not path.startswith("kernels/device/") and REAL.search(statement) and not UNITS.search(both):
             found.append(f"{path}:{line}: {name} states no unit")
         if not ERRORS.search(both) and not re.search(r"\bKOKKOS_\w*FUNCTION\b|\bconstexpr\b|\bnoexcept\b", statement):
@@ -573,7 +597,7 @@ def main(arguments):
         if not shown(path):
             continue
         found = [line for rule in RULES for line in rule(path, text)]
-        found += missing_contracts(path, text) if path in public else []
+        found += missing_contracts(path, text, texts.get(FACADES.get(path), "")) if path in public else []
         count += len(found)
         found += suspect_openings(path, text) if warn else []
         print("".join(line + "\n" for line in found), end="")

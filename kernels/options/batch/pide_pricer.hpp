@@ -21,7 +21,7 @@ namespace drogue::options {
 
 /// Finite-difference pricer on the caller's instance of an execution space, which must outlive it. Contracts
 /// come from host memory, since tables of their jump measures are computed there; prices stay on the device
-/// as well. Functions that `Pricer` declares are documented there.
+/// as well. Functions that `Pricer` declares are documented in `Pricer`.
 template <class ExecutionSpace>
 class PidePricer {
   using Space = typename ExecutionSpace::memory_space;
