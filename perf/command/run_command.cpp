@@ -53,7 +53,7 @@ ExitCode run_cases(const RunOptions& options, const std::regex& filter) {
     lines.push_back(to_json(record, here, to_json(record.facts)));
     passed = passed && record.passed();
     const run::MedianInterval time = run::median_interval(record.samples);
-    std::printf("%-32s %12.3f us a %s  [%.3f .. %.3f]  error %.3g  %s\n", record.name.c_str(),
+    std::printf("%-32s %12.3f us per %s  [%.3f .. %.3f]  error %.3g  %s\n", record.name.c_str(),
                 1e6 * time.median, record.unit_of_work.c_str(), 1e6 * time.low, 1e6 * time.high, record.error,
                 verdict(record));
   }

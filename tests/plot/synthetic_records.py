@@ -90,7 +90,7 @@ def solutions(
 
 
 def step(case, seconds, machine, cells, **changes):
-    """A step with its work: 1300 FLOP and 72 bytes a cell."""
+    """A step with its work: 1300 FLOP and 72 bytes per cell."""
     words = case.split("/")
     facts = {
         "backend": words[0],

@@ -151,9 +151,9 @@ class Steps(Folder):
         self.assertIn(["CUDA", "", "8\u2009192", "5.2 [5.1 .. 5.3]", "0.635", "1.58"], rows)
         verdicts = {(row[0], row[1]): row[2:] for row in rows if len(row) == 7}
         self.assertEqual(
-            verdicts["CUDA, 8192 cells", "µs a step"], ["5.2 [5.1 .. 5.3]", "4.47", "5", "3", "missed by 4 %"]
+            verdicts["CUDA, 8192 cells", "µs per step"], ["5.2 [5.1 .. 5.3]", "4.47", "5", "3", "missed by 4 %"]
         )
-        self.assertEqual(verdicts["CUDA, 65536 cells", "µs a step"][-1], "stretch met")
+        self.assertEqual(verdicts["CUDA, 65536 cells", "µs per step"][-1], "stretch met")
         self.assertEqual(verdicts["CUDA, 16 M cells", "G cell-steps/s"][-1], "missed by 2 %")
         self.assertEqual(verdicts["CUDA, 16 M cells, split", "G cell-steps/s"][-1], "goal met")
         on = verdicts["CUDA, 16 M cells, on, against cuda/16777216", "times as long"]
@@ -293,10 +293,10 @@ class Springs(Folder):
     def test_steps_and_contact_show_verdicts(self):
         page, _ = self.springs_page(records.springs_steps())
         rows = page.tables["NVIDIA H200, Intel Xeon Processor", "A step"]
-        self.assertEqual(rows[0][2:], ["vertices", "µs a step", "ns a vertex-step", "G vertex-steps/s"])
+        self.assertEqual(rows[0][2:], ["vertices", "µs per step", "ns per vertex-step", "G vertex-steps/s"])
         verdicts = {(row[0], row[1]): row[-1] for row in rows if len(row) == 7}
-        self.assertEqual(verdicts["CUDA, 2640 vertices", "µs a step"], "missed by 2 %")
-        self.assertEqual(verdicts["CUDA, 1000000 vertices", "ns a vertex-step"], "missed by 40 %")
+        self.assertEqual(verdicts["CUDA, 2640 vertices", "µs per step"], "missed by 2 %")
+        self.assertEqual(verdicts["CUDA, 1000000 vertices", "ns per vertex-step"], "missed by 40 %")
         quadratic = "CUDA, 1000000 vertices, quadratic, against cuda/1000000"
         self.assertEqual(verdicts[quadratic, "times as long"], "goal met")
         rows = page.tables["NVIDIA H200, Intel Xeon Processor", "A step in contact"]
