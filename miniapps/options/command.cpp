@@ -23,7 +23,7 @@ struct OptionValues {
 void declare_pricing(CLI::App& app, OptionValues& values, Command& command) {
   add_backend_option(app, command.backend);
   app.add_option("--method", values.method,
-                 "pide: finite differences; cos: Fourier; seed: the dissertation's, which states no error")
+                 "pide: finite differences; cos: Fourier; seed: that of [Shi] (README.md), without an error")
       ->check(CLI::IsMember({"pide", "cos", "seed"}))
       ->capture_default_str();
   auto* tolerance = app.add_option("--tolerance", values.tolerance,

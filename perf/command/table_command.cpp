@@ -69,7 +69,7 @@ ExitCode print_table(TableOptions options, const std::vector<std::string>& kokko
 Command table_command(CLI::App& program) {
   const auto options = std::make_shared<TableOptions>();
   CLI::App* app = program.add_subcommand(
-      "table", "Print a table, most of them of the dissertation beside our own numbers");
+      "table", "Print a table, most of them of [Shi] (README.md cites it) beside our own numbers");
   app->add_option("TABLE", options->table,
                   "occupancy (computed); block-size or transfers; pressure or memory of flow")
       ->required();

@@ -2,7 +2,10 @@
 
 import os
 import re
+import subprocess
+import tempfile
 import unittest
+from pathlib import Path
 
 import layers
 import writing
@@ -40,6 +43,9 @@ class Repository(unittest.TestCase):
 
     def test_messages_are_clear(self):
         self.assertEqual([], self.breaches(writing.unclear_strings))
+
+    def test_rates_are_per_unit(self):
+        self.assertEqual([], self.breaches(writing.rates_with_an_article))
 
     def test_kept_keys_are_used_and_explained(self):
         glossary = TEXTS["docs/glossary.md"]
@@ -166,6 +172,27 @@ f("of this "
             ("common/a.cpp", '// above the "bar law"\n'),
         ):
             self.assertEqual([], writing.unclear_strings(path, text), text)
+
+    def test_rates(self):
+        for path, text in (("perf/a.cpp", 'print("%f us a %s");\n'), ("scripts/a.py", 'unit = "\\u00b5s a step"\n'),
+                           ("tests/a.py", 'f"ns a {unit}"\n')):
+            self.assertEqual(1, len(writing.rates_with_an_article(path, text)), text)
+        for path, text in (("perf/a.cpp", 'print("%f us per step");\n'), ("scripts/a.py", 'a = "terms a step needs"\n')):
+            self.assertEqual([], writing.rates_with_an_article(path, text), text)
+
+    def test_reads_no_files_that_git_ignores(self):
+        with tempfile.TemporaryDirectory() as folder:
+            root = Path(folder)
+            for name in ("a.md", ".cache/b.md", "out/c.md"):
+                (root / name).parent.mkdir(exist_ok=True)
+                (root / name).write_text("text")
+            self.assertEqual(["a.md", "out/c.md"], sorted(writing.read_tree(root)))
+            (root / ".gitignore").write_text("out/\n.cache/\n")
+            try:
+                subprocess.run(["git", "init", "-q"], cwd=root, check=True)
+            except OSError:
+                self.skipTest("there is no git")
+            self.assertEqual(["a.md"], sorted(writing.read_tree(root)))
 
     def test_public_headers(self):
         texts = {

@@ -7,6 +7,7 @@ import ast
 import functools
 import io
 import re
+import subprocess
 import sys
 import tokenize
 from pathlib import Path
@@ -392,6 +393,28 @@ def unclear_strings(path, text):
     return found
 
 
+# A rate is written "us per step".
+RATE_WITH_ARTICLE = re.compile(r"(?<!\w)(?:us|µs|\\u00b5s|ms|ns|microseconds|milliseconds|nanoseconds) an? [\w%{]")
+
+
+def strings_of_python(text):
+    """Pairs (line, words) of the string literals of a Python source, as written."""
+    tokens = tokenize.generate_tokens(io.StringIO(text).readline)
+    return [(token.start[0], token.string) for token in tokens if token.type == tokenize.STRING]
+
+
+def rates_with_an_article(path, text):
+    """Lines `path:line: ...` for strings of C++ and Python with a rate such as "us a step"."""
+    if not path.endswith((*CODE, ".py")):
+        return []
+    found = []
+    for line, words in strings(text) if path.endswith(CODE) else strings_of_python(text):
+        match = RATE_WITH_ARTICLE.search(words)
+        if match:
+            found.append(f"{path}:{line}: write 'per' for the article: {words[match.start():match.start() + 70]}")
+    return found
+
+
 # ---------------------------------------------------------------------------------------------------- contracts
 # Public: a header of kernels/ (not of the reference) that a mini-app, perf, the install test or another area includes.
 # Every function that it declares at namespace scope or as a public member has a doc comment, which it may share with
@@ -562,11 +585,24 @@ def missing_contracts(path, text, facade=""):
 # ---------------------------------------------------------------------------------------------------------- all
 
 
+def names_below(root):
+    """Paths below `root` that git does not ignore; without git, those outside of hidden folders."""
+    if (root / ".git").exists():
+        try:
+            listed = subprocess.run(["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"], cwd=root,
+                                    check=True, capture_output=True, text=True).stdout
+            return sorted({Path(name) for name in listed.split("\0") if name})
+        except (OSError, subprocess.CalledProcessError):
+            pass
+    names = (path.relative_to(root) for path in root.rglob("*"))
+    return sorted(name for name in names if not any(part.startswith(".") for part in name.parts[:-1]))
+
+
 def read_tree(root, tops=None):
     """All files that the rules read below `root`, by their path from there, with their texts."""
     texts = {}
-    for path in sorted(root.rglob("*")):
-        name = path.relative_to(root)
+    for name in names_below(root):
+        path = root / name
         if SKIPPED_FOLDERS & set(name.parts) or not path.is_file() or (tops and name.parts[0] not in tops):
             continue
         if name.as_posix().endswith((*CODE, ".py", ".md", ".cmake", ".txt", ".toml", ".sh")):
@@ -579,7 +615,7 @@ OWN = ("tests/layering/writing.py", "tests/layering/test_writing.py")
 
 
 # Rules for one file each: its path and text -> lines `path:line: ...`.
-RULES = (refused_openings, personified, riddles, wide_lines, replaced_names, unclear_strings)
+RULES = (refused_openings, personified, riddles, wide_lines, replaced_names, unclear_strings, rates_with_an_article)
 
 
 def main(arguments):

@@ -242,7 +242,7 @@ class Devices(Folder):
         self.assertEqual(files, ["gas.html", "transfers_cuda_nvidia-h200.png"])
         rows = page.tables["NVIDIA H200, Intel Xeon Processor", "Transfers of a step, CUDA"]
         self.assertEqual(len(rows), 1 + 3 * 8)
-        self.assertEqual(rows[1], ["1\u2009024", "dissertation", "336", "118", "272", "726", ""])
+        self.assertEqual(rows[1], ["1\u2009024", "[Shi]", "336", "118", "272", "726", ""])
         self.assertEqual(rows[3], ["1\u2009024", "pinned", "16.8", "40", "13.6", "70.4", "10.3"])
 
     def test_block_sizes_have_panel_per_form_and_curve_per_size(self):
@@ -308,7 +308,7 @@ class Springs(Folder):
         page, files = self.springs_page(records.springs_transfers())
         self.assertEqual(files, ["springs-transfers_cuda_nvidia-h200.png", "springs.html"])
         rows = page.tables["NVIDIA H200, Intel Xeon Processor", "Transfers of a step, CUDA"]
-        sources = ["between two copies", "dissertation", "1 step", "10 steps", "100 steps"]
+        sources = ["between two copies", "[Shi]", "1 step", "10 steps", "100 steps"]
         self.assertEqual([row[1] for row in rows], sources)
         self.assertNotIn("times as fast", " ".join(rows[0]))
         self.assertIn("no ratio to it means anything", page.words)
