@@ -125,6 +125,7 @@ class BatchRun {
       const std::string written = run::is_replaced(_command.out) ? "nothing" : "not all";
       _result.message =
           "interrupted by a signal; " + written + " is written to '" + _command.out.string() + "'";
+      print_notice("drogue-options", _result.message);
       return ExitCode::interrupted;
     }
     if (!_command.quiet && !writes_to_standard_output())

@@ -408,8 +408,9 @@ class Files(options_program.OptionsTest):
         process = self.start_long_run()
         time.sleep(0.5)
         process.send_signal(signal.SIGINT)
-        process.communicate(timeout=60)
+        message = process.communicate(timeout=60)[1]
         self.assertEqual(130, process.returncode)
+        self.assertIn(b"drogue-options: interrupted by a signal; nothing is written to ", message)
         self.assertEqual(["batch.csv", "r.json"], self.names())
         self.assertEqual("interrupted", json.loads((self.folder / "r.json").read_text())["status"])
 

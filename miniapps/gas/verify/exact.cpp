@@ -65,7 +65,7 @@ std::optional<Reference> run_reference(const GasScene& scene, device::Backend ba
   if (stop != gas::Stop::target)
     throw Failure(ExitCode::numerical_failure,
                   "the reference run of " + std::to_string(finer.parameters.cells) +
-                      " cells failed: " + failure_text(*solver, finer.parameters, stop));
+                      " cells failed: " + failure_text(*solver, finer.parameters, finer.end_time, stop));
   Reference reference;
   for_cells(*solver, finer.parameters, [&](std::int64_t cell, const Primitive& w) {
     reference.x.push_back(cell_centre(finer.parameters, cell));
