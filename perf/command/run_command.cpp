@@ -4,6 +4,7 @@
 #include <memory>
 #include <regex>
 
+#include "common/run/files/atomic_file.hpp"
 #include "common/run/statistics.hpp"
 #include "perf/cases/cases.hpp"
 #include "perf/command/command.hpp"
@@ -81,6 +82,7 @@ Command run_command(CLI::App& program) {
   app->add_flag("--quick", options->quick, "Small cases and few samples");
   return {app, [options](const std::vector<std::string>& kokkos) {
             const std::regex filter = filter_of(options->filter);
+            run::require_writable(options->out);
             require(device::fastest_backend());
             const device::Runtime runtime(kokkos);
             return run_cases(*options, filter);

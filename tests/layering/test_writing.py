@@ -137,6 +137,7 @@ class EachRuleCatchesItsBreach(unittest.TestCase):
             ("kernels/gas/a.hpp", "// Judgement of Solomon\n"),
             ("miniapps/a.cpp", 'say("Cloth and bar");\n'),
             ("scripts/a.py", '", ".join(held)\n'),
+            ("scripts/a.py", "axes.bar(x, y)\n"),
             ("docs/a.md", "Cloth, `--seed-mode`\n"),
             ("kernels/gas/a.hpp", "int keep = place(fixed);\n"),
             ("CHANGELOG.md", "`bar` is now `tolerance`\n"),

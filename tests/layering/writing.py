@@ -13,7 +13,8 @@ import tokenize
 from pathlib import Path
 
 CODE = (".hpp", ".cpp", ".hpp.in", ".cpp.in", ".cuh", ".cu", ".h")
-SKIPPED_FOLDERS = {"build", ".git", "evidence", "node_modules", "__pycache__"}
+SKIPPED_FOLDERS = {"build", ".git", "node_modules", "__pycache__"}
+RECORDS = Path("docs/evidence")
 WIDTH = 120
 
 # ----------------------------------------------------------------------------------------------------- comments
@@ -270,11 +271,14 @@ def identifiers_of_code(text):
 
 
 def identifiers_of_python(text):
+    previous = ""
     for token in tokenize.generate_tokens(io.StringIO(text).readline):
         if token.type == tokenize.NAME:
-            yield token.start[0], token.string
+            if (previous, token.string) != (".", "bar"):  # a method of matplotlib
+                yield token.start[0], token.string
         elif token.type == tokenize.STRING and re.fullmatch(r"[frbu]*(['\"])bar\1", token.string):
             yield token.start[0], "bar"
+        previous = token.string
 
 
 def identifiers(path, text):
@@ -603,7 +607,7 @@ def read_tree(root, tops=None):
     texts = {}
     for name in names_below(root):
         path = root / name
-        if SKIPPED_FOLDERS & set(name.parts) or not path.is_file() or (tops and name.parts[0] not in tops):
+        if SKIPPED_FOLDERS & set(name.parts) or RECORDS in name.parents or not path.is_file() or (tops and name.parts[0] not in tops):
             continue
         if name.as_posix().endswith((*CODE, ".py", ".md", ".cmake", ".txt", ".toml", ".sh")):
             texts[name.as_posix()] = path.read_text(encoding="utf-8")

@@ -60,6 +60,10 @@ class CommandLine(options_program.OptionsTest):
             ("surface", "example", "--strikes", "1:2", "--maturities", "1"): "first:last:count",
             ("surface", "example", "--strikes", "0", "--maturities", "1"): "--strikes",
             ("surface", "example", "--strikes", "1", "--maturities", "1,,2"): "--maturities",
+            ("surface", "example", "--strikes", "60:140:1", "--maturities", "1"): "--strikes = '60:140:1' has two ends but a count of 1",
+            ("price", "example", "--out", "-"): "standard output is /dev/stdout",
+            ("price", "example", "--result", "-"): "standard output is /dev/stdout",
+            ("prise", "example"): "unknown command 'prise'; did you mean \"price\"?",
             ("price", "example", "extra"): "extra",
             ("price", "example", "--kokkos-num-threads=0"): "0",
         }
@@ -67,6 +71,12 @@ class CommandLine(options_program.OptionsTest):
             with self.subTest(words):
                 self.assertIn(message, self.expect(2, *(words or ("--kokkos-tune-internals",))).stderr)
         self.assertEqual([], self.names())
+
+    def test_rejects_an_unwritable_result_before_pricing(self):
+        file = self.write(batch([row(k, style="american", spot=0.5 + 1e-4 * k) for k in range(100000)]))
+        message = self.expect(6, "price", file, "--backend", "serial", "--result", "missing/r.json").stderr
+        self.assertIn("missing/r.json", message)
+        self.assertEqual([file.name], self.names())
 
     def test_reports_a_missing_backend(self):
         if "cuda" in gas_program.backends():

@@ -69,7 +69,7 @@ def blocks_figure(title: str, machine: Machine, forms: dict[str, _Times], unit: 
         else:
             axis.set_ylim(bottom=0)
         style.label_curves(axis, ends)
-    axes[0, 0].set_ylabel(f"\u00b5s a {unit}")
+    axes[0, 0].set_ylabel(f"\u00b5s per {unit}")
     style.heading(figure, title, details)
     return figure
 
