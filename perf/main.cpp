@@ -36,7 +36,7 @@ ExitCode run_program_body(int argc, char** argv) {
     }
     names += (names.empty() ? "" : ", ") + command.app->get_name();
   }
-  throw Failure(ExitCode::usage, "say what to do (" + names + "); see drogue-perf --help");
+  throw Failure(ExitCode::usage, "a subcommand is required: " + names + "; see drogue-perf --help");
 }
 
 }  // namespace

@@ -4,7 +4,8 @@
     scripts/kernel_use.py [--check]      --check changes nothing and fails where the page is out of date
 
 A program uses a header that it includes, and every header behind that. A source of kernels/ belongs to the headers in use
-that it implements: to its own header, in a folder instances/ to those of its area that it includes.
+that it implements: to its own header; in a folder instances/ to the files of its area that name a template which it
+instantiates.
 """
 
 import argparse
@@ -15,6 +16,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGE = ROOT / "docs/kernel-use.md"
+INSTANTIATED = re.compile(r"^template\s+(?:class\s+(\w+)|[^;]*?\b(\w+)(?:<[\w:]+>)?\()", re.MULTILINE)
 INCLUDE = re.compile(r'^\s*#\s*include\s*"([^"]+)"', re.MULTILINE)
 HEAD = """# Kernels by program
 
@@ -31,6 +33,22 @@ def read_sources(root):
             if path.suffix in (".hpp", ".cpp"):
                 found[path.relative_to(root).as_posix()] = INCLUDE.findall(path.read_text(encoding="utf-8"))
     return found
+
+
+def read_users(root, includes):
+    """Files of its area that name a template which it instantiates, by path of a source in a folder instances/."""
+    texts = {path: (root / path).read_text(encoding="utf-8") for path in includes if path.startswith("kernels/")}
+    found = {}
+    for instance in filter(is_instance, texts):
+        names = {first or second for first, second in INSTANTIATED.findall(texts[instance])}
+        pattern = re.compile(rf"\b(?:{'|'.join(sorted(names))})\b")
+        found[instance] = {path for path, text in texts.items()
+                           if not is_instance(path) and area_of(path) == area_of(instance) and pattern.search(text)}
+    return found
+
+
+def is_instance(path):
+    return path.startswith("kernels/") and "/instances/" in path
 
 
 def folder_of(path):
@@ -53,8 +71,11 @@ def area_of(path):
     return path.split("/")[1]
 
 
-def used_by(start, includes):
-    """All files behind `start`, with the sources of kernels/ and of the framework that implement headers in use."""
+def used_by(start, includes, users):
+    """All files behind `start`, with the sources of kernels/ and of the framework that implement headers in use.
+
+    `users`: result of `read_users`.
+    """
     sources = [path for path in includes if path.endswith(".cpp") and path.startswith(("kernels/", "miniapps/framework/", "common/"))]
     behind = {path: reachable([path], includes) for path in sources}
     used = reachable(start, includes)
@@ -64,9 +85,7 @@ def used_by(start, includes):
             if path in used:
                 continue
             header = path.removesuffix(".cpp") + ".hpp"
-            instances = "/instances/" in path and any(
-                name in used and area_of(name) == area_of(path) for name in behind[path] if name.startswith("kernels/"))
-            if header in used or instances:
+            if header in used or not used.isdisjoint(users.get(path, ())):
                 added |= behind[path]
         if added <= used:
             return used
@@ -85,12 +104,12 @@ def programs(includes):
     return found
 
 
-def page(includes):
-    """The text of the page."""
+def page(includes, users):
+    """The text of the page. `users`: result of `read_users`."""
     apps = programs(includes)
     folders = sorted({folder_of(path) for path in includes if path.startswith("kernels/")})
     own = {app: {name for path in files for name in includes[path] if name.startswith("kernels/")} for app, files in apps.items()}
-    used = {app: used_by(files, includes) for app, files in apps.items()}
+    used = {app: used_by(files, includes, users) for app, files in apps.items()}
     lines = [HEAD, "| folder | " + " | ".join(apps) + " |", "|---|" + ":-:|" * len(apps)]
     for folder in folders:
         marks = []
@@ -109,7 +128,8 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--check", action="store_true")
     check = parser.parse_args().check
-    text = page(read_sources(ROOT))
+    includes = read_sources(ROOT)
+    text = page(includes, read_users(ROOT, includes))
     if not check:
         PAGE.write_text(text, encoding="utf-8")
     elif not PAGE.exists() or PAGE.read_text(encoding="utf-8") != text:

@@ -4,8 +4,8 @@
     scripts/record_gas.py MACHINE --bin build/cuda/bin [--exact build/cuda-exact/bin] [--backends serial,openmp,cuda]
                           [--largest] [--long] [--work FOLDER]
 
-The record holds every shipped scene on every backend (error, tolerance, steps, time, limiter), and the dissertation's
-scheme (--seed-mode) on the meshes of its Table 5.5. Further parts:
+The record holds every shipped scene on every backend (error, tolerance, steps, time, limiter), and the
+scheme of [Shi] (--seed-mode) on the meshes of its Table 5.5. Further parts:
 
     --exact     bitwise comparison of the datasets of all scenes between backends; needs h5py
     --largest   a run of 2^28 cells

@@ -6,7 +6,7 @@
                               [--work FOLDER] [--to FOLDER]
 
 The record holds every shipped scene on every backend (error, tolerance, steps, time, ledger), and tables 5.1 to 5.4 of
-the dissertation beside its numbers. Options:
+[Shi] beside its numbers. Options:
 
     --exact     bitwise comparison of the datasets of all scenes between backends
     --tables    backend of the tables; default: the last one of --backends
@@ -40,7 +40,7 @@ STRIP = (
             (4e8, 0.3814011184e9, 0.305359), (5e8, 0.4767297379e9, 0.305355))),
 )  # fmt: skip
 STRIP_VERTICES = 1300  # about 2468 triangles, one of the meshes of figure 5.5
-THICKNESS = 1e-4  # m; not given in the dissertation, and without influence on the ratios
+THICKNESS = 1e-4  # m; not given in [Shi], and without influence on the ratios
 GRIPS = 'pin=[{where="x==0"},{where="x>0.1-1e-9",motion={x=1e-6}},{where="1",axes="z"}]'
 END_TIME = 1.0  # s, in tables 5.2 and 5.3
 TIMES = f"output.times={[round(0.005 * k, 6) for k in range(round(END_TIME / 0.005) + 1)]}"
@@ -85,12 +85,12 @@ def cauchy(coarse, fine, measure, power=1):
 
 
 def table_row(points, mass, printed, found, **more):
-    """Row of a table with the dissertation's printed values and the computed ones."""
+    """Row of a table with the printed values of [Shi] and the computed ones."""
     return {"points": points, "mass": mass} | more | {"dissertation": printed, "cauchy": found}
 
 
 def chord_table(program, backend, work):
-    """Table 5.2, with the dissertation's stiffnesses, whose E A varies slightly by mesh, and with fixed E A."""
+    """Table 5.2, with the stiffnesses of [Shi], whose E A varies slightly by mesh, and with fixed E A."""
     sets = [f"time.end_time={END_TIME}", TIMES, "output.history_every=2000"]
     own = [
         study(
@@ -131,7 +131,7 @@ def chord_table(program, backend, work):
 
 
 def drum_table(program, backend, work, largest):
-    """Table 5.3, with springs along edges as in the dissertation, and with the biquadratic membrane."""
+    """Table 5.3, with springs along edges as in [Shi], and with the biquadratic membrane."""
     meshes = DRUM if largest else DRUM[:-1]
     lists = (
         "meshes="
@@ -225,7 +225,7 @@ def response(file, membrane, poisson):
 
 
 def strip_table(program, backend, work):
-    """Table 5.4, for a strip that is free to contract (correct) and with clamped grips as in the dissertation."""
+    """Table 5.4, for a strip that is free to contract (correct) and with clamped grips as in [Shi]."""
     rows = []
     for poisson, cases in STRIP:
         for modulus, printed_modulus, printed_poisson in cases:
@@ -260,7 +260,7 @@ def print_markdown(title, header, rows):
 
 
 def print_tables(record):
-    """Prints the tables of a record beside the dissertation's numbers."""
+    """Prints the tables of a record beside the numbers of [Shi]."""
 
     def triple(values):
         return ", ".join(f"{value:.3g}" for value in values)
@@ -268,7 +268,7 @@ def print_tables(record):
     if record["table_5_2"]:
         print_markdown(
             "Table 5.2",
-            ("points", "mass", "dissertation", "its stiffness", "the same, RMS", "E A kept"),
+            ("points", "mass", "[Shi]", "its stiffness", "the same, RMS", "E A kept"),
             [
                 (
                     str(r["points"]),
@@ -284,7 +284,7 @@ def print_tables(record):
     if record["table_5_3"]:
         print_markdown(
             "Table 5.3",
-            ("points", "model", "mass", "dissertation", "here", "energy drift"),
+            ("points", "model", "mass", "[Shi]", "here", "energy drift"),
             [
                 (
                     str(r["vertices"]),

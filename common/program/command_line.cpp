@@ -21,8 +21,19 @@ std::vector<std::string> option_names(const CLI::App& app) {
   return names;
 }
 
+std::vector<std::string> subcommand_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* subcommand : app.get_subcommands({})) names.push_back(subcommand->get_name());
+  return names;
+}
+
 Failure unwanted_word(const CLI::App& app, const std::string& word) {
-  if (word.rfind('-', 0) != 0) return {ExitCode::usage, "unexpected argument '" + word + "'"};
+  if (word.rfind('-', 0) != 0) {
+    const std::vector<std::string> commands = subcommand_names(app);
+    if (commands.empty() || !app.get_subcommands().empty())
+      return {ExitCode::usage, "unexpected argument '" + word + "'"};
+    return {ExitCode::usage, "unknown command '" + word + "'; " + scene::suggestion(word, commands)};
+  }
   const std::string name = word.substr(0, word.find('='));
   return {ExitCode::usage, "unknown option '" + name + "'; " + scene::suggestion(name, option_names(app))};
 }

@@ -30,7 +30,8 @@ void declare(CLI::App& app, MiniAppOptions& options) {
   app.add_flag("--list-scenes", options.list_scenes, "list the shipped scenes, and end");
   app.add_flag("--quiet", options.quiet, "show no progress and no summary");
   auto* baseline =
-      app.add_flag("--seed-mode", options.baseline, "run the dissertation's own algorithm and data movement");
+      app.add_flag("--seed-mode", options.baseline,
+                   "run the algorithm and data movement of [Shi], the dissertation that README.md cites");
   app.add_option("--study", options.study,
                  "run the scene over meshes and schemes, say meshes=100:800 (two meshes: and every doubling "
                  "between them)")

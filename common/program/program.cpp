@@ -65,6 +65,10 @@ Failure current_failure() {
   }
 }
 
+void print_notice(const std::string& program, const std::string& sentence) {
+  std::fprintf(stderr, "%s: %s\n", program.c_str(), sentence.c_str());
+}
+
 int run_program(const std::string& program, const std::function<ExitCode()>& body) {
   ExitCode code = ExitCode::ok;
   const Silence silence(launched_rank().rank != 0);

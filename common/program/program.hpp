@@ -13,6 +13,9 @@ namespace drogue {
 /// `io_error` with the first line of what(), so that every program ends with a documented exit code.
 Failure current_failure();
 
+/// Prints `program: sentence` on stderr, for a run that ends early without an exception. Does not throw.
+void print_notice(const std::string& program, const std::string& sentence);
+
 /// Runs `body` and returns the exit code of the process. Prints an exception as one sentence on stderr:
 /// `program: sentence`, or only the sentence for an invalid scene, which starts with FILE:LINE. Under mpirun
 /// only rank 0 prints; stdout of the other ranks is discarded. Does not throw.

@@ -48,6 +48,9 @@ class Metrics {
   std::vector<Group> _groups;
 };
 
+/// Sets the counts of a flux limiter to zero, for a program without one: result.json has them by its schema.
+void set_no_limiter(Metrics& metrics);
+
 /// Content of result.json, schema `drogue.result/1`. Non-finite numbers are written as null.
 struct ResultDocument {
   std::string program, version, git, scene, backend, device;

@@ -69,11 +69,13 @@ RunDirectory::RunDirectory(std::filesystem::path path, ExistingRun existing)
   std::filesystem::create_directories(_path, error);
   if (error) throw io_failure("create the run directory", _path, error.value());
   lock();
-  if (existing == ExistingRun::refuse && holds_run(_path)) {
+  const bool is_study = existing == ExistingRun::refuse_study;
+  if ((existing == ExistingRun::refuse || is_study) && holds_run(_path)) {
     unlock();
     throw Failure(ExitCode::usage, "'" + _path.string() +
                                        "' already holds a run; choose another --out, or give --overwrite to "
-                                       "replace it or --restart to continue it");
+                                       "replace it" +
+                                       (is_study ? "" : " or --restart to continue it"));
   }
 }
 

@@ -9,9 +9,10 @@ namespace drogue::run {
 
 /// Treatment of a run that already is in the directory.
 enum class ExistingRun {
-  refuse,     ///< exit 2
-  overwrite,  ///< its files are removed by `begin`
-  resume,     ///< its files are continued; `begin` removes result.json and pictures
+  refuse,        ///< exit 2
+  refuse_study,  ///< exit 2, for a study, which has no --restart
+  overwrite,     ///< its files are removed by `begin`
+  resume,        ///< its files are continued; `begin` removes result.json and pictures
 };
 
 /// Directory of one run, locked for the life of the object. A former run stays untouched until `begin`, so

@@ -1,8 +1,12 @@
 #pragma once
 
+#include <cmath>
 #include <vector>
 
 namespace drogue::run {
+
+/// Maximum of two numbers; NaN if either is NaN, so that no check passes on an invalid state. Does not throw.
+[[nodiscard]] inline double maximum_or_nan(double a, double b) { return a > b || std::isnan(a) ? a : b; }
 
 /// Median and an interval that covers the true median with at least probability `coverage`, for any
 /// distribution of the samples.

@@ -19,6 +19,10 @@ std::string must_be(const std::string& what, const Limits& limits, const Node& n
   return "must be " + what + (range.empty() ? "" : " " + range) + ", not " + describe(node);
 }
 
+std::string count_text(std::size_t count) {
+  return std::to_string(count) + (count == 1 ? " number" : " numbers");
+}
+
 std::string array_text(const std::vector<std::string>& elements) {
   std::string text;
   for (const std::string& element : elements) text += (text.empty() ? "" : ", ") + element;
@@ -223,7 +227,7 @@ Codec interval_codec(double& low, double& high) {
             std::vector<double> ends;
             std::string complaint = read_reals(node, limits, true, ends);
             if (!complaint.empty()) return complaint;
-            if (ends.size() != 2) return "must be two numbers, not " + std::to_string(ends.size());
+            if (ends.size() != 2) return "must be two numbers, not " + count_text(ends.size());
             low = ends[0];
             high = ends[1];
             return {};
@@ -244,7 +248,7 @@ Codec reals_codec(std::vector<double>& values, std::size_t size, bool increasing
             std::string complaint = read_reals(node, limits, increasing, numbers);
             if (!complaint.empty()) return complaint;
             if (size != 0 && numbers.size() != size) {
-              return "must be " + std::to_string(size) + " numbers, not " + std::to_string(numbers.size());
+              return "must be " + count_text(size) + ", not " + count_text(numbers.size());
             }
             values = numbers;
             return {};

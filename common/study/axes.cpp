@@ -27,7 +27,7 @@ std::string listed(const std::vector<std::string>& names) {
 
 void require_one_of(const std::string& value, const std::vector<std::string>& names) {
   if (std::find(names.begin(), names.end(), value) == names.end())
-    refuse("'" + value + "' is none of " + listed(names));
+    refuse("'" + value + "' is not one of " + listed(names));
 }
 
 std::vector<std::int64_t> meshes(const std::vector<std::string>& values, const MeshAxis& axis) {
@@ -37,8 +37,8 @@ std::vector<std::int64_t> meshes(const std::vector<std::string>& values, const M
     const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), n);
     if (error != std::errc() || end != value.data() + value.size() || n < axis.least ||
         n > (std::int64_t{1} << axis.most_exponent))
-      refuse("'" + value + "' is no number of " + axis.unit + " between " + std::to_string(axis.least) +
-             " and 2^" + std::to_string(axis.most_exponent));
+      refuse("'" + value + "' is not an integer number of " + axis.unit + " between " +
+             std::to_string(axis.least) + " and 2^" + std::to_string(axis.most_exponent));
     numbers.push_back(n);
   }
   if (numbers.size() != 2) return numbers;

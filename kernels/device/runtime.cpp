@@ -23,7 +23,7 @@ void require_number(const std::string& name, std::string_view text, int least, i
   int value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error == std::errc{} && end == text.data() + text.size() && value >= least && value <= most) return;
-  throw std::invalid_argument(name + " = " + std::string(text) + " is no whole number between " +
+  throw std::invalid_argument(name + " = " + std::string(text) + " is not an integer between " +
                               std::to_string(least) + " and " + std::to_string(most));
 }
 

@@ -45,7 +45,7 @@ KOKKOS_INLINE_FUNCTION bool warp_all(bool condition) {
 
 /// Largest value of each group of `width` lanes.
 template <int width = warp_lanes>
-KOKKOS_INLINE_FUNCTION int warp_max(int value) {
+KOKKOS_INLINE_FUNCTION int warp_maximum(int value) {
   KOKKOS_IF_ON_DEVICE((for (int lane_offset = width / 2; lane_offset > 0; lane_offset /= 2) {
     const int other = __shfl_xor_sync(~0U, value, lane_offset);
     value = other > value ? other : value;

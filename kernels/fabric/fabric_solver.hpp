@@ -31,7 +31,8 @@
 namespace drogue::fabric {
 
 /// Fabric of any constitutive model on the caller's instance of an execution space, for coupling to other
-/// kernels. `Solver` is the facade over it for programs that choose the backend at run time.
+/// kernels. `Solver` is the facade over it for programs that choose the backend at run time. Functions that
+/// block throw std::runtime_error after a failed kernel.
 ///
 /// All work is enqueued on the instance given to the constructor. Kernels of the same instance run in order
 /// with it; other streams need events. On CUDA the instance must have a stream of its own, since steps are
@@ -54,20 +55,24 @@ class FabricSolver {
   FabricSolver(const FabricSolver&) = delete;  // captured steps refer to this object
   FabricSolver& operator=(const FabricSolver&) = delete;
 
+  /// Instance on which all work is enqueued. Does not throw.
   [[nodiscard]] const ExecutionSpace& space() const { return _instance.space(); }
+  /// Number of vertices, those of suspended payloads included. Does not throw.
   [[nodiscard]] int vertices() const { return _vertices; }
 
-  /// Views of the state at the end of the steps enqueued so far. Kernels may write them between steps; call
-  /// `enqueue_checkpoint` after it if a failure shall return to the state written.
+  /// Views of positions, m, and velocities, m/s, at the end of the steps enqueued so far. Kernels may write
+  /// them between steps; call `enqueue_checkpoint` after it if a failure shall return to the state written.
+  /// Does not throw.
   [[nodiscard]] State<ExecutionSpace> state() const;
 
   /// Dead forces on all vertices, (vertices, 3), N, which kernels may change between steps. Initially
   /// `Parameters::load`; Model::linear_vector adds the forces of its springs at rest. The first call may
-  /// allocate and then blocks.
+  /// allocate and then blocks. Throws std::runtime_error if memory runs out.
   [[nodiscard]] Points loads();
 
   /// Follower pressure at all vertices, (vertices), Pa, initially zero, which kernels may change between
-  /// steps. It adds to `Parameters::follower_pressures`. The first call allocates and blocks.
+  /// steps. It adds to `Parameters::follower_pressures`. The first call allocates and blocks. Throws
+  /// std::runtime_error if memory runs out.
   [[nodiscard]] PressureView pressures();
 
   /// Motion of the pinned axes that no expression of `Parameters::motions` moves, which kernels may change
@@ -78,7 +83,7 @@ class FabricSolver {
   /// present positions, velocities and time. Throws std::logic_error if no such axis is pinned.
   [[nodiscard]] PrescribedMotion<ExecutionSpace> prescribed_motion();
 
-  /// Replaces the functor from the next step on.
+  /// Replaces the functor from the next step on. Does not throw.
   void set_vertex_force(const VertexForce& vertex_force);
 
   /// Enqueues `steps` steps of `time_state().dt` and a checkpoint after every 256th step. Asynchronous but
@@ -100,13 +105,15 @@ class FabricSolver {
   /// std::logic_error in a capture, whose graph may be launched at any time.
   bool advance_to(double time);
 
-  /// Enqueues a copy of the state to the checkpoint, which has no effect after a failure.
+  /// Enqueues a copy of the state to the checkpoint, which has no effect after a failure. Throws
+  /// std::runtime_error if the launch fails.
   void enqueue_checkpoint() { save_checkpoint(-1); }
 
-  /// Blocks until all steps are done. After a failure it restores the last checkpoint.
+  /// Blocks until all steps are done. After a failure it restores the last checkpoint. Throws
+  /// std::runtime_error after a failed kernel.
   void synchronize();
 
-  /// First failure, if any. Blocks.
+  /// First failed step, if any. Blocks. Throws std::runtime_error after a failed kernel.
   [[nodiscard]] std::optional<StepFailure> failure();
 
   /// Record of failures for other kernels, which may read `has_failed`. Does not throw.
@@ -121,13 +128,13 @@ class FabricSolver {
   void download(std::span<Vector> positions, std::span<Vector> velocities);
 
   /// Step count, dt and time after the steps enqueued so far; after a failure has been reported, those of the
-  /// restored state.
+  /// restored state. Times in s. Does not throw.
   [[nodiscard]] TimeState time_state() const { return _time; }
 
   /// Blocks. Throws std::invalid_argument unless dt is positive, the time finite and 0 <= since <= step.
   void set_time_state(const TimeState& time);
 
-  /// The functions below block and are those of `Solver`.
+  /// The functions below block. They are documented in `Solver`.
   void forces(std::span<Vector> forces);
   [[nodiscard]] double fastest_frequency();
   [[nodiscard]] double frequency_at_least();

@@ -50,7 +50,8 @@ inline linear::PoissonProblem pressure_problem(const Parameters& parameters) {
   return problem;
 }
 
-/// Sides of the cells of a rank: those of the domain, or towards other ranks.
+/// Sides of the cells of a rank: those of the domain, or towards other ranks. Values as in
+/// `Parameters::boundary`, SI units. Does not throw.
 inline std::array<Boundary, 6> sides_of(const Parameters& parameters, const linear::PencilRanks& ranks) {
   std::array<Boundary, 6> sides = parameters.boundary;
   for (std::size_t side = 0; side < 6; ++side)
@@ -91,13 +92,6 @@ class FlowSolver {
   /// throw.
   [[nodiscard]] const Values& force() const { return _force; }
 
-  /// As the functions of `Solver`.
-  void upload(StateField field, std::span<const double> values);
-  void download(StateField field, std::span<double> values);
-  void start();
-  void restore(const Progress& progress);
-  Stop advance(double target, std::int64_t pause_step, const Poll& poll);
-
   // For a coupling that enqueues other kernels between steps. Asynchronous, without a bound on the steps in
   // flight, and on one rank alone.
 
@@ -119,6 +113,12 @@ class FlowSolver {
   /// `advance` ends. Does not throw.
   [[nodiscard]] const ControlView<ExecutionSpace>& control() const { return _control; }
 
+  /// The functions below are documented in `Solver`.
+  void upload(StateField field, std::span<const double> values);
+  void download(StateField field, std::span<double> values);
+  void start();
+  void restore(const Progress& progress);
+  Stop advance(double target, std::int64_t pause_step, const Poll& poll);
   [[nodiscard]] Progress progress() { return read_control().now; }
   [[nodiscard]] StepFailure failure();
   [[nodiscard]] Totals totals();
@@ -183,7 +183,8 @@ class FlowSolver {
   stepping::StepLauncher<ExecutionSpace> _launcher;
 };
 
-/// True if the pressure equation of a flow is solved by fast transforms, and not by diagonalization.
+/// True if the pressure equation of a flow is solved by fast transforms, and not by diagonalization. Throws
+/// std::invalid_argument if `parameters` request transforms that the backend lacks for them.
 template <class ExecutionSpace>
 bool uses_transforms(const Parameters& parameters, int ranks) {
   const bool can = linear::FourierSolver<ExecutionSpace>::supports(pressure_problem(parameters)) &&

@@ -22,7 +22,8 @@ struct GasState {
   FieldsView<ExecutionSpace> buffer[3];
   Kokkos::View<const Control, typename ExecutionSpace::memory_space> control;
 
-  /// Fields of the last accepted step; to be called in kernels. Does not throw.
+  /// Fields of the last accepted step, in the units of `buffer` (kg, m, s, J); to be called in kernels. Does
+  /// not throw.
   [[nodiscard]] KOKKOS_FUNCTION const FieldsView<ExecutionSpace>& now() const {
     return buffer[control().restart.current];
   }
@@ -33,7 +34,7 @@ struct GasState {
 /// the control block decides which of the two has an effect.
 ///
 /// All work is enqueued on the instance, which must outlive the solver; on CUDA it must have a stream of its
-/// own. Functions that `Solver` declares are documented there.
+/// own. Functions that `Solver` declares are documented in `Solver`.
 template <class ExecutionSpace>
 class GasSolver {
  public:
@@ -110,7 +111,7 @@ class GasSolver {
 };
 
 /// Tile shape. On a device the slots of a tile, halo included, are a multiple of its threads or as many as
-/// fit in shared memory. On a host the scratch of a tile stays in the L1 cache.
+/// fit in shared memory. On a host the scratch of a tile stays in the L1 cache. Does not throw.
 template <class ExecutionSpace>
 TileShape tile_shape(int block, int halo, int slots) {
   if constexpr (device::is_host<ExecutionSpace>) {
@@ -361,7 +362,7 @@ ConstConservedFields GasSolver<ExecutionSpace>::finish_snapshot() {
   return {{data, n}, {data + n, n}, {data + 2 * n, n}};
 }
 
-/// Calls `launch` with the reconstruction scheme as a compile-time constant.
+/// Calls `launch` with the reconstruction scheme as a compile-time constant. Throws as `launch` does.
 template <class Launch>
 void dispatch_reconstruction(const Parameters& p, const Launch& launch) {
   switch (p.weno) {

@@ -75,12 +75,12 @@ class Pricer {
   /// Early exercise boundary of an American contract from now to expiry, one point (years, money) per time
   /// step; empty if exercise is never optimal. Throws std::invalid_argument for the method `cos`.
   [[nodiscard]] std::vector<BoundaryPoint> boundary(const Contract& contract) {
-    return boundary_on(contract, 0, 0);
+    return boundary(contract, 0, 0);
   }
 
   /// As `boundary`, with `mesh` intervals and `steps` time steps, say those of a price. 0 intervals: those of
   /// the settings, or 512. Throws std::invalid_argument for the method `cos`.
-  virtual std::vector<BoundaryPoint> boundary_on(const Contract& contract, int mesh, int steps) = 0;
+  virtual std::vector<BoundaryPoint> boundary(const Contract& contract, int mesh, int steps) = 0;
 
   /// Current prices (money) at the nodes of one solve, in ascending order of the spot (money). The contract's
   /// spot only affects the extent of the grid. Prices have the error of a single grid. By homogeneity,

@@ -37,8 +37,8 @@ KOKKOS_INLINE_FUNCTION Vector3<R> cross(const Vector3<R>& a, const Vector3<R>& b
 /// Euclidean norm, m. Squares overflow beyond 1e154.
 KOKKOS_INLINE_FUNCTION double length(const Point& a) { return Kokkos::sqrt(dot(a, a)); }
 
-/// Inverse area of the triangle that two edges (m) span, 1/m^2; 0 for a degenerate triangle. The only
-/// implementation: all callers obtain the same bits in a build that promises reproducibility.
+/// Inverse area of the triangle that two edges (m) span, 1/m^2; 0 for a degenerate triangle.
+/// For slivers it has less round-off than `fabric::inverse_area` of scalar products; the bits differ.
 template <class R>
 KOKKOS_INLINE_FUNCTION R inverse_area(const Vector3<R>& a, const Vector3<R>& b) {
   const Vector3<R> normal = cross(a, b);

@@ -25,18 +25,20 @@ class StepLauncher {
            select_driver(requested, true, has_graph) == Driver::persistent;
   }
 
-  /// `instance` must outlive the launcher.
+  /// `instance` must outlive the launcher. Does not throw.
   StepLauncher(const device::Instance<ExecutionSpace>& instance, Driver requested)
       : _instance(&instance), _driver(select_driver(requested, false, has_graph)) {}
 
-  /// Declares that the solver has set up its persistent kernel.
+  /// Declares that the solver has set up its persistent kernel. Does not throw.
   void use_persistent() { _driver = Driver::persistent; }
 
+  /// Selected driver. Does not throw.
   [[nodiscard]] Driver driver() const { return _driver; }
   [[nodiscard]] bool is_persistent() const { return _driver == Driver::persistent; }
 
   /// Enqueues one step. `enqueue(space)` launches its kernels; a graph driver captures them on the first call
   /// per variant and replays the graph, so that they must neither fence nor allocate. Asynchronous.
+  /// Throws std::runtime_error if the capture or the launch fails.
   template <class Enqueue>
   void launch(int variant, const Enqueue& enqueue) {
     if (_driver == Driver::plain) return enqueue(_instance->space());
@@ -48,6 +50,7 @@ class StepLauncher {
   }
 
   /// Discards the captured graphs. Required after a change of values that kernels hold by copy, such as dt.
+  /// Does not throw.
   void discard_graphs() {
     for (auto& graph : _graphs) graph.reset();
   }

@@ -1,5 +1,6 @@
 #include "miniapps/framework/scene_run.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <system_error>
 
@@ -54,10 +55,12 @@ class SceneRun {
       record(failure);
       throw failure;
     }
-    if (_result.exit_code == ExitCode::interrupted)
-      _result.message = "interrupted by a signal; restart.h5 is written";
+    const bool is_interrupted = _result.exit_code == ExitCode::interrupted;
+    if (is_interrupted)
+      _result.message = "interrupted by a signal; restart.h5 is written, continue with --restart auto";
     write_result();
     if (!_options.quiet) print_summary();
+    if (is_interrupted) print_notice(_app.program(), _result.message);
     return _result.exit_code;
   }
 
@@ -122,12 +125,14 @@ class SceneRun {
   }
 
   void print_summary() const {
+    std::size_t width = 16;
+    for (const run::Check& check : _result.checks) width = std::max(width, check.name.size());
     std::printf("%s on %s: %lld steps to t = %g s in %.3g s%s\n", _result.scene.c_str(),
                 _result.backend.c_str(), static_cast<long long>(_result.steps), _result.time,
                 _result.timing.wall_s, _app.summary ? _app.summary(_result).c_str() : "");
     for (const run::Check& check : _result.checks)
-      std::printf("  %-16s %.4g  (tolerance %.4g)  %s\n", check.name.c_str(), check.value, check.tolerance,
-                  check.passed ? "passed" : "FAILED");
+      std::printf("  %-*s %.4g  (tolerance %.4g)  %s\n", static_cast<int>(width), check.name.c_str(),
+                  check.value, check.tolerance, check.passed ? "passed" : "FAILED");
     std::printf("files in %s\n", _out.string().c_str());
   }
 

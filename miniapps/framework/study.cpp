@@ -22,7 +22,7 @@ StudySession::StudySession(const MiniAppOptions& options, const std::string& pro
     : _quiet(options.quiet),
       _backend(choose_backend(options.backend)),
       _directory(options.out.empty() ? std::filesystem::path("out") / (scene_name + "-study") : options.out,
-                 options.overwrite ? run::ExistingRun::overwrite : run::ExistingRun::refuse),
+                 options.overwrite ? run::ExistingRun::overwrite : run::ExistingRun::refuse_study),
       _session((_directory.begin(), _directory.write_scene(printed_scene), _backend), options.kokkos),
       _facts(run::new_result(program, scene_name)) {
   _session.describe(_facts);

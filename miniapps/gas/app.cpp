@@ -1,33 +1,24 @@
 #include "miniapps/gas/app.hpp"
 
-#include <utility>
-
+#include "miniapps/framework/typed_scene.hpp"
+#include "miniapps/gas/scene/scene_keys.hpp"
 #include "miniapps/gas/simulation/simulation.hpp"
 #include "miniapps/gas/verify/study.hpp"
 
 namespace drogue::gas_app {
 namespace {
 
-class RunnableScene final : public framework::Scene {
+class RunnableScene final : public framework::TypedScene<GasScene, Simulation> {
  public:
-  explicit RunnableScene(GasScene scene) : _scene(std::move(scene)) {}
-
-  [[nodiscard]] std::string print() const override { return print_gas_scene(_scene); }
-  [[nodiscard]] std::string fingerprint() const override { return scene_fingerprint(_scene); }
-  [[nodiscard]] std::string precision() const override { return precision_name(_scene.parameters); }
-  [[nodiscard]] std::unique_ptr<framework::Simulation> create(
-      const framework::SimulationSettings& settings) const override {
-    return std::make_unique<Simulation>(_scene, settings);
-  }
-
- private:
-  GasScene _scene;
+  using TypedScene::TypedScene;
+  [[nodiscard]] std::string precision() const override { return precision_name(content().parameters); }
 };
 
 std::unique_ptr<framework::Scene> read(const std::filesystem::path& file,
                                        const std::vector<std::string>& assignments, bool baseline) {
   return std::make_unique<RunnableScene>(
-      read_gas_scene(file, assignments, baseline ? SchemeSource::baseline : SchemeSource::scene));
+      read_gas_scene(file, assignments, baseline ? SchemeSource::baseline : SchemeSource::scene),
+      declare_gas_scene);
 }
 
 std::string limiter_summary(const run::ResultDocument& result) {

@@ -64,9 +64,7 @@ class BatchRun {
         _input(input),
         _result(run::new_result("drogue-options", input.stem().string())) {
     _result.metrics.add_group("counts");
-    // The schema of result.json has the counts of a flux limiter for every program.
-    for (const char* count : {"touches", "cells", "redone_steps"})
-      _result.metrics.set("limiter", count, std::int64_t{0});
+    run::set_no_limiter(_result.metrics);
     _result.ranks = communicator.size();
   }
 
@@ -125,6 +123,7 @@ class BatchRun {
       const std::string written = run::is_replaced(_command.out) ? "nothing" : "not all";
       _result.message =
           "interrupted by a signal; " + written + " is written to '" + _command.out.string() + "'";
+      print_notice("drogue-options", _result.message);
       return ExitCode::interrupted;
     }
     if (!_command.quiet && !writes_to_standard_output())

@@ -110,7 +110,7 @@ void ChunkPricer::price_pending(WorkQueue& queue) {
 /// differ by rounding.
 std::vector<options::BoundaryPoint> ChunkPricer::boundary_of(const options::Contract& contract,
                                                              const options::Price& price) const {
-  std::vector<options::BoundaryPoint> points = _pricer.boundary_on(contract, price.mesh, price.steps);
+  std::vector<options::BoundaryPoint> points = _pricer.boundary(contract, price.mesh, price.steps);
   if (!points.empty() && points.front().time == 0.0) points.front().spot = price.exercise_boundary;
   return points;
 }

@@ -23,7 +23,7 @@ struct OptionValues {
 void declare_pricing(CLI::App& app, OptionValues& values, Command& command) {
   add_backend_option(app, command.backend);
   app.add_option("--method", values.method,
-                 "pide: finite differences; cos: Fourier; seed: the dissertation's, which states no error")
+                 "pide: finite differences; cos: Fourier; seed: that of [Shi] (README.md), without an error")
       ->check(CLI::IsMember({"pide", "cos", "seed"}))
       ->capture_default_str();
   auto* tolerance = app.add_option("--tolerance", values.tolerance,
@@ -116,6 +116,10 @@ std::vector<double> parse_values(const std::string& option, const std::string& t
   const double first = parse_number(option, parts[0], min, max);
   const double last = parse_number(option, parts[1], min, max);
   const int count = parse_integer(option, parts[2], 1, max_values);
+  if (count == 1 && first != last)
+    throw Failure(ExitCode::usage, option + " = '" + text +
+                                       "' has two ends but a count of 1: give a count of 2 " +
+                                       "or more, or one value");
   for (int i = 0; i < count; ++i)
     values.push_back(i + 1 == count && count > 1 ? last
                                                  : first + (last - first) * i / std::max(count - 1, 1));

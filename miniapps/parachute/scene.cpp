@@ -1,10 +1,8 @@
 #include "miniapps/parachute/scene.hpp"
 
 #include "common/run/restart/restart_file.hpp"
-#include "common/scene/document.hpp"
-#include "common/scene/print.hpp"
-#include "common/scene/read.hpp"
 #include "miniapps/framework/mini_app.hpp"
+#include "miniapps/framework/typed_scene.hpp"
 #include "miniapps/parachute/scene_check.hpp"
 #include "miniapps/parachute/scene_keys.hpp"
 
@@ -16,21 +14,11 @@ const std::vector<std::string>& field_names() {
 }
 
 FlowScene read_flow_scene(const std::filesystem::path& file, const std::vector<std::string>& sets) {
-  FlowScene scene;
-  scene.file = file;
-  scene.name = file.stem().string();
-  scene::Table root;
-  declare_flow_scene(root, scene);
-  scene::read_file(root, file, sets);
-  complete_and_check(root, scene);
-  return scene;
+  return framework::read_scene<FlowScene>(file, sets, declare_flow_scene, complete_and_check);
 }
 
 std::string print_flow_scene(const FlowScene& scene) {
-  FlowScene copy = scene;
-  scene::Table root;
-  declare_flow_scene(root, copy);
-  return scene::print(root);
+  return framework::print_scene(scene, declare_flow_scene);
 }
 
 std::string scene_fingerprint(FlowScene scene) {
@@ -55,18 +43,9 @@ std::filesystem::path scene_folder() {
 }
 
 std::string document_flow_scene() {
-  FlowScene defaults;
-  scene::Table root;
-  declare_flow_scene(root, defaults);
-  return R"(# Parachute scenes: all keys
-
-Written from the declarations that also read, check and print a scene; do not edit. After a change of them:
-`DROGUE_UPDATE_DOCS=1 ctest --test-dir build/host -R FlowSceneDocument`.
-
-A scene is a TOML file. Unknown keys are refused. Numbers are in SI units; an integer is accepted for a real.
-A component of a velocity is a number or an expression in muParser syntax.
-
-)" + scene::document(root);
+  return framework::document_scene(
+      declare_flow_scene, "Parachute", "FlowSceneDocument",
+      "A component of a velocity is a number or an expression in muParser syntax.\n");
 }
 
 }  // namespace drogue::parachute_app

@@ -49,7 +49,9 @@ void check_grid(const Table& root, const flow::Parameters& p) {
   }
   constexpr double most_cells = 2147483647.0;
   if (cells > most_cells)
-    contradict(root, "grid.cells", "grid.cells: " + real_text(cells) + " cells are more than 2^31 - 1");
+    contradict(
+        root, "grid.cells",
+        "grid.cells: " + std::to_string(static_cast<std::int64_t>(cells)) + " cells are more than 2^31 - 1");
 }
 
 void complete_sides(const Table& root, FlowScene& scene) {

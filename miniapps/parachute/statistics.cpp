@@ -3,6 +3,8 @@
 #include <cmath>
 #include <string>
 
+#include "common/run/statistics.hpp"
+
 namespace drogue::parachute_app {
 
 template <class Self, class Number>
@@ -33,9 +35,9 @@ void RunStatistics::add(const flow::Totals& totals) {
   const auto step = static_cast<double>(totals.step);
   if (step <= _step) return;
   const double rise = totals.kinetic_energy - _energy, rate = -rise / (totals.time - _time);
-  if (exceeds(rise, _largest_rise)) _largest_rise = rise;
-  if (exceeds(totals.max_speed, _largest_speed)) _largest_speed = totals.max_speed;
-  if (exceeds(rate, _peak_dissipation)) {
+  _largest_rise = run::maximum_or_nan(_largest_rise, rise);
+  _largest_speed = run::maximum_or_nan(_largest_speed, totals.max_speed);
+  if (rate > _peak_dissipation || std::isnan(rate)) {
     _peak_dissipation = rate;
     _peak_time = 0.5 * (totals.time + _time);
   }

@@ -1,17 +1,9 @@
 #pragma once
 
-#include <cmath>
-
 #include "common/run/restart/restart_file.hpp"
 #include "kernels/flow/state.hpp"
 
 namespace drogue::parachute_app {
-
-/// True if `value` exceeds `largest` or is NaN, and false once `largest` is NaN: a maximum found with it
-/// keeps a NaN, so that no check passes on an invalid state. Does not throw.
-[[nodiscard]] inline bool exceeds(double value, double largest) {
-  return value > largest || std::isnan(value);
-}
 
 /// Extremes over the rows of a run, from its first start on. They continue after a restart.
 class RunStatistics {

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/run/statistics.hpp"
 #include "miniapps/parachute/functions.hpp"
 #include "miniapps/parachute/profile.hpp"
 #include "miniapps/parachute/simulation.hpp"
@@ -17,7 +18,7 @@ struct ErrorSums {
     volume += weight;
     absolute += weight * std::abs(error);
     square += weight * error * error;
-    if (exceeds(std::abs(error), largest)) largest = std::abs(error);
+    largest = run::maximum_or_nan(largest, std::abs(error));
   }
 };
 
@@ -77,7 +78,7 @@ std::map<std::string, double> Simulation::error_norms() {
     norms["l1_velocity"] += sums.absolute / sums.volume;
     norms["l2_velocity"] += sums.square / sums.volume;
     double& largest = norms["linf_velocity"];
-    if (exceeds(sums.largest, largest)) largest = sums.largest;
+    largest = run::maximum_or_nan(largest, sums.largest);
   }
   norms["l2_velocity"] = std::sqrt(norms["l2_velocity"]);
   if (exact.pressure.empty()) return norms;
@@ -130,8 +131,7 @@ void Simulation::check_profiles(run::ResultDocument& result) {
     if (!profile.points.empty()) {
       double largest = 0.0;
       for (const auto& [where, value] : profile.points) {
-        const double deviation = std::abs(line(where) - value);
-        if (exceeds(deviation, largest)) largest = deviation;
+        largest = run::maximum_or_nan(largest, std::abs(line(where) - value));
       }
       result.add_check(name, largest, profile.tolerance);
     }

@@ -1,28 +1,18 @@
 #include "miniapps/springs/app.hpp"
 
-#include <utility>
-
 #include "kernels/mesh/quality.hpp"
+#include "miniapps/framework/typed_scene.hpp"
+#include "miniapps/springs/scene/scene_keys.hpp"
 #include "miniapps/springs/simulation/simulation.hpp"
 #include "miniapps/springs/verify/study.hpp"
 
 namespace drogue::springs_app {
 namespace {
 
-class RunnableScene final : public framework::Scene {
+class RunnableScene final : public framework::TypedScene<SpringsScene, Simulation> {
  public:
-  explicit RunnableScene(SpringsScene scene) : _scene(std::move(scene)) {}
-
-  [[nodiscard]] std::string print() const override { return print_springs_scene(_scene); }
-  [[nodiscard]] std::string fingerprint() const override { return scene_fingerprint(_scene); }
-  [[nodiscard]] std::string check_report() const override { return quality_report(_scene.mesh); }
-  [[nodiscard]] std::unique_ptr<framework::Simulation> create(
-      const framework::SimulationSettings& settings) const override {
-    return std::make_unique<Simulation>(_scene, settings);
-  }
-
- private:
-  SpringsScene _scene;
+  using TypedScene::TypedScene;
+  [[nodiscard]] std::string check_report() const override { return quality_report(content().mesh); }
 };
 
 }  // namespace
@@ -33,13 +23,11 @@ framework::MiniApp mini_app() {
   app.description = "Cloth and strings as springs that equal a membrane.";
   app.scene_folder = scene_folder();
   app.read = [](const std::filesystem::path& file, const std::vector<std::string>& assignments, bool) {
-    return std::make_unique<RunnableScene>(read_springs_scene(file, assignments));
+    return std::make_unique<RunnableScene>(read_springs_scene(file, assignments), declare_springs_scene);
   };
   app.study = run_study;
   app.metrics.add_group("energy");
-  // The schema of result.json holds the counts of a flux limiter for every program.
-  for (const char* count : {"touches", "cells", "redone_steps"})
-    app.metrics.set("limiter", count, std::int64_t{0});
+  run::set_no_limiter(app.metrics);
   return app;
 }
 

@@ -26,6 +26,12 @@ Command work_precision_command(CLI::App& program);
 /// initialised.
 void require(device::Backend backend);
 
+/// Description of an option --app, with its valid names. Does not throw.
+std::string app_help(const std::string& purpose);
+
+/// Throws Failure(usage) with the nearest valid name if `app` is not a name for --app.
+void require_app(const std::string& app);
+
 /// Throws Failure(usage) with the nearest valid name if `name`, the name of a `kind`, is not in `valid`.
 void require_name(const std::string& kind, const std::string& name, const std::vector<std::string>& valid);
 

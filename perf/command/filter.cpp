@@ -14,8 +14,8 @@ std::regex filter_of(const std::string& text) {
   } catch (const std::regex_error&) {
     throw Failure(ExitCode::usage,
                   "--filter '" + text +
-                      "' is no regular expression; a bracket or a star that stands for itself "
-                      "needs a backslash before it");
+                      "' is not a valid regular expression; literal brackets and stars need a "
+                      "backslash before them");
   }
 }
 

@@ -4,6 +4,7 @@
 #include <memory>
 #include <regex>
 
+#include "common/run/files/atomic_file.hpp"
 #include "common/run/statistics.hpp"
 #include "perf/cases/cases.hpp"
 #include "perf/command/command.hpp"
@@ -53,7 +54,7 @@ ExitCode run_cases(const RunOptions& options, const std::regex& filter) {
     lines.push_back(to_json(record, here, to_json(record.facts)));
     passed = passed && record.passed();
     const run::MedianInterval time = run::median_interval(record.samples);
-    std::printf("%-32s %12.3f us a %s  [%.3f .. %.3f]  error %.3g  %s\n", record.name.c_str(),
+    std::printf("%-32s %12.3f us per %s  [%.3f .. %.3f]  error %.3g  %s\n", record.name.c_str(),
                 1e6 * time.median, record.unit_of_work.c_str(), 1e6 * time.low, 1e6 * time.high, record.error,
                 verdict(record));
   }
@@ -81,6 +82,7 @@ Command run_command(CLI::App& program) {
   app->add_flag("--quick", options->quick, "Small cases and few samples");
   return {app, [options](const std::vector<std::string>& kokkos) {
             const std::regex filter = filter_of(options->filter);
+            run::require_writable(options->out);
             require(device::fastest_backend());
             const device::Runtime runtime(kokkos);
             return run_cases(*options, filter);

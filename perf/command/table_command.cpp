@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "common/program/command_line.hpp"
+#include "common/run/files/atomic_file.hpp"
 #include "perf/command/command.hpp"
 #include "perf/measure/record.hpp"
 #include "perf/tables/tables.hpp"
@@ -48,12 +49,13 @@ ExitCode print_table(TableOptions options, const std::vector<std::string>& kokko
   require_name("table", options.table, {"occupancy", "block-size", "transfers", "pressure", "memory"});
   if (options.app.empty())
     options.app = options.table == "pressure" || options.table == "memory" ? "flow" : "gas";
-  require_name("app", options.app, {"gas", "springs", "options", "flow"});
+  require_app(options.app);
   if (options.app == "springs" && options.table == "block-size")
     throw Failure(ExitCode::usage,
                   "kernels of springs are compiled for one block size; what can be chosen is the size of a "
                   "patch, which drogue-perf run --filter springs-step/cuda/.*/patch times");
   require_name("table of " + options.app, options.table, tables_of(options.app));
+  run::require_writable(options.out);
   Table table;
   if (options.table == "occupancy")
     table =
@@ -69,11 +71,11 @@ ExitCode print_table(TableOptions options, const std::vector<std::string>& kokko
 Command table_command(CLI::App& program) {
   const auto options = std::make_shared<TableOptions>();
   CLI::App* app = program.add_subcommand(
-      "table", "Print a table, most of them of the dissertation beside our own numbers");
+      "table", "Print a table, most of them of [Shi] (README.md cites it) beside our own numbers");
   app->add_option("TABLE", options->table,
                   "occupancy (computed); block-size or transfers; pressure or memory of flow")
       ->required();
-  app->add_option("--app", options->app, "Mini-app whose kernels are measured")->capture_default_str();
+  app->add_option("--app", options->app, app_help("Kernels that are measured"));
   app->add_option("--backend", options->backend, "Where to measure: auto takes the fastest present")
       ->check(CLI::IsMember(backend_choices()))
       ->capture_default_str();

@@ -7,6 +7,7 @@
 
 #include "common/program/command_line.hpp"
 #include "common/program/signals.hpp"
+#include "common/run/files/atomic_file.hpp"
 #include "common/run/files/output_path.hpp"
 #include "common/run/result_document.hpp"
 #include "common/run/statistics.hpp"
@@ -49,9 +50,7 @@ constexpr WorkPrecision apps[] = {
     {"options", options_work_precision, "option", "time of a batch, by option"}};
 
 const WorkPrecision& work_precision_of(const std::string& name) {
-  std::vector<std::string> names;
-  for (const WorkPrecision& app : apps) names.emplace_back(app.app);
-  require_name("app", name, names);
+  require_app(name);
   return *std::ranges::find(apps, name, &WorkPrecision::app);
 }
 
@@ -105,6 +104,7 @@ ExitCode measure_solutions(const WorkPrecisionOptions& options, const std::vecto
     known += (known.empty() ? "" : ", ") + problem;
     return std::regex_search(problem, filter);
   };
+  run::require_writable(options.out);
   const Selection selection{backends_of(options.backend), options.quick, wants};
   const device::Runtime runtime(kokkos);
   install_signal_handlers();
@@ -134,7 +134,7 @@ Command work_precision_command(CLI::App& program) {
       "work-precision",
       "Time to solution and error over meshes, schemes and backends; of gas beside a second-order scheme, of "
       "options for known prices, of flow for vortices of Taylor and Green and a lid-driven cavity");
-  app->add_option("--app", options->app, "Mini-app whose problems are run")->capture_default_str();
+  app->add_option("--app", options->app, app_help("Kernels whose problems are run"))->capture_default_str();
   app->add_option("--backend", options->backend, "auto takes all that are present")
       ->check(CLI::IsMember(backend_choices()))
       ->capture_default_str();

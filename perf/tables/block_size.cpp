@@ -62,9 +62,9 @@ Case case_of(device::Backend backend, Form form, int cells, int block) {
 
 /// Prints the records of one form, mesh by mesh; `record` is the first.
 void print_form(Form form, const Axes& axes, const Record* record) {
-  std::printf("\n%s, microseconds a step (median); cells down, threads of a block across\n%8s",
-              form == Form::baseline ? "The dissertation's flux kernel, three stages"
-                                     : "The fused step, a graph a step",
+  std::printf("\n%s, microseconds per step (median); cells down, threads of a block across\n%8s",
+              form == Form::baseline ? "The flux kernel of [Shi], three stages"
+                                     : "The fused step, one graph per step",
               "");
   for (const int block : axes.blocks) std::printf("%10d", block);
   for (const int cells : axes.cells) {

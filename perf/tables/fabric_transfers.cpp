@@ -90,9 +90,9 @@ Table print_fabric_transfers(device::Backend backend, bool quick, const nlohmann
   for (const FabricTransfer& row : rows) cases.push_back(case_of(backend, row));
   const std::vector<Record> records = measure(cases, warm_up_rounds, kept_rounds(quick));
   std::printf(
-      "Table 5.6: a stretched sheet on %s, microseconds from host to host; in brackets the dissertation's "
-      "Quadro "
-      "6000\nIts steps take a number of substeps that is not recorded: no ratio to it means anything without "
+      "Table 5.6: a stretched sheet on %s, microseconds from host to host; in brackets [Shi], on a "
+      "Quadro 6000\nIts steps take a number of substeps that is not recorded: no ratio to it means anything "
+      "without "
       "that number\n"
       "vertices  substeps  H2D            compute            D2H            total              energy "
       "drift\n",

@@ -63,7 +63,7 @@ Table print_gas_transfers(device::Backend backend, bool quick, const nlohmann::j
   for (const GasTransfer& row : rows) cases.push_back(case_of(backend, row));
   const std::vector<Record> records = measure(cases, warm_up_rounds, kept_rounds(quick));
   std::printf(
-      "Table 5.5: baseline (--seed-mode) on %s, microseconds a step; in brackets the dissertation's Quadro "
+      "Table 5.5: baseline (--seed-mode) on %s, microseconds per step; in brackets [Shi], on a Quadro "
       "6000\n%s\n"
       "memory     cells         H2D            compute         D2H            total        95 %% interval    "
       "L1 error\n",

@@ -66,7 +66,7 @@ int differences(const dissertation::OccupancyRow& printed, const Block& block, c
 void print_table_4_2(Table& table, const nlohmann::json& provenance) {
   const Architecture on = fermi();
   std::printf(
-      "Table 4.2: the dissertation's flux kernel on compute capability 2.0, %d registers a thread;\n"
+      "Table 4.2: the flux kernel of [Shi] on compute capability 2.0, %d registers per thread;\n"
       "computed (printed)\n\n"
       "block  shared bytes    by registers  by shared  by limit  blocks  threads/SM  threads/device    %% "
       "of the threads\n",

@@ -70,8 +70,8 @@ Table print_options_transfers(device::Backend backend, bool quick, const nlohman
   for (const OptionsTransfer& line : lines) cases.push_back(case_of(backend, line));
   const std::vector<Record> records = measure(cases, options_warm_up_rounds, options_rounds);
   std::printf(
-      "Tables 5.7 and 5.8: American puts on %s, microseconds from host to host; in brackets the "
-      "dissertation's\nQuadro 6000, whose first copy holds the start of CUDA. Method seed is its scheme, "
+      "Tables 5.7 and 5.8: American puts on %s, microseconds from host to host; in brackets [Shi], "
+      "on a\nQuadro 6000, whose first copy holds the start of CUDA. Method seed is its scheme, "
       "pide ours, "
       "two solves for a stated error\n"
       "options  mesh  scheme  H2D               compute                 D2H              total               "

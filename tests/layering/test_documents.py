@@ -33,6 +33,18 @@ class Documents(unittest.TestCase):
                         self.assertRegex(code, rf"\b{part}\b", f"{document} has {function} in {name}")
         self.assertGreater(count, 80)
 
+    def test_diagrams_name_classes_of_the_sources(self):
+        sources = "\n".join(file.read_text(encoding="utf-8") for folder in ("common", "kernels", "miniapps", "perf")
+                            for file in (SOURCE / folder).rglob("*.hpp"))
+        declared = set(re.findall(r"\b(?:class|struct|using|concept)\s+(?:\[\[\w+\]\]\s+)?(\w+)", sources))
+        count = 0
+        for document, text in self.documents():
+            for diagram in re.findall(r"^```\n(.*?)^```", text, re.DOTALL | re.MULTILINE):
+                for name in re.findall(r"\b[A-Z][a-z]+(?:[A-Z][a-z]+)+\b(?!\.\w)|\b[A-Z]\w+(?=<|::)", diagram):
+                    count += 1
+                    self.assertTrue(name in declared, f"{document} draws {name}")
+        self.assertGreater(count, 10)
+
 
 if __name__ == "__main__":
     unittest.main()

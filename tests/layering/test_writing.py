@@ -2,7 +2,10 @@
 
 import os
 import re
+import subprocess
+import tempfile
 import unittest
+from pathlib import Path
 
 import layers
 import writing
@@ -41,6 +44,9 @@ class Repository(unittest.TestCase):
     def test_messages_are_clear(self):
         self.assertEqual([], self.breaches(writing.unclear_strings))
 
+    def test_rates_are_per_unit(self):
+        self.assertEqual([], self.breaches(writing.rates_with_an_article))
+
     def test_kept_keys_are_used_and_explained(self):
         glossary = TEXTS["docs/glossary.md"]
         for word, places in writing.KEPT.items():
@@ -52,7 +58,8 @@ class Repository(unittest.TestCase):
     def test_public_headers_state_units_and_errors(self):
         public = set(writing.public_headers(TEXTS))
         self.assertGreater(len(public), 10)
-        self.assertEqual([], [line for path in sorted(public) for line in writing.missing_contracts(path, TEXTS[path])])
+        self.assertEqual([], [line for path in sorted(public)
+                              for line in writing.missing_contracts(path, TEXTS[path], TEXTS.get(writing.FACADES.get(path), ""))])
 
 
 class EachRuleCatchesItsBreach(unittest.TestCase):
@@ -130,6 +137,7 @@ class EachRuleCatchesItsBreach(unittest.TestCase):
             ("kernels/gas/a.hpp", "// Judgement of Solomon\n"),
             ("miniapps/a.cpp", 'say("Cloth and bar");\n'),
             ("scripts/a.py", '", ".join(held)\n'),
+            ("scripts/a.py", "axes.bar(x, y)\n"),
             ("docs/a.md", "Cloth, `--seed-mode`\n"),
             ("kernels/gas/a.hpp", "int keep = place(fixed);\n"),
             ("CHANGELOG.md", "`bar` is now `tolerance`\n"),
@@ -166,6 +174,27 @@ f("of this "
         ):
             self.assertEqual([], writing.unclear_strings(path, text), text)
 
+    def test_rates(self):
+        for path, text in (("perf/a.cpp", 'print("%f us a %s");\n'), ("scripts/a.py", 'unit = "\\u00b5s a step"\n'),
+                           ("tests/a.py", 'f"ns a {unit}"\n')):
+            self.assertEqual(1, len(writing.rates_with_an_article(path, text)), text)
+        for path, text in (("perf/a.cpp", 'print("%f us per step");\n'), ("scripts/a.py", 'a = "terms a step needs"\n')):
+            self.assertEqual([], writing.rates_with_an_article(path, text), text)
+
+    def test_reads_no_files_that_git_ignores(self):
+        with tempfile.TemporaryDirectory() as folder:
+            root = Path(folder)
+            for name in ("a.md", ".cache/b.md", "out/c.md"):
+                (root / name).parent.mkdir(exist_ok=True)
+                (root / name).write_text("text")
+            self.assertEqual(["a.md", "out/c.md"], sorted(writing.read_tree(root)))
+            (root / ".gitignore").write_text("out/\n.cache/\n")
+            try:
+                subprocess.run(["git", "init", "-q"], cwd=root, check=True)
+            except OSError:
+                self.skipTest("there is no git")
+            self.assertEqual(["a.md"], sorted(writing.read_tree(root)))
+
     def test_public_headers(self):
         texts = {
             "kernels/gas/a.hpp": "", "kernels/gas/b.hpp": "", "kernels/gas/c.hpp": "", "kernels/reference/gas/d.hpp": "",
@@ -174,6 +203,15 @@ f("of this "
             "kernels/gas/c.cpp": '#include "kernels/gas/c.hpp"\n',
         }
         self.assertEqual(["kernels/gas/a.hpp", "kernels/gas/b.hpp"], writing.public_headers(texts))
+
+    def test_typed_solvers_refer_to_functions_of_their_facade(self):
+        facade = "class Solver {\n public:\n  /// Time, s. Does not throw.\n  virtual double time() = 0;\n};\n"
+        solver = "/// Solver. Functions that `Solver` declares are documented in `Solver`.\nclass Typed {\n public:\n%s};\n"
+        path = "kernels/gas/gas_solver.hpp"
+        self.assertIn(path, writing.public_headers({path: ""}))
+        self.assertEqual([], writing.missing_contracts(path, solver % "  double time();\n", facade))
+        for text in (solver % "  double step();\n", (solver % "  double time();\n").replace("documented", "declared")):
+            self.assertEqual(1, len(writing.missing_contracts(path, text, facade)), text)
 
     def contracts(self, text):
         return writing.missing_contracts("kernels/gas/a.hpp", text)
@@ -184,6 +222,8 @@ f("of this "
             ("/// Speed of sound. Does not throw.\ndouble speed(double rho);\n", "no unit"),
             ("/// Speed of sound, m/s.\ndouble speed(double rho);\n", "whether it throws"),
             ("class Solver {\n public:\n  /// Number of steps.\n  virtual int steps() const = 0;\n};\n", "whether it throws"),
+            ("/// Steps, s.\ntemplate <class S, class F = None>\nclass Solver {\n public:\n  /// Advances to t.\n"
+             "  void advance(double t);\n};\n", "throws"),
             ("/// Applies f.\ntemplate <class F>\nvoid apply(const F& f) {\n  f();\n}\n", "whether it throws"),
         ):
             found = self.contracts("#pragma once\nnamespace drogue::gas {\n" + text + "}\n")
@@ -199,6 +239,9 @@ f("of this "
             "/// Reads and writes positions, m. Throws std::invalid_argument.\nvoid read(double* x);\nvoid write(double x);\n",
             "struct Cell {\n  double rho = f(1.0);  ///< kg/m^3\n  ~Cell();\n  Cell() = default;\n};\n",
             "/// Two triangles of the mesh. Does not throw.\nstd::array<int, 2> triangles();\n",
+            "/// Steps. Does not throw.\nclass Solver {\n  struct Steps;\n};\nstruct Solver::Steps {\n  void begin(double x);\n};\n"
+            "template <class T>\nvoid Solver<T>::advance(double x) {\n  f(x);\n}\n",
+            "/// Solver. Does not throw.\nclass A {\n  A(int k);\n};\ninline A::A(int k)\n    : _a{k},\n      _b(k),\n      _c(k) {}\n",
             "/// Largest of both.\nconstexpr int largest(int a, int b) {\n  if (a < b) { return b; }\n  return a;\n}\n",
         ):
             self.assertEqual([], self.contracts("#pragma once\nnamespace drogue::gas {\n" + text + "}\n"), text)

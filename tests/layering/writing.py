@@ -7,12 +7,14 @@ import ast
 import functools
 import io
 import re
+import subprocess
 import sys
 import tokenize
 from pathlib import Path
 
 CODE = (".hpp", ".cpp", ".hpp.in", ".cpp.in", ".cuh", ".cu", ".h")
-SKIPPED_FOLDERS = {"build", ".git", "evidence", "node_modules", "__pycache__"}
+SKIPPED_FOLDERS = {"build", ".git", "node_modules", "__pycache__"}
+RECORDS = Path("docs/evidence")
 WIDTH = 120
 
 # ----------------------------------------------------------------------------------------------------- comments
@@ -269,11 +271,14 @@ def identifiers_of_code(text):
 
 
 def identifiers_of_python(text):
+    previous = ""
     for token in tokenize.generate_tokens(io.StringIO(text).readline):
         if token.type == tokenize.NAME:
-            yield token.start[0], token.string
+            if (previous, token.string) != (".", "bar"):  # a method of matplotlib
+                yield token.start[0], token.string
         elif token.type == tokenize.STRING and re.fullmatch(r"[frbu]*(['\"])bar\1", token.string):
             yield token.start[0], "bar"
+        previous = token.string
 
 
 def identifiers(path, text):
@@ -392,6 +397,28 @@ def unclear_strings(path, text):
     return found
 
 
+# A rate is written "us per step".
+RATE_WITH_ARTICLE = re.compile(r"(?<!\w)(?:us|µs|\\u00b5s|ms|ns|microseconds|milliseconds|nanoseconds) an? [\w%{]")
+
+
+def strings_of_python(text):
+    """Pairs (line, words) of the string literals of a Python source, as written."""
+    tokens = tokenize.generate_tokens(io.StringIO(text).readline)
+    return [(token.start[0], token.string) for token in tokens if token.type == tokenize.STRING]
+
+
+def rates_with_an_article(path, text):
+    """Lines `path:line: ...` for strings of C++ and Python with a rate such as "us a step"."""
+    if not path.endswith((*CODE, ".py")):
+        return []
+    found = []
+    for line, words in strings(text) if path.endswith(CODE) else strings_of_python(text):
+        match = RATE_WITH_ARTICLE.search(words)
+        if match:
+            found.append(f"{path}:{line}: write 'per' for the article: {words[match.start():match.start() + 70]}")
+    return found
+
+
 # ---------------------------------------------------------------------------------------------------- contracts
 # Public: a header of kernels/ (not of the reference) that a mini-app, perf, the install test or another area includes.
 # Every function that it declares at namespace scope or as a public member has a doc comment, which it may share with
@@ -417,16 +444,24 @@ def area(path):
     return parts[1] if parts[0] == "kernels" and len(parts) > 2 and parts[1] != "reference" else None
 
 
-# Interfaces for coupling, which programs outside of this project include. The typed solvers are left out: their
-# functions are those of the facades, which are checked.
+# Interfaces for coupling, which programs outside of this project include.
 COUPLING_HEADERS = re.compile(
-    r"kernels/(?:coupling/\w+|fabric/surface/\w+|fabric/(?:payload|vertex_force|loads/prescribed_motion))\.hpp"
+    r"kernels/(?:coupling/\w+|fabric/surface/\w+|fabric/(?:payload|state|vertex_force|loads/prescribed_motion))\.hpp"
 )
+# Header of a typed solver -> header of its facade. A function that the facade declares too may refer to it by the words
+# "documented in `Solver`" in its own comment or in that of its class.
+FACADES = {
+    "kernels/fabric/fabric_solver.hpp": "kernels/fabric/solver.hpp",
+    "kernels/flow/flow_solver.hpp": "kernels/flow/solver.hpp",
+    "kernels/gas/gas_solver.hpp": "kernels/gas/solver.hpp",
+    "kernels/options/batch/pide_pricer.hpp": "kernels/options/pricer.hpp",
+}
+IN_FACADE = re.compile(r"documented in\s+`(?:Solver|Pricer)`")
 
 
 def public_headers(texts):
     """Headers of kernels/ for coupling, and those that an app, perf, the install test or another area includes."""
-    found = {path for path in texts if COUPLING_HEADERS.fullmatch(path)}
+    found = {path for path in texts if COUPLING_HEADERS.fullmatch(path) or path in FACADES}
     for path, text in texts.items():
         outside = path.startswith(("miniapps/", "perf/", "tests/install/"))
         for name in re.findall(r'^\s*#\s*include\s*"([^"]+)"', text, re.MULTILINE):
@@ -440,13 +475,16 @@ def is_function(statement):
     plain = re.sub(r"\[\[.*?\]\]|\balignas\s*\(.*?\)|\bnoexcept\s*\(.*?\)|\brequires\s*\(.*?\)", " ", statement)
     while re.search(r"<[^<>()]*>", plain):
         plain = re.sub(r"<[^<>()]*>", " ", plain)
-    if re.search(r"^\s*(?:using|typedef|static_assert|friend|#|return|extern template|template class|enum)\b", plain):
+    # A comma: an initializer of a constructor after one in braces.
+    if re.search(r"^\s*(?:,|(?:using|typedef|static_assert|friend|#|return|extern template|template class|enum)\b)", plain):
         return False
     if re.search(r"=\s*(?:default|delete)\s*$|\boperator\b|~\w+\s*\(|\boverride\b|\bfinal\s*$", plain):
         return False
     head = re.split(r"=(?!=)(?!\s*0\s*$)", plain)[0]
     match = re.search(r"(\w+)\s*\(([^)]*)", head)
     if not match or match.group(1).isupper() or match.group(1) in ("decltype", "if", "for", "while", "sizeof"):
+        return False
+    if re.search(r"::\s*$", head[:match.start()]):  # definition of a member, whose declaration has the contract
         return False
     constructor = not re.search(r"[\w>&*\]]\s+[&*]*\w+\s*\(", head) or re.match(r"\s*explicit\b", head)
     return not (constructor and not match.group(2).strip())
@@ -481,10 +519,12 @@ def declarations(text):
                     statement, comment = "", ""
                 continue
             if sign == "{" and not parens:
-                kind = SCOPE.search(re.sub(r"template\s*<[^{]*?>\s*(?=class|struct|\[|\w)", "", statement))
+                head = re.sub(r"template\s*<[^{]*?>\s*(?=class|struct|\[|\w)", "", statement)
+                kind = SCOPE.search(head)
                 function = "(" in re.sub(r"alignas\s*\([^)]*\)|\brequires\b.*|\[\[.*?\]\]", "", statement)
-                if kind and not function and "=" not in statement and "enum" not in statement:
-                    public = kind.group(1) != "class"
+                if kind and not function and "=" not in head and "enum" not in head:
+                    # A nested class that is defined outside of its own may be private.
+                    public = kind.group(1) != "class" and not re.search(r"\bstruct\s+\w+(?:\s*<[^{]*>)?::\w", statement)
                     scopes.append([kind.group(1), comment, public])
                     statement, comment, shared = "", "", ""
                 else:
@@ -519,15 +559,26 @@ def declarations(text):
     return found
 
 
-def missing_contracts(path, text):
-    """Lines `path:line: ...` for functions of a public header without a doc comment, a unit, or a word on errors."""
+def name_of(statement):
+    """Name of the function that a declaration declares."""
+    return re.search(r"(\w+)\s*\(", re.sub(r"\[\[.*?\]\]|alignas\(.*?\)", "", statement)).group(1)
+
+
+def missing_contracts(path, text, facade=""):
+    """Lines `path:line: ...` for functions of a public header without a doc comment, a unit, or a word on errors.
+
+    `facade`: text of the header whose functions document those of the same names here.
+    """
     found = []
+    of_facade = {name_of(statement) for _, _, _, statement in declarations(facade)}
     for line, comment, inherited, statement in declarations(text):
-        name = re.search(r"(\w+)\s*\(", re.sub(r"\[\[.*?\]\]|alignas\(.*?\)", "", statement)).group(1)
+        name = name_of(statement)
+        both = comment + " " + inherited
+        if name in of_facade and IN_FACADE.search(both):
+            continue
         if not comment.strip():
             found.append(f"{path}:{line}: {name} has no doc comment")
             continue
-        both = comment + " " + inherited
         if not path.startswith("kernels/device/") and REAL.search(statement) and not UNITS.search(both):
             found.append(f"{path}:{line}: {name} states no unit")
         if not ERRORS.search(both) and not re.search(r"\bKOKKOS_\w*FUNCTION\b|\bconstexpr\b|\bnoexcept\b", statement):
@@ -538,12 +589,25 @@ def missing_contracts(path, text):
 # ---------------------------------------------------------------------------------------------------------- all
 
 
+def names_below(root):
+    """Paths below `root` that git does not ignore; without git, those outside of hidden folders."""
+    if (root / ".git").exists():
+        try:
+            listed = subprocess.run(["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"], cwd=root,
+                                    check=True, capture_output=True, text=True).stdout
+            return sorted({Path(name) for name in listed.split("\0") if name})
+        except (OSError, subprocess.CalledProcessError):
+            pass
+    names = (path.relative_to(root) for path in root.rglob("*"))
+    return sorted(name for name in names if not any(part.startswith(".") for part in name.parts[:-1]))
+
+
 def read_tree(root, tops=None):
     """All files that the rules read below `root`, by their path from there, with their texts."""
     texts = {}
-    for path in sorted(root.rglob("*")):
-        name = path.relative_to(root)
-        if SKIPPED_FOLDERS & set(name.parts) or not path.is_file() or (tops and name.parts[0] not in tops):
+    for name in names_below(root):
+        path = root / name
+        if SKIPPED_FOLDERS & set(name.parts) or RECORDS in name.parents or not path.is_file() or (tops and name.parts[0] not in tops):
             continue
         if name.as_posix().endswith((*CODE, ".py", ".md", ".cmake", ".txt", ".toml", ".sh")):
             texts[name.as_posix()] = path.read_text(encoding="utf-8")
@@ -555,7 +619,7 @@ OWN = ("tests/layering/writing.py", "tests/layering/test_writing.py")
 
 
 # Rules for one file each: its path and text -> lines `path:line: ...`.
-RULES = (refused_openings, personified, riddles, wide_lines, replaced_names, unclear_strings)
+RULES = (refused_openings, personified, riddles, wide_lines, replaced_names, unclear_strings, rates_with_an_article)
 
 
 def main(arguments):
@@ -573,7 +637,7 @@ def main(arguments):
         if not shown(path):
             continue
         found = [line for rule in RULES for line in rule(path, text)]
-        found += missing_contracts(path, text) if path in public else []
+        found += missing_contracts(path, text, texts.get(FACADES.get(path), "")) if path in public else []
         count += len(found)
         found += suspect_openings(path, text) if warn else []
         print("".join(line + "\n" for line in found), end="")

@@ -70,7 +70,7 @@ BAD_LINES = [
     (5, "viscosity = -1", 5, ["fluid.viscosity", ">= 0"]),
     (8, "cells = [0, 6, 4]", 8, ["grid.cells[0]", "1 .. "]),
     (8, "cells = [8, 3, 4]", 8, ["grid.cells[1] = 3", "at least 4"]),
-    (8, "cells = [16384, 16384, 16384]", 8, ["grid.cells", "2^31"]),
+    (8, "cells = [16384, 16384, 16384]", 8, ["grid.cells: 4398046511104 cells", "2^31"]),
     (9, "domain = [[0, 2], [1, 1], [0, 1]]", 9, ["grid.domain[1]", "smaller"]),
     (9, "domain = [[0, 2], [1e18, 1000000000000000128], [0, 1]]", 9, ["grid.domain", "along y", "FP64"]),
     (15, 'advection = "weno7"', 15, ["flow.advection", '"weno5"']),

@@ -90,7 +90,7 @@ def solutions(
 
 
 def step(case, seconds, machine, cells, **changes):
-    """A step with its work: 1300 FLOP and 72 bytes a cell."""
+    """A step with its work: 1300 FLOP and 72 bytes per cell."""
     words = case.split("/")
     facts = {
         "backend": words[0],
@@ -135,7 +135,7 @@ def ceilings(backend="cuda", machine=H200, fp64=33e12, memory=4.2e12, cache=5.3e
 
 
 def transfers(machine=H200):
-    """Copies take a third (pageable) or a twentieth (pinned) of the dissertation's times, similar to its Table 5.5."""
+    """Copies take a third (pageable) or a twentieth (pinned) of the times of [Shi], similar to its Table 5.5."""
     found = []
     for index, cells in enumerate(range(1024, 8193, 1024)):
         thesis = {"h2d_us": 336 + 25 * index, "compute_us": 118 + 35 * index, "d2h_us": 272 + 15 * index}
@@ -206,7 +206,7 @@ def options_solutions(machine=EPYC, backend="serial"):
     """Solutions of the three methods of options.
 
     Finite differences with n intervals have the error n^-2, four times that on one grid, ten times with split
-    exercise. The dissertation's scheme is of first order. Cosine series have one point and no settings.
+    exercise. The scheme of [Shi] is of first order. Cosine series have one point and no settings.
     """
     found = []
 

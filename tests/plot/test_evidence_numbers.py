@@ -151,9 +151,9 @@ class Steps(Folder):
         self.assertIn(["CUDA", "", "8\u2009192", "5.2 [5.1 .. 5.3]", "0.635", "1.58"], rows)
         verdicts = {(row[0], row[1]): row[2:] for row in rows if len(row) == 7}
         self.assertEqual(
-            verdicts["CUDA, 8192 cells", "µs a step"], ["5.2 [5.1 .. 5.3]", "4.47", "5", "3", "missed by 4 %"]
+            verdicts["CUDA, 8192 cells", "µs per step"], ["5.2 [5.1 .. 5.3]", "4.47", "5", "3", "missed by 4 %"]
         )
-        self.assertEqual(verdicts["CUDA, 65536 cells", "µs a step"][-1], "stretch met")
+        self.assertEqual(verdicts["CUDA, 65536 cells", "µs per step"][-1], "stretch met")
         self.assertEqual(verdicts["CUDA, 16 M cells", "G cell-steps/s"][-1], "missed by 2 %")
         self.assertEqual(verdicts["CUDA, 16 M cells, split", "G cell-steps/s"][-1], "goal met")
         on = verdicts["CUDA, 16 M cells, on, against cuda/16777216", "times as long"]
@@ -242,7 +242,7 @@ class Devices(Folder):
         self.assertEqual(files, ["gas.html", "transfers_cuda_nvidia-h200.png"])
         rows = page.tables["NVIDIA H200, Intel Xeon Processor", "Transfers of a step, CUDA"]
         self.assertEqual(len(rows), 1 + 3 * 8)
-        self.assertEqual(rows[1], ["1\u2009024", "dissertation", "336", "118", "272", "726", ""])
+        self.assertEqual(rows[1], ["1\u2009024", "[Shi]", "336", "118", "272", "726", ""])
         self.assertEqual(rows[3], ["1\u2009024", "pinned", "16.8", "40", "13.6", "70.4", "10.3"])
 
     def test_block_sizes_have_panel_per_form_and_curve_per_size(self):
@@ -293,10 +293,10 @@ class Springs(Folder):
     def test_steps_and_contact_show_verdicts(self):
         page, _ = self.springs_page(records.springs_steps())
         rows = page.tables["NVIDIA H200, Intel Xeon Processor", "A step"]
-        self.assertEqual(rows[0][2:], ["vertices", "µs a step", "ns a vertex-step", "G vertex-steps/s"])
+        self.assertEqual(rows[0][2:], ["vertices", "µs per step", "ns per vertex-step", "G vertex-steps/s"])
         verdicts = {(row[0], row[1]): row[-1] for row in rows if len(row) == 7}
-        self.assertEqual(verdicts["CUDA, 2640 vertices", "µs a step"], "missed by 2 %")
-        self.assertEqual(verdicts["CUDA, 1000000 vertices", "ns a vertex-step"], "missed by 40 %")
+        self.assertEqual(verdicts["CUDA, 2640 vertices", "µs per step"], "missed by 2 %")
+        self.assertEqual(verdicts["CUDA, 1000000 vertices", "ns per vertex-step"], "missed by 40 %")
         quadratic = "CUDA, 1000000 vertices, quadratic, against cuda/1000000"
         self.assertEqual(verdicts[quadratic, "times as long"], "goal met")
         rows = page.tables["NVIDIA H200, Intel Xeon Processor", "A step in contact"]
@@ -308,7 +308,7 @@ class Springs(Folder):
         page, files = self.springs_page(records.springs_transfers())
         self.assertEqual(files, ["springs-transfers_cuda_nvidia-h200.png", "springs.html"])
         rows = page.tables["NVIDIA H200, Intel Xeon Processor", "Transfers of a step, CUDA"]
-        sources = ["between two copies", "dissertation", "1 step", "10 steps", "100 steps"]
+        sources = ["between two copies", "[Shi]", "1 step", "10 steps", "100 steps"]
         self.assertEqual([row[1] for row in rows], sources)
         self.assertNotIn("times as fast", " ".join(rows[0]))
         self.assertIn("no ratio to it means anything", page.words)

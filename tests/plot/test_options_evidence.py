@@ -1,4 +1,4 @@
-"""Pages of records of options: curves and settings, published results, goals, and tables of the dissertation."""
+"""Pages of records of options: curves and settings, published results, goals, and tables of [Shi]."""
 
 import unittest
 
@@ -12,7 +12,7 @@ from plot.options.published_results import PUBLISHED_RESULTS
 from plot.options.scheme_family import FAMILY
 
 MACHINE = "NVIDIA H200, Intel Xeon Processor"
-SOLUTION = "The dissertation's put: error against time"
+SOLUTION = "The put of [Shi]: error against time"
 
 
 def figure_of(folder, machine=records.EPYC, backend="serial"):
@@ -46,7 +46,7 @@ class Solutions(Folder):
 
         core, gpu = labels(figure_of(self)), labels(figure_of(self, records.H200, "cuda"))
         self.assertEqual(
-            {"dissertation, one option", "dissertation, 4096 options", "hand-written AVX-512", "PROJ"}, core
+            {"[Shi], one option", "[Shi], 4096 options", "hand-written AVX-512", "PROJ"}, core
         )
         self.assertEqual(core | {"hand-written CUDA"}, gpu)
 

@@ -96,7 +96,7 @@ class Hostile(gas_program.GasTest):
             self.assertEqual((1, float(end)), tuple(self.try_run({0}, "sod", f"run.end_time={end}")[1][key]
                                                     for key in ("steps", "time")))
         told = self.try_run({4}, "sod", "run.end_time=1e300", "run.max_steps=50")[1]
-        self.assertIn("max_steps = 50 reached", told["message"])
+        self.assertRegex(told["message"], r"^run\.max_steps = 50 reached at t = \S+ s, before run\.end_time = \S+ s$")
 
     def test_max_steps_may_equal_the_steps_needed(self):
         steps = self.try_run({0}, "sod")[1]["steps"]

@@ -60,6 +60,10 @@ class CommandLine(options_program.OptionsTest):
             ("surface", "example", "--strikes", "1:2", "--maturities", "1"): "first:last:count",
             ("surface", "example", "--strikes", "0", "--maturities", "1"): "--strikes",
             ("surface", "example", "--strikes", "1", "--maturities", "1,,2"): "--maturities",
+            ("surface", "example", "--strikes", "60:140:1", "--maturities", "1"): "--strikes = '60:140:1' has two ends but a count of 1",
+            ("price", "example", "--out", "-"): "standard output is /dev/stdout",
+            ("price", "example", "--result", "-"): "standard output is /dev/stdout",
+            ("prise", "example"): "unknown command 'prise'; did you mean \"price\"?",
             ("price", "example", "extra"): "extra",
             ("price", "example", "--kokkos-num-threads=0"): "0",
         }
@@ -67,6 +71,12 @@ class CommandLine(options_program.OptionsTest):
             with self.subTest(words):
                 self.assertIn(message, self.expect(2, *(words or ("--kokkos-tune-internals",))).stderr)
         self.assertEqual([], self.names())
+
+    def test_rejects_an_unwritable_result_before_pricing(self):
+        file = self.write(batch([row(k, style="american", spot=0.5 + 1e-4 * k) for k in range(100000)]))
+        message = self.expect(6, "price", file, "--backend", "serial", "--result", "missing/r.json").stderr
+        self.assertIn("missing/r.json", message)
+        self.assertEqual([file.name], self.names())
 
     def test_reports_a_missing_backend(self):
         if "cuda" in gas_program.backends():
@@ -408,8 +418,9 @@ class Files(options_program.OptionsTest):
         process = self.start_long_run()
         time.sleep(0.5)
         process.send_signal(signal.SIGINT)
-        process.communicate(timeout=60)
+        message = process.communicate(timeout=60)[1]
         self.assertEqual(130, process.returncode)
+        self.assertIn(b"drogue-options: interrupted by a signal; nothing is written to ", message)
         self.assertEqual(["batch.csv", "r.json"], self.names())
         self.assertEqual("interrupted", json.loads((self.folder / "r.json").read_text())["status"])
 

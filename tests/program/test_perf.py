@@ -28,7 +28,7 @@ class Record(perf_program.PerfTest):
 
     def test_run_prints_and_records_a_case(self):
         text = self.expect(0, "run", "--quick", "--filter", "dense-loop/1024$", "--out", "run.jsonl").stdout
-        self.assertRegex(text, r"^gas-step/dense-loop/1024 +\d+\.\d+ us a step  \[.*\]  error \S+  passed\n$")
+        self.assertRegex(text, r"^gas-step/dense-loop/1024 +\d+\.\d+ us per step  \[.*\]  error \S+  passed\n$")
         record, = self.records("run.jsonl")
         self.assertEqual(FIELDS | {"facts"}, set(record))
         self.assert_timed(record, 7)
@@ -271,23 +271,31 @@ class Refusals(perf_program.PerfTest):
                             (["table", "occupancy", "--app", "option"], 'did you mean "options"?'),
                             (["table", "occupancy", "--app", "springs"], "the only valid name is transfers"),
                             (["table", "block-size", "--app", "springs"], "compiled for one block size"),
-                            (["work-precision", "--app", "parachute"], "valid names are gas, springs, flow, options"),
+                            (["work-precision", "--app", "parachute"], "is named 'flow'"),
                             (["table", "pressure", "--app", "gas"], "valid names are occupancy, block-size, transfers"),
                             (["table", "occupancy", "--app", "flow"], "valid names are pressure, memory"),
                             (["work-precision", "--quick", "--app", "options", "--filter", "day$"],
                              "no problem matches 'day$'; with --quick there are thesis, merton"),
-                            (["work-precision", "--app", "options", "--filter", "("], "is no regular expression"),
+                            (["work-precision", "--app", "options", "--filter", "("], "is not a valid regular expression"),
                             (["table", "transfers", "--backend", "gpu"], "gpu"),
                             (["table", "transfers", "--bakend", "serial"], 'did you mean "--backend"?'),
                             (["run", "all"], "'all'"), (["run", "--filter", "no such case"], "no case matches"),
-                            (["run", "--filter", "["], "--filter '[' is no regular expression"),
+                            (["run", "--filter", "["], "--filter '[' is not a valid regular expression"),
                             (["run", "--filter", "(" * 20000 + ")" * 20000], "more than 1000 characters"),
                             (["run", "--quick", "--filter", "^options/serial/256/128x32$"], "but 1 that --quick leaves out"),
                             (["run", "--quikc"], 'did you mean "--quick"?'), ([], "list, run, table"),
-                            (["lits"], "'lits'")):
+                            (["lisst"], "unknown command 'lisst'; did you mean \"list\"?"), (["run", "--out", "-"], "/dev/stdout")):
             with self.subTest(words):
                 self.assertIn(hint, self.expect(2, *words).stderr)
         self.assertEqual([], list(self.folder.iterdir()))
+
+    def test_rejects_an_unwritable_file_before_the_measurement(self):
+        for command in (["run", "--filter", "."], ["table", "transfers", "--backend", "serial"],
+                        ["work-precision", "--backend", "serial"]):
+            with self.subTest(command):
+                process = self.expect(6, *command, "--out", "missing/records.jsonl")
+                self.assertEqual("", process.stdout)
+                self.assertIn("missing/records.jsonl", process.stderr)
 
     def test_rejects_block_sizes_on_a_host_backend(self):
         self.assertIn("means nothing to the host backend 'serial'",

@@ -122,15 +122,18 @@ class Directory(gas_program.GasTest):
     def test_rejects_a_directory_in_use(self):
         slow = ["mesh.cells=6400", gas_program.NO_FIELDS]
         line = gas_program.arguments("sod", "--backend", "serial", "--quiet", "--out", "run", sets=slow)
-        first = subprocess.Popen(line, cwd=self.folder, env=gas_program.ENVIRONMENT)
+        first = subprocess.Popen(line, cwd=self.folder, env=gas_program.ENVIRONMENT, stderr=subprocess.PIPE, text=True)
         while first.poll() is None and not (self.folder / "run/history.csv").exists():
             time.sleep(0.002)
         second = self.coarse("--out", "run", "--overwrite", code=6)
         self.assertIsNone(first.poll(), "the first run ended before the second began")
         first.terminate()
-        self.assertEqual(130, first.wait())
+        message = first.communicate(timeout=60)[1]
+        self.assertEqual(130, first.returncode)
         self.assertIn("in use", second.stderr)
         self.assertEqual("interrupted", self.result("run")["status"])
+        self.assertEqual(f"drogue-gas: {self.result('run')['message']}\n", message)
+        self.assertIn("continue with --restart auto", message)
 
 
 class Output(gas_program.GasTest):

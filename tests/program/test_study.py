@@ -39,6 +39,7 @@ class StudyTest(gas_program.GasTest):
         process.send_signal(signal.SIGINT)
         text = process.communicate(timeout=60)
         self.assertEqual(130, process.returncode, text)
+        self.assertRegex(text[1], r"interrupted by a signal; the tables hold \d+ of \d+ points\n$")
 
 
 class GasStudy(StudyTest):
@@ -200,7 +201,7 @@ class SpringsStudy(springs_program.SpringsTest, StudyTest):
         rows, document = self.tables("study")
         self.assertEqual(("ok", "numerical-failure"), (rows[0]["status"], rows[-1]["status"]))
         self.assertEqual(("", ""), (rows[-1]["cauchy_area"], rows[-2]["cauchy_area"]))
-        self.assertRegex(document["rows"][-1]["message"], r"oscillations of the cloth at \S+ rad/s grow in it at step 0, t = 0 s; take a shorter time.dt, or \"auto\"$")
+        self.assertRegex(document["rows"][-1]["message"], r"oscillations of the cloth at \S+ rad/s are unstable at step 0, t = 0 s; take a shorter time.dt, or \"auto\"$")
         self.assertFalse(list((self.folder / "study").rglob("restart.h5")))
         text = self.study(4, scene, "meshes=61:127", "--out", "none", sets=["time.dt=0.01", "time.end_time=10"]).stderr
         self.assertIn("every run of the study failed", text)
@@ -216,6 +217,13 @@ class SpringsStudy(springs_program.SpringsTest, StudyTest):
         scene = self.write('app = "springs"\n[mesh]\nfile = "m.obj"\n[time]\nend_time = 1\n')
         self.assertIn("m.obj", self.study(2, scene, "meshes=61:217").stderr)
         self.assertFalse((self.folder / "out").exists())
+
+    def test_reports_checks_without_a_value(self):
+        line = self.study(4, "chain", "meshes=10", sets=["time.end_time=0.01"])
+        self.assertNotIn("nan", line.stdout)
+        row = self.tables("out/chain-study")[1]["rows"][0]
+        self.assertEqual("verification-failed", row["status"])
+        self.assertEqual("verify.frequency has no finite value on this mesh: a probe may be at a pinned vertex", row["message"])
 
     def test_rejects_invalid_points_before_the_first_run(self):
         message = self.study(3, "drum", "models=quadratic:edge").stderr

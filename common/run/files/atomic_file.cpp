@@ -88,6 +88,19 @@ void AtomicFile::commit() {
   if (!_temporary.empty()) replace_file(_temporary, _target);
 }
 
+void require_writable(const std::filesystem::path& path) {
+  if (path.empty() || own_descriptor(path) >= 0) return;
+  if (path == "-")
+    throw Failure(ExitCode::usage, "the output '-' is not a file name; standard output is /dev/stdout");
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored)) throw io_failure("write", path, EISDIR);
+  if (is_replaced(path)) {
+    const AtomicFile probe(path);
+  } else if (access(path.c_str(), W_OK) != 0) {  // a pipe cannot be opened without a reader
+    throw io_failure("write", path, errno);
+  }
+}
+
 void write_file_atomically(const std::filesystem::path& target, std::string_view content) {
   AtomicFile file(target);
   file.write(content);

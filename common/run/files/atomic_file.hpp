@@ -37,6 +37,10 @@ class AtomicFile {
   int _descriptor = -1;
 };
 
+/// Checks before a long run that its result can be written to `path`; leaves nothing behind. An empty path is
+/// no request. Throws `Failure`: usage for `-`, io_error if `path` cannot be written.
+void require_writable(const std::filesystem::path& path);
+
 /// Replaces the content of `target` atomically. Throws `Failure` (io_error).
 void write_file_atomically(const std::filesystem::path& target, std::string_view content);
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "kernels/coupling/sheet/coupled_solver.hpp"
-#include "kernels/flow/solver_adapter.hpp"
+#include "kernels/flow/host_threads.hpp"
 
 namespace drogue::coupling {
 

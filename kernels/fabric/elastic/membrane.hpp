@@ -17,8 +17,8 @@ struct ConstitutiveModel {
 template <ConstitutiveModel model>
 inline constexpr bool whole_triangles = has_triangles(model.model);
 
-/// Lame's first constant and twice the shear modulus of plane stress, and Young's modulus, N/m. The
-/// dissertation's "mu" is the second.
+/// Lame's first constant and twice the shear modulus of plane stress, and Young's modulus, N/m. "mu"
+/// in [Shi] is the second.
 struct Moduli {
   double lambda, two_g, young;
 };
@@ -47,8 +47,8 @@ KOKKOS_INLINE_FUNCTION Edges<R> squared_edges(const GramMatrix<R>& of) {
   return {{device::maximum(of.jj + of.kk - 2.0 * of.jk, R(0.0)), of.kk, of.jj}};
 }
 
-/// Inverse area of a triangle, 1/m^2; 0 without area. One function for all callers, so that they get the same
-/// bits in the `exact` build.
+/// Inverse area of a triangle from scalar products of its edges, 1/m^2; 0 without area. All drivers call it,
+/// so that they get the same bits in the `exact` build. `spatial::inverse_area` of the edges has other bits.
 template <class R>
 KOKKOS_INLINE_FUNCTION R inverse_area(const GramMatrix<R>& rest) {
   const R squared = rest.jj * rest.kk - rest.jk * rest.jk;

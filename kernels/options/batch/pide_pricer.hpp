@@ -21,7 +21,7 @@ namespace drogue::options {
 
 /// Finite-difference pricer on the caller's instance of an execution space, which must outlive it. Contracts
 /// come from host memory, since tables of their jump measures are computed there; prices stay on the device
-/// as well. Functions that `Pricer` declares are documented there.
+/// as well. Functions that `Pricer` declares are documented in `Pricer`.
 template <class ExecutionSpace>
 class PidePricer {
   using Space = typename ExecutionSpace::memory_space;
@@ -45,7 +45,7 @@ class PidePricer {
       for (const Contract& contract : contracts)
         if (contract.model != JumpModel::generalized_hyperbolic)
           throw std::invalid_argument(
-              "options pricer: the dissertation's scheme has generalized hyperbolic jumps");
+              "options pricer: method seed, the scheme of [Shi], prices generalized hyperbolic jumps only");
     WallTimes times;
     if (contracts.empty()) return times;
     const device::Stopwatch total;
@@ -61,7 +61,7 @@ class PidePricer {
 
   std::pmr::memory_resource& memory() { return _pinned; }
 
-  std::vector<BoundaryPoint> boundary_on(const Contract& contract, int mesh, int steps) {
+  std::vector<BoundaryPoint> boundary(const Contract& contract, int mesh, int steps) {
     const RecordedSolve recorded =
         record(contract, mesh != 0 ? Resolution{mesh, steps} : recorded_resolution());
     std::vector<BoundaryPoint> points;

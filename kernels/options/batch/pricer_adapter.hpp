@@ -14,8 +14,8 @@ class PricerAdapter final : public Pricer {
     return _pricer.price(contracts, prices);
   }
   std::pmr::memory_resource& memory() override { return _pricer.memory(); }
-  std::vector<BoundaryPoint> boundary_on(const Contract& contract, int mesh, int steps) override {
-    return _pricer.boundary_on(contract, mesh, steps);
+  std::vector<BoundaryPoint> boundary(const Contract& contract, int mesh, int steps) override {
+    return _pricer.boundary(contract, mesh, steps);
   }
   std::vector<ProfilePoint> profile(const Contract& contract) override { return _pricer.profile(contract); }
 

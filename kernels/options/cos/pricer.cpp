@@ -93,7 +93,7 @@ class CosPricer final : public Pricer {
     return times;
   }
 
-  std::vector<BoundaryPoint> boundary_on(const Contract& /*contract*/, int /*mesh*/, int /*steps*/) override {
+  std::vector<BoundaryPoint> boundary(const Contract& /*contract*/, int /*mesh*/, int /*steps*/) override {
     throw std::invalid_argument("cos: no exercise boundary; take the method pide");
   }
 

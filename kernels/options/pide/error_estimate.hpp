@@ -179,11 +179,11 @@ KOKKOS_INLINE_FUNCTION ErrorEstimate<R> estimate_error(const PutPack<R>& put, co
 template <class R>
 KOKKOS_INLINE_FUNCTION R frequent_jump_factor(const PutPack<R>& put, const LevyMeasure<R>& measure,
                                               const Jumps<R>& jumps, int steps) {
-  constexpr double most_a_step = 40.0;
-  const R a_step = jumps.symbol[0] * step_length(put.maturity, steps, steps).dt;
+  constexpr double largest_symbol = 40.0;
+  const R symbol_per_step = jumps.symbol[0] * step_length(put.maturity, steps, steps).dt;
   const auto coarse = 2.0 * jumps.diffusion <= 0.8 * put.variance;
-  const auto fine =
-      (jumps.excess_variance > 0.1 * (put.variance + measure.variance)) | (a_step > R(most_a_step));
+  const auto fine = (jumps.excess_variance > 0.1 * (put.variance + measure.variance)) |
+                    (symbol_per_step > R(largest_symbol));
   return device::select(fine, R(unreliable_factor), device::select(coarse, R(0.5), R(0.0)));
 }
 

@@ -215,7 +215,7 @@ KOKKOS_INLINE_FUNCTION int march_in_registers(const WarpThreadGroup<lanes, singl
     if (lane == 0)
       rows.value[grid.mesh] = rows.other[grid.mesh] = 0.0;  // upper end, which the interpolation reads
   });
-  return device::warp_max<lanes>(exercised);
+  return device::warp_maximum<lanes>(exercised);
 }
 
 }  // namespace drogue::options

@@ -70,8 +70,8 @@ class SurfaceImpl final : public Pricer {
     return times;
   }
 
-  std::vector<BoundaryPoint> boundary_on(const Contract& contract, int mesh, int steps) override {
-    return _single->boundary_on(contract, mesh, steps);
+  std::vector<BoundaryPoint> boundary(const Contract& contract, int mesh, int steps) override {
+    return _single->boundary(contract, mesh, steps);
   }
   std::vector<ProfilePoint> profile(const Contract& contract) override { return _single->profile(contract); }
 

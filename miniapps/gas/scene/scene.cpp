@@ -1,10 +1,8 @@
 #include "miniapps/gas/scene/scene.hpp"
 
 #include "common/run/restart/restart_file.hpp"
-#include "common/scene/document.hpp"
-#include "common/scene/print.hpp"
-#include "common/scene/read.hpp"
 #include "miniapps/framework/mini_app.hpp"
+#include "miniapps/framework/typed_scene.hpp"
 #include "miniapps/gas/scene/scene_check.hpp"
 #include "miniapps/gas/scene/scene_keys.hpp"
 
@@ -26,22 +24,16 @@ void set_baseline_scheme(gas::Parameters& parameters) {
 
 GasScene read_gas_scene(const std::filesystem::path& file, const std::vector<std::string>& sets,
                         SchemeSource source) {
-  GasScene result;
-  result.file = file;
-  result.name = file.stem().string();
-  scene::Table root;
-  declare_gas_scene(root, result);
-  scene::read_file(root, file, sets);
-  if (source == SchemeSource::baseline) set_baseline_scheme(result.parameters);
-  complete_and_check(root, result);
-  return result;
+  return framework::read_scene<GasScene>(file, sets, declare_gas_scene,
+                                         [&](const scene::Table& root, GasScene& scene) {
+                                           if (source == SchemeSource::baseline)
+                                             set_baseline_scheme(scene.parameters);
+                                           complete_and_check(root, scene);
+                                         });
 }
 
 std::string print_gas_scene(const GasScene& scene) {
-  GasScene copy = scene;
-  scene::Table root;
-  declare_gas_scene(root, copy);
-  return scene::print(root);
+  return framework::print_scene(scene, declare_gas_scene);
 }
 
 std::string scene_fingerprint(GasScene scene) {
@@ -58,17 +50,7 @@ std::string scene_fingerprint(GasScene scene) {
 std::filesystem::path scene_folder() { return framework::find_scene_folder("gas", DROGUE_GAS_SCENES); }
 
 std::string document_gas_scene() {
-  GasScene defaults;
-  scene::Table root;
-  declare_gas_scene(root, defaults);
-  return R"(# Gas scenes: all keys
-
-Written from the declarations that also read, check and print a scene; do not edit. After a change of them:
-`DROGUE_UPDATE_DOCS=1 ctest --test-dir build/host -R GasSceneDocument`.
-
-A scene is a TOML file. Unknown keys are refused. Numbers are in SI units; an integer is accepted for a real.
-
-)" + scene::document(root);
+  return framework::document_scene(declare_gas_scene, "Gas", "GasSceneDocument");
 }
 
 }  // namespace drogue::gas_app

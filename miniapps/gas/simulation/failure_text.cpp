@@ -7,13 +7,14 @@
 
 namespace drogue::gas_app {
 
-std::string failure_text(gas::Solver& solver, const gas::Parameters& parameters, gas::Stop stop) {
+std::string failure_text(gas::Solver& solver, const gas::Parameters& parameters, double end_time,
+                         gas::Stop stop) {
   std::ostringstream text;
   text.precision(9);
   if (stop == gas::Stop::max_steps) {
     const gas::RestartState now = solver.restart_state();
-    text << "max_steps = " << parameters.max_steps << " reached at t = " << now.time
-         << " s, before the end time";
+    text << "run.max_steps = " << parameters.max_steps << " reached at t = " << now.time
+         << " s, before run.end_time = " << end_time << " s";
     return text.str();
   }
   const gas::StepFailure failed = solver.failure();

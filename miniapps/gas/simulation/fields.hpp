@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <span>
@@ -25,9 +24,6 @@ inline Primitive primitive(const gas::ConstConservedFields& u, std::size_t i, do
   const double velocity = u.momentum[i] / u.rho[i];
   return {u.rho[i], velocity, (gamma - 1.0) * (u.energy[i] - 0.5 * u.momentum[i] * velocity)};
 }
-
-/// Maximum of two numbers; NaN if either is NaN, so that no check passes on an invalid state.
-inline double larger(double a, double b) { return a > b || std::isnan(a) ? a : b; }
 
 /// Visits every cell of the solver's state in order. Blocks.
 void for_cells(gas::Solver& solver, const gas::Parameters& parameters,

@@ -147,7 +147,7 @@ framework::FieldsTask Simulation::snapshot() {
 }
 
 std::string Simulation::failure_text(bool) {
-  return gas_app::failure_text(*_solver, _scene.parameters, _stop);
+  return gas_app::failure_text(*_solver, _scene.parameters, _scene.end_time, _stop);
 }
 
 void Simulation::describe(run::ResultDocument& result) {

@@ -39,23 +39,23 @@ void visit(State& r, Row& i, const Number& number, const Integer& integer) {
 }
 
 /// A rejected step may have marked cells before it was redone.
-bool has_marks(const gas::RestartState& resume) { return resume.limited_faces > 0 || resume.redone > 0; }
+bool has_marks(const gas::RestartState& state) { return state.limited_faces > 0 || state.redone > 0; }
 
 }  // namespace
 
 void Simulation::write_restart(run::RestartWriter& writer) {
-  gas::RestartState resume = _solver->restart_state();
+  gas::RestartState state = _solver->restart_state();
   _solver->begin_snapshot();
   const gas::ConstConservedFields u = _solver->finish_snapshot();
   visit(
-      resume, _initial, [&](const std::string& name, double value) { writer.number(name, value); },
+      state, _initial, [&](const std::string& name, double value) { writer.number(name, value); },
       [&](const std::string& name, auto value) { writer.integer(name, static_cast<std::int64_t>(value)); });
   const std::array<std::span<const double>, 3> fields = {u.rho, u.momentum, u.energy};
   for (std::size_t k = 0; k < 3; ++k) {
     writer.array(field_names[k], fields[k].size());
     writer.write(field_names[k], 0, fields[k]);
   }
-  if (!has_marks(resume)) return;
+  if (!has_marks(state)) return;
   writer.array("touched", u.rho.size());
   std::vector<std::uint8_t> flags;
   std::vector<double> values;
@@ -70,9 +70,9 @@ void Simulation::write_restart(run::RestartWriter& writer) {
 void Simulation::restore(const run::RestartReader& reader) {
   {
     const ScopedStopwatch stopwatch(_h2d_s);
-    gas::RestartState resume;
+    gas::RestartState state;
     visit(
-        resume, _initial, [&](const std::string& name, double& value) { value = reader.number(name); },
+        state, _initial, [&](const std::string& name, double& value) { value = reader.number(name); },
         [&](const std::string& name, auto& value) {
           value = static_cast<std::remove_reference_t<decltype(value)>>(reader.integer(name));
         });
@@ -83,12 +83,12 @@ void Simulation::restore(const run::RestartReader& reader) {
         reader.read(field_names[k], static_cast<std::uint64_t>(first), fields[k]);
       }
       _solver->upload(first, {fields[0], fields[1], fields[2]});
-      if (!has_marks(resume)) return;
+      if (!has_marks(state)) return;
       reader.read("touched", static_cast<std::uint64_t>(first), fields[0]);
       std::vector<std::uint8_t> flags(fields[0].begin(), fields[0].end());
       _solver->upload_limited_cells(first, flags);
     });
-    _solver->restore(resume);
+    _solver->restore(state);
   }
   allocate_snapshot();
 }

@@ -6,6 +6,7 @@
 #include "common/program/failure.hpp"
 #include "common/program/progress.hpp"
 #include "common/program/signals.hpp"
+#include "common/run/statistics.hpp"
 #include "kernels/reference/gas/exact_riemann.hpp"
 #include "miniapps/gas/simulation/failure_text.hpp"
 #include "miniapps/gas/simulation/fields.hpp"
@@ -65,7 +66,7 @@ std::optional<Reference> run_reference(const GasScene& scene, device::Backend ba
   if (stop != gas::Stop::target)
     throw Failure(ExitCode::numerical_failure,
                   "the reference run of " + std::to_string(finer.parameters.cells) +
-                      " cells failed: " + failure_text(*solver, finer.parameters, stop));
+                      " cells failed: " + failure_text(*solver, finer.parameters, finer.end_time, stop));
   Reference reference;
   for_cells(*solver, finer.parameters, [&](std::int64_t cell, const Primitive& w) {
     reference.x.push_back(cell_centre(finer.parameters, cell));
@@ -98,7 +99,7 @@ std::map<std::string, double> error_norms(gas::Solver& solver, const gas::Parame
     for (std::size_t k = 0; k < 3; ++k) {
       l1[k] += error[k] * dx;
       l2[k] += error[k] * error[k] * dx;
-      linf[k] = larger(linf[k], error[k]);
+      linf[k] = run::maximum_or_nan(linf[k], error[k]);
     }
   });
   std::map<std::string, double> norms;

@@ -1,6 +1,7 @@
 #include <cmath>
 #include <limits>
 
+#include "common/run/statistics.hpp"
 #include "miniapps/gas/simulation/fields.hpp"
 #include "miniapps/gas/simulation/simulation.hpp"
 #include "miniapps/gas/verify/exact.hpp"
@@ -19,7 +20,7 @@ double conservation_error(const gas::HistoryRow& first, const gas::HistoryRow& l
                               std::abs(momentum) / std::sqrt(2.0 * first.mass * first.energy),
                               std::abs(energy) / first.energy};
   double largest = 0.0;
-  for (const double value : relative) largest = larger(largest, value);
+  for (const double value : relative) largest = run::maximum_or_nan(largest, value);
   return largest;
 }
 
@@ -56,7 +57,7 @@ ExitCode Simulation::verify(const run::RunDirectory* directory, run::ResultDocum
   if (wanted.max_density) {
     double largest = 0.0;
     for_cells(*_solver, _scene.parameters,
-              [&](std::int64_t, const Primitive& w) { largest = larger(largest, w.rho); });
+              [&](std::int64_t, const Primitive& w) { largest = run::maximum_or_nan(largest, w.rho); });
     result.add_check("max_density", std::abs(largest / wanted.max_density->value - 1.0),
                      wanted.max_density->tolerance);
   }

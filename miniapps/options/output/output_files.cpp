@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "common/program/failure.hpp"
+#include "common/run/files/atomic_file.hpp"
 #include "common/run/files/output_path.hpp"
 
 namespace drogue::options_app {
@@ -31,6 +32,7 @@ void check_outputs(const Command& command, const std::filesystem::path& input) {
         throw Failure(ExitCode::usage,
                       "'" + path->string() + "' is read or written already: name another output");
     used.push_back(*path);
+    run::require_writable(*path);
   }
 }
 

@@ -19,7 +19,7 @@ class Worker {
   Worker(Communicator& communicator, const MiniAppOptions& options)
       : _communicator(communicator), _options(options) {}
 
-  void obey(MessageReader message) {
+  void execute(MessageReader message) {
     const auto request = message.get<Request>();
     switch (request) {
       case Request::create:
@@ -89,7 +89,7 @@ void serve(Communicator& communicator, const MiniAppOptions& options) {
     const std::string message = communicator.broadcast({});
     if (message.empty()) return;
     try {
-      worker.obey(MessageReader(message));
+      worker.execute(MessageReader(message));
     } catch (const Failure&) {
       // All ranks throw the same failure. Rank 0 reports it and ends the others.
     }

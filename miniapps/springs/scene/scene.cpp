@@ -3,10 +3,8 @@
 #include <span>
 
 #include "common/run/restart/restart_file.hpp"
-#include "common/scene/document.hpp"
-#include "common/scene/print.hpp"
-#include "common/scene/read.hpp"
 #include "miniapps/framework/mini_app.hpp"
+#include "miniapps/framework/typed_scene.hpp"
 #include "miniapps/springs/scene/scene_check.hpp"
 #include "miniapps/springs/scene/scene_keys.hpp"
 #include "miniapps/springs/vectors.hpp"
@@ -22,21 +20,11 @@ bool SpringsScene::has_lines() const {
 }
 
 SpringsScene read_springs_scene(const std::filesystem::path& file, const std::vector<std::string>& sets) {
-  SpringsScene result;
-  result.file = file;
-  result.name = file.stem().string();
-  scene::Table root;
-  declare_springs_scene(root, result);
-  scene::read_file(root, file, sets);
-  complete_and_check(root, result);
-  return result;
+  return framework::read_scene<SpringsScene>(file, sets, declare_springs_scene, complete_and_check);
 }
 
 std::string print_springs_scene(const SpringsScene& scene) {
-  SpringsScene copy = scene;
-  scene::Table root;
-  declare_springs_scene(root, copy);
-  return scene::print(root);
+  return framework::print_scene(scene, declare_springs_scene);
 }
 
 std::string scene_fingerprint(SpringsScene scene) {
@@ -66,19 +54,11 @@ std::filesystem::path scene_folder() {
 }
 
 std::string document_springs_scene() {
-  SpringsScene defaults;
-  scene::Table root;
-  declare_springs_scene(root, defaults);
-  return R"(# Springs scenes: all keys
-
-Written from the declarations that also read, check and print a scene; do not edit. After a change of them:
-`DROGUE_UPDATE_DOCS=1 ctest --test-dir build/host -R SpringsSceneDocument`.
-
-A scene is a TOML file. Unknown keys are refused. Numbers are in SI units; an integer is accepted for a real.
-Expressions use the syntax of muParser; x, y, z are coordinates at rest, t is the time. How a scene is verified:
+  return framework::document_scene(
+      declare_springs_scene, "Springs", "SpringsSceneDocument",
+      R"(Expressions use the syntax of muParser; x, y, z are coordinates at rest, t is the time. How a scene is verified:
 [springs](springs.md).
-
-)" + scene::document(root);
+)");
 }
 
 }  // namespace drogue::springs_app

@@ -31,12 +31,13 @@ std::int64_t bound_every(std::int64_t step) {
 const char* failure_reason_text(fabric::FailureReason reason) {
   switch (reason) {
     case fabric::FailureReason::crossing:
-      return "parts of cloth, or cloth and a body, cross whatever contact does; a shorter time.dt or a finer "
-             "mesh may help,";
+      return "contact could not prevent an intersection of cloth with itself or a body; a shorter time.dt or "
+             "a "
+             "finer mesh may help,";
     case fabric::FailureReason::too_fast:
-      return "a step moves cloth farther than contact looks; take a shorter time.dt,";
+      return "a step moves cloth farther than the search distance of contact; take a shorter time.dt,";
     case fabric::FailureReason::too_dense:
-      return "more parts of cloth are near one another than contact has room for; take a shorter time.dt, a "
+      return "more parts of cloth are in contact at once than its lists can hold; take a shorter time.dt, a "
              "smaller contact.thickness or a coarser mesh,";
     case fabric::FailureReason::no_number:
       return "the expression of a level-set of contact.objects, or its slope, is not a number";
@@ -94,7 +95,7 @@ void Simulation::plan() {
   const double steps = std::max(1.0, std::ceil((_stop_time - begin) / longest * (1.0 - 1e-12)));
   if (!(steps <= most_steps))
     throw Failure(ExitCode::numerical_failure,
-                  "the fastest frequency of the mesh allows no step that ends: more than 1e15 to t = " +
+                  "the highest frequency of the mesh requires more than 1e15 steps to t = " +
                       scene::real_text(_stop_time) + " s");
   const double dt = (_stop_time - begin) / steps;
   _stop_step += static_cast<std::int64_t>(steps);
@@ -126,7 +127,7 @@ std::string Simulation::too_long_step() {
     text << "time.dt = " << *requested.dt << " s, shortened to " << dt
          << " s to meet an output, is too long: ";
   if (requested.integrator == fabric::Integrator::verlet && _scene.damping.absolute * dt > turning_damping) {
-    text << "damping.absolute = " << _scene.damping.absolute << " 1/s turns velocities round in it";
+    text << "damping.absolute = " << _scene.damping.absolute << " 1/s reverses velocities within a step";
     return text.str();
   }
   if (dt <= longest_stable_step(bound)) return {};
@@ -136,7 +137,7 @@ std::string Simulation::too_long_step() {
     // The computed frequency has the round-off of the differences of forces.
     if (fabric::grows(requested.integrator, dt, (1.0 - 1e-5) * frequency, _scene.damping.absolute,
                       _solver->fastest_decay())) {
-      text << "oscillations of the cloth at " << frequency << " rad/s grow in it at step "
+      text << "oscillations of the cloth at " << frequency << " rad/s are unstable at step "
            << _solver->time_state().step << ", t = " << time() << " s";
       return text.str();
     }
@@ -148,7 +149,8 @@ std::string Simulation::too_long_step() {
     return high[axis] - low[axis];
   };
   if (!(displacement > std::hypot(extent(0), extent(1), extent(2)))) return {};
-  text << "cloth moves " << displacement << " m in it on average, farther than the whole mesh reaches";
+  text << "cloth moves " << displacement
+       << " m per step on average, more than the diameter of the mesh at rest";
   return text.str();
 }
 

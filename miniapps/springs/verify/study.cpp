@@ -1,6 +1,7 @@
 #include "miniapps/springs/verify/study.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "miniapps/framework/run_loop.hpp"
 #include "miniapps/springs/simulation/simulation.hpp"
@@ -60,6 +61,11 @@ ExitCode run_once(const SpringsScene& scene, device::Backend backend, const run:
   if (!first) return code;
   runs.steps = result.steps;
   simulation.verify(&directory, result);
+  for (const auto& [name, error] : result.errors)
+    if (!std::isfinite(error))
+      throw Failure(ExitCode::verification_failed,
+                    "verify." + name + " has no finite value on this mesh" +
+                        (scene.output.probes.empty() ? "" : ": a probe may be at a pinned vertex"));
   runs.errors = result.errors;
   for (const run::Check& check : result.checks) runs.checks.push_back(check.name);
   return code;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "common/run/statistics.hpp"
 #include "miniapps/springs/scene/expressions.hpp"
 #include "miniapps/springs/simulation/contact_state.hpp"
 #include "miniapps/springs/simulation/history.hpp"
@@ -16,16 +17,13 @@ namespace {
 
 using fabric::Vector;
 
-/// Maximum of two numbers; NaN if either is NaN, so that no check passes on an invalid state.
-double larger(double a, double b) { return a > b || std::isnan(a) ? a : b; }
-
 double distance(const Vector& a, const Vector& b) {
   return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
 }
 
 double largest(const std::vector<double>& values) {
   double result = 0.0;
-  for (const double value : values) result = larger(result, value);
+  for (const double value : values) result = run::maximum_or_nan(result, value);
   return result;
 }
 
@@ -34,7 +32,7 @@ double largest_change(const History& history, const std::string& name) {
   const auto &x = history.at(name + "_x"), &y = history.at(name + "_y"), &z = history.at(name + "_z");
   double change = 0.0;
   for (std::size_t k = 0; k < x.size(); ++k)
-    change = larger(change, std::hypot(x[k] - x[0], y[k] - y[0], z[k] - z[0]));
+    change = run::maximum_or_nan(change, std::hypot(x[k] - x[0], y[k] - y[0], z[k] - z[0]));
   return change;
 }
 
@@ -45,15 +43,16 @@ double energy_scale(const History& history) {
              &potential = history.at("potential");
   double scale = 0.0;
   for (std::size_t k = 0; k < kinetic.size(); ++k)
-    scale = larger(scale,
-                   larger(kinetic[k], kinetic[0] + (elastic[0] - elastic[k]) + potential[0] - potential[k]));
+    scale =
+        run::maximum_or_nan(scale, run::maximum_or_nan(kinetic[k], kinetic[0] + (elastic[0] - elastic[k]) +
+                                                                       potential[0] - potential[k]));
   return scale;
 }
 
 double energy_drift(const History& history) {
   const std::vector<double>& energy = history.at("energy");
   double change = 0.0;
-  for (const double value : energy) change = larger(change, std::abs(value - energy[0]));
+  for (const double value : energy) change = run::maximum_or_nan(change, std::abs(value - energy[0]));
   return change / energy_scale(history);
 }
 
@@ -61,7 +60,7 @@ double energy_drift(const History& history) {
 double largest_rise(const std::vector<double>& values) {
   double rise = 0.0, least = values[0];
   for (const double value : values) {
-    rise = larger(rise, value - least);
+    rise = run::maximum_or_nan(rise, value - least);
     least = std::min(least, value);
   }
   return rise;
@@ -72,9 +71,10 @@ double largest_rise(const std::vector<double>& values) {
 double energy_imbalance(const History& history) {
   const std::vector<double>&energy = history.at("energy"), &contact = history.at("contact_work"),
         &friction = history.at("friction_work");
-  double change = larger(largest_rise(contact), largest_rise(friction));
+  double change = run::maximum_or_nan(largest_rise(contact), largest_rise(friction));
   const auto rest = [&](std::size_t k) { return energy[k] - contact[k] - friction[k]; };
-  for (std::size_t k = 0; k < energy.size(); ++k) change = larger(change, std::abs(rest(k) - rest(0)));
+  for (std::size_t k = 0; k < energy.size(); ++k)
+    change = run::maximum_or_nan(change, std::abs(rest(k) - rest(0)));
   return change / energy_scale(history);
 }
 
@@ -115,7 +115,7 @@ double catenary_error(const SpringsScene& scene, const FinalState& state) {
     Vector expected;
     for (std::size_t a = 0; a < 3; ++a)
       expected[a] = first[a] + points[i].along * across[a] / span + points[i].down * down[a];
-    error = larger(error, distance(state.x[i], expected));
+    error = run::maximum_or_nan(error, distance(state.x[i], expected));
   }
   return error / span;
 }
@@ -161,7 +161,7 @@ double imbalance(const FinalState& state) {
   for (std::size_t i = 0; i < state.force.size(); ++i)
     for (std::size_t axis = 0; axis < 3; ++axis) {
       double& place = (state.pinned[i] >> axis & 1U) != 0U ? of_held : of_free;
-      place = larger(place, std::abs(state.force[i][axis]));
+      place = run::maximum_or_nan(place, std::abs(state.force[i][axis]));
     }
   return of_free / of_held;
 }
@@ -260,7 +260,7 @@ void verify(const SpringsScene& scene, const FinalState& state, const std::files
   if (wanted.intersections || wanted.penetration) {
     const ContactState now = contact_state(scene, state.x);
     if (wanted.intersections)
-      add("intersections", larger(largest(history.at("intersections")), now.intersections),
+      add("intersections", run::maximum_or_nan(largest(history.at("intersections")), now.intersections),
           *wanted.intersections);
     if (wanted.penetration) add("penetration", now.penetration, *wanted.penetration);
   }

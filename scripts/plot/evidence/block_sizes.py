@@ -6,7 +6,7 @@ from .perf_record import BACKENDS, Machine, Record
 from .section import Cell, Picture, Section, Table
 
 _COMMAND = "drogue-perf table block-size --app gas --out FILE.jsonl"
-_FORMS = {"seed": "the dissertation's flux kernel", "step": "the fused step"}
+_FORMS = {"seed": "the flux kernel of [Shi]", "step": "the fused step"}
 _Times = dict[int, dict[int, float]]  # s, by block size and number of cells
 
 
@@ -69,7 +69,7 @@ def blocks_figure(title: str, machine: Machine, forms: dict[str, _Times], unit: 
         else:
             axis.set_ylim(bottom=0)
         style.label_curves(axis, ends)
-    axes[0, 0].set_ylabel(f"\u00b5s a {unit}")
+    axes[0, 0].set_ylabel(f"\u00b5s per {unit}")
     style.heading(figure, title, details)
     return figure
 

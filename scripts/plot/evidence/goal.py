@@ -3,12 +3,12 @@
 from dataclasses import dataclass
 
 # Labels of measures, as the pages print them.
-STEP_US = "\u00b5s a step"
-CELL_NS = "ns a cell-step"
-VERTEX_NS = "ns a vertex-step"
+STEP_US = "\u00b5s per step"
+CELL_NS = "ns per cell-step"
+VERTEX_NS = "ns per vertex-step"
 RATE = "G cell-steps/s"
-BATCH_US = "\u00b5s a batch"
-OPTION_US = "\u00b5s an option"
+BATCH_US = "\u00b5s per batch"
+OPTION_US = "\u00b5s per option"
 OPTION_RATE = "options/s"
 # Measures relative to `Goal.compared_case` of the same run.
 TIME_RATIO = "times as long"

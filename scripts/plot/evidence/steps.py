@@ -51,7 +51,7 @@ _KINDS = {
     "springs-step": _Kind("A step", *_SPRINGS),
     "springs-contact": _Kind("A step in contact", *_SPRINGS),
     "options": _Kind("A batch", "options", (OPTION_US, OPTION_RATE), options_goals.GOALS, **_BATCH),
-    "tridiagonal": _Kind("Tridiagonal systems", "systems", ("\u00b5s a system", "systems/s"), **_BATCH),
+    "tridiagonal": _Kind("Tridiagonal systems", "systems", ("\u00b5s per system", "systems/s"), **_BATCH),
 }
 _Estimate = tuple[float, float, float]  # median, lower and upper end of the 95 % interval
 

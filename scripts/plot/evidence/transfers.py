@@ -1,4 +1,4 @@
-"""Sections on transfers: times of copies and computation, in the dissertation and on this machine."""
+"""Sections on transfers: times of copies and computation, in [Shi] and on this machine."""
 
 from dataclasses import dataclass
 
@@ -9,7 +9,7 @@ from ..style import plt
 from .perf_record import BACKENDS, Machine, Record
 from .section import Picture, Section, Table
 
-_THESIS = "dissertation"
+_THESIS = "[Shi]"
 _PARTS = {"h2d": "host to device", "compute": "compute", "d2h": "device to host"}
 _NAMES = _PARTS | {"total": "total"}
 _COLOURS = dict(zip(_PARTS, (style.PALETTE[5], style.PALETTE[0], style.PALETTE[4])))
@@ -27,7 +27,7 @@ class _Kind:
     table: str
     note: str
     unit: str
-    compared: bool  # whether a step of the dissertation does the same work
+    compared: bool  # whether a step of [Shi] does the same work
 
 
 _KINDS = {
@@ -36,10 +36,10 @@ _KINDS = {
         prefix="transfers",
         mesh="cells",
         source="memory",
-        panels="the dissertation, with pageable and with pinned memory",
+        panels="[Shi], with pageable and with pinned memory",
         table="5.5",
         note="",
-        unit="\u00b5s a step",
+        unit="\u00b5s per step",
         compared=True,
     ),
     "springs-transfers": _Kind(
@@ -47,7 +47,7 @@ _KINDS = {
         prefix="springs-transfers",
         mesh="vertices",
         source="between two copies",
-        panels="the dissertation, and of each number of steps between two copies",
+        panels="[Shi], and of each number of steps between two copies",
         table="5.6",
         note="Its steps took a number of substeps that is not recorded, so that no ratio to it means anything. Every "
         "panel has a scale of its own.",
@@ -64,7 +64,7 @@ def _source(record: Record) -> str:
 
 
 def sources(records: list[Record]) -> list[str]:
-    """Sources in the order of panels: the dissertation, pageable before pinned memory, few steps before many."""
+    """Sources in the order of panels: [Shi], pageable before pinned memory, few steps before many."""
     ordered = sorted(
         records, key=lambda record: (record.facts.get("substeps", 0), record.facts.get("memory", ""))
     )
@@ -129,7 +129,7 @@ def transfers_table(records: list[Record]) -> Table:
     columns = [(kind.mesh, True), (kind.source, False)] + [
         (f"{words} (\u00b5s)", True) for words in _NAMES.values()
     ]
-    columns += [("times as fast as the dissertation", True)] if kind.compared else []
+    columns += [("times as fast as [Shi]", True)] if kind.compared else []
     rows = []
     for (cells, source), parts in found.items():
         row = [
@@ -162,7 +162,10 @@ def sections(machine: Machine, records: list[Record]) -> list[Section]:
         )
         notes = ["Parts and total are medians of their own: they need not add up."]
         if any(source == _THESIS for _, source in times(own)):
-            words = f"The dissertation's times are those of its Table {kind.table}, on its own machine."
+            words = (
+                f"Times of [Shi] (the dissertation that README.md cites) are those of its Table {kind.table}, on its "
+                "own machine."
+            )
             notes.append(" ".join(filter(None, [words, kind.note])))
         command = f"drogue-perf table transfers --app {kind.app} --out FILE.jsonl"
         found.append(Section(title, command, own, [picture], [transfers_table(own)], notes))

@@ -37,7 +37,7 @@ def pressure_sections(records: list[Record]) -> list[Section]:
     ordered = sorted(records, key=lambda record: (list(BACKENDS).index(record.facts["backend"]), record.facts["cells"],
                                                   record.case.split("/")[4], record.median))  # fmt: skip
     columns = [("backend", False), ("grid", False), ("sides", False), ("solver", False), ("tolerance", True),
-               ("ms a solve", True), ("ns a cell", True), ("iterations", True), ("residual", True)]  # fmt: skip
+               ("ms per solve", True), ("ns per cell", True), ("iterations", True), ("residual", True)]  # fmt: skip
     note = "Residual: the largest of a random right-hand side, over the largest term of the equation. hypre computes on the host."
     return [
         Section(

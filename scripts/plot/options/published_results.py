@@ -12,11 +12,11 @@ _PROBE = "a prototype of this project without error estimate, one grid, 128 inte
 
 PUBLISHED_RESULTS = (
     PublishedResult(
-        "thesis", "dissertation, one option", "serial", ((2.881832, 9.1e-5), (12.050523, 1.0e-5)),
+        "thesis", "[Shi], one option", "serial", ((2.881832, 9.1e-5), (12.050523, 1.0e-5)),
         "its Table 5.7, Quadro 6000, 512 and 4096 intervals; errors computed for this project",
     ),
     PublishedResult(
-        "thesis", "dissertation, 4096 options", "serial", ((9.546837 / 4096, 4.4e-4),),
+        "thesis", "[Shi], 4096 options", "serial", ((9.546837 / 4096, 4.4e-4),),
         "its Table 5.8, Quadro 6000, 128 intervals; error computed for this project",
     ),
     PublishedResult(

@@ -4,14 +4,14 @@ from ..evidence.scheme_family import SchemeFamily
 from .published_results import PUBLISHED_RESULTS
 
 _PROBLEMS = {
-    "thesis": "The dissertation's put", "five-years": "The same for five years",
+    "thesis": "The put of [Shi]", "five-years": "The same for five years",
     "pure-jumps": "Normal inverse Gaussian jumps alone", "day": "A day to expiry", "merton": "Merton's jumps",
     "black-scholes": "Black and Scholes",
 }  # fmt: skip
 FAMILY = SchemeFamily(
     app="options",
     scheme_fact="method",
-    scheme_names={"pide": "finite differences", "cos": "cosine series", "seed": "the dissertation's scheme"},
+    scheme_names={"pide": "finite differences", "cos": "cosine series", "seed": "the scheme of [Shi]"},
     settings=("exercise", "grids", "intervals_a_step"),
     default_settings=("exact", "two", "4"),
     default_label="American puts; finite differences on two grids, a step for four intervals",

@@ -1,4 +1,4 @@
-"""Sections on tables 5.7 and 5.8 of the dissertation: its times for batches beside those of this machine."""
+"""Sections on tables 5.7 and 5.8 of [Shi]: its times for batches beside those of this machine."""
 
 from dataclasses import dataclass
 
@@ -9,7 +9,7 @@ from ..style import plt
 
 _PARTS = {"h2d": "host to device", "compute": "compute", "d2h": "device to host", "total": "total"}
 _CURVES = {
-    "cpu": ("dissertation, CPU", style.MUTED, "--s"), "gpu": ("dissertation, GPU", style.INK, "--o"),
+    "cpu": ("[Shi], CPU", style.MUTED, "--s"), "gpu": ("[Shi], GPU", style.INK, "--o"),
     "seed": ("its scheme, here", style.PALETTE[1], "-o"),
     "pide": ("ours, two solves for an error", style.PALETTE[0], "-o"),
 }  # fmt: skip
@@ -28,7 +28,7 @@ class _Row:
 
 
 def _thesis_rows(record: Record) -> list[_Row]:
-    """Rows of the dissertation's CPU and GPU times that a record carries."""
+    """Rows of the CPU and GPU times of [Shi] that a record carries."""
     thesis, place = record.facts.get("thesis") or {}, (record.facts["cells"], record.facts["mesh"])
     times = {name: float(value) for name, value in thesis.items() if isinstance(value, int | float)}
     rows = [_Row(*place, "cpu", {"total": times["cpu_us"]})] if "cpu_us" in times else []
@@ -40,7 +40,7 @@ def _thesis_rows(record: Record) -> list[_Row]:
 
 
 def transfer_rows(records: list[Record]) -> list[_Row]:
-    """Rows by increasing batch and mesh: the dissertation's times, then those of its scheme and of ours here."""
+    """Rows by increasing batch and mesh: the times of [Shi], then those of its scheme and of ours here."""
     found = {}
     for record in records:
         facts = record.facts
@@ -90,7 +90,7 @@ def transfers_figure(title: str, machine: Machine, records: list[Record]):
 
 
 def transfers_table(records: list[Record]) -> Table:
-    """Parts and total, us, with the factor over the dissertation's GPU and the error."""
+    """Parts and total, us, with the factor over the GPU of [Shi] and the error."""
     columns = [("options", True), ("intervals", True), ("", False)]
     columns += [(f"{words} (\u00b5s)", True) for words in _PARTS.values()]
     columns += [("times as fast as its GPU", True), ("error", True)]
@@ -122,8 +122,8 @@ def sections(machine: Machine, records: list[Record]) -> list[Section]:
             f"{title}: time against the mesh of one option and against the number of options",
         )
         notes = [
-            "Parts and total are medians of their own: they need not add up. The dissertation's times are "
-            "its own machine's, a Quadro 6000; its first copy of a single option holds the start of CUDA. Its "
+            "Parts and total are medians of their own: they need not add up. Times of [Shi] (the dissertation "
+            "that README.md cites) are those of a Quadro 6000; its first copy of a single option holds the start of CUDA. Its "
             "scheme takes as many steps as intervals, ours a fourth of them, on two grids. Errors: the largest of "
             "five known prices over the strike."
         ]

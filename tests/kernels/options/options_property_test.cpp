@@ -435,7 +435,7 @@ TEST(OptionsProperty, BoundaryRisesTowardsExpiry) {
   EXPECT_NEAR(curve[0].time, 0.0, 1e-12);
   EXPECT_NEAR(curve[0].spot, priced(on_mesh(256, 64), {c})[0].exercise_boundary, 1e-12);
   const Price chosen = priced(Settings{}, {c})[0];
-  EXPECT_NEAR(create_pricer(backend, Settings{})->boundary_on(c, chosen.mesh, chosen.steps)[0].spot,
+  EXPECT_NEAR(create_pricer(backend, Settings{})->boundary(c, chosen.mesh, chosen.steps)[0].spot,
               chosen.exercise_boundary, 1e-12);
   // At and below the boundary the price is the payoff, above it exceeds the payoff.
   for (const double factor : {0.98, 1.02}) {

@@ -17,6 +17,27 @@ using test::content;
 using test::failure_of;
 using test::TemporaryDirectory;
 
+TEST(RequireWritable, LeavesNothingBehind) {
+  const TemporaryDirectory directory;
+  require_writable("");
+  require_writable("/dev/null");
+  require_writable(directory / "a.txt");
+  EXPECT_EQ(directory.entries(), 0U);
+  write_file_atomically(directory / "a.txt", "former");
+  require_writable(directory / "a.txt");
+  EXPECT_EQ(content(directory / "a.txt"), "former");
+}
+
+TEST(RequireWritable, RejectsUnwritableTargets) {
+  const TemporaryDirectory directory;
+  for (const std::filesystem::path& path : {directory / "missing/a.txt", directory.path()}) {
+    const std::string sentence = failure_of(ExitCode::io_error, [&path] { require_writable(path); });
+    EXPECT_NE(sentence.find(path.string()), std::string::npos) << sentence;
+  }
+  const std::string sentence = failure_of(ExitCode::usage, [] { require_writable("-"); });
+  EXPECT_NE(sentence.find("/dev/stdout"), std::string::npos) << sentence;
+}
+
 TEST(AtomicFile, AppearsOnlyWhenCommitted) {
   const TemporaryDirectory directory;
   AtomicFile file(directory / "a.txt");

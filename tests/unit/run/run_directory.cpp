@@ -52,6 +52,17 @@ TEST(RunDirectory, OverwriteRemovesKnownNamesOnly) {
   for (const std::string& name : foreign) EXPECT_TRUE(std::filesystem::exists(parent / name)) << name;
 }
 
+TEST(RunDirectory, AdvisesRestartOnlyWhereARunHasIt) {
+  const TemporaryDirectory parent;
+  write_file_atomically(parent / "study.csv", "former");
+  for (const auto existing : {ExistingRun::refuse, ExistingRun::refuse_study}) {
+    const std::string sentence =
+        failure_of(ExitCode::usage, [&parent, existing] { const RunDirectory run(parent.path(), existing); });
+    EXPECT_NE(sentence.find("--overwrite"), std::string::npos) << sentence;
+    EXPECT_EQ(sentence.find("--restart") != std::string::npos, existing == ExistingRun::refuse) << sentence;
+  }
+}
+
 TEST(RunDirectory, ResumeKeepsTheFormerRun) {
   const TemporaryDirectory parent;
   write_file_atomically(parent / "restart.h5", "state");

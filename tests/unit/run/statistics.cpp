@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
 #include <numeric>
 #include <random>
 #include <stdexcept>
@@ -13,6 +15,14 @@ std::vector<double> first_numbers(std::size_t count) {
   std::vector<double> values(count);
   std::iota(values.rbegin(), values.rend(), 1.0);  // descending: the functions sort
   return values;
+}
+
+TEST(Statistics, MaximumKeepsNaN) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(maximum_or_nan(1.0, 2.0), 2.0);
+  EXPECT_EQ(maximum_or_nan(2.0, 1.0), 2.0);
+  EXPECT_TRUE(std::isnan(maximum_or_nan(nan, 1.0)));
+  EXPECT_TRUE(std::isnan(maximum_or_nan(1.0, nan)));
 }
 
 TEST(Statistics, MedianOfOddAndEvenCounts) {

@@ -167,7 +167,7 @@ TEST(Schema, ErrorsNameKeyValueAndRange) {
   EXPECT_EQ(error_of(head + "[material]\ninterval = [1, 1]\n"),
             "c.toml:5: material.interval[1] = 1.0 is not greater than the element before it, 1.0");
   EXPECT_EQ(error_of(head + "[material]\ninterval = [1]\n"),
-            "c.toml:5: material.interval must be two numbers, not 1");
+            "c.toml:5: material.interval must be two numbers, not 1 number");
   EXPECT_EQ(error_of(head + "[[pin]]\nwhere = \"x\"\naxes = [1, \"b\", 2]\n"),
             "c.toml:6: pin[0].axes[1] must be a number, not the string \"b\"");
   EXPECT_EQ(error_of(head + "[[pin]]\nmotion = 1\n"), "c.toml:4: missing key \"pin[0].where\": Place");
