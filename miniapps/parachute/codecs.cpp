@@ -146,6 +146,14 @@ Codec vector_codec(std::array<double, 3>& vector) {
           scene::back_to_default(vector)};
 }
 
+Codec pair_codec(std::array<double, 2>& pair) {
+  return {"array of 2 reals", read_whole(pair, read_pair),
+          [&pair] {
+            return std::optional(bracketed({scene::toml_text(pair[0]), scene::toml_text(pair[1])}));
+          },
+          scene::back_to_default(pair)};
+}
+
 Codec vector_expression_codec(VectorExpression& vector, std::vector<std::string> variables) {
   std::string names;
   for (const std::string& variable : variables) names += (names.empty() ? "" : ", ") + variable;

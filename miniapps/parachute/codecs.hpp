@@ -18,6 +18,9 @@ scene::Codec domain_codec(std::array<double, 3>& low, std::array<double, 3>& hig
 /// Array of three reals. Does not throw.
 scene::Codec vector_codec(std::array<double, 3>& vector);
 
+/// Array of two reals. Does not throw.
+scene::Codec pair_codec(std::array<double, 2>& pair);
+
 /// Array of three reals or expressions of `variables`. Does not throw.
 scene::Codec vector_expression_codec(VectorExpression& vector, std::vector<std::string> variables);
 

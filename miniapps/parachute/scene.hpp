@@ -9,6 +9,7 @@
 
 #include "kernels/flow/parameters.hpp"
 #include "miniapps/framework/scene_keys.hpp"
+#include "miniapps/parachute/bodies/body.hpp"
 
 /// Scene of `drogue-parachute`: the content of a TOML file, checked and with every default filled in.
 namespace drogue::parachute_app {
@@ -65,6 +66,13 @@ struct FlowRate {
   Target target;
 };
 
+/// Component of the force of the fluid on a body at the end, N.
+struct BodyForce {
+  int body = 0;
+  int axis = 0;
+  Target target;
+};
+
 /// Largest rate at which the kinetic energy falls, W, and optionally its time, s.
 struct DissipationPeak {
   Target target;
@@ -79,6 +87,7 @@ struct Verify {
   std::optional<Target> kinetic_energy;                         ///< at the end, J
   std::optional<DissipationPeak> dissipation_peak;
   std::vector<FlowRate> flow_rates;
+  std::vector<BodyForce> forces;
   std::vector<Profile> profiles;
 };
 
@@ -101,7 +110,9 @@ struct FlowScene {
   VectorExpression initial;                           ///< initial velocity, m/s
   std::array<std::optional<SidePair>, 3> sides;       ///< of each axis
   std::array<VectorExpression, 6> wall_velocity;      ///< m/s
-  double end_time = 0.0;                              ///< s
+  std::vector<Body> bodies;
+  coupling::SheetParameters coupling;  ///< its laws are those of the bodies
+  double end_time = 0.0;               ///< s
   framework::OutputRequest output;
   Verify verify;
 

@@ -8,6 +8,7 @@
 
 #include "common/scene/node.hpp"
 #include "common/scene/read.hpp"
+#include "miniapps/parachute/bodies/body_check.hpp"
 #include "miniapps/parachute/functions.hpp"
 
 namespace drogue::parachute_app {
@@ -218,6 +219,7 @@ void complete_and_check(const Table& root, FlowScene& scene) {
   complete_velocities(root, scene);
   check_net_inflow(root, scene);
   check_solver(root, p);
+  check_bodies(root, scene);
   framework::complete_output(root, scene.output, {"velocity", "pressure", "vorticity"},
                              {scene.end_time, "run.end_time"});
   check_verify(root, scene);

@@ -1,5 +1,6 @@
 #include "miniapps/parachute/scene_keys.hpp"
 
+#include "miniapps/parachute/bodies/body_keys.hpp"
 #include "miniapps/parachute/codecs.hpp"
 
 namespace drogue::parachute_app {
@@ -166,6 +167,11 @@ void declare_flow_scene(Table& root, FlowScene& scene) {
       "The state at the start; the gradient part of its velocity is removed");
   root.table(
       "flow", [&](Table& table) { declare_flow(table, scene); }, "The numerical scheme and the forces");
+  root.tables("body", scene.bodies, declare_body, "Rigid sheets in the flow, which do not move");
+  root.table(
+          "coupling", [&](Table& table) { declare_coupling(table, scene.coupling); },
+          "The exchange of forces between the fluid and bodies")
+      .when([&scene] { return !scene.bodies.empty(); }, "with a [[body]]", "body");
   root.table(
           "run", [&](Table& table) { declare_run(table, scene); }, "Length and steps of the run")
       .required();

@@ -139,6 +139,16 @@ void declare_verify(Table& table, Verify& verify) {
         declare_target(rate, value.target, "m^3/s", deviation);
       },
       "Flow rates out of the domain through sides at the end");
+  table.tables(
+      "force", verify.forces,
+      [deviation](Table& force, BodyForce& value) {
+        force.value("body", scene::integer_codec(value.body), "Number of the [[body]], from 0")
+            .range(0, 1e6)
+            .required();
+        force.value("axis", scene::choice_codec(value.axis, axis_choices), "Component").required();
+        declare_target(force, value.target, "N", deviation);
+      },
+      "Forces of the fluid on bodies at the end");
   table.tables("profile", verify.profiles, declare_profile, "Velocities along lines at the end");
 }
 

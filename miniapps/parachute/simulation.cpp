@@ -54,14 +54,27 @@ const char* reason_text(flow::FailureReason reason) {
   return "";
 }
 
+/// Flow with all bodies of a scene as sheets.
+coupling::Parameters coupled_parameters(const FlowScene& scene) {
+  coupling::Parameters p{scene.parameters, make_sheets(scene.bodies), scene.coupling, 1};
+  for (const Body& body : scene.bodies)
+    p.sheet.law_of_vertex.insert(p.sheet.law_of_vertex.end(), body.vertices(), law_of(body.porosity));
+  return p;
+}
+
 }  // namespace
 
 Simulation::Simulation(const FlowScene& scene, const framework::SimulationSettings& settings)
     : _scene(scene) {
   if (settings.communicator != nullptr) {
+    if (!scene.bodies.empty()) throw Failure(ExitCode::usage, "scenes with a [[body]] run on one rank");
     auto shared = std::make_unique<SharedSolver>(*settings.communicator, settings.backend, scene.parameters);
     _shared = shared.get();
     _solver = std::move(shared);
+  } else if (!scene.bodies.empty()) {
+    auto coupled = coupling::create_solver(settings.backend, coupled_parameters(scene));
+    _coupled = coupled.get();
+    _solver = std::move(coupled);
   } else {
     _solver = flow::create_solver(settings.backend, scene.parameters);
   }
@@ -132,6 +145,9 @@ std::vector<run::Column> Simulation::history_columns() const {
   for (std::size_t side = 0; side < 6; ++side)
     if (!is_periodic(_scene.parameters, side))
       columns.push_back({std::string("outflow_") + side_names[side], "m^3/s"});
+  for (std::size_t i = 0; i < _scene.bodies.size(); ++i)
+    for (const char* axis : axis_names)
+      columns.push_back({"body_" + std::to_string(i) + "_force_" + axis, "N"});
   return columns;
 }
 
@@ -144,7 +160,22 @@ framework::HistoryRow Simulation::row() {
                                 now.max_speed, now.divergence_rms, now.divergence_max}};
   for (std::size_t side = 0; side < 6; ++side)
     if (!is_periodic(_scene.parameters, side)) row.values.push_back(now.outflow[side]);
+  for (const fabric::Vector& force : body_forces())
+    row.values.insert(row.values.end(), force.begin(), force.end());
   return row;
+}
+
+/// Forces of the fluid on the bodies in the last step, N.
+std::vector<fabric::Vector> Simulation::body_forces() {
+  std::vector<fabric::Vector> sums(_scene.bodies.size(), fabric::Vector{});
+  if (_coupled == nullptr) return sums;
+  std::vector<fabric::Vector> on_fluid(vertices_of(_scene.bodies));
+  _coupled->forces(on_fluid);
+  auto force = on_fluid.begin();
+  for (std::size_t i = 0; i < sums.size(); ++i)
+    for (std::size_t k = 0; k < _scene.bodies[i].vertices(); ++k, ++force)
+      for (std::size_t axis = 0; axis < 3; ++axis) sums[i][axis] -= (*force)[axis];
+  return sums;
 }
 
 std::vector<run::DatasetSpec> Simulation::field_specs() const {
@@ -193,6 +224,10 @@ std::string Simulation::failure_text(bool) {
          << " s, before run.end_time = " << _scene.end_time << " s";
     return text.str();
   }
+  if (_coupled != nullptr && _coupled->failure_reason() != coupling::FailureReason::flow) {
+    text << "a force on a body is not finite at t = " << now().time << " s";
+    return text.str();
+  }
   const flow::StepFailure failure = _solver->failure();
   text << reason_text(failure.reason);
   if (failure.index >= 0) text << " in " << cell_text(_scene.parameters, failure.index);
@@ -210,6 +245,8 @@ void Simulation::describe(run::ResultDocument& result) {
   result.dt_max = progress.dt_max;
   result.metrics.set("pressure", "solver", std::string(_solver->pressure_solver()));
   result.metrics.set("pressure", "divergence_rms", _statistics.divergence());
+  if (_coupled != nullptr)
+    result.metrics.set("bodies", "vertices", static_cast<std::int64_t>(vertices_of(_scene.bodies)));
   result.timing.compute_s = _compute_s;
   result.timing.h2d_s = _h2d_s;
 }

@@ -3,6 +3,7 @@
 #include <array>
 #include <memory>
 
+#include "kernels/coupling/sheet/solver.hpp"
 #include "kernels/flow/solver.hpp"
 #include "miniapps/framework/simulation.hpp"
 #include "miniapps/parachute/parallel/rank_solver.hpp"
@@ -53,9 +54,13 @@ class Simulation final : public framework::Simulation {
   void sample_fields(Snapshot& snapshot);
   void check_profiles(run::ResultDocument& result);
   void check_totals(run::ResultDocument& result);
+  [[nodiscard]] std::vector<fabric::Vector> body_forces();
+  void write_coupling(run::RestartWriter& writer);
+  void read_coupling(const run::RestartReader& reader);
 
   const FlowScene& _scene;
-  SharedSolver* _shared = nullptr;  ///< `_solver` on several ranks
+  SharedSolver* _shared = nullptr;       ///< `_solver` on several ranks
+  coupling::Solver* _coupled = nullptr;  ///< `_solver` with bodies
   std::unique_ptr<flow::Solver> _solver;
   RunStatistics _statistics;
   /// Used in turn: one is written while the other is filled. Empty on several ranks.

@@ -35,12 +35,33 @@ std::vector<flow::StateField> Simulation::state_fields() const {
   return fields;
 }
 
+void Simulation::write_coupling(run::RestartWriter& writer) {
+  const std::size_t vertices = vertices_of(_scene.bodies);
+  std::vector<fabric::Vector> acceleration(vertices);
+  _coupled->download_air_acceleration(acceleration);
+  writer.array("body_acceleration", 3 * vertices);
+  writer.write("body_acceleration", 0, {acceleration.front().data(), 3 * vertices});
+  const coupling::BlockProgress block = _coupled->block();
+  writer.number("block_dt", block.dt);
+  writer.integer("block_substeps", block.substeps);
+  writer.integer("block_end", block.end);
+}
+
+void Simulation::read_coupling(const run::RestartReader& reader) {
+  std::vector<fabric::Vector> acceleration(static_cast<std::size_t>(reader.size("body_acceleration")) / 3);
+  reader.read("body_acceleration", 0, {acceleration.front().data(), 3 * acceleration.size()});
+  _coupled->upload_air_acceleration(acceleration);
+  _coupled->set_block(
+      {reader.number("block_dt"), reader.integer("block_substeps"), reader.integer("block_end")});
+}
+
 void Simulation::write_restart(run::RestartWriter& writer) {
   const flow::Progress progress = _solver->progress();
   visit(
       progress, [&](const std::string& name, double value) { writer.number(name, value); },
       [&](const std::string& name, auto value) { writer.integer(name, std::bit_cast<std::int64_t>(value)); });
   _statistics.write(writer);
+  if (_coupled != nullptr) write_coupling(writer);
   std::vector<double> values;
   for (const flow::StateField field : state_fields()) {
     values.resize(lattice_of(_scene.parameters, field).size());
@@ -66,6 +87,7 @@ void Simulation::restore(const run::RestartReader& reader) {
     _solver->upload(field, values);
   }
   _solver->restore(progress);
+  if (_coupled != nullptr) read_coupling(reader);
   static_cast<void>(_solver->totals());
   sample_fields(_snapshots[0]);
 }

@@ -116,6 +116,13 @@ void Simulation::check_totals(run::ResultDocument& result) {
       result.add_check("dissipation_peak_time", std::abs(_statistics.peak_time() - *peak.time),
                        *peak.time_tolerance);
   }
+  for (std::size_t i = 0; i < wanted.forces.size(); ++i) {
+    const BodyForce& force = wanted.forces[i];
+    const fabric::Vector on_body = body_forces()[static_cast<std::size_t>(force.body)];
+    result.add_check("force_" + std::to_string(i),
+                     relative_deviation(on_body[static_cast<std::size_t>(force.axis)], force.target),
+                     force.target.tolerance);
+  }
   for (std::size_t i = 0; i < wanted.flow_rates.size(); ++i) {
     const FlowRate& rate = wanted.flow_rates[i];
     result.add_check("flow_rate_" + std::to_string(i),

@@ -2,6 +2,7 @@
 
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "kernels/coupling/interpolate.hpp"
 #include "kernels/coupling/sheet/local_air.hpp"
@@ -79,18 +80,25 @@ class ImmersedSheet {
         _density(density),
         _surface(space, cloth.mesh),
         _transfer(space, grid, parameters.kernel, _surface.vertices()),
-        _air{scalars("drogue::coupling::area"),           vectors("drogue::coupling::normal"),
-             vectors("drogue::coupling::compliance"),     vectors("drogue::coupling::velocity_before"),
-             vectors("drogue::coupling::acceleration"),   vectors("drogue::coupling::inverse_mass"),
-             vectors("drogue::coupling::local_velocity"), scalars("drogue::coupling::impulse")},
+        _air{
+            scalars("drogue::coupling::area"),
+            vectors("drogue::coupling::normal"),
+            vectors("drogue::coupling::compliance"),
+            vectors("drogue::coupling::velocity_before"),
+            vectors("drogue::coupling::acceleration"),
+            vectors("drogue::coupling::inverse_mass"),
+            vectors("drogue::coupling::local_velocity"),
+            scalars("drogue::coupling::impulse"),
+            Kokkos::View<PorousLaw*, typename ExecutionSpace::memory_space>("drogue::coupling::law", rows())},
         _force(vectors("drogue::coupling::force")),
         _after(vectors("drogue::coupling::velocity_after")),
         _push(vectors("drogue::coupling::push")) {
     copy_inverse_masses(space, cloth);
+    copy_laws(space);
   }
 
   /// VertexForce of the fabric solver.
-  [[nodiscard]] AirRelaxation<ExecutionSpace> relaxation() const { return {_air, _parameters.law}; }
+  [[nodiscard]] AirRelaxation<ExecutionSpace> relaxation() const { return {_air}; }
   /// Force of each vertex on the air in the last step of the flow, (vertices, 3), N. Does not throw.
   [[nodiscard]] const Vectors& force() const { return _force; }
   /// Filtered acceleration of the air at each vertex, (vertices, 3), m/s^2; with the state of cloth and flow
@@ -137,8 +145,11 @@ class ImmersedSheet {
  private:
   static void check_parameters(const SheetParameters& p, double density) {
     const auto is_valid = [](double value) { return value >= 0.0 && value <= 1e100; };
-    if (!is_valid(p.law.alpha) || !is_valid(p.law.beta))
-      throw std::invalid_argument("immersed sheet: alpha and beta must be finite and not negative");
+    std::vector<PorousLaw> laws = p.law_of_vertex;
+    laws.push_back(p.law);
+    for (const PorousLaw& law : laws)
+      if (!is_valid(law.alpha) || !is_valid(law.beta))
+        throw std::invalid_argument("immersed sheet: alpha and beta must be finite and not negative");
     if (!(density > 0.0) || !is_valid(density))
       throw std::invalid_argument("immersed sheet: the density must be positive");
     if (!(p.filter >= 0.0 && p.filter <= 1.0))
@@ -160,6 +171,16 @@ class ImmersedSheet {
       for (const int i : motion.vertices) mirror(i, motion.axis) = 0.0;
     Kokkos::deep_copy(space, _air.inverse_mass, mirror);
     space.fence("drogue::coupling::immersed_sheet");
+  }
+
+  void copy_laws(const ExecutionSpace& space) const {
+    const std::vector<PorousLaw>& laws = _parameters.law_of_vertex;
+    if (!laws.empty() && laws.size() != rows())
+      throw std::invalid_argument("immersed sheet: there must be one law per vertex, or none");
+    const auto mirror = Kokkos::create_mirror_view(_air.law);
+    for (std::size_t i = 0; i < rows(); ++i) mirror(i) = laws.empty() ? _parameters.law : laws[i];
+    Kokkos::deep_copy(space, _air.law, mirror);
+    space.fence("drogue::coupling::immersed_sheet: laws");
   }
 
   SheetParameters _parameters;

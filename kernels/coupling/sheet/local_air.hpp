@@ -24,6 +24,8 @@ struct LocalAir {
   // Changed by each step of the cloth.
   Vectors velocity;  ///< local velocity, m/s
   Scalars impulse;   ///< per area along the normal, of the sheet on the air since `before`, Pa s
+
+  Kokkos::View<PorousLaw*, Memory> law;  ///< constant
 };
 
 /// Relaxes the velocity of a vertex and that of the air beside it against each other by the porous law: a
@@ -32,7 +34,6 @@ struct LocalAir {
 template <class ExecutionSpace>
 struct AirRelaxation {
   LocalAir<ExecutionSpace> air;
-  PorousLaw law;
 
   /// Velocity after the relaxation, m/s. Updates `LocalAir::velocity` and `LocalAir::impulse` of the vertex.
   KOKKOS_FUNCTION fabric::Vector3<double> relaxed_velocity(const fabric::VertexStage& at) const {
@@ -48,7 +49,7 @@ struct AirRelaxation {
       return fabric::Vector3<double>{by.x * n.x, by.y * n.y, by.z * n.z};
     };
     const double of_cloth = area * dot(n, scaled(inverse_mass)), of_air = dot(n, scaled(compliance));
-    const double given = porous_impulse(law, dot(at.velocity - now, n), at.dt, of_cloth + of_air);
+    const double given = porous_impulse(air.law(i), dot(at.velocity - now, n), at.dt, of_cloth + of_air);
     spatial::store_vector(air.velocity, i, now + given * scaled(compliance));
     air.impulse(i) += given;
     return at.velocity - (given * area) * scaled(inverse_mass);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "kernels/coupling/parameters.hpp"
 #include "kernels/coupling/sheet/porous_law.hpp"
 #include "kernels/fabric/parameters.hpp"
@@ -11,6 +13,7 @@ namespace drogue::coupling {
 struct SheetParameters {
   DeltaKernel kernel = DeltaKernel::cbs43;
   PorousLaw law;
+  std::vector<PorousLaw> law_of_vertex;  ///< one per vertex, or empty: `law` for all
   /// Weight of the present step in the running mean of the acceleration of the air, 0 to 1. With 0 the energy
   /// cannot grow, but the sheet leaks in proportion to dt; nearly impermeable sheets need 0.2 or less if dt
   /// exceeds the period of their oscillations over 2 pi.

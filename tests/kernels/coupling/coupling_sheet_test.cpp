@@ -61,6 +61,18 @@ TEST(FixedSheet, FollowsThePorousLaw) {
     }
 }
 
+TEST(FixedSheet, LayersOfTwoLawsAddTheirPressureDifferences) {
+  CoupledCase c(24, 4, h, 0.01);
+  c.p.flow.pressure_drop = {300.0, 0.0, 0.0};
+  c.add_strip(0.9, 0.0, 0.9, 0.4, 8);
+  c.p.sheet.law_of_vertex.assign(c.x.size(), {100.0, 0.0, false});
+  c.add_strip(1.3, 0.0, 1.3, 0.4, 8);
+  c.p.sheet.law_of_vertex.resize(c.x.size(), {200.0, 0.0, false});
+  CoupledRun run(c);
+  ASSERT_TRUE(run.advance(600));
+  EXPECT_NEAR(mean_velocity(c, run)[0], 1.0, 1e-5);
+}
+
 /// Box whose diagonal of slope 2 is a strip of cloth, and a force on the air along the normal of the strip
 /// that balances dp, Pa, over its area. Returns the mean normal velocity, m/s, after `steps`.
 double velocity_through_tilted_sheet(double dp, bool impermeable, double spacing, int steps) {

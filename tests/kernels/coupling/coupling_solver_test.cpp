@@ -195,6 +195,8 @@ TEST(CoupledSolver, RejectsInvalidParameters) {
   rejects([](Parameters& p) { p.substeps = -1; });
   rejects([](Parameters& p) { p.sheet.law.alpha = -1.0; });
   rejects([](Parameters& p) { p.sheet.law.beta = std::nan(""); });
+  rejects([](Parameters& p) { p.sheet.law_of_vertex.resize(3); });
+  rejects([](Parameters& p) { p.sheet.law_of_vertex.resize(p.fabric.mass.size(), {1.0, -1.0, false}); });
   rejects([](Parameters& p) { p.sheet.filter = 1.5; });
   rejects([](Parameters& p) { p.fabric.mass.clear(); });
   rejects([](Parameters& p) { p.flow.density = 0.0; });
