@@ -226,11 +226,13 @@ FlowSolver<ExecutionSpace>::FlowSolver(const device::Instance<ExecutionSpace>& i
     if (_grid.n[axis] > 1) squares += _grid.inverse_h[axis] * _grid.inverse_h[axis];
   }
   const double nu = is_implicit ? 0.0 : kinematic_viscosity();
-  // The second-order Adams-Bashforth method is stable for z in [-1, 0] of the negative real axis; the largest
-  // eigenvalue of the viscous term is 4 nu times the sum of the squares.
+  // Intervals of the negative real axis in which the methods are stable; the largest eigenvalue of the viscous
+  // term is 4 nu times the sum of the squares.
+  const bool is_rk3 = parameters.time_scheme == TimeScheme::rk3;
+  const double interval = is_rk3 ? 2.5 : 1.0, standard_cfl = is_rk3 ? 1.0 : 0.5;
   _constants = {
-      parameters.cfl, parameters.fixed_dt, parameters.max_dt,
-      nu > 0.0 && squares > 0.0 ? 1.0 / (4.0 * nu * squares) : std::numeric_limits<double>::infinity(),
+      parameters.cfl > 0.0 ? parameters.cfl : standard_cfl, parameters.fixed_dt, parameters.max_dt,
+      nu > 0.0 && squares > 0.0 ? interval / (4.0 * nu * squares) : std::numeric_limits<double>::infinity(),
       parameters.max_steps};
   space().fence("drogue::flow::solver: allocated");
 }

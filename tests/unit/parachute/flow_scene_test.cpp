@@ -64,12 +64,12 @@ TEST(FlowScene, MinimalSceneHasTheDocumentedDefaults) {
   EXPECT_EQ(p.density, 1.225);
   EXPECT_EQ(p.viscosity, 1.8e-5);
   EXPECT_EQ(p.advection, flow::Advection::weno_z);
-  EXPECT_EQ(p.time_scheme, flow::TimeScheme::ab2);
+  EXPECT_EQ(p.time_scheme, flow::TimeScheme::rk3);
   EXPECT_EQ(p.diffusion, flow::Diffusion::explicit_);
   EXPECT_EQ(p.turbulence, flow::Turbulence::none);
   EXPECT_EQ(p.pressure_solver, flow::PressureSolver::automatic);
   EXPECT_EQ(p.fixed_dt, 0.0);
-  EXPECT_EQ(p.cfl, 0.5);
+  EXPECT_EQ(p.cfl, 0.0);
   EXPECT_EQ(p.max_dt, 0.0);
   EXPECT_TRUE(scene.output.fields.empty());
 }
