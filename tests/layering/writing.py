@@ -4,6 +4,7 @@ From the root of the repository, `python3 -B tests/layering/writing.py [PATH...]
 """
 
 import ast
+import functools
 import io
 import re
 import sys
@@ -295,6 +296,12 @@ def identifiers(path, text):
             yield number, re.sub(r'#.*|"[^"]*"', "", line)
 
 
+@functools.cache
+def any_of(patterns):
+    """One pattern that matches where any of the (pattern, term) does."""
+    return re.compile("|".join(pattern.pattern for pattern, _ in patterns))
+
+
 def replaced_names(path, text):
     """Lines `path:line: ...` for names of the vocabulary's left column that are left, in text or as a file's name."""
     found = []
@@ -302,8 +309,11 @@ def replaced_names(path, text):
         return found
     if re.search(r"_on\w*\.hpp$", path) or re.search(r"/(?:seed|doubt|desk)\w*\.[hc]pp", path):
         found.append(f"{path}:1: the file's name is replaced by the vocabulary")
-    patterns = [(pattern, term) for pattern, term, where in PATTERNS if not where or path.startswith(where)]
+    patterns = tuple((pattern, term) for pattern, term, where in PATTERNS if not where or path.startswith(where))
+    any_name = any_of(patterns)
     for number, words in identifiers(path, text):
+        if not any_name.search(words):
+            continue
         for pattern, term in patterns:
             for match in pattern.finditer(words):
                 found.append(f"{path}:{number}: {match.group()} is {term} in the vocabulary")
