@@ -84,7 +84,9 @@ struct Parameters {
   bool external_force = false;  ///< the solver has a force field that other kernels add to before each step
   /// 1/dt = max(|u|/hx + |v|/hy + |w|/hz) / cfl + 1/dt of explicit diffusion. 0: 1 for RK3, 0.5 for AB2.
   double cfl = 0.0;
-  double fixed_dt = 0.0;        ///< s; a positive value replaces the CFL condition
+  /// s; a positive value replaces the CFL condition. A run fails where it exceeds the stability limit: the dt
+  /// of CFL 1.4 for RK3 and 0.7 for AB2, with explicit diffusion without reserve.
+  double fixed_dt = 0.0;
   double max_dt = 0.0;  ///< s; a positive value is an upper bound of dt, needed if the fluid is at rest
   std::int64_t max_steps = 1'000'000'000;
   Driver driver = Driver::automatic;
