@@ -25,10 +25,7 @@ class RunnableScene final : public framework::Scene {
 };
 
 std::unique_ptr<framework::Scene> read(const std::filesystem::path& file,
-                                       const std::vector<std::string>& assignments, bool baseline) {
-  if (baseline)
-    throw Failure(ExitCode::usage,
-                  "drogue-parachute has no --seed-mode: its flow solver differs from that of [Shi]");
+                                       const std::vector<std::string>& assignments, bool /*baseline*/) {
   return std::make_unique<RunnableScene>(read_flow_scene(file, assignments));
 }
 
