@@ -88,7 +88,8 @@ void declare_flow(Table& table, FlowScene& scene) {
   table.value("diffusion", scene::choice_codec(parameters.diffusion, diffusion_choices),
               "Time integration of viscous stresses: explicit, which limits dt, or implicit");
   table.value("time", scene::choice_codec(parameters.time_scheme, time_choices),
-              "Time integration: Runge-Kutta of third order with three projections, or Adams-Bashforth of second order");
+              "Time integration: Runge-Kutta of third order with three projections, or Adams-Bashforth of "
+              "second order");
   table.value("pressure", scene::choice_codec(parameters.pressure_solver, pressure_choices),
               "Solver of the pressure equation; `auto` is the faster direct one");
   table

@@ -120,7 +120,11 @@ TEST(FlowScene, OmitsInapplicableKeys) {
                           "[tuning]", "[initial]"})
     EXPECT_FALSE(contains(printed, key)) << key;
   EXPECT_TRUE(contains(printed, "weno = \"z\"\n"));
-  EXPECT_TRUE(contains(printed, "dt = \"auto\"\ncfl = 0.5\n"));
+  // The CFL number follows from the time scheme.
+  EXPECT_TRUE(contains(printed, "time = \"rk3\"\n"));
+  EXPECT_TRUE(contains(printed, "dt = \"auto\"\n"));
+  EXPECT_FALSE(contains(printed, "cfl"));
+  EXPECT_TRUE(contains(print_flow_scene(read_text(least, {"run.cfl=0.4"})), "cfl = 0.4\n"));
   const std::string central = print_flow_scene(read_text(least, {"flow.advection=central", "run.dt=0.01"}));
   EXPECT_FALSE(contains(central, "weno"));
   EXPECT_FALSE(contains(central, "cfl"));
