@@ -25,10 +25,22 @@ struct Control {
 struct StepConstants {
   double cfl, fixed_dt, max_dt;
   double diffusive_dt;  ///< s, bound of explicit diffusion; infinite without viscosity
+  double stable_cfl;    ///< largest CFL number of a fixed dt
+  double damping_rate;  ///< 1/s, of implicit diffusion: nu / h^2 with the largest h; 0 if explicit
   std::int64_t max_steps;
 };
 
-/// Admissible dt of the next step, s. NaN or zero if there is none.
+/// Largest dt of the next step that is stable, s; NaN if the velocity is not finite. Implicit diffusion damps
+/// the waves that the explicit advection amplifies while rate^2 dt is at most twice `damping_rate`.
+KOKKOS_INLINE_FUNCTION double stable_dt(const Progress& now, const StepConstants& k) {
+  const double rate = Kokkos::bit_cast<double>(now.rate);
+  if (!(rate >= 0.0)) return rate;  // NaN
+  const double dt = 1.0 / (rate / k.stable_cfl + 1.0 / k.diffusive_dt);
+  const double damped = 2.0 * k.damping_rate / (rate * rate);
+  return damped > dt ? damped : dt;
+}
+
+/// Admissible dt of the next step, s. NaN or zero if there is none. Does not bound a fixed dt.
 KOKKOS_INLINE_FUNCTION double admissible_dt(const Progress& now, const StepConstants& k) {
   if (k.fixed_dt > 0.0) return k.fixed_dt;
   const double rate = Kokkos::bit_cast<double>(now.rate);
@@ -39,7 +51,8 @@ KOKKOS_INLINE_FUNCTION double admissible_dt(const Progress& now, const StepConst
   return k.max_dt > 0.0 && !(dt < k.max_dt) ? k.max_dt : dt;
 }
 
-/// Prepares the next step, or stops the run if there is no admissible dt. Two equal steps reach a target that
+/// Prepares the next step, or stops the run if there is no admissible dt. A fixed dt that is not stable stops
+/// the run too; dt of the next step is then the largest stable one. Two equal steps reach a target that
 /// is between one and two steps away, so that no step is much shorter than its neighbours; a fixed dt may
 /// grow by a billionth.
 KOKKOS_INLINE_FUNCTION void prepare_step(const Progress& now, stepping::StepTrial& next,
@@ -51,6 +64,11 @@ KOKKOS_INLINE_FUNCTION void prepare_step(const Progress& now, stepping::StepTria
   else if (left > admissible && left < 2.0 * admissible && !(k.fixed_dt > 0.0))
     dt = 0.5 * left;
   if (!stepping::set_dt(now, next, dt, 1.0)) next.stop = Stop::failed;
+  if (!(k.fixed_dt > 0.0)) return;
+  const double largest = stable_dt(now, k);
+  if (next.dt <= largest) return;
+  next.dt = largest;
+  next.stop = Stop::failed;
 }
 
 }  // namespace drogue::flow

@@ -21,6 +21,7 @@
 #include "kernels/flow/observables/totals.hpp"
 #include "kernels/flow/projection/projection.hpp"
 #include "kernels/flow/solver.hpp"
+#include "kernels/flow/step_constants.hpp"
 #include "kernels/flow/step_control.hpp"
 #include "kernels/flow/turbulence/eddy_viscosity.hpp"
 #include "kernels/linear/poisson/diagonalization.hpp"
@@ -241,20 +242,12 @@ FlowSolver<ExecutionSpace>::FlowSolver(const device::Instance<ExecutionSpace>& i
   }
   _control = ControlView<ExecutionSpace>("drogue::flow::control");
   make_poisson();
-  double squares = 0.0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const double length = parameters.high[axis] - parameters.low[axis];
     _acceleration[axis] =
         (parameters.body_force[axis] + parameters.pressure_drop[axis] / length) / parameters.density;
-    if (_grid.n[axis] > 1) squares += _grid.inverse_h[axis] * _grid.inverse_h[axis];
   }
-  const double nu = is_implicit ? 0.0 : kinematic_viscosity();
-  // The second-order Adams-Bashforth method is stable for z in [-1, 0] of the negative real axis; the largest
-  // eigenvalue of the viscous term is 4 nu times the sum of the squares.
-  _constants = {
-      parameters.cfl, parameters.fixed_dt, parameters.max_dt,
-      nu > 0.0 && squares > 0.0 ? 1.0 / (4.0 * nu * squares) : std::numeric_limits<double>::infinity(),
-      parameters.max_steps};
+  _constants = step_constants(parameters, _grid);
   space().fence("drogue::flow::solver: allocated");
 }
 
@@ -584,16 +577,16 @@ void FlowSolver<ExecutionSpace>::enqueue_step(const ExecutionSpace& space) const
                                       smoothness_floor,
                                       {}};
   if (_parameters.time_scheme == TimeScheme::ab2) {
-    setup.weights = {0.0, 1.0, 1.0, true};
+    setup.weights = {0.0, 1.0, true};
     enqueue_stage(space, setup, _velocity, 1.0, 1.0);
   } else {
     // Shu and Osher 1988, eq. (2.18). The first two stages are projected into the array of rates.
-    setup.weights = {0.0, 1.0, 1.0, false};
+    setup.weights = {0.0, 1.0, false};
     enqueue_stage(space, setup, _rate, 1.0, 1.0);
     setup.stage = _rate;
-    setup.weights = {0.75, 0.25, 0.25, false};
+    setup.weights = {0.75, 0.25, false};
     enqueue_stage(space, setup, _rate, 0.25, 0.5);
-    setup.weights = {1.0 / 3.0, 2.0 / 3.0, 2.0 / 3.0, false};
+    setup.weights = {1.0 / 3.0, 2.0 / 3.0, false};
     enqueue_stage(space, setup, _velocity, 2.0 / 3.0, 1.0);
   }
   if (_halo) _halo->agree(space, _control);
@@ -643,6 +636,7 @@ void FlowSolver<ExecutionSpace>::enqueue_projection(const ExecutionSpace& space,
                                         kinematic_viscosity(),
                                         fraction,
                                         !is_initial && _boundary.has_outflow(),
+                                        result.data() == _velocity.data(),
                                         {}};
   if (_halo) {
     for (std::size_t axis = 0; axis < 3; ++axis) setup.pressure_below[axis] = _halo->pressure_below(axis);

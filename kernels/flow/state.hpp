@@ -12,8 +12,10 @@ using stepping::Stop;
 
 /// Reason why a step failed.
 enum class FailureReason : int {
-  not_finite,       ///< the divergence of the predicted velocity is not finite, or exceeds 1e100 per second
-  time_step,        ///< no admissible dt: the velocity is not finite, or dt would not change the time
+  not_finite,  ///< the divergence of the predicted velocity is not finite, or exceeds 1e100 per second
+  /// No admissible dt: the velocity is not finite, dt would not change the time, or a fixed dt exceeds the
+  /// largest stable one, which `StepFailure::dt` then holds.
+  time_step,
   pressure_solver,  ///< an iterative pressure solver did not converge
 };
 

@@ -10,10 +10,7 @@ namespace drogue::parachute_app {
 namespace {
 
 std::unique_ptr<framework::Scene> read(const std::filesystem::path& file,
-                                       const std::vector<std::string>& assignments, bool baseline) {
-  if (baseline)
-    throw Failure(ExitCode::usage,
-                  "drogue-parachute has no --seed-mode: its flow solver differs from that of [Shi]");
+                                       const std::vector<std::string>& assignments, bool /*baseline*/) {
   return std::make_unique<framework::TypedScene<FlowScene, Simulation>>(read_flow_scene(file, assignments),
                                                                         declare_flow_scene);
 }

@@ -89,7 +89,8 @@ void declare_flow(Table& table, FlowScene& scene) {
   table.value("diffusion", scene::choice_codec(parameters.diffusion, diffusion_choices),
               "Time integration of viscous stresses: explicit, which limits dt, or implicit");
   table.value("time", scene::choice_codec(parameters.time_scheme, time_choices),
-              "Time integration: Adams-Bashforth of second order, or Runge-Kutta with three projections");
+              "Time integration: Runge-Kutta of third order with three projections, or Adams-Bashforth of "
+              "second order");
   table.value("pressure", scene::choice_codec(parameters.pressure_solver, pressure_choices),
               "Solver of the pressure equation; `auto` is the faster direct one");
   table
@@ -129,11 +130,12 @@ void declare_run(Table& table, FlowScene& scene) {
       .unit("s")
       .above(0.0);
   table
-      .value("cfl", scene::real_codec(parameters.cfl),
+      .value("cfl", absent_if_zero(scene::real_codec(parameters.cfl), parameters.cfl),
              "Courant number: dt times the largest sum of speeds over cell widths along the axes")
       .above(0.0)
       .at_most(2.0)
-      .when(free_step, "with dt = \"auto\"", "dt");
+      .when(free_step, "with dt = \"auto\"", "dt")
+      .default_text("1 for rk3, 0.5 for ab2");
   table
       .value("max_dt", absent_if_zero(scene::real_codec(parameters.max_dt), parameters.max_dt),
              "Upper bound of dt, say for a fluid at rest")

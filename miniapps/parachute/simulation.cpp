@@ -1,9 +1,12 @@
 #include "miniapps/parachute/simulation.hpp"
 
+#include <cmath>
 #include <sstream>
+#include <string>
 
 #include "common/program/stopwatch.hpp"
 #include "common/run/fields/rectilinear_mesh.hpp"
+#include "common/scene/node.hpp"
 #include "miniapps/parachute/functions.hpp"
 
 namespace drogue::parachute_app {
@@ -229,12 +232,23 @@ std::string Simulation::failure_text(bool) {
     return text.str();
   }
   const flow::StepFailure failure = _solver->failure();
-  text << reason_text(failure.reason);
+  const double fixed_dt = _scene.parameters.fixed_dt;
+  const bool is_unstable = failure.reason == flow::FailureReason::time_step && failure.dt < fixed_dt;
+  // Without a finite velocity of the start the first step has no dt.
+  const bool is_initial = failure.step == 1 && std::isnan(failure.dt);
+  if (is_unstable)
+    text << "run.dt = " << fixed_dt << " s exceeds the largest stable time step, " << failure.dt << " s,";
+  else
+    text << reason_text(failure.reason);
   if (failure.index >= 0) text << " in " << cell_text(_scene.parameters, failure.index);
-  text << " at step " << failure.step << ", t = " << failure.time << " s, dt = " << failure.dt << " s";
-  if (failure.reason == flow::FailureReason::not_finite)
-    text << (_scene.parameters.fixed_dt > 0.0 ? "; a smaller run.dt" : "; a smaller run.cfl")
-         << " may save the run";
+  text << " at " << (is_initial ? "the initial projection" : "step " + std::to_string(failure.step))
+       << ", t = " << failure.time << " s";
+  if (!is_initial && !is_unstable) text << ", dt = " << failure.dt << " s";
+  if (failure.reason == flow::FailureReason::pressure_solver)
+    text << "; it may with a flow.pressure_tolerance above "
+         << scene::real_text(_scene.parameters.pressure_tolerance);
+  if (failure.reason == flow::FailureReason::not_finite && !is_initial)
+    text << (fixed_dt > 0.0 ? "; a smaller run.dt" : "; a smaller run.cfl") << " may save the run";
   return text.str();
 }
 

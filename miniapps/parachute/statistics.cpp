@@ -50,7 +50,7 @@ void RunStatistics::add(const flow::Totals& totals) {
 double RunStatistics::momentum_change(const flow::Totals& totals, double mass) const {
   double square = 0.0;
   for (int axis = 0; axis < 3; ++axis) square += std::pow(totals.momentum[axis] - _initial_momentum[axis], 2);
-  return std::sqrt(square / (2.0 * mass * _initial_energy));
+  return relative(std::sqrt(square), std::sqrt(2.0 * mass * _initial_energy));
 }
 
 void RunStatistics::write(run::RestartWriter& writer) const {

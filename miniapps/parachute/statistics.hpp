@@ -5,6 +5,11 @@
 
 namespace drogue::parachute_app {
 
+/// Ratio of a change to the value at the start; no change is none of a fluid at rest either. Does not throw.
+[[nodiscard]] inline double relative(double change, double initial) {
+  return change == 0.0 ? 0.0 : change / initial;
+}
+
 /// Extremes over the rows of a run, from its first start on. They continue after a restart.
 class RunStatistics {
  public:
@@ -15,10 +20,12 @@ class RunStatistics {
   void add(const flow::Totals& totals);
 
   /// Largest rise of the kinetic energy between rows, relative to the initial energy.
-  [[nodiscard]] double energy_growth() const { return _largest_rise / _initial_energy; }
+  [[nodiscard]] double energy_growth() const { return relative(_largest_rise, _initial_energy); }
 
   /// Largest speed in any row over the initial one, less 1.
-  [[nodiscard]] double speed_growth() const { return _largest_speed / _initial_speed - 1.0; }
+  [[nodiscard]] double speed_growth() const {
+    return relative(_largest_speed - _initial_speed, _initial_speed);
+  }
 
   /// Change of the momentum relative to sqrt(2 mass energy), which bounds it; `mass` in kg.
   [[nodiscard]] double momentum_change(const flow::Totals& totals, double mass) const;

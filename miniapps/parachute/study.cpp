@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "common/program/failure.hpp"
 #include "common/study/axes.hpp"
 #include "miniapps/framework/run_loop.hpp"
 #include "miniapps/parachute/simulation.hpp"
@@ -21,23 +22,23 @@ const study::Columns columns = {{"advection", "time_scheme", "diffusion", "press
 /// Cells along the longest axis.
 int longest(const flow::Parameters& p) { return *std::ranges::max_element(p.cells); }
 
-/// `--set` of the grid with `cells` along its longest axis and nearly the proportions of the scene.
+/// `--set` of the grid with `cells` along its longest axis and nearly the proportions of the scene. Axes with
+/// more than one cell keep at least the number that a solver needs.
 std::string scaled_cells(const flow::Parameters& p, std::int64_t cells) {
   std::string list;
   for (const int n : p.cells) {
     const double scaled = static_cast<double>(n) * static_cast<double>(cells) / longest(p);
-    const std::int64_t rounded = n == 1 ? 1 : std::max<std::int64_t>(std::llround(scaled), 2);
+    const std::int64_t rounded = n == 1 ? 1 : std::max<std::int64_t>(std::llround(scaled), 4);
     list += (list.empty() ? "[" : ", ") + std::to_string(rounded);
   }
   return "grid.cells=" + list + "]";
 }
 
-/// Assignments of one point. An empty value keeps that of the scene.
-std::vector<std::string> point_of(const MiniAppOptions& options, const FlowScene& base,
-                                  const std::string& advection, const std::string& time,
-                                  const std::string& diffusion, const std::string& pressure,
-                                  std::int64_t cells) {
-  std::vector<std::string> sets = options.set;
+/// Assignments of one point, without those of the command line. An empty value keeps that of the scene.
+std::vector<std::string> point_of(const FlowScene& base, const std::string& advection,
+                                  const std::string& time, const std::string& diffusion,
+                                  const std::string& pressure, std::int64_t cells) {
+  std::vector<std::string> sets;
   const bool is_weno = advection.starts_with("weno-");
   const std::pair<const char*, std::string> values[] = {{"advection", is_weno ? "weno5" : advection},
                                                         {"weno", is_weno ? advection.substr(5) : ""},
@@ -48,6 +49,25 @@ std::vector<std::string> point_of(const MiniAppOptions& options, const FlowScene
     if (!value.empty()) sets.push_back(std::string("flow.") + key + "=\"" + value + "\"");
   if (cells > 0) sets.push_back(scaled_cells(base.parameters, cells));
   return sets;
+}
+
+/// Scene of a point. Throws `Failure` (usage), which names --study, if the point is invalid.
+FlowScene scene_of(const std::filesystem::path& file, const MiniAppOptions& options,
+                   const std::vector<std::string>& point) {
+  std::vector<std::string> sets = options.set;
+  sets.insert(sets.end(), point.begin(), point.end());
+  try {
+    return read_flow_scene(file, sets);
+  } catch (const Failure& failure) {
+    std::string reason = failure.what(), values;
+    for (const std::string& assignment : point) {
+      values += (values.empty() ? "" : ", ") + assignment;
+      // The user gave no such option.
+      const std::string option = "--set " + assignment + ": ";
+      if (reason.starts_with(option)) reason.erase(0, option.size());
+    }
+    throw Failure(ExitCode::usage, "--study " + options.study + " (" + values + "): " + reason);
+  }
 }
 
 std::vector<FlowScene> scenes_of(const study::Axes& axes, const MiniAppOptions& options,
@@ -61,7 +81,7 @@ std::vector<FlowScene> scenes_of(const study::Axes& axes, const MiniAppOptions& 
         for (const std::string& pressure : axes.of("pressures"))
           for (const std::int64_t cells : meshes) {
             FlowScene scene =
-                read_flow_scene(file, point_of(options, base, advection, time, diffusion, pressure, cells));
+                scene_of(file, options, point_of(base, advection, time, diffusion, pressure, cells));
             scene.output = {};  // steps shortened to meet outputs that are not written would only cost time
             scenes.push_back(std::move(scene));
           }

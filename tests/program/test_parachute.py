@@ -5,6 +5,7 @@ import csv
 import json
 import math
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -45,7 +46,8 @@ class CommandLine(parachute_program.FlowTest):
             with self.subTest(words):
                 self.expect(2, *words)
         self.assertEqual([], list(self.folder.iterdir()))
-        self.assertIn("no --seed-mode", self.expect(2, "cavity", "--seed-mode").stderr)
+        self.assertRegex(self.expect(2, "cavity", "--seed-mode").stderr, r"^drogue-parachute: (?!drogue-).*--seed-mode")
+        self.assertNotIn("--seed-mode", self.expect(0, "--help").stdout)
 
 
 class RunDirectory(parachute_program.FlowTest):
@@ -114,12 +116,14 @@ class RunDirectory(parachute_program.FlowTest):
         return self.result("out")["ledger"]["kernel_launches"]
 
     def test_parts_that_are_not_requested_do_not_run(self):
-        base = self.launches()
+        base = self.launches("flow.time=ab2")
         for requested in ("output.history_every=1", "output={history_every=0,fields=['vorticity'],times=[0.5]}",
                           "flow.time=rk3"):
-            self.assertGreater(self.launches(requested), base, requested)
+            self.assertGreater(self.launches("flow.time=ab2", requested), base, requested)
         steps = 10
-        self.assertEqual(base + steps * (base - self.launches("run.end_time=0.45")), self.launches("run.end_time=1"))
+        for scheme in ("flow.time=ab2", "flow.time=rk3"):
+            base, shorter, longer = (self.launches(scheme, *sets) for sets in ([], ["run.end_time=0.45"], ["run.end_time=1"]))
+            self.assertEqual(base + steps * (base - shorter), longer, scheme)
 
     def test_rejects_an_existing_run(self):
         scene = self.write(VORTICES)
@@ -131,12 +135,32 @@ class RunDirectory(parachute_program.FlowTest):
 
 class Failures(parachute_program.FlowTest):
     def test_unstable_step_ends_with_the_last_good_state(self):
-        message = self.expect(4, self.write(GUST), *QUIET, sets=["run.dt=0.4", "run.end_time=400", "output={restart_every=0}"]).stderr
-        self.assertRegex(message, r"not finite.* at step \d+, t = \S+ s, dt = 0.4 s; a smaller run.dt may save the run\n$")
+        message = self.expect(4, self.write(GUST), *QUIET, sets=["run.dt=0.09", "run.end_time=400", "fluid.velocity=['1+t', 0, 0]", "output={restart_every=0}"]).stderr
+        self.assertRegex(message, r"run.dt = 0.09 s exceeds the largest stable time step, 0.08\d+ s, at step \d+, t = \S+ s\n$")
+        self.assertGreater(self.result("out")["steps"], 2)
         told = self.result("out")
         self.assertEqual(("numerical-failure", 4), (told["status"], told["exit_code"]))
         self.assertTrue((self.folder / "out/restart.h5").exists())
         self.assertTrue(all(math.isfinite(value) for value in self.history("out")["kinetic_energy"]))
+
+    def test_fixed_steps_far_beyond_the_stability_limit_are_failures(self):
+        for scene, dt in (("shear-layer", 10), ("jet", 5)):
+            for time_scheme in ("ab2", "rk3"):
+                with self.subTest(scene, time_scheme=time_scheme):
+                    sets = [f"run.dt={dt}", f"flow.time={time_scheme}", "verify={}", "output={}"]
+                    message = self.expect(4, scene, *QUIET, "--overwrite", sets=sets).stderr
+                    limit = float(re.search(rf"run.dt = {dt} s exceeds the largest stable time step, (\S+) s, at step 1,", message)[1])
+                    self.expect(0, scene, *QUIET, "--overwrite", sets=[f"run.dt={0.5 * limit}", *sets[1:], f"run.end_time={3 * limit}"])
+
+    def test_initial_projection_that_fails_names_the_tolerance(self):
+        if "hypre" not in self.expect(0, "--version").stdout:
+            self.skipTest("this build lacks hypre")
+        for step in ("auto", "0.01"):
+            message = self.expect(4, "cavity", *QUIET, "--overwrite", sets=[
+                "flow.pressure='hypre-pfmg'", "flow.pressure_tolerance=1e-300", f"run.dt={step}",
+                "initial.velocity=['sin(3*x)*cos(2*y)', 'cos(x)*y', 0]"]).stderr
+            self.assertRegex(message, r"did not converge at the initial projection, t = 0 s; .*flow.pressure_tolerance above 1e-300\n$")
+            self.assertNotIn("nan", message)
 
     def test_inflow_that_becomes_undefined_is_a_failure(self):
         message = self.expect(4, self.write(GUST), *QUIET, sets=['fluid.velocity=["sqrt(0.2-t)+1", 0, 0]']).stderr
@@ -212,6 +236,10 @@ class Verification(parachute_program.FlowTest):
             'velocity = ["1 + 0.1*sin(3*y)*z", "0.1*sin(pi*y)", 0]', "velocity = [1, 0, 0]")
         self.check(0, "{exact={x='1+0.3*sin(5*t)',y=0,z=0},linf_velocity=1e-12}", plug)
 
+    def test_fluid_at_rest_changes_neither_momentum_nor_energy(self):
+        checks = self.check(0, "{momentum=0,energy_growth=0,speed_growth=0}", sets=["initial.velocity=[0, 0, 0]", "fluid.velocity=[0, 0, 0]"])
+        self.assertEqual({"momentum": 0.0, "energy_growth": 0.0, "speed_growth": 0.0}, checks)
+
 
 class Orders(parachute_program.FlowTest):
     def energy(self, scheme, dt):
@@ -244,6 +272,23 @@ class Orders(parachute_program.FlowTest):
         document = json.loads((self.folder / "out/taylor-green-2d-study/study.json").read_text(encoding="utf-8"))
         self.assertEqual(("drogue.study/1", "drogue-parachute", 12),
                          (document["schema"], document["program"], len(document["rows"])))
+
+
+    def test_studies_run_on_coarse_meshes(self):
+        scenes = [name for name in parachute_program.SCENES if "exact" in self.expect(0, name, "--print-scene").stdout]
+        self.assertGreaterEqual(len(scenes), 6)
+        for scene in scenes:
+            with self.subTest(scene):
+                run = self.start(scene, "--backend", "serial", "--quiet", "--study", "meshes=4:16",
+                                 sets=["run.end_time=0.02", "output={}"], environment={"PYTHONHOME": os.devnull})
+                self.assertEqual(0, run.returncode, run.stderr)
+                with (self.folder / f"out/{scene}-study/study.csv").open(encoding="utf-8", newline="") as file:
+                    self.assertEqual([("ok", n) for n in ("4", "8", "16")], [(row["status"], row["cells"]) for row in csv.DictReader(file)])
+
+    def test_study_names_itself_where_a_point_is_invalid(self):
+        message = self.expect(2, "channel", "--study", "times=rk3,diffusions=crank-nicolson").stderr
+        self.assertRegex(message, r"--study times=rk3,diffusions=crank-nicolson .*needs flow.time = \"ab2\"")
+        self.assertNotIn("--set", message)
 
 
 class Restart(parachute_program.FlowTest):
@@ -293,7 +338,7 @@ class Restart(parachute_program.FlowTest):
         self.scene = self.write(GUST)
         sets = ["output.restart_every=5", "output.fields=[]"]
         self.expect(0, self.scene, *QUIET, sets=sets)
-        for change in ("fluid.viscosity=0.02", "grid.cells=[12, 10, 10]", "flow.time=rk3"):
+        for change in ("fluid.viscosity=0.02", "grid.cells=[12, 10, 10]", "flow.time=ab2"):
             with self.subTest(change):
                 self.assertIn("another scene", self.expect(6, self.scene, *QUIET, "--restart", "auto", sets=[*sets, change]).stderr)
         self.expect(0, self.scene, *QUIET, "--restart", "auto", sets=[*sets, "run.cfl=0.2", "run.end_time=0.6"])

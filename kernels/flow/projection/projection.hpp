@@ -31,6 +31,7 @@ struct ProjectionSetup {
   double nu;              ///< kinematic viscosity of implicit diffusion, m^2/s
   double step_fraction;   ///< of dt that the projection covers
   bool resists_backflow;  ///< false: the pressure on outflows is zero
+  bool ends_step;         ///< the result is the state after the step, whose rate determines the next dt
   /// Pressure of the layer of cells below the low side along each axis, m^2/s^2; null unless another rank
   /// holds it.
   const double* pressure_below[3];
@@ -108,7 +109,7 @@ struct CorrectionFunctor {
         const double rate = correct(i, j, k, dt);
         largest = rate > largest || !(rate == rate) ? rate : largest;
       }
-    device::raise_to_team_maximum(member, control.next_rate, largest);
+    if (setup.ends_step) device::raise_to_team_maximum(member, control.next_rate, largest);
   }
 
  private:

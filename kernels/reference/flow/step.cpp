@@ -202,8 +202,8 @@ FlowState crank_nicolson_step(const FlowDomain& domain, const FlowState& state, 
 }
 
 FlowState runge_kutta_step(const FlowDomain& domain, const FlowState& state, double time, double dt) {
-  /// Stage: result = a U + b (S + dt L(S)), an approximation at the time fraction `end`; S at the fraction
-  /// `begin`.
+  /// Stage: result = S + a (U - S) + b dt L(S), with b = 1 - a, an approximation at the time fraction `end`;
+  /// S at the fraction `begin`. A uniform state stays bit for bit.
   struct Stage {
     double a, b, begin, end;
   };
@@ -213,7 +213,8 @@ FlowState runge_kutta_step(const FlowDomain& domain, const FlowState& state, dou
   for (const Stage& stage :
        {Stage{0.0, 1.0, 0.0, 1.0}, Stage{0.75, 0.25, 1.0, 0.5}, Stage{1.0 / 3.0, 2.0 / 3.0, 0.5, 1.0}}) {
     const StaggeredField rate = momentum_rate(domain, s, time + stage.begin * dt);
-    s = combine(domain, {{stage.a, &state.velocity}, {stage.b, &s}, {stage.b * dt, &rate}});
+    const StaggeredField behind = combine(domain, {{1.0, &state.velocity}, {-1.0, &s}});
+    s = combine(domain, {{1.0, &s}, {stage.a, &behind}, {stage.b * dt, &rate}});
     s = with_side_velocity(domain, s, time + stage.end * dt);
     next.pressure = project(domain, s, stage.b * dt);
   }

@@ -88,7 +88,8 @@ TEST(FlowForce, ActsForTheWholeStepWithoutExtrapolation) {
 }
 
 TEST(FlowForce, AddsItsProjectionToTheFirstStep) {
-  const Parameters p = forced_box({8, 1, 6});
+  Parameters p = forced_box({8, 1, 6});
+  p.time_scheme = TimeScheme::ab2;  // whose first step is Euler's
   TypedCase forced(p), free(p);
   const StaggeredField force = random_field(forced.domain, 3);
   forced.set_force(force);
