@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "common/program/command_line.hpp"
+#include "common/program/program.hpp"
 #include "common/program/signals.hpp"
 #include "common/run/files/atomic_file.hpp"
 #include "common/run/files/output_path.hpp"
@@ -123,6 +124,9 @@ ExitCode measure_solutions(const WorkPrecisionOptions& options, const std::vecto
                                        (options.quick ? "with --quick there are " : "there are ") + known);
   // An interrupted run keeps its finished records.
   write_records(options.out, lines);
+  if (!finished)
+    print_notice("drogue-perf",
+                 "interrupted by a signal; " + std::to_string(lines.size()) + " runs are finished");
   return finished ? ExitCode::ok : ExitCode::interrupted;
 }
 

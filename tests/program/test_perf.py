@@ -2,7 +2,9 @@
 
 import os
 import re
+import signal
 import statistics
+import subprocess
 import sys
 import unittest
 
@@ -149,6 +151,18 @@ class WorkPrecision(perf_program.PerfTest):
         for (problem, scheme, precision, cells), error in errors.items():
             if precision == "split":
                 self.assertAlmostEqual(1.0, error / errors[problem, scheme, "double", cells], places=3)
+
+
+    def test_reports_an_interruption(self):
+        process = subprocess.Popen([perf_program.PROGRAM, "work-precision", "--backend", "serial", "--out", "runs.jsonl"],
+                                   cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        process.stdout.readline()
+        process.send_signal(signal.SIGINT)
+        message = process.communicate(timeout=300)[1]
+        self.assertEqual(130, process.returncode, message)
+        found = re.fullmatch(r"drogue-perf: interrupted by a signal; (\d+) runs are finished\n", message)
+        self.assertTrue(found, message)
+        self.assertEqual(int(found[1]), len(self.records("runs.jsonl")))
 
 
 class WorkPrecisionOfSprings(perf_program.PerfTest):
