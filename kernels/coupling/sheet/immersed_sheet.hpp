@@ -89,7 +89,7 @@ class ImmersedSheet {
             vectors("drogue::coupling::inverse_mass"),
             vectors("drogue::coupling::local_velocity"),
             scalars("drogue::coupling::impulse"),
-            Kokkos::View<PorousLaw*, typename ExecutionSpace::memory_space>("drogue::coupling::law", rows())},
+            Kokkos::View<PorousLaw*, typename ExecutionSpace::memory_space>("drogue::coupling::porosity", rows())},
         _force(vectors("drogue::coupling::force")),
         _after(vectors("drogue::coupling::velocity_after")),
         _push(vectors("drogue::coupling::push")) {
@@ -176,11 +176,11 @@ class ImmersedSheet {
   void copy_laws(const ExecutionSpace& space) const {
     const std::vector<PorousLaw>& laws = _parameters.law_of_vertex;
     if (!laws.empty() && laws.size() != rows())
-      throw std::invalid_argument("immersed sheet: there must be one law per vertex, or none");
+      throw std::invalid_argument("immersed sheet: there must be one porous law per vertex, or none");
     const auto mirror = Kokkos::create_mirror_view(_air.law);
     for (std::size_t i = 0; i < rows(); ++i) mirror(i) = laws.empty() ? _parameters.law : laws[i];
     Kokkos::deep_copy(space, _air.law, mirror);
-    space.fence("drogue::coupling::immersed_sheet: laws");
+    space.fence("drogue::coupling::immersed_sheet: porosity");
   }
 
   SheetParameters _parameters;

@@ -3,11 +3,18 @@
 #include <vector>
 
 #include "kernels/coupling/parameters.hpp"
-#include "kernels/coupling/sheet/porous_law.hpp"
 #include "kernels/fabric/parameters.hpp"
 #include "kernels/flow/parameters.hpp"
 
 namespace drogue::coupling {
+
+/// Pressure difference across a porous sheet, Pa, for the normal velocity w of the sheet relative to the air,
+/// m/s: alpha w + beta |w| w.
+struct PorousLaw {
+  double alpha = 0.0;        ///< Pa s/m, >= 0
+  double beta = 0.0;         ///< Pa s^2/m^2, >= 0
+  bool impermeable = false;  ///< no flow through the sheet; alpha and beta are ignored
+};
 
 /// Parameters of the exchange between a sheet and the air.
 struct SheetParameters {

@@ -2,15 +2,9 @@
 
 #include <Kokkos_Core.hpp>
 
-namespace drogue::coupling {
+#include "kernels/coupling/sheet/parameters.hpp"
 
-/// Pressure difference across a porous sheet, Pa, for the normal velocity w of the sheet relative to the air,
-/// m/s: alpha w + beta |w| w.
-struct PorousLaw {
-  double alpha = 0.0;        ///< Pa s/m, >= 0
-  double beta = 0.0;         ///< Pa s^2/m^2, >= 0
-  bool impermeable = false;  ///< no flow through the sheet; alpha and beta are ignored
-};
+namespace drogue::coupling {
 
 /// Impulse per area, Pa s, of a sheet on the air during tau, s, which the air returns. `w` is the normal
 /// velocity of the sheet relative to the air before, m/s; one impulse per area changes it by `inverse_mass`,
