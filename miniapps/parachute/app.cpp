@@ -2,9 +2,9 @@
 
 #include "miniapps/framework/typed_scene.hpp"
 #include "miniapps/parachute/parallel/serve.hpp"
-#include "miniapps/parachute/scene_keys.hpp"
-#include "miniapps/parachute/simulation.hpp"
-#include "miniapps/parachute/study.hpp"
+#include "miniapps/parachute/scene/scene_keys.hpp"
+#include "miniapps/parachute/simulation/simulation.hpp"
+#include "miniapps/parachute/verify/study.hpp"
 
 namespace drogue::parachute_app {
 namespace {

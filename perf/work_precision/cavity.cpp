@@ -8,7 +8,7 @@
 #include "common/study/repeats.hpp"
 #include "miniapps/framework/run_loop.hpp"
 #include "miniapps/framework/study.hpp"
-#include "miniapps/parachute/simulation.hpp"
+#include "miniapps/parachute/simulation/simulation.hpp"
 #include "perf/pressure/pressure.hpp"
 #include "perf/problems/streams.hpp"
 #include "perf/work_precision/flow_scheme.hpp"

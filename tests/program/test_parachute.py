@@ -17,7 +17,7 @@ sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
 import gas_program
 import parachute_program
-from parachute_program import GUST, VORTICES
+from parachute_program import GUST, PLATE, VORTICES
 
 QUIET = ("--quiet", "--backend", "serial", "--out", "out")
 
@@ -291,6 +291,32 @@ class Orders(parachute_program.FlowTest):
         self.assertNotIn("--set", message)
 
 
+class Bodies(parachute_program.FlowTest):
+    def test_force_on_a_porous_plate_follows_its_law(self):
+        """A plate across the whole channel, so that the velocity through it is that of the inflow."""
+        whole = PLATE.replace("lengths = [0.4, 0.6]", "lengths = [0.8, 0.6]").replace("0.37", "0.4").replace(
+            'y = "slip"', 'y = "periodic"')
+        whole = whole[:whole.index('[[body]]\nkind = "plate"\nnormal = "y"')] + whole[whole.index("[run]"):]
+        force = (3 * 2 + 1 * 2**2) * 0.8 * 0.6
+        check = "verify={{force=[{{body=0,axis='x',value={},tolerance=1e-10}}]}}"
+        self.expect(0, self.write(whole), *QUIET, sets=[check.format(force), "run.end_time=1"])
+        self.assertEqual({"vertices": 17 * 13}, self.result("out")["bodies"])
+        self.expect(5, self.write(whole), *QUIET, "--overwrite", sets=[check.format(1.001 * force), "run.end_time=1"])
+
+    def test_history_holds_the_forces_of_all_bodies(self):
+        self.expect(0, self.write(PLATE), *QUIET)
+        rows = self.history("out")
+        self.assertGreater(rows["body_0_force_x"][-1], 0.1)
+        self.assertEqual(0.0, max(abs(value) for value in rows["body_1_force_x"]))  # normal to y
+        self.assertGreater(abs(rows["body_1_force_y"][-1]), 1e-6)
+
+    def test_backends_agree(self):
+        for backend in ("serial", gas_program.threaded()):
+            self.expect(0, self.write(PLATE), "--quiet", "--backend", backend, "--out", backend, "--overwrite")
+            last = self.history(backend)["body_0_force_x"][-1]
+            self.assertAlmostEqual(1.0, last / self.history("serial")["body_0_force_x"][-1], delta=1e-9)
+
+
 class Restart(parachute_program.FlowTest):
     SETS = ("run.end_time=1.5", "output.times=[0.3, 0.9, 1.5]", "output.restart_every=4", "grid.cells=[24, 20, 16]",
             "verify={energy_growth=1e9}")
@@ -314,8 +340,8 @@ class Restart(parachute_program.FlowTest):
         for key in ("steps", "time", "dt_min", "dt_max", "status", "checks"):
             self.assertEqual(one[key], other[key], key)
 
-    def compare(self, backend, scheme, stop, code):
-        self.scene, self.sets = self.write(GUST), [*self.SETS, *scheme]
+    def compare(self, backend, scheme, stop, code, scene=GUST):
+        self.scene, self.sets = self.write(scene), [*self.SETS, *scheme]
         shutil.rmtree(self.folder / "part", ignore_errors=True)
         words = ["--backend", backend]
         self.expect(0, self.scene, "--quiet", "--out", "whole", "--overwrite", *words, sets=self.sets)
@@ -330,6 +356,10 @@ class Restart(parachute_program.FlowTest):
         for scheme in (["flow.time=ab2"], ["flow.time=rk3"]):
             with self.subTest(scheme):
                 self.compare("serial", scheme, lambda process: process.send_signal(signal.SIGINT), 130)
+
+    def test_interrupted_run_with_bodies_equals_uninterrupted_run(self):
+        self.SETS = ("output.restart_every=4", "output.history_every=7", "run.end_time=1")
+        self.compare("serial", [], lambda process: process.send_signal(signal.SIGINT), 130, PLATE)
 
     def test_killed_run_equals_uninterrupted_run(self):
         self.compare(gas_program.threaded(), [], lambda process: process.kill(), -signal.SIGKILL)

@@ -12,7 +12,7 @@ import unittest
 sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
 import parachute_program
-from parachute_program import GUST, PROGRAM, VORTICES
+from parachute_program import GUST, PLATE, PROGRAM, VORTICES
 from rank_processes import LAUNCHER, RANK_ENVIRONMENT, processes_of
 
 QUIET = ("--quiet", "--backend", "serial")
@@ -107,6 +107,10 @@ class Failures(RanksTest):
 
     def test_refuses_implicit_diffusion(self):
         sentence = self.run_on(2, 2, self.write(VORTICES), *QUIET, "--out", "out", sets=["flow.diffusion=crank-nicolson", "flow.time=ab2"])
+        self.assertIn("one rank", sentence)
+
+    def test_refuses_bodies(self):
+        sentence = self.run_on(2, 2, self.write(PLATE), *QUIET, "--out", "out")
         self.assertIn("one rank", sentence)
 
     def test_reports_a_numerical_failure_once(self):

@@ -58,10 +58,11 @@ class Solver : public flow::Solver {
   /// Restores the block, after `restore`. Does not throw.
   virtual void set_block(const BlockProgress& block) = 0;
 
-  /// Energies and momenta of the cloth.
+  /// Energies and momenta of the cloth. Throws only after a failed kernel.
   [[nodiscard]] virtual fabric::Totals cloth_totals() = 0;
 
-  /// Reason of the failure that ended the last `advance` with `Stop::failed`.
+  /// Reason of the failure that ended the last `advance` with `Stop::failed`. Throws only after a failed
+  /// kernel.
   [[nodiscard]] virtual FailureReason failure_reason() = 0;
 };
 

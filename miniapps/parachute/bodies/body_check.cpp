@@ -38,27 +38,27 @@ void check_extent(const Table& root, const flow::Parameters& p, const std::strin
 void check_body(const Table& root, const FlowScene& scene, std::size_t index) {
   const Body& body = scene.bodies[index];
   const flow::Parameters& p = scene.parameters;
-  const std::string name = "body[" + std::to_string(index) + "]", key = "body";
+  const std::string name = "body[" + std::to_string(index) + "]", edge_length = name + ".edge_length";
   const auto axes = body.axes();
   const auto edges = body.edges();
   const auto normal = static_cast<std::size_t>(body.normal);
   if (p.cells[normal] == 1)
-    contradict(root, key, name + ".normal: the grid has one cell along " + axis_names[normal]);
+    contradict(root, name + ".normal", name + ".normal: the grid has one cell along " + axis_names[normal]);
   double vertices = 1.0;
   for (std::size_t k = 0; k < 2; ++k) {
     vertices *= edges[k] + 1.0;
     const double edge = body.lengths[k] / edges[k], h = spacing(p, axes[k]);
     if (p.cells[axes[k]] > 1 && edge > (1.0 + 1e-9) * largest_edge_in_cells * h)
-      contradict(root, key,
-                 name + ".edge_length: edges of " + real_text(edge) + " m along " + axis_names[axes[k]] +
+      contradict(root, edge_length,
+                 edge_length + ": edges of " + real_text(edge) + " m along " + axis_names[axes[k]] +
                      " leak on cells of " + real_text(h) + " m; at most " +
                      real_text(largest_edge_in_cells * h) + " m");
-    check_extent(root, p, key, name, axes[k], body.centre[axes[k]] - 0.5 * body.lengths[k],
+    check_extent(root, p, name + ".lengths", name, axes[k], body.centre[axes[k]] - 0.5 * body.lengths[k],
                  body.centre[axes[k]] + 0.5 * body.lengths[k]);
   }
-  check_extent(root, p, key, name, normal, body.centre[normal], body.centre[normal]);
+  check_extent(root, p, name + ".centre", name, normal, body.centre[normal], body.centre[normal]);
   if (vertices > most_vertices)
-    contradict(root, key, name + ".edge_length: " + real_text(vertices) + " vertices are more than 2^20");
+    contradict(root, edge_length, edge_length + ": " + real_text(vertices) + " vertices are more than 2^20");
 }
 
 }  // namespace
@@ -71,12 +71,6 @@ void check_bodies(const Table& root, const FlowScene& scene) {
     contradict(root, "run",
                "missing key \"run.max_dt\" (needed with a [[body]] and dt = \"auto\"): fluid at rest does "
                "not limit dt");
-  for (std::size_t i = 0; i < scene.verify.forces.size(); ++i)
-    if (scene.verify.forces[i].body >= static_cast<int>(scene.bodies.size()))
-      contradict(root, "verify.force",
-                 "verify.force[" + std::to_string(i) +
-                     "].body = " + std::to_string(scene.verify.forces[i].body) + ": the scene has " +
-                     std::to_string(scene.bodies.size()) + " bodies, numbered from 0");
 }
 
 }  // namespace drogue::parachute_app

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "common/scene/table.hpp"
-#include "miniapps/parachute/scene.hpp"
+#include "miniapps/parachute/scene/scene.hpp"
 
 namespace drogue::parachute_app {
 

@@ -1,6 +1,6 @@
 #include "miniapps/parachute/bodies/body_keys.hpp"
 
-#include "miniapps/parachute/codecs.hpp"
+#include "miniapps/parachute/scene/codecs.hpp"
 
 namespace drogue::parachute_app {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "common/program/failure.hpp"
 #include "common/scene/library.hpp"
-#include "miniapps/parachute/scene.hpp"
+#include "miniapps/parachute/scene/scene.hpp"
 
 namespace drogue::parachute_app {
 namespace {

@@ -6,8 +6,8 @@
 
 #include "kernels/device/runtime.hpp"
 #include "miniapps/framework/run_loop.hpp"
-#include "miniapps/parachute/functions.hpp"
-#include "miniapps/parachute/simulation.hpp"
+#include "miniapps/parachute/scene/functions.hpp"
+#include "miniapps/parachute/simulation/simulation.hpp"
 
 // The shipped uniform stream has no errors: every error below is that of one changed value.
 

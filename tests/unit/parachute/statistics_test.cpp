@@ -1,4 +1,4 @@
-#include "miniapps/parachute/statistics.hpp"
+#include "miniapps/parachute/verify/statistics.hpp"
 
 #include <gtest/gtest.h>
 

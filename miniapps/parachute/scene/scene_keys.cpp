@@ -1,7 +1,7 @@
-#include "miniapps/parachute/scene_keys.hpp"
+#include "miniapps/parachute/scene/scene_keys.hpp"
 
 #include "miniapps/parachute/bodies/body_keys.hpp"
-#include "miniapps/parachute/codecs.hpp"
+#include "miniapps/parachute/scene/codecs.hpp"
 
 namespace drogue::parachute_app {
 namespace {

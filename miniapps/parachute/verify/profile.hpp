@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "kernels/flow/solver.hpp"
-#include "miniapps/parachute/scene.hpp"
+#include "miniapps/parachute/scene/scene.hpp"
 
 namespace drogue::parachute_app {
 

@@ -1,11 +1,11 @@
-#include "miniapps/parachute/profile.hpp"
+#include "miniapps/parachute/verify/profile.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 
-#include "miniapps/parachute/functions.hpp"
+#include "miniapps/parachute/scene/functions.hpp"
 
 namespace drogue::parachute_app {
 namespace {

@@ -1,5 +1,5 @@
-#include "miniapps/parachute/codecs.hpp"
-#include "miniapps/parachute/scene_keys.hpp"
+#include "miniapps/parachute/scene/codecs.hpp"
+#include "miniapps/parachute/scene/scene_keys.hpp"
 
 namespace drogue::parachute_app {
 namespace {

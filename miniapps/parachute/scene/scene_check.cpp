@@ -1,4 +1,4 @@
-#include "miniapps/parachute/scene_check.hpp"
+#include "miniapps/parachute/scene/scene_check.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 #include "common/scene/node.hpp"
 #include "common/scene/read.hpp"
 #include "miniapps/parachute/bodies/body_check.hpp"
-#include "miniapps/parachute/functions.hpp"
+#include "miniapps/parachute/scene/functions.hpp"
 
 namespace drogue::parachute_app {
 namespace {

@@ -2,10 +2,10 @@
 #include <cmath>
 
 #include "common/run/statistics.hpp"
-#include "miniapps/parachute/functions.hpp"
-#include "miniapps/parachute/profile.hpp"
-#include "miniapps/parachute/simulation.hpp"
-#include "miniapps/parachute/statistics.hpp"
+#include "miniapps/parachute/scene/functions.hpp"
+#include "miniapps/parachute/simulation/simulation.hpp"
+#include "miniapps/parachute/verify/profile.hpp"
+#include "miniapps/parachute/verify/statistics.hpp"
 
 namespace drogue::parachute_app {
 namespace {
@@ -116,17 +116,22 @@ void Simulation::check_totals(run::ResultDocument& result) {
       result.add_check("dissipation_peak_time", std::abs(_statistics.peak_time() - *peak.time),
                        *peak.time_tolerance);
   }
-  for (std::size_t i = 0; i < wanted.forces.size(); ++i) {
-    const BodyForce& force = wanted.forces[i];
-    const fabric::Vector on_body = body_forces()[static_cast<std::size_t>(force.body)];
-    result.add_check("force_" + std::to_string(i),
-                     relative_deviation(on_body[static_cast<std::size_t>(force.axis)], force.target),
-                     force.target.tolerance);
-  }
   for (std::size_t i = 0; i < wanted.flow_rates.size(); ++i) {
     const FlowRate& rate = wanted.flow_rates[i];
     result.add_check("flow_rate_" + std::to_string(i),
                      relative_deviation(totals.outflow[rate.side], rate.target), rate.target.tolerance);
+  }
+}
+
+void Simulation::check_forces(run::ResultDocument& result) {
+  const std::vector<BodyForce>& wanted = _scene.verify.forces;
+  if (wanted.empty()) return;
+  const std::vector<fabric::Vector> forces = body_forces();
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    const double force =
+        forces[static_cast<std::size_t>(wanted[i].body)][static_cast<std::size_t>(wanted[i].axis)];
+    result.add_check("force_" + std::to_string(i), relative_deviation(force, wanted[i].target),
+                     wanted[i].target.tolerance);
   }
 }
 
@@ -165,6 +170,7 @@ ExitCode Simulation::verify(const run::RunDirectory*, run::ResultDocument& resul
                             wanted.speed_growth || wanted.kinetic_energy || wanted.dissipation_peak ||
                             !wanted.flow_rates.empty();
   if (needs_totals) check_totals(result);
+  check_forces(result);
   check_profiles(result);
   return ExitCode::ok;
 }

@@ -7,8 +7,8 @@
 #include "kernels/flow/solver.hpp"
 #include "miniapps/framework/simulation.hpp"
 #include "miniapps/parachute/parallel/rank_solver.hpp"
-#include "miniapps/parachute/scene.hpp"
-#include "miniapps/parachute/statistics.hpp"
+#include "miniapps/parachute/scene/scene.hpp"
+#include "miniapps/parachute/verify/statistics.hpp"
 
 namespace drogue::parachute_app {
 
@@ -54,6 +54,7 @@ class Simulation final : public framework::Simulation {
   void sample_fields(Snapshot& snapshot);
   void check_profiles(run::ResultDocument& result);
   void check_totals(run::ResultDocument& result);
+  void check_forces(run::ResultDocument& result);
   [[nodiscard]] std::vector<fabric::Vector> body_forces();
   void write_coupling(run::RestartWriter& writer);
   void read_coupling(const run::RestartReader& reader);

@@ -1,4 +1,4 @@
-#include "miniapps/parachute/study.hpp"
+#include "miniapps/parachute/verify/study.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include "common/program/failure.hpp"
 #include "common/study/axes.hpp"
 #include "miniapps/framework/run_loop.hpp"
-#include "miniapps/parachute/simulation.hpp"
+#include "miniapps/parachute/simulation/simulation.hpp"
 
 namespace drogue::parachute_app {
 namespace {

@@ -1,4 +1,4 @@
-#include "miniapps/parachute/simulation.hpp"
+#include "miniapps/parachute/simulation/simulation.hpp"
 
 #include <cmath>
 #include <sstream>
@@ -7,7 +7,7 @@
 #include "common/program/stopwatch.hpp"
 #include "common/run/fields/rectilinear_mesh.hpp"
 #include "common/scene/node.hpp"
-#include "miniapps/parachute/functions.hpp"
+#include "miniapps/parachute/scene/functions.hpp"
 
 namespace drogue::parachute_app {
 namespace {

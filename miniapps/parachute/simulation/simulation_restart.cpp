@@ -2,8 +2,8 @@
 #include <string>
 
 #include "common/program/stopwatch.hpp"
-#include "miniapps/parachute/functions.hpp"
-#include "miniapps/parachute/simulation.hpp"
+#include "miniapps/parachute/scene/functions.hpp"
+#include "miniapps/parachute/simulation/simulation.hpp"
 
 namespace drogue::parachute_app {
 namespace {

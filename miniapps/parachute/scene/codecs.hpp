@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "common/scene/codec.hpp"
-#include "miniapps/parachute/scene.hpp"
+#include "miniapps/parachute/scene/scene.hpp"
 
 namespace drogue::parachute_app {
 

@@ -8,7 +8,7 @@
 #include "common/expression/expression.hpp"
 #include "kernels/device/expression_program.hpp"
 #include "kernels/flow/solver.hpp"
-#include "miniapps/parachute/scene.hpp"
+#include "miniapps/parachute/scene/scene.hpp"
 
 namespace drogue::parachute_app {
 

@@ -1,4 +1,4 @@
-#include "miniapps/parachute/codecs.hpp"
+#include "miniapps/parachute/scene/codecs.hpp"
 
 #include <charconv>
 #include <utility>

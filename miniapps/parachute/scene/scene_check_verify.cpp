@@ -2,7 +2,7 @@
 
 #include "common/scene/node.hpp"
 #include "common/scene/read.hpp"
-#include "miniapps/parachute/scene_check.hpp"
+#include "miniapps/parachute/scene/scene_check.hpp"
 
 namespace drogue::parachute_app {
 namespace {
@@ -49,6 +49,19 @@ void check_flow_rates(const Table& root, const FlowScene& scene) {
   }
 }
 
+void check_forces(const Table& root, const FlowScene& scene) {
+  for (std::size_t i = 0; i < scene.verify.forces.size(); ++i) {
+    const BodyForce& force = scene.verify.forces[i];
+    const std::string path = "verify.force[" + std::to_string(i) + "]";
+    if (force.body >= static_cast<int>(scene.bodies.size()))
+      contradict(root, path + ".body",
+                 path + ".body = " + std::to_string(force.body) + ": the number of bodies is " +
+                     std::to_string(scene.bodies.size()) + ", and the first one is 0");
+    if (force.target.value == 0.0)
+      contradict(root, path + ".value", path + ".value must not be 0: the tolerance is relative");
+  }
+}
+
 void check_profiles(const Table& root, const FlowScene& scene) {
   const flow::Parameters& p = scene.parameters;
   for (std::size_t i = 0; i < scene.verify.profiles.size(); ++i) {
@@ -91,6 +104,7 @@ void check_verify(const Table& root, const FlowScene& scene) {
     contradict(root, "verify.kinetic_energy.value",
                "verify.kinetic_energy.value must not be 0: the tolerance is relative");
   check_flow_rates(root, scene);
+  check_forces(root, scene);
   check_profiles(root, scene);
 }
 

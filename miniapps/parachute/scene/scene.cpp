@@ -1,10 +1,10 @@
-#include "miniapps/parachute/scene.hpp"
+#include "miniapps/parachute/scene/scene.hpp"
 
 #include "common/run/restart/restart_file.hpp"
 #include "miniapps/framework/mini_app.hpp"
 #include "miniapps/framework/typed_scene.hpp"
-#include "miniapps/parachute/scene_check.hpp"
-#include "miniapps/parachute/scene_keys.hpp"
+#include "miniapps/parachute/scene/scene_check.hpp"
+#include "miniapps/parachute/scene/scene_keys.hpp"
 
 namespace drogue::parachute_app {
 
