@@ -16,16 +16,26 @@ using stepping::no_failure;
 struct Control {
   Progress now;
   stepping::StepTrial trial;
-  std::uint64_t next_rate;      ///< reduction of the state after the step, as `Progress::rate`
+  std::uint64_t next_rate;       ///< reduction of the state after the step, as `Progress::rate`
+  std::uint64_t eddy_viscosity;  ///< bits of the largest one since the last step, m^2/s; 0 without a model
+  /// Bits of the largest acceleration of a prescribed velocity component in the last step, in cells, 1/s^2.
+  std::uint64_t side_acceleration;
   std::uint64_t first_failure;  ///< least cell whose predicted velocity is not finite, or `no_failure`
   int pressure_failed;          ///< 1 after an iterative pressure solver did not converge
+  int failed_side;              ///< 1 + a side whose prescribed velocity is not finite; 0: none
+
+  /// True if the step must leave the state as it is. Does not throw.
+  [[nodiscard]] KOKKOS_FUNCTION bool has_failed() const {
+    return first_failure != no_failure || pressure_failed != 0 || failed_side != 0;
+  }
 };
 
 /// Constants that determine dt.
 struct StepConstants {
   double cfl, fixed_dt, max_dt;
   double diffusive_dt;  ///< s, bound of explicit diffusion; infinite without viscosity
-  double stable_cfl;    ///< largest CFL number of a fixed dt
+  double eddy_weight;  ///< 1/m^2, by which an eddy viscosity adds to the rate of advection; 0 without a model
+  double stable_cfl;   ///< largest CFL number of a fixed dt
   double damping_rate;  ///< 1/s, of implicit diffusion: nu / h^2 with the largest h; 0 if explicit
   std::int64_t max_steps;
 };
@@ -49,6 +59,17 @@ KOKKOS_INLINE_FUNCTION double admissible_dt(const Progress& now, const StepConst
   // reserve for the dissipation of upwind-biased fluxes.
   const double dt = 1.0 / (rate / k.cfl + 1.0 / (0.9 * k.diffusive_dt));
   return k.max_dt > 0.0 && !(dt < k.max_dt) ? k.max_dt : dt;
+}
+
+/// Rate that limits the next dt, as `Progress::rate`: that of advection, and that of an eddy viscosity. If
+/// sides accelerate by a in cells, r becomes r' with dt (r + a dt) = cfl for dt = cfl / r'.
+KOKKOS_INLINE_FUNCTION std::uint64_t limiting_rate(const Control& c, const StepConstants& k) {
+  double rate =
+      Kokkos::bit_cast<double>(c.next_rate) + k.eddy_weight * Kokkos::bit_cast<double>(c.eddy_viscosity);
+  const double acceleration = Kokkos::bit_cast<double>(c.side_acceleration);
+  if (acceleration > 0.0 && !(k.fixed_dt > 0.0))
+    rate = 0.5 * (rate + Kokkos::sqrt(rate * rate + 4.0 * acceleration * k.cfl));
+  return Kokkos::bit_cast<std::uint64_t>(rate);
 }
 
 /// Prepares the next step, or stops the run if there is no admissible dt. A fixed dt that is not stable stops

@@ -46,10 +46,12 @@ enum class PressureSolver {
 /// Type of a side of the domain.
 enum class BoundaryKind {
   periodic,
-  slip,       ///< no flow through the side, no shear stress
-  wall,       ///< velocity of the wall, no slip
-  inflow,     ///< prescribed velocity
-  outflow,    ///< zero normal gradient of the velocity, zero pressure
+  slip,    ///< no flow through the side, no shear stress
+  wall,    ///< velocity of the wall, no slip
+  inflow,  ///< prescribed velocity
+  /// The normal velocity obeys its momentum equation, advected by itself, upwind of first order; tangential
+  /// velocities leave unchanged. Zero pressure; minus the dynamic pressure where fluid flows back.
+  outflow,
   neighbour,  ///< other ranks hold the cells beyond; only inside a solver, no side of a domain
 };
 

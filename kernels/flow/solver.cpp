@@ -64,6 +64,12 @@ void check_parameters(const Parameters& p) {
             "a side of the domain has no neighbour");
     require(n > 1 || low == BoundaryKind::periodic || low == BoundaryKind::slip,
             "an axis with one cell must be periodic or have slip sides");
+    for (const Boundary& side : p.boundary)
+      require(
+          n > 1 || low == BoundaryKind::periodic || !is_prescribed(side.kind) || side.velocity[axis] == 0.0,
+          "sides with a velocity through the slip sides of an axis with one cell have no solution");
+    require(n > 1 || low == BoundaryKind::periodic || p.body_force[axis] == 0.0,
+            "a body force along an axis with one cell needs periodic sides");
     require(p.pressure_drop[axis] == 0.0 || low == BoundaryKind::periodic,
             "a pressure drop needs a periodic axis");
     cells *= n;

@@ -25,6 +25,9 @@ class SolverAdapter final : public Solver {
   void sample(CellField field, std::span<double> values) override { _solver.sample(field, values); }
   [[nodiscard]] const char* driver() const override { return _solver.driver(); }
   [[nodiscard]] const char* pressure_solver() const override { return _solver.pressure_solver(); }
+  [[nodiscard]] std::optional<PressureSolve> last_pressure_solve() const override {
+    return _solver.last_pressure_solve();
+  }
 
  private:
   device::Instance<ExecutionSpace> _instance;

@@ -35,7 +35,14 @@ inline StepConstants step_constants(const Parameters& parameters, const MacGrid&
   // some wave at any CFL number without viscosity, at 0.7 by 15 percent in each step with central
   // derivatives.
   constants.stable_cfl = is_rk3 ? 1.4 : 0.7;
-  constants.damping_rate = is_implicit && squares > 0.0 ? nu * least_square : 0.0;
+  // Rates of advection are divided by the CFL number: the standard one, or, of a fixed dt, the largest.
+  if (parameters.turbulence != Turbulence::none)
+    constants.eddy_weight =
+        4.0 * squares / interval * (parameters.fixed_dt > 0.0 ? constants.stable_cfl : constants.cfl / 0.9);
+  // Implicit diffusion does not damp the velocity on outflows.
+  const bool has_outflow = std::ranges::any_of(
+      parameters.boundary, [](const Boundary& side) { return side.kind == BoundaryKind::outflow; });
+  constants.damping_rate = is_implicit && !has_outflow && squares > 0.0 ? nu * least_square : 0.0;
   constants.max_steps = parameters.max_steps;
   return constants;
 }

@@ -164,8 +164,20 @@ class Failures(parachute_program.FlowTest):
 
     def test_inflow_that_becomes_undefined_is_a_failure(self):
         message = self.expect(4, self.write(GUST), *QUIET, sets=['fluid.velocity=["sqrt(0.2-t)+1", 0, 0]']).stderr
-        self.assertRegex(message, r"not finite in cell \(\d+, \d+, \d+\) at \(\S+, \S+, \S+\) m at step \d+")
+        self.assertRegex(message, r"the prescribed velocity is not finite on the side x_low at step \d+, t = ")
         self.assertLessEqual(self.result("out")["time"], 0.2)
+
+    def test_wall_velocity_that_becomes_undefined_in_the_last_step_is_a_failure(self):
+        for velocity in ('["sqrt(0.1-t)", 0, 0]', '[0, 0, "sqrt(0.1-t)"]'):
+            message = self.expect(4, self.write(VORTICES), *QUIET, "--overwrite", sets=[
+                "run.end_time=0.15", "run.dt=0.05", "output.times=[0.15]", "grid.boundary.y='wall'",
+                f"grid.wall_velocity={{y_low={velocity}}}"]).stderr
+            self.assertRegex(message, r"the prescribed velocity is not finite on the side y_low at step 3, t = 0.1 s")
+
+    def test_velocity_through_slip_sides_of_one_cell_is_rejected(self):
+        message = self.expect(3, self.write(VORTICES), *QUIET, sets=[
+            "grid.boundary.z='slip'", "initial.velocity=[0, 0, 1]"]).stderr
+        self.assertIn("initial.velocity[2] = 1.0 is normal to the slip sides of an axis with one cell", message)
 
     def test_step_limit_is_a_failure(self):
         message = self.expect(4, self.write(VORTICES), *QUIET, sets=["run.max_steps=4"]).stderr

@@ -205,6 +205,8 @@ template <class ExecutionSpace>
 void CoupledSolver<ExecutionSpace>::enqueue_step(double dt) {
   const auto velocity = flow::face_views<ExecutionSpace>(_flow.grid(), _flow.velocity()),
              density = flow::face_views<ExecutionSpace>(_flow.grid(), _flow.force());
+  // Not before: the pressure of an output contains the forces of the last step.
+  clear_spread(_space, _sheet.transfer(), density);
   device::launch_each(
       _space, "drogue::coupling::save_cloth", _fabric.vertices(),
       SaveClothFunctor<ExecutionSpace>{_flow.control(), _fabric.state(), _sheet.acceleration(),
@@ -217,7 +219,6 @@ void CoupledSolver<ExecutionSpace>::enqueue_step(double dt) {
       CheckClothFunctor<ExecutionSpace>{_flow.control(), _fabric.monitor(), _sheet.transfer(), _reason});
   _flow.enqueue_step();
   _sheet.end_step(_space, velocity, density, dt, _is_first);
-  clear_spread(_space, _sheet.transfer(), density);
   _is_first = false;
 }
 

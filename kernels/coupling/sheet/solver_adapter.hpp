@@ -29,6 +29,9 @@ class SolverAdapter final : public Solver {
   void sample(flow::CellField field, std::span<double> values) override {
     _solver.flow().sample(field, values);
   }
+  [[nodiscard]] std::optional<flow::PressureSolve> last_pressure_solve() const override {
+    return _solver.flow().last_pressure_solve();
+  }
   [[nodiscard]] const char* driver() const override { return _solver.flow().driver(); }
   [[nodiscard]] const char* pressure_solver() const override { return _solver.flow().pressure_solver(); }
 

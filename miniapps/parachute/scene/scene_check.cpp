@@ -113,6 +113,11 @@ Lattice side_lattice(const flow::Parameters& p, std::size_t side) {
   return lattice;
 }
 
+/// True if the slip sides of an axis with one cell leave no velocity along it.
+bool is_closed(const flow::Parameters& p, std::size_t axis) {
+  return p.cells[axis] == 1 && p.boundary[2 * axis].kind == BoundaryKind::slip;
+}
+
 /// Checks a prescribed velocity at time 0, and that walls move along themselves.
 void check_velocity(const Table& root, const FlowScene& scene, const std::string& key,
                     const VectorExpression& text, std::size_t side) {
@@ -123,6 +128,9 @@ void check_velocity(const Table& root, const FlowScene& scene, const std::string
     const bool is_wall = scene.parameters.boundary[side].kind == BoundaryKind::wall;
     if (is_wall && axis == side / 2 && velocity.constant() != 0.0)
       contradict(root, key, component + " is normal to the wall: it must be 0");
+    if (is_closed(scene.parameters, axis) && velocity.constant() != 0.0)
+      contradict(root, key,
+                 component + " is normal to the slip sides of an axis with one cell: it must be 0");
     const std::vector<double> values = evaluate(velocity, lattice, 0.0);
     const auto bad = std::ranges::find_if(values, [](double value) { return !std::isfinite(value); });
     if (bad != values.end())
@@ -197,11 +205,16 @@ void check_initial(const Table& root, const FlowScene& scene) {
     const std::string& text = scene.initial_velocity()[axis];
     const Lattice lattice = lattice_of(scene.parameters, velocity_field(axis));
     const std::vector<double> values = evaluate(SpaceTimeFunction(text), lattice, 0.0);
-    const auto bad = std::ranges::find_if(values, [](double value) { return !std::isfinite(value); });
-    if (bad == values.end()) continue;
-    contradict(root, key,
-               key + "[" + std::to_string(axis) + "] = " + text + " is not finite at " +
-                   place_text(lattice.place(static_cast<std::size_t>(bad - values.begin()))) + " at t = 0");
+    const auto refuse = [&](const auto& is_bad, const std::string& reason) {
+      const auto bad = std::ranges::find_if(values, is_bad);
+      if (bad == values.end()) return;
+      contradict(root, key,
+                 key + "[" + std::to_string(axis) + "] = " + text + " is " + reason + " at " +
+                     place_text(lattice.place(static_cast<std::size_t>(bad - values.begin()))) + " at t = 0");
+    };
+    refuse([](double value) { return !std::isfinite(value); }, "not finite");
+    if (is_closed(scene.parameters, axis))
+      refuse([](double value) { return value != 0.0; }, "normal to the slip sides of an axis with one cell");
   }
 }
 

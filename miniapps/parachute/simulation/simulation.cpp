@@ -49,6 +49,8 @@ const char* reason_text(flow::FailureReason reason) {
   switch (reason) {
     case flow::FailureReason::not_finite:
       return "the velocity is not finite";
+    case flow::FailureReason::side_velocity:
+      return "the prescribed velocity is not finite on the side ";
     case flow::FailureReason::time_step:
       return "no time step is admissible";
     case flow::FailureReason::pressure_solver:
@@ -240,7 +242,10 @@ std::string Simulation::failure_text(bool) {
     text << "run.dt = " << fixed_dt << " s exceeds the largest stable time step, " << failure.dt << " s,";
   else
     text << reason_text(failure.reason);
-  if (failure.index >= 0) text << " in " << cell_text(_scene.parameters, failure.index);
+  if (failure.reason == flow::FailureReason::side_velocity)
+    text << side_names[static_cast<std::size_t>(failure.index)];
+  else if (failure.index >= 0)
+    text << " in " << cell_text(_scene.parameters, failure.index);
   text << " at " << (is_initial ? "the initial projection" : "step " + std::to_string(failure.step))
        << ", t = " << failure.time << " s";
   if (!is_initial && !is_unstable) text << ", dt = " << failure.dt << " s";
@@ -258,7 +263,12 @@ void Simulation::describe(run::ResultDocument& result) {
   result.dt_min = progress.dt_min;
   result.dt_max = progress.dt_max;
   result.metrics.set("pressure", "solver", std::string(_solver->pressure_solver()));
-  result.metrics.set("pressure", "divergence_rms", _statistics.divergence());
+  result.metrics.set("pressure", "divergence_rms", _solver->totals().divergence_rms);
+  if (const auto solve = _solver->last_pressure_solve()) {
+    result.metrics.set("pressure", "iterations", static_cast<std::int64_t>(solve->iterations));
+    result.metrics.set("pressure", "residual", solve->residual);
+    result.metrics.set("pressure", "tolerance", _scene.parameters.pressure_tolerance);
+  }
   if (_coupled != nullptr)
     result.metrics.set("bodies", "vertices", static_cast<std::int64_t>(vertices_of(_scene.bodies)));
   result.timing.compute_s = _compute_s;
