@@ -106,7 +106,7 @@ class FlowSolver {
   void set_fixed_dt(double dt);
   /// Largest dt, s, that the CFL condition and `Parameters::max_dt` admit at this progress; infinite without
   /// a bound, NaN without a finite velocity. Does not throw.
-  [[nodiscard]] double admissible_dt(const Progress& now) const;
+  [[nodiscard]] double largest_dt(const Progress& now) const;
   /// True if a step has failed. Blocks. Throws std::runtime_error after a failed kernel.
   [[nodiscard]] bool has_failed() const { return read_control().trial.stop == Stop::failed; }
   /// Status as last published. Does not throw.
@@ -640,10 +640,10 @@ void FlowSolver<ExecutionSpace>::enqueue_step() {
 }
 
 template <class ExecutionSpace>
-double FlowSolver<ExecutionSpace>::admissible_dt(const Progress& now) const {
+double FlowSolver<ExecutionSpace>::largest_dt(const Progress& now) const {
   StepConstants constants = _constants;
   constants.fixed_dt = 0.0;
-  return flow::admissible_dt(now, constants);
+  return admissible_dt(now, constants);
 }
 
 template <class ExecutionSpace>

@@ -311,8 +311,11 @@ class Bodies(parachute_program.FlowTest):
         whole = whole[:whole.index('[[body]]\nkind = "plate"\nnormal = "y"')] + whole[whole.index("[run]"):]
         force = (3 * 2 + 1 * 2**2) * 0.8 * 0.6
         check = "verify={{force=[{{body=0,axis='x',value={},tolerance=1e-10}}]}}"
-        self.expect(0, self.write(whole), *QUIET, sets=[check.format(force), "run.end_time=1"])
+        self.expect(0, self.write(whole), *QUIET, sets=[check.format(force), "run.end_time=1", "output.times=[1]"])
         self.assertEqual({"vertices": 17 * 13}, self.result("out")["bodies"])
+        pressure = self.fields("out").values("/steps/000000/pressure")
+        plane = 8 * 6
+        self.assertAlmostEqual(3 * 2 + 1 * 2**2, pressure[0] - pressure[15 * plane], delta=1e-6)
         self.expect(5, self.write(whole), *QUIET, "--overwrite", sets=[check.format(1.001 * force), "run.end_time=1"])
 
     def test_history_holds_the_forces_of_all_bodies(self):

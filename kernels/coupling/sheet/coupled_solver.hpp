@@ -159,7 +159,7 @@ void CoupledSolver<ExecutionSpace>::restore(const flow::Progress& progress) {
 template <class ExecutionSpace>
 void CoupledSolver<ExecutionSpace>::plan_block(const flow::Progress& now) {
   const flow::Parameters& p = _parameters.flow;
-  _block.dt = p.fixed_dt > 0.0 ? p.fixed_dt : _flow.admissible_dt(now);
+  _block.dt = p.fixed_dt > 0.0 ? p.fixed_dt : _flow.largest_dt(now);
   _block.substeps = _parameters.substeps;
   if (_block.substeps == 0) {
     const double limit = 0.5 * fabric::stable_dt(fabric::Integrator::symplectic_euler,
@@ -177,7 +177,7 @@ flow::Stop CoupledSolver<ExecutionSpace>::advance(double target, std::int64_t pa
     const flow::Progress now = _flow.progress();
     if (_flow.has_failed()) {
       return_to_saved_cloth();
-      return flow::Stop::failed;
+      return _flow.advance(target, pause_step, {});  // returns its sides to the time before the failed step
     }
     if (now.time >= target) return flow::Stop::target;
     if (now.step >= _parameters.flow.max_steps) return flow::Stop::max_steps;
