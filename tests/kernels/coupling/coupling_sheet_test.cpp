@@ -4,6 +4,7 @@
 #include <numbers>
 #include <random>
 
+#include "kernels/coupling/sheet/porous_law.hpp"
 #include "kernels/reference/coupling/porous_sheet.hpp"
 #include "tests/support/coupled_case.hpp"
 
