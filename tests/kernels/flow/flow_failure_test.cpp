@@ -157,7 +157,9 @@ TEST(FlowStepSize, KeepsSmagorinskysModelStableInFlatCells) {
   Parameters p = periodic_box({32, 32, 1});
   p.high = {10.0, 1.0, 1.0};
   p.viscosity = 1e-5;
+  p.time_scheme = TimeScheme::ab2;
   p.turbulence = Turbulence::smagorinsky;
+  p.turbulence_constant = 0.5;
   p.boundary[2].kind = p.boundary[3].kind = BoundaryKind::wall;
   const auto u = sampled_field(FlowDomain(p), [](std::size_t c, const auto& point) {
     const double x = point[0], y = point[1];
