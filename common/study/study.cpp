@@ -7,7 +7,6 @@
 #include <filesystem>
 #include <iostream>
 
-#include "common/program/program.hpp"
 #include "common/run/files/atomic_file.hpp"
 #include "common/study/tables.hpp"
 
@@ -35,11 +34,7 @@ ExitCode run_points(const run::RunDirectory& directory, const run::ResultDocumen
                     const Columns& columns, std::size_t count, const RunPoint& run_point, bool quiet) {
   std::vector<StudyRow> rows;
   for (std::size_t i = 0; i < count; ++i) {
-    if (!run_point(i, rows)) {
-      print_notice(facts.program, "interrupted by a signal; the tables hold " + std::to_string(rows.size()) +
-                                      " of " + std::to_string(count) + " points");
-      return ExitCode::interrupted;
-    }
+    if (!run_point(i, rows)) return ExitCode::interrupted;
     run::write_file_atomically(directory.file("study.csv"), csv(rows, columns, facts.backend));
     run::write_file_atomically(directory.file("study.json"), json(rows, columns, facts));
     if (!quiet) std::cout << line(rows.back(), columns) << std::flush;

@@ -76,7 +76,10 @@ ExitCode run_command(const MiniApp& app, const MiniAppOptions& options) {
   install_signal_handlers();
   if (options.study.empty()) return run_scene(app, options, file, nullptr);
   if (!app.study) throw Failure(ExitCode::usage, "this program has no --study");
-  return app.study(options, file);
+  const ExitCode code = app.study(options, file);
+  if (code == ExitCode::interrupted)
+    print_notice(app.program(), "interrupted by a signal; the tables hold the finished points");
+  return code;
 }
 
 int run_mini_app(const MiniApp& app, int argc, char** argv) {
