@@ -31,7 +31,7 @@ ExitCode run_program_body(int argc, char** argv) {
   std::string names;
   for (const perf::Command& command : commands) {
     if (command.app->parsed()) {
-      if (command.app->get_name() != "list") require_one_rank("drogue-perf");
+      if (command.app->get_name() != "list") require_one_rank();
       return command.execute(arguments.kokkos);
     }
     names += (names.empty() ? "" : ", ") + command.app->get_name();

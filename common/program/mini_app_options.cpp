@@ -10,7 +10,7 @@
 namespace drogue {
 namespace {
 
-void declare(CLI::App& app, MiniAppOptions& options) {
+void declare(CLI::App& app, MiniAppOptions& options, bool has_baseline) {
   app.add_option("SCENE", options.scene, "TOML file, or name of a shipped scene");
   add_backend_option(app, options.backend);
   app.add_option("--set", options.set, "change a value of the scene: key.path=value; may be repeated")
@@ -29,15 +29,17 @@ void declare(CLI::App& app, MiniAppOptions& options) {
       ->excludes(check);
   app.add_flag("--list-scenes", options.list_scenes, "list the shipped scenes, and end");
   app.add_flag("--quiet", options.quiet, "show no progress and no summary");
-  auto* baseline =
-      app.add_flag("--seed-mode", options.baseline,
-                   "run the algorithm and data movement of [Shi], the dissertation that README.md cites");
-  app.add_option("--study", options.study,
-                 "run the scene over meshes and schemes, say meshes=100:800 (two meshes: and every doubling "
-                 "between them)")
-      ->type_name("LISTS")
-      ->excludes(restart)
-      ->excludes(baseline);
+  CLI::Option* baseline = nullptr;
+  if (has_baseline)
+    baseline =
+        app.add_flag("--seed-mode", options.baseline,
+                     "run the algorithm and data movement of [Shi], the dissertation that README.md cites");
+  auto* study = app.add_option(
+      "--study", options.study,
+      "run the scene over meshes and schemes, say meshes=100:800 (two meshes: and every doubling "
+      "between them)");
+  study->type_name("LISTS")->excludes(restart);
+  if (baseline != nullptr) study->excludes(baseline);
   app.add_flag("--version", options.version, "print version, backends and libraries, and end");
 }
 
@@ -58,10 +60,10 @@ void check_words(const CLI::App& app, const MiniAppOptions& options) {
 }  // namespace
 
 MiniAppOptions parse_mini_app_options(const std::string& program, const std::string& description, int argc,
-                                      const char* const* argv) {
+                                      const char* const* argv, bool has_baseline) {
   MiniAppOptions options;
   CLI::App app(description, program);
-  declare(app, options);
+  declare(app, options, has_baseline);
   app.footer("--kokkos-* options are passed to Kokkos.");
   Arguments arguments = split_arguments(argc, argv);
   options.help = parse_command_line(app, arguments.program);

@@ -25,9 +25,10 @@ struct MiniAppOptions {
   std::vector<std::string> kokkos;  ///< `--kokkos-*`, untouched
 };
 
-/// Parses the command line. `description` heads the output of --help. Throws `Failure` (usage): unknown
-/// option, with the nearest name, no SCENE, `--set` without `=`, unknown backend, mutually exclusive options.
+/// Parses the command line. `description` heads the output of --help; `has_baseline` adds --seed-mode. Throws
+/// `Failure` (usage): unknown option, with the nearest name, no SCENE, `--set` without `=`, unknown backend,
+/// mutually exclusive options.
 MiniAppOptions parse_mini_app_options(const std::string& program, const std::string& description, int argc,
-                                      const char* const* argv);
+                                      const char* const* argv, bool has_baseline);
 
 }  // namespace drogue

@@ -38,11 +38,11 @@ LaunchedRank launched_rank() {
   return {};
 }
 
-void require_one_rank(const std::string& program) {
+void require_one_rank() {
   const int ranks = launched_rank().ranks;
   if (ranks == 1) return;
   throw Failure(ExitCode::usage,
-                program + " has no parallel solver: start it without mpirun or with one rank, not " +
+                "there is no parallel solver: start this program without mpirun or with one rank, not " +
                     std::to_string(ranks));
 }
 

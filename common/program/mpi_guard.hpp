@@ -1,7 +1,5 @@
 #pragma once
 
-#include <string>
-
 namespace drogue {
 
 /// Rank of this process in its launch; needs no MPI_Init.
@@ -14,8 +12,8 @@ struct LaunchedRank {
 /// of a Slurm job alone is ignored: a job script has it too. Does not throw.
 LaunchedRank launched_rank();
 
-/// Throws `Failure` (usage) if the launcher started more than one rank. For a `program` without a parallel
+/// Throws `Failure` (usage) if the launcher started more than one rank. For programs without a parallel
 /// solver.
-void require_one_rank(const std::string& program);
+void require_one_rank();
 
 }  // namespace drogue

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "kernels/coupling/delta_kernel.hpp"
-#include "kernels/coupling/mac_grid.hpp"
+#include "kernels/coupling/staggered_grid.hpp"
 #include "kernels/spatial/points.hpp"
 
 namespace drogue::coupling {
@@ -43,7 +43,7 @@ struct FaceArrays {
 /// Addresses of the values of Views, of any unit. Throws std::invalid_argument unless every View has the
 /// faces of the grid.
 template <class View>
-[[nodiscard]] FaceArrays<typename View::value_type> face_arrays(const MacGrid& grid,
+[[nodiscard]] FaceArrays<typename View::value_type> face_arrays(const StaggeredGrid& grid,
                                                                 const FaceViews<View>& faces) {
   static_assert(View::rank() == 3);
   FaceArrays<typename View::value_type> arrays{};

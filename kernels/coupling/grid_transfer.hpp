@@ -29,9 +29,9 @@ struct GridTransfer {
 
   /// Allocates for a number of points; blocks. Memory: 24 bytes per point and 24 per cell. Throws
   /// std::invalid_argument for an invalid grid and unless 0 <= points <= 2^29.
-  GridTransfer(const ExecutionSpace& space, const MacGrid& mac_grid, DeltaKernel delta_kernel,
+  GridTransfer(const ExecutionSpace& space, const StaggeredGrid& staggered_grid, DeltaKernel delta_kernel,
                int number_of_points)
-      : grid(mac_grid), kernel(delta_kernel), points(number_of_points) {
+      : grid(staggered_grid), kernel(delta_kernel), points(number_of_points) {
     check(grid);
     if (points < 0 || points > 1 << 29)
       throw std::invalid_argument("grid transfer: the number of points must be 0 to 2^29");
@@ -45,7 +45,7 @@ struct GridTransfer {
     space.fence("drogue::coupling::grid_transfer");
   }
 
-  MacGrid grid;
+  StaggeredGrid grid;
   DeltaKernel kernel;
   int points;
   Kokkos::View<double* [3], Kokkos::LayoutLeft, Memory> positions;  ///< frozen, m

@@ -17,7 +17,7 @@ enum class DeltaKernel {
 /// of the faces normal to axis d. Face (i, j, k) of component 0 has the position origin + (i, j + 1/2, k +
 /// 1/2) spacing; the other components likewise. A bounded axis of n cells has n + 1 faces normal to it, a
 /// periodic one n.
-struct MacGrid {
+struct StaggeredGrid {
   std::array<int, 3> cells{1, 1, 1};
   std::array<double, 3> origin{0.0, 0.0, 0.0};   ///< lowest corner, m
   std::array<double, 3> spacing{1.0, 1.0, 1.0};  ///< m

@@ -158,6 +158,33 @@ void spread(const ExecutionSpace& space, const GridTransfer<ExecutionSpace>& tra
       });
 }
 
+/// Sets values at the faces around all points to zero.
+template <class Base, class T>
+struct ClearFacesFunctor : Base {
+  FaceArrays<T> values;
+
+  KOKKOS_FUNCTION void operator()(const int n) const {
+    const auto at = this->item(n);
+    this->stencil(at).for_each_face(
+        [&](const FaceIndex& face, double, bool) { values.at(at.component, face) = T(0); });
+  }
+};
+
+/// Sets `density`, N/m^3, to zero at all faces that `spread` may have changed since the positions were
+/// frozen. Asynchronous, allocates nothing, and may be captured into a CUDA graph. Throws
+/// std::invalid_argument for Views of the wrong extents.
+template <class ExecutionSpace, class View>
+void clear_spread(const ExecutionSpace& space, const GridTransfer<ExecutionSpace>& transfer,
+                  const FaceViews<View>& density) {
+  static_assert(spatial::accessible_from<ExecutionSpace, View>);
+  const auto arrays = face_arrays(transfer.grid, density);
+  for_each_point_and_component(space, "drogue::coupling::clear_spread", transfer,
+                               [&]<class Base>(const Base& base) {
+                                 using T = typename View::value_type;
+                                 return ClearFacesFunctor<Base, T>{base, arrays};
+                               });
+}
+
 /// Row sums of interpolation after spreading, divided by the fluid density: `result` (points, 3), m^2/kg,
 /// from the areas of the points, m^2, and a density, kg/m^3. The inverse of a row sum is the fluid mass per
 /// area that moves with a point. Asynchronous, allocates nothing, and may be captured into a CUDA graph.

@@ -116,6 +116,9 @@ class FabricSolver {
   /// First failed step, if any. Blocks. Throws std::runtime_error after a failed kernel.
   [[nodiscard]] std::optional<StepFailure> failure();
 
+  /// Record of failures for other kernels, which may read `has_failed`. Does not throw.
+  [[nodiscard]] const StepMonitor<ExecutionSpace>& monitor() const { return _monitor; }
+
   /// Sets positions, m, and velocities, m/s, and forgets a failure. Blocks. Throws std::invalid_argument for
   /// values that are not finite and spans of the wrong length.
   void upload(std::span<const Vector> positions, std::span<const Vector> velocities);
@@ -162,9 +165,9 @@ class FabricSolver {
   void make_external_loads();
   void make_drivers();
   [[nodiscard]] Points rest_positions() const;
-  /// Verlet steps alternate between two buffers, which a captured graph would not see.
+  /// Other steps alternate between two buffers, which a captured graph would not see.
   [[nodiscard]] static Driver requested_driver(const Parameters& p) {
-    return p.integrator == Integrator::verlet ? Driver::plain : p.driver;
+    return p.integrator == Integrator::rk4 ? p.driver : Driver::plain;
   }
 
   // ---- steps ----
@@ -179,7 +182,7 @@ class FabricSolver {
   /// before that kernel.
   [[nodiscard]] bool ends_vertex_forces_apart() const {
     return VertexForceTerm<VertexForce>::ends_steps &&
-           (_contact || (moves_pins() && _parameters.integrator == Integrator::rk4));
+           (_contact || (moves_pins() && _parameters.integrator != Integrator::verlet));
   }
   /// Enqueues `end_step` of the VertexForce where the kernels of a step do not call it.
   void end_vertex_forces() const {
@@ -231,6 +234,9 @@ class FabricSolver {
   void enqueue_runge_kutta_half(const char* label) const;
   template <ConstitutiveModel model>
   void enqueue_verlet(bool ends, bool begins);
+  template <ConstitutiveModel model>
+  void enqueue_symplectic_euler();
+  void exchange_positions();
   void restore_addresses();
   /// Returns to steps that the host counts; captured graphs are invalid. Replays have left messages in the
   /// persistent driver that it must not take for those of its next launch.
@@ -305,6 +311,8 @@ FabricSolver<ExecutionSpace, VertexForce>::FabricSolver(const ExecutionSpace& sp
       _launcher(_instance, requested_driver(p)),
       _monitor(stepping::make_monitor<ExecutionSpace>(_loop.status_view())),
       _totals(_vertices) {
+  if (RelaxesVelocity<VertexForce> && p.integrator != Integrator::symplectic_euler)
+    throw std::invalid_argument("fabric solver: only the symplectic Euler method relaxes velocities");
   _fabric.load = _dead.total;
   make_external_loads();
   if (!p.motions.empty()) _dirichlet = make_dirichlet(space, p.motions, rest_positions());
@@ -557,6 +565,24 @@ void FabricSolver<ExecutionSpace, VertexForce>::enqueue_verlet(bool ends, bool b
                                                       _time.dt});
     std::swap(_v, _damped_v);
   }
+  exchange_positions();
+}
+
+template <class ExecutionSpace, class VertexForce>
+template <ConstitutiveModel model>
+void FabricSolver<ExecutionSpace, VertexForce>::enqueue_symplectic_euler() {
+  if (_has_load_kernel) evaluate_loads(_x, _v, 0.0, _has_dashpots);
+  launch_packs(
+      space(), "drogue::fabric::symplectic_euler", _padded,
+      SymplecticEulerFunctor<ExecutionSpace, model, VertexForce>{
+          _fabric, _x, _v, _next, _monitor, _parameters.damping, _time.dt, _parity, vertex_force_term()});
+  exchange_positions();
+  if (!_contact) end_vertex_forces();
+}
+
+/// Makes the positions after a drift those of the state.
+template <class ExecutionSpace, class VertexForce>
+void FabricSolver<ExecutionSpace, VertexForce>::exchange_positions() {
   std::swap(_x, _next);
   _parity = 1 - _parity;
   if (moves_pins()) apply_dirichlet(_x, _v, 0.0, true);
@@ -618,6 +644,8 @@ void FabricSolver<ExecutionSpace, VertexForce>::enqueue_model_steps(std::int64_t
     enqueue_verlet<model>(false, true);
     for (std::int64_t k = 1; k < steps; ++k) enqueue_verlet<model>(true, true);
     enqueue_verlet<model>(true, false);
+  } else if (_parameters.integrator == Integrator::symplectic_euler) {
+    for (std::int64_t k = 0; k < steps; ++k) enqueue_symplectic_euler<model>();
   } else if (_launcher.is_persistent()) {
     enqueue_persistent_steps<model>(steps);
   } else {
@@ -632,6 +660,8 @@ void FabricSolver<ExecutionSpace, VertexForce>::enqueue_contact_step() {
   if (_parameters.integrator == Integrator::verlet) {
     enqueue_verlet<model>(false, true);
     enqueue_verlet<model>(true, false);
+  } else if (_parameters.integrator == Integrator::symplectic_euler) {
+    enqueue_symplectic_euler<model>();
   } else {
     launch_runge_kutta_step<model>();
   }
@@ -639,14 +669,14 @@ void FabricSolver<ExecutionSpace, VertexForce>::enqueue_contact_step() {
   end_vertex_forces();
 }
 
-/// Moves the state back to its stable addresses after an odd number of Verlet steps, which alternate between
-/// two buffers.
+/// Moves the state back to its stable addresses after an odd number of steps that alternate between two
+/// buffers.
 template <class ExecutionSpace, class VertexForce>
 void FabricSolver<ExecutionSpace, VertexForce>::restore_addresses() {
   if (_parity == 0) return;
   const Points x = _x, v = _v;
   std::swap(_x, _next);
-  if (_has_dashpots) std::swap(_v, _damped_v);
+  if (_damped_v.extent(0) > 0) std::swap(_v, _damped_v);
   launch_each(space(), "drogue::fabric::restore_addresses", _padded,
               RestoreAddressesFunctor<ExecutionSpace>{_monitor, x, v, _x, _v});
   _parity = 0;

@@ -23,10 +23,14 @@ enum class Model {
   return model == Model::quadratic || model == Model::biquadratic;
 }
 
-/// Time integrators: classical Runge-Kutta, and velocity Verlet.
-enum class Integrator { rk4, verlet };
+/// Time integrators.
+enum class Integrator {
+  rk4,               ///< classical Runge-Kutta method
+  verlet,            ///< velocity Verlet
+  symplectic_euler,  ///< v += dt a(x), then x += dt v; velocities lag by half a step behind those of Verlet
+};
 
-/// Driver of Runge-Kutta steps; Verlet steps are always `plain`. The persistent driver does not support
+/// Driver of Runge-Kutta steps; other steps are always `plain`. The persistent driver does not support
 /// dashpots, bending, prescribed motions and contact.
 using stepping::Driver;
 

@@ -18,10 +18,11 @@ namespace drogue::fabric {
 
 /// Largest stable step, s, for angular frequencies up to `frequency`, rad/s, and rates of damping up to
 /// `decay`, 1/s, as a solver bounds them; infinite if both are zero. The stability region of the Runge-Kutta
-/// method contains the half disc |z| <= 2.61 left of the imaginary axis; Verlet's method needs decay dt <= 1.
-/// Does not throw.
+/// method contains the half disc |z| <= 2.61 left of the imaginary axis; Verlet's method needs decay dt <= 1,
+/// the symplectic Euler method (omega dt)^2 + 2 decay dt <= 4. Does not throw.
 [[nodiscard]] constexpr double stable_dt(Integrator integrator, double frequency, double decay) {
   if (integrator == Integrator::rk4 && decay > 0.0) return 2.61 / (frequency > decay ? frequency : decay);
+  if (integrator == Integrator::symplectic_euler) return 2.0 / (frequency + decay);
   const double undamped = stability_limit(integrator) / frequency;
   return decay * undamped > 1.0 ? 1.0 / decay : undamped;
 }
@@ -30,12 +31,14 @@ namespace drogue::fabric {
 /// rates, 1/s: `absolute` of all motion, and `relative` up to a solver's `fastest_decay`. False in undecided
 /// cases. The roots z of z^2 + c dt z + (omega dt)^2 have a mean modulus of omega dt at least, and the
 /// stability region of the Runge-Kutta method ends 2.9602 from the origin. For Verlet's step, the trace and
-/// the determinant decide (Jury 1962). Does not throw.
+/// the determinant decide (Jury 1962); damping does not stabilise the symplectic Euler method. Does not
+/// throw.
 [[nodiscard]] constexpr bool grows(Integrator integrator, double dt, double frequency, double absolute,
                                    double relative) {
   const double z = frequency * dt;
   if (integrator == Integrator::rk4)
     return z > (absolute + relative > 0.0 ? 2.9602 : stability_limit(integrator));
+  if (integrator == Integrator::symplectic_euler) return z > stability_limit(integrator);
   const double half = 0.25 * absolute * dt, retained = (1.0 - half) / (1.0 + half),
                dashpot_factor = 1.0 - relative * dt;
   return dashpot_factor > 0.0 && dashpot_factor * z * z > 2.0 * (1.0 + dashpot_factor * retained * retained) *

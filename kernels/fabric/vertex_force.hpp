@@ -22,11 +22,29 @@ struct VertexStage {
 /// Default of `FabricSolver`: no force of the caller. The kernels then contain no code for one.
 struct NoVertexForce {};
 
+/// True if a functor gives a force on a vertex, N.
+template <class Functor>
+concept GivesForce = requires(const Functor& functor, const VertexStage& at) {
+  { functor(at) } -> std::convertible_to<Vector3<double>>;
+};
+
+/// True if a functor relaxes the velocity of a vertex, m/s, at the end of the kick of a step.
+template <class Functor>
+concept RelaxesVelocity = requires(const Functor& functor, const VertexStage& at) {
+  { functor.relaxed_velocity(at) } -> std::convertible_to<Vector3<double>>;
+};
+
 /// Functor, copied into kernels, that returns a force on a vertex, N, in every evaluation of forces. Calls
 /// must not write, because they have no order within a stage. They may read the `VertexStage`, state of their
 /// own for its vertex, and data that nothing changes during the steps: neither state of other vertices, which
 /// `end_step` changes in the same kernel, nor the Views of `State`, which a persistent kernel updates at its
 /// end.
+///
+/// An optional `Vector3<double> relaxed_velocity(const VertexStage&) const`, with or without a force, returns
+/// the velocity in which dissipation ends that is too stiff for a force, such as the drag on light cloth. The
+/// symplectic Euler method calls it once per step and vertex, between kick and drift, with the position at
+/// the beginning of the step, the velocity after the kick, m/s, and zero `force`. It may update state of its
+/// own for the vertex. Pinned axes keep their velocity.
 ///
 /// An optional `void end_step(const VertexStage&) const` updates state of its own for the vertex. The solver
 /// calls it once per step and vertex with the position, velocity and time at the end of the step and zero
@@ -34,10 +52,7 @@ struct NoVertexForce {};
 /// twice per position: for the kick that ends a step, with the velocity before that kick, and for the kick
 /// that begins the next one.
 template <class Functor>
-concept IsVertexForce = std::copy_constructible<Functor> &&
-    requires(const Functor& functor, const VertexStage& at) {
-  { functor(at) } -> std::convertible_to<Vector3<double>>;
-};
+concept IsVertexForce = std::copy_constructible<Functor> &&(GivesForce<Functor> || RelaxesVelocity<Functor>);
 
 template <class VertexForce>
 inline constexpr bool has_vertex_force = !std::is_same_v<VertexForce, NoVertexForce>;
@@ -46,7 +61,7 @@ inline constexpr bool has_vertex_force = !std::is_same_v<VertexForce, NoVertexFo
 template <class VertexForce>
 struct VertexForceTerm {
   static_assert(!has_vertex_force<VertexForce> || IsVertexForce<VertexForce>,
-                "a VertexForce maps a VertexStage to a force");
+                "a VertexForce maps a VertexStage to a force or a relaxed velocity");
   static constexpr bool ends_steps = requires(const VertexForce& functor, const VertexStage& at) {
     functor.end_step(at);
   };
@@ -62,14 +77,35 @@ struct VertexForceTerm {
   KOKKOS_INLINE_FUNCTION Vector3<R> add_to(const Vector3<R>& force, const Vector3<R>& position,
                                            const Vector3<R>& velocity, const double* inverse_mass, int i,
                                            std::int64_t steps, double part) const {
-    using Lanes = device::Access<R>;
-    double of[3][Lanes::lanes] = {};
-    for (int lane = 0; lane < Lanes::lanes && i + lane < vertices; ++lane) {
-      const Vector3<double> one =
-          functor(of_lane(lane, position, velocity, force, inverse_mass[lane], i + lane, steps, part));
-      of[0][lane] = one.x, of[1][lane] = one.y, of[2][lane] = one.z;
+    if constexpr (GivesForce<VertexForce>)
+      return force + of_lanes<R>(i, [&](int lane) {
+               return functor(
+                   of_lane(lane, position, velocity, force, inverse_mass[lane], i + lane, steps, part));
+             });
+    else
+      return force;
+  }
+
+  /// Velocity of vertex i and the lanes after it, m/s, after the relaxation of `velocity` at the end of the
+  /// kick of the step after `steps` steps, which began at `position`, m. Pinned axes keep theirs.
+  template <class R>
+  KOKKOS_INLINE_FUNCTION Vector3<R> relaxed(const Vector3<R>& position, const Vector3<R>& velocity,
+                                            const Vector3<R>& free, const double* inverse_mass, int i,
+                                            std::int64_t steps) const {
+    if constexpr (RelaxesVelocity<VertexForce>) {
+      const Vector3<R> none{R(0.0), R(0.0), R(0.0)},
+          result = of_lanes<R>(i, [&](int lane) {
+            return functor.relaxed_velocity(
+                of_lane(lane, position, velocity, none, inverse_mass[lane], i + lane, steps, 0.0));
+          });
+      const auto along = [](R is_free, R new_velocity, R old_velocity) {
+        return device::select(is_free > R(0.0), new_velocity, old_velocity);
+      };
+      return {along(free.x, result.x, velocity.x), along(free.y, result.y, velocity.y),
+              along(free.z, result.z, velocity.z)};
+    } else {
+      return velocity;
     }
-    return force + Vector3<R>{Lanes::load(of[0]), Lanes::load(of[1]), Lanes::load(of[2])};
   }
 
   /// Ends step `steps` of vertex i and the lanes after it, in a kernel of steps; position in m, velocity in
@@ -93,6 +129,18 @@ struct VertexForceTerm {
   }
 
  private:
+  /// Vectors `of(lane)` of vertex i and the lanes after it; zero beyond the last vertex.
+  template <class R, class Of>
+  KOKKOS_INLINE_FUNCTION Vector3<R> of_lanes(int i, const Of& of) const {
+    using Lanes = device::Access<R>;
+    double each[3][Lanes::lanes] = {};
+    for (int lane = 0; lane < Lanes::lanes && i + lane < vertices; ++lane) {
+      const Vector3<double> one = of(lane);
+      each[0][lane] = one.x, each[1][lane] = one.y, each[2][lane] = one.z;
+    }
+    return {Lanes::load(each[0]), Lanes::load(each[1]), Lanes::load(each[2])};
+  }
+
   template <class R>
   KOKKOS_INLINE_FUNCTION VertexStage of_lane(int lane, const Vector3<R>& position, const Vector3<R>& velocity,
                                              const Vector3<R>& force, double inverse_mass, int vertex,

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "kernels/coupling/face_stencil.hpp"
-#include "kernels/coupling/mac_grid.hpp"
+#include "kernels/coupling/staggered_grid.hpp"
 #include "kernels/flow/mac_grid.hpp"
 #include "kernels/flow/views.hpp"
 
@@ -14,8 +14,8 @@ using FaceView = Kokkos::View<double***, Kokkos::LayoutStride, typename Executio
 
 /// Grid in the form that transfers between points and faces take; lengths in m. Axes with one cell are
 /// periodic. Does not throw.
-[[nodiscard]] inline coupling::MacGrid coupling_grid(const MacGrid& g) {
-  coupling::MacGrid grid;
+[[nodiscard]] inline coupling::StaggeredGrid coupling_grid(const MacGrid& g) {
+  coupling::StaggeredGrid grid;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     grid.cells[axis] = g.n[axis];
     grid.origin[axis] = g.low[axis];
@@ -31,7 +31,7 @@ using FaceView = Kokkos::View<double***, Kokkos::LayoutStride, typename Executio
 template <class ExecutionSpace>
 [[nodiscard]] coupling::FaceViews<FaceView<ExecutionSpace>> face_views(const MacGrid& g,
                                                                        const List<ExecutionSpace>& values) {
-  const coupling::MacGrid grid = coupling_grid(g);
+  const coupling::StaggeredGrid grid = coupling_grid(g);
   const auto stride = [&](int axis) { return static_cast<std::size_t>(g.stride[axis]); };
   coupling::FaceViews<FaceView<ExecutionSpace>> views;
   for (int c = 0; c < 3; ++c) {

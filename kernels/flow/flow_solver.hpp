@@ -21,6 +21,7 @@
 #include "kernels/flow/observables/totals.hpp"
 #include "kernels/flow/projection/projection.hpp"
 #include "kernels/flow/solver.hpp"
+#include "kernels/flow/step_constants.hpp"
 #include "kernels/flow/step_control.hpp"
 #include "kernels/flow/turbulence/eddy_viscosity.hpp"
 #include "kernels/linear/poisson/diagonalization.hpp"
@@ -85,12 +86,34 @@ class FlowSolver {
   [[nodiscard]] const MacGrid& grid() const { return _grid; }
   /// Velocity with ghost cells, m/s; valid after the kernels enqueued so far. Does not throw.
   [[nodiscard]] const Values& velocity() const { return _velocity; }
-  /// Kinematic pressure at the cells, x fastest, m^2/s^2. Does not throw.
+  /// Kinematic pressure at the cells that acted in the last step, x fastest, m^2/s^2: of second order at the
+  /// middle of that step, and zero before the first. Does not throw.
   [[nodiscard]] const Values& pressure() const { return _pressure; }
   /// Force per volume on the faces, N/m^3, in the layout of `velocity`; empty unless
   /// `Parameters::external_force`. Other kernels may write it between steps; it keeps its values. Does not
   /// throw.
   [[nodiscard]] const Values& force() const { return _force; }
+
+  // For a coupling that enqueues other kernels between steps. Asynchronous, without a bound on the steps in
+  // flight, and on one rank alone.
+
+  /// Enqueues the beginning of an advance to the time `target`, s. Throws std::logic_error on several ranks.
+  void enqueue_begin(double target);
+  /// Enqueues a step, which does nothing if the last advance has reached its target or failed. Throws only
+  /// after a failed launch.
+  void enqueue_step();
+  /// Sets a constant dt, s, > 0, from the next `enqueue_begin` on. Does not throw.
+  void set_fixed_dt(double dt);
+  /// Largest dt, s, that the CFL condition and `Parameters::max_dt` admit at this progress; infinite without
+  /// a bound, NaN without a finite velocity. Does not throw.
+  [[nodiscard]] double largest_dt(const Progress& now) const;
+  /// True if a step has failed. Blocks. Throws std::runtime_error after a failed kernel.
+  [[nodiscard]] bool has_failed() const { return read_control().trial.stop == Stop::failed; }
+  /// Status as last published. Does not throw.
+  [[nodiscard]] Status status() const { return _loop.status(); }
+  /// Control block. Other kernels may set `trial.stop` to `Stop::failed`: the next step is not taken, and
+  /// `advance` ends. Does not throw.
+  [[nodiscard]] const ControlView<ExecutionSpace>& control() const { return _control; }
 
   /// The functions below are documented in `Solver`.
   void upload(StateField field, std::span<const double> values);
@@ -104,6 +127,7 @@ class FlowSolver {
   void sample(CellField field, std::span<double> values);
   [[nodiscard]] const char* driver() const { return stepping::driver_name(_launcher.driver()); }
   [[nodiscard]] const char* pressure_solver() const;
+  [[nodiscard]] std::optional<PressureSolve> last_pressure_solve() const;
 
  private:
 #if defined(DROGUE_HAVE_HYPRE)
@@ -123,17 +147,28 @@ class FlowSolver {
   [[nodiscard]] const ExecutionSpace& space() const { return _instance->space(); }
   [[nodiscard]] Control read_control() const;
   void write_control(Control control);
+  void limit_first_step(double target);
+  void set_guess() const;
+  [[nodiscard]] double rate_of_sides(Control control, double dt);
+  void solve_present_pressure();
   [[nodiscard]] PackFunctor<ExecutionSpace> packing(StateField field, std::size_t size, bool to_field) const;
   void make_poisson();
   Stop advance_together(const stepping::AdvanceRequest& request, const Poll& poll);
   void begin_ghosts(const ExecutionSpace& space, const Values& velocity) const;
   void finish_ghosts(const ExecutionSpace& space, const Values& velocity) const;
   void enqueue_momentum(const ExecutionSpace& space, const MomentumSetup<ExecutionSpace>& setup) const;
+  void enqueue_eddy_viscosity(const ExecutionSpace& space, const Values& velocity) const;
+  void enqueue_rates(const ExecutionSpace& space, const MomentumSetup<ExecutionSpace>& setup,
+                     double time_fraction) const;
+  [[nodiscard]] MomentumSetup<ExecutionSpace> momentum_setup(double nu) const;
   void enqueue_step(const ExecutionSpace& space) const;
   void enqueue_stage(const ExecutionSpace& space, const MomentumSetup<ExecutionSpace>& setup,
                      const Values& result, double fraction, double time_fraction) const;
-  void enqueue_projection(const ExecutionSpace& space, const Values& result, double fraction,
-                          bool is_initial) const;
+  [[nodiscard]] ProjectionSetup<ExecutionSpace> projection_setup(double fraction) const;
+  void enqueue_pressure(const ExecutionSpace& space, const ProjectionSetup<ExecutionSpace>& setup) const;
+  void enqueue_projection(const ExecutionSpace& space, const ProjectionSetup<ExecutionSpace>& setup) const;
+  /// Solution of the pressure equation: the pressure, or its increment.
+  [[nodiscard]] const Values& unknown() const { return _diffusion ? _pressure_increment : _divergence; }
   [[nodiscard]] double kinematic_viscosity() const { return _parameters.viscosity / _parameters.density; }
 
   const device::Instance<ExecutionSpace>* _instance;
@@ -147,7 +182,9 @@ class FlowSolver {
   EddyModel _eddy_model{};
   EddyCells _eddy_cells{};
   Values _velocity, _predicted, _rate, _force;
-  Values _divergence;  ///< right-hand side of the pressure equation, 1/s^2
+  /// Right-hand side of the pressure equation, 1/s^2; with explicit diffusion also its solution, m^2/s^2, so
+  /// that the pressure changes with the velocity, in the correction.
+  Values _divergence;
   Values _pressure;
   Values _pressure_increment;                  ///< empty with explicit diffusion, which needs no increments
   Values _eddy_viscosity, _eddy_acceleration;  ///< empty without a turbulence model
@@ -158,6 +195,8 @@ class FlowSolver {
   ControlView<ExecutionSpace> _control;
   std::optional<ImplicitDiffusion<ExecutionSpace>> _diffusion;  ///< Crank-Nicolson only
   mutable std::optional<Poisson> _poisson;  ///< an iterative solver keeps its last solution and residual
+  /// False if the last solve was not that of the last step.
+  mutable bool _last_solution_is_pressure = false;
   stepping::StepLoop<ExecutionSpace> _loop;
   stepping::StepLauncher<ExecutionSpace> _launcher;
 };
@@ -220,20 +259,12 @@ FlowSolver<ExecutionSpace>::FlowSolver(const device::Instance<ExecutionSpace>& i
   }
   _control = ControlView<ExecutionSpace>("drogue::flow::control");
   make_poisson();
-  double squares = 0.0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const double length = parameters.high[axis] - parameters.low[axis];
     _acceleration[axis] =
         (parameters.body_force[axis] + parameters.pressure_drop[axis] / length) / parameters.density;
-    if (_grid.n[axis] > 1) squares += _grid.inverse_h[axis] * _grid.inverse_h[axis];
   }
-  const double nu = is_implicit ? 0.0 : kinematic_viscosity();
-  // The second-order Adams-Bashforth method is stable for z in [-1, 0] of the negative real axis; the largest
-  // eigenvalue of the viscous term is 4 nu times the sum of the squares.
-  _constants = {
-      parameters.cfl, parameters.fixed_dt, parameters.max_dt,
-      nu > 0.0 && squares > 0.0 ? 1.0 / (4.0 * nu * squares) : std::numeric_limits<double>::infinity(),
-      parameters.max_steps};
+  _constants = step_constants(parameters, _grid);
   space().fence("drogue::flow::solver: allocated");
 }
 
@@ -253,7 +284,8 @@ void FlowSolver<ExecutionSpace>::make_poisson() {
     _poisson.emplace(std::in_place_type<linear::PencilSolver<ExecutionSpace>>, space(), problem, group,
                      _ranks, transforms ? linear::AxisMethod::fourier : linear::AxisMethod::diagonalization);
   else if (transforms)
-    _poisson.emplace(std::in_place_type<linear::FourierSolver<ExecutionSpace>>, space(), problem);
+    _poisson.emplace(std::in_place_type<linear::FourierSolver<ExecutionSpace>>, space(), problem,
+                     unknown().data() == _divergence.data());
   else
     _poisson.emplace(std::in_place_type<linear::DiagonalizationSolver<ExecutionSpace>>, space(), problem);
 }
@@ -263,6 +295,17 @@ const char* FlowSolver<ExecutionSpace>::pressure_solver() const {
   if (_parameters.pressure_solver == PressureSolver::hypre_pfmg) return "hypre-pfmg";
   return uses_transforms<ExecutionSpace>(_parameters, _halo ? _halo->group().size() : 1) ? "fft"
                                                                                          : "diagonalization";
+}
+
+template <class ExecutionSpace>
+std::optional<PressureSolve> FlowSolver<ExecutionSpace>::last_pressure_solve() const {
+  return std::visit(
+      [](const auto& poisson) -> std::optional<PressureSolve> {
+        if constexpr (requires { poisson.converged(); })
+          return PressureSolve{poisson.iterations(), poisson.residual()};
+        return std::nullopt;
+      },
+      *_poisson);
 }
 
 template <class ExecutionSpace>
@@ -336,11 +379,51 @@ template <class ExecutionSpace>
 void FlowSolver<ExecutionSpace>::sample(CellField field, std::span<double> values) {
   if (values.size() != static_cast<std::size_t>(_grid.cells()) * static_cast<std::size_t>(components(field)))
     throw std::invalid_argument("flow solver: a field has the wrong length");
+  if (field == CellField::pressure) solve_present_pressure();
   launch_cells(
       space(), "drogue::flow::sample", _grid.n,
-      SampleFunctor<ExecutionSpace>{_grid, _velocity, _pressure, _predicted, _parameters.density, field});
+      SampleFunctor<ExecutionSpace>{_grid, _velocity, unknown(), _predicted, _parameters.density, field});
   device::copy_out(space(), values.data(), _predicted, values.size());
   space().fence("drogue::flow::sample");
+}
+
+/// Lets an iterative solver begin with the pressure of the last step, so that a restart continues bit for
+/// bit; with zero if its unknown is an increment.
+template <class ExecutionSpace>
+void FlowSolver<ExecutionSpace>::set_guess() const {
+  std::visit(
+      [&](auto& poisson) {
+        if constexpr (requires { poisson.set_guess(_pressure); }) {
+          if (_diffusion)
+            poisson.set_guess(Values());
+          else if (!_last_solution_is_pressure)
+            poisson.set_guess(_pressure);
+        }
+      },
+      *_poisson);
+}
+
+/// Solves for the pressure of the present velocity in `unknown`: that which keeps the velocity of an explicit
+/// step free of divergence, in the limit of a short step. Leaves the state as it is.
+template <class ExecutionSpace>
+void FlowSolver<ExecutionSpace>::solve_present_pressure() {
+  constexpr double fraction = 1e-4, longest = 1.0;  // s; accelerations of sides are differences over dt
+  const Control kept = read_control();
+  Control control = kept;
+  const double admissible = admissible_dt(kept.now, _constants);
+  control.trial.dt = fraction * (admissible > 0.0 && admissible < longest ? admissible : longest);
+  control.trial.stop = Stop::running;
+  control.first_failure = no_failure;
+  control.pressure_failed = control.failed_side = 0;
+  write_control(control);
+  MomentumSetup<ExecutionSpace> setup = momentum_setup(kinematic_viscosity());
+  setup.weights = {0.0, 1.0, false};
+  enqueue_rates(space(), setup, 1.0);
+  set_guess();
+  enqueue_pressure(space(), projection_setup(1.0));
+  _last_solution_is_pressure = false;
+  if (_boundary.changes()) _boundary.enqueue_evaluation(space(), _control, {0.0, true});
+  write_control(kept);
 }
 
 template <class ExecutionSpace>
@@ -398,22 +481,33 @@ void FlowSolver<ExecutionSpace>::start() {
   control.first_failure = no_failure;
   write_control(control);
   _boundary.enqueue_evaluation(space(), _control, {0.0, true});
+  for (int axis = 0; axis < 3; ++axis)
+    if (_grid.n[axis] == 1 && _boundary.conditions().kind[2 * axis] == BoundaryKind::slip)
+      Kokkos::deep_copy(
+          space(),
+          Values(_velocity.data() + axis * _grid.component, static_cast<std::size_t>(_grid.component)), 0.0);
   begin_ghosts(space(), _velocity);
   finish_ghosts(space(), _velocity);
   device::copy(space(), _predicted, _velocity);
-  enqueue_projection(space(), _velocity, 1.0, true);
+  ProjectionSetup<ExecutionSpace> projection = projection_setup(1.0);
+  projection.velocity = _velocity;
+  projection.resists_backflow = false;
+  projection.ends_step = true;
+  enqueue_projection(space(), projection);
   finish_ghosts(space(), _velocity);
+  enqueue_eddy_viscosity(space(), _velocity);
   if (_halo) _halo->agree(space(), _control);
-  // The first step has no pressure of a previous one.
-  if (_diffusion) Kokkos::deep_copy(space(), _pressure, 0.0);
+  Kokkos::deep_copy(space(), _pressure, 0.0);  // the first step has no pressure of a previous one
   control = read_control();
-  control.now.rate = control.first_failure == no_failure && control.pressure_failed == 0
-                         ? control.next_rate
-                         : Kokkos::bit_cast<std::uint64_t>(std::numeric_limits<double>::quiet_NaN());
+  control.now.rate = control.has_failed()
+                         ? Kokkos::bit_cast<std::uint64_t>(std::numeric_limits<double>::quiet_NaN())
+                         : limiting_rate(control, _constants);
   control.next_rate = 0;
+  control.eddy_viscosity = 0;
   control.trial.dt = 0.0;
   control.trial.stop = Stop::pause;
   write_control(control);
+  _last_solution_is_pressure = false;
   _loop.status_view()().step = 0;
 }
 
@@ -422,24 +516,34 @@ void FlowSolver<ExecutionSpace>::restore(const Progress& progress) {
   Control control{};
   control.now = progress;
   control.first_failure = no_failure;
-  control.trial.stop = Stop::pause;
+  control.trial.stop = Stop::running;
   write_control(control);
   _boundary.enqueue_evaluation(space(), _control, {0.0, true});
   begin_ghosts(space(), _velocity);
   finish_ghosts(space(), _velocity);
-  space().fence("drogue::flow::restore");
+  enqueue_eddy_viscosity(space(), _velocity);
+  control.trial.stop = Stop::pause;
+  write_control(control);
+  _last_solution_is_pressure = false;
   _loop.status_view()().step = progress.step;
 }
 
 template <class ExecutionSpace>
 StepFailure FlowSolver<ExecutionSpace>::failure() {
   const Control control = read_control();
-  const bool in_cell = control.first_failure != no_failure;
-  const FailureReason reason = in_cell                        ? FailureReason::not_finite
-                               : control.pressure_failed != 0 ? FailureReason::pressure_solver
-                                                              : FailureReason::time_step;
-  return {reason, in_cell ? static_cast<std::int64_t>(control.first_failure) : -1, control.now.step + 1,
-          control.now.time, control.trial.dt};
+  StepFailure failure{FailureReason::time_step, -1, control.now.step + 1, control.now.time, control.trial.dt};
+  if (control.failed_side != 0) {
+    failure.reason = FailureReason::side_velocity;
+    failure.index = control.failed_side - 1;
+  } else if (control.first_failure != no_failure) {
+    failure.reason = FailureReason::not_finite;
+    failure.index = static_cast<std::int64_t>(control.first_failure);
+  } else if (control.pressure_failed != 0) {
+    failure.reason = FailureReason::pressure_solver;
+  } else if (!std::isfinite(Kokkos::bit_cast<double>(control.next_rate))) {
+    failure.reason = FailureReason::not_finite;
+  }
+  return failure;
 }
 
 /// Steps of the solver, as `StepLoop` enqueues them.
@@ -458,10 +562,95 @@ struct FlowSolver<ExecutionSpace>::Steps {
   }
 };
 
+/// Largest |u|/hx + |v|/hy + |w|/hz of the prescribed velocities, 1/s, at several times up to `dt` (s) from
+/// the present.
+template <class ExecutionSpace>
+double FlowSolver<ExecutionSpace>::rate_of_sides(Control control, double dt) {
+  constexpr int times = 16;
+  control.trial.dt = dt;
+  control.trial.stop = Stop::running;
+  write_control(control);
+  double largest = 0.0;
+  for (int i = 1; i <= times; ++i) {
+    _boundary.enqueue_evaluation(space(), _control, {static_cast<double>(i) / times, false});
+    largest = std::max(largest, _boundary.largest_rate(space()));
+  }
+  if (!_halo) return largest;
+  auto bits = Kokkos::bit_cast<std::uint64_t>(largest);
+  _halo->group().maximize({&bits, 1});
+  return Kokkos::bit_cast<double>(bits);
+}
+
+/// Bounds the first step towards a time (s) where the velocity of the present does not: sides whose velocity
+/// changes in time, and body forces, set the fluid in motion within the step.
+template <class ExecutionSpace>
+void FlowSolver<ExecutionSpace>::limit_first_step(double target) {
+  double acceleration = 0.0;  // in cells, 1/s^2
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    if (_grid.n[axis] > 1) acceleration += std::abs(_acceleration[axis]) * _grid.inverse_h[axis];
+  const bool sides_change = change_in_time(_parameters.boundary);  // those of all ranks
+  const bool sets_in_motion = acceleration > 0.0 || sides_change;
+  if (_loop.status().step > 0 || _constants.fixed_dt > 0.0 || !sets_in_motion) return;
+  const Control kept = read_control();
+  double dt = std::min(admissible_dt(kept.now, _constants), target - kept.now.time);
+  if (!(dt > 0.0)) return;
+  const double unlimited = dt;
+  if (acceleration > 0.0) dt = std::min(dt, std::sqrt(_constants.cfl / acceleration));
+  if (sides_change) {
+    const auto is_too_long = [&](double step) { return step * rate_of_sides(kept, step) > _constants.cfl; };
+    const double longest = dt;
+    while (is_too_long(dt)) dt *= 0.5;
+    // The next step is as long as this one could have been.
+    double upper = std::min(longest, 2.0 * dt);
+    for (int bisection = 0; bisection < 5; ++bisection) {
+      const double middle = 0.5 * (dt + upper);
+      (is_too_long(middle) ? upper : dt) = middle;
+    }
+    write_control(kept);
+    _boundary.enqueue_evaluation(space(), _control, {0.0, true});
+  }
+  Control control = kept;
+  if (dt < unlimited) control.now.rate = Kokkos::bit_cast<std::uint64_t>(_constants.cfl / dt);
+  write_control(control);
+}
+
 template <class ExecutionSpace>
 Stop FlowSolver<ExecutionSpace>::advance(double target, std::int64_t pause_step, const Poll& poll) {
-  if (_halo) return advance_together({target, pause_step}, poll);
-  return _loop.advance({target, pause_step}, Steps{*this}, poll);
+  limit_first_step(target);
+  const Stop stop = _halo ? advance_together({target, pause_step}, poll)
+                          : _loop.advance({target, pause_step}, Steps{*this}, poll);
+  if (stop == Stop::failed && _boundary.changes()) {
+    _boundary.enqueue_evaluation(space(), _control, {0.0, true});
+    space().fence("drogue::flow::advance: sides before the failed step");
+  }
+  return stop;
+}
+
+template <class ExecutionSpace>
+void FlowSolver<ExecutionSpace>::enqueue_begin(double target) {
+  if (_halo) throw std::logic_error("flow solver: steps on several ranks wait for the host");
+  Steps{*this}.begin({target}, -1);
+  _loop.count_launch();
+}
+
+template <class ExecutionSpace>
+void FlowSolver<ExecutionSpace>::enqueue_step() {
+  Steps{*this}.enqueue(0, 1);
+  _loop.count_launch();
+}
+
+template <class ExecutionSpace>
+double FlowSolver<ExecutionSpace>::largest_dt(const Progress& now) const {
+  StepConstants constants = _constants;
+  constants.fixed_dt = 0.0;
+  return admissible_dt(now, constants);
+}
+
+template <class ExecutionSpace>
+void FlowSolver<ExecutionSpace>::set_fixed_dt(double dt) {
+  if (dt == _constants.fixed_dt) return;
+  _constants.fixed_dt = dt;
+  _launcher.discard_graphs();  // they hold the constants
 }
 
 /// Step loop of several ranks: step by step, so that all take the same steps.
@@ -491,14 +680,14 @@ void FlowSolver<ExecutionSpace>::begin_ghosts(const ExecutionSpace& space, const
   if (_halo)
     _halo->begin_velocity(space, velocity);
   else
-    launch_ghosts(space, _grid, _boundary.conditions(), velocity);
+    launch_ghosts(space, _grid, _boundary.conditions(), velocity, _control);
 }
 
 /// Completes what `begin_ghosts` began for the same field.
 template <class ExecutionSpace>
 void FlowSolver<ExecutionSpace>::finish_ghosts(const ExecutionSpace& space, const Values& velocity) const {
   if (_halo && _halo->finish_velocity(space, velocity))
-    launch_ghosts(space, _grid, _boundary.conditions(), velocity);
+    launch_ghosts(space, _grid, _boundary.conditions(), velocity, _control);
 }
 
 /// Momentum stage. On several ranks, cells that need no other rank come first, while the messages are under
@@ -511,46 +700,82 @@ void FlowSolver<ExecutionSpace>::enqueue_momentum(const ExecutionSpace& space,
   const std::vector<MacGrid> parts = _halo->parts();
   for (std::size_t i = 0; i < parts.size(); ++i) {
     // The cells inside need the ghost cells at the sides of the domain.
-    if (i == 0 && parts.size() > 1) launch_ghosts(space, _grid, _boundary.conditions(), setup.stage);
+    if (i == 0 && parts.size() > 1)
+      launch_ghosts(space, _grid, _boundary.conditions(), setup.stage, _control);
     if (i == 1 || parts.size() == 1) finish_ghosts(space, setup.stage);
     part.grid = parts[i];
     dispatch_momentum(space, part, _parameters.advection);
   }
 }
 
+/// Momentum stage of the state, without weights. `nu`: kinematic viscosity, m^2/s.
 template <class ExecutionSpace>
-void FlowSolver<ExecutionSpace>::enqueue_step(const ExecutionSpace& space) const {
+MomentumSetup<ExecutionSpace> FlowSolver<ExecutionSpace>::momentum_setup(double nu) const {
   // The linear weights are recovered where all differences are far below this velocity squared, m^2/s^2.
   constexpr double smoothness_floor = 1e-40;
-  MomentumSetup<ExecutionSpace> setup{_grid,
-                                      _velocity,
-                                      _velocity,
-                                      _predicted,
-                                      _rate,
-                                      _force,
-                                      _eddy_acceleration,
-                                      _control,
-                                      _diffusion ? 0.0 : kinematic_viscosity(),
-                                      {_acceleration[0], _acceleration[1], _acceleration[2]},
-                                      1.0 / _parameters.density,
-                                      smoothness_floor,
-                                      {}};
+  return {_grid,
+          _velocity,
+          _velocity,
+          _predicted,
+          _rate,
+          _force,
+          _eddy_acceleration,
+          _control,
+          nu,
+          {_acceleration[0], _acceleration[1], _acceleration[2]},
+          1.0 / _parameters.density,
+          smoothness_floor,
+          {}};
+}
+
+template <class ExecutionSpace>
+void FlowSolver<ExecutionSpace>::enqueue_step(const ExecutionSpace& space) const {
+  MomentumSetup<ExecutionSpace> setup = momentum_setup(_diffusion ? 0.0 : kinematic_viscosity());
+  set_guess();
+  _last_solution_is_pressure = true;
   if (_parameters.time_scheme == TimeScheme::ab2) {
-    setup.weights = {0.0, 1.0, 1.0, true};
+    setup.weights = {0.0, 1.0, true};
     enqueue_stage(space, setup, _velocity, 1.0, 1.0);
   } else {
     // Shu and Osher 1988, eq. (2.18). The first two stages are projected into the array of rates.
-    setup.weights = {0.0, 1.0, 1.0, false};
+    setup.weights = {0.0, 1.0, false};
     enqueue_stage(space, setup, _rate, 1.0, 1.0);
     setup.stage = _rate;
-    setup.weights = {0.75, 0.25, 0.25, false};
+    setup.weights = {0.75, 0.25, false};
     enqueue_stage(space, setup, _rate, 0.25, 0.5);
-    setup.weights = {1.0 / 3.0, 2.0 / 3.0, 2.0 / 3.0, false};
+    setup.weights = {1.0 / 3.0, 2.0 / 3.0, false};
     enqueue_stage(space, setup, _velocity, 2.0 / 3.0, 1.0);
   }
+  enqueue_eddy_viscosity(space, _velocity);
   if (_halo) _halo->agree(space, _control);
   Kokkos::parallel_for("drogue::flow::finish_step", one_thread(space),
                        FinishStepFunctor<ExecutionSpace>{_control, _loop.status_view(), _constants});
+}
+
+/// Eddy viscosity of a velocity field, if there is a model. That of the state is evaluated at the end of a
+/// step, because it limits the next dt.
+template <class ExecutionSpace>
+void FlowSolver<ExecutionSpace>::enqueue_eddy_viscosity(const ExecutionSpace& space,
+                                                        const Values& velocity) const {
+  if (_parameters.turbulence == Turbulence::none) return;
+  finish_ghosts(space, velocity);
+  launch_cells(space, "drogue::flow::eddy_viscosity", _eddy_cells.extent,
+               EddyViscosityFunctor<ExecutionSpace>{_grid, _eddy_model, velocity, _eddy_cells,
+                                                    _eddy_viscosity, _control});
+}
+
+/// Predicted velocity of a momentum stage. `time_fraction`: of dt at which it has the values of the sides.
+template <class ExecutionSpace>
+void FlowSolver<ExecutionSpace>::enqueue_rates(const ExecutionSpace& space,
+                                               const MomentumSetup<ExecutionSpace>& setup,
+                                               double time_fraction) const {
+  if (_parameters.turbulence != Turbulence::none)
+    launch_cells(space, "drogue::flow::eddy_stress", _grid.n,
+                 EddyStressFunctor<ExecutionSpace>{_grid, setup.stage, _eddy_cells, _eddy_viscosity,
+                                                   _eddy_acceleration, _control});
+  enqueue_momentum(space, setup);
+  if (_boundary.changes()) _boundary.enqueue_evaluation(space, _control, {time_fraction, false});
+  launch_boundary_faces(space, setup, _boundary.conditions());
 }
 
 /// Momentum stage and projection. `fraction`: of dt that the pressure of the stage acts; `time_fraction`: of
@@ -560,62 +785,67 @@ void FlowSolver<ExecutionSpace>::enqueue_stage(const ExecutionSpace& space,
                                                const MomentumSetup<ExecutionSpace>& setup,
                                                const Values& result, double fraction,
                                                double time_fraction) const {
-  if (_parameters.turbulence != Turbulence::none) {
-    finish_ghosts(space, setup.stage);
-    launch_cells(space, "drogue::flow::eddy_viscosity", _eddy_cells.extent,
-                 EddyViscosityFunctor<ExecutionSpace>{_grid, _eddy_model, setup.stage, _eddy_cells,
-                                                      _eddy_viscosity, _control});
-    launch_cells(space, "drogue::flow::eddy_stress", _grid.n,
-                 EddyStressFunctor<ExecutionSpace>{_grid, setup.stage, _eddy_cells, _eddy_viscosity,
-                                                   _eddy_acceleration, _control});
-  }
-  enqueue_momentum(space, setup);
-  if (_boundary.changes()) _boundary.enqueue_evaluation(space, _control, {time_fraction, false});
-  launch_boundary_faces(space, setup, _boundary.conditions());
+  if (setup.stage.data() != _velocity.data()) enqueue_eddy_viscosity(space, setup.stage);
+  enqueue_rates(space, setup, time_fraction);
   if (_diffusion)
     _diffusion->enqueue(
         space,
         {_grid, _boundary.conditions(), _velocity, _predicted, _pressure, _control, kinematic_viscosity()},
         _divergence, _pressure_increment);
-  enqueue_projection(space, result, fraction, false);
+  ProjectionSetup<ExecutionSpace> projection = projection_setup(fraction);
+  projection.velocity = result;
+  if (result.data() == _velocity.data()) {
+    projection.ends_step = true;
+    projection.total_pressure = _pressure;
+  }
+  enqueue_projection(space, projection);
 }
 
+/// Projection of the predicted velocity, without a result.
 template <class ExecutionSpace>
-void FlowSolver<ExecutionSpace>::enqueue_projection(const ExecutionSpace& space, const Values& result,
-                                                    double fraction, bool is_initial) const {
-  const Values& unknown = _diffusion ? _pressure_increment : _pressure;
-  ProjectionSetup<ExecutionSpace> setup{_grid,
-                                        _boundary.conditions(),
-                                        _predicted,
-                                        result,
-                                        _divergence,
-                                        unknown,
-                                        _diffusion && !is_initial ? _pressure : Values(),
-                                        _control,
-                                        kinematic_viscosity(),
-                                        fraction,
-                                        !is_initial && _boundary.has_outflow(),
-                                        {}};
-  if (_halo) {
+ProjectionSetup<ExecutionSpace> FlowSolver<ExecutionSpace>::projection_setup(double fraction) const {
+  ProjectionSetup<ExecutionSpace> setup{_grid,       _boundary.conditions(),
+                                        _predicted,  Values(),
+                                        _divergence, unknown(),
+                                        Values(),    _diffusion.has_value(),
+                                        _control,    kinematic_viscosity(),
+                                        fraction,    _boundary.has_outflow(),
+                                        false,       {}};
+  if (_halo)
     for (std::size_t axis = 0; axis < 3; ++axis) setup.pressure_below[axis] = _halo->pressure_below(axis);
-    _halo->exchange_high_faces(space, _predicted);
-  }
+  return setup;
+}
+
+/// Solves the pressure equation for `unknown`.
+template <class ExecutionSpace>
+void FlowSolver<ExecutionSpace>::enqueue_pressure(const ExecutionSpace& space,
+                                                  const ProjectionSetup<ExecutionSpace>& setup) const {
+  if (_halo) _halo->exchange_high_faces(space, _predicted);
   launch_divergence(space, setup);
   std::visit(
       [&](auto& poisson) {
-        poisson.enqueue_solve(_divergence, unknown);
+        poisson.enqueue_solve(_divergence, unknown());
         if constexpr (requires { poisson.converged(); })
           if (!poisson.converged())
             device::launch_each(space, "drogue::flow::pressure_failure", 1,
                                 PressureFailureFunctor<ExecutionSpace>{_control});
       },
       *_poisson);
+}
+
+template <class ExecutionSpace>
+void FlowSolver<ExecutionSpace>::enqueue_projection(const ExecutionSpace& space,
+                                                    const ProjectionSetup<ExecutionSpace>& setup) const {
+  enqueue_pressure(space, setup);
   if (_halo) {
     _halo->agree(space, _control);  // no rank may overwrite the state if another one has failed
-    _halo->exchange_pressure(space, _pressure);
+    _halo->exchange_pressure(space, unknown());
   }
   launch_correction(space, setup);
-  begin_ghosts(space, result);
+  begin_ghosts(space, setup.velocity);
 }
+
+// One translation unit per backend compiles the solver.
+DROGUE_EXTERN_INSTANCES(class FlowSolver)
 
 }  // namespace drogue::flow

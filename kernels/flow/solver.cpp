@@ -64,6 +64,12 @@ void check_parameters(const Parameters& p) {
             "a side of the domain has no neighbour");
     require(n > 1 || low == BoundaryKind::periodic || low == BoundaryKind::slip,
             "an axis with one cell must be periodic or have slip sides");
+    for (const Boundary& side : p.boundary)
+      require(
+          n > 1 || low == BoundaryKind::periodic || !is_prescribed(side.kind) || side.velocity[axis] == 0.0,
+          "sides with a velocity through the slip sides of an axis with one cell have no solution");
+    require(n > 1 || low == BoundaryKind::periodic || p.body_force[axis] == 0.0,
+            "a body force along an axis with one cell needs periodic sides");
     require(p.pressure_drop[axis] == 0.0 || low == BoundaryKind::periodic,
             "a pressure drop needs a periodic axis");
     cells *= n;
@@ -71,7 +77,7 @@ void check_parameters(const Parameters& p) {
   require(cells > 1.0 && cells < 2e9, "the grid must have more than 1 cell, and fewer than 2 billion");
   require(std::isfinite(p.density) && p.density > 0.0, "the density must be positive");
   require(std::isfinite(p.viscosity) && p.viscosity >= 0.0, "the viscosity must not be negative");
-  require(p.fixed_dt > 0.0 || (p.cfl > 0.0 && std::isfinite(p.cfl)), "cfl must be positive");
+  require(p.fixed_dt > 0.0 || (p.cfl >= 0.0 && std::isfinite(p.cfl)), "cfl must not be negative");
   require(p.diffusion == Diffusion::explicit_ || p.time_scheme == TimeScheme::ab2,
           "Crank-Nicolson diffusion needs the time scheme AB2");
 #if !defined(DROGUE_HAVE_HYPRE)

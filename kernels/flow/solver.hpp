@@ -2,6 +2,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <span>
 
 #include "kernels/device/backend.hpp"
@@ -56,6 +57,9 @@ class Solver {
 
   /// Launch strategy: "graph" or "plain". Does not throw.
   [[nodiscard]] virtual const char* driver() const = 0;
+
+  /// Last solve of an iterative pressure solver; none for a direct one. Does not throw.
+  [[nodiscard]] virtual std::optional<PressureSolve> last_pressure_solve() const = 0;
 
   /// Name of the pressure solver: "fft" or "diagonalization" or "hypre-pfmg". Does not throw.
   [[nodiscard]] virtual const char* pressure_solver() const = 0;

@@ -1,18 +1,9 @@
 #pragma once
 
 #include "kernels/flow/flow_solver.hpp"
+#include "kernels/flow/host_threads.hpp"
 
 namespace drogue::flow {
-
-/// Number of host threads for a rank: a thread with fewer cells costs more than it saves, and ranks share the
-/// cores of a host.
-template <class ExecutionSpace>
-int host_threads(const Parameters& p, const linear::RankGroup& group) {
-  const std::int64_t cells = static_cast<std::int64_t>(p.cells[0]) * p.cells[1] * p.cells[2] / group.size();
-  const int useful = static_cast<int>(1 + std::min<std::int64_t>(cells / 2048, 4096));
-  if (group.ranks_on_host() == 1) return useful;
-  return std::clamp(ExecutionSpace().concurrency() / group.ranks_on_host(), 1, useful);
-}
 
 /// `FlowSolver` behind the virtual interface, on an execution-space instance of its own.
 template <class ExecutionSpace>
@@ -34,6 +25,9 @@ class SolverAdapter final : public Solver {
   void sample(CellField field, std::span<double> values) override { _solver.sample(field, values); }
   [[nodiscard]] const char* driver() const override { return _solver.driver(); }
   [[nodiscard]] const char* pressure_solver() const override { return _solver.pressure_solver(); }
+  [[nodiscard]] std::optional<PressureSolve> last_pressure_solve() const override {
+    return _solver.last_pressure_solve();
+  }
 
  private:
   device::Instance<ExecutionSpace> _instance;

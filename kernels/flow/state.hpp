@@ -12,8 +12,11 @@ using stepping::Stop;
 
 /// Reason why a step failed.
 enum class FailureReason : int {
-  not_finite,       ///< the divergence of the predicted velocity is not finite, or exceeds 1e100 per second
-  time_step,        ///< no admissible dt: the velocity is not finite, or dt would not change the time
+  not_finite,     ///< the predicted velocity is not finite, or its divergence exceeds 1e100 per second
+  side_velocity,  ///< the prescribed velocity of a side, `StepFailure::index`, is not finite
+  /// No admissible dt: dt would not change the time, or a fixed dt exceeds the largest stable one, which
+  /// `StepFailure::dt` then holds.
+  time_step,
   pressure_solver,  ///< an iterative pressure solver did not converge
 };
 
@@ -23,7 +26,9 @@ using StepFailure = stepping::StepFailure<FailureReason>;
 struct Progress : stepping::AdaptiveTime {
   double last_dt = 0.0;               ///< s, of the last step; 0: the next step has no predecessor
   double dt_min = 0.0, dt_max = 0.0;  ///< s, over all steps
-  std::uint64_t rate = 0;             ///< bits of the maximum over the cells of |u|/hx + |v|/hy + |w|/hz, 1/s
+  /// Bits of the maximum over the cells of |u|/hx + |v|/hy + |w|/hz, 1/s, without axes of one cell, plus the
+  /// rate of the largest eddy viscosity; more if sides accelerate.
+  std::uint64_t rate = 0;
 };
 
 /// Array of the state. Component c of the velocity lies on the faces normal to axis c.
@@ -34,15 +39,22 @@ enum class StateField : int {
   rate_x,
   rate_y,
   rate_z,    ///< m/s^2, rate of change without pressure of the previous step; AB2 only
-  pressure,  ///< kinematic: pressure per density, m^2/s^2, at the cell centres
+  pressure,  ///< kinematic, at the cell centres, m^2/s^2: that of the last step, of second order at its
+             ///< middle
 };
 
 /// Field at the cell centres that is computed from the state.
 enum class CellField : int {
   velocity,     ///< 3 components, m/s, mean of the two faces
   vorticity,    ///< 3 components, 1/s, second order
-  pressure,     ///< physical pressure, Pa: density times kinematic pressure, mean zero if undetermined
+  pressure,     ///< of the present velocity, Pa: density times kinematic pressure, mean zero if undetermined
   q_criterion,  ///< 1/s^2, half of (|rotation|^2 - |strain rate|^2), second order
+};
+
+/// Solve of the pressure equation by an iterative solver.
+struct PressureSolve {
+  int iterations = 0;
+  double residual = 0.0;  ///< ratio of the 2-norms of the residual and the right-hand side
 };
 
 /// Sums over the domain. Along an axis with one cell, the domain has its given length.

@@ -44,17 +44,18 @@ struct FinishStepFunctor {
     Progress now = c.now;
     stepping::StepTrial trial = c.trial;
     if (trial.stop == Stop::running) {
-      if (c.first_failure != no_failure || c.pressure_failed != 0) {
+      if (c.has_failed() || !Kokkos::isfinite(Kokkos::bit_cast<double>(c.next_rate))) {
         trial.stop = Stop::failed;
         now.last_dt = 0.0;  // the rates of the failed step must not enter another one
       } else {
         now.last_dt = trial.dt;
         now.dt_min = now.step == 0 || trial.dt < now.dt_min ? trial.dt : now.dt_min;
         now.dt_max = trial.dt > now.dt_max ? trial.dt : now.dt_max;
-        now.rate = c.next_rate;
+        now.rate = limiting_rate(c, constants);
         stepping::advance_time(now, trial);
         if (stepping::continues(now, trial, constants.max_steps)) prepare_step(now, trial, constants);
         c.next_rate = 0;
+        c.eddy_viscosity = c.side_acceleration = 0;
       }
     }
     stepping::publish_status(now, trial, 0, status());

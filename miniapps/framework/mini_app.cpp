@@ -63,7 +63,7 @@ ExitCode run_command(const MiniApp& app, const MiniAppOptions& options) {
     return ExitCode::ok;
   }
   const bool on_ranks = launched_rank().ranks > 1;
-  if (!app.serve) require_one_rank(app.program());
+  if (!app.serve) require_one_rank();
   if (on_ranks && !options.study.empty())
     throw Failure(ExitCode::usage, "--study runs on one rank, not " + std::to_string(launched_rank().ranks));
   if (on_ranks && !options.check && !options.print_scene) return run_on_ranks(app, options, folder);
@@ -75,7 +75,7 @@ ExitCode run_command(const MiniApp& app, const MiniAppOptions& options) {
   }
   install_signal_handlers();
   if (options.study.empty()) return run_scene(app, options, file, nullptr);
-  if (!app.study) throw Failure(ExitCode::usage, app.program() + " has no --study");
+  if (!app.study) throw Failure(ExitCode::usage, "this program has no --study");
   const ExitCode code = app.study(options, file);
   if (code == ExitCode::interrupted)
     print_notice(app.program(), "interrupted by a signal; the tables hold the finished points");
@@ -84,7 +84,8 @@ ExitCode run_command(const MiniApp& app, const MiniAppOptions& options) {
 
 int run_mini_app(const MiniApp& app, int argc, char** argv) {
   return run_program(app.program(), [&] {
-    return run_command(app, parse_mini_app_options(app.program(), app.description, argc, argv));
+    return run_command(app,
+                       parse_mini_app_options(app.program(), app.description, argc, argv, app.has_baseline));
   });
 }
 

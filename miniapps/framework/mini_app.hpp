@@ -16,6 +16,7 @@ struct MiniApp {
   std::string name;                    ///< `gas`; the program is drogue-gas
   std::string description;             ///< the sentence of --help
   std::filesystem::path scene_folder;  ///< shipped scenes in the source tree; empty: none
+  bool has_baseline = false;           ///< offers --seed-mode, the scheme of [Shi]
 
   /// Reads and checks a scene with its `--set` assignments. `baseline` requests the scheme of [Shi]. Throws
   /// `Failure`: usage, invalid_scene.

@@ -35,6 +35,7 @@ framework::MiniApp mini_app() {
   app.name = "gas";
   app.description = "One-dimensional Euler equations with characteristic WENO5.";
   app.scene_folder = scene_folder();
+  app.has_baseline = true;
   app.read = read;
   app.study = run_study;
   app.summary = limiter_summary;

@@ -2,18 +2,15 @@
 
 #include "miniapps/framework/typed_scene.hpp"
 #include "miniapps/parachute/parallel/serve.hpp"
-#include "miniapps/parachute/scene_keys.hpp"
-#include "miniapps/parachute/simulation.hpp"
-#include "miniapps/parachute/study.hpp"
+#include "miniapps/parachute/scene/scene_keys.hpp"
+#include "miniapps/parachute/simulation/simulation.hpp"
+#include "miniapps/parachute/verify/study.hpp"
 
 namespace drogue::parachute_app {
 namespace {
 
 std::unique_ptr<framework::Scene> read(const std::filesystem::path& file,
-                                       const std::vector<std::string>& assignments, bool baseline) {
-  if (baseline)
-    throw Failure(ExitCode::usage,
-                  "drogue-parachute has no --seed-mode: its flow solver differs from that of [Shi]");
+                                       const std::vector<std::string>& assignments, bool /*baseline*/) {
   return std::make_unique<framework::TypedScene<FlowScene, Simulation>>(read_flow_scene(file, assignments),
                                                                         declare_flow_scene);
 }

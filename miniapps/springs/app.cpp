@@ -22,6 +22,7 @@ framework::MiniApp mini_app() {
   app.name = "springs";
   app.description = "Cloth and strings as springs that equal a membrane.";
   app.scene_folder = scene_folder();
+  app.has_baseline = true;
   app.read = [](const std::filesystem::path& file, const std::vector<std::string>& assignments, bool) {
     return std::make_unique<RunnableScene>(read_springs_scene(file, assignments), declare_springs_scene);
   };

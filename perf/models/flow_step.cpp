@@ -28,6 +28,8 @@ double flow_step_bytes(const flow::Parameters& p) {
     // The state of the first stage is its own velocity.
     cell = 2.0 * vector + 2.0 * 3.0 * vector + 3.0 * projection;
   }
+  // The last correction writes the pressure, unless it adds an increment.
+  if (p.diffusion == flow::Diffusion::explicit_) cell += scalar;
   if (p.diffusion == flow::Diffusion::crank_nicolson) {
     // Each component: predicted velocity, velocity and pressure to the source; solve; velocity and change to
     // the predicted velocity.

@@ -8,7 +8,7 @@
 #include "common/study/repeats.hpp"
 #include "miniapps/framework/run_loop.hpp"
 #include "miniapps/framework/study.hpp"
-#include "miniapps/parachute/simulation.hpp"
+#include "miniapps/parachute/simulation/simulation.hpp"
 #include "perf/pressure/pressure.hpp"
 #include "perf/problems/streams.hpp"
 #include "perf/work_precision/flow_scheme.hpp"
@@ -76,8 +76,7 @@ bool cavity_work_precision(const Selection& selection, const SolutionSink& sink)
         scheme.apply(scene.parameters);
         // Neither implicit diffusion nor fluid at rest limits the first step. The lid crosses a cell of 1/n m
         // at 1 m/s.
-        if (scheme.diffusion == flow::Diffusion::crank_nicolson)
-          scene.parameters.max_dt = scene.parameters.cfl / n;
+        if (scheme.diffusion == flow::Diffusion::crank_nicolson) scene.parameters.max_dt = 0.5 / n;
         framework::RepeatedRun run = run_cavity(scene, backend);
         if (run.code == ExitCode::interrupted || interrupted()) return false;
         Solution s;

@@ -25,7 +25,6 @@ void FlowScheme::apply(flow::Parameters& p) const {
   p.time_scheme = time;
   p.pressure_solver = pressure;
   p.diffusion = diffusion;
-  p.cfl = time == flow::TimeScheme::ab2 ? 0.5 : 1.0;
 }
 
 void FlowScheme::describe(Solution& s) const {

@@ -330,7 +330,7 @@ def replaced_names(path, text):
 # does not open with What, Of, That or Those, and code does not tell or know in it. One without is a key or a value.
 
 SHOWN = (
-    (r"laws?", "model, process"),
+    (r"(?<!porous )laws?(?! =)", "model, process"),  # `law = ...` is the key of porosity
     (r"(?:(?<=the )|(?<=its )|(?<=their )|(?<=of )|(?<=no ))reach", "cutoff distance, strike range, extent"),
     (r"bars?", "tolerance"),
     (r"doubts?", "error estimate"),
@@ -354,6 +354,7 @@ KEPT = {
     "seed": CPP_ONLY,  # --method seed, [tuning.seed], the driver and the records of measurements
     "touches": ("miniapps/", "common/run/result_document.cpp"),  # limiter.touches of result.json and in the line at the end of a run
     "touched": ("miniapps/gas/simulation/simulation_restart",),  # dataset of restart files
+    "law": ("miniapps/parachute/bodies/",),  # porosity.law of scenes
     "bar": ("common/scene/read.cpp",),  # the former name, for the hint
 }
 

@@ -6,6 +6,7 @@ import unittest
 
 sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
+import bad_bodies
 import bad_flows
 import mutations
 import parachute_program
@@ -35,6 +36,24 @@ class BadFlows(parachute_program.FlowTest):
                 self.assertTrue(message.startswith(f"{self.scene}:{blamed}: "), message)
                 for word in words:
                     self.assertIn(word, message)
+
+    def test_rejects_invalid_bodies(self):
+        self.scene.write_text(bad_bodies.GOOD, encoding="utf-8")
+        self.expect(0, self.scene, "--check")
+        self.assertGreaterEqual(len(bad_bodies.BAD_LINES), 30)
+        for number, text, blamed, words in bad_bodies.BAD_LINES:
+            with self.subTest(line=number, text=text):
+                lines = bad_bodies.GOOD.splitlines(keepends=True)
+                lines[number - 1] = text + "\n"
+                self.scene.write_text("".join(lines), encoding="utf-8")
+                message = self.refusal()
+                self.assertTrue(message.startswith(f"{self.scene}:{blamed}: "), message)
+                for word in words:
+                    self.assertIn(word, message)
+
+    def test_rejects_coupling_without_bodies(self):
+        self.assertIn("[[body]]", self.refusal("coupling.filter=0.5"))
+        self.assertIn("number of bodies is 0", self.refusal("verify.force=[{body=0,axis='x',value=1,tolerance=1}]"))
 
     def test_rejects_contradicting_assignments(self):
         for sets, blamed, words in bad_flows.BAD_SETS:

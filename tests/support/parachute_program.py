@@ -52,6 +52,40 @@ l2_velocity = 0.01
 """
 
 
+# A porous plate in a channel.
+PLATE = """\
+app = "parachute"
+[fluid]
+density = 1.2
+viscosity = 0.01
+velocity = [2, 0, 0]
+[grid]
+cells = [16, 8, 6]
+domain = [[0, 1.6], [0, 0.8], [0, 0.6]]
+boundary = { x = ["inflow", "outflow"], y = "slip", z = "periodic" }
+[[body]]
+kind = "plate"
+normal = "x"
+centre = [0.6, 0.37, 0.3]
+lengths = [0.4, 0.6]
+edge_length = 0.05
+porosity = { law = "forchheimer", alpha = 3, beta = 1 }
+[[body]]
+kind = "plate"
+normal = "y"
+centre = [1.1, 0.4, 0.3]
+lengths = [0.3, 0.6]
+edge_length = 0.05
+[run]
+end_time = 0.3
+max_dt = 0.01
+[output]
+fields = ["velocity", "pressure"]
+times = [0.12, 0.3]
+history_every = 5
+"""
+
+
 class FlowTest(gas_program.GasTest):
     """Test case whose programs run in an empty temporary folder."""
 

@@ -46,7 +46,7 @@ template <class ExecutionSpace>
 /// of the Runge-Kutta method. Does not throw.
 [[nodiscard]] inline bool needs_load_kernel(const Parameters& p) {
   return !p.timed_loads.empty() || !p.follower_pressures.empty() || p.material.bending_stiffness > 0.0 ||
-         (p.relative_damping > 0.0 && p.integrator == Integrator::rk4);
+         (p.relative_damping > 0.0 && p.integrator != Integrator::verlet);
 }
 
 /// Upper bound of the decay rates of dashpots, 1/s, by Gershgorin's theorem: both ends of a dashpot, each

@@ -25,8 +25,8 @@ struct CopyStateFunctor {
   }
 };
 
-/// Copies the state after an odd number of Verlet steps, which alternate between two buffers, to the Views
-/// that the solver exposes.
+/// Copies the state after an odd number of steps that alternate between two buffers to the Views that the
+/// solver exposes.
 template <class ExecutionSpace>
 struct RestoreAddressesFunctor {
   StepMonitor<ExecutionSpace> monitor;

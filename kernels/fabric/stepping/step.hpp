@@ -164,9 +164,22 @@ struct RungeKuttaHalfFunctor {
   }
 };
 
+/// Velocity after an acceleration a, m/s^2, during `kick`, s; unchanged along pinned axes. `damping`, 1/s, is
+/// evaluated at the middle of the kick, so that no rate makes it unstable.
+template <class R>
+KOKKOS_INLINE_FUNCTION Vector3<R> kicked(const Vector3<R>& now, const Vector3<R>& a, const Vector3<R>& free,
+                                         double damping, double kick) {
+  const double half = 0.5 * damping * kick;
+  const double retained = (1.0 - half) / (1.0 + half), gained = kick / (1.0 + half);
+  const auto along = [&](R velocity, R acceleration, R is_free) {
+    return device::select(is_free > R(0.0), retained * velocity, velocity) + gained * acceleration;
+  };
+  return {along(now.x, a.x, free.x), along(now.y, a.y, free.y), along(now.z, a.z, free.z)};
+}
+
 /// Velocity Verlet (Swope et al. 1982) with one elastic force per step: half a kick that ends the step
-/// before, half a kick that begins the next, and its drift. Damping is evaluated at the middle of half a
-/// kick. The sequence of operations does not depend on how steps are distributed over launches.
+/// before, half a kick that begins the next, and its drift. The sequence of operations does not depend on how
+/// steps are distributed over launches.
 template <class ExecutionSpace, ConstitutiveModel model, class VertexForce = NoVertexForce>
 struct VerletFunctor {
   using R = PackedReal<ExecutionSpace>;
@@ -195,11 +208,11 @@ struct VerletFunctor {
     const Vector3<R> position = load_points<R>(x, i);
     const std::int64_t step = monitor.steps(parity);
     if (ends) {
-      velocity = kicked(velocity, a, free);
+      velocity = kicked(velocity, a, free, damping, 0.5 * dt);
       record_divergence(monitor, step, i, position, velocity);
     }
     if (begins) {
-      velocity = kicked(velocity, a, free);
+      velocity = kicked(velocity, a, free, damping, 0.5 * dt);
       if (drifts) store_points(next, i, position + dt * velocity);
       if (pack == 0) monitor.steps(1 - parity) = step + 1;
     }
@@ -216,7 +229,7 @@ struct VerletFunctor {
       const double* const inverse_mass = &fabric.inverse_mass(i);
       const auto kick = [&] {
         const Vector3<R> sum = vertex_force.add_to(pull, position, velocity, inverse_mass, i, step, 0.0);
-        velocity = kicked(velocity, acceleration(fabric, sum, velocity, i), free);
+        velocity = kicked(velocity, acceleration(fabric, sum, velocity, i), free, damping, 0.5 * dt);
       };
       if (ends) {
         kick();
@@ -231,16 +244,43 @@ struct VerletFunctor {
       store_points(v, i, velocity);
     }
   }
+};
 
-  /// Velocity after half a kick; unchanged along pinned axes.
-  KOKKOS_FUNCTION Vector3<R> kicked(const Vector3<R>& now, const Vector3<R>& a,
-                                    const Vector3<R>& free) const {
-    const double kick = 0.5 * dt, half = 0.5 * damping * kick;
-    const double retained = (1.0 - half) / (1.0 + half), gained = kick / (1.0 + half);
-    const auto along = [&](R velocity, R acceleration, R is_free) {
-      return device::select(is_free > R(0.0), retained * velocity, velocity) + gained * acceleration;
-    };
-    return {along(now.x, a.x, free.x), along(now.y, a.y, free.y), along(now.z, a.z, free.z)};
+/// One step of the symplectic Euler method: a kick of dt, the relaxation of the velocity by the VertexForce,
+/// if it has one, and the drift.
+template <class ExecutionSpace, ConstitutiveModel model, class VertexForce = NoVertexForce>
+struct SymplecticEulerFunctor {
+  using R = PackedReal<ExecutionSpace>;
+  using Points = PointsView<ExecutionSpace>;
+  using Bounds = Kokkos::LaunchBounds<128, 6>;
+  static constexpr int lanes = device::Access<R>::lanes;
+
+  FabricViews<ExecutionSpace> fabric;  ///< its damping is zero
+  Points x, v, next;                   ///< `next` receives the positions
+  StepMonitor<ExecutionSpace> monitor;
+  double damping, dt;
+  int parity;  ///< entry of `monitor.steps` that counts the completed steps
+  VertexForceTerm<VertexForce> vertex_force;
+
+  KOKKOS_FUNCTION void operator()(const int pack) const {
+    const int i = pack * lanes;
+    Vector3<R> pull = force<model, R>(fabric, x, i);
+    const Vector3<R> position = load_points<R>(x, i), before = load_points<R>(v, i),
+                     free = free_axes<R>(fabric, i);
+    const std::int64_t step = monitor.steps(parity);
+    const double* const inverse_mass = &fabric.inverse_mass(i);
+    if constexpr (has_vertex_force<VertexForce>)
+      pull = vertex_force.add_to(pull, position, before, inverse_mass, i, step, 0.0);
+    Vector3<R> velocity = kicked(before, acceleration(fabric, pull, before, i), free, damping, dt);
+    if constexpr (has_vertex_force<VertexForce>)
+      velocity = vertex_force.relaxed(position, velocity, free, inverse_mass, i, step);
+    const Vector3<R> end = position + dt * velocity;
+    store_points(next, i, end);
+    store_points(v, i, velocity);
+    record_divergence(monitor, step + 1, i, end, velocity);
+    if constexpr (has_vertex_force<VertexForce>)
+      vertex_force.end_step(end, velocity, inverse_mass, i, step + 1);
+    if (pack == 0) monitor.steps(1 - parity) = step + 1;
   }
 };
 

@@ -3,7 +3,7 @@
 #include "kernels/device/memory.hpp"
 #include "kernels/device/pack.hpp"
 #include "kernels/flow/parameters.hpp"
-#include "kernels/gas/flux/weno.hpp"
+#include "kernels/reconstruction/weno_weights.hpp"
 
 namespace drogue::flow {
 
@@ -23,9 +23,10 @@ KOKKOS_INLINE_FUNCTION R load_field(const double* pointer) {
 template <Advection scheme, class R>
 KOKKOS_INLINE_FUNCTION R upwind_face_value(R m2, R m1, R q0, R p1, R p2, R epsilon) {
   const R a = m1 - m2, b = q0 - m1, c = p1 - q0, d = p2 - p1;
-  constexpr gas::Reconstruction weights =
-      scheme == Advection::weno_js ? gas::Reconstruction::js : gas::Reconstruction::z1;
-  const gas::Indicators<R> r = gas::weight_ratios<weights>(gas::smoothness(a, b, c, d, epsilon));
+  constexpr reconstruction::Reconstruction weights =
+      scheme == Advection::weno_js ? reconstruction::Reconstruction::js : reconstruction::Reconstruction::z1;
+  const reconstruction::Indicators<R> r =
+      reconstruction::weight_ratios<weights>(reconstruction::smoothness(a, b, c, d, epsilon));
   // Candidates minus q0, times 6: -2a+5b, b+2c, 4c-d.
   const R w1 = 6.0 * r.b1, w2 = 3.0 * r.b2;
   const R sum = r.b0 + (w1 + w2);

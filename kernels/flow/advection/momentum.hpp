@@ -4,10 +4,10 @@
 
 namespace drogue::flow {
 
-/// Weights of a stage: W = state U + stage S + dt (rate L(S) + old_rate A), where A is the rate of the
-/// previous step (Adams-Bashforth), or is not read.
+/// Weights of a stage: W = S + state (U - S) + dt (rate L(S) + old_rate A), where A is the rate of the
+/// previous step (Adams-Bashforth), or is not read. With U equal to S and no rates, W is S bit for bit.
 struct StageWeights {
-  double state, stage, rate;
+  double state, rate;
   bool adams_bashforth;  ///< replaces `rate` by 1 + r/2 and adds -r/2 A, r = dt / last dt; stores L(S) in A
 };
 
@@ -31,7 +31,7 @@ struct MomentumSetup {
 
 /// Coefficients of a stage after the step size is known.
 struct StageFactors {
-  double state, stage, rate, old_rate;
+  double state, rate, old_rate;
   double force;  ///< of the force per volume, s m^3/kg
 };
 
@@ -42,9 +42,9 @@ KOKKOS_INLINE_FUNCTION StageFactors stage_factors(const MomentumSetup<ExecutionS
   const StageWeights& w = setup.weights;
   // Forces of other kernels hold for the whole step and are not extrapolated.
   const double force = w.rate * dt * setup.specific_volume;
-  if (!w.adams_bashforth) return {w.state, w.stage, w.rate * dt, 0.0, force};
+  if (!w.adams_bashforth) return {w.state, w.rate * dt, 0.0, force};
   const double half_ratio = control.now.last_dt > 0.0 ? 0.5 * dt / control.now.last_dt : 0.0;
-  return {w.state, w.stage, (1.0 + half_ratio) * dt, -half_ratio * dt, force};
+  return {w.state, (1.0 + half_ratio) * dt, -half_ratio * dt, force};
 }
 
 /// Enqueues a momentum stage. Asynchronous. Compiled once for each backend.

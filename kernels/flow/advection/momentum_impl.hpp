@@ -50,9 +50,8 @@ struct MomentumFunctor {
       for (int c = 0; c < 3; ++c) {
         const std::int64_t place = c * g.component + at;
         // Loaded first, so that its latency is hidden by the fluxes.
-        const double other = adams_bashforth
-                                 ? factors.old_rate * setup.old_rate(place)
-                                 : factors.state * device::load_constant(setup.state.data() + place);
+        const double other = adams_bashforth ? factors.old_rate * setup.old_rate(place)
+                                             : device::load_constant(setup.state.data() + place);
         double rate = setup.acceleration[c];
         if (g.n[0] > 1) rate -= g.inverse_h[0] * (flux(c, 0, at + g.stride[0]) - flux(c, 0, at));
         if (g.n[1] > 1) rate -= g.inverse_h[1] * (flux(c, 1, at + g.stride[1]) - flux(c, 1, at));
@@ -62,10 +61,11 @@ struct MomentumFunctor {
           below[c] = above;
         }
         if (setup.eddy.data() != nullptr) rate += setup.eddy(place);
-        value[c] = factors.stage * device::load_constant(setup.stage.data() + place) + factors.rate * rate;
+        const double stage = device::load_constant(setup.stage.data() + place);
+        value[c] = stage + factors.rate * rate;
         // A store here would hold back the loads of the next component: five times slower.
         rates[c] = rate;
-        value[c] += other;
+        value[c] += adams_bashforth ? other : factors.state * (other - stage);
       }
       for (int c = 0; c < 3; ++c) {
         const std::int64_t place = c * g.component + at;
@@ -189,12 +189,12 @@ struct MomentumRowsFunctor {
     if (eddy != nullptr)
       for (int i = 0; i < n; ++i) rates[i] += eddy[i];
     for (int i = 0; i < n; ++i) {
-      double value = factors.stage * stage[i] + factors.rate * rates[i];
+      double value = stage[i] + factors.rate * rates[i];
       if constexpr (adams_bashforth) {
         value += factors.old_rate * old[i];
         old[i] = rates[i];
       } else {
-        value += factors.state * state[i];
+        value += factors.state * (state[i] - stage[i]);
       }
       out[i] = value;
     }

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 
 #include "kernels/device/copy.hpp"
@@ -35,13 +37,23 @@ struct BoundaryConditions {
   }
 };
 
+/// True if a prescribed velocity is an expression of t. Does not throw.
+inline bool change_in_time(const std::array<Boundary, 6>& sides) {
+  for (const Boundary& side : sides)
+    for (const device::ExpressionProgram& program : side.velocity_expressions)
+      for (int i = 0; i < program.length; ++i)
+        if (program.operations[i] == device::Operation::t) return true;
+  return false;
+}
+
 /// Time at which a stage needs the boundary values: that of the step's beginning plus this part of dt.
 struct StageTime {
   double fraction;
   bool initial;  ///< true before the first step: dt is not known
 };
 
-/// Evaluates the expressions of a side at the points of its table.
+/// Evaluates the expressions of a side at the points of its table, and checks that the velocity is finite
+/// next to all cells of the side. At the end of a step it reduces the acceleration since the last evaluation.
 template <class ExecutionSpace>
 struct BoundaryTableFunctor {
   MacGrid grid;
@@ -53,7 +65,7 @@ struct BoundaryTableFunctor {
   std::int64_t first;
 
   KOKKOS_FUNCTION void operator()(const int entry) const {
-    const Control& c = control();
+    Control& c = control();
     if (!stage.initial && c.trial.stop != stepping::Stop::running) return;
     const double t = stage.initial ? c.now.time : c.now.time + stage.fraction * c.trial.dt;
     const MacGrid& g = grid;
@@ -68,8 +80,18 @@ struct BoundaryTableFunctor {
     // A component lies on the faces of its own axis.
     point[a] = g.low[a] + (index[0] + (component == a ? 0.0 : 0.5)) * g.h[a];
     point[b] = g.low[b] + (index[1] + (component == b ? 0.0 : 0.5)) * g.h[b];
-    table(static_cast<std::size_t>(first + entry)) =
+    const double value =
         device::evaluate(programs(static_cast<std::size_t>(component)), point[0], point[1], point[2], t);
+    double& stored = table(static_cast<std::size_t>(first + entry));
+    const double change = Kokkos::fabs(value - stored);
+    stored = value;
+    const bool is_beside_cell =
+        index[0] >= 0 && index[0] < g.whole[a] && index[1] >= 0 && index[1] < g.whole[b];
+    if (!is_beside_cell) return;
+    if (!Kokkos::isfinite(value)) Kokkos::atomic_max(&c.failed_side, side + 1);
+    if (stage.initial || stage.fraction < 1.0 || g.n[component] == 1) return;
+    const auto bits = Kokkos::bit_cast<std::uint64_t>(change * g.inverse_h[component] / c.trial.dt);
+    if (bits > Kokkos::atomic_load(&c.side_acceleration)) Kokkos::atomic_max(&c.side_acceleration, bits);
   }
 };
 
@@ -81,7 +103,7 @@ class BoundaryTables {
 
   /// Allocates the tables; blocks. Throws std::runtime_error if memory runs out.
   BoundaryTables(const ExecutionSpace& space, const MacGrid& grid, const std::array<Boundary, 6>& sides)
-      : _grid(grid) {
+      : _grid(grid), _changes(change_in_time(sides)) {
     std::int64_t entries = 0;
     for (std::size_t side = 0; side < 6; ++side) {
       _conditions.kind[side] = sides[side].kind;
@@ -93,9 +115,6 @@ class BoundaryTables {
       _programs[side] = Programs(
           Kokkos::view_alloc(space, Kokkos::WithoutInitializing, "drogue::flow::boundary_programs"), 3);
       device::copy_in(space, _programs[side], sides[side].velocity_expressions.data(), 3);
-      for (const device::ExpressionProgram& program : sides[side].velocity_expressions)
-        for (int i = 0; i < program.length; ++i)
-          _changes = _changes || program.operations[i] == device::Operation::t;
     }
     _conditions.table =
         List<ExecutionSpace>("drogue::flow::boundary_table", static_cast<std::size_t>(entries));
@@ -123,6 +142,30 @@ class BoundaryTables {
     }
   }
 
+  /// Largest |u|/hx + |v|/hy + |w|/hz of the tables, each component at its largest, 1/s. Copies; blocks. Does
+  /// not throw.
+  [[nodiscard]] double largest_rate(const ExecutionSpace& space) const {
+    const auto table = Kokkos::create_mirror_view(_conditions.table);
+    device::copy_out(space, table.data(), _conditions.table, table.size());
+    space.fence("drogue::flow::boundary: copied");
+    double largest = 0.0;
+    for (int side = 0; side < 6; ++side) {
+      if (_conditions.first[side] < 0) continue;
+      double rate = 0.0;
+      const std::int64_t entries = entries_of(side) / 3;
+      for (int c = 0; c < 3; ++c) {
+        if (_grid.n[c] == 1) continue;
+        double speed = 0.0;
+        for (std::int64_t i = 0; i < entries; ++i)
+          speed = std::max(
+              speed, std::abs(table(static_cast<std::size_t>(_conditions.first[side] + c * entries + i))));
+        rate += speed * _grid.inverse_h[c];
+      }
+      largest = std::max(largest, rate);
+    }
+    return largest;
+  }
+
  private:
   [[nodiscard]] std::int64_t entries_of(int side) const {
     std::int64_t entries = 3;
@@ -134,7 +177,7 @@ class BoundaryTables {
   MacGrid _grid;
   BoundaryConditions<ExecutionSpace> _conditions{};
   Programs _programs[6];
-  bool _changes = false;
+  bool _changes;
 };
 
 }  // namespace drogue::flow

@@ -37,13 +37,13 @@ struct BoundaryFacesFunctor {
       const double rate =
           setup.acceleration[axis] - speed * g.inverse_h[axis] * (value - setup.stage(place + inward));
       const StageFactors f = stage_factors(setup, control);
-      double next = f.stage * value + f.rate * rate;
+      double next = value + f.rate * rate;
       if (setup.weights.adams_bashforth) {
         const std::int64_t kept = high ? place : place - g.stride[axis];
         next += f.old_rate * setup.old_rate(kept);
         setup.old_rate(kept) = rate;
       } else {
-        next += f.state * setup.state(place);
+        next += f.state * (setup.state(place) - value);
       }
       setup.out(place) = next;
     } else {

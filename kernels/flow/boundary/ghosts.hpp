@@ -66,17 +66,19 @@ KOKKOS_INLINE_FUNCTION GhostValue ghost_value(const MacGrid& g, const BoundaryCo
   }
 }
 
-/// Fills ghost cells and boundary faces of all components. Corners follow from the conditions of their axes
-/// in turn.
+/// Fills ghost cells and boundary faces of all components, unless the step has failed: then the tables are
+/// not those of the velocity. Corners follow from the conditions of their axes in turn.
 template <class ExecutionSpace>
 struct GhostFunctor {
   MacGrid grid;
   BoundaryConditions<ExecutionSpace> boundary;
   List<ExecutionSpace> velocity;
+  ControlView<ExecutionSpace> control;
   int slab[3];                 ///< boundary layers at each side, with the boundary faces; see `launch_ghosts`
   std::int64_t slab_cells[3];  ///< cells of the slabs normal to each axis
 
   KOKKOS_FUNCTION void operator()(std::int64_t cell) const {
+    if (control().has_failed()) return;
     const MacGrid& g = grid;
     int axis = 2;
     while (axis > 0 && cell >= slab_cells[axis]) cell -= slab_cells[axis--];
@@ -120,8 +122,9 @@ struct GhostFunctor {
 /// Enqueues the fill of the ghost cells and boundary faces of a velocity field. Asynchronous.
 template <class ExecutionSpace>
 void launch_ghosts(const ExecutionSpace& space, const MacGrid& g,
-                   const BoundaryConditions<ExecutionSpace>& boundary, const List<ExecutionSpace>& velocity) {
-  GhostFunctor<ExecutionSpace> functor{g, boundary, velocity, {}, {}};
+                   const BoundaryConditions<ExecutionSpace>& boundary, const List<ExecutionSpace>& velocity,
+                   const ControlView<ExecutionSpace>& control) {
+  GhostFunctor<ExecutionSpace> functor{g, boundary, velocity, control, {}, {}};
   std::int64_t total = 0;  // below 2^31 for any grid that fits a device
   for (int axis = 0; axis < 3; ++axis) {
     // Layers -ghost .. 0 and n .. n + ghost - 1: the low boundary face belongs to the slab.

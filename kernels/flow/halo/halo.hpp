@@ -77,18 +77,26 @@ class Halo {
   /// null where there is no other rank.
   [[nodiscard]] const double* pressure_below(std::size_t axis) const { return _below[axis]; }
 
-  /// Gives all ranks the least failed cell, the largest rate, and the failure of a pressure solver.
+  /// Gives all ranks the least failed cell, the largest rate, and the failures of a pressure solver and a
+  /// side.
   void agree(const ExecutionSpace& space, const ControlView<ExecutionSpace>& view) const {
     Control control;
     device::copy_out(space, &control, view, 1);
     space.fence("drogue::flow::halo: read control");
     // The maximum of a complement is that of the least value.
-    std::array<std::uint64_t, 3> values = {~control.first_failure, control.next_rate,
-                                           static_cast<std::uint64_t>(control.pressure_failed)};
+    std::array<std::uint64_t, 6> values = {~control.first_failure,
+                                           control.next_rate,
+                                           static_cast<std::uint64_t>(control.pressure_failed),
+                                           static_cast<std::uint64_t>(control.failed_side),
+                                           control.eddy_viscosity,
+                                           control.side_acceleration};
     _group.maximize(values);
     control.first_failure = ~values[0];
     control.next_rate = values[1];
     control.pressure_failed = static_cast<int>(values[2]);
+    control.failed_side = static_cast<int>(values[3]);
+    control.eddy_viscosity = values[4];
+    control.side_acceleration = values[5];
     device::copy_in(space, view, &control, 1);
     space.fence("drogue::flow::halo: write control");
   }

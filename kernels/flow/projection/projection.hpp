@@ -25,12 +25,14 @@ struct ProjectionSetup {
   List<ExecutionSpace> predicted;       ///< m/s, with ghost cells
   List<ExecutionSpace> velocity;        ///< result, m/s, with ghost cells
   List<ExecutionSpace> divergence;      ///< right-hand side of the pressure equation at the cells, 1/s^2
-  List<ExecutionSpace> pressure;        ///< kinematic, at the cells, m^2/s^2; or its increment
-  List<ExecutionSpace> total_pressure;  ///< sum of the increments, m^2/s^2; empty without increments
+  List<ExecutionSpace> pressure;        ///< its solution, kinematic, m^2/s^2: the pressure or an increment
+  List<ExecutionSpace> total_pressure;  ///< pressure of the step, m^2/s^2; empty before the end of a step
+  bool is_increment;                    ///< whether `pressure` is added to `total_pressure` or replaces it
   ControlView<ExecutionSpace> control;
   double nu;              ///< kinematic viscosity of implicit diffusion, m^2/s
   double step_fraction;   ///< of dt that the projection covers
   bool resists_backflow;  ///< false: the pressure on outflows is zero
+  bool ends_step;         ///< the result is the state after the step, whose rate determines the next dt
   /// Pressure of the layer of cells below the low side along each axis, m^2/s^2; null unless another rank
   /// holds it.
   const double* pressure_below[3];
@@ -45,8 +47,8 @@ struct ProjectionSetup {
   }
 };
 
-/// Right-hand side of the pressure equation, div u / dt, 1/s^2, and check that the predicted velocity is
-/// finite.
+/// Right-hand side of the pressure equation, div u / dt, 1/s^2, and check that all components of the
+/// predicted velocity are finite.
 template <class ExecutionSpace>
 struct DivergenceFunctor {
   ProjectionSetup<ExecutionSpace> setup;
@@ -59,8 +61,11 @@ struct DivergenceFunctor {
     const int index[3] = {i, j, k};
     double divergence = 0.0, outside = 0.0;
     for (int axis = 0; axis < 3; ++axis) {
-      if (g.n[axis] == 1) continue;
       const double* low = u + axis * g.component;
+      if (g.n[axis] == 1) {
+        divergence += 0.0 * low[0];  // NaN if the component is not finite
+        continue;
+      }
       const std::int64_t next = g.periodic[axis] && index[axis] + 1 == g.n[axis]
                                     ? (1 - g.n[axis]) * g.stride[axis]
                                     : g.stride[axis];
@@ -80,7 +85,8 @@ struct DivergenceFunctor {
   }
 };
 
-/// Subtracts the pressure gradient; reduces the maximum of |u|/hx + |v|/hy + |w|/hz.
+/// Subtracts the pressure gradient; reduces the maximum of |u|/hx + |v|/hy + |w|/hz, without axes of one
+/// cell.
 template <class ExecutionSpace>
 struct CorrectionFunctor {
   using Policy = Kokkos::TeamPolicy<ExecutionSpace>;
@@ -92,9 +98,7 @@ struct CorrectionFunctor {
   KOKKOS_FUNCTION void operator()(const Member& member) const {
     const MacGrid& g = setup.grid;
     Control& control = setup.control();
-    if (control.trial.stop != stepping::Stop::running || control.first_failure != no_failure ||
-        control.pressure_failed != 0)
-      return;
+    if (control.trial.stop != stepping::Stop::running || control.has_failed()) return;
     const double dt = setup.step_fraction * control.trial.dt;
     const int tile = member.league_rank();
     const int i_begin = tile % tiles_x * tile_width, j_begin = tile / tiles_x % tiles_y * tile_height;
@@ -108,10 +112,19 @@ struct CorrectionFunctor {
         const double rate = correct(i, j, k, dt);
         largest = rate > largest || !(rate == rate) ? rate : largest;
       }
-    device::raise_to_team_maximum(member, control.next_rate, largest);
+    if (setup.ends_step) device::raise_to_team_maximum(member, control.next_rate, largest);
   }
 
  private:
+  [[nodiscard]] KOKKOS_FUNCTION bool is_beside_outflow(const int index[3]) const {
+    bool result = false;
+    for (int axis = 0; axis < 3; ++axis)
+      if (setup.grid.n[axis] > 1)
+        result = result || (index[axis] == 0 && setup.is_outflow(2 * axis)) ||
+                 (index[axis] + 1 == setup.grid.n[axis] && setup.is_outflow(2 * axis + 1));
+    return result;
+  }
+
   KOKKOS_FUNCTION double correct(int i, int j, int k, double dt) const {
     const MacGrid& g = setup.grid;
     const int index[3] = {i, j, k};
@@ -119,10 +132,14 @@ struct CorrectionFunctor {
     std::int64_t stride = 1;
     const std::int64_t cell = i + g.n[0] * (j + static_cast<std::int64_t>(g.n[1]) * k);
     const double p = setup.pressure(cell);
-    // The viscous term makes the pressure of second order up to the sides: Brown, Cortez and Minion 2001, eq.
-    // (10).
-    if (setup.total_pressure.data() != nullptr)
-      setup.total_pressure(cell) += p - 0.5 * setup.nu * dt * setup.divergence(cell);
+    if (setup.total_pressure.data() != nullptr) {
+      double& total = setup.total_pressure(cell);
+      // The viscous term makes the pressure of second order up to the sides: Brown, Cortez and Minion 2001,
+      // eq. (10). The velocity on outflows is explicit: beside them the term would amplify it by about nu dt
+      // / h^2.
+      const double nu = is_beside_outflow(index) ? 0.0 : setup.nu;
+      total = setup.is_increment ? total + p - 0.5 * nu * dt * setup.divergence(cell) : p;
+    }
     double rate = 0.0;
     for (int axis = 0; axis < 3; stride *= g.n[axis], ++axis) {
       const std::int64_t place = axis * g.component + at;
@@ -147,7 +164,8 @@ struct CorrectionFunctor {
         }
       }
       setup.velocity(place) = value;
-      rate += g.inverse_h[axis] * Kokkos::fabs(value);
+      // A factor of zero keeps a NaN.
+      rate += (g.n[axis] > 1 ? g.inverse_h[axis] : 0.0) * Kokkos::fabs(value);
     }
     return rate;
   }

@@ -92,7 +92,7 @@ inline EddyCells make_eddy_cells(const MacGrid& grid, const BoundaryKind kind[6]
   return cells;
 }
 
-/// Evaluates the eddy viscosity at the centres of `cells`.
+/// Evaluates the eddy viscosity at the centres of `cells` and its maximum, which limits dt.
 template <class ExecutionSpace>
 struct EddyViscosityFunctor {
   MacGrid grid;
@@ -103,11 +103,16 @@ struct EddyViscosityFunctor {
   ControlView<ExecutionSpace> control;
 
   KOKKOS_FUNCTION void operator()(const int i, const int j, const int k) const {
-    if (control().trial.stop != stepping::Stop::running) return;
+    Control& c = control();
+    if (c.trial.stop != stepping::Stop::running) return;
     const int cell[3] = {i + cells.first[0], j + cells.first[1], k + cells.first[2]};
     double gradient[3][3];
     centred_gradient(grid, velocity.data() + grid.offset(cell[0], cell[1], cell[2]), gradient);
-    viscosity(cells.nearest(cell)) = eddy_viscosity(model, gradient);
+    const double value = eddy_viscosity(model, gradient);
+    viscosity(cells.nearest(cell)) = value;
+    // Few cells exceed the maximum so far: the load spares the others an atomic operation.
+    const auto bits = Kokkos::bit_cast<std::uint64_t>(value);
+    if (bits > Kokkos::atomic_load(&c.eddy_viscosity)) Kokkos::atomic_max(&c.eddy_viscosity, bits);
   }
 };
 

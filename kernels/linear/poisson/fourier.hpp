@@ -151,10 +151,12 @@ class FourierSolver {
   /// Whether the solver can treat the problem: always on a host. Does not throw.
   static bool supports(const PoissonProblem& /*problem*/) { return true; }
 
-  /// Makes the plans; blocks. Throws std::runtime_error if FFTW cannot plan.
-  FourierSolver(const ExecutionSpace& space, const PoissonProblem& problem)
+  /// Makes the plans; blocks. `in_place`: right-hand side and solution are always the same array, or never.
+  /// Throws std::runtime_error if FFTW cannot plan.
+  FourierSolver(const ExecutionSpace& space, const PoissonProblem& problem, bool in_place = false)
       : _space(space), _problem(problem) {
-    bool is_first = true;  // of the axes with more than one cell: its transform reads the right-hand side
+    // The transform of the first axis with more than one cell reads the right-hand side.
+    bool is_first = !in_place;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       if (problem.varies_along(axis)) {
         _transforms[axis] = AxisTransforms<ExecutionSpace>(problem.cells, axis, problem.axes[axis], is_first);
@@ -166,9 +168,9 @@ class FourierSolver {
     }
   }
 
-  /// Applies the inverse of the operator to the right-hand side, which it keeps. For the Laplacian that is in
-  /// the unit of the solution per m^2. Asynchronous where the execution space is. Throws
-  /// std::invalid_argument for an array of the wrong size.
+  /// Applies the inverse of the operator to the right-hand side, which it keeps unless it is in place. For
+  /// the Laplacian that is in the unit of the solution per m^2. Asynchronous where the execution space is.
+  /// Throws std::invalid_argument for an array of the wrong size.
   void enqueue_solve(const List& right_hand_side, const List& solution,
                      const SpectralOperator& spectral_operator = {}) const {
     if (right_hand_side.extent(0) != _problem.size() || solution.extent(0) != _problem.size())
@@ -209,8 +211,9 @@ class FourierSolver<Kokkos::Cuda> {
   }
 
   /// Makes the plans; blocks. Throws std::invalid_argument for an unsupported problem and std::runtime_error
-  /// if cuFFT cannot plan.
-  FourierSolver(const Kokkos::Cuda& space, const PoissonProblem& problem) : _space(space) {
+  /// if cuFFT cannot plan. The solution may always be in the array of the right-hand side.
+  FourierSolver(const Kokkos::Cuda& space, const PoissonProblem& problem, bool /*in_place*/ = false)
+      : _space(space) {
     if (!supports(problem)) throw std::invalid_argument("the Fourier solver on CUDA needs periodic axes");
     // The order of cuFFT is the slowest axis first; axes of one cell have no transform.
     std::vector<int> lengths;

@@ -39,8 +39,9 @@ class HyprePfmgSolver {
   }
 
   /// Solves for `solution`, in its unit, with the right-hand side in that unit per m^2, which it keeps.
-  /// Begins with the previous solution. Blocks until the work enqueued before and the solve are complete.
-  /// Throws std::invalid_argument for an array of the wrong size and std::runtime_error if hypre fails.
+  /// Begins with the last guess or solution. Blocks until the work enqueued before and the solve are
+  /// complete. Throws std::invalid_argument for an array of the wrong size and std::runtime_error if hypre
+  /// fails.
   void enqueue_solve(const List& right_hand_side, const List& solution) {
     if (right_hand_side.extent(0) != _cells || solution.extent(0) != _cells)
       throw std::invalid_argument("Poisson solver: the arrays must hold one value per cell");
@@ -56,11 +57,28 @@ class HyprePfmgSolver {
     }
   }
 
+  /// Sets the values with which the next solve begins, in the unit of the solution; zero for an empty array.
+  /// Blocks. Throws std::invalid_argument for an array of the wrong size and std::runtime_error if hypre
+  /// fails.
+  void set_guess(const List& guess) {
+    if (guess.extent(0) == 0) return _solver->set_guess(nullptr);
+    if (guess.extent(0) != _cells)
+      throw std::invalid_argument("Poisson solver: the arrays must hold one value per cell");
+    if constexpr (device::is_host<ExecutionSpace>) {
+      _space.fence("drogue::linear::hypre: guess");
+      _solver->set_guess(guess.data());
+    } else {
+      device::copy_out(_space, _solution.data(), guess, _cells);
+      _space.fence("drogue::linear::hypre: guess");
+      _solver->set_guess(_solution.data());
+    }
+  }
+
   /// Iterations of the last solve. Does not throw.
   [[nodiscard]] int iterations() const { return _solver->iterations(); }
   /// Ratio of the 2-norms of the residual of the last solve and its right-hand side. Does not throw.
   [[nodiscard]] double residual() const { return _solver->residual(); }
-  /// True unless the last solve ended above the tolerance. Does not throw.
+  /// False if the last solve did not reach the tolerance. Does not throw.
   [[nodiscard]] bool converged() const { return _solver->converged(); }
 
  private:

@@ -22,15 +22,20 @@ class HypreStructSolver {
   HypreStructSolver& operator=(const HypreStructSolver&) = delete;
 
   /// Solves for `solution`, in its unit, with the right-hand side in that unit per m^2; arrays with one value
-  /// per cell of this rank, x fastest. Begins with the previous solution. Collective; blocks. Throws
+  /// per cell of this rank, x fastest. Begins with the last guess or solution. Collective; blocks. Throws
   /// std::runtime_error if hypre fails, but not for a solve that does not converge.
   void solve(const double* right_hand_side, double* solution);
+
+  /// Sets the values with which the next solve begins, in the layout and unit of the solution; zero for null.
+  /// Throws std::runtime_error if hypre fails.
+  void set_guess(const double* guess);
 
   /// Iterations of the last solve. Does not throw.
   [[nodiscard]] int iterations() const;
   /// Relative residual of the last solve, dimensionless. Does not throw.
   [[nodiscard]] double residual() const;
-  /// True unless the last solve ended above the tolerance. Does not throw.
+  /// True unless the last solve ended above twice the tolerance, which leaves room for the round-off of the
+  /// recursive residual that ends the iterations. Does not throw.
   [[nodiscard]] bool converged() const;
 
  private:

@@ -8,7 +8,7 @@ namespace drogue::reference {
 namespace {
 
 using coupling::DeltaKernel;
-using coupling::MacGrid;
+using coupling::StaggeredGrid;
 
 double delta_factor(DeltaKernel kernel, bool along, double x) {
   switch (kernel) {
@@ -22,7 +22,7 @@ double delta_factor(DeltaKernel kernel, bool along, double x) {
 }
 
 /// Weights of all faces of a component along one axis.
-std::vector<double> axis_weights(const MacGrid& grid, DeltaKernel kernel, std::size_t component,
+std::vector<double> axis_weights(const StaggeredGrid& grid, DeltaKernel kernel, std::size_t component,
                                  std::size_t axis, double x) {
   const bool along = component == axis;
   const int count = faces_along(grid, component, axis);
@@ -53,11 +53,11 @@ double peskin_four_point(double x) {
   return 0.0;
 }
 
-int faces_along(const MacGrid& grid, std::size_t component, std::size_t axis) {
+int faces_along(const StaggeredGrid& grid, std::size_t component, std::size_t axis) {
   return component == axis && !grid.periodic[axis] ? grid.cells[axis] + 1 : grid.cells[axis];
 }
 
-FaceField zero_field(const MacGrid& grid) {
+FaceField zero_field(const StaggeredGrid& grid) {
   FaceField field;
   for (std::size_t d = 0; d < 3; ++d) {
     std::size_t count = 1;
@@ -68,7 +68,7 @@ FaceField zero_field(const MacGrid& grid) {
   return field;
 }
 
-std::vector<double> face_weights(const MacGrid& grid, DeltaKernel kernel, std::size_t component,
+std::vector<double> face_weights(const StaggeredGrid& grid, DeltaKernel kernel, std::size_t component,
                                  const Vector& point) {
   std::array<std::vector<double>, 3> of_axis;
   for (std::size_t axis = 0; axis < 3; ++axis)
@@ -80,7 +80,7 @@ std::vector<double> face_weights(const MacGrid& grid, DeltaKernel kernel, std::s
   return weights;
 }
 
-std::vector<Vector> interpolate(const MacGrid& grid, DeltaKernel kernel, const FaceField& field,
+std::vector<Vector> interpolate(const StaggeredGrid& grid, DeltaKernel kernel, const FaceField& field,
                                 const std::vector<Vector>& points) {
   std::vector<Vector> result;
   for (const Vector& point : points) {
@@ -94,7 +94,7 @@ std::vector<Vector> interpolate(const MacGrid& grid, DeltaKernel kernel, const F
   return result;
 }
 
-FaceField spread(const MacGrid& grid, DeltaKernel kernel, const std::vector<Vector>& points,
+FaceField spread(const StaggeredGrid& grid, DeltaKernel kernel, const std::vector<Vector>& points,
                  const std::vector<Vector>& forces) {
   const double volume = grid.spacing[0] * grid.spacing[1] * grid.spacing[2];
   FaceField field = zero_field(grid);
@@ -106,7 +106,7 @@ FaceField spread(const MacGrid& grid, DeltaKernel kernel, const std::vector<Vect
   return field;
 }
 
-std::vector<Vector> spread_row_sums(const MacGrid& grid, DeltaKernel kernel,
+std::vector<Vector> spread_row_sums(const StaggeredGrid& grid, DeltaKernel kernel,
                                     const std::vector<Vector>& points, const std::vector<double>& areas,
                                     double density) {
   std::vector<Vector> forces;

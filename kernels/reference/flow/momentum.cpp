@@ -74,7 +74,8 @@ StaggeredField momentum_rate(const FlowDomain& domain, const StaggeredField& u, 
   return rate;
 }
 
-StaggeredField viscous_rate(const FlowDomain& domain, const StaggeredField& u, double time) {
+StaggeredField viscous_rate(const FlowDomain& domain, const StaggeredField& u, double time,
+                            bool outflows_have_shear) {
   const double nu = domain.parameters().viscosity / domain.parameters().density;
   StaggeredField rate = domain.zero_field();
   domain.for_each_face([&](std::size_t c, const GridIndex& face) {
@@ -84,6 +85,11 @@ StaggeredField viscous_rate(const FlowDomain& domain, const StaggeredField& u, d
       GridIndex low = face, high = face;
       --low[axis];
       ++high[axis];
+      if (!outflows_have_shear && axis != c) {
+        if (face[axis] == 0 && domain.kind(2 * axis) == BoundaryKind::outflow) low = face;
+        if (high[axis] == domain.cells(axis) && domain.kind(2 * axis + 1) == BoundaryKind::outflow)
+          high = face;
+      }
       rate[c][domain.at(c, face)] += nu *
                                      (domain.velocity(u, c, low, time) - 2.0 * u[c][domain.at(c, face)] +
                                       domain.velocity(u, c, high, time)) /

@@ -19,6 +19,8 @@ namespace drogue::reference {
 [[nodiscard]] StaggeredField momentum_rate(const FlowDomain& domain, const StaggeredField& u, double time);
 
 /// Viscous part of `momentum_rate`, m/s^2: kinematic viscosity times the Laplacian; zero on all sides.
-[[nodiscard]] StaggeredField viscous_rate(const FlowDomain& domain, const StaggeredField& u, double time);
+/// Outflows have shear only where fluid flows back, because that has no tangential velocity outside.
+[[nodiscard]] StaggeredField viscous_rate(const FlowDomain& domain, const StaggeredField& u, double time,
+                                          bool outflows_have_shear = true);
 
 }  // namespace drogue::reference

@@ -39,6 +39,16 @@ bool has_outflow(const FlowDomain& domain) {
   return false;
 }
 
+bool is_beside_outflow(const FlowDomain& domain, const GridIndex& cell) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (domain.cells(axis) == 1) continue;
+    if (cell[axis] == 0 && domain.kind(2 * axis) == BoundaryKind::outflow) return true;
+    if (cell[axis] + 1 == domain.cells(axis) && domain.kind(2 * axis + 1) == BoundaryKind::outflow)
+      return true;
+  }
+  return false;
+}
+
 /// Solves div grad p = f with zero pressure on outflows.
 std::vector<double> solve_pressure(const FlowDomain& domain, std::vector<double> f) {
   const bool singular = !has_outflow(domain);
@@ -127,7 +137,33 @@ void solve_change(const FlowDomain& domain, StaggeredField& change, std::size_t 
   }
 }
 
+/// Pressure on the faces of outflows, m^2/s^2: minus half the squared normal velocity where fluid enters.
+StaggeredField backflow_pressure(const FlowDomain& domain, const StaggeredField& u) {
+  StaggeredField outside = domain.zero_field();
+  domain.for_each_face([&](std::size_t c, const GridIndex& face) {
+    const int side = domain.side_of(c, face);
+    if (side < 0 || domain.kind(static_cast<std::size_t>(side)) != BoundaryKind::outflow) return;
+    const double own = u[c][domain.at(c, face)], inward = side % 2 == 0 ? own : -own;
+    if (inward > 0.0) outside[c][domain.at(c, face)] = -0.5 * inward * inward;
+  });
+  return outside;
+}
+
 }  // namespace
+
+std::vector<double> present_pressure(const FlowDomain& domain, const StaggeredField& u, double time) {
+  constexpr double dt = 1e-6;
+  const StaggeredField before = with_side_velocity(domain, domain.zero_field(), time - dt);
+  const StaggeredField after = with_side_velocity(domain, domain.zero_field(), time + dt);
+  const StaggeredField rate = momentum_rate(domain, u, time);
+  std::vector<double> f =
+      divergence(domain, combine(domain, {{1.0, &rate}, {0.5 / dt, &after}, {-0.5 / dt, &before}}));
+  const std::vector<double> zero(f.size(), 0.0);
+  const std::vector<double> fixed =
+      divergence(domain, pressure_gradient(domain, zero, backflow_pressure(domain, u)));
+  for (std::size_t i = 0; i < f.size(); ++i) f[i] -= fixed[i];
+  return solve_pressure(domain, f);
+}
 
 StaggeredField with_side_velocity(const FlowDomain& domain, StaggeredField u, double time) {
   domain.for_each_face([&](std::size_t c, const GridIndex& face) {
@@ -139,13 +175,7 @@ StaggeredField with_side_velocity(const FlowDomain& domain, StaggeredField u, do
 }
 
 std::vector<double> project(const FlowDomain& domain, StaggeredField& u, double dt, bool resists_backflow) {
-  StaggeredField outside = domain.zero_field();
-  domain.for_each_face([&](std::size_t c, const GridIndex& face) {
-    const int side = domain.side_of(c, face);
-    if (side < 0 || domain.kind(static_cast<std::size_t>(side)) != BoundaryKind::outflow) return;
-    const double own = u[c][domain.at(c, face)], inward = side % 2 == 0 ? own : -own;
-    if (resists_backflow && inward > 0.0) outside[c][domain.at(c, face)] = -0.5 * inward * inward;
-  });
+  const StaggeredField outside = resists_backflow ? backflow_pressure(domain, u) : domain.zero_field();
   std::vector<double> f = divergence(domain, u);
   const std::vector<double> zero(f.size(), 0.0);
   const std::vector<double> fixed = divergence(domain, pressure_gradient(domain, zero, outside));
@@ -174,11 +204,12 @@ FlowState crank_nicolson_step(const FlowDomain& domain, const FlowState& state, 
   const double nu = domain.parameters().viscosity / domain.parameters().density;
   const StaggeredField zero = domain.zero_field();
   const StaggeredField& u = state.velocity;
-  const StaggeredField viscous = viscous_rate(domain, u, time);
+  const StaggeredField viscous = viscous_rate(domain, u, time, false);
   FlowState next;
   next.last_dt = dt;
   const StaggeredField rate = momentum_rate(domain, u, time);
-  next.old_rate = combine(domain, {{1.0, &rate}, {-1.0, &viscous}});
+  const StaggeredField viscous_of_rate = viscous_rate(domain, u, time);
+  next.old_rate = combine(domain, {{1.0, &rate}, {-1.0, &viscous_of_rate}});
   const double r = state.last_dt > 0.0 ? dt / state.last_dt : 0.0;
   const StaggeredField gradient = pressure_gradient(domain, state.pressure, zero);
   const StaggeredField source = combine(domain, {{dt * (1.0 + 0.5 * r), &next.old_rate},
@@ -196,14 +227,17 @@ FlowState crank_nicolson_step(const FlowDomain& domain, const FlowState& state, 
   next.velocity = combine(domain, {{1.0, &u}, {1.0, &change}});
   next.pressure = project(domain, next.velocity, dt);
   const std::vector<double> laplacian = divergence(domain, pressure_gradient(domain, next.pressure, zero));
-  for (std::size_t i = 0; i < laplacian.size(); ++i)
-    next.pressure[i] += state.pressure[i] - 0.5 * nu * dt * laplacian[i];
+  domain.for_each_cell([&](const GridIndex& cell) {
+    const std::size_t i = domain.cell_at(cell);
+    next.pressure[i] += state.pressure[i];
+    if (!is_beside_outflow(domain, cell)) next.pressure[i] -= 0.5 * nu * dt * laplacian[i];
+  });
   return next;
 }
 
 FlowState runge_kutta_step(const FlowDomain& domain, const FlowState& state, double time, double dt) {
-  /// Stage: result = a U + b (S + dt L(S)), an approximation at the time fraction `end`; S at the fraction
-  /// `begin`.
+  /// Stage: result = S + a (U - S) + b dt L(S), with b = 1 - a, an approximation at the time fraction `end`;
+  /// S at the fraction `begin`. A uniform state stays bit for bit.
   struct Stage {
     double a, b, begin, end;
   };
@@ -213,7 +247,8 @@ FlowState runge_kutta_step(const FlowDomain& domain, const FlowState& state, dou
   for (const Stage& stage :
        {Stage{0.0, 1.0, 0.0, 1.0}, Stage{0.75, 0.25, 1.0, 0.5}, Stage{1.0 / 3.0, 2.0 / 3.0, 0.5, 1.0}}) {
     const StaggeredField rate = momentum_rate(domain, s, time + stage.begin * dt);
-    s = combine(domain, {{stage.a, &state.velocity}, {stage.b, &s}, {stage.b * dt, &rate}});
+    const StaggeredField behind = combine(domain, {{1.0, &state.velocity}, {-1.0, &s}});
+    s = combine(domain, {{1.0, &s}, {stage.a, &behind}, {stage.b * dt, &rate}});
     s = with_side_velocity(domain, s, time + stage.end * dt);
     next.pressure = project(domain, s, stage.b * dt);
   }

@@ -22,13 +22,19 @@ struct FlowState {
 std::vector<double> project(const FlowDomain& domain, StaggeredField& u, double dt,
                             bool resists_backflow = true);
 
+/// Kinematic pressure of a velocity free of divergence at a time (s), m^2/s^2, from the divergence of its
+/// rates of change. Accelerations of sides are central differences over 2e-6 s.
+[[nodiscard]] std::vector<double> present_pressure(const FlowDomain& domain, const StaggeredField& u,
+                                                   double time);
+
 /// Step of Adams-Bashforth of second order from `time`, with a variable dt (s); the first step is Euler's.
 [[nodiscard]] FlowState adams_bashforth_step(const FlowDomain& domain, const FlowState& state, double time,
                                              double dt);
 
 /// Step with Adams-Bashforth advection and Crank-Nicolson diffusion from `time`, with a variable dt (s): the
 /// pressure of the previous step acts in the implicit equation, the projection adds an increment phi, and the
-/// pressure is p + phi - nu dt/2 lap phi (Brown, Cortez and Minion 2001). The first step is Euler's.
+/// pressure is p + phi - nu dt/2 lap phi (Brown, Cortez and Minion 2001), and p + phi in cells beside an
+/// outflow, whose velocity is explicit. Outflows have no shear stress. The first step is Euler's.
 [[nodiscard]] FlowState crank_nicolson_step(const FlowDomain& domain, const FlowState& state, double time,
                                             double dt);
 

@@ -5,8 +5,8 @@
 #include "common/program/failure.hpp"
 #include "common/program/message.hpp"
 #include "common/run/hdf5/shared_write.hpp"
-#include "miniapps/parachute/functions.hpp"
 #include "miniapps/parachute/parallel/parameters_message.hpp"
+#include "miniapps/parachute/scene/functions.hpp"
 
 namespace drogue::parachute_app {
 namespace {

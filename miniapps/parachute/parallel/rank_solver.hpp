@@ -106,6 +106,9 @@ class SharedSolver final : public flow::Solver {
   void sample(flow::CellField field, std::span<double> values) override;
   [[nodiscard]] const char* driver() const override { return _own->solver().driver(); }
   [[nodiscard]] const char* pressure_solver() const override { return _own->solver().pressure_solver(); }
+  [[nodiscard]] std::optional<flow::PressureSolve> last_pressure_solve() const override {
+    return _own->solver().last_pressure_solve();
+  }
 
  private:
   template <class... Values>

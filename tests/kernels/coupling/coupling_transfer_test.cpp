@@ -52,14 +52,14 @@ class Random {
       for (double& value : row) value = (*this)(-size, size);
     return result;
   }
-  FaceField field(const MacGrid& grid) {
+  FaceField field(const StaggeredGrid& grid) {
     FaceField result = reference::zero_field(grid);
     for (auto& values : result)
       for (double& value : values) value = (*this)(-1.0, 1.0);
     return result;
   }
   /// Points up to `margin` cells inside of all sides; outside for a negative margin.
-  Vectors points(const MacGrid& grid, std::size_t n, double margin) {
+  Vectors points(const StaggeredGrid& grid, std::size_t n, double margin) {
     Vectors result(n);
     for (Vector& row : result)
       for (std::size_t axis = 0; axis < 3; ++axis)
@@ -72,7 +72,7 @@ class Random {
 };
 
 /// Bounded, mixed and periodic grids, also with axes of one cell and of fewer cells than a delta function.
-std::vector<MacGrid> all_grids() {
+std::vector<StaggeredGrid> all_grids() {
   const std::array<double, 3> origin{-0.3, 1.7, 100.0}, spacing{0.1, 0.25, 0.2};
   return {{{9, 8, 7}, origin, spacing, {false, false, false}},
           {{6, 7, 5}, origin, spacing, {true, true, true}},
@@ -113,7 +113,7 @@ Vectors on_host(const View& view) {
 
 /// Calls `visit(component, n, i, j, k)` for each face, n counting in the order of FaceField.
 template <class Visit>
-void for_each_face(const MacGrid& grid, const Visit& visit) {
+void for_each_face(const StaggeredGrid& grid, const Visit& visit) {
   for (int d = 0; d < 3; ++d) {
     std::size_t n = 0;
     for (int k = 0; k < faces_along(grid, d, 2); ++k)
@@ -123,7 +123,7 @@ void for_each_face(const MacGrid& grid, const Visit& visit) {
 }
 
 template <class E>
-FaceViews<FieldView<E>> on_device(const E& space, const MacGrid& grid, const FaceField& field) {
+FaceViews<FieldView<E>> on_device(const E& space, const StaggeredGrid& grid, const FaceField& field) {
   FaceViews<FieldView<E>> views;
   FaceViews<typename FieldView<E>::HostMirror> mirrors;
   for (int d = 0; d < 3; ++d) {
@@ -140,7 +140,7 @@ FaceViews<FieldView<E>> on_device(const E& space, const MacGrid& grid, const Fac
 }
 
 template <class View>
-FaceField on_host(const MacGrid& grid, const FaceViews<View>& views) {
+FaceField on_host(const StaggeredGrid& grid, const FaceViews<View>& views) {
   Kokkos::fence();
   FaceViews<typename View::HostMirror> mirrors;
   for (int d = 0; d < 3; ++d)
@@ -158,7 +158,7 @@ struct Case {
   E space;
   GridTransfer<E> transfer;
 
-  Case(const MacGrid& grid, DeltaKernel kernel, const Vectors& points)
+  Case(const StaggeredGrid& grid, DeltaKernel kernel, const Vectors& points)
       : transfer(space, grid, kernel, static_cast<int>(points.size())) {
     const PointView<E> x = on_device(space, points);
     const PointView<E> v("at rest", points.size());
@@ -201,7 +201,9 @@ double sum(const std::vector<double>& values) {
   return result;
 }
 
-double cell_volume_of(const MacGrid& grid) { return grid.spacing[0] * grid.spacing[1] * grid.spacing[2]; }
+double cell_volume_of(const StaggeredGrid& grid) {
+  return grid.spacing[0] * grid.spacing[1] * grid.spacing[2];
+}
 
 std::vector<double> random_areas(Random& random, std::size_t n) {
   std::vector<double> areas(n);
@@ -210,7 +212,7 @@ std::vector<double> random_areas(Random& random, std::size_t n) {
 }
 
 TEST(GridTransfer, InterpolationMatchesTheOracleInsideAndOutsideOfTheGrid) {
-  for (const MacGrid& grid : all_grids())
+  for (const StaggeredGrid& grid : all_grids())
     for (const DeltaKernel kernel : kernels) {
       Random random(1);
       const FaceField field = random.field(grid);
@@ -223,7 +225,7 @@ TEST(GridTransfer, InterpolationMatchesTheOracleInsideAndOutsideOfTheGrid) {
 }
 
 TEST(GridTransfer, SpreadingMatchesTheOracleInsideAndOutsideOfTheGrid) {
-  for (const MacGrid& grid : all_grids())
+  for (const StaggeredGrid& grid : all_grids())
     for (const DeltaKernel kernel : kernels) {
       Random random(2);
       const Vectors forces = random.vectors(60, 10.0);
@@ -236,7 +238,7 @@ TEST(GridTransfer, SpreadingMatchesTheOracleInsideAndOutsideOfTheGrid) {
 }
 
 TEST(GridTransfer, RowSumsMatchTheOracle) {
-  for (const MacGrid& grid : all_grids())
+  for (const StaggeredGrid& grid : all_grids())
     for (const DeltaKernel kernel : kernels) {
       Random random(3);
       const Vectors points = random.points(grid, 60, 0.0);
@@ -250,7 +252,7 @@ TEST(GridTransfer, RowSumsMatchTheOracle) {
 }
 
 TEST(GridTransfer, ConstantFieldsAreReproducedEverywhere) {
-  for (const MacGrid& grid : all_grids())
+  for (const StaggeredGrid& grid : all_grids())
     for (const DeltaKernel kernel : kernels) {
       FaceField field = reference::zero_field(grid);
       for (std::size_t d = 0; d < 3; ++d) std::ranges::fill(field[d], 1.0 + static_cast<double>(d));
@@ -261,7 +263,7 @@ TEST(GridTransfer, ConstantFieldsAreReproducedEverywhere) {
 }
 
 TEST(GridTransfer, LinearFieldsAreReproducedAwayFromBoundedSides) {
-  const MacGrid grid = all_grids()[0];
+  const StaggeredGrid grid = all_grids()[0];
   const std::array<Vector, 3> slope{{{1.0, -2.0, 0.5}, {3.0, 0.25, -1.0}, {-0.5, 2.0, 4.0}}};
   const auto value = [&](std::size_t d, const Vector& x) {
     return slope[d][0] * x[0] + slope[d][1] * x[1] + slope[d][2] * (x[2] - 100.0);
@@ -284,7 +286,7 @@ TEST(GridTransfer, LinearFieldsAreReproducedAwayFromBoundedSides) {
 }
 
 TEST(GridTransfer, CountsPointsWhoseDeltaFunctionLeavesTheGrid) {
-  const MacGrid grid{{8, 8, 8}, {0.0, 0.0, 0.0}, {0.5, 0.5, 0.5}, {false, true, false}};
+  const StaggeredGrid grid{{8, 8, 8}, {0.0, 0.0, 0.0}, {0.5, 0.5, 0.5}, {false, true, false}};
   const double infinite = std::numeric_limits<double>::infinity(), nan = std::nan("");
   // Distance in cells that the kernel needs from a bounded side.
   for (const auto& [kernel, needed] : {std::pair{DeltaKernel::cbs43, 1.0}, std::pair{DeltaKernel::cbs32, 0.5},
@@ -302,7 +304,7 @@ TEST(GridTransfer, CountsPointsWhoseDeltaFunctionLeavesTheGrid) {
 
 TEST(GridTransfer, FreezesPositionsAlongVelocities) {
   const Space space;
-  const MacGrid grid = all_grids()[0];
+  const StaggeredGrid grid = all_grids()[0];
   const Vectors x = Random(6).points(grid, 20, 2.0), v = Random(7).vectors(20, 1.0);
   const GridTransfer<Space> transfer(space, grid, DeltaKernel::cbs43, 20);
   freeze_positions(space, transfer, on_device(space, x), on_device(space, v), 0.01);
@@ -313,7 +315,7 @@ TEST(GridTransfer, FreezesPositionsAlongVelocities) {
 }
 
 TEST(GridTransfer, InterpolationIsTheAdjointOfSpreading) {
-  for (const MacGrid& grid : all_grids())
+  for (const StaggeredGrid& grid : all_grids())
     for (const DeltaKernel kernel : kernels) {
       Random random(8);
       const FaceField field = random.field(grid);
@@ -332,7 +334,7 @@ TEST(GridTransfer, InterpolationIsTheAdjointOfSpreading) {
 }
 
 TEST(GridTransfer, SpreadingKeepsTheTotalForceExactly) {
-  const MacGrid grid{{9, 8, 7}, {0.0, 0.0, 0.0}, {0.25, 0.5, 0.125}, {false, true, false}};
+  const StaggeredGrid grid{{9, 8, 7}, {0.0, 0.0, 0.0}, {0.25, 0.5, 0.125}, {false, true, false}};
   for (const DeltaKernel kernel : kernels) {
     Random random(9);
     const Vectors points = random.points(grid, 64, -2.0);
@@ -350,7 +352,7 @@ TEST(GridTransfer, SpreadingKeepsTheTotalForceExactly) {
 }
 
 TEST(GridTransfer, ResultDoesNotDependOnTheOrderOfPoints) {
-  for (const MacGrid& grid : all_grids())
+  for (const StaggeredGrid& grid : all_grids())
     for (const DeltaKernel kernel : kernels) {
       Random random(10);
       Vectors points = random.points(grid, 500, 0.0), forces = random.vectors(500, 1.0);
@@ -365,7 +367,7 @@ TEST(GridTransfer, ResultDoesNotDependOnTheOrderOfPoints) {
 }
 
 TEST(GridTransfer, BackendsAgree) {
-  for (const MacGrid& grid : all_grids())
+  for (const StaggeredGrid& grid : all_grids())
     for (const DeltaKernel kernel : kernels) {
       Random random(11);
       const FaceField field = random.field(grid);
@@ -382,7 +384,7 @@ TEST(GridTransfer, BackendsAgree) {
 
 TEST(GridTransfer, SpreadingAddsToTheDensities) {
   const Space space;
-  const MacGrid grid = all_grids()[0];
+  const StaggeredGrid grid = all_grids()[0];
   Random random(12);
   const Vectors points = random.points(grid, 50, 1.5), forces = random.vectors(50, 1.0);
   const Case<Space> run(grid, DeltaKernel::cbs43, points);
@@ -396,8 +398,28 @@ TEST(GridTransfer, SpreadingAddsToTheDensities) {
   expect_near(on_host(grid, density), expected, 1e-10);
 }
 
+TEST(GridTransfer, ClearsTheFacesAroundPointsAndNoOthers) {
+  for (const StaggeredGrid& grid : all_grids())
+    for (const DeltaKernel kernel : kernels) {
+      Random random(5);
+      const Case<Space> run(grid, kernel, random.points(grid, 2, 0.0));
+      FaceField ones = reference::zero_field(grid);
+      for (auto& values : ones) values.assign(values.size(), 1.0);
+      const auto field = on_device(run.space, grid, ones);
+      clear_spread(run.space, run.transfer, field);
+      const FaceField cleared = on_host(grid, field), spread = run.densities(Vectors(2, {1.0, 1.0, 1.0}));
+      for (std::size_t d = 0; d < 3; ++d)
+        for (std::size_t n = 0; n < ones[d].size(); ++n)
+          EXPECT_TRUE(cleared[d][n] == 0.0 || (cleared[d][n] == 1.0 && spread[d][n] == 0.0)) << d << ' ' << n;
+      // Two delta functions cover 128 of 567 faces at most.
+      if (grid.cells[0] == 9) {
+        EXPECT_GE(std::ranges::count(cleared[0], 1.0), 400);
+      }
+    }
+}
+
 TEST(GridTransfer, CoincidentPointsWithTheLargestForceDoNotOverflow) {
-  const MacGrid grid{{5, 5, 5}, {0.0, 0.0, 0.0}, {1.0, 1.0, 1.0}, {false, false, false}};
+  const StaggeredGrid grid{{5, 5, 5}, {0.0, 0.0, 0.0}, {1.0, 1.0, 1.0}, {false, false, false}};
   // 4097 is just above a power of two. Of component 0 one face receives three quarters.
   for (const std::size_t n : {1U, 4096U, 4097U}) {
     const Vectors points(n, {2.0, 2.5, 2.5}), forces(n, {1e30, -1e30, 1e30});
@@ -412,7 +434,7 @@ TEST(GridTransfer, CoincidentPointsWithTheLargestForceDoNotOverflow) {
 }
 
 TEST(GridTransfer, ResolvesForcesOfAnyMagnitude) {
-  const MacGrid grid = all_grids()[0];
+  const StaggeredGrid grid = all_grids()[0];
   Random random(13);
   const Vectors points = random.points(grid, 30, 1.5), forces = random.vectors(30, 1.0);
   const Case<Space> run(grid, DeltaKernel::cbs43, points);
@@ -430,7 +452,7 @@ TEST(GridTransfer, ResolvesForcesOfAnyMagnitude) {
 }
 
 TEST(GridTransfer, RejectsForcesAboveTheBoundAndNonFiniteOnes) {
-  const MacGrid grid = all_grids()[0];
+  const StaggeredGrid grid = all_grids()[0];
   const double nan = std::nan(""), infinite = std::numeric_limits<double>::infinity();
   Random random(14);
   Vectors points = random.points(grid, 10, 1.5);
@@ -451,7 +473,7 @@ TEST(GridTransfer, RejectsForcesAboveTheBoundAndNonFiniteOnes) {
 }
 
 TEST(GridTransfer, RejectsForcesThatFixedPointCannotScaleWhateverTheBound) {
-  const MacGrid grid = all_grids()[0];
+  const StaggeredGrid grid = all_grids()[0];
   Random random(15);
   const Vectors points = random.points(grid, 2, 1.5);
   const Case<Space> bounded(grid, DeltaKernel::cbs43, points);
@@ -462,16 +484,16 @@ TEST(GridTransfer, RejectsForcesThatFixedPointCannotScaleWhateverTheBound) {
 }
 
 TEST(GridTransfer, PositionsThatAreNotFiniteInterpolateToNaN) {
-  const MacGrid grid = all_grids()[0];
+  const StaggeredGrid grid = all_grids()[0];
   const Vectors result =
       Case<Space>(grid, DeltaKernel::cbs43, {{0.0, 2.0, std::nan("")}}).interpolated(Random(15).field(grid));
   for (const double value : result[0]) EXPECT_TRUE(std::isnan(value));
 }
 
 /// Discrete curl of a random potential at the edges: its discrete divergence vanishes.
-FaceField divergence_free_field(const MacGrid& grid) {
+FaceField divergence_free_field(const StaggeredGrid& grid) {
   Random random(16);
-  const auto at = [&](const MacGrid& g, int i, int j, int k) {
+  const auto at = [&](const StaggeredGrid& g, int i, int j, int k) {
     const auto wrap = [&](std::size_t axis, int n) { return g.periodic[axis] ? n % g.cells[axis] : n; };
     return (static_cast<std::size_t>(wrap(2, k)) * 64 + static_cast<std::size_t>(wrap(1, j))) * 64 +
            static_cast<std::size_t>(wrap(0, i));
@@ -496,7 +518,7 @@ FaceField divergence_free_field(const MacGrid& grid) {
 }
 
 /// Largest divergence of the interpolated field, by central differences, over the points.
-double interpolated_divergence(const MacGrid& grid, DeltaKernel kernel, const FaceField& field,
+double interpolated_divergence(const StaggeredGrid& grid, DeltaKernel kernel, const FaceField& field,
                                const Vectors& points) {
   constexpr double step = 1e-6;
   Vectors neighbours;
@@ -520,7 +542,7 @@ double interpolated_divergence(const MacGrid& grid, DeltaKernel kernel, const Fa
 
 TEST(GridTransfer, CompositeSplinesInterpolateDivergenceFreeFieldsWithoutDivergence) {
   for (const bool periodic : {false, true}) {
-    const MacGrid grid{{9, 8, 7}, {0.0, 0.0, 0.0}, {0.5, 0.25, 1.0}, {periodic, periodic, periodic}};
+    const StaggeredGrid grid{{9, 8, 7}, {0.0, 0.0, 0.0}, {0.5, 0.25, 1.0}, {periodic, periodic, periodic}};
     const FaceField field = divergence_free_field(grid);
     const Vectors points = Random(17).points(grid, 100, periodic ? -3.0 : 1.6);
     // Gradients are of order 10; differences resolve 1e-8 of them away from the knots.
@@ -532,7 +554,7 @@ TEST(GridTransfer, CompositeSplinesInterpolateDivergenceFreeFieldsWithoutDiverge
 
 TEST(GridTransfer, RowSumsBoundTheEnergyOfSpreadImpulses) {
   // Impulses J = a f on a crumpled sheet give the fluid at most the energy of the local masses (D - A >= 0).
-  const MacGrid grid = all_grids()[0];
+  const StaggeredGrid grid = all_grids()[0];
   Random random(18);
   const Vectors points = random.points(grid, 60, 2.0);
   const std::vector<double> areas = random_areas(random, 60);
@@ -563,7 +585,7 @@ TEST(GridTransfer, RowSumsBoundTheEnergyOfSpreadImpulses) {
 
 TEST(GridTransfer, ReadsAndWritesFieldsOfAnyLayout) {
   const Space space;
-  const MacGrid grid = all_grids()[0];
+  const StaggeredGrid grid = all_grids()[0];
   Random random(19);
   const FaceField field = random.field(grid);
   const Vectors points = random.points(grid, 40, 1.0), forces = random.vectors(40, 1.0);
@@ -596,7 +618,7 @@ TEST(GridTransfer, ReadsAndWritesFieldsOfAnyLayout) {
 TEST(GridTransfer, TransfersWithoutFenceAllocationOrCopyAndReplaysFromAGraph) {
   const device::Instance<Space> instance(1);
   const Space& space = instance.space();
-  const MacGrid grid = all_grids()[0];
+  const StaggeredGrid grid = all_grids()[0];
   Random random(20);
   const Vectors points = random.points(grid, 40, 1.5);
   const PointView<Space> x = on_device(space, points), v = on_device(space, random.vectors(40, 0.1)),
@@ -636,10 +658,10 @@ TEST(GridTransfer, TransfersWithoutFenceAllocationOrCopyAndReplaysFromAGraph) {
 
 TEST(GridTransfer, RejectsInvalidGridsViewsAndParameters) {
   const Space space;
-  const auto expect_invalid = [&](const MacGrid& grid) {
+  const auto expect_invalid = [&](const StaggeredGrid& grid) {
     EXPECT_THROW(GridTransfer<Space>(space, grid, DeltaKernel::cbs43, 1), std::invalid_argument);
   };
-  MacGrid grid = all_grids()[0];
+  StaggeredGrid grid = all_grids()[0];
   grid.cells[1] = 0;
   expect_invalid(grid);
   for (const double wrong : {0.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity()}) {

@@ -207,7 +207,7 @@ TEST(FabricCoupling, StateOfAVertexForceAdvancesOncePerStepInEveryDriver) {
   const Motions plain = mounted_motions(Integrator::rk4, Driver::plain, {20});
   for (const Driver driver : {Driver::graph, Driver::persistent})
     EXPECT_LE(distance(plain, mounted_motions(Integrator::rk4, driver, {20})), rounding * 1e-11);
-  for (const Integrator integrator : {Integrator::rk4, Integrator::verlet}) {
+  for (const Integrator integrator : {Integrator::rk4, Integrator::verlet, Integrator::symplectic_euler}) {
     const Motions whole = mounted_motions(integrator, Driver::automatic, {20});
     EXPECT_EQ(distance(whole, mounted_motions(integrator, Driver::automatic, {7, 1, 12})), 0.0);
   }
@@ -264,10 +264,11 @@ TEST(FabricCoupling, EndOfAStepIsThatOfTheStateInEveryDriver) {
   for (const Driver driver : {Driver::plain, Driver::graph, Driver::stages, Driver::persistent})
     expect_end_of_step(mounted_sheet(Integrator::rk4, driver));
   expect_end_of_step(mounted_sheet(Integrator::verlet, Driver::plain));
+  expect_end_of_step(mounted_sheet(Integrator::symplectic_euler, Driver::plain));
 }
 
 TEST(FabricCoupling, EndOfAStepFollowsPrescribedMotionAndContact) {
-  for (const Integrator integrator : {Integrator::rk4, Integrator::verlet}) {
+  for (const Integrator integrator : {Integrator::rk4, Integrator::verlet, Integrator::symplectic_euler}) {
     Parameters p = mounted_sheet(integrator, Driver::automatic);
     p.motions.push_back({0, {static_cast<int>(p.mass.size()) - 1}, postfix({500.0, "t", "t", "*", "*"})});
     expect_end_of_step(p);
@@ -276,6 +277,46 @@ TEST(FabricCoupling, EndOfAStepFollowsPrescribedMotionAndContact) {
     testing::Sheets meeting = testing::corner_on(3.0);
     meeting.p.integrator = integrator;
     expect_end_of_step(meeting.p, {meeting.x, meeting.v}, 40);
+  }
+}
+
+/// Halves the velocity of each vertex in each step and counts the steps, at a push along x.
+struct Halving {
+  Kokkos::View<int*, Space::memory_space> steps;
+
+  KOKKOS_FUNCTION Vector3<double> operator()(const VertexStage&) const { return {0.02, 0.0, 0.0}; }
+  KOKKOS_FUNCTION Vector3<double> relaxed_velocity(const VertexStage& at) const {
+    ++steps(at.vertex);
+    return 0.5 * at.velocity;
+  }
+};
+
+TEST(FabricCoupling, RelaxesVelocitiesOncePerStepBetweenKickAndDrift) {
+  const device::Instance<Space> instance(1);
+  Parameters p;
+  p.mesh.rest = {{0, 0, 0}, {1, 0, 0}};
+  p.mass = {2.0, 2.0};
+  p.pinned = {0, 7};
+  p.integrator = Integrator::symplectic_euler;
+  p.dt = 0.5;
+  const Halving halving{decltype(Halving::steps)("steps", 2)};
+  FabricSolver<Space, Halving> solver(instance.space(), p, halving);
+  Motions now{p.mesh.rest, {{1.0, 4.0, 0.0}, {1.0, 0.0, 0.0}}};
+  solver.upload(now.x, now.v);
+  solver.enqueue_steps(2);
+  solver.download(now.x, now.v);
+  // Kicks of 0.005 m/s along x.
+  const double first = 0.5 * 1.005, second = 0.5 * (first + 0.005);
+  EXPECT_DOUBLE_EQ(now.v[0][0], second);
+  EXPECT_DOUBLE_EQ(now.x[0][0], 0.5 * (first + second));
+  EXPECT_DOUBLE_EQ(now.v[0][1], 1.0);
+  EXPECT_EQ(now.v[1][0], 1.0) << "pinned axes keep their velocity";
+  EXPECT_EQ(now.x[1][0], 2.0);
+  const auto taken = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), halving.steps);
+  EXPECT_EQ(taken(0), 2);
+  for (const Integrator integrator : {Integrator::rk4, Integrator::verlet}) {
+    p.integrator = integrator;
+    EXPECT_THROW((FabricSolver<Space, Halving>(instance.space(), p, halving)), std::invalid_argument);
   }
 }
 
@@ -332,7 +373,7 @@ struct Shift {
 TEST(FabricCoupling, AnotherKernelWritesTheStateWithoutACopy) {
   const device::Instance<Space> instance(1);
   const Space& space = instance.space();
-  for (const Integrator integrator : {Integrator::rk4, Integrator::verlet}) {
+  for (const Integrator integrator : {Integrator::rk4, Integrator::verlet, Integrator::symplectic_euler}) {
     Parameters p = mounted_sheet(integrator, Driver::automatic);
     p.relative_damping = 0.5;  // with dashpots, Verlet's method alternates between two buffers of velocities
     FabricSolver<Space> solver(space, p), other(space, p);

@@ -167,7 +167,7 @@ double growth(Parameters p, double dt) {
 
 TEST(FabricFrequency, StepsAreStableAtTheBoundAndUnstableBeyondTheReference) {
   for (const Model model : {Model::edge, Model::quadratic, Model::biquadratic})
-    for (const Integrator integrator : {Integrator::rk4, Integrator::verlet}) {
+    for (const Integrator integrator : {Integrator::rk4, Integrator::verlet, Integrator::symplectic_euler}) {
       Parameters p = fabric(model);
       p.integrator = integrator;
       const double limit = stability_limit(integrator);
@@ -179,7 +179,7 @@ TEST(FabricFrequency, StepsAreStableAtTheBoundAndUnstableBeyondTheReference) {
 }
 
 TEST(FabricFrequency, PredictsUnstableSteps) {
-  for (const Integrator integrator : {Integrator::rk4, Integrator::verlet})
+  for (const Integrator integrator : {Integrator::rk4, Integrator::verlet, Integrator::symplectic_euler})
     for (const auto& [absolute, relative] : {std::pair{0.0, 0.0}, {30.0, 0.0}, {0.0, 2.0}, {30.0, 2.0}}) {
       Parameters p = fabric(Model::biquadratic);
       p.integrator = integrator;
@@ -195,6 +195,8 @@ TEST(FabricFrequency, PredictsUnstableSteps) {
       EXPECT_GT(growth(p, 1.01 * dt), 1e4) << absolute << ' ' << relative;
     }
   // Undamped oscillation: the limits are 2 sqrt(2) and 2.
+  EXPECT_FALSE(grows(Integrator::symplectic_euler, 2.0, 1.0, 0.0, 0.0));
+  EXPECT_TRUE(grows(Integrator::symplectic_euler, 2.0001, 1.0, 0.0, 0.0));
   EXPECT_FALSE(grows(Integrator::rk4, 2.8284, 1.0, 0.0, 0.0));
   EXPECT_TRUE(grows(Integrator::rk4, 2.8285, 1.0, 0.0, 0.0));
   EXPECT_FALSE(grows(Integrator::verlet, 2.0, 1.0, 0.0, 0.0));

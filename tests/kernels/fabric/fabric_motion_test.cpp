@@ -137,6 +137,9 @@ TEST(FabricMotion, EnergyGrowsBeyondTheStabilityLimit) {
   EXPECT_TRUE(grows(Integrator::rk4, 2.86));
   EXPECT_FALSE(grows(Integrator::verlet, 1.99));
   EXPECT_TRUE(grows(Integrator::verlet, 2.01));
+  // Near the limit, the energy of the symplectic Euler method oscillates by a factor of 1 / (1 - z^2 / 4).
+  EXPECT_FALSE(grows(Integrator::symplectic_euler, 1.8));
+  EXPECT_TRUE(grows(Integrator::symplectic_euler, 2.01));
 }
 
 Parameters patch(Model model, Integrator integrator) {
@@ -176,9 +179,11 @@ std::pair<double, double> momenta_gained(Parameters p, std::int64_t steps) {
 // ctest-label: no-sanitizer
 TEST(FabricMotion, ConservesMomentaOfAFreePatch) {
   for (const Model model : {Model::edge, Model::quadratic, Model::biquadratic}) {
-    const auto [momentum, angular] = momenta_gained(patch(model, Integrator::verlet), 500);
-    EXPECT_LT(momentum, 1e-12);
-    EXPECT_LT(angular, 1e-11);
+    for (const Integrator integrator : {Integrator::verlet, Integrator::symplectic_euler}) {
+      const auto [momentum, angular] = momenta_gained(patch(model, integrator), 500);
+      EXPECT_LT(momentum, 1e-12);
+      EXPECT_LT(angular, 1e-11);
+    }
     // The Runge-Kutta method conserves angular momentum to its order of accuracy.
     const auto coarse = momenta_gained(patch(model, Integrator::rk4), 1000);
     const auto fine = momenta_gained(patch(model, Integrator::rk4), 2000);
@@ -187,8 +192,31 @@ TEST(FabricMotion, ConservesMomentaOfAFreePatch) {
   }
 }
 
+/// The velocities of the symplectic Euler method are those of Verlet's half a step before.
+TEST(FabricMotion, SymplecticEulerFollowsVerletFromALaggingVelocity) {
+  for (const Model model : {Model::linear_vector, Model::edge, Model::quadratic, Model::biquadratic}) {
+    Parameters p = patch(model, Integrator::verlet);
+    p.gravity = {1.0, 0.0, -9.81};
+    const State start{shaken(p.mesh.rest, 0.1, 1), std::vector<Vector>(p.mass.size(), Vector{})};
+    State lagging = start;
+    const auto solver = create_solver(backend, p);
+    solver->upload(start.x, start.v);
+    std::vector<Vector> force(p.mass.size());
+    solver->forces(force);
+    for (std::size_t i = 0; i < force.size(); ++i)
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        lagging.v[i][axis] = -0.5 * p.dt * (force[i][axis] / p.mass[i] + p.gravity[axis]);
+    const State verlet = moved(p, start, 100);
+    p.integrator = Integrator::symplectic_euler;
+    const State euler = moved(p, lagging, 100);
+    for (std::size_t i = 0; i < force.size(); ++i)
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        EXPECT_NEAR(euler.x[i][axis], verlet.x[i][axis], 1e-11) << static_cast<int>(model);
+  }
+}
+
 TEST(FabricMotion, SplitCallsGiveIdenticalBits) {
-  for (const Integrator integrator : {Integrator::rk4, Integrator::verlet}) {
+  for (const Integrator integrator : {Integrator::rk4, Integrator::verlet, Integrator::symplectic_euler}) {
     Parameters p = patch(Model::biquadratic, integrator);
     p.damping = 40.0;
     p.gravity = {0.0, 0.0, -9.81};
@@ -202,7 +230,7 @@ TEST(FabricMotion, SplitCallsGiveIdenticalBits) {
 }
 
 TEST(FabricMotion, PinnedAxesKeepTheirVelocityAndOthersFall) {
-  for (const Integrator integrator : {Integrator::rk4, Integrator::verlet}) {
+  for (const Integrator integrator : {Integrator::rk4, Integrator::verlet, Integrator::symplectic_euler}) {
     Parameters p = patch(Model::biquadratic, integrator);
     p.gravity = {0.0, 0.0, -10.0};
     p.damping = 3.0;

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "tests/support/flow_case.hpp"
@@ -42,31 +43,41 @@ Parameters mixed_box() {
 }
 
 TEST(FlowControl, StepSizeFollowsTheVelocity) {
-  for (const double cfl : {0.5, 0.1}) {
-    Parameters p = periodic_box({12, 10, 9});
-    p.cfl = cfl;
-    const FlowDomain domain(p);
-    const auto solver = started(backend, p, random_field(domain, 1));
-    for (std::int64_t step = 1; step <= 3; ++step) {
-      const double expected = cfl / rate(domain, velocity(*solver, p));
-      ASSERT_EQ(solver->advance(endless, step, {}), Stop::pause);
-      EXPECT_NEAR(solver->progress().last_dt, expected, 1e-14 * expected);
+  for (const TimeScheme time : {TimeScheme::ab2, TimeScheme::rk3})
+    for (const double cfl : {0.5, 0.1}) {
+      Parameters p = periodic_box({12, 10, 9});
+      p.time_scheme = time;
+      p.cfl = cfl;
+      const FlowDomain domain(p);
+      const auto solver = started(backend, p, random_field(domain, 1));
+      for (std::int64_t step = 1; step <= 3; ++step) {
+        const double expected = cfl / rate(domain, velocity(*solver, p));
+        ASSERT_EQ(solver->advance(endless, step, {}), Stop::pause);
+        EXPECT_NEAR(solver->progress().last_dt, expected, 1e-14 * expected);
+      }
+      EXPECT_LE(solver->progress().dt_min, solver->progress().last_dt);
+      EXPECT_GE(solver->progress().dt_max, solver->progress().last_dt);
     }
-    EXPECT_LE(solver->progress().dt_min, solver->progress().last_dt);
-    EXPECT_GE(solver->progress().dt_max, solver->progress().last_dt);
-  }
 }
 
 TEST(FlowControl, RatesOfAdvectionAndDiffusionAddUp) {
-  Parameters p = periodic_box({12, 10, 9});
-  p.density = 2.0;
-  p.viscosity = 0.2;
-  const FlowDomain domain(p);
-  const auto solver = started(backend, p, random_field(domain, 1));
-  const double diffusion = 4.0 * 0.1 * (144.0 + 100.0 + 81.0) / 0.9;  // a tenth in reserve
-  const double expected = 1.0 / (rate(domain, velocity(*solver, p)) / p.cfl + diffusion);
-  ASSERT_EQ(solver->advance(endless, 1, {}), Stop::pause);
-  EXPECT_NEAR(solver->progress().last_dt, expected, 1e-13 * expected);
+  // The standard CFL number is 1 for RK3 and 0.5 for AB2, the limit of diffusion 2.5 and 1.
+  for (const TimeScheme time : {TimeScheme::ab2, TimeScheme::rk3})
+    for (const double cfl : {0.0, 0.3}) {
+      Parameters p = periodic_box({12, 10, 9});
+      p.density = 2.0;
+      p.viscosity = 0.2;
+      p.time_scheme = time;
+      p.cfl = cfl;
+      const bool is_rk3 = time == TimeScheme::rk3;
+      const double used = cfl > 0.0 ? cfl : is_rk3 ? 1.0 : 0.5, interval = is_rk3 ? 2.5 : 1.0;
+      const FlowDomain domain(p);
+      const auto solver = started(backend, p, random_field(domain, 1));
+      const double diffusion = 4.0 * 0.1 * (144.0 + 100.0 + 81.0) / (0.9 * interval);  // a tenth in reserve
+      const double expected = 1.0 / (rate(domain, velocity(*solver, p)) / used + diffusion);
+      ASSERT_EQ(solver->advance(endless, 1, {}), Stop::pause);
+      EXPECT_NEAR(solver->progress().last_dt, expected, 1e-13 * expected);
+    }
 }
 
 TEST(FlowControl, ImplicitDiffusionDoesNotLimitTheStepSize) {
@@ -75,12 +86,13 @@ TEST(FlowControl, ImplicitDiffusionDoesNotLimitTheStepSize) {
   Parameters p = mixed_box();
   for (Boundary& side : p.boundary) side = {BoundaryKind::wall, {0.0, 0.0, 0.0}, {}};
   p.viscosity = 2.0;
+  p.time_scheme = TimeScheme::ab2;
   p.diffusion = Diffusion::crank_nicolson;
   const FlowDomain domain(p);
   const auto solver = started(backend, p, random_field(domain, 1));
   double energy = solver->totals().kinetic_energy;
   for (int step = 1; step <= 20; ++step) {
-    const double expected = p.cfl / rate(domain, velocity(*solver, p));
+    const double expected = 0.5 / rate(domain, velocity(*solver, p));
     ASSERT_EQ(solver->advance(endless, step, {}), Stop::pause);
     EXPECT_NEAR(solver->progress().last_dt, expected, 1e-13 * expected);
     EXPECT_LT(solver->totals().kinetic_energy, energy);
@@ -91,6 +103,7 @@ TEST(FlowControl, ImplicitDiffusionDoesNotLimitTheStepSize) {
 TEST(FlowControl, FailedImplicitStepKeepsThePressureBeforeTheStep) {
   Parameters p = periodic_box({8, 7, 1});
   p.viscosity = 0.1;
+  p.time_scheme = TimeScheme::ab2;
   p.diffusion = Diffusion::crank_nicolson;
   p.fixed_dt = 0.01;
   const auto solver = started(backend, p, random_field(FlowDomain(p), 2));
@@ -104,10 +117,18 @@ TEST(FlowControl, FailedImplicitStepKeepsThePressureBeforeTheStep) {
   EXPECT_EQ(download(*solver, p, StateField::pressure), before);
 }
 
-TEST(FlowControl, ViscousNoiseDecays) {
+std::vector<std::pair<Advection, double>> advections_and_viscosities() {
+  std::vector<std::pair<Advection, double>> pairs;
   for (const Advection scheme : {Advection::central, Advection::weno_js, Advection::weno_z})
-    for (const double viscosity : {0.003, 0.01, 0.03, 0.1}) {
+    for (const double viscosity : {0.003, 0.01, 0.03, 0.1}) pairs.emplace_back(scheme, viscosity);
+  return pairs;
+}
+
+TEST(FlowControl, ViscousNoiseDecays) {
+  for (const TimeScheme time : {TimeScheme::ab2, TimeScheme::rk3})
+    for (const auto& [scheme, viscosity] : advections_and_viscosities()) {
       Parameters p = periodic_box({37, 1, 14});
+      p.time_scheme = time;
       p.advection = scheme;
       p.viscosity = viscosity;
       const auto solver = started(backend, p, random_field(FlowDomain(p), 6));
@@ -220,23 +241,89 @@ TEST(FlowControl, FluidAtRestMeetsAnyTarget) {
   EXPECT_EQ(velocity(*solver, p), FlowDomain(p).zero_field());
 }
 
-TEST(FlowControl, InstabilityFailsAndKeepsTheVelocityBeforeTheStep) {
+TEST(FlowControl, NonFiniteRateFailsAndKeepsTheVelocityBeforeTheStep) {
   Parameters p = periodic_box({8, 7, 1});
-  p.advection = Advection::central;
-  p.fixed_dt = 1e30;
-  const FlowDomain domain(p);
-  const auto solver = started(backend, p, random_field(domain, 2));
-  StaggeredField before = velocity(*solver, p);
-  std::int64_t steps = 0;
-  while (solver->advance(endless, steps + 1, {}) == Stop::pause) {
-    ++steps;
-    ASSERT_LT(steps, 10);
-    before = velocity(*solver, p);
-  }
+  p.time_scheme = TimeScheme::ab2;
+  const auto solver = started(backend, p, random_field(FlowDomain(p), 2));
+  ASSERT_EQ(solver->advance(endless, 2, {}), Stop::pause);
+  const StaggeredField before = velocity(*solver, p);
+  std::vector<double> rate = download(*solver, p, StateField::rate_x);
+  rate[20] = HUGE_VAL;
+  solver->upload(StateField::rate_x, rate);
+  ASSERT_EQ(solver->advance(endless, 5, {}), Stop::failed);
   EXPECT_EQ(solver->failure().reason, FailureReason::not_finite);
-  EXPECT_EQ(solver->failure().step, steps + 1);
+  EXPECT_EQ(solver->failure().step, 3);
   EXPECT_GE(solver->failure().index, 0);
   EXPECT_EQ(velocity(*solver, p), before);
+}
+
+/// Largest stable dt without implicit diffusion, s.
+double stable_dt_of(const Parameters& p, double rate) {
+  const bool is_rk3 = p.time_scheme == TimeScheme::rk3;
+  double squares = 0.0;
+  for (const int n : p.cells) squares += n > 1 ? static_cast<double>(n) * n : 0.0;
+  return 1.0 / (rate / (is_rk3 ? 1.4 : 0.7) + 4.0 * p.viscosity * squares / (is_rk3 ? 2.5 : 1.0));
+}
+
+TEST(FlowControl, FixedStepsBeyondTheStabilityLimitFailAndNameTheLimit) {
+  for (const TimeScheme time : {TimeScheme::ab2, TimeScheme::rk3})
+    for (const double viscosity : {0.0, 0.02}) {
+      Parameters p = periodic_box({9, 8, 7});
+      p.time_scheme = time;
+      p.viscosity = viscosity;
+      const FlowDomain domain(p);
+      const StaggeredField initial = random_field(domain, 2);
+      const StaggeredField before = velocity(*started(backend, p, initial), p);
+      const double limit = stable_dt_of(p, rate(domain, before));
+      for (const double dt : {1.001 * limit, 1e30}) {
+        p.fixed_dt = dt;
+        const auto solver = started(backend, p, initial);
+        ASSERT_EQ(solver->advance(endless, 1, {}), Stop::failed);
+        EXPECT_EQ(solver->failure().reason, FailureReason::time_step);
+        EXPECT_EQ(solver->failure().step, 1);
+        EXPECT_NEAR(solver->failure().dt, limit, 1e-13 * limit);
+        EXPECT_EQ(velocity(*solver, p), before);
+      }
+      p.fixed_dt = 0.999 * limit;
+      const auto stable = started(backend, p, initial);
+      EXPECT_EQ(stable->advance(endless, 1, {}), Stop::pause);
+      // A short way to the target is one stable step.
+      p.fixed_dt = 1e30;
+      const auto shortened = started(backend, p, initial);
+      EXPECT_EQ(shortened->advance(0.9 * limit, -1, {}), Stop::target);
+    }
+}
+
+TEST(FlowControl, FixedStepsOfFluidAtRestFailOnceItMovesTooFast) {
+  Parameters p = periodic_box({8, 1, 1});
+  p.body_force = {1.0, 0.0, 0.0};
+  p.fixed_dt = 0.25;
+  const FlowDomain domain(p);
+  const auto solver = started(backend, p, domain.zero_field());
+  // After n steps the CFL number of the next one is n / 2.
+  ASSERT_EQ(solver->advance(endless, 10, {}), Stop::failed);
+  EXPECT_EQ(solver->failure().reason, FailureReason::time_step);
+  EXPECT_EQ(solver->failure().step, 4);
+  EXPECT_NEAR(solver->failure().dt, 1.4 / (0.75 * 8.0), 1e-12);
+}
+
+TEST(FlowControl, ImplicitDiffusionAdmitsLargerFixedSteps) {
+  Parameters p = periodic_box({9, 8, 7});
+  p.time_scheme = TimeScheme::ab2;
+  p.diffusion = Diffusion::crank_nicolson;
+  p.viscosity = 1.0;
+  const FlowDomain domain(p);
+  const StaggeredField initial = random_field(domain, 2);
+  const double most = rate(domain, velocity(*started(backend, p, initial), p));
+  // Twice the viscosity over the square of the largest spacing, 1/7, and of the rate.
+  const double limit = 2.0 * 49.0 / (most * most);
+  ASSERT_GT(limit, 0.7 / most);
+  p.fixed_dt = 0.999 * limit;
+  EXPECT_EQ(started(backend, p, initial)->advance(endless, 1, {}), Stop::pause);
+  p.fixed_dt = 1.001 * limit;
+  const auto unstable = started(backend, p, initial);
+  ASSERT_EQ(unstable->advance(endless, 1, {}), Stop::failed);
+  EXPECT_NEAR(unstable->failure().dt, limit, 1e-13 * limit);
 }
 
 TEST(FlowControl, StartKeepsAVelocityFreeOfDivergence) {
@@ -293,7 +380,9 @@ TEST(FlowControl, RejectsParametersWithoutASolution) {
   rejects([](Parameters& p) { p.density = 0.0; });
   rejects([](Parameters& p) { p.viscosity = -1.0; });
   rejects([](Parameters& p) { p.viscosity = std::nan(""); });
-  rejects([](Parameters& p) { p.cfl = 0.0; });
+  rejects([](Parameters& p) { p.cfl = -0.5; });
+  rejects([](Parameters& p) { p.cfl = std::nan(""); });
+  rejects([](Parameters& p) { p.cfl = HUGE_VAL; });
   rejects([](Parameters& p) { p.boundary[0].kind = BoundaryKind::wall; });
   rejects([](Parameters& p) {
     p.boundary[0].kind = p.boundary[1].kind = BoundaryKind::slip;

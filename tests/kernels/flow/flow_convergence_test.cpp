@@ -118,6 +118,7 @@ TEST(FlowConvergence, CrankNicolsonIsOfSecondOrderInTimeBetweenWalls) {
   Parameters p;
   p.cells = {24, 24, 1};
   p.viscosity = 0.05;
+  p.time_scheme = TimeScheme::ab2;
   p.diffusion = Diffusion::crank_nicolson;
   for (const std::size_t side : {0U, 1U, 2U, 3U}) p.boundary[side].kind = BoundaryKind::wall;
   const auto vortex = sampled_field(FlowDomain(p), [&](std::size_t c, const reference::Point& at) {

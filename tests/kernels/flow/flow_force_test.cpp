@@ -88,7 +88,8 @@ TEST(FlowForce, ActsForTheWholeStepWithoutExtrapolation) {
 }
 
 TEST(FlowForce, AddsItsProjectionToTheFirstStep) {
-  const Parameters p = forced_box({8, 1, 6});
+  Parameters p = forced_box({8, 1, 6});
+  p.time_scheme = TimeScheme::ab2;  // whose first step is Euler's
   TypedCase forced(p), free(p);
   const StaggeredField force = random_field(forced.domain, 3);
   forced.set_force(force);
@@ -161,7 +162,7 @@ TEST(FlowCoupling, InterpolatesTheVelocityWhereTheSolverKeepsIt) {
   for (const Parameters& p : {forced_box({7, 6, 5}), forced_box({12, 9, 1}), forced_channel()}) {
     TypedCase flow(p);
     const Space& space = flow.instance.space();
-    const coupling::MacGrid grid = coupling_grid(flow.solver.grid());
+    const coupling::StaggeredGrid grid = coupling_grid(flow.solver.grid());
     const HostPoints points = random_points(0.2, 0.8, 5);
     const coupling::GridTransfer<Space> transfer(space, grid, coupling::DeltaKernel::cbs43, number_of_points);
     const PointViews x = on_device(space, points), zero("zero", number_of_points), u("u", number_of_points);
@@ -181,7 +182,7 @@ TEST(FlowCoupling, SpreadForcesActInTheNextStep) {
   for (const Parameters& p : {forced_box({7, 6, 5}), forced_channel()}) {
     TypedCase forced(p), copied(p);
     const Space& space = forced.instance.space();
-    const coupling::MacGrid grid = coupling_grid(forced.solver.grid());
+    const coupling::StaggeredGrid grid = coupling_grid(forced.solver.grid());
     const HostPoints points = random_points(0.3, 0.7, 6), forces = random_points(-1.0, 1.0, 7);
     const coupling::GridTransfer<Space> transfer(space, grid, coupling::DeltaKernel::cbs43, number_of_points);
     const PointViews x = on_device(space, points), zero("zero", number_of_points);

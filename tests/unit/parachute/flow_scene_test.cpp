@@ -9,7 +9,7 @@
 
 #include "common/program/failure.hpp"
 #include "common/scene/library.hpp"
-#include "miniapps/parachute/scene.hpp"
+#include "miniapps/parachute/scene/scene.hpp"
 
 namespace drogue::parachute_app {
 namespace {
@@ -64,12 +64,12 @@ TEST(FlowScene, MinimalSceneHasTheDocumentedDefaults) {
   EXPECT_EQ(p.density, 1.225);
   EXPECT_EQ(p.viscosity, 1.8e-5);
   EXPECT_EQ(p.advection, flow::Advection::weno_z);
-  EXPECT_EQ(p.time_scheme, flow::TimeScheme::ab2);
+  EXPECT_EQ(p.time_scheme, flow::TimeScheme::rk3);
   EXPECT_EQ(p.diffusion, flow::Diffusion::explicit_);
   EXPECT_EQ(p.turbulence, flow::Turbulence::none);
   EXPECT_EQ(p.pressure_solver, flow::PressureSolver::automatic);
   EXPECT_EQ(p.fixed_dt, 0.0);
-  EXPECT_EQ(p.cfl, 0.5);
+  EXPECT_EQ(p.cfl, 0.0);
   EXPECT_EQ(p.max_dt, 0.0);
   EXPECT_TRUE(scene.output.fields.empty());
 }
@@ -120,7 +120,11 @@ TEST(FlowScene, OmitsInapplicableKeys) {
                           "[tuning]", "[initial]"})
     EXPECT_FALSE(contains(printed, key)) << key;
   EXPECT_TRUE(contains(printed, "weno = \"z\"\n"));
-  EXPECT_TRUE(contains(printed, "dt = \"auto\"\ncfl = 0.5\n"));
+  // The CFL number follows from the time scheme.
+  EXPECT_TRUE(contains(printed, "time = \"rk3\"\n"));
+  EXPECT_TRUE(contains(printed, "dt = \"auto\"\n"));
+  EXPECT_FALSE(contains(printed, "cfl"));
+  EXPECT_TRUE(contains(print_flow_scene(read_text(least, {"run.cfl=0.4"})), "cfl = 0.4\n"));
   const std::string central = print_flow_scene(read_text(least, {"flow.advection=central", "run.dt=0.01"}));
   EXPECT_FALSE(contains(central, "weno"));
   EXPECT_FALSE(contains(central, "cfl"));

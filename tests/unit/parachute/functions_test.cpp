@@ -1,4 +1,4 @@
-#include "miniapps/parachute/functions.hpp"
+#include "miniapps/parachute/scene/functions.hpp"
 
 #include <gtest/gtest.h>
 

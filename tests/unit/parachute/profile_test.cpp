@@ -1,4 +1,4 @@
-#include "miniapps/parachute/profile.hpp"
+#include "miniapps/parachute/verify/profile.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "miniapps/parachute/statistics.hpp"
+#include "miniapps/parachute/verify/statistics.hpp"
 
 #include <gtest/gtest.h>
 
@@ -33,6 +33,21 @@ TEST(RunStatistics, FallingEnergyIsNoGrowth) {
   statistics.add(at(1, 0.1, 1.9, 0.9));
   EXPECT_EQ(statistics.energy_growth(), 0.0);
   EXPECT_EQ(statistics.speed_growth(), 0.0);
+}
+
+TEST(RunStatistics, FluidAtRestHasNoGrowthUnlessItMoves) {
+  RunStatistics rest, moved;
+  for (RunStatistics* statistics : {&rest, &moved}) statistics->begin(at(0, 0.0, 0.0, 0.0));
+  rest.add(at(1, 0.1, 0.0, 0.0));
+  EXPECT_EQ(rest.energy_growth(), 0.0);
+  EXPECT_EQ(rest.speed_growth(), 0.0);
+  EXPECT_EQ(rest.momentum_change(at(1, 0.1, 0.0, 0.0), 2.0), 0.0);
+  flow::Totals after = at(1, 0.1, 1.0, 1.0);
+  after.momentum[1] = 1.0;
+  moved.add(after);
+  EXPECT_EQ(moved.energy_growth(), std::numeric_limits<double>::infinity());
+  EXPECT_EQ(moved.speed_growth(), std::numeric_limits<double>::infinity());
+  EXPECT_EQ(moved.momentum_change(after, 2.0), std::numeric_limits<double>::infinity());
 }
 
 TEST(RunStatistics, FindsThePeakOfDissipation) {

@@ -10,7 +10,8 @@ namespace {
 
 MiniAppOptions parse(std::vector<const char*> words) {
   words.insert(words.begin(), "drogue-gas");
-  return parse_mini_app_options("drogue-gas", "Shock tubes.", static_cast<int>(words.size()), words.data());
+  return parse_mini_app_options("drogue-gas", "Shock tubes.", static_cast<int>(words.size()), words.data(),
+                                true);
 }
 
 /// Message of the usage failure for these arguments.
@@ -63,6 +64,17 @@ TEST(MiniAppOptions, ListScenesAndVersionRequireNoScene) {
         "--overwrite", "--quiet", "--seed-mode", "--study", "--version", "Shock tubes."}) {
     EXPECT_NE(help.find(word), std::string::npos) << word;
   }
+}
+
+TEST(MiniAppOptions, OffersTheBaselineOnlyWhereThereIsOne) {
+  const auto without = [](std::vector<const char*> words) {
+    words.insert(words.begin(), "drogue-parachute");
+    return parse_mini_app_options("drogue-parachute", "Flow.", static_cast<int>(words.size()), words.data(),
+                                  false);
+  };
+  EXPECT_EQ(without({"--help"}).help.find("--seed-mode"), std::string::npos);
+  EXPECT_EQ(without({"cavity", "--study", "meshes=4:8"}).study, "meshes=4:8");
+  EXPECT_THROW(without({"cavity", "--seed-mode"}), Failure);
 }
 
 TEST(MiniAppOptions, PassesKokkosOptionsThrough) {

@@ -1,0 +1,245 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <vector>
+
+#include "kernels/coupling/sheet/immersed_sheet.hpp"
+#include "kernels/coupling/sheet/solver.hpp"
+#include "kernels/fabric/fabric_solver.hpp"
+#include "kernels/flow/face_views.hpp"
+#include "kernels/flow/flow_solver.hpp"
+
+namespace drogue::coupling {
+
+/// Saves the cloth and the air at its vertices at the beginning of a step that the flow will take.
+template <class ExecutionSpace>
+struct SaveClothFunctor {
+  using Vectors = typename LocalAir<ExecutionSpace>::Vectors;
+
+  flow::ControlView<ExecutionSpace> control;
+  fabric::State<ExecutionSpace> cloth;
+  Vectors acceleration;
+  Vectors saved_positions, saved_velocities, saved_acceleration;
+
+  KOKKOS_FUNCTION void operator()(const int i) const {
+    if (control().trial.stop != flow::Stop::running) return;
+    const auto save = [i](const auto& from, const Vectors& to) {
+      spatial::store_vector(to, i, spatial::load_vector(from, i));
+    };
+    save(cloth.positions, saved_positions);
+    save(cloth.velocities, saved_velocities);
+    save(acceleration, saved_acceleration);
+  }
+};
+
+/// Kernel of one thread that stops the flow before its step if the cloth has failed.
+template <class ExecutionSpace>
+struct CheckClothFunctor {
+  using ReasonView = Kokkos::View<FailureReason, typename ExecutionSpace::memory_space>;
+
+  flow::ControlView<ExecutionSpace> control;
+  stepping::StepMonitor<ExecutionSpace> cloth;
+  GridTransfer<ExecutionSpace> transfer;
+  ReasonView reason;
+
+  KOKKOS_FUNCTION void operator()(int) const {
+    if (control().trial.stop != flow::Stop::running) return;
+    const TransferCounts counts = transfer.counts();
+    FailureReason found = FailureReason::flow;
+    if (counts.incomplete_points > 0) found = FailureReason::left_domain;
+    if (counts.rejected_forces > 0) found = FailureReason::not_spread;
+    if (cloth.has_failed()) found = FailureReason::cloth;
+    if (found == FailureReason::flow) return;
+    reason() = found;
+    control().trial.stop = flow::Stop::failed;
+  }
+};
+
+/// Cloth in incompressible flow on the caller's instance of an execution space. Each step of the flow holds
+/// several steps of the cloth by the symplectic Euler method and one exchange of impulses (`ImmersedSheet`),
+/// so that the forces on the air and on the cloth are equal and opposite to round-off. `Solver` is the facade
+/// over it for programs that choose the backend at run time.
+///
+/// Steps of a block have the same dt, which the host chooses from the present speed of the air and frequency
+/// of the cloth: within a block, no step waits for the host, copies to it or allocates.
+template <class ExecutionSpace>
+class CoupledSolver {
+ public:
+  using Flow = flow::FlowSolver<ExecutionSpace>;
+  using Fabric = fabric::FabricSolver<ExecutionSpace, AirRelaxation<ExecutionSpace>>;
+  using Vectors = typename LocalAir<ExecutionSpace>::Vectors;
+
+  static constexpr std::int64_t block_steps = 16;
+
+  /// Fluid at rest and cloth at rest in its mesh; set other states by `flow` and `fabric`, then call `start`.
+  /// `instance` must outlive the solver. Blocks. Throws std::invalid_argument for parameters out of range.
+  CoupledSolver(const device::Instance<ExecutionSpace>& instance, const Parameters& parameters)
+      : _space(instance.space()),
+        _parameters(completed(parameters)),
+        _flow(instance, _parameters.flow),
+        _sheet(_space, flow::coupling_grid(_flow.grid()), _parameters.fabric, _parameters.sheet,
+               _parameters.flow.density),
+        _fabric(_space, _parameters.fabric, _sheet.relaxation()),
+        _reason("drogue::coupling::failure_reason"),
+        _saved_positions("drogue::coupling::saved_positions", rows()),
+        _saved_velocities("drogue::coupling::saved_velocities", rows()),
+        _saved_acceleration("drogue::coupling::saved_acceleration", rows()) {}
+
+  /// The parts. Does not throw.
+  [[nodiscard]] Flow& flow() { return _flow; }
+  [[nodiscard]] const Flow& flow() const { return _flow; }
+  [[nodiscard]] Fabric& fabric() { return _fabric; }
+  [[nodiscard]] const Fabric& fabric() const { return _fabric; }
+  [[nodiscard]] const ImmersedSheet<ExecutionSpace>& sheet() const { return _sheet; }
+
+  /// As the functions of `Solver`.
+  void start();
+  void restore(const flow::Progress& progress);
+  flow::Stop advance(double target, std::int64_t pause_step, const flow::Poll& poll);
+  [[nodiscard]] BlockProgress block() const { return _block; }
+  void set_block(const BlockProgress& block) { _block = block; }
+  [[nodiscard]] FailureReason failure_reason();
+
+ private:
+  static Parameters completed(Parameters p) {
+    p.fabric.integrator = fabric::Integrator::symplectic_euler;
+    p.fabric.dt = 1.0;  // every block sets its own
+    flow::check_parameters(p.flow);
+    fabric::check_parameters(p.fabric);
+    if (p.substeps < 0)
+      throw std::invalid_argument("coupled solver: the number of substeps must not be negative");
+    if (!(p.flow.fixed_dt > 0.0 || p.flow.max_dt > 0.0))
+      throw std::invalid_argument("coupled solver: either fixed_dt or max_dt must be positive");
+    if (p.flow.cfl == 0.0) p.flow.cfl = 0.5;
+    p.flow.external_force = true;
+    return p;
+  }
+  [[nodiscard]] std::size_t rows() const { return static_cast<std::size_t>(_fabric.vertices()); }
+  void forget_steps();
+  void plan_block(const flow::Progress& now);
+  void enqueue_step(double dt);
+  void return_to_saved_cloth();
+
+  ExecutionSpace _space;
+  Parameters _parameters;
+  Flow _flow;
+  ImmersedSheet<ExecutionSpace> _sheet;
+  Fabric _fabric;
+  BlockProgress _block;
+  bool _is_first = true;  ///< no step precedes the next one
+  typename CheckClothFunctor<ExecutionSpace>::ReasonView _reason;
+  Vectors _saved_positions, _saved_velocities, _saved_acceleration;
+};
+
+template <class ExecutionSpace>
+void CoupledSolver<ExecutionSpace>::start() {
+  _flow.start();
+  forget_steps();
+}
+
+template <class ExecutionSpace>
+void CoupledSolver<ExecutionSpace>::forget_steps() {
+  _block = {};
+  _is_first = true;
+  Kokkos::deep_copy(_space, _sheet.acceleration(), 0.0);
+  Kokkos::deep_copy(_space, _reason, FailureReason::flow);
+  _space.fence("drogue::coupling::forget_steps");
+}
+
+template <class ExecutionSpace>
+void CoupledSolver<ExecutionSpace>::restore(const flow::Progress& progress) {
+  _flow.restore(progress);
+  forget_steps();
+  _is_first = progress.step == 0;
+}
+
+/// Chooses dt and the number of substeps of the block that begins with the present step.
+template <class ExecutionSpace>
+void CoupledSolver<ExecutionSpace>::plan_block(const flow::Progress& now) {
+  const flow::Parameters& p = _parameters.flow;
+  _block.dt = p.fixed_dt > 0.0 ? p.fixed_dt : _flow.largest_dt(now);
+  _block.substeps = _parameters.substeps;
+  if (_block.substeps == 0) {
+    const double limit = 0.5 * fabric::stable_dt(fabric::Integrator::symplectic_euler,
+                                                 _fabric.fastest_frequency(), _fabric.fastest_decay());
+    _block.substeps =
+        std::max<std::int64_t>(1, static_cast<std::int64_t>(std::ceil(std::min(_block.dt / limit, 1e9))));
+  }
+  _block.end = now.step + block_steps;
+}
+
+template <class ExecutionSpace>
+flow::Stop CoupledSolver<ExecutionSpace>::advance(double target, std::int64_t pause_step,
+                                                  const flow::Poll& poll) {
+  while (true) {
+    const flow::Progress now = _flow.progress();
+    if (_flow.has_failed()) {
+      return_to_saved_cloth();
+      return _flow.advance(target, pause_step, {});  // returns its sides to the time before the failed step
+    }
+    if (now.time >= target) return flow::Stop::target;
+    if (now.step >= _parameters.flow.max_steps) return flow::Stop::max_steps;
+    if (now.step == pause_step) return flow::Stop::pause;
+    if (poll && !poll(_flow.status())) return flow::Stop::interrupted;
+    if (now.step >= _block.end) plan_block(now);
+    std::int64_t steps = std::min(_block.end, _parameters.flow.max_steps) - now.step;
+    if (pause_step > now.step) steps = std::min(steps, pause_step - now.step);
+    // The steps that reach the target are equal.
+    const double left = target - now.time, needed = std::ceil((1.0 - 1e-9) * left / _block.dt);
+    double dt = _block.dt;
+    if (needed <= static_cast<double>(steps)) {
+      steps = std::max<std::int64_t>(1, static_cast<std::int64_t>(needed));
+      dt = left / static_cast<double>(steps);
+    }
+    _flow.set_fixed_dt(dt);
+    const std::int64_t substep = _fabric.time_state().step;
+    _fabric.set_time_state({substep, dt / static_cast<double>(_block.substeps), substep, now.time});
+    _flow.enqueue_begin(target);
+    for (std::int64_t k = 0; k < steps; ++k) enqueue_step(dt);
+  }
+}
+
+template <class ExecutionSpace>
+void CoupledSolver<ExecutionSpace>::enqueue_step(double dt) {
+  const auto velocity = flow::face_views<ExecutionSpace>(_flow.grid(), _flow.velocity()),
+             density = flow::face_views<ExecutionSpace>(_flow.grid(), _flow.force());
+  // Not before: the pressure of an output contains the forces of the last step.
+  clear_spread(_space, _sheet.transfer(), density);
+  device::launch_each(
+      _space, "drogue::coupling::save_cloth", _fabric.vertices(),
+      SaveClothFunctor<ExecutionSpace>{_flow.control(), _fabric.state(), _sheet.acceleration(),
+                                       _saved_positions, _saved_velocities, _saved_acceleration});
+  _sheet.begin_step(_space, _fabric.state(), velocity, dt);
+  static_cast<void>(_fabric.enqueue_steps(_block.substeps));
+  _sheet.spread_forces(_space, density, dt);
+  device::launch_each(
+      _space, "drogue::coupling::check_cloth", 1,
+      CheckClothFunctor<ExecutionSpace>{_flow.control(), _fabric.monitor(), _sheet.transfer(), _reason});
+  _flow.enqueue_step();
+  _sheet.end_step(_space, velocity, density, dt, _is_first);
+  _is_first = false;
+}
+
+/// Returns the cloth to the beginning of the step that failed.
+template <class ExecutionSpace>
+void CoupledSolver<ExecutionSpace>::return_to_saved_cloth() {
+  std::vector<fabric::Vector> positions(rows()), velocities(rows());
+  fabric::PointsReader<ExecutionSpace> reader;
+  reader.read(_space, _saved_positions, positions);
+  reader.read(_space, _saved_velocities, velocities);
+  _fabric.upload(positions, velocities);
+  Kokkos::deep_copy(_space, _sheet.acceleration(), _saved_acceleration);
+  _space.fence("drogue::coupling::return_to_saved_cloth");
+}
+
+template <class ExecutionSpace>
+FailureReason CoupledSolver<ExecutionSpace>::failure_reason() {
+  FailureReason reason = FailureReason::flow;
+  Kokkos::deep_copy(_space, reason, _reason);
+  _space.fence("drogue::coupling::failure_reason");
+  return reason;
+}
+
+}  // namespace drogue::coupling

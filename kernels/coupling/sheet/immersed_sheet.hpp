@@ -1,0 +1,194 @@
+#pragma once
+
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "kernels/coupling/interpolate.hpp"
+#include "kernels/coupling/sheet/local_air.hpp"
+#include "kernels/coupling/sheet/parameters.hpp"
+#include "kernels/coupling/spread.hpp"
+#include "kernels/fabric/state.hpp"
+#include "kernels/fabric/surface/surface.hpp"
+
+namespace drogue::coupling {
+
+template <class ExecutionSpace>
+struct BeginSheetStepFunctor {
+  LocalAir<ExecutionSpace> air;
+
+  KOKKOS_FUNCTION void operator()(const int i) const {
+    spatial::store_vector(air.velocity, i, spatial::load_vector(air.before, i));
+    air.impulse(i) = 0.0;
+  }
+};
+
+/// Mean force of each vertex on the air during a step of the flow.
+template <class ExecutionSpace>
+struct SheetForceFunctor {
+  LocalAir<ExecutionSpace> air;
+  typename LocalAir<ExecutionSpace>::Vectors force;  ///< N
+  double inverse_dt;                                 ///< 1/s
+
+  KOKKOS_FUNCTION void operator()(const int i) const {
+    const double magnitude = inverse_dt * air.area(i) * air.impulse(i);
+    spatial::store_vector(force, i, magnitude * spatial::load_vector(air.normal, i));
+  }
+};
+
+/// Updates the acceleration of the air without the force of the sheet.
+template <class ExecutionSpace>
+struct EndSheetStepFunctor {
+  LocalAir<ExecutionSpace> air;
+  typename LocalAir<ExecutionSpace>::Vectors after;  ///< velocity at the end of the step, m/s
+  typename LocalAir<ExecutionSpace>::Vectors push;   ///< interpolated force of the sheet per volume, N/m^3
+  double inverse_dt, inverse_density, filter;
+
+  KOKKOS_FUNCTION void operator()(const int i) const {
+    using spatial::load_vector;
+    const spatial::Point present = inverse_dt * (load_vector(after, i) - load_vector(air.before, i)) -
+                                   inverse_density * load_vector(push, i),
+                         mean = load_vector(air.acceleration, i);
+    spatial::store_vector(air.acceleration, i, mean + filter * (present - mean));
+  }
+};
+
+/// Porous sheet of cloth in air, coupled by regularised delta functions with one projection per step of the
+/// flow, however light the cloth. Each vertex holds a copy of the air velocity beside it whose mass is the
+/// row sum of interpolation after spreading. In the steps of the cloth, this copy and the vertex relax
+/// against each other by the porous law (`AirRelaxation`); at their end, the grid receives the sum of the
+/// impulses.
+///
+/// Without the filtered acceleration the energy cannot grow: a projection reduces energy, and the row sums
+/// exceed the masses that interpolation and spreading give any motion of the vertices (docs/coupling.md).
+///
+/// A step of the flow is `begin_step`, steps of the cloth with `relaxation`, `spread_forces`, a step of the
+/// flow with these forces, `end_step`. All functions are asynchronous on the given instance, allocate nothing
+/// and may be captured into a CUDA graph unless stated otherwise.
+template <class ExecutionSpace>
+class ImmersedSheet {
+ public:
+  using Vectors = typename LocalAir<ExecutionSpace>::Vectors;
+  using Scalars = typename LocalAir<ExecutionSpace>::Scalars;
+
+  /// Sheet of the triangles of `cloth`; its other vertices, such as those of suspension lines, exchange no
+  /// force with the air, whose density is in kg/m^3. Blocks. Throws std::invalid_argument for parameters out
+  /// of range.
+  ImmersedSheet(const ExecutionSpace& space, const StaggeredGrid& grid, const fabric::Parameters& cloth,
+                const SheetParameters& parameters, double density)
+      : _parameters((check_parameters(parameters, density), parameters)),
+        _density(density),
+        _surface(space, cloth.mesh),
+        _transfer(space, grid, parameters.kernel, _surface.vertices()),
+        _air{scalars("drogue::coupling::area"),
+             vectors("drogue::coupling::normal"),
+             vectors("drogue::coupling::compliance"),
+             vectors("drogue::coupling::velocity_before"),
+             vectors("drogue::coupling::acceleration"),
+             vectors("drogue::coupling::inverse_mass"),
+             vectors("drogue::coupling::local_velocity"),
+             scalars("drogue::coupling::impulse"),
+             Kokkos::View<PorousLaw*, typename ExecutionSpace::memory_space>("drogue::coupling::porosity",
+                                                                             rows())},
+        _force(vectors("drogue::coupling::force")),
+        _after(vectors("drogue::coupling::velocity_after")),
+        _push(vectors("drogue::coupling::push")) {
+    copy_inverse_masses(space, cloth);
+    copy_laws(space);
+  }
+
+  /// VertexForce of the fabric solver.
+  [[nodiscard]] AirRelaxation<ExecutionSpace> relaxation() const { return {_air}; }
+  /// Force of each vertex on the air in the last step of the flow, (vertices, 3), N. Does not throw.
+  [[nodiscard]] const Vectors& force() const { return _force; }
+  /// Filtered acceleration of the air at each vertex, (vertices, 3), m/s^2; with the state of cloth and flow
+  /// it continues a run. Does not throw.
+  [[nodiscard]] const Vectors& acceleration() const { return _air.acceleration; }
+  /// Weights of both directions. Does not throw.
+  [[nodiscard]] const GridTransfer<ExecutionSpace>& transfer() const { return _transfer; }
+
+  /// Enqueues the geometry of the sheet in the middle of a step of dt, s, and the air at its vertices.
+  /// `velocity`: of the flow at the faces, m/s. Throws std::invalid_argument for Views of the wrong extents.
+  template <class View>
+  void begin_step(const ExecutionSpace& space, const fabric::State<ExecutionSpace>& cloth,
+                  const FaceViews<View>& velocity, double dt) const {
+    freeze_positions(space, _transfer, cloth.positions, cloth.velocities, 0.5 * dt);
+    fabric::vertex_geometry(space, _surface, _transfer.positions, _air.area, _air.normal);
+    spread_row_sums(space, _transfer, _air.area, _density, _air.compliance);
+    interpolate(space, _transfer, velocity, _air.before);
+    device::launch_each(space, "drogue::coupling::begin_sheet_step", _transfer.points,
+                        BeginSheetStepFunctor<ExecutionSpace>{_air});
+  }
+
+  /// Enqueues the spreading of the forces of the sheet during dt, s: adds them to `density`, N/m^3. Throws as
+  /// `begin_step`.
+  template <class View>
+  void spread_forces(const ExecutionSpace& space, const FaceViews<View>& density, double dt) const {
+    device::launch_each(space, "drogue::coupling::sheet_force", _transfer.points,
+                        SheetForceFunctor<ExecutionSpace>{_air, _force, 1.0 / dt});
+    spread(space, _transfer, _force, density);
+  }
+
+  /// Enqueues the acceleration of the air in the step of dt, s, that led to `velocity`, m/s, under the forces
+  /// of the sheet alone in `density`, N/m^3. `is_first`: no step precedes this one. Throws as `begin_step`.
+  template <class View>
+  void end_step(const ExecutionSpace& space, const FaceViews<View>& velocity, const FaceViews<View>& density,
+                double dt, bool is_first) const {
+    interpolate(space, _transfer, velocity, _after);
+    interpolate(space, _transfer, density, _push);
+    const double filter = is_first && _parameters.filter > 0.0 ? 1.0 : _parameters.filter;
+    device::launch_each(
+        space, "drogue::coupling::end_sheet_step", _transfer.points,
+        EndSheetStepFunctor<ExecutionSpace>{_air, _after, _push, 1.0 / dt, 1.0 / _density, filter});
+  }
+
+ private:
+  static void check_parameters(const SheetParameters& p, double density) {
+    const auto is_valid = [](double value) { return value >= 0.0 && value <= 1e100; };
+    std::vector<PorousLaw> laws = p.law_of_vertex;
+    laws.push_back(p.law);
+    for (const PorousLaw& law : laws)
+      if (!is_valid(law.alpha) || !is_valid(law.beta))
+        throw std::invalid_argument("immersed sheet: alpha and beta must be finite and not negative");
+    if (!(density > 0.0) || !is_valid(density))
+      throw std::invalid_argument("immersed sheet: the density must be positive");
+    if (!(p.filter >= 0.0 && p.filter <= 1.0))
+      throw std::invalid_argument("immersed sheet: the weight of the filter must be 0 to 1");
+  }
+
+  [[nodiscard]] std::size_t rows() const { return static_cast<std::size_t>(_surface.vertices()); }
+  [[nodiscard]] Scalars scalars(const std::string& label) const { return Scalars(label, rows()); }
+  [[nodiscard]] Vectors vectors(const std::string& label) const { return Vectors(label, rows()); }
+
+  void copy_inverse_masses(const ExecutionSpace& space, const fabric::Parameters& cloth) const {
+    const auto mirror = Kokkos::create_mirror_view(_air.inverse_mass);
+    for (std::size_t i = 0; i < rows(); ++i)
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const bool is_pinned = !cloth.pinned.empty() && (cloth.pinned[i] >> axis & 1U) != 0U;
+        mirror(i, axis) = is_pinned ? 0.0 : 1.0 / cloth.mass[i];
+      }
+    for (const fabric::Motion& motion : cloth.motions)
+      for (const int i : motion.vertices) mirror(i, motion.axis) = 0.0;
+    Kokkos::deep_copy(space, _air.inverse_mass, mirror);
+    space.fence("drogue::coupling::immersed_sheet");
+  }
+
+  void copy_laws(const ExecutionSpace& space) const {
+    const std::vector<PorousLaw>& laws = _parameters.law_of_vertex;
+    if (!laws.empty() && laws.size() != rows())
+      throw std::invalid_argument("immersed sheet: there must be one porous law per vertex, or none");
+    const auto mirror = Kokkos::create_mirror_view(_air.law);
+    for (std::size_t i = 0; i < rows(); ++i) mirror(i) = laws.empty() ? _parameters.law : laws[i];
+    Kokkos::deep_copy(space, _air.law, mirror);
+    space.fence("drogue::coupling::immersed_sheet: porosity");
+  }
+
+  SheetParameters _parameters;
+  double _density;  ///< kg/m^3
+  fabric::SurfaceViews<ExecutionSpace> _surface;
+  GridTransfer<ExecutionSpace> _transfer;
+  LocalAir<ExecutionSpace> _air;
+  Vectors _force, _after, _push;
+};
+
+}  // namespace drogue::coupling

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <vector>
+
+#include "kernels/coupling/parameters.hpp"
+#include "kernels/fabric/parameters.hpp"
+#include "kernels/flow/parameters.hpp"
+
+namespace drogue::coupling {
+
+/// Pressure difference across a porous sheet, Pa, for the normal velocity w of the sheet relative to the air,
+/// m/s: alpha w + beta |w| w.
+struct PorousLaw {
+  double alpha = 0.0;        ///< Pa s/m, >= 0
+  double beta = 0.0;         ///< Pa s^2/m^2, >= 0
+  bool impermeable = false;  ///< no flow through the sheet; alpha and beta are ignored
+};
+
+/// Parameters of the exchange between a sheet and the air.
+struct SheetParameters {
+  DeltaKernel kernel = DeltaKernel::cbs43;
+  PorousLaw law;
+  std::vector<PorousLaw> law_of_vertex;  ///< one per vertex, or empty: `law` for all
+  /// Weight of the present step in the running mean of the acceleration of the air, 0 to 1. With 0 the energy
+  /// cannot grow, but the sheet leaks in proportion to dt; nearly impermeable sheets need 0.2 or less if dt
+  /// exceeds the period of their oscillations over 2 pi.
+  double filter = 0.5;
+};
+
+/// Parameters of cloth in air.
+struct Parameters {
+  /// On one rank. `external_force` is set by the coupling. With `fixed_dt` = 0, dt follows from `cfl`, by
+  /// default 0.5, and is constant in blocks of steps; `max_dt` must then be positive, since air at rest does
+  /// not limit dt.
+  flow::Parameters flow;
+  fabric::Parameters fabric;  ///< integrator and dt are set by the coupling
+  SheetParameters sheet;
+  /// Steps of the cloth in each step of the flow; 0: as many as keep the product of their dt and the largest
+  /// angular frequency of the cloth below 1 at the beginning of each block.
+  int substeps = 0;
+};
+
+}  // namespace drogue::coupling

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "kernels/coupling/sheet/parameters.hpp"
+#include "kernels/fabric/results.hpp"
+#include "kernels/flow/solver.hpp"
+
+namespace drogue::coupling {
+
+/// Reason why a step of cloth in air failed.
+enum class FailureReason {
+  flow,         ///< the flow failed: `flow::Solver::failure` has the reason
+  cloth,        ///< the state of the cloth is not finite, or its contact failed
+  left_domain,  ///< the air around a vertex extends beyond a side of the domain
+  not_spread,   ///< a force on the air is not finite or larger than 1e270 N
+};
+
+/// Division of a run into blocks of steps with constant dt. A restart that restores it continues bit for bit.
+struct BlockProgress {
+  double dt = 0.0;            ///< s, of the steps of the flow in the present block
+  std::int64_t substeps = 0;  ///< steps of the cloth in each of them
+  std::int64_t end = 0;       ///< step of the flow at which the block ends
+};
+
+/// Cloth in incompressible flow on a backend that a program chooses at run time. Needs an initialised
+/// runtime. To couple other kernels on the device, use `CoupledSolver`.
+///
+/// The functions of the base class refer to the flow; `advance` moves both. Call `upload_cloth` and `upload`,
+/// then `start`; or restore all arrays of both, then `restore`. After a failed step, the state of both is
+/// that before the step of the flow.
+class Solver : public flow::Solver {
+ public:
+  /// Sets positions, m, and velocities, m/s, of all vertices. Throws std::invalid_argument for values that
+  /// are not finite and spans of the wrong length.
+  virtual void upload_cloth(std::span<const fabric::Vector> positions,
+                            std::span<const fabric::Vector> velocities) = 0;
+
+  /// Copies positions, m, and velocities, m/s. Throws std::invalid_argument for spans of the wrong length.
+  virtual void download_cloth(std::span<fabric::Vector> positions, std::span<fabric::Vector> velocities) = 0;
+
+  /// Forces of the vertices on the air, N: mean over the last step of the flow. Throws std::invalid_argument
+  /// for a span of the wrong length.
+  virtual void forces(std::span<fabric::Vector> on_air) = 0;
+
+  /// Filtered acceleration of the air at the vertices, m/s^2, a part of the state. Throws
+  /// std::invalid_argument for a span of the wrong length.
+  virtual void download_air_acceleration(std::span<fabric::Vector> values) = 0;
+
+  /// Restores the filtered acceleration of the air, m/s^2, after `restore`. Throws std::invalid_argument for
+  /// a span of the wrong length.
+  virtual void upload_air_acceleration(std::span<const fabric::Vector> values) = 0;
+
+  /// Block of the present step. Does not throw.
+  [[nodiscard]] virtual BlockProgress block() const = 0;
+
+  /// Restores the block, after `restore`. Does not throw.
+  virtual void set_block(const BlockProgress& block) = 0;
+
+  /// Energies and momenta of the cloth. Throws only after a failed kernel.
+  [[nodiscard]] virtual fabric::Totals cloth_totals() = 0;
+
+  /// Reason of the failure that ended the last `advance` with `Stop::failed`. Throws only after a failed
+  /// kernel.
+  [[nodiscard]] virtual FailureReason failure_reason() = 0;
+};
+
+/// Solver on a backend, which must be available. Blocks. Throws std::invalid_argument for parameters out of
+/// range, and std::bad_alloc if memory runs out.
+[[nodiscard]] std::unique_ptr<Solver> create_solver(device::Backend backend, const Parameters& parameters);
+
+}  // namespace drogue::coupling

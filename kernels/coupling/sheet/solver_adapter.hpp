@@ -1,0 +1,79 @@
+#pragma once
+
+#include "kernels/coupling/sheet/coupled_solver.hpp"
+#include "kernels/flow/host_threads.hpp"
+
+namespace drogue::coupling {
+
+/// `CoupledSolver` behind the virtual interface, on an execution-space instance of its own.
+template <class ExecutionSpace>
+class SolverAdapter final : public Solver {
+ public:
+  explicit SolverAdapter(const Parameters& p)
+      : _instance(flow::host_threads<ExecutionSpace>(p.flow, {})), _solver(_instance, p) {}
+
+  void upload(flow::StateField field, std::span<const double> values) override {
+    _solver.flow().upload(field, values);
+  }
+  void download(flow::StateField field, std::span<double> values) override {
+    _solver.flow().download(field, values);
+  }
+  void start() override { _solver.start(); }
+  void restore(const flow::Progress& progress) override { _solver.restore(progress); }
+  flow::Stop advance(double target, std::int64_t pause_step, const flow::Poll& poll) override {
+    return _solver.advance(target, pause_step, poll);
+  }
+  flow::Progress progress() override { return _solver.flow().progress(); }
+  flow::StepFailure failure() override { return _solver.flow().failure(); }
+  flow::Totals totals() override { return _solver.flow().totals(); }
+  void sample(flow::CellField field, std::span<double> values) override {
+    _solver.flow().sample(field, values);
+  }
+  [[nodiscard]] std::optional<flow::PressureSolve> last_pressure_solve() const override {
+    return _solver.flow().last_pressure_solve();
+  }
+  [[nodiscard]] const char* driver() const override { return _solver.flow().driver(); }
+  [[nodiscard]] const char* pressure_solver() const override { return _solver.flow().pressure_solver(); }
+
+  void upload_cloth(std::span<const fabric::Vector> positions,
+                    std::span<const fabric::Vector> velocities) override {
+    _solver.fabric().upload(positions, velocities);
+  }
+  void download_cloth(std::span<fabric::Vector> positions, std::span<fabric::Vector> velocities) override {
+    _solver.fabric().download(positions, velocities);
+  }
+  void forces(std::span<fabric::Vector> on_air) override { read(_solver.sheet().force(), on_air); }
+  void download_air_acceleration(std::span<fabric::Vector> values) override {
+    read(_solver.sheet().acceleration(), values);
+  }
+  void upload_air_acceleration(std::span<const fabric::Vector> values) override {
+    require_vertices(values.size());
+    fabric::copy_to_points(_instance.space(), values, _solver.sheet().acceleration());
+  }
+  [[nodiscard]] BlockProgress block() const override { return _solver.block(); }
+  void set_block(const BlockProgress& block) override { _solver.set_block(block); }
+  fabric::Totals cloth_totals() override { return _solver.fabric().totals(); }
+  FailureReason failure_reason() override { return _solver.failure_reason(); }
+
+ private:
+  void require_vertices(std::size_t count) const {
+    if (count != static_cast<std::size_t>(_solver.fabric().vertices()))
+      throw std::invalid_argument("coupled solver: there must be one vector per vertex");
+  }
+  void read(const typename LocalAir<ExecutionSpace>::Vectors& from, std::span<fabric::Vector> to) {
+    require_vertices(to.size());
+    _reader.read(_instance.space(), from, to);
+  }
+
+  fabric::PointsReader<ExecutionSpace> _reader;
+  device::Instance<ExecutionSpace> _instance;
+  CoupledSolver<ExecutionSpace> _solver;
+};
+
+/// Facade of a solver on `ExecutionSpace`. Throws as the constructor of CoupledSolver does.
+template <class ExecutionSpace>
+std::unique_ptr<Solver> make_solver(const Parameters& parameters) {
+  return std::make_unique<SolverAdapter<ExecutionSpace>>(parameters);
+}
+
+}  // namespace drogue::coupling

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <limits>
+
+#include "kernels/flow/control.hpp"
+#include "kernels/flow/mac_grid.hpp"
+
+namespace drogue::flow {
+
+/// Constants that determine dt, from the parameters and the grid or a part of it. Does not throw.
+inline StepConstants step_constants(const Parameters& parameters, const MacGrid& grid) {
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  double squares = 0.0, least_square = infinite;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (grid.n[axis] == 1) continue;
+    const double square = grid.inverse_h[axis] * grid.inverse_h[axis];
+    squares += square;
+    least_square = std::min(least_square, square);
+  }
+  const double nu = parameters.viscosity / parameters.density;
+  const bool is_implicit = parameters.diffusion == Diffusion::crank_nicolson;
+  const bool limits = nu > 0.0 && squares > 0.0 && !is_implicit;
+  const bool is_rk3 = parameters.time_scheme == TimeScheme::rk3;
+  // Intervals of the negative real axis in which the methods are stable; the largest eigenvalue of the
+  // viscous term is 4 nu times the sum of the squares.
+  const double interval = is_rk3 ? 2.5 : 1.0;
+  StepConstants constants{};
+  constants.cfl = parameters.cfl > 0.0 ? parameters.cfl : is_rk3 ? 1.0 : 0.5;
+  constants.fixed_dt = parameters.fixed_dt;
+  constants.max_dt = parameters.max_dt;
+  constants.diffusive_dt = limits ? interval / (4.0 * nu * squares) : infinite;
+  // RK3 is stable up to 1.43 with fifth-order upwind derivatives and 1.73 with central ones. AB2 amplifies
+  // some wave at any CFL number without viscosity, at 0.7 by 15 percent in each step with central
+  // derivatives.
+  constants.stable_cfl = is_rk3 ? 1.4 : 0.7;
+  // Rates of advection are divided by the CFL number: the standard one, or, of a fixed dt, the largest.
+  if (parameters.turbulence != Turbulence::none)
+    constants.eddy_weight =
+        4.0 * squares / interval * (parameters.fixed_dt > 0.0 ? constants.stable_cfl : constants.cfl / 0.9);
+  // Implicit diffusion does not damp the velocity on outflows.
+  const bool has_outflow = std::ranges::any_of(
+      parameters.boundary, [](const Boundary& side) { return side.kind == BoundaryKind::outflow; });
+  constants.damping_rate = is_implicit && !has_outflow && squares > 0.0 ? nu * least_square : 0.0;
+  constants.max_steps = parameters.max_steps;
+  return constants;
+}
+
+}  // namespace drogue::flow

@@ -1,0 +1,14 @@
+#pragma once
+
+#include "common/scene/table.hpp"
+#include "miniapps/parachute/bodies/body.hpp"
+
+namespace drogue::parachute_app {
+
+/// Declares the keys of a `[[body]]`.
+void declare_body(scene::Table& table, Body& body);
+
+/// Declares the keys of `[coupling]`.
+void declare_coupling(scene::Table& table, coupling::SheetParameters& coupling);
+
+}  // namespace drogue::parachute_app

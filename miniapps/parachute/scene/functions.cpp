@@ -1,0 +1,69 @@
+#include "miniapps/parachute/scene/functions.hpp"
+
+#include <algorithm>
+#include <thread>
+
+#include "common/expression/compile.hpp"
+
+namespace drogue::parachute_app {
+namespace {
+
+const std::vector<std::string> variables = {"x", "y", "z", "t"};
+
+bool varies(const std::string& text) {
+  for (const expression::Instruction& instruction : expression::compile(text, variables))
+    if (std::ranges::find(variables, instruction.name) != variables.end()) return true;
+  return false;
+}
+
+}  // namespace
+
+SpaceTimeFunction::SpaceTimeFunction(const std::string& text) : _expression(text, variables) {
+  if (!varies(text)) _constant = _expression(std::array{0.0, 0.0, 0.0, 0.0});
+}
+
+device::ExpressionProgram device_program(const std::string& text) {
+  device::ExpressionBuilder builder;
+  for (const auto& [name, value] : expression::compile(text, variables)) builder.push(name, value);
+  return builder.program();
+}
+
+std::array<double, 3> Lattice::place(std::size_t entry) const {
+  const auto row = static_cast<std::size_t>(n[0]), column = static_cast<std::size_t>(n[1]);
+  const std::size_t index[] = {entry % row, entry / row % column, entry / row / column};
+  std::array<double, 3> result{};
+  for (std::size_t axis = 0; axis < 3; ++axis) result[axis] = coordinate(axis, static_cast<int>(index[axis]));
+  return result;
+}
+
+Lattice lattice_of(const flow::Parameters& parameters, flow::StateField field) {
+  Lattice lattice{flow::extents(parameters, field), {}, {}, {0, 0, 0}};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const int cells = parameters.cells[axis];
+    const double h = (parameters.high[axis] - parameters.low[axis]) / cells;
+    const bool on_faces = field == velocity_field(axis) && cells > 1;
+    lattice.spacing[axis] = h;
+    lattice.first[axis] = parameters.low[axis] + (on_faces ? 0.0 : 0.5 * h);
+  }
+  return lattice;
+}
+
+std::vector<double> evaluate(const SpaceTimeFunction& function, const Lattice& lattice, double time) {
+  const std::size_t size = lattice.size();
+  if (function.constant()) return std::vector<double>(size, *function.constant());
+  std::vector<double> values(size);
+  const auto fill = [&](SpaceTimeFunction own, std::size_t begin, std::size_t end) {
+    for (std::size_t entry = begin; entry < end; ++entry) values[entry] = own(lattice.place(entry), time);
+  };
+  constexpr std::size_t entries_per_thread = 50'000;
+  const std::size_t cores = std::max(1U, std::thread::hardware_concurrency());
+  const std::size_t parts = std::clamp<std::size_t>(size / entries_per_thread, 1, cores);
+  std::vector<std::jthread> threads;
+  for (std::size_t part = 1; part < parts; ++part)
+    threads.emplace_back(fill, function, size * part / parts, size * (part + 1) / parts);
+  fill(function, 0, size / parts);
+  threads.clear();
+  return values;
+}
+
+}  // namespace drogue::parachute_app

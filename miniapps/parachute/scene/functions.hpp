@@ -1,0 +1,67 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/expression/expression.hpp"
+#include "kernels/device/expression_program.hpp"
+#include "kernels/flow/solver.hpp"
+#include "miniapps/parachute/scene/scene.hpp"
+
+namespace drogue::parachute_app {
+
+/// Function of place and time on the host, from an expression of x, y, z and t in SI units. Not thread-safe:
+/// every thread needs a copy.
+class SpaceTimeFunction {
+ public:
+  /// Throws `expression::ExpressionError` for an invalid expression.
+  explicit SpaceTimeFunction(const std::string& text);
+
+  /// Value for all places and times; nothing if it varies. Does not throw.
+  [[nodiscard]] const std::optional<double>& constant() const { return _constant; }
+
+  /// Value at a place, m, and a time, s; not finite where the expression is undefined. Does not throw.
+  double operator()(const std::array<double, 3>& place, double time) const {
+    return _constant ? *_constant : _expression(std::array{place[0], place[1], place[2], time});
+  }
+
+ private:
+  expression::Expression _expression;
+  std::optional<double> _constant;
+};
+
+/// Program of an expression for kernels. Throws std::invalid_argument if it is too long.
+[[nodiscard]] device::ExpressionProgram device_program(const std::string& text);
+
+/// Points of an array of the state, or of a part of it: `n` along each axis. Point (0, 0, 0) of the whole
+/// array is at `first`, m; points are `spacing`, m, apart. Entry i + n[0] (j + n[1] k) is at point `origin` +
+/// (i, j, k).
+struct Lattice {
+  std::array<int, 3> n;
+  std::array<double, 3> first, spacing;
+  std::array<int, 3> origin = {0, 0, 0};
+
+  [[nodiscard]] std::size_t size() const {
+    return static_cast<std::size_t>(n[0]) * static_cast<std::size_t>(n[1]) * static_cast<std::size_t>(n[2]);
+  }
+  [[nodiscard]] double coordinate(std::size_t axis, int index) const {
+    return first[axis] + (origin[axis] + index) * spacing[axis];
+  }
+  [[nodiscard]] std::array<double, 3> place(std::size_t entry) const;
+};
+
+/// Points of the array `field`, coordinates in m. Does not throw.
+[[nodiscard]] Lattice lattice_of(const flow::Parameters& parameters, flow::StateField field);
+
+/// Array of the velocity component along `axis`. Does not throw.
+[[nodiscard]] inline flow::StateField velocity_field(std::size_t axis) {
+  return static_cast<flow::StateField>(static_cast<std::size_t>(flow::StateField::velocity_x) + axis);
+}
+
+/// Values of a function at all points of a lattice, computed by one thread per core. Throws std::bad_alloc.
+[[nodiscard]] std::vector<double> evaluate(const SpaceTimeFunction& function, const Lattice& lattice,
+                                           double time);
+
+}  // namespace drogue::parachute_app

@@ -1,0 +1,144 @@
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "kernels/flow/parameters.hpp"
+#include "miniapps/framework/scene_keys.hpp"
+#include "miniapps/parachute/bodies/body.hpp"
+
+/// Scene of `drogue-parachute`: the content of a TOML file, checked and with every default filled in.
+namespace drogue::parachute_app {
+
+/// Numbers or muParser expressions of x, y, z (m) and t (s) along x, y and z; all empty if absent.
+using VectorExpression = std::array<std::string, 3>;
+
+/// Names of the sides of the domain in scenes and in history.csv, in the order of
+/// `flow::Parameters::boundary`.
+inline constexpr std::array<const char*, 6> side_names = {"x_low",  "x_high", "y_low",
+                                                          "y_high", "z_low",  "z_high"};
+
+inline constexpr std::array<const char*, 3> axis_names = {"x", "y", "z"};
+
+enum class AdvectionScheme { central, weno5 };
+enum class Weights { js, z };
+
+/// Types of the low and the high side of an axis.
+using SidePair = std::array<flow::BoundaryKind, 2>;
+
+/// Exact solution: velocity, m/s, and pressure, Pa, as expressions of x, y, z and t; an empty pressure is not
+/// compared.
+struct ExactSolution {
+  VectorExpression velocity;
+  std::string pressure;
+};
+
+/// Known value and the tolerance of the relative error.
+struct Target {
+  double value = 0.0;
+  double tolerance = 0.0;
+};
+
+/// Extreme velocity along a line, m/s, and optionally its coordinate, m.
+struct Extremum {
+  double value = 0.0;
+  double tolerance = 0.0;
+  std::optional<double> at, at_tolerance;
+};
+
+/// Velocity component along a line parallel to an axis at the end of the run.
+struct Profile {
+  int component = 0;
+  int along = 1;
+  std::array<double, 3> through = {};  ///< point of the line, m; the coordinate along the axis is ignored
+  std::vector<std::array<double, 2>> points;  ///< coordinate, m, and velocity, m/s
+  double tolerance = 0.0;                     ///< of the velocity at `points`, m/s
+  std::optional<Extremum> minimum, maximum;
+};
+
+/// Flow rate out of the domain through a side, m^3/s.
+struct FlowRate {
+  int side = 0;
+  Target target;
+};
+
+/// Component of the force of the fluid on a body at the end, N.
+struct BodyForce {
+  int body = 0;
+  int axis = 0;
+  Target target;
+};
+
+/// Largest rate at which the kinetic energy falls, W, and optionally its time, s.
+struct DissipationPeak {
+  Target target;
+  std::optional<double> time, time_tolerance;
+};
+
+struct Verify {
+  std::optional<ExactSolution> exact;
+  std::map<std::string, double> tolerances;                     ///< by name: l1_velocity ... linf_pressure
+  std::optional<double> divergence;                             ///< 1/s
+  std::optional<double> momentum, energy_growth, speed_growth;  ///< relative
+  std::optional<Target> kinetic_energy;                         ///< at the end, J
+  std::optional<DissipationPeak> dissipation_peak;
+  std::vector<FlowRate> flow_rates;
+  std::vector<BodyForce> forces;
+  std::vector<Profile> profiles;
+};
+
+/// Solver parameters for air at 15 degrees Celsius: 1.225 kg/m^3, 1.8e-5 Pa s. Does not throw.
+inline flow::Parameters air_parameters() {
+  flow::Parameters parameters;
+  parameters.density = 1.225;
+  parameters.viscosity = 1.8e-5;
+  return parameters;
+}
+
+struct FlowScene {
+  std::filesystem::path file;
+  std::string name;  ///< the file's name without folder and extension
+  std::string description;
+  flow::Parameters parameters = air_parameters();  ///< complete once the scene has been read
+  AdvectionScheme advection = AdvectionScheme::weno5;
+  Weights weights = Weights::z;
+  VectorExpression velocity = {"0.0", "0.0", "0.0"};  ///< inflow, and initial velocity without `initial`, m/s
+  VectorExpression initial;                           ///< initial velocity, m/s
+  std::array<std::optional<SidePair>, 3> sides;       ///< of each axis
+  std::array<VectorExpression, 6> wall_velocity;      ///< m/s
+  std::vector<Body> bodies;
+  coupling::SheetParameters coupling;  ///< its laws are those of the bodies
+  double end_time = 0.0;               ///< s
+  framework::OutputRequest output;
+  Verify verify;
+
+  [[nodiscard]] const VectorExpression& initial_velocity() const {
+    return initial[0].empty() ? velocity : initial;
+  }
+};
+
+/// Fields of fields.h5: velocity, pressure, vorticity, q_criterion. Does not throw.
+const std::vector<std::string>& field_names();
+
+/// Reads and checks `file` with its `--set` assignments, and evaluates the initial velocity at every face.
+/// Throws `Failure`: usage for a missing file, invalid_scene (`FILE:LINE: ...`) otherwise.
+FlowScene read_flow_scene(const std::filesystem::path& file, const std::vector<std::string>& sets = {});
+
+/// Resolved scene as TOML: every default that applies, no key that does not. It resolves to itself.
+std::string print_flow_scene(const FlowScene& scene);
+
+/// Fingerprint of fluid, grid and scheme for restart files. Output, checks, the end time and the choice of dt
+/// may change between a run and its continuation.
+std::string scene_fingerprint(FlowScene scene);
+
+/// Folder of the shipped scenes: beside the installed or bundled program, else in the source tree.
+std::filesystem::path scene_folder();
+
+/// Markdown page docs/scenes-parachute.md: all keys with type, range, unit, default and meaning.
+std::string document_flow_scene();
+
+}  // namespace drogue::parachute_app

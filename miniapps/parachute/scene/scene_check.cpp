@@ -1,0 +1,242 @@
+#include "miniapps/parachute/scene/scene_check.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <stdexcept>
+
+#include "common/scene/node.hpp"
+#include "common/scene/read.hpp"
+#include "miniapps/parachute/bodies/body_check.hpp"
+#include "miniapps/parachute/scene/functions.hpp"
+
+namespace drogue::parachute_app {
+namespace {
+
+using flow::BoundaryKind;
+using scene::contradict;
+using scene::real_text;
+using scene::Table;
+
+/// Largest relative difference of inflow and outflow that rounded expressions explain.
+constexpr double flux_tolerance = 1e-10;
+
+std::string key_of_wall(std::size_t side) { return std::string("grid.wall_velocity.") + side_names[side]; }
+
+std::string place_text(const std::array<double, 3>& place) {
+  std::string text;
+  for (const double x : place) text += (text.empty() ? "" : ", ") + real_text(x);
+  return "(" + text + ")";
+}
+
+void check_grid(const Table& root, const flow::Parameters& p) {
+  double cells = 1.0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    constexpr int least_cells = 4;
+    if (p.cells[axis] > 1 && p.cells[axis] < least_cells)
+      contradict(root, "grid.cells",
+                 "grid.cells[" + std::to_string(axis) + "] = " + std::to_string(p.cells[axis]) +
+                     " is out of range: an axis has 1 cell, or at least 4");
+    cells *= p.cells[axis];
+    const double length = p.high[axis] - p.low[axis], h = length / p.cells[axis];
+    const double rounding =
+        std::numeric_limits<double>::epsilon() * std::max(std::abs(p.low[axis]), std::abs(p.high[axis]));
+    if (!std::isfinite(length) || h < 16.0 * rounding)
+      contradict(root, "grid.domain",
+                 std::string("grid.domain: along ") + axis_names[axis] + ", " +
+                     std::to_string(p.cells[axis]) + " cells between " + real_text(p.low[axis]) + " and " +
+                     real_text(p.high[axis]) + " have faces that do not differ in FP64");
+  }
+  constexpr double most_cells = 2147483647.0;
+  if (cells > most_cells)
+    contradict(
+        root, "grid.cells",
+        "grid.cells: " + std::to_string(static_cast<std::int64_t>(cells)) + " cells are more than 2^31 - 1");
+}
+
+void complete_sides(const Table& root, FlowScene& scene) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    std::optional<SidePair>& sides = scene.sides[axis];
+    const std::string key = std::string("grid.boundary.") + axis_names[axis];
+    const bool single = scene.parameters.cells[axis] == 1;
+    if (!sides && !single)
+      contradict(root, "grid.boundary",
+                 "missing key \"" + key + "\" (needed with more than one cell along " + axis_names[axis] +
+                     "): the sides normal to this axis");
+    if (!sides) sides = SidePair{BoundaryKind::periodic, BoundaryKind::periodic};
+    const auto is_refused = [](BoundaryKind kind) {
+      return kind != BoundaryKind::periodic && kind != BoundaryKind::slip;
+    };
+    if (single && std::ranges::any_of(*sides, is_refused))
+      contradict(root, key,
+                 key + ": with one cell along " + axis_names[axis] + ", its sides are periodic or slip");
+    for (std::size_t end = 0; end < 2; ++end) scene.parameters.boundary[2 * axis + end].kind = (*sides)[end];
+  }
+}
+
+void check_scheme(const Table& root, const flow::Parameters& p) {
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    if (p.pressure_drop[axis] != 0.0 && p.boundary[2 * axis].kind != BoundaryKind::periodic)
+      contradict(root, "flow.pressure_drop",
+                 std::string("flow.pressure_drop: the axis ") + axis_names[axis] + " has no periodic sides");
+  if (p.diffusion == flow::Diffusion::crank_nicolson && p.time_scheme != flow::TimeScheme::ab2)
+    contradict(root, "flow.diffusion", "flow.diffusion = \"crank-nicolson\" needs flow.time = \"ab2\"");
+}
+
+/// Sets the velocity of a side: three numbers, or three programs.
+void set_velocity(const Table& root, const std::string& key, const VectorExpression& text,
+                  flow::Boundary& side) {
+  std::array<SpaceTimeFunction, 3> functions = {SpaceTimeFunction(text[0]), SpaceTimeFunction(text[1]),
+                                                SpaceTimeFunction(text[2])};
+  const bool all_constant =
+      std::ranges::all_of(functions, [](const auto& f) { return f.constant().has_value(); });
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (all_constant) {
+      side.velocity[axis] = *functions[axis].constant();
+      continue;
+    }
+    try {
+      side.velocity_expressions.push_back(device_program(text[axis]));
+    } catch (const std::invalid_argument& refused) {
+      contradict(root, key, key + "[" + std::to_string(axis) + "]: " + refused.what());
+    }
+  }
+}
+
+/// Centres of the cell faces on a side.
+Lattice side_lattice(const flow::Parameters& p, std::size_t side) {
+  const std::size_t axis = side / 2;
+  Lattice lattice = lattice_of(p, flow::StateField::pressure);
+  lattice.n[axis] = 1;
+  lattice.first[axis] = side % 2 == 0 ? p.low[axis] : p.high[axis];
+  return lattice;
+}
+
+/// True if the slip sides of an axis with one cell leave no velocity along it.
+bool is_closed(const flow::Parameters& p, std::size_t axis) {
+  return p.cells[axis] == 1 && p.boundary[2 * axis].kind == BoundaryKind::slip;
+}
+
+/// Checks a prescribed velocity at time 0, and that walls move along themselves.
+void check_velocity(const Table& root, const FlowScene& scene, const std::string& key,
+                    const VectorExpression& text, std::size_t side) {
+  const Lattice lattice = side_lattice(scene.parameters, side);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const SpaceTimeFunction velocity(text[axis]);
+    const std::string component = key + "[" + std::to_string(axis) + "] = " + text[axis];
+    const bool is_wall = scene.parameters.boundary[side].kind == BoundaryKind::wall;
+    if (is_wall && axis == side / 2 && velocity.constant() != 0.0)
+      contradict(root, key, component + " is normal to the wall: it must be 0");
+    if (is_closed(scene.parameters, axis) && velocity.constant() != 0.0)
+      contradict(root, key,
+                 component + " is normal to the slip sides of an axis with one cell: it must be 0");
+    const std::vector<double> values = evaluate(velocity, lattice, 0.0);
+    const auto bad = std::ranges::find_if(values, [](double value) { return !std::isfinite(value); });
+    if (bad != values.end())
+      contradict(root, key,
+                 component + " is not finite at " +
+                     place_text(lattice.place(static_cast<std::size_t>(bad - values.begin()))) +
+                     " on the side " + side_names[side] + " at t = 0");
+  }
+}
+
+void complete_velocities(const Table& root, FlowScene& scene) {
+  flow::Parameters& p = scene.parameters;
+  for (std::size_t side = 0; side < 6; ++side) {
+    const BoundaryKind kind = p.boundary[side].kind;
+    const VectorExpression& wall = scene.wall_velocity[side];
+    if (!wall[0].empty() && kind != BoundaryKind::wall)
+      contradict(root, key_of_wall(side), key_of_wall(side) + ": this side is no wall");
+    const bool is_inflow = kind == BoundaryKind::inflow;
+    if (!is_inflow && wall[0].empty()) continue;
+    const std::string key = is_inflow ? "fluid.velocity" : key_of_wall(side);
+    const VectorExpression& text = is_inflow ? scene.velocity : wall;
+    check_velocity(root, scene, key, text, side);
+    set_velocity(root, key, text, p.boundary[side]);
+  }
+}
+
+/// Net flow rate through all inflow sides into the domain, m^3/s, and the sum of its parts' magnitudes.
+std::array<double, 2> inflow_at(const FlowScene& scene, double time) {
+  std::array<double, 2> rates{};
+  for (std::size_t side = 0; side < 6; ++side) {
+    if (scene.parameters.boundary[side].kind != BoundaryKind::inflow) continue;
+    const Lattice lattice = side_lattice(scene.parameters, side);
+    const double area = lattice.spacing[(side / 2 + 1) % 3] * lattice.spacing[(side / 2 + 2) % 3] *
+                        (side % 2 == 0 ? 1.0 : -1.0);
+    for (const double value : evaluate(SpaceTimeFunction(scene.velocity[side / 2]), lattice, time)) {
+      rates[0] += value * area;
+      rates[1] += std::abs(value * area);
+    }
+  }
+  return rates;
+}
+
+/// Without an outflow, what flows in must flow out through other inflow sides: checked at several times of
+/// the run.
+void check_net_inflow(const Table& root, const FlowScene& scene) {
+  for (const flow::Boundary& side : scene.parameters.boundary)
+    if (side.kind == BoundaryKind::outflow) return;
+  constexpr int intervals = 17;
+  for (int i = 0; i <= intervals; ++i) {
+    const double time = scene.end_time * i / intervals;
+    const auto [net, magnitude] = inflow_at(scene, time);
+    if (std::abs(net) > flux_tolerance * magnitude)
+      contradict(root, "fluid.velocity",
+                 "fluid.velocity: at t = " + real_text(time) + " s, " + real_text(net) +
+                     " m^3/s flow into a domain without an outflow; grid.boundary needs an \"outflow\" side");
+  }
+}
+
+/// Lets the solver check what remains; its sentence becomes that of the scene.
+void check_solver(const Table& root, const flow::Parameters& p) {
+  try {
+    flow::check_parameters(p);
+  } catch (const std::invalid_argument& refused) {
+    contradict(root, root.given("flow") ? "flow" : "grid", refused.what());
+  }
+}
+
+void check_initial(const Table& root, const FlowScene& scene) {
+  const bool own = !scene.initial[0].empty();
+  const std::string key = own ? "initial.velocity" : "fluid.velocity";
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::string& text = scene.initial_velocity()[axis];
+    const Lattice lattice = lattice_of(scene.parameters, velocity_field(axis));
+    const std::vector<double> values = evaluate(SpaceTimeFunction(text), lattice, 0.0);
+    const auto refuse = [&](const auto& is_bad, const std::string& reason) {
+      const auto bad = std::ranges::find_if(values, is_bad);
+      if (bad == values.end()) return;
+      contradict(root, key,
+                 key + "[" + std::to_string(axis) + "] = " + text + " is " + reason + " at " +
+                     place_text(lattice.place(static_cast<std::size_t>(bad - values.begin()))) + " at t = 0");
+    };
+    refuse([](double value) { return !std::isfinite(value); }, "not finite");
+    if (is_closed(scene.parameters, axis))
+      refuse([](double value) { return value != 0.0; }, "normal to the slip sides of an axis with one cell");
+  }
+}
+
+}  // namespace
+
+void complete_and_check(const Table& root, FlowScene& scene) {
+  flow::Parameters& p = scene.parameters;
+  check_grid(root, p);
+  complete_sides(root, scene);
+  const bool is_central = scene.advection == AdvectionScheme::central;
+  p.advection = is_central                     ? flow::Advection::central
+                : scene.weights == Weights::js ? flow::Advection::weno_js
+                                               : flow::Advection::weno_z;
+  check_scheme(root, p);
+  complete_velocities(root, scene);
+  check_net_inflow(root, scene);
+  check_solver(root, p);
+  check_bodies(root, scene);
+  framework::complete_output(root, scene.output, {"velocity", "pressure", "vorticity"},
+                             {scene.end_time, "run.end_time"});
+  check_verify(root, scene);
+  check_initial(root, scene);
+}
+
+}  // namespace drogue::parachute_app

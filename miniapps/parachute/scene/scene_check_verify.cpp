@@ -1,0 +1,111 @@
+#include <algorithm>
+
+#include "common/scene/node.hpp"
+#include "common/scene/read.hpp"
+#include "miniapps/parachute/scene/scene_check.hpp"
+
+namespace drogue::parachute_app {
+namespace {
+
+using flow::BoundaryKind;
+using scene::contradict;
+using scene::Table;
+
+bool is_forced(const flow::Parameters& p) {
+  const auto acts = [](double force) { return force != 0.0; };
+  return std::ranges::any_of(p.body_force, acts) || std::ranges::any_of(p.pressure_drop, acts);
+}
+
+/// Checks that follow the run need rows of the history.
+void require_rows(const Table& root, const FlowScene& scene, const std::string& key) {
+  if (scene.output.history_every == 0)
+    contradict(root, key, key + " needs rows of the history; output.history_every is 0");
+}
+
+void check_momentum(const Table& root, const FlowScene& scene) {
+  const flow::Parameters& p = scene.parameters;
+  const auto open = std::ranges::find_if(
+      p.boundary, [](const flow::Boundary& side) { return side.kind != BoundaryKind::periodic; });
+  if (open != p.boundary.end())
+    contradict(root, "verify.momentum",
+               std::string("verify.momentum: the side ") +
+                   side_names[static_cast<std::size_t>(open - p.boundary.begin())] +
+                   " is not periodic, so that the momentum changes");
+  if (is_forced(p))
+    contradict(root, "verify.momentum",
+               "verify.momentum: flow.body_force or flow.pressure_drop changes the momentum");
+}
+
+void check_flow_rates(const Table& root, const FlowScene& scene) {
+  for (std::size_t i = 0; i < scene.verify.flow_rates.size(); ++i) {
+    const FlowRate& rate = scene.verify.flow_rates[i];
+    const std::string path = "verify.flow_rate[" + std::to_string(i) + "]";
+    const BoundaryKind kind = scene.parameters.boundary[static_cast<std::size_t>(rate.side)].kind;
+    if (kind != BoundaryKind::inflow && kind != BoundaryKind::outflow)
+      contradict(root, path + ".side",
+                 path + ".side: nothing flows through a side that is neither inflow nor outflow");
+    if (rate.target.value == 0.0)
+      contradict(root, path + ".value", path + ".value must not be 0: the tolerance is relative");
+  }
+}
+
+void check_forces(const Table& root, const FlowScene& scene) {
+  for (std::size_t i = 0; i < scene.verify.forces.size(); ++i) {
+    const BodyForce& force = scene.verify.forces[i];
+    const std::string path = "verify.force[" + std::to_string(i) + "]";
+    if (force.body >= static_cast<int>(scene.bodies.size()))
+      contradict(root, path + ".body",
+                 path + ".body = " + std::to_string(force.body) + ": the number of bodies is " +
+                     std::to_string(scene.bodies.size()) + ", and the first one is 0");
+    if (force.target.value == 0.0)
+      contradict(root, path + ".value", path + ".value must not be 0: the tolerance is relative");
+  }
+}
+
+void check_profiles(const Table& root, const FlowScene& scene) {
+  const flow::Parameters& p = scene.parameters;
+  for (std::size_t i = 0; i < scene.verify.profiles.size(); ++i) {
+    const Profile& profile = scene.verify.profiles[i];
+    const std::string path = "verify.profile[" + std::to_string(i) + "]";
+    const auto along = static_cast<std::size_t>(profile.along);
+    if (profile.points.empty() && !profile.minimum && !profile.maximum)
+      contradict(root, path, path + " needs points, minimum or maximum");
+    constexpr int least_cells = 4;
+    if (p.cells[along] < least_cells)
+      contradict(root, path + ".along",
+                 path + ".along = \"" + axis_names[along] + "\": this axis has fewer than 4 cells");
+    const auto inside = [&](std::size_t axis, double x) { return x >= p.low[axis] && x <= p.high[axis]; };
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      if (axis != along && !inside(axis, profile.through[axis]))
+        contradict(root, path + ".through",
+                   path + ".through[" + std::to_string(axis) +
+                       "] = " + scene::real_text(profile.through[axis]) + " is outside of the domain");
+    for (const auto& [where, value] : profile.points)
+      if (!inside(along, where))
+        contradict(root, path + ".points",
+                   path + ".points: the coordinate " + scene::real_text(where) + " is outside of the domain");
+  }
+}
+
+}  // namespace
+
+void check_verify(const Table& root, const FlowScene& scene) {
+  const Verify& verify = scene.verify;
+  if (verify.momentum) check_momentum(root, scene);
+  if (verify.energy_growth) require_rows(root, scene, "verify.energy_growth");
+  if (verify.speed_growth) require_rows(root, scene, "verify.speed_growth");
+  if (verify.dissipation_peak) {
+    require_rows(root, scene, "verify.dissipation_peak");
+    if (verify.dissipation_peak->target.value == 0.0)
+      contradict(root, "verify.dissipation_peak.value",
+                 "verify.dissipation_peak.value must not be 0: the tolerance is relative");
+  }
+  if (verify.kinetic_energy && verify.kinetic_energy->value == 0.0)
+    contradict(root, "verify.kinetic_energy.value",
+               "verify.kinetic_energy.value must not be 0: the tolerance is relative");
+  check_flow_rates(root, scene);
+  check_forces(root, scene);
+  check_profiles(root, scene);
+}
+
+}  // namespace drogue::parachute_app

@@ -1,0 +1,204 @@
+#include "miniapps/parachute/scene/scene_keys.hpp"
+
+#include "miniapps/parachute/bodies/body_keys.hpp"
+#include "miniapps/parachute/scene/codecs.hpp"
+
+namespace drogue::parachute_app {
+namespace {
+
+using scene::Choices;
+using scene::Table;
+
+constexpr double most_cells_per_axis = 16384;
+
+const Choices<AdvectionScheme> advection_choices = {{"central", AdvectionScheme::central},
+                                                    {"weno5", AdvectionScheme::weno5}};
+const Choices<Weights> weights_choices = {{"js", Weights::js}, {"z", Weights::z}};
+const Choices<flow::Diffusion> diffusion_choices = {{"explicit", flow::Diffusion::explicit_},
+                                                    {"crank-nicolson", flow::Diffusion::crank_nicolson}};
+const Choices<flow::TimeScheme> time_choices = {{"ab2", flow::TimeScheme::ab2},
+                                                {"rk3", flow::TimeScheme::rk3}};
+const Choices<flow::PressureSolver> pressure_choices = {
+    {"auto", flow::PressureSolver::automatic},
+    {"fft", flow::PressureSolver::fft},
+    {"diagonalization", flow::PressureSolver::diagonalization},
+    {"hypre-pfmg", flow::PressureSolver::hypre_pfmg}};
+const Choices<flow::Turbulence> turbulence_choices = {{"none", flow::Turbulence::none},
+                                                      {"smagorinsky", flow::Turbulence::smagorinsky},
+                                                      {"vreman", flow::Turbulence::vreman}};
+const Choices<flow::Driver> driver_choices = {
+    {"auto", flow::Driver::automatic}, {"plain", flow::Driver::plain}, {"graph", flow::Driver::graph}};
+
+const std::vector<std::string> place = {"x", "y", "z"};
+const std::vector<std::string> place_and_time = {"x", "y", "z", "t"};
+
+void declare_fluid(Table& table, FlowScene& scene) {
+  table.value("density", scene::real_codec(scene.parameters.density), "Density").unit("kg/m^3").above(0.0);
+  table.value("viscosity", scene::real_codec(scene.parameters.viscosity), "Dynamic viscosity")
+      .unit("Pa s")
+      .at_least(0.0);
+  table
+      .value("velocity", vector_expression_codec(scene.velocity, place_and_time),
+             "Velocity at inflow sides, and at time 0 everywhere unless [initial] is given")
+      .unit("m/s");
+}
+
+void declare_grid(Table& table, FlowScene& scene) {
+  flow::Parameters& parameters = scene.parameters;
+  table
+      .value("cells", cells_codec(parameters.cells),
+             "Cells along x, y, z; 1 for an axis along which nothing varies")
+      .range(1, most_cells_per_axis)
+      .required();
+  table.value("domain", domain_codec(parameters.low, parameters.high), "Ends of the domain along x, y, z")
+      .unit("m")
+      .required();
+  table.table(
+      "boundary",
+      [&](Table& sides) {
+        for (std::size_t axis = 0; axis < 3; ++axis)
+          sides
+              .value(
+                  axis_names[axis], sides_codec(scene.sides[axis]),
+                  std::string("Both sides normal to ") + axis_names[axis] + ", or the low and the high one")
+              .default_text("`\"periodic\"` with one cell, else none");
+      },
+      "The sides of the domain");
+  table.table(
+      "wall_velocity",
+      [&](Table& walls) {
+        for (std::size_t side = 0; side < 6; ++side)
+          walls
+              .value(side_names[side], vector_expression_codec(scene.wall_velocity[side], place_and_time),
+                     "Velocity of the wall at this side")
+              .unit("m/s")
+              .default_text("`[0, 0, 0]` at a wall");
+      },
+      "Velocities of moving walls");
+}
+
+void declare_flow(Table& table, FlowScene& scene) {
+  flow::Parameters& parameters = scene.parameters;
+  table.value("advection", scene::choice_codec(scene.advection, advection_choices),
+              "Advective fluxes: second-order central or fifth-order upwind-biased");
+  table
+      .value("weno", scene::choice_codec(scene.weights, weights_choices),
+             "Nonlinear weights of the reconstruction")
+      .when([&scene] { return scene.advection == AdvectionScheme::weno5; }, "with advection = \"weno5\"",
+            "advection");
+  table.value("diffusion", scene::choice_codec(parameters.diffusion, diffusion_choices),
+              "Time integration of viscous stresses: explicit, which limits dt, or implicit");
+  table.value("time", scene::choice_codec(parameters.time_scheme, time_choices),
+              "Time integration: Runge-Kutta of third order with three projections, or Adams-Bashforth of "
+              "second order");
+  table.value("pressure", scene::choice_codec(parameters.pressure_solver, pressure_choices),
+              "Solver of the pressure equation; `auto` is the faster direct one");
+  table
+      .value("pressure_tolerance", scene::real_codec(parameters.pressure_tolerance),
+             "Relative residual at which the iterations end")
+      .above(0.0)
+      .at_most(1e-2)
+      .when([&parameters] { return parameters.pressure_solver == flow::PressureSolver::hypre_pfmg; },
+            "with pressure = \"hypre-pfmg\"", "pressure");
+  table.value("turbulence", scene::choice_codec(parameters.turbulence, turbulence_choices),
+              "Model of unresolved scales; none is implicit large-eddy simulation");
+  table
+      .value(
+          "turbulence_constant",
+          absent_if_zero(scene::real_codec(parameters.turbulence_constant), parameters.turbulence_constant),
+          "Constant of the model")
+      .above(0.0)
+      .at_most(1.0)
+      .when([&parameters] { return parameters.turbulence != flow::Turbulence::none; },
+            "with a turbulence model", "turbulence")
+      .default_text("0.17 for Smagorinsky, 0.07 for Vreman");
+  table.value("body_force", vector_codec(parameters.body_force), "Force per volume").unit("N/m^3");
+  table
+      .value("pressure_drop", vector_codec(parameters.pressure_drop),
+             "Fall of the mean pressure from the low to the high side of periodic axes")
+      .unit("Pa");
+}
+
+void declare_run(Table& table, FlowScene& scene) {
+  flow::Parameters& parameters = scene.parameters;
+  const auto free_step = [&parameters] { return parameters.fixed_dt == 0.0; };
+  table.value("end_time", scene::real_codec(scene.end_time), "End of the run")
+      .unit("s")
+      .above(0.0)
+      .required();
+  table.value("dt", time_step_codec(parameters.fixed_dt), "Time step; `auto` follows from cfl")
+      .unit("s")
+      .above(0.0);
+  table
+      .value("cfl", absent_if_zero(scene::real_codec(parameters.cfl), parameters.cfl),
+             "Courant number: dt times the largest sum of speeds over cell widths along the axes")
+      .above(0.0)
+      .at_most(2.0)
+      .when(free_step, "with dt = \"auto\"", "dt")
+      .default_text("1 for rk3, 0.5 for ab2");
+  table
+      .value("max_dt", absent_if_zero(scene::real_codec(parameters.max_dt), parameters.max_dt),
+             "Upper bound of dt, say for a fluid at rest")
+      .unit("s")
+      .above(0.0)
+      .default_text("none")
+      .when(free_step, "with dt = \"auto\"", "dt");
+  table
+      .value("max_steps", scene::integer_codec(parameters.max_steps),
+             "Limit of steps; a run that reaches it fails")
+      .range(1, 1e12);
+}
+
+}  // namespace
+
+void declare_flow_scene(Table& root, FlowScene& scene) {
+  framework::declare_app(root, "parachute", scene.description);
+  root.table(
+          "fluid", [&](Table& table) { declare_fluid(table, scene); }, "The fluid")
+      .required();
+  root.table(
+          "grid", [&](Table& table) { declare_grid(table, scene); }, "The grid and its sides")
+      .required();
+  root.table(
+      "initial",
+      [&](Table& table) {
+        table.value("velocity", vector_expression_codec(scene.initial, place), "Velocity at time 0")
+            .unit("m/s")
+            .default_text("fluid.velocity at time 0");
+      },
+      "The state at the start; the gradient part of its velocity is removed");
+  root.table(
+      "flow", [&](Table& table) { declare_flow(table, scene); }, "The numerical scheme and the forces");
+  root.tables("body", scene.bodies, declare_body, "Rigid sheets in the flow, which do not move");
+  root.table(
+          "coupling", [&](Table& table) { declare_coupling(table, scene.coupling); },
+          "The exchange of forces between the fluid and bodies")
+      .when([&scene] { return !scene.bodies.empty(); }, "with a [[body]]", "body");
+  root.table(
+          "run", [&](Table& table) { declare_run(table, scene); }, "Length and steps of the run")
+      .required();
+  root.table(
+      "output", [&](Table& table) { framework::declare_output(table, scene.output, field_names()); },
+      "Files of the run directory");
+  root.table(
+      "verify", [&](Table& table) { declare_verify(table, scene.verify); }, "Checks at the end");
+  root.table(
+      "tuning",
+      [&](Table& table) {
+        table.table(
+            "step",
+            [&](Table& step) {
+              scene::Codec driver = scene::choice_codec(scene.parameters.driver, driver_choices);
+              driver.print = [print = driver.print, &driver_of = scene.parameters.driver] {
+                return driver_of == flow::Driver::automatic ? std::nullopt : print();
+              };
+              step.value("driver", driver,
+                         "Launches of the kernels of a step on a GPU: one by one, or as one graph")
+                  .default_text("`\"auto\"`");
+            },
+            "The launch of a step");
+      },
+      "Launches of kernels; they change speed, not results");
+}
+
+}  // namespace drogue::parachute_app

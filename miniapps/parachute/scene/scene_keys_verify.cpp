@@ -1,0 +1,155 @@
+#include "miniapps/parachute/scene/codecs.hpp"
+#include "miniapps/parachute/scene/scene_keys.hpp"
+
+namespace drogue::parachute_app {
+namespace {
+
+using scene::Choices;
+using scene::Table;
+
+const std::vector<std::string> verified_place_and_time = {"x", "y", "z", "t"};
+
+const Choices<int> axis_choices = {{"x", 0}, {"y", 1}, {"z", 2}};
+const Choices<int> side_choices = {{"x_low", 0},  {"x_high", 1}, {"y_low", 2},
+                                   {"y_high", 3}, {"z_low", 4},  {"z_high", 5}};
+
+void declare_target(Table& table, Target& target, const std::string& unit, const std::string& tolerance) {
+  table.value("value", scene::real_codec(target.value), "Expected value").unit(unit).required();
+  table.value("tolerance", scene::real_codec(target.tolerance), tolerance).at_least(0.0).required();
+}
+
+void declare_exact(Table& table, ExactSolution& exact) {
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    table
+        .value(axis_names[axis],
+               scene::real_or_expression_codec(exact.velocity[axis], verified_place_and_time),
+               std::string("Velocity along ") + axis_names[axis])
+        .unit("m/s")
+        .required();
+  table
+      .value("pressure", scene::real_or_expression_codec(exact.pressure, verified_place_and_time),
+             "Pressure, up to a constant unless a side is an outflow")
+      .unit("Pa");
+}
+
+void declare_norms(Table& table, Verify& verify) {
+  const auto has_velocity = [&verify] { return verify.exact.has_value(); };
+  const auto has_pressure = [&verify] { return verify.exact && !verify.exact->pressure.empty(); };
+  const std::pair<const char*, const char*> norms[] = {
+      {"l1", "Mean absolute error"}, {"l2", "Root-mean-square error"}, {"linf", "Largest error"}};
+  for (const auto& [norm, meaning] : norms) {
+    const std::string velocity = std::string(norm) + "_velocity", pressure = std::string(norm) + "_pressure";
+    table
+        .value(velocity, scene::real_codec(verify.tolerances, velocity),
+               std::string(meaning) + " of the velocity that passes")
+        .unit("m/s")
+        .at_least(0.0)
+        .when(has_velocity, "with exact, which names what to compare with", "exact");
+    table
+        .value(pressure, scene::real_codec(verify.tolerances, pressure),
+               std::string(meaning) + " of the pressure that passes")
+        .unit("Pa")
+        .at_least(0.0)
+        .when(has_pressure, "with exact.pressure, which names what to compare with", "exact");
+  }
+}
+
+void declare_extremum(Table& table, Extremum& extremum) {
+  table.value("value", scene::real_codec(extremum.value), "Expected velocity").unit("m/s").required();
+  table.value("tolerance", scene::real_codec(extremum.tolerance), "Largest deviation that passes")
+      .unit("m/s")
+      .at_least(0.0)
+      .required();
+  table.value("at", scene::real_codec(extremum.at), "Expected coordinate").unit("m");
+  table.value("at_tolerance", scene::real_codec(extremum.at_tolerance), "Largest deviation of it that passes")
+      .unit("m")
+      .at_least(0.0)
+      .when([&extremum] { return extremum.at.has_value(); }, "with at", "at")
+      .required();
+}
+
+void declare_profile(Table& table, Profile& profile) {
+  table.value("component", scene::choice_codec(profile.component, axis_choices), "Component of the velocity")
+      .required();
+  table.value("along", scene::choice_codec(profile.along, axis_choices), "Axis that the line is parallel to")
+      .required();
+  table.value("through", vector_codec(profile.through), "Point of the line").unit("m").required();
+  table
+      .value("points", points_codec(profile.points),
+             "Coordinates along the line, m, and the expected velocities there")
+      .unit("m/s");
+  table
+      .value("tolerance", scene::real_codec(profile.tolerance),
+             "Largest deviation from the points that passes")
+      .unit("m/s")
+      .at_least(0.0)
+      .when([&profile] { return !profile.points.empty(); }, "with points", "points")
+      .required();
+  table.optional_table("minimum", profile.minimum, declare_extremum, "The least velocity");
+  table.optional_table("maximum", profile.maximum, declare_extremum, "The largest velocity");
+}
+
+}  // namespace
+
+void declare_verify(Table& table, Verify& verify) {
+  table.optional_table("exact", verify.exact, declare_exact,
+                       "Exact solution, compared at the end of the run");
+  declare_norms(table, verify);
+  table
+      .value("divergence", scene::real_codec(verify.divergence),
+             "Largest root-mean-square divergence that passes")
+      .unit("1/s")
+      .at_least(0.0);
+  table
+      .value("momentum", scene::real_codec(verify.momentum),
+             "Largest change of the momentum that passes, relative to sqrt(2 mass energy)")
+      .at_least(0.0);
+  table
+      .value("energy_growth", scene::real_codec(verify.energy_growth),
+             "Largest rise of the kinetic energy between two rows of the history that passes, relative to "
+             "the initial "
+             "energy")
+      .at_least(0.0);
+  table
+      .value("speed_growth", scene::real_codec(verify.speed_growth),
+             "Largest speed in any row of the history over the initial one, less 1, that passes")
+      .at_least(0.0);
+  const std::string deviation = "Largest relative deviation that passes";
+  table.optional_table(
+      "kinetic_energy", verify.kinetic_energy,
+      [deviation](Table& target, Target& value) { declare_target(target, value, "J", deviation); },
+      "The kinetic energy at the end");
+  table.optional_table(
+      "dissipation_peak", verify.dissipation_peak,
+      [deviation](Table& peak, DissipationPeak& value) {
+        declare_target(peak, value.target, "W", deviation);
+        peak.value("time", scene::real_codec(value.time), "Expected time").unit("s");
+        peak.value("time_tolerance", scene::real_codec(value.time_tolerance),
+                   "Largest deviation of it that passes")
+            .unit("s")
+            .at_least(0.0)
+            .when([&value] { return value.time.has_value(); }, "with time", "time")
+            .required();
+      },
+      "The largest rate at which the kinetic energy falls between two rows of the history");
+  table.tables(
+      "flow_rate", verify.flow_rates,
+      [deviation](Table& rate, FlowRate& value) {
+        rate.value("side", scene::choice_codec(value.side, side_choices), "Side of the domain").required();
+        declare_target(rate, value.target, "m^3/s", deviation);
+      },
+      "Flow rates out of the domain through sides at the end");
+  table.tables(
+      "force", verify.forces,
+      [deviation](Table& force, BodyForce& value) {
+        force.value("body", scene::integer_codec(value.body), "Number of the [[body]], from 0")
+            .range(0, 1e6)
+            .required();
+        force.value("axis", scene::choice_codec(value.axis, axis_choices), "Component").required();
+        declare_target(force, value.target, "N", deviation);
+      },
+      "Forces of the fluid on bodies at the end");
+  table.tables("profile", verify.profiles, declare_profile, "Velocities along lines at the end");
+}
+
+}  // namespace drogue::parachute_app

@@ -1,0 +1,278 @@
+#include "miniapps/parachute/simulation/simulation.hpp"
+
+#include <cmath>
+#include <sstream>
+#include <string>
+
+#include "common/program/stopwatch.hpp"
+#include "common/run/fields/rectilinear_mesh.hpp"
+#include "common/scene/node.hpp"
+#include "miniapps/parachute/scene/functions.hpp"
+
+namespace drogue::parachute_app {
+namespace {
+
+using flow::CellField;
+
+bool is_periodic(const flow::Parameters& p, std::size_t side) {
+  return p.boundary[side].kind == flow::BoundaryKind::periodic;
+}
+
+CellField cell_field(const std::string& name) {
+  if (name == "velocity") return CellField::velocity;
+  if (name == "vorticity") return CellField::vorticity;
+  return name == "pressure" ? CellField::pressure : CellField::q_criterion;
+}
+
+run::DatasetSpec field_spec(const std::string& name, const std::array<int, 3>& cells) {
+  std::vector<std::uint64_t> shape(cells.begin(), cells.end());
+  if (name == "pressure") return {name, shape, "Pa", "cell", "pressure"};
+  if (name == "q_criterion")
+    return {name, shape, "1/s^2", "cell", "half of squared rotation rate less squared strain rate"};
+  shape.push_back(3);
+  if (name == "velocity") return {name, shape, "m/s", "cell", "velocity"};
+  return {name, shape, "1/s", "cell", "vorticity"};
+}
+
+/// Cell of an index whose x varies fastest, and its centre.
+std::string cell_text(const flow::Parameters& p, std::int64_t index) {
+  const Lattice cells = lattice_of(p, flow::StateField::pressure);
+  const auto centre = cells.place(static_cast<std::size_t>(index));
+  std::ostringstream text;
+  text << "cell (" << index % cells.n[0] << ", " << index / cells.n[0] % cells.n[1] << ", "
+       << index / cells.n[0] / cells.n[1] << ") at (" << centre[0] << ", " << centre[1] << ", " << centre[2]
+       << ") m";
+  return text.str();
+}
+
+const char* reason_text(flow::FailureReason reason) {
+  switch (reason) {
+    case flow::FailureReason::not_finite:
+      return "the velocity is not finite";
+    case flow::FailureReason::side_velocity:
+      return "the prescribed velocity is not finite on the side ";
+    case flow::FailureReason::time_step:
+      return "no time step is admissible";
+    case flow::FailureReason::pressure_solver:
+      return "the pressure solver did not converge";
+  }
+  return "";
+}
+
+/// Flow with all bodies of a scene as sheets.
+coupling::Parameters coupled_parameters(const FlowScene& scene) {
+  coupling::Parameters p{scene.parameters, make_sheets(scene.bodies), scene.coupling, 1};
+  for (const Body& body : scene.bodies)
+    p.sheet.law_of_vertex.insert(p.sheet.law_of_vertex.end(), body.vertices(), law_of(body.porosity));
+  return p;
+}
+
+}  // namespace
+
+Simulation::Simulation(const FlowScene& scene, const framework::SimulationSettings& settings)
+    : _scene(scene) {
+  if (settings.communicator != nullptr) {
+    if (!scene.bodies.empty()) throw Failure(ExitCode::usage, "scenes with a [[body]] run on one rank");
+    auto shared = std::make_unique<SharedSolver>(*settings.communicator, settings.backend, scene.parameters);
+    _shared = shared.get();
+    _solver = std::move(shared);
+  } else if (!scene.bodies.empty()) {
+    auto coupled = coupling::create_solver(settings.backend, coupled_parameters(scene));
+    _coupled = coupled.get();
+    _solver = std::move(coupled);
+  } else {
+    _solver = flow::create_solver(settings.backend, scene.parameters);
+  }
+  if (_shared != nullptr) return;
+  for (Snapshot& snapshot : _snapshots)
+    for (const run::DatasetSpec& spec : field_specs()) snapshot.emplace_back(run::entries(spec));
+}
+
+void Simulation::start() {
+  const ScopedStopwatch stopwatch(_h2d_s);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::string& velocity = _scene.initial_velocity()[axis];
+    if (_shared != nullptr) {
+      _shared->upload(axis, velocity);
+      continue;
+    }
+    const flow::StateField field = velocity_field(axis);
+    _solver->upload(field, evaluate(SpaceTimeFunction(velocity), lattice_of(_scene.parameters, field), 0.0));
+  }
+  _solver->start();
+  _statistics.begin(_solver->totals());
+  sample_fields(_snapshots[0]);  // allocates what all outputs need
+}
+
+framework::TimeState Simulation::now() {
+  const flow::Progress progress = _solver->progress();
+  return {progress.step, progress.time};
+}
+
+framework::Stop Simulation::advance(const framework::AdvanceLimits& limits, const framework::RowSink& rows,
+                                    const framework::Poll& poll) {
+  const ScopedStopwatch stopwatch(_compute_s);
+  const auto forward = [&](const flow::Status& status) { return poll({status.step, status.time}); };
+  const auto at_pause = [&](std::int64_t step) {
+    return limits.pause_step >= 0 && step >= limits.pause_step;
+  };
+  while (true) {
+    const std::int64_t before = _solver->progress().step;
+    std::int64_t pause = limits.pause_step;
+    if (limits.row_every > 0) {
+      const std::int64_t next_row = (before / limits.row_every + 1) * limits.row_every;
+      if (pause < 0 || next_row < pause) pause = next_row;
+    }
+    _stop = _solver->advance(limits.target_time, pause, forward);
+    const std::int64_t step = _solver->progress().step;
+    const bool failed = _stop == flow::Stop::failed || _stop == flow::Stop::max_steps;
+    // The last good state of a failed run ends its history.
+    if (limits.row_every > 0 && (failed || (step > before && step % limits.row_every == 0))) rows(row());
+    if (failed) return framework::Stop::failed;
+    if (_stop == flow::Stop::target) return framework::Stop::target;
+    if (_stop == flow::Stop::interrupted) return framework::Stop::interrupted;
+    if (at_pause(step)) return framework::Stop::pause;
+  }
+}
+
+std::vector<run::Column> Simulation::history_columns() const {
+  std::vector<run::Column> columns = {{"step", ""},
+                                      {"dt", "s"},
+                                      {"kinetic_energy", "J"},
+                                      {"enstrophy", "m^3/s^2"},
+                                      {"dissipation", "W"},
+                                      {"momentum_x", "kg m/s"},
+                                      {"momentum_y", "kg m/s"},
+                                      {"momentum_z", "kg m/s"},
+                                      {"max_speed", "m/s"},
+                                      {"divergence_rms", "1/s"},
+                                      {"divergence_max", "1/s"}};
+  for (std::size_t side = 0; side < 6; ++side)
+    if (!is_periodic(_scene.parameters, side))
+      columns.push_back({std::string("outflow_") + side_names[side], "m^3/s"});
+  for (std::size_t i = 0; i < _scene.bodies.size(); ++i)
+    for (const char* axis : axis_names)
+      columns.push_back({"body_" + std::to_string(i) + "_force_" + axis, "N"});
+  return columns;
+}
+
+framework::HistoryRow Simulation::row() {
+  const flow::Totals now = _solver->totals();
+  _statistics.add(now);
+  framework::HistoryRow row = {now.time,
+                               {static_cast<double>(now.step), now.dt, now.kinetic_energy, now.enstrophy,
+                                now.dissipation, now.momentum[0], now.momentum[1], now.momentum[2],
+                                now.max_speed, now.divergence_rms, now.divergence_max}};
+  for (std::size_t side = 0; side < 6; ++side)
+    if (!is_periodic(_scene.parameters, side)) row.values.push_back(now.outflow[side]);
+  for (const fabric::Vector& force : body_forces())
+    row.values.insert(row.values.end(), force.begin(), force.end());
+  return row;
+}
+
+/// Forces of the fluid on the bodies in the last step, N.
+std::vector<fabric::Vector> Simulation::body_forces() {
+  std::vector<fabric::Vector> sums(_scene.bodies.size(), fabric::Vector{});
+  if (_coupled == nullptr) return sums;
+  std::vector<fabric::Vector> on_fluid(vertices_of(_scene.bodies));
+  _coupled->forces(on_fluid);
+  auto force = on_fluid.begin();
+  for (std::size_t i = 0; i < sums.size(); ++i)
+    for (std::size_t k = 0; k < _scene.bodies[i].vertices(); ++k, ++force)
+      for (std::size_t axis = 0; axis < 3; ++axis) sums[i][axis] -= (*force)[axis];
+  return sums;
+}
+
+std::vector<run::DatasetSpec> Simulation::field_specs() const {
+  std::vector<run::DatasetSpec> specs;
+  for (const std::string& name : _scene.output.fields)
+    specs.push_back(field_spec(name, _scene.parameters.cells));
+  return specs;
+}
+
+void Simulation::write_mesh(run::FieldsWriter& fields) const {
+  const flow::Parameters& p = _scene.parameters;
+  const auto faces = [&](std::size_t axis) {
+    std::vector<double> coordinates(static_cast<std::size_t>(p.cells[axis]) + 1, p.high[axis]);
+    const double h = (p.high[axis] - p.low[axis]) / p.cells[axis];
+    for (int i = 0; i < p.cells[axis]; ++i) coordinates[static_cast<std::size_t>(i)] = p.low[axis] + i * h;
+    return coordinates;
+  };
+  run::add_rectilinear_mesh(fields, {faces(0), faces(1), faces(2)}, run::AxisOrder::xyz);
+}
+
+void Simulation::sample_fields(Snapshot& snapshot) {
+  for (std::size_t k = 0; k < snapshot.size(); ++k)
+    _solver->sample(cell_field(_scene.output.fields[k]), snapshot[k]);
+}
+
+framework::FieldsTask Simulation::snapshot() {
+  if (_shared != nullptr)
+    return [this](run::FieldsWriter& fields) {
+      const std::string file = std::filesystem::absolute(fields.file()).string();
+      for (const std::string& name : _scene.output.fields)
+        _shared->write(cell_field(name), fields.offset(name), file);
+    };
+  const Snapshot& filled = _snapshots[_next_snapshot];
+  sample_fields(_snapshots[_next_snapshot]);
+  _next_snapshot = (_next_snapshot + 1) % _snapshots.size();
+  return [&filled, &names = _scene.output.fields](run::FieldsWriter& fields) {
+    for (std::size_t k = 0; k < names.size(); ++k) fields.write(names[k], 0, filled[k]);
+  };
+}
+
+std::string Simulation::failure_text(bool) {
+  std::ostringstream text;
+  text.precision(9);
+  if (_stop == flow::Stop::max_steps) {
+    text << "run.max_steps = " << _scene.parameters.max_steps << " reached at t = " << now().time
+         << " s, before run.end_time = " << _scene.end_time << " s";
+    return text.str();
+  }
+  if (_coupled != nullptr && _coupled->failure_reason() != coupling::FailureReason::flow) {
+    text << "a force on a body is not finite at t = " << now().time << " s";
+    return text.str();
+  }
+  const flow::StepFailure failure = _solver->failure();
+  const double fixed_dt = _scene.parameters.fixed_dt;
+  const bool is_unstable = failure.reason == flow::FailureReason::time_step && failure.dt < fixed_dt;
+  // Without a finite velocity of the start the first step has no dt.
+  const bool is_initial = failure.step == 1 && std::isnan(failure.dt);
+  if (is_unstable)
+    text << "run.dt = " << fixed_dt << " s exceeds the largest stable time step, " << failure.dt << " s,";
+  else
+    text << reason_text(failure.reason);
+  if (failure.reason == flow::FailureReason::side_velocity)
+    text << side_names[static_cast<std::size_t>(failure.index)];
+  else if (failure.index >= 0)
+    text << " in " << cell_text(_scene.parameters, failure.index);
+  text << " at " << (is_initial ? "the initial projection" : "step " + std::to_string(failure.step))
+       << ", t = " << failure.time << " s";
+  if (!is_initial && !is_unstable) text << ", dt = " << failure.dt << " s";
+  if (failure.reason == flow::FailureReason::pressure_solver)
+    text << "; it may with a flow.pressure_tolerance above "
+         << scene::real_text(_scene.parameters.pressure_tolerance);
+  if (failure.reason == flow::FailureReason::not_finite && !is_initial)
+    text << (fixed_dt > 0.0 ? "; a smaller run.dt" : "; a smaller run.cfl") << " may save the run";
+  return text.str();
+}
+
+void Simulation::describe(run::ResultDocument& result) {
+  const flow::Progress progress = _solver->progress();
+  result.driver = _solver->driver();
+  result.dt_min = progress.dt_min;
+  result.dt_max = progress.dt_max;
+  result.metrics.set("pressure", "solver", std::string(_solver->pressure_solver()));
+  result.metrics.set("pressure", "divergence_rms", _solver->totals().divergence_rms);
+  if (const auto solve = _solver->last_pressure_solve()) {
+    result.metrics.set("pressure", "iterations", static_cast<std::int64_t>(solve->iterations));
+    result.metrics.set("pressure", "residual", solve->residual);
+    result.metrics.set("pressure", "tolerance", _scene.parameters.pressure_tolerance);
+  }
+  if (_coupled != nullptr)
+    result.metrics.set("bodies", "vertices", static_cast<std::int64_t>(vertices_of(_scene.bodies)));
+  result.timing.compute_s = _compute_s;
+  result.timing.h2d_s = _h2d_s;
+}
+
+}  // namespace drogue::parachute_app

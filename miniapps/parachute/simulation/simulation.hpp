@@ -1,0 +1,74 @@
+#pragma once
+
+#include <array>
+#include <memory>
+
+#include "kernels/coupling/sheet/solver.hpp"
+#include "kernels/flow/solver.hpp"
+#include "miniapps/framework/simulation.hpp"
+#include "miniapps/parachute/parallel/rank_solver.hpp"
+#include "miniapps/parachute/scene/scene.hpp"
+#include "miniapps/parachute/verify/statistics.hpp"
+
+namespace drogue::parachute_app {
+
+/// A scene on a solver. Functions as of `framework::Simulation`.
+class Simulation final : public framework::Simulation {
+ public:
+  /// Keeps a reference to `scene`. Throws `Failure` (no_backend, numerical_failure).
+  Simulation(const FlowScene& scene, const framework::SimulationSettings& settings);
+
+  [[nodiscard]] const framework::OutputRequest& output() const override { return _scene.output; }
+  [[nodiscard]] framework::EndTime end_time() const override { return {_scene.end_time, "run.end_time"}; }
+  void start() override;
+  void restore(const run::RestartReader& reader) override;
+  void write_restart(run::RestartWriter& writer) override;
+  [[nodiscard]] framework::TimeState now() override;
+  framework::Stop advance(const framework::AdvanceLimits& limits, const framework::RowSink& rows,
+                          const framework::Poll& poll) override;
+  [[nodiscard]] std::vector<run::Column> history_columns() const override;
+  [[nodiscard]] framework::HistoryRow row() override;
+  [[nodiscard]] std::vector<run::DatasetSpec> field_specs() const override;
+  void write_mesh(run::FieldsWriter& fields) const override;
+  [[nodiscard]] std::size_t snapshot_buffers() const override { return _snapshots.size(); }
+  [[nodiscard]] bool writes_on_calling_thread() const override { return _shared != nullptr; }
+  [[nodiscard]] framework::FieldsTask snapshot() override;
+  [[nodiscard]] std::string failure_text(bool restart_written) override;
+  void describe(run::ResultDocument& result) override;
+  ExitCode verify(const run::RunDirectory* directory, run::ResultDocument& result) override;
+
+  /// Errors against the exact solution of the scene at the present time, by the names of the tolerances.
+  /// Throws std::bad_optional_access without an exact solution.
+  [[nodiscard]] std::map<std::string, double> error_norms();
+
+  /// Root-mean-square divergence of the present state, 1/s.
+  [[nodiscard]] double divergence() { return _solver->totals().divergence_rms; }
+
+  [[nodiscard]] flow::Solver& solver() { return *_solver; }
+
+ private:
+  /// Values of the fields of one output, in the order of the scene.
+  using Snapshot = std::vector<std::vector<double>>;
+
+  [[nodiscard]] std::vector<flow::StateField> state_fields() const;
+  void sample_fields(Snapshot& snapshot);
+  void check_profiles(run::ResultDocument& result);
+  void check_totals(run::ResultDocument& result);
+  void check_forces(run::ResultDocument& result);
+  [[nodiscard]] std::vector<fabric::Vector> body_forces();
+  void write_coupling(run::RestartWriter& writer);
+  void read_coupling(const run::RestartReader& reader);
+
+  const FlowScene& _scene;
+  SharedSolver* _shared = nullptr;       ///< `_solver` on several ranks
+  coupling::Solver* _coupled = nullptr;  ///< `_solver` with bodies
+  std::unique_ptr<flow::Solver> _solver;
+  RunStatistics _statistics;
+  /// Used in turn: one is written while the other is filled. Empty on several ranks.
+  std::array<Snapshot, 2> _snapshots;
+  std::size_t _next_snapshot = 0;
+  flow::Stop _stop = flow::Stop::target;
+  double _compute_s = 0.0, _h2d_s = 0.0;
+};
+
+}  // namespace drogue::parachute_app

@@ -1,0 +1,95 @@
+#include <bit>
+#include <string>
+
+#include "common/program/stopwatch.hpp"
+#include "miniapps/parachute/scene/functions.hpp"
+#include "miniapps/parachute/simulation/simulation.hpp"
+
+namespace drogue::parachute_app {
+namespace {
+
+std::string array_name(flow::StateField field) {
+  constexpr const char* names[] = {"velocity_x", "velocity_y", "velocity_z", "rate_x",
+                                   "rate_y",     "rate_z",     "pressure"};
+  return names[static_cast<int>(field)];
+}
+
+/// Visits every member of the progress of a run. `number` and `integer` write or read one entry.
+template <class Progress, class Number, class Integer>
+void visit(Progress& progress, const Number& number, const Integer& integer) {
+  number("time", progress.time);
+  integer("step", progress.step);
+  number("last_dt", progress.last_dt);
+  number("dt_min", progress.dt_min);
+  number("dt_max", progress.dt_max);
+  integer("rate_bits", progress.rate);
+}
+
+}  // namespace
+
+std::vector<flow::StateField> Simulation::state_fields() const {
+  using enum flow::StateField;
+  std::vector<flow::StateField> fields = {velocity_x, velocity_y, velocity_z, pressure};
+  if (_scene.parameters.time_scheme == flow::TimeScheme::ab2)
+    fields.insert(fields.end(), {rate_x, rate_y, rate_z});
+  return fields;
+}
+
+void Simulation::write_coupling(run::RestartWriter& writer) {
+  const std::size_t vertices = vertices_of(_scene.bodies);
+  std::vector<fabric::Vector> acceleration(vertices);
+  _coupled->download_air_acceleration(acceleration);
+  writer.array("body_acceleration", 3 * vertices);
+  writer.write("body_acceleration", 0, {acceleration.front().data(), 3 * vertices});
+  const coupling::BlockProgress block = _coupled->block();
+  writer.number("block_dt", block.dt);
+  writer.integer("block_substeps", block.substeps);
+  writer.integer("block_end", block.end);
+}
+
+void Simulation::read_coupling(const run::RestartReader& reader) {
+  std::vector<fabric::Vector> acceleration(static_cast<std::size_t>(reader.size("body_acceleration")) / 3);
+  reader.read("body_acceleration", 0, {acceleration.front().data(), 3 * acceleration.size()});
+  _coupled->upload_air_acceleration(acceleration);
+  _coupled->set_block(
+      {reader.number("block_dt"), reader.integer("block_substeps"), reader.integer("block_end")});
+}
+
+void Simulation::write_restart(run::RestartWriter& writer) {
+  const flow::Progress progress = _solver->progress();
+  visit(
+      progress, [&](const std::string& name, double value) { writer.number(name, value); },
+      [&](const std::string& name, auto value) { writer.integer(name, std::bit_cast<std::int64_t>(value)); });
+  _statistics.write(writer);
+  if (_coupled != nullptr) write_coupling(writer);
+  std::vector<double> values;
+  for (const flow::StateField field : state_fields()) {
+    values.resize(lattice_of(_scene.parameters, field).size());
+    _solver->download(field, values);
+    writer.array(array_name(field), values.size());
+    writer.write(array_name(field), 0, values);
+  }
+}
+
+void Simulation::restore(const run::RestartReader& reader) {
+  const ScopedStopwatch stopwatch(_h2d_s);
+  flow::Progress progress;
+  visit(
+      progress, [&](const std::string& name, double& value) { value = reader.number(name); },
+      [&](const std::string& name, auto& value) {
+        value = std::bit_cast<std::remove_reference_t<decltype(value)>>(reader.integer(name));
+      });
+  _statistics.read(reader);
+  std::vector<double> values;
+  for (const flow::StateField field : state_fields()) {
+    values.resize(lattice_of(_scene.parameters, field).size());
+    reader.read(array_name(field), 0, values);
+    _solver->upload(field, values);
+  }
+  _solver->restore(progress);
+  if (_coupled != nullptr) read_coupling(reader);
+  static_cast<void>(_solver->totals());
+  sample_fields(_snapshots[0]);
+}
+
+}  // namespace drogue::parachute_app

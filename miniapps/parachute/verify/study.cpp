@@ -1,0 +1,161 @@
+#include "miniapps/parachute/verify/study.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "common/program/failure.hpp"
+#include "common/study/axes.hpp"
+#include "miniapps/framework/run_loop.hpp"
+#include "miniapps/parachute/simulation/simulation.hpp"
+
+namespace drogue::parachute_app {
+namespace {
+
+const study::Columns columns = {{"advection", "time_scheme", "diffusion", "pressure"},
+                                "cells",
+                                {"l1_velocity", "l2_velocity", "linf_velocity", "l2_pressure",
+                                 "order_l2_velocity", "order_l2_pressure", "divergence"},
+                                "l2_velocity",
+                                "L2 velocity"};
+
+/// Cells along the longest axis.
+int longest(const flow::Parameters& p) { return *std::ranges::max_element(p.cells); }
+
+/// `--set` of the grid with `cells` along its longest axis and nearly the proportions of the scene. Axes with
+/// more than one cell keep at least the number that a solver needs.
+std::string scaled_cells(const flow::Parameters& p, std::int64_t cells) {
+  std::string list;
+  for (const int n : p.cells) {
+    const double scaled = static_cast<double>(n) * static_cast<double>(cells) / longest(p);
+    const std::int64_t rounded = n == 1 ? 1 : std::max<std::int64_t>(std::llround(scaled), 4);
+    list += (list.empty() ? "[" : ", ") + std::to_string(rounded);
+  }
+  return "grid.cells=" + list + "]";
+}
+
+/// Assignments of one point, without those of the command line. An empty value keeps that of the scene.
+std::vector<std::string> point_of(const FlowScene& base, const std::string& advection,
+                                  const std::string& time, const std::string& diffusion,
+                                  const std::string& pressure, std::int64_t cells) {
+  std::vector<std::string> sets;
+  const bool is_weno = advection.starts_with("weno-");
+  const std::pair<const char*, std::string> values[] = {{"advection", is_weno ? "weno5" : advection},
+                                                        {"weno", is_weno ? advection.substr(5) : ""},
+                                                        {"time", time},
+                                                        {"diffusion", diffusion},
+                                                        {"pressure", pressure}};
+  for (const auto& [key, value] : values)
+    if (!value.empty()) sets.push_back(std::string("flow.") + key + "=\"" + value + "\"");
+  if (cells > 0) sets.push_back(scaled_cells(base.parameters, cells));
+  return sets;
+}
+
+/// Scene of a point. Throws `Failure` (usage), which names --study, if the point is invalid.
+FlowScene scene_of(const std::filesystem::path& file, const MiniAppOptions& options,
+                   const std::vector<std::string>& point) {
+  std::vector<std::string> sets = options.set;
+  sets.insert(sets.end(), point.begin(), point.end());
+  try {
+    return read_flow_scene(file, sets);
+  } catch (const Failure& failure) {
+    std::string reason = failure.what(), values;
+    for (const std::string& assignment : point) {
+      values += (values.empty() ? "" : ", ") + assignment;
+      // The user gave no such option.
+      const std::string option = "--set " + assignment + ": ";
+      if (reason.starts_with(option)) reason.erase(0, option.size());
+    }
+    throw Failure(ExitCode::usage, "--study " + options.study + " (" + values + "): " + reason);
+  }
+}
+
+std::vector<FlowScene> scenes_of(const study::Axes& axes, const MiniAppOptions& options,
+                                 const std::filesystem::path& file, const FlowScene& base) {
+  std::vector<std::int64_t> meshes = axes.meshes;
+  if (meshes.empty()) meshes.push_back(0);
+  std::vector<FlowScene> scenes;
+  for (const std::string& advection : axes.of("advections"))
+    for (const std::string& time : axes.of("times"))
+      for (const std::string& diffusion : axes.of("diffusions"))
+        for (const std::string& pressure : axes.of("pressures"))
+          for (const std::int64_t cells : meshes) {
+            FlowScene scene =
+                scene_of(file, options, point_of(base, advection, time, diffusion, pressure, cells));
+            scene.output = {};  // steps shortened to meet outputs that are not written would only cost time
+            scenes.push_back(std::move(scene));
+          }
+  return scenes;
+}
+
+framework::RepeatedRun run_point(const FlowScene& scene, device::Backend backend) {
+  return framework::repeat_run({3, 1.0}, [&](framework::RepeatedRun& runs) {
+    Simulation simulation(scene, {backend, false, true});
+    simulation.start();
+    run::ResultDocument result;
+    const framework::RunRequest request{{}, true, true, {}};
+    const ExitCode code = framework::run_to_end(simulation, request, result);
+    if (code == ExitCode::interrupted) return code;
+    if (runs.samples.empty()) {
+      runs.errors = simulation.error_norms();
+      runs.others["divergence"] = simulation.divergence();
+      runs.steps = result.steps;
+    }
+    runs.samples.push_back(result.timing.compute_s);
+    return code;
+  });
+}
+
+study::StudyRow row_of(const FlowScene& scene, framework::RepeatedRun runs) {
+  const flow::Parameters& p = scene.parameters;
+  const std::string pressures[] = {"auto", "fft", "diagonalization", "hypre-pfmg"};
+  const std::string advection = p.advection == flow::Advection::central   ? "central"
+                                : p.advection == flow::Advection::weno_js ? "weno-js"
+                                                                          : "weno-z";
+  const std::string time = p.time_scheme == flow::TimeScheme::ab2 ? "ab2" : "rk3";
+  const std::string& pressure = pressures[static_cast<std::size_t>(p.pressure_solver)];
+  study::StudyRow row = framework::study_row(std::move(runs));
+  const bool is_implicit = p.diffusion == flow::Diffusion::crank_nicolson;
+  row.settings = {advection, time, std::string(is_implicit ? "crank-nicolson" : "explicit"), pressure};
+  row.label = advection + " " + time;
+  if (is_implicit) row.label += " crank-nicolson";
+  if (pressure != "auto") row.label += " " + pressure;
+  row.mesh = longest(p);
+  return row;
+}
+
+/// Adds the observed orders between `row` and `coarser`.
+void add_orders(const study::StudyRow& coarser, study::StudyRow& row) {
+  if (coarser.label != row.label || coarser.mesh >= row.mesh) return;
+  const double refinement = static_cast<double>(row.mesh) / static_cast<double>(coarser.mesh);
+  for (const char* name : {"l2_velocity", "l2_pressure"}) {
+    if (!coarser.errors.contains(name) || !row.errors.contains(name)) continue;
+    const double order = std::log(coarser.errors.at(name) / row.errors.at(name)) / std::log(refinement);
+    if (std::isfinite(order)) row.others[std::string("order_") + name] = order;
+  }
+}
+
+}  // namespace
+
+ExitCode run_study(const MiniAppOptions& options, const std::filesystem::path& file) {
+  const study::Axes axes =
+      study::parse_axes(options.study, {"cells", 4, 12},
+                        {{"advections", {"central", "weno-js", "weno-z"}},
+                         {"times", {"ab2", "rk3"}},
+                         {"diffusions", {"explicit", "crank-nicolson"}},
+                         {"pressures", {"auto", "fft", "diagonalization", "hypre-pfmg"}}});
+  const FlowScene base = read_flow_scene(file, options.set);
+  if (!base.verify.exact) throw Failure(ExitCode::usage, "--study needs verify.exact to compute errors");
+  const std::vector<FlowScene> scenes = scenes_of(axes, options, file, base);
+  framework::StudySession session(options, "drogue-parachute", base.name, print_flow_scene(base));
+  return session.run(columns, scenes.size(), [&](std::size_t i, std::vector<study::StudyRow>& rows) {
+    framework::RepeatedRun runs = run_point(scenes[i], session.backend());
+    if (runs.code == ExitCode::interrupted) return false;
+    study::StudyRow row = row_of(scenes[i], std::move(runs));
+    if (!rows.empty()) add_orders(rows.back(), row);
+    rows.push_back(std::move(row));
+    return true;
+  });
+}
+
+}  // namespace drogue::parachute_app

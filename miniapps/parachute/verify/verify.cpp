@@ -1,0 +1,183 @@
+#include <algorithm>
+#include <cmath>
+
+#include "common/run/statistics.hpp"
+#include "miniapps/parachute/scene/functions.hpp"
+#include "miniapps/parachute/simulation/simulation.hpp"
+#include "miniapps/parachute/verify/profile.hpp"
+#include "miniapps/parachute/verify/statistics.hpp"
+
+namespace drogue::parachute_app {
+namespace {
+
+/// Sums of the errors of a field. The volume of a point on a side of the domain is half of that of others.
+struct ErrorSums {
+  double volume = 0.0, absolute = 0.0, square = 0.0, largest = 0.0;
+
+  void add(double error, double weight) {
+    volume += weight;
+    absolute += weight * std::abs(error);
+    square += weight * error * error;
+    largest = run::maximum_or_nan(largest, std::abs(error));
+  }
+};
+
+/// Volume of a point of an array relative to that of a cell.
+double weight_of(const Lattice& lattice, const std::array<int, 3>& cells, std::size_t entry) {
+  double weight = 1.0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto n = static_cast<std::size_t>(lattice.n[axis]);
+    const std::size_t index = entry % n;
+    entry /= n;
+    if (lattice.n[axis] > cells[axis] && (index == 0 || index + 1 == n)) weight *= 0.5;
+  }
+  return weight;
+}
+
+/// Errors of values at the points of an array, less their mean where `up_to_constant`.
+ErrorSums errors_of(const std::vector<double>& values, const std::vector<double>& exact,
+                    const Lattice& lattice, const std::array<int, 3>& cells, bool up_to_constant) {
+  double mean = 0.0;
+  if (up_to_constant) {
+    for (std::size_t i = 0; i < values.size(); ++i) mean += values[i] - exact[i];
+    mean /= static_cast<double>(values.size());
+  }
+  ErrorSums sums;
+  for (std::size_t i = 0; i < values.size(); ++i)
+    sums.add(values[i] - exact[i] - mean, weight_of(lattice, cells, i));
+  return sums;
+}
+
+double volume_of(const flow::Parameters& p) {
+  double volume = 1.0;
+  for (std::size_t axis = 0; axis < 3; ++axis) volume *= p.high[axis] - p.low[axis];
+  return volume;
+}
+
+double relative_deviation(double value, const Target& target) { return std::abs(value / target.value - 1.0); }
+
+}  // namespace
+
+std::map<std::string, double> Simulation::error_norms() {
+  const flow::Parameters& p = _scene.parameters;
+  const ExactSolution& exact = _scene.verify.exact.value();
+  const double time = _solver->progress().time;
+  std::vector<double> values;
+  std::map<std::string, double> norms = {{"l1_velocity", 0.0}, {"l2_velocity", 0.0}, {"linf_velocity", 0.0}};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const Lattice lattice = lattice_of(p, velocity_field(axis));
+    values.resize(lattice.size());
+    _solver->download(velocity_field(axis), values);
+    const std::vector<double> wanted = evaluate(SpaceTimeFunction(exact.velocity[axis]), lattice, time);
+    const ErrorSums sums = errors_of(values, wanted, lattice, p.cells, false);
+    norms["l1_velocity"] += sums.absolute / sums.volume;
+    norms["l2_velocity"] += sums.square / sums.volume;
+    double& largest = norms["linf_velocity"];
+    largest = run::maximum_or_nan(largest, sums.largest);
+  }
+  norms["l2_velocity"] = std::sqrt(norms["l2_velocity"]);
+  if (exact.pressure.empty()) return norms;
+  const bool up_to_constant = std::ranges::none_of(
+      p.boundary, [](const flow::Boundary& side) { return side.kind == flow::BoundaryKind::outflow; });
+  const Lattice cells = lattice_of(p, flow::StateField::pressure);
+  std::vector<double> sampled(cells.size());
+  _solver->sample(flow::CellField::pressure, sampled);  // z fastest
+  values.resize(cells.size());
+  const auto nx = static_cast<std::size_t>(p.cells[0]), ny = static_cast<std::size_t>(p.cells[1]),
+             nz = static_cast<std::size_t>(p.cells[2]);
+  for (std::size_t i = 0; i < nx; ++i)
+    for (std::size_t j = 0; j < ny; ++j)
+      for (std::size_t k = 0; k < nz; ++k) values[i + nx * (j + ny * k)] = sampled[(i * ny + j) * nz + k];
+  const ErrorSums sums = errors_of(values, evaluate(SpaceTimeFunction(exact.pressure), cells, time), cells,
+                                   p.cells, up_to_constant);
+  norms["l1_pressure"] = sums.absolute / sums.volume;
+  norms["l2_pressure"] = std::sqrt(sums.square / sums.volume);
+  norms["linf_pressure"] = sums.largest;
+  return norms;
+}
+
+void Simulation::check_totals(run::ResultDocument& result) {
+  const Verify& wanted = _scene.verify;
+  const flow::Totals totals = _solver->totals();
+  _statistics.add(totals);
+  result.metrics.set("pressure", "divergence_rms", totals.divergence_rms);
+  if (wanted.divergence) result.add_check("divergence", totals.divergence_rms, *wanted.divergence);
+  if (wanted.momentum) {
+    const double mass = _scene.parameters.density * volume_of(_scene.parameters);
+    result.add_check("momentum", _statistics.momentum_change(totals, mass), *wanted.momentum);
+  }
+  if (wanted.energy_growth)
+    result.add_check("energy_growth", _statistics.energy_growth(), *wanted.energy_growth);
+  if (wanted.speed_growth)
+    result.add_check("speed_growth", std::max(_statistics.speed_growth(), 0.0), *wanted.speed_growth);
+  if (wanted.kinetic_energy)
+    result.add_check("kinetic_energy", relative_deviation(totals.kinetic_energy, *wanted.kinetic_energy),
+                     wanted.kinetic_energy->tolerance);
+  if (wanted.dissipation_peak) {
+    const DissipationPeak& peak = *wanted.dissipation_peak;
+    result.add_check("dissipation_peak", relative_deviation(_statistics.peak_dissipation(), peak.target),
+                     peak.target.tolerance);
+    if (peak.time)
+      result.add_check("dissipation_peak_time", std::abs(_statistics.peak_time() - *peak.time),
+                       *peak.time_tolerance);
+  }
+  for (std::size_t i = 0; i < wanted.flow_rates.size(); ++i) {
+    const FlowRate& rate = wanted.flow_rates[i];
+    result.add_check("flow_rate_" + std::to_string(i),
+                     relative_deviation(totals.outflow[rate.side], rate.target), rate.target.tolerance);
+  }
+}
+
+void Simulation::check_forces(run::ResultDocument& result) {
+  const std::vector<BodyForce>& wanted = _scene.verify.forces;
+  if (wanted.empty()) return;
+  const std::vector<fabric::Vector> forces = body_forces();
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    const double force =
+        forces[static_cast<std::size_t>(wanted[i].body)][static_cast<std::size_t>(wanted[i].axis)];
+    result.add_check("force_" + std::to_string(i), relative_deviation(force, wanted[i].target),
+                     wanted[i].target.tolerance);
+  }
+}
+
+void Simulation::check_profiles(run::ResultDocument& result) {
+  for (std::size_t i = 0; i < _scene.verify.profiles.size(); ++i) {
+    const Profile& profile = _scene.verify.profiles[i];
+    const std::string name = "profile_" + std::to_string(i);
+    const SampledLine line = sample_line(*_solver, _scene.parameters, profile);
+    if (!profile.points.empty()) {
+      double largest = 0.0;
+      for (const auto& [where, value] : profile.points) {
+        largest = run::maximum_or_nan(largest, std::abs(line(where) - value));
+      }
+      result.add_check(name, largest, profile.tolerance);
+    }
+    const auto check = [&](const std::string& which, const std::optional<Extremum>& wanted, double sign) {
+      if (!wanted) return;
+      const auto [where, value] = line.maximum(sign);
+      result.add_check(name + which, std::abs(value - wanted->value), wanted->tolerance);
+      if (wanted->at)
+        result.add_check(name + which + "_at", std::abs(where - *wanted->at), *wanted->at_tolerance);
+    };
+    check("_minimum", profile.minimum, -1.0);
+    check("_maximum", profile.maximum, 1.0);
+  }
+}
+
+ExitCode Simulation::verify(const run::RunDirectory*, run::ResultDocument& result) {
+  const Verify& wanted = _scene.verify;
+  if (wanted.exact) {
+    result.errors = error_norms();
+    for (const auto& [name, tolerance] : wanted.tolerances)
+      result.add_check(name, result.errors.at(name), tolerance);
+  }
+  const bool needs_totals = wanted.divergence || wanted.momentum || wanted.energy_growth ||
+                            wanted.speed_growth || wanted.kinetic_energy || wanted.dissipation_peak ||
+                            !wanted.flow_rates.empty();
+  if (needs_totals) check_totals(result);
+  check_forces(result);
+  check_profiles(result);
+  return ExitCode::ok;
+}
+
+}  // namespace drogue::parachute_app

@@ -1,0 +1,239 @@
+// ctest-label: exact
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <stdexcept>
+
+#include "tests/support/coupled_case.hpp"
+#include "tests/support/profiled.hpp"
+
+// Steps of cloth in air: time steps, blocks, restarts, failures, backends and launches.
+
+namespace drogue::coupling {
+namespace {
+
+using drogue::testing::CoupledCase;
+using drogue::testing::CoupledRun;
+using drogue::testing::tested_backend;
+using fabric::Vector;
+
+constexpr double h = 0.1;
+
+/// Free strip that flies through air between slip sides.
+CoupledCase flying_strip() {
+  CoupledCase c(24, 16, h, 0.0);
+  for (std::size_t side = 0; side < 4; ++side) c.p.flow.boundary[side].kind = flow::BoundaryKind::slip;
+  c.p.flow.max_dt = 0.004;
+  c.add_strip(0.61, 0.4, 0.67, 1.2, 16);
+  for (std::uint8_t& axes : c.p.fabric.pinned) axes = 0;
+  for (std::size_t i = 0; i < c.v.size(); ++i) c.v[i] = {6.0, std::sin(9.0 * c.x[i][1]), 0.0};
+  return c;
+}
+
+struct State {
+  std::vector<std::vector<double>> flow;
+  std::vector<Vector> positions, velocities, acceleration;
+  flow::Progress progress;
+  BlockProgress block;
+};
+
+std::vector<flow::StateField> state_fields(const flow::Parameters& p) {
+  using enum flow::StateField;
+  std::vector<flow::StateField> fields = {velocity_x, velocity_y, velocity_z, pressure};
+  if (p.time_scheme == flow::TimeScheme::ab2) fields.insert(fields.end(), {rate_x, rate_y, rate_z});
+  return fields;
+}
+
+State state_of(const CoupledCase& c, Solver& solver) {
+  State s;
+  for (const flow::StateField field : state_fields(c.p.flow)) {
+    const std::array<int, 3> n = extents(c.p.flow, field);
+    s.flow.emplace_back(static_cast<std::size_t>(n[0]) * static_cast<std::size_t>(n[1]) *
+                        static_cast<std::size_t>(n[2]));
+    solver.download(field, s.flow.back());
+  }
+  s.positions.resize(c.x.size()), s.velocities.resize(c.x.size()), s.acceleration.resize(c.x.size());
+  solver.download_cloth(s.positions, s.velocities);
+  solver.download_air_acceleration(s.acceleration);
+  s.progress = solver.progress();
+  s.block = solver.block();
+  return s;
+}
+
+void restore(const CoupledCase& c, const State& s, Solver& solver) {
+  std::size_t k = 0;
+  for (const flow::StateField field : state_fields(c.p.flow)) solver.upload(field, s.flow[k++]);
+  solver.upload_cloth(s.positions, s.velocities);
+  solver.restore(s.progress);
+  solver.upload_air_acceleration(s.acceleration);
+  solver.set_block(s.block);
+}
+
+double distance(const std::vector<Vector>& a, const std::vector<Vector>& b) {
+  double largest = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i)
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      largest = std::max(largest, std::abs(a[i][axis] - b[i][axis]));
+  return largest;
+}
+
+double distance(const State& a, const State& b) {
+  double largest = std::max({distance(a.positions, b.positions), distance(a.velocities, b.velocities),
+                             1e-3 * distance(a.acceleration, b.acceleration)});
+  for (std::size_t k = 0; k < 3; ++k)
+    for (std::size_t i = 0; i < a.flow[k].size(); ++i)
+      largest = std::max(largest, std::abs(a.flow[k][i] - b.flow[k][i]));
+  return largest;
+}
+
+TEST(CoupledSolver, ContinuesBitForBit) {
+  for (const flow::TimeScheme time : {flow::TimeScheme::ab2, flow::TimeScheme::rk3}) {
+    CoupledCase c = flying_strip();
+    c.p.flow.time_scheme = time;
+    CoupledRun whole(c), first(c);
+    ASSERT_TRUE(whole.advance(21));
+    ASSERT_TRUE(whole.advance(19));
+    ASSERT_TRUE(first.advance(21));
+    const State middle = state_of(c, *first.solver);
+    CoupledRun second(c);
+    restore(c, middle, *second.solver);
+    EXPECT_EQ(distance(state_of(c, *second.solver), middle), 0.0);
+    ASSERT_TRUE(second.advance(19));
+    EXPECT_EQ(distance(state_of(c, *second.solver), state_of(c, *whole.solver)), 0.0);
+  }
+}
+
+TEST(CoupledSolver, BackendsAgree) {
+#if defined(DROGUE_EXACT)
+  constexpr double tolerance = 0.0;
+#else
+  constexpr double tolerance = 1e-10;
+#endif
+  const CoupledCase c = flying_strip();
+  const auto end = [&](device::Backend backend) {
+    const auto solver = c.solver(backend);
+    EXPECT_EQ(solver->advance(1e9, 30, {}), flow::Stop::pause);
+    return state_of(c, *solver);
+  };
+  const State here = end(tested_backend);
+  for (const device::Backend backend : device::compiled_backends()) {
+    if (backend == tested_backend) continue;
+    EXPECT_LE(distance(here, end(backend)), tolerance);
+  }
+}
+
+TEST(CoupledSolver, ReachesTargetsInEqualSteps) {
+  CoupledCase c = flying_strip();
+  CoupledRun run(c);
+  for (const double target : {0.0101, 0.0999, 0.1}) {
+    EXPECT_EQ(run.solver->advance(target, -1, {}), flow::Stop::target);
+    EXPECT_EQ(run.solver->progress().time, target);
+  }
+  // Steps of 0.004 s at most: 3 to the first time, 23 to the second one and one to the last.
+  EXPECT_EQ(run.solver->progress().step, 27);
+  EXPECT_NEAR(run.solver->progress().last_dt, 0.0001, 1e-12);
+  EXPECT_LE(run.solver->progress().dt_max, 0.004 * (1.0 + 1e-9));
+}
+
+TEST(CoupledSolver, StepSizeFollowsTheSpeedOfTheAir) {
+  CoupledCase c = flying_strip();
+  c.p.flow.max_dt = 1.0;
+  c.p.flow.cfl = 0.3;
+  for (std::size_t side = 0; side < 2; ++side) c.p.flow.boundary[side].kind = flow::BoundaryKind::periodic;
+  CoupledRun run(c);
+  const std::array<int, 3> n = extents(c.p.flow, flow::StateField::velocity_x);
+  const std::vector<double> wind(static_cast<std::size_t>(n[0]) * static_cast<std::size_t>(n[1]), 8.0);
+  run.solver->upload(flow::StateField::velocity_x, wind);
+  run.solver->start();
+  ASSERT_TRUE(run.advance(1));
+  EXPECT_NEAR(run.solver->progress().last_dt, 0.3 * h / 8.0, 1e-3 * h);
+}
+
+TEST(CoupledSolver, StopsIfPollReturnsFalse) {
+  CoupledCase c = flying_strip();
+  CoupledRun run(c);
+  EXPECT_EQ(run.solver->advance(1.0, -1, [](const flow::Status& now) { return now.step < 20; }),
+            flow::Stop::interrupted);
+  EXPECT_EQ(run.solver->progress().step, 32);  // a whole block
+}
+
+/// Advances until a failure and expects the state before the failed step.
+void expect_failure(const CoupledCase& c, FailureReason reason) {
+  CoupledRun run(c);
+  ASSERT_EQ(run.solver->advance(10.0, -1, {}), flow::Stop::failed);
+  EXPECT_EQ(run.solver->failure_reason(), reason);
+  const State last = state_of(c, *run.solver);
+  EXPECT_EQ(run.solver->advance(10.0, -1, {}), flow::Stop::failed);
+  CoupledRun again(c);
+  if (last.progress.step > 0) {
+    ASSERT_TRUE(again.advance(last.progress.step));
+  }
+  EXPECT_EQ(distance(state_of(c, *again.solver), last), 0.0);
+}
+
+TEST(CoupledSolver, ClothThatLeavesTheDomainIsAFailure) {
+  CoupledCase c = flying_strip();
+  c.p.sheet.law = {1e-3, 0.0, false};
+  expect_failure(c, FailureReason::left_domain);
+}
+
+TEST(CoupledSolver, InstabilityOfTheClothIsAFailure) {
+  CoupledCase c = flying_strip();
+  c.p.fabric.material.membrane_modulus = 1e9;
+  c.p.substeps = 200;
+  expect_failure(c, FailureReason::cloth);
+}
+
+TEST(CoupledSolver, RejectsInvalidParameters) {
+  const auto rejects = [](void (*change)(Parameters&)) {
+    CoupledCase c = flying_strip();
+    change(c.p);
+    EXPECT_THROW(create_solver(tested_backend, c.p), std::invalid_argument);
+  };
+  rejects([](Parameters& p) { p.flow.max_dt = 0.0; });
+  rejects([](Parameters& p) { p.substeps = -1; });
+  rejects([](Parameters& p) { p.sheet.law.alpha = -1.0; });
+  rejects([](Parameters& p) { p.sheet.law.beta = std::nan(""); });
+  rejects([](Parameters& p) { p.sheet.law_of_vertex.resize(3); });
+  rejects([](Parameters& p) { p.sheet.law_of_vertex.resize(p.fabric.mass.size(), {1.0, -1.0, false}); });
+  rejects([](Parameters& p) { p.sheet.filter = 1.5; });
+  rejects([](Parameters& p) { p.fabric.mass.clear(); });
+  rejects([](Parameters& p) { p.flow.density = 0.0; });
+}
+
+TEST(CoupledSolver, RejectsArraysOfTheWrongLength) {
+  const CoupledCase c = flying_strip();
+  CoupledRun run(c);
+  std::vector<Vector> few(c.x.size() - 1);
+  EXPECT_THROW(run.solver->forces(few), std::invalid_argument);
+  EXPECT_THROW(run.solver->download_air_acceleration(few), std::invalid_argument);
+  EXPECT_THROW(run.solver->upload_air_acceleration(few), std::invalid_argument);
+  EXPECT_THROW(run.solver->upload_cloth(few, few), std::invalid_argument);
+}
+
+TEST(CoupledLedger, StepsOfABlockNeitherFenceNorAllocateNorCopy) {
+  CoupledCase c = flying_strip();
+  c.p.substeps = 16;
+  c.p.flow.fixed_dt = 0.002;
+  CoupledRun run(c);
+  const auto counted = [&](std::int64_t steps) {
+    const device::ProfilingCounters before = drogue::testing::profiled();
+    EXPECT_TRUE(run.advance(steps));
+    const device::ProfilingCounters after = drogue::testing::profiled();
+    return std::array{after.fences - before.fences, after.allocations - before.allocations,
+                      after.copies - before.copies, after.kernel_launches - before.kernel_launches};
+  };
+  counted(16);
+  // Blocks of 16 steps and of 4: the difference is that of 12 steps. The first one has a checkpoint of the
+  // cloth.
+  const auto whole = counted(16), part = counted(4);
+  for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(whole[k], part[k]) << k;
+  // Saving, 8 kernels before the steps of the cloth, 4 that spread its forces, a check, and 4 after the step
+  // of the flow, which is 11 kernels on a host and one graph on a device.
+  const std::int64_t flow = tested_backend == device::Backend::cuda ? 1 : 11;
+  EXPECT_EQ(whole[3] - part[3] - 1, 12 * (1 + 8 + c.p.substeps + 4 + 1 + flow + 4));
+}
+
+}  // namespace
+}  // namespace drogue::coupling

@@ -1,0 +1,249 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "tests/support/expression_program.hpp"
+#include "tests/support/flow_case.hpp"
+
+// Steps that fail, the state that they leave, and bounds of dt that prevent failures.
+
+namespace drogue::flow {
+namespace {
+
+using namespace drogue::testing;  // NOLINT: helpers of these tests
+
+constexpr const auto& backend = testing::tested_backend;
+
+/// sqrt(0.105 - t), which is not finite from t = 0.11 on.
+device::ExpressionProgram ending() { return postfix({0.105, "t", "-", "sqrt"}); }
+device::ExpressionProgram zero() { return postfix({0.0}); }
+
+/// Channel between walls along x with steps of 0.01 s.
+Parameters channel() {
+  Parameters p = periodic_box({8, 7, 1});
+  p.viscosity = 0.05;
+  p.fixed_dt = 0.01;
+  p.boundary[2].kind = p.boundary[3].kind = BoundaryKind::wall;
+  return p;
+}
+
+/// Everything that a solver gives out.
+struct Outputs {
+  StaggeredField velocity;
+  std::vector<double> pressure, vorticity, present_pressure;
+  double kinetic_energy;
+  bool operator==(const Outputs&) const = default;
+};
+
+Outputs outputs(Solver& solver, const Parameters& p) {
+  Outputs all;
+  all.velocity = velocity(solver, p);
+  all.pressure = download(solver, p, StateField::pressure);
+  all.present_pressure.resize(all.pressure.size());
+  all.vorticity.resize(3 * all.pressure.size());
+  solver.sample(CellField::pressure, all.present_pressure);
+  solver.sample(CellField::vorticity, all.vorticity);
+  all.kinetic_energy = solver.totals().kinetic_energy;
+  return all;
+}
+
+/// Expects the step to 0.11 s to fail by the velocity of a side, and to leave the state before it.
+void expect_failed_side(Parameters p, int side) {
+  for (const TimeIntegration& integration : time_integrations) {
+    integration.set(p);
+    const auto solver = started(backend, p, sampled_field(FlowDomain(p), [](std::size_t, const auto& point) {
+                                  return 0.1 * std::sin(7.0 * point[0] + 3.0 * point[1]);
+                                }));
+    ASSERT_EQ(solver->advance(endless, 10, {}), Stop::pause);
+    const Outputs before = outputs(*solver, p);
+    EXPECT_LT(largest(before.pressure), 1e3);
+    EXPECT_LT(largest(before.vorticity), 1e3);
+    EXPECT_LT(largest(before.present_pressure), 1e3);
+    ASSERT_EQ(solver->advance(0.14, -1, {}), Stop::failed);
+    EXPECT_EQ(solver->failure().reason, FailureReason::side_velocity);
+    EXPECT_EQ(solver->failure().index, side);
+    EXPECT_EQ(solver->failure().step, 11);
+    EXPECT_EQ(outputs(*solver, p), before);
+  }
+}
+
+TEST(FlowFailure, TangentialVelocityOfAWallThatIsNotFiniteFailsTheStep) {
+  Parameters p = channel();
+  p.boundary[2].velocity_expressions = {ending(), zero(), zero()};
+  expect_failed_side(p, 2);
+}
+
+TEST(FlowFailure, WallVelocityAlongAnAxisOfOneCellThatIsNotFiniteFailsTheStep) {
+  Parameters p = channel();
+  p.boundary[3].velocity_expressions = {zero(), zero(), ending()};
+  expect_failed_side(p, 3);
+}
+
+TEST(FlowFailure, InflowThatIsNotFiniteFailsTheStep) {
+  Parameters p = channel();
+  p.boundary[0].kind = BoundaryKind::inflow;
+  p.boundary[0].velocity_expressions = {ending(), zero(), zero()};
+  p.boundary[1].kind = BoundaryKind::outflow;
+  expect_failed_side(p, 0);
+}
+
+TEST(FlowFailure, SidesAreNotJudgedBeyondTheirEnds) {
+  Parameters p = channel();
+  // Not finite in ghost cells, where y < 0 or y > 1.
+  p.boundary[0].kind = BoundaryKind::inflow;
+  p.boundary[0].velocity_expressions = {postfix({"y", 1.0, "y", "-", "*", "sqrt"}), zero(), zero()};
+  p.boundary[1].kind = BoundaryKind::outflow;
+  const auto solver = started(backend, p, FlowDomain(p).zero_field());
+  EXPECT_EQ(solver->advance(endless, 5, {}), Stop::pause);
+}
+
+TEST(FlowFailure, VelocityAlongAnAxisOfOneCellThatIsNotFiniteFailsTheStep) {
+  for (const double bad : {std::nan(""), HUGE_VAL})
+    for (const TimeIntegration& integration : time_integrations) {
+      Parameters p = channel();
+      integration.set(p);
+      StaggeredField u = random_field(FlowDomain(p), 3);
+      u[2][19] = bad;
+      const auto solver = started(backend, p, u);
+      EXPECT_EQ(solver->advance(endless, 1, {}), Stop::failed);
+      EXPECT_EQ(solver->failure().reason, FailureReason::not_finite);
+      EXPECT_EQ(solver->failure().index, 19);
+    }
+}
+
+TEST(FlowFailure, LastStepTowardsATargetIsChecked) {
+  Parameters p = channel();
+  p.boundary[2].velocity_expressions = {ending(), zero(), zero()};
+  const auto solver = started(backend, p, FlowDomain(p).zero_field());
+  EXPECT_EQ(solver->advance(0.11, -1, {}), Stop::failed);
+}
+
+/// Flow between a wall at rest and one that moves with 10 m/s, of uniform shear; flat cells.
+Parameters shear() {
+  Parameters p = periodic_box({16, 32, 1});
+  p.high = {10.0, 1.0, 1.0};
+  p.boundary[2].kind = p.boundary[3].kind = BoundaryKind::wall;
+  p.boundary[3].velocity = {10.0, 0.0, 0.0};
+  return p;
+}
+
+TEST(FlowStepSize, IncludesTheEddyViscosity) {
+  for (const TimeScheme time : {TimeScheme::ab2, TimeScheme::rk3}) {
+    Parameters p = shear();
+    p.time_scheme = time;
+    p.turbulence = Turbulence::smagorinsky;
+    const FlowDomain domain(p);
+    const auto u = sampled_field(
+        domain, [](std::size_t c, const auto& point) { return c == 0 ? 10.0 * point[1] : 0.0; });
+    const auto solver = started(backend, p, u);
+    const double hx = 10.0 / 16.0, hy = 1.0 / 32.0;
+    const double eddy_viscosity = 0.17 * 0.17 * hx * hy * 10.0;
+    const bool is_rk3 = time == TimeScheme::rk3;
+    const double advection = 10.0 * (1.0 - 0.5 * hy) / hx / (is_rk3 ? 1.0 : 0.5);
+    const double diffusion =
+        4.0 * eddy_viscosity * (1.0 / (hx * hx) + 1.0 / (hy * hy)) / (0.9 * (is_rk3 ? 2.5 : 1.0));
+    const double expected = 1.0 / (advection + diffusion);
+    EXPECT_GT(diffusion, 0.5 * advection);
+    for (int step = 1; step <= 3; ++step) {
+      ASSERT_EQ(solver->advance(endless, step, {}), Stop::pause);
+      EXPECT_NEAR(solver->progress().last_dt, expected, 1e-10 * expected);
+    }
+  }
+}
+
+TEST(FlowStepSize, KeepsSmagorinskysModelStableInFlatCells) {
+  Parameters p = periodic_box({32, 32, 1});
+  p.high = {10.0, 1.0, 1.0};
+  p.viscosity = 1e-5;
+  p.time_scheme = TimeScheme::ab2;
+  p.turbulence = Turbulence::smagorinsky;
+  p.turbulence_constant = 0.5;
+  p.boundary[2].kind = p.boundary[3].kind = BoundaryKind::wall;
+  const auto u = sampled_field(FlowDomain(p), [](std::size_t c, const auto& point) {
+    const double x = point[0], y = point[1];
+    if (c == 0) return 4.0 * y * (1.0 - y) + 0.1 * std::sin(0.628318 * x);
+    return c == 1 ? 0.05 * std::sin(6.28318 * y) : 0.0;
+  });
+  const auto solver = started(backend, p, u);
+  double before = solver->totals().kinetic_energy;
+  for (const double time : {1.0, 2.0, 3.0, 4.0, 5.0}) {
+    ASSERT_EQ(solver->advance(time, -1, {}), Stop::target);
+    const Totals totals = solver->totals();
+    EXPECT_LT(totals.kinetic_energy, before);
+    EXPECT_LT(totals.max_speed, 1.2);
+    before = totals.kinetic_energy;
+  }
+}
+
+TEST(FlowStepSize, RestartRestoresTheEddyViscosity) {
+  Parameters p = shear();
+  p.turbulence = Turbulence::vreman;
+  const auto solver = started(backend, p, random_field(FlowDomain(p), 5));
+  ASSERT_EQ(solver->advance(endless, 3, {}), Stop::pause);
+  const auto restarted = create_solver(backend, p);
+  for (const StateField field :
+       {StateField::velocity_x, StateField::velocity_y, StateField::velocity_z, StateField::pressure})
+    restarted->upload(field, download(*solver, p, field));
+  restarted->restore(solver->progress());
+  ASSERT_EQ(solver->advance(endless, 6, {}), Stop::pause);
+  ASSERT_EQ(restarted->advance(endless, 6, {}), Stop::pause);
+  EXPECT_EQ(velocity(*restarted, p), velocity(*solver, p));
+  EXPECT_EQ(restarted->progress().time, solver->progress().time);
+}
+
+TEST(FlowStepSize, DoesNotDependOnTheThicknessOfOneCell) {
+  std::vector<double> steps;
+  for (const double thickness : {1.0, 1e-3}) {
+    Parameters p = periodic_box({9, 8, 1});
+    p.high[2] = thickness;
+    const auto solver = started(backend, p, random_field(FlowDomain(p), 6));
+    ASSERT_EQ(solver->advance(endless, 1, {}), Stop::pause);
+    steps.push_back(solver->progress().last_dt);
+  }
+  EXPECT_EQ(steps[0], steps[1]);
+}
+
+TEST(FlowStepSize, FirstStepFromRestFollowsTheInflow) {
+  for (const TimeScheme time : {TimeScheme::ab2, TimeScheme::rk3}) {
+    Parameters p = periodic_box({48, 8, 1});
+    p.high = {6.0, 1.0, 1.0};
+    p.time_scheme = time;
+    p.boundary[0].kind = BoundaryKind::inflow;
+    p.boundary[0].velocity_expressions = {postfix({"t", 3.0, "*", "sin", 10.0, "*"}), zero(), zero()};
+    p.boundary[1].kind = BoundaryKind::outflow;
+    p.boundary[2].kind = p.boundary[3].kind = BoundaryKind::slip;
+    const auto solver = started(backend, p, FlowDomain(p).zero_field());
+    const double cfl = time == TimeScheme::rk3 ? 1.0 : 0.5;
+    for (int step = 1; step <= 400; ++step) {
+      ASSERT_EQ(solver->advance(10.25, step, {}), Stop::pause);
+      EXPECT_LE(solver->progress().last_dt * solver->totals().max_speed / 0.125, 1.5 * cfl) << step;
+    }
+  }
+}
+
+TEST(FlowStepSize, FirstStepFromRestFollowsTheBodyForce) {
+  Parameters p = periodic_box({16, 4, 1});
+  p.body_force = {2.0, 0.0, 0.0};
+  const auto solver = started(backend, p, FlowDomain(p).zero_field());
+  ASSERT_EQ(solver->advance(100.0, 1, {}), Stop::pause);
+  EXPECT_NEAR(solver->progress().last_dt, std::sqrt(1.0 / (2.0 * 16.0)), 1e-14);
+}
+
+TEST(FlowSides, SlipSidesOfOneCellLeaveNoVelocityThroughThem) {
+  Parameters p = periodic_box({8, 7, 1});
+  p.boundary[4].kind = p.boundary[5].kind = BoundaryKind::slip;
+  const auto solver = started(backend, p, random_field(FlowDomain(p), 3));
+  EXPECT_EQ(largest(velocity(*solver, p)[2]), 0.0);
+  p.body_force[2] = 1.0;
+  EXPECT_THROW(check_parameters(p), std::invalid_argument);
+  p.body_force[2] = 0.0;
+  p.boundary[2].kind = p.boundary[3].kind = BoundaryKind::wall;
+  EXPECT_NO_THROW(check_parameters(p));
+  p.boundary[3].velocity = {0.0, 0.0, 1.0};
+  EXPECT_THROW(check_parameters(p), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace drogue::flow

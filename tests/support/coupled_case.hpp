@@ -1,0 +1,103 @@
+#pragma once
+
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "kernels/coupling/sheet/solver.hpp"
+#include "kernels/fabric/elastic/lumped_mass.hpp"
+#include "tests/support/backend.hpp"
+
+namespace drogue::testing {
+
+/// Cloth in a box of air that is one cell thick along z, periodic along all axes; strips of cloth across it.
+struct CoupledCase {
+  static constexpr double alpha = 254.4, beta = 37.6;  ///< MIL-C-7020 type III
+  coupling::Parameters p;
+  std::vector<fabric::Vector> x, v;
+
+  /// Box of nx by ny cells of h, m, and steps of dt, s.
+  CoupledCase(int nx, int ny, double h, double dt) {
+    p.flow.cells = {nx, ny, 1};
+    p.flow.high = {nx * h, ny * h, h};
+    p.flow.density = 1.2;
+    p.flow.viscosity = 1.8e-5;
+    p.flow.time_scheme = flow::TimeScheme::ab2;
+    p.flow.fixed_dt = dt;
+    p.sheet.law = {alpha, beta, false};
+  }
+
+  [[nodiscard]] double width() const { return p.flow.high[2]; }
+  [[nodiscard]] double volume() const { return p.flow.high[0] * p.flow.high[1] * p.flow.high[2]; }
+
+  /// Adds a strip of `segments` segments from (x0, y0) to (x1, y1), m, pinned everywhere. Its normal is that
+  /// of the segment turned by a right angle clockwise: along x for a strip along y.
+  void add_strip(double x0, double y0, double x1, double y1, int segments) {
+    fabric::Parameters& cloth = p.fabric;
+    const int first = static_cast<int>(cloth.mesh.rest.size());
+    for (int k = 0; k <= segments; ++k)
+      for (int row = 0; row < 2; ++row) {
+        const double part = static_cast<double>(k) / segments;
+        cloth.mesh.rest.push_back({x0 + part * (x1 - x0), y0 + part * (y1 - y0), row * width()});
+        cloth.pinned.push_back(7);
+      }
+    for (int k = 0; k < segments; ++k) {
+      const int a = first + 2 * k;
+      // Alternating diagonals, so that inner vertices have equal areas but for round-off.
+      if (k % 2 == 0) {
+        cloth.mesh.triangles.push_back({a, a + 2, a + 1});
+        cloth.mesh.triangles.push_back({a + 2, a + 3, a + 1});
+      } else {
+        cloth.mesh.triangles.push_back({a, a + 2, a + 3});
+        cloth.mesh.triangles.push_back({a, a + 3, a + 1});
+      }
+    }
+    set_mass(0.0373);
+    x = cloth.mesh.rest;
+    v.assign(x.size(), fabric::Vector{});
+  }
+
+  /// Sets the mass of the cloth per area, kg/m^2.
+  void set_mass(double areal) {
+    p.fabric.mass = fabric::lumped_masses(p.fabric.mesh, areal, 0.0, fabric::Lumping::area);
+  }
+
+  /// Normal velocity at which the law gives the pressure difference dp, Pa, m/s.
+  [[nodiscard]] static double law_velocity(double dp) {
+    return (-alpha + std::sqrt(alpha * alpha + 4.0 * beta * dp)) / (2.0 * beta);
+  }
+
+  /// Solver on a backend at the start of the case.
+  [[nodiscard]] std::unique_ptr<coupling::Solver> solver(device::Backend backend) const {
+    auto solver = coupling::create_solver(backend, p);
+    solver->upload_cloth(x, v);
+    solver->start();
+    return solver;
+  }
+};
+
+/// A case on the backend of the test program.
+struct CoupledRun {
+  explicit CoupledRun(const CoupledCase& of) : vertices(of.x.size()), solver(of.solver(tested_backend)) {}
+
+  /// Takes steps of the flow; false after a failure.
+  bool advance(std::int64_t steps) {
+    const std::int64_t end = solver->progress().step + steps;
+    return solver->advance(1e9, end, {}) == flow::Stop::pause && solver->progress().step == end;
+  }
+
+  /// Sum of the forces of the sheet on the air in the last step, N.
+  [[nodiscard]] fabric::Vector force() const {
+    std::vector<fabric::Vector> each(vertices);
+    solver->forces(each);
+    fabric::Vector sum{};
+    for (const fabric::Vector& of_vertex : each)
+      for (std::size_t axis = 0; axis < 3; ++axis) sum[axis] += of_vertex[axis];
+    return sum;
+  }
+
+  std::size_t vertices;
+  std::unique_ptr<coupling::Solver> solver;
+};
+
+}  // namespace drogue::testing
