@@ -235,6 +235,13 @@ class Verification(parachute_program.FlowTest):
                          set(self.check(0, "{" + line.format(top) + "}", sets=sets)))
         self.check(5, "{" + line.format(top + 0.02) + "}", sets=sets)
 
+    def test_summary_aligns_long_names_of_checks(self):
+        profile = "profile=[{component='x',along='x',through=[0,0.3,0],maximum={value=1,tolerance=1,at=1.5708,at_tolerance=1}}]"
+        text = self.expect(0, self.write(VORTICES), "--backend", "serial",
+                           sets=["output.fields=[]", "verify={divergence=1," + profile + "}"]).stdout
+        columns = {re.match(r"  \S+ +(?=\S)", line).end() for line in text.splitlines() if "(tolerance" in line}
+        self.assertEqual({len("  profile_0_maximum_at ")}, columns, text)
+
     def test_uniform_stream_stays_bit_for_bit(self):
         for backend in {"serial", gas_program.threaded()}:
             self.expect(0, "uniform", "--quiet", "--backend", backend, "--out", backend)

@@ -235,7 +235,7 @@ class Failures(springs_program.SpringsTest):
     def test_reports_an_unreachable_end_time(self):
         """The message prints the time in its shortest form."""
         message = self.expect(4, self.write(DRUM), "--quiet", "--out", "out", sets=["time.end_time=1e300", "output.times=[1e300]"]).stderr
-        self.assertRegex(message, r"more than 1e15 to t = 1e\+300 s")
+        self.assertRegex(message, r"more than 1e15 steps to t = 1e\+300 s")
 
     def test_intersections_are_reported_by_indices_from_0(self):
         """Two intersecting triangles; indices of vertices and faces are those of fields.h5."""
