@@ -211,6 +211,7 @@ class FabricSolver {
   void enqueue(std::int64_t steps) {
     with_model([&]<ConstitutiveModel model>() { this->template enqueue_model_steps<model>(steps); });
   }
+  /// A VertexForce that relaxes velocities leaves all integrators but the symplectic Euler method uncompiled.
   template <ConstitutiveModel model>
   void enqueue_model_steps(std::int64_t steps);
   template <ConstitutiveModel model>
@@ -640,16 +641,18 @@ template <ConstitutiveModel model>
 void FabricSolver<ExecutionSpace, VertexForce>::enqueue_model_steps(std::int64_t steps) {
   if (_contact) {
     for (std::int64_t k = 0; k < steps; ++k) enqueue_contact_step<model>();
-  } else if (_parameters.integrator == Integrator::verlet) {
-    enqueue_verlet<model>(false, true);
-    for (std::int64_t k = 1; k < steps; ++k) enqueue_verlet<model>(true, true);
-    enqueue_verlet<model>(true, false);
   } else if (_parameters.integrator == Integrator::symplectic_euler) {
     for (std::int64_t k = 0; k < steps; ++k) enqueue_symplectic_euler<model>();
-  } else if (_launcher.is_persistent()) {
-    enqueue_persistent_steps<model>(steps);
-  } else {
-    for (std::int64_t k = 0; k < steps; ++k) launch_runge_kutta_step<model>();
+  } else if constexpr (!RelaxesVelocity<VertexForce>) {
+    if (_parameters.integrator == Integrator::verlet) {
+      enqueue_verlet<model>(false, true);
+      for (std::int64_t k = 1; k < steps; ++k) enqueue_verlet<model>(true, true);
+      enqueue_verlet<model>(true, false);
+    } else if (_launcher.is_persistent()) {
+      enqueue_persistent_steps<model>(steps);
+    } else {
+      for (std::int64_t k = 0; k < steps; ++k) launch_runge_kutta_step<model>();
+    }
   }
 }
 
@@ -657,13 +660,15 @@ template <class ExecutionSpace, class VertexForce>
 template <ConstitutiveModel model>
 void FabricSolver<ExecutionSpace, VertexForce>::enqueue_contact_step() {
   _contact->begin_step(_x, _v);
-  if (_parameters.integrator == Integrator::verlet) {
-    enqueue_verlet<model>(false, true);
-    enqueue_verlet<model>(true, false);
-  } else if (_parameters.integrator == Integrator::symplectic_euler) {
+  if (_parameters.integrator == Integrator::symplectic_euler) {
     enqueue_symplectic_euler<model>();
-  } else {
-    launch_runge_kutta_step<model>();
+  } else if constexpr (!RelaxesVelocity<VertexForce>) {
+    if (_parameters.integrator == Integrator::verlet) {
+      enqueue_verlet<model>(false, true);
+      enqueue_verlet<model>(true, false);
+    } else {
+      launch_runge_kutta_step<model>();
+    }
   }
   _contact->end_step(_x, _v);
   end_vertex_forces();
