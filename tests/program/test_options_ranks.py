@@ -139,7 +139,7 @@ class Failures(RanksTest):
             with self.subTest(victim):
                 launcher, ranks = self.begin_long_run()
                 os.kill(ranks[victim], signal.SIGTERM)
-                self.assertEqual((130, []), self.end(launcher)[:2])
+                self.assertEqual((130, ["drogue-options: interrupted by a signal; nothing is written to 'prices.csv'"]), self.end(launcher)[:2])
                 self.assertEqual(["batch.csv", "r.json"], self.names())
                 self.assertEqual("interrupted", json.loads((self.folder / "r.json").read_text())["status"])
                 (self.folder / "r.json").unlink()

@@ -9,7 +9,7 @@ import disassembly
 
 BUILD = pathlib.Path(os.environ["DROGUE_BUILD"])
 # WENO-JS in full precision, all stages in one kernel.
-FUNCTOR = "StepFunctor<Kokkos::Serial, (drogue::gas::Reconstruction)0, (drogue::gas::Precision)0, false>"
+FUNCTOR = "StepFunctor<Kokkos::Serial, (drogue::reconstruction::Reconstruction)0, (drogue::gas::Precision)0, false>"
 # GCC may keep the face loop in a separate function.
 CHUNK = "FaceChunk<drogue::device::Pack<double,"
 FACE_DIVISIONS = 7  # `face_arithmetic` in kernels/gas/step_work.hpp
