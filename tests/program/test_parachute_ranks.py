@@ -131,7 +131,8 @@ class Failures(RanksTest):
             if (self.folder / out / "restart.h5").exists():
                 break
         os.kill(processes_of(process)[victim], signal.SIGTERM)
-        self.assertEqual((130, []), self.end(process)[:2])
+        message = "drogue-parachute: interrupted by a signal; restart.h5 is written, continue with --restart auto"
+        self.assertEqual((130, [message]), self.end(process)[:2])
         self.assertEqual("interrupted", self.result(out)["status"])
 
 
