@@ -1,10 +1,10 @@
 #include "kernels/flow/solver.hpp"
 
 #include <cmath>
-#include <new>
 #include <stdexcept>
 #include <string>
-#include <string_view>
+
+#include "kernels/device/allocate.hpp"
 
 namespace drogue::flow {
 
@@ -97,15 +97,10 @@ void check_parameters(const Parameters& p) {
 std::unique_ptr<Solver> create_solver(device::Backend backend, const Parameters& parameters,
                                       const linear::RankGroup& group) {
   check_parameters(parameters);
-  try {
+  return device::allocate([&] {
     return device::dispatch(
         backend, [&]<class ExecutionSpace>() { return make_solver<ExecutionSpace>(parameters, group); });
-  } catch (const std::runtime_error& error) {
-    // Kokkos throws this for a failed allocation.
-    if (std::string_view(error.what()).find("failed to allocate") != std::string_view::npos)
-      throw std::bad_alloc();
-    throw;
-  }
+  });
 }
 
 }  // namespace drogue::flow

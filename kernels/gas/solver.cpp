@@ -1,9 +1,9 @@
 #include "kernels/gas/solver.hpp"
 
-#include <new>
 #include <stdexcept>
 #include <string>
-#include <string_view>
+
+#include "kernels/device/allocate.hpp"
 
 namespace drogue::gas {
 
@@ -31,23 +31,11 @@ void check(const Parameters& p) {
           "block must be a multiple of 32 between 32 and 512");
 }
 
-/// Translates the `std::runtime_error` that Kokkos throws for a failed allocation into `std::bad_alloc`.
-template <class Make>
-std::unique_ptr<Solver> allocate(const Make& make) {
-  try {
-    return make();
-  } catch (const std::runtime_error& error) {
-    if (std::string_view(error.what()).find("failed to allocate") != std::string_view::npos)
-      throw std::bad_alloc();
-    throw;
-  }
-}
-
 }  // namespace
 
 std::unique_ptr<Solver> create_solver(device::Backend backend, const Parameters& parameters) {
   check(parameters);
-  return allocate([&] {
+  return device::allocate([&] {
     return device::dispatch(backend,
                             [&]<class ExecutionSpace>() { return make_solver<ExecutionSpace>(parameters); });
   });
@@ -55,7 +43,7 @@ std::unique_ptr<Solver> create_solver(device::Backend backend, const Parameters&
 
 std::unique_ptr<Solver> create_baseline_solver(device::Backend backend, const Parameters& parameters) {
   check(parameters);
-  return allocate([&] {
+  return device::allocate([&] {
     return device::dispatch(
         backend, [&]<class ExecutionSpace>() { return make_baseline_solver<ExecutionSpace>(parameters); });
   });

@@ -51,12 +51,10 @@ void distort(const Rectangle& shape, const Counts& counts, Mesh& mesh) {
 
 }  // namespace
 
-Mesh generate(const Rectangle& shape) {
-  const auto [columns, rows] = counts(shape.width, shape.height, shape.vertices);
+Mesh rectangle(double width, double height, int columns, int rows) {
   Mesh mesh;
   for (int j = 0; j <= rows; ++j)
-    for (int i = 0; i <= columns; ++i)
-      mesh.rest.push_back({shape.width * i / columns, shape.height * j / rows, 0.0});
+    for (int i = 0; i <= columns; ++i) mesh.rest.push_back({width * i / columns, height * j / rows, 0.0});
   for (int j = 0; j < rows; ++j)
     for (int i = 0; i < columns; ++i) {
       const int a = j * (columns + 1) + i, b = a + 1, c = a + columns + 1, d = c + 1;
@@ -68,7 +66,13 @@ Mesh generate(const Rectangle& shape) {
         mesh.triangles.push_back({b, d, c});
       }
     }
-  if (shape.distortion > 0.0) distort(shape, {columns, rows}, mesh);
+  return mesh;
+}
+
+Mesh generate(const Rectangle& shape) {
+  const Counts cells = counts(shape.width, shape.height, shape.vertices);
+  Mesh mesh = rectangle(shape.width, shape.height, cells.columns, cells.rows);
+  if (shape.distortion > 0.0) distort(shape, cells, mesh);
   return mesh;
 }
 

@@ -41,6 +41,10 @@ struct String {
   int vertices = 100;
 };
 
+/// Rectangle [0, width] x [0, height] (m) in the plane z = 0 of columns and rows of cells with alternating
+/// diagonals; vertices row by row. Throws only std::bad_alloc.
+[[nodiscard]] Mesh rectangle(double width, double height, int columns, int rows);
+
 /// Mesh of a rectangle, m. Throws only std::bad_alloc.
 [[nodiscard]] Mesh generate(const Rectangle& shape);
 /// Mesh of a disk, m. Throws only std::bad_alloc.

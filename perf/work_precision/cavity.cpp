@@ -2,13 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <string>
 
 #include "common/program/signals.hpp"
-#include "common/study/repeats.hpp"
-#include "miniapps/framework/run_loop.hpp"
-#include "miniapps/framework/study.hpp"
-#include "miniapps/parachute/simulation/simulation.hpp"
+#include "miniapps/parachute/verify/study.hpp"
 #include "perf/pressure/pressure.hpp"
 #include "perf/problems/streams.hpp"
 #include "perf/work_precision/flow_scheme.hpp"
@@ -30,22 +28,11 @@ double largest_deviation(const run::ResultDocument& result) {
 }
 
 framework::RepeatedRun run_cavity(const parachute_app::FlowScene& scene, device::Backend backend) {
-  return framework::repeat_run(cavity_repeats, [&](framework::RepeatedRun& runs) {
-    parachute_app::Simulation simulation(scene, {backend, false, true});
-    simulation.start();
-    run::ResultDocument result;
-    const framework::RunRequest request{{}, true, true, {}};
-    const ExitCode code = framework::run_to_end(simulation, request, result);
-    if (code == ExitCode::interrupted) return code;
-    if (runs.samples.empty()) {
-      simulation.verify(nullptr, result);
-      runs.errors["extreme"] = largest_deviation(result);
-      runs.others["divergence"] = simulation.divergence();
-      runs.steps = result.steps;
-    }
-    runs.samples.push_back(result.timing.compute_s);
-    return code;
-  });
+  return parachute_app::repeat_scene(
+      scene, backend, cavity_repeats, [](parachute_app::Simulation& simulation, run::ResultDocument& result) {
+        simulation.verify(nullptr, result);
+        return std::map<std::string, double>{{"extreme", largest_deviation(result)}};
+      });
 }
 
 /// Cells per axis. Explicit diffusion takes a number of steps that grows with the square.

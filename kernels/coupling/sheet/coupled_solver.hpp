@@ -106,7 +106,6 @@ class CoupledSolver {
   static Parameters completed(Parameters p) {
     p.fabric.integrator = fabric::Integrator::symplectic_euler;
     p.fabric.dt = 1.0;  // every block sets its own
-    flow::check_parameters(p.flow);
     fabric::check_parameters(p.fabric);
     if (p.substeps < 0)
       throw std::invalid_argument("coupled solver: the number of substeps must not be negative");

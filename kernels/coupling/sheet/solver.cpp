@@ -1,9 +1,6 @@
 #include "kernels/coupling/sheet/solver.hpp"
 
-#include <new>
-#include <stdexcept>
-#include <string_view>
-
+#include "kernels/device/allocate.hpp"
 #include "kernels/device/backend_list.hpp"
 
 namespace drogue::coupling {
@@ -13,15 +10,10 @@ template <class ExecutionSpace>
 std::unique_ptr<Solver> make_solver(const Parameters& parameters);
 
 std::unique_ptr<Solver> create_solver(device::Backend backend, const Parameters& parameters) {
-  try {
+  return device::allocate([&] {
     return device::dispatch(backend,
                             [&]<class ExecutionSpace>() { return make_solver<ExecutionSpace>(parameters); });
-  } catch (const std::runtime_error& error) {
-    // Kokkos throws this for a failed allocation.
-    if (std::string_view(error.what()).find("failed to allocate") != std::string_view::npos)
-      throw std::bad_alloc();
-    throw;
-  }
+  });
 }
 
 }  // namespace drogue::coupling

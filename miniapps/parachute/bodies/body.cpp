@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+
+#include "kernels/mesh/generators.hpp"
 
 namespace drogue::parachute_app {
 
@@ -27,29 +30,21 @@ fabric::Parameters make_sheets(const std::vector<Body>& bodies) {
   fabric::Parameters sheets;
   for (const Body& body : bodies) {
     const auto [first, second] = body.axes();
-    const auto [nx, ny] = body.edges();
+    const auto [columns, rows] = body.edges();
     const int start = static_cast<int>(sheets.mesh.rest.size());
-    for (int j = 0; j <= ny; ++j)
-      for (int i = 0; i <= nx; ++i) {
-        fabric::Vector x = body.centre;
-        x[first] += (static_cast<double>(i) / nx - 0.5) * body.lengths[0];
-        x[second] += (static_cast<double>(j) / ny - 0.5) * body.lengths[1];
-        sheets.mesh.rest.push_back(x);
-      }
-    const bool turns = body.normal == 1;  // z, x, y and x, y, z are right-handed, x, z, y is not
-    const auto add = [&](int a, int b, int c) {
-      sheets.mesh.triangles.push_back(turns ? std::array{a, c, b} : std::array{a, b, c});
-    };
-    for (int j = 0; j < ny; ++j)
-      for (int i = 0; i < nx; ++i) {
-        const int a = start + j * (nx + 1) + i, b = a + 1, c = a + nx + 1, d = c + 1;
-        // Alternating diagonals: the areas of vertices vary within one cell alone.
-        if ((i + j) % 2 == 0) {
-          add(a, b, d), add(a, d, c);
-        } else {
-          add(a, b, c), add(b, d, c);
-        }
-      }
+    const mesh::Mesh plate = mesh::rectangle(body.lengths[0], body.lengths[1], columns, rows);
+    for (const fabric::Vector& in_plane : plate.rest) {
+      fabric::Vector x = body.centre;
+      x[first] += in_plane[0] - 0.5 * body.lengths[0];
+      x[second] += in_plane[1] - 0.5 * body.lengths[1];
+      sheets.mesh.rest.push_back(x);
+    }
+    for (std::array<int, 3> corners : plate.triangles) {
+      // The axes x, z are in the order of a left-handed system with y.
+      if (body.normal == 1) std::swap(corners[1], corners[2]);
+      for (int& corner : corners) corner += start;
+      sheets.mesh.triangles.push_back(corners);
+    }
   }
   sheets.mass.assign(sheets.mesh.rest.size(), 1.0);  // without effect on pinned vertices
   sheets.pinned.assign(sheets.mesh.rest.size(), 7);

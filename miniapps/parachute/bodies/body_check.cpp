@@ -3,6 +3,7 @@
 #include <string>
 
 #include "common/scene/read.hpp"
+#include "miniapps/parachute/scene/functions.hpp"
 
 namespace drogue::parachute_app {
 namespace {
@@ -14,7 +15,7 @@ using scene::Table;
 constexpr double most_vertices = 1048576.0;  // 2^20
 
 double spacing(const flow::Parameters& p, std::size_t axis) {
-  return (p.high[axis] - p.low[axis]) / p.cells[axis];
+  return lattice_of(p, flow::StateField::pressure).spacing[axis];
 }
 
 bool is_bounded(const flow::Parameters& p, std::size_t axis) {
@@ -30,9 +31,9 @@ void check_extent(const Table& root, const flow::Parameters& p, const std::strin
   contradict(root, key,
              place + " reaches from " + real_text(low) + " to " + real_text(high) + " m along " +
                  axis_names[axis] + ", beyond " +
-                 (margin > 0.0 ? "the cells beside the sides of the domain: it must lie between " : "") +
-                 (margin > 0.0 ? "" : "the domain: it must lie between ") + real_text(p.low[axis] + margin) +
-                 " and " + real_text(p.high[axis] - margin) + " m");
+                 (margin > 0.0 ? "the cells beside the sides of the domain" : "the domain") +
+                 ": it must lie between " + real_text(p.low[axis] + margin) + " and " +
+                 real_text(p.high[axis] - margin) + " m");
 }
 
 void check_body(const Table& root, const FlowScene& scene, std::size_t index) {

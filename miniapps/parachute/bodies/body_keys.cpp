@@ -9,7 +9,6 @@ using scene::Choices;
 using scene::Table;
 
 const Choices<BodyKind> body_choices = {{"plate", BodyKind::plate}};
-const Choices<int> normal_choices = {{"x", 0}, {"y", 1}, {"z", 2}};
 const Choices<PorosityLaw> law_choices = {{"none", PorosityLaw::none},
                                           {"forchheimer", PorosityLaw::forchheimer}};
 
@@ -33,7 +32,7 @@ void declare_porosity(Table& table, Porosity& porosity) {
 void declare_body(Table& table, Body& body) {
   table.value("kind", scene::choice_codec(body.kind, body_choices), "A rectangle without thickness")
       .required();
-  table.value("normal", scene::choice_codec(body.normal, normal_choices), "Axis normal to the plate")
+  table.value("normal", scene::choice_codec(body.normal, axis_choices), "Axis normal to the plate")
       .required();
   table.value("centre", vector_codec(body.centre), "Centre").unit("m").required();
   table

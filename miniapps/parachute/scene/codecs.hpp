@@ -9,6 +9,9 @@
 
 namespace drogue::parachute_app {
 
+/// Names of the axes in scenes.
+inline const scene::Choices<int> axis_choices = {{"x", 0}, {"y", 1}, {"z", 2}};
+
 /// Array of three integers within the declared limits. Does not throw.
 scene::Codec cells_codec(std::array<int, 3>& cells);
 

@@ -9,7 +9,6 @@ using scene::Table;
 
 const std::vector<std::string> verified_place_and_time = {"x", "y", "z", "t"};
 
-const Choices<int> axis_choices = {{"x", 0}, {"y", 1}, {"z", 2}};
 const Choices<int> side_choices = {{"x_low", 0},  {"x_high", 1}, {"y_low", 2},
                                    {"y_high", 3}, {"z_low", 4},  {"z_high", 5}};
 

@@ -89,21 +89,8 @@ std::vector<FlowScene> scenes_of(const study::Axes& axes, const MiniAppOptions& 
 }
 
 framework::RepeatedRun run_point(const FlowScene& scene, device::Backend backend) {
-  return framework::repeat_run({3, 1.0}, [&](framework::RepeatedRun& runs) {
-    Simulation simulation(scene, {backend, false, true});
-    simulation.start();
-    run::ResultDocument result;
-    const framework::RunRequest request{{}, true, true, {}};
-    const ExitCode code = framework::run_to_end(simulation, request, result);
-    if (code == ExitCode::interrupted) return code;
-    if (runs.samples.empty()) {
-      runs.errors = simulation.error_norms();
-      runs.others["divergence"] = simulation.divergence();
-      runs.steps = result.steps;
-    }
-    runs.samples.push_back(result.timing.compute_s);
-    return code;
-  });
+  return repeat_scene(scene, backend, {3, 1.0},
+                      [](Simulation& simulation, run::ResultDocument&) { return simulation.error_norms(); });
 }
 
 study::StudyRow row_of(const FlowScene& scene, framework::RepeatedRun runs) {
@@ -136,6 +123,26 @@ void add_orders(const study::StudyRow& coarser, study::StudyRow& row) {
 }
 
 }  // namespace
+
+framework::RepeatedRun repeat_scene(
+    const FlowScene& scene, device::Backend backend, const study::Repeats& repeats,
+    const std::function<std::map<std::string, double>(Simulation&, run::ResultDocument&)>& errors_of) {
+  return framework::repeat_run(repeats, [&](framework::RepeatedRun& runs) {
+    Simulation simulation(scene, {backend, false, true});
+    simulation.start();
+    run::ResultDocument result;
+    const framework::RunRequest request{{}, true, true, {}};
+    const ExitCode code = framework::run_to_end(simulation, request, result);
+    if (code == ExitCode::interrupted) return code;
+    if (runs.samples.empty()) {
+      runs.errors = errors_of(simulation, result);
+      runs.others["divergence"] = simulation.divergence();
+      runs.steps = result.steps;
+    }
+    runs.samples.push_back(result.timing.compute_s);
+    return code;
+  });
+}
 
 ExitCode run_study(const MiniAppOptions& options, const std::filesystem::path& file) {
   const study::Axes axes =

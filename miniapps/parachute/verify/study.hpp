@@ -1,9 +1,12 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 
 #include "common/program/mini_app_options.hpp"
+#include "common/study/repeats.hpp"
 #include "miniapps/framework/study.hpp"
+#include "miniapps/parachute/simulation/simulation.hpp"
 
 namespace drogue::parachute_app {
 
@@ -11,5 +14,11 @@ namespace drogue::parachute_app {
 /// picture, with observed orders against the row before. Returns `ok` or `interrupted`. Throws `Failure`:
 /// usage for an invalid axis or a scene without exact solution, otherwise like a run.
 ExitCode run_study(const MiniAppOptions& options, const std::filesystem::path& file);
+
+/// Runs a scene repeatedly. `errors_of` returns the errors of the first run from its simulation and result,
+/// by name; the divergence, 1/s, and the steps of that run are kept too. Throws `Failure` as a run does.
+framework::RepeatedRun repeat_scene(
+    const FlowScene& scene, device::Backend backend, const study::Repeats& repeats,
+    const std::function<std::map<std::string, double>(Simulation&, run::ResultDocument&)>& errors_of);
 
 }  // namespace drogue::parachute_app

@@ -32,30 +32,28 @@ Parameters tunnel() {
   return p;
 }
 
+/// Launches, fences, allocations and copies between two readings of the counters.
+ProfilingCounters difference(const ProfilingCounters& later, const ProfilingCounters& earlier) {
+  ProfilingCounters between = later;
+  between.kernel_launches -= earlier.kernel_launches;
+  between.fences -= earlier.fences;
+  between.allocations -= earlier.allocations;
+  between.copies -= earlier.copies;
+  between.h2d_bytes -= earlier.h2d_bytes;
+  between.d2h_bytes -= earlier.d2h_bytes;
+  return between;
+}
+
 /// Counters of 50 steps, without those of an advance itself.
 ProfilingCounters cost_of_50_steps(Solver& solver) {
   const auto cost = [&](std::int64_t steps) {
     const std::int64_t now = solver.progress().step;
     const ProfilingCounters before = profiled();
     EXPECT_EQ(solver.advance(endless, now + steps, {}), Stop::pause);
-    ProfilingCounters after = profiled();
-    after.kernel_launches -= before.kernel_launches;
-    after.fences -= before.fences;
-    after.allocations -= before.allocations;
-    after.copies -= before.copies;
-    after.h2d_bytes -= before.h2d_bytes;
-    after.d2h_bytes -= before.d2h_bytes;
-    return after;
+    return difference(profiled(), before);
   };
   const ProfilingCounters few = cost(10);
-  ProfilingCounters many = cost(60);
-  many.kernel_launches -= few.kernel_launches;
-  many.fences -= few.fences;
-  many.allocations -= few.allocations;
-  many.copies -= few.copies;
-  many.h2d_bytes -= few.h2d_bytes;
-  many.d2h_bytes -= few.d2h_bytes;
-  return many;
+  return difference(cost(60), few);
 }
 
 /// Option of a step and the kernels that it adds to a stage on a host.
