@@ -11,8 +11,9 @@ namespace drogue::coupling {
 // Sums of doubles as 64-bit integers, whose additions commute and associate: any order of atomic additions
 // gives the same bits.
 
-/// Unsigned, because CUDA has no signed 64-bit atomic addition; read as two's complement.
-using FixedPoint = unsigned long long;
+/// Unsigned, because CUDA has no signed 64-bit atomic addition; read as two's complement. Kokkos adds this
+/// type by one instruction on CUDA, but `unsigned long long` by compare and exchange.
+using FixedPoint = std::uint64_t;
 
 /// Powers of two between doubles and their fixed-point form.
 struct FixedPointScale {

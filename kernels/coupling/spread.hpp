@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "kernels/coupling/grid_transfer.hpp"
+#include "kernels/device/relaxed_access.hpp"
 
 namespace drogue::coupling {
 
@@ -32,7 +33,8 @@ struct LargestForceFunctor {
       if (magnitude > largest && magnitude <= 1e270) largest = magnitude;
     }
     // Bits of non-negative doubles have the order of their values.
-    Kokkos::atomic_max(&transfer.largest(0), Kokkos::bit_cast<FixedPoint>(largest));
+    const auto bits = Kokkos::bit_cast<FixedPoint>(largest);
+    if (bits > device::relaxed_load(&transfer.largest(0))) Kokkos::atomic_max(&transfer.largest(0), bits);
   }
 };
 
@@ -84,7 +86,7 @@ struct AddDensitiesFunctor : Base {
     const double unit = inverse_volume * this->scale().inverse;
     this->stencil(at).for_each_face([&](const FaceIndex& face, double, bool) {
       FixedPoint& sum = this->sums.at(at.component, face);
-      if (Kokkos::atomic_load(&sum) == 0) return;
+      if (device::relaxed_load(&sum) == 0) return;
       const FixedPoint taken = Kokkos::atomic_exchange(&sum, FixedPoint{0});
       if (taken != 0) density.at(at.component, face) += unit * from_fixed_point(taken);
     });
@@ -113,7 +115,7 @@ struct ResetSumsFunctor : Base {
     if (n == 0) this->transfer.largest(0) = 0;
     const auto at = this->item(n);
     this->stencil(at).for_each_face([&](const FaceIndex& face, double, bool) {
-      Kokkos::atomic_store(&this->sums.at(at.component, face), FixedPoint{0});
+      device::relaxed_store(&this->sums.at(at.component, face), FixedPoint{0});
     });
   }
 };

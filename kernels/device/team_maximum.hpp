@@ -4,6 +4,8 @@
 
 #include <Kokkos_Core.hpp>
 
+#include "kernels/device/relaxed_access.hpp"
+
 namespace drogue::device {
 
 #if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 800
@@ -39,7 +41,7 @@ KOKKOS_INLINE_FUNCTION void raise_to_team_maximum(const Member& member, std::uin
   const auto bits = Kokkos::bit_cast<std::uint64_t>(largest);
 #endif
   // With many teams a load before the atomic reduces contention; with few it only adds latency.
-  if (member.league_size() < 1024 || bits > Kokkos::atomic_load(&slot)) Kokkos::atomic_max(&slot, bits);
+  if (member.league_size() < 1024 || bits > relaxed_load(&slot)) Kokkos::atomic_max(&slot, bits);
 }
 
 }  // namespace drogue::device

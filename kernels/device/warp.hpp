@@ -43,6 +43,12 @@ KOKKOS_INLINE_FUNCTION bool warp_all(bool condition) {
   KOKKOS_IF_ON_HOST((return condition;))
 }
 
+/// Bit n is set if the condition holds on lane n. On the host a warp has one lane.
+KOKKOS_INLINE_FUNCTION unsigned warp_ballot(bool condition) {
+  KOKKOS_IF_ON_DEVICE((return __ballot_sync(~0U, condition ? 1 : 0);))
+  KOKKOS_IF_ON_HOST((return condition ? 1U : 0U;))
+}
+
 /// Largest value of each group of `width` lanes.
 template <int width = warp_lanes>
 KOKKOS_INLINE_FUNCTION int warp_maximum(int value) {

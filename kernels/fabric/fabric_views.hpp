@@ -3,6 +3,7 @@
 #include <Kokkos_Core.hpp>
 
 #include "kernels/device/memory.hpp"
+#include "kernels/device/warp.hpp"
 #include "kernels/fabric/elastic/membrane.hpp"
 #include "kernels/fabric/elastic/sliced_ell_views.hpp"
 #include "kernels/spatial/vector3.hpp"
@@ -193,23 +194,75 @@ KOKKOS_INLINE_FUNCTION void each_triangle(const Fabric& fabric, const Points& po
       fabric, i, [&](Index neighbour) { return edge_to<R>(positions, own, neighbour); }, visit);
 }
 
+/// Spring from a vertex to a neighbour.
+template <class R>
+struct Spring {
+  R stiffness, rest;  ///< N/m; length at rest, m
+  Vector3<R> edge;    ///< m
+};
+
+/// Function that reads the spring of a slot of vertex i and the lanes after it.
+template <class R, class Springs, class Points>
+KOKKOS_INLINE_FUNCTION auto spring_reader(const Springs& springs, const Points& positions, int i) {
+  using Lanes = device::Access<R>;
+  return [&springs, &positions, i](int slot) {
+    return Spring<R>{
+        Lanes::load(&springs.value(slot, 0)), Lanes::load(&springs.value(slot, 1)),
+        gather_points<R>(positions, Lanes::index(&springs.neighbour(slot))) - load_points<R>(positions, i)};
+  };
+}
+
+/// Force of a spring on its vertex, N.
+template <ConstitutiveModel model, class R>
+KOKKOS_INLINE_FUNCTION Vector3<R> spring_pull(const Spring<R>& of) {
+  return spring_pull<model>(of.stiffness, of.rest, of.edge);
+}
+
 /// `sum` plus the forces of the springs on vertex i and the lanes after it, N, in the order of their slots.
 template <ConstitutiveModel model, class R, class Fabric, class Points>
 KOKKOS_INLINE_FUNCTION Vector3<R> with_springs(const Fabric& fabric, const Points& positions, int i,
                                                Vector3<R> sum) {
-  using Lanes = device::Access<R>;
   const auto& springs = fabric.springs;
-  springs.each(i, [&](int slot) {
-    sum = sum + spring_pull<model>(Lanes::load(&springs.value(slot, 0)), Lanes::load(&springs.value(slot, 1)),
-                                   gather_points<R>(positions, Lanes::index(&springs.neighbour(slot))) -
-                                       load_points<R>(positions, i));
-  });
+  springs.each_read(i, spring_reader<R>(springs, positions, i),
+                    [&](const Spring<R>& spring) { sum = sum + spring_pull<model>(spring); });
+  return sum;
+}
+
+/// The same on a device for a slice of vertices, by all threads of a warp together. Each thread adds a
+/// dozen springs of its vertex. The warp shares longer rows, such as that of a payload on its lines: each
+/// thread computes one force, and the thread of the vertex adds them in the order of their slots.
+template <ConstitutiveModel model, class ExecutionSpace, class Points>
+requires(!device::is_host<ExecutionSpace>) KOKKOS_INLINE_FUNCTION Vector3<double> with_springs(
+    const FabricViews<ExecutionSpace>& fabric, const Points& positions, int i, Vector3<double> sum) {
+  constexpr int most_own = 12;
+  const auto& springs = fabric.springs;
+  const int lane = i % slice, begin = springs.first(i / slice), end = springs.first(i / slice + 1),
+            shared = device::minimum(begin + most_own, end);
+  for_each_read_slot(begin, shared, i, spring_reader<double>(springs, positions, i),
+                     [&](const Spring<double>& spring) { sum = sum + spring_pull<model>(spring); });
+  if (shared == end) return sum;
+  unsigned rows = device::warp_ballot(springs.neighbour(shared * slice + lane) != i);
+  for (int row = 0; rows != 0U; ++row, rows >>= 1U) {
+    if ((rows & 1U) == 0U) continue;
+    const auto read = spring_reader<double>(springs, positions, i - lane + row);
+    for (int k = shared; k < end; k += slice) {
+      Vector3<double> own{0.0, 0.0, 0.0};
+      if (k + lane < end) own = spring_pull<model>(read((k + lane) * slice + row));
+      for (int n = 0; n < slice && k + n < end; ++n) {
+        const Vector3<double> pull{device::shuffle(own.x, n), device::shuffle(own.y, n),
+                                   device::shuffle(own.z, n)};
+        if (lane == row) sum = sum + pull;
+      }
+    }
+  }
   return sum;
 }
 
 /// Elastic forces on vertex i and the lanes after it, N, summed in the fixed order of slots. Momentum is
 /// conserved to round-off: both ends of an edge, and all corners of a triangle, compute the same tension.
-/// `Fabric` is `FabricViews`, or has its members in other memory (`TeamFabric`).
+/// `Fabric` is `FabricViews`, whose kernels are launched by `launch_packs`, or has its members in other
+/// memory
+/// (`TeamFabric`).
 template <ConstitutiveModel model, class R, class Fabric, class Points>
 KOKKOS_INLINE_FUNCTION Vector3<R> elastic_force(const Fabric& fabric, const Points& positions, int i) {
   Vector3<R> sum{R(0.0), R(0.0), R(0.0)};

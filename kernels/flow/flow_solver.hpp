@@ -104,6 +104,9 @@ class FlowSolver {
   void enqueue_step();
   /// Sets a constant dt, s, > 0, from the next `enqueue_begin` on. Does not throw.
   void set_fixed_dt(double dt);
+  /// Lets a run continue that failed because its fixed dt exceeded the largest stable one. Call it before
+  /// `set_fixed_dt` with a shorter one. Blocks. Throws only after a failed kernel.
+  void forget_long_step();
   /// Largest dt, s, that the CFL condition and `Parameters::max_dt` admit at this progress; infinite without
   /// a bound, NaN without a finite velocity. Does not throw.
   [[nodiscard]] double largest_dt(const Progress& now) const;
@@ -651,6 +654,13 @@ void FlowSolver<ExecutionSpace>::set_fixed_dt(double dt) {
   if (dt == _constants.fixed_dt) return;
   _constants.fixed_dt = dt;
   _launcher.discard_graphs();  // they hold the constants
+}
+
+template <class ExecutionSpace>
+void FlowSolver<ExecutionSpace>::forget_long_step() {
+  Control control = read_control();
+  control.trial.stop = Stop::pause;
+  write_control(control);
 }
 
 /// Step loop of several ranks: step by step, so that all take the same steps.

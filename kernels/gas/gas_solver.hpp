@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "kernels/device/captured_graph.hpp"
+#include "kernels/device/relaxed_access.hpp"
 #include "kernels/gas/solver.hpp"
 #include "kernels/gas/stepping/history.hpp"
 #include "kernels/gas/stepping/launch.hpp"
@@ -263,7 +264,7 @@ struct InitialWaveSpeedFunctor {
     for (int k = 0; k < 3; ++k) {
       const auto bits = Kokkos::bit_cast<std::uint64_t>(values[k]);
       std::uint64_t& slot = control().restart.speed[k];
-      if (bits > Kokkos::atomic_load(&slot)) Kokkos::atomic_max(&slot, bits);
+      if (bits > device::relaxed_load(&slot)) Kokkos::atomic_max(&slot, bits);
     }
   }
 };

@@ -13,18 +13,24 @@
 
 namespace drogue::coupling {
 
-/// Saves the cloth and the air at its vertices at the beginning of a step that the flow will take.
+/// Step of the flow at whose beginning the cloth was saved.
+template <class ExecutionSpace>
+using SavedStep = Kokkos::View<std::int64_t, typename ExecutionSpace::memory_space>;
+
+/// Saves the cloth and the air at its vertices at the beginning of a step of the flow. After the flow has
+/// stopped, only the state at the end of its last step is new.
 template <class ExecutionSpace>
 struct SaveClothFunctor {
   using Vectors = typename LocalAir<ExecutionSpace>::Vectors;
 
   flow::ControlView<ExecutionSpace> control;
+  SavedStep<ExecutionSpace> saved_step;
   fabric::State<ExecutionSpace> cloth;
   Vectors acceleration;
   Vectors saved_positions, saved_velocities, saved_acceleration;
 
   KOKKOS_FUNCTION void operator()(const int i) const {
-    if (control().trial.stop != flow::Stop::running) return;
+    if (control().trial.stop != flow::Stop::running && control().now.step == saved_step()) return;
     const auto save = [i](const auto& from, const Vectors& to) {
       spatial::store_vector(to, i, spatial::load_vector(from, i));
     };
@@ -34,17 +40,20 @@ struct SaveClothFunctor {
   }
 };
 
-/// Kernel of one thread that stops the flow before its step if the cloth has failed.
+/// Kernel of one thread that completes `SaveClothFunctor`, and stops the flow before its step if the cloth
+/// has failed.
 template <class ExecutionSpace>
 struct CheckClothFunctor {
   using ReasonView = Kokkos::View<FailureReason, typename ExecutionSpace::memory_space>;
 
   flow::ControlView<ExecutionSpace> control;
+  SavedStep<ExecutionSpace> saved_step;
   stepping::StepMonitor<ExecutionSpace> cloth;
   GridTransfer<ExecutionSpace> transfer;
   ReasonView reason;
 
   KOKKOS_FUNCTION void operator()(int) const {
+    saved_step() = control().now.step;
     if (control().trial.stop != flow::Stop::running) return;
     const TransferCounts counts = transfer.counts();
     FailureReason found = FailureReason::flow;
@@ -63,7 +72,8 @@ struct CheckClothFunctor {
 /// over it for programs that choose the backend at run time.
 ///
 /// Steps of a block have the same dt, which the host chooses from the present speed of the air and frequency
-/// of the cloth: within a block, no step waits for the host, copies to it or allocates.
+/// of the cloth: within a block, no step waits for the host, copies to it or allocates. A block ends early
+/// where the air has become too fast for its dt.
 template <class ExecutionSpace>
 class CoupledSolver {
  public:
@@ -83,6 +93,7 @@ class CoupledSolver {
                _parameters.flow.density),
         _fabric(_space, _parameters.fabric, _sheet.relaxation()),
         _reason("drogue::coupling::failure_reason"),
+        _saved_step("drogue::coupling::saved_step"),
         _saved_positions("drogue::coupling::saved_positions", rows()),
         _saved_velocities("drogue::coupling::saved_velocities", rows()),
         _saved_acceleration("drogue::coupling::saved_acceleration", rows()) {}
@@ -118,8 +129,10 @@ class CoupledSolver {
   [[nodiscard]] std::size_t rows() const { return static_cast<std::size_t>(_fabric.vertices()); }
   void forget_steps();
   void plan_block(const flow::Progress& now);
-  void enqueue_step(double dt);
-  void return_to_saved_cloth();
+  void end_block_at(double target, const flow::Progress& now);
+  void enqueue_step(double dt, bool is_first);
+  [[nodiscard]] bool needs_shorter_steps(const flow::Progress& now);
+  void return_to_last_step(const flow::Progress& now);
 
   ExecutionSpace _space;
   Parameters _parameters;
@@ -127,8 +140,8 @@ class CoupledSolver {
   ImmersedSheet<ExecutionSpace> _sheet;
   Fabric _fabric;
   BlockProgress _block;
-  bool _is_first = true;  ///< no step precedes the next one
   typename CheckClothFunctor<ExecutionSpace>::ReasonView _reason;
+  SavedStep<ExecutionSpace> _saved_step;
   Vectors _saved_positions, _saved_velocities, _saved_acceleration;
 };
 
@@ -141,9 +154,9 @@ void CoupledSolver<ExecutionSpace>::start() {
 template <class ExecutionSpace>
 void CoupledSolver<ExecutionSpace>::forget_steps() {
   _block = {};
-  _is_first = true;
   Kokkos::deep_copy(_space, _sheet.acceleration(), 0.0);
   Kokkos::deep_copy(_space, _reason, FailureReason::flow);
+  Kokkos::deep_copy(_space, _saved_step, std::int64_t{-1});
   _space.fence("drogue::coupling::forget_steps");
 }
 
@@ -151,7 +164,6 @@ template <class ExecutionSpace>
 void CoupledSolver<ExecutionSpace>::restore(const flow::Progress& progress) {
   _flow.restore(progress);
   forget_steps();
-  _is_first = progress.step == 0;
 }
 
 /// Chooses dt and the number of substeps of the block that begins with the present step.
@@ -169,68 +181,86 @@ void CoupledSolver<ExecutionSpace>::plan_block(const flow::Progress& now) {
   _block.end = now.step + block_steps;
 }
 
+/// Divides what is left to a target within the block into equal steps, whatever pauses lie between.
+template <class ExecutionSpace>
+void CoupledSolver<ExecutionSpace>::end_block_at(double target, const flow::Progress& now) {
+  const auto steps = static_cast<double>(_block.end - now.step);
+  const double left = target - now.time, needed = std::ceil((1.0 - 1e-9) * left / _block.dt);
+  if (needed > steps || std::abs(left - steps * _block.dt) <= 1e-9 * left) return;
+  _block.end = now.step + std::max<std::int64_t>(1, static_cast<std::int64_t>(needed));
+  _block.dt = left / static_cast<double>(_block.end - now.step);
+}
+
 template <class ExecutionSpace>
 flow::Stop CoupledSolver<ExecutionSpace>::advance(double target, std::int64_t pause_step,
                                                   const flow::Poll& poll) {
   while (true) {
     const flow::Progress now = _flow.progress();
-    if (_flow.has_failed()) {
-      return_to_saved_cloth();
-      return _flow.advance(target, pause_step, {});  // returns its sides to the time before the failed step
-    }
     if (now.time >= target) return flow::Stop::target;
     if (now.step >= _parameters.flow.max_steps) return flow::Stop::max_steps;
     if (now.step == pause_step) return flow::Stop::pause;
+    if (_flow.has_failed()) {
+      return_to_last_step(now);
+      // Returns its sides to the time before the failed step.
+      if (!needs_shorter_steps(now)) return _flow.advance(target, pause_step, {});
+      _flow.forget_long_step();
+      plan_block(now);
+    }
     if (poll && !poll(_flow.status())) return flow::Stop::interrupted;
     if (now.step >= _block.end) plan_block(now);
+    end_block_at(target, now);
     std::int64_t steps = std::min(_block.end, _parameters.flow.max_steps) - now.step;
     if (pause_step > now.step) steps = std::min(steps, pause_step - now.step);
-    // The steps that reach the target are equal.
-    const double left = target - now.time, needed = std::ceil((1.0 - 1e-9) * left / _block.dt);
-    double dt = _block.dt;
-    if (needed <= static_cast<double>(steps)) {
-      steps = std::max<std::int64_t>(1, static_cast<std::int64_t>(needed));
-      dt = left / static_cast<double>(steps);
-    }
+    const double dt = _block.dt;
     _flow.set_fixed_dt(dt);
     const std::int64_t substep = _fabric.time_state().step;
     _fabric.set_time_state({substep, dt / static_cast<double>(_block.substeps), substep, now.time});
     _flow.enqueue_begin(target);
-    for (std::int64_t k = 0; k < steps; ++k) enqueue_step(dt);
+    for (std::int64_t k = 0; k < steps; ++k) enqueue_step(dt, now.step + k == 0);
   }
 }
 
 template <class ExecutionSpace>
-void CoupledSolver<ExecutionSpace>::enqueue_step(double dt) {
+void CoupledSolver<ExecutionSpace>::enqueue_step(double dt, bool is_first) {
   const auto velocity = flow::face_views<ExecutionSpace>(_flow.grid(), _flow.velocity()),
              density = flow::face_views<ExecutionSpace>(_flow.grid(), _flow.force());
   // Not before: the pressure of an output contains the forces of the last step.
   clear_spread(_space, _sheet.transfer(), density);
   device::launch_each(
       _space, "drogue::coupling::save_cloth", _fabric.vertices(),
-      SaveClothFunctor<ExecutionSpace>{_flow.control(), _fabric.state(), _sheet.acceleration(),
+      SaveClothFunctor<ExecutionSpace>{_flow.control(), _saved_step, _fabric.state(), _sheet.acceleration(),
                                        _saved_positions, _saved_velocities, _saved_acceleration});
   _sheet.begin_step(_space, _fabric.state(), velocity, dt);
   static_cast<void>(_fabric.enqueue_steps(_block.substeps));
   _sheet.spread_forces(_space, density, dt);
-  device::launch_each(
-      _space, "drogue::coupling::check_cloth", 1,
-      CheckClothFunctor<ExecutionSpace>{_flow.control(), _fabric.monitor(), _sheet.transfer(), _reason});
+  device::launch_each(_space, "drogue::coupling::check_cloth", 1,
+                      CheckClothFunctor<ExecutionSpace>{_flow.control(), _saved_step, _fabric.monitor(),
+                                                        _sheet.transfer(), _reason});
   _flow.enqueue_step();
-  _sheet.end_step(_space, velocity, density, dt, _is_first);
-  _is_first = false;
+  _sheet.end_step(_space, velocity, density, dt, is_first);
 }
 
-/// Returns the cloth to the beginning of the step that failed.
+/// True if the flow has stopped because the dt of the block exceeds the stability limit of the next step.
 template <class ExecutionSpace>
-void CoupledSolver<ExecutionSpace>::return_to_saved_cloth() {
+bool CoupledSolver<ExecutionSpace>::needs_shorter_steps(const flow::Progress& now) {
+  return _parameters.flow.fixed_dt == 0.0 && failure_reason() == FailureReason::flow &&
+         _flow.failure().reason == flow::FailureReason::time_step && _flow.largest_dt(now) < _block.dt;
+}
+
+/// Returns the cloth to the end of the last step that the flow has taken.
+template <class ExecutionSpace>
+void CoupledSolver<ExecutionSpace>::return_to_last_step(const flow::Progress& now) {
+  std::int64_t saved = -1;
+  Kokkos::deep_copy(_space, saved, _saved_step);
+  _space.fence("drogue::coupling::return_to_last_step: step");
+  if (saved != now.step) return;  // no step was enqueued after it
   std::vector<fabric::Vector> positions(rows()), velocities(rows());
   fabric::PointsReader<ExecutionSpace> reader;
   reader.read(_space, _saved_positions, positions);
   reader.read(_space, _saved_velocities, velocities);
   _fabric.upload(positions, velocities);
   Kokkos::deep_copy(_space, _sheet.acceleration(), _saved_acceleration);
-  _space.fence("drogue::coupling::return_to_saved_cloth");
+  _space.fence("drogue::coupling::return_to_last_step");
 }
 
 template <class ExecutionSpace>

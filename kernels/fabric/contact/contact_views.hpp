@@ -1,5 +1,6 @@
 #pragma once
 
+#include "kernels/device/relaxed_access.hpp"
 #include "kernels/fabric/contact/obstacle.hpp"
 #include "kernels/fabric/results.hpp"
 #include "kernels/fabric/stepping/divergence.hpp"
@@ -154,7 +155,7 @@ KOKKOS_INLINE_FUNCTION double value_of_bits(std::uint64_t bits) { return Kokkos:
 /// Maximum of non-negative doubles, which compare as their bit patterns do; independent of the order.
 KOKKOS_INLINE_FUNCTION void atomic_raise(std::uint64_t& slot, double value) {
   const auto bits = Kokkos::bit_cast<std::uint64_t>(value);
-  if (bits > Kokkos::atomic_load(&slot)) Kokkos::atomic_max(&slot, bits);
+  if (bits > device::relaxed_load(&slot)) Kokkos::atomic_max(&slot, bits);
 }
 
 }  // namespace drogue::fabric

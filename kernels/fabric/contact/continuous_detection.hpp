@@ -1,5 +1,6 @@
 #pragma once
 
+#include "kernels/device/relaxed_access.hpp"
 #include "kernels/fabric/contact/contact_views.hpp"
 #include "kernels/fabric/contact/union_find.hpp"
 
@@ -55,16 +56,16 @@ struct CcdFunctor {
 
   template <int size>
   KOKKOS_FUNCTION void unite_crossing(const int (&vertex)[size]) const {
-    Kokkos::atomic_store(&views.progress(0).crossing[round], 1);
+    device::relaxed_store(&views.progress(0).crossing[round], 1);
     if (round == zone_rounds) views.raise(views.steps(), FailureReason::crossing, vertex[0]);
     for (int k = 1; k < size; ++k) unite(views.zone, vertex[0], vertex[k]);
   }
 
   template <int size>
   KOKKOS_FUNCTION void mark_stuck(const int (&vertex)[size]) const {
-    Kokkos::atomic_store(&views.progress(0).crossing[round], 1);
+    device::relaxed_store(&views.progress(0).crossing[round], 1);
     if (round == zone_rounds) views.raise(views.steps(), FailureReason::crossing, vertex[0]);
-    for (const int i : vertex) Kokkos::atomic_store(&views.stuck(i), 1);
+    for (const int i : vertex) device::relaxed_store(&views.stuck(i), 1);
   }
 
   /// Initial positions and displacements of some vertices, m. `rigid`: all belong to one zone that moves as a

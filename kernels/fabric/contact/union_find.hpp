@@ -2,13 +2,15 @@
 
 #include <Kokkos_Core.hpp>
 
+#include "kernels/device/relaxed_access.hpp"
+
 namespace drogue::fabric {
 
 /// Root of element i in a lock-free union-find forest; `parent(i) == i` at a root. Concurrent calls of
 /// `unite` are allowed.
 template <class Parents>
 KOKKOS_INLINE_FUNCTION int find_root(const Parents& parent, int i) {
-  for (int up = Kokkos::atomic_load(&parent(i)); up != i; up = Kokkos::atomic_load(&parent(i))) i = up;
+  for (int up = device::relaxed_load(&parent(i)); up != i; up = device::relaxed_load(&parent(i))) i = up;
   return i;
 }
 

@@ -15,6 +15,24 @@ KOKKOS_INLINE_FUNCTION void for_each_slot(const First& first, int i, const Visit
   for (int k = first(i / slice); k < end; ++k) visit(k * slice + i % slice);
 }
 
+/// Calls `visit(read(slot))` for the slots `begin` to `end` - 1 of vertex i and the lanes after it, in their
+/// order. On a device the reads of four slots overlap.
+template <class Read, class Visit>
+KOKKOS_INLINE_FUNCTION void for_each_read_slot(int begin, int end, int i, const Read& read,
+                                               const Visit& visit) {
+#if defined(__CUDA_ARCH__)
+  constexpr int ahead = 4;
+  for (int k = begin; k < end; k += ahead) {
+    decltype(read(0)) values[ahead];
+    for (int n = 0; n < ahead; ++n) values[n] = read(device::minimum(k + n, end - 1) * slice + i % slice);
+    for (int n = 0; n < ahead; ++n)
+      if (k + n < end) visit(values[n]);
+  }
+#else
+  for (int k = begin; k < end; ++k) visit(read(k * slice + i % slice));
+#endif
+}
+
 /// Calls `visit(before, next, slot)` for the slots but the first, with the values of `read(slot,
 /// index(slot))` of the slot before and of the slot. Each slot is read once. Indices are read one slot ahead,
 /// so that two dependent memory latencies overlap. Always inlined, as `edge_to` is: GCC 12 may otherwise
@@ -50,6 +68,12 @@ struct SlicedEllViews {
   template <class Visit>
   KOKKOS_INLINE_FUNCTION void each(int i, const Visit& visit) const {
     for_each_slot(first, i, visit);
+  }
+
+  /// Calls `visit(read(slot))` for the slots in their order (`for_each_read_slot`).
+  template <class Read, class Visit>
+  KOKKOS_INLINE_FUNCTION void each_read(int i, const Read& read, const Visit& visit) const {
+    for_each_read_slot(first(i / slice), first(i / slice + 1), i, read, visit);
   }
 
   /// Calls `visit(before, next, slot)` for the slots of a ring but the first one (`for_each_slot_pair`).

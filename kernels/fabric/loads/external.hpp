@@ -77,11 +77,18 @@ KOKKOS_INLINE_FUNCTION Vector3<double> dashpot_force(const SlicedEllViews<Execut
                                                      const PointsView<ExecutionSpace>& v, int i) {
   const Vector3<double> own = load_points<double>(x, i), velocity = load_points<double>(v, i);
   Vector3<double> sum{0.0, 0.0, 0.0};
-  dashpots.each(i, [&](int slot) {
-    const int j = dashpots.neighbour(slot);
-    sum = sum + dashpot_pull(dashpots.value(slot, 0), load_points<double>(x, j) - own,
-                             load_points<double>(v, j) - velocity);
-  });
+  struct Dashpot {
+    double coefficient;
+    Vector3<double> edge, faster;
+  };
+  dashpots.each_read(
+      i,
+      [&](int slot) {
+        const int j = dashpots.neighbour(slot);
+        return Dashpot{dashpots.value(slot, 0), load_points<double>(x, j) - own,
+                       load_points<double>(v, j) - velocity};
+      },
+      [&](const Dashpot& of) { sum = sum + dashpot_pull(of.coefficient, of.edge, of.faster); });
   return sum;
 }
 

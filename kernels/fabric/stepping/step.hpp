@@ -252,7 +252,7 @@ template <class ExecutionSpace, ConstitutiveModel model, class VertexForce = NoV
 struct SymplecticEulerFunctor {
   using R = PackedReal<ExecutionSpace>;
   using Points = PointsView<ExecutionSpace>;
-  using Bounds = Kokkos::LaunchBounds<128, 6>;
+  using Bounds = Kokkos::LaunchBounds<128, 4>;  // for the registers of relaxation after tension-only forces
   static constexpr int lanes = device::Access<R>::lanes;
 
   FabricViews<ExecutionSpace> fabric;  ///< its damping is zero

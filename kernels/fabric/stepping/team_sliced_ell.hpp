@@ -49,6 +49,10 @@ struct TeamSlicedEll {
   KOKKOS_FUNCTION void each(int i, const Visit& visit) const {
     for_each_slot(first, i, visit);
   }
+  template <class Read, class Visit>
+  KOKKOS_FUNCTION void each_read(int i, const Read& read, const Visit& visit) const {
+    for_each_read_slot(first(i / slice), first(i / slice + 1), i, read, visit);
+  }
   template <class Index, class Read, class Visit>
   KOKKOS_FUNCTION void each_pair(int i, const Index& index, const Read& read, const Visit& visit) const {
     for_each_slot_pair(first, i, index, read, visit);

@@ -9,6 +9,7 @@
 #include "kernels/device/expression.hpp"
 #include "kernels/device/launch.hpp"
 #include "kernels/device/memory.hpp"
+#include "kernels/device/relaxed_access.hpp"
 #include "kernels/flow/views.hpp"
 
 namespace drogue::flow {
@@ -91,7 +92,7 @@ struct BoundaryTableFunctor {
     if (!Kokkos::isfinite(value)) Kokkos::atomic_max(&c.failed_side, side + 1);
     if (stage.initial || stage.fraction < 1.0 || g.n[component] == 1) return;
     const auto bits = Kokkos::bit_cast<std::uint64_t>(change * g.inverse_h[component] / c.trial.dt);
-    if (bits > Kokkos::atomic_load(&c.side_acceleration)) Kokkos::atomic_max(&c.side_acceleration, bits);
+    if (bits > device::relaxed_load(&c.side_acceleration)) Kokkos::atomic_max(&c.side_acceleration, bits);
   }
 };
 

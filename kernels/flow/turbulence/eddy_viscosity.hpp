@@ -1,5 +1,6 @@
 #pragma once
 
+#include "kernels/device/relaxed_access.hpp"
 #include "kernels/flow/launch.hpp"
 #include "kernels/flow/observables/gradient.hpp"
 #include "kernels/flow/views.hpp"
@@ -112,7 +113,7 @@ struct EddyViscosityFunctor {
     viscosity(cells.nearest(cell)) = value;
     // Few cells exceed the maximum so far: the load spares the others an atomic operation.
     const auto bits = Kokkos::bit_cast<std::uint64_t>(value);
-    if (bits > Kokkos::atomic_load(&c.eddy_viscosity)) Kokkos::atomic_max(&c.eddy_viscosity, bits);
+    if (bits > device::relaxed_load(&c.eddy_viscosity)) Kokkos::atomic_max(&c.eddy_viscosity, bits);
   }
 };
 

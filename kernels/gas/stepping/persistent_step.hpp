@@ -1,6 +1,7 @@
 #pragma once
 
 #include "kernels/device/persistent_kernel.hpp"
+#include "kernels/device/relaxed_access.hpp"
 #include "kernels/gas/stepping/finish_step.hpp"
 #include "kernels/gas/stepping/step.hpp"
 
@@ -103,7 +104,7 @@ struct PersistentStepFunctor {
   KOKKOS_FUNCTION std::uint64_t first_inadmissible_cell(const Member& member, std::uint64_t epoch) const {
     member.publish(epoch);
     for (int team = 0; team < member.league_size(); ++team) member.await(team, epoch);
-    return Kokkos::atomic_load(&step.control().reduction.first_inadmissible);
+    return device::relaxed_load(&step.control().reduction.first_inadmissible);
   }
 
   /// Sends the result of the step of this team to all others.

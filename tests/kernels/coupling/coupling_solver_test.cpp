@@ -185,6 +185,35 @@ TEST(CoupledSolver, InstabilityOfTheClothIsAFailure) {
   expect_failure(c, FailureReason::cloth);
 }
 
+/// The strip in air that a body force accelerates, within a block, to a speed at which its dt is unstable.
+CoupledCase strip_in_accelerating_air() {
+  CoupledCase c = flying_strip();
+  for (std::size_t side = 0; side < 2; ++side) c.p.flow.boundary[side].kind = flow::BoundaryKind::periodic;
+  c.p.flow.body_force = {600.0, 0.0, 0.0};
+  return c;
+}
+
+TEST(CoupledSolver, StepsThatTheFlowOutgrowsAreAFailure) {
+  CoupledCase c = strip_in_accelerating_air();
+  c.p.flow.fixed_dt = 0.004;
+  expect_failure(c, FailureReason::flow);
+}
+
+TEST(CoupledSolver, StepsShortenWithinABlock) {
+  CoupledCase c = strip_in_accelerating_air();
+  constexpr double end = 0.064;  // 16 steps of the largest dt
+  CoupledRun run(c), paused(c);
+  ASSERT_EQ(run.solver->advance(end, -1, {}), flow::Stop::target);
+  const flow::Progress last = run.solver->progress();
+  EXPECT_EQ(last.dt_max, 0.004);
+  EXPECT_LT(last.dt_min, 0.6 * last.dt_max);
+  EXPECT_GT(last.step, 16);
+  // Pauses do not change the steps.
+  while (paused.solver->progress().time < end)
+    ASSERT_NE(paused.solver->advance(end, paused.solver->progress().step + 1, {}), flow::Stop::failed);
+  EXPECT_EQ(distance(state_of(c, *paused.solver), state_of(c, *run.solver)), 0.0);
+}
+
 TEST(CoupledSolver, RejectsInvalidParameters) {
   const auto rejects = [](void (*change)(Parameters&)) {
     CoupledCase c = flying_strip();
