@@ -1,12 +1,14 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 #include <vector>
 
 #include "kernels/coupling/sheet/immersed_sheet.hpp"
 #include "kernels/coupling/sheet/solver.hpp"
+#include "kernels/coupling/total_force.hpp"
 #include "kernels/fabric/fabric_solver.hpp"
 #include "kernels/flow/face_views.hpp"
 #include "kernels/flow/flow_solver.hpp"
@@ -85,7 +87,8 @@ class CoupledSolver {
         _reason("drogue::coupling::failure_reason"),
         _saved_positions("drogue::coupling::saved_positions", rows()),
         _saved_velocities("drogue::coupling::saved_velocities", rows()),
-        _saved_acceleration("drogue::coupling::saved_acceleration", rows()) {}
+        _saved_acceleration("drogue::coupling::saved_acceleration", rows()),
+        _total_force(flow::coupling_grid(_flow.grid())) {}
 
   /// The parts. Does not throw.
   [[nodiscard]] Flow& flow() { return _flow; }
@@ -101,6 +104,9 @@ class CoupledSolver {
   [[nodiscard]] BlockProgress block() const { return _block; }
   void set_block(const BlockProgress& block) { _block = block; }
   [[nodiscard]] FailureReason failure_reason();
+  [[nodiscard]] std::array<double, 3> total_force_on_air() const {
+    return _total_force(_space, flow::face_views<ExecutionSpace>(_flow.grid(), _flow.force()));
+  }
 
  private:
   static Parameters completed(Parameters p) {
@@ -130,6 +136,7 @@ class CoupledSolver {
   bool _is_first = true;  ///< no step precedes the next one
   typename CheckClothFunctor<ExecutionSpace>::ReasonView _reason;
   Vectors _saved_positions, _saved_velocities, _saved_acceleration;
+  TotalForce<ExecutionSpace> _total_force;
 };
 
 template <class ExecutionSpace>
