@@ -123,7 +123,7 @@ class CoupledSolver {
   }
   [[nodiscard]] std::size_t rows() const { return static_cast<std::size_t>(_fabric.vertices()); }
   void forget_steps();
-  void plan_block(const flow::Progress& now);
+  void plan_block(const flow::Progress& now, double target);
   void enqueue_step(double dt);
   void return_to_saved_cloth();
 
@@ -161,11 +161,15 @@ void CoupledSolver<ExecutionSpace>::restore(const flow::Progress& progress) {
   _is_first = progress.step == 0;
 }
 
-/// Chooses dt and the number of substeps of the block that begins with the present step.
+/// Chooses dt and the number of substeps of the block that begins with the present step. Unless dt is fixed,
+/// a whole number of steps reaches the target: the mean force of the sheet in a far shorter last step would
+/// contain the impulse of the whole exchange that each step of the flow makes necessary.
 template <class ExecutionSpace>
-void CoupledSolver<ExecutionSpace>::plan_block(const flow::Progress& now) {
+void CoupledSolver<ExecutionSpace>::plan_block(const flow::Progress& now, double target) {
   const flow::Parameters& p = _parameters.flow;
   _block.dt = p.fixed_dt > 0.0 ? p.fixed_dt : _flow.largest_dt(now);
+  const double left = target - now.time, needed = std::ceil((1.0 - 1e-9) * left / _block.dt);
+  if (!(p.fixed_dt > 0.0)) _block.dt = left / std::max(1.0, needed);
   _block.substeps = _parameters.substeps;
   if (_block.substeps == 0) {
     const double limit = 0.5 * fabric::stable_dt(fabric::Integrator::symplectic_euler,
@@ -185,11 +189,14 @@ flow::Stop CoupledSolver<ExecutionSpace>::advance(double target, std::int64_t pa
       return_to_saved_cloth();
       return _flow.advance(target, pause_step, {});  // returns its sides to the time before the failed step
     }
-    if (now.time >= target) return flow::Stop::target;
+    if (now.time >= target) {
+      _block.end = now.step;
+      return flow::Stop::target;
+    }
     if (now.step >= _parameters.flow.max_steps) return flow::Stop::max_steps;
     if (now.step == pause_step) return flow::Stop::pause;
     if (poll && !poll(_flow.status())) return flow::Stop::interrupted;
-    if (now.step >= _block.end) plan_block(now);
+    if (now.step >= _block.end) plan_block(now, target);
     std::int64_t steps = std::min(_block.end, _parameters.flow.max_steps) - now.step;
     if (pause_step > now.step) steps = std::min(steps, pause_step - now.step);
     // The steps that reach the target are equal.

@@ -18,7 +18,8 @@ enum class FailureReason {
   not_spread,   ///< a force on the air is not finite or larger than 1e270 N
 };
 
-/// Division of a run into blocks of steps with constant dt. A restart that restores it continues bit for bit.
+/// Division of a run into blocks of steps with constant dt, which end at targets too. A restart that restores
+/// it continues bit for bit.
 struct BlockProgress {
   double dt = 0.0;            ///< s, of the steps of the flow in the present block
   std::int64_t substeps = 0;  ///< steps of the cloth in each of them

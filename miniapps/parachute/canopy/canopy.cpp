@@ -43,7 +43,7 @@ struct FlatCloth {
 };
 
 /// Triangles between two rings that share `sectors` aligned vertices, whose edges become edges of the mesh.
-/// In each sector the triangle that advances least comes next; quadrilaterals have alternating diagonals.
+/// In each sector the triangle with the shorter new edge comes next; equal ones alternate.
 void join_rings(FlatCloth& cloth, std::size_t inner) {
   const int a0 = cloth.ring_begin[inner], na = cloth.ring_size[inner];
   const int b0 = cloth.ring_begin[inner + 1], nb = cloth.ring_size[inner + 1];
@@ -53,10 +53,12 @@ void join_rings(FlatCloth& cloth, std::size_t inner) {
     const auto a = [&](int k) { return a0 + (s * per_a + k) % na; };
     const auto b = [&](int k) { return b0 + (s * per_b + k) % nb; };
     while (i < per_a || j < per_b) {
-      const int next_a = (i + 1) * per_b, next_b = (j + 1) * per_a;  // in a common unit of angle
+      // Angles that the new edges span, in a common unit.
+      const int by_outer = std::abs(i * per_b - (j + 1) * per_a),
+                by_inner = std::abs((i + 1) * per_b - j * per_a);
       const bool first_diagonal = (s * per_a + i + static_cast<int>(inner)) % 2 == 0;
       const bool outer =
-          i == per_a || (j < per_b && (next_b < next_a || (next_b == next_a && first_diagonal)));
+          i == per_a || (j < per_b && (by_outer < by_inner || (by_outer == by_inner && first_diagonal)));
       if (outer) {
         cloth.triangles.push_back({a(i), b(j), b(j + 1)});
         ++j;
@@ -191,7 +193,9 @@ std::vector<int> ring_sizes(const Canopy& canopy) {
   int divided = canopy.gores;
   for (std::size_t k = radii.size(); k-- > 0;) {
     const int least = quotient_up(2.0 * pi * radii[k], canopy.edge_length);
-    sizes[k] = canopy.gores * quotient_up(least, canopy.gores);
+    const int per_gore = quotient_up(least, canopy.gores);
+    // An even number of edges has a vertex in the middle of the gore, where a pleat folds.
+    sizes[k] = canopy.gores * (per_gore == 1 ? 1 : per_gore + per_gore % 2);
     if (k + 1 == radii.size()) continue;  // every line needs a vertex of the skirt
     // Near the vent, not every seam has a vertex: from ring to ring inwards, their number is divided.
     for (int fewer = divided; fewer >= std::max(least, 3); --fewer)

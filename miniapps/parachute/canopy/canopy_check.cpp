@@ -73,7 +73,8 @@ void check_inside(const Table& root, const flow::Parameters& p, const std::vecto
     if (p.boundary[2 * axis].kind == flow::BoundaryKind::periodic) continue;
     const auto [low, high] = std::ranges::minmax(positions, {}, [axis](const Vector& x) { return x[axis]; });
     const double margin = cell_width(p, axis), least = p.low[axis] + margin, most = p.high[axis] - margin;
-    if (low[axis] >= least && high[axis] <= most) continue;
+    const double rounding = 1e-9 * (p.high[axis] - p.low[axis]);
+    if (low[axis] >= least - rounding && high[axis] <= most + rounding) continue;
     contradict(root, name + ".centre",
                name + " with its payload reaches from " + real_text(low[axis]) + " to " +
                    real_text(high[axis]) + " m along " + axis_names[axis] +
