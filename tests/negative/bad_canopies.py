@@ -79,6 +79,10 @@ BAD_LINES = [
     (22, 'porosity = { law = "forchheimer", alpha = -10 }', 22, ["canopy[0].porosity.alpha", ">= 0"]),
     (22, 'porosity = { law = "forchheimer", beta = -1 }', 22, ["canopy[0].porosity.beta", ">= 0"]),
     (23, "reinforcement = { seams = -1 }", 23, ["canopy[0].reinforcement.seams", ">= 0"]),
+    (32, "contact = 1", 32, ["coupling.contact"]),
+    (32, "contact = true\nthickness = 0", 33, ["coupling.thickness", "> 0"]),
+    (32, "contact = true\nthickness = 0.1", 33, ["coupling.thickness = 0.1", "height of a triangle"]),
+    (32, "thickness = 0.01", 32, ["coupling.thickness", "contact = true"]),
     (32, "gravity = 9.81", 32, ["coupling.gravity", "array of 3"]),
     # contradictions
     (12, "vent = 1.2", 12, ["canopy[0].vent = 1.2", "1.2", "smaller"]),

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "common/scene/read.hpp"
+#include "kernels/fabric/contact/features.hpp"
 #include "miniapps/parachute/scene/functions.hpp"
 
 namespace drogue::parachute_app {
@@ -101,6 +102,16 @@ bool are_near(const std::vector<Vector>& first, const std::vector<Vector>& secon
   return false;
 }
 
+void check_contact(const Table& root, const FlowScene& scene) {
+  if (!scene.contact) return;
+  const double height = fabric::shortest_altitude(make_all_sheets(scene.bodies, scene.canopies).fabric.mesh);
+  if (scene.thickness < height) return;
+  contradict(root, "coupling.thickness",
+             "coupling.thickness = " + real_text(scene.thickness) +
+                 " m must be less than the least height of a triangle, " + real_text(height) +
+                 " m, with contact");
+}
+
 }  // namespace
 
 void check_canopies(const Table& root, const FlowScene& scene) {
@@ -132,6 +143,7 @@ void check_canopies(const Table& root, const FlowScene& scene) {
                        real_text(distance) + " m, the sum of their edge lengths");
     }
   }
+  check_contact(root, scene);
   if (p.fixed_dt == 0.0 && p.max_dt == 0.0)
     contradict(root, "run",
                "missing key \"run.max_dt\" (needed with a [[canopy]] and dt = \"auto\"): fluid at rest does "

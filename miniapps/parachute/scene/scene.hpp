@@ -133,6 +133,8 @@ struct FlowScene {
   std::vector<Canopy> canopies;
   coupling::SheetParameters coupling;  ///< its laws are those of the bodies and canopies
   std::array<double, 3> gravity{};     ///< of canopies and payloads, m/s^2
+  bool contact = false;                ///< of canopies and lines with each other and themselves
+  double thickness = 0.01;             ///< m, distance of layers in contact
   double end_time = 0.0;               ///< s
   framework::OutputRequest output;
   Verify verify;

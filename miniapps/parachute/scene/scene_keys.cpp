@@ -179,6 +179,16 @@ void declare_flow_scene(Table& root, FlowScene& scene) {
             table.value("gravity", vector_codec(scene.gravity), "Acceleration of canopies and payloads")
                 .unit("m/s^2")
                 .when([&scene] { return !scene.canopies.empty(); }, "with a [[canopy]]", "canopy");
+            table
+                .value(
+                    "contact", scene::boolean_codec(scene.contact),
+                    "Contact of cloth and lines with each other and themselves, without friction; it costs "
+                    "more than all other steps of the cloth")
+                .when([&scene] { return !scene.canopies.empty(); }, "with a [[canopy]]", "canopy");
+            table.value("thickness", scene::real_codec(scene.thickness), "Distance of layers in contact")
+                .unit("m")
+                .above(0.0)
+                .when([&scene] { return scene.contact; }, "with contact = true", "contact");
           },
           "The exchange of forces between the fluid and sheets")
       .when([&scene] { return scene.has_sheets(); }, "with a [[body]] or a [[canopy]]", "body");

@@ -64,6 +64,8 @@ const char* reason_text(flow::FailureReason reason) {
 coupling::Parameters coupled_parameters(const FlowScene& scene, const Sheets& sheets) {
   coupling::Parameters p{scene.parameters, sheets.fabric, scene.coupling, scene.canopies.empty() ? 1 : 0};
   p.fabric.gravity = scene.gravity;
+  p.fabric.contact.self = scene.contact;
+  p.fabric.contact.thickness = scene.thickness;
   p.sheet.law_of_vertex = sheets.laws;
   return p;
 }

@@ -152,7 +152,9 @@ std::string Simulation::sheet_failure_text(coupling::FailureReason reason) {
     return text.str();
   }
   if (reason == coupling::FailureReason::cloth) {
-    text << "the positions of the cloth are not finite after t = " << time << " s";
+    text << "the positions of the cloth are not finite"
+         << (_scene.contact ? ", or contact could not prevent an intersection," : "") << " after t = " << time
+         << " s; a smaller run.cfl may save the run";
     return text.str();
   }
   // The vertex that is closest to a side, in cells.
