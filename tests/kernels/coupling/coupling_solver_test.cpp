@@ -5,6 +5,7 @@
 #include <random>
 #include <stdexcept>
 
+#include "kernels/fabric/solver.hpp"
 #include "tests/support/coupled_case.hpp"
 #include "tests/support/profiled.hpp"
 
