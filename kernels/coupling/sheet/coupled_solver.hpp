@@ -162,14 +162,14 @@ void CoupledSolver<ExecutionSpace>::restore(const flow::Progress& progress) {
 }
 
 /// Chooses dt and the number of substeps of the block that begins with the present step. Unless dt is fixed,
-/// a whole number of steps reaches the target: the mean force of the sheet in a far shorter last step would
-/// contain the impulse of the whole exchange that each step of the flow makes necessary.
+/// a whole number of steps reaches a target within two blocks: a step of the flow changes the velocity at the
+/// sheet by itself, and the impulse that follows would be a large mean force in a far shorter last step.
 template <class ExecutionSpace>
 void CoupledSolver<ExecutionSpace>::plan_block(const flow::Progress& now, double target) {
   const flow::Parameters& p = _parameters.flow;
   _block.dt = p.fixed_dt > 0.0 ? p.fixed_dt : _flow.largest_dt(now);
   const double left = target - now.time, needed = std::ceil((1.0 - 1e-9) * left / _block.dt);
-  if (!(p.fixed_dt > 0.0)) _block.dt = left / std::max(1.0, needed);
+  if (!(p.fixed_dt > 0.0) && needed <= 2.0 * block_steps) _block.dt = left / std::max(1.0, needed);
   _block.substeps = _parameters.substeps;
   if (_block.substeps == 0) {
     const double limit = 0.5 * fabric::stable_dt(fabric::Integrator::symplectic_euler,
