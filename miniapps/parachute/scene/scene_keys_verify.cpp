@@ -111,8 +111,7 @@ void declare_peak_force(Table& table, CanopyPeak& peak) {
 void declare_canopy_checks(Table& table, Verify& verify) {
   table.tables(
       "drag", verify.drags, [](Table& drag, CanopyMean& value) { declare_canopy_mean(drag, value, "1"); },
-      "Mean drag coefficients 2 F / (rho U^2 S0) of canopies: F is the force along the velocity U of the "
-      "fluid far upstream relative to the payload, S0 the area of the flat cloth with its vent");
+      "Mean drag coefficients 2 F / (rho U^2 S0) of canopies, with the area S0 of the flat cloth");
   table.tables(
       "terminal_speed", verify.terminal_speeds,
       [](Table& speed, CanopyMean& value) { declare_canopy_mean(speed, value, "m/s"); },

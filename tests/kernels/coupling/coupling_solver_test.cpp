@@ -162,10 +162,10 @@ TEST(CoupledSolver, ReportsTheForceOnTheAirStressAndElasticForces) {
   for (std::size_t axis = 0; axis < 3; ++axis) EXPECT_NEAR(total[axis], sum[axis], 1e-14 * magnitude);
   // A solver of the cloth alone has the same forces and stresses at these positions.
   run.solver->download_cloth(x, v);
-  fabric::Parameters alone = c.p.fabric;
-  alone.integrator = fabric::Integrator::symplectic_euler;
-  alone.dt = 1e-4;
-  const auto cloth = fabric::create_solver(tested_backend, alone);
+  fabric::Parameters cloth_only = c.p.fabric;
+  cloth_only.integrator = fabric::Integrator::symplectic_euler;
+  cloth_only.dt = 1e-4;
+  const auto cloth = fabric::create_solver(tested_backend, cloth_only);
   cloth->upload(x, v);
   std::vector<Vector> expected(vertices);
   cloth->forces(expected);
