@@ -7,6 +7,7 @@ import unittest
 sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
 import bad_bodies
+import bad_canopies
 import bad_flows
 import mutations
 import parachute_program
@@ -45,6 +46,23 @@ class BadFlows(parachute_program.FlowTest):
         self.expect(0, self.scene, "--check")
         self.assertGreaterEqual(len(bad_bodies.BAD_LINES), 30)
         self.assert_lines_are_rejected(bad_bodies.GOOD, bad_bodies.BAD_LINES)
+
+    def test_rejects_invalid_canopies(self):
+        self.scene.write_text(bad_canopies.GOOD, encoding="utf-8")
+        self.expect(0, self.scene, "--check")
+        self.assertGreaterEqual(len(bad_canopies.BAD_LINES), 50)
+        self.assert_lines_are_rejected(bad_canopies.GOOD, bad_canopies.BAD_LINES)
+
+    def test_rejects_canopies_on_a_plane(self):
+        self.scene.write_text(bad_canopies.GOOD.replace("cells = [40, 20, 24]", "cells = [40, 1, 24]"), encoding="utf-8")
+        self.assertIn("canopy[0]: the grid has one cell along y", self.refusal())
+
+    def test_rejects_requests_without_canopies(self):
+        for key, words in {"coupling.gravity=[0, 0, -9.81]": "[[canopy]]", "output.fields=['position']": "[[canopy]]",
+                           "verify.force_balance=1": "[[canopy]]",
+                           "verify.peak_force=[{force=[1,2]}]": "number of canopies is 0"}.items():
+            with self.subTest(key):
+                self.assertIn(words, self.refusal(key))
 
     def test_rejects_coupling_without_bodies(self):
         self.assertIn("[[body]]", self.refusal("coupling.filter=0.5"))

@@ -1,6 +1,7 @@
 # ctest-label: no-sanitizer
 """drogue-parachute: command line, run directory, failures, verification and studies."""
 
+import array
 import csv
 import json
 import math
@@ -12,12 +13,13 @@ import subprocess
 import sys
 import time
 import unittest
+import xml.etree.ElementTree
 
 sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
 import gas_program
 import parachute_program
-from parachute_program import GUST, PLATE, VORTICES
+from parachute_program import CANOPY, GUST, PLATE, VORTICES
 
 QUIET = ("--quiet", "--backend", "serial", "--out", "out")
 
@@ -339,6 +341,110 @@ class Bodies(parachute_program.FlowTest):
             self.assertAlmostEqual(1.0, last / self.history("serial")["body_0_force_x"][-1], delta=1e-9)
 
 
+class Canopies(parachute_program.FlowTest):
+    def test_history_follows_the_inflation(self):
+        self.expect(0, self.write(CANOPY), *QUIET)
+        rows = self.history("out")
+        self.assertAlmostEqual(math.pi * (1 - 0.15**2), rows["canopy_0_projected_area"][0], delta=0.05)
+        self.assertLess(min(rows["canopy_0_projected_area"]), 2.5)
+        self.assertGreater(rows["canopy_0_force_z"][-1], 50)
+        self.assertGreater(rows["canopy_0_line_force_z"][-1], 50)
+        for axis, place in zip("xyz", (0, 0, -math.sqrt(1.8**2 - 1))):
+            self.assertEqual([0.0], sorted(set(rows[f"canopy_0_payload_velocity_{axis}"])))
+            self.assertEqual(1, len(set(rows[f"canopy_0_payload_{axis}"])))
+            self.assertAlmostEqual(place, rows[f"canopy_0_payload_{axis}"][0], delta=1e-12)
+        self.assertGreater(max(rows["canopy_0_largest_strain"]), 1e-3)
+        self.assertEqual(0.0, rows["cloth_kinetic_energy"][0])
+        self.assertGreater(min(rows["cloth_elastic_energy"][1:]), 0.0)
+        self.assertGreater(max(rows["force_balance"]), 0.0)
+        self.assertLess(max(rows["force_balance"]), 1e-14)
+        told = self.result("out")
+        self.assertGreater(told["canopies"]["vertices"], 200)
+        self.assertGreater(told["canopies"]["substeps"], 1)
+
+    def test_files_hold_the_canopy_beside_the_flow(self):
+        self.expect(0, self.write(CANOPY), *QUIET)
+        fields, vertices = self.fields("out"), self.result("out")["canopies"]["vertices"]
+
+        def integers(name):
+            return array.array("q", fields.datasets["/mesh/canopy/" + name])
+
+        triangles = integers("triangles")
+        self.assertEqual(3 * vertices, len(fields.values("/mesh/canopy/vertices")))
+        self.assertEqual(set(range(vertices - 1)), set(triangles))
+        # An annulus: as many edges as vertices and triangles; and the lines.
+        edges = integers("edges")
+        self.assertEqual(vertices - 1 + len(triangles) // 3 + 8, len(edges) // 2)
+        for step in ("000000", "000001"):
+            position = fields.values(f"/steps/{step}/canopy/position")
+            self.assertEqual(3 * vertices, len(position))
+            stress = fields.values(f"/steps/{step}/canopy/von_mises")
+            self.assertEqual(len(triangles) // 3, len(stress))
+            self.assertGreater(max(stress), 1.0)
+            self.assertGreaterEqual(min(stress), 0.0)
+            self.assertEqual(20 * 20 * 30 * 3, len(fields.values(f"/steps/{step}/velocity")))
+        payload = position[-3:]
+        self.assertAlmostEqual(-math.sqrt(1.8**2 - 1), payload[2], delta=1e-12)
+        document = xml.etree.ElementTree.parse(self.folder / "out/fields.xdmf")
+        grids = [grid.get("Name") for grid in document.iter("Grid") if grid.get("GridType") == "Collection"]
+        self.assertEqual(["scene", "scene canopy triangles", "scene canopy strings"], grids)
+        for item in document.iter("DataItem"):
+            self.assertIn(item.text.removeprefix("fields.h5:"), fields.datasets)
+
+    def test_checks_compare_means_and_bounds(self):
+        sets = ["verify={{drag=[{{from=0.05,to=0.2,value={0},tolerance=0.05}}],"
+                "terminal_speed=[{{from=0.05,to=0.2,value={1},tolerance=1e-12}}],"
+                "peak_force=[{{force=[{2},{3}],time=[{4},{5}]}}]}}"]
+        scene = self.write(CANOPY)
+        wanted = [1, 8, 0, 1e5, 0, 0.2]
+        self.start(scene, *QUIET, sets=[sets[0].format(*wanted)])
+        told, rows = self.result("out")["canopies"], self.history("out")
+        forces = [math.hypot(*(rows[f"canopy_0_line_force_{axis}"][k] for axis in "xyz")) for k in range(len(rows["time"]))]
+        self.assertAlmostEqual(max(forces), told["peak_force_0"], delta=1e-9 * max(forces))
+        self.assertEqual(rows["time"][forces.index(max(forces))], told["peak_force_0_time"])
+        window = [k for k, time in enumerate(rows["time"]) if 0.05 <= time <= 0.2]
+        areas = sum(0.5 * (rows["time"][k] - rows["time"][k - 1]) * (rows["canopy_0_force_z"][k] + rows["canopy_0_force_z"][k - 1])
+                    for k in window[1:])
+        mean = areas / (rows["time"][window[-1]] - rows["time"][window[0]])
+        self.assertAlmostEqual(2 * mean / (1.225 * 64 * math.pi), told["drag_0"], delta=1e-6)
+        good = [told["drag_0"], 8, 0.9 * max(forces), 1.1 * max(forces), told["peak_force_0_time"] - 0.01, 1]
+        self.expect(0, scene, *QUIET, "--overwrite", sets=[sets[0].format(*good)])
+        for which, value in ((0, 1.2 * good[0]), (1, 8.1), (3, 0.95 * max(forces)), (4, told["peak_force_0_time"] + 0.01)):
+            with self.subTest(which):
+                bad = [*good[:which], value, *good[which + 1:]]
+                self.expect(5, scene, *QUIET, "--overwrite", sets=[sets[0].format(*bad)])
+
+    def test_canopy_that_leaves_the_domain_ends_the_run(self):
+        free = CANOPY.replace("fixed = true", "fixed = false").replace("end_time = 0.2", "end_time = 5").replace(
+            "times = [0.1, 0.2]", "times = [5]")
+        process = self.expect(4, self.write(free), *QUIET)
+        self.assertRegex(process.stderr, r"canopy\[0\] leaves the domain: its (cloth|payload) at .* side z_high after t = ")
+        rows = self.history("out")
+        self.assertGreater(rows["canopy_0_payload_velocity_z"][-1], 0.5)
+        told = self.result("out")
+        self.assertEqual("numerical-failure", told["status"])
+        self.assertAlmostEqual(told["time"], rows["time"][-1], delta=1e-12)
+        again = self.expect(4, self.write(free), *QUIET, "--restart", "auto")
+        self.assertEqual(process.stderr, again.stderr)
+
+    def test_gravity_pulls_a_free_payload(self):
+        still = CANOPY.replace("velocity = [0, 0, 8]", "velocity = [0, 0, 0]").replace("fixed = true", "fixed = false")
+        self.expect(0, self.write(still), *QUIET, sets=["coupling.gravity=[0, 0, -9.81]", "output.history_every=1"])
+        rows = self.history("out")
+        # At first the payload falls freely: the lines are taut without force.
+        early = next(k for k, time in enumerate(rows["time"]) if time > 0.005)
+        self.assertAlmostEqual(-9.81 * rows["time"][early], rows["canopy_0_payload_velocity_z"][early], delta=0.01)
+        self.assertGreater(rows["canopy_0_force_z"][-1], 1.0)
+        self.assertGreater(rows["canopy_0_payload_velocity_z"][-1], -9.81 * 0.2)
+
+    def test_backends_agree_until_the_cloth_buckles(self):
+        for backend in ("serial", gas_program.threaded()):
+            self.expect(0, self.write(CANOPY), "--quiet", "--backend", backend, "--out", backend, "--overwrite",
+                        sets=["run.end_time=0.025", "output.times=[0.025]"])
+            last = self.history(backend)["canopy_0_line_force_z"][-1]
+            self.assertAlmostEqual(1.0, last / self.history("serial")["canopy_0_line_force_z"][-1], delta=1e-6)
+
+
 class Restart(parachute_program.FlowTest):
     SETS = ("run.end_time=1.5", "output.times=[0.3, 0.9, 1.5]", "output.restart_every=4", "grid.cells=[24, 20, 16]",
             "verify={energy_growth=1e9}")
@@ -382,6 +488,13 @@ class Restart(parachute_program.FlowTest):
     def test_interrupted_run_with_bodies_equals_uninterrupted_run(self):
         self.SETS = ("output.restart_every=4", "output.history_every=7", "run.end_time=1")
         self.compare("serial", [], lambda process: process.send_signal(signal.SIGINT), 130, PLATE)
+
+    def test_interrupted_inflation_equals_uninterrupted_inflation(self):
+        self.SETS = ("output.restart_every=5", "verify={force_balance=1e-14,drag=[{from=0.05,to=0.2,value=1,tolerance=10}]}")
+        for contact in ("false", "true"):
+            with self.subTest(contact):
+                self.compare("serial", ["coupling.contact=" + contact], lambda process: process.send_signal(signal.SIGINT),
+                             130, CANOPY)
 
     def test_killed_run_equals_uninterrupted_run(self):
         self.compare(gas_program.threaded(), [], lambda process: process.kill(), -signal.SIGKILL)

@@ -85,6 +85,40 @@ times = [0.12, 0.3]
 history_every = 5
 """
 
+# A small canopy that opens behind a held payload.
+CANOPY = """\
+app = "parachute"
+[fluid]
+density = 1.225
+viscosity = 1.8e-5
+velocity = [0, 0, 8]
+[grid]
+cells = [20, 20, 30]
+domain = [[-2, 2], [-2, 2], [-2.6, 3.4]]
+boundary = { x = "slip", y = "slip", z = ["inflow", "outflow"] }
+[flow]
+time = "ab2"
+[[canopy]]
+kind = "flat-circular"
+diameter = 2
+gores = 8
+vent = 0.3
+edge_length = 0.14
+lines = { length = 1.8, stiffness = 2000 }
+payload = { mass = 2, fixed = true }
+reinforcement = { skirt = 500 }
+[run]
+end_time = 0.2
+max_dt = 0.01
+cfl = 0.25
+[output]
+fields = ["velocity", "position", "von_mises"]
+times = [0.1, 0.2]
+history_every = 2
+[verify]
+force_balance = 1e-14
+"""
+
 
 class FlowTest(gas_program.GasTest):
     """Test case whose programs run in an empty temporary folder."""

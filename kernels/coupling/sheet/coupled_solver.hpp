@@ -1,12 +1,14 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 #include <vector>
 
 #include "kernels/coupling/sheet/immersed_sheet.hpp"
 #include "kernels/coupling/sheet/solver.hpp"
+#include "kernels/coupling/total_force.hpp"
 #include "kernels/fabric/fabric_solver.hpp"
 #include "kernels/flow/face_views.hpp"
 #include "kernels/flow/flow_solver.hpp"
@@ -96,7 +98,8 @@ class CoupledSolver {
         _saved_step("drogue::coupling::saved_step"),
         _saved_positions("drogue::coupling::saved_positions", rows()),
         _saved_velocities("drogue::coupling::saved_velocities", rows()),
-        _saved_acceleration("drogue::coupling::saved_acceleration", rows()) {}
+        _saved_acceleration("drogue::coupling::saved_acceleration", rows()),
+        _total_force(flow::coupling_grid(_flow.grid())) {}
 
   /// The parts. Does not throw.
   [[nodiscard]] Flow& flow() { return _flow; }
@@ -112,6 +115,9 @@ class CoupledSolver {
   [[nodiscard]] BlockProgress block() const { return _block; }
   void set_block(const BlockProgress& block) { _block = block; }
   [[nodiscard]] FailureReason failure_reason();
+  [[nodiscard]] std::array<double, 3> total_force_on_air() const {
+    return _total_force(_space, flow::face_views<ExecutionSpace>(_flow.grid(), _flow.force()));
+  }
 
  private:
   static Parameters completed(Parameters p) {
@@ -128,7 +134,7 @@ class CoupledSolver {
   }
   [[nodiscard]] std::size_t rows() const { return static_cast<std::size_t>(_fabric.vertices()); }
   void forget_steps();
-  void plan_block(const flow::Progress& now);
+  void plan_block(const flow::Progress& now, double target);
   void end_block_at(double target, const flow::Progress& now);
   void enqueue_step(double dt, bool is_first);
   [[nodiscard]] bool needs_shorter_steps(const flow::Progress& now);
@@ -143,6 +149,7 @@ class CoupledSolver {
   typename CheckClothFunctor<ExecutionSpace>::ReasonView _reason;
   SavedStep<ExecutionSpace> _saved_step;
   Vectors _saved_positions, _saved_velocities, _saved_acceleration;
+  TotalForce<ExecutionSpace> _total_force;
 };
 
 template <class ExecutionSpace>
@@ -166,11 +173,15 @@ void CoupledSolver<ExecutionSpace>::restore(const flow::Progress& progress) {
   forget_steps();
 }
 
-/// Chooses dt and the number of substeps of the block that begins with the present step.
+/// Chooses dt and the number of substeps of the block that begins with the present step. Unless dt is fixed,
+/// a whole number of steps reaches a target within two blocks: a step of the flow changes the velocity at the
+/// sheet by itself, and the impulse that follows would be a large mean force in a far shorter last step.
 template <class ExecutionSpace>
-void CoupledSolver<ExecutionSpace>::plan_block(const flow::Progress& now) {
+void CoupledSolver<ExecutionSpace>::plan_block(const flow::Progress& now, double target) {
   const flow::Parameters& p = _parameters.flow;
   _block.dt = p.fixed_dt > 0.0 ? p.fixed_dt : _flow.largest_dt(now);
+  const double left = target - now.time, needed = std::ceil((1.0 - 1e-9) * left / _block.dt);
+  if (!(p.fixed_dt > 0.0) && needed <= 2.0 * block_steps) _block.dt = left / std::max(1.0, needed);
   _block.substeps = _parameters.substeps;
   if (_block.substeps == 0) {
     const double limit = 0.5 * fabric::stable_dt(fabric::Integrator::symplectic_euler,
@@ -196,7 +207,10 @@ flow::Stop CoupledSolver<ExecutionSpace>::advance(double target, std::int64_t pa
                                                   const flow::Poll& poll) {
   while (true) {
     const flow::Progress now = _flow.progress();
-    if (now.time >= target) return flow::Stop::target;
+    if (now.time >= target) {
+      _block.end = now.step;
+      return flow::Stop::target;
+    }
     if (now.step >= _parameters.flow.max_steps) return flow::Stop::max_steps;
     if (now.step == pause_step) return flow::Stop::pause;
     if (_flow.has_failed()) {
@@ -204,10 +218,10 @@ flow::Stop CoupledSolver<ExecutionSpace>::advance(double target, std::int64_t pa
       // Returns its sides to the time before the failed step.
       if (!needs_shorter_steps(now)) return _flow.advance(target, pause_step, {});
       _flow.forget_long_step();
-      plan_block(now);
+      plan_block(now, target);
     }
     if (poll && !poll(_flow.status())) return flow::Stop::interrupted;
-    if (now.step >= _block.end) plan_block(now);
+    if (now.step >= _block.end) plan_block(now, target);
     end_block_at(target, now);
     std::int64_t steps = std::min(_block.end, _parameters.flow.max_steps) - now.step;
     if (pause_step > now.step) steps = std::min(steps, pause_step - now.step);

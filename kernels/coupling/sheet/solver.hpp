@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <memory>
 #include <span>
 
@@ -17,7 +18,8 @@ enum class FailureReason {
   not_spread,   ///< a force on the air is not finite or larger than 1e270 N
 };
 
-/// Division of a run into blocks of steps with constant dt. A restart that restores it continues bit for bit.
+/// Division of a run into blocks of steps with constant dt, which end at targets too. A restart that restores
+/// it continues bit for bit.
 struct BlockProgress {
   double dt = 0.0;            ///< s, of the steps of the flow in the present block
   std::int64_t substeps = 0;  ///< steps of the cloth in each of them
@@ -57,6 +59,18 @@ class Solver : public flow::Solver {
 
   /// Restores the block, after `restore`. Does not throw.
   virtual void set_block(const BlockProgress& block) = 0;
+
+  /// Total of the force densities that act on the air in the last step of the flow, N: the sum of `forces` to
+  /// round-off. Throws only after a failed kernel.
+  [[nodiscard]] virtual std::array<double, 3> total_force_on_air() = 0;
+
+  /// Elastic forces on the vertices at the present positions, N, without those of the air and gravity. Throws
+  /// std::invalid_argument for a span of the wrong length.
+  virtual void elastic_forces(std::span<fabric::Vector> on_vertices) = 0;
+
+  /// Stress of every triangle at the present positions, N/m. Throws std::invalid_argument for a span of the
+  /// wrong length.
+  virtual void cloth_stress(fabric::StressMeasure measure, std::span<fabric::Stress> of_triangles) = 0;
 
   /// Energies and momenta of the cloth. Throws only after a failed kernel.
   [[nodiscard]] virtual fabric::Totals cloth_totals() = 0;

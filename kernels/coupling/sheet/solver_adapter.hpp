@@ -43,6 +43,13 @@ class SolverAdapter final : public Solver {
     _solver.fabric().download(positions, velocities);
   }
   void forces(std::span<fabric::Vector> on_air) override { read(_solver.sheet().force(), on_air); }
+  std::array<double, 3> total_force_on_air() override { return _solver.total_force_on_air(); }
+  void elastic_forces(std::span<fabric::Vector> on_vertices) override {
+    _solver.fabric().forces(on_vertices);
+  }
+  void cloth_stress(fabric::StressMeasure measure, std::span<fabric::Stress> of_triangles) override {
+    _solver.fabric().stress(measure, of_triangles);
+  }
   void download_air_acceleration(std::span<fabric::Vector> values) override {
     read(_solver.sheet().acceleration(), values);
   }

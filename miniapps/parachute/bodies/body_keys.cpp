@@ -12,6 +12,8 @@ const Choices<BodyKind> body_choices = {{"plate", BodyKind::plate}};
 const Choices<PorosityLaw> law_choices = {{"none", PorosityLaw::none},
                                           {"forchheimer", PorosityLaw::forchheimer}};
 
+}  // namespace
+
 void declare_porosity(Table& table, Porosity& porosity) {
   const auto is_porous = [&porosity] { return porosity.law == PorosityLaw::forchheimer; };
   table.value(
@@ -26,8 +28,6 @@ void declare_porosity(Table& table, Porosity& porosity) {
       .at_least(0.0)
       .when(is_porous, "with law = \"forchheimer\"", "law");
 }
-
-}  // namespace
 
 void declare_body(Table& table, Body& body) {
   table.value("kind", scene::choice_codec(body.kind, body_choices), "A rectangle without thickness")

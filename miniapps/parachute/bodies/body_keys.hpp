@@ -5,6 +5,9 @@
 
 namespace drogue::parachute_app {
 
+/// Declares the keys of `porosity`.
+void declare_porosity(scene::Table& table, Porosity& porosity);
+
 /// Declares the keys of a `[[body]]`.
 void declare_body(scene::Table& table, Body& body);
 

@@ -154,6 +154,21 @@ Codec pair_codec(std::array<double, 2>& pair) {
           scene::back_to_default(pair)};
 }
 
+Codec optional_pair_codec(std::optional<std::array<double, 2>>& pair) {
+  return {"array of 2 reals",
+          [&pair](const Node& node, const Limits& limits) {
+            std::array<double, 2> value{};
+            std::string fault = read_pair(node, limits, value);
+            if (fault.empty()) pair = value;
+            return fault;
+          },
+          [&pair]() -> std::optional<std::string> {
+            if (!pair) return std::nullopt;
+            return bracketed({scene::toml_text((*pair)[0]), scene::toml_text((*pair)[1])});
+          },
+          scene::back_to_default(pair)};
+}
+
 Codec vector_expression_codec(VectorExpression& vector, std::vector<std::string> variables) {
   std::string names;
   for (const std::string& variable : variables) names += (names.empty() ? "" : ", ") + variable;

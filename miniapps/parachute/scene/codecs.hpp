@@ -24,6 +24,9 @@ scene::Codec vector_codec(std::array<double, 3>& vector);
 /// Array of two reals. Does not throw.
 scene::Codec pair_codec(std::array<double, 2>& pair);
 
+/// Array of two reals, absent if not set. Does not throw.
+scene::Codec optional_pair_codec(std::optional<std::array<double, 2>>& pair);
+
 /// Array of three reals or expressions of `variables`. Does not throw.
 scene::Codec vector_expression_codec(VectorExpression& vector, std::vector<std::string> variables);
 

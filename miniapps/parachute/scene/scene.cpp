@@ -9,9 +9,12 @@
 namespace drogue::parachute_app {
 
 const std::vector<std::string>& field_names() {
-  static const std::vector<std::string> names = {"velocity", "pressure", "vorticity", "q_criterion"};
+  static const std::vector<std::string> names = {"velocity",    "pressure", "vorticity",
+                                                 "q_criterion", "position", "von_mises"};
   return names;
 }
+
+bool is_canopy_field(const std::string& name) { return name == "position" || name == "von_mises"; }
 
 FlowScene read_flow_scene(const std::filesystem::path& file, const std::vector<std::string>& sets) {
   return framework::read_scene<FlowScene>(file, sets, declare_flow_scene, complete_and_check);

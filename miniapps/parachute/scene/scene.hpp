@@ -10,6 +10,7 @@
 #include "kernels/flow/parameters.hpp"
 #include "miniapps/framework/scene_keys.hpp"
 #include "miniapps/parachute/bodies/body.hpp"
+#include "miniapps/parachute/canopy/canopy.hpp"
 
 /// Scene of `drogue-parachute`: the content of a TOML file, checked and with every default filled in.
 namespace drogue::parachute_app {
@@ -73,6 +74,20 @@ struct BodyForce {
   Target target;
 };
 
+/// Mean of a quantity of a canopy over an interval of time.
+struct CanopyMean {
+  int canopy = 0;
+  double from = 0.0, to = 0.0;  ///< s
+  Target target;
+};
+
+/// Bounds of the largest force of the lines on the payload of a canopy, N, and of its time, s.
+struct CanopyPeak {
+  int canopy = 0;
+  std::array<double, 2> force{};
+  std::optional<std::array<double, 2>> time;
+};
+
 /// Largest rate at which the kinetic energy falls, W, and optionally its time, s.
 struct DissipationPeak {
   Target target;
@@ -88,6 +103,10 @@ struct Verify {
   std::optional<DissipationPeak> dissipation_peak;
   std::vector<FlowRate> flow_rates;
   std::vector<BodyForce> forces;
+  std::vector<CanopyMean> drags;            ///< drag coefficients with the nominal area
+  std::vector<CanopyMean> terminal_speeds;  ///< of the fluid relative to the payload, m/s
+  std::vector<CanopyPeak> peak_forces;
+  std::optional<double> force_balance;  ///< relative
   std::vector<Profile> profiles;
 };
 
@@ -111,18 +130,27 @@ struct FlowScene {
   std::array<std::optional<SidePair>, 3> sides;       ///< of each axis
   std::array<VectorExpression, 6> wall_velocity;      ///< m/s
   std::vector<Body> bodies;
-  coupling::SheetParameters coupling;  ///< its laws are those of the bodies
+  std::vector<Canopy> canopies;
+  coupling::SheetParameters coupling;  ///< its laws are those of the bodies and canopies
+  std::array<double, 3> gravity{};     ///< of canopies and payloads, m/s^2
+  bool contact = false;                ///< of canopies and lines with each other and themselves
+  double thickness = 0.01;             ///< m, distance of layers in contact
   double end_time = 0.0;               ///< s
   framework::OutputRequest output;
   Verify verify;
 
+  [[nodiscard]] bool has_sheets() const { return !bodies.empty() || !canopies.empty(); }
   [[nodiscard]] const VectorExpression& initial_velocity() const {
     return initial[0].empty() ? velocity : initial;
   }
 };
 
-/// Fields of fields.h5: velocity, pressure, vorticity, q_criterion. Does not throw.
+/// Fields of fields.h5: velocity, pressure, vorticity, q_criterion; of canopies position, von_mises. Does not
+/// throw.
 const std::vector<std::string>& field_names();
+
+/// True for fields of canopies. Does not throw.
+bool is_canopy_field(const std::string& name);
 
 /// Reads and checks `file` with its `--set` assignments, and evaluates the initial velocity at every face.
 /// Throws `Failure`: usage for a missing file, invalid_scene (`FILE:LINE: ...`) otherwise.

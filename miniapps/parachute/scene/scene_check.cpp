@@ -9,6 +9,7 @@
 #include "common/scene/node.hpp"
 #include "common/scene/read.hpp"
 #include "miniapps/parachute/bodies/body_check.hpp"
+#include "miniapps/parachute/canopy/canopy_check.hpp"
 #include "miniapps/parachute/scene/functions.hpp"
 
 namespace drogue::parachute_app {
@@ -218,6 +219,15 @@ void check_initial(const Table& root, const FlowScene& scene) {
   }
 }
 
+void complete_fields(const Table& root, FlowScene& scene) {
+  std::vector<std::string> by_default = {"velocity", "pressure", "vorticity"};
+  if (!scene.canopies.empty()) by_default.insert(by_default.end(), {"position", "von_mises"});
+  framework::complete_output(root, scene.output, by_default, {scene.end_time, "run.end_time"});
+  const auto of_canopy = std::ranges::find_if(scene.output.fields, is_canopy_field);
+  if (scene.canopies.empty() && of_canopy != scene.output.fields.end())
+    contradict(root, "output.fields", "output.fields: \"" + *of_canopy + "\" needs a [[canopy]]");
+}
+
 }  // namespace
 
 void complete_and_check(const Table& root, FlowScene& scene) {
@@ -233,8 +243,8 @@ void complete_and_check(const Table& root, FlowScene& scene) {
   check_net_inflow(root, scene);
   check_solver(root, p);
   check_bodies(root, scene);
-  framework::complete_output(root, scene.output, {"velocity", "pressure", "vorticity"},
-                             {scene.end_time, "run.end_time"});
+  check_canopies(root, scene);
+  complete_fields(root, scene);
   check_verify(root, scene);
   check_initial(root, scene);
 }

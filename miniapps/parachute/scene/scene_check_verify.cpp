@@ -2,6 +2,7 @@
 
 #include "common/scene/node.hpp"
 #include "common/scene/read.hpp"
+#include "miniapps/parachute/scene/functions.hpp"
 #include "miniapps/parachute/scene/scene_check.hpp"
 
 namespace drogue::parachute_app {
@@ -62,6 +63,50 @@ void check_forces(const Table& root, const FlowScene& scene) {
   }
 }
 
+void check_canopy_number(const Table& root, const FlowScene& scene, const std::string& path, int canopy) {
+  if (canopy >= static_cast<int>(scene.canopies.size()))
+    contradict(root, path + ".canopy",
+               path + ".canopy = " + std::to_string(canopy) + ": the number of canopies is " +
+                   std::to_string(scene.canopies.size()) + ", and the first one is 0");
+}
+
+void check_canopy_means(const Table& root, const FlowScene& scene, const std::string& key,
+                        const std::vector<CanopyMean>& means) {
+  for (std::size_t i = 0; i < means.size(); ++i) {
+    const CanopyMean& mean = means[i];
+    const std::string path = "verify." + key + "[" + std::to_string(i) + "]";
+    check_canopy_number(root, scene, path, mean.canopy);
+    if (!(mean.from < mean.to && mean.to <= scene.end_time))
+      contradict(root, path + ".to",
+                 path + ".to = " + scene::real_text(mean.to) +
+                     " s must lie between from and run.end_time = " + scene::real_text(scene.end_time) +
+                     " s");
+    if (mean.target.value == 0.0)
+      contradict(root, path + ".value", path + ".value must not be 0: the tolerance is relative");
+    for (const std::string& component : scene.velocity)
+      if (!SpaceTimeFunction(component).constant())
+        contradict(root, path, path + " needs a fluid.velocity that does not vary");
+    require_rows(root, scene, path);
+  }
+}
+
+void check_canopy_checks(const Table& root, const FlowScene& scene) {
+  const Verify& verify = scene.verify;
+  check_canopy_means(root, scene, "drag", verify.drags);
+  check_canopy_means(root, scene, "terminal_speed", verify.terminal_speeds);
+  for (std::size_t i = 0; i < verify.peak_forces.size(); ++i) {
+    const std::string path = "verify.peak_force[" + std::to_string(i) + "]";
+    check_canopy_number(root, scene, path, verify.peak_forces[i].canopy);
+    if (const auto& time = verify.peak_forces[i].time; time && !((*time)[0] < (*time)[1]))
+      contradict(root, path + ".time", path + ".time: the first number must be the smaller");
+    require_rows(root, scene, path);
+  }
+  if (!verify.force_balance) return;
+  if (scene.canopies.empty())
+    contradict(root, "verify.force_balance", "verify.force_balance needs a [[canopy]]");
+  require_rows(root, scene, "verify.force_balance");
+}
+
 void check_profiles(const Table& root, const FlowScene& scene) {
   const flow::Parameters& p = scene.parameters;
   for (std::size_t i = 0; i < scene.verify.profiles.size(); ++i) {
@@ -105,6 +150,7 @@ void check_verify(const Table& root, const FlowScene& scene) {
                "verify.kinetic_energy.value must not be 0: the tolerance is relative");
   check_flow_rates(root, scene);
   check_forces(root, scene);
+  check_canopy_checks(root, scene);
   check_profiles(root, scene);
 }
 

@@ -1,6 +1,7 @@
 #include "miniapps/parachute/scene/scene_keys.hpp"
 
 #include "miniapps/parachute/bodies/body_keys.hpp"
+#include "miniapps/parachute/canopy/canopy_keys.hpp"
 #include "miniapps/parachute/scene/codecs.hpp"
 
 namespace drogue::parachute_app {
@@ -169,11 +170,28 @@ void declare_flow_scene(Table& root, FlowScene& scene) {
       "The state at the start; the gradient part of its velocity is removed");
   root.table(
       "flow", [&](Table& table) { declare_flow(table, scene); }, "The numerical scheme and the forces");
+  root.tables("canopy", scene.canopies, declare_canopy, "Parachutes: cloth, suspension lines and a payload");
   root.tables("body", scene.bodies, declare_body, "Rigid sheets in the flow, which do not move");
   root.table(
-          "coupling", [&](Table& table) { declare_coupling(table, scene.coupling); },
-          "The exchange of forces between the fluid and bodies")
-      .when([&scene] { return !scene.bodies.empty(); }, "with a [[body]]", "body");
+          "coupling",
+          [&](Table& table) {
+            declare_coupling(table, scene.coupling);
+            table.value("gravity", vector_codec(scene.gravity), "Acceleration of canopies and payloads")
+                .unit("m/s^2")
+                .when([&scene] { return !scene.canopies.empty(); }, "with a [[canopy]]", "canopy");
+            table
+                .value(
+                    "contact", scene::boolean_codec(scene.contact),
+                    "Contact of cloth and lines with each other and themselves, without friction; it costs "
+                    "more than all other steps of the cloth")
+                .when([&scene] { return !scene.canopies.empty(); }, "with a [[canopy]]", "canopy");
+            table.value("thickness", scene::real_codec(scene.thickness), "Distance of layers in contact")
+                .unit("m")
+                .above(0.0)
+                .when([&scene] { return scene.contact; }, "with contact = true", "contact");
+          },
+          "The exchange of forces between the fluid and sheets")
+      .when([&scene] { return scene.has_sheets(); }, "with a [[body]] or a [[canopy]]", "body");
   root.table(
           "run", [&](Table& table) { declare_run(table, scene); }, "Length and steps of the run")
       .required();

@@ -88,6 +88,43 @@ void declare_profile(Table& table, Profile& profile) {
   table.optional_table("maximum", profile.maximum, declare_extremum, "The largest velocity");
 }
 
+void declare_canopy_mean(Table& table, CanopyMean& mean, const std::string& unit) {
+  table.value("canopy", scene::integer_codec(mean.canopy), "Number of the [[canopy]], from 0").range(0, 1e6);
+  table.value("from", scene::real_codec(mean.from), "Begin of the interval")
+      .unit("s")
+      .at_least(0.0)
+      .required();
+  table.value("to", scene::real_codec(mean.to), "End of the interval").unit("s").above(0.0).required();
+  declare_target(table, mean.target, unit, "Largest relative deviation that passes");
+}
+
+void declare_peak_force(Table& table, CanopyPeak& peak) {
+  table.value("canopy", scene::integer_codec(peak.canopy), "Number of the [[canopy]], from 0").range(0, 1e6);
+  table
+      .value("force", scene::interval_codec(peak.force[0], peak.force[1]),
+             "Least and largest force that pass")
+      .unit("N")
+      .required();
+  table.value("time", optional_pair_codec(peak.time), "Least and largest time of it that pass").unit("s");
+}
+
+void declare_canopy_checks(Table& table, Verify& verify) {
+  table.tables(
+      "drag", verify.drags, [](Table& drag, CanopyMean& value) { declare_canopy_mean(drag, value, "1"); },
+      "Mean drag coefficients 2 F / (rho U^2 S0) of canopies, with the area S0 of the flat cloth");
+  table.tables(
+      "terminal_speed", verify.terminal_speeds,
+      [](Table& speed, CanopyMean& value) { declare_canopy_mean(speed, value, "m/s"); },
+      "Mean speeds of the fluid far upstream relative to payloads");
+  table.tables("peak_force", verify.peak_forces, declare_peak_force,
+               "Largest forces of the lines on payloads in the rows of the history");
+  table
+      .value("force_balance", scene::real_codec(verify.force_balance),
+             "Largest difference of the total force on the grid from that of the sheets on the fluid that "
+             "passes, relative to the sum of the magnitudes")
+      .at_least(0.0);
+}
+
 }  // namespace
 
 void declare_verify(Table& table, Verify& verify) {
@@ -148,6 +185,7 @@ void declare_verify(Table& table, Verify& verify) {
         declare_target(force, value.target, "N", deviation);
       },
       "Forces of the fluid on bodies at the end");
+  declare_canopy_checks(table, verify);
   table.tables("profile", verify.profiles, declare_profile, "Velocities along lines at the end");
 }
 

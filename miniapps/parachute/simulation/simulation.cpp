@@ -1,5 +1,6 @@
 #include "miniapps/parachute/simulation/simulation.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 #include <string>
@@ -59,25 +60,28 @@ const char* reason_text(flow::FailureReason reason) {
   return "";
 }
 
-/// Flow with all bodies of a scene as sheets.
-coupling::Parameters coupled_parameters(const FlowScene& scene) {
-  coupling::Parameters p{scene.parameters, make_sheets(scene.bodies), scene.coupling, 1};
-  for (const Body& body : scene.bodies)
-    p.sheet.law_of_vertex.insert(p.sheet.law_of_vertex.end(), body.vertices(), law_of(body.porosity));
+/// Flow with all sheets of a scene. Sheets that do not move need no steps of their own.
+coupling::Parameters coupled_parameters(const FlowScene& scene, const Sheets& sheets) {
+  coupling::Parameters p{scene.parameters, sheets.fabric, scene.coupling, scene.canopies.empty() ? 1 : 0};
+  p.fabric.gravity = scene.gravity;
+  p.fabric.contact.self = scene.contact;
+  p.fabric.contact.thickness = scene.thickness;
+  p.sheet.law_of_vertex = sheets.laws;
   return p;
 }
 
 }  // namespace
 
 Simulation::Simulation(const FlowScene& scene, const framework::SimulationSettings& settings)
-    : _scene(scene) {
+    : _scene(scene), _sheets(make_all_sheets(scene.bodies, scene.canopies)), _record(scene) {
   if (settings.communicator != nullptr) {
-    if (!scene.bodies.empty()) throw Failure(ExitCode::usage, "scenes with a [[body]] run on one rank");
+    if (scene.has_sheets())
+      throw Failure(ExitCode::usage, "scenes with a [[body]] or a [[canopy]] run on one rank");
     auto shared = std::make_unique<SharedSolver>(*settings.communicator, settings.backend, scene.parameters);
     _shared = shared.get();
     _solver = std::move(shared);
-  } else if (!scene.bodies.empty()) {
-    auto coupled = coupling::create_solver(settings.backend, coupled_parameters(scene));
+  } else if (scene.has_sheets()) {
+    auto coupled = coupling::create_solver(settings.backend, coupled_parameters(scene, _sheets));
     _coupled = coupled.get();
     _solver = std::move(coupled);
   } else {
@@ -99,6 +103,8 @@ void Simulation::start() {
     const flow::StateField field = velocity_field(axis);
     _solver->upload(field, evaluate(SpaceTimeFunction(velocity), lattice_of(_scene.parameters, field), 0.0));
   }
+  if (_coupled != nullptr)
+    _coupled->upload_cloth(_sheets.positions, std::vector<fabric::Vector>(_sheets.positions.size()));
   _solver->start();
   _statistics.begin(_solver->totals());
   sample_fields(_snapshots[0]);  // allocates what all outputs need
@@ -153,6 +159,7 @@ std::vector<run::Column> Simulation::history_columns() const {
   for (std::size_t i = 0; i < _scene.bodies.size(); ++i)
     for (const char* axis : axis_names)
       columns.push_back({"body_" + std::to_string(i) + "_force_" + axis, "N"});
+  append_canopy_columns(columns);
   return columns;
 }
 
@@ -167,26 +174,15 @@ framework::HistoryRow Simulation::row() {
     if (!is_periodic(_scene.parameters, side)) row.values.push_back(now.outflow[side]);
   for (const fabric::Vector& force : body_forces())
     row.values.insert(row.values.end(), force.begin(), force.end());
+  append_canopy_values(row);
   return row;
-}
-
-/// Forces of the fluid on the bodies in the last step, N.
-std::vector<fabric::Vector> Simulation::body_forces() {
-  std::vector<fabric::Vector> sums(_scene.bodies.size(), fabric::Vector{});
-  if (_coupled == nullptr) return sums;
-  std::vector<fabric::Vector> on_fluid(vertices_of(_scene.bodies));
-  _coupled->forces(on_fluid);
-  auto force = on_fluid.begin();
-  for (std::size_t i = 0; i < sums.size(); ++i)
-    for (std::size_t k = 0; k < _scene.bodies[i].vertices(); ++k, ++force)
-      for (std::size_t axis = 0; axis < 3; ++axis) sums[i][axis] -= (*force)[axis];
-  return sums;
 }
 
 std::vector<run::DatasetSpec> Simulation::field_specs() const {
   std::vector<run::DatasetSpec> specs;
   for (const std::string& name : _scene.output.fields)
-    specs.push_back(field_spec(name, _scene.parameters.cells));
+    specs.push_back(is_canopy_field(name) ? canopy_field_spec(name)
+                                          : field_spec(name, _scene.parameters.cells));
   return specs;
 }
 
@@ -199,11 +195,15 @@ void Simulation::write_mesh(run::FieldsWriter& fields) const {
     return coordinates;
   };
   run::add_rectilinear_mesh(fields, {faces(0), faces(1), faces(2)}, run::AxisOrder::xyz);
+  if (std::ranges::any_of(_scene.output.fields, is_canopy_field)) write_canopy_mesh(fields);
 }
 
 void Simulation::sample_fields(Snapshot& snapshot) {
   for (std::size_t k = 0; k < snapshot.size(); ++k)
-    _solver->sample(cell_field(_scene.output.fields[k]), snapshot[k]);
+    if (const std::string& name = _scene.output.fields[k]; is_canopy_field(name))
+      sample_canopy_field(name, snapshot[k]);
+    else
+      _solver->sample(cell_field(name), snapshot[k]);
 }
 
 framework::FieldsTask Simulation::snapshot() {
@@ -217,7 +217,8 @@ framework::FieldsTask Simulation::snapshot() {
   sample_fields(_snapshots[_next_snapshot]);
   _next_snapshot = (_next_snapshot + 1) % _snapshots.size();
   return [&filled, &names = _scene.output.fields](run::FieldsWriter& fields) {
-    for (std::size_t k = 0; k < names.size(); ++k) fields.write(names[k], 0, filled[k]);
+    for (std::size_t k = 0; k < names.size(); ++k)
+      fields.write((is_canopy_field(names[k]) ? "canopy/" : "") + names[k], 0, filled[k]);
   };
 }
 
@@ -229,10 +230,9 @@ std::string Simulation::failure_text(bool) {
          << " s, before run.end_time = " << _scene.end_time << " s";
     return text.str();
   }
-  if (_coupled != nullptr && _coupled->failure_reason() != coupling::FailureReason::flow) {
-    text << "a force on a body is not finite at t = " << now().time << " s";
-    return text.str();
-  }
+  if (_coupled != nullptr)
+    if (const auto reason = _coupled->failure_reason(); reason != coupling::FailureReason::flow)
+      return sheet_failure_text(reason);
   const flow::StepFailure failure = _solver->failure();
   const double fixed_dt = _scene.parameters.fixed_dt;
   const bool is_unstable = failure.reason == flow::FailureReason::time_step && failure.dt < fixed_dt;
@@ -269,8 +269,13 @@ void Simulation::describe(run::ResultDocument& result) {
     result.metrics.set("pressure", "residual", solve->residual);
     result.metrics.set("pressure", "tolerance", _scene.parameters.pressure_tolerance);
   }
-  if (_coupled != nullptr)
+  if (!_scene.bodies.empty())
     result.metrics.set("bodies", "vertices", static_cast<std::int64_t>(vertices_of(_scene.bodies)));
+  if (!_scene.canopies.empty()) {
+    result.metrics.set("canopies", "vertices",
+                       static_cast<std::int64_t>(_sheets.positions.size() - vertices_of(_scene.bodies)));
+    result.metrics.set("canopies", "substeps", _coupled->block().substeps);
+  }
   result.timing.compute_s = _compute_s;
   result.timing.h2d_s = _h2d_s;
 }

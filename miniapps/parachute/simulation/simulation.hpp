@@ -8,6 +8,7 @@
 #include "miniapps/framework/simulation.hpp"
 #include "miniapps/parachute/parallel/rank_solver.hpp"
 #include "miniapps/parachute/scene/scene.hpp"
+#include "miniapps/parachute/verify/canopy_record.hpp"
 #include "miniapps/parachute/verify/statistics.hpp"
 
 namespace drogue::parachute_app {
@@ -55,15 +56,25 @@ class Simulation final : public framework::Simulation {
   void check_profiles(run::ResultDocument& result);
   void check_totals(run::ResultDocument& result);
   void check_forces(run::ResultDocument& result);
+  void check_canopies(run::ResultDocument& result);
   [[nodiscard]] std::vector<fabric::Vector> body_forces();
+  [[nodiscard]] SheetState sheet_state();
+  void append_canopy_columns(std::vector<run::Column>& columns) const;
+  void append_canopy_values(framework::HistoryRow& row);
+  [[nodiscard]] run::DatasetSpec canopy_field_spec(const std::string& name) const;
+  void write_canopy_mesh(run::FieldsWriter& fields) const;
+  void sample_canopy_field(const std::string& name, std::vector<double>& values);
+  [[nodiscard]] std::string sheet_failure_text(coupling::FailureReason reason);
   void write_coupling(run::RestartWriter& writer);
   void read_coupling(const run::RestartReader& reader);
 
   const FlowScene& _scene;
+  Sheets _sheets;
   SharedSolver* _shared = nullptr;       ///< `_solver` on several ranks
-  coupling::Solver* _coupled = nullptr;  ///< `_solver` with bodies
+  coupling::Solver* _coupled = nullptr;  ///< `_solver` with bodies or canopies
   std::unique_ptr<flow::Solver> _solver;
   RunStatistics _statistics;
+  CanopyRecord _record;
   /// Used in turn: one is written while the other is filled. Empty on several ranks.
   std::array<Snapshot, 2> _snapshots;
   std::size_t _next_snapshot = 0;

@@ -36,11 +36,18 @@ std::vector<flow::StateField> Simulation::state_fields() const {
 }
 
 void Simulation::write_coupling(run::RestartWriter& writer) {
-  const std::size_t vertices = vertices_of(_scene.bodies);
-  std::vector<fabric::Vector> acceleration(vertices);
+  const std::size_t vertices = _sheets.positions.size();
+  std::vector<fabric::Vector> acceleration(vertices), positions(vertices), velocities(vertices);
   _coupled->download_air_acceleration(acceleration);
-  writer.array("body_acceleration", 3 * vertices);
-  writer.write("body_acceleration", 0, {acceleration.front().data(), 3 * vertices});
+  _coupled->download_cloth(positions, velocities);
+  const auto write = [&](const char* name, const std::vector<fabric::Vector>& values) {
+    writer.array(name, 3 * vertices);
+    writer.write(name, 0, {values.front().data(), 3 * vertices});
+  };
+  write("air_acceleration", acceleration);
+  write("sheet_position", positions);
+  write("sheet_velocity", velocities);
+  _record.write(writer);
   const coupling::BlockProgress block = _coupled->block();
   writer.number("block_dt", block.dt);
   writer.integer("block_substeps", block.substeps);
@@ -48,9 +55,14 @@ void Simulation::write_coupling(run::RestartWriter& writer) {
 }
 
 void Simulation::read_coupling(const run::RestartReader& reader) {
-  std::vector<fabric::Vector> acceleration(static_cast<std::size_t>(reader.size("body_acceleration")) / 3);
-  reader.read("body_acceleration", 0, {acceleration.front().data(), 3 * acceleration.size()});
-  _coupled->upload_air_acceleration(acceleration);
+  const auto values = [&](const char* name) {
+    std::vector<fabric::Vector> vectors(_sheets.positions.size());
+    reader.read(name, 0, {vectors.front().data(), 3 * vectors.size()});
+    return vectors;
+  };
+  _coupled->upload_cloth(values("sheet_position"), values("sheet_velocity"));
+  _coupled->upload_air_acceleration(values("air_acceleration"));
+  _record.read(reader);
   _coupled->set_block(
       {reader.number("block_dt"), reader.integer("block_substeps"), reader.integer("block_end")});
 }

@@ -140,6 +140,38 @@ void Simulation::check_forces(run::ResultDocument& result) {
   }
 }
 
+void Simulation::check_canopies(run::ResultDocument& result) {
+  const Verify& wanted = _scene.verify;
+  const auto check_mean = [&](const std::string& name, double value, const Target& target) {
+    result.metrics.set("canopies", name, value);
+    result.add_check(name, relative_deviation(value, target), target.tolerance);
+  };
+  for (std::size_t i = 0; i < wanted.drags.size(); ++i) {
+    const CanopyMean& drag = wanted.drags[i];
+    check_mean("drag_" + std::to_string(i),
+               _record.mean_drag(static_cast<std::size_t>(drag.canopy), drag.from, drag.to), drag.target);
+  }
+  for (std::size_t i = 0; i < wanted.terminal_speeds.size(); ++i) {
+    const CanopyMean& speed = wanted.terminal_speeds[i];
+    check_mean("terminal_speed_" + std::to_string(i),
+               _record.mean_speed(static_cast<std::size_t>(speed.canopy), speed.from, speed.to),
+               speed.target);
+  }
+  // A value passes between two bounds if its distance from their mean is at most half of theirs.
+  const auto check_bounds = [&](const std::string& name, double value, const std::array<double, 2>& bounds) {
+    result.metrics.set("canopies", name, value);
+    result.add_check(name, std::abs(value - 0.5 * (bounds[0] + bounds[1])), 0.5 * (bounds[1] - bounds[0]));
+  };
+  for (std::size_t i = 0; i < wanted.peak_forces.size(); ++i) {
+    const CanopyPeak& peak = wanted.peak_forces[i];
+    const auto [force, time] = _record.peak(static_cast<std::size_t>(peak.canopy));
+    const std::string name = "peak_force_" + std::to_string(i);
+    check_bounds(name, force, peak.force);
+    if (peak.time) check_bounds(name + "_time", time, *peak.time);
+  }
+  if (wanted.force_balance) result.add_check("force_balance", _record.balance(), *wanted.force_balance);
+}
+
 void Simulation::check_profiles(run::ResultDocument& result) {
   for (std::size_t i = 0; i < _scene.verify.profiles.size(); ++i) {
     const Profile& profile = _scene.verify.profiles[i];
@@ -176,6 +208,7 @@ ExitCode Simulation::verify(const run::RunDirectory*, run::ResultDocument& resul
                             !wanted.flow_rates.empty();
   if (needs_totals) check_totals(result);
   check_forces(result);
+  check_canopies(result);
   check_profiles(result);
   return ExitCode::ok;
 }

@@ -5,6 +5,7 @@
 #include <random>
 #include <stdexcept>
 
+#include "kernels/fabric/solver.hpp"
 #include "tests/support/coupled_case.hpp"
 #include "tests/support/profiled.hpp"
 
@@ -134,6 +135,56 @@ TEST(CoupledSolver, ReachesTargetsInEqualSteps) {
   EXPECT_EQ(run.solver->progress().step, 27);
   EXPECT_NEAR(run.solver->progress().last_dt, 0.0001, 1e-12);
   EXPECT_LE(run.solver->progress().dt_max, 0.004 * (1.0 + 1e-9));
+}
+
+TEST(CoupledSolver, NoStepBeforeATargetIsFarShorterThanOthers) {
+  CoupledCase c = flying_strip();
+  CoupledRun run(c);
+  // 32 steps of 0.004 s and a rest: two whole blocks end just short of the target.
+  EXPECT_EQ(run.solver->advance(32.001 * 0.004, -1, {}), flow::Stop::target);
+  EXPECT_EQ(run.solver->progress().step, 33);
+  EXPECT_GT(run.solver->progress().dt_min, 0.9 * 0.004);
+}
+
+TEST(CoupledSolver, ReportsTheForceOnTheAirStressAndElasticForces) {
+  CoupledCase c = flying_strip();
+  CoupledRun run(c);
+  ASSERT_TRUE(run.advance(10));
+  const std::size_t vertices = c.x.size();
+  std::vector<Vector> on_air(vertices), elastic(vertices), x(vertices), v(vertices);
+  run.solver->forces(on_air);
+  const std::array<double, 3> total = run.solver->total_force_on_air();
+  Vector sum{};
+  double magnitude = 0.0;
+  for (const Vector& force : on_air)
+    for (std::size_t axis = 0; axis < 3; ++axis) sum[axis] += force[axis], magnitude += std::abs(force[axis]);
+  EXPECT_GT(magnitude, 1e-3);
+  for (std::size_t axis = 0; axis < 3; ++axis) EXPECT_NEAR(total[axis], sum[axis], 1e-14 * magnitude);
+  // A solver of the cloth alone has the same forces and stresses at these positions.
+  run.solver->download_cloth(x, v);
+  fabric::Parameters cloth_only = c.p.fabric;
+  cloth_only.integrator = fabric::Integrator::symplectic_euler;
+  cloth_only.dt = 1e-4;
+  const auto cloth = fabric::create_solver(tested_backend, cloth_only);
+  cloth->upload(x, v);
+  std::vector<Vector> expected(vertices);
+  cloth->forces(expected);
+  run.solver->elastic_forces(elastic);
+  double largest = 0.0;
+  for (const Vector& force : expected) largest = std::max(largest, std::abs(force[0]));
+  EXPECT_GT(largest, 0.0);
+  EXPECT_LE(distance(elastic, expected), 1e-12 * largest);
+  std::vector<fabric::Stress> stress(c.p.fabric.mesh.triangles.size()), expected_stress(stress.size());
+  run.solver->cloth_stress(fabric::StressMeasure::cauchy, stress);
+  cloth->stress(fabric::StressMeasure::cauchy, expected_stress);
+  double largest_stress = 0.0;
+  for (std::size_t t = 0; t < stress.size(); ++t) {
+    largest_stress = std::max(largest_stress, expected_stress[t].von_mises());
+    EXPECT_NEAR(stress[t].von_mises(), expected_stress[t].von_mises(), 1e-12 * largest_stress);
+  }
+  EXPECT_GT(largest_stress, 0.0);
+  std::vector<Vector> few(vertices - 1);
+  EXPECT_THROW(run.solver->elastic_forces(few), std::invalid_argument);
 }
 
 TEST(CoupledSolver, StepSizeFollowsTheSpeedOfTheAir) {

@@ -1,0 +1,153 @@
+#include "miniapps/parachute/canopy/canopy_check.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "common/scene/read.hpp"
+#include "kernels/fabric/contact/features.hpp"
+#include "miniapps/parachute/scene/functions.hpp"
+
+namespace drogue::parachute_app {
+namespace {
+
+using fabric::Vector;
+using scene::contradict;
+using scene::real_text;
+using scene::Table;
+
+constexpr double most_canopy_vertices = 1048576.0;  // 2^20
+
+std::string name_of(std::size_t index) { return "canopy[" + std::to_string(index) + "]"; }
+
+/// Width of the cells along an axis, m.
+double cell_width(const flow::Parameters& p, std::size_t axis) {
+  return lattice_of(p, flow::StateField::pressure).spacing[axis];
+}
+
+void check_measures(const Table& root, const Canopy& canopy, const std::string& name) {
+  const double radius = 0.5 * canopy.diameter;
+  if (canopy.vent >= canopy.diameter)
+    contradict(root, name + ".vent",
+               name + ".vent = " + real_text(canopy.vent) + " m leaves nothing of a canopy of " +
+                   real_text(canopy.diameter) + " m diameter: it must be smaller");
+  if (canopy.lines.length <= radius)
+    contradict(root, name + ".lines.length",
+               name + ".lines.length = " + real_text(canopy.lines.length) +
+                   " m: the lines do not reach the payload from a skirt of " + real_text(radius) +
+                   " m radius; they must be longer");
+  const double least = std::sin(std::numbers::pi / canopy.gores);
+  if (canopy.shape == CanopyShape::partly_closed && canopy.closure <= least)
+    contradict(root, name + ".closure",
+               name + ".closure = " + real_text(canopy.closure) + ": the folds of " +
+                   std::to_string(canopy.gores) + " gores would meet at the axis; it must be larger than " +
+                   real_text(least));
+}
+
+void check_edges(const Table& root, const flow::Parameters& p, const Canopy& canopy,
+                 const std::string& name) {
+  double width = cell_width(p, 0);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (p.cells[axis] == 1)
+      contradict(root, name, name + ": the grid has one cell along " + axis_names[axis]);
+    width = std::min(width, cell_width(p, axis));
+  }
+  const std::string key = name + ".edge_length";
+  const double longest = largest_edge_in_cells * width;
+  if (canopy.edge_length > (1.0 + 1e-9) * longest)
+    contradict(root, key,
+               key + " = " + real_text(canopy.edge_length) +
+                   " m is too coarse: the cloth leaks on cells of " + real_text(width) + " m; at most " +
+                   real_text(longest) + " m");
+  // Without counting, which would take as long as there are rings.
+  const double edges = canopy.diameter / canopy.edge_length;
+  if (edges * edges > most_canopy_vertices)
+    contradict(root, key,
+               key + " = " + real_text(canopy.edge_length) + " m: the vertices are more than 2^20");
+}
+
+/// The forces of cloth act up to one cell beyond it.
+void check_inside(const Table& root, const flow::Parameters& p, const std::vector<Vector>& positions,
+                  const std::string& name) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (p.boundary[2 * axis].kind == flow::BoundaryKind::periodic) continue;
+    const auto [low, high] = std::ranges::minmax(positions, {}, [axis](const Vector& x) { return x[axis]; });
+    const double margin = cell_width(p, axis), least = p.low[axis] + margin, most = p.high[axis] - margin;
+    const double rounding = 1e-9 * (p.high[axis] - p.low[axis]);
+    if (low[axis] >= least - rounding && high[axis] <= most + rounding) continue;
+    contradict(root, name + ".centre",
+               name + " with its payload reaches from " + real_text(low[axis]) + " to " +
+                   real_text(high[axis]) + " m along " + axis_names[axis] +
+                   ", beyond the cells beside the sides of the domain: it must lie between " +
+                   real_text(least) + " and " + real_text(most) + " m");
+  }
+}
+
+/// Points of one cloth in the order of x.
+std::vector<Vector> sorted_by_x(std::vector<Vector> points) {
+  std::ranges::sort(points);
+  return points;
+}
+
+/// True if a point of each sheet lies within `distance`, m, of one of the other. The lists are in the order
+/// of x.
+bool are_near(const std::vector<Vector>& first, const std::vector<Vector>& second, double distance) {
+  auto begin = second.begin();
+  for (const Vector& a : first) {
+    while (begin != second.end() && (*begin)[0] < a[0] - distance) ++begin;
+    for (auto b = begin; b != second.end() && (*b)[0] <= a[0] + distance; ++b)
+      if (std::hypot(a[0] - (*b)[0], a[1] - (*b)[1], a[2] - (*b)[2]) < distance) return true;
+  }
+  return false;
+}
+
+void check_contact(const Table& root, const FlowScene& scene) {
+  if (!scene.contact) return;
+  const double height = fabric::shortest_altitude(make_all_sheets(scene.bodies, scene.canopies).fabric.mesh);
+  if (scene.thickness < height) return;
+  contradict(root, "coupling.thickness",
+             "coupling.thickness = " + real_text(scene.thickness) +
+                 " m must be less than the least height of a triangle, " + real_text(height) +
+                 " m, with contact");
+}
+
+}  // namespace
+
+void check_canopies(const Table& root, const FlowScene& scene) {
+  if (scene.canopies.empty()) return;
+  const flow::Parameters& p = scene.parameters;
+  std::vector<std::vector<Vector>> cloths;
+  for (std::size_t i = 0; i < scene.canopies.size(); ++i) {
+    const Canopy& canopy = scene.canopies[i];
+    const std::string name = name_of(i);
+    check_measures(root, canopy, name);
+    check_edges(root, p, canopy, name);
+    const Canopy& first = scene.canopies.front();
+    if (canopy.membrane_modulus != first.membrane_modulus)
+      contradict(root, name + ".membrane_modulus",
+                 name + ".membrane_modulus differs from that of canopy[0]; all canopies have the same one");
+    if (canopy.poisson != first.poisson)
+      contradict(root, name + ".poisson",
+                 name + ".poisson differs from that of canopy[0]; all canopies have the same one");
+    CanopyMesh mesh = make_canopy(canopy);
+    check_inside(root, p, mesh.positions, name);
+    mesh.positions.resize(mesh.cloth_vertices);
+    cloths.push_back(sorted_by_x(std::move(mesh.positions)));
+    for (std::size_t other = 0; other < i; ++other) {
+      // Where triangles cross, vertices of both lie within an edge of each other.
+      const double distance = canopy.edge_length + scene.canopies[other].edge_length;
+      if (are_near(cloths[other], cloths[i], distance))
+        contradict(root, name + ".centre",
+                   name + " overlaps " + name_of(other) + " at the start: they come closer than " +
+                       real_text(distance) + " m, the sum of their edge lengths");
+    }
+  }
+  check_contact(root, scene);
+  if (p.fixed_dt == 0.0 && p.max_dt == 0.0)
+    contradict(root, "run",
+               "missing key \"run.max_dt\" (needed with a [[canopy]] and dt = \"auto\"): fluid at rest does "
+               "not limit dt");
+}
+
+}  // namespace drogue::parachute_app

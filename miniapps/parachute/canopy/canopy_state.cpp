@@ -1,0 +1,112 @@
+#include "miniapps/parachute/canopy/canopy_state.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace drogue::parachute_app {
+namespace {
+
+using fabric::Vector;
+
+constexpr int shadow_squares = 256;  // along the larger extent
+
+double distance_between(const Vector& a, const Vector& b) {
+  return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+}
+
+/// Squares in the plane of x and y that a shadow covers.
+class Shadow {
+ public:
+  Shadow(const Vector& low, double side)
+      : _low(low), _side(side), _covered(static_cast<std::size_t>(shadow_squares) * shadow_squares, 0) {}
+
+  void cover(const Vector& a, const Vector& b, const Vector& c) {
+    const auto [first_row, last_row] = range(1, a, b, c);
+    const auto [first, last] = range(0, a, b, c);
+    for (int row = first_row; row <= last_row; ++row)
+      for (int column = first; column <= last; ++column) {
+        const Vector at = {_low[0] + (column + 0.5) * _side, _low[1] + (row + 0.5) * _side, 0.0};
+        const double u = turn(a, b, at), v = turn(b, c, at), w = turn(c, a, at);
+        if ((u >= 0.0 && v >= 0.0 && w >= 0.0) || (u <= 0.0 && v <= 0.0 && w <= 0.0))
+          _covered[static_cast<std::size_t>(row) * shadow_squares + static_cast<std::size_t>(column)] = 1;
+      }
+  }
+
+  [[nodiscard]] double area() const {
+    return _side * _side * static_cast<double>(std::ranges::count(_covered, 1));
+  }
+
+ private:
+  /// Doubled area of the triangle from the line a, b to a point, m^2.
+  static double turn(const Vector& a, const Vector& b, const Vector& at) {
+    return (b[0] - a[0]) * (at[1] - a[1]) - (b[1] - a[1]) * (at[0] - a[0]);
+  }
+  [[nodiscard]] std::pair<int, int> range(std::size_t axis, const Vector& a, const Vector& b,
+                                          const Vector& c) const {
+    const auto [low, high] = std::minmax({a[axis], b[axis], c[axis]});
+    const auto square = [&](double x) {
+      return std::clamp(static_cast<int>((x - _low[axis]) / _side), 0, shadow_squares - 1);
+    };
+    return {square(low), square(high)};
+  }
+
+  Vector _low;
+  double _side;
+  std::vector<char> _covered;
+};
+
+}  // namespace
+
+double projected_area(std::span<const Vector> positions, std::span<const std::array<int, 3>> triangles) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  Vector low = {infinity, infinity, 0.0}, high = {-infinity, -infinity, 0.0};
+  const auto at = [&](int i) -> const Vector& { return positions[static_cast<std::size_t>(i)]; };
+  for (const auto& triangle : triangles)
+    for (const int i : triangle)
+      for (std::size_t axis = 0; axis < 2; ++axis) {
+        low[axis] = std::min(low[axis], at(i)[axis]);
+        high[axis] = std::max(high[axis], at(i)[axis]);
+      }
+  const double extent = std::max(high[0] - low[0], high[1] - low[1]);
+  if (!(extent > 0.0 && std::isfinite(extent))) return 0.0;
+  Shadow shadow(low, extent / shadow_squares);
+  for (const auto& [a, b, c] : triangles) shadow.cover(at(a), at(b), at(c));
+  return shadow.area();
+}
+
+CanopyMeasures measure(const CanopyRows& rows, const fabric::Mesh& mesh, const SheetState& state) {
+  CanopyMeasures result;
+  for (std::size_t i = rows.begin; i < rows.payload; ++i)
+    for (std::size_t axis = 0; axis < 3; ++axis) result.force[axis] -= state.on_air[i][axis];
+  // The payload has no forces but those of its lines.
+  result.line_force = state.elastic[rows.payload];
+  result.payload = state.positions[rows.payload];
+  result.velocity = state.velocities[rows.payload];
+  const std::span triangles =
+      std::span(mesh.triangles).subspan(rows.triangles_begin, rows.triangles_end - rows.triangles_begin);
+  result.projected_area = projected_area(state.positions, triangles);
+  for (const auto& triangle : triangles)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto a = static_cast<std::size_t>(triangle[k]),
+                 b = static_cast<std::size_t>(triangle[(k + 1) % 3]);
+      const double strain = distance_between(state.positions[a], state.positions[b]) /
+                                distance_between(mesh.rest[a], mesh.rest[b]) -
+                            1.0;
+      result.largest_strain = std::max(result.largest_strain, strain);
+    }
+  return result;
+}
+
+double force_balance(const Vector& total_on_air, std::span<const Vector> on_air) {
+  Vector difference = total_on_air;
+  double magnitude = 0.0;
+  for (const Vector& force : on_air) {
+    for (std::size_t axis = 0; axis < 3; ++axis) difference[axis] -= force[axis];
+    magnitude += std::hypot(force[0], force[1], force[2]);
+  }
+  const double sum = std::hypot(difference[0], difference[1], difference[2]);
+  return sum == 0.0 ? 0.0 : sum / magnitude;
+}
+
+}  // namespace drogue::parachute_app

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <span>
+
+#include "miniapps/parachute/canopy/canopy.hpp"
+
+namespace drogue::parachute_app {
+
+/// State of all sheets at one time, one vector per vertex.
+struct SheetState {
+  std::vector<fabric::Vector> positions;   ///< m
+  std::vector<fabric::Vector> velocities;  ///< m/s
+  std::vector<fabric::Vector> on_air;      ///< forces on the air in the last step, N
+  std::vector<fabric::Vector> elastic;     ///< elastic forces, N
+};
+
+/// Measures of a canopy.
+struct CanopyMeasures {
+  fabric::Vector force{};       ///< of the air on the cloth, N
+  fabric::Vector line_force{};  ///< of the lines on the payload, N
+  fabric::Vector payload{};     ///< m
+  fabric::Vector velocity{};    ///< of the payload, m/s
+  double projected_area = 0.0;  ///< on a plane normal to z, m^2
+  double largest_strain = 0.0;  ///< of an edge of the cloth; 0 if all are slack
+};
+
+/// Area of the shadow that triangles cast along z, m^2, counted once where they overlap: by the centres of
+/// squares whose side is 1/256 of the larger extent. Throws only std::bad_alloc.
+[[nodiscard]] double projected_area(std::span<const fabric::Vector> positions,
+                                    std::span<const std::array<int, 3>> triangles);
+
+/// Measures of a canopy in the mesh of all sheets. Throws only std::bad_alloc.
+[[nodiscard]] CanopyMeasures measure(const CanopyRows& rows, const fabric::Mesh& mesh,
+                                     const SheetState& state);
+
+/// Magnitude of the sum of a total force on the air, N, and the reactions to the forces of the vertices on
+/// it, relative to the sum of the magnitudes of these. Does not throw.
+[[nodiscard]] double force_balance(const fabric::Vector& total_on_air,
+                                   std::span<const fabric::Vector> on_air);
+
+}  // namespace drogue::parachute_app

@@ -1,0 +1,188 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <string>
+
+#include "kernels/mesh/edges.hpp"
+#include "miniapps/parachute/scene/functions.hpp"
+#include "miniapps/parachute/simulation/simulation.hpp"
+
+// Bodies and canopies in history.csv, fields.h5 and messages.
+
+namespace drogue::parachute_app {
+namespace {
+
+using fabric::Vector;
+
+/// Rows of a mesh dataset, each with n integers.
+template <std::size_t n>
+run::IntegerSource source_of(const std::vector<std::array<int, n>>& parts) {
+  return [&parts](std::uint64_t first, std::span<std::int64_t> values) {
+    for (std::size_t k = 0; k < values.size(); ++k) values[k] = parts[(first + k) / n][(first + k) % n];
+  };
+}
+
+/// Elements after the bodies, whose vertices are left out.
+template <std::size_t n>
+std::vector<std::array<int, n>> of_canopies(const std::vector<std::array<int, n>>& parts, int first_vertex) {
+  std::vector<std::array<int, n>> result;
+  for (std::array<int, n> part : parts) {
+    if (part[0] < first_vertex) continue;
+    for (int& i : part) i -= first_vertex;
+    result.push_back(part);
+  }
+  return result;
+}
+
+}  // namespace
+
+SheetState Simulation::sheet_state() {
+  const std::size_t vertices = _sheets.positions.size();
+  SheetState state;
+  for (auto* values : {&state.positions, &state.velocities, &state.on_air, &state.elastic})
+    values->resize(vertices);
+  _coupled->download_cloth(state.positions, state.velocities);
+  _coupled->forces(state.on_air);
+  _coupled->elastic_forces(state.elastic);
+  return state;
+}
+
+/// Forces of the fluid on the bodies in the last step, N.
+std::vector<Vector> Simulation::body_forces() {
+  std::vector<Vector> sums(_scene.bodies.size(), Vector{});
+  if (sums.empty()) return sums;
+  std::vector<Vector> on_fluid(_sheets.positions.size());
+  _coupled->forces(on_fluid);
+  auto force = on_fluid.begin();
+  for (std::size_t i = 0; i < sums.size(); ++i)
+    for (std::size_t k = 0; k < _scene.bodies[i].vertices(); ++k, ++force)
+      for (std::size_t axis = 0; axis < 3; ++axis) sums[i][axis] -= (*force)[axis];
+  return sums;
+}
+
+void Simulation::append_canopy_columns(std::vector<run::Column>& columns) const {
+  if (_scene.canopies.empty()) return;
+  for (std::size_t i = 0; i < _scene.canopies.size(); ++i) {
+    const std::string name = "canopy_" + std::to_string(i) + "_";
+    const auto add_vector = [&](const char* quantity, const char* unit) {
+      for (const char* axis : axis_names) columns.push_back({name + quantity + "_" + axis, unit});
+    };
+    add_vector("force", "N");
+    add_vector("line_force", "N");
+    add_vector("payload", "m");
+    add_vector("payload_velocity", "m/s");
+    columns.push_back({name + "projected_area", "m^2"});
+    columns.push_back({name + "largest_strain", ""});
+  }
+  columns.insert(columns.end(),
+                 {{"cloth_kinetic_energy", "J"}, {"cloth_elastic_energy", "J"}, {"force_balance", ""}});
+}
+
+void Simulation::append_canopy_values(framework::HistoryRow& row) {
+  if (_scene.canopies.empty()) return;
+  const SheetState state = sheet_state();
+  std::vector<CanopyMeasures> canopies;
+  for (const CanopyRows& rows : _sheets.canopies) {
+    const CanopyMeasures& one = canopies.emplace_back(measure(rows, _sheets.fabric.mesh, state));
+    for (const Vector& vector : {one.force, one.line_force, one.payload, one.velocity})
+      row.values.insert(row.values.end(), vector.begin(), vector.end());
+    row.values.insert(row.values.end(), {one.projected_area, one.largest_strain});
+  }
+  const double balance = force_balance(_coupled->total_force_on_air(), state.on_air);
+  const fabric::Totals totals = _coupled->cloth_totals();
+  row.values.insert(row.values.end(), {totals.kinetic, totals.elastic, balance});
+  _record.add(row.time, canopies, balance);
+}
+
+run::DatasetSpec Simulation::canopy_field_spec(const std::string& name) const {
+  const std::size_t bodies = vertices_of(_scene.bodies);
+  if (name == "position")
+    return {name,    {_sheets.positions.size() - bodies, 3}, "m", "vertex", "positions of the vertices",
+            "canopy"};
+  const std::size_t triangles =
+      _sheets.fabric.mesh.triangles.size() - _sheets.canopies.front().triangles_begin;
+  return {
+      name,    {triangles}, "N/m", "face", "von Mises stress of the triangles, Cauchy stress times thickness",
+      "canopy"};
+}
+
+void Simulation::write_canopy_mesh(run::FieldsWriter& fields) const {
+  const fabric::Mesh& mesh = _sheets.fabric.mesh;
+  const std::size_t bodies = vertices_of(_scene.bodies);
+  const auto first = static_cast<int>(bodies);
+  const auto triangles = of_canopies(mesh.triangles, first);
+  const auto edges = of_canopies(mesh::edges_of(mesh), first), strings = of_canopies(mesh.lines, first);
+  const std::string grid = "canopy";
+  fields.add_mesh({"triangles", {triangles.size(), 3}, "1", "face", "vertices of every triangle", grid},
+                  source_of(triangles));
+  fields.add_mesh({"edges", {edges.size(), 2}, "1", "edge", "vertices of every edge and line", grid},
+                  source_of(edges));
+  fields.add_mesh(
+      {"strings", {strings.size(), 2}, "1", "edge", "vertices of every reinforcement and line", grid},
+      source_of(strings));
+  // Add `vertices` last: it completes fields.xdmf.
+  fields.add_mesh({"vertices", {mesh.rest.size() - bodies, 3}, "m", "vertex", "vertices at rest", grid},
+                  [&](std::uint64_t from, std::span<double> values) {
+                    for (std::size_t k = 0; k < values.size(); ++k)
+                      values[k] = mesh.rest[bodies + (from + k) / 3][(from + k) % 3];
+                  });
+}
+
+void Simulation::sample_canopy_field(const std::string& name, std::vector<double>& values) {
+  if (name == "position") {
+    std::vector<Vector> positions(_sheets.positions.size()), velocities(positions.size());
+    _coupled->download_cloth(positions, velocities);
+    const std::size_t bodies = vertices_of(_scene.bodies);
+    for (std::size_t k = 0; k < values.size(); ++k) values[k] = positions[bodies + k / 3][k % 3];
+    return;
+  }
+  std::vector<fabric::Stress> stress(_sheets.fabric.mesh.triangles.size());
+  _coupled->cloth_stress(fabric::StressMeasure::cauchy, stress);
+  const std::size_t first = _sheets.canopies.front().triangles_begin;
+  for (std::size_t k = 0; k < values.size(); ++k) values[k] = stress[first + k].von_mises();
+}
+
+std::string Simulation::sheet_failure_text(coupling::FailureReason reason) {
+  std::ostringstream text;
+  text.precision(9);
+  const double time = now().time;
+  if (reason == coupling::FailureReason::not_spread) {
+    text << "a force on a sheet is not finite at t = " << time << " s";
+    return text.str();
+  }
+  if (reason == coupling::FailureReason::cloth) {
+    text << "the positions of the cloth are not finite"
+         << (_scene.contact ? ", or contact could not prevent an intersection," : "") << " after t = " << time
+         << " s; a smaller run.cfl may save the run";
+    return text.str();
+  }
+  // The vertex that is closest to a side, in cells.
+  std::vector<Vector> positions(_sheets.positions.size()), velocities(positions.size());
+  _coupled->download_cloth(positions, velocities);
+  const flow::Parameters& p = _scene.parameters;
+  const auto spacing = lattice_of(p, flow::StateField::pressure).spacing;
+  double least = std::numeric_limits<double>::infinity();
+  std::size_t vertex = 0, closest = 0;
+  for (std::size_t i = 0; i < positions.size(); ++i)
+    for (std::size_t side = 0; side < 6; ++side) {
+      const std::size_t axis = side / 2;
+      if (p.cells[axis] == 1 || p.boundary[side].kind == flow::BoundaryKind::periodic) continue;
+      const double distance =
+          (side % 2 == 0 ? positions[i][axis] - p.low[axis] : p.high[axis] - positions[i][axis]) /
+          spacing[axis];
+      if (distance < least) least = distance, vertex = i, closest = side;
+    }
+  for (std::size_t i = 0; i < _sheets.canopies.size(); ++i) {
+    const CanopyRows& rows = _sheets.canopies[i];
+    if (vertex < rows.begin || vertex > rows.payload) continue;
+    text << "canopy[" << i
+         << "] leaves the domain: " << (vertex == rows.payload ? "its payload" : "its cloth") << " at ("
+         << positions[vertex][0] << ", " << positions[vertex][1] << ", " << positions[vertex][2]
+         << ") m comes closer than a cell to the side " << side_names[closest] << " after t = " << time
+         << " s; a larger grid.domain or a shorter run.end_time may save the run";
+  }
+  return text.str();
+}
+
+}  // namespace drogue::parachute_app

@@ -1,0 +1,78 @@
+#include "miniapps/parachute/verify/canopy_record.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include "common/run/statistics.hpp"
+#include "miniapps/parachute/scene/functions.hpp"
+
+namespace drogue::parachute_app {
+namespace {
+
+using fabric::Vector;
+
+double length_of(const Vector& v) { return std::hypot(v[0], v[1], v[2]); }
+
+}  // namespace
+
+CanopyRecord::CanopyRecord(const FlowScene& scene) : _scene(scene), _columns(2 + 3 * scene.canopies.size()) {
+  if (scene.canopies.empty()) return;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    _stream[axis] = SpaceTimeFunction(scene.velocity[axis]).constant().value_or(0.0);
+}
+
+void CanopyRecord::add(double time, const std::vector<CanopyMeasures>& canopies, double balance) {
+  if (!_values.empty() && time <= at(rows() - 1, 0)) return;
+  _values.insert(_values.end(), {time, balance});
+  for (std::size_t i = 0; i < canopies.size(); ++i) {
+    const CanopyMeasures& canopy = canopies[i];
+    Vector u = _stream;
+    double along = 0.0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      u[axis] -= canopy.velocity[axis];
+      along += canopy.force[axis] * u[axis];
+    }
+    const double speed = length_of(u), pressure = 0.5 * _scene.parameters.density * speed * speed;
+    const double drag = along == 0.0 ? 0.0 : along / (speed * pressure * _scene.canopies[i].nominal_area());
+    _values.insert(_values.end(), {drag, speed, length_of(canopy.line_force)});
+  }
+}
+
+double CanopyRecord::mean(std::size_t column, double from, double to) const {
+  double integral = 0.0, first = std::numeric_limits<double>::quiet_NaN(), last = first;
+  for (std::size_t row = 0; row < rows(); ++row) {
+    const double time = at(row, 0);
+    if (time < from || time > to) continue;
+    if (std::isnan(first)) first = time;
+    if (!std::isnan(last)) integral += 0.5 * (time - last) * (at(row - 1, column) + at(row, column));
+    last = time;
+  }
+  return integral / (last - first);
+}
+
+CanopyRecord::Peak CanopyRecord::peak(std::size_t canopy) const {
+  Peak largest;
+  for (std::size_t row = 0; row < rows(); ++row)
+    if (const double force = at(row, 4 + 3 * canopy); force > largest.force) largest = {force, at(row, 0)};
+  return largest;
+}
+
+double CanopyRecord::balance() const {
+  double largest = 0.0;
+  for (std::size_t row = 0; row < rows(); ++row) largest = run::maximum_or_nan(largest, at(row, 1));
+  return largest;
+}
+
+void CanopyRecord::write(run::RestartWriter& writer) const {
+  writer.number("canopy_rows", static_cast<double>(rows()));
+  if (_values.empty()) return;
+  writer.array("canopy_record", _values.size());
+  writer.write("canopy_record", 0, _values);
+}
+
+void CanopyRecord::read(const run::RestartReader& reader) {
+  _values.resize(static_cast<std::size_t>(reader.number("canopy_rows")) * _columns);
+  if (!_values.empty()) reader.read("canopy_record", 0, _values);
+}
+
+}  // namespace drogue::parachute_app

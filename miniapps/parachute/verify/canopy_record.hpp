@@ -1,0 +1,65 @@
+#pragma once
+
+#include <vector>
+
+#include "common/run/restart/restart_file.hpp"
+#include "miniapps/parachute/canopy/canopy_state.hpp"
+#include "miniapps/parachute/scene/scene.hpp"
+
+namespace drogue::parachute_app {
+
+/// Forces and speeds of the canopies in all rows of a run, from its first start on. A run that continues has
+/// them from its restart file, also for other intervals of time in [verify].
+class CanopyRecord {
+ public:
+  /// Force of the lines on a payload and the time of its row.
+  struct Peak {
+    double force = 0.0;  ///< N
+    double time = 0.0;   ///< s
+  };
+
+  /// Keeps a reference to `scene`.
+  explicit CanopyRecord(const FlowScene& scene);
+
+  /// Adds a row at a time, s, unless there is one of the same or a later time. `balance`: `force_balance`.
+  void add(double time, const std::vector<CanopyMeasures>& canopies, double balance);
+
+  /// Mean drag coefficient 2 F / (rho U^2 S0) of the rows in [from, to], s: trapezoidal rule. F is the force
+  /// along U, the velocity of the fluid far upstream relative to the payload; S0 the nominal area. NaN with
+  /// fewer than two rows. Does not throw.
+  [[nodiscard]] double mean_drag(std::size_t canopy, double from, double to) const {
+    return mean(2 + 3 * canopy, from, to);
+  }
+
+  /// Mean magnitude of U, m/s, likewise.
+  [[nodiscard]] double mean_speed(std::size_t canopy, double from, double to) const {
+    return mean(3 + 3 * canopy, from, to);
+  }
+
+  /// Largest force of the lines on a payload. Does not throw.
+  [[nodiscard]] Peak peak(std::size_t canopy) const;
+
+  /// Largest `force_balance`. Does not throw.
+  [[nodiscard]] double balance() const;
+
+  /// Writes all rows. Throws `Failure` (io_error).
+  void write(run::RestartWriter& writer) const;
+
+  /// Reads all rows. Throws `Failure` (io_error).
+  void read(const run::RestartReader& reader);
+
+ private:
+  [[nodiscard]] std::size_t rows() const { return _values.size() / _columns; }
+  [[nodiscard]] double at(std::size_t row, std::size_t column) const {
+    return _values[row * _columns + column];
+  }
+  [[nodiscard]] double mean(std::size_t column, double from, double to) const;
+
+  const FlowScene& _scene;
+  fabric::Vector _stream{};  ///< velocity of the fluid far upstream, m/s
+  std::size_t _columns;
+  /// Row by row: time, balance; then drag coefficient, speed and line force of each canopy.
+  std::vector<double> _values;
+};
+
+}  // namespace drogue::parachute_app

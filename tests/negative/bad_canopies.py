@@ -1,0 +1,118 @@
+"""A valid scene of drogue-parachute with two canopies, and invalid variants of it."""
+
+GOOD = """\
+app = "parachute"
+[fluid]
+velocity = [0, 0, 5]
+[grid]
+cells = [40, 20, 24]
+domain = [[-2, 2], [-1, 1], [-1.4, 1]]
+boundary = { x = "slip", y = "slip", z = ["inflow", "outflow"] }
+[[canopy]]
+kind = "flat-circular"
+diameter = 1.2
+gores = 8
+vent = 0.2
+cloth = "custom"
+area_density = 0.04
+edge_length = 0.07
+shape = "partly-closed"
+closure = 0.6
+angle = 0
+centre = [-1, 0, 0]
+lines = { length = 1.1, stiffness = 100, line_density = 0.001 }
+payload = { mass = 0.5, fixed = true }
+porosity = { law = "forchheimer", alpha = 10, beta = 1 }
+reinforcement = { seams = 10, skirt = 10, vent = 10 }
+[[canopy]]
+kind = "flat-circular"
+diameter = 1.2
+gores = 8
+edge_length = 0.07
+centre = [1, 0, 0]
+lines = { length = 1.1 }
+[coupling]
+gravity = [0, 0, -9.81]
+[run]
+end_time = 0.1
+max_dt = 0.01
+[output]
+fields = ["position", "von_mises"]
+[verify]
+drag = [{ canopy = 0, from = 0.05, to = 0.1, value = 1, tolerance = 1 }]
+terminal_speed = [{ canopy = 0, from = 0.05, to = 0.1, value = 5, tolerance = 1 }]
+peak_force = [{ canopy = 1, force = [1, 100], time = [0.01, 0.1] }]
+force_balance = 1e-14
+"""
+
+# Replaced line, its new text, the line in the error, and words of the message.
+BAD_LINES = [
+    # unknown keys and names
+    (8, "[[canop]]", 8, ['"canop"', 'did you mean "canopy"?']),
+    (9, 'kind = "flat"', 9, ["canopy[0].kind", "flat-circular"]),
+    (9, 'kynd = "flat-circular"', 9, ['"canopy[0].kynd"', "kind"]),
+    (13, 'cloth = "nylon"', 13, ["canopy[0].cloth", "mil-c-7020-1"]),
+    (16, 'shape = "angled-30"', 16, ["canopy[0].shape", "angled-15"]),
+    (20, "lines = { lenght = 1.1 }", 20, ['"canopy[0].lines.lenght"', "length"]),
+    (21, "payload = { mas = 1 }", 21, ['"canopy[0].payload.mas"', "mass"]),
+    (22, 'porosity = { law = "darcy" }', 22, ["canopy[0].porosity.law", "forchheimer"]),
+    (23, "reinforcement = { seam = 1 }", 23, ['"canopy[0].reinforcement.seam"', "seams"]),
+    # missing keys
+    (9, "", 8, ['missing key "canopy[0].kind"']),
+    (15, "", 8, ['missing key "canopy[0].edge_length"']),
+    (35, "", 33, ['missing key "run.max_dt"', "[[canopy]]"]),
+    # types and ranges
+    (8, "[canopy]", 24, ["canopy", "array"]),
+    (10, "diameter = 0", 10, ["canopy[0].diameter", "> 0"]),
+    (11, "gores = 2", 11, ["canopy[0].gores", "3 .. 1000"]),
+    (11, "gores = 8.5", 11, ["canopy[0].gores", "integer"]),
+    (12, "vent = -0.1", 12, ["canopy[0].vent", ">= 0"]),
+    (14, "area_density = 0", 14, ["canopy[0].area_density", "> 0"]),
+    (15, "edge_length = -0.07", 15, ["canopy[0].edge_length", "> 0"]),
+    (17, "closure = 1.5", 17, ["canopy[0].closure", "<= 1"]),
+    (18, "angle = 270", 18, ["canopy[0].angle", "-180 .. 180"]),
+    (19, "centre = [-1, 0]", 19, ["canopy[0].centre", "array of 3"]),
+    (20, "lines = { length = 1.1, stiffness = 0 }", 20, ["canopy[0].lines.stiffness", "> 0"]),
+    (20, "lines = { length = 1.1, line_density = -1 }", 20, ["canopy[0].lines.line_density", ">= 0"]),
+    (21, "payload = { mass = 0 }", 21, ["canopy[0].payload.mass", "> 0"]),
+    (21, 'payload = { fixed = "yes" }', 21, ["canopy[0].payload.fixed"]),
+    (22, 'porosity = { law = "forchheimer", alpha = -10 }', 22, ["canopy[0].porosity.alpha", ">= 0"]),
+    (22, 'porosity = { law = "forchheimer", beta = -1 }', 22, ["canopy[0].porosity.beta", ">= 0"]),
+    (23, "reinforcement = { seams = -1 }", 23, ["canopy[0].reinforcement.seams", ">= 0"]),
+    (32, "contact = 1", 32, ["coupling.contact"]),
+    (32, "contact = true\nthickness = 0", 33, ["coupling.thickness", "> 0"]),
+    (32, "contact = true\nthickness = 0.1", 33, ["coupling.thickness = 0.1", "height of a triangle"]),
+    (32, "thickness = 0.01", 32, ["coupling.thickness", "contact = true"]),
+    (32, "gravity = 9.81", 32, ["coupling.gravity", "array of 3"]),
+    # contradictions
+    (12, "vent = 1.2", 12, ["canopy[0].vent = 1.2", "1.2", "smaller"]),
+    (13, 'cloth = "mil-c-7020-1"', 14, ["canopy[0].area_density", "custom"]),
+    (15, "edge_length = 0.08", 15, ["canopy[0].edge_length = 0.08", "too coarse", "0.0714"]),
+    (15, "edge_length = 1e-4", 15, ["canopy[0].edge_length", "2^20"]),
+    (16, 'shape = "flat"', 17, ["canopy[0].closure", "partly-closed"]),
+    (16, 'shape = "angled-15"', 17, ["canopy[0].closure", "partly-closed"]),
+    (17, "closure = 0.3", 17, ["canopy[0].closure = 0.3", "8 gores", "0.38"]),
+    (19, "centre = [-1.7, 0, 0]", 19, ["canopy[0]", "along x", "between -1.9 and 1.9"]),
+    (19, "centre = [-1, 0, 0.6]", 19, ["canopy[0]", "along z", "0.9"]),
+    (19, "centre = [-1, 0, -0.5]", 19, ["canopy[0] with its payload", "along z", "-1.2999"]),
+    (19, "centre = [0.4, 0, 0]", 29, ["canopy[1] overlaps canopy[0]"]),
+    (19, "centre = [1, 0, 0]", 29, ["canopy[1] overlaps canopy[0]"]),
+    (20, "lines = { length = 0.6 }", 20, ["canopy[0].lines.length = 0.6", "payload", "0.6 m radius"]),
+    (28, "edge_length = 0.07\nmembrane_modulus = 3e4", 29, ["canopy[1].membrane_modulus", "canopy[0]"]),
+    (28, "edge_length = 0.07\npoisson = 0.2", 29, ["canopy[1].poisson", "canopy[0]"]),
+    # checks
+    (39, "drag = [{ canopy = 2, from = 0.05, to = 0.1, value = 1, tolerance = 1 }]", 39,
+     ["verify.drag[0].canopy = 2", "number of canopies is 2"]),
+    (39, "drag = [{ from = 0.05, to = 0.2, value = 1, tolerance = 1 }]", 39, ["verify.drag[0].to", "run.end_time"]),
+    (39, "drag = [{ from = 0.05, to = 0.05, value = 1, tolerance = 1 }]", 39, ["verify.drag[0].to", "from"]),
+    (39, "drag = [{ from = 0.05, to = 0.1, value = 0, tolerance = 1 }]", 39, ["verify.drag[0].value", "relative"]),
+    (3, 'velocity = [0, 0, "5+t"]', 39, ["verify.drag[0]", "fluid.velocity"]),
+    (40, "terminal_speed = [{ canopy = 2, from = 0, to = 0.1, value = 1, tolerance = 1 }]", 40,
+     ["verify.terminal_speed[0].canopy = 2"]),
+    (41, "peak_force = [{ canopy = 2, force = [1, 100] }]", 41, ["verify.peak_force[0].canopy = 2"]),
+    (41, "peak_force = [{ canopy = 1, force = [100, 1] }]", 41, ["verify.peak_force[0].force"]),
+    (41, "peak_force = [{ canopy = 1, force = [1, 100], time = [0.1, 0.01] }]", 41,
+     ["verify.peak_force[0].time", "smaller"]),
+    (37, 'fields = ["positions"]', 37, ["output.fields", "position"]),
+    (37, 'fields = ["position"]\nhistory_every = 0', 40, ["verify.drag[0]", "history_every"]),
+]

@@ -1,0 +1,119 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "miniapps/parachute/canopy/canopy_state.hpp"
+#include "miniapps/parachute/verify/canopy_record.hpp"
+
+// Measures of canopies, and their record over a run.
+
+namespace drogue::parachute_app {
+namespace {
+
+using fabric::Vector;
+
+SheetState state_of(const Sheets& sheets) {
+  SheetState state;
+  state.positions = sheets.positions;
+  state.velocities.resize(sheets.positions.size());
+  state.on_air.resize(sheets.positions.size());
+  state.elastic.resize(sheets.positions.size());
+  return state;
+}
+
+TEST(CanopyState, ProjectedAreaIsThatOfTheShadow) {
+  Canopy canopy;
+  canopy.edge_length = 0.2;
+  for (const double angle : {0.0, 60.0, 180.0}) {
+    canopy.angle = angle;
+    const Sheets sheets = make_all_sheets({}, {canopy});
+    const double exact = 0.25 * std::numbers::pi * (8.534 * 8.534 - 0.457 * 0.457) *
+                         std::abs(std::cos(angle * std::numbers::pi / 180.0));
+    EXPECT_NEAR(projected_area(sheets.positions, sheets.fabric.mesh.triangles) / exact, 1.0, 0.01) << angle;
+  }
+  // Two layers cast one shadow.
+  const std::vector<Vector> points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 5}, {1, 0, 5}, {0, 1, 5}};
+  const std::vector<std::array<int, 3>> layers = {{0, 1, 2}, {5, 4, 3}};
+  EXPECT_NEAR(projected_area(points, layers), 0.5, 0.01);
+  EXPECT_EQ(projected_area(points, {}), 0.0);
+}
+
+TEST(CanopyState, MeasuresBelongToTheirCanopy) {
+  Canopy first, second;
+  first.edge_length = second.edge_length = 0.5;
+  second.centre = {20.0, 0.0, 0.0};
+  const Sheets sheets = make_all_sheets({}, {first, second});
+  SheetState state = state_of(sheets);
+  const CanopyRows& rows = sheets.canopies[1];
+  for (Vector& force : state.on_air) force = {1.0, 0.0, -2.0};
+  state.elastic[rows.payload] = {0.0, 3.0, 4.0};
+  state.velocities[rows.payload] = {0.0, 0.0, -5.0};
+  for (std::size_t i = rows.begin; i < rows.payload; ++i)
+    for (std::size_t axis = 0; axis < 2; ++axis)
+      state.positions[i][axis] += 0.1 * (state.positions[i][axis] - second.centre[axis]);
+  const CanopyMeasures one = measure(sheets.canopies[0], sheets.fabric.mesh, state),
+                       other = measure(rows, sheets.fabric.mesh, state);
+  EXPECT_EQ(one.line_force, (Vector{}));
+  EXPECT_NEAR(one.largest_strain, 0.0, 1e-12);
+  EXPECT_EQ(other.line_force, (Vector{0.0, 3.0, 4.0}));
+  EXPECT_EQ(other.velocity, (Vector{0.0, 0.0, -5.0}));
+  EXPECT_NEAR(other.largest_strain, 0.1, 1e-12);
+  const auto cloth = static_cast<double>(rows.payload - rows.begin);
+  EXPECT_EQ(other.force, (Vector{-cloth, 0.0, 2.0 * cloth}));
+  EXPECT_NEAR(other.projected_area / one.projected_area, 1.21, 0.02);
+}
+
+TEST(CanopyState, ForceBalanceComparesTotalAndSum) {
+  const std::vector<Vector> forces = {{3.0, 4.0, 0.0}, {0.0, 0.0, 5.0}};
+  EXPECT_EQ(force_balance({3.0, 4.0, 5.0}, forces), 0.0);
+  EXPECT_NEAR(force_balance({3.0, 4.0, 4.0}, forces), 0.1, 1e-15);
+  EXPECT_EQ(force_balance({0.0, 0.0, 0.0}, std::vector<Vector>(2)), 0.0);
+}
+
+/// A scene with one canopy of an area of 2 m^2 in a stream of 3 m/s, density 1.
+FlowScene scene_with_canopy() {
+  FlowScene scene;
+  scene.parameters.density = 1.0;
+  scene.velocity = {"0", "0", "3"};
+  scene.canopies.resize(1);
+  scene.canopies[0].diameter = std::sqrt(8.0 / std::numbers::pi);
+  return scene;
+}
+
+CanopyMeasures measures_of(double force, double velocity, double line_force) {
+  CanopyMeasures measures;
+  measures.force = {0.0, 0.0, force};
+  measures.velocity = {0.0, 0.0, velocity};
+  measures.line_force = {0.0, 0.0, line_force};
+  return measures;
+}
+
+TEST(CanopyRecord, MeansAreThoseOfAnInterval) {
+  const FlowScene scene = scene_with_canopy();
+  CanopyRecord record(scene);
+  record.add(0.0, {measures_of(1e6, -2.0, 0.0)}, 1e-16);
+  record.add(1.0, {measures_of(25.0, -2.0, 70.0)}, 3e-16);
+  record.add(1.0, {measures_of(1e6, 0.0, 1e6)}, 1.0);  // a row of the same time
+  record.add(3.0, {measures_of(50.0, -2.0, 60.0)}, 2e-16);
+  record.add(4.0, {measures_of(72.0, -3.0, 10.0)}, 0.0);
+  // 2 F / (rho U^2 S0) = F / 25 at U = 5, F / 36 at U = 6; trapezoids of 2 s and 1 s.
+  EXPECT_NEAR(record.mean_drag(0, 0.5, 5.0), (2.0 * 1.5 + 1.0 * 2.0) / 3.0, 1e-14);
+  EXPECT_NEAR(record.mean_speed(0, 0.5, 5.0), (2.0 * 5.0 + 1.0 * 5.5) / 3.0, 1e-14);
+  EXPECT_NEAR(record.mean_drag(0, 1.0, 3.0), 1.5, 1e-14);
+  EXPECT_TRUE(std::isnan(record.mean_drag(0, 3.5, 5.0))) << "one row is no interval";
+  EXPECT_EQ(record.peak(0).force, 70.0);
+  EXPECT_EQ(record.peak(0).time, 1.0);
+  EXPECT_EQ(record.balance(), 3e-16);
+}
+
+TEST(CanopyRecord, NonFiniteBalanceIsNotHidden) {
+  const FlowScene scene = scene_with_canopy();
+  CanopyRecord record(scene);
+  record.add(1.0, {measures_of(1.0, 0.0, 1.0)}, std::nan(""));
+  record.add(2.0, {measures_of(1.0, 0.0, 1.0)}, 0.0);
+  EXPECT_TRUE(std::isnan(record.balance()));
+}
+
+}  // namespace
+}  // namespace drogue::parachute_app

@@ -1,0 +1,241 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <set>
+
+#include "kernels/mesh/edges.hpp"
+#include "kernels/mesh/topology.hpp"
+#include "miniapps/parachute/canopy/canopy.hpp"
+
+// Meshes of canopies: cloth, lines and payload.
+
+namespace drogue::parachute_app {
+namespace {
+
+using fabric::Vector;
+using std::numbers::pi;
+
+Canopy c9(double edge_length) {
+  Canopy canopy;
+  canopy.edge_length = edge_length;
+  return canopy;
+}
+
+double distance_of(const Vector& a, const Vector& b) {
+  return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+}
+
+double area_at(const std::vector<Vector>& points, const std::vector<std::array<int, 3>>& triangles) {
+  double sum = 0.0;
+  for (const auto& triangle : triangles) {
+    const Vector twice = mesh::doubled_area(points, triangle);
+    sum += 0.5 * std::hypot(twice[0], twice[1], twice[2]);
+  }
+  return sum;
+}
+
+TEST(Canopy, MeshIsSoundWithAndWithoutVent) {
+  for (const double vent : {0.457, 0.0, 3.0})
+    for (const int gores : {3, 7, 28, 30})
+      for (const double edge_length : {0.5, 0.28, 0.1}) {
+        Canopy canopy = c9(edge_length);
+        canopy.vent = vent;
+        canopy.gores = gores;
+        const CanopyMesh mesh = make_canopy(canopy);
+        const fabric::Mesh& cloth = mesh.fabric.mesh;
+        EXPECT_EQ(mesh.positions.size(), canopy.vertices());
+        EXPECT_EQ(mesh.cloth_vertices + 1, canopy.vertices());
+        EXPECT_FALSE(mesh::find_defect(cloth));
+        EXPECT_FALSE(mesh::inconsistent_triangles(cloth));
+        const auto edges = static_cast<long>(mesh::triangle_edges(cloth).size());
+        const long euler =
+            static_cast<long>(mesh.cloth_vertices) - edges + static_cast<long>(cloth.triangles.size());
+        EXPECT_EQ(euler, vent > 0.0 ? 0 : 1) << "an annulus or a disk";
+        // Polygons of at most `edge_length` per side inside of the circles.
+        const double exact = 0.25 * pi * (canopy.diameter * canopy.diameter - vent * vent);
+        EXPECT_NEAR(area_at(cloth.rest, cloth.triangles) / exact, 1.0, 0.5 * edge_length * edge_length);
+        for (const auto& [a, b] : mesh::triangle_edges(cloth))
+          EXPECT_LE(mesh::rest_distance(cloth, a, b), std::numbers::sqrt3 * edge_length);
+      }
+}
+
+TEST(Canopy, NumbersOfVerticesOfRingsAreNestedAndBoundTheEdges) {
+  for (const int gores : {28, 30, 120}) {
+    Canopy canopy = c9(0.2);
+    canopy.gores = gores;
+    const std::vector<int> sizes = ring_sizes(canopy);
+    EXPECT_EQ(sizes.back() % gores, 0);
+    for (std::size_t k = 0; k + 1 < sizes.size(); ++k) {
+      const int own = std::min(sizes[k], gores), next = std::min(sizes[k + 1], gores);
+      EXPECT_EQ(next % own, 0) << "ring " << k;
+      EXPECT_TRUE(sizes[k] < gores || sizes[k] % gores == 0);
+    }
+    EXPECT_LT(sizes.front(), gores) << "28 edges would be far shorter than needed at the vent";
+  }
+}
+
+TEST(Canopy, TrianglesFaceAlongTheAxis) {
+  for (const auto& [shape, angle] : {std::pair{CanopyShape::flat, 0.0},
+                                     {CanopyShape::angled_15, 15.0},
+                                     {CanopyShape::angled_60, 60.0},
+                                     {CanopyShape::angled_75, 75.0}}) {
+    Canopy canopy = c9(0.5);
+    canopy.shape = shape;
+    canopy.centre = {1.0, 2.0, 3.0};
+    EXPECT_EQ(canopy.axis_angle(), angle);
+    const Vector axis = {std::sin(angle * pi / 180.0), 0.0, std::cos(angle * pi / 180.0)};
+    const CanopyMesh mesh = make_canopy(canopy);
+    for (const auto& triangle : mesh.fabric.mesh.triangles) {
+      const Vector twice = mesh::doubled_area(mesh.positions, triangle);
+      const double along = twice[0] * axis[0] + twice[1] * axis[1] + twice[2] * axis[2];
+      EXPECT_NEAR(along, std::hypot(twice[0], twice[1], twice[2]), 1e-14);
+    }
+    // The payload hangs against the axis.
+    const double depth = std::sqrt(7.0 * 7.0 - 4.267 * 4.267);
+    for (std::size_t k = 0; k < 3; ++k)
+      EXPECT_NEAR(mesh.positions.back()[k], canopy.centre[k] - depth * axis[k], 1e-12);
+  }
+}
+
+TEST(Canopy, LinesAreTautAtTheirLengthInAllShapes) {
+  for (const CanopyShape shape : {CanopyShape::flat, CanopyShape::partly_closed, CanopyShape::angled_60}) {
+    Canopy canopy = c9(0.3);
+    canopy.shape = shape;
+    const CanopyMesh mesh = make_canopy(canopy);
+    ASSERT_EQ(mesh.skirt.size(), 28U);
+    ASSERT_EQ(mesh.fabric.mesh.lines.size(), 28U);
+    std::set<int> attached;
+    for (const auto& [skirt, payload] : mesh.fabric.mesh.lines) {
+      EXPECT_EQ(payload, static_cast<int>(mesh.cloth_vertices));
+      attached.insert(skirt);
+      const auto a = static_cast<std::size_t>(skirt), b = static_cast<std::size_t>(payload);
+      EXPECT_NEAR(distance_of(mesh.fabric.mesh.rest[a], mesh.fabric.mesh.rest[b]), 7.0, 1e-12);
+      EXPECT_NEAR(distance_of(mesh.positions[a], mesh.positions[b]), 7.0, 1e-12);
+    }
+    EXPECT_EQ(attached, std::set<int>(mesh.skirt.begin(), mesh.skirt.end()));
+    for (std::size_t k = 0; k < 28; ++k)  // equally spaced
+      EXPECT_NEAR(distance_of(mesh.fabric.mesh.rest[static_cast<std::size_t>(mesh.skirt[k])],
+                              mesh.fabric.mesh.rest[static_cast<std::size_t>(mesh.skirt[(k + 1) % 28])]),
+                  canopy.diameter * std::sin(pi / 28), 1e-12);
+  }
+}
+
+TEST(Canopy, PleatedConeIsIsometricWithinItsPleats) {
+  for (const double closure : {0.3, 0.5, 0.9, 1.0}) {
+    Canopy canopy = c9(0.2);
+    canopy.shape = CanopyShape::partly_closed;
+    canopy.closure = closure;
+    canopy.centre = {0.5, -1.0, 2.0};
+    const CanopyMesh mesh = make_canopy(canopy);
+    const fabric::Mesh& cloth = mesh.fabric.mesh;
+    double shortest = 1.0;
+    for (const auto& [a, b] : mesh::triangle_edges(cloth)) {
+      const double ratio = distance_of(mesh.positions[static_cast<std::size_t>(a)],
+                                       mesh.positions[static_cast<std::size_t>(b)]) /
+                           mesh::rest_distance(cloth, a, b);
+      EXPECT_LE(ratio, 1.0 + 1e-12) << "no edge is stretched at the start";
+      shortest = std::min(shortest, ratio);
+    }
+    // Edges that cross folds, near the vent, are shorter than along the cloth.
+    EXPECT_GT(shortest, closure - 0.1);
+    for (const int i : mesh.skirt) {
+      const Vector& x = mesh.positions[static_cast<std::size_t>(i)];
+      EXPECT_NEAR(std::hypot(x[0] - 0.5, x[1] + 1.0), 4.267 * closure, 1e-12);
+      EXPECT_NEAR(x[2], 2.0, 1e-12);
+    }
+    // Meridians keep their length: the vent lies above the skirt.
+    const Vector& vent = mesh.positions.front();
+    EXPECT_NEAR(vent[2] - 2.0, (4.267 - 0.2285) * std::sqrt(1.0 - closure * closure), 1e-12);
+  }
+  // With an even number of edges per gore, each fold has vertices and no edge crosses it.
+  Canopy canopy = c9(0.12);
+  canopy.shape = CanopyShape::partly_closed;
+  canopy.vent = 7.6;
+  const CanopyMesh mesh = make_canopy(canopy);
+  ASSERT_EQ(ring_sizes(canopy), std::vector<int>(5, 28 * 8));
+  for (const auto& [a, b] : mesh::triangle_edges(mesh.fabric.mesh))
+    EXPECT_NEAR(
+        distance_of(mesh.positions[static_cast<std::size_t>(a)], mesh.positions[static_cast<std::size_t>(b)]),
+        mesh::rest_distance(mesh.fabric.mesh, a, b), 1e-12);
+}
+
+TEST(Canopy, MassIsThatOfClothLinesAndPayload) {
+  Canopy canopy = c9(0.28);
+  canopy.lines.line_density = 0.0066;
+  const CanopyMesh mesh = make_canopy(canopy);
+  const double cloth = 0.0373 * area_at(mesh.fabric.mesh.rest, mesh.fabric.mesh.triangles);
+  const double total = std::accumulate(mesh.fabric.mass.begin(), mesh.fabric.mass.end(), 0.0);
+  EXPECT_NEAR(total, cloth + 28 * 7.0 * 0.0066 + 100.0, 1e-9);
+  EXPECT_NEAR(cloth, 2.1, 0.05) << "a C-9 weighs 2.1 kg";
+  EXPECT_NEAR(mesh.fabric.mass.back(), 100.0 + 14 * 7.0 * 0.0066, 1e-12);
+}
+
+TEST(Canopy, FixedPayloadIsTheOnlyPinnedVertex) {
+  Canopy canopy = c9(0.5);
+  EXPECT_EQ(make_canopy(canopy).fabric.pinned.back(), 0);
+  canopy.payload.fixed = true;
+  const CanopyMesh mesh = make_canopy(canopy);
+  EXPECT_EQ(mesh.fabric.pinned.back(), 7);
+  EXPECT_EQ(std::accumulate(mesh.fabric.pinned.begin(), mesh.fabric.pinned.end(), 0), 7);
+}
+
+TEST(Canopy, ReinforcementFollowsEdgesOfTheCloth) {
+  Canopy canopy = c9(0.1);
+  canopy.reinforcement = {1000.0, 2000.0, 3000.0};
+  const CanopyMesh mesh = make_canopy(canopy);
+  const fabric::Mesh& cloth = mesh.fabric.mesh;
+  const auto edges = mesh::triangle_edges(cloth);
+  const std::set<mesh::Edge> known(edges.begin(), edges.end());
+  double length[3] = {};
+  for (std::size_t k = 0; k < cloth.lines.size(); ++k) {
+    const auto& [a, b] = cloth.lines[k];
+    if (b == static_cast<int>(mesh.cloth_vertices)) {
+      EXPECT_EQ(cloth.line_stiffness[k], canopy.lines.stiffness);
+      continue;
+    }
+    EXPECT_TRUE(known.contains(mesh::edge_between(a, b)));
+    const int band = static_cast<int>(cloth.line_stiffness[k] / 1000.0) - 1;
+    ASSERT_TRUE(band >= 0 && band < 3);
+    length[band] += mesh::rest_distance(cloth, a, b);
+  }
+  EXPECT_NEAR(length[1], pi * canopy.diameter, 1e-2);
+  EXPECT_NEAR(length[2], pi * canopy.vent, 2e-2);
+  const double seams = length[0] / (0.5 * (canopy.diameter - canopy.vent));
+  EXPECT_GT(seams, 27.0);  // all of them but for a short way near the vent
+  EXPECT_LE(seams, 28.0 + 1e-9);
+  EXPECT_FALSE(mesh::find_defect(cloth));
+}
+
+TEST(Canopy, SheetsOfASceneAreOneMeshInTheirOrder) {
+  Body plate;
+  plate.lengths = {1.0, 1.0};
+  plate.edge_length = 0.5;
+  Canopy first = c9(0.5), second = c9(0.6);
+  second.centre = {20.0, 0.0, 0.0};
+  second.porosity = {PorosityLaw::none, 0.0, 0.0};
+  const Sheets sheets = make_all_sheets({plate}, {first, second});
+  ASSERT_EQ(sheets.canopies.size(), 2U);
+  EXPECT_EQ(sheets.canopies[0].begin, 9U);
+  EXPECT_EQ(sheets.canopies[0].payload, 9 + first.vertices() - 1);
+  EXPECT_EQ(sheets.canopies[1].begin, 9 + first.vertices());
+  const std::size_t vertices = 9 + first.vertices() + second.vertices();
+  const fabric::Parameters& p = sheets.fabric;
+  for (const std::size_t size :
+       {p.mesh.rest.size(), p.mass.size(), p.pinned.size(), sheets.positions.size(), sheets.laws.size()})
+    EXPECT_EQ(size, vertices);
+  EXPECT_EQ(p.mesh.line_stiffness.size(), p.mesh.lines.size());
+  EXPECT_FALSE(mesh::find_defect(p.mesh));
+  EXPECT_FALSE(mesh::inconsistent_triangles(p.mesh));
+  EXPECT_FALSE(sheets.laws[9].impermeable);
+  EXPECT_TRUE(sheets.laws.back().impermeable);
+  EXPECT_EQ(sheets.canopies[0].triangles_begin, 8U);
+  EXPECT_EQ(sheets.canopies[1].triangles_end, p.mesh.triangles.size());
+  for (std::size_t t = sheets.canopies[1].triangles_begin; t < sheets.canopies[1].triangles_end; ++t)
+    for (const int i : p.mesh.triangles[t]) EXPECT_GE(i, static_cast<int>(sheets.canopies[1].begin));
+  EXPECT_EQ(p.mesh.rest[sheets.canopies[1].payload][0], 20.0);
+}
+
+}  // namespace
+}  // namespace drogue::parachute_app
