@@ -4,7 +4,7 @@ import re
 
 from layers import includes
 
-# The precompiled headers of cmake/DrogueOptions.cmake and names that each of them declares.
+# Names of the precompiled headers of cmake/DrogueOptions.cmake, and of others that some of those bring with gcc.
 NAMES = {
     "algorithm": "clamp copy copy_n copy_if count fill find find_if any_of all_of none_of max_element min_element minmax max min "
                  "replace replace_if sort stable_sort transform upper_bound lower_bound for_each minmax_element",
@@ -24,6 +24,23 @@ NAMES = {
     "utility": "move swap exchange pair forward",
     "variant": "variant visit get_if holds_alternative monostate",
     "vector": "vector",
+    "bit": "bit_cast endian rotl countr_zero popcount",
+    "charconv": "from_chars to_chars",
+    "chrono": "chrono",
+    "cstdio": "snprintf printf fprintf fputs fflush",
+    "cstring": "memcpy memmove memcmp strerror",
+    "deque": "deque",
+    "exception": "exception_ptr current_exception rethrow_exception",
+    "fstream": "ifstream ofstream",
+    "iostream": "cout cerr",
+    "iterator": "back_inserter",
+    "limits": "numeric_limits",
+    "numbers": "numbers",
+    "numeric": "accumulate iota inner_product reduce",
+    "set": "set",
+    "system_error": "error_code errc generic_category system_error",
+    "tuple": "tuple tie tuple_size_v tuple_cat",
+    "type_traits": "is_same_v is_trivially_copyable_v conditional_t decay_t remove_const_t remove_reference_t is_void_v enable_if_t",
 }
 # Headers whose synopsis includes the other or declares what is looked for, so that they stand for it.
 BRINGS = {
@@ -31,6 +48,8 @@ BRINGS = {
     "cstdint": {"bit", "hdf5.h"},
     "string": {"filesystem", "fstream", "iostream", "sstream", "stdexcept"},
     "string_view": {"filesystem", "string", "fstream", "iostream", "sstream", "stdexcept"},
+    "iterator": {"vector", "string", "map", "set", "array", "deque", "list", "span"},
+    "system_error": {"filesystem", "charconv"},
     "utility": {"algorithm", "array", "deque", "filesystem", "functional", "list", "map", "memory", "optional", "set", "span",
                 "string", "tuple", "type_traits", "unordered_map", "variant", "vector"},
 }

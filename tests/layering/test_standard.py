@@ -13,13 +13,13 @@ TEXTS = dict(layers.source_files(ROOT))
 
 class Repository(unittest.TestCase):
     def test_sources_include_what_they_use(self):
-        self.assertEqual([], [line for path in TEXTS if path.startswith(("common/", "miniapps/"))
+        self.assertEqual([], [line for path in TEXTS if not path.startswith("tests/")
                               for line in standard.missing(path, TEXTS)])
 
     def test_every_precompiled_header_is_checked(self):
         text = (ROOT / "cmake/DrogueOptions.cmake").read_text(encoding="utf-8")
         compiled = re.search(r"target_precompile_headers\(\$\{target\} PRIVATE ([^)]*)\)", text).group(1)
-        self.assertEqual(sorted(standard.NAMES), sorted(re.findall(r"<(\w+)>", compiled)))
+        self.assertLess(set(re.findall(r"<(\w+)>", compiled)), set(standard.NAMES))
 
 
 class Check(unittest.TestCase):
