@@ -6,11 +6,17 @@ option(DROGUE_OPENMP "The OpenMP backend, where Kokkos has it" ON)
 set(DROGUE_BACKENDS)
 set(DROGUE_DEVICE_BACKENDS)
 set(DROGUE_KNOWN_BACKENDS)
-# drogue_backend(<name> <Kokkos option> <execution space> <wanted> [DEVICE]): an entry of the list, slowest first. The same names
-# stand in kernels/device/backend_list.hpp. A backend of a DEVICE starts on no machine without one; its tests have the label gpu,
+set(_entries)
+# drogue_backend(<name> <Kokkos option> <execution space> <wanted> [DEVICE]): an entry of the list, slowest first. The same list
+# stands in kernels/device/backend_list.hpp. A backend of a DEVICE starts on no machine without one; its tests have the label gpu,
 # and a build that has it tests no other.
 macro(drogue_backend name option execution_space wanted)
   list(APPEND DROGUE_KNOWN_BACKENDS ${name})
+  if("${ARGN}" STREQUAL "DEVICE")
+    list(APPEND _entries "${name} true ${execution_space}")
+  else()
+    list(APPEND _entries "${name} false ${execution_space}")
+  endif()
   if(${wanted})
     if(NOT Kokkos_ENABLE_${option})
       message(FATAL_ERROR "The backend ${name} needs a Kokkos with Kokkos_ENABLE_${option}=ON; Kokkos at ${Kokkos_DIR} lacks it.")
@@ -30,6 +36,18 @@ endif()
 drogue_backend(serial SERIAL Kokkos::Serial "${DROGUE_SERIAL}")
 drogue_backend(openmp OPENMP Kokkos::OpenMP "${_openmp}")
 drogue_backend(cuda CUDA Kokkos::Cuda "${DROGUE_CUDA}" DEVICE)
+# The entries of the sources, in the same words.
+set(_header "${PROJECT_SOURCE_DIR}/kernels/device/backend_list.hpp")
+set_property(DIRECTORY "${PROJECT_SOURCE_DIR}" APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${_header}")
+file(STRINGS "${_header}" _lines REGEX "(string_view name|bool needs_device|using ExecutionSpace) = ")
+list(TRANSFORM _lines REPLACE ".* = " "")
+string(REGEX REPLACE "[;\"]+" " " _lines "${_lines}")
+string(STRIP "${_lines}" _lines)
+list(JOIN _entries " " _words)
+if(NOT _lines STREQUAL _words)
+  message(FATAL_ERROR "The backends of cmake/DrogueBackends.cmake (name, whether it needs a device, execution space) are\n"
+                      "  ${_words}\nand those of kernels/device/backend_list.hpp\n  ${_lines}\nMake both lists agree.")
+endif()
 if(NOT DROGUE_BACKENDS)
   message(FATAL_ERROR "No backend is left: turn DROGUE_SERIAL, DROGUE_OPENMP or DROGUE_CUDA on.")
 endif()

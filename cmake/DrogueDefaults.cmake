@@ -11,9 +11,13 @@ set_property(CACHE DROGUE_CUDA_ARCH PROPERTY STRINGS 80 86 89 90 100 native)
 find_program(DROGUE_CCACHE ccache)
 mark_as_advanced(DROGUE_CCACHE)
 if(DROGUE_CCACHE)
+  # Without this sloppiness ccache keeps no object that takes precompiled headers, which are most. Paths below the sources count
+  # relative to them, so that another clone on the same machine finds the objects too.
+  set(_launcher "${CMAKE_COMMAND}" -E env CCACHE_SLOPPINESS=pch_defines,time_macros "CCACHE_BASEDIR=${CMAKE_SOURCE_DIR}"
+    CCACHE_NOHASHDIR=1 "${DROGUE_CCACHE}")
   foreach(_language C CXX CUDA)
     if(NOT DEFINED CMAKE_${_language}_COMPILER_LAUNCHER)
-      set(CMAKE_${_language}_COMPILER_LAUNCHER "${DROGUE_CCACHE}")
+      set(CMAKE_${_language}_COMPILER_LAUNCHER "${_launcher}")
     endif()
   endforeach()
 endif()

@@ -6,6 +6,7 @@ function(drogue_add_mini_app name)
   set(_library drogue_${name}_app)
   add_library(${_library} STATIC ${_sources})
   drogue_optimise_little(${_library})
+  drogue_precompile_standard(${_library})
   target_link_libraries(${_library} PUBLIC drogue_framework drogue_reference)
   # Folder of the shipped scenes for a program that is neither installed nor bundled.
   string(TOUPPER "${name}" _upper)

@@ -78,10 +78,12 @@ if(DROGUE_SANITIZE)
   endif()
 endif()
 
-# Numerical code is optimised under sanitizers too: for the rest the compile time exceeds the time that its tests gain.
+# Numerical code is optimised under sanitizers too: for the rest the compile time exceeds the time that its tests gain. Uses of a
+# variable after its scope are not checked there: gcc then keeps every inlined variable in memory, and compiles gas/instances/stage
+# in 29 s in place of 11 s of processor time (gcc 12.2). Tests compile most kernels anew, without optimisation and with this check.
 function(drogue_optimise_sanitized target)
   if(DROGUE_SANITIZE)
-    target_compile_options(${target} PRIVATE -O1)
+    target_compile_options(${target} PRIVATE -O1 -fno-sanitize-address-use-after-scope)
   endif()
 endfunction()
 
@@ -91,10 +93,20 @@ function(drogue_optimise_little target)
 endfunction()
 
 # Compiles sources with an optimisation of their own in a release, such as -O2 for code that runs once per row of a batch. Not in
-# a unity build, which would have to leave them out.
+# a unity build, which would have to leave them out. Headers are precompiled for one optimisation.
 function(drogue_optimise_sources optimisation)
   if(NOT CMAKE_UNITY_BUILD)
-    set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS "$<$<CONFIG:Release>:${optimisation}>")
+    set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS "$<$<CONFIG:Release>:${optimisation}>"
+      SKIP_PRECOMPILE_HEADERS ON)
+  endif()
+endfunction()
+
+# drogue_precompile_standard(<target>): precompiles the headers of the standard library that most sources without Kokkos read,
+# half of their compile time. tests/layering finds a standard header that a source uses and does not include.
+function(drogue_precompile_standard target)
+  if(NOT CMAKE_UNITY_BUILD)
+    target_precompile_headers(${target} PRIVATE <algorithm> <array> <cmath> <cstdint> <filesystem> <functional> <map> <memory>
+      <optional> <span> <sstream> <stdexcept> <string> <string_view> <utility> <variant> <vector>)
   endif()
 endfunction()
 

@@ -148,7 +148,7 @@ endfunction()
 
 # drogue_add_header_test(<headers>): compiles every header alone, twice in one source, as part of the build. A header whose first
 # include is another one tests both in one source. Headers that include Kokkos take it precompiled; the others are compiled
-# without it, so that a missing include is found.
+# without it, so that a missing include is found. Missing standard headers are found by tests/layering.
 function(drogue_add_header_test)
   foreach(_header IN LISTS ARGN)
     cmake_path(RELATIVE_PATH _header BASE_DIRECTORY "${PROJECT_SOURCE_DIR}" OUTPUT_VARIABLE _name)
@@ -186,6 +186,7 @@ function(drogue_add_header_test)
   endforeach()
   add_library(drogue_header_test OBJECT ${_plain})
   add_library(drogue_kokkos_header_test OBJECT ${_kokkos})
+  drogue_precompile_standard(drogue_header_test)
   target_precompile_headers(drogue_kokkos_header_test PRIVATE <Kokkos_Core.hpp>)
   foreach(_test drogue_header_test drogue_kokkos_header_test)
     target_link_libraries(${_test} PRIVATE drogue_gas_app drogue_springs_app drogue_options_app drogue_parachute_app drogue_private drogue_toml muparser::muparser)

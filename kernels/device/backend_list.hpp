@@ -47,12 +47,14 @@ namespace drogue::device {
 /// Backends that the sources support, slowest first. A build contains some of them.
 enum class Backend { serial, openmp, cuda };
 
-/// Entry of the backend list: the identifier, its name on the command line, the preset that builds it, and
-/// its execution space. The class may be incomplete.
+/// Entry of the backend list: the identifier, its name on the command line, the preset that builds it,
+/// whether it starts on no machine without a device, whether this build has it, and its execution space. The
+/// class may be incomplete. cmake/DrogueBackends.cmake holds the same list, and CMake stops if one differs.
 struct SerialBackend {
   static constexpr Backend backend = Backend::serial;
   static constexpr std::string_view name = "serial";
   static constexpr std::string_view preset = "host";
+  static constexpr bool needs_device = false;
   static constexpr bool is_compiled = DROGUE_COMPILED_SERIAL;
   using ExecutionSpace = Kokkos::Serial;
 };
@@ -61,6 +63,7 @@ struct OpenMPBackend {
   static constexpr Backend backend = Backend::openmp;
   static constexpr std::string_view name = "openmp";
   static constexpr std::string_view preset = "host";
+  static constexpr bool needs_device = false;
   static constexpr bool is_compiled = DROGUE_COMPILED_OPENMP;
   using ExecutionSpace = Kokkos::OpenMP;
 };
@@ -69,6 +72,7 @@ struct CudaBackend {
   static constexpr Backend backend = Backend::cuda;
   static constexpr std::string_view name = "cuda";
   static constexpr std::string_view preset = "cuda";
+  static constexpr bool needs_device = true;
   static constexpr bool is_compiled = DROGUE_COMPILED_CUDA;
   using ExecutionSpace = Kokkos::Cuda;
 };
@@ -125,6 +129,15 @@ auto dispatch(Backend backend, const Function& function) {
 template <class Backends, class Function>
 constexpr void for_each_backend(const Function& function) {
   std::apply([&](const auto&... entries) { (function(entries), ...); }, Backends{});
+}
+
+/// Whether the backend starts on no machine without a device, such as a GPU. Does not throw.
+constexpr bool needs_device(Backend backend) {
+  bool needs = false;
+  for_each_backend<KnownBackends>([&](const auto& entry) {
+    if (entry.backend == backend) needs = entry.needs_device;
+  });
+  return needs;
 }
 
 }  // namespace drogue::device

@@ -2,6 +2,7 @@
 
 #include <Kokkos_Core.hpp>
 #include <charconv>
+#include <cstdint>
 #include <cstdlib>
 #include <stdexcept>
 #if defined(KOKKOS_ENABLE_OPENMP)

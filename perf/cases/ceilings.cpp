@@ -22,6 +22,7 @@ Case ceiling_case(device::Backend backend, const CeilingEntry& entry) {
   const auto kernel = std::make_shared<std::unique_ptr<CeilingKernel>>();
   const std::string name(device::name(backend));
   return {std::string("ceiling/") + entry.name + "/" + name,
+          device::needs_device(backend),
           "launch",
           entry.bound,
           [=, ceiling = entry.ceiling] {

@@ -16,6 +16,7 @@ Case roll_case(device::Backend backend, int vertices, long steps, fabric::Integr
   const std::string name(device::name(backend));
   const std::string variant = integrator == fabric::Integrator::verlet ? "verlet" : "";
   return {"springs-contact/" + name + "/" + std::to_string(vertices) + (variant.empty() ? "" : "/") + variant,
+          device::needs_device(backend),
           "step",
           backend == device::Backend::cuda ? "latency of some fifty small kernels below 100k vertices"
                                            : "distances of near parts, by the cores",

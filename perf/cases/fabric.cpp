@@ -19,6 +19,7 @@ Case scatter_case(int vertices, long steps) {
   };
   const auto run = std::make_shared<Run>();
   return {"springs-step/scatter-loop/" + std::to_string(vertices),
+          false,
           "step",
           "one core; no vectorisation requested",
           [=] {
@@ -65,6 +66,7 @@ Case sheet_case(device::Backend backend, int vertices, long steps, const FabricV
   const auto run = std::make_shared<Run>();
   const std::string name(device::name(backend));
   return {"springs-step/" + name + "/" + std::to_string(vertices) + (*variant.name ? "/" : "") + variant.name,
+          device::needs_device(backend),
           "step",
           backend == device::Backend::cuda
               ? "latency between patches below 100k vertices, memory bandwidth above"

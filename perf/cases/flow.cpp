@@ -55,6 +55,7 @@ Case flow_case(device::Backend backend, const Cells& cells, const FlowVariant& v
   const auto exact_error = std::make_shared<double>(0.0);
   const std::string name(device::name(backend));
   return {"flow-step/" + name + "/" + streams::text(cells) + "/" + variant.name,
+          device::needs_device(backend),
           "step",
           backend == device::Backend::cuda ? "FP64 issue of the momentum stage, memory of the rest"
                                            : "FP64 issue of the cores",

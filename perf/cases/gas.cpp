@@ -20,6 +20,7 @@ Case dense_case(std::int64_t cells, long steps) {
   const gas::Parameters p = sod::parameters(cells);
   const double dx = (p.x_max - p.x_min) / static_cast<double>(cells);
   return {"gas-step/dense-loop/" + std::to_string(cells),
+          false,
           "step",
           "one core; no vectorisation requested",
           [=] {
@@ -73,6 +74,7 @@ Case solver_case(device::Backend backend, std::int64_t cells, long steps, const 
   const auto solver = std::make_shared<std::unique_ptr<gas::Solver>>();
   const std::string name(device::name(backend));
   return {"gas-step/" + name + "/" + std::to_string(cells) + (*variant.name ? "/" : "") + variant.name,
+          device::needs_device(backend),
           "step",
           backend == device::Backend::cuda ? "launch latency below 100k cells, FP64 issue above"
                                            : "FP64 issue of the cores",

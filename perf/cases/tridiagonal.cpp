@@ -102,6 +102,7 @@ Case tridiagonal_case(device::Backend backend, bool by_pttrf, int count, int nod
   const std::string name(device::name(backend));
   const std::string variant = (by_pttrf ? "pttrf/" : "scan/") + std::to_string(nodes);
   return {"tridiagonal/" + name + "/" + std::to_string(count) + "/" + variant,
+          device::needs_device(backend),
           "batch",
           by_pttrf ? "memory, on a host divisions that wait for one another" : "memory, on a host arithmetic",
           [=] {

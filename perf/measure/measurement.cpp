@@ -25,7 +25,7 @@ std::vector<Record> measure(const std::vector<Case>& cases, int warm_up, int rou
       const long units = samples[i].work();
       double seconds = since(begin);
       if (round < 0) {
-        warmth.add(cases[i].name, seconds);
+        warmth.add(cases[i].on_device, seconds);
         continue;
       }
       if (samples[i].parts) {

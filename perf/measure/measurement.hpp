@@ -30,6 +30,7 @@ struct Facts {
 /// Benchmark case.
 struct Case {
   std::string name;          ///< work/variant/size, as `drogue-perf list` prints it
+  bool on_device;            ///< the backend of the work needs a device
   std::string unit_of_work;  ///< divisor of the seconds of a sample, for example "step"
   std::string bound;         ///< the limiting resource, in words
   std::function<Sample()> prepare;

@@ -1,16 +1,14 @@
 #pragma once
 
-#include <string>
-
 namespace drogue::perf {
 
 /// Stopping rule of a warm-up. Work on host cores does not raise the clock of a GPU, so the seconds of cases
 /// on a device and of the others are counted apart.
 class WarmUp {
  public:
-  /// Counts seconds of work of the case of that name, `work/.../backend/...`. Does not throw.
-  void add(const std::string& case_name, double seconds) {
-    Kind& kind = is_on_device(case_name) ? _device : _host;
+  /// Counts seconds of work on a device or on cores of the host. Does not throw.
+  void add(bool on_device, double seconds) {
+    Kind& kind = on_device ? _device : _host;
     kind.present = true;
     kind.seconds += seconds;
   }
@@ -26,10 +24,6 @@ class WarmUp {
     double seconds = 0.0;
     [[nodiscard]] bool has_reached(double wanted) const { return !present || seconds >= wanted; }
   };
-
-  static bool is_on_device(const std::string& name) {
-    return (name + "/").find("/cuda/") != std::string::npos;
-  }
 
   Kind _device, _host;
 };

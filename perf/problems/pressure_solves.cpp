@@ -62,7 +62,8 @@ Case pressure_case(const PressureSolve& solve,
   const std::string variant =
       std::string(method.name) + "/" + sides + (method.tolerance > 1e-8 ? "/1e-6" : "");
   return {
-      "flow-pressure/" + name + "/" + streams::text(solve.cells) + "/" + variant, "solve",
+      "flow-pressure/" + name + "/" + streams::text(solve.cells) + "/" + variant,
+      device::needs_device(solve.backend), "solve",
       method.iterates() ? "memory, and copies to the host" : "memory; FP64 tensor cores of matrix products",
       [=] {
         *solver = pressure::create_solver(solve.backend, streams::pressure_problem(solve.cells, solve.sides),

@@ -84,6 +84,7 @@ Case timed(const std::string& name, device::Backend backend,
         {"h2d", timing.h2d}, {"compute", timing.compute}, {"d2h", timing.d2h}};
   };
   return {name,
+          device::needs_device(backend),
           "batch",
           "arithmetic of the convolution",
           [=] {

@@ -15,6 +15,7 @@ Case baseline_case(const std::string& name, const std::string& bound, device::Ba
   const auto solver = std::make_shared<std::unique_ptr<gas::Solver>>();
   const auto before = std::make_shared<gas::PhaseTimes>();
   return {name,
+          device::needs_device(backend),
           "step",
           bound,
           [=] {

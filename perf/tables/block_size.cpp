@@ -17,6 +17,7 @@ constexpr long fused_steps = 200;
 Case fused_case(const std::string& name, device::Backend backend, const gas::Parameters& p) {
   const auto solver = std::make_shared<std::unique_ptr<gas::Solver>>();
   return {name,
+          device::needs_device(backend),
           "step",
           "launch latency, and teams that wait for room",
           [=] {

@@ -42,6 +42,7 @@ Case case_of(device::Backend backend, const FabricTransfer& row) {
   const int substeps = row.substeps;
   return {"springs-transfers/" + std::string(device::name(backend)) + "/" +
               std::to_string(row.printed.vertices) + "/" + std::to_string(substeps),
+          device::needs_device(backend),
           "step",
           backend == device::Backend::cuda ? "latency of copies between host and device"
                                            : "loads of neighbours by the cores",

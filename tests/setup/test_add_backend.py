@@ -56,7 +56,7 @@ class AddBackend(unittest.TestCase):
     def kokkos_with_hip(self):
         """Folder of a package that is the Kokkos of this build and claims to have HIP."""
         folder = self.work / "Kokkos-hip"
-        folder.mkdir()
+        folder.mkdir(exist_ok=True)
         real = CACHE["Kokkos_DIR"]
         (folder / "KokkosConfig.cmake").write_text(f'include("{real}/KokkosConfig.cmake")\nset(Kokkos_ENABLE_HIP ON)\n', encoding="utf-8")
         (folder / "KokkosConfigVersion.cmake").write_text(f'include("{real}/KokkosConfigVersion.cmake")\n', encoding="utf-8")
@@ -83,6 +83,18 @@ class AddBackend(unittest.TestCase):
         version = (build / "generated/common/version.cpp.in").read_text(encoding="utf-8")
         self.assertIn('.known_backends = "serial openmp cuda hip"', version)
 
+    def test_lists_that_differ_are_refused(self):
+        header = self.tree / "kernels/device/backend_list.hpp"
+        text = header.read_text(encoding="utf-8")
+        self.addCleanup(header.write_text, text, encoding="utf-8")
+        for old, new in (('name = "hip"', 'name = "rocm"'), ("needs_device = true", "needs_device = false"),
+                         ("ExecutionSpace = Kokkos::HIP", "ExecutionSpace = Kokkos::Cuda")):
+            self.assertIn(old, text)
+            header.write_text(text.replace(old, new), encoding="utf-8")
+            result = self.configure(self.kokkos_with_hip())
+            self.assertNotEqual(0, result.returncode)
+            self.assertIn("Make both lists agree", " ".join(result.stderr.split()))
+
     def test_list_of_the_sources_has_the_backend(self):
         source = self.work / "list.cpp"
         source.write_text("""
@@ -91,6 +103,7 @@ class AddBackend(unittest.TestCase):
             static_assert(std::tuple_size_v<CompiledBackends> == 2);
             static_assert(std::tuple_element_t<1, CompiledBackends>::name == "hip");
             static_assert(backend_of<Kokkos::HIP> == Backend::hip);
+            static_assert(needs_device(Backend::hip) && !needs_device(Backend::serial));
         """, encoding="utf-8")
         command = [CACHE["CMAKE_CXX_COMPILER"], "-std=c++20", "-fsyntax-only", "-I", self.tree, "-DDROGUE_HAVE_SERIAL=1",
                    "-DDROGUE_HAVE_HIP=1", source]

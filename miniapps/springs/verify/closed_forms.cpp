@@ -1,5 +1,6 @@
 #include "miniapps/springs/verify/closed_forms.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numbers>

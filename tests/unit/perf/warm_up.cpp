@@ -7,19 +7,19 @@ namespace {
 
 TEST(WarmUp, CountsWorkOnADeviceApartFromThatOnHosts) {
   WarmUp warmth;
-  warmth.add("gas-step/serial/8192", 5.0);
+  warmth.add(false, 5.0);
   EXPECT_TRUE(warmth.has_reached(1.0));
-  warmth.add("flow-step/cuda/256x256x256/periodic", 0.4);
+  warmth.add(true, 0.4);
   EXPECT_FALSE(warmth.has_reached(1.0)) << "work of hosts must not warm the device";
-  warmth.add("ceiling/memory/cuda", 0.6);
+  warmth.add(true, 0.6);
   EXPECT_TRUE(warmth.has_reached(1.0));
 }
 
 TEST(WarmUp, WaitsForHostsWithoutADevice) {
   WarmUp warmth;
-  warmth.add("gas-step/dense-loop/8192", 0.5);
+  warmth.add(false, 0.5);
   EXPECT_FALSE(warmth.has_reached(1.0));
-  warmth.add("ceiling/fp64/openmp", 0.5);
+  warmth.add(false, 0.5);
   EXPECT_TRUE(warmth.has_reached(1.0));
 }
 
