@@ -73,6 +73,15 @@ struct BodyForce {
   Target target;
 };
 
+/// Quantity of the rows of the history from a time on, computed from the force of the fluid on a body.
+struct ForceWindow {
+  int body = 0;
+  int axis = 0;
+  double from = 0.0;       ///< s
+  double reference = 1.0;  ///< N or s
+  Target target;
+};
+
 /// Largest rate at which the kinetic energy falls, W, and optionally its time, s.
 struct DissipationPeak {
   Target target;
@@ -88,6 +97,8 @@ struct Verify {
   std::optional<DissipationPeak> dissipation_peak;
   std::vector<FlowRate> flow_rates;
   std::vector<BodyForce> forces;
+  std::vector<ForceWindow> mean_forces;  ///< over the reference, N
+  std::vector<ForceWindow> frequencies;  ///< of the force, times the reference, s
   std::vector<Profile> profiles;
 };
 

@@ -232,7 +232,7 @@ void complete_and_check(const Table& root, FlowScene& scene) {
   complete_velocities(root, scene);
   check_net_inflow(root, scene);
   check_solver(root, p);
-  check_bodies(root, scene);
+  complete_and_check_bodies(root, scene);
   framework::complete_output(root, scene.output, {"velocity", "pressure", "vorticity"},
                              {scene.end_time, "run.end_time"});
   check_verify(root, scene);

@@ -169,7 +169,8 @@ void declare_flow_scene(Table& root, FlowScene& scene) {
       "The state at the start; the gradient part of its velocity is removed");
   root.table(
       "flow", [&](Table& table) { declare_flow(table, scene); }, "The numerical scheme and the forces");
-  root.tables("body", scene.bodies, declare_body, "Rigid sheets in the flow, which do not move");
+  root.tables("body", scene.bodies, declare_body,
+              "Rigid sheets in the flow, at rest or in prescribed motion");
   root.table(
           "coupling", [&](Table& table) { declare_coupling(table, scene.coupling); },
           "The exchange of forces between the fluid and bodies")

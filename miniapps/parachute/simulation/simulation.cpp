@@ -62,8 +62,11 @@ const char* reason_text(flow::FailureReason reason) {
 /// Flow with all bodies of a scene as sheets.
 coupling::Parameters coupled_parameters(const FlowScene& scene) {
   coupling::Parameters p{scene.parameters, make_sheets(scene.bodies), scene.coupling, 1};
-  for (const Body& body : scene.bodies)
-    p.sheet.law_of_vertex.insert(p.sheet.law_of_vertex.end(), body.vertices(), law_of(body.porosity));
+  for (const Body& body : scene.bodies) {
+    coupling::PorousLaw law = law_of(body.porosity, scene.parameters.density, scene.parameters.viscosity);
+    law.no_slip = !body.slips();
+    p.sheet.law_of_vertex.insert(p.sheet.law_of_vertex.end(), static_cast<std::size_t>(body.vertices()), law);
+  }
   return p;
 }
 
@@ -150,9 +153,8 @@ std::vector<run::Column> Simulation::history_columns() const {
   for (std::size_t side = 0; side < 6; ++side)
     if (!is_periodic(_scene.parameters, side))
       columns.push_back({std::string("outflow_") + side_names[side], "m^3/s"});
-  for (std::size_t i = 0; i < _scene.bodies.size(); ++i)
-    for (const char* axis : axis_names)
-      columns.push_back({"body_" + std::to_string(i) + "_force_" + axis, "N"});
+  for (int body = 0; body < static_cast<int>(_scene.bodies.size()); ++body)
+    for (int axis = 0; axis < 3; ++axis) columns.push_back({force_column(body, axis), "N"});
   return columns;
 }
 
@@ -178,7 +180,7 @@ std::vector<fabric::Vector> Simulation::body_forces() {
   _coupled->forces(on_fluid);
   auto force = on_fluid.begin();
   for (std::size_t i = 0; i < sums.size(); ++i)
-    for (std::size_t k = 0; k < _scene.bodies[i].vertices(); ++k, ++force)
+    for (std::size_t k = 0; k < static_cast<std::size_t>(_scene.bodies[i].vertices()); ++k, ++force)
       for (std::size_t axis = 0; axis < 3; ++axis) sums[i][axis] -= (*force)[axis];
   return sums;
 }
@@ -229,8 +231,11 @@ std::string Simulation::failure_text(bool) {
          << " s, before run.end_time = " << _scene.end_time << " s";
     return text.str();
   }
-  if (_coupled != nullptr && _coupled->failure_reason() != coupling::FailureReason::flow) {
-    text << "a force on a body is not finite at t = " << now().time << " s";
+  const auto reason = _coupled != nullptr ? _coupled->failure_reason() : coupling::FailureReason::flow;
+  if (reason != coupling::FailureReason::flow) {
+    text << (reason == coupling::FailureReason::left_domain ? "a body has left the domain"
+                                                            : "a force on a body is not finite")
+         << " at t = " << now().time << " s";
     return text.str();
   }
   const flow::StepFailure failure = _solver->failure();
