@@ -7,6 +7,7 @@
 #include "kernels/mesh/round_surfaces.hpp"
 #include "tests/support/coupled_case.hpp"
 #include "tests/support/expression_program.hpp"
+#include "tests/support/profiled.hpp"
 
 // Rigid sheets: prescribed motion, no slip, and the balance of forces.
 
@@ -70,6 +71,26 @@ TEST(MovingSheet, CarriesTheFluidOfAChannelWithIt) {
   }
   EXPECT_LT(error[1], 4e-3);
   EXPECT_GT(error[0] / error[1], 3.0);
+}
+
+TEST(MovingSheet, NeitherFencesNorAllocatesNorCopiesInSteps) {
+  CoupledCase c(16, 4, 0.1, 0.005);
+  c.add_strip(0.83, 0.0, 0.83, 0.4, 8);
+  c.p.sheet.law = {0.0, 0.0, true, true};
+  c.p.substeps = 4;
+  move(c, 0, sine(0.05, 6.0));
+  CoupledRun run(c);
+  const auto counted = [&](std::int64_t steps) {
+    const device::ProfilingCounters before = drogue::testing::profiled();
+    EXPECT_TRUE(run.advance(steps));
+    const device::ProfilingCounters after = drogue::testing::profiled();
+    return std::array{after.fences - before.fences, after.allocations - before.allocations,
+                      after.copies - before.copies};
+  };
+  counted(16);
+  // Blocks of 16 steps and of 4.
+  const auto whole = counted(16), part = counted(4);
+  EXPECT_EQ(whole, part);
 }
 
 /// Distance, m, between a sheet without slip and the plane in which the linear velocity profile between it
