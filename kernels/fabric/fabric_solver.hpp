@@ -573,6 +573,10 @@ template <class ExecutionSpace, class VertexForce>
 template <ConstitutiveModel model>
 void FabricSolver<ExecutionSpace, VertexForce>::enqueue_symplectic_euler() {
   if (_has_load_kernel) evaluate_loads(_x, _v, 0.0, _has_dashpots);
+  if constexpr (RelaxesVelocity<VertexForce>)
+    // The relaxation is implicit: it needs the velocity of pins at the end of the step. Their positions go
+    // where the kernel writes those after the drift.
+    if (moves_pins()) apply_dirichlet(_next, _v, 1.0, false);
   launch_packs(
       space(), "drogue::fabric::symplectic_euler", _padded,
       SymplecticEulerFunctor<ExecutionSpace, model, VertexForce>{

@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <numbers>
 
+#include "kernels/mesh/round_surfaces.hpp"
+
 namespace drogue::mesh {
 namespace {
 
@@ -77,26 +79,7 @@ Mesh generate(const Rectangle& shape) {
 }
 
 Mesh generate(const Disk& shape) {
-  const int rings = closest_count(shape.vertices, [](int n) { return 1 + 3 * n * (n + 1); });
-  Mesh mesh;
-  mesh.rest.push_back({0.0, 0.0, 0.0});
-  for (int k = 1; k <= rings; ++k)
-    for (int j = 0; j < 6 * k; ++j) {
-      const double radius = shape.radius * k / rings, angle = std::numbers::pi * j / (3.0 * k);
-      mesh.rest.push_back({radius * std::cos(angle), radius * std::sin(angle), 0.0});
-    }
-  const auto vertex = [](int ring, int j) {
-    return ring == 0 ? 0 : 1 + 3 * ring * (ring - 1) + j % (6 * ring);
-  };
-  for (int k = 1; k <= rings; ++k)
-    for (int sector = 0; sector < 6; ++sector)
-      for (int j = 0; j < k; ++j) {
-        const int outer = sector * k + j, inner = sector * (k - 1) + j;
-        mesh.triangles.push_back({vertex(k - 1, inner), vertex(k, outer), vertex(k, outer + 1)});
-        if (j + 1 < k)
-          mesh.triangles.push_back({vertex(k - 1, inner), vertex(k, outer + 1), vertex(k - 1, inner + 1)});
-      }
-  return mesh;
+  return disk(shape.radius, closest_count(shape.vertices, [](int n) { return 1 + 3 * n * (n + 1); }));
 }
 
 Mesh generate(const Strip& shape) {

@@ -61,3 +61,92 @@ BAD_LINES = [
     (21, 'force = [{ body = 1, axis = "x", value = 1, tolerance = 1 }]', 21, ["verify.force[0].body = 1", "number of bodies is 1"]),
     (21, 'force = [{ body = 0, axis = "x", value = 0, tolerance = 1 }]', 21, ["verify.force[0].value", "relative"]),
 ]
+
+ROUND = """\
+app = "parachute"
+[fluid]
+velocity = [1, 0, 0]
+[grid]
+cells = [16, 16, 16]
+domain = [[0, 1.6], [0, 1.6], [0, 1.6]]
+boundary = { x = ["inflow", "outflow"], y = "slip", z = "periodic" }
+[[body]]
+kind = "sphere"
+centre = [0.5, 0.4, 0.4]
+radius = 0.2
+edge_length = 0.05
+motion = { x = "0.1*sin(t)", y = 0.01 }
+slip = true
+porosity = { law = "ergun", void_fraction = 0.4, thickness = 1e-4, grain = 1e-5 }
+[[body]]
+kind = "cylinder"
+axis = "z"
+centre = [1.2, 0.5, 0.8]
+radius = 0.2
+length = 1.6
+ends = "open"
+edge_length = 0.05
+porosity = { law = "kim-peskin", pores = 1e6, conductance = 1e-9 }
+[[body]]
+kind = "cup"
+axis = "x"
+opening = "low"
+centre = [0.6, 1.1, 1.1]
+radius = 0.25
+edge_length = 0.05
+[run]
+end_time = 2
+max_dt = 0.01
+[output]
+history_every = 1
+[verify]
+mean_force = [{ body = 0, axis = "x", from = 1, reference = 0.1, value = 1, tolerance = 1 }]
+frequency = [{ body = 1, axis = "y", from = 1, value = 1, tolerance = 1 }]
+"""
+
+# As above, for ROUND.
+BAD_ROUND_LINES = [
+    # keys of other kinds
+    (9, 'kind = "disk"', 8, ['missing key "body[0].normal"']),
+    (9, 'kind = "spere"', 9, ["body[0].kind", 'did you mean "sphere"?']),
+    (11, "radius = 0.2\nlengths = [0.2, 0.2]", 12, ["body[0].lengths", "plate"]),
+    (11, "", 8, ['missing key "body[0].radius"']),
+    (18, "", 16, ['missing key "body[1].axis"']),
+    (18, 'axis = "z"\nnormal = "z"', 19, ["body[1].normal", '"plate" or "disk"']),
+    (21, "", 16, ['missing key "body[1].length"']),
+    (28, "", 25, ['missing key "body[2].opening"']),
+    (28, 'opening = "low"\nends = "open"', 29, ["body[2].ends", '"cylinder"']),
+    # types and ranges
+    (11, "radius = 0", 11, ["body[0].radius", "> 0"]),
+    (13, 'motion = { x = "0.1*sin(x)" }', 13, ["body[0].motion.x", "x"]),
+    (13, 'motion = { w = "t" }', 13, ["body[0].motion.w", "x"]),
+    (14, 'slip = "no"', 14, ["body[0].slip", "true or false"]),
+    (22, 'ends = "shut"', 22, ["body[1].ends", '"closed"']),
+    (28, 'opening = "left"', 28, ["body[2].opening", '"low"']),
+    # porosity
+    (15, 'porosity = { law = "ergun", void_fraction = 0.4, thickness = 1e-4 }', 15, ['missing key "body[0].porosity.grain"']),
+    (15, 'porosity = { law = "ergun", void_fraction = 1.4, thickness = 1e-4, grain = 1e-5 }', 15, ["body[0].porosity.void_fraction", "<= 1"]),
+    (15, 'porosity = { law = "ergun", void_fraction = 0.4, thickness = 1e-4, grain = 1e-5, alpha = 1 }', 15, ["body[0].porosity.alpha", "forchheimer"]),
+    (24, 'porosity = { law = "kim-peskin", pores = 0, conductance = 1e-9 }', 24, ["body[1].porosity.pores", "> 0"]),
+    (24, 'porosity = { law = "kim-peskin", pores = 1e6 }', 24, ['missing key "body[1].porosity.conductance"']),
+    (24, 'porosity = { law = "kim-pesking", pores = 1e6 }', 24, ["body[1].porosity.law", 'did you mean "kim-peskin"?']),
+    # places
+    (10, "centre = [0.25, 0.4, 0.4]", 13, ["body[0]", "to 0.45 m along x at t = 0", "between 0.1"]),
+    (10, "centre = [0.5, 0.25, 0.4]", 13, ["body[0]", "along y", "0.06", "0.1"]),
+    (10, "centre = [0.5, 0.4, 0.1]", 10, ["body[0]", "along z", "0.0 and 1.6"]),
+    (13, 'motion = { x = "log(t-1)" }', 13, ["body[0].motion.x", "not finite", "at t = 0"]),
+    (13, 'motion = { x = "2*t" }', 13, ["body[0]", "along x", "1.5"]),
+    (21, "length = 1.7", 19, ["body[1]", "along z", "between 0.0 and 1.6"]),
+    (29, "centre = [1.3, 1.1, 1.1]", 29, ["body[2]", "along x", "1.55"]),
+    (31, "edge_length = 0.08", 31, ["body[2].edge_length", "0.0714"]),
+    (31, "edge_length = 1e-6", 31, ["body[2].edge_length", "2^20"]),
+    # two dimensions
+    (5, "cells = [16, 16, 1]", 9, ["body[0].kind", "one cell along z"]),
+    # checks
+    (36, "history_every = 0", 38, ["verify.mean_force[0]", "output.history_every"]),
+    (38, 'mean_force = [{ body = 3, axis = "x", value = 1, tolerance = 1 }]', 38, ["verify.mean_force[0].body = 3", "number of bodies is 3"]),
+    (38, 'mean_force = [{ body = 0, axis = "x", from = 2, value = 1, tolerance = 1 }]', 38, ["verify.mean_force[0].from", "run.end_time"]),
+    (38, 'mean_force = [{ body = 0, axis = "x", reference = 0, value = 1, tolerance = 1 }]', 38, ["verify.mean_force[0].reference", "> 0"]),
+    (39, 'frequency = [{ body = 1, axis = "y", value = 0, tolerance = 1 }]', 39, ["verify.frequency[0].value", "relative"]),
+    (39, 'frequency = [{ body = 1, axis = "y", from = -1, value = 1, tolerance = 1 }]', 39, ["verify.frequency[0].from", ">= 0"]),
+]

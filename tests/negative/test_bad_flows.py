@@ -64,6 +64,18 @@ class BadFlows(parachute_program.FlowTest):
             with self.subTest(key):
                 self.assertIn(words, self.refusal(key))
 
+    def test_rejects_invalid_round_bodies(self):
+        self.scene.write_text(bad_bodies.ROUND, encoding="utf-8")
+        self.expect(0, self.scene, "--check")
+        self.assert_lines_are_rejected(bad_bodies.ROUND, bad_bodies.BAD_ROUND_LINES)
+
+    def test_rejects_motion_along_an_axis_with_one_cell(self):
+        flat = bad_bodies.GOOD.replace("[16, 8, 8]", "[16, 8, 1]")
+        self.scene.write_text(flat, encoding="utf-8")
+        self.expect(0, self.scene, "--check")
+        self.scene.write_text(flat.replace("edge_length", "motion = { z = 0 }\nedge_length"), encoding="utf-8")
+        self.assertIn("body[0].motion.z: the grid has one cell along z", self.refusal())
+
     def test_rejects_coupling_without_bodies(self):
         self.assertIn("[[body]]", self.refusal("coupling.filter=0.5"))
         self.assertIn("number of bodies is 0", self.refusal("verify.force=[{body=0,axis='x',value=1,tolerance=1}]"))

@@ -17,6 +17,9 @@ import xml.etree.ElementTree
 
 sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
+sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/negative")
+
+import bad_bodies
 import gas_program
 import parachute_program
 from parachute_program import CANOPY, GUST, PLATE, VORTICES
@@ -333,6 +336,47 @@ class Bodies(parachute_program.FlowTest):
         self.assertGreater(rows["body_0_force_x"][-1], 0.1)
         self.assertEqual(0.0, max(abs(value) for value in rows["body_1_force_x"]))  # normal to y
         self.assertGreater(abs(rows["body_1_force_y"][-1]), 1e-6)
+
+    def test_moving_body_carries_the_fluid_with_it(self):
+        """A plate that oscillates across a periodic channel, and the mean and frequency of its force."""
+        moving = PLATE.replace('x = ["inflow", "outflow"]', 'x = "periodic"').replace("[2, 0, 0]", "[0, 0, 0]").replace(
+            "lengths = [0.4, 0.6]", "lengths = [0.8, 0.6]").replace("0.37", "0.4").replace('y = "slip"', 'y = "periodic"')
+        moving = moving[:moving.index("porosity")] + 'motion = { x = "0.05*sin(10*t)" }\n' + moving[moving.index("[run]"):]
+        # The force accelerates all of the fluid: mass times 0.05 10^2 sin(10 t), whose mean over the half periods
+        # from 0.8 pi to 0.9 pi is 2 / pi of the amplitude.
+        mean = 1.2 * 1.6 * 0.8 * 0.6 * 0.05 * 100 * 2 / math.pi
+        sets = ["run.end_time=2.8274333882308138", "run.max_dt=0.001", "output={history_every=1}", "verify={"
+                f"mean_force=[{{body=0,axis='x',from=2.5132741228718345,value={mean:.9g},tolerance=5e-3}}],"
+                "frequency=[{body=0,axis='x',from=0.2,reference=0.1,value=0.15915494309189535,tolerance=5e-3}]}"]
+        self.expect(0, self.write(moving), *QUIET, sets=sets)
+        self.assertAlmostEqual(mean, self.result("out")["forces"]["mean_force_0"], delta=5e-3 * mean)
+        sets[-1] = sets[-1].replace("5e-3", "1e-9")
+        self.expect(5, self.write(moving), *QUIET, "--overwrite", sets=sets)
+
+    def test_all_kinds_of_bodies_run_and_continue(self):
+        round_bodies = bad_bodies.ROUND[:bad_bodies.ROUND.index("[verify]")]
+        sets = ["run.end_time=0.4", "output={history_every=1,restart_every=8}"]
+        self.expect(0, self.write(round_bodies), *QUIET, sets=sets)
+        printed = self.expect(0, self.write(round_bodies), "--print-scene").stdout
+        self.assertIn("slip = true", printed)
+        self.assertIn("slip = false", printed)
+        rows = self.history("out")
+        for body in range(3):
+            self.assertGreater(rows[f"body_{body}_force_x"][-1], 0.0)
+        half = self.folder / "half"
+        self.expect(0, self.write(round_bodies), "--quiet", "--backend", "serial", "--out", half,
+                    sets=[*sets, "run.end_time=0.2"])
+        self.expect(0, self.write(round_bodies), "--quiet", "--backend", "serial", "--out", half, "--restart",
+                    half / "restart.h5", sets=sets)
+        again = self.history("half")
+        for name in ("body_0_force_x", "body_1_force_y", "body_2_force_x", "kinetic_energy"):
+            self.assertEqual(rows[name][-1], again[name][-1], name)
+
+    def test_body_that_leaves_the_domain_ends_the_run(self):
+        """An oscillation of the period of the times at which the scene is checked."""
+        away = PLATE.replace("porosity = {", 'motion = { x = "0.7*sin(2*pi*256/30*t)" }\nporosity = {')
+        run = self.expect(4, self.write(away), *QUIET, sets=["run.end_time=30", "output={}", "run.max_dt=0.0005"])
+        self.assertIn("body[0] leaves the domain: a vertex at (", run.stderr)
 
     def test_backends_agree(self):
         for backend in ("serial", gas_program.threaded()):

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -20,6 +21,7 @@ struct BeginSheetStepFunctor {
   KOKKOS_FUNCTION void operator()(const int i) const {
     spatial::store_vector(air.velocity, i, spatial::load_vector(air.before, i));
     air.impulse(i) = 0.0;
+    if (air.is_no_slip(i)) spatial::store_vector(air.no_slip_impulse, i, spatial::Point{0.0, 0.0, 0.0});
   }
 };
 
@@ -31,6 +33,11 @@ struct SheetForceFunctor {
   double inverse_dt;                                 ///< 1/s
 
   KOKKOS_FUNCTION void operator()(const int i) const {
+    if (air.is_no_slip(i)) {
+      spatial::store_vector(force, i,
+                            (inverse_dt * air.area(i)) * spatial::load_vector(air.no_slip_impulse, i));
+      return;
+    }
     const double magnitude = inverse_dt * air.area(i) * air.impulse(i);
     spatial::store_vector(force, i, magnitude * spatial::load_vector(air.normal, i));
   }
@@ -57,7 +64,7 @@ struct EndSheetStepFunctor {
 /// flow, however light the cloth. Each vertex holds a copy of the air velocity beside it whose mass is the
 /// row sum of interpolation after spreading. In the steps of the cloth, this copy and the vertex relax
 /// against each other by the porous law (`AirRelaxation`); at their end, the grid receives the sum of the
-/// impulses.
+/// impulses. Where `PorousLaw::no_slip` holds, impulses have all components.
 ///
 /// Without the filtered acceleration the energy cannot grow: a projection reduces energy, and the row sums
 /// exceed the masses that interpolation and spreading give any motion of the vertices (docs/coupling.md).
@@ -88,6 +95,7 @@ class ImmersedSheet {
              vectors("drogue::coupling::inverse_mass"),
              vectors("drogue::coupling::local_velocity"),
              scalars("drogue::coupling::impulse"),
+             Vectors("drogue::coupling::no_slip_impulse", has_no_slip(parameters) ? rows() : 0),
              Kokkos::View<PorousLaw*, typename ExecutionSpace::memory_space>("drogue::coupling::porosity",
                                                                              rows())},
         _force(vectors("drogue::coupling::force")),
@@ -154,6 +162,11 @@ class ImmersedSheet {
       throw std::invalid_argument("immersed sheet: the density must be positive");
     if (!(p.filter >= 0.0 && p.filter <= 1.0))
       throw std::invalid_argument("immersed sheet: the weight of the filter must be 0 to 1");
+  }
+
+  static bool has_no_slip(const SheetParameters& p) {
+    const auto holds = [](const PorousLaw& law) { return law.no_slip; };
+    return p.law_of_vertex.empty() ? p.law.no_slip : std::ranges::any_of(p.law_of_vertex, holds);
   }
 
   [[nodiscard]] std::size_t rows() const { return static_cast<std::size_t>(_surface.vertices()); }

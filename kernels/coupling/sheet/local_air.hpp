@@ -1,6 +1,6 @@
 #pragma once
 
-#include "kernels/coupling/sheet/porous_law.hpp"
+#include "kernels/coupling/sheet/no_slip.hpp"
 #include "kernels/fabric/vertex_force.hpp"
 #include "kernels/spatial/points.hpp"
 
@@ -24,18 +24,23 @@ struct LocalAir {
   // Changed by each step of the cloth.
   Vectors velocity;  ///< local velocity, m/s
   Scalars impulse;   ///< per area along the normal, of the sheet on the air since `before`, Pa s
+  /// Impulse per area of vertices without slip, Pa s, in place of `impulse`. Empty if all slip.
+  Vectors no_slip_impulse;
 
   Kokkos::View<PorousLaw*, Memory> law;  ///< constant
+
+  /// True if the air does not slip along vertex i.
+  KOKKOS_FUNCTION bool is_no_slip(int i) const { return no_slip_impulse.extent(0) > 0 && law(i).no_slip; }
 };
 
 /// Relaxes the velocity of a vertex and that of the air beside it against each other by the porous law: a
-/// `VertexForce` of the fabric solver. Both change by equal and opposite impulses along the normal; the sheet
-/// slips freely along its tangents.
+/// `VertexForce` of the fabric solver. Both change by equal and opposite impulses: along the normal where the
+/// sheet slips freely along its tangents, and such that no tangential motion remains where it does not.
 template <class ExecutionSpace>
 struct AirRelaxation {
   LocalAir<ExecutionSpace> air;
 
-  /// Velocity after the relaxation, m/s. Updates `LocalAir::velocity` and `LocalAir::impulse` of the vertex.
+  /// Velocity after the relaxation, m/s. Updates the local velocity and the impulse of the vertex.
   KOKKOS_FUNCTION fabric::Vector3<double> relaxed_velocity(const fabric::VertexStage& at) const {
     using spatial::load_vector;
     const int i = at.vertex;
@@ -45,6 +50,13 @@ struct AirRelaxation {
                                   inverse_mass = load_vector(air.inverse_mass, i),
                                   now =
                                       load_vector(air.velocity, i) + at.dt * load_vector(air.acceleration, i);
+    if (air.is_no_slip(i)) {
+      const fabric::Vector3<double> each =
+          no_slip_impulse(air.law(i), n, at.velocity - now, at.dt, area * inverse_mass + compliance);
+      spatial::store_vector(air.velocity, i, now + product(compliance, each));
+      spatial::store_vector(air.no_slip_impulse, i, load_vector(air.no_slip_impulse, i) + each);
+      return at.velocity - area * product(inverse_mass, each);
+    }
     const auto scaled = [&](const fabric::Vector3<double>& by) {
       return fabric::Vector3<double>{by.x * n.x, by.y * n.y, by.z * n.z};
     };

@@ -14,6 +14,7 @@ struct PorousLaw {
   double alpha = 0.0;        ///< Pa s/m, >= 0
   double beta = 0.0;         ///< Pa s^2/m^2, >= 0
   bool impermeable = false;  ///< no flow through the sheet; alpha and beta are ignored
+  bool no_slip = false;  ///< the air has the velocity of the sheet along its tangents; else no shear stress
 };
 
 /// Parameters of the exchange between a sheet and the air.

@@ -2,6 +2,8 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "kernels/coupling/sheet/parameters.hpp"
@@ -10,13 +12,19 @@ namespace drogue::parachute_app {
 
 /// Kinds of bodies.
 enum class BodyKind {
-  plate,  ///< rectangle normal to an axis
+  plate,     ///< rectangle normal to an axis
+  disk,      ///< circular plate normal to an axis
+  sphere,    ///< closed
+  cylinder,  ///< about an axis, with or without its ends; a circle in two dimensions
+  cup,       ///< half of a sphere, open along an axis
 };
 
 /// Laws of the flow through a sheet.
 enum class PorosityLaw {
   none,         ///< impermeable
   forchheimer,  ///< pressure difference alpha w + beta |w| w at the normal velocity w
+  ergun,        ///< the same with alpha and beta of a packed bed, Ergun 1952
+  kim_peskin,   ///< the same with alpha of pores of a given conductance, beta = 0; Kim and Peskin 2006
 };
 
 struct Porosity {
@@ -24,25 +32,46 @@ struct Porosity {
   // Measured on cloth MIL-C-7020 type III.
   double alpha = 254.4;  ///< Pa s/m
   double beta = 37.6;    ///< Pa s^2/m^2
+  // Packed bed of Ergun.
+  double void_fraction = 0.0;
+  double thickness = 0.0;  ///< m
+  double grain = 0.0;      ///< diameter of the grains or threads, m
+  // Pores of Kim and Peskin.
+  double pores = 0.0;        ///< per area, 1/m^2
+  double conductance = 0.0;  ///< flow rate through a pore per pressure difference, m^3/(Pa s)
 };
 
-/// Sheet that does not move, immersed in the flow.
+/// Rigid sheet immersed in the flow, at rest or in prescribed motion.
 struct Body {
   BodyKind kind = BodyKind::plate;
-  int normal = 0;                   ///< axis
-  std::array<double, 3> centre{};   ///< m
-  std::array<double, 2> lengths{};  ///< m, along the other axes in ascending order
-  double edge_length = 0.0;         ///< m, of the triangles
+  int axis = 0;                       ///< normal of a plate or disk; axis of a cylinder or cup
+  std::array<double, 3> centre{};     ///< m
+  std::array<double, 2> lengths{};    ///< m, of a plate along the other axes in ascending order
+  double radius = 0.0;                ///< m, of others
+  double length = 0.0;                ///< m, of a cylinder
+  bool has_ends = false;              ///< of a cylinder: disks close it
+  bool opens_to_high = false;         ///< a cup is open towards the high side of its axis
+  double edge_length = 0.0;           ///< m, of the triangles
+  std::array<std::string, 3> motion;  ///< displacement, m, as expressions of t; empty: none
+  std::optional<bool> slip;           ///< the fluid slips freely along the sheet
   Porosity porosity;
 
-  /// The two axes along the plate, ascending. Does not throw.
+  /// The two axes along a plate, ascending. Does not throw.
   [[nodiscard]] std::array<std::size_t, 2> axes() const;
 
-  /// Numbers of edges along these axes, and of vertices. Do not throw.
-  [[nodiscard]] std::array<int, 2> edges() const;
-  [[nodiscard]] std::size_t vertices() const {
-    return static_cast<std::size_t>(edges()[0] + 1) * static_cast<std::size_t>(edges()[1] + 1);
-  }
+  /// Numbers of divisions: edges of a plate along these axes; rings of a disk or cup; divisions of a sphere;
+  /// columns, or rings of ends, and rows of a cylinder. Does not throw.
+  [[nodiscard]] std::array<double, 2> divisions() const;
+
+  /// Number of vertices. Does not throw.
+  [[nodiscard]] double vertices() const;
+
+  /// Largest distances from the centre along each axis to the low and the high side, m. Does not throw.
+  [[nodiscard]] std::array<std::array<double, 2>, 3> extents() const;
+
+  [[nodiscard]] bool moves() const;
+  /// `slip`; by default, true for open sheets. Does not throw.
+  [[nodiscard]] bool slips() const;
 };
 
 /// Largest distance of vertices in cells at which a sheet does not leak: 1 / 1.4. Shown by
@@ -52,10 +81,14 @@ inline constexpr double largest_edge_in_cells = 1.0 / 1.4;
 /// Number of vertices of all bodies. Does not throw.
 [[nodiscard]] std::size_t vertices_of(const std::vector<Body>& bodies);
 
-/// The bodies as one pinned cloth. Throws only std::bad_alloc.
+/// Triangles of a body at time 0 without its motion. Throws only std::bad_alloc.
+[[nodiscard]] mesh::Mesh mesh_of(const Body& body);
+
+/// The bodies as one pinned cloth with their motions. Throws std::bad_alloc, and std::invalid_argument for
+/// the expression of a motion that is too long.
 [[nodiscard]] fabric::Parameters make_sheets(const std::vector<Body>& bodies);
 
-/// Law of the sheet for the solver. Does not throw.
-[[nodiscard]] coupling::PorousLaw law_of(const Porosity& porosity);
+/// Law of the sheet for the solver, in a fluid of given density, kg/m^3, and viscosity, Pa s. Does not throw.
+[[nodiscard]] coupling::PorousLaw law_of(const Porosity& porosity, double density, double viscosity);
 
 }  // namespace drogue::parachute_app

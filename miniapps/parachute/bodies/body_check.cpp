@@ -1,5 +1,7 @@
 #include "miniapps/parachute/bodies/body_check.hpp"
 
+#include <cmath>
+#include <stdexcept>
 #include <string>
 
 #include "common/scene/read.hpp"
@@ -22,50 +24,109 @@ bool is_bounded(const flow::Parameters& p, std::size_t axis) {
   return p.cells[axis] > 1 && p.boundary[2 * axis].kind != flow::BoundaryKind::periodic;
 }
 
-/// Checks the extent of a body along an axis, m. The forces of a sheet act up to one cell beyond it.
+/// Checks the extent of a body along an axis, m. The forces of a sheet act up to one cell beyond it. `at`:
+/// the time, where that matters.
 void check_extent(const Table& root, const flow::Parameters& p, const std::string& key,
-                  const std::string& place, std::size_t axis, double low, double high) {
+                  const std::string& place, std::size_t axis, double low, double high,
+                  const std::string& at) {
   const double margin = is_bounded(p, axis) ? spacing(p, axis) : 0.0;
   const double rounding = 1e-9 * (p.high[axis] - p.low[axis]);
   if (low >= p.low[axis] + margin - rounding && high <= p.high[axis] - margin + rounding) return;
   contradict(root, key,
              place + " reaches from " + real_text(low) + " to " + real_text(high) + " m along " +
-                 axis_names[axis] + ", beyond " +
+                 axis_names[axis] + at + ", beyond " +
                  (margin > 0.0 ? "the cells beside the sides of the domain" : "the domain") +
                  ": it must lie between " + real_text(p.low[axis] + margin) + " and " +
                  real_text(p.high[axis] - margin) + " m");
 }
 
-void check_body(const Table& root, const FlowScene& scene, std::size_t index) {
-  const Body& body = scene.bodies[index];
-  const flow::Parameters& p = scene.parameters;
-  const std::string name = "body[" + std::to_string(index) + "]", edge_length = name + ".edge_length";
-  const auto axes = body.axes();
-  const auto edges = body.edges();
-  const auto normal = static_cast<std::size_t>(body.normal);
-  if (p.cells[normal] == 1)
-    contradict(root, name + ".normal", name + ".normal: the grid has one cell along " + axis_names[normal]);
-  double vertices = 1.0;
-  for (std::size_t k = 0; k < 2; ++k) {
-    vertices *= edges[k] + 1.0;
-    const double edge = body.lengths[k] / edges[k], h = spacing(p, axes[k]);
-    if (p.cells[axes[k]] > 1 && edge > (1.0 + 1e-9) * largest_edge_in_cells * h)
-      contradict(root, edge_length,
-                 edge_length + ": edges of " + real_text(edge) + " m along " + axis_names[axes[k]] +
+/// Checks that a body spans the single cell of a grid in two dimensions.
+void check_two_dimensions(const Table& root, const flow::Parameters& p, const Body& body,
+                          const std::string& name) {
+  const auto along = static_cast<std::size_t>(body.axis);
+  if (body.kind == BodyKind::plate) {
+    if (p.cells[along] == 1)
+      contradict(root, name + ".normal", name + ".normal: the grid has one cell along " + axis_names[along]);
+    return;
+  }
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (p.cells[axis] > 1 || (body.kind == BodyKind::cylinder && axis == along && !body.has_ends)) continue;
+    contradict(root, body.kind == BodyKind::cylinder ? name + ".axis" : name + ".kind",
+               name + (body.kind == BodyKind::cylinder ? ".axis" : ".kind") +
+                   ": the grid has one cell along " + axis_names[axis] +
+                   ", which only a plate or an open cylinder along " + axis_names[axis] + " spans");
+  }
+}
+
+/// Checks the lengths of edges against the cells along each axis.
+void check_edges(const Table& root, const flow::Parameters& p, const Body& body, const std::string& name) {
+  const std::string key = name + ".edge_length";
+  const double vertices = body.vertices();
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const bool is_plate = body.kind == BodyKind::plate;
+    if (p.cells[axis] == 1 || (is_plate && static_cast<int>(axis) == body.axis)) continue;
+    double edge = body.edge_length;
+    if (is_plate) {
+      const std::size_t k = axis == body.axes()[0] ? 0 : 1;
+      edge = body.lengths[k] / body.divisions()[k];
+    }
+    const double h = spacing(p, axis);
+    if (edge > (1.0 + 1e-9) * largest_edge_in_cells * h)
+      contradict(root, key,
+                 key + ": edges of " + real_text(edge) + " m along " + axis_names[axis] +
                      " leak on cells of " + real_text(h) + " m; at most " +
                      real_text(largest_edge_in_cells * h) + " m");
-    check_extent(root, p, name + ".lengths", name, axes[k], body.centre[axes[k]] - 0.5 * body.lengths[k],
-                 body.centre[axes[k]] + 0.5 * body.lengths[k]);
   }
-  check_extent(root, p, name + ".centre", name, normal, body.centre[normal], body.centre[normal]);
   if (vertices > most_vertices)
-    contradict(root, edge_length, edge_length + ": " + real_text(vertices) + " vertices are more than 2^20");
+    contradict(root, key, key + ": " + real_text(vertices) + " vertices are more than 2^20");
+}
+
+/// Checks the places that a body reaches at several times of the run.
+void check_places(const Table& root, const FlowScene& scene, const Body& body, const std::string& name) {
+  const auto extents = body.extents();
+  std::array<bool, 3> is_side{};  // of a plate
+  if (body.kind == BodyKind::plate)
+    for (const std::size_t axis : body.axes()) is_side[axis] = true;
+  constexpr int intervals = 256;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::string& text = body.motion[axis];
+    const SpaceTimeFunction displacement(text.empty() ? "0" : text);
+    for (int i = 0; i <= (displacement.constant() ? 0 : intervals); ++i) {
+      const double time = scene.end_time * i / intervals, moved = displacement({}, time);
+      const std::string at = text.empty() ? "" : " at t = " + real_text(time) + " s",
+                        resting = is_side[axis] ? ".lengths" : ".centre",
+                        key = name + (text.empty() ? resting : std::string(".motion.") + axis_names[axis]);
+      if (!std::isfinite(moved)) contradict(root, key, key + " = " + text + " is not finite" + at);
+      check_extent(root, scene.parameters, key, name, axis, body.centre[axis] + moved - extents[axis][0],
+                   body.centre[axis] + moved + extents[axis][1], at);
+    }
+  }
+}
+
+void check_body(const Table& root, const FlowScene& scene, std::size_t index) {
+  const Body& body = scene.bodies[index];
+  const std::string name = "body[" + std::to_string(index) + "]";
+  check_two_dimensions(root, scene.parameters, body, name);
+  check_edges(root, scene.parameters, body, name);
+  check_places(root, scene, body, name);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::string key = name + ".motion." + axis_names[axis];
+    if (body.motion[axis].empty()) continue;
+    if (scene.parameters.cells[axis] == 1)
+      contradict(root, key, key + ": the grid has one cell along " + axis_names[axis]);
+    try {
+      static_cast<void>(device_program(body.motion[axis]));
+    } catch (const std::invalid_argument& refused) {
+      contradict(root, key, key + ": " + refused.what());
+    }
+  }
 }
 
 }  // namespace
 
-void check_bodies(const Table& root, const FlowScene& scene) {
+void complete_and_check_bodies(const Table& root, FlowScene& scene) {
   if (scene.bodies.empty()) return;
+  for (Body& body : scene.bodies) body.slip = body.slips();
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) check_body(root, scene, i);
   const flow::Parameters& p = scene.parameters;
   if (p.fixed_dt == 0.0 && p.max_dt == 0.0)

@@ -5,8 +5,8 @@
 
 namespace drogue::parachute_app {
 
-/// Checks the bodies of a scene against its grid and steps. Throws `Failure` (invalid_scene) at the key in
-/// error.
-void check_bodies(const scene::Table& root, const FlowScene& scene);
+/// Fills in defaults of bodies that depend on their kind, and checks bodies against the grid and the steps.
+/// Throws `Failure` (invalid_scene) at the key in error.
+void complete_and_check_bodies(const scene::Table& root, FlowScene& scene);
 
 }  // namespace drogue::parachute_app

@@ -1,5 +1,7 @@
 #include "miniapps/parachute/bodies/body_keys.hpp"
 
+#include <algorithm>
+
 #include "miniapps/parachute/scene/codecs.hpp"
 
 namespace drogue::parachute_app {
@@ -8,50 +10,165 @@ namespace {
 using scene::Choices;
 using scene::Table;
 
-const Choices<BodyKind> body_choices = {{"plate", BodyKind::plate}};
+const Choices<BodyKind> body_choices = {{"plate", BodyKind::plate},
+                                        {"disk", BodyKind::disk},
+                                        {"sphere", BodyKind::sphere},
+                                        {"cylinder", BodyKind::cylinder},
+                                        {"cup", BodyKind::cup}};
 const Choices<PorosityLaw> law_choices = {{"none", PorosityLaw::none},
-                                          {"forchheimer", PorosityLaw::forchheimer}};
+                                          {"forchheimer", PorosityLaw::forchheimer},
+                                          {"ergun", PorosityLaw::ergun},
+                                          {"kim-peskin", PorosityLaw::kim_peskin}};
+const Choices<bool> opening_choices = {{"low", false}, {"high", true}};
+const Choices<bool> end_choices = {{"open", false}, {"closed", true}};
 
 }  // namespace
 
 void declare_porosity(Table& table, Porosity& porosity) {
-  const auto is_porous = [&porosity] { return porosity.law == PorosityLaw::forchheimer; };
   table.value(
       "law", scene::choice_codec(porosity.law, law_choices),
-      "No flow through the sheet, or the pressure difference alpha w + beta |w| w at the normal velocity w");
-  table.value("alpha", scene::real_codec(porosity.alpha), "Linear coefficient")
+      "No flow through the sheet, or the pressure difference alpha w + beta |w| w at the normal "
+      "velocity w: alpha and beta as given, of a packed bed (Ergun 1952), or of pores (Kim and Peskin "
+      "2006)");
+  const auto with = [&table, &porosity](const char* key, double& value, const std::string& help,
+                                        PorosityLaw law, const std::string& name) -> scene::Key& {
+    return table.value(key, scene::real_codec(value), help)
+        .when([&porosity, law] { return porosity.law == law; }, "with law = \"" + name + "\"", "law");
+  };
+  using enum PorosityLaw;
+  with("alpha", porosity.alpha, "Linear coefficient", forchheimer, "forchheimer")
       .unit("Pa s/m")
-      .at_least(0.0)
-      .when(is_porous, "with law = \"forchheimer\"", "law");
-  table.value("beta", scene::real_codec(porosity.beta), "Quadratic coefficient")
+      .at_least(0.0);
+  with("beta", porosity.beta, "Quadratic coefficient", forchheimer, "forchheimer")
       .unit("Pa s^2/m^2")
-      .at_least(0.0)
-      .when(is_porous, "with law = \"forchheimer\"", "law");
-}
-
-void declare_body(Table& table, Body& body) {
-  table.value("kind", scene::choice_codec(body.kind, body_choices), "A rectangle without thickness")
+      .at_least(0.0);
+  const std::string bed = "ergun", pores = "kim-peskin";
+  with("void_fraction", porosity.void_fraction, "Volume of voids over that of the sheet", ergun, bed)
+      .above(0.0)
+      .at_most(1.0)
       .required();
-  table.value("normal", scene::choice_codec(body.normal, axis_choices), "Axis normal to the plate")
-      .required();
-  table.value("centre", vector_codec(body.centre), "Centre").unit("m").required();
-  table
-      .value("lengths", pair_codec(body.lengths),
-             "Extents along the two other axes, in the order x, y, z; the whole width of a periodic axis is "
-             "closed")
+  with("thickness", porosity.thickness, "Thickness of the sheet", ergun, bed).unit("m").above(0.0).required();
+  with("grain", porosity.grain, "Diameter of its grains or threads", ergun, bed)
       .unit("m")
       .above(0.0)
       .required();
+  with("pores", porosity.pores, "Number of pores per area", kim_peskin, pores)
+      .unit("1/m^2")
+      .above(0.0)
+      .required();
+  with("conductance", porosity.conductance, "Flow rate through a pore over the pressure difference",
+       kim_peskin, pores)
+      .unit("m^3/(Pa s)")
+      .above(0.0)
+      .required();
+}
+
+/// Condition of keys that some kinds of bodies have.
+struct OfKinds {
+  const Body& body;
+  std::vector<BodyKind> kinds;
+
+  [[nodiscard]] std::function<bool()> holds() const {
+    return [&of = body, list = kinds] { return std::ranges::find(list, of.kind) != list.end(); };
+  }
+  [[nodiscard]] std::string text() const {
+    std::string names;
+    for (const auto& [name, kind] : body_choices)
+      if (std::ranges::find(kinds, kind) != kinds.end())
+        names += (names.empty() ? "" : " or ") + ("\"" + name + "\"");
+    return "with kind = " + names;
+  }
+};
+
+scene::Key& declare_for(Table& table, const std::string& name, scene::Codec codec, const std::string& help,
+                        const OfKinds& of) {
+  return table.value(name, std::move(codec), help).when(of.holds(), of.text(), "kind");
+}
+
+void declare_shape(Table& table, Body& body) {
+  using enum BodyKind;
+  declare_for(table, "normal", scene::choice_codec(body.axis, axis_choices), "Axis normal to the sheet",
+              {body, {plate, disk}})
+      .required();
+  declare_for(table, "axis", scene::choice_codec(body.axis, axis_choices),
+              "Axis of symmetry; in two dimensions, that of a cylinder has the single cell",
+              {body, {cylinder, cup}})
+      .required();
+  table.value("centre", vector_codec(body.centre), "Centre; of a cup, that of the whole sphere")
+      .unit("m")
+      .required();
+  declare_for(table, "lengths", pair_codec(body.lengths),
+              "Extents along the two other axes, in the order x, y, z; the whole width of a periodic axis is "
+              "closed",
+              {body, {plate}})
+      .unit("m")
+      .above(0.0)
+      .required();
+  declare_for(table, "radius", scene::real_codec(body.radius), "Radius",
+              {body, {disk, sphere, cylinder, cup}})
+      .unit("m")
+      .above(0.0)
+      .required();
+  declare_for(table, "length", scene::real_codec(body.length), "Extent along the axis", {body, {cylinder}})
+      .unit("m")
+      .above(0.0)
+      .required();
+  declare_for(table, "ends", scene::choice_codec(body.has_ends, end_choices),
+              "Ends of the cylinder: a tube, or closed by disks", {body, {cylinder}});
+  declare_for(table, "opening", scene::choice_codec(body.opens_to_high, opening_choices),
+              "Side along the axis to which the cup is open", {body, {cup}})
+      .required();
+}
+
+/// Boolean that is absent unless given.
+scene::Codec optional_boolean_codec(std::optional<bool>& value) {
+  return {"boolean",
+          [&value](const scene::Node& node, const scene::Limits& limits) {
+            bool read = false;
+            std::string fault = scene::boolean_codec(read).read(node, limits);
+            if (fault.empty()) value = read;
+            return fault;
+          },
+          [&value]() -> std::optional<std::string> {
+            if (!value) return std::nullopt;
+            return *value ? "true" : "false";
+          },
+          scene::back_to_default(value)};
+}
+
+void declare_body(Table& table, Body& body) {
   table
-      .value("edge_length", scene::real_codec(body.edge_length),
-             "Largest edge of the triangles along the axes; at most a cell over 1.4, and half a cell for "
-             "accuracy")
+      .value(
+          "kind", scene::choice_codec(body.kind, body_choices),
+          "A rectangle, a disk, a sphere, a cylinder, or half of a sphere that is open on one side; without "
+          "thickness")
+      .required();
+  declare_shape(table, body);
+  table
+      .value(
+          "edge_length", scene::real_codec(body.edge_length),
+          "Largest edge of the triangles, of a plate or tube along its sides; at most a cell over 1.4, and "
+          "half a cell for accuracy")
       .unit("m")
       .above(0.0)
       .required();
   table.table(
+      "motion",
+      [&](Table& motion) {
+        for (std::size_t axis = 0; axis < 3; ++axis)
+          motion
+              .value(axis_names[axis], scene::real_or_expression_codec(body.motion[axis], {"t"}),
+                     std::string("Displacement from centre along ") + axis_names[axis])
+              .unit("m");
+      },
+      "Prescribed motion; the fluid takes part in it from time 0 on");
+  table
+      .value("slip", optional_boolean_codec(body.slip),
+             "The fluid slips freely along the sheet, or has its velocity")
+      .default_text("`false` for spheres and cylinders, else `true`");
+  table.table(
       "porosity", [&](Table& porosity) { declare_porosity(porosity, body.porosity); },
-      "Flow through the plate");
+      "Flow through the sheet");
 }
 
 void declare_coupling(Table& table, coupling::SheetParameters& coupling) {

@@ -234,13 +234,17 @@ CanopyMesh make_canopy(const Canopy& canopy) {
   return result;
 }
 
-Sheets make_all_sheets(const std::vector<Body>& bodies, const std::vector<Canopy>& canopies) {
+Sheets make_all_sheets(const std::vector<Body>& bodies, const std::vector<Canopy>& canopies, double density,
+                       double viscosity) {
   Sheets sheets;
   sheets.fabric = make_sheets(bodies);
   fabric::Parameters& p = sheets.fabric;
   sheets.positions = p.mesh.rest;
-  for (const Body& body : bodies)
-    sheets.laws.insert(sheets.laws.end(), body.vertices(), law_of(body.porosity));
+  for (const Body& body : bodies) {
+    coupling::PorousLaw law = law_of(body.porosity, density, viscosity);
+    law.no_slip = !body.slips();
+    sheets.laws.insert(sheets.laws.end(), static_cast<std::size_t>(body.vertices()), law);
+  }
   for (const Canopy& canopy : canopies) {
     const CanopyMesh one = make_canopy(canopy);
     const int begin = static_cast<int>(p.mesh.rest.size());
@@ -255,7 +259,7 @@ Sheets make_all_sheets(const std::vector<Body>& bodies, const std::vector<Canopy
       p.mesh.triangles.push_back({t[0] + begin, t[1] + begin, t[2] + begin});
     for (const auto& line : one.fabric.mesh.lines) p.mesh.lines.push_back({line[0] + begin, line[1] + begin});
     rows.triangles_end = p.mesh.triangles.size();
-    sheets.laws.insert(sheets.laws.end(), one.positions.size(), law_of(canopy.porosity));
+    sheets.laws.insert(sheets.laws.end(), one.positions.size(), law_of(canopy.porosity, density, viscosity));
     sheets.canopies.push_back(rows);
     p.material.membrane_modulus = canopy.membrane_modulus;
     p.material.poisson = canopy.poisson;

@@ -106,7 +106,9 @@ struct Sheets {
 /// parameters out of range.
 [[nodiscard]] CanopyMesh make_canopy(const Canopy& canopy);
 
-/// The bodies, then the canopies. Throws std::invalid_argument for parameters out of range.
-[[nodiscard]] Sheets make_all_sheets(const std::vector<Body>& bodies, const std::vector<Canopy>& canopies);
+/// The bodies, then the canopies, in a fluid of given density, kg/m^3, and viscosity, Pa s. Throws
+/// std::invalid_argument for parameters out of range.
+[[nodiscard]] Sheets make_all_sheets(const std::vector<Body>& bodies, const std::vector<Canopy>& canopies,
+                                     double density, double viscosity);
 
 }  // namespace drogue::parachute_app

@@ -104,7 +104,9 @@ bool are_near(const std::vector<Vector>& first, const std::vector<Vector>& secon
 
 void check_contact(const Table& root, const FlowScene& scene) {
   if (!scene.contact) return;
-  const double height = fabric::shortest_altitude(make_all_sheets(scene.bodies, scene.canopies).fabric.mesh);
+  const double height = fabric::shortest_altitude(
+      make_all_sheets(scene.bodies, scene.canopies, scene.parameters.density, scene.parameters.viscosity)
+          .fabric.mesh);
   if (scene.thickness < height) return;
   contradict(root, "coupling.thickness",
              "coupling.thickness = " + real_text(scene.thickness) +

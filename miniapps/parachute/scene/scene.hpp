@@ -88,6 +88,15 @@ struct CanopyPeak {
   std::optional<std::array<double, 2>> time;
 };
 
+/// Quantity of the rows of the history from a time on, computed from the force of the fluid on a body.
+struct ForceWindow {
+  int body = 0;
+  int axis = 0;
+  double from = 0.0;       ///< s
+  double reference = 1.0;  ///< N or s
+  Target target;
+};
+
 /// Largest rate at which the kinetic energy falls, W, and optionally its time, s.
 struct DissipationPeak {
   Target target;
@@ -106,7 +115,9 @@ struct Verify {
   std::vector<CanopyMean> drags;            ///< drag coefficients with the nominal area
   std::vector<CanopyMean> terminal_speeds;  ///< of the fluid relative to the payload, m/s
   std::vector<CanopyPeak> peak_forces;
-  std::optional<double> force_balance;  ///< relative
+  std::optional<double> force_balance;   ///< relative
+  std::vector<ForceWindow> mean_forces;  ///< over the reference, N
+  std::vector<ForceWindow> frequencies;  ///< of the force, times the reference, s
   std::vector<Profile> profiles;
 };
 

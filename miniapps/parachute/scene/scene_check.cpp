@@ -242,7 +242,7 @@ void complete_and_check(const Table& root, FlowScene& scene) {
   complete_velocities(root, scene);
   check_net_inflow(root, scene);
   check_solver(root, p);
-  check_bodies(root, scene);
+  complete_and_check_bodies(root, scene);
   check_canopies(root, scene);
   complete_fields(root, scene);
   check_verify(root, scene);

@@ -50,17 +50,37 @@ void check_flow_rates(const Table& root, const FlowScene& scene) {
   }
 }
 
+/// Checks the body and the value of a check of forces.
+void check_component(const Table& root, const FlowScene& scene, const std::string& path, int body,
+                     const Target& target) {
+  if (body >= static_cast<int>(scene.bodies.size()))
+    contradict(root, path + ".body",
+               path + ".body = " + std::to_string(body) + ": the number of bodies is " +
+                   std::to_string(scene.bodies.size()) + ", and the first one is 0");
+  if (target.value == 0.0)
+    contradict(root, path + ".value", path + ".value must not be 0: the tolerance is relative");
+}
+
 void check_forces(const Table& root, const FlowScene& scene) {
-  for (std::size_t i = 0; i < scene.verify.forces.size(); ++i) {
-    const BodyForce& force = scene.verify.forces[i];
-    const std::string path = "verify.force[" + std::to_string(i) + "]";
-    if (force.body >= static_cast<int>(scene.bodies.size()))
-      contradict(root, path + ".body",
-                 path + ".body = " + std::to_string(force.body) + ": the number of bodies is " +
-                     std::to_string(scene.bodies.size()) + ", and the first one is 0");
-    if (force.target.value == 0.0)
-      contradict(root, path + ".value", path + ".value must not be 0: the tolerance is relative");
-  }
+  const auto path_of = [](const std::string& name, std::size_t i) {
+    return "verify." + name + "[" + std::to_string(i) + "]";
+  };
+  for (std::size_t i = 0; i < scene.verify.forces.size(); ++i)
+    check_component(root, scene, path_of("force", i), scene.verify.forces[i].body,
+                    scene.verify.forces[i].target);
+  const auto check_windows = [&](const std::string& name, const std::vector<ForceWindow>& windows) {
+    for (std::size_t i = 0; i < windows.size(); ++i) {
+      const std::string path = path_of(name, i), key = path + ".from";
+      check_component(root, scene, path, windows[i].body, windows[i].target);
+      require_rows(root, scene, path);
+      if (windows[i].from >= scene.end_time)
+        contradict(root, key,
+                   key + " = " + scene::real_text(windows[i].from) +
+                       " s must be before run.end_time = " + scene::real_text(scene.end_time) + " s");
+    }
+  };
+  check_windows("mean_force", scene.verify.mean_forces);
+  check_windows("frequency", scene.verify.frequencies);
 }
 
 void check_canopy_number(const Table& root, const FlowScene& scene, const std::string& path, int canopy) {

@@ -171,7 +171,8 @@ void declare_flow_scene(Table& root, FlowScene& scene) {
   root.table(
       "flow", [&](Table& table) { declare_flow(table, scene); }, "The numerical scheme and the forces");
   root.tables("canopy", scene.canopies, declare_canopy, "Parachutes: cloth, suspension lines and a payload");
-  root.tables("body", scene.bodies, declare_body, "Rigid sheets in the flow, which do not move");
+  root.tables("body", scene.bodies, declare_body,
+              "Rigid sheets in the flow, at rest or in prescribed motion");
   root.table(
           "coupling",
           [&](Table& table) {

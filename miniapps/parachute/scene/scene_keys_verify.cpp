@@ -125,6 +125,24 @@ void declare_canopy_checks(Table& table, Verify& verify) {
       .at_least(0.0);
 }
 
+void declare_component(Table& table, int& body, int& axis) {
+  table.value("body", scene::integer_codec(body), "Number of the [[body]], from 0").range(0, 1e6).required();
+  table.value("axis", scene::choice_codec(axis, axis_choices), "Component").required();
+}
+
+/// `unit`: of the reference.
+void declare_window(Table& table, ForceWindow& window, const std::string& reference,
+                    const std::string& unit) {
+  declare_component(table, window.body, window.axis);
+  table
+      .value("from", scene::real_codec(window.from),
+             "Time of the first row of the history that counts; the last one counts always")
+      .unit("s")
+      .at_least(0.0);
+  table.value("reference", scene::real_codec(window.reference), reference).unit(unit).above(0.0);
+  declare_target(table, window.target, "", "Largest relative deviation that passes");
+}
+
 }  // namespace
 
 void declare_verify(Table& table, Verify& verify) {
@@ -178,13 +196,27 @@ void declare_verify(Table& table, Verify& verify) {
   table.tables(
       "force", verify.forces,
       [deviation](Table& force, BodyForce& value) {
-        force.value("body", scene::integer_codec(value.body), "Number of the [[body]], from 0")
-            .range(0, 1e6)
-            .required();
-        force.value("axis", scene::choice_codec(value.axis, axis_choices), "Component").required();
+        declare_component(force, value.body, value.axis);
         declare_target(force, value.target, "N", deviation);
       },
       "Forces of the fluid on bodies at the end");
+  table.tables(
+      "mean_force", verify.mean_forces,
+      [](Table& window, ForceWindow& value) {
+        declare_window(window, value,
+                       "Force that the mean is divided by: half of density, squared speed and area for the "
+                       "drag coefficient",
+                       "N");
+      },
+      "Means of the forces of the fluid on bodies over the rows of the history from a time on");
+  table.tables(
+      "frequency", verify.frequencies,
+      [](Table& window, ForceWindow& value) {
+        declare_window(window, value,
+                       "Time that the frequency is multiplied by: width over speed for the Strouhal number",
+                       "s");
+      },
+      "Frequencies at which forces of the fluid on bodies cross their mean upwards");
   declare_canopy_checks(table, verify);
   table.tables("profile", verify.profiles, declare_profile, "Velocities along lines at the end");
 }

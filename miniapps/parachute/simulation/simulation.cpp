@@ -73,7 +73,10 @@ coupling::Parameters coupled_parameters(const FlowScene& scene, const Sheets& sh
 }  // namespace
 
 Simulation::Simulation(const FlowScene& scene, const framework::SimulationSettings& settings)
-    : _scene(scene), _sheets(make_all_sheets(scene.bodies, scene.canopies)), _record(scene) {
+    : _scene(scene),
+      _sheets(make_all_sheets(scene.bodies, scene.canopies, scene.parameters.density,
+                              scene.parameters.viscosity)),
+      _record(scene) {
   if (settings.communicator != nullptr) {
     if (scene.has_sheets())
       throw Failure(ExitCode::usage, "scenes with a [[body]] or a [[canopy]] run on one rank");
@@ -156,9 +159,8 @@ std::vector<run::Column> Simulation::history_columns() const {
   for (std::size_t side = 0; side < 6; ++side)
     if (!is_periodic(_scene.parameters, side))
       columns.push_back({std::string("outflow_") + side_names[side], "m^3/s"});
-  for (std::size_t i = 0; i < _scene.bodies.size(); ++i)
-    for (const char* axis : axis_names)
-      columns.push_back({"body_" + std::to_string(i) + "_force_" + axis, "N"});
+  for (int body = 0; body < static_cast<int>(_scene.bodies.size()); ++body)
+    for (int axis = 0; axis < 3; ++axis) columns.push_back({force_column(body, axis), "N"});
   append_canopy_columns(columns);
   return columns;
 }

@@ -57,6 +57,10 @@ class Simulation final : public framework::Simulation {
   void check_totals(run::ResultDocument& result);
   void check_forces(run::ResultDocument& result);
   void check_canopies(run::ResultDocument& result);
+  void check_force_history(const run::RunDirectory* directory, run::ResultDocument& result) const;
+  [[nodiscard]] static std::string force_column(int body, int axis) {
+    return "body_" + std::to_string(body) + "_force_" + axis_names[static_cast<std::size_t>(axis)];
+  }
   [[nodiscard]] std::vector<fabric::Vector> body_forces();
   [[nodiscard]] SheetState sheet_state();
   void append_canopy_columns(std::vector<run::Column>& columns) const;

@@ -56,7 +56,7 @@ std::vector<Vector> Simulation::body_forces() {
   _coupled->forces(on_fluid);
   auto force = on_fluid.begin();
   for (std::size_t i = 0; i < sums.size(); ++i)
-    for (std::size_t k = 0; k < _scene.bodies[i].vertices(); ++k, ++force)
+    for (std::size_t k = 0; k < static_cast<std::size_t>(_scene.bodies[i].vertices()); ++k, ++force)
       for (std::size_t axis = 0; axis < 3; ++axis) sums[i][axis] -= (*force)[axis];
   return sums;
 }
@@ -173,15 +173,21 @@ std::string Simulation::sheet_failure_text(coupling::FailureReason reason) {
           spacing[axis];
       if (distance < least) least = distance, vertex = i, closest = side;
     }
+  std::size_t end = 0;
+  for (std::size_t i = 0; i < _scene.bodies.size(); ++i) {
+    const std::size_t begin = end;
+    end += static_cast<std::size_t>(_scene.bodies[i].vertices());
+    if (vertex >= begin && vertex < end) text << "body[" << i << "] leaves the domain: a vertex";
+  }
   for (std::size_t i = 0; i < _sheets.canopies.size(); ++i) {
     const CanopyRows& rows = _sheets.canopies[i];
-    if (vertex < rows.begin || vertex > rows.payload) continue;
-    text << "canopy[" << i
-         << "] leaves the domain: " << (vertex == rows.payload ? "its payload" : "its cloth") << " at ("
-         << positions[vertex][0] << ", " << positions[vertex][1] << ", " << positions[vertex][2]
-         << ") m comes closer than a cell to the side " << side_names[closest] << " after t = " << time
-         << " s; a larger grid.domain or a shorter run.end_time may save the run";
+    if (vertex >= rows.begin && vertex <= rows.payload)
+      text << "canopy[" << i
+           << "] leaves the domain: " << (vertex == rows.payload ? "its payload" : "its cloth");
   }
+  text << " at (" << positions[vertex][0] << ", " << positions[vertex][1] << ", " << positions[vertex][2]
+       << ") m comes closer than a cell to the side " << side_names[closest] << " after t = " << time
+       << " s; a larger grid.domain or a shorter run.end_time may save the run";
   return text.str();
 }
 

@@ -1,9 +1,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/run/history_reader.hpp"
 #include "common/run/statistics.hpp"
 #include "miniapps/parachute/scene/functions.hpp"
 #include "miniapps/parachute/simulation/simulation.hpp"
+#include "miniapps/parachute/verify/force_history.hpp"
 #include "miniapps/parachute/verify/profile.hpp"
 #include "miniapps/parachute/verify/statistics.hpp"
 
@@ -172,6 +174,29 @@ void Simulation::check_canopies(run::ResultDocument& result) {
   if (wanted.force_balance) result.add_check("force_balance", _record.balance(), *wanted.force_balance);
 }
 
+void Simulation::check_force_history(const run::RunDirectory* directory, run::ResultDocument& result) const {
+  const Verify& wanted = _scene.verify;
+  if (wanted.mean_forces.empty() && wanted.frequencies.empty()) return;
+  const run::History history = run::read_history(directory->file("history.csv"));
+  const std::vector<double>& time = history.at("time");
+  const auto check = [&](const std::string& name, const std::vector<ForceWindow>& windows,
+                         const auto& measure) {
+    for (std::size_t i = 0; i < windows.size(); ++i) {
+      const ForceWindow& window = windows[i];
+      const double value = measure(history.at(force_column(window.body, window.axis)), window);
+      result.metrics.set("forces", name + "_" + std::to_string(i), value);
+      result.add_check(name + "_" + std::to_string(i), relative_deviation(value, window.target),
+                       window.target.tolerance);
+    }
+  };
+  check("mean_force", wanted.mean_forces, [&](const std::vector<double>& force, const ForceWindow& window) {
+    return mean_from(time, force, window.from) / window.reference;
+  });
+  check("frequency", wanted.frequencies, [&](const std::vector<double>& force, const ForceWindow& window) {
+    return frequency_from(time, force, window.from) * window.reference;
+  });
+}
+
 void Simulation::check_profiles(run::ResultDocument& result) {
   for (std::size_t i = 0; i < _scene.verify.profiles.size(); ++i) {
     const Profile& profile = _scene.verify.profiles[i];
@@ -196,7 +221,7 @@ void Simulation::check_profiles(run::ResultDocument& result) {
   }
 }
 
-ExitCode Simulation::verify(const run::RunDirectory*, run::ResultDocument& result) {
+ExitCode Simulation::verify(const run::RunDirectory* directory, run::ResultDocument& result) {
   const Verify& wanted = _scene.verify;
   if (wanted.exact) {
     result.errors = error_norms();
@@ -209,6 +234,7 @@ ExitCode Simulation::verify(const run::RunDirectory*, run::ResultDocument& resul
   if (needs_totals) check_totals(result);
   check_forces(result);
   check_canopies(result);
+  check_force_history(directory, result);
   check_profiles(result);
   return ExitCode::ok;
 }

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <limits>
 
+#include "common/run/history_reader.hpp"
 #include "common/run/statistics.hpp"
 #include "miniapps/springs/scene/expressions.hpp"
 #include "miniapps/springs/simulation/contact_state.hpp"
-#include "miniapps/springs/simulation/history.hpp"
 #include "miniapps/springs/verify/closed_forms.hpp"
 #include "miniapps/springs/verify/probe.hpp"
 #include "miniapps/springs/verify/sinusoid.hpp"
@@ -16,6 +16,7 @@ namespace drogue::springs_app {
 namespace {
 
 using fabric::Vector;
+using run::History;
 
 double distance(const Vector& a, const Vector& b) {
   return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
@@ -225,7 +226,7 @@ void verify(const SpringsScene& scene, const FinalState& state, const std::files
   const bool asks_history = wanted.frequency || wanted.front_speed || wanted.energy_drift ||
                             wanted.energy_balance || wanted.intersections || wanted.momentum ||
                             wanted.angular_momentum;
-  const History history = asks_history ? read_history(history_file) : History{};
+  const History history = asks_history ? run::read_history(history_file) : History{};
   const auto add = [&result](const std::string& name, double error, double tolerance) {
     result.errors[name] = error;
     result.add_check(name, error, tolerance);

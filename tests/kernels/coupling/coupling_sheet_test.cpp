@@ -4,7 +4,7 @@
 #include <numbers>
 #include <random>
 
-#include "kernels/coupling/sheet/porous_law.hpp"
+#include "kernels/coupling/sheet/no_slip.hpp"
 #include "kernels/reference/coupling/porous_sheet.hpp"
 #include "tests/support/coupled_case.hpp"
 
@@ -36,6 +36,37 @@ TEST(PorousLaw, ImpulseMatchesTheReference) {
 TEST(PorousLaw, StopsTheFlowThroughAnImpermeableSheet) {
   EXPECT_DOUBLE_EQ(porous_impulse({254.4, 37.6, true}, -3.0, 0.1, 2.0), -1.5);
   EXPECT_EQ(porous_impulse({0.0, 0.0, true}, 3.0, 0.1, 0.0), 0.0);
+}
+
+TEST(NoSlip, ImpulseMatchesTheReference) {
+  std::mt19937 engine(5);
+  std::uniform_real_distribution<double> exponent(-2.0, 2.0), side(-1.0, 1.0);
+  const auto positive = [&] { return std::pow(10.0, exponent(engine)); };
+  for (int k = 0; k < 2000; ++k) {
+    const double alpha = k % 5 == 0 ? 0.0 : positive(), beta = k % 7 == 0 ? 0.0 : positive(),
+                 tau = positive();
+    Vector n{side(engine), side(engine), k % 3 == 0 ? 0.0 : side(engine)}, w{}, m{};
+    const double length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      n[axis] /= length;
+      w[axis] = side(engine), m[axis] = positive();
+    }
+    const Vector expected = reference::no_slip_impulse(alpha, beta, n, w, tau, m);
+    const spatial::Point found = no_slip_impulse({alpha, beta, false, true}, {n[0], n[1], n[2]},
+                                                 {w[0], w[1], w[2]}, tau, {m[0], m[1], m[2]});
+    const double scale = std::abs(w[0] / m[0]) + std::abs(w[1] / m[1]) + std::abs(w[2] / m[2]);
+    EXPECT_NEAR(found.x, expected[0], 1e-12 * scale);
+    EXPECT_NEAR(found.y, expected[1], 1e-12 * scale);
+    EXPECT_NEAR(found.z, expected[2], 1e-12 * scale);
+  }
+}
+
+TEST(NoSlip, ImpermeableSheetsStopAllRelativeMotion) {
+  const spatial::Point found =
+      no_slip_impulse({0.0, 0.0, true, true}, {0.6, 0.8, 0.0}, {1.0, -2.0, 3.0}, 0.1, {1.0, 2.0, 4.0});
+  EXPECT_EQ(found.x, 1.0);
+  EXPECT_EQ(found.y, -1.0);
+  EXPECT_EQ(found.z, 0.75);
 }
 
 /// Mean velocity of the air, m/s.
@@ -141,12 +172,13 @@ double energy(CoupledRun& run) {
 }
 
 TEST(FreeSheet, ExchangesMomentumWithTheAirWithoutLoss) {
-  for (const bool impermeable : {false, true}) {
+  for (const int kind : {0, 1, 2, 3}) {
     CoupledCase c(16, 16, h, 0.004);
     c.add_strip(0.61, 0.2, 0.87, 1.4, 24);
     for (std::uint8_t& axes : c.p.fabric.pinned) axes = 0;
     for (std::size_t i = 0; i < c.v.size(); ++i) c.v[i] = {4.0, 1.0 + 0.5 * c.x[i][1], 0.0};
-    c.p.sheet.law.impermeable = impermeable;
+    c.p.sheet.law.impermeable = kind % 2 == 1;
+    c.p.sheet.law.no_slip = kind > 1;
     c.p.substeps = 40;
     CoupledRun run(c);
     const auto momentum = [&] {
@@ -172,17 +204,20 @@ TEST(FreeSheet, ExchangesMomentumWithTheAirWithoutLoss) {
 TEST(FreeSheet, EnergyNeverGrowsWithoutTheFilteredAcceleration) {
   struct Setting {
     double mass, dt;
-    bool impermeable;
+    bool impermeable, no_slip = false;
   };
   for (const Setting& setting : {Setting{0.00373, 0.01, false},
                                  {0.0373, 0.01, false},
                                  {0.373, 0.01, true},
                                  {0.0373, 0.1, false},
-                                 {0.0373, 0.1, true}}) {
+                                 {0.0373, 0.1, true},
+                                 {0.0373, 0.01, false, true},
+                                 {0.0373, 0.1, true, true}}) {
     CoupledCase c = taut_strip(16, 16, h, setting.dt, 32);
     c.set_mass(1.1 * setting.mass);
     c.p.substeps = static_cast<int>(std::ceil(setting.dt * 1e4 * std::sqrt(0.0373 / setting.mass)));
     c.p.sheet.law.impermeable = setting.impermeable;
+    c.p.sheet.law.no_slip = setting.no_slip;
     c.p.sheet.filter = 0.0;
     CoupledRun resting(c);
     const double at_rest = energy(resting);

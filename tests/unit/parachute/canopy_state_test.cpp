@@ -27,7 +27,7 @@ TEST(CanopyState, ProjectedAreaIsThatOfTheShadow) {
   canopy.edge_length = 0.2;
   for (const double angle : {0.0, 60.0, 180.0}) {
     canopy.angle = angle;
-    const Sheets sheets = make_all_sheets({}, {canopy});
+    const Sheets sheets = make_all_sheets({}, {canopy}, 1.225, 1.8e-5);
     const double exact = 0.25 * std::numbers::pi * (8.534 * 8.534 - 0.457 * 0.457) *
                          std::abs(std::cos(angle * std::numbers::pi / 180.0));
     EXPECT_NEAR(projected_area(sheets.positions, sheets.fabric.mesh.triangles) / exact, 1.0, 0.01) << angle;
@@ -43,7 +43,7 @@ TEST(CanopyState, MeasuresBelongToTheirCanopy) {
   Canopy first, second;
   first.edge_length = second.edge_length = 0.5;
   second.centre = {20.0, 0.0, 0.0};
-  const Sheets sheets = make_all_sheets({}, {first, second});
+  const Sheets sheets = make_all_sheets({}, {first, second}, 1.225, 1.8e-5);
   SheetState state = state_of(sheets);
   const CanopyRows& rows = sheets.canopies[1];
   for (Vector& force : state.on_air) force = {1.0, 0.0, -2.0};

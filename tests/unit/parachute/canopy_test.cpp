@@ -215,7 +215,7 @@ TEST(Canopy, SheetsOfASceneAreOneMeshInTheirOrder) {
   Canopy first = c9(0.5), second = c9(0.6);
   second.centre = {20.0, 0.0, 0.0};
   second.porosity = {PorosityLaw::none, 0.0, 0.0};
-  const Sheets sheets = make_all_sheets({plate}, {first, second});
+  const Sheets sheets = make_all_sheets({plate}, {first, second}, 1.225, 1.8e-5);
   ASSERT_EQ(sheets.canopies.size(), 2U);
   EXPECT_EQ(sheets.canopies[0].begin, 9U);
   EXPECT_EQ(sheets.canopies[0].payload, 9 + first.vertices() - 1);

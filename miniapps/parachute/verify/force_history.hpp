@@ -1,0 +1,18 @@
+#pragma once
+
+#include <vector>
+
+namespace drogue::parachute_app {
+
+/// Mean of a value over the times from `from` on, s, by the trapezoidal rule; NaN for fewer than two of them.
+/// Times increase. Does not throw.
+[[nodiscard]] double mean_from(const std::vector<double>& time, const std::vector<double>& value,
+                               double from);
+
+/// Frequency, 1/s, at which a value crosses its mean upwards from the time `from` on, s: between the first
+/// and the last of these times, interpolated linearly. NaN for fewer than three of them: they may be those
+/// of a transient. Times increase. Does not throw.
+[[nodiscard]] double frequency_from(const std::vector<double>& time, const std::vector<double>& value,
+                                    double from);
+
+}  // namespace drogue::parachute_app

@@ -1,0 +1,248 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "kernels/mesh/round_surfaces.hpp"
+#include "tests/support/coupled_case.hpp"
+#include "tests/support/expression_program.hpp"
+#include "tests/support/profiled.hpp"
+
+// Rigid sheets: prescribed motion, no slip, and the balance of forces.
+
+namespace drogue::coupling {
+namespace {
+
+using drogue::testing::CoupledCase;
+using drogue::testing::CoupledRun;
+using drogue::testing::postfix;
+using fabric::Vector;
+using flow::BoundaryKind;
+using flow::StateField;
+
+/// Moves all vertices of a case by a displacement along an axis, m.
+void move(CoupledCase& c, int axis, const device::ExpressionProgram& displacement) {
+  std::vector<int> all(c.x.size());
+  std::iota(all.begin(), all.end(), 0);
+  c.p.fabric.motions.push_back({axis, all, displacement});
+}
+
+device::ExpressionProgram sine(double amplitude, double omega) {
+  return postfix({amplitude, omega, "t", "*", "sin", "*"});
+}
+
+/// Array of the state.
+std::vector<double> values(const CoupledCase& c, CoupledRun& run, StateField field) {
+  const std::array<int, 3> n = extents(c.p.flow, field);
+  std::vector<double> result(static_cast<std::size_t>(n[0]) * static_cast<std::size_t>(n[1]));
+  run.solver->download(field, result);
+  return result;
+}
+
+/// Velocity along x in the middle of the rows of cells, m/s.
+std::vector<double> profile(const CoupledCase& c, CoupledRun& run) {
+  const std::vector<double> u = values(c, run, StateField::velocity_x);
+  std::vector<double> rows;
+  for (std::size_t k = 0; k < u.size(); k += u.size() / static_cast<std::size_t>(c.p.flow.cells[1]))
+    rows.push_back(u[k]);
+  return rows;
+}
+
+TEST(MovingSheet, CarriesTheFluidOfAChannelWithIt) {
+  // The fluid moves as a whole. The filtered acceleration lags by two steps and concerns the fluid beyond the
+  // 2.1 h that move with a vertex: the error is some 2 (16 / 2.1 - 1) (omega dt)^2.
+  constexpr double amplitude = 0.05, omega = 2.0 * std::numbers::pi, h = 0.1, end = 1.1;
+  double error[2];
+  for (int level = 0; level < 2; ++level) {
+    const int steps = 220 << level;
+    CoupledCase c(16, 4, h, end / steps);
+    c.add_strip(0.83, 0.0, 0.83, 0.4, 8);
+    c.p.sheet.law.impermeable = true;
+    c.p.substeps = 1;
+    move(c, 0, sine(amplitude, omega));
+    CoupledRun run(c);
+    ASSERT_TRUE(run.advance(steps));
+    const double mass = c.p.flow.density * c.volume(), speed = amplitude * omega * std::cos(omega * end);
+    error[level] = std::abs(run.solver->totals().momentum[0] / mass - speed) / (amplitude * omega);
+    std::vector<Vector> x(c.x.size()), v(c.x.size());
+    run.solver->download_cloth(x, v);
+    EXPECT_NEAR(x[0][0] - c.x[0][0], amplitude * std::sin(omega * end), 1e-12);
+  }
+  EXPECT_LT(error[1], 4e-3);
+  EXPECT_GT(error[0] / error[1], 3.0);
+}
+
+TEST(MovingSheet, NeitherFencesNorAllocatesNorCopiesInSteps) {
+  CoupledCase c(16, 4, 0.1, 0.005);
+  c.add_strip(0.83, 0.0, 0.83, 0.4, 8);
+  c.p.sheet.law = {0.0, 0.0, true, true};
+  c.p.substeps = 4;
+  move(c, 0, sine(0.05, 6.0));
+  CoupledRun run(c);
+  const auto counted = [&](std::int64_t steps) {
+    const device::ProfilingCounters before = drogue::testing::profiled();
+    EXPECT_TRUE(run.advance(steps));
+    const device::ProfilingCounters after = drogue::testing::profiled();
+    return std::array{after.fences - before.fences, after.allocations - before.allocations,
+                      after.copies - before.copies};
+  };
+  counted(16);
+  // Blocks of 16 steps and of 4.
+  const auto whole = counted(16), part = counted(4);
+  EXPECT_EQ(whole, part);
+}
+
+/// Distance, m, between a sheet without slip and the plane in which the linear velocity profile between it
+/// and a wall reaches the velocity of the sheet.
+double couette_displacement(int rows) {
+  constexpr double speed = 0.5, place = 0.5;
+  const double h = 0.8 / rows, viscosity = 0.1;
+  CoupledCase c(4, rows, h, 0.0);
+  c.p.flow.viscosity = viscosity;
+  c.p.flow.fixed_dt = 0.1 * h * h * c.p.flow.density / viscosity;
+  c.p.flow.boundary[2].kind = BoundaryKind::wall;
+  c.p.flow.boundary[3].kind = BoundaryKind::slip;
+  c.add_strip(0.0, place, 4.0 * h, place, 8);
+  for (Vector& v : c.v) v[0] = speed;
+  c.p.sheet.law = {0.0, 0.0, true, true};
+  c.p.substeps = 1;
+  CoupledRun run(c);
+  EXPECT_TRUE(run.advance(30 * rows * rows));
+  const std::vector<double> u = profile(c, run);
+  const double slope = u[0] / (0.5 * h);
+  for (int j = 0; (j + 0.5) * h < place - 2.0 * h; ++j)
+    EXPECT_NEAR(u[static_cast<std::size_t>(j)], slope * (j + 0.5) * h, 1e-4 * speed);
+  EXPECT_NEAR(run.force()[0], slope * viscosity * 4.0 * h * c.width(), 1e-4 * std::abs(run.force()[0]));
+  return place - speed / slope;
+}
+
+TEST(NoSlipSheet, MovesTheFluidToAWallWithALinearProfile) {
+  // The delta function acts as a sheet that is nearer to the wall by half of the mean distance of two points
+  // spread by it, 0.28 h.
+  const double coarse = couette_displacement(8), fine = couette_displacement(16);
+  EXPECT_GT(coarse, 0.02);
+  EXPECT_LT(coarse, 0.035);
+  EXPECT_NEAR(coarse / fine, 2.0, 0.1);
+}
+
+/// Largest error against Stokes' second problem, relative to the amplitude, after four periods.
+double stokes_error(int rows) {
+  constexpr double height = 3.2, omega = 2.0 * std::numbers::pi, decay = 5.0, speed = 1.0;
+  const double h = height / rows, nu = omega / (2.0 * decay * decay);
+  const int steps = 4 * static_cast<int>(std::ceil(1.0 / (0.1 * h * h / nu)));
+  CoupledCase c(4, rows, h, 4.0 / steps);
+  c.p.flow.viscosity = nu * c.p.flow.density;
+  c.add_strip(0.0, 0.5 * height, 4.0 * h, 0.5 * height, 8);
+  c.p.sheet.law = {0.0, 0.0, true, true};
+  c.p.substeps = 1;
+  move(c, 0, sine(speed / omega, omega));
+  CoupledRun run(c);
+  EXPECT_TRUE(run.advance(steps));
+  const std::vector<double> u = profile(c, run);
+  double largest = 0.0;
+  for (int j = 0; j < rows; ++j) {
+    const double distance = decay * std::abs((j + 0.5) * h - 0.5 * height);
+    if (distance < decay * 2.0 * h) continue;
+    const double exact = speed * std::exp(-distance) * std::cos(omega * 4.0 - distance);
+    largest = std::max(largest, std::abs(u[static_cast<std::size_t>(j)] - exact) / speed);
+  }
+  return largest;
+}
+
+TEST(NoSlipSheet, OscillatesInItsPlaneAsAWall) {
+  const double coarse = stokes_error(64), fine = stokes_error(128);
+  EXPECT_LT(fine, 0.08);
+  EXPECT_NEAR(coarse / fine, 2.0, 0.4);
+}
+
+/// Adds a circle without slip.
+void add_circle(CoupledCase& c, double x, double y, double radius, int vertices) {
+  const mesh::Mesh tube = mesh::tube(radius, c.width(), vertices, 1);
+  c.p.fabric.mesh = tube;
+  for (Vector& place : c.p.fabric.mesh.rest) place = {place[0] + x, place[1] + y, place[2] + 0.5 * c.width()};
+  c.x = c.p.fabric.mesh.rest;
+  c.v.assign(c.x.size(), Vector{});
+  c.p.fabric.pinned.assign(c.x.size(), 7);
+  c.set_mass(1.0);
+  c.p.sheet.law = {0.0, 0.0, true, true};
+  c.p.substeps = 1;
+}
+
+TEST(NoSlipSheet, MovesThroughFluidAtRestAsItStandsInAStream) {
+  constexpr double h = 0.1, speed = 1.0;
+  CoupledCase c(48, 32, h, 0.02);
+  c.p.flow.viscosity = 0.024;  // Reynolds number 40
+  add_circle(c, 2.4, 1.6, 0.4, 50);
+  CoupledRun fixed(c);
+  const std::array<int, 3> n = extents(c.p.flow, StateField::velocity_x);
+  fixed.solver->upload(StateField::velocity_x,
+                       std::vector<double>(static_cast<std::size_t>(n[0] * n[1]), speed));
+  fixed.solver->start();
+  move(c, 0, postfix({-speed, "t", "*"}));
+  CoupledRun moving(c);
+  for (CoupledRun* run : {&fixed, &moving}) {
+    ASSERT_TRUE(run->advance(50));
+    EXPECT_NEAR(run->force()[1], 0.0, 1e-3);
+  }
+  EXPECT_LT(fixed.force()[0], -0.01);
+  EXPECT_NEAR(moving.force()[0] / fixed.force()[0], 1.0, 0.03);
+}
+
+TEST(NoSlipSheet, TakesTheMomentumThatThePeriodicFluidLoses) {
+  CoupledCase c(32, 16, 0.1, 0.01);
+  c.p.flow.viscosity = 0.02;
+  c.p.flow.body_force = {0.5, 0.0, 0.0};
+  add_circle(c, 1.33, 0.81, 0.4, 50);
+  CoupledRun run(c);
+  const auto momentum = [&] { return run.solver->totals().momentum[0]; };
+  double before = momentum();
+  for (int step = 0; step < 100; ++step) {
+    ASSERT_TRUE(run.advance(1));
+    const double now = momentum(), gain = (0.5 * c.volume() + run.force()[0]) * c.p.flow.fixed_dt;
+    EXPECT_NEAR(now - before, gain, 1e-13);
+    before = now;
+  }
+  EXPECT_LT(run.force()[0], -0.1);
+}
+
+TEST(NoSlipSheet, ForceEqualsTheMomentumBalanceOfAControlVolume) {
+  constexpr double h = 0.1;
+  CoupledCase c(64, 32, h, 0.0125);
+  flow::Parameters& p = c.p.flow;
+  p.viscosity = 0.024;
+  p.boundary[0] = {BoundaryKind::inflow, {1.0, 0.0, 0.0}, {}};
+  p.boundary[1].kind = BoundaryKind::outflow;
+  p.boundary[2].kind = p.boundary[3].kind = BoundaryKind::slip;
+  add_circle(c, 2.0, 1.6, 0.4, 50);
+  CoupledRun run(c);
+  ASSERT_TRUE(run.advance(1000));
+  constexpr std::size_t planes[2] = {8, 50}, nx = 64, ny = 32;  // faces normal to x
+  const double area = h * c.width(), mu = p.viscosity;
+  const auto momentum = [&] {
+    const std::vector<double> u = values(c, run, StateField::velocity_x);
+    double sum = 0.0;
+    for (std::size_t j = 0; j < ny; ++j)
+      for (std::size_t i = planes[0]; i <= planes[1]; ++i)
+        sum += (i == planes[0] || i == planes[1] ? 0.5 : 1.0) * u[i + (nx + 1) * j];
+    return p.density * area * h * sum;
+  };
+  const double before = momentum();
+  ASSERT_TRUE(run.advance(1));
+  double flux[2] = {};
+  const std::vector<double> u = values(c, run, StateField::velocity_x),
+                            q = values(c, run, StateField::pressure);
+  for (int k = 0; k < 2; ++k)
+    for (std::size_t j = 0; j < ny; ++j) {
+      const std::size_t i = planes[k], face = i + (nx + 1) * j, cell = i + nx * j;
+      flux[k] += area * (p.density * (u[face] * u[face] + 0.5 * (q[cell - 1] + q[cell])) -
+                         2.0 * mu * (u[face + 1] - u[face - 1]) / (2.0 * h));
+    }
+  const double rate = (momentum() - before) / p.fixed_dt;
+  const double drag = -run.force()[0], balance = flux[0] - flux[1] - rate;
+  EXPECT_GT(drag, 0.01);
+  EXPECT_NEAR(balance / drag, 1.0, 1e-3);
+}
+
+}  // namespace
+}  // namespace drogue::coupling
