@@ -52,7 +52,7 @@ BAD_LINES = [
     (16, 'wenno = "z"', 16, ['"flow.wenno"', "weno"]),
     (25, "cfl_number = 0.1", 25, ['"run.cfl_number"', "cfl, max_dt"]),
     (34, "l2_velocty = 10", 34, ['"verify.l2_velocty"', "l2_velocity"]),
-    (14, '[[canopy]]\nkind = "disk"\n[flow]', 14, ['"canopy"']),
+    (14, '[[chute]]\nkind = "disk"\n[flow]', 14, ['"chute"']),
     # name of the app
     (1, 'app = "springs"', 1, ["app", '"parachute"', "springs"]),
     (1, "", 1, ['missing key "app"']),
