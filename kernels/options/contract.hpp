@@ -38,7 +38,7 @@ enum class PriceStatus : unsigned char {
 };
 
 /// Reason for which a contract has no price.
-enum class FailureReason : unsigned char {
+enum class PricingFailure : unsigned char {
   none,
   discount_overflow,     ///< e^{-r T} of a put or e^{-q T} of a call, in money, exceeds the range of double
   no_grid,               ///< no grid covers the distribution of the asset at maturity
@@ -59,7 +59,7 @@ struct Price {
   int mesh = 0;                    ///< spatial intervals of the finest solve
   int steps = 0;                   ///< time steps of the finest solve
   PriceStatus status = PriceStatus::ok;
-  FailureReason failure = FailureReason::none;
+  PricingFailure failure = PricingFailure::none;
 };
 
 }  // namespace drogue::options

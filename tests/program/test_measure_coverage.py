@@ -10,6 +10,7 @@ import unittest
 SOURCE = os.environ["DROGUE_SOURCE"]
 sys.path[:0] = [SOURCE + "/tests/support", SOURCE + "/scripts"]
 
+import fit_error_estimate
 import gas_program
 import measure_coverage
 import options_program
@@ -81,6 +82,34 @@ class Coverage(gas_program.GasTest):
         self.assertIn("valid names are gh", self.measure("--models", "heston", code=2)[0].stderr)
         self.assertIn("belong together", self.measure("--mesh", "64", code=2)[0].stderr)
         self.assertIn("--tolerance", self.measure("--tolerance", "7", code=1)[0].stderr)
+
+
+class Fit(gas_program.GasTest):
+    def test_quantile_is_interpolated(self):
+        self.assertEqual([1.0, 2.5, 4.0], [fit_error_estimate.quantile([4.0, 1.0, 3.0, 2.0], part) for part in (0.0, 0.5, 1.0)])
+
+    def test_ratios_of_decided_rows(self):
+        known = [row(1.0, 1e-9), row(1.0, 0.05), row(1.0, 1e-9)]
+        self.assertEqual([0.5], fit_error_estimate.ratios([row(1.5, 1.0), row(1.1, 0.1), row("", "")], known))
+
+    def test_present_constants_are_those_of_the_source(self):
+        with open(SOURCE + "/kernels/options/pide/error_estimate.hpp", encoding="utf-8") as file:
+            text = file.read()
+        few, by_steps, in_space = [present for _, present, _, _ in fit_error_estimate.TERMS]
+        self.assertIn(f"device::minimum(R({few}), R({by_steps} / steps))", text)
+        self.assertIn(f"{in_space} * root *", text)
+
+    def test_fits_present_constants_within_their_order(self):
+        done = subprocess.run(
+            [sys.executable, "-B", SOURCE + "/scripts/fit_error_estimate.py", "--program", options_program.PROGRAM,
+             "--backend", "serial", "--rows", "20"],
+            capture_output=True, text=True, check=False, timeout=300, env=gas_program.ENVIRONMENT)
+        self.assertEqual(0, done.returncode, done.stderr)
+        lines = done.stdout.splitlines()[1:]
+        self.assertEqual(len(fit_error_estimate.TERMS), len(lines))
+        for line, (_, present, _, _) in zip(lines, fit_error_estimate.TERMS, strict=True):
+            largest = float(line.split()[-1])
+            self.assertTrue(present / 4 < largest < 2 * present, line)
 
 
 if __name__ == "__main__":

@@ -47,8 +47,8 @@ inline bool change_in_time(const std::array<Boundary, 6>& sides) {
   return false;
 }
 
-/// Time at which a stage needs the boundary values: that of the step's beginning plus this part of dt.
-struct StageTime {
+/// Time at which the sides need their values: that of the step's beginning plus this part of dt.
+struct BoundaryTime {
   double fraction;
   bool initial;  ///< true before the first step: dt is not known
 };
@@ -61,7 +61,7 @@ struct BoundaryTableFunctor {
   List<ExecutionSpace> table;
   Kokkos::View<device::ExpressionProgram*, typename ExecutionSpace::memory_space> programs;  ///< three
   ControlView<ExecutionSpace> control;
-  StageTime stage;
+  BoundaryTime stage;
   int side;
   std::int64_t first;
 
@@ -133,7 +133,7 @@ class BoundaryTables {
 
   /// Enqueues the evaluation of all tables. Asynchronous.
   void enqueue_evaluation(const ExecutionSpace& space, const ControlView<ExecutionSpace>& control,
-                          const StageTime& stage) const {
+                          const BoundaryTime& stage) const {
     for (int side = 0; side < 6; ++side) {
       if (_conditions.first[side] < 0) continue;
       device::launch_each(

@@ -49,8 +49,8 @@ inline void refine(Refinement& row, const Price& price, double tolerance, const 
   const int mesh = row.next.mesh;
   row.next = {};
   if (price.status == PriceStatus::ok) return;
-  const bool grew = price.failure == FailureReason::unstable || price.failure == FailureReason::stiff;
-  if (price.failure != FailureReason::none && !grew) return;
+  const bool grew = price.failure == PricingFailure::unstable || price.failure == PricingFailure::stiff;
+  if (price.failure != PricingFailure::none && !grew) return;
   const int max_multiplier = grew ? 16 : 4;
   const bool stagnates =
       price.status == PriceStatus::failed || (row.error > 0.0 && price.error > 0.7 * row.error);

@@ -139,7 +139,7 @@ class CosPricer final : public Pricer {
   void set_status(const Contract& contract, Price& price) const {
     if (!std::isfinite(price.price) || !std::isfinite(price.error)) {
       price.status = PriceStatus::failed;
-      price.failure = FailureReason::fourier_not_finite;
+      price.failure = PricingFailure::fourier_not_finite;
     } else if (price.error > _settings.tolerance * contract.strike) {
       price.status = PriceStatus::coarse;
     }

@@ -6,20 +6,20 @@ namespace drogue::options {
 
 /// Reason why a put has no price on a grid of step h. `upper_bound`: largest possible gain, money;
 /// `variance`: that of the process, per year.
-KOKKOS_INLINE_FUNCTION FailureReason failure_of(const NormalizedPut& put, double upper_bound, double variance,
-                                                double h) {
-  if (put.rate * put.maturity < -650.0 || !(upper_bound < 1e300)) return FailureReason::discount_overflow;
-  if (variance != variance) return FailureReason::coefficient_overflow;
-  if (!(h < 100.0)) return FailureReason::no_grid;
+KOKKOS_INLINE_FUNCTION PricingFailure failure_of(const NormalizedPut& put, double upper_bound,
+                                                 double variance, double h) {
+  if (put.rate * put.maturity < -650.0 || !(upper_bound < 1e300)) return PricingFailure::discount_overflow;
+  if (variance != variance) return PricingFailure::coefficient_overflow;
+  if (!(h < 100.0)) return PricingFailure::no_grid;
   // The steps contain the square of this.
   const double rate_scale = device::absolute(put.rate) + device::absolute(put.dividend);
   const double largest = (rate_scale + variance / h) / h;
-  if (!(largest * largest < 1e300)) return FailureReason::coefficient_overflow;
+  if (!(largest * largest < 1e300)) return PricingFailure::coefficient_overflow;
   // With 1e6 jumps until maturity, or a discount factor e^{-1e10}, the maximum of 16384 steps is rarely
   // sufficient.
   const bool has_intensity = put.model == JumpModel::merton || put.model == JumpModel::kou;
   const bool stiff = (has_intensity && put.jump[0] * put.maturity >= 1e6) || put.rate * put.maturity >= 1e10;
-  return stiff ? FailureReason::stiff : FailureReason::unstable;
+  return stiff ? PricingFailure::stiff : PricingFailure::unstable;
 }
 
 /// Node next to the spot of a put.

@@ -19,25 +19,25 @@ const char* status_fields(const RowLayout& layout, const options::Price& price) 
       break;
   }
   switch (price.failure) {
-    case options::FailureReason::discount_overflow:
+    case options::PricingFailure::discount_overflow:
       return ",failed,e^(-rate maturity) (of a call -dividend maturity) is too large a number";
-    case options::FailureReason::no_grid:
+    case options::PricingFailure::no_grid:
       return ",failed,no grid covers the distribution of the asset until maturity";
-    case options::FailureReason::unstable:
+    case options::PricingFailure::unstable:
       return layout.grid_is_fixed
                  ? ",failed,the values grew without bound: more --steps or another --mesh or --method cos "
                    "may price it"
                  : ",failed,the values grew without bound on all grids that --tolerance tries: --mesh "
                    "and --steps together instead of it or --method cos may price it";
-    case options::FailureReason::stiff:
+    case options::PricingFailure::stiff:
       return ",failed,the values grew without bound: too many jumps until maturity for any number of steps; "
              "--method cos may price it";
-    case options::FailureReason::coefficient_overflow:
+    case options::PricingFailure::coefficient_overflow:
       return ",failed,coefficients of the finite differences exceed the range of double; "
              "--method cos may price it";
-    case options::FailureReason::fourier_not_finite:
+    case options::PricingFailure::fourier_not_finite:
       return ",failed,the Fourier integral or series is not finite";
-    case options::FailureReason::none:
+    case options::PricingFailure::none:
       break;
   }
   return ",failed,";

@@ -305,25 +305,25 @@ Price one_price(double rate, double maturity, double variance, double delta, con
 
 // ctest-label: no-sanitizer
 TEST(OptionsProperty, ReportsTheReasonOfAFailure) {
-  EXPECT_EQ(one_price(-10.0, 100.0, 0.04, 0.5, Settings{}).failure, FailureReason::discount_overflow);
+  EXPECT_EQ(one_price(-10.0, 100.0, 0.04, 0.5, Settings{}).failure, PricingFailure::discount_overflow);
   Contract money{.style = Style::european, .spot = 1e99, .strike = 1e99, .rate = -5.0, .maturity = 100.0};
   std::ranges::copy(std::array{-0.5, 15.0, -5.0, 0.5}, money.jump);
-  EXPECT_EQ(priced(Settings{}, {money})[0].failure, FailureReason::discount_overflow);
-  EXPECT_EQ(one_price(0.05, 1.0, 1e300, 0.5, Settings{}).failure, FailureReason::no_grid);
-  EXPECT_EQ(one_price(0.0, 100.0, 0.0, 20.0, on_mesh(512, 64)).failure, FailureReason::unstable);
+  EXPECT_EQ(priced(Settings{}, {money})[0].failure, PricingFailure::discount_overflow);
+  EXPECT_EQ(one_price(0.05, 1.0, 1e300, 0.5, Settings{}).failure, PricingFailure::no_grid);
+  EXPECT_EQ(one_price(0.0, 100.0, 0.0, 20.0, on_mesh(512, 64)).failure, PricingFailure::unstable);
   // More steps or another mesh would not help.
   for (const Settings& settings : {Settings{}, on_mesh(128, 32)}) {
-    EXPECT_EQ(one_price(1e308, 1.0, 0.04, 0.5, settings).failure, FailureReason::coefficient_overflow);
+    EXPECT_EQ(one_price(1e308, 1.0, 0.04, 0.5, settings).failure, PricingFailure::coefficient_overflow);
   }
-  EXPECT_EQ(one_price(1e12, 1.0, 0.04, 0.5, on_mesh(128, 32)).failure, FailureReason::stiff);
+  EXPECT_EQ(one_price(1e12, 1.0, 0.04, 0.5, on_mesh(128, 32)).failure, PricingFailure::stiff);
   Contract merton{.model = JumpModel::merton, .style = Style::european, .rate = 0.05, .variance = 0.04};
   std::ranges::copy(std::array{1e12, -0.1, 0.2}, merton.jump);
-  EXPECT_EQ(priced(on_mesh(128, 32), {merton})[0].failure, FailureReason::stiff);
+  EXPECT_EQ(priced(on_mesh(128, 32), {merton})[0].failure, PricingFailure::stiff);
   // The tolerance selects more steps.
   Settings loose;
   loose.tolerance = 1e-3;
   const Price price = one_price(0.0, 100.0, 0.0, 20.0, loose);
-  EXPECT_EQ(price.failure, FailureReason::none);
+  EXPECT_EQ(price.failure, PricingFailure::none);
   EXPECT_NEAR(price.price, 1.0, price.error);
   EXPECT_GT(price.steps, price.mesh / 4);
 }
@@ -334,9 +334,9 @@ TEST(OptionsProperty, PricesVanishingJumpsOrReportsTheOverflow) {
   for (const Settings& settings : {Settings{}, on_mesh(128, 32)}) {
     const Price price = one_price(0.05, 1.0, 0.04, 1e-300, settings),
                 limit = one_price(0.05, 1.0, 0.04, 1e-100, settings);
-    EXPECT_EQ(limit.failure, FailureReason::none);
-    if (price.failure != FailureReason::none)
-      EXPECT_EQ(price.failure, FailureReason::coefficient_overflow);
+    EXPECT_EQ(limit.failure, PricingFailure::none);
+    if (price.failure != PricingFailure::none)
+      EXPECT_EQ(price.failure, PricingFailure::coefficient_overflow);
     else
       EXPECT_NEAR(price.price, limit.price, 1e-12);
   }
