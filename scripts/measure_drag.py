@@ -43,8 +43,9 @@ def main():
     parser.add_argument("--ratio", required=True, type=lambda text: [float(part) for part in text.split(",")])
     parser.add_argument("--bin", type=pathlib.Path, default=pathlib.Path("build/host/bin"))
     parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("out/drag"))
-    parser.add_argument("rest", nargs="*")
-    options = parser.parse_args()
+    words = sys.argv[1:]
+    end = words.index("--") if "--" in words else len(words)
+    options, arguments = parser.parse_args(words[:end]), words[end + 1:]
     program = options.bin / "drogue-parachute"
     printed = subprocess.run([program, options.scene, "--print-scene"], capture_output=True, text=True, check=True)
     scene = tomllib.loads(printed.stdout)
@@ -52,7 +53,7 @@ def main():
     for ratio in options.ratio:
         out = options.out / f"{options.scene}-{ratio:g}"
         run = subprocess.run([program, options.scene, "--quiet", "--overwrite", "--out", out, *assignments(scene, ratio),
-                              *options.rest], check=False)
+                              *arguments], check=False)
         if run.returncode not in (0, 5):  # a check may fail: its value is the point
             return run.returncode
         rows.append((ratio, json.loads((out / "result.json").read_text(encoding="utf-8"))["forces"]))

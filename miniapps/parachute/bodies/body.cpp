@@ -126,7 +126,7 @@ bool Body::moves() const {
   return std::ranges::any_of(motion, [](const std::string& text) { return !text.empty(); });
 }
 
-bool Body::slips() const { return slip.value_or(kind != BodyKind::sphere && kind != BodyKind::cylinder); }
+bool Body::slips() const { return slip.value_or(kind == BodyKind::plate || kind == BodyKind::disk); }
 
 std::size_t vertices_of(const std::vector<Body>& bodies) {
   std::size_t sum = 0;

@@ -70,7 +70,7 @@ struct Body {
   [[nodiscard]] std::array<std::array<double, 2>, 3> extents() const;
 
   [[nodiscard]] bool moves() const;
-  /// `slip`; by default, true for open sheets. Does not throw.
+  /// `slip`; by default, true for flat sheets. Does not throw.
   [[nodiscard]] bool slips() const;
 };
 

@@ -165,7 +165,7 @@ void declare_body(Table& table, Body& body) {
   table
       .value("slip", optional_boolean_codec(body.slip),
              "The fluid slips freely along the sheet, or has its velocity")
-      .default_text("`false` for spheres and cylinders, else `true`");
+      .default_text("`true` for plates and disks, else `false`");
   table.table(
       "porosity", [&](Table& porosity) { declare_porosity(porosity, body.porosity); },
       "Flow through the sheet");

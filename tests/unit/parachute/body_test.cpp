@@ -135,10 +135,11 @@ TEST(Bodies, SeveralBodiesAreOneMeshInTheirOrder) {
   EXPECT_TRUE(second.moves());
 }
 
-TEST(Bodies, OpenSheetsSlipByDefault) {
+TEST(Bodies, FlatSheetsSlipByDefault) {
   EXPECT_FALSE(body_of(BodyKind::sphere, 0).slips());
   EXPECT_FALSE(body_of(BodyKind::cylinder, 0).slips());
-  EXPECT_TRUE(body_of(BodyKind::cup, 0).slips());
+  EXPECT_FALSE(body_of(BodyKind::cup, 0).slips());
+  EXPECT_TRUE(body_of(BodyKind::disk, 0).slips());
   Body plate = body_of(BodyKind::plate, 0);
   EXPECT_TRUE(plate.slips());
   plate.slip = false;
