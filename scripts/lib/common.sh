@@ -4,6 +4,8 @@ set -euo pipefail
 root="$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)"
 deps="${DROGUE_DEPS:-$root/build/deps}"
 jobs="${DROGUE_JOBS:-$(nproc)}"
+# Kokkos too is compiled once for all clones on a machine: its paths count relative to the clone.
+export CCACHE_BASEDIR="${CCACHE_BASEDIR:-$root}" CCACHE_NOHASHDIR=1
 
 # fail SENTENCE: prints a sentence with the remedy, and stops.
 fail() {
