@@ -228,7 +228,7 @@ KOKKOS_INLINE_FUNCTION Vector3<R> with_springs(const Fabric& fabric, const Point
   return sum;
 }
 
-/// The same on a device for a slice of vertices, by all threads of a warp together. Each thread adds a
+/// Sum as above on a device, for a slice of vertices by all threads of a warp together. Each thread adds a
 /// dozen springs of its vertex. The warp shares longer rows, such as that of a payload on its lines: each
 /// thread computes one force, and the thread of the vertex adds them in the order of their slots.
 template <ConstitutiveModel model, class ExecutionSpace, class Points>

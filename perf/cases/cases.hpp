@@ -12,6 +12,7 @@ std::vector<Case> fabric_cases(bool quick);
 std::vector<Case> contact_cases(bool quick);
 std::vector<Case> options_cases(bool quick);
 std::vector<Case> flow_cases(bool quick);
+std::vector<Case> parachute_cases(bool quick);
 std::vector<Case> tridiagonal_cases(bool quick);
 std::vector<Case> ceiling_cases();
 

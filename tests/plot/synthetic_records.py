@@ -308,6 +308,12 @@ def flow_steps(machine=H200):
     return found
 
 
+def flights(machine=H200):
+    """An opening parachute at 0.6 s per second of flight."""
+    facts = {"backend": "cuda", "cells": 432000, "variant": "c9"}
+    return [record("parachute-flight/cuda/60x60x120/c9", 0.6e-3, machine, facts)]
+
+
 def flow_solvers(machine=H200):
     """A direct and an iterative pressure solver, and the memory of a solver."""
     cells = 64**3

@@ -26,6 +26,11 @@ class Page(Folder):
         page, _ = self.page(records.flow_steps(), app="flow")
         self.assertNotIn("memory traffic alone", page.words)
 
+    def test_flights_have_goals_in_real_time(self):
+        page, _ = self.page(records.flights(), app="flow")
+        self.assertIn("ms per s of flight", page.words)
+        self.assertIn("goal met", page.words)
+
     def test_pressure_solvers_have_tolerances_and_iterations(self):
         page, _ = self.page(records.flow_solvers(), app="flow")
         rows = page.tables[H200, "Pressure solvers"][1:]

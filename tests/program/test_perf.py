@@ -61,6 +61,12 @@ class Record(perf_program.PerfTest):
             self.assert_timed(record, 7)
             self.assertAlmostEqual(2640, record["facts"]["cells"], delta=60)
 
+    def test_records_flights_of_parachutes(self):
+        self.expect(0, "run", "--quick", "--filter", "^parachute-flight/serial/", "--out", "run.jsonl")
+        record, = self.records("run.jsonl")
+        self.assert_timed(record, 7)
+        self.assertEqual(("parachute-flight/serial/12x12x24/c9", "s per ms of flight"), (record["case"], record["unit"]))
+
     def test_records_contact_steps(self):
         self.expect(0, "run", "--quick", "--filter", "^springs-contact/serial/", "--out", "run.jsonl")
         record, = self.records("run.jsonl")

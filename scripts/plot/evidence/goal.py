@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 # Labels of measures, as the pages print them.
 STEP_US = "\u00b5s per step"
+FLIGHT_MS = "ms per s of flight"
 CELL_NS = "ns per cell-step"
 VERTEX_NS = "ns per vertex-step"
 RATE = "G cell-steps/s"

@@ -45,6 +45,7 @@ def _flow_sections(evidence: Evidence, machine: Machine) -> list[Section]:
     found = work_precision_section.sections(machine, solved, evidence.failed_runs_on(machine))
     ceilings = [record for record in evidence.ceilings if record.machine == machine]
     found += steps.sections(evidence.select(machine, "flow-step"), roofline.bandwidths(ceilings))
+    found += steps.sections(evidence.select(machine, "parachute-flight"))
     found += solver_tables.pressure_sections(evidence.select(machine, "flow-pressure"))
     return found + solver_tables.memory_sections(evidence.select(machine, "flow-memory"))
 

@@ -16,6 +16,7 @@ _FACTS = {
     "gas-step": {},
     "flow-step": {"backend": str, "cells": int, "variant": str},
     "flow-pressure": {"backend": str, "cells": int, "variant": str},
+    "parachute-flight": {"backend": str, "cells": int, "variant": str},
     "flow-memory": {"backend": str, "cells": int, "variant": str, "array_bytes": int},
     "flow-solution": {
         "problem": str, "backend": str, "advection": str, "time_scheme": str, "pressure": str, "diffusion": str,
@@ -104,9 +105,9 @@ class Record:
 
     @property
     def app(self) -> str:
-        """Mini-app whose page shows the record; ceilings belong to gas, tridiagonal systems to options."""
+        """Mini-app whose page shows the record; ceilings belong to gas, tridiagonal systems to options, flights to flow."""
         app = self.kind.partition("-")[0]
-        return {"ceiling": "gas", "tridiagonal": "options"}.get(app, app)
+        return {"ceiling": "gas", "tridiagonal": "options", "parachute": "flow"}.get(app, app)
 
     @property
     def machine(self) -> Machine:

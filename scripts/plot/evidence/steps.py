@@ -14,6 +14,7 @@ from .goal import (
     BATCH_US,
     CELL_NS,
     EFFICIENCY,
+    FLIGHT_MS,
     HIGHER_IS_BETTER,
     OPTION_RATE,
     OPTION_US,
@@ -48,6 +49,10 @@ _BATCH = {"time": BATCH_US, "scales": (1e6, 1.0), "errors": True}
 _KINDS = {
     "gas-step": _Kind("A step", "cells", (CELL_NS, RATE), gas_goals.GOALS),
     "flow-step": _Kind("A step", "cells", (CELL_NS, RATE), flow_goals.GOALS, errors=True),
+    "parachute-flight": _Kind(
+        "A C-9 that opens", "cells", ("ns per cell and ms of flight", "G cells ms/s"), flow_goals.FLIGHT_GOALS, FLIGHT_MS,
+        errors=True,
+    ),
     "springs-step": _Kind("A step", *_SPRINGS),
     "springs-contact": _Kind("A step in contact", *_SPRINGS),
     "options": _Kind("A batch", "options", (OPTION_US, OPTION_RATE), options_goals.GOALS, **_BATCH),
@@ -88,7 +93,7 @@ def measured(goal: Goal, record: Record, compared: Record | None) -> _Estimate |
     Returns None if the goal compares with a case that the run lacks.
     """
     seconds, cells = _seconds(record), record.facts["cells"]
-    if goal.measure in (STEP_US, BATCH_US):
+    if goal.measure in (STEP_US, BATCH_US, FLIGHT_MS):
         return _scale(seconds, 1e6)
     if goal.measure in (CELL_NS, VERTEX_NS):
         return _scale(seconds, 1e9 / cells)
