@@ -10,13 +10,9 @@
 /// throws, unless stated otherwise.
 namespace drogue::perf::inflation {
 
-/// Parameters of a grid of `cells`, with AB2 and a Courant number of 0.25; edges of the cloth are 0.7 cells
-/// along x.
-coupling::Parameters parameters(const std::array<int, 3>& cells, Content content);
-
-/// Solver of cloth in air, or of the flow alone.
-std::unique_ptr<flow::Solver> create(device::Backend backend, const std::array<int, 3>& cells,
-                                     Content content);
+/// Parameters of a grid of `cells`, with AB2 and a Courant number of 0.25; edges of the cloth are at most 0.7
+/// cells along x.
+coupling::Parameters parameters(const std::array<int, 3>& cells, bool with_contact);
 
 /// Sample of `milliseconds` of flight after `lead` seconds. Each sample begins from the same state; the first
 /// reset computes it. `solver`, made for `p`, must outlive the sample. The work throws
