@@ -51,7 +51,8 @@ struct TeamSlicedEll {
   }
   template <class Read, class Visit>
   KOKKOS_FUNCTION void each_read(int i, const Read& read, const Visit& visit) const {
-    for_each_read_slot(first(i / slice), first(i / slice + 1), i, read, visit);
+    // Without reading ahead, which would cost registers: shared memory has little latency.
+    each(i, [&](int slot) { visit(read(slot)); });
   }
   template <class Index, class Read, class Visit>
   KOKKOS_FUNCTION void each_pair(int i, const Index& index, const Read& read, const Visit& visit) const {
