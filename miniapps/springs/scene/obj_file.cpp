@@ -139,10 +139,11 @@ class ObjParser {
   void check_range(const std::vector<std::array<int, n>>& parts, const std::vector<int>& lines) const {
     for (std::size_t k = 0; k < parts.size(); ++k)
       for (const int i : parts[k])
-        if (static_cast<std::size_t>(i) >= _contents.mesh.rest.size())
-          refuse_at(lines[k], (n == 3 ? part_of_file("face", k) : "line") + " names vertex " +
-                                  std::to_string(i + 1) + "; the file has " +
+        if (static_cast<std::size_t>(i) >= _contents.mesh.rest.size()) {
+          const std::string part = n == 3 ? part_of_file("face", k) : "line";
+          refuse_at(lines[k], part + " names vertex " + std::to_string(i + 1) + "; the file has " +
                                   std::to_string(_contents.mesh.rest.size()));
+        }
   }
 
   std::string_view _text;
