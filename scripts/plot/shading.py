@@ -13,11 +13,16 @@ def oblique_projection(azimuth: float, elevation: float) -> np.ndarray:
     return np.array([right, np.cross(eye, right), eye])
 
 
-def shade(corners: np.ndarray, colours: np.ndarray) -> np.ndarray:
-    """Lambertian shading of RGBA colours, equal for both sides of a facet; corners (n, 3 or more, 3)."""
+def shade(corners: np.ndarray, colours: np.ndarray, darkest: float = 0.55, levels: int | None = None) -> np.ndarray:
+    """Lambertian shading of RGBA colours, equal for both sides of a facet; corners (n, 3 or more, 3).
+
+    `darkest` is the brightness of a facet along the light, `levels` the number of different ones if it is limited.
+    """
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     lengths = np.linalg.norm(normals, axis=1)
-    facing = np.abs(normals @ _LIGHT) / np.where(lengths > 0, lengths, 1)
+    facing = np.minimum(1, np.abs(normals @ _LIGHT) / np.where(lengths > 0, lengths, 1))
+    if levels is not None:
+        facing = np.round(facing * (levels - 1)) / (levels - 1)
     shaded = colours.copy()
-    shaded[:, :3] *= (0.55 + 0.45 * np.minimum(1, facing))[:, None]
+    shaded[:, :3] *= (darkest + (1 - darkest) * facing)[:, None]
     return shaded
