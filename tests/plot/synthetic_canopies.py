@@ -94,14 +94,14 @@ def write_canopies(folder, fields=("velocity", "position", "von_mises"), payload
 
 
 def write_bodies(folder):
-    """Writes the history of a cylinder with a mean force of 3 N along x from 2 s on, and of a sphere; returns its path.
+    """Writes a history of forces on a cylinder (mean 3 N along x from 2 s on) and on a sphere; returns its path.
 
     The forces of the first row are a thousand times larger, as at a start from rest.
     """
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "scene.toml").write_text(
-        'app = "parachute"\n[[body]]\nkind = "cylinder"\n[[body]]\nkind = "sphere"\n[verify]\nmean_force = [{ body = 0, '
-        'axis = "x", from = 2.0, reference = 2.0, value = 1.4, tolerance = 0.1 }]\n'
+        'app = "parachute"\n[[body]]\nkind = "cylinder"\n[[body]]\nkind = "sphere"\n[verify]\n'
+        'mean_force = [{ body = 0, axis = "x", from = 2.0, reference = 2.0, value = 1.4, tolerance = 0.1 }]\n'
     )
     time = [0.0, 1.0, 2.0, 3.0, 4.0]
     write_history(folder / "history.csv", {

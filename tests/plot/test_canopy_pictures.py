@@ -125,9 +125,9 @@ class CanopyPictures(unittest.TestCase):
             drawing.show(snapshot)
             colours.append(len({tuple(colour) for colour in np.round(cloth.get_facecolor(), 6)}))
             self.assertGreater(colours[-1], GORES)
-        bar = next(axes for axes in drawing.figure.axes if "von Mises" in axes.get_title(loc="left"))
-        self.assertEqual(0, bar.get_ylim()[0])
-        self.assertAlmostEqual(np.percentile([b * k for b in (0, 0.5, 1) for k in range(GORES)], 99), bar.get_ylim()[1])
+        key = next(axes for axes in drawing.figure.axes if "von Mises" in axes.get_title(loc="left"))
+        self.assertEqual(0, key.get_ylim()[0])
+        self.assertAlmostEqual(np.percentile([b * k for b in (0, 0.5, 1) for k in range(GORES)], 99), key.get_ylim()[1])
 
     def test_shades_are_equal_for_both_sides_and_limited(self):
         corners = np.random.default_rng(5).normal(size=(200, 3, 3))
@@ -149,11 +149,11 @@ class CanopyPictures(unittest.TestCase):
         np.testing.assert_allclose(relative_velocity(run, 0), [[0, 0, 4]] * 3)
 
     def test_history_shows_what_checks_allow(self):
-        held, free = (
+        fixed, free = (
             canopies_history_figure(read_run(write_canopies(self.folder / f"{speed}", payload_speed=speed)))
             for speed in (0.0, 1.0)
         )
-        self.assertEqual(4, len(held.axes))
+        self.assertEqual(4, len(fixed.axes))
         self.assertEqual(6, len(free.axes))
         expected = {"lines on the payload": (0.5, 40, 1, 40), "drag": (1, 0.4, 1, 0.2), "speed": (1, 2.7, 1, 0.6)}
         for words, (start, low, length, height) in expected.items():
@@ -163,10 +163,10 @@ class CanopyPictures(unittest.TestCase):
                 (*band.get_xy(), band.get_width(), band.get_height()), (start, low, length, height)
             )
             self.assertTrue(axes.get_ylim()[0] < low and low + height < axes.get_ylim()[1])
-        air, lines = panel_of(held, "lines on the payload").lines
+        air, lines = panel_of(fixed, "lines on the payload").lines
         np.testing.assert_allclose(air.get_ydata(), [0, 50, 25])
         np.testing.assert_allclose(lines.get_ydata(), [0, 50, 24])
-        self.assertIn("flat: 3.1", [text.get_text() for text in panel_of(held, "projected area").texts])
+        self.assertIn("flat: 3.1", [text.get_text() for text in panel_of(fixed, "projected area").texts])
 
     def test_curves_of_several_canopies_are_labelled(self):
         run = read_run(write_canopies(self.folder / "run", canopies=5, payload_speed=0.5))

@@ -26,7 +26,7 @@ _LINE, _CUT = "#4A4A4A", "#D55E00"
 _HEIGHT, _LONG = 4.4, 4.4
 _LEFT, _KEY, _KEY_GAP, _KEY_LABELS, _CLOTH_LEFT = 0.62, 0.11, 0.08, 0.62, 0.15
 _ABOVE, _BELOW, _HEADING = 0.3, 0.45, 0.55
-# Of the flow around the canopies, relative to their size.
+# Shown flow beside and behind the canopies, relative to their size.
 _BESIDE, _BEHIND = 0.3, 1.0
 
 

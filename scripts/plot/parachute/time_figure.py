@@ -26,7 +26,8 @@ class Band:
 class Panel:
     """Values over time by label, bands of checks, and constants by label.
 
-    `dashed` curves lie on others. The range of values is that of the times from `settled` on, s: a start from rest may have far larger forces.
+    `dashed` curves lie on others. The range of values is that of the times from `settled` on, s: a start from rest may
+    have far larger forces.
     """
 
     title: str
