@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
 # Sets up, builds for this machine, runs every shipped scene, verifies it, draws it, and makes one page of all.
+# The last one is an opening parachute, c9-flat.
 #
 #   scripts/demo.sh [--system] [SCENE...]
 #     --system   install nothing, use the libraries and the Python packages that are there

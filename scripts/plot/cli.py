@@ -137,15 +137,39 @@ def _springs_pictures(run, options, out, save):
         yield movie_file.write(out / f"fields.{options.movie}", fabric_figure.frames(view))
 
 
+def _canopy_pictures(run, options, out, save):
+    from . import movie_file
+    from .flow import quantities
+    from .flow.plane import plane_of
+    from .parachute import canopy_figure
+    from .parachute.canopies import Canopies
+
+    known = quantities.quantities(run)
+    names = _validated_fields(options.field, list(known))
+    moving = [quantities.movie_name(names or list(known))] if known else []
+    # Canopies are symmetric to the plane across y, through which an angled one turns.
+    view = canopy_figure.View(
+        Canopies(run), plane_of(run, options.slice or "y"), [known[name] for name in names or moving]
+    )
+    yield save(canopy_figure.canopy_figure(view, _chosen_snapshot(run, options)), "fields", few_colours=False)
+    if len(run.snapshots) >= 2 and options.movie != "none":
+        view.quantities = [known[name] for name in moving]
+        yield movie_file.write(out / f"fields.{options.movie}", canopy_figure.frames(view))
+
+
 def _flow_pictures(run, options, out, save):
     from . import movie_file
     from .flow import profiles_figure, quantities, slices_figure, spectrum
     from .flow.plane import plane_of
+    from .parachute.canopies import has_canopies
 
     known = quantities.quantities(run)
     names = _validated_fields(options.field, list(known)) or quantities.default_names(run)
     plane = plane_of(run, options.slice)
     snapshot = _chosen_snapshot(run, options)
+    if has_canopies(run):
+        yield from _canopy_pictures(run, options, out, save)
+        names = []
     if names:
         view = slices_figure.View(plane, [known[name] for name in names])
         figure = slices_figure.slices_figure(view, snapshot)
@@ -178,6 +202,8 @@ def draw(options: argparse.Namespace):
     from .flow.history_figure import flow_history_figure
     from .flow.plane import is_flow, plane_of
     from .flow.quantities import quantities
+    from .parachute.canopies_history import canopies_history_figure
+    from .parachute.forces_history import forces_history_figure
     from .run_directory import read_run
     from .springs.history_figure import springs_history_figure
     from .study_figure import check_norm, study_figure
@@ -209,6 +235,9 @@ def draw(options: argparse.Namespace):
     draw_history = next((draw for name, draw in by_column.items() if name in run.history), history_figure)
     if (figure := draw_history(run)) is not None:
         yield save(figure, "history")
+    for name, draw_more in (("canopies", canopies_history_figure), ("forces", forces_history_figure)):
+        if (figure := draw_more(run)) is not None:
+            yield save(figure, name)
     if (figure := prices_figure(options.directory)) is not None:
         yield save(figure, "fields")
     if run.study:

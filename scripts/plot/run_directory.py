@@ -27,10 +27,11 @@ class Field:
 
 @dataclass(frozen=True)
 class Snapshot:
-    """Fields at one time, s."""
+    """Fields at one time, s; `canopy` holds those of the canopies in a flow."""
 
     time: float
     fields: dict[str, Field]
+    canopy: dict[str, Field] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -51,6 +52,7 @@ class Run:
     scene: dict = field(default_factory=dict)
     result: dict = field(default_factory=dict)
     mesh: dict[str, Field] = field(default_factory=dict)
+    canopy_mesh: dict[str, Field] = field(default_factory=dict)
     snapshots: list[Snapshot] = field(default_factory=list)
     reference: Reference | None = None
     history: dict[str, Field] = field(default_factory=dict)
@@ -89,9 +91,11 @@ def _read_fields(run: Run, file: Path) -> None:
     try:
         with h5py.File(file, "r") as h5:
             run.mesh = _datasets(h5["mesh"])
+            run.canopy_mesh = _datasets(h5["mesh"].get("canopy", {}))
             for name in sorted(h5["steps"]):
                 group = h5["steps"][name]
-                run.snapshots.append(Snapshot(float(np.ravel(group.attrs["time"])[0]), _datasets(group)))
+                time = float(np.ravel(group.attrs["time"])[0])
+                run.snapshots.append(Snapshot(time, _datasets(group), _datasets(group.get("canopy", {}))))
             if "reference" in h5:
                 group = h5["reference"]
                 fields = _datasets(group)

@@ -70,6 +70,8 @@ class Demo(unittest.TestCase):
         files = [Path(name) for name in names]
         roles = pictures_by_role(SimpleNamespace(pictures=files))
         self.assertEqual({"still": files[0], "movie": files[1], "map": files[2], "profiles": files[4]}, roles)
+        for name in ("canopies.png", "forces.png"):
+            self.assertEqual({"forces": Path(name)}, pictures_by_role(SimpleNamespace(pictures=[Path(name)])))
         self.assertEqual({"still": files[3]}, pictures_by_role(SimpleNamespace(pictures=files[3:4])))
 
     def test_rejects_unknown_scene_with_list_of_scenes(self):

@@ -7,11 +7,12 @@ from ..style import check_label
 
 
 def pictures_by_role(run) -> dict[str, Path]:
-    """Pictures of a run by role: `still`, `map` (space-time or spectrum), `profiles` and `movie`, if they exist.
+    """Pictures of a run by role: `still`, `map` (space-time or spectrum), `profiles`, `forces` and `movie`.
 
-    The history is the still of a run without fields.
+    Roles without a picture are absent. The history is the still of a run without fields.
     """
-    roles = {"fields.png": "still", "fields.gif": "movie", "spectrum.png": "map", "profiles.png": "profiles"}
+    roles = {"fields.png": "still", "fields.gif": "movie", "spectrum.png": "map", "profiles.png": "profiles",
+             "canopies.png": "forces", "forces.png": "forces"}  # fmt: skip
     if not any(file.name == "fields.png" for file in run.pictures):
         roles["history.png"] = "still"
     found = {}

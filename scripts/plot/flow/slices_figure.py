@@ -81,6 +81,43 @@ def _panel_size(extent) -> tuple[float, float]:
     return scale * width, scale * height
 
 
+def draw_slice(axes, key, plane: Plane, quantity: Quantity, snapshots: list[Snapshot], colours: int):
+    """Draws a quantity of the last snapshot in a plane with its colour bar in the axes `key`; returns the image.
+
+    The colour scale fits all `snapshots`.
+    """
+    every = np.concatenate([plane.cut(quantity.values(snapshot)).ravel() for snapshot in snapshots])
+    norm, name, ends = colour_scale(quantity, every)
+    image = axes.imshow(
+        plane.cut(quantity.values(snapshots[-1])), origin="lower", extent=plane.extent, aspect="auto",
+        cmap=plt.get_cmap(name, colours), norm=norm, interpolation="nearest",
+    )  # fmt: skip
+    axes.grid(False)
+    axes.set_title(style.axis_label(quantity.label, quantity.units), pad=5)
+    right, up = plane.across
+    axes.set_xlabel(style.axis_label(AXES[right], "m"), labelpad=2)
+    axes.set_ylabel(style.axis_label(AXES[up], "m"), labelpad=2)
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_locator(MaxNLocator(5, steps=[1, 2, 2.5, 5, 10]))
+    colorbar = axes.figure.colorbar(image, cax=key, extend=ends, extendfrac=0.04)
+    colorbar.outline.set_visible(False)
+    return image
+
+
+def draw_streamlines(axes, plane: Plane, snapshot: Snapshot, density: tuple[float, float]) -> None:
+    """Draws white streamlines of the velocity in a plane, none if it is zero, not finite, or along a line."""
+    x, y = plane.centres
+    if min(len(x), len(y)) < 2:
+        return
+    velocity = snapshot.fields["velocity"].values
+    u, v = (plane.cut(velocity[..., axis]) for axis in plane.across)
+    if not (np.isfinite(u).all() and np.isfinite(v).all()) or not np.any(u) and not np.any(v):
+        return
+    limits = axes.axis()
+    axes.streamplot(x, y, u, v, color="white", linewidth=0.55, arrowsize=0.6, density=density)
+    axes.axis(limits)
+
+
 class SlicesFigure:
     """Figure that shows one snapshot at a time; colour scales fit all `snapshots`."""
 
@@ -116,22 +153,7 @@ class SlicesFigure:
         self._caption = style.heading(self.figure, view.plane.run.name, "")
 
     def _add_panel(self, axes, key, quantity: Quantity, snapshots: list[Snapshot]) -> None:
-        plane = self._view.plane
-        every = np.concatenate([plane.cut(quantity.values(snapshot)).ravel() for snapshot in snapshots])
-        norm, colours, ends = colour_scale(quantity, every)
-        image = axes.imshow(
-            plane.cut(quantity.values(snapshots[-1])), origin="lower", extent=plane.extent, aspect="auto",
-            cmap=plt.get_cmap(colours, self._colours), norm=norm, interpolation="nearest",
-        )  # fmt: skip
-        axes.grid(False)
-        axes.set_title(style.axis_label(quantity.label, quantity.units), pad=5)
-        right, up = plane.across
-        axes.set_xlabel(style.axis_label(AXES[right], "m"), labelpad=2)
-        axes.set_ylabel(style.axis_label(AXES[up], "m"), labelpad=2)
-        for axis in (axes.xaxis, axes.yaxis):
-            axis.set_major_locator(MaxNLocator(5, steps=[1, 2, 2.5, 5, 10]))
-        colorbar = self.figure.colorbar(image, cax=key, extend=ends, extendfrac=0.04)
-        colorbar.outline.set_visible(False)
+        image = draw_slice(axes, key, self._view.plane, quantity, snapshots, self._colours)
         self._images.append((quantity, image))
 
     def show(self, snapshot: Snapshot) -> None:
@@ -142,21 +164,10 @@ class SlicesFigure:
 
     def add_streamlines(self, snapshot: Snapshot) -> None:
         """Draws streamlines of the velocity in the plane on the panel of the speed, if there is one."""
-        plane = self._view.plane
-        x, y = plane.centres
         panel = next((image.axes for quantity, image in self._images if quantity.name == "speed"), None)
-        if panel is None or min(len(x), len(y)) < 2:
-            return
-        velocity = snapshot.fields["velocity"].values
-        u, v = (plane.cut(velocity[..., axis]) for axis in plane.across)
-        if not (np.isfinite(u).all() and np.isfinite(v).all()) or not np.any(u) and not np.any(v):
-            return
-        width, height = _panel_size(plane.extent)
-        panel.streamplot(
-            x, y, u, v, color="white", linewidth=0.55, arrowsize=0.6, density=(0.3 * width, 0.3 * height)
-        )
-        panel.set_xlim(*plane.extent[:2])
-        panel.set_ylim(*plane.extent[2:])
+        if panel is not None:
+            width, height = _panel_size(self._view.plane.extent)
+            draw_streamlines(panel, self._view.plane, snapshot, (0.3 * width, 0.3 * height))
 
 
 def slices_figure(view: View, snapshot: Snapshot):

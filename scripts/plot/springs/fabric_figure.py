@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import Normalize, to_rgba
 
-from .. import style
+from .. import shading, style
 from ..run_directory import Run, Snapshot
 from ..style import plt
 from . import bodies, strings
@@ -17,8 +17,7 @@ _DPI = 100
 _AXES = "xyz"
 _FLAT = 0.02  # ratio of extents below which the mesh is drawn in its plane
 _BRIGHT = 99.5  # percentile of all values at the upper end of the colour scale
-_AZIMUTH, _ELEVATION = np.radians(-65), np.radians(28)
-_LIGHT = np.array([-0.4, -0.5, 0.77])
+_AZIMUTH, _ELEVATION = -65, 28  # degrees
 _BODY_MARGIN = 0.3  # distance from the cloth up to which bodies are shown, relative to its extent
 _MAX_DIRECTIONS = 1500  # largest number of principal directions that are drawn
 _LEAST_STRESS = 0.02  # relative to the largest stress; below it principal directions are not drawn
@@ -45,15 +44,7 @@ class View:
             self.projection = np.eye(3)[[*shown, thin]]
             self.labels = tuple(_AXES[axis] for axis in shown)
         else:
-            right = np.array([-np.sin(_AZIMUTH), np.cos(_AZIMUTH), 0])
-            eye = np.array(
-                [
-                    np.cos(_AZIMUTH) * np.cos(_ELEVATION),
-                    np.sin(_AZIMUTH) * np.cos(_ELEVATION),
-                    np.sin(_ELEVATION),
-                ]
-            )
-            self.projection = np.array([right, np.cross(eye, right), eye])
+            self.projection = shading.oblique_projection(_AZIMUTH, _ELEVATION)
 
     @property
     def triangles(self) -> np.ndarray:
@@ -110,15 +101,8 @@ class View:
 
 
 def _shades(view: View, corners: np.ndarray, colours: np.ndarray) -> np.ndarray:
-    """Lambertian shading of RGBA colours, equal for both sides of a facet; none for flat meshes."""
-    if view.labels is not None:
-        return colours
-    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    lengths = np.linalg.norm(normals, axis=1)
-    facing = np.abs(normals @ _LIGHT) / np.where(lengths > 0, lengths, 1)
-    shaded = colours.copy()
-    shaded[:, :3] *= (0.55 + 0.45 * np.minimum(1, facing))[:, None]
-    return shaded
+    """Shading of RGBA colours; none for flat meshes."""
+    return colours if view.labels is not None else shading.shade(corners, colours)
 
 
 class FabricFigure:

@@ -1,0 +1,68 @@
+"""Cloth, lines and payloads of the canopies in a run directory of drogue-parachute."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..run_directory import Run, Snapshot
+
+
+def has_canopies(run: Run) -> bool:
+    """Whether the run has the positions of canopies."""
+    return "triangles" in run.canopy_mesh and all("position" in snapshot.canopy for snapshot in run.snapshots)
+
+
+@dataclass(frozen=True)
+class Canopies:
+    """All canopies of a run that has them."""
+
+    run: Run
+
+    @property
+    def triangles(self) -> np.ndarray:
+        """Vertices (n, 3) of the triangles of the cloth."""
+        return self.run.canopy_mesh["triangles"].values
+
+    @property
+    def payloads(self) -> np.ndarray:
+        """Vertices that are no part of the cloth."""
+        return np.setdiff1d(np.arange(len(self.run.canopy_mesh["vertices"].values)), self.triangles)
+
+    @property
+    def lines(self) -> np.ndarray:
+        """Vertex pairs (n, 2) of the suspension lines."""
+        strings = self.run.canopy_mesh["strings"].values
+        return strings[np.isin(strings, self.payloads).any(axis=1)]
+
+    @property
+    def stress_units(self) -> str | None:
+        """Unit of the von Mises stress; None if the run does not have it."""
+        stress = self.run.snapshots[-1].canopy.get("von_mises")
+        return None if stress is None else stress.units
+
+    def positions(self, snapshot: Snapshot) -> np.ndarray:
+        """Positions (n, 3) of all vertices, m."""
+        return snapshot.canopy["position"].values
+
+    def stress(self, snapshot: Snapshot) -> np.ndarray:
+        """Von Mises stress of the triangles."""
+        return snapshot.canopy["von_mises"].values
+
+    def bounds(self, snapshots: list[Snapshot]) -> tuple[np.ndarray, np.ndarray]:
+        """Lowest and highest coordinates of all vertices, m."""
+        every = np.concatenate([self.positions(snapshot) for snapshot in snapshots])
+        return every.min(axis=0), every.max(axis=0)
+
+    def section(self, snapshot: Snapshot, axis: int, place: float) -> np.ndarray:
+        """Segments (n, 2, 3) in which the triangles meet the plane at `place` on an axis, m."""
+        corners = self.positions(snapshot)[self.triangles]
+        height = corners[..., axis] - place
+        # A vertex in the plane counts as above it, so that a cut triangle has exactly two cut edges.
+        above = height >= 0
+        cut = above.any(axis=1) & ~above.all(axis=1)
+        corners, height, above = corners[cut], height[cut], above[cut]
+        following = [1, 2, 0]
+        crosses = above != above[:, following]
+        part = height / np.where(crosses, height - height[:, following], 1)
+        points = corners + part[..., None] * (corners[:, following] - corners)
+        return points[crosses].reshape(-1, 2, 3)

@@ -1,0 +1,125 @@
+"""Figure of the history of canopies: forces, drag coefficient, projected area, payload, and energies of the cloth."""
+
+import numpy as np
+
+from .. import style
+from ..expression import evaluate
+from ..failure import Failure
+from ..run_directory import Run
+from .time_figure import Band, Panel, time_figure
+
+
+def _vector(run: Run, canopy: int, quantity: str) -> np.ndarray:
+    """Vectors (rows, 3) of a canopy over time."""
+    return np.stack([run.history[f"canopy_{canopy}_{quantity}_{axis}"].values for axis in "xyz"], axis=1)
+
+
+def _count(run: Run) -> int:
+    """Number of canopies in the history."""
+    return sum(name.startswith("canopy_") and name.endswith("_projected_area") for name in run.history)
+
+
+def relative_velocity(run: Run, canopy: int) -> np.ndarray:
+    """Velocity (rows, 3) of the fluid far upstream relative to the payload, m/s.
+
+    A component that changes in space or time counts as 0, as it does in the checks.
+    """
+    stream = []
+    for component in run.scene["fluid"]["velocity"]:
+        try:
+            stream.append(float(evaluate(component)))
+        except Failure:
+            stream.append(0.0)
+    return np.array(stream) - _vector(run, canopy, "payload_velocity")
+
+
+def drag_coefficient(run: Run, canopy: int) -> np.ndarray:
+    """2 F / (rho U^2 S0) in every row: F the force along the relative velocity U, S0 the nominal area."""
+    velocity = relative_velocity(run, canopy)
+    speed = np.linalg.norm(velocity, axis=1)
+    area = nominal_area(run, canopy)
+    along = np.sum(_vector(run, canopy, "force") * velocity, axis=1)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return along / (0.5 * run.scene["fluid"]["density"] * speed**3 * area)
+
+
+def nominal_area(run: Run, canopy: int) -> float:
+    """Area of the flat cloth with its vent, m^2."""
+    return np.pi / 4 * run.scene["canopy"][canopy]["diameter"] ** 2
+
+
+def _checks(run: Run, key: str) -> list[Band]:
+    """Bands of relative deviations from a value over an interval of time."""
+    return [
+        Band(
+            (check["from"], check["to"]),
+            tuple(check["value"] * (1 + sign * check["tolerance"]) for sign in (-1, 1)),
+            check["value"],
+        )
+        for check in run.scene.get("verify", {}).get(key, [])
+    ]
+
+
+def _panels(run: Run) -> list[Panel]:
+    canopies = range(_count(run))
+
+    def label(words, canopy):
+        return f"{words or 'canopy'} {canopy}" if len(canopies) > 1 else words
+
+    def of_all(words, values):
+        return {label(words, canopy): values(canopy) for canopy in canopies}
+
+    def history(name):
+        return run.history[name].values
+
+    peaks = [
+        Band(tuple(check["time"]), tuple(check["force"]))
+        for check in run.scene.get("verify", {}).get("peak_force", [])
+    ]
+    panels = [
+        Panel(
+            "force of the air along z, and of the lines on the payload (N)",
+            of_all("air", lambda canopy: history(f"canopy_{canopy}_force_z"))
+            | of_all("lines", lambda canopy: np.linalg.norm(_vector(run, canopy, "line_force"), axis=1)),
+            peaks,
+            dashed=frozenset(label("lines", canopy) for canopy in canopies),
+        ),
+        Panel(
+            "drag coefficient",
+            of_all("", lambda canopy: drag_coefficient(run, canopy)),
+            _checks(run, "drag"),
+        ),
+        Panel(
+            style.axis_label("projected area", "m^2"),
+            of_all("", lambda canopy: history(f"canopy_{canopy}_projected_area")),
+            constants={
+                f"flat: {area:.1f}": area
+                for area in dict.fromkeys(nominal_area(run, canopy) for canopy in canopies)
+            },
+        ),
+    ]
+    free = [
+        canopy for canopy in canopies if np.ptp(_vector(run, canopy, "payload"), axis=0).max() > 0
+    ]
+    if free:
+        panels += [
+            Panel(
+                "speed of the payload (m/s)",
+                {label("in the grid", k): np.linalg.norm(_vector(run, k, "payload_velocity"), axis=1) for k in free}
+                | {label("in the stream", k): np.linalg.norm(relative_velocity(run, k), axis=1) for k in free},
+                _checks(run, "terminal_speed"),
+            ),
+            Panel(
+                "height of the payload, z (m)", {label("", k): history(f"canopy_{k}_payload_z") for k in free}
+            ),
+        ]
+    energies = {"kinetic": history("cloth_kinetic_energy"), "elastic": history("cloth_elastic_energy")}
+    return [*panels, Panel("energy of cloth, lines and payloads (J)", energies)]
+
+
+def canopies_history_figure(run: Run):
+    """Figure; None without canopies in the history, or with fewer than two rows."""
+    time = run.history.get("time")
+    if time is None or len(time.values) < 2 or not _count(run):
+        return None
+    return time_figure(run.name, time.values, _panels(run))

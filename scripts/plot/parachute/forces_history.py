@@ -1,0 +1,47 @@
+"""Figure of the forces of the flow on bodies over time, with their means and the expected ones."""
+
+import numpy as np
+
+from .. import style
+from ..run_directory import Run
+from .time_figure import Band, Panel, time_figure
+
+_ABSENT = 1e-6  # of the largest component: below it a component is round-off
+_START = 0.1  # part of the run whose forces need not be in the picture: those of a start from rest
+
+
+def mean_from(time: np.ndarray, values: np.ndarray, start: float) -> float:
+    """Mean of the rows from `start`, s, on by the trapezoidal rule."""
+    time, values = time[time >= start], values[time >= start]
+    return float(np.sum((values[1:] + values[:-1]) / 2 * np.diff(time)) / np.ptp(time))
+
+
+def _panel(run: Run, body: int, time: np.ndarray) -> Panel:
+    forces = {axis: run.history[f"body_{body}_force_{axis}"].values for axis in "xyz"}
+    shown = time >= time[0] + _START * (time[-1] - time[0])
+    sizes = {axis: float(np.nanmax(np.abs(values[shown]), initial=0.0)) for axis, values in forces.items()}
+    largest = max(sizes.values())
+    curves = {axis: values for axis, values in forces.items() if sizes[axis] > _ABSENT * largest or not largest}
+    bands, means = [], []
+    for check in run.scene.get("verify", {}).get("mean_force", []):
+        if check["body"] != body or np.count_nonzero(time >= check["from"]) < 2:
+            continue
+        expected = check["value"] * check["reference"]
+        ends = tuple(sorted(expected * (1 + sign * check["tolerance"]) for sign in (-1, 1)))
+        bands.append(Band((check["from"], time[-1]), ends, expected))
+        mean = mean_from(time, forces[check["axis"]], check["from"]) / check["reference"]
+        means.append(
+            f"mean along {check['axis']} / {check['reference']:.3g} N = {mean:.3g}, expected {check['value']:.3g}"
+        )
+    kind = run.scene.get("body", [{}] * (body + 1))[body].get("kind", "body")
+    title = "\n".join([style.axis_label(f"force on {kind} {body}", "N"), *means])
+    return Panel(title, curves, bands, settled=time[shown][0])
+
+
+def forces_history_figure(run: Run):
+    """Figure; None without forces on bodies in the history, or with fewer than two rows."""
+    time = run.history.get("time")
+    count = sum(name.startswith("body_") and name.endswith("_force_x") for name in run.history)
+    if time is None or len(time.values) < 2 or not count:
+        return None
+    return time_figure(run.name, time.values, [_panel(run, body, time.values) for body in range(count)])

@@ -1,0 +1,113 @@
+"""Synthetic run directories of drogue-parachute with canopies and bodies."""
+
+import h5py
+import numpy as np
+from synthetic_flow import centres
+
+SCENE = """app = "parachute"
+[fluid]
+density = 1.5
+velocity = [0.0, {side_velocity}, 4.0]
+[grid]
+cells = [6, 6, 10]
+domain = [[-3.0, 3.0], [-3.0, 3.0], [-4.0, 6.0]]
+boundary = {{ x = "slip", y = "slip", z = ["inflow", "outflow"] }}
+{canopies}
+[verify]
+drag = [{{ canopy = 0, from = 1.0, to = 2.0, value = 0.5, tolerance = 0.2 }}]
+peak_force = [{{ canopy = 0, force = [40.0, 80.0], time = [0.5, 1.5] }}]
+terminal_speed = [{{ canopy = 0, from = 1.0, to = 2.0, value = 3.0, tolerance = 0.1 }}]
+"""
+CANOPY = """[[canopy]]
+kind = "flat-circular"
+diameter = 2.0
+"""
+LOW, HIGH = (-3.0, -3.0, -4.0), (3.0, 3.0, 6.0)
+CELLS = (6, 6, 10)
+GORES = 8
+
+
+def tent(bulge):
+    """Vertices of a cone with its tip at (0, 0, bulge), a skirt of radius 1 at z = 0, and a payload at z = -2."""
+    angle = 2 * np.pi * (np.arange(GORES) + 0.5) / GORES
+    skirt = np.stack((np.cos(angle), np.sin(angle), 0 * angle), axis=1)
+    return np.concatenate(([[0, 0, bulge]], skirt, [[0, 0, -2.0]]))
+
+
+def write_history(file, columns):
+    """Writes history.csv of columns, each a list of values by its header."""
+    rows = zip(*columns.values())
+    file.write_text("\n".join([",".join(columns), *(",".join(map(str, row)) for row in rows)]) + "\n")
+
+
+def canopy_columns(index, payload_speed=0.0):
+    """Columns of a canopy at 0, 1 and 2 s; the air pulls with 0, 50 and 25 N along z."""
+    name = f"canopy_{index}_"
+    zero = [0.0] * 3
+    return {
+        name + "force_x [N]": zero, name + "force_y [N]": zero, name + "force_z [N]": [0.0, 50.0, 25.0],
+        name + "line_force_x [N]": [0.0, 30.0, 0.0], name + "line_force_y [N]": zero,
+        name + "line_force_z [N]": [0.0, 40.0, 24.0],
+        name + "payload_x [m]": zero, name + "payload_y [m]": zero,
+        name + "payload_z [m]": [-2.0 + payload_speed * time for time in range(3)],
+        name + "payload_velocity_x [m/s]": zero, name + "payload_velocity_y [m/s]": zero,
+        name + "payload_velocity_z [m/s]": [payload_speed] * 3,
+        name + "projected_area [m^2]": [3.0, 2.0, 2.5], name + "largest_strain": zero,
+    }  # fmt: skip
+
+
+def write_canopies(folder, fields=("velocity", "position", "von_mises"), payload_speed=0.0, canopies=1, side=0.0):
+    """Writes a run of cones of cloth in a stream; returns its path. `side`: velocity of the stream along y."""
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "scene.toml").write_text(SCENE.format(canopies=CANOPY * canopies, side_velocity=side))
+    columns = {"time [s]": [0.0, 1.0, 2.0], "kinetic_energy [J]": [1.0, 2.0, 3.0]}
+    for index in range(canopies):
+        columns |= canopy_columns(index, payload_speed)
+    columns |= {"cloth_kinetic_energy [J]": [0.0, 1.0, 2.0], "cloth_elastic_energy [J]": [0.0, 4.0, 3.0]}
+    write_history(folder / "history.csv", columns)
+    payload = GORES + 1
+    ring = 1 + np.arange(GORES)
+    triangles = np.stack((0 * ring, ring, np.roll(ring, -1)), axis=1)
+    lines = np.stack((ring, 0 * ring + payload), axis=1)
+    seams = np.stack((0 * ring, ring), axis=1)
+    with h5py.File(folder / "fields.h5", "w") as h5:
+        for axis, low, high, count in zip("xyz", LOW, HIGH, CELLS):
+            h5[f"mesh/{axis}"] = np.linspace(low, high, count + 1)
+        if {"position", "von_mises"} & set(fields):
+            h5["mesh/canopy/triangles"] = triangles
+            h5["mesh/canopy/strings"] = np.concatenate((seams, lines))
+            h5["mesh/canopy/vertices"] = tent(0.0)
+        for k, bulge in enumerate((0.0, 0.5, 1.0)):
+            group = h5.create_group(f"steps/{k:06d}")
+            group.attrs["time"] = float(k)
+            z = centres(CELLS, np.subtract(HIGH, LOW))[2]
+            values = {
+                "velocity": (np.stack((0 * z, 0 * z, 4 + 0.1 * k * z), axis=-1), "m/s"),
+                "canopy/position": (tent(bulge), "m"),
+                "canopy/von_mises": (bulge * np.arange(GORES), "N/m"),
+            }
+            for name, (array, units) in values.items():
+                if name.split("/")[-1] in fields:
+                    group[name] = array
+                    group[name].attrs["units"] = units
+    return folder
+
+
+def write_bodies(folder):
+    """Writes a history of forces on a cylinder (mean 3 N along x from 2 s on) and on a sphere; returns its path.
+
+    The forces of the first row are a thousand times larger, as at a start from rest.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "scene.toml").write_text(
+        'app = "parachute"\n[[body]]\nkind = "cylinder"\n[[body]]\nkind = "sphere"\n[verify]\n'
+        'mean_force = [{ body = 0, axis = "x", from = 2.0, reference = 2.0, value = 1.4, tolerance = 0.1 }]\n'
+    )
+    time = [0.0, 1.0, 2.0, 3.0, 4.0]
+    write_history(folder / "history.csv", {
+        "time [s]": time, "kinetic_energy [J]": [1.0] * 5,
+        "body_0_force_x [N]": [3000.0, 5.0, 2.0, 4.0, 2.0], "body_0_force_y [N]": [0.0, 1.0, -1.0, 1.0, -1.0],
+        "body_0_force_z [N]": [1e-12] * 5,
+        **{f"body_1_force_{axis} [N]": [1.0, 2.0, 3.0, 2.0, 1.0] for axis in "xyz"},
+    })  # fmt: skip
+    return folder

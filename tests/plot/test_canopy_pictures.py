@@ -1,0 +1,218 @@
+"""Figures of synthetic runs of drogue-parachute with canopies and bodies."""
+
+import shutil
+import tempfile
+import unittest
+from pathlib import Path
+
+import packages  # before modules that need the packages  isort: skip
+import numpy as np
+from matplotlib.text import Text
+from PIL import Image
+from plot import cli, shading, style
+from plot.flow.plane import plane_of
+from plot.flow.quantities import quantities
+from plot.parachute.canopies import Canopies, has_canopies
+from plot.parachute.canopies_history import canopies_history_figure, drag_coefficient, relative_velocity
+from plot.parachute.canopy_figure import CanopyFigure, View, canopy_figure
+from plot.parachute.forces_history import forces_history_figure, mean_from
+from plot.parachute.time_figure import Panel
+from plot.run_directory import read_run
+from synthetic_canopies import GORES, write_bodies, write_canopies
+
+assert packages.SOURCE
+
+
+def panel_of(figure, words):
+    """Axes whose title contains `words`."""
+    (axes,) = [axes for axes in figure.axes if words in axes.get_title(loc="left")]
+    return axes
+
+
+class CanopyPictures(unittest.TestCase):
+    def setUp(self):
+        self.folder = Path(tempfile.mkdtemp())
+        self.addCleanup(shutil.rmtree, self.folder)
+        self.addCleanup(style.plt.close, "all")
+
+    def view(self, run, normal="y"):
+        known = quantities(run)
+        return View(Canopies(run), plane_of(run, normal), [known["speed"]] if "speed" in known else [])
+
+    def assert_no_text_overlaps_or_leaves(self, figure):
+        figure.canvas.draw()
+        hidden = set()  # labels of ticks beyond the ends of their axis
+        for axis in (axis for axes in figure.axes for axis in (axes.xaxis, axes.yaxis)):
+            low, high = sorted(axis.get_view_interval())
+            hidden |= {tick.label1 for tick in axis.get_major_ticks() if not low <= tick.get_loc() <= high}
+        texts = [
+            text
+            for text in figure.findobj(Text)
+            if text.get_visible() and text.get_text() and text not in hidden and text.axes in (None, *figure.axes)
+        ]
+        boxes = [text.get_window_extent() for text in texts]
+        for k, box in enumerate(boxes):
+            words = texts[k].get_text()
+            self.assertTrue(box.x0 >= 0 and box.y0 >= 0, words)
+            self.assertTrue(box.x1 <= figure.bbox.x1 and box.y1 <= figure.bbox.y1, words)
+            for other, text in zip(boxes[:k], texts):
+                self.assertFalse(box.overlaps(other), (words, text.get_text()))
+
+    def test_draws_pictures_whatever_fields_run_has(self):
+        for fields in (("velocity", "position", "von_mises"), ("velocity", "position"), ("position",),
+                       ("position", "von_mises")):  # fmt: skip
+            with self.subTest(fields):
+                run = write_canopies(self.folder / "-".join(fields), fields)
+                self.assertEqual(0, cli.main([str(run), "--quiet", "--dpi", "40"]))
+                names = {file.name for file in run.iterdir() if file.suffix in (".png", ".gif")}
+                self.assertEqual({"fields.png", "fields.gif", "history.png", "canopies.png"}, names)
+                with Image.open(run / "fields.gif") as movie:
+                    self.assertEqual(3, movie.n_frames)
+
+    def test_cloth_without_positions_is_drawn_as_flow(self):
+        run = read_run(write_canopies(self.folder / "run", ("velocity", "von_mises")))
+        self.assertFalse(has_canopies(run))
+        self.assertEqual(0, cli.main([str(run.path), "--quiet", "--movie", "none", "--dpi", "40"]))
+
+    def test_lines_lead_to_payload_and_seams_do_not(self):
+        canopies = Canopies(read_run(write_canopies(self.folder / "run")))
+        self.assertEqual([GORES + 1], canopies.payloads.tolist())
+        self.assertEqual(GORES, len(canopies.lines))
+        self.assertEqual({GORES + 1}, set(canopies.lines[:, 1]))
+
+    def test_section_of_cone_is_its_profile(self):
+        run = read_run(write_canopies(self.folder / "run"))
+        canopies, snapshot = Canopies(run), run.snapshots[2]
+        section = canopies.section(snapshot, 1, 0.0)
+        # Triangles that only touch the plane with the tip give points.
+        section = section[np.linalg.norm(section[:, 1] - section[:, 0], axis=1) > 1e-12]
+        self.assertEqual((2, 2, 3), section.shape)
+        np.testing.assert_allclose(section[..., 1], 0, atol=1e-14)
+        ends = sorted(map(tuple, np.round(section[..., [0, 2]].reshape(-1, 2), 12)))
+        edge = round(np.cos(np.pi / GORES), 12)
+        self.assertEqual([(-edge, 0.0), (0.0, 1.0), (0.0, 1.0), (edge, 0.0)], ends)
+        self.assertEqual(0, len(canopies.section(snapshot, 2, 1.5)))
+        self.assertEqual(GORES, len(canopies.section(snapshot, 2, 0.25)))
+
+    def test_payload_hangs_below_cloth_in_both_views(self):
+        run = read_run(write_canopies(self.folder / "run"))
+        figure = canopy_figure(self.view(run), run.snapshots[2])
+        flow = panel_of(figure, "speed")
+        (section,) = [item for item in flow.collections if item.get_zorder() == 4]
+        for drawn in (figure.axes[0].collections[0], section):
+            axes = drawn.axes
+            (payload,) = [line for line in axes.lines if line.get_marker() == "o"]
+            highest = max(path.vertices[:, 1].max() for path in drawn.get_paths())
+            self.assertGreater(highest, payload.get_ydata()[0] + 2)
+            low, high = axes.get_ylim()
+            self.assertTrue(low < payload.get_ydata()[0] < highest < high)
+
+    def test_slice_shows_flow_behind_canopy_in_true_proportion(self):
+        run = read_run(write_canopies(self.folder / "run"))
+        figure = canopy_figure(self.view(run), run.snapshots[2])
+        flow = panel_of(figure, "speed")
+        box, (left, right, low, high) = flow.get_window_extent(), flow.axis()
+        self.assertAlmostEqual((right - left) / (high - low), box.width / box.height, delta=1e-6)
+        self.assertGreater(high - 1.0, 2.5)
+        self.assertTrue(-3 <= left < -1 and 1 < right <= 3 and -4 <= low < -2 and high <= 6)
+
+    def test_stress_colours_keep_one_scale(self):
+        run = read_run(write_canopies(self.folder / "run"))
+        drawing = CanopyFigure(self.view(run), run.snapshots)
+        cloth = drawing.figure.axes[0].collections[0]
+        colours = []
+        for snapshot in run.snapshots[1:]:
+            drawing.show(snapshot)
+            colours.append(len({tuple(colour) for colour in np.round(cloth.get_facecolor(), 6)}))
+            self.assertGreater(colours[-1], GORES)
+        key = next(axes for axes in drawing.figure.axes if "von Mises" in axes.get_title(loc="left"))
+        self.assertEqual(0, key.get_ylim()[0])
+        self.assertAlmostEqual(np.percentile([b * k for b in (0, 0.5, 1) for k in range(GORES)], 99), key.get_ylim()[1])
+
+    def test_shades_are_equal_for_both_sides_and_limited(self):
+        corners = np.random.default_rng(5).normal(size=(200, 3, 3))
+        white = np.ones((200, 4))
+        shaded = shading.shade(corners, white, 0.7)
+        np.testing.assert_allclose(shaded, shading.shade(corners[:, ::-1], white, 0.7))
+        self.assertTrue(0.7 <= shaded[:, :3].min() and shaded[:, :3].max() <= 1)
+        self.assertEqual(4, len(np.unique(np.round(shading.shade(corners, white, 0.7, 4)[:, 0], 9))))
+
+    def test_drag_coefficient_is_that_of_velocity_relative_to_payload(self):
+        run = read_run(write_canopies(self.folder / "run", payload_speed=1.0))
+        np.testing.assert_allclose(relative_velocity(run, 0), [[0, 0, 3]] * 3)
+        np.testing.assert_allclose(
+            drag_coefficient(run, 0), np.array([0, 50, 25]) / (0.5 * 1.5 * 9 * np.pi), rtol=1e-12
+        )
+
+    def test_velocity_that_changes_counts_as_zero(self):
+        run = read_run(write_canopies(self.folder / "run", side='"sin(t)"'))
+        np.testing.assert_allclose(relative_velocity(run, 0), [[0, 0, 4]] * 3)
+
+    def test_history_shows_what_checks_allow(self):
+        fixed, free = (
+            canopies_history_figure(read_run(write_canopies(self.folder / f"{speed}", payload_speed=speed)))
+            for speed in (0.0, 1.0)
+        )
+        self.assertEqual(4, len(fixed.axes))
+        self.assertEqual(6, len(free.axes))
+        expected = {"lines on the payload": (0.5, 40, 1, 40), "drag": (1, 0.4, 1, 0.2), "speed": (1, 2.7, 1, 0.6)}
+        for words, (start, low, length, height) in expected.items():
+            axes = panel_of(free, words)
+            (band,) = axes.patches
+            np.testing.assert_allclose(
+                (*band.get_xy(), band.get_width(), band.get_height()), (start, low, length, height)
+            )
+            self.assertTrue(axes.get_ylim()[0] < low and low + height < axes.get_ylim()[1])
+        air, lines = panel_of(fixed, "lines on the payload").lines
+        np.testing.assert_allclose(air.get_ydata(), [0, 50, 25])
+        np.testing.assert_allclose(lines.get_ydata(), [0, 50, 24])
+        self.assertIn("flat: 3.1", [text.get_text() for text in panel_of(fixed, "projected area").texts])
+
+    def test_curves_of_several_canopies_are_labelled(self):
+        run = read_run(write_canopies(self.folder / "run", canopies=5, payload_speed=0.5))
+        figure = canopies_history_figure(run)
+        labels = [text.get_text() for text in panel_of(figure, "lines on the payload").texts]
+        self.assertEqual({f"{words} {k}" for words in ("air", "lines") for k in range(5)}, set(labels))
+
+    def test_no_text_overlaps_or_leaves_figure(self):
+        run = read_run(write_canopies(self.folder / "run", payload_speed=1.0))
+        bodies = read_run(write_bodies(self.folder / "bodies"))
+        for figure in (
+            canopy_figure(self.view(run), run.snapshots[2]),
+            canopies_history_figure(run),
+            forces_history_figure(bodies),
+        ):
+            self.assert_no_text_overlaps_or_leaves(figure)
+
+    def test_forces_on_bodies_stand_beside_expected_mean(self):
+        run = read_run(write_bodies(self.folder / "run"))
+        figure = forces_history_figure(run)
+        cylinder, sphere = panel_of(figure, "cylinder 0"), panel_of(figure, "sphere 1")
+        self.assertIn("mean along x / 2 N = 1.5, expected 1.4", cylinder.get_title(loc="left"))
+        (band,) = cylinder.patches
+        np.testing.assert_allclose((*band.get_xy(), band.get_width(), band.get_height()), (2, 2.52, 2, 0.56))
+        self.assertEqual({"x", "y"}, {text.get_text() for text in cylinder.texts})  # z is round-off
+        self.assertLess(cylinder.get_ylim()[1], 10)  # without the start
+        self.assertEqual((3, 0), (len(sphere.lines), len(sphere.patches)))
+        self.assertEqual(0, cli.main([str(run.path), "--quiet"]))
+        self.assertTrue((run.path / "forces.png").is_file())
+
+    def test_mean_is_that_of_trapezoidal_rule(self):
+        time, values = np.array([0, 1, 2, 4.0]), np.array([9, 1, 2, 3.0])
+        self.assertAlmostEqual((1.5 + 2 * 2.5) / 3, mean_from(time, values, 1.0))
+
+    def test_history_without_canopies_or_second_row_is_not_drawn(self):
+        run = write_canopies(self.folder / "run")
+        self.assertIsNone(forces_history_figure(read_run(run)))
+        self.assertIsNone(canopies_history_figure(read_run(write_bodies(self.folder / "bodies"))))
+        history = run / "history.csv"
+        history.write_text("\n".join(history.read_text().splitlines()[:2]) + "\n")
+        self.assertIsNone(canopies_history_figure(read_run(run)))
+
+    def test_panel_of_undefined_values_has_a_range(self):
+        low, high = Panel("", {"": np.full(3, np.nan)}).limits(np.arange(3.0))
+        self.assertLess(low, high)
+
+
+if __name__ == "__main__":
+    unittest.main()
