@@ -21,7 +21,7 @@ FAMILY = SchemeFamily(
     colour_settings=("ab2", "rk3"),
     line_settings={"fft": "transforms", "diagonalization": "matrix products"},
     problems=_PROBLEMS,
-    error_titles=dict.fromkeys(_PROBLEMS, _VORTICES) | {"cavity": "largest error of an extreme velocity (m/s)"},
+    error_titles=dict.fromkeys(_PROBLEMS, _VORTICES) | {"cavity": "error of extreme velocities (m/s)"},
     mesh_unit="cells per axis",
     setting_labels={
         "ab2": "AB2", "rk3": "RK3", "fft": "transforms", "diagonalization": "matrix products",

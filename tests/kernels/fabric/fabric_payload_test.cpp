@@ -86,6 +86,53 @@ TEST(FabricPayload, OscillatesOnItsLinesWithTheFrequencyOfTheClosedForm) {
   }
 }
 
+/// Force of the lines on a payload at the positions x, N, as a loop over its attachments.
+Vector force_of_lines(const Parameters& p, const std::vector<Vector>& x, std::size_t payload, int first,
+                      int lines, double axial_stiffness) {
+  Vector sum{};
+  for (int k = first; k < first + lines; ++k) {
+    const auto other = static_cast<std::size_t>(k);
+    const auto length_between = [&](const std::vector<Vector>& at) {
+      return std::hypot(at[other][0] - at[payload][0], at[other][1] - at[payload][1],
+                        at[other][2] - at[payload][2]);
+    };
+    const double now = length_between(x), rest = length_between(p.mesh.rest);
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      sum[axis] += axial_stiffness * (now / rest - 1.0) / now * (x[other][axis] - x[payload][axis]);
+  }
+  return sum;
+}
+
+TEST(FabricPayload, SumsTheForcesOfAnyNumberOfLines) {
+  Parameters p;
+  p.mesh = testing::random_patch(9, 7, 5);
+  p.mass.assign(p.mesh.rest.size(), 0.02);
+  p.dt = 1e-4;
+  // A warp shares rows of more than 12 springs, by 32 at a time.
+  struct Lines {
+    int first, count;
+    std::size_t payload;
+  };
+  std::vector<Lines> payloads = {{0, 12, 0}, {3, 13, 0}, {1, 44, 0}, {0, 60, 0}, {30, 1, 0}};
+  for (Lines& lines : payloads) {
+    std::vector<int> attachments;
+    for (int k = 0; k < lines.count; ++k) attachments.push_back(lines.first + k);
+    const double offset = 0.3 * lines.count;
+    lines.payload =
+        static_cast<std::size_t>(add_payload(p, {{4.0 + offset, 3.0, -5.0}, 3.0, 500.0}, attachments));
+  }
+  const std::vector<Vector> x = shaken(p.mesh.rest, 0.3, 1), v(x.size(), Vector{});
+  const auto solver = create_solver(backend, p);
+  solver->upload(x, v);
+  std::vector<Vector> force(x.size());
+  solver->forces(force);
+  for (const Lines& lines : payloads) {
+    const Vector expected = force_of_lines(p, x, lines.payload, lines.first, lines.count, 500.0);
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      EXPECT_NEAR(force[lines.payload][axis], expected[axis], 1e-11) << lines.count;
+  }
+}
+
 /// Largest change of a component of the momentum, kg m/s, and of the angular momentum, kg m^2/s, of a free
 /// sheet that pulls at a payload for 0.2 s.
 struct MomentumChange {
