@@ -97,7 +97,7 @@ double vortex_error(int n, flow::TimeScheme time) {
 
 TEST(MovingFrame, DecayingVorticesAreOfSecondOrderInAnAcceleratingFrame) {
   for (const flow::TimeScheme time : {flow::TimeScheme::ab2, flow::TimeScheme::rk3}) {
-    // Rates of the old frame would make an error of some dt / 2 times the velocity of the frame: 4e-3 m/s.
+    // Rates of the old frame would make an error of some dt / 2 times the velocity of the frame: 3e-3 m/s.
     const double coarse = vortex_error(40, time), fine = vortex_error(80, time);
     EXPECT_GT(std::log2(coarse / fine), 1.8) << coarse << " " << fine;
     EXPECT_LT(fine, 1e-4);
