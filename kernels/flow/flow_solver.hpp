@@ -20,6 +20,7 @@
 #include "kernels/flow/observables/sample.hpp"
 #include "kernels/flow/observables/totals.hpp"
 #include "kernels/flow/projection/projection.hpp"
+#include "kernels/flow/shift_frame.hpp"
 #include "kernels/flow/solver.hpp"
 #include "kernels/flow/step_constants.hpp"
 #include "kernels/flow/step_control.hpp"
@@ -107,6 +108,19 @@ class FlowSolver {
   /// Lets a run continue that failed because its fixed dt exceeded the largest stable one. Call it before
   /// `set_fixed_dt` with a shorter one. Blocks. Throws only after a failed kernel.
   void forget_long_step();
+  /// Velocity of the frame of reference of all velocities relative to that of the parameters, m/s. Does not
+  /// throw.
+  [[nodiscard]] const std::array<double, 3>& frame_velocity() const { return _frame_velocity; }
+  /// Changes, between steps, to a frame of reference with another velocity, m/s: the state becomes that which
+  /// an observer in the new frame sees, and the velocities of the sides are those of the parameters relative
+  /// to it. Blocks. Throws std::invalid_argument as `check_frame` does.
+  void change_frame(const std::array<double, 3>& velocity);
+  /// Sets the frame of reference of the velocities in the state, m/s, without changing them. Blocks. Throws
+  /// as `change_frame` does.
+  void set_frame(const std::array<double, 3>& velocity);
+  /// Throws std::invalid_argument if the grid cannot move along the marked axes: on several ranks, along axes
+  /// of one cell, towards walls or slip sides, and with sides whose velocity is an expression.
+  void check_frame(const std::array<bool, 3>& axes) const;
   /// Largest dt, s, that the CFL condition and `Parameters::max_dt` admit at this progress; infinite without
   /// a bound, NaN without a finite velocity. Does not throw.
   [[nodiscard]] double largest_dt(const Progress& now) const;
@@ -181,7 +195,8 @@ class FlowSolver {
   mutable std::optional<Halo<ExecutionSpace>> _halo;  ///< only on several ranks
   BoundaryTables<ExecutionSpace> _boundary;
   StepConstants _constants{};
-  std::array<double, 3> _acceleration{};  ///< m/s^2
+  std::array<double, 3> _acceleration{};    ///< m/s^2
+  std::array<double, 3> _frame_velocity{};  ///< m/s
   EddyModel _eddy_model{};
   EddyCells _eddy_cells{};
   Values _velocity, _predicted, _rate, _force;
@@ -654,6 +669,57 @@ void FlowSolver<ExecutionSpace>::set_fixed_dt(double dt) {
   if (dt == _constants.fixed_dt) return;
   _constants.fixed_dt = dt;
   _launcher.discard_graphs();  // they hold the constants
+}
+
+template <class ExecutionSpace>
+void FlowSolver<ExecutionSpace>::check_frame(const std::array<bool, 3>& axes) const {
+  if (_halo) throw std::invalid_argument("flow solver: a moving frame needs all cells on one rank");
+  for (std::size_t side = 0; side < 6; ++side) {
+    const Boundary& boundary = _parameters.boundary[side];
+    if (!boundary.velocity_expressions.empty())
+      throw std::invalid_argument("flow solver: a moving frame needs sides with constant velocities");
+    if (!axes[side / 2]) continue;
+    if (_grid.n[side / 2] == 1)
+      throw std::invalid_argument("flow solver: a frame cannot move along an axis of one cell");
+    if (boundary.kind == BoundaryKind::wall || boundary.kind == BoundaryKind::slip)
+      throw std::invalid_argument("flow solver: a frame cannot move towards a wall or a slip side");
+  }
+}
+
+template <class ExecutionSpace>
+void FlowSolver<ExecutionSpace>::set_frame(const std::array<double, 3>& velocity) {
+  check_frame({velocity[0] != 0.0, velocity[1] != 0.0, velocity[2] != 0.0});
+  _frame_velocity = velocity;
+  for (std::size_t side = 0; side < 6; ++side) {
+    std::array<double, 3> relative = _parameters.boundary[side].velocity;
+    for (std::size_t c = 0; c < 3; ++c) relative[c] -= velocity[c];
+    _boundary.set_velocity(side, relative);
+  }
+  _launcher.discard_graphs();  // they hold the conditions
+  begin_ghosts(space(), _velocity);
+  space().fence("drogue::flow::set_frame");
+}
+
+template <class ExecutionSpace>
+void FlowSolver<ExecutionSpace>::change_frame(const std::array<double, 3>& velocity) {
+  check_frame({velocity[0] != 0.0, velocity[1] != 0.0, velocity[2] != 0.0});
+  double shift[3], rate = 0.0;
+  for (std::size_t c = 0; c < 3; ++c) {
+    shift[c] = velocity[c] - _frame_velocity[c];
+    rate += std::abs(shift[c]) * _grid.inverse_h[c];
+  }
+  if (_parameters.time_scheme == TimeScheme::ab2)
+    launch_cells(space(), "drogue::flow::shift_rates", _grid.n,
+                 ShiftRatesFunctor<ExecutionSpace>{
+                     _grid, _boundary.conditions(), _velocity, _rate, {shift[0], shift[1], shift[2]}});
+  device::launch_each(
+      space(), "drogue::flow::shift_velocity", static_cast<int>(_grid.component),
+      ShiftVelocityFunctor<ExecutionSpace>{_velocity, _grid.component, {shift[0], shift[1], shift[2]}});
+  // An upper bound until the next step.
+  Control control = read_control();
+  control.now.rate = Kokkos::bit_cast<std::uint64_t>(Kokkos::bit_cast<double>(control.now.rate) + rate);
+  write_control(control);
+  set_frame(velocity);
 }
 
 template <class ExecutionSpace>

@@ -84,7 +84,10 @@ BAD_LINES = [
     (32, "contact = true\nthickness = 0.1", 33, ["coupling.thickness = 0.1", "height of a triangle"]),
     (32, "thickness = 0.01", 32, ["coupling.thickness", "contact = true"]),
     (32, "gravity = 9.81", 32, ["coupling.gravity", "array of 3"]),
+    (6, 'domain = [[-2, 2], [-1, 1], [-1.4, 1]]\nframe = "folow"', 7, ["grid.frame", '"follow"']),
+    (6, 'domain = [[-2, 2], [-1, 1], [-1.4, 1]]\nframe = true', 7, ["grid.frame"]),
     # contradictions
+    (6, 'domain = [[-2, 2], [-1, 1], [-1.4, 1]]\nframe = "follow"', 7, ["grid.frame", "canopy[0].payload.fixed"]),
     (12, "vent = 1.2", 12, ["canopy[0].vent = 1.2", "1.2", "smaller"]),
     (13, 'cloth = "mil-c-7020-1"', 14, ["canopy[0].area_density", "custom"]),
     (15, "edge_length = 0.08", 15, ["canopy[0].edge_length = 0.08", "too coarse", "0.0714"]),

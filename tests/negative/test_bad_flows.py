@@ -47,6 +47,24 @@ class BadFlows(parachute_program.FlowTest):
         self.assertGreaterEqual(len(bad_bodies.BAD_LINES), 30)
         self.assert_lines_are_rejected(bad_bodies.GOOD, bad_bodies.BAD_LINES)
 
+    def test_rejects_grids_that_cannot_follow_a_payload(self):
+        follow = 'grid.frame="follow"'
+        self.assertIn('grid.frame applies only with a [[canopy]]', self.refusal(follow))
+        free = bad_canopies.GOOD[:bad_canopies.GOOD.index("[verify]")].replace("fixed = true", "fixed = false")
+        self.scene.write_text(free, encoding="utf-8")
+        self.expect(0, self.scene, "--check", sets=[follow])
+        self.assertIn("canopy[0].payload.fixed is true", self.refusal(follow, "canopy[0].payload.fixed=true"))
+        for side in ("periodic", "slip", "wall"):
+            self.assertIn('needs an axis whose sides are "inflow" or "outflow"',
+                          self.refusal(follow, "fluid.velocity=[0, 0, 0]", f'grid.boundary.z="{side}"'))
+        self.assertIn("fluid.velocity = 5+0*t must be a number", self.refusal(follow, 'fluid.velocity=[0, 0, "5+0*t"]'))
+        self.assertIn("grid.wall_velocity.x_low = t must be a number",
+                      self.refusal(follow, 'grid.boundary.x="wall"', 'grid.wall_velocity.x_low=[0, 0, "t"]'))
+        body = '[[body]]\nkind = "plate"\nnormal = "z"\ncentre = [0, 0, 0.5]\nlengths = [0.2, 0.2]\nedge_length = 0.05\n'
+        self.scene.write_text(free.replace("[coupling]", body + "[coupling]"), encoding="utf-8")
+        self.expect(0, self.scene, "--check")
+        self.assertIn("cannot be combined with a [[body]]", self.refusal(follow))
+
     def test_rejects_invalid_canopies(self):
         self.scene.write_text(bad_canopies.GOOD, encoding="utf-8")
         self.expect(0, self.scene, "--check")

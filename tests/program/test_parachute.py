@@ -471,6 +471,54 @@ class Canopies(parachute_program.FlowTest):
         again = self.expect(4, self.write(free), *QUIET, "--restart", "auto")
         self.assertEqual(process.stderr, again.stderr)
 
+    def test_grid_follows_a_free_payload(self):
+        """The stream carries the parachute of the test above out of a fixed grid."""
+        free = CANOPY.replace("fixed = true", "fixed = false").replace("times = [0.1, 0.2]", "times = [1]").replace(
+            "cells", 'frame = "follow"\ncells')
+        sets = ["coupling.gravity=[0, 0, -9.81]", "run.end_time=1", "output.restart_every=37", "verify={terminal_speed="
+                "[{from=0.4,to=1,value=4,tolerance=10}]}"]
+        process = self.expect(4, self.write(free), *QUIET, sets=[*sets, 'grid.frame="fixed"'])
+        self.assertIn("canopy[0] leaves the domain", process.stderr)
+        self.expect(0, self.write(free), *QUIET, "--overwrite", sets=sets)
+        rows = self.history("out")
+        start = -math.sqrt(1.8**2 - 1)
+        places = rows["canopy_0_payload_z"]
+        self.assertAlmostEqual(start, places[0], delta=1e-12)
+        self.assertGreater(places[-1] - start, 3.0)
+        self.assertGreater(rows["frame_velocity_z"][-1], 2.0)
+        self.assertEqual(0.0, rows["frame_velocity_z"][0])
+        self.assertEqual(0.0, rows["frame_position_z"][0])
+        for place, moved in zip(places, rows["frame_position_z"]):
+            self.assertLess(abs(place - moved - start), 0.8)
+        self.assertAlmostEqual(places[-1] - rows["frame_position_z"][-1],
+                               self.fields("out").values("/steps/000000/canopy/position")[-1], delta=1e-12)
+        self.assertNotIn("frame_velocity_x", rows)
+        # Velocities in the fixed frame are the rates of positions in it.
+        for which, speed in (("canopy_0_payload_z", "canopy_0_payload_velocity_z"),
+                             ("frame_position_z", "frame_velocity_z")):
+            path = sum((rows["time"][k + 1] - rows["time"][k]) * (rows[speed][k + 1] + rows[speed][k]) / 2
+                       for k in range(len(rows["time"]) - 1))
+            self.assertAlmostEqual(rows[which][-1] - rows[which][0], path, delta=0.1)
+        # The checks have the velocity of the fluid relative to the payload.
+        window = [k for k, time in enumerate(rows["time"]) if 0.4 <= time <= 1]
+        speeds = [math.hypot(rows["canopy_0_payload_velocity_x"][k], rows["canopy_0_payload_velocity_y"][k],
+                             8 - rows["canopy_0_payload_velocity_z"][k]) for k in window]
+        mean = sum((rows["time"][window[k + 1]] - rows["time"][window[k]]) * (speeds[k] + speeds[k + 1]) / 2
+                   for k in range(len(window) - 1)) / (rows["time"][window[-1]] - rows["time"][window[0]])
+        self.assertAlmostEqual(mean, self.result("out")["canopies"]["terminal_speed_0"], delta=1e-9)
+        self.assertGreater(self.result("out")["canopies"]["terminal_speed_0"], 2.0)
+        # A run that is continued from the middle of a block has the same bits.
+        half = self.folder / "half"
+        words = ("--quiet", "--backend", "serial", "--out", half)
+        sets = [*sets[:-1], "output.times=[0.5, 1]"]
+        self.expect(0, self.write(free), *words, sets=[*sets, "run.end_time=0.5", "output.times=[0.5]"])
+        self.expect(0, self.write(free), *words, "--restart", half / "restart.h5", sets=sets)
+        again = self.history("half")
+        self.expect(0, self.write(free), *QUIET, "--overwrite", sets=sets)
+        whole = self.history("out")
+        for name in whole:
+            self.assertEqual(whole[name][-1], again[name][-1], name)
+
     def test_gravity_pulls_a_free_payload(self):
         still = CANOPY.replace("velocity = [0, 0, 8]", "velocity = [0, 0, 0]").replace("fixed = true", "fixed = false")
         self.expect(0, self.write(still), *QUIET, sets=["coupling.gravity=[0, 0, -9.81]", "output.history_every=1"])

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "kernels/coupling/sheet/immersed_sheet.hpp"
+#include "kernels/coupling/sheet/moving_frame.hpp"
 #include "kernels/coupling/sheet/solver.hpp"
 #include "kernels/coupling/total_force.hpp"
 #include "kernels/fabric/fabric_solver.hpp"
@@ -99,7 +100,10 @@ class CoupledSolver {
         _saved_positions("drogue::coupling::saved_positions", rows()),
         _saved_velocities("drogue::coupling::saved_velocities", rows()),
         _saved_acceleration("drogue::coupling::saved_acceleration", rows()),
-        _total_force(flow::coupling_grid(_flow.grid())) {}
+        _total_force(flow::coupling_grid(_flow.grid())),
+        _frame(_parameters.follow, _parameters.fabric) {
+    if (_frame.follows()) _flow.check_frame(_parameters.follow.axes);
+  }
 
   /// The parts. Does not throw.
   [[nodiscard]] Flow& flow() { return _flow; }
@@ -114,6 +118,8 @@ class CoupledSolver {
   flow::Stop advance(double target, std::int64_t pause_step, const flow::Poll& poll);
   [[nodiscard]] BlockProgress block() const { return _block; }
   void set_block(const BlockProgress& block) { _block = block; }
+  [[nodiscard]] FrameMotion frame() const { return _frame.motion(); }
+  void set_frame(const FrameMotion& frame);
   [[nodiscard]] FailureReason failure_reason();
   [[nodiscard]] std::array<double, 3> total_force_on_air() const {
     return _total_force(_space, flow::face_views<ExecutionSpace>(_flow.grid(), _flow.force()));
@@ -135,6 +141,7 @@ class CoupledSolver {
   [[nodiscard]] std::size_t rows() const { return static_cast<std::size_t>(_fabric.vertices()); }
   void forget_steps();
   void plan_block(const flow::Progress& now, double target);
+  void move_frame(const flow::Progress& now);
   void end_block_at(double target, const flow::Progress& now);
   void enqueue_step(double dt, bool is_first);
   [[nodiscard]] bool needs_shorter_steps(const flow::Progress& now);
@@ -150,10 +157,12 @@ class CoupledSolver {
   SavedStep<ExecutionSpace> _saved_step;
   Vectors _saved_positions, _saved_velocities, _saved_acceleration;
   TotalForce<ExecutionSpace> _total_force;
+  MovingFrame<ExecutionSpace> _frame;
 };
 
 template <class ExecutionSpace>
 void CoupledSolver<ExecutionSpace>::start() {
+  if (_frame.follows()) set_frame({});
   _flow.start();
   forget_steps();
 }
@@ -165,6 +174,24 @@ void CoupledSolver<ExecutionSpace>::forget_steps() {
   Kokkos::deep_copy(_space, _reason, FailureReason::flow);
   Kokkos::deep_copy(_space, _saved_step, std::int64_t{-1});
   _space.fence("drogue::coupling::forget_steps");
+}
+
+template <class ExecutionSpace>
+void CoupledSolver<ExecutionSpace>::set_frame(const FrameMotion& frame) {
+  _frame.set(frame);
+  if (_frame.follows()) _flow.set_frame(frame.velocity);
+}
+
+/// Changes, at the beginning of a block, to the frame that keeps the vertex that it follows in its place.
+/// Between these changes the frame is inertial: no force is added, and the steps of a block have the speed of
+/// the air that the block was planned for. All velocities change by the same amount, so that neither
+/// divergence nor relative velocities nor forces do.
+template <class ExecutionSpace>
+void CoupledSolver<ExecutionSpace>::move_frame(const flow::Progress& now) {
+  const double longest = _flow.largest_dt(now);
+  const double dt = _parameters.flow.fixed_dt > 0.0 ? _parameters.flow.fixed_dt : longest;
+  _flow.change_frame(
+      _frame.begin_block(_space, _fabric.state(), now.time, dt * static_cast<double>(block_steps)).velocity);
 }
 
 template <class ExecutionSpace>
@@ -221,7 +248,10 @@ flow::Stop CoupledSolver<ExecutionSpace>::advance(double target, std::int64_t pa
       plan_block(now, target);
     }
     if (poll && !poll(_flow.status())) return flow::Stop::interrupted;
-    if (now.step >= _block.end) plan_block(now, target);
+    if (now.step >= _block.end) {
+      if (_frame.follows()) move_frame(now);
+      plan_block(_frame.follows() ? _flow.progress() : now, target);
+    }
     end_block_at(target, now);
     std::int64_t steps = std::min(_block.end, _parameters.flow.max_steps) - now.step;
     if (pause_step > now.step) steps = std::min(steps, pause_step - now.step);

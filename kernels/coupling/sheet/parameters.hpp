@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "kernels/coupling/parameters.hpp"
@@ -28,6 +29,17 @@ struct SheetParameters {
   double filter = 0.5;
 };
 
+/// Frame of reference that follows a vertex, such as a payload, so that the vertex stays in the grid. The
+/// frame keeps its velocity during a block of steps, so that it is inertial there.
+struct FollowParameters {
+  int vertex = -1;                ///< -1: the frame is at rest
+  std::array<bool, 3> axes{};     ///< along which it moves; no walls or slip sides are normal to them
+  std::array<double, 3> place{};  ///< in the grid to which the vertex returns, m
+  /// s; at the beginning of a block, the velocity of the vertex becomes minus its distance from `place` over
+  /// this time, or over the duration of the block if that is longer.
+  double relaxation = 1.0;
+};
+
 /// Parameters of cloth in air.
 struct Parameters {
   /// On one rank. `external_force` is set by the coupling. With `fixed_dt` = 0, dt follows from `cfl`, by
@@ -36,6 +48,7 @@ struct Parameters {
   flow::Parameters flow;
   fabric::Parameters fabric;  ///< integrator and dt are set by the coupling
   SheetParameters sheet;
+  FollowParameters follow;
   /// Steps of the cloth in each step of the flow; 0: as many as keep the product of their dt and the largest
   /// angular frequency of the cloth below 1 at the beginning of each block.
   int substeps = 0;

@@ -26,10 +26,26 @@ struct BlockProgress {
   std::int64_t end = 0;       ///< step of the flow at which the block ends
 };
 
+/// Motion of the frame of reference of grid, velocities and positions. A restart that restores it continues
+/// bit for bit.
+struct FrameMotion {
+  std::array<double, 3> velocity{};  ///< m/s, in the present block
+  std::array<double, 3> start{};     ///< position of its origin at the time `since`, m
+  double since = 0.0;                ///< s
+
+  /// Position of the origin at a time, s, not before `since`, in m. Does not throw.
+  [[nodiscard]] std::array<double, 3> position(double time) const {
+    std::array<double, 3> result = start;
+    for (std::size_t axis = 0; axis < 3; ++axis) result[axis] += (time - since) * velocity[axis];
+    return result;
+  }
+};
+
 /// Cloth in incompressible flow on a backend that a program chooses at run time. Needs an initialised
 /// runtime. To couple other kernels on the device, use `CoupledSolver`.
 ///
-/// The functions of the base class refer to the flow; `advance` moves both. Call `upload_cloth` and `upload`,
+/// The functions of the base class refer to the flow; `advance` moves both. With `Parameters::follow`, all
+/// velocities and positions are relative to a moving frame. Call `upload_cloth` and `upload`,
 /// then `start`; or restore all arrays of both, then `restore`. After a failed step, the state of both is
 /// that before the step of the flow.
 class Solver : public flow::Solver {
@@ -59,6 +75,13 @@ class Solver : public flow::Solver {
 
   /// Restores the block, after `restore`. Does not throw.
   virtual void set_block(const BlockProgress& block) = 0;
+
+  /// Motion of the frame of reference; at rest unless `Parameters::follow` has a vertex. Does not throw.
+  [[nodiscard]] virtual FrameMotion frame() const = 0;
+
+  /// Restores the motion of the frame of reference, after `restore`. Throws std::invalid_argument for a
+  /// velocity along an axis that the frame does not follow.
+  virtual void set_frame(const FrameMotion& frame) = 0;
 
   /// Total of the force densities that act on the air in the last step of the flow, N: the sum of `forces` to
   /// round-off. Throws only after a failed kernel.

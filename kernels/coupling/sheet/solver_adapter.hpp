@@ -59,6 +59,8 @@ class SolverAdapter final : public Solver {
   }
   [[nodiscard]] BlockProgress block() const override { return _solver.block(); }
   void set_block(const BlockProgress& block) override { _solver.set_block(block); }
+  [[nodiscard]] FrameMotion frame() const override { return _solver.frame(); }
+  void set_frame(const FrameMotion& frame) override { _solver.set_frame(frame); }
   fabric::Totals cloth_totals() override { return _solver.fabric().totals(); }
   FailureReason failure_reason() override { return _solver.failure_reason(); }
 

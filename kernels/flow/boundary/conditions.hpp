@@ -123,6 +123,11 @@ class BoundaryTables {
   }
 
   [[nodiscard]] const BoundaryConditions<ExecutionSpace>& conditions() const { return _conditions; }
+  /// Sets the velocity of a side without expressions, m/s. Functors that exist keep the old one. Does not
+  /// throw.
+  void set_velocity(std::size_t side, const std::array<double, 3>& velocity) {
+    for (std::size_t c = 0; c < 3; ++c) _conditions.velocity[side][c] = velocity[c];
+  }
   [[nodiscard]] bool has_outflow() const {
     for (const BoundaryKind kind : _conditions.kind)
       if (kind == BoundaryKind::outflow) return true;

@@ -102,6 +102,29 @@ bool are_near(const std::vector<Vector>& first, const std::vector<Vector>& secon
   return false;
 }
 
+/// The grid moves with the first payload.
+void check_frame(const Table& root, const FlowScene& scene) {
+  if (scene.frame != Frame::follow) return;
+  const std::string follow = "grid.frame = \"follow\"";
+  if (std::ranges::none_of(scene.open_axes(), [](bool open) { return open; }))
+    contradict(root, "grid.frame",
+               follow + " needs an axis whose sides are \"inflow\" or \"outflow\": the grid moves along it");
+  if (!scene.bodies.empty())
+    contradict(root, "grid.frame", follow + " cannot be combined with a [[body]], which stays in its place");
+  for (std::size_t i = 0; i < scene.canopies.size(); ++i)
+    if (scene.canopies[i].payload.fixed)
+      contradict(root, "grid.frame",
+                 follow + " needs payloads that move freely; " + name_of(i) + ".payload.fixed is true");
+  const auto require_constant = [&](const std::string& key, const VectorExpression& velocity) {
+    for (const std::string& component : velocity)
+      if (!component.empty() && !SpaceTimeFunction(component).constant())
+        contradict(root, key, key + " = " + component + " must be a number with " + follow);
+  };
+  require_constant("fluid.velocity", scene.velocity);
+  for (std::size_t side = 0; side < 6; ++side)
+    require_constant(std::string("grid.wall_velocity.") + side_names[side], scene.wall_velocity[side]);
+}
+
 void check_contact(const Table& root, const FlowScene& scene) {
   if (!scene.contact) return;
   const double height = fabric::shortest_altitude(
@@ -145,6 +168,7 @@ void check_canopies(const Table& root, const FlowScene& scene) {
                        real_text(distance) + " m, the sum of their edge lengths");
     }
   }
+  check_frame(root, scene);
   check_contact(root, scene);
   if (p.fixed_dt == 0.0 && p.max_dt == 0.0)
     contradict(root, "run",

@@ -20,6 +20,16 @@ FlowScene read_flow_scene(const std::filesystem::path& file, const std::vector<s
   return framework::read_scene<FlowScene>(file, sets, declare_flow_scene, complete_and_check);
 }
 
+std::array<bool, 3> FlowScene::open_axes() const {
+  const auto is_open = [this](std::size_t side) {
+    const flow::BoundaryKind kind = parameters.boundary[side].kind;
+    return kind == flow::BoundaryKind::inflow || kind == flow::BoundaryKind::outflow;
+  };
+  std::array<bool, 3> axes{};
+  for (std::size_t axis = 0; axis < 3; ++axis) axes[axis] = is_open(2 * axis) && is_open(2 * axis + 1);
+  return axes;
+}
+
 std::string print_flow_scene(const FlowScene& scene) {
   return framework::print_scene(scene, declare_flow_scene);
 }

@@ -25,6 +25,12 @@ inline constexpr std::array<const char*, 6> side_names = {"x_low",  "x_high", "y
 
 inline constexpr std::array<const char*, 3> axis_names = {"x", "y", "z"};
 
+/// Frame of reference of the grid.
+enum class Frame {
+  fixed,   ///< that of fluid.velocity
+  follow,  ///< moves with the payload of the first canopy
+};
+
 enum class AdvectionScheme { central, weno5 };
 enum class Weights { js, z };
 
@@ -134,6 +140,7 @@ struct FlowScene {
   std::string name;  ///< the file's name without folder and extension
   std::string description;
   flow::Parameters parameters = air_parameters();  ///< complete once the scene has been read
+  Frame frame = Frame::fixed;
   AdvectionScheme advection = AdvectionScheme::weno5;
   Weights weights = Weights::z;
   VectorExpression velocity = {"0.0", "0.0", "0.0"};  ///< inflow, and initial velocity without `initial`, m/s
@@ -151,6 +158,8 @@ struct FlowScene {
   Verify verify;
 
   [[nodiscard]] bool has_sheets() const { return !bodies.empty() || !canopies.empty(); }
+  /// Axes along which the grid can move: fluid flows in or out at both sides. Does not throw.
+  [[nodiscard]] std::array<bool, 3> open_axes() const;
   [[nodiscard]] const VectorExpression& initial_velocity() const {
     return initial[0].empty() ? velocity : initial;
   }

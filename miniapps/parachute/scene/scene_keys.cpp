@@ -12,6 +12,7 @@ using scene::Table;
 
 constexpr double most_cells_per_axis = 16384;
 
+const Choices<Frame> frame_choices = {{"fixed", Frame::fixed}, {"follow", Frame::follow}};
 const Choices<AdvectionScheme> advection_choices = {{"central", AdvectionScheme::central},
                                                     {"weno5", AdvectionScheme::weno5}};
 const Choices<Weights> weights_choices = {{"js", Weights::js}, {"z", Weights::z}};
@@ -54,6 +55,11 @@ void declare_grid(Table& table, FlowScene& scene) {
   table.value("domain", domain_codec(parameters.low, parameters.high), "Ends of the domain along x, y, z")
       .unit("m")
       .required();
+  table
+      .value("frame", scene::choice_codec(scene.frame, frame_choices),
+             "The grid is at rest, or moves with the payload of the first canopy along axes with inflow or "
+             "outflow sides")
+      .when([&scene] { return !scene.canopies.empty(); }, "with a [[canopy]]", "canopy");
   table.table(
       "boundary",
       [&](Table& sides) {

@@ -67,6 +67,12 @@ coupling::Parameters coupled_parameters(const FlowScene& scene, const Sheets& sh
   p.fabric.contact.self = scene.contact;
   p.fabric.contact.thickness = scene.thickness;
   p.sheet.law_of_vertex = sheets.laws;
+  if (scene.frame == Frame::follow) {
+    const std::size_t payload = sheets.canopies.front().payload;
+    p.follow.vertex = static_cast<int>(payload);
+    p.follow.axes = scene.open_axes();
+    p.follow.place = sheets.positions[payload];
+  }
   return p;
 }
 

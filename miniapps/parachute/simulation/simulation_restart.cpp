@@ -52,6 +52,13 @@ void Simulation::write_coupling(run::RestartWriter& writer) {
   writer.number("block_dt", block.dt);
   writer.integer("block_substeps", block.substeps);
   writer.integer("block_end", block.end);
+  if (_scene.frame != Frame::follow) return;
+  const coupling::FrameMotion frame = _coupled->frame();
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    writer.number(std::string("frame_velocity_") + axis_names[axis], frame.velocity[axis]);
+    writer.number(std::string("frame_start_") + axis_names[axis], frame.start[axis]);
+  }
+  writer.number("frame_since", frame.since);
 }
 
 void Simulation::read_coupling(const run::RestartReader& reader) {
@@ -65,6 +72,14 @@ void Simulation::read_coupling(const run::RestartReader& reader) {
   _record.read(reader);
   _coupled->set_block(
       {reader.number("block_dt"), reader.integer("block_substeps"), reader.integer("block_end")});
+  if (_scene.frame != Frame::follow) return;
+  coupling::FrameMotion frame;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    frame.velocity[axis] = reader.number(std::string("frame_velocity_") + axis_names[axis]);
+    frame.start[axis] = reader.number(std::string("frame_start_") + axis_names[axis]);
+  }
+  frame.since = reader.number("frame_since");
+  _coupled->set_frame(frame);
 }
 
 void Simulation::write_restart(run::RestartWriter& writer) {

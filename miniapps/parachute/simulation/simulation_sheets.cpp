@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <sstream>
 #include <string>
 
@@ -33,6 +34,16 @@ std::vector<std::array<int, n>> of_canopies(const std::vector<std::array<int, n>
     result.push_back(part);
   }
   return result;
+}
+
+/// Kinetic energy in the frame of the scene of masses, kg, whose totals belong to a frame that moves, J.
+double kinetic_energy_at_rest(const fabric::Totals& totals, const Vector& frame_velocity,
+                              const std::vector<double>& masses) {
+  double energy = totals.kinetic;
+  const double mass = std::accumulate(masses.begin(), masses.end(), 0.0);
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    energy += frame_velocity[axis] * (totals.momentum[axis] + 0.5 * mass * frame_velocity[axis]);
+  return energy;
 }
 
 }  // namespace
@@ -77,21 +88,37 @@ void Simulation::append_canopy_columns(std::vector<run::Column>& columns) const 
   }
   columns.insert(columns.end(),
                  {{"cloth_kinetic_energy", "J"}, {"cloth_elastic_energy", "J"}, {"force_balance", ""}});
+  if (_scene.frame != Frame::follow) return;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (!_scene.open_axes()[axis]) continue;
+    columns.push_back({std::string("frame_velocity_") + axis_names[axis], "m/s"});
+    columns.push_back({std::string("frame_position_") + axis_names[axis], "m"});
+  }
 }
 
 void Simulation::append_canopy_values(framework::HistoryRow& row) {
   if (_scene.canopies.empty()) return;
   const SheetState state = sheet_state();
+  const coupling::FrameMotion frame = _coupled->frame();
+  const Vector origin = frame.position(row.time);
   std::vector<CanopyMeasures> canopies;
   for (const CanopyRows& rows : _sheets.canopies) {
-    const CanopyMeasures& one = canopies.emplace_back(measure(rows, _sheets.fabric.mesh, state));
+    CanopyMeasures& one = canopies.emplace_back(measure(rows, _sheets.fabric.mesh, state));
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      one.payload[axis] += origin[axis];
+      one.velocity[axis] += frame.velocity[axis];
+    }
     for (const Vector& vector : {one.force, one.line_force, one.payload, one.velocity})
       row.values.insert(row.values.end(), vector.begin(), vector.end());
     row.values.insert(row.values.end(), {one.projected_area, one.largest_strain});
   }
   const double balance = force_balance(_coupled->total_force_on_air(), state.on_air);
   const fabric::Totals totals = _coupled->cloth_totals();
-  row.values.insert(row.values.end(), {totals.kinetic, totals.elastic, balance});
+  row.values.insert(row.values.end(), {kinetic_energy_at_rest(totals, frame.velocity, _sheets.fabric.mass),
+                                       totals.elastic, balance});
+  if (_scene.frame == Frame::follow)
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      if (_scene.open_axes()[axis]) row.values.insert(row.values.end(), {frame.velocity[axis], origin[axis]});
   _record.add(row.time, canopies, balance);
 }
 

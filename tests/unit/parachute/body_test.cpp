@@ -11,7 +11,7 @@
 namespace drogue::parachute_app {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 Body body_of(BodyKind kind, int axis) {
   Body body;

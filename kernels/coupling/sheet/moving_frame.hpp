@@ -1,0 +1,113 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <stdexcept>
+
+#include "kernels/coupling/sheet/parameters.hpp"
+#include "kernels/coupling/sheet/solver.hpp"
+#include "kernels/device/copy.hpp"
+#include "kernels/device/launch.hpp"
+#include "kernels/fabric/state.hpp"
+#include "kernels/spatial/points.hpp"
+
+namespace drogue::coupling {
+
+/// Subtracts a uniform velocity from all vertices.
+template <class ExecutionSpace>
+struct ShiftFrameFunctor {
+  fabric::PointsView<ExecutionSpace> velocities;
+  spatial::Point shift;  ///< m/s
+
+  KOKKOS_FUNCTION void operator()(const int i) const {
+    spatial::store_vector(velocities, i, spatial::load_vector(velocities, i) - shift);
+  }
+};
+
+/// Copies position and velocity of a vertex to the places of a list.
+template <class ExecutionSpace>
+struct GuideStateFunctor {
+  fabric::State<ExecutionSpace> cloth;
+  Kokkos::View<double*, typename ExecutionSpace::memory_space> list;
+  int vertex;
+
+  KOKKOS_FUNCTION void operator()(const int axis) const {
+    const auto a = static_cast<std::size_t>(axis), row = static_cast<std::size_t>(vertex);
+    list(a) = cloth.positions(row, a);
+    list(3 + a) = cloth.velocities(row, a);
+  }
+};
+
+/// Motion of a frame of reference that follows a vertex of the cloth.
+template <class ExecutionSpace>
+class MovingFrame {
+ public:
+  /// Throws std::invalid_argument for parameters out of range and a cloth with pinned or moving axes along
+  /// which the frame moves.
+  MovingFrame(const FollowParameters& parameters, const fabric::Parameters& cloth)
+      : _parameters(parameters), _list("drogue::coupling::guide_state", 6) {
+    if (!follows()) return;
+    if (parameters.vertex >= static_cast<int>(cloth.mass.size()))
+      throw std::invalid_argument("moving frame: the vertex that it follows does not exist");
+    if (!(parameters.relaxation > 0.0 && parameters.relaxation <= 1e100))
+      throw std::invalid_argument("moving frame: the relaxation time must be positive");
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (!std::isfinite(parameters.place[axis]))
+        throw std::invalid_argument("moving frame: the place of the vertex must be finite");
+      if (!parameters.axes[axis]) continue;
+      bool is_held = false;
+      for (const std::uint8_t axes : cloth.pinned) is_held = is_held || (axes >> axis & 1U) != 0U;
+      for (const fabric::Motion& motion : cloth.motions)
+        is_held = is_held || motion.axis == static_cast<int>(axis);
+      if (is_held) throw std::invalid_argument("moving frame: all vertices must move freely along its axes");
+    }
+  }
+
+  /// True if there is a vertex to follow. Does not throw.
+  [[nodiscard]] bool follows() const { return _parameters.vertex >= 0; }
+  [[nodiscard]] const FrameMotion& motion() const { return _motion; }
+
+  /// Sets the motion. Throws std::invalid_argument for a velocity along an axis that the frame does not
+  /// follow.
+  void set(const FrameMotion& motion) {
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      if (motion.velocity[axis] != 0.0 && !(follows() && _parameters.axes[axis]))
+        throw std::invalid_argument("moving frame: it does not move along this axis");
+    _motion = motion;
+  }
+
+  /// Chooses the velocity for a block of a given duration that begins at a time, both in s, and enqueues the
+  /// change of the velocities of the cloth. Blocks. Throws only after a failed kernel.
+  const FrameMotion& begin_block(const ExecutionSpace& space, const fabric::State<ExecutionSpace>& cloth,
+                                 double time, double duration) {
+    device::launch_each(space, "drogue::coupling::guide_state", 3,
+                        GuideStateFunctor<ExecutionSpace>{cloth, _list, _parameters.vertex});
+    std::array<double, 6> guide{};
+    device::copy_out(space, guide.data(), _list, guide.size());
+    space.fence("drogue::coupling::moving_frame: read the vertex");
+    _motion.start = _motion.position(time);
+    _motion.since = time;
+    const double period = std::max(_parameters.relaxation, duration);
+    double shift[3] = {};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (!_parameters.axes[axis]) continue;
+      const double velocity =
+          _motion.velocity[axis] + guide[3 + axis] + (guide[axis] - _parameters.place[axis]) / period;
+      // As the flow computes it, so that both shift by the same number.
+      shift[axis] = velocity - _motion.velocity[axis];
+      _motion.velocity[axis] = velocity;
+    }
+    device::launch_each(space, "drogue::coupling::shift_frame", static_cast<int>(cloth.velocities.extent(0)),
+                        ShiftFrameFunctor<ExecutionSpace>{cloth.velocities, {shift[0], shift[1], shift[2]}});
+    return _motion;
+  }
+
+ private:
+  FollowParameters _parameters;
+  FrameMotion _motion;
+  Kokkos::View<double*, typename ExecutionSpace::memory_space> _list;
+};
+
+}  // namespace drogue::coupling

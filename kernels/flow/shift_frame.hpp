@@ -1,0 +1,57 @@
+#pragma once
+
+#include "kernels/flow/boundary/conditions.hpp"
+
+namespace drogue::flow {
+
+/// Subtracts a uniform velocity from all components, ghost cells included: the discrete divergence of the
+/// cells does not change.
+template <class ExecutionSpace>
+struct ShiftVelocityFunctor {
+  List<ExecutionSpace> velocity;
+  std::int64_t component;  ///< numbers of one component
+  double shift[3];         ///< m/s
+
+  KOKKOS_FUNCTION void operator()(const int i) const {
+    for (int c = 0; c < 3; ++c)
+      if (shift[c] != 0.0) velocity(static_cast<std::size_t>(c * component + i)) -= shift[c];
+  }
+};
+
+/// Changes the rates of the previous step, which AB2 extrapolates, to those in a frame that moves faster by
+/// `shift`: advection -(u grad) u becomes -((u - shift) grad) u. Needs the velocity before its shift, with
+/// ghost cells; central differences of second order, and upwind ones of first order on outflows, as the rates
+/// there.
+template <class ExecutionSpace>
+struct ShiftRatesFunctor {
+  MacGrid grid;
+  BoundaryConditions<ExecutionSpace> boundary;
+  List<ExecutionSpace> velocity, rate;
+  double shift[3];  ///< m/s; zero along axes of one cell
+
+  KOKKOS_FUNCTION void operator()(const int i, const int j, const int k) const {
+    const MacGrid& g = grid;
+    const int index[3] = {i, j, k};
+    for (int c = 0; c < 3; ++c) {
+      const std::int64_t at = c * g.component + g.offset(i, j, k);
+      double change = 0.0;
+      for (int a = 0; a < 3; ++a)
+        if (shift[a] != 0.0)
+          change +=
+              0.5 * g.inverse_h[a] * shift[a] * (velocity(at + g.stride[a]) - velocity(at - g.stride[a]));
+      rate(at) += change;
+    }
+    for (int a = 0; a < 3; ++a) {
+      if (g.periodic[a] || shift[a] == 0.0) continue;
+      const std::int64_t at = a * g.component + g.offset(i, j, k), stride = g.stride[a];
+      // The rate of the low face stands in the ghost cell below it (`BoundaryFacesFunctor`).
+      if (index[a] == 0 && boundary.kind[2 * a] == BoundaryKind::outflow && velocity(at) < 0.0)
+        rate(at - stride) += shift[a] * g.inverse_h[a] * (velocity(at + stride) - velocity(at));
+      if (index[a] == g.n[a] - 1 && boundary.kind[2 * a + 1] == BoundaryKind::outflow &&
+          velocity(at + stride) > 0.0)
+        rate(at + stride) += shift[a] * g.inverse_h[a] * (velocity(at + stride) - velocity(at));
+    }
+  }
+};
+
+}  // namespace drogue::flow
