@@ -111,7 +111,7 @@ void add_reinforcement(const Canopy& canopy, const FlatCloth& cloth, fabric::Mes
 }
 
 /// The axis of a canopy, and a right-handed pair normal to it.
-struct Frame {
+struct CanopyAxes {
   Vector first, second, axis;
 
   [[nodiscard]] Vector place(const Vector& origin, double u, double v, double along) const {
@@ -121,7 +121,7 @@ struct Frame {
   }
 };
 
-Frame frame_of(const Canopy& canopy) {
+CanopyAxes axes_of(const Canopy& canopy) {
   const double angle = canopy.axis_angle() * pi / 180.0, c = std::cos(angle), s = std::sin(angle);
   return {{c, 0.0, -s}, {0.0, 1.0, 0.0}, {s, 0.0, c}};
 }
@@ -137,7 +137,7 @@ std::array<double, 2> ray_angles(const Canopy& canopy) {
 
 /// Place of a vertex on a pleated cone: on the plane between its neighbouring rays, at its distance from the
 /// apex. Lengths within a pleat are those of the flat cloth.
-Vector pleated_place(const Canopy& canopy, const Frame& frame, const PolarPoint& at) {
+Vector pleated_place(const Canopy& canopy, const CanopyAxes& axes, const PolarPoint& at) {
   const auto angles = ray_angles(canopy);
   const double between = pi / canopy.gores, turn = at.turn * 2.0 * canopy.gores;
   const double ray = std::floor(turn + 1e-9), part = std::max(0.0, turn - ray);
@@ -150,14 +150,14 @@ Vector pleated_place(const Canopy& canopy, const Frame& frame, const PolarPoint&
   const double l = std::sin((1.0 - part) * between) / std::sin(between),
                r = std::sin(part * between) / std::sin(between);
   const double apex = 0.5 * canopy.diameter * std::cos(angles[0]);  // above the skirt
-  return frame.place(canopy.centre, at.radius * (l * left[0] + r * right[0]),
-                     at.radius * (l * left[1] + r * right[1]),
-                     apex + at.radius * (l * left[2] + r * right[2]));
+  return axes.place(canopy.centre, at.radius * (l * left[0] + r * right[0]),
+                    at.radius * (l * left[1] + r * right[1]),
+                    apex + at.radius * (l * left[2] + r * right[2]));
 }
 
-Vector flat_place(const Canopy& canopy, const Frame& frame, const PolarPoint& at) {
+Vector flat_place(const Canopy& canopy, const CanopyAxes& axes, const PolarPoint& at) {
   const double angle = 2.0 * pi * at.turn;
-  return frame.place(canopy.centre, at.radius * std::cos(angle), at.radius * std::sin(angle), 0.0);
+  return axes.place(canopy.centre, at.radius * std::cos(angle), at.radius * std::sin(angle), 0.0);
 }
 
 /// Distance of the payload from the plane of a skirt, m, with lines at their length.
@@ -208,12 +208,12 @@ std::vector<int> ring_sizes(const Canopy& canopy) {
 CanopyMesh make_canopy(const Canopy& canopy) {
   CanopyMesh result;
   const FlatCloth cloth = make_flat_cloth(canopy);
-  const Frame frame = frame_of(canopy);
+  const CanopyAxes axes = axes_of(canopy);
   const bool is_pleated = canopy.shape == CanopyShape::partly_closed;
   fabric::Parameters& p = result.fabric;
   for (const PolarPoint& at : cloth.points) {
-    p.mesh.rest.push_back(flat_place(canopy, frame, at));
-    result.positions.push_back(is_pleated ? pleated_place(canopy, frame, at) : p.mesh.rest.back());
+    p.mesh.rest.push_back(flat_place(canopy, axes, at));
+    result.positions.push_back(is_pleated ? pleated_place(canopy, axes, at) : p.mesh.rest.back());
   }
   p.mesh.triangles = cloth.triangles;
   result.cloth_vertices = cloth.points.size();
@@ -224,11 +224,11 @@ CanopyMesh make_canopy(const Canopy& canopy) {
   const double half_line = 0.5 * canopy.lines.length * canopy.lines.line_density;
   for (const int i : result.skirt) p.mass[static_cast<std::size_t>(i)] += half_line;
   const double radius = 0.5 * canopy.diameter;
-  const Vector rest = frame.place(canopy.centre, 0.0, 0.0, -payload_distance(canopy, radius));
+  const Vector rest = axes.place(canopy.centre, 0.0, 0.0, -payload_distance(canopy, radius));
   fabric::add_payload(p, {rest, canopy.payload.mass + half_line * canopy.gores, canopy.lines.stiffness},
                       result.skirt);
   const double skirt_radius = is_pleated ? radius * canopy.closure : radius;
-  result.positions.push_back(frame.place(canopy.centre, 0.0, 0.0, -payload_distance(canopy, skirt_radius)));
+  result.positions.push_back(axes.place(canopy.centre, 0.0, 0.0, -payload_distance(canopy, skirt_radius)));
   p.pinned.assign(p.mesh.rest.size(), 0);
   if (canopy.payload.fixed) p.pinned.back() = 7;
   return result;
