@@ -108,9 +108,6 @@ class FlowSolver {
   /// Lets a run continue that failed because its fixed dt exceeded the largest stable one. Call it before
   /// `set_fixed_dt` with a shorter one. Blocks. Throws only after a failed kernel.
   void forget_long_step();
-  /// Velocity of the frame of reference of all velocities relative to that of the parameters, m/s. Does not
-  /// throw.
-  [[nodiscard]] const std::array<double, 3>& frame_velocity() const { return _frame_velocity; }
   /// Changes, between steps, to a frame of reference with another velocity, m/s: the state becomes that which
   /// an observer in the new frame sees, and the velocities of the sides are those of the parameters relative
   /// to it. Blocks. Throws std::invalid_argument as `check_frame` does.

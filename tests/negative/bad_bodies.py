@@ -129,6 +129,7 @@ BAD_ROUND_LINES = [
     (15, 'porosity = { law = "ergun", void_fraction = 0.4, thickness = 1e-4, grain = 1e-5, alpha = 1 }', 15, ["body[0].porosity.alpha", "forchheimer"]),
     (24, 'porosity = { law = "kim-peskin", pores = 0, conductance = 1e-9 }', 24, ["body[1].porosity.pores", "> 0"]),
     (24, 'porosity = { law = "kim-peskin", pores = 1e6 }', 24, ['missing key "body[1].porosity.conductance"']),
+    (24, 'porosity = { law = "kim-peskin", pores = 1e-300, conductance = 1e-300 }', 24, ["body[1].porosity: alpha = ", "at most 1e+100"]),
     (24, 'porosity = { law = "kim-pesking", pores = 1e6 }', 24, ["body[1].porosity.law", 'did you mean "kim-peskin"?']),
     # places
     (10, "centre = [0.25, 0.4, 0.4]", 13, ["body[0]", "to 0.45 m along x at t = 0", "between 0.1"]),

@@ -20,8 +20,9 @@ namespace drogue::coupling {
 template <class ExecutionSpace>
 using SavedStep = Kokkos::View<std::int64_t, typename ExecutionSpace::memory_space>;
 
-/// Saves the cloth and the air at its vertices at the beginning of a step of the flow. After the flow has
-/// stopped, only the state at the end of its last step is new.
+/// Saves the cloth, the air at its vertices, and the forces of the last step with the places where they act,
+/// at the beginning of a step of the flow. After the flow has stopped, only the state at the end of its last
+/// step is new.
 template <class ExecutionSpace>
 struct SaveClothFunctor {
   using Vectors = typename LocalAir<ExecutionSpace>::Vectors;
@@ -29,8 +30,8 @@ struct SaveClothFunctor {
   flow::ControlView<ExecutionSpace> control;
   SavedStep<ExecutionSpace> saved_step;
   fabric::State<ExecutionSpace> cloth;
-  Vectors acceleration;
-  Vectors saved_positions, saved_velocities, saved_acceleration;
+  Vectors acceleration, force, places;
+  Vectors saved_positions, saved_velocities, saved_acceleration, saved_force, saved_places;
 
   KOKKOS_FUNCTION void operator()(const int i) const {
     if (control().trial.stop != flow::Stop::running && control().now.step == saved_step()) return;
@@ -40,6 +41,8 @@ struct SaveClothFunctor {
     save(cloth.positions, saved_positions);
     save(cloth.velocities, saved_velocities);
     save(acceleration, saved_acceleration);
+    save(force, saved_force);
+    save(places, saved_places);
   }
 };
 
@@ -100,6 +103,8 @@ class CoupledSolver {
         _saved_positions("drogue::coupling::saved_positions", rows()),
         _saved_velocities("drogue::coupling::saved_velocities", rows()),
         _saved_acceleration("drogue::coupling::saved_acceleration", rows()),
+        _saved_force("drogue::coupling::saved_force", rows()),
+        _saved_places("drogue::coupling::saved_places", rows()),
         _total_force(flow::coupling_grid(_flow.grid())),
         _frame(_parameters.follow, _parameters.fabric) {
     if (_frame.follows()) _flow.check_frame(_parameters.follow.axes);
@@ -155,7 +160,7 @@ class CoupledSolver {
   BlockProgress _block;
   typename CheckClothFunctor<ExecutionSpace>::ReasonView _reason;
   SavedStep<ExecutionSpace> _saved_step;
-  Vectors _saved_positions, _saved_velocities, _saved_acceleration;
+  Vectors _saved_positions, _saved_velocities, _saved_acceleration, _saved_force, _saved_places;
   TotalForce<ExecutionSpace> _total_force;
   MovingFrame<ExecutionSpace> _frame;
 };
@@ -273,7 +278,8 @@ void CoupledSolver<ExecutionSpace>::enqueue_step(double dt, bool is_first) {
   device::launch_each(
       _space, "drogue::coupling::save_cloth", _fabric.vertices(),
       SaveClothFunctor<ExecutionSpace>{_flow.control(), _saved_step, _fabric.state(), _sheet.acceleration(),
-                                       _saved_positions, _saved_velocities, _saved_acceleration});
+                                       _sheet.force(), _sheet.transfer().positions, _saved_positions,
+                                       _saved_velocities, _saved_acceleration, _saved_force, _saved_places});
   _sheet.begin_step(_space, _fabric.state(), velocity, dt);
   static_cast<void>(_fabric.enqueue_steps(_block.substeps));
   _sheet.spread_forces(_space, density, dt);
@@ -291,7 +297,7 @@ bool CoupledSolver<ExecutionSpace>::needs_shorter_steps(const flow::Progress& no
          _flow.failure().reason == flow::FailureReason::time_step && _flow.largest_dt(now) < _block.dt;
 }
 
-/// Returns the cloth to the end of the last step that the flow has taken.
+/// Returns the cloth, and the forces on the air, to the end of the last step that the flow has taken.
 template <class ExecutionSpace>
 void CoupledSolver<ExecutionSpace>::return_to_last_step(const flow::Progress& now) {
   std::int64_t saved = -1;
@@ -304,6 +310,11 @@ void CoupledSolver<ExecutionSpace>::return_to_last_step(const flow::Progress& no
   reader.read(_space, _saved_velocities, velocities);
   _fabric.upload(positions, velocities);
   Kokkos::deep_copy(_space, _sheet.acceleration(), _saved_acceleration);
+  const auto density = flow::face_views<ExecutionSpace>(_flow.grid(), _flow.force());
+  clear_spread(_space, _sheet.transfer(), density);
+  Kokkos::deep_copy(_space, _sheet.force(), _saved_force);
+  Kokkos::deep_copy(_space, _sheet.transfer().positions, _saved_places);
+  spread(_space, _sheet.transfer(), _sheet.force(), density);
   _space.fence("drogue::coupling::return_to_last_step");
 }
 

@@ -107,6 +107,7 @@ void check_body(const Table& root, const FlowScene& scene, std::size_t index) {
   const Body& body = scene.bodies[index];
   const std::string name = "body[" + std::to_string(index) + "]";
   check_two_dimensions(root, scene.parameters, body, name);
+  check_porosity(root, scene, name, body.porosity);
   check_edges(root, scene.parameters, body, name);
   check_places(root, scene, body, name);
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -133,6 +134,16 @@ void complete_and_check_bodies(const Table& root, FlowScene& scene) {
     contradict(root, "run",
                "missing key \"run.max_dt\" (needed with a [[body]] and dt = \"auto\"): fluid at rest does "
                "not limit dt");
+}
+
+void check_porosity(const Table& root, const FlowScene& scene, const std::string& name,
+                    const Porosity& porosity) {
+  const coupling::PorousLaw law = law_of(porosity, scene.parameters.density, scene.parameters.viscosity);
+  constexpr double most = 1e100;
+  if (law.alpha <= most && law.beta <= most) return;
+  contradict(root, name + ".porosity",
+             name + ".porosity: alpha = " + real_text(law.alpha) + " Pa s/m and beta = " +
+                 real_text(law.beta) + " Pa s^2/m^2 follow from it; at most " + real_text(most));
 }
 
 }  // namespace drogue::parachute_app

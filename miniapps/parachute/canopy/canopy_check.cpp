@@ -7,6 +7,7 @@
 
 #include "common/scene/read.hpp"
 #include "kernels/fabric/contact/features.hpp"
+#include "miniapps/parachute/bodies/body_check.hpp"
 #include "miniapps/parachute/scene/functions.hpp"
 
 namespace drogue::parachute_app {
@@ -147,6 +148,7 @@ void check_canopies(const Table& root, const FlowScene& scene) {
     const Canopy& canopy = scene.canopies[i];
     const std::string name = name_of(i);
     check_measures(root, canopy, name);
+    check_porosity(root, scene, name, canopy.porosity);
     check_edges(root, p, canopy, name);
     const Canopy& first = scene.canopies.front();
     if (canopy.membrane_modulus != first.membrane_modulus)

@@ -35,6 +35,9 @@ void check_momentum(const Table& root, const FlowScene& scene) {
   if (is_forced(p))
     contradict(root, "verify.momentum",
                "verify.momentum: flow.body_force or flow.pressure_drop changes the momentum");
+  if (scene.has_sheets())
+    contradict(root, "verify.momentum",
+               "verify.momentum: the forces of a [[body]] or a [[canopy]] change the momentum of the fluid");
 }
 
 void check_flow_rates(const Table& root, const FlowScene& scene) {

@@ -142,7 +142,7 @@ void declare_run(Table& table, FlowScene& scene) {
       .above(0.0)
       .at_most(2.0)
       .when(free_step, "with dt = \"auto\"", "dt")
-      .default_text("1 for rk3, 0.5 for ab2");
+      .default_text("1 for rk3, 0.5 for ab2 and with a [[body]] or a [[canopy]]");
   table
       .value("max_dt", absent_if_zero(scene::real_codec(parameters.max_dt), parameters.max_dt),
              "Upper bound of dt, say for a fluid at rest")

@@ -113,7 +113,10 @@ void Simulation::append_canopy_values(framework::HistoryRow& row) {
     row.values.insert(row.values.end(), {one.projected_area, one.largest_strain});
   }
   const double balance = force_balance(_coupled->total_force_on_air(), state.on_air);
-  const fabric::Totals totals = _coupled->cloth_totals();
+  fabric::Totals totals = _coupled->cloth_totals();
+  // The vertices of moving bodies have a mass without meaning.
+  for (std::size_t i = 0; i < vertices_of(_scene.bodies); ++i)
+    for (const double v : state.velocities[i]) totals.kinetic -= 0.5 * _sheets.fabric.mass[i] * v * v;
   row.values.insert(row.values.end(), {kinetic_energy_at_rest(totals, frame.velocity, _sheets.fabric.mass),
                                        totals.elastic, balance});
   if (_scene.frame == Frame::follow)

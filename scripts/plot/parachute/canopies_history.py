@@ -73,7 +73,7 @@ def _panels(run: Run) -> list[Panel]:
         return run.history[name].values
 
     peaks = [
-        Band(tuple(check["time"]), tuple(check["force"]))
+        Band(tuple(check.get("time", history("time")[[0, -1]])), tuple(check["force"]))
         for check in run.scene.get("verify", {}).get("peak_force", [])
     ]
     panels = [

@@ -34,7 +34,8 @@ CoupledCase flying_strip() {
 
 struct State {
   std::vector<std::vector<double>> flow;
-  std::vector<Vector> positions, velocities, acceleration;
+  std::vector<Vector> positions, velocities, acceleration, forces;
+  Vector total_force;
   flow::Progress progress;
   BlockProgress block;
 };
@@ -57,6 +58,9 @@ State state_of(const CoupledCase& c, Solver& solver) {
   s.positions.resize(c.x.size()), s.velocities.resize(c.x.size()), s.acceleration.resize(c.x.size());
   solver.download_cloth(s.positions, s.velocities);
   solver.download_air_acceleration(s.acceleration);
+  s.forces.resize(c.x.size());
+  solver.forces(s.forces);
+  s.total_force = solver.total_force_on_air();
   s.progress = solver.progress();
   s.block = solver.block();
   return s;
@@ -224,7 +228,10 @@ void expect_failure(const CoupledCase& c, FailureReason reason) {
   if (last.progress.step > 0) {
     ASSERT_TRUE(again.advance(last.progress.step));
   }
-  EXPECT_EQ(distance(state_of(c, *again.solver), last), 0.0);
+  const State expected = state_of(c, *again.solver);
+  EXPECT_EQ(distance(expected, last), 0.0);
+  EXPECT_EQ(distance(expected.forces, last.forces), 0.0);
+  EXPECT_EQ(expected.total_force, last.total_force);
 }
 
 TEST(CoupledSolver, ClothThatLeavesTheDomainIsAFailure) {
