@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# Sets up, builds for this machine, runs every shipped scene, verifies it, draws it, and makes one page of all.
+# Sets up, builds for this machine, runs the shipped scenes, verifies and draws them, and makes one page of all.
 # The last one is an opening parachute, c9-flat.
 #
 #   scripts/demo.sh [--system] [SCENE...]
 #     --system   install nothing, use the libraries and the Python packages that are there
-#     SCENE      run these scenes only (default: all but those that need a GPU)
+#     SCENE      run these scenes only (default: all but those that need a GPU, and slow ones that resemble others)
 #
 # Environment: DROGUE_DEMO_OUT (folder of the page, default out/demo), and that of scripts/setup.sh.
 . "$(dirname "${BASH_SOURCE[0]}")/lib/common.sh"

@@ -11,6 +11,7 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import packages  # before modules that need the packages  isort: skip
+from plot.demo.__main__ import SLOW
 from plot.demo.page import pictures_by_role
 
 
@@ -37,6 +38,10 @@ class Demo(unittest.TestCase):
             *words,
         ]
         return subprocess.run(command, capture_output=True, text=True, env=environment, check=False)
+
+    def test_slow_scenes_are_shipped(self):
+        shipped = {file.stem for file in (packages.SOURCE / "miniapps").glob("*/scenes/*.toml")}
+        self.assertEqual(set(), SLOW - shipped)
 
     def test_prints_table_and_writes_page_of_passed_scenes(self):
         done = self._demo()
