@@ -37,6 +37,17 @@ def assignments(scene, ratio):
     return [word for key, value in values.items() for word in ("--set", f"{key}={literal(value)}")]
 
 
+def refuse(scene, ratios):
+    """Ends the program with a sentence if the scene cannot be run on the grids asked for."""
+    verify = scene.get("verify", {})
+    if "max_dt" not in scene["run"] or not (verify.get("mean_force") or verify.get("frequency")):
+        sys.exit("measure_drag.py: the scene needs run.max_dt and a [[verify.mean_force]] or [[verify.frequency]].")
+    for ratio in ratios:
+        for n in scene["grid"]["cells"]:
+            if n > 1 and (ratio <= 0 or ratio * n != round(ratio * n)):
+                sys.exit(f"measure_drag.py: --ratio {ratio:g} makes {ratio * n:g} of {n} cells: choose a whole number.")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("scene")
@@ -49,9 +60,10 @@ def main():
     program = options.bin / "drogue-parachute"
     printed = subprocess.run([program, options.scene, "--print-scene"], capture_output=True, text=True, check=True)
     scene = tomllib.loads(printed.stdout)
+    refuse(scene, options.ratio)
     rows = []
     for ratio in options.ratio:
-        out = options.out / f"{options.scene}-{ratio:g}"
+        out = options.out / f"{pathlib.Path(options.scene).stem}-{ratio:g}"
         run = subprocess.run([program, options.scene, "--quiet", "--overwrite", "--out", out, *assignments(scene, ratio),
                               *arguments], check=False)
         if run.returncode not in (0, 5):  # a check may fail: its value is the point

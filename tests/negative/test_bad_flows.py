@@ -87,6 +87,12 @@ class BadFlows(parachute_program.FlowTest):
         self.expect(0, self.scene, "--check")
         self.assert_lines_are_rejected(bad_bodies.ROUND, bad_bodies.BAD_ROUND_LINES)
 
+    def test_rejects_conserved_momentum_with_bodies(self):
+        shipped = parachute_program.gas_program.SOURCE / "miniapps/parachute/scenes/porous-channel.toml"
+        text = shipped.read_text(encoding="utf-8").replace("pressure_drop = [30, 0, 0]", "body_force = [0, 0, 0]")
+        self.scene.write_text(text.replace("[verify]", "[verify]\nmomentum = 1e-12"), encoding="utf-8")
+        self.assertIn("verify.momentum: the forces of a [[body]]", self.refusal())
+
     def test_rejects_motion_along_an_axis_with_one_cell(self):
         flat = bad_bodies.GOOD.replace("[16, 8, 8]", "[16, 8, 1]")
         self.scene.write_text(flat, encoding="utf-8")
