@@ -38,7 +38,7 @@ def assignments(scene, ratio):
 
 
 def refuse(scene, ratios):
-    """Ends the program with a sentence if the scene cannot be run on the grids asked for."""
+    """Ends the program with a sentence if the scene cannot be run on grids of these ratios."""
     verify = scene.get("verify", {})
     if "max_dt" not in scene["run"] or not (verify.get("mean_force") or verify.get("frequency")):
         sys.exit("measure_drag.py: the scene needs run.max_dt and a [[verify.mean_force]] or [[verify.frequency]].")
