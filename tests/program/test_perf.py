@@ -64,7 +64,7 @@ class Record(perf_program.PerfTest):
     def test_records_flights_of_parachutes(self):
         self.expect(0, "run", "--quick", "--filter", "^parachute-flight/serial/", "--out", "run.jsonl")
         record, = self.records("run.jsonl")
-        self.assert_timed(record, 7)
+        self.assert_timed(record, 7, unit="ms of flight")
         self.assertEqual(("parachute-flight/serial/12x12x24/c9", "s per ms of flight"), (record["case"], record["unit"]))
 
     def test_records_contact_steps(self):

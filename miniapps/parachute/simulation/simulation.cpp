@@ -62,7 +62,11 @@ const char* reason_text(flow::FailureReason reason) {
 
 /// Flow with all sheets of a scene. Sheets that do not move need no steps of their own.
 coupling::Parameters coupled_parameters(const FlowScene& scene, const Sheets& sheets) {
-  coupling::Parameters p{scene.parameters, sheets.fabric, scene.coupling, scene.canopies.empty() ? 1 : 0};
+  coupling::Parameters p;
+  p.flow = scene.parameters;
+  p.fabric = sheets.fabric;
+  p.sheet = scene.coupling;
+  if (scene.canopies.empty()) p.substeps = 1;
   p.fabric.gravity = scene.gravity;
   p.fabric.contact.self = scene.contact;
   p.fabric.contact.thickness = scene.thickness;

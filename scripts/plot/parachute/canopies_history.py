@@ -105,7 +105,7 @@ def _panels(run: Run) -> list[Panel]:
         panels += [
             Panel(
                 "speed of the payload (m/s)",
-                {label("in the frame of the scene", k): np.linalg.norm(_vector(run, k, "payload_velocity"), axis=1) for k in free}
+                {label("of the payload", k): np.linalg.norm(_vector(run, k, "payload_velocity"), axis=1) for k in free}
                 | {label("in the stream", k): np.linalg.norm(relative_velocity(run, k), axis=1) for k in free},
                 _checks(run, "terminal_speed"),
             ),

