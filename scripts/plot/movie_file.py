@@ -9,6 +9,24 @@ from PIL import Image
 
 from . import style
 from .failure import IO_ERROR, Failure
+from .style import plt
+
+
+def evenly_spaced(snapshots, most: int) -> list:
+    """At most `most` of the snapshots, the first and the last one among them."""
+    count = min(len(snapshots), most)
+    return [snapshots[k] for k in np.linspace(0, len(snapshots) - 1, count).round().astype(int)]
+
+
+def drawn_frames(drawing, snapshots):
+    """Generator of a frame, (height, width, 3) bytes, per snapshot that `drawing` shows in its figure, which it closes."""
+    for snapshot in snapshots:
+        drawing.show(snapshot)
+        drawing.figure.canvas.draw()
+        pixels = np.asarray(drawing.figure.canvas.buffer_rgba())[..., :3]
+        # Many MP4 players require even sizes.
+        yield pixels[: pixels.shape[0] // 2 * 2, : pixels.shape[1] // 2 * 2].copy()
+    plt.close(drawing.figure)
 
 
 def _pack_rgb(pixels: np.ndarray) -> np.ndarray:

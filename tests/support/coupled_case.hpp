@@ -1,12 +1,17 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <memory>
 #include <vector>
 
 #include "kernels/coupling/sheet/solver.hpp"
 #include "kernels/fabric/elastic/lumped_mass.hpp"
 #include "tests/support/backend.hpp"
+#include "tests/support/profiled.hpp"
 
 namespace drogue::testing {
 
@@ -99,5 +104,14 @@ struct CoupledRun {
   std::size_t vertices;
   std::unique_ptr<coupling::Solver> solver;
 };
+
+/// Fences, allocations, copies and kernel launches of some steps of the flow.
+inline std::array<std::int64_t, 4> counted_steps(CoupledRun& run, std::int64_t steps) {
+  const device::ProfilingCounters before = profiled();
+  EXPECT_TRUE(run.advance(steps));
+  const device::ProfilingCounters after = profiled();
+  return {after.fences - before.fences, after.allocations - before.allocations, after.copies - before.copies,
+          after.kernel_launches - before.kernel_launches};
+}
 
 }  // namespace drogue::testing

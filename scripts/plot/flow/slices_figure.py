@@ -7,6 +7,7 @@ from matplotlib.colors import Normalize
 from matplotlib.ticker import MaxNLocator
 
 from .. import style
+from ..movie_file import drawn_frames, evenly_spaced
 from ..run_directory import Snapshot
 from ..style import plt
 from .plane import AXES, Plane
@@ -180,14 +181,5 @@ def slices_figure(view: View, snapshot: Snapshot):
 
 def frames(view: View):
     """Generator of frames, (height, width, 3) bytes each, of at most MAX_FRAMES evenly spaced snapshots."""
-    snapshots = view.plane.run.snapshots
-    count = min(len(snapshots), MAX_FRAMES)
-    chosen = [snapshots[k] for k in np.linspace(0, len(snapshots) - 1, count).round().astype(int)]
-    drawing = SlicesFigure(view, chosen, _MOVIE_COLOURS)
-    for snapshot in chosen:
-        drawing.show(snapshot)
-        drawing.figure.canvas.draw()
-        pixels = np.asarray(drawing.figure.canvas.buffer_rgba())[..., :3]
-        # Many MP4 players require even sizes.
-        yield pixels[: pixels.shape[0] // 2 * 2, : pixels.shape[1] // 2 * 2].copy()
-    plt.close(drawing.figure)
+    chosen = evenly_spaced(view.plane.run.snapshots, MAX_FRAMES)
+    return drawn_frames(SlicesFigure(view, chosen, _MOVIE_COLOURS), chosen)

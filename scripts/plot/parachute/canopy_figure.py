@@ -10,6 +10,7 @@ from .. import shading, style
 from ..flow.plane import AXES, Plane
 from ..flow.quantities import Quantity
 from ..flow.slices_figure import draw_slice, draw_streamlines
+from ..movie_file import drawn_frames, evenly_spaced
 from ..run_directory import Snapshot
 from ..style import plt
 from .canopies import Canopies
@@ -213,14 +214,5 @@ def canopy_figure(view: View, snapshot: Snapshot):
 
 def frames(view: View):
     """Generator of frames, (height, width, 3) bytes each, of at most MAX_FRAMES evenly spaced snapshots."""
-    snapshots = view.canopies.run.snapshots
-    count = min(len(snapshots), MAX_FRAMES)
-    chosen = [snapshots[k] for k in np.linspace(0, len(snapshots) - 1, count).round().astype(int)]
-    drawing = CanopyFigure(view, chosen, _MOVIE_COLOURS)
-    for snapshot in chosen:
-        drawing.show(snapshot)
-        drawing.figure.canvas.draw()
-        pixels = np.asarray(drawing.figure.canvas.buffer_rgba())[..., :3]
-        # Many MP4 players require even sizes.
-        yield pixels[: pixels.shape[0] // 2 * 2, : pixels.shape[1] // 2 * 2].copy()
-    plt.close(drawing.figure)
+    chosen = evenly_spaced(view.canopies.run.snapshots, MAX_FRAMES)
+    return drawn_frames(CanopyFigure(view, chosen, _MOVIE_COLOURS), chosen)

@@ -7,6 +7,7 @@ from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import Normalize, to_rgba
 
 from .. import shading, style
+from ..movie_file import drawn_frames, evenly_spaced
 from ..run_directory import Run, Snapshot
 from ..style import plt
 from . import bodies, strings
@@ -204,13 +205,4 @@ def fabric_figure(view: View, snapshot: Snapshot):
 
 def frames(view: View):
     """Generator of frames, (height, width, 3) bytes each, of at most MAX_FRAMES evenly spaced snapshots."""
-    snapshots = view.run.snapshots
-    count = min(len(snapshots), MAX_FRAMES)
-    drawing = FabricFigure(view)
-    for k in np.linspace(0, len(snapshots) - 1, count).round().astype(int):
-        drawing.show(snapshots[k])
-        drawing.figure.canvas.draw()
-        pixels = np.asarray(drawing.figure.canvas.buffer_rgba())[..., :3]
-        # Many MP4 players require even sizes.
-        yield pixels[: pixels.shape[0] // 2 * 2, : pixels.shape[1] // 2 * 2].copy()
-    plt.close(drawing.figure)
+    return drawn_frames(FabricFigure(view), evenly_spaced(view.run.snapshots, MAX_FRAMES))

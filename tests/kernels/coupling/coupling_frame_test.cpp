@@ -10,13 +10,13 @@
 
 #include "tests/support/coupled_case.hpp"
 #include "tests/support/expression_program.hpp"
-#include "tests/support/profiled.hpp"
 
 // A frame of reference that follows a vertex of the cloth.
 
 namespace drogue::coupling {
 namespace {
 
+using drogue::testing::counted_steps;
 using drogue::testing::CoupledCase;
 using drogue::testing::CoupledRun;
 using drogue::testing::postfix;
@@ -270,15 +270,8 @@ TEST(MovingFrameLedger, CostsNothingWithinABlock) {
   c.p.flow.max_dt = 0.0;
   c.p.flow.fixed_dt = 0.002;
   CoupledRun run(c);
-  const auto counted = [&](std::int64_t steps) {
-    const device::ProfilingCounters before = drogue::testing::profiled();
-    EXPECT_TRUE(run.advance(steps));
-    const device::ProfilingCounters after = drogue::testing::profiled();
-    return std::array{after.fences - before.fences, after.allocations - before.allocations,
-                      after.copies - before.copies};
-  };
-  counted(16);
-  const auto whole = counted(16), part = counted(4);
+  static_cast<void>(counted_steps(run, 16));
+  const auto whole = counted_steps(run, 16), part = counted_steps(run, 4);
   for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(whole[k], part[k]) << k;
 }
 

@@ -7,13 +7,13 @@
 
 #include "kernels/fabric/solver.hpp"
 #include "tests/support/coupled_case.hpp"
-#include "tests/support/profiled.hpp"
 
 // Steps of cloth in air: time steps, blocks, restarts, failures, backends and launches.
 
 namespace drogue::coupling {
 namespace {
 
+using drogue::testing::counted_steps;
 using drogue::testing::CoupledCase;
 using drogue::testing::CoupledRun;
 using drogue::testing::tested_backend;
@@ -308,17 +308,10 @@ TEST(CoupledLedger, StepsOfABlockNeitherFenceNorAllocateNorCopy) {
   c.p.substeps = 16;
   c.p.flow.fixed_dt = 0.002;
   CoupledRun run(c);
-  const auto counted = [&](std::int64_t steps) {
-    const device::ProfilingCounters before = drogue::testing::profiled();
-    EXPECT_TRUE(run.advance(steps));
-    const device::ProfilingCounters after = drogue::testing::profiled();
-    return std::array{after.fences - before.fences, after.allocations - before.allocations,
-                      after.copies - before.copies, after.kernel_launches - before.kernel_launches};
-  };
-  counted(16);
+  static_cast<void>(counted_steps(run, 16));
   // Blocks of 16 steps and of 4: the difference is that of 12 steps. The first one has a checkpoint of the
   // cloth.
-  const auto whole = counted(16), part = counted(4);
+  const auto whole = counted_steps(run, 16), part = counted_steps(run, 4);
   for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(whole[k], part[k]) << k;
   // Saving, 8 kernels before the steps of the cloth, 4 that spread its forces, a check, and 4 after the step
   // of the flow, which is 11 kernels on a host and one graph on a device.
