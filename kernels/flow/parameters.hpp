@@ -65,6 +65,11 @@ struct Boundary {
 
 using stepping::Driver;
 
+/// Largest CFL number of a time scheme. RK3 is stable up to 1.43 with fifth-order upwind derivatives and 1.73
+/// with central ones. AB2 amplifies some wave at any CFL number without viscosity, at 0.7 by 15 percent in
+/// each step with central derivatives. Does not throw.
+[[nodiscard]] constexpr double stable_cfl(TimeScheme scheme) { return scheme == TimeScheme::rk3 ? 1.4 : 0.7; }
+
 /// Parameters of a flow solver, apart from the initial state. The fluid has constant density.
 struct Parameters {
   std::array<int, 3> cells = {64, 64, 64};      ///< number of cells per axis; 1: no variation along this axis
@@ -85,9 +90,10 @@ struct Parameters {
   double pressure_tolerance = 1e-10;  ///< of an iterative solver: relative residual
   bool external_force = false;  ///< the solver has a force field that other kernels add to before each step
   /// 1/dt = max(|u|/hx + |v|/hy + |w|/hz) / cfl + 1/dt of explicit diffusion. 0: 1 for RK3, 0.5 for AB2.
+  /// At most `stable_cfl`.
   double cfl = 0.0;
   /// s; a positive value replaces the CFL condition. A run fails where it exceeds the stability limit: the dt
-  /// of CFL 1.4 for RK3 and 0.7 for AB2, with explicit diffusion without reserve.
+  /// of `stable_cfl`, with explicit diffusion without reserve.
   double fixed_dt = 0.0;
   double max_dt = 0.0;  ///< s; a positive value is an upper bound of dt, needed if the fluid is at rest
   std::int64_t max_steps = 1'000'000'000;

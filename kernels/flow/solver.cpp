@@ -77,7 +77,9 @@ void check_parameters(const Parameters& p) {
   require(cells > 1.0 && cells < 2e9, "the grid must have more than 1 cell, and fewer than 2 billion");
   require(std::isfinite(p.density) && p.density > 0.0, "the density must be positive");
   require(std::isfinite(p.viscosity) && p.viscosity >= 0.0, "the viscosity must not be negative");
-  require(p.fixed_dt > 0.0 || (p.cfl >= 0.0 && std::isfinite(p.cfl)), "cfl must not be negative");
+  require(p.fixed_dt > 0.0 || p.cfl >= 0.0, "cfl must not be negative");
+  require(p.fixed_dt > 0.0 || p.cfl <= stable_cfl(p.time_scheme),
+          "cfl must be at most 1.4 with the time scheme RK3, 0.7 with AB2");
   require(p.diffusion == Diffusion::explicit_ || p.time_scheme == TimeScheme::ab2,
           "Crank-Nicolson diffusion needs the time scheme AB2");
 #if !defined(DROGUE_HAVE_HYPRE)

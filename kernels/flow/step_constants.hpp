@@ -31,10 +31,7 @@ inline StepConstants step_constants(const Parameters& parameters, const MacGrid&
   constants.fixed_dt = parameters.fixed_dt;
   constants.max_dt = parameters.max_dt;
   constants.diffusive_dt = limits ? interval / (4.0 * nu * squares) : infinite;
-  // RK3 is stable up to 1.43 with fifth-order upwind derivatives and 1.73 with central ones. AB2 amplifies
-  // some wave at any CFL number without viscosity, at 0.7 by 15 percent in each step with central
-  // derivatives.
-  constants.stable_cfl = is_rk3 ? 1.4 : 0.7;
+  constants.stable_cfl = stable_cfl(parameters.time_scheme);
   // Rates of advection are divided by the CFL number: the standard one, or, of a fixed dt, the largest.
   if (parameters.turbulence != Turbulence::none)
     constants.eddy_weight =

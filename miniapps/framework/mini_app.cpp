@@ -8,6 +8,7 @@
 #include "common/program/provenance.hpp"
 #include "common/program/shipped_folder.hpp"
 #include "common/program/signals.hpp"
+#include "common/run/hdf5/hdf5_call.hpp"
 #include "common/scene/library.hpp"
 #include "miniapps/framework/scene_run.hpp"
 
@@ -66,6 +67,7 @@ ExitCode run_command(const MiniApp& app, const MiniAppOptions& options) {
   if (!app.serve) require_one_rank();
   if (on_ranks && !options.study.empty())
     throw Failure(ExitCode::usage, "--study runs on one rank, not " + std::to_string(launched_rank().ranks));
+  run::h5::open_library();
   if (on_ranks && !options.check && !options.print_scene) return run_on_ranks(app, options, folder);
   const std::filesystem::path file = scene::find_scene(options.scene, folder);
   if (options.check || options.print_scene) {

@@ -1,6 +1,5 @@
 """Full disks, file-size limits and unwritable directories: one sentence, no partial file, exit code 6."""
 
-import contextlib
 import os
 import resource
 import shutil
@@ -11,6 +10,7 @@ import unittest
 sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
 import gas_program
+import small_disk
 
 
 class DiskTest(gas_program.GasTest):
@@ -72,22 +72,15 @@ class FileSizeLimit(DiskTest):
 
 
 class OwnFileSystem(DiskTest):
-    @contextlib.contextmanager
+    """Skipped without the right to mount: the tests with a limit on file sizes stand for these."""
+
     def mounted(self, options):
-        place = self.folder / "disk"
-        place.mkdir()
-        if subprocess.run(["mount", "-t", "tmpfs", "-o", options, "tmpfs", place], capture_output=True).returncode:
-            self.skipTest("no right to mount; the tests with a limit on file sizes stand for this one")
-        try:
-            yield place
-        finally:
-            subprocess.run(["umount", place], check=True)
+        return small_disk.mounted(self.folder / "disk", options)
 
     def test_reports_a_full_disk(self):
         """The disk fills at the start, during writes of fields or restart file, and just before the end."""
         for size in ("4k", "16k", "64k", "200k", "400k"):
             with self.subTest(size):
-                shutil.rmtree(self.folder / "disk", ignore_errors=True)
                 with self.mounted(f"size={size}") as disk:
                     run = self.start("sod", "--backend", "serial", "--quiet", "--out", disk / "run",
                                      sets=["mesh.cells=800", "output.restart_every=20"])

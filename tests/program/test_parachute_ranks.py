@@ -11,7 +11,9 @@ import unittest
 
 sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
+import gas_program
 import parachute_program
+import small_disk
 from parachute_program import GUST, PLATE, PROGRAM, VORTICES
 from rank_processes import LAUNCHER, RANK_ENVIRONMENT, processes_of
 
@@ -112,6 +114,23 @@ class Failures(RanksTest):
     def test_refuses_bodies(self):
         sentence = self.run_on(2, 2, self.write(PLATE), *QUIET, "--out", "out")
         self.assertIn("one rank", sentence)
+
+    def test_reports_a_full_disk_once(self):
+        """The disk fills in the first output, in a restart file and in a later output."""
+        scene = self.write(GUST)
+        sets = ["grid.cells=[32, 24, 16]", "output.times=[0.1, 0.5]", "output.restart_every=12", 'output.fields=["velocity"]']
+        full_files = []
+        for size in ("64k", "800k", "1200k"):
+            with self.subTest(size), small_disk.mounted(self.folder / "disk", f"size={size}") as disk:
+                sentence = self.run_on(6, 2, scene, *QUIET, "--out", disk / "run", sets=sets)
+                self.assertIn("No space left", sentence)
+                self.assertEqual("io-error", self.result("disk/run")["status"])
+                self.assertEqual([], [path.name for path in (disk / "run").iterdir() if path.name.startswith(".")])
+                for name in ("fields.h5", "restart.h5"):
+                    if (disk / "run" / name).exists():
+                        gas_program.fields(disk / "run", name)  # raises if it cannot be read
+                full_files.append("restart.h5" if "restart.h5" in sentence else "fields.h5")
+        self.assertEqual(["fields.h5", "restart.h5", "fields.h5"], full_files)
 
     def test_reports_a_numerical_failure_once(self):
         sentence = self.run_on(4, 4, self.write(LONG_GUST), *QUIET, "--out", "out", sets=["run.dt=10"])

@@ -40,6 +40,11 @@ Lock::Lock() : _lock(library_mutex()) {
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
 }
 
+void open_library() {
+  const Lock lock;
+  if (H5open() < 0) throw Failure(ExitCode::io_error, "cannot open the HDF5 library");
+}
+
 void fail(const std::string& action, const std::filesystem::path& path) {
   Cause cause;
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, look_at, &cause);

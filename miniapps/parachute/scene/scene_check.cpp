@@ -83,6 +83,11 @@ void check_scheme(const Table& root, const flow::Parameters& p) {
                  std::string("flow.pressure_drop: the axis ") + axis_names[axis] + " has no periodic sides");
   if (p.diffusion == flow::Diffusion::crank_nicolson && p.time_scheme != flow::TimeScheme::ab2)
     contradict(root, "flow.diffusion", "flow.diffusion = \"crank-nicolson\" needs flow.time = \"ab2\"");
+  const double most = flow::stable_cfl(p.time_scheme);
+  if (p.cfl > most)
+    contradict(root, "run.cfl",
+               "run.cfl = " + real_text(p.cfl) + " is unstable: at most " + real_text(most) +
+                   " with flow.time = \"" + (p.time_scheme == flow::TimeScheme::rk3 ? "rk3" : "ab2") + "\"");
 }
 
 /// Sets the velocity of a side: three numbers, or three programs.

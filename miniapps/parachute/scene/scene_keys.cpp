@@ -138,9 +138,10 @@ void declare_run(Table& table, FlowScene& scene) {
       .above(0.0);
   table
       .value("cfl", absent_if_zero(scene::real_codec(parameters.cfl), parameters.cfl),
-             "Courant number: dt times the largest sum of speeds over cell widths along the axes")
+             "Courant number: dt times the largest sum of speeds over cell widths along the axes; at most "
+             "0.7 with ab2")
       .above(0.0)
-      .at_most(2.0)
+      .at_most(flow::stable_cfl(flow::TimeScheme::rk3))
       .when(free_step, "with dt = \"auto\"", "dt")
       .default_text("1 for rk3, 0.5 for ab2 and with a [[body]] or a [[canopy]]");
   table

@@ -383,6 +383,11 @@ TEST(FlowControl, RejectsParametersWithoutASolution) {
   rejects([](Parameters& p) { p.cfl = -0.5; });
   rejects([](Parameters& p) { p.cfl = std::nan(""); });
   rejects([](Parameters& p) { p.cfl = HUGE_VAL; });
+  rejects([](Parameters& p) { p.cfl = 1.5; });
+  rejects([](Parameters& p) {
+    p.cfl = 0.8;
+    p.time_scheme = TimeScheme::ab2;
+  });
   rejects([](Parameters& p) { p.boundary[0].kind = BoundaryKind::wall; });
   rejects([](Parameters& p) {
     p.boundary[0].kind = p.boundary[1].kind = BoundaryKind::slip;

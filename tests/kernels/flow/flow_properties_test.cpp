@@ -46,6 +46,16 @@ TEST(FlowProperties, StepsLeaveNoDivergence) {
       }
 }
 
+TEST(FlowProperties, PrimeNumbersOfCellsLeaveNoDivergence) {
+  for (Parameters p : {periodic_box({61, 59, 127}), channel({61, 59, 127})}) {
+    p.time_scheme = TimeScheme::ab2;
+    const FlowDomain domain(p);
+    const auto solver = started(backend, p, random_field(domain, 8));
+    ASSERT_EQ(solver->advance(endless, 2, {}), Stop::pause);
+    EXPECT_LT(largest(reference::divergence(domain, velocity(*solver, p))), 1e-11);
+  }
+}
+
 TEST(FlowProperties, PeriodicBoxesConserveMomentumToRoundOff) {
   for (const Advection scheme : schemes)
     for (const TimeIntegration& integration : time_integrations)
