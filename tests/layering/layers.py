@@ -33,7 +33,7 @@ LAYERS = (
     Layer("kernels/linear/parallel/", ("kernels/linear/parallel/",), (KOKKOS, FRONT_END, FILES)),
     Layer("kernels/linear/poisson/hypre", ("kernels/",), (FRONT_END, FILES)),
     Layer("kernels/", ("kernels/",), (FRONT_END, FILES, MPI)),
-    Layer("miniapps/framework/", ("miniapps/framework/", "kernels/device/", "common/"), (KOKKOS, r"cuda", FRONT_END)),
+    Layer("miniapps/framework/", ("miniapps/framework/", "kernels/device/", "kernels/mesh/", "common/"), (KOKKOS, r"cuda", FRONT_END)),
     Layer("perf/", ("perf/", "kernels/", "common/", "miniapps/"), ()),
 )
 

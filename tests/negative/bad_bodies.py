@@ -111,6 +111,8 @@ BAD_ROUND_LINES = [
     (9, 'kind = "spere"', 9, ["body[0].kind", 'did you mean "sphere"?']),
     (11, "radius = 0.2\nlengths = [0.2, 0.2]", 12, ["body[0].lengths", "plate"]),
     (11, "", 8, ['missing key "body[0].radius"']),
+    (9, 'kind = "file"', 8, ['missing key "body[0].file"']),
+    (11, 'radius = 0.2\nfile = "a.obj"', 12, ["body[0].file", '"file"']),
     (18, "", 16, ['missing key "body[1].axis"']),
     (18, 'axis = "z"\nnormal = "z"', 19, ["body[1].normal", '"plate" or "disk"']),
     (21, "", 16, ['missing key "body[1].length"']),

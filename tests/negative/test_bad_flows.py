@@ -87,6 +87,25 @@ class BadFlows(parachute_program.FlowTest):
         self.expect(0, self.scene, "--check")
         self.assert_lines_are_rejected(bad_bodies.ROUND, bad_bodies.BAD_ROUND_LINES)
 
+    def test_rejects_bodies_of_unfit_files(self):
+        scene = bad_bodies.ROUND.replace('kind = "sphere"', 'kind = "file"\nfile = "body.obj"').replace("radius = 0.2\nedge_length = 0.05\n", "", 1)
+        self.scene.write_text(scene, encoding="utf-8")
+        mesh = self.scene.parent / "body.obj"
+        self.assertIn("body[0].file: there is no file ", self.refusal())
+        triangle = "v 0 0 0\nv 0.05 0 0\nv 0 0.05 0\nf 1 2 3\n"
+        for text, words in {
+                "# empty\n": "the file has no vertex", "v 0 0 0\nv 1 0 0\nl 1 2\n": "has no face", "v 0 0\n": "body.obj:1: ",
+                triangle + "l 1 2\n": "has lines (l), which have no area", triangle + "f 1 3 2\n": "repeats face 1",
+                triangle.replace("0.05", "0.2"): "body[0].file: edges of 0.28",
+                triangle.replace("0.05 0 0", "5 0 0"): "body[0].file: edges of 5"}.items():
+            with self.subTest(words):
+                mesh.write_text(text, encoding="utf-8")
+                self.assertIn(words, self.refusal())
+        mesh.write_text(triangle, encoding="utf-8")
+        self.expect(0, self.scene, "--check")
+        self.assertIn("body[0].scale = 0", self.refusal("body[0].scale=0"))
+        self.assertIn("between 0.1 and 1.5", self.refusal("body[0].centre=[1.49, 0.4, 0.4]"))
+
     def test_rejects_conserved_momentum_with_bodies(self):
         shipped = parachute_program.gas_program.SOURCE / "miniapps/parachute/scenes/porous-channel.toml"
         text = shipped.read_text(encoding="utf-8").replace("pressure_drop = [30, 0, 0]", "body_force = [0, 0, 0]")

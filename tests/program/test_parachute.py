@@ -330,6 +330,31 @@ class Bodies(parachute_program.FlowTest):
         self.assertAlmostEqual(3 * 2 + 1 * 2**2, pressure[0] - pressure[15 * plane], delta=1e-6)
         self.expect(5, self.write(whole), *QUIET, "--overwrite", sets=[check.format(1.001 * force), "run.end_time=1"])
 
+    def test_triangles_of_a_file_are_a_body(self):
+        """A plate from a file, in units of 5 cm, has the force of the same plate by measures."""
+        quiet = QUIET[:QUIET.index("--out")]
+        rows = [(0, 2 * y - 8, 2 * z - 12) for y in range(9) for z in range(13)]
+        faces = [face for y in range(8) for z in range(12) for a in [13 * y + z + 1]
+                 for face in ((a, a + 13, a + 14), (a, a + 14, a + 1))]
+        text = "".join(f"v {x} {y} {z}\n" for x, y, z in rows) + "".join(f"f {a} {b} {c}\n" for a, b, c in faces)
+        (self.folder / "plate.obj").write_text(text.replace("v 0", "v 0.0"), encoding="utf-8")
+        head, tail = PLATE.split('kind = "plate"\nnormal = "x"\n')
+        tail = tail.replace("lengths = [0.4, 0.6]\nedge_length = 0.05\n", 'file = "plate.obj"\nscale = 0.025\nslip = true\n', 1)
+        by_file = self.write(head + 'kind = "file"\n' + tail, "file.toml")
+        self.expect(0, by_file, *quiet, "--out", "file", sets=["output.restart_every=8"])
+        self.expect(0, self.write(PLATE), *quiet, "--out", "plate")
+        forces = [self.history(out)["body_0_force_x"][-1] for out in ("file", "plate")]
+        self.assertGreater(forces[1], 0.1)
+        self.assertAlmostEqual(forces[0], forces[1], delta=1e-3 * forces[1])
+        self.assertEqual(["body_0_force_x", "body_1_force_x"], [name for name in self.history("file") if "force_x" in name])
+        # Another place of the file is the same scene, another content is not.
+        text_of_scene = by_file.read_text(encoding="utf-8")
+        (self.folder / "moved.obj").write_bytes((self.folder / "plate.obj").read_bytes())
+        by_file.write_text(text_of_scene.replace("plate.obj", "moved.obj"), encoding="utf-8")
+        self.expect(0, by_file, *quiet, "--out", "file", "--restart", "auto")
+        (self.folder / "moved.obj").write_text(text.replace("v 0 -8 -12", "v 0.1 -8 -12"), encoding="utf-8")
+        self.assertIn("another scene", self.expect(6, by_file, *quiet, "--out", "file", "--restart", "auto").stderr)
+
     def test_history_holds_the_forces_of_all_bodies(self):
         self.expect(0, self.write(PLATE), *QUIET)
         rows = self.history("out")

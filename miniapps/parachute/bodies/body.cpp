@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -35,12 +36,15 @@ mesh::Mesh local_mesh(const Body& body) {
                            : mesh::tube(body.radius, body.length, n, rows);
     case BodyKind::cup:
       return mesh::hemisphere(body.radius, n);
+    case BodyKind::file:
+      return body.surface;
   }
   return {};
 }
 
 /// Coordinates x, y, z of `local_mesh` along the axes of the domain: z along that of the body.
 mesh::Vector turned(const Body& body, const mesh::Vector& x) {
+  if (body.kind == BodyKind::file) return x;
   const auto axis = static_cast<std::size_t>(body.axis);
   mesh::Vector result{};
   if (body.kind == BodyKind::plate) {
@@ -84,6 +88,8 @@ std::array<double, 2> Body::divisions() const {
     }
     case BodyKind::cup:
       return {edges_along(mesh::hemisphere_edge * radius, edge_length), 0.0};
+    case BodyKind::file:
+      break;
   }
   return {};
 }
@@ -101,14 +107,35 @@ double Body::vertices() const {
       return 10.0 * n * n + 2.0;
     case BodyKind::cylinder:
       return has_ends ? 6.0 * n * (rows - 1.0) + 2.0 * of_disk : n * (rows + 1.0);
+    case BodyKind::file:
+      return static_cast<double>(surface.rest.size());
   }
   return 0.0;
+}
+
+double Body::largest_edge() const {
+  if (kind != BodyKind::file) return edge_length;
+  double largest = 0.0;
+  for (const auto& corners : surface.triangles)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const mesh::Vector& from = surface.rest[static_cast<std::size_t>(corners[k])];
+      const mesh::Vector& to = surface.rest[static_cast<std::size_t>(corners[(k + 1) % 3])];
+      largest = std::max(largest, std::hypot(to[0] - from[0], to[1] - from[1], to[2] - from[2]));
+    }
+  return largest;
 }
 
 std::array<std::array<double, 2>, 3> Body::extents() const {
   const auto along = static_cast<std::size_t>(axis);
   std::array<std::array<double, 2>, 3> result{};
   for (auto& [low, high] : result) low = high = radius;
+  if (kind == BodyKind::file) {
+    result.fill({-std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()});
+    for (const mesh::Vector& x : surface.rest)
+      for (std::size_t k = 0; k < 3; ++k)
+        result[k] = {std::max(result[k][0], -x[k]), std::max(result[k][1], x[k])};
+    return result;
+  }
   if (kind == BodyKind::plate) {
     for (std::size_t k = 0; k < 2; ++k) result[axes()[k]] = {0.5 * lengths[k], 0.5 * lengths[k]};
     result[along] = {0.0, 0.0};

@@ -17,6 +17,7 @@ enum class BodyKind {
   sphere,    ///< closed
   cylinder,  ///< about an axis, with or without its ends; a circle in two dimensions
   cup,       ///< half of a sphere, open along an axis
+  file,      ///< of a mesh file
 };
 
 /// Laws of the flow through a sheet.
@@ -52,6 +53,9 @@ struct Body {
   bool has_ends = false;              ///< of a cylinder: disks close it
   bool opens_to_high = false;         ///< a cup is open towards the high side of its axis
   double edge_length = 0.0;           ///< m, of the triangles
+  std::string file;                   ///< Wavefront OBJ
+  double scale = 1.0;                 ///< m per unit of length of the file
+  mesh::Mesh surface;                 ///< of the file, m; its origin is at `centre`
   std::array<std::string, 3> motion;  ///< displacement, m, as expressions of t; empty: none
   std::optional<bool> slip;           ///< the fluid slips freely along the sheet
   Porosity porosity;
@@ -60,11 +64,14 @@ struct Body {
   [[nodiscard]] std::array<std::size_t, 2> axes() const;
 
   /// Numbers of divisions: edges of a plate along these axes; rings of a disk or cup; divisions of a sphere;
-  /// columns, or rings of ends, and rows of a cylinder. Does not throw.
+  /// columns, or rings of ends, and rows of a cylinder; none of a file. Does not throw.
   [[nodiscard]] std::array<double, 2> divisions() const;
 
   /// Number of vertices. Does not throw.
   [[nodiscard]] double vertices() const;
+
+  /// Largest edge, m: the given one, or that of the file. Does not throw.
+  [[nodiscard]] double largest_edge() const;
 
   /// Largest distances from the centre along each axis to the low and the high side, m. Does not throw.
   [[nodiscard]] std::array<std::array<double, 2>, 3> extents() const;

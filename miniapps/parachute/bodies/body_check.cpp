@@ -5,6 +5,7 @@
 #include <string>
 
 #include "common/scene/read.hpp"
+#include "miniapps/framework/obj_file.hpp"
 #include "miniapps/parachute/scene/functions.hpp"
 
 namespace drogue::parachute_app {
@@ -60,12 +61,12 @@ void check_two_dimensions(const Table& root, const flow::Parameters& p, const Bo
 
 /// Checks the lengths of edges against the cells along each axis.
 void check_edges(const Table& root, const flow::Parameters& p, const Body& body, const std::string& name) {
-  const std::string key = name + ".edge_length";
+  const std::string key = name + (body.kind == BodyKind::file ? ".file" : ".edge_length");
   const double vertices = body.vertices();
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const bool is_plate = body.kind == BodyKind::plate;
     if (p.cells[axis] == 1 || (is_plate && static_cast<int>(axis) == body.axis)) continue;
-    double edge = body.edge_length;
+    double edge = body.largest_edge();
     if (is_plate) {
       const std::size_t k = axis == body.axes()[0] ? 0 : 1;
       edge = body.lengths[k] / body.divisions()[k];
@@ -123,11 +124,28 @@ void check_body(const Table& root, const FlowScene& scene, std::size_t index) {
   }
 }
 
+/// Reads the mesh file of a body.
+void read_surface(const Table& root, FlowScene& scene, std::size_t index) {
+  Body& body = scene.bodies[index];
+  if (body.kind != BodyKind::file) return;
+  const std::string key = "body[" + std::to_string(index) + "].file";
+  body.surface = framework::read_obj(root, key, scene.file, body.file);
+  if (!body.surface.lines.empty() || body.surface.triangles.empty())
+    contradict(root, key,
+               key + ": " + body.file + " has " +
+                   (body.surface.triangles.empty() ? "no face" : "lines (l), which have no area"));
+  for (mesh::Vector& x : body.surface.rest)
+    for (double& coordinate : x) coordinate *= body.scale;
+}
+
 }  // namespace
 
 void complete_and_check_bodies(const Table& root, FlowScene& scene) {
   if (scene.bodies.empty()) return;
-  for (Body& body : scene.bodies) body.slip = body.slips();
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    scene.bodies[i].slip = scene.bodies[i].slips();
+    read_surface(root, scene, i);
+  }
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) check_body(root, scene, i);
   const flow::Parameters& p = scene.parameters;
   if (p.fixed_dt == 0.0 && p.max_dt == 0.0)

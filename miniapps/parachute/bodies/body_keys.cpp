@@ -10,11 +10,9 @@ namespace {
 using scene::Choices;
 using scene::Table;
 
-const Choices<BodyKind> body_choices = {{"plate", BodyKind::plate},
-                                        {"disk", BodyKind::disk},
-                                        {"sphere", BodyKind::sphere},
-                                        {"cylinder", BodyKind::cylinder},
-                                        {"cup", BodyKind::cup}};
+const Choices<BodyKind> body_choices = {{"plate", BodyKind::plate},   {"disk", BodyKind::disk},
+                                        {"sphere", BodyKind::sphere}, {"cylinder", BodyKind::cylinder},
+                                        {"cup", BodyKind::cup},       {"file", BodyKind::file}};
 const Choices<PorosityLaw> law_choices = {{"none", PorosityLaw::none},
                                           {"forchheimer", PorosityLaw::forchheimer},
                                           {"ergun", PorosityLaw::ergun},
@@ -94,7 +92,9 @@ void declare_shape(Table& table, Body& body) {
               "Axis of symmetry; in two dimensions, that of a cylinder has the single cell",
               {body, {cylinder, cup}})
       .required();
-  table.value("centre", vector_codec(body.centre), "Centre; of a cup, that of the whole sphere")
+  table
+      .value("centre", vector_codec(body.centre),
+             "Centre; of a cup, that of the whole sphere; of a file, the place of its origin")
       .unit("m")
       .required();
   declare_for(table, "lengths", pair_codec(body.lengths),
@@ -118,6 +118,12 @@ void declare_shape(Table& table, Body& body) {
   declare_for(table, "opening", scene::choice_codec(body.opens_to_high, opening_choices),
               "Side along the axis to which the cup is open", {body, {cup}})
       .required();
+  declare_for(table, "file", scene::text_codec(body.file),
+              "A Wavefront OBJ file (v, f with three vertices), relative to the scene", {body, {file}})
+      .required();
+  declare_for(table, "scale", scene::real_codec(body.scale), "Metres per unit of length of the file",
+              {body, {file}})
+      .above(0.0);
 }
 
 /// Boolean that is absent unless given.
@@ -137,18 +143,17 @@ scene::Codec optional_boolean_codec(std::optional<bool>& value) {
 }
 
 void declare_body(Table& table, Body& body) {
+  using enum BodyKind;
   table
-      .value(
-          "kind", scene::choice_codec(body.kind, body_choices),
-          "A rectangle, a disk, a sphere, a cylinder, or half of a sphere that is open on one side; without "
-          "thickness")
+      .value("kind", scene::choice_codec(body.kind, body_choices),
+             "A rectangle, a disk, a sphere, a cylinder, half of a sphere that is open on one side, or the "
+             "triangles of a file; without thickness")
       .required();
   declare_shape(table, body);
-  table
-      .value(
-          "edge_length", scene::real_codec(body.edge_length),
-          "Largest edge of the triangles, of a plate or tube along its sides; at most a cell over 1.4, and "
-          "half a cell for accuracy")
+  declare_for(table, "edge_length", scene::real_codec(body.edge_length),
+              "Largest edge of the triangles, of a plate or tube along its sides; at most a cell over 1.4, "
+              "and half a cell for accuracy",
+              {body, {plate, disk, sphere, cylinder, cup}})
       .unit("m")
       .above(0.0)
       .required();

@@ -2,6 +2,7 @@
 
 #include "common/run/restart/restart_file.hpp"
 #include "miniapps/framework/mini_app.hpp"
+#include "miniapps/framework/obj_file.hpp"
 #include "miniapps/framework/typed_scene.hpp"
 #include "miniapps/parachute/scene/scene_check.hpp"
 #include "miniapps/parachute/scene/scene_keys.hpp"
@@ -48,7 +49,14 @@ std::string scene_fingerprint(FlowScene scene) {
   keep(&flow::Parameters::cfl);
   keep(&flow::Parameters::fixed_dt);
   keep(&flow::Parameters::max_dt);
-  return run::fingerprint(print_flow_scene(scene));
+  // The content of a mesh file counts, not its path.
+  std::string surfaces;
+  for (Body& body : scene.bodies) {
+    if (body.kind != BodyKind::file) continue;
+    surfaces += framework::contents_of(body.surface);
+    body.file = "mesh.obj";
+  }
+  return run::fingerprint(print_flow_scene(scene) + surfaces);
 }
 
 std::filesystem::path scene_folder() {

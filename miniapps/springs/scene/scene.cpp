@@ -1,9 +1,8 @@
 #include "miniapps/springs/scene/scene.hpp"
 
-#include <span>
-
 #include "common/run/restart/restart_file.hpp"
 #include "miniapps/framework/mini_app.hpp"
+#include "miniapps/framework/obj_file.hpp"
 #include "miniapps/framework/typed_scene.hpp"
 #include "miniapps/springs/scene/scene_check.hpp"
 #include "miniapps/springs/scene/scene_keys.hpp"
@@ -38,12 +37,7 @@ std::string scene_fingerprint(SpringsScene scene) {
   // The content of a mesh file counts, not its path.
   std::string contents;
   if (!scene.source.file.empty()) {
-    const auto bytes = std::as_bytes(numbers(scene.mesh.rest));
-    contents.assign(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    for (const auto& triangle : scene.mesh.triangles)
-      for (const int i : triangle) contents += std::to_string(i) + " ";
-    for (const auto& line : scene.mesh.lines)
-      for (const int i : line) contents += std::to_string(i) + " ";
+    contents = framework::contents_of(scene.mesh);
     scene.source.file = "mesh.obj";
   }
   return run::fingerprint(print_springs_scene(scene) + contents);

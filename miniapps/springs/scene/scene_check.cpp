@@ -1,4 +1,5 @@
 #include "miniapps/springs/scene/scene_check.hpp"
+#include "miniapps/framework/obj_file.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +10,6 @@
 #include "kernels/mesh/edges.hpp"
 #include "kernels/mesh/topology.hpp"
 #include "miniapps/springs/scene/expressions.hpp"
-#include "miniapps/springs/scene/obj_file.hpp"
 #include "miniapps/springs/simulation/stress_fields.hpp"
 
 namespace drogue::springs_app {
@@ -34,17 +34,7 @@ fabric::Mesh make_mesh(const Table& root, SpringsScene& scene) {
       contradict(root, "mesh.string", "mesh.string: from and to are the same point");
     return generate(*source.string);
   }
-  // Absolute path, so that the resolved scene is valid in any folder.
-  const std::filesystem::path file =
-      std::filesystem::absolute(scene.file.parent_path() / source.file).lexically_normal();
-  source.file = file.string();
-  std::error_code unreadable;
-  if (!std::filesystem::is_regular_file(file, unreadable))
-    contradict(root, "mesh.file",
-               "mesh.file: " + (std::filesystem::exists(file, unreadable)
-                                    ? file.string() + " is no file but a directory or device"
-                                    : "there is no file " + file.string()));
-  return read_obj(file);
+  return framework::read_obj(root, "mesh.file", scene.file, source.file);
 }
 
 /// Checks an expression at every vertex and time 0: finite, and below the limit of a lost state. An

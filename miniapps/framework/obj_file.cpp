@@ -1,4 +1,4 @@
-#include "miniapps/springs/scene/obj_file.hpp"
+#include "miniapps/framework/obj_file.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -11,7 +11,7 @@
 #include "common/scene/nearest.hpp"
 #include "common/scene/node.hpp"
 
-namespace drogue::springs_app {
+namespace drogue::framework {
 namespace {
 
 /// Statements that cloth has no use for.
@@ -74,7 +74,7 @@ class ObjParser {
     if (words.size() != 4 && !weighted && !coloured)
       refuse(which + " has " + std::to_string(words.size() - 1) +
              " numbers; it must have 3 coordinates, and after them nothing, a weight of 1 or a colour of 3");
-    fabric::Vector point;
+    mesh::Vector point;
     for (std::size_t axis = 0; axis < 3; ++axis) point[axis] = real(words[axis + 1], which);
     for (std::size_t k = 4; k < words.size(); ++k)
       if (real(words[k], which) != 1.0 && weighted)
@@ -160,15 +160,35 @@ std::string part_of_file(const std::string& kind, std::size_t k) {
 
 ObjContents parse_obj(std::string_view text, const std::string& name) { return ObjParser(text, name).run(); }
 
-fabric::Mesh read_obj(const std::filesystem::path& file) {
-  const std::string name = file.string();
-  std::ifstream stream(file, std::ios::binary);
+mesh::Mesh read_obj(const scene::Table& root, const std::string& key, const std::filesystem::path& scene_file,
+                    std::string& file) {
+  const std::filesystem::path path =
+      std::filesystem::absolute(scene_file.parent_path() / file).lexically_normal();
+  file = path.string();
+  std::error_code unreadable;
+  if (!std::filesystem::is_regular_file(path, unreadable))
+    scene::contradict(
+        root, key,
+        key + ": " +
+            (std::filesystem::exists(path, unreadable) ? file + " is no file but a directory or device"
+                                                       : "there is no file " + file));
+  std::ifstream stream(path, std::ios::binary);
   std::ostringstream text;
-  if (!std::filesystem::is_regular_file(file) || !stream || !(text << stream.rdbuf()))
-    throw Failure(ExitCode::invalid_scene, name + ":1: the mesh file is empty or cannot be read");
-  const ObjContents contents = parse_obj(text.str(), name);
-  check_obj(contents, name);
+  if (!stream || !(text << stream.rdbuf()))
+    throw Failure(ExitCode::invalid_scene, file + ":1: the mesh file is empty or cannot be read");
+  const ObjContents contents = parse_obj(text.str(), file);
+  check_obj(contents, file);
   return contents.mesh;
 }
 
-}  // namespace drogue::springs_app
+std::string contents_of(const mesh::Mesh& mesh) {
+  std::string text;
+  for (const mesh::Vector& x : mesh.rest) text.append(reinterpret_cast<const char*>(x.data()), sizeof x);
+  for (const auto& triangle : mesh.triangles)
+    for (const int i : triangle) text += std::to_string(i) + " ";
+  for (const auto& line : mesh.lines)
+    for (const int i : line) text += std::to_string(i) + " ";
+  return text;
+}
+
+}  // namespace drogue::framework

@@ -1,9 +1,9 @@
 #include <gtest/gtest.h>
 
 #include "common/program/failure.hpp"
-#include "miniapps/springs/scene/obj_file.hpp"
+#include "miniapps/framework/obj_file.hpp"
 
-namespace drogue::springs_app {
+namespace drogue::framework {
 namespace {
 
 /// A square of two triangles, and a string of two pieces that hangs from a corner.
@@ -38,13 +38,13 @@ TEST(ObjFile, ReadsVerticesFacesAndLines) {
 
 TEST(ObjFile, ReadsCrLfAndAllNumberFormats) {
   const ObjContents contents = read_mesh("v +0.5 -1e-3 .25\r\nv 1 0 0\r\nv 0 2 0\r\nf -3 -2 -1");
-  EXPECT_EQ(contents.mesh.rest[0], (fabric::Vector{0.5, -1e-3, 0.25}));
+  EXPECT_EQ(contents.mesh.rest[0], (mesh::Vector{0.5, -1e-3, 0.25}));
   EXPECT_EQ(contents.mesh.triangles[0], (std::array{0, 1, 2}));
 }
 
 TEST(ObjFile, AcceptsUnitWeightsAndColours) {
   const ObjContents contents = read_mesh("v 1 0 0 1.0\nv 0 1 0 0.5 0.25 1\nv 0 0 1\nf 1 2 3\n");
-  EXPECT_EQ(contents.mesh.rest, (std::vector<fabric::Vector>{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}));
+  EXPECT_EQ(contents.mesh.rest, (std::vector<mesh::Vector>{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}));
 }
 
 TEST(ObjFile, ErrorsNameFileLineAndPart) {
@@ -89,4 +89,4 @@ TEST(ObjFile, ErrorsNameFileLineAndPart) {
 TEST(ObjFile, AcceptsALineAlongATriangleEdge) { EXPECT_EQ(mesh_error(square + "l 1 2\n"), ""); }
 
 }  // namespace
-}  // namespace drogue::springs_app
+}  // namespace drogue::framework

@@ -1,8 +1,8 @@
 #include "common/program/failure.hpp"
 #include "kernels/mesh/topology.hpp"
-#include "miniapps/springs/scene/obj_file.hpp"
+#include "miniapps/framework/obj_file.hpp"
 
-namespace drogue::springs_app {
+namespace drogue::framework {
 namespace {
 
 std::string one_based(int i) { return std::to_string(i + 1); }
@@ -49,4 +49,4 @@ void check_obj(const ObjContents& contents, const std::string& name) {
   throw Failure(ExitCode::invalid_scene, name + ":" + std::to_string(line) + ": " + sentence);
 }
 
-}  // namespace drogue::springs_app
+}  // namespace drogue::framework

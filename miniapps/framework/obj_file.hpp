@@ -4,13 +4,14 @@
 #include <string>
 #include <string_view>
 
-#include "kernels/fabric/parameters.hpp"
+#include "common/scene/read.hpp"
+#include "kernels/mesh/mesh.hpp"
 
-namespace drogue::springs_app {
+namespace drogue::framework {
 
 /// Mesh of a file, with the line number of each of its parts.
 struct ObjContents {
-  fabric::Mesh mesh;
+  mesh::Mesh mesh;
   std::vector<int> vertex_line, triangle_line, line_line;
 };
 
@@ -27,7 +28,13 @@ ObjContents parse_obj(std::string_view text, const std::string& name);
 /// triangles, edges of three triangles, and repeated lines.
 void check_obj(const ObjContents& contents, const std::string& name);
 
-/// Reads and checks a file. Throws Failure(invalid_scene), also for an unreadable file.
-fabric::Mesh read_obj(const std::filesystem::path& file);
+/// Reads and checks the file that a key of a scene names, relative to the folder of the scene. Replaces its
+/// name by its absolute path, so that the resolved scene is valid in any folder. Throws
+/// Failure(invalid_scene), also for a file that is missing or cannot be read.
+mesh::Mesh read_obj(const scene::Table& root, const std::string& key, const std::filesystem::path& scene_file,
+                    std::string& file);
 
-}  // namespace drogue::springs_app
+/// Coordinates and indices of a mesh as text: of a file, the content counts in a fingerprint, not the path.
+std::string contents_of(const mesh::Mesh& mesh);
+
+}  // namespace drogue::framework
