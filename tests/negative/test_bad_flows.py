@@ -112,6 +112,17 @@ class BadFlows(parachute_program.FlowTest):
         self.scene.write_text(text.replace("[verify]", "[verify]\nmomentum = 1e-12"), encoding="utf-8")
         self.assertIn("verify.momentum: the forces of a [[body]]", self.refusal())
 
+    def test_rejects_bodies_that_do_not_span_an_axis_with_one_cell(self):
+        self.scene.write_text(bad_bodies.GOOD.replace("[16, 8, 8]", "[16, 8, 1]"), encoding="utf-8")
+        self.expect(0, self.scene, "--check")
+        self.assertIn("body[0].lengths is 0.5 m along z", self.refusal("body[0].lengths=[0.4, 0.5]"))
+        body = 'kind = "cylinder"\naxis = "z"\nradius = 0.2\nlength = 0.8\n'
+        self.scene.write_text(bad_bodies.GOOD.replace("[16, 8, 8]", "[16, 8, 1]").replace(
+            'kind = "plate"\nnormal = "x"\n', body).replace("lengths = [0.4, 0.8]\n", ""), encoding="utf-8")
+        self.expect(0, self.scene, "--check")
+        self.assertIn("body[0].length is 0.4 m along z, where the grid has one cell: it must be the width of the domain, 0.8 m",
+                      self.refusal("body[0].length=0.4"))
+
     def test_rejects_motion_along_an_axis_with_one_cell(self):
         flat = bad_bodies.GOOD.replace("[16, 8, 8]", "[16, 8, 1]")
         self.scene.write_text(flat, encoding="utf-8")

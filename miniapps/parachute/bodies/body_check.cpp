@@ -45,11 +45,21 @@ void check_extent(const Table& root, const flow::Parameters& p, const std::strin
 void check_two_dimensions(const Table& root, const flow::Parameters& p, const Body& body,
                           const std::string& name) {
   const auto along = static_cast<std::size_t>(body.axis);
+  const auto must_span = [&](std::size_t axis, double length, const std::string& key) {
+    const double width = p.high[axis] - p.low[axis];
+    if (p.cells[axis] == 1 && length < (1.0 - 1e-9) * width)
+      contradict(root, key,
+                 key + " is " + real_text(length) + " m along " + axis_names[axis] +
+                     ", where the grid has one cell: it must be the width of the domain, " +
+                     real_text(width) + " m");
+  };
   if (body.kind == BodyKind::plate) {
     if (p.cells[along] == 1)
       contradict(root, name + ".normal", name + ".normal: the grid has one cell along " + axis_names[along]);
+    for (std::size_t k = 0; k < 2; ++k) must_span(body.axes()[k], body.lengths[k], name + ".lengths");
     return;
   }
+  if (body.kind == BodyKind::cylinder) must_span(along, body.length, name + ".length");
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (p.cells[axis] > 1 || (body.kind == BodyKind::cylinder && axis == along && !body.has_ends)) continue;
     contradict(root, body.kind == BodyKind::cylinder ? name + ".axis" : name + ".kind",

@@ -1,0 +1,81 @@
+#include <gtest/gtest.h>
+
+#include <array>
+#include <vector>
+
+#include "kernels/flow/flow_solver.hpp"
+#include "tests/support/flow_case.hpp"
+
+// Changes of the frame of reference.
+
+namespace drogue::flow {
+
+// In the library: the tested code is that of the programs.
+extern template class FlowSolver<DROGUE_TEST_SPACE>;
+
+namespace {
+
+using namespace drogue::testing;  // NOLINT: helpers of these tests
+using Space = DROGUE_TEST_SPACE;
+using reference::GridIndex;
+
+class MovingGrid {
+ public:
+  explicit MovingGrid(const Parameters& p) : _domain(p), _solver(_instance, p) {
+    const StaggeredField u = random_field(_domain, 21);
+    for (std::size_t c = 0; c < 3; ++c) _solver.upload(static_cast<StateField>(c), u[c]);
+    _solver.start();
+    EXPECT_EQ(_solver.advance(endless, 1, {}), Stop::pause);
+  }
+  /// Velocity, or rates of the previous step.
+  StaggeredField arrays(StateField first) {
+    StaggeredField values = _domain.zero_field();
+    for (std::size_t c = 0; c < 3; ++c)
+      _solver.download(static_cast<StateField>(static_cast<std::size_t>(first) + c), values[c]);
+    return values;
+  }
+  [[nodiscard]] const FlowDomain& domain() const { return _domain; }
+  FlowSolver<Space>& solver() { return _solver; }
+
+ private:
+  FlowDomain _domain;
+  device::Instance<Space> _instance{4};
+  FlowSolver<Space> _solver;
+};
+
+TEST(FlowFrame, RatesOnOutflowsChangeByUpwindDifferences) {
+  Parameters p = periodic_box({9, 8, 7});
+  p.boundary[0].kind = p.boundary[1].kind = BoundaryKind::outflow;
+  p.time_scheme = TimeScheme::ab2;
+  MovingGrid grid(p);
+  const FlowDomain& domain = grid.domain();
+  const StaggeredField u = grid.arrays(StateField::velocity_x), old = grid.arrays(StateField::rate_x);
+  constexpr double shift = 0.3;
+  grid.solver().change_frame({shift, 0.0, 0.0});
+  const StaggeredField moved = grid.arrays(StateField::velocity_x), rate = grid.arrays(StateField::rate_x);
+  const double h = domain.spacing(0);
+  int outgoing = 0, incoming = 0;
+  const auto at = [&](const StaggeredField& field, int i, const GridIndex& face) {
+    return field[0][domain.at(0, {i, face[1], face[2]})];
+  };
+  domain.for_each_face([&](std::size_t c, const GridIndex& face) {
+    const std::size_t here = domain.at(c, face);
+    EXPECT_NEAR(moved[c][here], u[c][here] - (c == 0 ? shift : 0.0), 1e-15);
+    if (c != 0) return;
+    const int i = face[0], n = p.cells[0];
+    double slope = 0.0;
+    if (i > 0 && i < n) {
+      slope = (at(u, i + 1, face) - at(u, i - 1, face)) / (2.0 * h);
+    } else {
+      const bool leaves = i == 0 ? u[0][here] < 0.0 : u[0][here] > 0.0;
+      ++(leaves ? outgoing : incoming);
+      if (leaves) slope = (i == 0 ? at(u, 1, face) - u[0][here] : u[0][here] - at(u, n - 1, face)) / h;
+    }
+    EXPECT_NEAR(rate[0][here] - old[0][here], shift * slope, 1e-13) << i;
+  });
+  EXPECT_GT(outgoing, 10);
+  EXPECT_GT(incoming, 10);
+}
+
+}  // namespace
+}  // namespace drogue::flow
