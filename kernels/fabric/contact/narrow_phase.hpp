@@ -71,20 +71,20 @@ struct DetectConstraintsFunctor {
       if (constraint.weight[slot] != 0.0)
         closing += constraint.weight[slot] *
                    dot(load_points<double>(views.start_v, constraint.vertex[slot]), constraint.normal);
-    constraint.target_velocity = target_velocity(distance, views.thickness, closing, views.dt);
+    constraint.target_velocity = target_velocity(distance, views.thickness, closing, views.progress(0).dt);
     // Neighbours may still push the parts together.
     if (distance > views.thickness && closing > 0.5 * constraint.target_velocity) return;
     if (constraint.friction > 0.0) set_friction_target(constraint);
     const int number = Kokkos::atomic_fetch_add(&views.progress(0).constraints, 1);
     if (number >= static_cast<int>(views.constraint.extent(0)))
-      return views.raise(views.steps() + 1, FailureReason::too_dense, constraint.vertex[0]);
+      return views.raise(views.present_step(), FailureReason::too_dense, constraint.vertex[0]);
     for (int slot = 0; slot < 4; ++slot)
       if (takes_part(constraint, slot)) {
         const int i = constraint.vertex[slot], entry = Kokkos::atomic_fetch_add(&views.constraints(i), 1);
         if (entry < max_constraints)
           views.vertex_constraint(i, entry) = 4 * number + slot;
         else
-          views.raise(views.steps() + 1, FailureReason::too_dense, i);
+          views.raise(views.present_step(), FailureReason::too_dense, i);
       }
     views.constraint(number) = constraint;
   }
@@ -239,9 +239,10 @@ struct DetectConstraintsFunctor {
     }
   }
 
-  /// Distance beyond the thickness, m, of which parts traverse at most half in a step.
+  /// Distance beyond the thickness, m, of which parts traverse at most half in a step, or that they traverse
+  /// in an interval if impulses raise the largest speed by a quarter.
   [[nodiscard]] KOKKOS_FUNCTION double step_cutoff() const {
-    return 4.0 * views.dt * views.progress(0).speed;
+    return (views.by_interval ? 2.5 : 4.0) * views.progress(0).dt * views.progress(0).speed;
   }
 };
 
