@@ -54,7 +54,7 @@ struct Parameters {
   int substeps = 0;
   /// Steps of the cloth between resolutions of contact, >= 1 (`fabric::Contact::interval`). Each step of the
   /// flow ends with one.
-  int contact_interval = 8;
+  int contact_interval = 32;
 };
 
 }  // namespace drogue::coupling
