@@ -88,7 +88,8 @@ class FabricSolver {
 
   /// Enqueues `steps` steps of `time_state().dt` and a checkpoint after every 256th step. Asynchronous but
   /// for a bound on the steps in flight of some 0.1 s, and at least 2048 steps. Returns false, and enqueues
-  /// nothing more, once a failure is known on the host. The distribution of steps over calls changes no bit.
+  /// nothing more, once a failure is known on the host. The distribution of steps over calls changes no bit,
+  /// except with an interval of contact.
   /// Throws std::invalid_argument for a negative number, and one that ends beyond step 2^53.
   ///
   /// It may be called while the caller captures the instance's stream into a CUDA graph, except with contact
@@ -169,6 +170,11 @@ class FabricSolver {
   [[nodiscard]] static Driver requested_driver(const Parameters& p) {
     return p.integrator == Integrator::rk4 ? p.driver : Driver::plain;
   }
+  /// True if the integrator has a persistent driver; that of the symplectic Euler method serves coupling.
+  [[nodiscard]] static bool has_persistent_steps(const Parameters& p) {
+    return p.integrator == Integrator::rk4 ||
+           (p.integrator == Integrator::symplectic_euler && RelaxesVelocity<VertexForce>);
+  }
 
   // ---- steps ----
   struct UniformSteps;
@@ -182,7 +188,7 @@ class FabricSolver {
   /// before that kernel.
   [[nodiscard]] bool ends_vertex_forces_apart() const {
     return VertexForceTerm<VertexForce>::ends_steps &&
-           (_contact || (moves_pins() && _parameters.integrator != Integrator::verlet));
+           (has_contact_in_steps() || (moves_pins() && _parameters.integrator != Integrator::verlet));
   }
   /// Enqueues `end_step` of the VertexForce where the kernels of a step do not call it.
   void end_vertex_forces() const {
@@ -191,6 +197,15 @@ class FabricSolver {
         launch_each(space(), "drogue::fabric::end_vertex_forces", _vertices,
                     EndVertexForcesFunctor<ExecutionSpace, VertexForce>{
                         vertex_force_term(), _x, _v, _fabric.inverse_mass, _monitor, _parity});
+  }
+  /// True if every step resolves contact.
+  [[nodiscard]] bool has_contact_in_steps() const { return _contact && _parameters.contact.interval == 1; }
+  /// Enqueues steps without the contact between intervals; as `enqueue_steps`.
+  bool enqueue_interval(std::int64_t steps) {
+    const bool sound =
+        _loop.enqueue_steps(_time.step, steps, stepping::checkpoint_interval, UniformSteps{*this});
+    restore_addresses();
+    return sound;
   }
   [[nodiscard]] ExternalFunctor<ExecutionSpace> external_functor(const Points& x, const Points& v,
                                                                  double fraction, bool with_dashpots) const {
@@ -369,17 +384,18 @@ void FabricSolver<ExecutionSpace, VertexForce>::make_external_loads() {
 template <class ExecutionSpace, class VertexForce>
 void FabricSolver<ExecutionSpace, VertexForce>::make_drivers() {
   const Parameters& p = _parameters;
-  if (p.integrator != Integrator::rk4) return;
   _launcher = {_instance, requested_driver(p)};
   _persistent.reset();
-  for (int stage = 0; stage < (has_stage_kernels() ? 3 : 2); ++stage)
-    if (_stage_velocity[stage].extent(0) == 0)
-      _stage_velocity[stage] = points("drogue::fabric::stage_velocities");
-  if (_other.extent(0) == 0) _other = points("drogue::fabric::stage_positions");
+  if (p.integrator == Integrator::rk4) {
+    for (int stage = 0; stage < (has_stage_kernels() ? 3 : 2); ++stage)
+      if (_stage_velocity[stage].extent(0) == 0)
+        _stage_velocity[stage] = points("drogue::fabric::stage_velocities");
+    if (_other.extent(0) == 0) _other = points("drogue::fabric::stage_positions");
+  }
   if constexpr (device::PersistentKernel<ExecutionSpace>::available) {
     // The stencil of bending exceeds the halo; dashpots need the velocities of neighbours.
-    if (!_launcher.may_be_persistent(p.driver) || _external.bending.first.extent(0) > 0 || _has_dashpots ||
-        moves_pins() || _contact)
+    if (!has_persistent_steps(p) || !_launcher.may_be_persistent(p.driver) ||
+        _external.bending.first.extent(0) > 0 || _has_dashpots || moves_pins() || has_contact_in_steps())
       return;
     _persistent = make_persistent_driver(_instance, p, _has_load_kernel, _external.has_pressure());
     if (_persistent) _launcher.use_persistent();
@@ -548,7 +564,7 @@ void FabricSolver<ExecutionSpace, VertexForce>::enqueue_runge_kutta_stages() con
     if (moves_pins())
       apply_dirichlet(next[stage], stage == 3 ? _v : _stage_velocity[stage], after[stage], stage == 3);
   }
-  if (!_contact) end_vertex_forces();
+  if (!has_contact_in_steps()) end_vertex_forces();
 }
 
 template <class ExecutionSpace, class VertexForce>
@@ -582,7 +598,7 @@ void FabricSolver<ExecutionSpace, VertexForce>::enqueue_symplectic_euler() {
       SymplecticEulerFunctor<ExecutionSpace, model, VertexForce>{
           _fabric, _x, _v, _next, _monitor, _parameters.damping, _time.dt, _parity, vertex_force_term()});
   exchange_positions();
-  if (!_contact) end_vertex_forces();
+  if (!has_contact_in_steps()) end_vertex_forces();
 }
 
 /// Makes the positions after a drift those of the state.
@@ -599,13 +615,16 @@ template <class ExecutionSpace, class VertexForce>
 template <ConstitutiveModel model>
 void FabricSolver<ExecutionSpace, VertexForce>::enqueue_persistent_steps(std::int64_t steps) {
   if constexpr (device::PersistentKernel<ExecutionSpace>::available) {
+    restore_addresses();  // after a single step of another kernel
     FabricViews<ExecutionSpace> fabric = _fabric;
     fabric.load = _dead.total;
-    launch_persistent_steps<model>(
-        space(), *_persistent,
-        PersistentInputs<ExecutionSpace, VertexForce>{fabric, _x, _v, _monitor, _time, vertex_force_term(),
-                                                      _external, _has_load_kernel},
-        steps, _loop.has_captured_steps());
+    const PersistentInputs<ExecutionSpace, VertexForce> inputs{
+        fabric, _x, _v, _monitor, _time, vertex_force_term(), _external, _has_load_kernel};
+    if constexpr (RelaxesVelocity<VertexForce>)
+      launch_persistent_euler<model>(space(), *_persistent, inputs, _parameters.damping, steps,
+                                     _loop.has_captured_steps());
+    else
+      launch_persistent_steps<model>(space(), *_persistent, inputs, steps, _loop.has_captured_steps());
   }
 }
 
@@ -626,10 +645,15 @@ bool FabricSolver<ExecutionSpace, VertexForce>::enqueue_steps(std::int64_t steps
   if (_failure) return false;
   if (_contact && device::is_capturing(space()))
     throw std::logic_error("fabric solver: steps with contact cannot be captured");
-  const bool sound =
-      _loop.enqueue_steps(_time.step, steps, stepping::checkpoint_interval, UniformSteps{*this});
-  restore_addresses();
-  return sound;
+  if (!_contact || has_contact_in_steps()) return enqueue_interval(steps);
+  const std::int64_t longest = _parameters.contact.interval, intervals = (steps + longest - 1) / longest;
+  for (std::int64_t k = 0; k < intervals; ++k) {
+    const std::int64_t count = steps / intervals + (k < steps % intervals ? 1 : 0);
+    _contact->begin_interval(_x, static_cast<double>(count) * _time.dt);
+    if (!enqueue_interval(count)) return false;
+    _contact->end_interval(_x, _v);
+  }
+  return true;
 }
 
 template <class ExecutionSpace, class VertexForce>
@@ -643,9 +667,11 @@ bool FabricSolver<ExecutionSpace, VertexForce>::advance_to(double time) {
 template <class ExecutionSpace, class VertexForce>
 template <ConstitutiveModel model>
 void FabricSolver<ExecutionSpace, VertexForce>::enqueue_model_steps(std::int64_t steps) {
-  if (_contact) {
+  if (has_contact_in_steps()) {
     for (std::int64_t k = 0; k < steps; ++k) enqueue_contact_step<model>();
   } else if (_parameters.integrator == Integrator::symplectic_euler) {
+    if constexpr (RelaxesVelocity<VertexForce>)
+      if (_launcher.is_persistent() && steps >= 2) return enqueue_persistent_steps<model>(steps);
     for (std::int64_t k = 0; k < steps; ++k) enqueue_symplectic_euler<model>();
   } else if constexpr (!RelaxesVelocity<VertexForce>) {
     if (_parameters.integrator == Integrator::verlet) {
@@ -745,7 +771,7 @@ void FabricSolver<ExecutionSpace, VertexForce>::set_time_state(const TimeState& 
   reset_monitor();
   if (moves_pins() && !_failure) apply_dirichlet(_x, _v, 0.0, true);
   enqueue_checkpoint();
-  if (_contact) _contact->set_dt(_time.dt);
+  if (has_contact_in_steps()) _contact->set_dt(_time.dt);
   _launcher.discard_graphs();
 }
 

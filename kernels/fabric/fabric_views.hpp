@@ -231,11 +231,10 @@ KOKKOS_INLINE_FUNCTION Vector3<R> with_springs(const Fabric& fabric, const Point
 /// Sum as above on a device, for a slice of vertices by all threads of a warp together. Each thread adds a
 /// dozen springs of its vertex. The warp shares longer rows, such as that of a payload on its lines: each
 /// thread computes one force, and the thread of the vertex adds them in the order of their slots.
-template <ConstitutiveModel model, class ExecutionSpace, class Points>
-requires(!device::is_host<ExecutionSpace>) KOKKOS_INLINE_FUNCTION Vector3<double> with_springs(
-    const FabricViews<ExecutionSpace>& fabric, const Points& positions, int i, Vector3<double> sum) {
+template <ConstitutiveModel model, class Springs, class Points>
+KOKKOS_INLINE_FUNCTION Vector3<double> with_springs_of_warp(const Springs& springs, const Points& positions,
+                                                            int i, Vector3<double> sum) {
   constexpr int most_own = 12;
-  const auto& springs = fabric.springs;
   const int lane = i % slice, begin = springs.first(i / slice), end = springs.first(i / slice + 1),
             shared = device::minimum(begin + most_own, end);
   for_each_read_slot(begin, shared, i, spring_reader<double>(springs, positions, i),
@@ -256,6 +255,12 @@ requires(!device::is_host<ExecutionSpace>) KOKKOS_INLINE_FUNCTION Vector3<double
     }
   }
   return sum;
+}
+
+template <ConstitutiveModel model, class ExecutionSpace, class Points>
+requires(!device::is_host<ExecutionSpace>) KOKKOS_INLINE_FUNCTION Vector3<double> with_springs(
+    const FabricViews<ExecutionSpace>& fabric, const Points& positions, int i, const Vector3<double>& sum) {
+  return with_springs_of_warp<model>(fabric.springs, positions, i, sum);
 }
 
 /// Elastic forces on vertex i and the lanes after it, N, summed in the fixed order of slots. Momentum is

@@ -30,8 +30,9 @@ enum class Integrator {
   symplectic_euler,  ///< v += dt a(x), then x += dt v; velocities lag by half a step behind those of Verlet
 };
 
-/// Driver of Runge-Kutta steps; other steps are always `plain`. The persistent driver does not support
-/// dashpots, bending, prescribed motions and contact.
+/// Driver of Runge-Kutta steps; other steps are `plain`, or `persistent` for cloth that a `VertexForce`
+/// relaxes. The persistent driver does not support dashpots, bending, prescribed motions and contact in every
+/// step.
 using stepping::Driver;
 
 /// Material of cloth and strings. `membrane_modulus` is Young's modulus times thickness.
@@ -95,6 +96,10 @@ struct Contact {
   bool self = false;         ///< contact of cloth and strings with themselves
   double thickness = 0.002;  ///< m, distance between layers in contact, and from bodies
   double friction = 0.0;     ///< Coulomb coefficient between layers
+  /// Steps between resolutions of contact, >= 1. From 2 on, contact is resolved after the steps of an
+  /// interval, from the displacements in it (Bridson, Fedkiw and Anderson 2002); the end of a call of
+  /// `enqueue_steps` ends an interval. With 1, impulses precede every step.
+  int interval = 1;
 
   /// True if there is contact with bodies or itself. Does not throw.
   [[nodiscard]] bool asked_for() const { return self || !bodies.empty(); }

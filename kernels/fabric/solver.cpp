@@ -25,6 +25,7 @@ void check_contact(const Parameters& p, const Require& require) {
   require(!contact.self || contact.thickness < shortest_altitude(p.mesh),
           "contact of fabric with itself needs triangles that are higher than the thickness");
   require(not_negative(contact.friction), "friction must not be negative");
+  require(contact.interval >= 1, "the interval of contact must be at least one step");
   for (const Body& body : contact.bodies) {
     const double size = std::hypot(body.normal[0], body.normal[1], body.normal[2]);
     require(std::abs(size - 1.0) < 1e-9, "a body's normal must have unit length");

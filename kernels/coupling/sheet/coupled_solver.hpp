@@ -134,6 +134,7 @@ class CoupledSolver {
   static Parameters completed(Parameters p) {
     p.fabric.integrator = fabric::Integrator::symplectic_euler;
     p.fabric.dt = 1.0;  // every block sets its own
+    p.fabric.contact.interval = p.contact_interval;
     fabric::check_parameters(p.fabric);
     if (p.substeps < 0)
       throw std::invalid_argument("coupled solver: the number of substeps must not be negative");

@@ -46,12 +46,15 @@ struct Parameters {
   /// default 0.5, and is constant in blocks of steps; `max_dt` must then be positive, since air at rest does
   /// not limit dt.
   flow::Parameters flow;
-  fabric::Parameters fabric;  ///< integrator and dt are set by the coupling
+  fabric::Parameters fabric;  ///< integrator, dt and interval of contact are set by the coupling
   SheetParameters sheet;
   FollowParameters follow;
   /// Steps of the cloth in each step of the flow; 0: as many as keep the product of their dt and the largest
   /// angular frequency of the cloth below 1 at the beginning of each block.
   int substeps = 0;
+  /// Steps of the cloth between resolutions of contact, >= 1 (`fabric::Contact::interval`). Each step of the
+  /// flow ends with one.
+  int contact_interval = 32;
 };
 
 }  // namespace drogue::coupling

@@ -9,6 +9,14 @@ namespace drogue::fabric {
 // lists are farther apart than the contact distance, so that the result of a step does not depend on the age
 // of a list.
 
+/// Initialises the data of a step of vertex i.
+template <class ExecutionSpace>
+KOKKOS_INLINE_FUNCTION void reset_vertex(const ContactViews<ExecutionSpace>& views, int i) {
+  views.constraints(i) = 0;
+  views.zone(i) = views.label(i) = views.zone_end(i) = i;
+  views.stuck(i) = 0;
+}
+
 /// Maximum displacement since the last build and maximum speed; initialises the data of a step per vertex.
 template <class ExecutionSpace>
 struct MotionBoundsFunctor {
@@ -21,16 +29,50 @@ struct MotionBoundsFunctor {
     atomic_raise(views.progress(0).fastest, length(velocity));
     store_points(views.start_x, i, at);
     store_points(views.start_v, i, velocity);
-    views.constraints(i) = 0;
-    views.zone(i) = views.label(i) = views.zone_end(i) = i;
-    views.stuck(i) = 0;
+    reset_vertex(views, i);
+  }
+};
+
+/// Stores the positions at the beginning of an interval of `dt`, s.
+template <class ExecutionSpace>
+struct StartIntervalFunctor {
+  ContactViews<ExecutionSpace> views;
+  UnmanagedTable<ExecutionSpace, double, 3> x;
+  double dt;
+
+  KOKKOS_FUNCTION void operator()(const int i) const {
+    if (i == 0) views.progress(0).dt = dt;
+    store_points(views.start_x, i, load_points<double>(x, i));
+  }
+};
+
+/// Mean velocity of vertex i in an interval that ends at x, m/s.
+template <class ExecutionSpace, class Points>
+KOKKOS_INLINE_FUNCTION Point mean_velocity(const ContactViews<ExecutionSpace>& views, const Points& x,
+                                           int i) {
+  return (1.0 / views.progress(0).dt) * (load_points<double>(x, i) - load_points<double>(views.start_x, i));
+}
+
+/// `MotionBoundsFunctor` for the mean velocities in an interval.
+template <class ExecutionSpace>
+struct MeanMotionFunctor {
+  ContactViews<ExecutionSpace> views;
+  UnmanagedTable<ExecutionSpace, double, 3> x;
+
+  KOKKOS_FUNCTION void operator()(const int i) const {
+    const Point velocity = mean_velocity(views, x, i), start = load_points<double>(views.start_x, i);
+    atomic_raise(views.progress(0).moved, length(start - load_points<double>(views.listed_x, i)));
+    atomic_raise(views.progress(0).fastest, length(velocity));
+    store_points(views.start_v, i, velocity);
+    reset_vertex(views, i);
   }
 };
 
 /// Decides whether the lists remain valid: at the end of the step no vertex may be farther than half the skin
 /// from its listed position. Forces and impulses may double the largest speed and move vertices at rest a
-/// little. The skin is 16 steps at the present speed: a wider one has more pairs to test, a narrower one is
-/// rebuilt too often. Launched for one index.
+/// little. In an interval the speeds are those after the forces, and impulses hardly raise the largest one.
+/// The skin is 16 steps at the present speed, or 5 intervals: a wider one has more pairs to test, a narrower
+/// one is rebuilt too often. Launched for one index.
 template <class ExecutionSpace>
 struct RebuildDecisionFunctor {
   ContactViews<ExecutionSpace> views;
@@ -38,13 +80,18 @@ struct RebuildDecisionFunctor {
   KOKKOS_FUNCTION void operator()(const int) const {
     ContactStatus& progress = views.progress(0);
     progress.speed = value_of_bits(progress.fastest);
-    const double stride = views.dt * progress.speed, little = 0.1 * views.widest_skin;
-    const double farthest = value_of_bits(progress.moved) + 2.0 * stride + little;
+    const double stride = progress.dt * progress.speed, little = 0.1 * views.widest_skin;
+    const double ahead = (views.by_interval ? 1.25 : 2.0) * stride + little;
+    const double farthest = value_of_bits(progress.moved) + ahead;
     progress.stale = !(farthest <= 0.5 * progress.skin) ? 1 : 0;
+    // Positions after a failure are in no grid.
+    if (views.by_interval && views.monitor.has_failed()) progress.stale = 0;
     if (progress.stale != 0) {
       const auto larger = [](double a, double b) { return a > b ? a : b; };
-      const double skin = larger(2.0 * (little + 18.0 * stride), 4.0 * little);
-      progress.skin = larger(skin < views.widest_skin ? skin : views.widest_skin, 8.0 * stride);
+      const double strides = views.by_interval ? 6.0 : 18.0,
+                   skin = larger(2.0 * (little + strides * stride), 4.0 * little),
+                   least = views.by_interval ? 2.0 * ahead : 8.0 * stride;
+      progress.skin = larger(skin < views.widest_skin ? skin : views.widest_skin, least);
       progress.extent = 0;
     }
     progress.moved = progress.fastest = 0;
@@ -69,7 +116,7 @@ struct ClearGridFunctor {
       atomic_raise(views.progress(0).extent, most > z ? most : z);
     };
     // Edges include those of triangles, whose extent they bound.
-    if (k < views.edges) {
+    if (k < views.edges && views.is_long(k) == 0) {
       Point end[2];
       views.ends(k, views.start_x, end);
       measure(end[1] - end[0]);
@@ -84,7 +131,8 @@ KOKKOS_INLINE_FUNCTION spatial::HashGrid search_grid(const ContactViews<Executio
   return spatial::HashGrid{width};
 }
 
-/// Inserts every triangle and edge into the cell of its centre.
+/// Inserts every triangle and edge into the cell of its centre, except for long edges: cells as wide as a
+/// suspension line would hold most of a canopy.
 template <class ExecutionSpace>
 struct FillGridFunctor {
   ContactViews<ExecutionSpace> views;
@@ -99,7 +147,10 @@ struct FillGridFunctor {
     if (k < views.edges) {
       Point at[2];
       views.ends(k, views.start_x, at);
-      put(k, at, views.edge_sphere, views.edge_heads);
+      if (views.is_long(k) != 0)
+        views.edge_sphere(k) = spatial::bounding_sphere(at);
+      else
+        put(k, at, views.edge_sphere, views.edge_heads);
     }
   }
 
@@ -126,6 +177,7 @@ struct NeighbourListFunctor {
     const Point own[1] = {load_points<double>(views.start_x, i)};
     const double cutoff_distance = views.cutoff_distance(), squared = cutoff_distance * cutoff_distance;
     int count = 0;
+    const int room = static_cast<int>(views.near_triangle.extent(1));
     const spatial::HashGrid grid = search_grid(views);
     grid.for_each_candidate(own[0], views.triangle_heads, views.triangle_sphere, [&](int t) {
       if (!views.triangle_sphere(t).is_near(own[0], cutoff_distance)) return;
@@ -134,13 +186,13 @@ struct NeighbourListFunctor {
       Point at[3];
       views.corners(t, views.start_x, at);
       if (boxes_apart(own, at, cutoff_distance) || closest_on_triangle(own[0], at).squared > squared) return;
-      if (count < max_neighbours)
+      if (count < room)
         views.near_triangle(i, count) = t;
       else
-        views.raise(views.steps() + 1, FailureReason::too_dense, i);
+        views.raise(views.present_step(), FailureReason::too_dense, i);
       ++count;
     });
-    views.near_triangles(i) = count < max_neighbours ? count : max_neighbours;
+    views.near_triangles(i) = count < room ? count : room;
   }
 
   KOKKOS_FUNCTION void list_edges(int e) const {
@@ -149,9 +201,9 @@ struct NeighbourListFunctor {
     const BoundingSphere own_sphere = views.edge_sphere(e);
     const double cutoff_distance = views.cutoff_distance(), squared = cutoff_distance * cutoff_distance;
     int count = 0;
-    const spatial::HashGrid grid = search_grid(views);
+    const int room = static_cast<int>(views.near_edge.extent(1));
     const int a = views.edge(e, 0), b = views.edge(e, 1);
-    grid.for_each_candidate(own_sphere.centre, views.edge_heads, views.edge_sphere, [&](int f) {
+    const auto list_if_near = [&](int f) {
       if (f <= e || !views.edge_sphere(f).is_near(own_sphere.centre, cutoff_distance + own_sphere.radius))
         return;
       const int c = views.edge(f, 0), d = views.edge(f, 1);
@@ -159,13 +211,20 @@ struct NeighbourListFunctor {
       views.ends(f, views.start_x, other);
       if (boxes_apart(own, other, cutoff_distance) || closest_of_segments(own, other).squared > squared)
         return;
-      if (count < max_neighbours)
+      if (count < room)
         views.near_edge(e, count) = f;
       else
-        views.raise(views.steps() + 1, FailureReason::too_dense, a);
+        views.raise(views.present_step(), FailureReason::too_dense, a);
       ++count;
-    });
-    views.near_edges(e) = count < max_neighbours ? count : max_neighbours;
+    };
+    if (views.is_long(e) != 0) {
+      for (int f = e + 1; f < views.edges; ++f) list_if_near(f);
+    } else {
+      search_grid(views).for_each_candidate(own_sphere.centre, views.edge_heads, views.edge_sphere,
+                                            list_if_near);
+      for (int k = 0; k < static_cast<int>(views.long_edge.extent(0)); ++k) list_if_near(views.long_edge(k));
+    }
+    views.near_edges(e) = count < room ? count : room;
   }
 };
 

@@ -17,7 +17,8 @@ struct CheckpointedWork {
   ListView<ExecutionSpace, ContactWork> now, saved;
 };
 
-/// Contact handling around the steps of a solver with any constitutive model. Asynchronous unless stated.
+/// Contact handling around the steps of a solver with any constitutive model: in every step, or for all steps
+/// of an interval together (`Contact::interval`). Asynchronous unless stated.
 template <class ExecutionSpace>
 class ContactHandler {
  public:
@@ -33,6 +34,13 @@ class ContactHandler {
 
   /// Sets dt, s, of the following steps.
   virtual void set_dt(double dt) = 0;
+
+  /// Stores the positions before the steps of an interval of the given duration, s.
+  virtual void begin_interval(const Points& x, double duration) = 0;
+
+  /// Corrects the displacements in the interval, and the velocities at its end by the same impulses, so that
+  /// parts do not meet; then as `end_step`.
+  virtual void end_interval(const Points& x, const Points& v) = 0;
 
   /// Discards neighbour lists and recorded failures after a change of the positions. Blocks.
   virtual void reset() = 0;

@@ -29,10 +29,13 @@ class ContactImpl final : public ContactHandler<ExecutionSpace> {
 
   void begin_step(const Points& x, const Points& v) override { graphs(x, v).begin.launch(); }
   void end_step(const Points& x, const Points& v) override { graphs(x, v).end.launch(); }
-  void set_dt(double dt) override {
-    _views.dt = dt;
-    _graphs.clear();
+  void set_dt(double dt) override;
+  void begin_interval(const Points& x, double duration) override {
+    _dt = duration;
+    launch("drogue::fabric::start_interval", _views.vertices,
+           StartIntervalFunctor<ExecutionSpace>{_views, x, duration});
   }
+  void end_interval(const Points& x, const Points& v) override { graphs(x, v).end.launch(); }
   void reset() override;
   [[nodiscard]] CheckpointedWork<ExecutionSpace> checkpointed_work() const override {
     return {_work, _saved_work};
@@ -44,7 +47,8 @@ class ContactImpl final : public ContactHandler<ExecutionSpace> {
  private:
   using Points3 = UnmanagedTable<ExecutionSpace, double, 3>;
 
-  /// Kernels before and after a step for one pair of addresses of positions and velocities.
+  /// Kernels before and after a step, or after an interval, for one pair of addresses of positions and
+  /// velocities.
   struct StepGraphs {
     StepGraphs(ContactImpl& contact, const Points3& at, const Points3& velocity)
         : x(at),
@@ -65,6 +69,8 @@ class ContactImpl final : public ContactHandler<ExecutionSpace> {
   StepGraphs& graphs(const Points& x, const Points& v);
   void enqueue_begin(const Points3& x, const Points3& v) const;
   void enqueue_end(const Points3& x, const Points3& v) const;
+  void enqueue_impulses(const Points3& x, const Points3& v) const;
+  void enqueue_zones(const Points3& x, const Points3& v) const;
   [[nodiscard]] int parts() const { return _views.vertices + _views.edges + _views.triangles; }
 
   const device::Instance<ExecutionSpace>& _instance;
@@ -73,8 +79,18 @@ class ContactImpl final : public ContactHandler<ExecutionSpace> {
   Kokkos::View<std::uint8_t*, typename ExecutionSpace::memory_space> _fixed_dofs;
   ListView<ExecutionSpace, ContactWork> _work, _saved_work;
   typename ListView<ExecutionSpace, ContactWork>::HostMirror _work_on_host;
+  double _dt;  ///< s, as last set
   ContactViews<ExecutionSpace> _views;
   std::list<StepGraphs> _graphs;
+};
+
+/// Sets dt, s, of the following steps. Launched for one index.
+template <class ExecutionSpace>
+struct SetStepFunctor {
+  ContactViews<ExecutionSpace> views;
+  double dt;
+
+  KOKKOS_FUNCTION void operator()(const int) const { views.progress(0).dt = dt; }
 };
 
 /// Clears the velocity changes of the last step, which belong to replaced velocities.
@@ -100,7 +116,10 @@ void ContactImpl<ExecutionSpace>::allocate(Unmanaged& to, const char* label, Siz
 
 template <class ExecutionSpace>
 ContactImpl<ExecutionSpace>::ContactImpl(const Parameters& p, const ContactInputs<ExecutionSpace>& inputs)
-    : _instance(inputs.instance), _inverse_mass(inputs.inverse_mass), _fixed_dofs(inputs.fixed_dofs) {
+    : _instance(inputs.instance),
+      _inverse_mass(inputs.inverse_mass),
+      _fixed_dofs(inputs.fixed_dofs),
+      _dt(p.dt) {
   const CollisionEdges edges = collision_edges(p.mesh);
   const auto n = p.mesh.rest.size(), faces = p.mesh.triangles.size(), sides = edges.ends.size();
   auto& t = _views;
@@ -108,11 +127,14 @@ ContactImpl<ExecutionSpace>::ContactImpl(const Parameters& p, const ContactInput
   t.first_line = edges.first_line;
   t.thickness = p.contact.thickness, t.self_friction = p.contact.friction, t.self = p.contact.self;
   t.widest_skin = std::max(p.contact.thickness, 0.5 * edges.mean_length);
-  t.dt = p.dt;
+  t.by_interval = p.contact.interval > 1;
   t.inverse_mass = _inverse_mass, t.fixed_dofs = _fixed_dofs, t.monitor = inputs.monitor;
   allocate(t.bodies, "bodies", p.contact.bodies.size());
   allocate(t.triangle, "contact_triangles", faces);
   allocate(t.edge, "collision_edges", sides);
+  const std::vector<int> long_edges = long_lines(p.mesh, edges);
+  allocate(t.long_edge, "long_edges", long_edges.size());
+  allocate(t.is_long, "edge_is_long", sides);
   allocate(t.owned, "owned_features", faces);
   const auto bodies = Kokkos::create_mirror_view(t.bodies);
   const auto triangle = Kokkos::create_mirror_view(t.triangle);
@@ -125,6 +147,13 @@ ContactImpl<ExecutionSpace>::ContactImpl(const Parameters& p, const ContactInput
     for (std::size_t corner = 0; corner < 3; ++corner) triangle(k, corner) = p.mesh.triangles[k][corner];
   for (std::size_t k = 0; k < sides; ++k)
     for (std::size_t end = 0; end < 2; ++end) edge(k, end) = edges.ends[k][end];
+  const auto long_edge = Kokkos::create_mirror_view(t.long_edge);
+  const auto is_long = Kokkos::create_mirror_view(t.is_long);
+  Kokkos::deep_copy(is_long, std::uint8_t{0});
+  for (std::size_t k = 0; k < long_edges.size(); ++k)
+    long_edge(k) = long_edges[k], is_long(static_cast<std::size_t>(long_edges[k])) = 1;
+  device::copy(_instance.space(), t.long_edge, long_edge);
+  device::copy(_instance.space(), t.is_long, is_long);
   device::copy(_instance.space(), t.bodies, bodies);
   device::copy(_instance.space(), t.triangle, triangle);
   device::copy(_instance.space(), t.edge, edge);
@@ -140,7 +169,9 @@ ContactImpl<ExecutionSpace>::ContactImpl(const Parameters& p, const ContactInput
   allocate(t.edge_sphere, "edge_spheres", layers * sides);
   allocate(t.near_triangles, "near_triangles", layers * n),
       allocate(t.near_edges, "near_edges", layers * sides);
-  allocate(t.near_triangle, "near_triangle", layers * n), allocate(t.near_edge, "near_edge", layers * sides);
+  const int room = t.by_interval ? max_neighbours_of_interval : max_neighbours;
+  allocate(t.near_triangle, "near_triangle", layers * n, room),
+      allocate(t.near_edge, "near_edge", layers * sides, room);
   allocate(t.constraint, "constraints", 1024 + 8 * n);
   allocate(t.constraints, "constraint_counts", n), allocate(t.vertex_constraint, "vertex_constraints", n);
   allocate(t.zone, "zone", n), allocate(t.label, "label_zones", n), allocate(t.zone_end, "zone_end", n);
@@ -175,8 +206,24 @@ auto ContactImpl<ExecutionSpace>::graphs(const Points& x, const Points& v) -> St
 template <class ExecutionSpace>
 void ContactImpl<ExecutionSpace>::enqueue_begin(const Points3& x, const Points3& v) const {
   using Space = ExecutionSpace;
+  launch("drogue::fabric::motion_bounds", _views.vertices, MotionBoundsFunctor<Space>{_views, x, v});
+  enqueue_impulses(x, v);
+}
+
+template <class ExecutionSpace>
+void ContactImpl<ExecutionSpace>::enqueue_end(const Points3& x, const Points3& v) const {
+  using Space = ExecutionSpace;
+  if (_views.by_interval) {
+    launch("drogue::fabric::mean_motion", _views.vertices, MeanMotionFunctor<Space>{_views, x});
+    enqueue_impulses(x, v);
+  }
+  enqueue_zones(x, v);
+}
+
+template <class ExecutionSpace>
+void ContactImpl<ExecutionSpace>::enqueue_impulses(const Points3& x, const Points3& v) const {
+  using Space = ExecutionSpace;
   const int n = _views.vertices;
-  launch("drogue::fabric::motion_bounds", n, MotionBoundsFunctor<Space>{_views, x, v});
   launch("drogue::fabric::rebuild_decision", 1, RebuildDecisionFunctor<Space>{_views});
   if (_views.self) {
     const int buckets = static_cast<int>(_views.triangle_heads.extent(0));
@@ -191,12 +238,12 @@ void ContactImpl<ExecutionSpace>::enqueue_begin(const Points3& x, const Points3&
                                            : std::min(32768, static_cast<int>(_views.constraint.extent(0)));
   for (int round = 0; round < impulse_rounds; ++round) {
     launch("drogue::fabric::solve_impulses", items, SolveImpulsesFunctor<Space>{_views, items});
-    launch("drogue::fabric::apply_impulses", n, ApplyImpulsesFunctor<Space>{_views, v, round});
+    launch("drogue::fabric::apply_impulses", n, ApplyImpulsesFunctor<Space>{_views, x, v, round});
   }
 }
 
 template <class ExecutionSpace>
-void ContactImpl<ExecutionSpace>::enqueue_end(const Points3& x, const Points3& v) const {
+void ContactImpl<ExecutionSpace>::enqueue_zones(const Points3& x, const Points3& v) const {
   using Space = ExecutionSpace;
   const int n = _views.vertices;
   launch("drogue::fabric::continuous_detection", parts(), CcdFunctor<Space>{_views, x, 0});
@@ -211,10 +258,18 @@ void ContactImpl<ExecutionSpace>::enqueue_end(const Points3& x, const Points3& v
 }
 
 template <class ExecutionSpace>
+void ContactImpl<ExecutionSpace>::set_dt(double dt) {
+  if (dt == _dt) return;
+  _dt = dt;
+  launch("drogue::fabric::set_contact_step", 1, SetStepFunctor<ExecutionSpace>{_views, dt});
+}
+
+template <class ExecutionSpace>
 void ContactImpl<ExecutionSpace>::reset() {
   const auto progress = Kokkos::create_mirror_view(_views.progress);
   progress(0) = ContactStatus{};
   progress(0).skin = -1.0;  // no list is valid
+  progress(0).dt = _dt;
   progress(0).reason = stepping::no_failure;
   device::copy(_instance.space(), _views.progress, progress);
   launch("drogue::fabric::reset_kick", _views.vertices, ResetKickFunctor<ExecutionSpace>{_work});

@@ -13,8 +13,9 @@ using spatial::BoundingSphere;
 /// Rounds of impulses per step, and of rigid impact zones, which may grow where impulses were not enough.
 inline constexpr int impulse_rounds = 10, zone_rounds = 6;
 
-/// Capacity: neighbours of a vertex or edge, and constraints of a vertex.
-inline constexpr int max_neighbours = 64, max_constraints = 64;
+/// Capacity: neighbours of a vertex or edge, also in an interval of several steps, and constraints of a
+/// vertex.
+inline constexpr int max_neighbours = 64, max_neighbours_of_interval = 192, max_constraints = 64;
 
 /// Contact of two parts that touch or will touch within the step: a vertex and a triangle, two edges, or one
 /// of these and a body. The relative velocity at the closest points is the sum of weight times velocity.
@@ -52,13 +53,14 @@ KOKKOS_INLINE_FUNCTION bool is_edge_edge(const ContactConstraint& constraint) {
   return constraint.key >> 60U == static_cast<std::uint64_t>(ConstraintKind::edge_edge);
 }
 
-/// Data that the kernels of a contact step share.
+/// Data that the kernels of a contact step share. The steps of an interval are one contact step.
 struct ContactStatus {
   std::uint64_t moved;    ///< bits of the largest displacement since the neighbour lists were built, m
   std::uint64_t fastest;  ///< bits of the largest speed, m/s
   std::uint64_t extent;   ///< bits of the largest extent of a triangle or edge along an axis, m
   double skin;            ///< m, margin of the neighbour lists beyond the contact distance
   double speed;           ///< largest speed in this step, m/s
+  double dt;              ///< s, of this step
   int stale;              ///< 1: the neighbour lists must be rebuilt in this step
   int constraints;        ///< number of constraints found in this step
   int crossing[zone_rounds + 1];  ///< 1 if parts would cross before and after each round of zones
@@ -90,23 +92,30 @@ struct ContactViews {
 
   int vertices, triangles, edges;
   int first_line;  ///< first edge that belongs to no triangle
-  double thickness, self_friction, widest_skin, dt;
+  double thickness, self_friction, widest_skin;
   bool self;
+  bool by_interval;  ///< impulses follow the steps of an interval; else they precede every step
   List<Obstacle> bodies;
   UnmanagedTable<ExecutionSpace, int, 3> triangle;
   List<int> owned;  ///< `owned_features` of every triangle
   UnmanagedTable<ExecutionSpace, int, 2> edge;
+  List<int> long_edge;         ///< numbers of edges that are left out of the hash grid, in ascending order
+  List<std::uint8_t> is_long;  ///< of every edge
   List<double> inverse_mass;
   List<std::uint8_t> fixed_dofs;  ///< as in FabricViews
-  Points3 start_x, start_v;       ///< at the beginning of the step, impulses included
-  Points3 end_x, end_v;           ///< with zones
-  Points3 listed_x;               ///< m, positions when the neighbour lists were built
-  List<ContactWork> work;         ///< of contact on every vertex
+  Points3 start_x;                ///< m, at the beginning of the step
+  Points3 start_v;         ///< m/s, at the beginning of the step, or mean in an interval; impulses included
+  Points3 end_x, end_v;    ///< with zones
+  Points3 listed_x;        ///< m, positions when the neighbour lists were built
+  List<ContactWork> work;  ///< of contact on every vertex
   // Hash grid whose cells are linked lists.
   List<int> triangle_heads, edge_heads;
   List<BoundingSphere> triangle_sphere, edge_sphere;
   List<int> near_triangles, near_edges;  ///< numbers of neighbours of each vertex and of each edge
-  UnmanagedTable<ExecutionSpace, int, max_neighbours> near_triangle, near_edge;
+  /// (vertices or edges, largest number of neighbours)
+  Kokkos::View<int**, Kokkos::LayoutLeft, typename ExecutionSpace::memory_space,
+               Kokkos::MemoryTraits<Kokkos::Unmanaged>>
+      near_triangle, near_edge;
   List<ContactConstraint> constraint;
   List<int> constraints;  ///< number of constraints of every vertex
   UnmanagedTable<ExecutionSpace, int, max_constraints>
@@ -140,6 +149,11 @@ struct ContactViews {
   [[nodiscard]] KOKKOS_FUNCTION std::int64_t steps() const {
     const std::int64_t a = monitor.steps(0), b = monitor.steps(1);
     return a > b ? a : b;
+  }
+
+  /// Number of the step whose contact is being resolved, before its end.
+  [[nodiscard]] KOKKOS_FUNCTION std::int64_t present_step() const {
+    return by_interval ? steps() : steps() + 1;
   }
 
   KOKKOS_FUNCTION void raise(std::int64_t step, FailureReason reason, int vertex) const {

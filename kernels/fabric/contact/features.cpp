@@ -21,6 +21,15 @@ CollisionEdges collision_edges(const Mesh& mesh) {
   return edges;
 }
 
+std::vector<int> long_lines(const Mesh& mesh, const CollisionEdges& edges) {
+  std::vector<int> lines;
+  for (int k = edges.first_line; k < static_cast<int>(edges.ends.size()); ++k) {
+    const auto& [a, b] = edges.ends[static_cast<std::size_t>(k)];
+    if (rest_distance(mesh, a, b) >= 4.0 * edges.mean_length) lines.push_back(k);
+  }
+  return lines;
+}
+
 std::vector<int> owned_features(const Mesh& mesh) {
   std::set<int> corners;
   std::set<mesh::Edge> edges;

@@ -16,6 +16,10 @@ struct CollisionEdges {
 /// Edges that take part in contact. Throws only std::bad_alloc.
 [[nodiscard]] CollisionEdges collision_edges(const Mesh& mesh);
 
+/// Lines whose length at rest is at least four times the mean of all edges, such as suspension lines, in
+/// ascending order. `edges`: those of the mesh. Throws only std::bad_alloc.
+[[nodiscard]] std::vector<int> long_lines(const Mesh& mesh, const CollisionEdges& edges);
+
 /// Bit sets of the features that each triangle owns, so that a contact at a shared feature counts once. Bit
 /// k: it is the first triangle with its corner k; bit 3 + k: the first with the edge from corner k to the
 /// next. Throws only std::bad_alloc.

@@ -4,11 +4,12 @@
 
 namespace drogue::fabric {
 
-// Impulses at the beginning of a step: projected Jacobi rounds, in which each of the n constraints of a
-// vertex has 1/n of its mass (mass splitting, Tonge, Benevolenski and Voroshilov 2012). Impulses act between
-// the vertices of a constraint by their weights, so momentum is conserved. They add energy only by separating
-// parts nearer than the thickness, at most the normal impulse times `target_velocity`, whose bound does not
-// depend on dt, and by the friction that balances a kick (`set_friction_target`).
+// Impulses at the beginning of a step, or on the mean velocities in an interval: projected Jacobi rounds, in
+// which each of the n constraints of a vertex has 1/n of its mass (mass splitting, Tonge, Benevolenski and
+// Voroshilov 2012). Impulses act between the vertices of a constraint by their weights, so momentum is
+// conserved. They add energy only by separating parts nearer than the thickness, at most the normal impulse
+// times `target_velocity`, whose bound does not depend on dt, and by the friction that balances a kick
+// (`set_friction_target`).
 
 /// Impulse of a constraint on the vertex in one of its slots, kg m/s.
 KOKKOS_INLINE_FUNCTION Point impulse_on(const ContactConstraint& constraint, int slot, double normal_impulse,
@@ -67,11 +68,13 @@ struct SolveImpulsesFunctor {
 
 /// Adds the increments of a round to the velocity of every vertex, in the sorted order of its constraints.
 /// The last round writes the velocities of the step and adds the work of the impulses: each impulse times the
-/// mean of the velocities before and after, since impulses change only the kinetic energy.
+/// mean of the velocities before and after, since impulses change only the kinetic energy. The impulses of an
+/// interval change its displacements and the velocities at its end; their work counts the kinetic energy
+/// alone.
 template <class ExecutionSpace>
 struct ApplyImpulsesFunctor {
   ContactViews<ExecutionSpace> views;
-  UnmanagedTable<ExecutionSpace, double, 3> v;
+  UnmanagedTable<ExecutionSpace, double, 3> x, v;
   int round;
 
   KOKKOS_FUNCTION void operator()(const int i) const {
@@ -86,11 +89,18 @@ struct ApplyImpulsesFunctor {
             impulse_on(constraint, number % 4, constraint.normal_increment, constraint.friction_increment);
     }
     const Point free = free_axes<double>(&views.fixed_dofs(i)), dv = views.inverse_mass(i) * sum;
-    const Point after =
+    const Point corrected =
         load_points<double>(views.start_v, i) + Point{free.x * dv.x, free.y * dv.y, free.z * dv.z};
-    store_points(views.start_v, i, after);
+    store_points(views.start_v, i, corrected);
     if (round + 1 < impulse_rounds) return;
-    const Point before = load_points<double>(v, i), mean = 0.5 * (after + before);
+    const Point before = load_points<double>(v, i);
+    Point after = corrected;
+    if (views.by_interval) {
+      const Point change = corrected - mean_velocity(views, x, i);
+      after = before + change;
+      store_points(x, i, load_points<double>(x, i) + views.progress(0).dt * change);
+    }
+    const Point mean = 0.5 * (after + before);
     Point friction_sum{0.0, 0.0, 0.0};  // friction impulse of all rounds, kg m/s
     for (int k = 0; k < count; ++k) {
       const int number = views.vertex_constraint(i, k);

@@ -71,20 +71,20 @@ struct DetectConstraintsFunctor {
       if (constraint.weight[slot] != 0.0)
         closing += constraint.weight[slot] *
                    dot(load_points<double>(views.start_v, constraint.vertex[slot]), constraint.normal);
-    constraint.target_velocity = target_velocity(distance, views.thickness, closing, views.dt);
+    constraint.target_velocity = target_velocity(distance, views.thickness, closing, views.progress(0).dt);
     // Neighbours may still push the parts together.
     if (distance > views.thickness && closing > 0.5 * constraint.target_velocity) return;
     if (constraint.friction > 0.0) set_friction_target(constraint);
     const int number = Kokkos::atomic_fetch_add(&views.progress(0).constraints, 1);
     if (number >= static_cast<int>(views.constraint.extent(0)))
-      return views.raise(views.steps() + 1, FailureReason::too_dense, constraint.vertex[0]);
+      return views.raise(views.present_step(), FailureReason::too_dense, constraint.vertex[0]);
     for (int slot = 0; slot < 4; ++slot)
       if (takes_part(constraint, slot)) {
         const int i = constraint.vertex[slot], entry = Kokkos::atomic_fetch_add(&views.constraints(i), 1);
         if (entry < max_constraints)
           views.vertex_constraint(i, entry) = 4 * number + slot;
         else
-          views.raise(views.steps() + 1, FailureReason::too_dense, i);
+          views.raise(views.present_step(), FailureReason::too_dense, i);
       }
     views.constraint(number) = constraint;
   }
@@ -198,16 +198,27 @@ struct DetectConstraintsFunctor {
       ContactConstraint constraint = make_constraint(ConstraintKind::edge_edge, e, f, views.self_friction);
       for (int end = 0; end < 2; ++end)
         constraint.vertex[end] = views.edge(e, end), constraint.vertex[2 + end] = views.edge(f, end);
-      const double s = nearest.first, u = nearest.second;
+      const double s = place_of_impulse(e, nearest.first), u = place_of_impulse(f, nearest.second);
       constraint.weight[0] = 1.0 - s, constraint.weight[1] = s, constraint.weight[2] = u - 1.0,
       constraint.weight[3] = -u;
-      const Point r = (1.0 - s) * own[0] + s * own[1] - ((1.0 - u) * other[0] + u * other[1]);
+      const Point r = point_on(own, nearest.first) - point_on(other, nearest.second);
       if (constraint.friction > 0.0 && distance > 0.0 &&
           !friction_levers(own[1] - own[0], other[1] - other[0], (1.0 / distance) * r, distance,
                            constraint.lever))
         constraint.friction = 0.0;
       add_constraint(constraint, r, distance);
     }
+  }
+
+  KOKKOS_FUNCTION static Point point_on(const Point (&end)[2], double part) {
+    return (1.0 - part) * end[0] + part * end[1];
+  }
+
+  /// Place on edge e, 0 to 1, at which impulses of a contact at `part` act. Near the ends of a long line it
+  /// is the end: a payload would have more constraints than there is room for, from all cloth at its lines.
+  [[nodiscard]] KOKKOS_FUNCTION double place_of_impulse(int e, double part) const {
+    if (!views.by_interval || views.is_long(e) == 0) return part;
+    return part < 0.0625 ? 0.0 : part > 0.9375 ? 1.0 : part;
   }
 
   KOKKOS_FUNCTION void detect_at_face(int t) const {
@@ -239,9 +250,10 @@ struct DetectConstraintsFunctor {
     }
   }
 
-  /// Distance beyond the thickness, m, of which parts traverse at most half in a step.
+  /// Distance beyond the thickness, m, of which parts traverse at most half in a step, or that they traverse
+  /// in an interval if impulses raise the largest speed by a quarter.
   [[nodiscard]] KOKKOS_FUNCTION double step_cutoff() const {
-    return 4.0 * views.dt * views.progress(0).speed;
+    return (views.by_interval ? 2.5 : 4.0) * views.progress(0).dt * views.progress(0).speed;
   }
 };
 

@@ -167,7 +167,8 @@ struct MoveZonesFunctor {
 
 /// Writes the state of the zones and adds their work; stores the velocity change by forces alone. A zone
 /// conserves its elastic energy, so its work is the gain of kinetic energy less the work of the forces along
-/// the displacement.
+/// the displacement. In an interval it is that of kinetic energy, and friction acts on displacements, which
+/// need no allowance for forces.
 template <class ExecutionSpace>
 struct CommitZonesFunctor {
   using Points3 = UnmanagedTable<ExecutionSpace, double, 3>;
@@ -176,13 +177,21 @@ struct CommitZonesFunctor {
   Points3 x, v;
 
   KOKKOS_FUNCTION void operator()(const int i) const {
-    const Point start = load_points<double>(views.start_v, i), kick = load_points<double>(v, i) - start;
     ContactWork& work = views.work(i);
+    if (views.by_interval) {
+      if (views.progress(0).crossing[0] == 0 || !views.in_zone(i)) return;
+      const Point before = load_points<double>(v, i), after = load_points<double>(views.end_v, i);
+      work.normal += 0.5 * dot(after - before, after + before) / views.inverse_mass(i);
+      store_points(x, i, load_points<double>(views.end_x, i));
+      store_points(v, i, after);
+      return;
+    }
+    const Point start = load_points<double>(views.start_v, i), kick = load_points<double>(v, i) - start;
     work.kick_x = kick.x, work.kick_y = kick.y, work.kick_z = kick.z;
     if (views.progress(0).crossing[0] == 0 || !views.in_zone(i)) return;
     const Point position = load_points<double>(views.end_x, i),
                 velocity = load_points<double>(views.end_v, i);
-    const Point force = (1.0 / views.dt) * kick;  // per mass
+    const Point force = (1.0 / views.progress(0).dt) * kick;  // per mass
     const Point moved = position - load_points<double>(views.start_x, i);
     work.normal +=
         (0.5 * dot(velocity - start, velocity + start) - dot(force, moved)) / views.inverse_mass(i);

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "kernels/fabric/stepping/persistent_pairs.hpp"
+#include "kernels/fabric/stepping/persistent_euler.hpp"
 #include "kernels/fabric/stepping/persistent_rings.hpp"
 
 namespace drogue::fabric {
@@ -17,7 +17,8 @@ struct PersistentDriver {
   std::uint64_t epoch = 0;  ///< of the last stage launched
 };
 
-/// Persistent driver for the mesh of `p`, or none if the mesh does not fit the device. `has_loads`: timed
+/// Persistent driver for the mesh and the integrator of `p`, which is not Verlet's, or none if the mesh does
+/// not fit the device. `has_loads`: timed
 /// loads or pressures are evaluated in every stage; `has_pressure`: some of them are pressures. Blocks.
 template <class ExecutionSpace>
 [[nodiscard]] std::optional<PersistentDriver<ExecutionSpace>> make_persistent_driver(
@@ -35,9 +36,12 @@ template <class ExecutionSpace>
                    spring_adjacency(p.mesh, p.material), count);
   const PatchViews<ExecutionSpace> views = patch_views(instance.space(), patches);
   const bool pairs = patches.team <= max_pair_vertices && !has_loads;
+  const bool euler = p.integrator == Integrator::symplectic_euler;
+  if (euler && !pairs) return std::nullopt;
   constexpr ConstitutiveModel any{Model::edge};  // all models need the same memory
-  const std::size_t scratch = pairs ? PersistentPairsFunctor<ExecutionSpace, any>::scratch_bytes(views)
-                                    : PersistentRingsFunctor<ExecutionSpace, any>::scratch_bytes(views);
+  const std::size_t scratch = euler   ? PersistentEulerFunctor<ExecutionSpace, any>::scratch_bytes(views)
+                              : pairs ? PersistentPairsFunctor<ExecutionSpace, any>::scratch_bytes(views)
+                                      : PersistentRingsFunctor<ExecutionSpace, any>::scratch_bytes(views);
   if (scratch > Grid::most_scratch_bytes(instance)) return std::nullopt;
   const int threads = pairs ? team_threads(patches, patches.max_rows, max_pair_threads)
                             : team_threads(patches, 0, max_ring_threads);
@@ -57,37 +61,64 @@ struct PersistentInputs {
   bool has_loads;  ///< `external` holds timed loads or pressures
 };
 
-/// Enqueues `steps` steps as one launch. `captured`: the launch may be replayed, so that it reads its step
-/// count on the device and clears the messages. Asynchronous.
-template <ConstitutiveModel model, class ExecutionSpace, class VertexForce>
-void launch_persistent_steps(const ExecutionSpace& space, PersistentDriver<ExecutionSpace>& driver,
-                             const PersistentInputs<ExecutionSpace, VertexForce>& in, std::int64_t steps,
-                             bool captured) {
+/// Steps of a launch of `steps` steps of `stages` stages each. `captured`: the launch may be replayed, so
+/// that it reads its step count on the device and clears the messages. Asynchronous.
+template <bool loads, class ExecutionSpace, class VertexForce>
+[[nodiscard]] PersistentSteps<ExecutionSpace, VertexForce, loads> prepare_persistent_steps(
+    const ExecutionSpace& space, PersistentDriver<ExecutionSpace>& driver,
+    const PersistentInputs<ExecutionSpace, VertexForce>& in, std::int64_t steps, std::uint64_t stages,
+    bool captured) {
   if (captured) {
     device::copy_bytes(space, device::CopyKind::within, in.monitor.steps.data() + 1, in.monitor.steps.data(),
                        sizeof(std::int64_t));
     driver.grid.clear_messages();
     driver.epoch = 0;
   }
-  const std::int64_t before = captured ? -1 : in.time.step;
-  const auto with = [&]<bool loads>(const PersistentLoads<ExecutionSpace, loads>& load) {
-    return PersistentSteps<ExecutionSpace, VertexForce, loads>{driver.patches, in.fabric,       in.x,   in.v,
-                                                               in.monitor,     in.time.dt,      before, steps,
-                                                               driver.epoch,   in.vertex_force, load};
+  const std::uint64_t epoch = driver.epoch;
+  driver.epoch += stages * static_cast<std::uint64_t>(steps);
+  PersistentLoads<ExecutionSpace, loads> load;
+  if constexpr (loads) load = {in.external, in.time};
+  return {driver.patches,
+          in.fabric,
+          in.x,
+          in.v,
+          in.monitor,
+          in.time.dt,
+          captured ? -1 : in.time.step,
+          steps,
+          epoch,
+          in.vertex_force,
+          load};
+}
+
+/// Enqueues `steps` Runge-Kutta steps as one launch; `captured` as above. Asynchronous.
+template <ConstitutiveModel model, class ExecutionSpace, class VertexForce>
+void launch_persistent_steps(const ExecutionSpace& space, PersistentDriver<ExecutionSpace>& driver,
+                             const PersistentInputs<ExecutionSpace, VertexForce>& in, std::int64_t steps,
+                             bool captured) {
+  const auto prepared = [&]<bool loads>() {
+    return prepare_persistent_steps<loads>(space, driver, in, steps, 4, captured);
   };
   if (in.has_loads)
     driver.grid.template launch<max_ring_threads, 1>(
         PersistentRingsFunctor<ExecutionSpace, model, VertexForce, true>{
-            with(PersistentLoads<ExecutionSpace, true>{in.external, in.time})});
+            prepared.template operator()<true>()});
   else if (driver.pairs)
     driver.grid.template launch<max_pair_threads, 1>(
-        PersistentPairsFunctor<ExecutionSpace, model, VertexForce>{
-            with(PersistentLoads<ExecutionSpace, false>{})});
+        PersistentPairsFunctor<ExecutionSpace, model, VertexForce>{prepared.template operator()<false>()});
   else
     driver.grid.template launch<max_ring_threads, 1>(
-        PersistentRingsFunctor<ExecutionSpace, model, VertexForce>{
-            with(PersistentLoads<ExecutionSpace, false>{})});
-  driver.epoch += 4 * static_cast<std::uint64_t>(steps);
+        PersistentRingsFunctor<ExecutionSpace, model, VertexForce>{prepared.template operator()<false>()});
+}
+
+/// Enqueues `steps` steps of the symplectic Euler method with the given damping, 1/s, as one launch;
+/// `captured` as above. Asynchronous.
+template <ConstitutiveModel model, class ExecutionSpace, class VertexForce>
+void launch_persistent_euler(const ExecutionSpace& space, PersistentDriver<ExecutionSpace>& driver,
+                             const PersistentInputs<ExecutionSpace, VertexForce>& in, double damping,
+                             std::int64_t steps, bool captured) {
+  driver.grid.template launch<max_pair_threads, 1>(PersistentEulerFunctor<ExecutionSpace, model, VertexForce>{
+      {prepare_persistent_steps<false>(space, driver, in, steps, 1, captured)}, damping});
 }
 
 }  // namespace drogue::fabric

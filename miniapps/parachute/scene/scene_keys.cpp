@@ -188,10 +188,8 @@ void declare_flow_scene(Table& root, FlowScene& scene) {
                 .unit("m/s^2")
                 .when([&scene] { return !scene.canopies.empty(); }, "with a [[canopy]]", "canopy");
             table
-                .value(
-                    "contact", scene::boolean_codec(scene.contact),
-                    "Contact of cloth and lines with each other and themselves, without friction; it costs "
-                    "more than all other steps of the cloth")
+                .value("contact", scene::boolean_codec(scene.contact),
+                       "Contact of cloth and lines with each other and themselves, without friction")
                 .when([&scene] { return !scene.canopies.empty(); }, "with a [[canopy]]", "canopy");
             table.value("thickness", scene::real_codec(scene.thickness), "Distance of layers in contact")
                 .unit("m")

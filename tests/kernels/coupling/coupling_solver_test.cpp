@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "kernels/fabric/solver.hpp"
+#include "kernels/reference/fabric/intersections.hpp"
 #include "tests/support/coupled_case.hpp"
 
 // Steps of cloth in air: time steps, blocks, restarts, failures, backends and launches.
@@ -29,6 +30,22 @@ CoupledCase flying_strip() {
   c.add_strip(0.61, 0.4, 0.67, 1.2, 16);
   for (std::uint8_t& axes : c.p.fabric.pinned) axes = 0;
   for (std::size_t i = 0; i < c.v.size(); ++i) c.v[i] = {6.0, std::sin(9.0 * c.x[i][1]), 0.0};
+  return c;
+}
+
+/// Two free strips in a periodic box of thin air that fly against one another, on their way through several
+/// thicknesses per step of the flow.
+CoupledCase meeting_strips(bool with_contact) {
+  CoupledCase c(16, 16, h, 0.002);
+  c.add_strip(0.61, 0.4, 0.67, 1.2, 16);
+  c.add_strip(0.76, 0.43, 0.72, 1.17, 15);
+  c.set_mass(0.3);
+  for (std::uint8_t& axes : c.p.fabric.pinned) axes = 0;
+  for (std::size_t i = 0; i < c.v.size(); ++i) c.v[i] = {i < 34 ? 6.0 : -6.0, 0.5, 0.0};
+  c.p.sheet.law = {5.0, 0.5, false};
+  c.p.substeps = 24;
+  c.p.fabric.contact.self = with_contact;
+  c.p.fabric.contact.thickness = 0.004;
   return c;
 }
 
@@ -108,6 +125,63 @@ TEST(CoupledSolver, ContinuesBitForBit) {
     ASSERT_TRUE(second.advance(19));
     EXPECT_EQ(distance(state_of(c, *second.solver), state_of(c, *whole.solver)), 0.0);
   }
+}
+
+TEST(CoupledSolver, ContinuesBitForBitInContact) {
+  const CoupledCase c = meeting_strips(true);
+  CoupledRun whole(c), first(c);
+  ASSERT_TRUE(whole.advance(13));
+  ASSERT_TRUE(first.advance(7));
+  const State middle = state_of(c, *first.solver);
+  CoupledRun second(c);
+  restore(c, middle, *second.solver);
+  ASSERT_TRUE(second.advance(6));
+  EXPECT_EQ(distance(state_of(c, *second.solver), state_of(c, *whole.solver)), 0.0);
+}
+
+/// Intersections of the strips at the ends of steps, and largest change of the momentum of cloth and air in a
+/// step, relative to that of a strip.
+struct Meeting {
+  std::size_t intersections = 0;
+  double gain = 0.0, approach = 0.0;
+};
+
+Meeting meet(bool with_contact) {
+  CoupledCase c = meeting_strips(with_contact);
+  CoupledRun run(c);
+  const auto momentum = [&] {
+    const flow::Totals air = run.solver->totals();
+    const fabric::Totals cloth = run.solver->cloth_totals();
+    Vector sum{};
+    for (std::size_t axis = 0; axis < 3; ++axis) sum[axis] = air.momentum[axis] + cloth.momentum[axis];
+    return sum;
+  };
+  double of_strip = 0.0;
+  for (std::size_t i = 0; i < 34; ++i) of_strip += 6.0 * c.p.fabric.mass[i];
+  Meeting result;
+  Vector last = momentum();
+  for (int step = 0; step < 40; ++step) {
+    EXPECT_TRUE(run.advance(1));
+    const Vector now = momentum();
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      result.gain = std::max(result.gain, std::abs(now[axis] - last[axis]) / of_strip);
+    last = now;
+    run.solver->download_cloth(c.x, c.v);
+    result.intersections += reference::intersections(c.x, c.p.fabric.mesh.triangles, {}).size();
+  }
+  double mass = 0.0;
+  for (std::size_t i = 0; i < 34; ++i)
+    mass += c.p.fabric.mass[i], result.approach += c.p.fabric.mass[i] * c.v[i][0];
+  result.approach /= mass;
+  return result;
+}
+
+TEST(CoupledSolver, StripsThatMeetDoNotCrossAndKeepTheMomentum) {
+  EXPECT_GT(meet(false).intersections, 0U);
+  const Meeting met = meet(true);
+  EXPECT_EQ(met.intersections, 0U);
+  EXPECT_LT(met.gain, 1e-14);
+  EXPECT_LT(met.approach, 1.0) << "m/s, from 6: the strips have stopped one another";
 }
 
 TEST(CoupledSolver, BackendsAgree) {
@@ -303,6 +377,11 @@ TEST(CoupledSolver, RejectsArraysOfTheWrongLength) {
   EXPECT_THROW(run.solver->upload_cloth(few, few), std::invalid_argument);
 }
 
+/// Launches that differ on a device and a host.
+std::int64_t on_device(std::int64_t there, std::int64_t here) {
+  return tested_backend == device::Backend::cuda ? there : here;
+}
+
 TEST(CoupledLedger, StepsOfABlockNeitherFenceNorAllocateNorCopy) {
   CoupledCase c = flying_strip();
   c.p.substeps = 16;
@@ -315,8 +394,24 @@ TEST(CoupledLedger, StepsOfABlockNeitherFenceNorAllocateNorCopy) {
   for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(whole[k], part[k]) << k;
   // Saving, 8 kernels before the steps of the cloth, 4 that spread its forces, a check, and 4 after the step
   // of the flow, which is 11 kernels on a host and one graph on a device.
-  const std::int64_t flow = tested_backend == device::Backend::cuda ? 1 : 11;
-  EXPECT_EQ(whole[3] - part[3] - 1, 12 * (1 + 8 + c.p.substeps + 4 + 1 + flow + 4));
+  EXPECT_EQ(whole[3] - part[3] - 1, 12 * (1 + 8 + on_device(1, c.p.substeps) + 4 + 1 + on_device(1, 11) + 4));
+}
+
+TEST(CoupledLedger, ContactIsResolvedOncePerInterval) {
+  const auto launches = [](bool with_contact) {
+    CoupledCase c = meeting_strips(with_contact);
+    c.p.substeps = 32, c.p.contact_interval = 8;
+    CoupledRun run(c);
+    static_cast<void>(counted_steps(run, 16));
+    const auto whole = counted_steps(run, 16), part = counted_steps(run, 8);
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(whole[k], part[k]) << k;
+    return whole[3] - part[3];
+  };
+  // Each of 4 intervals in 8 steps: positions at the start, mean velocities, lists, constraints, 10 rounds of
+  // impulses, continuous detection, 6 rounds of zones and their end; on a device all but the first are a
+  // graph, and the steps of each interval are a launch.
+  EXPECT_EQ(launches(true) - launches(false),
+            8 * on_device(4 * 2 + 3, 4 * (1 + 1 + 4 + 1 + 20 + 1 + 24 + 1)));
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "kernels/fabric/fabric_solver.hpp"
+#include "kernels/fabric/stepping/persistent_euler.hpp"
 #include "kernels/fabric/stepping/persistent_pairs.hpp"
 #include "kernels/fabric/stepping/persistent_rings.hpp"
 #include "tests/support/emulated_grid.hpp"
@@ -142,6 +143,15 @@ Parameters cloth_of(const Mesh& mesh) {
 
 using Space = Kokkos::Serial;
 
+template <class Loads>
+constexpr bool is_loaded = std::is_same_v<Loads, PersistentLoads<Space, true>>;
+
+/// True for the persistent kernel of the symplectic Euler method.
+template <class Functor>
+constexpr bool is_euler = requires(const Functor& functor) {
+  functor.damping;
+};
+
 /// Takes steps with the persistent driver; each entry of `cuts` is the number of steps of one launch.
 template <ConstitutiveModel model, class Functor, class VertexForce = NoVertexForce,
           class Loads = PersistentLoads<Space, false>>
@@ -163,7 +173,7 @@ void run_emulated(const Parameters& p, int count, const std::vector<std::int64_t
   fabric.load = PointsView<Space>("load", n);
   fabric.moduli = moduli(material.membrane_modulus, material.poisson);
   fabric.gravity = {p.gravity[0], p.gravity[1], p.gravity[2]};
-  fabric.damping = p.damping;
+  fabric.damping = is_euler<Functor> ? 0.0 : p.damping;
   const PointsView<Space> at("x", n), velocity("v", n);
   for (std::size_t i = 0; i < n; ++i) {
     fabric.inverse_mass(i) = 1.0 / p.mass[i];
@@ -178,19 +188,16 @@ void run_emulated(const Parameters& p, int count, const std::vector<std::int64_t
   std::int64_t previous_steps = 0;
   std::uint64_t epoch = 0;
   for (const std::int64_t steps : cuts) {
-    grid.launch(Functor{{views,
-                         fabric,
-                         at,
-                         velocity,
-                         monitor,
-                         p.dt,
-                         previous_steps,
-                         steps,
-                         epoch,
-                         {vertex_force, {0, p.dt, 0, 0.0}, static_cast<int>(n)},
-                         loads}});
+    const PersistentSteps<Space, VertexForce, is_loaded<Loads>> of{
+        views, fabric,         at,    velocity, monitor,
+        p.dt,  previous_steps, steps, epoch,    {vertex_force, {0, p.dt, 0, 0.0}, static_cast<int>(n)},
+        loads};
+    if constexpr (is_euler<Functor>)
+      grid.launch(Functor{{of}, p.damping});
+    else
+      grid.launch(Functor{of});
     previous_steps += steps;
-    epoch += 4 * static_cast<std::uint64_t>(steps);
+    epoch += (is_euler<Functor> ? 1 : 4) * static_cast<std::uint64_t>(steps);
     EXPECT_EQ(monitor.steps(0), previous_steps);
   }
   EXPECT_FALSE(grid.overwritten()) << "two message buffers are too few";
@@ -334,6 +341,52 @@ using ForcedRings = PersistentRingsFunctor<ExecutionSpace, model, VertexForce>;
 TEST(FabricPatches, ApplyAVertexForce) {
   expect_the_same_steps_under_a_vertex_force<ForcedRings>();
   expect_the_same_steps_under_a_vertex_force<PersistentPairsFunctor>();
+}
+
+/// Relaxation of the velocity that depends on position, velocity and time, with a state of its own.
+struct Relaxing {
+  PointsView<Space> rest;
+  ListView<Space, double> taken;
+
+  KOKKOS_FUNCTION Vector3<double> relaxed_velocity(const VertexStage& at) const {
+    const Vector3<double> from_rest = at.position - load_points<double>(rest, at.vertex);
+    taken(at.vertex) += at.inverse_mass * at.velocity.z * at.dt;
+    return (1.0 / (1.0 + 400.0 * at.dt)) * at.velocity +
+           Vector3<double>{taken(at.vertex), 30.0 * at.time, -20.0 * at.dt * from_rest.y};
+  }
+};
+
+template <ConstitutiveModel model>
+void expect_the_same_relaxed_steps() {
+  Parameters p = cloth_of(mesh_of(11, 8));
+  p.integrator = Integrator::symplectic_euler;
+  p.material.model = model.model, p.material.tension_only = model.tension_only;
+  const std::size_t n = p.mass.size();
+  const std::vector<Vector> start = shaken(p.mesh.rest, 0.1, 1), still(n, Vector{});
+  std::vector<Vector> x = start, v = still;
+  const auto relaxing = [&] {
+    return Relaxing{loads_of(p).external.rest, ListView<Space, double>("taken", n)};
+  };
+  const Relaxing used = relaxing();
+  FabricSolver<Space, Relaxing> solver(Space(), p, used);
+  solver.upload(x, v);
+  solver.enqueue_steps(9);
+  solver.download(x, v);
+  for (const int count : {1, 3}) {
+    const Relaxing other = relaxing();
+    std::vector<Vector> other_x = start, other_v = still;
+    run_emulated<model, PersistentEulerFunctor<Space, model, Relaxing>>(p, count, {3, 2, 4}, other_x, other_v,
+                                                                        other);
+    EXPECT_LE(distance(x, other_x), rounding * 1e-13) << count << " patches";
+    EXPECT_LE(distance(v, other_v), rounding * 1e-11) << count << " patches";
+    for (std::size_t i = 0; i < n; ++i) EXPECT_NEAR(used.taken(i), other.taken(i), rounding * 1e-13);
+  }
+}
+
+TEST(FabricPatches, RelaxVelocitiesInStepsOfTheSymplecticEulerMethod) {
+  expect_the_same_relaxed_steps<ConstitutiveModel{Model::biquadratic}>();
+  expect_the_same_relaxed_steps<ConstitutiveModel{Model::biquadratic, true}>();
+  expect_the_same_relaxed_steps<ConstitutiveModel{Model::edge}>();
 }
 
 }  // namespace
