@@ -17,7 +17,7 @@ MANY_SMALL_STEPS = {
 }  # fmt: skip
 
 # They are in test_parachutes_long.py.
-OTHER_PARACHUTES = {name for name in parachute_program.SMALL_SCENES if name.startswith("c9-")} - {"c9-flat"}
+OTHER_PARACHUTES = set(parachute_program.CANOPIES) - {"c9-flat", "reefed", "sphere-drop"}
 
 # A minute or more on one core.
 MINUTES_SERIALLY = {"taylor-green-3d", "c9-flat"}
