@@ -120,6 +120,10 @@ class FabricSolver {
   /// Record of failures for other kernels, which may read `has_failed`. Does not throw.
   [[nodiscard]] const StepMonitor<ExecutionSpace>& monitor() const { return _monitor; }
 
+  /// Sets E A of every line, N; 0 for a line that is cut. Blocks. Throws std::invalid_argument for values
+  /// that are negative or not finite and a span of the wrong length.
+  void set_line_stiffness(std::span<const double> of_lines);
+
   /// Sets positions, m, and velocities, m/s, and forgets a failure. Blocks. Throws std::invalid_argument for
   /// values that are not finite and spans of the wrong length.
   void upload(std::span<const Vector> positions, std::span<const Vector> velocities);
@@ -458,6 +462,21 @@ template <class ExecutionSpace, class VertexForce>
 void FabricSolver<ExecutionSpace, VertexForce>::set_vertex_force(const VertexForce& vertex_force) {
   _vertex_force = vertex_force;
   _launcher.discard_graphs();
+}
+
+template <class ExecutionSpace, class VertexForce>
+void FabricSolver<ExecutionSpace, VertexForce>::set_line_stiffness(std::span<const double> of_lines) {
+  Parameters changed = _parameters;
+  changed.mesh.line_stiffness.assign(of_lines.begin(), of_lines.end());
+  check_parameters(changed);
+  synchronize();
+  _parameters = changed;
+  // The slots stay, so that captured graphs remain valid.
+  const SpringAdjacency springs = spring_adjacency(changed.mesh, changed.material);
+  device::copy(space(), _fabric.springs.value,
+               table_view(space(), "drogue::fabric::slot_values", springs.value));
+  space().fence("drogue::fabric::set_line_stiffness");
+  if (_persistent) make_drivers();
 }
 
 template <class ExecutionSpace, class VertexForce>

@@ -22,6 +22,7 @@ int add_payload(Parameters& p, const Payload& payload, std::span<const int> atta
               std::ranges::all_of(attachments, [vertex](int i) { return i >= 0 && i < vertex; }),
           "each line needs a vertex of the mesh");
   Mesh& mesh = p.mesh;
+  if (!mesh.line_length.empty()) mesh.line_length.resize(mesh.lines.size() + attachments.size(), 0.0);
   if (mesh.line_stiffness.empty()) mesh.line_stiffness.assign(mesh.lines.size(), p.material.axial_stiffness);
   mesh.rest.push_back(payload.rest);
   for (const int i : attachments) {

@@ -69,6 +69,9 @@ void check_parameters(const Parameters& p) {
   require(p.mesh.line_stiffness.empty() || (p.mesh.line_stiffness.size() == p.mesh.lines.size() &&
                                             std::ranges::all_of(p.mesh.line_stiffness, not_negative)),
           "stiffness must be given for every line, or for none, and not be negative");
+  require(p.mesh.line_length.empty() || (p.mesh.line_length.size() == p.mesh.lines.size() &&
+                                         std::ranges::all_of(p.mesh.line_length, not_negative)),
+          "lengths must be given for every line, or for none, and not be negative");
   for (const TimedLoad& load : p.timed_loads)
     require(load.strength.length > 0 && one_a_vertex(load.direction, finite),
             "a load that changes needs a strength, and a finite direction for every vertex");

@@ -23,6 +23,11 @@ Edge edge_between(int a, int b) { return {std::min(a, b), std::max(a, b)}; }
 
 double rest_distance(const Mesh& mesh, int a, int b) { return stable_norm(edge_vector(mesh, a, b)); }
 
+double rest_length(const Mesh& mesh, std::size_t line) {
+  if (!mesh.line_length.empty() && mesh.line_length[line] > 0.0) return mesh.line_length[line];
+  return rest_distance(mesh, mesh.lines[line][0], mesh.lines[line][1]);
+}
+
 Edge opposite_edge(const std::array<int, 3>& triangle, std::size_t k) {
   return edge_between(triangle[(k + 1) % 3], triangle[(k + 2) % 3]);
 }

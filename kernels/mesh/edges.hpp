@@ -17,6 +17,9 @@ using Edge = std::array<int, 2>;
 /// Distance of two vertices at rest, m. Does not throw.
 [[nodiscard]] double rest_distance(const Mesh& mesh, int a, int b);
 
+/// Length of a line without tension, m. Does not throw.
+[[nodiscard]] double rest_length(const Mesh& mesh, std::size_t line);
+
 /// Edge opposite corner k (0, 1, 2) of a triangle. Does not throw.
 [[nodiscard]] Edge opposite_edge(const std::array<int, 3>& triangle, std::size_t k);
 

@@ -78,6 +78,7 @@ Mesh renumber(const Mesh& mesh, const std::vector<int>& order) {
   result.lines = mesh.lines;
   result.line_stiffness = mesh.line_stiffness;
   result.line_density = mesh.line_density;
+  result.line_length = mesh.line_length;
   for (auto& triangle : result.triangles)
     for (int& i : triangle) i = place[static_cast<std::size_t>(i)];
   for (auto& line : result.lines)

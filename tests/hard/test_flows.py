@@ -13,11 +13,11 @@ import parachute_program
 
 # Small grids with thousands of steps: threads cost more than they save.
 MANY_SMALL_STEPS = {
-    "cavity", "cavity-1000", "channel", "oscillating-plate", "cylinder", "sphere-300", "disk-normal", "cup", "cup-reversed",
+    "cavity", "cavity-1000", "channel", "oscillating-plate", "cylinder", "sphere-300", "disk-normal", "cup", "cup-reversed", "sphere-drop",
 }  # fmt: skip
 
 # They are in test_parachutes_long.py.
-OTHER_PARACHUTES = {name for name in parachute_program.SMALL_SCENES if name.startswith("c9-")} - {"c9-flat"}
+OTHER_PARACHUTES = set(parachute_program.CANOPIES) - {"c9-flat", "reefed", "sphere-drop"}
 
 # A minute or more on one core.
 MINUTES_SERIALLY = {"taylor-green-3d", "c9-flat"}

@@ -71,6 +71,14 @@ class BadFlows(parachute_program.FlowTest):
         self.assertGreaterEqual(len(bad_canopies.BAD_LINES), 50)
         self.assert_lines_are_rejected(bad_canopies.GOOD, bad_canopies.BAD_LINES)
 
+    def test_rejects_lines_of_sheets(self):
+        sheet = bad_canopies.GOOD.replace('[[canopy]]\nkind = "flat-circular"\ndiameter = 1.2\ngores = 8\nedge', '[[canopy]]\nkind = "sheet"\ndiameter = 1.2\ngores = 8\nedge')
+        sheet = sheet.replace("centre = [1, 0, 0]\nlines = { length = 1.1 }\n", "centre = [1, 0, 0]\n")
+        self.scene.write_text(sheet, encoding="utf-8")
+        self.assertIn("verify.peak_force[0].canopy: this canopy is a sheet", self.refusal())
+        self.scene.write_text(sheet.replace("[{ canopy = 1, force", "[{ canopy = 0, force"), encoding="utf-8")
+        self.expect(0, self.scene, "--check")
+
     def test_rejects_canopies_on_a_plane(self):
         self.scene.write_text(bad_canopies.GOOD.replace("cells = [40, 20, 24]", "cells = [40, 1, 24]"), encoding="utf-8")
         self.assertIn("canopy[0]: the grid has one cell along y", self.refusal())

@@ -554,6 +554,96 @@ class Canopies(parachute_program.FlowTest):
         self.assertGreater(rows["canopy_0_force_z"][-1], 1.0)
         self.assertGreater(rows["canopy_0_payload_velocity_z"][-1], -9.81 * 0.2)
 
+    REEFED = CANOPY.replace('kind = "flat-circular"', 'kind = "flat-circular"\nshape = "partly-closed"\nclosure = 0.6').replace(
+        "reinforcement = { skirt = 500 }", "reefing = { length = 3.8, stiffness = 2000, cut = 0.2 }")
+
+    def test_reefing_line_keeps_the_mouth_narrow_until_it_is_cut(self):
+        words = ("--quiet", "--backend", "serial", "--overwrite")
+        sets = ["output={history_every=1}", "run.end_time=0.32"]
+        scene = self.write(self.REEFED)
+        self.expect(0, scene, *words, "--out", "out", sets=sets)
+        self.expect(0, scene, *words, "--out", "never", sets=[*sets, "canopy[0].reefing={length=3.8,stiffness=2000}"])
+        rows, never = self.history("out"), self.history("never")
+        self.assertIn(0.2, rows["time"])
+        # A circle of the length of the line, and the cloth that bulges beside and between its lines.
+        self.assertLess(max(never["canopy_0_projected_area"]), 1.7 * 3.8**2 / (4 * math.pi))
+        self.assertGreater(max(rows["canopy_0_projected_area"]), 1.1 * max(never["canopy_0_projected_area"]))
+        # A run continues bit for bit from before the cut and from it.
+        for half in (0.15, 0.2):
+            with self.subTest(half):
+                part = self.folder / "part"
+                times = ["run.end_time=0.25", f"output={{history_every=1,restart_every=1,times=[{half},0.25],fields=['position']}}"]
+                self.expect(0, scene, *words, "--out", "out", sets=times)
+                self.expect(0, scene, *words, "--out", part, sets=[*times, f"run.end_time={half}", f"output.times=[{half}]"])
+                self.expect(0, scene, *words[:-1], "--out", part, "--restart", part / "restart.h5", sets=times)
+                whole, again = self.history("out"), self.history("part")
+                for name in whole:
+                    self.assertEqual(whole[name][-1], again[name][-1], name)
+
+    def test_line_that_breaks_ends_the_run(self):
+        self.expect(0, self.write(CANOPY), *QUIET, sets=["output.history_every=1"])
+        rows = self.history("out")
+        most = max(rows["canopy_0_line_force_z"])
+        strength = 0.5 * most / 8
+        process = self.expect(4, self.write(CANOPY), *QUIET, "--overwrite",
+                              sets=["output.history_every=1", f"canopy[0].lines.strength={strength}"])
+        self.assertRegex(process.stderr, r"line [0-7] of canopy\[0\] breaks: it carries more than "
+                         r"canopy\[0\].lines.strength = \S+ N in the step after t = ")
+        told, broken = self.result("out"), self.history("out")
+        self.assertEqual(("numerical-failure", 4), (told["status"], told["exit_code"]))
+        # Eight lines at an angle to z, of which the first one breaks at its strength.
+        self.assertLess(max(broken["canopy_0_line_force_z"]), 8 * strength)
+        again = self.expect(4, self.write(CANOPY), *QUIET, "--restart", "auto",
+                            sets=["output.history_every=1", f"canopy[0].lines.strength={strength}"])
+        self.assertEqual(process.stderr, again.stderr)
+        self.expect(0, self.write(CANOPY), *QUIET, "--overwrite", sets=[f"canopy[0].lines.strength={most}"])
+
+    def test_payload_that_is_released_falls_freely(self):
+        still = CANOPY.replace("velocity = [0, 0, 8]", "velocity = [0, 0, 4]").replace("fixed = true", "release = 0.1")
+        self.expect(0, self.write(still), *QUIET, sets=["coupling.gravity=[0, 0, -9.81]", "output.history_every=1"])
+        rows = self.history("out")
+        self.assertIn(0.1, rows["time"])
+        released, last = rows["time"].index(0.1) + 1, len(rows["time"]) - 1
+        self.assertGreater(rows["canopy_0_line_force_z"][released - 1], 1.0)
+        self.assertEqual({0.0}, set(rows["canopy_0_line_force_z"][released:]))
+        fall = rows["canopy_0_payload_velocity_z"][last] - rows["canopy_0_payload_velocity_z"][released]
+        self.assertAlmostEqual(-9.81 * (rows["time"][last] - rows["time"][released]), fall, delta=1e-9)
+
+    def test_canopies_share_a_payload(self):
+        """Two canopies on risers pull a payload with the sum of their forces."""
+        canopy = CANOPY[CANOPY.index("[[canopy]]"):CANOPY.index("[run]")].replace(
+            "diameter = 2", "diameter = 1").replace("length = 1.8", "length = 0.9").replace(
+            "reinforcement", "riser = { length = 1, stiffness = 5000, mass = 0.05 }\nangle = 25\nreinforcement")
+        first = canopy.replace("angle", "centre = [0.75, 0, 0.5]\nangle").replace("fixed = true", "fixed = false")
+        other = canopy.replace("angle", "azimuth = 180\nangle").replace("mass = 2, fixed = true", "shared = 0")
+        scene = self.write(CANOPY[:CANOPY.index("[[canopy]]")] + first + other + CANOPY[CANOPY.index("[run]"):])
+        self.expect(0, scene, *QUIET, sets=["output.history_every=1", "coupling.contact=true", "coupling.thickness=0.005", "verify.intersections=0"])
+        rows = self.history("out")
+        self.assertEqual({0.0}, set(rows["intersections"]))
+        for axis in "xyz":
+            self.assertEqual(rows[f"canopy_0_payload_{axis}"], rows[f"canopy_1_payload_{axis}"])
+        # The impulse of both risers moves the payload of 2 kg.
+        steps = range(1, len(rows["time"]))
+        impulse = sum((rows["time"][k] - rows["time"][k - 1]) * (rows[f"canopy_{i}_line_force_z"][k] + rows[f"canopy_{i}_line_force_z"][k - 1]) / 2
+                      for k in steps for i in (0, 1))
+        self.assertGreater(impulse, 0.1)
+        self.assertAlmostEqual(2 * rows["canopy_0_payload_velocity_z"][-1], impulse, delta=0.05 * impulse)
+        self.assertAlmostEqual(rows["canopy_0_line_force_x"][2], -rows["canopy_1_line_force_x"][2], delta=1e-2 * rows["canopy_0_line_force_z"][2])
+
+    def test_sheet_falls_on_a_body_and_stays_outside(self):
+        sheet = CANOPY[:CANOPY.index("[[canopy]]")].replace("velocity = [0, 0, 8]", "velocity = [0, 0, 0]") + (
+            '[[canopy]]\nkind = "sheet"\ndiameter = 1.2\ngores = 8\nvent = 0\nedge_length = 0.14\ncentre = [0, 0, 0.3]\n'
+            '[[body]]\nkind = "sphere"\ncentre = [0, 0, -0.3]\nradius = 0.3\nedge_length = 0.14\n'
+            "[coupling]\ngravity = [0, 0, -9.81]\ncontact = true\nthickness = 0.02\n") + CANOPY[CANOPY.index("[run]"):]
+        self.expect(0, self.write(sheet), *QUIET, sets=["run.end_time=1.2", "output={history_every=1}", "verify={intersections=0}"])
+        rows = self.history("out")
+        self.assertEqual({0.0}, set(rows["intersections"]))
+        self.assertEqual({0.0}, set(rows["canopy_0_line_force_z"]))
+        # The air slows the fall; the sphere, whose top is at 0 m, ends it.
+        self.assertGreater(min(rows["canopy_0_payload_velocity_z"]), -3)
+        self.assertLess(rows["canopy_0_payload_z"][-1], 0.2)
+        self.assertGreater(rows["canopy_0_payload_z"][-1], -0.3)
+
     def test_backends_agree_until_the_cloth_buckles(self):
         for backend in ("serial", gas_program.threaded()):
             self.expect(0, self.write(CANOPY), "--quiet", "--backend", backend, "--out", backend, "--overwrite",

@@ -8,6 +8,9 @@ from hdf5_file import Hdf5File
 PROGRAM = gas_program.BIN / "drogue-parachute"
 SCENES = sorted(path.stem for path in (gas_program.SOURCE / "miniapps/parachute/scenes").glob("*.toml"))
 SMALL_SCENES = [name for name in SCENES if not name.endswith("-full")]
+# Small scenes with canopies.
+CANOPIES = [name for name in SMALL_SCENES
+            if "[[canopy]]" in (gas_program.SOURCE / f"miniapps/parachute/scenes/{name}.toml").read_text(encoding="utf-8")]
 
 # A gust through a short channel with a moving wall: every type of side but periodic ones, in three dimensions.
 GUST = """\

@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "kernels/coupling/sheet/immersed_sheet.hpp"
+#include "kernels/coupling/sheet/line_cuts.hpp"
+#include "kernels/coupling/sheet/line_strength.hpp"
 #include "kernels/coupling/sheet/moving_frame.hpp"
 #include "kernels/coupling/sheet/solver.hpp"
 #include "kernels/coupling/total_force.hpp"
@@ -57,16 +59,21 @@ struct CheckClothFunctor {
   stepping::StepMonitor<ExecutionSpace> cloth;
   GridTransfer<ExecutionSpace> transfer;
   ReasonView reason;
+  Kokkos::View<int, typename ExecutionSpace::memory_space> broken_line, failed_line;
 
   KOKKOS_FUNCTION void operator()(int) const {
     saved_step() = control().now.step;
+    const int broken = broken_line();
+    broken_line() = no_line;
     if (control().trial.stop != flow::Stop::running) return;
     const TransferCounts counts = transfer.counts();
     FailureReason found = FailureReason::flow;
     if (counts.incomplete_points > 0) found = FailureReason::left_domain;
     if (counts.rejected_forces > 0) found = FailureReason::not_spread;
+    if (broken != no_line) found = FailureReason::line;
     if (cloth.has_failed()) found = FailureReason::cloth;
     if (found == FailureReason::flow) return;
+    if (found == FailureReason::line) failed_line() = broken;
     reason() = found;
     control().trial.stop = flow::Stop::failed;
   }
@@ -106,7 +113,10 @@ class CoupledSolver {
         _saved_force("drogue::coupling::saved_force", rows()),
         _saved_places("drogue::coupling::saved_places", rows()),
         _total_force(flow::coupling_grid(_flow.grid())),
-        _frame(_parameters.follow, _parameters.fabric) {
+        _frame(_parameters.follow, _parameters.fabric),
+        _cuts(_parameters),
+        _strength(_space, _parameters) {
+    _strength.set_stiffness(_space, _cuts.stiffness());
     if (_frame.follows()) _flow.check_frame(_parameters.follow.axes);
   }
 
@@ -126,6 +136,7 @@ class CoupledSolver {
   [[nodiscard]] FrameMotion frame() const { return _frame.motion(); }
   void set_frame(const FrameMotion& frame);
   [[nodiscard]] FailureReason failure_reason();
+  [[nodiscard]] int failed_line();
   [[nodiscard]] std::array<double, 3> total_force_on_air() const {
     return _total_force(_space, flow::face_views<ExecutionSpace>(_flow.grid(), _flow.force()));
   }
@@ -146,6 +157,12 @@ class CoupledSolver {
   }
   [[nodiscard]] std::size_t rows() const { return static_cast<std::size_t>(_fabric.vertices()); }
   void forget_steps();
+  /// Gives the lines their stiffness after the cuts so far. Blocks.
+  void set_lines() {
+    const std::vector<double> stiffness = _cuts.stiffness();
+    _fabric.set_line_stiffness(stiffness);
+    _strength.set_stiffness(_space, stiffness);
+  }
   void plan_block(const flow::Progress& now, double target);
   void move_frame(const flow::Progress& now);
   void end_block_at(double target, const flow::Progress& now);
@@ -164,6 +181,8 @@ class CoupledSolver {
   Vectors _saved_positions, _saved_velocities, _saved_acceleration, _saved_force, _saved_places;
   TotalForce<ExecutionSpace> _total_force;
   MovingFrame<ExecutionSpace> _frame;
+  LineCuts _cuts;
+  LineStrength<ExecutionSpace> _strength;
 };
 
 template <class ExecutionSpace>
@@ -171,6 +190,7 @@ void CoupledSolver<ExecutionSpace>::start() {
   if (_frame.follows()) set_frame({});
   _flow.start();
   forget_steps();
+  if (_cuts.restart_at(0.0)) set_lines();
 }
 
 template <class ExecutionSpace>
@@ -178,6 +198,7 @@ void CoupledSolver<ExecutionSpace>::forget_steps() {
   _block = {};
   Kokkos::deep_copy(_space, _sheet.acceleration(), 0.0);
   Kokkos::deep_copy(_space, _reason, FailureReason::flow);
+  _strength.reset(_space);
   Kokkos::deep_copy(_space, _saved_step, std::int64_t{-1});
   _space.fence("drogue::coupling::forget_steps");
 }
@@ -204,6 +225,7 @@ template <class ExecutionSpace>
 void CoupledSolver<ExecutionSpace>::restore(const flow::Progress& progress) {
   _flow.restore(progress);
   forget_steps();
+  if (_cuts.restart_at(progress.time)) set_lines();
 }
 
 /// Chooses dt and the number of substeps of the block that begins with the present step. Unless dt is fixed,
@@ -236,16 +258,21 @@ void CoupledSolver<ExecutionSpace>::end_block_at(double target, const flow::Prog
 }
 
 template <class ExecutionSpace>
-flow::Stop CoupledSolver<ExecutionSpace>::advance(double target, std::int64_t pause_step,
+flow::Stop CoupledSolver<ExecutionSpace>::advance(double last_target, std::int64_t pause_step,
                                                   const flow::Poll& poll) {
   while (true) {
     const flow::Progress now = _flow.progress();
-    if (now.time >= target) {
+    if (now.time >= last_target) {
       _block.end = now.step;
       return flow::Stop::target;
     }
     if (now.step >= _parameters.flow.max_steps) return flow::Stop::max_steps;
     if (now.step == pause_step) return flow::Stop::pause;
+    if (_cuts.cut_until(now.time)) {
+      set_lines();
+      _block.end = now.step;
+    }
+    const double target = std::min(last_target, _cuts.next());
     if (_flow.has_failed()) {
       return_to_last_step(now);
       // Returns its sides to the time before the failed step.
@@ -284,9 +311,11 @@ void CoupledSolver<ExecutionSpace>::enqueue_step(double dt, bool is_first) {
   _sheet.begin_step(_space, _fabric.state(), velocity, dt);
   static_cast<void>(_fabric.enqueue_steps(_block.substeps));
   _sheet.spread_forces(_space, density, dt);
-  device::launch_each(_space, "drogue::coupling::check_cloth", 1,
-                      CheckClothFunctor<ExecutionSpace>{_flow.control(), _saved_step, _fabric.monitor(),
-                                                        _sheet.transfer(), _reason});
+  _strength.check(_space, _fabric.state().positions);
+  device::launch_each(
+      _space, "drogue::coupling::check_cloth", 1,
+      CheckClothFunctor<ExecutionSpace>{_flow.control(), _saved_step, _fabric.monitor(), _sheet.transfer(),
+                                        _reason, _strength.broken(), _strength.failed()});
   _flow.enqueue_step();
   _sheet.end_step(_space, velocity, density, dt, is_first);
 }
@@ -317,6 +346,14 @@ void CoupledSolver<ExecutionSpace>::return_to_last_step(const flow::Progress& no
   Kokkos::deep_copy(_space, _sheet.transfer().positions, _saved_places);
   spread(_space, _sheet.transfer(), _sheet.force(), density);
   _space.fence("drogue::coupling::return_to_last_step");
+}
+
+template <class ExecutionSpace>
+int CoupledSolver<ExecutionSpace>::failed_line() {
+  int line = no_line;
+  Kokkos::deep_copy(_space, line, _strength.failed());
+  _space.fence("drogue::coupling::failed_line");
+  return line;
 }
 
 template <class ExecutionSpace>

@@ -40,6 +40,12 @@ struct FollowParameters {
   double relaxation = 1.0;
 };
 
+/// Lines that are cut at a time: from then on they have no stiffness.
+struct LineCut {
+  double time = 0.0;       ///< s, > 0
+  std::vector<int> lines;  ///< numbers in the mesh of the cloth
+};
+
 /// Parameters of cloth in air.
 struct Parameters {
   /// On one rank. `external_force` is set by the coupling. With `fixed_dt` = 0, dt follows from `cfl`, by
@@ -55,6 +61,10 @@ struct Parameters {
   /// Steps of the cloth between resolutions of contact, >= 1 (`fabric::Contact::interval`). Each step of the
   /// flow ends with one.
   int contact_interval = 32;
+  std::vector<LineCut> cuts;  ///< a block of steps ends at the time of each
+  /// Tension of each line at the end of a step beyond which the step fails, N; infinite for lines without
+  /// limit; or empty.
+  std::vector<double> line_strength;
 };
 
 }  // namespace drogue::coupling

@@ -16,6 +16,7 @@ enum class FailureReason {
   cloth,        ///< the state of the cloth is not finite, or its contact failed
   left_domain,  ///< the air around a vertex extends beyond a side of the domain
   not_spread,   ///< a force on the air is not finite or larger than 1e270 N
+  line,         ///< a line carries more than its strength: `Solver::failed_line` has its number
 };
 
 /// Division of a run into blocks of steps with constant dt, which end at targets too. A restart that restores
@@ -101,6 +102,10 @@ class Solver : public flow::Solver {
   /// Reason of the failure that ended the last `advance` with `Stop::failed`. Throws only after a failed
   /// kernel.
   [[nodiscard]] virtual FailureReason failure_reason() = 0;
+
+  /// Number of the line whose tension has ended `advance`: the first one in the mesh. Throws only after a
+  /// failed kernel.
+  [[nodiscard]] virtual int failed_line() = 0;
 };
 
 /// Solver on a backend, which must be available. Blocks. Throws std::invalid_argument for parameters out of

@@ -63,6 +63,7 @@ class SolverAdapter final : public Solver {
   void set_frame(const FrameMotion& frame) override { _solver.set_frame(frame); }
   fabric::Totals cloth_totals() override { return _solver.fabric().totals(); }
   FailureReason failure_reason() override { return _solver.failure_reason(); }
+  int failed_line() override { return _solver.failed_line(); }
 
  private:
   void require_vertices(std::size_t count) const {

@@ -94,7 +94,7 @@ SpringAdjacency spring_adjacency(const Mesh& mesh, const Material& material) {
   }
   for (std::size_t k = 0; k < mesh.lines.size(); ++k) {
     const auto [i, j] = mesh.lines[k];
-    const double length = rest_length(i, j);
+    const double length = mesh::rest_length(mesh, k);
     add(i, j, (mesh.line_stiffness.empty() ? material.axial_stiffness : mesh.line_stiffness[k]) / length,
         length);
   }

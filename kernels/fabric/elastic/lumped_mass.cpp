@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "kernels/mesh/edges.hpp"
+
 namespace drogue::fabric {
 
 namespace {
@@ -42,9 +44,7 @@ std::vector<double> lumped_masses(const Mesh& mesh, double area_density, double 
                                          vector_between(position(t[0]), position(t[2]))));
   for (std::size_t k = 0; k < mesh.lines.size(); ++k) {
     const auto& line = mesh.lines[k];
-    const Vector along = vector_between(position(line[0]), position(line[1]));
-    share(line, (mesh.line_density.empty() ? line_density : mesh.line_density[k]) *
-                    std::hypot(along[0], along[1], along[2]));
+    share(line, (mesh.line_density.empty() ? line_density : mesh.line_density[k]) * rest_length(mesh, k));
   }
   if (lumping == Lumping::equal) {
     const double whole = std::accumulate(mass.begin(), mass.end(), 0.0);

@@ -32,7 +32,7 @@ template <class ExecutionSpace>
   if (share(count) > max_ring_threads) return std::nullopt;
   const bool rings = has_triangles(p.material.model) || has_pressure;
   const Patches patches =
-      make_patches(p.mesh.rest, ring_adjacency(rings ? p.mesh : Mesh{p.mesh.rest, {}, {}, {}, {}}),
+      make_patches(p.mesh.rest, ring_adjacency(rings ? p.mesh : Mesh{p.mesh.rest, {}, {}, {}, {}, {}}),
                    spring_adjacency(p.mesh, p.material), count);
   const PatchViews<ExecutionSpace> views = patch_views(instance.space(), patches);
   const bool pairs = patches.team <= max_pair_vertices && !has_loads;

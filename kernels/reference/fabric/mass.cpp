@@ -27,9 +27,10 @@ std::vector<double> row_sum_masses(const Mesh& mesh, double area_density, double
                        mesh.rest[static_cast<std::size_t>(line[0])][axis];
       squared += d * d;
     }
+    const bool has_length = !mesh.line_length.empty() && mesh.line_length[k] > 0.0;
+    const double length = has_length ? mesh.line_length[k] : std::sqrt(squared);
     // Diagonal entry 1/3 plus off-diagonal entry 1/6.
-    for (const int i : line)
-      mass[static_cast<std::size_t>(i)] += density * std::sqrt(squared) * (1.0 / 3.0 + 1.0 / 6.0);
+    for (const int i : line) mass[static_cast<std::size_t>(i)] += density * length * (1.0 / 3.0 + 1.0 / 6.0);
   }
   return mass;
 }

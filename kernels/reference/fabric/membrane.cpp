@@ -193,11 +193,14 @@ namespace {
 template <class Visit>
 void for_elements(const fabric::Material& material, const Mesh& mesh, const Visit& visit) {
   const auto at_rest = [&](int i) { return mesh.rest[static_cast<std::size_t>(i)]; };
-  const auto spring = [&](const std::array<int, 2>& ends, fabric::Model model, double k) {
-    const std::array<Vector, 2> rest = {at_rest(ends[0]), at_rest(ends[1])};
+  const auto spring_between = [&](const std::array<int, 2>& ends, const std::array<Vector, 2>& rest,
+                                  fabric::Model model, double k) {
     visit(ends, [=, &material](const auto& now) {
       return spring_energy(model, material.tension_only, k, rest, now);
     });
+  };
+  const auto spring = [&](const std::array<int, 2>& ends, fabric::Model model, double k) {
+    spring_between(ends, {at_rest(ends[0]), at_rest(ends[1])}, model, k);
   };
   if (fabric::has_triangles(material.model)) {
     for (const auto& t : mesh.triangles) {
@@ -209,9 +212,11 @@ void for_elements(const fabric::Material& material, const Mesh& mesh, const Visi
   }
   for (std::size_t k = 0; k < mesh.lines.size(); ++k) {
     const auto& line = mesh.lines[k];
-    const double rest = length(difference(at_rest(line[1]), at_rest(line[0])));
+    double rest = length(difference(at_rest(line[1]), at_rest(line[0])));
+    if (!mesh.line_length.empty() && mesh.line_length[k] > 0.0) rest = mesh.line_length[k];
     const double axial = mesh.line_stiffness.empty() ? material.axial_stiffness : mesh.line_stiffness[k];
-    spring(line, fabric::Model::edge, axial / rest);
+    // The energy of Model II depends on the distance at rest alone.
+    spring_between(line, {Vector{}, Vector{rest, 0.0, 0.0}}, fabric::Model::edge, axial / rest);
   }
 }
 

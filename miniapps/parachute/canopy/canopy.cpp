@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <numeric>
 
@@ -19,23 +20,35 @@ int quotient_up(double length, double part) {
   return std::max(1, static_cast<int>(std::ceil(length / part * (1.0 - 1e-9))));
 }
 
-/// Radii of the rings from the vent to the skirt, m.
-std::vector<double> ring_radii(const Canopy& canopy) {
+/// Distances of the rings from the apex along a meridian, m, from the vent to the skirt. One of them is the
+/// edge of the flat cloth.
+std::vector<double> ring_distances(const Canopy& canopy) {
   const double inner = 0.5 * canopy.vent, outer = 0.5 * canopy.diameter;
   const int bands = quotient_up(outer - inner, canopy.edge_length);
-  std::vector<double> radii;
-  for (int k = inner > 0.0 ? 0 : 1; k < bands; ++k) radii.push_back(inner + (outer - inner) * k / bands);
-  radii.push_back(outer);
-  return radii;
+  std::vector<double> distances;
+  for (int k = inner > 0.0 ? 0 : 1; k < bands; ++k) distances.push_back(inner + (outer - inner) * k / bands);
+  distances.push_back(outer);
+  if (!canopy.has_skirt()) return distances;
+  const int more = quotient_up(canopy.skirt.length, canopy.edge_length);
+  for (int k = 1; k <= more; ++k) distances.push_back(outer + canopy.skirt.length * k / more);
+  return distances;
 }
 
-/// Places of vertices in the flat cloth: radius, m, and angle as a fraction of the circle.
+/// Distance of a point of a meridian from the axis at rest, m.
+double radius_at(const Canopy& canopy, double distance) {
+  const double flat = 0.5 * canopy.diameter;
+  if (distance <= flat) return distance;
+  return flat + (distance - flat) / canopy.skirt.length * (canopy.skirt_radius() - flat);
+}
+
+/// Places of vertices in the cloth: distance from the apex along a meridian, m, and angle as a fraction of
+/// the circle.
 struct PolarPoint {
-  double radius = 0.0, turn = 0.0;
+  double distance = 0.0, turn = 0.0;
 };
 
 /// Rings of vertices and the triangles between them.
-struct FlatCloth {
+struct RingMesh {
   std::vector<PolarPoint> points;
   std::vector<std::array<int, 3>> triangles;
   std::vector<int> ring_begin;  ///< first vertex of each ring
@@ -44,7 +57,7 @@ struct FlatCloth {
 
 /// Triangles between two rings that share `sectors` aligned vertices, whose edges become edges of the mesh.
 /// In each sector the triangle with the shorter new edge comes next; equal ones alternate.
-void join_rings(FlatCloth& cloth, std::size_t inner) {
+void join_rings(RingMesh& cloth, std::size_t inner) {
   const int a0 = cloth.ring_begin[inner], na = cloth.ring_size[inner];
   const int b0 = cloth.ring_begin[inner + 1], nb = cloth.ring_size[inner + 1];
   const int sectors = std::gcd(na, nb), per_a = na / sectors, per_b = nb / sectors;
@@ -70,25 +83,25 @@ void join_rings(FlatCloth& cloth, std::size_t inner) {
   }
 }
 
-FlatCloth make_flat_cloth(const Canopy& canopy) {
-  FlatCloth cloth;
+RingMesh make_rings(const Canopy& canopy) {
+  RingMesh cloth;
   if (canopy.vent == 0.0) cloth.points.push_back({});
-  const std::vector<double> radii = ring_radii(canopy);
+  const std::vector<double> distances = ring_distances(canopy);
   cloth.ring_size = ring_sizes(canopy);
-  for (std::size_t k = 0; k < radii.size(); ++k) {
+  for (std::size_t k = 0; k < distances.size(); ++k) {
     cloth.ring_begin.push_back(static_cast<int>(cloth.points.size()));
     for (int i = 0; i < cloth.ring_size[k]; ++i)
-      cloth.points.push_back({radii[k], static_cast<double>(i) / cloth.ring_size[k]});
+      cloth.points.push_back({distances[k], static_cast<double>(i) / cloth.ring_size[k]});
   }
   if (canopy.vent == 0.0)
     for (int i = 0; i < cloth.ring_size[0]; ++i)
       cloth.triangles.push_back({0, 1 + i, 1 + (i + 1) % cloth.ring_size[0]});
-  for (std::size_t k = 0; k + 1 < radii.size(); ++k) join_rings(cloth, k);
+  for (std::size_t k = 0; k + 1 < distances.size(); ++k) join_rings(cloth, k);
   return cloth;
 }
 
 /// Bands along edges: the skirt, the vent, and each seam as far as the rings have a vertex for it.
-void add_reinforcement(const Canopy& canopy, const FlatCloth& cloth, fabric::Mesh& mesh) {
+void add_reinforcement(const Canopy& canopy, const RingMesh& cloth, fabric::Mesh& mesh) {
   const auto add = [&](int a, int b, double stiffness) {
     mesh.lines.push_back({a, b});
     mesh.line_stiffness.push_back(stiffness);
@@ -102,8 +115,9 @@ void add_reinforcement(const Canopy& canopy, const FlatCloth& cloth, fabric::Mes
   if (!(canopy.reinforcement.seams > 0.0)) return;
   for (std::size_t ring = 0; ring + 1 < cloth.ring_begin.size(); ++ring) {
     const int inner = cloth.ring_size[ring], outer = cloth.ring_size[ring + 1];
-    for (int seam = 0; seam < std::min(inner, canopy.gores); ++seam) {
-      const int seams = std::min(inner, canopy.gores);
+    const int seams = std::min(inner, canopy.gores);
+    if (canopy.gores % seams != 0 || outer % seams != 0) continue;  // its vertices lie beside the seams
+    for (int seam = 0; seam < seams; ++seam) {
       add(cloth.ring_begin[ring] + seam * (inner / seams),
           cloth.ring_begin[ring + 1] + seam * (outer / seams), canopy.reinforcement.seams);
     }
@@ -123,7 +137,8 @@ struct CanopyAxes {
 
 CanopyAxes axes_of(const Canopy& canopy) {
   const double angle = canopy.axis_angle() * pi / 180.0, c = std::cos(angle), s = std::sin(angle);
-  return {{c, 0.0, -s}, {0.0, 1.0, 0.0}, {s, 0.0, c}};
+  const double azimuth = canopy.azimuth * pi / 180.0, u = std::cos(azimuth), v = std::sin(azimuth);
+  return {{c * u, c * v, -s}, {-v, u, 0.0}, {s * u, s * v, c}};
 }
 
 /// Polar angles from the axis of the rays of a pleated cone: the seams, and the folds halfway between them.
@@ -150,19 +165,63 @@ Vector pleated_place(const Canopy& canopy, const CanopyAxes& axes, const PolarPo
   const double l = std::sin((1.0 - part) * between) / std::sin(between),
                r = std::sin(part * between) / std::sin(between);
   const double apex = 0.5 * canopy.diameter * std::cos(angles[0]);  // above the skirt
-  return axes.place(canopy.centre, at.radius * (l * left[0] + r * right[0]),
-                    at.radius * (l * left[1] + r * right[1]),
-                    apex + at.radius * (l * left[2] + r * right[2]));
+  return axes.place(canopy.centre, at.distance * (l * left[0] + r * right[0]),
+                    at.distance * (l * left[1] + r * right[1]),
+                    apex + at.distance * (l * left[2] + r * right[2]));
 }
 
-Vector flat_place(const Canopy& canopy, const CanopyAxes& axes, const PolarPoint& at) {
-  const double angle = 2.0 * pi * at.turn;
-  return axes.place(canopy.centre, at.radius * std::cos(angle), at.radius * std::sin(angle), 0.0);
+/// Place of a vertex in the cloth as constructed.
+Vector constructed_place(const Canopy& canopy, const CanopyAxes& axes, const PolarPoint& at) {
+  const double angle = 2.0 * pi * at.turn, radius = radius_at(canopy, at.distance);
+  const double below = at.distance - 0.5 * canopy.diameter;  // the edge of the flat cloth, along the skirt
+  const double height = canopy.skirt_height() * (below > 0.0 ? 1.0 - below / canopy.skirt.length : 1.0);
+  return axes.place(canopy.centre, radius * std::cos(angle), radius * std::sin(angle), height);
 }
 
-/// Distance of the payload from the plane of a skirt, m, with lines at their length.
-double payload_distance(const Canopy& canopy, double skirt_radius) {
+/// Distance of the point where the lines meet from the plane of a skirt, m, with lines at their length.
+double meeting_distance(const Canopy& canopy, double skirt_radius) {
   return std::sqrt(std::max(0.0, canopy.lines.length * canopy.lines.length - skirt_radius * skirt_radius));
+}
+
+/// Place of the payload below a skirt of a radius, m, with lines and riser at their lengths.
+Vector payload_place(const Canopy& canopy, double skirt_radius) {
+  const double riser = canopy.riser ? canopy.riser->length : 0.0;
+  return axes_of(canopy).place(canopy.centre, 0.0, 0.0, -meeting_distance(canopy, skirt_radius) - riser);
+}
+
+/// Springs between neighbouring vertices of the skirt that have lines.
+void add_reefing(const Canopy& canopy, CanopyMesh& to) {
+  fabric::Mesh& mesh = to.fabric.mesh;
+  mesh.line_length.resize(mesh.lines.size(), 0.0);
+  if (!canopy.reefing) return;
+  for (std::size_t k = 0; k < to.skirt.size(); ++k) {
+    to.reefing.push_back(static_cast<int>(mesh.lines.size()));
+    mesh.lines.push_back({to.skirt[k], to.skirt[(k + 1) % to.skirt.size()]});
+    mesh.line_stiffness.push_back(canopy.reefing->stiffness);
+    mesh.line_length.push_back(canopy.reefing->length / canopy.gores);
+  }
+}
+
+/// Suspension lines, the riser and the payload, unless it is shared.
+void add_lines(const Canopy& canopy, const CanopyAxes& axes, CanopyMesh& to) {
+  fabric::Parameters& p = to.fabric;
+  const double half_line = 0.5 * canopy.lines.length * canopy.lines.line_density;
+  for (const int i : to.skirt) p.mass[static_cast<std::size_t>(i)] += half_line;
+  const double at_rest = canopy.skirt_radius(), at_start = canopy.starting_skirt_radius();
+  const auto meeting_place = [&](double radius) {
+    return axes.place(canopy.centre, 0.0, 0.0, -meeting_distance(canopy, radius));
+  };
+  const auto first = static_cast<int>(p.mesh.lines.size());
+  for (int k = 0; k < canopy.gores; ++k) to.suspension.push_back(first + k);
+  const double mass = canopy.riser ? canopy.riser->mass : canopy.payload.mass;
+  const int meeting = fabric::add_payload(
+      p, {meeting_place(at_rest), mass + half_line * canopy.gores, canopy.lines.stiffness}, to.skirt);
+  to.positions.push_back(meeting_place(at_start));
+  if (!canopy.riser || canopy.payload.shared) return;
+  to.riser = static_cast<int>(p.mesh.lines.size());
+  fabric::add_payload(p, {payload_place(canopy, at_rest), canopy.payload.mass, canopy.riser->stiffness},
+                      std::array{meeting});
+  to.positions.push_back(payload_place(canopy, at_start));
 }
 
 }  // namespace
@@ -180,26 +239,48 @@ double Canopy::axis_angle() const {
   }
 }
 
-double Canopy::nominal_area() const { return 0.25 * pi * diameter * diameter; }
+double Canopy::skirt_radius() const { return 0.5 * (has_skirt() ? skirt.diameter : diameter); }
+
+double Canopy::skirt_height() const {
+  if (!has_skirt()) return 0.0;
+  const double inwards = 0.5 * diameter - skirt_radius();
+  return std::sqrt(std::max(0.0, skirt.length * skirt.length - inwards * inwards));
+}
+
+double Canopy::nominal_area() const {
+  const double flat = 0.25 * pi * diameter * diameter;
+  if (!has_skirt()) return flat;
+  return flat + pi * (0.5 * diameter + skirt_radius()) * skirt.length;
+}
+
+double Canopy::starting_skirt_radius() const {
+  return shape == CanopyShape::partly_closed ? closure * skirt_radius() : skirt_radius();
+}
 
 std::size_t Canopy::vertices() const {
   const std::vector<int> sizes = ring_sizes(*this);
-  return static_cast<std::size_t>(std::accumulate(sizes.begin(), sizes.end(), vent == 0.0 ? 2 : 1));
+  const int ends = (riser ? 1 : 0) + (payload.shared ? 0 : 1);
+  const int others = (vent == 0.0 ? 1 : 0) + (has_lines() ? ends : 0);
+  return static_cast<std::size_t>(std::accumulate(sizes.begin(), sizes.end(), others));
 }
 
 std::vector<int> ring_sizes(const Canopy& canopy) {
-  const std::vector<double> radii = ring_radii(canopy);
-  std::vector<int> sizes(radii.size());
+  const std::vector<double> distances = ring_distances(canopy);
+  std::vector<int> sizes(distances.size());
   int divided = canopy.gores;
-  for (std::size_t k = radii.size(); k-- > 0;) {
-    const int least = quotient_up(2.0 * pi * radii[k], canopy.edge_length);
+  for (std::size_t k = distances.size(); k-- > 0;) {
+    const int least = quotient_up(2.0 * pi * radius_at(canopy, distances[k]), canopy.edge_length);
     const int per_gore = quotient_up(least, canopy.gores);
     // An even number of edges has a vertex in the middle of the gore, where a pleat folds.
     sizes[k] = canopy.gores * (per_gore == 1 ? 1 : per_gore + per_gore % 2);
-    if (k + 1 == radii.size()) continue;  // every line needs a vertex of the skirt
+    // Every line needs a vertex of the skirt; seams run through a conical skirt.
+    if (k + 1 == distances.size() || distances[k] >= 0.5 * canopy.diameter) continue;
     // Near the vent, not every seam has a vertex: from ring to ring inwards, their number is divided.
-    for (int fewer = divided; fewer >= std::max(least, 3); --fewer)
+    const int fewest = std::max(least, 3);
+    for (int fewer = divided; fewer >= fewest; --fewer)
       if (divided % fewer == 0) sizes[k] = fewer;
+    // Without a divisor near it, such as for a prime number of gores, no seam has a vertex.
+    if (sizes[k] > 3 * fewest) sizes[k] = fewest;
     divided = std::min(divided, sizes[k]);
   }
   return sizes;
@@ -207,12 +288,12 @@ std::vector<int> ring_sizes(const Canopy& canopy) {
 
 CanopyMesh make_canopy(const Canopy& canopy) {
   CanopyMesh result;
-  const FlatCloth cloth = make_flat_cloth(canopy);
+  const RingMesh cloth = make_rings(canopy);
   const CanopyAxes axes = axes_of(canopy);
   const bool is_pleated = canopy.shape == CanopyShape::partly_closed;
   fabric::Parameters& p = result.fabric;
   for (const PolarPoint& at : cloth.points) {
-    p.mesh.rest.push_back(flat_place(canopy, axes, at));
+    p.mesh.rest.push_back(constructed_place(canopy, axes, at));
     result.positions.push_back(is_pleated ? pleated_place(canopy, axes, at) : p.mesh.rest.back());
   }
   p.mesh.triangles = cloth.triangles;
@@ -221,18 +302,77 @@ CanopyMesh make_canopy(const Canopy& canopy) {
   add_reinforcement(canopy, cloth, p.mesh);
   const int skirt_begin = cloth.ring_begin.back(), per_gore = cloth.ring_size.back() / canopy.gores;
   for (int gore = 0; gore < canopy.gores; ++gore) result.skirt.push_back(skirt_begin + gore * per_gore);
-  const double half_line = 0.5 * canopy.lines.length * canopy.lines.line_density;
-  for (const int i : result.skirt) p.mass[static_cast<std::size_t>(i)] += half_line;
-  const double radius = 0.5 * canopy.diameter;
-  const Vector rest = axes.place(canopy.centre, 0.0, 0.0, -payload_distance(canopy, radius));
-  fabric::add_payload(p, {rest, canopy.payload.mass + half_line * canopy.gores, canopy.lines.stiffness},
-                      result.skirt);
-  const double skirt_radius = is_pleated ? radius * canopy.closure : radius;
-  result.positions.push_back(axes.place(canopy.centre, 0.0, 0.0, -payload_distance(canopy, skirt_radius)));
+  add_reefing(canopy, result);
+  if (canopy.has_lines()) add_lines(canopy, axes, result);
   p.pinned.assign(p.mesh.rest.size(), 0);
-  if (canopy.payload.fixed) p.pinned.back() = 7;
+  if (canopy.has_lines() && canopy.payload.fixed && !canopy.payload.shared) p.pinned.back() = 7;
   return result;
 }
+
+void place_at_shared_payloads(std::vector<Canopy>& canopies) {
+  for (Canopy& canopy : canopies) {
+    if (!canopy.payload.shared || !canopy.riser) continue;
+    const Canopy& owner = canopies[static_cast<std::size_t>(*canopy.payload.shared)];
+    canopy.centre = axes_of(canopy).place(
+        payload_place(owner, owner.starting_skirt_radius()), 0.0, 0.0,
+        canopy.riser->length + meeting_distance(canopy, canopy.starting_skirt_radius()));
+  }
+}
+
+namespace {
+
+/// Line from the point where the lines of a canopy meet to the payload of an earlier one.
+int add_shared_riser(const Riser& riser, std::size_t meeting, std::size_t payload, fabric::Mesh& mesh) {
+  mesh.lines.push_back({static_cast<int>(meeting), static_cast<int>(payload)});
+  mesh.line_stiffness.push_back(riser.stiffness);
+  mesh.line_length.push_back(riser.length);
+  return static_cast<int>(mesh.lines.size()) - 1;
+}
+
+void append_canopy(const Canopy& canopy, const coupling::PorousLaw& law, Sheets& sheets) {
+  fabric::Parameters& p = sheets.fabric;
+  const CanopyMesh one = make_canopy(canopy);
+  const int begin = static_cast<int>(p.mesh.rest.size()), line = static_cast<int>(p.mesh.lines.size());
+  const auto append = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
+  CanopyRows rows;
+  rows.begin = p.mesh.rest.size();
+  rows.cloth_end = rows.begin + one.cloth_vertices;
+  rows.triangles_begin = p.mesh.triangles.size();
+  append(p.mesh.rest, one.fabric.mesh.rest);
+  append(p.mass, one.fabric.mass);
+  append(p.pinned, one.fabric.pinned);
+  append(p.mesh.line_stiffness, one.fabric.mesh.line_stiffness);
+  append(p.mesh.line_length, one.fabric.mesh.line_length);
+  append(sheets.positions, one.positions);
+  for (const auto& t : one.fabric.mesh.triangles)
+    p.mesh.triangles.push_back({t[0] + begin, t[1] + begin, t[2] + begin});
+  for (const auto& ends : one.fabric.mesh.lines) p.mesh.lines.push_back({ends[0] + begin, ends[1] + begin});
+  p.mesh.line_length.resize(p.mesh.lines.size(), 0.0);
+  rows.end = p.mesh.rest.size();
+  rows.triangles_end = p.mesh.triangles.size();
+  for (const int k : one.reefing) rows.reefing.push_back(line + k);
+  for (const int k : one.suspension) rows.suspension.push_back(line + k);
+  if (one.riser) rows.riser = line + *one.riser;
+  if (canopy.has_lines()) rows.payload = rows.end - 1;
+  if (canopy.payload.shared && canopy.riser) {
+    rows.payload = sheets.canopies[static_cast<std::size_t>(*canopy.payload.shared)].payload;
+    rows.riser = add_shared_riser(*canopy.riser, rows.end - 1, rows.payload.value(), p.mesh);
+  }
+  sheets.line_strength.resize(p.mesh.lines.size(), std::numeric_limits<double>::infinity());
+  if (canopy.lines.strength)
+    for (const int k : rows.suspension)
+      sheets.line_strength[static_cast<std::size_t>(k)] = *canopy.lines.strength;
+  if (canopy.reefing && canopy.reefing->cut) sheets.cuts.push_back({*canopy.reefing->cut, rows.reefing});
+  if (canopy.payload.release)
+    sheets.cuts.push_back({*canopy.payload.release, rows.riser ? std::vector{*rows.riser} : rows.suspension});
+  sheets.laws.insert(sheets.laws.end(), one.positions.size(), law);
+  sheets.canopies.push_back(rows);
+  p.material.membrane_modulus = canopy.membrane_modulus;
+  p.material.poisson = canopy.poisson;
+  p.material.tension_only = true;
+}
+
+}  // namespace
 
 Sheets make_all_sheets(const std::vector<Body>& bodies, const std::vector<Canopy>& canopies, double density,
                        double viscosity) {
@@ -245,26 +385,8 @@ Sheets make_all_sheets(const std::vector<Body>& bodies, const std::vector<Canopy
     law.no_slip = !body.slips();
     sheets.laws.insert(sheets.laws.end(), static_cast<std::size_t>(body.vertices()), law);
   }
-  for (const Canopy& canopy : canopies) {
-    const CanopyMesh one = make_canopy(canopy);
-    const int begin = static_cast<int>(p.mesh.rest.size());
-    const auto append = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
-    CanopyRows rows{p.mesh.rest.size(), p.mesh.rest.size() + one.cloth_vertices, p.mesh.triangles.size(), 0};
-    append(p.mesh.rest, one.fabric.mesh.rest);
-    append(p.mass, one.fabric.mass);
-    append(p.pinned, one.fabric.pinned);
-    append(p.mesh.line_stiffness, one.fabric.mesh.line_stiffness);
-    append(sheets.positions, one.positions);
-    for (const auto& t : one.fabric.mesh.triangles)
-      p.mesh.triangles.push_back({t[0] + begin, t[1] + begin, t[2] + begin});
-    for (const auto& line : one.fabric.mesh.lines) p.mesh.lines.push_back({line[0] + begin, line[1] + begin});
-    rows.triangles_end = p.mesh.triangles.size();
-    sheets.laws.insert(sheets.laws.end(), one.positions.size(), law_of(canopy.porosity, density, viscosity));
-    sheets.canopies.push_back(rows);
-    p.material.membrane_modulus = canopy.membrane_modulus;
-    p.material.poisson = canopy.poisson;
-    p.material.tension_only = true;
-  }
+  for (const Canopy& canopy : canopies)
+    append_canopy(canopy, law_of(canopy.porosity, density, viscosity), sheets);
   return sheets;
 }
 

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "kernels/fabric/parameters.hpp"
@@ -11,7 +12,10 @@ namespace drogue::parachute_app {
 
 /// Kinds of canopies.
 enum class CanopyKind {
-  flat_circular,  ///< a flat disk of cloth with a vent
+  flat_circular,   ///< a flat disk of cloth with a vent
+  extended_skirt,  ///< such a disk with a conical skirt
+  guide_surface,   ///< likewise, with a skirt that guides the stream inwards to a narrow mouth
+  sheet,           ///< a flat disk without lines and payload
 };
 
 /// Kinds of cloth.
@@ -31,15 +35,38 @@ enum class CanopyShape {
 
 /// Suspension lines, one per gore, without mass unless given.
 struct SuspensionLines {
-  double length = 7.0;        ///< m, from the payload to the skirt
-  double stiffness = 8000.0;  ///< E A, N
-  double line_density = 0.0;  ///< kg/m; half of it moves with the skirt, half with the payload
+  double length = 7.0;             ///< m, from the payload to the skirt
+  double stiffness = 8000.0;       ///< E A, N
+  double line_density = 0.0;       ///< kg/m; half of it moves with the skirt, half with the payload
+  std::optional<double> strength;  ///< N, of each line
 };
 
 /// Point mass below the lines.
 struct CanopyPayload {
-  double mass = 100.0;  ///< kg
-  bool fixed = false;   ///< it does not move
+  double mass = 100.0;            ///< kg
+  bool fixed = false;             ///< it does not move
+  std::optional<double> release;  ///< s, at which the lines, or the riser, are cut
+  std::optional<int> shared;      ///< number of the canopy that has the payload
+};
+
+/// Strap from the point where the lines meet to the payload.
+struct Riser {
+  double length = 0.0;     ///< m
+  double stiffness = 1e5;  ///< E A, N
+  double mass = 1.0;       ///< kg, at the point where the lines meet
+};
+
+/// Closed line through the skirt that keeps the mouth narrow until it is cut.
+struct ReefingLine {
+  double length = 0.0;        ///< m
+  double stiffness = 8000.0;  ///< E A, N
+  std::optional<double> cut;  ///< s
+};
+
+/// Conical skirt below the edge of the flat cloth.
+struct ConicalSkirt {
+  double length = 0.0;    ///< m, along the cloth
+  double diameter = 0.0;  ///< m, of its lower edge
 };
 
 /// E A of bands sewn along edges of the cloth, N; zero: none.
@@ -53,40 +80,62 @@ struct Canopy {
   double diameter = 8.534;  ///< m, of the flat cloth
   int gores = 28;
   double vent = 0.457;  ///< m, diameter; 0: none
+  ConicalSkirt skirt;   ///< of extended-skirt and guide-surface canopies
   Fabric cloth = Fabric::mil_c_7020_1;
   double area_density = 0.0373;       ///< kg/m^2
   double membrane_modulus = 20000.0;  ///< N/m
   double poisson = 0.3;
   double edge_length = 0.0;  ///< m, largest edge along the rings and the meridians
   CanopyShape shape = CanopyShape::flat;
-  double closure = 0.5;            ///< radius of the skirt over that of the flat cloth, if partly closed
-  double angle = 0.0;              ///< degrees, of the axis from z towards x, unless the shape has its own
+  double closure = 0.5;  ///< radius of the skirt over that of the flat cloth, if partly closed
+  double angle = 0.0;    ///< degrees, of the axis from z, unless the shape has its own
+  double azimuth = 0.0;  ///< degrees, of the direction towards which the axis leans, from x towards y
   std::array<double, 3> centre{};  ///< m, of the skirt
   SuspensionLines lines;
+  std::optional<Riser> riser;
   CanopyPayload payload;
+  std::optional<ReefingLine> reefing;
   Reinforcement reinforcement;
   Porosity porosity = {PorosityLaw::forchheimer, 254.4, 37.6};
 
   /// Angle of the axis from z, degrees. Does not throw.
   [[nodiscard]] double axis_angle() const;
-  /// Nominal area, which includes the vent, m^2. Does not throw.
+  /// True for kinds with a conical skirt. Does not throw.
+  [[nodiscard]] bool has_skirt() const {
+    return kind == CanopyKind::extended_skirt || kind == CanopyKind::guide_surface;
+  }
+  /// True for kinds with suspension lines and a payload. Does not throw.
+  [[nodiscard]] bool has_lines() const { return kind != CanopyKind::sheet; }
+  /// Radius of the edge to which the lines are attached, in the cloth at rest, m. Does not throw.
+  [[nodiscard]] double skirt_radius() const;
+  /// Height of the flat cloth above that edge at rest, m; 0 without a conical skirt. Does not throw.
+  [[nodiscard]] double skirt_height() const;
+  /// Nominal area: that of the cloth and the vent, m^2. Does not throw.
   [[nodiscard]] double nominal_area() const;
-  /// Number of vertices, the payload included. Does not throw.
+  /// Radius of the edge to which the lines are attached, at the start, m. Does not throw.
+  [[nodiscard]] double starting_skirt_radius() const;
+  /// Number of vertices, those of a riser and of an own payload included. Does not throw.
   [[nodiscard]] std::size_t vertices() const;
 };
 
 /// A canopy as a mesh, without its place in that of the scene.
 struct CanopyMesh {
-  fabric::Parameters fabric;              ///< the payload is the last vertex
+  fabric::Parameters
+      fabric;  ///< after the cloth: where the lines meet the riser, and the payload unless shared
   std::vector<fabric::Vector> positions;  ///< at the start, m
   std::size_t cloth_vertices = 0;         ///< they come first
   std::vector<int> skirt;                 ///< vertices to which the lines are attached, one per gore
+  std::vector<int> reefing, suspension;   ///< numbers of lines
+  std::optional<int> riser;               ///< line to an own payload
 };
 
 /// Rows of a canopy in the vectors of the solver.
 struct CanopyRows {
-  std::size_t begin = 0, payload = 0;  ///< cloth: [begin, payload)
+  std::size_t begin = 0, cloth_end = 0, end = 0;  ///< vertices, those of the cloth first
+  std::optional<std::size_t> payload;             ///< perhaps of an earlier canopy
   std::size_t triangles_begin = 0, triangles_end = 0;
+  std::vector<int> reefing, suspension;  ///< numbers of lines
+  std::optional<int> riser;
 };
 
 /// All sheets of a scene as one fabric.
@@ -95,15 +144,22 @@ struct Sheets {
   std::vector<fabric::Vector> positions;  ///< at the start, m
   std::vector<coupling::PorousLaw> laws;  ///< one per vertex
   std::vector<CanopyRows> canopies;
+  std::vector<coupling::LineCut> cuts;  ///< of reefing lines, and of lines to payloads
+  std::vector<double> line_strength;    ///< N, of every line of the mesh; infinite: no limit
 };
 
-/// Numbers of vertices of the rings of a canopy from the vent or the centre to the skirt. Each divides or is
-/// a multiple of the number of gores. Does not throw.
+/// Sets the centres of canopies that share the payload of an earlier one, so that their lines and risers are
+/// straight at the start. Does not throw.
+void place_at_shared_payloads(std::vector<Canopy>& canopies);
+
+/// Numbers of vertices of the rings of a canopy from the vent or the centre to the skirt. Each is a multiple
+/// of the number of gores or divides it, unless it has no divisor that keeps edges above a third of
+/// `edge_length`. Does not throw.
 [[nodiscard]] std::vector<int> ring_sizes(const Canopy& canopy);
 
-/// Mesh, masses, lines and payload of a canopy. At rest the cloth is flat in its plane through the centre,
-/// and the lines just reach its skirt; `positions` are those of its shape. Throws std::invalid_argument for
-/// parameters out of range.
+/// Mesh, masses, lines and payload of a canopy. At rest the cloth has its constructed shape, with the edge of
+/// the skirt in the plane through the centre, and the lines just reach it; `positions` are those of its
+/// shape. Throws std::invalid_argument for parameters out of range.
 [[nodiscard]] CanopyMesh make_canopy(const Canopy& canopy);
 
 /// The bodies, then the canopies, in a fluid of given density, kg/m^3, and viscosity, Pa s. Throws

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <string>
 
 #include "common/scene/read.hpp"
@@ -22,18 +23,33 @@ constexpr double most_canopy_vertices = 1048576.0;  // 2^20
 
 std::string name_of(std::size_t index) { return "canopy[" + std::to_string(index) + "]"; }
 
+/// Key that places a canopy.
+std::string place_key(const Canopy& canopy, const std::string& name) {
+  return name + (canopy.payload.shared ? ".payload.shared" : ".centre");
+}
+
 /// Width of the cells along an axis, m.
 double cell_width(const flow::Parameters& p, std::size_t axis) {
   return lattice_of(p, flow::StateField::pressure).spacing[axis];
 }
 
 void check_measures(const Table& root, const Canopy& canopy, const std::string& name) {
-  const double radius = 0.5 * canopy.diameter;
+  const double radius = canopy.skirt_radius();
   if (canopy.vent >= canopy.diameter)
     contradict(root, name + ".vent",
                name + ".vent = " + real_text(canopy.vent) + " m leaves nothing of a canopy of " +
                    real_text(canopy.diameter) + " m diameter: it must be smaller");
-  if (canopy.lines.length <= radius)
+  const double narrowing = std::abs(0.5 * canopy.diameter - radius);
+  if (canopy.has_skirt() && canopy.skirt.length < narrowing)
+    contradict(root, name + ".skirt.length",
+               name + ".skirt.length = " + real_text(canopy.skirt.length) +
+                   " m: the skirt does not reach from a radius of " + real_text(0.5 * canopy.diameter) +
+                   " m to one of " + real_text(radius) + " m; at least " + real_text(narrowing) + " m");
+  if (canopy.has_skirt() && canopy.shape == CanopyShape::partly_closed)
+    contradict(
+        root, name + ".shape",
+        name + ".shape = \"partly-closed\" needs kind = \"flat-circular\", whose cloth folds to a cone");
+  if (canopy.has_lines() && canopy.lines.length <= radius)
     contradict(root, name + ".lines.length",
                name + ".lines.length = " + real_text(canopy.lines.length) +
                    " m: the lines do not reach the payload from a skirt of " + real_text(radius) +
@@ -44,6 +60,24 @@ void check_measures(const Table& root, const Canopy& canopy, const std::string& 
                name + ".closure = " + real_text(canopy.closure) + ": the folds of " +
                    std::to_string(canopy.gores) + " gores would meet at the axis; it must be larger than " +
                    real_text(least));
+}
+
+/// A reefing line that is stretched from the start on would pull the skirt together at once.
+void check_reefing(const Table& root, const Canopy& canopy, const std::string& name) {
+  if (!canopy.reefing) return;
+  const std::string key = name + ".reefing.length";
+  const double side = 2.0 * std::sin(std::numbers::pi / canopy.gores),
+               around = canopy.gores * side * canopy.starting_skirt_radius(),
+               open = canopy.gores * side * canopy.skirt_radius();
+  if (canopy.reefing->length < (1.0 - 1e-9) * around)
+    contradict(root, key,
+               key + " = " + real_text(canopy.reefing->length) +
+                   " m is shorter than the skirt at the start, " + real_text(around) +
+                   " m around; shape = \"partly-closed\" with a smaller closure shortens it");
+  if (canopy.reefing->length >= open)
+    contradict(root, key,
+               key + " = " + real_text(canopy.reefing->length) + " m does not reef: it must be less than " +
+                   real_text(open) + " m, the length around the skirt");
 }
 
 void check_edges(const Table& root, const flow::Parameters& p, const Canopy& canopy,
@@ -70,14 +104,14 @@ void check_edges(const Table& root, const flow::Parameters& p, const Canopy& can
 
 /// The forces of cloth act up to one cell beyond it.
 void check_inside(const Table& root, const flow::Parameters& p, const std::vector<Vector>& positions,
-                  const std::string& name) {
+                  const std::string& key, const std::string& name) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (p.boundary[2 * axis].kind == flow::BoundaryKind::periodic) continue;
     const auto [low, high] = std::ranges::minmax(positions, {}, [axis](const Vector& x) { return x[axis]; });
     const double margin = cell_width(p, axis), least = p.low[axis] + margin, most = p.high[axis] - margin;
     const double rounding = 1e-9 * (p.high[axis] - p.low[axis]);
     if (low[axis] >= least - rounding && high[axis] <= most + rounding) continue;
-    contradict(root, name + ".centre",
+    contradict(root, key,
                name + " with its payload reaches from " + real_text(low[axis]) + " to " +
                    real_text(high[axis]) + " m along " + axis_names[axis] +
                    ", beyond the cells beside the sides of the domain: it must lie between " +
@@ -103,6 +137,24 @@ bool are_near(const std::vector<Vector>& first, const std::vector<Vector>& secon
   return false;
 }
 
+/// Checks that no triangles of a canopy cross those of a body or an earlier canopy: then, vertices of both
+/// lie within an edge of each other. `cloths`: vertices of the canopies so far, the last one included.
+void check_overlaps(const Table& root, const FlowScene& scene, const std::vector<std::vector<Vector>>& cloths,
+                    const std::vector<std::vector<Vector>>& bodies) {
+  const std::size_t i = cloths.size() - 1;
+  const Canopy& canopy = scene.canopies[i];
+  const auto check = [&](const std::vector<Vector>& other, double edge_length, const std::string& what) {
+    const double distance = canopy.edge_length + edge_length;
+    if (are_near(other, cloths[i], distance))
+      contradict(root, place_key(canopy, name_of(i)),
+                 name_of(i) + " overlaps " + what + " at the start: they come closer than " +
+                     real_text(distance) + " m, the sum of their edge lengths");
+  };
+  for (std::size_t k = 0; k < i; ++k) check(cloths[k], scene.canopies[k].edge_length, name_of(k));
+  for (std::size_t k = 0; k < bodies.size(); ++k)
+    check(bodies[k], scene.bodies[k].edge_length, "body[" + std::to_string(k) + "]");
+}
+
 /// The grid moves with the first payload.
 void check_frame(const Table& root, const FlowScene& scene) {
   if (scene.frame != Frame::follow) return;
@@ -112,8 +164,10 @@ void check_frame(const Table& root, const FlowScene& scene) {
                follow + " needs an axis whose sides are \"inflow\" or \"outflow\": the grid moves along it");
   if (!scene.bodies.empty())
     contradict(root, "grid.frame", follow + " cannot be combined with a [[body]], which stays in its place");
+  if (!scene.canopies.front().has_lines())
+    contradict(root, "grid.frame", follow + " needs a payload; canopy[0] is a sheet");
   for (std::size_t i = 0; i < scene.canopies.size(); ++i)
-    if (scene.canopies[i].payload.fixed)
+    if (scene.canopies[i].payload.fixed && !scene.canopies[i].payload.shared)
       contradict(root, "grid.frame",
                  follow + " needs payloads that move freely; " + name_of(i) + ".payload.fixed is true");
   const auto require_constant = [&](const std::string& key, const VectorExpression& velocity) {
@@ -140,14 +194,35 @@ void check_contact(const Table& root, const FlowScene& scene) {
 
 }  // namespace
 
+void check_and_place_canopies(const Table& root, std::vector<Canopy>& canopies) {
+  for (std::size_t i = 0; i < canopies.size(); ++i) {
+    const std::optional<int> shared = canopies[i].payload.shared;
+    if (!shared) continue;
+    const std::string key = name_of(i) + ".payload.shared";
+    const std::string given = key + " = " + std::to_string(*shared);
+    if (*shared >= static_cast<int>(i))
+      contradict(root, key, given + ": it must be the number of an earlier canopy, from 0");
+    const Canopy& owner = canopies[static_cast<std::size_t>(*shared)];
+    if (owner.payload.shared || !owner.has_lines())
+      contradict(root, key, given + ": this canopy has no payload of its own");
+    if (!canopies[i].riser)
+      contradict(
+          root, key,
+          "missing key \"" + name_of(i) + ".riser\" (needed with payload.shared): it leads to the payload");
+  }
+  place_at_shared_payloads(canopies);
+}
+
 void check_canopies(const Table& root, const FlowScene& scene) {
   if (scene.canopies.empty()) return;
   const flow::Parameters& p = scene.parameters;
-  std::vector<std::vector<Vector>> cloths;
+  std::vector<std::vector<Vector>> cloths, bodies;
+  for (const Body& body : scene.bodies) bodies.push_back(sorted_by_x(mesh_of(body).rest));
   for (std::size_t i = 0; i < scene.canopies.size(); ++i) {
     const Canopy& canopy = scene.canopies[i];
     const std::string name = name_of(i);
     check_measures(root, canopy, name);
+    check_reefing(root, canopy, name);
     check_porosity(root, scene, name, canopy.porosity);
     check_edges(root, p, canopy, name);
     const Canopy& first = scene.canopies.front();
@@ -158,17 +233,10 @@ void check_canopies(const Table& root, const FlowScene& scene) {
       contradict(root, name + ".poisson",
                  name + ".poisson differs from that of canopy[0]; all canopies have the same one");
     CanopyMesh mesh = make_canopy(canopy);
-    check_inside(root, p, mesh.positions, name);
+    check_inside(root, p, mesh.positions, place_key(canopy, name), name);
     mesh.positions.resize(mesh.cloth_vertices);
     cloths.push_back(sorted_by_x(std::move(mesh.positions)));
-    for (std::size_t other = 0; other < i; ++other) {
-      // Where triangles cross, vertices of both lie within an edge of each other.
-      const double distance = canopy.edge_length + scene.canopies[other].edge_length;
-      if (are_near(cloths[other], cloths[i], distance))
-        contradict(root, name + ".centre",
-                   name + " overlaps " + name_of(other) + " at the start: they come closer than " +
-                       real_text(distance) + " m, the sum of their edge lengths");
-    }
+    check_overlaps(root, scene, cloths, bodies);
   }
   check_frame(root, scene);
   check_contact(root, scene);

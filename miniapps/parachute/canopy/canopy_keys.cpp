@@ -9,7 +9,10 @@ namespace {
 using scene::Choices;
 using scene::Table;
 
-const Choices<CanopyKind> canopy_choices = {{"flat-circular", CanopyKind::flat_circular}};
+const Choices<CanopyKind> canopy_choices = {{"flat-circular", CanopyKind::flat_circular},
+                                            {"extended-skirt", CanopyKind::extended_skirt},
+                                            {"guide-surface", CanopyKind::guide_surface},
+                                            {"sheet", CanopyKind::sheet}};
 const Choices<Fabric> cloth_choices = {{"mil-c-7020-1", Fabric::mil_c_7020_1}, {"custom", Fabric::custom}};
 const Choices<CanopyShape> shape_choices = {{"flat", CanopyShape::flat},
                                             {"partly-closed", CanopyShape::partly_closed},
@@ -48,7 +51,7 @@ void declare_place(Table& table, Canopy& canopy) {
       .at_most(1.0)
       .when([&canopy] { return canopy.shape == CanopyShape::partly_closed; },
             "with shape = \"partly-closed\"", "shape");
-  table.value("angle", scene::real_codec(canopy.angle), "Angle of the axis from z towards x")
+  table.value("angle", scene::real_codec(canopy.angle), "Angle of the axis from z")
       .unit("degrees")
       .range(-180.0, 180.0)
       .when(
@@ -56,13 +59,21 @@ void declare_place(Table& table, Canopy& canopy) {
             return canopy.shape == CanopyShape::flat || canopy.shape == CanopyShape::partly_closed;
           },
           "with shape = \"flat\" or \"partly-closed\"", "shape");
-  table.value("centre", vector_codec(canopy.centre), "Centre of the skirt at the start").unit("m");
+  table
+      .value("azimuth", scene::real_codec(canopy.azimuth),
+             "Direction towards which the axis leans, from x towards y")
+      .unit("degrees")
+      .range(-360.0, 360.0);
+  table.value("centre", vector_codec(canopy.centre), "Centre of the skirt at the start")
+      .unit("m")
+      .when([&canopy] { return !canopy.payload.shared; }, "without payload.shared, which places the canopy",
+            "payload");
 }
 
 void declare_lines(Table& table, SuspensionLines& lines) {
   table
       .value("length", scene::real_codec(lines.length),
-             "Length from the payload to the skirt; longer than the radius of the flat cloth")
+             "Length from the payload to the skirt; longer than the radius of the skirt at rest")
       .unit("m")
       .above(0.0);
   table
@@ -75,6 +86,63 @@ void declare_lines(Table& table, SuspensionLines& lines) {
              "Mass per length; half of it moves with the skirt, half with the payload")
       .unit("kg/m")
       .at_least(0.0);
+  table
+      .value("strength", scene::real_codec(lines.strength),
+             "Tension of a line that ends the run as a failure")
+      .unit("N")
+      .above(0.0)
+      .default_text("none");
+}
+
+void declare_payload(Table& table, CanopyPayload& payload) {
+  const auto is_own = [&payload] { return !payload.shared; };
+  table
+      .value("shared", optional_integer_codec(payload.shared),
+             "Number of the earlier [[canopy]] that has the payload; needs a riser")
+      .range(0, 1e6)
+      .default_text("an own payload");
+  table.value("mass", scene::real_codec(payload.mass), "Mass")
+      .unit("kg")
+      .above(0.0)
+      .when(is_own, "without shared", "shared");
+  table.value("fixed", scene::boolean_codec(payload.fixed), "The payload does not move")
+      .when(is_own, "without shared", "shared");
+  table
+      .value("release", scene::real_codec(payload.release),
+             "Time at which the riser, or without one the lines, are cut")
+      .unit("s")
+      .above(0.0)
+      .default_text("never");
+}
+
+void declare_riser(Table& table, Riser& riser) {
+  table.value("length", scene::real_codec(riser.length), "Length").unit("m").above(0.0).required();
+  table
+      .value("stiffness", scene::real_codec(riser.stiffness),
+             "Young's modulus times cross-section; it carries no compression")
+      .unit("N")
+      .above(0.0);
+  table.value("mass", scene::real_codec(riser.mass), "Mass, at the point where the lines meet")
+      .unit("kg")
+      .above(0.0);
+}
+
+void declare_reefing(Table& table, ReefingLine& reefing) {
+  table
+      .value("length", scene::real_codec(reefing.length),
+             "Length around; at least that of the skirt at the start")
+      .unit("m")
+      .above(0.0)
+      .required();
+  table
+      .value("stiffness", scene::real_codec(reefing.stiffness),
+             "Young's modulus times cross-section; it carries no compression")
+      .unit("N")
+      .above(0.0);
+  table.value("cut", scene::real_codec(reefing.cut), "Time at which it is cut")
+      .unit("s")
+      .above(0.0)
+      .default_text("never");
 }
 
 void declare_reinforcement(Table& table, Reinforcement& bands) {
@@ -93,11 +161,34 @@ void declare_reinforcement(Table& table, Reinforcement& bands) {
 }  // namespace
 
 void declare_canopy(Table& table, Canopy& canopy) {
-  table.value("kind", scene::choice_codec(canopy.kind, canopy_choices), "A flat disk of cloth with a vent")
+  const auto has_lines = [&canopy] { return canopy.has_lines(); };
+  const std::string no_sheet = "unless kind = \"sheet\"";
+  table
+      .value("kind", scene::choice_codec(canopy.kind, canopy_choices),
+             "A flat disk of cloth with a vent, such a disk with a conical skirt that is wide or narrow at "
+             "its mouth, or a "
+             "disk without lines and payload")
       .required();
   table.value("diameter", scene::real_codec(canopy.diameter), "Diameter of the flat cloth")
       .unit("m")
       .above(0.0);
+  table
+      .table(
+          "skirt",
+          [&](Table& skirt) {
+            skirt.value("length", scene::real_codec(canopy.skirt.length), "Length along the cloth")
+                .unit("m")
+                .above(0.0)
+                .required();
+            skirt.value("diameter", scene::real_codec(canopy.skirt.diameter), "Diameter of the lower edge")
+                .unit("m")
+                .above(0.0)
+                .required();
+          },
+          "Conical skirt below the flat cloth")
+      .when([&canopy] { return canopy.has_skirt(); }, "with kind = \"extended-skirt\" or \"guide-surface\"",
+            "kind")
+      .required();
   table.value("gores", scene::integer_codec(canopy.gores), "Number of gores, and of suspension lines")
       .range(3, 1000);
   table.value("vent", scene::real_codec(canopy.vent), "Diameter of the vent; 0: none")
@@ -105,16 +196,24 @@ void declare_canopy(Table& table, Canopy& canopy) {
       .at_least(0.0);
   declare_cloth(table, canopy);
   declare_place(table, canopy);
-  table.table(
-      "lines", [&](Table& lines) { declare_lines(lines, canopy.lines); },
-      "Suspension lines from the payload to the skirt, one per gore; they exchange no force with the fluid");
-  table.table(
-      "payload",
-      [&](Table& payload) {
-        payload.value("mass", scene::real_codec(canopy.payload.mass), "Mass").unit("kg").above(0.0);
-        payload.value("fixed", scene::boolean_codec(canopy.payload.fixed), "The payload does not move");
-      },
-      "Point mass where the lines meet");
+  table
+      .table(
+          "lines", [&](Table& lines) { declare_lines(lines, canopy.lines); },
+          "Suspension lines to the skirt, one per gore; they exchange no force with the fluid")
+      .when(has_lines, no_sheet, "kind");
+  table
+      .table(
+          "payload", [&](Table& payload) { declare_payload(payload, canopy.payload); },
+          "Point mass where the lines meet, or at the end of the riser")
+      .when(has_lines, no_sheet, "kind");
+  table
+      .optional_table("riser", canopy.riser, declare_riser,
+                      "Strap from the point where the lines meet to the payload, where they end without it")
+      .when(has_lines, no_sheet, "kind");
+  table
+      .optional_table("reefing", canopy.reefing, declare_reefing,
+                      "Closed line through the skirt, between the suspension lines")
+      .when(has_lines, no_sheet, "kind");
   table.table(
       "reinforcement", [&](Table& bands) { declare_reinforcement(bands, canopy.reinforcement); },
       "Bands sewn on the cloth");

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "kernels/mesh/edges.hpp"
+
 namespace drogue::parachute_app {
 namespace {
 
@@ -13,6 +15,30 @@ constexpr int shadow_squares = 256;  // along the larger extent
 
 double distance_between(const Vector& a, const Vector& b) {
   return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+}
+
+/// Force of a line without compression on its second end, N.
+Vector pull_of_line(const fabric::Mesh& mesh, std::size_t line, std::span<const Vector> positions) {
+  const Vector &a = positions[static_cast<std::size_t>(mesh.lines[line][0])],
+               &b = positions[static_cast<std::size_t>(mesh.lines[line][1])];
+  const double length = distance_between(a, b), rest = mesh::rest_length(mesh, line);
+  const double tension = std::max(0.0, mesh.line_stiffness[line] * (length / rest - 1.0));
+  Vector pull{};
+  for (std::size_t axis = 0; axis < 3; ++axis) pull[axis] = tension * (a[axis] - b[axis]) / length;
+  return pull;
+}
+
+/// Mean of vectors of the cloth with the weights of its masses, kg.
+Vector mean_over_mass(const CanopyRows& rows, const std::vector<double>& masses,
+                      const std::vector<Vector>& vectors) {
+  Vector sum{};
+  double mass = 0.0;
+  for (std::size_t i = rows.begin; i < rows.cloth_end; ++i) {
+    mass += masses[i];
+    for (std::size_t axis = 0; axis < 3; ++axis) sum[axis] += masses[i] * vectors[i][axis];
+  }
+  for (double& component : sum) component /= mass;
+  return sum;
 }
 
 /// Squares in the plane of x and y that a shadow covers.
@@ -75,14 +101,21 @@ double projected_area(std::span<const Vector> positions, std::span<const std::ar
   return shadow.area();
 }
 
-CanopyMeasures measure(const CanopyRows& rows, const fabric::Mesh& mesh, const SheetState& state) {
+CanopyMeasures measure(const CanopyRows& rows, const fabric::Parameters& sheets, const SheetState& state,
+                       bool released) {
+  const fabric::Mesh& mesh = sheets.mesh;
   CanopyMeasures result;
-  for (std::size_t i = rows.begin; i < rows.payload; ++i)
+  for (std::size_t i = rows.begin; i < rows.cloth_end; ++i)
     for (std::size_t axis = 0; axis < 3; ++axis) result.force[axis] -= state.on_air[i][axis];
-  // The payload has no forces but those of its lines.
-  result.line_force = state.elastic[rows.payload];
-  result.payload = state.positions[rows.payload];
-  result.velocity = state.velocities[rows.payload];
+  // A payload on lines has no other forces; one on risers may have several.
+  if (rows.payload && !released)
+    result.line_force = rows.riser
+                            ? pull_of_line(mesh, static_cast<std::size_t>(*rows.riser), state.positions)
+                            : state.elastic[*rows.payload];
+  result.payload =
+      rows.payload ? state.positions[*rows.payload] : mean_over_mass(rows, sheets.mass, state.positions);
+  result.velocity =
+      rows.payload ? state.velocities[*rows.payload] : mean_over_mass(rows, sheets.mass, state.velocities);
   const std::span triangles =
       std::span(mesh.triangles).subspan(rows.triangles_begin, rows.triangles_end - rows.triangles_begin);
   result.projected_area = projected_area(state.positions, triangles);

@@ -17,9 +17,9 @@ struct SheetState {
 /// Measures of a canopy.
 struct CanopyMeasures {
   fabric::Vector force{};       ///< of the air on the cloth, N
-  fabric::Vector line_force{};  ///< of the lines on the payload, N
-  fabric::Vector payload{};     ///< m
-  fabric::Vector velocity{};    ///< of the payload, m/s
+  fabric::Vector line_force{};  ///< of the lines or the riser on the payload, N
+  fabric::Vector payload{};     ///< m; of the centre of mass of a sheet without payload
+  fabric::Vector velocity{};    ///< of the payload, or of that centre, m/s
   double projected_area = 0.0;  ///< on a plane normal to z, m^2
   double largest_strain = 0.0;  ///< of an edge of the cloth; 0 if all are slack
 };
@@ -29,9 +29,10 @@ struct CanopyMeasures {
 [[nodiscard]] double projected_area(std::span<const fabric::Vector> positions,
                                     std::span<const std::array<int, 3>> triangles);
 
-/// Measures of a canopy in the mesh of all sheets. Throws only std::bad_alloc.
-[[nodiscard]] CanopyMeasures measure(const CanopyRows& rows, const fabric::Mesh& mesh,
-                                     const SheetState& state);
+/// Measures of a canopy in the mesh of all sheets. `released`: its payload has been released. Throws only
+/// std::bad_alloc.
+[[nodiscard]] CanopyMeasures measure(const CanopyRows& rows, const fabric::Parameters& sheets,
+                                     const SheetState& state, bool released);
 
 /// Magnitude of the sum of a total force on the air, N, and the reactions to the forces of the vertices on
 /// it, relative to the sum of the magnitudes of these. Does not throw.

@@ -243,6 +243,18 @@ Codec sides_codec(std::optional<SidePair>& sides) {
           scene::back_to_default(sides)};
 }
 
+Codec optional_integer_codec(std::optional<int>& value) {
+  return {"integer",
+          [&value](const Node& node, const Limits& limits) {
+            std::int64_t number = 0;
+            std::string fault = scene::read_integer(node, limits, number);
+            if (fault.empty()) value = static_cast<int>(number);
+            return fault;
+          },
+          [&value] { return value ? std::optional(std::to_string(*value)) : std::nullopt; },
+          scene::back_to_default(value)};
+}
+
 Codec time_step_codec(double& dt) {
   return {"real or \"auto\"",
           [&dt](const Node& node, const Limits& limits) -> std::string {

@@ -36,6 +36,9 @@ scene::Codec points_codec(std::vector<std::array<double, 2>>& points);
 /// Type of both sides of an axis, or an array of two types. Does not throw.
 scene::Codec sides_codec(std::optional<SidePair>& sides);
 
+/// Integer, absent if not set. Does not throw.
+scene::Codec optional_integer_codec(std::optional<int>& value);
+
 /// A time step, s, or "auto", which stands for 0. Does not throw.
 scene::Codec time_step_codec(double& dt);
 

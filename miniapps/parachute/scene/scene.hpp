@@ -120,8 +120,10 @@ struct Verify {
   std::vector<BodyForce> forces;
   std::vector<CanopyMean> drags;            ///< drag coefficients with the nominal area
   std::vector<CanopyMean> terminal_speeds;  ///< of the fluid relative to the payload, m/s
+  std::vector<CanopyMean> projected_areas;  ///< m^2
   std::vector<CanopyPeak> peak_forces;
   std::optional<double> force_balance;   ///< relative
+  std::optional<double> intersections;   ///< number
   std::vector<ForceWindow> mean_forces;  ///< over the reference, N
   std::vector<ForceWindow> frequencies;  ///< of the force, times the reference, s
   std::vector<Profile> profiles;

@@ -248,6 +248,7 @@ void complete_and_check(const Table& root, FlowScene& scene) {
   check_net_inflow(root, scene);
   check_solver(root, p);
   complete_and_check_bodies(root, scene);
+  check_and_place_canopies(root, scene.canopies);
   check_canopies(root, scene);
   complete_fields(root, scene);
   check_verify(root, scene);

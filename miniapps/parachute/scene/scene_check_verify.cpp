@@ -117,9 +117,17 @@ void check_canopy_checks(const Table& root, const FlowScene& scene) {
   const Verify& verify = scene.verify;
   check_canopy_means(root, scene, "drag", verify.drags);
   check_canopy_means(root, scene, "terminal_speed", verify.terminal_speeds);
+  check_canopy_means(root, scene, "projected_area", verify.projected_areas);
+  if (verify.intersections) {
+    if (!scene.contact)
+      contradict(root, "verify.intersections", "verify.intersections needs coupling.contact = true");
+    require_rows(root, scene, "verify.intersections");
+  }
   for (std::size_t i = 0; i < verify.peak_forces.size(); ++i) {
     const std::string path = "verify.peak_force[" + std::to_string(i) + "]";
     check_canopy_number(root, scene, path, verify.peak_forces[i].canopy);
+    if (!scene.canopies[static_cast<std::size_t>(verify.peak_forces[i].canopy)].has_lines())
+      contradict(root, path + ".canopy", path + ".canopy: this canopy is a sheet, which has no lines");
     if (const auto& time = verify.peak_forces[i].time; time && !((*time)[0] < (*time)[1]))
       contradict(root, path + ".time", path + ".time: the first number must be the smaller");
     require_rows(root, scene, path);

@@ -116,12 +116,21 @@ void declare_canopy_checks(Table& table, Verify& verify) {
       "terminal_speed", verify.terminal_speeds,
       [](Table& speed, CanopyMean& value) { declare_canopy_mean(speed, value, "m/s"); },
       "Mean speeds of the fluid far upstream relative to payloads");
+  table.tables(
+      "projected_area", verify.projected_areas,
+      [](Table& area, CanopyMean& value) { declare_canopy_mean(area, value, "m^2"); },
+      "Mean areas of the shadows of canopies along z");
   table.tables("peak_force", verify.peak_forces, declare_peak_force,
                "Largest forces of the lines on payloads in the rows of the history");
   table
       .value("force_balance", scene::real_codec(verify.force_balance),
              "Largest difference of the total force on the grid from that of the sheets on the fluid that "
              "passes, relative to the sum of the magnitudes")
+      .at_least(0.0);
+  table
+      .value("intersections", scene::real_codec(verify.intersections),
+             "Largest number of intersections of sheets and lines with sheets that passes, at rows of the "
+             "history")
       .at_least(0.0);
 }
 

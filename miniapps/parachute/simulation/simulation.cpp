@@ -71,8 +71,10 @@ coupling::Parameters coupled_parameters(const FlowScene& scene, const Sheets& sh
   p.fabric.contact.self = scene.contact;
   p.fabric.contact.thickness = scene.thickness;
   p.sheet.law_of_vertex = sheets.laws;
+  p.cuts = sheets.cuts;
+  p.line_strength = sheets.line_strength;
   if (scene.frame == Frame::follow) {
-    const std::size_t payload = sheets.canopies.front().payload;
+    const std::size_t payload = sheets.canopies.front().payload.value();
     p.follow.vertex = static_cast<int>(payload);
     p.follow.axes = scene.open_axes();
     p.follow.place = sheets.positions[payload];

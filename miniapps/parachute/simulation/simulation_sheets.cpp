@@ -2,10 +2,12 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <sstream>
 #include <string>
 
 #include "kernels/mesh/edges.hpp"
+#include "kernels/reference/fabric/intersections.hpp"
 #include "miniapps/parachute/scene/functions.hpp"
 #include "miniapps/parachute/simulation/simulation.hpp"
 
@@ -88,6 +90,7 @@ void Simulation::append_canopy_columns(std::vector<run::Column>& columns) const 
   }
   columns.insert(columns.end(),
                  {{"cloth_kinetic_energy", "J"}, {"cloth_elastic_energy", "J"}, {"force_balance", ""}});
+  if (_scene.verify.intersections) columns.push_back({"intersections", ""});
   if (_scene.frame != Frame::follow) return;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (!_scene.open_axes()[axis]) continue;
@@ -102,8 +105,10 @@ void Simulation::append_canopy_values(framework::HistoryRow& row) {
   const coupling::FrameMotion frame = _coupled->frame();
   const Vector origin = frame.position(row.time);
   std::vector<CanopyMeasures> canopies;
-  for (const CanopyRows& rows : _sheets.canopies) {
-    CanopyMeasures& one = canopies.emplace_back(measure(rows, _sheets.fabric.mesh, state));
+  for (std::size_t i = 0; i < _sheets.canopies.size(); ++i) {
+    const std::optional<double> release = _scene.canopies[i].payload.release;
+    CanopyMeasures& one = canopies.emplace_back(
+        measure(_sheets.canopies[i], _sheets.fabric, state, release && row.time > *release));
     for (std::size_t axis = 0; axis < 3; ++axis) {
       one.payload[axis] += origin[axis];
       one.velocity[axis] += frame.velocity[axis];
@@ -119,10 +124,17 @@ void Simulation::append_canopy_values(framework::HistoryRow& row) {
     for (const double v : state.velocities[i]) totals.kinetic -= 0.5 * _sheets.fabric.mass[i] * v * v;
   row.values.insert(row.values.end(), {kinetic_energy_at_rest(totals, frame.velocity, _sheets.fabric.mass),
                                        totals.elastic, balance});
+  double intersections = 0.0;
+  if (_scene.verify.intersections) {
+    const fabric::Mesh& mesh = _sheets.fabric.mesh;
+    intersections =
+        static_cast<double>(reference::intersections(state.positions, mesh.triangles, mesh.lines).size());
+    row.values.push_back(intersections);
+  }
   if (_scene.frame == Frame::follow)
     for (std::size_t axis = 0; axis < 3; ++axis)
       if (_scene.open_axes()[axis]) row.values.insert(row.values.end(), {frame.velocity[axis], origin[axis]});
-  _record.add(row.time, canopies, balance);
+  _record.add(row.time, canopies, balance, intersections);
 }
 
 run::DatasetSpec Simulation::canopy_field_spec(const std::string& name) const {
@@ -187,6 +199,18 @@ std::string Simulation::sheet_failure_text(coupling::FailureReason reason) {
          << " s; a smaller run.cfl may save the run";
     return text.str();
   }
+  if (reason == coupling::FailureReason::line) {
+    const int line = _coupled->failed_line();
+    for (std::size_t i = 0; i < _sheets.canopies.size(); ++i) {
+      const std::vector<int>& lines = _sheets.canopies[i].suspension;
+      const auto found = std::ranges::find(lines, line);
+      if (found == lines.end()) continue;
+      text << "line " << found - lines.begin() << " of canopy[" << i << "] breaks: it carries more than "
+           << "canopy[" << i << "].lines.strength = " << _scene.canopies[i].lines.strength.value_or(0.0)
+           << " N in the step after t = " << time << " s";
+    }
+    return text.str();
+  }
   // The vertex that is closest to a side, in cells.
   std::vector<Vector> positions(_sheets.positions.size()), velocities(positions.size());
   _coupled->download_cloth(positions, velocities);
@@ -211,9 +235,11 @@ std::string Simulation::sheet_failure_text(coupling::FailureReason reason) {
   }
   for (std::size_t i = 0; i < _sheets.canopies.size(); ++i) {
     const CanopyRows& rows = _sheets.canopies[i];
-    if (vertex >= rows.begin && vertex <= rows.payload)
-      text << "canopy[" << i
-           << "] leaves the domain: " << (vertex == rows.payload ? "its payload" : "its cloth");
+    if (vertex >= rows.begin && vertex < rows.end)
+      text << "canopy[" << i << "] leaves the domain: "
+           << (vertex < rows.cloth_end  ? "its cloth"
+               : vertex == rows.payload ? "its payload"
+                                        : "its riser");
   }
   text << " at (" << positions[vertex][0] << ", " << positions[vertex][1] << ", " << positions[vertex][2]
        << ") m comes closer than a cell to the side " << side_names[closest] << " after t = " << time

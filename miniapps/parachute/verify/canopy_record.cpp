@@ -15,15 +15,17 @@ double length_of(const Vector& v) { return std::hypot(v[0], v[1], v[2]); }
 
 }  // namespace
 
-CanopyRecord::CanopyRecord(const FlowScene& scene) : _scene(scene), _columns(2 + 3 * scene.canopies.size()) {
+CanopyRecord::CanopyRecord(const FlowScene& scene)
+    : _scene(scene), _columns(first_column + per_canopy * scene.canopies.size()) {
   if (scene.canopies.empty()) return;
   for (std::size_t axis = 0; axis < 3; ++axis)
     _stream[axis] = SpaceTimeFunction(scene.velocity[axis]).constant().value_or(0.0);
 }
 
-void CanopyRecord::add(double time, const std::vector<CanopyMeasures>& canopies, double balance) {
+void CanopyRecord::add(double time, const std::vector<CanopyMeasures>& canopies, double balance,
+                       double intersections) {
   if (!_values.empty() && time <= at(rows() - 1, 0)) return;
-  _values.insert(_values.end(), {time, balance});
+  _values.insert(_values.end(), {time, balance, intersections});
   for (std::size_t i = 0; i < canopies.size(); ++i) {
     const CanopyMeasures& canopy = canopies[i];
     Vector u = _stream;
@@ -34,7 +36,7 @@ void CanopyRecord::add(double time, const std::vector<CanopyMeasures>& canopies,
     }
     const double speed = length_of(u), pressure = 0.5 * _scene.parameters.density * speed * speed;
     const double drag = along == 0.0 ? 0.0 : along / (speed * pressure * _scene.canopies[i].nominal_area());
-    _values.insert(_values.end(), {drag, speed, length_of(canopy.line_force)});
+    _values.insert(_values.end(), {drag, speed, length_of(canopy.line_force), canopy.projected_area});
   }
 }
 
@@ -53,15 +55,20 @@ double CanopyRecord::mean(std::size_t column, double from, double to) const {
 CanopyRecord::Peak CanopyRecord::peak(std::size_t canopy) const {
   Peak largest;
   for (std::size_t row = 0; row < rows(); ++row)
-    if (const double force = at(row, 4 + 3 * canopy); force > largest.force) largest = {force, at(row, 0)};
+    if (const double force = at(row, first_column + 2 + per_canopy * canopy); force > largest.force)
+      largest = {force, at(row, 0)};
   return largest;
 }
 
-double CanopyRecord::balance() const {
-  double largest = 0.0;
-  for (std::size_t row = 0; row < rows(); ++row) largest = run::maximum_or_nan(largest, at(row, 1));
-  return largest;
+double CanopyRecord::largest(std::size_t column) const {
+  double result = 0.0;
+  for (std::size_t row = 0; row < rows(); ++row) result = run::maximum_or_nan(result, at(row, column));
+  return result;
 }
+
+double CanopyRecord::balance() const { return largest(1); }
+
+double CanopyRecord::intersections() const { return largest(2); }
 
 void CanopyRecord::write(run::RestartWriter& writer) const {
   writer.number("canopy_rows", static_cast<double>(rows()));

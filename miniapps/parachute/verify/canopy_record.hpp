@@ -21,19 +21,25 @@ class CanopyRecord {
   /// Keeps a reference to `scene`.
   explicit CanopyRecord(const FlowScene& scene);
 
-  /// Adds a row at a time, s, unless there is one of the same or a later time. `balance`: `force_balance`.
-  void add(double time, const std::vector<CanopyMeasures>& canopies, double balance);
+  /// Adds a row at a time, s, unless there is one of the same or a later time. `balance`: `force_balance`;
+  /// `intersections`: their number, or 0.
+  void add(double time, const std::vector<CanopyMeasures>& canopies, double balance, double intersections);
 
   /// Mean drag coefficient 2 F / (rho U^2 S0) of the rows in [from, to], s: trapezoidal rule. F is the force
   /// along U, the velocity of the fluid far upstream relative to the payload; S0 the nominal area. NaN with
   /// fewer than two rows. Does not throw.
   [[nodiscard]] double mean_drag(std::size_t canopy, double from, double to) const {
-    return mean(2 + 3 * canopy, from, to);
+    return mean(first_column + per_canopy * canopy, from, to);
   }
 
   /// Mean magnitude of U, m/s, likewise.
   [[nodiscard]] double mean_speed(std::size_t canopy, double from, double to) const {
-    return mean(3 + 3 * canopy, from, to);
+    return mean(first_column + 1 + per_canopy * canopy, from, to);
+  }
+
+  /// Mean projected area, m^2, likewise.
+  [[nodiscard]] double mean_area(std::size_t canopy, double from, double to) const {
+    return mean(first_column + 3 + per_canopy * canopy, from, to);
   }
 
   /// Largest force of the lines on a payload. Does not throw.
@@ -42,6 +48,9 @@ class CanopyRecord {
   /// Largest `force_balance`. Does not throw.
   [[nodiscard]] double balance() const;
 
+  /// Largest number of intersections. Does not throw.
+  [[nodiscard]] double intersections() const;
+
   /// Writes all rows. Throws `Failure` (io_error).
   void write(run::RestartWriter& writer) const;
 
@@ -49,6 +58,9 @@ class CanopyRecord {
   void read(const run::RestartReader& reader);
 
  private:
+  static constexpr std::size_t first_column = 3, per_canopy = 4;  ///< columns
+
+  [[nodiscard]] double largest(std::size_t column) const;
   [[nodiscard]] std::size_t rows() const { return _values.size() / _columns; }
   [[nodiscard]] double at(std::size_t row, std::size_t column) const {
     return _values[row * _columns + column];
@@ -58,7 +70,8 @@ class CanopyRecord {
   const FlowScene& _scene;
   fabric::Vector _stream{};  ///< velocity of the fluid far upstream, m/s
   std::size_t _columns;
-  /// Row by row: time, balance; then drag coefficient, speed and line force of each canopy.
+  /// Row by row: time, balance, intersections; then drag coefficient, speed, line force and projected area of
+  /// each canopy.
   std::vector<double> _values;
 };
 

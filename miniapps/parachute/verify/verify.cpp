@@ -159,6 +159,11 @@ void Simulation::check_canopies(run::ResultDocument& result) {
                _record.mean_speed(static_cast<std::size_t>(speed.canopy), speed.from, speed.to),
                speed.target);
   }
+  for (std::size_t i = 0; i < wanted.projected_areas.size(); ++i) {
+    const CanopyMean& area = wanted.projected_areas[i];
+    check_mean("projected_area_" + std::to_string(i),
+               _record.mean_area(static_cast<std::size_t>(area.canopy), area.from, area.to), area.target);
+  }
   // A value passes between two bounds if its distance from their mean is at most half of theirs.
   const auto check_bounds = [&](const std::string& name, double value, const std::array<double, 2>& bounds) {
     result.metrics.set("canopies", name, value);
@@ -172,6 +177,7 @@ void Simulation::check_canopies(run::ResultDocument& result) {
     if (peak.time) check_bounds(name + "_time", time, *peak.time);
   }
   if (wanted.force_balance) result.add_check("force_balance", _record.balance(), *wanted.force_balance);
+  if (wanted.intersections) result.add_check("intersections", _record.intersections(), *wanted.intersections);
 }
 
 void Simulation::check_force_history(const run::RunDirectory* directory, run::ResultDocument& result) const {

@@ -44,8 +44,12 @@ def drag_coefficient(run: Run, canopy: int) -> np.ndarray:
 
 
 def nominal_area(run: Run, canopy: int) -> float:
-    """Area of the flat cloth with its vent, m^2."""
-    return np.pi / 4 * run.scene["canopy"][canopy]["diameter"] ** 2
+    """Area of the cloth with its vent, m^2: a disk, and the frustum of a cone below it if there is a skirt."""
+    keys = run.scene["canopy"][canopy]
+    area = np.pi / 4 * keys["diameter"] ** 2
+    if skirt := keys.get("skirt"):
+        area += np.pi / 2 * (keys["diameter"] + skirt["diameter"]) * skirt["length"]
+    return area
 
 
 def _checks(run: Run, key: str) -> list[Band]:

@@ -1,7 +1,9 @@
 // ctest-label: exact
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 #include <stdexcept>
 
@@ -184,6 +186,62 @@ TEST(CoupledSolver, StripsThatMeetDoNotCrossAndKeepTheMomentum) {
   EXPECT_LT(met.approach, 1.0) << "m/s, from 6: the strips have stopped one another";
 }
 
+/// The strip with a line that pulls two of its vertices together until a time, s, and one that stays.
+CoupledCase strip_with_lines(double cut) {
+  CoupledCase c = flying_strip();
+  c.p.fabric.mesh.lines = {{0, 12}, {14, 30}};
+  c.p.fabric.mesh.line_stiffness = {2e-3, 1e-3};
+  c.p.fabric.mesh.line_length = {0.1, 0.1};
+  c.p.cuts = {{cut, {0}}};
+  return c;
+}
+
+TEST(CoupledSolver, LinesAreCutAtTheirTime) {
+  constexpr double cut = 0.0501;
+  const CoupledCase c = strip_with_lines(cut);
+  CoupledRun run(c);
+  const auto pull = [&] {
+    std::vector<Vector> forces(c.x.size());
+    run.solver->elastic_forces(forces);
+    fabric::Parameters other = c.p.fabric;
+    other.mesh.line_stiffness = {0.0, 1e-3};
+    other.integrator = fabric::Integrator::symplectic_euler;
+    other.dt = 1e-4;
+    const auto cloth = fabric::create_solver(tested_backend, other);
+    std::vector<Vector> x(c.x.size()), v(c.x.size()), without(c.x.size());
+    run.solver->download_cloth(x, v);
+    cloth->upload(x, v);
+    cloth->forces(without);
+    return distance(forces, without);
+  };
+  bool stopped_at_cut = false;
+  for (std::int64_t step = 1; step <= 30; ++step) {
+    ASSERT_TRUE(run.advance(1));
+    const double time = run.solver->progress().time;
+    stopped_at_cut = stopped_at_cut || time == cut;
+    // The cut is made when the step after it begins.
+    if (time <= cut) {
+      EXPECT_GT(pull(), 1e-4) << time;
+    } else {
+      EXPECT_LE(pull(), 1e-12) << time;
+    }
+  }
+  EXPECT_TRUE(stopped_at_cut) << "a step ends at the cut";
+}
+
+TEST(CoupledSolver, ContinuesBitForBitAroundACut) {
+  const CoupledCase c = strip_with_lines(0.0501);  // after 13 steps
+  CoupledRun whole(c);
+  ASSERT_TRUE(whole.advance(40));
+  for (const std::int64_t first : {5, 12, 13, 14, 20, 35}) {
+    CoupledRun begun(c), continued(c);
+    ASSERT_TRUE(begun.advance(first));
+    restore(c, state_of(c, *begun.solver), *continued.solver);
+    ASSERT_TRUE(continued.advance(40 - first));
+    EXPECT_EQ(distance(state_of(c, *continued.solver), state_of(c, *whole.solver)), 0.0) << first;
+  }
+}
+
 TEST(CoupledSolver, BackendsAgree) {
 #if defined(DROGUE_EXACT)
   constexpr double tolerance = 0.0;
@@ -314,6 +372,43 @@ TEST(CoupledSolver, ClothThatLeavesTheDomainIsAFailure) {
   expect_failure(c, FailureReason::left_domain);
 }
 
+TEST(CoupledSolver, LineThatCarriesMoreThanItsStrengthIsAFailure) {
+  CoupledCase c = strip_with_lines(1.0);
+  c.p.fabric.mesh.line_length.clear();
+  c.p.fabric.mesh.line_stiffness = {1.0, 1.0};
+  // The strip, 0.8 m long, stretches at first.
+  for (std::size_t i = 0; i < c.v.size(); ++i) c.v[i] = {6.0, 0.5 * (c.x[i][1] - 0.8), 0.0};
+  // Tension of the second line, from vertex 14 to 30, without limit.
+  CoupledRun free(c);
+  const auto length = [](const std::vector<Vector>& x) {
+    return std::hypot(x[30][0] - x[14][0], x[30][1] - x[14][1]);
+  };
+  std::vector<double> tension;
+  for (int step = 0; step < 25; ++step) {
+    ASSERT_TRUE(free.advance(1));
+    std::vector<Vector> x(c.x.size()), v(c.x.size());
+    free.solver->download_cloth(x, v);
+    tension.push_back(length(x) / length(c.x) - 1.0);
+  }
+  const auto most = std::ranges::max_element(tension);
+  ASSERT_GE(most - tension.begin(), 2) << "the tension rises at first";
+  const double strength = *most * (1.0 - 1e-9);
+  c.p.line_strength = {std::numeric_limits<double>::infinity(), strength};
+  expect_failure(c, FailureReason::line);
+  CoupledRun limited(c);
+  ASSERT_EQ(limited.solver->advance(10.0, -1, {}), flow::Stop::failed);
+  EXPECT_EQ(limited.solver->failed_line(), 1);
+  EXPECT_EQ(limited.solver->progress().step, most - tension.begin()) << "the state before the step";
+  // A line that is cut carries nothing.
+  c.p.cuts = {{0.5 * limited.solver->progress().time, {1}}};
+  CoupledRun cut(c);
+  EXPECT_TRUE(cut.advance(25));
+  c.p.line_strength = {1.0};
+  EXPECT_THROW(create_solver(tested_backend, c.p), std::invalid_argument);
+  c.p.line_strength = {1.0, 0.0};
+  EXPECT_THROW(create_solver(tested_backend, c.p), std::invalid_argument);
+}
+
 TEST(CoupledSolver, InstabilityOfTheClothIsAFailure) {
   CoupledCase c = flying_strip();
   c.p.fabric.material.membrane_modulus = 1e9;
@@ -365,6 +460,9 @@ TEST(CoupledSolver, RejectsInvalidParameters) {
   rejects([](Parameters& p) { p.sheet.filter = 1.5; });
   rejects([](Parameters& p) { p.fabric.mass.clear(); });
   rejects([](Parameters& p) { p.flow.density = 0.0; });
+  rejects([](Parameters& p) { p.cuts = {{1.0, {0}}}; });
+  rejects([](Parameters& p) { p.cuts = {{0.0, {}}}; });
+  rejects([](Parameters& p) { p.cuts = {{std::nan(""), {}}}; });
 }
 
 TEST(CoupledSolver, RejectsArraysOfTheWrongLength) {

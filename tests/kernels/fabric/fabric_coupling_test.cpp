@@ -187,6 +187,39 @@ TEST(FabricCoupling, VertexForceMatchesALoadWithoutExtraLaunches) {
   expect_force_like_load(Integrator::rk4, Driver::automatic, Model::edge, rounding * 1e-9);
 }
 
+TEST(FabricCoupling, LinesHaveTheirNewStiffnessAsIfGivenAtTheStart) {
+  const device::Instance<Space> instance(1);
+  for (const auto& [integrator, driver] : {std::pair{Integrator::symplectic_euler, Driver::automatic},
+                                           {Integrator::verlet, Driver::automatic},
+                                           {Integrator::rk4, Driver::plain},
+                                           {Integrator::rk4, Driver::graph},
+                                           {Integrator::rk4, Driver::persistent}}) {
+    Parameters p = mounted_sheet(integrator, driver);
+    const Motions start{shaken(p.mesh.rest, 0.05, 1), std::vector<Vector>(p.mass.size(), Vector{})};
+    std::vector<double> stiffness(p.mesh.lines.size(), 40.0);
+    stiffness.back() = 0.0;
+    FabricSolver<Space> changed(instance.space(), p);
+    Motions one = start, other = start;
+    changed.upload(one.x, one.v);
+    ASSERT_TRUE(changed.enqueue_steps(20));
+    changed.set_line_stiffness(stiffness);
+    changed.upload(start.x, start.v);
+    ASSERT_TRUE(changed.enqueue_steps(20) && !changed.failure());
+    changed.download(one.x, one.v);
+    p.mesh.line_stiffness = stiffness;
+    FabricSolver<Space> given(instance.space(), p);
+    given.upload(other.x, other.v);
+    ASSERT_TRUE(given.enqueue_steps(20) && !given.failure());
+    given.download(other.x, other.v);
+    EXPECT_EQ(distance(one, other), 0.0);
+    EXPECT_EQ(changed.fastest_frequency(), given.fastest_frequency());
+    EXPECT_EQ(changed.totals().elastic, given.totals().elastic);
+    EXPECT_THROW(changed.set_line_stiffness(std::vector<double>(2, 1.0)), std::invalid_argument);
+    stiffness.front() = -1.0;
+    EXPECT_THROW(changed.set_line_stiffness(stiffness), std::invalid_argument);
+  }
+}
+
 /// Final state after one call per entry of `cuts`, which is the number of steps of the call.
 Motions mounted_motions(Integrator integrator, Driver driver, const std::vector<std::int64_t>& cuts) {
   const device::Instance<Space> instance(1);

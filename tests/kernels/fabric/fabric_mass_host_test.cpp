@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "kernels/fabric/elastic/lumped_mass.hpp"
+#include "kernels/mesh/edges.hpp"
 #include "kernels/reference/fabric/mass.hpp"
 #include "tests/support/fabric_mesh.hpp"
 
@@ -35,6 +36,18 @@ TEST(FabricMass, UsesTheDensityOfEachLine) {
   EXPECT_THROW(static_cast<void>(lumped_masses(mesh, 1.0, 0.2, Lumping::area)), std::invalid_argument);
   mesh.line_density.push_back(-1.0);
   EXPECT_THROW(static_cast<void>(lumped_masses(mesh, 1.0, 0.2, Lumping::area)), std::invalid_argument);
+}
+
+TEST(FabricMass, UsesTheLengthOfEachLine) {
+  Mesh mesh = testing::random_patch(9, 6, 2);
+  mesh.line_length = {0.0, 0.9, 0.0, 2.0};
+  const std::vector<double> mine = lumped_masses(mesh, 0.756, 0.2, Lumping::area),
+                            exact = reference::row_sum_masses(mesh, 0.756, 0.2);
+  for (std::size_t i = 0; i < mine.size(); ++i) EXPECT_NEAR(mine[i], exact[i], 1e-15) << i;
+  mesh.line_length.clear();
+  const double change = sum_of(mine) - sum_of(lumped_masses(mesh, 0.756, 0.2, Lumping::area));
+  const double before = 0.5 + rest_distance(mesh, mesh.lines[3][0], mesh.lines[3][1]);
+  EXPECT_NEAR(change, 0.2 * (2.9 - before), 1e-13);
 }
 
 TEST(FabricMass, EqualLumpingPreservesTheTotalMass) {

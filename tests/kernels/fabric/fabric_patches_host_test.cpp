@@ -162,7 +162,7 @@ void run_emulated(const Parameters& p, int count, const std::vector<std::int64_t
   Material material = p.material;
   material.model = model.model;
   const bool rings = has_triangles(model.model) || !p.follower_pressures.empty();
-  const Mesh cloth_mesh = rings ? p.mesh : Mesh{p.mesh.rest, {}, {}, {}, {}};
+  const Mesh cloth_mesh = rings ? p.mesh : Mesh{p.mesh.rest, {}, {}, {}, {}, {}};
   const Patches patches =
       make_patches(p.mesh.rest, ring_adjacency(cloth_mesh), spring_adjacency(p.mesh, material), count);
   const PatchViews<Space> views = patch_views(space, patches);

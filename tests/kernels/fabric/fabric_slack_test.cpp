@@ -59,6 +59,9 @@ TEST(FabricSlack, MatchesForcesAndRelaxedEnergyOfTheReference) {
       for (const double poisson : {0.3, 0.0, -0.4, 0.5}) {
         Parameters p = slack_cloth(model);
         p.material.poisson = poisson;
+        // Some lines are shorter or longer than the distance of their ends at rest.
+        if (poisson < 0.3) p.mesh.line_length.assign(p.mesh.lines.size(), 0.0);
+        if (poisson < 0.0) p.mesh.line_length.front() = 0.3, p.mesh.line_length.back() = 2.0;
         const std::vector<Vector> now = shaken(p.mesh.rest, size, 5);
         const std::vector<Vector> mine = forces_at(p, now),
                                   exact = reference::forces(p.material, p.mesh, now);

@@ -164,6 +164,21 @@ TEST(Mesh, RenumberingReducesTheBandwidth) {
     EXPECT_EQ(local.rest[k], mesh.rest[static_cast<std::size_t>(order[k])]);
 }
 
+TEST(Mesh, RenumberingKeepsTheValuesOfLines) {
+  Mesh mesh;
+  mesh.rest = {{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, {3.0, 0.0, 0.0}};
+  mesh.lines = {{0, 1}, {1, 2}};
+  mesh.line_stiffness = {5.0, 6.0};
+  mesh.line_density = {0.1, 0.2};
+  mesh.line_length = {0.0, 1.5};
+  const Mesh turned = renumber(mesh, {2, 1, 0});
+  EXPECT_EQ(turned.lines, (std::vector<std::array<int, 2>>{{2, 1}, {1, 0}}));
+  EXPECT_EQ(turned.line_stiffness, mesh.line_stiffness);
+  EXPECT_EQ(turned.line_density, mesh.line_density);
+  EXPECT_EQ(rest_length(turned, 0), 1.0) << "the distance of its ends";
+  EXPECT_EQ(rest_length(turned, 1), 1.5);
+}
+
 TEST(Mesh, ReportListsAnglesAndAreas) {
   const std::string text = quality_report(generate(Triangle{1.0, 3}));
   EXPECT_NE(text.find("3 vertices, 1 triangles, 0 lines"), std::string::npos) << text;

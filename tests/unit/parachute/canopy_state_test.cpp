@@ -47,21 +47,49 @@ TEST(CanopyState, MeasuresBelongToTheirCanopy) {
   SheetState state = state_of(sheets);
   const CanopyRows& rows = sheets.canopies[1];
   for (Vector& force : state.on_air) force = {1.0, 0.0, -2.0};
-  state.elastic[rows.payload] = {0.0, 3.0, 4.0};
-  state.velocities[rows.payload] = {0.0, 0.0, -5.0};
-  for (std::size_t i = rows.begin; i < rows.payload; ++i)
+  state.elastic[rows.payload.value()] = {0.0, 3.0, 4.0};
+  state.velocities[rows.payload.value()] = {0.0, 0.0, -5.0};
+  for (std::size_t i = rows.begin; i < rows.cloth_end; ++i)
     for (std::size_t axis = 0; axis < 2; ++axis)
       state.positions[i][axis] += 0.1 * (state.positions[i][axis] - second.centre[axis]);
-  const CanopyMeasures one = measure(sheets.canopies[0], sheets.fabric.mesh, state),
-                       other = measure(rows, sheets.fabric.mesh, state);
+  const CanopyMeasures one = measure(sheets.canopies[0], sheets.fabric, state, false),
+                       other = measure(rows, sheets.fabric, state, false);
   EXPECT_EQ(one.line_force, (Vector{}));
   EXPECT_NEAR(one.largest_strain, 0.0, 1e-12);
   EXPECT_EQ(other.line_force, (Vector{0.0, 3.0, 4.0}));
   EXPECT_EQ(other.velocity, (Vector{0.0, 0.0, -5.0}));
   EXPECT_NEAR(other.largest_strain, 0.1, 1e-12);
-  const auto cloth = static_cast<double>(rows.payload - rows.begin);
+  const auto cloth = static_cast<double>(rows.cloth_end - rows.begin);
   EXPECT_EQ(other.force, (Vector{-cloth, 0.0, 2.0 * cloth}));
   EXPECT_NEAR(other.projected_area / one.projected_area, 1.21, 0.02);
+}
+
+TEST(CanopyState, RisersPullOnlyWhereTheyAreTautAndWhole) {
+  Canopy canopy;
+  canopy.edge_length = 0.5;
+  canopy.riser = Riser{2.0, 1000.0, 1.0};
+  const Sheets sheets = make_all_sheets({}, {canopy}, 1.225, 1.8e-5);
+  const CanopyRows& rows = sheets.canopies[0];
+  SheetState state = state_of(sheets);
+  EXPECT_NEAR(measure(rows, sheets.fabric, state, false).line_force[2], 0.0, 1e-9);
+  state.positions[rows.payload.value()][2] -= 0.2;
+  EXPECT_NEAR(measure(rows, sheets.fabric, state, false).line_force[2], 100.0, 1e-9);
+  EXPECT_EQ(measure(rows, sheets.fabric, state, true).line_force, (Vector{}));
+  state.positions[rows.payload.value()][2] += 0.4;
+  EXPECT_EQ(measure(rows, sheets.fabric, state, false).line_force, (Vector{}));
+}
+
+TEST(CanopyState, SheetWithoutPayloadHasItsCentreOfMass) {
+  Canopy canopy;
+  canopy.kind = CanopyKind::sheet;
+  canopy.edge_length = 0.5;
+  canopy.centre = {1.0, 2.0, 3.0};
+  const Sheets sheets = make_all_sheets({}, {canopy}, 1.225, 1.8e-5);
+  SheetState state = state_of(sheets);
+  for (Vector& velocity : state.velocities) velocity = {0.0, 0.0, -4.0};
+  const CanopyMeasures one = measure(sheets.canopies[0], sheets.fabric, state, false);
+  for (std::size_t axis = 0; axis < 3; ++axis) EXPECT_NEAR(one.payload[axis], canopy.centre[axis], 1e-9);
+  EXPECT_NEAR(one.velocity[2], -4.0, 1e-12);
 }
 
 TEST(CanopyState, ForceBalanceComparesTotalAndSum) {
@@ -86,17 +114,18 @@ CanopyMeasures measures_of(double force, double velocity, double line_force) {
   measures.force = {0.0, 0.0, force};
   measures.velocity = {0.0, 0.0, velocity};
   measures.line_force = {0.0, 0.0, line_force};
+  measures.projected_area = 0.1 * line_force;
   return measures;
 }
 
 TEST(CanopyRecord, MeansAreThoseOfAnInterval) {
   const FlowScene scene = scene_with_canopy();
   CanopyRecord record(scene);
-  record.add(0.0, {measures_of(1e6, -2.0, 0.0)}, 1e-16);
-  record.add(1.0, {measures_of(25.0, -2.0, 70.0)}, 3e-16);
-  record.add(1.0, {measures_of(1e6, 0.0, 1e6)}, 1.0);  // a row of the same time
-  record.add(3.0, {measures_of(50.0, -2.0, 60.0)}, 2e-16);
-  record.add(4.0, {measures_of(72.0, -3.0, 10.0)}, 0.0);
+  record.add(0.0, {measures_of(1e6, -2.0, 0.0)}, 1e-16, 0.0);
+  record.add(1.0, {measures_of(25.0, -2.0, 70.0)}, 3e-16, 0.0);
+  record.add(1.0, {measures_of(1e6, 0.0, 1e6)}, 1.0, 0.0);  // a row of the same time
+  record.add(3.0, {measures_of(50.0, -2.0, 60.0)}, 2e-16, 3.0);
+  record.add(4.0, {measures_of(72.0, -3.0, 10.0)}, 0.0, 0.0);
   // 2 F / (rho U^2 S0) = F / 25 at U = 5, F / 36 at U = 6; trapezoids of 2 s and 1 s.
   EXPECT_NEAR(record.mean_drag(0, 0.5, 5.0), (2.0 * 1.5 + 1.0 * 2.0) / 3.0, 1e-14);
   EXPECT_NEAR(record.mean_speed(0, 0.5, 5.0), (2.0 * 5.0 + 1.0 * 5.5) / 3.0, 1e-14);
@@ -105,13 +134,16 @@ TEST(CanopyRecord, MeansAreThoseOfAnInterval) {
   EXPECT_EQ(record.peak(0).force, 70.0);
   EXPECT_EQ(record.peak(0).time, 1.0);
   EXPECT_EQ(record.balance(), 3e-16);
+  EXPECT_EQ(record.intersections(), 3.0);
+  // Areas of a tenth of the line force: 7, 6 and 1 m^2.
+  EXPECT_NEAR(record.mean_area(0, 0.5, 5.0), (2.0 * 6.5 + 1.0 * 3.5) / 3.0, 1e-14);
 }
 
 TEST(CanopyRecord, NonFiniteBalanceIsNotHidden) {
   const FlowScene scene = scene_with_canopy();
   CanopyRecord record(scene);
-  record.add(1.0, {measures_of(1.0, 0.0, 1.0)}, std::nan(""));
-  record.add(2.0, {measures_of(1.0, 0.0, 1.0)}, 0.0);
+  record.add(1.0, {measures_of(1.0, 0.0, 1.0)}, std::nan(""), 0.0);
+  record.add(2.0, {measures_of(1.0, 0.0, 1.0)}, 0.0, 0.0);
   EXPECT_TRUE(std::isnan(record.balance()));
 }
 

@@ -38,7 +38,7 @@ double area_at(const std::vector<Vector>& points, const std::vector<std::array<i
 
 TEST(Canopy, MeshIsSoundWithAndWithoutVent) {
   for (const double vent : {0.457, 0.0, 3.0})
-    for (const int gores : {3, 7, 28, 30})
+    for (const int gores : {3, 7, 28, 29, 30})
       for (const double edge_length : {0.5, 0.28, 0.1}) {
         Canopy canopy = c9(edge_length);
         canopy.vent = vent;
@@ -74,6 +74,75 @@ TEST(Canopy, NumbersOfVerticesOfRingsAreNestedAndBoundTheEdges) {
     }
     EXPECT_LT(sizes.front(), gores) << "28 edges would be far shorter than needed at the vent";
   }
+}
+
+TEST(Canopy, PrimeNumbersOfGoresLeaveNoShortEdgesAtTheVent) {
+  for (const int gores : {29, 31, 997}) {
+    Canopy canopy = c9(0.2);
+    canopy.gores = gores;
+    canopy.reinforcement.seams = 1000.0;
+    const std::vector<int> sizes = ring_sizes(canopy);
+    EXPECT_EQ(sizes.back() % gores, 0) << "every line has a vertex";
+    for (std::size_t k = 0; k + 1 < sizes.size(); ++k) {
+      const double radius =
+          0.2285 + (4.267 - 0.2285) * static_cast<double>(k) / static_cast<double>(sizes.size() - 1);
+      EXPECT_LE(2.0 * pi * radius / sizes[k], 0.2 * (1.0 + 1e-9));
+      EXPECT_GE(2.0 * pi * radius / std::max(sizes[k], 4), 0.2 / 3.01) << gores << " gores, ring " << k;
+    }
+    const CanopyMesh mesh = make_canopy(canopy);
+    EXPECT_FALSE(mesh::find_defect(mesh.fabric.mesh));
+    EXPECT_FALSE(mesh::inconsistent_triangles(mesh.fabric.mesh));
+    const auto edges = mesh::triangle_edges(mesh.fabric.mesh);
+    const std::set<mesh::Edge> known(edges.begin(), edges.end());
+    for (const auto& [a, b] : mesh.fabric.mesh.lines)
+      if (b != static_cast<int>(mesh.cloth_vertices)) {
+        EXPECT_TRUE(known.contains(mesh::edge_between(a, b)));
+      }
+  }
+}
+
+/// A T-10.
+Canopy t10(double edge_length) {
+  Canopy canopy = c9(edge_length);
+  canopy.kind = CanopyKind::extended_skirt;
+  canopy.diameter = 9.144;
+  canopy.gores = 30;
+  canopy.vent = 0.508;
+  canopy.skirt = {0.9144, 7.468};
+  canopy.lines.length = 7.77;
+  return canopy;
+}
+
+TEST(Canopy, ConicalSkirtsHaveTheirConstructedShape) {
+  for (const double diameter : {7.468, 9.144, 10.0}) {
+    Canopy canopy = t10(0.25);
+    canopy.skirt.diameter = diameter;
+    canopy.centre = {1.0, 2.0, 3.0};
+    const CanopyMesh mesh = make_canopy(canopy);
+    const fabric::Mesh& cloth = mesh.fabric.mesh;
+    EXPECT_EQ(mesh.positions.size(), canopy.vertices());
+    EXPECT_FALSE(mesh::find_defect(cloth));
+    EXPECT_FALSE(mesh::inconsistent_triangles(cloth));
+    for (const auto& [a, b] : mesh::triangle_edges(cloth))
+      EXPECT_LE(mesh::rest_distance(cloth, a, b), std::numbers::sqrt3 * 0.25);
+    // A disk and a frustum of a cone.
+    const double disk = 0.25 * pi * 9.144 * 9.144, vent = 0.25 * pi * 0.508 * 0.508;
+    const double whole = disk + 0.5 * pi * (9.144 + diameter) * 0.9144;
+    EXPECT_NEAR(canopy.nominal_area(), whole, 1e-9);
+    EXPECT_NEAR(area_at(cloth.rest, cloth.triangles) / (whole - vent), 1.0, 0.01);
+    const double inwards = 0.5 * (9.144 - diameter);
+    const double height = std::sqrt(0.9144 * 0.9144 - inwards * inwards);
+    EXPECT_NEAR(cloth.rest.front()[2] - 3.0, height, 1e-12);
+    ASSERT_EQ(mesh.skirt.size(), 30U);
+    for (const int i : mesh.skirt) {
+      const Vector& x = cloth.rest[static_cast<std::size_t>(i)];
+      EXPECT_NEAR(std::hypot(x[0] - 1.0, x[1] - 2.0), 0.5 * diameter, 1e-12);
+      EXPECT_NEAR(x[2], 3.0, 1e-12);
+      EXPECT_NEAR(distance_of(x, cloth.rest.back()), 7.77, 1e-12) << "lines are straight";
+    }
+  }
+  // The published nominal diameter of 35 ft follows from a flat diameter of 30 ft and a skirt of 3 ft.
+  EXPECT_NEAR(std::sqrt(4.0 / pi * t10(0.25).nominal_area()) / 0.3048, 35.0, 0.1);
 }
 
 TEST(Canopy, TrianglesFaceAlongTheAxis) {
@@ -208,6 +277,95 @@ TEST(Canopy, ReinforcementFollowsEdgesOfTheCloth) {
   EXPECT_FALSE(mesh::find_defect(cloth));
 }
 
+TEST(Canopy, SheetHasNeitherLinesNorPayload) {
+  Canopy canopy = c9(0.3);
+  canopy.kind = CanopyKind::sheet;
+  canopy.vent = 0.0;
+  const Sheets sheets = make_all_sheets({}, {canopy}, 1.225, 1.8e-5);
+  EXPECT_EQ(sheets.positions.size(), canopy.vertices());
+  EXPECT_EQ(sheets.canopies[0].cloth_end, canopy.vertices());
+  EXPECT_FALSE(sheets.canopies[0].payload);
+  EXPECT_TRUE(sheets.fabric.mesh.lines.empty());
+  EXPECT_EQ(std::accumulate(sheets.fabric.pinned.begin(), sheets.fabric.pinned.end(), 0), 0);
+}
+
+TEST(Canopy, ReefingLineClosesARingOfItsLength) {
+  Canopy canopy = c9(0.2);
+  canopy.shape = CanopyShape::partly_closed;
+  canopy.reefing = ReefingLine{14.0, 5000.0, 1.5};
+  const Sheets sheets = make_all_sheets({}, {canopy, canopy}, 1.225, 1.8e-5);
+  const fabric::Mesh& mesh = sheets.fabric.mesh;
+  for (const CanopyRows& rows : sheets.canopies) {
+    ASSERT_EQ(rows.reefing.size(), 28U);
+    double length = 0.0;
+    for (std::size_t k = 0; k < 28; ++k) {
+      const auto line = static_cast<std::size_t>(rows.reefing[k]),
+                 next = static_cast<std::size_t>(rows.reefing[(k + 1) % 28]);
+      length += mesh::rest_length(mesh, line);
+      EXPECT_EQ(mesh.line_stiffness[line], 5000.0);
+      EXPECT_EQ(mesh.lines[line][1], mesh.lines[next][0]);
+      const auto i = static_cast<std::size_t>(mesh.lines[line][0]);
+      EXPECT_NEAR(std::hypot(sheets.positions[i][0], sheets.positions[i][1]), 0.5 * 4.267, 1e-12);
+    }
+    EXPECT_NEAR(length, 14.0, 1e-12);
+    for (const int line : rows.suspension)
+      EXPECT_NEAR(mesh::rest_length(mesh, static_cast<std::size_t>(line)), 7.0, 1e-12);
+  }
+  ASSERT_EQ(sheets.cuts.size(), 2U);
+  EXPECT_EQ(sheets.cuts[1].time, 1.5);
+  EXPECT_EQ(sheets.cuts[1].lines, sheets.canopies[1].reefing);
+}
+
+TEST(Canopy, RisersLeadToASharedPayload) {
+  std::vector<Canopy> canopies(3, c9(0.4));
+  for (std::size_t k = 0; k < 3; ++k) {
+    Canopy& canopy = canopies[k];
+    canopy.shape = CanopyShape::partly_closed;
+    canopy.angle = 20.0;
+    canopy.azimuth = 120.0 * static_cast<double>(k);
+    canopy.riser = Riser{3.0, 2e5, 0.5};
+    canopy.lines.line_density = 0.01;
+    canopy.payload.mass = 300.0;
+    canopy.payload.release = 2.0;
+    if (k > 0) canopy.payload.shared = 0;
+  }
+  canopies[0].centre = {3.0, -1.0, 5.0};
+  place_at_shared_payloads(canopies);
+  const Sheets sheets = make_all_sheets({}, canopies, 1.225, 1.8e-5);
+  const fabric::Mesh& mesh = sheets.fabric.mesh;
+  ASSERT_EQ(sheets.positions.size(),
+            canopies[0].vertices() + canopies[1].vertices() + canopies[2].vertices());
+  EXPECT_EQ(canopies[0].vertices(), canopies[1].vertices() + 1);
+  const std::size_t payload = sheets.canopies[0].payload.value();
+  Vector sum{};
+  for (const CanopyRows& rows : sheets.canopies) {
+    EXPECT_EQ(rows.payload, payload);
+    ASSERT_TRUE(rows.riser);
+    const auto riser = static_cast<std::size_t>(*rows.riser);
+    EXPECT_EQ(mesh.lines[riser][1], static_cast<int>(payload));
+    const auto meeting = static_cast<std::size_t>(mesh.lines[riser][0]);
+    EXPECT_EQ(meeting, rows.cloth_end);
+    EXPECT_NEAR(mesh::rest_length(mesh, riser), 3.0, 1e-12);
+    EXPECT_NEAR(distance_of(sheets.positions[meeting], sheets.positions[payload]), 3.0, 1e-12);
+    EXPECT_NEAR(sheets.fabric.mass[meeting], 0.5 + 28 * 3.5 * 0.01, 1e-12);
+    for (const int k : rows.suspension) {
+      const auto& [skirt, end] = mesh.lines[static_cast<std::size_t>(k)];
+      EXPECT_EQ(end, static_cast<int>(meeting));
+      EXPECT_NEAR(distance_of(sheets.positions[static_cast<std::size_t>(skirt)], sheets.positions[meeting]),
+                  7.0, 1e-12);
+    }
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      sum[axis] += sheets.positions[meeting][axis] - sheets.positions[payload][axis];
+  }
+  // Three axes 20 degrees from z, 120 degrees apart.
+  EXPECT_NEAR(sum[0], 0.0, 1e-12);
+  EXPECT_NEAR(sum[1], 0.0, 1e-12);
+  EXPECT_NEAR(sum[2], 9.0 * std::cos(20.0 * pi / 180.0), 1e-12);
+  EXPECT_EQ(sheets.fabric.mass[payload], 300.0);
+  ASSERT_EQ(sheets.cuts.size(), 3U);
+  EXPECT_EQ(sheets.cuts[2].lines, std::vector<int>{*sheets.canopies[2].riser});
+}
+
 TEST(Canopy, SheetsOfASceneAreOneMeshInTheirOrder) {
   Body plate;
   plate.lengths = {1.0, 1.0};
@@ -234,7 +392,7 @@ TEST(Canopy, SheetsOfASceneAreOneMeshInTheirOrder) {
   EXPECT_EQ(sheets.canopies[1].triangles_end, p.mesh.triangles.size());
   for (std::size_t t = sheets.canopies[1].triangles_begin; t < sheets.canopies[1].triangles_end; ++t)
     for (const int i : p.mesh.triangles[t]) EXPECT_GE(i, static_cast<int>(sheets.canopies[1].begin));
-  EXPECT_EQ(p.mesh.rest[sheets.canopies[1].payload][0], 20.0);
+  EXPECT_EQ(p.mesh.rest[sheets.canopies[1].payload.value()][0], 20.0);
 }
 
 }  // namespace
