@@ -176,6 +176,7 @@ template <class ExecutionSpace>
 void CoupledSolver<ExecutionSpace>::forget_steps() {
   _block = {};
   Kokkos::deep_copy(_space, _sheet.acceleration(), 0.0);
+  Kokkos::deep_copy(_space, _sheet.force(), 0.0);
   Kokkos::deep_copy(_space, _reason, FailureReason::flow);
   Kokkos::deep_copy(_space, _saved_step, std::int64_t{-1});
   _space.fence("drogue::coupling::forget_steps");
@@ -282,7 +283,7 @@ void CoupledSolver<ExecutionSpace>::enqueue_step(double dt, bool is_first) {
                                        _saved_velocities, _saved_acceleration, _saved_force, _saved_places});
   _sheet.begin_step(_space, _fabric.state(), velocity, dt);
   static_cast<void>(_fabric.enqueue_steps(_block.substeps));
-  _sheet.spread_forces(_space, density, dt);
+  _sheet.spread_forces(_space, _fabric.state(), density, dt);
   device::launch_each(_space, "drogue::coupling::check_cloth", 1,
                       CheckClothFunctor<ExecutionSpace>{_flow.control(), _saved_step, _fabric.monitor(),
                                                         _sheet.transfer(), _reason});
