@@ -31,9 +31,8 @@ void declare(CLI::App& app, MiniAppOptions& options, bool has_baseline) {
   app.add_flag("--quiet", options.quiet, "show no progress and no summary");
   CLI::Option* baseline = nullptr;
   if (has_baseline)
-    baseline =
-        app.add_flag("--seed-mode", options.baseline,
-                     "run the algorithm and data movement of [Shi], the dissertation that README.md cites");
+    baseline = app.add_flag("--seed-mode", options.baseline,
+                            "run the algorithm of [Shi], the dissertation that README.md cites");
   auto* study = app.add_option(
       "--study", options.study,
       "run the scene over meshes and schemes, say meshes=100:800 (two meshes: and every doubling "

@@ -10,9 +10,10 @@ namespace drogue::parachute_app {
 namespace {
 
 std::unique_ptr<framework::Scene> read(const std::filesystem::path& file,
-                                       const std::vector<std::string>& assignments, bool /*baseline*/) {
-  return std::make_unique<framework::TypedScene<FlowScene, Simulation>>(read_flow_scene(file, assignments),
-                                                                        declare_flow_scene);
+                                       const std::vector<std::string>& assignments, bool baseline) {
+  return std::make_unique<framework::TypedScene<FlowScene, Simulation>>(
+      read_flow_scene(file, assignments, baseline ? SchemeSource::baseline : SchemeSource::scene),
+      declare_flow_scene);
 }
 
 }  // namespace
@@ -22,6 +23,7 @@ framework::MiniApp mini_app() {
   app.name = "parachute";
   app.description = "Incompressible flow on a staggered grid.";
   app.scene_folder = scene_folder();
+  app.has_baseline = true;
   app.read = read;
   app.study = run_study;
   app.serve = serve;

@@ -50,6 +50,7 @@ BAD_LINES = [
     (13, "edge_length = -1", 13, ["body[0].edge_length", "> 0"]),
     (14, 'porosity = { law = "forchheimer", alpha = -1 }', 14, ["body[0].porosity.alpha", ">= 0"]),
     (14, 'porosity = { law = "forchheimer", beta = "2" }', 14, ["body[0].porosity.beta", "number"]),
+    (16, 'method = "spred"', 16, ["coupling.method", 'did you mean "spread"?']),
     (16, "filter = 1.5", 16, ["coupling.filter", "0 .. 1"]),
     # contradictions
     (14, 'porosity = { law = "none", alpha = 10 }', 14, ["body[0].porosity.alpha", "forchheimer"]),

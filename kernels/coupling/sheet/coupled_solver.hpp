@@ -197,6 +197,7 @@ template <class ExecutionSpace>
 void CoupledSolver<ExecutionSpace>::forget_steps() {
   _block = {};
   Kokkos::deep_copy(_space, _sheet.acceleration(), 0.0);
+  Kokkos::deep_copy(_space, _sheet.force(), 0.0);
   Kokkos::deep_copy(_space, _reason, FailureReason::flow);
   _strength.reset(_space);
   Kokkos::deep_copy(_space, _saved_step, std::int64_t{-1});
@@ -310,7 +311,7 @@ void CoupledSolver<ExecutionSpace>::enqueue_step(double dt, bool is_first) {
                                        _saved_velocities, _saved_acceleration, _saved_force, _saved_places});
   _sheet.begin_step(_space, _fabric.state(), velocity, dt);
   static_cast<void>(_fabric.enqueue_steps(_block.substeps));
-  _sheet.spread_forces(_space, density, dt);
+  _sheet.spread_forces(_space, _fabric.state(), density, dt);
   _strength.check(_space, _fabric.state().positions);
   device::launch_each(
       _space, "drogue::coupling::check_cloth", 1,

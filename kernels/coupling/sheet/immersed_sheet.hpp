@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "kernels/coupling/interpolate.hpp"
+#include "kernels/coupling/sheet/explicit_exchange.hpp"
 #include "kernels/coupling/sheet/local_air.hpp"
 #include "kernels/coupling/sheet/parameters.hpp"
 #include "kernels/coupling/spread.hpp"
@@ -97,10 +98,12 @@ class ImmersedSheet {
              scalars("drogue::coupling::impulse"),
              Vectors("drogue::coupling::no_slip_impulse", has_no_slip(parameters) ? rows() : 0),
              Kokkos::View<PorousLaw*, typename ExecutionSpace::memory_space>("drogue::coupling::porosity",
-                                                                             rows())},
+                                                                             rows()),
+             Vectors()},
         _force(vectors("drogue::coupling::force")),
         _after(vectors("drogue::coupling::velocity_after")),
         _push(vectors("drogue::coupling::push")) {
+    if (parameters.method == CouplingMethod::explicit_) _air.last_force = _force;
     copy_inverse_masses(space, cloth);
     copy_laws(space);
   }
@@ -128,10 +131,14 @@ class ImmersedSheet {
                         BeginSheetStepFunctor<ExecutionSpace>{_air});
   }
 
-  /// Enqueues the spreading of the forces of the sheet during dt, s: adds them to `density`, N/m^3. Throws as
-  /// `begin_step`.
+  /// Enqueues the spreading of the forces of the sheet during dt, s: adds them to `density`, N/m^3. `cloth`:
+  /// after its steps. Throws as `begin_step`.
   template <class View>
-  void spread_forces(const ExecutionSpace& space, const FaceViews<View>& density, double dt) const {
+  void spread_forces(const ExecutionSpace& space, const fabric::State<ExecutionSpace>& cloth,
+                     const FaceViews<View>& density, double dt) const {
+    if (_air.is_explicit())
+      device::launch_each(space, "drogue::coupling::impose_velocity", _transfer.points,
+                          ImposeVelocityFunctor<ExecutionSpace>{_air, cloth.velocities, dt});
     device::launch_each(space, "drogue::coupling::sheet_force", _transfer.points,
                         SheetForceFunctor<ExecutionSpace>{_air, _force, 1.0 / dt});
     spread(space, _transfer, _force, density);

@@ -29,8 +29,39 @@ struct LocalAir {
 
   Kokkos::View<PorousLaw*, Memory> law;  ///< constant
 
+  /// Force on the air in the last step of the flow, N, whose reaction acts during this one: explicit
+  /// coupling. Empty if cloth and air relax against each other.
+  Vectors last_force;
+
   /// True if the air does not slip along vertex i.
   KOKKOS_FUNCTION bool is_no_slip(int i) const { return no_slip_impulse.extent(0) > 0 && law(i).no_slip; }
+
+  /// True if the cloth takes the force of the last step instead of relaxing.
+  KOKKOS_FUNCTION bool is_explicit() const { return last_force.extent(0) > 0; }
+
+  /// Velocity, m/s, of vertex i with area after it and the air beside it have relaxed against each other
+  /// during dt, s. `mobility`: its inverse mass along each axis, 1/kg. Updates the local velocity and the
+  /// impulse of the vertex.
+  KOKKOS_FUNCTION spatial::Point relax(int i, const spatial::Point& of_vertex, const spatial::Point& mobility,
+                                       double dt) const {
+    using spatial::load_vector;
+    const spatial::Point n = load_vector(normal, i), response = load_vector(compliance, i),
+                         now = load_vector(velocity, i) + dt * load_vector(acceleration, i);
+    const double size = area(i);
+    if (is_no_slip(i)) {
+      const spatial::Point each =
+          coupling::no_slip_impulse(law(i), n, of_vertex - now, dt, size * mobility + response);
+      spatial::store_vector(velocity, i, now + product(response, each));
+      spatial::store_vector(no_slip_impulse, i, load_vector(no_slip_impulse, i) + each);
+      return of_vertex - size * product(mobility, each);
+    }
+    const auto scaled = [&](const spatial::Point& by) { return product(by, n); };
+    const double of_cloth = size * dot(n, scaled(mobility)), of_air = dot(n, scaled(response));
+    const double given = porous_impulse(law(i), dot(of_vertex - now, n), dt, of_cloth + of_air);
+    spatial::store_vector(velocity, i, now + given * scaled(response));
+    impulse(i) += given;
+    return of_vertex - (given * size) * scaled(mobility);
+  }
 };
 
 /// Relaxes the velocity of a vertex and that of the air beside it against each other by the porous law: a
@@ -40,31 +71,14 @@ template <class ExecutionSpace>
 struct AirRelaxation {
   LocalAir<ExecutionSpace> air;
 
-  /// Velocity after the relaxation, m/s. Updates the local velocity and the impulse of the vertex.
+  /// Velocity after the relaxation, or after the reaction of the last step, m/s. Updates the local velocity
+  /// and the impulse of the vertex unless the coupling is explicit.
   KOKKOS_FUNCTION fabric::Vector3<double> relaxed_velocity(const fabric::VertexStage& at) const {
-    using spatial::load_vector;
-    const int i = at.vertex;
-    const double area = air.area(i);
-    if (!(area > 0.0)) return at.velocity;
-    const fabric::Vector3<double> n = load_vector(air.normal, i), compliance = load_vector(air.compliance, i),
-                                  inverse_mass = load_vector(air.inverse_mass, i),
-                                  now =
-                                      load_vector(air.velocity, i) + at.dt * load_vector(air.acceleration, i);
-    if (air.is_no_slip(i)) {
-      const fabric::Vector3<double> each =
-          no_slip_impulse(air.law(i), n, at.velocity - now, at.dt, area * inverse_mass + compliance);
-      spatial::store_vector(air.velocity, i, now + product(compliance, each));
-      spatial::store_vector(air.no_slip_impulse, i, load_vector(air.no_slip_impulse, i) + each);
-      return at.velocity - area * product(inverse_mass, each);
-    }
-    const auto scaled = [&](const fabric::Vector3<double>& by) {
-      return fabric::Vector3<double>{by.x * n.x, by.y * n.y, by.z * n.z};
-    };
-    const double of_cloth = area * dot(n, scaled(inverse_mass)), of_air = dot(n, scaled(compliance));
-    const double given = porous_impulse(air.law(i), dot(at.velocity - now, n), at.dt, of_cloth + of_air);
-    spatial::store_vector(air.velocity, i, now + given * scaled(compliance));
-    air.impulse(i) += given;
-    return at.velocity - (given * area) * scaled(inverse_mass);
+    if (!(air.area(at.vertex) > 0.0)) return at.velocity;
+    const spatial::Point mobility = spatial::load_vector(air.inverse_mass, at.vertex);
+    if (air.is_explicit())
+      return at.velocity - at.dt * product(mobility, spatial::load_vector(air.last_force, at.vertex));
+    return air.relax(at.vertex, at.velocity, mobility, at.dt);
   }
 };
 

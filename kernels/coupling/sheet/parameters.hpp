@@ -18,6 +18,14 @@ struct PorousLaw {
   bool no_slip = false;  ///< the air has the velocity of the sheet along its tangents; else no shear stress
 };
 
+/// Coupling of free cloth to the air. Both give prescribed motion the same forces to round-off.
+enum class CouplingMethod {
+  spread,  ///< cloth and air relax against each other in each step of the cloth; cloth of any mass
+  /// The force of the last step of the flow acts on the cloth, which then imposes its velocity on the air:
+  /// explicit staggered coupling ([Shi], section 3.3.2), unstable for light cloth.
+  explicit_,
+};
+
 /// Parameters of the exchange between a sheet and the air.
 struct SheetParameters {
   DeltaKernel kernel = DeltaKernel::cbs43;
@@ -27,6 +35,7 @@ struct SheetParameters {
   /// cannot grow, but the sheet leaks in proportion to dt; nearly impermeable sheets need 0.2 or less if dt
   /// exceeds the period of their oscillations over 2 pi.
   double filter = 0.5;
+  CouplingMethod method = CouplingMethod::spread;
 };
 
 /// Frame of reference that follows a vertex, such as a payload, so that the vertex stays in the grid. The

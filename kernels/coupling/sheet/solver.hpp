@@ -63,6 +63,10 @@ class Solver : public flow::Solver {
   /// for a span of the wrong length.
   virtual void forces(std::span<fabric::Vector> on_air) = 0;
 
+  /// Restores the forces on the air, N, after `restore`: a part of the state with explicit coupling. Throws
+  /// std::invalid_argument for a span of the wrong length.
+  virtual void upload_forces(std::span<const fabric::Vector> on_air) = 0;
+
   /// Filtered acceleration of the air at the vertices, m/s^2, a part of the state. Throws
   /// std::invalid_argument for a span of the wrong length.
   virtual void download_air_acceleration(std::span<fabric::Vector> values) = 0;

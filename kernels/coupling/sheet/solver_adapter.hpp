@@ -43,6 +43,9 @@ class SolverAdapter final : public Solver {
     _solver.fabric().download(positions, velocities);
   }
   void forces(std::span<fabric::Vector> on_air) override { read(_solver.sheet().force(), on_air); }
+  void upload_forces(std::span<const fabric::Vector> on_air) override {
+    write(on_air, _solver.sheet().force());
+  }
   std::array<double, 3> total_force_on_air() override { return _solver.total_force_on_air(); }
   void elastic_forces(std::span<fabric::Vector> on_vertices) override {
     _solver.fabric().forces(on_vertices);
@@ -54,8 +57,7 @@ class SolverAdapter final : public Solver {
     read(_solver.sheet().acceleration(), values);
   }
   void upload_air_acceleration(std::span<const fabric::Vector> values) override {
-    require_vertices(values.size());
-    fabric::copy_to_points(_instance.space(), values, _solver.sheet().acceleration());
+    write(values, _solver.sheet().acceleration());
   }
   [[nodiscard]] BlockProgress block() const override { return _solver.block(); }
   void set_block(const BlockProgress& block) override { _solver.set_block(block); }
@@ -73,6 +75,10 @@ class SolverAdapter final : public Solver {
   void read(const typename LocalAir<ExecutionSpace>::Vectors& from, std::span<fabric::Vector> to) {
     require_vertices(to.size());
     _reader.read(_instance.space(), from, to);
+  }
+  void write(std::span<const fabric::Vector> from, const typename LocalAir<ExecutionSpace>::Vectors& to) {
+    require_vertices(from.size());
+    fabric::copy_to_points(_instance.space(), from, to);
   }
 
   fabric::PointsReader<ExecutionSpace> _reader;

@@ -18,6 +18,8 @@ const Choices<PorosityLaw> law_choices = {{"none", PorosityLaw::none},
                                           {"ergun", PorosityLaw::ergun},
                                           {"kim-peskin", PorosityLaw::kim_peskin}};
 const Choices<bool> opening_choices = {{"low", false}, {"high", true}};
+const Choices<coupling::CouplingMethod> method_choices = {{"spread", coupling::CouplingMethod::spread},
+                                                          {"explicit", coupling::CouplingMethod::explicit_}};
 const Choices<bool> end_choices = {{"open", false}, {"closed", true}};
 
 }  // namespace
@@ -177,6 +179,11 @@ void declare_body(Table& table, Body& body) {
 }
 
 void declare_coupling(Table& table, coupling::SheetParameters& coupling) {
+  table.value(
+      "method", scene::choice_codec(coupling.method, method_choices),
+      "Coupling of canopies to the fluid: both relax against each other in each step of the cloth, or "
+      "the cloth takes the force of the last step of the flow and imposes its velocity, as in [Shi]; "
+      "bodies have the same forces with both");
   table
       .value("filter", scene::real_codec(coupling.filter),
              "Weight of the present step in the running mean of the acceleration of the fluid at bodies")

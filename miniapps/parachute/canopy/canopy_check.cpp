@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <sstream>
 #include <string>
 
 #include "common/scene/read.hpp"
@@ -192,6 +193,23 @@ void check_contact(const Table& root, const FlowScene& scene) {
                  " m, with contact");
 }
 
+/// Explicit coupling moves cloth against the air beside it as if the cloth were the heavier one.
+void check_added_mass(const Table& root, const FlowScene& scene) {
+  if (!scene.is_explicit() || scene.allow_unstable) return;
+  for (std::size_t i = 0; i < scene.canopies.size(); ++i) {
+    const Canopy& canopy = scene.canopies[i];
+    const double ratio = scene.added_mass_ratio(canopy);
+    if (ratio <= 1.0) continue;
+    std::ostringstream text;
+    text.precision(3);
+    text << "coupling.method = \"explicit\": waves as long as " << name_of(i) << ", " << canopy.diameter
+         << " m, move " << ratio * canopy.area_density << " kg/m^2 of fluid, " << ratio << " times the "
+         << canopy.area_density
+         << " kg/m^2 of its cloth; forces that act a step late need at most 1, \"spread\" takes any cloth";
+    contradict(root, "coupling.method", text.str());
+  }
+}
+
 }  // namespace
 
 void check_and_place_canopies(const Table& root, std::vector<Canopy>& canopies) {
@@ -239,6 +257,7 @@ void check_canopies(const Table& root, const FlowScene& scene) {
     check_overlaps(root, scene, cloths, bodies);
   }
   check_frame(root, scene);
+  check_added_mass(root, scene);
   check_contact(root, scene);
   if (p.fixed_dt == 0.0 && p.max_dt == 0.0)
     contradict(root, "run",

@@ -1,6 +1,9 @@
 #include "miniapps/parachute/scene/scene.hpp"
 
+#include <algorithm>
+
 #include "common/run/restart/restart_file.hpp"
+#include "kernels/coupling/sheet/added_mass.hpp"
 #include "miniapps/framework/mini_app.hpp"
 #include "miniapps/framework/obj_file.hpp"
 #include "miniapps/framework/typed_scene.hpp"
@@ -8,6 +11,27 @@
 #include "miniapps/parachute/scene/scene_keys.hpp"
 
 namespace drogue::parachute_app {
+namespace {
+
+/// Cloth of the input files of [Shi]: 134 times as heavy as that of a C-9.
+constexpr double baseline_area_density = 5.0;  // kg/m^2
+
+/// Scheme of [Shi], chapter 3: weights of Jiang and Shu (1996), SSP Runge-Kutta of three stages, explicit
+/// coupling of the canopy, and its cloth unless the scene gives an area density.
+void set_baseline_scheme(FlowScene& scene) {
+  scene.advection = AdvectionScheme::weno5;
+  scene.weights = Weights::js;
+  scene.parameters.time_scheme = flow::TimeScheme::rk3;
+  scene.parameters.diffusion = flow::Diffusion::explicit_;
+  if (scene.has_sheets()) scene.coupling.method = coupling::CouplingMethod::explicit_;
+  for (Canopy& canopy : scene.canopies) {
+    if (canopy.cloth == Fabric::custom) continue;
+    canopy.cloth = Fabric::custom;
+    canopy.area_density = baseline_area_density;
+  }
+}
+
+}  // namespace
 
 const std::vector<std::string>& field_names() {
   static const std::vector<std::string> names = {"velocity",    "pressure", "vorticity",
@@ -17,8 +41,23 @@ const std::vector<std::string>& field_names() {
 
 bool is_canopy_field(const std::string& name) { return name == "position" || name == "von_mises"; }
 
-FlowScene read_flow_scene(const std::filesystem::path& file, const std::vector<std::string>& sets) {
-  return framework::read_scene<FlowScene>(file, sets, declare_flow_scene, complete_and_check);
+FlowScene read_flow_scene(const std::filesystem::path& file, const std::vector<std::string>& sets,
+                          SchemeSource source) {
+  return framework::read_scene<FlowScene>(file, sets, declare_flow_scene,
+                                          [&](const scene::Table& root, FlowScene& scene) {
+                                            if (source == SchemeSource::baseline) set_baseline_scheme(scene);
+                                            complete_and_check(root, scene);
+                                          });
+}
+
+double FlowScene::added_mass_ratio(const Canopy& canopy) const {
+  return coupling::added_mass_ratio(parameters.density, canopy.diameter, canopy.area_density);
+}
+
+double FlowScene::largest_added_mass_ratio() const {
+  double largest = 0.0;
+  for (const Canopy& canopy : canopies) largest = std::max(largest, added_mass_ratio(canopy));
+  return largest;
 }
 
 std::array<bool, 3> FlowScene::open_axes() const {

@@ -153,12 +153,18 @@ struct FlowScene {
   std::vector<Canopy> canopies;
   coupling::SheetParameters coupling;  ///< its laws are those of the bodies and canopies
   std::array<double, 3> gravity{};     ///< of canopies and payloads, m/s^2
+  bool allow_unstable = false;         ///< explicit coupling runs with cloth lighter than its added mass
   bool contact = false;                ///< of canopies and lines with each other and themselves
   double thickness = 0.01;             ///< m, distance of layers in contact
   double end_time = 0.0;               ///< s
   framework::OutputRequest output;
   Verify verify;
 
+  /// Added mass of a canopy, whose longest wave is its diameter, over its own mass. Does not throw.
+  [[nodiscard]] double added_mass_ratio(const Canopy& canopy) const;
+  /// Largest of these; 0 without canopies. Does not throw.
+  [[nodiscard]] double largest_added_mass_ratio() const;
+  [[nodiscard]] bool is_explicit() const { return coupling.method == coupling::CouplingMethod::explicit_; }
   [[nodiscard]] bool has_sheets() const { return !bodies.empty() || !canopies.empty(); }
   /// Axes along which the grid can move: fluid flows in or out at both sides. Does not throw.
   [[nodiscard]] std::array<bool, 3> open_axes() const;
@@ -174,9 +180,13 @@ const std::vector<std::string>& field_names();
 /// True for fields of canopies. Does not throw.
 bool is_canopy_field(const std::string& name);
 
+/// Source of the numerical scheme. `--seed-mode` replaces that of the scene by the baseline of [Shi].
+enum class SchemeSource { scene, baseline };
+
 /// Reads and checks `file` with its `--set` assignments, and evaluates the initial velocity at every face.
 /// Throws `Failure`: usage for a missing file, invalid_scene (`FILE:LINE: ...`) otherwise.
-FlowScene read_flow_scene(const std::filesystem::path& file, const std::vector<std::string>& sets = {});
+FlowScene read_flow_scene(const std::filesystem::path& file, const std::vector<std::string>& sets = {},
+                          SchemeSource source = SchemeSource::scene);
 
 /// Resolved scene as TOML: every default that applies, no key that does not. It resolves to itself.
 std::string print_flow_scene(const FlowScene& scene);

@@ -184,6 +184,11 @@ void declare_flow_scene(Table& root, FlowScene& scene) {
           "coupling",
           [&](Table& table) {
             declare_coupling(table, scene.coupling);
+            table
+                .value(
+                    "allow_unstable", scene::boolean_codec(scene.allow_unstable),
+                    "Run with canopies whose added mass exceeds their own, which the method is unstable for")
+                .when([&scene] { return scene.is_explicit(); }, "with method = \"explicit\"", "method");
             table.value("gravity", vector_codec(scene.gravity), "Acceleration of canopies and payloads")
                 .unit("m/s^2")
                 .when([&scene] { return !scene.canopies.empty(); }, "with a [[canopy]]", "canopy");

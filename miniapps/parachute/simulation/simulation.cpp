@@ -236,7 +236,9 @@ framework::FieldsTask Simulation::snapshot() {
   };
 }
 
-std::string Simulation::failure_text(bool) {
+std::string Simulation::failure_text(bool) { return failure_cause() + light_cloth_text(); }
+
+std::string Simulation::failure_cause() {
   std::ostringstream text;
   text.precision(9);
   if (_stop == flow::Stop::max_steps) {
@@ -289,6 +291,8 @@ void Simulation::describe(run::ResultDocument& result) {
     result.metrics.set("canopies", "vertices",
                        static_cast<std::int64_t>(_sheets.positions.size() - vertices_of(_scene.bodies)));
     result.metrics.set("canopies", "substeps", _coupled->block().substeps);
+    if (_scene.is_explicit())
+      result.metrics.set("canopies", "added_mass_ratio", _scene.largest_added_mass_ratio());
   }
   result.timing.compute_s = _compute_s;
   result.timing.h2d_s = _h2d_s;

@@ -68,7 +68,9 @@ class Simulation final : public framework::Simulation {
   [[nodiscard]] run::DatasetSpec canopy_field_spec(const std::string& name) const;
   void write_canopy_mesh(run::FieldsWriter& fields) const;
   void sample_canopy_field(const std::string& name, std::vector<double>& values);
+  [[nodiscard]] std::string failure_cause();
   [[nodiscard]] std::string sheet_failure_text(coupling::FailureReason reason);
+  [[nodiscard]] std::string light_cloth_text() const;
   void write_coupling(run::RestartWriter& writer);
   void read_coupling(const run::RestartReader& reader);
 

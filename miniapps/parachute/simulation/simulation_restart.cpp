@@ -45,6 +45,11 @@ void Simulation::write_coupling(run::RestartWriter& writer) {
     writer.write(name, 0, {values.front().data(), 3 * vertices});
   };
   write("air_acceleration", acceleration);
+  if (_scene.is_explicit()) {
+    std::vector<fabric::Vector> forces(vertices);
+    _coupled->forces(forces);
+    write("sheet_force", forces);
+  }
   write("sheet_position", positions);
   write("sheet_velocity", velocities);
   _record.write(writer);
@@ -69,6 +74,7 @@ void Simulation::read_coupling(const run::RestartReader& reader) {
   };
   _coupled->upload_cloth(values("sheet_position"), values("sheet_velocity"));
   _coupled->upload_air_acceleration(values("air_acceleration"));
+  if (_scene.is_explicit()) _coupled->upload_forces(values("sheet_force"));
   _record.read(reader);
   _coupled->set_block(
       {reader.number("block_dt"), reader.integer("block_substeps"), reader.integer("block_end")});

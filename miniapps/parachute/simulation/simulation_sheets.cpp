@@ -185,6 +185,16 @@ void Simulation::sample_canopy_field(const std::string& name, std::vector<double
   for (std::size_t k = 0; k < values.size(); ++k) values[k] = stress[first + k].von_mises();
 }
 
+/// End of the message of a failure for which explicit coupling of light cloth is the likely cause.
+std::string Simulation::light_cloth_text() const {
+  if (!_scene.is_explicit() || _scene.largest_added_mass_ratio() <= 1.0) return "";
+  std::ostringstream text;
+  text.precision(3);
+  text << "; coupling.method = \"explicit\" is unstable for cloth that moves "
+       << _scene.largest_added_mass_ratio() << " times its own mass of fluid";
+  return text.str();
+}
+
 std::string Simulation::sheet_failure_text(coupling::FailureReason reason) {
   std::ostringstream text;
   text.precision(9);

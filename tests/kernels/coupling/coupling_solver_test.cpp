@@ -91,6 +91,7 @@ void restore(const CoupledCase& c, const State& s, Solver& solver) {
   solver.upload_cloth(s.positions, s.velocities);
   solver.restore(s.progress);
   solver.upload_air_acceleration(s.acceleration);
+  solver.upload_forces(s.forces);
   solver.set_block(s.block);
 }
 
@@ -116,6 +117,10 @@ TEST(CoupledSolver, ContinuesBitForBit) {
     CoupledCase c = flying_strip();
     c.p.flow.time_scheme = time;
     c.p.sheet.law.no_slip = time == flow::TimeScheme::rk3;
+    if (time == flow::TimeScheme::rk3) {
+      c.p.sheet.method = CouplingMethod::explicit_;
+      c.set_mass(5.0);
+    }
     CoupledRun whole(c), first(c);
     ASSERT_TRUE(whole.advance(21));
     ASSERT_TRUE(whole.advance(19));
@@ -472,6 +477,7 @@ TEST(CoupledSolver, RejectsArraysOfTheWrongLength) {
   EXPECT_THROW(run.solver->forces(few), std::invalid_argument);
   EXPECT_THROW(run.solver->download_air_acceleration(few), std::invalid_argument);
   EXPECT_THROW(run.solver->upload_air_acceleration(few), std::invalid_argument);
+  EXPECT_THROW(run.solver->upload_forces(few), std::invalid_argument);
   EXPECT_THROW(run.solver->upload_cloth(few, few), std::invalid_argument);
 }
 
