@@ -85,6 +85,11 @@ class BadFlows(parachute_program.FlowTest):
         self.assertIn("needs a payload; canopy[0] is a sheet", self.refusal(first, 'grid.frame="follow"'))
         shared = ("canopy[1].payload={shared=0}", "canopy[1].riser={length=1}")
         self.assertIn("this canopy has no payload of its own", self.refusal(first, *shared))
+        # All canopies on a payload have a riser, and room.
+        first = "canopy[0].riser={length=0.05}"
+        self.assertIn('missing key "canopy[1].riser"', self.refusal(first, shared[0]))
+        message = self.refusal(first, shared[0], "canopy[1].riser={length=0.05}")
+        self.assertIn("canopy[1] overlaps canopy[0]", message)
 
     def test_rejects_canopies_on_a_plane(self):
         self.scene.write_text(bad_canopies.GOOD.replace("cells = [40, 20, 24]", "cells = [40, 1, 24]"), encoding="utf-8")
