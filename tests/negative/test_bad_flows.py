@@ -78,6 +78,18 @@ class BadFlows(parachute_program.FlowTest):
         self.assertIn("verify.peak_force[0].canopy: this canopy is a sheet", self.refusal())
         self.scene.write_text(sheet.replace("[{ canopy = 1, force", "[{ canopy = 0, force"), encoding="utf-8")
         self.expect(0, self.scene, "--check")
+        # A sheet has no payload to follow or to share.
+        self.scene.write_text(bad_canopies.GOOD, encoding="utf-8")
+        first = 'canopy[0].kind="sheet"'
+        self.expect(0, self.scene, "--check", sets=[first])
+        self.assertIn("needs a payload; canopy[0] is a sheet", self.refusal(first, 'grid.frame="follow"'))
+        shared = ("canopy[1].payload={shared=0}", "canopy[1].riser={length=1}")
+        self.assertIn("this canopy has no payload of its own", self.refusal(first, *shared))
+        # All canopies on a payload have a riser, and room.
+        first = "canopy[0].riser={length=0.05}"
+        self.assertIn('missing key "canopy[1].riser"', self.refusal(first, shared[0]))
+        message = self.refusal(first, shared[0], "canopy[1].riser={length=0.05}")
+        self.assertIn("canopy[1] overlaps canopy[0]", message)
 
     def test_rejects_canopies_on_a_plane(self):
         self.scene.write_text(bad_canopies.GOOD.replace("cells = [40, 20, 24]", "cells = [40, 1, 24]"), encoding="utf-8")

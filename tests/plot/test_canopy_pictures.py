@@ -6,6 +6,7 @@ import unittest
 from pathlib import Path
 
 import packages  # before modules that need the packages  isort: skip
+import h5py
 import numpy as np
 from matplotlib.text import Text
 from PIL import Image
@@ -13,7 +14,7 @@ from plot import cli, shading, style
 from plot.flow.plane import plane_of
 from plot.flow.quantities import quantities
 from plot.parachute.canopies import Canopies, has_canopies
-from plot.parachute.canopies_history import canopies_history_figure, drag_coefficient, relative_velocity
+from plot.parachute.canopies_history import canopies_history_figure, drag_coefficient, nominal_area, relative_velocity
 from plot.parachute.canopy_figure import CanopyFigure, View, canopy_figure
 from plot.parachute.forces_history import forces_history_figure, mean_from
 from plot.parachute.time_figure import Panel
@@ -79,6 +80,28 @@ class CanopyPictures(unittest.TestCase):
         self.assertEqual([GORES + 1], canopies.payloads.tolist())
         self.assertEqual(GORES, len(canopies.lines))
         self.assertEqual({GORES + 1}, set(canopies.lines[:, 1]))
+
+    def test_risers_are_lines_and_no_payload_is_where_they_begin(self):
+        path = write_canopies(self.folder / "run")
+        with h5py.File(path / "fields.h5", "r+") as h5:
+            mesh = h5["mesh/canopy"]
+            for name, more in (("vertices", [[0.0, 0.0, -3.0]]), ("strings", [[GORES + 1, GORES + 2]])):
+                values = np.concatenate((mesh[name][:], more)).astype(mesh[name].dtype)
+                attributes = dict(mesh[name].attrs)
+                del mesh[name]
+                mesh[name] = values
+                mesh[name].attrs.update(attributes)
+        canopies = Canopies(read_run(path))
+        self.assertEqual([GORES + 2], canopies.payloads.tolist())
+        self.assertEqual(GORES + 1, len(canopies.lines))
+
+    def test_nominal_area_is_that_of_disk_and_skirt(self):
+        path = write_canopies(self.folder / "run")
+        self.assertAlmostEqual(np.pi, nominal_area(read_run(path), 0))
+        scene = (path / "scene.toml").read_text(encoding="utf-8")
+        skirt = "diameter = 2.0\n[canopy.skirt]\nlength = 0.5\ndiameter = 1.0\n"
+        (path / "scene.toml").write_text(scene.replace("diameter = 2.0\n", skirt), encoding="utf-8")
+        self.assertAlmostEqual(np.pi * (1 + 0.75), nominal_area(read_run(path), 0))
 
     def test_section_of_cone_is_its_profile(self):
         run = read_run(write_canopies(self.folder / "run"))
@@ -166,7 +189,7 @@ class CanopyPictures(unittest.TestCase):
         air, lines = panel_of(fixed, "lines on the payload").lines
         np.testing.assert_allclose(air.get_ydata(), [0, 50, 25])
         np.testing.assert_allclose(lines.get_ydata(), [0, 50, 24])
-        self.assertIn("flat: 3.1", [text.get_text() for text in panel_of(fixed, "projected area").texts])
+        self.assertIn("nominal: 3.1", [text.get_text() for text in panel_of(fixed, "projected area").texts])
 
     def test_curves_of_several_canopies_are_labelled(self):
         run = read_run(write_canopies(self.folder / "run", canopies=5, payload_speed=0.5))

@@ -223,10 +223,12 @@ void check_and_place_canopies(const Table& root, std::vector<Canopy>& canopies) 
     const Canopy& owner = canopies[static_cast<std::size_t>(*shared)];
     if (owner.payload.shared || !owner.has_lines())
       contradict(root, key, given + ": this canopy has no payload of its own");
-    if (!canopies[i].riser)
-      contradict(
-          root, key,
-          "missing key \"" + name_of(i) + ".riser\" (needed with payload.shared): it leads to the payload");
+    // With risers, the force of each canopy on the payload is that of one line.
+    for (const std::size_t of : {static_cast<std::size_t>(*shared), i})
+      if (!canopies[of].riser)
+        contradict(root, key,
+                   "missing key \"" + name_of(of) + ".riser\" (needed with " + key +
+                       "): it leads to the common payload");
   }
   place_at_shared_payloads(canopies);
 }

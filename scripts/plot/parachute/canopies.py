@@ -24,15 +24,22 @@ class Canopies:
         return self.run.canopy_mesh["triangles"].values
 
     @property
-    def payloads(self) -> np.ndarray:
-        """Vertices that are no part of the cloth."""
+    def line_ends(self) -> np.ndarray:
+        """Vertices that are no part of the cloth: payloads, and the points where lines meet risers."""
         return np.setdiff1d(np.arange(len(self.run.canopy_mesh["vertices"].values)), self.triangles)
 
     @property
-    def lines(self) -> np.ndarray:
-        """Vertex pairs (n, 2) of the suspension lines."""
+    def payloads(self) -> np.ndarray:
+        """Vertices that are no part of the cloth, and from which no riser leads to another one."""
         strings = self.run.canopy_mesh["strings"].values
-        return strings[np.isin(strings, self.payloads).any(axis=1)]
+        risers = strings[np.isin(strings, self.line_ends).all(axis=1)]
+        return np.setdiff1d(self.line_ends, risers[:, 0])
+
+    @property
+    def lines(self) -> np.ndarray:
+        """Vertex pairs (n, 2) of the suspension lines and risers."""
+        strings = self.run.canopy_mesh["strings"].values
+        return strings[np.isin(strings, self.line_ends).any(axis=1)]
 
     @property
     def stress_units(self) -> str | None:

@@ -96,8 +96,9 @@ def _panels(run: Run) -> list[Panel]:
         Panel(
             style.axis_label("projected area", "m^2"),
             of_all("", lambda canopy: history(f"canopy_{canopy}_projected_area")),
+            _checks(run, "projected_area"),
             constants={
-                f"flat: {area:.1f}": area
+                f"nominal: {area:.1f}": area
                 for area in dict.fromkeys(nominal_area(run, canopy) for canopy in canopies)
             },
         ),

@@ -254,7 +254,7 @@ TEST(CoupledSolver, BackendsAgree) {
   constexpr double tolerance = 1e-10;
 #endif
   for (const bool no_slip : {false, true}) {
-    CoupledCase c = flying_strip();
+    CoupledCase c = strip_with_lines(0.0501);
     c.p.sheet.law.no_slip = no_slip;
     const auto end = [&](device::Backend backend) {
       const auto solver = c.solver(backend);
