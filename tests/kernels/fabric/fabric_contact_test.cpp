@@ -101,6 +101,39 @@ TEST(FabricContact, PreventsCrossingsInIntervalsOfSeveralSteps) {
   expect_no_crossing("fold", folded(3.0));
 }
 
+/// A sheet below a line of twice its width, which falls on it: the hash grid holds no lines that long.
+Sheets below_a_long_line() {
+  Sheets s;
+  s.add(10, 0.1, level(0.0, 0.0, 0.0), {0.0, 0.0, 0.0});
+  const int first = static_cast<int>(s.x.size());
+  for (const double along : {-0.05, 0.15}) {
+    s.p.mesh.rest.push_back({along, 0.047, 5.0});
+    s.x.push_back({along, 0.047, 0.01 + 0.1 * along});
+    s.v.push_back({0.0, 0.0, -3.0});
+    s.p.mass.push_back(0.01);
+  }
+  s.p.mesh.lines.push_back({first, first + 1});
+  s.p.material.axial_stiffness = 500.0;
+  s.p.material.tension_only = true;
+  s.p.integrator = Integrator::symplectic_euler;
+  s.p.contact.friction = 0.0;
+  return s;
+}
+
+TEST(FabricContact, LongLinesDoNotCrossCloth) {
+  for (const int interval : {1, 10}) {
+    Sheets s = below_a_long_line();
+    s.p.contact.interval = interval;
+    const ContactRun o = run_with_contact(s, 200, 10);
+    EXPECT_FALSE(o.failure) << interval;
+    EXPECT_EQ(o.crossings, 0U) << interval;
+    EXPECT_LT(o.work, 0.0) << interval;
+  }
+  Sheets s = below_a_long_line();
+  s.p.contact = {};
+  EXPECT_GT(run_with_contact(s, 100, 10).crossings, 0U);
+}
+
 TEST(FabricContact, SheetsCrossWithoutContact) {
   Sheets s = edge_on(3.0);
   s.p.contact = {};
