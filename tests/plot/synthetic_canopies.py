@@ -52,7 +52,7 @@ def canopy_columns(index, payload_speed=0.0):
         name + "payload_z [m]": [-2.0 + payload_speed * time for time in range(3)],
         name + "payload_velocity_x [m/s]": zero, name + "payload_velocity_y [m/s]": zero,
         name + "payload_velocity_z [m/s]": [payload_speed] * 3,
-        name + "projected_area [m^2]": [3.0, 2.0, 2.5], name + "largest_strain": zero,
+        name + "projected_area [m^2]": [3.0, 2.0, 2.5], name + "largest_strain": zero, name + "inversion": zero,
     }  # fmt: skip
 
 

@@ -291,10 +291,11 @@ flow::Stop CoupledSolver<ExecutionSpace>::advance(double last_target, std::int64
     if (pause_step > now.step) steps = std::min(steps, pause_step - now.step);
     const double dt = _block.dt;
     _flow.set_fixed_dt(dt);
-    const std::int64_t substep = _fabric.time_state().step;
+    const std::int64_t substep = _block.cloth_step;
     _fabric.set_time_state({substep, dt / static_cast<double>(_block.substeps), substep, now.time});
     _flow.enqueue_begin(target);
     for (std::int64_t k = 0; k < steps; ++k) enqueue_step(dt, now.step + k == 0);
+    _block.cloth_step = _fabric.time_state().step;
   }
 }
 

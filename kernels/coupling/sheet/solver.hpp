@@ -25,6 +25,9 @@ struct BlockProgress {
   double dt = 0.0;            ///< s, of the steps of the flow in the present block
   std::int64_t substeps = 0;  ///< steps of the cloth in each of them
   std::int64_t end = 0;       ///< step of the flow at which the block ends
+  /// Steps of the cloth since `start`. It decides where launches of many steps end, of which one with a
+  /// single step may round differently on a GPU.
+  std::int64_t cloth_step = 0;
 };
 
 /// Motion of the frame of reference of grid, velocities and positions. A restart that restores it continues

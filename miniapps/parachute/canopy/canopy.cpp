@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <numbers>
 #include <numeric>
+#include <random>
 
 #include "kernels/fabric/elastic/lumped_mass.hpp"
 #include "kernels/fabric/payload.hpp"
@@ -224,6 +226,16 @@ void add_lines(const Canopy& canopy, const CanopyAxes& axes, CanopyMesh& to) {
   to.positions.push_back(payload_place(canopy, at_start));
 }
 
+/// Displaces the cloth along its axis by numbers that are uniformly distributed within the amplitude.
+void perturb(const Canopy& canopy, const CanopyAxes& axes, std::vector<Vector>& positions) {
+  if (canopy.perturbation.amplitude == 0.0) return;
+  std::mt19937 engine(static_cast<std::uint32_t>(canopy.perturbation.seed));
+  constexpr double scale = 2.0 / std::mt19937::max();
+  for (Vector& x : positions)
+    x = axes.place(x, 0.0, 0.0,
+                   canopy.perturbation.amplitude * (scale * static_cast<double>(engine()) - 1.0));
+}
+
 }  // namespace
 
 double Canopy::axis_angle() const {
@@ -296,6 +308,7 @@ CanopyMesh make_canopy(const Canopy& canopy) {
     p.mesh.rest.push_back(constructed_place(canopy, axes, at));
     result.positions.push_back(is_pleated ? pleated_place(canopy, axes, at) : p.mesh.rest.back());
   }
+  perturb(canopy, axes, result.positions);
   p.mesh.triangles = cloth.triangles;
   result.cloth_vertices = cloth.points.size();
   p.mass = fabric::lumped_masses(p.mesh, canopy.area_density, 0.0, fabric::Lumping::area);

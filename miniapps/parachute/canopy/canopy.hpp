@@ -69,6 +69,12 @@ struct ConicalSkirt {
   double diameter = 0.0;  ///< m, of its lower edge
 };
 
+/// Random displacements of the cloth at the start.
+struct Perturbation {
+  double amplitude = 0.0;  ///< m, largest one, along the axis
+  int seed = 0;
+};
+
 /// E A of bands sewn along edges of the cloth, N; zero: none.
 struct Reinforcement {
   double seams = 0.0, skirt = 0.0, vent = 0.0;
@@ -96,6 +102,7 @@ struct Canopy {
   CanopyPayload payload;
   std::optional<ReefingLine> reefing;
   Reinforcement reinforcement;
+  Perturbation perturbation;
   Porosity porosity = {PorosityLaw::forchheimer, 254.4, 37.6};
 
   /// Angle of the axis from z, degrees. Does not throw.

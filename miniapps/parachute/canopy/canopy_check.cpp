@@ -35,6 +35,10 @@ double cell_width(const flow::Parameters& p, std::size_t axis) {
 }
 
 void check_measures(const Table& root, const Canopy& canopy, const std::string& name) {
+  if (canopy.perturbation.amplitude > 0.25 * canopy.edge_length)
+    contradict(root, name + ".perturbation.amplitude",
+               name + ".perturbation.amplitude = " + real_text(canopy.perturbation.amplitude) +
+                   " m exceeds a quarter of edge_length, " + real_text(0.25 * canopy.edge_length) + " m");
   const double radius = canopy.skirt_radius();
   if (canopy.vent >= canopy.diameter)
     contradict(root, name + ".vent",

@@ -70,6 +70,16 @@ void declare_place(Table& table, Canopy& canopy) {
             "payload");
 }
 
+void declare_perturbation(Table& table, Perturbation& perturbation) {
+  table
+      .value("amplitude", scene::real_codec(perturbation.amplitude),
+             "Largest displacement of a vertex along the axis of the canopy")
+      .unit("m")
+      .at_least(0.0);
+  table.value("seed", scene::integer_codec(perturbation.seed), "Start of the sequence of random numbers")
+      .range(0, 1e9);
+}
+
 void declare_lines(Table& table, SuspensionLines& lines) {
   table
       .value("length", scene::real_codec(lines.length),
@@ -196,6 +206,9 @@ void declare_canopy(Table& table, Canopy& canopy) {
       .at_least(0.0);
   declare_cloth(table, canopy);
   declare_place(table, canopy);
+  table.table(
+      "perturbation", [&](Table& perturbation) { declare_perturbation(perturbation, canopy.perturbation); },
+      "Random displacements of the cloth at the start, for several runs of a chaotic opening");
   table
       .table(
           "lines", [&](Table& lines) { declare_lines(lines, canopy.lines); },

@@ -22,6 +22,9 @@ struct CanopyMeasures {
   fabric::Vector velocity{};    ///< of the payload, or of that centre, m/s
   double projected_area = 0.0;  ///< on a plane normal to z, m^2
   double largest_strain = 0.0;  ///< of an edge of the cloth; 0 if all are slack
+  /// Share of the lines at whose vertex of the skirt the side of the cloth that was constructed outside faces
+  /// the point where the lines meet; 0 without lines.
+  double inversion = 0.0;
 };
 
 /// Area of the shadow that triangles cast along z, m^2, counted once where they overlap: by the centres of

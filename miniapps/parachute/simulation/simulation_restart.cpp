@@ -57,6 +57,7 @@ void Simulation::write_coupling(run::RestartWriter& writer) {
   writer.number("block_dt", block.dt);
   writer.integer("block_substeps", block.substeps);
   writer.integer("block_end", block.end);
+  writer.integer("block_cloth_step", block.cloth_step);
   if (_scene.frame != Frame::follow) return;
   const coupling::FrameMotion frame = _coupled->frame();
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -76,8 +77,8 @@ void Simulation::read_coupling(const run::RestartReader& reader) {
   _coupled->upload_air_acceleration(values("air_acceleration"));
   if (_scene.is_explicit()) _coupled->upload_forces(values("sheet_force"));
   _record.read(reader);
-  _coupled->set_block(
-      {reader.number("block_dt"), reader.integer("block_substeps"), reader.integer("block_end")});
+  _coupled->set_block({reader.number("block_dt"), reader.integer("block_substeps"),
+                       reader.integer("block_end"), reader.integer("block_cloth_step")});
   if (_scene.frame != Frame::follow) return;
   coupling::FrameMotion frame;
   for (std::size_t axis = 0; axis < 3; ++axis) {

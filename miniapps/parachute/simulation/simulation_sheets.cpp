@@ -87,6 +87,7 @@ void Simulation::append_canopy_columns(std::vector<run::Column>& columns) const 
     add_vector("payload_velocity", "m/s");
     columns.push_back({name + "projected_area", "m^2"});
     columns.push_back({name + "largest_strain", ""});
+    columns.push_back({name + "inversion", ""});
   }
   columns.insert(columns.end(),
                  {{"cloth_kinetic_energy", "J"}, {"cloth_elastic_energy", "J"}, {"force_balance", ""}});
@@ -115,7 +116,7 @@ void Simulation::append_canopy_values(framework::HistoryRow& row) {
     }
     for (const Vector& vector : {one.force, one.line_force, one.payload, one.velocity})
       row.values.insert(row.values.end(), vector.begin(), vector.end());
-    row.values.insert(row.values.end(), {one.projected_area, one.largest_strain});
+    row.values.insert(row.values.end(), {one.projected_area, one.largest_strain, one.inversion});
   }
   const double balance = force_balance(_coupled->total_force_on_air(), state.on_air);
   fabric::Totals totals = _coupled->cloth_totals();

@@ -22,6 +22,31 @@ SheetState state_of(const Sheets& sheets) {
   return state;
 }
 
+TEST(CanopyState, InversionIsTheShareOfTheSkirtThatIsInsideOut) {
+  Canopy canopy;
+  canopy.edge_length = 0.5;
+  for (const double angle : {0.0, 60.0, 180.0}) {
+    canopy.angle = angle;
+    const Sheets sheets = make_all_sheets({}, {canopy}, 1.225, 1.8e-5);
+    SheetState state = state_of(sheets);
+    EXPECT_EQ(measure(sheets.canopies[0], sheets.fabric, state, false).inversion, 0.0) << angle;
+    // The flat cloth lies between the payload and its image: seen from there, its other side is outside.
+    Vector& payload = state.positions[*sheets.canopies[0].payload];
+    for (std::size_t axis = 0; axis < 3; ++axis) payload[axis] = 2.0 * canopy.centre[axis] - payload[axis];
+    EXPECT_EQ(measure(sheets.canopies[0], sheets.fabric, state, false).inversion, 1.0) << angle;
+  }
+  // A quarter of the skirt turns over: its vertices and those of the next ring change places.
+  canopy.angle = 0.0;
+  const Sheets sheets = make_all_sheets({}, {canopy}, 1.225, 1.8e-5);
+  SheetState state = state_of(sheets);
+  for (Vector& x : state.positions) {
+    const double radius = std::hypot(x[0], x[1]);
+    if (x[0] > 0.0 && x[1] > 0.0 && radius > 3.9)
+      for (std::size_t axis = 0; axis < 2; ++axis) x[axis] *= (7.0 - radius) / radius;
+  }
+  EXPECT_NEAR(measure(sheets.canopies[0], sheets.fabric, state, false).inversion, 0.25, 0.08);
+}
+
 TEST(CanopyState, ProjectedAreaIsThatOfTheShadow) {
   Canopy canopy;
   canopy.edge_length = 0.2;

@@ -395,5 +395,33 @@ TEST(Canopy, SheetsOfASceneAreOneMeshInTheirOrder) {
   EXPECT_EQ(p.mesh.rest[sheets.canopies[1].payload.value()][0], 20.0);
 }
 
+TEST(Canopy, PerturbationsDisplaceTheClothAlongItsAxisAlone) {
+  Canopy canopy;
+  canopy.edge_length = 0.5;
+  canopy.angle = 90.0;  // along x
+  const CanopyMesh still = make_canopy(canopy);
+  canopy.perturbation = {0.02, 3};
+  const CanopyMesh one = make_canopy(canopy), again = make_canopy(canopy);
+  canopy.perturbation.seed = 4;
+  const CanopyMesh other = make_canopy(canopy);
+  EXPECT_EQ(one.positions, again.positions);
+  EXPECT_NE(one.positions, other.positions);
+  EXPECT_EQ(one.fabric.mesh.rest, still.fabric.mesh.rest);
+  double largest = 0.0, sum = 0.0;
+  for (std::size_t i = 0; i < one.positions.size(); ++i) {
+    const double moved = one.positions[i][0] - still.positions[i][0];
+    EXPECT_NEAR(one.positions[i][1], still.positions[i][1], 1e-15);
+    EXPECT_NEAR(one.positions[i][2], still.positions[i][2], 1e-15);
+    if (i >= one.cloth_vertices) {
+      EXPECT_EQ(moved, 0.0) << "the payload stays";
+      continue;
+    }
+    largest = std::max(largest, std::abs(moved)), sum += moved;
+  }
+  EXPECT_GT(largest, 0.019);
+  EXPECT_LE(largest, 0.02);
+  EXPECT_LT(std::abs(sum) / static_cast<double>(one.cloth_vertices), 0.002);
+}
+
 }  // namespace
 }  // namespace drogue::parachute_app

@@ -1,0 +1,75 @@
+#!/usr/bin/env python3
+"""Drops a canopy at several angles to the stream, each several times with other random displacements of its cloth, and prints
+how often it opens inside out.
+
+    scripts/measure_inversion.py [--angles 15,30,45,60,75,90] [--runs 8] [--amplitude 0.01] [--bin build/host/bin]
+                                 [--out out/inversion] [-- ARGUMENT...]
+
+The scene is c9-angled-60 in a longer box, with the payload at one place for all angles. Openings are chaotic, so that a single run
+means little. For each angle: the inversion index at the end of each run (the share of the lines at whose vertex of the skirt the
+cloth is inside out, `canopy_0_inversion`), their mean, the number of runs above one half, and the median over the runs of the
+largest index and of the time at which the projected area first exceeds half of its largest value. ARGUMENTs go to the program,
+such as `--backend cuda --set run.end_time=3`.
+"""
+
+import argparse
+import csv
+import math
+import pathlib
+import statistics
+import subprocess
+import sys
+
+PAYLOAD = (-3.0, 0.0, -4.4)  # m
+BOX = ("grid.cells=[45, 30, 48]", "grid.domain=[[-9, 9], [-6, 6], [-9.2, 10]]", "verify={divergence = 1e-12}")
+DIAMETER, LINES = 8.534, 7.0  # m, of the scene
+
+
+def assignments(angle, seed, amplitude):
+    """--set arguments of a run."""
+    distance = math.sqrt(LINES**2 - (DIAMETER / 2) ** 2)
+    turn = math.radians(angle)
+    centre = [PAYLOAD[0] + distance * math.sin(turn), PAYLOAD[1], PAYLOAD[2] + distance * math.cos(turn)]
+    values = [*BOX, 'canopy[0].shape="flat"', f"canopy[0].angle={angle:g}", f"canopy[0].centre={centre}",
+              f"canopy[0].perturbation={{amplitude = {amplitude}, seed = {seed}}}", "output.fields=[]"]
+    return [word for value in values for word in ("--set", value)]
+
+
+def measures(directory):
+    """Last and largest inversion index, and the time of half of the largest projected area, s."""
+    with open(directory / "history.csv", newline="", encoding="utf-8") as file:
+        rows = [{name.split(" ")[0]: float(value) for name, value in row.items()} for row in csv.DictReader(file)]
+    index = [row["canopy_0_inversion"] for row in rows]
+    area = [row["canopy_0_projected_area"] for row in rows]
+    opened = next(row["time"] for row, now in zip(rows, area) if now > 0.5 * max(area))
+    return index[-1], max(index), opened
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--angles", default="15,30,45,60,75,90", type=lambda text: [float(part) for part in text.split(",")])
+    parser.add_argument("--runs", type=int, default=8)
+    parser.add_argument("--amplitude", type=float, default=0.01, help="largest displacement, m")
+    parser.add_argument("--bin", type=pathlib.Path, default=pathlib.Path("build/host/bin"))
+    parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("out/inversion"))
+    words = sys.argv[1:]
+    end = words.index("--") if "--" in words else len(words)
+    options, arguments = parser.parse_args(words[:end]), words[end + 1:]
+    for angle in options.angles:
+        runs = []
+        for seed in range(1, options.runs + 1):
+            out = options.out / f"{angle:g}-{seed}"
+            run = subprocess.run([options.bin / "drogue-parachute", "c9-angled-60", "--quiet", "--overwrite", "--out", out,
+                                  *assignments(angle, seed, options.amplitude), *arguments], check=False)
+            if run.returncode != 0:
+                return run.returncode
+            runs.append(measures(out))
+        last, largest, opened = zip(*runs)
+        print(f"{angle:g} degrees: index", " ".join(f"{index:.2f}" for index in last),
+              f"; mean {statistics.mean(last):.2f}; above one half {sum(index > 0.5 for index in last)} of {len(runs)}"
+              f"; largest {statistics.median(largest):.2f}; half open at {statistics.median(opened):.2f} s", flush=True)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
