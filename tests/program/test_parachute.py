@@ -383,9 +383,9 @@ class Bodies(parachute_program.FlowTest):
 
     def test_sharp_bodies_run_and_continue(self):
         scene = self.write(PLATE.replace("porosity = {", 'motion = { x = "0.05*sin(20*t)" }\nporosity = {'))
-        sets = ['coupling.method="sharp"', "output={history_every=1,restart_every=8}"]
+        sets = ['coupling.method="sharp"', "output={history_every=1,restart_every=8,fields=['pressure'],times=[0.15,0.3]}"]
         self.expect(0, scene, *QUIET, sets=sets)
-        self.expect(0, scene, "--quiet", "--backend", "serial", "--out", "half", sets=[*sets, "run.end_time=0.15"])
+        self.expect(0, scene, "--quiet", "--backend", "serial", "--out", "half", sets=[*sets, "run.end_time=0.15", "output.times=[0.15]"])
         self.expect(0, scene, "--quiet", "--backend", "serial", "--out", "half", "--restart", "half/restart.h5", sets=sets)
         rows, again = self.history("out"), self.history("half")
         self.assertGreater(max(rows["body_0_force_x"]), 1.0)
