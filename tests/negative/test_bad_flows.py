@@ -143,6 +143,18 @@ class BadFlows(parachute_program.FlowTest):
         self.assertIn("body[0].length is 0.4 m along z, where the grid has one cell: it must be the width of the domain, 0.8 m",
                       self.refusal("body[0].length=0.4"))
 
+    def test_rejects_sheets_that_cannot_be_sharp(self):
+        sharp = 'coupling.method="sharp"'
+        self.scene.write_text(bad_bodies.GOOD, encoding="utf-8")
+        self.expect(0, self.scene, "--check", sets=[sharp])
+        self.assertIn('body[0].slip = false: with coupling.method = "sharp" the fluid slips along plates and disks',
+                      self.refusal(sharp, "body[0].slip=false"))
+        self.scene.write_text(bad_bodies.ROUND, encoding="utf-8")
+        self.expect(0, self.scene, "--check", sets=[sharp, "body[0].slip=false"])
+        self.assertIn("body[0].slip = true", self.refusal(sharp))
+        self.scene.write_text(bad_canopies.GOOD, encoding="utf-8")
+        self.assertIn("takes a [[body]] and no [[canopy]]", self.refusal(sharp))
+
     def test_rejects_motion_along_an_axis_with_one_cell(self):
         flat = bad_bodies.GOOD.replace("[16, 8, 8]", "[16, 8, 1]")
         self.scene.write_text(flat, encoding="utf-8")

@@ -406,6 +406,17 @@ class Bodies(parachute_program.FlowTest):
         for name in ("body_0_force_x", "body_1_force_y", "body_2_force_x", "kinetic_energy"):
             self.assertEqual(rows[name][-1], again[name][-1], name)
 
+    def test_sharp_bodies_run_and_continue(self):
+        scene = self.write(PLATE.replace("porosity = {", 'motion = { x = "0.05*sin(20*t)" }\nporosity = {'))
+        sets = ['coupling.method="sharp"', "output={history_every=1,restart_every=8,fields=['pressure'],times=[0.15,0.3]}"]
+        self.expect(0, scene, *QUIET, sets=sets)
+        self.expect(0, scene, "--quiet", "--backend", "serial", "--out", "half", sets=[*sets, "run.end_time=0.15", "output.times=[0.15]"])
+        self.expect(0, scene, "--quiet", "--backend", "serial", "--out", "half", "--restart", "half/restart.h5", sets=sets)
+        rows, again = self.history("out"), self.history("half")
+        self.assertGreater(max(rows["body_0_force_x"]), 1.0)
+        for name in ("body_0_force_x", "body_1_force_y", "kinetic_energy"):
+            self.assertEqual(rows[name][-1], again[name][-1], name)
+
     def test_body_that_leaves_the_domain_ends_the_run(self):
         """An oscillation of the period of the times at which the scene is checked."""
         away = PLATE.replace("porosity = {", 'motion = { x = "0.7*sin(2*pi*256/30*t)" }\nporosity = {')

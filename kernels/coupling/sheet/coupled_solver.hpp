@@ -196,8 +196,7 @@ void CoupledSolver<ExecutionSpace>::start() {
 template <class ExecutionSpace>
 void CoupledSolver<ExecutionSpace>::forget_steps() {
   _block = {};
-  Kokkos::deep_copy(_space, _sheet.acceleration(), 0.0);
-  Kokkos::deep_copy(_space, _sheet.force(), 0.0);
+  _sheet.forget_steps(_space);
   Kokkos::deep_copy(_space, _reason, FailureReason::flow);
   _strength.reset(_space);
   Kokkos::deep_copy(_space, _saved_step, std::int64_t{-1});
@@ -319,7 +318,7 @@ void CoupledSolver<ExecutionSpace>::enqueue_step(double dt, bool is_first) {
       CheckClothFunctor<ExecutionSpace>{_flow.control(), _saved_step, _fabric.monitor(), _sheet.transfer(),
                                         _reason, _strength.broken(), _strength.failed()});
   _flow.enqueue_step();
-  _sheet.end_step(_space, velocity, density, dt, is_first);
+  _sheet.end_step(_space, velocity, density, dt, is_first, _flow.control());
 }
 
 /// True if the flow has stopped because the dt of the block exceeds the stability limit of the next step.
@@ -329,7 +328,8 @@ bool CoupledSolver<ExecutionSpace>::needs_shorter_steps(const flow::Progress& no
          _flow.failure().reason == flow::FailureReason::time_step && _flow.largest_dt(now) < _block.dt;
 }
 
-/// Returns the cloth, and the forces on the air, to the end of the last step that the flow has taken.
+/// Returns the cloth, and the forces on the air, to the end of the last step that the flow has taken. Those
+/// of a sharp sheet return smoothed; they enter the pressure of an output alone.
 template <class ExecutionSpace>
 void CoupledSolver<ExecutionSpace>::return_to_last_step(const flow::Progress& now) {
   std::int64_t saved = -1;

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <algorithm>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "kernels/coupling/interpolate.hpp"
+#include "kernels/coupling/sharp/sharp_sheet.hpp"
 #include "kernels/coupling/sheet/explicit_exchange.hpp"
 #include "kernels/coupling/sheet/local_air.hpp"
 #include "kernels/coupling/sheet/parameters.hpp"
@@ -106,6 +108,7 @@ class ImmersedSheet {
     if (parameters.method == CouplingMethod::explicit_) _air.last_force = _force;
     copy_inverse_masses(space, cloth);
     copy_laws(space);
+    if (parameters.method == CouplingMethod::sharp) _sharp.emplace(_transfer, _surface, _air.law, density);
   }
 
   /// VertexForce of the fabric solver.
@@ -115,8 +118,19 @@ class ImmersedSheet {
   /// Filtered acceleration of the air at each vertex, (vertices, 3), m/s^2; with the state of cloth and flow
   /// it continues a run. Does not throw.
   [[nodiscard]] const Vectors& acceleration() const { return _air.acceleration; }
+  /// The sheet as an internal boundary; none unless the method is `CouplingMethod::sharp`. Does not throw.
+  [[nodiscard]] const std::optional<SharpSheet<ExecutionSpace>>& sharp() const { return _sharp; }
   /// Weights of both directions. Does not throw.
   [[nodiscard]] const GridTransfer<ExecutionSpace>& transfer() const { return _transfer; }
+
+  /// Sets the force and the acceleration of the air to zero, as before the first step. Asynchronous. Does not
+  /// throw.
+  void forget_steps(const ExecutionSpace& space) const {
+    Kokkos::deep_copy(space, _air.acceleration, 0.0);
+    Kokkos::deep_copy(space, _force, 0.0);
+    if (_sharp)
+      for (const auto& faces : _sharp->acceleration().component) Kokkos::deep_copy(space, faces, 0.0);
+  }
 
   /// Enqueues the geometry of the sheet in the middle of a step of dt, s, and the air at its vertices.
   /// `velocity`: of the flow at the faces, m/s. Throws std::invalid_argument for Views of the wrong extents.
@@ -124,6 +138,7 @@ class ImmersedSheet {
   void begin_step(const ExecutionSpace& space, const fabric::State<ExecutionSpace>& cloth,
                   const FaceViews<View>& velocity, double dt) const {
     freeze_positions(space, _transfer, cloth.positions, cloth.velocities, 0.5 * dt);
+    if (_sharp) return _sharp->begin_step(space, velocity);
     fabric::vertex_geometry(space, _surface, _transfer.positions, _air.area, _air.normal);
     spread_row_sums(space, _transfer, _air.area, _density, _air.compliance);
     interpolate(space, _transfer, velocity, _air.before);
@@ -136,6 +151,7 @@ class ImmersedSheet {
   template <class View>
   void spread_forces(const ExecutionSpace& space, const fabric::State<ExecutionSpace>& cloth,
                      const FaceViews<View>& density, double dt) const {
+    if (_sharp) return _sharp->exchange(space, cloth.velocities, density, _force, dt);
     if (_air.is_explicit())
       device::launch_each(space, "drogue::coupling::impose_velocity", _transfer.points,
                           ImposeVelocityFunctor<ExecutionSpace>{_air, cloth.velocities, dt});
@@ -145,13 +161,15 @@ class ImmersedSheet {
   }
 
   /// Enqueues the acceleration of the air in the step of dt, s, that led to `velocity`, m/s, under the forces
-  /// of the sheet alone in `density`, N/m^3. `is_first`: no step precedes this one. Throws as `begin_step`.
-  template <class View>
+  /// of the sheet alone in `density`, N/m^3. `is_first`: no step precedes this one; `control`: of the flow.
+  /// Throws as `begin_step`.
+  template <class View, class Control>
   void end_step(const ExecutionSpace& space, const FaceViews<View>& velocity, const FaceViews<View>& density,
-                double dt, bool is_first) const {
+                double dt, bool is_first, const Control& control) const {
+    const double filter = is_first && _parameters.filter > 0.0 ? 1.0 : _parameters.filter;
+    if (_sharp) return _sharp->end_step(space, velocity, density, dt, filter, control);
     interpolate(space, _transfer, velocity, _after);
     interpolate(space, _transfer, density, _push);
-    const double filter = is_first && _parameters.filter > 0.0 ? 1.0 : _parameters.filter;
     device::launch_each(
         space, "drogue::coupling::end_sheet_step", _transfer.points,
         EndSheetStepFunctor<ExecutionSpace>{_air, _after, _push, 1.0 / dt, 1.0 / _density, filter});
@@ -189,6 +207,11 @@ class ImmersedSheet {
       }
     for (const fabric::Motion& motion : cloth.motions)
       for (const int i : motion.vertices) mirror(i, motion.axis) = 0.0;
+    for (const auto& corners : cloth.mesh.triangles)
+      for (const int i : corners)
+        for (std::size_t axis = 0; axis < 3; ++axis)
+          if (_parameters.method == CouplingMethod::sharp && mirror(static_cast<std::size_t>(i), axis) > 0.0)
+            throw std::invalid_argument("immersed sheet: a sharp sheet needs prescribed motion");
     Kokkos::deep_copy(space, _air.inverse_mass, mirror);
     space.fence("drogue::coupling::immersed_sheet");
   }
@@ -209,6 +232,7 @@ class ImmersedSheet {
   GridTransfer<ExecutionSpace> _transfer;
   LocalAir<ExecutionSpace> _air;
   Vectors _force, _after, _push;
+  std::optional<SharpSheet<ExecutionSpace>> _sharp;
 };
 
 }  // namespace drogue::coupling

@@ -18,12 +18,13 @@ struct PorousLaw {
   bool no_slip = false;  ///< the air has the velocity of the sheet along its tangents; else no shear stress
 };
 
-/// Coupling of free cloth to the air. Both give prescribed motion the same forces to round-off.
+/// Coupling of sheets to the air. The first two give prescribed motion the same forces.
 enum class CouplingMethod {
   spread,  ///< cloth and air relax against each other in each step of the cloth; cloth of any mass
   /// The force of the last step of the flow acts on the cloth, which then imposes its velocity on the air:
   /// explicit staggered coupling ([Shi], section 3.3.2), unstable for light cloth.
   explicit_,
+  sharp,  ///< pressure jumps between the cells that a sheet in prescribed motion separates (`SharpSheet`)
 };
 
 /// Parameters of the exchange between a sheet and the air.

@@ -3,6 +3,7 @@
 #include <array>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "kernels/coupling/sheet/parameters.hpp"
 #include "kernels/fabric/results.hpp"
@@ -77,6 +78,14 @@ class Solver : public flow::Solver {
   /// Restores the filtered acceleration of the air, m/s^2, after `restore`. Throws std::invalid_argument for
   /// a span of the wrong length.
   virtual void upload_air_acceleration(std::span<const fabric::Vector> values) = 0;
+
+  /// Filtered acceleration of the air at all faces, m/s^2, a part of the state with a sharp sheet; else
+  /// empty. Throws only std::bad_alloc and after a failed kernel.
+  [[nodiscard]] virtual std::vector<double> download_face_acceleration() = 0;
+
+  /// Restores the acceleration of the air at all faces, m/s^2, after `restore`. Throws std::invalid_argument
+  /// for a span of the wrong length.
+  virtual void upload_face_acceleration(std::span<const double> values) = 0;
 
   /// Block of the present step. Does not throw.
   [[nodiscard]] virtual BlockProgress block() const = 0;

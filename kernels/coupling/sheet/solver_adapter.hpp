@@ -59,6 +59,20 @@ class SolverAdapter final : public Solver {
   void upload_air_acceleration(std::span<const fabric::Vector> values) override {
     write(values, _solver.sheet().acceleration());
   }
+  std::vector<double> download_face_acceleration() override {
+    std::vector<double> values(faces());
+    copy_faces([&](const auto& list, std::size_t first) {
+      device::copy_out(_instance.space(), values.data() + first, list, list.extent(0));
+    });
+    return values;
+  }
+  void upload_face_acceleration(std::span<const double> values) override {
+    if (values.size() != faces())
+      throw std::invalid_argument("coupled solver: there must be one acceleration per face of a sharp sheet");
+    copy_faces([&](const auto& list, std::size_t first) {
+      device::copy_in(_instance.space(), list, values.data() + first, list.extent(0));
+    });
+  }
   [[nodiscard]] BlockProgress block() const override { return _solver.block(); }
   void set_block(const BlockProgress& block) override { _solver.set_block(block); }
   [[nodiscard]] FrameMotion frame() const override { return _solver.frame(); }
@@ -68,6 +82,24 @@ class SolverAdapter final : public Solver {
   int failed_line() override { return _solver.failed_line(); }
 
  private:
+  [[nodiscard]] std::size_t faces() const {
+    std::size_t sum = 0;
+    if (const auto& sharp = _solver.sheet().sharp())
+      for (const auto& one : sharp->acceleration().component) sum += one.size();
+    return sum;
+  }
+  /// Calls `copy(list, first)` for the faces of each component as a list, and waits.
+  template <class Copy>
+  void copy_faces(const Copy& copy) {
+    using List = Kokkos::View<double*, typename ExecutionSpace::memory_space, Kokkos::MemoryUnmanaged>;
+    std::size_t first = 0;
+    if (const auto& sharp = _solver.sheet().sharp())
+      for (const auto& one : sharp->acceleration().component) {
+        copy(List(one.data(), one.size()), first);
+        first += one.size();
+      }
+    _instance.space().fence("drogue::coupling::face_acceleration");
+  }
   void require_vertices(std::size_t count) const {
     if (count != static_cast<std::size_t>(_solver.fabric().vertices()))
       throw std::invalid_argument("coupled solver: there must be one vector per vertex");

@@ -148,6 +148,22 @@ void read_surface(const Table& root, FlowScene& scene, std::size_t index) {
     for (double& coordinate : x) coordinate *= body.scale;
 }
 
+/// A sharp sheet acts on the velocity through it alone: the fluid slips along flat ones, and not along the
+/// steps of faces that stand for others.
+void check_slip(const Table& root, const FlowScene& scene) {
+  if (scene.coupling.method != coupling::CouplingMethod::sharp) return;
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    const Body& body = scene.bodies[i];
+    const bool is_flat = body.kind == BodyKind::plate || body.kind == BodyKind::disk;
+    if (body.slips() == is_flat) continue;
+    const std::string key = "body[" + std::to_string(i) + "].slip";
+    contradict(
+        root, key,
+        key + " = " + (is_flat ? "false" : "true") + ": with coupling.method = \"sharp\" the fluid " +
+            (is_flat ? "slips along plates and disks" : "cannot slip along the steps of a curved sheet"));
+  }
+}
+
 }  // namespace
 
 void complete_and_check_bodies(const Table& root, FlowScene& scene) {
@@ -157,6 +173,7 @@ void complete_and_check_bodies(const Table& root, FlowScene& scene) {
     read_surface(root, scene, i);
   }
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) check_body(root, scene, i);
+  check_slip(root, scene);
   const flow::Parameters& p = scene.parameters;
   if (p.fixed_dt == 0.0 && p.max_dt == 0.0)
     contradict(root, "run",

@@ -19,7 +19,8 @@ const Choices<PorosityLaw> law_choices = {{"none", PorosityLaw::none},
                                           {"kim-peskin", PorosityLaw::kim_peskin}};
 const Choices<bool> opening_choices = {{"low", false}, {"high", true}};
 const Choices<coupling::CouplingMethod> method_choices = {{"spread", coupling::CouplingMethod::spread},
-                                                          {"explicit", coupling::CouplingMethod::explicit_}};
+                                                          {"explicit", coupling::CouplingMethod::explicit_},
+                                                          {"sharp", coupling::CouplingMethod::sharp}};
 const Choices<bool> end_choices = {{"open", false}, {"closed", true}};
 
 }  // namespace
@@ -181,9 +182,9 @@ void declare_body(Table& table, Body& body) {
 void declare_coupling(Table& table, coupling::SheetParameters& coupling) {
   table.value(
       "method", scene::choice_codec(coupling.method, method_choices),
-      "Coupling of canopies to the fluid: both relax against each other in each step of the cloth, or "
-      "the cloth takes the force of the last step of the flow and imposes its velocity, as in [Shi]; "
-      "bodies have the same forces with both");
+      "Coupling of sheets to the fluid: by smoothed delta functions, against which canopies relax in "
+      "each step of the cloth; likewise, but the cloth takes the force of the last step of the flow and "
+      "imposes its velocity, as in [Shi]; or pressure jumps between the cells that a body separates");
   table
       .value("filter", scene::real_codec(coupling.filter),
              "Weight of the present step in the running mean of the acceleration of the fluid at bodies")

@@ -197,8 +197,12 @@ void check_contact(const Table& root, const FlowScene& scene) {
                  " m, with contact");
 }
 
-/// Explicit coupling moves cloth against the air beside it as if the cloth were the heavier one.
-void check_added_mass(const Table& root, const FlowScene& scene) {
+/// Explicit coupling needs cloth that outweighs the air that moves with it, sharp coupling prescribed motion.
+void check_method(const Table& root, const FlowScene& scene) {
+  if (scene.coupling.method == coupling::CouplingMethod::sharp)
+    contradict(root, "coupling.method",
+               "coupling.method = \"sharp\" takes a [[body]] and no [[canopy]]: the force on a free vertex "
+               "would jump where cloth passes the centre of a cell");
   if (!scene.is_explicit() || scene.allow_unstable) return;
   for (std::size_t i = 0; i < scene.canopies.size(); ++i) {
     const Canopy& canopy = scene.canopies[i];
@@ -263,7 +267,7 @@ void check_canopies(const Table& root, const FlowScene& scene) {
     check_overlaps(root, scene, cloths, bodies);
   }
   check_frame(root, scene);
-  check_added_mass(root, scene);
+  check_method(root, scene);
   check_contact(root, scene);
   if (p.fixed_dt == 0.0 && p.max_dt == 0.0)
     contradict(root, "run",

@@ -28,34 +28,6 @@ Vector pull_of_line(const fabric::Mesh& mesh, std::size_t line, std::span<const 
   return pull;
 }
 
-/// `CanopyMeasures::inversion`.
-double inversion_of(const CanopyRows& rows, const fabric::Mesh& mesh, std::span<const Vector> positions) {
-  const auto at = [&](int i) -> const Vector& { return positions[static_cast<std::size_t>(i)]; };
-  std::vector<Vector> normals(rows.cloth_end - rows.begin, Vector{});
-  for (std::size_t t = rows.triangles_begin; t < rows.triangles_end; ++t) {
-    const auto& [a, b, c] = mesh.triangles[t];
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::size_t l = (k + 1) % 3, m = (k + 2) % 3;
-      const double area =
-          (at(b)[l] - at(a)[l]) * (at(c)[m] - at(a)[m]) - (at(b)[m] - at(a)[m]) * (at(c)[l] - at(a)[l]);
-      for (const int i : {a, b, c}) normals[static_cast<std::size_t>(i) - rows.begin][k] += area;
-    }
-  }
-  std::size_t inverted = 0;
-  for (const int line : rows.suspension) {
-    const auto [one, other] = mesh.lines[static_cast<std::size_t>(line)];
-    const bool is_cloth = static_cast<std::size_t>(one) < rows.cloth_end;
-    const int skirt = is_cloth ? one : other, meeting = is_cloth ? other : one;
-    const Vector& normal = normals[static_cast<std::size_t>(skirt) - rows.begin];
-    double outwards = 0.0;
-    for (std::size_t k = 0; k < 3; ++k) outwards += normal[k] * (at(skirt)[k] - at(meeting)[k]);
-    if (outwards < 0.0) ++inverted;
-  }
-  return rows.suspension.empty()
-             ? 0.0
-             : static_cast<double>(inverted) / static_cast<double>(rows.suspension.size());
-}
-
 /// Mean of vectors of the cloth with the weights of its masses, kg.
 Vector mean_over_mass(const CanopyRows& rows, const std::vector<double>& masses,
                       const std::vector<Vector>& vectors) {
@@ -67,6 +39,38 @@ Vector mean_over_mass(const CanopyRows& rows, const std::vector<double>& masses,
   }
   for (double& component : sum) component /= mass;
   return sum;
+}
+
+/// `CanopyMeasures::inversion`.
+double inversion_of(const CanopyRows& rows, const fabric::Parameters& sheets,
+                    const std::vector<Vector>& positions) {
+  const fabric::Mesh& mesh = sheets.mesh;
+  const auto at = [&](int i) -> const Vector& { return positions[static_cast<std::size_t>(i)]; };
+  std::vector<Vector> normals(rows.cloth_end - rows.begin, Vector{});
+  for (std::size_t t = rows.triangles_begin; t < rows.triangles_end; ++t) {
+    const auto& [a, b, c] = mesh.triangles[t];
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t l = (k + 1) % 3, m = (k + 2) % 3;
+      const double area =
+          (at(b)[l] - at(a)[l]) * (at(c)[m] - at(a)[m]) - (at(b)[m] - at(a)[m]) * (at(c)[l] - at(a)[l]);
+      for (const int i : {a, b, c}) normals[static_cast<std::size_t>(i) - rows.begin][k] += area;
+    }
+  }
+  const Vector cloth = mean_over_mass(rows, sheets.mass, positions);
+  std::size_t inverted = 0;
+  for (const int line : rows.suspension) {
+    const auto [one, other] = mesh.lines[static_cast<std::size_t>(line)];
+    const bool is_cloth = static_cast<std::size_t>(one) < rows.cloth_end;
+    const int skirt = is_cloth ? one : other, meeting = is_cloth ? other : one;
+    const Vector& normal = normals[static_cast<std::size_t>(skirt) - rows.begin];
+    double outwards = 0.0;
+    for (std::size_t k = 0; k < 3; ++k)
+      outwards += normal[k] * (at(skirt)[k] - 0.75 * cloth[k] - 0.25 * at(meeting)[k]);
+    if (outwards < 0.0) ++inverted;
+  }
+  return rows.suspension.empty()
+             ? 0.0
+             : static_cast<double>(inverted) / static_cast<double>(rows.suspension.size());
 }
 
 /// Squares in the plane of x and y that a shadow covers.
@@ -156,7 +160,7 @@ CanopyMeasures measure(const CanopyRows& rows, const fabric::Parameters& sheets,
                             1.0;
       result.largest_strain = std::max(result.largest_strain, strain);
     }
-  result.inversion = inversion_of(rows, mesh, state.positions);
+  result.inversion = inversion_of(rows, sheets, state.positions);
   return result;
 }
 

@@ -23,7 +23,8 @@ struct CanopyMeasures {
   double projected_area = 0.0;  ///< on a plane normal to z, m^2
   double largest_strain = 0.0;  ///< of an edge of the cloth; 0 if all are slack
   /// Share of the lines at whose vertex of the skirt the side of the cloth that was constructed outside faces
-  /// the point where the lines meet; 0 without lines.
+  /// inwards, to a quarter of the way from the centre of mass of the cloth to the point where the lines meet:
+  /// a place within an open canopy, and below a flat one. 0 without lines.
   double inversion = 0.0;
 };
 

@@ -52,6 +52,10 @@ void Simulation::write_coupling(run::RestartWriter& writer) {
   }
   write("sheet_position", positions);
   write("sheet_velocity", velocities);
+  if (const std::vector<double> faces = _coupled->download_face_acceleration(); !faces.empty()) {
+    writer.array("face_acceleration", faces.size());
+    writer.write("face_acceleration", 0, faces);
+  }
   _record.write(writer);
   const coupling::BlockProgress block = _coupled->block();
   writer.number("block_dt", block.dt);
@@ -76,6 +80,10 @@ void Simulation::read_coupling(const run::RestartReader& reader) {
   _coupled->upload_cloth(values("sheet_position"), values("sheet_velocity"));
   _coupled->upload_air_acceleration(values("air_acceleration"));
   if (_scene.is_explicit()) _coupled->upload_forces(values("sheet_force"));
+  if (std::vector<double> faces = _coupled->download_face_acceleration(); !faces.empty()) {
+    reader.read("face_acceleration", 0, faces);
+    _coupled->upload_face_acceleration(faces);
+  }
   _record.read(reader);
   _coupled->set_block({reader.number("block_dt"), reader.integer("block_substeps"),
                        reader.integer("block_end"), reader.integer("block_cloth_step")});

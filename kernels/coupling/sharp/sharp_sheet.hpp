@@ -1,0 +1,338 @@
+#pragma once
+
+#include "kernels/coupling/grid_transfer.hpp"
+#include "kernels/coupling/sharp/crossings.hpp"
+#include "kernels/coupling/sheet/porous_law.hpp"
+#include "kernels/device/relaxed_access.hpp"
+#include "kernels/fabric/surface/surface.hpp"
+#include "kernels/stepping/status.hpp"
+
+namespace drogue::coupling {
+
+/// Data of a sharp sheet as kernels read them.
+template <class ExecutionSpace>
+struct SharpSheetViews {
+  using Memory = typename ExecutionSpace::memory_space;
+  using Vectors = Kokkos::View<double* [3], Kokkos::LayoutLeft, Memory>;
+
+  fabric::SurfaceViews<ExecutionSpace> surface;
+  Vectors positions;                                ///< of the vertices, m
+  Vectors velocities;                               ///< of the vertices, m/s
+  Kokkos::View<PorousLaw*, Memory> law;             ///< of the vertices
+  Kokkos::View<FixedPoint[2], Memory> largest;      ///< as of `GridTransfer`
+  Kokkos::View<double* [9], Memory> corner_force;   ///< of triangles: component c of corner k at 3 k + c, N
+  FaceArrays<const double> velocity, acceleration;  ///< of the air, m/s and m/s^2
+  FaceArrays<int> count;                            ///< crossings at each face; zero between steps
+  FaceArrays<FixedPoint> sums;                      ///< impulses per area; zero between steps
+  FaceArrays<double> density;                       ///< force on the air, N/m^3
+  GridAxes axes;
+  double dt, inverse_density;  ///< s, m^3/kg
+  double summands;             ///< bound on the crossings at a face, a power of two
+
+  /// Calls `visit(crossing, impulse)` for each crossing of triangle t: the impulse per area along the axis of
+  /// the crossing on the air, Pa s. Crossings at one face share its air equally.
+  template <class Visit>
+  KOKKOS_FUNCTION void for_each_impulse(int t, const Visit& visit) const {
+    const int vertex[3] = {surface.corner(t, 0), surface.corner(t, 1), surface.corner(t, 2)};
+    spatial::Point corner[3];
+    for (int k = 0; k < 3; ++k) corner[k] = spatial::load_vector(positions, vertex[k]);
+    const spatial::Point area = fabric::doubled_area_vector(corner[0], corner[1], corner[2]);
+    const double along[3] = {area.x, area.y, area.z};
+    const double length = Kokkos::sqrt(dot(area, area));
+    for_each_crossing(axes, corner, vertex, [&](const Crossing& at) {
+      const int d = at.component;
+      double moving = 0.0;
+      for (int k = 0; k < 3; ++k) moving += at.weight[k] * velocities(vertex[k], d);
+      const double air = velocity.at(d, at.face) + dt * acceleration.at(d, at.face);
+      // Flow through the sheet is along its normal: its component along the axis is this part of it.
+      const double part = Kokkos::fabs(along[d]) / length, sign = along[d] > 0.0 ? 1.0 : -1.0;
+      const double compliance = count.at(d, at.face) * inverse_density * axes.axis[d].inverse_spacing / part;
+      visit(at, sign * porous_impulse(law(vertex[0]), sign * (moving - air) / part, dt, compliance));
+    });
+  }
+
+  /// Area of a face normal to an axis, m^2.
+  KOKKOS_FUNCTION double face_area(int axis) const {
+    return 1.0 / (axes.axis[cyclic_axis(axis, 1)].inverse_spacing *
+                  axes.axis[cyclic_axis(axis, 2)].inverse_spacing);
+  }
+};
+
+/// Counts the crossings at each face.
+template <class ExecutionSpace>
+struct CountCrossingsFunctor {
+  SharpSheetViews<ExecutionSpace> sheet;
+
+  KOKKOS_FUNCTION void operator()(const int t) const {
+    const auto& s = sheet;
+    const int vertex[3] = {s.surface.corner(t, 0), s.surface.corner(t, 1), s.surface.corner(t, 2)};
+    spatial::Point corner[3];
+    for (int k = 0; k < 3; ++k) corner[k] = spatial::load_vector(s.positions, vertex[k]);
+    for_each_crossing(s.axes, corner, vertex,
+                      [&](const Crossing& at) { Kokkos::atomic_add(&s.count.at(at.component, at.face), 1); });
+  }
+};
+
+/// Largest magnitude of the impulses.
+template <class ExecutionSpace>
+struct LargestCrossingFunctor {
+  SharpSheetViews<ExecutionSpace> sheet;
+
+  KOKKOS_FUNCTION void operator()(const int t) const {
+    double largest = 0.0;
+    sheet.for_each_impulse(t, [&](const Crossing&, double impulse) {
+      const double magnitude = Kokkos::fabs(impulse);
+      if (magnitude > largest && magnitude <= 1e270) largest = magnitude;
+    });
+    const auto bits = Kokkos::bit_cast<FixedPoint>(largest);
+    if (bits > device::relaxed_load(&sheet.largest(0))) Kokkos::atomic_max(&sheet.largest(0), bits);
+  }
+};
+
+/// Adds the impulses to the sums of faces, and stores the forces of each triangle on the air at its corners.
+template <class ExecutionSpace>
+struct AddCrossingsFunctor {
+  SharpSheetViews<ExecutionSpace> sheet;
+  Kokkos::View<TransferCounts, typename ExecutionSpace::memory_space> counts;
+
+  KOKKOS_FUNCTION void operator()(const int t) const {
+    const double largest = Kokkos::bit_cast<double>(sheet.largest(0));
+    if (t == 0) sheet.largest(1) = Kokkos::bit_cast<FixedPoint>(largest);
+    const double factor = fixed_point_scale(largest, sheet.summands).factor;
+    double force[9] = {};
+    sheet.for_each_impulse(t, [&](const Crossing& at, double impulse) {
+      if (!(Kokkos::fabs(impulse) <= largest)) {
+        Kokkos::atomic_add(&counts().rejected_forces, 1LL);
+        return;
+      }
+      Kokkos::atomic_add(&sheet.sums.at(at.component, at.face),
+                         static_cast<FixedPoint>(to_fixed_point(impulse * factor)));
+      const double whole = impulse / sheet.dt * sheet.face_area(at.component);
+      for (int k = 0; k < 3; ++k) force[3 * k + at.component] += at.weight[k] * whole;
+    });
+    for (int k = 0; k < 9; ++k) sheet.corner_force(t, k) = force[k];
+  }
+};
+
+/// Adds the sums of faces to the density of the force and resets them and the counts.
+template <class ExecutionSpace>
+struct TakeCrossingsFunctor {
+  SharpSheetViews<ExecutionSpace> sheet;
+
+  KOKKOS_FUNCTION void operator()(const int t) const {
+    if (t == 0) sheet.largest(0) = 0;
+    const auto& s = sheet;
+    const double unit = fixed_point_scale(Kokkos::bit_cast<double>(s.largest(1)), s.summands).inverse / s.dt;
+    const int vertex[3] = {s.surface.corner(t, 0), s.surface.corner(t, 1), s.surface.corner(t, 2)};
+    spatial::Point corner[3];
+    for (int k = 0; k < 3; ++k) corner[k] = spatial::load_vector(s.positions, vertex[k]);
+    for_each_crossing(s.axes, corner, vertex, [&](const Crossing& at) {
+      const int d = at.component;
+      device::relaxed_store(&s.count.at(d, at.face), 0);
+      const FixedPoint taken = Kokkos::atomic_exchange(&s.sums.at(d, at.face), FixedPoint{0});
+      if (taken != 0)
+        s.density.at(d, at.face) += unit * s.axes.axis[d].inverse_spacing * from_fixed_point(taken);
+    });
+  }
+};
+
+/// Force of each vertex on the air, gathered in ascending order of its triangles.
+template <class ExecutionSpace>
+struct GatherCornersFunctor {
+  SharpSheetViews<ExecutionSpace> sheet;
+  typename SharpSheetViews<ExecutionSpace>::Vectors force;  ///< N
+
+  KOKKOS_FUNCTION void operator()(const int i) const {
+    spatial::Point sum{0.0, 0.0, 0.0};
+    for (int k = sheet.surface.first(i); k < sheet.surface.first(i + 1); ++k) {
+      const int t = sheet.surface.around(k);
+      for (int c = 0; c < 3; ++c)
+        if (sheet.surface.corner(t, c) == i)
+          sum = sum + spatial::Point{sheet.corner_force(t, 3 * c), sheet.corner_force(t, 3 * c + 1),
+                                     sheet.corner_force(t, 3 * c + 2)};
+    }
+    spatial::store_vector(force, i, sum);
+  }
+};
+
+/// Copies the velocity at all faces.
+struct SaveFacesFunctor {
+  FaceArrays<const double> from;
+  FaceArrays<double> to;
+  int faces[3][3];  ///< of each component along each axis
+
+  KOKKOS_FUNCTION void operator()(const int i, const int j, const int k) const {
+    const int index[3] = {i, j, k};
+    for (int d = 0; d < 3; ++d) {
+      if (i >= faces[d][0] || j >= faces[d][1] || k >= faces[d][2]) continue;
+      const FaceIndex face{index[d], index[cyclic_axis(d, 1)], index[cyclic_axis(d, 2)]};
+      to.at(d, face) = from.at(d, face);
+    }
+  }
+};
+
+/// Updates the acceleration of the air at all faces without the force of the sheet, unless the flow failed.
+template <class Control>
+struct EndSharpStepFunctor {
+  FaceArrays<const double> before, after, density;
+  FaceArrays<double> acceleration;
+  int faces[3][3];
+  double inverse_dt, inverse_density, filter;
+  Control control;
+
+  KOKKOS_FUNCTION void operator()(const int i, const int j, const int k) const {
+    if (control().trial.stop == stepping::Stop::failed) return;
+    const int index[3] = {i, j, k};
+    for (int d = 0; d < 3; ++d) {
+      if (i >= faces[d][0] || j >= faces[d][1] || k >= faces[d][2]) continue;
+      const FaceIndex face{index[d], index[cyclic_axis(d, 1)], index[cyclic_axis(d, 2)]};
+      const double present =
+          inverse_dt * (after.at(d, face) - before.at(d, face)) - inverse_density * density.at(d, face);
+      double& mean = acceleration.at(d, face);
+      mean += filter * (present - mean);
+    }
+  }
+};
+
+/// Sheet in prescribed motion as an internal boundary: a pressure jump between neighbouring cells that it
+/// separates, and no force elsewhere. In the difference of their pressures, and so on the right-hand side of
+/// the pressure equation, a jump is a force per volume on the face between them, which `exchange` adds.
+///
+/// Each crossing of a line between centres and the sheet obeys the porous law by itself: the fluid passes
+/// along the normal of the sheet, so that the component at the face gives the normal velocity. An impermeable
+/// sheet prescribes the velocity on a closed surface of faces and has no leak. As with `ImmersedSheet`, one
+/// projection per step suffices, since the filtered acceleration without the sheet foretells its change.
+///
+/// All functions are asynchronous on the given instance and allocate nothing unless stated otherwise.
+template <class ExecutionSpace>
+class SharpSheet {
+ public:
+  using Views = SharpSheetViews<ExecutionSpace>;
+  using Vectors = typename Views::Vectors;
+  using Memory = typename ExecutionSpace::memory_space;
+  template <class T>
+  using Faces = FaceViews<Kokkos::View<T***, Kokkos::LayoutLeft, Memory>>;
+
+  /// For the points of a transfer, with their laws, in air of a density in kg/m^3. Allocates. Throws
+  /// std::runtime_error if memory runs out.
+  SharpSheet(const GridTransfer<ExecutionSpace>& transfer,
+             const fabric::SurfaceViews<ExecutionSpace>& surface, const Kokkos::View<PorousLaw*, Memory>& law,
+             double density)
+      : _transfer(transfer),
+        _surface(surface),
+        _law(law),
+        _density(density),
+        _corner_force("drogue::coupling::corner_force", static_cast<std::size_t>(surface.triangles())),
+        _count(faces_of<int>("drogue::coupling::crossings")),
+        _before(faces_of<double>("drogue::coupling::velocity_before")),
+        _acceleration(faces_of<double>("drogue::coupling::face_acceleration")) {}
+
+  /// Filtered acceleration of the air without the sheet at all faces, m/s^2: a part of the state.
+  [[nodiscard]] const Faces<double>& acceleration() const { return _acceleration; }
+
+  /// Enqueues a copy of the velocity of the flow, m/s. Throws std::invalid_argument for Views of the wrong
+  /// extents.
+  template <class View>
+  void begin_step(const ExecutionSpace& space, const FaceViews<View>& velocity) const {
+    SaveFacesFunctor save{constant(velocity), face_arrays(_transfer.grid, _before), {}};
+    launch_faces(space, "drogue::coupling::save_faces", save);
+  }
+
+  /// Enqueues the forces of the sheet during dt, s: adds them to `density`, N/m^3, and stores those of the
+  /// vertices in `force`, N. `velocities`: of the vertices at the end of the step, m/s. Throws as
+  /// `begin_step`.
+  template <class View>
+  void exchange(const ExecutionSpace& space, const Vectors& velocities, const FaceViews<View>& density,
+                const Vectors& force, double dt) const {
+    const StaggeredGrid& grid = _transfer.grid;
+    const int triangles = _surface.triangles();
+    const Views views{_surface,
+                      _transfer.positions,
+                      velocities,
+                      _law,
+                      _transfer.largest,
+                      _corner_force,
+                      constant(_before),
+                      constant(_acceleration),
+                      face_arrays(grid, _count),
+                      face_arrays(grid, _transfer.sums),
+                      face_arrays(grid, density),
+                      grid_axes(grid),
+                      dt,
+                      1.0 / _density,
+                      summand_bound(3 * triangles)};
+    const auto launch = [&](const char* label, const auto& functor) {
+      device::launch_each(space, label, triangles, functor);
+    };
+    launch("drogue::coupling::count_crossings", CountCrossingsFunctor<ExecutionSpace>{views});
+    launch("drogue::coupling::largest_crossing", LargestCrossingFunctor<ExecutionSpace>{views});
+    launch("drogue::coupling::add_crossings", AddCrossingsFunctor<ExecutionSpace>{views, _transfer.counts});
+    launch("drogue::coupling::take_crossings", TakeCrossingsFunctor<ExecutionSpace>{views});
+    device::launch_each(space, "drogue::coupling::gather_corners", _surface.vertices(),
+                        GatherCornersFunctor<ExecutionSpace>{views, force});
+  }
+
+  /// Enqueues the acceleration of the air in the step of dt, s, that led to `velocity`, m/s, with weight
+  /// `filter` in the mean. `density`, N/m^3, holds the forces of the sheet alone; `control`: of the flow.
+  /// Throws as `begin_step`.
+  template <class View, class Control>
+  void end_step(const ExecutionSpace& space, const FaceViews<View>& velocity, const FaceViews<View>& density,
+                double dt, double filter, const Control& control) const {
+    EndSharpStepFunctor<Control> end{constant(_before),
+                                     constant(velocity),
+                                     constant(density),
+                                     face_arrays(_transfer.grid, _acceleration),
+                                     {},
+                                     1.0 / dt,
+                                     1.0 / _density,
+                                     filter,
+                                     control};
+    launch_faces(space, "drogue::coupling::end_sharp_step", end);
+  }
+
+ private:
+  template <class T>
+  [[nodiscard]] Faces<T> faces_of(const std::string& label) const {
+    Faces<T> faces;
+    for (int d = 0; d < 3; ++d) {
+      const auto extent = [&](int axis) {
+        return static_cast<std::size_t>(faces_along(_transfer.grid, d, axis));
+      };
+      faces.component[d] =
+          Kokkos::View<T***, Kokkos::LayoutLeft, Memory>(label, extent(0), extent(1), extent(2));
+    }
+    return faces;
+  }
+
+  template <class View>
+  [[nodiscard]] FaceArrays<const double> constant(const FaceViews<View>& faces) const {
+    const auto arrays = face_arrays(_transfer.grid, faces);
+    FaceArrays<const double> result{};
+    for (int d = 0; d < 3; ++d) {
+      result.data[d] = arrays.data[d];
+      for (int k = 0; k < 3; ++k) result.stride[d][k] = arrays.stride[d][k];
+    }
+    return result;
+  }
+
+  template <class Functor>
+  void launch_faces(const ExecutionSpace& space, const char* label, Functor& functor) const {
+    int extent[3] = {};
+    for (int axis = 0; axis < 3; ++axis)
+      for (int d = 0; d < 3; ++d) {
+        functor.faces[d][axis] = faces_along(_transfer.grid, d, axis);
+        extent[axis] = extent[axis] > functor.faces[d][axis] ? extent[axis] : functor.faces[d][axis];
+      }
+    device::launch_cells(space, label, extent, functor);
+  }
+
+  GridTransfer<ExecutionSpace> _transfer;
+  fabric::SurfaceViews<ExecutionSpace> _surface;
+  Kokkos::View<PorousLaw*, Memory> _law;
+  double _density;  ///< kg/m^3
+  Kokkos::View<double* [9], Memory> _corner_force;
+  Faces<int> _count;
+  Faces<double> _before, _acceleration;
+};
+
+}  // namespace drogue::coupling
