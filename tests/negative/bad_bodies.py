@@ -154,3 +154,53 @@ BAD_ROUND_LINES = [
     (39, 'frequency = [{ body = 1, axis = "y", value = 0, tolerance = 1 }]', 39, ["verify.frequency[0].value", "relative"]),
     (39, 'frequency = [{ body = 1, axis = "y", from = -1, value = 1, tolerance = 1 }]', 39, ["verify.frequency[0].from", ">= 0"]),
 ]
+
+PISTON = """\
+app = "parachute"
+[fluid]
+[grid]
+cells = [16, 8, 8]
+domain = [[0, 1.6], [0, 0.8], [0, 0.8]]
+boundary = { x = "periodic", y = "periodic", z = "periodic" }
+[[body]]
+kind = "plate"
+normal = "x"
+centre = [0.8, 0.4, 0.4]
+lengths = [0.8, 0.8]
+edge_length = 0.05
+mount = { mass = 0.1, stiffness = 40, offset = 0.03 }
+[coupling]
+method = "spread"
+[run]
+end_time = 2
+max_dt = 0.01
+[output]
+history_every = 1
+[verify]
+[[verify.oscillation]]
+column = "body_0_displacement"
+from = 0.5
+frequency = { value = 0.87, tolerance = 0.1 }
+amplitude = { value = 0.03, tolerance = 0.1 }
+"""
+
+# As above, for PISTON.
+BAD_PISTON_LINES = [
+    (13, "mount = { mass = 0, stiffness = 40 }", 13, ["body[0].mount.mass", "> 0"]),
+    (13, "mount = { mass = 1, stiffness = -4 }", 13, ["body[0].mount.stiffness", "> 0"]),
+    (13, "mount = { mass = 1 }", 13, ['missing key "body[0].mount.stiffness"']),
+    (13, "mount = { stiffness = 1 }", 13, ['missing key "body[0].mount.mass"']),
+    (13, "mount = { mass = 1, stiffness = 40, ofset = 1 }", 13, ['"body[0].mount.ofset"', "offset"]),
+    (13, 'motion = { x = "t" }\nmount = { mass = 1, stiffness = 40 }', 14, ["body[0].mount", "without motion"]),
+    (6, 'boundary = { x = "slip", y = "periodic", z = "periodic" }', 13, ["body[0].mount", "periodic sides", "along x"]),
+    (11, "lengths = [0.8, 0.7]", 11, ["body[0].lengths", "close the channel", "0.8 m wide along z"]),
+    (15, 'method = "explicit"', 15, ["coupling.method", "body[0] moves all of the fluid, 1.25", "0.1"]),
+    (20, "history_every = 0", 22, ["verify.oscillation[0]", "output.history_every"]),
+    (23, 'column = "body_0_displacment"', 23, ["verify.oscillation[0].column", 'did you mean "body_0_displacement"?']),
+    (23, 'column = "kinetic_energy"', 23, ["verify.oscillation[0].column", "place"]),
+    (23, "", 22, ['missing key "verify.oscillation[0].column"']),
+    (24, "from = 2", 24, ["verify.oscillation[0].from", "run.end_time"]),
+    (25, "frequency = { value = 0, tolerance = 0.1 }", 25, ["verify.oscillation[0].frequency.value", "positive"]),
+    (26, "amplitude = { value = -1, tolerance = 0.1 }", 26, ["verify.oscillation[0].amplitude.value", "positive"]),
+    (26, "amplitude = { value = 1 }", 26, ['missing key "verify.oscillation[0].amplitude.tolerance"']),
+]

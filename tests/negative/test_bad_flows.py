@@ -107,6 +107,21 @@ class BadFlows(parachute_program.FlowTest):
         self.expect(0, self.scene, "--check")
         self.assert_lines_are_rejected(bad_bodies.ROUND, bad_bodies.BAD_ROUND_LINES)
 
+    def test_rejects_invalid_springs_of_plates(self):
+        self.scene.write_text(bad_bodies.PISTON, encoding="utf-8")
+        self.expect(0, self.scene, "--check")
+        self.assert_lines_are_rejected(bad_bodies.PISTON, bad_bodies.BAD_PISTON_LINES)
+        self.scene.write_text(bad_bodies.PISTON, encoding="utf-8")
+        self.expect(0, self.scene, "--check", sets=['coupling.method="explicit"', "coupling.allow_unstable=true"])
+        lines = bad_bodies.PISTON.splitlines(keepends=True)
+        self.scene.write_text("".join(lines[:-2]), encoding="utf-8")
+        self.assertIn("verify.oscillation[0] needs frequency or amplitude", self.refusal())
+        self.scene.write_text("".join(line for line in lines if "mount" not in line), encoding="utf-8")
+        self.assertIn("verify.oscillation[0] needs a [[body]] with a mount", self.refusal())
+        canopy = '[[canopy]]\nkind = "sheet"\ndiameter = 0.3\ngores = 6\nvent = 0\nedge_length = 0.05\ncentre = [0.3, 0.4, 0.4]\n'
+        self.scene.write_text(bad_bodies.PISTON.replace("[coupling]", canopy + "[coupling]"), encoding="utf-8")
+        self.assertIn("body[0].mount cannot be combined with a [[canopy]]", self.refusal())
+
     def test_rejects_bodies_of_unfit_files(self):
         scene = bad_bodies.ROUND.replace('kind = "sphere"', 'kind = "file"\nfile = "body.obj"').replace("radius = 0.2\nedge_length = 0.05\n", "", 1)
         self.scene.write_text(scene, encoding="utf-8")

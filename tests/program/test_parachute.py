@@ -387,6 +387,26 @@ class Bodies(parachute_program.FlowTest):
         sets[-1] = sets[-1].replace("5e-3", "1e-9")
         self.expect(5, self.write(moving), *QUIET, "--overwrite", sets=sets)
 
+    def test_plate_on_a_spring_moves_all_of_the_fluid(self):
+        """Frequency of the mass of plate and fluid, of second order in dt, and a run that continues bit for bit."""
+        exact = math.sqrt(40 / (0.1 + 1.225 * 1.6 * 0.8 * 0.8)) / (2 * math.pi)
+        scene, errors = self.write(bad_bodies.PISTON), []
+        for dt in (0.02, 0.01):
+            sets = [f"run={{end_time=4,dt={dt}}}", "fluid.viscosity=0", "output.times=[2]", "verify.oscillation[0].from=0"]
+            self.expect(0, scene, *QUIET, "--overwrite", sets=sets)
+            errors.append(exact - self.result("out")["oscillations"]["frequency_0"])
+        self.assertLess(errors[1], 0.02 * exact)
+        self.assertGreater(errors[0] / errors[1], 3.0)
+        self.expect(5, scene, *QUIET, "--overwrite", sets=[*sets, "verify.oscillation[0].amplitude.value=0.04"])
+        self.assertEqual([True, False], [check["passed"] for check in self.result("out")["checks"]])
+        rows = self.history("out")
+        half = self.folder / "half"
+        self.expect(0, scene, "--quiet", "--backend", "serial", "--out", half,
+                    sets=["run={end_time=2,dt=0.01}", "verify={}", "output.restart_every=50", *sets[1:3]])
+        self.expect(0, scene, "--quiet", "--backend", "serial", "--out", half, "--restart", half / "restart.h5", sets=sets)
+        for name in ("body_0_displacement", "body_0_force_x", "kinetic_energy"):
+            self.assertEqual(rows[name][-1], self.history("half")[name][-1], name)
+
     def test_all_kinds_of_bodies_run_and_continue(self):
         round_bodies = bad_bodies.ROUND[:bad_bodies.ROUND.index("[verify]")]
         sets = ["run.end_time=0.4", "output={history_every=1,restart_every=8}"]

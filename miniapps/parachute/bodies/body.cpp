@@ -6,6 +6,7 @@
 #include <numbers>
 #include <utility>
 
+#include "kernels/fabric/elastic/lumped_mass.hpp"
 #include "kernels/mesh/generators.hpp"
 #include "kernels/mesh/round_surfaces.hpp"
 #include "miniapps/parachute/scene/functions.hpp"
@@ -64,6 +65,31 @@ void add_motions(const Body& body, int first, fabric::Parameters& sheets) {
     const std::string& text = body.motion[static_cast<std::size_t>(axis)];
     if (!text.empty()) sheets.motions.push_back({axis, vertices, device_program(text)});
   }
+}
+
+/// Lets the vertices of a plate move along its normal, each on a spring of its own to a fixed vertex, with
+/// their shares of mass and stiffness by area. The springs are linear: the vertices do not move sideways.
+void add_springs(const Body& body, std::size_t first, fabric::Parameters& sheets) {
+  const mesh::Mesh plate = mesh_of(body);
+  const double area = body.lengths[0] * body.lengths[1];
+  const std::vector<double> shares = fabric::lumped_masses(plate, 1.0 / area, 0.0, fabric::Lumping::area);
+  const auto normal = static_cast<std::size_t>(body.axis);
+  // Any distance that the displacements stay below.
+  const double distance = 100.0 * (body.lengths[0] + body.lengths[1] + std::abs(body.mount->offset));
+  for (std::size_t k = 0; k < shares.size(); ++k) {
+    const std::size_t vertex = first + k;
+    sheets.mass[vertex] = shares[k] * body.mount->mass;
+    sheets.pinned[vertex] = static_cast<std::uint8_t>(7U & ~(1U << normal));
+    mesh::Vector fixed_end = sheets.mesh.rest[vertex];
+    fixed_end[normal] -= distance;
+    sheets.mesh.lines.push_back({static_cast<int>(vertex), static_cast<int>(sheets.mesh.rest.size())});
+    sheets.mesh.line_stiffness.push_back(shares[k] * body.mount->stiffness * distance);
+    sheets.mesh.rest.push_back(fixed_end);
+    sheets.mass.push_back(1.0);
+    sheets.pinned.push_back(7);
+  }
+  // The plate stays flat: its membrane affects nothing but the number of steps that are stable.
+  sheets.material.membrane_modulus = std::min(sheets.material.membrane_modulus, body.mount->stiffness);
 }
 
 }  // namespace
@@ -187,7 +213,21 @@ fabric::Parameters make_sheets(const std::vector<Body>& bodies) {
   }
   sheets.mass.assign(sheets.mesh.rest.size(), 1.0);  // without effect on pinned vertices
   sheets.pinned.assign(sheets.mesh.rest.size(), 7);
+  std::size_t begin = 0;
+  for (const Body& body : bodies) {
+    if (body.mount) add_springs(body, begin, sheets);
+    begin += static_cast<std::size_t>(body.vertices());
+  }
   return sheets;
+}
+
+void set_offsets(const std::vector<Body>& bodies, std::vector<fabric::Vector>& positions) {
+  std::size_t vertex = 0;
+  for (const Body& body : bodies) {
+    const auto end = vertex + static_cast<std::size_t>(body.vertices());
+    for (; vertex < end; ++vertex)
+      if (body.mount) positions[vertex][static_cast<std::size_t>(body.axis)] += body.mount->offset;
+  }
 }
 
 coupling::PorousLaw law_of(const Porosity& p, double density, double viscosity) {

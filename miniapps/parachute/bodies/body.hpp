@@ -42,7 +42,14 @@ struct Porosity {
   double conductance = 0.0;  ///< flow rate through a pore per pressure difference, m^3/(Pa s)
 };
 
-/// Rigid sheet immersed in the flow, at rest or in prescribed motion.
+/// Spring along the normal of a plate that moves freely along it.
+struct Mount {
+  double mass = 0.0;       ///< kg, of the plate
+  double stiffness = 0.0;  ///< N/m
+  double offset = 0.0;     ///< displacement at the start, m
+};
+
+/// Rigid sheet immersed in the flow, at rest, in prescribed motion, or a plate on a spring.
 struct Body {
   BodyKind kind = BodyKind::plate;
   int axis = 0;                       ///< normal of a plate or disk; axis of a cylinder or cup
@@ -59,6 +66,7 @@ struct Body {
   std::array<std::string, 3> motion;  ///< displacement, m, as expressions of t; empty: none
   std::optional<bool> slip;           ///< the fluid slips freely along the sheet
   Porosity porosity;
+  std::optional<Mount> mount;
 
   /// The two axes along a plate, ascending. Does not throw.
   [[nodiscard]] std::array<std::size_t, 2> axes() const;
@@ -91,9 +99,13 @@ inline constexpr double largest_edge_in_cells = 1.0 / 1.4;
 /// Triangles of a body at time 0 without its motion. Throws only std::bad_alloc.
 [[nodiscard]] mesh::Mesh mesh_of(const Body& body);
 
-/// The bodies as one pinned cloth with their motions. Throws std::bad_alloc, and std::invalid_argument for
-/// the expression of a motion that is too long.
+/// The bodies as one cloth with their motions, then the fixed ends of springs. All vertices are pinned, those
+/// of plates with a mount only along their tangents. Throws std::bad_alloc, and std::invalid_argument for the
+/// expression of a motion that is too long.
 [[nodiscard]] fabric::Parameters make_sheets(const std::vector<Body>& bodies);
+
+/// Displaces plates with a mount, whose vertices begin `positions`, m, to where they start. Does not throw.
+void set_offsets(const std::vector<Body>& bodies, std::vector<fabric::Vector>& positions);
 
 /// Law of the sheet for the solver, in a fluid of given density, kg/m^3, and viscosity, Pa s. Does not throw.
 [[nodiscard]] coupling::PorousLaw law_of(const Porosity& porosity, double density, double viscosity);

@@ -69,6 +69,33 @@ void check_two_dimensions(const Table& root, const flow::Parameters& p, const Bo
   }
 }
 
+/// The vertices of a plate on a spring move independently. It is rigid where it moves all of the fluid.
+void check_mount(const Table& root, const FlowScene& scene, const Body& body, const std::string& name) {
+  if (!body.mount) return;
+  const flow::Parameters& p = scene.parameters;
+  const std::string key = name + ".mount";
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (is_bounded(p, axis))
+      contradict(root, key,
+                 key + ": the plate must close a channel with periodic sides; those along " +
+                     axis_names[axis] + " are not");
+    if (static_cast<int>(axis) == body.axis) continue;
+    const double length = body.lengths[axis == body.axes()[0] ? 0 : 1], width = p.high[axis] - p.low[axis];
+    if (length < (1.0 - 1e-9) * width)
+      contradict(root, name + ".lengths",
+                 name + ".lengths: a plate with a mount must close the channel, which is " +
+                     real_text(width) + " m wide along " + axis_names[axis]);
+  }
+  const double moved = p.density * (p.high[0] - p.low[0]) * (p.high[1] - p.low[1]) * (p.high[2] - p.low[2]);
+  if (scene.is_explicit() && !scene.allow_unstable && moved > body.mount->mass)
+    contradict(root, "coupling.method",
+               "coupling.method = \"explicit\": " + name + " moves all of the fluid, " + real_text(moved) +
+                   " kg, more than its own mass, " + real_text(body.mount->mass) +
+                   " kg; forces that act a step late are unstable, \"spread\" takes any mass");
+  if (!scene.canopies.empty())
+    contradict(root, key, key + " cannot be combined with a [[canopy]], whose lines carry no compression");
+}
+
 /// Checks the lengths of edges against the cells along each axis.
 void check_edges(const Table& root, const flow::Parameters& p, const Body& body, const std::string& name) {
   const std::string key = name + (body.kind == BodyKind::file ? ".file" : ".edge_length");
@@ -120,6 +147,7 @@ void check_body(const Table& root, const FlowScene& scene, std::size_t index) {
   check_two_dimensions(root, scene.parameters, body, name);
   check_porosity(root, scene, name, body.porosity);
   check_edges(root, scene.parameters, body, name);
+  check_mount(root, scene, body, name);
   check_places(root, scene, body, name);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::string key = name + ".motion." + axis_names[axis];

@@ -145,6 +145,18 @@ scene::Codec optional_boolean_codec(std::optional<bool>& value) {
           scene::back_to_default(value)};
 }
 
+void declare_mount(Table& table, Mount& mount) {
+  table.value("mass", scene::real_codec(mount.mass), "Mass of the plate").unit("kg").above(0.0).required();
+  table.value("stiffness", scene::real_codec(mount.stiffness), "Stiffness of the spring")
+      .unit("N/m")
+      .above(0.0)
+      .required();
+  table
+      .value("offset", scene::real_codec(mount.offset),
+             "Displacement of the plate from centre, where the spring is slack, at the start")
+      .unit("m");
+}
+
 void declare_body(Table& table, Body& body) {
   using enum BodyKind;
   table
@@ -174,6 +186,11 @@ void declare_body(Table& table, Body& body) {
       .value("slip", optional_boolean_codec(body.slip),
              "The fluid slips freely along the sheet, or has its velocity")
       .default_text("`true` for plates and disks, else `false`");
+  table
+      .optional_table("mount", body.mount, declare_mount,
+                      "Spring along the normal of a plate that closes a periodic channel")
+      .when([&body] { return body.kind == plate && !body.moves(); },
+            "with kind = \"plate\" and without motion", "kind");
   table.table(
       "porosity", [&](Table& porosity) { declare_porosity(porosity, body.porosity); },
       "Flow through the sheet");

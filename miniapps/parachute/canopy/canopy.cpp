@@ -398,6 +398,8 @@ Sheets make_all_sheets(const std::vector<Body>& bodies, const std::vector<Canopy
     law.no_slip = !body.slips();
     sheets.laws.insert(sheets.laws.end(), static_cast<std::size_t>(body.vertices()), law);
   }
+  sheets.laws.resize(sheets.positions.size());  // fixed ends of springs have no area
+  set_offsets(bodies, sheets.positions);
   for (const Canopy& canopy : canopies)
     append_canopy(canopy, law_of(canopy.porosity, density, viscosity), sheets);
   return sheets;

@@ -1,6 +1,7 @@
 #include "miniapps/parachute/scene/scene.hpp"
 
 #include <algorithm>
+#include <string>
 
 #include "common/run/restart/restart_file.hpp"
 #include "kernels/coupling/sheet/added_mass.hpp"
@@ -41,6 +42,8 @@ const std::vector<std::string>& field_names() {
 
 bool is_canopy_field(const std::string& name) { return name == "position" || name == "von_mises"; }
 
+std::string displacement_column(std::size_t body) { return "body_" + std::to_string(body) + "_displacement"; }
+
 FlowScene read_flow_scene(const std::filesystem::path& file, const std::vector<std::string>& sets,
                           SchemeSource source) {
   return framework::read_scene<FlowScene>(file, sets, declare_flow_scene,
@@ -58,6 +61,11 @@ double FlowScene::largest_added_mass_ratio() const {
   double largest = 0.0;
   for (const Canopy& canopy : canopies) largest = std::max(largest, added_mass_ratio(canopy));
   return largest;
+}
+
+bool FlowScene::has_free_sheets() const {
+  return !canopies.empty() ||
+         std::ranges::any_of(bodies, [](const Body& body) { return body.mount.has_value(); });
 }
 
 std::array<bool, 3> FlowScene::open_axes() const {

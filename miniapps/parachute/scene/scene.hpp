@@ -103,6 +103,14 @@ struct ForceWindow {
   Target target;
 };
 
+/// Oscillation of a column of history.csv from a time on.
+struct Oscillation {
+  std::string column;
+  double from = 0.0;                ///< s
+  std::optional<Target> frequency;  ///< 1/s
+  std::optional<Target> amplitude;  ///< in the unit of the column
+};
+
 /// Largest rate at which the kinetic energy falls, W, and optionally its time, s.
 struct DissipationPeak {
   Target target;
@@ -127,6 +135,7 @@ struct Verify {
   std::vector<ForceWindow> mean_forces;  ///< over the reference, N
   std::vector<ForceWindow> frequencies;  ///< of the force, times the reference, s
   std::vector<Profile> profiles;
+  std::vector<Oscillation> oscillations;
 };
 
 /// Solver parameters for air at 15 degrees Celsius: 1.225 kg/m^3, 1.8e-5 Pa s. Does not throw.
@@ -165,6 +174,8 @@ struct FlowScene {
   /// Largest of these; 0 without canopies. Does not throw.
   [[nodiscard]] double largest_added_mass_ratio() const;
   [[nodiscard]] bool is_explicit() const { return coupling.method == coupling::CouplingMethod::explicit_; }
+  /// True if a sheet moves by the forces of the fluid. Does not throw.
+  [[nodiscard]] bool has_free_sheets() const;
   [[nodiscard]] bool has_sheets() const { return !bodies.empty() || !canopies.empty(); }
   /// Axes along which the grid can move: fluid flows in or out at both sides. Does not throw.
   [[nodiscard]] std::array<bool, 3> open_axes() const;
@@ -172,6 +183,9 @@ struct FlowScene {
     return initial[0].empty() ? velocity : initial;
   }
 };
+
+/// Column of history.csv with the displacement of a plate on a spring. Throws only std::bad_alloc.
+std::string displacement_column(std::size_t body);
 
 /// Fields of fields.h5: velocity, pressure, vorticity, q_criterion; of canopies position, von_mises. Does not
 /// throw.

@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "common/scene/nearest.hpp"
 #include "common/scene/node.hpp"
 #include "common/scene/read.hpp"
 #include "miniapps/parachute/scene/functions.hpp"
@@ -84,6 +85,43 @@ void check_forces(const Table& root, const FlowScene& scene) {
   };
   check_windows("mean_force", scene.verify.mean_forces);
   check_windows("frequency", scene.verify.frequencies);
+}
+
+/// Columns with places of sheets.
+std::vector<std::string> place_columns(const FlowScene& scene) {
+  std::vector<std::string> columns;
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i)
+    if (scene.bodies[i].mount) columns.push_back(displacement_column(i));
+  for (std::size_t i = 0; i < scene.canopies.size(); ++i)
+    for (const char* axis : axis_names) columns.push_back("canopy_" + std::to_string(i) + "_payload_" + axis);
+  return columns;
+}
+
+void check_oscillations(const Table& root, const FlowScene& scene) {
+  const std::vector<std::string> columns = place_columns(scene);
+  for (std::size_t i = 0; i < scene.verify.oscillations.size(); ++i) {
+    const Oscillation& oscillation = scene.verify.oscillations[i];
+    const std::string path = "verify.oscillation[" + std::to_string(i) + "]";
+    if (columns.empty()) contradict(root, path, path + " needs a [[body]] with a mount or a [[canopy]]");
+    if (std::ranges::find(columns, oscillation.column) == columns.end())
+      contradict(root, path + ".column",
+                 path + ".column = \"" + oscillation.column + "\" has no place of a sheet; " +
+                     scene::suggestion(oscillation.column, columns));
+    require_rows(root, scene, path);
+    if (oscillation.from >= scene.end_time)
+      contradict(root, path + ".from",
+                 path + ".from = " + scene::real_text(oscillation.from) +
+                     " s must be before run.end_time = " + scene::real_text(scene.end_time) + " s");
+    if (!oscillation.frequency && !oscillation.amplitude)
+      contradict(root, path, path + " needs frequency or amplitude");
+    const auto check_value = [&](const std::string& name, const std::optional<Target>& target) {
+      if (target && !(target->value > 0.0))
+        contradict(root, path + "." + name + ".value",
+                   path + "." + name + ".value must be positive: the tolerance is relative");
+    };
+    check_value("frequency", oscillation.frequency);
+    check_value("amplitude", oscillation.amplitude);
+  }
 }
 
 void check_canopy_number(const Table& root, const FlowScene& scene, const std::string& path, int canopy) {
@@ -181,6 +219,7 @@ void check_verify(const Table& root, const FlowScene& scene) {
                "verify.kinetic_energy.value must not be 0: the tolerance is relative");
   check_flow_rates(root, scene);
   check_forces(root, scene);
+  check_oscillations(root, scene);
   check_canopy_checks(root, scene);
   check_profiles(root, scene);
 }

@@ -152,6 +152,28 @@ void declare_window(Table& table, ForceWindow& window, const std::string& refere
   declare_target(table, window.target, "", "Largest relative deviation that passes");
 }
 
+void declare_oscillation(Table& table, Oscillation& oscillation) {
+  table
+      .value("column", scene::text_codec(oscillation.column),
+             "Column of history.csv: the displacement of a body with a mount, or a coordinate of a canopy's "
+             "payload, such as canopy_0_payload_z")
+      .required();
+  table
+      .value("from", scene::real_codec(oscillation.from),
+             "Time of the first row of the history that counts; the last one counts always")
+      .unit("s")
+      .at_least(0.0);
+  const std::string deviation = "Largest relative deviation that passes";
+  table.optional_table(
+      "frequency", oscillation.frequency,
+      [deviation](Table& target, Target& value) { declare_target(target, value, "1/s", deviation); },
+      "The frequency at which the column crosses its mean upwards");
+  table.optional_table(
+      "amplitude", oscillation.amplitude,
+      [deviation](Table& target, Target& value) { declare_target(target, value, "m", deviation); },
+      "Half of the difference of the largest and the least value");
+}
+
 }  // namespace
 
 void declare_verify(Table& table, Verify& verify) {
@@ -226,6 +248,8 @@ void declare_verify(Table& table, Verify& verify) {
                        "s");
       },
       "Frequencies at which forces of the fluid on bodies cross their mean upwards");
+  table.tables("oscillation", verify.oscillations, declare_oscillation,
+               "Frequencies and amplitudes of places of sheets");
   declare_canopy_checks(table, verify);
   table.tables("profile", verify.profiles, declare_profile, "Velocities along lines at the end");
 }

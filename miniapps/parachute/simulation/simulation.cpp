@@ -60,13 +60,13 @@ const char* reason_text(flow::FailureReason reason) {
   return "";
 }
 
-/// Flow with all sheets of a scene. Sheets that do not move need no steps of their own.
+/// Flow with all sheets of a scene. Sheets whose motion is prescribed need no steps of their own.
 coupling::Parameters coupled_parameters(const FlowScene& scene, const Sheets& sheets) {
   coupling::Parameters p;
   p.flow = scene.parameters;
   p.fabric = sheets.fabric;
   p.sheet = scene.coupling;
-  if (scene.canopies.empty()) p.substeps = 1;
+  if (!scene.has_free_sheets()) p.substeps = 1;
   p.fabric.gravity = scene.gravity;
   p.fabric.contact.self = scene.contact;
   p.fabric.contact.thickness = scene.thickness;
@@ -173,6 +173,7 @@ std::vector<run::Column> Simulation::history_columns() const {
       columns.push_back({std::string("outflow_") + side_names[side], "m^3/s"});
   for (int body = 0; body < static_cast<int>(_scene.bodies.size()); ++body)
     for (int axis = 0; axis < 3; ++axis) columns.push_back({force_column(body, axis), "N"});
+  append_displacement_columns(columns);
   append_canopy_columns(columns);
   return columns;
 }
@@ -188,6 +189,7 @@ framework::HistoryRow Simulation::row() {
     if (!is_periodic(_scene.parameters, side)) row.values.push_back(now.outflow[side]);
   for (const fabric::Vector& force : body_forces())
     row.values.insert(row.values.end(), force.begin(), force.end());
+  append_displacements(row);
   append_canopy_values(row);
   return row;
 }

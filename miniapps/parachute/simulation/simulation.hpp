@@ -58,11 +58,14 @@ class Simulation final : public framework::Simulation {
   void check_forces(run::ResultDocument& result);
   void check_canopies(run::ResultDocument& result);
   void check_force_history(const run::RunDirectory* directory, run::ResultDocument& result) const;
+  void check_oscillations(const run::RunDirectory* directory, run::ResultDocument& result) const;
   [[nodiscard]] static std::string force_column(int body, int axis) {
     return "body_" + std::to_string(body) + "_force_" + axis_names[static_cast<std::size_t>(axis)];
   }
   [[nodiscard]] std::vector<fabric::Vector> body_forces();
   [[nodiscard]] SheetState sheet_state();
+  void append_displacement_columns(std::vector<run::Column>& columns) const;
+  void append_displacements(framework::HistoryRow& row);
   void append_canopy_columns(std::vector<run::Column>& columns) const;
   void append_canopy_values(framework::HistoryRow& row);
   [[nodiscard]] run::DatasetSpec canopy_field_spec(const std::string& name) const;

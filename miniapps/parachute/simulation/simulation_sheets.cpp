@@ -74,6 +74,28 @@ std::vector<Vector> Simulation::body_forces() {
   return sums;
 }
 
+void Simulation::append_displacement_columns(std::vector<run::Column>& columns) const {
+  for (std::size_t i = 0; i < _scene.bodies.size(); ++i)
+    if (_scene.bodies[i].mount) columns.push_back({displacement_column(i), "m"});
+}
+
+/// Mean displacements of plates on springs along their normals.
+void Simulation::append_displacements(framework::HistoryRow& row) {
+  const auto has_mount = [](const Body& body) { return body.mount.has_value(); };
+  if (std::ranges::none_of(_scene.bodies, has_mount)) return;
+  std::vector<Vector> positions(_sheets.positions.size()), velocities(positions.size());
+  _coupled->download_cloth(positions, velocities);
+  std::size_t vertex = 0;
+  for (const Body& body : _scene.bodies) {
+    const auto vertices = static_cast<std::size_t>(body.vertices()),
+               normal = static_cast<std::size_t>(body.axis);
+    double sum = 0.0;
+    for (std::size_t k = 0; k < vertices; ++k, ++vertex)
+      sum += positions[vertex][normal] - body.centre[normal];
+    if (body.mount) row.values.push_back(sum / static_cast<double>(vertices));
+  }
+}
+
 void Simulation::append_canopy_columns(std::vector<run::Column>& columns) const {
   if (_scene.canopies.empty()) return;
   for (std::size_t i = 0; i < _scene.canopies.size(); ++i) {

@@ -36,4 +36,11 @@ double frequency_from(const std::vector<double>& time, const std::vector<double>
   return crossings >= 3 ? (crossings - 1) / (last - first) : not_a_number;
 }
 
+double amplitude_from(const std::vector<double>& time, const std::vector<double>& value, double from) {
+  const auto first = value.begin() + static_cast<std::ptrdiff_t>(first_from(time, from));
+  if (first == value.end()) return not_a_number;
+  const auto [least, largest] = std::minmax_element(first, value.end());
+  return 0.5 * (*largest - *least);
+}
+
 }  // namespace drogue::parachute_app

@@ -15,4 +15,9 @@ namespace drogue::parachute_app {
 [[nodiscard]] double frequency_from(const std::vector<double>& time, const std::vector<double>& value,
                                     double from);
 
+/// Half of the difference between the largest and the least value from the time `from` on, s; NaN without
+/// rows. Times increase. Does not throw.
+[[nodiscard]] double amplitude_from(const std::vector<double>& time, const std::vector<double>& value,
+                                    double from);
+
 }  // namespace drogue::parachute_app

@@ -203,6 +203,24 @@ void Simulation::check_force_history(const run::RunDirectory* directory, run::Re
   });
 }
 
+void Simulation::check_oscillations(const run::RunDirectory* directory, run::ResultDocument& result) const {
+  if (_scene.verify.oscillations.empty()) return;
+  const run::History history = run::read_history(directory->file("history.csv"));
+  const std::vector<double>& time = history.at("time");
+  for (std::size_t i = 0; i < _scene.verify.oscillations.size(); ++i) {
+    const Oscillation& wanted = _scene.verify.oscillations[i];
+    const std::vector<double>& place = history.at(wanted.column);
+    const auto check = [&](const std::string& name, double value, const std::optional<Target>& target) {
+      result.metrics.set("oscillations", name + "_" + std::to_string(i), value);
+      if (target)
+        result.add_check(name + "_of_oscillation_" + std::to_string(i), relative_deviation(value, *target),
+                         target->tolerance);
+    };
+    check("frequency", frequency_from(time, place, wanted.from), wanted.frequency);
+    check("amplitude", amplitude_from(time, place, wanted.from), wanted.amplitude);
+  }
+}
+
 void Simulation::check_profiles(run::ResultDocument& result) {
   for (std::size_t i = 0; i < _scene.verify.profiles.size(); ++i) {
     const Profile& profile = _scene.verify.profiles[i];
@@ -241,6 +259,7 @@ ExitCode Simulation::verify(const run::RunDirectory* directory, run::ResultDocum
   check_forces(result);
   check_canopies(result);
   check_force_history(directory, result);
+  check_oscillations(directory, result);
   check_profiles(result);
   return ExitCode::ok;
 }

@@ -135,6 +135,38 @@ TEST(Bodies, SeveralBodiesAreOneMeshInTheirOrder) {
   EXPECT_TRUE(second.moves());
 }
 
+TEST(Bodies, PlatesOnSpringsShareMassAndStiffnessByArea) {
+  Body first, second;
+  first.lengths = second.lengths = {1.0, 1.0};
+  first.edge_length = second.edge_length = 0.5;
+  second.axis = 1;
+  second.centre = {7.0, 2.0, 0.0};
+  second.mount = Mount{3.0, 50.0, 0.125};
+  const fabric::Parameters sheets = make_sheets({first, second});
+  ASSERT_EQ(sheets.mesh.rest.size(), 9U + 9U + 9U);
+  ASSERT_EQ(sheets.mesh.lines.size(), 9U);
+  double mass = 0.0, stiffness = 0.0;
+  for (std::size_t k = 0; k < 9; ++k) {
+    EXPECT_EQ(sheets.pinned[k], 7);
+    EXPECT_EQ(sheets.pinned[9 + k], 5) << "free along y";
+    EXPECT_EQ(sheets.pinned[18 + k], 7);
+    EXPECT_EQ(sheets.mesh.lines[k], (std::array<int, 2>{9 + static_cast<int>(k), 18 + static_cast<int>(k)}));
+    EXPECT_EQ(sheets.mesh.rest[9 + k][0], sheets.mesh.rest[18 + k][0]);
+    EXPECT_EQ(sheets.mesh.rest[9 + k][2], sheets.mesh.rest[18 + k][2]);
+    mass += sheets.mass[9 + k];
+    stiffness += sheets.mesh.line_stiffness[k] / (sheets.mesh.rest[9 + k][1] - sheets.mesh.rest[18 + k][1]);
+    EXPECT_NEAR(sheets.mesh.line_stiffness[k] / sheets.mass[9 + k],
+                sheets.mesh.line_stiffness[0] / sheets.mass[9], 1e-9);
+  }
+  EXPECT_NEAR(mass, 3.0, 1e-14);
+  EXPECT_NEAR(stiffness, 50.0, 1e-12);
+  std::vector<fabric::Vector> positions = sheets.mesh.rest;
+  set_offsets({first, second}, positions);
+  EXPECT_EQ(positions[8], sheets.mesh.rest[8]);
+  EXPECT_EQ(positions[9][1], 2.125);
+  EXPECT_EQ(positions[18], sheets.mesh.rest[18]) << "the end of a spring stays";
+}
+
 TEST(Bodies, FlatSheetsSlipByDefault) {
   EXPECT_FALSE(body_of(BodyKind::sphere, 0).slips());
   EXPECT_FALSE(body_of(BodyKind::cylinder, 0).slips());

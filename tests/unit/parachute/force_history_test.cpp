@@ -32,6 +32,13 @@ TEST(ForceHistory, MeasuresMeanAndFrequencyAfterTheTransient) {
   EXPECT_GT(mean_from(rows.time, rows.value, 0.0), 20.0);
 }
 
+TEST(ForceHistory, AmplitudeIsHalfOfTheRange) {
+  const Rows rows = oscillation();
+  EXPECT_NEAR(amplitude_from(rows.time, rows.value, 10.0), 1.0, 1e-3);
+  EXPECT_GT(amplitude_from(rows.time, rows.value, 9.0), 50.0);
+  EXPECT_TRUE(std::isnan(amplitude_from(rows.time, rows.value, 40.0)));
+}
+
 TEST(ForceHistory, ReportsNoValueForTooFewRows) {
   const Rows rows = oscillation();
   EXPECT_TRUE(std::isnan(mean_from(rows.time, rows.value, 39.995)));
