@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <stdexcept>
 
 namespace drogue::scene {
 
@@ -66,6 +67,12 @@ Key& Table::table(const std::string& name, const std::function<void(Table&)>& de
   key._tables.push_back(std::make_unique<Table>(path_of(name)));
   describe(*key._tables.back());
   return key;
+}
+
+Key& Table::at(const std::string& name) {
+  for (const auto& key : _keys)
+    if (key->_name == name) return *key;
+  throw std::out_of_range("no key \"" + path_of(name) + "\" is declared");
 }
 
 Table& Table::exactly_one_of(std::vector<std::string> names) {

@@ -80,6 +80,9 @@ class Table {
   template <class T, class Describe>
   Key& tables(const std::string& name, std::vector<T>& place, Describe describe, std::string help);
 
+  /// Key that has been declared. Throws std::out_of_range for another name.
+  [[nodiscard]] Key& at(const std::string& name);
+
   /// Requires exactly one of the keys `names`.
   Table& exactly_one_of(std::vector<std::string> names);
 

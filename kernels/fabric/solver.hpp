@@ -118,6 +118,10 @@ class Solver {
   /// on every backend. Blocks. Throws only after a failed kernel.
   [[nodiscard]] virtual Totals totals() = 0;
 
+  /// Sets E A of every line of the mesh, N; 0 cuts a line. Blocks. Throws std::invalid_argument for values
+  /// that are negative or not finite, and spans of the wrong length.
+  virtual void set_line_stiffness(std::span<const double> of_lines) = 0;
+
   /// Name of the driver of steps: "persistent", "graph" or "plain". Does not throw.
   [[nodiscard]] virtual const char* driver() const = 0;
 

@@ -32,6 +32,7 @@ class SolverAdapter final : public Solver {
     _solver.vertex_stress(measure, of_vertices);
   }
   Totals totals() override { return _solver.totals(); }
+  void set_line_stiffness(std::span<const double> of_lines) override { _solver.set_line_stiffness(of_lines); }
   [[nodiscard]] const char* driver() const override { return _solver.driver(); }
   void contact_work(std::span<ContactWork> of_vertices) override { _solver.contact_work(of_vertices); }
   void set_contact_work(std::span<const ContactWork> of_vertices) override {

@@ -3,15 +3,28 @@
 #include "miniapps/framework/typed_scene.hpp"
 #include "miniapps/parachute/parallel/serve.hpp"
 #include "miniapps/parachute/scene/scene_keys.hpp"
+#include "miniapps/parachute/simulation/cloth_simulation.hpp"
 #include "miniapps/parachute/simulation/simulation.hpp"
 #include "miniapps/parachute/verify/study.hpp"
 
 namespace drogue::parachute_app {
 namespace {
 
+/// A flow, or a cloth drop.
+class ParachuteScene final : public framework::TypedScene<FlowScene, Simulation> {
+ public:
+  using TypedScene::TypedScene;
+
+  [[nodiscard]] std::unique_ptr<framework::Simulation> create(
+      const framework::SimulationSettings& settings) const override {
+    if (!content().has_fluid()) return std::make_unique<ClothSimulation>(content(), settings);
+    return TypedScene::create(settings);
+  }
+};
+
 std::unique_ptr<framework::Scene> read(const std::filesystem::path& file,
                                        const std::vector<std::string>& assignments, bool baseline) {
-  return std::make_unique<framework::TypedScene<FlowScene, Simulation>>(
+  return std::make_unique<ParachuteScene>(
       read_flow_scene(file, assignments, baseline ? SchemeSource::baseline : SchemeSource::scene),
       declare_flow_scene);
 }
@@ -21,7 +34,8 @@ std::unique_ptr<framework::Scene> read(const std::filesystem::path& file,
 framework::MiniApp mini_app() {
   framework::MiniApp app;
   app.name = "parachute";
-  app.description = "Incompressible flow on a staggered grid.";
+  app.description =
+      "Parachutes in incompressible flow on a staggered grid, the flow alone, or the cloth alone.";
   app.scene_folder = scene_folder();
   app.has_baseline = true;
   app.read = read;

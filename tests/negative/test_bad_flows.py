@@ -1,6 +1,7 @@
 """Invalid scenes of drogue-parachute end with exit code 3 and a sentence that names file, line and key."""
 
 import os
+import re
 import sys
 import unittest
 
@@ -70,6 +71,39 @@ class BadFlows(parachute_program.FlowTest):
         self.expect(0, self.scene, "--check")
         self.assertGreaterEqual(len(bad_canopies.BAD_LINES), 50)
         self.assert_lines_are_rejected(bad_canopies.GOOD, bad_canopies.BAD_LINES)
+
+    def test_rejects_flows_in_cloth_drops(self):
+        self.scene.write_text(parachute_program.CLOTH, encoding="utf-8")
+        self.expect(0, self.scene, "--check")
+        mean = "{from=0.1,to=0.2,value=1,tolerance=1}"
+        for key in ("grid={cells=[8,8,8],domain=[[0,1],[0,1],[0,1]]}", "flow.time=ab2", "initial.velocity=[1,0,0]",
+                    "body=[{kind='sphere',centre=[0,0,0],radius=1,edge_length=0.1}]", "tuning.step.driver=plain", "coupling.method=spread",
+                    "coupling.filter=0.5", "canopy[0].porosity.law=none", "canopy[0].lines.strength=100", "run.cfl=0.5",
+                    "run.max_dt=0.01", "verify.divergence=1", "verify.momentum=1", "verify.energy_growth=1",
+                    "verify.speed_growth=1", "verify.force_balance=1", f"verify.drag=[{mean}]",
+                    f"verify.terminal_speed=[{mean}]", "verify.exact={x=0,y=0,z=0}",
+                    "verify.flow_rate=[{side='x_low',value=1,tolerance=1}]"):
+            name = re.search(r": (\S+) applies only with \[fluid\]", self.refusal(key))
+            self.assertIsNotNone(name, key)
+            self.assertTrue(key.startswith(name[1]), key)
+        for key, words in {"output.fields=['velocity']": '"velocity" needs [fluid]', "run.dt=0": "run.dt",
+                           "output.fields=['position','vorticity']": '"vorticity" needs [fluid]',
+                           "canopy[0].edge_length=1e-4": "2^20", "coupling.allow_unstable=true": "coupling.allow_unstable",
+                           "canopy[0].lines.length=0.9": "do not reach the payload"}.items():
+            self.assertIn(words, self.refusal(key), key)
+        self.assertIn('missing table "grid" (needed with [fluid])', self.refusal("fluid.density=1"))
+
+    def test_rejects_checks_of_energy_that_is_not_conserved(self):
+        self.scene.write_text(parachute_program.CLOTH, encoding="utf-8")
+        drift = "verify.energy_drift=1e-3"
+        self.expect(0, self.scene, "--check", sets=[drift])
+        for key, words in {"coupling.contact=true": "contact of cloth", "canopy[0].payload.release=0.1": "lines of canopy[0] are cut",
+                           "canopy[0].reefing={length=5.9,cut=1}": "reefing", "output.history_every=0": "history_every"}.items():
+            self.assertIn(words, self.refusal(drift, key), key)
+        self.scene.write_text(bad_canopies.GOOD, encoding="utf-8")
+        self.assertIn("verify.energy_drift applies only without [fluid]", self.refusal(drift))
+        self.scene.write_text('app = "parachute"\n[run]\nend_time = 1\n', encoding="utf-8")
+        self.assertIn('missing table "fluid"', self.refusal())
 
     def test_rejects_lines_of_sheets(self):
         sheet = bad_canopies.GOOD.replace('[[canopy]]\nkind = "flat-circular"\ndiameter = 1.2\ngores = 8\nedge', '[[canopy]]\nkind = "sheet"\ndiameter = 1.2\ngores = 8\nedge')

@@ -22,7 +22,7 @@ sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/negative")
 import bad_bodies
 import gas_program
 import parachute_program
-from parachute_program import CANOPY, GUST, PLATE, VORTICES
+from parachute_program import CANOPY, CLOTH, GUST, PLATE, VORTICES
 
 QUIET = ("--quiet", "--backend", "serial", "--out", "out")
 
@@ -448,6 +448,91 @@ class Bodies(parachute_program.FlowTest):
             self.expect(0, self.write(PLATE), "--quiet", "--backend", backend, "--out", backend, "--overwrite")
             last = self.history(backend)["body_0_force_x"][-1]
             self.assertAlmostEqual(1.0, last / self.history("serial")["body_0_force_x"][-1], delta=1e-9)
+
+
+class ClothDrops(parachute_program.FlowTest):
+    WORDS = ("--quiet", "--backend", "serial", "--overwrite", "--out")
+
+    def drop(self, out, *sets, code=0, scene=CLOTH, restart=None):
+        words = [word for word in self.WORDS if restart is None or word != "--overwrite"]
+        resume = [] if restart is None else ["--restart", restart]
+        return self.expect(code, self.write(scene), *words, out, *resume, sets=sets)
+
+    def test_slack_cloth_falls_freely(self):
+        self.drop("out")
+        rows, steps = self.history("out"), range(len(self.history("out")["time"]))
+        for k in steps:
+            time = rows["time"][k]
+            height = rows["canopy_0_payload_z"][0] - 0.5 * 9.81 * time**2
+            self.assertAlmostEqual(height, rows["canopy_0_payload_z"][k], delta=1e-9)
+            self.assertAlmostEqual(-9.81 * time, rows["canopy_0_payload_velocity_z"][k], delta=1e-9)
+            self.assertLess(abs(rows["canopy_0_line_force_z"][k]), 1e-6)
+            self.assertAlmostEqual(rows["energy"][0], rows["energy"][k], delta=1e-9)
+        self.assertNotIn("canopy_0_force_z", rows)
+        self.assertNotIn("divergence_rms", rows)
+
+    def test_only_the_cloth_is_solved(self):
+        def launches(end_time):
+            self.drop("out", "output.history_every=0", "run.dt=1e-4", f"run.end_time={end_time}")
+            result = self.result("out")
+            self.assertEqual(0, result["ledger"]["device_allocations_after_warmup"])
+            self.assertNotIn("pressure", result)
+            return result["steps"], result["ledger"]["kernel_launches"]
+
+        (steps, some), (more_steps, more) = launches(0.256), launches(0.512)
+        # One kernel a step, and the stability limit of a block.
+        self.assertLess(more - some, 1.1 * (more_steps - steps))
+
+    def test_fixed_payload_catches_the_cloth(self):
+        fixed = CLOTH.replace("mass = 0.1", "fixed = true").replace("end_time = 0.4", "end_time = 1.3")
+        checks = "verify={energy_drift=2e-2,peak_force=[{force=[0.1,1000]}],oscillation=[{column='canopy_0_payload_z',amplitude={value=1,tolerance=1}}]}"
+        self.drop("out", checks, scene=fixed)
+        rows = self.history("out")
+        # The skirt falls from its height above the payload to as much below it.
+        taut = math.sqrt(2 * 2 * math.sqrt(1.8**2 - 1) / 9.81)
+        pulled = [time for time, force in zip(rows["time"], rows["canopy_0_line_force_z"]) if force < -0.01]
+        self.assertGreater(min(pulled), taut)
+        self.assertLess(min(pulled), taut + 0.1)
+        self.drop("coarse", "verify.energy_drift=1e-9", code=5, scene=fixed)
+
+    def test_runs_continue_bit_for_bit(self):
+        cut = CLOTH.replace('kind = "flat-circular"', 'kind = "flat-circular"\nshape = "partly-closed"\nclosure = 0.6').replace(
+            "mass = 0.1 }", "mass = 0.1, release = 0.2 }\nreefing = { length = 3.8, stiffness = 500, cut = 0.1 }")
+        for half in (0.1, 0.15, 0.2):
+            with self.subTest(half):
+                sets = [f"output={{history_every=7,restart_every=7,times=[{half},0.3],fields=['position','von_mises']}}", "run.end_time=0.3"]
+                self.drop("whole", *sets, scene=cut)
+                part = self.folder / "part"
+                self.drop(part, *sets, f"run.end_time={half}", f"output.times=[{half}]", scene=cut)
+                self.drop(part, *sets, scene=cut, restart=part / "restart.h5")
+                whole, again = self.history("whole"), self.history("part")
+                self.assertIn(0.3, whole["time"])
+                self.assertEqual(whole, again)
+
+    def test_released_payload_leaves_the_lines(self):
+        self.drop("out", "canopy[0].payload.release=0.2", "coupling.gravity=[0,0,0]", "canopy[0].perturbation.amplitude=0.05")
+        rows = self.history("out")
+        speeds = {speed for time, speed in zip(rows["time"], rows["canopy_0_payload_velocity_z"]) if time > 0.2}
+        self.assertEqual(1, len(speeds))
+        self.assertNotEqual({0.0}, speeds)
+
+    def test_contact_is_resolved(self):
+        self.drop("out", "run.end_time=0.05", "coupling.contact=true", "coupling.thickness=0.005", "verify.intersections=0")
+        self.assertEqual({0.0}, set(self.history("out")["intersections"]))
+
+    def test_fields_hold_the_cloth_alone(self):
+        self.drop("out", "output.times=[0.2,0.4]")
+        names = set(self.fields("out").datasets)
+        self.assertEqual({f"/mesh/canopy/{name}" for name in ("vertices", "triangles", "edges", "strings")}
+                         | {f"/steps/{step}/canopy/{name}" for step in ("000000", "000001") for name in ("position", "von_mises")}, names)
+
+    def test_failures_name_their_cause(self):
+        told = self.drop("out", "run.dt=1", code=4).stderr
+        self.assertIn("run.dt = 1 s exceeds the largest stable time step", told)
+        self.assertIn("run.max_steps = 20 reached at t = ", self.drop("out", "run.max_steps=20", code=4).stderr)
+        self.assertEqual(20, self.result("out")["steps"])
+        self.assertIn("--seed-mode", self.expect(2, self.write(CLOTH), *QUIET, "--overwrite", "--seed-mode").stderr)
+        self.assertIn("verify.exact", self.expect(2, self.write(CLOTH), "--study", "meshes=16:32").stderr)
 
 
 class Canopies(parachute_program.FlowTest):

@@ -55,6 +55,26 @@ l2_velocity = 0.01
 """
 
 
+# A canopy without a fluid, which falls with its payload.
+CLOTH = """\
+app = "parachute"
+[[canopy]]
+kind = "flat-circular"
+diameter = 2
+gores = 8
+vent = 0.3
+edge_length = 0.3
+lines = { length = 1.8, stiffness = 500 }
+payload = { mass = 0.1 }
+[coupling]
+gravity = [0, 0, -9.81]
+[run]
+end_time = 0.4
+[output]
+history_every = 50
+"""
+
+
 # A porous plate in a channel.
 PLATE = """\
 app = "parachute"

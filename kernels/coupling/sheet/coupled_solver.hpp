@@ -114,7 +114,7 @@ class CoupledSolver {
         _saved_places("drogue::coupling::saved_places", rows()),
         _total_force(flow::coupling_grid(_flow.grid())),
         _frame(_parameters.follow, _parameters.fabric),
-        _cuts(_parameters),
+        _cuts(_parameters.cuts, _parameters.fabric),
         _strength(_space, _parameters) {
     _strength.set_stiffness(_space, _cuts.stiffness());
     if (_frame.follows()) _flow.check_frame(_parameters.follow.axes);

@@ -15,15 +15,16 @@ class LineCuts {
  public:
   /// Throws std::invalid_argument for a time that is not positive and finite, and for lines that the mesh
   /// lacks.
-  explicit LineCuts(const Parameters& p) : _cuts(p.cuts), _whole(p.fabric.mesh.line_stiffness) {
-    const std::size_t lines = p.fabric.mesh.lines.size();
-    if (_whole.empty()) _whole.assign(lines, p.fabric.material.axial_stiffness);
+  LineCuts(const std::vector<LineCut>& cuts, const fabric::Parameters& fabric)
+      : _cuts(cuts), _whole(fabric.mesh.line_stiffness) {
+    const std::size_t lines = fabric.mesh.lines.size();
+    if (_whole.empty()) _whole.assign(lines, fabric.material.axial_stiffness);
     for (const LineCut& cut : _cuts) {
       if (!(cut.time > 0.0 && std::isfinite(cut.time)))
-        throw std::invalid_argument("coupled solver: the time of a cut must be positive and finite");
+        throw std::invalid_argument("cuts of lines: the time of a cut must be positive and finite");
       for (const int line : cut.lines)
         if (line < 0 || static_cast<std::size_t>(line) >= lines)
-          throw std::invalid_argument("coupled solver: a line that is cut must be one of the mesh");
+          throw std::invalid_argument("cuts of lines: a line that is cut must be one of the mesh");
     }
     std::ranges::stable_sort(_cuts, {}, &LineCut::time);
   }

@@ -196,16 +196,20 @@ void declare_body(Table& table, Body& body) {
       "Flow through the sheet");
 }
 
-void declare_coupling(Table& table, coupling::SheetParameters& coupling) {
-  table.value(
-      "method", scene::choice_codec(coupling.method, method_choices),
-      "Coupling of sheets to the fluid: by smoothed delta functions, against which canopies relax in "
-      "each step of the cloth; likewise, but the cloth takes the force of the last step of the flow and "
-      "imposes its velocity, as in [Shi]; or pressure jumps between the cells that a body separates");
+void declare_coupling(Table& table, coupling::SheetParameters& coupling,
+                      const std::function<bool()>& with_fluid) {
+  table
+      .value(
+          "method", scene::choice_codec(coupling.method, method_choices),
+          "Coupling of sheets to the fluid: by smoothed delta functions, against which canopies relax in "
+          "each step of the cloth; likewise, but the cloth takes the force of the last step of the flow and "
+          "imposes its velocity, as in [Shi]; or pressure jumps between the cells that a body separates")
+      .when(with_fluid, fluid_condition, "");
   table
       .value("filter", scene::real_codec(coupling.filter),
              "Weight of the present step in the running mean of the acceleration of the fluid at bodies")
-      .range(0.0, 1.0);
+      .range(0.0, 1.0)
+      .when(with_fluid, fluid_condition, "");
 }
 
 }  // namespace drogue::parachute_app

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+
 #include "common/scene/table.hpp"
 #include "miniapps/parachute/bodies/body.hpp"
 
@@ -12,6 +14,7 @@ void declare_porosity(scene::Table& table, Porosity& porosity);
 void declare_body(scene::Table& table, Body& body);
 
 /// Declares the keys of `[coupling]`.
-void declare_coupling(scene::Table& table, coupling::SheetParameters& coupling);
+void declare_coupling(scene::Table& table, coupling::SheetParameters& coupling,
+                      const std::function<bool()>& with_fluid);
 
 }  // namespace drogue::parachute_app

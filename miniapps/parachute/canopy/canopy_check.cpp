@@ -100,6 +100,10 @@ void check_edges(const Table& root, const flow::Parameters& p, const Canopy& can
                key + " = " + real_text(canopy.edge_length) +
                    " m is too coarse: the cloth leaks on cells of " + real_text(width) + " m; at most " +
                    real_text(longest) + " m");
+}
+
+void check_size(const Table& root, const Canopy& canopy, const std::string& name) {
+  const std::string key = name + ".edge_length";
   // Without counting, which would take as long as there are rings.
   const double edges = canopy.diameter / canopy.edge_length;
   if (edges * edges > most_canopy_vertices)
@@ -251,8 +255,11 @@ void check_canopies(const Table& root, const FlowScene& scene) {
     const std::string name = name_of(i);
     check_measures(root, canopy, name);
     check_reefing(root, canopy, name);
-    check_porosity(root, scene, name, canopy.porosity);
-    check_edges(root, p, canopy, name);
+    if (scene.has_fluid()) {
+      check_porosity(root, scene, name, canopy.porosity);
+      check_edges(root, p, canopy, name);
+    }
+    check_size(root, canopy, name);
     const Canopy& first = scene.canopies.front();
     if (canopy.membrane_modulus != first.membrane_modulus)
       contradict(root, name + ".membrane_modulus",
@@ -261,14 +268,15 @@ void check_canopies(const Table& root, const FlowScene& scene) {
       contradict(root, name + ".poisson",
                  name + ".poisson differs from that of canopy[0]; all canopies have the same one");
     CanopyMesh mesh = make_canopy(canopy);
-    check_inside(root, p, mesh.positions, place_key(canopy, name), name);
+    if (scene.has_fluid()) check_inside(root, p, mesh.positions, place_key(canopy, name), name);
     mesh.positions.resize(mesh.cloth_vertices);
     cloths.push_back(sorted_by_x(std::move(mesh.positions)));
     check_overlaps(root, scene, cloths, bodies);
   }
+  check_contact(root, scene);
+  if (!scene.has_fluid()) return;
   check_frame(root, scene);
   check_method(root, scene);
-  check_contact(root, scene);
   if (p.fixed_dt == 0.0 && p.max_dt == 0.0)
     contradict(root, "run",
                "missing key \"run.max_dt\" (needed with a [[canopy]] and dt = \"auto\"): fluid at rest does "

@@ -36,7 +36,8 @@ void declare_cloth(Table& table, Canopy& canopy) {
       .range(-0.9, 0.5);
   table
       .value("edge_length", scene::real_codec(canopy.edge_length),
-             "Largest edge along rings and meridians; at most a cell over 1.4, and half a cell for accuracy")
+             "Largest edge along rings and meridians; in a fluid at most a cell over 1.4, and half a cell "
+             "for accuracy")
       .unit("m")
       .above(0.0)
       .required();
@@ -80,7 +81,7 @@ void declare_perturbation(Table& table, Perturbation& perturbation) {
       .range(0, 1e9);
 }
 
-void declare_lines(Table& table, SuspensionLines& lines) {
+void declare_lines(Table& table, SuspensionLines& lines, const std::function<bool()>& with_fluid) {
   table
       .value("length", scene::real_codec(lines.length),
              "Length from the payload to the skirt; longer than the radius of the skirt at rest")
@@ -101,7 +102,8 @@ void declare_lines(Table& table, SuspensionLines& lines) {
              "Tension of a line that ends the run as a failure")
       .unit("N")
       .above(0.0)
-      .default_text("none");
+      .default_text("none")
+      .when(with_fluid, fluid_condition, "");
 }
 
 void declare_payload(Table& table, CanopyPayload& payload) {
@@ -170,7 +172,7 @@ void declare_reinforcement(Table& table, Reinforcement& bands) {
 
 }  // namespace
 
-void declare_canopy(Table& table, Canopy& canopy) {
+void declare_canopy(Table& table, Canopy& canopy, const std::function<bool()>& with_fluid) {
   const auto has_lines = [&canopy] { return canopy.has_lines(); };
   const std::string no_sheet = "unless kind = \"sheet\"";
   table
@@ -211,7 +213,7 @@ void declare_canopy(Table& table, Canopy& canopy) {
       "Random displacements of the cloth at the start, for several runs of a chaotic opening");
   table
       .table(
-          "lines", [&](Table& lines) { declare_lines(lines, canopy.lines); },
+          "lines", [&](Table& lines) { declare_lines(lines, canopy.lines, with_fluid); },
           "Suspension lines to the skirt, one per gore; they exchange no force with the fluid")
       .when(has_lines, no_sheet, "kind");
   table
@@ -230,9 +232,11 @@ void declare_canopy(Table& table, Canopy& canopy) {
   table.table(
       "reinforcement", [&](Table& bands) { declare_reinforcement(bands, canopy.reinforcement); },
       "Bands sewn on the cloth");
-  table.table(
-      "porosity", [&](Table& porosity) { declare_porosity(porosity, canopy.porosity); },
-      "Flow through the cloth");
+  table
+      .table(
+          "porosity", [&](Table& porosity) { declare_porosity(porosity, canopy.porosity); },
+          "Flow through the cloth")
+      .when(with_fluid, fluid_condition, "");
 }
 
 }  // namespace drogue::parachute_app

@@ -24,7 +24,7 @@ void set_baseline_scheme(FlowScene& scene) {
   scene.weights = Weights::js;
   scene.parameters.time_scheme = flow::TimeScheme::rk3;
   scene.parameters.diffusion = flow::Diffusion::explicit_;
-  if (scene.has_sheets()) scene.coupling.method = coupling::CouplingMethod::explicit_;
+  if (scene.has_fluid() && scene.has_sheets()) scene.coupling.method = coupling::CouplingMethod::explicit_;
   for (Canopy& canopy : scene.canopies) {
     if (canopy.cloth == Fabric::custom) continue;
     canopy.cloth = Fabric::custom;

@@ -1,10 +1,13 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "kernels/flow/parameters.hpp"
@@ -49,6 +52,11 @@ struct Target {
   double value = 0.0;
   double tolerance = 0.0;
 };
+
+/// Magnitude of the relative error of a value. Does not throw.
+[[nodiscard]] inline double relative_deviation(double value, const Target& target) {
+  return std::abs(value / target.value - 1.0);
+}
 
 /// Extreme velocity along a line, m/s, and optionally its coordinate, m.
 struct Extremum {
@@ -132,6 +140,7 @@ struct Verify {
   std::vector<CanopyPeak> peak_forces;
   std::optional<double> force_balance;   ///< relative
   std::optional<double> intersections;   ///< number
+  std::optional<double> energy_drift;    ///< of a cloth drop, relative
   std::vector<ForceWindow> mean_forces;  ///< over the reference, N
   std::vector<ForceWindow> frequencies;  ///< of the force, times the reference, s
   std::vector<Profile> profiles;
@@ -150,7 +159,9 @@ struct FlowScene {
   std::filesystem::path file;
   std::string name;  ///< the file's name without folder and extension
   std::string description;
-  flow::Parameters parameters = air_parameters();  ///< complete once the scene has been read
+  std::optional<std::monostate> fluid;  ///< absent: a cloth drop, which has no grid either
+  /// Complete once the scene has been read; of a cloth drop, only `fixed_dt` and `max_steps` count.
+  flow::Parameters parameters = air_parameters();
   Frame frame = Frame::fixed;
   AdvectionScheme advection = AdvectionScheme::weno5;
   Weights weights = Weights::z;
@@ -174,6 +185,7 @@ struct FlowScene {
   /// Largest of these; 0 without canopies. Does not throw.
   [[nodiscard]] double largest_added_mass_ratio() const;
   [[nodiscard]] bool is_explicit() const { return coupling.method == coupling::CouplingMethod::explicit_; }
+  [[nodiscard]] bool has_fluid() const { return fluid.has_value(); }
   /// True if a sheet moves by the forces of the fluid. Does not throw.
   [[nodiscard]] bool has_free_sheets() const;
   [[nodiscard]] bool has_sheets() const { return !bodies.empty() || !canopies.empty(); }
@@ -190,6 +202,14 @@ std::string displacement_column(std::size_t body);
 /// Fields of fields.h5: velocity, pressure, vorticity, q_criterion; of canopies position, von_mises. Does not
 /// throw.
 const std::vector<std::string>& field_names();
+
+/// Restriction of a key to scenes with a fluid; `scene` must outlive it.
+[[nodiscard]] inline std::function<bool()> with_fluid(const FlowScene& scene) {
+  return [&scene] { return scene.has_fluid(); };
+}
+
+/// Condition that `with_fluid` puts on a key.
+inline constexpr const char* fluid_condition = "with [fluid]";
 
 /// True for fields of canopies. Does not throw.
 bool is_canopy_field(const std::string& name);

@@ -225,17 +225,30 @@ void check_initial(const Table& root, const FlowScene& scene) {
 }
 
 void complete_fields(const Table& root, FlowScene& scene) {
-  std::vector<std::string> by_default = {"velocity", "pressure", "vorticity"};
+  std::vector<std::string> by_default;
+  if (scene.has_fluid()) by_default = {"velocity", "pressure", "vorticity"};
   if (!scene.canopies.empty()) by_default.insert(by_default.end(), {"position", "von_mises"});
   framework::complete_output(root, scene.output, by_default, {scene.end_time, "run.end_time"});
   const auto of_canopy = std::ranges::find_if(scene.output.fields, is_canopy_field);
   if (scene.canopies.empty() && of_canopy != scene.output.fields.end())
     contradict(root, "output.fields", "output.fields: \"" + *of_canopy + "\" needs a [[canopy]]");
+  const auto of_flow = std::ranges::find_if_not(scene.output.fields, is_canopy_field);
+  if (!scene.has_fluid() && of_flow != scene.output.fields.end())
+    contradict(root, "output.fields", "output.fields: \"" + *of_flow + "\" needs [fluid]");
 }
 
 }  // namespace
 
 void complete_and_check(const Table& root, FlowScene& scene) {
+  if (!scene.has_fluid()) {
+    if (scene.canopies.empty())
+      contradict(root, "", "missing table \"fluid\": the fluid, without which a scene needs a [[canopy]]");
+    check_and_place_canopies(root, scene.canopies);
+    check_canopies(root, scene);
+    complete_fields(root, scene);
+    check_verify(root, scene);
+    return;
+  }
   flow::Parameters& p = scene.parameters;
   check_grid(root, p);
   complete_sides(root, scene);

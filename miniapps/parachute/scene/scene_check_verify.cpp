@@ -151,6 +151,20 @@ void check_canopy_means(const Table& root, const FlowScene& scene, const std::st
   }
 }
 
+/// Energy is conserved unless parts of the cloth are cut off or collide.
+void check_energy_drift(const Table& root, const FlowScene& scene) {
+  if (!scene.verify.energy_drift) return;
+  const std::string key = "verify.energy_drift";
+  require_rows(root, scene, key);
+  if (scene.contact) contradict(root, key, key + ": contact of cloth with itself dissipates energy");
+  for (std::size_t i = 0; i < scene.canopies.size(); ++i) {
+    const Canopy& canopy = scene.canopies[i];
+    const std::string name = "canopy[" + std::to_string(i) + "]";
+    if (canopy.payload.release || (canopy.reefing && canopy.reefing->cut))
+      contradict(root, key, key + ": lines of " + name + " are cut, and lose their energy");
+  }
+}
+
 void check_canopy_checks(const Table& root, const FlowScene& scene) {
   const Verify& verify = scene.verify;
   check_canopy_means(root, scene, "drag", verify.drags);
@@ -170,6 +184,7 @@ void check_canopy_checks(const Table& root, const FlowScene& scene) {
       contradict(root, path + ".time", path + ".time: the first number must be the smaller");
     require_rows(root, scene, path);
   }
+  check_energy_drift(root, scene);
   if (!verify.force_balance) return;
   if (scene.canopies.empty())
     contradict(root, "verify.force_balance", "verify.force_balance needs a [[canopy]]");

@@ -128,12 +128,15 @@ void declare_flow(Table& table, FlowScene& scene) {
 
 void declare_run(Table& table, FlowScene& scene) {
   flow::Parameters& parameters = scene.parameters;
-  const auto free_step = [&parameters] { return parameters.fixed_dt == 0.0; };
+  const auto free_step = [&scene] { return scene.has_fluid() && scene.parameters.fixed_dt == 0.0; };
+  const char* const free_step_condition = "with [fluid] and dt = \"auto\"";
   table.value("end_time", scene::real_codec(scene.end_time), "End of the run")
       .unit("s")
       .above(0.0)
       .required();
-  table.value("dt", time_step_codec(parameters.fixed_dt), "Time step; `auto` follows from cfl")
+  table
+      .value("dt", time_step_codec(parameters.fixed_dt),
+             "Time step; `auto` follows from cfl, without [fluid] from the stiffness of the cloth")
       .unit("s")
       .above(0.0);
   table
@@ -142,7 +145,7 @@ void declare_run(Table& table, FlowScene& scene) {
              "0.7 with ab2")
       .above(0.0)
       .at_most(flow::stable_cfl(flow::TimeScheme::rk3))
-      .when(free_step, "with dt = \"auto\"", "dt")
+      .when(free_step, free_step_condition, "dt")
       .default_text("1 for rk3, 0.5 for ab2 and with a [[body]] or a [[canopy]]");
   table
       .value("max_dt", absent_if_zero(scene::real_codec(parameters.max_dt), parameters.max_dt),
@@ -150,7 +153,7 @@ void declare_run(Table& table, FlowScene& scene) {
       .unit("s")
       .above(0.0)
       .default_text("none")
-      .when(free_step, "with dt = \"auto\"", "dt");
+      .when(free_step, free_step_condition, "dt");
   table
       .value("max_steps", scene::integer_codec(parameters.max_steps),
              "Limit of steps; a run that reaches it fails")
@@ -161,34 +164,42 @@ void declare_run(Table& table, FlowScene& scene) {
 
 void declare_flow_scene(Table& root, FlowScene& scene) {
   framework::declare_app(root, "parachute", scene.description);
-  root.table(
-          "fluid", [&](Table& table) { declare_fluid(table, scene); }, "The fluid")
-      .required();
+  const auto of_fluid = with_fluid(scene);
+  root.optional_table(
+      "fluid", scene.fluid, [&scene](Table& table, std::monostate&) { declare_fluid(table, scene); },
+      "The fluid; without it, the scene is a cloth drop");
   root.table(
           "grid", [&](Table& table) { declare_grid(table, scene); }, "The grid and its sides")
+      .when(of_fluid, fluid_condition, "fluid")
       .required();
   root.table(
-      "initial",
-      [&](Table& table) {
-        table.value("velocity", vector_expression_codec(scene.initial, place), "Velocity at time 0")
-            .unit("m/s")
-            .default_text("fluid.velocity at time 0");
-      },
-      "The state at the start; the gradient part of its velocity is removed");
+          "initial",
+          [&](Table& table) {
+            table.value("velocity", vector_expression_codec(scene.initial, place), "Velocity at time 0")
+                .unit("m/s")
+                .default_text("fluid.velocity at time 0");
+          },
+          "The state at the start; the gradient part of its velocity is removed")
+      .when(of_fluid, fluid_condition, "fluid");
   root.table(
-      "flow", [&](Table& table) { declare_flow(table, scene); }, "The numerical scheme and the forces");
-  root.tables("canopy", scene.canopies, declare_canopy, "Parachutes: cloth, suspension lines and a payload");
-  root.tables("body", scene.bodies, declare_body,
-              "Rigid sheets in the flow, at rest or in prescribed motion");
+          "flow", [&](Table& table) { declare_flow(table, scene); }, "The numerical scheme and the forces")
+      .when(of_fluid, fluid_condition, "fluid");
+  root.tables(
+      "canopy", scene.canopies,
+      [of_fluid](Table& table, Canopy& canopy) { declare_canopy(table, canopy, of_fluid); },
+      "Parachutes: cloth, suspension lines and a payload");
+  root.tables("body", scene.bodies, declare_body, "Rigid sheets in the flow, at rest or in prescribed motion")
+      .when(of_fluid, fluid_condition, "fluid");
   root.table(
           "coupling",
           [&](Table& table) {
-            declare_coupling(table, scene.coupling);
+            declare_coupling(table, scene.coupling, of_fluid);
             table
                 .value(
                     "allow_unstable", scene::boolean_codec(scene.allow_unstable),
                     "Run with canopies whose added mass exceeds their own, which the method is unstable for")
-                .when([&scene] { return scene.is_explicit(); }, "with method = \"explicit\"", "method");
+                .when([&scene] { return scene.has_fluid() && scene.is_explicit(); },
+                      "with method = \"explicit\"", "method");
             table.value("gravity", vector_codec(scene.gravity), "Acceleration of canopies and payloads")
                 .unit("m/s^2")
                 .when([&scene] { return !scene.canopies.empty(); }, "with a [[canopy]]", "canopy");
@@ -210,24 +221,25 @@ void declare_flow_scene(Table& root, FlowScene& scene) {
       "output", [&](Table& table) { framework::declare_output(table, scene.output, field_names()); },
       "Files of the run directory");
   root.table(
-      "verify", [&](Table& table) { declare_verify(table, scene.verify); }, "Checks at the end");
+      "verify", [&](Table& table) { declare_verify(table, scene); }, "Checks at the end");
   root.table(
-      "tuning",
-      [&](Table& table) {
-        table.table(
-            "step",
-            [&](Table& step) {
-              scene::Codec driver = scene::choice_codec(scene.parameters.driver, driver_choices);
-              driver.print = [print = driver.print, &driver_of = scene.parameters.driver] {
-                return driver_of == flow::Driver::automatic ? std::nullopt : print();
-              };
-              step.value("driver", driver,
-                         "Launches of the kernels of a step on a GPU: one by one, or as one graph")
-                  .default_text("`\"auto\"`");
-            },
-            "The launch of a step");
-      },
-      "Launches of kernels; they change speed, not results");
+          "tuning",
+          [&](Table& table) {
+            table.table(
+                "step",
+                [&](Table& step) {
+                  scene::Codec driver = scene::choice_codec(scene.parameters.driver, driver_choices);
+                  driver.print = [print = driver.print, &driver_of = scene.parameters.driver] {
+                    return driver_of == flow::Driver::automatic ? std::nullopt : print();
+                  };
+                  step.value("driver", driver,
+                             "Launches of the kernels of a step on a GPU: one by one, or as one graph")
+                      .default_text("`\"auto\"`");
+                },
+                "The launch of a step");
+          },
+          "Launches of kernels; they change speed, not results")
+      .when(of_fluid, fluid_condition, "fluid");
 }
 
 }  // namespace drogue::parachute_app

@@ -8,7 +8,7 @@ namespace drogue::parachute_app {
 /// Declares every key of a parachute scene, bound to `scene`, which must outlive `root`.
 void declare_flow_scene(scene::Table& root, FlowScene& scene);
 
-/// Declares the table [verify].
-void declare_verify(scene::Table& table, Verify& verify);
+/// Declares the table [verify], bound to that of `scene`, which must outlive `table`.
+void declare_verify(scene::Table& table, FlowScene& scene);
 
 }  // namespace drogue::parachute_app

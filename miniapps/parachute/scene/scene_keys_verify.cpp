@@ -176,7 +176,8 @@ void declare_oscillation(Table& table, Oscillation& oscillation) {
 
 }  // namespace
 
-void declare_verify(Table& table, Verify& verify) {
+void declare_verify(Table& table, FlowScene& scene) {
+  Verify& verify = scene.verify;
   table.optional_table("exact", verify.exact, declare_exact,
                        "Exact solution, compared at the end of the run");
   declare_norms(table, verify);
@@ -252,6 +253,16 @@ void declare_verify(Table& table, Verify& verify) {
                "Frequencies and amplitudes of places of sheets");
   declare_canopy_checks(table, verify);
   table.tables("profile", verify.profiles, declare_profile, "Velocities along lines at the end");
+  for (const char* of_fluid : {"exact", "divergence", "momentum", "energy_growth", "speed_growth",
+                               "kinetic_energy", "dissipation_peak", "flow_rate", "force", "mean_force",
+                               "frequency", "drag", "terminal_speed", "force_balance", "profile"})
+    table.at(of_fluid).when(with_fluid(scene), fluid_condition, "");
+  table
+      .value("energy_drift", scene::real_codec(verify.energy_drift),
+             "Largest change of the kinetic, elastic and potential energy in rows of the history that "
+             "passes, relative to the largest sum of the first two")
+      .at_least(0.0)
+      .when([&scene] { return !scene.has_fluid(); }, "without [fluid]", "");
 }
 
 }  // namespace drogue::parachute_app

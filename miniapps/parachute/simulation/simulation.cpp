@@ -9,6 +9,7 @@
 #include "common/run/fields/rectilinear_mesh.hpp"
 #include "common/scene/node.hpp"
 #include "miniapps/parachute/scene/functions.hpp"
+#include "miniapps/parachute/simulation/sheet_output.hpp"
 
 namespace drogue::parachute_app {
 namespace {
@@ -197,7 +198,7 @@ framework::HistoryRow Simulation::row() {
 std::vector<run::DatasetSpec> Simulation::field_specs() const {
   std::vector<run::DatasetSpec> specs;
   for (const std::string& name : _scene.output.fields)
-    specs.push_back(is_canopy_field(name) ? canopy_field_spec(name)
+    specs.push_back(is_canopy_field(name) ? canopy_field_spec(_sheets, name)
                                           : field_spec(name, _scene.parameters.cells));
   return specs;
 }
@@ -211,7 +212,7 @@ void Simulation::write_mesh(run::FieldsWriter& fields) const {
     return coordinates;
   };
   run::add_rectilinear_mesh(fields, {faces(0), faces(1), faces(2)}, run::AxisOrder::xyz);
-  if (std::ranges::any_of(_scene.output.fields, is_canopy_field)) write_canopy_mesh(fields);
+  if (std::ranges::any_of(_scene.output.fields, is_canopy_field)) write_canopy_mesh(_sheets, fields);
 }
 
 void Simulation::sample_fields(Snapshot& snapshot) {
@@ -243,11 +244,7 @@ std::string Simulation::failure_text(bool) { return failure_cause() + light_clot
 std::string Simulation::failure_cause() {
   std::ostringstream text;
   text.precision(9);
-  if (_stop == flow::Stop::max_steps) {
-    text << "run.max_steps = " << _scene.parameters.max_steps << " reached at t = " << now().time
-         << " s, before run.end_time = " << _scene.end_time << " s";
-    return text.str();
-  }
+  if (_stop == flow::Stop::max_steps) return step_limit_text(_scene, now().time);
   if (_coupled != nullptr)
     if (const auto reason = _coupled->failure_reason(); reason != coupling::FailureReason::flow)
       return sheet_failure_text(reason);

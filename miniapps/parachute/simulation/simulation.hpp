@@ -56,9 +56,7 @@ class Simulation final : public framework::Simulation {
   void check_profiles(run::ResultDocument& result);
   void check_totals(run::ResultDocument& result);
   void check_forces(run::ResultDocument& result);
-  void check_canopies(run::ResultDocument& result);
   void check_force_history(const run::RunDirectory* directory, run::ResultDocument& result) const;
-  void check_oscillations(const run::RunDirectory* directory, run::ResultDocument& result) const;
   [[nodiscard]] static std::string force_column(int body, int axis) {
     return "body_" + std::to_string(body) + "_force_" + axis_names[static_cast<std::size_t>(axis)];
   }
@@ -68,8 +66,6 @@ class Simulation final : public framework::Simulation {
   void append_displacements(framework::HistoryRow& row);
   void append_canopy_columns(std::vector<run::Column>& columns) const;
   void append_canopy_values(framework::HistoryRow& row);
-  [[nodiscard]] run::DatasetSpec canopy_field_spec(const std::string& name) const;
-  void write_canopy_mesh(run::FieldsWriter& fields) const;
   void sample_canopy_field(const std::string& name, std::vector<double>& values);
   [[nodiscard]] std::string failure_cause();
   [[nodiscard]] std::string sheet_failure_text(coupling::FailureReason reason);

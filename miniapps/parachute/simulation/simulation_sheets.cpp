@@ -2,13 +2,11 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <optional>
 #include <sstream>
 #include <string>
 
-#include "kernels/mesh/edges.hpp"
-#include "kernels/reference/fabric/intersections.hpp"
 #include "miniapps/parachute/scene/functions.hpp"
+#include "miniapps/parachute/simulation/sheet_output.hpp"
 #include "miniapps/parachute/simulation/simulation.hpp"
 
 // Bodies and canopies in history.csv, fields.h5 and messages.
@@ -17,26 +15,6 @@ namespace drogue::parachute_app {
 namespace {
 
 using fabric::Vector;
-
-/// Rows of a mesh dataset, each with n integers.
-template <std::size_t n>
-run::IntegerSource source_of(const std::vector<std::array<int, n>>& parts) {
-  return [&parts](std::uint64_t first, std::span<std::int64_t> values) {
-    for (std::size_t k = 0; k < values.size(); ++k) values[k] = parts[(first + k) / n][(first + k) % n];
-  };
-}
-
-/// Elements after the bodies, whose vertices are left out.
-template <std::size_t n>
-std::vector<std::array<int, n>> of_canopies(const std::vector<std::array<int, n>>& parts, int first_vertex) {
-  std::vector<std::array<int, n>> result;
-  for (std::array<int, n> part : parts) {
-    if (part[0] < first_vertex) continue;
-    for (int& i : part) i -= first_vertex;
-    result.push_back(part);
-  }
-  return result;
-}
 
 /// Kinetic energy in the frame of the scene of masses, kg, whose totals belong to a frame that moves, J.
 double kinetic_energy_at_rest(const fabric::Totals& totals, const Vector& frame_velocity,
@@ -98,19 +76,7 @@ void Simulation::append_displacements(framework::HistoryRow& row) {
 
 void Simulation::append_canopy_columns(std::vector<run::Column>& columns) const {
   if (_scene.canopies.empty()) return;
-  for (std::size_t i = 0; i < _scene.canopies.size(); ++i) {
-    const std::string name = "canopy_" + std::to_string(i) + "_";
-    const auto add_vector = [&](const char* quantity, const char* unit) {
-      for (const char* axis : axis_names) columns.push_back({name + quantity + "_" + axis, unit});
-    };
-    add_vector("force", "N");
-    add_vector("line_force", "N");
-    add_vector("payload", "m");
-    add_vector("payload_velocity", "m/s");
-    columns.push_back({name + "projected_area", "m^2"});
-    columns.push_back({name + "largest_strain", ""});
-    columns.push_back({name + "inversion", ""});
-  }
+  append_measure_columns(_scene, columns);
   columns.insert(columns.end(),
                  {{"cloth_kinetic_energy", "J"}, {"cloth_elastic_energy", "J"}, {"force_balance", ""}});
   if (_scene.verify.intersections) columns.push_back({"intersections", ""});
@@ -127,19 +93,8 @@ void Simulation::append_canopy_values(framework::HistoryRow& row) {
   const SheetState state = sheet_state();
   const coupling::FrameMotion frame = _coupled->frame();
   const Vector origin = frame.position(row.time);
-  std::vector<CanopyMeasures> canopies;
-  for (std::size_t i = 0; i < _sheets.canopies.size(); ++i) {
-    const std::optional<double> release = _scene.canopies[i].payload.release;
-    CanopyMeasures& one = canopies.emplace_back(
-        measure(_sheets.canopies[i], _sheets.fabric, state, release && row.time > *release));
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      one.payload[axis] += origin[axis];
-      one.velocity[axis] += frame.velocity[axis];
-    }
-    for (const Vector& vector : {one.force, one.line_force, one.payload, one.velocity})
-      row.values.insert(row.values.end(), vector.begin(), vector.end());
-    row.values.insert(row.values.end(), {one.projected_area, one.largest_strain, one.inversion});
-  }
+  const std::vector<CanopyMeasures> canopies =
+      append_measures(_scene, _sheets, state, origin, frame.velocity, row);
   const double balance = force_balance(_coupled->total_force_on_air(), state.on_air);
   fabric::Totals totals = _coupled->cloth_totals();
   // The vertices of moving bodies have a mass without meaning.
@@ -149,9 +104,7 @@ void Simulation::append_canopy_values(framework::HistoryRow& row) {
                                        totals.elastic, balance});
   double intersections = 0.0;
   if (_scene.verify.intersections) {
-    const fabric::Mesh& mesh = _sheets.fabric.mesh;
-    intersections =
-        static_cast<double>(reference::intersections(state.positions, mesh.triangles, mesh.lines).size());
+    intersections = count_intersections(_sheets, state.positions);
     row.values.push_back(intersections);
   }
   if (_scene.frame == Frame::follow)
@@ -160,52 +113,16 @@ void Simulation::append_canopy_values(framework::HistoryRow& row) {
   _record.add(row.time, canopies, balance, intersections);
 }
 
-run::DatasetSpec Simulation::canopy_field_spec(const std::string& name) const {
-  const std::size_t bodies = vertices_of(_scene.bodies);
-  if (name == "position")
-    return {name,    {_sheets.positions.size() - bodies, 3}, "m", "vertex", "positions of the vertices",
-            "canopy"};
-  const std::size_t triangles =
-      _sheets.fabric.mesh.triangles.size() - _sheets.canopies.front().triangles_begin;
-  return {
-      name,    {triangles}, "N/m", "face", "von Mises stress of the triangles, Cauchy stress times thickness",
-      "canopy"};
-}
-
-void Simulation::write_canopy_mesh(run::FieldsWriter& fields) const {
-  const fabric::Mesh& mesh = _sheets.fabric.mesh;
-  const std::size_t bodies = vertices_of(_scene.bodies);
-  const auto first = static_cast<int>(bodies);
-  const auto triangles = of_canopies(mesh.triangles, first);
-  const auto edges = of_canopies(mesh::edges_of(mesh), first), strings = of_canopies(mesh.lines, first);
-  const std::string grid = "canopy";
-  fields.add_mesh({"triangles", {triangles.size(), 3}, "1", "face", "vertices of every triangle", grid},
-                  source_of(triangles));
-  fields.add_mesh({"edges", {edges.size(), 2}, "1", "edge", "vertices of every edge and line", grid},
-                  source_of(edges));
-  fields.add_mesh(
-      {"strings", {strings.size(), 2}, "1", "edge", "vertices of every reinforcement and line", grid},
-      source_of(strings));
-  // Add `vertices` last: it completes fields.xdmf.
-  fields.add_mesh({"vertices", {mesh.rest.size() - bodies, 3}, "m", "vertex", "vertices at rest", grid},
-                  [&](std::uint64_t from, std::span<double> values) {
-                    for (std::size_t k = 0; k < values.size(); ++k)
-                      values[k] = mesh.rest[bodies + (from + k) / 3][(from + k) % 3];
-                  });
-}
-
 void Simulation::sample_canopy_field(const std::string& name, std::vector<double>& values) {
   if (name == "position") {
     std::vector<Vector> positions(_sheets.positions.size()), velocities(positions.size());
     _coupled->download_cloth(positions, velocities);
-    const std::size_t bodies = vertices_of(_scene.bodies);
-    for (std::size_t k = 0; k < values.size(); ++k) values[k] = positions[bodies + k / 3][k % 3];
+    copy_canopy_positions(_sheets, positions, values);
     return;
   }
   std::vector<fabric::Stress> stress(_sheets.fabric.mesh.triangles.size());
   _coupled->cloth_stress(fabric::StressMeasure::cauchy, stress);
-  const std::size_t first = _sheets.canopies.front().triangles_begin;
-  for (std::size_t k = 0; k < values.size(); ++k) values[k] = stress[first + k].von_mises();
+  copy_canopy_stress(_sheets, stress, values);
 }
 
 /// End of the message of a failure for which explicit coupling of light cloth is the likely cause.

@@ -5,6 +5,7 @@
 #include "common/run/statistics.hpp"
 #include "miniapps/parachute/scene/functions.hpp"
 #include "miniapps/parachute/simulation/simulation.hpp"
+#include "miniapps/parachute/verify/canopy_checks.hpp"
 #include "miniapps/parachute/verify/force_history.hpp"
 #include "miniapps/parachute/verify/profile.hpp"
 #include "miniapps/parachute/verify/statistics.hpp"
@@ -55,8 +56,6 @@ double volume_of(const flow::Parameters& p) {
   for (std::size_t axis = 0; axis < 3; ++axis) volume *= p.high[axis] - p.low[axis];
   return volume;
 }
-
-double relative_deviation(double value, const Target& target) { return std::abs(value / target.value - 1.0); }
 
 }  // namespace
 
@@ -142,44 +141,6 @@ void Simulation::check_forces(run::ResultDocument& result) {
   }
 }
 
-void Simulation::check_canopies(run::ResultDocument& result) {
-  const Verify& wanted = _scene.verify;
-  const auto check_mean = [&](const std::string& name, double value, const Target& target) {
-    result.metrics.set("canopies", name, value);
-    result.add_check(name, relative_deviation(value, target), target.tolerance);
-  };
-  for (std::size_t i = 0; i < wanted.drags.size(); ++i) {
-    const CanopyMean& drag = wanted.drags[i];
-    check_mean("drag_" + std::to_string(i),
-               _record.mean_drag(static_cast<std::size_t>(drag.canopy), drag.from, drag.to), drag.target);
-  }
-  for (std::size_t i = 0; i < wanted.terminal_speeds.size(); ++i) {
-    const CanopyMean& speed = wanted.terminal_speeds[i];
-    check_mean("terminal_speed_" + std::to_string(i),
-               _record.mean_speed(static_cast<std::size_t>(speed.canopy), speed.from, speed.to),
-               speed.target);
-  }
-  for (std::size_t i = 0; i < wanted.projected_areas.size(); ++i) {
-    const CanopyMean& area = wanted.projected_areas[i];
-    check_mean("projected_area_" + std::to_string(i),
-               _record.mean_area(static_cast<std::size_t>(area.canopy), area.from, area.to), area.target);
-  }
-  // A value passes between two bounds if its distance from their mean is at most half of theirs.
-  const auto check_bounds = [&](const std::string& name, double value, const std::array<double, 2>& bounds) {
-    result.metrics.set("canopies", name, value);
-    result.add_check(name, std::abs(value - 0.5 * (bounds[0] + bounds[1])), 0.5 * (bounds[1] - bounds[0]));
-  };
-  for (std::size_t i = 0; i < wanted.peak_forces.size(); ++i) {
-    const CanopyPeak& peak = wanted.peak_forces[i];
-    const auto [force, time] = _record.peak(static_cast<std::size_t>(peak.canopy));
-    const std::string name = "peak_force_" + std::to_string(i);
-    check_bounds(name, force, peak.force);
-    if (peak.time) check_bounds(name + "_time", time, *peak.time);
-  }
-  if (wanted.force_balance) result.add_check("force_balance", _record.balance(), *wanted.force_balance);
-  if (wanted.intersections) result.add_check("intersections", _record.intersections(), *wanted.intersections);
-}
-
 void Simulation::check_force_history(const run::RunDirectory* directory, run::ResultDocument& result) const {
   const Verify& wanted = _scene.verify;
   if (wanted.mean_forces.empty() && wanted.frequencies.empty()) return;
@@ -201,24 +162,6 @@ void Simulation::check_force_history(const run::RunDirectory* directory, run::Re
   check("frequency", wanted.frequencies, [&](const std::vector<double>& force, const ForceWindow& window) {
     return frequency_from(time, force, window.from) * window.reference;
   });
-}
-
-void Simulation::check_oscillations(const run::RunDirectory* directory, run::ResultDocument& result) const {
-  if (_scene.verify.oscillations.empty()) return;
-  const run::History history = run::read_history(directory->file("history.csv"));
-  const std::vector<double>& time = history.at("time");
-  for (std::size_t i = 0; i < _scene.verify.oscillations.size(); ++i) {
-    const Oscillation& wanted = _scene.verify.oscillations[i];
-    const std::vector<double>& place = history.at(wanted.column);
-    const auto check = [&](const std::string& name, double value, const std::optional<Target>& target) {
-      result.metrics.set("oscillations", name + "_" + std::to_string(i), value);
-      if (target)
-        result.add_check(name + "_of_oscillation_" + std::to_string(i), relative_deviation(value, *target),
-                         target->tolerance);
-    };
-    check("frequency", frequency_from(time, place, wanted.from), wanted.frequency);
-    check("amplitude", amplitude_from(time, place, wanted.from), wanted.amplitude);
-  }
 }
 
 void Simulation::check_profiles(run::ResultDocument& result) {
@@ -257,9 +200,9 @@ ExitCode Simulation::verify(const run::RunDirectory* directory, run::ResultDocum
                             !wanted.flow_rates.empty();
   if (needs_totals) check_totals(result);
   check_forces(result);
-  check_canopies(result);
+  check_canopies(wanted, _record, result);
   check_force_history(directory, result);
-  check_oscillations(directory, result);
+  check_oscillations(wanted, directory, result);
   check_profiles(result);
   return ExitCode::ok;
 }

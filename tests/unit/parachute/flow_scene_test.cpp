@@ -130,6 +130,24 @@ TEST(FlowScene, OmitsInapplicableKeys) {
   EXPECT_FALSE(contains(central, "cfl"));
 }
 
+TEST(FlowScene, SceneWithoutFluidIsClothAlone) {
+  const std::string drop =
+      "app = \"parachute\"\n[[canopy]]\nkind = \"flat-circular\"\nedge_length = 0.5\n[run]\nend_time = 1\n";
+  const FlowScene scene = read_text(drop, {"output.times=[1]", "verify.energy_drift=1e-3"});
+  EXPECT_FALSE(scene.has_fluid());
+  EXPECT_EQ(scene.output.fields, (std::vector<std::string>{"position", "von_mises"}));
+  const std::string printed = print_flow_scene(scene);
+  for (const char* absent :
+       {"[fluid]", "[grid]", "[flow]", "porosity", "method", "cfl", "strength", "tuning"})
+    EXPECT_FALSE(contains(printed, absent)) << absent;
+  EXPECT_TRUE(contains(printed, "dt = \"auto\"\n"));
+  EXPECT_TRUE(contains(printed, "energy_drift = 0.001\n"));
+  EXPECT_EQ(print_flow_scene(read_text(printed)), printed);
+  EXPECT_EQ(scene_fingerprint(scene), scene_fingerprint(read_text(drop, {"run.dt=1e-4"})));
+  EXPECT_NE(scene_fingerprint(scene), scene_fingerprint(read_text(drop, {"coupling.gravity=[0,0,-1]"})));
+  EXPECT_TRUE(read_text(least).has_fluid());
+}
+
 TEST(FlowScene, FingerprintIgnoresOutputAndSteps) {
   const std::string base = scene_fingerprint(read_text(least));
   for (const char* set : {"run.end_time=2", "run.cfl=0.2", "run.dt=0.01", "output.history_every=3",

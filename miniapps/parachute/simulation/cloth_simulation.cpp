@@ -1,0 +1,308 @@
+#include "miniapps/parachute/simulation/cloth_simulation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "common/program/stopwatch.hpp"
+#include "common/scene/node.hpp"
+#include "miniapps/parachute/simulation/sheet_output.hpp"
+#include "miniapps/parachute/verify/canopy_checks.hpp"
+
+namespace drogue::parachute_app {
+namespace {
+
+using fabric::Vector;
+
+constexpr auto integrator = fabric::Integrator::verlet;
+
+/// Automatic steps as a share of the stability limit.
+constexpr double share_of_stable_dt = 0.5;
+
+/// Steps between computations of the stability limit, which falls with strain.
+constexpr std::int64_t steps_per_block = 256;
+
+constexpr double most_steps_of_drop = 1e15;
+
+/// Longest wall-clock time between two polls for a signal, s.
+constexpr double longest_batch_s = 0.1;
+
+fabric::Parameters fabric_parameters(const FlowScene& scene, const Sheets& sheets) {
+  fabric::Parameters p = sheets.fabric;
+  p.gravity = scene.gravity;
+  p.contact.self = scene.contact;
+  p.contact.thickness = scene.thickness;
+  p.integrator = integrator;
+  p.dt = 1.0;  // until the first block is planned
+  return p;
+}
+
+const char* cloth_failure_text(fabric::FailureReason reason) {
+  switch (reason) {
+    case fabric::FailureReason::crossing:
+      return "contact could not prevent an intersection";
+    case fabric::FailureReason::too_fast:
+      return "a step moves cloth farther than the search distance of contact";
+    case fabric::FailureReason::too_dense:
+      return "more parts of cloth are in contact than the lists of contact can hold";
+    default:
+      return "the positions of the cloth are not finite";
+  }
+}
+
+}  // namespace
+
+ClothSimulation::ClothSimulation(const FlowScene& scene, const framework::SimulationSettings& settings)
+    : _scene(scene),
+      _sheets(make_all_sheets({}, scene.canopies, scene.parameters.density, scene.parameters.viscosity)),
+      _cuts(_sheets.cuts, _sheets.fabric),
+      _record(scene) {
+  if (settings.communicator != nullptr)
+    throw Failure(ExitCode::usage, "scenes without [fluid] run on one rank");
+  if (settings.baseline) throw Failure(ExitCode::usage, "--seed-mode needs a scene with [fluid]");
+  _solver = fabric::create_solver(settings.backend, fabric_parameters(scene, _sheets));
+}
+
+void ClothSimulation::start() {
+  const ScopedStopwatch stopwatch(_h2d_s);
+  _solver->upload(_sheets.positions, std::vector<Vector>(_sheets.positions.size()));
+  allocate_buffers();
+}
+
+/// Allocates what rows of the history, outputs and blocks need.
+void ClothSimulation::allocate_buffers() {
+  static_cast<void>(sheet_state());
+  static_cast<void>(_solver->totals());
+  static_cast<void>(_solver->fastest_frequency());
+  static_cast<void>(snapshot());
+}
+
+framework::TimeState ClothSimulation::now() {
+  const fabric::TimeState now = _solver->time_state();
+  // At the end of a block the time equals that of an output or a cut bit for bit.
+  return {now.step, now.step == _block.end ? _block.time : now.time()};
+}
+
+/// Plans a block of steps from now towards a time, s, and cuts the lines that are due. Returns false if
+/// run.dt is too long.
+bool ClothSimulation::plan(double target) {
+  const auto [step, time] = now();
+  if (_cuts.cut_until(time)) _solver->set_line_stiffness(_cuts.stiffness());
+  _stable_dt = fabric::stable_dt(integrator, _solver->fastest_frequency(), _solver->fastest_decay());
+  const double stop = std::min(target, _cuts.next()), fixed = _scene.parameters.fixed_dt;
+  if (fixed > _stable_dt) return false;
+  const double longest = fixed > 0.0 ? fixed : share_of_stable_dt * _stable_dt;
+  // Round-off of an integer quotient must not add a step.
+  const double steps = std::max(1.0, std::ceil((stop - time) / longest * (1.0 - 1e-12)));
+  if (!(steps <= most_steps_of_drop))
+    throw Failure(
+        ExitCode::numerical_failure,
+        "the stiffness of the cloth requires more than 1e15 steps to t = " + scene::real_text(stop) + " s");
+  const double dt = (stop - time) / steps;
+  const bool is_last = steps <= static_cast<double>(steps_per_block);
+  const std::int64_t count = is_last ? static_cast<std::int64_t>(steps) : steps_per_block;
+  _solver->set_time_state({step, dt, step, time});
+  _block.end = step + count;
+  _block.time = is_last ? stop : _solver->time_state().start + static_cast<double>(count) * dt;
+  _block.dt_min = _block.dt_min > 0.0 ? std::min(_block.dt_min, dt) : dt;
+  _block.dt_max = std::max(_block.dt_max, dt);
+  return true;
+}
+
+std::int64_t ClothSimulation::steps_to_event(const framework::AdvanceLimits& limits) const {
+  const std::int64_t step = _solver->time_state().step;
+  std::int64_t next = std::min(_block.end, _scene.parameters.max_steps);
+  if (limits.row_every > 0) next = std::min(next, (step / limits.row_every + 1) * limits.row_every);
+  if (limits.pause_step > step) next = std::min(next, limits.pause_step);
+  return std::min(next - step, _batch);
+}
+
+/// Takes steps and adapts the length of the next batch. Returns false if the state was lost.
+bool ClothSimulation::take_steps(std::int64_t steps) {
+  const Stopwatch stopwatch;
+  _solver->advance(steps);
+  _failure = _solver->failure();
+  const double seconds = stopwatch.seconds();
+  if (seconds < 0.5 * longest_batch_s && steps == _batch) _batch *= 2;
+  if (seconds > longest_batch_s) _batch = std::max<std::int64_t>(1, _batch / 2);
+  return !_failure;
+}
+
+framework::Stop ClothSimulation::advance(const framework::AdvanceLimits& limits,
+                                         const framework::RowSink& rows, const framework::Poll& poll) {
+  const ScopedStopwatch stopwatch(_compute_s);
+  while (true) {
+    const auto [step, time] = now();
+    if (time >= limits.target_time) return framework::Stop::target;
+    if (!poll({step, time})) return framework::Stop::interrupted;
+    if (step >= _scene.parameters.max_steps) return framework::Stop::failed;
+    // A run that continues may have other outputs.
+    if ((step >= _block.end || _block.time > limits.target_time) && !plan(limits.target_time))
+      return framework::Stop::failed;
+    if (!take_steps(steps_to_event(limits))) {
+      return_to_checkpoint();
+      return framework::Stop::failed;
+    }
+    const std::int64_t after = _solver->time_state().step;
+    if (limits.row_every > 0 && after % limits.row_every == 0) rows(row());
+    if (after == limits.pause_step) return framework::Stop::pause;
+  }
+}
+
+/// After a failure, the solver has the state of its last checkpoint, which may belong to an earlier block.
+void ClothSimulation::return_to_checkpoint() {
+  std::vector<Vector> positions(_sheets.positions.size()), velocities(positions.size());
+  _solver->download(positions, velocities);
+  _solver->upload(positions, velocities);  // forgets the failure
+  const fabric::TimeState now = _solver->time_state();
+  _block.end = now.step;
+  _block.time = now.time();
+  if (_cuts.restart_at(now.time())) _solver->set_line_stiffness(_cuts.stiffness());
+}
+
+std::vector<run::Column> ClothSimulation::history_columns() const {
+  std::vector<run::Column> columns = {{"step", ""}, {"dt", "s"}};
+  append_measure_columns(_scene, columns);
+  columns.insert(columns.end(), {{"cloth_kinetic_energy", "J"},
+                                 {"cloth_elastic_energy", "J"},
+                                 {"potential_energy", "J"},
+                                 {"energy", "J"}});
+  if (_scene.verify.intersections) columns.push_back({"intersections", ""});
+  return columns;
+}
+
+SheetState ClothSimulation::sheet_state() {
+  const std::size_t vertices = _sheets.positions.size();
+  SheetState state;
+  for (auto* values : {&state.positions, &state.velocities, &state.on_air, &state.elastic})
+    values->resize(vertices);
+  _solver->download(state.positions, state.velocities);
+  _solver->forces(state.elastic);
+  return state;
+}
+
+framework::HistoryRow ClothSimulation::row() {
+  const auto [step, time] = now();
+  framework::HistoryRow row = {time, {static_cast<double>(step), _solver->time_state().dt}};
+  if (step == 0) row.values.back() = 0.0;
+  const SheetState state = sheet_state();
+  const std::vector<CanopyMeasures> canopies = append_measures(_scene, _sheets, state, {}, {}, row);
+  const fabric::Totals totals = _solver->totals();
+  row.values.insert(row.values.end(), {totals.kinetic, totals.elastic, totals.gravity, totals.energy()});
+  double intersections = 0.0;
+  if (_scene.verify.intersections) {
+    intersections = count_intersections(_sheets, state.positions);
+    row.values.push_back(intersections);
+  }
+  _record.add(time, canopies, 0.0, intersections);
+  return row;
+}
+
+std::vector<run::DatasetSpec> ClothSimulation::field_specs() const {
+  std::vector<run::DatasetSpec> specs;
+  for (const std::string& name : _scene.output.fields) specs.push_back(canopy_field_spec(_sheets, name));
+  return specs;
+}
+
+void ClothSimulation::write_mesh(run::FieldsWriter& fields) const { write_canopy_mesh(_sheets, fields); }
+
+framework::FieldsTask ClothSimulation::snapshot() {
+  std::vector<std::vector<double>> values;
+  for (const run::DatasetSpec& spec : field_specs()) {
+    std::vector<double>& field = values.emplace_back(run::entries(spec));
+    if (spec.name == "position") {
+      copy_canopy_positions(_sheets, sheet_state().positions, field);
+      continue;
+    }
+    std::vector<fabric::Stress> stress(_sheets.fabric.mesh.triangles.size());
+    _solver->stress(fabric::StressMeasure::cauchy, stress);
+    copy_canopy_stress(_sheets, stress, field);
+  }
+  return [&names = _scene.output.fields, values = std::move(values)](run::FieldsWriter& fields) {
+    for (std::size_t k = 0; k < names.size(); ++k) fields.write("canopy/" + names[k], 0, values[k]);
+  };
+}
+
+std::string ClothSimulation::failure_text(bool) {
+  const auto [step, time] = now();
+  if (!_failure && step >= _scene.parameters.max_steps) return step_limit_text(_scene, time);
+  std::ostringstream text;
+  text.precision(9);
+  if (!_failure) {
+    text << "run.dt = " << _scene.parameters.fixed_dt << " s exceeds the largest stable time step, "
+         << _stable_dt << " s, at step " << step << ", t = " << time << " s; \"auto\" takes a stable one";
+    return text.str();
+  }
+  text << cloth_failure_text(_failure->reason);
+  for (std::size_t i = 0; i < _sheets.canopies.size(); ++i) {
+    const CanopyRows& rows = _sheets.canopies[i];
+    const auto vertex = static_cast<std::size_t>(_failure->index);
+    if (vertex >= rows.begin && vertex < rows.end)
+      text << " at vertex " << vertex - rows.begin << " of canopy[" << i << "]";
+  }
+  text << " in step " << _failure->step << ", t = " << _failure->time
+       << " s; a smaller run.dt may save the run";
+  return text.str();
+}
+
+void ClothSimulation::describe(run::ResultDocument& result) {
+  result.driver = _solver->driver();
+  result.dt_min = _block.dt_min;
+  result.dt_max = _block.dt_max;
+  result.metrics.set("canopies", "vertices", static_cast<std::int64_t>(_sheets.positions.size()));
+  result.timing.compute_s = _compute_s;
+  result.timing.h2d_s = _h2d_s;
+}
+
+ExitCode ClothSimulation::verify(const run::RunDirectory* directory, run::ResultDocument& result) {
+  check_canopies(_scene.verify, _record, result);
+  check_oscillations(_scene.verify, directory, result);
+  check_energy_drift(_scene.verify, directory, result);
+  return ExitCode::ok;
+}
+
+/// Visits every scalar entry of a restart file. `number` and `integer` write or read one entry.
+template <class Plan, class Number, class Integer>
+void ClothSimulation::visit(Plan& clock, Block& block, const Number& number, const Integer& integer) {
+  integer("step", clock.step);
+  number("dt", clock.dt);
+  integer("since", clock.since);
+  number("start", clock.start);
+  integer("block_end", block.end);
+  number("block_time", block.time);
+  number("dt_min", block.dt_min);
+  number("dt_max", block.dt_max);
+}
+
+void ClothSimulation::write_restart(run::RestartWriter& writer) {
+  fabric::TimeState clock = _solver->time_state();
+  visit(
+      clock, _block, [&](const std::string& name, double value) { writer.number(name, value); },
+      [&](const std::string& name, std::int64_t value) { writer.integer(name, value); });
+  std::vector<Vector> positions(_sheets.positions.size()), velocities(positions.size());
+  _solver->download(positions, velocities);
+  for (const auto& [name, vectors] :
+       {std::pair{"position", &positions}, std::pair{"velocity", &velocities}}) {
+    writer.array(name, 3 * vectors->size());
+    writer.write(name, 0, {vectors->front().data(), 3 * vectors->size()});
+  }
+  _record.write(writer);
+}
+
+void ClothSimulation::restore(const run::RestartReader& reader) {
+  const ScopedStopwatch stopwatch(_h2d_s);
+  fabric::TimeState clock;
+  visit(
+      clock, _block, [&](const std::string& name, double& value) { value = reader.number(name); },
+      [&](const std::string& name, std::int64_t& value) { value = reader.integer(name); });
+  std::vector<Vector> positions(_sheets.positions.size()), velocities(positions.size());
+  reader.read("position", 0, {positions.front().data(), 3 * positions.size()});
+  reader.read("velocity", 0, {velocities.front().data(), 3 * velocities.size()});
+  _solver->set_time_state(clock);
+  _solver->upload(positions, velocities);
+  _record.read(reader);
+  if (_cuts.restart_at(now().time)) _solver->set_line_stiffness(_cuts.stiffness());
+  allocate_buffers();
+}
+
+}  // namespace drogue::parachute_app

@@ -1,0 +1,130 @@
+#include "miniapps/parachute/simulation/sheet_output.hpp"
+
+#include <optional>
+#include <sstream>
+
+#include "kernels/mesh/edges.hpp"
+#include "kernels/reference/fabric/intersections.hpp"
+
+namespace drogue::parachute_app {
+namespace {
+
+using fabric::Vector;
+
+/// Rows of a mesh dataset, each with n integers.
+template <std::size_t n>
+run::IntegerSource source_of(const std::vector<std::array<int, n>>& parts) {
+  return [&parts](std::uint64_t first, std::span<std::int64_t> values) {
+    for (std::size_t k = 0; k < values.size(); ++k) values[k] = parts[(first + k) / n][(first + k) % n];
+  };
+}
+
+/// Elements after the bodies, whose vertices are left out.
+template <std::size_t n>
+std::vector<std::array<int, n>> of_canopies(const std::vector<std::array<int, n>>& parts, int first_vertex) {
+  std::vector<std::array<int, n>> result;
+  for (std::array<int, n> part : parts) {
+    if (part[0] < first_vertex) continue;
+    for (int& i : part) i -= first_vertex;
+    result.push_back(part);
+  }
+  return result;
+}
+
+}  // namespace
+
+void append_measure_columns(const FlowScene& scene, std::vector<run::Column>& columns) {
+  for (std::size_t i = 0; i < scene.canopies.size(); ++i) {
+    const std::string name = "canopy_" + std::to_string(i) + "_";
+    const auto add_vector = [&](const char* quantity, const char* unit) {
+      for (const char* axis : axis_names) columns.push_back({name + quantity + "_" + axis, unit});
+    };
+    if (scene.has_fluid()) add_vector("force", "N");
+    add_vector("line_force", "N");
+    add_vector("payload", "m");
+    add_vector("payload_velocity", "m/s");
+    columns.push_back({name + "projected_area", "m^2"});
+    columns.push_back({name + "largest_strain", ""});
+    columns.push_back({name + "inversion", ""});
+  }
+}
+
+std::vector<CanopyMeasures> append_measures(const FlowScene& scene, const Sheets& sheets,
+                                            const SheetState& state, const Vector& origin,
+                                            const Vector& velocity, framework::HistoryRow& row) {
+  std::vector<CanopyMeasures> canopies;
+  const auto append = [&row](const Vector& vector) {
+    row.values.insert(row.values.end(), vector.begin(), vector.end());
+  };
+  for (std::size_t i = 0; i < sheets.canopies.size(); ++i) {
+    const std::optional<double> release = scene.canopies[i].payload.release;
+    CanopyMeasures& one = canopies.emplace_back(
+        measure(sheets.canopies[i], sheets.fabric, state, release && row.time > *release));
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      one.payload[axis] += origin[axis];
+      one.velocity[axis] += velocity[axis];
+    }
+    if (scene.has_fluid()) append(one.force);
+    for (const Vector& vector : {one.line_force, one.payload, one.velocity}) append(vector);
+    row.values.insert(row.values.end(), {one.projected_area, one.largest_strain, one.inversion});
+  }
+  return canopies;
+}
+
+double count_intersections(const Sheets& sheets, const std::vector<Vector>& positions) {
+  const fabric::Mesh& mesh = sheets.fabric.mesh;
+  return static_cast<double>(reference::intersections(positions, mesh.triangles, mesh.lines).size());
+}
+
+run::DatasetSpec canopy_field_spec(const Sheets& sheets, const std::string& name) {
+  const CanopyRows& first = sheets.canopies.front();
+  if (name == "position")
+    return {name,    {sheets.positions.size() - first.begin, 3}, "m", "vertex", "positions of the vertices",
+            "canopy"};
+  return {name,   {sheets.fabric.mesh.triangles.size() - first.triangles_begin},      "N/m",
+          "face", "von Mises stress of the triangles, Cauchy stress times thickness", "canopy"};
+}
+
+void write_canopy_mesh(const Sheets& sheets, run::FieldsWriter& fields) {
+  const fabric::Mesh& mesh = sheets.fabric.mesh;
+  const std::size_t bodies = sheets.canopies.front().begin;
+  const auto first = static_cast<int>(bodies);
+  const auto triangles = of_canopies(mesh.triangles, first);
+  const auto edges = of_canopies(mesh::edges_of(mesh), first), strings = of_canopies(mesh.lines, first);
+  const std::string grid = "canopy";
+  fields.add_mesh({"triangles", {triangles.size(), 3}, "1", "face", "vertices of every triangle", grid},
+                  source_of(triangles));
+  fields.add_mesh({"edges", {edges.size(), 2}, "1", "edge", "vertices of every edge and line", grid},
+                  source_of(edges));
+  fields.add_mesh(
+      {"strings", {strings.size(), 2}, "1", "edge", "vertices of every reinforcement and line", grid},
+      source_of(strings));
+  // Add `vertices` last: it completes fields.xdmf.
+  fields.add_mesh({"vertices", {mesh.rest.size() - bodies, 3}, "m", "vertex", "vertices at rest", grid},
+                  [&](std::uint64_t from, std::span<double> values) {
+                    for (std::size_t k = 0; k < values.size(); ++k)
+                      values[k] = mesh.rest[bodies + (from + k) / 3][(from + k) % 3];
+                  });
+}
+
+void copy_canopy_positions(const Sheets& sheets, std::span<const Vector> positions,
+                           std::span<double> values) {
+  const std::size_t first = sheets.canopies.front().begin;
+  for (std::size_t k = 0; k < values.size(); ++k) values[k] = positions[first + k / 3][k % 3];
+}
+
+void copy_canopy_stress(const Sheets& sheets, std::span<const fabric::Stress> stress,
+                        std::span<double> values) {
+  const std::size_t first = sheets.canopies.front().triangles_begin;
+  for (std::size_t k = 0; k < values.size(); ++k) values[k] = stress[first + k].von_mises();
+}
+
+std::string step_limit_text(const FlowScene& scene, double time) {
+  std::ostringstream text;
+  text.precision(9);
+  text << "run.max_steps = " << scene.parameters.max_steps << " reached at t = " << time
+       << " s, before run.end_time = " << scene.end_time << " s";
+  return text.str();
+}
+
+}  // namespace drogue::parachute_app

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "kernels/fabric/results.hpp"
+#include "miniapps/framework/simulation.hpp"
+#include "miniapps/parachute/canopy/canopy_state.hpp"
+#include "miniapps/parachute/scene/scene.hpp"
+
+// Canopies in history.csv and fields.h5, with or without a fluid.
+
+namespace drogue::parachute_app {
+
+/// Columns of history.csv with the measures of all canopies. Throws only std::bad_alloc.
+void append_measure_columns(const FlowScene& scene, std::vector<run::Column>& columns);
+
+/// Appends the values of these columns, and returns the measures. The frame of `state` has its origin at
+/// `origin`, m, and moves at `velocity`, m/s. Throws only std::bad_alloc.
+std::vector<CanopyMeasures> append_measures(const FlowScene& scene, const Sheets& sheets,
+                                            const SheetState& state, const fabric::Vector& origin,
+                                            const fabric::Vector& velocity, framework::HistoryRow& row);
+
+/// Number of intersections of sheets and lines with sheets. Throws only std::bad_alloc.
+[[nodiscard]] double count_intersections(const Sheets& sheets, const std::vector<fabric::Vector>& positions);
+
+/// Dataset of a field of canopies. Throws only std::bad_alloc.
+[[nodiscard]] run::DatasetSpec canopy_field_spec(const Sheets& sheets, const std::string& name);
+
+/// Writes the mesh of all canopies. Throws `Failure` (io_error).
+void write_canopy_mesh(const Sheets& sheets, run::FieldsWriter& fields);
+
+/// Values of the field `position`, m, of the vertices of canopies. Does not throw.
+void copy_canopy_positions(const Sheets& sheets, std::span<const fabric::Vector> positions,
+                           std::span<double> values);
+
+/// Values of the field `von_mises`, N/m, of the triangles of canopies. Does not throw.
+void copy_canopy_stress(const Sheets& sheets, std::span<const fabric::Stress> stress,
+                        std::span<double> values);
+
+/// Message of a run that ends at the limit of steps, at a time, s. Throws only std::bad_alloc.
+[[nodiscard]] std::string step_limit_text(const FlowScene& scene, double time);
+
+}  // namespace drogue::parachute_app

@@ -1,0 +1,81 @@
+#include "miniapps/parachute/verify/canopy_checks.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/run/history_reader.hpp"
+#include "common/run/statistics.hpp"
+#include "miniapps/parachute/verify/force_history.hpp"
+
+namespace drogue::parachute_app {
+
+void check_canopies(const Verify& wanted, const CanopyRecord& record, run::ResultDocument& result) {
+  const auto check_mean = [&](const std::string& name, double value, const Target& target) {
+    result.metrics.set("canopies", name, value);
+    result.add_check(name, relative_deviation(value, target), target.tolerance);
+  };
+  for (std::size_t i = 0; i < wanted.drags.size(); ++i) {
+    const CanopyMean& drag = wanted.drags[i];
+    check_mean("drag_" + std::to_string(i),
+               record.mean_drag(static_cast<std::size_t>(drag.canopy), drag.from, drag.to), drag.target);
+  }
+  for (std::size_t i = 0; i < wanted.terminal_speeds.size(); ++i) {
+    const CanopyMean& speed = wanted.terminal_speeds[i];
+    check_mean("terminal_speed_" + std::to_string(i),
+               record.mean_speed(static_cast<std::size_t>(speed.canopy), speed.from, speed.to), speed.target);
+  }
+  for (std::size_t i = 0; i < wanted.projected_areas.size(); ++i) {
+    const CanopyMean& area = wanted.projected_areas[i];
+    check_mean("projected_area_" + std::to_string(i),
+               record.mean_area(static_cast<std::size_t>(area.canopy), area.from, area.to), area.target);
+  }
+  // A value passes between two bounds if its distance from their mean is at most half of theirs.
+  const auto check_bounds = [&](const std::string& name, double value, const std::array<double, 2>& bounds) {
+    result.metrics.set("canopies", name, value);
+    result.add_check(name, std::abs(value - 0.5 * (bounds[0] + bounds[1])), 0.5 * (bounds[1] - bounds[0]));
+  };
+  for (std::size_t i = 0; i < wanted.peak_forces.size(); ++i) {
+    const CanopyPeak& peak = wanted.peak_forces[i];
+    const auto [force, time] = record.peak(static_cast<std::size_t>(peak.canopy));
+    const std::string name = "peak_force_" + std::to_string(i);
+    check_bounds(name, force, peak.force);
+    if (peak.time) check_bounds(name + "_time", time, *peak.time);
+  }
+  if (wanted.force_balance) result.add_check("force_balance", record.balance(), *wanted.force_balance);
+  if (wanted.intersections) result.add_check("intersections", record.intersections(), *wanted.intersections);
+}
+
+void check_oscillations(const Verify& checks, const run::RunDirectory* directory,
+                        run::ResultDocument& result) {
+  if (checks.oscillations.empty()) return;
+  const run::History history = run::read_history(directory->file("history.csv"));
+  const std::vector<double>& time = history.at("time");
+  for (std::size_t i = 0; i < checks.oscillations.size(); ++i) {
+    const Oscillation& wanted = checks.oscillations[i];
+    const std::vector<double>& place = history.at(wanted.column);
+    const auto check = [&](const std::string& name, double value, const std::optional<Target>& target) {
+      result.metrics.set("oscillations", name + "_" + std::to_string(i), value);
+      if (target)
+        result.add_check(name + "_of_oscillation_" + std::to_string(i), relative_deviation(value, *target),
+                         target->tolerance);
+    };
+    check("frequency", frequency_from(time, place, wanted.from), wanted.frequency);
+    check("amplitude", amplitude_from(time, place, wanted.from), wanted.amplitude);
+  }
+}
+
+void check_energy_drift(const Verify& wanted, const run::RunDirectory* directory,
+                        run::ResultDocument& result) {
+  if (!wanted.energy_drift) return;
+  const run::History history = run::read_history(directory->file("history.csv"));
+  const std::vector<double>&energy = history.at("energy"), &kinetic = history.at("cloth_kinetic_energy"),
+        &elastic = history.at("cloth_elastic_energy");
+  double change = 0.0, scale = 0.0;
+  for (std::size_t k = 0; k < energy.size(); ++k) {
+    change = run::maximum_or_nan(change, std::abs(energy[k] - energy[0]));
+    scale = std::max(scale, kinetic[k] + elastic[k]);
+  }
+  result.add_check("energy_drift", change == 0.0 ? 0.0 : change / scale, *wanted.energy_drift);
+}
+
+}  // namespace drogue::parachute_app
