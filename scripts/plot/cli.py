@@ -140,7 +140,7 @@ def _springs_pictures(run, options, out, save):
 def _canopy_pictures(run, options, out, save):
     from . import movie_file
     from .flow import quantities
-    from .flow.plane import plane_of
+    from .flow.plane import is_flow, plane_of
     from .parachute import canopy_figure
     from .parachute.canopies import Canopies
 
@@ -148,9 +148,8 @@ def _canopy_pictures(run, options, out, save):
     names = _validated_fields(options.field, list(known))
     moving = [quantities.movie_name(names or list(known))] if known else []
     # Canopies are symmetric to the plane across y, through which an angled one turns.
-    view = canopy_figure.View(
-        Canopies(run), plane_of(run, options.slice or "y"), [known[name] for name in names or moving]
-    )
+    plane = plane_of(run, options.slice or "y") if is_flow(run) else None
+    view = canopy_figure.View(Canopies(run), plane, [known[name] for name in names or moving])
     yield save(canopy_figure.canopy_figure(view, _chosen_snapshot(run, options)), "fields", few_colours=False)
     if len(run.snapshots) >= 2 and options.movie != "none":
         view.quantities = [known[name] for name in moving]
@@ -202,6 +201,7 @@ def draw(options: argparse.Namespace):
     from .flow.history_figure import flow_history_figure
     from .flow.plane import is_flow, plane_of
     from .flow.quantities import quantities
+    from .parachute.canopies import has_canopies
     from .parachute.canopies_history import canopies_history_figure
     from .parachute.forces_history import forces_history_figure
     from .run_directory import read_run
@@ -229,9 +229,16 @@ def draw(options: argparse.Namespace):
         yield from _flow_pictures(run, options, out, save)
     elif run.snapshots and "x" in run.mesh:
         yield from _gas_pictures(run, options, out, save)
+    elif run.snapshots and has_canopies(run):
+        yield from _canopy_pictures(run, options, out, save)
     if run.snapshots and "vertices" in run.mesh:
         yield from _springs_pictures(run, options, out, save)
-    by_column = {"kinetic": springs_history_figure, "kinetic_energy": flow_history_figure}
+    # canopies_history_figure shows all of a cloth drop.
+    by_column = {
+        "kinetic": springs_history_figure,
+        "kinetic_energy": flow_history_figure,
+        "potential_energy": lambda _: None,
+    }
     draw_history = next((draw for name, draw in by_column.items() if name in run.history), history_figure)
     if (figure := draw_history(run)) is not None:
         yield save(figure, "history")

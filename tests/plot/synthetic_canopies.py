@@ -93,6 +93,21 @@ def write_canopies(folder, fields=("velocity", "position", "von_mises"), payload
     return folder
 
 
+def write_cloth_drop(folder):
+    """Writes a run of such a cone without a fluid; returns its path."""
+    write_canopies(folder, ("position", "von_mises"))
+    (folder / "scene.toml").write_text('app = "parachute"\n' + CANOPY)
+    columns = {name: values for name, values in canopy_columns(0, 1.0).items() if not name.startswith("canopy_0_force")}
+    write_history(folder / "history.csv", {
+        "time [s]": [0.0, 1.0, 2.0], **columns, "cloth_kinetic_energy [J]": [0.0, 1.0, 2.0],
+        "cloth_elastic_energy [J]": [0.0, 4.0, 3.0], "potential_energy [J]": [9.0, 4.0, 4.0], "energy [J]": [9.0] * 3,
+    })  # fmt: skip
+    with h5py.File(folder / "fields.h5", "a") as h5:
+        for axis in "xyz":
+            del h5[f"mesh/{axis}"]
+    return folder
+
+
 def write_bodies(folder):
     """Writes a history of forces on a cylinder (mean 3 N along x from 2 s on) and on a sphere; returns its path.
 

@@ -19,7 +19,7 @@ from plot.parachute.canopy_figure import CanopyFigure, View, canopy_figure
 from plot.parachute.forces_history import forces_history_figure, mean_from
 from plot.parachute.time_figure import Panel
 from plot.run_directory import read_run
-from synthetic_canopies import GORES, write_bodies, write_canopies
+from synthetic_canopies import GORES, write_bodies, write_canopies, write_cloth_drop
 
 assert packages.SOURCE
 
@@ -69,6 +69,18 @@ class CanopyPictures(unittest.TestCase):
                 self.assertEqual({"fields.png", "fields.gif", "history.png", "canopies.png"}, names)
                 with Image.open(run / "fields.gif") as movie:
                     self.assertEqual(3, movie.n_frames)
+
+    def test_cloth_drop_is_drawn_without_a_flow(self):
+        folder = write_cloth_drop(self.folder / "drop")
+        self.assertEqual(0, cli.main([str(folder), "--quiet", "--dpi", "40"]))
+        self.assertEqual({"fields.png", "fields.gif", "canopies.png"},
+                         {file.name for file in folder.iterdir() if file.suffix in (".png", ".gif")})  # fmt: skip
+        run = read_run(folder)
+        self.assert_no_text_overlaps_or_leaves(canopy_figure(View(Canopies(run), None, []), run.snapshots[-1]))
+        figure = canopies_history_figure(run)
+        energies = {tuple(line.get_ydata()) for line in panel_of(figure, "energy").lines}
+        self.assertIn((0.0, -5.0, -5.0), energies)  # potential
+        self.assertFalse([axes for axes in figure.axes if "drag" in axes.get_title(loc="left")])
 
     def test_cloth_without_positions_is_drawn_as_flow(self):
         run = read_run(write_canopies(self.folder / "run", ("velocity", "von_mises")))

@@ -80,19 +80,25 @@ def _panels(run: Run) -> list[Panel]:
         Band(tuple(check.get("time", history("time")[[0, -1]])), tuple(check["force"]))
         for check in run.scene.get("verify", {}).get("peak_force", [])
     ]
-    panels = [
-        Panel(
-            "force of the air along z, and of the lines on the payload (N)",
-            of_all("air", lambda canopy: history(f"canopy_{canopy}_force_z"))
-            | of_all("lines", lambda canopy: np.linalg.norm(_vector(run, canopy, "line_force"), axis=1)),
-            peaks,
-            dashed=frozenset(label("lines", canopy) for canopy in canopies),
-        ),
-        Panel(
-            "drag coefficient",
-            of_all("", lambda canopy: drag_coefficient(run, canopy)),
-            _checks(run, "drag"),
-        ),
+    has_fluid = "fluid" in run.scene
+    line_forces = of_all("lines", lambda canopy: np.linalg.norm(_vector(run, canopy, "line_force"), axis=1))
+    if has_fluid:
+        panels = [
+            Panel(
+                "force of the air along z, and of the lines on the payload (N)",
+                of_all("air", lambda canopy: history(f"canopy_{canopy}_force_z")) | line_forces,
+                peaks,
+                dashed=frozenset(label("lines", canopy) for canopy in canopies),
+            ),
+            Panel(
+                "drag coefficient",
+                of_all("", lambda canopy: drag_coefficient(run, canopy)),
+                _checks(run, "drag"),
+            ),
+        ]
+    else:
+        panels = [Panel("force of the lines on the payload (N)", line_forces, peaks)]
+    panels += [
         Panel(
             style.axis_label("projected area", "m^2"),
             of_all("", lambda canopy: history(f"canopy_{canopy}_projected_area")),
@@ -111,7 +117,11 @@ def _panels(run: Run) -> list[Panel]:
             Panel(
                 "speed of the payload (m/s)",
                 {label("of the payload", k): np.linalg.norm(_vector(run, k, "payload_velocity"), axis=1) for k in free}
-                | {label("in the stream", k): np.linalg.norm(relative_velocity(run, k), axis=1) for k in free},
+                | {
+                    label("in the stream", k): np.linalg.norm(relative_velocity(run, k), axis=1)
+                    for k in free
+                    if has_fluid
+                },
                 _checks(run, "terminal_speed"),
             ),
             Panel(
@@ -119,6 +129,8 @@ def _panels(run: Run) -> list[Panel]:
             ),
         ]
     energies = {"kinetic": history("cloth_kinetic_energy"), "elastic": history("cloth_elastic_energy")}
+    if "potential_energy" in run.history:
+        energies["potential"] = history("potential_energy") - history("potential_energy")[0]
     return [*panels, Panel("energy of cloth, lines and payloads (J)", energies)]
 
 

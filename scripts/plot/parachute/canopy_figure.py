@@ -27,16 +27,17 @@ _LINE, _CUT = "#4A4A4A", "#D55E00"
 _HEIGHT, _LONG = 4.4, 4.4
 _LEFT, _KEY, _KEY_GAP, _KEY_LABELS, _CLOTH_LEFT = 0.62, 0.11, 0.08, 0.62, 0.15
 _ABOVE, _BELOW, _HEADING = 0.3, 0.45, 0.55
+_KEY_TITLE = 0.7  # of the words above the key of the stress, beyond its labels
 # Shown flow beside and behind the canopies, relative to their size.
 _BESIDE, _BEHIND = 0.3, 1.0
 
 
 @dataclass
 class View:
-    """Canopies, and quantities of the flow in a plane beside them."""
+    """Canopies, and quantities of the flow in a plane beside them; no plane and no quantities without a flow."""
 
     canopies: Canopies
-    plane: Plane
+    plane: Plane | None
     quantities: list[Quantity]
     projection: np.ndarray = field(init=False)
 
@@ -84,10 +85,12 @@ class CanopyFigure:
 
     def __init__(self, view: View, snapshots: list[Snapshot], colours: Colours = Colours()):
         self._view, self._colours = view, colours
-        window = view.window(snapshots)
-        shape = (window[1] - window[0], window[3] - window[2])
-        scale = min(_HEIGHT / shape[1], _LONG / shape[0])
-        self._panel = (scale * shape[0], scale * shape[1])
+        self._panel = (0.0, 0.0)
+        if view.quantities:
+            window = view.window(snapshots)
+            shape = (window[1] - window[0], window[3] - window[2])
+            scale = min(_HEIGHT / shape[1], _LONG / shape[0])
+            self._panel = (scale * shape[0], scale * shape[1])
         low, high = self._cloth_range(snapshots)
         cloth_height = max(self._panel[1], 0.75 * _HEIGHT) if view.quantities else _HEIGHT
         cloth_scale = min(cloth_height / (high[1] - low[1]), _LONG / (high[0] - low[0]))
@@ -95,6 +98,8 @@ class CanopyFigure:
         has_stress = view.canopies.stress_units is not None
         cloth_cell = _CLOTH_LEFT + cloth_width + (_KEY_GAP + _KEY + _KEY_LABELS if has_stress else 0.1)
         cell = _LEFT + self._panel[0] + _KEY_GAP + _KEY + _KEY_LABELS
+        if has_stress and not view.quantities:
+            cloth_cell += _KEY_TITLE  # beyond the labels; beside a slice, there is room
         size = (cloth_cell + cell * len(view.quantities), _HEADING + _ABOVE + cloth_height + _BELOW)
         self.figure = plt.figure(figsize=size, dpi=_DPI)
         caption = max((view.caption(snapshot) for snapshot in snapshots), key=len)
@@ -162,8 +167,9 @@ class CanopyFigure:
         """Replaces the drawn data by those of a snapshot."""
         canopies = self._view.canopies
         self._show_cloth(snapshot)
-        positions, across = canopies.positions(snapshot), list(self._view.plane.across)
+        positions = canopies.positions(snapshot)
         for quantity, image, lines, cut, payloads in self._slices:
+            across = list(self._view.plane.across)
             image.set_data(self._view.plane.cut(quantity.values(snapshot)))
             lines.set_segments(positions[canopies.lines][..., across])
             cut.set_segments(canopies.section(snapshot, self._view.plane.normal, self._view.place)[..., across])
