@@ -204,7 +204,7 @@ void declare_coupling(Table& table, coupling::SheetParameters& coupling) {
       "imposes its velocity, as in [Shi]; or pressure jumps between the cells that a body separates");
   table
       .value("filter", scene::real_codec(coupling.filter),
-             "Weight of the present step in the running mean of the acceleration of the fluid at bodies")
+             "Weight of the present step in the running mean of the acceleration of the fluid at sheets")
       .range(0.0, 1.0);
 }
 
