@@ -95,14 +95,17 @@ class FlowSolver {
   /// throw.
   [[nodiscard]] const Values& force() const { return _force; }
 
-  // For a coupling that enqueues other kernels between steps. Asynchronous, without a bound on the steps in
-  // flight, and on one rank alone.
+  // For a coupling that enqueues other kernels between steps. Asynchronous on one rank, without a bound on
+  // the steps in flight; collective and blocking on several.
 
-  /// Enqueues the beginning of an advance to the time `target`, s. Throws std::logic_error on several ranks.
+  /// Enqueues the beginning of an advance to the time `target`, s. Throws only after a failed launch.
   void enqueue_begin(double target);
   /// Enqueues a step, which does nothing if the last advance has reached its target or failed. Throws only
   /// after a failed launch.
   void enqueue_step();
+  /// Enqueues the end of an advance, after its last step: the ghost cells of other ranks. Throws only after a
+  /// failed launch.
+  void enqueue_end();
   /// Sets a constant dt, s, > 0, from the next `enqueue_begin` on. Does not throw.
   void set_fixed_dt(double dt);
   /// Lets a run continue that failed because its fixed dt exceeded the largest stable one. Call it before
@@ -115,8 +118,8 @@ class FlowSolver {
   /// Sets the frame of reference of the velocities in the state, m/s, without changing them. Blocks. Throws
   /// as `change_frame` does.
   void set_frame(const std::array<double, 3>& velocity);
-  /// Throws std::invalid_argument if the grid cannot move along the marked axes: on several ranks, along axes
-  /// of one cell, towards walls or slip sides, and with sides whose velocity is an expression.
+  /// Throws std::invalid_argument if the grid cannot move along the marked axes: along axes of one cell,
+  /// towards walls or slip sides, and with sides whose velocity is an expression.
   void check_frame(const std::array<bool, 3>& axes) const;
   /// Largest dt, s, that the CFL condition and `Parameters::max_dt` admit at this progress; infinite without
   /// a bound, NaN without a finite velocity. Does not throw.
@@ -643,7 +646,6 @@ Stop FlowSolver<ExecutionSpace>::advance(double target, std::int64_t pause_step,
 
 template <class ExecutionSpace>
 void FlowSolver<ExecutionSpace>::enqueue_begin(double target) {
-  if (_halo) throw std::logic_error("flow solver: steps on several ranks wait for the host");
   Steps{*this}.begin({target}, -1);
   _loop.count_launch();
 }
@@ -652,6 +654,11 @@ template <class ExecutionSpace>
 void FlowSolver<ExecutionSpace>::enqueue_step() {
   Steps{*this}.enqueue(0, 1);
   _loop.count_launch();
+}
+
+template <class ExecutionSpace>
+void FlowSolver<ExecutionSpace>::enqueue_end() {
+  finish_ghosts(space(), _velocity);
 }
 
 template <class ExecutionSpace>
@@ -670,7 +677,6 @@ void FlowSolver<ExecutionSpace>::set_fixed_dt(double dt) {
 
 template <class ExecutionSpace>
 void FlowSolver<ExecutionSpace>::check_frame(const std::array<bool, 3>& axes) const {
-  if (_halo) throw std::invalid_argument("flow solver: a moving frame needs all cells on one rank");
   for (std::size_t side = 0; side < 6; ++side) {
     const Boundary& boundary = _parameters.boundary[side];
     if (!boundary.velocity_expressions.empty())
@@ -694,6 +700,7 @@ void FlowSolver<ExecutionSpace>::set_frame(const std::array<double, 3>& velocity
   }
   _launcher.discard_graphs();  // they hold the conditions
   begin_ghosts(space(), _velocity);
+  finish_ghosts(space(), _velocity);
   space().fence("drogue::flow::set_frame");
 }
 
@@ -729,7 +736,7 @@ void FlowSolver<ExecutionSpace>::forget_long_step() {
 /// Step loop of several ranks: step by step, so that all take the same steps.
 template <class ExecutionSpace>
 Stop FlowSolver<ExecutionSpace>::advance_together(const stepping::AdvanceRequest& request, const Poll& poll) {
-  const auto goes_on = [&] { return _halo->all(!poll || poll(_loop.status())); };
+  const auto goes_on = [&] { return _halo->group().all(!poll || poll(_loop.status())); };
   if (!goes_on()) return Stop::interrupted;
   Steps steps{*this};
   steps.begin(request, -1);

@@ -87,6 +87,10 @@ struct CheckClothFunctor {
 /// Steps of a block have the same dt, which the host chooses from the present speed of the air and frequency
 /// of the cloth: within a block, no step waits for the host, copies to it or allocates. A block ends early
 /// where the air has become too fast for its dt.
+///
+/// On a group of several ranks each holds a box of the cells and the whole cloth, with the same bits.
+/// Functions are then collective, except those that only return values of the cloth, and every step waits for
+/// the host.
 template <class ExecutionSpace>
 class CoupledSolver {
  public:
@@ -97,13 +101,16 @@ class CoupledSolver {
   static constexpr std::int64_t block_steps = 16;
 
   /// Fluid at rest and cloth at rest in its mesh; set other states by `flow` and `fabric`, then call `start`.
-  /// `instance` must outlive the solver. Blocks. Throws std::invalid_argument for parameters out of range.
-  CoupledSolver(const device::Instance<ExecutionSpace>& instance, const Parameters& parameters)
+  /// `instance` must outlive the solver. Each rank gives the same parameters. Blocks. Throws
+  /// std::invalid_argument for parameters out of range, and as the constructor of FlowSolver does.
+  CoupledSolver(const device::Instance<ExecutionSpace>& instance, const Parameters& parameters,
+                const linear::RankGroup& group = {})
       : _space(instance.space()),
         _parameters(completed(parameters)),
-        _flow(instance, _parameters.flow),
+        _group(group),
+        _flow(instance, _parameters.flow, group),
         _sheet(_space, flow::coupling_grid(_flow.grid()), _parameters.fabric, _parameters.sheet,
-               _parameters.flow.density),
+               _parameters.flow.density, group, flow::face_window(_flow.grid())),
         _fabric(_space, _parameters.fabric, _sheet.relaxation()),
         _reason("drogue::coupling::failure_reason"),
         _saved_step("drogue::coupling::saved_step"),
@@ -138,7 +145,10 @@ class CoupledSolver {
   [[nodiscard]] FailureReason failure_reason();
   [[nodiscard]] int failed_line();
   [[nodiscard]] std::array<double, 3> total_force_on_air() const {
-    return _total_force(_space, flow::face_views<ExecutionSpace>(_flow.grid(), _flow.force()));
+    std::array<double, 3> force =
+        _total_force(_space, flow::face_views<ExecutionSpace>(_flow.grid(), _flow.force()));
+    _group.sum(force);
+    return force;
   }
 
  private:
@@ -172,6 +182,7 @@ class CoupledSolver {
 
   ExecutionSpace _space;
   Parameters _parameters;
+  linear::RankGroup _group;
   Flow _flow;
   ImmersedSheet<ExecutionSpace> _sheet;
   Fabric _fabric;
@@ -280,7 +291,7 @@ flow::Stop CoupledSolver<ExecutionSpace>::advance(double last_target, std::int64
       _flow.forget_long_step();
       plan_block(now, target);
     }
-    if (poll && !poll(_flow.status())) return flow::Stop::interrupted;
+    if (!_group.all(!poll || poll(_flow.status()))) return flow::Stop::interrupted;
     if (now.step >= _block.end) {
       if (_frame.follows()) move_frame(now);
       plan_block(_frame.follows() ? _flow.progress() : now, target);
@@ -295,6 +306,7 @@ flow::Stop CoupledSolver<ExecutionSpace>::advance(double last_target, std::int64
     _flow.enqueue_begin(target);
     for (std::int64_t k = 0; k < steps; ++k) enqueue_step(dt, now.step + k == 0);
     _block.cloth_step = _fabric.time_state().step;
+    _flow.enqueue_end();
   }
 }
 

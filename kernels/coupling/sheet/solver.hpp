@@ -53,6 +53,10 @@ struct FrameMotion {
 /// velocities and positions are relative to a moving frame. Call `upload_cloth` and `upload`,
 /// then `start`; or restore all arrays of both, then `restore`. After a failed step, the state of both is
 /// that before the step of the flow.
+///
+/// On a group of several ranks each holds a part of the cells, as those of `flow::create_solver`, and the
+/// whole cloth, which is the same on all: each rank gives the same positions, velocities and accelerations,
+/// and reads those of all vertices.
 class Solver : public flow::Solver {
  public:
   /// Sets positions, m, and velocities, m/s, of all vertices. Throws std::invalid_argument for values that
@@ -126,6 +130,10 @@ class Solver : public flow::Solver {
 
 /// Solver on a backend, which must be available. Blocks. Throws std::invalid_argument for parameters out of
 /// range, and std::bad_alloc if memory runs out.
-[[nodiscard]] std::unique_ptr<Solver> create_solver(device::Backend backend, const Parameters& parameters);
+///
+/// On a group of several ranks `total_force_on_air` and `set_frame` are collective, as are the functions of
+/// the flow; `create_solver` throws std::invalid_argument also if the ranks cannot share the grid.
+[[nodiscard]] std::unique_ptr<Solver> create_solver(device::Backend backend, const Parameters& parameters,
+                                                    const linear::RankGroup& group = {});
 
 }  // namespace drogue::coupling

@@ -90,10 +90,12 @@ Simulation::Simulation(const FlowScene& scene, const framework::SimulationSettin
                               scene.parameters.viscosity)),
       _record(scene) {
   if (settings.communicator != nullptr) {
-    if (scene.has_sheets())
-      throw Failure(ExitCode::usage, "scenes with a [[body]] or a [[canopy]] run on one rank");
-    auto shared = std::make_unique<SharedSolver>(*settings.communicator, settings.backend, scene.parameters);
+    if (scene.has_sheets() && scene.coupling.method == coupling::CouplingMethod::sharp)
+      throw Failure(ExitCode::usage, "coupling.method = \"sharp\" works on one rank");
+    auto shared = std::make_unique<SharedSolver>(*settings.communicator, settings.backend,
+                                                 coupled_parameters(scene, _sheets));
     _shared = shared.get();
+    if (scene.has_sheets()) _coupled = shared.get();
     _solver = std::move(shared);
   } else if (scene.has_sheets()) {
     auto coupled = coupling::create_solver(settings.backend, coupled_parameters(scene, _sheets));
@@ -227,7 +229,13 @@ framework::FieldsTask Simulation::snapshot() {
     return [this](run::FieldsWriter& fields) {
       const std::string file = std::filesystem::absolute(fields.file()).string();
       for (const std::string& name : _scene.output.fields)
-        _shared->write(cell_field(name), fields.offset(name), file);
+        if (is_canopy_field(name)) {
+          std::vector<double> values(run::entries(canopy_field_spec(name)));
+          sample_canopy_field(name, values);
+          fields.write("canopy/" + name, 0, values);
+        } else {
+          _shared->write(cell_field(name), fields.offset(name), file);
+        }
     };
   const Snapshot& filled = _snapshots[_next_snapshot];
   sample_fields(_snapshots[_next_snapshot]);
