@@ -184,6 +184,11 @@ class FlowSolver {
   [[nodiscard]] ProjectionSetup<ExecutionSpace> projection_setup(double fraction) const;
   void enqueue_pressure(const ExecutionSpace& space, const ProjectionSetup<ExecutionSpace>& setup) const;
   void enqueue_projection(const ExecutionSpace& space, const ProjectionSetup<ExecutionSpace>& setup) const;
+  /// Where the pressures of other ranks arrive; leaves null pointers on one rank.
+  void copy_pressure_below(const double* (&pressure_below)[3]) const {
+    if (!_halo) return;
+    for (std::size_t axis = 0; axis < 3; ++axis) pressure_below[axis] = _halo->pressure_below(axis);
+  }
   /// Solution of the pressure equation: the pressure, or its increment.
   [[nodiscard]] const Values& unknown() const { return _diffusion ? _pressure_increment : _divergence; }
   [[nodiscard]] double kinematic_viscosity() const { return _parameters.viscosity / _parameters.density; }
@@ -211,7 +216,7 @@ class FlowSolver {
   TotalsView<ExecutionSpace> _column_totals, _plane_totals;
   Values _outflow_rows;
   ControlView<ExecutionSpace> _control;
-  std::optional<ImplicitDiffusion<ExecutionSpace>> _diffusion;  ///< Crank-Nicolson only
+  mutable std::optional<ImplicitDiffusion<ExecutionSpace>> _diffusion;  ///< Crank-Nicolson only
   mutable std::optional<Poisson> _poisson;  ///< an iterative solver keeps its last solution and residual
   /// False if the last solve was not that of the last step.
   mutable bool _last_solution_is_pressure = false;
@@ -259,7 +264,7 @@ FlowSolver<ExecutionSpace>::FlowSolver(const device::Instance<ExecutionSpace>& i
   const bool is_implicit = parameters.diffusion == Diffusion::crank_nicolson;
   if (is_implicit) {
     _pressure_increment = Values("drogue::flow::pressure_increment", cells);
-    _diffusion.emplace(space(), parameters);
+    _diffusion.emplace(space(), parameters, group, _ranks);
   }
   const auto nx = static_cast<std::size_t>(_grid.n[0]), columns = nx * static_cast<std::size_t>(_grid.n[1]);
   if (_predicted.size() >= total_count * columns)
@@ -867,11 +872,13 @@ void FlowSolver<ExecutionSpace>::enqueue_stage(const ExecutionSpace& space,
                                                double time_fraction) const {
   if (setup.stage.data() != _velocity.data()) enqueue_eddy_viscosity(space, setup.stage);
   enqueue_rates(space, setup, time_fraction);
-  if (_diffusion)
-    _diffusion->enqueue(
-        space,
-        {_grid, _boundary.conditions(), _velocity, _predicted, _pressure, _control, kinematic_viscosity()},
-        _divergence, _pressure_increment);
+  if (_diffusion) {
+    DiffusionSetup<ExecutionSpace> diffusion{
+        _grid, _boundary.conditions(), _velocity, _predicted, _pressure, _control, kinematic_viscosity(), {}};
+    if (_halo) _halo->exchange_pressure(space, _pressure);
+    copy_pressure_below(diffusion.pressure_below);
+    _diffusion->enqueue(space, diffusion, _divergence, _pressure_increment);
+  }
   ProjectionSetup<ExecutionSpace> projection = projection_setup(fraction);
   projection.velocity = result;
   if (result.data() == _velocity.data()) {
@@ -891,8 +898,7 @@ ProjectionSetup<ExecutionSpace> FlowSolver<ExecutionSpace>::projection_setup(dou
                                         _control,    kinematic_viscosity(),
                                         fraction,    _boundary.has_outflow(),
                                         false,       {}};
-  if (_halo)
-    for (std::size_t axis = 0; axis < 3; ++axis) setup.pressure_below[axis] = _halo->pressure_below(axis);
+  copy_pressure_below(setup.pressure_below);
   return setup;
 }
 
