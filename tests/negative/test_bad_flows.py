@@ -75,9 +75,14 @@ class BadFlows(parachute_program.FlowTest):
         sheet = bad_canopies.GOOD.replace('[[canopy]]\nkind = "flat-circular"\ndiameter = 1.2\ngores = 8\nedge', '[[canopy]]\nkind = "sheet"\ndiameter = 1.2\ngores = 8\nedge')
         sheet = sheet.replace("centre = [1, 0, 0]\nlines = { length = 1.1 }\n", "centre = [1, 0, 0]\n")
         self.scene.write_text(sheet, encoding="utf-8")
-        self.assertIn("verify.peak_force[0].canopy: this canopy is a sheet", self.refusal())
+        self.assertIn("verify.peak_force[0].canopy: this canopy has no lines", self.refusal())
         self.scene.write_text(sheet.replace("[{ canopy = 1, force", "[{ canopy = 0, force"), encoding="utf-8")
         self.expect(0, self.scene, "--check")
+
+    def test_rejects_invalid_drums(self):
+        self.scene.write_text(bad_canopies.DRUM, encoding="utf-8")
+        self.expect(0, self.scene, "--check")
+        self.assert_lines_are_rejected(bad_canopies.DRUM, bad_canopies.BAD_DRUM_LINES)
 
     def test_rejects_canopies_on_a_plane(self):
         self.scene.write_text(bad_canopies.GOOD.replace("cells = [40, 20, 24]", "cells = [40, 1, 24]"), encoding="utf-8")

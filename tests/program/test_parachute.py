@@ -20,6 +20,7 @@ sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/negative")
 
 import bad_bodies
+import bad_canopies
 import gas_program
 import parachute_program
 from parachute_program import CANOPY, GUST, PLATE, VORTICES
@@ -705,6 +706,19 @@ class Canopies(parachute_program.FlowTest):
         self.assertGreater(min(rows["canopy_0_payload_velocity_z"]), -3)
         self.assertLess(rows["canopy_0_payload_z"][-1], 0.2)
         self.assertGreater(rows["canopy_0_payload_z"][-1], -0.3)
+
+    def test_drum_in_thin_air_has_the_frequency_of_its_tension(self):
+        """The first zero of J0 times sqrt(T / mass per area) over the circumference, with air of little mass."""
+        exact = 2.404826 / (2 * math.pi * 0.5) * math.sqrt(100 / 0.2)
+        sets = ["fluid.density=1e-5", f"verify.oscillation[0].frequency={{value={exact},tolerance=0.01}}"]
+        self.expect(0, self.write(bad_canopies.DRUM), *QUIET, sets=sets)
+        rows = self.history("out")
+        self.assertLess(max(rows["force_balance"]), 1e-13)
+        # The energy of this mode moves to and fro; the rim stays where it is.
+        self.assertAlmostEqual(rows["canopy_0_payload_z"][0], max(rows["canopy_0_payload_z"]), delta=1e-5)
+        self.assertAlmostEqual(-rows["canopy_0_payload_z"][0], min(rows["canopy_0_payload_z"]), delta=1e-5)
+        sets[1] = sets[1].replace("0.01", "1e-6")
+        self.expect(5, self.write(bad_canopies.DRUM), *QUIET, "--overwrite", sets=sets)
 
     def test_backends_agree_until_the_cloth_buckles(self):
         for backend in ("serial", gas_program.threaded()):

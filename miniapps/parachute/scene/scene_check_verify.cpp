@@ -165,7 +165,7 @@ void check_canopy_checks(const Table& root, const FlowScene& scene) {
     const std::string path = "verify.peak_force[" + std::to_string(i) + "]";
     check_canopy_number(root, scene, path, verify.peak_forces[i].canopy);
     if (!scene.canopies[static_cast<std::size_t>(verify.peak_forces[i].canopy)].has_lines())
-      contradict(root, path + ".canopy", path + ".canopy: this canopy is a sheet, which has no lines");
+      contradict(root, path + ".canopy", path + ".canopy: this canopy has no lines");
     if (const auto& time = verify.peak_forces[i].time; time && !((*time)[0] < (*time)[1]))
       contradict(root, path + ".time", path + ".time: the first number must be the smaller");
     require_rows(root, scene, path);
