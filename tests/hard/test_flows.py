@@ -14,7 +14,7 @@ import parachute_program
 # Small grids with thousands of steps: threads cost more than they save.
 MANY_SMALL_STEPS = {
     "cavity", "cavity-1000", "channel", "oscillating-plate", "cylinder", "sphere-300", "disk-normal", "cup", "cup-reversed", "sphere-drop",
-    "piston", "membrane-drum-in-air",
+    "piston", "membrane-drum-in-air", "flag",
 }  # fmt: skip
 
 # They are in test_parachutes_long.py.

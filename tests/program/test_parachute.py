@@ -21,6 +21,7 @@ sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/negative")
 
 import bad_bodies
 import bad_canopies
+import bad_flags
 import gas_program
 import parachute_program
 from parachute_program import CANOPY, GUST, PLATE, VORTICES
@@ -726,6 +727,37 @@ class Canopies(parachute_program.FlowTest):
                         sets=["run.end_time=0.025", "output.times=[0.025]"])
             last = self.history(backend)["canopy_0_line_force_z"][-1]
             self.assertAlmostEqual(1.0, last / self.history("serial")["canopy_0_line_force_z"][-1], delta=1e-6)
+
+
+class Flags(parachute_program.FlowTest):
+    def test_hinged_strip_in_thin_fluid_bends_with_its_frequency(self):
+        """A flag that falls from the horizontal in fluid at rest of little mass is a physical pendulum of its length."""
+        pendulum = bad_flags.GOOD.replace("density = 1\n", "density = 1e-6\n", 1).replace("viscosity = 0.005", "viscosity = 0").replace(
+            "velocity = [1, 0, 0]", "velocity = [0, 0, 0]").replace("angle = 18", "angle = 6").replace("bending_stiffness = 0.0015", "bending_stiffness = 2")
+        # A rod: sqrt(3 g / (2 l)) / (2 pi), and its amplitude of sin(6 degrees) lengths.
+        exact = math.sqrt(3 * 0.5 / 2) / (2 * math.pi)
+        sets = ["run={end_time=26,max_dt=0.04}", "verify={oscillation=[{column='flag_0_tip_y',"
+                f"frequency={{value={exact},tolerance=3e-3}},amplitude={{value={math.sin(math.radians(6))},tolerance=3e-2}}}}]}}"]
+        self.expect(0, self.write(pendulum), *QUIET, sets=sets)
+        self.expect(5, self.write(pendulum), *QUIET, "--overwrite", sets=[sets[0], sets[1].replace("3e-3", "1e-7")])
+
+    def test_forces_on_a_flag_stretch_it_downstream_and_a_run_continues(self):
+        sets = ["run.end_time=1", "output={history_every=1,times=[0.5],fields=['velocity'],restart_every=10}", "verify={}"]
+        scene = self.write(bad_flags.GOOD)
+        self.expect(0, scene, *QUIET, sets=sets)
+        rows = self.history("out")
+        self.assertGreater(rows["flag_0_force_x"][-1], 0.0)
+        self.assertLess(max(rows["flag_0_tip_x"]), 0.01 + 1.02)  # hardly longer than at rest
+        half = self.folder / "half"
+        self.expect(0, scene, "--quiet", "--backend", "serial", "--out", half, sets=[*sets, "run.end_time=0.5"])
+        self.expect(0, scene, "--quiet", "--backend", "serial", "--out", half, "--restart", half / "restart.h5", sets=sets)
+        for name in ("flag_0_tip_y", "flag_0_force_y", "kinetic_energy"):
+            self.assertEqual(rows[name][-1], self.history("half")[name][-1], name)
+
+    def test_flag_that_leaves_the_domain_ends_the_run(self):
+        run = self.expect(4, self.write(bad_flags.GOOD), *QUIET, sets=[
+            "fluid.velocity=[0, 0, 0]", "coupling.gravity=[0, 5, 0]", "flag[0].leading_edge=[0.01, 0.6]", "flag[0].angle=0", "verify={}"])
+        self.assertIn("flag[0] leaves the domain: a vertex at (", run.stderr)
 
 
 class Restart(parachute_program.FlowTest):

@@ -399,7 +399,7 @@ void append_canopy(const Canopy& canopy, const coupling::PorousLaw& law, Sheets&
 }  // namespace
 
 Sheets make_all_sheets(const std::vector<Body>& bodies, const std::vector<Canopy>& canopies, double density,
-                       double viscosity) {
+                       double viscosity, const std::vector<Flag>& flags) {
   Sheets sheets;
   sheets.fabric = make_sheets(bodies);
   fabric::Parameters& p = sheets.fabric;
@@ -413,6 +413,10 @@ Sheets make_all_sheets(const std::vector<Body>& bodies, const std::vector<Canopy
   set_offsets(bodies, sheets.positions);
   for (const Canopy& canopy : canopies)
     append_canopy(canopy, law_of(canopy.porosity, density, viscosity), sheets);
+  sheets.flags = append_flags(flags, p, sheets.positions);
+  coupling::PorousLaw of_flags;
+  of_flags.impermeable = of_flags.no_slip = true;
+  sheets.laws.resize(sheets.positions.size(), of_flags);
   return sheets;
 }
 

@@ -7,6 +7,7 @@
 
 #include "kernels/fabric/parameters.hpp"
 #include "miniapps/parachute/bodies/body.hpp"
+#include "miniapps/parachute/flags/flag.hpp"
 
 namespace drogue::parachute_app {
 
@@ -149,6 +150,7 @@ struct Sheets {
   std::vector<fabric::Vector> positions;  ///< at the start, m
   std::vector<coupling::PorousLaw> laws;  ///< one per vertex
   std::vector<CanopyRows> canopies;
+  std::vector<FlagRows> flags;
   std::vector<coupling::LineCut> cuts;  ///< of reefing lines, and of lines to payloads
   std::vector<double> line_strength;    ///< N, of every line of the mesh; infinite: no limit
 };
@@ -168,9 +170,9 @@ void place_at_shared_payloads(std::vector<Canopy>& canopies);
 /// Throws std::invalid_argument for parameters out of range.
 [[nodiscard]] CanopyMesh make_canopy(const Canopy& canopy);
 
-/// The bodies, then the canopies, in a fluid of given density, kg/m^3, and viscosity, Pa s. Throws
-/// std::invalid_argument for parameters out of range.
+/// The bodies, then the canopies, then the flags, in a fluid of given density, kg/m^3, and viscosity, Pa s.
+/// Throws std::invalid_argument for parameters out of range.
 [[nodiscard]] Sheets make_all_sheets(const std::vector<Body>& bodies, const std::vector<Canopy>& canopies,
-                                     double density, double viscosity);
+                                     double density, double viscosity, const std::vector<Flag>& flags = {});
 
 }  // namespace drogue::parachute_app
