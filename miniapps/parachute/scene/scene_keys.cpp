@@ -2,6 +2,7 @@
 
 #include "miniapps/parachute/bodies/body_keys.hpp"
 #include "miniapps/parachute/canopy/canopy_keys.hpp"
+#include "miniapps/parachute/flags/flag_keys.hpp"
 #include "miniapps/parachute/scene/codecs.hpp"
 
 namespace drogue::parachute_app {
@@ -178,6 +179,8 @@ void declare_flow_scene(Table& root, FlowScene& scene) {
   root.table(
       "flow", [&](Table& table) { declare_flow(table, scene); }, "The numerical scheme and the forces");
   root.tables("canopy", scene.canopies, declare_canopy, "Parachutes: cloth, suspension lines and a payload");
+  root.tables("flag", scene.flags, declare_flag,
+              "Elastic strips in two dimensions, hinged at their leading edge");
   root.tables("body", scene.bodies, declare_body,
               "Rigid sheets in the flow, at rest or in prescribed motion");
   root.table(
@@ -189,9 +192,11 @@ void declare_flow_scene(Table& root, FlowScene& scene) {
                     "allow_unstable", scene::boolean_codec(scene.allow_unstable),
                     "Run with canopies whose added mass exceeds their own, which the method is unstable for")
                 .when([&scene] { return scene.is_explicit(); }, "with method = \"explicit\"", "method");
-            table.value("gravity", vector_codec(scene.gravity), "Acceleration of canopies and payloads")
+            table
+                .value("gravity", vector_codec(scene.gravity), "Acceleration of canopies, payloads and flags")
                 .unit("m/s^2")
-                .when([&scene] { return !scene.canopies.empty(); }, "with a [[canopy]]", "canopy");
+                .when([&scene] { return !scene.canopies.empty() || !scene.flags.empty(); },
+                      "with a [[canopy]] or a [[flag]]", "canopy");
             table
                 .value("contact", scene::boolean_codec(scene.contact),
                        "Contact of cloth and lines with each other and themselves, without friction")
@@ -202,7 +207,7 @@ void declare_flow_scene(Table& root, FlowScene& scene) {
                 .when([&scene] { return scene.contact; }, "with contact = true", "contact");
           },
           "The exchange of forces between the fluid and sheets")
-      .when([&scene] { return scene.has_sheets(); }, "with a [[body]] or a [[canopy]]", "body");
+      .when([&scene] { return scene.has_sheets(); }, "with a [[body]], a [[canopy]] or a [[flag]]", "body");
   root.table(
           "run", [&](Table& table) { declare_run(table, scene); }, "Length and steps of the run")
       .required();

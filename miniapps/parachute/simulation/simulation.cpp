@@ -87,7 +87,7 @@ coupling::Parameters coupled_parameters(const FlowScene& scene, const Sheets& sh
 Simulation::Simulation(const FlowScene& scene, const framework::SimulationSettings& settings)
     : _scene(scene),
       _sheets(make_all_sheets(scene.bodies, scene.canopies, scene.parameters.density,
-                              scene.parameters.viscosity)),
+                              scene.parameters.viscosity, scene.flags)),
       _record(scene) {
   if (settings.communicator != nullptr) {
     if (scene.has_sheets() && scene.coupling.method == coupling::CouplingMethod::sharp)
@@ -177,6 +177,7 @@ std::vector<run::Column> Simulation::history_columns() const {
     for (int axis = 0; axis < 3; ++axis) columns.push_back({force_column(body, axis), "N"});
   append_displacement_columns(columns);
   append_canopy_columns(columns);
+  append_flag_columns(columns);
   return columns;
 }
 
@@ -193,6 +194,7 @@ framework::HistoryRow Simulation::row() {
     row.values.insert(row.values.end(), force.begin(), force.end());
   append_displacements(row);
   append_canopy_values(row);
+  append_flag_values(row);
   return row;
 }
 

@@ -66,6 +66,8 @@ class Simulation final : public framework::Simulation {
   [[nodiscard]] SheetState sheet_state();
   void append_displacement_columns(std::vector<run::Column>& columns) const;
   void append_displacements(framework::HistoryRow& row);
+  void append_flag_columns(std::vector<run::Column>& columns) const;
+  void append_flag_values(framework::HistoryRow& row);
   void append_canopy_columns(std::vector<run::Column>& columns) const;
   void append_canopy_values(framework::HistoryRow& row);
   [[nodiscard]] run::DatasetSpec canopy_field_spec(const std::string& name) const;

@@ -160,6 +160,27 @@ void Simulation::append_canopy_values(framework::HistoryRow& row) {
   _record.add(row.time, canopies, balance, intersections);
 }
 
+void Simulation::append_flag_columns(std::vector<run::Column>& columns) const {
+  for (std::size_t i = 0; i < _scene.flags.size(); ++i)
+    for (const auto& [quantity, unit] : {std::pair{"force", "N"}, std::pair{"tip", "m"}})
+      for (const char* axis : {"x", "y"})
+        columns.push_back({"flag_" + std::to_string(i) + "_" + quantity + "_" + axis, unit});
+}
+
+/// Forces of the fluid on flags in the last step, and the places of their tips.
+void Simulation::append_flag_values(framework::HistoryRow& row) {
+  if (_scene.flags.empty()) return;
+  const SheetState state = sheet_state();
+  for (const FlagRows& flag : _sheets.flags) {
+    std::array<double, 2> force{}, tip{};
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      for (std::size_t i = flag.begin; i < flag.end; ++i) force[axis] -= state.on_air[i][axis];
+      tip[axis] = 0.5 * (state.positions[flag.end - 2][axis] + state.positions[flag.end - 1][axis]);
+    }
+    row.values.insert(row.values.end(), {force[0], force[1], tip[0], tip[1]});
+  }
+}
+
 run::DatasetSpec Simulation::canopy_field_spec(const std::string& name) const {
   const std::size_t bodies = vertices_of(_scene.bodies);
   if (name == "position")
@@ -274,6 +295,9 @@ std::string Simulation::sheet_failure_text(coupling::FailureReason reason) {
                : vertex == rows.payload ? "its payload"
                                         : "its riser");
   }
+  for (std::size_t i = 0; i < _sheets.flags.size(); ++i)
+    if (vertex >= _sheets.flags[i].begin && vertex < _sheets.flags[i].end)
+      text << "flag[" << i << "] leaves the domain: a vertex";
   text << " at (" << positions[vertex][0] << ", " << positions[vertex][1] << ", " << positions[vertex][2]
        << ") m comes closer than a cell to the side " << side_names[closest] << " after t = " << time
        << " s; a larger grid.domain or a shorter run.end_time may save the run";
