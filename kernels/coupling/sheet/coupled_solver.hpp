@@ -139,7 +139,10 @@ class CoupledSolver {
   void restore(const flow::Progress& progress);
   flow::Stop advance(double target, std::int64_t pause_step, const flow::Poll& poll);
   [[nodiscard]] BlockProgress block() const { return _block; }
-  void set_block(const BlockProgress& block) { _block = block; }
+  void set_block(const BlockProgress& block) {
+    _block = block;
+    set_cloth_time();
+  }
   [[nodiscard]] FrameMotion frame() const { return _frame.motion(); }
   void set_frame(const FrameMotion& frame);
   [[nodiscard]] FailureReason failure_reason();
@@ -174,6 +177,9 @@ class CoupledSolver {
     _strength.set_stiffness(_space, stiffness);
   }
   void plan_block(const flow::Progress& now, double target);
+  void set_cloth_time();
+  /// Counts the time of the cloth from now on, s, which a change of dt makes necessary. Does not throw.
+  void count_cloth_time_from(double now) { _block.since = _block.cloth_step, _block.start = now; }
   void move_frame(const flow::Progress& now);
   void end_block_at(double target, const flow::Progress& now);
   void enqueue_step(double dt, bool is_first);
@@ -237,6 +243,9 @@ void CoupledSolver<ExecutionSpace>::restore(const flow::Progress& progress) {
   _flow.restore(progress);
   forget_steps();
   if (_cuts.restart_at(progress.time)) set_lines();
+  // Bodies in prescribed motion are where they are at this time.
+  count_cloth_time_from(progress.time);
+  set_cloth_time();
 }
 
 /// Chooses dt and the number of substeps of the block that begins with the present step. Unless dt is fixed,
@@ -256,6 +265,14 @@ void CoupledSolver<ExecutionSpace>::plan_block(const flow::Progress& now, double
         std::max<std::int64_t>(1, static_cast<std::int64_t>(std::ceil(std::min(_block.dt / limit, 1e9))));
   }
   _block.end = now.step + block_steps;
+  count_cloth_time_from(now.time);
+}
+
+/// Gives the cloth the step, the time and dt of the present block.
+template <class ExecutionSpace>
+void CoupledSolver<ExecutionSpace>::set_cloth_time() {
+  const double dt = _block.dt > 0.0 ? _block.dt / static_cast<double>(_block.substeps) : 1.0;
+  _fabric.set_time_state({_block.cloth_step, dt, _block.since, _block.start});
 }
 
 /// Divides what is left to a target within the block into equal steps, whatever pauses lie between.
@@ -266,6 +283,7 @@ void CoupledSolver<ExecutionSpace>::end_block_at(double target, const flow::Prog
   if (needed > steps || std::abs(left - steps * _block.dt) <= 1e-9 * left) return;
   _block.end = now.step + std::max<std::int64_t>(1, static_cast<std::int64_t>(needed));
   _block.dt = left / static_cast<double>(_block.end - now.step);
+  count_cloth_time_from(now.time);
 }
 
 template <class ExecutionSpace>
@@ -301,8 +319,7 @@ flow::Stop CoupledSolver<ExecutionSpace>::advance(double last_target, std::int64
     if (pause_step > now.step) steps = std::min(steps, pause_step - now.step);
     const double dt = _block.dt;
     _flow.set_fixed_dt(dt);
-    const std::int64_t substep = _block.cloth_step;
-    _fabric.set_time_state({substep, dt / static_cast<double>(_block.substeps), substep, now.time});
+    set_cloth_time();
     _flow.enqueue_begin(target);
     for (std::int64_t k = 0; k < steps; ++k) enqueue_step(dt, now.step + k == 0);
     _block.cloth_step = _fabric.time_state().step;
@@ -348,6 +365,8 @@ void CoupledSolver<ExecutionSpace>::return_to_last_step(const flow::Progress& no
   Kokkos::deep_copy(_space, saved, _saved_step);
   _space.fence("drogue::coupling::return_to_last_step: step");
   if (saved != now.step) return;  // no step was enqueued after it
+  count_cloth_time_from(now.time);
+  set_cloth_time();
   std::vector<fabric::Vector> positions(rows()), velocities(rows());
   fabric::PointsReader<ExecutionSpace> reader;
   reader.read(_space, _saved_positions, positions);

@@ -29,6 +29,10 @@ struct BlockProgress {
   /// Steps of the cloth since `start`. It decides where launches of many steps end, of which one with a
   /// single step may round differently on a GPU.
   std::int64_t cloth_step = 0;
+  /// Step of the cloth and time, s, from which its time is counted. It decides where bodies in prescribed
+  /// motion are.
+  std::int64_t since = 0;
+  double start = 0.0;
 };
 
 /// Motion of the frame of reference of grid, velocities and positions. A restart that restores it continues
