@@ -741,8 +741,8 @@ class Canopies(parachute_program.FlowTest):
 
 
 class Flags(parachute_program.FlowTest):
-    def test_hinged_strip_in_thin_fluid_bends_with_its_frequency(self):
-        """A flag that falls from the horizontal in fluid at rest of little mass is a physical pendulum of its length."""
+    def test_stiff_flag_in_thin_fluid_is_a_pendulum(self):
+        """A flag that falls from the horizontal in fluid at rest of little mass is a pendulum: a hinged rod."""
         pendulum = bad_flags.GOOD.replace("density = 1\n", "density = 1e-6\n", 1).replace("viscosity = 0.005", "viscosity = 0").replace(
             "velocity = [1, 0, 0]", "velocity = [0, 0, 0]").replace("angle = 18", "angle = 6").replace("bending_stiffness = 0.0015", "bending_stiffness = 2")
         # A rod: sqrt(3 g / (2 l)) / (2 pi), and its amplitude of sin(6 degrees) lengths.
