@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 #include <vector>
 
@@ -147,6 +148,7 @@ class CoupledSolver {
   void set_frame(const FrameMotion& frame);
   [[nodiscard]] FailureReason failure_reason();
   [[nodiscard]] int failed_line();
+  [[nodiscard]] const std::optional<fabric::StepFailure>& cloth_failure() const { return _cloth_failure; }
   [[nodiscard]] std::array<double, 3> total_force_on_air() const {
     std::array<double, 3> force =
         _total_force(_space, flow::face_views<ExecutionSpace>(_flow.grid(), _flow.force()));
@@ -200,6 +202,7 @@ class CoupledSolver {
   MovingFrame<ExecutionSpace> _frame;
   LineCuts _cuts;
   LineStrength<ExecutionSpace> _strength;
+  std::optional<fabric::StepFailure> _cloth_failure;  ///< of the last step that failed by its cloth
 };
 
 template <class ExecutionSpace>
@@ -361,6 +364,8 @@ bool CoupledSolver<ExecutionSpace>::needs_shorter_steps(const flow::Progress& no
 /// of a sharp sheet return smoothed; they enter the pressure of an output alone.
 template <class ExecutionSpace>
 void CoupledSolver<ExecutionSpace>::return_to_last_step(const flow::Progress& now) {
+  // The upload forgets it.
+  if (const auto failure = _fabric.failure()) _cloth_failure = failure;
   std::int64_t saved = -1;
   Kokkos::deep_copy(_space, saved, _saved_step);
   _space.fence("drogue::coupling::return_to_last_step: step");

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -130,6 +131,9 @@ class Solver : public flow::Solver {
   /// Number of the line whose tension has ended `advance`: the first one in the mesh. Throws only after a
   /// failed kernel.
   [[nodiscard]] virtual int failed_line() = 0;
+
+  /// Step of the cloth that has ended `advance`, if its cloth did, with reason and vertex. Does not throw.
+  [[nodiscard]] virtual std::optional<fabric::StepFailure> cloth_failure() = 0;
 };
 
 /// Solver on a backend, which must be available. Blocks. Throws std::invalid_argument for parameters out of

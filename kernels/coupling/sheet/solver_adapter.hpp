@@ -80,6 +80,7 @@ class SolverAdapter final : public Solver {
   fabric::Totals cloth_totals() override { return _solver.fabric().totals(); }
   FailureReason failure_reason() override { return _solver.failure_reason(); }
   int failed_line() override { return _solver.failed_line(); }
+  std::optional<fabric::StepFailure> cloth_failure() override { return _solver.cloth_failure(); }
 
  private:
   [[nodiscard]] std::size_t faces() const {

@@ -74,6 +74,7 @@ class Simulation final : public framework::Simulation {
   void write_canopy_mesh(run::FieldsWriter& fields) const;
   void sample_canopy_field(const std::string& name, std::vector<double>& values);
   [[nodiscard]] std::string failure_cause();
+  [[nodiscard]] std::string vertex_text(std::int64_t vertex) const;
   [[nodiscard]] std::string sheet_failure_text(coupling::FailureReason reason);
   [[nodiscard]] std::string light_cloth_text() const;
   void write_coupling(run::RestartWriter& writer);

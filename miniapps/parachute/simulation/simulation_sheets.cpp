@@ -26,6 +26,21 @@ run::IntegerSource source_of(const std::vector<std::array<int, n>>& parts) {
   };
 }
 
+const char* cloth_failure_reason_text(fabric::FailureReason reason) {
+  switch (reason) {
+    case fabric::FailureReason::crossing:
+      return "contact could not prevent an intersection of the cloth";
+    case fabric::FailureReason::too_fast:
+      return "the cloth moves farther than the search distance of contact";
+    case fabric::FailureReason::too_dense:
+      return "the lists of contact cannot hold all neighbours";
+    case fabric::FailureReason::too_many_constraints:
+      return "the lists of contact cannot hold all constraints";
+    default:
+      return "the positions of the cloth are not finite";
+  }
+}
+
 /// Elements after the bodies, whose vertices are left out.
 template <std::size_t n>
 std::vector<std::array<int, n>> of_canopies(const std::vector<std::array<int, n>>& parts, int first_vertex) {
@@ -150,8 +165,15 @@ void Simulation::append_canopy_values(framework::HistoryRow& row) {
   double intersections = 0.0;
   if (_scene.verify.intersections) {
     const fabric::Mesh& mesh = _sheets.fabric.mesh;
+    std::vector<bool> is_cut(mesh.lines.size(), false);
+    for (const coupling::LineCut& cut : _sheets.cuts)
+      for (const int line : cut.lines)
+        if (cut.time < row.time) is_cut[static_cast<std::size_t>(line)] = true;
+    std::vector<std::array<int, 2>> whole;
+    for (std::size_t line = 0; line < is_cut.size(); ++line)
+      if (!is_cut[line]) whole.push_back(mesh.lines[line]);
     intersections =
-        static_cast<double>(reference::intersections(state.positions, mesh.triangles, mesh.lines).size());
+        static_cast<double>(reference::intersections(state.positions, mesh.triangles, whole).size());
     row.values.push_back(intersections);
   }
   if (_scene.frame == Frame::follow)
@@ -239,6 +261,21 @@ std::string Simulation::light_cloth_text() const {
   return text.str();
 }
 
+std::string Simulation::vertex_text(std::int64_t vertex) const {
+  std::ostringstream text;
+  const auto row = static_cast<std::size_t>(vertex);
+  if (row < vertices_of(_scene.bodies)) text << "vertex " << row << " of the bodies";
+  for (std::size_t i = 0; i < _sheets.canopies.size(); ++i) {
+    const CanopyRows& rows = _sheets.canopies[i];
+    if (row < rows.begin || row >= rows.end) continue;
+    if (row < rows.cloth_end)
+      text << "vertex " << row - rows.begin << " of the cloth of canopy[" << i << "]";
+    else
+      text << (row == rows.payload ? "the payload" : "the riser") << " of canopy[" << i << "]";
+  }
+  return text.str();
+}
+
 std::string Simulation::sheet_failure_text(coupling::FailureReason reason) {
   std::ostringstream text;
   text.precision(9);
@@ -248,9 +285,9 @@ std::string Simulation::sheet_failure_text(coupling::FailureReason reason) {
     return text.str();
   }
   if (reason == coupling::FailureReason::cloth) {
-    text << "the positions of the cloth are not finite"
-         << (_scene.contact ? ", or contact could not prevent an intersection," : "") << " after t = " << time
-         << " s; a smaller run.cfl may save the run";
+    const auto failure = _coupled->cloth_failure().value_or(fabric::StepFailure{});
+    text << cloth_failure_reason_text(failure.reason) << " at " << vertex_text(failure.index)
+         << " after t = " << time << " s; a smaller run.cfl may save the run";
     return text.str();
   }
   if (reason == coupling::FailureReason::line) {

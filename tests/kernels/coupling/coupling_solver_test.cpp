@@ -439,6 +439,12 @@ TEST(CoupledSolver, InstabilityOfTheClothIsAFailure) {
   c.p.fabric.material.membrane_modulus = 1e9;
   c.p.substeps = 200;
   expect_failure(c, FailureReason::cloth);
+  CoupledRun run(c);
+  EXPECT_FALSE(run.solver->cloth_failure());
+  ASSERT_EQ(run.solver->advance(10.0, -1, {}), flow::Stop::failed);
+  ASSERT_TRUE(run.solver->cloth_failure());
+  EXPECT_EQ(run.solver->cloth_failure()->reason, fabric::FailureReason::not_finite);
+  EXPECT_GE(run.solver->cloth_failure()->index, 0);
 }
 
 /// The strip in air that a body force accelerates, within a block, to a speed at which its dt is unstable.
