@@ -3,6 +3,7 @@
 #include <array>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -153,6 +154,9 @@ class SharedSolver final : public coupling::Solver {
   [[nodiscard]] fabric::Totals cloth_totals() override { return _own->coupled().cloth_totals(); }
   [[nodiscard]] coupling::FailureReason failure_reason() override { return _own->coupled().failure_reason(); }
   [[nodiscard]] int failed_line() override { return _own->coupled().failed_line(); }
+  [[nodiscard]] std::optional<fabric::StepFailure> cloth_failure() override {
+    return _own->coupled().cloth_failure();
+  }
 
  private:
   template <class... Values>
