@@ -41,9 +41,9 @@ struct FaceArrays {
 };
 
 /// Addresses of the values of Views, of any unit. Throws std::invalid_argument unless every View has the
-/// faces of the grid.
+/// faces of the window.
 template <class View>
-[[nodiscard]] FaceArrays<typename View::value_type> face_arrays(const StaggeredGrid& grid,
+[[nodiscard]] FaceArrays<typename View::value_type> face_arrays(const FaceWindow& window,
                                                                 const FaceViews<View>& faces) {
   static_assert(View::rank() == 3);
   FaceArrays<typename View::value_type> arrays{};
@@ -53,7 +53,7 @@ template <class View>
     for (int k = 0; k < 3; ++k) {
       const int axis = cyclic_axis(d, k);
       const auto dimension = static_cast<std::size_t>(axis);
-      if (view.extent(dimension) != static_cast<std::size_t>(faces_along(grid, d, axis)))
+      if (view.extent(dimension) != static_cast<std::size_t>(window.faces(d, axis)))
         throw std::invalid_argument("grid transfer: View '" + view.label() +
                                     "' does not have one value per face");
       arrays.stride[d][k] = static_cast<std::ptrdiff_t>(view.stride(dimension));

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <Kokkos_Core.hpp>
+#include <optional>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
 
 #include "kernels/coupling/face_stencil.hpp"
 #include "kernels/coupling/fixed_point.hpp"
@@ -22,16 +24,24 @@ struct TransferCounts {
 /// Transfer between points and the faces of a staggered grid. Holds the frozen positions at which both
 /// directions take their weights, and the fixed-point sums of `spread`. Constructed once; copies share the
 /// Views. Functions of one transfer belong on one instance of the execution space.
+///
+/// On several ranks, which divide the faces, each has all points: `spread` gives a rank the densities on its
+/// own faces, with the bits of one rank, and `interpolate` and `spread_row_sums` give the contributions of
+/// its faces, to be summed over the ranks (`RankSum`).
 template <class ExecutionSpace>
 struct GridTransfer {
   using Memory = typename ExecutionSpace::memory_space;
   using Sums = Kokkos::View<FixedPoint***, Kokkos::LayoutLeft, Memory>;
 
   /// Allocates for a number of points; blocks. Memory: 24 bytes per point and 24 per cell. Throws
-  /// std::invalid_argument for an invalid grid and unless 0 <= points <= 2^29.
+  /// std::invalid_argument for an invalid grid and unless 0 <= points <= 2^29. `own_faces`: those of this
+  /// rank, by default all.
   GridTransfer(const ExecutionSpace& space, const StaggeredGrid& staggered_grid, DeltaKernel delta_kernel,
-               int number_of_points)
-      : grid(staggered_grid), kernel(delta_kernel), points(number_of_points) {
+               int number_of_points, const std::optional<FaceWindow>& own_faces = {})
+      : grid(staggered_grid),
+        window(own_faces.value_or(whole_window(staggered_grid))),
+        kernel(delta_kernel),
+        points(number_of_points) {
     check(grid);
     if (points < 0 || points > 1 << 29)
       throw std::invalid_argument("grid transfer: the number of points must be 0 to 2^29");
@@ -39,13 +49,17 @@ struct GridTransfer {
     largest = decltype(largest)("drogue::coupling::largest");
     counts = decltype(counts)("drogue::coupling::counts");
     for (int d = 0; d < 3; ++d) {
-      const auto extent = [&](int axis) { return static_cast<std::size_t>(faces_along(grid, d, axis)); };
+      const auto extent = [&](int axis) { return static_cast<std::size_t>(window.faces(d, axis)); };
       sums.component[d] = Sums("drogue::coupling::sums", extent(0), extent(1), extent(2));
     }
     space.fence("drogue::coupling::grid_transfer");
   }
 
+  /// True if other ranks hold some of the faces. Does not throw.
+  [[nodiscard]] bool is_divided() const { return window != whole_window(grid); }
+
   StaggeredGrid grid;
+  FaceWindow window;  ///< faces of this rank, those of `sums`
   DeltaKernel kernel;
   int points;
   Kokkos::View<double* [3], Kokkos::LayoutLeft, Memory> positions;  ///< frozen, m
@@ -63,8 +77,8 @@ void require_points(const GridTransfer<ExecutionSpace>& transfer, const View& vi
     throw std::invalid_argument("grid transfer: View '" + view.label() + "' has fewer rows than points");
 }
 
-/// Base of kernels with one thread per point and component.
-template <class ExecutionSpace, DeltaKernel kernel>
+/// Base of kernels with one thread per point and component. `divided`: other ranks hold some of the faces.
+template <class ExecutionSpace, DeltaKernel kernel, bool divided>
 struct TransferKernel {
   static constexpr DeltaKernel delta_kernel = kernel;
 
@@ -89,12 +103,33 @@ struct TransferKernel {
   KOKKOS_FUNCTION FixedPointScale scale() const {
     return fixed_point_scale(Kokkos::bit_cast<double>(transfer.largest(1)), summands);
   }
-  /// Weighted sum of `value(component, face)` around a point, in the unit of the values.
+  /// Changes the indices of a face in the whole grid to those in the arrays of this rank. False if it belongs
+  /// to another rank.
+  KOKKOS_FUNCTION bool to_own(int component, FaceIndex& face) const {
+    if constexpr (divided) {
+      const auto enter = [&](int& index, int k) {
+        index -= transfer.window.begin[component][k];
+        return index >= 0 && index < transfer.window.count[component][k];
+      };
+      return enter(face.along, 0) && enter(face.across, 1) && enter(face.last, 2);
+    } else {
+      return true;
+    }
+  }
+  /// Calls `visit(face, weight)` for each face of this rank around a point, in a fixed order.
+  template <class Visit>
+  KOKKOS_FUNCTION void for_each_own_face(const Item& at, const Visit& visit) const {
+    stencil(at).for_each_face([&](FaceIndex face, double weight, bool) {
+      if (to_own(at.component, face)) visit(face, weight);
+    });
+  }
+  /// Weighted sum of `value(component, face)` over the faces of this rank around a point, in the unit of the
+  /// values.
   template <class Value>
   KOKKOS_FUNCTION double weighted_sum(const Item& at, const Value& value) const {
     double sum = 0.0;
-    stencil(at).for_each_face(
-        [&](const FaceIndex& face, double weight, bool) { sum += weight * value(at.component, face); });
+    for_each_own_face(
+        at, [&](const FaceIndex& face, double weight) { sum += weight * value(at.component, face); });
     return sum;
   }
 };
@@ -104,12 +139,18 @@ struct TransferKernel {
 template <class ExecutionSpace, class Make>
 void for_each_point_and_component(const ExecutionSpace& space, const char* label,
                                   const GridTransfer<ExecutionSpace>& transfer, const Make& make) {
-  dispatch_kernel(transfer.kernel, [&]<DeltaKernel kernel>() {
-    const TransferKernel<ExecutionSpace, kernel> base{transfer, grid_axes(transfer.grid),
-                                                      face_arrays(transfer.grid, transfer.sums),
-                                                      summand_bound(transfer.points)};
-    device::launch_each(space, label, 3 * transfer.points, make(base));
-  });
+  const auto launch = [&]<bool divided>(std::bool_constant<divided>) {
+    dispatch_kernel(transfer.kernel, [&]<DeltaKernel kernel>() {
+      const TransferKernel<ExecutionSpace, kernel, divided> base{transfer, grid_axes(transfer.grid),
+                                                                 face_arrays(transfer.window, transfer.sums),
+                                                                 summand_bound(transfer.points)};
+      device::launch_each(space, label, 3 * transfer.points, make(base));
+    });
+  };
+  if (transfer.is_divided())
+    launch(std::true_type());
+  else
+    launch(std::false_type());
 }
 
 template <class ExecutionSpace, DeltaKernel kernel, class Positions, class Velocities>

@@ -24,7 +24,7 @@ void interpolate(const ExecutionSpace& space, const GridTransfer<ExecutionSpace>
                  const FaceViews<View>& faces, const Results& result) {
   static_assert(spatial::accessible_from<ExecutionSpace, View, Results>);
   require_points(transfer, result);
-  const auto arrays = face_arrays(transfer.grid, faces);
+  const auto arrays = face_arrays(transfer.window, faces);
   for_each_point_and_component(space, "drogue::coupling::interpolate", transfer,
                                [&]<class Base>(const Base& base) {
                                  using T = typename View::value_type;

@@ -58,8 +58,9 @@ struct SpreadFunctor : Base {
       return;
     }
     const double scaled = value * fixed_point_scale(largest, this->summands).factor;
-    const auto add = [&](const FaceIndex& face, std::int64_t part) {
-      Kokkos::atomic_add(&this->sums.at(at.component, face), static_cast<FixedPoint>(part));
+    const auto add = [&](FaceIndex face, std::int64_t part) {
+      if (this->to_own(at.component, face))
+        Kokkos::atomic_add(&this->sums.at(at.component, face), static_cast<FixedPoint>(part));
     };
     // The centre receives the remainder, so that the parts add up to the rounded force.
     std::int64_t remainder = to_fixed_point(scaled);
@@ -84,7 +85,7 @@ struct AddDensitiesFunctor : Base {
     if (n == 0) this->transfer.largest(0) = 0;
     const auto at = this->item(n);
     const double unit = inverse_volume * this->scale().inverse;
-    this->stencil(at).for_each_face([&](const FaceIndex& face, double, bool) {
+    this->for_each_own_face(at, [&](const FaceIndex& face, double) {
       FixedPoint& sum = this->sums.at(at.component, face);
       if (device::relaxed_load(&sum) == 0) return;
       const FixedPoint taken = Kokkos::atomic_exchange(&sum, FixedPoint{0});
@@ -114,7 +115,7 @@ struct ResetSumsFunctor : Base {
   KOKKOS_FUNCTION void operator()(const int n) const {
     if (n == 0) this->transfer.largest(0) = 0;
     const auto at = this->item(n);
-    this->stencil(at).for_each_face([&](const FaceIndex& face, double, bool) {
+    this->for_each_own_face(at, [&](const FaceIndex& face, double) {
       device::relaxed_store(&this->sums.at(at.component, face), FixedPoint{0});
     });
   }
@@ -151,7 +152,7 @@ template <class ExecutionSpace, class Forces, class View>
 void spread(const ExecutionSpace& space, const GridTransfer<ExecutionSpace>& transfer, const Forces& force,
             const FaceViews<View>& density, double bound = 0.0) {
   static_assert(spatial::accessible_from<ExecutionSpace, View>);
-  const auto arrays = face_arrays(transfer.grid, density);
+  const auto arrays = face_arrays(transfer.window, density);
   add_to_sums(space, transfer, force, bound);
   for_each_point_and_component(
       space, "drogue::coupling::add_densities", transfer, [&]<class Base>(const Base& base) {
@@ -167,8 +168,7 @@ struct ClearFacesFunctor : Base {
 
   KOKKOS_FUNCTION void operator()(const int n) const {
     const auto at = this->item(n);
-    this->stencil(at).for_each_face(
-        [&](const FaceIndex& face, double, bool) { values.at(at.component, face) = T(0); });
+    this->for_each_own_face(at, [&](const FaceIndex& face, double) { values.at(at.component, face) = T(0); });
   }
 };
 
@@ -179,7 +179,7 @@ template <class ExecutionSpace, class View>
 void clear_spread(const ExecutionSpace& space, const GridTransfer<ExecutionSpace>& transfer,
                   const FaceViews<View>& density) {
   static_assert(spatial::accessible_from<ExecutionSpace, View>);
-  const auto arrays = face_arrays(transfer.grid, density);
+  const auto arrays = face_arrays(transfer.window, density);
   for_each_point_and_component(space, "drogue::coupling::clear_spread", transfer,
                                [&]<class Base>(const Base& base) {
                                  using T = typename View::value_type;

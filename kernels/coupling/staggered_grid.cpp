@@ -27,6 +27,13 @@ int faces_along(const StaggeredGrid& grid, int component, int axis) {
   return grid.cells[k] + (component == axis && !grid.periodic[k] ? 1 : 0);
 }
 
+FaceWindow whole_window(const StaggeredGrid& grid) {
+  FaceWindow window{};
+  for (int component = 0; component < 3; ++component)
+    for (int axis = 0; axis < 3; ++axis) window.set(component, axis, 0, faces_along(grid, component, axis));
+  return window;
+}
+
 double cell_volume(const StaggeredGrid& grid) { return grid.spacing[0] * grid.spacing[1] * grid.spacing[2]; }
 
 }  // namespace drogue::coupling

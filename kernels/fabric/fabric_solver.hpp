@@ -120,8 +120,8 @@ class FabricSolver {
   /// Record of failures for other kernels, which may read `has_failed`. Does not throw.
   [[nodiscard]] const StepMonitor<ExecutionSpace>& monitor() const { return _monitor; }
 
-  /// Sets E A of every line, N; 0 for a line that is cut. Blocks. Throws std::invalid_argument for values
-  /// that are negative or not finite and a span of the wrong length.
+  /// Sets E A of every line, N; 0 for a line that is cut, which is no obstacle in contact. Blocks. Throws
+  /// std::invalid_argument for values that are negative or not finite and a span of the wrong length.
   void set_line_stiffness(std::span<const double> of_lines);
 
   /// Sets positions, m, and velocities, m/s, and forgets a failure. Blocks. Throws std::invalid_argument for
@@ -476,6 +476,7 @@ void FabricSolver<ExecutionSpace, VertexForce>::set_line_stiffness(std::span<con
   device::copy(space(), _fabric.springs.value,
                table_view(space(), "drogue::fabric::slot_values", springs.value));
   space().fence("drogue::fabric::set_line_stiffness");
+  if (_contact) _contact->set_line_stiffness(of_lines);
   if (_persistent) make_drivers();
 }
 

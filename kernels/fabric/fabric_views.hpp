@@ -266,8 +266,7 @@ requires(!device::is_host<ExecutionSpace>) KOKKOS_INLINE_FUNCTION Vector3<double
 /// Elastic forces on vertex i and the lanes after it, N, summed in the fixed order of slots. Momentum is
 /// conserved to round-off: both ends of an edge, and all corners of a triangle, compute the same tension.
 /// `Fabric` is `FabricViews`, whose kernels are launched by `launch_packs`, or has its members in other
-/// memory
-/// (`TeamFabric`).
+/// memory (`TeamFabric`).
 template <ConstitutiveModel model, class R, class Fabric, class Points>
 KOKKOS_INLINE_FUNCTION Vector3<R> elastic_force(const Fabric& fabric, const Points& positions, int i) {
   Vector3<R> sum{R(0.0), R(0.0), R(0.0)};

@@ -13,10 +13,11 @@ using stepping::TimeState;
 /// Reason of a failed step.
 enum class FailureReason {
   not_finite,
-  crossing,   ///< parts of cloth, or cloth and a body, cross in spite of rigid impact zones
-  too_fast,   ///< a vertex moved beyond the margin of the neighbour lists
-  too_dense,  ///< the neighbours or constraints of a part exceed the capacity
-  no_number,  ///< the expression of a level set, or its slope, is NaN at a vertex
+  crossing,              ///< parts of cloth, or cloth and a body, cross in spite of rigid impact zones
+  too_fast,              ///< a vertex moved beyond the margin of the neighbour lists
+  too_dense,             ///< the neighbours of a part exceed the capacity
+  no_number,             ///< the expression of a level set, or its slope, is NaN at a vertex
+  too_many_constraints,  ///< the constraints of a vertex, or of all, exceed the capacity
 };
 
 /// First failed step; `index` is the least vertex that failed in it.

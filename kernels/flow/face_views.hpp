@@ -12,17 +12,31 @@ template <class ExecutionSpace>
 using FaceView = Kokkos::View<double***, Kokkos::LayoutStride, typename ExecutionSpace::memory_space,
                               Kokkos::MemoryUnmanaged>;
 
-/// Grid in the form that transfers between points and faces take; lengths in m. Axes with one cell are
+/// Whole grid in the form that transfers between points and faces take; lengths in m. Axes with one cell are
 /// periodic. Does not throw.
 [[nodiscard]] inline coupling::StaggeredGrid coupling_grid(const MacGrid& g) {
   coupling::StaggeredGrid grid;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    grid.cells[axis] = g.n[axis];
+    grid.cells[axis] = g.whole[axis];
     grid.origin[axis] = g.low[axis];
     grid.spacing[axis] = g.h[axis];
-    grid.periodic[axis] = g.periodic[axis] || g.n[axis] == 1;
+    grid.periodic[axis] = g.whole_periodic[axis] || g.whole[axis] == 1;
   }
   return grid;
+}
+
+/// Faces of a rank in that form: the low faces of its cells, and those on high sides of the domain. Does not
+/// throw.
+[[nodiscard]] inline coupling::FaceWindow face_window(const MacGrid& g) {
+  const coupling::StaggeredGrid grid = coupling_grid(g);
+  coupling::FaceWindow window{};
+  for (int axis = 0; axis < 3; ++axis) {
+    const bool is_highest = g.origin[axis] + g.n[axis] == g.whole[axis];
+    for (int c = 0; c < 3; ++c)
+      window.set(c, axis, g.origin[axis],
+                 g.n[axis] + (is_highest ? faces_along(grid, c, axis) - g.whole[axis] : 0));
+  }
+  return window;
 }
 
 /// Faces of the three components without ghost cells in an array of the solver, which must outlive the Views;
@@ -31,11 +45,11 @@ using FaceView = Kokkos::View<double***, Kokkos::LayoutStride, typename Executio
 template <class ExecutionSpace>
 [[nodiscard]] coupling::FaceViews<FaceView<ExecutionSpace>> face_views(const MacGrid& g,
                                                                        const List<ExecutionSpace>& values) {
-  const coupling::StaggeredGrid grid = coupling_grid(g);
+  const coupling::FaceWindow window = face_window(g);
   const auto stride = [&](int axis) { return static_cast<std::size_t>(g.stride[axis]); };
   coupling::FaceViews<FaceView<ExecutionSpace>> views;
   for (int c = 0; c < 3; ++c) {
-    const auto extent = [&](int axis) { return static_cast<std::size_t>(faces_along(grid, c, axis)); };
+    const auto extent = [&](int axis) { return static_cast<std::size_t>(window.faces(c, axis)); };
     views.component[c] = FaceView<ExecutionSpace>(
         values.data() + c * g.component + g.first,
         Kokkos::LayoutStride(extent(0), stride(0), extent(1), stride(1), extent(2), stride(2)));

@@ -95,14 +95,17 @@ class FlowSolver {
   /// throw.
   [[nodiscard]] const Values& force() const { return _force; }
 
-  // For a coupling that enqueues other kernels between steps. Asynchronous, without a bound on the steps in
-  // flight, and on one rank alone.
+  // For a coupling that enqueues other kernels between steps. Asynchronous on one rank, without a bound on
+  // the steps in flight; collective and blocking on several.
 
-  /// Enqueues the beginning of an advance to the time `target`, s. Throws std::logic_error on several ranks.
+  /// Enqueues the beginning of an advance to the time `target`, s. Throws only after a failed launch.
   void enqueue_begin(double target);
   /// Enqueues a step, which does nothing if the last advance has reached its target or failed. Throws only
   /// after a failed launch.
   void enqueue_step();
+  /// Enqueues the end of an advance, after its last step: the ghost cells of other ranks. Throws only after a
+  /// failed launch.
+  void enqueue_end();
   /// Sets a constant dt, s, > 0, from the next `enqueue_begin` on. Does not throw.
   void set_fixed_dt(double dt);
   /// Lets a run continue that failed because its fixed dt exceeded the largest stable one. Call it before
@@ -115,8 +118,8 @@ class FlowSolver {
   /// Sets the frame of reference of the velocities in the state, m/s, without changing them. Blocks. Throws
   /// as `change_frame` does.
   void set_frame(const std::array<double, 3>& velocity);
-  /// Throws std::invalid_argument if the grid cannot move along the marked axes: on several ranks, along axes
-  /// of one cell, towards walls or slip sides, and with sides whose velocity is an expression.
+  /// Throws std::invalid_argument if the grid cannot move along the marked axes: along axes of one cell,
+  /// towards walls or slip sides, and with sides whose velocity is an expression.
   void check_frame(const std::array<bool, 3>& axes) const;
   /// Largest dt, s, that the CFL condition and `Parameters::max_dt` admit at this progress; infinite without
   /// a bound, NaN without a finite velocity. Does not throw.
@@ -181,6 +184,11 @@ class FlowSolver {
   [[nodiscard]] ProjectionSetup<ExecutionSpace> projection_setup(double fraction) const;
   void enqueue_pressure(const ExecutionSpace& space, const ProjectionSetup<ExecutionSpace>& setup) const;
   void enqueue_projection(const ExecutionSpace& space, const ProjectionSetup<ExecutionSpace>& setup) const;
+  /// Where the pressures of other ranks arrive; leaves null pointers on one rank.
+  void copy_pressure_below(const double* (&pressure_below)[3]) const {
+    if (!_halo) return;
+    for (std::size_t axis = 0; axis < 3; ++axis) pressure_below[axis] = _halo->pressure_below(axis);
+  }
   /// Solution of the pressure equation: the pressure, or its increment.
   [[nodiscard]] const Values& unknown() const { return _diffusion ? _pressure_increment : _divergence; }
   [[nodiscard]] double kinematic_viscosity() const { return _parameters.viscosity / _parameters.density; }
@@ -208,7 +216,7 @@ class FlowSolver {
   TotalsView<ExecutionSpace> _column_totals, _plane_totals;
   Values _outflow_rows;
   ControlView<ExecutionSpace> _control;
-  std::optional<ImplicitDiffusion<ExecutionSpace>> _diffusion;  ///< Crank-Nicolson only
+  mutable std::optional<ImplicitDiffusion<ExecutionSpace>> _diffusion;  ///< Crank-Nicolson only
   mutable std::optional<Poisson> _poisson;  ///< an iterative solver keeps its last solution and residual
   /// False if the last solve was not that of the last step.
   mutable bool _last_solution_is_pressure = false;
@@ -256,7 +264,7 @@ FlowSolver<ExecutionSpace>::FlowSolver(const device::Instance<ExecutionSpace>& i
   const bool is_implicit = parameters.diffusion == Diffusion::crank_nicolson;
   if (is_implicit) {
     _pressure_increment = Values("drogue::flow::pressure_increment", cells);
-    _diffusion.emplace(space(), parameters);
+    _diffusion.emplace(space(), parameters, group, _ranks);
   }
   const auto nx = static_cast<std::size_t>(_grid.n[0]), columns = nx * static_cast<std::size_t>(_grid.n[1]);
   if (_predicted.size() >= total_count * columns)
@@ -643,7 +651,6 @@ Stop FlowSolver<ExecutionSpace>::advance(double target, std::int64_t pause_step,
 
 template <class ExecutionSpace>
 void FlowSolver<ExecutionSpace>::enqueue_begin(double target) {
-  if (_halo) throw std::logic_error("flow solver: steps on several ranks wait for the host");
   Steps{*this}.begin({target}, -1);
   _loop.count_launch();
 }
@@ -652,6 +659,11 @@ template <class ExecutionSpace>
 void FlowSolver<ExecutionSpace>::enqueue_step() {
   Steps{*this}.enqueue(0, 1);
   _loop.count_launch();
+}
+
+template <class ExecutionSpace>
+void FlowSolver<ExecutionSpace>::enqueue_end() {
+  finish_ghosts(space(), _velocity);
 }
 
 template <class ExecutionSpace>
@@ -670,7 +682,6 @@ void FlowSolver<ExecutionSpace>::set_fixed_dt(double dt) {
 
 template <class ExecutionSpace>
 void FlowSolver<ExecutionSpace>::check_frame(const std::array<bool, 3>& axes) const {
-  if (_halo) throw std::invalid_argument("flow solver: a moving frame needs all cells on one rank");
   for (std::size_t side = 0; side < 6; ++side) {
     const Boundary& boundary = _parameters.boundary[side];
     if (!boundary.velocity_expressions.empty())
@@ -694,6 +705,7 @@ void FlowSolver<ExecutionSpace>::set_frame(const std::array<double, 3>& velocity
   }
   _launcher.discard_graphs();  // they hold the conditions
   begin_ghosts(space(), _velocity);
+  finish_ghosts(space(), _velocity);
   space().fence("drogue::flow::set_frame");
 }
 
@@ -729,7 +741,7 @@ void FlowSolver<ExecutionSpace>::forget_long_step() {
 /// Step loop of several ranks: step by step, so that all take the same steps.
 template <class ExecutionSpace>
 Stop FlowSolver<ExecutionSpace>::advance_together(const stepping::AdvanceRequest& request, const Poll& poll) {
-  const auto goes_on = [&] { return _halo->all(!poll || poll(_loop.status())); };
+  const auto goes_on = [&] { return _halo->group().all(!poll || poll(_loop.status())); };
   if (!goes_on()) return Stop::interrupted;
   Steps steps{*this};
   steps.begin(request, -1);
@@ -860,11 +872,13 @@ void FlowSolver<ExecutionSpace>::enqueue_stage(const ExecutionSpace& space,
                                                double time_fraction) const {
   if (setup.stage.data() != _velocity.data()) enqueue_eddy_viscosity(space, setup.stage);
   enqueue_rates(space, setup, time_fraction);
-  if (_diffusion)
-    _diffusion->enqueue(
-        space,
-        {_grid, _boundary.conditions(), _velocity, _predicted, _pressure, _control, kinematic_viscosity()},
-        _divergence, _pressure_increment);
+  if (_diffusion) {
+    DiffusionSetup<ExecutionSpace> diffusion{
+        _grid, _boundary.conditions(), _velocity, _predicted, _pressure, _control, kinematic_viscosity(), {}};
+    if (_halo) _halo->exchange_pressure(space, _pressure);
+    copy_pressure_below(diffusion.pressure_below);
+    _diffusion->enqueue(space, diffusion, _divergence, _pressure_increment);
+  }
   ProjectionSetup<ExecutionSpace> projection = projection_setup(fraction);
   projection.velocity = result;
   if (result.data() == _velocity.data()) {
@@ -884,8 +898,7 @@ ProjectionSetup<ExecutionSpace> FlowSolver<ExecutionSpace>::projection_setup(dou
                                         _control,    kinematic_viscosity(),
                                         fraction,    _boundary.has_outflow(),
                                         false,       {}};
-  if (_halo)
-    for (std::size_t axis = 0; axis < 3; ++axis) setup.pressure_below[axis] = _halo->pressure_below(axis);
+  copy_pressure_below(setup.pressure_below);
   return setup;
 }
 

@@ -25,6 +25,7 @@ struct MacGrid {
   int whole[3];            ///< cells of the whole grid per axis
   int origin[3];           ///< index of cell (0, 0, 0) in the whole grid
   bool periodic[3];        ///< with both sides on this rank
+  bool whole_periodic[3];  ///< of the whole grid
   double low[3];           ///< lower corner of the whole grid, m
   double h[3];             ///< spacing, m
   double inverse_h[3];     ///< 1/m
@@ -61,7 +62,8 @@ inline MacGrid make_grid(const Parameters& p, const linear::PencilRanks& ranks =
     grid.ghost[axis] = p.cells[a] > 1 ? ghost_width : 0;
     grid.whole[axis] = p.cells[a];
     grid.origin[axis] = box.begin[a];
-    grid.periodic[axis] = p.boundary[2 * a].kind == BoundaryKind::periodic && ranks.parts[a] == 1;
+    grid.whole_periodic[axis] = p.boundary[2 * a].kind == BoundaryKind::periodic;
+    grid.periodic[axis] = grid.whole_periodic[axis] && ranks.parts[a] == 1;
     grid.low[axis] = p.low[a];
     grid.h[axis] = (p.high[a] - p.low[a]) / p.cells[a];
     grid.inverse_h[axis] = 1.0 / grid.h[axis];

@@ -14,11 +14,11 @@ import parachute_program
 # Small grids with thousands of steps: threads cost more than they save.
 MANY_SMALL_STEPS = {
     "cavity", "cavity-1000", "channel", "oscillating-plate", "cylinder", "sphere-300", "disk-normal", "cup", "cup-reversed", "sphere-drop",
-    "piston", "cloth-drop",
+    "piston", "membrane-drum-in-air", "flag", "cloth-drop",
 }  # fmt: skip
 
 # They are in test_parachutes_long.py.
-OTHER_PARACHUTES = set(parachute_program.CANOPIES) - {"c9-flat", "reefed", "sphere-drop", "cloth-drop"}
+OTHER_PARACHUTES = set(parachute_program.CANOPIES) - {"c9-flat", "reefed", "sphere-drop", "membrane-drum-in-air", "cloth-drop"}
 
 # A minute or more on one core.
 MINUTES_SERIALLY = {"taylor-green-3d", "c9-flat"}

@@ -155,3 +155,47 @@ BAD_LINES = [
     (37, 'fields = ["positions"]', 37, ["output.fields", "position"]),
     (37, 'fields = ["position"]\nhistory_every = 0', 40, ["verify.drag[0]", "history_every"]),
 ]
+
+DRUM = """\
+app = "parachute"
+[fluid]
+density = 1.2
+viscosity = 0
+[grid]
+cells = [12, 12, 12]
+domain = [[-1, 1], [-1, 1], [-1, 1]]
+boundary = { x = "periodic", y = "periodic", z = "periodic" }
+[[canopy]]
+kind = "drum"
+diameter = 1.0
+gores = 6
+vent = 0
+area_density = 0.2
+cloth = "custom"
+tension = 100
+deflection = 0.002
+edge_length = 0.05
+porosity = { law = "none" }
+[run]
+end_time = 0.2
+dt = 0.001
+[output]
+history_every = 1
+[verify]
+[[verify.oscillation]]
+column = "canopy_0_payload_z"
+frequency = { value = 17.1, tolerance = 1 }
+"""
+
+# As above, for DRUM.
+BAD_DRUM_LINES = [
+    (10, 'kind = "dram"', 10, ["canopy[0].kind", 'did you mean "drum"?']),
+    (16, "", 9, ['missing key "canopy[0].tension"', "drum"]),
+    (16, "tension = 0", 16, ["canopy[0].tension", "> 0"]),
+    (10, 'kind = "sheet"', 16, ["canopy[0].tension", 'with kind = "drum"']),
+    (17, 'deflection = "small"', 17, ["canopy[0].deflection", "number"]),
+    (17, 'shape = "partly-closed"', 17, ["canopy[0].shape", "drum"]),
+    (17, "lines = { length = 1 }", 17, ["canopy[0].lines", "drum"]),
+    (17, "payload = { mass = 1 }", 17, ["canopy[0].payload", "drum"]),
+    (27, 'column = "canopy_1_payload_z"', 27, ["verify.oscillation[0].column", 'did you mean "canopy_0_payload_z"?']),
+]

@@ -9,6 +9,7 @@ sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 
 import bad_bodies
 import bad_canopies
+import bad_flags
 import bad_flows
 import mutations
 import parachute_program
@@ -109,7 +110,7 @@ class BadFlows(parachute_program.FlowTest):
         sheet = bad_canopies.GOOD.replace('[[canopy]]\nkind = "flat-circular"\ndiameter = 1.2\ngores = 8\nedge', '[[canopy]]\nkind = "sheet"\ndiameter = 1.2\ngores = 8\nedge')
         sheet = sheet.replace("centre = [1, 0, 0]\nlines = { length = 1.1 }\n", "centre = [1, 0, 0]\n")
         self.scene.write_text(sheet, encoding="utf-8")
-        self.assertIn("verify.peak_force[0].canopy: this canopy is a sheet", self.refusal())
+        self.assertIn("verify.peak_force[0].canopy: this canopy has no lines", self.refusal())
         self.scene.write_text(sheet.replace("[{ canopy = 1, force", "[{ canopy = 0, force"), encoding="utf-8")
         self.expect(0, self.scene, "--check")
         # A sheet has no payload to follow or to share.
@@ -124,6 +125,26 @@ class BadFlows(parachute_program.FlowTest):
         self.assertIn('missing key "canopy[1].riser"', self.refusal(first, shared[0]))
         message = self.refusal(first, shared[0], "canopy[1].riser={length=0.05}")
         self.assertIn("canopy[1] overlaps canopy[0]", message)
+
+    def test_rejects_invalid_drums(self):
+        self.scene.write_text(bad_canopies.DRUM, encoding="utf-8")
+        self.expect(0, self.scene, "--check")
+        self.assert_lines_are_rejected(bad_canopies.DRUM, bad_canopies.BAD_DRUM_LINES)
+
+    def test_rejects_invalid_flags(self):
+        self.scene.write_text(bad_flags.GOOD, encoding="utf-8")
+        self.expect(0, self.scene, "--check")
+        self.assert_lines_are_rejected(bad_flags.GOOD, bad_flags.BAD_LINES)
+        for cells, axis in (("[40, 24, 4]", "z"), ("[40, 1, 24]", "y")):
+            flat = bad_flags.GOOD.replace("[40, 24, 1]", cells).replace('y = "slip" }', 'y = "periodic", z = "periodic" }')
+            self.scene.write_text(flat, encoding="utf-8")
+            self.assertIn("flag[0] needs a grid with one cell along z", self.refusal())
+        plate = '[[body]]\nkind = "plate"\nnormal = "x"\ncentre = [2, 0, 0.0625]\nlengths = [0.5, 0.125]\nedge_length = 0.0625\n'
+        self.scene.write_text(bad_flags.GOOD.replace("[coupling]", plate + "[coupling]"), encoding="utf-8")
+        self.assertIn("flag[0] cannot be combined with a [[body]] or a [[canopy]]", self.refusal())
+        second = '[[flag]]\nleading_edge = [0, 0.5]\nlength = 1\narea_density = 1\nbending_stiffness = 0.1\nedge_length = 0.0625\n'
+        self.scene.write_text(bad_flags.GOOD.replace("[coupling]", second + "[coupling]"), encoding="utf-8")
+        self.assertIn("flag[1].bending_stiffness differs from that of flag[0]", self.refusal())
 
     def test_rejects_canopies_on_a_plane(self):
         self.scene.write_text(bad_canopies.GOOD.replace("cells = [40, 20, 24]", "cells = [40, 1, 24]"), encoding="utf-8")

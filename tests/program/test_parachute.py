@@ -20,6 +20,8 @@ sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/support")
 sys.path.insert(0, os.environ["DROGUE_SOURCE"] + "/tests/negative")
 
 import bad_bodies
+import bad_canopies
+import bad_flags
 import gas_program
 import parachute_program
 from parachute_program import CANOPY, CLOTH, GUST, PLATE, VORTICES
@@ -802,12 +804,56 @@ class Canopies(parachute_program.FlowTest):
         self.assertLess(rows["canopy_0_payload_z"][-1], 0.2)
         self.assertGreater(rows["canopy_0_payload_z"][-1], -0.3)
 
+    def test_drum_in_thin_air_has_the_frequency_of_its_tension(self):
+        """The first zero of J0 times sqrt(T / mass per area) over the circumference, with air of little mass."""
+        exact = 2.404826 / (2 * math.pi * 0.5) * math.sqrt(100 / 0.2)
+        sets = ["fluid.density=1e-5", f"verify.oscillation[0].frequency={{value={exact},tolerance=0.01}}"]
+        self.expect(0, self.write(bad_canopies.DRUM), *QUIET, sets=sets)
+        rows = self.history("out")
+        self.assertLess(max(rows["force_balance"]), 1e-13)
+        # The energy of this mode moves to and fro; the rim stays where it is.
+        self.assertAlmostEqual(rows["canopy_0_payload_z"][0], max(rows["canopy_0_payload_z"]), delta=1e-5)
+        self.assertAlmostEqual(-rows["canopy_0_payload_z"][0], min(rows["canopy_0_payload_z"]), delta=1e-5)
+        sets[1] = sets[1].replace("0.01", "1e-6")
+        self.expect(5, self.write(bad_canopies.DRUM), *QUIET, "--overwrite", sets=sets)
+
     def test_backends_agree_until_the_cloth_buckles(self):
         for backend in ("serial", gas_program.threaded()):
             self.expect(0, self.write(CANOPY), "--quiet", "--backend", backend, "--out", backend, "--overwrite",
                         sets=["run.end_time=0.025", "output.times=[0.025]"])
             last = self.history(backend)["canopy_0_line_force_z"][-1]
             self.assertAlmostEqual(1.0, last / self.history("serial")["canopy_0_line_force_z"][-1], delta=1e-6)
+
+
+class Flags(parachute_program.FlowTest):
+    def test_stiff_flag_in_thin_fluid_is_a_pendulum(self):
+        """A flag that falls from the horizontal in fluid at rest of little mass is a pendulum: a hinged rod."""
+        pendulum = bad_flags.GOOD.replace("density = 1\n", "density = 1e-6\n", 1).replace("viscosity = 0.005", "viscosity = 0").replace(
+            "velocity = [1, 0, 0]", "velocity = [0, 0, 0]").replace("angle = 18", "angle = 6").replace("bending_stiffness = 0.0015", "bending_stiffness = 2")
+        # A rod: sqrt(3 g / (2 l)) / (2 pi), and its amplitude of sin(6 degrees) lengths.
+        exact = math.sqrt(3 * 0.5 / 2) / (2 * math.pi)
+        sets = ["run={end_time=26,max_dt=0.04}", "verify={oscillation=[{column='flag_0_tip_y',"
+                f"frequency={{value={exact},tolerance=3e-3}},amplitude={{value={math.sin(math.radians(6))},tolerance=3e-2}}}}]}}"]
+        self.expect(0, self.write(pendulum), *QUIET, sets=sets)
+        self.expect(5, self.write(pendulum), *QUIET, "--overwrite", sets=[sets[0], sets[1].replace("3e-3", "1e-7")])
+
+    def test_forces_on_a_flag_stretch_it_downstream_and_a_run_continues(self):
+        sets = ["run.end_time=1", "output={history_every=1,times=[0.5],fields=['velocity'],restart_every=10}", "verify={}"]
+        scene = self.write(bad_flags.GOOD)
+        self.expect(0, scene, *QUIET, sets=sets)
+        rows = self.history("out")
+        self.assertGreater(rows["flag_0_force_x"][-1], 0.0)
+        self.assertLess(max(rows["flag_0_tip_x"]), 0.01 + 1.02)  # hardly longer than at rest
+        half = self.folder / "half"
+        self.expect(0, scene, "--quiet", "--backend", "serial", "--out", half, sets=[*sets, "run.end_time=0.5"])
+        self.expect(0, scene, "--quiet", "--backend", "serial", "--out", half, "--restart", half / "restart.h5", sets=sets)
+        for name in ("flag_0_tip_y", "flag_0_force_y", "kinetic_energy"):
+            self.assertEqual(rows[name][-1], self.history("half")[name][-1], name)
+
+    def test_flag_that_leaves_the_domain_ends_the_run(self):
+        run = self.expect(4, self.write(bad_flags.GOOD), *QUIET, sets=[
+            "fluid.velocity=[0, 0, 0]", "coupling.gravity=[0, 5, 0]", "flag[0].leading_edge=[0.01, 0.6]", "flag[0].angle=0", "verify={}"])
+        self.assertIn("flag[0] leaves the domain: a vertex at (", run.stderr)
 
 
 class Restart(parachute_program.FlowTest):

@@ -234,7 +234,7 @@ class SharpSheet {
   /// extents.
   template <class View>
   void begin_step(const ExecutionSpace& space, const FaceViews<View>& velocity) const {
-    SaveFacesFunctor save{constant(velocity), face_arrays(_transfer.grid, _before), {}};
+    SaveFacesFunctor save{constant(velocity), face_arrays(_transfer.window, _before), {}};
     launch_faces(space, "drogue::coupling::save_faces", save);
   }
 
@@ -254,9 +254,9 @@ class SharpSheet {
                       _corner_force,
                       constant(_before),
                       constant(_acceleration),
-                      face_arrays(grid, _count),
-                      face_arrays(grid, _transfer.sums),
-                      face_arrays(grid, density),
+                      face_arrays(_transfer.window, _count),
+                      face_arrays(_transfer.window, _transfer.sums),
+                      face_arrays(_transfer.window, density),
                       grid_axes(grid),
                       dt,
                       1.0 / _density,
@@ -281,7 +281,7 @@ class SharpSheet {
     EndSharpStepFunctor<Control> end{constant(_before),
                                      constant(velocity),
                                      constant(density),
-                                     face_arrays(_transfer.grid, _acceleration),
+                                     face_arrays(_transfer.window, _acceleration),
                                      {},
                                      1.0 / dt,
                                      1.0 / _density,
@@ -306,7 +306,7 @@ class SharpSheet {
 
   template <class View>
   [[nodiscard]] FaceArrays<const double> constant(const FaceViews<View>& faces) const {
-    const auto arrays = face_arrays(_transfer.grid, faces);
+    const auto arrays = face_arrays(_transfer.window, faces);
     FaceArrays<const double> result{};
     for (int d = 0; d < 3; ++d) {
       result.data[d] = arrays.data[d];

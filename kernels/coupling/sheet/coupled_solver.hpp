@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 #include <vector>
 
@@ -87,6 +88,10 @@ struct CheckClothFunctor {
 /// Steps of a block have the same dt, which the host chooses from the present speed of the air and frequency
 /// of the cloth: within a block, no step waits for the host, copies to it or allocates. A block ends early
 /// where the air has become too fast for its dt.
+///
+/// On a group of several ranks each holds a box of the cells and the whole cloth, with the same bits.
+/// Functions are then collective, except those that only return values of the cloth, and every step waits for
+/// the host.
 template <class ExecutionSpace>
 class CoupledSolver {
  public:
@@ -97,13 +102,16 @@ class CoupledSolver {
   static constexpr std::int64_t block_steps = 16;
 
   /// Fluid at rest and cloth at rest in its mesh; set other states by `flow` and `fabric`, then call `start`.
-  /// `instance` must outlive the solver. Blocks. Throws std::invalid_argument for parameters out of range.
-  CoupledSolver(const device::Instance<ExecutionSpace>& instance, const Parameters& parameters)
+  /// `instance` must outlive the solver. Each rank gives the same parameters. Blocks. Throws
+  /// std::invalid_argument for parameters out of range, and as the constructor of FlowSolver does.
+  CoupledSolver(const device::Instance<ExecutionSpace>& instance, const Parameters& parameters,
+                const linear::RankGroup& group = {})
       : _space(instance.space()),
         _parameters(completed(parameters)),
-        _flow(instance, _parameters.flow),
+        _group(group),
+        _flow(instance, _parameters.flow, group),
         _sheet(_space, flow::coupling_grid(_flow.grid()), _parameters.fabric, _parameters.sheet,
-               _parameters.flow.density),
+               _parameters.flow.density, group, flow::face_window(_flow.grid())),
         _fabric(_space, _parameters.fabric, _sheet.relaxation()),
         _reason("drogue::coupling::failure_reason"),
         _saved_step("drogue::coupling::saved_step"),
@@ -132,13 +140,20 @@ class CoupledSolver {
   void restore(const flow::Progress& progress);
   flow::Stop advance(double target, std::int64_t pause_step, const flow::Poll& poll);
   [[nodiscard]] BlockProgress block() const { return _block; }
-  void set_block(const BlockProgress& block) { _block = block; }
+  void set_block(const BlockProgress& block) {
+    _block = block;
+    set_cloth_time();
+  }
   [[nodiscard]] FrameMotion frame() const { return _frame.motion(); }
   void set_frame(const FrameMotion& frame);
   [[nodiscard]] FailureReason failure_reason();
   [[nodiscard]] int failed_line();
+  [[nodiscard]] const std::optional<fabric::StepFailure>& cloth_failure() const { return _cloth_failure; }
   [[nodiscard]] std::array<double, 3> total_force_on_air() const {
-    return _total_force(_space, flow::face_views<ExecutionSpace>(_flow.grid(), _flow.force()));
+    std::array<double, 3> force =
+        _total_force(_space, flow::face_views<ExecutionSpace>(_flow.grid(), _flow.force()));
+    _group.sum(force);
+    return force;
   }
 
  private:
@@ -164,6 +179,9 @@ class CoupledSolver {
     _strength.set_stiffness(_space, stiffness);
   }
   void plan_block(const flow::Progress& now, double target);
+  void set_cloth_time();
+  /// Counts the time of the cloth from now on, s, which a change of dt makes necessary. Does not throw.
+  void count_cloth_time_from(double now) { _block.since = _block.cloth_step, _block.start = now; }
   void move_frame(const flow::Progress& now);
   void end_block_at(double target, const flow::Progress& now);
   void enqueue_step(double dt, bool is_first);
@@ -172,6 +190,7 @@ class CoupledSolver {
 
   ExecutionSpace _space;
   Parameters _parameters;
+  linear::RankGroup _group;
   Flow _flow;
   ImmersedSheet<ExecutionSpace> _sheet;
   Fabric _fabric;
@@ -183,6 +202,7 @@ class CoupledSolver {
   MovingFrame<ExecutionSpace> _frame;
   LineCuts _cuts;
   LineStrength<ExecutionSpace> _strength;
+  std::optional<fabric::StepFailure> _cloth_failure;  ///< of the last step that failed by its cloth
 };
 
 template <class ExecutionSpace>
@@ -226,6 +246,9 @@ void CoupledSolver<ExecutionSpace>::restore(const flow::Progress& progress) {
   _flow.restore(progress);
   forget_steps();
   if (_cuts.restart_at(progress.time)) set_lines();
+  // Bodies in prescribed motion are where they are at this time.
+  count_cloth_time_from(progress.time);
+  set_cloth_time();
 }
 
 /// Chooses dt and the number of substeps of the block that begins with the present step. Unless dt is fixed,
@@ -245,6 +268,14 @@ void CoupledSolver<ExecutionSpace>::plan_block(const flow::Progress& now, double
         std::max<std::int64_t>(1, static_cast<std::int64_t>(std::ceil(std::min(_block.dt / limit, 1e9))));
   }
   _block.end = now.step + block_steps;
+  count_cloth_time_from(now.time);
+}
+
+/// Gives the cloth the step, the time and dt of the present block.
+template <class ExecutionSpace>
+void CoupledSolver<ExecutionSpace>::set_cloth_time() {
+  const double dt = _block.dt > 0.0 ? _block.dt / static_cast<double>(_block.substeps) : 1.0;
+  _fabric.set_time_state({_block.cloth_step, dt, _block.since, _block.start});
 }
 
 /// Divides what is left to a target within the block into equal steps, whatever pauses lie between.
@@ -255,6 +286,7 @@ void CoupledSolver<ExecutionSpace>::end_block_at(double target, const flow::Prog
   if (needed > steps || std::abs(left - steps * _block.dt) <= 1e-9 * left) return;
   _block.end = now.step + std::max<std::int64_t>(1, static_cast<std::int64_t>(needed));
   _block.dt = left / static_cast<double>(_block.end - now.step);
+  count_cloth_time_from(now.time);
 }
 
 template <class ExecutionSpace>
@@ -280,7 +312,7 @@ flow::Stop CoupledSolver<ExecutionSpace>::advance(double last_target, std::int64
       _flow.forget_long_step();
       plan_block(now, target);
     }
-    if (poll && !poll(_flow.status())) return flow::Stop::interrupted;
+    if (!_group.all(!poll || poll(_flow.status()))) return flow::Stop::interrupted;
     if (now.step >= _block.end) {
       if (_frame.follows()) move_frame(now);
       plan_block(_frame.follows() ? _flow.progress() : now, target);
@@ -290,11 +322,11 @@ flow::Stop CoupledSolver<ExecutionSpace>::advance(double last_target, std::int64
     if (pause_step > now.step) steps = std::min(steps, pause_step - now.step);
     const double dt = _block.dt;
     _flow.set_fixed_dt(dt);
-    const std::int64_t substep = _block.cloth_step;
-    _fabric.set_time_state({substep, dt / static_cast<double>(_block.substeps), substep, now.time});
+    set_cloth_time();
     _flow.enqueue_begin(target);
     for (std::int64_t k = 0; k < steps; ++k) enqueue_step(dt, now.step + k == 0);
     _block.cloth_step = _fabric.time_state().step;
+    _flow.enqueue_end();
   }
 }
 
@@ -332,10 +364,14 @@ bool CoupledSolver<ExecutionSpace>::needs_shorter_steps(const flow::Progress& no
 /// of a sharp sheet return smoothed; they enter the pressure of an output alone.
 template <class ExecutionSpace>
 void CoupledSolver<ExecutionSpace>::return_to_last_step(const flow::Progress& now) {
+  // The upload forgets it.
+  if (const auto failure = _fabric.failure()) _cloth_failure = failure;
   std::int64_t saved = -1;
   Kokkos::deep_copy(_space, saved, _saved_step);
   _space.fence("drogue::coupling::return_to_last_step: step");
   if (saved != now.step) return;  // no step was enqueued after it
+  count_cloth_time_from(now.time);
+  set_cloth_time();
   std::vector<fabric::Vector> positions(rows()), velocities(rows());
   fabric::PointsReader<ExecutionSpace> reader;
   reader.read(_space, _saved_positions, positions);

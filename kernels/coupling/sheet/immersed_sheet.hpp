@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "kernels/coupling/interpolate.hpp"
+#include "kernels/coupling/rank_sum.hpp"
 #include "kernels/coupling/sharp/sharp_sheet.hpp"
 #include "kernels/coupling/sheet/explicit_exchange.hpp"
 #include "kernels/coupling/sheet/local_air.hpp"
@@ -75,6 +76,9 @@ struct EndSheetStepFunctor {
 /// A step of the flow is `begin_step`, steps of the cloth with `relaxation`, `spread_forces`, a step of the
 /// flow with these forces, `end_step`. All functions are asynchronous on the given instance, allocate nothing
 /// and may be captured into a CUDA graph unless stated otherwise.
+///
+/// On several ranks each has the whole cloth, and its own faces of the flow. `begin_step` and `end_step` are
+/// then collective and block. All ranks find the same bits for everything at the vertices.
 template <class ExecutionSpace>
 class ImmersedSheet {
  public:
@@ -82,14 +86,16 @@ class ImmersedSheet {
   using Scalars = typename LocalAir<ExecutionSpace>::Scalars;
 
   /// Sheet of the triangles of `cloth`; its other vertices, such as those of suspension lines, exchange no
-  /// force with the air, whose density is in kg/m^3. Blocks. Throws std::invalid_argument for parameters out
-  /// of range.
+  /// force with the air, whose density is in kg/m^3. `own_faces`: those of this rank of the group, by default
+  /// all. Blocks. Throws std::invalid_argument for parameters out of range.
   ImmersedSheet(const ExecutionSpace& space, const StaggeredGrid& grid, const fabric::Parameters& cloth,
-                const SheetParameters& parameters, double density)
+                const SheetParameters& parameters, double density, const linear::RankGroup& group = {},
+                const std::optional<FaceWindow>& own_faces = {})
       : _parameters((check_parameters(parameters, density), parameters)),
         _density(density),
         _surface(space, cloth.mesh),
-        _transfer(space, grid, parameters.kernel, _surface.vertices()),
+        _transfer(space, grid, parameters.kernel, _surface.vertices(), own_faces),
+        _rank_sum(group, rows(), 2),
         _air{scalars("drogue::coupling::area"),
              vectors("drogue::coupling::normal"),
              vectors("drogue::coupling::compliance"),
@@ -142,6 +148,7 @@ class ImmersedSheet {
     fabric::vertex_geometry(space, _surface, _transfer.positions, _air.area, _air.normal);
     spread_row_sums(space, _transfer, _air.area, _density, _air.compliance);
     interpolate(space, _transfer, velocity, _air.before);
+    _rank_sum(space, {_air.compliance, _air.before});
     device::launch_each(space, "drogue::coupling::begin_sheet_step", _transfer.points,
                         BeginSheetStepFunctor<ExecutionSpace>{_air});
   }
@@ -170,6 +177,7 @@ class ImmersedSheet {
     if (_sharp) return _sharp->end_step(space, velocity, density, dt, filter, control);
     interpolate(space, _transfer, velocity, _after);
     interpolate(space, _transfer, density, _push);
+    _rank_sum(space, {_after, _push});
     device::launch_each(
         space, "drogue::coupling::end_sheet_step", _transfer.points,
         EndSheetStepFunctor<ExecutionSpace>{_air, _after, _push, 1.0 / dt, 1.0 / _density, filter});
@@ -230,6 +238,7 @@ class ImmersedSheet {
   double _density;  ///< kg/m^3
   fabric::SurfaceViews<ExecutionSpace> _surface;
   GridTransfer<ExecutionSpace> _transfer;
+  RankSum<ExecutionSpace> _rank_sum;
   LocalAir<ExecutionSpace> _air;
   Vectors _force, _after, _push;
   std::optional<SharpSheet<ExecutionSpace>> _sharp;

@@ -58,7 +58,7 @@ struct LineCut {
 
 /// Parameters of cloth in air.
 struct Parameters {
-  /// On one rank. `external_force` is set by the coupling. With `fixed_dt` = 0, dt follows from `cfl`, by
+  /// `external_force` is set by the coupling. With `fixed_dt` = 0, dt follows from `cfl`, by
   /// default 0.5, and is constant in blocks of steps; `max_dt` must then be positive, since air at rest does
   /// not limit dt.
   flow::Parameters flow;

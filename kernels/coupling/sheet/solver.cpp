@@ -7,12 +7,13 @@ namespace drogue::coupling {
 
 // Defined in solver_adapter.hpp, instantiated for each backend in instances/.
 template <class ExecutionSpace>
-std::unique_ptr<Solver> make_solver(const Parameters& parameters);
+std::unique_ptr<Solver> make_solver(const Parameters& parameters, const linear::RankGroup& group);
 
-std::unique_ptr<Solver> create_solver(device::Backend backend, const Parameters& parameters) {
+std::unique_ptr<Solver> create_solver(device::Backend backend, const Parameters& parameters,
+                                      const linear::RankGroup& group) {
   return device::allocate([&] {
-    return device::dispatch(backend,
-                            [&]<class ExecutionSpace>() { return make_solver<ExecutionSpace>(parameters); });
+    return device::dispatch(
+        backend, [&]<class ExecutionSpace>() { return make_solver<ExecutionSpace>(parameters, group); });
   });
 }
 

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -29,6 +30,10 @@ struct BlockProgress {
   /// Steps of the cloth since `start`. It decides where launches of many steps end, of which one with a
   /// single step may round differently on a GPU.
   std::int64_t cloth_step = 0;
+  /// Step of the cloth and time, s, from which its time is counted. It decides where bodies in prescribed
+  /// motion are.
+  std::int64_t since = 0;
+  double start = 0.0;
 };
 
 /// Motion of the frame of reference of grid, velocities and positions. A restart that restores it continues
@@ -53,6 +58,10 @@ struct FrameMotion {
 /// velocities and positions are relative to a moving frame. Call `upload_cloth` and `upload`,
 /// then `start`; or restore all arrays of both, then `restore`. After a failed step, the state of both is
 /// that before the step of the flow.
+///
+/// On a group of several ranks each holds a part of the cells, as those of `flow::create_solver`, and the
+/// whole cloth, which is the same on all: each rank gives the same positions, velocities and accelerations,
+/// and reads those of all vertices.
 class Solver : public flow::Solver {
  public:
   /// Sets positions, m, and velocities, m/s, of all vertices. Throws std::invalid_argument for values that
@@ -122,10 +131,17 @@ class Solver : public flow::Solver {
   /// Number of the line whose tension has ended `advance`: the first one in the mesh. Throws only after a
   /// failed kernel.
   [[nodiscard]] virtual int failed_line() = 0;
+
+  /// Step of the cloth that has ended `advance`, if its cloth did, with reason and vertex. Does not throw.
+  [[nodiscard]] virtual std::optional<fabric::StepFailure> cloth_failure() = 0;
 };
 
 /// Solver on a backend, which must be available. Blocks. Throws std::invalid_argument for parameters out of
 /// range, and std::bad_alloc if memory runs out.
-[[nodiscard]] std::unique_ptr<Solver> create_solver(device::Backend backend, const Parameters& parameters);
+///
+/// On a group of several ranks `total_force_on_air` and `set_frame` are collective, as are the functions of
+/// the flow; `create_solver` throws std::invalid_argument also if the ranks cannot share the grid.
+[[nodiscard]] std::unique_ptr<Solver> create_solver(device::Backend backend, const Parameters& parameters,
+                                                    const linear::RankGroup& group = {});
 
 }  // namespace drogue::coupling

@@ -9,8 +9,8 @@ namespace drogue::coupling {
 template <class ExecutionSpace>
 class SolverAdapter final : public Solver {
  public:
-  explicit SolverAdapter(const Parameters& p)
-      : _instance(flow::host_threads<ExecutionSpace>(p.flow, {})), _solver(_instance, p) {}
+  SolverAdapter(const Parameters& p, const linear::RankGroup& group)
+      : _instance(flow::host_threads<ExecutionSpace>(p.flow, group)), _solver(_instance, p, group) {}
 
   void upload(flow::StateField field, std::span<const double> values) override {
     _solver.flow().upload(field, values);
@@ -80,6 +80,7 @@ class SolverAdapter final : public Solver {
   fabric::Totals cloth_totals() override { return _solver.fabric().totals(); }
   FailureReason failure_reason() override { return _solver.failure_reason(); }
   int failed_line() override { return _solver.failed_line(); }
+  std::optional<fabric::StepFailure> cloth_failure() override { return _solver.cloth_failure(); }
 
  private:
   [[nodiscard]] std::size_t faces() const {
@@ -120,8 +121,8 @@ class SolverAdapter final : public Solver {
 
 /// Facade of a solver on `ExecutionSpace`. Throws as the constructor of CoupledSolver does.
 template <class ExecutionSpace>
-std::unique_ptr<Solver> make_solver(const Parameters& parameters) {
-  return std::make_unique<SolverAdapter<ExecutionSpace>>(parameters);
+std::unique_ptr<Solver> make_solver(const Parameters& parameters, const linear::RankGroup& group) {
+  return std::make_unique<SolverAdapter<ExecutionSpace>>(parameters, group);
 }
 
 }  // namespace drogue::coupling

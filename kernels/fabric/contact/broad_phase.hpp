@@ -116,7 +116,7 @@ struct ClearGridFunctor {
       atomic_raise(views.progress(0).extent, most > z ? most : z);
     };
     // Edges include those of triangles, whose extent they bound.
-    if (k < views.edges && views.is_long(k) == 0) {
+    if (k < views.edges && views.is_long(k) == 0 && views.is_cut(k) == 0) {
       Point end[2];
       views.ends(k, views.start_x, end);
       measure(end[1] - end[0]);
@@ -144,7 +144,7 @@ struct FillGridFunctor {
       views.corners(k, views.start_x, at);
       put(k, at, views.triangle_sphere, views.triangle_heads);
     }
-    if (k < views.edges) {
+    if (k < views.edges && views.is_cut(k) == 0) {
       Point at[2];
       views.ends(k, views.start_x, at);
       if (views.is_long(k) != 0)
@@ -196,6 +196,10 @@ struct NeighbourListFunctor {
   }
 
   KOKKOS_FUNCTION void list_edges(int e) const {
+    if (views.is_cut(e) != 0) {
+      views.near_edges(e) = 0;
+      return;
+    }
     Point own[2], other[2];
     views.ends(e, views.start_x, own);
     const BoundingSphere own_sphere = views.edge_sphere(e);
@@ -204,7 +208,8 @@ struct NeighbourListFunctor {
     const int room = static_cast<int>(views.near_edge.extent(1));
     const int a = views.edge(e, 0), b = views.edge(e, 1);
     const auto list_if_near = [&](int f) {
-      if (f <= e || !views.edge_sphere(f).is_near(own_sphere.centre, cutoff_distance + own_sphere.radius))
+      if (f <= e || views.is_cut(f) != 0 ||
+          !views.edge_sphere(f).is_near(own_sphere.centre, cutoff_distance + own_sphere.radius))
         return;
       const int c = views.edge(f, 0), d = views.edge(f, 1);
       if (c == a || c == b || d == a || d == b) return;

@@ -48,6 +48,10 @@ class ContactHandler {
   /// Work on every vertex, J, which the checkpoints of the solver include. Does not throw.
   [[nodiscard]] virtual CheckpointedWork<ExecutionSpace> checkpointed_work() const = 0;
 
+  /// Lines without stiffness, E A in N of every line of the mesh, become no obstacles; the others become
+  /// obstacles. Blocks.
+  virtual void set_line_stiffness(std::span<const double> of_lines) = 0;
+
   /// Reason of the failure of step `step`. Blocks.
   [[nodiscard]] virtual FailureReason reason(std::int64_t step) const = 0;
 

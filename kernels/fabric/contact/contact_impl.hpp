@@ -40,6 +40,7 @@ class ContactImpl final : public ContactHandler<ExecutionSpace> {
   [[nodiscard]] CheckpointedWork<ExecutionSpace> checkpointed_work() const override {
     return {_work, _saved_work};
   }
+  void set_line_stiffness(std::span<const double> of_lines) override;
   [[nodiscard]] FailureReason reason(std::int64_t step) const override;
   void work(std::span<ContactWork> of_vertices) const override;
   void set_work(std::span<const ContactWork> of_vertices) override;
@@ -67,6 +68,7 @@ class ContactImpl final : public ContactHandler<ExecutionSpace> {
   template <class Functor>
   void launch(const char* label, int count, const Functor& functor) const;
   StepGraphs& graphs(const Points& x, const Points& v);
+  void forget_lists() const;
   void enqueue_begin(const Points3& x, const Points3& v) const;
   void enqueue_end(const Points3& x, const Points3& v) const;
   void enqueue_impulses(const Points3& x, const Points3& v) const;
@@ -81,6 +83,7 @@ class ContactImpl final : public ContactHandler<ExecutionSpace> {
   typename ListView<ExecutionSpace, ContactWork>::HostMirror _work_on_host;
   double _dt;  ///< s, as last set
   ContactViews<ExecutionSpace> _views;
+  std::vector<int> _edge_of_line;  ///< `edges_of_lines`
   std::list<StepGraphs> _graphs;
 };
 
@@ -135,6 +138,8 @@ ContactImpl<ExecutionSpace>::ContactImpl(const Parameters& p, const ContactInput
   const std::vector<int> long_edges = long_lines(p.mesh, edges);
   allocate(t.long_edge, "long_edges", long_edges.size());
   allocate(t.is_long, "edge_is_long", sides);
+  allocate(t.is_cut, "edge_is_cut", sides);
+  _edge_of_line = edges_of_lines(p.mesh, edges);
   allocate(t.owned, "owned_features", faces);
   const auto bodies = Kokkos::create_mirror_view(t.bodies);
   const auto triangle = Kokkos::create_mirror_view(t.triangle);
@@ -172,8 +177,9 @@ ContactImpl<ExecutionSpace>::ContactImpl(const Parameters& p, const ContactInput
   const int room = t.by_interval ? max_neighbours_of_interval : max_neighbours;
   allocate(t.near_triangle, "near_triangle", layers * n, room),
       allocate(t.near_edge, "near_edge", layers * sides, room);
-  allocate(t.constraint, "constraints", 1024 + 8 * n);
+  allocate(t.constraint, "constraints", 1024 + (t.by_interval ? 16 : 8) * n);
   allocate(t.constraints, "constraint_counts", n), allocate(t.vertex_constraint, "vertex_constraints", n);
+  allocate(t.impulse_sum, "impulse_sums", n);
   allocate(t.zone, "zone", n), allocate(t.label, "label_zones", n), allocate(t.zone_end, "zone_end", n);
   allocate(t.stuck, "stuck", n), allocate(t.motion, "zone_motion", n);
   allocate(t.progress, "contact_progress", 1);
@@ -181,6 +187,7 @@ ContactImpl<ExecutionSpace>::ContactImpl(const Parameters& p, const ContactInput
   _saved_work = ListView<ExecutionSpace, ContactWork>("drogue::fabric::saved_contact_work", n);
   _work_on_host = Kokkos::create_mirror_view(_work);
   t.work = _work;
+  if (!p.mesh.line_stiffness.empty()) set_line_stiffness(p.mesh.line_stiffness);
   reset();
 }
 
@@ -237,7 +244,7 @@ void ContactImpl<ExecutionSpace>::enqueue_impulses(const Points3& x, const Point
   const int items = device::is_host<Space> ? _instance.space().concurrency()
                                            : std::min(32768, static_cast<int>(_views.constraint.extent(0)));
   for (int round = 0; round < impulse_rounds; ++round) {
-    launch("drogue::fabric::solve_impulses", items, SolveImpulsesFunctor<Space>{_views, items});
+    launch("drogue::fabric::solve_impulses", items, SolveImpulsesFunctor<Space>{_views, items, round});
     launch("drogue::fabric::apply_impulses", n, ApplyImpulsesFunctor<Space>{_views, x, v, round});
   }
 }
@@ -265,15 +272,35 @@ void ContactImpl<ExecutionSpace>::set_dt(double dt) {
 }
 
 template <class ExecutionSpace>
-void ContactImpl<ExecutionSpace>::reset() {
+void ContactImpl<ExecutionSpace>::forget_lists() const {
   const auto progress = Kokkos::create_mirror_view(_views.progress);
   progress(0) = ContactStatus{};
   progress(0).skin = -1.0;  // no list is valid
   progress(0).dt = _dt;
   progress(0).reason = stepping::no_failure;
   device::copy(_instance.space(), _views.progress, progress);
+  _instance.space().fence("drogue::fabric::forget_lists");
+}
+
+template <class ExecutionSpace>
+void ContactImpl<ExecutionSpace>::reset() {
+  forget_lists();
   launch("drogue::fabric::reset_kick", _views.vertices, ResetKickFunctor<ExecutionSpace>{_work});
   _instance.space().fence("drogue::fabric::reset_contact");
+}
+
+template <class ExecutionSpace>
+void ContactImpl<ExecutionSpace>::set_line_stiffness(std::span<const double> of_lines) {
+  const auto is_cut = Kokkos::create_mirror_view(_views.is_cut);
+  Kokkos::deep_copy(is_cut, std::uint8_t{0});
+  // Where several lines have the same ends, one that is whole remains an obstacle.
+  for (const bool cut : {true, false})
+    for (std::size_t line = 0; line < of_lines.size(); ++line)
+      if (const int edge = _edge_of_line[line]; edge >= 0 && (of_lines[line] == 0.0) == cut)
+        is_cut(static_cast<std::size_t>(edge)) = cut ? 1 : 0;
+  device::copy(_instance.space(), _views.is_cut, is_cut);
+  forget_lists();
+  _instance.space().fence("drogue::fabric::set_line_stiffness");
 }
 
 template <class ExecutionSpace>

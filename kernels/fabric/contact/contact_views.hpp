@@ -13,9 +13,18 @@ using spatial::BoundingSphere;
 /// Rounds of impulses per step, and of rigid impact zones, which may grow where impulses were not enough.
 inline constexpr int impulse_rounds = 10, zone_rounds = 6;
 
-/// Capacity: neighbours of a vertex or edge, also in an interval of several steps, and constraints of a
-/// vertex.
-inline constexpr int max_neighbours = 64, max_neighbours_of_interval = 192, max_constraints = 64;
+/// Capacity: neighbours of a vertex or edge, also in an interval of several steps.
+inline constexpr int max_neighbours = 64, max_neighbours_of_interval = 192;
+
+/// Number of constraints of a vertex up to which their impulses are added in a fixed order. More are added as
+/// integers (`ImpulseSum`).
+inline constexpr int max_listed_constraints = 64;
+
+/// Impulses on a vertex as multiples of a quantum: their sum does not depend on the order of addition. The
+/// total of a round, and that of friction in all rounds.
+struct ImpulseSum {
+  std::int64_t total[3], friction[3];
+};
 
 /// Contact of two parts that touch or will touch within the step: a vertex and a triangle, two edges, or one
 /// of these and a body. The relative velocity at the closest points is the sum of weight times velocity.
@@ -101,6 +110,7 @@ struct ContactViews {
   UnmanagedTable<ExecutionSpace, int, 2> edge;
   List<int> long_edge;         ///< numbers of edges that are left out of the hash grid, in ascending order
   List<std::uint8_t> is_long;  ///< of every edge
+  List<std::uint8_t> is_cut;   ///< of every edge: a line that is no obstacle
   List<double> inverse_mass;
   List<std::uint8_t> fixed_dofs;  ///< as in FabricViews
   Points3 start_x;                ///< m, at the beginning of the step
@@ -118,17 +128,22 @@ struct ContactViews {
       near_triangle, near_edge;
   List<ContactConstraint> constraint;
   List<int> constraints;  ///< number of constraints of every vertex
-  UnmanagedTable<ExecutionSpace, int, max_constraints>
-      vertex_constraint;    ///< 4 times the constraint, plus the slot of the vertex
-  List<int> zone;           ///< parents of the union-find forest of zones
-  List<int> label;          ///< least vertex of the zone of each vertex
-  List<int> zone_end;       ///< largest vertex of a zone, stored at its least vertex
-  List<int> stuck;          ///< 1: would enter a body and does not move
-  List<ZoneMotion> motion;  ///< of a zone, stored at its least vertex
+  UnmanagedTable<ExecutionSpace, int, max_listed_constraints>
+      vertex_constraint;         ///< 4 times the constraint, plus the slot of the vertex
+  List<ImpulseSum> impulse_sum;  ///< of vertices with more constraints than are listed; else zero
+  List<int> zone;                ///< parents of the union-find forest of zones
+  List<int> label;               ///< least vertex of the zone of each vertex
+  List<int> zone_end;            ///< largest vertex of a zone, stored at its least vertex
+  List<int> stuck;               ///< 1: would enter a body and does not move
+  List<ZoneMotion> motion;       ///< of a zone, stored at its least vertex
   List<ContactStatus> progress;
   StepMonitor<ExecutionSpace> monitor;
 
   [[nodiscard]] KOKKOS_FUNCTION double cutoff_distance() const { return thickness + progress(0).skin; }
+
+  [[nodiscard]] KOKKOS_FUNCTION bool is_listed(int i) const {
+    return constraints(i) <= max_listed_constraints;
+  }
 
   template <class Points>
   KOKKOS_FUNCTION void corners(int t, const Points& x, Point (&to)[3]) const {

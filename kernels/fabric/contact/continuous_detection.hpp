@@ -158,6 +158,7 @@ struct CcdFunctor {
   }
 
   KOKKOS_FUNCTION void check_edge(int e) const {
+    if (views.is_cut(e) != 0) return;
     const int own[2] = {views.edge(e, 0), views.edge(e, 1)};
     // Faces check the edges of their triangles.
     if (e >= views.first_line)

@@ -21,6 +21,18 @@ CollisionEdges collision_edges(const Mesh& mesh) {
   return edges;
 }
 
+std::vector<int> edges_of_lines(const Mesh& mesh, const CollisionEdges& edges) {
+  const auto first = edges.ends.begin() + edges.first_line;
+  std::vector<int> numbers;
+  for (const auto& [a, b] : mesh.lines) {
+    const mesh::Edge edge = mesh::edge_between(a, b);
+    const auto found = std::lower_bound(first, edges.ends.end(), edge);
+    const bool is_listed = found != edges.ends.end() && *found == edge;
+    numbers.push_back(is_listed ? static_cast<int>(found - edges.ends.begin()) : -1);
+  }
+  return numbers;
+}
+
 std::vector<int> long_lines(const Mesh& mesh, const CollisionEdges& edges) {
   std::vector<int> lines;
   for (int k = edges.first_line; k < static_cast<int>(edges.ends.size()); ++k) {

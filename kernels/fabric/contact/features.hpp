@@ -16,6 +16,10 @@ struct CollisionEdges {
 /// Edges that take part in contact. Throws only std::bad_alloc.
 [[nodiscard]] CollisionEdges collision_edges(const Mesh& mesh);
 
+/// Number in `edges`, those of the mesh, of every line of the mesh; -1 for an edge of a triangle. Throws only
+/// std::bad_alloc.
+[[nodiscard]] std::vector<int> edges_of_lines(const Mesh& mesh, const CollisionEdges& edges);
+
 /// Lines whose length at rest is at least four times the mean of all edges, such as suspension lines, in
 /// ascending order. `edges`: those of the mesh. Throws only std::bad_alloc.
 [[nodiscard]] std::vector<int> long_lines(const Mesh& mesh, const CollisionEdges& edges);

@@ -77,14 +77,11 @@ struct DetectConstraintsFunctor {
     if (constraint.friction > 0.0) set_friction_target(constraint);
     const int number = Kokkos::atomic_fetch_add(&views.progress(0).constraints, 1);
     if (number >= static_cast<int>(views.constraint.extent(0)))
-      return views.raise(views.present_step(), FailureReason::too_dense, constraint.vertex[0]);
+      return views.raise(views.present_step(), FailureReason::too_many_constraints, constraint.vertex[0]);
     for (int slot = 0; slot < 4; ++slot)
       if (takes_part(constraint, slot)) {
         const int i = constraint.vertex[slot], entry = Kokkos::atomic_fetch_add(&views.constraints(i), 1);
-        if (entry < max_constraints)
-          views.vertex_constraint(i, entry) = 4 * number + slot;
-        else
-          views.raise(views.present_step(), FailureReason::too_dense, i);
+        if (entry < max_listed_constraints) views.vertex_constraint(i, entry) = 4 * number + slot;
       }
     views.constraint(number) = constraint;
   }
@@ -167,6 +164,7 @@ struct DetectConstraintsFunctor {
   }
 
   KOKKOS_FUNCTION void detect_at_edge(int e) const {
+    if (views.is_cut(e) != 0) return;
     Point own[2];
     views.ends(e, views.start_x, own);
     for (int b = 0; b < static_cast<int>(views.bodies.extent(0)); ++b) {
@@ -257,11 +255,11 @@ struct DetectConstraintsFunctor {
   }
 };
 
-/// Sorts the constraints of vertex i by their keys, so that sums do not depend on the order of detection.
+/// Sorts the listed constraints of vertex i by their keys, so that sums do not depend on the order of
+/// detection.
 template <class ExecutionSpace>
 KOKKOS_FUNCTION void sort_constraints(const ContactViews<ExecutionSpace>& views, int i) {
-  const int count = views.constraints(i) < max_constraints ? views.constraints(i) : max_constraints;
-  views.constraints(i) = count;
+  const int count = views.constraints(i);
   for (int k = 1; k < count; ++k) {
     const int moved = views.vertex_constraint(i, k);
     const std::uint64_t key = views.constraint(moved / 4).key;

@@ -11,6 +11,7 @@
 #include "kernels/flow/views.hpp"
 #include "kernels/linear/poisson/diagonalization.hpp"
 #include "kernels/linear/poisson/fourier.hpp"
+#include "kernels/linear/poisson/pencil_solver.hpp"
 
 namespace drogue::flow {
 
@@ -44,10 +45,17 @@ struct DiffusionSetup {
   List<ExecutionSpace> pressure;                ///< kinematic, of the previous step, m^2/s^2
   ControlView<ExecutionSpace> control;
   double nu;  ///< kinematic viscosity, m^2/s
+  /// As in `ProjectionSetup`, of the pressure.
+  const double* pressure_below[3];
 
-  /// Whether the faces of a component on the sides of its own axis are no unknowns.
-  [[nodiscard]] KOKKOS_FUNCTION bool is_bounded(int axis) const {
-    return grid.n[axis] > 1 && !grid.periodic[axis];
+  /// True on a rank at a side of the domain. Does not throw.
+  [[nodiscard]] KOKKOS_FUNCTION bool is_side(int side) const {
+    return !grid.whole_periodic[side / 2] && boundary.kind[side] != BoundaryKind::neighbour;
+  }
+  /// First face along the axis of a component that is an unknown: not that on a low side of the domain. Does
+  /// not throw.
+  [[nodiscard]] KOKKOS_FUNCTION int first_unknown(int axis) const {
+    return grid.n[axis] > 1 && is_side(2 * axis) ? 1 : 0;
   }
 };
 
@@ -67,7 +75,7 @@ struct DiffusionSourceFunctor {
     if (control.trial.stop != stepping::Stop::running) return;
     const double dt = control.trial.dt;
     int index[3] = {i, j, k};
-    if (setup.is_bounded(component)) ++index[component];
+    index[component] += setup.first_unknown(component);
     const std::int64_t place = component * g.component + g.offset(index[0], index[1], index[2]);
     const double* u = setup.velocity.data() + place;
     double laplacian = 0.0, change = 0.0;
@@ -83,8 +91,9 @@ struct DiffusionSourceFunctor {
       laplacian += w * ((above - u[0]) - (u[0] - below));
       if (g.periodic[axis]) continue;
       if (axis == component) {
-        if (index[axis] == 1) change += w * normal_change(2 * axis, index, place - stride, dt);
-        if (index[axis] + 1 == g.n[axis])
+        if (index[axis] == 1 && setup.is_side(2 * axis))
+          change += w * normal_change(2 * axis, index, place - stride, dt);
+        if (index[axis] + 1 == g.n[axis] && setup.is_side(2 * axis + 1))
           change += w * normal_change(2 * axis + 1, index, place + stride, dt);
       } else {
         if (index[axis] == 0) change += 2.0 * w * tangential_change(2 * axis, index, place, -stride);
@@ -109,10 +118,14 @@ struct DiffusionSourceFunctor {
   [[nodiscard]] KOKKOS_FUNCTION double pressure_gradient(const int index[3]) const {
     const MacGrid& g = setup.grid;
     if (g.n[component] == 1) return 0.0;
+    const double here = pressure_at(index[0], index[1], index[2]);
+    const double* other_rank = setup.pressure_below[component];
+    if (index[component] == 0 && other_rank != nullptr)
+      return g.inverse_h[component] *
+             (here - other_rank[index[0] + g.n[0] * (component == 1 ? index[2] : index[1])]);
     int below[3] = {index[0], index[1], index[2]};
     below[component] = (index[component] == 0 ? g.n[component] : index[component]) - 1;
-    return g.inverse_h[component] *
-           (pressure_at(index[0], index[1], index[2]) - pressure_at(below[0], below[1], below[2]));
+    return g.inverse_h[component] * (here - pressure_at(below[0], below[1], below[2]));
   }
   /// Change of the normal velocity on a side in this step, m/s, next to the unknown `index`.
   [[nodiscard]] KOKKOS_FUNCTION double normal_change(int side, const int index[3], std::int64_t face,
@@ -147,7 +160,7 @@ struct DiffusionUpdateFunctor {
   KOKKOS_FUNCTION void operator()(const int i, const int j, const int k) const {
     if (setup.control().trial.stop != stepping::Stop::running) return;
     int index[3] = {i, j, k};
-    if (setup.is_bounded(component)) ++index[component];
+    index[component] += setup.first_unknown(component);
     const std::int64_t place =
         component * setup.grid.component + setup.grid.offset(index[0], index[1], index[2]);
     const std::int64_t at = i + extent[0] * (j + static_cast<std::int64_t>(extent[1]) * k);
@@ -164,17 +177,26 @@ class ImplicitDiffusion {
  public:
   using Values = List<ExecutionSpace>;
 
-  /// Allocates; blocks. Throws std::runtime_error if memory runs out.
-  ImplicitDiffusion(const ExecutionSpace& space, const Parameters& parameters) {
+  /// Allocates; blocks. Collective on `group`, which `ranks` divides. Throws std::runtime_error if memory
+  /// runs out.
+  ImplicitDiffusion(const ExecutionSpace& space, const Parameters& parameters, const linear::RankGroup& group,
+                    const linear::PencilRanks& ranks) {
     for (std::size_t c = 0; c < 3; ++c) {
       const linear::PoissonProblem problem = diffusion_problem(parameters, c);
+      _unknowns[c] = linear::unknowns_of(ranks, problem);
       std::size_t same = 0;
       while (same < _problems.size() && !(_problems[same] == problem)) ++same;
       _solver_of[c] = same;
       if (same < _problems.size()) continue;
       _problems.push_back(problem);
-      if (linear::FourierSolver<ExecutionSpace>::supports(problem) &&
-          parameters.pressure_solver != PressureSolver::diagonalization)
+      const bool transforms = linear::FourierSolver<ExecutionSpace>::supports(problem) &&
+                              parameters.pressure_solver != PressureSolver::diagonalization;
+      if (group.size() > 1)
+        _solvers.emplace_back(
+            std::in_place_type<linear::PencilSolver<ExecutionSpace>>, space, problem, group, ranks,
+            transforms && device::is_host<ExecutionSpace> ? linear::AxisMethod::fourier
+                                                          : linear::AxisMethod::diagonalization);
+      else if (transforms)
         _solvers.emplace_back(std::in_place_type<linear::FourierSolver<ExecutionSpace>>, space, problem);
       else
         _solvers.emplace_back(std::in_place_type<linear::DiagonalizationSolver<ExecutionSpace>>, space,
@@ -183,21 +205,22 @@ class ImplicitDiffusion {
   }
 
   /// Enqueues the implicit part of a step: replaces the predicted velocity, which holds the explicit part.
-  /// The work arrays hold at least one number per cell. Asynchronous; neither fences nor allocates.
+  /// The work arrays hold at least one number per cell. Asynchronous on one rank, where it neither fences nor
+  /// allocates; collective and blocking on several.
   void enqueue(const ExecutionSpace& space, const DiffusionSetup<ExecutionSpace>& setup, const Values& source,
-               const Values& change) const {
+               const Values& change) {
     // The step size is read on the device, where it changes from step to step.
     const double* dt = &setup.control.data()->trial.dt;
     for (int c = 0; c < 3; ++c) {
       const std::size_t which = _solver_of[static_cast<std::size_t>(c)];
-      const linear::PoissonProblem& problem = _problems[which];
-      const int extent[3] = {problem.cells[0], problem.cells[1], problem.cells[2]};
-      const Values from(source.data(), problem.size()), to(change.data(), problem.size());
+      const linear::CellBox& unknowns = _unknowns[static_cast<std::size_t>(c)];
+      const int extent[3] = {unknowns.cells[0], unknowns.cells[1], unknowns.cells[2]};
+      const Values from(source.data(), unknowns.size()), to(change.data(), unknowns.size());
       launch_cells(
           space, "drogue::flow::diffusion_source", extent,
           DiffusionSourceFunctor<ExecutionSpace>{setup, c, {extent[0], extent[1], extent[2]}, from.data()});
       std::visit(
-          [&](const auto& solver) {
+          [&](auto& solver) {
             solver.enqueue_solve(from, to, {dt, 0.5 * setup.nu});
           },
           _solvers[which]);
@@ -209,10 +232,12 @@ class ImplicitDiffusion {
 
  private:
   using Solver =
-      std::variant<linear::FourierSolver<ExecutionSpace>, linear::DiagonalizationSolver<ExecutionSpace>>;
+      std::variant<linear::FourierSolver<ExecutionSpace>, linear::DiagonalizationSolver<ExecutionSpace>,
+                   linear::PencilSolver<ExecutionSpace>>;
   std::vector<linear::PoissonProblem> _problems;  ///< without repetitions
   std::vector<Solver> _solvers;                   ///< of each problem
   std::array<std::size_t, 3> _solver_of{};        ///< by component
+  std::array<linear::CellBox, 3> _unknowns{};     ///< of this rank, by component
 };
 
 }  // namespace drogue::flow

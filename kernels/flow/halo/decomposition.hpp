@@ -50,8 +50,6 @@ inline linear::PencilRanks decompose(const std::array<int, 3>& cells, int ranks,
 /// Place of a rank in the division of a flow. Throws std::invalid_argument, with one sentence, if the flow
 /// cannot be divided among so many ranks.
 inline linear::PencilRanks ranks_of(const Parameters& p, int ranks, int rank) {
-  if (ranks > 1 && p.diffusion == Diffusion::crank_nicolson)
-    throw std::invalid_argument("flow solver: Crank-Nicolson diffusion works on one rank");
   return decompose(p.cells, ranks, rank);
 }
 

@@ -117,13 +117,6 @@ class Halo {
     }
   }
 
-  /// True if it is true on all ranks.
-  [[nodiscard]] bool all(bool mine) const {
-    std::uint64_t refused = mine ? 0 : 1;
-    _group.maximize({&refused, 1});
-    return refused == 0;
-  }
-
  private:
   /// Restricts a grid to cells `begin` to `begin + count - 1` along an axis.
   static void cut(MacGrid& grid, int axis, int begin, int count) {

@@ -104,6 +104,12 @@ void RankGroup::maximize(std::span<std::uint64_t> values) const {
                 _communicator->handle);
 }
 
+bool RankGroup::all(bool mine) const {
+  std::uint64_t refused = mine ? 0 : 1;
+  maximize({&refused, 1});
+  return refused == 0;
+}
+
 void RankGroup::sum(std::span<double> values) const {
   if (_size == 1) return;
   MPI_Allreduce(MPI_IN_PLACE, values.data(), length(values.size()), MPI_DOUBLE, MPI_SUM,

@@ -64,6 +64,9 @@ class RankGroup {
   /// Replaces each value, of any unit, by its maximum over all ranks. Does not throw.
   void maximize(std::span<std::uint64_t> values) const;
 
+  /// True if it is true on all ranks. Does not throw.
+  [[nodiscard]] bool all(bool mine) const;
+
   /// Replaces each value, of any unit, by its sum over all ranks. Does not throw.
   void sum(std::span<double> values) const;
 

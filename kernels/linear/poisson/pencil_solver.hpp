@@ -20,9 +20,23 @@ enum class AxisMethod {
   diagonalization,  ///< products with the matrices of eigenvectors
 };
 
+/// Unknowns of a rank in a problem: the cells of `box_of(ranks, problem.cells)`. Along an axis with unknowns
+/// on faces, those on the low faces of its cells in the grid of cells; the first face is no unknown. Does not
+/// throw.
+[[nodiscard]] inline CellBox unknowns_of(const PencilRanks& ranks, const PoissonProblem& problem) {
+  std::array<int, 3> cells = problem.cells;
+  for (std::size_t axis = 0; axis < 3; ++axis) cells[axis] += problem.axes[axis].on_faces ? 1 : 0;
+  CellBox box = box_of(ranks, cells);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (!problem.axes[axis].on_faces) continue;
+    int& changed = box.begin[axis] == 0 ? box.cells[axis] : box.begin[axis];
+    --changed;
+  }
+  return box;
+}
+
 /// Direct solver on several ranks: transforms along x, y and z in turn, with transpositions between boxes
-/// that hold whole lines along each axis (pencils). Each rank holds the cells of `box_of(ranks,
-/// problem.cells)`.
+/// that hold whole lines along each axis (pencils). Each rank holds `unknowns_of` itself.
 template <class ExecutionSpace>
 class PencilSolver {
  public:
@@ -36,7 +50,7 @@ class PencilSolver {
     if (method == AxisMethod::fourier && !device::is_host<ExecutionSpace>)
       throw std::invalid_argument("the Fourier solver on CUDA works on one rank");
     const RankGroup rows = group.split(ranks.place[2]), columns = group.split(ranks.place[1]);
-    _boxes[0] = box_of(ranks, problem.cells);
+    _boxes[0] = unknowns_of(ranks, problem);
     // The lines along z must not be divided further.
     turn(0, rows, problem, 0);
     turn(1, columns, problem, _boxes[1].cells[1] >= _boxes[1].cells[0] ? 1 : 0);
@@ -52,10 +66,11 @@ class PencilSolver {
     space.fence("drogue::linear::pencil_solver: allocated");
   }
 
-  /// Solves for `solution`, in its unit, with the right-hand side in that unit per m^2, which it keeps;
-  /// arrays of the cells of this rank, x fastest. Collective; blocks until the last transposition. Throws
-  /// std::invalid_argument for an array of the wrong size.
-  void enqueue_solve(const List& right_hand_side, const List& solution) {
+  /// Applies the inverse of the operator to the right-hand side, which it keeps. For the Laplacian that is in
+  /// the unit of the solution per m^2. Arrays of the unknowns of this rank, x fastest. Collective; blocks
+  /// until the last transposition. Throws std::invalid_argument for an array of the wrong size.
+  void enqueue_solve(const List& right_hand_side, const List& solution,
+                     const SpectralOperator& spectral_operator = {}) {
     const std::size_t cells = _boxes[0].size();
     if (right_hand_side.extent(0) != cells || solution.extent(0) != cells)
       throw std::invalid_argument("Poisson solver: the arrays must hold one value per cell");
@@ -68,10 +83,9 @@ class PencilSolver {
       }
     }
     if (_boxes[2].size() > 0)
-      scale_spectrum(
-          _space,
-          SpectralScalingFunctor<ExecutionSpace>{
-              _arrays[0].data(), _eigenvalues[0], _eigenvalues[1], _eigenvalues[2], 1, _normalisation, {}});
+      scale_spectrum(_space, SpectralScalingFunctor<ExecutionSpace>{_arrays[0].data(), _eigenvalues[0],
+                                                                    _eigenvalues[1], _eigenvalues[2], 1,
+                                                                    _normalisation, spectral_operator});
     for (std::size_t axis = 3; axis-- > 0;) {
       transform(axis, false);
       if (axis > 0 && _turns[axis - 1]) {
@@ -88,7 +102,8 @@ class PencilSolver {
     const std::size_t gathered = from + 1;
     _boxes[gathered] = _boxes[from];
     if (group.size() == 1) return;
-    _turns[from].emplace(group, _boxes[from], gathered, problem.cells[gathered], split);
+    _turns[from].emplace(group, _boxes[from], gathered, problem.cells[gathered], split,
+                         problem.axes[gathered].on_faces ? 1 : 0);
     _boxes[gathered] = _turns[from]->after();
   }
 
@@ -102,7 +117,7 @@ class PencilSolver {
     const auto begin = eigenvalues.begin() + _boxes[2].begin[axis];
     _eigenvalues[axis] = to_device(_space, "drogue::linear::eigenvalues",
                                    std::vector<double>(begin, begin + _boxes[2].cells[axis]));
-    _has_one_cell[axis] = problem.cells[axis] == 1;
+    _has_one_cell[axis] = !problem.varies_along(axis);
     if (_has_one_cell[axis]) return;
     if (_method == AxisMethod::diagonalization) {
       _basis[axis] = eigenvector_matrix(_space, problem, axis);

@@ -14,20 +14,24 @@
 namespace drogue::linear {
 
 /// Copies an array, x fastest, to consecutive blocks of its parts along an axis, or back. Each block is x
-/// fastest.
+/// fastest. The parts are nearly equal once `missing` entries are put before the first.
 struct BlockCopyFunctor {
   int cells[3];
-  int axis, parts;
+  int axis, parts, missing;
   bool to_blocks;
   double *array, *blocks;
 
   KOKKOS_FUNCTION void operator()(const int at) const {
-    const int nx = cells[0], ny = cells[1], n = cells[axis];
+    const int nx = cells[0], ny = cells[1], n = cells[axis] + missing;
     int index[3] = {at % nx, at / nx % ny, at / nx / ny};
-    const int part = static_cast<int>((static_cast<std::int64_t>(parts) * (index[axis] + 1) - 1) / n);
-    const int begin = static_cast<int>(static_cast<std::int64_t>(n) * part / parts);
+    const int along = index[axis] + missing + 1;
+    const int part = static_cast<int>((static_cast<std::int64_t>(parts) * along - 1) / n);
+    const auto begin_of = [&](int of) {
+      return of == 0 ? 0 : static_cast<int>(static_cast<std::int64_t>(n) * of / parts) - missing;
+    };
+    const int begin = begin_of(part);
     int extent[3] = {cells[0], cells[1], cells[2]};
-    extent[axis] = static_cast<int>(static_cast<std::int64_t>(n) * (part + 1) / parts) - begin;
+    extent[axis] = begin_of(part + 1) - begin;
     index[axis] -= begin;
     const std::int64_t others = static_cast<std::int64_t>(cells[(axis + 1) % 3]) * cells[(axis + 2) % 3];
     const std::int64_t place =
@@ -51,11 +55,17 @@ class PencilTranspose {
   using List = Kokkos::View<double*, typename ExecutionSpace::memory_space>;
   using Buffer = HostBuffer<ExecutionSpace>;
 
-  /// `before`: cells of this rank; `whole`: number along the axis `gathered`. Not collective. Does not throw
-  /// but std::bad_alloc.
+  /// `before`: cells of this rank; `whole`: number along the axis `gathered`, without the `missing` ones with
+  /// which the first part of that axis would be as large as the others. Not collective. Does not throw but
+  /// std::bad_alloc.
   PencilTranspose(const RankGroup& group, const CellBox& before, std::size_t gathered, int whole,
-                  std::size_t split)
-      : _group(group), _gathered(gathered), _split(split), _before(before), _after(before) {
+                  std::size_t split, int missing = 0)
+      : _group(group),
+        _gathered(gathered),
+        _split(split),
+        _missing(missing),
+        _before(before),
+        _after(before) {
     const int ranks = group.size(), n = before.cells[split];
     _after.begin[gathered] = 0;
     _after.cells[gathered] = whole;
@@ -64,7 +74,8 @@ class PencilTranspose {
     const int third = before.cells[3 - gathered - split];
     for (int rank = 0; rank < ranks; ++rank) {
       _sent.push_back(third * before.cells[gathered] * part_size(n, ranks, rank));
-      _received.push_back(third * part_size(whole, ranks, rank) * _after.cells[split]);
+      const int own = part_size(whole + missing, ranks, rank) - (rank == 0 ? missing : 0);
+      _received.push_back(third * own * _after.cells[split]);
     }
   }
 
@@ -104,6 +115,7 @@ class PencilTranspose {
                         BlockCopyFunctor{{n[0], n[1], n[2]},
                                          static_cast<int>(before ? _split : _gathered),
                                          _group.size(),
+                                         before ? 0 : _missing,
                                          to_blocks,
                                          array.data(),
                                          blocks.data()});
@@ -111,6 +123,7 @@ class PencilTranspose {
 
   RankGroup _group;
   std::size_t _gathered, _split;
+  int _missing;
   CellBox _before, _after;
   std::vector<int> _sent, _received;  ///< numbers to and from each rank, forward
 };

@@ -8,19 +8,21 @@ namespace drogue::reference {
 namespace {
 
 using Real = long double;
-using Long = std::array<Real, 3>;
+using WideVector = std::array<Real, 3>;
 
-Long minus(const Long& a, const Long& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
+WideVector wide_difference(const WideVector& a, const WideVector& b) {
+  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
 
-Long cross(const Long& a, const Long& b) {
+WideVector wide_cross(const WideVector& a, const WideVector& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-Real dot(const Long& a, const Long& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+Real wide_dot(const WideVector& a, const WideVector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 /// Triple product of the edges from p.
-Real volume(const Long& p, const Long& a, const Long& b, const Long& c) {
-  return dot(minus(a, p), cross(minus(b, p), minus(c, p)));
+Real volume(const WideVector& p, const WideVector& a, const WideVector& b, const WideVector& c) {
+  return wide_dot(wide_difference(a, p), wide_cross(wide_difference(b, p), wide_difference(c, p)));
 }
 
 struct Hit {
@@ -36,7 +38,7 @@ SharpForces sharp_forces(const coupling::StaggeredGrid& grid, const SharpSheet& 
   FaceField count = zero_field(grid);
   const auto corner = [&](std::size_t t, std::size_t k) {
     const Vector& x = sheet.positions[static_cast<std::size_t>(sheet.triangles[t][k])];
-    return Long{x[0], x[1], x[2]};
+    return WideVector{x[0], x[1], x[2]};
   };
   for (std::size_t d = 0; d < 3; ++d) {
     if (grid.cells[d] == 1) continue;
@@ -46,16 +48,16 @@ SharpForces sharp_forces(const coupling::StaggeredGrid& grid, const SharpSheet& 
         for (cell[0] = 0; cell[0] < grid.cells[0]; ++cell[0]) {
           const bool is_last = cell[d] + 1 == grid.cells[d];
           if (is_last && !grid.periodic[d]) continue;
-          Long from{};
+          WideVector from{};
           for (std::size_t a = 0; a < 3; ++a) from[a] = grid.origin[a] + (cell[a] + 0.5L) * grid.spacing[a];
-          Long to = from;
+          WideVector to = from;
           to[d] += grid.spacing[d];
           std::array<int, 3> face = cell;
           face[d] = is_last ? 0 : cell[d] + 1;
           const auto at = static_cast<std::size_t>(
               face[0] + faces_along(grid, d, 0) * (face[1] + faces_along(grid, d, 1) * face[2]));
           for (std::size_t t = 0; t < sheet.triangles.size(); ++t) {
-            const Long a = corner(t, 0), b = corner(t, 1), c = corner(t, 2);
+            const WideVector a = corner(t, 0), b = corner(t, 1), c = corner(t, 2);
             if ((volume(from, a, b, c) > 0.0L) == (volume(to, a, b, c) > 0.0L)) continue;
             const Real u = volume(from, to, b, c), v = volume(from, to, c, a), w = volume(from, to, a, b);
             if (!((u > 0.0L && v > 0.0L && w > 0.0L) || (u < 0.0L && v < 0.0L && w < 0.0L))) continue;
@@ -69,9 +71,9 @@ SharpForces sharp_forces(const coupling::StaggeredGrid& grid, const SharpSheet& 
                      static_cast<int>(hits.size())};
   for (const Hit& hit : hits) {
     const std::size_t d = hit.component;
-    const Long normal = cross(minus(corner(hit.triangle, 1), corner(hit.triangle, 0)),
-                              minus(corner(hit.triangle, 2), corner(hit.triangle, 0)));
-    const Real part = normal[d] / std::sqrt(dot(normal, normal));
+    const WideVector normal = wide_cross(wide_difference(corner(hit.triangle, 1), corner(hit.triangle, 0)),
+                                         wide_difference(corner(hit.triangle, 2), corner(hit.triangle, 0)));
+    const Real part = normal[d] / std::sqrt(wide_dot(normal, normal));
     Real moving = 0.0L;
     for (std::size_t k = 0; k < 3; ++k)
       moving +=

@@ -207,7 +207,7 @@ void declare_coupling(Table& table, coupling::SheetParameters& coupling,
       .when(with_fluid, fluid_condition, "");
   table
       .value("filter", scene::real_codec(coupling.filter),
-             "Weight of the present step in the running mean of the acceleration of the fluid at bodies")
+             "Weight of the present step in the running mean of the acceleration of the fluid at sheets")
       .range(0.0, 1.0)
       .when(with_fluid, fluid_condition, "");
 }

@@ -204,6 +204,20 @@ void add_reefing(const Canopy& canopy, CanopyMesh& to) {
   }
 }
 
+/// Gives a drum its tension, by a smaller mesh at rest, and its deflection in the first axisymmetric mode.
+void stretch_drum(const Canopy& canopy, const CanopyAxes& axes, const RingMesh& cloth, CanopyMesh& to) {
+  constexpr double first_zero = 2.404825557695773;  // of the Bessel function J0
+  for (std::size_t i = 0; i < cloth.points.size(); ++i) {
+    const double height =
+        canopy.deflection *
+        std::cyl_bessel_j(0.0, first_zero * 2.0 * cloth.points[i].distance / canopy.diameter);
+    to.positions[i] = axes.place(to.positions[i], 0.0, 0.0, height);
+    Vector& rest = to.fabric.mesh.rest[i];
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      rest[axis] = canopy.centre[axis] + (rest[axis] - canopy.centre[axis]) / canopy.stretch();
+  }
+}
+
 /// Suspension lines, the riser and the payload, unless it is shared.
 void add_lines(const Canopy& canopy, const CanopyAxes& axes, CanopyMesh& to) {
   fabric::Parameters& p = to.fabric;
@@ -249,6 +263,13 @@ double Canopy::axis_angle() const {
     default:
       return angle;
   }
+}
+
+/// The Cauchy stress of equal stretches l along two axes is E (l^2 - 1) / (2 (1 - nu)) for St
+/// Venant-Kirchhoff membranes with the membrane modulus E.
+double Canopy::stretch() const {
+  if (kind != CanopyKind::drum) return 1.0;
+  return std::sqrt(1.0 + 2.0 * tension * (1.0 - poisson) / membrane_modulus);
 }
 
 double Canopy::skirt_radius() const { return 0.5 * (has_skirt() ? skirt.diameter : diameter); }
@@ -312,12 +333,15 @@ CanopyMesh make_canopy(const Canopy& canopy) {
   p.mesh.triangles = cloth.triangles;
   result.cloth_vertices = cloth.points.size();
   p.mass = fabric::lumped_masses(p.mesh, canopy.area_density, 0.0, fabric::Lumping::area);
+  if (canopy.kind == CanopyKind::drum) stretch_drum(canopy, axes, cloth, result);
   add_reinforcement(canopy, cloth, p.mesh);
   const int skirt_begin = cloth.ring_begin.back(), per_gore = cloth.ring_size.back() / canopy.gores;
   for (int gore = 0; gore < canopy.gores; ++gore) result.skirt.push_back(skirt_begin + gore * per_gore);
   add_reefing(canopy, result);
   if (canopy.has_lines()) add_lines(canopy, axes, result);
   p.pinned.assign(p.mesh.rest.size(), 0);
+  if (canopy.kind == CanopyKind::drum)
+    std::fill(p.pinned.begin() + skirt_begin, p.pinned.end(), std::uint8_t{7});
   if (canopy.has_lines() && canopy.payload.fixed && !canopy.payload.shared) p.pinned.back() = 7;
   return result;
 }
@@ -388,7 +412,7 @@ void append_canopy(const Canopy& canopy, const coupling::PorousLaw& law, Sheets&
 }  // namespace
 
 Sheets make_all_sheets(const std::vector<Body>& bodies, const std::vector<Canopy>& canopies, double density,
-                       double viscosity) {
+                       double viscosity, const std::vector<Flag>& flags) {
   Sheets sheets;
   sheets.fabric = make_sheets(bodies);
   fabric::Parameters& p = sheets.fabric;
@@ -402,6 +426,10 @@ Sheets make_all_sheets(const std::vector<Body>& bodies, const std::vector<Canopy
   set_offsets(bodies, sheets.positions);
   for (const Canopy& canopy : canopies)
     append_canopy(canopy, law_of(canopy.porosity, density, viscosity), sheets);
+  sheets.flags = append_flags(flags, p, sheets.positions);
+  coupling::PorousLaw of_flags;
+  of_flags.impermeable = of_flags.no_slip = true;
+  sheets.laws.resize(sheets.positions.size(), of_flags);
   return sheets;
 }
 

@@ -7,6 +7,7 @@
 
 #include "kernels/fabric/parameters.hpp"
 #include "miniapps/parachute/bodies/body.hpp"
+#include "miniapps/parachute/flags/flag.hpp"
 
 namespace drogue::parachute_app {
 
@@ -16,6 +17,7 @@ enum class CanopyKind {
   extended_skirt,  ///< such a disk with a conical skirt
   guide_surface,   ///< likewise, with a skirt that guides the stream inwards to a narrow mouth
   sheet,           ///< a flat disk without lines and payload
+  drum,            ///< such a disk under tension, whose rim is fixed
 };
 
 /// Kinds of cloth.
@@ -88,7 +90,7 @@ struct Canopy {
   double vent = 0.457;  ///< m, diameter; 0: none
   ConicalSkirt skirt;   ///< of extended-skirt and guide-surface canopies
   Fabric cloth = Fabric::mil_c_7020_1;
-  double area_density = 0.0373;       ///< kg/m^2
+  double area_density = 0.0373;       ///< kg/m^2; of a drum, under its tension
   double membrane_modulus = 20000.0;  ///< N/m
   double poisson = 0.3;
   double edge_length = 0.0;  ///< m, largest edge along the rings and the meridians
@@ -101,6 +103,8 @@ struct Canopy {
   std::optional<Riser> riser;
   CanopyPayload payload;
   std::optional<ReefingLine> reefing;
+  double tension = 0.0;     ///< N/m, of a drum
+  double deflection = 0.0;  ///< m, of the centre of a drum at the start, along its axis
   Reinforcement reinforcement;
   Perturbation perturbation;
   Porosity porosity = {PorosityLaw::forchheimer, 254.4, 37.6};
@@ -112,7 +116,9 @@ struct Canopy {
     return kind == CanopyKind::extended_skirt || kind == CanopyKind::guide_surface;
   }
   /// True for kinds with suspension lines and a payload. Does not throw.
-  [[nodiscard]] bool has_lines() const { return kind != CanopyKind::sheet; }
+  [[nodiscard]] bool has_lines() const { return kind != CanopyKind::sheet && kind != CanopyKind::drum; }
+  /// Length of the cloth over that at rest: 1 unless it is under tension. Does not throw.
+  [[nodiscard]] double stretch() const;
   /// Radius of the edge to which the lines are attached, in the cloth at rest, m. Does not throw.
   [[nodiscard]] double skirt_radius() const;
   /// Height of the flat cloth above that edge at rest, m; 0 without a conical skirt. Does not throw.
@@ -151,6 +157,7 @@ struct Sheets {
   std::vector<fabric::Vector> positions;  ///< at the start, m
   std::vector<coupling::PorousLaw> laws;  ///< one per vertex
   std::vector<CanopyRows> canopies;
+  std::vector<FlagRows> flags;
   std::vector<coupling::LineCut> cuts;  ///< of reefing lines, and of lines to payloads
   std::vector<double> line_strength;    ///< N, of every line of the mesh; infinite: no limit
 };
@@ -166,12 +173,13 @@ void place_at_shared_payloads(std::vector<Canopy>& canopies);
 
 /// Mesh, masses, lines and payload of a canopy. At rest the cloth has its constructed shape, with the edge of
 /// the skirt in the plane through the centre, and the lines just reach it; `positions` are those of its
-/// shape. Throws std::invalid_argument for parameters out of range.
+/// shape. A drum is smaller at rest by its stretch, and starts in its first axisymmetric mode in vacuum.
+/// Throws std::invalid_argument for parameters out of range.
 [[nodiscard]] CanopyMesh make_canopy(const Canopy& canopy);
 
-/// The bodies, then the canopies, in a fluid of given density, kg/m^3, and viscosity, Pa s. Throws
-/// std::invalid_argument for parameters out of range.
+/// The bodies, then the canopies, then the flags, in a fluid of given density, kg/m^3, and viscosity, Pa s.
+/// Throws std::invalid_argument for parameters out of range.
 [[nodiscard]] Sheets make_all_sheets(const std::vector<Body>& bodies, const std::vector<Canopy>& canopies,
-                                     double density, double viscosity);
+                                     double density, double viscosity, const std::vector<Flag>& flags = {});
 
 }  // namespace drogue::parachute_app

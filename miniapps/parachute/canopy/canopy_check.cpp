@@ -54,6 +54,9 @@ void check_measures(const Table& root, const Canopy& canopy, const std::string& 
     contradict(
         root, name + ".shape",
         name + ".shape = \"partly-closed\" needs kind = \"flat-circular\", whose cloth folds to a cone");
+  if (canopy.kind == CanopyKind::drum && canopy.shape == CanopyShape::partly_closed)
+    contradict(root, name + ".shape",
+               name + ".shape = \"partly-closed\": a drum is flat but for its deflection");
   if (canopy.has_lines() && canopy.lines.length <= radius)
     contradict(root, name + ".lines.length",
                name + ".lines.length = " + real_text(canopy.lines.length) +
@@ -174,7 +177,7 @@ void check_frame(const Table& root, const FlowScene& scene) {
   if (!scene.bodies.empty())
     contradict(root, "grid.frame", follow + " cannot be combined with a [[body]], which stays in its place");
   if (!scene.canopies.front().has_lines())
-    contradict(root, "grid.frame", follow + " needs a payload; canopy[0] is a sheet");
+    contradict(root, "grid.frame", follow + " needs a payload; canopy[0] has none");
   for (std::size_t i = 0; i < scene.canopies.size(); ++i)
     if (scene.canopies[i].payload.fixed && !scene.canopies[i].payload.shared)
       contradict(root, "grid.frame",

@@ -12,7 +12,8 @@ using scene::Table;
 const Choices<CanopyKind> canopy_choices = {{"flat-circular", CanopyKind::flat_circular},
                                             {"extended-skirt", CanopyKind::extended_skirt},
                                             {"guide-surface", CanopyKind::guide_surface},
-                                            {"sheet", CanopyKind::sheet}};
+                                            {"sheet", CanopyKind::sheet},
+                                            {"drum", CanopyKind::drum}};
 const Choices<Fabric> cloth_choices = {{"mil-c-7020-1", Fabric::mil_c_7020_1}, {"custom", Fabric::custom}};
 const Choices<CanopyShape> shape_choices = {{"flat", CanopyShape::flat},
                                             {"partly-closed", CanopyShape::partly_closed},
@@ -174,12 +175,12 @@ void declare_reinforcement(Table& table, Reinforcement& bands) {
 
 void declare_canopy(Table& table, Canopy& canopy, const std::function<bool()>& with_fluid) {
   const auto has_lines = [&canopy] { return canopy.has_lines(); };
-  const std::string no_sheet = "unless kind = \"sheet\"";
+  const auto is_drum = [&canopy] { return canopy.kind == CanopyKind::drum; };
+  const std::string no_sheet = "unless kind = \"sheet\" or \"drum\"", of_drum = "with kind = \"drum\"";
   table
       .value("kind", scene::choice_codec(canopy.kind, canopy_choices),
              "A flat disk of cloth with a vent, such a disk with a conical skirt that is wide or narrow at "
-             "its mouth, or a "
-             "disk without lines and payload")
+             "its mouth, a disk without lines and payload, or one under tension with a fixed rim")
       .required();
   table.value("diameter", scene::real_codec(canopy.diameter), "Diameter of the flat cloth")
       .unit("m")
@@ -211,10 +212,20 @@ void declare_canopy(Table& table, Canopy& canopy, const std::function<bool()>& w
   table.table(
       "perturbation", [&](Table& perturbation) { declare_perturbation(perturbation, canopy.perturbation); },
       "Random displacements of the cloth at the start, for several runs of a chaotic opening");
+  table.value("tension", scene::real_codec(canopy.tension), "Tension of the flat cloth")
+      .unit("N/m")
+      .above(0.0)
+      .when(is_drum, of_drum, "kind")
+      .required();
+  table
+      .value("deflection", scene::real_codec(canopy.deflection),
+             "Displacement of the centre along the axis at the start, in the first axisymmetric mode")
+      .unit("m")
+      .when(is_drum, of_drum, "kind");
   table
       .table(
           "lines", [&](Table& lines) { declare_lines(lines, canopy.lines, with_fluid); },
-          "Suspension lines to the skirt, one per gore; they exchange no force with the fluid")
+          "Suspension lines to the skirt, one per gore, without drag")
       .when(has_lines, no_sheet, "kind");
   table
       .table(
@@ -223,7 +234,7 @@ void declare_canopy(Table& table, Canopy& canopy, const std::function<bool()>& w
       .when(has_lines, no_sheet, "kind");
   table
       .optional_table("riser", canopy.riser, declare_riser,
-                      "Strap from the point where the lines meet to the payload, where they end without it")
+                      "Strap from the point where the lines meet to the payload")
       .when(has_lines, no_sheet, "kind");
   table
       .optional_table("reefing", canopy.reefing, declare_reefing,

@@ -1,6 +1,7 @@
 #include "miniapps/parachute/parallel/rank_solver.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "common/program/failure.hpp"
 #include "common/program/message.hpp"
@@ -35,12 +36,18 @@ void for_each_row(const Shape& whole, const Part& part, const Copy& copy) {
 }  // namespace
 
 RankSolver::RankSolver(Communicator& communicator, device::Backend backend,
-                       const flow::Parameters& parameters, const std::function<void()>& prepare)
-    : _communicator(communicator), _parameters(parameters) {
+                       const coupling::Parameters& parameters, const std::function<void()>& prepare)
+    : _communicator(communicator), _parameters(parameters.flow) {
   communicator.run_collectively(prepare);
   communicator.run_collectively([&] {
     _group = linear::RankGroup::world();
-    _solver = made_as_asked([&] { return flow::create_solver(backend, parameters, _group); });
+    if (parameters.fabric.mass.empty()) {
+      _solver = made_as_asked([&] { return flow::create_solver(backend, parameters.flow, _group); });
+    } else {
+      auto coupled = made_as_asked([&] { return coupling::create_solver(backend, parameters, _group); });
+      _coupled = coupled.get();
+      _solver = std::move(coupled);
+    }
   });
 }
 
@@ -159,9 +166,9 @@ void SharedSolver::request(Request request, const Values&... values) {
 }
 
 SharedSolver::SharedSolver(Communicator& communicator, device::Backend backend,
-                           const flow::Parameters& parameters)
+                           const coupling::Parameters& parameters)
     : _communicator(communicator) {
-  made_as_asked([&] { return flow::ranks_of(parameters, communicator.size(), root); });
+  made_as_asked([&] { return flow::ranks_of(parameters.flow, communicator.size(), root); });
   MessageWriter message;
   message.put(Request::create);
   message.put(backend);
@@ -224,6 +231,47 @@ flow::Totals SharedSolver::totals() {
 void SharedSolver::sample(flow::CellField field, std::span<double> values) {
   request(Request::sample, field);
   _own->sample(field, values);
+}
+
+void SharedSolver::upload_cloth(std::span<const fabric::Vector> positions,
+                                std::span<const fabric::Vector> velocities) {
+  MessageWriter message;
+  message.put(Request::upload_cloth);
+  for (const auto& rows : {positions, velocities})
+    message.put_all(std::vector<fabric::Vector>(rows.begin(), rows.end()));
+  static_cast<void>(_communicator.broadcast(message.take()));
+  _own->run([&] { _own->coupled().upload_cloth(positions, velocities); });
+}
+
+void SharedSolver::upload_air_acceleration(std::span<const fabric::Vector> values) {
+  MessageWriter message;
+  message.put(Request::upload_air_acceleration);
+  message.put_all(std::vector<fabric::Vector>(values.begin(), values.end()));
+  static_cast<void>(_communicator.broadcast(message.take()));
+  _own->run([&] { _own->coupled().upload_air_acceleration(values); });
+}
+
+void SharedSolver::upload_forces(std::span<const fabric::Vector> on_air) {
+  MessageWriter message;
+  message.put(Request::upload_forces);
+  message.put_all(std::vector<fabric::Vector>(on_air.begin(), on_air.end()));
+  static_cast<void>(_communicator.broadcast(message.take()));
+  _own->run([&] { _own->coupled().upload_forces(on_air); });
+}
+
+void SharedSolver::set_block(const coupling::BlockProgress& block) {
+  request(Request::set_block, block);
+  _own->coupled().set_block(block);
+}
+
+void SharedSolver::set_frame(const coupling::FrameMotion& frame) {
+  request(Request::set_frame, frame);
+  _own->run([&] { _own->coupled().set_frame(frame); });
+}
+
+std::array<double, 3> SharedSolver::total_force_on_air() {
+  request(Request::total_force_on_air);
+  return _own->run([&] { return _own->coupled().total_force_on_air(); });
 }
 
 }  // namespace drogue::parachute_app

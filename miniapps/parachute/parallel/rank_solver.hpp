@@ -3,13 +3,14 @@
 #include <array>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "common/program/communicator.hpp"
+#include "kernels/coupling/sheet/solver.hpp"
 #include "kernels/flow/halo/decomposition.hpp"
-#include "kernels/flow/solver.hpp"
 
 namespace drogue::parachute_app {
 
@@ -23,21 +24,30 @@ enum class Request : int {
   restore,  ///< progress
   advance,  ///< target time, pause step
   totals,
-  download,  ///< field: rank 0 receives the parts
-  sample,    ///< field: rank 0 receives the parts
-  write,     ///< field, offset, file: all ranks write a field
+  download,                 ///< field: rank 0 receives the parts
+  sample,                   ///< field: rank 0 receives the parts
+  write,                    ///< field, offset, file: all ranks write a field
+  upload_cloth,             ///< positions and velocities of all vertices
+  upload_air_acceleration,  ///< values of all vertices
+  upload_forces,            ///< values of all vertices
+  set_block,                ///< block
+  set_frame,                ///< motion
+  total_force_on_air,
 };
 
-/// The solver on one of several ranks, with the transfer of arrays between rank 0 and the others. All
-/// functions are collective and block. An exception from a kernel or from lack of memory ends all ranks,
-/// because the others wait within a step.
+/// The solver on one of several ranks, with the transfer of arrays between rank 0 and the others. Each rank
+/// has all vertices of the cloth. All functions are collective and block. An exception from a kernel or from
+/// lack of memory ends all ranks, because the others wait within a step.
 class RankSolver {
  public:
-  /// Calls `prepare` first. Throws `Failure` on all ranks if something fails on one.
-  RankSolver(Communicator& communicator, device::Backend backend, const flow::Parameters& parameters,
+  /// Calls `prepare` first. Without vertices of cloth the solver is that of the flow alone. Throws `Failure`
+  /// on all ranks if something fails on one.
+  RankSolver(Communicator& communicator, device::Backend backend, const coupling::Parameters& parameters,
              const std::function<void()>& prepare);
 
   [[nodiscard]] flow::Solver& solver() { return *_solver; }
+  /// Not without vertices of cloth.
+  [[nodiscard]] coupling::Solver& coupled() { return *_coupled; }
 
   /// Rank 0 gives the whole array; the span is not used elsewhere.
   void upload(flow::StateField field, std::span<const double> whole);
@@ -78,14 +88,15 @@ class RankSolver {
   flow::Parameters _parameters;
   linear::RankGroup _group;
   std::unique_ptr<flow::Solver> _solver;
+  coupling::Solver* _coupled = nullptr;  ///< `_solver` with cloth
 };
 
 /// Solver whose cells all ranks share, as rank 0 uses it: arrays are those of the whole grid. Functions as of
-/// `flow::Solver`.
-class SharedSolver final : public flow::Solver {
+/// `coupling::Solver`; without vertices of cloth only those of `flow::Solver`.
+class SharedSolver final : public coupling::Solver {
  public:
   /// Throws `Failure`: usage if the ranks cannot share the grid; otherwise as `RankSolver`.
-  SharedSolver(Communicator& communicator, device::Backend backend, const flow::Parameters& parameters);
+  SharedSolver(Communicator& communicator, device::Backend backend, const coupling::Parameters& parameters);
   ~SharedSolver() override;
 
   /// Sets a component of the velocity, m/s, to an expression of x, y, z and t at time 0 s.
@@ -108,6 +119,43 @@ class SharedSolver final : public flow::Solver {
   [[nodiscard]] const char* pressure_solver() const override { return _own->solver().pressure_solver(); }
   [[nodiscard]] std::optional<flow::PressureSolve> last_pressure_solve() const override {
     return _own->solver().last_pressure_solve();
+  }
+
+  void upload_cloth(std::span<const fabric::Vector> positions,
+                    std::span<const fabric::Vector> velocities) override;
+  void upload_air_acceleration(std::span<const fabric::Vector> values) override;
+  void upload_forces(std::span<const fabric::Vector> on_air) override;
+  void set_block(const coupling::BlockProgress& block) override;
+  void set_frame(const coupling::FrameMotion& frame) override;
+  [[nodiscard]] std::array<double, 3> total_force_on_air() override;
+  // Rank 0 has the whole cloth.
+  void download_cloth(std::span<fabric::Vector> positions, std::span<fabric::Vector> velocities) override {
+    _own->coupled().download_cloth(positions, velocities);
+  }
+  void forces(std::span<fabric::Vector> on_air) override { _own->coupled().forces(on_air); }
+  void download_air_acceleration(std::span<fabric::Vector> values) override {
+    _own->coupled().download_air_acceleration(values);
+  }
+  // Empty: sharp sheets work on one rank.
+  [[nodiscard]] std::vector<double> download_face_acceleration() override {
+    return _own->coupled().download_face_acceleration();
+  }
+  void upload_face_acceleration(std::span<const double> values) override {
+    _own->coupled().upload_face_acceleration(values);
+  }
+  [[nodiscard]] coupling::BlockProgress block() const override { return _own->coupled().block(); }
+  [[nodiscard]] coupling::FrameMotion frame() const override { return _own->coupled().frame(); }
+  void elastic_forces(std::span<fabric::Vector> on_vertices) override {
+    _own->coupled().elastic_forces(on_vertices);
+  }
+  void cloth_stress(fabric::StressMeasure measure, std::span<fabric::Stress> of_triangles) override {
+    _own->coupled().cloth_stress(measure, of_triangles);
+  }
+  [[nodiscard]] fabric::Totals cloth_totals() override { return _own->coupled().cloth_totals(); }
+  [[nodiscard]] coupling::FailureReason failure_reason() override { return _own->coupled().failure_reason(); }
+  [[nodiscard]] int failed_line() override { return _own->coupled().failed_line(); }
+  [[nodiscard]] std::optional<fabric::StepFailure> cloth_failure() override {
+    return _own->coupled().cloth_failure();
   }
 
  private:

@@ -46,13 +46,20 @@ class Worker {
       case Request::advance:
       case Request::totals:
         return _solver->run([&] { step(request, message); });
+      case Request::upload_cloth:
+      case Request::upload_air_acceleration:
+      case Request::upload_forces:
+      case Request::set_block:
+      case Request::set_frame:
+      case Request::total_force_on_air:
+        return _solver->run([&] { couple(request, message); });
     }
   }
 
  private:
   void create(MessageReader& message) {
     const auto backend = message.get<device::Backend>();
-    const flow::Parameters parameters = get_parameters(message);
+    const coupling::Parameters parameters = get_parameters(message);
     _solver.emplace(_communicator, backend, parameters, [&] {
       static_cast<void>(framework::choose_backend(std::string(device::name(backend))));
       if (!_session) _session = std::make_unique<framework::DeviceSession>(backend, _options.kokkos);
@@ -72,6 +79,24 @@ class Worker {
       const auto pause_step = message.get<std::int64_t>();
       static_cast<void>(
           solver.advance(target, pause_step, [](const flow::Status&) { return !interrupted(); }));
+    }
+  }
+
+  void couple(Request request, MessageReader& message) {
+    coupling::Solver& solver = _solver->coupled();
+    if (request == Request::upload_cloth) {
+      const auto positions = message.get_all<fabric::Vector>();
+      solver.upload_cloth(positions, message.get_all<fabric::Vector>());
+    } else if (request == Request::upload_air_acceleration) {
+      solver.upload_air_acceleration(message.get_all<fabric::Vector>());
+    } else if (request == Request::upload_forces) {
+      solver.upload_forces(message.get_all<fabric::Vector>());
+    } else if (request == Request::set_block) {
+      solver.set_block(message.get<coupling::BlockProgress>());
+    } else if (request == Request::set_frame) {
+      solver.set_frame(message.get<coupling::FrameMotion>());
+    } else {
+      static_cast<void>(solver.total_force_on_air());
     }
   }
 

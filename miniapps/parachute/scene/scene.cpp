@@ -64,7 +64,7 @@ double FlowScene::largest_added_mass_ratio() const {
 }
 
 bool FlowScene::has_free_sheets() const {
-  return !canopies.empty() ||
+  return !canopies.empty() || !flags.empty() ||
          std::ranges::any_of(bodies, [](const Body& body) { return body.mount.has_value(); });
 }
 

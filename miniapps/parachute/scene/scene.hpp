@@ -14,6 +14,7 @@
 #include "miniapps/framework/scene_keys.hpp"
 #include "miniapps/parachute/bodies/body.hpp"
 #include "miniapps/parachute/canopy/canopy.hpp"
+#include "miniapps/parachute/flags/flag.hpp"
 
 /// Scene of `drogue-parachute`: the content of a TOML file, checked and with every default filled in.
 namespace drogue::parachute_app {
@@ -171,8 +172,9 @@ struct FlowScene {
   std::array<VectorExpression, 6> wall_velocity;      ///< m/s
   std::vector<Body> bodies;
   std::vector<Canopy> canopies;
+  std::vector<Flag> flags;
   coupling::SheetParameters coupling;  ///< its laws are those of the bodies and canopies
-  std::array<double, 3> gravity{};     ///< of canopies and payloads, m/s^2
+  std::array<double, 3> gravity{};     ///< of canopies, payloads and flags, m/s^2
   bool allow_unstable = false;         ///< explicit coupling runs with cloth lighter than its added mass
   bool contact = false;                ///< of canopies and lines with each other and themselves
   double thickness = 0.01;             ///< m, distance of layers in contact
@@ -188,7 +190,7 @@ struct FlowScene {
   [[nodiscard]] bool has_fluid() const { return fluid.has_value(); }
   /// True if a sheet moves by the forces of the fluid. Does not throw.
   [[nodiscard]] bool has_free_sheets() const;
-  [[nodiscard]] bool has_sheets() const { return !bodies.empty() || !canopies.empty(); }
+  [[nodiscard]] bool has_sheets() const { return !bodies.empty() || !canopies.empty() || !flags.empty(); }
   /// Axes along which the grid can move: fluid flows in or out at both sides. Does not throw.
   [[nodiscard]] std::array<bool, 3> open_axes() const;
   [[nodiscard]] const VectorExpression& initial_velocity() const {

@@ -10,6 +10,7 @@
 #include "common/scene/read.hpp"
 #include "miniapps/parachute/bodies/body_check.hpp"
 #include "miniapps/parachute/canopy/canopy_check.hpp"
+#include "miniapps/parachute/flags/flag_check.hpp"
 #include "miniapps/parachute/scene/functions.hpp"
 
 namespace drogue::parachute_app {
@@ -263,6 +264,7 @@ void complete_and_check(const Table& root, FlowScene& scene) {
   complete_and_check_bodies(root, scene);
   check_and_place_canopies(root, scene.canopies);
   check_canopies(root, scene);
+  complete_and_check_flags(root, scene);
   complete_fields(root, scene);
   check_verify(root, scene);
   check_initial(root, scene);

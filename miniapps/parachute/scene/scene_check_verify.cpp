@@ -94,6 +94,8 @@ std::vector<std::string> place_columns(const FlowScene& scene) {
     if (scene.bodies[i].mount) columns.push_back(displacement_column(i));
   for (std::size_t i = 0; i < scene.canopies.size(); ++i)
     for (const char* axis : axis_names) columns.push_back("canopy_" + std::to_string(i) + "_payload_" + axis);
+  for (std::size_t i = 0; i < scene.flags.size(); ++i)
+    for (const char* axis : {"x", "y"}) columns.push_back("flag_" + std::to_string(i) + "_tip_" + axis);
   return columns;
 }
 
@@ -102,7 +104,8 @@ void check_oscillations(const Table& root, const FlowScene& scene) {
   for (std::size_t i = 0; i < scene.verify.oscillations.size(); ++i) {
     const Oscillation& oscillation = scene.verify.oscillations[i];
     const std::string path = "verify.oscillation[" + std::to_string(i) + "]";
-    if (columns.empty()) contradict(root, path, path + " needs a [[body]] with a mount or a [[canopy]]");
+    if (columns.empty())
+      contradict(root, path, path + " needs a [[body]] with a mount, a [[canopy]] or a [[flag]]");
     if (std::ranges::find(columns, oscillation.column) == columns.end())
       contradict(root, path + ".column",
                  path + ".column = \"" + oscillation.column + "\" has no place of a sheet; " +
@@ -179,7 +182,7 @@ void check_canopy_checks(const Table& root, const FlowScene& scene) {
     const std::string path = "verify.peak_force[" + std::to_string(i) + "]";
     check_canopy_number(root, scene, path, verify.peak_forces[i].canopy);
     if (!scene.canopies[static_cast<std::size_t>(verify.peak_forces[i].canopy)].has_lines())
-      contradict(root, path + ".canopy", path + ".canopy: this canopy is a sheet, which has no lines");
+      contradict(root, path + ".canopy", path + ".canopy: this canopy has no lines");
     if (const auto& time = verify.peak_forces[i].time; time && !((*time)[0] < (*time)[1]))
       contradict(root, path + ".time", path + ".time: the first number must be the smaller");
     require_rows(root, scene, path);

@@ -2,6 +2,7 @@
 
 #include "miniapps/parachute/bodies/body_keys.hpp"
 #include "miniapps/parachute/canopy/canopy_keys.hpp"
+#include "miniapps/parachute/flags/flag_keys.hpp"
 #include "miniapps/parachute/scene/codecs.hpp"
 
 namespace drogue::parachute_app {
@@ -188,6 +189,9 @@ void declare_flow_scene(Table& root, FlowScene& scene) {
       "canopy", scene.canopies,
       [of_fluid](Table& table, Canopy& canopy) { declare_canopy(table, canopy, of_fluid); },
       "Parachutes: cloth, suspension lines and a payload");
+  root.tables("flag", scene.flags, declare_flag,
+              "Elastic strips in two dimensions, hinged at their leading edge")
+      .when(of_fluid, fluid_condition, "fluid");
   root.tables("body", scene.bodies, declare_body, "Rigid sheets in the flow, at rest or in prescribed motion")
       .when(of_fluid, fluid_condition, "fluid");
   root.table(
@@ -200,9 +204,11 @@ void declare_flow_scene(Table& root, FlowScene& scene) {
                     "Run with canopies whose added mass exceeds their own, which the method is unstable for")
                 .when([&scene] { return scene.has_fluid() && scene.is_explicit(); },
                       "with method = \"explicit\"", "method");
-            table.value("gravity", vector_codec(scene.gravity), "Acceleration of canopies and payloads")
+            table
+                .value("gravity", vector_codec(scene.gravity), "Acceleration of canopies, payloads and flags")
                 .unit("m/s^2")
-                .when([&scene] { return !scene.canopies.empty(); }, "with a [[canopy]]", "canopy");
+                .when([&scene] { return !scene.canopies.empty() || !scene.flags.empty(); },
+                      "with a [[canopy]] or a [[flag]]", "canopy");
             table
                 .value("contact", scene::boolean_codec(scene.contact),
                        "Contact of cloth and lines with each other and themselves, without friction")
@@ -213,7 +219,7 @@ void declare_flow_scene(Table& root, FlowScene& scene) {
                 .when([&scene] { return scene.contact; }, "with contact = true", "contact");
           },
           "The exchange of forces between the fluid and sheets")
-      .when([&scene] { return scene.has_sheets(); }, "with a [[body]] or a [[canopy]]", "body");
+      .when([&scene] { return scene.has_sheets(); }, "with a [[body]], a [[canopy]] or a [[flag]]", "body");
   root.table(
           "run", [&](Table& table) { declare_run(table, scene); }, "Length and steps of the run")
       .required();

@@ -154,9 +154,10 @@ void declare_window(Table& table, ForceWindow& window, const std::string& refere
 
 void declare_oscillation(Table& table, Oscillation& oscillation) {
   table
-      .value("column", scene::text_codec(oscillation.column),
-             "Column of history.csv: the displacement of a body with a mount, or a coordinate of a canopy's "
-             "payload, such as canopy_0_payload_z")
+      .value(
+          "column", scene::text_codec(oscillation.column),
+          "Column of history.csv: the displacement of a body with a mount, or a coordinate of the payload of "
+          "a canopy or of the tip of a flag, such as canopy_0_payload_z")
       .required();
   table
       .value("from", scene::real_codec(oscillation.from),

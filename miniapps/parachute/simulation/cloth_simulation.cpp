@@ -37,19 +37,6 @@ fabric::Parameters fabric_parameters(const FlowScene& scene, const Sheets& sheet
   return p;
 }
 
-const char* cloth_failure_text(fabric::FailureReason reason) {
-  switch (reason) {
-    case fabric::FailureReason::crossing:
-      return "contact could not prevent an intersection";
-    case fabric::FailureReason::too_fast:
-      return "a step moves cloth farther than the search distance of contact";
-    case fabric::FailureReason::too_dense:
-      return "more parts of cloth are in contact than the lists of contact can hold";
-    default:
-      return "the positions of the cloth are not finite";
-  }
-}
-
 }  // namespace
 
 ClothSimulation::ClothSimulation(const FlowScene& scene, const framework::SimulationSettings& settings)
@@ -191,7 +178,7 @@ framework::HistoryRow ClothSimulation::row() {
   row.values.insert(row.values.end(), {totals.kinetic, totals.elastic, totals.gravity, totals.energy()});
   double intersections = 0.0;
   if (_scene.verify.intersections) {
-    intersections = count_intersections(_sheets, state.positions);
+    intersections = count_intersections(_sheets, state.positions, time);
     row.values.push_back(intersections);
   }
   _record.add(time, canopies, 0.0, intersections);
@@ -233,15 +220,9 @@ std::string ClothSimulation::failure_text(bool) {
          << _stable_dt << " s, at step " << step << ", t = " << time << " s; \"auto\" takes a stable one";
     return text.str();
   }
-  text << cloth_failure_text(_failure->reason);
-  for (std::size_t i = 0; i < _sheets.canopies.size(); ++i) {
-    const CanopyRows& rows = _sheets.canopies[i];
-    const auto vertex = static_cast<std::size_t>(_failure->index);
-    if (vertex >= rows.begin && vertex < rows.end)
-      text << " at vertex " << vertex - rows.begin << " of canopy[" << i << "]";
-  }
-  text << " in step " << _failure->step << ", t = " << _failure->time
-       << " s; a smaller run.dt may save the run";
+  text << cloth_failure_text(_failure->reason) << " at "
+       << canopy_vertex_text(_sheets, static_cast<std::size_t>(_failure->index)) << " in step "
+       << _failure->step << ", t = " << _failure->time << " s; a smaller run.dt may save the run";
   return text.str();
 }
 

@@ -71,9 +71,16 @@ std::vector<CanopyMeasures> append_measures(const FlowScene& scene, const Sheets
   return canopies;
 }
 
-double count_intersections(const Sheets& sheets, const std::vector<Vector>& positions) {
+double count_intersections(const Sheets& sheets, const std::vector<Vector>& positions, double time) {
   const fabric::Mesh& mesh = sheets.fabric.mesh;
-  return static_cast<double>(reference::intersections(positions, mesh.triangles, mesh.lines).size());
+  std::vector<bool> is_cut(mesh.lines.size(), false);
+  for (const coupling::LineCut& cut : sheets.cuts)
+    for (const int line : cut.lines)
+      if (cut.time < time) is_cut[static_cast<std::size_t>(line)] = true;
+  std::vector<std::array<int, 2>> whole;
+  for (std::size_t line = 0; line < is_cut.size(); ++line)
+    if (!is_cut[line]) whole.push_back(mesh.lines[line]);
+  return static_cast<double>(reference::intersections(positions, mesh.triangles, whole).size());
 }
 
 run::DatasetSpec canopy_field_spec(const Sheets& sheets, const std::string& name) {
@@ -117,6 +124,34 @@ void copy_canopy_stress(const Sheets& sheets, std::span<const fabric::Stress> st
                         std::span<double> values) {
   const std::size_t first = sheets.canopies.front().triangles_begin;
   for (std::size_t k = 0; k < values.size(); ++k) values[k] = stress[first + k].von_mises();
+}
+
+const char* cloth_failure_text(fabric::FailureReason reason) {
+  switch (reason) {
+    case fabric::FailureReason::crossing:
+      return "contact could not prevent an intersection of the cloth";
+    case fabric::FailureReason::too_fast:
+      return "the cloth moves farther than the search distance of contact";
+    case fabric::FailureReason::too_dense:
+      return "the lists of contact cannot hold all neighbours";
+    case fabric::FailureReason::too_many_constraints:
+      return "the lists of contact cannot hold all constraints";
+    default:
+      return "the positions of the cloth are not finite";
+  }
+}
+
+std::string canopy_vertex_text(const Sheets& sheets, std::size_t vertex) {
+  std::ostringstream text;
+  for (std::size_t i = 0; i < sheets.canopies.size(); ++i) {
+    const CanopyRows& rows = sheets.canopies[i];
+    if (vertex < rows.begin || vertex >= rows.end) continue;
+    if (vertex < rows.cloth_end)
+      text << "vertex " << vertex - rows.begin << " of the cloth of canopy[" << i << "]";
+    else
+      text << (vertex == rows.payload ? "the payload" : "the riser") << " of canopy[" << i << "]";
+  }
+  return text.str();
 }
 
 std::string step_limit_text(const FlowScene& scene, double time) {

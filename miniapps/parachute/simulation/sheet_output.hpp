@@ -22,8 +22,10 @@ std::vector<CanopyMeasures> append_measures(const FlowScene& scene, const Sheets
                                             const SheetState& state, const fabric::Vector& origin,
                                             const fabric::Vector& velocity, framework::HistoryRow& row);
 
-/// Number of intersections of sheets and lines with sheets. Throws only std::bad_alloc.
-[[nodiscard]] double count_intersections(const Sheets& sheets, const std::vector<fabric::Vector>& positions);
+/// Number of intersections of sheets and lines that are not cut at a time, s, with sheets. Throws only
+/// std::bad_alloc.
+[[nodiscard]] double count_intersections(const Sheets& sheets, const std::vector<fabric::Vector>& positions,
+                                         double time);
 
 /// Dataset of a field of canopies. Throws only std::bad_alloc.
 [[nodiscard]] run::DatasetSpec canopy_field_spec(const Sheets& sheets, const std::string& name);
@@ -38,6 +40,12 @@ void copy_canopy_positions(const Sheets& sheets, std::span<const fabric::Vector>
 /// Values of the field `von_mises`, N/m, of the triangles of canopies. Does not throw.
 void copy_canopy_stress(const Sheets& sheets, std::span<const fabric::Stress> stress,
                         std::span<double> values);
+
+/// Cause of a failed step of cloth. Does not throw.
+[[nodiscard]] const char* cloth_failure_text(fabric::FailureReason reason);
+
+/// Part of a canopy that a vertex belongs to; empty for other vertices. Throws only std::bad_alloc.
+[[nodiscard]] std::string canopy_vertex_text(const Sheets& sheets, std::size_t vertex);
 
 /// Message of a run that ends at the limit of steps, at a time, s. Throws only std::bad_alloc.
 [[nodiscard]] std::string step_limit_text(const FlowScene& scene, double time);

@@ -88,13 +88,15 @@ coupling::Parameters coupled_parameters(const FlowScene& scene, const Sheets& sh
 Simulation::Simulation(const FlowScene& scene, const framework::SimulationSettings& settings)
     : _scene(scene),
       _sheets(make_all_sheets(scene.bodies, scene.canopies, scene.parameters.density,
-                              scene.parameters.viscosity)),
+                              scene.parameters.viscosity, scene.flags)),
       _record(scene) {
   if (settings.communicator != nullptr) {
-    if (scene.has_sheets())
-      throw Failure(ExitCode::usage, "scenes with a [[body]] or a [[canopy]] run on one rank");
-    auto shared = std::make_unique<SharedSolver>(*settings.communicator, settings.backend, scene.parameters);
+    if (scene.has_sheets() && scene.coupling.method == coupling::CouplingMethod::sharp)
+      throw Failure(ExitCode::usage, "coupling.method = \"sharp\" works on one rank");
+    auto shared = std::make_unique<SharedSolver>(*settings.communicator, settings.backend,
+                                                 coupled_parameters(scene, _sheets));
     _shared = shared.get();
+    if (scene.has_sheets()) _coupled = shared.get();
     _solver = std::move(shared);
   } else if (scene.has_sheets()) {
     auto coupled = coupling::create_solver(settings.backend, coupled_parameters(scene, _sheets));
@@ -176,6 +178,7 @@ std::vector<run::Column> Simulation::history_columns() const {
     for (int axis = 0; axis < 3; ++axis) columns.push_back({force_column(body, axis), "N"});
   append_displacement_columns(columns);
   append_canopy_columns(columns);
+  append_flag_columns(columns);
   return columns;
 }
 
@@ -192,6 +195,7 @@ framework::HistoryRow Simulation::row() {
     row.values.insert(row.values.end(), force.begin(), force.end());
   append_displacements(row);
   append_canopy_values(row);
+  append_flag_values(row);
   return row;
 }
 
@@ -228,7 +232,13 @@ framework::FieldsTask Simulation::snapshot() {
     return [this](run::FieldsWriter& fields) {
       const std::string file = std::filesystem::absolute(fields.file()).string();
       for (const std::string& name : _scene.output.fields)
-        _shared->write(cell_field(name), fields.offset(name), file);
+        if (is_canopy_field(name)) {
+          std::vector<double> values(run::entries(canopy_field_spec(_sheets, name)));
+          sample_canopy_field(name, values);
+          fields.write("canopy/" + name, 0, values);
+        } else {
+          _shared->write(cell_field(name), fields.offset(name), file);
+        }
     };
   const Snapshot& filled = _snapshots[_next_snapshot];
   sample_fields(_snapshots[_next_snapshot]);

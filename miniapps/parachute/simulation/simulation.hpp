@@ -64,10 +64,13 @@ class Simulation final : public framework::Simulation {
   [[nodiscard]] SheetState sheet_state();
   void append_displacement_columns(std::vector<run::Column>& columns) const;
   void append_displacements(framework::HistoryRow& row);
+  void append_flag_columns(std::vector<run::Column>& columns) const;
+  void append_flag_values(framework::HistoryRow& row);
   void append_canopy_columns(std::vector<run::Column>& columns) const;
   void append_canopy_values(framework::HistoryRow& row);
   void sample_canopy_field(const std::string& name, std::vector<double>& values);
   [[nodiscard]] std::string failure_cause();
+  [[nodiscard]] std::string vertex_text(std::int64_t vertex) const;
   [[nodiscard]] std::string sheet_failure_text(coupling::FailureReason reason);
   [[nodiscard]] std::string light_cloth_text() const;
   void write_coupling(run::RestartWriter& writer);

@@ -62,6 +62,8 @@ void Simulation::write_coupling(run::RestartWriter& writer) {
   writer.integer("block_substeps", block.substeps);
   writer.integer("block_end", block.end);
   writer.integer("block_cloth_step", block.cloth_step);
+  writer.integer("block_since", block.since);
+  writer.number("block_start", block.start);
   if (_scene.frame != Frame::follow) return;
   const coupling::FrameMotion frame = _coupled->frame();
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -86,7 +88,8 @@ void Simulation::read_coupling(const run::RestartReader& reader) {
   }
   _record.read(reader);
   _coupled->set_block({reader.number("block_dt"), reader.integer("block_substeps"),
-                       reader.integer("block_end"), reader.integer("block_cloth_step")});
+                       reader.integer("block_end"), reader.integer("block_cloth_step"),
+                       reader.integer("block_since"), reader.number("block_start")});
   if (_scene.frame != Frame::follow) return;
   coupling::FrameMotion frame;
   for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -104,13 +104,34 @@ void Simulation::append_canopy_values(framework::HistoryRow& row) {
                                        totals.elastic, balance});
   double intersections = 0.0;
   if (_scene.verify.intersections) {
-    intersections = count_intersections(_sheets, state.positions);
+    intersections = count_intersections(_sheets, state.positions, row.time);
     row.values.push_back(intersections);
   }
   if (_scene.frame == Frame::follow)
     for (std::size_t axis = 0; axis < 3; ++axis)
       if (_scene.open_axes()[axis]) row.values.insert(row.values.end(), {frame.velocity[axis], origin[axis]});
   _record.add(row.time, canopies, balance, intersections);
+}
+
+void Simulation::append_flag_columns(std::vector<run::Column>& columns) const {
+  for (std::size_t i = 0; i < _scene.flags.size(); ++i)
+    for (const auto& [quantity, unit] : {std::pair{"force", "N"}, std::pair{"tip", "m"}})
+      for (const char* axis : {"x", "y"})
+        columns.push_back({"flag_" + std::to_string(i) + "_" + quantity + "_" + axis, unit});
+}
+
+/// Forces of the fluid on flags in the last step, and the places of their tips.
+void Simulation::append_flag_values(framework::HistoryRow& row) {
+  if (_scene.flags.empty()) return;
+  const SheetState state = sheet_state();
+  for (const FlagRows& flag : _sheets.flags) {
+    std::array<double, 2> force{}, tip{};
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      for (std::size_t i = flag.begin; i < flag.end; ++i) force[axis] -= state.on_air[i][axis];
+      tip[axis] = 0.5 * (state.positions[flag.end - 2][axis] + state.positions[flag.end - 1][axis]);
+    }
+    row.values.insert(row.values.end(), {force[0], force[1], tip[0], tip[1]});
+  }
 }
 
 void Simulation::sample_canopy_field(const std::string& name, std::vector<double>& values) {
@@ -135,6 +156,14 @@ std::string Simulation::light_cloth_text() const {
   return text.str();
 }
 
+std::string Simulation::vertex_text(std::int64_t vertex) const {
+  std::ostringstream text;
+  const auto row = static_cast<std::size_t>(vertex);
+  if (row < vertices_of(_scene.bodies)) text << "vertex " << row << " of the bodies";
+  text << canopy_vertex_text(_sheets, row);
+  return text.str();
+}
+
 std::string Simulation::sheet_failure_text(coupling::FailureReason reason) {
   std::ostringstream text;
   text.precision(9);
@@ -144,9 +173,9 @@ std::string Simulation::sheet_failure_text(coupling::FailureReason reason) {
     return text.str();
   }
   if (reason == coupling::FailureReason::cloth) {
-    text << "the positions of the cloth are not finite"
-         << (_scene.contact ? ", or contact could not prevent an intersection," : "") << " after t = " << time
-         << " s; a smaller run.cfl may save the run";
+    const auto failure = _coupled->cloth_failure().value_or(fabric::StepFailure{});
+    text << cloth_failure_text(failure.reason) << " at " << vertex_text(failure.index)
+         << " after t = " << time << " s; a smaller run.cfl may save the run";
     return text.str();
   }
   if (reason == coupling::FailureReason::line) {
@@ -191,6 +220,9 @@ std::string Simulation::sheet_failure_text(coupling::FailureReason reason) {
                : vertex == rows.payload ? "its payload"
                                         : "its riser");
   }
+  for (std::size_t i = 0; i < _sheets.flags.size(); ++i)
+    if (vertex >= _sheets.flags[i].begin && vertex < _sheets.flags[i].end)
+      text << "flag[" << i << "] leaves the domain: a vertex";
   text << " at (" << positions[vertex][0] << ", " << positions[vertex][1] << ", " << positions[vertex][2]
        << ") m comes closer than a cell to the side " << side_names[closest] << " after t = " << time
        << " s; a larger grid.domain or a shorter run.end_time may save the run";

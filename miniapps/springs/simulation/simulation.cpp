@@ -37,6 +37,7 @@ const char* failure_reason_text(fabric::FailureReason reason) {
     case fabric::FailureReason::too_fast:
       return "a step moves cloth farther than the search distance of contact; take a shorter time.dt,";
     case fabric::FailureReason::too_dense:
+    case fabric::FailureReason::too_many_constraints:
       return "more parts of cloth are in contact at once than its lists can hold; take a shorter time.dt, a "
              "smaller contact.thickness or a coarser mesh,";
     case fabric::FailureReason::no_number:

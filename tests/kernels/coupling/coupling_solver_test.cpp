@@ -4,12 +4,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <random>
 #include <stdexcept>
 
 #include "kernels/fabric/solver.hpp"
 #include "kernels/reference/fabric/intersections.hpp"
 #include "tests/support/coupled_case.hpp"
+#include "tests/support/expression_program.hpp"
 
 // Steps of cloth in air: time steps, blocks, restarts, failures, backends and launches.
 
@@ -131,6 +133,24 @@ TEST(CoupledSolver, ContinuesBitForBit) {
     EXPECT_EQ(distance(state_of(c, *second.solver), middle), 0.0);
     ASSERT_TRUE(second.advance(19));
     EXPECT_EQ(distance(state_of(c, *second.solver), state_of(c, *whole.solver)), 0.0);
+  }
+}
+
+TEST(CoupledSolver, ContinuesBitForBitWithABodyInMotion) {
+  CoupledCase c = flying_strip();
+  std::vector<int> all(c.x.size());
+  std::iota(all.begin(), all.end(), 0);
+  c.p.fabric.motions.push_back({1, all, testing::postfix({"t", "t", "*"})});
+  CoupledRun whole(c);
+  ASSERT_TRUE(whole.advance(40));
+  for (const std::int64_t first : {1, 7, 16, 29}) {
+    CoupledRun begun(c), continued(c);
+    ASSERT_TRUE(begun.advance(first));
+    const State middle = state_of(c, *begun.solver);
+    restore(c, middle, *continued.solver);
+    EXPECT_EQ(distance(state_of(c, *continued.solver).positions, middle.positions), 0.0) << first;
+    ASSERT_TRUE(continued.advance(40 - first));
+    EXPECT_EQ(distance(state_of(c, *continued.solver), state_of(c, *whole.solver)), 0.0) << first;
   }
 }
 
@@ -419,6 +439,12 @@ TEST(CoupledSolver, InstabilityOfTheClothIsAFailure) {
   c.p.fabric.material.membrane_modulus = 1e9;
   c.p.substeps = 200;
   expect_failure(c, FailureReason::cloth);
+  CoupledRun run(c);
+  EXPECT_FALSE(run.solver->cloth_failure());
+  ASSERT_EQ(run.solver->advance(10.0, -1, {}), flow::Stop::failed);
+  ASSERT_TRUE(run.solver->cloth_failure());
+  EXPECT_EQ(run.solver->cloth_failure()->reason, fabric::FailureReason::not_finite);
+  EXPECT_GE(run.solver->cloth_failure()->index, 0);
 }
 
 /// The strip in air that a body force accelerates, within a block, to a speed at which its dt is unstable.

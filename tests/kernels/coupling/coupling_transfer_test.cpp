@@ -251,6 +251,75 @@ TEST(GridTransfer, RowSumsMatchTheOracle) {
     }
 }
 
+/// Faces of the ranks that divide the cells of a grid along y and z.
+std::vector<FaceWindow> windows_of(const StaggeredGrid& grid) {
+  std::vector<FaceWindow> windows;
+  const std::array<int, 3> parts{1, std::min(3, grid.cells[1]), std::min(2, grid.cells[2])};
+  for (int place_z = 0; place_z < parts[2]; ++place_z)
+    for (int place_y = 0; place_y < parts[1]; ++place_y) {
+      FaceWindow& window = windows.emplace_back();
+      const std::array<int, 3> place{0, place_y, place_z};
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const int n = grid.cells[axis], a = static_cast<int>(axis);
+        const int begin = n * place[axis] / parts[axis], end = n * (place[axis] + 1) / parts[axis];
+        for (int d = 0; d < 3; ++d)
+          window.set(d, a, begin, (end < n ? end : faces_along(grid, d, a)) - begin);
+      }
+    }
+  return windows;
+}
+
+/// Part of the values at all faces.
+template <class View>
+auto part_of(const FaceViews<View>& whole, const FaceWindow& window) {
+  const auto part = [&](int d) {
+    const auto range = [&](int axis) {
+      return std::pair<int, int>(window.first(d, axis), window.first(d, axis) + window.faces(d, axis));
+    };
+    return Kokkos::subview(whole.component[d], range(0), range(1), range(2));
+  };
+  return FaceViews<decltype(part(0))>{{part(0), part(1), part(2)}};
+}
+
+TEST(GridTransfer, RanksThatDivideTheFacesSpreadTheBitsOfOneAndInterpolateItsSum) {
+  const Space space;
+  for (const StaggeredGrid& grid : all_grids())
+    for (const DeltaKernel kernel : kernels) {
+      Random random(31);
+      const FaceField field = random.field(grid);
+      const Vectors points = random.points(grid, 60, -1.0), forces = random.vectors(60, 10.0);
+      const std::vector<double> areas = random_areas(random, points.size());
+      const Case<Space> whole(grid, kernel, points);
+      const auto density = on_device(space, grid, reference::zero_field(grid));
+      Vectors velocities(points.size(), Vector{}), row_sums = velocities;
+      const auto add = [](Vectors& sums, const Vectors& values) {
+        for (std::size_t i = 0; i < sums.size(); ++i)
+          for (std::size_t k = 0; k < 3; ++k) sums[i][k] += values[i][k];
+      };
+      std::vector<GridTransfer<Space>> parts;
+      for (const FaceWindow& window : windows_of(grid)) {
+        Case<Space> part = whole;
+        part.transfer = GridTransfer<Space>(space, grid, kernel, static_cast<int>(points.size()), window);
+        EXPECT_EQ(part.transfer.is_divided(), window != whole_window(grid));
+        freeze_positions(space, part.transfer, on_device(space, points),
+                         PointView<Space>("at rest", points.size()), 0.0);
+        EXPECT_EQ(part.counts().incomplete_points, whole.counts().incomplete_points);
+        spread(space, part.transfer, on_device(space, forces), part_of(density, window));
+        const PointView<Space> result("result", points.size());
+        interpolate(space, part.transfer, part_of(on_device(space, grid, field), window), result);
+        add(velocities, on_host(result));
+        add(row_sums, part.row_sums(areas, 1.2));
+        parts.push_back(part.transfer);
+      }
+      expect_near(on_host(grid, density), whole.densities(forces), 0.0);
+      expect_near(velocities, whole.interpolated(field), 1e-14);
+      expect_near(row_sums, whole.row_sums(areas, 1.2), 1e-13);
+      for (std::size_t i = 0; i < parts.size(); ++i)
+        clear_spread(space, parts[i], part_of(density, parts[i].window));
+      expect_near(on_host(grid, density), reference::zero_field(grid), 0.0);
+    }
+}
+
 TEST(GridTransfer, ConstantFieldsAreReproducedEverywhere) {
   for (const StaggeredGrid& grid : all_grids())
     for (const DeltaKernel kernel : kernels) {

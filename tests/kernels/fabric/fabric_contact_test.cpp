@@ -134,6 +134,58 @@ TEST(FabricContact, LongLinesDoNotCrossCloth) {
   EXPECT_GT(run_with_contact(s, 100, 10).crossings, 0U);
 }
 
+TEST(FabricContact, LinesWithoutStiffnessAreNoObstacles) {
+  for (const int interval : {1, 10}) {
+    Sheets s = below_a_long_line();
+    s.p.contact.interval = interval;
+    s.p.mesh.line_stiffness = {0.0};
+    const ContactRun o = run_with_contact(s, 200, 10);
+    EXPECT_FALSE(o.failure) << interval;
+    EXPECT_GT(o.crossings, 0U) << interval;
+    EXPECT_EQ(o.work, 0.0) << interval;
+  }
+}
+
+/// A sheet that flies at lines from one vertex, which has more constraints than lists of vertices hold.
+Sheets above_a_fan_of_lines() {
+  Sheets s;
+  s.add(12, 0.1, level(0.0, 0.0, 0.003), {0.0, 0.0, -3.0});
+  const int hub = static_cast<int>(s.x.size());
+  constexpr int lines = 9;
+  for (int k = -1; k < lines; ++k) {
+    const Vector at = k < 0 ? Vector{0.0512, -0.03, 0.0} : Vector{0.013 + 0.009 * k, 0.13, 0.0};
+    s.p.mesh.rest.push_back({at[0], at[1], 5.0});
+    s.x.push_back(at);
+    s.v.push_back({0.0, 0.0, 0.0});
+    s.p.mass.push_back(k < 0 ? 0.02 : 0.002);
+    if (k >= 0) s.p.mesh.lines.push_back({hub, hub + 1 + k});
+  }
+  s.p.material.axial_stiffness = 500.0;
+  s.p.material.tension_only = true;
+  s.p.integrator = Integrator::symplectic_euler;
+  return s;
+}
+
+TEST(FabricContact, VerticesMayHaveAnyNumberOfConstraints) {
+  for (const int interval : {1, 10}) {
+    Sheets s = above_a_fan_of_lines();
+    s.p.contact.interval = interval;
+    if (interval > 1) s.p.contact.friction = 0.0;
+    Sheets again = s;
+    const ContactRun o = run_with_contact(s, 100, 10);
+    EXPECT_FALSE(o.failure) << interval;
+    EXPECT_EQ(o.crossings, 0U) << interval;
+    EXPECT_LT(o.work, -0.1 * o.start_kinetic) << interval;
+    double impulse = 0.0;
+    for (const double mass : s.p.mass) impulse += mass * 3.0;
+    EXPECT_LT(o.momentum, 1e-12 * impulse) << interval;
+    // The order in which constraints are found changes from run to run.
+    static_cast<void>(run_with_contact(again, 100, 10));
+    EXPECT_EQ(again.x, s.x) << interval;
+    EXPECT_EQ(again.v, s.v) << interval;
+  }
+}
+
 TEST(FabricContact, SheetsCrossWithoutContact) {
   Sheets s = edge_on(3.0);
   s.p.contact = {};

@@ -220,6 +220,37 @@ TEST(FabricCoupling, LinesHaveTheirNewStiffnessAsIfGivenAtTheStart) {
   }
 }
 
+TEST(FabricCoupling, ClothMovesThroughALineThatIsCut) {
+  // A sheet flies at a line between two heavy vertices.
+  const device::Instance<Space> instance(1);
+  testing::Sheets s;
+  s.add(8, 0.07, testing::level(0.0, 0.0, 0.005), {0.0, 0.0, -3.0});
+  const int first = static_cast<int>(s.x.size());
+  for (const double along : {-0.05, 0.15}) {
+    s.p.mesh.rest.push_back({along, 0.033, 5.0});
+    s.x.push_back({along, 0.033, 0.0});
+    s.v.push_back({0.0, 0.0, 0.0});
+    s.p.mass.push_back(10.0);
+  }
+  s.p.mesh.lines.push_back({first, first + 1});
+  s.p.mesh.line_stiffness = {1e6};
+  for (const int interval : {1, 8}) {
+    s.p.contact.interval = interval;
+    FabricSolver<Space> solver(instance.space(), s.p);
+    Motions end{s.x, s.v};
+    const auto middle_after = [&](int steps) {
+      EXPECT_TRUE(solver.enqueue_steps(steps) && !solver.failure());
+      solver.download(end.x, end.v);
+      return end.x[27][2];
+    };
+    solver.upload(s.x, s.v);
+    EXPECT_GT(middle_after(64), 0.0) << "0.005 m above the line, at 3 m/s for 0.0032 s";
+    solver.set_line_stiffness(std::vector<double>{0.0});
+    solver.upload(s.x, s.v);
+    EXPECT_NEAR(middle_after(64), 0.005 - 3.0 * 64 * 5e-5, 1e-9);
+  }
+}
+
 /// Final state after one call per entry of `cuts`, which is the number of steps of the call.
 Motions mounted_motions(Integrator integrator, Driver driver, const std::vector<std::int64_t>& cuts) {
   const device::Instance<Space> instance(1);

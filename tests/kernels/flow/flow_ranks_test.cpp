@@ -234,6 +234,22 @@ TEST_F(FlowRanks, TakeTheStepsOfOneRankByDiagonalization) {
   }
 }
 
+/// The case with implicit diffusion that exceeds the limit of explicit steps.
+Case with_implicit_diffusion(Case each) {
+  each.name += ", implicit diffusion";
+  each.parameters.time_scheme = TimeScheme::ab2;
+  each.parameters.diffusion = Diffusion::crank_nicolson;
+  each.parameters.viscosity = 0.3;
+  return each;
+}
+
+TEST_F(FlowRanks, DiffuseImplicitlyAsOneRank) {
+  for (const Case& each : cases()) expect_steps_of_one_rank(with_implicit_diffusion(each), 4);
+  Case flat = with_implicit_diffusion(cases()[5]);
+  flat.parameters.pressure_solver = PressureSolver::diagonalization;
+  for (const int ranks : {2, 3, 4}) expect_steps_of_one_rank(flat, ranks);
+}
+
 #if defined(DROGUE_HAVE_HYPRE)
 TEST_F(FlowRanks, TakeTheStepsOfOneRankByMultigrid) {
   for (const std::size_t which : {0U, 2U, 5U}) {
@@ -248,8 +264,7 @@ TEST_F(FlowRanks, TakeTheStepsOfOneRankByMultigrid) {
 TEST_F(FlowRanks, ThreeRanksTakeTheStepsOfOneRank) { expect_steps_of_one_rank(cases()[0], 3); }
 
 TEST_F(FlowRanks, ContinueBitForBitOnAsManyRanksAndNearlyOnOthers) {
-  for (const std::size_t which : {0U, 2U, 3U}) {
-    const Case each = cases()[which];
+  for (const Case& each : {cases()[0], cases()[2], cases()[3], with_implicit_diffusion(cases()[3])}) {
     const Parameters& p = each.parameters;
     const StaggeredField initial = random_field(FlowDomain(p), 5);
     SharedSolver first(p, linear::RankGroup::world());

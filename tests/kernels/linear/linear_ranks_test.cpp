@@ -138,6 +138,38 @@ TEST_F(LinearRanks, PencilsSolveAsOneRank) {
   }
 }
 
+/// An implicit step of diffusion of velocities on faces, of which a rank has those of its cells.
+TEST_F(LinearRanks, PencilsDiffuseValuesOnFacesAsOneRank) {
+  const ExecutionSpace space;
+  constexpr EndCondition d = EndCondition::dirichlet, n = EndCondition::neumann;
+  const RankGroup group = RankGroup::world();
+  const List dt = on_device(std::vector<double>{0.4});
+  for (const std::array<int, 3>& parts : {std::array<int, 3>{1, 2, 2}, {1, 4, 1}, {1, 1, 4}})
+    for (const std::size_t component : {0U, 1U, 2U})
+      for (const AxisMethod method : {AxisMethod::fourier, AxisMethod::diagonalization}) {
+        if (method == AxisMethod::fourier && !device::is_host<ExecutionSpace>) continue;
+        PoissonProblem problem{{6, 13, 14}, {0.3, 0.2, 0.5}, {}};
+        for (AxisConditions& axis : problem.axes) axis = {false, d, n};
+        problem.axes[component] = {false, d, d, true};
+        --problem.cells[component];
+        const SpectralOperator implicit{dt.data(), 0.7};
+        const std::vector<double> right = random_values(problem.size());
+        const List single("single", right.size());
+        DiagonalizationSolver<ExecutionSpace>(space, problem)
+            .enqueue_solve(on_device(right), single, implicit);
+        space.fence();
+        const PencilRanks ranks{parts, {0, group.rank() % parts[1], group.rank() / parts[1]}};
+        const CellBox box = unknowns_of(ranks, problem);
+        PencilSolver<ExecutionSpace> solver(space, problem, group, ranks, method);
+        const List solution("solution", box.size());
+        solver.enqueue_solve(on_device(testing::cut(right, problem.cells, box)), solution, implicit);
+        EXPECT_LT(largest_difference(on_host(single),
+                                     testing::joined(group, on_host(solution), problem.cells, box)),
+                  1e-13)
+            << "component " << component << ", " << parts[1] << " x " << parts[2] << " ranks";
+      }
+}
+
 #if defined(DROGUE_HAVE_HYPRE)
 TEST_F(LinearRanks, HypreSolvesAsOneRank) {
   expect_solutions_of_one_rank(1e-10, [](const PoissonProblem& problem, const RankGroup& group,

@@ -289,6 +289,35 @@ TEST(Canopy, SheetHasNeitherLinesNorPayload) {
   EXPECT_EQ(std::accumulate(sheets.fabric.pinned.begin(), sheets.fabric.pinned.end(), 0), 0);
 }
 
+TEST(Canopy, DrumHasItsTensionAndAFixedRim) {
+  Canopy drum = c9(0.1);
+  drum.kind = CanopyKind::drum;
+  drum.diameter = 2.0, drum.vent = 0.0, drum.gores = 6;
+  drum.centre = {1.0, 2.0, 3.0};
+  drum.area_density = 0.25, drum.membrane_modulus = 2000.0, drum.tension = 100.0, drum.deflection = 0.01;
+  // St Venant-Kirchhoff: E / (1 - nu) times the Green strain (l^2 - 1) / 2, the Cauchy stress of equal
+  // stretches.
+  EXPECT_NEAR(2000.0 / 0.7 * 0.5 * (drum.stretch() * drum.stretch() - 1.0), 100.0, 1e-10);
+  const CanopyMesh mesh = make_canopy(drum);
+  EXPECT_TRUE(mesh.fabric.mesh.lines.empty());
+  ASSERT_EQ(mesh.positions.size(), drum.vertices());
+  EXPECT_NEAR(mesh.positions[0][2], 3.01, 1e-15) << "the centre, where J0 is 1";
+  double mass = 0.0;
+  int fixed = 0;
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+    const fabric::Vector &at = mesh.positions[i], &rest = mesh.fabric.mesh.rest[i];
+    const double radius = std::hypot(at[0] - 1.0, at[1] - 2.0);
+    EXPECT_NEAR(radius, drum.stretch() * std::hypot(rest[0] - 1.0, rest[1] - 2.0), 1e-14);
+    EXPECT_EQ(rest[2], 3.0);
+    EXPECT_LE(std::abs(at[2] - 3.0 - 0.01 * std::cyl_bessel_j(0.0, 2.4048255577 * radius)), 1e-12);
+    EXPECT_EQ(mesh.fabric.pinned[i], radius > 0.999 ? 7 : 0);
+    fixed += mesh.fabric.pinned[i] / 7;
+    mass += mesh.fabric.mass[i];
+  }
+  EXPECT_GE(fixed, 62);
+  EXPECT_NEAR(mass, 0.25 * pi, 2e-3);
+}
+
 TEST(Canopy, ReefingLineClosesARingOfItsLength) {
   Canopy canopy = c9(0.2);
   canopy.shape = CanopyShape::partly_closed;
