@@ -135,6 +135,17 @@ std::string contact_bytes(device::Backend backend, int threads, testing::Sheets 
   return bytes;
 }
 
+void expect_agreement_in_contact(const testing::Sheets& s) {
+  const std::string serial = in_child([&] { return contact_bytes(device::Backend::serial, 1, s); });
+  ASSERT_GT(serial.size(), 7 * sizeof(double) * s.p.mass.size());
+  for (const device::Backend backend : device::compiled_backends()) {
+    if (backend == device::Backend::serial || !runs_in_child(backend)) continue;
+    for (const int threads : {1, 3})
+      EXPECT_TRUE(in_child([&] { return contact_bytes(backend, threads, s); }) == serial)
+          << name(backend) << ", " << threads << " threads";
+  }
+}
+
 TEST(ExactFabric, BackendsAndThreadsAgreeInContact) {
   for (testing::Sheets s : {testing::impact(3.0), testing::edge_on(8.0), testing::folded(6.0)})
     for (const Integrator integrator : {Integrator::rk4, Integrator::verlet}) {
@@ -144,15 +155,17 @@ TEST(ExactFabric, BackendsAndThreadsAgreeInContact) {
       sphere.friction = 0.2;
       s.p.contact.bodies = {sphere};
       s.p.gravity = {0.0, 0.0, -9.81};
-      const std::string serial = in_child([&] { return contact_bytes(device::Backend::serial, 1, s); });
-      ASSERT_GT(serial.size(), 7 * sizeof(double) * s.p.mass.size());
-      for (const device::Backend backend : device::compiled_backends()) {
-        if (backend == device::Backend::serial || !runs_in_child(backend)) continue;
-        for (const int threads : {1, 3})
-          EXPECT_TRUE(in_child([&] { return contact_bytes(backend, threads, s); }) == serial)
-              << name(backend) << ", " << threads << " threads";
-      }
+      expect_agreement_in_contact(s);
     }
+}
+
+TEST(ExactFabric, BackendsAndThreadsAgreeInContactOfIntervals) {
+  for (testing::Sheets s : {testing::edge_on(8.0), testing::folded(6.0), testing::above_a_fan_of_lines()}) {
+    s.p.integrator = Integrator::symplectic_euler;
+    s.p.material.tension_only = true;
+    s.p.contact.interval = 8;
+    expect_agreement_in_contact(s);
+  }
 }
 
 }  // namespace

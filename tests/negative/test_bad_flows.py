@@ -117,7 +117,7 @@ class BadFlows(parachute_program.FlowTest):
         self.scene.write_text(bad_canopies.GOOD, encoding="utf-8")
         first = 'canopy[0].kind="sheet"'
         self.expect(0, self.scene, "--check", sets=[first])
-        self.assertIn("needs a payload; canopy[0] is a sheet", self.refusal(first, 'grid.frame="follow"'))
+        self.assertIn("needs a payload; canopy[0] has none", self.refusal(first, 'grid.frame="follow"'))
         shared = ("canopy[1].payload={shared=0}", "canopy[1].riser={length=1}")
         self.assertIn("this canopy has no payload of its own", self.refusal(first, *shared))
         # All canopies on a payload have a riser, and room.

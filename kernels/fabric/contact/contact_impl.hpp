@@ -4,6 +4,7 @@
 #include <bit>
 #include <list>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "kernels/fabric/contact/contact.hpp"
 #include "kernels/fabric/contact/features.hpp"
 #include "kernels/fabric/contact/impulses.hpp"
+#include "kernels/fabric/contact/persistent_resolution.hpp"
 #include "kernels/fabric/contact/rigid_zones.hpp"
 #include "kernels/fabric/views.hpp"
 
@@ -35,7 +37,11 @@ class ContactImpl final : public ContactHandler<ExecutionSpace> {
     launch("drogue::fabric::start_interval", _views.vertices,
            StartIntervalFunctor<ExecutionSpace>{_views, x, duration});
   }
-  void end_interval(const Points& x, const Points& v) override { graphs(x, v).end.launch(); }
+  void end_interval(const Points& x, const Points& v) override {
+    if constexpr (Grid::available)
+      if (_grid) return _grid->template launch<Resolution::team_size, 1>(Resolution{{_views}, x, v});
+    graphs(x, v).end.launch();
+  }
   void reset() override;
   [[nodiscard]] CheckpointedWork<ExecutionSpace> checkpointed_work() const override {
     return {_work, _saved_work};
@@ -47,6 +53,8 @@ class ContactImpl final : public ContactHandler<ExecutionSpace> {
 
  private:
   using Points3 = UnmanagedTable<ExecutionSpace, double, 3>;
+  using Grid = device::PersistentKernel<ExecutionSpace>;
+  using Resolution = PersistentResolutionFunctor<ExecutionSpace>;
 
   /// Kernels before and after a step, or after an interval, for one pair of addresses of positions and
   /// velocities.
@@ -85,6 +93,7 @@ class ContactImpl final : public ContactHandler<ExecutionSpace> {
   ContactViews<ExecutionSpace> _views;
   std::vector<int> _edge_of_line;  ///< `edges_of_lines`
   std::list<StepGraphs> _graphs;
+  std::optional<Grid> _grid;  ///< resolves contact of intervals; empty with other drivers
 };
 
 /// Sets dt, s, of the following steps. Launched for one index.
@@ -189,6 +198,11 @@ ContactImpl<ExecutionSpace>::ContactImpl(const Parameters& p, const ContactInput
   t.work = _work;
   if (!p.mesh.line_stiffness.empty()) set_line_stiffness(p.mesh.line_stiffness);
   reset();
+  if constexpr (Grid::available) {
+    const int teams = Grid::most_teams(_instance);
+    if (t.by_interval && teams > 0 && (p.driver == Driver::automatic || p.driver == Driver::persistent))
+      _grid.emplace(_instance, teams, Resolution::team_size, 0, 0);
+  }
 }
 
 template <class ExecutionSpace>

@@ -538,8 +538,8 @@ TEST(CoupledLedger, ContactIsResolvedOncePerInterval) {
     return whole[3] - part[3];
   };
   // Each of 4 intervals in 8 steps: positions at the start, mean velocities, lists, constraints, 10 rounds of
-  // impulses, continuous detection, 6 rounds of zones and their end; on a device all but the first are a
-  // graph, and the steps of each interval are a launch.
+  // impulses, continuous detection, 6 rounds of zones and their end; on a device all but the first are
+  // one launch, as are the steps of each interval.
   EXPECT_EQ(launches(true) - launches(false),
             8 * on_device(4 * 2 + 3, 4 * (1 + 1 + 4 + 1 + 20 + 1 + 24 + 1)));
 }

@@ -146,26 +146,6 @@ TEST(FabricContact, LinesWithoutStiffnessAreNoObstacles) {
   }
 }
 
-/// A sheet that flies at lines from one vertex, which has more constraints than lists of vertices hold.
-Sheets above_a_fan_of_lines() {
-  Sheets s;
-  s.add(12, 0.1, level(0.0, 0.0, 0.003), {0.0, 0.0, -3.0});
-  const int hub = static_cast<int>(s.x.size());
-  constexpr int lines = 9;
-  for (int k = -1; k < lines; ++k) {
-    const Vector at = k < 0 ? Vector{0.0512, -0.03, 0.0} : Vector{0.013 + 0.009 * k, 0.13, 0.0};
-    s.p.mesh.rest.push_back({at[0], at[1], 5.0});
-    s.x.push_back(at);
-    s.v.push_back({0.0, 0.0, 0.0});
-    s.p.mass.push_back(k < 0 ? 0.02 : 0.002);
-    if (k >= 0) s.p.mesh.lines.push_back({hub, hub + 1 + k});
-  }
-  s.p.material.axial_stiffness = 500.0;
-  s.p.material.tension_only = true;
-  s.p.integrator = Integrator::symplectic_euler;
-  return s;
-}
-
 TEST(FabricContact, VerticesMayHaveAnyNumberOfConstraints) {
   for (const int interval : {1, 10}) {
     Sheets s = above_a_fan_of_lines();
