@@ -147,8 +147,9 @@ bool overlap(const Box& a, const Box& b) {
 /// ones.
 class BoxGrid {
  public:
-  /// `widest_query`: largest width of the boxes given to `each_near`, m, which limits the cells they span.
-  BoxGrid(std::span<const Box> boxes, double widest_query) : _width(widest_query) {
+  /// `widest_query`: largest width of the boxes given to `each_near`, m. They span at most 129 cells of an
+  /// axis, also where a few long lines cross a fine mesh.
+  BoxGrid(std::span<const Box> boxes, double widest_query) : _width(widest_query / 128.0) {
     if (boxes.empty()) return;
     _low = boxes[0].low;
     Place high = _low;
