@@ -54,11 +54,14 @@ def main():
     words = sys.argv[1:]
     end = words.index("--") if "--" in words else len(words)
     options, arguments = parser.parse_args(words[:end]), words[end + 1:]
+    program = options.bin / "drogue-parachute"
+    if options.runs < 1 or not program.exists():
+        sys.exit("measure_inversion.py: " + (f"there is no {program}." if options.runs > 0 else "--runs must be at least 1."))
     for angle in options.angles:
         runs = []
         for seed in range(1, options.runs + 1):
             out = options.out / f"{angle:g}-{seed}"
-            run = subprocess.run([options.bin / "drogue-parachute", "c9-angled-60", "--quiet", "--overwrite", "--out", out,
+            run = subprocess.run([program, "c9-angled-60", "--quiet", "--overwrite", "--out", out,
                                   *assignments(angle, seed, options.amplitude), *arguments], check=False)
             if run.returncode != 0:
                 return run.returncode

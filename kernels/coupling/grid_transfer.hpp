@@ -12,7 +12,7 @@
 
 namespace drogue::coupling {
 
-/// Events since the construction of a transfer.
+/// Events since the construction of a transfer, or since its owner has set them to zero.
 struct TransferCounts {
   /// Positions frozen whose delta function extends beyond a bounded side of the grid, or not finite.
   long long incomplete_points = 0;

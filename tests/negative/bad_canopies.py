@@ -86,6 +86,8 @@ BAD_LINES = [
     (22, 'porosity = { law = "forchheimer", alpha = -10 }', 22, ["canopy[0].porosity.alpha", ">= 0"]),
     (22, 'porosity = { law = "forchheimer", beta = -1 }', 22, ["canopy[0].porosity.beta", ">= 0"]),
     (23, "reinforcement = { seams = -1 }", 23, ["canopy[0].reinforcement.seams", ">= 0"]),
+    (12, "vent = 0", 23, ["canopy[0].reinforcement.vent", "has no vent"]),
+    (18, "perturbation = { seed = 1 }", 18, ["canopy[0].perturbation.seed", "with an amplitude"]),
     (18, "perturbation = { amplitude = -1 }", 18, ["canopy[0].perturbation.amplitude", ">= 0"]),
     (18, "perturbation = { amplitude = 0.02 }", 18, ["canopy[0].perturbation.amplitude", "a quarter of edge_length, 0.0175 m"]),
     (18, "perturbation = { sede = 1 }", 18, ['"canopy[0].perturbation.sede"', 'did you mean "seed"?']),

@@ -224,6 +224,9 @@ class BadFlows(parachute_program.FlowTest):
         self.assertIn("body[0].slip = true", self.refusal(sharp))
         self.scene.write_text(bad_canopies.GOOD, encoding="utf-8")
         self.assertIn("takes a [[body]] and no [[canopy]]", self.refusal(sharp))
+        shipped = parachute_program.gas_program.SOURCE / "miniapps/parachute/scenes/piston.toml"
+        self.scene.write_text(shipped.read_text(encoding="utf-8"), encoding="utf-8")
+        self.assertIn('body[0].mount: coupling.method = "sharp" needs bodies at rest', self.refusal(sharp))
 
     def test_rejects_motion_along_an_axis_with_one_cell(self):
         flat = bad_bodies.GOOD.replace("[16, 8, 8]", "[16, 8, 1]")

@@ -202,6 +202,8 @@ class CoupledSolver {
   MovingFrame<ExecutionSpace> _frame;
   LineCuts _cuts;
   LineStrength<ExecutionSpace> _strength;
+  /// Steps of the flow and of the cloth at which the steps enqueued last began.
+  std::int64_t _enqueued_step = 0, _enqueued_cloth_step = 0;
   std::optional<fabric::StepFailure> _cloth_failure;  ///< of the last step that failed by its cloth
 };
 
@@ -217,7 +219,9 @@ template <class ExecutionSpace>
 void CoupledSolver<ExecutionSpace>::forget_steps() {
   _block = {};
   _sheet.forget_steps(_space);
+  Kokkos::deep_copy(_space, _sheet.transfer().counts, TransferCounts{});
   Kokkos::deep_copy(_space, _reason, FailureReason::flow);
+  _cloth_failure.reset();
   _strength.reset(_space);
   Kokkos::deep_copy(_space, _saved_step, std::int64_t{-1});
   _space.fence("drogue::coupling::forget_steps");
@@ -310,6 +314,7 @@ flow::Stop CoupledSolver<ExecutionSpace>::advance(double last_target, std::int64
       // Returns its sides to the time before the failed step.
       if (!needs_shorter_steps(now)) return _flow.advance(target, pause_step, {});
       _flow.forget_long_step();
+      _cloth_failure.reset();
       plan_block(now, target);
     }
     if (!_group.all(!poll || poll(_flow.status()))) return flow::Stop::interrupted;
@@ -323,6 +328,7 @@ flow::Stop CoupledSolver<ExecutionSpace>::advance(double last_target, std::int64
     const double dt = _block.dt;
     _flow.set_fixed_dt(dt);
     set_cloth_time();
+    _enqueued_step = now.step, _enqueued_cloth_step = _block.cloth_step;
     _flow.enqueue_begin(target);
     for (std::int64_t k = 0; k < steps; ++k) enqueue_step(dt, now.step + k == 0);
     _block.cloth_step = _fabric.time_state().step;
@@ -370,6 +376,9 @@ void CoupledSolver<ExecutionSpace>::return_to_last_step(const flow::Progress& no
   Kokkos::deep_copy(_space, saved, _saved_step);
   _space.fence("drogue::coupling::return_to_last_step: step");
   if (saved != now.step) return;  // no step was enqueued after it
+  // Steps that were discarded do not count: how many there were depends on when the host noticed.
+  _block.cloth_step = _enqueued_cloth_step + (now.step - _enqueued_step) * _block.substeps;
+  Kokkos::deep_copy(_space, _sheet.transfer().counts, TransferCounts{});
   count_cloth_time_from(now.time);
   set_cloth_time();
   std::vector<fabric::Vector> positions(rows()), velocities(rows());

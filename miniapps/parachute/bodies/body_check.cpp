@@ -182,6 +182,10 @@ void check_slip(const Table& root, const FlowScene& scene) {
   if (scene.coupling.method != coupling::CouplingMethod::sharp) return;
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     const Body& body = scene.bodies[i];
+    if (body.mount)
+      contradict(root, "body[" + std::to_string(i) + "].mount",
+                 "body[" + std::to_string(i) +
+                     "].mount: coupling.method = \"sharp\" needs bodies at rest or in prescribed motion");
     const bool is_flat = body.kind == BodyKind::plate || body.kind == BodyKind::disk;
     if (body.slips() == is_flat) continue;
     const std::string key = "body[" + std::to_string(i) + "].slip";

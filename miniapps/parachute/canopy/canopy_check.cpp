@@ -35,6 +35,8 @@ double cell_width(const flow::Parameters& p, std::size_t axis) {
 }
 
 void check_measures(const Table& root, const Canopy& canopy, const std::string& name) {
+  if (canopy.vent == 0.0 && canopy.reinforcement.vent > 0.0)
+    contradict(root, name + ".reinforcement.vent", name + ".reinforcement.vent: this canopy has no vent");
   if (canopy.perturbation.amplitude > 0.25 * canopy.edge_length)
     contradict(root, name + ".perturbation.amplitude",
                name + ".perturbation.amplitude = " + real_text(canopy.perturbation.amplitude) +
@@ -57,6 +59,10 @@ void check_measures(const Table& root, const Canopy& canopy, const std::string& 
   if (canopy.kind == CanopyKind::drum && canopy.shape == CanopyShape::partly_closed)
     contradict(root, name + ".shape",
                name + ".shape = \"partly-closed\": a drum is flat but for its deflection");
+  if (canopy.kind == CanopyKind::drum && std::abs(canopy.deflection) > 0.5 * radius)
+    contradict(root, name + ".deflection",
+               name + ".deflection = " + real_text(canopy.deflection) +
+                   " m exceeds half of the radius of the drum, " + real_text(0.5 * radius) + " m");
   if (canopy.has_lines() && canopy.lines.length <= radius)
     contradict(root, name + ".lines.length",
                name + ".lines.length = " + real_text(canopy.lines.length) +

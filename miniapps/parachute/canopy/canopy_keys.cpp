@@ -79,7 +79,8 @@ void declare_perturbation(Table& table, Perturbation& perturbation) {
       .unit("m")
       .at_least(0.0);
   table.value("seed", scene::integer_codec(perturbation.seed), "Start of the sequence of random numbers")
-      .range(0, 1e9);
+      .range(0, 1e9)
+      .when([&perturbation] { return perturbation.amplitude > 0.0; }, "with an amplitude", "amplitude");
 }
 
 void declare_lines(Table& table, SuspensionLines& lines, const std::function<bool()>& with_fluid) {

@@ -46,11 +46,14 @@ std::string displacement_column(std::size_t body) { return "body_" + std::to_str
 
 FlowScene read_flow_scene(const std::filesystem::path& file, const std::vector<std::string>& sets,
                           SchemeSource source) {
-  return framework::read_scene<FlowScene>(file, sets, declare_flow_scene,
-                                          [&](const scene::Table& root, FlowScene& scene) {
-                                            if (source == SchemeSource::baseline) set_baseline_scheme(scene);
-                                            complete_and_check(root, scene);
-                                          });
+  return framework::read_scene<FlowScene>(
+      file, sets, declare_flow_scene, [&](const scene::Table& root, FlowScene& scene) {
+        if (source == SchemeSource::baseline) {
+          if (!scene.has_fluid()) throw Failure(ExitCode::usage, "--seed-mode needs a scene with [fluid]");
+          set_baseline_scheme(scene);
+        }
+        complete_and_check(root, scene);
+      });
 }
 
 double FlowScene::added_mass_ratio(const Canopy& canopy) const {

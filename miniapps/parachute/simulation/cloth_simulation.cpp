@@ -46,7 +46,6 @@ ClothSimulation::ClothSimulation(const FlowScene& scene, const framework::Simula
       _record(scene) {
   if (settings.communicator != nullptr)
     throw Failure(ExitCode::usage, "scenes without [fluid] run on one rank");
-  if (settings.baseline) throw Failure(ExitCode::usage, "--seed-mode needs a scene with [fluid]");
   _solver = fabric::create_solver(settings.backend, fabric_parameters(scene, _sheets));
 }
 
@@ -118,14 +117,19 @@ bool ClothSimulation::take_steps(std::int64_t steps) {
 framework::Stop ClothSimulation::advance(const framework::AdvanceLimits& limits,
                                          const framework::RowSink& rows, const framework::Poll& poll) {
   const ScopedStopwatch stopwatch(_compute_s);
+  // The last good state of a failed run ends its history.
+  const auto fail_with_row = [&](std::int64_t step) {
+    if (limits.row_every > 0 && step % limits.row_every != 0) rows(row());
+    return framework::Stop::failed;
+  };
   while (true) {
     const auto [step, time] = now();
     if (time >= limits.target_time) return framework::Stop::target;
     if (!poll({step, time})) return framework::Stop::interrupted;
-    if (step >= _scene.parameters.max_steps) return framework::Stop::failed;
+    if (step >= _scene.parameters.max_steps) return fail_with_row(step);
     // A run that continues may have other outputs.
     if ((step >= _block.end || _block.time > limits.target_time) && !plan(limits.target_time))
-      return framework::Stop::failed;
+      return fail_with_row(step);
     if (!take_steps(steps_to_event(limits))) {
       return_to_checkpoint();
       return framework::Stop::failed;

@@ -395,6 +395,19 @@ TEST(CoupledSolver, ClothThatLeavesTheDomainIsAFailure) {
   CoupledCase c = flying_strip();
   c.p.sheet.law = {1e-3, 0.0, false};
   expect_failure(c, FailureReason::left_domain);
+  // A new start forgets it.
+  CoupledRun run(c);
+  ASSERT_EQ(run.solver->advance(10.0, -1, {}), flow::Stop::failed);
+  run.solver->upload_cloth(c.x, c.v);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::array<int, 3> n = extents(c.p.flow, state_fields(c.p.flow)[k]);
+    const auto faces =
+        static_cast<std::size_t>(n[0]) * static_cast<std::size_t>(n[1]) * static_cast<std::size_t>(n[2]);
+    run.solver->upload(state_fields(c.p.flow)[k], std::vector<double>(faces, 0.0));
+  }
+  run.solver->start();
+  EXPECT_TRUE(run.advance(5));
+  EXPECT_EQ(run.solver->failure_reason(), FailureReason::flow);
 }
 
 TEST(CoupledSolver, LineThatCarriesMoreThanItsStrengthIsAFailure) {
