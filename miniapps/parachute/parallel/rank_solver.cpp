@@ -233,35 +233,33 @@ void SharedSolver::sample(flow::CellField field, std::span<double> values) {
   _own->sample(field, values);
 }
 
+void SharedSolver::request_with(Request request,
+                                std::initializer_list<std::span<const fabric::Vector>> arrays) {
+  MessageWriter message;
+  message.put(request);
+  for (const auto& rows : arrays) message.put_all(std::vector<fabric::Vector>(rows.begin(), rows.end()));
+  static_cast<void>(_communicator.broadcast(message.take()));
+}
+
 void SharedSolver::upload_cloth(std::span<const fabric::Vector> positions,
                                 std::span<const fabric::Vector> velocities) {
-  MessageWriter message;
-  message.put(Request::upload_cloth);
-  for (const auto& rows : {positions, velocities})
-    message.put_all(std::vector<fabric::Vector>(rows.begin(), rows.end()));
-  static_cast<void>(_communicator.broadcast(message.take()));
+  request_with(Request::upload_cloth, {positions, velocities});
   _own->run([&] { _own->coupled().upload_cloth(positions, velocities); });
 }
 
 void SharedSolver::upload_air_acceleration(std::span<const fabric::Vector> values) {
-  MessageWriter message;
-  message.put(Request::upload_air_acceleration);
-  message.put_all(std::vector<fabric::Vector>(values.begin(), values.end()));
-  static_cast<void>(_communicator.broadcast(message.take()));
+  request_with(Request::upload_air_acceleration, {values});
   _own->run([&] { _own->coupled().upload_air_acceleration(values); });
 }
 
 void SharedSolver::upload_forces(std::span<const fabric::Vector> on_air) {
-  MessageWriter message;
-  message.put(Request::upload_forces);
-  message.put_all(std::vector<fabric::Vector>(on_air.begin(), on_air.end()));
-  static_cast<void>(_communicator.broadcast(message.take()));
+  request_with(Request::upload_forces, {on_air});
   _own->run([&] { _own->coupled().upload_forces(on_air); });
 }
 
 void SharedSolver::set_block(const coupling::BlockProgress& block) {
   request(Request::set_block, block);
-  _own->coupled().set_block(block);
+  _own->run([&] { _own->coupled().set_block(block); });
 }
 
 void SharedSolver::set_frame(const coupling::FrameMotion& frame) {

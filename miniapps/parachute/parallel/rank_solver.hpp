@@ -2,6 +2,7 @@
 
 #include <array>
 #include <functional>
+#include <initializer_list>
 #include <memory>
 #include <optional>
 #include <span>
@@ -161,6 +162,7 @@ class SharedSolver final : public coupling::Solver {
  private:
   template <class... Values>
   void request(Request request, const Values&... values);
+  void request_with(Request request, std::initializer_list<std::span<const fabric::Vector>> arrays);
 
   Communicator& _communicator;
   std::unique_ptr<RankSolver> _own;

@@ -9,37 +9,24 @@
 #include "kernels/coupling/spread.hpp"
 #include "kernels/device/copy.hpp"
 #include "kernels/flow/face_views.hpp"
-#include "kernels/flow/flow_solver.hpp"
 #include "kernels/reference/coupling/grid_transfer.hpp"
 #include "kernels/reference/flow/momentum.hpp"
-#include "tests/support/flow_case.hpp"
+#include "tests/support/typed_flow.hpp"
 
 // Coupling with other kernels: the force field and its effect on a step, failures that it causes, transfer to
 // and from points.
 
 namespace drogue::flow {
-
-// In the library: the tested code is that of the programs.
-extern template class FlowSolver<DROGUE_TEST_SPACE>;
-
 namespace {
 
 using namespace drogue::testing;  // NOLINT: helpers of these tests
 using Space = DROGUE_TEST_SPACE;
 using reference::GridIndex;
 
-/// Solver of the caller's type, with its instance.
-struct TypedCase {
-  explicit TypedCase(const Parameters& p) : parameters(p), domain(p), solver(instance, p) {
-    const StaggeredField u = random_field(domain, 1);
-    for (std::size_t c = 0; c < 3; ++c) solver.upload(static_cast<StateField>(c), u[c]);
-    solver.start();
-  }
-  [[nodiscard]] StaggeredField velocity() {
-    StaggeredField u = domain.zero_field();
-    for (std::size_t c = 0; c < 3; ++c) solver.download(static_cast<StateField>(c), u[c]);
-    return u;
-  }
+/// Solver with a force field.
+struct TypedCase : TypedFlow {
+  explicit TypedCase(const Parameters& p) : TypedFlow(p, 1) {}
+
   /// Sets the force on all faces inside, N/m^3.
   void set_force(const StaggeredField& force) {
     const MacGrid& g = solver.grid();
@@ -51,11 +38,6 @@ struct TypedCase {
     device::copy_in(instance.space(), solver.force(), values.data(), values.size());
     instance.space().fence();
   }
-
-  Parameters parameters;
-  FlowDomain domain;
-  device::Instance<Space> instance{4};
-  FlowSolver<Space> solver;
 };
 
 Parameters forced_box(const std::array<int, 3>& cells) {

@@ -1,57 +1,25 @@
 #include <gtest/gtest.h>
 
-#include <array>
-#include <vector>
-
-#include "kernels/flow/flow_solver.hpp"
-#include "tests/support/flow_case.hpp"
+#include "tests/support/typed_flow.hpp"
 
 // Changes of the frame of reference.
 
 namespace drogue::flow {
-
-// In the library: the tested code is that of the programs.
-extern template class FlowSolver<DROGUE_TEST_SPACE>;
-
 namespace {
 
 using namespace drogue::testing;  // NOLINT: helpers of these tests
-using Space = DROGUE_TEST_SPACE;
 using reference::GridIndex;
-
-class MovingGrid {
- public:
-  explicit MovingGrid(const Parameters& p) : _domain(p), _solver(_instance, p) {
-    const StaggeredField u = random_field(_domain, 21);
-    for (std::size_t c = 0; c < 3; ++c) _solver.upload(static_cast<StateField>(c), u[c]);
-    _solver.start();
-    EXPECT_EQ(_solver.advance(endless, 1, {}), Stop::pause);
-  }
-  /// Velocity, or rates of the previous step.
-  StaggeredField arrays(StateField first) {
-    StaggeredField values = _domain.zero_field();
-    for (std::size_t c = 0; c < 3; ++c)
-      _solver.download(static_cast<StateField>(static_cast<std::size_t>(first) + c), values[c]);
-    return values;
-  }
-  [[nodiscard]] const FlowDomain& domain() const { return _domain; }
-  FlowSolver<Space>& solver() { return _solver; }
-
- private:
-  FlowDomain _domain;
-  device::Instance<Space> _instance{4};
-  FlowSolver<Space> _solver;
-};
 
 TEST(FlowFrame, RatesOnOutflowsChangeByUpwindDifferences) {
   Parameters p = periodic_box({9, 8, 7});
   p.boundary[0].kind = p.boundary[1].kind = BoundaryKind::outflow;
   p.time_scheme = TimeScheme::ab2;
-  MovingGrid grid(p);
-  const FlowDomain& domain = grid.domain();
+  TypedFlow grid(p, 21);
+  ASSERT_EQ(grid.solver.advance(endless, 1, {}), Stop::pause);
+  const FlowDomain& domain = grid.domain;
   const StaggeredField u = grid.arrays(StateField::velocity_x), old = grid.arrays(StateField::rate_x);
   constexpr double shift = 0.3;
-  grid.solver().change_frame({shift, 0.0, 0.0});
+  grid.solver.change_frame({shift, 0.0, 0.0});
   const StaggeredField moved = grid.arrays(StateField::velocity_x), rate = grid.arrays(StateField::rate_x);
   const double h = domain.spacing(0);
   int outgoing = 0, incoming = 0;
