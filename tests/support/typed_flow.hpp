@@ -5,19 +5,11 @@
 #include "kernels/flow/flow_solver.hpp"
 #include "tests/support/flow_case.hpp"
 
-namespace drogue::flow {
-
-// In the library: the tested code is that of the programs.
-extern template class FlowSolver<DROGUE_TEST_SPACE>;
-
-}  // namespace drogue::flow
-
 namespace drogue::testing {
 
-/// Flow solver of the caller's type, with its instance, at the start of a random velocity.
+/// Flow solver on an execution space, with its instance, at the start of a random velocity.
+template <class Space>
 struct TypedFlow {
-  using Space = DROGUE_TEST_SPACE;
-
   TypedFlow(const flow::Parameters& p, unsigned seed) : parameters(p), domain(p), solver(instance, p) {
     const StaggeredField u = random_field(domain, seed);
     for (std::size_t c = 0; c < 3; ++c) solver.upload(static_cast<flow::StateField>(c), u[c]);

@@ -17,6 +17,10 @@
 // and from points.
 
 namespace drogue::flow {
+
+// In the library: the tested code is that of the programs.
+extern template class FlowSolver<DROGUE_TEST_SPACE>;
+
 namespace {
 
 using namespace drogue::testing;  // NOLINT: helpers of these tests
@@ -24,8 +28,8 @@ using Space = DROGUE_TEST_SPACE;
 using reference::GridIndex;
 
 /// Solver with a force field.
-struct TypedCase : TypedFlow {
-  explicit TypedCase(const Parameters& p) : TypedFlow(p, 1) {}
+struct TypedCase : TypedFlow<Space> {
+  explicit TypedCase(const Parameters& p) : TypedFlow<Space>(p, 1) {}
 
   /// Sets the force on all faces inside, N/m^3.
   void set_force(const StaggeredField& force) {

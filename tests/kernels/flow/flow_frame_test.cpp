@@ -5,6 +5,10 @@
 // Changes of the frame of reference.
 
 namespace drogue::flow {
+
+// In the library: the tested code is that of the programs.
+extern template class FlowSolver<DROGUE_TEST_SPACE>;
+
 namespace {
 
 using namespace drogue::testing;  // NOLINT: helpers of these tests
@@ -14,7 +18,7 @@ TEST(FlowFrame, RatesOnOutflowsChangeByUpwindDifferences) {
   Parameters p = periodic_box({9, 8, 7});
   p.boundary[0].kind = p.boundary[1].kind = BoundaryKind::outflow;
   p.time_scheme = TimeScheme::ab2;
-  TypedFlow grid(p, 21);
+  TypedFlow<DROGUE_TEST_SPACE> grid(p, 21);
   ASSERT_EQ(grid.solver.advance(endless, 1, {}), Stop::pause);
   const FlowDomain& domain = grid.domain;
   const StaggeredField u = grid.arrays(StateField::velocity_x), old = grid.arrays(StateField::rate_x);
